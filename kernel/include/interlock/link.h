@@ -1,0 +1,124 @@
+/**
+ * @file
+ * The link between kernel and app: two sealed memory regions handed over a Unix socket.
+ *
+ * The kernel process creates both regions for each attachment and passes their descriptors with
+ * SCM_RIGHTS in one `ilk_link_hello_t`. The app can map the kernel's region for reading only: it is
+ * sealed against future writable mappings. The app's region is the only memory that the app writes;
+ * the kernel maps it read-only and treats each byte of it as hostile.
+ *
+ * Every word is accessed with atomic builtins: relaxed for data, acquire/release for the counters that
+ * publish them.
+ */
+#ifndef INTERLOCK_LINK_H
+#define INTERLOCK_LINK_H
+
+#include "interlock/types.h"
+
+#define ILK_LINK_MAGIC 0x4c4b4c49u /* "ILKL" */
+#define ILK_LINK_VERSION 1u
+
+/** Requests in flight. A power of two; four ticks' worth. */
+#define ILK_LINK_REQUESTS 64u
+/** Events kept for a slow app. A power of two. */
+#define ILK_LINK_EVENTS 1024u
+/** Buckets of a time histogram: bucket n counts durations from 2^n to 2^(n+1) nanoseconds. */
+#define ILK_LINK_BUCKETS 32u
+
+/** Parts of a tick whose time is measured. */
+typedef enum {
+  ILK_PHASE_WAKE = 0,    /**< from the deadline to running code (real clock only) */
+  ILK_PHASE_BUS = 1,     /**< bus transaction */
+  ILK_PHASE_STEP = 2,    /**< ring reader and `ilk_step` */
+  ILK_PHASE_PUBLISH = 3, /**< snapshot and events */
+  ILK_PHASE_COUNT = 4
+} ilk_phase_t;
+
+/** Real-time measures; bit n of `granted` is set when the executive got it. */
+typedef enum {
+  ILK_RT_FIFO = 0,   /**< SCHED_FIFO priority */
+  ILK_RT_MLOCK = 1,  /**< all memory locked */
+  ILK_RT_PINNED = 2, /**< runs on the core asked for */
+  ILK_RT_TIMER = 3   /**< timer slack of one nanosecond */
+} ilk_rt_measure_t;
+
+typedef struct {
+  uint32_t bucket[ILK_PHASE_COUNT][ILK_LINK_BUCKETS]; /**< counts, saturating */
+  uint32_t max_ns[ILK_PHASE_COUNT];                   /**< largest seen, saturating */
+} ilk_timing_t;
+
+/** What the kernel shows of itself, whole, once a tick. */
+typedef struct {
+  uint32_t clock;        /**< ilk_clock_t of sim_bus.h */
+  uint32_t simulated;    /**< 1: the bus is a simulator */
+  uint32_t degraded;     /**< 1: real clock without the real-time measures it needs */
+  uint32_t granted;      /**< bits by ilk_rt_measure_t */
+  uint32_t period_us;
+  uint32_t config_crc;
+  uint32_t requests_dropped; /**< records skipped because the ring was overrun, saturating */
+  ilk_state_t state;
+  ilk_inputs_t inputs;
+  ilk_command_t command[ILK_SLOTS];
+  uint32_t gate[ILK_SLOTS];
+  uint32_t lamp[ILK_LAMP_COUNT];
+  ilk_timing_t timing;
+} ilk_snapshot_t;
+
+/** Kinds of events. */
+typedef enum {
+  ILK_EVENT_VERDICT = 1, /**< a request was judged: value = sequence, kind, axis, verdict */
+  ILK_EVENT_MODE = 2,    /**< the mode changed: value = from, to, cause, cause_value */
+  ILK_EVENT_FAULT = 3,   /**< an axis faulted: value = slot, fault, fault_value, 0 */
+  ILK_EVENT_AXIS = 4     /**< an axis changed state: value = slot, from, to, homed */
+} ilk_event_kind_t;
+
+typedef struct {
+  uint32_t number; /**< 1 for the first event of the attachment; written last, 0 while being written */
+  uint32_t kind;   /**< ilk_event_kind_t */
+  uint32_t tick;
+  uint32_t value[4];
+} ilk_event_t;
+
+/** Written by the kernel, readable by the app. */
+typedef struct {
+  uint32_t magic;
+  uint32_t version;
+  uint32_t layout_hash;
+  uint32_t generation;
+  uint32_t request_tail;   /**< requests consumed; the app may write up to ILK_LINK_REQUESTS beyond it */
+  uint32_t event_head;     /**< events written, wrapping */
+  uint32_t snapshot_lock;  /**< seqlock: odd while the snapshot is being written; also the futex to wait on */
+  ilk_snapshot_t snapshot;
+  ilk_event_t event[ILK_LINK_EVENTS];
+} ilk_link_kernel_region_t;
+
+/** Written by the app, readable by the kernel. */
+typedef struct {
+  uint32_t magic;
+  uint32_t request_head;  /**< requests written, wrapping */
+  uint32_t seen_tick;     /**< newest tick whose snapshot the app has handled; paces the simulated clock */
+  ilk_request_t request[ILK_LINK_REQUESTS];
+} ilk_link_app_region_t;
+
+/** First and only message on the socket, with both descriptors: kernel region, then app region. */
+typedef struct {
+  uint32_t magic;
+  uint32_t version;
+  uint32_t layout_hash; /**< `ilk_link_layout_hash` of the kernel's build */
+  uint32_t generation;
+  uint32_t kernel_region_bytes;
+  uint32_t app_region_bytes;
+} ilk_link_hello_t;
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** CRC-32 over the sizes and offsets of everything shared; both sides must agree on it. */
+uint32_t ilk_link_layout_hash(void);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

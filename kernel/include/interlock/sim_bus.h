@@ -1,0 +1,50 @@
+/**
+ * @file
+ * The simulated bus: one Unix seqpacket record each way per tick between kernel and plant.
+ *
+ * The kernel connects and sends one `ilk_sim_hello_t`; the plant answers with the same record, its own
+ * values filled in, or closes. From then on the kernel sends one `ilk_sim_exchange_t` a tick and the plant
+ * answers each with one `ilk_sim_reply_t`. As on the real bus the exchange is full duplex: a reply tells
+ * what the card latched before it saw the frame of the same exchange. All words are native-endian.
+ */
+#ifndef INTERLOCK_SIM_BUS_H
+#define INTERLOCK_SIM_BUS_H
+
+#include "interlock/types.h"
+
+#define ILK_SIM_MAGIC 0x534b4c49u /* "ILKS" */
+#define ILK_SIM_VERSION 1u
+
+/** Who decides how plant time passes. */
+typedef enum {
+  ILK_CLOCK_REAL = 0, /**< plant time is the wall clock; card watchdogs run between exchanges, too */
+  ILK_CLOCK_SIM = 1   /**< plant time advances by one period with each exchange, and only then */
+} ilk_clock_t;
+
+typedef struct {
+  uint32_t magic;
+  uint32_t version;
+  uint32_t frame_words; /**< ILK_FRAME_WORDS of the sender */
+  uint32_t period_us;
+  uint32_t clock;       /**< ilk_clock_t */
+  uint32_t config_crc;  /**< of the kernel's configuration, for the record */
+} ilk_sim_hello_t;
+
+typedef struct {
+  uint32_t magic;
+  uint32_t tick;        /**< kernel tick, for the record */
+  uint32_t lamp[ILK_LAMP_COUNT];
+  uint32_t frame[ILK_SLOTS][ILK_FRAME_WORDS];
+} ilk_sim_exchange_t;
+
+typedef struct {
+  uint32_t magic;
+  uint32_t tick;            /**< of the exchange that this answers */
+  uint32_t frames_received; /**< bit n: slot n answered */
+  uint32_t pedal_no_closed;
+  uint32_t pedal_nc_closed;
+  uint32_t estop_loop_closed;
+  uint32_t frame[ILK_SLOTS][ILK_FRAME_WORDS];
+} ilk_sim_reply_t;
+
+#endif
