@@ -9,6 +9,14 @@
  *
  * Every word is accessed with atomic builtins: relaxed for data, acquire/release for the counters that
  * publish them.
+ *
+ * One app is attached at a time; a further connection is closed without a hello. Each attachment starts
+ * with fresh regions, generation + 1, and all counters at 0. The app sends nothing on the socket: closing
+ * it, or sending on it, ends the attachment.
+ *
+ * Waiting for the next snapshot: `FUTEX_WAIT` (not `FUTEX_PRIVATE_FLAG`) on `snapshot_lock` works on the
+ * read-only mapping. The kernel wakes at most ILK_LINK_WAITERS waiters after each snapshot, so that
+ * the time of its tick does not depend on how many there are; wait with a timeout.
  */
 #ifndef INTERLOCK_LINK_H
 #define INTERLOCK_LINK_H
@@ -22,6 +30,10 @@
 #define ILK_LINK_REQUESTS 64u
 /** Events kept for a slow app. A power of two. */
 #define ILK_LINK_EVENTS 1024u
+/** Threads of the app that can wait for a snapshot at the same time. */
+#define ILK_LINK_WAITERS 4u
+/** Simulated clock: ticks that the kernel runs ahead of `seen_tick` at most, while an app is attached. */
+#define ILK_LINK_TICKS_AHEAD 10u
 /** Buckets of a time histogram: bucket n counts durations from 2^n to 2^(n+1) nanoseconds. */
 #define ILK_LINK_BUCKETS 32u
 
@@ -56,6 +68,8 @@ typedef struct {
   uint32_t period_us;
   uint32_t config_crc;
   uint32_t requests_dropped; /**< records skipped because the ring was overrun, saturating */
+  uint32_t overruns;         /**< ticks that began more than a period late (real clock), saturating; counted
+                                  also when degraded, while `state.overruns` counts those that can lock */
   ilk_state_t state;
   ilk_inputs_t inputs;
   ilk_command_t command[ILK_SLOTS];
@@ -69,7 +83,7 @@ typedef enum {
   ILK_EVENT_VERDICT = 1, /**< a request was judged: value = sequence, kind, axis, verdict */
   ILK_EVENT_MODE = 2,    /**< the mode changed: value = from, to, cause, cause_value */
   ILK_EVENT_FAULT = 3,   /**< an axis faulted: value = slot, fault, fault_value, 0 */
-  ILK_EVENT_AXIS = 4     /**< an axis changed state: value = slot, from, to, homed */
+  ILK_EVENT_AXIS = 4     /**< an axis changed state or `homed`: value = slot, from, to, homed */
 } ilk_event_kind_t;
 
 typedef struct {
@@ -87,7 +101,8 @@ typedef struct {
   uint32_t generation;
   uint32_t request_tail;   /**< requests consumed; the app may write up to ILK_LINK_REQUESTS beyond it */
   uint32_t event_head;     /**< events written, wrapping */
-  uint32_t snapshot_lock;  /**< seqlock: odd while the snapshot is being written; also the futex to wait on */
+  uint32_t snapshot_lock;  /**< seqlock: odd while the snapshot is being written, 0 until the first one;
+                                also the futex to wait on */
   ilk_snapshot_t snapshot;
   ilk_event_t event[ILK_LINK_EVENTS];
 } ilk_link_kernel_region_t;
@@ -96,7 +111,10 @@ typedef struct {
 typedef struct {
   uint32_t magic;
   uint32_t request_head;  /**< requests written, wrapping */
-  uint32_t seen_tick;     /**< newest tick whose snapshot the app has handled; paces the simulated clock */
+  uint32_t seen_tick;     /**< newest tick whose snapshot the app has handled; paces the simulated clock.
+                               Wake its futex after writing: a kernel that waits for it then goes on at
+                               once, else within a millisecond. An app that leaves it unchanged for 2 s of
+                               wall time is no longer waited for until it changes */
   ilk_request_t request[ILK_LINK_REQUESTS];
 } ilk_link_app_region_t;
 
