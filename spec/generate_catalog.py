@@ -55,6 +55,28 @@ def c_header(catalog: Catalog) -> str:
     return "\n".join([*lines, "#endif", ""])
 
 
+C_CONFIG_ERRORS = """/* {notice} */
+#include "config_error_text.h"
+
+static const ilk_config_error_text_t texts[ILK_CONFIG_ERROR_COUNT] = {{
+{rows}
+}};
+
+ilk_config_error_text_t ilk_config_error_text(uint32_t error) {{
+  static const ilk_config_error_text_t unknown = {{"UNKNOWN", "The code is not in the catalog."}};
+  return error < ILK_CONFIG_ERROR_COUNT ? texts[error] : unknown;
+}}
+"""
+
+
+def c_config_errors(catalog: Catalog) -> str:
+    rows = (
+        f'  [ILK_CONFIG_ERROR_{code["name"]}] = {{"{code["name"]}", {json.dumps(code["meaning"])}}},'
+        for code in catalog["config_error"]
+    )
+    return C_CONFIG_ERRORS.format(notice=NOTICE, rows="\n".join(rows))
+
+
 CPP_HEADER = """/**
  * @file
  * {notice}
@@ -275,6 +297,7 @@ def document(catalog: Catalog) -> str:
 
 OUTPUTS: dict[str, Callable[[Catalog], str]] = {
     "kernel/include/interlock/catalog.h": c_header,
+    "kernel/host/config_error_text.c": c_config_errors,
     "app/robot/catalog.hpp": cpp_header,
     "app/robot/catalog.cpp": cpp_source,
     "web/src/generated/catalog.ts": typescript,
