@@ -1,0 +1,211 @@
+#include "robot/compile.hpp"
+
+#include <bit>
+#include <cerrno>
+#include <cstdio>
+#include <fstream>
+#include <system_error>
+
+#include "interlock/kernel.h"
+#include "robot/catalog.hpp"
+
+namespace interlock {
+namespace {
+
+constexpr std::size_t config_words = sizeof(ilk_config_t) / sizeof(std::uint32_t);
+using ConfigWords = std::array<std::uint32_t, config_words>;
+
+ilk_axis_config_t compile_axis(const Axis& axis) {
+  const Homing homing = axis.homing.value_or(Homing{});
+  ilk_axis_config_t out{};
+  out.card = axis.card;
+  out.required = axis.required ? 1 : 0;
+  out.motor_direction = axis.motor_direction;
+  out.direction_correction = axis.direction_correction;
+  out.limit_side = axis.limit;
+  out.min_counts = axis.soft_limits.min_counts;
+  out.max_counts = axis.soft_limits.max_counts;
+  out.home_offset_counts = axis.home_offset_counts;
+  out.coast_counts = axis.mechanics.coast_counts;
+  out.backlash_counts = axis.mechanics.backlash_counts;
+  out.noise_counts = axis.mechanics.noise_counts;
+  out.deadband_counts = axis.deadband_counts;
+  out.max_drive = axis.drive.max;
+  out.unhomed_max_drive = axis.drive.unhomed_max;
+  out.max_amplitude = axis.drive.max_amplitude;
+  out.unhomed_travel_counts = axis.unhomed_travel_counts;
+  out.home_drive = homing.drive;
+  out.home_amplitude = homing.amplitude;
+  out.home_travel_counts = homing.travel_counts;
+  out.home_backoff_counts = homing.backoff_counts;
+  out.home_timeout_ticks = homing.timeout_ticks;
+  out.home_rest_ticks = homing.rest_ticks;
+  out.home_speed_counts_per_s = homing.speed_counts_per_s;
+  out.stall_ticks = axis.stall.driven_ticks;
+  out.stall_min_counts = axis.stall.min_counts;
+  out.reverse_counts = axis.runaway.reverse_counts;
+  out.drift_counts = axis.runaway.drift_counts;
+  out.settle_ticks = axis.mechanics.settle_ticks;
+  out.max_delta_counts = axis.mechanics.max_delta_counts;
+  return out;
+}
+
+/** Where a rule of the kernel is to be kept in the file; inside the axis' table when the rule is about an axis. */
+std::string_view key_of(std::uint32_t error) {
+  switch (error) {
+    case ILK_CONFIG_ERROR_PERIOD:
+      return "period_us";
+    case ILK_CONFIG_ERROR_PEDAL_CHANNELS:
+      return "pedal.channels";
+    case ILK_CONFIG_ERROR_APP_TIMEOUT:
+      return "loop.app_timeout_ms";
+    case ILK_CONFIG_ERROR_LEASE:
+      return "loop.lease_max_ms";
+    case ILK_CONFIG_ERROR_PEDAL_DEBOUNCE:
+      return "pedal.debounce_ms";
+    case ILK_CONFIG_ERROR_PEDAL_DISAGREE:
+      return "pedal.disagree_ms";
+    case ILK_CONFIG_ERROR_BAD_FRAMES:
+      return "loop.bad_frame_limit";
+    case ILK_CONFIG_ERROR_OVERRUNS:
+      return "loop.overrun_limit";
+    case ILK_CONFIG_ERROR_NO_AXIS:
+      return "axis";
+    case ILK_CONFIG_ERROR_CARD:
+      return "card";
+    case ILK_CONFIG_ERROR_FLAG:
+      return "motor_direction";
+    case ILK_CONFIG_ERROR_LIMIT_SIDE:
+      return "limit";
+    case ILK_CONFIG_ERROR_SOFT_LIMITS:
+      return "soft_limits";
+    case ILK_CONFIG_ERROR_HOME_OFFSET:
+      return "home_offset_counts";
+    case ILK_CONFIG_ERROR_COAST:
+      return "mechanics.coast_counts";
+    case ILK_CONFIG_ERROR_DEADBAND:
+      return "deadband_counts";
+    case ILK_CONFIG_ERROR_MAX_DRIVE:
+      return "drive.max";
+    case ILK_CONFIG_ERROR_UNHOMED_DRIVE:
+      return "drive.unhomed_max";
+    case ILK_CONFIG_ERROR_AMPLITUDE:
+      return "drive.max_amplitude";
+    case ILK_CONFIG_ERROR_UNHOMED_TRAVEL:
+      return "unhomed_travel_counts";
+    case ILK_CONFIG_ERROR_HOME_DRIVE:
+      return "homing.drive";
+    case ILK_CONFIG_ERROR_HOME_TRAVEL:
+      return "homing.travel_counts";
+    case ILK_CONFIG_ERROR_HOME_BACKOFF:
+      return "homing.backoff_counts";
+    case ILK_CONFIG_ERROR_HOME_REST:
+      return "homing.rest_ms";
+    case ILK_CONFIG_ERROR_HOME_TIMEOUT:
+      return "homing.timeout_ms";
+    case ILK_CONFIG_ERROR_STALL:
+      return "stall";
+    case ILK_CONFIG_ERROR_REVERSE:
+      return "runaway.reverse_counts";
+    case ILK_CONFIG_ERROR_DRIFT:
+      return "runaway.drift_counts";
+    case ILK_CONFIG_ERROR_SETTLE:
+      return "mechanics.settle_ms";
+    case ILK_CONFIG_ERROR_MAX_DELTA:
+      return "mechanics.max_delta_counts";
+    default:
+      return "";
+  }
+}
+
+RobotError rule_broken(const Robot& robot, ilk_config_verdict_t verdict) {
+  const catalog::Entry& rule = catalog::entry(catalog::Family::config_error, verdict.error);
+  const Axis* const axis = robot.at_slot(verdict.slot);
+  RobotError error;
+  error.file = robot.origin.file;
+  error.key = (axis ? "axis." + axis->name + '.' : "") + std::string(key_of(verdict.error));
+  const auto line = robot.origin.line_of_key.find(error.key);
+  error.line = line == robot.origin.line_of_key.end() ? 0 : line->second;
+  error.problem = rule.meaning;
+  error.expected = "values that keep the kernel's rule " + std::string(rule.name);
+  return error;
+}
+
+}  // namespace
+
+tl::expected<ilk_config_t, RobotError> compile(const Robot& robot) {
+  ilk_config_t config{};
+  config.version = ILK_CONFIG_VERSION;
+  config.size_bytes = sizeof(ilk_config_t);
+  config.period_us = robot.period_us;
+  config.pedal_channels = robot.pedal.channels;
+  config.app_timeout_ticks = robot.loop.app_timeout_ticks;
+  config.lease_max_ticks = robot.loop.lease_max_ticks;
+  config.pedal_debounce_ticks = robot.pedal.debounce_ticks;
+  config.pedal_disagree_ticks = robot.pedal.disagree_ticks;
+  config.bad_frame_limit = robot.loop.bad_frame_limit;
+  config.overrun_limit = robot.loop.overrun_limit;
+  for (const Axis& axis : robot.axes) {
+    if (axis.slot >= ILK_SLOTS) {
+      return tl::unexpected(RobotError{robot.origin.file, 0, "axis." + axis.name + ".slot",
+                                       "there is no slot " + std::to_string(axis.slot),
+                                       "a slot below " + std::to_string(ILK_SLOTS)});
+    }
+    config.axis[axis.slot] = compile_axis(axis);
+  }
+  config.crc = ilk_config_crc(&config);
+
+  const ilk_config_verdict_t verdict = ilk_config_validate(&config);
+  if (verdict.error != ILK_CONFIG_ERROR_NONE) {
+    return tl::unexpected(rule_broken(robot, verdict));
+  }
+  return config;
+}
+
+ConfigBytes encode(const ilk_config_t& config) {
+  ConfigBytes bytes{};
+  std::size_t at = 0;
+  for (const std::uint32_t word : std::bit_cast<ConfigWords>(config)) {
+    for (int shift = 0; shift < 32; shift += 8) {
+      bytes[at++] = static_cast<std::uint8_t>(word >> shift);
+    }
+  }
+  return bytes;
+}
+
+ilk_config_t decode(const ConfigBytes& bytes) {
+  ConfigWords words{};
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    words[at / 4] |= std::uint32_t{bytes[at]} << (8 * (at % 4));
+  }
+  return std::bit_cast<ilk_config_t>(words);
+}
+
+std::string config_hash(const ilk_config_t& config) {
+  std::array<char, 9> digits{};
+  std::snprintf(digits.data(), digits.size(), "%08x", config.crc);
+  return digits.data();
+}
+
+tl::expected<void, std::string> write_config(const ilk_config_t& config, const std::filesystem::path& file) {
+  const ConfigBytes bytes = encode(config);
+  std::filesystem::path beside = file;
+  beside += ".new";
+  {
+    std::ofstream stream(beside, std::ios::binary | std::ios::trunc);
+    stream.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize{bytes.size()});
+    stream.close();
+    if (!stream) {
+      return tl::unexpected(beside.string() + " cannot be written: " + std::generic_category().message(errno));
+    }
+  }
+  std::error_code error;
+  std::filesystem::rename(beside, file, error);
+  if (error) {
+    std::filesystem::remove(beside, error);
+    return tl::unexpected(file.string() + " cannot be written: " + error.message());
+  }
+  return {};
+}
+
+}  // namespace interlock

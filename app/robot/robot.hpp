@@ -1,0 +1,191 @@
+/**
+ * @file
+ * A robot as its file describes it: axes by card slot, their bounds, units and names, and the order of homing.
+ *
+ * A `Robot` comes from `load_robot` (robot_file.hpp) and turns into the kernel's configuration by `compile`
+ * (compile.hpp). It is a plain value: copy it, compare it, hand it between threads.
+ *
+ * Units live in the names, as in the kernel: `_counts` encoder counts, `_ticks` control periods, `_ms`
+ * milliseconds. Drive is the kernel's speed magnitude, 0 to `max`.
+ */
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "interlock/types.h"
+
+namespace interlock {
+
+/** Unit in which people read an axis. */
+enum class Unit { mm, rad };
+
+/** Kind of motor behind a card. */
+enum class Motor { unspecified, shinsei, piezo, dti };
+
+/** "mm" or "rad". */
+std::string_view unit_name(Unit unit);
+
+/** "unspecified", "shinsei", "piezo" or "dti". */
+std::string_view motor_name(Motor motor);
+
+/** Positions between which a homed axis may be. */
+struct SoftLimits {
+  std::int32_t min_counts = 0;
+  std::int32_t max_counts = 0;
+
+  bool operator==(const SoftLimits&) const = default;
+};
+
+/** Bounds of the drive. */
+struct DriveBounds {
+  std::uint32_t max = 0;
+  std::uint32_t min = 0; /**< smallest drive that a controller asks for while it moves the axis */
+  std::uint32_t unhomed_max = 0;
+  std::uint32_t max_amplitude = 0; /**< wave amplitude; 0 unless the card is high-frequency */
+
+  bool operator==(const DriveBounds&) const = default;
+};
+
+/** Gains of the position controller, drive per count of error. */
+struct Gains {
+  double kp = 0.0;
+  double ki = 0.0;
+  double kd = 0.0;
+
+  bool operator==(const Gains&) const = default;
+};
+
+/** What the mechanics do by themselves. */
+struct Mechanics {
+  std::uint32_t coast_counts = 0;     /**< farthest travel from the reading on which drive was last allowed until rest */
+  std::uint32_t backlash_counts = 0;  /**< lost motion when the direction changes */
+  std::uint32_t noise_counts = 0;     /**< peak-to-peak noise of the counter at rest */
+  std::uint32_t max_delta_counts = 0; /**< largest possible motion in one tick */
+  std::uint32_t settle_ticks = 0;     /**< ticks from the last driven one until rest */
+
+  bool operator==(const Mechanics&) const = default;
+};
+
+/** Homing at the switch; only axes with a switch have it. */
+struct Homing {
+  std::uint32_t drive = 0;
+  std::uint32_t amplitude = 0;          /**< wave amplitude; 0 unless the card is high-frequency */
+  std::uint32_t speed_counts_per_s = 0; /**< slowest speed at `drive` */
+  std::uint32_t travel_counts = 0;      /**< farthest travel towards the switch */
+  std::uint32_t backoff_counts = 0;     /**< farthest travel away from a switch that was triggered at the start */
+  std::uint32_t timeout_ticks = 0;      /**< longest homing, back-off and rest included */
+  std::uint32_t rest_ticks = 0;         /**< ticks without a count that mean rest */
+
+  bool operator==(const Homing&) const = default;
+};
+
+/** When a driven axis counts as stalled. */
+struct StallRule {
+  std::uint32_t driven_ticks = 0;
+  std::uint32_t min_counts = 0; /**< progress that clears the count */
+
+  bool operator==(const StallRule&) const = default;
+};
+
+/** Motion that nobody asked for. */
+struct RunawayRule {
+  std::uint32_t reverse_counts = 0; /**< tolerated against the command */
+  std::uint32_t drift_counts = 0;   /**< tolerated while enabled but not driven */
+
+  bool operator==(const RunawayRule&) const = default;
+};
+
+/** One motor axis. The slot of its card is its number everywhere. */
+struct Axis {
+  std::uint32_t slot = 0;
+  std::string name;  /**< for programs and files: "probe_rotation" */
+  std::string title; /**< for people: "Probe rotation" */
+  ilk_card_t card = ILK_CARD_NONE;
+  bool required = false; /**< losing its card ends MOTION of all axes */
+  Motor motor = Motor::unspecified;
+  std::uint32_t encoder_resolution = 0; /**< counts per revolution of the motor */
+  Unit unit = Unit::mm;
+  double counts_per_unit = 1.0;
+  std::uint32_t motor_direction = 0;      /**< 1: the card's direction bit follows the axis, 0: inverted */
+  std::uint32_t direction_correction = 0; /**< 1: position decreases while the raw counter increases */
+  ilk_limit_side_t limit = ILK_LIMIT_NONE;
+  std::int32_t home_offset_counts = 0; /**< position at the edge of the switch */
+  std::uint32_t deadband_counts = 0;
+  std::uint32_t unhomed_travel_counts = 0; /**< farthest travel in one press of the pedal while not homed */
+  SoftLimits soft_limits;
+  DriveBounds drive;
+  Gains gains;
+  Mechanics mechanics;
+  StallRule stall;
+  RunawayRule runaway;
+  std::optional<Homing> homing;
+
+  /** Counts in the axis' unit. */
+  [[nodiscard]] double to_unit(std::int32_t counts) const;
+
+  /** Nearest count to a position in the axis' unit; empty when it is not finite or beyond 32 bits. */
+  [[nodiscard]] std::optional<std::int32_t> to_counts(double position) const;
+
+  /** Lowest setpoint that the kernel accepts from a homed axis: the soft limit and the coasting distance. */
+  [[nodiscard]] std::int32_t lowest_setpoint_counts() const;
+
+  /** Highest setpoint that the kernel accepts from a homed axis. */
+  [[nodiscard]] std::int32_t highest_setpoint_counts() const;
+
+  bool operator==(const Axis&) const = default;
+};
+
+/** Foot pedal. */
+struct Pedal {
+  std::uint32_t channels = 2; /**< 1: normally open contact, 2: normally closed contact besides */
+  std::uint32_t debounce_ticks = 0;
+  std::uint32_t disagree_ticks = 0; /**< disagreement of the channels that locks */
+
+  bool operator==(const Pedal&) const = default;
+};
+
+/** Limits of the control loop, its bus and the app that speaks to it. */
+struct LoopLimits {
+  std::uint32_t app_timeout_ticks = 0; /**< silence of the app that ends MOTION */
+  std::uint32_t lease_max_ticks = 0;   /**< longest lease of a move */
+  std::uint32_t bad_frame_limit = 0;   /**< bad frames in a row that lose a card, or the bus */
+  std::uint32_t overrun_limit = 0;     /**< missed deadlines in a row that lock */
+
+  bool operator==(const LoopLimits&) const = default;
+};
+
+/** Where the robot was written down, so that later findings can name the place. */
+struct Origin {
+  std::string file;
+  std::map<std::string, std::uint32_t, std::less<>> line_of_key; /**< by dotted path: "axis.yaw.drive.max" */
+
+  bool operator==(const Origin&) const = default;
+};
+
+/** The robot. Axes are in the order of the file, in which people see them. */
+struct Robot {
+  std::string name;
+  std::string title;
+  std::uint32_t period_us = 1000;
+  Pedal pedal;
+  LoopLimits loop;
+  std::vector<Axis> axes;
+  std::vector<std::uint32_t> home_order; /**< slots of the axes with a switch, first to home first */
+  Origin origin;
+
+  /** The axis of that name, or null. */
+  [[nodiscard]] const Axis* find(std::string_view axis_name) const;
+
+  /** The axis in that slot, or null. */
+  [[nodiscard]] const Axis* at_slot(std::uint32_t slot) const;
+
+  bool operator==(const Robot&) const = default;
+};
+
+}  // namespace interlock

@@ -1,0 +1,272 @@
+#include "robot/robot_file.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "robot/table_reader.hpp"
+
+namespace interlock {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, ilk_card_t>, 4> cards{{
+    {"pwm", ILK_CARD_PWM},
+    {"non-pwm", ILK_CARD_NON_PWM},
+    {"analog-input", ILK_CARD_ANALOG},
+    {"high-frequency", ILK_CARD_HIGH_FREQUENCY},
+}};
+
+constexpr std::array<std::pair<std::string_view, Motor>, 4> motors{{
+    {"shinsei", Motor::shinsei},
+    {"piezo", Motor::piezo},
+    {"dti", Motor::dti},
+    {"unspecified", Motor::unspecified},
+}};
+
+constexpr std::array<std::pair<std::string_view, Unit>, 2> units{{{"mm", Unit::mm}, {"rad", Unit::rad}}};
+
+constexpr std::array<std::pair<std::string_view, ilk_limit_side_t>, 3> limit_sides{{
+    {"none", ILK_LIMIT_NONE},
+    {"lower", ILK_LIMIT_LOWER},
+    {"upper", ILK_LIMIT_UPPER},
+}};
+
+Pedal read_pedal(TableReader table, std::uint32_t period_us) {
+  Pedal pedal;
+  pedal.channels = table.integer<std::uint32_t>("channels");
+  pedal.debounce_ticks = table.ticks("debounce_ms", period_us);
+  pedal.disagree_ticks = table.ticks("disagree_ms", period_us);
+  table.refuse_unknown_keys();
+  return pedal;
+}
+
+LoopLimits read_loop(TableReader table, std::uint32_t period_us) {
+  LoopLimits loop;
+  loop.app_timeout_ticks = table.ticks("app_timeout_ms", period_us);
+  loop.lease_max_ticks = table.ticks("lease_max_ms", period_us);
+  loop.bad_frame_limit = table.integer<std::uint32_t>("bad_frame_limit");
+  loop.overrun_limit = table.integer<std::uint32_t>("overrun_limit");
+  table.refuse_unknown_keys();
+  return loop;
+}
+
+SoftLimits read_soft_limits(TableReader table) {
+  SoftLimits limits;
+  limits.min_counts = table.integer<std::int32_t>("min_counts");
+  limits.max_counts = table.integer<std::int32_t>("max_counts");
+  table.refuse_unknown_keys();
+  return limits;
+}
+
+DriveBounds read_drive(TableReader table, bool has_amplitude) {
+  DriveBounds drive;
+  drive.max = table.integer<std::uint32_t>("max");
+  drive.min = static_cast<std::uint32_t>(table.integer_between("min", 0, drive.max));
+  drive.unhomed_max = table.integer<std::uint32_t>("unhomed_max");
+  if (has_amplitude) {
+    drive.max_amplitude = table.integer<std::uint32_t>("max_amplitude");
+  }
+  table.refuse_unknown_keys();
+  return drive;
+}
+
+double read_gain(TableReader& table, std::string_view key) {
+  const double gain = table.number(key);
+  if (gain < 0.0) {
+    table.refuse(key, "the gain is negative", "zero or a positive number");
+  }
+  return gain;
+}
+
+Gains read_gains(TableReader table) {
+  Gains gains;
+  gains.kp = read_gain(table, "kp");
+  gains.ki = read_gain(table, "ki");
+  gains.kd = read_gain(table, "kd");
+  table.refuse_unknown_keys();
+  return gains;
+}
+
+Mechanics read_mechanics(TableReader table, std::uint32_t period_us) {
+  Mechanics mechanics;
+  mechanics.coast_counts = table.integer<std::uint32_t>("coast_counts");
+  mechanics.backlash_counts = table.integer<std::uint32_t>("backlash_counts");
+  mechanics.noise_counts = table.integer<std::uint32_t>("noise_counts");
+  mechanics.max_delta_counts = table.integer<std::uint32_t>("max_delta_counts");
+  mechanics.settle_ticks = table.ticks("settle_ms", period_us);
+  table.refuse_unknown_keys();
+  return mechanics;
+}
+
+StallRule read_stall(TableReader table, std::uint32_t period_us) {
+  StallRule stall;
+  stall.driven_ticks = table.ticks("driven_ms", period_us);
+  stall.min_counts = table.integer<std::uint32_t>("min_counts");
+  table.refuse_unknown_keys();
+  return stall;
+}
+
+RunawayRule read_runaway(TableReader table) {
+  RunawayRule runaway;
+  runaway.reverse_counts = table.integer<std::uint32_t>("reverse_counts");
+  runaway.drift_counts = table.integer<std::uint32_t>("drift_counts");
+  table.refuse_unknown_keys();
+  return runaway;
+}
+
+Homing read_homing(TableReader table, std::uint32_t period_us, bool has_amplitude) {
+  Homing homing;
+  homing.drive = table.integer<std::uint32_t>("drive");
+  if (has_amplitude) {
+    homing.amplitude = table.integer<std::uint32_t>("amplitude");
+  }
+  homing.speed_counts_per_s = table.integer<std::uint32_t>("speed_counts_per_s");
+  homing.travel_counts = table.integer<std::uint32_t>("travel_counts");
+  homing.backoff_counts = table.integer<std::uint32_t>("backoff_counts");
+  homing.timeout_ticks = table.ticks("timeout_ms", period_us);
+  homing.rest_ticks = table.ticks("rest_ms", period_us);
+  table.refuse_unknown_keys();
+  return homing;
+}
+
+double read_counts_per_unit(TableReader& table) {
+  const double counts = table.number("counts_per_unit");
+  if (!(counts > 0.0)) {
+    table.refuse("counts_per_unit", "it is not above zero", "encoder counts per mm or rad, above zero");
+    return 1.0;
+  }
+  return counts;
+}
+
+std::optional<Homing> read_optional_homing(TableReader& table, const Axis& axis, std::uint32_t period_us) {
+  if (axis.limit != ILK_LIMIT_NONE) {
+    return read_homing(table.table("homing"), period_us, axis.card == ILK_CARD_HIGH_FREQUENCY);
+  }
+  if (table.has("homing")) {
+    table.refuse("homing", "the axis has no switch to home at", "no homing table, or limit = \"lower\" or \"upper\"");
+  }
+  return std::nullopt;
+}
+
+void refuse_twins(TableReader& table, const Robot& robot, const Axis& axis) {
+  if (robot.find(axis.name) != nullptr) {
+    table.refuse("name", "another axis is called \"" + axis.name + "\" already", "a name of its own");
+  }
+  if (const Axis* const other = robot.at_slot(axis.slot)) {
+    table.refuse("slot", "slot " + std::to_string(axis.slot) + " carries \"" + other->name + "\" already",
+                 "a slot of its own");
+  }
+}
+
+Axis read_axis(TableReader table, const Robot& robot) {
+  Axis axis;
+  axis.name = table.identifier("name");
+  table.rename("axis." + axis.name);
+  axis.slot = static_cast<std::uint32_t>(table.integer_between("slot", 0, ILK_SLOTS - 1));
+  refuse_twins(table, robot, axis);
+  axis.title = table.text("title");
+  axis.card = table.choice("card", cards);
+  axis.required = table.has("required") && table.boolean("required");
+  axis.motor = table.choice("motor", motors);
+  axis.encoder_resolution = table.integer<std::uint32_t>("encoder_resolution");
+  axis.unit = table.choice("unit", units);
+  axis.counts_per_unit = read_counts_per_unit(table);
+  axis.motor_direction = static_cast<std::uint32_t>(table.integer_between("motor_direction", 0, 1));
+  axis.direction_correction = static_cast<std::uint32_t>(table.integer_between("direction_correction", 0, 1));
+  axis.limit = table.choice("limit", limit_sides);
+  axis.home_offset_counts = table.integer<std::int32_t>("home_offset_counts");
+  axis.deadband_counts = table.integer<std::uint32_t>("deadband_counts");
+  axis.unhomed_travel_counts = table.integer<std::uint32_t>("unhomed_travel_counts");
+  axis.soft_limits = read_soft_limits(table.table("soft_limits"));
+  axis.drive = read_drive(table.table("drive"), axis.card == ILK_CARD_HIGH_FREQUENCY);
+  axis.gains = read_gains(table.table("gains"));
+  axis.mechanics = read_mechanics(table.table("mechanics"), robot.period_us);
+  axis.stall = read_stall(table.table("stall"), robot.period_us);
+  axis.runaway = read_runaway(table.table("runaway"));
+  axis.homing = read_optional_homing(table, axis, robot.period_us);
+  table.refuse_unknown_keys();
+  return axis;
+}
+
+void read_axes(ReadLog& log, TableReader& table, Robot& robot) {
+  const std::string expected = "one [[axis]] table for each motor";
+  const toml::array* const entries = table.array("axis", expected);
+  if (!entries) {
+    return;
+  }
+  for (const toml::node& entry : *entries) {
+    const std::string path = "axis[" + std::to_string(robot.axes.size()) + ']';
+    if (!entry.is_table()) {
+      log.refuse(entry.source().begin.line, path, "it is not a table", expected);
+      return;
+    }
+    robot.axes.push_back(read_axis(TableReader(log, *entry.as_table(), path), robot));
+  }
+}
+
+void read_home_order(ReadLog& log, TableReader& table, Robot& robot) {
+  const std::string expected = "the names of all axes that have a switch, each once, first to home first";
+  const toml::array* const names = table.array("home_order", expected);
+  if (!names) {
+    return;
+  }
+  for (const toml::node& node : *names) {
+    const std::string name = node.value_exact<std::string>().value_or("");
+    const Axis* const axis = robot.find(name);
+    if (!axis || axis->limit == ILK_LIMIT_NONE || std::ranges::count(robot.home_order, axis->slot) != 0) {
+      log.refuse(node.source().begin.line, "home_order",
+                 '"' + name + "\" is no axis, has no switch, or stands here twice", expected);
+      return;
+    }
+    robot.home_order.push_back(axis->slot);
+  }
+  for (const Axis& axis : robot.axes) {
+    if (axis.limit != ILK_LIMIT_NONE && std::ranges::count(robot.home_order, axis.slot) == 0) {
+      table.refuse("home_order", '"' + axis.name + "\" is missing", expected);
+    }
+  }
+}
+
+Robot read_robot(ReadLog& log, const toml::table& root) {
+  TableReader table(log, root, "");
+  Robot robot;
+  robot.name = table.identifier("name");
+  robot.title = table.text("title");
+  robot.period_us = table.integer<std::uint32_t>("period_us");
+  robot.pedal = read_pedal(table.table("pedal"), robot.period_us);
+  robot.loop = read_loop(table.table("loop"), robot.period_us);
+  read_axes(log, table, robot);
+  read_home_order(log, table, robot);
+  table.refuse_unknown_keys();
+  return robot;
+}
+
+}  // namespace
+
+tl::expected<Robot, RobotError> parse_robot(std::string_view text, std::string file) {
+  const toml::parse_result parsed = toml::parse(text, file);
+  if (!parsed) {
+    const toml::parse_error& error = parsed.error();
+    return tl::unexpected(
+        RobotError{std::move(file), error.source().begin.line, "", std::string(error.description()), "a TOML file"});
+  }
+  ReadLog log{{std::move(file), {}}, std::nullopt};
+  Robot robot = read_robot(log, parsed.table());
+  if (log.first_error) {
+    return tl::unexpected(*log.first_error);
+  }
+  robot.origin = std::move(log.origin);
+  return robot;
+}
+
+tl::expected<Robot, RobotError> load_robot(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  if (!stream || !(text << stream.rdbuf())) {
+    return tl::unexpected(RobotError{file.string(), 0, "", "the file cannot be read, or is empty",
+                                     "a robot file such as models/robots/neuro.toml"});
+  }
+  return parse_robot(text.str(), file.string());
+}
+
+}  // namespace interlock

@@ -1,0 +1,170 @@
+#include "robot/table_reader.hpp"
+
+#include <cmath>
+#include <regex>
+#include <sstream>
+
+namespace interlock {
+namespace {
+
+const toml::table empty_table;
+
+std::uint32_t line_of(const toml::node& node) { return node.source().begin.line; }
+
+std::string described(const toml::node& node) {
+  if (node.is_table()) {
+    return "a table is given";
+  }
+  if (node.is_array()) {
+    return "an array is given";
+  }
+  std::ostringstream text;
+  text << toml::node_view<const toml::node>(node) << " is given";
+  return text.str();
+}
+
+std::string range_text(std::int64_t lowest, std::int64_t highest) {
+  return "a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest);
+}
+
+}  // namespace
+
+void ReadLog::refuse(std::uint32_t line, std::string key, std::string problem, std::string expected) {
+  if (!first_error) {
+    first_error = RobotError{origin.file, line, std::move(key), std::move(problem), std::move(expected)};
+  }
+}
+
+TableReader::TableReader(ReadLog& log, const toml::table& table, std::string path)
+    : log_(log), table_(table), path_(std::move(path)) {}
+
+std::string TableReader::path_of(std::string_view key) const {
+  return path_.empty() ? std::string(key) : path_ + '.' + std::string(key);
+}
+
+const toml::node* TableReader::take(std::string_view key, const std::string& expected) {
+  known_.emplace(key);
+  const toml::node* const node = table_.get(key);
+  if (!node) {
+    log_.refuse(line_of(table_), path_of(key), "the key is missing", expected);
+    return nullptr;
+  }
+  log_.origin.line_of_key[path_of(key)] = line_of(*node);
+  return node;
+}
+
+void TableReader::refuse_value(std::string_view key, const toml::node& node, const std::string& expected) {
+  log_.refuse(line_of(node), path_of(key), described(node), expected);
+}
+
+void TableReader::refuse(std::string_view key, std::string problem, std::string expected) {
+  const toml::node* const node = table_.get(key);
+  log_.refuse(line_of(node ? *node : table_), path_of(key), std::move(problem), std::move(expected));
+}
+
+std::string TableReader::text(std::string_view key) {
+  const std::string expected = "text that is not empty";
+  const toml::node* const node = take(key, expected);
+  if (!node) {
+    return {};
+  }
+  std::string given = node->value_exact<std::string>().value_or("");
+  if (given.empty()) {
+    refuse_value(key, *node, expected);
+  }
+  return given;
+}
+
+std::string TableReader::identifier(std::string_view key) {
+  static const std::regex pattern("[a-z][a-z0-9_]*");
+  const std::string expected = "a name of lower-case letters, digits and _, a letter first";
+  const toml::node* const node = take(key, expected);
+  if (!node) {
+    return {};
+  }
+  std::string given = node->value_exact<std::string>().value_or("");
+  if (!std::regex_match(given, pattern)) {
+    refuse_value(key, *node, expected);
+  }
+  return given;
+}
+
+bool TableReader::boolean(std::string_view key) {
+  const std::string expected = "true or false";
+  const toml::node* const node = take(key, expected);
+  if (node && !node->is_boolean()) {
+    refuse_value(key, *node, expected);
+  }
+  return node && node->value_exact<bool>().value_or(false);
+}
+
+double TableReader::number(std::string_view key) {
+  const std::string expected = "a finite number";
+  const toml::node* const node = take(key, expected);
+  if (!node) {
+    return 0.0;
+  }
+  const double given = node->is_number() ? node->value<double>().value_or(0.0) : std::nan("");
+  if (!std::isfinite(given)) {
+    refuse_value(key, *node, expected);
+  }
+  return given;
+}
+
+std::int64_t TableReader::integer_between(std::string_view key, std::int64_t lowest, std::int64_t highest) {
+  const toml::node* const node = take(key, range_text(lowest, highest));
+  if (!node) {
+    return lowest;
+  }
+  const std::optional<std::int64_t> given = node->value_exact<std::int64_t>();
+  if (!given || *given < lowest || *given > highest) {
+    refuse_value(key, *node, range_text(lowest, highest));
+    return lowest;
+  }
+  return *given;
+}
+
+std::uint32_t TableReader::ticks(std::string_view key, std::uint32_t period_us) {
+  constexpr std::int64_t longest_ms = std::numeric_limits<std::uint32_t>::max() / 1000;
+  const std::int64_t given_us = 1000 * integer_between(key, 0, longest_ms);
+  if (period_us == 0) {
+    return 0;
+  }
+  if (given_us % period_us != 0) {
+    refuse(key, std::to_string(given_us / 1000) + " ms is not a whole number of control periods",
+           "a multiple of period_us = " + std::to_string(period_us));
+  }
+  return static_cast<std::uint32_t>(given_us / period_us);
+}
+
+TableReader TableReader::table(std::string_view key) {
+  const std::string expected = "a table";
+  const toml::node* const node = take(key, expected);
+  if (node && !node->is_table()) {
+    refuse_value(key, *node, expected);
+  }
+  const toml::table* const found = node ? node->as_table() : nullptr;
+  return TableReader(log_, found ? *found : empty_table, path_of(key));
+}
+
+const toml::array* TableReader::array(std::string_view key, const std::string& expected) {
+  const toml::node* const node = take(key, expected);
+  if (node && !node->is_array()) {
+    refuse_value(key, *node, expected);
+  }
+  return node ? node->as_array() : nullptr;
+}
+
+void TableReader::refuse_unknown_keys() {
+  for (const auto& [key, node] : table_) {
+    if (!known_.contains(key.str())) {
+      std::string expected = "one of";
+      for (const std::string& known : known_) {
+        expected += (known == *known_.begin() ? " " : ", ") + known;
+      }
+      log_.refuse(key.source().begin.line, path_of(key.str()), "the key is unknown", std::move(expected));
+    }
+  }
+}
+
+}  // namespace interlock

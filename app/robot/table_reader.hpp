@@ -1,0 +1,117 @@
+/**
+ * @file
+ * Reads one TOML table key by key and remembers the first thing that is wrong. Private to this folder.
+ *
+ * After an error every read answers with a harmless value, so that a caller reads a whole table as plain
+ * assignments and asks once, at the end, whether it was sound.
+ */
+#pragma once
+
+// Errors are values here, in the parser too.
+#define TOML_EXCEPTIONS 0
+#include <toml++/toml.h>
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "robot/robot.hpp"
+#include "robot/robot_error.hpp"
+
+namespace interlock {
+
+/** What reading has found so far, over all tables of a file. */
+struct ReadLog {
+  Origin origin;
+  std::optional<RobotError> first_error;
+
+  /** Keeps the error unless there is an earlier one. */
+  void refuse(std::uint32_t line, std::string key, std::string problem, std::string expected);
+};
+
+class TableReader {
+ public:
+  /** @param path dotted path of the table, empty for the whole file. The table and the log must outlive this. */
+  TableReader(ReadLog& log, const toml::table& table, std::string path);
+
+  /** Whether the key is there; an optional key is asked for before it is read. */
+  [[nodiscard]] bool has(std::string_view key) const { return table_.contains(key); }
+
+  /** Text that is not empty. */
+  std::string text(std::string_view key);
+
+  /** Text that can stand in paths and programs: a lower-case letter, then lower-case letters, digits and `_`. */
+  std::string identifier(std::string_view key);
+
+  bool boolean(std::string_view key);
+
+  /** A finite number; an integer will do. */
+  double number(std::string_view key);
+
+  /** A whole number that the type can hold. */
+  template <typename Integer>
+  Integer integer(std::string_view key) {
+    using Limits = std::numeric_limits<Integer>;
+    return static_cast<Integer>(integer_between(key, Limits::min(), Limits::max()));
+  }
+
+  /** A whole number from `lowest` to `highest`. */
+  std::int64_t integer_between(std::string_view key, std::int64_t lowest, std::int64_t highest);
+
+  /** Milliseconds that are a whole number of control periods, as periods. */
+  std::uint32_t ticks(std::string_view key, std::uint32_t period_us);
+
+  /** One of the words; `words` lists them with their values. */
+  template <typename Value, std::size_t count>
+  Value choice(std::string_view key, const std::array<std::pair<std::string_view, Value>, count>& words) {
+    std::string expected = "one of";
+    for (const auto& [word, value] : words) {
+      expected += (word == words.front().first ? " \"" : ", \"") + std::string(word) + '"';
+    }
+    const toml::node* const node = take(key, expected);
+    const std::optional<std::string> given = node ? node->value_exact<std::string>() : std::nullopt;
+    for (const auto& [word, value] : words) {
+      if (given == word) {
+        return value;
+      }
+    }
+    if (node) {
+      refuse_value(key, *node, expected);
+    }
+    return words.front().second;
+  }
+
+  /** A table inside this one. When it is missing, the answer is an empty table that refuses nothing further. */
+  TableReader table(std::string_view key);
+
+  /** An array inside this one, or null. */
+  const toml::array* array(std::string_view key, const std::string& expected);
+
+  /** Refuses what is there but was not asked for. */
+  void refuse_unknown_keys();
+
+  /** Refuses the value of a key for a reason that only the caller knows. */
+  void refuse(std::string_view key, std::string problem, std::string expected);
+
+  /** Names the table from here on. */
+  void rename(std::string path) { path_ = std::move(path); }
+
+  /** Dotted path of a key of this table. */
+  [[nodiscard]] std::string path_of(std::string_view key) const;
+
+ private:
+  const toml::node* take(std::string_view key, const std::string& expected);
+  void refuse_value(std::string_view key, const toml::node& node, const std::string& expected);
+
+  ReadLog& log_;
+  const toml::table& table_;
+  std::string path_;
+  std::set<std::string, std::less<>> known_;
+};
+
+}  // namespace interlock
