@@ -1,0 +1,82 @@
+# The front door. It sets up what is missing, then calls CMake, Vite, pytest and Playwright; each of them
+# also works by itself (docs/development.md). `make help` lists the targets.
+SHELL := /bin/bash
+.SHELLFLAGS := -euo pipefail -c
+.DEFAULT_GOAL := build
+MAKEFLAGS += --no-print-directory
+
+ROBOT ?= neuro
+PORT ?= 8080
+
+setup := verification/toolchain/setup
+release := build/release
+reports := build/reports
+export PATH := $(CURDIR)/build/venv/bin:$(PATH)
+export PYTHONDONTWRITEBYTECODE := 1
+
+web_sources = $(shell find web spec/openapi.yaml -name node_modules -prune -o -name dist -prune -o -type f -print)
+
+.PHONY: help
+help: ## List the targets
+	@sed -nE 's/^([a-z-]+):.*## (.*)/\1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 16
+
+.PHONY: setup
+setup: ## Install what is missing: Debian packages, Python environment, Node, node modules
+	@$(setup) packages python web
+
+.PHONY: generate
+generate: ## Write the tables that come from spec/catalog.toml
+	@/usr/bin/python3 spec/generate_catalog.py
+
+$(release)/build.ninja: CMakePresets.json | setup
+	@echo "build: configuring"
+	@mkdir -p $(release)
+	@cmake --preset release >$(release)/configure.log 2>&1 || { cat $(release)/configure.log; exit 1; }
+
+build/stamps/console: $(web_sources) | setup
+	@echo "build: console"
+	@npm --prefix web run --silent build
+	@touch $@
+
+# Two steps are always pending (they read the commit); progress is shown when there is more to do.
+.PHONY: build
+build: setup $(release)/build.ninja build/stamps/console ## Build everything (the default)
+	@if (($$(ninja -C $(release) -n | wc -l) > 4)); then ninja -C $(release); else ninja -C $(release) --quiet; fi
+
+.PHONY: run
+run: build ## Start simulated robot, kernel, app and console: [ROBOT=neuro] [PORT=8080]
+	@exec $(release)/bin/interlock run --robot $(ROBOT) --port $(PORT)
+
+.PHONY: test test-unit test-integration test-browser
+test: build ## Run the unit, integration and browser tests; reports in build/reports/
+	@$(MAKE) --keep-going test-unit test-integration test-browser
+
+test-unit: build ## Run the GoogleTest programs
+	@mkdir -p $(reports)
+	@ctest --preset release --progress --no-tests=error --output-junit $(CURDIR)/$(reports)/unit.xml
+
+test-integration: build ## Run the tests on real processes
+	@pytest --junitxml=$(reports)/integration.xml tests/integration
+
+test-browser: build ## Run the tests that click through the console
+	@npm --prefix web run --silent test:browser
+
+.PHONY: selftest selftest-all
+selftest: setup ## Show that seeded faults turn tests red: a third, chosen by the commit
+	@tests/failure/run.py
+
+selftest-all: setup ## Show that every seeded fault turns its test red
+	@tests/failure/run.py --all
+
+.PHONY: lint format
+lint: build ## Check style, naming, generated files and leftovers
+	@verification/toolchain/lint
+
+format: setup ## Rewrite C, C++ and Python in the project's style
+	@git ls-files -co --exclude-standard '*.c' '*.h' '*.cpp' '*.hpp' | xargs grep -L '^/[/*].*Generated' | xargs clang-format-19 -i
+	@ruff check --quiet --fix
+	@ruff format --quiet
+
+.PHONY: clean
+clean: ## Remove everything that was built; run-time state stays
+	rm -rf build web/dist web/node_modules
