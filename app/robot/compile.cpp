@@ -50,7 +50,8 @@ ilk_axis_config_t compile_axis(const Axis& axis) {
   return out;
 }
 
-/** Where a rule of the kernel is to be kept in the file; inside the axis' table when the rule is about an axis. */
+/** Where a rule of the kernel is to be kept in the file; inside the axis' table when the rule is about an
+ * axis. */
 std::string_view key_of(std::uint32_t error) {
   switch (error) {
     case ILK_CONFIG_ERROR_PERIOD:
@@ -196,7 +197,8 @@ tl::expected<void, std::string> write_config(const ilk_config_t& config, const s
     stream.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize{bytes.size()});
     stream.close();
     if (!stream) {
-      return tl::unexpected(beside.string() + " cannot be written: " + std::generic_category().message(errno));
+      return tl::unexpected(beside.string() +
+                            " cannot be written: " + std::generic_category().message(errno));
     }
   }
   std::error_code error;

@@ -16,13 +16,15 @@
 
 namespace interlock {
 
-/** Bytes of a compiled configuration file (`*.ilkc`): the words of `ilk_config_t`, least significant byte first. */
+/** Bytes of a compiled configuration file (`*.ilkc`): the words of `ilk_config_t`, least significant byte
+ * first. */
 using ConfigBytes = std::array<std::uint8_t, sizeof(ilk_config_t)>;
 
 /**
  * The kernel's configuration of this robot, sealed with its CRC-32. Equal robots give equal bits.
  *
- * The kernel's own `ilk_config_validate` judges it; the error is the text of the rule that it breaks, at the axis.
+ * The kernel's own `ilk_config_validate` judges it; the error is the text of the rule that it breaks, at the
+ * axis.
  */
 tl::expected<ilk_config_t, RobotError> compile(const Robot& robot);
 

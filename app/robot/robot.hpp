@@ -1,6 +1,7 @@
 /**
  * @file
- * A robot as its file describes it: axes by card slot, their bounds, units and names, and the order of homing.
+ * A robot as its file describes it: axes by card slot, their bounds, units and names, and the order of
+ * homing.
  *
  * A `Robot` comes from `load_robot` (robot_file.hpp) and turns into the kernel's configuration by `compile`
  * (compile.hpp). It is a plain value: copy it, compare it, hand it between threads.
@@ -63,7 +64,8 @@ struct Gains {
 
 /** What the mechanics do by themselves. */
 struct Mechanics {
-  std::uint32_t coast_counts = 0;     /**< farthest travel from the reading on which drive was last allowed until rest */
+  std::uint32_t coast_counts =
+      0; /**< farthest travel from the reading on which drive was last allowed until rest */
   std::uint32_t backlash_counts = 0;  /**< lost motion when the direction changes */
   std::uint32_t noise_counts = 0;     /**< peak-to-peak noise of the counter at rest */
   std::uint32_t max_delta_counts = 0; /**< largest possible motion in one tick */
@@ -78,9 +80,9 @@ struct Homing {
   std::uint32_t amplitude = 0;          /**< wave amplitude; 0 unless the card is high-frequency */
   std::uint32_t speed_counts_per_s = 0; /**< slowest speed at `drive` */
   std::uint32_t travel_counts = 0;      /**< farthest travel towards the switch */
-  std::uint32_t backoff_counts = 0;     /**< farthest travel away from a switch that was triggered at the start */
-  std::uint32_t timeout_ticks = 0;      /**< longest homing, back-off and rest included */
-  std::uint32_t rest_ticks = 0;         /**< ticks without a count that mean rest */
+  std::uint32_t backoff_counts = 0; /**< farthest travel away from a switch that was triggered at the start */
+  std::uint32_t timeout_ticks = 0;  /**< longest homing, back-off and rest included */
+  std::uint32_t rest_ticks = 0;     /**< ticks without a count that mean rest */
 
   bool operator==(const Homing&) const = default;
 };

@@ -143,7 +143,8 @@ std::optional<Homing> read_optional_homing(TableReader& table, const Axis& axis,
     return read_homing(table.table("homing"), period_us, axis.card == ILK_CARD_HIGH_FREQUENCY);
   }
   if (table.has("homing")) {
-    table.refuse("homing", "the axis has no switch to home at", "no homing table, or limit = \"lower\" or \"upper\"");
+    table.refuse("homing", "the axis has no switch to home at",
+                 "no homing table, or limit = \"lower\" or \"upper\"");
   }
   return std::nullopt;
 }
@@ -244,14 +245,15 @@ Robot read_robot(ReadLog& log, const toml::table& root) {
 }  // namespace
 
 tl::expected<Robot, RobotError> parse_robot(std::string_view text, std::string file) {
-  const toml::parse_result parsed = toml::parse(text, file);
-  if (!parsed) {
-    const toml::parse_error& error = parsed.error();
-    return tl::unexpected(
-        RobotError{std::move(file), error.source().begin.line, "", std::string(error.description()), "a TOML file"});
+  toml::table root;
+  try {
+    root = toml::parse(text, file);
+  } catch (const toml::parse_error& error) {
+    return tl::unexpected(RobotError{std::move(file), error.source().begin.line, "",
+                                     std::string(error.description()), "a TOML file"});
   }
   ReadLog log{{std::move(file), {}}, std::nullopt};
-  Robot robot = read_robot(log, parsed.table());
+  Robot robot = read_robot(log, root);
   if (log.first_error) {
     return tl::unexpected(*log.first_error);
   }

@@ -3,7 +3,8 @@
  * Reads a robot file (models/robots/NAME.toml).
  *
  * The file is the one source of everything that is particular to a robot. Every key is required unless it is
- * said to be optional, and a key that is not known is refused, so that a slip of the pen cannot pass for a default.
+ * said to be optional, and a key that is not known is refused, so that a slip of the pen cannot pass for a
+ * default.
  */
 #pragma once
 

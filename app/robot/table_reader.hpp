@@ -7,8 +7,6 @@
  */
 #pragma once
 
-// Errors are values here, in the parser too.
-#define TOML_EXCEPTIONS 0
 #include <toml++/toml.h>
 
 #include <array>
@@ -36,7 +34,8 @@ struct ReadLog {
 
 class TableReader {
  public:
-  /** @param path dotted path of the table, empty for the whole file. The table and the log must outlive this. */
+  /** @param path dotted path of the table, empty for the whole file. The table and the log must outlive this.
+   */
   TableReader(ReadLog& log, const toml::table& table, std::string path);
 
   /** Whether the key is there; an optional key is asked for before it is read. */
@@ -45,7 +44,8 @@ class TableReader {
   /** Text that is not empty. */
   std::string text(std::string_view key);
 
-  /** Text that can stand in paths and programs: a lower-case letter, then lower-case letters, digits and `_`. */
+  /** Text that can stand in paths and programs: a lower-case letter, then lower-case letters, digits and `_`.
+   */
   std::string identifier(std::string_view key);
 
   bool boolean(std::string_view key);
@@ -86,7 +86,8 @@ class TableReader {
     return words.front().second;
   }
 
-  /** A table inside this one. When it is missing, the answer is an empty table that refuses nothing further. */
+  /** A table inside this one. When it is missing, the answer is an empty table that refuses nothing further.
+   */
   TableReader table(std::string_view key);
 
   /** An array inside this one, or null. */

@@ -1,0 +1,219 @@
+#include "robot/robot_file.hpp"
+
+#include <gmock/gmock.h>
+
+#include "neuro.hpp"
+
+namespace interlock {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+TEST(RobotFile, neuro_has_the_published_axes_in_the_published_order) {
+  std::vector<std::string> names;
+  for (const Axis& axis : test::neuro().axes) {
+    names.push_back(axis.name);
+  }
+  EXPECT_THAT(names, ElementsAre("yaw", "probe_rotation", "pitch", "insertion", "lateral", "head", "feet"));
+}
+
+TEST(RobotFile, neuro_reads_as_written) {
+  const Robot robot = test::neuro();
+  EXPECT_EQ(robot.name, "neuro");
+  EXPECT_EQ(robot.period_us, 1000u);
+  EXPECT_EQ(robot.pedal, (Pedal{2, 10, 50}));
+  EXPECT_EQ(robot.loop, (LoopLimits{100, 100, 3, 3}));
+  EXPECT_THAT(robot.home_order, ElementsAre(3, 0, 2, 4, 7));
+
+  const Axis& pitch = *robot.find("pitch");
+  EXPECT_EQ(pitch.slot, 2u);
+  EXPECT_EQ(pitch.title, "Pitch");
+  EXPECT_EQ(pitch.card, ILK_CARD_NON_PWM);
+  EXPECT_FALSE(pitch.required);
+  EXPECT_EQ(pitch.motor, Motor::shinsei);
+  EXPECT_EQ(pitch.encoder_resolution, 5000u);
+  EXPECT_EQ(pitch.unit, Unit::rad);
+  EXPECT_EQ(pitch.counts_per_unit, 795.8);
+  EXPECT_EQ(pitch.motor_direction, 0u);
+  EXPECT_EQ(pitch.direction_correction, 1u);
+  EXPECT_EQ(pitch.limit, ILK_LIMIT_UPPER);
+  EXPECT_EQ(pitch.home_offset_counts, 516);
+  EXPECT_EQ(pitch.deadband_counts, 1u);
+  EXPECT_EQ(pitch.unhomed_travel_counts, 70u);
+  EXPECT_EQ(pitch.soft_limits, (SoftLimits{-370, 516}));
+  EXPECT_EQ(pitch.drive, (DriveBounds{0x1ffff, 0, 13107, 0}));
+  EXPECT_EQ(pitch.gains, (Gains{100.0, 0.0, 0.0}));
+  EXPECT_EQ(pitch.mechanics, (Mechanics{12, 1, 1, 8, 50}));
+  EXPECT_EQ(pitch.stall, (StallRule{500, 2}));
+  EXPECT_EQ(pitch.runaway, (RunawayRule{20, 20}));
+  EXPECT_EQ(pitch.homing, (Homing{13107, 0, 60, 974, 44, 19000, 50}));
+  EXPECT_EQ(robot.find("feet")->homing, std::nullopt);
+}
+
+TEST(RobotFile, reading_twice_gives_equal_robots) { EXPECT_EQ(test::neuro(), test::neuro()); }
+
+TEST(RobotFile, milliseconds_become_periods_of_the_robot) {
+  const auto robot = parse_robot(test::neuro_with("period_us = 1000", "period_us = 500"), "fast.toml");
+  ASSERT_TRUE(robot) << robot.error().message();
+  EXPECT_EQ(robot->pedal.debounce_ticks, 20u);
+  EXPECT_EQ(robot->find("yaw")->homing->timeout_ticks, 52000u);
+}
+
+TEST(RobotFile, a_high_frequency_axis_has_amplitudes) {
+  std::string text = test::neuro_with("card = \"pwm\"", "card = \"high-frequency\"");
+  const auto replace = [&text](std::string_view from, std::string_view to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace("unhomed_max = 6143", "unhomed_max = 6143, max_amplitude = 200");
+  replace("speed_counts_per_s = 60", "speed_counts_per_s = 60\namplitude = 100");
+  const auto robot = parse_robot(text, "piezo.toml");
+  ASSERT_TRUE(robot) << robot.error().message();
+  EXPECT_EQ(robot->find("yaw")->drive.max_amplitude, 200u);
+  EXPECT_EQ(robot->find("yaw")->homing->amplitude, 100u);
+}
+
+TEST(RobotFile, an_axis_may_be_required) {
+  const auto robot = parse_robot(test::neuro_with("slot = 3", "slot = 3\nrequired = true"), "required.toml");
+  ASSERT_TRUE(robot) << robot.error().message();
+  EXPECT_TRUE(robot->find("insertion")->required);
+}
+
+TEST(RobotFile, a_file_that_is_not_there_is_named) {
+  const auto robot = load_robot("/nowhere/neuro.toml");
+  ASSERT_FALSE(robot);
+  EXPECT_EQ(robot.error().file, "/nowhere/neuro.toml");
+  EXPECT_THAT(robot.error().message(), HasSubstr("cannot be read"));
+}
+
+TEST(RobotFile, a_folder_is_no_robot_file) { EXPECT_FALSE(load_robot(INTERLOCK_ROBOTS)); }
+
+/** One way to break the neuro robot's file: what is replaced, by what, and what the error must say. */
+struct Broken {
+  const char* title;
+  const char* from;
+  const char* to;
+  const char* at; /**< text of the line that the error must point to */
+  const char* key;
+  const char* problem;
+  const char* expected;
+};
+
+void PrintTo(const Broken& broken, std::ostream* stream) { *stream << broken.title; }
+
+class BrokenRobotFile : public testing::TestWithParam<Broken> {};
+
+TEST_P(BrokenRobotFile, is_refused_with_file_line_key_and_what_was_expected) {
+  const std::string text = test::neuro_with(GetParam().from, GetParam().to);
+  const auto robot = parse_robot(text, "broken.toml");
+  ASSERT_FALSE(robot);
+  EXPECT_EQ(robot.error().file, "broken.toml");
+  EXPECT_EQ(robot.error().line, test::line_of(text, GetParam().at)) << robot.error().message();
+  EXPECT_EQ(robot.error().key, GetParam().key);
+  EXPECT_THAT(robot.error().problem, HasSubstr(GetParam().problem));
+  EXPECT_THAT(robot.error().expected, HasSubstr(GetParam().expected));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, BrokenRobotFile,
+    testing::Values(
+        Broken{"not_toml", "slot = 3", "slot = = 3", "slot = = 3", "", "", "a TOML file"},
+        Broken{"key_twice", "slot = 3", "slot = 3\nslot = 5", "slot = 5", "", "slot", "a TOML file"},
+        Broken{"missing_name", "name = \"neuro\"\n", "", "", "name", "missing",
+               "a name of lower-case letters"},
+        Broken{"name_with_space", "name = \"neuro\"", "name = \"neuro robot\"", "name = \"neuro robot\"",
+               "name", "neuro robot", "a name of lower-case letters"},
+        Broken{"empty_title", "title = \"Pitch\"", "title = \"\"", "title = \"\"", "axis.pitch.title",
+               "is given", "text that is not empty"},
+        Broken{"unknown_key_of_the_robot", "period_us = 1000", "period_us = 1000\nperiod_ms = 1", "period_ms",
+               "period_ms", "unknown", "period_us"},
+        Broken{"unknown_key_of_an_axis", "title = \"Pitch\"", "title = \"Pitch\"\ndead_band = 2", "dead_band",
+               "axis.pitch.dead_band", "unknown", "deadband_counts"},
+        Broken{"unknown_key_of_a_table", "kp = 100.0,", "kp = 100.0, kx = 1.0,", "kx = 1.0",
+               "axis.yaw.gains.kx", "unknown", "kd, ki, kp"},
+        Broken{"pedal_is_no_table", "[pedal]\nchannels = 2\ndebounce_ms = 10\ndisagree_ms = 50", "pedal = 2",
+               "pedal = 2", "pedal", "2 is given", "a table"},
+        Broken{"missing_table", "stall = { driven_ms = 500, min_counts = 2 }\n", "", "[[axis]]",
+               "axis.yaw.stall", "missing", "a table"},
+        Broken{"slot_out_of_range", "slot = 3", "slot = 10", "slot = 10", "axis.insertion.slot",
+               "10 is given", "a whole number from 0 to 9"},
+        Broken{"slot_as_text", "slot = 3", "slot = \"3\"", "slot = \"3\"", "axis.insertion.slot", "3",
+               "a whole number from 0 to 9"},
+        Broken{"slot_taken_twice", "slot = 3", "slot = 1", "slot = 1\ncard = \"non-pwm\"",
+               "axis.insertion.slot", "probe_rotation", "a slot of its own"},
+        Broken{"name_taken_twice", "name = \"feet\"", "name = \"head\"",
+               "name = \"head\"\ntitle = \"Axial feet\"", "axis.head.name", "\"head\"", "a name of its own"},
+        Broken{"fraction_of_a_count", "min_counts = -1222", "min_counts = -1222.5", "min_counts = -1222.5",
+               "axis.yaw.soft_limits.min_counts", "-1222.5", "a whole number"},
+        Broken{"limit_beyond_32_bits", "max_counts = 8 ", "max_counts = 4294967296 ", "4294967296",
+               "axis.yaw.soft_limits.max_counts", "4294967296", "2147483647"},
+        Broken{"negative_coast", "coast_counts = 12", "coast_counts = -12", "coast_counts = -12",
+               "axis.yaw.mechanics.coast_counts", "-12", "0 to 4294967295"},
+        Broken{"unknown_card", "card = \"non-pwm\"", "card = \"spi\"", "card = \"spi\"", "axis.pitch.card",
+               "spi", "\"pwm\", \"non-pwm\", \"analog-input\", \"high-frequency\""},
+        Broken{"card_as_number", "card = \"non-pwm\"", "card = 2", "card = 2", "axis.pitch.card",
+               "2 is given", "one of"},
+        Broken{"unit_of_people", "unit = \"mm\"", "unit = \"deg\"", "unit = \"deg\"", "axis.insertion.unit",
+               "deg", "\"mm\", \"rad\""},
+        Broken{"no_counts_per_unit", "counts_per_unit = 47.24", "counts_per_unit = 0.0",
+               "counts_per_unit = 0.0", "axis.insertion.counts_per_unit", "not above zero", "above zero"},
+        Broken{"counts_per_unit_not_a_number", "counts_per_unit = 47.24", "counts_per_unit = nan",
+               "counts_per_unit = nan", "axis.insertion.counts_per_unit", "nan", "a finite number"},
+        Broken{"negative_gain", "ki = 0.0", "ki = -1.0", "ki = -1.0", "axis.yaw.gains.ki", "negative",
+               "zero or"},
+        Broken{"least_drive_above_largest", "min = 0xFFF,", "min = 0xF000,", "min = 0xF000",
+               "axis.yaw.drive.min", "is given", "from 0 to 61439"},
+        Broken{"polarity_as_boolean", "motor_direction = 0", "motor_direction = false",
+               "motor_direction = false", "axis.pitch.motor_direction", "false", "from 0 to 1"},
+        Broken{"required_as_number", "slot = 3", "slot = 3\nrequired = 1", "required = 1",
+               "axis.insertion.required", "1 is given", "true or false"},
+        Broken{"time_between_periods", "period_us = 1000", "period_us = 1500", "debounce_ms",
+               "pedal.debounce_ms", "10 ms is not a whole number of control periods",
+               "a multiple of period_us = 1500"},
+        Broken{"time_beyond_32_bits", "timeout_ms = 26000", "timeout_ms = 4294968", "timeout_ms = 4294968",
+               "axis.yaw.homing.timeout_ms", "4294968", "from 0 to 4294967"},
+        Broken{"homing_without_switch", "limit = \"lower\"", "limit = \"none\"",
+               "[axis.homing]\ndrive = 13107\nspeed_counts_per_s = 60\nbackoff_counts = 82",
+               "axis.insertion.homing", "no switch", "no homing table"},
+        Broken{"switch_without_homing", "limit = \"none\"", "limit = \"upper\"",
+               "[[axis]]\nname = \"probe_rotation\"", "axis.probe_rotation.homing", "missing", "a table"},
+        Broken{"amplitude_on_a_pwm_card", "unhomed_max = 6143", "unhomed_max = 6143, max_amplitude = 5",
+               "max_amplitude = 5", "axis.yaw.drive.max_amplitude", "unknown", "max, min, unhomed_max"},
+        Broken{"home_order_names_no_axis", "home_order = [\"insertion\"", "home_order = [\"needle\"",
+               "home_order", "home_order", "\"needle\"", "all axes that have a switch"},
+        Broken{"home_order_names_an_axis_without_switch", "\"lateral\", \"head\"]",
+               "\"lateral\", \"head\", \"feet\"]", "home_order", "home_order", "\"feet\"",
+               "all axes that have a switch"},
+        Broken{"home_order_names_an_axis_twice", "\"lateral\", \"head\"]", "\"lateral\", \"head\", \"yaw\"]",
+               "home_order", "home_order", "\"yaw\"", "each once"},
+        Broken{"home_order_forgets_an_axis", "\"lateral\", \"head\"]", "\"lateral\"]", "home_order",
+               "home_order", "\"head\" is missing", "all axes that have a switch"},
+        Broken{"home_order_is_no_array",
+               "home_order = [\"insertion\", \"yaw\", \"pitch\", \"lateral\", \"head\"]",
+               "home_order = \"yaw\"", "home_order", "home_order", "is given",
+               "all axes that have a switch"}),
+    [](const auto& broken) { return std::string(broken.param.title); });
+
+TEST(RobotFile, an_axis_that_is_no_table_is_refused) {
+  const std::string text = test::neuro_text();
+  const std::string head = text.substr(0, text.find("[[axis]]"));
+  const auto robot = parse_robot("axis = [1, 2]\n" + head, "broken.toml");
+  ASSERT_FALSE(robot);
+  EXPECT_EQ(robot.error().line, 1u);
+  EXPECT_EQ(robot.error().key, "axis[0]");
+}
+
+TEST(RobotFile, an_empty_file_names_the_first_missing_key) {
+  const auto robot = parse_robot("", "empty.toml");
+  ASSERT_FALSE(robot);
+  EXPECT_EQ(robot.error().key, "name");
+}
+
+TEST(RobotError, reads_as_one_line_with_file_line_key_problem_and_expectation) {
+  const RobotError error{"neuro.toml", 41, "axis.yaw.slot", "10 is given", "a whole number from 0 to 9"};
+  EXPECT_EQ(error.message(),
+            "neuro.toml:41: axis.yaw.slot: 10 is given; expected a whole number from 0 to 9");
+}
+
+}  // namespace
+}  // namespace interlock
