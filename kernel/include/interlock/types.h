@@ -105,7 +105,7 @@ typedef struct {
   uint32_t driven_direction;    /**< ilk_direction_t driven since the last valid frame */
   int32_t press_travel_counts;  /**< travel since the pedal was pressed, saturating */
   uint32_t stall_driven_ticks;  /**< driven ticks since progress was last seen */
-  int32_t stall_progress_counts; /**< net motion in the commanded direction since then */
+  uint32_t stall_mark_raw;      /**< reading from which that progress is measured */
   uint32_t stall_direction;     /**< ilk_direction_t in which that progress counts */
   uint32_t setpoint_changed;    /**< 1: the setpoint changed while the stall count ran */
   uint32_t reverse_mark_raw;    /**< farthest reading in `reverse_direction` */

@@ -1,0 +1,261 @@
+#include "axis.h"
+
+#include "arith.h"
+#include "homing.h"
+
+/** A fault that is about to be raised, or NONE. */
+typedef struct {
+  ilk_fault_t fault;
+  int32_t value;
+} finding_t;
+
+static const finding_t nothing_found = {.fault = ILK_FAULT_NONE, .value = 0};
+
+void ilk_axis_drop_motion(ilk_axis_t *axis) {
+  if ((axis->state == (uint32_t)ILK_AXIS_MOVING) || (axis->state == (uint32_t)ILK_AXIS_HOMING)) {
+    axis->state = (uint32_t)ILK_AXIS_ENABLED;
+  }
+  axis->setpoint_counts = 0;
+  axis->drive = 0u;
+  axis->amplitude = 0u;
+  axis->lease_ticks = 0u;
+  axis->homing_phase = (uint32_t)ILK_HOMING_NONE;
+  if (axis->stall_driven_ticks != 0u) {
+    axis->setpoint_changed = 1u;
+  }
+}
+
+void ilk_axis_disable(ilk_axis_t *axis) {
+  ilk_axis_drop_motion(axis);
+  if (axis->state != (uint32_t)ILK_AXIS_FAULTED) {
+    axis->state = (uint32_t)ILK_AXIS_DISABLED;
+  }
+}
+
+/** Faults after which the counter no longer tells where the axis is. */
+static bool loses_reference(ilk_fault_t fault) {
+  return (fault == ILK_FAULT_JUMP) || (fault == ILK_FAULT_CARD_LOST) || (fault == ILK_FAULT_HOMING_TRAVEL) ||
+         (fault == ILK_FAULT_HOMING_TIMEOUT);
+}
+
+bool ilk_axis_fault(ilk_axis_t *axis, ilk_fault_t fault, int32_t value, uint32_t tick) {
+  const bool is_new = axis->state != (uint32_t)ILK_AXIS_FAULTED;
+  if (is_new) {
+    ilk_axis_drop_motion(axis);
+    axis->state = (uint32_t)ILK_AXIS_FAULTED;
+    axis->fault = (uint32_t)fault;
+    axis->fault_tick = tick;
+    axis->fault_value = value;
+  }
+  if (loses_reference(fault)) {
+    axis->homed = 0u;
+  }
+  return is_new;
+}
+
+bool ilk_card_is_lost(const ilk_config_t *config, const ilk_axis_t *axis) {
+  return axis->bad_frames >= config->bad_frame_limit;
+}
+
+/** Built after the card heard the frame of the transaction before; not judged until one was sent. */
+static bool echo_is_current(const ilk_reading_t *reading, uint32_t tick) {
+  return (tick < 2u) || (reading->tick_echo == (tick - 2u));
+}
+
+static bool heartbeat_advanced(const ilk_axis_t *axis, const ilk_reading_t *reading) {
+  return (axis->card_seen == 0u) || (reading->heartbeat != axis->heartbeat);
+}
+
+void ilk_observe_card(ilk_axis_t *axis, const ilk_reading_t *reading, bool received, uint32_t tick) {
+  const bool valid = received && reading->intact && echo_is_current(reading, tick) &&
+                     heartbeat_advanced(axis, reading);
+  axis->card_valid = valid ? 1u : 0u;
+  if (valid) {
+    axis->bad_frames = 0u;
+    axis->heartbeat = reading->heartbeat;
+    axis->card_time_us = reading->card_time_us;
+    axis->card_status = reading->card_status;
+  } else {
+    axis->bad_frames = count_up(axis->bad_frames, UINT32_MAX);
+  }
+  if (received && !reading->intact) {
+    axis->checksum_failures = count_up(axis->checksum_failures, UINT32_MAX);
+  }
+}
+
+static bool is_enabled(const ilk_axis_t *axis) {
+  return (axis->state != (uint32_t)ILK_AXIS_DISABLED) && (axis->state != (uint32_t)ILK_AXIS_FAULTED);
+}
+
+static bool was_driven(const ilk_axis_t *axis) {
+  return axis->driven_direction != (uint32_t)ILK_DIRECTION_NONE;
+}
+
+static finding_t judge_jump(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+  const uint32_t farthest = multiply_saturating(config->max_delta_counts, axis->ticks_since_frame);
+  finding_t finding = nothing_found;
+  if (magnitude(axis->delta_counts) > farthest) {
+    finding.fault = ILK_FAULT_JUMP;
+    finding.value = axis->delta_counts;
+  }
+  return finding;
+}
+
+/** How far the axis has come along `direction` since the reading `mark`. */
+static int32_t progress_from(const ilk_axis_config_t *config, const ilk_axis_t *axis, uint32_t mark_raw,
+                             uint32_t direction) {
+  return along(direction, travel_between(config, mark_raw, axis->raw));
+}
+
+static finding_t judge_reverse(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+  const int32_t progress = progress_from(config, axis, axis->reverse_mark_raw, axis->reverse_direction);
+  finding_t finding = nothing_found;
+  if (was_driven(axis) && (progress < 0) && (magnitude(progress) > config->reverse_counts)) {
+    finding.fault = ILK_FAULT_REVERSE;
+    finding.value = progress;
+  }
+  return finding;
+}
+
+static finding_t judge_drift(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+  const int32_t drift = travel_between(config, axis->drift_mark_raw, axis->raw);
+  finding_t finding = nothing_found;
+  if (is_enabled(axis) && (axis->undriven_ticks >= config->settle_ticks) &&
+      (magnitude(drift) > config->drift_counts)) {
+    finding.fault = ILK_FAULT_DRIFT;
+    finding.value = drift;
+  }
+  return finding;
+}
+
+static finding_t judge_stall(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+  finding_t finding = nothing_found;
+  if (is_enabled(axis) && (axis->stall_driven_ticks >= config->stall_ticks)) {
+    finding.fault = ILK_FAULT_STALL;
+    finding.value = progress_from(config, axis, axis->stall_mark_raw, axis->stall_direction);
+  }
+  return finding;
+}
+
+static finding_t first_of(finding_t earlier, finding_t later) {
+  return (earlier.fault != ILK_FAULT_NONE) ? earlier : later;
+}
+
+static void clear_stall_count(ilk_axis_t *axis) {
+  axis->stall_driven_ticks = 0u;
+  axis->setpoint_changed = 0u;
+  axis->stall_mark_raw = axis->raw;
+}
+
+/** Moves position and marks to a new reading. */
+static void follow(const ilk_axis_config_t *config, ilk_axis_t *axis, uint32_t raw) {
+  if (axis->card_seen == 0u) {
+    axis->card_seen = 1u;
+    axis->raw = raw;
+    axis->ticks_since_frame = 0u;
+    axis->reverse_mark_raw = raw;
+    axis->drift_mark_raw = raw;
+    axis->stall_mark_raw = raw;
+    axis->homing_mark_raw = raw;
+  }
+  axis->delta_counts = travel_between(config, axis->raw, raw);
+  axis->position_counts = add_saturating(axis->position_counts, axis->delta_counts);
+  axis->press_travel_counts = add_saturating(axis->press_travel_counts, axis->delta_counts);
+  axis->raw = raw;
+}
+
+/** Motion counts as progress only until the axis has settled: later it is not the drive's doing. */
+static bool made_progress(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+  const int32_t progress = progress_from(config, axis, axis->stall_mark_raw, axis->stall_direction);
+  return (axis->undriven_ticks < config->settle_ticks) && (progress > 0) &&
+         (magnitude(progress) >= config->stall_min_counts);
+}
+
+/** Marks that follow the axis while it does nothing wrong. */
+static void advance_marks(const ilk_axis_config_t *config, ilk_axis_t *axis) {
+  if (progress_from(config, axis, axis->reverse_mark_raw, axis->reverse_direction) > 0) {
+    axis->reverse_mark_raw = axis->raw;
+  }
+  if (made_progress(config, axis)) {
+    clear_stall_count(axis);
+  }
+  axis->undriven_ticks = was_driven(axis) ? 0u : count_up(axis->undriven_ticks, config->settle_ticks);
+  if (!is_enabled(axis) || (axis->undriven_ticks < config->settle_ticks)) {
+    axis->drift_mark_raw = axis->raw;
+  }
+}
+
+static finding_t judge_motion(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+  finding_t finding = judge_jump(config, axis);
+  finding = first_of(finding, judge_reverse(config, axis));
+  finding = first_of(finding, judge_drift(config, axis));
+  finding = first_of(finding, judge_stall(config, axis));
+  return finding;
+}
+
+static finding_t observe_valid(const ilk_axis_config_t *config, ilk_axis_t *axis, const ilk_reading_t *reading) {
+  follow(config, axis, reading->raw);
+  advance_marks(config, axis);
+  const finding_t finding = judge_motion(config, axis);
+  axis->ticks_since_frame = 0u;
+  axis->driven_direction = (uint32_t)ILK_DIRECTION_NONE;
+  return finding;
+}
+
+static finding_t observe_missing(const ilk_config_t *config, ilk_axis_t *axis) {
+  finding_t finding = nothing_found;
+  if (ilk_card_is_lost(config, axis)) {
+    axis->card_seen = 0u;
+    finding.fault = ILK_FAULT_CARD_LOST;
+    finding.value = (int32_t)(axis->bad_frames & (uint32_t)INT32_MAX);
+  }
+  return finding;
+}
+
+static void run_lease_down(ilk_axis_t *axis) {
+  axis->lease_ticks = count_down(axis->lease_ticks);
+  if ((axis->state == (uint32_t)ILK_AXIS_MOVING) && (axis->lease_ticks == 0u)) {
+    axis->state = (uint32_t)ILK_AXIS_ENABLED;
+  }
+}
+
+bool ilk_observe_axis(const ilk_config_t *config, const ilk_axis_config_t *axis_config, ilk_axis_t *axis,
+                      const ilk_reading_t *reading, uint32_t tick) {
+  const bool valid = axis->card_valid != 0u;
+  const bool has_switch = axis_config->limit_side != (uint32_t)ILK_LIMIT_NONE;
+  axis->switch_triggered = (has_switch && (!valid || reading->switch_triggered)) ? 1u : 0u;
+  axis->ticks_since_frame = count_up(axis->ticks_since_frame, UINT32_MAX);
+  run_lease_down(axis);
+  finding_t finding =
+      valid ? observe_valid(axis_config, axis, reading) : observe_missing(config, axis);
+  const ilk_homing_result_t homing = ilk_homing_advance(axis_config, axis);
+  if (homing.fault != ILK_FAULT_NONE) {
+    const finding_t homing_finding = {.fault = homing.fault, .value = homing.value};
+    finding = first_of(finding, homing_finding);
+  }
+  bool faulted = false;
+  if (finding.fault != ILK_FAULT_NONE) {
+    faulted = ilk_axis_fault(axis, finding.fault, finding.value, tick);
+  }
+  return faulted;
+}
+
+void ilk_axis_note_drive(const ilk_axis_config_t *config, ilk_axis_t *axis, uint32_t direction) {
+  const bool rested = axis->undriven_ticks >= config->settle_ticks;
+  if (rested || (axis->reverse_direction != direction)) {
+    axis->reverse_direction = direction;
+    axis->reverse_mark_raw = axis->raw;
+  }
+  if (rested || (axis->stall_direction != direction)) {
+    axis->stall_direction = direction;
+    axis->stall_mark_raw = axis->raw;
+  }
+  axis->stall_driven_ticks = count_up(axis->stall_driven_ticks, UINT32_MAX);
+  axis->driven_direction = direction;
+}
+
+void ilk_axis_note_arrival(ilk_axis_t *axis) {
+  if (axis->setpoint_changed == 0u) {
+    clear_stall_count(axis);
+  }
+}

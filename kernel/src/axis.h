@@ -1,0 +1,47 @@
+/**
+ * @file
+ * One axis: what its card says, what it did, what that means (properties P5, P6, P7).
+ */
+#ifndef ILK_AXIS_H
+#define ILK_AXIS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "frame.h"
+#include "interlock/types.h"
+
+/** Ends a move or homing; the axis stays enabled. */
+void ilk_axis_drop_motion(ilk_axis_t *axis);
+
+/** Takes the axis out of motion. A FAULTED axis stays FAULTED. */
+void ilk_axis_disable(ilk_axis_t *axis);
+
+/**
+ * Faults the axis. The first fault is kept until CLEAR_FAULT.
+ *
+ * @return true when the fault is new.
+ */
+bool ilk_axis_fault(ilk_axis_t *axis, ilk_fault_t fault, int32_t value, uint32_t tick);
+
+/** True when the card has given `bad_frame_limit` bad frames in a row. */
+bool ilk_card_is_lost(const ilk_config_t *config, const ilk_axis_t *axis);
+
+/** Phase 2: judges a card's frame and counts bad ones. */
+void ilk_observe_card(ilk_axis_t *axis, const ilk_reading_t *reading, bool received, uint32_t tick);
+
+/**
+ * Phase 4: follows the axis and judges what it did since its last valid frame.
+ *
+ * @return true when the axis faulted in this tick.
+ */
+bool ilk_observe_axis(const ilk_config_t *config, const ilk_axis_config_t *axis_config, ilk_axis_t *axis,
+                      const ilk_reading_t *reading, uint32_t tick);
+
+/** Notes that the axis is driven in this tick. */
+void ilk_axis_note_drive(const ilk_axis_config_t *config, ilk_axis_t *axis, uint32_t direction);
+
+/** Notes that the axis stands in the deadband of its setpoint. */
+void ilk_axis_note_arrival(ilk_axis_t *axis);
+
+#endif

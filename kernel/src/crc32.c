@@ -1,0 +1,25 @@
+#include "crc32.h"
+
+#include "crc32_table.h"
+#include "interlock/kernel.h"
+
+uint32_t ilk_crc32_word(uint32_t crc, uint32_t word) {
+  const uint32_t mixed = crc ^ word;
+  return crc32_table[3][mixed & 0xffu] ^ crc32_table[2][(mixed >> 8) & 0xffu] ^
+         crc32_table[1][(mixed >> 16) & 0xffu] ^ crc32_table[0][mixed >> 24];
+}
+
+uint32_t ilk_crc32_finish(uint32_t crc) { return crc ^ 0xffffffffu; }
+
+uint32_t ilk_request_crc(const ilk_request_t *request) {
+  uint32_t crc = ILK_CRC32_START;
+  crc = ilk_crc32_word(crc, request->sequence);
+  crc = ilk_crc32_word(crc, request->kind);
+  crc = ilk_crc32_word(crc, request->axis);
+  crc = ilk_crc32_word(crc, (uint32_t)request->target_counts);
+  crc = ilk_crc32_word(crc, request->drive);
+  crc = ilk_crc32_word(crc, request->amplitude);
+  crc = ilk_crc32_word(crc, request->lease_ticks);
+  crc = ilk_crc32_word(crc, request->holder);
+  return ilk_crc32_finish(crc);
+}

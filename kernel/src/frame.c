@@ -1,0 +1,107 @@
+#include "frame.h"
+
+#include "arith.h"
+
+_Static_assert((ILK_FRAME_WORDS == 32) || (ILK_FRAME_WORDS == 64), "frames have 32 or 64 words");
+
+enum {
+  CHECKSUM_WORD = ILK_FRAME_WORDS - 1,
+  SPEED_POINTS = 24
+};
+
+#define START_WORD 0xfefefe01u
+#define SWITCH_OPEN_BIT 0x00080000u
+#define PWM_REVERSED 0x80000000u
+#define NON_PWM_FORWARD 0x40000000u
+#define NON_PWM_REVERSED 0xc0000000u
+
+#define FREQUENCY_OF_REST 1196612456u
+#define FREQUENCY_STEP 4063228u
+
+/** Speed at each point of the published map, the faster of both directions, in thousandths of a revolution
+    per minute: kinematics of the published high-frequency motor, spec/frames.md. */
+static const uint32_t speed_map[SPEED_POINTS] = {
+    0u,     54u,    189u,   331u,   614u,   1095u,  2020u,  3222u,   3773u,   6383u,   11445u,  15308u,
+    20955u, 27358u, 36039u, 45548u, 58997u, 78710u, 105850u, 141386u, 188106u, 247388u, 317394u, 397785u};
+
+static uint32_t checksum(const uint32_t frame[ILK_FRAME_WORDS]) {
+  uint32_t sum = 0u;
+  for (uint32_t word = 0u; word < (uint32_t)CHECKSUM_WORD; word++) {
+    sum += frame[word];
+  }
+  return 0xffffffffu - sum;
+}
+
+ilk_reading_t ilk_frame_unpack(const uint32_t frame[ILK_FRAME_WORDS]) {
+  const ilk_reading_t reading = {
+      .intact = (frame[0] == START_WORD) && (frame[CHECKSUM_WORD] == checksum(frame)),
+      .switch_triggered = (frame[2] & SWITCH_OPEN_BIT) == 0u,
+      .raw = frame[3],
+      .heartbeat = frame[9],
+      .card_time_us = frame[10],
+      .tick_echo = frame[11],
+      .card_status = frame[12],
+  };
+  return reading;
+}
+
+uint32_t ilk_frequency_word(uint32_t drive) {
+  uint32_t point = 1u;
+  while ((point < ((uint32_t)SPEED_POINTS - 1u)) && (speed_map[point] < drive)) {
+    point++;
+  }
+  const uint32_t slower = speed_map[point - 1u];
+  const uint32_t faster = speed_map[point];
+  const uint32_t above = (drive > faster) ? (faster - slower) : (drive - slower);
+  /* Rounding the descent down rounds the word up, to the slower side. */
+  const uint64_t descent = ((uint64_t)above * FREQUENCY_STEP) / (uint64_t)(faster - slower);
+  return FREQUENCY_OF_REST - ((point - 1u) * FREQUENCY_STEP) - (uint32_t)descent;
+}
+
+/** The published `actualDirection`: 1 for decreasing positions when the motor follows the axis. */
+static bool motor_decreases(const ilk_axis_config_t *config, uint32_t direction) {
+  const bool decreasing = direction == (uint32_t)ILK_DIRECTION_DECREASING;
+  return (config->motor_direction != 0u) ? decreasing : !decreasing;
+}
+
+static void pack_drive(const ilk_axis_config_t *config, const ilk_command_t *command,
+                       uint32_t frame[ILK_FRAME_WORDS]) {
+  const bool decreases = motor_decreases(config, command->direction);
+  switch (config->card) {
+    case (uint32_t)ILK_CARD_PWM:
+      frame[3] = (decreases ? 0u : PWM_REVERSED) | command->drive;
+      frame[14] = 1u;
+      break;
+    case (uint32_t)ILK_CARD_NON_PWM:
+      frame[3] = (decreases ? NON_PWM_FORWARD : NON_PWM_REVERSED) | command->drive;
+      frame[14] = 1u;
+      break;
+    case (uint32_t)ILK_CARD_ANALOG:
+      frame[6] = (decreases ? 0u : PWM_REVERSED) | command->drive;
+      frame[14] = 1u;
+      break;
+    case (uint32_t)ILK_CARD_HIGH_FREQUENCY:
+      frame[2] = ((decreases ? 0u : 1u) << 24) | command->amplitude;
+      frame[4] = ((decreases ? 1u : 0u) << 24) | command->amplitude;
+      frame[3] = ilk_frequency_word(command->drive);
+      frame[5] = frame[3];
+      frame[14] = 1u;
+      break;
+    default:
+      /* No motor: zero drive. */
+      break;
+  }
+}
+
+void ilk_frame_pack(const ilk_axis_config_t *config, const ilk_command_t *command, uint32_t tick,
+                    uint32_t frame[ILK_FRAME_WORDS]) {
+  for (uint32_t word = 0u; word < (uint32_t)ILK_FRAME_WORDS; word++) {
+    frame[word] = 0u;
+  }
+  frame[0] = START_WORD;
+  frame[13] = tick;
+  if ((command->direction != (uint32_t)ILK_DIRECTION_NONE) && (command->drive != 0u)) {
+    pack_drive(config, command, frame);
+  }
+  frame[CHECKSUM_WORD] = checksum(frame);
+}

@@ -1,0 +1,165 @@
+#include "mode.h"
+
+#include "arith.h"
+#include "axis.h"
+
+#define CLOSED 1u
+#define OPEN 0u
+
+void ilk_pedal_disarm(ilk_state_t *state) {
+  state->pedal_armed = 0u;
+  state->pedal_pressed_ticks = 0u;
+  state->pedal_released_ticks = 0u;
+}
+
+void ilk_mode_enter(ilk_state_t *state, ilk_mode_t mode) {
+  state->mode = (uint32_t)mode;
+  ilk_pedal_disarm(state);
+  for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
+    ilk_axis_drop_motion(&state->axis[slot]);
+    if (mode == ILK_MODE_LOCKED) {
+      ilk_axis_disable(&state->axis[slot]);
+    }
+    if (mode == ILK_MODE_MOTION) {
+      state->axis[slot].press_travel_counts = 0;
+    }
+  }
+}
+
+void ilk_mode_lock(ilk_state_t *state, ilk_cause_t cause, uint32_t value) {
+  if (state->mode != (uint32_t)ILK_MODE_LOCKED) {
+    state->cause = (uint32_t)cause;
+    state->cause_tick = state->tick;
+    state->cause_value = value;
+    ilk_mode_enter(state, ILK_MODE_LOCKED);
+  }
+  state->causes_seen |= 1u << (uint32_t)cause;
+}
+
+bool ilk_cause_is_present(const ilk_state_t *state) {
+  return (state->estop != 0u) || (state->bus_bad_ticks != 0u) || (state->overruns_in_row != 0u) ||
+         (state->config_sound == 0u) || (state->app_alive == 0u);
+}
+
+/** Any reading that is neither clearly pressed nor clearly released is a disagreement. */
+static ilk_pedal_t pedal_reading(const ilk_config_t *config, const ilk_inputs_t *in) {
+  const bool single = config->pedal_channels == 1u;
+  const bool nc_says_pressed = single || (in->pedal_nc_closed == OPEN);
+  const bool nc_says_released = single || (in->pedal_nc_closed == CLOSED);
+  ilk_pedal_t pedal = ILK_PEDAL_DISAGREE;
+  if ((in->pedal_no_closed == CLOSED) && nc_says_pressed) {
+    pedal = ILK_PEDAL_PRESSED;
+  } else if ((in->pedal_no_closed == OPEN) && nc_says_released) {
+    pedal = ILK_PEDAL_RELEASED;
+  } else {
+    pedal = ILK_PEDAL_DISAGREE;
+  }
+  return pedal;
+}
+
+static void observe_pedal(const ilk_config_t *config, ilk_state_t *state, const ilk_inputs_t *in) {
+  const ilk_pedal_t pedal = pedal_reading(config, in);
+  const bool may_arm = (state->mode == (uint32_t)ILK_MODE_READY) && (state->app_alive != 0u);
+  state->pedal = (uint32_t)pedal;
+  state->pedal_disagree_ticks =
+      (pedal == ILK_PEDAL_DISAGREE) ? count_up(state->pedal_disagree_ticks, UINT32_MAX) : 0u;
+  state->pedal_released_ticks = ((pedal == ILK_PEDAL_RELEASED) && may_arm)
+                                    ? count_up(state->pedal_released_ticks, config->pedal_debounce_ticks)
+                                    : 0u;
+  state->pedal_pressed_ticks = ((pedal == ILK_PEDAL_PRESSED) && (state->pedal_armed != 0u))
+                                   ? count_up(state->pedal_pressed_ticks, config->pedal_debounce_ticks)
+                                   : 0u;
+}
+
+static void observe_app(const ilk_config_t *config, ilk_state_t *state, const ilk_inputs_t *in) {
+  if (in->link_generation != state->link_generation) {
+    state->link_generation = in->link_generation;
+    state->last_sequence = 0u;
+    state->app_age_ticks = UINT32_MAX;
+  }
+  state->app_age_ticks = count_up(state->app_age_ticks, UINT32_MAX);
+  state->app_alive = (state->app_age_ticks < config->app_timeout_ticks) ? 1u : 0u;
+}
+
+static void observe_deadline(ilk_state_t *state, const ilk_inputs_t *in) {
+  if (in->deadline_missed != 0u) {
+    state->overruns_in_row = count_up(state->overruns_in_row, UINT32_MAX);
+    state->overruns = count_up(state->overruns, UINT32_MAX);
+  } else {
+    state->overruns_in_row = 0u;
+  }
+}
+
+void ilk_observe_system(const ilk_config_t *config, ilk_state_t *state, const ilk_inputs_t *in) {
+  observe_app(config, state, in);
+  observe_pedal(config, state, in);
+  observe_deadline(state, in);
+  state->estop = (in->estop_loop_closed == CLOSED) ? 0u : 1u;
+}
+
+static uint32_t contacts(const ilk_inputs_t *in) {
+  return ((in->pedal_no_closed == OPEN) ? 0u : 1u) | ((in->pedal_nc_closed == OPEN) ? 0u : 2u);
+}
+
+static void lock_on_causes(const ilk_config_t *config, ilk_state_t *state, const ilk_alarms_t *alarms,
+                           const ilk_inputs_t *in) {
+  if (alarms->configuration_damaged) {
+    ilk_mode_lock(state, ILK_CAUSE_INTEGRITY, state->config_crc);
+  }
+  if (state->estop != 0u) {
+    ilk_mode_lock(state, ILK_CAUSE_ESTOP, in->estop_loop_closed);
+  }
+  if (state->bus_bad_ticks >= config->bad_frame_limit) {
+    ilk_mode_lock(state, ILK_CAUSE_BUS, state->bus_bad_ticks);
+  }
+  if (state->pedal_disagree_ticks > config->pedal_disagree_ticks) {
+    ilk_mode_lock(state, ILK_CAUSE_PEDAL, contacts(in));
+  }
+  if (state->overruns_in_row >= config->overrun_limit) {
+    ilk_mode_lock(state, ILK_CAUSE_OVERRUN, state->overruns_in_row);
+  }
+}
+
+/** MOTION holds only while the pedal is pressed, the app lives and nothing new is wrong. */
+static bool motion_must_end(const ilk_state_t *state, const ilk_alarms_t *alarms) {
+  return (state->pedal != (uint32_t)ILK_PEDAL_PRESSED) || (state->app_alive == 0u) || alarms->new_fault ||
+         alarms->required_card_lost;
+}
+
+/** A release counts as arming only when seen whole in READY with the app alive; without the app no consent lasts. */
+static void arm_pedal(const ilk_config_t *config, ilk_state_t *state) {
+  if (state->app_alive == 0u) {
+    ilk_pedal_disarm(state);
+  } else if (state->pedal_released_ticks >= config->pedal_debounce_ticks) {
+    state->pedal_armed = 1u;
+  } else {
+    /* Consent given earlier still stands. */
+  }
+}
+
+static bool motion_may_begin(const ilk_config_t *config, const ilk_state_t *state, const ilk_alarms_t *alarms) {
+  return (state->pedal_armed != 0u) && (state->pedal == (uint32_t)ILK_PEDAL_PRESSED) &&
+         (state->pedal_pressed_ticks >= config->pedal_debounce_ticks) && (state->app_alive != 0u) &&
+         !alarms->required_card_lost;
+}
+
+void ilk_change_mode(const ilk_config_t *config, ilk_state_t *state, const ilk_alarms_t *alarms,
+                     const ilk_inputs_t *in) {
+  lock_on_causes(config, state, alarms, in);
+  switch (state->mode) {
+    case (uint32_t)ILK_MODE_MOTION:
+      if (motion_must_end(state, alarms)) {
+        ilk_mode_enter(state, ILK_MODE_READY);
+      }
+      break;
+    case (uint32_t)ILK_MODE_READY:
+      arm_pedal(config, state);
+      if (motion_may_begin(config, state, alarms)) {
+        ilk_mode_enter(state, ILK_MODE_MOTION);
+      }
+      break;
+    default:
+      /* INIT and LOCKED are left by ilk_init and by RESET alone. */
+      break;
+  }
+}
