@@ -1,0 +1,67 @@
+/**
+ * @file
+ * The control thread: paced by the kernel's snapshots, it keeps the app alive in the kernel's eyes, runs the mode
+ * and carries requests and verdicts.
+ *
+ * Each tick is the list of named steps in `tick`. None allocates, locks, logs or throws; only attaching, while nothing
+ * can move, may log.
+ */
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <stop_token>
+#include <string>
+
+#include "link/link_client.hpp"
+#include "motion/axis_plan.hpp"
+#include "motion/mailbox.hpp"
+#include "motion/manual_mode.hpp"
+#include "motion/request_port.hpp"
+
+namespace interlock {
+
+class ControlLoop {
+ public:
+  ControlLoop(std::string link_socket, const RobotPlan& plan, Mailbox& mailbox);
+
+  /** Serves until stopped, attaching again and again. On leaving it asks the kernel to end MOTION. */
+  void run(const std::stop_token& stop) noexcept;
+
+ private:
+  void attach_or_back_off(const std::stop_token& stop) noexcept;
+  void lose_link() noexcept;
+
+  void tick() noexcept;
+  void obey_stop() noexcept;
+  void read_events() noexcept;
+  void dispatch_verdict(const ilk_event_t& event) noexcept;
+  void send_heartbeat() noexcept;
+  void take_commands() noexcept;
+  [[nodiscard]] bool take(const Command& command) noexcept;
+  void send_moves() noexcept;
+  void publish() noexcept;
+
+  void refuse_commands() noexcept;
+  void answer_lost(const RequestOrigin& origin) noexcept;
+  [[nodiscard]] bool room_for_events() const noexcept;
+  void notify(const Notice& notice) noexcept;
+
+  LinkClient link_;
+  RequestPort port_{link_};
+  ManualMode mode_;
+  Mailbox& mailbox_;
+  ControlView view_;
+  OrderTable published_orders_{};
+  std::string attach_complaint_;
+  std::chrono::milliseconds back_off_;
+  std::uint32_t heartbeat_tick_ = 0;
+  std::uint32_t stops_seen_ = 0;
+  std::uint32_t stops_sent_ = 0;
+  std::uint32_t events_lost_ = 0;    /**< by the link, as last seen */
+  std::uint32_t events_dropped_ = 0; /**< of which the network was not told yet */
+  bool heartbeat_sent_ = false;
+  bool noticed_ = false;
+};
+
+}  // namespace interlock

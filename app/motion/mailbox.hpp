@@ -1,0 +1,82 @@
+/**
+ * @file
+ * Everything that passes between the network thread and the control thread.
+ *
+ * Lock-free on both sides, so that no load of the network can hold up the control tick: bounded single-producer
+ * single-consumer queues for what must arrive in order, a triple buffer for the newest view, and a counter for STOP,
+ * which therefore never stands in a queue behind anything.
+ */
+#pragma once
+
+#include <atomic>
+#include <boost/lockfree/spsc_queue.hpp>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <variant>
+
+#include "interlock/link.h"
+#include "motion/order.hpp"
+#include "motion/triple_buffer.hpp"
+#include "motion/wake_signal.hpp"
+
+namespace interlock {
+
+/** Ends the order of a proposal. */
+struct Cancel {
+  std::uint32_t proposal = 0;
+  std::uint32_t slot = 0;
+};
+
+/** Passes one request to the kernel and brings back its verdict. */
+struct Ask {
+  std::uint32_t ticket = 0; /**< by which the asker knows the answer */
+  std::uint32_t kind = 0;   /**< ilk_request_kind_t, none of HEARTBEAT, STOP and MOVE */
+  std::uint32_t slot = 0;
+  std::chrono::steady_clock::time_point deadline; /**< later than this nobody waits, so it is not sent */
+};
+
+using Command = std::variant<Order, Cancel, Ask>;
+
+/** The kernel's word on an `Ask`; no verdict: it was not sent, or the answer got lost with the link. */
+struct Answer {
+  std::uint32_t ticket = 0;
+  std::optional<std::uint32_t> verdict;
+  std::uint32_t tick = 0;
+};
+
+/** The kernel's word on every STOP up to number `stops`. */
+struct StopAnswer {
+  std::uint32_t stops = 0;
+  std::optional<std::uint32_t> verdict;
+  std::uint32_t tick = 0;
+};
+
+/** Kernel events that nobody could read in time. */
+struct EventsLost {
+  std::uint32_t count = 0;
+};
+
+using Notice = std::variant<ilk_event_t, Answer, StopAnswer, EventsLost>;
+
+/** What the control thread sees, whole. */
+struct ControlView {
+  bool attached = false;       /**< to a kernel that has published a snapshot */
+  std::uint32_t generation = 0;
+  std::chrono::steady_clock::time_point received; /**< when the snapshot was read */
+  ilk_snapshot_t snapshot{};
+  OrderTable orders{};
+};
+
+struct Mailbox {
+  static constexpr std::size_t command_capacity = 256;
+  static constexpr std::size_t notice_capacity = 4096;
+
+  boost::lockfree::spsc_queue<Command, boost::lockfree::capacity<command_capacity>> commands;
+  boost::lockfree::spsc_queue<Notice, boost::lockfree::capacity<notice_capacity>> notices;
+  TripleBuffer<ControlView> view;
+  std::atomic<std::uint32_t> stops{0}; /**< STOPs asked for since start */
+  WakeSignal network_wake;             /**< a notice came or an order changed */
+};
+
+}  // namespace interlock
