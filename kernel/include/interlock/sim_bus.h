@@ -6,6 +6,8 @@
  * values filled in, or closes. From then on the kernel sends one `ilk_sim_exchange_t` a tick and the plant
  * answers each with one `ilk_sim_reply_t`. As on the real bus the exchange is full duplex: a reply tells
  * what the card latched before it saw the frame of the same exchange. All words are native-endian.
+ * Each exchange is answered, also one that fails as a whole: its reply has ILK_SIM_FAILED for magic, the
+ * exchange's tick, and nothing else that counts.
  */
 #ifndef INTERLOCK_SIM_BUS_H
 #define INTERLOCK_SIM_BUS_H
@@ -13,6 +15,7 @@
 #include "interlock/types.h"
 
 #define ILK_SIM_MAGIC 0x534b4c49u /* "ILKS" */
+#define ILK_SIM_FAILED 0u
 #define ILK_SIM_VERSION 1u
 
 /** Who decides how plant time passes. */
