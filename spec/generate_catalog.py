@@ -28,7 +28,8 @@ def problems(catalog: Catalog) -> list[str]:
     for name, family in families.items():
         codes = catalog.get(name, [])
         numbers = [code.get("number") for code in codes]
-        if numbers != list(range(numbers[0] if numbers else 0, (numbers[0] if numbers else 0) + len(numbers))):
+        first = numbers[0] if numbers else 0
+        if numbers != list(range(first, first + len(numbers))):
             found.append(f"{name}: numbers are {numbers}; expected consecutive ones in order, each once")
         names = [code.get("name") for code in codes]
         for repeated in sorted({code for code in names if names.count(code) > 1}):
@@ -209,14 +210,16 @@ def cpp_source(catalog: Catalog) -> str:
             if code.get("properties"):
                 properties = f"{array}{code['number']}Properties"
                 listed = ", ".join(f'"{name}"' for name in code["properties"])
-                tables.append(
-                    f"constexpr std::array<std::string_view, {len(code['properties'])}> {properties}{{{listed}}};"
-                )
+                count = len(code["properties"])
+                tables.append(f"constexpr std::array<std::string_view, {count}> {properties}{{{listed}}};")
             rows.append(f"    Entry{{{code['number']}, {quoted(code)}, {properties}}},")
         tables += [f"constexpr std::array<Entry, {len(rows)}> {array}{{", *rows, "};"]
         cases.append(f"    case Family::{family}:\n      return {array};")
     return CPP_SOURCE.format(
-        notice=NOTICE, tables="\n".join(tables), cases="\n".join(cases), unknown=f"UINT32_MAX, {quoted(UNKNOWN)}"
+        notice=NOTICE,
+        tables="\n".join(tables),
+        cases="\n".join(cases),
+        unknown=f"UINT32_MAX, {quoted(UNKNOWN)}",
     )
 
 
@@ -243,7 +246,7 @@ export type Family = keyof typeof catalog;
 /** The names of a family, e.g. `CodeName<"mode">`. */
 export type CodeName<F extends Family> = (typeof catalog)[F][number]["name"];
 
-/** The code of that number or name, or a safe entry named "UNKNOWN_<code>" that tells the operator what to do. */
+/** The code of that number or name, or a safe entry named "UNKNOWN_<code>" that tells what to do. */
 export function entry(family: Family, code: number | string): CatalogEntry {{
   const codes: readonly CatalogEntry[] = catalog[family];
   const found = codes.find((candidate) => candidate.number === code || candidate.name === code);
@@ -316,7 +319,7 @@ def stale(catalog: Catalog, root: Path) -> list[str]:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--check", action="store_true", help="write nothing; exit 1 on a fault or a stale file")
+    parser.add_argument("--check", action="store_true", help="write nothing; exit 1 on a fault")
     parser.add_argument("--root", type=Path, default=ROOT, help="source tree (default: this one)")
     arguments = parser.parse_args()
     root: Path = arguments.root

@@ -191,7 +191,7 @@ export type Family = keyof typeof catalog;
 /** The names of a family, e.g. `CodeName<"mode">`. */
 export type CodeName<F extends Family> = (typeof catalog)[F][number]["name"];
 
-/** The code of that number or name, or a safe entry named "UNKNOWN_<code>" that tells the operator what to do. */
+/** The code of that number or name, or a safe entry named "UNKNOWN_<code>" that tells what to do. */
 export function entry(family: Family, code: number | string): CatalogEntry {
   const codes: readonly CatalogEntry[] = catalog[family];
   const found = codes.find((candidate) => candidate.number === code || candidate.name === code);
