@@ -125,7 +125,7 @@ class Tree:
     def run(self, fault: Fault) -> subprocess.CompletedProcess[str]:
         """Builds what the fault's test needs and runs it."""
         if fault.target == "pytest":
-            return self.command(sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", fault.test)
+            return self.command(sys.executable, "-m", "pytest", "-q", fault.test)
         if not (self.build / "build.ninja").is_file():
             self.must("cmake", "--preset", "release", "-B", self.build)
         self.must("ninja", "-C", self.build, fault.target)
