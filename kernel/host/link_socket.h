@@ -1,0 +1,46 @@
+/**
+ * @file
+ * The listening socket of the link, and the rule that there is one kernel per path.
+ */
+#ifndef INTERLOCK_HOST_LINK_SOCKET_H
+#define INTERLOCK_HOST_LINK_SOCKET_H
+
+#include <sys/stat.h>
+#include <sys/un.h>
+
+#include "error.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum {
+  ILK_LISTEN_OK,
+  ILK_LISTEN_TAKEN, /**< a living process holds the path; it was not disturbed */
+  ILK_LISTEN_FAILED
+} ilk_listen_result_t;
+
+typedef struct {
+  int descriptor;
+  struct sockaddr_un address;
+  dev_t device; /**< of the socket file, so that only our own is removed */
+  ino_t inode;
+} ilk_link_socket_t;
+
+/** Fills in the address of a Unix socket, or says why the path cannot be one. */
+bool ilk_unix_address(const char *path, struct sockaddr_un *address, ilk_error_t *error);
+
+/**
+ * Listens on `path`, readable and writable by the owner alone. Replaces a socket that nobody holds any
+ * more, and nothing else.
+ */
+ilk_listen_result_t ilk_link_listen(ilk_link_socket_t *socket, const char *path, ilk_error_t *error);
+
+/** Stops listening and removes the socket's file. */
+void ilk_link_unlisten(ilk_link_socket_t *socket);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,139 @@
+/**
+ * @file
+ * interlock-kernel: starts everything that can fail, says what was granted, then runs the loop.
+ */
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "bus_sim.h"
+#include "config_file.h"
+#include "link_server.h"
+#include "link_socket.h"
+#include "loop.h"
+#include "options.h"
+#include "realtime.h"
+
+enum { EXIT_ENDED = 0, EXIT_SYSTEM = 1, EXIT_REFUSED = 2, EXIT_TAKEN = 3 };
+
+static volatile sig_atomic_t stop_requested;
+
+/** Static: nothing that the loop uses is allocated, and its size is known at compile time. */
+static ilk_config_t config;
+static ilk_bus_sim_t bus;
+static ilk_link_server_t server;
+static ilk_loop_t loop;
+
+static void request_stop(int number) {
+  (void)number;
+  stop_requested = 1;
+}
+
+/** Without SA_RESTART, so that a signal ends the sleep for the next tick. */
+static void catch_signals(void) {
+  const struct sigaction action = {.sa_handler = request_stop};
+  (void)sigaction(SIGTERM, &action, NULL);
+  (void)sigaction(SIGINT, &action, NULL);
+}
+
+static int report_failure(const ilk_error_t *error, int code) {
+  (void)fprintf(stderr, "interlock-kernel: %s\n", error->text);
+  return code;
+}
+
+static void report_measures(const ilk_realtime_t *realtime) {
+  for (uint32_t measure = 0; measure < ILK_RT_COUNT; ++measure) {
+    const uint32_t bit = 1u << measure;
+    const char *verdict = (realtime->granted & bit) != 0u ? "granted"
+                          : (realtime->asked & bit) != 0u ? "refused: "
+                                                          : "not asked for";
+    const char *reason = (realtime->asked & ~realtime->granted & bit) != 0u ? strerror(realtime->refusal[measure]) : "";
+    (void)printf("  %-20s %s%s\n", ilk_realtime_name((ilk_rt_measure_t)measure), verdict, reason);
+  }
+}
+
+static void report_start(const ilk_options_t *options, const ilk_realtime_t *realtime, ilk_run_permit_t permit) {
+  (void)printf("interlock-kernel\n");
+  (void)printf("  %-20s %u us\n", "period", config.period_us);
+  if (options->clock == ILK_CLOCK_REAL) {
+    (void)printf("  %-20s real%s\n", "clock",
+                 permit == ILK_RUN_DEGRADED ? ", degraded: overruns are shown, not latched" : "");
+  } else {
+    (void)printf("  %-20s simulated, speed %g%s\n", "clock", options->speed,
+                 options->speed > 0.0 ? "" : " (as fast as possible)");
+  }
+  (void)printf("  %-20s sim:%s, frames of %d words\n", "bus", options->bus_path, ILK_FRAME_WORDS);
+  (void)printf("  %-20s %s, CRC-32 0x%08x\n", "configuration", options->config_path, config.crc);
+  report_measures(realtime);
+  (void)printf("ready link=%s\n", options->link_path);
+  (void)fflush(stdout);
+}
+
+/** Takes the rights, and runs the loop if they suffice. */
+static int run_loop(const ilk_options_t *options) {
+  ilk_realtime_t realtime;
+  ilk_realtime_acquire(&realtime, options->clock, options->core, options->priority);
+  const ilk_bus_t driver = ilk_bus_sim_driver(&bus);
+  const ilk_run_permit_t permit =
+      ilk_realtime_permit(options->clock, driver.simulated, realtime.asked, realtime.granted);
+  if (permit == ILK_REFUSE) {
+    ilk_error_t error;
+    (void)ilk_fail(&error, "hardware needs the real clock, SCHED_FIFO and locked memory; grant CAP_SYS_NICE and "
+                           "CAP_IPC_LOCK, or run as a service");
+    return report_failure(&error, EXIT_REFUSED);
+  }
+  report_start(options, &realtime, permit);
+  const ilk_run_terms_t terms = {.clock = options->clock,
+                                 .speed = options->speed,
+                                 .degraded = permit == ILK_RUN_DEGRADED,
+                                 .granted = realtime.granted};
+  ilk_loop_init(&loop, &config, &terms, driver, &server.mailbox, &stop_requested);
+  ilk_loop_run(&loop);
+  return EXIT_ENDED;
+}
+
+static int run_with_link(const ilk_options_t *options, const ilk_link_socket_t *link) {
+  ilk_error_t error;
+  if (!ilk_bus_sim_open(&bus, options->bus_path, options->clock, config.period_us, config.crc, &error)) {
+    return report_failure(&error, EXIT_REFUSED);
+  }
+  int code = EXIT_SYSTEM;
+  if (ilk_link_server_start(&server, link->descriptor, &error)) {
+    code = run_loop(options);
+    ilk_link_server_stop(&server, loop.attachment);
+  } else {
+    (void)report_failure(&error, code);
+  }
+  ilk_bus_sim_close(&bus);
+  return code;
+}
+
+static int run(const ilk_options_t *options) {
+  ilk_error_t error;
+  ilk_link_socket_t link;
+  if (!ilk_config_load(options->config_path, &config, &error)) {
+    return report_failure(&error, EXIT_REFUSED);
+  }
+  const ilk_listen_result_t listening = ilk_link_listen(&link, options->link_path, &error);
+  if (listening != ILK_LISTEN_OK) {
+    return report_failure(&error, listening == ILK_LISTEN_TAKEN ? EXIT_TAKEN : EXIT_REFUSED);
+  }
+  catch_signals();
+  const int code = run_with_link(options, &link);
+  ilk_link_unlisten(&link);
+  return code;
+}
+
+int main(int argc, char *argv[]) {
+  ilk_options_t options;
+  ilk_error_t error;
+  switch (ilk_options_parse(argc, argv, &options, &error)) {
+    case ILK_OPTIONS_RUN:
+      return run(&options);
+    case ILK_OPTIONS_HELP:
+      (void)fputs(ilk_options_help, stdout);
+      return EXIT_ENDED;
+    default:
+      return report_failure(&error, EXIT_REFUSED);
+  }
+}

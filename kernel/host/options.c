@@ -1,0 +1,144 @@
+#include "options.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <math.h>
+#include <sched.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define DEFAULT_PRIORITY 80
+#define MAX_SPEED 1000.0
+
+const char ilk_options_help[] =
+    "usage: interlock-kernel --config FILE.ilkc --bus sim:SOCKET --link SOCKET\n"
+    "                        [--clock real|sim] [--speed X] [--core N] [--priority N]\n"
+    "\n"
+    "  --config FILE    compiled robot configuration (interlock model compile)\n"
+    "  --bus sim:PATH   card bus: the simulator that listens on that socket\n"
+    "  --link PATH      socket to serve the app on\n"
+    "  --clock CLOCK    real: wall clock (default); sim: time passes with the simulator alone\n"
+    "  --speed X        simulated clock: multiple of real time, 0 to 1000; 0: as fast as possible (default 1)\n"
+    "  --core N         run the loop on that core (default: any)\n"
+    "  --priority N     SCHED_FIFO priority of the loop, 1 to 99 (default 80)\n"
+    "\n"
+    "exit codes: 0 ended by signal, 1 system failure, 2 refused to start, 3 link already served\n";
+
+static bool parse_whole_number(const char *text, int least, int most, int *value) {
+  char *end = NULL;
+  errno = 0;
+  const long number = strtol(text, &end, 10);
+  if (errno != 0 || end == text || *end != '\0' || number < least || number > most) {
+    return false;
+  }
+  *value = (int)number;
+  return true;
+}
+
+static bool parse_speed(const char *text, double *speed) {
+  char *end = NULL;
+  const double number = strtod(text, &end);
+  if (end == text || *end != '\0' || !isfinite(number) || number < 0.0 || number > MAX_SPEED) {
+    return false;
+  }
+  *speed = number;
+  return true;
+}
+
+static bool parse_clock(const char *text, ilk_clock_t *clock) {
+  if (strcmp(text, "real") == 0) {
+    *clock = ILK_CLOCK_REAL;
+    return true;
+  }
+  *clock = ILK_CLOCK_SIM;
+  return strcmp(text, "sim") == 0;
+}
+
+static bool parse_bus(const char *text, const char **path) {
+  static const char prefix[] = "sim:";
+  const size_t length = sizeof prefix - 1u;
+  *path = text + (strncmp(text, prefix, length) == 0 ? length : strlen(text));
+  return **path != '\0';
+}
+
+enum { OPTION_CONFIG = 1, OPTION_BUS, OPTION_LINK, OPTION_CLOCK, OPTION_SPEED, OPTION_CORE, OPTION_PRIORITY, OPTION_HELP };
+
+static const struct option known_options[] = {{"config", required_argument, NULL, OPTION_CONFIG},
+                                              {"bus", required_argument, NULL, OPTION_BUS},
+                                              {"link", required_argument, NULL, OPTION_LINK},
+                                              {"clock", required_argument, NULL, OPTION_CLOCK},
+                                              {"speed", required_argument, NULL, OPTION_SPEED},
+                                              {"core", required_argument, NULL, OPTION_CORE},
+                                              {"priority", required_argument, NULL, OPTION_PRIORITY},
+                                              {"help", no_argument, NULL, OPTION_HELP},
+                                              {NULL, 0, NULL, 0}};
+
+/** Returns NULL when the value was taken, otherwise what was expected. */
+static const char *take_option(int option, const char *value, ilk_options_t *options) {
+  switch (option) {
+    case OPTION_CONFIG:
+      options->config_path = value;
+      return *value != '\0' ? NULL : "a file";
+    case OPTION_BUS:
+      return parse_bus(value, &options->bus_path) ? NULL : "sim:SOCKET";
+    case OPTION_LINK:
+      options->link_path = value;
+      return *value != '\0' ? NULL : "the path of a socket";
+    case OPTION_CLOCK:
+      return parse_clock(value, &options->clock) ? NULL : "real or sim";
+    case OPTION_SPEED:
+      return parse_speed(value, &options->speed) ? NULL : "a number from 0 to 1000";
+    case OPTION_CORE:
+      return parse_whole_number(value, 0, CPU_SETSIZE - 1, &options->core) ? NULL : "the number of a core";
+    case OPTION_PRIORITY:
+      return parse_whole_number(value, 1, 99, &options->priority) ? NULL : "a number from 1 to 99";
+    default:
+      return "a known option";
+  }
+}
+
+static bool check_together(const ilk_options_t *options, bool speed_given, ilk_error_t *error) {
+  const char *missing = options->config_path == NULL ? "--config FILE.ilkc"
+                        : options->bus_path == NULL  ? "--bus sim:SOCKET"
+                        : options->link_path == NULL ? "--link SOCKET"
+                                                     : NULL;
+  if (missing != NULL) {
+    return ilk_fail(error, "%s is missing; see --help", missing);
+  }
+  if (speed_given && options->clock == ILK_CLOCK_REAL) {
+    return ilk_fail(error, "--speed applies to the simulated clock only; add --clock sim or leave it out");
+  }
+  return true;
+}
+
+ilk_options_result_t ilk_options_parse(int argc, char *const argv[], ilk_options_t *options, ilk_error_t *error) {
+  *options = (ilk_options_t){.clock = ILK_CLOCK_REAL, .speed = 1.0, .core = -1, .priority = DEFAULT_PRIORITY};
+  bool speed_given = false;
+  opterr = 0;
+  optind = 0;
+  for (;;) {
+    const int option = getopt_long(argc, argv, "+:", known_options, NULL);
+    if (option == -1) {
+      break;
+    }
+    if (option == OPTION_HELP) {
+      return ILK_OPTIONS_HELP;
+    }
+    if (option == '?' || option == ':') {
+      (void)ilk_fail(error, "%s %s; see --help", argv[optind - 1],
+                     option == ':' ? "needs a value" : "is not an option of interlock-kernel");
+      return ILK_OPTIONS_BAD;
+    }
+    const char *expected = take_option(option, optarg, options);
+    if (expected != NULL) {
+      (void)ilk_fail(error, "--%s is '%s'; expected %s", known_options[option - 1].name, optarg, expected);
+      return ILK_OPTIONS_BAD;
+    }
+    speed_given = speed_given || option == OPTION_SPEED;
+  }
+  if (optind < argc) {
+    (void)ilk_fail(error, "'%s' is not expected here; see --help", argv[optind]);
+    return ILK_OPTIONS_BAD;
+  }
+  return check_together(options, speed_given, error) ? ILK_OPTIONS_RUN : ILK_OPTIONS_BAD;
+}

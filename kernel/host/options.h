@@ -1,0 +1,37 @@
+/**
+ * @file
+ * The command line of interlock-kernel.
+ */
+#ifndef INTERLOCK_HOST_OPTIONS_H
+#define INTERLOCK_HOST_OPTIONS_H
+
+#include "error.h"
+#include "interlock/sim_bus.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct {
+  const char *config_path;
+  const char *bus_path; /**< socket of the simulated bus */
+  const char *link_path;
+  ilk_clock_t clock;
+  double speed; /**< of the simulated clock, 0: as fast as possible */
+  int core;     /**< -1: any */
+  int priority; /**< SCHED_FIFO, 1 to 99 */
+} ilk_options_t;
+
+typedef enum { ILK_OPTIONS_RUN, ILK_OPTIONS_HELP, ILK_OPTIONS_BAD } ilk_options_result_t;
+
+/** Text for `--help`. */
+extern const char ilk_options_help[];
+
+/** Reads the command line. When it is bad, `error` names the option, what was given and what was expected. */
+ilk_options_result_t ilk_options_parse(int argc, char *const argv[], ilk_options_t *options, ilk_error_t *error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
