@@ -73,9 +73,11 @@ lint: build ## Check style, naming, generated files and leftovers
 	@verification/toolchain/lint
 
 format: setup ## Rewrite C, C++ and Python in the project's style
-	@git ls-files -co --exclude-standard '*.c' '*.h' '*.cpp' '*.hpp' | xargs grep -L '^/[/*].*Generated' | xargs clang-format-19 -i
+	@git ls-files -co --exclude-standard '*.c' '*.h' '*.cpp' '*.hpp' \
+	  | xargs grep -sL 'Generated from spec/catalog.toml' | xargs clang-format-19 -i
 	@ruff check --quiet --fix
 	@ruff format --quiet
+	@npm --prefix web run --silent format
 
 .PHONY: clean
 clean: ## Remove everything that was built; run-time state stays
