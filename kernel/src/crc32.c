@@ -1,13 +1,6 @@
 #include "crc32.h"
 
-#include "crc32_table.h"
 #include "interlock/kernel.h"
-
-uint32_t ilk_crc32_word(uint32_t crc, uint32_t word) {
-  const uint32_t mixed = crc ^ word;
-  return crc32_table[3][mixed & 0xffu] ^ crc32_table[2][(mixed >> 8) & 0xffu] ^
-         crc32_table[1][(mixed >> 16) & 0xffu] ^ crc32_table[0][mixed >> 24];
-}
 
 uint32_t ilk_crc32_finish(uint32_t crc) { return crc ^ 0xffffffffu; }
 

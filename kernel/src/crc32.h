@@ -11,8 +11,15 @@
 
 #define ILK_CRC32_START 0xffffffffu
 
+/** Remainders of each byte followed by n zero bytes, n the row. */
+extern const uint32_t ilk_crc32_table[4][256];
+
 /** The running CRC after one more word. */
-uint32_t ilk_crc32_word(uint32_t crc, uint32_t word);
+static inline uint32_t ilk_crc32_word(uint32_t crc, uint32_t word) {
+  const uint32_t mixed = crc ^ word;
+  return ilk_crc32_table[3][mixed & 0xffu] ^ ilk_crc32_table[2][(mixed >> 8) & 0xffu] ^
+         ilk_crc32_table[1][(mixed >> 16) & 0xffu] ^ ilk_crc32_table[0][mixed >> 24];
+}
 
 /** The CRC as stored and compared. */
 uint32_t ilk_crc32_finish(uint32_t crc);

@@ -5,100 +5,102 @@
 #include "crc32.h"
 #include "interlock/kernel.h"
 
-/** Sum of the words and sum of the partial sums. A change of any one word changes `sum`; words that
-    change places change `order`. Seeded, so that cleared memory does not pass. */
+/** Two words over all others. A change of any one word changes `sum`, because each step that mixes a word in
+    can be undone; parts of the state that change places change `order`. Seeded, so that cleared memory fails. */
 typedef struct {
   uint32_t sum;
   uint32_t order;
 } seal_t;
 
-static const seal_t seal_start = {.sum = 0x494c4b31u, .order = 0x5ea15ea1u};
+#define SEAL_SEED 0x494c4b31u
 
-static seal_t seal_word(seal_t seal, uint32_t word) {
-  seal_t next = seal;
-  next.sum += word;
-  next.order += next.sum;
+static uint32_t mix(uint32_t digest, uint32_t word) { return ((digest << 5) | (digest >> 27)) + word; }
+
+static seal_t seal_part(seal_t seal, uint32_t digest) {
+  const uint32_t sum = seal.sum + digest;
+  const seal_t next = {.sum = sum, .order = seal.order + sum};
   return next;
 }
 
-static seal_t seal_axis(seal_t seal, const ilk_axis_t *axis) {
-  seal_t next = seal;
-  next = seal_word(next, axis->state);
-  next = seal_word(next, axis->fault);
-  next = seal_word(next, axis->fault_tick);
-  next = seal_word(next, (uint32_t)axis->fault_value);
-  next = seal_word(next, axis->homed);
-  next = seal_word(next, axis->switch_triggered);
-  next = seal_word(next, axis->card_valid);
-  next = seal_word(next, axis->card_seen);
-  next = seal_word(next, axis->bad_frames);
-  next = seal_word(next, axis->checksum_failures);
-  next = seal_word(next, axis->heartbeat);
-  next = seal_word(next, axis->card_time_us);
-  next = seal_word(next, axis->card_status);
-  next = seal_word(next, axis->ticks_since_frame);
-  next = seal_word(next, axis->raw);
-  next = seal_word(next, (uint32_t)axis->position_counts);
-  next = seal_word(next, (uint32_t)axis->delta_counts);
-  next = seal_word(next, (uint32_t)axis->setpoint_counts);
-  next = seal_word(next, axis->drive);
-  next = seal_word(next, axis->amplitude);
-  next = seal_word(next, axis->lease_ticks);
-  next = seal_word(next, axis->driven_direction);
-  next = seal_word(next, (uint32_t)axis->press_travel_counts);
-  next = seal_word(next, axis->stall_driven_ticks);
-  next = seal_word(next, axis->stall_mark_raw);
-  next = seal_word(next, axis->stall_direction);
-  next = seal_word(next, axis->setpoint_changed);
-  next = seal_word(next, axis->reverse_mark_raw);
-  next = seal_word(next, axis->reverse_direction);
-  next = seal_word(next, axis->drift_mark_raw);
-  next = seal_word(next, axis->undriven_ticks);
-  next = seal_word(next, axis->homing_phase);
-  next = seal_word(next, axis->homing_ticks);
-  next = seal_word(next, axis->homing_mark_raw);
-  next = seal_word(next, axis->rest_ticks);
-  return next;
+static uint32_t axis_digest(const ilk_axis_t *axis) {
+  uint32_t digest = SEAL_SEED;
+  digest = mix(digest, axis->state);
+  digest = mix(digest, axis->fault);
+  digest = mix(digest, axis->fault_tick);
+  digest = mix(digest, (uint32_t)axis->fault_value);
+  digest = mix(digest, axis->homed);
+  digest = mix(digest, axis->switch_triggered);
+  digest = mix(digest, axis->card_valid);
+  digest = mix(digest, axis->card_seen);
+  digest = mix(digest, axis->bad_frames);
+  digest = mix(digest, axis->checksum_failures);
+  digest = mix(digest, axis->heartbeat);
+  digest = mix(digest, axis->card_time_us);
+  digest = mix(digest, axis->card_status);
+  digest = mix(digest, axis->ticks_since_frame);
+  digest = mix(digest, axis->raw);
+  digest = mix(digest, (uint32_t)axis->position_counts);
+  digest = mix(digest, (uint32_t)axis->delta_counts);
+  digest = mix(digest, (uint32_t)axis->setpoint_counts);
+  digest = mix(digest, axis->drive);
+  digest = mix(digest, axis->amplitude);
+  digest = mix(digest, axis->lease_ticks);
+  digest = mix(digest, axis->driven_direction);
+  digest = mix(digest, (uint32_t)axis->press_travel_counts);
+  digest = mix(digest, axis->stall_driven_ticks);
+  digest = mix(digest, axis->stall_mark_raw);
+  digest = mix(digest, axis->stall_direction);
+  digest = mix(digest, axis->setpoint_changed);
+  digest = mix(digest, axis->reverse_mark_raw);
+  digest = mix(digest, axis->reverse_direction);
+  digest = mix(digest, axis->drift_mark_raw);
+  digest = mix(digest, axis->undriven_ticks);
+  digest = mix(digest, axis->homing_phase);
+  digest = mix(digest, axis->homing_ticks);
+  digest = mix(digest, axis->homing_mark_raw);
+  digest = mix(digest, axis->rest_ticks);
+  return digest;
 }
 _Static_assert(sizeof(ilk_axis_t) == (35u * sizeof(uint32_t)), "every word is sealed");
 
-static seal_t seal_system(seal_t seal, const ilk_state_t *state) {
-  seal_t next = seal;
-  next = seal_word(next, state->tick);
-  next = seal_word(next, state->mode);
-  next = seal_word(next, state->cause);
-  next = seal_word(next, state->cause_tick);
-  next = seal_word(next, state->cause_value);
-  next = seal_word(next, state->causes_seen);
-  next = seal_word(next, state->pedal);
-  next = seal_word(next, state->pedal_armed);
-  next = seal_word(next, state->pedal_pressed_ticks);
-  next = seal_word(next, state->pedal_released_ticks);
-  next = seal_word(next, state->pedal_disagree_ticks);
-  next = seal_word(next, state->estop);
-  next = seal_word(next, state->app_age_ticks);
-  next = seal_word(next, state->app_alive);
-  next = seal_word(next, state->holder);
-  next = seal_word(next, state->link_generation);
-  next = seal_word(next, state->last_sequence);
-  next = seal_word(next, state->overruns_in_row);
-  next = seal_word(next, state->overruns);
-  next = seal_word(next, state->bus_bad_ticks);
-  next = seal_word(next, state->config_crc);
-  next = seal_word(next, state->config_slice);
-  next = seal_word(next, state->config_partial_crc);
-  next = seal_word(next, state->config_sound);
-  next = seal_word(next, state->requests_accepted);
-  next = seal_word(next, state->requests_refused);
-  return next;
+static uint32_t system_digest(const ilk_state_t *state) {
+  uint32_t digest = SEAL_SEED;
+  digest = mix(digest, state->tick);
+  digest = mix(digest, state->mode);
+  digest = mix(digest, state->cause);
+  digest = mix(digest, state->cause_tick);
+  digest = mix(digest, state->cause_value);
+  digest = mix(digest, state->causes_seen);
+  digest = mix(digest, state->pedal);
+  digest = mix(digest, state->pedal_armed);
+  digest = mix(digest, state->pedal_pressed_ticks);
+  digest = mix(digest, state->pedal_released_ticks);
+  digest = mix(digest, state->pedal_disagree_ticks);
+  digest = mix(digest, state->estop);
+  digest = mix(digest, state->app_age_ticks);
+  digest = mix(digest, state->app_alive);
+  digest = mix(digest, state->holder);
+  digest = mix(digest, state->link_generation);
+  digest = mix(digest, state->last_sequence);
+  digest = mix(digest, state->overruns_in_row);
+  digest = mix(digest, state->overruns);
+  digest = mix(digest, state->bus_bad_ticks);
+  digest = mix(digest, state->config_crc);
+  digest = mix(digest, state->config_slice);
+  digest = mix(digest, state->config_partial_crc);
+  digest = mix(digest, state->config_sound);
+  digest = mix(digest, state->requests_accepted);
+  digest = mix(digest, state->requests_refused);
+  return digest;
 }
 _Static_assert(sizeof(ilk_state_t) == ((ILK_SLOTS * sizeof(ilk_axis_t)) + (28u * sizeof(uint32_t))),
                "every word is sealed, or is the seal");
 
 static seal_t seal_of(const ilk_state_t *state) {
-  seal_t seal = seal_system(seal_start, state);
+  const seal_t seed = {.sum = SEAL_SEED, .order = SEAL_SEED};
+  seal_t seal = seal_part(seed, system_digest(state));
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
-    seal = seal_axis(seal, &state->axis[slot]);
+    seal = seal_part(seal, axis_digest(&state->axis[slot]));
   }
   return seal;
 }

@@ -32,8 +32,8 @@ static void read_frames(const ilk_config_t *config, ilk_state_t *state, const il
                         ilk_reading_t readings[ILK_SLOTS]) {
   bool any_valid = false;
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
+    readings[slot] = ilk_frame_unpack(in->frame[slot]);
     if (has_card(&config->axis[slot])) {
-      readings[slot] = ilk_frame_unpack(in->frame[slot]);
       ilk_observe_card(&state->axis[slot], &readings[slot], answered(in, slot), state->tick);
       any_valid = any_valid || (state->axis[slot].card_valid != 0u);
     }
@@ -79,9 +79,18 @@ static void count_verdict(ilk_state_t *state, const ilk_request_t *request, ilk_
   }
 }
 
+/** Entries that no request of this tick fills say nothing. */
+static void clear_unused_verdicts(ilk_outputs_t *out) {
+  static const ilk_verdict_record_t none = {0};
+  for (uint32_t index = out->verdict_count; index < (uint32_t)ILK_REQUESTS_PER_TICK; index++) {
+    out->verdict[index] = none;
+  }
+}
+
 /** Phase 6: requests in their order, one verdict each. */
 static void answer_requests(const ilk_config_t *config, ilk_state_t *state, const ilk_request_t requests[],
                             uint32_t count, ilk_outputs_t *out) {
+  out->verdict_count = 0u;
   for (uint32_t index = 0u; (index < count) && (index < (uint32_t)ILK_REQUESTS_PER_TICK); index++) {
     const ilk_request_t *request = &requests[index];
     const ilk_verdict_t verdict = ilk_request_judge(config, state, request);
@@ -91,6 +100,7 @@ static void answer_requests(const ilk_config_t *config, ilk_state_t *state, cons
     count_verdict(state, request, verdict);
     answer(state, request, verdict, out);
   }
+  clear_unused_verdicts(out);
 }
 
 /** Phase 7: what each axis wants goes through the output gate, or is zero drive. */
@@ -158,23 +168,10 @@ static void publish(const ilk_config_t *config, ilk_state_t *state, ilk_outputs_
   ilk_state_seal(state);
 }
 
-static void clear_verdicts(ilk_outputs_t *out) {
-  static const ilk_verdict_record_t none = {0};
-  out->verdict_count = 0u;
-  for (uint32_t index = 0u; index < (uint32_t)ILK_REQUESTS_PER_TICK; index++) {
-    out->verdict[index] = none;
-  }
-}
-
 void ilk_step(const ilk_config_t *config, ilk_state_t *state, const ilk_inputs_t *in,
               const ilk_request_t requests[], uint32_t count, ilk_outputs_t *out) {
-  static const ilk_reading_t no_reading = {0};
   ilk_reading_t readings[ILK_SLOTS];
-  ilk_alarms_t alarms = {false, false, false};
-  for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
-    readings[slot] = no_reading;
-  }
-  clear_verdicts(out);
+  ilk_alarms_t alarms = {.new_fault = false, .required_card_lost = false, .configuration_damaged = false};
 
   check_integrity(config, state, &alarms);
   if (state->mode != (uint32_t)ILK_MODE_INIT) {

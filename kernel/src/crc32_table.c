@@ -1,12 +1,9 @@
 /* CRC-32 of IEEE 802.3 (reflected polynomial 0xEDB88320) for one word at a time: table n holds the remainder
    of each byte followed by n zero bytes. tests/unit/kernel recomputes it bit by bit. */
-#ifndef ILK_CRC32_TABLE_H
-#define ILK_CRC32_TABLE_H
-
-#include <stdint.h>
+#include "crc32.h"
 
 /* clang-format off */
-static const uint32_t crc32_table[4][256] = {
+const uint32_t ilk_crc32_table[4][256] = {
   {
     0x00000000u, 0x77073096u, 0xee0e612cu, 0x990951bau, 0x076dc419u, 0x706af48fu, 0xe963a535u, 0x9e6495a3u,
     0x0edb8832u, 0x79dcb8a4u, 0xe0d5e91eu, 0x97d2d988u, 0x09b64c2bu, 0x7eb17cbdu, 0xe7b82d07u, 0x90bf1d91u,
@@ -145,5 +142,3 @@ static const uint32_t crc32_table[4][256] = {
   },
 };
 /* clang-format on */
-
-#endif
