@@ -1,0 +1,75 @@
+#include "proposals/move_check.hpp"
+
+#include <cmath>
+
+#include "motion/setpoint_range.hpp"
+#include "robot/catalog.hpp"
+#include "robot/compile.hpp"
+
+namespace interlock {
+namespace {
+
+tl::unexpected<Refusal> refused(std::uint32_t verdict, const std::string& where, const std::string& expected) {
+  return tl::make_unexpected(verdict_refusal(verdict, where, expected));
+}
+
+std::string counts_and_unit(const Axis& axis, std::int32_t counts) {
+  const double rounded = std::round(axis.to_unit(counts) * 1000.0) / 1000.0;
+  std::string number = std::to_string(rounded);
+  number.erase(number.find('.') + 4);
+  return std::to_string(counts) + " counts (" + number + " " + std::string(unit_name(axis.unit)) + ")";
+}
+
+std::string current(catalog::Family family, std::uint32_t number, const char* what) {
+  return std::string(what) + " is " + catalog::name(family, number);
+}
+
+}  // namespace
+
+Refusal verdict_refusal(std::uint32_t verdict, const std::string& where, const std::string& expected) {
+  const catalog::Entry& entry = catalog::entry(catalog::Family::verdict, verdict);
+  std::string detail(entry.meaning);
+  if (!where.empty()) {
+    detail = where + ": " + detail;
+  }
+  return Refusal{catalog::name(catalog::Family::verdict, verdict), detail, expected, std::string(entry.next_step)};
+}
+
+tl::expected<void, Refusal> check_move(const Axis& axis, const ilk_config_t& config, const ControlView& view,
+                                       const MoveDraft& draft) {
+  const ilk_snapshot_t& snapshot = view.snapshot;
+  const ilk_axis_t& state = snapshot.state.axis[axis.slot];
+  const ilk_axis_config_t& rules = config.axis[axis.slot];
+  if (snapshot.config_crc != config.crc) {
+    return tl::make_unexpected(Refusal{"CONFIG_MISMATCH", "The kernel runs another configuration than this app's robot file.",
+                                       "configuration " + config_hash(config),
+                                       "Start kernel and app with the same robot."});
+  }
+  if (snapshot.state.mode != ILK_MODE_READY && snapshot.state.mode != ILK_MODE_MOTION) {
+    return refused(ILK_VERDICT_MODE, current(catalog::Family::mode, snapshot.state.mode, "mode"), "READY or MOTION");
+  }
+  if (state.state == ILK_AXIS_FAULTED) {
+    return refused(ILK_VERDICT_FAULTED, current(catalog::Family::fault, state.fault, axis.name.c_str()),
+                   "an axis without a fault");
+  }
+  if (state.state == ILK_AXIS_HOMING) {
+    return refused(ILK_VERDICT_BUSY, axis.name, "an axis that is not homing");
+  }
+  if (state.state != ILK_AXIS_ENABLED && state.state != ILK_AXIS_MOVING) {
+    return refused(ILK_VERDICT_DISABLED, axis.name, "an enabled axis");
+  }
+  const std::uint32_t bound = drive_bound(rules, state);
+  if (draft.drive.value_or(0) > bound) {
+    return refused(ILK_VERDICT_DRIVE, axis.name + " drive " + std::to_string(*draft.drive),
+                   "a drive from 1 to " + std::to_string(bound));
+  }
+  const SetpointRange range = setpoint_range(rules, state, snapshot.state.mode);
+  if (!range.contains(draft.target_counts)) {
+    return refused(ILK_VERDICT_RANGE, axis.name + " " + counts_and_unit(axis, draft.target_counts),
+                   "a target from " + counts_and_unit(axis, range.lowest_counts) + " to " +
+                       counts_and_unit(axis, range.highest_counts));
+  }
+  return {};
+}
+
+}  // namespace interlock

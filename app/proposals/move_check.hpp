@@ -1,0 +1,39 @@
+/**
+ * @file
+ * The checks that a move meets before anybody may approve it: what the kernel would refuse now is refused here,
+ * with words. The kernel judges again, whatever this says.
+ */
+#pragma once
+
+#include <string>
+#include <tl/expected.hpp>
+
+#include "motion/mailbox.hpp"
+#include "proposals/proposal.hpp"
+#include "robot/robot.hpp"
+
+namespace interlock {
+
+/** Why a wish is not granted, and what to do about it. */
+struct Refusal {
+  std::string code;   /**< verdict of the catalog, or a code of spec/openapi.yaml */
+  std::string detail; /**< what, where */
+  std::string expected;
+  std::string next_step;
+
+  bool operator==(const Refusal&) const = default;
+};
+
+/**
+ * Judges a draft against the newest view, in the kernel's order of checks.
+ *
+ * @param axis the axis that the draft names
+ * @param config the configuration of the app's robot file; a kernel that runs another one moves nothing
+ */
+tl::expected<void, Refusal> check_move(const Axis& axis, const ilk_config_t& config, const ControlView& view,
+                                       const MoveDraft& draft);
+
+/** A refusal in the words of the catalog's verdict. */
+Refusal verdict_refusal(std::uint32_t verdict, const std::string& where, const std::string& expected = "");
+
+}  // namespace interlock
