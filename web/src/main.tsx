@@ -1,0 +1,14 @@
+import { StrictMode } from "react";
+import { createRoot } from "react-dom/client";
+import { App } from "./app";
+import "./design/font.css";
+import "./design/tokens.css";
+import "./design/base.css";
+
+const root = document.getElementById("console");
+if (root === null) throw new Error("index.html has no element with the id console");
+createRoot(root).render(
+  <StrictMode>
+    <App />
+  </StrictMode>,
+);

@@ -1,0 +1,47 @@
+import { type FormEvent, useId, useState } from "react";
+import type { Motor } from "../../api/client";
+import { propose } from "../../state/commands";
+import { parseEntry, unitName, unitWord } from "../../units/units";
+
+/** A target typed in the axis' unit. */
+export function TargetEntry({ motor }: { readonly motor: Motor }) {
+  const [text, setText] = useState("");
+  const [expected, setExpected] = useState<string | null>(null);
+  const messageId = useId();
+
+  const onSubmit = (event: FormEvent): void => {
+    event.preventDefault();
+    const entered = parseEntry(motor, text);
+    setExpected(entered.ok ? null : entered.expected);
+    if (entered.ok) void propose({ slot: motor.slot, target: entered.value });
+  };
+
+  return (
+    <form className="target-entry" onSubmit={onSubmit} noValidate>
+      <span className="field">
+        <input
+          value={text}
+          inputMode="decimal"
+          autoComplete="off"
+          placeholder="target"
+          aria-label={`${motor.name} target in ${unitWord(motor)}`}
+          aria-invalid={expected !== null}
+          aria-describedby={messageId}
+          onChange={(event) => setText(event.target.value)}
+        />
+        <span className="unit">{unitName(motor)}</span>
+      </span>
+      <button
+        type="submit"
+        className="button"
+        disabled={text.trim() === ""}
+        aria-label={`Propose ${motor.name}`}
+      >
+        Propose
+      </button>
+      <span id={messageId} className="entry-error" role="alert">
+        {expected !== null && `Not sent: expected ${expected}.`}
+      </span>
+    </form>
+  );
+}

@@ -1,0 +1,19 @@
+import { useEffect, useState } from "react";
+import { useConsole } from "../../state/store";
+
+/** A target that is being chosen, or that was sent and has no answer yet. Nothing moves by it. */
+export interface Preview {
+  readonly counts: number;
+  readonly sent: boolean;
+}
+
+/** The preview of one axis. STOP drops it, and so does the loss of the data it was chosen by. */
+export function usePreview(): [Preview | null, (preview: Preview | null) => void] {
+  const [preview, setPreview] = useState<Preview | null>(null);
+  const stops = useConsole((state) => state.stops);
+  const blind = useConsole((state) => state.freshness.level === "covered");
+  useEffect(() => {
+    if (stops > 0 || blind) setPreview(null);
+  }, [stops, blind]);
+  return [preview, setPreview];
+}

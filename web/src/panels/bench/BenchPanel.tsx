@@ -1,0 +1,129 @@
+import { useState } from "react";
+import { api } from "../../api/client";
+import { NoticeText } from "../../design/NoticeText";
+import { Panel } from "../../design/Panel";
+import { catalog, entry } from "../../generated/catalog";
+import { type Notice, noticeOfProblem } from "../../state/notice";
+import { useConsole } from "../../state/store";
+import { usePedal } from "./usePedal";
+import "./bench.css";
+
+/** The hands and feet of the simulated hardware; exists only with it. */
+export function BenchPanel() {
+  const [notice, setNotice] = useState<Notice | null>(null);
+  const command = async (name: string, body: Record<string, unknown>): Promise<void> => {
+    const outcome = await api.benchCommand(name, body);
+    setNotice(outcome.ok ? null : noticeOfProblem(outcome.problem));
+  };
+  return (
+    <Panel title="Bench" className="bench-panel">
+      <p className="bench-banner">SIMULATED HARDWARE</p>
+      <Pedal command={command} />
+      <Estop command={command} />
+      <Jam command={command} />
+      <Lamps />
+      {notice !== null && (
+        <p className="bench-notice" role="alert">
+          <NoticeText lead="Refused:" notice={notice} />
+        </p>
+      )}
+    </Panel>
+  );
+}
+
+interface CommandProps {
+  readonly command: (name: string, body: Record<string, unknown>) => Promise<void>;
+}
+
+function Pedal({ command }: CommandProps) {
+  const { down, latched, press, lift, toggleLatch } = usePedal((pressed) => command("pedal", { pressed }));
+  return (
+    <div className="bench-row">
+      <button
+        type="button"
+        className={`button pedal ${down ? "down" : ""}`}
+        onPointerDown={(event) => {
+          if (event.button !== 0) return;
+          event.currentTarget.setPointerCapture(event.pointerId);
+          press();
+        }}
+        onPointerUp={lift}
+        onPointerCancel={lift}
+      >
+        <i aria-hidden="true">{down ? "▼" : "▽"}</i> Pedal
+        <small>{down ? (latched ? "latched down" : "held down") : "press and hold"}</small>
+      </button>
+      <button type="button" className="button latch" aria-pressed={latched} onClick={toggleLatch}>
+        Latch pedal
+      </button>
+    </div>
+  );
+}
+
+function Estop({ command }: CommandProps) {
+  return (
+    <div className="bench-row">
+      <button type="button" className="button" onClick={() => void command("estop", { pulled: true })}>
+        Pull E-stop
+      </button>
+      <button type="button" className="button" onClick={() => void command("estop", { pulled: false })}>
+        Release E-stop
+      </button>
+    </div>
+  );
+}
+
+function Jam({ command }: CommandProps) {
+  const motors = useConsole((state) => state.motors);
+  const [slot, setSlot] = useState<number | null>(null);
+  const chosen = slot ?? motors[0]?.slot;
+  if (chosen === undefined) return null;
+  return (
+    <div className="bench-row jam">
+      <select
+        className="button"
+        aria-label="Axis to jam"
+        value={chosen}
+        onChange={(event) => setSlot(Number(event.target.value))}
+      >
+        {motors.map((motor) => (
+          <option key={motor.slot} value={motor.slot}>
+            {motor.name}
+          </option>
+        ))}
+      </select>
+      <button
+        type="button"
+        className="button"
+        onClick={() => void command("jam", { slot: chosen, jammed: true })}
+      >
+        Jam
+      </button>
+      <button
+        type="button"
+        className="button"
+        onClick={() => void command("jam", { slot: chosen, jammed: false })}
+      >
+        Free
+      </button>
+    </div>
+  );
+}
+
+function Lamps() {
+  const lamps = useConsole((state) => state.frame?.lamps);
+  return (
+    <ul className="lamps" aria-label="Lamps of the front panel">
+      {catalog.lamp.map((lamp) => {
+        const colour = entry("colour", lamps?.[lamp.number] ?? "OFF").name.toLowerCase();
+        return (
+          <li key={lamp.name} title={lamp.meaning}>
+            <i data-colour={colour} aria-hidden="true" />
+            {lamp.name.toLowerCase()}
+            <small>{colour}</small>
+          </li>
+        );
+      })}
+    </ul>
+  );
+}

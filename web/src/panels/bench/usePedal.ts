@@ -1,0 +1,50 @@
+import { useEffect, useRef, useState } from "react";
+import { useConsole } from "../../state/store";
+import { PedalFoot, type SendPedal } from "./pedal";
+
+/**
+ * The pedal under a pointer, with a latch for those who need the pointer elsewhere. Whatever takes the page out
+ * of the operator's hands (another window or tab, leaving, covered data) lifts the foot and opens the latch.
+ */
+export function usePedal(send: SendPedal) {
+  const [held, setHeld] = useState(false);
+  const [latched, setLatched] = useState(false);
+  const blind = useConsole((state) => state.freshness.level === "covered");
+  const sender = useRef(send);
+  sender.current = send;
+  const [foot] = useState(() => new PedalFoot((pressed) => sender.current(pressed)));
+  const down = (held || latched) && !blind;
+
+  useEffect(() => {
+    if (down) foot.press();
+    else foot.release();
+  }, [down, foot]);
+
+  useEffect(() => {
+    const letGo = (): void => {
+      setHeld(false);
+      setLatched(false);
+    };
+    const onVisibility = (): void => {
+      if (document.hidden) letGo();
+    };
+    if (blind) letGo();
+    window.addEventListener("blur", letGo);
+    window.addEventListener("pagehide", letGo);
+    document.addEventListener("visibilitychange", onVisibility);
+    return () => {
+      window.removeEventListener("blur", letGo);
+      window.removeEventListener("pagehide", letGo);
+      document.removeEventListener("visibilitychange", onVisibility);
+      foot.release();
+    };
+  }, [blind, foot]);
+
+  return {
+    down,
+    latched,
+    press: () => setHeld(true),
+    lift: () => setHeld(false),
+    toggleLatch: () => setLatched((was) => !was),
+  };
+}

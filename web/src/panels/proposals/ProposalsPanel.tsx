@@ -1,0 +1,104 @@
+import type { Motor, Proposal } from "../../api/client";
+import { Panel } from "../../design/Panel";
+import { entry } from "../../generated/catalog";
+import { abort } from "../../state/commands";
+import { noticeOfProposal } from "../../state/notice";
+import { useConsole } from "../../state/store";
+import { formatCounts } from "../../units/units";
+import "./proposals.css";
+
+const MOST_SHOWN = 20;
+
+/** What was asked for, by whom, and what became of it; newest first. */
+export function ProposalsPanel() {
+  const proposals = useConsole((state) => state.proposals);
+  const motors = useConsole((state) => state.motors);
+  return (
+    <Panel title="Proposals" className="proposals-panel">
+      {proposals.length === 0 && <p className="proposals-empty">No move was proposed yet.</p>}
+      <ol className="proposals">
+        {proposals.slice(0, MOST_SHOWN).map((proposal) => (
+          <ProposalItem
+            key={proposal.id}
+            proposal={proposal}
+            motor={motors.find((motor) => motor.slot === proposal.slot)}
+          />
+        ))}
+      </ol>
+    </Panel>
+  );
+}
+
+type State = Proposal["state"];
+
+const looks: Record<State, { readonly shape: string; readonly tone: string }> = {
+  drafted: { shape: "·", tone: "" },
+  checked: { shape: "·", tone: "" },
+  approved: { shape: "◷", tone: "wish" },
+  executing: { shape: "▶", tone: "wish" },
+  paused: { shape: "‖", tone: "wish" },
+  done: { shape: "✓", tone: "calm" },
+  refused: { shape: "✕", tone: "medium" },
+  aborted: { shape: "■", tone: "" },
+  expired: { shape: "◌", tone: "" },
+};
+
+const open: ReadonlySet<State> = new Set(["drafted", "checked", "approved", "executing", "paused"]);
+
+function ProposalItem({
+  proposal,
+  motor,
+}: {
+  readonly proposal: Proposal;
+  readonly motor: Motor | undefined;
+}) {
+  const look = looks[proposal.state];
+  const target =
+    motor === undefined ? `${proposal.target_counts} counts` : formatCounts(motor, proposal.target_counts);
+  const refusal = noticeOfProposal(proposal);
+  return (
+    <li className="proposal" data-state={proposal.state} aria-label={`Proposal ${proposal.id}`}>
+      <span className="proposal-head">
+        <span className="number">#{proposal.id}</span>
+        <strong>{proposal.axis}</strong> to {target}
+        <span className={`chip ${look.tone}`}>
+          <i aria-hidden="true">{look.shape}</i>
+          {proposal.state}
+        </span>
+      </span>
+      <span className="proposal-words">
+        {refusal === null ? (
+          proposal.detail
+        ) : (
+          <>
+            {refusal.code}: {refusal.meaning} <span className="next-step">{refusal.nextStep}</span>
+          </>
+        )}
+        {refusal === null && proposal.verdict != null && proposal.verdict !== "ACCEPTED" && (
+          <span className="next-step">{entry("verdict", proposal.verdict).next_step}</span>
+        )}
+      </span>
+      <span className="proposal-foot">
+        {proposal.author} · <time dateTime={proposal.created}>{localTime(proposal.created)}</time>
+        {open.has(proposal.state) && (
+          <button
+            type="button"
+            className="button quiet"
+            aria-label={`Abort proposal ${proposal.id}`}
+            onClick={() => void abort(proposal.id, proposal.slot)}
+          >
+            Abort
+          </button>
+        )}
+      </span>
+    </li>
+  );
+}
+
+const clock = new Intl.DateTimeFormat(undefined, { timeStyle: "long" });
+
+/** Local time with its zone; what the app sent when it is no time. */
+function localTime(utc: string): string {
+  const time = new Date(utc);
+  return Number.isNaN(time.getTime()) ? utc : clock.format(time);
+}

@@ -1,0 +1,87 @@
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import { openStream, type Phase, retryPauseMs } from "./connection";
+
+/** The browser's socket with its network end in the hands of the test. */
+class SocketInHand {
+  static readonly opened: SocketInHand[] = [];
+  onopen: (() => void) | null = null;
+  onmessage: ((event: { data: ArrayBuffer | string }) => void) | null = null;
+  onclose: (() => void) | null = null;
+  closed = false;
+  constructor() {
+    SocketInHand.opened.push(this);
+  }
+  close(): void {
+    this.closed = true;
+  }
+}
+
+const latest = (): SocketInHand => SocketInHand.opened.at(-1) as SocketInHand;
+
+let phases: Phase[];
+let texts: string[];
+let close: () => void;
+
+beforeEach(() => {
+  vi.useFakeTimers();
+  vi.stubGlobal("WebSocket", SocketInHand);
+  SocketInHand.opened.length = 0;
+  phases = [];
+  texts = [];
+  close = openStream("ws://host/api/stream", {
+    onBinary: () => undefined,
+    onText: (text) => texts.push(text),
+    onPhase: (phase) => phases.push(phase),
+  });
+});
+
+afterEach(() => {
+  close();
+  vi.useRealTimers();
+  vi.unstubAllGlobals();
+});
+
+describe("openStream", () => {
+  it("hands over text and reports phases", () => {
+    latest().onopen?.();
+    latest().onmessage?.({ data: "{}" });
+    expect(phases).toEqual(["connecting", "open"]);
+    expect(texts).toEqual(["{}"]);
+  });
+
+  it("reconnects after growing pauses and starts over after a message", () => {
+    for (const pause of [250, 500, 1000, 2000, 4000, 4000]) {
+      const sockets = SocketInHand.opened.length;
+      latest().onclose?.();
+      vi.advanceTimersByTime(pause - 1);
+      expect(SocketInHand.opened.length).toBe(sockets);
+      vi.advanceTimersByTime(1);
+      expect(SocketInHand.opened.length).toBe(sockets + 1);
+    }
+    latest().onmessage?.({ data: "{}" });
+    latest().onclose?.();
+    vi.advanceTimersByTime(250);
+    expect(phases.slice(-3)).toEqual(["connecting", "lost", "connecting"]);
+  });
+
+  it("gives up on a peer that is silent for five seconds", () => {
+    const silent = latest();
+    silent.onopen?.();
+    vi.advanceTimersByTime(5000);
+    expect(silent.closed).toBe(true);
+    expect(phases.at(-1)).toBe("lost");
+  });
+
+  it("does not come back once closed", () => {
+    close();
+    vi.advanceTimersByTime(60_000);
+    expect(SocketInHand.opened.length).toBe(1);
+    expect(latest().closed).toBe(true);
+  });
+});
+
+describe("retryPauseMs", () => {
+  it("is bounded", () => {
+    expect(retryPauseMs(1000)).toBe(4000);
+  });
+});

@@ -1,0 +1,96 @@
+import { readFileSync } from "node:fs";
+import { describe, expect, it } from "vitest";
+import { decodeFrame, FrameError, headerFields, signedSlotFields, slotFields } from "./decode";
+
+type Words = Record<string, number>;
+
+const soundHeader: Words = { magic: 0x53574b49, version: 1, connected: 1, slots: 10 };
+
+function message(header: Words = {}, slots: Record<number, Words> = {}): ArrayBuffer {
+  const values = { ...soundHeader, ...header };
+  const words = headerFields.map((name) => values[name] ?? 0);
+  for (let slot = 0; slot < 10; slot++) words.push(...slotFields.map((name) => slots[slot]?.[name] ?? 0));
+  const view = new DataView(new ArrayBuffer(words.length * 4));
+  words.forEach((word, index) => {
+    view.setUint32(index * 4, word >>> 0, true);
+  });
+  return view.buffer;
+}
+
+function contractFields(block: "header" | "slot"): { name: string; signed: boolean }[] {
+  const yaml = readFileSync(new URL("../../../spec/openapi.yaml", import.meta.url), "utf8");
+  const stream = yaml.slice(yaml.indexOf("x-stream:\n"));
+  const section = stream.slice(stream.indexOf(`    ${block}:`));
+  const lines = section.split("\n").slice(1);
+  const end = lines.findIndex((line) => !line.startsWith("      - "));
+  return lines.slice(0, end).map((line) => ({
+    name: /name: (\w+)/.exec(line)?.[1] ?? line,
+    signed: line.includes("signed: true"),
+  }));
+}
+
+describe("the field tables", () => {
+  it("are those of spec/openapi.yaml, in its order", () => {
+    expect(headerFields).toEqual(contractFields("header").map((field) => field.name));
+    expect(slotFields).toEqual(contractFields("slot").map((field) => field.name));
+  });
+
+  it("agree with spec/openapi.yaml about signs", () => {
+    const signed = contractFields("slot").filter((field) => field.signed);
+    expect([...signedSlotFields]).toEqual(signed.map((field) => field.name));
+    expect(contractFields("header").some((field) => field.signed)).toBe(false);
+  });
+});
+
+describe("decodeFrame", () => {
+  it("names modes, causes, pedal and lamps by the catalog", () => {
+    const frame = decodeFrame(
+      message({ mode: 1, cause: 2, causes_seen: 0b1100, pedal: 2, lamps: 0x03_02_01_00, estop: 1 }),
+    );
+    expect(frame.mode).toBe("LOCKED");
+    expect(frame.cause).toBe("ESTOP");
+    expect(frame.causesSeen).toEqual(["ESTOP", "BUS"]);
+    expect(frame.pedal).toBe("DISAGREE");
+    expect(frame.lamps).toEqual(["OFF", "GREEN", "RED", "AMBER"]);
+    expect(frame.estop).toBe(true);
+  });
+
+  it("reads flags, age and configuration CRC", () => {
+    const frame = decodeFrame(message({ flags: 0b101, age_us: 2500, config_crc: 0xabc }));
+    expect(frame).toMatchObject({ simulated: true, degraded: false, simulatedClock: true, ageMs: 2.5 });
+    expect(frame.configCrc).toBe("00000abc");
+  });
+
+  it("reads signed counts and shows a setpoint only with an open proposal", () => {
+    const slot = { position_counts: -12, setpoint_counts: 34, min_counts: -2147483648, max_counts: 7 };
+    const frame = decodeFrame(
+      message({}, { 0: { ...slot, flags: 0b10001 }, 9: { ...slot, flags: 0b00110 } }),
+    );
+    expect(frame.axes[0]).toMatchObject({ positionCounts: -12, setpointCounts: 34, minCounts: -2147483648 });
+    expect(frame.axes[0]).toMatchObject({ homed: true, switchTriggered: false });
+    expect(frame.axes[9]).toMatchObject({ setpointCounts: null, homed: false, switchTriggered: true });
+    expect(frame.axes[9]?.cardValid).toBe(true);
+  });
+
+  it("keeps tick and counters unsigned", () => {
+    expect(decodeFrame(message({ tick: 0xffffffff })).tick).toBe(4294967295);
+  });
+
+  it("treats any E-stop word but zero as pulled", () => {
+    expect(decodeFrame(message({ estop: 0x80000000 })).estop).toBe(true);
+  });
+
+  it("names a code that the catalog does not have", () => {
+    expect(decodeFrame(message({ mode: 77 })).mode).toBe("UNKNOWN_77");
+  });
+
+  it.each([
+    ["too short", message().slice(4)],
+    ["empty", new ArrayBuffer(0)],
+    ["of another magic", message({ magic: 1 })],
+    ["of another version", message({ version: 2 })],
+    ["of another slot count", message({ slots: 9 })],
+  ])("refuses a message that is %s", (_, bytes) => {
+    expect(() => decodeFrame(bytes)).toThrow(FrameError);
+  });
+});
