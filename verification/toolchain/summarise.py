@@ -12,7 +12,7 @@ from pathlib import Path
 
 
 def count(report: Path) -> tuple[int, int]:
-    """Passed and failed tests of a report; (0, 0) when it is missing or no JUnit report. Skipped ones do not count."""
+    """Passed and failed tests of a report; (0, 0) when there is none. Skipped ones do not count."""
     try:
         cases = list(ElementTree.parse(report).getroot().iter("testcase"))
     except (OSError, ElementTree.ParseError):
