@@ -1,0 +1,67 @@
+/**
+ * @file
+ * One program of Interlock as a child of this one.
+ */
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cli/exit_code.hpp"
+#include "cli/unique_fd.hpp"
+
+namespace interlock::cli {
+
+/** What is to be started. */
+struct Program {
+  std::string name; /**< as people know it: "kernel" */
+  std::filesystem::path file;
+  std::vector<std::string> arguments;
+};
+
+/** How a child ended, in words: "exit code 2", "killed by signal 9 (Killed)". */
+std::string describe_end(int wait_status);
+
+/**
+ * A running child. It dies when its parent dies, has a process group of its own, so that Ctrl-C reaches only
+ * the parent, and writes standard output and standard error into one pipe.
+ */
+class ChildProcess {
+ public:
+  static Result<ChildProcess> start(const Program& program);
+
+  ChildProcess(ChildProcess&& other) noexcept;
+  ChildProcess& operator=(ChildProcess&&) = delete;
+
+  /** Kills what still runs and waits for it. */
+  ~ChildProcess();
+
+  /** Readable when the child has ended. */
+  [[nodiscard]] int end_fd() const { return pidfd_.get(); }
+
+  /** Readable when there is output, or the end of it; -1 after that end. */
+  [[nodiscard]] int output_fd() const { return output_.get(); }
+
+  void send(int signal) const;
+
+  /** Complete lines written since the last call, without waiting; with `rest`, an incomplete last one
+   * besides. */
+  std::vector<std::string> read_lines(bool rest);
+
+  /** Takes the ended child off the system's list and answers its wait status. Empty while it still runs. */
+  std::optional<int> reap();
+
+ private:
+  ChildProcess(pid_t pid, UniqueFd pidfd, UniqueFd output)
+      : pid_(pid), pidfd_(std::move(pidfd)), output_(std::move(output)) {}
+
+  pid_t pid_; /**< 0 once reaped */
+  UniqueFd pidfd_;
+  UniqueFd output_;
+  std::string unfinished_line_;
+};
+
+}  // namespace interlock::cli

@@ -1,0 +1,38 @@
+/**
+ * @file
+ * How the command line ends when it cannot do what was asked.
+ */
+#pragma once
+
+#include <string>
+#include <tl/expected.hpp>
+
+namespace interlock::cli {
+
+/** Exit codes of `interlock`, as `interlock --help` lists them. */
+enum class ExitCode : int {
+  done = 0,    /**< done; `run`: stopped by a signal */
+  refused = 1, /**< the robot file or its configuration is not valid */
+  usage = 2,   /**< the command line is not understood */
+  precondition =
+      3, /**< something stands in the way: busy port, second instance, missing file, no permission */
+  process_ended = 4,   /**< kernel or simulator ended, or did not start */
+  app_kept_ending = 5, /**< the app ended more often than it may be restarted */
+  no_answer = 6,       /**< no app answers, or its answer is not understood */
+};
+
+/** Why a command ends early: what, where, what was expected, what to do. */
+struct Failure {
+  ExitCode code;
+  std::string text;
+};
+
+template <typename Value>
+using Result = tl::expected<Value, Failure>;
+
+/** A failure as the error side of any `Result`. */
+inline tl::unexpected<Failure> failed(ExitCode code, std::string text) {
+  return tl::unexpected(Failure{code, std::move(text)});
+}
+
+}  // namespace interlock::cli

@@ -1,0 +1,153 @@
+/**
+ * @file
+ * `interlock`: the command line.
+ */
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <exception>
+#include <iostream>
+#include <map>
+#include <optional>
+
+#include "build_info/build_info.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/installation.hpp"
+#include "cli/model_commands.hpp"
+#include "cli/run_command.hpp"
+#include "cli/status_command.hpp"
+#include "robot/compile.hpp"
+
+namespace interlock::cli {
+namespace {
+
+constexpr const char* footer =
+    "Exit codes: 0 done; 1 robot file refused; 2 command line not understood; 3 something stands in the way "
+    "(busy\n"
+    "port, second instance, missing file); 4 kernel or simulator ended; 5 the app kept ending; 6 no answer.";
+
+Result<void> show_version(const std::string& robot, std::ostream& output) {
+  output << "interlock " << version() << ", commit " << commit() << '\n';
+  if (robot.empty()) {
+    return {};
+  }
+  const Result<std::filesystem::path> file = Installation::current().robot(robot);
+  if (!file) {
+    return tl::unexpected(file.error());
+  }
+  const Result<CompiledRobot> compiled = load_and_compile(*file);
+  if (!compiled) {
+    return tl::unexpected(compiled.error());
+  }
+  output << "configuration " << config_hash(compiled->config) << " of " << compiled->robot.name << '\n';
+  return {};
+}
+
+/** The command line as it was given. */
+struct CommandLine {
+  bool version = false;
+  std::string version_robot;
+  RunOptions run;
+  StatusOptions status;
+  std::filesystem::path model;
+  std::filesystem::path config;
+};
+
+void add_run(CLI::App& cli, RunOptions& options) {
+  CLI::App* const command = cli.add_subcommand("run", "Run a simulated robot with kernel, app and console");
+  command->add_option("--robot", options.robot, "Name of a robot, or its file")->capture_default_str();
+  command->add_option("--port", options.port, "Port of the console on 127.0.0.1; 0 takes one that is free")
+      ->capture_default_str();
+  const std::map<std::string, ClockChoice> clocks{{"real", ClockChoice::real}, {"sim", ClockChoice::sim}};
+  CLI::Option* const clock =
+      command
+          ->add_option("--clock", options.clock, "real: paced by the wall clock; sim: counts simulated time")
+          ->transform(CLI::CheckedTransformer(clocks).description("{real,sim}"))
+          ->default_str("real");
+  command
+      ->add_option("--speed", options.speed,
+                   "Simulated clock as a multiple of real time; 0: as fast as possible")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->needs(clock);
+  command->add_option("--seed", options.seed, "Seed of the simulated hardware");
+  command->add_option("--state", options.state, "State directory; default $XDG_STATE_HOME/interlock/ROBOT");
+  command->add_option("--sockets", options.sockets, "Directory for the sockets; default: a private one");
+  command->add_option("--plant", options.plant, "Parameters of the simulated hardware")
+      ->check(CLI::ExistingFile);
+  command->add_option("--web", options.web, "Directory of the built console")->check(CLI::ExistingDirectory);
+}
+
+void add_status(CLI::App& cli, StatusOptions& options) {
+  CLI::App* const command =
+      cli.add_subcommand("status", "Show the state of the robot that runs on this machine");
+  command->add_option("--port", options.port, "Port of the console")->capture_default_str();
+  command->add_flag("--json", options.json, "The app's answer as it came");
+}
+
+void add_model(CLI::App& cli, CommandLine& line) {
+  CLI::App* const model = cli.add_subcommand("model", "Check or compile a robot file");
+  model->require_subcommand(1);
+  CLI::App* const check = model->add_subcommand("check", "Say whether the kernel will accept the robot");
+  check->add_option("FILE", line.model, "Robot file")->required();
+  CLI::App* const compile = model->add_subcommand("compile", "Write the kernel's binary configuration");
+  compile->add_option("FILE", line.model, "Robot file")->required();
+  compile->add_option("-o,--output", line.config, "Configuration file; default ROBOT.ilkc");
+}
+
+Result<void> execute(const CLI::App& cli, const CommandLine& line) {
+  if (line.version) {
+    return show_version(line.version_robot, std::cout);
+  }
+  if (cli.got_subcommand("run")) {
+    if (line.run.speed && line.run.clock == ClockChoice::real) {
+      return failed(ExitCode::usage, "--speed has no meaning with the real clock; use --clock sim");
+    }
+    return run(line.run, Installation::current(), std::cout);
+  }
+  if (cli.got_subcommand("status")) {
+    return show_status(line.status, std::cout);
+  }
+  const CLI::App& model = *cli.get_subcommand("model");
+  return model.got_subcommand("check") ? check_model(line.model, std::cout)
+                                       : compile_model(line.model, line.config, std::cout);
+}
+
+int report(ExitCode code, const std::string& text) {
+  std::cout.flush();
+  std::cerr << "interlock: " << text << std::endl;
+  return static_cast<int>(code);
+}
+
+int main(int argc, char** argv) {
+  // A closed terminal must not end the supervisor before it has stopped its children.
+  std::signal(SIGPIPE, SIG_IGN);
+  CommandLine line;
+  CLI::App cli("Interlock: control software for MRI-compatible surgical robots", "interlock");
+  cli.footer(footer);
+  cli.add_flag("--version", line.version, "Version and commit; with --robot, its configuration's hash");
+  cli.add_option("--robot", line.version_robot, "Name of a robot, or its file, for --version");
+  cli.require_subcommand(0, 1);
+  add_run(cli, line.run);
+  add_status(cli, line.status);
+  add_model(cli, line);
+  try {
+    cli.parse(argc, argv);
+    if (!line.version && cli.get_subcommands().empty()) {
+      throw CLI::RequiredError("A command");
+    }
+  } catch (const CLI::ParseError& error) {
+    return cli.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
+  }
+  const Result<void> result = execute(cli, line);
+  return result ? static_cast<int>(ExitCode::done) : report(result.error().code, result.error().text);
+}
+
+}  // namespace
+}  // namespace interlock::cli
+
+int main(int argc, char** argv) {
+  try {
+    return interlock::cli::main(argc, argv);
+  } catch (const std::exception& error) {
+    return interlock::cli::report(interlock::cli::ExitCode::precondition, error.what());
+  }
+}

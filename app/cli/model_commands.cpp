@@ -1,0 +1,54 @@
+#include "cli/model_commands.hpp"
+
+#include "robot/compile.hpp"
+#include "robot/robot_file.hpp"
+
+namespace interlock::cli {
+
+namespace fs = std::filesystem;
+
+Result<CompiledRobot> load_and_compile(const fs::path& file) {
+  tl::expected<Robot, RobotError> robot = load_robot(file);
+  if (!robot) {
+    return failed(ExitCode::refused, robot.error().message());
+  }
+  const tl::expected<ilk_config_t, RobotError> config = compile(*robot);
+  if (!config) {
+    return failed(ExitCode::refused, config.error().message());
+  }
+  return CompiledRobot{std::move(*robot), *config};
+}
+
+Result<void> save_config(const ilk_config_t& config, const fs::path& file) {
+  const tl::expected<void, std::string> written = write_config(config, file);
+  if (!written) {
+    return failed(ExitCode::precondition, written.error() + "; choose another file or free some space");
+  }
+  return {};
+}
+
+Result<void> check_model(const fs::path& file, std::ostream& output) {
+  const Result<CompiledRobot> compiled = load_and_compile(file);
+  if (!compiled) {
+    return tl::unexpected(compiled.error());
+  }
+  output << compiled->robot.name << ": " << compiled->robot.axes.size() << " axes, configuration "
+         << config_hash(compiled->config) << ", valid\n";
+  return {};
+}
+
+Result<void> compile_model(const fs::path& file, const fs::path& config_file, std::ostream& output) {
+  const Result<CompiledRobot> compiled = load_and_compile(file);
+  if (!compiled) {
+    return tl::unexpected(compiled.error());
+  }
+  const fs::path target = config_file.empty() ? fs::path(compiled->robot.name + ".ilkc") : config_file;
+  const Result<void> saved = save_config(compiled->config, target);
+  if (saved) {
+    output << target.string() << ": configuration " << config_hash(compiled->config) << " of "
+           << compiled->robot.name << '\n';
+  }
+  return saved;
+}
+
+}  // namespace interlock::cli

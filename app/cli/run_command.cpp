@@ -1,0 +1,192 @@
+#include "cli/run_command.hpp"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "cli/instance_lock.hpp"
+#include "cli/model_commands.hpp"
+#include "cli/runtime_directory.hpp"
+#include "cli/supervisor.hpp"
+#include "cli/unique_fd.hpp"
+#include "robot/compile.hpp"
+
+namespace interlock::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+Result<fs::path> state_directory(const RunOptions& options, const std::string& robot_name) {
+  if (!options.state.empty()) {
+    return fs::absolute(options.state);
+  }
+  if (const char* const given = std::getenv("XDG_STATE_HOME"); given && *given == '/') {
+    return fs::path(given) / "interlock" / robot_name;
+  }
+  if (const char* const home = std::getenv("HOME"); home && *home == '/') {
+    return fs::path(home) / ".local/state/interlock" / robot_name;
+  }
+  return failed(ExitCode::precondition,
+                "there is no place for the state: neither XDG_STATE_HOME nor HOME is set; use --state");
+}
+
+/** The port if it can be listened on, a free one for 0. It is free again afterwards, for the app. */
+Result<std::uint16_t> free_port(std::uint16_t port) {
+  const UniqueFd listener(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  const int reuse = 1;
+  setsockopt(listener.get(), SOL_SOCKET, SO_REUSEADDR, &reuse, sizeof reuse);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(port);
+  socklen_t size = sizeof address;
+  if (bind(listener.get(), reinterpret_cast<const sockaddr*>(&address), size) != 0 ||
+      listen(listener.get(), 1) != 0 ||
+      getsockname(listener.get(), reinterpret_cast<sockaddr*>(&address), &size) != 0) {
+    return failed(ExitCode::precondition, "port " + std::to_string(port) + " of 127.0.0.1 cannot be used: " +
+                                              std::generic_category().message(errno) +
+                                              "; stop what listens there, or choose another --port");
+  }
+  return ntohs(address.sin_port);
+}
+
+/** Where one run keeps its things. */
+struct Places {
+  fs::path robot_file;
+  fs::path plant_file;
+  fs::path state;
+  std::optional<fs::path> web;
+  std::uint16_t port;
+};
+
+std::string url_of(const Places& places) { return "http://127.0.0.1:" + std::to_string(places.port) + '/'; }
+
+Program simulator(const RunOptions& options, const Places& places, const RuntimeDirectory& directory) {
+  Program program{"simulator",
+                  "interlock-sim",
+                  {"--plant", places.plant_file, "--robot", directory.config(), "--bus", directory.bus(),
+                   "--control", directory.control()}};
+  if (options.seed) {
+    program.arguments.insert(program.arguments.end(), {"--seed", std::to_string(*options.seed)});
+  }
+  return program;
+}
+
+Program kernel(const RunOptions& options, const RuntimeDirectory& directory) {
+  Program program{"kernel",
+                  "interlock-kernel",
+                  {"--config", directory.config(), "--bus", "sim:" + directory.bus().string(), "--link",
+                   directory.link(), "--clock", options.clock == ClockChoice::real ? "real" : "sim"}};
+  if (options.speed) {
+    program.arguments.insert(program.arguments.end(), {"--speed", std::to_string(*options.speed)});
+  }
+  return program;
+}
+
+Program app(const Places& places, const RuntimeDirectory& directory) {
+  Program program{
+      "app",
+      "interlock-app",
+      {"--robot", places.robot_file, "--config", directory.config(), "--link", directory.link(), "--bench",
+       directory.control(), "--port", std::to_string(places.port), "--state", places.state}};
+  if (places.web) {
+    program.arguments.insert(program.arguments.end(), {"--web", *places.web});
+  }
+  return program;
+}
+
+Result<std::vector<Supervised>> programs_of(const RunOptions& options, const Installation& installation,
+                                            const Places& places, const RuntimeDirectory& directory) {
+  std::vector<Supervised> programs{{simulator(options, places, directory), false},
+                                   {kernel(options, directory), false},
+                                   {app(places, directory), true}};
+  for (Supervised& supervised : programs) {
+    Result<fs::path> file = installation.program(supervised.program.file);
+    if (!file) {
+      return tl::unexpected(file.error());
+    }
+    supervised.program.file = std::move(*file);
+  }
+  return programs;
+}
+
+void announce(const CompiledRobot& compiled, const Places& places, std::ostream& output) {
+  const std::string line(60, '=');
+  output << '\n'
+         << line << "\n  " << compiled.robot.title << ", simulated (configuration "
+         << config_hash(compiled.config) << ")\n\n  "
+         << (places.web ? "Open " + url_of(places)
+                        : "HTTP API at " + url_of(places) + "; the console is not built")
+         << "\n\n  Ctrl-C stops everything.\n"
+         << line << "\n\nready " << url_of(places) << std::endl;
+}
+
+Result<Places> places_of(const RunOptions& options, const Installation& installation,
+                         const fs::path& robot_file, const std::string& robot_name) {
+  const Result<fs::path> plant =
+      options.plant.empty() ? installation.plant(robot_name) : Result<fs::path>(options.plant);
+  const Result<fs::path> state = state_directory(options, robot_name);
+  if (!plant || !state) {
+    return tl::unexpected(!plant ? plant.error() : state.error());
+  }
+  return Places{robot_file, *plant, *state, options.web.empty() ? installation.web() : options.web,
+                options.port};
+}
+
+Result<void> supervise(const RunOptions& options, const Installation& installation,
+                       const CompiledRobot& compiled, Places places, const InstanceLock& lock,
+                       std::ostream& output) {
+  const Result<std::uint16_t> port = free_port(options.port);
+  if (!port) {
+    return tl::unexpected(port.error());
+  }
+  places.port = *port;
+  // From here on there is something to clear away, so a signal may no longer end this process by itself.
+  const SignalEvents signals;
+  Result<RuntimeDirectory> directory = options.sockets.empty()
+                                           ? RuntimeDirectory::make_private(compiled.robot.name)
+                                           : RuntimeDirectory::use(options.sockets, compiled.robot.name);
+  if (!directory) {
+    return tl::unexpected(directory.error());
+  }
+  lock.describe(url_of(places), directory->is_private() ? directory->path() : "");
+  if (Result<void> saved = save_config(compiled.config, directory->config()); !saved) {
+    return saved;
+  }
+  Result<std::vector<Supervised>> programs = programs_of(options, installation, places, *directory);
+  if (!programs) {
+    return tl::unexpected(programs.error());
+  }
+  Supervisor supervisor(std::move(*programs), signals, output);
+  return supervisor.run([&] { announce(compiled, places, output); });
+}
+
+}  // namespace
+
+Result<void> run(const RunOptions& options, const Installation& installation, std::ostream& output) {
+  const Result<fs::path> robot_file = installation.robot(options.robot);
+  if (!robot_file) {
+    return tl::unexpected(robot_file.error());
+  }
+  const Result<CompiledRobot> compiled = load_and_compile(*robot_file);
+  if (!compiled) {
+    return tl::unexpected(compiled.error());
+  }
+  const Result<Places> places = places_of(options, installation, *robot_file, compiled->robot.name);
+  if (!places) {
+    return tl::unexpected(places.error());
+  }
+  const Result<InstanceLock> lock = InstanceLock::take(places->state);
+  if (!lock) {
+    return tl::unexpected(lock.error());
+  }
+  return supervise(options, installation, *compiled, *places, *lock, output);
+}
+
+}  // namespace interlock::cli

@@ -1,0 +1,42 @@
+/**
+ * @file
+ * `interlock run`: a simulated robot, its kernel, the app and the console.
+ */
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <ostream>
+#include <string>
+
+#include "cli/exit_code.hpp"
+#include "cli/installation.hpp"
+
+namespace interlock::cli {
+
+/** Clock of the simulated robot's kernel; see design.md, "Clocks". */
+enum class ClockChoice { real, sim };
+
+struct RunOptions {
+  std::string robot = "neuro"; /**< name or file */
+  std::uint16_t port = 8080;   /**< 0: one that is free */
+  ClockChoice clock = ClockChoice::real;
+  std::optional<double> speed;       /**< simulated clock: multiple of real time, 0 as fast as possible */
+  std::optional<std::uint32_t> seed; /**< of the simulated hardware */
+  std::filesystem::path state;       /**< empty: the robot's directory under $XDG_STATE_HOME/interlock */
+  std::filesystem::path sockets;     /**< empty: a private directory */
+  std::filesystem::path plant;       /**< empty: models/plant/ROBOT.toml */
+  std::filesystem::path web;         /**< empty: the console of the installation or the source tree */
+};
+
+/**
+ * Checks everything that can be checked beforehand, starts the processes and runs until a signal or a
+ * failure.
+ *
+ * Nothing is started when the robot is refused, the port is busy or another instance uses the state
+ * directory. Each time that all is ready, a line "ready URL" follows in the output.
+ */
+Result<void> run(const RunOptions& options, const Installation& installation, std::ostream& output);
+
+}  // namespace interlock::cli

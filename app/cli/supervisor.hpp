@@ -1,0 +1,101 @@
+/**
+ * @file
+ * Starts the processes of one robot, watches them, and leaves none behind.
+ *
+ * Programs start one after the other, each when the one before has printed its line `ready`. From then on the
+ * supervisor only waits for events: a signal, the end of a child, a line of output. It never sleeps.
+ */
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "cli/child_process.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/restart_budget.hpp"
+#include "cli/unique_fd.hpp"
+
+namespace interlock::cli {
+
+/** Termination signals as events, blocked for this process for as long as this lives. */
+class SignalEvents {
+ public:
+  SignalEvents();
+  ~SignalEvents();
+  SignalEvents(const SignalEvents&) = delete;
+  SignalEvents& operator=(const SignalEvents&) = delete;
+
+  /** Readable when a signal has arrived. */
+  [[nodiscard]] int fd() const { return fd_.get(); }
+
+  /** Takes a signal; false when none has arrived. */
+  [[nodiscard]] bool take() const;
+
+ private:
+  UniqueFd fd_;
+};
+
+/** A program and what its end means. */
+struct Supervised {
+  Program program;
+  bool restarts = false; /**< once it was ready, its end is no reason to stop the others */
+};
+
+class Supervisor {
+ public:
+  /** Output of the children, prefixed with their names, and what happens to them goes to `output`. */
+  Supervisor(std::vector<Supervised> programs, const SignalEvents& signals, std::ostream& output);
+
+  /**
+   * Runs until a signal asks to stop, a program without restarts ends, or one with restarts ends too often.
+   *
+   * @param when_ready called when all programs are ready, and again after each restart.
+   * @return nothing after a signal, the failure otherwise. No child is left in either case.
+   */
+  Result<void> run(const std::function<void()>& when_ready);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  using Deadline = std::optional<Clock::time_point>;
+
+  struct Task {
+    Supervised supervised;
+    std::optional<ChildProcess> child;
+    bool ready = false;     /**< the running child has said so */
+    bool was_ready = false; /**< this child or an earlier one has said so */
+  };
+
+  struct StopAsked {};
+  struct Ready {};
+  struct Ended {
+    Task& task;
+    int wait_status;
+  };
+  struct TimedOut {};
+  using Event = std::variant<StopAsked, Ready, Ended, TimedOut>;
+
+  Result<void> serve(const std::function<void()>& when_ready);
+  Result<void> start_next(const std::function<void()>& when_ready);
+  Result<void> judge_end(const Ended& ended);
+  void give_up_waiting();
+  void stop(Task& task);
+
+  Event next_event(Deadline deadline);
+  void collect_events(Deadline deadline);
+  void forward_output(Task& task, bool rest);
+
+  const SignalEvents& signals_;
+  std::vector<Task> tasks_;
+  std::deque<Event> events_;
+  RestartBudget budget_;
+  Deadline ready_until_; /**< for the task that is starting */
+  std::ostream& output_;
+};
+
+}  // namespace interlock::cli
