@@ -1,0 +1,235 @@
+#include "plant/parameters_file.hpp"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <bitset>
+#include <cmath>
+#include <span>
+#include <sstream>
+#include <string_view>
+#include <vector>
+
+namespace interlock::plant {
+namespace {
+
+struct Range {
+  double least;
+  double most;
+};
+
+/** Reads the keys of one document and keeps the first fault. */
+class Reader {
+ public:
+  explicit Reader(std::string file) : file_(std::move(file)) {}
+
+  void fail(const toml::node& where, std::string_view key, const std::string& expected) {
+    if (fault_.empty()) {
+      fault_ =
+          file_ + ":" + std::to_string(where.source().begin.line) + ": " + std::string(key) + ": " + expected;
+    }
+  }
+
+  const std::string& fault() const { return fault_; }
+
+  /** Overwrites `value` when the key is there. */
+  bool number(const toml::table& table, std::string_view key, Range range, double& value) {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) {
+      return false;
+    }
+    const std::optional<double> found = node->value<double>();
+    if (!node->is_number() || !found || !std::isfinite(*found) || *found < range.least ||
+        *found > range.most) {
+      std::ostringstream expected;
+      expected << "expected a number from " << range.least << " to " << range.most;
+      fail(*node, key, expected.str());
+      return false;
+    }
+    value = *found;
+    return true;
+  }
+
+  bool integer(const toml::table& table, std::string_view key, Range range, std::uint32_t& value) {
+    double found = value;
+    if (!number(table, key, range, found)) {
+      return false;
+    }
+    if (!table.get(key)->is_integer()) {
+      fail(*table.get(key), key, "expected a whole number");
+      return false;
+    }
+    value = static_cast<std::uint32_t>(found);
+    return true;
+  }
+
+  void milliseconds(const toml::table& table, std::string_view key, Range range, Microseconds& value) {
+    double found = 0;
+    if (number(table, key, range, found)) {
+      value = Microseconds(static_cast<std::uint64_t>(std::llround(found * 1000)));
+    }
+  }
+
+  /** The table of that key; an empty one when there is none. */
+  const toml::table& section(const toml::table& table, std::string_view key) {
+    static const toml::table kEmpty;
+    const toml::node* node = table.get(key);
+    if (node == nullptr) {
+      return kEmpty;
+    }
+    if (!node->is_table()) {
+      fail(*node, key, "expected a table");
+      return kEmpty;
+    }
+    return *node->as_table();
+  }
+
+  /** Fails on the first key that is in neither list. */
+  void only(const toml::table& table, std::vector<std::string_view> known,
+            std::span<const std::string_view> more = {}) {
+    known.insert(known.end(), more.begin(), more.end());
+    for (const auto& [key, node] : table) {
+      if (std::find(known.begin(), known.end(), key.str()) == known.end()) {
+        std::string keys;
+        for (const std::string_view name : known) {
+          keys += (keys.empty() ? "" : ", ") + std::string(name);
+        }
+        fail(node, key.str(), "unknown key; expected one of " + keys);
+      }
+    }
+  }
+
+ private:
+  std::string file_;
+  std::string fault_;
+};
+
+constexpr double kFarthestCounts = 1 << 30;
+
+void read_dynamics(Reader& reader, const toml::table& table, AxisParameters& axis) {
+  reader.number(table, "dead_zone_fraction", {0, 0.9}, axis.dead_zone_fraction);
+  reader.number(table, "full_speed_counts_per_s", {1, 1e6}, axis.full_speed_counts_per_s);
+  reader.number(table, "counts_per_revolution", {1, 1e6}, axis.counts_per_revolution);
+  reader.milliseconds(table, "lag_ms", {0.1, 1000}, axis.lag);
+  reader.number(table, "backlash_counts", {0, 1000}, axis.backlash_counts);
+  reader.integer(table, "noise_counts", {0, 100}, axis.noise_counts);
+  reader.number(table, "noise_chance", {0, 1}, axis.noise_chance);
+  reader.number(table, "end_margin_counts", {0, 1e6}, axis.end_margin_counts);
+  reader.number(table, "switch_hysteresis_counts", {0, 1000}, axis.switch_hysteresis_counts);
+  reader.milliseconds(table, "switch_bounce_ms", {0, 100}, axis.switch_bounce);
+}
+
+constexpr std::array<std::string_view, 10> kDynamicsKeys = {"dead_zone_fraction",
+                                                            "full_speed_counts_per_s",
+                                                            "counts_per_revolution",
+                                                            "lag_ms",
+                                                            "backlash_counts",
+                                                            "noise_counts",
+                                                            "noise_chance",
+                                                            "end_margin_counts",
+                                                            "switch_hysteresis_counts",
+                                                            "switch_bounce_ms"};
+
+void read_start(Reader& reader, const toml::table& table, const ilk_axis_config_t& robot,
+                AxisParameters& axis) {
+  double from_switch = 0;
+  const bool absolute =
+      reader.number(table, "start_counts", {-kFarthestCounts, kFarthestCounts}, axis.start_counts);
+  const bool relative = reader.number(table, "start_from_switch_counts", {0, kFarthestCounts}, from_switch);
+  if (absolute == relative) {
+    reader.fail(table, "start_counts", "expected either start_counts or start_from_switch_counts");
+    return;
+  }
+  if (relative && robot.limit_side == ILK_LIMIT_NONE) {
+    reader.fail(table, "start_from_switch_counts", "the robot's axis has no switch; expected start_counts");
+    return;
+  }
+  if (relative) {
+    axis.start_counts = position_from_switch(robot, from_switch);
+  }
+  if (axis.start_counts < robot.min_counts || axis.start_counts > robot.max_counts) {
+    reader.fail(table, relative ? "start_from_switch_counts" : "start_counts",
+                "expected a start within the soft limits " + std::to_string(robot.min_counts) + " to " +
+                    std::to_string(robot.max_counts));
+  }
+}
+
+void read_axis(Reader& reader, const toml::table& table, const ilk_config_t& robot,
+               const AxisParameters& defaults, Parameters& parameters, std::bitset<ILK_SLOTS>& found) {
+  reader.only(table, {"slot", "name", "start_counts", "start_from_switch_counts"}, kDynamicsKeys);
+  std::uint32_t slot = 0;
+  if (!reader.integer(table, "slot", {0, ILK_SLOTS - 1}, slot)) {
+    reader.fail(table, "slot", "expected the slot of the axis, 0 to 9");
+    return;
+  }
+  if (!drives_motor(robot.axis[slot].card) || found[slot]) {
+    reader.fail(table, "slot",
+                "slot " + std::to_string(slot) +
+                    (found[slot] ? " has an axis already" : " of the robot has no motor card"));
+    return;
+  }
+  found[slot] = true;
+  AxisParameters& axis = parameters.axis[slot];
+  axis = defaults;
+  axis.name = table["name"].value_or(std::string());
+  if (axis.name.empty()) {
+    reader.fail(table, "name", "expected the name of the axis");
+  }
+  read_start(reader, table, robot.axis[slot], axis);
+  read_dynamics(reader, table, axis);
+}
+
+void read_axes(Reader& reader, const toml::table& document, const ilk_config_t& robot,
+               Parameters& parameters) {
+  const toml::table& defaults_table = reader.section(document, "defaults");
+  reader.only(defaults_table, {}, kDynamicsKeys);
+  AxisParameters defaults;
+  read_dynamics(reader, defaults_table, defaults);
+
+  std::bitset<ILK_SLOTS> found;
+  if (const toml::array* axes = document["axis"].as_array()) {
+    for (const toml::node& node : *axes) {
+      if (const toml::table* table = node.as_table()) {
+        read_axis(reader, *table, robot, defaults, parameters, found);
+      } else {
+        reader.fail(node, "axis", "expected [[axis]] tables");
+      }
+    }
+  }
+  for (std::size_t slot = 0; slot < ILK_SLOTS; ++slot) {
+    if (drives_motor(robot.axis[slot].card) && !found[slot]) {
+      reader.fail(document, "axis",
+                  "expected an [[axis]] for the motor card in slot " + std::to_string(slot));
+    }
+  }
+}
+
+}  // namespace
+
+tl::expected<Parameters, std::string> load_parameters(const std::filesystem::path& path,
+                                                      const ilk_config_t& robot) {
+  toml::table document;
+  try {
+    document = toml::parse_file(path.string());
+  } catch (const toml::parse_error& error) {
+    return tl::unexpected(path.string() + ":" + std::to_string(error.source().begin.line) + ": " +
+                          std::string(error.description()));
+  }
+  Reader reader(path.string());
+  Parameters parameters;
+  reader.only(document, {"pedal", "estop", "defaults", "axis"});
+  const toml::table& pedal = reader.section(document, "pedal");
+  reader.only(pedal, {"lag_ms", "bounce_ms"});
+  reader.milliseconds(pedal, "lag_ms", {0, 1000}, parameters.pedal.lag);
+  reader.milliseconds(pedal, "bounce_ms", {0, 1000}, parameters.pedal.bounce);
+  const toml::table& estop = reader.section(document, "estop");
+  reader.only(estop, {"bounce_ms"});
+  reader.milliseconds(estop, "bounce_ms", {0, 1000}, parameters.estop.bounce);
+  read_axes(reader, document, robot, parameters);
+  if (!reader.fault().empty()) {
+    return tl::unexpected(reader.fault());
+  }
+  return parameters;
+}
+
+}  // namespace interlock::plant
