@@ -1,8 +1,8 @@
 """Measures the kernel step against the limits of its specification and writes build/evidence/bench.json.
 
 Time comes from `step_bench`, instructions from callgrind, text size and stack from the compiler's own report.
-Times depend on the machine and its load, so no test asserts them: the evidence says FAILED when a figure is above
-its limit, and the table marks it.
+Times depend on the machine and its load, so no test asserts them: the evidence says FAILED when a figure is
+above its limit, and the table marks it.
 """
 
 import argparse
@@ -39,8 +39,15 @@ def instructions_per_step(binary: Path, scenario: str) -> int:
     """Instructions of one measured step, averaged over a run in which callgrind counts nothing else."""
     out = EVIDENCE / f"callgrind.{scenario}.out"
     subprocess.run(
-        ["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", "--toggle-collect=*measured_step*"]
-        + [str(binary), scenario, str(CALLGRIND_STEPS)],
+        [
+            "valgrind",
+            "--tool=callgrind",
+            f"--callgrind-out-file={out}",
+            "--toggle-collect=*measured_step*",
+            str(binary),
+            scenario,
+            str(CALLGRIND_STEPS),
+        ],
         check=True,
         capture_output=True,
     )
@@ -58,9 +65,18 @@ def compile_core(compiler: list[str], directory: Path) -> list[Path]:
     for source in sorted(CORE.glob("*.c")):
         obj = directory / f"{source.stem}.o"
         run(
-            compiler
-            + ["-std=c11", "-ffreestanding", "-DILK_FRAME_WORDS=32", "-fcallgraph-info=su"]
-            + [*INCLUDES, "-c", str(source), "-o", str(obj)]
+            [
+                *compiler,
+                "-std=c11",
+                "-ffreestanding",
+                "-DILK_FRAME_WORDS=32",
+                "-fcallgraph-info=su",
+                *INCLUDES,
+                "-c",
+                str(source),
+                "-o",
+                str(obj),
+            ]
         )
         objects.append(obj)
     return objects
