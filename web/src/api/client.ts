@@ -61,7 +61,7 @@ const tooManyPending: Problem = {
 
 const noAnswer: Problem = {
   code: "NO_APP",
-  detail: `The app gave no answer within ${ANSWER_WITHIN_MS / 1000} s.`,
+  detail: `The app gave no readable answer within ${ANSWER_WITHIN_MS / 1000} s.`,
   next_step: "Check that the app runs and that this computer reaches it.",
 };
 

@@ -155,7 +155,7 @@ function ActionButton({ motor, action, label, off }: ActionButtonProps) {
 function DriveWords({ motor, axis }: AxisProps) {
   const story = explainDrive(motor, axis);
   return (
-    <p className="drive-words">
+    <p className="drive-words" title={`${story.text} ${story.nextStep}`}>
       {!story.driven && (
         <>
           Not driven: <strong>{story.gate}</strong>{" "}

@@ -47,8 +47,8 @@ export function TrackDrawing({ motor, axis, domain, previewCounts }: TrackDrawin
           rx="3"
         />
       )}
-      <SoftLimit x={at(soft.min)} label={formatCounts(motor, soft.min)} />
-      <SoftLimit x={at(soft.max)} label={formatCounts(motor, soft.max)} />
+      <SoftLimit end="start" x={at(soft.min)} label={formatCounts(motor, soft.min)} />
+      <SoftLimit end="end" x={at(soft.max)} label={formatCounts(motor, soft.max)} />
 
       {axis.setpointCounts !== null && (
         <line
@@ -90,11 +90,17 @@ export function TrackDrawing({ motor, axis, domain, previewCounts }: TrackDrawin
   );
 }
 
-function SoftLimit({ x, label }: { readonly x: string; readonly label: string }) {
+interface SoftLimitProps {
+  readonly x: string;
+  readonly label: string;
+  readonly end: "start" | "end";
+}
+
+function SoftLimit({ x, label, end }: SoftLimitProps) {
   return (
     <g className="soft-limit">
       <line x1={x} x2={x} y1={RAIL_Y - 8} y2={RAIL_Y + 8} />
-      <text x={x} y="43" textAnchor="middle">
+      <text x={x} y="43" textAnchor={end}>
         {label}
       </text>
     </g>

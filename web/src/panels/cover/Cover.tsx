@@ -9,10 +9,12 @@ export function Cover() {
   if (freshness.level !== "covered") return null;
   return (
     <div className="cover">
-      <div className="cover-text" role="alert">
+      <div className="cover-text">
         <h2>{title(freshness)}</h2>
-        <p>{advice(freshness, frameError)}</p>
-        <p>STOP and Esc are still sent. If anything moves, release the pedal or pull the E-stop.</p>
+        <div role="alert">
+          <p>{advice(freshness, frameError)}</p>
+          <p>STOP and Esc are still sent. If anything moves, release the pedal or pull the E-stop.</p>
+        </div>
       </div>
     </div>
   );

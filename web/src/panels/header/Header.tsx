@@ -1,8 +1,9 @@
 import { NoticeText } from "../../design/NoticeText";
 import { entry } from "../../generated/catalog";
 import { unlock } from "../../state/commands";
-import { formatAge } from "../../state/freshness";
+import { type Freshness, formatAge } from "../../state/freshness";
 import { useConsole } from "../../state/store";
+import type { Phase } from "../../stream/connection";
 import type { Frame } from "../../stream/decode";
 import { ModeStrip } from "./ModeStrip";
 import { StopCorner } from "./StopCorner";
@@ -127,20 +128,26 @@ function armedHelp(frame: Frame): string {
 
 function Connection() {
   const phase = useConsole((state) => state.phase);
-  const kernel = useConsole((state) => state.frame?.connected ?? false);
+  const freshness = useConsole((state) => state.freshness);
   const appAlive = useConsole((state) => state.frame?.appAlive ?? false);
-  const age = useConsole((state) => formatAge(state.freshness.ageMs));
-  const level = useConsole((state) => state.freshness.level);
-  const app = phase === "open" ? "connected" : phase === "connecting" ? "connecting" : "lost";
-  const linkText = kernel ? (appAlive ? "connected" : "app not heard") : "none";
+  const app = phase === "open" && freshness.reason === "late" ? "silent" : appWord[phase];
+  const kernel = kernelWord(freshness, appAlive);
   return (
     <dl className="connection">
       <dt>App</dt>
-      <dd className={phase === "open" ? "" : "bad"}>{app}</dd>
+      <dd className={app === "connected" ? "" : "bad"}>{app}</dd>
       <dt>Kernel</dt>
-      <dd className={kernel && appAlive ? "" : "bad"}>{phase === "open" || kernel ? linkText : "unknown"}</dd>
+      <dd className={kernel === "connected" ? "" : "bad"}>{kernel}</dd>
       <dt>Age</dt>
-      <dd className={level === "live" ? "" : "bad"}>{age}</dd>
+      <dd className={freshness.level === "live" ? "" : "bad"}>{formatAge(freshness.ageMs)}</dd>
     </dl>
   );
+}
+
+const appWord: Record<Phase, string> = { connecting: "connecting", open: "connected", lost: "lost" };
+
+function kernelWord(freshness: Freshness, appAlive: boolean): string {
+  if (freshness.reason === "no-kernel") return "none";
+  if (freshness.level === "covered") return "unknown";
+  return appAlive ? "connected" : "does not hear app";
 }

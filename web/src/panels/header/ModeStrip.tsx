@@ -10,17 +10,15 @@ export function ModeStrip({ frame }: { readonly frame: Frame | null }) {
   const text = locked ? entry("cause", frame.cause) : entry("mode", frame.mode);
   const later = frame.causesSeen.filter((cause) => cause !== frame.cause && cause !== "NONE");
   return (
-    <p className="mode-strip" aria-live="polite">
+    <p
+      className="mode-strip"
+      aria-live="polite"
+      title={locked ? `Seen in tick ${frame.causeTick}; value ${frame.causeValue}` : undefined}
+    >
       {locked && <strong>{text.name} </strong>}
       <span>{text.meaning} </span>
       <span className="next-step">{text.next_step}</span>
-      {locked && (
-        <span className="detail" title="Tick of the first cause, and the value seen then">
-          {" "}
-          tick {frame.causeTick}, value {frame.causeValue}
-        </span>
-      )}
-      {locked && later.length > 0 && <span className="detail"> · also seen: {later.join(", ")}</span>}
+      {locked && later.length > 0 && <span className="detail"> also seen: {later.join(", ")}</span>}
     </p>
   );
 }
