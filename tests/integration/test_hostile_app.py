@@ -1,0 +1,134 @@
+"""What an app can do at worst: real processes, the app's side of the link in the test's hands."""
+
+import ctypes
+import mmap
+import os
+import random
+from collections.abc import Iterator
+
+import pytest
+from bare_kernel import BareKernel, bare_kernel, mode, to_motion
+from link_client import AppRegion, KernelRegion, Request, request_record
+from link_layout import CONSTANTS, name_of
+
+LATERAL = 4
+STALL_TICKS = 500
+
+
+@pytest.fixture
+def kernel() -> Iterator[BareKernel]:
+    with bare_kernel() as running:
+        yield running
+
+
+def test_P5_dropping_the_drive_every_499_ticks_still_stalls_at_500_driven_ticks(kernel: BareKernel) -> None:
+    client = kernel.attach()
+    to_motion(kernel, client, LATERAL)
+    kernel.plant("jam", slot=LATERAL, jammed=True)
+    client.run(50)
+    driven = 0
+    while client.snapshot().state.axis[LATERAL].state != CONSTANTS["ILK_AXIS_FAULTED"]:
+        assert driven < 2 * STALL_TICKS, "driven twice as long as a stall may take"
+        if driven % (STALL_TICKS - 1) == STALL_TICKS - 2:
+            client.request("DISABLE", axis=LATERAL)
+            client.run(3)
+            client.request("ENABLE", axis=LATERAL)
+        client.request("MOVE", axis=LATERAL, target_counts=-1000, drive=131071, lease_ticks=1)
+        driven += client.run(1).gate[LATERAL] == CONSTANTS["ILK_GATE_OPEN"]
+    axis = client.snapshot().state.axis[LATERAL]
+    assert name_of("ILK_FAULT", axis.fault) == "STALL"
+    record = kernel.plant("record", **{"from": 0, "to": client.snapshot().state.tick})["entries"]
+    driven_on_the_wire = sum(entry["drive"][LATERAL] != 0 for entry in record)
+    assert driven_on_the_wire == STALL_TICKS
+    client.close()
+
+
+def test_P11_ten_thousand_random_and_malformed_records_are_each_refused(kernel: BareKernel) -> None:
+    """Random words, and good records spoiled in one word: none is accepted, nothing crashes."""
+    seed = 20_181
+    dice = random.Random(seed)
+    client = kernel.attach()
+    client.run(5)
+    before = client.snapshot().state
+    sent = 0
+    while sent < 10_000:
+        batch = []
+        for _ in range(dice.randint(1, 40)):
+            if dice.random() < 0.5:
+                record = Request.from_buffer_copy(dice.randbytes(ctypes.sizeof(Request)))
+            else:
+                record = request_record("MOVE", dice.getrandbits(32), axis=dice.getrandbits(4))
+                spoiled = dice.choice([name for name, _ in Request._fields_])
+                setattr(record, spoiled, getattr(record, spoiled) ^ (1 << dice.randrange(31)))
+            batch.append(record)
+        for record in batch:
+            client.write(record)
+        client.run(4, heartbeat=False)
+        sent += len(batch)
+    client.run(5, heartbeat=False)
+    after = client.snapshot().state
+    assert after.requests_accepted == before.requests_accepted
+    assert after.requests_refused - before.requests_refused == sent
+    assert mode(client) == "LOCKED"
+    assert kernel.kernel.poll() is None
+    client.close()
+
+
+def test_a_ring_head_from_nowhere_loses_requests_but_nothing_else(kernel: BareKernel) -> None:
+    client = kernel.attach()
+    to_motion(kernel, client, LATERAL)
+    client.app.request_head = 0x7FFF_0000
+    snapshot = client.run(300, heartbeat=False)
+    assert snapshot.requests_dropped > 0
+    assert mode(client) == "READY"
+    assert all(command.drive == 0 for command in snapshot.command)
+    client.close()
+
+
+def test_the_app_cannot_map_the_snapshot_for_writing(kernel: BareKernel) -> None:
+    client = kernel.attach()
+    size = ctypes.sizeof(KernelRegion)
+    with pytest.raises(PermissionError):
+        mmap.mmap(client.kernel_fd, size, prot=mmap.PROT_READ | mmap.PROT_WRITE)
+    with pytest.raises(PermissionError):
+        os.pwrite(client.kernel_fd, b"\0", 0)
+    with pytest.raises(OSError, match="not permitted"):
+        os.ftruncate(client.kernel_fd, 0)
+    with pytest.raises(PermissionError):
+        map_reopened(client.kernel_fd, size)
+    client.close()
+
+
+def map_reopened(descriptor: int, size: int) -> None:
+    """Opens the same memory anew for writing and maps it; either step may be refused."""
+    reopened = os.open(f"/proc/self/fd/{descriptor}", os.O_RDWR)
+    try:
+        mmap.mmap(reopened, size, prot=mmap.PROT_READ | mmap.PROT_WRITE)
+    finally:
+        os.close(reopened)
+
+
+def test_P10_an_app_that_only_renews_its_lease_without_heartbeat_is_silent(kernel: BareKernel) -> None:
+    client = kernel.attach()
+    to_motion(kernel, client, LATERAL)
+    start = client.snapshot().state.tick
+    while mode(client) == "MOTION":
+        client.request("MOVE", axis=LATERAL, target_counts=-1000, drive=20_000, lease_ticks=50)
+        snapshot = client.run(1, heartbeat=False)
+        assert snapshot.state.tick - start < 200
+    assert snapshot.state.app_age_ticks >= 100
+    client.close()
+
+
+def test_each_attachment_starts_a_generation_of_its_own(kernel: BareKernel) -> None:
+    first = kernel.attach()
+    first.run(5)
+    generation = first.hello.generation
+    first.close()
+    second = kernel.attach()
+    second.run(5)
+    assert second.hello.generation == generation + 1
+    assert second.snapshot().state.link_generation == generation + 1
+    assert second.ask("HEARTBEAT", holder=1) == "ACCEPTED"
+    assert ctypes.sizeof(AppRegion) == second.hello.app_region_bytes
+    second.close()
