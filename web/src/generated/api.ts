@@ -291,6 +291,8 @@ export interface components {
         Motor: {
             slot: number;
             name: string;
+            /** @description The name for people. */
+            title: string;
             card?: string;
             /** @enum {string} */
             unit: "mm" | "rad";
