@@ -31,8 +31,8 @@ static bool check_hello(const ilk_sim_hello_t *ours, const ilk_sim_hello_t *thei
                     ours->frame_words);
   }
   if (theirs->period_us != ours->period_us || theirs->clock != ours->clock) {
-    return ilk_fail(error, "the plant runs at %u us in clock %u; expected %u us in clock %u", theirs->period_us,
-                    theirs->clock, ours->period_us, ours->clock);
+    return ilk_fail(error, "the plant runs at %u us in clock %u; expected %u us in clock %u",
+                    theirs->period_us, theirs->clock, ours->period_us, ours->clock);
   }
   return true;
 }
@@ -49,9 +49,10 @@ static bool greet(int descriptor, const ilk_sim_hello_t *hello, ilk_error_t *err
     return ilk_fail(error, "the plant did not answer the greeting: %s", strerror(errno));
   }
   if (received == 0) {
-    return ilk_fail(error,
-                    "the plant refused the greeting (bus version %u, %u frame words, %u us, clock %u); see its log",
-                    hello->version, hello->frame_words, hello->period_us, hello->clock);
+    return ilk_fail(
+        error,
+        "the plant refused the greeting (bus version %u, %u frame words, %u us, clock %u); see its log",
+        hello->version, hello->frame_words, hello->period_us, hello->clock);
   }
   if (received != (ssize_t)sizeof answer) {
     return ilk_fail(error, "the plant's greeting has %zd bytes; expected %zu", received, sizeof answer);
@@ -107,7 +108,8 @@ static bool reconnect(ilk_bus_sim_t *sim) {
 static void *watch(void *argument) {
   ilk_bus_sim_t *sim = argument;
   for (;;) {
-    struct pollfd events[] = {{.fd = sim->stop, .events = POLLIN}, {.fd = sim->descriptor, .events = POLLRDHUP}};
+    struct pollfd events[] = {{.fd = sim->stop, .events = POLLIN},
+                              {.fd = sim->descriptor, .events = POLLRDHUP}};
     (void)poll(events, 2, -1);
     if (events[0].revents != 0 || (events[1].revents != 0 && !reconnect(sim))) {
       return NULL;

@@ -22,12 +22,12 @@ extern "C" {
 #endif
 
 typedef struct {
-  int descriptor; /**< of the connection, live or dead; its number never changes */
-  int stop;       /**< event descriptor */
-  uint32_t connections;        /**< made so far; atomic */
-  uint32_t loop_connection;    /**< the one that the loop last used */
-  bool awaiting_reply;         /**< an exchange of this connection is unanswered */
-  uint64_t patience_ns;        /**< longest wait for a reply */
+  int descriptor;           /**< of the connection, live or dead; its number never changes */
+  int stop;                 /**< event descriptor */
+  uint32_t connections;     /**< made so far; atomic */
+  uint32_t loop_connection; /**< the one that the loop last used */
+  bool awaiting_reply;      /**< an exchange of this connection is unanswered */
+  uint64_t patience_ns;     /**< longest wait for a reply */
   uint64_t period_ns;
   struct sockaddr_un address;
   ilk_sim_hello_t hello;

@@ -32,7 +32,8 @@ uint64_t ilk_now_ns(void);
  * @param speed multiple of real time in the simulated clock, 0: as fast as possible; real clock: ignored.
  * @param now_ns from which the first deadline counts.
  */
-void ilk_ticker_init(ilk_ticker_t *ticker, ilk_clock_t clock, uint32_t period_us, double speed, uint64_t now_ns);
+void ilk_ticker_init(ilk_ticker_t *ticker, ilk_clock_t clock, uint32_t period_us, double speed,
+                     uint64_t now_ns);
 
 /**
  * The deadline of the next tick.

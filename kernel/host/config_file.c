@@ -34,10 +34,11 @@ static bool read_config(const char *path, ilk_config_t *config, ilk_error_t *err
     return ilk_fail(error, "configuration '%s' cannot be read: %s", path, strerror(reason));
   }
   if (length != (ssize_t)sizeof *config) {
-    return ilk_fail(error,
-                    "configuration '%s' has %s%zd bytes; expected %zu; compile it with `interlock model compile` of "
-                    "this release",
-                    path, length > (ssize_t)sizeof *config ? "at least " : "", length, sizeof *config);
+    return ilk_fail(
+        error,
+        "configuration '%s' has %s%zd bytes; expected %zu; compile it with `interlock model compile` of "
+        "this release",
+        path, length > (ssize_t)sizeof *config ? "at least " : "", length, sizeof *config);
   }
   memcpy(config, bytes, sizeof *config);
   return true;

@@ -11,7 +11,8 @@
 /** Wakes at most `waiters` waiters on `word`. */
 void ilk_futex_wake(uint32_t *word, uint32_t waiters);
 
-/** Waits while `word` has `value`, at most for `timeout`. May return early. `word` may be mapped read-only. */
+/** Waits while `word` has `value`, at most for `timeout`. May return early. `word` may be mapped read-only.
+ */
 void ilk_futex_wait(const uint32_t *word, uint32_t value, const struct timespec *timeout);
 
 #endif

@@ -7,7 +7,8 @@
 
 #define READ_ATTEMPTS 100u
 
-bool ilk_link_read_snapshot(const ilk_link_kernel_region_t *region, ilk_snapshot_t *snapshot, uint32_t *lock) {
+bool ilk_link_read_snapshot(const ilk_link_kernel_region_t *region, ilk_snapshot_t *snapshot,
+                            uint32_t *lock) {
   for (unsigned attempt = 0; attempt < READ_ATTEMPTS; ++attempt) {
     const uint32_t before = __atomic_load_n(&region->snapshot_lock, __ATOMIC_ACQUIRE);
     if (before == 0u) {
@@ -16,7 +17,8 @@ bool ilk_link_read_snapshot(const ilk_link_kernel_region_t *region, ilk_snapshot
     if ((before & 1u) != 0u) {
       continue;
     }
-    ilk_words_load((uint32_t *)snapshot, (const uint32_t *)&region->snapshot, sizeof *snapshot / sizeof(uint32_t));
+    ilk_words_load((uint32_t *)snapshot, (const uint32_t *)&region->snapshot,
+                   sizeof *snapshot / sizeof(uint32_t));
     __atomic_thread_fence(__ATOMIC_ACQUIRE);
     if (__atomic_load_n(&region->snapshot_lock, __ATOMIC_RELAXED) == before) {
       *lock = before;

@@ -16,12 +16,12 @@ extern "C" {
 #endif
 
 typedef struct {
-  int listener;                /**< borrowed listening socket */
-  int stop;                    /**< event descriptor */
-  int client;                  /**< socket of the attached app, or -1 */
-  uint32_t generation;         /**< of the newest attachment */
-  uint32_t alive;              /**< attachments that are not yet destroyed */
-  ilk_attachment_t *attached;  /**< to be marked closed when the client goes; owned through the mailbox */
+  int listener;               /**< borrowed listening socket */
+  int stop;                   /**< event descriptor */
+  int client;                 /**< socket of the attached app, or -1 */
+  uint32_t generation;        /**< of the newest attachment */
+  uint32_t alive;             /**< attachments that are not yet destroyed */
+  ilk_attachment_t *attached; /**< to be marked closed when the client goes; owned through the mailbox */
   ilk_link_mailbox_t mailbox;
   pthread_t thread;
 } ilk_link_server_t;

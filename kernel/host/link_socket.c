@@ -12,7 +12,8 @@ bool ilk_unix_address(const char *path, struct sockaddr_un *address, ilk_error_t
   *address = (struct sockaddr_un){.sun_family = AF_UNIX};
   const size_t length = strlen(path);
   if (length == 0u || length >= sizeof address->sun_path) {
-    return ilk_fail(error, "socket path '%s' has %zu characters; expected 1 to %zu; choose a shorter directory",
+    return ilk_fail(error,
+                    "socket path '%s' has %zu characters; expected 1 to %zu; choose a shorter directory",
                     path, length, sizeof address->sun_path - 1u);
   }
   memcpy(address->sun_path, path, length + 1u);
@@ -99,7 +100,8 @@ ilk_listen_result_t ilk_link_listen(ilk_link_socket_t *link, const char *path, i
   }
   const int directory = lock_directory(path);
   if (directory < 0) {
-    (void)ilk_fail(error, "cannot open the directory of link '%s': %s; create it first", path, strerror(errno));
+    (void)ilk_fail(error, "cannot open the directory of link '%s': %s; create it first", path,
+                   strerror(errno));
     return ILK_LISTEN_FAILED;
   }
   ilk_listen_result_t result = remove_stale(&link->address, error);

@@ -42,7 +42,7 @@ typedef struct {
 /** What distinguishes one run from another. */
 typedef struct {
   ilk_clock_t clock;
-  double speed;     /**< of the simulated clock, 0: as fast as possible */
+  double speed; /**< of the simulated clock, 0: as fast as possible */
   bool degraded;
   uint32_t granted; /**< bits by ilk_rt_measure_t */
 } ilk_run_terms_t;

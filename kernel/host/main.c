@@ -47,12 +47,14 @@ static void report_measures(const ilk_realtime_t *realtime) {
     const char *verdict = (realtime->granted & bit) != 0u ? "granted"
                           : (realtime->asked & bit) != 0u ? "refused: "
                                                           : "not asked for";
-    const char *reason = (realtime->asked & ~realtime->granted & bit) != 0u ? strerror(realtime->refusal[measure]) : "";
+    const char *reason =
+        (realtime->asked & ~realtime->granted & bit) != 0u ? strerror(realtime->refusal[measure]) : "";
     (void)printf("  %-20s %s%s\n", ilk_realtime_name((ilk_rt_measure_t)measure), verdict, reason);
   }
 }
 
-static void report_start(const ilk_options_t *options, const ilk_realtime_t *realtime, ilk_run_permit_t permit) {
+static void report_start(const ilk_options_t *options, const ilk_realtime_t *realtime,
+                         ilk_run_permit_t permit) {
   (void)printf("interlock-kernel\n");
   (void)printf("  %-20s %u us\n", "period", config.period_us);
   if (options->clock == ILK_CLOCK_REAL) {
@@ -78,8 +80,9 @@ static int run_loop(const ilk_options_t *options) {
       ilk_realtime_permit(options->clock, driver.simulated, realtime.asked, realtime.granted);
   if (permit == ILK_REFUSE) {
     ilk_error_t error;
-    (void)ilk_fail(&error, "hardware needs the real clock, SCHED_FIFO and locked memory; grant CAP_SYS_NICE and "
-                           "CAP_IPC_LOCK, or run as a service");
+    (void)ilk_fail(&error,
+                   "hardware needs the real clock, SCHED_FIFO and locked memory; grant CAP_SYS_NICE and "
+                   "CAP_IPC_LOCK, or run as a service");
     return report_failure(&error, EXIT_REFUSED);
   }
   report_start(options, &realtime, permit);

@@ -1,5 +1,6 @@
 #include "options.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <getopt.h>
 #include <math.h>
@@ -18,7 +19,7 @@ const char ilk_options_help[] =
     "  --bus sim:PATH   card bus: the simulator that listens on that socket\n"
     "  --link PATH      socket to serve the app on\n"
     "  --clock CLOCK    real: wall clock (default); sim: time passes with the simulator alone\n"
-    "  --speed X        simulated clock: multiple of real time, 0 to 1000; 0: as fast as possible (default 1)\n"
+    "  --speed X        simulated clock: multiple of real time, 0 to 1000 (default 1); 0: unpaced\n"
     "  --core N         run the loop on that core (default: any)\n"
     "  --priority N     SCHED_FIFO priority of the loop, 1 to 99 (default 80)\n"
     "\n"
@@ -61,7 +62,16 @@ static bool parse_bus(const char *text, const char **path) {
   return **path != '\0';
 }
 
-enum { OPTION_CONFIG = 1, OPTION_BUS, OPTION_LINK, OPTION_CLOCK, OPTION_SPEED, OPTION_CORE, OPTION_PRIORITY, OPTION_HELP };
+enum {
+  OPTION_CONFIG = 1,
+  OPTION_BUS,
+  OPTION_LINK,
+  OPTION_CLOCK,
+  OPTION_SPEED,
+  OPTION_CORE,
+  OPTION_PRIORITY,
+  OPTION_HELP
+};
 
 static const struct option known_options[] = {{"config", required_argument, NULL, OPTION_CONFIG},
                                               {"bus", required_argument, NULL, OPTION_BUS},
@@ -111,7 +121,18 @@ static bool check_together(const ilk_options_t *options, bool speed_given, ilk_e
   return true;
 }
 
-ilk_options_result_t ilk_options_parse(int argc, char *const argv[], ilk_options_t *options, ilk_error_t *error) {
+static bool report_unusable(int option, const char *word, ilk_error_t *error) {
+  if (option == ':') {
+    return ilk_fail(error, "%s needs a value; see --help", word);
+  }
+  if (isgraph(optopt)) {
+    return ilk_fail(error, "-%c is not an option of interlock-kernel; see --help", optopt);
+  }
+  return ilk_fail(error, "%s is not an option of interlock-kernel; see --help", word);
+}
+
+ilk_options_result_t ilk_options_parse(int argc, char *const argv[], ilk_options_t *options,
+                                       ilk_error_t *error) {
   *options = (ilk_options_t){.clock = ILK_CLOCK_REAL, .speed = 1.0, .core = -1, .priority = DEFAULT_PRIORITY};
   bool speed_given = false;
   opterr = 0;
@@ -125,8 +146,7 @@ ilk_options_result_t ilk_options_parse(int argc, char *const argv[], ilk_options
       return ILK_OPTIONS_HELP;
     }
     if (option == '?' || option == ':') {
-      (void)ilk_fail(error, "%s %s; see --help", argv[optind - 1],
-                     option == ':' ? "needs a value" : "is not an option of interlock-kernel");
+      (void)report_unusable(option, argv[optind - 1], error);
       return ILK_OPTIONS_BAD;
     }
     const char *expected = take_option(option, optarg, options);

@@ -28,7 +28,8 @@ typedef enum { ILK_OPTIONS_RUN, ILK_OPTIONS_HELP, ILK_OPTIONS_BAD } ilk_options_
 extern const char ilk_options_help[];
 
 /** Reads the command line. When it is bad, `error` names the option, what was given and what was expected. */
-ilk_options_result_t ilk_options_parse(int argc, char *const argv[], ilk_options_t *options, ilk_error_t *error);
+ilk_options_result_t ilk_options_parse(int argc, char *const argv[], ilk_options_t *options,
+                                       ilk_error_t *error);
 
 #ifdef __cplusplus
 }

@@ -17,7 +17,7 @@ extern "C" {
 #endif
 
 typedef struct {
-  bool gave_up;        /**< the app did not move for too long and is not waited for */
+  bool gave_up;         /**< the app did not move for too long and is not waited for */
   uint32_t given_up_at; /**< its `seen_tick` then */
 } ilk_pacing_t;
 

@@ -32,7 +32,8 @@ static void put_event(ilk_publisher_t *publisher, const ilk_event_t *event) {
   ilk_event_t *shared = &region->event[publisher->events % ILK_LINK_EVENTS];
   __atomic_store_n(&shared->number, 0u, __ATOMIC_RELAXED);
   __atomic_thread_fence(__ATOMIC_RELEASE);
-  ilk_words_store(&shared->kind, &event->kind, (sizeof *event - offsetof(ilk_event_t, kind)) / sizeof(uint32_t));
+  ilk_words_store(&shared->kind, &event->kind,
+                  (sizeof *event - offsetof(ilk_event_t, kind)) / sizeof(uint32_t));
   publisher->events += 1u;
   __atomic_store_n(&shared->number, publisher->events, __ATOMIC_RELEASE);
   __atomic_store_n(&region->event_head, publisher->events, __ATOMIC_RELEASE);
@@ -41,24 +42,25 @@ static void put_event(ilk_publisher_t *publisher, const ilk_event_t *event) {
 static void put_verdicts(ilk_publisher_t *publisher, uint32_t tick, const ilk_outputs_t *out) {
   for (uint32_t i = 0; i < out->verdict_count && i < ILK_REQUESTS_PER_TICK; ++i) {
     const ilk_verdict_record_t *verdict = &out->verdict[i];
-    put_event(publisher, &(ilk_event_t){.kind = ILK_EVENT_VERDICT,
-                                        .tick = tick,
-                                        .value = {verdict->sequence, verdict->kind, verdict->axis,
-                                                  verdict->verdict}});
+    put_event(publisher,
+              &(ilk_event_t){.kind = ILK_EVENT_VERDICT,
+                             .tick = tick,
+                             .value = {verdict->sequence, verdict->kind, verdict->axis, verdict->verdict}});
   }
 }
 
 static void put_mode_change(ilk_publisher_t *publisher, const ilk_state_t *state) {
   if (state->mode != publisher->mode) {
-    put_event(publisher, &(ilk_event_t){.kind = ILK_EVENT_MODE,
-                                        .tick = state->tick,
-                                        .value = {publisher->mode, state->mode, state->cause,
-                                                  state->cause_value}});
+    put_event(publisher,
+              &(ilk_event_t){.kind = ILK_EVENT_MODE,
+                             .tick = state->tick,
+                             .value = {publisher->mode, state->mode, state->cause, state->cause_value}});
     publisher->mode = state->mode;
   }
 }
 
-static void put_axis_changes(ilk_publisher_t *publisher, uint32_t tick, uint32_t slot, const ilk_axis_t *axis) {
+static void put_axis_changes(ilk_publisher_t *publisher, uint32_t tick, uint32_t slot,
+                             const ilk_axis_t *axis) {
   ilk_axis_told_t *told = &publisher->axis[slot];
   if (axis->fault != told->fault && axis->fault != ILK_FAULT_NONE) {
     put_event(publisher, &(ilk_event_t){.kind = ILK_EVENT_FAULT,
@@ -77,14 +79,15 @@ static void put_snapshot(ilk_publisher_t *publisher, const ilk_snapshot_t *snaps
   ilk_link_kernel_region_t *region = publisher->region;
   __atomic_store_n(&region->snapshot_lock, publisher->lock + 1u, __ATOMIC_RELAXED);
   __atomic_thread_fence(__ATOMIC_RELEASE);
-  ilk_words_store((uint32_t *)&region->snapshot, (const uint32_t *)snapshot, sizeof *snapshot / sizeof(uint32_t));
+  ilk_words_store((uint32_t *)&region->snapshot, (const uint32_t *)snapshot,
+                  sizeof *snapshot / sizeof(uint32_t));
   publisher->lock += 2u;
   __atomic_store_n(&region->snapshot_lock, publisher->lock, __ATOMIC_RELEASE);
   ilk_futex_wake(&region->snapshot_lock, ILK_LINK_WAITERS);
 }
 
-void ilk_publisher_publish(ilk_publisher_t *publisher, const ilk_snapshot_t *snapshot, const ilk_outputs_t *out,
-                           uint32_t request_tail) {
+void ilk_publisher_publish(ilk_publisher_t *publisher, const ilk_snapshot_t *snapshot,
+                           const ilk_outputs_t *out, uint32_t request_tail) {
   const ilk_state_t *state = &snapshot->state;
   put_verdicts(publisher, state->tick, out);
   put_mode_change(publisher, state);

@@ -39,8 +39,8 @@ void ilk_publisher_attach(ilk_publisher_t *publisher, ilk_link_kernel_region_t *
  *
  * @param request_tail requests consumed so far.
  */
-void ilk_publisher_publish(ilk_publisher_t *publisher, const ilk_snapshot_t *snapshot, const ilk_outputs_t *out,
-                           uint32_t request_tail);
+void ilk_publisher_publish(ilk_publisher_t *publisher, const ilk_snapshot_t *snapshot,
+                           const ilk_outputs_t *out, uint32_t request_tail);
 
 #ifdef __cplusplus
 }

@@ -18,9 +18,9 @@ extern "C" {
 #define ILK_RT_COUNT 4u
 
 typedef struct {
-  uint32_t asked;             /**< bits by ilk_rt_measure_t */
-  uint32_t granted;           /**< bits by ilk_rt_measure_t */
-  int refusal[ILK_RT_COUNT];  /**< `errno` of each measure that was asked for and refused */
+  uint32_t asked;            /**< bits by ilk_rt_measure_t */
+  uint32_t granted;          /**< bits by ilk_rt_measure_t */
+  int refusal[ILK_RT_COUNT]; /**< `errno` of each measure that was asked for and refused */
 } ilk_realtime_t;
 
 /** What the executive may do with the rights it has. */

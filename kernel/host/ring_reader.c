@@ -2,7 +2,8 @@
 
 #include "atomic_words.h"
 
-_Static_assert((ILK_LINK_REQUESTS & (ILK_LINK_REQUESTS - 1u)) == 0u, "the ring's index wraps with its counter");
+_Static_assert((ILK_LINK_REQUESTS & (ILK_LINK_REQUESTS - 1u)) == 0u,
+               "the ring's index wraps with its counter");
 
 static uint32_t saturating_add(uint32_t a, uint32_t b) { return a > UINT32_MAX - b ? UINT32_MAX : a + b; }
 
