@@ -18,7 +18,7 @@ export function AxisRow({ motor }: { readonly motor: Motor }) {
   if (axis === undefined) return null;
   const fault = explainFault(axis);
   return (
-    <li className="axis-row" data-state={axis.state} aria-label={`Axis ${motor.name}`}>
+    <li className="axis-row" data-state={axis.state} aria-label={`Axis ${motor.title}`}>
       <Identity motor={motor} axis={axis} />
       <div className="track-area">
         <SwitchLamp motor={motor} axis={axis} side="LOWER" />
@@ -28,7 +28,7 @@ export function AxisRow({ motor }: { readonly motor: Motor }) {
       <output
         className="measured-value"
         aria-live="off"
-        aria-label={`${motor.name} position`}
+        aria-label={`${motor.title} position`}
         title={`${axis.positionCounts} counts`}
       >
         {formatCounts(motor, axis.positionCounts)}
@@ -71,7 +71,7 @@ function Identity({ motor, axis }: AxisProps) {
   return (
     <div className="identity">
       <h3>
-        {motor.name} <small className="slot">slot {motor.slot}</small>
+        {motor.title} <small className="slot">slot {motor.slot}</small>
       </h3>
       <span className={`chip ${stateTone[axis.state] ?? ""}`} title={entry("axis_state", axis.state).meaning}>
         <i aria-hidden="true">{stateShape[axis.state] ?? "?"}</i>
@@ -144,7 +144,7 @@ function ActionButton({ motor, action, label, off }: ActionButtonProps) {
       type="button"
       className="button"
       disabled={off || waiting}
-      aria-label={`${label} ${motor.name}`}
+      aria-label={`${label} ${motor.title}`}
       onClick={() => void onClick()}
     >
       {label}
@@ -185,7 +185,7 @@ function Refusal({ motor, notice }: { readonly motor: Motor; readonly notice: No
       <button
         type="button"
         className="button quiet"
-        aria-label={`Dismiss the refusal of ${motor.name}`}
+        aria-label={`Dismiss the refusal of ${motor.title}`}
         onClick={() => dismissNotice(motor.slot)}
       >
         ✕

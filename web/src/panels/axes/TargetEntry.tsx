@@ -24,7 +24,7 @@ export function TargetEntry({ motor }: { readonly motor: Motor }) {
           inputMode="decimal"
           autoComplete="off"
           placeholder="target"
-          aria-label={`${motor.name} target in ${unitWord(motor)}`}
+          aria-label={`${motor.title} target in ${unitWord(motor)}`}
           aria-invalid={expected !== null}
           aria-describedby={messageId}
           onChange={(event) => setText(event.target.value)}
@@ -35,7 +35,7 @@ export function TargetEntry({ motor }: { readonly motor: Motor }) {
         type="submit"
         className="button"
         disabled={text.trim() === ""}
-        aria-label={`Propose ${motor.name}`}
+        aria-label={`Propose ${motor.title}`}
       >
         Propose
       </button>

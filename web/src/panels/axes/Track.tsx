@@ -87,7 +87,7 @@ export function Track({ motor, axis }: TrackProps) {
       tabIndex={0}
       className="track"
       data-preview={preview !== null}
-      aria-label={`${motor.name} target`}
+      aria-label={`${motor.title} target`}
       aria-valuemin={Math.ceil(domain.min)}
       aria-valuemax={Math.floor(domain.max)}
       aria-valuenow={shownCounts}

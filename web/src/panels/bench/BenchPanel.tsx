@@ -5,6 +5,7 @@ import { Panel } from "../../design/Panel";
 import { catalog, entry } from "../../generated/catalog";
 import { type Notice, noticeOfProblem } from "../../state/notice";
 import { useConsole } from "../../state/store";
+import { useJammedSlots } from "./useJammedSlots";
 import { usePedal } from "./usePedal";
 import "./bench.css";
 
@@ -73,40 +74,31 @@ function Estop({ command }: CommandProps) {
   );
 }
 
+/** Which axes are jammed is asked of the simulator, since others may jam them too. */
 function Jam({ command }: CommandProps) {
   const motors = useConsole((state) => state.motors);
-  const [slot, setSlot] = useState<number | null>(null);
-  const chosen = slot ?? motors[0]?.slot;
-  if (chosen === undefined) return null;
+  const [jammed, refresh] = useJammedSlots();
+  const toggle = async (slot: number): Promise<void> => {
+    await command("jam", { slot, jammed: !jammed.has(slot) });
+    refresh();
+  };
   return (
-    <div className="bench-row jam">
-      <select
-        className="button"
-        aria-label="Axis to jam"
-        value={chosen}
-        onChange={(event) => setSlot(Number(event.target.value))}
-      >
-        {motors.map((motor) => (
-          <option key={motor.slot} value={motor.slot}>
-            {motor.name}
-          </option>
-        ))}
-      </select>
-      <button
-        type="button"
-        className="button"
-        onClick={() => void command("jam", { slot: chosen, jammed: true })}
-      >
-        Jam
-      </button>
-      <button
-        type="button"
-        className="button"
-        onClick={() => void command("jam", { slot: chosen, jammed: false })}
-      >
-        Free
-      </button>
-    </div>
+    <fieldset className="jam">
+      <legend>Jam an axis</legend>
+      {motors.map((motor) => (
+        <button
+          type="button"
+          className="button"
+          key={motor.slot}
+          aria-label={`Jam ${motor.title}`}
+          aria-pressed={jammed.has(motor.slot)}
+          onClick={() => void toggle(motor.slot)}
+        >
+          {motor.title}
+          {jammed.has(motor.slot) && " ✕"}
+        </button>
+      ))}
+    </fieldset>
   );
 }
 

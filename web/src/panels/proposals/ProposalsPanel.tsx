@@ -60,7 +60,7 @@ function ProposalItem({
     <li className="proposal" data-state={proposal.state} aria-label={`Proposal ${proposal.id}`}>
       <span className="proposal-head">
         <span className="number">#{proposal.id}</span>
-        <strong>{proposal.axis}</strong> to {target}
+        <strong>{motor?.title ?? proposal.axis}</strong> to {target}
         <span className={`chip ${look.tone}`}>
           <i aria-hidden="true">{look.shape}</i>
           {proposal.state}
