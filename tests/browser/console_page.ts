@@ -1,0 +1,144 @@
+/** The console as an operator meets it: by roles and names, never by the page's inner structure. */
+import { expect, type Locator, type Page } from "@playwright/test";
+
+export class Axis {
+  readonly row: Locator;
+  readonly track: Locator;
+
+  constructor(
+    private readonly page: Page,
+    private readonly title: string,
+  ) {
+    this.row = page.getByRole("listitem", { name: `Axis ${title}`, exact: true });
+    this.track = page.getByRole("slider", { name: `${title} target` });
+  }
+
+  async press(action: "Enable" | "Disable" | "Home" | "Set Home" | "Clear"): Promise<void> {
+    await this.row.getByRole("button", { name: `${action} ${this.title}`, exact: true }).click();
+  }
+
+  async expectState(state: string): Promise<void> {
+    await expect(this.row.getByText(state, { exact: true })).toBeVisible();
+  }
+
+  async enable(): Promise<void> {
+    await this.press("Enable");
+    await this.expectState("ENABLED");
+  }
+
+  /** Types a target in the axis' unit and proposes it. */
+  async propose(target: string): Promise<void> {
+    await this.row.getByRole("textbox").fill(target);
+    await this.row.getByRole("button", { name: `Propose ${this.title}` }).click();
+  }
+
+  /** Measured counts, as shown. */
+  async counts(): Promise<number> {
+    const text = await this.row.getByRole("status", { name: `${this.title} position` }).textContent();
+    return Number(/(-?\d+) counts/.exec(text ?? "")?.[1] ?? Number.NaN);
+  }
+
+  /** Counts under the circle. */
+  async circle(): Promise<number> {
+    return Number(await this.track.getAttribute("aria-valuenow"));
+  }
+
+  /** Takes the circle along the track, in pixels, and leaves it held. */
+  async drag(pixels: number): Promise<void> {
+    const box = await this.track.boundingBox();
+    if (box === null) throw new Error(`the track of ${this.title} is not visible`);
+    const min = Number(await this.track.getAttribute("aria-valuemin"));
+    const max = Number(await this.track.getAttribute("aria-valuemax"));
+    const x = box.x + (box.width * ((await this.circle()) - min)) / (max - min);
+    const y = box.y + box.height / 2;
+    await this.page.mouse.move(x, y);
+    await this.page.mouse.down();
+    await this.page.mouse.move(x + pixels, y, { steps: 8 });
+  }
+
+  async expectRefusal(verdict: string): Promise<Locator> {
+    const refusal = this.row.getByRole("alert").filter({ hasText: `Refused: ${verdict}` });
+    await expect(refusal).toBeVisible();
+    return refusal;
+  }
+
+  /** Waits until the position no longer changes, and gives it. */
+  async restingCounts(): Promise<number> {
+    let last = Number.NaN;
+    await expect
+      .poll(
+        async () => {
+          const before = last;
+          last = await this.counts();
+          return Math.abs(last - before) <= 1;
+        },
+        { intervals: [300] },
+      )
+      .toBe(true);
+    return last;
+  }
+}
+
+export class ConsolePage {
+  readonly mode: Locator;
+  readonly estop: Locator;
+  readonly pedalState: Locator;
+  readonly unlock: Locator;
+  readonly stop: Locator;
+  readonly stopAnswer: Locator;
+  readonly pedal: Locator;
+  readonly latch: Locator;
+
+  constructor(readonly page: Page) {
+    this.mode = page.getByRole("status", { name: "Mode" });
+    this.estop = page.getByRole("status", { name: "E-stop" });
+    this.pedalState = page.getByRole("status", { name: "Pedal" });
+    this.unlock = page.getByRole("button", { name: "Unlock" });
+    this.stop = page.getByRole("button", { name: /^STOP/ });
+    this.stopAnswer = page.getByRole("status", { name: "Answer to STOP" });
+    this.pedal = page.getByRole("button", { name: /^\S* ?Pedal/ });
+    this.latch = page.getByRole("button", { name: "Latch pedal" });
+  }
+
+  axis(title: string): Axis {
+    return new Axis(this.page, title);
+  }
+
+  proposal(id: number): Locator {
+    return this.page.getByRole("listitem", { name: `Proposal ${id}`, exact: true });
+  }
+
+  async expectMode(mode: "LOCKED" | "READY" | "MOTION" | "UNKNOWN"): Promise<void> {
+    await expect(this.mode).toContainText(mode);
+  }
+
+  async unlockRobot(): Promise<void> {
+    await this.expectMode("LOCKED");
+    await this.unlock.click();
+    await this.expectMode("READY");
+  }
+
+  /** Presses the simulated pedal with the pointer and keeps it down. */
+  async holdPedal(): Promise<void> {
+    await this.expectArmed();
+    await this.pedal.hover();
+    await this.page.mouse.down();
+    await this.expectMode("MOTION");
+  }
+
+  async letPedalGo(): Promise<void> {
+    await this.page.mouse.up();
+    await this.expectMode("READY");
+  }
+
+  /** Presses the simulated pedal and keeps the pointer free. */
+  async latchPedal(): Promise<void> {
+    await this.expectArmed();
+    await this.latch.click();
+    await this.expectMode("MOTION");
+  }
+
+  async expectArmed(): Promise<void> {
+    await expect(this.page.getByText("· armed")).toBeVisible();
+  }
+}

@@ -1,0 +1,260 @@
+/** A newcomer's first use of the console, by clicking, against the real processes (issue 2, console). */
+import { mkdirSync } from "node:fs";
+import path from "node:path";
+import { expect, test } from "./fixtures";
+import { picture, reports } from "./places";
+
+test("a newcomer unlocks, enables, drags, holds the pedal, arrives, and letting go stops the axis", async ({
+  robot,
+  page,
+}) => {
+  const axis = robot.axis("Probe rotation");
+  await expect(page.getByText("SIMULATED HARDWARE").first()).toBeVisible();
+  await expect(page.getByText("BOOT")).toBeVisible();
+  await robot.unlockRobot();
+  await axis.enable();
+
+  await axis.drag(12);
+  const target = await axis.circle();
+  expect(Math.abs(target - (await axis.counts()))).toBeGreaterThan(100);
+  await expect(robot.proposal(1)).toHaveCount(0);
+  await page.mouse.up();
+  await expect(robot.proposal(1)).toContainText("approved");
+  expect(await axis.restingCounts()).toBeLessThanOrEqual(1);
+
+  await robot.holdPedal();
+  await axis.expectState("MOVING");
+  await expect(robot.proposal(1)).toContainText("executing");
+  await expect.poll(() => axis.counts()).toBeGreaterThan(10);
+  await robot.letPedalGo();
+  await expect(robot.proposal(1)).toContainText("paused");
+  const stoppedAt = await axis.restingCounts();
+  expect(stoppedAt).toBeLessThan(target);
+
+  await robot.holdPedal();
+  await expect(robot.proposal(1)).toContainText("done");
+  await robot.letPedalGo();
+  expect(Math.abs((await axis.restingCounts()) - target)).toBeLessThanOrEqual(2);
+});
+
+test("a move beyond the range is refused in words at the axis and in the list", async ({ robot }) => {
+  const axis = robot.axis("Probe rotation");
+  await robot.unlockRobot();
+  await axis.enable();
+  await axis.propose("300");
+  const refusal = await axis.expectRefusal("RANGE");
+  await expect(refusal).toContainText("outside the allowed range");
+  await expect(refusal).toContainText("home the axis for the full range");
+  await expect(robot.proposal(1)).toContainText("refused");
+  await expect(robot.proposal(1)).toContainText("RANGE");
+  await robot.latchPedal();
+  expect(Math.abs(await axis.restingCounts())).toBeLessThanOrEqual(1);
+  await refusal.getByRole("button", { name: /Dismiss/ }).click();
+  await expect(refusal).toHaveCount(0);
+});
+
+test("a move of an axis that is not enabled is refused with the next step", async ({ robot }) => {
+  await robot.unlockRobot();
+  const axis = robot.axis("Insertion");
+  await axis.propose("1");
+  await expect(await axis.expectRefusal("DISABLED")).toContainText("Enable the axis.");
+});
+
+test("a target that is no number is not sent", async ({ robot }) => {
+  const axis = robot.axis("Insertion");
+  await axis.propose("ten");
+  await expect(axis.row.getByText("expected a number of millimetres")).toBeVisible();
+  await expect(robot.proposal(1)).toHaveCount(0);
+});
+
+test("arrow keys preview, Enter proposes, and Escape drops a preview and stops", async ({ robot, page }) => {
+  const axis = robot.axis("Probe rotation");
+  await robot.unlockRobot();
+  await axis.enable();
+  await axis.track.focus();
+  await page.keyboard.press("ArrowRight");
+  const previewed = await axis.circle();
+  expect(previewed).toBeGreaterThan(50);
+  await page.keyboard.press("Escape");
+  await expect(robot.stopAnswer).toHaveText("STOP accepted");
+  await expect.poll(() => axis.circle()).toBeLessThanOrEqual(1);
+  await expect(robot.proposal(1)).toHaveCount(0);
+  await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("Enter");
+  await expect(robot.proposal(1)).toContainText("approved");
+  expect(await axis.circle()).toBe(previewed);
+});
+
+for (const [way, where] of [
+  ["a click on STOP", "page"],
+  ["Esc", "page"],
+  ["Esc typed into a number field", "field"],
+] as const) {
+  test(`${way} stops a move, and the held pedal does not start it again`, async ({ robot, page }) => {
+    const axis = robot.axis("Probe rotation");
+    await robot.unlockRobot();
+    await axis.enable();
+    await axis.propose("40");
+    await robot.latchPedal();
+    await expect.poll(() => axis.counts()).toBeGreaterThan(10);
+
+    if (where === "field") await axis.row.getByRole("textbox").focus();
+    if (way === "a click on STOP") await robot.stop.click();
+    else await page.keyboard.press("Escape");
+
+    await robot.expectMode("READY");
+    await expect(robot.stopAnswer).toHaveText("STOP accepted");
+    await expect(robot.proposal(1)).toContainText("aborted");
+    const stoppedAt = await axis.restingCounts();
+    await expect(robot.pedalState).toContainText("pressed");
+    await robot.expectMode("READY");
+    expect(Math.abs((await axis.restingCounts()) - stoppedAt)).toBeLessThanOrEqual(1);
+  });
+}
+
+test("the E-stop locks with its cause until it is released and unlocked, and nothing moves by unlocking", async ({
+  robot,
+  page,
+}) => {
+  const axis = robot.axis("Probe rotation");
+  await robot.unlockRobot();
+  await axis.enable();
+  await axis.propose("40");
+  await robot.latchPedal();
+  await expect.poll(() => axis.counts()).toBeGreaterThan(10);
+
+  await page.getByRole("button", { name: "Pull E-stop" }).click();
+  await robot.expectMode("LOCKED");
+  await expect(robot.estop).toContainText("PULLED");
+  await expect(page.getByText("The E-stop was pulled, or its loop is broken.")).toBeVisible();
+  await axis.expectState("DISABLED");
+  const stoppedAt = await axis.restingCounts();
+
+  await robot.latch.click();
+  await expect(robot.pedalState).toContainText("released");
+  await robot.unlock.click();
+  await expect(page.getByRole("alert").filter({ hasText: "Unlock refused: CAUSE_PRESENT" })).toBeVisible();
+
+  await page.getByRole("button", { name: "Release E-stop" }).click();
+  await expect(robot.estop).toContainText("released");
+  await robot.unlockRobot();
+  await robot.latchPedal();
+  await axis.expectState("DISABLED");
+  expect(Math.abs((await axis.restingCounts()) - stoppedAt)).toBeLessThanOrEqual(1);
+});
+
+test("a jammed axis stalls, names the fault with its next step, and moves again once cleared", async ({
+  robot,
+  page,
+}) => {
+  const axis = robot.axis("Probe rotation");
+  await robot.unlockRobot();
+  await axis.enable();
+  const jam = page.getByRole("button", { name: "Jam Probe rotation" });
+  await jam.click();
+  await expect(jam).toHaveAttribute("aria-pressed", "true");
+  await axis.propose("10");
+  await robot.latchPedal();
+
+  const fault = axis.row.getByRole("alert").filter({ hasText: "STALL" });
+  await expect(fault).toContainText("driven without making progress");
+  await expect(fault).toContainText("Look for an obstacle");
+  await robot.expectMode("READY");
+  await axis.press("Clear");
+  await axis.expectRefusal("PEDAL_DOWN");
+
+  await robot.latch.click();
+  await expect(robot.pedalState).toContainText("released");
+  await jam.click();
+  await expect(jam).toHaveAttribute("aria-pressed", "false");
+  await axis.press("Clear");
+  await axis.expectState("DISABLED");
+  await axis.enable();
+  await axis.propose("2");
+  await robot.latchPedal();
+  await expect.poll(() => axis.counts()).toBeGreaterThan(10);
+});
+
+test("data of a silent app are greyed, then covered, and STOP says that it was not heard", async ({
+  robot,
+  stack,
+  page,
+}) => {
+  await robot.unlockRobot();
+  const panels = page.getByRole("main");
+  await expect(panels).toHaveAttribute("data-level", "live");
+  const levels = page.evaluate(
+    () =>
+      new Promise<string[]>((resolve) => {
+        const main = document.querySelector("main");
+        const seen: string[] = [];
+        const observer = new MutationObserver(() => {
+          seen.push(main?.dataset.level ?? "");
+          if (seen.at(-1) === "covered") resolve(seen);
+        });
+        if (main !== null) observer.observe(main, { attributeFilter: ["data-level"] });
+      }),
+  );
+  stack.signalApp("SIGSTOP");
+  try {
+    expect((await levels).filter((level) => level !== "live")).toEqual(["grey", "covered"]);
+    await expect(page.getByRole("heading", { name: /No data for/ })).toBeVisible();
+    await robot.expectMode("UNKNOWN");
+    await expect(robot.unlock).toBeDisabled();
+    await page.keyboard.press("Escape");
+    await expect(page.getByRole("alert").filter({ hasText: "use the E-stop" })).toBeVisible();
+  } finally {
+    stack.signalApp("SIGCONT");
+  }
+  await expect(panels).toHaveAttribute("data-level", "live");
+  await robot.expectMode("READY");
+});
+
+test("no key enables an axis, unlocks or presses the pedal", async ({ robot, page }) => {
+  const asked: string[] = [];
+  page.on("request", (request) => {
+    if (request.method() === "POST") asked.push(new URL(request.url()).pathname);
+  });
+  await robot.expectMode("LOCKED");
+  for (const key of [
+    "Enter",
+    "Space",
+    "e",
+    "h",
+    "r",
+    "u",
+    "p",
+    "F1",
+    "F2",
+    "ArrowUp",
+    "Control+o",
+    "Control+p",
+    "Escape",
+  ]) {
+    await page.keyboard.press(key);
+  }
+  await expect(robot.stopAnswer).toHaveText("STOP accepted");
+  expect(asked).toEqual(["/api/stop"]);
+  await robot.expectMode("LOCKED");
+});
+
+test("the picture of the README comes from a real run", async ({ robot, page }) => {
+  await robot.unlockRobot();
+  for (const title of ["Probe rotation", "Feet"]) {
+    await robot.axis(title).enable();
+    await robot.axis(title).press("Set Home");
+    await expect(robot.axis(title).row.getByText("UNHOMED")).toHaveCount(0);
+  }
+  await robot.axis("Insertion").propose("30");
+  await robot.axis("Insertion").expectRefusal("DISABLED");
+  await robot.axis("Feet").propose("12.5");
+  await robot.latchPedal();
+  await expect(robot.proposal(2)).toContainText("done");
+  await robot.axis("Probe rotation").propose("200");
+  await expect.poll(() => robot.axis("Probe rotation").counts()).toBeGreaterThan(1500);
+  const file = process.env.UPDATE_PICTURE ? picture : path.join(reports, "console.png");
+  mkdirSync(path.dirname(file), { recursive: true });
+  await page.screenshot({ path: file });
+  await robot.stop.click();
+  await robot.expectMode("READY");
+});

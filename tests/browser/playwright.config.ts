@@ -1,0 +1,32 @@
+import { defineConfig } from "@playwright/test";
+import { reports } from "./places";
+
+/** Debian's Chromium, one page at a time, against the real processes on the simulated clock. */
+export default defineConfig({
+  testDir: ".",
+  outputDir: `${reports}/browser`,
+  workers: 1,
+  retries: 0,
+  forbidOnly: true,
+  timeout: 60_000,
+  expect: { timeout: 20_000 },
+  reporter: [["list"], ["junit", { outputFile: `${reports}/browser.xml` }]],
+  use: {
+    viewport: { width: 1280, height: 800 },
+    colorScheme: "dark",
+    locale: "en-GB",
+    timezoneId: "UTC",
+    trace: "retain-on-failure",
+    launchOptions: {
+      executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+      args: [
+        "--no-sandbox",
+        "--disable-gpu",
+        "--no-first-run",
+        "--disable-background-networking",
+        "--disable-component-update",
+        "--disable-sync",
+      ],
+    },
+  },
+});

@@ -1,0 +1,90 @@
+/** A robot of one's own: `interlock run` with its three processes on the simulated clock. */
+import { type ChildProcess, spawn } from "node:child_process";
+import { mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import path from "node:path";
+import { createInterface } from "node:readline";
+import { programs } from "./places";
+
+const READY_WITHIN_MS = 30_000;
+
+export class Stack {
+  private constructor(
+    private readonly run: ChildProcess,
+    private readonly state: string,
+    readonly url: string,
+  ) {}
+
+  /** Starts the neuro robot and waits for its ready line. */
+  static async start(): Promise<Stack> {
+    const state = mkdtempSync(path.join(tmpdir(), "interlock-browser-"));
+    const run = spawn(
+      path.join(programs, "interlock"),
+      ["run", "--robot", "neuro", "--clock", "sim", "--port", "0", "--state", state],
+      { stdio: ["ignore", "pipe", "pipe"] },
+    );
+    return new Stack(run, state, await readyUrl(run));
+  }
+
+  /** Stops or continues the app's process alone; kernel and simulator run on. */
+  signalApp(signal: "SIGSTOP" | "SIGCONT"): void {
+    process.kill(this.appPid(), signal);
+  }
+
+  /** Ends all processes and removes their state. */
+  async end(): Promise<void> {
+    if (this.run.exitCode === null) {
+      const ended = new Promise((resolve) => this.run.once("exit", resolve));
+      this.run.kill("SIGINT");
+      await ended;
+    }
+    rmSync(this.state, { recursive: true, force: true });
+  }
+
+  private appPid(): number {
+    const own = String(this.run.pid);
+    for (const pid of readdirSync("/proc").filter((name) => /^\d+$/.test(name))) {
+      const { name, parent } = processOf(pid);
+      if (parent === own && name === "interlock-app") return Number(pid);
+    }
+    throw new Error(`interlock run (process ${own}) has no child interlock-app`);
+  }
+}
+
+function processOf(pid: string): { name: string; parent: string } {
+  try {
+    const [, name = "", parent = ""] =
+      /\((.*)\) \S (\d+)/.exec(readFileSync(`/proc/${pid}/stat`, "utf8")) ?? [];
+    return { name, parent };
+  } catch {
+    // The process ended between the listing and the reading.
+    return { name: "", parent: "" };
+  }
+}
+
+function readyUrl(run: ChildProcess): Promise<string> {
+  const said: string[] = [];
+  return new Promise((resolve, reject) => {
+    const giveUp = (reason: string): void => {
+      run.kill("SIGKILL");
+      reject(new Error(`interlock run ${reason}; it said:\n${said.join("\n")}`));
+    };
+    const timer = setTimeout(
+      () => giveUp(`was not ready within ${READY_WITHIN_MS / 1000} s`),
+      READY_WITHIN_MS,
+    );
+    run.once("error", (error) => giveUp(`did not start (${error.message})`));
+    run.once("exit", (code) => giveUp(`ended with exit code ${code}`));
+    for (const stream of [run.stdout, run.stderr]) {
+      if (stream === null) continue;
+      createInterface({ input: stream }).on("line", (line) => {
+        said.push(line);
+        const url = /^ready (http:\S+)/.exec(line)?.[1];
+        if (url === undefined) return;
+        clearTimeout(timer);
+        run.removeAllListeners("exit");
+        resolve(url);
+      });
+    }
+  });
+}
