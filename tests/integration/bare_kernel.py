@@ -29,7 +29,7 @@ class PlantControl:
         self.lines = self.socket.makefile("rwb")
 
     def __call__(self, command: str, **fields: object) -> dict:
-        self.lines.write(json.dumps({"cmd": command, **fields}).encode() + b"\n")
+        self.lines.write(json.dumps({"command": command, **fields}).encode() + b"\n")
         self.lines.flush()
         answer = json.loads(self.lines.readline())
         assert answer["ok"], f"{command} {fields}: {answer}"

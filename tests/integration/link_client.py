@@ -7,6 +7,7 @@ import os
 import socket
 import time
 import zlib
+from collections import Counter
 from pathlib import Path
 
 from link_layout import CONSTANTS, STRUCTURES, name_of
@@ -55,6 +56,7 @@ class LinkClient:
         self.sequence = 0
         self.events_read = 0
         self.verdicts: dict[int, str] = {}
+        self.verdict_counts: Counter[str] = Counter()
         self.app.seen_tick = self.snapshot().state.tick
 
     def close(self) -> None:
@@ -65,17 +67,18 @@ class LinkClient:
         os.close(self.kernel_fd)
         os.close(self.app_fd)
 
-    def _word(self, field: ctypes._CField) -> int:
-        return int.from_bytes(self.kernel_map[field.offset : field.offset + 4], "little")
+    def _word(self, field: str) -> int:
+        offset = getattr(KernelRegion, field).offset
+        return int.from_bytes(self.kernel_map[offset : offset + 4], "little")
 
     def snapshot(self) -> ctypes.Structure:
         """The newest whole snapshot."""
         offset = KernelRegion.snapshot.offset
         deadline = time.monotonic() + DEADLINE_S
         while time.monotonic() < deadline:
-            before = self._word(KernelRegion.snapshot_lock)
+            before = self._word("snapshot_lock")
             data = self.kernel_map[offset : offset + ctypes.sizeof(Snapshot)]
-            if before % 2 == 0 and before != 0 and before == self._word(KernelRegion.snapshot_lock):
+            if before % 2 == 0 and before != 0 and before == self._word("snapshot_lock"):
                 return Snapshot.from_buffer_copy(data)
         raise TimeoutError("no whole snapshot: is the kernel running?")
 
@@ -83,7 +86,7 @@ class LinkClient:
         """Puts records into the ring as they are, waiting for room."""
         for record in records:
             deadline = time.monotonic() + DEADLINE_S
-            while (self.app.request_head - self._word(KernelRegion.request_tail)) % WORD >= RING:
+            while (self.app.request_head - self._word("request_tail")) % WORD >= RING:
                 if time.monotonic() > deadline:
                     raise TimeoutError("the kernel does not take requests")
             self.app.request[self.app.request_head % RING] = record
@@ -121,8 +124,8 @@ class LinkClient:
         return self.verdicts[sequence]
 
     def read_events(self) -> list[ctypes.Structure]:
-        """Events since the last call; verdicts are also kept by sequence number."""
-        head = self._word(KernelRegion.event_head)
+        """Events since the last call; verdicts are also kept by sequence number, and counted."""
+        head = self._word("event_head")
         events = []
         for number in range(max(self.events_read, head - EVENTS) + 1, head + 1):
             offset = KernelRegion.event.offset + ((number - 1) % EVENTS) * ctypes.sizeof(Event)
@@ -130,6 +133,8 @@ class LinkClient:
             if event.number == number:
                 events.append(event)
                 if event.kind == CONSTANTS["ILK_EVENT_VERDICT"]:
-                    self.verdicts[event.value[0]] = name_of("ILK_VERDICT", event.value[3])
+                    verdict = name_of("ILK_VERDICT", event.value[3])
+                    self.verdicts[event.value[0]] = verdict
+                    self.verdict_counts[verdict] += 1
         self.events_read = head
         return events

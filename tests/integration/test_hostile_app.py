@@ -48,8 +48,7 @@ def test_P11_ten_thousand_random_and_malformed_records_are_each_refused(kernel: 
     seed = 20_181
     dice = random.Random(seed)
     client = kernel.attach()
-    client.run(5)
-    before = client.snapshot().state
+    before = client.run(5, heartbeat=False).state
     sent = 0
     while sent < 10_000:
         batch = []
@@ -65,10 +64,11 @@ def test_P11_ten_thousand_random_and_malformed_records_are_each_refused(kernel: 
             client.write(record)
         client.run(4, heartbeat=False)
         sent += len(batch)
-    client.run(5, heartbeat=False)
-    after = client.snapshot().state
+    after = client.run(5, heartbeat=False).state
     assert after.requests_accepted == before.requests_accepted
     assert after.requests_refused - before.requests_refused == sent
+    assert client.verdict_counts.total() == sent
+    assert client.verdict_counts["ACCEPTED"] == 0
     assert mode(client) == "LOCKED"
     assert kernel.kernel.poll() is None
     client.close()
