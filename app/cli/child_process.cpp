@@ -105,6 +105,7 @@ ChildProcess::ChildProcess(ChildProcess&& other) noexcept
 ChildProcess::~ChildProcess() {
   if (pid_ > 0) {
     kill(pid_, SIGKILL);
+    kill(-pid_, SIGKILL);
     waitpid(pid_, nullptr, 0);
   }
 }
@@ -142,11 +143,15 @@ std::vector<std::string> ChildProcess::read_lines(bool rest) {
 }
 
 std::optional<int> ChildProcess::reap() {
-  int status = 0;
-  if (pid_ <= 0 || waitpid(pid_, &status, WNOHANG) != pid_) {
+  siginfo_t ended{};
+  if (pid_ <= 0 || waitid(P_PID, static_cast<id_t>(pid_), &ended, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+      ended.si_pid != pid_) {
     return std::nullopt;
   }
-  pid_ = 0;
+  // The group keeps its number until its leader is reaped: no stranger can be hit.
+  kill(-pid_, SIGKILL);
+  int status = 0;
+  waitpid(std::exchange(pid_, 0), &status, 0);
   return status;
 }
 

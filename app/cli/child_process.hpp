@@ -36,7 +36,7 @@ class ChildProcess {
   ChildProcess(ChildProcess&& other) noexcept;
   ChildProcess& operator=(ChildProcess&&) = delete;
 
-  /** Kills what still runs and waits for it. */
+  /** Kills what still runs, its own children included, and waits for it. */
   ~ChildProcess();
 
   /** Readable when the child has ended. */
@@ -51,7 +51,7 @@ class ChildProcess {
    * besides. */
   std::vector<std::string> read_lines(bool rest);
 
-  /** Takes the ended child off the system's list and answers its wait status. Empty while it still runs. */
+  /** The wait status of the ended child, whose own children are killed; empty while it still runs. */
   std::optional<int> reap();
 
  private:

@@ -81,7 +81,9 @@ Result<void> Supervisor::serve(const std::function<void()>& when_ready) {
     if (std::holds_alternative<StopAsked>(event)) {
       break;
     }
-    if (std::holds_alternative<Ready>(event)) {
+    if (const Ready* const ready = std::get_if<Ready>(&event)) {
+      ready->task.ready = true;
+      ready->task.was_ready = true;
       going = start_next(when_ready);
     } else if (const Ended* const ended = std::get_if<Ended>(&event)) {
       going = judge_end(*ended);
@@ -109,6 +111,7 @@ Result<void> Supervisor::start_next(const std::function<void()>& when_ready) {
 }
 
 Result<void> Supervisor::judge_end(const Ended& ended) {
+  ended.task.ready = false;
   const std::string& name = ended.task.supervised.program.name;
   const std::string end = describe_end(ended.wait_status);
   if (!ended.task.was_ready) {
@@ -190,7 +193,6 @@ void Supervisor::collect_events(Deadline deadline) {
     if (wait_status) {
       forward_output(task, true);
       task.child.reset();
-      task.ready = false;
       events_.push_back(Ended{task, *wait_status});
     }
   }
@@ -199,10 +201,8 @@ void Supervisor::collect_events(Deadline deadline) {
 void Supervisor::forward_output(Task& task, bool rest) {
   for (const std::string& line : task.child->read_lines(rest)) {
     output_ << '[' << task.supervised.program.name << "] " << line << '\n';
-    if (!task.ready && says_ready(line)) {
-      task.ready = true;
-      task.was_ready = true;
-      events_.push_back(Ready{});
+    if (says_ready(line)) {
+      events_.push_back(Ready{task});
     }
   }
   output_.flush();

@@ -72,7 +72,9 @@ class Supervisor {
   };
 
   struct StopAsked {};
-  struct Ready {};
+  struct Ready {
+    Task& task;
+  };
   struct Ended {
     Task& task;
     int wait_status;

@@ -1,0 +1,172 @@
+#include "cli/supervisor.hpp"
+
+#include <poll.h>
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <iterator>
+#include <sstream>
+
+#include "scratch_folder.hpp"
+
+// This header of glibc 2.36 does not say by itself that its functions are C.
+extern "C" {
+#include <sys/pidfd.h>
+}
+
+namespace interlock::cli {
+namespace {
+
+using testing::HasSubstr;
+
+/** A shell as the supervised program: what it does is the text of the test. */
+Supervised shell(const std::string& name, const std::string& script, bool restarts = false) {
+  return {{name, "/bin/sh", {"-c", script}}, restarts};
+}
+
+const std::string stay = "exec tail -f /dev/null";
+
+class SupervisorTest : public test::ScratchFolder {
+ protected:
+  Result<void> run(std::vector<Supervised> programs, const std::function<void()>& when_ready) {
+    return Supervisor(std::move(programs), signals_, output_).run(when_ready);
+  }
+
+  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+
+  std::size_t lines_in(const std::string& name) const {
+    std::ifstream stream(folder_ / name);
+    return static_cast<std::size_t>(std::count(std::istreambuf_iterator<char>(stream), {}, '\n'));
+  }
+
+  static void ask_to_stop() { kill(getpid(), SIGTERM); }
+
+  const SignalEvents signals_;
+  std::ostringstream output_;
+};
+
+TEST_F(SupervisorTest, starts_each_program_when_the_one_before_is_ready) {
+  const std::string order = file("order");
+  const auto note = [&](const std::string& word) {
+    return "echo " + word + " >>" + order + "; echo ready; ";
+  };
+  ASSERT_TRUE(
+      run({shell("first", note("first") + stay), shell("second", note("second") + stay)}, ask_to_stop));
+  std::ostringstream text;
+  text << std::ifstream(order).rdbuf();
+  EXPECT_EQ(text.str(), "first\nsecond\n");
+}
+
+TEST_F(SupervisorTest, forwards_both_outputs_under_the_name_of_the_program) {
+  ASSERT_TRUE(run({shell("kernel", "echo hello; echo trouble >&2; echo ready; " + stay)}, ask_to_stop));
+  EXPECT_THAT(output_.str(), HasSubstr("[kernel] hello\n[kernel] trouble\n[kernel] ready\n"));
+}
+
+TEST_F(SupervisorTest, stops_in_the_reverse_order_after_a_signal) {
+  const auto note = [&](const std::string& word) {
+    return "trap 'echo " + word + " >>" + file("order") + "; exit' TERM; echo ready; " +
+           "tail -f /dev/null & while :; do wait; done";
+  };
+  ASSERT_TRUE(
+      run({shell("sim", note("sim")), shell("kernel", note("kernel")), shell("app", note("app"), true)},
+          ask_to_stop));
+  std::ostringstream text;
+  text << std::ifstream(file("order")).rdbuf();
+  EXPECT_EQ(text.str(), "app\nkernel\nsim\n");
+}
+
+TEST_F(SupervisorTest, ends_with_the_cause_when_a_program_without_restarts_ends) {
+  const auto result =
+      run({shell("sim", "echo ready; " + stay), shell("kernel", "echo ready; echo last; kill -9 $$"),
+           shell("app", "echo ready; " + stay, true)},
+          [] {});
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().code, ExitCode::process_ended);
+  EXPECT_THAT(result.error().text, HasSubstr("kernel ended: killed by signal 9 (Killed)"));
+  EXPECT_THAT(output_.str(), HasSubstr("[kernel] last\n"));
+}
+
+TEST_F(SupervisorTest, a_program_that_ends_before_it_is_ready_is_not_restarted) {
+  const auto result = run({shell("app", "echo no port >&2; exit 3", true)}, [] {});
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().code, ExitCode::process_ended);
+  EXPECT_THAT(result.error().text, HasSubstr("app did not start: exit code 3"));
+  EXPECT_THAT(output_.str(), HasSubstr("[app] no port\n"));
+}
+
+TEST_F(SupervisorTest, restarts_the_app_five_times_then_ends_with_the_cause) {
+  const auto result = run({shell("kernel", "echo ready; " + stay),
+                           shell("app", "echo start >>" + file("starts") + "; echo ready; exit 7", true)},
+                          [] {});
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().code, ExitCode::app_kept_ending);
+  EXPECT_THAT(result.error().text, HasSubstr("app ended: exit code 7; it was restarted 5 times"));
+  EXPECT_EQ(lines_in("starts"), 6u);
+}
+
+TEST_F(SupervisorTest, says_ready_again_after_a_restart_and_leaves_the_others_alone) {
+  int ready = 0;
+  ASSERT_TRUE(run({shell("kernel", "echo start >>" + file("kernel") + "; echo ready; " + stay),
+                   shell("app",
+                         "echo ready; if [ ! -e " + file("once") + " ]; then touch " + file("once") +
+                             "; exit 1; fi; " + stay,
+                         true)},
+                  [&] {
+                    if (++ready == 2) {
+                      ask_to_stop();
+                    }
+                  }));
+  EXPECT_EQ(lines_in("kernel"), 1u);
+  EXPECT_THAT(output_.str(), HasSubstr("app ended: exit code 1; restarting it (1 of 5 within a minute)"));
+}
+
+TEST_F(SupervisorTest, leaves_no_child_whichever_way_it_ends) {
+  for (const char* const last : {"echo ready; exit 1", "exit 1"}) {
+    ASSERT_FALSE(run({shell("sim", "echo ready; " + stay), shell("kernel", last)}, [] {}));
+    EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);
+    EXPECT_EQ(errno, ECHILD);
+  }
+}
+
+TEST_F(SupervisorTest, takes_along_what_a_child_has_started) {
+  UniqueFd grandchild;
+  ASSERT_TRUE(
+      run({shell("kernel", "tail -f /dev/null & echo $! >" + file("pid") + "; echo ready; wait")}, [&] {
+        pid_t pid = 0;
+        std::ifstream(file("pid")) >> pid;
+        grandchild = UniqueFd(pidfd_open(pid, 0));
+        ask_to_stop();
+      }));
+  pollfd ended{grandchild.get(), POLLIN, 0};
+  EXPECT_EQ(poll(&ended, 1, -1), 1);
+}
+
+TEST_F(SupervisorTest, a_second_signal_kills_what_does_not_end) {
+  const std::string deaf = "trap : TERM; kill -TERM $PPID; echo ready; while :; do kill -TERM $PPID; done";
+  EXPECT_TRUE(run({shell("deaf", deaf)}, [] {}));
+  EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);
+}
+
+TEST_F(SupervisorTest, a_program_that_cannot_be_run_is_named_with_the_reason) {
+  const auto result = run({{{"kernel", folder_ / "missing", {}}, false}}, [] {});
+  ASSERT_FALSE(result);
+  EXPECT_THAT(result.error().text, HasSubstr("kernel did not start: exit code 127"));
+  EXPECT_THAT(output_.str(), HasSubstr("[kernel] cannot be run: No such file or directory"));
+}
+
+TEST_F(SupervisorTest, a_line_without_end_is_cut_and_still_forwarded) {
+  ASSERT_TRUE(run({shell("kernel", "head -c 100000 /dev/zero | tr '\\0' x; echo; echo ready; " + stay)},
+                  ask_to_stop));
+  EXPECT_THAT(output_.str(), HasSubstr("[kernel] " + std::string(65536, 'x') + "\n[kernel] xxx"));
+}
+
+TEST_F(SupervisorTest, only_a_whole_word_is_readiness) {
+  const auto result = run({shell("kernel", "echo readying; exit 1")}, [] {});
+  ASSERT_FALSE(result);
+  EXPECT_THAT(result.error().text, HasSubstr("did not start"));
+}
+
+}  // namespace
+}  // namespace interlock::cli
