@@ -1,7 +1,7 @@
 /** What a click does: one call to the app, its answer into the store. */
 import { type AxisAction, api, type ProposalDraft } from "../api/client";
 import { noticeOfProblem } from "./notice";
-import { useConsole, withNotice } from "./store";
+import { useConsole, withBenchAnswer, withNotice } from "./store";
 
 /** Sends STOP at once, whatever else is going on, and drops every preview. */
 export async function stop(): Promise<void> {
@@ -39,6 +39,13 @@ export async function abort(id: number, slot: number): Promise<void> {
   const outcome = await api.abort(id);
   const notice = outcome.ok ? null : noticeOfProblem(outcome.problem);
   useConsole.setState((state) => withNotice(state, slot, notice));
+}
+
+/** Passes a command of models/plant/README.md to the simulated hardware; a refusal is shown at the bench. */
+export async function bench(command: string, fields: Record<string, unknown>): Promise<void> {
+  const outcome = await api.benchCommand(command, fields);
+  const notice = outcome.ok ? null : noticeOfProblem(outcome.problem);
+  useConsole.setState((state) => withBenchAnswer(state, command, notice));
 }
 
 export function dismissNotice(slot: number): void {

@@ -7,6 +7,7 @@ import {
   initialState,
   MOST_PROPOSALS,
   mergeProposals,
+  withBenchAnswer,
   withFrame,
   withFrameError,
   withNotice,
@@ -81,5 +82,16 @@ describe("notices", () => {
     const set = applied(open, withNotice(open, 4, notice));
     expect(set.notices).toEqual({ 4: notice });
     expect(withNotice(set, 4, null).notices).toEqual({});
+  });
+});
+
+describe("the refusal of a bench command", () => {
+  it("outlives other commands, such as renewals of the pedal, and goes when the command is accepted", () => {
+    const refused = applied(open, withBenchAnswer(open, "jam", notice));
+    expect(applied(refused, withBenchAnswer(refused, "pedal", null)).benchRefusal).toEqual({
+      command: "jam",
+      notice,
+    });
+    expect(applied(refused, withBenchAnswer(refused, "jam", null)).benchRefusal).toBeNull();
   });
 });

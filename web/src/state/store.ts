@@ -24,6 +24,8 @@ export interface ConsoleState {
   /** Refusals by slot, until dismissed or followed by an accepted request. */
   readonly notices: Readonly<Record<number, Notice>>;
   readonly unlockNotice: Notice | null;
+  /** The bench command that was refused last; goes when the same command is accepted. */
+  readonly benchRefusal: { readonly command: string; readonly notice: Notice } | null;
   readonly stop: StopReport;
   /** Grows with every STOP; previews that began before it are dropped. */
   readonly stops: number;
@@ -42,6 +44,7 @@ export const initialState: ConsoleState = {
   proposals: [],
   notices: {},
   unlockNotice: null,
+  benchRefusal: null,
   stop: { phase: "idle" },
   stops: 0,
 };
@@ -94,4 +97,14 @@ export function mergeProposals(newer: readonly Proposal[], older: readonly Propo
 export function withNotice(state: ConsoleState, slot: number, notice: Notice | null): Partial<ConsoleState> {
   const { [slot]: _, ...others } = state.notices;
   return { notices: notice === null ? others : { ...others, [slot]: notice } };
+}
+
+/** Takes in the answer to a bench command. A pedal that is renewed all the time clears no other command's refusal. */
+export function withBenchAnswer(
+  state: ConsoleState,
+  command: string,
+  notice: Notice | null,
+): Partial<ConsoleState> {
+  if (notice !== null) return { benchRefusal: { command, notice } };
+  return state.benchRefusal?.command === command ? { benchRefusal: null } : {};
 }

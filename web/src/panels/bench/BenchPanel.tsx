@@ -1,9 +1,7 @@
-import { useState } from "react";
-import { api } from "../../api/client";
 import { NoticeText } from "../../design/NoticeText";
 import { Panel } from "../../design/Panel";
 import { catalog, entry } from "../../generated/catalog";
-import { type Notice, noticeOfProblem } from "../../state/notice";
+import { bench } from "../../state/commands";
 import { useConsole } from "../../state/store";
 import { useJammedSlots } from "./useJammedSlots";
 import { usePedal } from "./usePedal";
@@ -11,33 +9,25 @@ import "./bench.css";
 
 /** The hands and feet of the simulated hardware; exists only with it. */
 export function BenchPanel() {
-  const [notice, setNotice] = useState<Notice | null>(null);
-  const command = async (name: string, body: Record<string, unknown>): Promise<void> => {
-    const outcome = await api.benchCommand(name, body);
-    setNotice(outcome.ok ? null : noticeOfProblem(outcome.problem));
-  };
+  const refusal = useConsole((state) => state.benchRefusal);
   return (
     <Panel title="Bench" className="bench-panel">
       <p className="bench-banner">SIMULATED HARDWARE</p>
-      <Pedal command={command} />
-      <Estop command={command} />
-      <Jam command={command} />
+      <Pedal />
+      <Estop />
+      <Jam />
       <Lamps />
-      {notice !== null && (
+      {refusal !== null && (
         <p className="bench-notice" role="alert">
-          <NoticeText lead="Refused:" notice={notice} />
+          <NoticeText lead={`Refused ${refusal.command}:`} notice={refusal.notice} />
         </p>
       )}
     </Panel>
   );
 }
 
-interface CommandProps {
-  readonly command: (name: string, body: Record<string, unknown>) => Promise<void>;
-}
-
-function Pedal({ command }: CommandProps) {
-  const { down, latched, press, lift, toggleLatch } = usePedal((pressed) => command("pedal", { pressed }));
+function Pedal() {
+  const { down, latched, press, lift, toggleLatch } = usePedal();
   return (
     <div className="bench-row">
       <button
@@ -61,13 +51,13 @@ function Pedal({ command }: CommandProps) {
   );
 }
 
-function Estop({ command }: CommandProps) {
+function Estop() {
   return (
     <div className="bench-row">
-      <button type="button" className="button" onClick={() => void command("estop", { pulled: true })}>
+      <button type="button" className="button" onClick={() => void bench("estop", { pulled: true })}>
         Pull E-stop
       </button>
-      <button type="button" className="button" onClick={() => void command("estop", { pulled: false })}>
+      <button type="button" className="button" onClick={() => void bench("estop", { pulled: false })}>
         Release E-stop
       </button>
     </div>
@@ -75,11 +65,11 @@ function Estop({ command }: CommandProps) {
 }
 
 /** Which axes are jammed is asked of the simulator, since others may jam them too. */
-function Jam({ command }: CommandProps) {
+function Jam() {
   const motors = useConsole((state) => state.motors);
   const [jammed, refresh] = useJammedSlots();
   const toggle = async (slot: number): Promise<void> => {
-    await command("jam", { slot, jammed: !jammed.has(slot) });
+    await bench("jam", { slot, jammed: !jammed.has(slot) });
     refresh();
   };
   return (

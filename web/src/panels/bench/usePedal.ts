@@ -1,18 +1,17 @@
-import { useEffect, useRef, useState } from "react";
+import { useEffect, useState } from "react";
+import { bench } from "../../state/commands";
 import { useConsole } from "../../state/store";
-import { PedalFoot, type SendPedal } from "./pedal";
+import { PedalFoot } from "./pedal";
 
 /**
  * The pedal under a pointer, with a latch for those who need the pointer elsewhere. Whatever takes the page out
  * of the operator's hands (another window or tab, leaving, covered data) lifts the foot and opens the latch.
  */
-export function usePedal(send: SendPedal) {
+export function usePedal() {
   const [held, setHeld] = useState(false);
   const [latched, setLatched] = useState(false);
   const blind = useConsole((state) => state.freshness.level === "covered");
-  const sender = useRef(send);
-  sender.current = send;
-  const [foot] = useState(() => new PedalFoot((pressed) => sender.current(pressed)));
+  const [foot] = useState(() => new PedalFoot((pressed) => bench("pedal", { pressed })));
   const down = (held || latched) && !blind;
 
   useEffect(() => {
