@@ -100,7 +100,7 @@ tl::expected<Proposal, Refusal> ProposalBook::propose(const MoveDraft& move, con
   }
   become(proposal, ProposalState::checked, "Inside the range that the kernel allows now.");
   if (!send_(Order{proposal.id, move.slot, move.target_counts, move.drive.value_or(0), 0})) {
-    return tl::make_unexpected(refuse(proposal, Refusal{"BUSY", "The control thread takes no more commands now.", "",
+    return tl::make_unexpected(refuse(proposal, Refusal{"OVERLOADED", "The control thread takes no more commands now.", "",
                                                         "Try again; if it happens again, report it with the log."}));
   }
   replace_open(move.slot, proposal.id);
@@ -147,7 +147,7 @@ tl::expected<Proposal, Refusal> ProposalBook::abort(std::uint32_t id) {
                                        "a proposal that is approved, executing or paused", "None."});
   }
   if (!send_(Cancel{id, proposal->move.slot})) {
-    return tl::make_unexpected(Refusal{"BUSY", "The control thread takes no more commands now.", "",
+    return tl::make_unexpected(Refusal{"OVERLOADED", "The control thread takes no more commands now.", "",
                                        "Press STOP, or release the pedal."});
   }
   become(*proposal, ProposalState::aborted, "Ended by its author.");

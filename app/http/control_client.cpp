@@ -1,0 +1,87 @@
+#include "http/control_client.hpp"
+
+#include <unistd.h>
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <chrono>
+
+namespace interlock::web {
+namespace {
+
+namespace asio = boost::asio;
+using std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds ask_timeout{1000};
+constexpr std::chrono::milliseconds stop_timeout{300};
+constexpr auto as_result = asio::as_tuple(asio::use_awaitable);
+
+}  // namespace
+
+ControlClient::ControlClient(const asio::any_io_executor& executor, Mailbox& mailbox)
+    : executor_(executor), mailbox_(mailbox), wake_(executor, ::dup(mailbox.network_wake.descriptor())) {}
+
+bool ControlClient::send(Command command) {
+  if (auto* order = std::get_if<Order>(&command)) {
+    order->stops = mailbox_.stops.load(std::memory_order_relaxed);
+  }
+  return mailbox_.commands.push(command);
+}
+
+asio::awaitable<std::optional<Answer>> ControlClient::ask(std::uint32_t kind, std::uint32_t slot) {
+  const auto deadline = steady_clock::now() + ask_timeout;
+  Waiter<Answer> waiter{std::nullopt, asio::steady_timer(executor_, deadline)};
+  const std::uint32_t ticket = ++last_ticket_;
+  if (!send(Ask{ticket, kind, slot, deadline})) {
+    co_return std::nullopt;
+  }
+  asks_[ticket] = &waiter;
+  co_await waiter.timer.async_wait(as_result);
+  asks_.erase(ticket);
+  co_return waiter.result;
+}
+
+asio::awaitable<std::optional<StopAnswer>> ControlClient::stop() {
+  const std::uint32_t number = mailbox_.stops.fetch_add(1, std::memory_order_release) + 1;
+  if (!view().attached) {
+    co_return std::nullopt;
+  }
+  Waiter<StopAnswer> waiter{std::nullopt, asio::steady_timer(executor_, steady_clock::now() + stop_timeout)};
+  const auto place = stops_.emplace(number, &waiter);
+  co_await waiter.timer.async_wait(as_result);
+  stops_.erase(place);
+  co_return waiter.result;
+}
+
+asio::awaitable<void> ControlClient::listen() {
+  for (;;) {
+    const auto [error] = co_await wake_.async_wait(asio::posix::stream_descriptor::wait_read, as_result);
+    if (error) {
+      co_return;
+    }
+    mailbox_.network_wake.clear();
+    on_orders(view().orders);
+    mailbox_.notices.consume_all([this](const Notice& notice) { take(notice); });
+  }
+}
+
+void ControlClient::take(const Notice& notice) {
+  if (const auto* event = std::get_if<ilk_event_t>(&notice)) {
+    on_event(*event);
+  } else if (const auto* lost = std::get_if<EventsLost>(&notice)) {
+    on_events_lost(*lost);
+  } else if (const auto* answer = std::get_if<Answer>(&notice)) {
+    const auto found = asks_.find(answer->ticket);
+    if (found != asks_.end()) {
+      found->second->result = *answer;
+      found->second->timer.cancel();
+    }
+  } else if (const auto* stopped = std::get_if<StopAnswer>(&notice)) {
+    for (auto each = stops_.begin(); each != stops_.end() && each->first <= stopped->stops; ++each) {
+      each->second->result = *stopped;
+      each->second->timer.cancel();
+    }
+  }
+}
+
+}  // namespace interlock::web

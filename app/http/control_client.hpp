@@ -1,0 +1,62 @@
+/**
+ * @file
+ * The network thread's end of the mailbox to the control thread.
+ */
+#pragma once
+
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+
+#include "motion/mailbox.hpp"
+
+namespace interlock::web {
+
+class ControlClient {
+ public:
+  ControlClient(const boost::asio::any_io_executor& executor, Mailbox& mailbox);
+
+  /** What the control thread saw last. The reference holds until the next call. */
+  [[nodiscard]] const ControlView& view() { return mailbox_.view.newest(); }
+
+  /** Hands over a command, an order marked as newer than every STOP so far; false when the queue is full. */
+  bool send(Command command);
+
+  /** Sends one request to the kernel; empty when no verdict came within a second. */
+  boost::asio::awaitable<std::optional<Answer>> ask(std::uint32_t kind, std::uint32_t slot);
+
+  /** Stops, whatever else waits; empty when no kernel is connected or none answered within 300 ms. */
+  boost::asio::awaitable<std::optional<StopAnswer>> stop();
+
+  /** Told of each kernel event, and of each lot of events that was lost. */
+  std::function<void(const ilk_event_t&)> on_event = [](const ilk_event_t&) {};
+  std::function<void(const EventsLost&)> on_events_lost = [](const EventsLost&) {};
+  /** Told that orders may have changed. */
+  std::function<void(const OrderTable&)> on_orders = [](const OrderTable&) {};
+
+  /** Serves until the io_context stops. */
+  boost::asio::awaitable<void> listen();
+
+ private:
+  template <typename Result>
+  struct Waiter {
+    std::optional<Result> result;
+    boost::asio::steady_timer timer;
+  };
+
+  void take(const Notice& notice);
+
+  boost::asio::any_io_executor executor_;
+  Mailbox& mailbox_;
+  boost::asio::posix::stream_descriptor wake_;
+  std::uint32_t last_ticket_ = 0;
+  std::map<std::uint32_t, Waiter<Answer>*> asks_;
+  std::multimap<std::uint32_t, Waiter<StopAnswer>*> stops_;
+};
+
+}  // namespace interlock::web

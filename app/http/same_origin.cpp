@@ -1,0 +1,45 @@
+#include "http/same_origin.hpp"
+
+#include <string_view>
+
+namespace interlock::web {
+namespace {
+
+namespace http = boost::beast::http;
+
+std::string_view value_of(const Request& request, http::field field) {
+  const auto value = request[field];
+  return {value.data(), value.size()};
+}
+
+std::string_view without_port(std::string_view host) {
+  const std::size_t bracket = host.rfind(']');
+  const std::size_t colon = host.rfind(':');
+  const bool has_port = colon != std::string_view::npos && (bracket == std::string_view::npos || colon > bracket);
+  return has_port ? host.substr(0, colon) : host;
+}
+
+}  // namespace
+
+std::optional<Problem> check_host(const Request& request) {
+  const std::string_view host = without_port(value_of(request, http::field::host));
+  if (host == "localhost" || host == "127.0.0.1" || host == "[::1]") {
+    return std::nullopt;
+  }
+  return Problem{Status::forbidden, "HOST", "The host \"" + std::string(host) + "\" is not this machine.", "",
+                 "localhost, 127.0.0.1 or [::1]", "Open the address that interlock-app printed.", ""};
+}
+
+std::optional<Problem> check_origin(const Request& request) {
+  const std::string_view origin = value_of(request, http::field::origin);
+  const std::string own = "http://" + std::string(value_of(request, http::field::host));
+  if (origin.empty() || origin == own) {
+    return std::nullopt;
+  }
+  return Problem{Status::forbidden, "ORIGIN", "The page of \"" + std::string(origin) + "\" may not do this.", "", own,
+                 "Use the console that this server brings.", ""};
+}
+
+bool is_safe(http::verb method) { return method == http::verb::get || method == http::verb::head; }
+
+}  // namespace interlock::web

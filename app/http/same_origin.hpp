@@ -1,0 +1,22 @@
+/**
+ * @file
+ * Keeps other sites' pages out: a browser on this machine may reach the loopback interface on their behalf.
+ */
+#pragma once
+
+#include <optional>
+
+#include "http/message.hpp"
+
+namespace interlock::web {
+
+/** 403 HOST unless the request names this machine's loopback interface, as a rebound name would not. */
+std::optional<Problem> check_host(const Request& request);
+
+/** 403 ORIGIN when the request was sent by a page of another origin. Requests that no page sent carry no origin. */
+std::optional<Problem> check_origin(const Request& request);
+
+/** Whether the method only reads. */
+bool is_safe(boost::beast::http::verb method);
+
+}  // namespace interlock::web

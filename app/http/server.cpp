@@ -1,0 +1,235 @@
+#include "http/server.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <chrono>
+#include <exception>
+#include <optional>
+
+#include "http/same_origin.hpp"
+
+namespace interlock::web {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+using asio::ip::tcp;
+
+constexpr std::chrono::seconds request_timeout{30};
+constexpr std::chrono::seconds answer_timeout{10};
+constexpr std::chrono::seconds drain_timeout{1};
+constexpr std::size_t drain_bytes = 4u << 20u;
+constexpr auto as_result = asio::as_tuple(asio::use_awaitable);
+
+constexpr const char* content_security_policy =
+    "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; connect-src 'self'; img-src 'self' data:; "
+    "object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+void add_security_headers(Response& response) {
+  response.set("Content-Security-Policy", content_security_policy);
+  response.set("X-Content-Type-Options", "nosniff");
+  response.set("Referrer-Policy", "no-referrer");
+  response.set("Cross-Origin-Resource-Policy", "same-origin");
+}
+
+Problem problem_of(const beast::error_code& error) {
+  if (error == http::error::body_limit) {
+    return {Status::payload_too_large, "TOO_LARGE", "The body is too large.", "",
+            "at most " + std::to_string(Server::longest_body) + " bytes", "", ""};
+  }
+  if (error == http::error::header_limit || error == http::error::buffer_overflow) {
+    return {Status::request_header_fields_too_large, "TOO_LARGE", "The header is too large.", "",
+            "at most " + std::to_string(Server::longest_header) + " bytes", "", ""};
+  }
+  return {Status::bad_request, "MALFORMED", "This is no HTTP request: " + error.message() + ".", "", "HTTP/1.1", "",
+          ""};
+}
+
+bool is_protocol_error(const beast::error_code& error) {
+  static const auto& category = beast::error_code(http::error::bad_method).category();
+  return error.category() == category && error != http::error::end_of_stream && error != http::error::partial_message;
+}
+
+}  // namespace
+
+tl::expected<void, std::string> Server::listen(const Listen& where) {
+  beast::error_code error;
+  const auto address = asio::ip::make_address(where.address, error);
+  if (error) {
+    return tl::make_unexpected("--listen " + where.address + " is no address; expected 127.0.0.1 or ::1");
+  }
+  if (!address.is_loopback()) {
+    return tl::make_unexpected("--listen " + where.address +
+                               " would let other machines in, and there is no encryption and no login yet; expected "
+                               "127.0.0.1 or ::1. Use an SSH tunnel to reach it from elsewhere");
+  }
+  acceptor_.open(address.is_v6() ? tcp::v6() : tcp::v4(), error);
+  if (!error) {
+    acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
+  }
+  if (!error) {
+    acceptor_.bind(tcp::endpoint(address, where.port), error);
+  }
+  if (!error) {
+    acceptor_.listen(asio::socket_base::max_listen_connections, error);
+  }
+  if (error) {
+    return tl::make_unexpected("cannot listen on " + where.address + ":" + std::to_string(where.port) + ": " +
+                               error.message() + "; stop what uses the port, or choose another one with --port");
+  }
+  return {};
+}
+
+asio::awaitable<void> Server::accept() {
+  asio::steady_timer pause(acceptor_.get_executor());
+  for (;;) {
+    auto [error, socket] = co_await acceptor_.async_accept(as_result);
+    if (error == asio::error::operation_aborted) {
+      co_return;
+    }
+    if (error) {
+      // Out of descriptors, most likely: trying again at once would only burn the processor.
+      spdlog::error("cannot accept a connection: {}", error.message());
+      pause.expires_after(std::chrono::milliseconds(100));
+      co_await pause.async_wait(as_result);
+      continue;
+    }
+    make_room();
+    auto session = std::make_shared<Session>(beast::tcp_stream(std::move(socket)));
+    const auto place = sessions_.insert(sessions_.end(), session);
+    asio::co_spawn(acceptor_.get_executor(), serve(session), [this, place](const std::exception_ptr& thrown) {
+      sessions_.erase(place);
+      if (thrown) {
+        try {
+          std::rethrow_exception(thrown);
+        } catch (const std::exception& exception) {
+          spdlog::critical("a connection ended by an exception: {}", exception.what());
+        }
+      }
+    });
+  }
+}
+
+void Server::make_room() {
+  if (sessions_.size() < capacity) {
+    return;
+  }
+  const auto idle =
+      std::find_if(sessions_.begin(), sessions_.end(), [](const auto& session) { return session->waiting; });
+  if (idle != sessions_.end()) {
+    (*idle)->stream.close();
+  }
+}
+
+asio::awaitable<void> Server::serve(std::shared_ptr<Session> session) {
+  for (bool keep_alive = true; keep_alive;) {
+    http::request_parser<http::string_body> parser;
+    parser.body_limit(longest_body);
+    parser.header_limit(longest_header);
+    session->stream.expires_after(request_timeout);
+    session->waiting = true;
+    const auto [error, bytes] = co_await http::async_read(session->stream, session->buffer, parser, as_result);
+    session->waiting = false;
+    if (error) {
+      co_await refuse(*session, error);
+      co_return;
+    }
+    Request request = parser.release();
+    if (beast::websocket::is_upgrade(request) && path_of(request) == "/api/stream") {
+      std::optional<Problem> problem = check_host(request);
+      problem = problem ? problem : check_origin(request);
+      if (!problem && api_.stream().full()) {
+        problem = Problem{Status::service_unavailable, "OVERLOADED", "Too many clients watch the stream.", "",
+                          "at most " + std::to_string(StreamHub::capacity), "Close another console.", ""};
+      }
+      if (!problem) {
+        co_await api_.stream().serve(std::move(session->stream), std::move(request));
+        co_return;
+      }
+      co_await answer(*session, problem_response(*problem), false, false);
+      co_return;
+    }
+    session->stream.expires_never();
+    Response response = co_await respond(request);
+    spdlog::debug("{} {} -> {}", std::string(request.method_string()), path_of(request), response.result_int());
+    keep_alive = co_await answer(*session, std::move(response), request.method() == http::verb::head,
+                                 request.keep_alive());
+  }
+  beast::error_code ignored;
+  session->stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
+}
+
+asio::awaitable<Response> Server::respond(const Request& request) {
+  if (const auto problem = check_host(request)) {
+    co_return problem_response(*problem);
+  }
+  if (!is_safe(request.method())) {
+    if (const auto problem = check_origin(request)) {
+      co_return problem_response(*problem);
+    }
+  }
+  const std::string path = path_of(request);
+  if (path == "/api" || path.starts_with("/api/")) {
+    co_return co_await respond_api(request);
+  }
+  co_return files_.serve(request);
+}
+
+asio::awaitable<Response> Server::respond_api(const Request& request) {
+  std::string thrown;
+  try {
+    const Reply reply = co_await api_.router().route(request);
+    co_return reply ? json_response(*reply) : problem_response(reply.error());
+  } catch (const std::exception& exception) {
+    thrown = exception.what();
+  }
+  spdlog::critical("{} {} threw: {}", std::string(request.method_string()), path_of(request), thrown);
+  co_return problem_response({Status::internal_server_error, "INTERNAL", "The app failed to answer.", "", "",
+                              "Report it with the log.", ""});
+}
+
+asio::awaitable<bool> Server::answer(Session& session, Response response, bool head_only, bool keep_alive) {
+  add_security_headers(response);
+  response.version(11);
+  response.keep_alive(keep_alive);
+  response.prepare_payload();
+  session.stream.expires_after(answer_timeout);
+  beast::error_code error;
+  if (head_only) {
+    http::response<http::empty_body> head{std::move(response.base())};
+    http::response_serializer<http::empty_body> serializer(head);
+    error = std::get<0>(co_await http::async_write_header(session.stream, serializer, as_result));
+  } else {
+    error = std::get<0>(co_await http::async_write(session.stream, response, as_result));
+  }
+  co_return !error && keep_alive;
+}
+
+/** Answers what could not be read. What is still on its way is read and dropped, else the peer may lose the answer. */
+asio::awaitable<void> Server::refuse(Session& session, const beast::error_code& error) {
+  if (!is_protocol_error(error)) {
+    co_return;
+  }
+  co_await answer(session, problem_response(problem_of(error)), false, false);
+  beast::error_code ended;
+  session.stream.socket().shutdown(tcp::socket::shutdown_send, ended);
+  session.stream.expires_after(drain_timeout);
+  std::array<char, 16384> dropped{};
+  for (std::size_t left = drain_bytes; left > dropped.size() && !ended;) {
+    const auto [read_error, bytes] = co_await session.stream.async_read_some(asio::buffer(dropped), as_result);
+    ended = read_error;
+    left -= bytes;
+  }
+}
+
+}  // namespace interlock::web

@@ -1,0 +1,68 @@
+/**
+ * @file
+ * The HTTP server: connections, limits, security headers, and who answers what.
+ */
+#pragma once
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <cstdint>
+#include <list>
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "http/api.hpp"
+#include "http/static_files.hpp"
+
+namespace interlock::web {
+
+/** Where to listen. */
+struct Listen {
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 8080; /**< 0: any free one */
+};
+
+class Server {
+ public:
+  /** Connections at the same time; the oldest one that waits for a request makes room for a newer one. */
+  static constexpr std::size_t capacity = 256;
+  static constexpr std::uint64_t longest_body = 64u * 1024u;
+  static constexpr std::uint32_t longest_header = 16u * 1024u;
+
+  Server(const boost::asio::any_io_executor& executor, Api& api, StaticFiles files)
+      : acceptor_(executor), api_(api), files_(std::move(files)) {}
+
+  /** Starts to listen; the error names address, port and what to do. Only loopback addresses are granted. */
+  tl::expected<void, std::string> listen(const Listen& where);
+
+  /** The port that was granted. */
+  [[nodiscard]] std::uint16_t port() const { return acceptor_.local_endpoint().port(); }
+
+  /** Accepts and serves connections; ends with the io_context. */
+  boost::asio::awaitable<void> accept();
+
+ private:
+  struct Session {
+    explicit Session(boost::beast::tcp_stream connection) : stream(std::move(connection)) {}
+    boost::beast::tcp_stream stream;
+    boost::beast::flat_buffer buffer;
+    bool waiting = true; /**< for a request, hence free to be closed */
+  };
+
+  boost::asio::awaitable<void> serve(std::shared_ptr<Session> session);
+  boost::asio::awaitable<Response> respond(const Request& request);
+  boost::asio::awaitable<Response> respond_api(const Request& request);
+  boost::asio::awaitable<bool> answer(Session& session, Response response, bool head_only, bool keep_alive);
+  boost::asio::awaitable<void> refuse(Session& session, const boost::beast::error_code& error);
+  void make_room();
+
+  boost::asio::ip::tcp::acceptor acceptor_;
+  Api& api_;
+  StaticFiles files_;
+  std::list<std::shared_ptr<Session>> sessions_;
+};
+
+}  // namespace interlock::web

@@ -1,0 +1,189 @@
+#include "http/status_json.hpp"
+
+#include <array>
+#include <utility>
+
+#include "build_info/build_info.hpp"
+#include "interlock/sim_bus.h"
+#include "motion/axis_plan.hpp"
+#include "motion/setpoint_range.hpp"
+#include "robot/catalog.hpp"
+#include "robot/compile.hpp"
+
+namespace interlock::web {
+namespace {
+
+using catalog::Family;
+using nlohmann::json;
+
+const std::array<const char*, ILK_PHASE_COUNT> phase_names{"wake", "bus", "step", "publish"};
+
+json causes_json(std::uint32_t causes_seen) {
+  json causes = json::array();
+  for (const catalog::Entry& cause : catalog::entries(Family::cause)) {
+    if (((causes_seen >> cause.number) & 1u) != 0) {
+      causes.push_back(cause.name);
+    }
+  }
+  return causes;
+}
+
+json lamps_json(const ilk_snapshot_t& snapshot) {
+  json lamps = json::object();
+  for (std::uint32_t lamp = 0; lamp < ILK_LAMP_COUNT; ++lamp) {
+    lamps[catalog::name(Family::lamp, lamp)] = catalog::name(Family::colour, snapshot.lamp[lamp]);
+  }
+  return lamps;
+}
+
+json cards_json(const ilk_config_t& config, const ilk_state_t& state) {
+  json cards = json::array();
+  for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
+    const ilk_axis_t& axis = state.axis[slot];
+    if (config.axis[slot].card != ILK_CARD_NONE) {
+      cards.push_back({{"slot", slot},
+                       {"card", catalog::name(Family::card, config.axis[slot].card)},
+                       {"detected", axis.card_seen != 0 && axis.bad_frames < config.bad_frame_limit},
+                       {"heartbeat", axis.heartbeat},
+                       {"checksum_failures", axis.checksum_failures}});
+    }
+  }
+  return cards;
+}
+
+json timing_json(const ilk_timing_t& timing) {
+  json phases = json::object();
+  for (std::size_t phase = 0; phase < phase_names.size(); ++phase) {
+    phases[phase_names[phase]] = {{"max_ns", timing.max_ns[phase]}, {"buckets", timing.bucket[phase]}};
+  }
+  return phases;
+}
+
+json verdict_event(const ilk_event_t& event) {
+  return {{"kind", "verdict"},
+          {"sequence", event.value[0]},
+          {"request", catalog::name(Family::request, event.value[1])},
+          {"slot", event.value[2]},
+          {"verdict", catalog::name(Family::verdict, event.value[3])}};
+}
+
+json mode_event(const ilk_event_t& event) {
+  return {{"kind", "mode"},
+          {"from", catalog::name(Family::mode, event.value[0])},
+          {"to", catalog::name(Family::mode, event.value[1])},
+          {"cause", catalog::name(Family::cause, event.value[2])},
+          {"cause_value", event.value[3]}};
+}
+
+json fault_event(const ilk_event_t& event) {
+  return {{"kind", "fault"},
+          {"slot", event.value[0]},
+          {"fault", catalog::name(Family::fault, event.value[1])},
+          {"fault_value", static_cast<std::int32_t>(event.value[2])}};
+}
+
+json axis_event(const ilk_event_t& event) {
+  return {{"kind", "axis"},
+          {"slot", event.value[0]},
+          {"from", catalog::name(Family::axis_state, event.value[1])},
+          {"to", catalog::name(Family::axis_state, event.value[2])},
+          {"homed", event.value[3] != 0}};
+}
+
+json event_body(const ilk_event_t& event) {
+  switch (event.kind) {
+    case ILK_EVENT_VERDICT:
+      return verdict_event(event);
+    case ILK_EVENT_MODE:
+      return mode_event(event);
+    case ILK_EVENT_FAULT:
+      return fault_event(event);
+    case ILK_EVENT_AXIS:
+      return axis_event(event);
+    default:
+      return {{"kind", "unknown"}};
+  }
+}
+
+}  // namespace
+
+json status_json(const Robot& robot, const ilk_config_t& config, const ControlView& view,
+                 std::chrono::steady_clock::time_point now) {
+  static const ControlView nothing{};
+  const ControlView& shown = view.attached ? view : nothing;
+  const ilk_snapshot_t& snapshot = shown.snapshot;
+  const ilk_state_t& state = snapshot.state;
+  const std::chrono::duration<double, std::milli> age =
+      view.attached ? now - view.received : std::chrono::steady_clock::duration::zero();
+  return {{"version", version()},
+          {"commit", commit()},
+          {"robot", robot.name},
+          {"simulated", snapshot.simulated != 0},
+          {"degraded", snapshot.degraded != 0},
+          {"clock", snapshot.clock == ILK_CLOCK_SIM ? "sim" : "real"},
+          {"connected", view.attached},
+          {"mode", catalog::name(Family::mode, state.mode)},
+          {"cause", catalog::name(Family::cause, state.cause)},
+          {"cause_tick", state.cause_tick},
+          {"cause_value", state.cause_value},
+          {"causes_seen", causes_json(state.causes_seen)},
+          {"tick", state.tick},
+          {"estop", state.estop != 0},
+          {"pedal", catalog::name(Family::pedal, state.pedal)},
+          {"pedal_armed", state.pedal_armed != 0},
+          {"app_alive", state.app_alive != 0},
+          {"holder", state.holder},
+          {"overruns", snapshot.overruns},
+          {"config_crc", config_hash(config)},
+          {"age_ms", age.count()},
+          {"lamps", lamps_json(snapshot)},
+          {"cards", cards_json(config, state)},
+          {"timing", timing_json(snapshot.timing)}};
+}
+
+json motor_json(const Axis& axis, const ilk_config_t& config, const ControlView& view, const Proposal* open) {
+  const ilk_axis_config_t& rules = config.axis[axis.slot];
+  const ilk_axis_t& state = view.snapshot.state.axis[axis.slot];
+  const SetpointRange range = setpoint_range(rules, state, view.snapshot.state.mode);
+  json motor{{"slot", axis.slot},
+             {"name", axis.name},
+             {"title", axis.title},
+             {"card", catalog::name(Family::card, rules.card)},
+             {"unit", unit_name(axis.unit)},
+             {"counts_per_unit", axis.counts_per_unit},
+             {"state", catalog::name(Family::axis_state, state.state)},
+             {"fault", catalog::name(Family::fault, state.fault)},
+             {"fault_value", state.fault_value},
+             {"position_counts", state.position_counts},
+             {"position", axis.to_unit(state.position_counts)},
+             {"setpoint_counts", nullptr},
+             {"setpoint", nullptr},
+             {"min_counts", range.lowest_counts},
+             {"max_counts", range.highest_counts},
+             {"soft_min_counts", rules.min_counts},
+             {"soft_max_counts", rules.max_counts},
+             {"homed", state.homed != 0},
+             {"switch", state.switch_triggered != 0},
+             {"limit_side", catalog::name(Family::limit_side, rules.limit_side)},
+             {"gate", catalog::name(Family::gate, view.snapshot.gate[axis.slot])},
+             {"drive", view.snapshot.command[axis.slot].drive},
+             {"max_drive", rules.max_drive},
+             {"unhomed_max_drive", rules.unhomed_max_drive},
+             {"deadband_counts", rules.deadband_counts}};
+  if (open != nullptr) {
+    motor["setpoint_counts"] = open->move.target_counts;
+    motor["setpoint"] = open->target;
+  }
+  return motor;
+}
+
+json event_json(const ilk_event_t& event) {
+  json message = event_body(event);
+  message["type"] = "event";
+  message["tick"] = event.tick;
+  return message;
+}
+
+json events_lost_json(std::uint32_t count) { return {{"type", "event"}, {"kind", "lost"}, {"count", count}}; }
+
+}  // namespace interlock::web

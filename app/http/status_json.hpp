@@ -1,0 +1,29 @@
+/**
+ * @file
+ * The view in words: schemas `Status`, `Motor` and the stream's event message of spec/openapi.yaml.
+ */
+#pragma once
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "motion/mailbox.hpp"
+#include "proposals/proposal.hpp"
+#include "robot/robot.hpp"
+
+namespace interlock::web {
+
+/** Schema `Status`. */
+nlohmann::json status_json(const Robot& robot, const ilk_config_t& config, const ControlView& view,
+                           std::chrono::steady_clock::time_point now);
+
+/** Schema `Motor`. `open` is the open proposal of the axis, or null. */
+nlohmann::json motor_json(const Axis& axis, const ilk_config_t& config, const ControlView& view, const Proposal* open);
+
+/** Text message of the stream for a kernel event. */
+nlohmann::json event_json(const ilk_event_t& event);
+
+/** Text message of the stream that says that `count` events were lost. */
+nlohmann::json events_lost_json(std::uint32_t count);
+
+}  // namespace interlock::web

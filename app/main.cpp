@@ -1,0 +1,217 @@
+/**
+ * @file
+ * interlock-app: shows the robot and proposes motion. It can be killed at any moment; the kernel stops motion by itself.
+ */
+#include <spdlog/sinks/rotating_file_sink.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <csignal>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <stop_token>
+#include <string>
+#include <thread>
+
+#include "build_info/build_info.hpp"
+#include "http/server.hpp"
+#include "interlock/kernel.h"
+#include "motion/control_loop.hpp"
+#include "robot/catalog.hpp"
+#include "robot/compile.hpp"
+#include "robot/robot_file.hpp"
+
+namespace interlock {
+namespace {
+
+constexpr int exit_unusable = 2;
+constexpr std::size_t log_file_bytes = 5u << 20u;
+constexpr std::size_t log_files = 4;
+
+struct Options {
+  std::string robot_file;
+  std::string config_file;
+  std::string link_socket;
+  std::string bench_socket;
+  web::Listen listen;
+  std::string web_directory;
+  std::string state_directory;
+  std::string log_level = "info";
+};
+
+/** The robot and the configuration that the kernel was started with. */
+struct Model {
+  Robot robot;
+  ilk_config_t config{};
+};
+
+void describe(CLI::App& cli, Options& options) {
+  cli.set_version_flag("--version", std::string(version()) + " " + std::string(commit()));
+  cli.add_option("--robot", options.robot_file, "robot file (TOML)")->required();
+  cli.add_option("--config", options.config_file, "compiled configuration that the kernel runs (*.ilkc)")->required();
+  cli.add_option("--link", options.link_socket, "the kernel's link socket")->required();
+  cli.add_option("--bench", options.bench_socket, "control socket of the simulated hardware");
+  cli.add_option("--listen", options.listen.address, "loopback address to serve on")->capture_default_str();
+  cli.add_option("--port", options.listen.port, "port to serve on; 0: any free one")->capture_default_str();
+  cli.add_option("--web", options.web_directory, "folder of the built console")->check(CLI::ExistingDirectory);
+  cli.add_option("--state", options.state_directory, "folder for logs and other run-time state");
+  cli.add_option("--log-level", options.log_level, "debug, info, warning, error or critical")
+      ->check(CLI::IsMember({"debug", "info", "warning", "error", "critical"}))
+      ->capture_default_str();
+}
+
+tl::expected<void, std::string> start_log(const Options& options) {
+  std::vector<spdlog::sink_ptr> sinks{std::make_shared<spdlog::sinks::stderr_color_sink_mt>()};
+  if (!options.state_directory.empty()) {
+    const std::filesystem::path file = std::filesystem::path(options.state_directory) / "log" / "interlock-app.log";
+    try {
+      sinks.push_back(std::make_shared<spdlog::sinks::rotating_file_sink_mt>(file.string(), log_file_bytes, log_files));
+    } catch (const spdlog::spdlog_ex& error) {
+      return tl::make_unexpected("--state " + options.state_directory + ": cannot write the log: " + error.what() +
+                                 "; expected a folder that this user may write to");
+    }
+  }
+  auto logger = std::make_shared<spdlog::logger>("app", sinks.begin(), sinks.end());
+  logger->set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %l %v", spdlog::pattern_time_type::utc);
+  logger->set_level(spdlog::level::from_str(options.log_level));
+  logger->flush_on(spdlog::level::info);
+  spdlog::set_default_logger(logger);
+  return {};
+}
+
+tl::expected<ilk_config_t, std::string> read_config(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  ConfigBytes bytes{};
+  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  if (!stream || stream.peek() != std::ifstream::traits_type::eof()) {
+    return tl::make_unexpected("--config " + file + ": expected a readable file of " + std::to_string(bytes.size()) +
+                               " bytes; make it with `interlock model compile`");
+  }
+  const ilk_config_t config = decode(bytes);
+  const ilk_config_verdict_t verdict = ilk_config_validate(&config);
+  if (verdict.error != ILK_CONFIG_ERROR_NONE) {
+    return tl::make_unexpected(
+        "--config " + file + ": slot " + std::to_string(verdict.slot) + ": " +
+        std::string(catalog::entry(catalog::Family::config_error, verdict.error).meaning) +
+        " Make it with `interlock model compile`");
+  }
+  return config;
+}
+
+tl::expected<Model, std::string> load_model(const Options& options) {
+  const auto robot = load_robot(options.robot_file);
+  if (!robot) {
+    return tl::make_unexpected(robot.error().message());
+  }
+  const auto compiled = compile(*robot);
+  if (!compiled) {
+    return tl::make_unexpected(compiled.error().message());
+  }
+  const auto config = read_config(options.config_file);
+  if (!config) {
+    return tl::make_unexpected(config.error());
+  }
+  if (config->crc != compiled->crc) {
+    return tl::make_unexpected("--config " + options.config_file + " has configuration " + config_hash(*config) +
+                               ", but " + options.robot_file + " compiles to " + config_hash(*compiled) +
+                               "; compile it again with `interlock model compile`");
+  }
+  return Model{*robot, *config};
+}
+
+std::string url_of(const web::Listen& listen, std::uint16_t port) {
+  const bool v6 = listen.address.find(':') != std::string::npos;
+  const std::string host = v6 ? "[" + listen.address + "]" : listen.address;
+  return "http://" + host + ":" + std::to_string(port) + "/";
+}
+
+/** A handler that threw is recorded and the rest goes on; the kernel does not depend on it. */
+void run_recording(boost::asio::io_context& network) {
+  for (;;) {
+    try {
+      network.run();
+      return;
+    } catch (const std::exception& error) {
+      spdlog::critical("uncaught exception: {}", error.what());
+    }
+  }
+}
+
+tl::expected<void, std::string> serve(const Options& options, const Model& model) {
+  boost::asio::io_context network(1);
+  const auto executor = network.get_executor();
+  const auto mailbox = std::make_unique<Mailbox>();
+  web::Api api(executor, model.robot, model.config, *mailbox, options.bench_socket);
+  web::Server server(executor, api, web::StaticFiles(options.web_directory));
+  if (auto listening = server.listen(options.listen); !listening) {
+    return listening;
+  }
+  boost::asio::signal_set signals(network, SIGINT, SIGTERM);
+  signals.async_wait([&](const boost::system::error_code& error, int signal) {
+    if (!error) {
+      spdlog::info("signal {}: ending", signal);
+      boost::asio::co_spawn(executor, api.release_pedal(), [&](const std::exception_ptr&) { network.stop(); });
+    }
+  });
+  ControlLoop control(options.link_socket, RobotPlan(model.robot, model.config), *mailbox);
+  const std::jthread control_thread([&](const std::stop_token& stop) { control.run(stop); });
+  boost::asio::co_spawn(executor, api.listen(), boost::asio::detached);
+  boost::asio::co_spawn(executor, api.beat(), boost::asio::detached);
+  boost::asio::co_spawn(executor, server.accept(), boost::asio::detached);
+  const std::string url = url_of(options.listen, server.port());
+  spdlog::info("interlock-app {} {} serves {} at {}", version(), commit(), model.robot.name, url);
+  std::cout << "ready " << url << std::endl;
+  run_recording(network);
+  return {};
+}
+
+[[noreturn]] void record_and_abort() noexcept {
+  try {
+    if (const auto thrown = std::current_exception()) {
+      std::rethrow_exception(thrown);
+    }
+    spdlog::critical("terminated without an exception");
+  } catch (const std::exception& error) {
+    spdlog::critical("uncaught exception: {}", error.what());
+  } catch (...) {
+    spdlog::critical("uncaught exception of an unknown type");
+  }
+  spdlog::shutdown();
+  std::abort();
+}
+
+int run(const Options& options) {
+  const auto served = start_log(options)
+                          .and_then([&] { return load_model(options); })
+                          .and_then([&](const Model& model) { return serve(options, model); });
+  if (!served) {
+    std::cerr << "interlock-app: " << served.error() << std::endl;
+    return exit_unusable;
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace interlock
+
+int main(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::set_terminate(interlock::record_and_abort);
+  interlock::Options options;
+  CLI::App cli("Shows the robot and proposes motion to the kernel.", "interlock-app");
+  interlock::describe(cli, options);
+  try {
+    cli.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return cli.exit(error) == 0 ? 0 : interlock::exit_unusable;
+  }
+  return interlock::run(options);
+}
