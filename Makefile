@@ -35,7 +35,7 @@ $(release)/build.ninja: CMakePresets.json | setup
 
 build/stamps/console: $(web_sources) | setup
 	@echo "build: console"
-	@npm --prefix web run --silent build
+	@npm --prefix web run --silent build -- --logLevel warn
 	@touch $@
 
 # Two steps are always pending (they read the commit); progress is shown when there is more to do.
@@ -47,13 +47,16 @@ build: setup $(release)/build.ninja build/stamps/console ## Build everything (th
 run: build ## Start simulated robot, kernel, app and console: [ROBOT=neuro] [PORT=8080]
 	@exec $(release)/bin/interlock run --robot $(ROBOT) --port $(PORT)
 
-.PHONY: test test-unit test-integration test-browser
+.PHONY: test test-unit test-console test-integration test-browser
 test: build ## Run the unit, integration and browser tests; reports in build/reports/
-	@$(MAKE) --keep-going test-unit test-integration test-browser
+	@$(MAKE) --keep-going test-unit test-console test-integration test-browser
 
 test-unit: build ## Run the GoogleTest programs
 	@mkdir -p $(reports)
 	@ctest --preset release --progress --no-tests=error --output-junit $(CURDIR)/$(reports)/unit.xml
+
+test-console: setup ## Run the console's unit tests
+	@npm --prefix web run --silent test -- --reporter=default --reporter=junit --outputFile.junit=../$(reports)/console.xml
 
 test-integration: build ## Run the tests on real processes
 	@pytest --junitxml=$(reports)/integration.xml tests/integration
@@ -67,6 +70,10 @@ selftest: setup ## Show that seeded faults turn tests red: a third, chosen by th
 
 selftest-all: setup ## Show that every seeded fault turns its test red
 	@tests/failure/run.py --all
+
+.PHONY: bench
+bench: build ## Measure time, text size and stack of a kernel step against their limits
+	@python verification/bench/run.py
 
 .PHONY: lint format
 lint: build ## Check style, naming, generated files and leftovers
