@@ -82,9 +82,7 @@ Result<void> Supervisor::serve(const std::function<void()>& when_ready) {
       break;
     }
     if (const Ready* const ready = std::get_if<Ready>(&event)) {
-      ready->task.ready = true;
-      ready->task.was_ready = true;
-      going = start_next(when_ready);
+      going = note_ready(ready->task, when_ready);
     } else if (const Ended* const ended = std::get_if<Ended>(&event)) {
       going = judge_end(*ended);
     } else {
@@ -92,6 +90,14 @@ Result<void> Supervisor::serve(const std::function<void()>& when_ready) {
     }
   }
   return going;
+}
+
+Result<void> Supervisor::note_ready(Task& task, const std::function<void()>& when_ready) {
+  if (std::exchange(task.ready, true)) {
+    return {};
+  }
+  task.was_ready = true;
+  return start_next(when_ready);
 }
 
 Result<void> Supervisor::start_next(const std::function<void()>& when_ready) {

@@ -83,6 +83,7 @@ class Supervisor {
   using Event = std::variant<StopAsked, Ready, Ended, TimedOut>;
 
   Result<void> serve(const std::function<void()>& when_ready);
+  Result<void> note_ready(Task& task, const std::function<void()>& when_ready);
   Result<void> start_next(const std::function<void()>& when_ready);
   Result<void> judge_end(const Ended& ended);
   void give_up_waiting();

@@ -162,6 +162,15 @@ TEST_F(SupervisorTest, a_line_without_end_is_cut_and_still_forwarded) {
   EXPECT_THAT(output_.str(), HasSubstr("[kernel] " + std::string(65536, 'x') + "\n[kernel] xxx"));
 }
 
+TEST_F(SupervisorTest, who_says_ready_twice_is_ready_once) {
+  const std::string twice = "echo ready; echo ready; ";
+  ASSERT_TRUE(run(
+      {shell("sim", twice + stay), shell("kernel", "echo start >>" + file("starts") + "; " + twice + stay),
+       shell("app", "echo ready; " + stay)},
+      ask_to_stop));
+  EXPECT_EQ(lines_in("starts"), 1u);
+}
+
 TEST_F(SupervisorTest, only_a_whole_word_is_readiness) {
   const auto result = run({shell("kernel", "echo readying; exit 1")}, [] {});
   ASSERT_FALSE(result);
