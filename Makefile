@@ -56,7 +56,7 @@ test-unit: build ## Run the GoogleTest programs
 	@ctest --preset release --progress --no-tests=error --output-junit $(CURDIR)/$(reports)/unit.xml
 
 test-console: setup ## Run the console's unit tests
-	@npm --prefix web run --silent test -- --reporter=default --reporter=junit --outputFile.junit=../$(reports)/console.xml
+	@npm --prefix web run --silent test -- --reporter=default --reporter=junit --outputFile=../$(reports)/console.xml
 
 test-integration: build ## Run the tests on real processes
 	@pytest --junitxml=$(reports)/integration.xml tests/integration
