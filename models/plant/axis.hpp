@@ -29,8 +29,10 @@ class LimitSwitch {
   /** What is read now, bounce included. */
   bool read(Random& random) { return contact_.read(random); }
 
-  /** Where the mechanism stands, bounce and sticking apart. */
-  bool triggered() const { return contact_.closed(); }
+  std::optional<bool> stuck() const { return contact_.stuck(); }
+
+  /** What is read once it does not bounce. */
+  bool triggered() const { return contact_.stuck().value_or(contact_.closed()); }
 
  private:
   double past_edge(double position_counts) const;
@@ -71,7 +73,8 @@ class Axis {
   double position_counts() const { return load_; }
   double speed_counts_per_s() const { return speed_; }
   bool is_jammed() const { return jammed_; }
-  bool is_running_away() const { return runaway_speed_.has_value(); }
+  /** Nothing when it does not run away. */
+  std::optional<double> runaway_counts_per_s() const { return runaway_speed_; }
   bool is_reversed() const { return motor_.is_reversed(); }
 
   LimitSwitch& limit_switch() { return switch_; }

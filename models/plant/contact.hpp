@@ -23,8 +23,8 @@ class Contact {
   /** Sticks the contact, or frees it. */
   void stick(std::optional<bool> closed) { stuck_ = closed; }
 
-  /** True when something else than the mechanism decides what is read. */
-  bool is_stuck() const { return stuck_.has_value(); }
+  /** What is read whatever the mechanism does; nothing when it is free. */
+  std::optional<bool> stuck() const { return stuck_; }
 
   /** Lets time pass. */
   void advance(Microseconds elapsed);

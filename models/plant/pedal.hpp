@@ -35,10 +35,12 @@ class Pedal {
   /** The foot is on it. */
   bool is_pressed() const { return pressed_; }
 
-  bool has_stuck_contact() const { return normally_open_.is_stuck() || normally_closed_.is_stuck(); }
+  bool has_stuck_contact() const { return normally_open_.stuck() || normally_closed_.stuck(); }
 
   Contact& normally_open() { return normally_open_; }
+  const Contact& normally_open() const { return normally_open_; }
   Contact& normally_closed() { return normally_closed_; }
+  const Contact& normally_closed() const { return normally_closed_; }
 
  private:
   Microseconds lag_;

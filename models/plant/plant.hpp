@@ -74,7 +74,7 @@ class Plant {
   /** Nothing in an empty slot. */
   const std::optional<Station>& station(std::size_t slot) const { return stations_[slot]; }
   const Record& record() const { return record_; }
-  bool pedal_pressed() const { return pedal_.is_pressed(); }
+  const Pedal& pedal() const { return pedal_; }
   bool estop_pulled() const { return !estop_loop_.closed(); }
 
   /** ilk_colour_t by ilk_lamp_t, as last commanded. */

@@ -271,8 +271,18 @@ json card_status(std::size_t slot, const Card& card) {
           {"heartbeat", card.heartbeat()}};
 }
 
-json axis_status(std::size_t slot, const Station& station, std::uint32_t drive) {
+/** The name by which a command asks for that state. */
+template <typename Value, std::size_t Size>
+std::string_view name_of_state(const std::array<Choice<Value>, Size>& choices, const Value& value) {
+  const auto found = std::find_if(choices.begin(), choices.end(),
+                                  [&value](const Choice<Value>& choice) { return choice.value == value; });
+  return found->name;
+}
+
+json axis_status(std::size_t slot, const Station& station, std::uint32_t drive, Microseconds period) {
   const Axis& axis = *station.axis;
+  const double counts_per_tick =
+      axis.runaway_counts_per_s().value_or(0) * static_cast<double>(period.count()) * 1e-6;
   return {{"slot", slot},
           {"name", axis.name()},
           {"position_counts", thousandths(axis.position_counts())},
@@ -282,9 +292,10 @@ json axis_status(std::size_t slot, const Station& station, std::uint32_t drive) 
           {"has_switch", station.has_switch},
           {"switch_triggered", axis.limit_switch().triggered()},
           {"jammed", axis.is_jammed()},
-          {"running_away", axis.is_running_away()},
+          {"counts_per_tick", thousandths(counts_per_tick)},
           {"reversed", axis.is_reversed()},
-          {"encoder_stuck", station.card.encoder()->is_stuck()}};
+          {"encoder", name_of_state(kEncoderStates, station.card.encoder()->is_stuck())},
+          {"switch", name_of_state(kSwitchStates, axis.limit_switch().stuck())}};
 }
 
 template <typename Values>
@@ -373,8 +384,11 @@ std::string refused(const Refusal& refusal) {
 
 json status_of(const Plant& plant, std::optional<ilk_clock_t> clock) {
   const Record& record = plant.record();
-  const RecordEntry newest =
-      record.end() == 0 ? RecordEntry{.estop_loop_closed = !plant.estop_pulled()} : record[record.end() - 1];
+  const RecordEntry newest = record.end() == 0
+                                 ? RecordEntry{.pedal_no_closed = plant.pedal().normally_open().closed(),
+                                               .pedal_nc_closed = plant.pedal().normally_closed().closed(),
+                                               .estop_loop_closed = !plant.estop_pulled()}
+                                 : record[record.end() - 1];
   json lamps = json::object();
   for (std::size_t lamp = 0; lamp < ILK_LAMP_COUNT; ++lamp) {
     lamps[name_of_lamp(lamp)] = name_of_colour(plant.lamps()[lamp]);
@@ -385,7 +399,7 @@ json status_of(const Plant& plant, std::optional<ilk_clock_t> clock) {
     if (const auto& station = plant.station(slot)) {
       cards.push_back(card_status(slot, station->card));
       if (station->axis) {
-        axes.push_back(axis_status(slot, *station, newest.drive[slot]));
+        axes.push_back(axis_status(slot, *station, newest.drive[slot], plant.period()));
       }
     }
   }
@@ -395,9 +409,11 @@ json status_of(const Plant& plant, std::optional<ilk_clock_t> clock) {
   }
   return {{"kernel", kernel},
           {"pedal",
-           {{"pressed", plant.pedal_pressed()},
+           {{"pressed", plant.pedal().is_pressed()},
             {"no_closed", newest.pedal_no_closed},
-            {"nc_closed", newest.pedal_nc_closed}}},
+            {"nc_closed", newest.pedal_nc_closed},
+            {"no", name_of_state(kContactStates, plant.pedal().normally_open().stuck())},
+            {"nc", name_of_state(kContactStates, plant.pedal().normally_closed().stuck())}}},
           {"estop", {{"pulled", plant.estop_pulled()}, {"loop_closed", newest.estop_loop_closed}}},
           {"lamps", lamps},
           {"axes", axes},

@@ -1,0 +1,236 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bench.hpp"
+
+namespace interlock::plant::test {
+namespace {
+
+constexpr std::size_t kMotors[] = {kPwm, kNonPwm, kLower, kAnalog};
+
+TEST(PlantAxis, DeadZoneMovesNothing) {
+  Bench bench(exact_parameters());
+  const double start = bench.position(kNonPwm);
+  bench.drive(kNonPwm, Sense::kIncreasing, static_cast<std::uint32_t>(0.015 * kMaxDrive));
+  bench.run(2000);
+  EXPECT_EQ(bench.position(kNonPwm), start);
+  bench.drive(kNonPwm, Sense::kIncreasing, static_cast<std::uint32_t>(0.02 * kMaxDrive));
+  bench.run(2000);
+  EXPECT_GT(bench.position(kNonPwm), start + 2);
+}
+
+TEST(PlantAxis, FullDriveMovesOneCountATick) {
+  for (const std::size_t slot : kMotors) {
+    Bench bench(exact_parameters());
+    bench.drive(slot, Sense::kDecreasing, kMaxDrive);
+    bench.run(50);
+    const double before = bench.position(slot);
+    bench.run(100);
+    EXPECT_NEAR(bench.position(slot) - before, -100, 0.01) << "slot " << slot;
+  }
+}
+
+TEST(PlantAxis, EveryCardHonoursMotorDirection) {
+  for (const std::uint32_t motor_direction : {0u, 1u}) {
+    ilk_config_t robot = sample_robot();
+    for (const std::size_t slot : {kPwm, kNonPwm, kLower, kAnalog, kHighFrequency}) {
+      robot.axis[slot].motor_direction = motor_direction;
+      Bench bench(exact_parameters(), 7, robot);
+      const double start = bench.position(slot);
+      const std::uint32_t drive = slot == kHighFrequency ? 1196612456u - 15 * 4063228u : kMaxDrive;
+      bench.drive(slot, Sense::kIncreasing, drive);
+      bench.run(100);
+      EXPECT_GT(bench.position(slot), start + 10) << "slot " << slot;
+      bench.drive(slot, Sense::kDecreasing, drive);
+      bench.run(250);
+      EXPECT_LT(bench.position(slot), start - 10) << "slot " << slot;
+    }
+  }
+}
+
+TEST(PlantAxis, CounterRunsAgainstThePositionWithDirectionCorrection) {
+  Bench bench(exact_parameters());
+  bench.drive(kNonPwm, Sense::kIncreasing, kMaxDrive);
+  bench.drive(kAnalog, Sense::kIncreasing, kMaxDrive);
+  bench.run(101);
+  EXPECT_LT(bench.counter(kNonPwm), -80) << "direction_correction 1";
+  EXPECT_GT(bench.counter(kAnalog), 80) << "direction_correction 0";
+}
+
+TEST(PlantAxis, CoastsAtLeastThreeCountsAndNeverBeyondCoastCounts) {
+  const ilk_config_t robot = sample_robot();
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    Bench bench(default_parameters(robot), seed);
+    bench.drive(kNonPwm, Sense::kIncreasing, kMaxDrive);
+    bench.run(200 + static_cast<std::uint32_t>(seed));
+    // The last reading that still allows drive; its drive is on the wire one tick later.
+    const std::int32_t allowed = bench.counter(kNonPwm);
+    bench.run(1);
+    const double amplifier_off = bench.position(kNonPwm);
+    bench.stop(kNonPwm);
+    bench.run(200);
+    EXPECT_GE(bench.position(kNonPwm) - amplifier_off, 3);
+    EXPECT_LE(std::abs(bench.counter(kNonPwm) - allowed), static_cast<int>(robot.axis[kNonPwm].coast_counts));
+  }
+}
+
+TEST(PlantAxis, ComesToRest) {
+  Bench bench(exact_parameters());
+  bench.drive(kNonPwm, Sense::kIncreasing, kMaxDrive);
+  bench.run(100);
+  bench.stop(kNonPwm);
+  bench.run(100);
+  const double rest = bench.position(kNonPwm);
+  EXPECT_EQ(bench.plant.station(kNonPwm)->axis->speed_counts_per_s(), 0);
+  bench.run(1000);
+  EXPECT_EQ(bench.position(kNonPwm), rest);
+}
+
+TEST(PlantAxis, CoastDoesNotDependOnTheStepOfTime) {
+  Plant coarse(sample_robot(), exact_parameters(), 1);
+  Plant fine(sample_robot(), exact_parameters(), 1);
+  for (Plant* plant : {&coarse, &fine}) {
+    ASSERT_TRUE(plant->schedule(command::RunAway{kNonPwm, 1.0}));
+    plant->advance(Microseconds{10'000});
+    ASSERT_TRUE(plant->schedule(command::RunAway{kNonPwm, 0.0}));
+  }
+  for (int n = 0; n < 100; ++n) {
+    coarse.advance(Microseconds{1000});
+    for (int part = 0; part < 10; ++part) {
+      fine.advance(Microseconds{100});
+    }
+  }
+  EXPECT_NEAR(coarse.station(kNonPwm)->position_counts(), fine.station(kNonPwm)->position_counts(), 0.01);
+}
+
+TEST(PlantAxis, BacklashIsLostWhenTheDirectionChanges) {
+  Parameters parameters = exact_parameters();
+  parameters.axis[kNonPwm].backlash_counts = 10;
+  Bench with(parameters);
+  Bench without(exact_parameters());
+  for (Bench* bench : {&with, &without}) {
+    bench->drive(kNonPwm, Sense::kIncreasing, kMaxDrive);
+    bench->run(300);
+    bench->stop(kNonPwm);
+    bench->run(100);
+  }
+  const double with_peak = with.position(kNonPwm);
+  const double without_peak = without.position(kNonPwm);
+  for (Bench* bench : {&with, &without}) {
+    bench->drive(kNonPwm, Sense::kDecreasing, kMaxDrive);
+    bench->run(300);
+  }
+  EXPECT_NEAR((without_peak - without.position(kNonPwm)) - (with_peak - with.position(kNonPwm)), 10, 1e-6);
+}
+
+TEST(PlantAxis, EndStopsHoldTheAxisALittleBeyondItsLimits) {
+  Bench bench(exact_parameters());
+  bench.drive(kPwm, Sense::kIncreasing, kMaxDrive);
+  bench.drive(kLower, Sense::kDecreasing, kMaxDrive);
+  bench.run(1000);
+  EXPECT_EQ(bench.position(kPwm), 8 + 60);
+  EXPECT_EQ(bench.position(kLower), 0 - 60);
+}
+
+TEST(PlantAxis, JammedAxisStandsStillWhateverIsDriven) {
+  Bench bench(exact_parameters());
+  bench.drive(kNonPwm, Sense::kIncreasing, kMaxDrive);
+  bench.run(50);
+  bench.schedule(command::JamAxis{kNonPwm, true});
+  bench.run(1);
+  const double jammed_at = bench.position(kNonPwm);
+  bench.run(200);
+  EXPECT_EQ(bench.position(kNonPwm), jammed_at);
+  bench.schedule(command::JamAxis{kNonPwm, false});
+  bench.run(50);
+  EXPECT_GT(bench.position(kNonPwm), jammed_at + 20);
+}
+
+TEST(PlantAxis, PushMovesTheAxisByHandOverAHundredTicks) {
+  Bench bench(exact_parameters());
+  bench.schedule(command::PushAxis{kNonPwm, -40});
+  bench.run(50);
+  EXPECT_NEAR(bench.position(kNonPwm), -20, 1e-6);
+  bench.run(200);
+  EXPECT_NEAR(bench.position(kNonPwm), -40, 1e-6);
+}
+
+TEST(PlantAxis, RunawayMovesWithoutDriveUntilItIsEnded) {
+  Bench bench(exact_parameters());
+  bench.schedule(command::RunAway{kNonPwm, 2.5});
+  bench.run(100);
+  EXPECT_NEAR(bench.position(kNonPwm), 250, 1e-6);
+  bench.schedule(command::RunAway{kNonPwm, 0});
+  bench.run(200);
+  const double rest = bench.position(kNonPwm);
+  bench.run(200);
+  EXPECT_EQ(bench.position(kNonPwm), rest);
+}
+
+TEST(PlantAxis, ReversedMotorRunsAgainstItsCommand) {
+  Bench bench(exact_parameters());
+  bench.schedule(command::ReverseMotor{kNonPwm, true});
+  bench.drive(kNonPwm, Sense::kIncreasing, kMaxDrive);
+  bench.run(100);
+  EXPECT_LT(bench.position(kNonPwm), -80);
+}
+
+TEST(PlantAxis, HighFrequencySpeedFollowsThePublishedMap) {
+  constexpr std::uint32_t kSlowest = 1196612456u;
+  constexpr std::uint32_t kStep = 4063228u;
+  EXPECT_EQ(published_speed_rpm(kSlowest, false), 0);
+  EXPECT_EQ(published_speed_rpm(kSlowest + 1, false), 0);
+  EXPECT_EQ(published_speed_rpm(0, false), 0);
+  EXPECT_DOUBLE_EQ(published_speed_rpm(kSlowest - 10 * kStep, false), 11.445);
+  EXPECT_DOUBLE_EQ(published_speed_rpm(kSlowest - 10 * kStep, true), 10.636);
+  EXPECT_DOUBLE_EQ(published_speed_rpm(kSlowest - 23 * kStep, false), 397.785);
+  EXPECT_DOUBLE_EQ(published_speed_rpm(kSlowest - 30 * kStep, true), 391.709);
+  EXPECT_NEAR(published_speed_rpm(kSlowest - 20 * kStep - kStep / 2, false), (188.106 + 247.388) / 2, 1e-6);
+}
+
+TEST(PlantAxis, HighFrequencyMotorNeedsTwoEqualWavesOfOppositeTables) {
+  for (const std::size_t word : {2u, 3u, 4u, 5u}) {
+    Bench bench(exact_parameters());
+    bench.drive(kHighFrequency, Sense::kIncreasing, 1196612456u - 15 * 4063228u);
+    bench.exchange.frame[kHighFrequency][word] ^= word % 2 == 0 ? 1u << 24 : 1u;
+    bench.run(100);
+    EXPECT_EQ(bench.position(kHighFrequency), 0) << "word " << word;
+  }
+}
+
+TEST(PlantAxis, HighFrequencySpeedGrowsWithTheAmplitude) {
+  Bench bench(exact_parameters());
+  bench.drive(kHighFrequency, Sense::kIncreasing, 1196612456u - 20 * 4063228u);
+  bench.run(50);
+  const double start = bench.position(kHighFrequency);
+  bench.run(100);
+  const double full = bench.position(kHighFrequency) - start;
+  EXPECT_NEAR(full, 188.106 / 60 * (5000.0 / 3) / 10, 0.01);
+  for (const std::size_t word : {2u, 4u}) {
+    bench.exchange.frame[kHighFrequency][word] -= 100;
+  }
+  bench.run(50);
+  const double half_start = bench.position(kHighFrequency);
+  bench.run(100);
+  EXPECT_NEAR(bench.position(kHighFrequency) - half_start, full / 2, 0.01);
+}
+
+TEST(PlantAxis, MotorWithoutItsAmplifierDoesNotMove) {
+  Bench bench(exact_parameters());
+  bench.drive(kNonPwm, Sense::kIncreasing, kMaxDrive);
+  bench.exchange.frame[kNonPwm][14] = 0;
+  bench.run(100);
+  EXPECT_EQ(bench.position(kNonPwm), 0);
+}
+
+TEST(PlantAxis, NonPwmMotorNeedsTheEnableBitOfItsWord) {
+  Bench bench(exact_parameters());
+  bench.drive(kNonPwm, Sense::kIncreasing, kMaxDrive);
+  bench.exchange.frame[kNonPwm][3] &= ~0x40000000u;
+  bench.run(100);
+  EXPECT_EQ(bench.position(kNonPwm), 0);
+}
+
+}  // namespace
+}  // namespace interlock::plant::test
