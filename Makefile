@@ -7,6 +7,7 @@ MAKEFLAGS += --no-print-directory
 
 ROBOT ?= neuro
 PORT ?= 8080
+PREFIX ?= /usr/local
 
 setup := verification/toolchain/setup
 release := build/release
@@ -74,6 +75,10 @@ selftest-all: setup ## Show that every seeded fault turns its test red
 .PHONY: bench
 bench: build ## Measure time, text size and stack of a kernel step against their limits
 	@python verification/bench/run.py
+
+.PHONY: install
+install: build ## Install programs, robot files and console: [PREFIX=/usr/local] [DESTDIR=]
+	@cmake --install $(release) --prefix $(PREFIX) >/dev/null
 
 .PHONY: lint format
 lint: build ## Check style, naming, generated files and leftovers
