@@ -126,7 +126,7 @@ Api::Api(const asio::any_io_executor& executor, const Robot& robot, const ilk_co
     message["type"] = "proposal";
     stream_.send_text(message);
   });
-  control_.on_orders = [this](const OrderTable& orders) { book_.follow(orders); };
+  control_.on_orders = [this] { view(); };
   control_.on_event = [this](const ilk_event_t& event) {
     const json message = event_json(event);
     spdlog::info("kernel: {}", message.dump());
@@ -164,10 +164,17 @@ void Api::add_bench_routes() {
               [this](auto& request, auto& in) { return bench_command(request, in); });
 }
 
-Reply Api::status() { return Success{Status::ok, status_json(robot_, config_, control_.view(), steady_clock::now())}; }
+/** The newest view; what it says of orders is in the book before anybody reads the book. */
+const ControlView& Api::view() {
+  const ControlView& newest = control_.view();
+  book_.follow(newest.orders);
+  return newest;
+}
+
+Reply Api::status() { return Success{Status::ok, status_json(robot_, config_, view(), steady_clock::now())}; }
 
 tl::expected<void, Problem> Api::need_kernel() {
-  if (!control_.view().attached) {
+  if (!view().attached) {
     return fail(no_kernel("No kernel is connected."));
   }
   return {};
@@ -184,10 +191,10 @@ tl::expected<const Axis*, Problem> Api::axis_of(const std::string& slot) const {
 
 Reply Api::motors() {
   return need_kernel().map([this] {
-    const ControlView& view = control_.view();
+    const ControlView& now = view();
     json motors = json::array();
     for (const Axis& axis : robot_.axes) {
-      motors.push_back(motor_json(axis, config_, view, book_.open_of(axis.slot)));
+      motors.push_back(motor_json(axis, config_, now, book_.open_of(axis.slot)));
     }
     return Success{Status::ok, std::move(motors)};
   });
@@ -196,7 +203,8 @@ Reply Api::motors() {
 Reply Api::motor(const Parameters& parameters) {
   return axis_of(parameters[0]).and_then([this](const Axis* axis) -> Reply {
     return need_kernel().map([&] {
-      return Success{Status::ok, motor_json(*axis, config_, control_.view(), book_.open_of(axis->slot))};
+      const ControlView& now = view();
+      return Success{Status::ok, motor_json(*axis, config_, now, book_.open_of(axis->slot))};
     });
   });
 }
@@ -232,6 +240,7 @@ Api::Answering Api::ask(std::uint32_t kind, std::uint32_t slot, std::string wher
 }
 
 Reply Api::proposals() {
+  view();
   json list = json::array();
   for (const Proposal& each : book_.newest_first()) {
     list.push_back(to_json(each));
@@ -244,7 +253,7 @@ Reply Api::propose(const Request& request) {
       .and_then([this](const json& body) { return draft_of(body, robot_); })
       .and_then([this](const MoveDraft& draft) -> Reply {
         return need_kernel().and_then([&]() -> Reply {
-          return book_.propose(draft, control_.view())
+          return book_.propose(draft, view())
               .map([](const Proposal& made) { return Success{Status::created, to_json(made)}; })
               .map_error(refused);
         });
@@ -252,6 +261,7 @@ Reply Api::propose(const Request& request) {
 }
 
 Reply Api::proposal(const Parameters& parameters) {
+  view();
   const auto id = number_in(parameters[0]);
   const Proposal* found = id ? book_.find(*id) : nullptr;
   if (found == nullptr) {
@@ -302,7 +312,7 @@ Api::Answering Api::pass_to_bench(std::string command, json body) {
     co_return fail(no_bench());
   }
   if (command == "pedal" && body.value("pressed", json()) == json(true)) {
-    pedal_.hold(control_.view(), steady_clock::now());
+    pedal_.hold(view(), steady_clock::now());
   } else if (command == "pedal") {
     pedal_.release();
   }
@@ -341,11 +351,11 @@ asio::awaitable<void> Api::beat() {
     if (error) {
       co_return;
     }
-    const ControlView& view = control_.view();
+    const ControlView& seen = view();
     if (!stream_.empty()) {
-      stream_.send_state(encode_state(view, config_, open_targets(), steady_clock::now()));
+      stream_.send_state(encode_state(seen, config_, open_targets(), steady_clock::now()));
     }
-    if (pedal_.overdue(view, steady_clock::now())) {
+    if (pedal_.overdue(seen, steady_clock::now())) {
       spdlog::warn("the bench pedal was not renewed for 500 ms: released");
       asio::co_spawn(executor_, release_pedal(), asio::detached);
     }

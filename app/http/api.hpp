@@ -57,6 +57,7 @@ class Api {
 
   Answering pass_to_bench(std::string command, nlohmann::json body);
   [[nodiscard]] tl::expected<const Axis*, Problem> axis_of(const std::string& slot) const;
+  const ControlView& view();
   [[nodiscard]] tl::expected<void, Problem> need_kernel();
   Answering ask(std::uint32_t kind, std::uint32_t slot, std::string where);
   [[nodiscard]] OpenTargets open_targets() const;

@@ -60,7 +60,7 @@ asio::awaitable<void> ControlClient::listen() {
       co_return;
     }
     mailbox_.network_wake.clear();
-    on_orders(view().orders);
+    on_orders();
     mailbox_.notices.consume_all([this](const Notice& notice) { take(notice); });
   }
 }

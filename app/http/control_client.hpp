@@ -37,7 +37,7 @@ class ControlClient {
   std::function<void(const ilk_event_t&)> on_event = [](const ilk_event_t&) {};
   std::function<void(const EventsLost&)> on_events_lost = [](const EventsLost&) {};
   /** Told that orders may have changed. */
-  std::function<void(const OrderTable&)> on_orders = [](const OrderTable&) {};
+  std::function<void()> on_orders = [] {};
 
   /** Serves until the io_context stops. */
   boost::asio::awaitable<void> listen();

@@ -95,7 +95,7 @@ StreamMessage encode_state(const ControlView& view, const ilk_config_t& config, 
   Words words(message);
   put_header(words, shown, now);
   for (std::size_t slot = 0; slot < ILK_SLOTS; ++slot) {
-    put_slot(words, shown, config.axis[slot], targets[slot], slot);
+    put_slot(words, shown, config.axis[slot], view.attached ? targets[slot] : OpenTarget{}, slot);
   }
   return message;
 }

@@ -89,7 +89,10 @@ export interface paths {
         put?: never;
         /**
          * Drafts a move of one axis, checks it and, since the console's author releases it by creating it,
-         *     approves it. It executes while the pedal is held.
+         *     approves it. It executes while the pedal is held. A newer proposal of the same axis replaces an open one.
+         *     Refused here, in this order: another configuration than the kernel's (CONFIG_MISMATCH), a locked system (MODE),
+         *     an axis that is FAULTED, homing (BUSY) or DISABLED, a drive above its bound (DRIVE), a target outside
+         *     `min_counts` to `max_counts` of the motor (RANGE). A refused draft stays in the list.
          */
         post: operations["createProposal"];
         delete?: never;
@@ -128,7 +131,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Ends the proposal; an executing one stops at once. */
+        /** Ends the proposal; an executing one stops at once. 409 ENDED when it has ended already. */
         post: operations["abortProposal"];
         delete?: never;
         options?: never;
@@ -199,8 +202,9 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Passes a command of models/plant/README.md to the simulated hardware. A pedal pressed here is
-         *     released by the app when it has not been renewed for 500 ms.
+         * Passes a command of models/plant/README.md to the simulated hardware; the body has its fields without `command`
+         *     and `id`. A pedal pressed here is released by the app when it has not been renewed for 500 ms: of the kernel's
+         *     time in the simulated clock, of the wall's else.
          */
         post: operations["benchCommand"];
         delete?: never;
@@ -234,7 +238,10 @@ export interface components {
             type: string;
             title: string;
             status: number;
-            /** @description Verdict name, or NOT_FOUND, MALFORMED, INVALID, NO_KERNEL, NO_BENCH. */
+            /**
+             * @description Verdict name, or NOT_FOUND, METHOD_NOT_ALLOWED, MALFORMED, INVALID, TOO_LARGE, HOST, ORIGIN, UPGRADE_REQUIRED,
+             *     NO_KERNEL, NO_BENCH, CONFIG_MISMATCH, ENDED, OVERLOADED, INTERNAL.
+             */
             code: string;
             /** @description What, where. */
             detail: string;
@@ -394,8 +401,17 @@ export interface components {
                 "application/problem+json": components["schemas"]["Problem"];
             };
         };
-        /** @description The kernel is not connected or does not answer. */
+        /** @description The kernel is not connected or does not answer (NO_KERNEL), or the control thread takes no more commands (OVERLOADED). */
         NoKernel: {
+            headers: {
+                [name: string]: unknown;
+            };
+            content: {
+                "application/problem+json": components["schemas"]["Problem"];
+            };
+        };
+        /** @description The simulated hardware does not answer. */
+        BenchSilent: {
             headers: {
                 [name: string]: unknown;
             };
@@ -608,6 +624,7 @@ export interface operations {
             };
             404: components["responses"]["NotFound"];
             409: components["responses"]["Refused"];
+            503: components["responses"]["NoKernel"];
         };
     };
     stop: {
@@ -619,7 +636,10 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description Sent; `verdict` is null when no kernel is connected (then nothing is driven by this app). */
+            /**
+             * @description Sent; `verdict` is null when no kernel is connected (then nothing is driven by this app), or when it did not
+             *     answer within 300 ms.
+             */
             200: {
                 headers: {
                     [name: string]: unknown;
@@ -671,6 +691,7 @@ export interface operations {
                 };
             };
             404: components["responses"]["NoBench"];
+            503: components["responses"]["BenchSilent"];
         };
     };
     benchCommand: {
@@ -700,6 +721,7 @@ export interface operations {
             400: components["responses"]["Malformed"];
             404: components["responses"]["NoBench"];
             422: components["responses"]["Invalid"];
+            503: components["responses"]["BenchSilent"];
         };
     };
     stream: {
@@ -711,7 +733,7 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description Switching protocols. */
+            /** @description Switching protocols. A client that sends a message is closed with code 1008. */
             101: {
                 headers: {
                     [name: string]: unknown;
@@ -720,6 +742,15 @@ export interface operations {
             };
             /** @description Not a WebSocket request. */
             426: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description 32 clients watch already; `code` is OVERLOADED. */
+            503: {
                 headers: {
                     [name: string]: unknown;
                 };
