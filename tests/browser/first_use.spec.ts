@@ -10,11 +10,11 @@ test("a newcomer unlocks, enables, drags, holds the pedal, arrives, and letting 
 }) => {
   const axis = robot.axis("Probe rotation");
   await expect(page.getByText("SIMULATED HARDWARE").first()).toBeVisible();
-  await expect(page.getByText("BOOT")).toBeVisible();
+  await expect(page.getByRole("banner").getByText("BOOT")).toBeVisible();
   await robot.unlockRobot();
   await axis.enable();
 
-  await axis.drag(12);
+  await axis.drag(5);
   const target = await axis.circle();
   expect(Math.abs(target - (await axis.counts()))).toBeGreaterThan(100);
   await expect(robot.proposal(1)).toHaveCount(0);
@@ -55,13 +55,13 @@ test("a move beyond the range is refused in words at the axis and in the list", 
 
 test("a move of an axis that is not enabled is refused with the next step", async ({ robot }) => {
   await robot.unlockRobot();
-  const axis = robot.axis("Insertion");
+  const axis = robot.axis("Probe insertion");
   await axis.propose("1");
   await expect(await axis.expectRefusal("DISABLED")).toContainText("Enable the axis.");
 });
 
 test("a target that is no number is not sent", async ({ robot }) => {
-  const axis = robot.axis("Insertion");
+  const axis = robot.axis("Probe insertion");
   await axis.propose("ten");
   await expect(axis.row.getByText("expected a number of millimetres")).toBeVisible();
   await expect(robot.proposal(1)).toHaveCount(0);
@@ -126,7 +126,9 @@ test("the E-stop locks with its cause until it is released and unlocked, and not
   await page.getByRole("button", { name: "Pull E-stop" }).click();
   await robot.expectMode("LOCKED");
   await expect(robot.estop).toContainText("PULLED");
-  await expect(page.getByText("The E-stop was pulled, or its loop is broken.")).toBeVisible();
+  await expect(
+    page.getByRole("banner").getByText("The E-stop was pulled, or its loop is broken."),
+  ).toBeVisible();
   await axis.expectState("DISABLED");
   const stoppedAt = await axis.restingCounts();
 
@@ -210,6 +212,36 @@ test("data of a silent app are greyed, then covered, and STOP says that it was n
   await robot.expectMode("READY");
 });
 
+test("the console comes back by itself when the app was killed and started again", async ({
+  robot,
+  stack,
+  page,
+}) => {
+  await robot.unlockRobot();
+  const axis = robot.axis("Probe rotation");
+  await axis.enable();
+  let framesOfNewStreams = 0;
+  page.on("websocket", (stream) => {
+    stream.on("framereceived", () => {
+      framesOfNewStreams += 1;
+    });
+  });
+  stack.signalApp("SIGKILL");
+  await expect.poll(() => framesOfNewStreams).toBeGreaterThan(3);
+  await robot.expectMode("READY");
+  await axis.expectState("ENABLED");
+  await axis.propose("300");
+  await axis.expectRefusal("RANGE");
+});
+
+test("the simulated pedal is let go when the window loses the operator", async ({ robot, page }) => {
+  await robot.unlockRobot();
+  await robot.latchPedal();
+  await page.evaluate(() => window.dispatchEvent(new Event("blur")));
+  await expect(robot.pedalState).toContainText("released");
+  await robot.expectMode("READY");
+});
+
 test("no key enables an axis, unlocks or presses the pedal", async ({ robot, page }) => {
   const asked: string[] = [];
   page.on("request", (request) => {
@@ -240,14 +272,14 @@ test("no key enables an axis, unlocks or presses the pedal", async ({ robot, pag
 
 test("the picture of the README comes from a real run", async ({ robot, page }) => {
   await robot.unlockRobot();
-  for (const title of ["Probe rotation", "Feet"]) {
+  for (const title of ["Probe rotation", "Axial feet"]) {
     await robot.axis(title).enable();
     await robot.axis(title).press("Set Home");
     await expect(robot.axis(title).row.getByText("UNHOMED")).toHaveCount(0);
   }
-  await robot.axis("Insertion").propose("30");
-  await robot.axis("Insertion").expectRefusal("DISABLED");
-  await robot.axis("Feet").propose("12.5");
+  await robot.axis("Probe insertion").propose("30");
+  await robot.axis("Probe insertion").expectRefusal("DISABLED");
+  await robot.axis("Axial feet").propose("12.5");
   await robot.latchPedal();
   await expect(robot.proposal(2)).toContainText("done");
   await robot.axis("Probe rotation").propose("200");

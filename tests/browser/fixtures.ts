@@ -2,8 +2,8 @@ import { test as base, expect } from "@playwright/test";
 import { ConsolePage } from "./console_page";
 import { Stack } from "./stack";
 
-/** Refused requests answer 409 and 422 by design, and Chromium reports each on its console. */
-const expectedComplaint = /status of (409|422)/;
+/** What tests cause on purpose and Chromium reports on its console: refused requests and an app that is gone. */
+const expectedComplaint = /status of (409|422)|ERR_CONNECTION_/;
 
 interface Fixtures {
   stack: Stack;

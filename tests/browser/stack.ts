@@ -26,8 +26,8 @@ export class Stack {
     return new Stack(run, state, await readyUrl(run));
   }
 
-  /** Stops or continues the app's process alone; kernel and simulator run on. */
-  signalApp(signal: "SIGSTOP" | "SIGCONT"): void {
+  /** Signals the app's process alone; kernel and simulator run on. */
+  signalApp(signal: "SIGSTOP" | "SIGCONT" | "SIGKILL"): void {
     process.kill(this.appPid(), signal);
   }
 

@@ -15,6 +15,12 @@ describe("noticeOfProblem", () => {
     expect(noticeOfProblem({ code: "DISABLED", detail: meaning }).meaning).toBe(meaning);
   });
 
+  it("says a next step that the detail repeats only once", () => {
+    const { meaning, next_step } = entry("verdict", "DISABLED");
+    const notice = noticeOfProblem({ code: "DISABLED", detail: `yaw: ${meaning} ${next_step}` });
+    expect(notice).toEqual({ code: "DISABLED", meaning: `yaw: ${meaning}`, nextStep: next_step });
+  });
+
   it("takes the app's next step and what it expected for codes of its own", () => {
     const problem = {
       code: "INVALID",

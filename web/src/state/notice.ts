@@ -15,12 +15,10 @@ function isVerdict(code: string): boolean {
 /** The app's detail says what and where; the catalog says what the code means when the app does not. */
 export function noticeOfProblem(problem: Problem): Notice {
   const text = isVerdict(problem.code) ? entry("verdict", problem.code) : null;
+  const nextStep = problem.next_step ?? text?.next_step ?? "";
   const expected = problem.expected === undefined ? "" : ` Expected ${problem.expected}.`;
-  return {
-    code: problem.code,
-    meaning: joinOnce(text?.meaning ?? "", problem.detail + expected),
-    nextStep: problem.next_step ?? text?.next_step ?? "",
-  };
+  const detail = problem.detail.replace(nextStep, "").trim() + expected;
+  return { code: problem.code, meaning: joinOnce(text?.meaning ?? "", detail), nextStep };
 }
 
 /** Null unless the proposal was refused. */

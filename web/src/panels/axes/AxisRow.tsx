@@ -75,7 +75,7 @@ function Identity({ motor, axis }: AxisProps) {
       </h3>
       <span className={`chip ${stateTone[axis.state] ?? ""}`} title={entry("axis_state", axis.state).meaning}>
         <i aria-hidden="true">{stateShape[axis.state] ?? "?"}</i>
-        {axis.state}
+        <span>{axis.state}</span>
       </span>
       {!axis.homed && (
         <span
@@ -158,7 +158,7 @@ function DriveWords({ motor, axis }: AxisProps) {
     <p className="drive-words" title={`${story.text} ${story.nextStep}`}>
       {!story.driven && (
         <>
-          Not driven: <strong>{story.gate}</strong>{" "}
+          Not driven: <strong>{story.gate}</strong> ·{" "}
         </>
       )}
       {story.text} {story.nextStep !== "" && <span className="next-step">{story.nextStep}</span>}

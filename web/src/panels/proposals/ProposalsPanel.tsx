@@ -59,8 +59,10 @@ function ProposalItem({
   return (
     <li className="proposal" data-state={proposal.state} aria-label={`Proposal ${proposal.id}`}>
       <span className="proposal-head">
-        <span className="number">#{proposal.id}</span>
-        <strong>{motor?.title ?? proposal.axis}</strong> to {target}
+        <span>
+          <span className="number">#{proposal.id}</span> <strong>{motor?.title ?? proposal.axis}</strong> to{" "}
+          {target}
+        </span>
         <span className={`chip ${look.tone}`}>
           <i aria-hidden="true">{look.shape}</i>
           {proposal.state}
