@@ -1,0 +1,300 @@
+// P14: memory damage to state or configuration is met before it can move anything.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include "dice.hpp"
+#include "inert.hpp"
+
+namespace interlock::kernel_test {
+namespace {
+
+constexpr uint32_t state_words = sizeof(ilk_state_t) / 4;
+using StateWords = std::array<uint32_t, state_words>;
+
+/// The configuration's CRC is checked in slices, one a tick; damage is met by the end of the pass that
+/// began after it.
+constexpr uint32_t pass_ticks = 11;
+
+void run_busy(Bench& bench) {
+  bench.to_ready();
+  for (const uint32_t slot : {0u, 1u, 5u}) bench.reference(slot);
+  bench.motor[6].travelled += 100;
+  bench.tick();
+  for (uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
+    if (slot != 6) bench.enable_axis(slot);
+  }
+  bench.press();
+  bench.queue(home(2));
+  bench.queue(home(3));
+  for (uint32_t tick = 0; tick < 10; ++tick) {
+    for (const uint32_t slot : {0u, 1u, 4u, 5u, 7u}) bench.queue(move(slot, slot % 2 == 0 ? 60 : -60));
+    bench.tick();
+  }
+  bench.spoil(4, FrameFault::missing, 1);
+  bench.tick();
+}
+
+void expect_contained(const Bench& bench) {
+  EXPECT_TRUE(bench.wire_is_zero());
+  EXPECT_EQ(bench.mode(), ILK_MODE_LOCKED);
+  EXPECT_EQ(bench.cause(), ILK_CAUSE_INTEGRITY);
+}
+
+TEST(P14_containment, any_flipped_bit_of_the_state_locks_or_changes_nothing) {
+  Bench bench(ten_axis_config());
+  run_busy(bench);
+  ASSERT_TRUE(bench.driven(0));
+  Bench sound = bench;
+  sound.tick();
+  ASSERT_TRUE(sound.driven(0));
+  bench.watched = false;
+  uint32_t met = 0;
+  for (uint32_t bit = 0; bit < state_words * 32; ++bit) {
+    Bench hit = bench;
+    auto words = std::bit_cast<StateWords>(hit.state());
+    words[bit / 32] ^= 1u << bit % 32;
+    hit.damage_state() = std::bit_cast<ilk_state_t>(words);
+    hit.tick();
+    if (hit.cause() == ILK_CAUSE_INTEGRITY) {
+      ++met;
+      ASSERT_TRUE(hit.wire_is_zero()) << bit;
+      ASSERT_EQ(hit.mode(), ILK_MODE_LOCKED) << bit;
+    } else {
+      ASSERT_EQ(decisions(hit), decisions(sound)) << bit;
+    }
+  }
+  EXPECT_GT(met, state_words * 31) << "the check would be vacuous";
+}
+
+TEST(P14_containment, any_other_value_of_any_one_word_locks_or_changes_nothing) {
+  Bench bench(ten_axis_config());
+  run_busy(bench);
+  Bench sound = bench;
+  sound.tick();
+  bench.watched = false;
+  Dice dice(142);
+  for (int trial = 0; trial < 10000; ++trial) {
+    Bench hit = bench;
+    auto words = std::bit_cast<StateWords>(hit.state());
+    uint32_t& word = words[dice.below(state_words)];
+    word = dice.one_in(2) ? dice.word() : word + dice.below(7) - 3;
+    hit.damage_state() = std::bit_cast<ilk_state_t>(words);
+    hit.tick();
+    if (hit.cause() == ILK_CAUSE_INTEGRITY) {
+      ASSERT_TRUE(hit.wire_is_zero());
+    } else {
+      ASSERT_EQ(decisions(hit), decisions(sound));
+    }
+  }
+}
+
+TEST(P14_containment, swapped_and_copied_words_lock) {
+  Bench bench(ten_axis_config());
+  run_busy(bench);
+  bench.watched = false;
+  Dice dice(143);
+  for (int trial = 0; trial < 5000; ++trial) {
+    Bench hit = bench;
+    auto words = std::bit_cast<StateWords>(hit.state());
+    const uint32_t from = dice.below(state_words);
+    const uint32_t to = dice.below(state_words);
+    if (words[from] == words[to]) continue;
+    if (trial % 2 == 0) {
+      std::swap(words[from], words[to]);
+    } else {
+      words[to] = words[from];
+    }
+    hit.damage_state() = std::bit_cast<ilk_state_t>(words);
+    hit.tick();
+    ASSERT_TRUE(hit.wire_is_zero()) << from << " " << to;
+    ASSERT_EQ(hit.cause(), ILK_CAUSE_INTEGRITY) << from << " " << to;
+  }
+}
+
+TEST(P14_containment, a_replaced_state_locks) {
+  Dice dice(14);
+  for (int trial = 0; trial < 2000; ++trial) {
+    Bench bench;
+    bench.watched = false;
+    bench.to_motion();
+    StateWords words;
+    switch (trial) {
+      case 0:
+        words.fill(0);
+        break;
+      case 1:
+        words.fill(0xFFFFFFFFu);
+        break;
+      default:
+        std::generate(words.begin(), words.end(), [&dice] { return dice.word(); });
+        break;
+    }
+    bench.damage_state() = std::bit_cast<ilk_state_t>(words);
+    bench.tick();
+    ASSERT_NO_FATAL_FAILURE(expect_contained(bench));
+  }
+}
+
+TEST(P14_containment, after_damage_the_state_is_rebuilt_as_after_boot) {
+  Bench bench;
+  bench.to_motion_homed(slot::pwm_free, 30);
+  bench.watched = false;
+  bench.keep_moving(slot::pwm_free, 500, 3);
+  bench.damage_state().axis[slot::pwm_free].drive ^= 4u;
+  bench.tick();
+  expect_contained(bench);
+  for (uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
+    EXPECT_EQ(bench.axis_state(slot), ILK_AXIS_DISABLED);
+    EXPECT_EQ(bench.axis(slot).homed, 0u);
+  }
+  bench.ticks(100);
+  expect_contained(bench);
+  bench.to_ready();
+  EXPECT_EQ(bench.mode(), ILK_MODE_READY);
+}
+
+TEST(P14_containment, a_lock_by_damage_is_left_only_by_RESET_with_the_pedal_up) {
+  Bench bench;
+  bench.to_motion();
+  bench.watched = false;
+  bench.damage_state().seal_sum ^= 1u;
+  bench.tick();
+  expect_contained(bench);
+  EXPECT_EQ(bench.ask(reset()), ILK_VERDICT_PEDAL_DOWN);
+  bench.ticks(100);
+  expect_contained(bench);
+}
+
+TEST(P14_containment, damage_in_INIT_does_not_let_an_invalid_configuration_out) {
+  ilk_config_t config = standard_config();
+  config.axis[slot::pwm_free].coast_counts = 0;
+  seal(config);
+  Bench bench(config);
+  bench.watched = false;
+  bench.ticks(5);
+  bench.damage_state().mode = ILK_MODE_READY;
+  bench.ticks(30);
+  bench.ask(reset());
+  for (uint32_t slot = 0; slot < slot::axes; ++slot) bench.ask(enable(slot));
+  bench.ticks(20);
+  bench.pedal(true);
+  for (int held = 0; held < 50; ++held) {
+    bench.ask(move(slot::pwm_free, 50));
+    EXPECT_TRUE(bench.wire_is_zero());
+    EXPECT_NE(bench.mode(), ILK_MODE_MOTION);
+    EXPECT_NE(bench.mode(), ILK_MODE_READY);
+  }
+}
+
+TEST(P14_containment, damage_to_the_configuration_locks_within_two_passes) {
+  constexpr uint32_t config_words = sizeof(ilk_config_t) / 4;
+  Dice dice(144);
+  uint32_t slowest = 0;
+  for (uint32_t word = 0; word < config_words; ++word) {
+    Bench bench;
+    bench.to_motion();
+    bench.watched = false;
+    bench.ticks(dice.below(pass_ticks));
+    auto words = std::bit_cast<std::array<uint32_t, config_words>>(bench.config());
+    words[word] ^= 1u << dice.below(32);
+    bench.damage_config() = std::bit_cast<ilk_config_t>(words);
+    uint32_t ticks = 0;
+    while (bench.cause() != ILK_CAUSE_INTEGRITY && ticks <= 2 * pass_ticks) {
+      bench.tick();
+      ++ticks;
+    }
+    ASSERT_EQ(bench.cause(), ILK_CAUSE_INTEGRITY) << word;
+    ASSERT_TRUE(bench.wire_is_zero());
+    slowest = std::max(slowest, ticks);
+  }
+  RecordProperty("slowest_ticks", static_cast<int>(slowest));
+}
+
+TEST(P14_containment, damage_to_the_configuration_loses_every_reference) {
+  Bench bench;
+  bench.to_motion_homed(slot::pwm_free);
+  bench.watched = false;
+  bench.damage_config().axis[slot::pwm_free].direction_correction = 1;
+  bench.keep_moving(slot::pwm_free, 500, 2 * pass_ticks);
+  expect_contained(bench);
+  ASSERT_NE(bench.position(slot::pwm_free), bench.motor[slot::pwm_free].travelled) << "counted the wrong way";
+  EXPECT_EQ(bench.axis(slot::pwm_free).homed, 0u);
+}
+
+TEST(P14_containment, damage_to_the_configuration_is_reported_with_the_crc_that_was_found) {
+  Bench bench;
+  bench.to_ready();
+  bench.watched = false;
+  bench.damage_config().axis[slot::pwm_free].max_drive ^= 1u << 20;
+  bench.ticks(2 * pass_ticks);
+  expect_contained(bench);
+  EXPECT_EQ(bench.state().cause_value, ilk_config_crc(&bench.config()));
+}
+
+TEST(P14_containment, a_damaged_configuration_blocks_RESET_until_a_whole_pass_agreed) {
+  Bench bench;
+  bench.to_ready();
+  bench.watched = false;
+  bench.damage_config().axis[slot::pwm_free].max_drive ^= 1u << 20;
+  bench.ticks(2 * pass_ticks + 1);
+  expect_contained(bench);
+  for (uint32_t tick = 0; tick < 3 * pass_ticks; ++tick) {
+    EXPECT_EQ(bench.ask(reset()), ILK_VERDICT_CAUSE_PRESENT) << tick;
+  }
+  bench.damage_config().axis[slot::pwm_free].max_drive ^= 1u << 20;
+  uint32_t waited = 0;
+  while (bench.ask(reset()) == ILK_VERDICT_CAUSE_PRESENT && waited < 3 * pass_ticks) ++waited;
+  EXPECT_EQ(bench.mode(), ILK_MODE_READY);
+  EXPECT_GE(waited, pass_ticks - 1);
+  EXPECT_LE(waited, 2 * pass_ticks);
+}
+
+TEST(P14_containment, with_a_damaged_configuration_P1_to_P3_hold_until_it_is_found) {
+  constexpr uint32_t config_words = sizeof(ilk_config_t) / 4;
+  Dice dice(145);
+  for (int trial = 0; trial < 400; ++trial) {
+    Bench bench;
+    bench.to_motion();
+    for (uint32_t slot = 0; slot < slot::axes; ++slot) bench.enable_axis(slot);
+    bench.watched = false;
+    for (auto& motor : bench.motor) motor.switch_stuck = dice.one_in(3);
+    auto words = std::bit_cast<std::array<uint32_t, config_words>>(bench.config());
+    const uint32_t changes = 1 + dice.below(40);
+    for (uint32_t change = 0; change < changes; ++change) words[dice.below(config_words)] = dice.word();
+    bench.damage_config() = std::bit_cast<ilk_config_t>(words);
+    const ilk_config_t& damaged = bench.config();
+    for (uint32_t tick = 0; tick < 2 * pass_ticks; ++tick) {
+      bench.pedal(!dice.one_in(10));
+      bench.estop_loop_closed = dice.one_in(15) ? 0 : 1;
+      for (uint32_t slot = 0; slot < slot::axes; ++slot) {
+        ilk_request_t wish = move(slot, dice.between(-2000, 2000), dice.below(2000), 1 + dice.below(20));
+        wish.amplitude = dice.below(256);
+        bench.queue(dice.one_in(8) ? home(slot) : wish);
+      }
+      bench.tick();
+      const bool may_drive = bench.mode() == ILK_MODE_MOTION && bench.pedal_no_closed == 1 &&
+                             bench.estop_loop_closed == 1;
+      ASSERT_TRUE(may_drive || bench.wire_is_zero()) << "P2, trial " << trial;
+      for (uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
+        if (!bench.driven(slot)) continue;
+        const ilk_axis_t& axis = bench.axis(slot);
+        ASSERT_TRUE(axis.card_valid == 1 && axis.fault == ILK_FAULT_NONE &&
+                    (axis.state == ILK_AXIS_MOVING || axis.state == ILK_AXIS_HOMING))
+            << "P1, trial " << trial;
+        const uint32_t outward = damaged.axis[slot].limit_side == ILK_LIMIT_UPPER   ? ILK_DIRECTION_INCREASING
+                                 : damaged.axis[slot].limit_side == ILK_LIMIT_LOWER ? ILK_DIRECTION_DECREASING
+                                                                                    : ILK_DIRECTION_NONE;
+        const bool at_switch =
+            (bench.inputs().frame[slot][incoming::pairs] & incoming::switch_open_bit) == 0;
+        ASSERT_FALSE(at_switch && bench.out().command[slot].direction == outward) << "P3, trial " << trial;
+      }
+    }
+    ASSERT_EQ(bench.state().causes_seen >> ILK_CAUSE_INTEGRITY & 1u, 1u) << "trial " << trial;
+  }
+}
+
+}  // namespace
+}  // namespace interlock::kernel_test
