@@ -5,14 +5,18 @@
 #ifndef INTERLOCK_HOST_FUTEX_H
 #define INTERLOCK_HOST_FUTEX_H
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <time.h>
 
 /** Wakes at most `waiters` waiters on `word`. */
 void ilk_futex_wake(uint32_t *word, uint32_t waiters);
 
-/** Waits while `word` has `value`, at most for `timeout`. May return early. `word` may be mapped read-only.
+/**
+ * Waits while `word` has `value`, at most for `timeout`. `word` may be mapped read-only.
+ *
+ * @return true when woken or when `word` has another value, false on timeout or interruption.
  */
-void ilk_futex_wait(const uint32_t *word, uint32_t value, const struct timespec *timeout);
+bool ilk_futex_wait(const uint32_t *word, uint32_t value, const struct timespec *timeout);
 
 #endif

@@ -5,11 +5,11 @@
 #include "atomic_words.h"
 #include "futex.h"
 
-#define READ_ATTEMPTS 100u
+#define ATTEMPTS 100u
 
 bool ilk_link_read_snapshot(const ilk_link_kernel_region_t *region, ilk_snapshot_t *snapshot,
                             uint32_t *lock) {
-  for (unsigned attempt = 0; attempt < READ_ATTEMPTS; ++attempt) {
+  for (unsigned attempt = 0; attempt < ATTEMPTS; ++attempt) {
     const uint32_t before = __atomic_load_n(&region->snapshot_lock, __ATOMIC_ACQUIRE);
     if (before == 0u) {
       return false;
@@ -33,13 +33,18 @@ static bool newer_snapshot(uint32_t current, uint32_t lock) {
 }
 
 bool ilk_link_wait_snapshot(const ilk_link_kernel_region_t *region, uint32_t lock, uint32_t timeout_ms) {
-  const uint32_t current = __atomic_load_n(&region->snapshot_lock, __ATOMIC_ACQUIRE);
-  if (!newer_snapshot(current, lock)) {
-    const struct timespec timeout = {.tv_sec = (time_t)(timeout_ms / 1000u),
-                                     .tv_nsec = (long)(timeout_ms % 1000u) * 1000000L};
-    ilk_futex_wait(&region->snapshot_lock, current, &timeout);
+  const struct timespec timeout = {.tv_sec = (time_t)(timeout_ms / 1000u),
+                                   .tv_nsec = (long)(timeout_ms % 1000u) * 1000000L};
+  for (unsigned attempt = 0; attempt < ATTEMPTS; ++attempt) {
+    const uint32_t current = __atomic_load_n(&region->snapshot_lock, __ATOMIC_ACQUIRE);
+    if (newer_snapshot(current, lock)) {
+      return true;
+    }
+    if (!ilk_futex_wait(&region->snapshot_lock, current, &timeout)) {
+      return newer_snapshot(__atomic_load_n(&region->snapshot_lock, __ATOMIC_ACQUIRE), lock);
+    }
   }
-  return newer_snapshot(__atomic_load_n(&region->snapshot_lock, __ATOMIC_ACQUIRE), lock);
+  return false;
 }
 
 static bool copy_event(const ilk_event_t *shared, uint32_t number, ilk_event_t *event) {
@@ -53,7 +58,7 @@ static bool copy_event(const ilk_event_t *shared, uint32_t number, ilk_event_t *
 
 bool ilk_link_next_event(const ilk_link_kernel_region_t *region, uint32_t *next, uint32_t *lost,
                          ilk_event_t *event) {
-  for (unsigned attempt = 0; attempt < READ_ATTEMPTS; ++attempt) {
+  for (unsigned attempt = 0; attempt < ATTEMPTS; ++attempt) {
     const uint32_t head = __atomic_load_n(&region->event_head, __ATOMIC_ACQUIRE);
     const uint32_t unread = head - *next;
     if (unread == 0u) {

@@ -73,10 +73,12 @@ void ilk_link_regions_close(ilk_link_regions_t *regions) {
   close_descriptor(&regions->app_descriptor);
 }
 
-/** `munmap` takes a pointer to writable memory even for a mapping that can only be read. */
+/** `munmap` wants a pointer to writable memory even for a mapping that can only be read. */
 static void unmap_region(const void *address, size_t bytes) {
-  if (address != NULL) {
-    (void)munmap((void *)(uintptr_t)address, bytes);
+  void *mapped = NULL;
+  memcpy(&mapped, &address, sizeof mapped);
+  if (mapped != NULL) {
+    (void)munmap(mapped, bytes);
   }
 }
 

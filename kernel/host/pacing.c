@@ -31,6 +31,6 @@ void ilk_pacing_wait(ilk_pacing_t *pacing, const ilk_attachment_t *attachment, u
       *pacing = (ilk_pacing_t){.gave_up = true, .given_up_at = seen_tick};
       return;
     }
-    ilk_futex_wait(seen_word, seen_tick, &interval);
+    (void)ilk_futex_wait(seen_word, seen_tick, &interval);
   }
 }

@@ -1,12 +1,13 @@
 #include "service_thread.h"
 
 #include <signal.h>
+#include <stddef.h>
 #include <string.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
 /** Small, because a locked process keeps every stack in memory. */
-#define STACK_BYTES (256u * 1024u)
+#define STACK_BYTES ((size_t)256u * 1024u)
 
 static int start(pthread_t *thread, void *(*body)(void *), void *argument) {
   pthread_attr_t attributes;

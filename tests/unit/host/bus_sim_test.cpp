@@ -100,106 +100,106 @@ class SimulatedBus : public ::testing::Test {
  protected:
   void open(ilk_clock_t clock = ILK_CLOCK_SIM) {
     ilk_error_t error{};
-    ASSERT_TRUE(ilk_bus_sim_open(&sim_, path_.c_str(), clock, 1000, 0xC0FFEE, &error)) << error.text;
-    bus_ = ilk_bus_sim_driver(&sim_);
+    ASSERT_TRUE(ilk_bus_sim_open(&sim, path.c_str(), clock, 1000, 0xC0FFEE, &error)) << error.text;
+    bus = ilk_bus_sim_driver(&sim);
   }
   std::string refusal() {
     ilk_error_t error{};
-    EXPECT_FALSE(ilk_bus_sim_open(&sim_, path_.c_str(), ILK_CLOCK_SIM, 1000, 0, &error));
+    EXPECT_FALSE(ilk_bus_sim_open(&sim, path.c_str(), ILK_CLOCK_SIM, 1000, 0, &error));
     return error.text;
   }
-  bool transact() { return bus_.transact(bus_.driver, ++tick_, &out_, &in_); }
+  bool transact() { return bus.transact(bus.driver, ++tick, &out, &in); }
   bool succeeds() {
     transact();
-    return in_.transaction_done == 1;
+    return in.transaction_done == 1;
   }
 
-  TemporaryDirectory directory_;
-  std::string path_ = directory_.file("bus");
-  ilk_bus_sim_t sim_{};
-  ilk_bus_t bus_{};
-  ilk_outputs_t out_{};
-  ilk_inputs_t in_{};
-  uint32_t tick_ = 0;
+  TemporaryDirectory directory;
+  std::string path = directory.file("bus");
+  ilk_bus_sim_t sim{};
+  ilk_bus_t bus{};
+  ilk_outputs_t out{};
+  ilk_inputs_t in{};
+  uint32_t tick = 0;
 };
 
 TEST_F(SimulatedBus, TransactionBringsFramesAndContacts) {
-  Peer peer(path_);
+  Peer peer(path);
   open();
-  out_.frame[9][31] = 0xABCD;
+  out.frame[9][31] = 0xABCD;
   EXPECT_TRUE(transact());
-  EXPECT_EQ(in_.transaction_done, 1u);
-  EXPECT_EQ(in_.frames_received, 0x3FFu);
-  EXPECT_EQ(in_.pedal_no_closed, 1u);
-  EXPECT_EQ(in_.pedal_nc_closed, 0u);
-  EXPECT_EQ(in_.estop_loop_closed, 1u);
-  EXPECT_EQ(in_.frame[9][31], 0xABCDu);
-  EXPECT_EQ(peer.last_tick, tick_);
-  ilk_bus_sim_close(&sim_);
+  EXPECT_EQ(in.transaction_done, 1u);
+  EXPECT_EQ(in.frames_received, 0x3FFu);
+  EXPECT_EQ(in.pedal_no_closed, 1u);
+  EXPECT_EQ(in.pedal_nc_closed, 0u);
+  EXPECT_EQ(in.estop_loop_closed, 1u);
+  EXPECT_EQ(in.frame[9][31], 0xABCDu);
+  EXPECT_EQ(peer.last_tick, tick);
+  ilk_bus_sim_close(&sim);
 }
 
 TEST_F(SimulatedBus, FailedTransactionHasNoFramesAndKeepsTheContacts) {
-  Peer peer(path_);
+  Peer peer(path);
   open();
   ASSERT_TRUE(succeeds());
   for (const Manner manner : {Manner::kFail, Manner::kWrongTick, Manner::kShort}) {
     peer.manner = manner;
     EXPECT_TRUE(transact());
-    EXPECT_EQ(in_.transaction_done, 0u);
-    EXPECT_EQ(in_.frames_received, 0u);
-    EXPECT_EQ(in_.estop_loop_closed, 1u);
+    EXPECT_EQ(in.transaction_done, 0u);
+    EXPECT_EQ(in.frames_received, 0u);
+    EXPECT_EQ(in.estop_loop_closed, 1u);
     peer.manner = Manner::kAnswer;
     EXPECT_TRUE(succeeds());
   }
-  ilk_bus_sim_close(&sim_);
+  ilk_bus_sim_close(&sim);
 }
 
 TEST_F(SimulatedBus, SilentPlantGetsNoSecondExchange) {
-  Peer peer(path_);
+  Peer peer(path);
   open(ILK_CLOCK_REAL);
   peer.manner = Manner::kSilent;
   for (int n = 0; n < 5; ++n) {
     transact();
-    EXPECT_EQ(in_.transaction_done, 0u);
+    EXPECT_EQ(in.transaction_done, 0u);
   }
   EXPECT_TRUE(eventually([&] { return peer.exchanges == 1; }));
-  ilk_bus_sim_close(&sim_);
+  ilk_bus_sim_close(&sim);
 }
 
 TEST_F(SimulatedBus, DeadPlantFailsEachTransactionAndFramesFlowWhenItReturns) {
-  std::optional<Peer> peer(std::in_place, path_);
+  std::optional<Peer> peer(std::in_place, path);
   open();
   for (int life = 0; life < 3; ++life) {
     ASSERT_TRUE(eventually([&] { return succeeds(); }));
     peer.reset();
     EXPECT_TRUE(eventually([&] { return !transact(); }));
-    EXPECT_EQ(in_.transaction_done, 0u);
-    EXPECT_EQ(in_.frames_received, 0u);
-    peer.emplace(path_);
+    EXPECT_EQ(in.transaction_done, 0u);
+    EXPECT_EQ(in.frames_received, 0u);
+    peer.emplace(path);
   }
   ASSERT_TRUE(eventually([&] { return succeeds(); }));
-  ilk_bus_sim_close(&sim_);
+  ilk_bus_sim_close(&sim);
 }
 
 TEST_F(SimulatedBus, PlantThatDiedOwingAReplyIsForgiven) {
-  std::optional<Peer> peer(std::in_place, path_);
+  std::optional<Peer> peer(std::in_place, path);
   open(ILK_CLOCK_REAL);
   peer->manner = Manner::kSilent;
   transact();
-  peer.emplace(path_);
+  peer.emplace(path);
   EXPECT_TRUE(eventually([&] { return succeeds(); }));
-  ilk_bus_sim_close(&sim_);
+  ilk_bus_sim_close(&sim);
 }
 
 TEST_F(SimulatedBus, PlantThatIsNotThereIsNamed) {
-  EXPECT_THAT(refusal(), HasSubstr(path_));
-  path_ = std::string(150, 'b');
+  EXPECT_THAT(refusal(), HasSubstr(path));
+  path = std::string(150, 'b');
   EXPECT_THAT(refusal(), HasSubstr("150 characters; expected 1 to 107"));
 }
 
 TEST_F(SimulatedBus, PlantOnOtherTermsIsRefusedWithBothOfThem) {
   const auto refused = [&](std::function<void(ilk_sim_hello_t&)> spoil) {
-    Peer peer(path_, std::move(spoil));
+    Peer peer(path, std::move(spoil));
     return refusal();
   };
   EXPECT_THAT(refused([](auto& hello) { hello.version = 9; }), HasSubstr("version 9"));

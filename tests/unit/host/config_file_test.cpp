@@ -22,26 +22,26 @@ class ConfigFile : public ::testing::Test {
   void write(const ilk_config_t& config, size_t bytes = sizeof(ilk_config_t)) {
     std::string content(reinterpret_cast<const char*>(&config), sizeof config);
     content.resize(bytes);
-    std::ofstream(path_, std::ios::binary) << content;
+    std::ofstream(path, std::ios::binary) << content;
   }
   std::string refusal() {
     ilk_error_t error{};
-    EXPECT_FALSE(ilk_config_load(path_.c_str(), &loaded_, &error));
-    EXPECT_THAT(error.text, HasSubstr(path_));
+    EXPECT_FALSE(ilk_config_load(path.c_str(), &loaded, &error));
+    EXPECT_THAT(error.text, HasSubstr(path));
     return error.text;
   }
 
-  TemporaryDirectory directory_;
-  std::string path_ = directory_.file("robot.ilkc");
-  ilk_config_t loaded_{};
+  TemporaryDirectory directory;
+  std::string path = directory.file("robot.ilkc");
+  ilk_config_t loaded{};
 };
 
 TEST_F(ConfigFile, ValidOneIsTakenWordForWord) {
   const ilk_config_t config = one_axis_config();
   write(config);
   ilk_error_t error{};
-  ASSERT_TRUE(ilk_config_load(path_.c_str(), &loaded_, &error)) << error.text;
-  EXPECT_EQ(std::memcmp(&loaded_, &config, sizeof config), 0);
+  ASSERT_TRUE(ilk_config_load(path.c_str(), &loaded, &error)) << error.text;
+  EXPECT_EQ(std::memcmp(&loaded, &config, sizeof config), 0);
 }
 
 TEST_F(ConfigFile, P13RuleThatIsBrokenIsNamedWithItsSlot) {
@@ -73,7 +73,7 @@ TEST_F(ConfigFile, WrongLengthsAreNamed) {
 
 TEST_F(ConfigFile, MissingFileAndDirectoryAreNamed) {
   EXPECT_THAT(refusal(), HasSubstr("cannot be opened"));
-  path_ = directory_.file("");
+  path = directory.file("");
   EXPECT_THAT(refusal(), HasSubstr("cannot be read"));
 }
 

@@ -109,9 +109,11 @@ std::unique_ptr<App> App::attach(const std::string& link) {
   message.msg_iovlen = 1;
   message.msg_control = control.data();
   message.msg_controllen = control.size();
-  const cmsghdr* header = nullptr;
-  if (recvmsg(app->socket.get(), &message, MSG_CMSG_CLOEXEC) != static_cast<ssize_t>(sizeof app->hello) ||
-      (header = CMSG_FIRSTHDR(&message)) == nullptr || header->cmsg_len != CMSG_LEN(sizeof descriptors)) {
+  if (recvmsg(app->socket.get(), &message, MSG_CMSG_CLOEXEC) != static_cast<ssize_t>(sizeof app->hello)) {
+    return nullptr;
+  }
+  const cmsghdr* header = CMSG_FIRSTHDR(&message);
+  if (header == nullptr || header->cmsg_len != CMSG_LEN(sizeof descriptors)) {
     return nullptr;
   }
   std::memcpy(descriptors.data(), CMSG_DATA(header), sizeof descriptors);

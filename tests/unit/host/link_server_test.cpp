@@ -27,33 +27,33 @@ class LinkServer : public ::testing::Test {
  protected:
   void SetUp() override {
     ilk_error_t error{};
-    ASSERT_EQ(ilk_link_listen(&link_, path_.c_str(), &error), ILK_LISTEN_OK) << error.text;
-    ASSERT_TRUE(ilk_link_server_start(&server_, link_.descriptor, &error)) << error.text;
+    ASSERT_EQ(ilk_link_listen(&link, path.c_str(), &error), ILK_LISTEN_OK) << error.text;
+    ASSERT_TRUE(ilk_link_server_start(&server, link.descriptor, &error)) << error.text;
   }
   void TearDown() override {
-    ilk_link_server_stop(&server_, current_);
-    ilk_link_unlisten(&link_);
+    ilk_link_server_stop(&server, current);
+    ilk_link_unlisten(&link);
   }
 
-  void tick() { current_ = ilk_mailbox_exchange(&server_.mailbox, current_); }
+  void tick() { current = ilk_mailbox_exchange(&server.mailbox, current); }
   bool serves(uint32_t generation) {
     tick();
-    return current_ != nullptr && current_->generation == generation;
+    return current != nullptr && current->generation == generation;
   }
   bool serves_nobody() {
     tick();
-    return current_ == nullptr;
+    return current == nullptr;
   }
 
-  TemporaryDirectory directory_;
-  std::string path_ = directory_.file("link");
-  ilk_link_socket_t link_{};
-  ilk_link_server_t server_{};
-  ilk_attachment_t* current_ = nullptr;
+  TemporaryDirectory directory;
+  std::string path = directory.file("link");
+  ilk_link_socket_t link{};
+  ilk_link_server_t server{};
+  ilk_attachment_t* current = nullptr;
 };
 
 TEST_F(LinkServer, AppGetsHelloAndBothRegions) {
-  const auto app = App::attach(path_);
+  const auto app = App::attach(path);
   ASSERT_TRUE(app);
   EXPECT_EQ(app->hello.magic, ILK_LINK_MAGIC);
   EXPECT_EQ(app->hello.version, ILK_LINK_VERSION);
@@ -64,14 +64,14 @@ TEST_F(LinkServer, AppGetsHelloAndBothRegions) {
   ASSERT_NE(app->app, nullptr);
   EXPECT_EQ(app->kernel->generation, app->hello.generation);
   ASSERT_TRUE(eventually([&] { return serves(1); }));
-  current_->regions.kernel->request_tail = 99;
+  current->regions.kernel->request_tail = 99;
   EXPECT_EQ(app->kernel->request_tail, 99u);
   app->app->request_head = 5;
-  EXPECT_EQ(current_->regions.app->request_head, 5u);
+  EXPECT_EQ(current->regions.app->request_head, 5u);
 }
 
 TEST_F(LinkServer, AppCannotMapTheKernelsRegionWritable) {
-  const auto app = App::attach(path_);
+  const auto app = App::attach(path);
   ASSERT_TRUE(app);
   EXPECT_EQ(mmap(nullptr, sizeof *app->kernel, PROT_READ | PROT_WRITE, MAP_SHARED,
                  app->kernel_region_descriptor.get(), 0),
@@ -81,14 +81,14 @@ TEST_F(LinkServer, AppCannotMapTheKernelsRegionWritable) {
 TEST_F(LinkServer, EachAttachmentIsAFreshGeneration) {
   for (uint32_t generation = 1; generation <= 20; ++generation) {
     std::unique_ptr<App> app;
-    ASSERT_TRUE(eventually([&] { return (app = App::attach(path_)) != nullptr; }));
+    ASSERT_TRUE(eventually([&] { return (app = App::attach(path)) != nullptr; }));
     EXPECT_EQ(app->hello.generation, generation);
     EXPECT_EQ(app->app->request_head, 0u);
     EXPECT_EQ(app->kernel->request_tail, 0u);
     EXPECT_EQ(app->kernel->snapshot_lock, 0u);
     ASSERT_TRUE(eventually([&] { return serves(generation); }));
     app->app->request_head = 3;
-    current_->regions.kernel->request_tail = 2;
+    current->regions.kernel->request_tail = 2;
   }
   EXPECT_TRUE(eventually([&] { return serves_nobody(); }));
 }
@@ -96,22 +96,22 @@ TEST_F(LinkServer, EachAttachmentIsAFreshGeneration) {
 TEST_F(LinkServer, AttachmentsThatTheLoopNeverTookDoNotPileUp) {
   for (uint32_t generation = 1; generation <= 50; ++generation) {
     std::unique_ptr<App> app;
-    ASSERT_TRUE(eventually([&] { return (app = App::attach(path_)) != nullptr; }));
+    ASSERT_TRUE(eventually([&] { return (app = App::attach(path)) != nullptr; }));
     EXPECT_EQ(app->hello.generation, generation);
   }
   EXPECT_TRUE(eventually([&] { return serves(50) || serves_nobody(); }));
 }
 
 TEST_F(LinkServer, SecondAppIsTurnedAwayAndTheFirstKeepsItsLink) {
-  const auto first = App::attach(path_);
+  const auto first = App::attach(path);
   ASSERT_TRUE(first);
-  EXPECT_FALSE(App::attach(path_));
+  EXPECT_FALSE(App::attach(path));
   ASSERT_TRUE(eventually([&] { return serves(1); }));
-  EXPECT_TRUE(ilk_attachment_is_open(current_));
+  EXPECT_TRUE(ilk_attachment_is_open(current));
 }
 
 TEST_F(LinkServer, AppThatSendsOnTheSocketIsDetached) {
-  const auto app = App::attach(path_);
+  const auto app = App::attach(path);
   ASSERT_TRUE(app);
   ASSERT_EQ(send(app->socket.get(), "x", 1, MSG_NOSIGNAL), 1);
   EXPECT_TRUE(is_closed(*app));
@@ -119,11 +119,11 @@ TEST_F(LinkServer, AppThatSendsOnTheSocketIsDetached) {
 }
 
 TEST_F(LinkServer, ClosedAttachmentIsNotServedEvenBeforeItIsCollected) {
-  std::unique_ptr<App> app = App::attach(path_);
+  std::unique_ptr<App> app = App::attach(path);
   ASSERT_TRUE(app);
   ASSERT_TRUE(eventually([&] { return serves(1); }));
   app.reset();
-  EXPECT_TRUE(eventually([&] { return !ilk_attachment_is_open(current_); }));
+  EXPECT_TRUE(eventually([&] { return !ilk_attachment_is_open(current); }));
 }
 
 TEST(LinkMailbox, ChangeWaitsWhileTheLastOneIsUncollected) {

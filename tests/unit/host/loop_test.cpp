@@ -26,56 +26,56 @@ class Loop : public ::testing::Test {
   }
 
   void SetUp() override { start({ILK_CLOCK_SIM, 0.0, false, 0}); }
-  void TearDown() override { ilk_link_regions_destroy(&attachment_.regions); }
+  void TearDown() override { ilk_link_regions_destroy(&attachment.regions); }
 
   void start(const ilk_run_terms_t& terms) {
-    const ilk_bus_t bus{&transactions_, true, transact};
-    ilk_loop_init(&loop_, &config_, &terms, bus, &mailbox_, &stop_);
+    const ilk_bus_t bus{&transactions, true, transact};
+    ilk_loop_init(&loop, &config, &terms, bus, &mailbox, &stop);
   }
 
   void attach(uint32_t generation) {
     ilk_error_t error{};
-    ASSERT_TRUE(ilk_link_regions_create(&attachment_.regions, generation, &error)) << error.text;
-    attachment_.generation = generation;
-    attachment_.open = 1;
-    mailbox_.offered = &attachment_;
+    ASSERT_TRUE(ilk_link_regions_create(&attachment.regions, generation, &error)) << error.text;
+    attachment.generation = generation;
+    attachment.open = 1;
+    mailbox.offered = &attachment;
   }
 
   [[nodiscard]] ilk_snapshot_t published() const {
     ilk_snapshot_t snapshot{};
     uint32_t lock = 0;
-    EXPECT_TRUE(ilk_link_read_snapshot(attachment_.regions.kernel, &snapshot, &lock));
+    EXPECT_TRUE(ilk_link_read_snapshot(attachment.regions.kernel, &snapshot, &lock));
     return snapshot;
   }
 
-  ilk_config_t config_ = one_axis_config();
-  ilk_link_mailbox_t mailbox_{};
-  ilk_attachment_t attachment_{};
-  uint32_t transactions_ = 0;
-  volatile sig_atomic_t stop_ = 0;
-  ilk_loop_t loop_{};
+  ilk_config_t config = one_axis_config();
+  ilk_link_mailbox_t mailbox{};
+  ilk_attachment_t attachment{};
+  uint32_t transactions = 0;
+  volatile sig_atomic_t stop = 0;
+  ilk_loop_t loop{};
 };
 
 TEST_F(Loop, TickIsOneTransactionOneStepOneSnapshot) {
   attach(1);
   for (uint32_t n = 1; n <= 5; ++n) {
-    ilk_loop_tick(&loop_);
-    EXPECT_EQ(transactions_, n);
+    ilk_loop_tick(&loop);
+    EXPECT_EQ(transactions, n);
     const ilk_snapshot_t snapshot = published();
     EXPECT_EQ(snapshot.state.tick, n);
-    EXPECT_EQ(std::memcmp(&snapshot.state, &loop_.shown.state, sizeof snapshot.state), 0);
-    EXPECT_EQ(std::memcmp(&snapshot.inputs, &loop_.shown.inputs, sizeof snapshot.inputs), 0);
-    EXPECT_EQ(attachment_.regions.kernel->snapshot_lock, 2 * n);
+    EXPECT_EQ(std::memcmp(&snapshot.state, &loop.shown.state, sizeof snapshot.state), 0);
+    EXPECT_EQ(std::memcmp(&snapshot.inputs, &loop.shown.inputs, sizeof snapshot.inputs), 0);
+    EXPECT_EQ(attachment.regions.kernel->snapshot_lock, 2 * n);
   }
 }
 
 TEST_F(Loop, RunsAndCountsTimeWithoutAnyApp) {
   for (uint32_t n = 0; n < 100; ++n) {
-    ilk_loop_tick(&loop_);
+    ilk_loop_tick(&loop);
   }
-  EXPECT_EQ(loop_.shown.state.tick, 100u);
+  EXPECT_EQ(loop.shown.state.tick, 100u);
   uint64_t steps = 0;
-  for (const uint32_t count : loop_.shown.timing.bucket[ILK_PHASE_STEP]) {
+  for (const uint32_t count : loop.shown.timing.bucket[ILK_PHASE_STEP]) {
     steps += count;
   }
   EXPECT_EQ(steps, 100u);
@@ -84,70 +84,70 @@ TEST_F(Loop, RunsAndCountsTimeWithoutAnyApp) {
 TEST_F(Loop, SnapshotNamesClockBusPeriodAndConfiguration) {
   start({ILK_CLOCK_SIM, 0.0, true, 5});
   attach(1);
-  ilk_loop_tick(&loop_);
+  ilk_loop_tick(&loop);
   const ilk_snapshot_t snapshot = published();
   EXPECT_EQ(snapshot.clock, uint32_t{ILK_CLOCK_SIM});
   EXPECT_EQ(snapshot.simulated, 1u);
   EXPECT_EQ(snapshot.degraded, 1u);
   EXPECT_EQ(snapshot.granted, 5u);
   EXPECT_EQ(snapshot.period_us, 1000u);
-  EXPECT_EQ(snapshot.config_crc, config_.crc);
+  EXPECT_EQ(snapshot.config_crc, config.crc);
 }
 
 TEST_F(Loop, RequestOfTheRingIsJudgedOnceInItsGeneration) {
   attach(7);
-  ilk_loop_tick(&loop_);
-  EXPECT_EQ(loop_.shown.inputs.link_generation, 7u);
-  auto* app = const_cast<ilk_link_app_region_t*>(attachment_.regions.app);
+  ilk_loop_tick(&loop);
+  EXPECT_EQ(loop.shown.inputs.link_generation, 7u);
+  auto* app = const_cast<ilk_link_app_region_t*>(attachment.regions.app);
   ilk_link_app_region_t written{};
   ilk_request_t request{};
   request.sequence = 1;
   request.kind = ILK_REQUEST_HEARTBEAT;
   request.holder = 3;
   request.crc = ilk_request_crc(&request);
-  ASSERT_TRUE(ilk_link_put_request(attachment_.regions.kernel, &written, &request));
-  attachment_.regions.app = &written;
+  ASSERT_TRUE(ilk_link_put_request(attachment.regions.kernel, &written, &request));
+  attachment.regions.app = &written;
   for (int n = 0; n < 3; ++n) {
-    ilk_loop_tick(&loop_);
+    ilk_loop_tick(&loop);
   }
-  attachment_.regions.app = app;
-  EXPECT_EQ(attachment_.regions.kernel->request_tail, 1u);
-  EXPECT_EQ(loop_.shown.state.requests_accepted, 1u);
-  EXPECT_EQ(loop_.shown.state.holder, 3u);
+  attachment.regions.app = app;
+  EXPECT_EQ(attachment.regions.kernel->request_tail, 1u);
+  EXPECT_EQ(loop.shown.state.requests_accepted, 1u);
+  EXPECT_EQ(loop.shown.state.holder, 3u);
 }
 
 TEST_F(Loop, NothingIsReadFromAnAppThatHasGone) {
   attach(1);
-  ilk_loop_tick(&loop_);
-  attachment_.open = 0;
-  ilk_loop_tick(&loop_);
-  EXPECT_EQ(loop_.attachment, nullptr);
-  EXPECT_EQ(mailbox_.retired, &attachment_);
+  ilk_loop_tick(&loop);
+  attachment.open = 0;
+  ilk_loop_tick(&loop);
+  EXPECT_EQ(loop.attachment, nullptr);
+  EXPECT_EQ(mailbox.retired, &attachment);
   EXPECT_EQ(published().state.tick, 1u);
-  EXPECT_EQ(loop_.shown.state.tick, 2u);
+  EXPECT_EQ(loop.shown.state.tick, 2u);
 }
 
 TEST_F(Loop, StopEndsItWithoutAnotherTick) {
-  stop_ = 1;
-  ilk_loop_tick(&loop_);
-  ilk_loop_run(&loop_);
-  EXPECT_EQ(transactions_, 0u);
+  stop = 1;
+  ilk_loop_tick(&loop);
+  ilk_loop_run(&loop);
+  EXPECT_EQ(transactions, 0u);
 }
 
 TEST_F(Loop, DeadlineCountsAsMissedOnlyBeyondAPeriodAndForTheExecutiveAlone) {
   start({ILK_CLOCK_REAL, 1.0, false, 0xF});
-  EXPECT_FALSE(ilk_loop_is_missed(&loop_, 1'000'000));
-  EXPECT_TRUE(ilk_loop_is_missed(&loop_, 1'000'001));
-  loop_.bus_ns = 20'000'000;
-  EXPECT_FALSE(ilk_loop_is_missed(&loop_, 21'000'000));
-  EXPECT_TRUE(ilk_loop_is_missed(&loop_, 21'000'001));
-  loop_.bus.simulated = false;
-  EXPECT_TRUE(ilk_loop_is_missed(&loop_, 1'000'001));
+  EXPECT_FALSE(ilk_loop_is_missed(&loop, 1'000'000));
+  EXPECT_TRUE(ilk_loop_is_missed(&loop, 1'000'001));
+  loop.bus_ns = 20'000'000;
+  EXPECT_FALSE(ilk_loop_is_missed(&loop, 21'000'000));
+  EXPECT_TRUE(ilk_loop_is_missed(&loop, 21'000'001));
+  loop.bus.simulated = false;
+  EXPECT_TRUE(ilk_loop_is_missed(&loop, 1'000'001));
 }
 
 TEST_F(Loop, DegradedRunLatchesNoMissedDeadline) {
   start({ILK_CLOCK_REAL, 1.0, true, 0});
-  EXPECT_FALSE(ilk_loop_is_missed(&loop_, UINT64_MAX));
+  EXPECT_FALSE(ilk_loop_is_missed(&loop, UINT64_MAX));
 }
 
 }  // namespace

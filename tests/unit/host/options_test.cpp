@@ -22,6 +22,7 @@ Parsed parse(std::vector<std::string> arguments) {
   parsed.arguments = std::move(arguments);
   parsed.arguments.insert(parsed.arguments.begin(), "interlock-kernel");
   std::vector<char*> argv;
+  argv.reserve(parsed.arguments.size() + 1);
   for (std::string& argument : parsed.arguments) {
     argv.push_back(argument.data());
   }
@@ -88,7 +89,9 @@ TEST(Options, BadValuesAreNamedWithWhatWasExpected) {
   for (const auto& [option, value, expected] : bad) {
     const Parsed parsed = parse(complete({option, value}));
     EXPECT_EQ(parsed.result, ILK_OPTIONS_BAD) << option << " " << value;
-    EXPECT_EQ(parsed.error, option + " is '" + value + "'; expected " + expected);
+    const std::string wanted =
+        (::testing::Message() << option << " is '" << value << "'; expected " << expected).GetString();
+    EXPECT_EQ(parsed.error, wanted);
   }
 }
 

@@ -58,6 +58,7 @@ TEST(Snapshot, IsNeverTornWhileSeveralReadIt) {
   std::atomic<uint32_t> torn{0};
   std::atomic<bool> done{false};
   std::vector<std::thread> readers;
+  readers.reserve(reads.size());
   for (auto& count : reads) {
     readers.emplace_back([&] {
       ilk_snapshot_t snapshot{};
