@@ -1,6 +1,6 @@
 /** What a click does: one call to the app, its answer into the store. */
 import { type AxisAction, api, type ProposalDraft } from "../api/client";
-import { noticeOfProblem } from "./notice";
+import { type Notice, noticeOfProblem } from "./notice";
 import { useConsole, withBenchAnswer, withNotice } from "./store";
 
 /** Sends STOP at once, whatever else is going on, and drops every preview. */
@@ -41,12 +41,27 @@ export async function abort(id: number, slot: number): Promise<void> {
   useConsole.setState((state) => withNotice(state, slot, notice));
 }
 
-/** Passes a command of models/plant/README.md to the simulated hardware; a refusal is shown at the bench. */
-export async function bench(command: string, fields: Record<string, unknown>): Promise<void> {
+/**
+ * Passes a command of models/plant/README.md to the simulated hardware; a refusal is shown at the bench.
+ * Returns whether it was accepted.
+ */
+export async function bench(command: string, fields: Record<string, unknown>): Promise<boolean> {
   const outcome = await api.benchCommand(command, fields);
   const notice = outcome.ok ? null : noticeOfProblem(outcome.problem);
   useConsole.setState((state) => withBenchAnswer(state, command, notice));
+  return outcome.ok;
 }
+
+/** Shows at the bench that the pedal came up by itself, or no longer shows it. */
+export function showPedalLapse(shown: boolean): void {
+  useConsole.setState((state) => withBenchAnswer(state, "pedal hold", shown ? pedalLapse : null));
+}
+
+const pedalLapse: Notice = {
+  code: "LATE",
+  meaning: "The pedal came up because its hold was not renewed in time.",
+  nextStep: "Press it again.",
+};
 
 export function dismissNotice(slot: number): void {
   useConsole.setState((state) => withNotice(state, slot, null));

@@ -1,23 +1,30 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
-import { PedalFoot, RENEW_EVERY_MS } from "./pedal";
+import { PedalFoot, RENEW_BEFORE_MS, RENEW_EVERY_MS } from "./pedal";
 
 let sent: boolean[];
-let answer: (() => void)[];
+let answers: ((heard: boolean) => void)[];
+let lapses: number;
 let foot: PedalFoot;
 
-const answerAll = async (): Promise<void> => {
-  for (const resolve of answer.splice(0)) resolve();
+const answerAll = async (heard = true): Promise<void> => {
+  for (const answer of answers.splice(0)) answer(heard);
   await vi.advanceTimersByTimeAsync(0);
 };
 
 beforeEach(() => {
   vi.useFakeTimers();
   sent = [];
-  answer = [];
-  foot = new PedalFoot((pressed) => {
-    sent.push(pressed);
-    return new Promise((resolve) => answer.push(resolve));
-  });
+  answers = [];
+  lapses = 0;
+  foot = new PedalFoot(
+    (pressed) => {
+      sent.push(pressed);
+      return new Promise((resolve) => answers.push(resolve));
+    },
+    () => {
+      lapses += 1;
+    },
+  );
 });
 
 afterEach(() => {
@@ -70,5 +77,34 @@ describe("PedalFoot", () => {
     foot.release();
     await vi.advanceTimersByTimeAsync(10 * RENEW_EVERY_MS);
     expect(sent).toEqual([]);
+  });
+
+  it("comes off instead of pressing anew when a renewal is late", async () => {
+    foot.press();
+    await vi.advanceTimersByTimeAsync(RENEW_BEFORE_MS);
+    await answerAll();
+    await vi.advanceTimersByTimeAsync(RENEW_EVERY_MS);
+    await answerAll();
+    await vi.advanceTimersByTimeAsync(10 * RENEW_EVERY_MS);
+    expect(sent).toEqual([true, false]);
+    expect(lapses).toBe(1);
+  });
+
+  it("comes off when a press is refused", async () => {
+    foot.press();
+    await answerAll(false);
+    await answerAll();
+    await vi.advanceTimersByTimeAsync(10 * RENEW_EVERY_MS);
+    expect(sent).toEqual([true, false]);
+    expect(lapses).toBe(1);
+  });
+
+  it("does not count a release as a lapse", async () => {
+    foot.press();
+    await answerAll();
+    foot.release();
+    await vi.advanceTimersByTimeAsync(0);
+    await answerAll();
+    expect(lapses).toBe(0);
   });
 });

@@ -1,22 +1,34 @@
 import { useEffect, useState } from "react";
-import { bench } from "../../state/commands";
+import { bench, showPedalLapse } from "../../state/commands";
 import { useConsole } from "../../state/store";
-import { PedalFoot } from "./pedal";
+import { PedalFoot, type SendPedal } from "./pedal";
 
 /**
  * The pedal under a pointer, with a latch for those who need the pointer elsewhere. Whatever takes the page out
- * of the operator's hands (another window or tab, leaving, covered data) lifts the foot and opens the latch.
+ * of the operator's hands (another window or tab, leaving, covered data, a page too slow to renew the hold) lifts
+ * the foot and opens the latch.
  */
 export function usePedal() {
   const [held, setHeld] = useState(false);
   const [latched, setLatched] = useState(false);
   const blind = useConsole((state) => state.freshness.level === "covered");
-  const [foot] = useState(() => new PedalFoot((pressed) => bench("pedal", { pressed })));
+  const [foot] = useState(() => {
+    const send: SendPedal = (pressed) => bench("pedal", { pressed });
+    return new PedalFoot(send, () => {
+      setHeld(false);
+      setLatched(false);
+      showPedalLapse(true);
+    });
+  });
   const down = (held || latched) && !blind;
 
   useEffect(() => {
-    if (down) foot.press();
-    else foot.release();
+    if (!down) {
+      foot.release();
+      return;
+    }
+    showPedalLapse(false);
+    foot.press();
   }, [down, foot]);
 
   useEffect(() => {
