@@ -1,7 +1,5 @@
 #include "cli/runtime_directory.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
 #include <sys/un.h>
 #include <unistd.h>
 
@@ -37,7 +35,8 @@ Result<RuntimeDirectory> RuntimeDirectory::make_private(const std::string& robot
                                               std::generic_category().message(errno) +
                                               "; set XDG_RUNTIME_DIR to a directory of yours");
   }
-  RuntimeDirectory directory(pattern, robot_name, UniqueFd());
+  RuntimeDirectory directory(pattern, robot_name);
+  directory.removes_ = Removes::everything;
   if (!fits_socket_address(directory.control())) {
     return tl::unexpected(too_long(directory.control()));
   }
@@ -45,45 +44,47 @@ Result<RuntimeDirectory> RuntimeDirectory::make_private(const std::string& robot
 }
 
 Result<RuntimeDirectory> RuntimeDirectory::use(const fs::path& directory, const std::string& robot_name) {
-  std::error_code ignored;
-  const fs::path absolute = fs::absolute(directory);
-  fs::create_directories(absolute, ignored);
-  UniqueFd hold(open(absolute.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (!hold || flock(hold.get(), LOCK_EX | LOCK_NB) != 0) {
-    const std::string reason =
-        errno == EWOULDBLOCK ? "another instance uses it" : std::generic_category().message(errno);
-    return failed(ExitCode::precondition, absolute.string() + " cannot be used for the sockets: " + reason +
-                                              "; choose another directory with --sockets");
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error) {
+    return failed(ExitCode::precondition, directory.string() + " cannot hold the sockets: " +
+                                              error.message() + "; choose another directory with --sockets");
   }
-  RuntimeDirectory given(absolute, robot_name, std::move(hold));
+  RuntimeDirectory given(fs::absolute(directory), robot_name);
   if (!fits_socket_address(given.control())) {
     return tl::unexpected(too_long(given.control()));
   }
-  given.remove_own_files();
+  for (const fs::path& file : given.own_files()) {
+    if (fs::symlink_status(file, error).type() != fs::file_type::not_found) {
+      return failed(
+          ExitCode::precondition,
+          file.string() +
+              " is there already: another instance uses the directory, or one that was killed left it; "
+              "remove it, or choose another directory with --sockets");
+    }
+  }
+  given.removes_ = Removes::own_files;
   return given;
 }
 
 RuntimeDirectory::RuntimeDirectory(RuntimeDirectory&& other) noexcept
-    : path_(std::exchange(other.path_, {})),
+    : path_(std::move(other.path_)),
       robot_name_(std::move(other.robot_name_)),
-      hold_(std::move(other.hold_)) {}
+      removes_(std::exchange(other.removes_, Removes::nothing)) {}
 
 RuntimeDirectory::~RuntimeDirectory() {
-  if (path_.empty()) {
-    return;
-  }
-  if (is_private()) {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  } else {
-    remove_own_files();
-  }
-}
-
-void RuntimeDirectory::remove_own_files() const {
-  for (const fs::path& file : {bus(), control(), link(), config()}) {
-    std::error_code ignored;
-    fs::remove(file, ignored);
+  std::error_code ignored;
+  switch (removes_) {
+    case Removes::nothing:
+      break;
+    case Removes::own_files:
+      for (const fs::path& file : own_files()) {
+        fs::remove(file, ignored);
+      }
+      break;
+    case Removes::everything:
+      fs::remove_all(path_, ignored);
+      break;
   }
 }
 

@@ -4,11 +4,11 @@
  */
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 
 #include "cli/exit_code.hpp"
-#include "cli/unique_fd.hpp"
 
 namespace interlock::cli {
 
@@ -28,21 +28,25 @@ class RuntimeDirectory {
   ~RuntimeDirectory();
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  [[nodiscard]] bool is_private() const { return !hold_; }
+  [[nodiscard]] bool is_private() const { return removes_ == Removes::everything; }
   [[nodiscard]] std::filesystem::path bus() const { return path_ / "bus.sock"; }
   [[nodiscard]] std::filesystem::path control() const { return path_ / "control.sock"; }
   [[nodiscard]] std::filesystem::path link() const { return path_ / "link.sock"; }
   [[nodiscard]] std::filesystem::path config() const { return path_ / (robot_name_ + ".ilkc"); }
 
  private:
-  RuntimeDirectory(std::filesystem::path path, std::string robot_name, UniqueFd hold)
-      : path_(std::move(path)), robot_name_(std::move(robot_name)), hold_(std::move(hold)) {}
+  enum class Removes { nothing, own_files, everything };
 
-  void remove_own_files() const;
+  RuntimeDirectory(std::filesystem::path path, std::string robot_name)
+      : path_(std::move(path)), robot_name_(std::move(robot_name)) {}
+
+  [[nodiscard]] std::array<std::filesystem::path, 4> own_files() const {
+    return {bus(), control(), link(), config()};
+  }
 
   std::filesystem::path path_;
   std::string robot_name_;
-  UniqueFd hold_; /**< lock on a given directory; none on a private one */
+  Removes removes_ = Removes::nothing;
 };
 
 }  // namespace interlock::cli

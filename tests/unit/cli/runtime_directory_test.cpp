@@ -35,12 +35,10 @@ TEST_F(RuntimeDirectoryTest, two_private_ones_differ) {
 
 TEST_F(RuntimeDirectoryTest, a_given_one_loses_the_files_of_this_run_and_no_others) {
   const auto other = touch("given/notes");
-  touch("given/bus.sock");
   {
     const auto directory = RuntimeDirectory::use(folder_ / "given", "neuro");
     ASSERT_TRUE(directory) << directory.error().text;
     EXPECT_FALSE(directory->is_private());
-    EXPECT_FALSE(std::filesystem::exists(directory->bus())) << "left by an earlier run";
     for (const auto& file :
          {directory->bus(), directory->control(), directory->link(), directory->config()}) {
       std::ofstream(file) << "left";
@@ -50,13 +48,12 @@ TEST_F(RuntimeDirectoryTest, a_given_one_loses_the_files_of_this_run_and_no_othe
   EXPECT_TRUE(std::filesystem::exists(other));
 }
 
-TEST_F(RuntimeDirectoryTest, a_given_one_serves_one_run_at_a_time) {
-  const auto first = RuntimeDirectory::use(folder_, "neuro");
-  ASSERT_TRUE(first);
-  const auto socket = touch("bus.sock");
-  const auto second = RuntimeDirectory::use(folder_, "neuro");
-  ASSERT_FALSE(second);
-  EXPECT_THAT(second.error().text, HasSubstr("another instance uses it"));
+TEST_F(RuntimeDirectoryTest, a_given_one_with_the_socket_of_another_run_is_refused_and_left_as_it_is) {
+  const auto socket = touch("given/bus.sock");
+  const auto directory = RuntimeDirectory::use(folder_ / "given", "neuro");
+  ASSERT_FALSE(directory);
+  EXPECT_EQ(directory.error().code, ExitCode::precondition);
+  EXPECT_THAT(directory.error().text, HasSubstr(socket.string() + " is there already"));
   EXPECT_TRUE(std::filesystem::exists(socket));
 }
 
