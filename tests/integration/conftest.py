@@ -1,0 +1,46 @@
+"""Fixtures for every integration test. Programs come from $INTERLOCK_BIN, by default build/release/bin."""
+
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from stack import Stack
+
+StackFactory = Callable[..., Stack]
+
+
+@pytest.fixture
+def short_tmp_path() -> Iterator[Path]:
+    """A folder whose name leaves room for a socket: pytest's own paths can be too long for one."""
+    with tempfile.TemporaryDirectory(prefix="interlock-test-") as directory:
+        yield Path(directory)
+
+
+@pytest.fixture
+def stack(short_tmp_path: Path) -> Iterator[StackFactory]:
+    """Starts whole robots: `stack(clock="sim", speed=0)`. Each is stopped when the test ends."""
+    running: list[Stack] = []
+
+    def start(clock: str = "sim", speed: float = 0, robot: str | Path = "neuro", seed: int = 1) -> Stack:
+        directory = short_tmp_path / str(len(running))
+        arguments = [
+            "--robot",
+            robot,
+            "--clock",
+            clock,
+            "--seed",
+            str(seed),
+            "--sockets",
+            directory / "sockets",
+        ]
+        if clock == "sim":
+            arguments += ["--speed", str(speed)]
+        started = Stack(directory, *arguments)
+        running.append(started)
+        started.connect_control()
+        return started
+
+    yield start
+    for started in running:
+        started.close()
