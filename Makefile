@@ -19,7 +19,7 @@ web_sources = $(shell find web spec/openapi.yaml -name node_modules -prune -o -n
 
 .PHONY: help
 help: ## List the targets
-	@sed -nE 's/^([a-z-]+):.*## (.*)/\1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 16
+	@sed -nE 's/^([a-z-]+):.*## (.*)/\1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 18
 
 .PHONY: setup
 setup: ## Install what is missing: Debian packages, Python environment, Node, node modules
