@@ -27,8 +27,6 @@ struct MotorCommand {
   bool direction_bit = false;  /**< "actual" of spec/frames.md */
   std::uint32_t level = 0;     /**< drive; on high-frequency cards the frequency word */
   std::uint32_t amplitude = 0; /**< high-frequency cards only */
-
-  friend bool operator==(const MotorCommand&, const MotorCommand&) = default;
 };
 
 /** What a card tells. */

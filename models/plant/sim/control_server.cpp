@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t kMostClients = 16;
 constexpr std::size_t kLongestLine = 4096;
+constexpr const char* kTooLong = "a line has at most 4096 bytes";
 constexpr std::size_t kMostUnsent = 64 * 1024;
 constexpr std::size_t kMostWaiting = 64;
 /** About 10 us of formatting between two looks at the bus. */
@@ -63,7 +64,7 @@ void ControlClient::receive() {
   if (!has_line() && received_.size() > kLongestLine) {
     // The rest of the line is thrown away as it comes; one refusal stands for all of it.
     if (!discarding_) {
-      unsent_ += refused({nullptr, "a line has at most " + std::to_string(kLongestLine) + " bytes"});
+      unsent_ += refused({nullptr, kTooLong});
     }
     discarding_ = true;
     received_.clear();
@@ -77,7 +78,11 @@ void ControlClient::answer_line(Plant& plant, const BusServer& bus) {
   if (std::exchange(discarding_, false)) {
     return;
   }
-  const auto request = parse_request(line);
+  if (line.size() > kLongestLine) {
+    unsent_ += refused({nullptr, kTooLong});
+    return;
+  }
+  const auto request = parse_request(line, plant.ticks());
   if (request) {
     act(*request, plant, bus);
   } else {

@@ -338,7 +338,7 @@ void append_entry(std::string& text, const RecordEntry& entry) {
 
 }  // namespace
 
-tl::expected<Request, Refusal> parse_request(std::string_view line) {
+tl::expected<Request, Refusal> parse_request(std::string_view line, std::uint64_t now) {
   const json object = json::parse(line, nullptr, false);
   if (!object.is_object()) {
     return tl::unexpected(
@@ -357,6 +357,8 @@ tl::expected<Request, Refusal> parse_request(std::string_view line) {
   request.wish = form->read(fields);
   if (fields.has("at")) {
     request.at = fields.tick("at");
+  } else if (fields.has("after")) {
+    request.at = now + fields.tick("after");
   }
   fields.no_more();
   if (!fields.fault().empty()) {

@@ -32,7 +32,7 @@ using Wish = std::variant<command::Command, StatusQuery, RecordQuery, EventQuery
 
 struct Request {
   nlohmann::json id; /**< as in the line; null when there was none */
-  std::optional<std::uint64_t> at;
+  std::optional<std::uint64_t> at; /**< plant tick at which it takes effect */
   Wish wish;
 };
 
@@ -41,8 +41,8 @@ struct Refusal {
   std::string reason;
 };
 
-/** Reads one line; any fault of it, an unknown field included, is a refusal. */
-tl::expected<Request, Refusal> parse_request(std::string_view line);
+/** Reads one line that came at plant tick `now`; any fault of it, an unknown field included, is a refusal. */
+tl::expected<Request, Refusal> parse_request(std::string_view line, std::uint64_t now);
 
 /** A line that accepts; `more` is an object whose fields are added. */
 std::string accepted(const nlohmann::json& id, std::uint64_t tick,

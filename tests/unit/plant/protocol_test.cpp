@@ -13,13 +13,13 @@ using sim::parse_request;
 using ::testing::HasSubstr;
 
 std::string fault_of(const std::string& line) {
-  const auto request = parse_request(line);
+  const auto request = parse_request(line, 0);
   return request ? "accepted" : request.error().reason;
 }
 
 template <typename Wanted>
 Wanted command_of(const std::string& line) {
-  const auto request = parse_request(line);
+  const auto request = parse_request(line, 0);
   EXPECT_TRUE(request) << request.error().reason;
   return std::get<Wanted>(std::get<command::Command>(request->wish));
 }
@@ -53,19 +53,26 @@ TEST(PlantProtocol, ReadsEveryCommandOfTheReadme) {
   EXPECT_FALSE(command_of<command::PowerCard>(R"({"command":"card_power","slot":4,"on":false})").on);
   EXPECT_EQ(command_of<command::FailTransactions>(R"({"command":"transaction","count":2})").count, 2u);
   command_of<command::Clear>(R"({"command":"clear"})");
-  const auto range = parse_request(R"({"command":"record","from":5,"to":9})");
+  const auto range = parse_request(R"({"command":"record","from":5,"to":9})", 0);
   EXPECT_EQ(std::get<sim::RecordQuery>(range->wish).to, 9u);
-  const auto event = parse_request(R"({"command":"record_event","kind":"kernel_silent"})");
+  const auto event = parse_request(R"({"command":"record_event","kind":"kernel_silent"})", 0);
   EXPECT_EQ(std::get<sim::EventQuery>(event->wish).kind, Event::kKernelSilent);
 }
 
 TEST(PlantProtocol, EchoesIdAndKeepsAt) {
-  const auto request = parse_request(R"({"command":"status","id":{"a":[1]},"at":77})");
+  const auto request = parse_request(R"({"command":"status","id":{"a":[1]},"at":77})", 0);
   ASSERT_TRUE(request);
   EXPECT_EQ(request->id, json::parse(R"({"a":[1]})"));
   EXPECT_EQ(request->at, 77u);
   EXPECT_EQ(json::parse(sim::accepted(request->id, 77)),
             json::parse(R"({"id":{"a":[1]},"ok":true,"tick":77})"));
+}
+
+TEST(PlantProtocol, after_counts_from_the_tick_at_which_the_line_came) {
+  const auto request = parse_request(R"({"command":"estop","pulled":true,"after":30})", 1200);
+  ASSERT_TRUE(request);
+  EXPECT_EQ(request->at, 1230U);
+  EXPECT_FALSE(parse_request(R"({"command":"estop","pulled":true,"at":1300,"after":30})", 1200));
 }
 
 TEST(PlantProtocol, FaultyLineIsRefusedWithFieldAndExpectation) {
@@ -102,7 +109,7 @@ TEST(PlantProtocol, FaultyLineIsRefusedWithFieldAndExpectation) {
 }
 
 TEST(PlantProtocol, RefusalEchoesTheId) {
-  const auto request = parse_request(R"({"command":"pedal","id":5})");
+  const auto request = parse_request(R"({"command":"pedal","id":5})", 0);
   ASSERT_FALSE(request);
   EXPECT_EQ(json::parse(sim::refused(request.error())),
             json::parse(R"({"id":5,"ok":false,"error":"pedal: 'pressed': expected true or false"})"));
