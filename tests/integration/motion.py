@@ -1,0 +1,73 @@
+"""Steps that the tests of motion share, on a whole robot."""
+
+import time
+from collections.abc import Callable
+
+from bare_kernel import DEADLINE_S
+from stack import Stack
+
+LATERAL = 4
+
+
+def wait_until(what: str, condition: Callable[[], bool]) -> None:
+    deadline = time.monotonic() + DEADLINE_S
+    while not condition():
+        assert time.monotonic() < deadline, f"not within {DEADLINE_S} s: {what}"
+
+
+def wait_for_mode(stack: Stack, mode: str) -> None:
+    wait_until(f"mode {mode}", lambda: stack.status()["mode"] == mode)
+
+
+def motor(stack: Stack, slot: int = LATERAL) -> dict:
+    return stack.api.get(f"/api/motors/{slot}").raise_for_status().json()
+
+
+def unlock(stack: Stack) -> None:
+    """RESET as soon as nothing stands against it."""
+    stack.control("pedal", pressed=False)
+    wait_until("unlocked", lambda: stack.api.post("/api/reset").status_code == 200)
+
+
+def act(stack: Stack, action: str, slot: int = LATERAL) -> None:
+    stack.api.post(f"/api/motors/{slot}/{action}").raise_for_status()
+
+
+def press(stack: Stack) -> None:
+    """Waits until the released pedal is armed, presses it and waits for MOTION."""
+    stack.control("pedal", pressed=False)
+    wait_until("pedal armed", lambda: stack.status()["pedal_armed"])
+    stack.control("pedal", pressed=True)
+    wait_for_mode(stack, "MOTION")
+
+
+def to_motion(stack: Stack, slot: int = LATERAL) -> None:
+    """Unlocks, references the axis where it stands, enables it and presses the pedal."""
+    unlock(stack)
+    wait_until("at rest", lambda: stack.api.post(f"/api/motors/{slot}/set-home").status_code == 200)
+    act(stack, "enable", slot)
+    press(stack)
+
+
+def propose(stack: Stack, target_counts: int, slot: int = LATERAL) -> int:
+    answer = stack.api.post("/api/proposals", json={"slot": slot, "target_counts": target_counts})
+    assert answer.status_code == 201, answer.text
+    return answer.json()["id"]
+
+
+def proposal(stack: Stack, number: int) -> dict:
+    return stack.api.get(f"/api/proposals/{number}").raise_for_status().json()
+
+
+def wait_for_proposal(stack: Stack, number: int, state: str) -> None:
+    wait_until(f"proposal {state}", lambda: proposal(stack, number)["state"] == state)
+
+
+def is_driven(stack: Stack, slot: int = LATERAL) -> bool:
+    return motor(stack, slot)["gate"] == "OPEN"
+
+
+def record(stack: Stack, first: int, last: int) -> list[dict]:
+    """The plant's own record of the wire, once the plant is past `last`."""
+    wait_until(f"plant tick {last}", lambda: stack.control("status")["tick"] > last)
+    return stack.control("record", **{"from": first, "to": last})["entries"]
