@@ -1,0 +1,169 @@
+#include "closed_loop.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace interlock::test {
+namespace {
+
+constexpr std::uint32_t heartbeat_ticks = 20;
+constexpr std::uint32_t settle_ticks = 200;
+
+}  // namespace
+
+ClosedLoop::ClosedLoop(std::uint64_t seed, std::uint32_t latency)
+    : plant_(config_, plant::default_parameters(config_), seed),
+      mode_(RobotPlan(neuro(), config_)),
+      latency_(latency) {
+  if (ilk_init(&config_, &state_).error != ILK_CONFIG_ERROR_NONE) {
+    throw std::runtime_error("the kernel refuses the neuro robot");
+  }
+  run(settle_ticks);
+  request(ILK_REQUEST_RESET);
+}
+
+void ClosedLoop::put(ilk_request_t request) {
+  request.sequence = ++sequence_;
+  request.crc = ilk_request_crc(&request);
+  requests_.push_back(request);
+}
+
+ilk_snapshot_t ClosedLoop::snapshot() const {
+  ilk_snapshot_t snapshot{};
+  snapshot.clock = ILK_CLOCK_SIM;
+  snapshot.simulated = 1;
+  snapshot.period_us = config_.period_us;
+  snapshot.config_crc = config_.crc;
+  snapshot.state = state_;
+  std::copy(std::begin(outputs_.command), std::end(outputs_.command), snapshot.command);
+  std::copy(std::begin(outputs_.gate), std::end(outputs_.gate), snapshot.gate);
+  return snapshot;
+}
+
+void ClosedLoop::tick() {
+  ilk_sim_exchange_t exchange{};
+  exchange.magic = ILK_SIM_MAGIC;
+  exchange.tick = state_.tick;
+  std::copy(&outputs_.frame[0][0], &outputs_.frame[0][0] + ILK_SLOTS * ILK_FRAME_WORDS, &exchange.frame[0][0]);
+  const ilk_sim_reply_t reply = plant_.tick(exchange);
+  ilk_inputs_t inputs{};
+  inputs.link_generation = 1;
+  inputs.transaction_done = 1;
+  inputs.frames_received = reply.frames_received;
+  inputs.pedal_no_closed = reply.pedal_no_closed;
+  inputs.pedal_nc_closed = reply.pedal_nc_closed;
+  inputs.estop_loop_closed = reply.estop_loop_closed;
+  std::copy(&reply.frame[0][0], &reply.frame[0][0] + ILK_SLOTS * ILK_FRAME_WORDS, &inputs.frame[0][0]);
+  if (state_.tick % heartbeat_ticks == 0) {
+    ilk_request_t heartbeat{};
+    heartbeat.kind = ILK_REQUEST_HEARTBEAT;
+    heartbeat.holder = 1;
+    put(heartbeat);
+  }
+  most_requests_ = std::max(most_requests_, static_cast<std::uint32_t>(requests_.size()));
+  ilk_step(&config_, &state_, &inputs, requests_.data(), static_cast<std::uint32_t>(requests_.size()), &outputs_);
+  requests_.clear();
+  deliver_verdicts();
+  on_their_way_.push_back(snapshot());
+  if (on_their_way_.size() > latency_) {
+    seen_tick_ = on_their_way_.front().state.tick;
+    const MoveWishes wishes = mode_.tick(on_their_way_.front());
+    on_their_way_.pop_front();
+    for (const MoveWish& wish : wishes.all()) {
+      ilk_request_t move{};
+      move.kind = ILK_REQUEST_MOVE;
+      move.axis = wish.slot;
+      move.target_counts = wish.target_counts;
+      move.drive = wish.drive;
+      move.amplitude = wish.amplitude;
+      move.lease_ticks = wish.lease_ticks;
+      put(move);
+      sent_.push_back({sequence_, wish});
+    }
+  }
+}
+
+void ClosedLoop::deliver_verdicts() {
+  for (std::uint32_t i = 0; i < outputs_.verdict_count; ++i) {
+    const ilk_verdict_record_t& verdict = outputs_.verdict[i];
+    const auto found = std::find_if(sent_.begin(), sent_.end(),
+                                    [&](const Sent& each) { return each.sequence == verdict.sequence; });
+    if (found != sent_.end()) {
+      mode_.on_verdict(found->wish.slot, found->wish.proposal, verdict.verdict, verdict.tick);
+      sent_.erase(found);
+    }
+  }
+}
+
+void ClosedLoop::run(std::uint32_t ticks) {
+  for (std::uint32_t i = 0; i < ticks; ++i) {
+    tick();
+  }
+}
+
+void ClosedLoop::pedal(bool pressed) {
+  if (!plant_.schedule(plant::command::PressPedal{pressed})) {
+    throw std::runtime_error("the plant refuses the pedal");
+  }
+  run(settle_ticks);
+}
+
+void ClosedLoop::request(std::uint32_t kind, std::uint32_t slot) {
+  ilk_request_t request{};
+  request.kind = kind;
+  request.axis = slot;
+  put(request);
+  const std::uint32_t refused_before = state_.requests_refused;
+  tick();
+  if (state_.requests_refused != refused_before) {
+    throw std::runtime_error("the kernel refused request " + std::to_string(kind));
+  }
+  run(settle_ticks);
+}
+
+void ClosedLoop::make_ready(std::uint32_t slot) {
+  request(ILK_REQUEST_ENABLE, slot);
+  if (config_.axis[slot].limit_side == ILK_LIMIT_NONE) {
+    request(ILK_REQUEST_SET_HOME, slot);
+    pedal(true);
+    return;
+  }
+  pedal(true);
+  request(ILK_REQUEST_HOME, slot);
+  for (std::uint32_t i = 0; i < config_.axis[slot].home_timeout_ticks && state_.axis[slot].homed == 0; ++i) {
+    tick();
+  }
+  if (state_.axis[slot].homed == 0) {
+    throw std::runtime_error("homing failed");
+  }
+  run(latency_ + 1);
+}
+
+OrderStatus ClosedLoop::carry_out(const Order& order, std::uint32_t most_ticks) {
+  give(order);
+  for (std::uint32_t i = 0; i < most_ticks && is_open(mode_.orders()[order.slot].phase); ++i) {
+    tick();
+  }
+  return mode_.orders()[order.slot];
+}
+
+std::uint32_t ClosedLoop::verdict_of_move(std::uint32_t slot, std::int32_t target_counts, std::uint32_t drive) {
+  ilk_request_t move{};
+  move.kind = ILK_REQUEST_MOVE;
+  move.axis = slot;
+  move.target_counts = target_counts;
+  move.drive = drive;
+  move.lease_ticks = 1;
+  put(move);
+  const std::uint32_t sequence = sequence_;
+  tick();
+  for (std::uint32_t i = 0; i < outputs_.verdict_count; ++i) {
+    if (outputs_.verdict[i].sequence == sequence) {
+      return outputs_.verdict[i].verdict;
+    }
+  }
+  throw std::runtime_error("the kernel gave no verdict");
+}
+
+}  // namespace interlock::test

@@ -1,0 +1,77 @@
+/**
+ * @file
+ * Manual mode, the real kernel core and the real plant in one process, tick by tick, with the latency of a link.
+ */
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "interlock/kernel.h"
+#include "interlock/link.h"
+#include "motion/manual_mode.hpp"
+#include "plant/plant.hpp"
+#include "robot_fixture.hpp"
+
+namespace interlock::test {
+
+class ClosedLoop {
+ public:
+  /** `latency` ticks pass from a snapshot until its moves reach the kernel. The system is unlocked and READY. */
+  ClosedLoop(std::uint64_t seed, std::uint32_t latency);
+
+  void run(std::uint32_t ticks);
+
+  /** Presses or releases the pedal and waits for MOTION or READY. */
+  void pedal(bool pressed);
+
+  /** Sends one request, which the kernel must accept. */
+  void request(std::uint32_t kind, std::uint32_t slot = 0);
+
+  /** Homes the axis as it wants to be homed, enables it, and holds the pedal. */
+  void make_ready(std::uint32_t slot);
+
+  /** Gives an order at the tick that the mode sees. */
+  void give(const Order& order) { mode_.take(order, seen_tick_); }
+
+  /** Gives an order and returns its status once it is final, or after so many ticks. */
+  OrderStatus carry_out(const Order& order, std::uint32_t most_ticks);
+
+  /** The verdict of a MOVE to that setpoint, sent now. */
+  std::uint32_t verdict_of_move(std::uint32_t slot, std::int32_t target_counts, std::uint32_t drive);
+
+  [[nodiscard]] const ilk_state_t& state() const { return state_; }
+  [[nodiscard]] const ilk_outputs_t& outputs() const { return outputs_; }
+  [[nodiscard]] OrderStatus order(std::uint32_t slot) const { return mode_.orders()[slot]; }
+  void cancel(std::uint32_t slot, std::uint32_t proposal) {
+    mode_.end(slot, proposal, OrderReason::cancelled, seen_tick_);
+  }
+  [[nodiscard]] std::uint32_t most_requests_in_a_tick() const { return most_requests_; }
+
+ private:
+  struct Sent {
+    std::uint32_t sequence;
+    MoveWish wish;
+  };
+
+  void tick();
+  void put(ilk_request_t request);
+  [[nodiscard]] ilk_snapshot_t snapshot() const;
+  void deliver_verdicts();
+
+  ilk_config_t config_ = neuro_config();
+  ilk_state_t state_{};
+  ilk_outputs_t outputs_{};
+  plant::Plant plant_;
+  ManualMode mode_;
+  std::uint32_t latency_;
+  std::uint32_t seen_tick_ = 0;
+  std::deque<ilk_snapshot_t> on_their_way_;
+  std::vector<ilk_request_t> requests_;
+  std::vector<Sent> sent_;
+  std::uint32_t sequence_ = 0;
+  std::uint32_t most_requests_ = 0;
+};
+
+}  // namespace interlock::test

@@ -1,0 +1,268 @@
+#include "motion/control_loop.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <future>
+#include <memory>
+#include <thread>
+
+#include "kernel_side.hpp"
+#include "robot_fixture.hpp"
+
+namespace interlock {
+namespace {
+
+using test::insertion;
+using test::neuro;
+using test::neuro_config;
+
+/** The control thread on one side, the test as kernel and as network on the other, in lockstep by `seen_tick`. */
+class ControlLoopTest : public testing::Test {
+ protected:
+  ControlLoopTest() : snapshot_(test::ready_view().snapshot) {
+    start();
+    kernel_.accept();
+  }
+
+  void start() {
+    thread_ = std::jthread([this](const std::stop_token& stop) { loop_.run(stop); });
+  }
+
+  /** Publishes the next tick and waits until the control thread has handled it; its requests are then in `requests_`. */
+  void tick(std::uint32_t ticks = 1) {
+    snapshot_.state.tick += ticks;
+    kernel_.publish(snapshot_);
+    while (__atomic_load_n(&kernel_.app().seen_tick, __ATOMIC_ACQUIRE) != snapshot_.state.tick) {
+      std::this_thread::yield();
+    }
+    requests_.clear();
+    while (const auto request = kernel_.take_request()) {
+      requests_.push_back(*request);
+    }
+  }
+
+  [[nodiscard]] const ilk_request_t* sent(std::uint32_t kind) const {
+    for (const ilk_request_t& request : requests_) {
+      if (request.kind == kind) {
+        return &request;
+      }
+    }
+    return nullptr;
+  }
+
+  template <typename T>
+  std::vector<T> notices() {
+    std::vector<T> found;
+    mailbox_->notices.consume_all([&](const Notice& notice) {
+      if (const auto* wanted = std::get_if<T>(&notice)) {
+        found.push_back(*wanted);
+      }
+    });
+    return found;
+  }
+
+  void command(const Command& command) { ASSERT_TRUE(mailbox_->commands.push(command)); }
+
+  static Ask ask(std::uint32_t ticket, std::uint32_t kind) {
+    return {ticket, kind, insertion, std::chrono::steady_clock::now() + std::chrono::hours(1)};
+  }
+
+  OrderStatus order() { return mailbox_->view.newest().orders[insertion]; }
+
+  void stop() { mailbox_->stops.fetch_add(1, std::memory_order_release); }
+
+  test::KernelSide kernel_;
+  std::unique_ptr<Mailbox> mailbox_ = std::make_unique<Mailbox>();
+  ControlLoop loop_{kernel_.socket(), RobotPlan(neuro(), neuro_config()), *mailbox_};
+  ilk_snapshot_t snapshot_;
+  std::vector<ilk_request_t> requests_;
+  std::jthread thread_;
+};
+
+TEST_F(ControlLoopTest, BeatsAtOnceAndWellWithinTheAppTimeout) {
+  tick();
+  ASSERT_NE(sent(ILK_REQUEST_HEARTBEAT), nullptr);
+  EXPECT_NE(sent(ILK_REQUEST_HEARTBEAT)->holder, 0u);
+  std::uint32_t longest = 0;
+  for (std::uint32_t since = 1, i = 0; i < 500; ++i, ++since) {
+    tick();
+    longest = std::max(longest, since);
+    since = sent(ILK_REQUEST_HEARTBEAT) != nullptr ? 0 : since;
+  }
+  EXPECT_LE(longest, neuro_config().app_timeout_ticks / 4);
+}
+
+TEST_F(ControlLoopTest, ShowsTheNewestSnapshotToTheNetwork) {
+  tick();
+  EXPECT_TRUE(mailbox_->view.newest().attached);
+  EXPECT_EQ(mailbox_->view.newest().snapshot.state.tick, snapshot_.state.tick);
+}
+
+TEST_F(ControlLoopTest, BringsBackTheVerdictOfAnAsk) {
+  command(ask(7, ILK_REQUEST_ENABLE));
+  tick();
+  ASSERT_NE(sent(ILK_REQUEST_ENABLE), nullptr);
+  EXPECT_EQ(sent(ILK_REQUEST_ENABLE)->axis, insertion);
+  kernel_.push_verdict(*sent(ILK_REQUEST_ENABLE), ILK_VERDICT_CARD, 77);
+  tick();
+  const auto answers = notices<Answer>();
+  ASSERT_EQ(answers.size(), 1u);
+  EXPECT_EQ(answers[0].ticket, 7u);
+  EXPECT_EQ(answers[0].verdict, static_cast<std::uint32_t>(ILK_VERDICT_CARD));
+  EXPECT_EQ(answers[0].tick, 77u);
+}
+
+TEST_F(ControlLoopTest, NeverSendsAnAskForWhichNobodyWaitsAnyMore) {
+  Ask late = ask(7, ILK_REQUEST_RESET);
+  late.deadline = std::chrono::steady_clock::now() - std::chrono::seconds(1);
+  command(late);
+  tick();
+  EXPECT_EQ(sent(ILK_REQUEST_RESET), nullptr);
+  const auto answers = notices<Answer>();
+  ASSERT_EQ(answers.size(), 1u);
+  EXPECT_FALSE(answers[0].verdict);
+}
+
+TEST_F(ControlLoopTest, CarriesOutAnOrderAndFollowsItsVerdict) {
+  command(Order{1, insertion, 1500, 0, 0});
+  snapshot_.state.mode = ILK_MODE_MOTION;
+  tick();
+  ASSERT_NE(sent(ILK_REQUEST_MOVE), nullptr);
+  EXPECT_EQ(sent(ILK_REQUEST_MOVE)->target_counts, 1500);
+  EXPECT_EQ(order().phase, OrderPhase::executing);
+  kernel_.push_verdict(*sent(ILK_REQUEST_MOVE), ILK_VERDICT_RANGE, 5);
+  tick();
+  EXPECT_EQ(order().phase, OrderPhase::refused);
+  EXPECT_EQ(notices<ilk_event_t>().size(), 1u);
+}
+
+TEST_F(ControlLoopTest, DoesNotReportRoutineAcceptances) {
+  command(Order{1, insertion, 1500, 0, 0});
+  snapshot_.state.mode = ILK_MODE_MOTION;
+  tick();
+  for (const ilk_request_t& request : requests_) {
+    kernel_.push_verdict(request, ILK_VERDICT_ACCEPTED, 5);
+  }
+  tick();
+  EXPECT_THAT(notices<ilk_event_t>(), testing::IsEmpty());
+}
+
+TEST_F(ControlLoopTest, StopComesBeforeAnythingThatWaits) {
+  command(Order{1, insertion, 1500, 0, 0});
+  command(ask(7, ILK_REQUEST_ENABLE));
+  stop();
+  snapshot_.state.mode = ILK_MODE_MOTION;
+  tick();
+  ASSERT_FALSE(requests_.empty());
+  EXPECT_EQ(requests_.front().kind, static_cast<std::uint32_t>(ILK_REQUEST_STOP));
+  kernel_.push_verdict(requests_.front(), ILK_VERDICT_ACCEPTED, 9);
+  tick();
+  const auto answers = notices<StopAnswer>();
+  ASSERT_EQ(answers.size(), 1u);
+  EXPECT_EQ(answers[0].stops, 1u);
+}
+
+TEST_F(ControlLoopTest, AnOrderOlderThanTheStopNeverMoves) {
+  command(Order{1, insertion, 1500, 0, 0});
+  stop();
+  snapshot_.state.mode = ILK_MODE_MOTION;
+  tick();
+  EXPECT_EQ(sent(ILK_REQUEST_MOVE), nullptr);
+  EXPECT_EQ(order().phase, OrderPhase::aborted);
+  EXPECT_EQ(order().reason, OrderReason::stopped);
+}
+
+TEST_F(ControlLoopTest, AnOrderNewerThanTheStopMoves) {
+  stop();
+  command(Order{1, insertion, 1500, 0, 1});
+  snapshot_.state.mode = ILK_MODE_MOTION;
+  tick();
+  EXPECT_NE(sent(ILK_REQUEST_MOVE), nullptr);
+}
+
+TEST_F(ControlLoopTest, ManyStopsInOneTickAreOneRequest) {
+  stop();
+  stop();
+  stop();
+  tick();
+  EXPECT_EQ(std::count_if(requests_.begin(), requests_.end(),
+                          [](const auto& each) { return each.kind == ILK_REQUEST_STOP; }),
+            1);
+}
+
+TEST_F(ControlLoopTest, SendsAtMostSixteenRequestsATickAndLosesNone) {
+  for (std::uint32_t ticket = 1; ticket <= 40; ++ticket) {
+    command(ask(ticket, ILK_REQUEST_ENABLE));
+  }
+  std::size_t asked = 0;
+  for (int i = 0; i < 4; ++i) {
+    tick();
+    EXPECT_LE(requests_.size(), static_cast<std::size_t>(ILK_REQUESTS_PER_TICK));
+    for (const ilk_request_t& request : requests_) {
+      asked += request.kind == ILK_REQUEST_ENABLE ? 1u : 0u;
+      kernel_.push_verdict(request, ILK_VERDICT_ACCEPTED, 1);
+    }
+  }
+  tick();
+  EXPECT_EQ(asked, 40u);
+  EXPECT_EQ(notices<Answer>().size(), 40u);
+}
+
+TEST_F(ControlLoopTest, PassesKernelEventsOn) {
+  kernel_.push_event({0, ILK_EVENT_FAULT, 12, {insertion, ILK_FAULT_STALL, 1, 0}});
+  tick();
+  const auto events = notices<ilk_event_t>();
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].kind, static_cast<std::uint32_t>(ILK_EVENT_FAULT));
+}
+
+TEST_F(ControlLoopTest, ReportsLostEventsAndTheAnswersThatWentWithThem) {
+  command(ask(7, ILK_REQUEST_ENABLE));
+  tick();
+  for (std::uint32_t i = 0; i < ILK_LINK_EVENTS + 3; ++i) {
+    kernel_.push_event({0, ILK_EVENT_MODE, i, {}});
+  }
+  tick();
+  std::uint32_t lost = 0;
+  std::size_t unanswered = 0;
+  mailbox_->notices.consume_all([&](const Notice& notice) {
+    if (const auto* gap = std::get_if<EventsLost>(&notice)) {
+      lost += gap->count;
+    } else if (const auto* answer = std::get_if<Answer>(&notice)) {
+      unanswered += answer->verdict ? 0u : 1u;
+    }
+  });
+  EXPECT_EQ(lost, 3u);
+  EXPECT_EQ(unanswered, 1u);
+}
+
+TEST_F(ControlLoopTest, ALostLinkEndsOrdersAndAnswersAsksAndIsAttachedAgain) {
+  command(Order{1, insertion, 1500, 0, 0});
+  command(ask(7, ILK_REQUEST_ENABLE));
+  tick();
+  kernel_.close();
+  kernel_.accept();
+  tick();
+  EXPECT_EQ(order().phase, OrderPhase::aborted);
+  EXPECT_EQ(order().reason, OrderReason::link_lost);
+  EXPECT_EQ(mailbox_->view.newest().generation, 2u);
+  const auto answers = notices<Answer>();
+  ASSERT_EQ(answers.size(), 1u);
+  EXPECT_FALSE(answers[0].verdict);
+  ASSERT_NE(sent(ILK_REQUEST_HEARTBEAT), nullptr);
+  EXPECT_EQ(sent(ILK_REQUEST_HEARTBEAT)->sequence, 1u);
+}
+
+TEST_F(ControlLoopTest, AsksTheKernelToEndMotionWhenItEnds) {
+  tick();
+  thread_.request_stop();
+  thread_.join();
+  const auto request = kernel_.take_request();
+  ASSERT_TRUE(request);
+  EXPECT_EQ(request->kind, static_cast<std::uint32_t>(ILK_REQUEST_STOP));
+}
+
+}  // namespace
+}  // namespace interlock

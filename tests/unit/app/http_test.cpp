@@ -1,0 +1,548 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/connect.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/buffers_to_string.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <fstream>
+#include <future>
+#include <memory>
+#include <thread>
+
+#include "http/server.hpp"
+#include "robot_fixture.hpp"
+#include "temporary_folder.hpp"
+
+namespace interlock::web {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+namespace websocket = boost::beast::websocket;
+using asio::ip::tcp;
+using nlohmann::json;
+using test::insertion;
+using testing::HasSubstr;
+
+struct Answered {
+  unsigned status = 0;
+  http::fields headers;
+  std::string body;
+
+  [[nodiscard]] json problem() const {
+    EXPECT_EQ(headers[http::field::content_type], "application/problem+json");
+    return json::parse(body);
+  }
+};
+
+/** The server on a real socket; the test is its clients, and the control thread at the other end of the mailbox. */
+class HttpTest : public testing::Test {
+ protected:
+  HttpTest() {
+    std::ofstream(folder_.path() / "index.html") << "<title>console</title>";
+    const auto listening = server_.listen({"127.0.0.1", 0});
+    EXPECT_TRUE(listening);
+    asio::co_spawn(network_, api_.listen(), asio::detached);
+    asio::co_spawn(network_, api_.beat(), asio::detached);
+    asio::co_spawn(network_, server_.accept(), asio::detached);
+    thread_ = std::jthread([this] { network_.run(); });
+  }
+
+  ~HttpTest() override { network_.stop(); }
+
+  [[nodiscard]] std::string host() const { return "127.0.0.1:" + std::to_string(server_.port()); }
+
+  tcp::socket connect() {
+    tcp::socket socket(client_);
+    socket.connect({asio::ip::make_address("127.0.0.1"), server_.port()});
+    return socket;
+  }
+
+  Answered read(tcp::socket& socket) {
+    beast::flat_buffer buffer;
+    http::response<http::string_body> response;
+    http::read(socket, buffer, response);
+    return {response.result_int(), response.base(), response.body()};
+  }
+
+  Answered send(Request request) {
+    if (request[http::field::host].empty()) {
+      request.set(http::field::host, host());
+    }
+    request.prepare_payload();
+    tcp::socket socket = connect();
+    http::write(socket, request);
+    return read(socket);
+  }
+
+  Answered get(const std::string& target) { return send({http::verb::get, target, 11}); }
+
+  Answered post(const std::string& target, const std::string& body = "") {
+    return send({http::verb::post, target, 11, body});
+  }
+
+  Answered post_raw(const std::string& bytes) {
+    tcp::socket socket = connect();
+    asio::write(socket, asio::buffer(bytes));
+    return read(socket);
+  }
+
+  void show(const ControlView& view) {
+    mailbox_->view.writing() = view;
+    mailbox_->view.publish();
+    mailbox_->network_wake.signal();
+  }
+
+  /** The next command that the server sends. */
+  Command next_command() {
+    Command command;
+    while (!mailbox_->commands.pop(command)) {
+      std::this_thread::yield();
+    }
+    return command;
+  }
+
+  void answer(const Notice& notice) {
+    ASSERT_TRUE(mailbox_->notices.push(notice));
+    mailbox_->network_wake.signal();
+  }
+
+  websocket::stream<tcp::socket> open_stream() {
+    websocket::stream<tcp::socket> stream(connect());
+    stream.handshake(host(), "/api/stream");
+    return stream;
+  }
+
+  /** Runs in the network thread and waits for it. */
+  template <typename Work>
+  void in_network(Work work) {
+    std::promise<void> done;
+    asio::post(network_, [&] {
+      work();
+      done.set_value();
+    });
+    done.get_future().get();
+  }
+
+  test::TemporaryFolder folder_;
+  asio::io_context network_{1};
+  asio::io_context client_{1};
+  std::unique_ptr<Mailbox> mailbox_ = std::make_unique<Mailbox>();
+  Api api_{network_.get_executor(), test::neuro(), test::neuro_config(), *mailbox_, ""};
+  Server server_{network_.get_executor(), api_, StaticFiles(folder_.path())};
+  std::jthread thread_;
+};
+
+TEST_F(HttpTest, AnUnknownPathIsAProblem) {
+  const Answered answered = get("/api/nothing");
+  EXPECT_EQ(answered.status, 404u);
+  EXPECT_EQ(answered.problem()["code"], "NOT_FOUND");
+  EXPECT_EQ(get("/nothing").problem()["code"], "NOT_FOUND");
+}
+
+TEST_F(HttpTest, AWrongMethodNamesTheRightOne) {
+  const Answered answered = get("/api/stop");
+  EXPECT_EQ(answered.status, 405u);
+  EXPECT_EQ(answered.headers[http::field::allow], "POST");
+  EXPECT_EQ(answered.problem()["code"], "METHOD_NOT_ALLOWED");
+  EXPECT_EQ(send({http::verb::delete_, "/api/proposals", 11}).headers[http::field::allow], "GET, POST");
+}
+
+TEST_F(HttpTest, ABodyThatIsNoJsonIsMalformed) {
+  for (const std::string body : {"", "{", "{\"slot\":3,}", "\xff", "[1,", "{\"target\":1e999}"}) {
+    const Answered answered = post("/api/proposals", body);
+    EXPECT_EQ(answered.status, 400u) << body;
+    EXPECT_EQ(answered.problem()["code"], "MALFORMED") << body;
+  }
+}
+
+TEST_F(HttpTest, AWrongFieldIsNamedWithWhatWasExpected) {
+  const std::pair<std::string, std::string> cases[] = {
+      {R"({"target":1})", "slot"},
+      {R"({"slot":"3","target":1})", "slot"},
+      {R"({"slot":10,"target":1})", "slot"},
+      {R"({"slot":-1,"target":1})", "slot"},
+      {R"({"slot":3.5,"target":1})", "slot"},
+      {R"({"slot":18446744073709551615,"target":1})", "slot"},
+      {R"({"slot":null,"target":1})", "slot"},
+      {R"({"slot":3})", "target"},
+      {R"({"slot":3,"target":1,"target_counts":1})", "target"},
+      {R"({"slot":3,"target":"1"})", "target"},
+      {R"({"slot":3,"target":1e300})", "target"},
+      {R"({"slot":3,"target_counts":2147483648})", "target_counts"},
+      {R"({"slot":3,"target_counts":1.5})", "target_counts"},
+      {R"({"slot":3,"target":1,"drive":0})", "drive"},
+      {R"({"slot":3,"target":1,"drive":true})", "drive"},
+      {R"({"slot":3,"target":1,"speed":1})", "speed"}};
+  for (const auto& [body, field] : cases) {
+    const Answered answered = post("/api/proposals", body);
+    EXPECT_EQ(answered.status, 422u) << body;
+    const json problem = answered.problem();
+    EXPECT_EQ(problem["code"], "INVALID") << body;
+    EXPECT_EQ(problem["field"], field) << body;
+    EXPECT_FALSE(problem["expected"].get<std::string>().empty()) << body;
+  }
+  EXPECT_EQ(post("/api/proposals", "[]").status, 422u);
+}
+
+TEST_F(HttpTest, AWholeNumberMayBeWrittenWithAPoint) {
+  show(test::ready_view());
+  EXPECT_EQ(post("/api/proposals", R"({"slot":3.0,"target_counts":1e3})").status, 201u);
+}
+
+TEST_F(HttpTest, AnEmptySlotIsNotFound) {
+  show(test::ready_view());
+  EXPECT_EQ(post("/api/proposals", R"({"slot":5,"target":1})").status, 404u);
+  for (const std::string slot : {"5", "10", "-1", "x", "3x", "99999999999", ""}) {
+    EXPECT_EQ(get("/api/motors/" + slot).status, 404u) << slot;
+    EXPECT_EQ(post("/api/motors/" + slot + "/enable").status, 404u) << slot;
+  }
+  EXPECT_EQ(post("/api/motors/3/explode").status, 404u);
+}
+
+TEST_F(HttpTest, ABodyThatIsTooLargeIsRefusedAndTheServerGoesOn) {
+  const Answered answered = post("/api/proposals", std::string(1u << 20u, ' '));
+  EXPECT_EQ(answered.status, 413u);
+  EXPECT_EQ(answered.problem()["code"], "TOO_LARGE");
+  EXPECT_EQ(get("/api/status").status, 200u);
+}
+
+TEST_F(HttpTest, AHeaderThatIsTooLargeIsRefused) {
+  Request request{http::verb::get, "/api/status", 11};
+  request.set("X-Long", std::string(20000, 'x'));
+  EXPECT_EQ(send(request).status, 431u);
+}
+
+TEST_F(HttpTest, WhatIsNoHttpGetsAnAnswer) {
+  EXPECT_EQ(post_raw("HELLO\r\n\r\n").status, 400u);
+  EXPECT_EQ(post_raw("POST /api/stop HTTP/1.1\r\nHost: x\r\nContent-Length: x\r\n\r\n").status, 400u);
+}
+
+TEST_F(HttpTest, APageOfAnotherOriginChangesNothing) {
+  for (const std::string& origin : {std::string("http://evil.example"), "https://" + host(), std::string("null")}) {
+    Request request{http::verb::post, "/api/stop", 11};
+    request.set(http::field::origin, origin);
+    const Answered answered = send(request);
+    EXPECT_EQ(answered.status, 403u) << origin;
+    EXPECT_EQ(answered.problem()["code"], "ORIGIN");
+  }
+  EXPECT_EQ(mailbox_->stops.load(), 0u);
+}
+
+TEST_F(HttpTest, ThePageOfThisServerMay) {
+  Request request{http::verb::post, "/api/stop", 11};
+  request.set(http::field::origin, "http://" + host());
+  EXPECT_EQ(send(request).status, 200u);
+  EXPECT_EQ(mailbox_->stops.load(), 1u);
+}
+
+TEST_F(HttpTest, ARequestForAnotherHostIsRefused) {
+  for (const std::string name : {"evil.example", "evil.example:80", "127.0.0.1.evil.example", "[::1", "localhost.", ""}) {
+    const Answered answered = post_raw("GET /api/status HTTP/1.1\r\nHost: " + name + "\r\n\r\n");
+    EXPECT_EQ(answered.status, 403u) << name;
+    EXPECT_EQ(answered.problem()["code"], "HOST");
+  }
+  for (const std::string name : {"localhost", "localhost:1", "[::1]:8080", "127.0.0.1"}) {
+    EXPECT_EQ(post_raw("GET /api/status HTTP/1.1\r\nHost: " + name + "\r\n\r\n").status, 200u) << name;
+  }
+}
+
+TEST_F(HttpTest, EveryAnswerCarriesTheSecurityHeadersAndNoCors) {
+  for (const std::string target : {"/", "/api/status", "/api/nothing", "/nothing"}) {
+    const Answered answered = get(target);
+    EXPECT_THAT(std::string(answered.headers["Content-Security-Policy"]),
+                testing::AllOf(HasSubstr("default-src 'self'"), HasSubstr("'wasm-unsafe-eval'")))
+        << target;
+    EXPECT_EQ(answered.headers["X-Content-Type-Options"], "nosniff") << target;
+    EXPECT_EQ(answered.headers.count("Access-Control-Allow-Origin"), 0u) << target;
+  }
+}
+
+TEST_F(HttpTest, HeadHasTheHeaderOfGetAndNoBody) {
+  tcp::socket socket = connect();
+  http::request<http::empty_body> request{http::verb::head, "/", 11};
+  request.set(http::field::host, host());
+  http::write(socket, request);
+  beast::flat_buffer buffer;
+  http::response_parser<http::string_body> parser;
+  parser.skip(true);
+  http::read(socket, buffer, parser);
+  EXPECT_EQ(parser.get()[http::field::content_length], "22");
+  EXPECT_EQ(parser.get().result_int(), 200u);
+}
+
+TEST_F(HttpTest, AConnectionServesManyRequests) {
+  tcp::socket socket = connect();
+  for (int i = 0; i < 3; ++i) {
+    Request request{http::verb::get, "/api/status", 11};
+    request.set(http::field::host, host());
+    http::write(socket, request);
+    EXPECT_EQ(read(socket).status, 200u);
+  }
+}
+
+TEST_F(HttpTest, WithoutAKernelStatusAnswersAndTheRestSaysWhy) {
+  const json status = json::parse(get("/api/status").body);
+  EXPECT_EQ(status["connected"], false);
+  EXPECT_EQ(status["mode"], "INIT");
+  for (const std::string target : {"/api/reset", "/api/motors/3/enable"}) {
+    const Answered answered = post(target);
+    EXPECT_EQ(answered.status, 503u) << target;
+    EXPECT_EQ(answered.problem()["code"], "NO_KERNEL") << target;
+  }
+  EXPECT_EQ(get("/api/motors").status, 503u);
+  EXPECT_EQ(post("/api/proposals", R"({"slot":3,"target":1})").status, 503u);
+}
+
+TEST_F(HttpTest, StopIsAnsweredWithoutAKernel) {
+  const Answered answered = post("/api/stop");
+  EXPECT_EQ(answered.status, 200u);
+  EXPECT_TRUE(json::parse(answered.body)["verdict"].is_null());
+  EXPECT_EQ(mailbox_->stops.load(), 1u);
+}
+
+TEST_F(HttpTest, StopIsAnsweredWhileOtherRequestsHang) {
+  show(test::ready_view());
+  auto hanging = std::async(std::launch::async, [this] { return post("/api/reset"); });
+  const Command asked = next_command();
+  tcp::socket half_open = connect();
+  asio::write(half_open, asio::buffer(std::string("POST /api/proposals HTTP/1.1\r\n")));
+  auto stopping = std::async(std::launch::async, [this] { return post("/api/stop"); });
+  while (mailbox_->stops.load() == 0) {
+    std::this_thread::yield();
+  }
+  answer(StopAnswer{1, ILK_VERDICT_ACCEPTED, 5});
+  const Answered stopped = stopping.get();
+  EXPECT_EQ(stopped.status, 200u);
+  EXPECT_EQ(json::parse(stopped.body)["verdict"], "ACCEPTED");
+  EXPECT_EQ(hanging.wait_for(std::chrono::seconds(0)), std::future_status::timeout);
+  answer(Answer{std::get<Ask>(asked).ticket, ILK_VERDICT_ACCEPTED, 6});
+  EXPECT_EQ(hanging.get().status, 200u);
+}
+
+TEST_F(HttpTest, StopAbortsEveryOpenProposal) {
+  show(test::ready_view());
+  ASSERT_EQ(post("/api/proposals", R"({"slot":3,"target_counts":1000})").status, 201u);
+  show(ControlView{});
+  ASSERT_EQ(post("/api/stop").status, 200u);
+  EXPECT_EQ(json::parse(get("/api/proposals/1").body)["state"], "aborted");
+}
+
+TEST_F(HttpTest, AnOrderCarriesTheStopsThatItsAuthorHasSeen) {
+  show(test::ready_view());
+  show(ControlView{});
+  (void)post("/api/stop");
+  show(test::ready_view());
+  ASSERT_EQ(post("/api/proposals", R"({"slot":3,"target_counts":1000})").status, 201u);
+  EXPECT_EQ(std::get<Order>(next_command()).stops, 1u);
+}
+
+TEST_F(HttpTest, AVerdictOfTheKernelIsTheAnswer) {
+  show(test::ready_view());
+  auto asking = std::async(std::launch::async, [this] { return post("/api/motors/3/home"); });
+  const auto ask = std::get<Ask>(next_command());
+  EXPECT_EQ(ask.kind, static_cast<std::uint32_t>(ILK_REQUEST_HOME));
+  EXPECT_EQ(ask.slot, insertion);
+  answer(Answer{ask.ticket, ILK_VERDICT_MODE, 6});
+  const Answered answered = asking.get();
+  EXPECT_EQ(answered.status, 409u);
+  EXPECT_EQ(answered.problem()["code"], "MODE");
+  EXPECT_FALSE(answered.problem()["next_step"].get<std::string>().empty());
+}
+
+TEST_F(HttpTest, ALostAnswerSaysThatTheKernelDidNotAnswer) {
+  show(test::ready_view());
+  auto asking = std::async(std::launch::async, [this] { return post("/api/reset"); });
+  answer(Answer{std::get<Ask>(next_command()).ticket, std::nullopt, 0});
+  EXPECT_EQ(asking.get().status, 503u);
+}
+
+TEST_F(HttpTest, AProposalIsMadeShownAndAborted) {
+  show(test::ready_view());
+  const Answered made = post("/api/proposals", R"({"slot":3,"target":20,"drive":9000})");
+  ASSERT_EQ(made.status, 201u);
+  const json proposal = json::parse(made.body);
+  EXPECT_EQ(proposal["state"], "approved");
+  EXPECT_EQ(proposal["target_counts"], 945);
+  EXPECT_EQ(std::get<Order>(next_command()).max_drive, 9000u);
+  EXPECT_EQ(json::parse(get("/api/motors/3").body)["setpoint_counts"], 945);
+  EXPECT_EQ(json::parse(get("/api/proposals").body).size(), 1u);
+  EXPECT_EQ(json::parse(post("/api/proposals/1/abort").body)["state"], "aborted");
+  EXPECT_EQ(std::get<Cancel>(next_command()).proposal, 1u);
+  EXPECT_EQ(post("/api/proposals/1/abort").problem()["code"], "ENDED");
+  EXPECT_EQ(post("/api/proposals/2/abort").status, 404u);
+  EXPECT_EQ(get("/api/proposals/x").status, 404u);
+}
+
+TEST_F(HttpTest, ARefusedProposalNamesVerdictAndRange) {
+  show(test::ready_view());
+  const Answered answered = post("/api/proposals", R"({"slot":3,"target_counts":100000})");
+  EXPECT_EQ(answered.status, 409u);
+  EXPECT_EQ(answered.problem()["code"], "RANGE");
+  EXPECT_THAT(answered.problem()["expected"].get<std::string>(), HasSubstr("1638"));
+}
+
+TEST_F(HttpTest, RealHardwareHasNoBench) {
+  EXPECT_EQ(get("/api/bench").problem()["code"], "NO_BENCH");
+  EXPECT_EQ(post("/api/bench/pedal", R"({"pressed":true})").status, 404u);
+}
+
+TEST_F(HttpTest, TheStreamIsAWebSocket) {
+  const Answered answered = get("/api/stream");
+  EXPECT_EQ(answered.status, 426u);
+  EXPECT_EQ(answered.problem()["code"], "UPGRADE_REQUIRED");
+}
+
+TEST_F(HttpTest, TheStreamShowsTheState) {
+  show(test::ready_view());
+  auto stream = open_stream();
+  beast::flat_buffer buffer;
+  stream.read(buffer);
+  EXPECT_TRUE(stream.got_binary());
+  EXPECT_EQ(buffer.size(), stream_bytes);
+}
+
+TEST_F(HttpTest, TheStreamTellsOfProposalsAndEventsInOrder) {
+  show(test::ready_view());
+  auto stream = open_stream();
+  beast::flat_buffer buffer;
+  stream.read(buffer);
+  ASSERT_EQ(post("/api/proposals", R"({"slot":3,"target_counts":1000})").status, 201u);
+  answer(ilk_event_t{0, ILK_EVENT_MODE, 12, {ILK_MODE_READY, ILK_MODE_MOTION, 0, 0}});
+  std::vector<std::string> texts;
+  while (texts.size() < 4) {
+    buffer.clear();
+    stream.read(buffer);
+    if (stream.got_text()) {
+      const json message = json::parse(beast::buffers_to_string(buffer.data()));
+      texts.push_back(message["type"] == "proposal" ? message["state"] : message["kind"]);
+    }
+  }
+  EXPECT_THAT(texts, testing::ElementsAre("drafted", "checked", "approved", "mode"));
+}
+
+TEST_F(HttpTest, TheStreamRefusesAPageOfAnotherOrigin) {
+  websocket::stream<tcp::socket> stream(connect());
+  stream.set_option(websocket::stream_base::decorator(
+      [](websocket::request_type& request) { request.set(http::field::origin, "http://evil.example"); }));
+  beast::error_code error;
+  stream.handshake(host(), "/api/stream", error);
+  EXPECT_EQ(error, websocket::error::upgrade_declined);
+}
+
+TEST_F(HttpTest, AClientThatTalksToTheStreamIsToldSo) {
+  auto stream = open_stream();
+  stream.write(asio::buffer(std::string("hello")));
+  beast::flat_buffer buffer;
+  beast::error_code error;
+  while (!error) {
+    stream.read(buffer, error);
+  }
+  EXPECT_EQ(error, websocket::error::closed);
+  EXPECT_EQ(stream.reason().code, websocket::close_code::policy_error);
+}
+
+TEST_F(HttpTest, AClientThatCannotKeepUpIsDroppedNotItsMessages) {
+  auto stream = open_stream();
+  beast::flat_buffer buffer;
+  stream.read(buffer);
+  in_network([this] {
+    for (std::size_t i = 0; i <= StreamHub::backlog; ++i) {
+      api_.stream().send_text({{"number", i}});
+    }
+  });
+  beast::error_code error;
+  std::size_t expected = 0;
+  while (!error) {
+    buffer.clear();
+    stream.read(buffer, error);
+    if (!error && stream.got_text()) {
+      EXPECT_EQ(json::parse(beast::buffers_to_string(buffer.data()))["number"], expected++);
+    }
+  }
+  EXPECT_LE(expected, StreamHub::backlog);
+  EXPECT_EQ(get("/api/status").status, 200u);
+}
+
+TEST_F(HttpTest, ClosedStreamsMakeRoomForOthers) {
+  for (std::size_t i = 0; i < 2 * StreamHub::capacity; ++i) {
+    auto stream = open_stream();
+    stream.close(websocket::close_code::normal);
+  }
+  for (bool empty = false; !empty;) {
+    in_network([&] { empty = api_.stream().empty(); });
+  }
+  auto stream = open_stream();
+  beast::flat_buffer buffer;
+  stream.read(buffer);
+}
+
+TEST_F(HttpTest, TooManyStreamsAreRefusedByName) {
+  std::vector<websocket::stream<tcp::socket>> streams;
+  for (std::size_t i = 0; i < StreamHub::capacity; ++i) {
+    streams.push_back(open_stream());
+  }
+  websocket::stream<tcp::socket> one_more(connect());
+  websocket::response_type response;
+  beast::error_code error;
+  one_more.handshake(response, host(), "/api/stream", error);
+  EXPECT_EQ(error, websocket::error::upgrade_declined);
+  EXPECT_EQ(response.result_int(), 503u);
+}
+
+TEST_F(HttpTest, IdleConnectionsMakeRoomForNewOnes) {
+  std::vector<tcp::socket> idle;
+  for (std::size_t i = 0; i < Server::capacity + 10; ++i) {
+    idle.push_back(connect());
+  }
+  EXPECT_EQ(post("/api/stop").status, 200u);
+}
+
+TEST(HttpListen, SaysThatAPortIsBusy) {
+  asio::io_context network;
+  const std::unique_ptr<Mailbox> mailbox = std::make_unique<Mailbox>();
+  Api api(network.get_executor(), test::neuro(), test::neuro_config(), *mailbox, "");
+  Server first(network.get_executor(), api, StaticFiles({}));
+  Server second(network.get_executor(), api, StaticFiles({}));
+  ASSERT_TRUE(first.listen({"127.0.0.1", 0}));
+  const auto listening = second.listen({"127.0.0.1", first.port()});
+  ASSERT_FALSE(listening);
+  EXPECT_THAT(listening.error(), HasSubstr(std::to_string(first.port())));
+  EXPECT_THAT(listening.error(), HasSubstr("--port"));
+}
+
+TEST(HttpListen, LetsNoOtherMachineIn) {
+  asio::io_context network;
+  const std::unique_ptr<Mailbox> mailbox = std::make_unique<Mailbox>();
+  Api api(network.get_executor(), test::neuro(), test::neuro_config(), *mailbox, "");
+  for (const std::string address : {"0.0.0.0", "::", "192.0.2.1", "example"}) {
+    Server server(network.get_executor(), api, StaticFiles({}));
+    const auto listening = server.listen({address, 0});
+    ASSERT_FALSE(listening) << address;
+    EXPECT_THAT(listening.error(), HasSubstr(address));
+    EXPECT_THAT(listening.error(), HasSubstr("127.0.0.1"));
+  }
+}
+
+TEST(Bench, SaysThatTheSimulatedHardwareIsAway) {
+  asio::io_context network;
+  BenchClient bench(network.get_executor(), "/nonexistent/bench");
+  std::optional<BenchReply> reply;
+  asio::co_spawn(network, bench.command({{"command", "status"}}),
+                 [&](const std::exception_ptr&, BenchReply came) { reply = std::move(came); });
+  network.run();
+  ASSERT_TRUE(reply);
+  ASSERT_FALSE(*reply);
+  EXPECT_EQ(reply->error().kind, BenchError::Kind::unreachable);
+  EXPECT_THAT(reply->error().detail, HasSubstr("/nonexistent/bench"));
+}
+
+}  // namespace
+}  // namespace interlock::web

@@ -1,0 +1,295 @@
+#include "motion/manual_mode.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "robot_fixture.hpp"
+
+namespace interlock {
+namespace {
+
+using test::insertion;
+using test::neuro;
+using test::neuro_config;
+
+constexpr std::uint32_t minute_ticks = 60000;
+
+class ManualModeTest : public testing::Test {
+ protected:
+  ManualModeTest() : snapshot_(test::ready_view().snapshot), mode_(RobotPlan(neuro(), neuro_config())) {}
+
+  void order(std::uint32_t proposal = 1, std::uint32_t slot = insertion, std::int32_t target = 1500,
+             std::uint32_t drive = 0) {
+    mode_.take({proposal, slot, target, drive, 0}, snapshot_.state.tick);
+  }
+
+  std::vector<MoveWish> tick(std::uint32_t ticks = 1) {
+    snapshot_.state.tick += ticks;
+    const MoveWishes wishes = mode_.tick(snapshot_);
+    return {wishes.all().begin(), wishes.all().end()};
+  }
+
+  void press() {
+    snapshot_.state.mode = ILK_MODE_MOTION;
+    (void)tick();
+  }
+
+  ilk_axis_t& axis() { return snapshot_.state.axis[insertion]; }
+  [[nodiscard]] OrderStatus status() const { return mode_.orders()[insertion]; }
+
+  ilk_snapshot_t snapshot_;
+  ManualMode mode_;
+};
+
+TEST_F(ManualModeTest, SendsNothingBeforeThePedal) {
+  order();
+  EXPECT_THAT(tick(), testing::IsEmpty());
+  EXPECT_EQ(status().phase, OrderPhase::waiting);
+}
+
+TEST_F(ManualModeTest, MovesTowardsTheTargetWhileThePedalIsHeld) {
+  order();
+  snapshot_.state.mode = ILK_MODE_MOTION;
+  const auto wishes = tick();
+  ASSERT_EQ(wishes.size(), 1u);
+  EXPECT_EQ(wishes[0].proposal, 1u);
+  EXPECT_EQ(wishes[0].slot, insertion);
+  EXPECT_EQ(wishes[0].target_counts, 1500);
+  EXPECT_EQ(wishes[0].drive, neuro_config().axis[insertion].max_drive);
+  EXPECT_EQ(status().phase, OrderPhase::executing);
+}
+
+TEST_F(ManualModeTest, KeepsTheBoundOfTheProposal) {
+  order(1, insertion, 1500, 9000);
+  snapshot_.state.mode = ILK_MODE_MOTION;
+  EXPECT_EQ(tick().at(0).drive, 9000u);
+}
+
+TEST_F(ManualModeTest, KeepsTheUnhomedBound) {
+  axis().homed = 0;
+  order();
+  snapshot_.state.mode = ILK_MODE_MOTION;
+  EXPECT_EQ(tick().at(0).drive, neuro_config().axis[insertion].unhomed_max_drive);
+}
+
+TEST_F(ManualModeTest, RenewsTheLeaseTwiceBeforeItRunsOut) {
+  order();
+  snapshot_.state.mode = ILK_MODE_MOTION;
+  const std::uint32_t lease = tick().at(0).lease_ticks;
+  EXPECT_LE(lease, neuro_config().lease_max_ticks);
+  std::uint32_t renewals = 0;
+  for (std::uint32_t i = 1; i < lease; ++i) {
+    renewals += static_cast<std::uint32_t>(tick().size());
+  }
+  EXPECT_GE(renewals, 2u);
+  EXPECT_LE(renewals, 5u);
+}
+
+TEST_F(ManualModeTest, TellsTheKernelAtOnceToSlowDown) {
+  order();
+  press();
+  axis().position_counts = 1490;
+  EXPECT_LT(tick().at(0).drive, neuro_config().axis[insertion].max_drive);
+}
+
+TEST_F(ManualModeTest, WishesAtMostOnceAnAxisAndTick) {
+  for (const Axis& each : neuro().axes) {
+    order(each.slot + 1, each.slot, each.lowest_setpoint_counts());
+    order(each.slot + 11, each.slot, each.highest_setpoint_counts());
+  }
+  snapshot_.state.mode = ILK_MODE_MOTION;
+  EXPECT_EQ(tick().size(), neuro().axes.size());
+}
+
+TEST_F(ManualModeTest, ReleasePausesAndPressGoesOn) {
+  order();
+  press();
+  snapshot_.state.mode = ILK_MODE_READY;
+  EXPECT_THAT(tick(), testing::IsEmpty());
+  EXPECT_EQ(status().phase, OrderPhase::paused);
+  snapshot_.state.mode = ILK_MODE_MOTION;
+  EXPECT_EQ(tick(minute_ticks).size(), 1u);
+  EXPECT_EQ(status().phase, OrderPhase::executing);
+}
+
+TEST_F(ManualModeTest, ExpiresAfterAMinuteOfKernelTimeWithoutThePedal) {
+  order();
+  press();
+  snapshot_.state.mode = ILK_MODE_READY;
+  (void)tick();
+  (void)tick(minute_ticks);
+  EXPECT_EQ(status().phase, OrderPhase::paused);
+  (void)tick();
+  EXPECT_EQ(status().phase, OrderPhase::expired);
+}
+
+TEST_F(ManualModeTest, APressAfterAMinuteFindsNothingToMove) {
+  order();
+  snapshot_.state.mode = ILK_MODE_MOTION;
+  EXPECT_THAT(tick(minute_ticks + 1), testing::IsEmpty());
+  EXPECT_EQ(status().phase, OrderPhase::expired);
+}
+
+TEST_F(ManualModeTest, LockedDiscardsTheOrder) {
+  order();
+  press();
+  snapshot_.state.mode = ILK_MODE_LOCKED;
+  snapshot_.state.cause = ILK_CAUSE_ESTOP;
+  EXPECT_THAT(tick(), testing::IsEmpty());
+  EXPECT_EQ(status().phase, OrderPhase::aborted);
+  EXPECT_EQ(status().reason, OrderReason::locked);
+  EXPECT_EQ(status().code, static_cast<std::uint32_t>(ILK_CAUSE_ESTOP));
+  snapshot_.state.mode = ILK_MODE_MOTION;
+  EXPECT_THAT(tick(), testing::IsEmpty());
+}
+
+TEST_F(ManualModeTest, StopAbortsEveryOpenOrder) {
+  order(1, insertion);
+  order(2, test::rotation, 100);
+  press();
+  mode_.end_all(OrderReason::stopped, snapshot_.state.tick);
+  for (const std::uint32_t slot : {insertion, test::rotation}) {
+    EXPECT_EQ(mode_.orders()[slot].phase, OrderPhase::aborted);
+    EXPECT_EQ(mode_.orders()[slot].reason, OrderReason::stopped);
+  }
+}
+
+TEST_F(ManualModeTest, AnAxisTakenOutOfMotionEndsItsOrder) {
+  order();
+  axis().state = ILK_AXIS_DISABLED;
+  (void)tick();
+  EXPECT_EQ(status().reason, OrderReason::axis_disabled);
+}
+
+TEST_F(ManualModeTest, AFaultEndsTheOrderAndIsNamed) {
+  order();
+  press();
+  axis().state = ILK_AXIS_FAULTED;
+  axis().fault = ILK_FAULT_STALL;
+  snapshot_.state.mode = ILK_MODE_READY;
+  (void)tick();
+  EXPECT_EQ(status().reason, OrderReason::axis_faulted);
+  EXPECT_EQ(status().code, static_cast<std::uint32_t>(ILK_FAULT_STALL));
+}
+
+TEST_F(ManualModeTest, HomingTakesTheAxisOver) {
+  order();
+  press();
+  axis().state = ILK_AXIS_HOMING;
+  EXPECT_THAT(tick(), testing::IsEmpty());
+  EXPECT_EQ(status().reason, OrderReason::axis_homing);
+}
+
+TEST_F(ManualModeTest, ARefusalOfTheKernelEndsTheOrderWithItsVerdict) {
+  order();
+  press();
+  mode_.on_verdict(insertion, 1, ILK_VERDICT_RANGE, 1234);
+  EXPECT_EQ(status().phase, OrderPhase::refused);
+  EXPECT_EQ(status().code, static_cast<std::uint32_t>(ILK_VERDICT_RANGE));
+  EXPECT_EQ(status().tick, 1234u);
+  EXPECT_THAT(tick(), testing::IsEmpty());
+}
+
+TEST_F(ManualModeTest, AVerdictOnAnOlderOrderDoesNotTouchTheNewerOne) {
+  order(1);
+  press();
+  order(2);
+  mode_.on_verdict(insertion, 1, ILK_VERDICT_RANGE, 1234);
+  EXPECT_EQ(status().proposal, 2u);
+  EXPECT_EQ(status().phase, OrderPhase::waiting);
+}
+
+TEST_F(ManualModeTest, APedalReleasedMeanwhileIsNoRefusal) {
+  order();
+  press();
+  mode_.on_verdict(insertion, 1, ILK_VERDICT_MODE, 1234);
+  EXPECT_EQ(status().phase, OrderPhase::executing);
+}
+
+TEST_F(ManualModeTest, CancellingGivesBackTheLease) {
+  order();
+  press();
+  axis().state = ILK_AXIS_MOVING;
+  mode_.end(insertion, 1, OrderReason::cancelled, snapshot_.state.tick);
+  const auto wishes = tick();
+  ASSERT_EQ(wishes.size(), 1u);
+  EXPECT_EQ(wishes[0].drive, 0u);
+  EXPECT_EQ(wishes[0].lease_ticks, 1u);
+  EXPECT_THAT(tick(), testing::IsEmpty());
+}
+
+TEST_F(ManualModeTest, AWishThatWasNotSentIsRepeated) {
+  order();
+  snapshot_.state.mode = ILK_MODE_MOTION;
+  const auto wishes = tick();
+  mode_.on_unsent(wishes.at(0));
+  EXPECT_EQ(tick().size(), 1u);
+  mode_.end(insertion, 1, OrderReason::cancelled, snapshot_.state.tick);
+  axis().state = ILK_AXIS_MOVING;
+  const auto release = tick();
+  mode_.on_unsent(release.at(0));
+  EXPECT_EQ(tick().size(), 1u);
+}
+
+TEST_F(ManualModeTest, IsDoneAfterFiftyTicksAtRestWithinTheDeadband) {
+  order();
+  press();
+  axis().position_counts = 1499;
+  (void)tick();
+  for (int i = 0; i < 49; ++i) {
+    (void)tick();
+    EXPECT_EQ(status().phase, OrderPhase::executing);
+  }
+  (void)tick();
+  EXPECT_EQ(status().phase, OrderPhase::done);
+}
+
+TEST_F(ManualModeTest, NoiseOfTheCounterDoesNotDelayArrival) {
+  order();
+  press();
+  for (std::int32_t i = 0; i < 52; ++i) {
+    axis().position_counts = 1500 + i % 2;
+    (void)tick();
+  }
+  EXPECT_EQ(status().phase, OrderPhase::done);
+}
+
+TEST_F(ManualModeTest, PassingThroughTheTargetIsNotArrival) {
+  order();
+  press();
+  for (std::int32_t i = 0; i < 200; ++i) {
+    axis().position_counts = i % 40 < 30 ? 1500 : 1510;
+    (void)tick();
+  }
+  EXPECT_EQ(status().phase, OrderPhase::executing);
+}
+
+TEST_F(ManualModeTest, ALimitThatHoldsTheAxisBackEndsTheOrder) {
+  order();
+  press();
+  snapshot_.gate[insertion] = ILK_GATE_HARD_LIMIT;
+  (void)tick(499);
+  EXPECT_EQ(status().phase, OrderPhase::executing);
+  (void)tick();
+  EXPECT_EQ(status().phase, OrderPhase::aborted);
+  EXPECT_EQ(status().reason, OrderReason::blocked);
+  EXPECT_EQ(status().code, static_cast<std::uint32_t>(ILK_GATE_HARD_LIMIT));
+}
+
+TEST_F(ManualModeTest, SurvivesTheWrapOfTheTickCounter) {
+  snapshot_.state.tick = UINT32_MAX - 10;
+  order();
+  press();
+  EXPECT_EQ(tick(20).size(), 1u);
+  EXPECT_EQ(status().phase, OrderPhase::executing);
+}
+
+TEST_F(ManualModeTest, IgnoresASlotThatDoesNotExist) {
+  mode_.take({1, ILK_SLOTS, 0, 0, 0}, 0);
+  mode_.end(ILK_SLOTS, 1, OrderReason::cancelled, 0);
+  mode_.on_verdict(ILK_SLOTS, 1, ILK_VERDICT_RANGE, 0);
+  EXPECT_THAT(tick(), testing::IsEmpty());
+}
+
+}  // namespace
+}  // namespace interlock

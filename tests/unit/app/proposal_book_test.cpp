@@ -1,0 +1,240 @@
+#include "proposals/proposal_book.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "proposals/proposal_json.hpp"
+#include "robot_fixture.hpp"
+
+namespace interlock {
+namespace {
+
+using test::insertion;
+using test::neuro;
+using test::neuro_config;
+
+class ProposalBookTest : public testing::Test {
+ protected:
+  ProposalBookTest()
+      : view_(test::ready_view()),
+        book_(neuro(), neuro_config(),
+              [this](const Command& command) {
+                if (accepts_) {
+                  sent_.push_back(command);
+                }
+                return accepts_;
+              },
+              [this] { return now_; }) {
+    book_.on_change([this](const Proposal& proposal) { changes_.push_back(proposal.state); });
+  }
+
+  tl::expected<Proposal, Refusal> propose(std::int32_t target = 1000, std::uint32_t slot = insertion) {
+    return book_.propose({slot, target, std::nullopt, "console"}, view_);
+  }
+
+  void report(std::uint32_t proposal, OrderPhase phase, OrderReason reason = OrderReason::none, std::uint32_t code = 0) {
+    OrderTable orders{};
+    orders[insertion] = {proposal, phase, reason, code, 0};
+    book_.follow(orders);
+  }
+
+  ilk_axis_t& axis() { return view_.snapshot.state.axis[insertion]; }
+  [[nodiscard]] ProposalState state(std::uint32_t id) const { return book_.find(id)->state; }
+
+  void expect_refused(const std::string& code) {
+    const auto proposal = propose();
+    ASSERT_FALSE(proposal);
+    EXPECT_EQ(proposal.error().code, code);
+    EXPECT_FALSE(proposal.error().next_step.empty());
+    EXPECT_EQ(state(1), ProposalState::refused);
+    EXPECT_EQ(book_.find(1)->verdict, code);
+    EXPECT_TRUE(book_.find(1)->ended);
+    EXPECT_THAT(sent_, testing::IsEmpty());
+  }
+
+  ControlView view_;
+  UtcTime now_{std::chrono::milliseconds(1714566896789)};
+  bool accepts_ = true;
+  std::vector<Command> sent_;
+  std::vector<ProposalState> changes_;
+  ProposalBook book_;
+};
+
+TEST_F(ProposalBookTest, DraftsChecksApprovesAndOrders) {
+  const auto proposal = propose();
+  ASSERT_TRUE(proposal);
+  EXPECT_EQ(proposal->id, 1u);
+  EXPECT_EQ(proposal->state, ProposalState::approved);
+  EXPECT_THAT(changes_, testing::ElementsAre(ProposalState::drafted, ProposalState::checked, ProposalState::approved));
+  ASSERT_EQ(sent_.size(), 1u);
+  const auto& order = std::get<Order>(sent_[0]);
+  EXPECT_EQ(order.proposal, 1u);
+  EXPECT_EQ(order.slot, insertion);
+  EXPECT_EQ(order.target_counts, 1000);
+}
+
+TEST_F(ProposalBookTest, FollowsTheOrderToItsEnd) {
+  (void)propose();
+  report(1, OrderPhase::executing);
+  EXPECT_EQ(state(1), ProposalState::executing);
+  report(1, OrderPhase::paused, OrderReason::pedal_released);
+  EXPECT_EQ(state(1), ProposalState::paused);
+  report(1, OrderPhase::executing);
+  report(1, OrderPhase::done, OrderReason::arrived);
+  EXPECT_EQ(state(1), ProposalState::done);
+  EXPECT_EQ(book_.find(1)->ended, now_);
+}
+
+TEST_F(ProposalBookTest, SaysNothingWhenNothingChanged) {
+  (void)propose();
+  changes_.clear();
+  report(1, OrderPhase::waiting);
+  report(1, OrderPhase::executing);
+  report(1, OrderPhase::executing);
+  EXPECT_THAT(changes_, testing::ElementsAre(ProposalState::executing));
+}
+
+TEST_F(ProposalBookTest, AnEndIsFinalWhateverALateReportSays) {
+  (void)propose();
+  ASSERT_TRUE(book_.abort(1));
+  report(1, OrderPhase::executing);
+  report(1, OrderPhase::done, OrderReason::arrived);
+  EXPECT_EQ(state(1), ProposalState::aborted);
+}
+
+TEST_F(ProposalBookTest, AKernelRefusalEndsItWithVerdictAndNextStep) {
+  (void)propose();
+  report(1, OrderPhase::refused, OrderReason::kernel_refused, ILK_VERDICT_DISABLED);
+  EXPECT_EQ(state(1), ProposalState::refused);
+  EXPECT_EQ(book_.find(1)->verdict, "DISABLED");
+  EXPECT_THAT(book_.find(1)->detail, testing::HasSubstr("Enable the axis."));
+}
+
+TEST_F(ProposalBookTest, AFaultEndsItByName) {
+  (void)propose();
+  report(1, OrderPhase::aborted, OrderReason::axis_faulted, ILK_FAULT_STALL);
+  EXPECT_EQ(state(1), ProposalState::aborted);
+  EXPECT_THAT(book_.find(1)->detail, testing::HasSubstr("STALL"));
+}
+
+TEST_F(ProposalBookTest, ANewerProposalOfTheAxisReplacesTheOlder) {
+  (void)propose();
+  (void)propose(1200);
+  EXPECT_EQ(state(1), ProposalState::aborted);
+  EXPECT_THAT(book_.find(1)->detail, testing::HasSubstr("proposal 2"));
+  EXPECT_EQ(book_.open_of(insertion)->id, 2u);
+}
+
+TEST_F(ProposalBookTest, ARefusedDraftReplacesNothing) {
+  (void)propose();
+  EXPECT_FALSE(propose(100000));
+  EXPECT_EQ(state(1), ProposalState::approved);
+}
+
+TEST_F(ProposalBookTest, ProposalsOfDifferentAxesStandSideBySide) {
+  (void)propose();
+  (void)propose(100, test::rotation);
+  EXPECT_EQ(state(1), ProposalState::approved);
+  EXPECT_EQ(state(2), ProposalState::approved);
+}
+
+TEST_F(ProposalBookTest, StopAbortsAllThatIsOpen) {
+  (void)propose();
+  report(1, OrderPhase::done, OrderReason::arrived);
+  (void)propose();
+  (void)propose(100, test::rotation);
+  book_.abort_all("STOP.");
+  EXPECT_EQ(state(1), ProposalState::done);
+  EXPECT_EQ(state(2), ProposalState::aborted);
+  EXPECT_EQ(state(3), ProposalState::aborted);
+}
+
+TEST_F(ProposalBookTest, AbortCancelsTheOrder) {
+  (void)propose();
+  const auto aborted = book_.abort(1);
+  ASSERT_TRUE(aborted);
+  EXPECT_EQ(aborted->state, ProposalState::aborted);
+  EXPECT_EQ(std::get<Cancel>(sent_.at(1)).proposal, 1u);
+}
+
+TEST_F(ProposalBookTest, WhatHasEndedCannotBeAborted) {
+  (void)propose();
+  (void)book_.abort(1);
+  EXPECT_EQ(book_.abort(1).error().code, "ENDED");
+}
+
+TEST_F(ProposalBookTest, RefusesAnotherConfigurationThanTheKernels) {
+  view_.snapshot.config_crc ^= 1u;
+  expect_refused("CONFIG_MISMATCH");
+}
+
+TEST_F(ProposalBookTest, RefusesWhileLocked) {
+  view_.snapshot.state.mode = ILK_MODE_LOCKED;
+  expect_refused("MODE");
+}
+
+TEST_F(ProposalBookTest, RefusesAFaultedAxis) {
+  axis().state = ILK_AXIS_FAULTED;
+  expect_refused("FAULTED");
+}
+
+TEST_F(ProposalBookTest, RefusesADisabledAxis) {
+  axis().state = ILK_AXIS_DISABLED;
+  expect_refused("DISABLED");
+}
+
+TEST_F(ProposalBookTest, RefusesAHomingAxis) {
+  axis().state = ILK_AXIS_HOMING;
+  expect_refused("BUSY");
+}
+
+TEST_F(ProposalBookTest, RefusesOneCountBeyondTheRange) {
+  const std::int32_t highest = neuro().at_slot(insertion)->highest_setpoint_counts();
+  EXPECT_TRUE(propose(highest));
+  const auto beyond = propose(highest + 1);
+  ASSERT_FALSE(beyond);
+  EXPECT_EQ(beyond.error().code, "RANGE");
+  EXPECT_THAT(beyond.error().expected, testing::HasSubstr(std::to_string(highest)));
+}
+
+TEST_F(ProposalBookTest, RefusesADriveAboveTheUnhomedBound) {
+  axis().homed = 0;
+  const std::uint32_t bound = neuro_config().axis[insertion].unhomed_max_drive;
+  const std::int32_t here = axis().position_counts;
+  EXPECT_TRUE(book_.propose({insertion, here, bound, "console"}, view_));
+  EXPECT_EQ(book_.propose({insertion, here, bound + 1, "console"}, view_).error().code, "DRIVE");
+}
+
+TEST_F(ProposalBookTest, RefusesAnEmptySlot) { EXPECT_EQ(propose(0, test::empty_slot).error().code, "AXIS"); }
+
+TEST_F(ProposalBookTest, SaysWhenTheControlThreadTakesNothing) {
+  accepts_ = false;
+  EXPECT_EQ(propose().error().code, "OVERLOADED");
+  EXPECT_EQ(state(1), ProposalState::refused);
+}
+
+TEST_F(ProposalBookTest, KeepsTheNewestTwoHundredAndWhateverIsOpen) {
+  (void)propose(100, test::rotation);
+  for (int i = 0; i < 300; ++i) {
+    (void)propose();
+  }
+  const auto all = book_.newest_first();
+  EXPECT_EQ(all.size(), ProposalBook::capacity);
+  EXPECT_EQ(all.front().id, 301u);
+  EXPECT_EQ(all.back().id, 1u);
+  EXPECT_EQ(state(1), ProposalState::approved);
+}
+
+TEST_F(ProposalBookTest, ShowsTimesInUtcWithMillisecondsAndTick) {
+  (void)propose();
+  const nlohmann::json json = to_json(*book_.find(1));
+  EXPECT_EQ(json["created"], "2024-05-01T12:34:56.789Z");
+  EXPECT_EQ(json["created_tick"], 1000);
+  EXPECT_TRUE(json["ended"].is_null());
+  EXPECT_FALSE(json.contains("drive"));
+}
+
+}  // namespace
+}  // namespace interlock

@@ -1,0 +1,46 @@
+#include "robot_fixture.hpp"
+
+#include <stdexcept>
+
+#include "robot/compile.hpp"
+#include "robot/robot_file.hpp"
+
+namespace interlock::test {
+
+const Robot& neuro() {
+  static const Robot robot = [] {
+    auto loaded = load_robot(INTERLOCK_ROBOTS "/neuro.toml");
+    return loaded ? *loaded : throw std::runtime_error(loaded.error().message());
+  }();
+  return robot;
+}
+
+const ilk_config_t& neuro_config() {
+  static const ilk_config_t config = [] {
+    auto compiled = compile(neuro());
+    return compiled ? *compiled : throw std::runtime_error(compiled.error().message());
+  }();
+  return config;
+}
+
+ControlView ready_view() {
+  ControlView view;
+  view.attached = true;
+  view.generation = 1;
+  view.received = std::chrono::steady_clock::now();
+  view.snapshot.config_crc = neuro_config().crc;
+  view.snapshot.period_us = neuro_config().period_us;
+  view.snapshot.state.tick = 1000;
+  view.snapshot.state.mode = ILK_MODE_READY;
+  for (const Axis& axis : neuro().axes) {
+    ilk_axis_t& state = view.snapshot.state.axis[axis.slot];
+    state.state = ILK_AXIS_ENABLED;
+    state.homed = 1;
+    state.card_seen = 1;
+    state.card_valid = 1;
+    state.position_counts = (axis.soft_limits.min_counts + axis.soft_limits.max_counts) / 2;
+  }
+  return view;
+}
+
+}  // namespace interlock::test
