@@ -47,6 +47,11 @@ Problem no_bench() {
           "Start interlock-app with --bench SOCKET beside interlock-sim.", ""};
 }
 
+Problem pedal_lapsed() {
+  return {Status::conflict, "PEDAL_LAPSED", "The bench pedal came up, as its hold was not renewed for 500 ms.", "", "",
+          "Press it again.", ""};
+}
+
 std::optional<std::uint32_t> number_in(const std::string& text) {
   std::uint32_t number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -311,10 +316,17 @@ Api::Answering Api::pass_to_bench(std::string command, json body) {
   if (!bench_) {
     co_return fail(no_bench());
   }
-  if (command == "pedal" && body.value("pressed", json()) == json(true)) {
-    pedal_.hold(view(), steady_clock::now());
-  } else if (command == "pedal") {
-    pedal_.release();
+  if (command == "pedal") {
+    const bool renewal = body.value("renew", json()) == json(true);
+    body.erase("renew");
+    if (renewal && !pedal_.held()) {
+      co_return fail(pedal_lapsed());
+    }
+    if (body.value("pressed", json()) == json(true)) {
+      pedal_.hold(view(), steady_clock::now());
+    } else {
+      pedal_.release();
+    }
   }
   body["command"] = std::move(command);
   const BenchReply reply = co_await bench_->command(std::move(body));

@@ -205,6 +205,8 @@ export interface paths {
          * Passes a command of models/plant/README.md to the simulated hardware; the body has its fields without `command`
          *     and `id`. A pedal pressed here is released by the app when it has not been renewed for 500 ms: of the kernel's
          *     time in the simulated clock, of the wall's else.
+         *     `{"pressed": true, "renew": true}` only renews: when the pedal is not held any more it is refused
+         *     (PEDAL_LAPSED), so that a late renewal is never a press that nobody made.
          */
         post: operations["benchCommand"];
         delete?: never;
@@ -240,7 +242,7 @@ export interface components {
             status: number;
             /**
              * @description Verdict name, or NOT_FOUND, METHOD_NOT_ALLOWED, MALFORMED, INVALID, TOO_LARGE, HOST, ORIGIN, UPGRADE_REQUIRED,
-             *     NO_KERNEL, NO_BENCH, CONFIG_MISMATCH, ENDED, OVERLOADED, INTERNAL.
+             *     NO_KERNEL, NO_BENCH, PEDAL_LAPSED, CONFIG_MISMATCH, ENDED, OVERLOADED, INTERNAL.
              */
             code: string;
             /** @description What, where. */
@@ -720,6 +722,15 @@ export interface operations {
             };
             400: components["responses"]["Malformed"];
             404: components["responses"]["NoBench"];
+            /** @description A renewal of a pedal that is not held; `code` is PEDAL_LAPSED. */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
             422: components["responses"]["Invalid"];
             503: components["responses"]["BenchSilent"];
         };
