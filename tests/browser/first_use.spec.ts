@@ -242,6 +242,22 @@ test("the simulated pedal is let go when the window loses the operator", async (
   await robot.expectMode("READY");
 });
 
+test("a renewal of the pedal that comes too late presses nothing, and the bench says so", async ({
+  robot,
+  page,
+}) => {
+  await page.route("**/api/bench/pedal", async (route) => {
+    if (route.request().postDataJSON().renew === true)
+      await expect(robot.pedalState).toContainText("released");
+    await route.continue();
+  });
+  await robot.unlockRobot();
+  await robot.latchPedal();
+  await expect(page.getByRole("alert").filter({ hasText: "PEDAL_LAPSED" })).toContainText("Press it again.");
+  await expect(robot.latch).toHaveAttribute("aria-pressed", "false");
+  await robot.expectMode("READY");
+});
+
 test("no key enables an axis, unlocks or presses the pedal", async ({ robot, page }) => {
   const asked: string[] = [];
   page.on("request", (request) => {

@@ -7,6 +7,8 @@ import { createInterface } from "node:readline";
 import { programs } from "./places";
 
 const READY_WITHIN_MS = 30_000;
+/** The app's patience with a held pedal is 500 ms of this clock: half the speed is twice the time for a busy machine. */
+const SPEED = "0.5";
 
 export class Stack {
   private constructor(
@@ -20,7 +22,7 @@ export class Stack {
     const state = mkdtempSync(path.join(tmpdir(), "interlock-browser-"));
     const run = spawn(
       path.join(programs, "interlock"),
-      ["run", "--robot", "neuro", "--clock", "sim", "--port", "0", "--state", state],
+      ["run", "--robot", "neuro", "--clock", "sim", "--speed", SPEED, "--port", "0", "--state", state],
       { stdio: ["ignore", "pipe", "pipe"] },
     );
     return new Stack(run, state, await readyUrl(run));

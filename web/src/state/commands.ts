@@ -1,6 +1,6 @@
 /** What a click does: one call to the app, its answer into the store. */
 import { type AxisAction, api, type ProposalDraft } from "../api/client";
-import { type Notice, noticeOfProblem } from "./notice";
+import { noticeOfProblem } from "./notice";
 import { useConsole, withBenchAnswer, withNotice } from "./store";
 
 /** Sends STOP at once, whatever else is going on, and drops every preview. */
@@ -41,27 +41,28 @@ export async function abort(id: number, slot: number): Promise<void> {
   useConsole.setState((state) => withNotice(state, slot, notice));
 }
 
-/**
- * Passes a command of models/plant/README.md to the simulated hardware; a refusal is shown at the bench.
- * Returns whether it was accepted.
- */
-export async function bench(command: string, fields: Record<string, unknown>): Promise<boolean> {
+/** Passes a command of models/plant/README.md to the simulated hardware; a refusal is shown at the bench. */
+export async function bench(command: string, fields: Record<string, unknown>): Promise<void> {
   const outcome = await api.benchCommand(command, fields);
   const notice = outcome.ok ? null : noticeOfProblem(outcome.problem);
   useConsole.setState((state) => withBenchAnswer(state, command, notice));
+}
+
+const pedalFields = {
+  press: { pressed: true },
+  renew: { pressed: true, renew: true },
+  release: { pressed: false },
+} as const;
+
+/** Moves the simulated pedal. The refusal of a renewal stays in sight until the next press. */
+export async function movePedal(footwork: keyof typeof pedalFields): Promise<boolean> {
+  const outcome = await api.benchCommand("pedal", pedalFields[footwork]);
+  const notice = outcome.ok ? null : noticeOfProblem(outcome.problem);
+  if (footwork === "press" || notice !== null) {
+    useConsole.setState((state) => withBenchAnswer(state, "pedal", notice));
+  }
   return outcome.ok;
 }
-
-/** Shows at the bench that the pedal came up by itself, or no longer shows it. */
-export function showPedalLapse(shown: boolean): void {
-  useConsole.setState((state) => withBenchAnswer(state, "pedal hold", shown ? pedalLapse : null));
-}
-
-const pedalLapse: Notice = {
-  code: "LATE",
-  meaning: "The pedal came up because its hold was not renewed in time.",
-  nextStep: "Press it again.",
-};
 
 export function dismissNotice(slot: number): void {
   useConsole.setState((state) => withNotice(state, slot, null));

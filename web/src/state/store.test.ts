@@ -86,7 +86,7 @@ describe("notices", () => {
 });
 
 describe("the refusal of a bench command", () => {
-  it("outlives other commands, such as renewals of the pedal, and goes when the command is accepted", () => {
+  it("outlives other commands and goes when the command is accepted", () => {
     const refused = applied(open, withBenchAnswer(open, "jam", notice));
     expect(applied(refused, withBenchAnswer(refused, "pedal", null)).benchRefusal).toEqual({
       command: "jam",

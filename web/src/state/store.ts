@@ -99,7 +99,7 @@ export function withNotice(state: ConsoleState, slot: number, notice: Notice | n
   return { notices: notice === null ? others : { ...others, [slot]: notice } };
 }
 
-/** Takes in the answer to a bench command. A pedal that is renewed all the time clears no other command's refusal. */
+/** Takes in the answer to a bench command; an accepted one clears no other command's refusal. */
 export function withBenchAnswer(
   state: ConsoleState,
   command: string,

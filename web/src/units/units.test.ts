@@ -11,7 +11,7 @@ describe("formatting", () => {
 
   it("shows as many decimals as tell counts apart, at most three", () => {
     expect(decimals(yaw)).toBe(1);
-    expect(formatCounts(insertion, 1)).toBe("0.03 mm");
+    expect(formatCounts(insertion, 1)).toBe("0.03\u00a0mm");
     expect(decimals({ unit: "mm", counts_per_unit: 1e9 })).toBe(3);
     expect(decimals({ unit: "mm", counts_per_unit: 0.01 })).toBe(0);
   });

@@ -32,9 +32,9 @@ export function formatNumber(scale: Scale, counts: number): string {
   return Number(shown) === 0 ? shown.replace("-", "") : shown;
 }
 
-/** The number with its unit, e.g. `-12.35°` or `31.2 mm`. */
+/** The number with its unit, never parted by a line break, e.g. `-12.35°` or `31.2 mm`. */
 export function formatCounts(scale: Scale, counts: number): string {
-  const separator = scale.unit === "rad" ? "" : " ";
+  const separator = scale.unit === "rad" ? "" : "\u00a0";
   return `${formatNumber(scale, counts)}${separator}${unitName(scale)}`;
 }
 

@@ -1,7 +1,7 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
-import { PedalFoot, RENEW_BEFORE_MS, RENEW_EVERY_MS } from "./pedal";
+import { type Footwork, PedalFoot, RENEW_EVERY_MS } from "./pedal";
 
-let sent: boolean[];
+let sent: Footwork[];
 let answers: ((heard: boolean) => void)[];
 let lapses: number;
 let foot: PedalFoot;
@@ -17,8 +17,8 @@ beforeEach(() => {
   answers = [];
   lapses = 0;
   foot = new PedalFoot(
-    (pressed) => {
-      sent.push(pressed);
+    (footwork) => {
+      sent.push(footwork);
       return new Promise((resolve) => answers.push(resolve));
     },
     () => {
@@ -34,12 +34,12 @@ afterEach(() => {
 describe("PedalFoot", () => {
   it("presses at once and renews while held", async () => {
     foot.press();
-    expect(sent).toEqual([true]);
+    expect(sent).toEqual(["press"]);
     await answerAll();
     await vi.advanceTimersByTimeAsync(RENEW_EVERY_MS);
     await answerAll();
     await vi.advanceTimersByTimeAsync(RENEW_EVERY_MS);
-    expect(sent).toEqual([true, true, true]);
+    expect(sent).toEqual(["press", "renew", "renew"]);
   });
 
   it("releases at once between two renewals, and only once", async () => {
@@ -50,16 +50,16 @@ describe("PedalFoot", () => {
     await vi.advanceTimersByTimeAsync(0);
     await answerAll();
     await vi.advanceTimersByTimeAsync(10 * RENEW_EVERY_MS);
-    expect(sent).toEqual([true, false]);
+    expect(sent).toEqual(["press", "release"]);
   });
 
   it("never lets the release overtake a press without an answer", async () => {
     foot.press();
     foot.release();
     await vi.advanceTimersByTimeAsync(10 * RENEW_EVERY_MS);
-    expect(sent).toEqual([true]);
+    expect(sent).toEqual(["press"]);
     await answerAll();
-    expect(sent).toEqual([true, false]);
+    expect(sent).toEqual(["press", "release"]);
   });
 
   it("presses again after a release that is still on its way", async () => {
@@ -68,9 +68,9 @@ describe("PedalFoot", () => {
     foot.release();
     await vi.advanceTimersByTimeAsync(0);
     foot.press();
-    expect(sent).toEqual([true, false]);
+    expect(sent).toEqual(["press", "release"]);
     await answerAll();
-    expect(sent).toEqual([true, false, true]);
+    expect(sent).toEqual(["press", "release", "press"]);
   });
 
   it("sends nothing when released without a press", async () => {
@@ -79,14 +79,14 @@ describe("PedalFoot", () => {
     expect(sent).toEqual([]);
   });
 
-  it("comes off instead of pressing anew when a renewal is late", async () => {
+  it("comes off instead of pressing anew when a renewal is refused", async () => {
     foot.press();
-    await vi.advanceTimersByTimeAsync(RENEW_BEFORE_MS);
     await answerAll();
     await vi.advanceTimersByTimeAsync(RENEW_EVERY_MS);
+    await answerAll(false);
     await answerAll();
     await vi.advanceTimersByTimeAsync(10 * RENEW_EVERY_MS);
-    expect(sent).toEqual([true, false]);
+    expect(sent).toEqual(["press", "renew", "release"]);
     expect(lapses).toBe(1);
   });
 
@@ -95,7 +95,7 @@ describe("PedalFoot", () => {
     await answerAll(false);
     await answerAll();
     await vi.advanceTimersByTimeAsync(10 * RENEW_EVERY_MS);
-    expect(sent).toEqual([true, false]);
+    expect(sent).toEqual(["press", "release"]);
     expect(lapses).toBe(1);
   });
 

@@ -1,25 +1,25 @@
 /**
- * A foot on the simulated pedal. The app lets the pedal go by itself 500 ms after the last press it heard, so a
- * held pedal is pressed again and again. Presses and the release go out one after the other: a release that
- * overtook a press would leave the pedal down. A renewal that comes too late would be a new press that nobody
- * made, so it is not sent: the foot comes off instead.
+ * A foot on the simulated pedal. The app lets the pedal go by itself 500 ms after the last press or renewal it
+ * heard, so a held pedal is renewed again and again. What the foot does goes out one after the other: a release
+ * that overtook a renewal would be undone by it. The app refuses a renewal that comes too late; then the foot comes
+ * off, since pressing anew would be a consent that nobody gave.
  */
 
-/** Sends one press or release; false when it was refused or not heard. */
-export type SendPedal = (pressed: boolean) => Promise<boolean>;
+export type Footwork = "press" | "renew" | "release";
+
+/** Sends what the foot does; false when it was refused or not heard. */
+export type SendFootwork = (footwork: Footwork) => Promise<boolean>;
 
 export const RENEW_EVERY_MS = 150;
-export const RENEW_BEFORE_MS = 400;
 
 export class PedalFoot {
   private down = false;
   private running = false;
-  private pressedAtMs = 0;
   private wake: () => void = () => undefined;
 
   /** `onLapse` is told when the foot comes off without `release`. */
   constructor(
-    private readonly send: SendPedal,
+    private readonly send: SendFootwork,
     private readonly onLapse: () => void,
   ) {}
 
@@ -37,23 +37,19 @@ export class PedalFoot {
     this.running = true;
     while (this.down) {
       await this.hold();
-      await this.send(false);
+      await this.send("release");
     }
     this.running = false;
   }
 
-  /** Presses and renews until the foot comes off. */
+  /** Presses, and renews until the foot comes off. */
   private async hold(): Promise<void> {
-    this.pressedAtMs = performance.now();
-    while (this.down) {
-      const inTime = performance.now() - this.pressedAtMs < RENEW_BEFORE_MS;
-      this.pressedAtMs = performance.now();
-      if (!inTime || !(await this.send(true))) this.lapse();
-      else if (this.down) await this.renewalOrRelease();
+    let heard = await this.send("press");
+    while (heard && this.down) {
+      await this.renewalOrRelease();
+      if (this.down) heard = await this.send("renew");
     }
-  }
-
-  private lapse(): void {
+    if (heard) return;
     this.down = false;
     this.onLapse();
   }

@@ -1,11 +1,11 @@
 import { useEffect, useState } from "react";
-import { bench, showPedalLapse } from "../../state/commands";
+import { movePedal } from "../../state/commands";
 import { useConsole } from "../../state/store";
-import { PedalFoot, type SendPedal } from "./pedal";
+import { PedalFoot } from "./pedal";
 
 /**
  * The pedal under a pointer, with a latch for those who need the pointer elsewhere. Whatever takes the page out
- * of the operator's hands (another window or tab, leaving, covered data, a page too slow to renew the hold) lifts
+ * of the operator's hands (another window or tab, leaving, covered data, a hold that was not renewed in time) lifts
  * the foot and opens the latch.
  */
 export function usePedal() {
@@ -13,22 +13,16 @@ export function usePedal() {
   const [latched, setLatched] = useState(false);
   const blind = useConsole((state) => state.freshness.level === "covered");
   const [foot] = useState(() => {
-    const send: SendPedal = (pressed) => bench("pedal", { pressed });
-    return new PedalFoot(send, () => {
+    return new PedalFoot(movePedal, () => {
       setHeld(false);
       setLatched(false);
-      showPedalLapse(true);
     });
   });
   const down = (held || latched) && !blind;
 
   useEffect(() => {
-    if (!down) {
-      foot.release();
-      return;
-    }
-    showPedalLapse(false);
-    foot.press();
+    if (down) foot.press();
+    else foot.release();
   }, [down, foot]);
 
   useEffect(() => {
