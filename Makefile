@@ -39,10 +39,10 @@ build/stamps/console: $(web_sources) | setup
 	@npm --prefix web run --silent build -- --logLevel warn
 	@touch $@
 
-# Two steps are always pending (they read the commit); progress is shown when there is more to do.
+# What ninja says about steps that are always run is no news; the rest is the progress of the build.
 .PHONY: build
 build: setup $(release)/build.ninja build/stamps/console ## Build everything (the default)
-	@if (($$(ninja -C $(release) -n | wc -l) > 4)); then ninja -C $(release); else ninja -C $(release) --quiet; fi
+	@ninja -C $(release) | sed -uE '/: Entering directory|Re-checking globbed|Reading the commit|no work to do/d'
 
 .PHONY: run
 run: build ## Start simulated robot, kernel, app and console: [ROBOT=neuro] [PORT=8080]
