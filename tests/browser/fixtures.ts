@@ -2,8 +2,8 @@ import { test as base, expect } from "@playwright/test";
 import { ConsolePage } from "./console_page";
 import { Stack } from "./stack";
 
-/** What tests cause on purpose and Chromium reports on its console: refused requests and an app that is gone. */
-const expectedComplaint = /status of (409|422)|ERR_CONNECTION_/;
+/** What Chromium reports on its console by design: refused requests, an app that is gone or has no kernel yet. */
+const expectedComplaint = /status of (409|422|503)|ERR_CONNECTION_/;
 
 interface Fixtures {
   stack: Stack;

@@ -7,6 +7,27 @@ const respond = (status: number, body: string, type = "application/json"): void 
   vi.stubGlobal("fetch", async () => new Response(body, { status, headers: { "content-type": type } }));
 };
 
+/** The browser's network, which answers when the test says so and from then on at once. */
+class NetworkInHand {
+  readonly asked: string[] = [];
+  private release: () => void = () => undefined;
+
+  constructor() {
+    const released = new Promise<void>((resolve) => {
+      this.release = resolve;
+    });
+    vi.stubGlobal("fetch", async (request: Request) => {
+      this.asked.push(new URL(request.url).pathname);
+      await released;
+      return Response.json({ verdict: null, tick: null });
+    });
+  }
+
+  answerAll(): void {
+    this.release();
+  }
+}
+
 afterEach(() => {
   vi.stubGlobal("fetch", undefined);
 });
@@ -40,21 +61,24 @@ describe("an API call", () => {
     expect(outcome.ok ? "" : outcome.problem.next_step).not.toBe("");
   });
 
+  it("reads one after the other, and never holds up what the operator asks for", async () => {
+    const network = new NetworkInHand();
+    const reads = [api.status(), api.motors(), api.proposals()];
+    const unlocked = api.reset();
+    await vi.waitFor(() => expect(network.asked).toEqual(["/api/reset", "/api/status"]));
+    network.answerAll();
+    await Promise.all([...reads, unlocked]);
+    expect(network.asked.slice(2)).toEqual(["/api/motors", "/api/proposals"]);
+  });
+
   it("is not sent beyond four without an answer, so that STOP finds a free connection", async () => {
-    const sent: string[] = [];
-    const answers: (() => void)[] = [];
-    vi.stubGlobal("fetch", (request: Request) => {
-      sent.push(new URL(request.url).pathname);
-      return new Promise<Response>((resolve) =>
-        answers.push(() => resolve(Response.json({ verdict: null, tick: null }))),
-      );
-    });
+    const network = new NetworkInHand();
     const waiting = [0, 1, 2, 3].map((slot) => api.act(slot, "enable"));
     expect(await api.act(4, "enable")).toMatchObject({ ok: false, problem: { code: "BUSY_CONSOLE" } });
     const stopped = api.stop();
-    await vi.waitFor(() => expect(sent.length).toBe(5));
-    expect(sent.at(-1)).toBe("/api/stop");
-    for (const answer of answers) answer();
+    await vi.waitFor(() => expect(network.asked.length).toBe(5));
+    expect(network.asked.at(-1)).toBe("/api/stop");
+    network.answerAll();
     await Promise.all([...waiting, stopped]);
     respond(200, '{"verdict":"ACCEPTED","tick":7}');
     expect((await api.act(4, "enable")).ok).toBe(true);

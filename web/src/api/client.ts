@@ -14,32 +14,43 @@ export type Problem = Pick<components["schemas"]["Problem"], "code" | "detail" |
 
 export type Outcome<Value> = { ok: true; value: Value } | { ok: false; problem: Problem };
 
+type Send<Value> = () => Promise<{ data?: Value; error?: unknown; response: Response }>;
+
 const ANSWER_WITHIN_MS = 2000;
-/** Browsers keep six connections to a host: two stay free, so that STOP never waits behind other requests. */
-const MOST_PENDING = 4;
+/**
+ * Browsers keep six connections to a host. Reading takes one, what the operator asks for at most four, so that STOP
+ * never waits behind other requests.
+ */
+const MOST_PENDING_ACTIONS = 4;
 
 const http = createClient<paths>({
   baseUrl: globalThis.location?.origin ?? "",
   fetch: (request: Request) => fetch(request, { signal: AbortSignal.timeout(ANSWER_WITHIN_MS) }),
 });
 
-let pending = 0;
+let lastRead: Promise<unknown> = Promise.resolve();
 
-async function call<Value>(
-  send: () => Promise<{ data?: Value; error?: unknown; response: Response }>,
-): Promise<Outcome<Value>> {
-  if (pending >= MOST_PENDING) return { ok: false, problem: tooManyPending };
-  pending += 1;
+/** Reads one after the other. */
+function read<Value>(send: Send<Value>): Promise<Outcome<Value>> {
+  const outcome = lastRead.then(() => outcomeOf(send));
+  lastRead = outcome;
+  return outcome;
+}
+
+let pendingActions = 0;
+
+/** Sends at once or not at all: what an operator asked for must not happen when it is no longer expected. */
+async function act<Value>(send: Send<Value>): Promise<Outcome<Value>> {
+  if (pendingActions >= MOST_PENDING_ACTIONS) return { ok: false, problem: tooManyPending };
+  pendingActions += 1;
   try {
     return await outcomeOf(send);
   } finally {
-    pending -= 1;
+    pendingActions -= 1;
   }
 }
 
-async function outcomeOf<Value>(
-  send: () => Promise<{ data?: Value; error?: unknown; response: Response }>,
-): Promise<Outcome<Value>> {
+async function outcomeOf<Value>(send: Send<Value>): Promise<Outcome<Value>> {
   try {
     const { data, error, response } = await send();
     if (response.ok && data !== undefined) return { ok: true, value: data };
@@ -55,7 +66,7 @@ function isProblem(error: unknown): error is Problem {
 
 const tooManyPending: Problem = {
   code: "BUSY_CONSOLE",
-  detail: `${MOST_PENDING} earlier requests have no answer yet; this one was not sent.`,
+  detail: `${MOST_PENDING_ACTIONS} earlier requests have no answer yet; this one was not sent.`,
   next_step: "Wait until the app answers, then try again.",
 };
 
@@ -74,17 +85,17 @@ function unexpectedAnswer(status: number): Problem {
 }
 
 export const api = {
-  status: () => call(() => http.GET("/api/status")),
-  motors: () => call(() => http.GET("/api/motors")),
-  proposals: () => call(() => http.GET("/api/proposals")),
+  status: () => read(() => http.GET("/api/status")),
+  motors: () => read(() => http.GET("/api/motors")),
+  proposals: () => read(() => http.GET("/api/proposals")),
   act: (slot: number, action: AxisAction) =>
-    call(() => http.POST("/api/motors/{slot}/{action}", { params: { path: { slot, action } } })),
-  propose: (draft: ProposalDraft) => call(() => http.POST("/api/proposals", { body: draft })),
-  abort: (id: number) => call(() => http.POST("/api/proposals/{id}/abort", { params: { path: { id } } })),
-  reset: () => call(() => http.POST("/api/reset")),
-  bench: () => call(() => http.GET("/api/bench")),
+    act(() => http.POST("/api/motors/{slot}/{action}", { params: { path: { slot, action } } })),
+  propose: (draft: ProposalDraft) => act(() => http.POST("/api/proposals", { body: draft })),
+  abort: (id: number) => act(() => http.POST("/api/proposals/{id}/abort", { params: { path: { id } } })),
+  reset: () => act(() => http.POST("/api/reset")),
+  bench: () => read(() => http.GET("/api/bench")),
   benchCommand: (command: string, body: Record<string, unknown>) =>
-    call(() => http.POST("/api/bench/{command}", { params: { path: { command } }, body })),
-  /** Outside the count of pending requests: STOP is always sent, and survives leaving the page. */
+    act(() => http.POST("/api/bench/{command}", { params: { path: { command } }, body })),
+  /** Outside all counts: STOP is always sent, and survives leaving the page. */
   stop: () => outcomeOf(() => http.POST("/api/stop", { keepalive: true, priority: "high" })),
 };
