@@ -80,22 +80,17 @@ ilk_request_t restore(uint32_t axis, int32_t position) {
 }
 
 ilk_request_t with_crc(ilk_request_t request) {
-  const std::array<uint32_t, 8> words = {request.sequence,
-                                         request.kind,
-                                         request.axis,
-                                         static_cast<uint32_t>(request.target_counts),
-                                         request.drive,
-                                         request.amplitude,
-                                         request.lease_ticks,
-                                         request.holder};
+  const std::array<uint32_t, 8> words = {
+      request.sequence, request.kind,      request.axis,        static_cast<uint32_t>(request.target_counts),
+      request.drive,    request.amplitude, request.lease_ticks, request.holder};
   request.crc = crc32_of_words(words);
   return request;
 }
 
 Bench::Bench(const ilk_config_t& config)
     : config_(config),
-      watch_(config, ilk_init(&config_, &state_).error == ILK_CONFIG_ERROR_NONE ? ILK_MODE_LOCKED
-                                                                                : ILK_MODE_INIT) {}
+      watch_(config,
+             ilk_init(&config_, &state_).error == ILK_CONFIG_ERROR_NONE ? ILK_MODE_LOCKED : ILK_MODE_INIT) {}
 
 void Bench::pedal(bool pressed) {
   pedal_no_closed = pressed ? 1 : 0;

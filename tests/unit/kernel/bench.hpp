@@ -31,13 +31,13 @@ enum class FrameFault {
 struct Motor {
   int64_t travelled = 0;
   uint32_t raw_at_start = 5000;
-  int32_t speed = 1;   ///< counts per driven tick
-  int32_t coast = 0;   ///< counts from the last driven tick until rest
-  int32_t creep = 0;   ///< counts per tick, whatever the drive says
+  int32_t speed = 1;  ///< counts per driven tick
+  int32_t coast = 0;  ///< counts from the last driven tick until rest
+  int32_t creep = 0;  ///< counts per tick, whatever the drive says
   bool frozen = false;
   bool reversed = false;
-  std::optional<int32_t> switch_at;      ///< the switch is triggered at and beyond this place
-  std::optional<bool> switch_stuck;      ///< the switch reads this, wherever the axis is
+  std::optional<int32_t> switch_at;  ///< the switch is triggered at and beyond this place
+  std::optional<bool> switch_stuck;  ///< the switch reads this, wherever the axis is
 
   void advance(ilk_direction_t driven);
   bool switch_triggered(uint32_t limit_side) const;

@@ -13,8 +13,8 @@ constexpr uint32_t axis = slot::pwm_lower;
 class Bad_frame : public testing::TestWithParam<FrameFault> {};
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Bad_frame,
-                         testing::Values(FrameFault::wrong_checksum, FrameFault::wrong_start, FrameFault::missing,
-                                         FrameFault::repeated, FrameFault::stale_echo));
+                         testing::Values(FrameFault::wrong_checksum, FrameFault::wrong_start,
+                                         FrameFault::missing, FrameFault::repeated, FrameFault::stale_echo));
 
 TEST_P(Bad_frame, is_never_used) {
   Bench bench;
@@ -158,7 +158,7 @@ TEST(Frames_in, words_without_meaning_are_ignored) {
   Bench bench;
   bench.to_ready();
   for (uint32_t slot = 0; slot < slot::axes; ++slot) {
-    for (const std::size_t word : {1, 4, 5, 6, 13, ILK_FRAME_WORDS - 2}) {
+    for (const std::size_t word : std::initializer_list<std::size_t>{1, 4, 5, 6, 13, ILK_FRAME_WORDS - 2}) {
       bench.tick_with([slot, word](ilk_inputs_t& in) {
         in.frame[slot][word] = 0xDEADBEEFu;
         write_checksum(in.frame[slot]);

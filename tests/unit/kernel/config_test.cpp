@@ -32,7 +32,7 @@ ilk_config_verdict_t verdict_after(const Edit& edit) {
 }
 
 /// A rule over one system field.
-Rule system_rule(std::string name, ilk_config_error_t error, uint32_t ilk_config_t::*field, uint32_t inside,
+Rule system_rule(std::string name, ilk_config_error_t error, uint32_t ilk_config_t::* field, uint32_t inside,
                  uint32_t outside) {
   return {std::move(name), error, ILK_SLOTS, [=](ilk_config_t& config) { config.*field = inside; },
           [=](ilk_config_t& config) { config.*field = outside; }};
@@ -40,13 +40,13 @@ Rule system_rule(std::string name, ilk_config_error_t error, uint32_t ilk_config
 
 /// A rule over one field of one axis.
 template <typename Field>
-Rule axis_rule(std::string name, ilk_config_error_t error, uint32_t slot, Field ilk_axis_config_t::*field,
+Rule axis_rule(std::string name, ilk_config_error_t error, uint32_t slot, Field ilk_axis_config_t::* field,
                Field inside, Field outside) {
   return {std::move(name), error, slot, [=](ilk_config_t& config) { config.axis[slot].*field = inside; },
           [=](ilk_config_t& config) { config.axis[slot].*field = outside; }};
 }
 
-Edit with_period(uint32_t period_us, uint32_t ilk_config_t::*field, uint32_t ticks) {
+Edit with_period(uint32_t period_us, uint32_t ilk_config_t::* field, uint32_t ticks) {
   return [=](ilk_config_t& config) {
     config.period_us = period_us;
     config.app_timeout_ticks = config.lease_max_ticks = 10;
@@ -93,7 +93,8 @@ std::vector<Rule> system_rules() {
   };
   for (const uint32_t period : {125u, 500u, 700u, 2000u}) {
     const std::string suffix = "_at_" + std::to_string(period) + "us";
-    const auto scaled = [&](const char* name, ilk_config_error_t error, uint32_t C::*field, uint32_t maximum_us) {
+    const auto scaled = [&](const char* name, ilk_config_error_t error, uint32_t C::* field,
+                            uint32_t maximum_us) {
       const uint32_t most = maximum_us / period;
       rules.push_back({name + suffix, error, ILK_SLOTS, with_period(period, field, most),
                        with_period(period, field, most + 1)});
@@ -111,11 +112,11 @@ std::vector<Rule> axis_rules() {
   constexpr uint32_t s = slot::pwm_lower;
   constexpr uint32_t f = slot::pwm_free;
   constexpr uint32_t h = slot::high_frequency;
-  const auto unsigned_rule = [](std::string name, ilk_config_error_t error, uint32_t slot, uint32_t A::*field,
-                                uint32_t inside, uint32_t outside) {
+  const auto unsigned_rule = [](std::string name, ilk_config_error_t error, uint32_t slot,
+                                uint32_t A::* field, uint32_t inside, uint32_t outside) {
     return axis_rule<uint32_t>(std::move(name), error, slot, field, inside, outside);
   };
-  const auto signed_rule = [](std::string name, ilk_config_error_t error, uint32_t slot, int32_t A::*field,
+  const auto signed_rule = [](std::string name, ilk_config_error_t error, uint32_t slot, int32_t A::* field,
                               int32_t inside, int32_t outside) {
     return axis_rule<int32_t>(std::move(name), error, slot, field, inside, outside);
   };
@@ -153,11 +154,12 @@ std::vector<Rule> axis_rules() {
       unsigned_rule("max_drive_pwm", ILK_CONFIG_ERROR_MAX_DRIVE, f, &A::max_drive, 0x7FFFFFFFu, 0x80000000u),
       unsigned_rule("max_drive_non_pwm", ILK_CONFIG_ERROR_MAX_DRIVE, slot::non_pwm_upper, &A::max_drive,
                     0x3FFFFFFFu, 0x40000000u),
-      unsigned_rule("max_drive_analog", ILK_CONFIG_ERROR_MAX_DRIVE, slot::analog_upper, &A::max_drive, 0x7FFFFFFFu,
-                    0x80000000u),
+      unsigned_rule("max_drive_analog", ILK_CONFIG_ERROR_MAX_DRIVE, slot::analog_upper, &A::max_drive,
+                    0x7FFFFFFFu, 0x80000000u),
       unsigned_rule("max_drive_high_frequency", ILK_CONFIG_ERROR_MAX_DRIVE, h, &A::max_drive, 397785, 397786),
       unsigned_rule("unhomed_drive_zero", ILK_CONFIG_ERROR_UNHOMED_DRIVE, f, &A::unhomed_max_drive, 1, 0),
-      unsigned_rule("unhomed_drive_large", ILK_CONFIG_ERROR_UNHOMED_DRIVE, f, &A::unhomed_max_drive, 100, 101),
+      unsigned_rule("unhomed_drive_large", ILK_CONFIG_ERROR_UNHOMED_DRIVE, f, &A::unhomed_max_drive, 100,
+                    101),
       unsigned_rule("unhomed_drive_huge", ILK_CONFIG_ERROR_UNHOMED_DRIVE, f, &A::unhomed_max_drive, 100,
                     0x80000001u),
       unsigned_rule("amplitude_zero", ILK_CONFIG_ERROR_AMPLITUDE, h, &A::max_amplitude, 80, 0),
@@ -165,9 +167,12 @@ std::vector<Rule> axis_rules() {
       unsigned_rule("amplitude_elsewhere", ILK_CONFIG_ERROR_AMPLITUDE, f, &A::max_amplitude, 0, 1),
       unsigned_rule("home_amplitude_large", ILK_CONFIG_ERROR_AMPLITUDE, h, &A::home_amplitude, 200, 201),
       unsigned_rule("home_amplitude_elsewhere", ILK_CONFIG_ERROR_AMPLITUDE, s, &A::home_amplitude, 0, 1),
-      unsigned_rule("unhomed_travel_short", ILK_CONFIG_ERROR_UNHOMED_TRAVEL, f, &A::unhomed_travel_counts, 11, 10),
-      unsigned_rule("unhomed_travel_zero", ILK_CONFIG_ERROR_UNHOMED_TRAVEL, f, &A::unhomed_travel_counts, 11, 0),
-      unsigned_rule("unhomed_travel_long", ILK_CONFIG_ERROR_UNHOMED_TRAVEL, f, &A::unhomed_travel_counts, 200, 201),
+      unsigned_rule("unhomed_travel_short", ILK_CONFIG_ERROR_UNHOMED_TRAVEL, f, &A::unhomed_travel_counts, 11,
+                    10),
+      unsigned_rule("unhomed_travel_zero", ILK_CONFIG_ERROR_UNHOMED_TRAVEL, f, &A::unhomed_travel_counts, 11,
+                    0),
+      unsigned_rule("unhomed_travel_long", ILK_CONFIG_ERROR_UNHOMED_TRAVEL, f, &A::unhomed_travel_counts, 200,
+                    201),
       unsigned_rule("home_drive_zero", ILK_CONFIG_ERROR_HOME_DRIVE, s, &A::home_drive, 1, 0),
       unsigned_rule("home_drive_large", ILK_CONFIG_ERROR_HOME_DRIVE, s, &A::home_drive, 100, 101),
       unsigned_rule("home_drive_without_switch", ILK_CONFIG_ERROR_HOME_DRIVE, f, &A::home_drive, 0, 1),
@@ -185,10 +190,14 @@ std::vector<Rule> axis_rules() {
       unsigned_rule("home_backoff_long", ILK_CONFIG_ERROR_HOME_BACKOFF, s, &A::home_backoff_counts, 200, 201),
       unsigned_rule("home_rest_zero", ILK_CONFIG_ERROR_HOME_REST, s, &A::home_rest_ticks, 1, 0),
       unsigned_rule("home_rest_long", ILK_CONFIG_ERROR_HOME_REST, s, &A::home_rest_ticks, 20, 3001),
-      unsigned_rule("home_timeout_short", ILK_CONFIG_ERROR_HOME_TIMEOUT, s, &A::home_timeout_ticks, 2220, 2219),
-      unsigned_rule("home_timeout_long", ILK_CONFIG_ERROR_HOME_TIMEOUT, s, &A::home_timeout_ticks, 600000, 600001),
-      unsigned_rule("home_speed_zero", ILK_CONFIG_ERROR_HOME_TIMEOUT, s, &A::home_speed_counts_per_s, 1000, 0),
-      unsigned_rule("home_speed_slow", ILK_CONFIG_ERROR_HOME_TIMEOUT, s, &A::home_speed_counts_per_s, 739, 738),
+      unsigned_rule("home_timeout_short", ILK_CONFIG_ERROR_HOME_TIMEOUT, s, &A::home_timeout_ticks, 2220,
+                    2219),
+      unsigned_rule("home_timeout_long", ILK_CONFIG_ERROR_HOME_TIMEOUT, s, &A::home_timeout_ticks, 600000,
+                    600001),
+      unsigned_rule("home_speed_zero", ILK_CONFIG_ERROR_HOME_TIMEOUT, s, &A::home_speed_counts_per_s, 1000,
+                    0),
+      unsigned_rule("home_speed_slow", ILK_CONFIG_ERROR_HOME_TIMEOUT, s, &A::home_speed_counts_per_s, 739,
+                    738),
       {"home_timeout_at_another_period", ILK_CONFIG_ERROR_HOME_TIMEOUT, s,
        [](ilk_config_t& config) {
          config.period_us = 500;

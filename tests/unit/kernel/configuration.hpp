@@ -9,17 +9,17 @@ namespace interlock::kernel_test {
 
 /// Slots of the standard configuration, named for what is special about their axes.
 namespace slot {
-inline constexpr uint32_t pwm_lower = 0;        ///< PWM, switch at the lower end
-inline constexpr uint32_t pwm_free = 1;         ///< PWM, no switch
-inline constexpr uint32_t non_pwm_upper = 2;    ///< NON_PWM, switch at the upper end
-inline constexpr uint32_t non_pwm_inverted = 3; ///< NON_PWM, lower switch, motor direction inverted
-inline constexpr uint32_t analog_upper = 4;     ///< ANALOG, switch at the upper end
-inline constexpr uint32_t high_frequency = 5;   ///< HIGH_FREQUENCY, switch at the lower end
-inline constexpr uint32_t corrected_lower = 6;  ///< NON_PWM, lower switch, counter runs against the position
-inline constexpr uint32_t corrected_upper = 7;  ///< PWM, upper switch, counter and motor both inverted
-inline constexpr uint32_t sensor = 8;           ///< SENSOR, required
-inline constexpr uint32_t empty = 9;            ///< no card
-inline constexpr uint32_t axes = 8;             ///< slots 0 to 7 carry an axis
+inline constexpr uint32_t pwm_lower = 0;         ///< PWM, switch at the lower end
+inline constexpr uint32_t pwm_free = 1;          ///< PWM, no switch
+inline constexpr uint32_t non_pwm_upper = 2;     ///< NON_PWM, switch at the upper end
+inline constexpr uint32_t non_pwm_inverted = 3;  ///< NON_PWM, lower switch, motor direction inverted
+inline constexpr uint32_t analog_upper = 4;      ///< ANALOG, switch at the upper end
+inline constexpr uint32_t high_frequency = 5;    ///< HIGH_FREQUENCY, switch at the lower end
+inline constexpr uint32_t corrected_lower = 6;   ///< NON_PWM, lower switch, counter runs against the position
+inline constexpr uint32_t corrected_upper = 7;   ///< PWM, upper switch, counter and motor both inverted
+inline constexpr uint32_t sensor = 8;            ///< SENSOR, required
+inline constexpr uint32_t empty = 9;             ///< no card
+inline constexpr uint32_t axes = 8;              ///< slots 0 to 7 carry an axis
 }  // namespace slot
 
 /// Recomputes the CRC after a field was changed.

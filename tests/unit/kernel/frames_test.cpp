@@ -90,9 +90,9 @@ TEST(P16_frames, the_largest_drive_of_each_card_is_carried_whole) {
     uint32_t drive;
     std::size_t word;
   };
-  for (const auto& [slot, drive, word] : {Largest{slot::pwm_lower, 0x7FFFFFFFu, 3},
-                                          Largest{slot::non_pwm_upper, 0x3FFFFFFFu, 3},
-                                          Largest{slot::analog_upper, 0x7FFFFFFFu, 6}}) {
+  for (const auto& [slot, drive, word] :
+       {Largest{slot::pwm_lower, 0x7FFFFFFFu, 3}, Largest{slot::non_pwm_upper, 0x3FFFFFFFu, 3},
+        Largest{slot::analog_upper, 0x7FFFFFFFu, 6}}) {
     ilk_config_t config = standard_config();
     config.axis[slot].max_drive = drive;
     seal(config);
@@ -148,9 +148,9 @@ TEST(P16_frames, HIGH_FREQUENCY_drive_is_interpolated_towards_the_slower_side) {
   };
   Bench bench = moving_bench(slot::high_frequency, fast_wave_config());
   bench.motor[slot::high_frequency].speed = 0;
-  for (const auto& [drive, word] :
-       {Point{1, 1196537212u}, Point{27, 1194580842u}, Point{53, 1192624473u}, Point{54, 1192549228u},
-        Point{100, 1191164721u}, Point{189, 1188486000u}, Point{397784, 1103158263u}, Point{397785, 1103158212u}}) {
+  for (const auto& [drive, word] : {Point{1, 1196537212u}, Point{27, 1194580842u}, Point{53, 1192624473u},
+                                    Point{54, 1192549228u}, Point{100, 1191164721u}, Point{189, 1188486000u},
+                                    Point{397784, 1103158263u}, Point{397785, 1103158212u}}) {
     EXPECT_EQ(wire_after_move(bench, slot::high_frequency, 500, drive, 1)[3], word) << drive;
   }
 }

@@ -275,8 +275,8 @@ TEST(P14_containment, with_a_damaged_configuration_P1_to_P3_hold_until_it_is_fou
         bench.queue(dice.one_in(8) ? home(slot) : wish);
       }
       bench.tick();
-      const bool may_drive = bench.mode() == ILK_MODE_MOTION && bench.pedal_no_closed == 1 &&
-                             bench.estop_loop_closed == 1;
+      const bool may_drive =
+          bench.mode() == ILK_MODE_MOTION && bench.pedal_no_closed == 1 && bench.estop_loop_closed == 1;
       ASSERT_TRUE(may_drive || bench.wire_is_zero()) << "P2, trial " << trial;
       for (uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
         if (!bench.driven(slot)) continue;
@@ -287,8 +287,7 @@ TEST(P14_containment, with_a_damaged_configuration_P1_to_P3_hold_until_it_is_fou
         const uint32_t outward = damaged.axis[slot].limit_side == ILK_LIMIT_UPPER   ? ILK_DIRECTION_INCREASING
                                  : damaged.axis[slot].limit_side == ILK_LIMIT_LOWER ? ILK_DIRECTION_DECREASING
                                                                                     : ILK_DIRECTION_NONE;
-        const bool at_switch =
-            (bench.inputs().frame[slot][incoming::pairs] & incoming::switch_open_bit) == 0;
+        const bool at_switch = (bench.inputs().frame[slot][incoming::pairs] & incoming::switch_open_bit) == 0;
         ASSERT_FALSE(at_switch && bench.out().command[slot].direction == outward) << "P3, trial " << trial;
       }
     }

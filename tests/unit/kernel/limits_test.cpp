@@ -55,7 +55,8 @@ TEST_P(P3_hard_limit, stops_a_running_move_in_the_tick_that_sees_the_switch) {
   EXPECT_FALSE(bench.driven(slot));
   bench.keep_moving(slot, outward(bench, slot, 60), 60);
   EXPECT_EQ(bench.position(slot), outward(bench, slot, 20));
-  EXPECT_EQ(bench.fault(slot), ILK_FAULT_NONE) << "an axis held by its switch is not driven, so it cannot stall";
+  EXPECT_EQ(bench.fault(slot), ILK_FAULT_NONE)
+      << "an axis held by its switch is not driven, so it cannot stall";
 }
 
 TEST_P(P3_hard_limit, holds_for_a_homed_axis_inside_its_soft_limits) {

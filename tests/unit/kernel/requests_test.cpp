@@ -215,7 +215,8 @@ TEST(Request_DISABLE, is_accepted_from_every_other_state_and_stops_the_axis_now)
   moving.ask(move(axis, 50));
   Bench enabled_in_ready = ready_bench();
   enabled_in_ready.enable_axis(axis);
-  for (Bench bench : {locked_bench(), ready_bench(), enabled_in_ready, motion_bench(), moving, homing_bench()}) {
+  for (Bench bench :
+       {locked_bench(), ready_bench(), enabled_in_ready, motion_bench(), moving, homing_bench()}) {
     EXPECT_EQ(bench.ask(disable(axis)), ILK_VERDICT_ACCEPTED);
     EXPECT_EQ(bench.axis_state(axis), ILK_AXIS_DISABLED);
     EXPECT_FALSE(bench.driven(axis));

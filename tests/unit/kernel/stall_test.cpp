@@ -107,8 +107,9 @@ TEST(P5_stall, undriven_ticks_pause_the_count) {
 
 TEST(P5_stall, a_new_MOVE_does_not_clear) {
   Bench bench = jammed_bench();
-  EXPECT_EQ(driven_until_fault(bench, [](uint32_t tick) { return move(axis, 10 + static_cast<int32_t>(tick)); }),
-            stall_ticks);
+  EXPECT_EQ(
+      driven_until_fault(bench, [](uint32_t tick) { return move(axis, 10 + static_cast<int32_t>(tick)); }),
+      stall_ticks);
 }
 
 TEST(P5_stall, a_change_of_direction_does_not_clear) {
@@ -168,8 +169,9 @@ TEST(P5_stall, motion_back_to_where_it_was_is_no_progress) {
 
 TEST(P5_stall, drive_dropped_just_before_the_limit_does_not_clear) {
   Bench bench = jammed_bench();
-  EXPECT_EQ(driven_until_fault(bench, [](uint32_t tick) { return move(axis, 80, tick % 50 == 49 ? 0 : 100); }),
-            stall_ticks);
+  EXPECT_EQ(
+      driven_until_fault(bench, [](uint32_t tick) { return move(axis, 80, tick % 50 == 49 ? 0 : 100); }),
+      stall_ticks);
 }
 
 TEST(P5_stall, a_hostile_app_that_drops_drive_every_499_ticks_stalls_at_500_driven) {
@@ -177,8 +179,9 @@ TEST(P5_stall, a_hostile_app_that_drops_drive_every_499_ticks_stalls_at_500_driv
   config.axis[axis].stall_ticks = 500;
   seal(config);
   Bench bench = jammed_bench(config);
-  EXPECT_EQ(driven_until_fault(bench, [](uint32_t tick) { return move(axis, 80, tick % 500 == 499 ? 0 : 100); }),
-            500u);
+  EXPECT_EQ(
+      driven_until_fault(bench, [](uint32_t tick) { return move(axis, 80, tick % 500 == 499 ? 0 : 100); }),
+      500u);
   EXPECT_EQ(bench.fault(axis), ILK_FAULT_STALL);
 }
 

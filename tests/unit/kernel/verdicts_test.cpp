@@ -179,8 +179,8 @@ TEST(Common_checks, a_slot_without_an_axis_is_AXIS_for_every_request_that_names_
 TEST(Common_checks, requests_without_an_axis_ignore_that_field) {
   Bench bench;
   bench.ticks(5);
-  for (const uint32_t kind : {uint32_t{ILK_REQUEST_HEARTBEAT}, uint32_t{ILK_REQUEST_STOP},
-                              uint32_t{ILK_REQUEST_RESET}}) {
+  for (const uint32_t kind :
+       {uint32_t{ILK_REQUEST_HEARTBEAT}, uint32_t{ILK_REQUEST_STOP}, uint32_t{ILK_REQUEST_RESET}}) {
     ilk_request_t request = heartbeat(1);
     request.kind = kind;
     request.axis = 0xFFFFFFFFu;

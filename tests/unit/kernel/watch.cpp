@@ -124,7 +124,8 @@ std::string SafetyWatch::judge_modes(const ilk_state_t& state) const {
   if (state.mode == ILK_MODE_MOTION && mode_ != ILK_MODE_MOTION) {
     if (mode_ != ILK_MODE_READY) return "P9: MOTION was entered from another mode than READY";
     if (!armed_) return "P9: MOTION was entered without a release seen in READY";
-    if (pressed_ticks_ < config_.pedal_debounce_ticks) return "P9: MOTION was entered on a press not debounced";
+    if (pressed_ticks_ < config_.pedal_debounce_ticks)
+      return "P9: MOTION was entered on a press not debounced";
   }
   return {};
 }

@@ -17,7 +17,8 @@ class SafetyWatch {
  public:
   SafetyWatch(const ilk_config_t& config, ilk_mode_t mode) : config_(config), mode_(mode) {}
 
-  /// Adds a test failure for the first rule that this tick breaks; later ticks of a failed run are not judged.
+  /// Adds a test failure for the first rule that this tick breaks; later ticks of a failed run are not
+  /// judged.
   void judge(const ilk_inputs_t& in, std::span<const ilk_request_t> requests, uint32_t count,
              const ilk_state_t& state, const ilk_outputs_t& out);
 
