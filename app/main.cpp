@@ -1,6 +1,7 @@
 /**
  * @file
- * interlock-app: shows the robot and proposes motion. It can be killed at any moment; the kernel stops motion by itself.
+ * interlock-app: shows the robot and proposes motion. It can be killed at any moment; the kernel stops motion
+ * by itself.
  */
 #include <spdlog/sinks/rotating_file_sink.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -56,12 +57,14 @@ struct Model {
 void describe(CLI::App& cli, Options& options) {
   cli.set_version_flag("--version", std::string(version()) + " " + std::string(commit()));
   cli.add_option("--robot", options.robot_file, "robot file (TOML)")->required();
-  cli.add_option("--config", options.config_file, "compiled configuration that the kernel runs (*.ilkc)")->required();
+  cli.add_option("--config", options.config_file, "compiled configuration that the kernel runs (*.ilkc)")
+      ->required();
   cli.add_option("--link", options.link_socket, "the kernel's link socket")->required();
   cli.add_option("--bench", options.bench_socket, "control socket of the simulated hardware");
   cli.add_option("--listen", options.listen.address, "loopback address to serve on")->capture_default_str();
   cli.add_option("--port", options.listen.port, "port to serve on; 0: any free one")->capture_default_str();
-  cli.add_option("--web", options.web_directory, "folder of the built console")->check(CLI::ExistingDirectory);
+  cli.add_option("--web", options.web_directory, "folder of the built console")
+      ->check(CLI::ExistingDirectory);
   cli.add_option("--state", options.state_directory, "folder for logs and other run-time state");
   cli.add_option("--log-level", options.log_level, "debug, info, warning, error or critical")
       ->check(CLI::IsMember({"debug", "info", "warning", "error", "critical"}))
@@ -71,12 +74,14 @@ void describe(CLI::App& cli, Options& options) {
 tl::expected<void, std::string> start_log(const Options& options) {
   std::vector<spdlog::sink_ptr> sinks{std::make_shared<spdlog::sinks::stderr_color_sink_mt>()};
   if (!options.state_directory.empty()) {
-    const std::filesystem::path file = std::filesystem::path(options.state_directory) / "log" / "interlock-app.log";
+    const std::filesystem::path file =
+        std::filesystem::path(options.state_directory) / "log" / "interlock-app.log";
     try {
-      sinks.push_back(std::make_shared<spdlog::sinks::rotating_file_sink_mt>(file.string(), log_file_bytes, log_files));
+      sinks.push_back(
+          std::make_shared<spdlog::sinks::rotating_file_sink_mt>(file.string(), log_file_bytes, log_files));
     } catch (const spdlog::spdlog_ex& error) {
-      return tl::make_unexpected("--state " + options.state_directory + ": cannot write the log: " + error.what() +
-                                 "; expected a folder that this user may write to");
+      return tl::make_unexpected("--state " + options.state_directory + ": cannot write the log: " +
+                                 error.what() + "; expected a folder that this user may write to");
     }
   }
   auto logger = std::make_shared<spdlog::logger>("app", sinks.begin(), sinks.end());
@@ -92,7 +97,8 @@ tl::expected<ilk_config_t, std::string> read_config(const std::string& file) {
   ConfigBytes bytes{};
   stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   if (!stream || stream.peek() != std::ifstream::traits_type::eof()) {
-    return tl::make_unexpected("--config " + file + ": expected a readable file of " + std::to_string(bytes.size()) +
+    return tl::make_unexpected("--config " + file + ": expected a readable file of " +
+                               std::to_string(bytes.size()) +
                                " bytes; make it with `interlock model compile`");
   }
   const ilk_config_t config = decode(bytes);
@@ -120,9 +126,9 @@ tl::expected<Model, std::string> load_model(const Options& options) {
     return tl::make_unexpected(config.error());
   }
   if (config->crc != compiled->crc) {
-    return tl::make_unexpected("--config " + options.config_file + " has configuration " + config_hash(*config) +
-                               ", but " + options.robot_file + " compiles to " + config_hash(*compiled) +
-                               "; compile it again with `interlock model compile`");
+    return tl::make_unexpected("--config " + options.config_file + " has configuration " +
+                               config_hash(*config) + ", but " + options.robot_file + " compiles to " +
+                               config_hash(*compiled) + "; compile it again with `interlock model compile`");
   }
   return Model{*robot, *config};
 }
@@ -158,7 +164,8 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   signals.async_wait([&](const boost::system::error_code& error, int signal) {
     if (!error) {
       spdlog::info("signal {}: ending", signal);
-      boost::asio::co_spawn(executor, api.release_pedal(), [&](const std::exception_ptr&) { network.stop(); });
+      boost::asio::co_spawn(executor, api.release_pedal(),
+                            [&](const std::exception_ptr&) { network.stop(); });
     }
   });
   ControlLoop control(options.link_socket, RobotPlan(model.robot, model.config), *mailbox);
@@ -189,9 +196,10 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
 }
 
 int run(const Options& options) {
-  const auto served = start_log(options)
-                          .and_then([&] { return load_model(options); })
-                          .and_then([&](const Model& model) { return serve(options, model); });
+  const auto served =
+      start_log(options).and_then([&] { return load_model(options); }).and_then([&](const Model& model) {
+        return serve(options, model);
+      });
   if (!served) {
     std::cerr << "interlock-app: " << served.error() << std::endl;
     return exit_unusable;

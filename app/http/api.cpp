@@ -33,8 +33,13 @@ Problem not_found(const std::string& what, const std::string& expected) {
 }
 
 Problem no_kernel(const std::string& detail) {
-  return {Status::service_unavailable, "NO_KERNEL", detail, "", "",
-          "Start interlock-kernel, or look at its log; the app attaches by itself.", ""};
+  return {Status::service_unavailable,
+          "NO_KERNEL",
+          detail,
+          "",
+          "",
+          "Start interlock-kernel, or look at its log; the app attaches by itself.",
+          ""};
 }
 
 Problem refused(const Refusal& refusal) {
@@ -43,13 +48,23 @@ Problem refused(const Refusal& refusal) {
 }
 
 Problem no_bench() {
-  return {Status::not_found, "NO_BENCH", "The hardware of this robot is not simulated.", "", "",
-          "Start interlock-app with --bench SOCKET beside interlock-sim.", ""};
+  return {Status::not_found,
+          "NO_BENCH",
+          "The hardware of this robot is not simulated.",
+          "",
+          "",
+          "Start interlock-app with --bench SOCKET beside interlock-sim.",
+          ""};
 }
 
 Problem pedal_lapsed() {
-  return {Status::conflict, "PEDAL_LAPSED", "The bench pedal came up, as its hold was not renewed for 500 ms.", "", "",
-          "Press it again.", ""};
+  return {Status::conflict,
+          "PEDAL_LAPSED",
+          "The bench pedal came up, as its hold was not renewed for 500 ms.",
+          "",
+          "",
+          "Press it again.",
+          ""};
 }
 
 std::optional<std::uint32_t> number_in(const std::string& text) {
@@ -99,7 +114,8 @@ tl::expected<MoveDraft, Problem> draft_of(const json& body, const Robot& robot) 
   if (target) {
     const auto counts = axis->to_counts(*target);
     if (!counts) {
-      fields.reject("target", "is beyond every encoder", "a position within the range that /api/motors shows");
+      fields.reject("target", "is beyond every encoder",
+                    "a position within the range that /api/motors shows");
       return fail(*fields.problem());
     }
     target_counts = *counts;
@@ -113,20 +129,21 @@ tl::expected<MoveDraft, Problem> draft_of(const json& body, const Robot& robot) 
 
 }  // namespace
 
-Api::Api(const asio::any_io_executor& executor, const Robot& robot, const ilk_config_t& config, Mailbox& mailbox,
-         const std::string& bench_socket)
+Api::Api(const asio::any_io_executor& executor, const Robot& robot, const ilk_config_t& config,
+         Mailbox& mailbox, const std::string& bench_socket)
     : executor_(executor),
       robot_(robot),
       config_(config),
       control_(executor, mailbox),
-      book_(robot, config, [this](const Command& command) { return control_.send(command); },
-            [] { return std::chrono::system_clock::now(); }) {
+      book_(
+          robot, config, [this](const Command& command) { return control_.send(command); },
+          [] { return std::chrono::system_clock::now(); }) {
   if (!bench_socket.empty()) {
     bench_.emplace(executor, bench_socket);
   }
   book_.on_change([this](const Proposal& proposal) {
-    spdlog::info("proposal {}: {} to {} counts: {}: {}", proposal.id, proposal.axis, proposal.move.target_counts,
-                 state_name(proposal.state), proposal.detail);
+    spdlog::info("proposal {}: {} to {} counts: {}: {}", proposal.id, proposal.axis,
+                 proposal.move.target_counts, state_name(proposal.state), proposal.detail);
     json message = to_json(proposal);
     message["type"] = "proposal";
     stream_.send_text(message);
@@ -150,11 +167,15 @@ void Api::add_routes() {
   router_.add(verb::get, "/api/status", [this](auto&, auto&) -> Answering { co_return status(); });
   router_.add(verb::get, "/api/motors", [this](auto&, auto&) -> Answering { co_return motors(); });
   router_.add(verb::get, "/api/motors/{slot}", [this](auto&, auto& in) -> Answering { co_return motor(in); });
-  router_.add(verb::post, "/api/motors/{slot}/{action}", [this](auto&, auto& in) { return act_on_motor(in); });
+  router_.add(verb::post, "/api/motors/{slot}/{action}",
+              [this](auto&, auto& in) { return act_on_motor(in); });
   router_.add(verb::get, "/api/proposals", [this](auto&, auto&) -> Answering { co_return proposals(); });
-  router_.add(verb::post, "/api/proposals", [this](auto& request, auto&) -> Answering { co_return propose(request); });
-  router_.add(verb::get, "/api/proposals/{id}", [this](auto&, auto& in) -> Answering { co_return proposal(in); });
-  router_.add(verb::post, "/api/proposals/{id}/abort", [this](auto&, auto& in) -> Answering { co_return abort(in); });
+  router_.add(verb::post, "/api/proposals",
+              [this](auto& request, auto&) -> Answering { co_return propose(request); });
+  router_.add(verb::get, "/api/proposals/{id}",
+              [this](auto&, auto& in) -> Answering { co_return proposal(in); });
+  router_.add(verb::post, "/api/proposals/{id}/abort",
+              [this](auto&, auto& in) -> Answering { co_return abort(in); });
   router_.add(verb::post, "/api/stop", [this](auto&, auto&) { return stop(); });
   router_.add(verb::post, "/api/reset", [this](auto&, auto&) { return reset(); });
   router_.add(verb::get, "/api/stream", [](auto&, auto&) -> Answering {
@@ -240,8 +261,9 @@ Api::Answering Api::ask(std::uint32_t kind, std::uint32_t slot, std::string wher
   if (*answer->verdict != ILK_VERDICT_ACCEPTED) {
     co_return fail(refused(verdict_refusal(*answer->verdict, where)));
   }
-  co_return Success{Status::ok,
-                    {{"verdict", catalog::name(catalog::Family::verdict, *answer->verdict)}, {"tick", answer->tick}}};
+  co_return Success{
+      Status::ok,
+      {{"verdict", catalog::name(catalog::Family::verdict, *answer->verdict)}, {"tick", answer->tick}}};
 }
 
 Reply Api::proposals() {
@@ -306,8 +328,9 @@ Api::Answering Api::bench_command(const Request& request, const Parameters& para
     co_return fail(body.error());
   }
   if (!body->is_object() || body->contains("command") || body->contains("id")) {
-    co_return fail({Status::unprocessable_entity, "INVALID", "The body must be an object without command and id.",
-                    body->is_object() ? "command" : "", "the fields of models/plant/README.md", "", ""});
+    co_return fail({Status::unprocessable_entity, "INVALID",
+                    "The body must be an object without command and id.", body->is_object() ? "command" : "",
+                    "the fields of models/plant/README.md", "", ""});
   }
   co_return co_await pass_to_bench(parameters[0], std::move(*body));
 }
@@ -332,8 +355,9 @@ Api::Answering Api::pass_to_bench(std::string command, json body) {
   const BenchReply reply = co_await bench_->command(std::move(body));
   if (!reply) {
     const bool wrong = reply.error().kind == BenchError::Kind::refused;
-    co_return fail({wrong ? Status::unprocessable_entity : Status::service_unavailable, wrong ? "INVALID" : "NO_BENCH",
-                    reply.error().detail, "", "", wrong ? "" : "Start interlock-sim, or look at its log.", ""});
+    co_return fail({wrong ? Status::unprocessable_entity : Status::service_unavailable,
+                    wrong ? "INVALID" : "NO_BENCH", reply.error().detail, "", "",
+                    wrong ? "" : "Start interlock-sim, or look at its log.", ""});
   }
   co_return Success{Status::ok, *reply};
 }

@@ -20,9 +20,10 @@ namespace interlock::web {
 /** What the interface shows and commands. Everything belongs to the network thread. */
 class Api {
  public:
-  /** `robot`, `config` and `mailbox` must outlive it; an empty `bench_socket` means that the hardware is real. */
-  Api(const boost::asio::any_io_executor& executor, const Robot& robot, const ilk_config_t& config, Mailbox& mailbox,
-      const std::string& bench_socket);
+  /** `robot`, `config` and `mailbox` must outlive it; an empty `bench_socket` means that the hardware is
+   * real. */
+  Api(const boost::asio::any_io_executor& executor, const Robot& robot, const ilk_config_t& config,
+      Mailbox& mailbox, const std::string& bench_socket);
 
   [[nodiscard]] const Router& router() const { return router_; }
   [[nodiscard]] StreamHub& stream() { return stream_; }
@@ -30,7 +31,8 @@ class Api {
   /** Follows the control thread's notices; ends with the io_context. */
   boost::asio::awaitable<void> listen() { return control_.listen(); }
 
-  /** Sends the state to the stream 30 times a second and looks after the bench pedal; ends with the io_context. */
+  /** Sends the state to the stream 30 times a second and looks after the bench pedal; ends with the
+   * io_context. */
   boost::asio::awaitable<void> beat();
 
   /** Releases a pedal that is held over the network. */

@@ -48,14 +48,16 @@ asio::awaitable<BenchReply> BenchClient::exchange(const json& command) {
     error_code ignored;
     socket_.close(ignored);
     received_.clear();
-    co_return unreachable("The simulated hardware at " + path_ + " does not answer: " + error.message() + ".");
+    co_return unreachable("The simulated hardware at " + path_ + " does not answer: " + error.message() +
+                          ".");
   }
   co_return judge(answer_, id);
 }
 
 asio::awaitable<error_code> BenchClient::write_and_read(const std::string& line) {
   if (!socket_.is_open()) {
-    const auto [error] = co_await socket_.async_connect(asio::local::stream_protocol::endpoint(path_), as_result);
+    const auto [error] =
+        co_await socket_.async_connect(asio::local::stream_protocol::endpoint(path_), as_result);
     if (error) {
       co_return error;
     }
@@ -71,8 +73,8 @@ asio::awaitable<error_code> BenchClient::write_and_read(const std::string& line)
   if (write_error) {
     co_return write_error;
   }
-  const auto [read_error, length] =
-      co_await asio::async_read_until(socket_, asio::dynamic_buffer(received_, longest_answer), '\n', as_result);
+  const auto [read_error, length] = co_await asio::async_read_until(
+      socket_, asio::dynamic_buffer(received_, longest_answer), '\n', as_result);
   if (read_error) {
     co_return read_error;
   }
@@ -89,8 +91,8 @@ BenchReply BenchClient::judge(const std::string& line, std::uint64_t id) const {
   answer.erase("id");
   if (answer.value("ok", json()) != json(true)) {
     const json reason = answer.value("error", json());
-    return tl::make_unexpected(BenchError{BenchError::Kind::refused, reason.is_string() ? reason.get<std::string>()
-                                                                                        : answer.dump()});
+    return tl::make_unexpected(BenchError{BenchError::Kind::refused,
+                                          reason.is_string() ? reason.get<std::string>() : answer.dump()});
   }
   return answer;
 }

@@ -23,8 +23,8 @@ class BenchPedal {
   [[nodiscard]] bool held() const { return held_; }
 
   /**
-   * Whether a held pedal was not renewed for 500 ms: of the kernel's time in the simulated clock, so that a busy
-   * machine releases nothing, else of the wall's.
+   * Whether a held pedal was not renewed for 500 ms: of the kernel's time in the simulated clock, so that a
+   * busy machine releases nothing, else of the wall's.
    */
   [[nodiscard]] bool overdue(const ControlView& view, TimePoint now) const;
 

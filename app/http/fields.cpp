@@ -42,8 +42,13 @@ Fields::Fields(const json& body, std::initializer_list<const char*> known) : bod
     names += (names.empty() ? "" : ", ") + std::string(name);
   }
   if (!body.is_object()) {
-    problem_ = Problem{Status::unprocessable_entity, "INVALID", "The body is " + quoted(body) + ".", "",
-                       "an object with " + names, "", ""};
+    problem_ = Problem{Status::unprocessable_entity,
+                       "INVALID",
+                       "The body is " + quoted(body) + ".",
+                       "",
+                       "an object with " + names,
+                       "",
+                       ""};
     return;
   }
   for (const auto& [name, value] : body.items()) {
@@ -55,7 +60,8 @@ Fields::Fields(const json& body, std::initializer_list<const char*> known) : bod
 
 bool Fields::has(const std::string& name) const { return body_.is_object() && body_.contains(name); }
 
-std::optional<std::int64_t> Fields::integer(const std::string& name, std::int64_t lowest, std::int64_t highest) {
+std::optional<std::int64_t> Fields::integer(const std::string& name, std::int64_t lowest,
+                                            std::int64_t highest) {
   if (!has(name)) {
     return std::nullopt;
   }
@@ -81,7 +87,8 @@ std::optional<double> Fields::number(const std::string& name) {
 
 void Fields::reject(const std::string& name, const std::string& found, const std::string& expected) {
   if (!problem_) {
-    problem_ = Problem{Status::unprocessable_entity, "INVALID", name + " " + found + ".", name, expected, "", ""};
+    problem_ =
+        Problem{Status::unprocessable_entity, "INVALID", name + " " + found + ".", name, expected, "", ""};
   }
 }
 

@@ -14,7 +14,8 @@
 
 namespace interlock::web {
 
-/** After an error every read gives nothing, so that a caller reads all fields first and asks for the problem then. */
+/** After an error every read gives nothing, so that a caller reads all fields first and asks for the problem
+ * then. */
 class Fields {
  public:
   /** 422 INVALID when the body is no object or has a field that is not known. */

@@ -9,7 +9,8 @@ namespace {
 namespace http = boost::beast::http;
 using nlohmann::json;
 
-/** Headers that names in a path may carry bytes that are no UTF-8; they are shown as replacement characters. */
+/** Headers that names in a path may carry bytes that are no UTF-8; they are shown as replacement characters.
+ */
 std::string text_of(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
 
 Response response_of(Status status, const char* content_type, const json& body) {
@@ -72,7 +73,8 @@ std::string path_of(const Request& request) {
 tl::expected<json, Problem> parse_body(const Request& request) {
   json body = json::parse(request.body(), nullptr, false);
   if (body.is_discarded()) {
-    return tl::make_unexpected(Problem{Status::bad_request, "MALFORMED", "The body is not JSON.", "", "one JSON object",
+    return tl::make_unexpected(Problem{Status::bad_request, "MALFORMED", "The body is not JSON.", "",
+                                       "one JSON object",
                                        "Send Content-Type application/json and a JSON object.", ""});
   }
   return body;

@@ -40,7 +40,8 @@ Response json_response(const Success& success);
 /** Answer in `application/problem+json`. */
 Response problem_response(const Problem& problem);
 
-/** The path of the request's target, without query and fragment, percent-decoded; empty when that is malformed. */
+/** The path of the request's target, without query and fragment, percent-decoded; empty when that is
+ * malformed. */
 std::string path_of(const Request& request);
 
 /** The body as JSON; 400 MALFORMED when it is none. */

@@ -20,7 +20,8 @@ std::vector<std::string> segments_of(std::string_view path) {
 
 bool is_parameter(const std::string& segment) { return segment.starts_with('{'); }
 
-std::optional<Parameters> match(const std::vector<std::string>& pattern, const std::vector<std::string>& path) {
+std::optional<Parameters> match(const std::vector<std::string>& pattern,
+                                const std::vector<std::string>& path) {
   if (pattern.size() != path.size()) {
     return std::nullopt;
   }
@@ -56,12 +57,12 @@ boost::asio::awaitable<Reply> Router::route(const Request& request) const {
     allowed += (allowed.empty() ? "" : ", ") + std::string(http::to_string(route.method));
   }
   if (!allowed.empty()) {
-    co_return tl::make_unexpected(Problem{Status::method_not_allowed, "METHOD_NOT_ALLOWED",
-                                          path + " does not answer " + std::string(request.method_string()) + ".", "",
-                                          allowed, "", allowed});
+    co_return tl::make_unexpected(Problem{
+        Status::method_not_allowed, "METHOD_NOT_ALLOWED",
+        path + " does not answer " + std::string(request.method_string()) + ".", "", allowed, "", allowed});
   }
-  co_return tl::make_unexpected(
-      Problem{Status::not_found, "NOT_FOUND", "There is no " + path + ".", "", "a path of spec/openapi.yaml", "", ""});
+  co_return tl::make_unexpected(Problem{Status::not_found, "NOT_FOUND", "There is no " + path + ".", "",
+                                        "a path of spec/openapi.yaml", "", ""});
 }
 
 }  // namespace interlock::web

@@ -23,8 +23,8 @@ class Router {
   void add(boost::beast::http::verb method, std::string_view pattern, Handler handler);
 
   /**
-   * Runs the handler of the request. 404 NOT_FOUND when no route has the path, 405 METHOD_NOT_ALLOWED when one has,
-   * but not this method. Request and router must outlive the returned operation.
+   * Runs the handler of the request. 404 NOT_FOUND when no route has the path, 405 METHOD_NOT_ALLOWED when
+   * one has, but not this method. Request and router must outlive the returned operation.
    */
   [[nodiscard]] boost::asio::awaitable<Reply> route(const Request& request) const;
 

@@ -15,7 +15,8 @@ std::string_view value_of(const Request& request, http::field field) {
 std::string_view without_port(std::string_view host) {
   const std::size_t bracket = host.rfind(']');
   const std::size_t colon = host.rfind(':');
-  const bool has_port = colon != std::string_view::npos && (bracket == std::string_view::npos || colon > bracket);
+  const bool has_port =
+      colon != std::string_view::npos && (bracket == std::string_view::npos || colon > bracket);
   return has_port ? host.substr(0, colon) : host;
 }
 
@@ -26,8 +27,13 @@ std::optional<Problem> check_host(const Request& request) {
   if (host == "localhost" || host == "127.0.0.1" || host == "[::1]") {
     return std::nullopt;
   }
-  return Problem{Status::forbidden, "HOST", "The host \"" + std::string(host) + "\" is not this machine.", "",
-                 "localhost, 127.0.0.1 or [::1]", "Open the address that interlock-app printed.", ""};
+  return Problem{Status::forbidden,
+                 "HOST",
+                 "The host \"" + std::string(host) + "\" is not this machine.",
+                 "",
+                 "localhost, 127.0.0.1 or [::1]",
+                 "Open the address that interlock-app printed.",
+                 ""};
 }
 
 std::optional<Problem> check_origin(const Request& request) {
@@ -36,8 +42,13 @@ std::optional<Problem> check_origin(const Request& request) {
   if (origin.empty() || origin == own) {
     return std::nullopt;
   }
-  return Problem{Status::forbidden, "ORIGIN", "The page of \"" + std::string(origin) + "\" may not do this.", "", own,
-                 "Use the console that this server brings.", ""};
+  return Problem{Status::forbidden,
+                 "ORIGIN",
+                 "The page of \"" + std::string(origin) + "\" may not do this.",
+                 "",
+                 own,
+                 "Use the console that this server brings.",
+                 ""};
 }
 
 bool is_safe(http::verb method) { return method == http::verb::get || method == http::verb::head; }

@@ -13,7 +13,8 @@ namespace interlock::web {
 /** 403 HOST unless the request names this machine's loopback interface, as a rebound name would not. */
 std::optional<Problem> check_host(const Request& request);
 
-/** 403 ORIGIN when the request was sent by a page of another origin. Requests that no page sent carry no origin. */
+/** 403 ORIGIN when the request was sent by a page of another origin. Requests that no page sent carry no
+ * origin. */
 std::optional<Problem> check_origin(const Request& request);
 
 /** Whether the method only reads. */

@@ -44,20 +44,36 @@ void add_security_headers(Response& response) {
 
 Problem problem_of(const beast::error_code& error) {
   if (error == http::error::body_limit) {
-    return {Status::payload_too_large, "TOO_LARGE", "The body is too large.", "",
-            "at most " + std::to_string(Server::longest_body) + " bytes", "", ""};
+    return {Status::payload_too_large,
+            "TOO_LARGE",
+            "The body is too large.",
+            "",
+            "at most " + std::to_string(Server::longest_body) + " bytes",
+            "",
+            ""};
   }
   if (error == http::error::header_limit || error == http::error::buffer_overflow) {
-    return {Status::request_header_fields_too_large, "TOO_LARGE", "The header is too large.", "",
-            "at most " + std::to_string(Server::longest_header) + " bytes", "", ""};
+    return {Status::request_header_fields_too_large,
+            "TOO_LARGE",
+            "The header is too large.",
+            "",
+            "at most " + std::to_string(Server::longest_header) + " bytes",
+            "",
+            ""};
   }
-  return {Status::bad_request, "MALFORMED", "This is no HTTP request: " + error.message() + ".", "", "HTTP/1.1", "",
+  return {Status::bad_request,
+          "MALFORMED",
+          "This is no HTTP request: " + error.message() + ".",
+          "",
+          "HTTP/1.1",
+          "",
           ""};
 }
 
 bool is_protocol_error(const beast::error_code& error) {
   static const auto& category = beast::error_code(http::error::bad_method).category();
-  return error.category() == category && error != http::error::end_of_stream && error != http::error::partial_message;
+  return error.category() == category && error != http::error::end_of_stream &&
+         error != http::error::partial_message;
 }
 
 }  // namespace
@@ -69,9 +85,10 @@ tl::expected<void, std::string> Server::listen(const Listen& where) {
     return tl::make_unexpected("--listen " + where.address + " is no address; expected 127.0.0.1 or ::1");
   }
   if (!address.is_loopback()) {
-    return tl::make_unexpected("--listen " + where.address +
-                               " would let other machines in, and there is no encryption and no login yet; expected "
-                               "127.0.0.1 or ::1. Use an SSH tunnel to reach it from elsewhere");
+    return tl::make_unexpected(
+        "--listen " + where.address +
+        " would let other machines in, and there is no encryption and no login yet; expected "
+        "127.0.0.1 or ::1. Use an SSH tunnel to reach it from elsewhere");
   }
   acceptor_.open(address.is_v6() ? tcp::v6() : tcp::v4(), error);
   if (!error) {
@@ -85,7 +102,8 @@ tl::expected<void, std::string> Server::listen(const Listen& where) {
   }
   if (error) {
     return tl::make_unexpected("cannot listen on " + where.address + ":" + std::to_string(where.port) + ": " +
-                               error.message() + "; stop what uses the port, or choose another one with --port");
+                               error.message() +
+                               "; stop what uses the port, or choose another one with --port");
   }
   return {};
 }
@@ -138,7 +156,8 @@ asio::awaitable<void> Server::serve(std::shared_ptr<Session> session) {
     parser.header_limit(longest_header);
     session->stream.expires_after(request_timeout);
     session->waiting = true;
-    const auto [error, bytes] = co_await http::async_read(session->stream, session->buffer, parser, as_result);
+    const auto [error, bytes] =
+        co_await http::async_read(session->stream, session->buffer, parser, as_result);
     session->waiting = false;
     if (error) {
       co_await refuse(*session, error);
@@ -149,8 +168,13 @@ asio::awaitable<void> Server::serve(std::shared_ptr<Session> session) {
       std::optional<Problem> problem = check_host(request);
       problem = problem ? problem : check_origin(request);
       if (!problem && api_.stream().full()) {
-        problem = Problem{Status::service_unavailable, "OVERLOADED", "Too many clients watch the stream.", "",
-                          "at most " + std::to_string(StreamHub::capacity), "Close another console.", ""};
+        problem = Problem{Status::service_unavailable,
+                          "OVERLOADED",
+                          "Too many clients watch the stream.",
+                          "",
+                          "at most " + std::to_string(StreamHub::capacity),
+                          "Close another console.",
+                          ""};
       }
       if (!problem) {
         co_await api_.stream().serve(std::move(session->stream), std::move(request));
@@ -161,7 +185,8 @@ asio::awaitable<void> Server::serve(std::shared_ptr<Session> session) {
     }
     session->stream.expires_never();
     Response response = co_await respond(request);
-    spdlog::debug("{} {} -> {}", std::string(request.method_string()), path_of(request), response.result_int());
+    spdlog::debug("{} {} -> {}", std::string(request.method_string()), path_of(request),
+                  response.result_int());
     keep_alive = co_await answer(*session, std::move(response), request.method() == http::verb::head,
                                  request.keep_alive());
   }
@@ -215,7 +240,8 @@ asio::awaitable<bool> Server::answer(Session& session, Response response, bool h
   co_return !error && keep_alive;
 }
 
-/** Answers what could not be read. What is still on its way is read and dropped, else the peer may lose the answer. */
+/** Answers what could not be read. What is still on its way is read and dropped, else the peer may lose the
+ * answer. */
 asio::awaitable<void> Server::refuse(Session& session, const beast::error_code& error) {
   if (!is_protocol_error(error)) {
     co_return;
@@ -226,7 +252,8 @@ asio::awaitable<void> Server::refuse(Session& session, const beast::error_code& 
   session.stream.expires_after(drain_timeout);
   std::array<char, 16384> dropped{};
   for (std::size_t left = drain_bytes; left > dropped.size() && !ended;) {
-    const auto [read_error, bytes] = co_await session.stream.async_read_some(asio::buffer(dropped), as_result);
+    const auto [read_error, bytes] =
+        co_await session.stream.async_read_some(asio::buffer(dropped), as_result);
     ended = read_error;
     left -= bytes;
   }

@@ -70,12 +70,13 @@ Response StaticFiles::serve(const Request& request) const {
   const auto file = file_of(root_, path);
   if (!file) {
     return problem_response({Status::not_found, "NOT_FOUND", "There is no " + path + ".", "", "",
-                             root_.empty() ? "Start interlock-app with --web DIR, the built console." : "", ""});
+                             root_.empty() ? "Start interlock-app with --web DIR, the built console." : "",
+                             ""});
   }
   if (!is_safe(request.method())) {
     return problem_response({Status::method_not_allowed, "METHOD_NOT_ALLOWED",
-                             path + " does not answer " + std::string(request.method_string()) + ".", "", "GET, HEAD",
-                             "", "GET, HEAD"});
+                             path + " does not answer " + std::string(request.method_string()) + ".", "",
+                             "GET, HEAD", "", "GET, HEAD"});
   }
   std::ifstream stream(*file, std::ios::binary);
   Response response{Status::ok, 11};

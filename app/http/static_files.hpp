@@ -16,7 +16,8 @@ class StaticFiles {
   /** `root` may be empty: then there is no console. */
   explicit StaticFiles(const std::filesystem::path& root);
 
-  /** The file of that path, "/" being index.html. Nothing outside of the root is ever served. 404 or 405 otherwise. */
+  /** The file of that path, "/" being index.html. Nothing outside of the root is ever served. 404 or 405
+   * otherwise. */
   [[nodiscard]] Response serve(const Request& request) const;
 
  private:

@@ -18,7 +18,8 @@ nlohmann::json status_json(const Robot& robot, const ilk_config_t& config, const
                            std::chrono::steady_clock::time_point now);
 
 /** Schema `Motor`. `open` is the open proposal of the axis, or null. */
-nlohmann::json motor_json(const Axis& axis, const ilk_config_t& config, const ControlView& view, const Proposal* open);
+nlohmann::json motor_json(const Axis& axis, const ilk_config_t& config, const ControlView& view,
+                          const Proposal* open);
 
 /** Text message of the stream for a kernel event. */
 nlohmann::json event_json(const ilk_event_t& event);

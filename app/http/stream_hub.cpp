@@ -48,8 +48,8 @@ asio::awaitable<void> StreamHub::serve(beast::tcp_stream stream, Request request
   const auto [read_error, bytes] = co_await client->socket.async_read(buffer, as_result);
   if (!read_error && client->open) {
     // Only a client that misunderstands the interface sends anything; it is told so instead of being ignored.
-    co_await client->socket.async_close({websocket::close_code::policy_error, "this stream takes no messages"},
-                                        as_result);
+    co_await client->socket.async_close(
+        {websocket::close_code::policy_error, "this stream takes no messages"}, as_result);
   }
   clients_.erase(place);
   client->close();

@@ -43,7 +43,8 @@ class StreamHub {
 
   struct Client {
     explicit Client(boost::beast::tcp_stream stream)
-        : socket(std::move(stream)), news(socket.get_executor(), boost::asio::steady_timer::time_point::max()) {}
+        : socket(std::move(stream)),
+          news(socket.get_executor(), boost::asio::steady_timer::time_point::max()) {}
 
     void close();
 

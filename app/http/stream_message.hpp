@@ -28,7 +28,8 @@ struct OpenTarget {
 };
 using OpenTargets = std::array<OpenTarget, ILK_SLOTS>;
 
-/** The view at that time, little-endian. Without a kernel everything but magic, version and slot count is zero. */
+/** The view at that time, little-endian. Without a kernel everything but magic, version and slot count is
+ * zero. */
 StreamMessage encode_state(const ControlView& view, const ilk_config_t& config, const OpenTargets& targets,
                            std::chrono::steady_clock::time_point now);
 

@@ -98,8 +98,9 @@ tl::expected<void, LinkError> check_hello(const ilk_link_hello_t& hello) {
                    "hello starts with " + hex(hello.magic) + ", expected " + hex(ILK_LINK_MAGIC));
   }
   if (hello.version != ILK_LINK_VERSION) {
-    return failure(LinkError::Kind::incompatible, "the kernel speaks link version " + std::to_string(hello.version) +
-                                                      ", this app version " + std::to_string(ILK_LINK_VERSION));
+    return failure(LinkError::Kind::incompatible, "the kernel speaks link version " +
+                                                      std::to_string(hello.version) + ", this app version " +
+                                                      std::to_string(ILK_LINK_VERSION));
   }
   if (hello.layout_hash != ilk_link_layout_hash()) {
     return failure(LinkError::Kind::incompatible, "the kernel's link layout is " + hex(hello.layout_hash) +
@@ -107,17 +108,20 @@ tl::expected<void, LinkError> check_hello(const ilk_link_hello_t& hello) {
   }
   if (hello.kernel_region_bytes < sizeof(ilk_link_kernel_region_t) ||
       hello.app_region_bytes < sizeof(ilk_link_app_region_t)) {
-    return failure(LinkError::Kind::broken, "regions of " + std::to_string(hello.kernel_region_bytes) + " and " +
-                                                std::to_string(hello.app_region_bytes) + " bytes, expected at least " +
+    return failure(LinkError::Kind::broken, "regions of " + std::to_string(hello.kernel_region_bytes) +
+                                                " and " + std::to_string(hello.app_region_bytes) +
+                                                " bytes, expected at least " +
                                                 std::to_string(sizeof(ilk_link_kernel_region_t)) + " and " +
                                                 std::to_string(sizeof(ilk_link_app_region_t)));
   }
   return {};
 }
 
-/** Touching a page beyond the end of a shrunken file would kill the app, so the file must be sealed against it. */
-tl::expected<void, LinkError> check_region(const FileDescriptor& region, std::uint32_t bytes, const char* name) {
-  struct stat status {};
+/** Touching a page beyond the end of a shrunken file would kill the app, so the file must be sealed against
+ * it. */
+tl::expected<void, LinkError> check_region(const FileDescriptor& region, std::uint32_t bytes,
+                                           const char* name) {
+  struct stat status{};
   if (::fstat(region.get(), &status) != 0 || status.st_size < static_cast<off_t>(bytes)) {
     return failure(LinkError::Kind::broken, std::string("the ") + name + " region has " +
                                                 std::to_string(status.st_size) + " bytes, the hello says " +
@@ -125,7 +129,8 @@ tl::expected<void, LinkError> check_region(const FileDescriptor& region, std::ui
   }
   const int seals = ::fcntl(region.get(), F_GET_SEALS);
   if (seals < 0 || (seals & F_SEAL_SHRINK) == 0) {
-    return failure(LinkError::Kind::broken, std::string("the ") + name + " region is not sealed against shrinking");
+    return failure(LinkError::Kind::broken,
+                   std::string("the ") + name + " region is not sealed against shrinking");
   }
   return {};
 }
@@ -140,17 +145,19 @@ tl::expected<void, LinkError> LinkClient::attach(std::chrono::milliseconds hello
   }
   pollfd readable{socket->get(), POLLIN, 0};
   if (::poll(&readable, 1, static_cast<int>(hello_timeout.count())) != 1) {
-    return failure(LinkError::Kind::silent,
-                   "link socket \"" + path_ + "\": no hello within " + std::to_string(hello_timeout.count()) + " ms");
+    return failure(LinkError::Kind::silent, "link socket \"" + path_ + "\": no hello within " +
+                                                std::to_string(hello_timeout.count()) + " ms");
   }
   Received received = receive_hello(*socket);
   if (received.bytes == 0) {
-    return failure(LinkError::Kind::unreachable, "link socket \"" + path_ + "\": the kernel closed the connection");
+    return failure(LinkError::Kind::unreachable,
+                   "link socket \"" + path_ + "\": the kernel closed the connection");
   }
   if (received.bytes != static_cast<ssize_t>(sizeof received.hello) || received.truncated ||
       received.descriptors != received.regions.size()) {
     return failure(LinkError::Kind::broken, "hello of " + std::to_string(received.bytes) + " bytes with " +
-                                                std::to_string(received.descriptors) + " descriptors, expected " +
+                                                std::to_string(received.descriptors) +
+                                                " descriptors, expected " +
                                                 std::to_string(sizeof received.hello) + " bytes with 2");
   }
   auto adopted = adopt(received.hello, std::move(received.regions[0]), std::move(received.regions[1]));
@@ -170,8 +177,7 @@ tl::expected<void, LinkError> LinkClient::adopt(const ilk_link_hello_t& hello, F
   if (!checked) {
     return checked;
   }
-  kernel_mapping_ =
-      SharedMapping(kernel, sizeof(ilk_link_kernel_region_t), SharedMapping::Access::read_only);
+  kernel_mapping_ = SharedMapping(kernel, sizeof(ilk_link_kernel_region_t), SharedMapping::Access::read_only);
   if (kernel_mapping_.data() == nullptr) {
     return failure(LinkError::Kind::broken, "the kernel's region cannot be mapped: " + system_reason(errno));
   }

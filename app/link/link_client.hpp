@@ -2,8 +2,9 @@
  * @file
  * The app's end of the link: attaches to the kernel, reads its snapshots and events, writes requests.
  *
- * The kernel hands over two memory regions (interlock/link.h). The app can only read the first and is the only
- * writer of the second. A `LinkClient` belongs to one thread; after `attach` no call allocates, locks or throws.
+ * The kernel hands over two memory regions (interlock/link.h). The app can only read the first and is the
+ * only writer of the second. A `LinkClient` belongs to one thread; after `attach` no call allocates, locks or
+ * throws.
  */
 #pragma once
 
@@ -33,7 +34,8 @@ class LinkClient {
   /**
    * One attempt to attach, bounded by `hello_timeout`. An earlier attachment is dropped first.
    *
-   * Refuses a kernel whose magic, version, layout or sizes differ, and memory that could shrink under the reader.
+   * Refuses a kernel whose magic, version, layout or sizes differ, and memory that could shrink under the
+   * reader.
    */
   tl::expected<void, LinkError> attach(std::chrono::milliseconds hello_timeout);
 
@@ -48,7 +50,8 @@ class LinkClient {
   /** Sleeps until the kernel publishes a snapshot newer than the last one read. */
   [[nodiscard]] LinkWait wait(std::chrono::milliseconds timeout) noexcept;
 
-  /** Copies the newest whole snapshot; false when none was published or the writer was faster than every retry. */
+  /** Copies the newest whole snapshot; false when none was published or the writer was faster than every
+   * retry. */
   [[nodiscard]] bool read_snapshot(ilk_snapshot_t& snapshot) noexcept;
 
   /** Takes the next event out of the ring; false when every event was read. */
@@ -71,7 +74,8 @@ class LinkClient {
   void publish_seen(std::uint32_t tick) noexcept;
 
  private:
-  tl::expected<void, LinkError> adopt(const ilk_link_hello_t& hello, FileDescriptor kernel, FileDescriptor app);
+  tl::expected<void, LinkError> adopt(const ilk_link_hello_t& hello, FileDescriptor kernel,
+                                      FileDescriptor app);
   [[nodiscard]] bool peer_alive() const noexcept;
 
   std::string path_;

@@ -33,6 +33,8 @@ struct RobotPlan {
 };
 
 /** Whether a card of this kind drives a motor. */
-constexpr bool drives_motor(std::uint32_t card) noexcept { return card != ILK_CARD_NONE && card != ILK_CARD_SENSOR; }
+constexpr bool drives_motor(std::uint32_t card) noexcept {
+  return card != ILK_CARD_NONE && card != ILK_CARD_SENSOR;
+}
 
 }  // namespace interlock

@@ -74,7 +74,8 @@ void ControlLoop::attach_or_back_off(const std::stop_token& stop) noexcept {
     spdlog::warn("no kernel: {}; trying again", complaint);
     attach_complaint_ = std::move(complaint);
   }
-  for (auto waited = milliseconds{0}; waited < back_off_ && !stop.stop_requested(); waited += shortest_back_off) {
+  for (auto waited = milliseconds{0}; waited < back_off_ && !stop.stop_requested();
+       waited += shortest_back_off) {
     refuse_commands();
     std::this_thread::sleep_for(shortest_back_off);
   }
@@ -147,7 +148,8 @@ void ControlLoop::dispatch_verdict(const ilk_event_t& event) noexcept {
   } else if (const auto* asked_stop = std::get_if<StopOrigin>(&*origin)) {
     notify(StopAnswer{asked_stop->stops, verdict, event.tick});
   }
-  const bool routine = std::holds_alternative<HeartbeatOrigin>(*origin) || std::holds_alternative<MoveOrigin>(*origin);
+  const bool routine =
+      std::holds_alternative<HeartbeatOrigin>(*origin) || std::holds_alternative<MoveOrigin>(*origin);
   if (!routine || verdict != ILK_VERDICT_ACCEPTED) {
     notify(event);
   }

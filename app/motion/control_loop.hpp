@@ -1,10 +1,10 @@
 /**
  * @file
- * The control thread: paced by the kernel's snapshots, it keeps the app alive in the kernel's eyes, runs the mode
- * and carries requests and verdicts.
+ * The control thread: paced by the kernel's snapshots, it keeps the app alive in the kernel's eyes, runs the
+ * mode and carries requests and verdicts.
  *
- * Each tick is the list of named steps in `tick`. None allocates, locks, logs or throws; only attaching, while nothing
- * can move, may log.
+ * Each tick is the list of named steps in `tick`. None allocates, locks, logs or throws; only attaching,
+ * while nothing can move, may log.
  */
 #pragma once
 

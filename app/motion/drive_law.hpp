@@ -26,9 +26,10 @@ struct DriveLaw {
 /**
  * The law of an axis.
  *
- * The slope is gentle enough for a plant that answers late: it begins at three times the coasting distance, so that
- * the axis enters the deadband at less than a tenth of its full speed. The floor is the robot file's smallest drive,
- * or a sixteenth of the largest where the file leaves that open; friction holds still below a few hundredths.
+ * The slope is gentle enough for a plant that answers late: it begins at three times the coasting distance,
+ * so that the axis enters the deadband at less than a tenth of its full speed. The floor is the robot file's
+ * smallest drive, or a sixteenth of the largest where the file leaves that open; friction holds still below a
+ * few hundredths.
  *
  * @param rules the kernel's rules for the axis
  * @param min_drive smallest drive of the robot file, 0 when it leaves that open

@@ -2,9 +2,9 @@
  * @file
  * Everything that passes between the network thread and the control thread.
  *
- * Lock-free on both sides, so that no load of the network can hold up the control tick: bounded single-producer
- * single-consumer queues for what must arrive in order, a triple buffer for the newest view, and a counter for STOP,
- * which therefore never stands in a queue behind anything.
+ * Lock-free on both sides, so that no load of the network can hold up the control tick: bounded
+ * single-producer single-consumer queues for what must arrive in order, a triple buffer for the newest view,
+ * and a counter for STOP, which therefore never stands in a queue behind anything.
  */
 #pragma once
 
@@ -61,7 +61,7 @@ using Notice = std::variant<ilk_event_t, Answer, StopAnswer, EventsLost>;
 
 /** What the control thread sees, whole. */
 struct ControlView {
-  bool attached = false;       /**< to a kernel that has published a snapshot */
+  bool attached = false; /**< to a kernel that has published a snapshot */
   std::uint32_t generation = 0;
   std::chrono::steady_clock::time_point received; /**< when the snapshot was read */
   ilk_snapshot_t snapshot{};

@@ -52,7 +52,8 @@ void ManualMode::take(const Order& order, std::uint32_t tick) noexcept {
   orders_[order.slot] = OrderStatus{order.proposal, OrderPhase::waiting, OrderReason::none, 0, tick};
 }
 
-void ManualMode::end(std::uint32_t slot, std::uint32_t proposal, OrderReason reason, std::uint32_t tick) noexcept {
+void ManualMode::end(std::uint32_t slot, std::uint32_t proposal, OrderReason reason,
+                     std::uint32_t tick) noexcept {
   if (slot < ILK_SLOTS && orders_[slot].proposal == proposal && is_open(orders_[slot].phase)) {
     set_phase(slot, OrderPhase::aborted, reason, 0, tick);
   }
@@ -76,8 +77,8 @@ MoveWishes ManualMode::tick(const ilk_snapshot_t& snapshot) noexcept {
     }
     if (orders_[slot].phase == OrderPhase::executing) {
       const std::uint32_t drive = wanted_drive(slot, snapshot.state.axis[slot]);
-      const auto change = static_cast<std::uint32_t>(distance(static_cast<std::int32_t>(drive),
-                                                              static_cast<std::int32_t>(job.sent_drive)));
+      const auto change = static_cast<std::uint32_t>(
+          distance(static_cast<std::int32_t>(drive), static_cast<std::int32_t>(job.sent_drive)));
       const bool due = now - job.sent_tick >= lease_ticks_ / renewals_per_lease;
       if (!job.holds_lease || due || change > job.sent_drive / drive_step_fraction) {
         wishes.add(wish_for(slot, drive, lease_ticks_));
@@ -173,19 +174,23 @@ std::uint32_t ManualMode::wanted_drive(std::uint32_t slot, const ilk_axis_t& axi
   const Order& order = jobs_[slot].order;
   const std::uint32_t bound = drive_bound(plan.rules, axis);
   const std::uint32_t ceiling = order.max_drive == 0 ? bound : std::min(bound, order.max_drive);
-  return drive_law(plan.rules, plan.min_drive, ceiling).at(distance(axis.position_counts, order.target_counts));
+  return drive_law(plan.rules, plan.min_drive, ceiling)
+      .at(distance(axis.position_counts, order.target_counts));
 }
 
-MoveWish ManualMode::wish_for(std::uint32_t slot, std::uint32_t drive, std::uint32_t lease_ticks) const noexcept {
+MoveWish ManualMode::wish_for(std::uint32_t slot, std::uint32_t drive,
+                              std::uint32_t lease_ticks) const noexcept {
   const Order& order = jobs_[slot].order;
-  return {order.proposal,  slot, order.target_counts, drive, plan_.axis[slot].rules.max_amplitude, lease_ticks};
+  return {order.proposal, slot, order.target_counts, drive, plan_.axis[slot].rules.max_amplitude,
+          lease_ticks};
 }
 
 void ManualMode::on_unsent(const MoveWish& wish) noexcept { jobs_[wish.slot].holds_lease = wish.drive == 0; }
 
 void ManualMode::on_verdict(std::uint32_t slot, std::uint32_t proposal, std::uint32_t verdict,
                             std::uint32_t tick) noexcept {
-  // MODE says only that the pedal was released between the snapshot and the request; the next snapshot pauses.
+  // MODE says only that the pedal was released between the snapshot and the request; the next snapshot
+  // pauses.
   if (verdict == ILK_VERDICT_ACCEPTED || verdict == ILK_VERDICT_MODE) {
     return;
   }

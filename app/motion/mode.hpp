@@ -46,7 +46,8 @@ class Mode {
   virtual void take(const Order& order, std::uint32_t tick) noexcept = 0;
 
   /** Aborts the order of that proposal, if it is still open. */
-  virtual void end(std::uint32_t slot, std::uint32_t proposal, OrderReason reason, std::uint32_t tick) noexcept = 0;
+  virtual void end(std::uint32_t slot, std::uint32_t proposal, OrderReason reason,
+                   std::uint32_t tick) noexcept = 0;
 
   /** Aborts every open order. */
   virtual void end_all(OrderReason reason, std::uint32_t tick) noexcept = 0;

@@ -17,7 +17,7 @@ struct Order {
   std::uint32_t slot = 0;
   std::int32_t target_counts = 0;
   std::uint32_t max_drive = 0; /**< 0: the axis' own bound */
-  std::uint32_t stops = 0;     /**< STOPs seen by the author; an order older than the newest STOP never starts */
+  std::uint32_t stops = 0; /**< STOPs seen by the author; an order older than the newest STOP never starts */
 };
 
 /** Where an order stands. The last five are final. */
@@ -30,18 +30,18 @@ constexpr bool is_open(OrderPhase phase) noexcept {
 /** Why an order stands where it does. */
 enum class OrderReason : std::uint8_t {
   none,
-  arrived,         /**< at rest within the deadband */
-  pedal_released,  /**< waits for the pedal */
-  kernel_refused,  /**< `code` is the verdict */
-  stopped,         /**< STOP */
-  cancelled,       /**< its author ended it */
-  locked,          /**< `code` is the cause of LOCKED */
-  axis_disabled,   /**< the axis was taken out of motion */
-  axis_homing,     /**< homing took over the axis */
-  axis_faulted,    /**< `code` is the fault */
-  blocked,         /**< a limit held the axis back for too long; `code` is the gate */
-  link_lost,       /**< the kernel went away */
-  waited_too_long  /**< not executing for longer than a move may wait */
+  arrived,        /**< at rest within the deadband */
+  pedal_released, /**< waits for the pedal */
+  kernel_refused, /**< `code` is the verdict */
+  stopped,        /**< STOP */
+  cancelled,      /**< its author ended it */
+  locked,         /**< `code` is the cause of LOCKED */
+  axis_disabled,  /**< the axis was taken out of motion */
+  axis_homing,    /**< homing took over the axis */
+  axis_faulted,   /**< `code` is the fault */
+  blocked,        /**< a limit held the axis back for too long; `code` is the gate */
+  link_lost,      /**< the kernel went away */
+  waited_too_long /**< not executing for longer than a move may wait */
 };
 
 /** Level, not edge: the newest view always tells the whole truth about the slot's newest order. */

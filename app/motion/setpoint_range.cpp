@@ -13,7 +13,8 @@ std::int32_t saturated(std::int64_t counts) noexcept {
 
 }  // namespace
 
-SetpointRange setpoint_range(const ilk_axis_config_t& rules, const ilk_axis_t& axis, std::uint32_t mode) noexcept {
+SetpointRange setpoint_range(const ilk_axis_config_t& rules, const ilk_axis_t& axis,
+                             std::uint32_t mode) noexcept {
   const std::int64_t coast = rules.coast_counts;
   if (axis.homed != 0) {
     return {saturated(rules.min_counts + coast), saturated(rules.max_counts - coast)};

@@ -22,10 +22,12 @@ struct SetpointRange {
 };
 
 /**
- * The range of the verdict RANGE: the soft limits less the coasting distance when homed, else the travel less the
- * coasting distance that one press of the pedal allows. Outside MOTION that travel starts where the axis stands.
+ * The range of the verdict RANGE: the soft limits less the coasting distance when homed, else the travel less
+ * the coasting distance that one press of the pedal allows. Outside MOTION that travel starts where the axis
+ * stands.
  */
-SetpointRange setpoint_range(const ilk_axis_config_t& rules, const ilk_axis_t& axis, std::uint32_t mode) noexcept;
+SetpointRange setpoint_range(const ilk_axis_config_t& rules, const ilk_axis_t& axis,
+                             std::uint32_t mode) noexcept;
 
 /** Largest drive of the verdict DRIVE: `unhomed_max_drive` while not homed, else `max_drive`. */
 std::uint32_t drive_bound(const ilk_axis_config_t& rules, const ilk_axis_t& axis) noexcept;

@@ -11,8 +11,8 @@
 namespace interlock {
 
 /**
- * Three copies: one that the writer fills, one that the reader looks at, and one in between, which holds the newest
- * value. Each side swaps its own copy with the one in between.
+ * Three copies: one that the writer fills, one that the reader looks at, and one in between, which holds the
+ * newest value. Each side swaps its own copy with the one in between.
  */
 template <typename T>
 class TripleBuffer {

@@ -9,7 +9,8 @@
 namespace interlock {
 namespace {
 
-tl::unexpected<Refusal> refused(std::uint32_t verdict, const std::string& where, const std::string& expected) {
+tl::unexpected<Refusal> refused(std::uint32_t verdict, const std::string& where,
+                                const std::string& expected) {
   return tl::make_unexpected(verdict_refusal(verdict, where, expected));
 }
 
@@ -32,7 +33,8 @@ Refusal verdict_refusal(std::uint32_t verdict, const std::string& where, const s
   if (!where.empty()) {
     detail = where + ": " + detail;
   }
-  return Refusal{catalog::name(catalog::Family::verdict, verdict), detail, expected, std::string(entry.next_step)};
+  return Refusal{catalog::name(catalog::Family::verdict, verdict), detail, expected,
+                 std::string(entry.next_step)};
 }
 
 tl::expected<void, Refusal> check_move(const Axis& axis, const ilk_config_t& config, const ControlView& view,
@@ -41,12 +43,13 @@ tl::expected<void, Refusal> check_move(const Axis& axis, const ilk_config_t& con
   const ilk_axis_t& state = snapshot.state.axis[axis.slot];
   const ilk_axis_config_t& rules = config.axis[axis.slot];
   if (snapshot.config_crc != config.crc) {
-    return tl::make_unexpected(Refusal{"CONFIG_MISMATCH", "The kernel runs another configuration than this app's robot file.",
-                                       "configuration " + config_hash(config),
-                                       "Start kernel and app with the same robot."});
+    return tl::make_unexpected(
+        Refusal{"CONFIG_MISMATCH", "The kernel runs another configuration than this app's robot file.",
+                "configuration " + config_hash(config), "Start kernel and app with the same robot."});
   }
   if (snapshot.state.mode != ILK_MODE_READY && snapshot.state.mode != ILK_MODE_MOTION) {
-    return refused(ILK_VERDICT_MODE, current(catalog::Family::mode, snapshot.state.mode, "mode"), "READY or MOTION");
+    return refused(ILK_VERDICT_MODE, current(catalog::Family::mode, snapshot.state.mode, "mode"),
+                   "READY or MOTION");
   }
   if (state.state == ILK_AXIS_FAULTED) {
     return refused(ILK_VERDICT_FAULTED, current(catalog::Family::fault, state.fault, axis.name.c_str()),

@@ -1,7 +1,7 @@
 /**
  * @file
- * The checks that a move meets before anybody may approve it: what the kernel would refuse now is refused here,
- * with words. The kernel judges again, whatever this says.
+ * The checks that a move meets before anybody may approve it: what the kernel would refuse now is refused
+ * here, with words. The kernel judges again, whatever this says.
  */
 #pragma once
 

@@ -37,7 +37,8 @@ std::string words(catalog::Family family, std::uint32_t code) {
 std::string detail_of(const OrderStatus& status) {
   switch (status.reason) {
     case OrderReason::none:
-      return status.phase == OrderPhase::executing ? "Moves while the pedal is held." : "Waits for the pedal.";
+      return status.phase == OrderPhase::executing ? "Moves while the pedal is held."
+                                                   : "Waits for the pedal.";
     case OrderReason::arrived:
       return "At rest within the deadband of the target.";
     case OrderReason::pedal_released:
@@ -100,8 +101,9 @@ tl::expected<Proposal, Refusal> ProposalBook::propose(const MoveDraft& move, con
   }
   become(proposal, ProposalState::checked, "Inside the range that the kernel allows now.");
   if (!send_(Order{proposal.id, move.slot, move.target_counts, move.drive.value_or(0), 0})) {
-    return tl::make_unexpected(refuse(proposal, Refusal{"OVERLOADED", "The control thread takes no more commands now.", "",
-                                                        "Try again; if it happens again, report it with the log."}));
+    return tl::make_unexpected(
+        refuse(proposal, Refusal{"OVERLOADED", "The control thread takes no more commands now.", "",
+                                 "Try again; if it happens again, report it with the log."}));
   }
   replace_open(move.slot, proposal.id);
   become(proposal, ProposalState::approved, "Waits for the pedal.");
@@ -111,7 +113,8 @@ tl::expected<Proposal, Refusal> ProposalBook::propose(const MoveDraft& move, con
 Proposal& ProposalBook::draft(const Axis& axis, const MoveDraft& move, std::uint32_t tick) {
   if (book_.size() == capacity) {
     // At most one proposal an axis is open, so there is always an ended one to forget.
-    book_.erase(std::find_if(book_.begin(), book_.end(), [](const Proposal& each) { return !is_open(each.state); }));
+    book_.erase(
+        std::find_if(book_.begin(), book_.end(), [](const Proposal& each) { return !is_open(each.state); }));
   }
   Proposal proposal;
   proposal.id = ++last_id_;
@@ -188,11 +191,14 @@ void ProposalBook::become(Proposal& proposal, ProposalState state, std::string d
 }
 
 const Proposal* ProposalBook::find(std::uint32_t id) const {
-  const auto found = std::find_if(book_.begin(), book_.end(), [id](const Proposal& each) { return each.id == id; });
+  const auto found =
+      std::find_if(book_.begin(), book_.end(), [id](const Proposal& each) { return each.id == id; });
   return found == book_.end() ? nullptr : &*found;
 }
 
-Proposal* ProposalBook::find_mutable(std::uint32_t id) { return const_cast<Proposal*>(std::as_const(*this).find(id)); }
+Proposal* ProposalBook::find_mutable(std::uint32_t id) {
+  return const_cast<Proposal*>(std::as_const(*this).find(id));
+}
 
 const Proposal* ProposalBook::open_of(std::uint32_t slot) const {
   const auto found = std::find_if(book_.begin(), book_.end(), [slot](const Proposal& each) {

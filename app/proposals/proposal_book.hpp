@@ -2,8 +2,8 @@
  * @file
  * The book of proposals: drafts, checks, approves and follows them, newest 200 kept.
  *
- * Belongs to the network thread. The control thread carries the orders out; the book learns from each view where
- * they stand. A state that is final stays final, whatever a late report says.
+ * Belongs to the network thread. The control thread carries the orders out; the book learns from each view
+ * where they stand. A state that is final stays final, whatever a late report says.
  */
 #pragma once
 
@@ -37,8 +37,8 @@ class ProposalBook {
   void on_change(Listener listener) { listener_ = std::move(listener); }
 
   /**
-   * Drafts a move, checks it and approves it, as its author releases it by proposing it. An open proposal of the same
-   * axis is aborted. A refused draft stays in the book.
+   * Drafts a move, checks it and approves it, as its author releases it by proposing it. An open proposal of
+   * the same axis is aborted. A refused draft stays in the book.
    */
   tl::expected<Proposal, Refusal> propose(const MoveDraft& draft, const ControlView& view);
 

@@ -15,7 +15,8 @@ std::string iso_8601(UtcTime time) {
   std::array<char, 32> date{};
   std::strftime(date.data(), date.size(), "%Y-%m-%dT%H:%M:%S", &utc);
   std::array<char, 8> fraction{};
-  std::snprintf(fraction.data(), fraction.size(), ".%03dZ", static_cast<int>((since_epoch - seconds).count()));
+  std::snprintf(fraction.data(), fraction.size(), ".%03dZ",
+                static_cast<int>((since_epoch - seconds).count()));
   return std::string(date.data()) + fraction.data();
 }
 

@@ -45,7 +45,8 @@ void ClosedLoop::tick() {
   ilk_sim_exchange_t exchange{};
   exchange.magic = ILK_SIM_MAGIC;
   exchange.tick = state_.tick;
-  std::copy(&outputs_.frame[0][0], &outputs_.frame[0][0] + ILK_SLOTS * ILK_FRAME_WORDS, &exchange.frame[0][0]);
+  std::copy(&outputs_.frame[0][0], &outputs_.frame[0][0] + ILK_SLOTS * ILK_FRAME_WORDS,
+            &exchange.frame[0][0]);
   const ilk_sim_reply_t reply = plant_.tick(exchange);
   ilk_inputs_t inputs{};
   inputs.link_generation = 1;
@@ -62,7 +63,8 @@ void ClosedLoop::tick() {
     put(heartbeat);
   }
   most_requests_ = std::max(most_requests_, static_cast<std::uint32_t>(requests_.size()));
-  ilk_step(&config_, &state_, &inputs, requests_.data(), static_cast<std::uint32_t>(requests_.size()), &outputs_);
+  ilk_step(&config_, &state_, &inputs, requests_.data(), static_cast<std::uint32_t>(requests_.size()),
+           &outputs_);
   requests_.clear();
   deliver_verdicts();
   on_their_way_.push_back(snapshot());
@@ -148,7 +150,8 @@ OrderStatus ClosedLoop::carry_out(const Order& order, std::uint32_t most_ticks) 
   return mode_.orders()[order.slot];
 }
 
-std::uint32_t ClosedLoop::verdict_of_move(std::uint32_t slot, std::int32_t target_counts, std::uint32_t drive) {
+std::uint32_t ClosedLoop::verdict_of_move(std::uint32_t slot, std::int32_t target_counts,
+                                          std::uint32_t drive) {
   ilk_request_t move{};
   move.kind = ILK_REQUEST_MOVE;
   move.axis = slot;

@@ -1,6 +1,7 @@
 /**
  * @file
- * Manual mode, the real kernel core and the real plant in one process, tick by tick, with the latency of a link.
+ * Manual mode, the real kernel core and the real plant in one process, tick by tick, with the latency of a
+ * link.
  */
 #pragma once
 
@@ -18,7 +19,8 @@ namespace interlock::test {
 
 class ClosedLoop {
  public:
-  /** `latency` ticks pass from a snapshot until its moves reach the kernel. The system is unlocked and READY. */
+  /** `latency` ticks pass from a snapshot until its moves reach the kernel. The system is unlocked and READY.
+   */
   ClosedLoop(std::uint64_t seed, std::uint32_t latency);
 
   void run(std::uint32_t ticks);

@@ -24,12 +24,13 @@ TEST_P(ManualModeOnThePlant, EveryAxisArrivesWithinItsDeadbandAndRests) {
     ClosedLoop loop(random(), GetParam());
     loop.make_ready(axis.slot);
     ASSERT_EQ(loop.state().mode, static_cast<std::uint32_t>(ILK_MODE_MOTION));
-    std::uniform_int_distribution<std::int32_t> anywhere(axis.lowest_setpoint_counts(), axis.highest_setpoint_counts());
+    std::uniform_int_distribution<std::int32_t> anywhere(axis.lowest_setpoint_counts(),
+                                                         axis.highest_setpoint_counts());
     for (std::uint32_t proposal = 1; proposal <= 5; ++proposal) {
       const std::int32_t target = anywhere(random);
       const OrderStatus end = loop.carry_out({proposal, axis.slot, target, 0, 0}, minute_ticks);
-      ASSERT_EQ(end.phase, OrderPhase::done) << "to " << target << ", reason " << static_cast<int>(end.reason)
-                                             << ", code " << end.code;
+      ASSERT_EQ(end.phase, OrderPhase::done)
+          << "to " << target << ", reason " << static_cast<int>(end.reason) << ", code " << end.code;
       const std::int32_t position = loop.state().axis[axis.slot].position_counts;
       EXPECT_LE(std::abs(position - target), static_cast<std::int32_t>(axis.deadband_counts));
       loop.run(100);

@@ -18,7 +18,8 @@ using test::insertion;
 using test::neuro;
 using test::neuro_config;
 
-/** The control thread on one side, the test as kernel and as network on the other, in lockstep by `seen_tick`. */
+/** The control thread on one side, the test as kernel and as network on the other, in lockstep by
+ * `seen_tick`. */
 class ControlLoopTest : public testing::Test {
  protected:
   ControlLoopTest() : snapshot_(test::ready_view().snapshot) {
@@ -30,7 +31,8 @@ class ControlLoopTest : public testing::Test {
     thread_ = std::jthread([this](const std::stop_token& stop) { loop_.run(stop); });
   }
 
-  /** Publishes the next tick and waits until the control thread has handled it; its requests are then in `requests_`. */
+  /** Publishes the next tick and waits until the control thread has handled it; its requests are then in
+   * `requests_`. */
   void tick(std::uint32_t ticks = 1) {
     snapshot_.state.tick += ticks;
     kernel_.publish(snapshot_);

@@ -6,8 +6,8 @@
 #include <boost/asio/detached.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/buffers_to_string.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <fstream>
@@ -42,7 +42,8 @@ struct Answered {
   }
 };
 
-/** The server on a real socket; the test is its clients, and the control thread at the other end of the mailbox. */
+/** The server on a real socket; the test is its clients, and the control thread at the other end of the
+ * mailbox. */
 class HttpTest : public testing::Test {
  protected:
   HttpTest() {
@@ -226,7 +227,8 @@ TEST_F(HttpTest, WhatIsNoHttpGetsAnAnswer) {
 }
 
 TEST_F(HttpTest, APageOfAnotherOriginChangesNothing) {
-  for (const std::string& origin : {std::string("http://evil.example"), "https://" + host(), std::string("null")}) {
+  for (const std::string& origin :
+       {std::string("http://evil.example"), "https://" + host(), std::string("null")}) {
     Request request{http::verb::post, "/api/stop", 11};
     request.set(http::field::origin, origin);
     const Answered answered = send(request);
@@ -244,7 +246,8 @@ TEST_F(HttpTest, ThePageOfThisServerMay) {
 }
 
 TEST_F(HttpTest, ARequestForAnotherHostIsRefused) {
-  for (const std::string name : {"evil.example", "evil.example:80", "127.0.0.1.evil.example", "[::1", "localhost.", ""}) {
+  for (const std::string name :
+       {"evil.example", "evil.example:80", "127.0.0.1.evil.example", "[::1", "localhost.", ""}) {
     const Answered answered = post_raw("GET /api/status HTTP/1.1\r\nHost: " + name + "\r\n\r\n");
     EXPECT_EQ(answered.status, 403u) << name;
     EXPECT_EQ(answered.problem()["code"], "HOST");

@@ -51,7 +51,8 @@ void KernelSide::accept() {
   require(connection_.open(), "accept");
   kernel_fd_ = make_region(sizeof(ilk_link_kernel_region_t));
   app_fd_ = make_region(sizeof(ilk_link_app_region_t));
-  kernel_mapping_ = SharedMapping(kernel_fd_, sizeof(ilk_link_kernel_region_t), SharedMapping::Access::read_write);
+  kernel_mapping_ =
+      SharedMapping(kernel_fd_, sizeof(ilk_link_kernel_region_t), SharedMapping::Access::read_write);
   app_mapping_ = SharedMapping(app_fd_, sizeof(ilk_link_app_region_t), SharedMapping::Access::read_write);
   kernel_ = static_cast<ilk_link_kernel_region_t*>(kernel_mapping_.data());
   app_ = static_cast<ilk_link_app_region_t*>(app_mapping_.data());
@@ -76,7 +77,8 @@ void KernelSide::accept() {
     header->cmsg_len = CMSG_LEN(descriptors * sizeof(int));
     std::memcpy(CMSG_DATA(header), fds.data(), descriptors * sizeof(int));
   }
-  require(::sendmsg(connection_.get(), &message, MSG_NOSIGNAL) == static_cast<ssize_t>(hello_bytes), "sendmsg");
+  require(::sendmsg(connection_.get(), &message, MSG_NOSIGNAL) == static_cast<ssize_t>(hello_bytes),
+          "sendmsg");
 }
 
 void KernelSide::close() { connection_ = FileDescriptor(); }

@@ -19,14 +19,15 @@ class ProposalBookTest : public testing::Test {
  protected:
   ProposalBookTest()
       : view_(test::ready_view()),
-        book_(neuro(), neuro_config(),
-              [this](const Command& command) {
-                if (accepts_) {
-                  sent_.push_back(command);
-                }
-                return accepts_;
-              },
-              [this] { return now_; }) {
+        book_(
+            neuro(), neuro_config(),
+            [this](const Command& command) {
+              if (accepts_) {
+                sent_.push_back(command);
+              }
+              return accepts_;
+            },
+            [this] { return now_; }) {
     book_.on_change([this](const Proposal& proposal) { changes_.push_back(proposal.state); });
   }
 
@@ -34,7 +35,8 @@ class ProposalBookTest : public testing::Test {
     return book_.propose({slot, target, std::nullopt, "console"}, view_);
   }
 
-  void report(std::uint32_t proposal, OrderPhase phase, OrderReason reason = OrderReason::none, std::uint32_t code = 0) {
+  void report(std::uint32_t proposal, OrderPhase phase, OrderReason reason = OrderReason::none,
+              std::uint32_t code = 0) {
     OrderTable orders{};
     orders[insertion] = {proposal, phase, reason, code, 0};
     book_.follow(orders);
@@ -67,7 +69,8 @@ TEST_F(ProposalBookTest, DraftsChecksApprovesAndOrders) {
   ASSERT_TRUE(proposal);
   EXPECT_EQ(proposal->id, 1u);
   EXPECT_EQ(proposal->state, ProposalState::approved);
-  EXPECT_THAT(changes_, testing::ElementsAre(ProposalState::drafted, ProposalState::checked, ProposalState::approved));
+  EXPECT_THAT(changes_,
+              testing::ElementsAre(ProposalState::drafted, ProposalState::checked, ProposalState::approved));
   ASSERT_EQ(sent_.size(), 1u);
   const auto& order = std::get<Order>(sent_[0]);
   EXPECT_EQ(order.proposal, 1u);

@@ -25,7 +25,9 @@ class StaticFilesTest : public testing::Test {
 
   [[nodiscard]] std::filesystem::path root() const { return folder_.path() / "web"; }
 
-  static void write(const std::filesystem::path& file, const std::string& text) { std::ofstream(file) << text; }
+  static void write(const std::filesystem::path& file, const std::string& text) {
+    std::ofstream(file) << text;
+  }
 
   [[nodiscard]] Response get(const std::string& target, http::verb method = http::verb::get) const {
     return StaticFiles(root()).serve(Request{method, target, 11});
@@ -49,8 +51,9 @@ TEST_F(StaticFilesTest, NamesTheTypeOfEachFile) {
 TEST_F(StaticFilesTest, DecodesPaths) { EXPECT_EQ(get("/a%20b.txt").body(), "3"); }
 
 TEST_F(StaticFilesTest, NeverLeavesItsFolder) {
-  for (const std::string target : {"/../secret", "/assets/../../secret", "/%2e%2e/secret", "/..%2fsecret", "//../secret",
-                                   "/link", "/index.html%00.txt", "/%zz", "/%2", "relative", "/assets", "/assets/"}) {
+  for (const std::string target :
+       {"/../secret", "/assets/../../secret", "/%2e%2e/secret", "/..%2fsecret", "//../secret", "/link",
+        "/index.html%00.txt", "/%zz", "/%2", "relative", "/assets", "/assets/"}) {
     EXPECT_EQ(get(target).result(), Status::not_found) << target;
   }
 }

@@ -26,7 +26,8 @@ TEST(StreamMessage, WithoutAKernelIsZeroButForMagicVersionAndSlots) {
   view.attached = false;
   OpenTargets targets{};
   targets[0] = {true, 5};
-  const auto words = words_of(encode_state(view, test::neuro_config(), targets, std::chrono::steady_clock::now()));
+  const auto words =
+      words_of(encode_state(view, test::neuro_config(), targets, std::chrono::steady_clock::now()));
   for (std::size_t i = 0; i < words.size(); ++i) {
     const std::uint32_t expected = i == 0 ? stream_magic : i == 1 ? stream_version : i == 19 ? ILK_SLOTS : 0;
     EXPECT_EQ(words[i], expected) << "word " << i;

@@ -15,7 +15,9 @@ TEST(UtcTime, CutsFractionsOfAMillisecond) {
   EXPECT_EQ(iso_8601(UtcTime(std::chrono::microseconds(999))), "1970-01-01T00:00:00.000Z");
 }
 
-TEST(UtcTime, HoldsBeforeTheEpoch) { EXPECT_EQ(iso_8601(UtcTime(milliseconds(-1))), "1969-12-31T23:59:59.999Z"); }
+TEST(UtcTime, HoldsBeforeTheEpoch) {
+  EXPECT_EQ(iso_8601(UtcTime(milliseconds(-1))), "1969-12-31T23:59:59.999Z");
+}
 
 }  // namespace
 }  // namespace interlock
