@@ -385,5 +385,21 @@ TEST(P15_total, a_position_saturates_instead_of_wrapping) {
   }
 }
 
+TEST(P15_total, the_reach_of_a_blind_axis_saturates_instead_of_wrapping) {
+  ilk_config_t config = standard_config();
+  config.bad_frame_limit = 5;
+  config.axis[axis].min_counts = -(1 << 30);
+  config.axis[axis].max_counts = 1 << 30;
+  config.axis[axis].max_delta_counts = 1u << 30;
+  seal(config);
+  Bench bench(config);
+  bench.to_ready();
+  bench.spoil(axis, FrameFault::missing, 4);
+  bench.ticks(4);
+  bench.motor[axis].raw_at_start += 0x80000000u;
+  bench.tick();
+  EXPECT_EQ(bench.fault(axis), ILK_FAULT_NONE) << "five ticks reach farther than any counter difference";
+}
+
 }  // namespace
 }  // namespace interlock::kernel_test
