@@ -7,7 +7,8 @@ import select
 import signal
 import subprocess
 import threading
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import httpx
@@ -77,10 +78,12 @@ class Stack:
         self._connections = contextlib.ExitStack()
         try:
             self.url = self.output.wait_for(r"^ready (http\S+)")[1]
-        except AssertionError:
+            self.api = self._connections.enter_context(httpx.Client(base_url=self.url, timeout=DEADLINE_S))
+            self.status_when(lambda status: status["connected"])
+        except BaseException:
             self.run.kill()
+            self.run.wait()
             raise
-        self.api = self._connections.enter_context(httpx.Client(base_url=self.url, timeout=DEADLINE_S))
 
     def connect_control(self) -> None:
         """Opens `control`, the plant's control socket, in the directory that was given for the sockets."""
@@ -104,6 +107,13 @@ class Stack:
 
     def status(self) -> dict:
         return self.api.get("/api/status").raise_for_status().json()
+
+    def status_when(self, holds: Callable[[dict], bool]) -> dict:
+        """The first status for which the condition holds; an app serves before it is attached to a kernel."""
+        deadline = time.monotonic() + DEADLINE_S
+        while not holds(status := self.status()):
+            assert time.monotonic() < deadline, status
+        return status
 
     def wait(self) -> int:
         """Exit code, once it has ended."""
