@@ -1,6 +1,8 @@
 // ilk_config_validate: each rule just inside and just outside, by the texts of spec/catalog.toml.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <bit>
 #include <functional>
 #include <ostream>
 #include <string>

@@ -1,6 +1,7 @@
 // Outgoing frames, with the words of spec/frames.md written out.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <numeric>
 

@@ -2,9 +2,7 @@
 // and each row's order of checks. Refusals are compared with a run without the request (P11).
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <string>
-#include <vector>
 
 #include "inert.hpp"
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <set>
+#include <vector>
 
 #include "bench.hpp"
 #include "dice.hpp"
