@@ -10,9 +10,9 @@ constexpr std::uint64_t kBitErrorStream = 0x200;
 
 }  // namespace
 
-Card::Card(std::uint32_t type, std::optional<Encoder> encoder, std::uint64_t seed, std::size_t slot)
+Card::Card(std::uint32_t type, const std::optional<Encoder>& encoder, std::uint64_t seed, std::size_t slot)
     : type_(type),
-      encoder_(std::move(encoder)),
+      encoder_(encoder),
       reading_noise_(seed, kNoiseStream + slot),
       bit_errors_(seed, kBitErrorStream + slot) {}
 

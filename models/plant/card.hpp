@@ -33,7 +33,7 @@ class Card {
    * @param encoder the counter of a motor card; none on a sensor card
    * @param seed of the whole plant; `slot` makes it this card's own
    */
-  Card(std::uint32_t type, std::optional<Encoder> encoder, std::uint64_t seed, std::size_t slot);
+  Card(std::uint32_t type, const std::optional<Encoder>& encoder, std::uint64_t seed, std::size_t slot);
 
   /**
    * One transaction, as on the wire full duplex: the answer was latched before `heard` came in.

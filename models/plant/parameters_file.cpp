@@ -72,14 +72,14 @@ class Reader {
 
   /** The table of that key; an empty one when there is none. */
   const toml::table& section(const toml::table& table, std::string_view key) {
-    static const toml::table kEmpty;
+    static const toml::table empty;
     const toml::node* node = table.get(key);
     if (node == nullptr) {
-      return kEmpty;
+      return empty;
     }
     if (!node->is_table()) {
       fail(*node, key, "expected a table");
-      return kEmpty;
+      return empty;
     }
     return *node->as_table();
   }

@@ -31,7 +31,7 @@ struct EventQuery {
 using Wish = std::variant<command::Command, StatusQuery, RecordQuery, EventQuery>;
 
 struct Request {
-  nlohmann::json id; /**< as in the line; null when there was none */
+  nlohmann::json id;               /**< as in the line; null when there was none */
   std::optional<std::uint64_t> at; /**< plant tick at which it takes effect */
   Wish wish;
 };
