@@ -32,6 +32,9 @@ static inline int32_t add_saturating(int32_t a, int32_t b) {
   return result;
 }
 
+/** The opposite, stopping at the largest `int32_t`. */
+static inline int32_t negate_saturating(int32_t value) { return (value == INT32_MIN) ? INT32_MAX : -value; }
+
 /** Product, stopping at the largest `uint32_t`. */
 static inline uint32_t multiply_saturating(uint32_t a, uint32_t b) {
   const uint64_t product = (uint64_t)a * (uint64_t)b;
@@ -50,7 +53,8 @@ static inline int32_t signed_of(uint32_t word) {
 
 /** Motion from one counter reading to another, modulo 2^32, in the sense of the position. */
 static inline int32_t travel_between(const ilk_axis_config_t *config, uint32_t from_raw, uint32_t to_raw) {
-  const uint32_t difference = (config->direction_correction != 0u) ? (from_raw - to_raw) : (to_raw - from_raw);
+  const uint32_t difference =
+      (config->direction_correction != 0u) ? (from_raw - to_raw) : (to_raw - from_raw);
   return signed_of(difference);
 }
 
@@ -60,7 +64,7 @@ static inline int32_t along(uint32_t direction, int32_t travel) {
   if (direction == (uint32_t)ILK_DIRECTION_INCREASING) {
     result = travel;
   } else if (direction == (uint32_t)ILK_DIRECTION_DECREASING) {
-    result = (travel == INT32_MIN) ? INT32_MAX : -travel;
+    result = negate_saturating(travel);
   } else {
     result = 0;
   }

@@ -67,8 +67,8 @@ static bool heartbeat_advanced(const ilk_axis_t *axis, const ilk_reading_t *read
 }
 
 void ilk_observe_card(ilk_axis_t *axis, const ilk_reading_t *reading, bool received, uint32_t tick) {
-  const bool valid = received && reading->intact && echo_is_current(reading, tick) &&
-                     heartbeat_advanced(axis, reading);
+  const bool valid =
+      received && reading->intact && echo_is_current(reading, tick) && heartbeat_advanced(axis, reading);
   axis->card_valid = valid ? 1u : 0u;
   if (valid) {
     axis->bad_frames = 0u;
@@ -112,7 +112,7 @@ static finding_t judge_reverse(const ilk_axis_config_t *config, const ilk_axis_t
   finding_t finding = nothing_found;
   if (was_driven(axis) && (progress < 0) && (magnitude(progress) > config->reverse_counts)) {
     finding.fault = ILK_FAULT_REVERSE;
-    finding.value = progress;
+    finding.value = negate_saturating(progress);
   }
   return finding;
 }
@@ -193,7 +193,8 @@ static finding_t judge_motion(const ilk_axis_config_t *config, const ilk_axis_t 
   return finding;
 }
 
-static finding_t observe_valid(const ilk_axis_config_t *config, ilk_axis_t *axis, const ilk_reading_t *reading) {
+static finding_t observe_valid(const ilk_axis_config_t *config, ilk_axis_t *axis,
+                               const ilk_reading_t *reading) {
   follow(config, axis, reading->raw);
   advance_marks(config, axis);
   const finding_t finding = judge_motion(config, axis);
@@ -219,6 +220,16 @@ static void run_lease_down(ilk_axis_t *axis) {
   }
 }
 
+void ilk_observe_sensor(const ilk_config_t *config, ilk_axis_t *axis) {
+  if (axis->card_valid != 0u) {
+    axis->card_seen = 1u;
+  } else if (ilk_card_is_lost(config, axis)) {
+    axis->card_seen = 0u;
+  } else {
+    /* A few bad frames do not make a card a new one. */
+  }
+}
+
 bool ilk_observe_axis(const ilk_config_t *config, const ilk_axis_config_t *axis_config, ilk_axis_t *axis,
                       const ilk_reading_t *reading, uint32_t tick) {
   const bool valid = axis->card_valid != 0u;
@@ -226,8 +237,7 @@ bool ilk_observe_axis(const ilk_config_t *config, const ilk_axis_config_t *axis_
   axis->switch_triggered = (has_switch && (!valid || reading->switch_triggered)) ? 1u : 0u;
   axis->ticks_since_frame = count_up(axis->ticks_since_frame, UINT32_MAX);
   run_lease_down(axis);
-  finding_t finding =
-      valid ? observe_valid(axis_config, axis, reading) : observe_missing(config, axis);
+  finding_t finding = valid ? observe_valid(axis_config, axis, reading) : observe_missing(config, axis);
   const ilk_homing_result_t homing = ilk_homing_advance(axis_config, axis);
   if (homing.fault != ILK_FAULT_NONE) {
     const finding_t homing_finding = {.fault = homing.fault, .value = homing.value};

@@ -30,6 +30,9 @@ bool ilk_card_is_lost(const ilk_config_t *config, const ilk_axis_t *axis);
 /** Phase 2: judges a card's frame and counts bad ones. */
 void ilk_observe_card(ilk_axis_t *axis, const ilk_reading_t *reading, bool received, uint32_t tick);
 
+/** Phase 4: a card without an axis is seen or lost, nothing more. */
+void ilk_observe_sensor(const ilk_config_t *config, ilk_axis_t *axis);
+
 /**
  * Phase 4: follows the axis and judges what it did since its last valid frame.
  *

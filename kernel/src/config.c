@@ -188,8 +188,7 @@ static bool homing_time_suffices(const ilk_axis_config_t *axis, uint32_t period_
   const uint64_t moving_us = (uint64_t)(axis->home_timeout_ticks - axis->home_rest_ticks) * period_us;
   const uint64_t distance = (uint64_t)axis->home_travel_counts + axis->home_backoff_counts;
   const bool short_enough = ((uint64_t)axis->home_timeout_ticks * period_us) <= HOMING_MAX_US;
-  return short_enough &&
-         ((moving_us * axis->home_speed_counts_per_s) >= (distance * MICROSECONDS_PER_S));
+  return short_enough && ((moving_us * axis->home_speed_counts_per_s) >= (distance * MICROSECONDS_PER_S));
 }
 
 static ilk_config_error_t homing_error(const ilk_axis_config_t *axis, uint32_t period_us) {

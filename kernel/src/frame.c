@@ -4,10 +4,7 @@
 
 _Static_assert((ILK_FRAME_WORDS == 32) || (ILK_FRAME_WORDS == 64), "frames have 32 or 64 words");
 
-enum {
-  CHECKSUM_WORD = ILK_FRAME_WORDS - 1,
-  SPEED_POINTS = 24
-};
+enum { CHECKSUM_WORD = ILK_FRAME_WORDS - 1, SPEED_POINTS = 24 };
 
 #define START_WORD 0xfefefe01u
 #define FRAME_SUM 0xffffffffu
@@ -22,7 +19,7 @@ enum {
 /** Speed at each point of the published map, the faster of both directions, in thousandths of a revolution
     per minute: kinematics of the published high-frequency motor, spec/frames.md. */
 static const uint32_t speed_map[SPEED_POINTS] = {
-    0u,     54u,    189u,   331u,   614u,   1095u,  2020u,  3222u,   3773u,   6383u,   11445u,  15308u,
+    0u,     54u,    189u,   331u,   614u,   1095u,  2020u,   3222u,   3773u,   6383u,   11445u,  15308u,
     20955u, 27358u, 36039u, 45548u, 58997u, 78710u, 105850u, 141386u, 188106u, 247388u, 317394u, 397785u};
 
 /** Sum of all words; the checksum makes it FRAME_SUM. */
@@ -127,6 +124,6 @@ void ilk_frame_pack(const ilk_axis_config_t *config, const ilk_command_t *comman
   frame[6] = words.analog;
   frame[13] = tick;
   frame[14] = words.amplifier;
-  frame[CHECKSUM_WORD] = FRAME_SUM - (START_WORD + words.wave1 + words.frequency1 + words.wave2 + words.frequency2 +
-                                      words.analog + tick + words.amplifier);
+  frame[CHECKSUM_WORD] = FRAME_SUM - (START_WORD + words.wave1 + words.frequency1 + words.wave2 +
+                                      words.frequency2 + words.analog + tick + words.amplifier);
 }

@@ -88,7 +88,8 @@ static bool exceeds_unhomed_travel(const ilk_axis_config_t *config, const ilk_ax
 }
 
 /** P7: more than the axis may, or more than its card's words can carry. */
-static bool exceeds_drive(const ilk_axis_config_t *config, const ilk_axis_t *axis, const ilk_command_t *wanted) {
+static bool exceeds_drive(const ilk_axis_config_t *config, const ilk_axis_t *axis,
+                          const ilk_command_t *wanted) {
   const uint32_t bound = (axis->homed != 0u) ? config->max_drive : config->unhomed_max_drive;
   return (wanted->drive > bound) || (wanted->drive > ilk_card_max_drive(config->card)) ||
          (wanted->amplitude > config->max_amplitude) || (wanted->amplitude > AMPLITUDE_MAX);

@@ -76,7 +76,7 @@ static void look_for_edge(const ilk_axis_config_t *config, ilk_axis_t *axis) {
 
 static uint32_t travel_bound(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
   return (axis->homing_phase == (uint32_t)ILK_HOMING_BACK_OFF) ? config->home_backoff_counts
-                                                              : config->home_travel_counts;
+                                                               : config->home_travel_counts;
 }
 
 ilk_homing_result_t ilk_homing_advance(const ilk_axis_config_t *config, ilk_axis_t *axis) {

@@ -5,21 +5,16 @@
 #include "crc32.h"
 #include "interlock/kernel.h"
 
-/** Two words over all others. A change of any one word changes `sum`, because each step that mixes a word in
-    can be undone; parts of the state that change places change `order`. Seeded, so that cleared memory fails. */
-typedef struct {
-  uint32_t sum;
-  uint32_t order;
-} seal_t;
-
+/** Seeded, so that cleared memory fails. */
 #define SEAL_SEED 0x494c4b31u
+/** Odd, so that a product with it can be undone. */
+#define SEAL_FACTOR 0x9e3779b1u
 
-static uint32_t mix(uint32_t digest, uint32_t word) { return ((digest << 5) | (digest >> 27)) + word; }
-
-static seal_t seal_part(seal_t seal, uint32_t digest) {
-  const uint32_t sum = seal.sum + digest;
-  const seal_t next = {.sum = sum, .order = seal.order + sum};
-  return next;
+/** Mixes a word into the digest. The step can be undone, so a change of any one word changes the result;
+   product and rotation together spread it over all bits, so that changes of several words do not cancel. */
+static uint32_t mix(uint32_t digest, uint32_t word) {
+  const uint32_t mixed = digest ^ word;
+  return ((mixed << 13) | (mixed >> 19)) * SEAL_FACTOR;
 }
 
 static uint32_t axis_digest(const ilk_axis_t *axis) {
@@ -93,23 +88,19 @@ static uint32_t system_digest(const ilk_state_t *state) {
   digest = mix(digest, state->requests_refused);
   return digest;
 }
-_Static_assert(sizeof(ilk_state_t) == ((ILK_SLOTS * sizeof(ilk_axis_t)) + (28u * sizeof(uint32_t))),
+_Static_assert(sizeof(ilk_state_t) == ((ILK_SLOTS * sizeof(ilk_axis_t)) + (27u * sizeof(uint32_t))),
                "every word is sealed, or is the seal");
 
-static seal_t seal_of(const ilk_state_t *state) {
-  const seal_t seed = {.sum = SEAL_SEED, .order = SEAL_SEED};
-  seal_t seal = seal_part(seed, system_digest(state));
+/** Each part has a digest of its own, so that a processor can work on several at once. */
+static uint32_t state_digest(const ilk_state_t *state) {
+  uint32_t digest = system_digest(state);
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
-    seal = seal_part(seal, axis_digest(&state->axis[slot]));
+    digest = mix(digest, axis_digest(&state->axis[slot]));
   }
-  return seal;
+  return digest;
 }
 
-void ilk_state_seal(ilk_state_t *state) {
-  const seal_t seal = seal_of(state);
-  state->seal_sum = seal.sum;
-  state->seal_order = seal.order;
-}
+void ilk_state_seal(ilk_state_t *state) { state->seal = state_digest(state); }
 
 static bool axis_codes_are_known(const ilk_axis_t *axis) {
   return (axis->state < ILK_AXIS_COUNT) && (axis->fault < ILK_FAULT_COUNT) &&
@@ -152,8 +143,7 @@ static bool system_agrees(const ilk_state_t *state) {
 }
 
 bool ilk_state_is_sound(const ilk_state_t *state) {
-  const seal_t seal = seal_of(state);
-  bool sound = (seal.sum == state->seal_sum) && (seal.order == state->seal_order) && system_agrees(state);
+  bool sound = (state->seal == state_digest(state)) && system_agrees(state);
   for (uint32_t slot = 0u; (slot < (uint32_t)ILK_SLOTS) && sound; slot++) {
     const ilk_axis_t *axis = &state->axis[slot];
     sound = axis_codes_are_known(axis) && axis_agrees(axis) && axis_fits_mode(axis, state->mode);
@@ -192,12 +182,18 @@ void ilk_state_rebuild(ilk_state_t *state, const ilk_config_t *config, ilk_cause
   state->config_sound = 0u;
   state->requests_accepted = 0u;
   state->requests_refused = 0u;
-  state->seal_sum = 0u;
-  state->seal_order = 0u;
+  state->seal = 0u;
 }
 
-bool ilk_config_check_slice(const ilk_config_t *config, ilk_state_t *state) {
-  bool sound = true;
+/** A configuration that was not trusted becomes so by a whole pass that agrees and by being valid (P13). */
+static uint32_t trust_after_pass(const ilk_config_t *config, const ilk_state_t *state) {
+  const bool trusted =
+      (state->config_sound != 0u) || (ilk_config_validate(config).error == (uint32_t)ILK_CONFIG_ERROR_NONE);
+  return trusted ? 1u : 0u;
+}
+
+ilk_config_check_t ilk_config_check_slice(const ilk_config_t *config, ilk_state_t *state) {
+  ilk_config_check_t check = {.damaged = false, .crc = 0u};
   uint32_t crc = state->config_partial_crc;
   if (state->config_slice == 0u) {
     crc = ilk_crc_system_config(ILK_CRC32_START, config);
@@ -207,19 +203,13 @@ bool ilk_config_check_slice(const ilk_config_t *config, ilk_state_t *state) {
     state->config_partial_crc = crc;
     state->config_slice++;
   } else {
-    sound = (ilk_crc32_finish(crc) == state->config_crc) && (config->crc == state->config_crc);
-    /* A configuration that was not trusted becomes so by a whole pass and by being valid (P13). */
-    if (!sound) {
-      state->config_sound = 0u;
-    } else if (state->config_sound == 0u) {
-      state->config_sound = (ilk_config_validate(config).error == (uint32_t)ILK_CONFIG_ERROR_NONE) ? 1u : 0u;
-    } else {
-      state->config_sound = 1u;
-    }
+    check.crc = ilk_crc32_finish(crc);
+    check.damaged = (check.crc != state->config_crc) || (config->crc != state->config_crc);
+    state->config_sound = check.damaged ? 0u : trust_after_pass(config, state);
     state->config_partial_crc = ILK_CRC32_START;
     state->config_slice = 0u;
   }
-  return sound;
+  return check;
 }
 
 ilk_config_verdict_t ilk_init(const ilk_config_t *config, ilk_state_t *state) {

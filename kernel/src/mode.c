@@ -101,10 +101,18 @@ static uint32_t contacts(const ilk_inputs_t *in) {
   return ((in->pedal_no_closed == OPEN) ? 0u : 1u) | ((in->pedal_nc_closed == OPEN) ? 0u : 2u);
 }
 
+/** A damaged configuration may have counted the wrong way until it was found. */
+static void lose_references(ilk_state_t *state) {
+  for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
+    state->axis[slot].homed = 0u;
+  }
+}
+
 static void lock_on_causes(const ilk_config_t *config, ilk_state_t *state, const ilk_alarms_t *alarms,
                            const ilk_inputs_t *in) {
   if (alarms->configuration_damaged) {
-    ilk_mode_lock(state, ILK_CAUSE_INTEGRITY, state->config_crc);
+    ilk_mode_lock(state, ILK_CAUSE_INTEGRITY, alarms->configuration_crc);
+    lose_references(state);
   }
   if (state->estop != 0u) {
     ilk_mode_lock(state, ILK_CAUSE_ESTOP, in->estop_loop_closed);
@@ -126,7 +134,8 @@ static bool motion_must_end(const ilk_state_t *state, const ilk_alarms_t *alarms
          alarms->required_card_lost;
 }
 
-/** A release counts as arming only when seen whole in READY with the app alive; without the app no consent lasts. */
+/** A release counts as arming only when seen whole in READY with the app alive; without the app no consent
+ * lasts. */
 static void arm_pedal(const ilk_config_t *config, ilk_state_t *state) {
   if (state->app_alive == 0u) {
     ilk_pedal_disarm(state);
@@ -137,7 +146,8 @@ static void arm_pedal(const ilk_config_t *config, ilk_state_t *state) {
   }
 }
 
-static bool motion_may_begin(const ilk_config_t *config, const ilk_state_t *state, const ilk_alarms_t *alarms) {
+static bool motion_may_begin(const ilk_config_t *config, const ilk_state_t *state,
+                             const ilk_alarms_t *alarms) {
   return (state->pedal_armed != 0u) && (state->pedal == (uint32_t)ILK_PEDAL_PRESSED) &&
          (state->pedal_pressed_ticks >= config->pedal_debounce_ticks) && (state->app_alive != 0u) &&
          !alarms->required_card_lost;

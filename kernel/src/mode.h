@@ -11,9 +11,10 @@
 
 /** What the tick has seen that ends MOTION or locks, besides what the state itself tells. */
 typedef struct {
-  bool new_fault;            /**< an axis faulted in this tick */
-  bool required_card_lost;   /**< a required card is lost */
+  bool new_fault;             /**< an axis faulted in this tick */
+  bool required_card_lost;    /**< a required card is lost */
   bool configuration_damaged; /**< a pass over the configuration ended with another CRC */
+  uint32_t configuration_crc; /**< the CRC that it found */
 } ilk_alarms_t;
 
 /** Enters `mode` and drops what does not survive the change. */

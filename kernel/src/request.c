@@ -36,13 +36,16 @@ static void apply_enable(ilk_axis_t *axis) {
   }
 }
 
+/** The stall count starts anew only after a stall: no other fault excuses an axis that makes no progress. */
 static void apply_clear_fault(ilk_axis_t *axis) {
+  if (axis->fault == (uint32_t)ILK_FAULT_STALL) {
+    axis->stall_driven_ticks = 0u;
+    axis->setpoint_changed = 0u;
+  }
   axis->state = (uint32_t)ILK_AXIS_DISABLED;
   axis->fault = (uint32_t)ILK_FAULT_NONE;
   axis->fault_tick = 0u;
   axis->fault_value = 0;
-  axis->stall_driven_ticks = 0u;
-  axis->setpoint_changed = 0u;
 }
 
 static void apply_move(ilk_axis_t *axis, const ilk_request_t *request) {

@@ -15,10 +15,12 @@ static const ilk_command_t zero_drive = {
 /** Phase 1: state and a slice of the configuration. Nothing else of a damaged state is looked at. */
 static void check_integrity(const ilk_config_t *config, ilk_state_t *state, ilk_alarms_t *alarms) {
   if (!ilk_state_is_sound(state)) {
-    ilk_state_rebuild(state, config, ILK_CAUSE_INTEGRITY, state->seal_sum);
+    ilk_state_rebuild(state, config, ILK_CAUSE_INTEGRITY, state->seal);
   }
   if (state->mode != (uint32_t)ILK_MODE_INIT) {
-    alarms->configuration_damaged = !ilk_config_check_slice(config, state);
+    const ilk_config_check_t check = ilk_config_check_slice(config, state);
+    alarms->configuration_damaged = check.damaged;
+    alarms->configuration_crc = check.crc;
   }
 }
 
@@ -47,8 +49,11 @@ static void observe_axes(const ilk_config_t *config, ilk_state_t *state,
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
     const ilk_axis_config_t *axis_config = &config->axis[slot];
     ilk_axis_t *axis = &state->axis[slot];
-    if (has_axis(axis_config) && ilk_observe_axis(config, axis_config, axis, &readings[slot], state->tick)) {
-      alarms->new_fault = true;
+    if (has_axis(axis_config)) {
+      const bool faulted = ilk_observe_axis(config, axis_config, axis, &readings[slot], state->tick);
+      alarms->new_fault = alarms->new_fault || faulted;
+    } else {
+      ilk_observe_sensor(config, axis);
     }
     if ((axis_config->required != 0u) && ilk_card_is_lost(config, axis)) {
       alarms->required_card_lost = true;
@@ -171,7 +176,7 @@ static void publish(const ilk_config_t *config, ilk_state_t *state, ilk_outputs_
 void ilk_step(const ilk_config_t *config, ilk_state_t *state, const ilk_inputs_t *in,
               const ilk_request_t requests[], uint32_t count, ilk_outputs_t *out) {
   ilk_reading_t readings[ILK_SLOTS];
-  ilk_alarms_t alarms = {.new_fault = false, .required_card_lost = false, .configuration_damaged = false};
+  ilk_alarms_t alarms = {.new_fault = false};
 
   check_integrity(config, state, &alarms);
   if (state->mode != (uint32_t)ILK_MODE_INIT) {

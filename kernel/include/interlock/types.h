@@ -32,35 +32,35 @@
 
 /** One axis (or sensor card) of the robot, by slot. Ranges: `ilk_config_validate`. */
 typedef struct {
-  uint32_t card;                   /**< ilk_card_t; NONE leaves the slot empty */
-  uint32_t required;               /**< 1: losing this card ends MOTION and blocks it */
-  uint32_t motor_direction;        /**< 1: the card's direction bit follows the axis, 0: it is inverted */
-  uint32_t direction_correction;   /**< 1: position decreases while the raw counter increases */
-  uint32_t limit_side;             /**< ilk_limit_side_t: the end at which the switch sits */
-  int32_t min_counts;              /**< lower soft limit */
-  int32_t max_counts;              /**< upper soft limit */
-  int32_t home_offset_counts;      /**< position at the edge of the switch */
-  uint32_t coast_counts;           /**< farthest travel from the last reading that allowed drive until rest */
-  uint32_t backlash_counts;        /**< lost motion when the direction changes */
-  uint32_t noise_counts;           /**< peak-to-peak noise of the counter at rest */
-  uint32_t deadband_counts;        /**< no drive this near to the setpoint */
-  uint32_t max_drive;              /**< largest drive */
-  uint32_t unhomed_max_drive;      /**< largest drive while not homed */
-  uint32_t max_amplitude;          /**< largest wave amplitude; 0 unless the card is HIGH_FREQUENCY */
-  uint32_t unhomed_travel_counts;  /**< farthest travel from where the pedal was pressed while not homed */
-  uint32_t home_drive;             /**< drive while homing */
-  uint32_t home_amplitude;         /**< wave amplitude while homing */
-  uint32_t home_travel_counts;     /**< farthest travel towards the switch while homing */
-  uint32_t home_backoff_counts;    /**< farthest travel away from a switch that was triggered at the start */
-  uint32_t home_timeout_ticks;     /**< longest homing, back-off and rest included */
-  uint32_t home_rest_ticks;        /**< ticks without a count that mean rest after the switch */
+  uint32_t card;                  /**< ilk_card_t; NONE leaves the slot empty */
+  uint32_t required;              /**< 1: losing this card ends MOTION and blocks it */
+  uint32_t motor_direction;       /**< 1: the card's direction bit follows the axis, 0: it is inverted */
+  uint32_t direction_correction;  /**< 1: position decreases while the raw counter increases */
+  uint32_t limit_side;            /**< ilk_limit_side_t: the end at which the switch sits */
+  int32_t min_counts;             /**< lower soft limit */
+  int32_t max_counts;             /**< upper soft limit */
+  int32_t home_offset_counts;     /**< position at the edge of the switch */
+  uint32_t coast_counts;          /**< farthest travel from the last reading that allowed drive until rest */
+  uint32_t backlash_counts;       /**< lost motion when the direction changes */
+  uint32_t noise_counts;          /**< peak-to-peak noise of the counter at rest */
+  uint32_t deadband_counts;       /**< no drive this near to the setpoint */
+  uint32_t max_drive;             /**< largest drive */
+  uint32_t unhomed_max_drive;     /**< largest drive while not homed */
+  uint32_t max_amplitude;         /**< largest wave amplitude; 0 unless the card is HIGH_FREQUENCY */
+  uint32_t unhomed_travel_counts; /**< farthest travel from where the pedal was pressed while not homed */
+  uint32_t home_drive;            /**< drive while homing */
+  uint32_t home_amplitude;        /**< wave amplitude while homing */
+  uint32_t home_travel_counts;    /**< farthest travel towards the switch while homing */
+  uint32_t home_backoff_counts;   /**< farthest travel away from a switch that was triggered at the start */
+  uint32_t home_timeout_ticks;    /**< longest homing, back-off and rest included */
+  uint32_t home_rest_ticks;       /**< ticks without a count that mean rest after the switch */
   uint32_t home_speed_counts_per_s; /**< slowest speed at `home_drive`; shows that the bounds above suffice */
-  uint32_t stall_ticks;            /**< driven ticks without progress that are a stall */
-  uint32_t stall_min_counts;       /**< progress that clears the stall count */
-  uint32_t reverse_counts;         /**< tolerated motion against the command */
-  uint32_t drift_counts;           /**< tolerated motion while enabled but not driven */
-  uint32_t settle_ticks;           /**< ticks from the last driven one until drift is measured */
-  uint32_t max_delta_counts;       /**< largest possible motion in one tick */
+  uint32_t stall_ticks;             /**< driven ticks without progress that are a stall */
+  uint32_t stall_min_counts;        /**< progress that clears the stall count */
+  uint32_t reverse_counts;          /**< tolerated motion against the command */
+  uint32_t drift_counts;            /**< tolerated motion while enabled but not driven */
+  uint32_t settle_ticks;            /**< ticks from the last driven one until drift is measured */
+  uint32_t max_delta_counts;        /**< largest possible motion in one tick */
 } ilk_axis_config_t;
 
 /** The whole configuration. It never changes after `ilk_init`; its CRC-32 is checked slice by slice. */
@@ -76,79 +76,78 @@ typedef struct {
   uint32_t bad_frame_limit;      /**< bad frames in a row that lose a card, or the bus */
   uint32_t overrun_limit;        /**< missed deadlines in a row that lock */
   ilk_axis_config_t axis[ILK_SLOTS];
-  uint32_t crc;                  /**< `ilk_config_crc` of the words above */
+  uint32_t crc; /**< `ilk_config_crc` of the words above */
 } ilk_config_t;
 
 /** What the kernel remembers of one axis. */
 typedef struct {
-  uint32_t state;               /**< ilk_axis_state_t */
-  uint32_t fault;               /**< ilk_fault_t; the first one since CLEAR_FAULT */
-  uint32_t fault_tick;          /**< tick of that fault */
-  int32_t fault_value;          /**< what was measured, in the unit of the rule that was broken */
-  uint32_t homed;               /**< 1: position is referenced */
-  uint32_t switch_triggered;    /**< 1: at the switch, or the switch was not read validly */
-  uint32_t card_valid;          /**< 1: this tick's frame was valid */
-  uint32_t card_seen;           /**< 1: `raw` holds a reading */
-  uint32_t bad_frames;          /**< bad frames in a row, saturating */
-  uint32_t checksum_failures;   /**< since boot, saturating */
-  uint32_t heartbeat;           /**< of the last valid frame */
-  uint32_t card_time_us;        /**< card's timestamp of the last valid reading, wrapping */
-  uint32_t card_status;         /**< status word of the last valid frame */
-  uint32_t ticks_since_frame;   /**< ticks from the last valid frame to this one, saturating */
-  uint32_t raw;                 /**< counter of the last valid frame, wrapping */
-  int32_t position_counts;      /**< saturating */
-  int32_t delta_counts;         /**< motion seen by the last valid frame, in the sense of the position */
-  int32_t setpoint_counts;      /**< of the last accepted MOVE */
-  uint32_t drive;               /**< of the last accepted MOVE */
-  uint32_t amplitude;           /**< of the last accepted MOVE */
-  uint32_t lease_ticks;         /**< ticks for which the MOVE still holds */
-  uint32_t driven_direction;    /**< ilk_direction_t driven since the last valid frame */
-  int32_t press_travel_counts;  /**< travel since the pedal was pressed, saturating */
-  uint32_t stall_driven_ticks;  /**< driven ticks since progress was last seen */
-  uint32_t stall_mark_raw;      /**< reading from which that progress is measured */
-  uint32_t stall_direction;     /**< ilk_direction_t in which that progress counts */
-  uint32_t setpoint_changed;    /**< 1: the setpoint changed while the stall count ran */
-  uint32_t reverse_mark_raw;    /**< farthest reading in `reverse_direction` */
-  uint32_t reverse_direction;   /**< ilk_direction_t last driven */
-  uint32_t drift_mark_raw;      /**< reading at which the axis had settled */
-  uint32_t undriven_ticks;      /**< ticks since the last driven one, saturating at `settle_ticks` */
-  uint32_t homing_phase;        /**< ilk_homing_phase_t */
-  uint32_t homing_ticks;        /**< ticks left until homing times out */
-  uint32_t homing_mark_raw;     /**< reading at which the phase began */
-  uint32_t rest_ticks;          /**< ticks without a count in the phase REST */
+  uint32_t state;              /**< ilk_axis_state_t */
+  uint32_t fault;              /**< ilk_fault_t; the first one since CLEAR_FAULT */
+  uint32_t fault_tick;         /**< tick of that fault */
+  int32_t fault_value;         /**< what was measured, in the unit of the rule that was broken */
+  uint32_t homed;              /**< 1: position is referenced */
+  uint32_t switch_triggered;   /**< 1: at the switch, or the switch was not read validly */
+  uint32_t card_valid;         /**< 1: this tick's frame was valid */
+  uint32_t card_seen;          /**< 1: `raw` holds a reading */
+  uint32_t bad_frames;         /**< bad frames in a row, saturating */
+  uint32_t checksum_failures;  /**< since boot, saturating */
+  uint32_t heartbeat;          /**< of the last valid frame */
+  uint32_t card_time_us;       /**< card's timestamp of the last valid reading, wrapping */
+  uint32_t card_status;        /**< status word of the last valid frame */
+  uint32_t ticks_since_frame;  /**< ticks from the last valid frame to this one, saturating */
+  uint32_t raw;                /**< counter of the last valid frame, wrapping */
+  int32_t position_counts;     /**< saturating */
+  int32_t delta_counts;        /**< motion seen by the last valid frame, in the sense of the position */
+  int32_t setpoint_counts;     /**< of the last accepted MOVE */
+  uint32_t drive;              /**< of the last accepted MOVE */
+  uint32_t amplitude;          /**< of the last accepted MOVE */
+  uint32_t lease_ticks;        /**< ticks for which the MOVE still holds */
+  uint32_t driven_direction;   /**< ilk_direction_t driven since the last valid frame */
+  int32_t press_travel_counts; /**< travel since the pedal was pressed, saturating */
+  uint32_t stall_driven_ticks; /**< driven ticks since progress was last seen */
+  uint32_t stall_mark_raw;     /**< reading from which that progress is measured */
+  uint32_t stall_direction;    /**< ilk_direction_t in which that progress counts */
+  uint32_t setpoint_changed;   /**< 1: the setpoint changed while the stall count ran */
+  uint32_t reverse_mark_raw;   /**< farthest reading in `reverse_direction` */
+  uint32_t reverse_direction;  /**< ilk_direction_t last driven */
+  uint32_t drift_mark_raw;     /**< reading at which the axis had settled */
+  uint32_t undriven_ticks;     /**< ticks since the last driven one, saturating at `settle_ticks` */
+  uint32_t homing_phase;       /**< ilk_homing_phase_t */
+  uint32_t homing_ticks;       /**< ticks left until homing times out */
+  uint32_t homing_mark_raw;    /**< reading at which the phase began */
+  uint32_t rest_ticks;         /**< ticks without a count in the phase REST */
 } ilk_axis_t;
 
 /** What the kernel remembers. Only `ilk_init` and `ilk_step` write it. */
 typedef struct {
-  uint32_t tick;                  /**< steps since `ilk_init`, wrapping */
-  uint32_t mode;                  /**< ilk_mode_t */
-  uint32_t cause;                 /**< ilk_cause_t: why LOCKED; the first one, kept until RESET */
-  uint32_t cause_tick;            /**< tick of that cause */
-  uint32_t cause_value;           /**< what was seen: contacts, counts or words, as the catalog says */
-  uint32_t causes_seen;           /**< bit n: cause n happened since RESET */
-  uint32_t pedal;                 /**< ilk_pedal_t in this tick */
-  uint32_t pedal_armed;           /**< 1: a press will count */
-  uint32_t pedal_pressed_ticks;   /**< pressed for so long, saturating at the debounce time */
-  uint32_t pedal_released_ticks;  /**< released for so long, saturating at the debounce time */
-  uint32_t pedal_disagree_ticks;  /**< channels disagree for so long, saturating */
-  uint32_t estop;                 /**< 1: E-stop active in this tick */
-  uint32_t app_age_ticks;         /**< ticks since the last HEARTBEAT, saturating */
-  uint32_t app_alive;             /**< 1: HEARTBEAT within `app_timeout_ticks`, as decided in this tick */
-  uint32_t holder;                /**< control holder named by the last HEARTBEAT */
-  uint32_t link_generation;       /**< attachment from which requests come */
-  uint32_t last_sequence;         /**< newest sequence number of that attachment */
-  uint32_t overruns_in_row;       /**< missed deadlines in a row, saturating */
-  uint32_t overruns;              /**< missed deadlines since boot, saturating */
-  uint32_t bus_bad_ticks;         /**< ticks in a row without any valid frame, saturating */
-  uint32_t config_crc;            /**< CRC-32 of the configuration at `ilk_init` */
-  uint32_t config_slice;          /**< slice that the next tick checks */
-  uint32_t config_partial_crc;    /**< CRC-32 over the slices before it */
-  uint32_t config_sound;          /**< 0: damaged; 1: the last whole pass agreed */
-  uint32_t requests_accepted;     /**< since boot, saturating */
-  uint32_t requests_refused;      /**< since boot, saturating */
+  uint32_t tick;                 /**< steps since `ilk_init` or since a damaged state was rebuilt, wrapping */
+  uint32_t mode;                 /**< ilk_mode_t */
+  uint32_t cause;                /**< ilk_cause_t: why LOCKED; the first one, kept until RESET */
+  uint32_t cause_tick;           /**< tick of that cause */
+  uint32_t cause_value;          /**< what was seen: contacts, counts or words, as the catalog says */
+  uint32_t causes_seen;          /**< bit n: cause n happened since RESET */
+  uint32_t pedal;                /**< ilk_pedal_t in this tick */
+  uint32_t pedal_armed;          /**< 1: a press will count */
+  uint32_t pedal_pressed_ticks;  /**< pressed for so long, saturating at the debounce time */
+  uint32_t pedal_released_ticks; /**< released for so long, saturating at the debounce time */
+  uint32_t pedal_disagree_ticks; /**< channels disagree for so long, saturating */
+  uint32_t estop;                /**< 1: E-stop active in this tick */
+  uint32_t app_age_ticks;        /**< ticks since the last HEARTBEAT, saturating */
+  uint32_t app_alive;            /**< 1: HEARTBEAT within `app_timeout_ticks`, as decided in this tick */
+  uint32_t holder;               /**< control holder named by the last HEARTBEAT */
+  uint32_t link_generation;      /**< attachment from which requests come */
+  uint32_t last_sequence;        /**< newest sequence number of that attachment */
+  uint32_t overruns_in_row;      /**< missed deadlines in a row, saturating */
+  uint32_t overruns;             /**< missed deadlines since boot, saturating */
+  uint32_t bus_bad_ticks;        /**< ticks in a row without any valid frame, saturating */
+  uint32_t config_crc;           /**< CRC-32 of the configuration at `ilk_init` */
+  uint32_t config_slice;         /**< slice that the next tick checks */
+  uint32_t config_partial_crc;   /**< CRC-32 over the slices before it */
+  uint32_t config_sound;         /**< 0: damaged; 1: the last whole pass agreed */
+  uint32_t requests_accepted;    /**< since boot, saturating */
+  uint32_t requests_refused;     /**< since boot, saturating */
   ilk_axis_t axis[ILK_SLOTS];
-  uint32_t seal_sum;              /**< seal of all words above */
-  uint32_t seal_order;            /**< position-dependent half of the seal */
+  uint32_t seal; /**< digest of all words above */
 } ilk_state_t;
 
 /** What the executive saw in this tick. Contacts: 1 closed, 0 open; any other value counts as unsafe. */
@@ -165,15 +164,15 @@ typedef struct {
 
 /** One wish of the app. Fields that a kind does not use are ignored, but covered by the CRC. */
 typedef struct {
-  uint32_t sequence;      /**< newer than every earlier one of this attachment; starts at 1 */
-  uint32_t kind;          /**< ilk_request_kind_t */
-  uint32_t axis;          /**< slot, for requests that name an axis */
-  int32_t target_counts;  /**< MOVE: setpoint; RESTORE: position */
-  uint32_t drive;         /**< MOVE: 0 to `max_drive` */
-  uint32_t amplitude;     /**< MOVE: 0 to `max_amplitude` */
-  uint32_t lease_ticks;   /**< MOVE: 1 to `lease_max_ticks` */
-  uint32_t holder;        /**< HEARTBEAT: who holds motion authority */
-  uint32_t crc;           /**< `ilk_request_crc` of the words above */
+  uint32_t sequence;     /**< newer than every earlier one of this attachment; starts at 1 */
+  uint32_t kind;         /**< ilk_request_kind_t */
+  uint32_t axis;         /**< slot, for requests that name an axis */
+  int32_t target_counts; /**< MOVE: setpoint; RESTORE: position */
+  uint32_t drive;        /**< MOVE: 0 to `max_drive` */
+  uint32_t amplitude;    /**< MOVE: 0 to `max_amplitude` */
+  uint32_t lease_ticks;  /**< MOVE: 1 to `lease_max_ticks` */
+  uint32_t holder;       /**< HEARTBEAT: who holds motion authority */
+  uint32_t crc;          /**< `ilk_request_crc` of the words above */
 } ilk_request_t;
 
 /** The one answer to a request. */

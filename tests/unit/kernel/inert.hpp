@@ -16,8 +16,7 @@ inline auto state_without_counters(const Bench& bench) {
   state.last_sequence = 0;
   state.requests_accepted = 0;
   state.requests_refused = 0;
-  state.seal_sum = 0;
-  state.seal_order = 0;
+  state.seal = 0;
   return std::bit_cast<std::array<uint32_t, sizeof(ilk_state_t) / 4>>(state);
 }
 

@@ -160,7 +160,7 @@ TEST(P14_containment, a_lock_by_damage_is_left_only_by_RESET_with_the_pedal_up) 
   Bench bench;
   bench.to_motion();
   bench.watched = false;
-  bench.damage_state().seal_sum ^= 1u;
+  bench.damage_state().seal ^= 1u;
   bench.tick();
   expect_contained(bench);
   EXPECT_EQ(bench.ask(reset()), ILK_VERDICT_PEDAL_DOWN);
