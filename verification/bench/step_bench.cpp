@@ -13,10 +13,9 @@
 #include <functional>
 #include <iostream>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 #include "interlock/kernel.h"
 
@@ -203,10 +202,13 @@ Scenario make_scenario(const std::string& name, uint32_t measured) {
   }
   if ((name == "rebuilding") || (name == "revalidating")) {
     const uint32_t period = (name == "rebuilding") ? 1 : kConfigurationPass;
-    return {ten_axes(ILK_CARD_PWM), Recorder(true).record(kWarmUpTicks + period * measured, [](Recorder& tick) {
-              tick.move_all(0);
-              tick.heartbeat();
-            }), period};
+    return {ten_axes(ILK_CARD_PWM),
+            Recorder(true).record(kWarmUpTicks + period * measured,
+                                  [](Recorder& tick) {
+                                    tick.move_all(0);
+                                    tick.heartbeat();
+                                  }),
+            period};
   }
   return {ten_axes(ILK_CARD_PWM), Recorder(false).record(ticks, [](Recorder&) {})};
 }
@@ -274,7 +276,10 @@ nlohmann::json summary(std::vector<int64_t> times) {
   const auto at = [&](double share) {
     return times[static_cast<std::size_t>(share * static_cast<double>(times.size() - 1))];
   };
-  return {{"steps", times.size()}, {"median_ns", at(0.5)}, {"p99_ns", at(0.99)}, {"p999_ns", at(0.999)},
+  return {{"steps", times.size()},
+          {"median_ns", at(0.5)},
+          {"p99_ns", at(0.99)},
+          {"p999_ns", at(0.999)},
           {"max_ns", times.back()}};
 }
 

@@ -61,10 +61,10 @@ typedef struct {
 
 /** What the kernel shows of itself, whole, once a tick. */
 typedef struct {
-  uint32_t clock;        /**< ilk_clock_t of sim_bus.h */
-  uint32_t simulated;    /**< 1: the bus is a simulator */
-  uint32_t degraded;     /**< 1: real clock without the real-time measures it needs */
-  uint32_t granted;      /**< bits by ilk_rt_measure_t */
+  uint32_t clock;     /**< ilk_clock_t of sim_bus.h */
+  uint32_t simulated; /**< 1: the bus is a simulator */
+  uint32_t degraded;  /**< 1: real clock without the real-time measures it needs */
+  uint32_t granted;   /**< bits by ilk_rt_measure_t */
   uint32_t period_us;
   uint32_t config_crc;
   uint32_t requests_dropped; /**< records skipped because the ring was overrun, saturating */
@@ -99,10 +99,10 @@ typedef struct {
   uint32_t version;
   uint32_t layout_hash;
   uint32_t generation;
-  uint32_t request_tail;   /**< requests consumed; the app may write up to ILK_LINK_REQUESTS beyond it */
-  uint32_t event_head;     /**< events written, wrapping */
-  uint32_t snapshot_lock;  /**< seqlock: odd while the snapshot is being written, 0 until the first one;
-                                also the futex to wait on */
+  uint32_t request_tail;  /**< requests consumed; the app may write up to ILK_LINK_REQUESTS beyond it */
+  uint32_t event_head;    /**< events written, wrapping */
+  uint32_t snapshot_lock; /**< seqlock: odd while the snapshot is being written, 0 until the first one;
+                               also the futex to wait on */
   ilk_snapshot_t snapshot;
   ilk_event_t event[ILK_LINK_EVENTS];
 } ilk_link_kernel_region_t;
@@ -110,11 +110,11 @@ typedef struct {
 /** Written by the app, readable by the kernel. */
 typedef struct {
   uint32_t magic;
-  uint32_t request_head;  /**< requests written, wrapping */
-  uint32_t seen_tick;     /**< newest tick whose snapshot the app has handled; paces the simulated clock.
-                               Wake its futex after writing: a kernel that waits for it then goes on at
-                               once, else within a millisecond. An app that leaves it unchanged for 2 s of
-                               wall time is no longer waited for until it changes */
+  uint32_t request_head; /**< requests written, wrapping */
+  uint32_t seen_tick;    /**< newest tick whose snapshot the app has handled; paces the simulated clock.
+                              Wake its futex after writing: a kernel that waits for it then goes on at
+                              once, else within a millisecond. An app that leaves it unchanged for 2 s of
+                              wall time is no longer waited for until it changes */
   ilk_request_t request[ILK_LINK_REQUESTS];
 } ilk_link_app_region_t;
 

@@ -29,13 +29,13 @@ typedef struct {
   uint32_t version;
   uint32_t frame_words; /**< ILK_FRAME_WORDS of the sender */
   uint32_t period_us;
-  uint32_t clock;       /**< ilk_clock_t */
-  uint32_t config_crc;  /**< of the kernel's configuration, for the record */
+  uint32_t clock;      /**< ilk_clock_t */
+  uint32_t config_crc; /**< of the kernel's configuration, for the record */
 } ilk_sim_hello_t;
 
 typedef struct {
   uint32_t magic;
-  uint32_t tick;        /**< kernel tick, for the record */
+  uint32_t tick; /**< kernel tick, for the record */
   uint32_t lamp[ILK_LAMP_COUNT];
   uint32_t frame[ILK_SLOTS][ILK_FRAME_WORDS];
 } ilk_sim_exchange_t;
