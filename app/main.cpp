@@ -33,6 +33,7 @@
 namespace interlock {
 namespace {
 
+constexpr int exit_failed = 1;
 constexpr int exit_unusable = 2;
 constexpr std::size_t log_file_bytes = 5u << 20u;
 constexpr std::size_t log_files = 4;
@@ -139,18 +140,6 @@ std::string url_of(const web::Listen& listen, std::uint16_t port) {
   return "http://" + host + ":" + std::to_string(port) + "/";
 }
 
-/** A handler that threw is recorded and the rest goes on; the kernel does not depend on it. */
-void run_recording(boost::asio::io_context& network) {
-  for (;;) {
-    try {
-      network.run();
-      return;
-    } catch (const std::exception& error) {
-      spdlog::critical("uncaught exception: {}", error.what());
-    }
-  }
-}
-
 tl::expected<void, std::string> serve(const Options& options, const Model& model) {
   boost::asio::io_context network(1);
   const auto executor = network.get_executor();
@@ -176,7 +165,7 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   const std::string url = url_of(options.listen, server.port());
   spdlog::info("interlock-app {} {} serves {} at {}", version(), commit(), model.robot.name, url);
   std::cout << "ready " << url << std::endl;
-  run_recording(network);
+  network.run();
   return {};
 }
 
@@ -195,16 +184,23 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   std::abort();
 }
 
+/** An exception that nobody expected leaves the app in a state that nobody knows: it ends, to be started
+ * anew. */
 int run(const Options& options) {
-  const auto served =
-      start_log(options).and_then([&] { return load_model(options); }).and_then([&](const Model& model) {
-        return serve(options, model);
-      });
-  if (!served) {
+  try {
+    const auto served =
+        start_log(options).and_then([&] { return load_model(options); }).and_then([&](const Model& model) {
+          return serve(options, model);
+        });
+    if (served) {
+      return 0;
+    }
     std::cerr << "interlock-app: " << served.error() << std::endl;
     return exit_unusable;
+  } catch (const std::exception& error) {
+    spdlog::critical("uncaught exception: {}", error.what());
+    return exit_failed;
   }
-  return 0;
 }
 
 }  // namespace

@@ -335,20 +335,33 @@ Api::Answering Api::bench_command(const Request& request, const Parameters& para
   co_return co_await pass_to_bench(parameters[0], std::move(*body));
 }
 
+/** Starts, renews or ends the hold; `renew` is the app's own field, which the plant does not know. */
+tl::expected<void, Problem> Api::take_pedal(json& body) {
+  const json renew = body.value("renew", json(false));
+  body.erase("renew");
+  if (!renew.is_boolean()) {
+    return fail(
+        {Status::unprocessable_entity, "INVALID", "renew is no boolean.", "renew", "true or false", "", ""});
+  }
+  if (body.value("pressed", json()) != json(true)) {
+    pedal_.release();
+    return {};
+  }
+  if (renew == json(true) && !pedal_.held()) {
+    return fail(pedal_lapsed());
+  }
+  pedal_.hold(view(), steady_clock::now());
+  return {};
+}
+
 Api::Answering Api::pass_to_bench(std::string command, json body) {
   if (!bench_) {
     co_return fail(no_bench());
   }
   if (command == "pedal") {
-    const bool renewal = body.value("renew", json()) == json(true);
-    body.erase("renew");
-    if (renewal && !pedal_.held()) {
-      co_return fail(pedal_lapsed());
-    }
-    if (body.value("pressed", json()) == json(true)) {
-      pedal_.hold(view(), steady_clock::now());
-    } else {
-      pedal_.release();
+    const auto taken = take_pedal(body);
+    if (!taken) {
+      co_return fail(taken.error());
     }
   }
   body["command"] = std::move(command);

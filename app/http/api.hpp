@@ -57,6 +57,7 @@ class Api {
   Answering bench_status();
   Answering bench_command(const Request& request, const Parameters& parameters);
 
+  tl::expected<void, Problem> take_pedal(nlohmann::json& body);
   Answering pass_to_bench(std::string command, nlohmann::json body);
   [[nodiscard]] tl::expected<const Axis*, Problem> axis_of(const std::string& slot) const;
   const ControlView& view();

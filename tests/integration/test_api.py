@@ -242,6 +242,15 @@ def test_a_bench_pedal_that_is_not_renewed_comes_up_after_half_a_second_of_kerne
     wait_for_mode(robot, "READY")
 
 
+def test_a_late_renewal_of_the_bench_pedal_is_no_press(robot: Stack) -> None:
+    renewal = {"pressed": True, "renew": True}
+    assert problem(robot.api.post("/api/bench/pedal", json=renewal), 409, "PEDAL_LAPSED")["next_step"]
+    wrong = problem(robot.api.post("/api/bench/pedal", json={"pressed": True, "renew": 1}), 422, "INVALID")
+    assert wrong["field"] == "renew"
+    judge(robot.api.post("/api/bench/pedal", json={"pressed": False})).raise_for_status()
+    assert last(robot, "pedal_pressed") is None
+
+
 def test_the_bench_passes_commands_on_and_names_its_refusals(robot: Stack) -> None:
     judge(robot.api.post("/api/bench/estop", json={"pulled": True})).raise_for_status()
     wait_until("E-stop seen", lambda: robot.status()["estop"])

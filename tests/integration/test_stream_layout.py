@@ -1,4 +1,4 @@
-"""The stream's binary message, read as `x-stream` of spec/openapi.yaml describes it, shows what the paths show."""
+"""The stream's binary message, read by `x-stream` of spec/openapi.yaml, shows what the paths show."""
 
 import struct
 import tomllib
