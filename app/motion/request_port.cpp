@@ -3,7 +3,7 @@
 namespace interlock {
 
 bool RequestPort::send(const ilk_request_t& request, const RequestOrigin& origin) noexcept {
-  if (left_ == 0 || flights_[(link_.last_sequence() + 1) % flights].sequence != 0) {
+  if (left_ == 0) {
     return false;
   }
   const std::uint32_t sequence = link_.send(request);

@@ -43,7 +43,7 @@ class RequestPort {
   /** Opens the budget of a new tick: ILK_REQUESTS_PER_TICK requests. */
   void begin_tick() noexcept { left_ = ILK_REQUESTS_PER_TICK; }
 
-  /** False when this tick's budget is used up, too many verdicts are outstanding, or the ring is full. */
+  /** False when this tick's budget is used up or the ring is full. */
   bool send(const ilk_request_t& request, const RequestOrigin& origin) noexcept;
 
   /** Who sent the request of that number; empty when it is not, or no longer, waited for. */
@@ -61,7 +61,10 @@ class RequestPort {
   }
 
  private:
-  /** One slot for each record of the ring; twice, since verdicts come back later than the ring is read. */
+  /**
+   * Twice the records of the ring, since verdicts come back later than the ring is read. A request whose
+   * verdict is still missing so much later has lost it; its place is taken by a newer one.
+   */
   static constexpr std::size_t flights = 2 * ILK_LINK_REQUESTS;
 
   struct Flight {

@@ -1,0 +1,80 @@
+/**
+ * @file
+ * The control thread on one side, the test as kernel and as network on the other, in lockstep by `seen_tick`.
+ */
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <memory>
+#include <stop_token>
+#include <thread>
+#include <vector>
+
+#include "kernel_side.hpp"
+#include "motion/control_loop.hpp"
+#include "robot_fixture.hpp"
+
+namespace interlock::test {
+
+class ControlLoopTest : public testing::Test {
+ protected:
+  ControlLoopTest() : snapshot_(ready_view().snapshot) {
+    thread_ = std::jthread([this](const std::stop_token& stop) { loop_.run(stop); });
+    kernel_.accept();
+  }
+
+  /** Publishes the next tick and waits until the control thread has handled it; its requests are then in
+   * `requests_`. */
+  void tick(std::uint32_t ticks = 1) {
+    snapshot_.state.tick += ticks;
+    kernel_.publish(snapshot_);
+    while (__atomic_load_n(&kernel_.app().seen_tick, __ATOMIC_ACQUIRE) != snapshot_.state.tick) {
+      std::this_thread::yield();
+    }
+    requests_.clear();
+    while (const auto request = kernel_.take_request()) {
+      requests_.push_back(*request);
+    }
+  }
+
+  [[nodiscard]] const ilk_request_t* sent(std::uint32_t kind) const {
+    for (const ilk_request_t& request : requests_) {
+      if (request.kind == kind) {
+        return &request;
+      }
+    }
+    return nullptr;
+  }
+
+  template <typename T>
+  std::vector<T> notices() {
+    std::vector<T> found;
+    mailbox_->notices.consume_all([&](const Notice& notice) {
+      if (const auto* wanted = std::get_if<T>(&notice)) {
+        found.push_back(*wanted);
+      }
+    });
+    return found;
+  }
+
+  void command(const Command& command) { ASSERT_TRUE(mailbox_->commands.push(command)); }
+
+  static Ask ask(std::uint32_t ticket, std::uint32_t kind) {
+    return {ticket, kind, insertion, std::chrono::steady_clock::now() + std::chrono::hours(1)};
+  }
+
+  OrderStatus order() { return mailbox_->view.newest().orders[insertion]; }
+
+  void stop() { mailbox_->stops.fetch_add(1, std::memory_order_release); }
+
+  KernelSide kernel_;
+  std::unique_ptr<Mailbox> mailbox_ = std::make_unique<Mailbox>();
+  ControlLoop loop_{kernel_.socket(), RobotPlan(neuro(), neuro_config()), *mailbox_};
+  ilk_snapshot_t snapshot_;
+  std::vector<ilk_request_t> requests_;
+  std::jthread thread_;
+};
+
+}  // namespace interlock::test
