@@ -63,7 +63,9 @@ void describe(CLI::App& cli, Options& options) {
   cli.add_option("--link", options.link_socket, "the kernel's link socket")->required();
   cli.add_option("--bench", options.bench_socket, "control socket of the simulated hardware");
   cli.add_option("--listen", options.listen.address, "loopback address to serve on")->capture_default_str();
-  cli.add_option("--port", options.listen.port, "port to serve on; 0: any free one")->capture_default_str();
+  cli.add_option("--port", options.listen.port, "port to serve on; 0: any free one")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
   cli.add_option("--web", options.web_directory, "folder of the built console")
       ->check(CLI::ExistingDirectory);
   cli.add_option("--state", options.state_directory, "folder for logs and other run-time state");
