@@ -18,80 +18,82 @@ static uint32_t mix(uint32_t digest, uint32_t word) {
 }
 
 static uint32_t axis_digest(const ilk_axis_t *axis) {
-  uint32_t digest = SEAL_SEED;
-  digest = mix(digest, axis->state);
-  digest = mix(digest, axis->fault);
-  digest = mix(digest, axis->fault_tick);
-  digest = mix(digest, (uint32_t)axis->fault_value);
-  digest = mix(digest, axis->homed);
-  digest = mix(digest, axis->switch_triggered);
-  digest = mix(digest, axis->card_valid);
-  digest = mix(digest, axis->card_seen);
-  digest = mix(digest, axis->bad_frames);
-  digest = mix(digest, axis->checksum_failures);
-  digest = mix(digest, axis->heartbeat);
-  digest = mix(digest, axis->card_time_us);
-  digest = mix(digest, axis->card_status);
-  digest = mix(digest, axis->ticks_since_frame);
-  digest = mix(digest, axis->raw);
-  digest = mix(digest, (uint32_t)axis->position_counts);
-  digest = mix(digest, (uint32_t)axis->delta_counts);
-  digest = mix(digest, (uint32_t)axis->setpoint_counts);
-  digest = mix(digest, axis->drive);
-  digest = mix(digest, axis->amplitude);
-  digest = mix(digest, axis->lease_ticks);
-  digest = mix(digest, axis->driven_direction);
-  digest = mix(digest, (uint32_t)axis->press_travel_counts);
-  digest = mix(digest, axis->stall_driven_ticks);
-  digest = mix(digest, axis->stall_mark_raw);
-  digest = mix(digest, axis->stall_direction);
-  digest = mix(digest, axis->setpoint_changed);
-  digest = mix(digest, axis->reverse_mark_raw);
-  digest = mix(digest, axis->reverse_direction);
-  digest = mix(digest, axis->drift_mark_raw);
-  digest = mix(digest, axis->undriven_ticks);
-  digest = mix(digest, axis->homing_phase);
-  digest = mix(digest, axis->homing_ticks);
-  digest = mix(digest, axis->homing_mark_raw);
-  digest = mix(digest, axis->rest_ticks);
-  return digest;
+  uint32_t even = SEAL_SEED;
+  uint32_t odd = SEAL_SEED;
+  even = mix(even, axis->state);
+  odd = mix(odd, axis->fault);
+  even = mix(even, axis->fault_tick);
+  odd = mix(odd, (uint32_t)axis->fault_value);
+  even = mix(even, axis->homed);
+  odd = mix(odd, axis->switch_triggered);
+  even = mix(even, axis->card_valid);
+  odd = mix(odd, axis->card_seen);
+  even = mix(even, axis->bad_frames);
+  odd = mix(odd, axis->checksum_failures);
+  even = mix(even, axis->heartbeat);
+  odd = mix(odd, axis->card_time_us);
+  even = mix(even, axis->card_status);
+  odd = mix(odd, axis->ticks_since_frame);
+  even = mix(even, axis->raw);
+  odd = mix(odd, (uint32_t)axis->position_counts);
+  even = mix(even, (uint32_t)axis->delta_counts);
+  odd = mix(odd, (uint32_t)axis->setpoint_counts);
+  even = mix(even, axis->drive);
+  odd = mix(odd, axis->amplitude);
+  even = mix(even, axis->lease_ticks);
+  odd = mix(odd, axis->driven_direction);
+  even = mix(even, (uint32_t)axis->press_travel_counts);
+  odd = mix(odd, axis->stall_driven_ticks);
+  even = mix(even, axis->stall_mark_raw);
+  odd = mix(odd, axis->stall_direction);
+  even = mix(even, axis->setpoint_changed);
+  odd = mix(odd, axis->reverse_mark_raw);
+  even = mix(even, axis->reverse_direction);
+  odd = mix(odd, axis->drift_mark_raw);
+  even = mix(even, axis->undriven_ticks);
+  odd = mix(odd, axis->homing_phase);
+  even = mix(even, axis->homing_ticks);
+  odd = mix(odd, axis->homing_mark_raw);
+  even = mix(even, axis->rest_ticks);
+  return mix(even, odd);
 }
 _Static_assert(sizeof(ilk_axis_t) == (35u * sizeof(uint32_t)), "every word is sealed");
 
 static uint32_t system_digest(const ilk_state_t *state) {
-  uint32_t digest = SEAL_SEED;
-  digest = mix(digest, state->tick);
-  digest = mix(digest, state->mode);
-  digest = mix(digest, state->cause);
-  digest = mix(digest, state->cause_tick);
-  digest = mix(digest, state->cause_value);
-  digest = mix(digest, state->causes_seen);
-  digest = mix(digest, state->pedal);
-  digest = mix(digest, state->pedal_armed);
-  digest = mix(digest, state->pedal_pressed_ticks);
-  digest = mix(digest, state->pedal_released_ticks);
-  digest = mix(digest, state->pedal_disagree_ticks);
-  digest = mix(digest, state->estop);
-  digest = mix(digest, state->app_age_ticks);
-  digest = mix(digest, state->app_alive);
-  digest = mix(digest, state->holder);
-  digest = mix(digest, state->link_generation);
-  digest = mix(digest, state->last_sequence);
-  digest = mix(digest, state->overruns_in_row);
-  digest = mix(digest, state->overruns);
-  digest = mix(digest, state->bus_bad_ticks);
-  digest = mix(digest, state->config_crc);
-  digest = mix(digest, state->config_slice);
-  digest = mix(digest, state->config_partial_crc);
-  digest = mix(digest, state->config_sound);
-  digest = mix(digest, state->requests_accepted);
-  digest = mix(digest, state->requests_refused);
-  return digest;
+  uint32_t even = SEAL_SEED;
+  uint32_t odd = SEAL_SEED;
+  odd = mix(odd, state->tick);
+  even = mix(even, state->mode);
+  odd = mix(odd, state->cause);
+  even = mix(even, state->cause_tick);
+  odd = mix(odd, state->cause_value);
+  even = mix(even, state->causes_seen);
+  odd = mix(odd, state->pedal);
+  even = mix(even, state->pedal_armed);
+  odd = mix(odd, state->pedal_pressed_ticks);
+  even = mix(even, state->pedal_released_ticks);
+  odd = mix(odd, state->pedal_disagree_ticks);
+  even = mix(even, state->estop);
+  odd = mix(odd, state->app_age_ticks);
+  even = mix(even, state->app_alive);
+  odd = mix(odd, state->holder);
+  even = mix(even, state->link_generation);
+  odd = mix(odd, state->last_sequence);
+  even = mix(even, state->overruns_in_row);
+  odd = mix(odd, state->overruns);
+  even = mix(even, state->bus_bad_ticks);
+  odd = mix(odd, state->config_crc);
+  even = mix(even, state->config_slice);
+  odd = mix(odd, state->config_partial_crc);
+  even = mix(even, state->config_sound);
+  odd = mix(odd, state->requests_accepted);
+  even = mix(even, state->requests_refused);
+  return mix(even, odd);
 }
 _Static_assert(sizeof(ilk_state_t) == ((ILK_SLOTS * sizeof(ilk_axis_t)) + (27u * sizeof(uint32_t))),
                "every word is sealed, or is the seal");
 
-/** Each part has a digest of its own, so that a processor can work on several at once. */
+/** Each part has a digest of its own, made in two lanes, so that a processor can work on several at once. */
 static uint32_t state_digest(const ilk_state_t *state) {
   uint32_t digest = system_digest(state);
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
