@@ -162,6 +162,29 @@ struct LoopLimits {
   bool operator==(const LoopLimits&) const = default;
 };
 
+/** Travel of one axis: a distance for a nudge, a position for a move. */
+struct AxisCounts {
+  std::uint32_t slot = 0;
+  std::int32_t counts = 0;
+
+  bool operator==(const AxisCounts&) const = default;
+};
+
+/**
+ * One step of homing the robot. Exactly one of `home`, `nudge` and `move` is not empty; its axes go together,
+ * and the next step begins when all have arrived.
+ */
+struct HomeStep {
+  std::string name;                /**< for programs: "probe_out" */
+  std::string title;               /**< for people: "Probe out" */
+  std::vector<std::uint32_t> home; /**< slots of axes that go to their switches */
+  std::vector<AxisCounts> nudge;   /**< signed distances by which axes go that are not homed; in each press of
+                                      the pedal at most their `unhomed_travel_counts` */
+  std::vector<AxisCounts> move;    /**< positions to which axes go that are homed */
+
+  bool operator==(const HomeStep&) const = default;
+};
+
 /** Where the robot was written down, so that later findings can name the place. */
 struct Origin {
   std::string file;
@@ -179,6 +202,7 @@ struct Robot {
   LoopLimits loop;
   std::vector<Axis> axes;
   std::vector<std::uint32_t> home_order; /**< slots of the axes with a switch, first to home first */
+  std::vector<HomeStep> home_steps;      /**< in the order in which they run */
   Origin origin;
 
   /** The axis of that name, or null. */

@@ -21,6 +21,448 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/session": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Who is logged in here; `user` is null when nobody is. */
+        get: operations["getSession"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/login": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Opens a session. After three wrong passwords for a user in a row each further attempt has to wait, 1 s at first,
+         *     doubled each time up to 60 s, whoever tries; a success ends that.
+         */
+        post: operations["login"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/logout": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Ends the session; motion authority that it held is released. */
+        post: operations["logout"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/password": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /** Changes one's own password. Every other session of the user ends. */
+        put: operations["changePassword"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/users": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Everybody who may log in or might once. */
+        get: operations["listUsers"];
+        put?: never;
+        /** Adds a user. Users are never removed, as the audit names them; they are disabled. */
+        post: operations["addUser"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/users/{user}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                user: string;
+            };
+            cookie?: never;
+        };
+        get?: never;
+        /** Changes role, password or right to log in, and ends the user's sessions. Fields left out stay. */
+        put: operations["changeUser"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/authority": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Who may move the robot, and who asks to. */
+        get: operations["getAuthority"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/authority/request": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Takes the authority when nobody holds it; else the wish is shown to everybody until it is granted, withdrawn by
+         *     `release`, or the session ends. Every change of holder ends MOTION and aborts all open proposals.
+         */
+        post: operations["requestAuthority"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/authority/release": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Gives up the authority, or withdraws one's wish for it. Without either nothing happens. */
+        post: operations["releaseAuthority"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/authority/hand-over": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Gives the authority to a session that asks for it. */
+        post: operations["handOverAuthority"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/authority/take-over": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Takes the authority from whoever holds it. */
+        post: operations["takeOverAuthority"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/robots": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The robot that this app was started with, as its file describes it. */
+        get: operations["listRobots"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/mode": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The robot's modes and the one that it is in. */
+        get: operations["getMode"];
+        /**
+         * Changes the mode. `home` proposes all of the robot's home steps, as `POST /api/proposals` with `{"kind":"home"}`
+         *     does, and is refused as that is; it ends in `manual` by itself. `manual` aborts what the other mode had open.
+         */
+        put: operations["setMode"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/motors/zero-all": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Sends SET_HOME for every axis in the order of the file; each has its own verdict. */
+        post: operations["zeroAll"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/motors/restore": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Sets the positions of the named axes to those of a saved file by RESTORE, in the order of the robot's file. The file is
+         *     checked as by `POST /api/positions/compare`; when it is refused no axis is restored. Restored axes are not homed.
+         */
+        put: operations["restoreMotors"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/positions": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The present positions as a file; the header Content-Disposition proposes a name. */
+        get: operations["savePositions"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/positions/compare": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Checks a saved file and sets its positions beside the present ones. Changes nothing. */
+        post: operations["comparePositions"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/targeting": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Registration, entry, target and probe, as last set. */
+        get: operations["getTargeting"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/targeting/registration": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /** Sets the pose of the robot in the scanner. Refused unless it is rigid. */
+        put: operations["setRegistration"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/targeting/current": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /** Notes the pose that an imager reports; it never replaces what the encoders say. */
+        put: operations["setReportedPose"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/targeting/target": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /** Sets entry, target and probe offsets; fields left out stay. */
+        put: operations["setTarget"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/communications": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Every connection to this app. */
+        get: operations["listCommunications"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/communications/disconnect": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /** Ends a stream connection. Its client may come back. */
+        put: operations["disconnect"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/logs": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The newest lines of the log, oldest first. */
+        get: operations["getLogs"];
+        /** Changes the level from which on lines are logged, until the app ends. */
+        put: operations["setLogLevel"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/audit": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The newest records of the audit, oldest first. */
+        get: operations["getAudit"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/motors": {
         parameters: {
             query?: never;
@@ -38,12 +480,13 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/motors/{slot}": {
+    "/api/motors/{axis}": {
         parameters: {
             query?: never;
             header?: never;
             path: {
-                slot: components["parameters"]["Slot"];
+                /** @description Slot or name of the axis. */
+                axis: components["parameters"]["Axis"];
             };
             cookie?: never;
         };
@@ -57,19 +500,20 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/motors/{slot}/{action}": {
+    "/api/motors/{axis}/{action}": {
         parameters: {
             query?: never;
             header?: never;
             path: {
-                slot: components["parameters"]["Slot"];
-                action: "enable" | "disable" | "clear-fault" | "home" | "set-home";
+                /** @description Slot or name of the axis. */
+                axis: components["parameters"]["Axis"];
+                action: "enable" | "disable" | "clear-fault" | "set-home";
             };
             cookie?: never;
         };
         get?: never;
         put?: never;
-        /** Sends one request for the axis to the kernel and waits for its verdict. */
+        /** Sends one request for the axis to the kernel and waits for its verdict. Homing is motion, hence a proposal. */
         post: operations["actOnMotor"];
         delete?: never;
         options?: never;
@@ -88,11 +532,13 @@ export interface paths {
         get: operations["listProposals"];
         put?: never;
         /**
-         * Drafts a move of one axis, checks it and, since the console's author releases it by creating it,
-         *     approves it. It executes while the pedal is held. A newer proposal of the same axis replaces an open one.
+         * Drafts a move of one axis, or homing, checks it and, since the console's author releases it by creating it,
+         *     approves it. It executes while the pedal is held. A newer move of the same axis replaces an open one; homing
+         *     replaces every open proposal, and until it has ended moves are refused (MODE_HOME).
          *     Refused here, in this order: another configuration than the kernel's (CONFIG_MISMATCH), a locked system (MODE),
          *     an axis that is FAULTED, homing (BUSY) or DISABLED, a drive above its bound (DRIVE), a target outside
-         *     `min_counts` to `max_counts` of the motor (RANGE). A refused draft stays in the list.
+         *     `min_counts` to `max_counts` of the motor (RANGE); homing an axis that has no switch (NO_SWITCH).
+         *     A refused draft stays in the list.
          */
         post: operations["createProposal"];
         delete?: never;
@@ -148,7 +594,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Ends MOTION and aborts every open proposal. Never refused, never confirmed, always answered. */
+        /** Ends MOTION and aborts every open proposal. Needs no login; never refused, never confirmed, always answered. */
         post: operations["stop"];
         delete?: never;
         options?: never;
@@ -242,6 +688,8 @@ export interface components {
             status: number;
             /**
              * @description Verdict name, or NOT_FOUND, METHOD_NOT_ALLOWED, MALFORMED, INVALID, TOO_LARGE, HOST, ORIGIN, UPGRADE_REQUIRED,
+             *     LOGIN, CREDENTIALS, BACK_OFF, ROLE, AUTHORITY, EXISTS, LAST_ADMIN, STORE, MODE_HOME,
+             *     POSITIONS_ROBOT, POSITIONS_CONFIG, POSITIONS_VERSION,
              *     NO_KERNEL, NO_BENCH, PEDAL_LAPSED, CONFIG_MISMATCH, ENDED, OVERLOADED, INTERNAL.
              */
             code: string;
@@ -273,7 +721,10 @@ export interface components {
             pedal: string;
             pedal_armed: boolean;
             app_alive: boolean;
+            /** @description Number of the present motion authority in the kernel, new with each change; 0: nobody. */
             holder?: number;
+            /** @description As `mode` of /api/mode. */
+            app_mode?: string;
             overruns?: number;
             /** @description Eight hex digits. */
             config_crc: string;
@@ -282,11 +733,16 @@ export interface components {
             lamps?: {
                 [key: string]: string;
             };
+            /** @description The ten slots, 0 to 9. */
             cards: {
                 slot: number;
+                /** @description Kind that the robot file expects there; NONE for an empty slot. */
                 card: string;
+                /** @description Frames of the card were seen and it is not lost. */
                 detected: boolean;
                 heartbeat: number;
+                /** @description The heartbeat advanced with the newest frame. */
+                heartbeat_live: boolean;
                 checksum_failures: number;
             }[];
             /** @description Per phase of the tick, histogram in powers of two of nanoseconds, and the maximum. */
@@ -320,6 +776,10 @@ export interface components {
             soft_min_counts: number;
             soft_max_counts: number;
             homed: boolean;
+            /** @description An open proposal homes this axis. */
+            homing: boolean;
+            /** @description It can be homed; else only SET_HOME makes it homed. */
+            has_switch: boolean;
             switch: boolean;
             limit_side: string;
             gate?: string;
@@ -328,9 +788,19 @@ export interface components {
             unhomed_max_drive: number;
             deadband_counts?: number;
         };
-        /** @description Exactly one of `target` and `target_counts`. */
+        /**
+         * @description A move (the default `kind`) needs `slot` and exactly one of `target` and `target_counts`. Homing takes at most one of `slot` (that axis) and
+         *     `step` (one home step of the robot); with neither it runs all steps in the order of the robot's file.
+         */
         ProposalDraft: {
-            slot: number;
+            /**
+             * @default move
+             * @enum {string}
+             */
+            kind: "move" | "home";
+            /** @description Name of a home step. */
+            step?: string;
+            slot?: number;
             /** @description In the axis' unit. */
             target?: number;
             target_counts?: number;
@@ -340,16 +810,22 @@ export interface components {
         Proposal: {
             id: number;
             /** @enum {string} */
-            kind: "move";
-            slot: number;
-            axis: string;
+            kind: "move" | "home";
+            /** @description Null when several axes move. */
+            slot: number | null;
+            axis: string | null;
+            /** @description Names of all axes that it moves. */
+            axes: string[];
+            /** @description Home step that runs or is next; null for a move, and when homing has ended. */
+            step?: string | null;
             author: string;
             /** @enum {string} */
             source: "console";
             /** @enum {string} */
             state: "drafted" | "checked" | "approved" | "executing" | "paused" | "done" | "refused" | "aborted" | "expired";
-            target_counts: number;
-            target: number;
+            /** @description Null for homing. */
+            target_counts: number | null;
+            target: number | null;
             drive?: number;
             /** Format: date-time */
             created: string;
@@ -360,6 +836,233 @@ export interface components {
             verdict?: string | null;
             /** @description Why it is in this state, for people. */
             detail: string;
+        };
+        /** @enum {string} */
+        Role: "viewer" | "engineer" | "admin";
+        /** @enum {string} */
+        LogLevel: "debug" | "info" | "warning" | "error" | "critical";
+        UserName: string;
+        /** @description Not the name of the user. */
+        NewPassword: string;
+        Login: {
+            name: string;
+            password: string;
+        };
+        Session: {
+            user: components["schemas"]["User"] | null;
+            /** @description Number of the session, as in Authority; null when nobody is logged in. */
+            session?: number | null;
+            /**
+             * Format: date-time
+             * @description 12 hours after login.
+             */
+            expires?: string | null;
+        };
+        User: {
+            name: components["schemas"]["UserName"];
+            role: components["schemas"]["Role"];
+            enabled: boolean;
+            /** Format: date-time */
+            created: string;
+            /** Format: date-time */
+            last_login: string | null;
+        };
+        NewUser: {
+            name: components["schemas"]["UserName"];
+            role: components["schemas"]["Role"];
+            password: components["schemas"]["NewPassword"];
+        };
+        UserChange: {
+            role?: components["schemas"]["Role"];
+            password?: components["schemas"]["NewPassword"];
+            enabled?: boolean;
+        };
+        PasswordChange: {
+            current: string;
+            new: components["schemas"]["NewPassword"];
+        };
+        Authority: {
+            holder: components["schemas"]["Claim"] | null;
+            /** @description This session holds it. */
+            mine: boolean;
+            /** @description Oldest first. */
+            requests: components["schemas"]["Claim"][];
+        };
+        Claim: {
+            session: number;
+            user: components["schemas"]["UserName"];
+            /** Format: date-time */
+            since: string;
+        };
+        HandOver: {
+            /** @description Of one of the requests. */
+            session: number;
+        };
+        Robot: {
+            name: string;
+            title: string;
+            config_crc: string;
+            /** @description Family. */
+            kinematics: string;
+            modes: string[];
+            home_steps: {
+                name: string;
+                title: string;
+                /** @enum {string} */
+                kind: "home" | "nudge" | "move";
+                axes: string[];
+            }[];
+            axes: string[];
+        };
+        ModeAnswer: {
+            mode: string;
+            modes: string[];
+        };
+        ModeChange: {
+            mode: string;
+        };
+        AxisVerdicts: {
+            slot: number;
+            axis: string;
+            /** @description Null when the kernel did not answer. */
+            verdict: string | null;
+            /** @description What the verdict means, and what to do, unless it is ACCEPTED. */
+            detail?: string;
+        }[];
+        PositionsFile: {
+            /** @constant */
+            format: "interlock-positions";
+            /** @constant */
+            version: 1;
+            robot: string;
+            config_crc: string;
+            /** Format: date-time */
+            saved: string;
+            axes: {
+                axis: string;
+                position_counts: number;
+                setpoint_counts: number | null;
+                enabled: boolean;
+                homed: boolean;
+            }[];
+        };
+        PositionsComparison: {
+            /** Format: date-time */
+            saved: string;
+            axes: {
+                slot: number;
+                axis: string;
+                now_counts: number;
+                saved_counts: number;
+                setpoint_counts: number | null;
+                enabled: boolean;
+                homed: boolean;
+                /** @description Within the soft limits. */
+                restorable: boolean;
+            }[];
+        };
+        Restore: {
+            file: components["schemas"]["PositionsFile"];
+            /** @description Names; each is in the file. */
+            axes: string[];
+        };
+        /** @description 4x4 homogeneous matrix, row-major, mm. Numeric strings are accepted for its numbers. */
+        Pose: (number | string)[];
+        /** @description x, y, z in mm. Numeric strings are accepted. */
+        Point: (number | string)[];
+        /** @description mm, -1000 to 1000. */
+        Offset: number | string;
+        /** @description Names as in the thesis. Poses and points are in the scanner's frame (RAS), mm; null until set. */
+        Targeting: {
+            /** @description The identity until set. */
+            registration: number[];
+            ignore_registration_rotation: boolean;
+            entry_point: number[] | null;
+            target_point: number[] | null;
+            /** @description A */
+            treatment_to_tip_offset: number;
+            /** @description B */
+            robot_to_entry_offset: number;
+            /** @description C */
+            cannula_to_treatment_offset: number;
+            /**
+             * @deprecated
+             * @description The thesis' spelling of the field before.
+             */
+            canula_to_treatment_offset: number;
+            /** @description D */
+            treatment_to_robot_at_home: number;
+            /** @description As an imager reported it. */
+            reported_position: number[] | null;
+        };
+        RegistrationChange: {
+            registration: components["schemas"]["Pose"];
+            ignore_registration_rotation?: boolean;
+        };
+        ReportedPoseChange: {
+            current_position: components["schemas"]["Pose"];
+        };
+        TargetChange: {
+            entry_point?: components["schemas"]["Point"];
+            target_point?: components["schemas"]["Point"];
+            treatment_to_tip_offset?: components["schemas"]["Offset"];
+            robot_to_entry_offset?: components["schemas"]["Offset"];
+            cannula_to_treatment_offset?: components["schemas"]["Offset"];
+            /**
+             * @deprecated
+             * @description The thesis' spelling of `cannula_to_treatment_offset`; not both.
+             */
+            canula_to_treatment_offset?: number | string;
+            treatment_to_robot_at_home?: components["schemas"]["Offset"];
+        };
+        Connection: {
+            /** @description By which it can be disconnected; null when it cannot. */
+            id: number | null;
+            /** @enum {string} */
+            type: "kernel" | "bench" | "console";
+            name: string;
+            connected: boolean;
+            /** @description Address of the peer. */
+            client: string | null;
+            user: string | null;
+            /** @description Port of this app that it came to. */
+            port: number | null;
+            /** Format: date-time */
+            since: string | null;
+        };
+        Disconnect: {
+            id: number;
+        };
+        LogLine: {
+            sequence: number;
+            /** Format: date-time */
+            time: string;
+            level: components["schemas"]["LogLevel"];
+            text: string;
+            /** @description How often the line before it came again right after it; such a line has that as its text too. */
+            repeated: number;
+        };
+        Logs: {
+            level: components["schemas"]["LogLevel"];
+            lines: components["schemas"]["LogLine"][];
+        };
+        LogLevelChange: {
+            level: components["schemas"]["LogLevel"];
+        };
+        AuditRecord: {
+            number: number;
+            /** Format: date-time */
+            time: string;
+            /** @description Of the kernel; null without one. */
+            tick: number | null;
+            /** @description User, or one of `kernel`, `app`, `command line`, `nobody`. */
+            actor: string;
+            session: number | null;
+            /** @enum {string} */
+            kind: "start" | "login" | "login_refused" | "logout" | "session_ended" | "user" | "authority" | "proposal" | "request" | "verdict" | "stop" | "setting" | "restore";
+            detail: Record<string, unknown>;
+            /** @description SHA-256, 64 hex digits. */
+            hash: string;
         };
         VerdictAnswer: {
             verdict: string | null;
@@ -376,7 +1079,43 @@ export interface components {
                 "application/problem+json": components["schemas"]["Problem"];
             };
         };
-        /** @description Refused; `code` is the verdict. */
+        /** @description LOGIN: nobody is logged in, or the session ended. */
+        Login: {
+            headers: {
+                [name: string]: unknown;
+            };
+            content: {
+                "application/problem+json": components["schemas"]["Problem"];
+            };
+        };
+        /** @description ROLE: the user's role does not suffice. */
+        Role: {
+            headers: {
+                [name: string]: unknown;
+            };
+            content: {
+                "application/problem+json": components["schemas"]["Problem"];
+            };
+        };
+        /** @description AUTHORITY: this session does not hold the motion authority; `detail` names who does. */
+        Authority: {
+            headers: {
+                [name: string]: unknown;
+            };
+            content: {
+                "application/problem+json": components["schemas"]["Problem"];
+            };
+        };
+        /** @description STORE: the store cannot be read or written; nothing was changed. */
+        NoStore: {
+            headers: {
+                [name: string]: unknown;
+            };
+            content: {
+                "application/problem+json": components["schemas"]["Problem"];
+            };
+        };
+        /** @description Refused; `code` is the verdict, AUTHORITY, or a code of the operation. */
         Refused: {
             headers: {
                 [name: string]: unknown;
@@ -432,7 +1171,8 @@ export interface components {
         };
     };
     parameters: {
-        Slot: number;
+        /** @description Slot or name of the axis. */
+        Axis: string;
         ProposalId: number;
     };
     requestBodies: never;
@@ -461,6 +1201,811 @@ export interface operations {
             };
         };
     };
+    getSession: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Session. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Session"];
+                };
+            };
+        };
+    };
+    login: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Login"];
+            };
+        };
+        responses: {
+            /** @description Logged in. */
+            200: {
+                headers: {
+                    "Set-Cookie"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Session"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            /** @description CREDENTIALS: name or password is wrong, or the user is disabled; which one is not said. */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            422: components["responses"]["Invalid"];
+            /** @description BACK_OFF; the header Retry-After has the seconds. */
+            429: {
+                headers: {
+                    "Retry-After"?: number;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            503: components["responses"]["NoStore"];
+        };
+    };
+    logout: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Logged out. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Session"];
+                };
+            };
+            401: components["responses"]["Login"];
+        };
+    };
+    changePassword: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PasswordChange"];
+            };
+        };
+        responses: {
+            /** @description Changed. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["User"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            /** @description CREDENTIALS: the current password is wrong. */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            422: components["responses"]["Invalid"];
+            /** @description BACK_OFF as for login. */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            503: components["responses"]["NoStore"];
+        };
+    };
+    listUsers: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Users by name. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["User"][];
+                };
+            };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    addUser: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewUser"];
+            };
+        };
+        responses: {
+            /** @description Added. */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["User"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            /** @description EXISTS: the name is taken. */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    changeUser: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                user: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["UserChange"];
+            };
+        };
+        responses: {
+            /** @description Changed. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["User"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            404: components["responses"]["NotFound"];
+            /** @description LAST_ADMIN: somebody must be left who can administer. */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    getAuthority: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Authority. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Authority"];
+                };
+            };
+            401: components["responses"]["Login"];
+        };
+    };
+    requestAuthority: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Held, now or already. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Authority"];
+                };
+            };
+            /** @description Somebody else holds it; the wish is noted. */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Authority"];
+                };
+            };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    releaseAuthority: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Not held by this session any more. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Authority"];
+                };
+            };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    handOverAuthority: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["HandOver"];
+            };
+        };
+        responses: {
+            /** @description Handed over. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Authority"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            404: components["responses"]["NotFound"];
+            409: components["responses"]["Authority"];
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    takeOverAuthority: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Held. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Authority"];
+                };
+            };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    listRobots: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description One robot. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Robot"][];
+                };
+            };
+            401: components["responses"]["Login"];
+        };
+    };
+    getMode: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Modes. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ModeAnswer"];
+                };
+            };
+            401: components["responses"]["Login"];
+        };
+    };
+    setMode: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ModeChange"];
+            };
+        };
+        responses: {
+            /** @description Modes. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ModeAnswer"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            409: components["responses"]["Refused"];
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoKernel"];
+        };
+    };
+    zeroAll: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Verdicts, also when some are refusals. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AxisVerdicts"];
+                };
+            };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            409: components["responses"]["Authority"];
+            503: components["responses"]["NoKernel"];
+        };
+    };
+    restoreMotors: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Restore"];
+            };
+        };
+        responses: {
+            /** @description Verdicts, also when some are refusals. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AxisVerdicts"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            /** @description POSITIONS_ROBOT, POSITIONS_CONFIG or POSITIONS_VERSION: the file is of another robot, configuration or version; or AUTHORITY. */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoKernel"];
+        };
+    };
+    savePositions: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Positions. */
+            200: {
+                headers: {
+                    "Content-Disposition"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PositionsFile"];
+                };
+            };
+            401: components["responses"]["Login"];
+            503: components["responses"]["NoKernel"];
+        };
+    };
+    comparePositions: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PositionsFile"];
+            };
+        };
+        responses: {
+            /** @description One row an axis, in the order of the robot's file. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PositionsComparison"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            /** @description POSITIONS_ROBOT, POSITIONS_CONFIG or POSITIONS_VERSION: the file is of another robot, configuration or version. */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoKernel"];
+        };
+    };
+    getTargeting: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Targeting. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Targeting"];
+                };
+            };
+            401: components["responses"]["Login"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    setRegistration: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["RegistrationChange"];
+            };
+        };
+        responses: {
+            /** @description Targeting. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Targeting"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            409: components["responses"]["Authority"];
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    setReportedPose: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ReportedPoseChange"];
+            };
+        };
+        responses: {
+            /** @description Targeting. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Targeting"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            409: components["responses"]["Authority"];
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    setTarget: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["TargetChange"];
+            };
+        };
+        responses: {
+            /** @description Targeting. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Targeting"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            409: components["responses"]["Authority"];
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    listCommunications: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Connections, oldest first. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Connection"][];
+                };
+            };
+            401: components["responses"]["Login"];
+        };
+    };
+    disconnect: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Disconnect"];
+            };
+        };
+        responses: {
+            /** @description The connections that are left. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Connection"][];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            404: components["responses"]["NotFound"];
+            422: components["responses"]["Invalid"];
+        };
+    };
+    getLogs: {
+        parameters: {
+            query?: {
+                lines?: number;
+                /** @description At least this level. */
+                level?: components["schemas"]["LogLevel"];
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Log. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Logs"];
+                };
+            };
+            401: components["responses"]["Login"];
+            422: components["responses"]["Invalid"];
+        };
+    };
+    setLogLevel: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["LogLevelChange"];
+            };
+        };
+        responses: {
+            /** @description Log, without lines. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Logs"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    getAudit: {
+        parameters: {
+            query?: {
+                records?: number;
+                /** @description Only records before this number. */
+                before?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Records. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AuditRecord"][];
+                };
+            };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoStore"];
+        };
+    };
     listMotors: {
         parameters: {
             query?: never;
@@ -479,6 +2024,7 @@ export interface operations {
                     "application/json": components["schemas"]["Motor"][];
                 };
             };
+            401: components["responses"]["Login"];
             503: components["responses"]["NoKernel"];
         };
     };
@@ -487,7 +2033,8 @@ export interface operations {
             query?: never;
             header?: never;
             path: {
-                slot: components["parameters"]["Slot"];
+                /** @description Slot or name of the axis. */
+                axis: components["parameters"]["Axis"];
             };
             cookie?: never;
         };
@@ -502,6 +2049,7 @@ export interface operations {
                     "application/json": components["schemas"]["Motor"];
                 };
             };
+            401: components["responses"]["Login"];
             404: components["responses"]["NotFound"];
             503: components["responses"]["NoKernel"];
         };
@@ -511,8 +2059,9 @@ export interface operations {
             query?: never;
             header?: never;
             path: {
-                slot: components["parameters"]["Slot"];
-                action: "enable" | "disable" | "clear-fault" | "home" | "set-home";
+                /** @description Slot or name of the axis. */
+                axis: components["parameters"]["Axis"];
+                action: "enable" | "disable" | "clear-fault" | "set-home";
             };
             cookie?: never;
         };
@@ -527,6 +2076,8 @@ export interface operations {
                     "application/json": components["schemas"]["VerdictAnswer"];
                 };
             };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
             404: components["responses"]["NotFound"];
             409: components["responses"]["Refused"];
             503: components["responses"]["NoKernel"];
@@ -550,6 +2101,7 @@ export interface operations {
                     "application/json": components["schemas"]["Proposal"][];
                 };
             };
+            401: components["responses"]["Login"];
         };
     };
     createProposal: {
@@ -575,6 +2127,8 @@ export interface operations {
                 };
             };
             400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
             404: components["responses"]["NotFound"];
             409: components["responses"]["Refused"];
             422: components["responses"]["Invalid"];
@@ -601,6 +2155,7 @@ export interface operations {
                     "application/json": components["schemas"]["Proposal"];
                 };
             };
+            401: components["responses"]["Login"];
             404: components["responses"]["NotFound"];
         };
     };
@@ -624,6 +2179,8 @@ export interface operations {
                     "application/json": components["schemas"]["Proposal"];
                 };
             };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
             404: components["responses"]["NotFound"];
             409: components["responses"]["Refused"];
             503: components["responses"]["NoKernel"];
@@ -670,6 +2227,8 @@ export interface operations {
                     "application/json": components["schemas"]["VerdictAnswer"];
                 };
             };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
             409: components["responses"]["Refused"];
             503: components["responses"]["NoKernel"];
         };
@@ -692,6 +2251,7 @@ export interface operations {
                     "application/json": Record<string, unknown>;
                 };
             };
+            401: components["responses"]["Login"];
             404: components["responses"]["NoBench"];
             503: components["responses"]["BenchSilent"];
         };
@@ -721,6 +2281,8 @@ export interface operations {
                 };
             };
             400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
             404: components["responses"]["NoBench"];
             /** @description A renewal of a pedal that is not held; `code` is PEDAL_LAPSED. */
             409: {
@@ -751,6 +2313,7 @@ export interface operations {
                 };
                 content?: never;
             };
+            401: components["responses"]["Login"];
             /** @description Not a WebSocket request. */
             426: {
                 headers: {
