@@ -39,8 +39,8 @@ constexpr std::array<std::string_view, 2> kRequest5Properties{"P1", "P12"};
 constexpr std::array<std::string_view, 1> kRequest6Properties{"P8"};
 constexpr std::array<std::string_view, 3> kRequest7Properties{"P1", "P4", "P7"};
 constexpr std::array<std::string_view, 2> kRequest8Properties{"P3", "P7"};
-constexpr std::array<std::string_view, 1> kRequest9Properties{"P6"};
-constexpr std::array<std::string_view, 1> kRequest10Properties{"P6"};
+constexpr std::array<std::string_view, 2> kRequest9Properties{"P4", "P6"};
+constexpr std::array<std::string_view, 2> kRequest10Properties{"P4", "P6"};
 constexpr std::array<Entry, 10> kRequest{
     Entry{1, "HEARTBEAT", "The app is alive; `holder` has motion authority.", "", "", "", kRequest1Properties},
     Entry{2, "STOP", "End MOTION now.", "", "", "", kRequest2Properties},
@@ -51,7 +51,7 @@ constexpr std::array<Entry, 10> kRequest{
     Entry{7, "MOVE", "Drive the axis towards a setpoint for as long as the lease holds.", "", "", "", kRequest7Properties},
     Entry{8, "HOME", "Reference the axis at its switch.", "", "", "", kRequest8Properties},
     Entry{9, "SET_HOME", "Declare that the axis stands at its home position.", "", "", "", kRequest9Properties},
-    Entry{10, "RESTORE", "Set the position from a saved one; the axis does not become homed by it.", "", "", "", kRequest10Properties},
+    Entry{10, "RESTORE", "Set the position from a saved one; the axis is not homed afterwards.", "", "", "", kRequest10Properties},
 };
 constexpr std::array<std::string_view, 1> kVerdict0Properties{"P11"};
 constexpr std::array<std::string_view, 1> kVerdict1Properties{"P11"};

@@ -151,7 +151,9 @@ static ilk_verdict_t check_home(const ilk_axis_config_t *config, const ilk_state
   return verdict;
 }
 
-static ilk_verdict_t check_set_home(const ilk_state_t *state, const ilk_axis_t *axis) {
+/** SET_HOME and RESTORE declare where a resting axis stands: nowhere that its soft limits exclude. */
+static ilk_verdict_t check_declare(const ilk_axis_config_t *config, const ilk_state_t *state,
+                                   const ilk_axis_t *axis, int32_t position) {
   ilk_verdict_t verdict = ILK_VERDICT_ACCEPTED;
   if (!mode_is(state, ILK_MODE_READY)) {
     verdict = ILK_VERDICT_MODE;
@@ -163,18 +165,10 @@ static ilk_verdict_t check_set_home(const ilk_state_t *state, const ilk_axis_t *
     verdict = ILK_VERDICT_CARD;
   } else if (!is_at_rest(axis)) {
     verdict = ILK_VERDICT_BUSY;
+  } else if ((position < config->min_counts) || (position > config->max_counts)) {
+    verdict = ILK_VERDICT_RANGE;
   } else {
     verdict = ILK_VERDICT_ACCEPTED;
-  }
-  return verdict;
-}
-
-static ilk_verdict_t check_restore(const ilk_axis_config_t *config, const ilk_state_t *state,
-                                   const ilk_axis_t *axis, int32_t position) {
-  ilk_verdict_t verdict = check_set_home(state, axis);
-  const bool inside = (position >= config->min_counts) && (position <= config->max_counts);
-  if ((verdict == ILK_VERDICT_ACCEPTED) && !inside) {
-    verdict = ILK_VERDICT_RANGE;
   }
   return verdict;
 }
@@ -210,10 +204,10 @@ static ilk_verdict_t check_row(const ilk_config_t *config, const ilk_state_t *st
       verdict = check_home(axis_config, state, axis);
       break;
     case (uint32_t)ILK_REQUEST_SET_HOME:
-      verdict = check_set_home(state, axis);
+      verdict = check_declare(axis_config, state, axis, 0);
       break;
     case (uint32_t)ILK_REQUEST_RESTORE:
-      verdict = check_restore(axis_config, state, axis, request->target_counts);
+      verdict = check_declare(axis_config, state, axis, request->target_counts);
       break;
     default:
       verdict = ILK_VERDICT_UNKNOWN;

@@ -82,6 +82,7 @@ static void apply_to_axis(const ilk_axis_config_t *config, ilk_axis_t *axis, con
       break;
     case (uint32_t)ILK_REQUEST_RESTORE:
       axis->position_counts = request->target_counts;
+      axis->homed = 0u;
       break;
     default:
       /* Every request that names an axis is above. */

@@ -34,7 +34,7 @@ typedef enum {
   ILK_REQUEST_MOVE = 7,        /**< Drive the axis towards a setpoint for as long as the lease holds. */
   ILK_REQUEST_HOME = 8,        /**< Reference the axis at its switch. */
   ILK_REQUEST_SET_HOME = 9,    /**< Declare that the axis stands at its home position. */
-  ILK_REQUEST_RESTORE = 10,    /**< Set the position from a saved one; the axis does not become homed by it. */
+  ILK_REQUEST_RESTORE = 10,    /**< Set the position from a saved one; the axis is not homed afterwards. */
 } ilk_request_kind_t;
 
 #define ILK_REQUEST_COUNT 10u

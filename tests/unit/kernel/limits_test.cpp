@@ -201,6 +201,19 @@ TEST(P7_bounds, unhomed_travel_used_up_allows_the_way_back) {
   EXPECT_EQ(bench.driven_direction(slot::pwm_free), ILK_DIRECTION_DECREASING);
 }
 
+TEST(P4_soft_limit, RESTORE_cannot_move_the_range_of_a_homed_axis) {
+  Bench bench;
+  bench.to_ready();
+  ASSERT_EQ(bench.ask(set_home(slot::pwm_free)), ILK_VERDICT_ACCEPTED);
+  bench.push(slot::pwm_free, 900);
+  bench.tick();
+  ASSERT_EQ(bench.ask(restore(slot::pwm_free, -900)), ILK_VERDICT_ACCEPTED);
+  EXPECT_EQ(bench.axis(slot::pwm_free).homed, 0u);
+  bench.enable_axis(slot::pwm_free);
+  bench.press();
+  EXPECT_EQ(bench.ask(move(slot::pwm_free, 900)), ILK_VERDICT_RANGE);
+}
+
 TEST(P7_bounds, RESTORE_does_not_grant_travel_or_drive) {
   Bench bench;
   bench.to_ready();

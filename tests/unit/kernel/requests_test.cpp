@@ -542,7 +542,30 @@ TEST(Request_SET_HOME, makes_the_place_zero_and_the_axis_homed) {
   }
 }
 
-TEST(Request_RESTORE, sets_the_position_and_not_homed) {
+TEST(Request_SET_HOME, is_RANGE_where_zero_lies_outside_of_the_soft_limits) {
+  struct Case {
+    int32_t min_counts;
+    int32_t max_counts;
+    ilk_verdict_t verdict;
+  };
+  for (const Case& each : {Case{0, 1200, ILK_VERDICT_ACCEPTED}, Case{1, 1200, ILK_VERDICT_RANGE},
+                           Case{-1200, 0, ILK_VERDICT_ACCEPTED}, Case{-1200, -1, ILK_VERDICT_RANGE}}) {
+    ilk_config_t config = standard_config();
+    config.axis[slot::pwm_free].min_counts = each.min_counts;
+    config.axis[slot::pwm_free].max_counts = each.max_counts;
+    config.axis[slot::pwm_free].home_offset_counts = each.min_counts;
+    seal(config);
+    Bench bench(config);
+    bench.to_ready();
+    if (each.verdict == ILK_VERDICT_ACCEPTED) {
+      EXPECT_EQ(bench.ask(set_home(slot::pwm_free)), ILK_VERDICT_ACCEPTED);
+    } else {
+      expect_refused(bench, set_home(slot::pwm_free), each.verdict);
+    }
+  }
+}
+
+TEST(Request_RESTORE, sets_the_position_and_makes_no_axis_homed) {
   for (uint32_t slot = 0; slot < slot::axes; ++slot) {
     Bench bench = ready_bench();
     EXPECT_EQ(bench.ask(restore(slot, -500)), ILK_VERDICT_ACCEPTED);

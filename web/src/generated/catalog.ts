@@ -38,8 +38,8 @@ export const catalog = {
     {"number": 6, "name": "CLEAR_FAULT", "meaning": "Acknowledge the fault of the axis.", "cause": "", "next_step": "", "clears": "", "properties": ["P8"]},
     {"number": 7, "name": "MOVE", "meaning": "Drive the axis towards a setpoint for as long as the lease holds.", "cause": "", "next_step": "", "clears": "", "properties": ["P1", "P4", "P7"]},
     {"number": 8, "name": "HOME", "meaning": "Reference the axis at its switch.", "cause": "", "next_step": "", "clears": "", "properties": ["P3", "P7"]},
-    {"number": 9, "name": "SET_HOME", "meaning": "Declare that the axis stands at its home position.", "cause": "", "next_step": "", "clears": "", "properties": ["P6"]},
-    {"number": 10, "name": "RESTORE", "meaning": "Set the position from a saved one; the axis does not become homed by it.", "cause": "", "next_step": "", "clears": "", "properties": ["P6"]},
+    {"number": 9, "name": "SET_HOME", "meaning": "Declare that the axis stands at its home position.", "cause": "", "next_step": "", "clears": "", "properties": ["P4", "P6"]},
+    {"number": 10, "name": "RESTORE", "meaning": "Set the position from a saved one; the axis is not homed afterwards.", "cause": "", "next_step": "", "clears": "", "properties": ["P4", "P6"]},
   ],
   /** The one answer to a request. */
   verdict: [
