@@ -13,7 +13,7 @@
 #include <string>
 #include <string_view>
 
-#include "proposals/utc_time.hpp"
+#include "time/utc_time.hpp"
 
 namespace interlock {
 
