@@ -1,6 +1,7 @@
 #include "cli/child_process.hpp"
 
 #include <fcntl.h>
+#include <sched.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -37,13 +38,26 @@ std::vector<char*> argument_vector(const Program& program, std::vector<std::stri
   return arguments;
 }
 
+/** The cores that a program may use; threads and children inherit them. */
+cpu_set_t cores_of(const Program& program) {
+  cpu_set_t cores;
+  CPU_ZERO(&cores);
+  sched_getaffinity(0, sizeof cores, &cores);
+  if (program.kept_off_core) {
+    CPU_CLR(*program.kept_off_core, &cores);
+  }
+  return cores;
+}
+
 /** Runs in the child between fork and exec, so only async-signal-safe calls are allowed. Does not return. */
-[[noreturn]] void become(char* const arguments[], int output, int null_input, pid_t parent) {
+[[noreturn]] void become(char* const arguments[], const cpu_set_t& cores, int output, int null_input,
+                         pid_t parent) {
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
   signal(SIGPIPE, SIG_DFL);
   setpgid(0, 0);
+  sched_setaffinity(0, sizeof cores, &cores);
   dup2(null_input, STDIN_FILENO);
   dup2(output, STDOUT_FILENO);
   dup2(output, STDERR_FILENO);
@@ -81,10 +95,11 @@ Result<ChildProcess> ChildProcess::start(const Program& program) {
 
   std::vector<std::string> storage;
   const std::vector<char*> arguments = argument_vector(program, storage);
+  const cpu_set_t cores = cores_of(program);
   const pid_t parent = getpid();
   const pid_t pid = fork();
   if (pid == 0) {
-    become(arguments.data(), writer.get(), null_input.get(), parent);
+    become(arguments.data(), cores, writer.get(), null_input.get(), parent);
   }
   if (pid < 0) {
     return failed(ExitCode::process_ended, program.name + " cannot be started: " + last_error());

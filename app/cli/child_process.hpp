@@ -4,6 +4,7 @@
  */
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -20,6 +21,8 @@ struct Program {
   std::string name; /**< as people know it: "kernel" */
   std::filesystem::path file;
   std::vector<std::string> arguments;
+  std::optional<std::uint32_t> kept_off_core =
+      std::nullopt; /**< a core on which none of its threads may run */
 };
 
 /** How a child ended, in words: "exit code 2", "killed by signal 9 (Killed)". */

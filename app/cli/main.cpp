@@ -69,6 +69,7 @@ void add_run(CLI::App& cli, RunOptions& options) {
       ->check(CLI::Range(0.0, 1000.0))
       ->needs(clock);
   command->add_option("--seed", options.seed, "Seed of the simulated hardware");
+  command->add_option("--core", options.core, "Core that the kernel has for itself; default: none");
   command->add_option("--state", options.state, "State directory; default $XDG_STATE_HOME/interlock/ROBOT");
   command->add_option("--sockets", options.sockets, "Directory for the sockets; default: a private one");
   command->add_option("--plant", options.plant, "Parameters of the simulated hardware")

@@ -2,6 +2,7 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <sched.h>
 #include <sys/socket.h>
 
 #include <cerrno>
@@ -56,6 +57,21 @@ Result<std::uint16_t> free_port(std::uint16_t port) {
   return ntohs(address.sin_port);
 }
 
+/** The kernel's core must be there, and leave another one for the rest. */
+Result<void> check_core(const RunOptions& options) {
+  cpu_set_t cores;
+  CPU_ZERO(&cores);
+  sched_getaffinity(0, sizeof cores, &cores);
+  const auto given = options.core.value_or(0);
+  if (!options.core || (given < CPU_SETSIZE && CPU_ISSET(given, &cores) && CPU_COUNT(&cores) > 1)) {
+    return {};
+  }
+  return failed(ExitCode::precondition,
+                "--core " + std::to_string(given) +
+                    ": expected one of at least two cores that this process may use; it has " +
+                    std::to_string(CPU_COUNT(&cores)) + "; choose another core, or leave --core out");
+}
+
 /** Where one run keeps its things. */
 struct Places {
   fs::path robot_file;
@@ -75,6 +91,7 @@ Program simulator(const RunOptions& options, const Places& places, const Runtime
   if (options.seed) {
     program.arguments.insert(program.arguments.end(), {"--seed", std::to_string(*options.seed)});
   }
+  program.kept_off_core = options.core;
   return program;
 }
 
@@ -86,10 +103,13 @@ Program kernel(const RunOptions& options, const RuntimeDirectory& directory) {
   if (options.speed) {
     program.arguments.insert(program.arguments.end(), {"--speed", std::to_string(*options.speed)});
   }
+  if (options.core) {
+    program.arguments.insert(program.arguments.end(), {"--core", std::to_string(*options.core)});
+  }
   return program;
 }
 
-Program app(const Places& places, const RuntimeDirectory& directory) {
+Program app(const RunOptions& options, const Places& places, const RuntimeDirectory& directory) {
   Program program{
       "app",
       "interlock-app",
@@ -98,6 +118,7 @@ Program app(const Places& places, const RuntimeDirectory& directory) {
   if (places.web) {
     program.arguments.insert(program.arguments.end(), {"--web", *places.web});
   }
+  program.kept_off_core = options.core;
   return program;
 }
 
@@ -105,7 +126,7 @@ Result<std::vector<Supervised>> programs_of(const RunOptions& options, const Ins
                                             const Places& places, const RuntimeDirectory& directory) {
   std::vector<Supervised> programs{{simulator(options, places, directory), false},
                                    {kernel(options, directory), false},
-                                   {app(places, directory), true}};
+                                   {app(options, places, directory), true}};
   for (Supervised& supervised : programs) {
     Result<fs::path> file = installation.program(supervised.program.file);
     if (!file) {
@@ -170,6 +191,9 @@ Result<void> supervise(const RunOptions& options, const Installation& installati
 }  // namespace
 
 Result<void> run(const RunOptions& options, const Installation& installation, std::ostream& output) {
+  if (const Result<void> core = check_core(options); !core) {
+    return core;
+  }
   const Result<fs::path> robot_file = installation.robot(options.robot);
   if (!robot_file) {
     return tl::unexpected(robot_file.error());

@@ -24,6 +24,7 @@ struct RunOptions {
   ClockChoice clock = ClockChoice::real;
   std::optional<double> speed;       /**< simulated clock: multiple of real time, 0 as fast as possible */
   std::optional<std::uint32_t> seed; /**< of the simulated hardware */
+  std::optional<std::uint32_t> core; /**< the kernel's alone; the other processes keep off it */
   std::filesystem::path state;       /**< empty: the robot's directory under $XDG_STATE_HOME/interlock */
   std::filesystem::path sockets;     /**< empty: a private directory */
   std::filesystem::path plant;       /**< empty: models/plant/ROBOT.toml */
