@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <fstream>
+#include <optional>
 #include <system_error>
 
 #include "interlock/kernel.h"
@@ -119,17 +120,49 @@ std::string_view key_of(std::uint32_t error) {
   }
 }
 
+RobotError error_at(const Origin& origin, std::string key, std::string problem, std::string expected) {
+  const auto line = origin.line_of_key.find(key);
+  return {origin.file, line == origin.line_of_key.end() ? 0 : line->second, std::move(key),
+          std::move(problem), std::move(expected)};
+}
+
 RobotError rule_broken(const Robot& robot, ilk_config_verdict_t verdict) {
   const catalog::Entry& rule = catalog::entry(catalog::Family::config_error, verdict.error);
   const Axis* const axis = robot.at_slot(verdict.slot);
-  RobotError error;
-  error.file = robot.origin.file;
-  error.key = (axis ? "axis." + axis->name + '.' : "") + std::string(key_of(verdict.error));
-  const auto line = robot.origin.line_of_key.find(error.key);
-  error.line = line == robot.origin.line_of_key.end() ? 0 : line->second;
-  error.problem = rule.meaning;
-  error.expected = "values that keep the kernel's rule " + std::string(rule.name);
-  return error;
+  return error_at(robot.origin, (axis ? "axis." + axis->name + '.' : "") + std::string(key_of(verdict.error)),
+                  std::string(rule.meaning), "values that keep the kernel's rule " + std::string(rule.name));
+}
+
+/** The first step of homing whose travel leaves the range of its axis; the kernel knows nothing of steps. */
+std::optional<RobotError> step_out_of_range(const Robot& robot) {
+  const auto outside = [&robot](const HomeStep& step, std::string_view kind, const AxisCounts& travel,
+                                std::int64_t lowest, std::int64_t highest) -> std::optional<RobotError> {
+    if (lowest <= travel.counts && travel.counts <= highest) {
+      return std::nullopt;
+    }
+    return error_at(
+        robot.origin,
+        "home_step." + step.name + '.' + std::string(kind) + '.' + robot.at_slot(travel.slot)->name,
+        std::to_string(travel.counts) + " counts lead out of the range of the axis",
+        "counts from " + std::to_string(lowest) + " to " + std::to_string(highest));
+  };
+  for (const HomeStep& step : robot.home_steps) {
+    for (const AxisCounts& nudge : step.nudge) {
+      const SoftLimits& limits = robot.at_slot(nudge.slot)->soft_limits;
+      const std::int64_t range = std::int64_t{limits.max_counts} - limits.min_counts;
+      if (auto error = outside(step, "nudge", nudge, -range, range)) {
+        return error;
+      }
+    }
+    for (const AxisCounts& move : step.move) {
+      const Axis& axis = *robot.at_slot(move.slot);
+      if (auto error =
+              outside(step, "move", move, axis.lowest_setpoint_counts(), axis.highest_setpoint_counts())) {
+        return error;
+      }
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -159,6 +192,9 @@ tl::expected<ilk_config_t, RobotError> compile(const Robot& robot) {
   const ilk_config_verdict_t verdict = ilk_config_validate(&config);
   if (verdict.error != ILK_CONFIG_ERROR_NONE) {
     return tl::unexpected(rule_broken(robot, verdict));
+  }
+  if (auto error = step_out_of_range(robot)) {
+    return tl::unexpected(std::move(*error));
   }
   return config;
 }

@@ -1,6 +1,6 @@
 /**
  * @file
- * A robot as its file describes it: axes by card slot, their bounds, units and names, and the order of
+ * A robot as its file describes it: axes by card slot, their bounds, units and names, and the steps of
  * homing.
  *
  * A `Robot` comes from `load_robot` (robot_file.hpp) and turns into the kernel's configuration by `compile`
@@ -178,9 +178,9 @@ struct HomeStep {
   std::string name;                /**< for programs: "probe_out" */
   std::string title;               /**< for people: "Probe out" */
   std::vector<std::uint32_t> home; /**< slots of axes that go to their switches */
-  std::vector<AxisCounts> nudge;   /**< signed distances by which axes go that are not homed; in each press of
-                                      the pedal at most their `unhomed_travel_counts` */
-  std::vector<AxisCounts> move;    /**< positions to which axes go that are homed */
+  std::vector<AxisCounts> nudge;   /**< signed distances by which axes go that home in a later step; in each
+                                      press of the pedal at most their `unhomed_travel_counts` */
+  std::vector<AxisCounts> move;    /**< setpoints of axes that homed in an earlier step */
 
   bool operator==(const HomeStep&) const = default;
 };
@@ -201,8 +201,7 @@ struct Robot {
   Pedal pedal;
   LoopLimits loop;
   std::vector<Axis> axes;
-  std::vector<std::uint32_t> home_order; /**< slots of the axes with a switch, first to home first */
-  std::vector<HomeStep> home_steps;      /**< in the order in which they run */
+  std::vector<HomeStep> home_steps; /**< in the order in which they run; each axis with a switch homes once */
   Origin origin;
 
   /** The axis of that name, or null. */

@@ -1,9 +1,9 @@
 #include "robot/robot_file.hpp"
 
-#include <algorithm>
 #include <fstream>
 #include <sstream>
 
+#include "robot/read_home_steps.hpp"
 #include "robot/table_reader.hpp"
 
 namespace interlock {
@@ -189,42 +189,9 @@ Axis read_axis(TableReader table, const Robot& robot) {
   return axis;
 }
 
-void read_axes(ReadLog& log, TableReader& table, Robot& robot) {
-  const std::string expected = "one [[axis]] table for each motor";
-  const toml::array* const entries = table.array("axis", expected);
-  if (!entries) {
-    return;
-  }
-  for (const toml::node& entry : *entries) {
-    const std::string path = "axis[" + std::to_string(robot.axes.size()) + ']';
-    if (!entry.is_table()) {
-      log.refuse(entry.source().begin.line, path, "it is not a table", expected);
-      return;
-    }
-    robot.axes.push_back(read_axis(TableReader(log, *entry.as_table(), path), robot));
-  }
-}
-
-void read_home_order(ReadLog& log, TableReader& table, Robot& robot) {
-  const std::string expected = "the names of all axes that have a switch, each once, first to home first";
-  const toml::array* const names = table.array("home_order", expected);
-  if (!names) {
-    return;
-  }
-  for (const toml::node& node : *names) {
-    const std::string name = node.value_exact<std::string>().value_or("");
-    const Axis* const axis = robot.find(name);
-    if (!axis || axis->limit == ILK_LIMIT_NONE || std::ranges::count(robot.home_order, axis->slot) != 0) {
-      log.refuse(node.source().begin.line, "home_order",
-                 '"' + name + "\" is no axis, has no switch, or stands here twice", expected);
-      return;
-    }
-    robot.home_order.push_back(axis->slot);
-  }
-  for (const Axis& axis : robot.axes) {
-    if (axis.limit != ILK_LIMIT_NONE && std::ranges::count(robot.home_order, axis.slot) == 0) {
-      table.refuse("home_order", '"' + axis.name + "\" is missing", expected);
-    }
+void read_axes(TableReader& table, Robot& robot) {
+  for (TableReader& entry : table.tables("axis", "one [[axis]] table for each motor")) {
+    robot.axes.push_back(read_axis(std::move(entry), robot));
   }
 }
 
@@ -236,8 +203,8 @@ Robot read_robot(ReadLog& log, const toml::table& root) {
   robot.period_us = table.integer<std::uint32_t>("period_us");
   robot.pedal = read_pedal(table.table("pedal"), robot.period_us);
   robot.loop = read_loop(table.table("loop"), robot.period_us);
-  read_axes(log, table, robot);
-  read_home_order(log, table, robot);
+  read_axes(table, robot);
+  read_home_steps(table, robot);
   table.refuse_unknown_keys();
   return robot;
 }

@@ -147,12 +147,50 @@ TableReader TableReader::table(std::string_view key) {
   return TableReader(log_, found ? *found : empty_table, path_of(key));
 }
 
-const toml::array* TableReader::array(std::string_view key, const std::string& expected) {
+const toml::array& TableReader::array(std::string_view key, const std::string& expected) {
+  static const toml::array empty_array;
   const toml::node* const node = take(key, expected);
   if (node && !node->is_array()) {
     refuse_value(key, *node, expected);
   }
-  return node ? node->as_array() : nullptr;
+  return node && node->is_array() ? *node->as_array() : empty_array;
+}
+
+std::vector<TableReader> TableReader::tables(std::string_view key, const std::string& expected) {
+  std::vector<TableReader> found;
+  for (const toml::node& entry : array(key, expected)) {
+    std::string path = path_of(key) + '[' + std::to_string(found.size()) + ']';
+    if (!entry.is_table()) {
+      log_.refuse(line_of(entry), std::move(path), described(entry), expected);
+      break;
+    }
+    found.emplace_back(log_, *entry.as_table(), std::move(path));
+  }
+  return found;
+}
+
+std::vector<std::string> TableReader::texts(std::string_view key, const std::string& expected) {
+  std::vector<std::string> found;
+  for (const toml::node& entry : array(key, expected)) {
+    found.push_back(entry.value_exact<std::string>().value_or(""));
+    if (found.back().empty()) {
+      refuse_value(key, entry, expected);
+      break;
+    }
+  }
+  return found;
+}
+
+std::vector<std::string> TableReader::keys() const {
+  std::vector<std::string> names;
+  for (const auto& [key, node] : table_) {
+    names.emplace_back(key.str());
+  }
+  return names;
+}
+
+void TableReader::refuse_table(std::string problem, std::string expected) {
+  log_.refuse(line_of(table_), path_, std::move(problem), std::move(expected));
 }
 
 void TableReader::refuse_unknown_keys() {

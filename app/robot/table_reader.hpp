@@ -17,6 +17,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "robot/robot.hpp"
 #include "robot/robot_error.hpp"
@@ -90,14 +91,23 @@ class TableReader {
    */
   TableReader table(std::string_view key);
 
-  /** An array inside this one, or null. */
-  const toml::array* array(std::string_view key, const std::string& expected);
+  /** Every table of an array of tables, named "KEY[0]", "KEY[1]" and so on. */
+  std::vector<TableReader> tables(std::string_view key, const std::string& expected);
+
+  /** Every text of an array of texts, none of them empty. */
+  std::vector<std::string> texts(std::string_view key, const std::string& expected);
+
+  /** The keys that are there, by their names. */
+  [[nodiscard]] std::vector<std::string> keys() const;
 
   /** Refuses what is there but was not asked for. */
   void refuse_unknown_keys();
 
   /** Refuses the value of a key for a reason that only the caller knows. */
   void refuse(std::string_view key, std::string problem, std::string expected);
+
+  /** Refuses the table as a whole. */
+  void refuse_table(std::string problem, std::string expected);
 
   /** Names the table from here on. */
   void rename(std::string path) { path_ = std::move(path); }
@@ -107,6 +117,7 @@ class TableReader {
 
  private:
   const toml::node* take(std::string_view key, const std::string& expected);
+  const toml::array& array(std::string_view key, const std::string& expected);
   void refuse_value(std::string_view key, const toml::node& node, const std::string& expected);
 
   ReadLog& log_;

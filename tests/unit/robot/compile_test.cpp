@@ -171,6 +171,30 @@ INSTANTIATE_TEST_SUITE_P(
                    "axis.yaw.mechanics.max_delta_counts"}),
     [](const auto& broken) { return std::string(broken.param.rule); });
 
+/** A step of homing that a sound file with the step "away" before "base" refuses. */
+RobotError with_step(const std::string& travel) {
+  const std::string base = "[[home_step]]\nname = \"base\"";
+  const std::string away = "[[home_step]]\nname = \"away\"\ntitle = \"Away\"\n" + travel + "\n";
+  const std::string text = test::neuro_with(base, away + base);
+  const auto config = compile(parse_robot(text, "broken.toml").value());
+  EXPECT_FALSE(config);
+  RobotError error = config ? RobotError{} : config.error();
+  EXPECT_EQ(error.line, test::line_of(text, travel));
+  return error;
+}
+
+TEST(HomeSteps, move_to_setpoints_that_the_kernel_accepts_only) {
+  const RobotError error = with_step("move = { insertion = 11 }");
+  EXPECT_EQ(error.key, "home_step.away.move.insertion");
+  EXPECT_EQ(error.expected, "counts from 12 to 1638");
+}
+
+TEST(HomeSteps, nudge_by_the_range_of_the_axis_at_most) {
+  const RobotError error = with_step("nudge = { lateral = 2338 }");
+  EXPECT_EQ(error.key, "home_step.away.nudge.lateral");
+  EXPECT_EQ(error.expected, "counts from -2337 to 2337");
+}
+
 TEST(ConfigFile, holds_the_words_least_significant_byte_first) {
   ilk_config_t config{};
   config.version = 0x04030201;

@@ -24,7 +24,9 @@ TEST(RobotFile, neuro_reads_as_written) {
   EXPECT_EQ(robot.period_us, 1000u);
   EXPECT_EQ(robot.pedal, (Pedal{2, 10, 50}));
   EXPECT_EQ(robot.loop, (LoopLimits{100, 100, 3, 3}));
-  EXPECT_THAT(robot.home_order, ElementsAre(3, 0, 2, 4, 7));
+  EXPECT_THAT(robot.home_steps, ElementsAre(HomeStep{"probe_out", "Probe out", {3}, {}, {}},
+                                            HomeStep{"angles", "Angles", {0, 2}, {}, {}},
+                                            HomeStep{"base", "Base", {4, 7}, {}, {}}));
 
   const Axis& pitch = *robot.find("pitch");
   EXPECT_EQ(pitch.slot, 2u);
@@ -179,20 +181,73 @@ INSTANTIATE_TEST_SUITE_P(
                "[[axis]]\nname = \"probe_rotation\"", "axis.probe_rotation.homing", "missing", "a table"},
         Broken{"amplitude_on_a_pwm_card", "unhomed_max = 6143", "unhomed_max = 6143, max_amplitude = 5",
                "max_amplitude = 5", "axis.yaw.drive.max_amplitude", "unknown", "max, min, unhomed_max"},
-        Broken{"home_order_names_no_axis", "home_order = [\"insertion\"", "home_order = [\"needle\"",
-               "home_order", "home_order", "\"needle\"", "all axes that have a switch"},
-        Broken{"home_order_names_an_axis_without_switch", "\"lateral\", \"head\"]",
-               "\"lateral\", \"head\", \"feet\"]", "home_order", "home_order", "\"feet\"",
-               "all axes that have a switch"},
-        Broken{"home_order_names_an_axis_twice", "\"lateral\", \"head\"]", "\"lateral\", \"head\", \"yaw\"]",
-               "home_order", "home_order", "\"yaw\"", "each once"},
-        Broken{"home_order_forgets_an_axis", "\"lateral\", \"head\"]", "\"lateral\"]", "home_order",
-               "home_order", "\"head\" is missing", "all axes that have a switch"},
-        Broken{"home_order_is_no_array",
-               "home_order = [\"insertion\", \"yaw\", \"pitch\", \"lateral\", \"head\"]",
-               "home_order = \"yaw\"", "home_order", "home_order", "is given",
-               "all axes that have a switch"}),
+        Broken{"step_homes_no_axis", R"(home = ["insertion"])", R"(home = ["needle"])", R"(["needle"])",
+               "home_step.probe_out.home", "no axis is called \"needle\"", "axes with a switch"},
+        Broken{"step_homes_an_axis_without_switch", R"(home = ["insertion"])",
+               R"(home = ["insertion", "feet"])", R"("feet"])", "home_step.probe_out.home",
+               "\"feet\" has no switch", "axes with a switch"},
+        Broken{"step_homes_an_axis_again", R"(home = ["yaw", "pitch"])", R"(home = ["yaw", "insertion"])",
+               R"("yaw", "insertion"])", "home_step.angles.home", "\"insertion\" homes twice",
+               "no other step homes"},
+        Broken{"step_homes_nothing", R"(home = ["insertion"])", "home = []", "home = []",
+               "home_step.probe_out.home", "names no axis", "at least one"},
+        Broken{"step_homes_a_number", R"(home = ["insertion"])", "home = [3]", "home = [3]",
+               "home_step.probe_out.home", "3 is given", "names of axes"},
+        Broken{"no_step_homes_the_head", R"(home = ["lateral", "head"])", R"(home = ["lateral"])",
+               "[[home_step]]", "home_step", "no step homes \"head\"", "every axis with a switch"},
+        Broken{"step_without_travel", R"(home = ["insertion"])", "", "[[home_step]]", "home_step.probe_out",
+               "none or several", "exactly one"},
+        Broken{"step_with_two_travels", R"(home = ["insertion"])",
+               "home = [\"insertion\"]\nmove = { insertion = 500 }", "[[home_step]]", "home_step.probe_out",
+               "none or several", "exactly one"},
+        Broken{"step_with_the_name_of_another", "name = \"base\"", "name = \"angles\"",
+               "name = \"angles\"\ntitle = \"Base\"", "home_step.angles.name", "called \"angles\" already",
+               "a name of its own"},
+        Broken{"nudge_of_an_unknown_axis", R"(home = ["insertion"])", "nudge = { needle = 50 }",
+               "nudge = { needle", "home_step.probe_out.nudge.needle", "no axis is called", "one of yaw"},
+        Broken{"nudge_of_an_axis_without_switch", R"(home = ["insertion"])", "nudge = { feet = 50 }",
+               "nudge = { feet", "home_step.probe_out.nudge.feet", "no switch",
+               "an axis that a later step homes"},
+        Broken{"nudge_of_an_axis_that_is_homed", R"(home = ["lateral", "head"])",
+               "nudge = { insertion = 50 }", "nudge = { insertion", "home_step.base.nudge.insertion",
+               "homed by then", "an axis that a later step homes"},
+        Broken{"nudge_by_nothing", R"(home = ["insertion"])", "nudge = { insertion = 0 }",
+               "nudge = { insertion", "home_step.probe_out.nudge.insertion", "no travel",
+               "a signed distance"},
+        Broken{"nudge_of_no_axis", R"(home = ["insertion"])", "nudge = {}", "nudge = {}",
+               "home_step.probe_out.nudge", "names no axis", "at least one axis"},
+        Broken{"move_of_an_axis_that_is_not_homed", R"(home = ["insertion"])", "move = { insertion = 500 }",
+               "move = { insertion", "home_step.probe_out.move.insertion", "not homed by then",
+               "an axis that an earlier step homes"},
+        Broken{"move_of_an_axis_without_switch", R"(home = ["lateral", "head"])", "move = { feet = 0 }",
+               "move = { feet", "home_step.base.move.feet", "not homed by then",
+               "an axis that an earlier step homes"},
+        Broken{"order_of_homing_without_steps", "period_us = 1000", "period_us = 1000\nhome_order = []",
+               "home_order", "home_order", "unknown", "home_step"}),
     [](const auto& broken) { return std::string(broken.param.title); });
+
+TEST(RobotFile, a_step_may_nudge_what_homes_later_and_move_what_homed_before) {
+  const auto robot = parse_robot(
+      test::neuro_with(
+          "[[home_step]]\nname = \"base\"",
+          "[[home_step]]\nname = \"away\"\ntitle = \"Away\"\nnudge = { lateral = -200, head = 900 }\n"
+          "[[home_step]]\nname = \"in\"\ntitle = \"In\"\nmove = { insertion = 12 }\n"
+          "[[home_step]]\nname = \"base\""),
+      "steps.toml");
+  ASSERT_TRUE(robot) << robot.error().message();
+  EXPECT_EQ(robot->home_steps.at(2), (HomeStep{"away", "Away", {}, {{7, 900}, {4, -200}}, {}}));
+  EXPECT_EQ(robot->home_steps.at(3), (HomeStep{"in", "In", {}, {}, {{3, 12}}}));
+}
+
+TEST(RobotFile, a_robot_without_switches_needs_no_steps) {
+  std::string text = test::neuro_text();
+  const std::size_t feet = text.find("[[axis]]\nname = \"feet\"");
+  const std::string head = text.substr(0, text.find("[[axis]]"));
+  const auto robot =
+      parse_robot(head + text.substr(feet, text.find("[[home_step]]") - feet), "one_axis.toml");
+  ASSERT_TRUE(robot) << robot.error().message();
+  EXPECT_THAT(robot->home_steps, testing::IsEmpty());
+}
 
 TEST(RobotFile, an_axis_that_is_no_table_is_refused) {
   const std::string text = test::neuro_text();
