@@ -28,11 +28,12 @@ bool ControlClient::send(Command command) {
   return mailbox_.commands.push(command);
 }
 
-asio::awaitable<std::optional<Answer>> ControlClient::ask(std::uint32_t kind, std::uint32_t slot) {
+asio::awaitable<std::optional<Answer>> ControlClient::ask(std::uint32_t kind, std::uint32_t slot,
+                                                          std::int32_t target_counts) {
   const auto deadline = steady_clock::now() + ask_timeout;
   Waiter<Answer> waiter{std::nullopt, asio::steady_timer(executor_, deadline)};
   const std::uint32_t ticket = ++last_ticket_;
-  if (!send(Ask{ticket, kind, slot, deadline})) {
+  if (!send(Ask{ticket, kind, slot, target_counts, deadline})) {
     co_return std::nullopt;
   }
   asks_[ticket] = &waiter;

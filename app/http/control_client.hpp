@@ -27,8 +27,11 @@ class ControlClient {
   /** Hands over a command, an order marked as newer than every STOP so far; false when the queue is full. */
   bool send(Command command);
 
-  /** Sends one request to the kernel; empty when no verdict came within a second. */
-  boost::asio::awaitable<std::optional<Answer>> ask(std::uint32_t kind, std::uint32_t slot);
+  /** Sends one request to the kernel, a RESTORE with its position; empty when no verdict came within a
+   * second.
+   */
+  boost::asio::awaitable<std::optional<Answer>> ask(std::uint32_t kind, std::uint32_t slot,
+                                                    std::int32_t target_counts = 0);
 
   /** Stops, whatever else waits; empty when no kernel is connected or none answered within 300 ms. */
   boost::asio::awaitable<std::optional<StopAnswer>> stop();

@@ -198,7 +198,9 @@ bool ControlLoop::take(const Command& command) noexcept {
     answer_lost(AskOrigin{ask->ticket});
     return true;
   }
-  return port_.send(request_of(ask->kind, ask->slot), AskOrigin{ask->ticket});
+  ilk_request_t request = request_of(ask->kind, ask->slot);
+  request.target_counts = ask->target_counts;
+  return port_.send(request, AskOrigin{ask->ticket});
 }
 
 void ControlLoop::send_moves() noexcept {

@@ -33,6 +33,7 @@ struct Ask {
   std::uint32_t ticket = 0; /**< by which the asker knows the answer */
   std::uint32_t kind = 0;   /**< ilk_request_kind_t, none of HEARTBEAT, STOP and MOVE */
   std::uint32_t slot = 0;
+  std::int32_t target_counts = 0;                 /**< position of a RESTORE */
   std::chrono::steady_clock::time_point deadline; /**< later than this nobody waits, so it is not sent */
 };
 

@@ -62,7 +62,7 @@ class ControlLoopTest : public testing::Test {
   void command(const Command& command) { ASSERT_TRUE(mailbox_->commands.push(command)); }
 
   static Ask ask(std::uint32_t ticket, std::uint32_t kind) {
-    return {ticket, kind, insertion, std::chrono::steady_clock::now() + std::chrono::hours(1)};
+    return {ticket, kind, insertion, 0, std::chrono::steady_clock::now() + std::chrono::hours(1)};
   }
 
   OrderStatus order() { return mailbox_->view.newest().orders[insertion]; }

@@ -59,6 +59,15 @@ TEST_F(ControlLoopTest, NeverSendsAnAskForWhichNobodyWaitsAnyMore) {
   EXPECT_FALSE(answers[0].verdict);
 }
 
+TEST_F(ControlLoopTest, ARestoreCarriesItsPosition) {
+  Ask restore = ask(7, ILK_REQUEST_RESTORE);
+  restore.target_counts = -321;
+  command(restore);
+  tick();
+  ASSERT_NE(sent(ILK_REQUEST_RESTORE), nullptr);
+  EXPECT_EQ(sent(ILK_REQUEST_RESTORE)->target_counts, -321);
+}
+
 TEST_F(ControlLoopTest, CarriesOutAnOrderAndFollowsItsVerdict) {
   command(Order{1, insertion, 1500, 0, 0});
   snapshot_.state.mode = ILK_MODE_MOTION;
