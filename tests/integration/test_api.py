@@ -161,7 +161,7 @@ def test_a_locked_system_takes_no_proposal(robot: Stack) -> None:
     [
         ({"target": 1}, "slot"),
         ({"slot": LATERAL}, "target"),
-        ({"slot": LATERAL, "target": "1"}, "target"),
+        ({"slot": LATERAL, "target": "1 mm"}, "target"),
         ({"slot": LATERAL, "target": 1, "speed": 3}, "speed"),
     ],
 )

@@ -167,7 +167,7 @@ TEST_F(HttpTest, ABodyThatIsNoJsonIsMalformed) {
 TEST_F(HttpTest, AWrongFieldIsNamedWithWhatWasExpected) {
   const std::pair<std::string, std::string> cases[] = {
       {R"({"target":1})", "slot"},
-      {R"({"slot":"3","target":1})", "slot"},
+      {R"({"slot":"3x","target":1})", "slot"},
       {R"({"slot":10,"target":1})", "slot"},
       {R"({"slot":-1,"target":1})", "slot"},
       {R"({"slot":3.5,"target":1})", "slot"},
@@ -175,7 +175,7 @@ TEST_F(HttpTest, AWrongFieldIsNamedWithWhatWasExpected) {
       {R"({"slot":null,"target":1})", "slot"},
       {R"({"slot":3})", "target"},
       {R"({"slot":3,"target":1,"target_counts":1})", "target"},
-      {R"({"slot":3,"target":"1"})", "target"},
+      {R"({"slot":3,"target":"1 mm"})", "target"},
       {R"({"slot":3,"target":1e300})", "target"},
       {R"({"slot":3,"target_counts":2147483648})", "target_counts"},
       {R"({"slot":3,"target_counts":1.5})", "target_counts"},
