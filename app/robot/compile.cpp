@@ -133,6 +133,33 @@ RobotError rule_broken(const Robot& robot, ilk_config_verdict_t verdict) {
                   std::string(rule.meaning), "values that keep the kernel's rule " + std::string(rule.name));
 }
 
+/** The first card in a slot that does not exist, or of a type that nobody can drive. */
+std::optional<RobotError> card_out_of_place(const Robot& robot) {
+  const auto beyond = [&robot](const std::string& path, std::uint32_t slot) -> std::optional<RobotError> {
+    if (slot < ILK_SLOTS) {
+      return std::nullopt;
+    }
+    return error_at(robot.origin, path + ".slot", "there is no slot " + std::to_string(slot),
+                    "a slot below " + std::to_string(ILK_SLOTS));
+  };
+  for (const Axis& axis : robot.axes) {
+    if (auto error = beyond("axis." + axis.name, axis.slot)) {
+      return error;
+    }
+    if (axis.card == ILK_CARD_NONE) {
+      return error_at(robot.origin, "axis." + axis.name + ".card",
+                      "the kernel cannot drive a card of unspecified type",
+                      "the type of the card: \"pwm\", \"non-pwm\", \"analog-input\" or \"high-frequency\"");
+    }
+  }
+  for (const Sensor& sensor : robot.sensors) {
+    if (auto error = beyond("sensor." + sensor.name, sensor.slot)) {
+      return error;
+    }
+  }
+  return std::nullopt;
+}
+
 /** The first step of homing whose travel leaves the range of its axis; the kernel knows nothing of steps. */
 std::optional<RobotError> step_out_of_range(const Robot& robot) {
   const auto outside = [&robot](const HomeStep& step, std::string_view kind, const AxisCounts& travel,
@@ -179,13 +206,15 @@ tl::expected<ilk_config_t, RobotError> compile(const Robot& robot) {
   config.pedal_disagree_ticks = robot.pedal.disagree_ticks;
   config.bad_frame_limit = robot.loop.bad_frame_limit;
   config.overrun_limit = robot.loop.overrun_limit;
+  if (auto error = card_out_of_place(robot)) {
+    return tl::unexpected(std::move(*error));
+  }
   for (const Axis& axis : robot.axes) {
-    if (axis.slot >= ILK_SLOTS) {
-      return tl::unexpected(RobotError{robot.origin.file, 0, "axis." + axis.name + ".slot",
-                                       "there is no slot " + std::to_string(axis.slot),
-                                       "a slot below " + std::to_string(ILK_SLOTS)});
-    }
     config.axis[axis.slot] = compile_axis(axis);
+  }
+  for (const Sensor& sensor : robot.sensors) {
+    config.axis[sensor.slot].card = ILK_CARD_SENSOR;
+    config.axis[sensor.slot].required = sensor.required ? 1 : 0;
   }
   config.crc = ilk_config_crc(&config);
 

@@ -13,6 +13,13 @@ std::int32_t saturated(std::int64_t counts) {
   return static_cast<std::int32_t>(std::clamp<std::int64_t>(counts, CountLimits::min(), CountLimits::max()));
 }
 
+/** The part whose member has that value, or null. */
+template <typename Part, typename Value, typename Member>
+const Part* find_in(const std::vector<Part>& parts, const Value& value, Member Part::* member) {
+  const auto found = std::ranges::find(parts, value, member);
+  return found == parts.end() ? nullptr : &*found;
+}
+
 }  // namespace
 
 std::string_view unit_name(Unit unit) {
@@ -57,14 +64,35 @@ std::int32_t Axis::highest_setpoint_counts() const {
   return saturated(std::int64_t{soft_limits.max_counts} - mechanics.coast_counts);
 }
 
-const Axis* Robot::find(std::string_view axis_name) const {
-  const auto found = std::ranges::find(axes, axis_name, &Axis::name);
-  return found == axes.end() ? nullptr : &*found;
+bool Axis::accepts_setpoint(std::int32_t counts) const {
+  return lowest_setpoint_counts() <= counts && counts <= highest_setpoint_counts();
 }
 
-const Axis* Robot::at_slot(std::uint32_t slot) const {
-  const auto found = std::ranges::find(axes, slot, &Axis::slot);
-  return found == axes.end() ? nullptr : &*found;
+double SensorChannel::value(std::uint32_t reading) const {
+  const auto at = [this](std::uint32_t counts) { return slope * counts + intercept; };
+  return at(reading) - at(reference);
 }
+
+const Axis* Robot::find(std::string_view axis_name) const { return find_in(axes, axis_name, &Axis::name); }
+
+const Axis* Robot::at_slot(std::uint32_t slot) const { return find_in(axes, slot, &Axis::slot); }
+
+const Axis* Robot::with_role(std::string_view role) const {
+  return role.empty() ? nullptr : find_in(axes, role, &Axis::role);
+}
+
+const Sensor* Robot::find_sensor(std::string_view sensor_name) const {
+  return find_in(sensors, sensor_name, &Sensor::name);
+}
+
+const Sensor* Robot::sensor_at_slot(std::uint32_t slot) const {
+  return find_in(sensors, slot, &Sensor::slot);
+}
+
+const HomeStep* Robot::find_home_step(std::string_view step_name) const {
+  return find_in(home_steps, step_name, &HomeStep::name);
+}
+
+bool Robot::has_mode(std::string_view mode) const { return std::ranges::find(modes, mode) != modes.end(); }
 
 }  // namespace interlock

@@ -1,7 +1,7 @@
 /**
  * @file
- * A robot as its file describes it: axes by card slot, their bounds, units and names, and the steps of
- * homing.
+ * A robot as its file describes it: axes and sensors by card slot, their bounds, units and names, its
+ * kinematics, its modes and the steps of homing.
  *
  * A `Robot` comes from `load_robot` (robot_file.hpp) and turns into the kernel's configuration by `compile`
  * (compile.hpp). It is a plain value: copy it, compare it, hand it between threads.
@@ -20,17 +20,14 @@
 #include <vector>
 
 #include "interlock/types.h"
+#include "robot/kinematics.hpp"
+#include "robot/sensor.hpp"
+#include "robot/unit.hpp"
 
 namespace interlock {
 
-/** Unit in which people read an axis. */
-enum class Unit { mm, rad };
-
 /** Kind of motor behind a card. */
 enum class Motor { unspecified, shinsei, piezo, dti };
-
-/** "mm" or "rad". */
-std::string_view unit_name(Unit unit);
 
 /** "unspecified", "shinsei", "piezo" or "dti". */
 std::string_view motor_name(Motor motor);
@@ -108,8 +105,9 @@ struct Axis {
   std::uint32_t slot = 0;
   std::string name;  /**< for programs and files: "probe_rotation" */
   std::string title; /**< for people: "Probe rotation" */
-  ilk_card_t card = ILK_CARD_NONE;
-  bool required = false; /**< losing its card ends MOTION of all axes */
+  std::string role;  /**< in the robot's kinematics, one of `roles_of`; empty when it plays none */
+  ilk_card_t card = ILK_CARD_NONE; /**< NONE: not known yet, so the robot does not compile */
+  bool required = false;           /**< losing its card ends MOTION of all axes */
   Motor motor = Motor::unspecified;
   std::uint32_t encoder_resolution = 0; /**< counts per revolution of the motor */
   Unit unit = Unit::mm;
@@ -139,6 +137,9 @@ struct Axis {
 
   /** Highest setpoint that the kernel accepts from a homed axis. */
   [[nodiscard]] std::int32_t highest_setpoint_counts() const;
+
+  /** Whether the kernel accepts that setpoint from the homed axis. */
+  [[nodiscard]] bool accepts_setpoint(std::int32_t counts) const;
 
   bool operator==(const Axis&) const = default;
 };
@@ -198,9 +199,14 @@ struct Robot {
   std::string name;
   std::string title;
   std::uint32_t period_us = 1000;
+  std::vector<std::string> modes; /**< ways of moving it; the first is the one in which it starts */
+  bool auto_approve = false;      /**< moves from OpenIGTLink or a file need no click */
   Pedal pedal;
   LoopLimits loop;
+  Kinematics kinematics;
+  ProbeOffsets probe; /**< until somebody sets others */
   std::vector<Axis> axes;
+  std::vector<Sensor> sensors;
   std::vector<HomeStep> home_steps; /**< in the order in which they run; each axis with a switch homes once */
   Origin origin;
 
@@ -209,6 +215,20 @@ struct Robot {
 
   /** The axis in that slot, or null. */
   [[nodiscard]] const Axis* at_slot(std::uint32_t slot) const;
+
+  /** The axis that plays that role in the kinematics, or null. */
+  [[nodiscard]] const Axis* with_role(std::string_view role) const;
+
+  /** The sensor of that name, or null. */
+  [[nodiscard]] const Sensor* find_sensor(std::string_view sensor_name) const;
+
+  /** The sensor in that slot, or null. */
+  [[nodiscard]] const Sensor* sensor_at_slot(std::uint32_t slot) const;
+
+  /** The step of homing of that name, or null. */
+  [[nodiscard]] const HomeStep* find_home_step(std::string_view step_name) const;
+
+  [[nodiscard]] bool has_mode(std::string_view mode) const;
 
   bool operator==(const Robot&) const = default;
 };

@@ -1,35 +1,18 @@
 #include "robot/robot_file.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
+#include "robot/read_cards.hpp"
 #include "robot/read_home_steps.hpp"
+#include "robot/read_kinematics.hpp"
 #include "robot/table_reader.hpp"
 
 namespace interlock {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, ilk_card_t>, 4> cards{{
-    {"pwm", ILK_CARD_PWM},
-    {"non-pwm", ILK_CARD_NON_PWM},
-    {"analog-input", ILK_CARD_ANALOG},
-    {"high-frequency", ILK_CARD_HIGH_FREQUENCY},
-}};
-
-constexpr std::array<std::pair<std::string_view, Motor>, 4> motors{{
-    {"shinsei", Motor::shinsei},
-    {"piezo", Motor::piezo},
-    {"dti", Motor::dti},
-    {"unspecified", Motor::unspecified},
-}};
-
-constexpr std::array<std::pair<std::string_view, Unit>, 2> units{{{"mm", Unit::mm}, {"rad", Unit::rad}}};
-
-constexpr std::array<std::pair<std::string_view, ilk_limit_side_t>, 3> limit_sides{{
-    {"none", ILK_LIMIT_NONE},
-    {"lower", ILK_LIMIT_LOWER},
-    {"upper", ILK_LIMIT_UPPER},
-}};
+constexpr std::array<std::string_view, 2> known_modes{"manual", "home"};
 
 Pedal read_pedal(TableReader table, std::uint32_t period_us) {
   Pedal pedal;
@@ -50,148 +33,36 @@ LoopLimits read_loop(TableReader table, std::uint32_t period_us) {
   return loop;
 }
 
-SoftLimits read_soft_limits(TableReader table) {
-  SoftLimits limits;
-  limits.min_counts = table.integer<std::int32_t>("min_counts");
-  limits.max_counts = table.integer<std::int32_t>("max_counts");
-  table.refuse_unknown_keys();
-  return limits;
-}
-
-DriveBounds read_drive(TableReader table, bool has_amplitude) {
-  DriveBounds drive;
-  drive.max = table.integer<std::uint32_t>("max");
-  drive.min = static_cast<std::uint32_t>(table.integer_between("min", 0, drive.max));
-  drive.unhomed_max = table.integer<std::uint32_t>("unhomed_max");
-  if (has_amplitude) {
-    drive.max_amplitude = table.integer<std::uint32_t>("max_amplitude");
-  }
-  table.refuse_unknown_keys();
-  return drive;
-}
-
-double read_gain(TableReader& table, std::string_view key) {
-  const double gain = table.number(key);
-  if (gain < 0.0) {
-    table.refuse(key, "the gain is negative", "zero or a positive number");
-  }
-  return gain;
-}
-
-Gains read_gains(TableReader table) {
-  Gains gains;
-  gains.kp = read_gain(table, "kp");
-  gains.ki = read_gain(table, "ki");
-  gains.kd = read_gain(table, "kd");
-  table.refuse_unknown_keys();
-  return gains;
-}
-
-Mechanics read_mechanics(TableReader table, std::uint32_t period_us) {
-  Mechanics mechanics;
-  mechanics.coast_counts = table.integer<std::uint32_t>("coast_counts");
-  mechanics.backlash_counts = table.integer<std::uint32_t>("backlash_counts");
-  mechanics.noise_counts = table.integer<std::uint32_t>("noise_counts");
-  mechanics.max_delta_counts = table.integer<std::uint32_t>("max_delta_counts");
-  mechanics.settle_ticks = table.ticks("settle_ms", period_us);
-  table.refuse_unknown_keys();
-  return mechanics;
-}
-
-StallRule read_stall(TableReader table, std::uint32_t period_us) {
-  StallRule stall;
-  stall.driven_ticks = table.ticks("driven_ms", period_us);
-  stall.min_counts = table.integer<std::uint32_t>("min_counts");
-  table.refuse_unknown_keys();
-  return stall;
-}
-
-RunawayRule read_runaway(TableReader table) {
-  RunawayRule runaway;
-  runaway.reverse_counts = table.integer<std::uint32_t>("reverse_counts");
-  runaway.drift_counts = table.integer<std::uint32_t>("drift_counts");
-  table.refuse_unknown_keys();
-  return runaway;
-}
-
-Homing read_homing(TableReader table, std::uint32_t period_us, bool has_amplitude) {
-  Homing homing;
-  homing.drive = table.integer<std::uint32_t>("drive");
-  if (has_amplitude) {
-    homing.amplitude = table.integer<std::uint32_t>("amplitude");
-  }
-  homing.speed_counts_per_s = table.integer<std::uint32_t>("speed_counts_per_s");
-  homing.travel_counts = table.integer<std::uint32_t>("travel_counts");
-  homing.backoff_counts = table.integer<std::uint32_t>("backoff_counts");
-  homing.timeout_ticks = table.ticks("timeout_ms", period_us);
-  homing.rest_ticks = table.ticks("rest_ms", period_us);
-  table.refuse_unknown_keys();
-  return homing;
-}
-
-double read_counts_per_unit(TableReader& table) {
-  const double counts = table.number("counts_per_unit");
-  if (!(counts > 0.0)) {
-    table.refuse("counts_per_unit", "it is not above zero", "encoder counts per mm or rad, above zero");
-    return 1.0;
-  }
-  return counts;
-}
-
-std::optional<Homing> read_optional_homing(TableReader& table, const Axis& axis, std::uint32_t period_us) {
-  if (axis.limit != ILK_LIMIT_NONE) {
-    return read_homing(table.table("homing"), period_us, axis.card == ILK_CARD_HIGH_FREQUENCY);
-  }
-  if (table.has("homing")) {
-    table.refuse("homing", "the axis has no switch to home at",
-                 "no homing table, or limit = \"lower\" or \"upper\"");
-  }
-  return std::nullopt;
-}
-
-void refuse_twins(TableReader& table, const Robot& robot, const Axis& axis) {
-  if (robot.find(axis.name) != nullptr) {
-    table.refuse("name", "another axis is called \"" + axis.name + "\" already", "a name of its own");
-  }
-  if (const Axis* const other = robot.at_slot(axis.slot)) {
-    table.refuse("slot", "slot " + std::to_string(axis.slot) + " carries \"" + other->name + "\" already",
-                 "a slot of its own");
-  }
-}
-
-Axis read_axis(TableReader table, const Robot& robot) {
-  Axis axis;
-  axis.name = table.identifier("name");
-  table.rename("axis." + axis.name);
-  axis.slot = static_cast<std::uint32_t>(table.integer_between("slot", 0, ILK_SLOTS - 1));
-  refuse_twins(table, robot, axis);
-  axis.title = table.text("title");
-  axis.card = table.choice("card", cards);
-  axis.required = table.has("required") && table.boolean("required");
-  axis.motor = table.choice("motor", motors);
-  axis.encoder_resolution = table.integer<std::uint32_t>("encoder_resolution");
-  axis.unit = table.choice("unit", units);
-  axis.counts_per_unit = read_counts_per_unit(table);
-  axis.motor_direction = static_cast<std::uint32_t>(table.integer_between("motor_direction", 0, 1));
-  axis.direction_correction = static_cast<std::uint32_t>(table.integer_between("direction_correction", 0, 1));
-  axis.limit = table.choice("limit", limit_sides);
-  axis.home_offset_counts = table.integer<std::int32_t>("home_offset_counts");
-  axis.deadband_counts = table.integer<std::uint32_t>("deadband_counts");
-  axis.unhomed_travel_counts = table.integer<std::uint32_t>("unhomed_travel_counts");
-  axis.soft_limits = read_soft_limits(table.table("soft_limits"));
-  axis.drive = read_drive(table.table("drive"), axis.card == ILK_CARD_HIGH_FREQUENCY);
-  axis.gains = read_gains(table.table("gains"));
-  axis.mechanics = read_mechanics(table.table("mechanics"), robot.period_us);
-  axis.stall = read_stall(table.table("stall"), robot.period_us);
-  axis.runaway = read_runaway(table.table("runaway"));
-  axis.homing = read_optional_homing(table, axis, robot.period_us);
-  table.refuse_unknown_keys();
-  return axis;
-}
-
 void read_axes(TableReader& table, Robot& robot) {
   for (TableReader& entry : table.tables("axis", "one [[axis]] table for each motor")) {
     robot.axes.push_back(read_axis(std::move(entry), robot));
+  }
+}
+
+std::vector<std::string> read_modes(TableReader& table) {
+  const std::string expected = "\"manual\" first, and then each other mode of manual, home once";
+  std::vector<std::string> modes;
+  for (std::string& mode : table.texts("modes", expected)) {
+    if (std::ranges::find(known_modes, mode) == known_modes.end()) {
+      table.refuse("modes", "no mode is called \"" + mode + '"', expected);
+    }
+    if (std::ranges::find(modes, mode) != modes.end()) {
+      table.refuse("modes", '"' + mode + "\" stands there twice", expected);
+    }
+    modes.push_back(std::move(mode));
+  }
+  if (modes.empty() || modes.front() != known_modes.front()) {
+    table.refuse("modes", "the first mode is not \"manual\"", expected);
+  }
+  return modes;
+}
+
+void read_sensors(TableReader& table, Robot& robot) {
+  if (!table.has("sensor")) {
+    return;
+  }
+  for (TableReader& entry : table.tables("sensor", "one [[sensor]] table for each sensor card")) {
+    robot.sensors.push_back(read_sensor(std::move(entry), robot));
   }
 }
 
@@ -201,10 +72,20 @@ Robot read_robot(ReadLog& log, const toml::table& root) {
   robot.name = table.identifier("name");
   robot.title = table.text("title");
   robot.period_us = table.integer<std::uint32_t>("period_us");
+  robot.modes = read_modes(table);
+  robot.auto_approve = table.boolean("auto_approve");
   robot.pedal = read_pedal(table.table("pedal"), robot.period_us);
   robot.loop = read_loop(table.table("loop"), robot.period_us);
+  robot.kinematics = read_kinematics(table.table("kinematics"));
+  robot.probe = read_probe(table.table("probe"));
   read_axes(table, robot);
+  refuse_unplayed_roles(table, robot);
+  read_sensors(table, robot);
   read_home_steps(table, robot);
+  if (robot.has_mode("home") && robot.home_steps.empty()) {
+    table.refuse("modes", "there is no step of homing for the mode \"home\"",
+                 "a [[home_step]], or no such mode");
+  }
   table.refuse_unknown_keys();
   return robot;
 }

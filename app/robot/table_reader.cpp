@@ -111,6 +111,35 @@ double TableReader::number(std::string_view key) {
   return given;
 }
 
+double TableReader::number_between(std::string_view key, double lowest, double highest) {
+  const double given = number(key);
+  if (given < lowest || given > highest) {
+    std::ostringstream expected;
+    expected << "a number from " << lowest << " to " << highest;
+    if (const toml::node* const node = table_.get(key)) {
+      refuse_value(key, *node, expected.str());
+    }
+    return lowest;
+  }
+  return given;
+}
+
+std::vector<double> TableReader::numbers(std::string_view key, std::size_t count) {
+  const std::string expected = "an array of " + std::to_string(count) + " finite numbers";
+  std::vector<double> found;
+  for (const toml::node& entry : array(key, expected)) {
+    found.push_back(entry.is_number() ? entry.value<double>().value_or(0.0) : std::nan(""));
+    if (!std::isfinite(found.back())) {
+      refuse_value(key, entry, expected);
+    }
+  }
+  if (found.size() != count) {
+    refuse(key, std::to_string(found.size()) + " entries are given", expected);
+    found.assign(count, 0.0);
+  }
+  return found;
+}
+
 std::int64_t TableReader::integer_between(std::string_view key, std::int64_t lowest, std::int64_t highest) {
   const toml::node* const node = take(key, range_text(lowest, highest));
   if (!node) {

@@ -54,6 +54,12 @@ class TableReader {
   /** A finite number; an integer will do. */
   double number(std::string_view key);
 
+  /** A number from `lowest` to `highest`. */
+  double number_between(std::string_view key, double lowest, double highest);
+
+  /** An array of exactly `count` finite numbers; zeros when it is none. */
+  std::vector<double> numbers(std::string_view key, std::size_t count);
+
   /** A whole number that the type can hold. */
   template <typename Integer>
   Integer integer(std::string_view key) {

@@ -23,7 +23,13 @@ TEST(RobotFile, neuro_reads_as_written) {
   EXPECT_EQ(robot.name, "neuro");
   EXPECT_EQ(robot.period_us, 1000u);
   EXPECT_EQ(robot.pedal, (Pedal{2, 10, 50}));
+  EXPECT_THAT(robot.modes, ElementsAre("manual", "home"));
+  EXPECT_FALSE(robot.auto_approve);
   EXPECT_EQ(robot.loop, (LoopLimits{100, 100, 3, 3}));
+  EXPECT_EQ(robot.kinematics,
+            Kinematics(NeuroRcm{60.0, 30.0, 143.0, 72.5, {18.32, 178.39, 72.91}, 75.0, 146.0}));
+  EXPECT_EQ(robot.probe, (ProbeOffsets{10.0, 5.0, 5.0, 41.0}));
+  EXPECT_THAT(robot.sensors, testing::IsEmpty());
   EXPECT_THAT(robot.home_steps, ElementsAre(HomeStep{"probe_out", "Probe out", {3}, {}, {}},
                                             HomeStep{"angles", "Angles", {0, 2}, {}, {}},
                                             HomeStep{"base", "Base", {4, 7}, {}, {}}));
@@ -31,6 +37,7 @@ TEST(RobotFile, neuro_reads_as_written) {
   const Axis& pitch = *robot.find("pitch");
   EXPECT_EQ(pitch.slot, 2u);
   EXPECT_EQ(pitch.title, "Pitch");
+  EXPECT_EQ(pitch.role, "pitch");
   EXPECT_EQ(pitch.card, ILK_CARD_NON_PWM);
   EXPECT_FALSE(pitch.required);
   EXPECT_EQ(pitch.motor, Motor::shinsei);
@@ -141,7 +148,7 @@ INSTANTIATE_TEST_SUITE_P(
                "10 is given", "a whole number from 0 to 9"},
         Broken{"slot_as_text", "slot = 3", "slot = \"3\"", "slot = \"3\"", "axis.insertion.slot", "3",
                "a whole number from 0 to 9"},
-        Broken{"slot_taken_twice", "slot = 3", "slot = 1", "slot = 1\ncard = \"non-pwm\"",
+        Broken{"slot_taken_twice", "slot = 3", "slot = 1", "slot = 1\nrole = \"insertion\"",
                "axis.insertion.slot", "probe_rotation", "a slot of its own"},
         Broken{"name_taken_twice", "name = \"feet\"", "name = \"head\"",
                "name = \"head\"\ntitle = \"Axial feet\"", "axis.head.name", "\"head\"", "a name of its own"},
@@ -240,11 +247,19 @@ TEST(RobotFile, a_step_may_nudge_what_homes_later_and_move_what_homed_before) {
 }
 
 TEST(RobotFile, a_robot_without_switches_needs_no_steps) {
-  std::string text = test::neuro_text();
-  const std::size_t feet = text.find("[[axis]]\nname = \"feet\"");
-  const std::string head = text.substr(0, text.find("[[axis]]"));
-  const auto robot =
-      parse_robot(head + text.substr(feet, text.find("[[home_step]]") - feet), "one_axis.toml");
+  std::istringstream lines(test::neuro_text());
+  std::string text;
+  bool about_homing = false;
+  for (std::string line; std::getline(lines, line);) {
+    about_homing = line.starts_with('[') ? line == "[axis.homing]" || line == "[[home_step]]" : about_homing;
+    if (line.starts_with("limit =")) {
+      line = "limit = \"none\"";
+    } else if (line.starts_with("modes =")) {
+      line = "modes = [\"manual\"]";
+    }
+    text += about_homing ? "" : line + '\n';
+  }
+  const auto robot = parse_robot(text, "by_hand.toml");
   ASSERT_TRUE(robot) << robot.error().message();
   EXPECT_THAT(robot->home_steps, testing::IsEmpty());
 }

@@ -1,0 +1,162 @@
+#include "robot/read_cards.hpp"
+#include "robot/read_kinematics.hpp"
+
+namespace interlock {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, ilk_card_t>, 5> cards{{
+    {"pwm", ILK_CARD_PWM},
+    {"non-pwm", ILK_CARD_NON_PWM},
+    {"analog-input", ILK_CARD_ANALOG},
+    {"high-frequency", ILK_CARD_HIGH_FREQUENCY},
+    {"unspecified", ILK_CARD_NONE},
+}};
+
+constexpr std::array<std::pair<std::string_view, Motor>, 4> motors{{
+    {"shinsei", Motor::shinsei},
+    {"piezo", Motor::piezo},
+    {"dti", Motor::dti},
+    {"unspecified", Motor::unspecified},
+}};
+
+constexpr std::array<std::pair<std::string_view, Unit>, 2> units{{{"mm", Unit::mm}, {"rad", Unit::rad}}};
+
+constexpr std::array<std::pair<std::string_view, ilk_limit_side_t>, 3> limit_sides{{
+    {"none", ILK_LIMIT_NONE},
+    {"lower", ILK_LIMIT_LOWER},
+    {"upper", ILK_LIMIT_UPPER},
+}};
+
+SoftLimits read_soft_limits(TableReader table) {
+  SoftLimits limits;
+  limits.min_counts = table.integer<std::int32_t>("min_counts");
+  limits.max_counts = table.integer<std::int32_t>("max_counts");
+  table.refuse_unknown_keys();
+  return limits;
+}
+
+DriveBounds read_drive(TableReader table, bool has_amplitude) {
+  DriveBounds drive;
+  drive.max = table.integer<std::uint32_t>("max");
+  drive.min = static_cast<std::uint32_t>(table.integer_between("min", 0, drive.max));
+  drive.unhomed_max = table.integer<std::uint32_t>("unhomed_max");
+  if (has_amplitude) {
+    drive.max_amplitude = table.integer<std::uint32_t>("max_amplitude");
+  }
+  table.refuse_unknown_keys();
+  return drive;
+}
+
+double read_gain(TableReader& table, std::string_view key) {
+  const double gain = table.number(key);
+  if (gain < 0.0) {
+    table.refuse(key, "the gain is negative", "zero or a positive number");
+  }
+  return gain;
+}
+
+Gains read_gains(TableReader table) {
+  Gains gains;
+  gains.kp = read_gain(table, "kp");
+  gains.ki = read_gain(table, "ki");
+  gains.kd = read_gain(table, "kd");
+  table.refuse_unknown_keys();
+  return gains;
+}
+
+Mechanics read_mechanics(TableReader table, std::uint32_t period_us) {
+  Mechanics mechanics;
+  mechanics.coast_counts = table.integer<std::uint32_t>("coast_counts");
+  mechanics.backlash_counts = table.integer<std::uint32_t>("backlash_counts");
+  mechanics.noise_counts = table.integer<std::uint32_t>("noise_counts");
+  mechanics.max_delta_counts = table.integer<std::uint32_t>("max_delta_counts");
+  mechanics.settle_ticks = table.ticks("settle_ms", period_us);
+  table.refuse_unknown_keys();
+  return mechanics;
+}
+
+StallRule read_stall(TableReader table, std::uint32_t period_us) {
+  StallRule stall;
+  stall.driven_ticks = table.ticks("driven_ms", period_us);
+  stall.min_counts = table.integer<std::uint32_t>("min_counts");
+  table.refuse_unknown_keys();
+  return stall;
+}
+
+RunawayRule read_runaway(TableReader table) {
+  RunawayRule runaway;
+  runaway.reverse_counts = table.integer<std::uint32_t>("reverse_counts");
+  runaway.drift_counts = table.integer<std::uint32_t>("drift_counts");
+  table.refuse_unknown_keys();
+  return runaway;
+}
+
+Homing read_homing(TableReader table, std::uint32_t period_us, bool has_amplitude) {
+  Homing homing;
+  homing.drive = table.integer<std::uint32_t>("drive");
+  if (has_amplitude) {
+    homing.amplitude = table.integer<std::uint32_t>("amplitude");
+  }
+  homing.speed_counts_per_s = table.integer<std::uint32_t>("speed_counts_per_s");
+  homing.travel_counts = table.integer<std::uint32_t>("travel_counts");
+  homing.backoff_counts = table.integer<std::uint32_t>("backoff_counts");
+  homing.timeout_ticks = table.ticks("timeout_ms", period_us);
+  homing.rest_ticks = table.ticks("rest_ms", period_us);
+  table.refuse_unknown_keys();
+  return homing;
+}
+
+double read_counts_per_unit(TableReader& table) {
+  const double counts = table.number("counts_per_unit");
+  if (!(counts > 0.0)) {
+    table.refuse("counts_per_unit", "it is not above zero", "encoder counts per mm or rad, above zero");
+    return 1.0;
+  }
+  return counts;
+}
+
+std::optional<Homing> read_optional_homing(TableReader& table, const Axis& axis, std::uint32_t period_us) {
+  if (axis.limit != ILK_LIMIT_NONE) {
+    return read_homing(table.table("homing"), period_us, axis.card == ILK_CARD_HIGH_FREQUENCY);
+  }
+  if (table.has("homing")) {
+    table.refuse("homing", "the axis has no switch to home at",
+                 "no homing table, or limit = \"lower\" or \"upper\"");
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Axis read_axis(TableReader table, const Robot& robot) {
+  Axis axis;
+  axis.name = table.identifier("name");
+  table.rename("axis." + axis.name);
+  axis.slot = static_cast<std::uint32_t>(table.integer_between("slot", 0, ILK_SLOTS - 1));
+  refuse_twins(table, robot, axis.name, axis.slot);
+  axis.title = table.text("title");
+  axis.card = table.choice("card", cards);
+  axis.required = table.has("required") && table.boolean("required");
+  axis.motor = table.choice("motor", motors);
+  axis.encoder_resolution = table.integer<std::uint32_t>("encoder_resolution");
+  axis.unit = table.choice("unit", units);
+  axis.role = table.has("role") ? read_role(table, robot, axis.unit) : "";
+  axis.counts_per_unit = read_counts_per_unit(table);
+  axis.motor_direction = static_cast<std::uint32_t>(table.integer_between("motor_direction", 0, 1));
+  axis.direction_correction = static_cast<std::uint32_t>(table.integer_between("direction_correction", 0, 1));
+  axis.limit = table.choice("limit", limit_sides);
+  axis.home_offset_counts = table.integer<std::int32_t>("home_offset_counts");
+  axis.deadband_counts = table.integer<std::uint32_t>("deadband_counts");
+  axis.unhomed_travel_counts = table.integer<std::uint32_t>("unhomed_travel_counts");
+  axis.soft_limits = read_soft_limits(table.table("soft_limits"));
+  axis.drive = read_drive(table.table("drive"), axis.card == ILK_CARD_HIGH_FREQUENCY);
+  axis.gains = read_gains(table.table("gains"));
+  axis.mechanics = read_mechanics(table.table("mechanics"), robot.period_us);
+  axis.stall = read_stall(table.table("stall"), robot.period_us);
+  axis.runaway = read_runaway(table.table("runaway"));
+  axis.homing = read_optional_homing(table, axis, robot.period_us);
+  table.refuse_unknown_keys();
+  return axis;
+}
+
+}  // namespace interlock
