@@ -3,8 +3,6 @@
  * interlock-app: shows the robot and proposes motion. It can be killed at any moment; the kernel stops motion
  * by itself.
  */
-#include <spdlog/sinks/rotating_file_sink.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
@@ -25,6 +23,7 @@
 #include "build_info/build_info.hpp"
 #include "http/server.hpp"
 #include "interlock/kernel.h"
+#include "log/log.hpp"
 #include "motion/control_loop.hpp"
 #include "robot/catalog.hpp"
 #include "robot/compile.hpp"
@@ -35,8 +34,6 @@ namespace {
 
 constexpr int exit_failed = 1;
 constexpr int exit_unusable = 2;
-constexpr std::size_t log_file_bytes = 5u << 20u;
-constexpr std::size_t log_files = 4;
 
 struct Options {
   std::string robot_file;
@@ -74,25 +71,12 @@ void describe(CLI::App& cli, Options& options) {
       ->capture_default_str();
 }
 
-tl::expected<void, std::string> start_log(const Options& options) {
-  std::vector<spdlog::sink_ptr> sinks{std::make_shared<spdlog::sinks::stderr_color_sink_mt>()};
-  if (!options.state_directory.empty()) {
-    const std::filesystem::path file =
-        std::filesystem::path(options.state_directory) / "log" / "interlock-app.log";
-    try {
-      sinks.push_back(
-          std::make_shared<spdlog::sinks::rotating_file_sink_mt>(file.string(), log_file_bytes, log_files));
-    } catch (const spdlog::spdlog_ex& error) {
-      return tl::make_unexpected("--state " + options.state_directory + ": cannot write the log: " +
-                                 error.what() + "; expected a folder that this user may write to");
-    }
-  }
-  auto logger = std::make_shared<spdlog::logger>("app", sinks.begin(), sinks.end());
-  logger->set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %l %v", spdlog::pattern_time_type::utc);
-  logger->set_level(spdlog::level::from_str(options.log_level));
-  logger->flush_on(spdlog::level::info);
-  spdlog::set_default_logger(logger);
-  return {};
+tl::expected<std::unique_ptr<Log>, std::string> start_log(const Options& options) {
+  const std::filesystem::path folder = options.state_directory;
+  return Log::start(folder.empty() ? folder : folder / "log" / "interlock-app.log",
+                    log_level(options.log_level).value_or(LogLevel::info))
+      .map_error(
+          [&](const std::string& reason) { return "--state " + options.state_directory + ": " + reason; });
 }
 
 tl::expected<ilk_config_t, std::string> read_config(const std::string& file) {
@@ -189,16 +173,18 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
 /** An exception that nobody expected leaves the app in a state that nobody knows: it ends, to be started
  * anew. */
 int run(const Options& options) {
+  const auto unusable = [](const std::string& reason) {
+    std::cerr << "interlock-app: " << reason << std::endl;
+    return exit_unusable;
+  };
+  const auto log = start_log(options);
+  if (!log) {
+    return unusable(log.error());
+  }
   try {
     const auto served =
-        start_log(options).and_then([&] { return load_model(options); }).and_then([&](const Model& model) {
-          return serve(options, model);
-        });
-    if (served) {
-      return 0;
-    }
-    std::cerr << "interlock-app: " << served.error() << std::endl;
-    return exit_unusable;
+        load_model(options).and_then([&](const Model& model) { return serve(options, model); });
+    return served ? 0 : unusable(served.error());
   } catch (const std::exception& error) {
     spdlog::critical("uncaught exception: {}", error.what());
     return exit_failed;
