@@ -1,29 +1,63 @@
-import { useEffect } from "react";
-import { AxesPanel } from "./panels/axes/AxesPanel";
+import { AccountPage } from "./panels/account/AccountPage";
+import { AuditPage } from "./panels/audit/AuditPage";
 import { BenchPanel } from "./panels/bench/BenchPanel";
+import { CommunicationPanel } from "./panels/communication/CommunicationPanel";
 import { Cover } from "./panels/cover/Cover";
 import { Header } from "./panels/header/Header";
+import { LogPanel } from "./panels/log/LogPanel";
+import { LoginPage } from "./panels/login/LoginPage";
+import { MotorsPanel } from "./panels/motors/MotorsPanel";
 import { ProposalsPanel } from "./panels/proposals/ProposalsPanel";
-import { startSession } from "./state/session";
+import { StatusPanel } from "./panels/status/StatusPanel";
+import { UsersPage } from "./panels/users/UsersPage";
+import { useRoute } from "./state/route";
 import { useConsole } from "./state/store";
 
 export function App() {
-  useEffect(startSession, []);
-  const level = useConsole((state) => state.freshness.level);
-  const simulated = useConsole((state) => state.frame?.simulated ?? false);
+  const loggedIn = useConsole((state) => state.login.phase === "in");
   return (
     <>
       <Header />
-      <div className="stage">
-        <main className="panels" data-level={level} inert={level === "covered"}>
-          <AxesPanel />
-          <div className="side">
-            {simulated && <BenchPanel />}
-            <ProposalsPanel />
-          </div>
-        </main>
-        <Cover />
-      </div>
+      {loggedIn ? <Page /> : <LoginPage />}
     </>
+  );
+}
+
+function Page() {
+  const route = useRoute();
+  const admin = useConsole((state) => state.login.phase === "in" && state.login.user.role === "admin");
+  if (route === "account") return <Sheet of={AccountPage} />;
+  if (route === "users" && admin) return <Sheet of={UsersPage} />;
+  if (route === "audit" && admin) return <Sheet of={AuditPage} />;
+  return <RobotPage />;
+}
+
+function Sheet({ of: Content }: { readonly of: () => React.ReactNode }) {
+  return (
+    <main className="sheet">
+      <Content />
+    </main>
+  );
+}
+
+function RobotPage() {
+  const level = useConsole((state) => state.freshness.level);
+  const simulated = useConsole((state) => state.frame?.simulated ?? false);
+  return (
+    <div className="stage">
+      <main className="panels" data-level={level} inert={level === "covered"}>
+        <div className="main-column">
+          <MotorsPanel />
+          <LogPanel />
+          <CommunicationPanel />
+        </div>
+        <div className="side">
+          {simulated && <BenchPanel />}
+          <ProposalsPanel />
+          <StatusPanel />
+        </div>
+      </main>
+      <Cover />
+    </div>
   );
 }

@@ -2,31 +2,67 @@
 import createClient from "openapi-fetch";
 import type { components, paths } from "../generated/api";
 
-export type Motor = components["schemas"]["Motor"];
-export type Proposal = components["schemas"]["Proposal"];
-export type ProposalDraft = components["schemas"]["ProposalDraft"];
-export type Status = components["schemas"]["Status"];
-export type VerdictAnswer = components["schemas"]["VerdictAnswer"];
-export type AxisAction = paths["/api/motors/{slot}/{action}"]["post"]["parameters"]["path"]["action"];
+type Schemas = components["schemas"];
+
+export type Motor = Schemas["Motor"];
+export type Proposal = Schemas["Proposal"];
+export type ProposalDraft = Schemas["ProposalDraft"];
+export type Status = Schemas["Status"];
+export type CardStatus = Status["cards"][number];
+export type VerdictAnswer = Schemas["VerdictAnswer"];
+export type Session = Schemas["Session"];
+export type User = Schemas["User"];
+export type Role = Schemas["Role"];
+export type NewUser = Schemas["NewUser"];
+export type UserChange = Schemas["UserChange"];
+export type Authority = Schemas["Authority"];
+export type Claim = Schemas["Claim"];
+export type Robot = Schemas["Robot"];
+export type ModeAnswer = Schemas["ModeAnswer"];
+export type AxisVerdict = Schemas["AxisVerdicts"][number];
+export type PositionsFile = Schemas["PositionsFile"];
+export type PositionsComparison = Schemas["PositionsComparison"];
+export type Connection = Schemas["Connection"];
+export type LogLevel = Schemas["LogLevel"];
+export type LogLine = Schemas["LogLine"];
+export type AuditRecord = Schemas["AuditRecord"];
+export type AxisAction = paths["/api/motors/{axis}/{action}"]["post"]["parameters"]["path"]["action"];
 
 /** What an error says; the part of the API's problem that people need. */
-export type Problem = Pick<components["schemas"]["Problem"], "code" | "detail" | "expected" | "next_step">;
+export type Problem = Pick<Schemas["Problem"], "code" | "detail" | "expected" | "next_step" | "field"> & {
+  /** Seconds to wait before another attempt makes sense. */
+  readonly retryAfterS?: number;
+};
 
 export type Outcome<Value> = { ok: true; value: Value } | { ok: false; problem: Problem };
 
 type Send<Value> = () => Promise<{ data?: Value; error?: unknown; response: Response }>;
 
 const ANSWER_WITHIN_MS = 2000;
+/** Hashing a password is slow by intent, and several axes have several verdicts. */
+const SLOW_ANSWER_WITHIN_MS = 10_000;
 /**
  * Browsers keep six connections to a host. Reading takes one, what the operator asks for at most four, so that STOP
  * never waits behind other requests.
  */
 const MOST_PENDING_ACTIONS = 4;
 
-const http = createClient<paths>({
-  baseUrl: globalThis.location?.origin ?? "",
-  fetch: (request: Request) => fetch(request, { signal: AbortSignal.timeout(ANSWER_WITHIN_MS) }),
-});
+function clientWithin(patienceMs: number) {
+  return createClient<paths>({
+    baseUrl: globalThis.location?.origin ?? "",
+    fetch: (request: Request) => fetch(request, { signal: AbortSignal.timeout(patienceMs) }),
+  });
+}
+
+const http = clientWithin(ANSWER_WITHIN_MS);
+const slowHttp = clientWithin(SLOW_ANSWER_WITHIN_MS);
+
+let tellLoggedOut: (problem: Problem) => void = () => undefined;
+
+/** `listener` is told whenever the app answers that nobody is logged in here. */
+export function onLoggedOut(listener: (problem: Problem) => void): void {
+  tellLoggedOut = listener;
+}
 
 let lastRead: Promise<unknown> = Promise.resolve();
 
@@ -54,7 +90,11 @@ async function outcomeOf<Value>(send: Send<Value>): Promise<Outcome<Value>> {
   try {
     const { data, error, response } = await send();
     if (response.ok && data !== undefined) return { ok: true, value: data };
-    return { ok: false, problem: isProblem(error) ? error : unexpectedAnswer(response.status) };
+    const problem = isProblem(error)
+      ? { ...error, ...retryAfter(response) }
+      : unexpectedAnswer(response.status);
+    if (response.status === 401 && problem.code === "LOGIN") tellLoggedOut(problem);
+    return { ok: false, problem };
   } catch {
     return { ok: false, problem: noAnswer };
   }
@@ -62,6 +102,11 @@ async function outcomeOf<Value>(send: Send<Value>): Promise<Outcome<Value>> {
 
 function isProblem(error: unknown): error is Problem {
   return typeof error === "object" && error !== null && "code" in error && "detail" in error;
+}
+
+function retryAfter(response: Response): { retryAfterS?: number } {
+  const seconds = Number(response.headers.get("Retry-After") ?? Number.NaN);
+  return Number.isFinite(seconds) ? { retryAfterS: seconds } : {};
 }
 
 const tooManyPending: Problem = {
@@ -72,7 +117,7 @@ const tooManyPending: Problem = {
 
 const noAnswer: Problem = {
   code: "NO_APP",
-  detail: `The app gave no readable answer within ${ANSWER_WITHIN_MS / 1000} s.`,
+  detail: "The app gave no readable answer in time.",
   next_step: "Check that the app runs and that this computer reaches it.",
 };
 
@@ -86,13 +131,55 @@ function unexpectedAnswer(status: number): Problem {
 
 export const api = {
   status: () => read(() => http.GET("/api/status")),
+  session: () => read(() => http.GET("/api/session")),
+  login: (name: string, password: string) =>
+    act(() => slowHttp.POST("/api/login", { body: { name, password } })),
+  logout: () => act(() => http.POST("/api/logout")),
+  changePassword: (current: string, wanted: string) =>
+    act(() => slowHttp.PUT("/api/password", { body: { current, new: wanted } })),
+
+  users: () => read(() => http.GET("/api/users")),
+  addUser: (user: NewUser) => act(() => slowHttp.POST("/api/users", { body: user })),
+  changeUser: (user: string, change: UserChange) =>
+    act(() => slowHttp.PUT("/api/users/{user}", { params: { path: { user } }, body: change })),
+
+  authority: () => read(() => http.GET("/api/authority")),
+  requestAuthority: () => act(() => http.POST("/api/authority/request")),
+  releaseAuthority: () => act(() => http.POST("/api/authority/release")),
+  handOverAuthority: (session: number) =>
+    act(() => http.POST("/api/authority/hand-over", { body: { session } })),
+  takeOverAuthority: () => act(() => http.POST("/api/authority/take-over")),
+
+  robots: () => read(() => http.GET("/api/robots")),
+  mode: () => read(() => http.GET("/api/mode")),
+  setMode: (mode: string) => act(() => http.PUT("/api/mode", { body: { mode } })),
   motors: () => read(() => http.GET("/api/motors")),
+  act: (axis: number, action: AxisAction) =>
+    act(() => http.POST("/api/motors/{axis}/{action}", { params: { path: { axis: String(axis), action } } })),
+  zeroAll: () => act(() => slowHttp.POST("/api/motors/zero-all")),
   proposals: () => read(() => http.GET("/api/proposals")),
-  act: (slot: number, action: AxisAction) =>
-    act(() => http.POST("/api/motors/{slot}/{action}", { params: { path: { slot, action } } })),
   propose: (draft: ProposalDraft) => act(() => http.POST("/api/proposals", { body: draft })),
   abort: (id: number) => act(() => http.POST("/api/proposals/{id}/abort", { params: { path: { id } } })),
   reset: () => act(() => http.POST("/api/reset")),
+
+  positions: () => read(() => http.GET("/api/positions")),
+  /** The file is sent as it is: judging it is the app's. */
+  comparePositions: (file: unknown) =>
+    act(() => http.POST("/api/positions/compare", { body: file as PositionsFile })),
+  restore: (file: PositionsFile, axes: string[]) =>
+    act(() => slowHttp.PUT("/api/motors/restore", { body: { file, axes } })),
+
+  communications: () => read(() => http.GET("/api/communications")),
+  disconnect: (id: number) => act(() => http.PUT("/api/communications/disconnect", { body: { id } })),
+  logs: (lines: number) => read(() => http.GET("/api/logs", { params: { query: { lines } } })),
+  setLogLevel: (level: LogLevel) => act(() => http.PUT("/api/logs", { body: { level } })),
+  audit: (records: number, before?: number) =>
+    read(() =>
+      http.GET("/api/audit", {
+        params: { query: before === undefined ? { records } : { records, before } },
+      }),
+    ),
+
   bench: () => read(() => http.GET("/api/bench")),
   benchCommand: (command: string, body: Record<string, unknown>) =>
     act(() => http.POST("/api/bench/{command}", { params: { path: { command } }, body })),

@@ -1,36 +1,52 @@
 import type { ReactNode } from "react";
 import { formatAge } from "../state/freshness";
-import { useConsole } from "../state/store";
+import { type ConsoleState, useConsole } from "../state/store";
+import type { Asked } from "../state/usePolled";
 import "./panel.css";
 
 interface PanelProps {
   readonly title: string;
   readonly className?: string;
+  /** The question that the panel's data answer; those of the other panels come by the stream. */
+  readonly asked?: Asked;
+  /** Beside the title. */
+  readonly tools?: ReactNode;
   readonly children: ReactNode;
 }
 
 /** A titled part of the page with the dot in its corner that tells whether its data live. */
-export function Panel({ title, className, children }: PanelProps) {
+export function Panel({ title, className, asked, tools, children }: PanelProps) {
   return (
     <section className={`panel ${className ?? ""}`} aria-label={title}>
       <header className="panel-head">
         <h2>{title}</h2>
-        <LifeDot />
+        {tools !== undefined && <div className="panel-tools">{tools}</div>}
+        <LifeDot asked={asked} />
       </header>
       {children}
     </section>
   );
 }
 
-function LifeDot() {
-  const live = useConsole((state) => state.freshness.level === "live");
-  const age = useConsole((state) =>
-    state.freshness.level === "live" ? "" : formatAge(state.freshness.ageMs),
-  );
+function LifeDot({ asked }: { readonly asked: Asked | undefined }) {
+  const age = useConsole((state) => (asked === undefined ? streamAge(state) : askedAge(state.nowMs, asked)));
   return (
-    <span className={`life-dot ${live ? "live" : "stale"}`}>
+    <span className={`life-dot ${age === null ? "live" : "stale"}`}>
       <i aria-hidden="true" />
-      {live ? "live" : `stale · ${age}`}
+      {age === null ? "live" : `stale · ${age}`}
     </span>
   );
+}
+
+function streamAge({ freshness }: ConsoleState): string | null {
+  return freshness.level === "live" ? null : formatAge(freshness.ageMs);
+}
+
+/** An answer may take a moment before its absence is news. */
+const ANSWER_MAY_TAKE_MS = 1500;
+
+function askedAge(nowMs: number, { answeredAtMs, everyMs }: Asked): string | null {
+  if (answeredAtMs === null) return "none";
+  const ageMs = nowMs - answeredAtMs;
+  return ageMs <= everyMs + ANSWER_MAY_TAKE_MS ? null : formatAge(ageMs);
 }

@@ -1,7 +1,8 @@
 /** What a click does: one call to the app, its answer into the store. */
-import { type AxisAction, api, type ProposalDraft } from "../api/client";
+import { type Authority, type AxisAction, api, type Outcome, type ProposalDraft } from "../api/client";
+import { leave } from "./feed";
 import { noticeOfProblem } from "./notice";
-import { useConsole, withBenchAnswer, withNotice } from "./store";
+import { type Place, useConsole, withBenchAnswer, withNotice } from "./store";
 
 /** Sends STOP at once, whatever else is going on, and drops every preview. */
 export async function stop(): Promise<void> {
@@ -20,25 +21,45 @@ export async function unlock(): Promise<void> {
   useConsole.setState({ unlockNotice: outcome.ok ? null : noticeOfProblem(outcome.problem) });
 }
 
+/** Ends the session. When the app does not answer, the session goes on and the header says so. */
+export async function logout(): Promise<void> {
+  const outcome = await api.logout();
+  if (outcome.ok) leave(null);
+  else useConsole.setState({ authorityNotice: noticeOfProblem(outcome.problem) });
+}
+
+/** Asks for, gives up, hands over or takes the motion authority; a refusal is shown in the header. */
+export async function changeAuthority(ask: () => Promise<Outcome<Authority>>): Promise<void> {
+  const outcome = await ask();
+  if (outcome.ok) useConsole.setState({ authority: outcome.value, authorityNotice: null });
+  else useConsole.setState({ authorityNotice: noticeOfProblem(outcome.problem) });
+}
+
 /** Sends one request for an axis; a refusal is shown at the axis. */
 export async function act(slot: number, action: AxisAction): Promise<void> {
-  const outcome = await api.act(slot, action);
-  const notice = outcome.ok ? null : noticeOfProblem(outcome.problem);
-  useConsole.setState((state) => withNotice(state, slot, notice));
+  tell(slot, await api.act(slot, action));
 }
 
-/** Proposes a move; a refusal is shown at the axis, the proposal itself comes by the stream. */
+/** Proposes a move or homing; a refusal is shown where it belongs, the proposal itself comes by the stream. */
 export async function propose(draft: ProposalDraft): Promise<void> {
-  const outcome = await api.propose(draft);
-  const notice = outcome.ok ? null : noticeOfProblem(outcome.problem);
-  useConsole.setState((state) => withNotice(state, draft.slot, notice));
+  tell(draft.slot ?? "robot", await api.propose(draft));
 }
 
-/** Ends an open proposal; a refusal is shown at its axis. */
-export async function abort(id: number, slot: number): Promise<void> {
-  const outcome = await api.abort(id);
+/** Ends an open proposal; a refusal is shown where it belongs. */
+export async function abort(id: number, slot: number | null): Promise<void> {
+  tell(slot ?? "robot", await api.abort(id));
+}
+
+/** Changes the robot's mode; a refusal is shown at the selector. */
+export async function setMode(mode: string): Promise<void> {
+  const outcome = await api.setMode(mode);
+  if (outcome.ok) useConsole.setState({ mode: outcome.value });
+  tell("mode", outcome);
+}
+
+function tell(place: Place, outcome: Outcome<unknown>): void {
   const notice = outcome.ok ? null : noticeOfProblem(outcome.problem);
-  useConsole.setState((state) => withNotice(state, slot, notice));
+  useConsole.setState((state) => withNotice(state, place, notice));
 }
 
 /** Passes a command of models/plant/README.md to the simulated hardware; a refusal is shown at the bench. */
@@ -64,6 +85,6 @@ export async function movePedal(footwork: keyof typeof pedalFields): Promise<boo
   return outcome.ok;
 }
 
-export function dismissNotice(slot: number): void {
-  useConsole.setState((state) => withNotice(state, slot, null));
+export function dismissNotice(place: Place): void {
+  useConsole.setState((state) => withNotice(state, place, null));
 }

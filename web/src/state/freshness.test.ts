@@ -1,9 +1,8 @@
 import { describe, expect, it } from "vitest";
-import type { Frame } from "../stream/decode";
-import { type Evidence, formatAge, judgeFreshness } from "./freshness";
+import { type Evidence, formatAge, judgeFreshness, polled } from "./freshness";
 
-const frame = { connected: true, ageMs: 40 } as Frame;
-const evidence: Evidence = { phase: "open", frame, arrivedAtMs: 1000, frameError: null };
+const glance = { connected: true, ageMs: 40 };
+const evidence: Evidence = { phase: "open", glance, arrivedAtMs: 1000, frameError: null };
 
 describe("judgeFreshness", () => {
   it("adds the age at sending to the time since arrival", () => {
@@ -20,14 +19,14 @@ describe("judgeFreshness", () => {
   });
 
   it("covers before the first message", () => {
-    expect(judgeFreshness({ ...evidence, frame: null }, 0)).toMatchObject({
+    expect(judgeFreshness({ ...evidence, glance: null }, 0)).toMatchObject({
       level: "covered",
       reason: "no-app",
     });
   });
 
   it("covers at once when the app has no kernel, however new the message", () => {
-    const withoutKernel = { ...evidence, frame: { ...frame, connected: false } };
+    const withoutKernel = { ...evidence, glance: { ...glance, connected: false } };
     expect(judgeFreshness(withoutKernel, 1000)).toMatchObject({ level: "covered", reason: "no-kernel" });
   });
 
@@ -41,6 +40,14 @@ describe("judgeFreshness", () => {
       level: "grey",
       reason: "no-app",
     });
+  });
+
+  it.each([
+    [2000, "live"],
+    [3000, "grey"],
+    [4000, "covered"],
+  ])("is more patient with what is asked for once a second: at %i ms %s", (age, level) => {
+    expect(judgeFreshness(evidence, evidence.arrivedAtMs + age, polled)).toMatchObject({ level });
   });
 
   it("does not grow younger when the clock steps back", () => {

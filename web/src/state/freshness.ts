@@ -1,9 +1,15 @@
 /** How far what the console shows can be trusted: data older than 250 ms are greyed, older than 1 s covered. */
 import type { Phase } from "../stream/connection";
-import type { Frame } from "../stream/decode";
 
-export const GREY_AFTER_MS = 250;
-export const COVER_AFTER_MS = 1000;
+/** Ages at which data are greyed and covered. */
+export interface Patience {
+  readonly greyAfterMs: number;
+  readonly coverAfterMs: number;
+}
+
+export const streamed: Patience = { greyAfterMs: 250, coverAfterMs: 1000 };
+/** For what is asked for once a second: one answer may be late. */
+export const polled: Patience = { greyAfterMs: 2500, coverAfterMs: 4000 };
 
 export interface Freshness {
   readonly level: "live" | "grey" | "covered";
@@ -15,22 +21,22 @@ export interface Freshness {
 
 export interface Evidence {
   readonly phase: Phase;
-  readonly frame: Frame | null;
+  readonly glance: { readonly connected: boolean; readonly ageMs: number } | null;
   readonly arrivedAtMs: number;
   /** What was wrong with the newest message; null when it was understood. */
   readonly frameError: string | null;
 }
 
 /** Judges the data at the time `nowMs`, on the same clock as `arrivedAtMs`. */
-export function judgeFreshness(evidence: Evidence, nowMs: number): Freshness {
-  const { phase, frame, arrivedAtMs, frameError } = evidence;
-  const ageMs = frame === null ? null : frame.ageMs + Math.max(0, nowMs - arrivedAtMs);
+export function judgeFreshness(evidence: Evidence, nowMs: number, patience: Patience = streamed): Freshness {
+  const { phase, glance, arrivedAtMs, frameError } = evidence;
+  const ageMs = glance === null ? null : glance.ageMs + Math.max(0, nowMs - arrivedAtMs);
   if (frameError !== null) return { level: "covered", ageMs, reason: "unreadable" };
-  if (frame === null || ageMs === null) return { level: "covered", ageMs, reason: "no-app" };
-  if (!frame.connected) return { level: "covered", ageMs, reason: "no-kernel" };
-  if (ageMs <= GREY_AFTER_MS) return { level: "live", ageMs, reason: null };
+  if (glance === null || ageMs === null) return { level: "covered", ageMs, reason: "no-app" };
+  if (!glance.connected) return { level: "covered", ageMs, reason: "no-kernel" };
+  if (ageMs <= patience.greyAfterMs) return { level: "live", ageMs, reason: null };
   return {
-    level: ageMs > COVER_AFTER_MS ? "covered" : "grey",
+    level: ageMs > patience.coverAfterMs ? "covered" : "grey",
     ageMs,
     reason: phase === "open" ? "late" : "no-app",
   };

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import type { Proposal } from "../api/client";
+import type { Proposal, Status, User } from "../api/client";
 import type { Frame } from "../stream/decode";
 import type { Notice } from "./notice";
 import {
@@ -10,12 +10,16 @@ import {
   withBenchAnswer,
   withFrame,
   withFrameError,
+  withLogin,
+  withLogout,
   withNotice,
   withProposal,
+  withStatus,
   withTime,
 } from "./store";
 
-const open: ConsoleState = { ...initialState, phase: "open" };
+const user = { name: "ann", role: "engineer" } as User;
+const open: ConsoleState = { ...initialState, phase: "open", login: { phase: "in", user, session: 7 } };
 const frame = { connected: true, ageMs: 5, mode: "LOCKED" } as Frame;
 const notice: Notice = { code: "RANGE", meaning: "Too far.", nextStep: "Come back." };
 const proposal = (id: number, state: Proposal["state"]): Proposal =>
@@ -41,6 +45,37 @@ describe("data", () => {
     expect(unreadable.freshness).toMatchObject({ level: "covered", reason: "unreadable" });
     expect(applied(unreadable, withTime(unreadable, 1020)).freshness.level).toBe("covered");
     expect(withFrame(unreadable, frame, 1030)).toMatchObject({ frameError: null });
+  });
+});
+
+describe("the public status", () => {
+  const status = { connected: true, age_ms: 5, mode: "LOCKED", estop: true, clock: "sim" } as Status;
+
+  it("is all that the header shows without login, and may be a second old", () => {
+    const out = applied(initialState, withStatus(initialState, status, 1000));
+    expect(out.glance).toMatchObject({ mode: "LOCKED", estop: true, simulatedClock: true });
+    expect(applied(out, withTime(out, 2000)).freshness.level).toBe("live");
+    expect(applied(out, withTime(out, 6000)).freshness.level).toBe("covered");
+  });
+
+  it("never takes the place of the stream", () => {
+    const streaming = applied(open, withFrame(open, frame, 1000));
+    const both = applied(streaming, withStatus(streaming, status, 1500));
+    expect([both.glance, both.arrivedAtMs, both.status]).toEqual([frame, 1000, status]);
+    expect(applied(both, withTime(both, 2500)).freshness.level).toBe("covered");
+  });
+});
+
+describe("a session", () => {
+  it("opens for its user", () => {
+    expect(withLogin(user, 7).login).toEqual({ phase: "in", user, session: 7 });
+  });
+
+  it("leaves nothing behind that only users may see", () => {
+    const seen = { ...open, proposals: [proposal(1, "done")], notices: { 0: notice }, stops: 2 };
+    const left = withLogout(applied(seen, withFrame(seen, frame, 1000)), notice);
+    expect(left).toMatchObject({ login: { phase: "out", notice }, frame: null, proposals: [], notices: {} });
+    expect([left.glance, left.stops]).toEqual([frame, 2]);
   });
 });
 
@@ -74,6 +109,11 @@ describe("proposals", () => {
     expect(refused.notices[3]?.code).toBe("RANGE");
     expect(refused.notices[0]).toBe(notice);
     expect(withProposal(before, proposal(1, "executing")).notices).toBeUndefined();
+  });
+
+  it("of several axes show their refusal above them", () => {
+    const refused = withProposal(open, { ...proposal(1, "refused"), slot: null });
+    expect(refused.notices?.robot?.code).toBe("RANGE");
   });
 });
 

@@ -6,7 +6,7 @@ class SocketInHand {
   static readonly opened: SocketInHand[] = [];
   onopen: (() => void) | null = null;
   onmessage: ((event: { data: ArrayBuffer | string }) => void) | null = null;
-  onclose: (() => void) | null = null;
+  onclose: ((event: { code: number }) => void) | null = null;
   closed = false;
   constructor() {
     SocketInHand.opened.push(this);
@@ -20,6 +20,7 @@ const latest = (): SocketInHand => SocketInHand.opened.at(-1) as SocketInHand;
 
 let phases: Phase[];
 let texts: string[];
+let sessionsEnded: number;
 let close: () => void;
 
 beforeEach(() => {
@@ -28,10 +29,14 @@ beforeEach(() => {
   SocketInHand.opened.length = 0;
   phases = [];
   texts = [];
+  sessionsEnded = 0;
   close = openStream("ws://host/api/stream", {
     onBinary: () => undefined,
     onText: (text) => texts.push(text),
     onPhase: (phase) => phases.push(phase),
+    onSessionEnded: () => {
+      sessionsEnded += 1;
+    },
   });
 });
 
@@ -52,14 +57,14 @@ describe("openStream", () => {
   it("reconnects after growing pauses and starts over after a message", () => {
     for (const pause of [250, 500, 1000, 2000, 4000, 4000]) {
       const sockets = SocketInHand.opened.length;
-      latest().onclose?.();
+      latest().onclose?.({ code: 1006 });
       vi.advanceTimersByTime(pause - 1);
       expect(SocketInHand.opened.length).toBe(sockets);
       vi.advanceTimersByTime(1);
       expect(SocketInHand.opened.length).toBe(sockets + 1);
     }
     latest().onmessage?.({ data: "{}" });
-    latest().onclose?.();
+    latest().onclose?.({ code: 1006 });
     vi.advanceTimersByTime(250);
     expect(phases.slice(-3)).toEqual(["connecting", "lost", "connecting"]);
   });
@@ -70,6 +75,13 @@ describe("openStream", () => {
     vi.advanceTimersByTime(5000);
     expect(silent.closed).toBe(true);
     expect(phases.at(-1)).toBe("lost");
+  });
+
+  it("does not come back when the session ended, and says so", () => {
+    latest().onclose?.({ code: 4401 });
+    vi.advanceTimersByTime(60_000);
+    expect([SocketInHand.opened.length, sessionsEnded]).toEqual([1, 1]);
+    expect(phases).not.toContain("lost");
   });
 
   it("does not come back once closed", () => {

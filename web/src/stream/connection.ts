@@ -6,7 +6,12 @@ export interface StreamHandlers {
   onBinary(message: ArrayBuffer): void;
   onText(message: string): void;
   onPhase(phase: Phase): void;
+  /** The app closed the stream because the session ended; it is not opened again. */
+  onSessionEnded(): void;
 }
+
+/** Close code of a stream whose session ended, see spec/openapi.yaml. */
+const SESSION_ENDED = 4401;
 
 const FIRST_PAUSE_MS = 250;
 const LONGEST_PAUSE_MS = 4000;
@@ -37,7 +42,11 @@ export function openStream(url: string, handlers: StreamHandlers): () => void {
       if (typeof event.data === "string") handlers.onText(event.data);
       else handlers.onBinary(event.data);
     };
-    opening.onclose = lose;
+    opening.onclose = (event: CloseEvent) => {
+      if (event.code !== SESSION_ENDED) return lose();
+      drop();
+      handlers.onSessionEnded();
+    };
   };
 
   const watch = (): void => {

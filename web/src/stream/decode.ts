@@ -83,9 +83,9 @@ export interface AxisFrame {
   readonly maxCounts: number;
 }
 
-export interface Frame {
+/** What the header shows of the system, with or without login. */
+export interface Glance {
   readonly connected: boolean;
-  readonly tick: number;
   readonly mode: Code<"mode">;
   readonly cause: Code<"cause">;
   readonly causeTick: number;
@@ -95,13 +95,17 @@ export interface Frame {
   readonly pedalArmed: boolean;
   readonly estop: boolean;
   readonly appAlive: boolean;
-  readonly holder: number;
-  readonly overruns: number;
   /** Age of the data when the message was sent. */
   readonly ageMs: number;
   readonly simulated: boolean;
   readonly degraded: boolean;
   readonly simulatedClock: boolean;
+}
+
+export interface Frame extends Glance {
+  readonly tick: number;
+  readonly holder: number;
+  readonly overruns: number;
   readonly configCrc: string;
   /** By lamp number. */
   readonly lamps: readonly Code<"colour">[];

@@ -1,38 +1,69 @@
+import { api } from "../../api/client";
+import { CommandButton } from "../../design/CommandButton";
 import { NoticeText } from "../../design/NoticeText";
 import { Panel } from "../../design/Panel";
+import { ReasonLine } from "../../design/ReasonLine";
 import { catalog, entry } from "../../generated/catalog";
 import { bench } from "../../state/commands";
 import { useConsole } from "../../state/store";
-import { useJammedSlots } from "./useJammedSlots";
+import { usePolled } from "../../state/usePolled";
+import { useReason } from "../../state/useReason";
+import { AxisFaults } from "./AxisFaults";
+import { plantStatus } from "./benchStatus";
+import { CardFaults } from "./CardFaults";
+import { ContactFaults } from "./ContactFaults";
+import type { FaultsProps, SendBench } from "./faults";
 import { usePedal } from "./usePedal";
 import "./bench.css";
+
+const ASK_EVERY_MS = 1000;
 
 /** The hands and feet of the simulated hardware; exists only with it. */
 export function BenchPanel() {
   const refusal = useConsole((state) => state.benchRefusal);
+  // Asked of the simulator, since others may set faults too.
+  const { value, asked, refresh } = usePolled(api.bench, ASK_EVERY_MS);
+  const plant = plantStatus(value);
+  const send: SendBench = async (command, fields) => {
+    await bench(command, fields);
+    await refresh();
+  };
   return (
-    <Panel title="Bench" className="bench-panel">
+    <Panel title="Bench" className="bench-panel" asked={asked}>
       <p className="bench-banner">SIMULATED HARDWARE</p>
+      <ReasonLine need="engineer" />
       <Pedal />
-      <Estop />
-      <Jam />
-      <Lamps />
+      <Estop send={send} />
       {refusal !== null && (
         <p className="bench-notice" role="alert">
           <NoticeText lead={`Refused ${refusal.command}:`} notice={refusal.notice} />
         </p>
       )}
+      <Jam plant={plant} send={send} />
+      <details className="bench-faults">
+        <summary>More faults</summary>
+        <AxisFaults plant={plant} send={send} />
+        <CardFaults plant={plant} send={send} />
+        <ContactFaults plant={plant} send={send} />
+        <CommandButton need="engineer" onCommand={() => send("clear", {})}>
+          End every fault
+        </CommandButton>
+      </details>
+      <Lamps />
     </Panel>
   );
 }
 
 function Pedal() {
   const { down, latched, press, lift, toggleLatch } = usePedal();
+  const reason = useReason("engineer");
   return (
     <div className="bench-row">
       <button
         type="button"
         className={`button pedal ${down ? "down" : ""}`}
+        disabled={reason !== null}
+        title={reason ?? undefined}
         onPointerDown={(event) => {
           if (event.button !== 0) return;
           event.currentTarget.setPointerCapture(event.pointerId);
@@ -44,50 +75,53 @@ function Pedal() {
         <i aria-hidden="true">{down ? "▼" : "▽"}</i> Pedal
         <small>{down ? (latched ? "latched down" : "held down") : "press and hold"}</small>
       </button>
-      <button type="button" className="button latch" aria-pressed={latched} onClick={toggleLatch}>
+      <button
+        type="button"
+        className="button latch"
+        disabled={reason !== null}
+        title={reason ?? undefined}
+        aria-pressed={latched}
+        onClick={toggleLatch}
+      >
         Latch pedal
       </button>
     </div>
   );
 }
 
-function Estop() {
+function Estop({ send }: { readonly send: SendBench }) {
   return (
     <div className="bench-row">
-      <button type="button" className="button" onClick={() => void bench("estop", { pulled: true })}>
+      <CommandButton need="engineer" onCommand={() => send("estop", { pulled: true })}>
         Pull E-stop
-      </button>
-      <button type="button" className="button" onClick={() => void bench("estop", { pulled: false })}>
+      </CommandButton>
+      <CommandButton need="engineer" onCommand={() => send("estop", { pulled: false })}>
         Release E-stop
-      </button>
+      </CommandButton>
     </div>
   );
 }
 
-/** Which axes are jammed is asked of the simulator, since others may jam them too. */
-function Jam() {
+function Jam({ plant, send }: FaultsProps) {
   const motors = useConsole((state) => state.motors);
-  const [jammed, refresh] = useJammedSlots();
-  const toggle = async (slot: number): Promise<void> => {
-    await bench("jam", { slot, jammed: !jammed.has(slot) });
-    refresh();
-  };
   return (
     <fieldset className="jam">
       <legend>Jam an axis</legend>
-      {motors.map((motor) => (
-        <button
-          type="button"
-          className="button"
-          key={motor.slot}
-          aria-label={`Jam ${motor.title}`}
-          aria-pressed={jammed.has(motor.slot)}
-          onClick={() => void toggle(motor.slot)}
-        >
-          {motor.title}
-          {jammed.has(motor.slot) && " ✕"}
-        </button>
-      ))}
+      {motors.map(({ slot, title }) => {
+        const jammed = plant.axes.some((axis) => axis.slot === slot && axis.jammed);
+        return (
+          <CommandButton
+            key={slot}
+            need="engineer"
+            label={`Jam ${title}`}
+            pressed={jammed}
+            onCommand={() => send("jam", { slot, jammed: !jammed })}
+          >
+            {title}
+            {jammed && " ✕"}
+          </CommandButton>
+        );
+      })}
     </fieldset>
   );
 }

@@ -1,14 +1,35 @@
 import { describe, expect, it } from "vitest";
-import { jammedSlots } from "./benchStatus";
+import { plantStatus } from "./benchStatus";
 
-describe("jammedSlots", () => {
-  it("lists the jammed axes", () => {
-    const axes = [
-      { slot: 0, jammed: false },
-      { slot: 3, jammed: true },
-      { slot: 7, jammed: true },
-    ];
-    expect([...jammedSlots({ ok: true, axes })]).toEqual([3, 7]);
+const sound = { pedalNo: "free", pedalNc: "free", estopPulled: false, axes: [], unpowered: new Set() };
+
+describe("plantStatus", () => {
+  it("reads the faults of pedal, E-stop, axes and cards", () => {
+    const status = plantStatus({
+      ok: true,
+      pedal: { pressed: true, no: "open", nc: "free" },
+      estop: { pulled: true, loop_closed: false },
+      axes: [
+        { slot: 0, jammed: false, reversed: true, counts_per_tick: 2, encoder: "stuck", has_switch: true },
+        { slot: 3, jammed: true, switch: "triggered", has_switch: false },
+      ],
+      cards: [
+        { slot: 0, powered: true },
+        { slot: 3, powered: false },
+      ],
+    });
+    expect(status).toMatchObject({ pedalNo: "open", pedalNc: "free", estopPulled: true });
+    expect(status.axes[0]).toEqual({
+      slot: 0,
+      jammed: false,
+      reversed: true,
+      runawayCountsPerTick: 2,
+      encoder: "stuck",
+      switchState: "normal",
+      hasSwitch: true,
+    });
+    expect(status.axes[1]).toMatchObject({ slot: 3, jammed: true, switchState: "triggered" });
+    expect([...status.unpowered]).toEqual([3]);
   });
 
   it.each([
@@ -16,9 +37,9 @@ describe("jammedSlots", () => {
     [null],
     ["status"],
     [{}],
-    [{ axes: 3 }],
-    [{ axes: [null, 3, {}, { jammed: true }] }],
-  ])("is empty for %j", (status) => {
-    expect(jammedSlots(status).size).toBe(0);
+    [{ axes: 3, cards: {} }],
+    [{ axes: [null, 3, {}, { jammed: true }], cards: [{ powered: false }] }],
+  ])("takes %j for a sound plant", (answer) => {
+    expect(plantStatus(answer)).toEqual(sound);
   });
 });

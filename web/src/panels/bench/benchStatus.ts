@@ -1,16 +1,66 @@
-/** The part of the simulator's `status` answer (models/plant/README.md) that the bench shows. */
+/** What the plant says of its faults; see `status` in models/plant/README.md. What it does not say is taken for sound. */
 
-/** Slots of the jammed axes; none when the answer has another shape. */
-export function jammedSlots(status: unknown): ReadonlySet<number> {
-  const axes = hasAxes(status) ? status.axes : [];
-  return new Set(axes.filter(isJammedAxis).map((axis) => axis.slot));
+export interface PlantAxis {
+  readonly slot: number;
+  readonly jammed: boolean;
+  readonly reversed: boolean;
+  readonly runawayCountsPerTick: number;
+  readonly encoder: string;
+  readonly switchState: string;
+  readonly hasSwitch: boolean;
 }
 
-function hasAxes(status: unknown): status is { axes: unknown[] } {
-  return typeof status === "object" && status !== null && "axes" in status && Array.isArray(status.axes);
+export interface PlantStatus {
+  readonly pedalNo: string;
+  readonly pedalNc: string;
+  readonly estopPulled: boolean;
+  /** By rising slot. */
+  readonly axes: readonly PlantAxis[];
+  /** Slots whose card is without power. */
+  readonly unpowered: ReadonlySet<number>;
 }
 
-function isJammedAxis(axis: unknown): axis is { slot: number } {
-  if (typeof axis !== "object" || axis === null) return false;
-  return "slot" in axis && typeof axis.slot === "number" && "jammed" in axis && axis.jammed === true;
+type Fields = Readonly<Record<string, unknown>>;
+
+export function plantStatus(answer: unknown): PlantStatus {
+  const status = fieldsOf(answer);
+  const pedal = fieldsOf(status.pedal);
+  const cards = listOf(status.cards).filter((card) => card.powered === false);
+  return {
+    pedalNo: textOf(pedal.no, "free"),
+    pedalNc: textOf(pedal.nc, "free"),
+    estopPulled: fieldsOf(status.estop).pulled === true,
+    axes: listOf(status.axes).map(plantAxis),
+    unpowered: new Set(cards.map((card) => numberOf(card.slot))),
+  };
+}
+
+function plantAxis(axis: Fields): PlantAxis {
+  return {
+    slot: numberOf(axis.slot),
+    jammed: axis.jammed === true,
+    reversed: axis.reversed === true,
+    runawayCountsPerTick: numberOf(axis.counts_per_tick),
+    encoder: textOf(axis.encoder, "normal"),
+    switchState: textOf(axis.switch, "normal"),
+    hasSwitch: axis.has_switch === true,
+  };
+}
+
+function fieldsOf(value: unknown): Fields {
+  return typeof value === "object" && value !== null ? (value as Fields) : {};
+}
+
+/** The members that have a slot. */
+function listOf(value: unknown): Fields[] {
+  const members = Array.isArray(value) ? value.map(fieldsOf) : [];
+  return members.filter((member) => typeof member.slot === "number");
+}
+
+function textOf(value: unknown, fallback: string): string {
+  return typeof value === "string" ? value : fallback;
+}
+
+function numberOf(value: unknown): number {
+  return typeof value === "number" ? value : 0;
 }

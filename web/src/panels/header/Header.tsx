@@ -1,44 +1,56 @@
+import { CommandButton } from "../../design/CommandButton";
 import { NoticeText } from "../../design/NoticeText";
 import { entry } from "../../generated/catalog";
 import { unlock } from "../../state/commands";
 import { type Freshness, formatAge } from "../../state/freshness";
 import { useConsole } from "../../state/store";
 import type { Phase } from "../../stream/connection";
-import type { Frame } from "../../stream/decode";
+import type { Glance } from "../../stream/decode";
 import { ModeStrip } from "./ModeStrip";
+import { SessionBar } from "./SessionBar";
 import { StopCorner } from "./StopCorner";
 import "./header.css";
 
 /** Always visible: what the system is, whether it may move, how old that knowledge is, and STOP. */
 export function Header() {
   const level = useConsole((state) => state.freshness.level);
-  const known = useConsole((state) => (level === "covered" ? null : state.frame));
+  const known = useConsole((state) => (level === "covered" ? null : state.glance));
+  const loggedIn = useConsole((state) => state.login.phase === "in");
   const unlockNotice = useConsole((state) => state.unlockNotice);
+  const authorityNotice = useConsole((state) => state.authorityNotice);
   return (
     <header className="header" data-level={level}>
       <Banners />
+      <SessionBar />
       <div className="status-bar">
         <Robot />
         <div className="status-data">
-          <Mode frame={known} />
-          <button
-            type="button"
-            className="button unlock"
-            disabled={known?.mode !== "LOCKED"}
-            onClick={() => void unlock()}
-          >
-            Unlock
-          </button>
-          <Estop frame={known} />
-          <Pedal frame={known} />
+          <Mode glance={known} />
+          {loggedIn && (
+            <CommandButton
+              need="holder"
+              className="unlock"
+              off={known?.mode === "LOCKED" ? null : "The system is not locked."}
+              onCommand={unlock}
+            >
+              Unlock
+            </CommandButton>
+          )}
+          <Estop glance={known} />
+          <Pedal glance={known} />
         </div>
         <Connection />
         <StopCorner />
       </div>
-      <ModeStrip frame={known} />
+      <ModeStrip glance={known} />
       {unlockNotice !== null && (
-        <p className="unlock-notice" role="alert">
+        <p className="header-notice" role="alert">
           <NoticeText lead="Unlock refused:" notice={unlockNotice} />
+        </p>
+      )}
+      {authorityNotice !== null && (
+        <p className="header-notice" role="alert">
+          <NoticeText lead="Refused:" notice={authorityNotice} />
         </p>
       )}
     </header>
@@ -46,8 +58,8 @@ export function Header() {
 }
 
 function Banners() {
-  const simulated = useConsole((state) => state.frame?.simulated ?? false);
-  const degraded = useConsole((state) => state.frame?.degraded ?? false);
+  const simulated = useConsole((state) => state.glance?.simulated ?? false);
+  const degraded = useConsole((state) => state.glance?.degraded ?? false);
   if (!simulated && !degraded) return null;
   return (
     <div className="banners">
@@ -59,7 +71,7 @@ function Banners() {
 
 function Robot() {
   const robot = useConsole((state) => state.status?.robot);
-  const simulatedClock = useConsole((state) => state.frame?.simulatedClock ?? false);
+  const simulatedClock = useConsole((state) => state.glance?.simulatedClock ?? false);
   return (
     <div className="robot">
       <h1>Interlock</h1>
@@ -73,10 +85,10 @@ function Robot() {
 
 const modeShape: Record<string, string> = { INIT: "○", LOCKED: "■", READY: "◇", MOTION: "▶" };
 
-function Mode({ frame }: { readonly frame: Frame | null }) {
-  const mode = frame?.mode ?? "UNKNOWN";
+function Mode({ glance }: { readonly glance: Glance | null }) {
+  const mode = glance?.mode ?? "UNKNOWN";
   return (
-    <div className="cell mode" data-mode={mode} data-cause={frame?.cause}>
+    <div className="cell mode" data-mode={mode} data-cause={glance?.cause}>
       <span className="label">Mode</span>
       <output className="value" aria-label="Mode">
         <i aria-hidden="true">{modeShape[mode] ?? "?"}</i> {mode}
@@ -85,34 +97,34 @@ function Mode({ frame }: { readonly frame: Frame | null }) {
   );
 }
 
-function Estop({ frame }: { readonly frame: Frame | null }) {
-  const value = frame === null ? "unknown" : frame.estop ? "PULLED" : "released";
+function Estop({ glance }: { readonly glance: Glance | null }) {
+  const value = glance === null ? "unknown" : glance.estop ? "PULLED" : "released";
   return (
-    <div className={`cell ${frame?.estop ? "alarm-high" : ""}`}>
+    <div className={`cell ${glance?.estop ? "alarm-high" : ""}`}>
       <span className="label">E-stop</span>
       <output className="value" aria-label="E-stop">
-        <i aria-hidden="true">{frame?.estop ? "⬣" : "⬡"}</i> {value}
+        <i aria-hidden="true">{glance?.estop ? "⬣" : "⬡"}</i> {value}
       </output>
     </div>
   );
 }
 
-function Pedal({ frame }: { readonly frame: Frame | null }) {
-  const pressed = frame?.pedal === "PRESSED";
-  const disagree = frame !== null && !pressed && frame.pedal !== "RELEASED";
-  const value = frame === null ? "unknown" : disagree ? "CHANNELS DISAGREE" : frame.pedal.toLowerCase();
+function Pedal({ glance }: { readonly glance: Glance | null }) {
+  const pressed = glance?.pedal === "PRESSED";
+  const disagree = glance !== null && !pressed && glance.pedal !== "RELEASED";
+  const value = glance === null ? "unknown" : disagree ? "CHANNELS DISAGREE" : glance.pedal.toLowerCase();
   return (
     <div className={`cell ${disagree ? "alarm-medium" : ""} ${pressed ? "wish" : ""}`}>
       <span className="label">
         Pedal
-        {frame !== null && (
-          <span title={armedHelp(frame)}> · {frame.pedalArmed ? "armed" : "not armed"}</span>
+        {glance !== null && (
+          <span title={armedHelp(glance)}> · {glance.pedalArmed ? "armed" : "not armed"}</span>
         )}
       </span>
       <output
         className="value"
         aria-label="Pedal"
-        title={frame === null ? "" : entry("pedal", frame.pedal).meaning}
+        title={glance === null ? "" : entry("pedal", glance.pedal).meaning}
       >
         <i aria-hidden="true">{pressed ? "▼" : "▽"}</i> {value}
       </output>
@@ -120,8 +132,8 @@ function Pedal({ frame }: { readonly frame: Frame | null }) {
   );
 }
 
-function armedHelp(frame: Frame): string {
-  return frame.pedalArmed
+function armedHelp(glance: Glance): string {
+  return glance.pedalArmed
     ? "A press now starts MOTION."
     : "A press counts only after the pedal was seen released in READY.";
 }
@@ -129,7 +141,7 @@ function armedHelp(frame: Frame): string {
 function Connection() {
   const phase = useConsole((state) => state.phase);
   const freshness = useConsole((state) => state.freshness);
-  const appAlive = useConsole((state) => state.frame?.appAlive ?? false);
+  const appAlive = useConsole((state) => state.glance?.appAlive ?? false);
   const app = phase === "open" && freshness.reason === "late" ? "silent" : appWord[phase];
   const kernel = kernelWord(freshness, appAlive);
   return (

@@ -1,9 +1,12 @@
 import type { Motor, Proposal } from "../../api/client";
+import { CommandButton } from "../../design/CommandButton";
 import { Panel } from "../../design/Panel";
 import { entry } from "../../generated/catalog";
 import { abort } from "../../state/commands";
 import { noticeOfProposal } from "../../state/notice";
+import { isOpen } from "../../state/proposals";
 import { useConsole } from "../../state/store";
+import { localTime } from "../../units/time";
 import { formatCounts } from "../../units/units";
 import "./proposals.css";
 
@@ -43,8 +46,6 @@ const looks: Record<State, { readonly shape: string; readonly tone: string }> = 
   expired: { shape: "◌", tone: "" },
 };
 
-const open: ReadonlySet<State> = new Set(["drafted", "checked", "approved", "executing", "paused"]);
-
 function ProposalItem({
   proposal,
   motor,
@@ -53,15 +54,12 @@ function ProposalItem({
   readonly motor: Motor | undefined;
 }) {
   const look = looks[proposal.state];
-  const target =
-    motor === undefined ? `${proposal.target_counts} counts` : formatCounts(motor, proposal.target_counts);
   const refusal = noticeOfProposal(proposal);
   return (
     <li className="proposal" data-state={proposal.state} aria-label={`Proposal ${proposal.id}`}>
       <span className="proposal-head">
         <span>
-          <span className="number">#{proposal.id}</span> <strong>{motor?.title ?? proposal.axis}</strong> to{" "}
-          {target}
+          <span className="number">#{proposal.id}</span> <Wish proposal={proposal} motor={motor} />
         </span>
         <span className={`chip ${look.tone}`}>
           <i aria-hidden="true">{look.shape}</i>
@@ -82,25 +80,39 @@ function ProposalItem({
       </span>
       <span className="proposal-foot">
         {proposal.author} · <time dateTime={proposal.created}>{localTime(proposal.created)}</time>
-        {open.has(proposal.state) && (
-          <button
-            type="button"
-            className="button quiet"
-            aria-label={`Abort proposal ${proposal.id}`}
-            onClick={() => void abort(proposal.id, proposal.slot)}
+        {isOpen(proposal) && (
+          <CommandButton
+            need="holder"
+            className="quiet"
+            label={`Abort proposal ${proposal.id}`}
+            onCommand={() => abort(proposal.id, proposal.slot)}
           >
             Abort
-          </button>
+          </CommandButton>
         )}
       </span>
     </li>
   );
 }
 
-const clock = new Intl.DateTimeFormat(undefined, { timeStyle: "long" });
+interface WishProps {
+  readonly proposal: Proposal;
+  readonly motor: Motor | undefined;
+}
 
-/** Local time with its zone; what the app sent when it is no time. */
-function localTime(utc: string): string {
-  const time = new Date(utc);
-  return Number.isNaN(time.getTime()) ? utc : clock.format(time);
+function Wish({ proposal, motor }: WishProps) {
+  const name = motor?.title ?? proposal.axis;
+  if (proposal.kind === "home") {
+    return (
+      <>
+        Home <strong>{name ?? `${proposal.axes.length} axes`}</strong>
+      </>
+    );
+  }
+  const counts = proposal.target_counts ?? 0;
+  return (
+    <>
+      <strong>{name}</strong> to {motor === undefined ? `${counts} counts` : formatCounts(motor, counts)}
+    </>
+  );
 }

@@ -1,18 +1,27 @@
 import { useState } from "react";
-import type { AxisAction, Motor } from "../../api/client";
-import { NoticeText } from "../../design/NoticeText";
+import type { Motor } from "../../api/client";
+import { CommandButton } from "../../design/CommandButton";
+import { Refusal } from "../../design/Refusal";
 import { entry } from "../../generated/catalog";
-import { act, dismissNotice } from "../../state/commands";
-import type { Notice } from "../../state/notice";
+import { act } from "../../state/commands";
+import type { HomingPart } from "../../state/proposals";
 import { useConsole } from "../../state/store";
 import type { AxisFrame } from "../../stream/decode";
 import { formatCounts } from "../../units/units";
+import { AxisActions } from "./AxisActions";
 import { explainDrive, explainFault, type FaultStory } from "./explain";
+import { SwitchLamp } from "./SwitchLamp";
 import { TargetEntry } from "./TargetEntry";
 import { Track } from "./Track";
+import { WhyNotMoving } from "./WhyNotMoving";
+
+interface AxisRowProps {
+  readonly motor: Motor;
+  readonly homing: HomingPart | null;
+}
 
 /** One axis: what it is, where it stands, what it may do, and why it does not move. */
-export function AxisRow({ motor }: { readonly motor: Motor }) {
+export function AxisRow({ motor, homing }: AxisRowProps) {
   const axis = useConsole((state) => state.frame?.axes[motor.slot]);
   const notice = useConsole((state) => state.notices[motor.slot]);
   if (axis === undefined) return null;
@@ -35,14 +44,20 @@ export function AxisRow({ motor }: { readonly motor: Motor }) {
         <small>{axis.positionCounts} counts</small>
       </output>
       <TargetEntry motor={motor} />
-      <Actions motor={motor} axis={axis} />
+      <AxisActions motor={motor} axis={axis} homing={homing} />
       <div className="axis-words">
         {fault === null ? (
           <DriveWords motor={motor} axis={axis} />
         ) : (
           <FaultWords motor={motor} fault={fault} />
         )}
-        {notice !== undefined && <Refusal motor={motor} notice={notice} />}
+        {notice !== undefined && (
+          <Refusal
+            place={motor.slot}
+            notice={notice}
+            dismissLabel={`Dismiss the refusal of ${motor.title}`}
+          />
+        )}
       </div>
     </li>
   );
@@ -94,75 +109,32 @@ function Identity({ motor, axis }: AxisProps) {
   );
 }
 
-function SwitchLamp({ motor, axis, side }: AxisProps & { readonly side: "LOWER" | "UPPER" }) {
-  if (motor.limit_side !== side) return <span className="switch-lamp absent" />;
-  const triggered = axis.switchTriggered;
-  const end = side === "LOWER" ? "lower" : "upper";
-  return (
-    <span
-      className={`switch-lamp ${triggered ? "triggered" : "open"}`}
-      role="img"
-      aria-label={`${end} switch ${triggered ? "triggered" : "open"}`}
-      title={`Limit switch at the ${end} end: ${triggered ? "triggered" : "open"}`}
-    >
-      <i />
-      {triggered ? "at switch" : "switch"}
-    </span>
-  );
-}
-
-function Actions({ motor, axis }: AxisProps) {
-  const disabled = axis.state === "DISABLED";
-  const faulted = axis.state === "FAULTED";
-  return (
-    <div className="axis-actions">
-      <ActionButton motor={motor} action="enable" label="Enable" off={!disabled} />
-      <ActionButton motor={motor} action="disable" label="Disable" off={disabled || faulted} />
-      <ActionButton motor={motor} action="home" label="Home" off={motor.limit_side === "NONE"} />
-      <ActionButton motor={motor} action="set-home" label="Set Home" off={false} />
-    </div>
-  );
-}
-
-interface ActionButtonProps {
-  readonly motor: Motor;
-  readonly action: AxisAction;
-  readonly label: string;
-  readonly off: boolean;
-}
-
-/** Waits for its answer before it can be pressed again, so that a double click asks once. */
-function ActionButton({ motor, action, label, off }: ActionButtonProps) {
-  const [waiting, setWaiting] = useState(false);
-  const onClick = async (): Promise<void> => {
-    setWaiting(true);
-    await act(motor.slot, action);
-    setWaiting(false);
-  };
-  return (
-    <button
-      type="button"
-      className="button"
-      disabled={off || waiting}
-      aria-label={`${label} ${motor.title}`}
-      onClick={() => void onClick()}
-    >
-      {label}
-    </button>
-  );
-}
-
 function DriveWords({ motor, axis }: AxisProps) {
+  const [asked, setAsked] = useState(false);
   const story = explainDrive(motor, axis);
   return (
-    <p className="drive-words" title={`${story.text} ${story.nextStep}`}>
-      {!story.driven && (
-        <>
-          Not driven: <strong>{story.gate}</strong> ·{" "}
-        </>
-      )}
-      {story.text} {story.nextStep !== "" && <span className="next-step">{story.nextStep}</span>}
-    </p>
+    <>
+      <div className="drive-line">
+        <p className="drive-words" title={`${story.text} ${story.nextStep}`}>
+          {!story.driven && (
+            <>
+              Not driven: <strong>{story.gate}</strong> ·{" "}
+            </>
+          )}
+          {story.text} {story.nextStep !== "" && <span className="next-step">{story.nextStep}</span>}
+        </p>
+        <button
+          type="button"
+          className="button quiet why"
+          aria-expanded={asked}
+          aria-label={`Why is ${motor.title} not moving?`}
+          onClick={() => setAsked(!asked)}
+        >
+          {asked ? "Close" : "Why not moving?"}
+        </button>
+      </div>
+      {asked && <WhyNotMoving title={motor.title} axis={axis} />}
+    </>
   );
 }
 
@@ -173,23 +145,13 @@ function FaultWords({ motor, fault }: { readonly motor: Motor; readonly fault: F
         <strong>▲ {fault.name}</strong> {fault.meaning} <em>Likely: {fault.cause}</em>{" "}
         <span className="next-step">{fault.nextStep}</span>
       </p>
-      <ActionButton motor={motor} action="clear-fault" label="Clear" off={false} />
-    </div>
-  );
-}
-
-function Refusal({ motor, notice }: { readonly motor: Motor; readonly notice: Notice }) {
-  return (
-    <div className="refusal" role="alert">
-      <NoticeText lead="Refused:" notice={notice} />
-      <button
-        type="button"
-        className="button quiet"
-        aria-label={`Dismiss the refusal of ${motor.title}`}
-        onClick={() => dismissNotice(motor.slot)}
+      <CommandButton
+        need="holder"
+        label={`Clear ${motor.title}`}
+        onCommand={() => act(motor.slot, "clear-fault")}
       >
-        ✕
-      </button>
+        Clear
+      </CommandButton>
     </div>
   );
 }

@@ -1,5 +1,6 @@
 import { useEffect, useState } from "react";
 import { useConsole } from "../../state/store";
+import { useReason } from "../../state/useReason";
 
 /** A target that is being chosen, or that was sent and has no answer yet. Nothing moves by it. */
 export interface Preview {
@@ -7,13 +8,14 @@ export interface Preview {
   readonly sent: boolean;
 }
 
-/** The preview of one axis. STOP drops it, and so does the loss of the data it was chosen by. */
+/** The preview of one axis. STOP drops it, and so does the loss of the authority or of the data it was chosen by. */
 export function usePreview(): [Preview | null, (preview: Preview | null) => void] {
   const [preview, setPreview] = useState<Preview | null>(null);
   const stops = useConsole((state) => state.stops);
   const blind = useConsole((state) => state.freshness.level === "covered");
+  const mayNot = useReason("holder") !== null;
   useEffect(() => {
-    if (stops > 0 || blind) setPreview(null);
-  }, [stops, blind]);
+    if (stops > 0 || blind || mayNot) setPreview(null);
+  }, [stops, blind, mayNot]);
   return [preview, setPreview];
 }

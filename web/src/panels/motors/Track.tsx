@@ -1,6 +1,7 @@
 import { type KeyboardEvent, type PointerEvent, useRef } from "react";
 import type { Motor } from "../../api/client";
 import { propose } from "../../state/commands";
+import { useReason } from "../../state/useReason";
 import type { AxisFrame } from "../../stream/decode";
 import { formatCounts } from "../../units/units";
 import { countsAt, fractionOf, isAllowed, previewAfterKey, trackDomain } from "./geometry";
@@ -27,6 +28,7 @@ interface Grip {
  */
 export function Track({ motor, axis }: TrackProps) {
   const [preview, setPreview] = usePreview();
+  const reason = useReason("holder");
   const grip = useRef<Grip | null>(null);
   const domain = trackDomain(motor, axis);
   const wishCounts = axis.setpointCounts ?? axis.positionCounts;
@@ -34,14 +36,14 @@ export function Track({ motor, axis }: TrackProps) {
 
   const send = async (counts: number): Promise<void> => {
     setPreview({ counts, sent: true });
-    await propose({ slot: motor.slot, target_counts: counts });
+    await propose({ kind: "move", slot: motor.slot, target_counts: counts });
     setPreview(null);
   };
 
   const onPointerDown = (event: PointerEvent<HTMLDivElement>): void => {
     const box = event.currentTarget.getBoundingClientRect();
     const offsetPx = fractionOf(domain, shownCounts) * box.width - (event.clientX - box.left);
-    if (event.button !== 0 || Math.abs(offsetPx) > GRIP_PX) return;
+    if (reason !== null || event.button !== 0 || Math.abs(offsetPx) > GRIP_PX) return;
     event.currentTarget.setPointerCapture(event.pointerId);
     grip.current = { startCounts: shownCounts, offsetPx };
     setPreview({ counts: shownCounts, sent: false });
@@ -68,7 +70,7 @@ export function Track({ motor, axis }: TrackProps) {
   };
 
   const onKeyDown = (event: KeyboardEvent<HTMLDivElement>): void => {
-    if (event.ctrlKey || event.altKey || event.metaKey) return;
+    if (reason !== null || event.ctrlKey || event.altKey || event.metaKey) return;
     if (event.key === "Enter" && preview?.sent === false) {
       void send(preview.counts);
       return;
@@ -87,6 +89,8 @@ export function Track({ motor, axis }: TrackProps) {
       tabIndex={0}
       className="track"
       data-preview={preview !== null}
+      aria-disabled={reason !== null}
+      title={reason ?? undefined}
       aria-label={`${motor.title} target`}
       aria-valuemin={Math.ceil(domain.min)}
       aria-valuemax={Math.floor(domain.max)}

@@ -1,6 +1,7 @@
 import { type FormEvent, useId, useState } from "react";
 import type { Motor } from "../../api/client";
 import { propose } from "../../state/commands";
+import { useReason } from "../../state/useReason";
 import { parseEntry, unitName, unitWord } from "../../units/units";
 
 /** A target typed in the axis' unit. */
@@ -8,12 +9,13 @@ export function TargetEntry({ motor }: { readonly motor: Motor }) {
   const [text, setText] = useState("");
   const [expected, setExpected] = useState<string | null>(null);
   const messageId = useId();
+  const reason = useReason("holder");
 
   const onSubmit = (event: FormEvent): void => {
     event.preventDefault();
     const entered = parseEntry(motor, text);
     setExpected(entered.ok ? null : entered.expected);
-    if (entered.ok) void propose({ slot: motor.slot, target: entered.value });
+    if (entered.ok) void propose({ kind: "move", slot: motor.slot, target: entered.value });
   };
 
   return (
@@ -21,6 +23,8 @@ export function TargetEntry({ motor }: { readonly motor: Motor }) {
       <span className="field">
         <input
           value={text}
+          disabled={reason !== null}
+          title={reason ?? undefined}
           inputMode="decimal"
           autoComplete="off"
           placeholder="target"
@@ -34,7 +38,8 @@ export function TargetEntry({ motor }: { readonly motor: Motor }) {
       <button
         type="submit"
         className="button"
-        disabled={text.trim() === ""}
+        disabled={reason !== null || text.trim() === ""}
+        title={reason ?? undefined}
         aria-label={`Propose ${motor.title}`}
       >
         Propose

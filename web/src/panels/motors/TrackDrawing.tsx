@@ -47,8 +47,8 @@ export function TrackDrawing({ motor, axis, domain, previewCounts }: TrackDrawin
           rx="3"
         />
       )}
-      <SoftLimit end="start" x={at(soft.min)} label={formatCounts(motor, soft.min)} />
-      <SoftLimit end="end" x={at(soft.max)} label={formatCounts(motor, soft.max)} />
+      <SoftLimit end="start" x={at(soft.min)} label={axis.homed ? formatCounts(motor, soft.min) : null} />
+      <SoftLimit end="end" x={at(soft.max)} label={axis.homed ? formatCounts(motor, soft.max) : null} />
 
       {axis.setpointCounts !== null && (
         <line
@@ -92,16 +92,17 @@ export function TrackDrawing({ motor, axis, domain, previewCounts }: TrackDrawin
 
 interface SoftLimitProps {
   readonly x: string;
-  readonly label: string;
+  /** Null while the axis is not homed: then nobody knows where the limit is. */
+  readonly label: string | null;
   readonly end: "start" | "end";
 }
 
 function SoftLimit({ x, label, end }: SoftLimitProps) {
   return (
     <g className="soft-limit">
-      <line x1={x} x2={x} y1={RAIL_Y - 8} y2={RAIL_Y + 8} />
+      {label !== null && <line x1={x} x2={x} y1={RAIL_Y - 8} y2={RAIL_Y + 8} />}
       <text x={x} y="43" textAnchor={end}>
-        {label}
+        {label ?? "unknown"}
       </text>
     </g>
   );

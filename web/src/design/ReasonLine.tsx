@@ -1,0 +1,13 @@
+import type { Need } from "../state/permission";
+import { useReason } from "../state/useReason";
+
+/** Says once, for all controls of a panel, why they are disabled. */
+export function ReasonLine({ need }: { readonly need: Need }) {
+  const reason = useReason(need);
+  if (reason === null) return null;
+  return (
+    <p className="reason-line">
+      <i aria-hidden="true">⚿</i> Read only. {reason}
+    </p>
+  );
+}

@@ -1,0 +1,44 @@
+import { logout } from "../../state/commands";
+import { type Route, useRoute } from "../../state/route";
+import { useConsole } from "../../state/store";
+import { AuthorityBar } from "./AuthorityBar";
+
+const pages: readonly { readonly route: Route; readonly title: string; readonly adminOnly: boolean }[] = [
+  { route: "robot", title: "Robot", adminOnly: false },
+  { route: "users", title: "Users", adminOnly: true },
+  { route: "audit", title: "Audit", adminOnly: true },
+];
+
+/** Where one is, who may move the robot, and who one is. */
+export function SessionBar() {
+  const login = useConsole((state) => state.login);
+  const shown = useRoute();
+  if (login.phase !== "in") return null;
+  const { name, role } = login.user;
+  const open = pages.filter((page) => !page.adminOnly || role === "admin");
+  return (
+    <div className="session-bar">
+      <nav aria-label="Pages">
+        {open.map(({ route, title }) => (
+          <a key={route} href={`#/${route}`} aria-current={route === shown ? "page" : undefined}>
+            {title}
+          </a>
+        ))}
+      </nav>
+      <AuthorityBar />
+      <div className="who">
+        <a
+          href="#/account"
+          aria-current={shown === "account" ? "page" : undefined}
+          title="Change your password"
+          aria-label="Account"
+        >
+          <strong>{name}</strong> · {role}
+        </a>
+        <button type="button" className="button" onClick={() => void logout()}>
+          Log out
+        </button>
+      </div>
+    </div>
+  );
+}

@@ -1,0 +1,57 @@
+import type { Motor } from "../../api/client";
+import { CommandButton } from "../../design/CommandButton";
+import { act, propose } from "../../state/commands";
+import type { HomingPart } from "../../state/proposals";
+import type { AxisFrame } from "../../stream/decode";
+
+interface AxisActionsProps {
+  readonly motor: Motor;
+  readonly axis: AxisFrame;
+  readonly homing: HomingPart | null;
+}
+
+export function AxisActions({ motor, axis, homing }: AxisActionsProps) {
+  const { slot, title } = motor;
+  const disabled = axis.state === "DISABLED";
+  const faulted = axis.state === "FAULTED";
+  return (
+    <div className="axis-actions">
+      <CommandButton
+        need="holder"
+        label={`Enable ${title}`}
+        off={disabled ? null : faulted ? "Clear the fault first." : "The axis is enabled."}
+        onCommand={() => act(slot, "enable")}
+      >
+        Enable
+      </CommandButton>
+      <CommandButton
+        need="holder"
+        label={`Disable ${title}`}
+        off={disabled || faulted ? "The axis is not enabled." : null}
+        onCommand={() => act(slot, "disable")}
+      >
+        Disable
+      </CommandButton>
+      <CommandButton
+        need="holder"
+        label={`${homing === null ? "Go Home" : homingWords[homing]} ${title}`}
+        className={homing === "homing" ? "homing" : ""}
+        off={whyNotHome(motor, homing)}
+        onCommand={() => propose({ kind: "home", slot })}
+      >
+        {homing === null ? "Go Home" : homingWords[homing]}
+      </CommandButton>
+      <CommandButton need="holder" label={`Set Home ${title}`} onCommand={() => act(slot, "set-home")}>
+        Set Home
+      </CommandButton>
+    </div>
+  );
+}
+
+const homingWords: Record<HomingPart, string> = { homing: "Homing..", waiting: "Waits" };
+
+function whyNotHome(motor: Motor, homing: HomingPart | null): string | null {
+  if (homing === "homing") return "It homes while the pedal is held.";
+  if (homing === "waiting") return "It homes after the steps before.";
+  return motor.has_switch ? null : "It has no switch: bring it to its home position and press Set Home.";
+}

@@ -1,0 +1,43 @@
+import { useState } from "react";
+import { CommandButton } from "../../design/CommandButton";
+import { setMode } from "../../state/commands";
+import { useConsole } from "../../state/store";
+import { useReason } from "../../state/useReason";
+
+/** The robot's modes. Choosing one does nothing yet: arrow keys choose, too. */
+export function ModeSelector() {
+  const answer = useConsole((state) => state.mode);
+  const reason = useReason("holder");
+  const [chosen, setChosen] = useState<string | null>(null);
+  const mode = answer?.mode ?? "";
+  const wanted = chosen ?? mode;
+  const change = async (): Promise<void> => {
+    await setMode(wanted);
+    setChosen(null);
+  };
+  return (
+    <div className="mode-selector">
+      <label htmlFor="robot-mode">Robot mode</label>
+      <output aria-label="Robot mode now">{mode === "" ? "unknown" : mode}</output>
+      <select
+        id="robot-mode"
+        value={wanted}
+        disabled={reason !== null}
+        title={reason ?? undefined}
+        onChange={(event) => setChosen(event.target.value)}
+      >
+        {(answer?.modes ?? []).map((name) => (
+          <option key={name}>{name}</option>
+        ))}
+      </select>
+      <CommandButton
+        need="holder"
+        label="Change the robot mode"
+        off={wanted === mode ? "The robot is in this mode." : null}
+        onCommand={change}
+      >
+        Change
+      </CommandButton>
+    </div>
+  );
+}

@@ -1,0 +1,99 @@
+import type { CardStatus } from "../../api/client";
+import { Panel } from "../../design/Panel";
+import { Refusal } from "../../design/Refusal";
+import { entry } from "../../generated/catalog";
+import { useConsole } from "../../state/store";
+import { ModeSelector } from "./ModeSelector";
+import "./status.css";
+
+const STATUS_EVERY_MS = 1000;
+
+/** The system, the robot's mode, and what each slot of the card rack says. */
+export function StatusPanel() {
+  const answeredAtMs = useConsole((state) => state.statusAtMs);
+  const cards = useConsole((state) => state.status?.cards);
+  const notice = useConsole((state) => state.notices.mode);
+  return (
+    <Panel title="Status" className="status-panel" asked={{ answeredAtMs, everyMs: STATUS_EVERY_MS }}>
+      <System />
+      <ModeSelector />
+      {notice !== undefined && (
+        <Refusal place="mode" notice={notice} dismissLabel="Dismiss the refusal of the mode" />
+      )}
+      <table className="table cards" aria-label="Cards">
+        <thead>
+          <tr>
+            <th scope="col">Slot</th>
+            <th scope="col">Card</th>
+            <th scope="col">Detected</th>
+            <th scope="col">Heartbeat</th>
+            <th scope="col" className="number" title="Frames whose checksum was wrong">
+              Checksum
+            </th>
+          </tr>
+        </thead>
+        <tbody>
+          {cards?.map((card) => (
+            <CardLine key={card.slot} card={card} />
+          ))}
+        </tbody>
+      </table>
+    </Panel>
+  );
+}
+
+function System() {
+  const glance = useConsole((state) => (state.freshness.level === "covered" ? null : state.glance));
+  if (glance === null) return <p className="system-words">The state is unknown.</p>;
+  const locked = glance.mode === "LOCKED";
+  const text = locked ? entry("cause", glance.cause) : entry("mode", glance.mode);
+  return (
+    <dl className="facts">
+      <dt>System</dt>
+      <dd>
+        <strong>{glance.mode}</strong>
+        {locked && ` by ${glance.cause}`}
+        <span className="next-step">{text.next_step}</span>
+      </dd>
+      <dt>E-stop</dt>
+      <dd>
+        <Lamp on={glance.estop} /> {glance.estop ? "pulled" : "released"}
+      </dd>
+      <dt>Pedal</dt>
+      <dd>
+        <Lamp on={glance.pedal === "PRESSED"} /> {glance.pedal.toLowerCase()},{" "}
+        {glance.pedalArmed ? "armed" : "not armed"}
+      </dd>
+    </dl>
+  );
+}
+
+function Lamp({ on }: { readonly on: boolean }) {
+  return <i className={`lamp ${on ? "on" : ""}`} aria-hidden="true" />;
+}
+
+function CardLine({ card }: { readonly card: CardStatus }) {
+  const empty = card.card === "NONE";
+  const lost = !empty && !card.detected;
+  const silent = !empty && !card.heartbeat_live;
+  return (
+    <tr data-empty={empty}>
+      <td>{card.slot}</td>
+      <th scope="row" title={entry("card", card.card).meaning}>
+        {empty ? "empty" : card.card}
+      </th>
+      <td className={lost ? "bad" : ""}>{mark(empty, card.detected, "detected", "NOT DETECTED")}</td>
+      <td className={silent ? "bad" : ""} title={`heartbeat ${card.heartbeat}`}>
+        {mark(empty, card.heartbeat_live, "live", "SILENT")}
+      </td>
+      <td className={`number ${card.checksum_failures > 0 ? "warn" : ""}`}>
+        {empty ? "–" : card.checksum_failures}
+      </td>
+    </tr>
+  );
+}
+
+function mark(empty: boolean, good: boolean, yes: string, no: string): string {
+  if (empty) return "–";
+  return good ? `● ${yes}` : `✕ ${no}`;
+}

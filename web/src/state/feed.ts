@@ -1,0 +1,171 @@
+/** Feeds the store: session, stream, what the app knows that the stream does not carry, and the passing of time. */
+import { api, onLoggedOut, type Session } from "../api/client";
+import { openStream, type Phase } from "../stream/connection";
+import { decodeFrame, FrameError } from "../stream/decode";
+import { MOST_LINES, mergeLines } from "./log";
+import { type StreamMessage, streamMessage } from "./messages";
+import type { Notice } from "./notice";
+import {
+  mergeProposals,
+  useConsole,
+  withFrame,
+  withFrameError,
+  withLogin,
+  withLogout,
+  withProposal,
+  withStatus,
+  withTime,
+} from "./store";
+
+const TIME_STEP_MS = 100;
+const STATUS_EVERY_MS = 1000;
+const RETRY_PAUSE_MS = 1000;
+
+export const sessionEnded: Notice = {
+  code: "LOGIN",
+  meaning: "Your session ended: it was 12 hours old, or your password, role or right to log in was changed.",
+  nextStep: "Log in again.",
+};
+
+/** Starts feeding the store, for as long as the page is there. */
+export function startFeed(): void {
+  setInterval(() => useConsole.setState((state) => withTime(state, performance.now())), TIME_STEP_MS);
+  onLoggedOut(() => leave(sessionEnded));
+  void findSession();
+  void keepStatus();
+}
+
+let reload: ReturnType<typeof setTimeout> | undefined;
+let describedConfigCrc: string | null = null;
+let closeStream: () => void = () => undefined;
+
+/** Asks who is logged in here until the app answers. */
+async function findSession(): Promise<void> {
+  const session = await api.session();
+  if (!session.ok) setTimeout(() => void findSession(), RETRY_PAUSE_MS);
+  else if (!enter(session.value)) leave(null);
+}
+
+/** Opens the console for the session's user; false when it has none. */
+export function enter({ user, session }: Session): boolean {
+  if (user === null || session == null) return false;
+  closeStream();
+  describedConfigCrc = null;
+  useConsole.setState(withLogin(user, session));
+  const scheme = location.protocol === "https:" ? "wss" : "ws";
+  closeStream = openStream(`${scheme}://${location.host}/api/stream`, {
+    onBinary,
+    onText,
+    onPhase,
+    onSessionEnded: () => leave(sessionEnded),
+  });
+  return true;
+}
+
+/** Back to the login page, with the reason when there is one. */
+export function leave(notice: Notice | null): void {
+  closeStream();
+  clearTimeout(reload);
+  if (useConsole.getState().login.phase === "out") return;
+  useConsole.setState((state) => withLogout(state, notice));
+}
+
+/** The public status once a second: all of the header without login, and the cards with it. */
+async function keepStatus(): Promise<void> {
+  const status = await api.status();
+  if (status.ok) useConsole.setState((state) => withStatus(state, status.value, performance.now()));
+  else if (useConsole.getState().login.phase !== "in") useConsole.setState({ phase: "lost" });
+  setTimeout(() => void keepStatus(), STATUS_EVERY_MS);
+}
+
+function onPhase(phase: Phase): void {
+  useConsole.setState({ phase });
+  if (phase === "open") void loadDescription();
+  if (phase === "lost") void checkSession();
+}
+
+/** A browser does not tell why a stream was not opened; a session that ended is one reason. */
+async function checkSession(): Promise<void> {
+  const session = await api.session();
+  if (session.ok && session.value.user === null) leave(sessionEnded);
+}
+
+function onBinary(message: ArrayBuffer): void {
+  const nowMs = performance.now();
+  try {
+    const frame = decodeFrame(message);
+    useConsole.setState((state) => withFrame(state, frame, nowMs));
+    if (frame.connected && frame.configCrc !== (describedConfigCrc ?? frame.configCrc))
+      void loadDescription();
+  } catch (error) {
+    if (!(error instanceof FrameError)) throw error;
+    useConsole.setState((state) => withFrameError(state, error.message, nowMs));
+  }
+}
+
+function onText(text: string): void {
+  const message = streamMessage(text);
+  if (message !== null) takeIn(message);
+}
+
+function takeIn(message: StreamMessage): void {
+  switch (message.type) {
+    case "proposal":
+      useConsole.setState((state) => withProposal(state, message));
+      break;
+    case "authority":
+      useConsole.setState({ authority: message, authorityNotice: null });
+      break;
+    case "mode":
+      useConsole.setState({ mode: message });
+      break;
+    case "log":
+      useConsole.setState((state) => ({ log: mergeLines(state.log, [message]) }));
+      break;
+    case "session":
+      leave(sessionEnded);
+      break;
+  }
+}
+
+/** What the stream tells only when it changes; again a little later while the app cannot tell. */
+async function loadDescription(): Promise<void> {
+  clearTimeout(reload);
+  describedConfigCrc = null;
+  const before = useConsole.getState();
+  const [robots, motors, mode, authority, logs, proposals] = await Promise.all([
+    api.robots(),
+    api.motors(),
+    api.mode(),
+    api.authority(),
+    api.logs(MOST_LINES),
+    api.proposals(),
+  ]);
+  if (useConsole.getState().login.phase !== "in") return;
+  const robot = robots.ok ? robots.value[0] : undefined;
+  if (robot !== undefined) useConsole.setState({ robot });
+  if (motors.ok) useConsole.setState({ motors: motors.value });
+  // What the stream told meanwhile is newer than the answer.
+  const { mode: newestMode, authority: newestAuthority } = useConsole.getState();
+  if (mode.ok && newestMode === before.mode) useConsole.setState({ mode: mode.value });
+  if (authority.ok && newestAuthority === before.authority)
+    useConsole.setState({ authority: authority.value });
+  if (logs.ok) {
+    useConsole.setState((state) => ({
+      log: mergeLines(newSince(before.log, state.log), logs.value.lines),
+      logLevel: logs.value.level,
+    }));
+  }
+  if (proposals.ok) {
+    useConsole.setState((state) => ({
+      proposals: mergeProposals(newSince(before.proposals, state.proposals), proposals.value),
+    }));
+  }
+  const complete = robots.ok && motors.ok && mode.ok && authority.ok && logs.ok && proposals.ok;
+  if (complete) describedConfigCrc = useConsole.getState().frame?.configCrc ?? null;
+  else reload = setTimeout(() => void loadDescription(), RETRY_PAUSE_MS);
+}
+
+function newSince<Item>(before: readonly Item[], now: readonly Item[]): Item[] {
+  return now.filter((item) => !before.includes(item));
+}

@@ -1,0 +1,39 @@
+import { describe, expect, it } from "vitest";
+import type { Authority, Role, User } from "../api/client";
+import { type Need, reasonAgainst } from "./permission";
+import type { Login } from "./store";
+
+const as = (role: Role): Login => ({ phase: "in", user: { name: "ann", role } as User, session: 7 });
+const claim = (user: string) => ({ session: 9, user, since: "2026-01-01T00:00:00Z" });
+const held: Authority = { holder: claim("ann"), mine: true, requests: [] };
+const heldBy = (user: string): Authority => ({ holder: claim(user), mine: false, requests: [] });
+const free: Authority = { holder: null, mine: false, requests: [] };
+
+describe("reasonAgainst", () => {
+  it.each<[Role, Need, boolean]>([
+    ["viewer", "engineer", false],
+    ["viewer", "holder", false],
+    ["viewer", "admin", false],
+    ["engineer", "engineer", true],
+    ["engineer", "holder", true],
+    ["engineer", "admin", false],
+    ["admin", "engineer", true],
+    ["admin", "holder", true],
+    ["admin", "admin", true],
+  ])("%s with authority, need %s: allowed %s", (role, need, allowed) => {
+    expect(reasonAgainst(as(role), held, need) === null).toBe(allowed);
+  });
+
+  it("names who holds the authority and what to do", () => {
+    expect(reasonAgainst(as("engineer"), heldBy("bob"), "holder")).toBe(
+      "bob holds the authority: request it.",
+    );
+    expect(reasonAgainst(as("engineer"), free, "holder")).toBe("Nobody holds the authority: request it.");
+    expect(reasonAgainst(as("engineer"), heldBy("ann"), "holder")).toContain("in another session");
+  });
+
+  it("allows nothing before the authority is known or without login", () => {
+    expect(reasonAgainst(as("admin"), null, "holder")).not.toBeNull();
+    expect(reasonAgainst({ phase: "out", notice: null }, held, "engineer")).toBe("Log in first.");
+  });
+});

@@ -1,0 +1,79 @@
+import { describe, expect, it } from "vitest";
+import type { Motor, Proposal, Robot } from "../api/client";
+import { homingPart, homingSteps, isOpen, openHoming } from "./proposals";
+
+const robot = {
+  home_steps: [
+    { name: "out", title: "Probe out", kind: "home", axes: ["insertion"] },
+    { name: "turn", title: "Turn", kind: "home", axes: ["yaw", "pitch"] },
+    { name: "rest", title: "Rest", kind: "move", axes: ["head"] },
+  ],
+} as unknown as Robot;
+const all = {
+  id: 3,
+  kind: "home",
+  state: "executing",
+  step: "turn",
+  axes: ["insertion", "yaw", "pitch", "head"],
+} as Proposal;
+const motor = (name: string): Motor => ({ name }) as Motor;
+
+describe("isOpen", () => {
+  it.each<[Proposal["state"], boolean]>([
+    ["drafted", true],
+    ["checked", true],
+    ["approved", true],
+    ["executing", true],
+    ["paused", true],
+    ["done", false],
+    ["refused", false],
+    ["aborted", false],
+    ["expired", false],
+  ])("%s: %s", (state, open) => {
+    expect(isOpen({ ...all, state })).toBe(open);
+  });
+});
+
+describe("openHoming", () => {
+  it("finds the open homing among moves and ended homings", () => {
+    const others = [
+      { ...all, id: 1, state: "done" },
+      { ...all, id: 2, kind: "move" },
+    ] as Proposal[];
+    expect(openHoming([...others, all])).toBe(all);
+    expect(openHoming(others)).toBeUndefined();
+  });
+});
+
+describe("homingPart", () => {
+  it("tells the axes of the step that runs from those that wait", () => {
+    expect(["yaw", "pitch", "head", "feet"].map((name) => homingPart(all, robot, motor(name)))).toEqual([
+      "homing",
+      "homing",
+      "waiting",
+      null,
+    ]);
+  });
+
+  it("knows an axis that homes by itself, without a step", () => {
+    const alone = { ...all, step: null, axes: ["yaw"] };
+    expect(homingPart(alone, robot, motor("yaw"))).toBe("homing");
+    expect(homingPart(undefined, robot, motor("yaw"))).toBeNull();
+  });
+});
+
+describe("homingSteps", () => {
+  it("puts each step before, at or after the one that runs", () => {
+    expect(homingSteps(all, robot).map(({ title, place }) => `${title} ${place}`)).toEqual([
+      "Probe out before",
+      "Turn now",
+      "Rest after",
+    ]);
+  });
+
+  it("leaves out steps that the homing does not take, and all for an axis alone", () => {
+    const one = { ...all, axes: ["yaw", "pitch"] };
+    expect(homingSteps(one, robot).map(({ name }) => name)).toEqual(["turn"]);
+    expect(homingSteps({ ...all, step: null, axes: ["yaw"] }, robot)).toEqual([]);
+  });
+});

@@ -1,0 +1,51 @@
+/** What can be told of a proposal without its panel. */
+import type { Motor, Proposal, Robot } from "../api/client";
+
+const openStates: ReadonlySet<Proposal["state"]> = new Set([
+  "drafted",
+  "checked",
+  "approved",
+  "executing",
+  "paused",
+]);
+
+export function isOpen(proposal: Proposal): boolean {
+  return openStates.has(proposal.state);
+}
+
+/** The open proposal that homes, if there is one: while it is open, moves are refused. */
+export function openHoming(proposals: readonly Proposal[]): Proposal | undefined {
+  return proposals.find((proposal) => proposal.kind === "home" && isOpen(proposal));
+}
+
+export type HomingPart = "homing" | "waiting";
+
+/** What an axis has to do in the homing that is open; null when nothing. */
+export function homingPart(
+  homing: Proposal | undefined,
+  robot: Robot | null,
+  motor: Motor,
+): HomingPart | null {
+  if (homing === undefined || !homing.axes.includes(motor.name)) return null;
+  const step = robot?.home_steps.find((each) => each.name === homing.step);
+  return step === undefined || step.axes.includes(motor.name) ? "homing" : "waiting";
+}
+
+export interface StepLine {
+  readonly name: string;
+  readonly title: string;
+  readonly place: "before" | "now" | "after";
+}
+
+/** The home steps that an open homing goes through; none when it homes an axis by itself. */
+export function homingSteps(homing: Proposal, robot: Robot): readonly StepLine[] {
+  const now = robot.home_steps.findIndex((step) => step.name === homing.step);
+  if (now < 0) return [];
+  const steps = robot.home_steps.map((step, index) => ({
+    name: step.name,
+    title: step.title,
+    place: index < now ? ("before" as const) : index === now ? ("now" as const) : ("after" as const),
+    taken: step.axes.every((axis) => homing.axes.includes(axis)),
+  }));
+  return steps.filter((step) => step.taken).map(({ name, title, place }) => ({ name, title, place }));
+}
