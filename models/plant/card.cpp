@@ -23,6 +23,7 @@ std::optional<wire::Frame> Card::transact(const Reading& reading, wire::FrameVie
   const wire::Frame latched = wire::pack({
       .switch_triggered = reading.switch_triggered,
       .counter = encoder_ ? encoder_->read(reading.position_counts, reading_noise_) : 0,
+      .analog = reading.analog,
       .heartbeat = heartbeat_++,
       .time_us = static_cast<std::uint32_t>(uptime_.count()),
       .tick_echo = heard_tick_.value_or(0),

@@ -25,6 +25,7 @@ enum class FrameFault : std::uint8_t {
 struct Reading {
   double position_counts = 0;
   bool switch_triggered = false;
+  wire::AnalogReadings analog{};
 };
 
 class Card {

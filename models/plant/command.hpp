@@ -15,6 +15,7 @@ namespace interlock::plant::command {
 /** A number that a bench may ask for without the plant leaving the range of its counters. */
 inline constexpr std::int32_t kMostCounts = 1'000'000;
 inline constexpr double kMostCountsPerTick = 1000;
+inline constexpr std::int32_t kMostForceCounts = 65535;
 inline constexpr std::uint32_t kMostFrames = 1'000'000;
 
 struct PressPedal {
@@ -66,6 +67,13 @@ struct StickSwitch {
   std::optional<bool> triggered; /**< nothing frees it */
 };
 
+/** Presses on a force sensor. */
+struct PressSensor {
+  std::size_t slot;
+  std::size_t input;   /**< 0 is ADC 1 */
+  std::int32_t counts; /**< by which the input reads more; 0 releases it */
+};
+
 struct SpoilFrames {
   std::optional<std::size_t> slot; /**< nothing means all cards */
   FrameFault fault;
@@ -90,8 +98,8 @@ struct FailTransactions {
 struct Clear {};
 
 using Command = std::variant<PressPedal, StickPedalContact, PullEstop, JamAxis, PushAxis, JumpCounter,
-                             RunAway, ReverseMotor, StickEncoder, StickSwitch, SpoilFrames, ResetCard,
-                             PowerCard, FailTransactions, Clear>;
+                             RunAway, ReverseMotor, StickEncoder, StickSwitch, PressSensor, SpoilFrames,
+                             ResetCard, PowerCard, FailTransactions, Clear>;
 
 }  // namespace interlock::plant::command
 

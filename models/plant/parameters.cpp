@@ -12,6 +12,7 @@ Parameters default_parameters(const ilk_config_t& robot) {
   Parameters parameters;
   for (std::size_t slot = 0; slot < ILK_SLOTS; ++slot) {
     const ilk_axis_config_t& axis = robot.axis[slot];
+    parameters.sensor[slot].name = "sensor " + std::to_string(slot);
     if (!drives_motor(axis.card)) {
       continue;
     }

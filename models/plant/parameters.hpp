@@ -8,9 +8,11 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "interlock/types.h"
+#include "plant/wire.hpp"
 
 namespace interlock::plant {
 
@@ -41,6 +43,18 @@ struct PedalParameters {
   Microseconds bounce{3000};
 };
 
+/** What an analog input reads while nothing acts on its sensor. */
+struct AnalogParameters {
+  std::uint32_t zero_counts = 0;  /**< of the converter, up to 65535 */
+  std::uint32_t noise_counts = 0; /**< farthest from it, either way */
+};
+
+/** A sensor card. */
+struct SensorParameters {
+  std::string name;
+  std::array<std::optional<AnalogParameters>, wire::kAnalogInputs> input; /**< nothing: not connected */
+};
+
 struct EstopParameters {
   Microseconds bounce{2000};
 };
@@ -48,7 +62,8 @@ struct EstopParameters {
 struct Parameters {
   PedalParameters pedal;
   EstopParameters estop;
-  std::array<AxisParameters, ILK_SLOTS> axis; /**< by slot; unused where the robot has no motor card */
+  std::array<AxisParameters, ILK_SLOTS> axis;     /**< by slot; unused where the robot has no motor card */
+  std::array<SensorParameters, ILK_SLOTS> sensor; /**< by slot; unused where it has no sensor card */
 };
 
 /** True when the card of this type (ilk_card_t) drives a motor. */
@@ -60,7 +75,7 @@ constexpr bool drives_motor(std::uint32_t card) {
 /**
  * Parameters for a robot without a plant file: every value as above, axes named by their slot. An axis with
  * a switch starts 300 counts from it, or a third of its range where that is nearer; others start at 0 or at
- * the soft limit next to it.
+ * the soft limit next to it. Nothing is connected to a sensor card.
  */
 Parameters default_parameters(const ilk_config_t& robot);
 

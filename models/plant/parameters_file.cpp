@@ -84,6 +84,23 @@ class Reader {
     return *node->as_table();
   }
 
+  /** The tables of that array; none when there is no array. */
+  std::vector<const toml::table*> tables(const toml::table& table, std::string_view key) {
+    std::vector<const toml::table*> found;
+    const toml::node* node = table.get(key);
+    if (node == nullptr) {
+      return found;
+    }
+    if (!node->is_array_of_tables()) {
+      fail(*node, key, "expected tables, each after a line with [[" + std::string(key) + "]]");
+      return found;
+    }
+    for (const toml::node& entry : *node->as_array()) {
+      found.push_back(entry.as_table());
+    }
+    return found;
+  }
+
   /** Fails on the first key that is in neither list. */
   void only(const toml::table& table, std::vector<std::string_view> known,
             std::span<const std::string_view> more = {}) {
@@ -187,20 +204,58 @@ void read_axes(Reader& reader, const toml::table& document, const ilk_config_t& 
   read_dynamics(reader, defaults_table, defaults);
 
   std::bitset<ILK_SLOTS> found;
-  if (const toml::array* axes = document["axis"].as_array()) {
-    for (const toml::node& node : *axes) {
-      if (const toml::table* table = node.as_table()) {
-        read_axis(reader, *table, robot, defaults, parameters, found);
-      } else {
-        reader.fail(node, "axis", "expected [[axis]] tables");
-      }
-    }
+  for (const toml::table* table : reader.tables(document, "axis")) {
+    read_axis(reader, *table, robot, defaults, parameters, found);
   }
   for (std::size_t slot = 0; slot < ILK_SLOTS; ++slot) {
     if (drives_motor(robot.axis[slot].card) && !found[slot]) {
       reader.fail(document, "axis",
                   "expected an [[axis]] for the motor card in slot " + std::to_string(slot));
     }
+  }
+}
+
+void read_input(Reader& reader, const toml::table& table, SensorParameters& sensor) {
+  constexpr double kLargestReading = 65535;
+  reader.only(table, {"adc", "zero_counts", "noise_counts"});
+  std::uint32_t adc = 0;
+  AnalogParameters input;
+  if (!reader.integer(table, "adc", {1, wire::kAnalogInputs}, adc) || sensor.input[adc - 1]) {
+    reader.fail(table, "adc", "expected the number of the input, 1 to 4, each once");
+    return;
+  }
+  if (!reader.integer(table, "zero_counts", {0, kLargestReading}, input.zero_counts)) {
+    reader.fail(table, "zero_counts", "expected the reading without force, 0 to 65535");
+  }
+  reader.integer(table, "noise_counts", {0, 1000}, input.noise_counts);
+  sensor.input[adc - 1] = input;
+}
+
+void read_sensor(Reader& reader, const toml::table& table, const ilk_config_t& robot, Parameters& parameters,
+                 std::bitset<ILK_SLOTS>& found) {
+  reader.only(table, {"slot", "name", "input"});
+  std::uint32_t slot = 0;
+  if (!reader.integer(table, "slot", {0, ILK_SLOTS - 1}, slot) || robot.axis[slot].card != ILK_CARD_SENSOR ||
+      found[slot]) {
+    reader.fail(table, "slot", "expected the slot of a sensor card of the robot, each once");
+    return;
+  }
+  found[slot] = true;
+  SensorParameters& sensor = parameters.sensor[slot];
+  sensor.name = table["name"].value_or(std::string());
+  if (sensor.name.empty()) {
+    reader.fail(table, "name", "expected the name of the sensor");
+  }
+  for (const toml::table* input : reader.tables(table, "input")) {
+    read_input(reader, *input, sensor);
+  }
+}
+
+void read_sensors(Reader& reader, const toml::table& document, const ilk_config_t& robot,
+                  Parameters& parameters) {
+  std::bitset<ILK_SLOTS> found;
+  for (const toml::table* table : reader.tables(document, "sensor")) {
+    read_sensor(reader, *table, robot, parameters, found);
   }
 }
 
@@ -216,8 +271,8 @@ tl::expected<Parameters, std::string> load_parameters(const std::filesystem::pat
                           std::string(error.description()));
   }
   Reader reader(path.string());
-  Parameters parameters;
-  reader.only(document, {"pedal", "estop", "defaults", "axis"});
+  Parameters parameters = default_parameters(robot);
+  reader.only(document, {"pedal", "estop", "defaults", "axis", "sensor"});
   const toml::table& pedal = reader.section(document, "pedal");
   reader.only(pedal, {"lag_ms", "bounce_ms"});
   reader.milliseconds(pedal, "lag_ms", {0, 1000}, parameters.pedal.lag);
@@ -226,6 +281,7 @@ tl::expected<Parameters, std::string> load_parameters(const std::filesystem::pat
   reader.only(estop, {"bounce_ms"});
   reader.milliseconds(estop, "bounce_ms", {0, 1000}, parameters.estop.bounce);
   read_axes(reader, document, robot, parameters);
+  read_sensors(reader, document, robot, parameters);
   if (!reader.fault().empty()) {
     return tl::unexpected(reader.fault());
   }

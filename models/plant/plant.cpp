@@ -7,22 +7,25 @@ namespace {
 
 constexpr std::uint64_t kSwitchStream = 0x300;
 constexpr std::uint64_t kContactStream = 0x400;
+constexpr std::uint64_t kForceStream = 0x500;
 
 wire::FrameView frame_of(const ilk_sim_exchange_t& exchange, std::size_t slot) {
   return wire::FrameView(exchange.frame[slot]);
 }
 
-std::optional<Station> make_station(const ilk_axis_config_t& axis, const AxisParameters& parameters,
+std::optional<Station> make_station(const ilk_axis_config_t& axis, const Parameters& parameters,
                                     std::uint64_t seed, std::size_t slot) {
   if (axis.card == ILK_CARD_NONE) {
     return std::nullopt;
   }
   Random bounce(seed, kSwitchStream + slot);
   if (!drives_motor(axis.card)) {
-    return Station{Card(axis.card, std::nullopt, seed, slot), std::nullopt, false, bounce};
+    return Station{Card(axis.card, std::nullopt, seed, slot), std::nullopt,
+                   ForceSensor(parameters.sensor[slot], Random(seed, kForceStream + slot)), false, bounce};
   }
-  return Station{Card(axis.card, Encoder(axis.direction_correction != 0, parameters), seed, slot),
-                 Axis(axis, parameters), axis.limit_side != ILK_LIMIT_NONE, bounce};
+  const AxisParameters& motor = parameters.axis[slot];
+  return Station{Card(axis.card, Encoder(axis.direction_correction != 0, motor), seed, slot),
+                 Axis(axis, motor), std::nullopt, axis.limit_side != ILK_LIMIT_NONE, bounce};
 }
 
 }  // namespace
@@ -33,7 +36,7 @@ Plant::Plant(const ilk_config_t& robot, const Parameters& parameters, std::uint6
       estop_loop_(true, parameters.estop.bounce),
       contact_bounce_(seed, kContactStream) {
   for (std::size_t slot = 0; slot < ILK_SLOTS; ++slot) {
-    stations_[slot] = make_station(robot.axis[slot], parameters.axis[slot], seed, slot);
+    stations_[slot] = make_station(robot.axis[slot], parameters, seed, slot);
   }
 }
 
@@ -74,6 +77,9 @@ void Plant::transact(std::size_t slot, const ilk_sim_exchange_t& exchange, ilk_s
   Reading reading{.position_counts = station.position_counts()};
   if (station.has_switch) {
     reading.switch_triggered = station.axis->limit_switch().read(station.switch_bounce);
+  }
+  if (station.sensor) {
+    reading.analog = station.sensor->read();
   }
   if (const auto answer = station.card.transact(reading, frame_of(exchange, slot))) {
     reply.frames_received |= 1u << slot;

@@ -22,16 +22,18 @@
 #include "plant/axis.hpp"
 #include "plant/card.hpp"
 #include "plant/command.hpp"
+#include "plant/force_sensor.hpp"
 #include "plant/pedal.hpp"
 #include "plant/record.hpp"
 #include "plant/schedule.hpp"
 
 namespace interlock::plant {
 
-/** A card and the axis that hangs on it; a sensor card has none. */
+/** A card and what hangs on it: an axis, or on a sensor card a force sensor. */
 struct Station {
   Card card;
   std::optional<Axis> axis;
+  std::optional<ForceSensor> sensor;
   bool has_switch;
   Random switch_bounce;
 
@@ -107,6 +109,7 @@ class Plant {
   void apply(const command::ReverseMotor& wish);
   void apply(const command::StickEncoder& wish);
   void apply(const command::StickSwitch& wish);
+  void apply(const command::PressSensor& wish);
   void apply(const command::SpoilFrames& wish);
   void apply(const command::ResetCard& wish);
   void apply(const command::PowerCard& wish);

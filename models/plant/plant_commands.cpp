@@ -17,9 +17,21 @@ concept NamesSlot = requires(const Wish& wish) {
 /** True when the wish needs an axis on the card. */
 template <typename Wish>
 constexpr bool kNeedsAxis =
-    !std::is_same_v<Wish, command::ResetCard> && !std::is_same_v<Wish, command::PowerCard>;
+    !std::is_same_v<Wish, command::ResetCard> && !std::is_same_v<Wish, command::PowerCard> &&
+    !std::is_same_v<Wish, command::PressSensor>;
 
 std::string slot_text(std::size_t slot) { return "slot " + std::to_string(slot); }
+
+std::optional<std::string> sensor_refusal(const std::optional<ForceSensor>& sensor,
+                                          const command::PressSensor& wish) {
+  if (!sensor) {
+    return slot_text(wish.slot) + " has a motor card, no force sensor";
+  }
+  if (!sensor->is_connected(wish.input)) {
+    return "nothing is connected to ADC " + std::to_string(wish.input + 1) + " of " + slot_text(wish.slot);
+  }
+  return std::nullopt;
+}
 
 }  // namespace
 
@@ -39,7 +51,10 @@ std::optional<std::string> Plant::refusal(const command::Command& command) const
   };
   return std::visit(
       [&]<typename Wish>(const Wish& wish) -> std::optional<std::string> {
-        if constexpr (NamesSlot<Wish>) {
+        if constexpr (std::is_same_v<Wish, command::PressSensor>) {
+          const auto reason = refuse_slot(wish.slot, false, false);
+          return reason ? reason : sensor_refusal(stations_[wish.slot]->sensor, wish);
+        } else if constexpr (NamesSlot<Wish>) {
           return refuse_slot(wish.slot, kNeedsAxis<Wish>, std::is_same_v<Wish, command::StickSwitch>);
         } else if constexpr (std::is_same_v<Wish, command::SpoilFrames>) {
           return wish.slot ? refuse_slot(*wish.slot, false, false) : std::nullopt;
@@ -112,6 +127,10 @@ void Plant::apply(const command::StickSwitch& wish) {
   stations_[wish.slot]->axis->limit_switch().stick(wish.triggered);
 }
 
+void Plant::apply(const command::PressSensor& wish) {
+  stations_[wish.slot]->sensor->press(wish.input, wish.counts);
+}
+
 void Plant::apply(const command::SpoilFrames& wish) {
   for (std::size_t slot = 0; slot < ILK_SLOTS; ++slot) {
     if (stations_[slot] && wish.slot.value_or(slot) == slot) {
@@ -141,6 +160,9 @@ void Plant::apply(const command::Clear&) {
       station->card.clear_faults(station->position_counts());
       if (station->axis) {
         station->axis->clear_faults();
+      }
+      if (station->sensor) {
+        station->sensor->release();
       }
     }
   }

@@ -15,6 +15,8 @@ constexpr std::size_t kAmplifierEnable = 14;
 
 constexpr std::size_t kPairs = 2;
 constexpr std::size_t kCounter = 3;
+constexpr std::size_t kAnalog12 = 7;
+constexpr std::size_t kAnalog34 = 8;
 constexpr std::size_t kHeartbeat = 9;
 constexpr std::size_t kTime = 10;
 constexpr std::size_t kTickEcho = 11;
@@ -32,6 +34,10 @@ constexpr std::uint32_t kTopBit = 0x80000000u;
 constexpr std::uint32_t kNonPwmModeMask = 0xC0000000u;
 constexpr std::uint32_t kNonPwmDirectionSet = 0x40000000u;
 constexpr std::uint32_t kNonPwmDirectionClear = 0xC0000000u;
+
+std::uint32_t two_halves(std::uint16_t upper, std::uint16_t lower) {
+  return std::uint32_t{upper} << 16 | lower;
+}
 
 MotorCommand read_signed_level(std::uint32_t word) {
   return {.direction_bit = (word & kTopBit) == 0, .level = word & ~kTopBit};
@@ -108,6 +114,8 @@ Frame pack(const Report& report) {
   frame[0] = kStartWord;
   frame[kPairs] = report.switch_triggered ? 0 : kSwitchOpenBit;
   frame[kCounter] = report.counter;
+  frame[kAnalog12] = two_halves(report.analog[0], report.analog[1]);
+  frame[kAnalog34] = two_halves(report.analog[2], report.analog[3]);
   frame[kHeartbeat] = report.heartbeat;
   frame[kTime] = report.time_us;
   frame[kTickEcho] = report.tick_echo;

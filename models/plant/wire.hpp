@@ -29,10 +29,16 @@ struct MotorCommand {
   std::uint32_t amplitude = 0; /**< high-frequency cards only */
 };
 
+/** Analog inputs of a card; ADC 1 is input 0. */
+inline constexpr std::size_t kAnalogInputs = 4;
+
+using AnalogReadings = std::array<std::uint16_t, kAnalogInputs>;
+
 /** What a card tells. */
 struct Report {
   bool switch_triggered = false;
   std::uint32_t counter = 0;
+  AnalogReadings analog{};
   std::uint32_t heartbeat = 0;
   std::uint32_t time_us = 0;
   std::uint32_t tick_echo = 0;

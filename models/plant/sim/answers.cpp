@@ -92,6 +92,18 @@ json axis_status(std::size_t slot, const Station& station, std::uint32_t drive, 
           {"switch", name_of_state(kSwitchStates, axis.limit_switch().stuck())}};
 }
 
+json sensor_status(std::size_t slot, const ForceSensor& sensor) {
+  json inputs = json::array();
+  for (std::size_t input = 0; input < wire::kAnalogInputs; ++input) {
+    if (sensor.is_connected(input)) {
+      inputs.push_back({{"adc", input + 1},
+                        {"counts", sensor.counts(input)},
+                        {"force_counts", sensor.force_counts(input)}});
+    }
+  }
+  return {{"slot", slot}, {"name", sensor.name()}, {"inputs", inputs}};
+}
+
 template <typename Values>
 void append_list(std::string& text, const char* name, const Values& values) {
   text += ",\"";
@@ -161,12 +173,16 @@ json status_of(const Plant& plant, std::optional<ilk_clock_t> clock) {
     lamps[name_of_lamp(lamp)] = name_of_colour(plant.lamps()[lamp]);
   }
   json axes = json::array();
+  json sensors = json::array();
   json cards = json::array();
   for (std::size_t slot = 0; slot < ILK_SLOTS; ++slot) {
     if (const auto& station = plant.station(slot)) {
       cards.push_back(card_status(slot, station->card));
       if (station->axis) {
         axes.push_back(axis_status(slot, *station, newest.drive[slot], plant.period()));
+      }
+      if (station->sensor) {
+        sensors.push_back(sensor_status(slot, *station->sensor));
       }
     }
   }
@@ -184,6 +200,7 @@ json status_of(const Plant& plant, std::optional<ilk_clock_t> clock) {
           {"estop", {{"pulled", plant.estop_pulled()}, {"loop_closed", newest.estop_loop_closed}}},
           {"lamps", lamps},
           {"axes", axes},
+          {"sensors", sensors},
           {"cards", cards}};
 }
 

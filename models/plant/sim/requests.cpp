@@ -55,6 +55,13 @@ class Fields {
     return static_cast<std::int32_t>(integer("counts", -command::kMostCounts, command::kMostCounts));
   }
 
+  std::size_t analog_input() { return static_cast<std::size_t>(integer("adc", 1, wire::kAnalogInputs)) - 1; }
+
+  std::int32_t force_counts() {
+    return static_cast<std::int32_t>(
+        integer("counts", -command::kMostForceCounts, command::kMostForceCounts));
+  }
+
   template <typename Value, std::size_t Size>
   Value choice(const char* name, const std::array<Choice<Value>, Size>& choices) {
     const json* value = take(name);
@@ -150,6 +157,9 @@ constexpr std::array kForms = {
         [](Fields& f) -> Wish { return command::StickEncoder{f.slot(), f.choice("state", kEncoderStates)}; }},
     Form{"switch",
          [](Fields& f) -> Wish { return command::StickSwitch{f.slot(), f.choice("state", kSwitchStates)}; }},
+    Form{
+        "force",
+        [](Fields& f) -> Wish { return command::PressSensor{f.slot(), f.analog_input(), f.force_counts()}; }},
     Form{"frame", [](Fields& f) -> Wish { return read_frame_fault(f); }},
     Form{"card_reset", [](Fields& f) -> Wish { return command::ResetCard{f.slot()}; }},
     Form{"card_power", [](Fields& f) -> Wish { return command::PowerCard{f.slot(), f.flag("on")}; }},

@@ -49,6 +49,41 @@ std::string changed(const std::string& from, const std::string& to) {
   return text;
 }
 
+constexpr const char* kForceSensor = R"([[sensor]]
+slot = 9
+name = "force"
+[[sensor.input]]
+adc = 2
+zero_counts = 1970
+noise_counts = 3
+)";
+
+TEST(PlantFile, SensorHasTheInputsOfItsFile) {
+  const TemporaryFolder folder;
+  const auto loaded =
+      load_parameters(folder.write("p.toml", std::string(kAxes) + kForceSensor), sample_robot());
+  ASSERT_TRUE(loaded) << loaded.error();
+  const SensorParameters& sensor = loaded->sensor[kSensor];
+  EXPECT_EQ(sensor.name, "force");
+  ASSERT_TRUE(sensor.input[1]);
+  EXPECT_EQ(sensor.input[1]->zero_counts, 1970u);
+  EXPECT_EQ(sensor.input[1]->noise_counts, 3u);
+  EXPECT_FALSE(sensor.input[0] || sensor.input[2] || sensor.input[3]);
+}
+
+TEST(PlantFile, WrongSensorIsNamedWithItsLine) {
+  const auto fault_with = [](const std::string& from, const std::string& to) {
+    std::string text = std::string(kAxes) + kForceSensor;
+    return fault_of_plant(text.replace(text.find(from), from.size(), to));
+  };
+  EXPECT_EQ(fault_with("slot = 9", "slot = 0"),
+            "p.toml:21: slot: expected the slot of a sensor card of the robot, each once");
+  EXPECT_THAT(fault_with("name = \"force\"\n", ""), HasSubstr("name: expected the name of the sensor"));
+  EXPECT_THAT(fault_with("adc = 2", "adc = 5"), HasSubstr("p.toml:25: adc: expected a number from 1 to 4"));
+  EXPECT_THAT(fault_with("zero_counts = 1970\n", ""), HasSubstr("zero_counts: expected the reading"));
+  EXPECT_THAT(fault_with("noise_counts", "noise"), HasSubstr("p.toml:27: noise: unknown key"));
+}
+
 TEST(PlantFile, DefaultsApplyToEveryAxisAndAnAxisOverridesThem) {
   const TemporaryFolder folder;
   const auto path = folder.write(

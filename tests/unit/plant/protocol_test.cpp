@@ -51,6 +51,9 @@ TEST(PlantProtocol, ReadsEveryCommandOfTheReadme) {
             2u);
   EXPECT_EQ(command_of<command::ResetCard>(R"({"command":"card_reset","slot":4})").slot, 4u);
   EXPECT_FALSE(command_of<command::PowerCard>(R"({"command":"card_power","slot":4,"on":false})").on);
+  const auto force = command_of<command::PressSensor>(R"({"command":"force","slot":3,"adc":2,"counts":-40})");
+  EXPECT_EQ(force.input, 1u);
+  EXPECT_EQ(force.counts, -40);
   EXPECT_EQ(command_of<command::FailTransactions>(R"({"command":"transaction","count":2})").count, 2u);
   command_of<command::Clear>(R"({"command":"clear"})");
   const auto range = parse_request(R"({"command":"record","from":5,"to":9})", 0);
