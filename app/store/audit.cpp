@@ -1,0 +1,100 @@
+#include "store/audit.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <algorithm>
+
+#include "store/audit_table.hpp"
+
+namespace interlock {
+namespace {
+
+template <typename Number>
+void bind_optional(SQLite::Statement& statement, int index, const std::optional<Number>& value) {
+  if (value) {
+    statement.bind(index, static_cast<std::int64_t>(*value));
+  } else {
+    statement.bind(index);
+  }
+}
+
+}  // namespace
+
+std::string_view audit_kind_name(AuditKind kind) {
+  switch (kind) {
+    case AuditKind::start:
+      return "start";
+    case AuditKind::login:
+      return "login";
+    case AuditKind::login_refused:
+      return "login_refused";
+    case AuditKind::logout:
+      return "logout";
+    case AuditKind::session_ended:
+      return "session_ended";
+    case AuditKind::user:
+      return "user";
+    case AuditKind::authority:
+      return "authority";
+    case AuditKind::proposal:
+      return "proposal";
+    case AuditKind::request:
+      return "request";
+    case AuditKind::verdict:
+      return "verdict";
+    case AuditKind::stop:
+      return "stop";
+    case AuditKind::setting:
+      return "setting";
+    case AuditKind::restore:
+      return "restore";
+  }
+  return "unknown";
+}
+
+AuditRecord Audit::append(const AuditEntry& entry) {
+  const AuditHead last = head();
+  AuditRecord record{last.number + 1, iso_8601(entry.time), entry.tick, entry.actor, entry.session,
+                     std::string(audit_kind_name(entry.kind)),
+                     // What a stranger sent need not be UTF-8, and is recorded all the same.
+                     entry.detail.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), ""};
+  record.hash = audit_hash(record, last.hash);
+  SQLite::Statement insert(
+      database_, std::string("INSERT INTO audit (") + audit_columns + ") VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
+  insert.bind(1, record.number);
+  insert.bind(2, record.time);
+  bind_optional(insert, 3, record.tick);
+  insert.bind(4, record.actor);
+  bind_optional(insert, 5, record.session);
+  insert.bind(6, record.kind);
+  insert.bind(7, record.detail);
+  insert.bind(8, record.hash);
+  insert.exec();
+  return record;
+}
+
+std::vector<AuditRecord> Audit::list(std::size_t count, std::optional<std::int64_t> before) const {
+  SQLite::Statement select(database_,
+                           std::string("SELECT ") + audit_columns +
+                               " FROM audit WHERE ?1 IS NULL OR number < ?1 ORDER BY number DESC LIMIT ?2");
+  bind_optional(select, 1, before);
+  select.bind(2, static_cast<std::int64_t>(count));
+  std::vector<AuditRecord> records;
+  while (select.executeStep()) {
+    records.push_back(audit_record(select));
+  }
+  std::reverse(records.begin(), records.end());
+  return records;
+}
+
+AuditHead Audit::head() const {
+  SQLite::Statement select(database_, "SELECT number, hash FROM audit ORDER BY number DESC LIMIT 1");
+  return select.executeStep() ? AuditHead{select.getColumn(0).getInt64(), select.getColumn(1).getString()}
+                              : AuditHead{};
+}
+
+tl::expected<AuditHead, AuditBreak> Audit::verify(const std::optional<std::string>& noted) const {
+  return verify_audit(database_, noted);
+}
+
+}  // namespace interlock

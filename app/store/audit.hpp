@@ -1,0 +1,85 @@
+/**
+ * @file
+ * The audit: who did what, and what came of it. Records are only ever appended, each sealed with the hash of
+ * all before it (audit_chain.hpp).
+ */
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "store/audit_chain.hpp"
+#include "store/store.hpp"
+
+namespace interlock {
+
+enum class AuditKind {
+  start,
+  login,
+  login_refused,
+  logout,
+  session_ended,
+  user,
+  authority,
+  proposal,
+  request,
+  verdict,
+  stop,
+  setting,
+  restore
+};
+
+/** The name in spec/openapi.yaml: "login_refused". */
+std::string_view audit_kind_name(AuditKind kind);
+
+/** Actors that are no users; no user's name can be one of them but "kernel", "app" and "nobody". */
+namespace audit_actor {
+constexpr const char* kernel = "kernel";
+constexpr const char* app = "app";
+constexpr const char* command_line = "command line";
+constexpr const char* nobody = "nobody";
+}  // namespace audit_actor
+
+/** What is to be recorded. */
+struct AuditEntry {
+  UtcTime time;
+  std::optional<std::uint64_t> tick; /**< of the kernel, if there is one */
+  std::string actor;                 /**< user, or one of `audit_actor` */
+  std::optional<std::uint32_t> session;
+  AuditKind kind = AuditKind::start;
+  nlohmann::json detail = nlohmann::json::object(); /**< an object; no secrets */
+};
+
+/** The audit in one transaction. */
+class Audit {
+ public:
+  explicit Audit(Transaction& transaction) : database_(transaction.database()) {}
+
+  /** Appends a record to the chain. It counts once the transaction is committed. */
+  AuditRecord append(const AuditEntry& entry);
+
+  /** The newest `count` records, of those before number `before` where it is given; oldest first. */
+  [[nodiscard]] std::vector<AuditRecord> list(std::size_t count,
+                                              std::optional<std::int64_t> before = std::nullopt) const;
+
+  /** The last record's number and hash. */
+  [[nodiscard]] AuditHead head() const;
+
+  /**
+   * Goes over the whole chain and returns its head, or the first place where it is broken.
+   *
+   * Records that were cut off at the end leave no break: that shows only against a hash which was noted
+   * before, and which the chain must still contain (`noted`, 64 hex digits).
+   */
+  [[nodiscard]] tl::expected<AuditHead, AuditBreak> verify(
+      const std::optional<std::string>& noted = std::nullopt) const;
+
+ private:
+  SQLite::Database& database_;
+};
+
+}  // namespace interlock

@@ -1,0 +1,29 @@
+/**
+ * @file
+ * The audit's table, read from any connection.
+ */
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "store/audit_chain.hpp"
+
+namespace SQLite {
+class Database;
+class Statement;
+}  // namespace SQLite
+
+namespace interlock {
+
+/** Columns of the table in the order that `audit_record` reads. */
+constexpr const char* audit_columns = "number, time, tick, actor, session, kind, detail, hash";
+
+/** The record in the statement's current row. */
+AuditRecord audit_record(SQLite::Statement& row);
+
+/** See `Audit::verify`. Throws SQLite::Exception. */
+tl::expected<AuditHead, AuditBreak> verify_audit(SQLite::Database& database,
+                                                 const std::optional<std::string>& noted);
+
+}  // namespace interlock

@@ -1,0 +1,60 @@
+/**
+ * @file
+ * Passwords, and what is kept of them.
+ */
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "store/store_error.hpp"
+
+namespace interlock {
+
+/** The text of a password. Its memory is overwritten when it goes. */
+class Password {
+ public:
+  /** Takes the text over and overwrites where it came from. */
+  explicit Password(std::string&& text);
+  Password(Password&&) noexcept = default;
+  Password& operator=(Password&& other) noexcept;
+  Password(const Password&) = delete;
+  Password& operator=(const Password&) = delete;
+  ~Password();
+
+  /** 20 characters that cannot be mistaken for one another, 100 bits of them random. */
+  static Stored<Password> random();
+
+  [[nodiscard]] std::string_view text() const { return {text_.data(), text_.size()}; }
+
+ private:
+  /** Not a string: a short one would leave a copy behind when it is moved. */
+  std::vector<char> text_;
+};
+
+/** Argon2id hash of a password, with its salt and its cost. */
+class PasswordHash {
+ public:
+  /** A hash that was stored. */
+  explicit PasswordHash(std::string text) : text_(std::move(text)) {}
+
+  /**
+   * Hashes a new password of a user; takes about a tenth of a second and 64 MiB.
+   *
+   * Refused, invalid: fewer than 10 or more than 128 characters, not UTF-8, or the user's name.
+   */
+  static Stored<PasswordHash> of_new(const Password& password, std::string_view user);
+
+  /** Whether the password is the one; takes as long as hashing it. */
+  [[nodiscard]] bool matches(const Password& password) const;
+
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+  bool operator==(const PasswordHash&) const = default;
+
+ private:
+  std::string text_;
+};
+
+}  // namespace interlock

@@ -1,0 +1,129 @@
+#include "store/schema.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <array>
+#include <string>
+
+#include "store/audit_table.hpp"
+#include "store/store_files.hpp"
+
+namespace interlock {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* version_1 = R"sql(
+CREATE TABLE users (
+  name TEXT PRIMARY KEY,
+  role TEXT NOT NULL CHECK (role IN ('viewer', 'engineer', 'admin')),
+  enabled INTEGER NOT NULL CHECK (enabled IN (0, 1)),
+  password TEXT NOT NULL,
+  created TEXT NOT NULL,
+  last_login TEXT
+) STRICT;
+
+CREATE TABLE sessions (
+  number INTEGER PRIMARY KEY AUTOINCREMENT,
+  user TEXT NOT NULL REFERENCES users (name),
+  token_hash TEXT NOT NULL UNIQUE,
+  created TEXT NOT NULL,
+  last_seen TEXT NOT NULL
+) STRICT;
+
+CREATE TABLE settings (
+  key TEXT PRIMARY KEY,
+  value TEXT NOT NULL,
+  updated TEXT NOT NULL
+) STRICT;
+
+CREATE TABLE audit (
+  number INTEGER PRIMARY KEY,
+  time TEXT NOT NULL,
+  tick INTEGER,
+  actor TEXT NOT NULL,
+  session INTEGER,
+  kind TEXT NOT NULL,
+  detail TEXT NOT NULL,
+  hash TEXT NOT NULL
+) STRICT;
+
+CREATE TRIGGER audit_is_not_changed BEFORE UPDATE ON audit
+BEGIN SELECT RAISE(ABORT, 'the audit is only appended to'); END;
+
+CREATE TRIGGER audit_is_not_removed BEFORE DELETE ON audit
+BEGIN SELECT RAISE(ABORT, 'the audit is only appended to'); END;
+
+CREATE TRIGGER audit_has_no_gaps BEFORE INSERT ON audit
+WHEN NEW.number IS NOT (SELECT coalesce(max(number), 0) + 1 FROM audit)
+BEGIN SELECT RAISE(ABORT, 'the audit is only appended to'); END;
+)sql";
+
+constexpr std::array scripts_of_all_versions{version_1};
+
+int pragma(SQLite::Database& database, const char* name) {
+  return database.execAndGet(std::string("PRAGMA ") + name).getInt();
+}
+
+bool is_empty(SQLite::Database& database) {
+  return database.execAndGet("SELECT count(*) FROM sqlite_schema").getInt() == 0;
+}
+
+StoreError damaged(SQLite::Database& database, const std::string& problem) {
+  return {StoreError::Kind::damaged, database.getFilename() + ": " + problem, "", "",
+          "put a backup in its place with `interlock store restore`"};
+}
+
+}  // namespace
+
+std::span<const char* const> migrations() { return scripts_of_all_versions; }
+
+Stored<void> check_schema(SQLite::Database& database, std::span<const char* const> scripts) {
+  const int version = pragma(database, "user_version");
+  if (version > static_cast<int>(scripts.size())) {
+    return tl::unexpected(StoreError{
+        StoreError::Kind::newer, database.getFilename() + " has schema " + std::to_string(version), "",
+        "at most " + std::to_string(scripts.size()), "install the release that wrote it, or a newer one"});
+  }
+  if (!is_empty(database) && pragma(database, "application_id") != store_application_id) {
+    return tl::unexpected(damaged(database, "is an SQLite file, but no store of Interlock"));
+  }
+  return {};
+}
+
+void migrate(SQLite::Database& database, const fs::path& file, std::span<const char* const> scripts) {
+  if (pragma(database, "user_version") == static_cast<int>(scripts.size())) {
+    return;
+  }
+  SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+  // Another process may have done it while this one waited.
+  const int version = pragma(database, "user_version");
+  if (version > 0 && version < static_cast<int>(scripts.size())) {
+    copy_before_migration(file, version);
+  }
+  for (std::size_t step = static_cast<std::size_t>(version); step < scripts.size(); ++step) {
+    database.exec(scripts[step]);
+  }
+  database.exec("PRAGMA application_id = " + std::to_string(store_application_id));
+  database.exec("PRAGMA user_version = " + std::to_string(scripts.size()));
+  transaction.commit();
+}
+
+Stored<void> check_contents(SQLite::Database& database) {
+  const std::string pages = database.execAndGet("PRAGMA integrity_check(1)").getString();
+  if (pages != "ok") {
+    return tl::unexpected(damaged(database, pages));
+  }
+  SQLite::Statement references(database, "PRAGMA foreign_key_check");
+  if (references.executeStep()) {
+    return tl::unexpected(damaged(
+        database, "table " + references.getColumn(0).getString() + " refers to something that is not there"));
+  }
+  if (const auto chain = verify_audit(database, std::nullopt); !chain) {
+    return tl::unexpected(damaged(
+        database, "audit record " + std::to_string(chain.error().number) + " " + chain.error().problem));
+  }
+  return {};
+}
+
+}  // namespace interlock

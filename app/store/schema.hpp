@@ -1,0 +1,41 @@
+/**
+ * @file
+ * The tables of the store, and how an older file gets them.
+ */
+#pragma once
+
+#include <filesystem>
+#include <span>
+
+#include "store/store_error.hpp"
+
+namespace SQLite {
+class Database;
+}
+
+namespace interlock {
+
+/** What `PRAGMA application_id` of a store says: "ILKS". */
+constexpr int store_application_id = 0x494c4b53;
+
+/** One script for each version of the schema: script N brings a store of version N to N + 1. None is ever
+ * changed. */
+std::span<const char* const> migrations();
+
+/** Refused: a file that is neither empty nor a store (damaged), or of a newer version than `scripts` make
+ * (newer). */
+Stored<void> check_schema(SQLite::Database& database, std::span<const char* const> scripts);
+
+/**
+ * Brings a store to the newest version, in one transaction. A store that is not empty is copied beside `file`
+ * before.
+ *
+ * Throws SQLite::Exception; the store is then as it was.
+ */
+void migrate(SQLite::Database& database, const std::filesystem::path& file,
+             std::span<const char* const> scripts);
+
+/** Refused, damaged: pages, references or the chain of the audit are not sound. Throws SQLite::Exception. */
+Stored<void> check_contents(SQLite::Database& database);
+
+}  // namespace interlock

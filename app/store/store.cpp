@@ -1,0 +1,95 @@
+#include "store/store.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <utility>
+
+#include "store/digest.hpp"
+#include "store/schema.hpp"
+#include "store/store_files.hpp"
+
+namespace interlock {
+namespace {
+
+namespace fs = std::filesystem;
+
+Stored<std::unique_ptr<SQLite::Database>> connect(const fs::path& file) {
+  try {
+    auto database =
+        std::make_unique<SQLite::Database>(file.string(), SQLite::OPEN_READWRITE, store_patience_ms);
+    if (const Stored<void> checked = check_schema(*database, migrations()); !checked) {
+      return tl::unexpected(checked.error());
+    }
+    database->exec("PRAGMA journal_mode = WAL");
+    // FULL: a commit is on the disk before it is acknowledged, whatever happens to the machine.
+    database->exec("PRAGMA synchronous = FULL");
+    database->exec("PRAGMA foreign_keys = ON");
+    migrate(*database, file, migrations());
+    return database;
+  } catch (const SQLite::Exception& error) {
+    return tl::unexpected(database_error(file, error));
+  }
+}
+
+}  // namespace
+
+Transaction::Transaction(SQLite::Database& database, Kind kind) : database_(database) {
+  database_.exec(kind == Kind::writing ? "BEGIN IMMEDIATE" : "BEGIN DEFERRED");
+}
+
+Transaction::~Transaction() {
+  if (open_) {
+    // Some failures have SQLite undo the transaction by itself; then there is nothing left to undo.
+    database_.tryExec("ROLLBACK");
+  }
+}
+
+void Transaction::commit() {
+  database_.exec("COMMIT");
+  open_ = false;
+}
+
+Stored<Store> Store::open(const fs::path& file) {
+  if (const Stored<void> ready =
+          start_sodium().and_then([&] { return make_private_folder(file.parent_path()); });
+      !ready) {
+    return tl::unexpected(ready.error());
+  }
+  auto lock = StoreLock::take(file, StoreLock::Kind::shared);
+  if (!lock) {
+    return tl::unexpected(lock.error());
+  }
+  if (const Stored<void> made = make_private_file(file);
+      !made && made.error().kind != StoreError::Kind::exists) {
+    return tl::unexpected(made.error());
+  }
+  auto database = connect(file);
+  if (!database) {
+    return tl::unexpected(database.error());
+  }
+  return Store(std::move(*lock), std::move(*database));
+}
+
+Store::Store(std::unique_ptr<StoreLock> lock, std::unique_ptr<SQLite::Database> database)
+    : lock_(std::move(lock)), database_(std::move(database)) {}
+
+Store::Store(Store&&) noexcept = default;
+
+Store& Store::operator=(Store&& other) noexcept {
+  // The connection goes before the lock that guards it.
+  database_ = std::move(other.database_);
+  lock_ = std::move(other.lock_);
+  return *this;
+}
+
+Store::~Store() = default;
+
+StoreError Store::caught() const {
+  try {
+    throw;
+  } catch (const SQLite::Exception& error) {
+    return database_error(database_->getFilename(), error);
+  }
+}
+
+}  // namespace interlock

@@ -1,0 +1,115 @@
+/**
+ * @file
+ * The store of one robot: users, sessions, settings and the audit, in one SQLite file.
+ *
+ * Everything that is read or written passes through a transaction:
+ *
+ *     store.transact([&](Transaction& transaction) -> Stored<void> {
+ *       Settings(transaction).set("log_level", "debug", now);
+ *       Audit(transaction).append(...);
+ *       return {};
+ *     });
+ *
+ * `Users`, `Sessions`, `Settings` and `Audit` are views of a transaction and live no longer than it does.
+ * They return refusals as values; failures of SQLite pass through them as exceptions, which `transact` and
+ * `read` turn into a `StoreError`.
+ */
+#pragma once
+
+#include <concepts>
+#include <filesystem>
+#include <memory>
+#include <type_traits>
+
+#include "store/store_error.hpp"
+#include "time/utc_time.hpp"
+
+namespace SQLite {
+class Database;
+}
+
+namespace interlock {
+
+class StoreLock;
+
+/** Everything between BEGIN and COMMIT or ROLLBACK. What was not committed is undone when it goes. */
+class Transaction {
+ public:
+  Transaction(const Transaction&) = delete;
+  Transaction& operator=(const Transaction&) = delete;
+  ~Transaction();
+
+  /** For the views of this folder. */
+  [[nodiscard]] SQLite::Database& database() const { return database_; }
+
+ private:
+  friend class Store;
+
+  enum class Kind { reading, writing };
+
+  Transaction(SQLite::Database& database, Kind kind);
+  void commit();
+
+  SQLite::Database& database_;
+  bool open_ = true;
+};
+
+/** One connection to the file, for use by one thread at a time. Other processes may have it open, too. */
+class Store {
+ public:
+  /**
+   * Opens the store, made if missing: folders that are missing with mode 0700, the file with 0600.
+   *
+   * A file of an older schema is copied beside itself as `FILE.schema-N`, then migrated in one transaction.
+   * Refused, without a change to the file: a newer schema, a file that is no store, one that `restore` has in
+   * hand.
+   */
+  static Stored<Store> open(const std::filesystem::path& file);
+
+  Store(Store&&) noexcept;
+  Store& operator=(Store&&) noexcept;
+  ~Store();
+
+  /**
+   * Runs `work(Transaction&)`, which returns a `Stored<...>`, as the only writer of the file.
+   *
+   * A value: all of it is on the disk when this returns. An error, of `work` or of the file: nothing of it
+   * is.
+   */
+  template <std::invocable<Transaction&> Work>
+  auto transact(Work&& work) -> std::invoke_result_t<Work, Transaction&> {
+    try {
+      Transaction transaction(*database_, Transaction::Kind::writing);
+      auto result = std::forward<Work>(work)(transaction);
+      if (result) {
+        transaction.commit();
+      }
+      return result;
+    } catch (...) {
+      return tl::unexpected(caught());
+    }
+  }
+
+  /** Runs `work(Transaction&)` on one consistent state of the file, beside a writer. What it writes is not
+   * kept. */
+  template <std::invocable<Transaction&> Work>
+  auto read(Work&& work) -> std::invoke_result_t<Work, Transaction&> {
+    try {
+      Transaction transaction(*database_, Transaction::Kind::reading);
+      return std::forward<Work>(work)(transaction);
+    } catch (...) {
+      return tl::unexpected(caught());
+    }
+  }
+
+ private:
+  Store(std::unique_ptr<StoreLock> lock, std::unique_ptr<SQLite::Database> database);
+
+  /** The exception in flight as a value if it is one of SQLite; any other flies on. */
+  [[nodiscard]] StoreError caught() const;
+
+  std::unique_ptr<StoreLock> lock_;
+  std::unique_ptr<SQLite::Database> database_;
+};
+
+}  // namespace interlock

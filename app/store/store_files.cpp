@@ -1,0 +1,138 @@
+#include "store/store_files.hpp"
+
+#include <SQLiteCpp/Backup.h>
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fcntl.h>
+#include <sqlite3.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <string>
+
+namespace interlock {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr mode_t private_folder_mode = 0700;
+constexpr mode_t private_file_mode = 0600;
+
+fs::path with_suffix(fs::path file, const std::string& suffix) { return file += suffix; }
+
+}  // namespace
+
+Stored<std::unique_ptr<StoreLock>> StoreLock::take(const fs::path& store, Kind kind) {
+  const fs::path file = with_suffix(store, ".lock");
+  const int fd = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, private_file_mode);
+  if (fd < 0) {
+    return tl::unexpected(file_error(file, "cannot be opened", errno));
+  }
+  std::unique_ptr<StoreLock> lock(new StoreLock(fd));
+  if (::flock(fd, (kind == Kind::shared ? LOCK_SH : LOCK_EX) | LOCK_NB) != 0) {
+    return tl::unexpected(StoreError{
+        StoreError::Kind::unavailable,
+        store.string() + (kind == Kind::shared ? " is being restored" : " is in use by another process"), "",
+        "", kind == Kind::shared ? "try again in a moment" : "stop what uses it, then try again"});
+  }
+  return lock;
+}
+
+StoreLock::~StoreLock() { ::close(fd_); }
+
+Stored<void> make_private_folder(const fs::path& folder) {
+  std::error_code ignored;
+  if (folder.empty() || fs::is_directory(folder, ignored)) {
+    return {};
+  }
+  if (folder.has_parent_path() && folder.parent_path() != folder) {
+    if (const Stored<void> parent = make_private_folder(folder.parent_path()); !parent) {
+      return parent;
+    }
+  }
+  if (::mkdir(folder.c_str(), private_folder_mode) != 0 && errno != EEXIST) {
+    return tl::unexpected(file_error(folder, "cannot be made", errno));
+  }
+  return {};
+}
+
+Stored<void> make_private_file(const fs::path& file) {
+  const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, private_file_mode);
+  if (fd >= 0) {
+    ::close(fd);
+    return {};
+  }
+  if (errno == EEXIST) {
+    return tl::unexpected(StoreError{StoreError::Kind::exists, file.string() + " is there already", "",
+                                     "a name that is free", "choose another, or move that file away"});
+  }
+  return tl::unexpected(file_error(file, "cannot be made", errno));
+}
+
+Stored<void> sync_folder(const fs::path& folder) {
+  const fs::path named = folder.empty() ? fs::path(".") : folder;
+  const int fd = ::open(named.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool synced = fd >= 0 && ::fsync(fd) == 0;
+  const int error_number = errno;
+  if (fd >= 0) {
+    ::close(fd);
+  }
+  return synced ? Stored<void>() : tl::unexpected(file_error(named, "cannot be written", error_number));
+}
+
+Stored<void> copy_store(const fs::path& source, const fs::path& target) {
+  if (const Stored<void> made = make_private_file(target); !made) {
+    return made;
+  }
+  SQLite::Database from(source.string(), SQLite::OPEN_READWRITE, store_patience_ms);
+  SQLite::Database to(target.string(), SQLite::OPEN_READWRITE, store_patience_ms);
+  SQLite::Backup copy(to, from);
+  // All pages in one step, so that the copy is of one moment.
+  if (copy.executeStep(-1) != SQLITE_DONE) {
+    throw SQLite::Exception("the store stayed busy", SQLITE_BUSY);
+  }
+  to.exec("PRAGMA journal_mode = DELETE");
+  return {};
+}
+
+void copy_before_migration(const fs::path& file, int version) {
+  const fs::path first = with_suffix(file, ".schema-" + std::to_string(version));
+  fs::path copy = first;
+  for (int number = 2; fs::exists(copy); ++number) {
+    copy = with_suffix(first, "." + std::to_string(number));
+  }
+  if (const Stored<void> copied = copy_store(file, copy); !copied) {
+    throw SQLite::Exception(copied.error().message(), SQLITE_CANTOPEN);
+  }
+}
+
+StoreError file_error(const fs::path& file, const std::string& what, int error_number) {
+  return {StoreError::Kind::unavailable,
+          file.string() + " " + what + ": " + std::generic_category().message(error_number), "", "",
+          error_number == ENOSPC ? "free some space" : "see that this user may write there"};
+}
+
+StoreError database_error(const fs::path& file, const SQLite::Exception& error) {
+  StoreError stored{StoreError::Kind::unavailable, file.string() + ": " + error.what(), "", "",
+                    "see that this user may write there, and that the disk is sound"};
+  switch (error.getErrorCode() & 0xff) {
+    case SQLITE_FULL:
+      stored.next_step = "free some space";
+      break;
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      stored.next_step = "another process is writing; try again in a moment";
+      break;
+    case SQLITE_CORRUPT:
+    case SQLITE_NOTADB:
+      stored.kind = StoreError::Kind::damaged;
+      stored.next_step = "put a backup in its place with `interlock store restore`";
+      break;
+    default:
+      break;
+  }
+  return stored;
+}
+
+}  // namespace interlock

@@ -1,0 +1,67 @@
+/**
+ * @file
+ * The files around a store: its folder, its lock, its copies.
+ */
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+#include "store/store_error.hpp"
+
+namespace SQLite {
+class Database;
+class Exception;
+}  // namespace SQLite
+
+namespace interlock {
+
+/** How long a connection waits for another one that writes, in milliseconds. */
+constexpr int store_patience_ms = 5000;
+
+/**
+ * Holds `FILE.lock`: shared by all who have the store open, or alone, by whoever puts another file in its
+ * place. The system lets go of it when the process ends, however it ends.
+ */
+class StoreLock {
+ public:
+  enum class Kind { shared, alone };
+
+  /** Refused, unavailable: somebody holds it the other way. */
+  static Stored<std::unique_ptr<StoreLock>> take(const std::filesystem::path& store, Kind kind);
+
+  StoreLock(const StoreLock&) = delete;
+  StoreLock& operator=(const StoreLock&) = delete;
+  ~StoreLock();
+
+ private:
+  explicit StoreLock(int fd) : fd_(fd) {}
+
+  int fd_;
+};
+
+/** Makes the folder and those above it that are missing, each with mode 0700. */
+Stored<void> make_private_folder(const std::filesystem::path& folder);
+
+/** Makes an empty file with mode 0600. Refused, exists: something of that name is there. */
+Stored<void> make_private_file(const std::filesystem::path& file);
+
+/** Makes sure that names given or taken in the folder are on the disk. */
+Stored<void> sync_folder(const std::filesystem::path& folder);
+
+/** Copies what is committed in a store to the new, private file `target`, while others may go on writing.
+ * The copy is one file, without a write-ahead log. Throws SQLite::Exception. */
+Stored<void> copy_store(const std::filesystem::path& source, const std::filesystem::path& target);
+
+/** Copies a store to `FILE.schema-VERSION`, or `FILE.schema-VERSION.N` where earlier ones are. Throws
+ * SQLite::Exception. */
+void copy_before_migration(const std::filesystem::path& file, int version);
+
+/** A failure of the system as a value. */
+StoreError file_error(const std::filesystem::path& file, const std::string& what, int error_number);
+
+/** A failure of SQLite as a value. */
+StoreError database_error(const std::filesystem::path& file, const SQLite::Exception& error);
+
+}  // namespace interlock
