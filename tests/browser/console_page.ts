@@ -13,7 +13,7 @@ export class Axis {
     this.track = page.getByRole("slider", { name: `${title} target` });
   }
 
-  async press(action: "Enable" | "Disable" | "Home" | "Set Home" | "Clear"): Promise<void> {
+  async press(action: "Enable" | "Disable" | "Go Home" | "Set Home" | "Clear"): Promise<void> {
     await this.row.getByRole("button", { name: `${action} ${this.title}`, exact: true }).click();
   }
 
@@ -88,16 +88,60 @@ export class ConsolePage {
   readonly stopAnswer: Locator;
   readonly pedal: Locator;
   readonly latch: Locator;
+  readonly authority: Locator;
+  readonly loginForm: Locator;
 
   constructor(readonly page: Page) {
-    this.mode = page.getByRole("status", { name: "Mode" });
-    this.estop = page.getByRole("status", { name: "E-stop" });
-    this.pedalState = page.getByRole("status", { name: "Pedal" });
+    this.mode = page.getByRole("status", { name: "Mode", exact: true });
+    this.estop = page.getByRole("status", { name: "E-stop", exact: true });
+    this.pedalState = page.getByRole("status", { name: "Pedal", exact: true });
     this.unlock = page.getByRole("button", { name: "Unlock" });
     this.stop = page.getByRole("button", { name: /^STOP/ });
     this.stopAnswer = page.getByRole("status", { name: "Answer to STOP" });
     this.pedal = page.getByRole("button", { name: /^\S* ?Pedal/ });
     this.latch = page.getByRole("button", { name: "Latch pedal" });
+    this.authority = page.getByRole("status", { name: "Authority", exact: true });
+    this.loginForm = page.getByRole("form", { name: "Log in" });
+  }
+
+  panel(title: string): Locator {
+    return this.page.getByRole("region", { name: title, exact: true });
+  }
+
+  button(name: string): Locator {
+    return this.page.getByRole("button", { name, exact: true });
+  }
+
+  async tryLogIn(name: string, password: string): Promise<void> {
+    await this.loginForm.getByLabel("Name").fill(name);
+    await this.loginForm.getByLabel("Password").fill(password);
+    await this.loginForm.getByRole("button", { name: "Log in" }).click();
+  }
+
+  async logIn(name: string, password: string): Promise<void> {
+    await this.tryLogIn(name, password);
+    await expect(this.page.getByRole("link", { name: "Account" })).toContainText(name);
+  }
+
+  async requestAuthority(): Promise<void> {
+    await this.button("Request").click();
+    await expect(this.authority).toContainText("(you)");
+  }
+
+  async open(page: "Robot" | "Users" | "Audit" | "Account"): Promise<void> {
+    await this.page.getByRole("link", { name: page }).click();
+  }
+
+  /** By the Users page; ends on the Robot page. */
+  async addUser(name: string, role: "viewer" | "engineer" | "admin", password: string): Promise<void> {
+    await this.open("Users");
+    const form = this.page.getByRole("form", { name: "Add a user" });
+    await form.getByLabel("Name").fill(name);
+    await form.getByLabel("Role").selectOption(role);
+    await form.getByLabel("Password").fill(password);
+    await form.getByRole("button", { name: "Add user" }).click();
+    await expect(this.page.getByRole("row", { name: `User ${name}` })).toBeVisible();
+    await this.open("Robot");
   }
 
   axis(title: string): Axis {

@@ -1,4 +1,4 @@
-/** A newcomer's first use of the console, by clicking, against the real processes (issue 2, console). */
+/** A newcomer's first use of the console, by clicking, against the real processes. */
 import { mkdirSync } from "node:fs";
 import path from "node:path";
 import { expect, test } from "./fixtures";
@@ -230,6 +230,7 @@ test("the console comes back by itself when the app was killed and started again
   await expect.poll(() => framesOfNewStreams).toBeGreaterThan(3);
   await robot.expectMode("READY");
   await axis.expectState("ENABLED");
+  await robot.requestAuthority();
   await axis.propose("300");
   await axis.expectRefusal("RANGE");
 });
@@ -261,7 +262,7 @@ test("a renewal of the pedal that comes too late presses nothing, and the bench 
 test("no key enables an axis, unlocks or presses the pedal", async ({ robot, page }) => {
   const asked: string[] = [];
   page.on("request", (request) => {
-    if (request.method() === "POST") asked.push(new URL(request.url()).pathname);
+    if (request.method() !== "GET") asked.push(new URL(request.url()).pathname);
   });
   await robot.expectMode("LOCKED");
   for (const key of [

@@ -1,34 +1,58 @@
-import { test as base, expect } from "@playwright/test";
+import { test as base, expect, type Page } from "@playwright/test";
 import { ConsolePage } from "./console_page";
-import { Stack } from "./stack";
+import { type RobotName, Stack } from "./stack";
 
 /** What Chromium reports on its console by design: refused requests, an app that is gone or has no kernel yet. */
-const expectedComplaint = /status of (409|422|503)|ERR_CONNECTION_/;
+const expectedComplaint = /status of (401|403|409|422|429|503)|ERR_CONNECTION_/;
 
 interface Fixtures {
+  robotName: RobotName;
   stack: Stack;
+  /** The console before login. */
+  front: ConsolePage;
+  /** The console of the administrator, who holds the motion authority. */
   robot: ConsolePage;
+  /** Another browser, before login. */
+  other: ConsolePage;
 }
 
-/** Each test has a robot of its own, and fails when the page breaks a rule of its content policy or throws. */
+/** Each test has a robot of its own, and fails when a page breaks a rule of its content policy or throws. */
 export const test = base.extend<Fixtures>({
-  // biome-ignore lint/correctness/noEmptyPattern: Playwright finds the fixtures that a fixture needs in this pattern.
-  stack: async ({}, use) => {
-    const stack = await Stack.start();
+  robotName: ["neuro", { option: true }],
+  stack: async ({ robotName }, use) => {
+    const stack = await Stack.start(robotName);
     await use(stack);
     await stack.end();
   },
-  robot: async ({ page, stack }, use) => {
-    const complaints: string[] = [];
-    page.on("pageerror", (error) => complaints.push(String(error)));
-    page.on("console", (message) => {
-      const serious = message.type() === "error" || message.type() === "warning";
-      if (serious && !expectedComplaint.test(message.text())) complaints.push(message.text());
-    });
-    await page.goto(stack.url);
-    await use(new ConsolePage(page));
-    expect(complaints).toEqual([]);
+  front: async ({ page, stack }, use) => {
+    await openConsole(page, stack, use);
+  },
+  robot: async ({ front, stack }, use) => {
+    await front.logIn("admin", stack.password);
+    await front.requestAuthority();
+    await use(front);
+  },
+  other: async ({ browser, stack }, use) => {
+    const context = await browser.newContext();
+    await openConsole(await context.newPage(), stack, use);
+    await context.close();
   },
 });
+
+async function openConsole(
+  page: Page,
+  stack: Stack,
+  use: (opened: ConsolePage) => Promise<void>,
+): Promise<void> {
+  const complaints: string[] = [];
+  page.on("pageerror", (error) => complaints.push(String(error)));
+  page.on("console", (message) => {
+    const serious = message.type() === "error" || message.type() === "warning";
+    if (serious && !expectedComplaint.test(message.text())) complaints.push(message.text());
+  });
+  await page.goto(stack.url);
+  await use(new ConsolePage(page));
+  expect(complaints).toEqual([]);
+}
 
 export { expect };

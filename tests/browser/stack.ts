@@ -10,22 +10,36 @@ const READY_WITHIN_MS = 30_000;
 /** The app's patience with a held pedal is 500 ms of this clock: half the speed is twice the time for a busy machine. */
 const SPEED = "0.5";
 
+export type RobotName = "neuro" | "prostate";
+
+interface Ready {
+  readonly url: string;
+  /** Of the user `admin`, said once at the first start. */
+  readonly password: string;
+}
+
 export class Stack {
+  readonly url: string;
+  readonly password: string;
+
   private constructor(
     private readonly run: ChildProcess,
     private readonly state: string,
-    readonly url: string,
-  ) {}
+    ready: Ready,
+  ) {
+    this.url = ready.url;
+    this.password = ready.password;
+  }
 
-  /** Starts the neuro robot and waits for its ready line. */
-  static async start(): Promise<Stack> {
+  /** Starts the robot with a fresh state and waits for its ready line. */
+  static async start(robot: RobotName): Promise<Stack> {
     const state = mkdtempSync(path.join(tmpdir(), "interlock-browser-"));
     const run = spawn(
       path.join(programs, "interlock"),
-      ["run", "--robot", "neuro", "--clock", "sim", "--speed", SPEED, "--port", "0", "--state", state],
+      ["run", "--robot", robot, "--clock", "sim", "--speed", SPEED, "--port", "0", "--state", state],
       { stdio: ["ignore", "pipe", "pipe"] },
     );
-    return new Stack(run, state, await readyUrl(run));
+    return new Stack(run, state, await readiness(run));
   }
 
   /** Signals the app's process alone; kernel and simulator run on. */
@@ -64,8 +78,9 @@ function processOf(pid: string): { name: string; parent: string } {
   }
 }
 
-function readyUrl(run: ChildProcess): Promise<string> {
+function readiness(run: ChildProcess): Promise<Ready> {
   const said: string[] = [];
+  let password: string | undefined;
   return new Promise((resolve, reject) => {
     const giveUp = (reason: string): void => {
       run.kill("SIGKILL");
@@ -81,11 +96,13 @@ function readyUrl(run: ChildProcess): Promise<string> {
       if (stream === null) continue;
       createInterface({ input: stream }).on("line", (line) => {
         said.push(line);
+        password ??= /^first login: admin (\S+)$/.exec(line)?.[1];
         const url = /^ready (http:\S+)/.exec(line)?.[1];
         if (url === undefined) return;
         clearTimeout(timer);
         run.removeAllListeners("exit");
-        resolve(url);
+        if (password === undefined) giveUp("said no first login");
+        else resolve({ url, password });
       });
     }
   });

@@ -12,6 +12,7 @@ import { AxisFaults } from "./AxisFaults";
 import { plantStatus } from "./benchStatus";
 import { CardFaults } from "./CardFaults";
 import { ContactFaults } from "./ContactFaults";
+import { Forces } from "./Forces";
 import type { FaultsProps, SendBench } from "./faults";
 import { usePedal } from "./usePedal";
 import "./bench.css";
@@ -44,6 +45,7 @@ export function BenchPanel() {
         <summary>More faults</summary>
         <AxisFaults plant={plant} send={send} />
         <CardFaults plant={plant} send={send} />
+        <Forces plant={plant} send={send} />
         <ContactFaults plant={plant} send={send} />
         <CommandButton need="engineer" onCommand={() => send("clear", {})}>
           End every fault

@@ -1,7 +1,14 @@
 import { describe, expect, it } from "vitest";
 import { plantStatus } from "./benchStatus";
 
-const sound = { pedalNo: "free", pedalNc: "free", estopPulled: false, axes: [], unpowered: new Set() };
+const sound = {
+  pedalNo: "free",
+  pedalNc: "free",
+  estopPulled: false,
+  axes: [],
+  inputs: [],
+  unpowered: new Set(),
+};
 
 describe("plantStatus", () => {
   it("reads the faults of pedal, E-stop, axes and cards", () => {
@@ -32,12 +39,17 @@ describe("plantStatus", () => {
     expect([...status.unpowered]).toEqual([3]);
   });
 
+  it("lists every connected input of the sensor cards", () => {
+    const sensors = [{ slot: 3, name: "force", inputs: [{ adc: 2, counts: 1970, force_counts: 40 }] }];
+    expect(plantStatus({ sensors }).inputs).toEqual([{ slot: 3, adc: 2, name: "force", forceCounts: 40 }]);
+  });
+
   it.each([
     [undefined],
     [null],
     ["status"],
     [{}],
-    [{ axes: 3, cards: {} }],
+    [{ axes: 3, cards: {}, sensors: [{ slot: 1, inputs: 7 }] }],
     [{ axes: [null, 3, {}, { jammed: true }], cards: [{ powered: false }] }],
   ])("takes %j for a sound plant", (answer) => {
     expect(plantStatus(answer)).toEqual(sound);

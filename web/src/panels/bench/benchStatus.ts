@@ -10,12 +10,21 @@ export interface PlantAxis {
   readonly hasSwitch: boolean;
 }
 
+/** A connected input of a sensor card. */
+export interface PlantInput {
+  readonly slot: number;
+  readonly adc: number;
+  readonly name: string;
+  readonly forceCounts: number;
+}
+
 export interface PlantStatus {
   readonly pedalNo: string;
   readonly pedalNc: string;
   readonly estopPulled: boolean;
   /** By rising slot. */
   readonly axes: readonly PlantAxis[];
+  readonly inputs: readonly PlantInput[];
   /** Slots whose card is without power. */
   readonly unpowered: ReadonlySet<number>;
 }
@@ -31,6 +40,7 @@ export function plantStatus(answer: unknown): PlantStatus {
     pedalNc: textOf(pedal.nc, "free"),
     estopPulled: fieldsOf(status.estop).pulled === true,
     axes: listOf(status.axes).map(plantAxis),
+    inputs: listOf(status.sensors).flatMap(plantInputs),
     unpowered: new Set(cards.map((card) => numberOf(card.slot))),
   };
 }
@@ -45,6 +55,16 @@ function plantAxis(axis: Fields): PlantAxis {
     switchState: textOf(axis.switch, "normal"),
     hasSwitch: axis.has_switch === true,
   };
+}
+
+function plantInputs(sensor: Fields): PlantInput[] {
+  const inputs = Array.isArray(sensor.inputs) ? sensor.inputs.map(fieldsOf) : [];
+  return inputs.map((input) => ({
+    slot: numberOf(sensor.slot),
+    adc: numberOf(input.adc),
+    name: textOf(sensor.name, "sensor"),
+    forceCounts: numberOf(input.force_counts),
+  }));
 }
 
 function fieldsOf(value: unknown): Fields {

@@ -1,0 +1,87 @@
+/** One session moves the robot; everybody sees which. */
+import { expect, test } from "./fixtures";
+
+const password = "correct horse battery";
+
+test("the authority is handed over to whoever asks, and that ends the motion", async ({ robot, other }) => {
+  const axis = robot.axis("Probe rotation");
+  await robot.addUser("ann", "engineer", password);
+  await robot.unlockRobot();
+  await axis.enable();
+  await axis.propose("40");
+  await robot.latchPedal();
+
+  await other.logIn("ann", password);
+  await expect(other.authority).toHaveText("admin");
+  await expect(other.panel("Motors")).toContainText("admin holds the authority: request it.");
+  await expect(other.button("Enable Yaw")).toBeDisabled();
+  await expect(other.button("Enable Yaw")).toHaveAttribute("title", "admin holds the authority: request it.");
+  await other.button("Request").click();
+  await expect(other.button("Withdraw request")).toBeVisible();
+
+  await robot.button("Hand over to ann").click();
+  await expect(other.authority).toHaveText("ann (you)");
+  await expect(robot.authority).toHaveText("ann");
+  await robot.expectMode("READY");
+  await expect(robot.proposal(1)).toContainText("aborted");
+  await expect(robot.button("Disable Probe rotation")).toBeDisabled();
+  await other.axis("Probe rotation").press("Disable");
+  await axis.expectState("DISABLED");
+});
+
+test("an administrator takes the authority over, after being asked", async ({ front, other, stack }) => {
+  await front.logIn("admin", stack.password);
+  await front.addUser("ann", "engineer", password);
+  await other.logIn("ann", password);
+  await other.requestAuthority();
+
+  await front.button("Take over").click();
+  const question = front.panel("Take the authority from ann?");
+  await expect(question).toContainText("Motion ends");
+  await question.getByRole("button", { name: "Cancel" }).click();
+  await expect(other.authority).toHaveText("ann (you)");
+
+  await front.button("Take over").click();
+  await question.getByRole("button", { name: "Take it" }).click();
+  await expect(front.authority).toHaveText("admin (you)");
+  await expect(other.authority).toHaveText("admin");
+  await expect(other.button("Take over")).toHaveCount(0);
+});
+
+test("a request is withdrawn, and a released authority is free", async ({ robot, other }) => {
+  await robot.addUser("ann", "engineer", password);
+  await other.logIn("ann", password);
+  await other.button("Request").click();
+  await expect(robot.button("Hand over to ann")).toBeVisible();
+  await other.button("Withdraw request").click();
+  await expect(robot.button("Hand over to ann")).toHaveCount(0);
+  await robot.button("Release").click();
+  await expect(other.authority).toHaveText("nobody");
+  await other.requestAuthority();
+});
+
+test("a viewer sees everything and can change nothing", async ({ robot, other }) => {
+  await robot.addUser("vic", "viewer", password);
+  await robot.unlockRobot();
+  await other.logIn("vic", password);
+  await other.axis("Yaw").expectState("DISABLED");
+  await expect(other.panel("Motors")).toContainText("You are logged in as viewer");
+  for (const name of ["Enable Yaw", "Set Home Yaw", "Home all", "Zero all", "Request", "Pull E-stop"]) {
+    await expect(other.button(name)).toBeDisabled();
+  }
+  await expect(other.axis("Yaw").row.getByRole("textbox")).toBeDisabled();
+  await other.axis("Yaw").track.focus();
+  await other.page.keyboard.press("ArrowLeft");
+  await other.page.keyboard.press("Enter");
+  await expect(other.page.getByRole("link", { name: "Users" })).toHaveCount(0);
+
+  const answer = await other.page.evaluate(async () => {
+    const response = await fetch("/api/motors/0/enable", { method: "POST" });
+    return [response.status, (await response.json()).code];
+  });
+  expect(answer).toEqual([403, "ROLE"]);
+  await robot.axis("Yaw").expectState("DISABLED");
+  await expect(robot.proposal(1)).toHaveCount(0);
+  await other.stop.click();
+  await expect(other.stopAnswer).toHaveText("STOP accepted");
+});

@@ -1,0 +1,118 @@
+/** Homing, and why an axis does not move. */
+import { expect, test } from "./fixtures";
+
+const homingTakes = 60_000;
+
+test("Go Home runs an axis to its switch, and its limits become known", async ({ robot }) => {
+  const axis = robot.axis("Probe insertion");
+  await robot.unlockRobot();
+  await expect(axis.row.getByText("unknown")).toHaveCount(2);
+  await axis.enable();
+  await axis.press("Go Home");
+  await expect(robot.button("Homing.. Probe insertion")).toBeDisabled();
+  await axis.propose("1");
+  await axis.expectRefusal("MODE_HOME");
+  await robot.latchPedal();
+  await axis.expectState("HOMING");
+  await expect(axis.row.getByText("UNHOMED")).toHaveCount(0, { timeout: homingTakes });
+  await expect(axis.row.getByText("unknown")).toHaveCount(0);
+  await expect(axis.row.getByText("34.93 mm")).toBeVisible();
+  await expect(robot.proposal(1)).toContainText("done");
+  await expect(robot.button("Go Home Probe insertion")).toBeEnabled();
+});
+
+test("Home all goes step by step, each with a press of the pedal of its own", async ({ robot }) => {
+  test.setTimeout(180_000);
+  await robot.unlockRobot();
+  for (const title of ["Yaw", "Pitch", "Probe insertion", "Lateral", "Axial head"]) {
+    await robot.axis(title).enable();
+  }
+  await robot.button("Home all").click();
+  const progress = robot.panel("Homing progress");
+  await expect(progress.getByRole("listitem").filter({ hasText: "Probe out" })).toHaveAttribute(
+    "aria-current",
+    "step",
+  );
+  await expect(robot.button("Waits Yaw")).toBeDisabled();
+  await robot.latchPedal();
+  const second = progress.getByRole("listitem").filter({ hasText: "Angles" });
+  await expect(second).toHaveAttribute("aria-current", "step", { timeout: homingTakes });
+  await expect(progress).toContainText(/release the pedal/i);
+  await robot.latch.click();
+  await robot.expectMode("READY");
+  await robot.latchPedal();
+  for (const title of ["Yaw", "Pitch"]) {
+    await expect(robot.axis(title).row.getByText("UNHOMED")).toHaveCount(0, { timeout: homingTakes });
+  }
+  await robot.button("Abort homing").click();
+  await expect(progress).toHaveCount(0);
+  await expect(robot.proposal(1)).toContainText("aborted");
+});
+
+test("an axis without a switch is homed by Set Home alone", async ({ robot }) => {
+  const axis = robot.axis("Probe rotation");
+  await robot.unlockRobot();
+  await expect(robot.button("Go Home Probe rotation")).toBeDisabled();
+  await expect(robot.button("Go Home Probe rotation")).toHaveAttribute("title", /press Set Home/);
+  await axis.press("Set Home");
+  await expect(axis.row.getByText("UNHOMED")).toHaveCount(0);
+  await expect(axis.row.getByText("359.82°", { exact: true })).toBeVisible();
+});
+
+test("Zero all asks first, and shows the verdict of every axis", async ({ robot, page }) => {
+  await robot.unlockRobot();
+  await robot.button("Zero all").click();
+  const question = robot.panel("Declare every axis at home?");
+  await page.keyboard.press("Escape");
+  await expect(question).toHaveCount(0);
+  await expect(robot.axis("Yaw").row.getByText("UNHOMED")).toBeVisible();
+
+  await robot.button("Zero all").click();
+  await question.getByRole("button", { name: "Set Home of all axes" }).click();
+  const answer = robot.panel("Answer to Zero all");
+  await expect(answer.getByRole("listitem")).toHaveCount(7);
+  await expect(answer.getByRole("listitem").filter({ hasText: "Probe rotation" })).toContainText("ACCEPTED");
+  await expect(robot.axis("Probe rotation").row.getByText("UNHOMED")).toHaveCount(0);
+});
+
+test("Why not moving? marks the gate that blocks, with the next step", async ({ robot }) => {
+  const axis = robot.axis("Yaw");
+  await robot.unlockRobot();
+  await axis.row.getByRole("button", { name: "Why is Yaw not moving?" }).click();
+  const gates = axis.row.getByRole("list", { name: "Gates of Yaw" });
+  const line = (gate: string) => gates.getByRole("listitem").filter({ hasText: gate });
+  await expect(line("MODE")).toContainText("BLOCKS");
+  await expect(line("MODE")).toContainText("press and hold the pedal");
+  await expect(line("ENABLE")).toContainText("closed too");
+  await robot.latchPedal();
+  await expect(line("MODE")).toContainText("open");
+  await expect(line("ENABLE")).toContainText("BLOCKS");
+});
+
+test.describe("the prostate robot", () => {
+  test.use({ robotName: "prostate" });
+
+  test("shows its axes and the steps of its own homing", async ({ robot, page }) => {
+    await robot.unlockRobot();
+    const steps = page.getByRole("group", { name: "Home", exact: true });
+    await expect(steps.getByRole("button", { name: /^Home step/ })).toHaveCount(7);
+    const axes = await page.getByRole("listitem", { name: /^Axis / }).count();
+    for (let index = 0; index < axes; index++) {
+      await page
+        .getByRole("listitem", { name: /^Axis / })
+        .nth(index)
+        .getByRole("button", { name: /^Enable/ })
+        .click();
+    }
+    await robot.button("Home all").click();
+    const progress = robot.panel("Homing progress");
+    await expect(progress.getByRole("listitem").first()).toHaveAttribute("aria-current", "step");
+    await robot.latchPedal();
+    await expect(progress.getByRole("listitem").nth(1)).toHaveAttribute("aria-current", "step", {
+      timeout: homingTakes,
+    });
+    await robot.stop.click();
+    await expect(progress).toHaveCount(0);
+    await expect(robot.proposal(1)).toContainText("aborted");
+  });
+});

@@ -1,0 +1,70 @@
+/** The administrator's pages. */
+import { expect, test } from "./fixtures";
+
+const password = "correct horse battery";
+
+test("users are added, given another role and password, and disabled", async ({ robot, other, page }) => {
+  await robot.addUser("ann", "viewer", password);
+  await robot.open("Users");
+  const row = page.getByRole("row", { name: "User ann" });
+  await expect(row).toContainText("never");
+
+  await row.getByLabel("Role of ann").selectOption("engineer");
+  await robot.button("Set the role of ann").click();
+  await expect(robot.button("Set the role of ann")).toHaveCount(0);
+  await row.getByLabel("New password of ann").fill("another long password");
+  await robot.button("Set the password of ann").click();
+  await expect(row.getByLabel("New password of ann")).toHaveValue("");
+
+  await other.tryLogIn("ann", password);
+  await expect(other.loginForm.getByRole("alert")).toContainText("CREDENTIALS");
+  await other.logIn("ann", "another long password");
+  await expect(other.page.getByRole("link", { name: "Account" })).toContainText("engineer");
+
+  await robot.button("Disable ann").click();
+  await expect(row).toContainText("✕ no");
+  await expect(other.loginForm).toBeVisible();
+});
+
+test("a name that is taken, a short password and the last administrator are refused in words", async ({
+  robot,
+  page,
+}) => {
+  await robot.open("Users");
+  const refusal = robot.panel("Users").getByRole("alert");
+  const form = page.getByRole("form", { name: "Add a user" });
+  const add = async (name: string, secret: string): Promise<void> => {
+    await form.getByLabel("Name").fill(name);
+    await form.getByLabel("Password").fill(secret);
+    await form.getByRole("button", { name: "Add user" }).click();
+  };
+  await add("admin", password);
+  await expect(refusal).toContainText("Refused: EXISTS");
+  await add("ann", "short");
+  await expect(refusal).toContainText("Refused: INVALID");
+  await expect(page.getByRole("row", { name: "User ann" })).toHaveCount(0);
+  await robot.button("Disable admin").click();
+  await expect(refusal).toContainText("Refused: LAST_ADMIN");
+});
+
+test("the audit names who did what, newest first, and goes back to the first record", async ({
+  robot,
+  page,
+}) => {
+  await robot.unlockRobot();
+  await robot.open("Audit");
+  const rows = robot.panel("Audit").getByRole("row");
+  await expect(rows.filter({ hasText: "authority" }).first()).toContainText("admin");
+  await expect(rows.filter({ hasText: "login" }).first()).toBeVisible();
+  const numbers = async (): Promise<number[]> => {
+    const cells = await rows.locator("td:first-child").allTextContents();
+    return cells.map(Number);
+  };
+  const seen = await numbers();
+  expect(seen).toEqual([...seen].sort((a, b) => b - a));
+  const older = page.getByRole("button", { name: "Older records" });
+  await expect(async () => {
+    if (await older.isVisible()) await older.click();
+    expect(await numbers()).toContain(1);
+  }).toPass();
+});

@@ -1,0 +1,138 @@
+/** The main job of each panel beside the motors. */
+import { expect, test } from "./fixtures";
+
+for (const robotName of ["neuro", "prostate"] as const) {
+  test.describe(robotName, () => {
+    test.use({ robotName });
+
+    test("the status panel has ten cards, and names the one that is unplugged", async ({ robot }) => {
+      const status = robot.panel("Status");
+      const slots = status.getByRole("table", { name: "Cards" }).getByRole("row");
+      await expect(slots).toHaveCount(11);
+      await expect(slots.nth(1)).toContainText("detected");
+      await expect(slots.nth(1)).toContainText("live");
+      await expect(status).toContainText("LOCKED by BOOT");
+      await robot.panel("Bench").getByText("More faults").click();
+      const card = robot.panel("Bench").getByRole("group", { name: "Faults of a card" });
+      await card.getByLabel("Card").selectOption("0");
+      await card.getByRole("button", { name: "Unplug card" }).click();
+      await expect(slots.nth(1)).toContainText("NOT DETECTED");
+      await expect(slots.nth(1)).toContainText("SILENT");
+      await card.getByRole("button", { name: "Unplug card" }).click();
+      await expect(slots.nth(1)).not.toContainText("NOT DETECTED");
+    });
+
+    test("nothing scrolls sideways at 1280 x 800, on any page", async ({ robot, page }) => {
+      await robot
+        .axis((await firstTitle(page)) ?? "")
+        .row.getByRole("button", { name: /^Why/ })
+        .click();
+      await robot.panel("Bench").getByText("More faults").click();
+      for (const name of ["Robot", "Users", "Audit", "Account"] as const) {
+        await robot.open(name);
+        await expect(page.getByRole("main")).toBeVisible();
+        const [inside, window] = await page.evaluate(() => [
+          document.documentElement.scrollWidth,
+          document.documentElement.clientWidth,
+        ]);
+        expect(inside, `width of the page ${name}`).toBe(window);
+      }
+    });
+  });
+}
+
+async function firstTitle(page: import("@playwright/test").Page): Promise<string | undefined> {
+  const label = await page
+    .getByRole("listitem", { name: /^Axis / })
+    .first()
+    .getAttribute("aria-label");
+  return label?.replace("Axis ", "");
+}
+
+test("corrupted frames are counted at their card", async ({ robot }) => {
+  const slot = robot.panel("Status").getByRole("row").nth(3);
+  await robot.panel("Bench").getByText("More faults").click();
+  const card = robot.panel("Bench").getByRole("group", { name: "Faults of a card" });
+  await card.getByLabel("Card").selectOption("2");
+  await card.getByRole("button", { name: "corrupt the next 1 frames of slot 2" }).click();
+  await expect(slot.getByRole("cell").last()).toHaveText("1");
+});
+
+test("the mode selector homes, and manual mode ends it", async ({ robot, page }) => {
+  await robot.unlockRobot();
+  for (const title of ["Yaw", "Pitch", "Probe insertion", "Lateral", "Axial head"]) {
+    await robot.axis(title).enable();
+  }
+  const mode = page.getByRole("status", { name: "Robot mode now" });
+  const change = robot.button("Change the robot mode");
+  await expect(mode).toHaveText("manual");
+  await expect(change).toBeDisabled();
+  await page.getByLabel("Robot mode", { exact: true }).selectOption("home");
+  await change.click();
+  await expect(mode).toHaveText("home");
+  await expect(robot.panel("Homing progress")).toBeVisible();
+  await page.getByLabel("Robot mode", { exact: true }).selectOption("manual");
+  await change.click();
+  await expect(mode).toHaveText("manual");
+  await expect(robot.proposal(1)).toContainText("aborted");
+});
+
+test("the communication panel names both browsers, and disconnects one", async ({ robot, other, stack }) => {
+  await other.logIn("admin", stack.password);
+  const rows = robot.panel("Communication").getByRole("row").filter({ hasText: "console" });
+  await expect(rows).toHaveCount(2);
+  await expect(rows.first()).toContainText("admin");
+  await expect(rows.first()).toContainText(new URL(stack.url).port);
+  const returned = other.page.waitForEvent("websocket");
+  await rows
+    .last()
+    .getByRole("button", { name: /^Disconnect/ })
+    .click();
+  await returned;
+  await expect(rows).toHaveCount(2);
+});
+
+test("the log tells what happens, from a chosen level on, and can be paused", async ({ robot, page }) => {
+  const log = robot.panel("Log");
+  const lines = log.getByRole("listitem");
+  await expect(lines.first()).toBeVisible();
+  await log.getByLabel("App logs from").selectOption("debug");
+  await robot.button("Set the level of the app's log").click();
+  await expect(robot.button("Set the level of the app's log")).toHaveCount(0);
+  await log.getByRole("button", { name: "Pause" }).click();
+  const paused = await lines.count();
+  await robot.unlockRobot();
+  await robot.button("Pull E-stop").click();
+  await robot.expectMode("LOCKED");
+  await expect(log.getByRole("button", { name: /Paused · [1-9]/ })).toBeVisible();
+  expect(await lines.count()).toBe(paused);
+  await log.getByRole("button", { name: /Paused/ }).click();
+  await expect.poll(() => lines.count()).toBeGreaterThan(paused);
+  await log.getByLabel("Show from").selectOption("critical");
+  await expect(page.getByText("No line of this level yet.")).toBeVisible();
+});
+
+test("a pedal contact that sticks is seen as channels that disagree", async ({ robot }) => {
+  const bench = robot.panel("Bench");
+  await bench.getByText("More faults").click();
+  await bench.getByLabel("Pedal contact NO").selectOption("closed");
+  await expect(robot.pedalState).toContainText("CHANNELS DISAGREE");
+  await expect(bench.getByLabel("Pedal contact NO")).toHaveValue("closed");
+  await robot.button("End every fault").click();
+  await expect(robot.pedalState).toContainText("released");
+  await expect(bench.getByLabel("Pedal contact NO")).toHaveValue("free");
+});
+
+test("each panel's dot turns red with words when the app falls silent", async ({ robot, stack }) => {
+  await robot.expectMode("LOCKED");
+  const titles = ["Motors", "Log", "Communication", "Bench", "Proposals", "Status"];
+  for (const title of titles)
+    await expect(robot.panel(title).getByText("live", { exact: true }).first()).toBeVisible();
+  stack.signalApp("SIGSTOP");
+  try {
+    for (const title of titles) await expect(robot.panel(title).getByText(/stale · \d/)).toBeVisible();
+  } finally {
+    stack.signalApp("SIGCONT");
+  }
+  for (const title of titles) await expect(robot.panel(title).getByText(/stale/)).toHaveCount(0);
+});
