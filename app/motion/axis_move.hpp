@@ -1,0 +1,65 @@
+/**
+ * @file
+ * One axis on its way to one setpoint, carried by leases: what every mode that moves an axis has in common.
+ *
+ * A move is renewed while it is held and stops by itself when it is not.
+ */
+#pragma once
+
+#include <cstdint>
+
+#include "interlock/link.h"
+#include "motion/axis_plan.hpp"
+#include "motion/rest_watch.hpp"
+#include "motion/wish.hpp"
+
+namespace interlock {
+
+class AxisMove {
+ public:
+  enum class Progress : std::uint8_t {
+    going,
+    arrived, /**< at rest within the deadband */
+    blocked  /**< a limit held the axis back for too long; the snapshot's gate says which */
+  };
+
+  AxisMove() = default;
+  AxisMove(std::uint32_t slot, const AxisPlan& plan, std::uint32_t lease_ticks) noexcept
+      : slot_(slot), plan_(plan), lease_ticks_(lease_ticks) {}
+
+  /** Sets a new target. `max_drive` 0: the axis' own bound. */
+  void aim(std::int32_t target_counts, std::uint32_t max_drive) noexcept;
+
+  /** The pedal was pressed, or the aim is new: the kernel holds no lease for it. */
+  void start(const ilk_snapshot_t& snapshot) noexcept;
+
+  /** How far the axis has come since `start`. */
+  [[nodiscard]] Progress watch(const ilk_snapshot_t& snapshot) noexcept;
+
+  /** Wishes for a MOVE when the lease or the drive has to be renewed. */
+  void hold(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept;
+
+  /** Gives back the lease, if the kernel may still hold one. */
+  void let_go(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept;
+
+  void on_unsent(const Wish& wish) noexcept { holds_lease_ = wish.drive == 0; }
+
+ private:
+  [[nodiscard]] bool held_back(const ilk_snapshot_t& snapshot) noexcept;
+  [[nodiscard]] std::uint32_t wanted_drive(const ilk_axis_t& axis) const noexcept;
+  [[nodiscard]] Wish wish_for(std::uint32_t proposal, std::uint32_t drive,
+                              std::uint32_t lease_ticks) const noexcept;
+
+  std::uint32_t slot_ = 0;
+  AxisPlan plan_;
+  std::uint32_t lease_ticks_ = 1;
+  std::int32_t target_counts_ = 0;
+  std::uint32_t max_drive_ = 0;
+  bool holds_lease_ = false;         /**< a MOVE was sent that may still drive the axis */
+  std::uint32_t sent_tick_ = 0;      /**< of the newest MOVE */
+  std::uint32_t sent_drive_ = 0;     /**< of the newest MOVE */
+  std::uint32_t unblocked_tick_ = 0; /**< newest tick in which no limit held the axis back */
+  RestWatch rest_;
+};
+
+}  // namespace interlock

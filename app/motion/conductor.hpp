@@ -1,0 +1,44 @@
+/**
+ * @file
+ * The modes together: hands each order to its mode and sees to it that only one mode has open orders.
+ */
+#pragma once
+
+#include <cstdint>
+
+#include "motion/home_mode.hpp"
+#include "motion/manual_mode.hpp"
+
+namespace interlock {
+
+class Conductor {
+ public:
+  explicit Conductor(const RobotPlan& plan) : manual_(plan), home_(plan) {}
+
+  /** Takes a move; while homing is open it is ended at once. */
+  void take(const Order& order, std::uint32_t tick) noexcept;
+
+  /** Takes homing; open moves end. */
+  void take(const HomeOrder& order, std::uint32_t tick) noexcept;
+
+  /** Aborts the order of that proposal, if it is open. */
+  void end(std::uint32_t proposal, OrderReason reason, std::uint32_t tick) noexcept;
+
+  void end_all(OrderReason reason, std::uint32_t tick) noexcept;
+
+  /** The requests to send in this tick, first one first. */
+  [[nodiscard]] Wishes tick(const ilk_snapshot_t& snapshot) noexcept;
+
+  void on_unsent(const Wish& wish) noexcept;
+  void on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept;
+  void on_verdict_lost(const WishOrigin& origin, std::uint32_t tick) noexcept;
+
+  [[nodiscard]] const OrderTable& orders() const noexcept { return manual_.orders(); }
+  [[nodiscard]] const HomeStatus& home() const noexcept { return home_.status(); }
+
+ private:
+  ManualMode manual_;
+  HomeMode home_;
+};
+
+}  // namespace interlock

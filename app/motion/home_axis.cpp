@@ -1,0 +1,185 @@
+#include "motion/home_axis.hpp"
+
+#include <algorithm>
+
+#include "motion/setpoint_range.hpp"
+
+namespace interlock {
+namespace {
+
+/** Whether the snapshot shows what the kernel decided in that tick: its tick counts the steps done. */
+bool shows(const ilk_snapshot_t& snapshot, std::uint32_t decided_tick) noexcept {
+  return static_cast<std::int32_t>(snapshot.state.tick - decided_tick) > 0;
+}
+
+}  // namespace
+
+void HomeAxis::begin(HomeStepKind kind, std::int32_t counts) noexcept {
+  kind_ = kind;
+  counts_ = counts;
+  progress_ = HomeProgress::going;
+  asked_ = false;
+  accepted_ = false;
+  judged_ = false;
+  marked_ = false;
+  stopping_ = false;
+}
+
+void HomeAxis::start(const ilk_snapshot_t& snapshot) noexcept {
+  if (progress_ == HomeProgress::arrived) {
+    return;
+  }
+  progress_ = HomeProgress::going;
+  switch (kind_) {
+    case HomeStepKind::home:
+      break;
+    case HomeStepKind::nudge:
+      start_slice(snapshot);
+      break;
+    case HomeStepKind::move:
+      move_.aim(counts_, 0);
+      move_.start(snapshot);
+      break;
+  }
+}
+
+/** As far towards the end of the nudge as this press allows. */
+void HomeAxis::start_slice(const ilk_snapshot_t& snapshot) noexcept {
+  const ilk_axis_t& axis = snapshot.state.axis[slot_];
+  if (!marked_) {
+    marked_ = true;
+    mark_raw_ = axis.raw;
+  }
+  const std::int64_t left = counts_ - travelled_counts(axis);
+  const std::int64_t end = axis.position_counts + left;
+  const SetpointRange range = setpoint_range(plan_.rules, axis, snapshot.state.mode);
+  const std::int64_t target = std::clamp<std::int64_t>(end, range.lowest_counts, range.highest_counts);
+  last_slice_ = target == end;
+  stopping_ = false;
+  move_.aim(static_cast<std::int32_t>(target), 0);
+  move_.start(snapshot);
+}
+
+/** By the raw counter, which neither SET_HOME nor RESTORE moves. */
+std::int64_t HomeAxis::travelled_counts(const ilk_axis_t& axis) const noexcept {
+  const std::int64_t counted = static_cast<std::int32_t>(axis.raw - mark_raw_);
+  return plan_.rules.direction_correction != 0 ? -counted : counted;
+}
+
+std::int32_t HomeAxis::left_counts(const ilk_snapshot_t& snapshot) const noexcept {
+  if (kind_ != HomeStepKind::nudge || progress_ == HomeProgress::arrived) {
+    return 0;
+  }
+  return static_cast<std::int32_t>(marked_ ? counts_ - travelled_counts(snapshot.state.axis[slot_]) : counts_);
+}
+
+HomeProgress HomeAxis::watch(const ilk_snapshot_t& snapshot) noexcept {
+  if (progress_ == HomeProgress::going) {
+    switch (kind_) {
+      case HomeStepKind::home:
+        progress_ = watch_homing(snapshot);
+        break;
+      case HomeStepKind::nudge:
+        progress_ = watch_nudge(snapshot);
+        break;
+      case HomeStepKind::move:
+        progress_ = watch_move(snapshot);
+        break;
+    }
+  }
+  return progress_;
+}
+
+/** Accepting a HOME takes `homed` away, so `homed` seen after it was won by it. */
+HomeProgress HomeAxis::watch_homing(const ilk_snapshot_t& snapshot) noexcept {
+  const ilk_axis_t& axis = snapshot.state.axis[slot_];
+  if (!accepted_ || !shows(snapshot, judged_tick_)) {
+    return HomeProgress::going;
+  }
+  if (axis.homed != 0) {
+    return HomeProgress::arrived;
+  }
+  accepted_ = axis.state == ILK_AXIS_HOMING;
+  return HomeProgress::going;
+}
+
+HomeProgress HomeAxis::watch_nudge(const ilk_snapshot_t& snapshot) noexcept {
+  const ilk_axis_t& axis = snapshot.state.axis[slot_];
+  if (axis.homed != 0) {
+    return HomeProgress::arrived;
+  }
+  if (!stopping_ && at_switch(axis)) {
+    stopping_ = true;
+    rest_.restart(axis.position_counts, snapshot.state.tick);
+  }
+  if (stopping_) {
+    const bool rests = rest_.rests(axis.position_counts, plan_.rules.noise_counts, snapshot.state.tick);
+    return rests ? HomeProgress::arrived : HomeProgress::going;
+  }
+  switch (move_.watch(snapshot)) {
+    case AxisMove::Progress::arrived:
+      return last_slice_ ? HomeProgress::arrived : HomeProgress::slice_used;
+    case AxisMove::Progress::blocked:
+      return HomeProgress::blocked;
+    case AxisMove::Progress::going:
+      break;
+  }
+  return HomeProgress::going;
+}
+
+bool HomeAxis::at_switch(const ilk_axis_t& axis) const noexcept {
+  const std::uint32_t ahead = counts_ > 0 ? ILK_LIMIT_UPPER : ILK_LIMIT_LOWER;
+  return plan_.rules.limit_side == ahead && axis.card_valid != 0 && axis.switch_triggered != 0;
+}
+
+HomeProgress HomeAxis::watch_move(const ilk_snapshot_t& snapshot) noexcept {
+  if (snapshot.state.axis[slot_].homed == 0) {
+    return HomeProgress::not_homed;
+  }
+  switch (move_.watch(snapshot)) {
+    case AxisMove::Progress::arrived:
+      return HomeProgress::arrived;
+    case AxisMove::Progress::blocked:
+      return HomeProgress::blocked;
+    case AxisMove::Progress::going:
+      break;
+  }
+  return HomeProgress::going;
+}
+
+void HomeAxis::hold(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
+  if (progress_ != HomeProgress::going || stopping_) {
+    let_go(proposal, snapshot, wishes);
+    return;
+  }
+  if (kind_ != HomeStepKind::home) {
+    move_.hold(proposal, snapshot, wishes);
+    return;
+  }
+  const bool fresh = !judged_ || shows(snapshot, judged_tick_);
+  if (!asked_ && !accepted_ && fresh) {
+    asked_ = true;
+    wishes.add(Wish{{ILK_REQUEST_HOME, slot_, proposal}, 0, 0, 0, 0});
+  }
+}
+
+void HomeAxis::let_go(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
+  move_.let_go(proposal, snapshot, wishes);
+}
+
+void HomeAxis::on_unsent(const Wish& wish) noexcept {
+  if (wish.origin.kind == ILK_REQUEST_HOME) {
+    asked_ = false;
+  } else {
+    move_.on_unsent(wish);
+  }
+}
+
+void HomeAxis::on_home_verdict(std::uint32_t verdict, std::uint32_t tick) noexcept {
+  asked_ = false;
+  accepted_ = verdict == ILK_VERDICT_ACCEPTED;
+  judged_ = true;
+  judged_tick_ = tick;
+}
+
+}  // namespace interlock

@@ -1,0 +1,306 @@
+#include "motion/home_mode.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+#include "motion/obstacle.hpp"
+
+namespace interlock {
+namespace {
+
+/** After so long in MOTION a STOP is asked for again. */
+constexpr std::uint32_t stop_again_ticks = 50;
+
+constexpr std::uint32_t bit(std::uint32_t slot) noexcept { return 1u << slot; }
+
+template <std::size_t... slots>
+std::array<HomeStepPlan, sizeof...(slots)> one_axis_each(std::index_sequence<slots...> /*all*/) noexcept {
+  return {HomeStepPlan(static_cast<std::uint32_t>(slots))...};
+}
+
+std::uint32_t mask_of(const HomeStepPlan& step) noexcept {
+  std::uint32_t mask = 0;
+  for (const AxisCounts& axis : step.axes()) {
+    mask |= bit(axis.slot);
+  }
+  return mask;
+}
+
+std::uint32_t faulted_axes(const ilk_snapshot_t& snapshot) noexcept {
+  std::uint32_t mask = 0;
+  for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
+    mask |= snapshot.state.axis[slot].state == ILK_AXIS_FAULTED ? bit(slot) : 0u;
+  }
+  return mask;
+}
+
+}  // namespace
+
+HomeMode::HomeMode(const RobotPlan& plan)
+    : plan_(plan), single_(one_axis_each(std::make_index_sequence<ILK_SLOTS>())) {
+  for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
+    axes_[slot] = HomeAxis(slot, plan.axis[slot], plan.lease_ticks());
+  }
+}
+
+const HomeStepPlan& HomeMode::step() const noexcept {
+  return order_.step_count == 0 ? single_[order_.slot] : plan_.home_steps[order_.first_step + steps_done_];
+}
+
+bool HomeMode::in_step(std::uint32_t slot) const noexcept {
+  const auto axes = step().axes();
+  return std::any_of(axes.begin(), axes.end(), [slot](const AxisCounts& each) { return each.slot == slot; });
+}
+
+void HomeMode::set_phase(OrderPhase phase, OrderReason reason, std::uint32_t code,
+                         std::uint32_t tick) noexcept {
+  status_.order.phase = phase;
+  status_.order.reason = reason;
+  status_.order.code = code;
+  status_.order.tick = tick;
+}
+
+/** Ends the order before its time, and whatever the kernel may be doing for it. */
+void HomeMode::finish(OrderPhase phase, OrderReason reason, std::uint32_t code, std::uint32_t tick) noexcept {
+  stop_owed_ = stop_owed_ || std::any_of(axes_.begin(), axes_.end(),
+                                         [](const HomeAxis& each) { return each.may_be_homing(); });
+  stop_sent_ = false;
+  set_phase(phase, reason, code, tick);
+}
+
+void HomeMode::fail(OrderReason reason, std::uint32_t code, std::uint32_t slot, std::uint32_t tick) noexcept {
+  status_.slot = slot;
+  finish(OrderPhase::aborted, reason, code, tick);
+}
+
+void HomeMode::take(const HomeOrder& order, std::uint32_t tick) noexcept {
+  if (is_open()) {
+    finish(OrderPhase::aborted, OrderReason::cancelled, 0, tick);
+  }
+  status_ = HomeStatus{{order.proposal, OrderPhase::waiting, OrderReason::none, 0, tick},
+                       order.first_step, order.slot, 0};
+  const std::size_t known_steps = plan_.home_steps.size();
+  const bool known = order.step_count == 0 ? order.slot < ILK_SLOTS
+                                           : order.first_step < known_steps &&
+                                                 order.step_count <= known_steps - order.first_step;
+  if (!known) {
+    set_phase(OrderPhase::refused, OrderReason::kernel_refused, ILK_VERDICT_AXIS, tick);
+    return;
+  }
+  order_ = order;
+  involved_ = order.step_count == 0 ? bit(order.slot) : 0;
+  for (std::uint32_t i = 0; i < order.step_count; ++i) {
+    involved_ |= mask_of(plan_.home_steps[order.first_step + i]);
+  }
+  homed_ = 0;
+  steps_done_ = 0;
+  fresh_ = true;
+  slices_used_ = false;
+  idle_since_ = tick;
+  begin_step();
+}
+
+void HomeMode::end(std::uint32_t proposal, OrderReason reason, std::uint32_t tick) noexcept {
+  if (status_.order.proposal == proposal) {
+    end_all(reason, tick);
+  }
+}
+
+void HomeMode::end_all(OrderReason reason, std::uint32_t tick) noexcept {
+  if (is_open()) {
+    finish(OrderPhase::aborted, reason, 0, tick);
+  }
+}
+
+void HomeMode::tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
+  settle_stop(snapshot, wishes);
+  if (is_open()) {
+    judge(snapshot);
+    settle_stop(snapshot, wishes);
+  }
+  const bool executing = status_.order.phase == OrderPhase::executing;
+  for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
+    if (executing && in_step(slot)) {
+      axes_[slot].hold(status_.order.proposal, snapshot, wishes);
+    } else {
+      axes_[slot].let_go(status_.order.proposal, snapshot, wishes);
+    }
+  }
+}
+
+/** Asks for STOP until MOTION has ended; until then no order begins. */
+void HomeMode::settle_stop(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
+  stop_owed_ = stop_owed_ && snapshot.state.mode == ILK_MODE_MOTION;
+  if (stop_owed_ && (!stop_sent_ || snapshot.state.tick - stop_tick_ >= stop_again_ticks)) {
+    stop_sent_ = true;
+    stop_tick_ = snapshot.state.tick;
+    wishes.add(Wish{{ILK_REQUEST_STOP, 0, status_.order.proposal}, 0, 0, 0, 0});
+  }
+}
+
+void HomeMode::judge(const ilk_snapshot_t& snapshot) noexcept {
+  if (meets_obstacle(snapshot)) {
+    return;
+  }
+  if (snapshot.state.mode == ILK_MODE_MOTION && !stop_owed_) {
+    go_on(snapshot);
+  } else {
+    wait(snapshot);
+  }
+}
+
+/** An axis of the order that cannot move ends it, and so does a fault of any other axis that is new. */
+bool HomeMode::meets_obstacle(const ilk_snapshot_t& snapshot) noexcept {
+  const std::uint32_t faulted = faulted_axes(snapshot) & ~involved_;
+  known_faults_ = std::exchange(fresh_, false) ? faulted : known_faults_ & faulted;
+  const std::uint32_t watched = involved_ | (faulted & ~known_faults_);
+  for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
+    if ((watched & bit(slot)) == 0) {
+      continue;
+    }
+    if (const auto obstacle = obstacle_of(snapshot, slot)) {
+      fail(obstacle->reason, obstacle->code, slot, snapshot.state.tick);
+      return true;
+    }
+  }
+  return false;
+}
+
+bool HomeMode::expire_when_late(std::uint32_t tick) noexcept {
+  if (tick - idle_since_ <= plan_.patience_ticks()) {
+    return false;
+  }
+  finish(OrderPhase::expired, OrderReason::waited_too_long, 0, tick);
+  return true;
+}
+
+void HomeMode::wait(const ilk_snapshot_t& snapshot) noexcept {
+  slices_used_ = slices_used_ && snapshot.state.mode == ILK_MODE_MOTION;
+  for (HomeAxis& axis : axes_) {
+    axis.drop();
+  }
+  const bool was_executing = status_.order.phase == OrderPhase::executing;
+  if (was_executing || (status_.order.reason == OrderReason::press_again && !slices_used_)) {
+    pause(OrderReason::pedal_released, snapshot);
+  }
+  if (!was_executing) {
+    (void)expire_when_late(snapshot.state.tick);
+  }
+}
+
+void HomeMode::pause(OrderReason reason, const ilk_snapshot_t& snapshot) noexcept {
+  if (status_.order.phase == OrderPhase::executing) {
+    idle_since_ = snapshot.state.tick;
+  }
+  status_.left_counts = 0;
+  for (const AxisCounts& each : step().axes()) {
+    const std::int32_t left = axes_[each.slot].left_counts(snapshot);
+    if (std::abs(left) > std::abs(status_.left_counts)) {
+      status_.left_counts = left;
+      status_.slot = each.slot;
+    }
+  }
+  set_phase(OrderPhase::paused, reason, 0, snapshot.state.tick);
+}
+
+void HomeMode::go_on(const ilk_snapshot_t& snapshot) noexcept {
+  if (status_.order.phase == OrderPhase::executing) {
+    follow_step(snapshot);
+  } else if (!expire_when_late(snapshot.state.tick) && !slices_used_) {
+    status_.left_counts = 0;
+    set_phase(OrderPhase::executing, OrderReason::none, 0, snapshot.state.tick);
+    start_axes(snapshot);
+  }
+}
+
+void HomeMode::follow_step(const ilk_snapshot_t& snapshot) noexcept {
+  const std::uint32_t now = snapshot.state.tick;
+  std::size_t arrived = 0;
+  std::size_t used = 0;
+  for (const AxisCounts& each : step().axes()) {
+    switch (axes_[each.slot].watch(snapshot)) {
+      case HomeProgress::going:
+        break;
+      case HomeProgress::arrived:
+        ++arrived;
+        homed_ |= step().kind() == HomeStepKind::home ? bit(each.slot) : 0u;
+        break;
+      case HomeProgress::slice_used:
+        ++used;
+        break;
+      case HomeProgress::blocked:
+        fail(OrderReason::blocked, snapshot.gate[each.slot], each.slot, now);
+        return;
+      case HomeProgress::not_homed:
+        fail(OrderReason::not_homed, 0, each.slot, now);
+        return;
+    }
+  }
+  if (arrived == step().axes().size()) {
+    end_step(snapshot);
+  } else if (arrived + used == step().axes().size()) {
+    slices_used_ = true;
+    pause(OrderReason::press_again, snapshot);
+  }
+}
+
+void HomeMode::end_step(const ilk_snapshot_t& snapshot) noexcept {
+  ++steps_done_;
+  if (steps_done_ >= order_.step_count) {
+    set_phase(OrderPhase::done, OrderReason::arrived, 0, snapshot.state.tick);
+    return;
+  }
+  begin_step();
+  start_axes(snapshot);
+}
+
+void HomeMode::begin_step() noexcept {
+  status_.step = order_.first_step + steps_done_;
+  for (const AxisCounts& each : step().axes()) {
+    axes_[each.slot].begin(step().kind(), each.counts);
+    if (step().kind() == HomeStepKind::home && (homed_ & bit(each.slot)) != 0) {
+      axes_[each.slot].skip();
+    }
+  }
+}
+
+void HomeMode::start_axes(const ilk_snapshot_t& snapshot) noexcept {
+  for (const AxisCounts& each : step().axes()) {
+    axes_[each.slot].start(snapshot);
+  }
+}
+
+void HomeMode::on_unsent(const Wish& wish) noexcept {
+  if (wish.origin.proposal != status_.order.proposal) {
+    return;
+  }
+  if (wish.origin.kind == ILK_REQUEST_STOP) {
+    stop_sent_ = false;
+  } else {
+    axes_[wish.origin.slot].on_unsent(wish);
+  }
+}
+
+void HomeMode::on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept {
+  if (!is_open() || origin.proposal != status_.order.proposal || origin.slot >= ILK_SLOTS) {
+    return;
+  }
+  if (origin.kind == ILK_REQUEST_HOME) {
+    axes_[origin.slot].on_home_verdict(verdict, tick);
+  }
+  // MODE says only that the pedal was released between the snapshot and the request; the next snapshot
+  // pauses.
+  if (verdict != ILK_VERDICT_ACCEPTED && verdict != ILK_VERDICT_MODE && origin.kind != ILK_REQUEST_STOP) {
+    status_.slot = origin.slot;
+    finish(OrderPhase::refused, OrderReason::kernel_refused, verdict, tick);
+  }
+}
+
+void HomeMode::on_verdict_lost(const WishOrigin& origin, std::uint32_t tick) noexcept {
+  if (is_open() && origin.proposal == status_.order.proposal && origin.kind == ILK_REQUEST_HOME) {
+    fail(OrderReason::verdict_lost, 0, origin.slot, tick);
+  }
+}
+
+}  // namespace interlock

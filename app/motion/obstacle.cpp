@@ -1,0 +1,22 @@
+#include "motion/obstacle.hpp"
+
+namespace interlock {
+
+std::optional<Obstacle> obstacle_of(const ilk_snapshot_t& snapshot, std::uint32_t slot) noexcept {
+  const ilk_axis_t& axis = snapshot.state.axis[slot];
+  if (snapshot.state.mode != ILK_MODE_READY && snapshot.state.mode != ILK_MODE_MOTION) {
+    return Obstacle{OrderReason::locked, snapshot.state.cause, slot};
+  }
+  switch (axis.state) {
+    case ILK_AXIS_ENABLED:
+    case ILK_AXIS_MOVING:
+    case ILK_AXIS_HOMING:
+      return std::nullopt;
+    case ILK_AXIS_FAULTED:
+      return Obstacle{OrderReason::axis_faulted, axis.fault, slot};
+    default:
+      return Obstacle{OrderReason::axis_disabled, 0, slot};
+  }
+}
+
+}  // namespace interlock
