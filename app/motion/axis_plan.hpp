@@ -1,11 +1,15 @@
 /**
  * @file
- * What the control thread knows of the robot: one entry a slot, copied once, never changed.
+ * What the control thread knows of the robot: axes by slot and home steps, copied once, never changed.
  */
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "interlock/types.h"
 #include "robot/robot.hpp"
@@ -18,17 +22,79 @@ struct AxisPlan {
   std::uint32_t min_drive = 0;
 };
 
+/** How the axes of a home step go. */
+enum class HomeStepKind : std::uint8_t {
+  home,  /**< to their switches */
+  nudge, /**< by signed distances, while not homed */
+  move   /**< to positions */
+};
+
+/** A home step with a fixed size. */
+class HomeStepPlan {
+ public:
+  /** One axis at its switch. */
+  explicit HomeStepPlan(std::uint32_t slot) noexcept { add({slot, 0}); }
+
+  explicit HomeStepPlan(const HomeStep& step) noexcept {
+    for (const std::uint32_t slot : step.home) {
+      add({slot, 0});
+    }
+    for (const AxisCounts& each : step.nudge) {
+      kind_ = HomeStepKind::nudge;
+      add(each);
+    }
+    for (const AxisCounts& each : step.move) {
+      kind_ = HomeStepKind::move;
+      add(each);
+    }
+  }
+
+  [[nodiscard]] HomeStepKind kind() const noexcept { return kind_; }
+
+  /** Each slot at most once. */
+  [[nodiscard]] std::span<const AxisCounts> axes() const noexcept { return {axes_.data(), count_}; }
+
+ private:
+  void add(const AxisCounts& axis) noexcept {
+    const auto known = axes();
+    const bool named = std::any_of(known.begin(), known.end(),
+                                   [&](const AxisCounts& each) { return each.slot == axis.slot; });
+    if (!named && axis.slot < ILK_SLOTS) {
+      axes_[count_++] = axis;
+    }
+  }
+
+  HomeStepKind kind_ = HomeStepKind::home;
+  std::array<AxisCounts, ILK_SLOTS> axes_{};
+  std::size_t count_ = 0;
+};
+
 /** The robot as the control thread sees it. A slot without a motor has `rules.max_drive == 0`. */
 struct RobotPlan {
   std::array<AxisPlan, ILK_SLOTS> axis{};
   std::uint32_t period_us = 1000;
   std::uint32_t lease_max_ticks = 0;
+  std::vector<HomeStepPlan> home_steps;
 
   RobotPlan(const Robot& robot, const ilk_config_t& config)
-      : period_us(config.period_us), lease_max_ticks(config.lease_max_ticks) {
+      : period_us(config.period_us),
+        lease_max_ticks(config.lease_max_ticks),
+        home_steps(robot.home_steps.begin(), robot.home_steps.end()) {
     for (const Axis& each : robot.axes) {
       axis[each.slot] = AxisPlan{config.axis[each.slot], each.drive.min};
     }
+  }
+
+  /** Lease of a move: short, so that a silent app stops early. */
+  [[nodiscard]] std::uint32_t lease_ticks() const noexcept {
+    constexpr std::uint32_t longest = 50;
+    return std::clamp(lease_max_ticks, 1u, longest);
+  }
+
+  /** How long an order may wait without executing. */
+  [[nodiscard]] std::uint32_t patience_ticks() const noexcept {
+    constexpr std::uint32_t minute_us = 60'000'000;
+    return minute_us / std::max(1u, period_us);
   }
 };
 

@@ -31,7 +31,7 @@ ilk_request_t request_of(std::uint32_t kind, std::uint32_t slot = 0) noexcept {
 }  // namespace
 
 ControlLoop::ControlLoop(std::string link_socket, const RobotPlan& plan, Mailbox& mailbox)
-    : link_(std::move(link_socket)), mode_(plan), mailbox_(mailbox), back_off_(shortest_back_off) {}
+    : link_(std::move(link_socket)), conductor_(plan), mailbox_(mailbox), back_off_(shortest_back_off) {}
 
 void ControlLoop::run(const std::stop_token& stop) noexcept {
   while (!stop.stop_requested()) {
@@ -84,8 +84,8 @@ void ControlLoop::attach_or_back_off(const std::stop_token& stop) noexcept {
 
 void ControlLoop::lose_link() noexcept {
   spdlog::warn("the kernel closed the link, generation {}", link_.generation());
+  conductor_.end_all(OrderReason::link_lost, view_.snapshot.state.tick);
   port_.forget_all([this](const RequestOrigin& origin) { answer_lost(origin); });
-  mode_.end_all(OrderReason::link_lost, view_.snapshot.state.tick);
   link_.detach();
   view_.attached = false;
   refuse_commands();
@@ -100,7 +100,7 @@ void ControlLoop::tick() noexcept {
   read_events();
   send_heartbeat();
   take_commands();
-  send_moves();
+  send_wishes();
   publish();
   link_.publish_seen(view_.snapshot.state.tick);
 }
@@ -110,7 +110,7 @@ void ControlLoop::obey_stop() noexcept {
   if (stops_seen_ == stops_sent_) {
     return;
   }
-  mode_.end_all(OrderReason::stopped, view_.snapshot.state.tick);
+  conductor_.end_all(OrderReason::stopped, view_.snapshot.state.tick);
   if (port_.send(request_of(ILK_REQUEST_STOP), StopOrigin{stops_seen_})) {
     stops_sent_ = stops_seen_;
   }
@@ -141,15 +141,16 @@ void ControlLoop::dispatch_verdict(const ilk_event_t& event) noexcept {
   if (!origin) {
     return;
   }
-  if (const auto* move = std::get_if<MoveOrigin>(&*origin)) {
-    mode_.on_verdict(move->slot, move->proposal, verdict, event.tick);
+  const auto* wish = std::get_if<WishOrigin>(&*origin);
+  if (wish != nullptr) {
+    conductor_.on_verdict(*wish, verdict, event.tick);
   } else if (const auto* ask = std::get_if<AskOrigin>(&*origin)) {
     notify(Answer{ask->ticket, verdict, event.tick});
   } else if (const auto* asked_stop = std::get_if<StopOrigin>(&*origin)) {
     notify(StopAnswer{asked_stop->stops, verdict, event.tick});
   }
-  const bool routine =
-      std::holds_alternative<HeartbeatOrigin>(*origin) || std::holds_alternative<MoveOrigin>(*origin);
+  const bool is_move = wish != nullptr && wish->kind == ILK_REQUEST_MOVE;
+  const bool routine = is_move || std::holds_alternative<HeartbeatOrigin>(*origin);
   if (!routine || verdict != ILK_VERDICT_ACCEPTED) {
     notify(event);
   }
@@ -177,52 +178,61 @@ void ControlLoop::take_commands() noexcept {
 
 /** False: not now, so it stays at the head of the queue until the next tick. */
 bool ControlLoop::take(const Command& command) noexcept {
-  const std::uint32_t now = view_.snapshot.state.tick;
   if (const auto* order = std::get_if<Order>(&command)) {
-    const auto newer_than_stop = static_cast<std::int32_t>(order->stops - stops_seen_);
-    if (newer_than_stop > 0) {
-      return false;
-    }
-    mode_.take(*order, now);
-    if (newer_than_stop < 0) {
-      mode_.end(order->slot, order->proposal, OrderReason::stopped, now);
-    }
-    return true;
+    return take_order(*order);
+  }
+  if (const auto* order = std::get_if<HomeOrder>(&command)) {
+    return take_order(*order);
   }
   if (const auto* cancel = std::get_if<Cancel>(&command)) {
-    mode_.end(cancel->slot, cancel->proposal, OrderReason::cancelled, now);
+    conductor_.end(cancel->proposal, OrderReason::cancelled, view_.snapshot.state.tick);
     return true;
   }
-  const auto* ask = std::get_if<Ask>(&command);
-  if (std::chrono::steady_clock::now() > ask->deadline) {
-    answer_lost(AskOrigin{ask->ticket});
-    return true;
-  }
-  ilk_request_t request = request_of(ask->kind, ask->slot);
-  request.target_counts = ask->target_counts;
-  return port_.send(request, AskOrigin{ask->ticket});
+  return send(std::get<Ask>(command));
 }
 
-void ControlLoop::send_moves() noexcept {
-  const MoveWishes wishes = mode_.tick(view_.snapshot);
-  for (const MoveWish& wish : wishes.all()) {
-    ilk_request_t request = request_of(ILK_REQUEST_MOVE, wish.slot);
-    request.target_counts = wish.target_counts;
-    request.drive = wish.drive;
-    request.amplitude = wish.amplitude;
-    request.lease_ticks = wish.lease_ticks;
-    if (!port_.send(request, MoveOrigin{wish.slot, wish.proposal})) {
-      mode_.on_unsent(wish);
+template <typename AnyOrder>
+bool ControlLoop::take_order(const AnyOrder& order) noexcept {
+  const std::uint32_t now = view_.snapshot.state.tick;
+  const auto newer_than_stop = static_cast<std::int32_t>(order.stops - stops_seen_);
+  if (newer_than_stop > 0) {
+    return false;
+  }
+  conductor_.take(order, now);
+  if (newer_than_stop < 0) {
+    conductor_.end(order.proposal, OrderReason::stopped, now);
+  }
+  return true;
+}
+
+bool ControlLoop::send(const Ask& ask) noexcept {
+  if (std::chrono::steady_clock::now() > ask.deadline) {
+    answer_lost(AskOrigin{ask.ticket});
+    return true;
+  }
+  ilk_request_t request = request_of(ask.kind, ask.slot);
+  request.target_counts = ask.target_counts;
+  return port_.send(request, AskOrigin{ask.ticket});
+}
+
+void ControlLoop::send_wishes() noexcept {
+  const Wishes wishes = conductor_.tick(view_.snapshot);
+  for (const Wish& wish : wishes.all()) {
+    if (!port_.send(request_of(wish), wish.origin)) {
+      conductor_.on_unsent(wish);
     }
   }
 }
 
 void ControlLoop::publish() noexcept {
-  view_.orders = mode_.orders();
+  view_.orders = conductor_.orders();
+  view_.home = conductor_.home();
   mailbox_.view.writing() = view_;
   mailbox_.view.publish();
-  if (std::exchange(noticed_, false) || view_.orders != published_orders_) {
+  const bool changed = view_.orders != published_orders_ || view_.home != published_home_;
+  if (std::exchange(noticed_, false) || changed) {
     published_orders_ = view_.orders;
+    published_home_ = view_.home;
     mailbox_.network_wake.signal();
   }
 }
@@ -232,8 +242,11 @@ void ControlLoop::refuse_commands() noexcept {
   const bool any = mailbox_.commands.read_available() != 0;
   mailbox_.commands.consume_all([this, tick](const Command& command) {
     if (const auto* order = std::get_if<Order>(&command)) {
-      mode_.take(*order, tick);
-      mode_.end(order->slot, order->proposal, OrderReason::link_lost, tick);
+      conductor_.take(*order, tick);
+      conductor_.end(order->proposal, OrderReason::link_lost, tick);
+    } else if (const auto* home = std::get_if<HomeOrder>(&command)) {
+      conductor_.take(*home, tick);
+      conductor_.end(home->proposal, OrderReason::link_lost, tick);
     } else if (const auto* ask = std::get_if<Ask>(&command)) {
       answer_lost(AskOrigin{ask->ticket});
     }
@@ -253,6 +266,8 @@ void ControlLoop::answer_lost(const RequestOrigin& origin) noexcept {
     notify(Answer{ask->ticket, std::nullopt, 0});
   } else if (const auto* asked_stop = std::get_if<StopOrigin>(&origin)) {
     notify(StopAnswer{asked_stop->stops, std::nullopt, 0});
+  } else if (const auto* wish = std::get_if<WishOrigin>(&origin)) {
+    conductor_.on_verdict_lost(*wish, view_.snapshot.state.tick);
   }
 }
 

@@ -1,7 +1,7 @@
 /**
  * @file
  * The control thread: paced by the kernel's snapshots, it keeps the app alive in the kernel's eyes, runs the
- * mode and carries requests and verdicts.
+ * modes and carries requests and verdicts.
  *
  * Each tick is the list of named steps in `tick`. None allocates, locks, logs or throws; only attaching,
  * while nothing can move, may log.
@@ -15,8 +15,8 @@
 
 #include "link/link_client.hpp"
 #include "motion/axis_plan.hpp"
+#include "motion/conductor.hpp"
 #include "motion/mailbox.hpp"
-#include "motion/manual_mode.hpp"
 #include "motion/request_port.hpp"
 
 namespace interlock {
@@ -39,7 +39,10 @@ class ControlLoop {
   void send_heartbeat() noexcept;
   void take_commands() noexcept;
   [[nodiscard]] bool take(const Command& command) noexcept;
-  void send_moves() noexcept;
+  template <typename AnyOrder>
+  [[nodiscard]] bool take_order(const AnyOrder& order) noexcept;
+  [[nodiscard]] bool send(const Ask& ask) noexcept;
+  void send_wishes() noexcept;
   void publish() noexcept;
 
   void refuse_commands() noexcept;
@@ -49,10 +52,11 @@ class ControlLoop {
 
   LinkClient link_;
   RequestPort port_{link_};
-  ManualMode mode_;
+  Conductor conductor_;
   Mailbox& mailbox_;
   ControlView view_;
   OrderTable published_orders_{};
+  HomeStatus published_home_;
   std::string attach_complaint_;
   std::chrono::milliseconds back_off_;
   std::uint32_t heartbeat_tick_ = 0;

@@ -70,7 +70,8 @@ std::int32_t HomeAxis::left_counts(const ilk_snapshot_t& snapshot) const noexcep
   if (kind_ != HomeStepKind::nudge || progress_ == HomeProgress::arrived) {
     return 0;
   }
-  return static_cast<std::int32_t>(marked_ ? counts_ - travelled_counts(snapshot.state.axis[slot_]) : counts_);
+  return static_cast<std::int32_t>(marked_ ? counts_ - travelled_counts(snapshot.state.axis[slot_])
+                                           : counts_);
 }
 
 HomeProgress HomeAxis::watch(const ilk_snapshot_t& snapshot) noexcept {

@@ -41,6 +41,9 @@ class HomeAxis {
   /** MOTION has ended: the kernel dropped what was under way. */
   void drop() noexcept { accepted_ = false; }
 
+  /** The order has ended: what the kernel still does for it is no longer looked at. */
+  void abandon() noexcept { asked_ = accepted_ = false; }
+
   /** Looks how far the axis has come; only in MOTION, after `start`. */
   HomeProgress watch(const ilk_snapshot_t& snapshot) noexcept;
 
@@ -80,15 +83,15 @@ class HomeAxis {
   HomeProgress progress_ = HomeProgress::arrived;
   std::int32_t counts_ = 0;
 
-  bool asked_ = false;             /**< a HOME is on its way or not yet judged */
-  bool accepted_ = false;          /**< the kernel took the HOME in `judged_tick_`, in this press */
-  bool judged_ = false;            /**< a verdict came in this step */
-  std::uint32_t judged_tick_ = 0;  /**< of the newest verdict */
+  bool asked_ = false;            /**< a HOME is on its way or not yet judged */
+  bool accepted_ = false;         /**< the kernel took the HOME in `judged_tick_`, in this press */
+  bool judged_ = false;           /**< a verdict came in this step */
+  std::uint32_t judged_tick_ = 0; /**< of the newest verdict */
 
-  bool marked_ = false;            /**< the nudge has begun at `mark_raw_` */
-  std::uint32_t mark_raw_ = 0;     /**< reading from which its distance is measured */
-  bool last_slice_ = false;        /**< this press reaches the end of the nudge */
-  bool stopping_ = false;          /**< the switch was met */
+  bool marked_ = false;        /**< the nudge has begun at `mark_raw_` */
+  std::uint32_t mark_raw_ = 0; /**< reading from which its distance is measured */
+  bool last_slice_ = false;    /**< this press reaches the end of the nudge */
+  bool stopping_ = false;      /**< the switch was met */
   RestWatch rest_;
 };
 

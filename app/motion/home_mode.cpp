@@ -63,8 +63,10 @@ void HomeMode::set_phase(OrderPhase phase, OrderReason reason, std::uint32_t cod
 
 /** Ends the order before its time, and whatever the kernel may be doing for it. */
 void HomeMode::finish(OrderPhase phase, OrderReason reason, std::uint32_t code, std::uint32_t tick) noexcept {
-  stop_owed_ = stop_owed_ || std::any_of(axes_.begin(), axes_.end(),
-                                         [](const HomeAxis& each) { return each.may_be_homing(); });
+  for (HomeAxis& axis : axes_) {
+    stop_owed_ = stop_owed_ || axis.may_be_homing();
+    axis.abandon();
+  }
   stop_sent_ = false;
   set_phase(phase, reason, code, tick);
 }
@@ -78,8 +80,8 @@ void HomeMode::take(const HomeOrder& order, std::uint32_t tick) noexcept {
   if (is_open()) {
     finish(OrderPhase::aborted, OrderReason::cancelled, 0, tick);
   }
-  status_ = HomeStatus{{order.proposal, OrderPhase::waiting, OrderReason::none, 0, tick},
-                       order.first_step, order.slot, 0};
+  status_ = HomeStatus{
+      {order.proposal, OrderPhase::waiting, OrderReason::none, 0, tick}, order.first_step, order.slot, 0};
   const std::size_t known_steps = plan_.home_steps.size();
   const bool known = order.step_count == 0 ? order.slot < ILK_SLOTS
                                            : order.first_step < known_steps &&

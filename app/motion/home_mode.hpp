@@ -61,15 +61,15 @@ class HomeMode final : public Mode {
   HomeOrder order_;
   HomeStatus status_;
   std::uint32_t steps_done_ = 0;
-  std::uint32_t involved_ = 0;       /**< bit n: the order moves the axis in slot n */
-  std::uint32_t homed_ = 0;          /**< bit n: slot n was homed by this order */
-  std::uint32_t known_faults_ = 0;   /**< bit n: slot n is faulted since before the order, and not in it */
-  bool fresh_ = false;               /**< no snapshot was seen since the order came */
-  bool slices_used_ = false;         /**< nothing is left to do in this press */
-  std::uint32_t idle_since_ = 0;     /**< tick since which the order does not execute */
-  bool stop_owed_ = false;           /**< the kernel may be homing for an order that has ended */
+  std::uint32_t involved_ = 0;     /**< bit n: the order moves the axis in slot n */
+  std::uint32_t homed_ = 0;        /**< bit n: slot n was homed by this order */
+  std::uint32_t known_faults_ = 0; /**< bit n: slot n is faulted since before the order, and not in it */
+  bool fresh_ = false;             /**< no snapshot was seen since the order came */
+  bool slices_used_ = false;       /**< nothing is left to do in this press */
+  std::uint32_t idle_since_ = 0;   /**< tick since which the order does not execute */
+  bool stop_owed_ = false;         /**< the kernel may be homing for an order that has ended */
   bool stop_sent_ = false;
-  std::uint32_t stop_tick_ = 0;      /**< in which STOP was last wished for */
+  std::uint32_t stop_tick_ = 0; /**< in which STOP was last wished for */
 };
 
 }  // namespace interlock

@@ -25,19 +25,18 @@ namespace interlock {
 /** Ends the order of a proposal. */
 struct Cancel {
   std::uint32_t proposal = 0;
-  std::uint32_t slot = 0;
 };
 
 /** Passes one request to the kernel and brings back its verdict. */
 struct Ask {
   std::uint32_t ticket = 0; /**< by which the asker knows the answer */
-  std::uint32_t kind = 0;   /**< ilk_request_kind_t, none of HEARTBEAT, STOP and MOVE */
+  std::uint32_t kind = 0;   /**< ilk_request_kind_t, none of HEARTBEAT, STOP, MOVE and HOME */
   std::uint32_t slot = 0;
   std::int32_t target_counts = 0;                 /**< position of a RESTORE */
   std::chrono::steady_clock::time_point deadline; /**< later than this nobody waits, so it is not sent */
 };
 
-using Command = std::variant<Order, Cancel, Ask>;
+using Command = std::variant<Order, HomeOrder, Cancel, Ask>;
 
 /** The kernel's word on an `Ask`; no verdict: it was not sent, or the answer got lost with the link. */
 struct Answer {
@@ -67,6 +66,7 @@ struct ControlView {
   std::chrono::steady_clock::time_point received; /**< when the snapshot was read */
   ilk_snapshot_t snapshot{};
   OrderTable orders{};
+  HomeStatus home;
 };
 
 struct Mailbox {

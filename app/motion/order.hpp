@@ -1,6 +1,6 @@
 /**
  * @file
- * An order: one approved move of one axis, as the control thread carries it out.
+ * Orders: what the control thread carries out of an approved proposal, a move of one axis or homing.
  */
 #pragma once
 
@@ -11,13 +11,27 @@
 
 namespace interlock {
 
-/** What the network hands to the control thread when a proposal is approved. */
+/** A move of one axis. */
 struct Order {
   std::uint32_t proposal = 0; /**< number of the proposal, from 1 */
   std::uint32_t slot = 0;
   std::int32_t target_counts = 0;
   std::uint32_t max_drive = 0; /**< 0: the axis' own bound */
   std::uint32_t stops = 0; /**< STOPs seen by the author; an order older than the newest STOP never starts */
+};
+
+/**
+ * Homing: steps of the robot in the order of its file, or one axis alone.
+ *
+ * The control thread knows the steps by itself, so that an order is small and cannot name motion that the
+ * robot file does not.
+ */
+struct HomeOrder {
+  std::uint32_t proposal = 0;
+  std::uint32_t first_step = 0; /**< index of the robot's home steps */
+  std::uint32_t step_count = 0; /**< from 1; 0: no step but the axis in `slot`, at its switch */
+  std::uint32_t slot = 0;
+  std::uint32_t stops = 0; /**< as in `Order` */
 };
 
 /** Where an order stands. The last five are final. */
@@ -30,18 +44,22 @@ constexpr bool is_open(OrderPhase phase) noexcept {
 /** Why an order stands where it does. */
 enum class OrderReason : std::uint8_t {
   none,
-  arrived,        /**< at rest within the deadband */
-  pedal_released, /**< waits for the pedal */
-  kernel_refused, /**< `code` is the verdict */
-  stopped,        /**< STOP */
-  cancelled,      /**< its author ended it */
-  locked,         /**< `code` is the cause of LOCKED */
-  axis_disabled,  /**< the axis was taken out of motion */
-  axis_homing,    /**< homing took over the axis */
-  axis_faulted,   /**< `code` is the fault */
-  blocked,        /**< a limit held the axis back for too long; `code` is the gate */
-  link_lost,      /**< the kernel went away */
-  waited_too_long /**< not executing for longer than a move may wait */
+  arrived,         /**< at rest within the deadband */
+  pedal_released,  /**< waits for the pedal */
+  kernel_refused,  /**< `code` is the verdict */
+  stopped,         /**< STOP */
+  cancelled,       /**< its author ended it */
+  locked,          /**< `code` is the cause of LOCKED */
+  axis_disabled,   /**< the axis was taken out of motion */
+  axis_homing,     /**< homing took over the axis */
+  axis_faulted,    /**< `code` is the fault */
+  blocked,         /**< a limit held the axis back for too long; `code` is the gate */
+  link_lost,       /**< the kernel went away */
+  waited_too_long, /**< not executing for longer than a motion may wait */
+  press_again,     /**< the travel that one press allows is used up: waits for a release and a press */
+  not_homed,       /**< a step moves an axis to a position, and the axis is not homed */
+  verdict_lost,    /**< the kernel's answer to a HOME got lost */
+  authority_changed
 };
 
 /** Level, not edge: the newest view always tells the whole truth about the slot's newest order. */
@@ -56,5 +74,15 @@ struct OrderStatus {
 };
 
 using OrderTable = std::array<OrderStatus, ILK_SLOTS>;
+
+/** Where the newest homing order stands. */
+struct HomeStatus {
+  OrderStatus order;
+  std::uint32_t step = 0;       /**< index of the home step that runs or is next; unused for one axis alone */
+  std::uint32_t slot = 0;       /**< axis that the reason is about */
+  std::int32_t left_counts = 0; /**< of the nudge of that axis, signed; 0 where nothing is left */
+
+  bool operator==(const HomeStatus&) const = default;
+};
 
 }  // namespace interlock

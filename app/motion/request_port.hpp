@@ -11,15 +11,9 @@
 #include <variant>
 
 #include "link/link_client.hpp"
-#include "motion/mode.hpp"
+#include "motion/wish.hpp"
 
 namespace interlock {
-
-/** The order that a MOVE served. */
-struct MoveOrigin {
-  std::uint32_t slot = 0;
-  std::uint32_t proposal = 0;
-};
 
 /** The ticket of an `Ask`. */
 struct AskOrigin {
@@ -34,7 +28,7 @@ struct StopOrigin {
 struct HeartbeatOrigin {};
 
 /** Who sent a request. */
-using RequestOrigin = std::variant<HeartbeatOrigin, MoveOrigin, AskOrigin, StopOrigin>;
+using RequestOrigin = std::variant<HeartbeatOrigin, WishOrigin, AskOrigin, StopOrigin>;
 
 class RequestPort {
  public:

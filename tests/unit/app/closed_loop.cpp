@@ -12,12 +12,13 @@ constexpr std::uint32_t settle_ticks = 200;
 
 }  // namespace
 
-ClosedLoop::ClosedLoop(std::uint64_t seed, std::uint32_t latency)
-    : plant_(config_, plant::default_parameters(config_), seed),
-      mode_(RobotPlan(neuro(), config_)),
+ClosedLoop::ClosedLoop(std::uint64_t seed, std::uint32_t latency, const Robot& robot)
+    : config_(config_of(robot)),
+      plant_(config_, plant::default_parameters(config_), seed),
+      conductor_(RobotPlan(robot, config_)),
       latency_(latency) {
   if (ilk_init(&config_, &state_).error != ILK_CONFIG_ERROR_NONE) {
-    throw std::runtime_error("the kernel refuses the neuro robot");
+    throw std::runtime_error("the kernel refuses the robot " + robot.name);
   }
   run(settle_ticks);
   request(ILK_REQUEST_RESET);
@@ -70,18 +71,11 @@ void ClosedLoop::tick() {
   on_their_way_.push_back(snapshot());
   if (on_their_way_.size() > latency_) {
     seen_tick_ = on_their_way_.front().state.tick;
-    const MoveWishes wishes = mode_.tick(on_their_way_.front());
+    const Wishes wishes = conductor_.tick(on_their_way_.front());
     on_their_way_.pop_front();
-    for (const MoveWish& wish : wishes.all()) {
-      ilk_request_t move{};
-      move.kind = ILK_REQUEST_MOVE;
-      move.axis = wish.slot;
-      move.target_counts = wish.target_counts;
-      move.drive = wish.drive;
-      move.amplitude = wish.amplitude;
-      move.lease_ticks = wish.lease_ticks;
-      put(move);
-      sent_.push_back({sequence_, wish});
+    for (const Wish& wish : wishes.all()) {
+      put(request_of(wish));
+      sent_.push_back({sequence_, wish.origin});
     }
   }
 }
@@ -92,7 +86,7 @@ void ClosedLoop::deliver_verdicts() {
     const auto found = std::find_if(sent_.begin(), sent_.end(),
                                     [&](const Sent& each) { return each.sequence == verdict.sequence; });
     if (found != sent_.end()) {
-      mode_.on_verdict(found->wish.slot, found->wish.proposal, verdict.verdict, verdict.tick);
+      conductor_.on_verdict(found->origin, verdict.verdict, verdict.tick);
       sent_.erase(found);
     }
   }
@@ -104,11 +98,20 @@ void ClosedLoop::run(std::uint32_t ticks) {
   }
 }
 
-void ClosedLoop::pedal(bool pressed) {
-  if (!plant_.schedule(plant::command::PressPedal{pressed})) {
-    throw std::runtime_error("the plant refuses the pedal");
+void ClosedLoop::happen(const plant::command::Command& command) {
+  if (!plant_.schedule(command)) {
+    throw std::runtime_error("the plant refuses a command");
   }
+}
+
+void ClosedLoop::pedal(bool pressed) {
+  happen(plant::command::PressPedal{pressed});
   run(settle_ticks);
+}
+
+void ClosedLoop::stop() {
+  conductor_.end_all(OrderReason::stopped, seen_tick_);
+  request(ILK_REQUEST_STOP);
 }
 
 void ClosedLoop::request(std::uint32_t kind, std::uint32_t slot) {
@@ -144,10 +147,10 @@ void ClosedLoop::make_ready(std::uint32_t slot) {
 
 OrderStatus ClosedLoop::carry_out(const Order& order, std::uint32_t most_ticks) {
   give(order);
-  for (std::uint32_t i = 0; i < most_ticks && is_open(mode_.orders()[order.slot].phase); ++i) {
+  for (std::uint32_t i = 0; i < most_ticks && is_open(conductor_.orders()[order.slot].phase); ++i) {
     tick();
   }
-  return mode_.orders()[order.slot];
+  return conductor_.orders()[order.slot];
 }
 
 std::uint32_t ClosedLoop::verdict_of_move(std::uint32_t slot, std::int32_t target_counts,

@@ -1,6 +1,6 @@
 /**
  * @file
- * Manual mode, the real kernel core and the real plant in one process, tick by tick, with the latency of a
+ * The modes, the real kernel core and the real plant in one process, tick by tick, with the latency of a
  * link.
  */
 #pragma once
@@ -11,7 +11,7 @@
 
 #include "interlock/kernel.h"
 #include "interlock/link.h"
-#include "motion/manual_mode.hpp"
+#include "motion/conductor.hpp"
 #include "plant/plant.hpp"
 #include "robot_fixture.hpp"
 
@@ -21,8 +21,9 @@ class ClosedLoop {
  public:
   /** `latency` ticks pass from a snapshot until its moves reach the kernel. The system is unlocked and READY.
    */
-  ClosedLoop(std::uint64_t seed, std::uint32_t latency);
+  ClosedLoop(std::uint64_t seed, std::uint32_t latency, const Robot& robot = neuro());
 
+  void tick();
   void run(std::uint32_t ticks);
 
   /** Presses or releases the pedal and waits for MOTION or READY. */
@@ -35,7 +36,8 @@ class ClosedLoop {
   void make_ready(std::uint32_t slot);
 
   /** Gives an order at the tick that the mode sees. */
-  void give(const Order& order) { mode_.take(order, seen_tick_); }
+  void give(const Order& order) { conductor_.take(order, seen_tick_); }
+  void give(const HomeOrder& order) { conductor_.take(order, seen_tick_); }
 
   /** Gives an order and returns its status once it is final, or after so many ticks. */
   OrderStatus carry_out(const Order& order, std::uint32_t most_ticks);
@@ -45,28 +47,34 @@ class ClosedLoop {
 
   [[nodiscard]] const ilk_state_t& state() const { return state_; }
   [[nodiscard]] const ilk_outputs_t& outputs() const { return outputs_; }
-  [[nodiscard]] OrderStatus order(std::uint32_t slot) const { return mode_.orders()[slot]; }
-  void cancel(std::uint32_t slot, std::uint32_t proposal) {
-    mode_.end(slot, proposal, OrderReason::cancelled, seen_tick_);
-  }
+  [[nodiscard]] const ilk_config_t& config() const { return config_; }
+  [[nodiscard]] const plant::Plant& plant() const { return plant_; }
+  [[nodiscard]] OrderStatus order(std::uint32_t slot) const { return conductor_.orders()[slot]; }
+  [[nodiscard]] const HomeStatus& home() const { return conductor_.home(); }
+  void cancel(std::uint32_t proposal) { conductor_.end(proposal, OrderReason::cancelled, seen_tick_); }
+
+  /** STOP, as the control thread obeys it. */
+  void stop();
+
+  /** A hand or a fault does something to the plant. */
+  void happen(const plant::command::Command& command);
   [[nodiscard]] std::uint32_t most_requests_in_a_tick() const { return most_requests_; }
 
  private:
   struct Sent {
     std::uint32_t sequence;
-    MoveWish wish;
+    WishOrigin origin;
   };
 
-  void tick();
   void put(ilk_request_t request);
   [[nodiscard]] ilk_snapshot_t snapshot() const;
   void deliver_verdicts();
 
-  ilk_config_t config_ = neuro_config();
+  ilk_config_t config_;
   ilk_state_t state_{};
   ilk_outputs_t outputs_{};
   plant::Plant plant_;
-  ManualMode mode_;
+  Conductor conductor_;
   std::uint32_t latency_;
   std::uint32_t seen_tick_ = 0;
   std::deque<ilk_snapshot_t> on_their_way_;

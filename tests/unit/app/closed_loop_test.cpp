@@ -47,7 +47,7 @@ TEST_P(ManualModeOnThePlant, AnAxisThatIsNotHomedArrivesWithinItsUnhomedBounds) 
   loop.request(ILK_REQUEST_ENABLE, axis.slot);
   loop.pedal(true);
   const auto reach = static_cast<std::int32_t>(rules.unhomed_travel_counts - rules.coast_counts);
-  loop.give({1, axis.slot, reach, 0, 0});
+  loop.give(Order{1, axis.slot, reach, 0, 0});
   for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.order(axis.slot).phase); ++i) {
     loop.run(1);
     ASSERT_LE(loop.outputs().command[axis.slot].drive, rules.unhomed_max_drive);
@@ -78,7 +78,7 @@ TEST_P(ManualModeOnThePlant, CancellingStopsTheAxisWithoutWaitingForItsLease) {
   loop.make_ready(axis.slot);
   (void)loop.carry_out({1, axis.slot, 1500, 0, 0}, 300);
   ASSERT_GT(loop.outputs().command[axis.slot].drive, 0u);
-  loop.cancel(axis.slot, 1);
+  loop.cancel(1);
   loop.run(2 + GetParam());
   EXPECT_EQ(loop.outputs().command[axis.slot].drive, 0u);
 }
@@ -92,7 +92,7 @@ TEST_P(ManualModeOnThePlant, SevenAxesAtOnceStayWithinTheRequestsOfATick) {
   for (const Axis& axis : neuro().axes) {
     const auto travel = static_cast<std::int32_t>(axis.unhomed_travel_counts - axis.mechanics.coast_counts);
     const std::int32_t away_from_switch = axis.limit == ILK_LIMIT_UPPER ? -travel : travel;
-    loop.give({axis.slot + 1, axis.slot, away_from_switch, 0, 0});
+    loop.give(Order{axis.slot + 1, axis.slot, away_from_switch, 0, 0});
   }
   loop.run(minute_ticks / 2);
   for (const Axis& axis : neuro().axes) {

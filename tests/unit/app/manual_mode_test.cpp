@@ -23,9 +23,10 @@ class ManualModeTest : public testing::Test {
     mode_.take({proposal, slot, target, drive, 0}, snapshot_.state.tick);
   }
 
-  std::vector<MoveWish> tick(std::uint32_t ticks = 1) {
+  std::vector<Wish> tick(std::uint32_t ticks = 1) {
     snapshot_.state.tick += ticks;
-    const MoveWishes wishes = mode_.tick(snapshot_);
+    Wishes wishes;
+    mode_.tick(snapshot_, wishes);
     return {wishes.all().begin(), wishes.all().end()};
   }
 
@@ -52,8 +53,8 @@ TEST_F(ManualModeTest, MovesTowardsTheTargetWhileThePedalIsHeld) {
   snapshot_.state.mode = ILK_MODE_MOTION;
   const auto wishes = tick();
   ASSERT_EQ(wishes.size(), 1u);
-  EXPECT_EQ(wishes[0].proposal, 1u);
-  EXPECT_EQ(wishes[0].slot, insertion);
+  EXPECT_EQ(wishes[0].origin.proposal, 1u);
+  EXPECT_EQ(wishes[0].origin.slot, insertion);
   EXPECT_EQ(wishes[0].target_counts, 1500);
   EXPECT_EQ(wishes[0].drive, neuro_config().axis[insertion].max_drive);
   EXPECT_EQ(status().phase, OrderPhase::executing);
@@ -183,7 +184,7 @@ TEST_F(ManualModeTest, HomingTakesTheAxisOver) {
 TEST_F(ManualModeTest, ARefusalOfTheKernelEndsTheOrderWithItsVerdict) {
   order();
   press();
-  mode_.on_verdict(insertion, 1, ILK_VERDICT_RANGE, 1234);
+  mode_.on_verdict({ILK_REQUEST_MOVE, insertion, 1}, ILK_VERDICT_RANGE, 1234);
   EXPECT_EQ(status().phase, OrderPhase::refused);
   EXPECT_EQ(status().code, static_cast<std::uint32_t>(ILK_VERDICT_RANGE));
   EXPECT_EQ(status().tick, 1234u);
@@ -194,7 +195,7 @@ TEST_F(ManualModeTest, AVerdictOnAnOlderOrderDoesNotTouchTheNewerOne) {
   order(1);
   press();
   order(2);
-  mode_.on_verdict(insertion, 1, ILK_VERDICT_RANGE, 1234);
+  mode_.on_verdict({ILK_REQUEST_MOVE, insertion, 1}, ILK_VERDICT_RANGE, 1234);
   EXPECT_EQ(status().proposal, 2u);
   EXPECT_EQ(status().phase, OrderPhase::waiting);
 }
@@ -202,7 +203,7 @@ TEST_F(ManualModeTest, AVerdictOnAnOlderOrderDoesNotTouchTheNewerOne) {
 TEST_F(ManualModeTest, APedalReleasedMeanwhileIsNoRefusal) {
   order();
   press();
-  mode_.on_verdict(insertion, 1, ILK_VERDICT_MODE, 1234);
+  mode_.on_verdict({ILK_REQUEST_MOVE, insertion, 1}, ILK_VERDICT_MODE, 1234);
   EXPECT_EQ(status().phase, OrderPhase::executing);
 }
 
@@ -210,7 +211,7 @@ TEST_F(ManualModeTest, CancellingGivesBackTheLease) {
   order();
   press();
   axis().state = ILK_AXIS_MOVING;
-  mode_.end(insertion, 1, OrderReason::cancelled, snapshot_.state.tick);
+  mode_.end(1, OrderReason::cancelled, snapshot_.state.tick);
   const auto wishes = tick();
   ASSERT_EQ(wishes.size(), 1u);
   EXPECT_EQ(wishes[0].drive, 0u);
@@ -224,7 +225,7 @@ TEST_F(ManualModeTest, AWishThatWasNotSentIsRepeated) {
   const auto wishes = tick();
   mode_.on_unsent(wishes.at(0));
   EXPECT_EQ(tick().size(), 1u);
-  mode_.end(insertion, 1, OrderReason::cancelled, snapshot_.state.tick);
+  mode_.end(1, OrderReason::cancelled, snapshot_.state.tick);
   axis().state = ILK_AXIS_MOVING;
   const auto release = tick();
   mode_.on_unsent(release.at(0));
@@ -286,8 +287,8 @@ TEST_F(ManualModeTest, SurvivesTheWrapOfTheTickCounter) {
 
 TEST_F(ManualModeTest, IgnoresASlotThatDoesNotExist) {
   mode_.take({1, ILK_SLOTS, 0, 0, 0}, 0);
-  mode_.end(ILK_SLOTS, 1, OrderReason::cancelled, 0);
-  mode_.on_verdict(ILK_SLOTS, 1, ILK_VERDICT_RANGE, 0);
+  mode_.end(1, OrderReason::cancelled, 0);
+  mode_.on_verdict({ILK_REQUEST_MOVE, ILK_SLOTS, 1}, ILK_VERDICT_RANGE, 0);
   EXPECT_THAT(tick(), testing::IsEmpty());
 }
 

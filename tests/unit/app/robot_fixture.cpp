@@ -16,11 +16,13 @@ const Robot& neuro() {
 }
 
 const ilk_config_t& neuro_config() {
-  static const ilk_config_t config = [] {
-    auto compiled = compile(neuro());
-    return compiled ? *compiled : throw std::runtime_error(compiled.error().message());
-  }();
+  static const ilk_config_t config = config_of(neuro());
   return config;
+}
+
+ilk_config_t config_of(const Robot& robot) {
+  const auto compiled = compile(robot);
+  return compiled ? *compiled : throw std::runtime_error(compiled.error().message());
 }
 
 ControlView ready_view() {

@@ -17,6 +17,9 @@ constexpr std::uint32_t empty_slot = 5;
 const Robot& neuro();
 const ilk_config_t& neuro_config();
 
+/** The kernel's configuration of a robot, which must be valid. */
+ilk_config_t config_of(const Robot& robot);
+
 /** A view of an attached kernel in READY, every axis homed at the middle of its range and enabled. */
 ControlView ready_view();
 
