@@ -193,7 +193,7 @@ void Api::add_bench_routes() {
 /** The newest view; what it says of orders is in the book before anybody reads the book. */
 const ControlView& Api::view() {
   const ControlView& newest = control_.view();
-  book_.follow(newest.orders);
+  book_.follow(newest);
   return newest;
 }
 

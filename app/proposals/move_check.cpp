@@ -37,11 +37,8 @@ Refusal verdict_refusal(std::uint32_t verdict, const std::string& where, const s
                  std::string(entry.next_step)};
 }
 
-tl::expected<void, Refusal> check_move(const Axis& axis, const ilk_config_t& config, const ControlView& view,
-                                       const MoveDraft& draft) {
+tl::expected<void, Refusal> check_system(const ilk_config_t& config, const ControlView& view) {
   const ilk_snapshot_t& snapshot = view.snapshot;
-  const ilk_axis_t& state = snapshot.state.axis[axis.slot];
-  const ilk_axis_config_t& rules = config.axis[axis.slot];
   if (snapshot.config_crc != config.crc) {
     return tl::make_unexpected(
         Refusal{"CONFIG_MISMATCH", "The kernel runs another configuration than this app's robot file.",
@@ -51,22 +48,43 @@ tl::expected<void, Refusal> check_move(const Axis& axis, const ilk_config_t& con
     return refused(ILK_VERDICT_MODE, current(catalog::Family::mode, snapshot.state.mode, "mode"),
                    "READY or MOTION");
   }
-  if (state.state == ILK_AXIS_FAULTED) {
-    return refused(ILK_VERDICT_FAULTED, current(catalog::Family::fault, state.fault, axis.name.c_str()),
-                   "an axis without a fault");
+  return {};
+}
+
+tl::expected<void, Refusal> check_axis(const Axis& axis, const ControlView& view) {
+  const ilk_axis_t& state = view.snapshot.state.axis[axis.slot];
+  switch (state.state) {
+    case ILK_AXIS_ENABLED:
+    case ILK_AXIS_MOVING:
+    case ILK_AXIS_HOMING:
+      return {};
+    case ILK_AXIS_FAULTED:
+      return refused(ILK_VERDICT_FAULTED, current(catalog::Family::fault, state.fault, axis.name.c_str()),
+                     "an axis without a fault");
+    default:
+      return refused(ILK_VERDICT_DISABLED, axis.name, "an enabled axis");
+  }
+}
+
+tl::expected<void, Refusal> check_move(const Axis& axis, const ilk_config_t& config, const ControlView& view,
+                                       const MoveDraft& draft) {
+  const ilk_axis_t& state = view.snapshot.state.axis[axis.slot];
+  const ilk_axis_config_t& rules = config.axis[axis.slot];
+  if (auto system = check_system(config, view); !system) {
+    return system;
+  }
+  if (auto able = check_axis(axis, view); !able) {
+    return able;
   }
   if (state.state == ILK_AXIS_HOMING) {
     return refused(ILK_VERDICT_BUSY, axis.name, "an axis that is not homing");
-  }
-  if (state.state != ILK_AXIS_ENABLED && state.state != ILK_AXIS_MOVING) {
-    return refused(ILK_VERDICT_DISABLED, axis.name, "an enabled axis");
   }
   const std::uint32_t bound = drive_bound(rules, state);
   if (draft.drive.value_or(0) > bound) {
     return refused(ILK_VERDICT_DRIVE, axis.name + " drive " + std::to_string(*draft.drive),
                    "a drive from 1 to " + std::to_string(bound));
   }
-  const SetpointRange range = setpoint_range(rules, state, snapshot.state.mode);
+  const SetpointRange range = setpoint_range(rules, state, view.snapshot.state.mode);
   if (!range.contains(draft.target_counts)) {
     return refused(ILK_VERDICT_RANGE, axis.name + " " + counts_and_unit(axis, draft.target_counts),
                    "a target from " + counts_and_unit(axis, range.lowest_counts) + " to " +

@@ -33,6 +33,12 @@ struct Refusal {
 tl::expected<void, Refusal> check_move(const Axis& axis, const ilk_config_t& config, const ControlView& view,
                                        const MoveDraft& draft);
 
+/** Whether the kernel runs the app's configuration and takes motion at all: CONFIG_MISMATCH, MODE. */
+tl::expected<void, Refusal> check_system(const ilk_config_t& config, const ControlView& view);
+
+/** Whether the axis may be moved by anybody: FAULTED, DISABLED. An axis that is homing may. */
+tl::expected<void, Refusal> check_axis(const Axis& axis, const ControlView& view);
+
 /** A refusal in the words of the catalog's verdict. */
 Refusal verdict_refusal(std::uint32_t verdict, const std::string& where, const std::string& expected = "");
 

@@ -28,6 +28,8 @@ std::string_view state_name(ProposalState state) noexcept {
 
 bool is_open(ProposalState state) noexcept { return state <= ProposalState::paused; }
 
+bool is_approved(ProposalState state) noexcept { return is_open(state) && state >= ProposalState::approved; }
+
 bool may_become(ProposalState from, ProposalState to) noexcept {
   switch (to) {
     case ProposalState::drafted:
@@ -42,7 +44,7 @@ bool may_become(ProposalState from, ProposalState to) noexcept {
       return from == ProposalState::approved || from == ProposalState::executing;
     case ProposalState::done:
     case ProposalState::expired:
-      return is_open(from) && from >= ProposalState::approved;
+      return is_approved(from);
     case ProposalState::refused:
     case ProposalState::aborted:
       return is_open(from);

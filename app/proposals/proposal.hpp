@@ -1,6 +1,6 @@
 /**
  * @file
- * A proposal: one wished-for motion, its author and what became of it.
+ * A proposal: one wished-for motion, a move of one axis or homing, its author and what became of it.
  *
  *     drafted -> checked -> approved -> executing <-> paused
  *        |          |          |            |
@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "time/utc_time.hpp"
 
@@ -35,6 +36,9 @@ std::string_view state_name(ProposalState state) noexcept;
 /** Whether the proposal can still become motion. */
 bool is_open(ProposalState state) noexcept;
 
+/** Whether the proposal is open and nothing but the pedal keeps it from motion. */
+bool is_approved(ProposalState state) noexcept;
+
 /** Whether the proposal may go from one state to the other. */
 bool may_become(ProposalState from, ProposalState to) noexcept;
 
@@ -46,11 +50,27 @@ struct MoveDraft {
   std::string author;
 };
 
+/** A wish for homing: of one axis, of one step, or of all steps in the order of the robot's file. */
+struct HomeDraft {
+  std::optional<std::uint32_t> slot;
+  std::optional<std::string> step; /**< name; not together with `slot` */
+  std::string author;
+};
+
+enum class ProposalKind : std::uint8_t { move, home };
+
 struct Proposal {
   std::uint32_t id = 0;
-  MoveDraft move;
-  std::string axis;    /**< name of the axis */
-  double target = 0.0; /**< in the axis' unit */
+  ProposalKind kind = ProposalKind::move;
+  MoveDraft move;                   /**< of kind move */
+  std::string author;               /**< name of the user */
+  std::vector<std::uint32_t> slots; /**< of all axes that it moves, each once */
+  std::vector<std::string> axes;    /**< their names */
+  std::string axis;                 /**< name of the axis; empty when there are several */
+  double target = 0.0;              /**< in the axis' unit; of kind move */
+  std::uint32_t first_step = 0;     /**< index of the robot's home steps; of kind home */
+  std::uint32_t step_count = 0;     /**< home steps; 0: none but the axis alone */
+  std::string step;                 /**< name of the home step that runs or is next; else empty */
   ProposalState state = ProposalState::drafted;
   UtcTime created;
   std::uint32_t created_tick = 0; /**< kernel tick */

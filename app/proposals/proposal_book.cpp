@@ -3,85 +3,14 @@
 #include <algorithm>
 #include <utility>
 
-#include "robot/catalog.hpp"
+#include "proposals/home_plan.hpp"
+#include "proposals/order_words.hpp"
 
 namespace interlock {
 namespace {
 
-ProposalState state_of(OrderPhase phase) noexcept {
-  switch (phase) {
-    case OrderPhase::none:
-    case OrderPhase::waiting:
-      return ProposalState::approved;
-    case OrderPhase::executing:
-      return ProposalState::executing;
-    case OrderPhase::paused:
-      return ProposalState::paused;
-    case OrderPhase::done:
-      return ProposalState::done;
-    case OrderPhase::refused:
-      return ProposalState::refused;
-    case OrderPhase::aborted:
-      return ProposalState::aborted;
-    case OrderPhase::expired:
-      return ProposalState::expired;
-  }
-  return ProposalState::aborted;
-}
-
-std::string words(catalog::Family family, std::uint32_t code) {
-  const catalog::Entry& entry = catalog::entry(family, code);
-  return catalog::name(family, code) + ": " + std::string(entry.meaning) + " " + std::string(entry.next_step);
-}
-
-std::string detail_of(const OrderStatus& status) {
-  switch (status.reason) {
-    case OrderReason::none:
-      return status.phase == OrderPhase::executing ? "Moves while the pedal is held."
-                                                   : "Waits for the pedal.";
-    case OrderReason::arrived:
-      return "At rest within the deadband of the target.";
-    case OrderReason::pedal_released:
-      return "Motion ended; press and hold the pedal within 60 s to go on.";
-    case OrderReason::kernel_refused:
-      return "The kernel refused: " + words(catalog::Family::verdict, status.code);
-    case OrderReason::stopped:
-      return "STOP.";
-    case OrderReason::cancelled:
-      return "Ended by its author.";
-    case OrderReason::locked:
-      return "The kernel locked. " + words(catalog::Family::cause, status.code);
-    case OrderReason::axis_disabled:
-      return "The axis was disabled.";
-    case OrderReason::axis_homing:
-      return "Homing took over the axis.";
-    case OrderReason::axis_faulted:
-      return "The axis faulted. " + words(catalog::Family::fault, status.code);
-    case OrderReason::blocked:
-      return "A limit held the axis back. " + words(catalog::Family::gate, status.code);
-    case OrderReason::link_lost:
-      return "The link to the kernel was lost.";
-    case OrderReason::waited_too_long:
-      return "The pedal was not held for 60 s; propose the move again.";
-  }
-  return "";
-}
-
-std::optional<std::string> verdict_of(const OrderStatus& status) {
-  switch (status.reason) {
-    case OrderReason::kernel_refused:
-      return catalog::name(catalog::Family::verdict, status.code);
-    case OrderReason::axis_faulted:
-      return catalog::name(catalog::Family::verdict, ILK_VERDICT_FAULTED);
-    case OrderReason::axis_disabled:
-      return catalog::name(catalog::Family::verdict, ILK_VERDICT_DISABLED);
-    case OrderReason::axis_homing:
-      return catalog::name(catalog::Family::verdict, ILK_VERDICT_BUSY);
-    case OrderReason::locked:
-      return catalog::name(catalog::Family::verdict, ILK_VERDICT_MODE);
-    default:
-      return std::nullopt;
-  }
+Refusal overloaded(const std::string& next_step) {
+  return {"OVERLOADED", "The control thread takes no more commands now.", "", next_step};
 }
 
 }  // namespace
@@ -94,45 +23,87 @@ tl::expected<Proposal, Refusal> ProposalBook::propose(const MoveDraft& move, con
   if (axis == nullptr) {
     return tl::make_unexpected(verdict_refusal(ILK_VERDICT_AXIS, "slot " + std::to_string(move.slot)));
   }
-  Proposal& proposal = draft(*axis, move, view.snapshot.state.tick);
+  Proposal drafted;
+  drafted.move = move;
+  drafted.author = move.author;
+  drafted.target = axis->to_unit(move.target_counts);
+  Proposal& proposal = draft(std::move(drafted), {move.slot}, view);
+  if (const Proposal* home = open_home()) {
+    return tl::make_unexpected(refuse(
+        proposal, Refusal{"MODE_HOME", "Proposal " + std::to_string(home->id) + " is homing the robot.",
+                          "no open proposal of homing", "Wait until it has ended, or abort it."}));
+  }
   const auto checked = check_move(*axis, config_, view, move);
   if (!checked) {
     return tl::make_unexpected(refuse(proposal, checked.error()));
   }
   become(proposal, ProposalState::checked, "Inside the range that the kernel allows now.");
-  if (!send_(Order{proposal.id, move.slot, move.target_counts, move.drive.value_or(0), 0})) {
-    return tl::make_unexpected(
-        refuse(proposal, Refusal{"OVERLOADED", "The control thread takes no more commands now.", "",
-                                 "Try again; if it happens again, report it with the log."}));
+  return approve(proposal, Order{proposal.id, move.slot, move.target_counts, move.drive.value_or(0), 0});
+}
+
+tl::expected<Proposal, Refusal> ProposalBook::propose_home(const HomeDraft& home, const ControlView& view) {
+  const auto plan = plan_home(robot_, home);
+  if (!plan) {
+    return tl::make_unexpected(plan.error());
   }
-  replace_open(move.slot, proposal.id);
-  become(proposal, ProposalState::approved, "Waits for the pedal.");
+  Proposal drafted;
+  drafted.kind = ProposalKind::home;
+  drafted.author = home.author;
+  drafted.first_step = plan->first_step;
+  drafted.step_count = plan->step_count;
+  drafted.step = plan->step_count == 0 ? "" : robot_.home_steps[plan->first_step].name;
+  Proposal& proposal = draft(std::move(drafted), plan->slots, view);
+  const auto checked = check_home(robot_, config_, view, *plan);
+  if (!checked) {
+    return tl::make_unexpected(refuse(proposal, checked.error()));
+  }
+  become(proposal, ProposalState::checked, "Every axis may be homed now.");
+  return approve(proposal,
+                 HomeOrder{proposal.id, plan->first_step, plan->step_count, plan->slots.front(), 0});
+}
+
+/** Hands the order over; what it replaces ends. */
+tl::expected<Proposal, Refusal> ProposalBook::approve(Proposal& proposal, const Command& order) {
+  if (!send_(order)) {
+    return tl::make_unexpected(
+        refuse(proposal, overloaded("Try again; if it happens again, report it with the log.")));
+  }
+  replace_open(proposal);
+  const bool is_move = proposal.kind == ProposalKind::move;
+  become(proposal, ProposalState::approved,
+         is_move ? detail_of(OrderStatus{})
+                 : detail_of(robot_, proposal, HomeStatus{{}, proposal.first_step, 0, 0}));
+  tell_mode();
   return proposal;
 }
 
-Proposal& ProposalBook::draft(const Axis& axis, const MoveDraft& move, std::uint32_t tick) {
+Proposal& ProposalBook::draft(Proposal proposal, const std::vector<std::uint32_t>& slots,
+                              const ControlView& view) {
   if (book_.size() == capacity) {
     // At most one proposal an axis is open, so there is always an ended one to forget.
     book_.erase(
         std::find_if(book_.begin(), book_.end(), [](const Proposal& each) { return !is_open(each.state); }));
   }
-  Proposal proposal;
   proposal.id = ++last_id_;
-  proposal.move = move;
-  proposal.axis = axis.name;
-  proposal.target = axis.to_unit(move.target_counts);
+  proposal.slots = slots;
+  for (const std::uint32_t slot : slots) {
+    proposal.axes.push_back(robot_.at_slot(slot)->name);
+  }
+  proposal.axis = slots.size() == 1 ? proposal.axes.front() : "";
   proposal.created = clock_();
-  proposal.created_tick = tick;
+  proposal.created_tick = view.snapshot.state.tick;
   proposal.detail = "Drafted.";
   book_.push_back(std::move(proposal));
   listener_(book_.back());
   return book_.back();
 }
 
-void ProposalBook::replace_open(std::uint32_t slot, std::uint32_t by) {
+/** A move replaces the open one of its axis, homing every open proposal. */
+void ProposalBook::replace_open(const Proposal& by) {
   for (Proposal& each : book_) {
-    if (each.move.slot == slot && each.id != by && is_open(each.state)) {
-      become(each, ProposalState::aborted, "Replaced by proposal " + std::to_string(by) + ".");
+    const bool in_the_way = by.kind == ProposalKind::home || each.slots == by.slots;
+    if (in_the_way && each.id != by.id && is_open(each.state)) {
+      become(each, ProposalState::aborted, "Replaced by proposal " + std::to_string(by.id) + ".");
     }
   }
 }
@@ -149,11 +120,11 @@ tl::expected<Proposal, Refusal> ProposalBook::abort(std::uint32_t id) {
     return tl::make_unexpected(Refusal{"ENDED", "Proposal " + std::to_string(id) + " is " + state + ".",
                                        "a proposal that is approved, executing or paused", "None."});
   }
-  if (!send_(Cancel{id, proposal->move.slot})) {
-    return tl::make_unexpected(Refusal{"OVERLOADED", "The control thread takes no more commands now.", "",
-                                       "Press STOP, or release the pedal."});
+  if (!send_(Cancel{id})) {
+    return tl::make_unexpected(overloaded("Press STOP, or release the pedal."));
   }
   become(*proposal, ProposalState::aborted, "Ended by its author.");
+  tell_mode();
   return *proposal;
 }
 
@@ -163,20 +134,41 @@ void ProposalBook::abort_all(const std::string& reason) {
       become(each, ProposalState::aborted, reason);
     }
   }
+  tell_mode();
 }
 
-void ProposalBook::follow(const OrderTable& orders) {
-  for (const OrderStatus& status : orders) {
-    follow(status);
+void ProposalBook::follow(const ControlView& view) {
+  for (const OrderStatus& status : view.orders) {
+    follow_move(status);
   }
+  follow_home(view.home);
+  tell_mode();
 }
 
-void ProposalBook::follow(const OrderStatus& status) {
+void ProposalBook::follow_move(const OrderStatus& status) {
   Proposal* proposal = find_mutable(status.proposal);
   const ProposalState state = state_of(status.phase);
   if (proposal != nullptr && may_become(proposal->state, state)) {
     become(*proposal, state, detail_of(status), verdict_of(status));
   }
+}
+
+/** Homing is told anew within a state too: the step changes, or what is left of it. */
+void ProposalBook::follow_home(const HomeStatus& status) {
+  Proposal* proposal = find_mutable(status.order.proposal);
+  const ProposalState state = state_of(status.order.phase);
+  if (proposal == nullptr || proposal->kind != ProposalKind::home || !is_open(proposal->state)) {
+    return;
+  }
+  std::string detail = detail_of(robot_, *proposal, status);
+  const bool same = proposal->state == state;
+  if (same ? detail == proposal->detail : !may_become(proposal->state, state)) {
+    return;
+  }
+  if (proposal->step_count != 0 && status.step < robot_.home_steps.size()) {
+    proposal->step = robot_.home_steps[status.step].name;
+  }
+  become(*proposal, state, std::move(detail), verdict_of(status.order));
 }
 
 void ProposalBook::become(Proposal& proposal, ProposalState state, std::string detail,
@@ -186,8 +178,30 @@ void ProposalBook::become(Proposal& proposal, ProposalState state, std::string d
   proposal.verdict = std::move(verdict);
   if (!is_open(state)) {
     proposal.ended = clock_();
+    proposal.step.clear();
   }
   listener_(proposal);
+}
+
+void ProposalBook::tell_mode() {
+  const std::string_view mode = app_mode();
+  if (std::exchange(told_mode_, mode) != mode) {
+    mode_listener_(mode);
+  }
+}
+
+std::string_view ProposalBook::app_mode() const { return open_home() == nullptr ? "manual" : "home"; }
+
+const Proposal* ProposalBook::open_home() const {
+  const auto found = std::find_if(book_.begin(), book_.end(), [](const Proposal& each) {
+    return each.kind == ProposalKind::home && is_approved(each.state);
+  });
+  return found == book_.end() ? nullptr : &*found;
+}
+
+bool ProposalBook::homes(std::uint32_t slot) const {
+  const Proposal* home = open_home();
+  return home != nullptr && std::find(home->slots.begin(), home->slots.end(), slot) != home->slots.end();
 }
 
 const Proposal* ProposalBook::find(std::uint32_t id) const {
@@ -202,7 +216,7 @@ Proposal* ProposalBook::find_mutable(std::uint32_t id) {
 
 const Proposal* ProposalBook::open_of(std::uint32_t slot) const {
   const auto found = std::find_if(book_.begin(), book_.end(), [slot](const Proposal& each) {
-    return each.move.slot == slot && is_open(each.state);
+    return each.kind == ProposalKind::move && each.move.slot == slot && is_open(each.state);
   });
   return found == book_.end() ? nullptr : &*found;
 }

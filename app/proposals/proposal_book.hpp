@@ -29,6 +29,8 @@ class ProposalBook {
   using Send = std::function<bool(const Command&)>;
   /** Told of each proposal that changed. */
   using Listener = std::function<void(const Proposal&)>;
+  /** Told of the new mode, "manual" or "home". */
+  using ModeListener = std::function<void(std::string_view)>;
   using Clock = std::function<UtcTime()>;
 
   /** `robot` and `config` must outlive the book. */
@@ -36,11 +38,20 @@ class ProposalBook {
 
   void on_change(Listener listener) { listener_ = std::move(listener); }
 
+  void on_mode_change(ModeListener listener) { mode_listener_ = std::move(listener); }
+
   /**
    * Drafts a move, checks it and approves it, as its author releases it by proposing it. An open proposal of
-   * the same axis is aborted. A refused draft stays in the book.
+   * the same axis is aborted. Refused with MODE_HOME while homing is open. A refused draft stays in the book.
    */
   tl::expected<Proposal, Refusal> propose(const MoveDraft& draft, const ControlView& view);
+
+  /**
+   * Drafts homing of one axis, one step or all steps, checks it (home_plan.hpp) and approves it. Every open
+   * proposal is aborted. A refused draft stays in the book; one that names what the robot has not (AXIS,
+   * NOT_FOUND, INVALID) is none.
+   */
+  tl::expected<Proposal, Refusal> propose_home(const HomeDraft& draft, const ControlView& view);
 
   /** Ends an open proposal; an executing one stops at once. The id must exist. */
   tl::expected<Proposal, Refusal> abort(std::uint32_t id);
@@ -49,24 +60,36 @@ class ProposalBook {
   void abort_all(const std::string& reason);
 
   /** Takes over where the control thread's orders stand. */
-  void follow(const OrderTable& orders);
+  void follow(const ControlView& view);
+
+  /** "home" while homing is open, else "manual". */
+  [[nodiscard]] std::string_view app_mode() const;
 
   /** The proposal of that number, or null. */
   [[nodiscard]] const Proposal* find(std::uint32_t id) const;
 
-  /** The open proposal of the axis, or null. */
+  /** The open move of the axis, or null. */
   [[nodiscard]] const Proposal* open_of(std::uint32_t slot) const;
+
+  /** The open proposal of homing, or null. */
+  [[nodiscard]] const Proposal* open_home() const;
+
+  /** Whether open homing moves the axis. */
+  [[nodiscard]] bool homes(std::uint32_t slot) const;
 
   /** Newest first. */
   [[nodiscard]] std::vector<Proposal> newest_first() const { return {book_.rbegin(), book_.rend()}; }
 
  private:
-  Proposal& draft(const Axis& axis, const MoveDraft& draft, std::uint32_t tick);
-  void replace_open(std::uint32_t slot, std::uint32_t by);
+  Proposal& draft(Proposal proposal, const std::vector<std::uint32_t>& slots, const ControlView& view);
+  tl::expected<Proposal, Refusal> approve(Proposal& proposal, const Command& order);
+  void replace_open(const Proposal& by);
   Refusal refuse(Proposal& proposal, Refusal refusal);
   void become(Proposal& proposal, ProposalState state, std::string detail,
               std::optional<std::string> verdict = std::nullopt);
-  void follow(const OrderStatus& status);
+  void follow_move(const OrderStatus& status);
+  void follow_home(const HomeStatus& status);
+  void tell_mode();
   Proposal* find_mutable(std::uint32_t id);
 
   const Robot& robot_;
@@ -74,6 +97,8 @@ class ProposalBook {
   Send send_;
   Clock clock_;
   Listener listener_ = [](const Proposal&) {};
+  ModeListener mode_listener_ = [](std::string_view) {};
+  std::string_view told_mode_ = "manual";
   std::deque<Proposal> book_; /**< oldest first */
   std::uint32_t last_id_ = 0;
 };

@@ -37,9 +37,9 @@ class ProposalBookTest : public testing::Test {
 
   void report(std::uint32_t proposal, OrderPhase phase, OrderReason reason = OrderReason::none,
               std::uint32_t code = 0) {
-    OrderTable orders{};
-    orders[insertion] = {proposal, phase, reason, code, 0};
-    book_.follow(orders);
+    ControlView view;
+    view.orders[insertion] = {proposal, phase, reason, code, 0};
+    book_.follow(view);
   }
 
   ilk_axis_t& axis() { return view_.snapshot.state.axis[insertion]; }

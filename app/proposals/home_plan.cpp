@@ -1,0 +1,127 @@
+#include "proposals/home_plan.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace interlock {
+namespace {
+
+void add(std::vector<std::uint32_t>& slots, std::uint32_t slot) {
+  if (std::find(slots.begin(), slots.end(), slot) == slots.end()) {
+    slots.push_back(slot);
+  }
+}
+
+void add_axes(std::vector<std::uint32_t>& slots, const HomeStep& step) {
+  for (const std::uint32_t slot : step.home) {
+    add(slots, slot);
+  }
+  for (const AxisCounts& each : step.nudge) {
+    add(slots, each.slot);
+  }
+  for (const AxisCounts& each : step.move) {
+    add(slots, each.slot);
+  }
+}
+
+std::string step_names(const Robot& robot) {
+  std::string names;
+  for (const HomeStep& step : robot.home_steps) {
+    names += (names.empty() ? "" : ", ") + step.name;
+  }
+  return names;
+}
+
+HomePlan plan_of_steps(const Robot& robot, std::size_t first, std::size_t count) {
+  HomePlan plan{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count), {}};
+  for (std::size_t i = first; i < first + count; ++i) {
+    add_axes(plan.slots, robot.home_steps[i]);
+  }
+  return plan;
+}
+
+tl::expected<HomePlan, Refusal> plan_of_axis(const Robot& robot, std::uint32_t slot) {
+  if (robot.at_slot(slot) == nullptr) {
+    return tl::make_unexpected(verdict_refusal(ILK_VERDICT_AXIS, "slot " + std::to_string(slot)));
+  }
+  return HomePlan{0, 0, {slot}};
+}
+
+tl::expected<HomePlan, Refusal> plan_of_step(const Robot& robot, const std::string& name) {
+  const auto found = std::find_if(robot.home_steps.begin(), robot.home_steps.end(),
+                                  [&](const HomeStep& step) { return step.name == name; });
+  if (found == robot.home_steps.end()) {
+    return tl::make_unexpected(Refusal{"NOT_FOUND", robot.title + " has no home step \"" + name + "\".",
+                                       "one of: " + step_names(robot), "Choose a home step of the robot."});
+  }
+  return plan_of_steps(robot, static_cast<std::size_t>(found - robot.home_steps.begin()), 1);
+}
+
+/** What is homed now, or will be once the steps before have run. */
+tl::expected<void, Refusal> check_moves(const Robot& robot, const ControlView& view, const HomePlan& plan) {
+  std::vector<std::uint32_t> homed;
+  for (std::uint32_t i = 0; i < plan.step_count; ++i) {
+    const HomeStep& step = robot.home_steps[plan.first_step + i];
+    for (const AxisCounts& each : step.move) {
+      const bool homed_before = std::find(homed.begin(), homed.end(), each.slot) != homed.end();
+      if (!homed_before && view.snapshot.state.axis[each.slot].homed == 0) {
+        const std::string name = robot.at_slot(each.slot)->name;
+        return tl::make_unexpected(Refusal{
+            "NOT_HOMED", "Step " + step.name + " moves " + name + " to a position, and it is not homed.",
+            "a homed axis", "Home " + name + " first, or run all home steps."});
+      }
+    }
+    homed.insert(homed.end(), step.home.begin(), step.home.end());
+  }
+  return {};
+}
+
+bool goes_to_switch(const Robot& robot, const HomePlan& plan, std::uint32_t slot) {
+  if (plan.step_count == 0) {
+    return true;
+  }
+  const auto first = robot.home_steps.begin() + plan.first_step;
+  return std::any_of(first, first + plan.step_count, [slot](const HomeStep& step) {
+    return std::find(step.home.begin(), step.home.end(), slot) != step.home.end();
+  });
+}
+
+}  // namespace
+
+tl::expected<HomePlan, Refusal> plan_home(const Robot& robot, const HomeDraft& draft) {
+  if (draft.slot && draft.step) {
+    return tl::make_unexpected(Refusal{"INVALID", "Homing takes a slot or a step, not both.",
+                                       "a slot, a step, or neither", "Leave one of them out."});
+  }
+  if (draft.slot) {
+    return plan_of_axis(robot, *draft.slot);
+  }
+  if (draft.step) {
+    return plan_of_step(robot, *draft.step);
+  }
+  if (robot.home_steps.empty()) {
+    return tl::make_unexpected(Refusal{"NOT_FOUND", robot.title + " has no home steps.",
+                                       "a robot file with [[home_step]]", "Home each axis by itself."});
+  }
+  return plan_of_steps(robot, 0, robot.home_steps.size());
+}
+
+tl::expected<void, Refusal> check_home(const Robot& robot, const ilk_config_t& config,
+                                       const ControlView& view, const HomePlan& plan) {
+  if (auto system = check_system(config, view); !system) {
+    return system;
+  }
+  for (const std::uint32_t slot : plan.slots) {
+    const Axis& axis = *robot.at_slot(slot);
+    if (auto able = check_axis(axis, view); !able) {
+      return able;
+    }
+    if (goes_to_switch(robot, plan, slot) && axis.limit == ILK_LIMIT_NONE) {
+      return tl::make_unexpected(
+          verdict_refusal(ILK_VERDICT_NO_SWITCH, axis.name, "an axis with a limit switch"));
+    }
+  }
+  return check_moves(robot, view, plan);
+}
+
+}  // namespace interlock

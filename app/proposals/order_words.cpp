@@ -1,0 +1,207 @@
+#include "proposals/order_words.hpp"
+
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "robot/catalog.hpp"
+
+namespace interlock {
+namespace {
+
+std::string words(catalog::Family family, std::uint32_t code) {
+  const catalog::Entry& entry = catalog::entry(family, code);
+  return catalog::name(family, code) + ": " + std::string(entry.meaning) + " " + std::string(entry.next_step);
+}
+
+/** Why an order ended. `axis` as it reads within a sentence; the first letter is left small. */
+std::string end_words(const std::string& axis, const OrderStatus& status) {
+  switch (status.reason) {
+    case OrderReason::none:
+    case OrderReason::arrived:
+    case OrderReason::pedal_released:
+    case OrderReason::press_again:
+      return "";
+    case OrderReason::kernel_refused:
+      return "The kernel refused: " + words(catalog::Family::verdict, status.code);
+    case OrderReason::stopped:
+      return "STOP.";
+    case OrderReason::cancelled:
+      return "Ended by its author.";
+    case OrderReason::locked:
+      return "The kernel locked. " + words(catalog::Family::cause, status.code);
+    case OrderReason::axis_disabled:
+      return axis + " was disabled.";
+    case OrderReason::axis_homing:
+      return "Homing took over the axis.";
+    case OrderReason::axis_faulted:
+      return axis + " faulted. " + words(catalog::Family::fault, status.code);
+    case OrderReason::blocked:
+      return "A limit held " + axis + " back. " + words(catalog::Family::gate, status.code);
+    case OrderReason::link_lost:
+      return "The link to the kernel was lost.";
+    case OrderReason::waited_too_long:
+      return "The pedal was not held for 60 s; propose it again.";
+    case OrderReason::not_homed:
+      return axis + " is not homed, so it cannot go to a position. Home it first.";
+    case OrderReason::verdict_lost:
+      return "The kernel's answer about " + axis + " was lost; propose it again.";
+    case OrderReason::authority_changed:
+      return "Motion authority changed; propose it again.";
+  }
+  return "";
+}
+
+std::string capital(std::string text) {
+  if (!text.empty()) {
+    text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  }
+  return text;
+}
+
+/** The title of the axis as it reads within a sentence. */
+std::string title_of(const Robot& robot, std::uint32_t slot) {
+  const Axis* axis = robot.at_slot(slot);
+  std::string title = axis == nullptr ? "slot " + std::to_string(slot) : axis->title;
+  const bool abbreviation = title.size() > 1 && std::isupper(static_cast<unsigned char>(title[1])) != 0;
+  if (!title.empty() && !abbreviation) {
+    title[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(title[0])));
+  }
+  return title;
+}
+
+std::string listed(const Robot& robot, const std::vector<std::uint32_t>& slots) {
+  std::string text;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    const char* before = i == 0 ? "" : i + 1 == slots.size() ? " and " : ", ";
+    text += before + title_of(robot, slots[i]);
+  }
+  return text;
+}
+
+std::vector<std::uint32_t> slots_of(const std::vector<AxisCounts>& axes) {
+  std::vector<std::uint32_t> slots;
+  for (const AxisCounts& each : axes) {
+    slots.push_back(each.slot);
+  }
+  return slots;
+}
+
+/** "homes yaw and pitch; step 2 of 3" */
+std::string work_words(const Robot& robot, const Proposal& proposal, std::uint32_t step) {
+  if (proposal.step_count == 0 || step >= robot.home_steps.size()) {
+    return "homes " + listed(robot, proposal.slots);
+  }
+  const HomeStep& now = robot.home_steps[step];
+  std::string text = "homes " + listed(robot, now.home);
+  if (!now.nudge.empty()) {
+    text = "moves " + listed(robot, slots_of(now.nudge)) + " out of the way";
+  } else if (!now.move.empty()) {
+    text = "moves " + listed(robot, slots_of(now.move)) + " into position";
+  }
+  if (proposal.step_count > 1) {
+    text += "; step " + std::to_string(step - proposal.first_step + 1) + " of " +
+            std::to_string(proposal.step_count);
+  }
+  return text;
+}
+
+/** "12.4 mm left" */
+std::string left_words(const Robot& robot, const HomeStatus& status) {
+  const Axis* axis = robot.at_slot(status.slot);
+  if (axis == nullptr || status.left_counts == 0) {
+    return "";
+  }
+  const bool degrees = axis->unit == Unit::rad;
+  const double radians_to_degrees = 57.29577951308232;
+  const double left = std::abs(axis->to_unit(status.left_counts)) * (degrees ? radians_to_degrees : 1.0);
+  std::array<char, 48> number{};
+  std::snprintf(number.data(), number.size(), "%.1f %s left", left, degrees ? "degrees" : "mm");
+  return number.data();
+}
+
+std::string paused_words(const Robot& robot, const HomeStatus& status) {
+  const bool again = status.order.reason == OrderReason::press_again;
+  const std::string left = left_words(robot, status);
+  return std::string(again ? "Release the pedal and press it again to go on"
+                           : "Motion ended; press and hold the pedal within 60 s to go on") +
+         (left.empty() ? "." : ": " + left + ".");
+}
+
+}  // namespace
+
+ProposalState state_of(OrderPhase phase) noexcept {
+  switch (phase) {
+    case OrderPhase::none:
+    case OrderPhase::waiting:
+      return ProposalState::approved;
+    case OrderPhase::executing:
+      return ProposalState::executing;
+    case OrderPhase::paused:
+      return ProposalState::paused;
+    case OrderPhase::done:
+      return ProposalState::done;
+    case OrderPhase::refused:
+      return ProposalState::refused;
+    case OrderPhase::aborted:
+      return ProposalState::aborted;
+    case OrderPhase::expired:
+      return ProposalState::expired;
+  }
+  return ProposalState::aborted;
+}
+
+std::string detail_of(const OrderStatus& status) {
+  switch (status.phase) {
+    case OrderPhase::none:
+    case OrderPhase::waiting:
+      return "Waits for the pedal.";
+    case OrderPhase::executing:
+      return "Moves while the pedal is held.";
+    case OrderPhase::paused:
+      return "Motion ended; press and hold the pedal within 60 s to go on.";
+    case OrderPhase::done:
+      return "At rest within the deadband of the target.";
+    default:
+      return capital(end_words("the axis", status));
+  }
+}
+
+std::string detail_of(const Robot& robot, const Proposal& proposal, const HomeStatus& status) {
+  const std::string work = work_words(robot, proposal, status.step);
+  const std::string axis = title_of(robot, status.slot);
+  switch (status.order.phase) {
+    case OrderPhase::none:
+    case OrderPhase::waiting:
+      return "Waits for the pedal; then " + work + ".";
+    case OrderPhase::executing:
+      return capital(work) + ".";
+    case OrderPhase::paused:
+      return paused_words(robot, status);
+    case OrderPhase::done:
+      return "Homed " + listed(robot, proposal.slots) + ".";
+    default:
+      return capital(end_words(axis, status.order));
+  }
+}
+
+std::optional<std::string> verdict_of(const OrderStatus& status) {
+  switch (status.reason) {
+    case OrderReason::kernel_refused:
+      return catalog::name(catalog::Family::verdict, status.code);
+    case OrderReason::axis_faulted:
+      return catalog::name(catalog::Family::verdict, ILK_VERDICT_FAULTED);
+    case OrderReason::axis_disabled:
+      return catalog::name(catalog::Family::verdict, ILK_VERDICT_DISABLED);
+    case OrderReason::axis_homing:
+      return catalog::name(catalog::Family::verdict, ILK_VERDICT_BUSY);
+    case OrderReason::locked:
+      return catalog::name(catalog::Family::verdict, ILK_VERDICT_MODE);
+    default:
+      return std::nullopt;
+  }
+}
+
+}  // namespace interlock
