@@ -1,0 +1,39 @@
+/**
+ * @file
+ * Rigid poses. `a_from_b` carries coordinates in frame b to coordinates in frame a: p_a = a_from_b * p_b.
+ * Translations in mm; rotations right-handed, determinant +1.
+ */
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+
+#include "kinematics/kinematics_error.hpp"
+
+namespace interlock {
+
+using Pose = Eigen::Isometry3d;
+
+/** Sixteen numbers of a homogeneous matrix, row by row, as the HTTP interface and the command line write it.
+ */
+using RowMajor = std::array<double, 16>;
+
+/** Largest entry of RᵀR - I, and distance of det R from +1, of a matrix that counts as rigid. */
+inline constexpr double rigid_tolerance = 1e-6;
+
+/** Standard right-handed rotations. */
+Eigen::Matrix3d rotation_x(double angle_rad) noexcept;
+Eigen::Matrix3d rotation_y(double angle_rad) noexcept;
+Eigen::Matrix3d rotation_z(double angle_rad) noexcept;
+
+/** Nothing, when the pose is finite, its rotation proper to `rigid_tolerance`, its translation within range.
+ */
+KinematicsResult<void> check_rigid(const Pose& pose) noexcept;
+
+/** The pose of a homogeneous matrix, when it is rigid and its last row is exactly 0 0 0 1. */
+KinematicsResult<Pose> pose_from(const RowMajor& numbers) noexcept;
+
+/** The homogeneous matrix of a pose. */
+RowMajor row_major(const Pose& pose) noexcept;
+
+}  // namespace interlock
