@@ -49,6 +49,7 @@ struct CommandLine {
   RunOptions run;
   StatusOptions status;
   std::filesystem::path model;
+  bool model_json = false;
   std::filesystem::path config;
 };
 
@@ -89,6 +90,7 @@ void add_model(CLI::App& cli, CommandLine& line) {
   model->require_subcommand(1);
   CLI::App* const check = model->add_subcommand("check", "Say whether the kernel will accept the robot");
   check->add_option("FILE", line.model, "Robot file")->required();
+  check->add_flag("--json", line.model_json, "Answer in one JSON object");
   CLI::App* const compile = model->add_subcommand("compile", "Write the kernel's binary configuration");
   compile->add_option("FILE", line.model, "Robot file")->required();
   compile->add_option("-o,--output", line.config, "Configuration file; default ROBOT.ilkc");
@@ -108,7 +110,7 @@ Result<void> execute(const CLI::App& cli, const CommandLine& line) {
     return show_status(line.status, std::cout);
   }
   const CLI::App& model = *cli.get_subcommand("model");
-  return model.got_subcommand("check") ? check_model(line.model, std::cout)
+  return model.got_subcommand("check") ? check_model(line.model, line.model_json, std::cout)
                                        : compile_model(line.model, line.config, std::cout);
 }
 

@@ -1,5 +1,6 @@
 #include "cli/model_commands.hpp"
 
+#include "cli/model_summary.hpp"
 #include "robot/compile.hpp"
 #include "robot/robot_file.hpp"
 
@@ -7,16 +8,26 @@ namespace interlock::cli {
 
 namespace fs = std::filesystem;
 
-Result<CompiledRobot> load_and_compile(const fs::path& file) {
+namespace {
+
+tl::expected<CompiledRobot, RobotError> compiled_robot(const fs::path& file) {
   tl::expected<Robot, RobotError> robot = load_robot(file);
   if (!robot) {
-    return failed(ExitCode::refused, robot.error().message());
+    return tl::unexpected(robot.error());
   }
   const tl::expected<ilk_config_t, RobotError> config = compile(*robot);
   if (!config) {
-    return failed(ExitCode::refused, config.error().message());
+    return tl::unexpected(config.error());
   }
   return CompiledRobot{std::move(*robot), *config};
+}
+
+Failure refusal(const RobotError& error) { return {ExitCode::refused, error.message()}; }
+
+}  // namespace
+
+Result<CompiledRobot> load_and_compile(const fs::path& file) {
+  return compiled_robot(file).map_error(refusal);
 }
 
 Result<void> save_config(const ilk_config_t& config, const fs::path& file) {
@@ -27,13 +38,14 @@ Result<void> save_config(const ilk_config_t& config, const fs::path& file) {
   return {};
 }
 
-Result<void> check_model(const fs::path& file, std::ostream& output) {
-  const Result<CompiledRobot> compiled = load_and_compile(file);
+Result<void> check_model(const fs::path& file, bool json, std::ostream& output) {
+  const tl::expected<CompiledRobot, RobotError> compiled = compiled_robot(file);
   if (!compiled) {
-    return tl::unexpected(compiled.error());
+    output << (json ? model_json(compiled.error()) : "");
+    return tl::unexpected(refusal(compiled.error()));
   }
-  output << compiled->robot.name << ": " << compiled->robot.axes.size() << " axes, configuration "
-         << config_hash(compiled->config) << ", valid\n";
+  const auto& [robot, config] = *compiled;
+  output << (json ? model_json(robot, config) : model_text(robot, config));
   return {};
 }
 

@@ -22,8 +22,8 @@ struct CompiledRobot {
 /** Reads and compiles a robot file. */
 Result<CompiledRobot> load_and_compile(const std::filesystem::path& file);
 
-/** Says whether the robot file is sound, and the hash of its configuration. */
-Result<void> check_model(const std::filesystem::path& file, std::ostream& output);
+/** Says whether the robot file is sound, and what the robot consists of; `json`: in one JSON object. */
+Result<void> check_model(const std::filesystem::path& file, bool json, std::ostream& output);
 
 /** Writes the configuration to `config_file`, by default NAME.ilkc in the working directory. */
 Result<void> compile_model(const std::filesystem::path& file, const std::filesystem::path& config_file,
