@@ -1,0 +1,174 @@
+#include "http/targeting.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace interlock::web {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/** Turned by an angle about the third axis. */
+Pose turned(double angle) {
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  return {c, -s, 0, 10, s, c, 0, -20, 0, 0, 1, 30.5, 0, 0, 0, 1};
+}
+
+tl::expected<Targeting, Problem> registered(const json& pose) {
+  return with_registration({}, {{"registration", pose}});
+}
+
+TEST(Targeting, StartsWithTheIdentityAndNothingElse) {
+  const json body = to_json(Targeting{});
+  EXPECT_EQ(body["registration"], json({1.0, 0, 0, 0, 0, 1.0, 0, 0, 0, 0, 1.0, 0, 0, 0, 0, 1.0}));
+  EXPECT_TRUE(body["entry_point"].is_null());
+  EXPECT_TRUE(body["target_point"].is_null());
+  EXPECT_TRUE(body["reported_position"].is_null());
+  EXPECT_EQ(body["cannula_to_treatment_offset"], 0.0);
+}
+
+TEST(Targeting, ARegistrationIsKeptAsGiven) {
+  const auto set = registered(turned(0.7));
+  ASSERT_TRUE(set);
+  EXPECT_EQ(set->registration, turned(0.7));
+  EXPECT_FALSE(set->ignore_registration_rotation);
+}
+
+TEST(Targeting, NumericStringsAreNumbers) {
+  json pose = turned(0);
+  for (json& each : pose) {
+    each = each.dump();
+  }
+  const auto set = registered(pose);
+  ASSERT_TRUE(set);
+  EXPECT_EQ(set->registration, turned(0));
+  const auto target =
+      with_target({}, {{"entry_point", {"1.5", -2, "3e1"}}, {"robot_to_entry_offset", "-7.25"}});
+  ASSERT_TRUE(target);
+  EXPECT_THAT(*target->entry_point, ElementsAre(1.5, -2.0, 30.0));
+  EXPECT_EQ(target->robot_to_entry_mm, -7.25);
+}
+
+TEST(Targeting, AnElementThatIsNoNumberIsNamed) {
+  json pose = turned(0);
+  pose[6] = "1 mm";
+  EXPECT_EQ(registered(pose).error().field, "registration[6]");
+  pose[6] = nullptr;
+  EXPECT_EQ(registered(pose).error().field, "registration[6]");
+  pose.erase(6);
+  EXPECT_EQ(registered(pose).error().field, "registration");
+  EXPECT_EQ(registered(7).error().field, "registration");
+  EXPECT_EQ(with_registration({}, json::object()).error().field, "registration");
+}
+
+TEST(Targeting, OnlyARigidPoseIsARegistration) {
+  Pose scaled = turned(0.3);
+  scaled[0] *= 1.01;
+  EXPECT_THAT(registered(scaled).error().detail, HasSubstr("length"));
+  Pose skewed = turned(0);
+  skewed[1] = 0.01;
+  EXPECT_THAT(registered(skewed).error().detail, HasSubstr("perpendicular"));
+  Pose mirrored = turned(0);
+  mirrored[10] = -1;
+  EXPECT_THAT(registered(mirrored).error().expected, HasSubstr("determinant"));
+  EXPECT_FALSE(registered(Pose{}));
+}
+
+TEST(Targeting, ARotationMayBeRoundedToThreeDigits) {
+  Pose rounded = turned(0.5);
+  for (double& each : rounded) {
+    each = std::round(each * 1e4) / 1e4;
+  }
+  EXPECT_TRUE(registered(rounded));
+}
+
+TEST(Targeting, TheLastRowOfAPoseIsFixed) {
+  for (std::size_t column = 0; column < 4; ++column) {
+    Pose pose = turned(0);
+    pose[12 + column] += 0.5;
+    EXPECT_EQ(registered(pose).error().field, "registration[" + std::to_string(12 + column) + "]");
+  }
+}
+
+TEST(Targeting, HugeNumbersAreRefusedNotOverflown) {
+  Pose pose = turned(0);
+  pose[0] = 1e308;
+  pose[4] = 1e308;
+  EXPECT_FALSE(registered(pose));
+  Pose away = turned(0);
+  away[7] = 10000.5;
+  EXPECT_EQ(registered(away).error().field, "registration[7]");
+}
+
+TEST(Targeting, PointsHaveABound) {
+  EXPECT_TRUE(with_target({}, {{"target_point", {10000, -10000, 0}}}));
+  const auto refused = with_target({}, {{"target_point", {0, -10000.1, 0}}});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().field, "target_point[1]");
+  EXPECT_FALSE(with_target({}, {{"target_point", {0, 0}}}));
+  EXPECT_FALSE(with_target({}, {{"target_point", nullptr}}));
+}
+
+TEST(Targeting, OffsetsHaveABound) {
+  const auto set =
+      with_target({}, {{"treatment_to_tip_offset", 1000}, {"treatment_to_robot_at_home", "-1000"}});
+  ASSERT_TRUE(set);
+  EXPECT_EQ(set->treatment_to_tip_mm, 1000.0);
+  EXPECT_EQ(set->treatment_to_robot_at_home_mm, -1000.0);
+  EXPECT_EQ(with_target({}, {{"robot_to_entry_offset", 1000.5}}).error().field, "robot_to_entry_offset");
+}
+
+TEST(Targeting, BothSpellingsOfTheCannulaAreOneValue) {
+  for (const char* name : {"cannula_to_treatment_offset", "canula_to_treatment_offset"}) {
+    const auto set = with_target({}, {{name, 12.5}});
+    ASSERT_TRUE(set) << name;
+    EXPECT_EQ(to_json(*set)["cannula_to_treatment_offset"], 12.5);
+    EXPECT_EQ(to_json(*set)["canula_to_treatment_offset"], 12.5);
+  }
+  const json both{{"cannula_to_treatment_offset", 1}, {"canula_to_treatment_offset", 1}};
+  EXPECT_EQ(with_target({}, both).error().field, "canula_to_treatment_offset");
+}
+
+TEST(Targeting, FieldsLeftOutStay) {
+  Targeting before;
+  before.entry_point = Point{1, 2, 3};
+  before.robot_to_entry_mm = 4;
+  before.ignore_registration_rotation = true;
+  const auto set = with_target(before, {{"target_point", {7, 8, 9}}});
+  ASSERT_TRUE(set);
+  EXPECT_EQ(set->entry_point, before.entry_point);
+  EXPECT_EQ(set->robot_to_entry_mm, 4);
+  EXPECT_TRUE(with_registration(before, {{"registration", turned(0)}})->ignore_registration_rotation);
+  EXPECT_EQ(with_target(before, json::object()).value(), before);
+}
+
+TEST(Targeting, AReportedPoseReplacesNothingElse) {
+  const auto set = with_reported_pose({}, {{"current_position", turned(1)}});
+  ASSERT_TRUE(set);
+  EXPECT_EQ(set->reported_position, turned(1));
+  EXPECT_EQ(set->registration, Targeting{}.registration);
+  EXPECT_EQ(with_reported_pose({}, {{"registration", turned(1)}}).error().field, "registration");
+  EXPECT_FALSE(with_reported_pose({}, {{"current_position", Pose{}}}));
+}
+
+TEST(Targeting, ComesBackFromTheStoreAsItWas) {
+  Targeting targeting;
+  targeting.registration = turned(0.1);
+  targeting.ignore_registration_rotation = true;
+  targeting.entry_point = Point{0.1, 0.2, 0.3};
+  targeting.treatment_to_tip_mm = 1.0 / 3.0;
+  targeting.cannula_to_treatment_mm = 2.5;
+  targeting.reported_position = turned(2);
+  EXPECT_EQ(stored_targeting(json::parse(to_json(targeting).dump())).value(), targeting);
+  EXPECT_EQ(stored_targeting(to_json(Targeting{})).value(), Targeting{});
+  EXPECT_FALSE(stored_targeting(json::array()));
+  EXPECT_FALSE(stored_targeting({{"registration", {1, 2}}}));
+}
+
+}  // namespace
+}  // namespace interlock::web
