@@ -1,5 +1,6 @@
 #include "robot/compile.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cerrno>
 #include <cstdio>
@@ -51,74 +52,56 @@ ilk_axis_config_t compile_axis(const Axis& axis) {
   return out;
 }
 
-/** Where a rule of the kernel is to be kept in the file; inside the axis' table when the rule is about an
- * axis. */
-std::string_view key_of(std::uint32_t error) {
-  switch (error) {
-    case ILK_CONFIG_ERROR_PERIOD:
-      return "period_us";
-    case ILK_CONFIG_ERROR_PEDAL_CHANNELS:
-      return "pedal.channels";
-    case ILK_CONFIG_ERROR_APP_TIMEOUT:
-      return "loop.app_timeout_ms";
-    case ILK_CONFIG_ERROR_LEASE:
-      return "loop.lease_max_ms";
-    case ILK_CONFIG_ERROR_PEDAL_DEBOUNCE:
-      return "pedal.debounce_ms";
-    case ILK_CONFIG_ERROR_PEDAL_DISAGREE:
-      return "pedal.disagree_ms";
-    case ILK_CONFIG_ERROR_BAD_FRAMES:
-      return "loop.bad_frame_limit";
-    case ILK_CONFIG_ERROR_OVERRUNS:
-      return "loop.overrun_limit";
-    case ILK_CONFIG_ERROR_NO_AXIS:
-      return "axis";
-    case ILK_CONFIG_ERROR_CARD:
-      return "card";
-    case ILK_CONFIG_ERROR_FLAG:
-      return "motor_direction";
-    case ILK_CONFIG_ERROR_LIMIT_SIDE:
-      return "limit";
-    case ILK_CONFIG_ERROR_SOFT_LIMITS:
-      return "soft_limits";
-    case ILK_CONFIG_ERROR_HOME_OFFSET:
-      return "home_offset_counts";
-    case ILK_CONFIG_ERROR_COAST:
-      return "mechanics.coast_counts";
-    case ILK_CONFIG_ERROR_DEADBAND:
-      return "deadband_counts";
-    case ILK_CONFIG_ERROR_MAX_DRIVE:
-      return "drive.max";
-    case ILK_CONFIG_ERROR_UNHOMED_DRIVE:
-      return "drive.unhomed_max";
-    case ILK_CONFIG_ERROR_AMPLITUDE:
-      return "drive.max_amplitude";
-    case ILK_CONFIG_ERROR_UNHOMED_TRAVEL:
-      return "unhomed_travel_counts";
-    case ILK_CONFIG_ERROR_HOME_DRIVE:
-      return "homing.drive";
-    case ILK_CONFIG_ERROR_HOME_TRAVEL:
-      return "homing.travel_counts";
-    case ILK_CONFIG_ERROR_HOME_BACKOFF:
-      return "homing.backoff_counts";
-    case ILK_CONFIG_ERROR_HOME_REST:
-      return "homing.rest_ms";
-    case ILK_CONFIG_ERROR_HOME_TIMEOUT:
-      return "homing.timeout_ms";
-    case ILK_CONFIG_ERROR_STALL:
-      return "stall";
-    case ILK_CONFIG_ERROR_REVERSE:
-      return "runaway.reverse_counts";
-    case ILK_CONFIG_ERROR_DRIFT:
-      return "runaway.drift_counts";
-    case ILK_CONFIG_ERROR_SETTLE:
-      return "mechanics.settle_ms";
-    case ILK_CONFIG_ERROR_MAX_DELTA:
-      return "mechanics.max_delta_counts";
-    default:
-      return "";
-  }
-}
+/** Where in the file a rule of the kernel is kept, inside of the axis' table when it is about an axis, and
+ * how. */
+struct Rule {
+  ilk_config_error_t error;
+  std::string_view key;
+  std::string_view expected;
+};
+
+/** Rules that a robot can break; all others are kept by how it is read and compiled. */
+constexpr std::array rules{
+    Rule{ILK_CONFIG_ERROR_PERIOD, "period_us", "125 to 2000 us"},
+    Rule{ILK_CONFIG_ERROR_PEDAL_CHANNELS, "pedal.channels", "1 or 2"},
+    Rule{ILK_CONFIG_ERROR_APP_TIMEOUT, "loop.app_timeout_ms", "1 to 150 ms"},
+    Rule{ILK_CONFIG_ERROR_LEASE, "loop.lease_max_ms", "1 to 150 ms"},
+    Rule{ILK_CONFIG_ERROR_PEDAL_DEBOUNCE, "pedal.debounce_ms", "1 to 50 ms"},
+    Rule{ILK_CONFIG_ERROR_PEDAL_DISAGREE, "pedal.disagree_ms", "1 to 50 ms"},
+    Rule{ILK_CONFIG_ERROR_BAD_FRAMES, "loop.bad_frame_limit", "1 to 5"},
+    Rule{ILK_CONFIG_ERROR_OVERRUNS, "loop.overrun_limit", "1 to 10"},
+    Rule{ILK_CONFIG_ERROR_NO_AXIS, "axis", "at least one axis"},
+    Rule{ILK_CONFIG_ERROR_CARD, "card", "a type of card that drives a motor"},
+    Rule{ILK_CONFIG_ERROR_FLAG, "motor_direction", "0 or 1, as for direction_correction"},
+    Rule{ILK_CONFIG_ERROR_LIMIT_SIDE, "limit", "none, lower or upper"},
+    Rule{ILK_CONFIG_ERROR_SOFT_LIMITS, "soft_limits", "min_counts below max_counts, both within +-2^30"},
+    Rule{ILK_CONFIG_ERROR_HOME_OFFSET, "home_offset_counts",
+         "a position from soft_limits.min_counts to max_counts"},
+    Rule{ILK_CONFIG_ERROR_COAST, "mechanics.coast_counts", "at least 1, and less than half of the range"},
+    Rule{ILK_CONFIG_ERROR_DEADBAND, "deadband_counts", "at least 1, and less than half of the range"},
+    Rule{ILK_CONFIG_ERROR_MAX_DRIVE, "drive.max",
+         "1 to the largest drive of the card: 2147483647 (pwm, analog-input), 1073741823 (non-pwm), 397785 "
+         "(high-frequency)"},
+    Rule{ILK_CONFIG_ERROR_UNHOMED_DRIVE, "drive.unhomed_max", "1 to a tenth of drive.max"},
+    Rule{ILK_CONFIG_ERROR_AMPLITUDE, "drive.max_amplitude", "1 to 255, and not less than homing.amplitude"},
+    Rule{ILK_CONFIG_ERROR_UNHOMED_TRAVEL, "unhomed_travel_counts",
+         "more than mechanics.coast_counts, at most a tenth of the range"},
+    Rule{ILK_CONFIG_ERROR_HOME_DRIVE, "homing.drive", "1 to drive.unhomed_max"},
+    Rule{ILK_CONFIG_ERROR_HOME_TRAVEL, "homing.travel_counts",
+         "the range and mechanics.coast_counts at least, twice the range at most"},
+    Rule{ILK_CONFIG_ERROR_HOME_BACKOFF, "homing.backoff_counts", "1 to a tenth of the range"},
+    Rule{ILK_CONFIG_ERROR_HOME_REST, "homing.rest_ms", "1 ms to homing.timeout_ms"},
+    Rule{ILK_CONFIG_ERROR_HOME_TIMEOUT, "homing.timeout_ms",
+         "time for back-off, travel and rest at homing.speed_counts_per_s, at most 600000 ms"},
+    Rule{ILK_CONFIG_ERROR_STALL, "stall",
+         "driven_ms from 1 to 500; min_counts above mechanics.noise_counts, at most a tenth of the range"},
+    Rule{ILK_CONFIG_ERROR_REVERSE, "runaway.reverse_counts",
+         "the sum of coast, backlash and noise at least, a tenth of the range at most"},
+    Rule{ILK_CONFIG_ERROR_DRIFT, "runaway.drift_counts",
+         "the sum of coast, backlash and noise at least, a tenth of the range at most"},
+    Rule{ILK_CONFIG_ERROR_SETTLE, "mechanics.settle_ms", "1 to 1000 ms"},
+    Rule{ILK_CONFIG_ERROR_MAX_DELTA, "mechanics.max_delta_counts", "1 to half of the range"},
+};
 
 RobotError error_at(const Origin& origin, std::string key, std::string problem, std::string expected) {
   const auto line = origin.line_of_key.find(key);
@@ -127,10 +110,14 @@ RobotError error_at(const Origin& origin, std::string key, std::string problem, 
 }
 
 RobotError rule_broken(const Robot& robot, ilk_config_verdict_t verdict) {
-  const catalog::Entry& rule = catalog::entry(catalog::Family::config_error, verdict.error);
+  const catalog::Entry& entry = catalog::entry(catalog::Family::config_error, verdict.error);
+  const auto found = std::ranges::find(rules, verdict.error, &Rule::error);
+  const Rule rule = found == rules.end() ? Rule{} : *found;
   const Axis* const axis = robot.at_slot(verdict.slot);
-  return error_at(robot.origin, (axis ? "axis." + axis->name + '.' : "") + std::string(key_of(verdict.error)),
-                  std::string(rule.meaning), "values that keep the kernel's rule " + std::string(rule.name));
+  const std::string table = axis ? "axis." + axis->name + '.' : "";
+  const std::string_view meaning = entry.meaning.substr(0, entry.meaning.find_last_not_of('.') + 1);
+  return error_at(robot.origin, table + std::string(rule.key), std::string(meaning),
+                  std::string(rule.expected) + " (the kernel's rule " + std::string(entry.name) + ')');
 }
 
 /** The first card in a slot that does not exist, or of a type that nobody can drive. */

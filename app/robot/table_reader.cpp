@@ -1,5 +1,6 @@
 #include "robot/table_reader.hpp"
 
+#include <charconv>
 #include <cmath>
 #include <regex>
 #include <sstream>
@@ -11,12 +12,22 @@ const toml::table empty_table;
 
 std::uint32_t line_of(const toml::node& node) { return node.source().begin.line; }
 
+/** The shortest digits that read back as this number. */
+std::string shortest(double number) {
+  std::array<char, 32> digits{};
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
+  return {digits.data(), end};
+}
+
 std::string described(const toml::node& node) {
   if (node.is_table()) {
     return "a table is given";
   }
   if (node.is_array()) {
     return "an array is given";
+  }
+  if (const std::optional<double> number = node.value_exact<double>()) {
+    return shortest(*number) + " is given";
   }
   std::ostringstream text;
   text << toml::node_view<const toml::node>(node) << " is given";
@@ -114,10 +125,8 @@ double TableReader::number(std::string_view key) {
 double TableReader::number_between(std::string_view key, double lowest, double highest) {
   const double given = number(key);
   if (given < lowest || given > highest) {
-    std::ostringstream expected;
-    expected << "a number from " << lowest << " to " << highest;
     if (const toml::node* const node = table_.get(key)) {
-      refuse_value(key, *node, expected.str());
+      refuse_value(key, *node, "a number from " + shortest(lowest) + " to " + shortest(highest));
     }
     return lowest;
   }

@@ -1,0 +1,148 @@
+"""Robot files: what is accepted, what is refused and how, and that a robot needs no code of its own."""
+
+import hashlib
+import json
+import subprocess
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+import jsonschema
+import pytest
+from bare_kernel import BIN, ROOT
+from test_run import DONE, REFUSED, interlock
+
+FILES = ROOT / "tests/integration/robots"
+TRAINER = FILES / "trainer.toml"
+BROKEN = tomllib.loads((FILES / "broken.toml").read_text())
+SCHEMA = json.loads((ROOT / "models/robots/robot.schema.json").read_text())
+
+# SHA-256 of the compiled configuration. Another value means that the kernel will be told something else: say so
+# in the commit that changes it.
+COMPILED = {
+    "neuro": "75b2e1469e1b3bafda105f6d9bf443a9f4b47eee276b1ec5ded4a726a89189d7",
+    "prostate": "d60262a837688aad3315025f564814c6681ec20a8dc7253be9edeb86ab8bf2e7",
+}
+
+
+def robot_file(name: str) -> Path:
+    return ROOT / f"models/robots/{name}.toml"
+
+
+def schema_refuses(text: str) -> bool:
+    return not jsonschema.Draft202012Validator(SCHEMA).is_valid(tomllib.loads(text))
+
+
+def broken_text(case: str) -> str:
+    """The trainer's file with the case's edit."""
+    text, old = TRAINER.read_text(), BROKEN[case]["from"]
+    assert old in text, f"trainer.toml has no {old!r}"
+    return text.replace(old, BROKEN[case]["to"], 1)
+
+
+def model(command: str, folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """`interlock model COMMAND broken.toml` in the folder, so that no path stands in its answer."""
+    return subprocess.run(
+        [BIN / "interlock", "model", command, "broken.toml", *arguments],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+
+
+def test_there_are_broken_files_enough_to_trust_the_reader() -> None:
+    assert len(BROKEN) >= 40
+
+
+@pytest.mark.parametrize("case", BROKEN)
+def test_broken_robot_is_refused_at_its_line_and_key_and_nothing_is_written(
+    case: str, tmp_path: Path
+) -> None:
+    (tmp_path / "broken.toml").write_text(broken_text(case))
+    existing = tmp_path / "robot.ilkc"
+    existing.write_bytes(b"the configuration of before")
+    for run in (model("check", tmp_path), model("compile", tmp_path, "-o", existing.name)):
+        assert run.returncode == REFUSED
+        assert run.stdout == ""
+        assert run.stderr.splitlines() == [f"interlock: {BROKEN[case]['error']}"]
+    assert existing.read_bytes() == b"the configuration of before"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["broken.toml", "robot.ilkc"]
+
+
+@pytest.mark.parametrize("case", [case for case, broken in BROKEN.items() if "schema" in broken])
+def test_schema_refuses_what_is_wrong_in_structure_and_leaves_clashes_to_the_program(case: str) -> None:
+    assert schema_refuses(broken_text(case)) == BROKEN[case]["schema"]
+
+
+@pytest.mark.parametrize(
+    "file", [robot_file("neuro"), robot_file("prostate"), TRAINER], ids=lambda path: path.stem
+)
+def test_sound_robot_satisfies_the_schema_that_its_first_line_names(file: Path) -> None:
+    named = file.read_text().splitlines()[0].removeprefix("#:schema ")
+    assert (file.parent / named).resolve() == ROOT / "models/robots/robot.schema.json"
+    jsonschema.validate(tomllib.loads(file.read_text()), SCHEMA, cls=jsonschema.Draft202012Validator)
+
+
+def properties(schema: object, path: str = "") -> Iterator[tuple[str, dict]]:
+    """Every property that the schema describes, by its path."""
+    if isinstance(schema, dict):
+        for name, value in schema.items():
+            if name == "properties" and "description" in schema:
+                for key, described in value.items():
+                    yield f"{path}.{key}", described
+            yield from properties(value, f"{path}.{name}")
+
+
+def test_schema_is_sound_and_tells_what_each_key_means() -> None:
+    jsonschema.Draft202012Validator.check_schema(SCHEMA)
+    said_elsewhere = {"$ref", "const", "enum"}
+    silent = [
+        path
+        for path, described in properties(SCHEMA)
+        if "description" not in described and not said_elsewhere & described.keys()
+    ]
+    assert silent == []
+
+
+@pytest.mark.parametrize("name", COMPILED)
+def test_robot_compiles_to_the_same_bytes_on_every_run(name: str, tmp_path: Path) -> None:
+    for run in range(3):
+        output = tmp_path / f"{run}.ilkc"
+        assert interlock("model", "compile", robot_file(name), "-o", output).returncode == DONE
+        assert hashlib.sha256(output.read_bytes()).hexdigest() == COMPILED[name]
+
+
+def test_model_check_tells_people_what_the_robot_consists_of() -> None:
+    checked = interlock("model", "check", robot_file("prostate"))
+    assert checked.returncode == DONE
+    lines = checked.stdout.splitlines()
+    assert lines[0].startswith("prostate: 6 axes, configuration ")
+    assert "2     PWM             back_left       40.00 to 187.39 mm      upper" in lines
+    assert "3     SENSOR          force           input_force (ADC 2), needle_force (ADC 3)" in lines
+    assert "home step right_inward: nudge back_right, front_right" in lines
+
+
+def test_model_check_tells_programs_the_same() -> None:
+    checked = interlock("model", "check", "--json", robot_file("prostate"))
+    assert checked.returncode == DONE
+    robot = json.loads(checked.stdout)
+    assert robot["valid"] is True
+    assert robot["kinematics"] == "prostate_trapezoids"
+    assert [axis["slot"] for axis in robot["axes"]] == [0, 1, 2, 4, 5, 6]
+    assert robot["sensors"][0]["channels"][1] == {"name": "needle_force", "adc": 3, "unit": "unspecified"}
+    assert robot["home_steps"][1]["counts"] == {"back_right": 175000, "front_right": 175000}
+
+
+def test_model_check_tells_programs_what_is_wrong(tmp_path: Path) -> None:
+    (tmp_path / "broken.toml").write_text(broken_text("two_axes_in_one_slot"))
+    checked = model("check", tmp_path, "--json")
+    assert checked.returncode == REFUSED
+    assert json.loads(checked.stdout) == {
+        "valid": False,
+        "file": "broken.toml",
+        "line": 109,
+        "key": "axis.rear_a.slot",
+        "problem": 'slot 0 carries "drill" already',
+        "expected": "a slot of its own",
+    }
