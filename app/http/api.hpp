@@ -1,19 +1,17 @@
 /**
  * @file
- * The routes of spec/openapi.yaml.
+ * The interface of spec/openapi.yaml: owns what its route groups work with and keeps it going.
  */
 #pragma once
 
-#include <memory>
-#include <optional>
+#include <string>
 
-#include "http/bench_client.hpp"
-#include "http/bench_pedal.hpp"
-#include "http/control_client.hpp"
+#include "http/context.hpp"
 #include "http/router.hpp"
-#include "http/stream_hub.hpp"
-#include "proposals/proposal_book.hpp"
-#include "robot/robot.hpp"
+#include "http/routes/bench_routes.hpp"
+#include "http/routes/motor_routes.hpp"
+#include "http/routes/proposal_routes.hpp"
+#include "http/routes/system_routes.hpp"
 
 namespace interlock::web {
 
@@ -26,6 +24,9 @@ class Api {
       Mailbox& mailbox, const std::string& bench_socket);
 
   [[nodiscard]] const Router& router() const { return router_; }
+  /** Who sends a request over the connection of that peer. */
+  [[nodiscard]] static Caller caller_of(const Request& request, const std::string& peer);
+
   [[nodiscard]] StreamHub& stream() { return stream_; }
 
   /** Follows the control thread's notices; ends with the io_context. */
@@ -36,44 +37,22 @@ class Api {
   boost::asio::awaitable<void> beat();
 
   /** Releases a pedal that is held over the network. */
-  boost::asio::awaitable<void> release_pedal();
+  boost::asio::awaitable<void> release_pedal() { return bench_.release_pedal(); }
 
  private:
-  using Answering = boost::asio::awaitable<Reply>;
-
-  void add_routes();
-  void add_bench_routes();
-
-  Reply status();
-  Reply motors();
-  Reply motor(const Parameters& parameters);
-  Answering act_on_motor(const Parameters& parameters);
-  Reply proposals();
-  Reply propose(const Request& request);
-  Reply proposal(const Parameters& parameters);
-  Reply abort(const Parameters& parameters);
-  Answering stop();
-  Answering reset();
-  Answering bench_status();
-  Answering bench_command(const Request& request, const Parameters& parameters);
-
-  tl::expected<void, Problem> take_pedal(nlohmann::json& body);
-  Answering pass_to_bench(std::string command, nlohmann::json body);
-  [[nodiscard]] tl::expected<const Axis*, Problem> axis_of(const std::string& slot) const;
-  const ControlView& view();
-  [[nodiscard]] tl::expected<void, Problem> need_kernel();
-  Answering ask(std::uint32_t kind, std::uint32_t slot, std::string where);
+  void tell_of_changes();
   [[nodiscard]] OpenTargets open_targets() const;
 
-  boost::asio::any_io_executor executor_;
-  const Robot& robot_;
-  const ilk_config_t& config_;
   ControlClient control_;
   ProposalBook book_;
   StreamHub stream_;
-  std::optional<BenchClient> bench_;
-  BenchPedal pedal_;
+  Bench bench_;
+  Context context_;
   Router router_;
+  SystemRoutes system_routes_{context_, router_};
+  MotorRoutes motor_routes_{context_, router_};
+  ProposalRoutes proposal_routes_{context_, router_};
+  BenchRoutes bench_routes_{context_, router_};
 };
 
 }  // namespace interlock::web

@@ -1,5 +1,6 @@
 #include "http/message.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <string_view>
 
@@ -27,10 +28,38 @@ void add_text(json& body, const char* key, const std::string& text) {
   }
 }
 
+void add_headers(Response& response, const Headers& headers) {
+  for (const auto& [name, value] : headers) {
+    response.set(name, value);
+  }
+}
+
+/** Without its percent-encoding; nothing when that is malformed. */
+std::optional<std::string> decoded(std::string_view encoded) {
+  std::string text;
+  for (std::size_t i = 0; i < encoded.size(); ++i) {
+    if (encoded[i] != '%') {
+      text += encoded[i];
+      continue;
+    }
+    unsigned byte = 0;
+    const std::string_view digits = encoded.substr(i + 1, 2);
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), byte, 16);
+    if (digits.size() != 2 || error != std::errc{} || end != digits.data() + 2) {
+      return std::nullopt;
+    }
+    text += static_cast<char>(byte);
+    i += 2;
+  }
+  return text;
+}
+
 }  // namespace
 
 Response json_response(const Success& success) {
-  return response_of(success.status, "application/json", success.body);
+  Response response = response_of(success.status, "application/json", success.body);
+  add_headers(response, success.headers);
+  return response;
 }
 
 Response problem_response(const Problem& problem) {
@@ -43,39 +72,69 @@ Response problem_response(const Problem& problem) {
   add_text(body, "expected", problem.expected);
   add_text(body, "next_step", problem.next_step);
   Response response = response_of(problem.status, "application/problem+json", body);
-  if (!problem.allow.empty()) {
-    response.set(http::field::allow, problem.allow);
-  }
+  add_headers(response, problem.headers);
   return response;
 }
 
 std::string path_of(const Request& request) {
   const std::string_view target(request.target().data(), request.target().size());
-  const std::string_view encoded = target.substr(0, target.find_first_of("?#"));
-  std::string path;
-  for (std::size_t i = 0; i < encoded.size(); ++i) {
-    if (encoded[i] != '%') {
-      path += encoded[i];
-      continue;
+  return decoded(target.substr(0, target.find_first_of("?#"))).value_or("");
+}
+
+tl::expected<json, Problem> parse_query(const Request& request) {
+  std::string_view rest(request.target().data(), request.target().size());
+  rest = rest.substr(0, rest.find('#'));
+  rest = rest.substr(std::min(rest.find('?'), rest.size() - 1) + 1);
+  json query = json::object();
+  while (!rest.empty()) {
+    const std::string_view pair = rest.substr(0, rest.find('&'));
+    rest.remove_prefix(std::min(pair.size() + 1, rest.size()));
+    const std::size_t equals = std::min(pair.find('='), pair.size());
+    const auto name = decoded(pair.substr(0, equals));
+    const auto value = decoded(pair.substr(std::min(equals + 1, pair.size())));
+    if (!name || !value || query.contains(*name)) {
+      return tl::make_unexpected(Problem{.status = Status::bad_request,
+                                         .code = "MALFORMED",
+                                         .detail = "The query is malformed at \"" + std::string(pair) + "\".",
+                                         .expected = "name=value&..., percent-encoded, each name once"});
     }
-    unsigned byte = 0;
-    const std::string_view digits = encoded.substr(i + 1, 2);
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), byte, 16);
-    if (digits.size() != 2 || error != std::errc{} || end != digits.data() + 2) {
-      return "";
-    }
-    path += static_cast<char>(byte);
-    i += 2;
+    query[*name] = *value;
   }
-  return path;
+  return query;
+}
+
+std::optional<std::string> cookie_of(const Request& request, std::string_view name) {
+  std::optional<std::string> found;
+  const auto [first, last] = request.equal_range(http::field::cookie);
+  for (auto header = first; header != last; ++header) {
+    for (const auto& [key, value] : http::param_list(";" + std::string(header->value()))) {
+      if (std::string_view(key.data(), key.size()) != name) {
+        continue;
+      }
+      if (found) {
+        return std::nullopt;
+      }
+      found.emplace(value);
+    }
+  }
+  return found;
+}
+
+std::optional<std::uint32_t> number_in(std::string_view text) {
+  std::uint32_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool whole = error == std::errc{} && end == text.data() + text.size();
+  return whole ? std::optional(number) : std::nullopt;
 }
 
 tl::expected<json, Problem> parse_body(const Request& request) {
   json body = json::parse(request.body(), nullptr, false);
   if (body.is_discarded()) {
-    return tl::make_unexpected(Problem{Status::bad_request, "MALFORMED", "The body is not JSON.", "",
-                                       "one JSON object",
-                                       "Send Content-Type application/json and a JSON object.", ""});
+    return tl::make_unexpected(Problem{.status = Status::bad_request,
+                                       .code = "MALFORMED",
+                                       .detail = "The body is not JSON.",
+                                       .expected = "one JSON object",
+                                       .next_step = "Send Content-Type application/json and a JSON object."});
   }
   return body;
 }

@@ -7,8 +7,12 @@
 #include <boost/asio/awaitable.hpp>
 #include <boost/beast/http.hpp>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <tl/expected.hpp>
+#include <utility>
+#include <vector>
 
 namespace interlock::web {
 
@@ -16,20 +20,24 @@ using Request = boost::beast::http::request<boost::beast::http::string_body>;
 using Response = boost::beast::http::response<boost::beast::http::string_body>;
 using Status = boost::beast::http::status;
 
+/** Names and values. */
+using Headers = std::vector<std::pair<std::string, std::string>>;
+
 /** Schema `Problem` of spec/openapi.yaml. Empty texts are left out. */
 struct Problem {
   Status status = Status::internal_server_error;
-  std::string code;      /**< verdict name or a code of the interface */
-  std::string detail;    /**< what, where */
-  std::string field;     /**< the field of the body that is wrong */
-  std::string expected;  /**< what belongs there instead */
-  std::string next_step; /**< what to do about it */
-  std::string allow;     /**< methods of the header `Allow`, for METHOD_NOT_ALLOWED */
+  std::string code = {};      /**< verdict name or a code of the interface */
+  std::string detail = {};    /**< what, where */
+  std::string field = {};     /**< the field of the body that is wrong */
+  std::string expected = {};  /**< what belongs there instead */
+  std::string next_step = {}; /**< what to do about it */
+  Headers headers = {};       /**< besides those that every answer has */
 };
 
 struct Success {
   Status status = Status::ok;
-  nlohmann::json body;
+  nlohmann::json body = {};
+  Headers headers = {}; /**< besides those that every answer has */
 };
 
 using Reply = tl::expected<Success, Problem>;
@@ -43,6 +51,18 @@ Response problem_response(const Problem& problem);
 /** The path of the request's target, without query and fragment, percent-decoded; empty when that is
  * malformed. */
 std::string path_of(const Request& request);
+
+/**
+ * The query of the request's target as an object of texts, to be read with `Fields`: `?lines=5` is
+ * `{"lines": "5"}`. 400 MALFORMED when its percent-encoding is wrong or a name comes twice.
+ */
+tl::expected<nlohmann::json, Problem> parse_query(const Request& request);
+
+/** The value of that cookie; nothing when the request does not bring it exactly once. */
+std::optional<std::string> cookie_of(const Request& request, std::string_view name);
+
+/** The text as a whole decimal number; nothing when it is none. */
+std::optional<std::uint32_t> number_in(std::string_view text);
 
 /** The body as JSON; 400 MALFORMED when it is none. */
 tl::expected<nlohmann::json, Problem> parse_body(const Request& request);

@@ -1,6 +1,6 @@
 #include "http/router.hpp"
 
-#include <optional>
+#include "http/problems.hpp"
 
 namespace interlock::web {
 namespace {
@@ -16,6 +16,21 @@ std::vector<std::string> segments_of(std::string_view path) {
     path.remove_prefix(segment.size());
   }
   return segments;
+}
+
+Problem login_needed() {
+  return {.status = Status::unauthorized,
+          .code = "LOGIN",
+          .detail = "Nobody is logged in, or the session ended.",
+          .next_step = "Log in."};
+}
+
+Problem role_needed(const Caller& caller, Role least) {
+  return {.status = Status::forbidden,
+          .code = "ROLE",
+          .detail = caller.user + " is " + std::string(role_name(*caller.role)) + ".",
+          .expected = std::string(role_name(least)),
+          .next_step = "Log in as a user with that role, or ask an administrator for it."};
 }
 
 bool is_parameter(const std::string& segment) { return segment.starts_with('{'); }
@@ -38,11 +53,11 @@ std::optional<Parameters> match(const std::vector<std::string>& pattern,
 
 }  // namespace
 
-void Router::add(http::verb method, std::string_view pattern, Handler handler) {
-  routes_.push_back(Route{method, segments_of(pattern), std::move(handler)});
+void Router::add(http::verb method, std::string_view pattern, Access access, Handler handler) {
+  routes_.push_back(Route{method, segments_of(pattern), access, std::move(handler)});
 }
 
-boost::asio::awaitable<Reply> Router::route(const Request& request) const {
+boost::asio::awaitable<Reply> Router::route(const Request& request, const Caller& caller) const {
   const std::string path = path_of(request);
   const std::vector<std::string> segments = segments_of(path);
   std::string allowed;
@@ -52,17 +67,33 @@ boost::asio::awaitable<Reply> Router::route(const Request& request) const {
       continue;
     }
     if (route.method == request.method()) {
-      co_return co_await route.handler(request, *parameters);
+      if (auto problem = check(route.access, caller)) {
+        co_return fail(std::move(*problem));
+      }
+      co_return co_await route.handler(Call{request, *parameters, caller});
     }
     allowed += (allowed.empty() ? "" : ", ") + std::string(http::to_string(route.method));
   }
-  if (!allowed.empty()) {
-    co_return tl::make_unexpected(Problem{
-        Status::method_not_allowed, "METHOD_NOT_ALLOWED",
-        path + " does not answer " + std::string(request.method_string()) + ".", "", allowed, "", allowed});
+  if (allowed.empty()) {
+    co_return fail(not_found(path, "a path of spec/openapi.yaml"));
   }
-  co_return tl::make_unexpected(Problem{Status::not_found, "NOT_FOUND", "There is no " + path + ".", "",
-                                        "a path of spec/openapi.yaml", "", ""});
+  co_return fail({.status = Status::method_not_allowed,
+                  .code = "METHOD_NOT_ALLOWED",
+                  .detail = path + " does not answer " + std::string(request.method_string()) + ".",
+                  .expected = allowed,
+                  .headers = {{"Allow", allowed}}});
+}
+
+std::optional<Problem> Router::check(const Access& access, const Caller& caller) const {
+  if (access.role) {
+    if (!caller.role) {
+      return login_needed();
+    }
+    if (*caller.role < *access.role) {
+      return role_needed(caller, *access.role);
+    }
+  }
+  return access.authority ? need_authority_(caller) : std::nullopt;
 }
 
 }  // namespace interlock::web

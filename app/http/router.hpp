@@ -1,40 +1,60 @@
 /**
  * @file
- * Which handler answers which method and path.
+ * Which handler answers which method and path, and who may call it. Rights are checked here and nowhere else.
  */
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "http/access.hpp"
 #include "http/message.hpp"
 
 namespace interlock::web {
 
 /** Values of the `{name}` segments of a route, in their order. */
 using Parameters = std::vector<std::string>;
-using Handler = std::function<boost::asio::awaitable<Reply>(const Request&, const Parameters&)>;
+
+/** One request on its way to its handler, which has the right to be called. */
+struct Call {
+  const Request& request;
+  const Parameters& parameters;
+  const Caller& caller;
+};
+
+using Handler = std::function<boost::asio::awaitable<Reply>(const Call&)>;
 
 class Router {
  public:
-  /** `pattern` as in spec/openapi.yaml: "/api/motors/{slot}". */
-  void add(boost::beast::http::verb method, std::string_view pattern, Handler handler);
+  /** Nothing when that caller holds the motion authority, else 409 AUTHORITY naming who does. */
+  using NeedAuthority = std::function<std::optional<Problem>(const Caller&)>;
+
+  explicit Router(NeedAuthority need_authority) : need_authority_(std::move(need_authority)) {}
+
+  /** `pattern` as in spec/openapi.yaml: "/api/motors/{axis}". */
+  void add(boost::beast::http::verb method, std::string_view pattern, Access access, Handler handler);
 
   /**
-   * Runs the handler of the request. 404 NOT_FOUND when no route has the path, 405 METHOD_NOT_ALLOWED when
-   * one has, but not this method. Request and router must outlive the returned operation.
+   * Runs the handler of the request. Refused before, in this order: 404 NOT_FOUND when no route has the path,
+   * 405 METHOD_NOT_ALLOWED when one has, but not this method, 401 LOGIN when nobody is logged in, 403 ROLE,
+   * 409 AUTHORITY. Request, caller and router must outlive the returned operation.
    */
-  [[nodiscard]] boost::asio::awaitable<Reply> route(const Request& request) const;
+  [[nodiscard]] boost::asio::awaitable<Reply> route(const Request& request, const Caller& caller) const;
 
  private:
   struct Route {
     boost::beast::http::verb method;
     std::vector<std::string> segments;
+    Access access;
     Handler handler;
   };
 
+  [[nodiscard]] std::optional<Problem> check(const Access& access, const Caller& caller) const;
+
+  NeedAuthority need_authority_;
   std::vector<Route> routes_;
 };
 

@@ -27,13 +27,11 @@ std::optional<Problem> check_host(const Request& request) {
   if (host == "localhost" || host == "127.0.0.1" || host == "[::1]") {
     return std::nullopt;
   }
-  return Problem{Status::forbidden,
-                 "HOST",
-                 "The host \"" + std::string(host) + "\" is not this machine.",
-                 "",
-                 "localhost, 127.0.0.1 or [::1]",
-                 "Open the address that interlock-app printed.",
-                 ""};
+  return Problem{.status = Status::forbidden,
+                 .code = "HOST",
+                 .detail = "The host \"" + std::string(host) + "\" is not this machine.",
+                 .expected = "localhost, 127.0.0.1 or [::1]",
+                 .next_step = "Open the address that interlock-app printed."};
 }
 
 std::optional<Problem> check_origin(const Request& request) {
@@ -42,13 +40,11 @@ std::optional<Problem> check_origin(const Request& request) {
   if (origin.empty() || origin == own) {
     return std::nullopt;
   }
-  return Problem{Status::forbidden,
-                 "ORIGIN",
-                 "The page of \"" + std::string(origin) + "\" may not do this.",
-                 "",
-                 own,
-                 "Use the console that this server brings.",
-                 ""};
+  return Problem{.status = Status::forbidden,
+                 .code = "ORIGIN",
+                 .detail = "The page of \"" + std::string(origin) + "\" may not do this.",
+                 .expected = own,
+                 .next_step = "Use the console that this server brings."};
 }
 
 bool is_safe(http::verb method) { return method == http::verb::get || method == http::verb::head; }

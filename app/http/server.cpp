@@ -14,6 +14,7 @@
 #include <chrono>
 #include <exception>
 #include <optional>
+#include <sstream>
 
 #include "http/same_origin.hpp"
 
@@ -44,30 +45,21 @@ void add_security_headers(Response& response) {
 
 Problem problem_of(const beast::error_code& error) {
   if (error == http::error::body_limit) {
-    return {Status::payload_too_large,
-            "TOO_LARGE",
-            "The body is too large.",
-            "",
-            "at most " + std::to_string(Server::longest_body) + " bytes",
-            "",
-            ""};
+    return {.status = Status::payload_too_large,
+            .code = "TOO_LARGE",
+            .detail = "The body is too large.",
+            .expected = "at most " + std::to_string(Server::longest_body) + " bytes"};
   }
   if (error == http::error::header_limit || error == http::error::buffer_overflow) {
-    return {Status::request_header_fields_too_large,
-            "TOO_LARGE",
-            "The header is too large.",
-            "",
-            "at most " + std::to_string(Server::longest_header) + " bytes",
-            "",
-            ""};
+    return {.status = Status::request_header_fields_too_large,
+            .code = "TOO_LARGE",
+            .detail = "The header is too large.",
+            .expected = "at most " + std::to_string(Server::longest_header) + " bytes"};
   }
-  return {Status::bad_request,
-          "MALFORMED",
-          "This is no HTTP request: " + error.message() + ".",
-          "",
-          "HTTP/1.1",
-          "",
-          ""};
+  return {.status = Status::bad_request,
+          .code = "MALFORMED",
+          .detail = "This is no HTTP request: " + error.message() + ".",
+          .expected = "HTTP/1.1"};
 }
 
 bool is_protocol_error(const beast::error_code& error) {
@@ -78,6 +70,14 @@ bool is_protocol_error(const beast::error_code& error) {
 
 }  // namespace
 
+Server::Connection::Connection(beast::tcp_stream connected) : stream(std::move(connected)) {
+  beast::error_code error;
+  const auto from = stream.socket().remote_endpoint(error);
+  if (!error) {
+    peer = (std::ostringstream() << from).str();
+  }
+}
+
 tl::expected<void, std::string> Server::listen(const Listen& where) {
   beast::error_code error;
   const auto address = asio::ip::make_address(where.address, error);
@@ -85,10 +85,9 @@ tl::expected<void, std::string> Server::listen(const Listen& where) {
     return tl::make_unexpected("--listen " + where.address + " is no address; expected 127.0.0.1 or ::1");
   }
   if (!address.is_loopback()) {
-    return tl::make_unexpected(
-        "--listen " + where.address +
-        " would let other machines in, and there is no encryption and no login yet; expected "
-        "127.0.0.1 or ::1. Use an SSH tunnel to reach it from elsewhere");
+    return tl::make_unexpected("--listen " + where.address +
+                               " would let other machines in, and there is no encryption; expected "
+                               "127.0.0.1 or ::1. Use an SSH tunnel to reach it from elsewhere");
   }
   acceptor_.open(address.is_v6() ? tcp::v6() : tcp::v4(), error);
   if (!error) {
@@ -123,44 +122,45 @@ asio::awaitable<void> Server::accept() {
       continue;
     }
     make_room();
-    auto session = std::make_shared<Session>(beast::tcp_stream(std::move(socket)));
-    const auto place = sessions_.insert(sessions_.end(), session);
-    asio::co_spawn(acceptor_.get_executor(), serve(session), [this, place](const std::exception_ptr& thrown) {
-      sessions_.erase(place);
-      if (thrown) {
-        try {
-          std::rethrow_exception(thrown);
-        } catch (const std::exception& exception) {
-          spdlog::critical("a connection ended by an exception: {}", exception.what());
-        }
-      }
-    });
+    auto connection = std::make_shared<Connection>(beast::tcp_stream(std::move(socket)));
+    const auto place = connections_.insert(connections_.end(), connection);
+    asio::co_spawn(acceptor_.get_executor(), serve(connection),
+                   [this, place](const std::exception_ptr& thrown) {
+                     connections_.erase(place);
+                     if (thrown) {
+                       try {
+                         std::rethrow_exception(thrown);
+                       } catch (const std::exception& exception) {
+                         spdlog::critical("a connection ended by an exception: {}", exception.what());
+                       }
+                     }
+                   });
   }
 }
 
 void Server::make_room() {
-  if (sessions_.size() < capacity) {
+  if (connections_.size() < capacity) {
     return;
   }
-  const auto idle =
-      std::find_if(sessions_.begin(), sessions_.end(), [](const auto& session) { return session->waiting; });
-  if (idle != sessions_.end()) {
+  const auto idle = std::find_if(connections_.begin(), connections_.end(),
+                                 [](const auto& connection) { return connection->waiting; });
+  if (idle != connections_.end()) {
     (*idle)->stream.close();
   }
 }
 
-asio::awaitable<void> Server::serve(std::shared_ptr<Session> session) {
+asio::awaitable<void> Server::serve(std::shared_ptr<Connection> connection) {
   for (bool keep_alive = true; keep_alive;) {
     http::request_parser<http::string_body> parser;
     parser.body_limit(longest_body);
     parser.header_limit(longest_header);
-    session->stream.expires_after(request_timeout);
-    session->waiting = true;
+    connection->stream.expires_after(request_timeout);
+    connection->waiting = true;
     const auto [error, bytes] =
-        co_await http::async_read(session->stream, session->buffer, parser, as_result);
-    session->waiting = false;
+        co_await http::async_read(connection->stream, connection->buffer, parser, as_result);
+    connection->waiting = false;
     if (error) {
-      co_await refuse(*session, error);
+      co_await refuse(*connection, error);
       co_return;
     }
     Request request = parser.release();
@@ -168,33 +168,32 @@ asio::awaitable<void> Server::serve(std::shared_ptr<Session> session) {
       std::optional<Problem> problem = check_host(request);
       problem = problem ? problem : check_origin(request);
       if (!problem && api_.stream().full()) {
-        problem = Problem{Status::service_unavailable,
-                          "OVERLOADED",
-                          "Too many clients watch the stream.",
-                          "",
-                          "at most " + std::to_string(StreamHub::capacity),
-                          "Close another console.",
-                          ""};
+        problem = Problem{.status = Status::service_unavailable,
+                          .code = "OVERLOADED",
+                          .detail = "Too many clients watch the stream.",
+                          .expected = "at most " + std::to_string(StreamHub::capacity),
+                          .next_step = "Close another console."};
       }
       if (!problem) {
-        co_await api_.stream().serve(std::move(session->stream), std::move(request));
+        co_await api_.stream().serve(std::move(connection->stream), std::move(request));
         co_return;
       }
-      co_await answer(*session, problem_response(*problem), false, false);
+      co_await answer(*connection, problem_response(*problem), false, false);
       co_return;
     }
-    session->stream.expires_never();
-    Response response = co_await respond(request);
+    connection->stream.expires_never();
+    const Caller caller = api_.caller_of(request, connection->peer);
+    Response response = co_await respond(request, caller);
     spdlog::debug("{} {} -> {}", std::string(request.method_string()), path_of(request),
                   response.result_int());
-    keep_alive = co_await answer(*session, std::move(response), request.method() == http::verb::head,
+    keep_alive = co_await answer(*connection, std::move(response), request.method() == http::verb::head,
                                  request.keep_alive());
   }
   beast::error_code ignored;
-  session->stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
+  connection->stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
 }
 
-asio::awaitable<Response> Server::respond(const Request& request) {
+asio::awaitable<Response> Server::respond(const Request& request, const Caller& caller) {
   if (const auto problem = check_host(request)) {
     co_return problem_response(*problem);
   }
@@ -205,55 +204,58 @@ asio::awaitable<Response> Server::respond(const Request& request) {
   }
   const std::string path = path_of(request);
   if (path == "/api" || path.starts_with("/api/")) {
-    co_return co_await respond_api(request);
+    co_return co_await respond_api(request, caller);
   }
   co_return files_.serve(request);
 }
 
-asio::awaitable<Response> Server::respond_api(const Request& request) {
+asio::awaitable<Response> Server::respond_api(const Request& request, const Caller& caller) {
   std::string thrown;
   try {
-    const Reply reply = co_await api_.router().route(request);
+    const Reply reply = co_await api_.router().route(request, caller);
     co_return reply ? json_response(*reply) : problem_response(reply.error());
   } catch (const std::exception& exception) {
     thrown = exception.what();
   }
   spdlog::critical("{} {} threw: {}", std::string(request.method_string()), path_of(request), thrown);
-  co_return problem_response({Status::internal_server_error, "INTERNAL", "The app failed to answer.", "", "",
-                              "Report it with the log.", ""});
+  co_return problem_response({.status = Status::internal_server_error,
+                              .code = "INTERNAL",
+                              .detail = "The app failed to answer.",
+                              .next_step = "Report it with the log."});
 }
 
-asio::awaitable<bool> Server::answer(Session& session, Response response, bool head_only, bool keep_alive) {
+asio::awaitable<bool> Server::answer(Connection& connection, Response response, bool head_only,
+                                     bool keep_alive) {
   add_security_headers(response);
   response.version(11);
   response.keep_alive(keep_alive);
   response.prepare_payload();
-  session.stream.expires_after(answer_timeout);
+  connection.stream.expires_after(answer_timeout);
   beast::error_code error;
   if (head_only) {
     http::response<http::empty_body> head{std::move(response.base())};
     http::response_serializer<http::empty_body> serializer(head);
-    error = std::get<0>(co_await http::async_write_header(session.stream, serializer, as_result));
+    error = std::get<0>(co_await http::async_write_header(connection.stream, serializer, as_result));
   } else {
-    error = std::get<0>(co_await http::async_write(session.stream, response, as_result));
+    error = std::get<0>(co_await http::async_write(connection.stream, response, as_result));
   }
   co_return !error && keep_alive;
 }
 
 /** Answers what could not be read. What is still on its way is read and dropped, else the peer may lose the
  * answer. */
-asio::awaitable<void> Server::refuse(Session& session, const beast::error_code& error) {
+asio::awaitable<void> Server::refuse(Connection& connection, const beast::error_code& error) {
   if (!is_protocol_error(error)) {
     co_return;
   }
-  co_await answer(session, problem_response(problem_of(error)), false, false);
+  co_await answer(connection, problem_response(problem_of(error)), false, false);
   beast::error_code ended;
-  session.stream.socket().shutdown(tcp::socket::shutdown_send, ended);
-  session.stream.expires_after(drain_timeout);
+  connection.stream.socket().shutdown(tcp::socket::shutdown_send, ended);
+  connection.stream.expires_after(drain_timeout);
   std::array<char, 16384> dropped{};
   for (std::size_t left = drain_bytes; left > dropped.size() && !ended;) {
     const auto [read_error, bytes] =
-        co_await session.stream.async_read_some(asio::buffer(dropped), as_result);
+        co_await connection.stream.async_read_some(asio::buffer(dropped), as_result);
     ended = read_error;
     left -= bytes;
   }

@@ -45,24 +45,26 @@ class Server {
   boost::asio::awaitable<void> accept();
 
  private:
-  struct Session {
-    explicit Session(boost::beast::tcp_stream connection) : stream(std::move(connection)) {}
+  struct Connection {
+    explicit Connection(boost::beast::tcp_stream connected);
     boost::beast::tcp_stream stream;
     boost::beast::flat_buffer buffer;
+    std::string peer;    /**< address and port of the client */
     bool waiting = true; /**< for a request, hence free to be closed */
   };
 
-  boost::asio::awaitable<void> serve(std::shared_ptr<Session> session);
-  boost::asio::awaitable<Response> respond(const Request& request);
-  boost::asio::awaitable<Response> respond_api(const Request& request);
-  boost::asio::awaitable<bool> answer(Session& session, Response response, bool head_only, bool keep_alive);
-  boost::asio::awaitable<void> refuse(Session& session, const boost::beast::error_code& error);
+  boost::asio::awaitable<void> serve(std::shared_ptr<Connection> connection);
+  boost::asio::awaitable<Response> respond(const Request& request, const Caller& caller);
+  boost::asio::awaitable<Response> respond_api(const Request& request, const Caller& caller);
+  boost::asio::awaitable<bool> answer(Connection& connection, Response response, bool head_only,
+                                      bool keep_alive);
+  boost::asio::awaitable<void> refuse(Connection& connection, const boost::beast::error_code& error);
   void make_room();
 
   boost::asio::ip::tcp::acceptor acceptor_;
   Api& api_;
   StaticFiles files_;
-  std::list<std::shared_ptr<Session>> sessions_;
+  std::list<std::shared_ptr<Connection>> connections_;
 };
 
 }  // namespace interlock::web

@@ -69,14 +69,19 @@ Response StaticFiles::serve(const Request& request) const {
   const std::string path = path_of(request);
   const auto file = file_of(root_, path);
   if (!file) {
-    return problem_response({Status::not_found, "NOT_FOUND", "There is no " + path + ".", "", "",
-                             root_.empty() ? "Start interlock-app with --web DIR, the built console." : "",
-                             ""});
+    return problem_response(
+        {.status = Status::not_found,
+         .code = "NOT_FOUND",
+         .detail = "There is no " + path + ".",
+         .next_step = root_.empty() ? "Start interlock-app with --web DIR, the built console." : ""});
   }
   if (!is_safe(request.method())) {
-    return problem_response({Status::method_not_allowed, "METHOD_NOT_ALLOWED",
-                             path + " does not answer " + std::string(request.method_string()) + ".", "",
-                             "GET, HEAD", "", "GET, HEAD"});
+    return problem_response(
+        {.status = Status::method_not_allowed,
+         .code = "METHOD_NOT_ALLOWED",
+         .detail = path + " does not answer " + std::string(request.method_string()) + ".",
+         .expected = "GET, HEAD",
+         .headers = {{"Allow", "GET, HEAD"}}});
   }
   std::ifstream stream(*file, std::ios::binary);
   Response response{Status::ok, 11};

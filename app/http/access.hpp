@@ -1,0 +1,40 @@
+/**
+ * @file
+ * Who calls, and who may: the right that each route asks for.
+ */
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace interlock {
+
+/** What a user may; each may what those before may. */
+enum class Role : std::uint8_t { viewer, engineer, admin };
+
+}  // namespace interlock
+
+namespace interlock::web {
+
+/** Who sent a request. */
+struct Caller {
+  std::uint32_t session = 0; /**< 0: nobody is logged in */
+  std::string user;
+  std::optional<Role> role;
+  std::string peer; /**< address and port that the request came from */
+};
+
+/** `x-role` and `x-authority` of spec/openapi.yaml. */
+struct Access {
+  std::optional<Role> role; /**< the least that suffices; empty: anybody, even without login */
+  bool authority = false;   /**< only the session that holds the motion authority */
+};
+
+constexpr Access anybody{};
+constexpr Access viewers{Role::viewer};
+constexpr Access engineers{Role::engineer};
+constexpr Access admins{Role::admin};
+constexpr Access holder{Role::engineer, true};
+
+}  // namespace interlock::web

@@ -1,0 +1,54 @@
+/**
+ * @file
+ * The simulated hardware as the interface offers it, with the dead man's switch of its pedal.
+ */
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "http/access.hpp"
+#include "http/bench_client.hpp"
+#include "http/bench_pedal.hpp"
+#include "http/message.hpp"
+
+namespace interlock::web {
+
+class Bench {
+ public:
+  /** An empty `socket_path` means that the hardware is real. */
+  Bench(const boost::asio::any_io_executor& executor, const std::string& socket_path);
+
+  /** 404 NO_BENCH when the hardware is real. */
+  [[nodiscard]] tl::expected<void, Problem> need_simulated() const;
+
+  /**
+   * Passes a command of models/plant/README.md on. 404 NO_BENCH when the hardware is real, 409 PEDAL_LAPSED
+   * when a pedal is renewed that is not held, 422 INVALID when the plant refuses, 503 NO_BENCH when it is
+   * silent.
+   *
+   * @param session who presses, when it is the pedal
+   */
+  boost::asio::awaitable<Reply> command(std::string name, nlohmann::json fields, const ControlView& view,
+                                        std::uint32_t session);
+
+  /** Releases a pedal that is held over the network. */
+  boost::asio::awaitable<void> release_pedal();
+
+  /** Whether the pedal is held, and not renewed in time. */
+  [[nodiscard]] bool overdue(const ControlView& view) const;
+
+  /** Whether that session holds the pedal. */
+  [[nodiscard]] bool held_by(std::uint32_t session) const { return pedal_.held() && presser_ == session; }
+
+ private:
+  tl::expected<void, Problem> take_pedal(nlohmann::json& fields, const ControlView& view,
+                                         std::uint32_t session);
+  boost::asio::awaitable<Reply> send(std::string name, nlohmann::json fields);
+
+  std::optional<BenchClient> client_;
+  BenchPedal pedal_;
+  std::uint32_t presser_ = 0; /**< session that pressed last */
+};
+
+}  // namespace interlock::web

@@ -1,0 +1,39 @@
+#include "http/problems.hpp"
+
+namespace interlock::web {
+
+std::string_view role_name(Role role) noexcept {
+  switch (role) {
+    case Role::viewer:
+      return "viewer";
+    case Role::engineer:
+      return "engineer";
+    case Role::admin:
+      return "admin";
+  }
+  return "viewer";
+}
+
+Problem not_found(const std::string& what, const std::string& expected) {
+  return {.status = Status::not_found,
+          .code = "NOT_FOUND",
+          .detail = "There is no " + what + ".",
+          .expected = expected};
+}
+
+Problem no_kernel(const std::string& detail) {
+  return {.status = Status::service_unavailable,
+          .code = "NO_KERNEL",
+          .detail = detail,
+          .next_step = "Start interlock-kernel, or look at its log; the app attaches by itself."};
+}
+
+Problem refused(const Refusal& refusal) {
+  return {.status = refusal.code == "OVERLOADED" ? Status::service_unavailable : Status::conflict,
+          .code = refusal.code,
+          .detail = refusal.detail,
+          .expected = refusal.expected,
+          .next_step = refusal.next_step};
+}
+
+}  // namespace interlock::web

@@ -1,0 +1,31 @@
+/**
+ * @file
+ * Problems that several routes answer with.
+ */
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "http/access.hpp"
+#include "http/message.hpp"
+#include "proposals/move_check.hpp"
+
+namespace interlock::web {
+
+/** As the interface spells it: "viewer". */
+std::string_view role_name(Role role) noexcept;
+
+/** A reply, or any other expected value, that is this problem. */
+inline tl::unexpected<Problem> fail(Problem problem) { return tl::make_unexpected(std::move(problem)); }
+
+/** 404 NOT_FOUND. `expected` says where to find what there is. */
+Problem not_found(const std::string& what, const std::string& expected);
+
+/** 503 NO_KERNEL. */
+Problem no_kernel(const std::string& detail);
+
+/** What the kernel or the proposals' checks refused: 409, or 503 when the control thread takes no more. */
+Problem refused(const Refusal& refusal);
+
+}  // namespace interlock::web

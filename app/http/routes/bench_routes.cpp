@@ -1,0 +1,43 @@
+#include "http/routes/bench_routes.hpp"
+
+#include "http/problems.hpp"
+
+namespace interlock::web {
+namespace {
+
+using Answering = boost::asio::awaitable<Reply>;
+using boost::beast::http::verb;
+using nlohmann::json;
+
+}  // namespace
+
+BenchRoutes::BenchRoutes(const Context& context, Router& router) : context_(context) {
+  router.add(verb::get, "/api/bench", viewers, [this](const Call& call) { return status(call); });
+  router.add(verb::post, "/api/bench/{command}", engineers,
+             [this](const Call& call) { return command(call); });
+}
+
+Answering BenchRoutes::status(const Call& call) const {
+  return context_.bench.command("status", json::object(), context_.view(), call.caller.session);
+}
+
+Answering BenchRoutes::command(const Call& call) const {
+  if (const auto simulated = context_.bench.need_simulated(); !simulated) {
+    co_return fail(simulated.error());
+  }
+  auto body = parse_body(call.request);
+  if (!body) {
+    co_return fail(body.error());
+  }
+  if (!body->is_object() || body->contains("command") || body->contains("id")) {
+    co_return fail({.status = Status::unprocessable_entity,
+                    .code = "INVALID",
+                    .detail = "The body must be an object without command and id.",
+                    .field = body->is_object() ? "command" : "",
+                    .expected = "the fields of models/plant/README.md"});
+  }
+  co_return co_await context_.bench.command(call.parameters[0], std::move(*body), context_.view(),
+                                            call.caller.session);
+}
+
+}  // namespace interlock::web

@@ -1,0 +1,79 @@
+#include "http/routes/motor_routes.hpp"
+
+#include "http/problems.hpp"
+#include "http/status_json.hpp"
+
+namespace interlock::web {
+namespace {
+
+using Answering = boost::asio::awaitable<Reply>;
+using boost::beast::http::verb;
+using nlohmann::json;
+
+std::optional<std::uint32_t> request_of_action(const std::string& action) {
+  constexpr std::pair<const char*, std::uint32_t> actions[] = {{"enable", ILK_REQUEST_ENABLE},
+                                                               {"disable", ILK_REQUEST_DISABLE},
+                                                               {"clear-fault", ILK_REQUEST_CLEAR_FAULT},
+                                                               {"home", ILK_REQUEST_HOME},
+                                                               {"set-home", ILK_REQUEST_SET_HOME}};
+  for (const auto& [name, request] : actions) {
+    if (action == name) {
+      return request;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+MotorRoutes::MotorRoutes(const Context& context, Router& router) : context_(context) {
+  router.add(verb::get, "/api/motors", viewers, [this](const Call&) -> Answering { co_return motors(); });
+  router.add(verb::get, "/api/motors/{axis}", viewers,
+             [this](const Call& call) -> Answering { co_return motor(call); });
+  router.add(verb::post, "/api/motors/{axis}/{action}", holder,
+             [this](const Call& call) { return act(call); });
+}
+
+tl::expected<const Axis*, Problem> MotorRoutes::axis_of(const std::string& slot) const {
+  const auto number = number_in(slot);
+  const Axis* axis = number ? context_.robot.at_slot(*number) : nullptr;
+  if (axis == nullptr) {
+    return fail(not_found("axis in slot " + slot, "a slot that /api/motors lists"));
+  }
+  return axis;
+}
+
+Reply MotorRoutes::motors() const {
+  return context_.need_kernel().map([this] {
+    const ControlView& now = context_.view();
+    json motors = json::array();
+    for (const Axis& axis : context_.robot.axes) {
+      motors.push_back(motor_json(axis, context_.config, now, context_.book.open_of(axis.slot)));
+    }
+    return Success{Status::ok, std::move(motors)};
+  });
+}
+
+Reply MotorRoutes::motor(const Call& call) const {
+  return axis_of(call.parameters[0]).and_then([this](const Axis* axis) -> Reply {
+    return context_.need_kernel().map([&] {
+      const ControlView& now = context_.view();
+      return Success{Status::ok, motor_json(*axis, context_.config, now, context_.book.open_of(axis->slot))};
+    });
+  });
+}
+
+Answering MotorRoutes::act(const Call& call) const {
+  const auto axis = axis_of(call.parameters[0]);
+  if (!axis) {
+    co_return fail(axis.error());
+  }
+  const std::string& action = call.parameters[1];
+  const auto request = request_of_action(action);
+  if (!request) {
+    co_return fail(not_found("action " + action, "enable, disable, clear-fault, home or set-home"));
+  }
+  co_return co_await context_.ask_kernel(*request, (*axis)->slot, (*axis)->name + " " + action);
+}
+
+}  // namespace interlock::web

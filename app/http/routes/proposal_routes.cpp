@@ -1,0 +1,106 @@
+#include "http/routes/proposal_routes.hpp"
+
+#include <limits>
+
+#include "http/fields.hpp"
+#include "http/problems.hpp"
+#include "proposals/proposal_json.hpp"
+
+namespace interlock::web {
+namespace {
+
+using Answering = boost::asio::awaitable<Reply>;
+using boost::beast::http::verb;
+using nlohmann::json;
+
+/** Reads a `ProposalDraft`. */
+tl::expected<MoveDraft, Problem> draft_of(const json& body, const Robot& robot, const std::string& author) {
+  constexpr std::int64_t lowest = std::numeric_limits<std::int32_t>::min();
+  constexpr std::int64_t highest = std::numeric_limits<std::int32_t>::max();
+  Fields fields(body, {"slot", "target", "target_counts", "drive"});
+  const auto slot = fields.integer("slot", 0, ILK_SLOTS - 1);
+  const auto target = fields.number("target");
+  auto target_counts = fields.integer("target_counts", lowest, highest);
+  const auto drive = fields.integer("drive", 1, highest);
+  if (!fields.has("slot")) {
+    fields.reject("slot", "is missing", "an integer from 0 to " + std::to_string(ILK_SLOTS - 1));
+  }
+  if (fields.has("target") == fields.has("target_counts")) {
+    fields.reject("target", "and target_counts: one is needed, not both",
+                  "target in the axis' unit, or target_counts");
+  }
+  if (fields.problem()) {
+    return fail(*fields.problem());
+  }
+  const Axis* axis = robot.at_slot(static_cast<std::uint32_t>(*slot));
+  if (axis == nullptr) {
+    return fail(not_found("axis in slot " + std::to_string(*slot), "a slot that /api/motors lists"));
+  }
+  if (target) {
+    const auto counts = axis->to_counts(*target);
+    if (!counts) {
+      fields.reject("target", "is beyond every encoder",
+                    "a position within the range that /api/motors shows");
+      return fail(*fields.problem());
+    }
+    target_counts = *counts;
+  }
+  MoveDraft draft{axis->slot, static_cast<std::int32_t>(*target_counts), std::nullopt, author};
+  if (drive) {
+    draft.drive = static_cast<std::uint32_t>(*drive);
+  }
+  return draft;
+}
+
+}  // namespace
+
+ProposalRoutes::ProposalRoutes(const Context& context, Router& router) : context_(context) {
+  router.add(verb::get, "/api/proposals", viewers, [this](const Call&) -> Answering { co_return list(); });
+  router.add(verb::post, "/api/proposals", holder,
+             [this](const Call& call) -> Answering { co_return propose(call); });
+  router.add(verb::get, "/api/proposals/{id}", viewers,
+             [this](const Call& call) -> Answering { co_return show(call); });
+  router.add(verb::post, "/api/proposals/{id}/abort", holder,
+             [this](const Call& call) -> Answering { co_return abort(call); });
+}
+
+Reply ProposalRoutes::list() const {
+  (void)context_.view();
+  json list = json::array();
+  for (const Proposal& each : context_.book.newest_first()) {
+    list.push_back(to_json(each));
+  }
+  return Success{Status::ok, std::move(list)};
+}
+
+Reply ProposalRoutes::propose(const Call& call) const {
+  return parse_body(call.request)
+      .and_then([&](const json& body) { return draft_of(body, context_.robot, call.caller.user); })
+      .and_then([this](const MoveDraft& draft) -> Reply {
+        return context_.need_kernel().and_then([&]() -> Reply {
+          return context_.book.propose(draft, context_.view())
+              .map([](const Proposal& made) { return Success{Status::created, to_json(made)}; })
+              .map_error(refused);
+        });
+      });
+}
+
+Reply ProposalRoutes::show(const Call& call) const {
+  (void)context_.view();
+  const auto id = number_in(call.parameters[0]);
+  const Proposal* found = id ? context_.book.find(*id) : nullptr;
+  if (found == nullptr) {
+    return fail(not_found("proposal " + call.parameters[0], "an id that /api/proposals lists"));
+  }
+  return Success{Status::ok, to_json(*found)};
+}
+
+Reply ProposalRoutes::abort(const Call& call) const {
+  return show(call).and_then([&](const Success&) -> Reply {
+    return context_.book.abort(*number_in(call.parameters[0]))
+        .map([](const Proposal& ended) { return Success{Status::ok, to_json(ended)}; })
+        .map_error(refused);
+  });
+}
+
+}  // namespace interlock::web

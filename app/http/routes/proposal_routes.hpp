@@ -1,0 +1,26 @@
+/**
+ * @file
+ * Routes of the proposals.
+ */
+#pragma once
+
+#include "http/context.hpp"
+#include "http/router.hpp"
+
+namespace interlock::web {
+
+class ProposalRoutes {
+ public:
+  /** Both must outlive it. */
+  ProposalRoutes(const Context& context, Router& router);
+
+ private:
+  [[nodiscard]] Reply list() const;
+  [[nodiscard]] Reply propose(const Call& call) const;
+  [[nodiscard]] Reply show(const Call& call) const;
+  [[nodiscard]] Reply abort(const Call& call) const;
+
+  const Context& context_;
+};
+
+}  // namespace interlock::web

@@ -1,0 +1,24 @@
+/**
+ * @file
+ * Routes of the system as a whole: status, STOP, RESET and the stream's address.
+ */
+#pragma once
+
+#include "http/context.hpp"
+#include "http/router.hpp"
+
+namespace interlock::web {
+
+class SystemRoutes {
+ public:
+  /** Both must outlive it. */
+  SystemRoutes(const Context& context, Router& router);
+
+ private:
+  [[nodiscard]] Reply status() const;
+  [[nodiscard]] boost::asio::awaitable<Reply> stop() const;
+
+  const Context& context_;
+};
+
+}  // namespace interlock::web
