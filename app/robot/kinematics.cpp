@@ -3,7 +3,7 @@
 namespace interlock {
 namespace {
 
-constexpr std::array<Role, 7> neuro_roles{{
+constexpr std::array<KinematicRole, 7> neuro_roles{{
     {"yaw", Unit::rad},
     {"probe_rotation", Unit::rad},
     {"pitch", Unit::rad},
@@ -13,7 +13,7 @@ constexpr std::array<Role, 7> neuro_roles{{
     {"feet", Unit::mm},
 }};
 
-constexpr std::array<Role, 6> prostate_roles{{
+constexpr std::array<KinematicRole, 6> prostate_roles{{
     {"rotation", Unit::rad},
     {"insertion", Unit::mm},
     {"back_left", Unit::mm},
@@ -28,9 +28,9 @@ std::string_view family_name(const Kinematics& kinematics) {
   return std::holds_alternative<NeuroRcm>(kinematics) ? "neuro_rcm" : "prostate_trapezoids";
 }
 
-std::span<const Role> roles_of(const Kinematics& kinematics) {
-  return std::holds_alternative<NeuroRcm>(kinematics) ? std::span<const Role>(neuro_roles)
-                                                      : std::span<const Role>(prostate_roles);
+std::span<const KinematicRole> roles_of(const Kinematics& kinematics) {
+  return std::holds_alternative<NeuroRcm>(kinematics) ? std::span<const KinematicRole>(neuro_roles)
+                                                      : std::span<const KinematicRole>(prostate_roles);
 }
 
 }  // namespace interlock

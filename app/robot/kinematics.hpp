@@ -64,13 +64,13 @@ using Kinematics = std::variant<NeuroRcm, ProstateTrapezoids>;
 std::string_view family_name(const Kinematics& kinematics);
 
 /** A part that exactly one axis of the robot plays. */
-struct Role {
+struct KinematicRole {
   std::string_view name;
   Unit unit; /**< unit of its axis */
 };
 
 /** The roles of the family; each must have one axis. */
-std::span<const Role> roles_of(const Kinematics& kinematics);
+std::span<const KinematicRole> roles_of(const Kinematics& kinematics);
 
 /** Offsets along the probe by which a target is reached, in mm; A to D of the thesis. */
 struct ProbeOffsets {

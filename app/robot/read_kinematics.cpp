@@ -65,7 +65,7 @@ Kinematics read_family(TableReader& table) {
 
 std::string role_names(const Kinematics& kinematics) {
   std::string names;
-  for (const Role& role : roles_of(kinematics)) {
+  for (const KinematicRole& role : roles_of(kinematics)) {
     names += (names.empty() ? "" : ", ") + std::string(role.name);
   }
   return names;
@@ -91,8 +91,8 @@ ProbeOffsets read_probe(TableReader table) {
 
 std::string read_role(TableReader& axis, const Robot& robot, Unit unit) {
   std::string name = axis.text("role");
-  const std::span<const Role> roles = roles_of(robot.kinematics);
-  const auto role = std::ranges::find(roles, name, &Role::name);
+  const std::span<const KinematicRole> roles = roles_of(robot.kinematics);
+  const auto role = std::ranges::find(roles, name, &KinematicRole::name);
   if (role == roles.end()) {
     axis.refuse("role", '"' + name + "\" is no role of " + std::string(family_name(robot.kinematics)),
                 "one of " + role_names(robot.kinematics));
@@ -106,7 +106,7 @@ std::string read_role(TableReader& axis, const Robot& robot, Unit unit) {
 }
 
 void refuse_unplayed_roles(TableReader& table, const Robot& robot) {
-  for (const Role& role : roles_of(robot.kinematics)) {
+  for (const KinematicRole& role : roles_of(robot.kinematics)) {
     if (!robot.with_role(role.name)) {
       table.refuse("kinematics", "no axis plays \"" + std::string(role.name) + '"',
                    "one axis for each role: " + role_names(robot.kinematics));
