@@ -58,10 +58,6 @@ boost::asio::awaitable<Reply> Bench::command(std::string name, json fields, cons
       co_return fail(taken.error());
     }
   }
-  co_return co_await send(std::move(name), std::move(fields));
-}
-
-boost::asio::awaitable<Reply> Bench::send(std::string name, json fields) {
   fields["command"] = std::move(name);
   const BenchReply reply = co_await client_->command(std::move(fields));
   if (!reply) {
@@ -96,7 +92,8 @@ tl::expected<void, Problem> Bench::take_pedal(json& fields, const ControlView& v
 boost::asio::awaitable<void> Bench::release_pedal() {
   if (pedal_.held()) {
     pedal_.release();
-    (void)co_await send("pedal", {{"pressed", false}});
+    json release{{"command", "pedal"}, {"pressed", false}};
+    (void)co_await client_->command(std::move(release));
   }
 }
 

@@ -44,7 +44,6 @@ class Bench {
  private:
   tl::expected<void, Problem> take_pedal(nlohmann::json& fields, const ControlView& view,
                                          std::uint32_t session);
-  boost::asio::awaitable<Reply> send(std::string name, nlohmann::json fields);
 
   std::optional<BenchClient> client_;
   BenchPedal pedal_;

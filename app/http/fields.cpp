@@ -67,7 +67,11 @@ std::string listed(const Names& names) {
 }  // namespace
 
 Problem invalid(const std::string& field, const std::string& detail, const std::string& expected) {
-  return {Status::unprocessable_entity, "INVALID", detail, field, expected, "", ""};
+  return {.status = Status::unprocessable_entity,
+          .code = "INVALID",
+          .detail = detail,
+          .field = field,
+          .expected = expected};
 }
 
 Fields::Fields(const json& object, std::initializer_list<const char*> known, std::string where)
