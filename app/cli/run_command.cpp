@@ -6,7 +6,6 @@
 #include <sys/socket.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "cli/instance_lock.hpp"
 #include "cli/model_commands.hpp"
 #include "cli/runtime_directory.hpp"
+#include "cli/state_directory.hpp"
 #include "cli/supervisor.hpp"
 #include "cli/unique_fd.hpp"
 #include "robot/compile.hpp"
@@ -22,20 +22,6 @@ namespace interlock::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-Result<fs::path> state_directory(const RunOptions& options, const std::string& robot_name) {
-  if (!options.state.empty()) {
-    return fs::absolute(options.state);
-  }
-  if (const char* const given = std::getenv("XDG_STATE_HOME"); given && *given == '/') {
-    return fs::path(given) / "interlock" / robot_name;
-  }
-  if (const char* const home = std::getenv("HOME"); home && *home == '/') {
-    return fs::path(home) / ".local/state/interlock" / robot_name;
-  }
-  return failed(ExitCode::precondition,
-                "there is no place for the state: neither XDG_STATE_HOME nor HOME is set; use --state");
-}
 
 /** The port if it can be listened on, a free one for 0. It is free again afterwards, for the app. */
 Result<std::uint16_t> free_port(std::uint16_t port) {
@@ -152,7 +138,7 @@ Result<Places> places_of(const RunOptions& options, const Installation& installa
                          const fs::path& robot_file, const std::string& robot_name) {
   const Result<fs::path> plant =
       options.plant.empty() ? installation.plant(robot_name) : Result<fs::path>(options.plant);
-  const Result<fs::path> state = state_directory(options, robot_name);
+  const Result<fs::path> state = state_directory(options.state, robot_name);
   if (!plant || !state) {
     return tl::unexpected(!plant ? plant.error() : state.error());
   }
