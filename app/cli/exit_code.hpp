@@ -12,7 +12,7 @@ namespace interlock::cli {
 /** Exit codes of `interlock`, as `interlock --help` lists them. */
 enum class ExitCode : int {
   done = 0,    /**< done; `run`: stopped by a signal */
-  refused = 1, /**< the robot file or its configuration is not valid */
+  refused = 1, /**< a robot file that is not valid, a broken audit, a rule of the store */
   usage = 2,   /**< the command line is not understood */
   precondition =
       3, /**< something stands in the way: busy port, second instance, missing file, no permission */

@@ -15,15 +15,18 @@
 #include "cli/model_commands.hpp"
 #include "cli/run_command.hpp"
 #include "cli/status_command.hpp"
+#include "cli/store_command_line.hpp"
 #include "robot/compile.hpp"
 
 namespace interlock::cli {
 namespace {
 
 constexpr const char* footer =
-    "Exit codes: 0 done; 1 robot file refused; 2 command line not understood; 3 something stands in the way "
-    "(busy\n"
-    "port, second instance, missing file); 4 kernel or simulator ended; 5 the app kept ending; 6 no answer.";
+    "Exit codes: 0 done; 1 refused: robot file, broken audit, rule of the store; 2 command line not "
+    "understood; "
+    "3 something\nstands in the way (busy port, second instance, missing file); 4 kernel or simulator ended; "
+    "5 the "
+    "app kept ending;\n6 no answer.";
 
 Result<void> show_version(const std::string& robot, std::ostream& output) {
   output << "interlock " << version() << ", commit " << commit() << '\n';
@@ -51,6 +54,7 @@ struct CommandLine {
   std::filesystem::path model;
   bool model_json = false;
   std::filesystem::path config;
+  StoreCommandLine store;
 };
 
 void add_run(CLI::App& cli, RunOptions& options) {
@@ -109,6 +113,9 @@ Result<void> execute(const CLI::App& cli, const CommandLine& line) {
   if (cli.got_subcommand("status")) {
     return show_status(line.status, std::cout);
   }
+  if (line.store.chosen()) {
+    return line.store.execute(Installation::current(), std::cout);
+  }
   const CLI::App& model = *cli.get_subcommand("model");
   return model.got_subcommand("check") ? check_model(line.model, line.model_json, std::cout)
                                        : compile_model(line.model, line.config, std::cout);
@@ -132,6 +139,7 @@ int main(int argc, char** argv) {
   add_run(cli, line.run);
   add_status(cli, line.status);
   add_model(cli, line);
+  line.store.describe(cli);
   try {
     cli.parse(argc, argv);
     if (!line.version && cli.get_subcommands().empty()) {

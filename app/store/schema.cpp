@@ -91,6 +91,13 @@ Stored<void> check_schema(SQLite::Database& database, std::span<const char* cons
   return {};
 }
 
+Stored<void> check_store(SQLite::Database& database) {
+  if (is_empty(database)) {
+    return tl::unexpected(damaged(database, "is empty"));
+  }
+  return check_schema(database, migrations());
+}
+
 void migrate(SQLite::Database& database, const fs::path& file, std::span<const char* const> scripts) {
   if (pragma(database, "user_version") == static_cast<int>(scripts.size())) {
     return;

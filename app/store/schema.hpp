@@ -26,6 +26,9 @@ std::span<const char* const> migrations();
  * (newer). */
 Stored<void> check_schema(SQLite::Database& database, std::span<const char* const> scripts);
 
+/** As `check_schema` of this release; an empty file is refused, too. */
+Stored<void> check_store(SQLite::Database& database);
+
 /**
  * Brings a store to the newest version, in one transaction. A store that is not empty is copied beside `file`
  * before.

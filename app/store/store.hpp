@@ -32,6 +32,9 @@ namespace interlock {
 
 class StoreLock;
 
+/** Name of the file in the state directory of a robot. */
+constexpr const char* store_file_name = "interlock.db";
+
 /** Everything between BEGIN and COMMIT or ROLLBACK. What was not committed is undone when it goes. */
 class Transaction {
  public:

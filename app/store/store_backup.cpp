@@ -1,0 +1,233 @@
+#include "store/store_backup.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fcntl.h>
+#include <sqlite3.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "store/audit.hpp"
+#include "store/audit_table.hpp"
+#include "store/schema.hpp"
+#include "store/sessions.hpp"
+#include "store/store_files.hpp"
+#include "store/users.hpp"
+
+namespace interlock {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path with_suffix(fs::path file, const std::string& suffix) { return file += suffix; }
+
+/** Removes a file that is being made, and what is put beside it meanwhile. */
+void remove_unfinished(const fs::path& file) {
+  std::vector<std::string> suffixes{"", "-wal", "-shm", "-journal", ".lock"};
+  for (std::size_t version = 1; version < migrations().size(); ++version) {
+    suffixes.push_back(".schema-" + std::to_string(version));
+  }
+  std::error_code ignored;
+  for (const std::string& suffix : suffixes) {
+    fs::remove(with_suffix(file, suffix), ignored);
+  }
+}
+
+/** Has whatever is left of a file removed when the work on it ends, well or not. */
+class Unfinished {
+ public:
+  explicit Unfinished(fs::path file) : file_(std::move(file)) {}
+  Unfinished(const Unfinished&) = delete;
+  Unfinished& operator=(const Unfinished&) = delete;
+  ~Unfinished() { remove_unfinished(file_); }
+
+  [[nodiscard]] const fs::path& file() const { return file_; }
+
+ private:
+  fs::path file_;
+};
+
+Stored<void> must_be_free(const fs::path& file) {
+  std::error_code ignored;
+  if (fs::exists(fs::symlink_status(file, ignored))) {
+    return tl::unexpected(StoreError{StoreError::Kind::exists, file.string() + " is there already", "",
+                                     "a name that is free", "choose another, or move that file away"});
+  }
+  return {};
+}
+
+Stored<void> must_exist(const fs::path& file, const std::string& what) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) {
+    return tl::unexpected(StoreError{StoreError::Kind::not_found, "there is no " + what + ' ' + file.string(),
+                                     "", "a file that can be read", ""});
+  }
+  return {};
+}
+
+/** Copies a store and checks the copy. */
+Stored<StoreSummary> copy_checked(const fs::path& source, const fs::path& target) {
+  try {
+    {
+      SQLite::Database database(source.string(), SQLite::OPEN_READONLY, store_patience_ms);
+      if (const Stored<void> checked = check_store(database); !checked) {
+        return tl::unexpected(checked.error());
+      }
+    }
+    if (const Stored<void> copied = copy_store(source, target); !copied) {
+      return tl::unexpected(copied.error());
+    }
+    SQLite::Database copy(target.string(), SQLite::OPEN_READONLY, store_patience_ms);
+    return check_contents(copy).map([&] {
+      const auto users = copy.execAndGet("SELECT count(*) FROM users").getInt64();
+      return StoreSummary{static_cast<std::size_t>(users), verify_audit(copy, std::nullopt).value()};
+    });
+  } catch (const SQLite::Exception& error) {
+    return tl::unexpected(database_error(source, error));
+  }
+}
+
+Stored<void> rename_to_new(const fs::path& from, const fs::path& to) {
+  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) != 0) {
+    return tl::unexpected(file_error(to, "cannot be made", errno));
+  }
+  return sync_folder(to.parent_path());
+}
+
+/** Puts the write-ahead log into the store's file. One that is damaged is left as it is. */
+Stored<void> settle(const fs::path& store) {
+  try {
+    SQLite::Database database(store.string(), SQLite::OPEN_READWRITE, store_patience_ms);
+    database.exec("PRAGMA journal_mode = DELETE");
+    return {};
+  } catch (const SQLite::Exception& error) {
+    StoreError failed = database_error(store, error);
+    return failed.kind == StoreError::Kind::damaged ? Stored<void>() : tl::unexpected(std::move(failed));
+  }
+}
+
+/** Gives the store a second name, and takes away what belongs to it alone. */
+Stored<void> keep_beside(const fs::path& store, const fs::path& kept) {
+  if (const Stored<void> settled = settle(store); !settled) {
+    return settled;
+  }
+  if (::link(store.c_str(), kept.c_str()) != 0) {
+    return tl::unexpected(file_error(kept, "cannot be made", errno));
+  }
+  for (const char* const part : {"-wal", "-shm", "-journal"}) {
+    const fs::path file = with_suffix(store, part);
+    if (::rename(file.c_str(), with_suffix(kept, part).c_str()) != 0 && errno != ENOENT) {
+      return tl::unexpected(file_error(file, "cannot be moved", errno));
+    }
+  }
+  return {};
+}
+
+/** The head of a store that is about to be replaced, null when it cannot be read any more. */
+nlohmann::json head_of(const fs::path& file) {
+  try {
+    SQLite::Database database(file.string(), SQLite::OPEN_READWRITE, store_patience_ms);
+    SQLite::Statement head(database, "SELECT number, hash FROM audit ORDER BY number DESC LIMIT 1");
+    return head.executeStep() ? nlohmann::json{{"number", head.getColumn(0).getInt64()},
+                                               {"hash", head.getColumn(1).getString()}}
+                              : nlohmann::json();
+  } catch (const SQLite::Exception&) {
+    return nullptr;
+  }
+}
+
+/** Brings a copy up to date and records what it is for. */
+Stored<AuditHead> prepare(const fs::path& copy, const nlohmann::json& detail, UtcTime now) {
+  Stored<Store> store = Store::open(copy);
+  if (!store) {
+    return tl::unexpected(store.error());
+  }
+  return store->transact([&](Transaction& transaction) -> Stored<AuditHead> {
+    for (const User& user : Users(transaction).list()) {
+      Sessions(transaction).end_all_of_user(user.name);
+    }
+    const AuditRecord record =
+        Audit(transaction)
+            .append({now, std::nullopt, audit_actor::command_line, std::nullopt, AuditKind::restore, detail});
+    return AuditHead{record.number, record.hash};
+  });
+}
+
+std::string name_suffix(UtcTime now) {
+  std::string time = iso_8601(now);
+  std::erase_if(time, [](char c) { return c == '-' || c == ':'; });
+  return ".replaced-" + time;
+}
+
+}  // namespace
+
+Stored<StoreSummary> backup_store(const fs::path& store, const fs::path& target) {
+  const fs::path part = with_suffix(target, ".part");
+  const Stored<void> possible =
+      must_exist(store, "store").and_then([&] { return must_be_free(target); }).and_then([&] {
+        return must_be_free(part);
+      });
+  if (!possible) {
+    return tl::unexpected(possible.error());
+  }
+  const auto lock = StoreLock::take(store, StoreLock::Kind::shared);
+  if (!lock) {
+    return tl::unexpected(lock.error());
+  }
+  const Unfinished unfinished(part);
+  Stored<StoreSummary> summary = copy_checked(store, unfinished.file());
+  if (!summary) {
+    return summary;
+  }
+  const Stored<void> named = rename_to_new(unfinished.file(), target);
+  return named ? summary : tl::unexpected(named.error());
+}
+
+Stored<Restored> restore_store(const fs::path& backup, const fs::path& store, UtcTime now) {
+  const Stored<void> there =
+      must_exist(backup, "backup").and_then([&] { return make_private_folder(store.parent_path()); });
+  if (!there) {
+    return tl::unexpected(there.error());
+  }
+  const auto lock = StoreLock::take(store, StoreLock::Kind::alone);
+  if (!lock) {
+    return tl::unexpected(lock.error());
+  }
+  const Unfinished unfinished(with_suffix(store, ".restoring"));
+  // One that was killed may have left something.
+  remove_unfinished(unfinished.file());
+  Stored<StoreSummary> summary = copy_checked(backup, unfinished.file());
+  if (!summary) {
+    summary.error().next_step = "choose another backup";
+    return tl::unexpected(summary.error());
+  }
+  Restored restored{*summary, std::nullopt};
+  const bool replaces = fs::exists(store);
+  const Stored<AuditHead> head =
+      prepare(unfinished.file(),
+              {{"action", "store"},
+               {"backup", backup.filename().string()},
+               {"backup_head", {{"number", summary->head.number}, {"hash", summary->head.hash}}},
+               {"replaced_head", replaces ? head_of(store) : nlohmann::json()}},
+              now);
+  if (!head) {
+    return tl::unexpected(head.error());
+  }
+  restored.summary.head = *head;
+  if (replaces) {
+    restored.replaced = with_suffix(store, name_suffix(now));
+    if (const Stored<void> kept = keep_beside(store, *restored.replaced); !kept) {
+      return tl::unexpected(kept.error());
+    }
+  }
+  if (::rename(unfinished.file().c_str(), store.c_str()) != 0) {
+    return tl::unexpected(file_error(store, "cannot be replaced", errno));
+  }
+  const Stored<void> synced = sync_folder(store.parent_path());
+  return synced ? Stored<Restored>(std::move(restored)) : tl::unexpected(synced.error());
+}
+
+}  // namespace interlock
