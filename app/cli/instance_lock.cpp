@@ -8,6 +8,8 @@
 #include <sstream>
 #include <system_error>
 
+#include "store/store_files.hpp"
+
 namespace interlock::cli {
 namespace {
 
@@ -43,8 +45,8 @@ void remove_leftovers(const Holder& holder) {
 }  // namespace
 
 Result<InstanceLock> InstanceLock::take(const fs::path& directory) {
-  std::error_code error;
-  fs::create_directories(directory, error);
+  // Whether this worked shows in the lock file.
+  static_cast<void>(make_private_folder(directory));
   const fs::path path = directory / "lock";
   UniqueFd file(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
   if (!file) {
