@@ -1,5 +1,6 @@
 """Robot files: what is accepted, what is refused and how, and that a robot needs no code of its own."""
 
+import contextlib
 import hashlib
 import json
 import subprocess
@@ -10,15 +11,19 @@ from pathlib import Path
 import jsonschema
 import pytest
 from bare_kernel import BIN, ROOT
+from motion import motor, propose, to_motion, wait_for_mode, wait_for_proposal
+from stack import Stack
 from test_run import DONE, REFUSED, interlock
 
 FILES = ROOT / "tests/integration/robots"
 TRAINER = FILES / "trainer.toml"
 BROKEN = tomllib.loads((FILES / "broken.toml").read_text())
+DRILL = 0
+GRIP = 5
 SCHEMA = json.loads((ROOT / "models/robots/robot.schema.json").read_text())
 
-# SHA-256 of the compiled configuration. Another value means that the kernel will be told something else: say so
-# in the commit that changes it.
+# SHA-256 of the compiled configuration. Another value means that the kernel will be told something else: say
+# so in the commit that changes it.
 COMPILED = {
     "neuro": "75b2e1469e1b3bafda105f6d9bf443a9f4b47eee276b1ec5ded4a726a89189d7",
     "prostate": "d60262a837688aad3315025f564814c6681ec20a8dc7253be9edeb86ab8bf2e7",
@@ -146,3 +151,54 @@ def test_model_check_tells_programs_what_is_wrong(tmp_path: Path) -> None:
         "problem": 'slot 0 carries "drill" already',
         "expected": "a slot of its own",
     }
+
+
+def card(status: dict) -> dict:
+    return next((card for card in status["cards"] if card["slot"] == GRIP), {})
+
+
+def plant_counts(stack: Stack, slot: int) -> float:
+    """Where the axis truly stands."""
+    return next(axis["position_counts"] for axis in stack.control("status")["axes"] if axis["slot"] == slot)
+
+
+@pytest.fixture
+def trainer(short_tmp_path: Path) -> Iterator[Stack]:
+    """The third robot: its file and its plant's file, and nothing else that knows it."""
+    arguments = [
+        "--robot",
+        TRAINER,
+        "--plant",
+        FILES / "trainer.plant.toml",
+        "--clock",
+        "sim",
+        "--speed",
+        "0",
+    ]
+    with contextlib.closing(
+        Stack(short_tmp_path, *arguments, "--sockets", short_tmp_path / "sockets")
+    ) as stack:
+        stack.connect_control()
+        yield stack
+
+
+def test_robot_of_known_parts_moves_by_its_files_alone(trainer: Stack) -> None:
+    assert trainer.status()["robot"] == "trainer"
+    to_motion(trainer, DRILL)
+    start = plant_counts(trainer, DRILL)
+    wait_for_proposal(trainer, propose(trainer, 500, DRILL), "done")
+    assert motor(trainer, DRILL)["position_counts"] == pytest.approx(500, abs=2)
+    assert plant_counts(trainer, DRILL) - start == pytest.approx(500, abs=3)
+
+
+def test_sensor_card_is_seen_and_is_no_axis(trainer: Stack) -> None:
+    trainer.status_when(
+        lambda status: {"slot": GRIP, "card": "SENSOR", "detected": True}.items() <= card(status).items()
+    )
+    assert trainer.api.get(f"/api/motors/{GRIP}").status_code == 404
+
+
+def test_loss_of_a_required_sensor_ends_motion(trainer: Stack) -> None:
+    to_motion(trainer, DRILL)
+    trainer.control("card_power", slot=GRIP, on=False)
+    wait_for_mode(trainer, "READY")
