@@ -273,6 +273,23 @@ TEST(RobotFile, an_axis_that_is_no_table_is_refused) {
   EXPECT_EQ(robot.error().key, "axis[0]");
 }
 
+/** A reader of files from anywhere must end with an answer, wherever the file breaks off. */
+TEST(RobotFile, a_file_that_breaks_off_is_answered_everywhere) {
+  const std::string text = test::neuro_text();
+  const std::size_t last_key = text.rfind("home = ");
+  for (std::size_t length = 0; length < last_key; length += 7) {
+    const auto robot = parse_robot(std::string_view(text).substr(0, length), "short.toml");
+    ASSERT_FALSE(robot) << length;
+    ASSERT_FALSE(robot.error().expected.empty()) << length;
+  }
+}
+
+TEST(RobotFile, bytes_that_are_no_text_are_refused) {
+  const auto robot = parse_robot("name = \"\xff\xfe\"", "bytes.toml");
+  ASSERT_FALSE(robot);
+  EXPECT_EQ(robot.error().line, 1u);
+}
+
 TEST(RobotFile, an_empty_file_names_the_first_missing_key) {
   const auto robot = parse_robot("", "empty.toml");
   ASSERT_FALSE(robot);

@@ -25,6 +25,27 @@ TEST(Robot, answers_null_for_a_name_or_slot_without_axis) {
   }
 }
 
+TEST(Robot, finds_axes_by_the_role_that_they_play) {
+  const Robot robot = test::neuro();
+  for (const KinematicRole& role : roles_of(robot.kinematics)) {
+    ASSERT_NE(robot.with_role(role.name), nullptr) << role.name;
+    EXPECT_EQ(robot.with_role(role.name)->unit, role.unit);
+  }
+  EXPECT_EQ(robot.with_role("elbow"), nullptr);
+  EXPECT_EQ(robot.with_role(""), nullptr) << "an axis without a role plays none";
+}
+
+TEST(Robot, finds_steps_modes_and_sensors_by_name) {
+  const Robot robot = test::neuro();
+  ASSERT_NE(robot.find_home_step("angles"), nullptr);
+  EXPECT_EQ(robot.find_home_step("angles")->title, "Angles");
+  EXPECT_EQ(robot.find_home_step("elbow"), nullptr);
+  EXPECT_TRUE(robot.has_mode("home"));
+  EXPECT_FALSE(robot.has_mode("draping"));
+  EXPECT_EQ(robot.find_sensor("force"), nullptr);
+  EXPECT_EQ(robot.sensor_at_slot(3), nullptr) << "an axis is no sensor";
+}
+
 TEST(Robot, converts_every_count_of_every_axis_to_its_unit_and_back) {
   for (const Axis& axis : test::neuro().axes) {
     for (std::int32_t counts = axis.soft_limits.min_counts; counts <= axis.soft_limits.max_counts; ++counts) {
@@ -51,6 +72,14 @@ TEST(Robot, setpoints_keep_the_coasting_distance_from_the_soft_limits) {
   const Axis axis = *test::neuro().find("insertion");
   EXPECT_EQ(axis.lowest_setpoint_counts(), 12);
   EXPECT_EQ(axis.highest_setpoint_counts(), 1638);
+}
+
+TEST(Robot, accepts_setpoints_within_their_bounds_only) {
+  const Axis axis = *test::neuro().find("insertion");
+  EXPECT_TRUE(axis.accepts_setpoint(12));
+  EXPECT_TRUE(axis.accepts_setpoint(1638));
+  EXPECT_FALSE(axis.accepts_setpoint(11));
+  EXPECT_FALSE(axis.accepts_setpoint(1639));
 }
 
 TEST(Robot, setpoint_bounds_saturate_instead_of_wrapping) {
