@@ -1,0 +1,135 @@
+#include "robot/robot_rules.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "robot/catalog.hpp"
+
+namespace interlock {
+namespace {
+
+/** Where in the file a rule of the kernel is kept, inside of the axis' table when it is about an axis, and
+ * how. */
+struct Rule {
+  ilk_config_error_t error;
+  std::string_view key;
+  std::string_view expected;
+};
+
+/** Rules that a robot can break; all others are kept by how it is read and compiled. */
+constexpr std::array rules{
+    Rule{ILK_CONFIG_ERROR_PERIOD, "period_us", "125 to 2000 us"},
+    Rule{ILK_CONFIG_ERROR_PEDAL_CHANNELS, "pedal.channels", "1 or 2"},
+    Rule{ILK_CONFIG_ERROR_APP_TIMEOUT, "loop.app_timeout_ms", "1 to 150 ms"},
+    Rule{ILK_CONFIG_ERROR_LEASE, "loop.lease_max_ms", "1 to 150 ms"},
+    Rule{ILK_CONFIG_ERROR_PEDAL_DEBOUNCE, "pedal.debounce_ms", "1 to 50 ms"},
+    Rule{ILK_CONFIG_ERROR_PEDAL_DISAGREE, "pedal.disagree_ms", "1 to 50 ms"},
+    Rule{ILK_CONFIG_ERROR_BAD_FRAMES, "loop.bad_frame_limit", "1 to 5"},
+    Rule{ILK_CONFIG_ERROR_OVERRUNS, "loop.overrun_limit", "1 to 10"},
+    Rule{ILK_CONFIG_ERROR_NO_AXIS, "axis", "at least one axis"},
+    Rule{ILK_CONFIG_ERROR_CARD, "card", "a type of card that drives a motor"},
+    Rule{ILK_CONFIG_ERROR_FLAG, "motor_direction", "0 or 1, as for direction_correction"},
+    Rule{ILK_CONFIG_ERROR_LIMIT_SIDE, "limit", "none, lower or upper"},
+    Rule{ILK_CONFIG_ERROR_SOFT_LIMITS, "soft_limits", "min_counts below max_counts, both within +-2^30"},
+    Rule{ILK_CONFIG_ERROR_HOME_OFFSET, "home_offset_counts",
+         "a position from soft_limits.min_counts to max_counts"},
+    Rule{ILK_CONFIG_ERROR_COAST, "mechanics.coast_counts", "at least 1, and less than half of the range"},
+    Rule{ILK_CONFIG_ERROR_DEADBAND, "deadband_counts", "at least 1, and less than half of the range"},
+    Rule{ILK_CONFIG_ERROR_MAX_DRIVE, "drive.max",
+         "1 to the largest drive of the card: 2147483647 (pwm, analog-input), 1073741823 (non-pwm), 397785 "
+         "(high-frequency)"},
+    Rule{ILK_CONFIG_ERROR_UNHOMED_DRIVE, "drive.unhomed_max", "1 to a tenth of drive.max"},
+    Rule{ILK_CONFIG_ERROR_AMPLITUDE, "drive.max_amplitude", "1 to 255, and not less than homing.amplitude"},
+    Rule{ILK_CONFIG_ERROR_UNHOMED_TRAVEL, "unhomed_travel_counts",
+         "more than mechanics.coast_counts, at most a tenth of the range"},
+    Rule{ILK_CONFIG_ERROR_HOME_DRIVE, "homing.drive", "1 to drive.unhomed_max"},
+    Rule{ILK_CONFIG_ERROR_HOME_TRAVEL, "homing.travel_counts",
+         "the range and mechanics.coast_counts at least, twice the range at most"},
+    Rule{ILK_CONFIG_ERROR_HOME_BACKOFF, "homing.backoff_counts", "1 to a tenth of the range"},
+    Rule{ILK_CONFIG_ERROR_HOME_REST, "homing.rest_ms", "1 ms to homing.timeout_ms"},
+    Rule{ILK_CONFIG_ERROR_HOME_TIMEOUT, "homing.timeout_ms",
+         "time for back-off, travel and rest at homing.speed_counts_per_s, at most 600000 ms"},
+    Rule{ILK_CONFIG_ERROR_STALL, "stall",
+         "driven_ms from 1 to 500; min_counts above mechanics.noise_counts, at most a tenth of the range"},
+    Rule{ILK_CONFIG_ERROR_REVERSE, "runaway.reverse_counts",
+         "the sum of coast, backlash and noise at least, a tenth of the range at most"},
+    Rule{ILK_CONFIG_ERROR_DRIFT, "runaway.drift_counts",
+         "the sum of coast, backlash and noise at least, a tenth of the range at most"},
+    Rule{ILK_CONFIG_ERROR_SETTLE, "mechanics.settle_ms", "1 to 1000 ms"},
+    Rule{ILK_CONFIG_ERROR_MAX_DELTA, "mechanics.max_delta_counts", "1 to half of the range"},
+};
+
+RobotError error_at(const Origin& origin, std::string key, std::string problem, std::string expected) {
+  const auto line = origin.line_of_key.find(key);
+  return {origin.file, line == origin.line_of_key.end() ? 0 : line->second, std::move(key),
+          std::move(problem), std::move(expected)};
+}
+
+RobotError travel_refused(const Robot& robot, const std::string& path, const AxisCounts& travel,
+                          std::int64_t lowest, std::int64_t highest) {
+  return error_at(robot.origin, "home_step." + path + robot.at_slot(travel.slot)->name,
+                  std::to_string(travel.counts) + " counts lead out of the range of the axis",
+                  "counts from " + std::to_string(lowest) + " to " + std::to_string(highest));
+}
+
+}  // namespace
+
+RobotError kernel_rule_broken(const Robot& robot, ilk_config_verdict_t verdict) {
+  const catalog::Entry& entry = catalog::entry(catalog::Family::config_error, verdict.error);
+  const auto found = std::ranges::find(rules, verdict.error, &Rule::error);
+  const Rule rule = found == rules.end() ? Rule{} : *found;
+  const Axis* const axis = robot.at_slot(verdict.slot);
+  const std::string table = axis ? "axis." + axis->name + '.' : "";
+  const std::string_view meaning = entry.meaning.substr(0, entry.meaning.find_last_not_of('.') + 1);
+  return error_at(robot.origin, table + std::string(rule.key), std::string(meaning),
+                  std::string(rule.expected) + " (the kernel's rule " + std::string(entry.name) + ')');
+}
+
+std::optional<RobotError> card_out_of_place(const Robot& robot) {
+  const auto beyond = [&robot](const std::string& path, std::uint32_t slot) -> std::optional<RobotError> {
+    if (slot < ILK_SLOTS) {
+      return std::nullopt;
+    }
+    return error_at(robot.origin, path + ".slot", "there is no slot " + std::to_string(slot),
+                    "a slot below " + std::to_string(ILK_SLOTS));
+  };
+  for (const Axis& axis : robot.axes) {
+    if (auto error = beyond("axis." + axis.name, axis.slot)) {
+      return error;
+    }
+    if (axis.card == ILK_CARD_NONE) {
+      return error_at(robot.origin, "axis." + axis.name + ".card",
+                      "the kernel cannot drive a card of unspecified type",
+                      "the type of the card: \"pwm\", \"non-pwm\", \"analog-input\" or \"high-frequency\"");
+    }
+  }
+  for (const Sensor& sensor : robot.sensors) {
+    if (auto error = beyond("sensor." + sensor.name, sensor.slot)) {
+      return error;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<RobotError> step_out_of_range(const Robot& robot) {
+  for (const HomeStep& step : robot.home_steps) {
+    for (const AxisCounts& nudge : step.nudge) {
+      const SoftLimits& limits = robot.at_slot(nudge.slot)->soft_limits;
+      const std::int64_t range = std::int64_t{limits.max_counts} - limits.min_counts;
+      if (nudge.counts < -range || nudge.counts > range) {
+        return travel_refused(robot, step.name + ".nudge.", nudge, -range, range);
+      }
+    }
+    for (const AxisCounts& move : step.move) {
+      const Axis& axis = *robot.at_slot(move.slot);
+      if (!axis.accepts_setpoint(move.counts)) {
+        return travel_refused(robot, step.name + ".move.", move, axis.lowest_setpoint_counts(),
+                              axis.highest_setpoint_counts());
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace interlock
