@@ -179,9 +179,9 @@ struct HomeStep {
   std::string name;                /**< for programs: "probe_out" */
   std::string title;               /**< for people: "Probe out" */
   std::vector<std::uint32_t> home; /**< slots of axes that go to their switches */
-  std::vector<AxisCounts> nudge;   /**< signed distances by which axes go that home in a later step; in each
-                                      press of the pedal at most their `unhomed_travel_counts` */
-  std::vector<AxisCounts> move;    /**< setpoints of axes that homed in an earlier step */
+  std::vector<AxisCounts> nudge; /**< signed distances by which axes go: at most their `unhomed_travel_counts`
+                                    in each press of the pedal, or once homed to their soft limits at most */
+  std::vector<AxisCounts> move;  /**< setpoints of axes that homed in an earlier step */
 
   bool operator==(const HomeStep&) const = default;
 };
