@@ -25,7 +25,7 @@ struct AxisPlan {
 /** How the axes of a home step go. */
 enum class HomeStepKind : std::uint8_t {
   home,  /**< to their switches */
-  nudge, /**< by signed distances, while not homed */
+  nudge, /**< by signed distances, homed or not */
   move   /**< to positions */
 };
 

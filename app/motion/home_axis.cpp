@@ -37,13 +37,20 @@ void HomeAxis::start(const ilk_snapshot_t& snapshot) noexcept {
       start_slice(snapshot);
       break;
     case HomeStepKind::move:
+      if (snapshot.state.axis[slot_].homed == 0) {
+        progress_ = HomeProgress::not_homed;
+        break;
+      }
       move_.aim(counts_, 0);
       move_.start(snapshot);
       break;
   }
 }
 
-/** As far towards the end of the nudge as this press allows. */
+/**
+ * As far towards the end of the nudge as this press allows. An axis that is homed knows its soft limits: it
+ * goes no farther than they allow, and that is its end.
+ */
 void HomeAxis::start_slice(const ilk_snapshot_t& snapshot) noexcept {
   const ilk_axis_t& axis = snapshot.state.axis[slot_];
   if (!marked_) {
@@ -54,7 +61,7 @@ void HomeAxis::start_slice(const ilk_snapshot_t& snapshot) noexcept {
   const std::int64_t end = axis.position_counts + left;
   const SetpointRange range = setpoint_range(plan_.rules, axis, snapshot.state.mode);
   const std::int64_t target = std::clamp<std::int64_t>(end, range.lowest_counts, range.highest_counts);
-  last_slice_ = target == end;
+  last_slice_ = target == end || axis.homed != 0;
   stopping_ = false;
   move_.aim(static_cast<std::int32_t>(target), 0);
   move_.start(snapshot);
@@ -106,9 +113,6 @@ HomeProgress HomeAxis::watch_homing(const ilk_snapshot_t& snapshot) noexcept {
 
 HomeProgress HomeAxis::watch_nudge(const ilk_snapshot_t& snapshot) noexcept {
   const ilk_axis_t& axis = snapshot.state.axis[slot_];
-  if (axis.homed != 0) {
-    return HomeProgress::arrived;
-  }
   if (!stopping_ && at_switch(axis)) {
     stopping_ = true;
     rest_.restart(axis.position_counts, snapshot.state.tick);
@@ -134,9 +138,6 @@ bool HomeAxis::at_switch(const ilk_axis_t& axis) const noexcept {
 }
 
 HomeProgress HomeAxis::watch_move(const ilk_snapshot_t& snapshot) noexcept {
-  if (snapshot.state.axis[slot_].homed == 0) {
-    return HomeProgress::not_homed;
-  }
   switch (move_.watch(snapshot)) {
     case AxisMove::Progress::arrived:
       return HomeProgress::arrived;

@@ -13,8 +13,13 @@ constexpr std::uint32_t settle_ticks = 200;
 }  // namespace
 
 ClosedLoop::ClosedLoop(std::uint64_t seed, std::uint32_t latency, const Robot& robot)
-    : config_(config_of(robot)),
-      plant_(config_, plant::default_parameters(config_), seed),
+    : ClosedLoop(seed, latency, robot, plant::default_parameters(config_of(robot))) {}
+
+ClosedLoop::ClosedLoop(std::uint64_t seed, std::uint32_t latency, const Robot& robot,
+                       const plant::Parameters& plant)
+    : robot_(robot),
+      config_(config_of(robot)),
+      plant_(config_, plant, seed),
       conductor_(RobotPlan(robot, config_)),
       latency_(latency) {
   if (ilk_init(&config_, &state_).error != ILK_CONFIG_ERROR_NONE) {
@@ -78,6 +83,7 @@ void ClosedLoop::tick() {
       sent_.push_back({sequence_, wish.origin});
     }
   }
+  watcher_();
 }
 
 void ClosedLoop::deliver_verdicts() {
@@ -85,6 +91,7 @@ void ClosedLoop::deliver_verdicts() {
     const ilk_verdict_record_t& verdict = outputs_.verdict[i];
     const auto found = std::find_if(sent_.begin(), sent_.end(),
                                     [&](const Sent& each) { return each.sequence == verdict.sequence; });
+    refusals_ += verdict.verdict != ILK_VERDICT_ACCEPTED && verdict.verdict != ILK_VERDICT_MODE ? 1u : 0u;
     if (found != sent_.end()) {
       conductor_.on_verdict(found->origin, verdict.verdict, verdict.tick);
       sent_.erase(found);
@@ -114,10 +121,17 @@ void ClosedLoop::stop() {
   request(ILK_REQUEST_STOP);
 }
 
-void ClosedLoop::request(std::uint32_t kind, std::uint32_t slot) {
+void ClosedLoop::enable_all() {
+  for (const Axis& axis : robot_.axes) {
+    request(ILK_REQUEST_ENABLE, axis.slot);
+  }
+}
+
+void ClosedLoop::request(std::uint32_t kind, std::uint32_t slot, std::int32_t target_counts) {
   ilk_request_t request{};
   request.kind = kind;
   request.axis = slot;
+  request.target_counts = target_counts;
   put(request);
   const std::uint32_t refused_before = state_.requests_refused;
   tick();

@@ -7,6 +7,8 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "interlock/kernel.h"
@@ -22,6 +24,10 @@ class ClosedLoop {
   /** `latency` ticks pass from a snapshot until its moves reach the kernel. The system is unlocked and READY.
    */
   ClosedLoop(std::uint64_t seed, std::uint32_t latency, const Robot& robot = neuro());
+  ClosedLoop(std::uint64_t seed, std::uint32_t latency, const Robot& robot, const plant::Parameters& plant);
+
+  /** Calls `watcher` after every tick. */
+  void watch(std::function<void()> watcher) { watcher_ = std::move(watcher); }
 
   void tick();
   void run(std::uint32_t ticks);
@@ -30,7 +36,15 @@ class ClosedLoop {
   void pedal(bool pressed);
 
   /** Sends one request, which the kernel must accept. */
-  void request(std::uint32_t kind, std::uint32_t slot = 0);
+  void request(std::uint32_t kind, std::uint32_t slot = 0, std::int32_t target_counts = 0);
+
+  /** Enables every axis of the robot. */
+  void enable_all();
+
+  /** True position of the axis, in the frame of its switch. */
+  [[nodiscard]] double true_position(std::uint32_t slot) const {
+    return plant_.station(slot)->position_counts();
+  }
 
   /** Homes the axis as it wants to be homed, enables it, and holds the pedal. */
   void make_ready(std::uint32_t slot);
@@ -48,7 +62,6 @@ class ClosedLoop {
   [[nodiscard]] const ilk_state_t& state() const { return state_; }
   [[nodiscard]] const ilk_outputs_t& outputs() const { return outputs_; }
   [[nodiscard]] const ilk_config_t& config() const { return config_; }
-  [[nodiscard]] const plant::Plant& plant() const { return plant_; }
   [[nodiscard]] OrderStatus order(std::uint32_t slot) const { return conductor_.orders()[slot]; }
   [[nodiscard]] const HomeStatus& home() const { return conductor_.home(); }
   void cancel(std::uint32_t proposal) { conductor_.end(proposal, OrderReason::cancelled, seen_tick_); }
@@ -58,6 +71,8 @@ class ClosedLoop {
 
   /** A hand or a fault does something to the plant. */
   void happen(const plant::command::Command& command);
+  /** Requests that the kernel refused, but for those that a released pedal overtook (MODE). */
+  [[nodiscard]] std::uint32_t refusals() const { return refusals_; }
   [[nodiscard]] std::uint32_t most_requests_in_a_tick() const { return most_requests_; }
 
  private:
@@ -70,18 +85,21 @@ class ClosedLoop {
   [[nodiscard]] ilk_snapshot_t snapshot() const;
   void deliver_verdicts();
 
+  const Robot robot_;
   ilk_config_t config_;
   ilk_state_t state_{};
   ilk_outputs_t outputs_{};
   plant::Plant plant_;
   Conductor conductor_;
   std::uint32_t latency_;
+  std::function<void()> watcher_ = [] {};
   std::uint32_t seen_tick_ = 0;
   std::deque<ilk_snapshot_t> on_their_way_;
   std::vector<ilk_request_t> requests_;
   std::vector<Sent> sent_;
   std::uint32_t sequence_ = 0;
   std::uint32_t most_requests_ = 0;
+  std::uint32_t refusals_ = 0;
 };
 
 }  // namespace interlock::test

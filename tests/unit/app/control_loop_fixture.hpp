@@ -66,6 +66,7 @@ class ControlLoopTest : public testing::Test {
   }
 
   OrderStatus order() { return mailbox_->view.newest().orders[insertion]; }
+  OrderStatus home() { return mailbox_->view.newest().home.order; }
 
   void stop() { mailbox_->stops.fetch_add(1, std::memory_order_release); }
 

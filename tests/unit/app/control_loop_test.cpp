@@ -198,6 +198,76 @@ TEST_F(ControlLoopTest, ALostLinkEndsOrdersAndAnswersAsksAndIsAttachedAgain) {
   EXPECT_EQ(sent(ILK_REQUEST_HEARTBEAT)->sequence, 1u);
 }
 
+TEST_F(ControlLoopTest, HomesAnAxisAndFollowsItsVerdict) {
+  command(HomeOrder{1, 0, 0, insertion, 0});
+  snapshot_.state.mode = ILK_MODE_MOTION;
+  tick();
+  ASSERT_NE(sent(ILK_REQUEST_HOME), nullptr);
+  EXPECT_EQ(sent(ILK_REQUEST_HOME)->axis, insertion);
+  EXPECT_EQ(home().phase, OrderPhase::executing);
+  kernel_.push_verdict(*sent(ILK_REQUEST_HOME), ILK_VERDICT_ACCEPTED, snapshot_.state.tick);
+  snapshot_.state.axis[insertion].homed = 1;
+  tick();
+  EXPECT_EQ(home().phase, OrderPhase::done);
+  EXPECT_EQ(notices<ilk_event_t>().size(), 1u);
+}
+
+TEST_F(ControlLoopTest, OnlyOneModeHasOpenOrders) {
+  command(Order{1, insertion, 1500, 0, 0});
+  command(HomeOrder{2, 0, 0, insertion, 0});
+  tick();
+  EXPECT_EQ(order().phase, OrderPhase::aborted);
+  EXPECT_EQ(order().reason, OrderReason::axis_homing);
+  EXPECT_EQ(home().phase, OrderPhase::waiting);
+  command(Order{3, insertion, 1500, 0, 0});
+  snapshot_.state.mode = ILK_MODE_MOTION;
+  tick();
+  EXPECT_EQ(sent(ILK_REQUEST_MOVE), nullptr);
+  EXPECT_EQ(order().phase, OrderPhase::aborted);
+}
+
+TEST_F(ControlLoopTest, AHomeOrderOlderThanTheStopNeverStarts) {
+  command(HomeOrder{1, 0, 0, insertion, 0});
+  stop();
+  snapshot_.state.mode = ILK_MODE_MOTION;
+  tick();
+  EXPECT_EQ(sent(ILK_REQUEST_HOME), nullptr);
+  EXPECT_EQ(home().reason, OrderReason::stopped);
+}
+
+TEST_F(ControlLoopTest, CancellingHomingAsksTheKernelToStop) {
+  command(HomeOrder{1, 0, 0, insertion, 0});
+  snapshot_.state.mode = ILK_MODE_MOTION;
+  tick();
+  command(Cancel{1});
+  tick();
+  EXPECT_NE(sent(ILK_REQUEST_STOP), nullptr);
+  EXPECT_EQ(home().reason, OrderReason::cancelled);
+}
+
+TEST_F(ControlLoopTest, ALostVerdictEndsHoming) {
+  command(HomeOrder{1, 0, 0, insertion, 0});
+  snapshot_.state.mode = ILK_MODE_MOTION;
+  tick();
+  for (std::uint32_t i = 0; i < ILK_LINK_EVENTS + 3; ++i) {
+    kernel_.push_event({0, ILK_EVENT_MODE, i, {}});
+  }
+  tick();
+  EXPECT_EQ(home().reason, OrderReason::verdict_lost);
+}
+
+TEST_F(ControlLoopTest, ALostLinkEndsHoming) {
+  command(HomeOrder{1, 0, 0, insertion, 0});
+  snapshot_.state.mode = ILK_MODE_MOTION;
+  tick();
+  kernel_.close();
+  kernel_.accept();
+  snapshot_.state.mode = ILK_MODE_READY;
+  tick();
+  EXPECT_EQ(home().phase, OrderPhase::aborted);
+  EXPECT_EQ(home().reason, OrderReason::link_lost);
+}
+
 TEST_F(ControlLoopTest, AsksTheKernelToEndMotionWhenItEnds) {
   tick();
   thread_.request_stop();

@@ -1,0 +1,373 @@
+#include "motion/home_mode.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "robot_fixture.hpp"
+
+namespace interlock {
+namespace {
+
+using test::insertion;
+using test::neuro;
+using test::neuro_config;
+using test::rotation;
+
+constexpr std::uint32_t minute_ticks = 60000;
+constexpr std::uint32_t yaw = 0;
+constexpr std::uint32_t pitch = 2;
+/** The neuro robot's step of two axes. */
+constexpr std::uint32_t angles = 1;
+
+class HomeModeTest : public testing::Test {
+ protected:
+  HomeModeTest() : snapshot_(test::ready_view().snapshot), mode_(RobotPlan(neuro(), neuro_config())) {}
+
+  void home_axis(std::uint32_t proposal = 1, std::uint32_t slot = insertion) {
+    mode_.take(HomeOrder{proposal, 0, 0, slot, 0}, snapshot_.state.tick);
+  }
+
+  void home_angles(std::uint32_t proposal = 1) {
+    mode_.take(HomeOrder{proposal, angles, 1, 0, 0}, snapshot_.state.tick);
+  }
+
+  std::vector<Wish> tick(std::uint32_t ticks = 1) {
+    snapshot_.state.tick += ticks;
+    Wishes wishes;
+    mode_.tick(snapshot_, wishes);
+    return {wishes.all().begin(), wishes.all().end()};
+  }
+
+  std::vector<std::uint32_t> kinds(std::uint32_t ticks = 1) {
+    std::vector<std::uint32_t> found;
+    for (const Wish& wish : tick(ticks)) {
+      found.push_back(wish.origin.kind);
+    }
+    return found;
+  }
+
+  void press() { snapshot_.state.mode = ILK_MODE_MOTION; }
+  void release() { snapshot_.state.mode = ILK_MODE_READY; }
+
+  void judge(std::uint32_t slot, std::uint32_t verdict, std::uint32_t proposal = 1) {
+    mode_.on_verdict({ILK_REQUEST_HOME, slot, proposal}, verdict, snapshot_.state.tick);
+  }
+
+  void accept(std::uint32_t slot) {
+    judge(slot, ILK_VERDICT_ACCEPTED);
+    axis(slot).state = ILK_AXIS_HOMING;
+    axis(slot).homed = 0;
+  }
+
+  void arrive(std::uint32_t slot) {
+    axis(slot).state = ILK_AXIS_ENABLED;
+    axis(slot).homed = 1;
+  }
+
+  ilk_axis_t& axis(std::uint32_t slot) { return snapshot_.state.axis[slot]; }
+  [[nodiscard]] OrderPhase phase() const { return mode_.status().order.phase; }
+  [[nodiscard]] OrderReason reason() const { return mode_.status().order.reason; }
+
+  ilk_snapshot_t snapshot_;
+  HomeMode mode_;
+};
+
+TEST_F(HomeModeTest, SendsNothingBeforeThePedal) {
+  home_axis();
+  EXPECT_THAT(tick(), testing::IsEmpty());
+  EXPECT_EQ(phase(), OrderPhase::waiting);
+}
+
+TEST_F(HomeModeTest, AsksOnceForEveryAxisOfTheStep) {
+  home_angles();
+  press();
+  const auto wishes = tick();
+  ASSERT_EQ(wishes.size(), 2u);
+  EXPECT_EQ(wishes[0].origin, (WishOrigin{ILK_REQUEST_HOME, yaw, 1}));
+  EXPECT_EQ(wishes[1].origin, (WishOrigin{ILK_REQUEST_HOME, pitch, 1}));
+  EXPECT_EQ(phase(), OrderPhase::executing);
+  EXPECT_EQ(mode_.status().step, angles);
+  EXPECT_THAT(tick(), testing::IsEmpty());
+}
+
+TEST_F(HomeModeTest, IsDoneWhenEveryAxisOfTheStepIsHomed) {
+  home_angles();
+  press();
+  (void)tick();
+  accept(yaw);
+  accept(pitch);
+  (void)tick();
+  arrive(yaw);
+  (void)tick();
+  EXPECT_EQ(phase(), OrderPhase::executing);
+  arrive(pitch);
+  EXPECT_THAT(tick(), testing::IsEmpty());
+  EXPECT_EQ(phase(), OrderPhase::done);
+}
+
+TEST_F(HomeModeTest, AnAxisThatWasHomedBeforeDoesNotCount) {
+  home_axis();
+  press();
+  (void)tick();
+  (void)tick(100);
+  EXPECT_EQ(phase(), OrderPhase::executing);
+}
+
+TEST_F(HomeModeTest, ASnapshotOlderThanTheAcceptanceDoesNotCount) {
+  home_axis();
+  press();
+  (void)tick();
+  mode_.on_verdict({ILK_REQUEST_HOME, insertion, 1}, ILK_VERDICT_ACCEPTED, snapshot_.state.tick + 3);
+  (void)tick(3);
+  EXPECT_EQ(phase(), OrderPhase::executing);
+  (void)tick();
+  EXPECT_EQ(phase(), OrderPhase::done);
+}
+
+TEST_F(HomeModeTest, ReleasePausesAndTheNextPressAsksAgain) {
+  home_axis();
+  press();
+  (void)tick();
+  accept(insertion);
+  (void)tick();
+  axis(insertion).state = ILK_AXIS_ENABLED;
+  release();
+  EXPECT_THAT(tick(), testing::IsEmpty());
+  EXPECT_EQ(phase(), OrderPhase::paused);
+  EXPECT_EQ(reason(), OrderReason::pedal_released);
+  press();
+  EXPECT_THAT(kinds(), testing::ElementsAre(ILK_REQUEST_HOME));
+}
+
+TEST_F(HomeModeTest, APressGoesOnOnlyWithTheAxesThatAreNotHomedYet) {
+  home_angles();
+  press();
+  (void)tick();
+  accept(yaw);
+  accept(pitch);
+  (void)tick();
+  arrive(yaw);
+  (void)tick();
+  axis(pitch).state = ILK_AXIS_ENABLED;
+  release();
+  (void)tick();
+  press();
+  const auto wishes = tick();
+  ASSERT_EQ(wishes.size(), 1u);
+  EXPECT_EQ(wishes[0].origin.slot, pitch);
+}
+
+TEST_F(HomeModeTest, APressThatNobodySawReleasedAsksAgain) {
+  home_axis();
+  press();
+  (void)tick();
+  accept(insertion);
+  (void)tick();
+  axis(insertion).state = ILK_AXIS_ENABLED;
+  EXPECT_THAT(kinds(30), testing::ElementsAre(ILK_REQUEST_HOME));
+}
+
+TEST_F(HomeModeTest, APedalReleasedMeanwhileIsNoRefusal) {
+  home_axis();
+  press();
+  (void)tick();
+  judge(insertion, ILK_VERDICT_MODE);
+  EXPECT_EQ(phase(), OrderPhase::executing);
+  EXPECT_THAT(kinds(), testing::ElementsAre(ILK_REQUEST_HOME));
+}
+
+TEST_F(HomeModeTest, ARefusalEndsItWithItsVerdictAndStopsTheOthers) {
+  home_angles();
+  press();
+  (void)tick();
+  accept(yaw);
+  judge(pitch, ILK_VERDICT_BUSY);
+  EXPECT_EQ(phase(), OrderPhase::refused);
+  EXPECT_EQ(mode_.status().order.code, static_cast<std::uint32_t>(ILK_VERDICT_BUSY));
+  EXPECT_EQ(mode_.status().slot, pitch);
+  EXPECT_THAT(kinds(), testing::ElementsAre(ILK_REQUEST_STOP));
+}
+
+TEST_F(HomeModeTest, AVerdictOnAnEarlierOrderChangesNothing) {
+  home_axis(1);
+  press();
+  (void)tick();
+  home_axis(2);
+  judge(insertion, ILK_VERDICT_BUSY, 1);
+  EXPECT_EQ(phase(), OrderPhase::waiting);
+}
+
+TEST_F(HomeModeTest, ALostVerdictEndsIt) {
+  home_axis();
+  press();
+  (void)tick();
+  mode_.on_verdict_lost({ILK_REQUEST_HOME, insertion, 1}, snapshot_.state.tick);
+  EXPECT_EQ(phase(), OrderPhase::aborted);
+  EXPECT_EQ(reason(), OrderReason::verdict_lost);
+  EXPECT_THAT(kinds(), testing::ElementsAre(ILK_REQUEST_STOP));
+}
+
+TEST_F(HomeModeTest, CancellingAsksForStopUntilMotionHasEnded) {
+  home_axis();
+  press();
+  (void)tick();
+  accept(insertion);
+  mode_.end(1, OrderReason::cancelled, snapshot_.state.tick);
+  EXPECT_EQ(reason(), OrderReason::cancelled);
+  EXPECT_THAT(kinds(), testing::ElementsAre(ILK_REQUEST_STOP));
+  EXPECT_THAT(kinds(49), testing::IsEmpty());
+  EXPECT_THAT(kinds(), testing::ElementsAre(ILK_REQUEST_STOP));
+  release();
+  EXPECT_THAT(kinds(50), testing::IsEmpty());
+  press();
+  EXPECT_THAT(kinds(50), testing::IsEmpty());
+}
+
+TEST_F(HomeModeTest, CancellingWhatDoesNotRunAsksForNothing) {
+  home_axis();
+  (void)tick();
+  press();
+  mode_.end(1, OrderReason::cancelled, snapshot_.state.tick);
+  EXPECT_THAT(kinds(), testing::IsEmpty());
+}
+
+TEST_F(HomeModeTest, EndsOnlyTheProposalThatIsMeant) {
+  home_axis(2);
+  mode_.end(1, OrderReason::cancelled, snapshot_.state.tick);
+  EXPECT_EQ(phase(), OrderPhase::waiting);
+}
+
+TEST_F(HomeModeTest, ANewerOrderWaitsUntilTheOlderOneIsStopped) {
+  home_axis(1);
+  press();
+  (void)tick();
+  accept(insertion);
+  home_angles(2);
+  EXPECT_THAT(kinds(), testing::ElementsAre(ILK_REQUEST_STOP));
+  EXPECT_THAT(kinds(), testing::IsEmpty());
+  EXPECT_EQ(phase(), OrderPhase::waiting);
+  release();
+  (void)tick();
+  press();
+  EXPECT_THAT(kinds(), testing::ElementsAre(ILK_REQUEST_HOME, ILK_REQUEST_HOME));
+}
+
+TEST_F(HomeModeTest, WishesThatWereNotSentAreRepeated) {
+  home_axis();
+  press();
+  mode_.on_unsent(tick().at(0));
+  EXPECT_THAT(kinds(), testing::ElementsAre(ILK_REQUEST_HOME));
+  mode_.end(1, OrderReason::cancelled, snapshot_.state.tick);
+  mode_.on_unsent(tick().at(0));
+  EXPECT_THAT(kinds(), testing::ElementsAre(ILK_REQUEST_STOP));
+}
+
+TEST_F(HomeModeTest, ExpiresAfterAMinuteOfKernelTimeWithoutThePedal) {
+  home_axis();
+  (void)tick(minute_ticks);
+  EXPECT_EQ(phase(), OrderPhase::waiting);
+  (void)tick();
+  EXPECT_EQ(phase(), OrderPhase::expired);
+  EXPECT_EQ(reason(), OrderReason::waited_too_long);
+}
+
+TEST_F(HomeModeTest, TheMinuteBeginsAnewWithEachPause) {
+  home_axis();
+  (void)tick(minute_ticks - 1);
+  press();
+  (void)tick();
+  release();
+  (void)tick();
+  (void)tick(minute_ticks);
+  EXPECT_EQ(phase(), OrderPhase::paused);
+  (void)tick();
+  EXPECT_EQ(phase(), OrderPhase::expired);
+}
+
+TEST_F(HomeModeTest, APressAfterAMinuteFindsNothingToHome) {
+  home_axis();
+  press();
+  EXPECT_THAT(tick(minute_ticks + 1), testing::IsEmpty());
+  EXPECT_EQ(phase(), OrderPhase::expired);
+}
+
+TEST_F(HomeModeTest, SurvivesTheWrapOfTheTickCounter) {
+  snapshot_.state.tick = UINT32_MAX - 10;
+  home_axis();
+  press();
+  (void)tick();
+  accept(insertion);
+  (void)tick(20);
+  arrive(insertion);
+  (void)tick();
+  EXPECT_EQ(phase(), OrderPhase::done);
+}
+
+TEST_F(HomeModeTest, LockedEndsIt) {
+  home_axis();
+  press();
+  (void)tick();
+  snapshot_.state.mode = ILK_MODE_LOCKED;
+  snapshot_.state.cause = ILK_CAUSE_ESTOP;
+  EXPECT_THAT(tick(), testing::IsEmpty());
+  EXPECT_EQ(reason(), OrderReason::locked);
+  EXPECT_EQ(mode_.status().order.code, static_cast<std::uint32_t>(ILK_CAUSE_ESTOP));
+}
+
+TEST_F(HomeModeTest, AnAxisTakenOutOfMotionEndsIt) {
+  home_angles();
+  axis(pitch).state = ILK_AXIS_DISABLED;
+  (void)tick();
+  EXPECT_EQ(reason(), OrderReason::axis_disabled);
+  EXPECT_EQ(mode_.status().slot, pitch);
+}
+
+TEST_F(HomeModeTest, AnAxisBesideItMayBeDisabled) {
+  axis(rotation).state = ILK_AXIS_DISABLED;
+  home_axis();
+  (void)tick();
+  EXPECT_EQ(phase(), OrderPhase::waiting);
+}
+
+TEST_F(HomeModeTest, ANewFaultOfAnyAxisEndsIt) {
+  home_axis();
+  (void)tick();
+  axis(rotation).state = ILK_AXIS_FAULTED;
+  axis(rotation).fault = ILK_FAULT_DRIFT;
+  (void)tick();
+  EXPECT_EQ(reason(), OrderReason::axis_faulted);
+  EXPECT_EQ(mode_.status().slot, rotation);
+  EXPECT_EQ(mode_.status().order.code, static_cast<std::uint32_t>(ILK_FAULT_DRIFT));
+}
+
+TEST_F(HomeModeTest, AFaultBesideItFromBeforeDoesNotUntilItComesAgain) {
+  axis(rotation).state = ILK_AXIS_FAULTED;
+  home_axis();
+  (void)tick();
+  EXPECT_EQ(phase(), OrderPhase::waiting);
+  axis(rotation).state = ILK_AXIS_ENABLED;
+  (void)tick();
+  axis(rotation).state = ILK_AXIS_FAULTED;
+  (void)tick();
+  EXPECT_EQ(reason(), OrderReason::axis_faulted);
+}
+
+TEST_F(HomeModeTest, RefusesWhatTheRobotDoesNotHave) {
+  const auto steps = static_cast<std::uint32_t>(neuro().home_steps.size());
+  const HomeOrder beyond[] = {
+      {1, steps, 1, 0, 0}, {2, 0, steps + 1, 0, 0}, {3, 1, UINT32_MAX, 0, 0}, {4, 0, 0, ILK_SLOTS, 0}};
+  press();
+  for (const HomeOrder& order : beyond) {
+    mode_.take(order, snapshot_.state.tick);
+    EXPECT_EQ(phase(), OrderPhase::refused);
+    EXPECT_EQ(mode_.status().order.code, static_cast<std::uint32_t>(ILK_VERDICT_AXIS));
+    EXPECT_THAT(tick(), testing::IsEmpty());
+  }
+  mode_.take(HomeOrder{5, 0, steps, 0, 0}, snapshot_.state.tick);
+  EXPECT_EQ(phase(), OrderPhase::waiting);
+}
+
+}  // namespace
+}  // namespace interlock

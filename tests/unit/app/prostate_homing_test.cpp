@@ -1,0 +1,121 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "closed_loop.hpp"
+#include "plant/parameters_file.hpp"
+#include "robot/robot_file.hpp"
+#include "unhomed_bounds.hpp"
+
+namespace interlock {
+namespace {
+
+using test::ClosedLoop;
+
+constexpr double most_separation_mm = 308.0;
+constexpr std::uint32_t most_ticks = 600000;
+
+const Robot& prostate() {
+  static const Robot robot = [] {
+    auto loaded = load_robot(INTERLOCK_ROBOTS "/prostate.toml");
+    return loaded ? *loaded : throw std::runtime_error(loaded.error().message());
+  }();
+  return robot;
+}
+
+/** Where the sliders stand at power-on, in mm: at home, in the middle, and as far apart and out as they can.
+ */
+struct Start {
+  std::string name;
+  double left_mm = 0;
+  double right_mm = 0;
+};
+
+class ProstateHoming : public testing::TestWithParam<Start> {
+ protected:
+  static std::unique_ptr<ClosedLoop> robot_at(const Start& start) {
+    const ilk_config_t config = test::config_of(prostate());
+    auto plant = plant::load_parameters(INTERLOCK_ROBOTS "/../plant/prostate.toml", config);
+    if (!plant) {
+      throw std::runtime_error(plant.error());
+    }
+    for (const char* name : {"back_left", "front_left"}) {
+      plant->axis[slot(name)].start_counts = start.left_mm * prostate().find(name)->counts_per_unit;
+    }
+    for (const char* name : {"back_right", "front_right"}) {
+      plant->axis[slot(name)].start_counts = start.right_mm * prostate().find(name)->counts_per_unit;
+    }
+    auto loop = std::make_unique<ClosedLoop>(73, 2u, prostate(), *plant);
+    loop->enable_all();
+    return loop;
+  }
+
+  static std::uint32_t slot(const char* name) { return prostate().find(name)->slot; }
+
+  static double separation_mm(const ClosedLoop& loop, const char* left, const char* right) {
+    return loop.true_position(slot(left)) / prostate().find(left)->counts_per_unit -
+           loop.true_position(slot(right)) / prostate().find(right)->counts_per_unit;
+  }
+
+  /** Homes the robot, pressing the pedal anew as often as it is asked for. */
+  static void home(ClosedLoop& loop, std::uint32_t proposal) {
+    const auto steps = static_cast<std::uint32_t>(prostate().home_steps.size());
+    loop.give(HomeOrder{proposal, 0, steps, 0, 0});
+    loop.pedal(true);
+    for (std::uint32_t i = 0; i < most_ticks && is_open(loop.home().order.phase); ++i) {
+      loop.tick();
+      if (loop.home().order.reason == OrderReason::press_again) {
+        loop.pedal(false);
+        loop.pedal(true);
+      }
+    }
+    loop.pedal(false);
+  }
+
+  static void expect_homed_and_parked(const ClosedLoop& loop) {
+    ASSERT_EQ(loop.home().order.phase, OrderPhase::done)
+        << "step " << loop.home().step << ", slot " << loop.home().slot << ", reason "
+        << static_cast<int>(loop.home().order.reason) << ", code " << loop.home().order.code;
+    for (const char* name : {"back_left", "front_left", "back_right", "front_right"}) {
+      EXPECT_EQ(loop.state().axis[slot(name)].homed, 1u) << name;
+      EXPECT_NEAR(std::abs(loop.true_position(slot(name))), 375000, 60) << name;
+    }
+    EXPECT_EQ(loop.refusals(), 0u);
+  }
+};
+
+TEST_P(ProstateHoming, NeitherPairPartsTooFarAndNoSliderLeavesItsUnhomedBounds) {
+  const auto loop = robot_at(GetParam());
+  test::UnhomedBounds bounds(*loop, prostate());
+  loop->watch([&] {
+    bounds.check();
+    ASSERT_LE(separation_mm(*loop, "back_left", "back_right"), most_separation_mm);
+    ASSERT_LE(separation_mm(*loop, "front_left", "front_right"), most_separation_mm);
+  });
+  home(*loop, 1);
+  expect_homed_and_parked(*loop);
+}
+
+TEST_P(ProstateHoming, ARobotThatIsHomedMayBeHomedAgain) {
+  const auto loop = robot_at(GetParam());
+  home(*loop, 1);
+  expect_homed_and_parked(*loop);
+  loop->watch([&] {
+    ASSERT_LE(separation_mm(*loop, "back_left", "back_right"), most_separation_mm);
+    ASSERT_LE(separation_mm(*loop, "front_left", "front_right"), most_separation_mm);
+  });
+  home(*loop, 2);
+  expect_homed_and_parked(*loop);
+}
+
+INSTANTIATE_TEST_SUITE_P(Starts, ProstateHoming,
+                         testing::Values(Start{"parked", 150.0, -150.0},
+                                         Start{"right_at_its_outer_end", 119.0, -185.0},
+                                         Start{"left_at_its_outer_end", 185.0, -120.0}),
+                         [](const auto& each) { return each.param.name; });
+
+}  // namespace
+}  // namespace interlock
