@@ -2,6 +2,7 @@ import { type FormEvent, useState } from "react";
 import { api } from "../../api/client";
 import { NoticeText } from "../../design/NoticeText";
 import { Panel } from "../../design/Panel";
+import { UserNameField } from "../../design/UserNameField";
 import { type Notice, noticeOfProblem } from "../../state/notice";
 import { useConsole } from "../../state/store";
 import "./account.css";
@@ -35,6 +36,7 @@ export function AccountPage() {
         {login.user.name}, {login.user.role}. A changed password ends every other session of yours.
       </p>
       <form className="account" aria-label="Change the password" onSubmit={(event) => void onSubmit(event)}>
+        <UserNameField name={login.user.name} />
         <PasswordField
           label="Current password"
           kind="current-password"

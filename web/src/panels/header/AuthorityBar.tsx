@@ -58,7 +58,7 @@ function Holder({ authority }: { readonly authority: Authority }) {
 function Request({ claim, mayGrant }: { readonly claim: Claim; readonly mayGrant: boolean }) {
   return (
     <span className="authority-request" role="status">
-      <i aria-hidden="true">✋</i> <strong>{claim.user}</strong> asks
+      <strong>{claim.user}</strong> asks
       {mayGrant && (
         <CommandButton
           need="holder"

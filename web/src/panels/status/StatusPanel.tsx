@@ -28,7 +28,7 @@ export function StatusPanel() {
             <th scope="col">Detected</th>
             <th scope="col">Heartbeat</th>
             <th scope="col" className="number" title="Frames whose checksum was wrong">
-              Checksum
+              Bad sums
             </th>
           </tr>
         </thead>
@@ -82,7 +82,7 @@ function CardLine({ card }: { readonly card: CardStatus }) {
       <th scope="row" title={entry("card", card.card).meaning}>
         {empty ? "empty" : card.card}
       </th>
-      <td className={lost ? "bad" : ""}>{mark(empty, card.detected, "detected", "NOT DETECTED")}</td>
+      <td className={lost ? "bad" : ""}>{mark(empty, card.detected, "yes", "NO")}</td>
       <td className={silent ? "bad" : ""} title={`heartbeat ${card.heartbeat}`}>
         {mark(empty, card.heartbeat_live, "live", "SILENT")}
       </td>

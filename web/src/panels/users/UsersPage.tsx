@@ -1,8 +1,9 @@
-import { useState } from "react";
+import { type FormEvent, useState } from "react";
 import { api, type Outcome, type Role, type User, type UserChange } from "../../api/client";
 import { CommandButton } from "../../design/CommandButton";
 import { NoticeText } from "../../design/NoticeText";
 import { Panel } from "../../design/Panel";
+import { UserNameField } from "../../design/UserNameField";
 import { type Notice, noticeOfProblem } from "../../state/notice";
 import { usePolled } from "../../state/usePolled";
 import { localDate } from "../../units/time";
@@ -67,7 +68,8 @@ function UserLine({ user, onChange }: UserLineProps) {
     await onChange({ role: wanted });
     setRole(null);
   };
-  const changePassword = async (): Promise<void> => {
+  const changePassword = async (event: FormEvent): Promise<void> => {
+    event.preventDefault();
     if (await onChange({ password })) setPassword("");
   };
   return (
@@ -103,23 +105,26 @@ function UserLine({ user, onChange }: UserLineProps) {
       <td>{localDate(user.created)}</td>
       <td>{user.last_login === null ? "never" : localDate(user.last_login)}</td>
       <td>
-        <input
-          className="text"
-          type="password"
-          autoComplete="new-password"
-          aria-label={`New password of ${user.name}`}
-          placeholder="10 characters or more"
-          value={password}
-          onChange={(event) => setPassword(event.target.value)}
-        />{" "}
-        <CommandButton
-          need="admin"
-          label={`Set the password of ${user.name}`}
-          off={password === "" ? "Type the new password first." : null}
-          onCommand={changePassword}
-        >
-          Set
-        </CommandButton>
+        <form onSubmit={(event) => void changePassword(event)}>
+          <UserNameField name={user.name} />
+          <input
+            className="text"
+            type="password"
+            autoComplete="new-password"
+            aria-label={`New password of ${user.name}`}
+            placeholder="10 characters or more"
+            value={password}
+            onChange={(event) => setPassword(event.target.value)}
+          />{" "}
+          <button
+            type="submit"
+            className="button"
+            aria-label={`Set the password of ${user.name}`}
+            disabled={password === ""}
+          >
+            Set
+          </button>
+        </form>
       </td>
     </tr>
   );
