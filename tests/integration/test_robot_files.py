@@ -3,6 +3,7 @@
 import contextlib
 import hashlib
 import json
+import re
 import subprocess
 import tomllib
 from collections.abc import Iterator
@@ -11,13 +12,15 @@ from pathlib import Path
 import jsonschema
 import pytest
 from bare_kernel import BIN, ROOT
-from motion import motor, propose, to_motion, wait_for_mode, wait_for_proposal
+from conftest import StackFactory
+from motion import motor, propose, to_motion, wait_for_mode, wait_for_proposal, wait_until
 from stack import Stack
 from test_run import DONE, REFUSED, interlock
 
 FILES = ROOT / "tests/integration/robots"
 TRAINER = FILES / "trainer.toml"
 BROKEN = tomllib.loads((FILES / "broken.toml").read_text())
+ROTATION = 0
 DRILL = 0
 GRIP = 5
 SCHEMA = json.loads((ROOT / "models/robots/robot.schema.json").read_text())
@@ -89,6 +92,39 @@ def test_sound_robot_satisfies_the_schema_that_its_first_line_names(file: Path) 
     jsonschema.validate(tomllib.loads(file.read_text()), SCHEMA, cls=jsonschema.Draft202012Validator)
 
 
+OPTIONAL = ("role", "required")
+KEY = re.compile(r"^[a-z_]+ = .*\n", re.MULTILINE)
+TABLE = re.compile(r"^\[.*\]\n", re.MULTILINE)
+
+
+def refused(text: str, folder: Path) -> bool:
+    (folder / "broken.toml").write_text(text)
+    return model("check", folder).returncode == REFUSED
+
+
+def test_no_key_may_be_missing_for_the_program_nor_for_the_schema(tmp_path: Path) -> None:
+    text = TRAINER.read_text()
+    for key in KEY.finditer(text):
+        without = text[: key.start()] + text[key.end() :]
+        name = key[0].split()[0]
+        line = text.count("\n", 0, key.start()) + 1
+        # A role that nobody plays is a clash, which only the program sees; "required" may be left out.
+        assert refused(without, tmp_path) == (name != "required"), (line, name)
+        assert schema_refuses(without) == (name not in OPTIONAL), (line, name)
+
+
+def test_no_table_may_have_a_key_too_many(tmp_path: Path) -> None:
+    text = TRAINER.read_text()
+    tables = list(TABLE.finditer(text))
+    assert len(tables) > 20
+    for table in tables:
+        surplus = text[: table.end()] + "surplus = 1\n" + text[table.end() :]
+        line = text.count("\n", 0, table.start()) + 2
+        assert refused(surplus, tmp_path), line
+        assert f"broken.toml:{line}: " in model("check", tmp_path).stderr
+        assert schema_refuses(surplus), line
+
+
 def properties(schema: object, path: str = "") -> Iterator[tuple[str, dict]]:
     """Every property that the schema describes, by its path."""
     if isinstance(schema, dict):
@@ -157,6 +193,11 @@ def card(status: dict) -> dict:
     return next((card for card in status["cards"] if card["slot"] == GRIP), {})
 
 
+def readings(stack: Stack) -> dict[int, int]:
+    """What the force sensor's inputs read, without noise, by their numbers."""
+    return {adc["adc"]: adc["counts"] for adc in stack.control("status")["sensors"][0]["inputs"]}
+
+
 def plant_counts(stack: Stack, slot: int) -> float:
     """Where the axis truly stands."""
     return next(axis["position_counts"] for axis in stack.control("status")["axes"] if axis["slot"] == slot)
@@ -202,3 +243,13 @@ def test_loss_of_a_required_sensor_ends_motion(trainer: Stack) -> None:
     to_motion(trainer, DRILL)
     trainer.control("card_power", slot=GRIP, on=False)
     wait_for_mode(trainer, "READY")
+
+
+def test_prostate_robot_runs_and_its_force_sensor_can_be_pressed(stack: StackFactory) -> None:
+    prostate = stack(robot="prostate")
+    prostate.status_when(lambda status: len(status["cards"]) == 7)
+    prostate.control("force", slot=3, adc=3, counts=-200)
+    wait_until("the force to act", lambda: readings(prostate) == {2: 1970, 3: 1580})
+    to_motion(prostate, ROTATION)
+    wait_for_proposal(prostate, propose(prostate, 400, ROTATION), "done")
+    assert motor(prostate, ROTATION)["position_counts"] == pytest.approx(400, abs=3)
