@@ -72,7 +72,7 @@ Stored<void> must_exist(const fs::path& file, const std::string& what) {
 Stored<StoreSummary> copy_checked(const fs::path& source, const fs::path& target) {
   try {
     {
-      SQLite::Database database(source.string(), SQLite::OPEN_READONLY, store_patience_ms);
+      SQLite::Database database(source.string(), SQLite::OPEN_READWRITE, store_patience_ms);
       if (const Stored<void> checked = check_store(database); !checked) {
         return tl::unexpected(checked.error());
       }
@@ -80,7 +80,7 @@ Stored<StoreSummary> copy_checked(const fs::path& source, const fs::path& target
     if (const Stored<void> copied = copy_store(source, target); !copied) {
       return tl::unexpected(copied.error());
     }
-    SQLite::Database copy(target.string(), SQLite::OPEN_READONLY, store_patience_ms);
+    SQLite::Database copy(target.string(), SQLite::OPEN_READWRITE, store_patience_ms);
     return check_contents(copy).map([&] {
       const auto users = copy.execAndGet("SELECT count(*) FROM users").getInt64();
       return StoreSummary{static_cast<std::size_t>(users), verify_audit(copy, std::nullopt).value()};

@@ -85,7 +85,7 @@ Stored<void> copy_store(const fs::path& source, const fs::path& target) {
   if (const Stored<void> made = make_private_file(target); !made) {
     return made;
   }
-  SQLite::Database from(source.string(), SQLite::OPEN_READONLY, store_patience_ms);
+  SQLite::Database from(source.string(), SQLite::OPEN_READWRITE, store_patience_ms);
   SQLite::Database to(target.string(), SQLite::OPEN_READWRITE, store_patience_ms);
   SQLite::Backup copy(to, from);
   // All pages in one step, so that the copy is of one moment.

@@ -1,0 +1,149 @@
+#include "store/schema.hpp"
+
+#include <gmock/gmock.h>
+
+#include <array>
+#include <fstream>
+#include <iterator>
+
+#include "store_fixture.hpp"
+
+namespace interlock {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using Kind = StoreError::Kind;
+
+/** A store as the first release made it. This text is never changed. */
+constexpr const char* store_of_version_1 = R"sql(
+CREATE TABLE users (name TEXT PRIMARY KEY, role TEXT NOT NULL CHECK (role IN ('viewer', 'engineer', 'admin')),
+  enabled INTEGER NOT NULL CHECK (enabled IN (0, 1)), password TEXT NOT NULL, created TEXT NOT NULL,
+  last_login TEXT) STRICT;
+CREATE TABLE sessions (number INTEGER PRIMARY KEY AUTOINCREMENT, user TEXT NOT NULL REFERENCES users (name),
+  token_hash TEXT NOT NULL UNIQUE, created TEXT NOT NULL, last_seen TEXT NOT NULL) STRICT;
+CREATE TABLE settings (key TEXT PRIMARY KEY, value TEXT NOT NULL, updated TEXT NOT NULL) STRICT;
+CREATE TABLE audit (number INTEGER PRIMARY KEY, time TEXT NOT NULL, tick INTEGER, actor TEXT NOT NULL,
+  session INTEGER, kind TEXT NOT NULL, detail TEXT NOT NULL, hash TEXT NOT NULL) STRICT;
+CREATE TRIGGER audit_is_not_changed BEFORE UPDATE ON audit
+BEGIN SELECT RAISE(ABORT, 'the audit is only appended to'); END;
+CREATE TRIGGER audit_is_not_removed BEFORE DELETE ON audit
+BEGIN SELECT RAISE(ABORT, 'the audit is only appended to'); END;
+CREATE TRIGGER audit_has_no_gaps BEFORE INSERT ON audit
+WHEN NEW.number IS NOT (SELECT coalesce(max(number), 0) + 1 FROM audit)
+BEGIN SELECT RAISE(ABORT, 'the audit is only appended to'); END;
+INSERT INTO users VALUES ('ann', 'admin', 1, 'hash', '2024-05-01T12:00:00.000Z', NULL);
+INSERT INTO audit VALUES (1, '2024-05-01T12:00:00.000Z', NULL, 'app', NULL, 'start', '{}',
+  'd5e6ac4ebbda58f52c928d420100fd3f106e5f2817b38360c230aa26e6d4d64e');
+PRAGMA application_id = 0x494c4b53;
+PRAGMA user_version = 1;
+)sql";
+
+std::string bytes_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+class SchemaTest : public StoreTest {
+ protected:
+  void migrate_to(std::span<const char* const> scripts) const {
+    SQLite::Database database(file_.string(), SQLite::OPEN_READWRITE, 5000);
+    database.exec("PRAGMA journal_mode = WAL");
+    migrate(database, file_, scripts);
+  }
+
+  static int version_of(const fs::path& file) {
+    return SQLite::Database(file.string()).execAndGet("PRAGMA user_version").getInt();
+  }
+
+  /** Opening is refused, and the file stays as it is, byte by byte. */
+  void expect_refused(Kind kind, const std::string& problem) const {
+    const std::string before = bytes_of(file_);
+    const Stored<Store> store = Store::open(file_);
+    ASSERT_FALSE(store);
+    EXPECT_EQ(store.error().kind, kind);
+    EXPECT_THAT(store.error().message(), HasSubstr(problem));
+    EXPECT_THAT(store.error().message(), HasSubstr(file_.string()));
+    EXPECT_TRUE(bytes_of(file_) == before);
+    EXPECT_FALSE(fs::exists(file_.string() + ".schema-1"));
+  }
+};
+
+TEST_F(SchemaTest, StoreOfTheFirstReleaseIsReadWithAllItHolds) {
+  execute(store_of_version_1);
+  Store store = open();
+  EXPECT_EQ(seen(store, [](Transaction& transaction) { return Users(transaction).list(); }),
+            (std::vector<User>{{"ann", Role::admin, true, noon, std::nullopt}}));
+  EXPECT_EQ(seen(store, [](Transaction& transaction) { return Audit(transaction).verify(); })->number, 1);
+}
+
+TEST_F(SchemaTest, OlderStoreIsCopiedThenMigratedWithAllItHolds) {
+  execute(store_of_version_1);
+  const std::array newer{migrations()[0], "ALTER TABLE users ADD COLUMN note TEXT NOT NULL DEFAULT 'none'",
+                         "UPDATE users SET note = 'migrated'"};
+  migrate_to(newer);
+  EXPECT_EQ(version_of(file_), 3);
+  SQLite::Database migrated(file_.string());
+  EXPECT_EQ(migrated.execAndGet("SELECT note FROM users WHERE name = 'ann'").getString(), "migrated");
+  const fs::path copy = file_.string() + ".schema-1";
+  EXPECT_EQ(version_of(copy), 1);
+  SQLite::Database old(copy.string());
+  EXPECT_EQ(old.execAndGet("SELECT count(*) FROM users").getInt(), 1);
+  EXPECT_TRUE(check_contents(old));
+  EXPECT_EQ(fs::status(copy).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST_F(SchemaTest, CopyOfAnEarlierMigrationIsKept) {
+  execute(store_of_version_1);
+  std::ofstream(file_.string() + ".schema-1") << "earlier";
+  const std::array newer{migrations()[0], "CREATE TABLE more (x) "};
+  migrate_to(newer);
+  EXPECT_EQ(bytes_of(file_.string() + ".schema-1"), "earlier");
+  EXPECT_EQ(version_of(file_.string() + ".schema-1.2"), 1);
+}
+
+TEST_F(SchemaTest, MigrationThatFailsLeavesTheStoreAsItWas) {
+  execute(store_of_version_1);
+  const std::array broken{migrations()[0], "DROP TABLE sessions; UPDATE nothing SET x = 1"};
+  EXPECT_THROW(migrate_to(broken), SQLite::Exception);
+  EXPECT_EQ(version_of(file_), 1);
+  Store store = open();
+  EXPECT_EQ(seen(store, [](Transaction& transaction) { return Users(transaction).list().size(); }), 1u);
+}
+
+TEST_F(SchemaTest, CurrentStoreIsNotMigratedNorCopied) {
+  {
+    Store made = open();
+  }
+  {
+    Store again = open();
+  }
+  EXPECT_EQ(version_of(file_), static_cast<int>(migrations().size()));
+  EXPECT_FALSE(fs::exists(file_.string() + ".schema-1"));
+}
+
+TEST_F(SchemaTest, NewerStoreIsRefused) {
+  execute(store_of_version_1);
+  execute("PRAGMA user_version = 99");
+  expect_refused(Kind::newer, "schema 99");
+}
+
+TEST_F(SchemaTest, DatabaseOfAnotherProgramIsRefused) {
+  execute("CREATE TABLE bookmarks (url)");
+  expect_refused(Kind::damaged, "no store of Interlock");
+}
+
+TEST_F(SchemaTest, FileThatIsNoDatabaseIsRefused) {
+  std::ofstream(file_) << std::string(4096, 'x');
+  expect_refused(Kind::damaged, "not a database");
+}
+
+TEST_F(SchemaTest, FolderInPlaceOfTheFileIsRefused) {
+  fs::create_directory(file_);
+  const Stored<Store> store = Store::open(file_);
+  ASSERT_FALSE(store);
+  EXPECT_EQ(store.error().kind, Kind::unavailable);
+}
+
+}  // namespace
+}  // namespace interlock
