@@ -1,10 +1,10 @@
+import "./design/font.css";
+import "./design/tokens.css";
+import "./design/base.css";
 import { StrictMode } from "react";
 import { createRoot } from "react-dom/client";
 import { App } from "./app";
 import { startFeed } from "./state/feed";
-import "./design/font.css";
-import "./design/tokens.css";
-import "./design/base.css";
 
 const root = document.getElementById("console");
 if (root === null) throw new Error("index.html has no element with the id console");

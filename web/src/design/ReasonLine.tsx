@@ -5,9 +5,5 @@ import { useReason } from "../state/useReason";
 export function ReasonLine({ need }: { readonly need: Need }) {
   const reason = useReason(need);
   if (reason === null) return null;
-  return (
-    <p className="reason-line">
-      <i aria-hidden="true">⚿</i> Read only. {reason}
-    </p>
-  );
+  return <p className="reason-line">Read only. {reason}</p>;
 }
