@@ -22,8 +22,8 @@ async function load(robot: ConsolePage, name: string, text: string): Promise<voi
   await chooser.setFiles({ name, mimeType: "application/json", buffer: Buffer.from(text) });
 }
 
-async function drop(robot: ConsolePage, name: string, text: string): Promise<void> {
-  const transfer = await robot.page.evaluateHandle(
+async function carry(robot: ConsolePage, name: string, text: string) {
+  return robot.page.evaluateHandle(
     ([fileName, content]) => {
       const dropped = new DataTransfer();
       dropped.items.add(new File([content], fileName, { type: "application/json" }));
@@ -31,7 +31,6 @@ async function drop(robot: ConsolePage, name: string, text: string): Promise<voi
     },
     [name, text] as const,
   );
-  await robot.button("Load positions").dispatchEvent("drop", { dataTransfer: transfer });
 }
 
 for (const robotName of ["neuro", "prostate"] as const) {
@@ -66,7 +65,8 @@ for (const robotName of ["neuro", "prostate"] as const) {
       await expect.poll(() => axis.counts()).toBe(before - 40);
       await axis.expectState("DISABLED");
 
-      await drop(robot, saved.name, saved.text);
+      const dataTransfer = await carry(robot, saved.name, saved.text);
+      await robot.button("Load positions").dispatchEvent("drop", { dataTransfer });
       await table.getByRole("button", { name: "Set 1 position" }).click();
       await expect.poll(() => axis.counts()).toBe(before);
     });
@@ -110,4 +110,14 @@ test("a position outside of the soft limits cannot be chosen, and Cancel sets no
   await table.getByRole("button", { name: "Cancel" }).click();
   await expect(table).toHaveCount(0);
   expect(await robot.axis("Pitch").counts()).toBe(counts);
+});
+
+test("a file dropped beside the button does not take the place of the page", async ({ robot }) => {
+  const dataTransfer = await carry(robot, "wrong.json", "{}");
+  const kept = await robot.panel("Log").evaluate((panel, dropped) => {
+    const event = new DragEvent("drop", { dataTransfer: dropped, bubbles: true, cancelable: true });
+    panel.dispatchEvent(event);
+    return event.defaultPrevented;
+  }, dataTransfer);
+  expect(kept).toBe(true);
 });
