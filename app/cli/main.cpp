@@ -12,6 +12,7 @@
 #include "build_info/build_info.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/installation.hpp"
+#include "cli/kinematics_command.hpp"
 #include "cli/model_commands.hpp"
 #include "cli/run_command.hpp"
 #include "cli/status_command.hpp"
@@ -22,11 +23,9 @@ namespace interlock::cli {
 namespace {
 
 constexpr const char* footer =
-    "Exit codes: 0 done; 1 refused: robot file, broken audit, rule of the store; 2 command line not "
-    "understood; "
-    "3 something\nstands in the way (busy port, second instance, missing file); 4 kernel or simulator ended; "
-    "5 the "
-    "app kept ending;\n6 no answer.";
+    "Exit codes: 0 done; 1 refused: robot file, input line, broken audit, rule of the store; 2 command line\n"
+    "not understood; 3 something stands in the way (busy port, second instance, missing file); 4 kernel or\n"
+    "simulator ended; 5 the app kept ending; 6 no answer.";
 
 Result<void> show_version(const std::string& robot, std::ostream& output) {
   output << "interlock " << version() << ", commit " << commit() << '\n';
@@ -51,6 +50,7 @@ struct CommandLine {
   std::string version_robot;
   RunOptions run;
   StatusOptions status;
+  KinematicsOptions kinematics;
   std::filesystem::path model;
   bool model_json = false;
   std::filesystem::path config;
@@ -89,6 +89,17 @@ void add_status(CLI::App& cli, StatusOptions& options) {
   command->add_flag("--json", options.json, "The app's answer as it came");
 }
 
+void add_kinematics(CLI::App& cli, KinematicsOptions& options) {
+  CLI::App* const command =
+      cli.add_subcommand("kinematics", "Solve kinematics: a JSON object a line in, one out");
+  command->require_subcommand(1);
+  for (CLI::App* const task : {command->add_subcommand("fk", "Joints to the pose of the tool"),
+                               command->add_subcommand("ik", "Pose, or entry and target, to joints")}) {
+    task->add_option("--robot", options.robot, "Name of a robot, or its file")->required();
+    task->add_option("--set", options.settings, "KEY=VALUE in place of the file's [kinematics] and [probe]");
+  }
+}
+
 void add_model(CLI::App& cli, CommandLine& line) {
   CLI::App* const model = cli.add_subcommand("model", "Check or compile a robot file");
   model->require_subcommand(1);
@@ -116,6 +127,11 @@ Result<void> execute(const CLI::App& cli, const CommandLine& line) {
   if (line.store.chosen()) {
     return line.store.execute(Installation::current(), std::cout);
   }
+  if (const CLI::App& kinematics = *cli.get_subcommand("kinematics"); kinematics.parsed()) {
+    const KinematicsTask task =
+        kinematics.got_subcommand("fk") ? KinematicsTask::forward : KinematicsTask::inverse;
+    return answer_kinematics(task, line.kinematics, Installation::current(), std::cin, std::cout);
+  }
   const CLI::App& model = *cli.get_subcommand("model");
   return model.got_subcommand("check") ? check_model(line.model, line.model_json, std::cout)
                                        : compile_model(line.model, line.config, std::cout);
@@ -138,6 +154,7 @@ int main(int argc, char** argv) {
   cli.require_subcommand(0, 1);
   add_run(cli, line.run);
   add_status(cli, line.status);
+  add_kinematics(cli, line.kinematics);
   add_model(cli, line);
   line.store.describe(cli);
   try {

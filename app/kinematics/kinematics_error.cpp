@@ -16,26 +16,32 @@ std::string text_of(double number) {
   return {text.data(), end.ptr};
 }
 
-std::string_view reason(Code code) {
+/** What is wrong with a quantity, and what to do about it. */
+struct Reason {
+  std::string_view wrong;
+  std::string_view next;
+};
+
+Reason reason(Code code) {
   switch (code) {
     case Code::not_finite:
-      return "is not a finite number";
+      return {"is not a finite number", "give a number"};
     case Code::out_of_range:
-      return "is out of range";
+      return {"is out of range", "choose a value within"};
     case Code::degenerate:
-      return "is too short to give a direction; move entry and target apart";
+      return {"gives no direction", "move entry and target apart"};
     case Code::out_of_reach:
-      return "is out of reach of the links; move the target";
+      return {"is out of reach of the links", "choose another target"};
     case Code::separation:
-      return "is outside of the window of the trapezoid; move the target";
+      return {"is outside of the window of the trapezoid", "choose other slider positions or another target"};
     case Code::singular:
-      return "is singular: an angle is undetermined; choose another approach";
+      return {"leaves an angle undetermined", "choose another approach"};
     case Code::not_rigid:
-      return "shows that the matrix is no rigid pose";
+      return {"shows that the matrix is no rigid pose", "give a rotation and a translation"};
     case Code::off_axis:
-      return "shows that the entry is not on the axis of the pose; give an entry on its z axis";
+      return {"shows that the entry is not on the axis of the pose", "give an entry on its z axis"};
     default:
-      return "is not known";
+      return {"is refused", "choose a value within"};
   }
 }
 
@@ -69,9 +75,9 @@ std::string KinematicsError::message() const {
   if (value) {
     text += " of " + text_of(*value);
   }
-  text += ' ';
-  text += reason(code);
-  return text + "; allowed " + text_of(lowest) + " to " + text_of(highest);
+  const auto [wrong, next] = reason(code);
+  text.append(" ").append(wrong).append("; allowed " + text_of(lowest) + " to " + text_of(highest));
+  return text.append("; ").append(next);
 }
 
 }  // namespace interlock

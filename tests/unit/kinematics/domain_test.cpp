@@ -182,12 +182,12 @@ TEST(NotFinite, nothing_but_numbers_leaves_whatever_comes_in) {
 
 TEST(Message, names_quantity_value_allowed_range_and_what_to_do) {
   const KinematicsError error{Code::separation, "separation_mm", 151.0, 75.0, 146.0};
-  EXPECT_EQ(
-      error.message(),
-      "separation_mm of 151 is outside of the window of the trapezoid; move the target; allowed 75 to 146");
+  EXPECT_EQ(error.message(),
+            "separation_mm of 151 is outside of the window of the trapezoid; allowed 75 to 146; "
+            "choose other slider positions or another target");
   EXPECT_EQ(code_name(error.code), "SEPARATION");
   const KinematicsError nan{Code::not_finite, "pitch_rad", {}, -1.5, 1.5};
-  EXPECT_EQ(nan.message(), "pitch_rad is not a finite number; allowed -1.5 to 1.5");
+  EXPECT_EQ(nan.message(), "pitch_rad is not a finite number; allowed -1.5 to 1.5; give a number");
 }
 
 }  // namespace

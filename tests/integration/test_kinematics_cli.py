@@ -1,0 +1,213 @@
+"""`interlock kinematics`: JSON lines in, JSON lines out, checked against equations written down anew."""
+
+import json
+import math
+import random
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import pytest
+from bare_kernel import BIN, DEADLINE_S, ROOT
+from test_run import DONE, REFUSED, USAGE
+
+LINES = 1000
+EXACT = 1e-9
+Matrix = list[list[float]]
+
+NEURO_RANGES = {
+    "head": (-60.0, 0.0),
+    "feet": (0.0, 5.0),
+    "lateral": (-49.47, 0.0),
+    "insertion": (0.0, 34.9),
+    "probe_rotation": (-3.14, 3.14),
+    "pitch": (-0.465, 0.648),
+    "yaw": (-1.536, 0.010),
+}
+THESIS_PROSTATE = ("--set", "needle_tip_mm=259.075", "front_pivot_offset_mm=0", "max_angulation_rad=0")
+
+
+def kinematics(*arguments: str | Path, lines: list[Any]) -> tuple[int, list[dict[str, Any]], str]:
+    """Exit code, answers and message of one run; a line that is text goes in as it is."""
+    text = "".join((line if isinstance(line, str) else json.dumps(line)) + "\n" for line in lines)
+    command = [str(part) for part in (BIN / "interlock", "kinematics", *arguments)]
+    run = subprocess.run(command, input=text, capture_output=True, text=True, timeout=DEADLINE_S)
+    return run.returncode, [json.loads(line) for line in run.stdout.splitlines()], run.stderr
+
+
+def product(left: Matrix, right: Matrix) -> Matrix:
+    return [
+        [sum(a * b for a, b in zip(row, column, strict=True)) for column in zip(*right, strict=True)]
+        for row in left
+    ]
+
+
+def neuro_pose(joints: dict[str, float]) -> list[float]:
+    """Forward kinematics of the NeuroRobot with the thesis' calibration, by plain arithmetic."""
+    rise = [
+        math.sqrt(60.0**2 - ((s - 30.0) / 2) ** 2) for s in (143.0 + joints["head"] - joints["feet"], 143.0)
+    ]
+    rcm = (
+        18.32 + joints["lateral"],
+        178.39 + rise[0] - rise[1],
+        72.91 + (joints["head"] + joints["feet"]) / 2,
+    )
+    (cx, sx), (cy, sy), (cz, sz) = (
+        (math.cos(joints[name]), math.sin(joints[name])) for name in ("yaw", "pitch", "probe_rotation")
+    )
+    rotation: Matrix = [[-1, 0, 0], [0, 0, -1], [0, -1, 0]]
+    for turn in (
+        [[1, 0, 0], [0, cx, -sx], [0, sx, cx]],
+        [[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]],
+        [[cz, -sz, 0], [sz, cz, 0], [0, 0, 1]],
+    ):
+        rotation = product(rotation, turn)
+    offset = joints["insertion"] + 41.0 - 72.5
+    rows = [[*row, centre + row[2] * offset] for row, centre in zip(rotation, rcm, strict=True)]
+    return [number for row in [*rows, [0, 0, 0, 1]] for number in row]
+
+
+def assert_near(actual: list[float], expected: list[float]) -> None:
+    assert len(actual) == len(expected)
+    assert max(abs(a - b) for a, b in zip(actual, expected, strict=True)) <= EXACT
+
+
+def test_forward_agrees_with_another_implementation_and_inverse_leads_back() -> None:
+    generator = random.Random(1)
+    lines = [
+        {"joints": {name: generator.uniform(*ends) for name, ends in NEURO_RANGES.items()}}
+        for _ in range(LINES)
+    ]
+    code, answers, _ = kinematics("fk", "--robot", "neuro", lines=lines)
+    assert code == DONE
+    assert len(answers) == LINES
+    for line, answer in zip(lines, answers, strict=True):
+        assert_near(answer["pose"], neuro_pose(line["joints"]))
+        assert answer["joints"] == line["joints"]
+
+    wanted = [{"pose": answer["pose"], "insertion": answer["joints"]["insertion"]} for answer in answers]
+    code, found, _ = kinematics("ik", "--robot", "neuro", lines=wanted)
+    assert code == DONE
+    for answer, back in zip(answers, found, strict=True):
+        assert_near(
+            [back["joints"][name] for name in NEURO_RANGES], [answer["joints"][name] for name in NEURO_RANGES]
+        )
+
+
+def test_neuro_reaches_entry_and_target() -> None:
+    code, [answer], _ = kinematics(
+        "ik", "--robot", "neuro", lines=[{"entry": [8, 250, 70], "target": [5, 200, 60]}]
+    )
+    assert code == DONE
+    assert answer["joints"]["head"] == pytest.approx(-18.420966, abs=1e-6)
+    assert_near([answer["pose"][index] for index in (3, 7, 11)], [5, 200, 60])
+
+
+def test_prostate_of_the_thesis_is_a_matter_of_settings() -> None:
+    code, [answer], _ = kinematics(
+        "ik", "--robot", "prostate", *THESIS_PROSTATE, lines=[{"target": [5, 150, 300]}]
+    )
+    assert code == DONE
+    expected = {"front_left": 149.008578, "front_right": -139.008578, "insertion": 40.925, "rotation": 0}
+    assert {name: answer["joints"][name] for name in expected} == pytest.approx(expected, abs=1e-6)
+
+
+def test_prostate_pose_leads_to_joints_and_back() -> None:
+    joints = {
+        "front_left": 140,
+        "front_right": -120,
+        "back_left": 150,
+        "back_right": -130,
+        "insertion": 80,
+        "rotation": 0.5,
+    }
+    code, [reached], _ = kinematics("fk", "--robot", "prostate", lines=[{"joints": joints}])
+    assert code == DONE
+    code, [back], _ = kinematics("ik", "--robot", "prostate", lines=[{"pose": reached["pose"]}])
+    assert code == DONE
+    assert back["joints"] == pytest.approx(joints, abs=EXACT)
+
+
+def test_bad_lines_are_answered_in_their_place_and_the_rest_goes_on() -> None:
+    good = {"entry": [8, 250, 70], "target": [5, 200, 60]}
+    bad = {
+        2: ("no JSON", "BAD_JSON"),
+        3: ("", "BAD_JSON"),
+        4: ([1, 2], "BAD_JSON"),
+        5: ('{"entry": [8, 1e999, 70], "target": [5, 200, 60]}', "BAD_JSON"),
+        6: ({"entry": [8, 250], "target": [5, 200, 60]}, "BAD_FIELD"),
+        7: ({"entry": [8, 250, "70"], "target": [5, 200, 60]}, "BAD_FIELD"),
+        8: ({**good, "insertion": 3}, "BAD_FIELD"),
+        9: ({"target": [5, 200, 60]}, "BAD_FIELD"),
+        10: ({"entry": [8, 250, 70], "target": [8, 250, 70]}, "DEGENERATE"),
+        11: ({"entry": [8, 350, 70], "target": [5, 300, 60]}, "OUT_OF_REACH"),
+        12: ({"entry": [8, 250, 70], "pose": [0] * 16}, "NOT_RIGID"),
+    }
+    lines = [good, *(line for line, _ in bad.values()), good]
+    code, answers, message = kinematics("ik", "--robot", "neuro", lines=lines)
+    assert code == REFUSED
+    assert "11 of 13 lines have no answer, the first is line 2" in message
+    assert len(answers) == len(lines)
+    assert "joints" in answers[0]
+    assert answers[-1] == answers[0]
+    for number, (_, expected) in bad.items():
+        answer = answers[number - 1]
+        assert answer["line"] == number
+        assert answer["error"]["code"] == expected
+        assert answer["error"]["text"]
+
+
+def test_domain_error_names_quantity_value_and_allowed_range() -> None:
+    joints = dict.fromkeys(NEURO_RANGES, 0) | {"head": 8}
+    code, [answer], _ = kinematics("fk", "--robot", "neuro", lines=[{"joints": joints}])
+    assert code == REFUSED
+    error = answer["error"]
+    assert (error["code"], error["quantity"], error["value"]) == ("SEPARATION", "separation_mm", 151)
+    assert (error["lowest"], error["highest"]) == (75, 146)
+
+
+@pytest.mark.parametrize(
+    ("joints", "named"),
+    [({}, "joints.head"), (dict.fromkeys(NEURO_RANGES, 0) | {"elbow": 1}, "elbow"), (None, "joints")],
+)
+def test_joints_that_are_not_those_of_the_robot_are_refused(
+    joints: dict[str, int] | None, named: str
+) -> None:
+    code, [answer], _ = kinematics("fk", "--robot", "neuro", lines=[{"joints": joints}])
+    assert code == REFUSED
+    assert answer["error"]["text"].startswith(named + ":")
+
+
+def test_setting_replaces_a_point_of_the_robot_file() -> None:
+    lines = [{"joints": dict.fromkeys(NEURO_RANGES, 0)}]
+    code, [answer], _ = kinematics(
+        "fk",
+        "--robot",
+        ROOT / "models/robots/neuro.toml",
+        "--set",
+        "home_rcm_mm=-32.41,154.38,84.198",
+        lines=lines,
+    )
+    assert code == DONE
+    assert_near([answer["pose"][index] for index in (3, 7, 11)], [-32.41, 154.38 + 31.5, 84.198])
+
+
+@pytest.mark.parametrize(
+    "setting", ["side_link_mm", "elbow=1", "side_link_mm=", "side_link_mm=1,2", "home_rcm_mm=1,2"]
+)
+def test_setting_that_is_not_understood_is_a_usage_error(setting: str) -> None:
+    code, answers, message = kinematics("fk", "--robot", "neuro", "--set", setting, lines=[])
+    assert (code, answers) == (USAGE, [])
+    assert setting in message
+
+
+@pytest.mark.parametrize("setting", ["side_link_mm=nan", "home_separation_mm=200", "min_separation_mm=1"])
+def test_geometry_that_cannot_work_is_refused_before_the_first_line(setting: str) -> None:
+    code, answers, message = kinematics("fk", "--robot", "neuro", "--set", setting, lines=["{}"])
+    assert (code, answers) == (REFUSED, [])
+    assert "[kinematics]" in message
+    assert setting.split("=")[0] in message
+
+
+def test_no_lines_need_no_answer() -> None:
+    assert kinematics("ik", "--robot", "prostate", lines=[]) == (DONE, [], "")
