@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <sstream>
+#include <system_error>
 
 #include "robot/read_cards.hpp"
 #include "robot/read_home_steps.hpp"
@@ -11,6 +12,8 @@
 
 namespace interlock {
 namespace {
+
+constexpr std::uintmax_t largest_file_bytes = std::uintmax_t{1} << 20;
 
 constexpr std::array<std::string_view, 2> known_modes{"manual", "home"};
 
@@ -110,10 +113,14 @@ tl::expected<Robot, RobotError> parse_robot(std::string_view text, std::string f
 }
 
 tl::expected<Robot, RobotError> load_robot(const std::filesystem::path& file) {
+  // Neither a device nor a stray recording may hold up the program or fill its memory.
+  std::error_code error;
+  const bool sensible = std::filesystem::file_size(file, error) <= largest_file_bytes && !error;
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
-  if (!stream || !(text << stream.rdbuf())) {
-    return tl::unexpected(RobotError{file.string(), 0, "", "the file cannot be read, or is empty",
+  if (!sensible || !stream || !(text << stream.rdbuf())) {
+    return tl::unexpected(RobotError{file.string(), 0, "",
+                                     "the file cannot be read, is empty or is larger than 1 MiB",
                                      "a robot file such as models/robots/neuro.toml"});
   }
   return parse_robot(text.str(), file.string());

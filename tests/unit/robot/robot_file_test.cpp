@@ -97,6 +97,8 @@ TEST(RobotFile, a_file_that_is_not_there_is_named) {
 
 TEST(RobotFile, a_folder_is_no_robot_file) { EXPECT_FALSE(load_robot(INTERLOCK_ROBOTS)); }
 
+TEST(RobotFile, a_device_that_never_ends_is_no_robot_file) { EXPECT_FALSE(load_robot("/dev/zero")); }
+
 /** One way to break the neuro robot's file: what is replaced, by what, and what the error must say. */
 struct Broken {
   const char* title;
@@ -294,6 +296,41 @@ TEST(RobotFile, an_empty_file_names_the_first_missing_key) {
   const auto robot = parse_robot("", "empty.toml");
   ASSERT_FALSE(robot);
   EXPECT_EQ(robot.error().key, "name");
+}
+
+TEST(RobotRole, is_played_by_one_axis_only) {
+  const auto robot = parse_robot(test::neuro_with("role = \"feet\"", "role = \"head\""), "broken.toml");
+  ASSERT_FALSE(robot);
+  EXPECT_EQ(robot.error().key, "axis.feet.role");
+  EXPECT_EQ(robot.error().problem, "\"head\" plays \"head\" already");
+}
+
+TEST(RobotRole, of_the_family_is_played_by_some_axis) {
+  const auto robot = parse_robot(test::neuro_with("role = \"feet\"\n", ""), "broken.toml");
+  ASSERT_FALSE(robot);
+  EXPECT_EQ(robot.error().key, "kinematics");
+  EXPECT_EQ(robot.error().problem, "no axis plays \"feet\"");
+}
+
+TEST(RobotRole, is_played_in_its_unit) {
+  const auto robot = parse_robot(test::neuro_with("unit = \"rad\"", "unit = \"mm\""), "broken.toml");
+  ASSERT_FALSE(robot);
+  EXPECT_EQ(robot.error().key, "axis.yaw.role");
+  EXPECT_EQ(robot.error().problem, "\"yaw\" needs an axis in rad");
+}
+
+TEST(RobotRole, may_be_none) {
+  std::string text = test::neuro_text();
+  const std::size_t feet = text.find("[[axis]]\nname = \"feet\"");
+  std::string spare = text.substr(feet, text.find("[[home_step]]") - feet);
+  for (const auto& [from, to] : {std::pair{"\"feet\"\ntitle", "\"spare\"\ntitle"},
+                                 std::pair{"slot = 6", "slot = 9"}, std::pair{"role = \"feet\"\n", ""}}) {
+    spare.replace(spare.find(from), std::string_view(from).size(), to);
+  }
+  const auto robot = parse_robot(text.insert(feet, spare), "spare.toml");
+  ASSERT_TRUE(robot) << robot.error().message();
+  EXPECT_EQ(robot->at_slot(9)->role, "");
+  EXPECT_EQ(robot->with_role("feet")->slot, 6u);
 }
 
 TEST(RobotError, reads_as_one_line_with_file_line_key_problem_and_expectation) {
