@@ -32,6 +32,9 @@ enum class HomeStepKind : std::uint8_t {
 /** A home step with a fixed size. */
 class HomeStepPlan {
  public:
+  /** No axis. */
+  HomeStepPlan() = default;
+
   /** One axis at its switch. */
   explicit HomeStepPlan(std::uint32_t slot) noexcept { add({slot, 0}); }
 
@@ -54,19 +57,22 @@ class HomeStepPlan {
   /** Each slot at most once. */
   [[nodiscard]] std::span<const AxisCounts> axes() const noexcept { return {axes_.data(), count_}; }
 
+  /** Bit n: the step moves the axis in slot n. */
+  [[nodiscard]] std::uint32_t mask() const noexcept { return mask_; }
+
  private:
   void add(const AxisCounts& axis) noexcept {
-    const auto known = axes();
-    const bool named = std::any_of(known.begin(), known.end(),
-                                   [&](const AxisCounts& each) { return each.slot == axis.slot; });
-    if (!named && axis.slot < ILK_SLOTS) {
+    const std::uint32_t bit = axis.slot < ILK_SLOTS ? 1u << axis.slot : 0u;
+    if ((mask_ | bit) != mask_) {
       axes_[count_++] = axis;
+      mask_ |= bit;
     }
   }
 
   HomeStepKind kind_ = HomeStepKind::home;
   std::array<AxisCounts, ILK_SLOTS> axes_{};
   std::size_t count_ = 0;
+  std::uint32_t mask_ = 0;
 };
 
 /** The robot as the control thread sees it. A slot without a motor has `rules.max_drive == 0`. */

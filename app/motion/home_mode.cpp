@@ -1,6 +1,5 @@
 #include "motion/home_mode.hpp"
 
-#include <algorithm>
 #include <cstdlib>
 #include <utility>
 
@@ -14,19 +13,6 @@ constexpr std::uint32_t stop_again_ticks = 50;
 
 constexpr std::uint32_t bit(std::uint32_t slot) noexcept { return 1u << slot; }
 
-template <std::size_t... slots>
-std::array<HomeStepPlan, sizeof...(slots)> one_axis_each(std::index_sequence<slots...> /*all*/) noexcept {
-  return {HomeStepPlan(static_cast<std::uint32_t>(slots))...};
-}
-
-std::uint32_t mask_of(const HomeStepPlan& step) noexcept {
-  std::uint32_t mask = 0;
-  for (const AxisCounts& axis : step.axes()) {
-    mask |= bit(axis.slot);
-  }
-  return mask;
-}
-
 std::uint32_t faulted_axes(const ilk_snapshot_t& snapshot) noexcept {
   std::uint32_t mask = 0;
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
@@ -37,20 +23,20 @@ std::uint32_t faulted_axes(const ilk_snapshot_t& snapshot) noexcept {
 
 }  // namespace
 
-HomeMode::HomeMode(const RobotPlan& plan)
-    : plan_(plan), single_(one_axis_each(std::make_index_sequence<ILK_SLOTS>())) {
+HomeMode::HomeMode(const RobotPlan& plan) : plan_(plan) {
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     axes_[slot] = HomeAxis(slot, plan.axis[slot], plan.lease_ticks());
   }
 }
 
 const HomeStepPlan& HomeMode::step() const noexcept {
-  return order_.step_count == 0 ? single_[order_.slot] : plan_.home_steps[order_.first_step + steps_done_];
+  return order_.step_count == 0 ? alone_ : plan_.home_steps[order_.first_step + steps_done_];
 }
 
-bool HomeMode::in_step(std::uint32_t slot) const noexcept {
-  const auto axes = step().axes();
-  return std::any_of(axes.begin(), axes.end(), [slot](const AxisCounts& each) { return each.slot == slot; });
+bool HomeMode::names_known_steps(const HomeOrder& order) const noexcept {
+  const std::size_t known = plan_.home_steps.size();
+  return order.step_count == 0 ? order.slot < ILK_SLOTS
+                               : order.first_step < known && order.step_count <= known - order.first_step;
 }
 
 void HomeMode::set_phase(OrderPhase phase, OrderReason reason, std::uint32_t code,
@@ -82,18 +68,15 @@ void HomeMode::take(const HomeOrder& order, std::uint32_t tick) noexcept {
   }
   status_ = HomeStatus{
       {order.proposal, OrderPhase::waiting, OrderReason::none, 0, tick}, order.first_step, order.slot, 0};
-  const std::size_t known_steps = plan_.home_steps.size();
-  const bool known = order.step_count == 0 ? order.slot < ILK_SLOTS
-                                           : order.first_step < known_steps &&
-                                                 order.step_count <= known_steps - order.first_step;
-  if (!known) {
+  if (!names_known_steps(order)) {
     set_phase(OrderPhase::refused, OrderReason::kernel_refused, ILK_VERDICT_AXIS, tick);
     return;
   }
   order_ = order;
-  involved_ = order.step_count == 0 ? bit(order.slot) : 0;
+  alone_ = order.step_count == 0 ? HomeStepPlan(order.slot) : HomeStepPlan();
+  involved_ = alone_.mask();
   for (std::uint32_t i = 0; i < order.step_count; ++i) {
-    involved_ |= mask_of(plan_.home_steps[order.first_step + i]);
+    involved_ |= plan_.home_steps[order.first_step + i].mask();
   }
   homed_ = 0;
   steps_done_ = 0;
@@ -121,9 +104,9 @@ void HomeMode::tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
     judge(snapshot);
     settle_stop(snapshot, wishes);
   }
-  const bool executing = status_.order.phase == OrderPhase::executing;
+  const std::uint32_t held = status_.order.phase == OrderPhase::executing ? step().mask() : 0u;
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
-    if (executing && in_step(slot)) {
+    if ((held & bit(slot)) != 0) {
       axes_[slot].hold(status_.order.proposal, snapshot, wishes);
     } else {
       axes_[slot].let_go(status_.order.proposal, snapshot, wishes);

@@ -51,12 +51,12 @@ class HomeMode final : public Mode {
   void end_step(const ilk_snapshot_t& snapshot) noexcept;
   void start_axes(const ilk_snapshot_t& snapshot) noexcept;
   [[nodiscard]] const HomeStepPlan& step() const noexcept;
-  [[nodiscard]] bool in_step(std::uint32_t slot) const noexcept;
+  [[nodiscard]] bool names_known_steps(const HomeOrder& order) const noexcept;
   [[nodiscard]] bool expire_when_late(std::uint32_t tick) noexcept;
   void settle_stop(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept;
 
   const RobotPlan plan_;
-  const std::array<HomeStepPlan, ILK_SLOTS> single_; /**< the step of each axis alone */
+  HomeStepPlan alone_; /**< the step of an order for one axis */
   std::array<HomeAxis, ILK_SLOTS> axes_{};
   HomeOrder order_;
   HomeStatus status_;
