@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -55,6 +56,12 @@ class ProstateRobot : public testing::Test {
 
   static std::uint32_t slot(const char* name) { return prostate().find(name)->slot; }
 
+  /** How far the pairs part: the farther of the two. */
+  static double separation_mm(const ClosedLoop& loop) {
+    return std::max(separation_mm(loop, "back_left", "back_right"),
+                    separation_mm(loop, "front_left", "front_right"));
+  }
+
   static double separation_mm(const ClosedLoop& loop, const char* left, const char* right) {
     return loop.true_position(slot(left)) / prostate().find(left)->counts_per_unit -
            loop.true_position(slot(right)) / prostate().find(right)->counts_per_unit;
@@ -92,12 +99,13 @@ class ProstateHoming : public ProstateRobot, public testing::WithParamInterface<
 TEST_P(ProstateHoming, NeitherPairPartsTooFarAndNoSliderLeavesItsUnhomedBounds) {
   const auto loop = robot_at(GetParam());
   test::UnhomedBounds bounds(*loop, prostate());
+  double widest_mm = 0;
   loop->watch([&] {
     bounds.check();
-    ASSERT_LE(separation_mm(*loop, "back_left", "back_right"), most_separation_mm);
-    ASSERT_LE(separation_mm(*loop, "front_left", "front_right"), most_separation_mm);
+    widest_mm = std::max(widest_mm, separation_mm(*loop));
   });
   home(*loop, 1);
+  EXPECT_LE(widest_mm, most_separation_mm);
   expect_homed_and_parked(*loop);
 }
 
@@ -105,11 +113,10 @@ TEST_F(ProstateRobot, MayBeHomedAgainWhenItIsHomed) {
   const auto loop = robot_at(parked);
   home(*loop, 1);
   expect_homed_and_parked(*loop);
-  loop->watch([&] {
-    ASSERT_LE(separation_mm(*loop, "back_left", "back_right"), most_separation_mm);
-    ASSERT_LE(separation_mm(*loop, "front_left", "front_right"), most_separation_mm);
-  });
+  double widest_mm = 0;
+  loop->watch([&] { widest_mm = std::max(widest_mm, separation_mm(*loop)); });
   home(*loop, 2);
+  EXPECT_LE(widest_mm, most_separation_mm);
   expect_homed_and_parked(*loop);
 }
 
