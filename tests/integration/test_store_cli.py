@@ -129,7 +129,8 @@ def test_passwd_ends_the_users_sessions(store: Store) -> None:
     time = "2024-05-01T12:00:00.000Z"
     store.execute(
         "INSERT INTO sessions (user, token_hash, created, last_seen) VALUES "
-        f"('ann', 'a', '{time}', '{time}'), ('ann', 'b', '{time}', '{time}'), ('bob', 'c', '{time}', '{time}')"
+        f"('ann', 'a', '{time}', '{time}'), ('ann', 'b', '{time}', '{time}'),"
+        f"('bob', 'c', '{time}', '{time}')"
     )
     changed = store("user", "passwd", "ann", "--password-stdin", stdin=OTHER_PASSWORD)
     assert (changed.returncode, changed.stdout) == (
