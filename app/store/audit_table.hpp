@@ -8,11 +8,7 @@
 #include <string>
 
 #include "store/audit_chain.hpp"
-
-namespace SQLite {
-class Database;
-class Statement;
-}  // namespace SQLite
+#include "store/sqlite_forward.hpp"
 
 namespace interlock {
 

@@ -7,11 +7,8 @@
 #include <filesystem>
 #include <span>
 
+#include "store/sqlite_forward.hpp"
 #include "store/store_error.hpp"
-
-namespace SQLite {
-class Database;
-}
 
 namespace interlock {
 

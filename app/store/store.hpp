@@ -21,12 +21,9 @@
 #include <memory>
 #include <type_traits>
 
+#include "store/sqlite_forward.hpp"
 #include "store/store_error.hpp"
 #include "time/utc_time.hpp"
-
-namespace SQLite {
-class Database;
-}
 
 namespace interlock {
 

@@ -8,12 +8,8 @@
 #include <memory>
 #include <system_error>
 
+#include "store/sqlite_forward.hpp"
 #include "store/store_error.hpp"
-
-namespace SQLite {
-class Database;
-class Exception;
-}  // namespace SQLite
 
 namespace interlock {
 

@@ -4,11 +4,8 @@
  */
 #pragma once
 
+#include "store/sqlite_forward.hpp"
 #include "store/users.hpp"
-
-namespace SQLite {
-class Statement;
-}
 
 namespace interlock {
 
