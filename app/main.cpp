@@ -28,6 +28,9 @@
 #include "robot/catalog.hpp"
 #include "robot/compile.hpp"
 #include "robot/robot_file.hpp"
+#include "store/audit.hpp"
+#include "store/first_admin.hpp"
+#include "store/store.hpp"
 
 namespace interlock {
 namespace {
@@ -65,7 +68,8 @@ void describe(CLI::App& cli, Options& options) {
       ->capture_default_str();
   cli.add_option("--web", options.web_directory, "folder of the built console")
       ->check(CLI::ExistingDirectory);
-  cli.add_option("--state", options.state_directory, "folder for logs and other run-time state");
+  cli.add_option("--state", options.state_directory, "folder of the store and the logs, made if missing")
+      ->required();
   cli.add_option("--log-level", options.log_level, "debug, info, warning, error or critical")
       ->check(CLI::IsMember({"debug", "info", "warning", "error", "critical"}))
       ->capture_default_str();
@@ -126,14 +130,49 @@ std::string url_of(const web::Listen& listen, std::uint16_t port) {
   return "http://" + host + ":" + std::to_string(port) + "/";
 }
 
-tl::expected<void, std::string> serve(const Options& options, const Model& model) {
+tl::expected<Store, std::string> open_store(const Options& options) {
+  return Store::open(std::filesystem::path(options.state_directory) / "interlock.db")
+      .map_error([&](const StoreError& error) {
+        return "--state " + options.state_directory + ": " + error.message();
+      });
+}
+
+Stored<void> record_start(Store& store, const Model& model) {
+  return store.transact([&](Transaction& transaction) -> Stored<void> {
+    nlohmann::json detail{{"version", version()},
+                          {"commit", commit()},
+                          {"robot", model.robot.name},
+                          {"config_crc", config_hash(model.config)}};
+    Audit(transaction)
+        .append({std::chrono::system_clock::now(), std::nullopt, audit_actor::app, std::nullopt,
+                 AuditKind::start, std::move(detail)});
+    return {};
+  });
+}
+
+/** Shows the first administrator's password, this once and nowhere else, when there is no user yet. */
+Stored<void> let_somebody_in(Store& store) {
+  return add_first_admin(store, std::chrono::system_clock::now())
+      .map([](const std::optional<Password>& password) {
+        if (password) {
+          std::cout << "first login: " << first_admin_name << ' ' << password->text() << std::endl;
+        }
+      });
+}
+
+tl::expected<void, std::string> serve(const Options& options, const Model& model, Store& store) {
   boost::asio::io_context network(1);
   const auto executor = network.get_executor();
   const auto mailbox = std::make_unique<Mailbox>();
-  web::Api api(executor, model.robot, model.config, *mailbox, options.bench_socket);
+  web::StoreGateway gateway(executor, store);
+  web::Api api(executor, model.robot, model.config, *mailbox, options.bench_socket, gateway);
   web::Server server(executor, api, web::StaticFiles(options.web_directory));
   if (auto listening = server.listen(options.listen); !listening) {
     return listening;
+  }
+  const auto begun = record_start(store, model).and_then([&] { return let_somebody_in(store); });
+  if (!begun) {
+    return tl::make_unexpected("--state " + options.state_directory + ": " + begun.error().message());
   }
   boost::asio::signal_set signals(network, SIGINT, SIGTERM);
   signals.async_wait([&](const boost::system::error_code& error, int signal) {

@@ -8,12 +8,7 @@
 #include <optional>
 #include <string>
 
-namespace interlock {
-
-/** What a user may; each may what those before may. */
-enum class Role : std::uint8_t { viewer, engineer, admin };
-
-}  // namespace interlock
+#include "store/users.hpp"
 
 namespace interlock::web {
 

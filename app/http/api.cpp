@@ -18,35 +18,62 @@ using nlohmann::json;
 using std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds beat_period{33};
+constexpr std::chrono::seconds look_at_sessions_every{1};
+/** Without any request, and without an open stream, which counts as one. */
+constexpr std::chrono::seconds authority_idle_limit{60};
 constexpr auto as_result = asio::as_tuple(asio::use_awaitable);
 
 }  // namespace
 
 Api::Api(const asio::any_io_executor& executor, const Robot& robot, const ilk_config_t& config,
-         Mailbox& mailbox, const std::string& bench_socket)
+         Mailbox& mailbox, const std::string& bench_socket, StoreGateway& store,
+         std::function<UtcTime()> clock)
     : control_(executor, mailbox),
       book_(
-          robot, config, [this](const Command& command) { return control_.send(command); },
-          [] { return std::chrono::system_clock::now(); }),
+          robot, config, [this](const Command& command) { return control_.send(command); }, clock),
       bench_(executor, bench_socket),
-      context_{executor, robot, config, control_, book_, stream_, bench_},
-      router_([](const Caller&) { return std::optional<Problem>(); }) {
-  tell_of_changes();
+      sessions_(store, clock),
+      authority_(static_cast<std::uint32_t>(std::chrono::system_clock::to_time_t(clock()))),
+      context_{executor, robot, config,    control_,   book_, stream_,
+               bench_,   store, sessions_, authority_, clock},
+      router_([this](const Caller& caller) -> std::optional<Problem> {
+        const auto held = context_.need_authority(caller);
+        return held ? std::nullopt : std::optional(held.error());
+      }) {
+  follow_proposals();
+  follow_kernel();
+  follow_sessions();
 }
 
-void Api::tell_of_changes() {
+void Api::follow_proposals() {
   book_.on_change([this](const Proposal& proposal) {
-    spdlog::info("proposal {}: {} to {} counts: {}: {}", proposal.id, proposal.axis,
-                 proposal.move.target_counts, state_name(proposal.state), proposal.detail);
     json message = to_json(proposal);
+    spdlog::info("proposal {} of {}: {}: {}", proposal.id, proposal.author, state_name(proposal.state),
+                 proposal.detail);
+    AuditEntry entry = context_.entry({}, AuditKind::proposal, message);
+    const auto& holding = authority_.holder();
+    entry.actor = proposal.author;
+    if (holding && holding->user == proposal.author) {
+      entry.session = holding->session;
+    }
+    context_.store.note(std::move(entry));
     message["type"] = "proposal";
     stream_.send_text(message);
   });
+}
+
+void Api::follow_kernel() {
   control_.on_orders = [this] { (void)context_.view(); };
   control_.on_event = [this](const ilk_event_t& event) {
-    const json message = event_json(event);
+    json message = event_json(event);
     spdlog::info("kernel: {}", message.dump());
     stream_.send_text(message);
+    if (event.kind == ILK_EVENT_VERDICT) {
+      AuditEntry entry = context_.entry({}, AuditKind::verdict, std::move(message));
+      entry.actor = audit_actor::kernel;
+      entry.tick = event.tick;
+      context_.store.note(std::move(entry));
+    }
   };
   control_.on_events_lost = [this](const EventsLost& lost) {
     spdlog::warn("{} kernel events were lost", lost.count);
@@ -54,7 +81,55 @@ void Api::tell_of_changes() {
   };
 }
 
-Caller Api::caller_of(const Request&, const std::string& peer) { return {1, "console", Role::admin, peer}; }
+void Api::follow_sessions() {
+  sessions_.on_end([this](std::uint32_t session) {
+    authority_.release(session);
+    stream_.end_session(session);
+    if (bench_.held_by(session)) {
+      asio::co_spawn(context_.executor, bench_.release_pedal(), asio::detached);
+    }
+  });
+  authority_.on_change([this](bool holder_changed) {
+    if (holder_changed) {
+      control_.change_holder(authority_.number());
+      book_.abort_all("The motion authority changed.");
+      const auto& holding = authority_.holder();
+      spdlog::warn("motion authority: {}", holding ? holding->user : "nobody");
+      json detail{{"action", "change"},
+                  {"holder", holding ? json(holding->user) : json()},
+                  {"session", holding ? json(holding->session) : json()},
+                  {"number", authority_.number()}};
+      AuditEntry entry = context_.entry({}, AuditKind::authority, std::move(detail));
+      entry.actor = audit_actor::app;
+      context_.store.note(std::move(entry));
+    }
+    stream_.send_text([this](const Caller& caller) {
+      json message = authority_.shown_to(caller.session);
+      message["type"] = "authority";
+      return message;
+    });
+  });
+}
+
+asio::awaitable<Caller> Api::caller_of(const Request& request, std::string peer) {
+  Caller caller;
+  caller.peer = std::move(peer);
+  const auto token = cookie_of(request, session_cookie);
+  if (!token) {
+    co_return caller;
+  }
+  std::optional<Session> session = sessions_.find_at_hand(*token);
+  // STOP waits for no store: it needs no login, and names the user only if that is at hand.
+  if (!session && path_of(request) != "/api/stop") {
+    session = co_await sessions_.find(*token);
+  }
+  if (session) {
+    caller.session = session->number;
+    caller.user = session->user.name;
+    caller.role = session->user.role;
+  }
+  co_return caller;
+}
 
 OpenTargets Api::open_targets() const {
   OpenTargets targets{};
@@ -66,21 +141,52 @@ OpenTargets Api::open_targets() const {
   return targets;
 }
 
+void Api::look_after_pedal(const ControlView& seen) {
+  if (bench_.overdue(seen)) {
+    spdlog::warn("the bench pedal was not renewed for 500 ms: released");
+    asio::co_spawn(context_.executor, bench_.release_pedal(), asio::detached);
+  }
+}
+
+void Api::look_after_sessions() {
+  for (const StreamHub::Watcher& watcher : stream_.watchers()) {
+    sessions_.touch(watcher.caller.session);
+  }
+  if (const auto& holding = authority_.holder()) {
+    const auto session = sessions_.known(holding->session);
+    if (!session || context_.clock() - session->last_seen >= authority_idle_limit) {
+      spdlog::warn("{} was away for too long", holding->user);
+      authority_.release(holding->session);
+    }
+  }
+  if (!std::exchange(sweeping_, true)) {
+    asio::co_spawn(context_.executor, sweep_sessions(), asio::detached);
+  }
+}
+
+asio::awaitable<void> Api::sweep_sessions() {
+  co_await sessions_.sweep();
+  sweeping_ = false;
+}
+
 asio::awaitable<void> Api::beat() {
   asio::steady_timer timer(context_.executor, steady_clock::now());
+  auto sessions_due = steady_clock::now();
   for (;;) {
     timer.expires_at(std::max(timer.expiry() + beat_period, steady_clock::now()));
     const auto [error] = co_await timer.async_wait(as_result);
     if (error) {
       co_return;
     }
+    const auto now = steady_clock::now();
     const ControlView& seen = context_.view();
     if (!stream_.empty()) {
-      stream_.send_state(encode_state(seen, context_.config, open_targets(), steady_clock::now()));
+      stream_.send_state(encode_state(seen, context_.config, open_targets(), now));
     }
-    if (bench_.overdue(seen)) {
-      spdlog::warn("the bench pedal was not renewed for 500 ms: released");
-      asio::co_spawn(context_.executor, bench_.release_pedal(), asio::detached);
+    look_after_pedal(seen);
+    if (now >= sessions_due) {
+      sessions_due = now + look_at_sessions_every;
+      look_after_sessions();
     }
   }
 }

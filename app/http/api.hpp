@@ -8,51 +8,71 @@
 
 #include "http/context.hpp"
 #include "http/router.hpp"
+#include "http/routes/account_routes.hpp"
+#include "http/routes/authority_routes.hpp"
 #include "http/routes/bench_routes.hpp"
 #include "http/routes/motor_routes.hpp"
 #include "http/routes/proposal_routes.hpp"
 #include "http/routes/system_routes.hpp"
+#include "http/routes/user_routes.hpp"
 
 namespace interlock::web {
 
 /** What the interface shows and commands. Everything belongs to the network thread. */
 class Api {
  public:
-  /** `robot`, `config` and `mailbox` must outlive it; an empty `bench_socket` means that the hardware is
-   * real. */
-  Api(const boost::asio::any_io_executor& executor, const Robot& robot, const ilk_config_t& config,
-      Mailbox& mailbox, const std::string& bench_socket);
+  /**
+   * `robot`, `config`, `mailbox` and `store` must outlive it.
+   *
+   * @param bench_socket empty means that the hardware is real
+   * @param clock time of day, by which sessions end
+   */
+  Api(
+      const boost::asio::any_io_executor& executor, const Robot& robot, const ilk_config_t& config,
+      Mailbox& mailbox, const std::string& bench_socket, StoreGateway& store,
+      std::function<UtcTime()> clock = [] { return std::chrono::system_clock::now(); });
 
   [[nodiscard]] const Router& router() const { return router_; }
   /** Who sends a request over the connection of that peer. */
-  [[nodiscard]] static Caller caller_of(const Request& request, const std::string& peer);
+  boost::asio::awaitable<Caller> caller_of(const Request& request, std::string peer);
 
   [[nodiscard]] StreamHub& stream() { return stream_; }
 
   /** Follows the control thread's notices; ends with the io_context. */
   boost::asio::awaitable<void> listen() { return control_.listen(); }
 
-  /** Sends the state to the stream 30 times a second and looks after the bench pedal; ends with the
-   * io_context. */
+  /** Sends the state to the stream 30 times a second and looks after the bench pedal, the sessions and the
+   * authority; ends with the io_context. */
   boost::asio::awaitable<void> beat();
 
   /** Releases a pedal that is held over the network. */
   boost::asio::awaitable<void> release_pedal() { return bench_.release_pedal(); }
 
  private:
-  void tell_of_changes();
+  void follow_proposals();
+  void follow_kernel();
+  void follow_sessions();
+  void look_after_pedal(const ControlView& seen);
+  void look_after_sessions();
+  boost::asio::awaitable<void> sweep_sessions();
   [[nodiscard]] OpenTargets open_targets() const;
 
   ControlClient control_;
   ProposalBook book_;
   StreamHub stream_;
   Bench bench_;
+  LiveSessions sessions_;
+  Authority authority_;
+  bool sweeping_ = false;
   Context context_;
   Router router_;
   SystemRoutes system_routes_{context_, router_};
   MotorRoutes motor_routes_{context_, router_};
   ProposalRoutes proposal_routes_{context_, router_};
   BenchRoutes bench_routes_{context_, router_};
+  AccountRoutes account_routes_{context_, router_};
+  UserRoutes user_routes_{context_, router_};
+  AuthorityRoutes authority_routes_{context_, router_};
 };
 
 }  // namespace interlock::web

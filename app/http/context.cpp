@@ -18,13 +18,69 @@ tl::expected<void, Problem> Context::need_kernel() const {
   return {};
 }
 
-boost::asio::awaitable<Reply> Context::ask_kernel(std::uint32_t kind, std::uint32_t slot,
-                                                  std::string where) const {
+tl::expected<void, Problem> Context::need_authority(const Caller& caller) const {
+  if (authority.held_by(caller.session)) {
+    return {};
+  }
+  const auto& holding = authority.holder();
+  return fail({.status = Status::conflict,
+               .code = "AUTHORITY",
+               .detail = holding ? holding->user + " holds the motion authority, in session " +
+                                       std::to_string(holding->session) + "."
+                                 : "Nobody holds the motion authority.",
+               .expected = "the motion authority",
+               .next_step = "Request it."});
+}
+
+AuditEntry Context::entry(const Caller& caller, AuditKind kind, nlohmann::json detail) const {
+  AuditEntry entry{.time = clock(),
+                   .tick = std::nullopt,
+                   .actor = caller.session != 0 ? caller.user : audit_actor::nobody,
+                   .session = std::nullopt,
+                   .kind = kind,
+                   .detail = std::move(detail)};
+  if (const ControlView& now = control.view(); now.attached) {
+    entry.tick = now.snapshot.state.tick;
+  }
+  if (caller.session != 0) {
+    entry.session = caller.session;
+  }
+  return entry;
+}
+
+boost::asio::awaitable<tl::expected<void, Problem>> Context::announce(const Caller& caller, AuditKind kind,
+                                                                      nlohmann::json detail) const {
+  const bool held = authority.held_by(caller.session);
+  auto recorded = co_await store.record(entry(caller, kind, std::move(detail)));
+  if (!recorded) {
+    co_return recorded;
+  }
+  if (!sessions.lives(caller.session)) {
+    co_return fail(login_needed());
+  }
+  if (held) {
+    co_return need_authority(caller);
+  }
+  co_return recorded;
+}
+
+boost::asio::awaitable<Reply> Context::ask_kernel(const Caller& caller, std::uint32_t kind,
+                                                  std::uint32_t slot, std::string where,
+                                                  std::int32_t target_counts) const {
   const auto kernel = need_kernel();
   if (!kernel) {
     co_return fail(kernel.error());
   }
-  const auto answer = co_await control.ask(kind, slot);
+  nlohmann::json detail{{"request", catalog::name(catalog::Family::request, kind)}, {"what", where}};
+  if (kind == ILK_REQUEST_DISABLE) {
+    store.note(entry(caller, AuditKind::request, std::move(detail)));
+  } else {
+    const auto announced = co_await announce(caller, AuditKind::request, std::move(detail));
+    if (!announced) {
+      co_return fail(announced.error());
+    }
+  }
+  const auto answer = co_await control.ask(kind, slot, target_counts);
   if (!answer || !answer->verdict) {
     co_return fail(no_kernel("The kernel did not answer within a second."));
   }

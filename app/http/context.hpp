@@ -5,11 +5,16 @@
 #pragma once
 
 #include <boost/asio/any_io_executor.hpp>
+#include <functional>
 #include <string>
 
+#include "http/access.hpp"
+#include "http/authority.hpp"
 #include "http/bench.hpp"
 #include "http/control_client.hpp"
+#include "http/live_sessions.hpp"
 #include "http/message.hpp"
+#include "http/store_gateway.hpp"
 #include "http/stream_hub.hpp"
 #include "proposals/proposal_book.hpp"
 #include "robot/robot.hpp"
@@ -24,6 +29,10 @@ struct Context {
   ProposalBook& book;
   StreamHub& stream;
   Bench& bench;
+  StoreGateway& store;
+  LiveSessions& sessions;
+  Authority& authority;
+  std::function<UtcTime()> clock;
 
   /** The newest view; what it says of orders is in the book already. The reference holds until the next
    * call. */
@@ -32,14 +41,31 @@ struct Context {
   /** 503 NO_KERNEL unless a kernel is connected. */
   [[nodiscard]] tl::expected<void, Problem> need_kernel() const;
 
+  /** 409 AUTHORITY, naming who holds it, unless the caller does. */
+  [[nodiscard]] tl::expected<void, Problem> need_authority(const Caller& caller) const;
+
+  /** What to record of something that the caller does, now. */
+  [[nodiscard]] AuditEntry entry(const Caller& caller, AuditKind kind, nlohmann::json detail) const;
+
   /**
-   * Sends one request to the kernel and answers with its verdict: `VerdictAnswer`, 409 with the verdict as
-   * code, or 503 NO_KERNEL.
-   *
-   * @param where what was asked of what, for the problem's detail
+   * Records what the caller is about to do, and says then whether the caller still may: 503 STORE, 401 LOGIN
+   * when the session has ended meanwhile, 409 AUTHORITY when it has lost the authority. What follows without
+   * waiting is rightful.
    */
-  [[nodiscard]] boost::asio::awaitable<Reply> ask_kernel(std::uint32_t kind, std::uint32_t slot,
-                                                         std::string where) const;
+  [[nodiscard]] boost::asio::awaitable<tl::expected<void, Problem>> announce(const Caller& caller,
+                                                                             AuditKind kind,
+                                                                             nlohmann::json detail) const;
+
+  /**
+   * Announces one request, sends it to the kernel and answers with its verdict: `VerdictAnswer`, 409 with the
+   * verdict as code, 503 NO_KERNEL, or a problem of `announce`. DISABLE waits for no store.
+   *
+   * @param where what was asked of what, for the audit and the problem's detail
+   * @param target_counts position of a RESTORE
+   */
+  [[nodiscard]] boost::asio::awaitable<Reply> ask_kernel(const Caller& caller, std::uint32_t kind,
+                                                         std::uint32_t slot, std::string where,
+                                                         std::int32_t target_counts = 0) const;
 };
 
 }  // namespace interlock::web

@@ -46,7 +46,10 @@ asio::awaitable<std::optional<Answer>> ControlClient::ask(std::uint32_t kind, st
 }
 
 asio::awaitable<std::optional<StopAnswer>> ControlClient::stop() {
-  const std::uint32_t number = mailbox_.stops.fetch_add(1, std::memory_order_release) + 1;
+  return stop_answered(mailbox_.stops.fetch_add(1, std::memory_order_release) + 1);
+}
+
+asio::awaitable<std::optional<StopAnswer>> ControlClient::stop_answered(std::uint32_t number) {
   if (!view().attached) {
     co_return std::nullopt;
   }
@@ -55,6 +58,11 @@ asio::awaitable<std::optional<StopAnswer>> ControlClient::stop() {
   co_await waiter.timer.async_wait(as_result);
   stops_.erase(place);
   co_return waiter.result;
+}
+
+void ControlClient::change_holder(std::uint32_t holder) {
+  mailbox_.holder.store(holder, std::memory_order_release);
+  mailbox_.stops.fetch_add(1, std::memory_order_release);
 }
 
 asio::awaitable<void> ControlClient::listen() {

@@ -33,8 +33,15 @@ class ControlClient {
   boost::asio::awaitable<std::optional<Answer>> ask(std::uint32_t kind, std::uint32_t slot,
                                                     std::int32_t target_counts = 0);
 
-  /** Stops, whatever else waits; empty when no kernel is connected or none answered within 300 ms. */
+  /** Stops, whatever else waits, before this returns. What is returned waits for the answer: empty when no
+   * kernel is connected or none answered within 300 ms. */
   boost::asio::awaitable<std::optional<StopAnswer>> stop();
+
+  /**
+   * Tells the kernel of a change of the motion authority, whose number `holder` is; 0: nobody has it. It is a
+   * STOP, too: no order that was given before starts or goes on.
+   */
+  void change_holder(std::uint32_t holder);
 
   /** Told of each kernel event, and of each lot of events that was lost. */
   std::function<void(const ilk_event_t&)> on_event = [](const ilk_event_t&) {};
@@ -53,6 +60,7 @@ class ControlClient {
   };
 
   void take(const Notice& notice);
+  boost::asio::awaitable<std::optional<StopAnswer>> stop_answered(std::uint32_t number);
 
   boost::asio::any_io_executor executor_;
   Mailbox& mailbox_;

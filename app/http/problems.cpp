@@ -2,16 +2,11 @@
 
 namespace interlock::web {
 
-std::string_view role_name(Role role) noexcept {
-  switch (role) {
-    case Role::viewer:
-      return "viewer";
-    case Role::engineer:
-      return "engineer";
-    case Role::admin:
-      return "admin";
-  }
-  return "viewer";
+Problem login_needed() {
+  return {.status = Status::unauthorized,
+          .code = "LOGIN",
+          .detail = "Nobody is logged in, or the session ended.",
+          .next_step = "Log in."};
 }
 
 Problem not_found(const std::string& what, const std::string& expected) {

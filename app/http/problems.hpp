@@ -5,7 +5,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "http/access.hpp"
 #include "http/message.hpp"
@@ -13,14 +12,14 @@
 
 namespace interlock::web {
 
-/** As the interface spells it: "viewer". */
-std::string_view role_name(Role role) noexcept;
-
 /** A reply, or any other expected value, that is this problem. */
 inline tl::unexpected<Problem> fail(Problem problem) { return tl::make_unexpected(std::move(problem)); }
 
 /** 404 NOT_FOUND. `expected` says where to find what there is. */
 Problem not_found(const std::string& what, const std::string& expected);
+
+/** 401 LOGIN. */
+Problem login_needed();
 
 /** 503 NO_KERNEL. */
 Problem no_kernel(const std::string& detail);

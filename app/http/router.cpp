@@ -18,13 +18,6 @@ std::vector<std::string> segments_of(std::string_view path) {
   return segments;
 }
 
-Problem login_needed() {
-  return {.status = Status::unauthorized,
-          .code = "LOGIN",
-          .detail = "Nobody is logged in, or the session ended.",
-          .next_step = "Log in."};
-}
-
 Problem role_needed(const Caller& caller, Role least) {
   return {.status = Status::forbidden,
           .code = "ROLE",

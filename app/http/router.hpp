@@ -37,6 +37,9 @@ class Router {
   /** `pattern` as in spec/openapi.yaml: "/api/motors/{axis}". */
   void add(boost::beast::http::verb method, std::string_view pattern, Access access, Handler handler);
 
+  /** Nothing when the caller has that right, else 401 LOGIN, 403 ROLE or 409 AUTHORITY. */
+  [[nodiscard]] std::optional<Problem> check(const Access& access, const Caller& caller) const;
+
   /**
    * Runs the handler of the request. Refused before, in this order: 404 NOT_FOUND when no route has the path,
    * 405 METHOD_NOT_ALLOWED when one has, but not this method, 401 LOGIN when nobody is logged in, 403 ROLE,
@@ -51,8 +54,6 @@ class Router {
     Access access;
     Handler handler;
   };
-
-  [[nodiscard]] std::optional<Problem> check(const Access& access, const Caller& caller) const;
 
   NeedAuthority need_authority_;
   std::vector<Route> routes_;

@@ -62,6 +62,11 @@ Problem problem_of(const beast::error_code& error) {
           .expected = "HTTP/1.1"};
 }
 
+void log_transaction(const Request& request, const Caller& caller, Status status) {
+  spdlog::debug("{} {} {} {} -> {}", caller.peer, caller.user.empty() ? "nobody" : caller.user,
+                std::string(request.method_string()), path_of(request), static_cast<unsigned>(status));
+}
+
 bool is_protocol_error(const beast::error_code& error) {
   static const auto& category = beast::error_code(http::error::bad_method).category();
   return error.category() == category && error != http::error::end_of_stream &&
@@ -165,27 +170,11 @@ asio::awaitable<void> Server::serve(std::shared_ptr<Connection> connection) {
     }
     Request request = parser.release();
     if (beast::websocket::is_upgrade(request) && path_of(request) == "/api/stream") {
-      std::optional<Problem> problem = check_host(request);
-      problem = problem ? problem : check_origin(request);
-      if (!problem && api_.stream().full()) {
-        problem = Problem{.status = Status::service_unavailable,
-                          .code = "OVERLOADED",
-                          .detail = "Too many clients watch the stream.",
-                          .expected = "at most " + std::to_string(StreamHub::capacity),
-                          .next_step = "Close another console."};
-      }
-      if (!problem) {
-        co_await api_.stream().serve(std::move(connection->stream), std::move(request));
-        co_return;
-      }
-      co_await answer(*connection, problem_response(*problem), false, false);
+      co_await serve_stream(*connection, std::move(request));
       co_return;
     }
     connection->stream.expires_never();
-    const Caller caller = api_.caller_of(request, connection->peer);
-    Response response = co_await respond(request, caller);
-    spdlog::debug("{} {} -> {}", std::string(request.method_string()), path_of(request),
-                  response.result_int());
+    Response response = co_await respond(request, connection->peer);
     keep_alive = co_await answer(*connection, std::move(response), request.method() == http::verb::head,
                                  request.keep_alive());
   }
@@ -193,26 +182,50 @@ asio::awaitable<void> Server::serve(std::shared_ptr<Connection> connection) {
   connection->stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
 }
 
-asio::awaitable<Response> Server::respond(const Request& request, const Caller& caller) {
-  if (const auto problem = check_host(request)) {
-    co_return problem_response(*problem);
+asio::awaitable<void> Server::serve_stream(Connection& connection, Request request) {
+  Caller caller;
+  std::optional<Problem> problem = check_host(request);
+  problem = problem ? problem : check_origin(request);
+  if (!problem) {
+    caller = co_await api_.caller_of(request, connection.peer);
+    problem = api_.router().check(viewers, caller);
   }
-  if (!is_safe(request.method())) {
-    if (const auto problem = check_origin(request)) {
-      co_return problem_response(*problem);
-    }
+  if (!problem && api_.stream().full()) {
+    problem = Problem{.status = Status::service_unavailable,
+                      .code = "OVERLOADED",
+                      .detail = "Too many clients watch the stream.",
+                      .expected = "at most " + std::to_string(StreamHub::capacity),
+                      .next_step = "Close another console."};
+  }
+  log_transaction(request, caller, problem ? problem->status : Status::switching_protocols);
+  if (problem) {
+    co_await answer(connection, problem_response(*problem), false, false);
+    co_return;
+  }
+  co_await api_.stream().serve(std::move(connection.stream), std::move(request), std::move(caller));
+}
+
+asio::awaitable<Response> Server::respond(const Request& request, const std::string& peer) {
+  std::optional<Problem> problem = check_host(request);
+  if (!problem && !is_safe(request.method())) {
+    problem = check_origin(request);
+  }
+  if (problem) {
+    co_return problem_response(*problem);
   }
   const std::string path = path_of(request);
   if (path == "/api" || path.starts_with("/api/")) {
-    co_return co_await respond_api(request, caller);
+    co_return co_await respond_api(request, peer);
   }
   co_return files_.serve(request);
 }
 
-asio::awaitable<Response> Server::respond_api(const Request& request, const Caller& caller) {
+asio::awaitable<Response> Server::respond_api(const Request& request, const std::string& peer) {
   std::string thrown;
   try {
+    const Caller caller = co_await api_.caller_of(request, peer);
     const Reply reply = co_await api_.router().route(request, caller);
+    log_transaction(request, caller, reply ? reply->status : reply.error().status);
     co_return reply ? json_response(*reply) : problem_response(reply.error());
   } catch (const std::exception& exception) {
     thrown = exception.what();

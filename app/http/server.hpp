@@ -54,8 +54,9 @@ class Server {
   };
 
   boost::asio::awaitable<void> serve(std::shared_ptr<Connection> connection);
-  boost::asio::awaitable<Response> respond(const Request& request, const Caller& caller);
-  boost::asio::awaitable<Response> respond_api(const Request& request, const Caller& caller);
+  boost::asio::awaitable<void> serve_stream(Connection& connection, Request request);
+  boost::asio::awaitable<Response> respond(const Request& request, const std::string& peer);
+  boost::asio::awaitable<Response> respond_api(const Request& request, const std::string& peer);
   boost::asio::awaitable<bool> answer(Connection& connection, Response response, bool head_only,
                                       bool keep_alive);
   boost::asio::awaitable<void> refuse(Connection& connection, const boost::beast::error_code& error);

@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/co_spawn.hpp>
@@ -17,6 +18,7 @@ namespace beast = boost::beast;
 namespace websocket = boost::beast::websocket;
 
 constexpr std::size_t longest_client_message = 1024;
+constexpr auto session_ended_code = static_cast<websocket::close_code>(4401);
 constexpr auto as_result = asio::as_tuple(asio::use_awaitable);
 
 websocket::stream_base::timeout timeouts() {
@@ -33,16 +35,34 @@ void StreamHub::Client::close() {
   beast::get_lowest_layer(socket).close();
 }
 
-asio::awaitable<void> StreamHub::serve(beast::tcp_stream stream, Request request) {
-  auto client = std::make_shared<Client>(std::move(stream));
+void StreamHub::Client::close_after_texts(websocket::close_reason reason) {
+  closing = std::move(reason);
+  news.cancel();
+}
+
+void StreamHub::Client::send(std::shared_ptr<const std::string> text) {
+  if (texts.size() == backlog) {
+    spdlog::warn("a stream client is {} messages behind and was dropped", backlog);
+    close();
+    return;
+  }
+  texts.push_back(std::move(text));
+  news.cancel();
+}
+
+asio::awaitable<void> StreamHub::serve(beast::tcp_stream stream, Request request, Caller caller) {
+  auto client = std::make_shared<Client>(
+      std::move(stream), Watcher{++last_id_, std::move(caller), std::chrono::system_clock::now()});
   beast::get_lowest_layer(client->socket).expires_never();
   client->socket.set_option(timeouts());
   client->socket.read_message_max(longest_client_message);
+  // Known before it is accepted: a session that ends meanwhile takes it along.
+  const auto place = clients_.insert(clients_.end(), client);
   const auto [accept_error] = co_await client->socket.async_accept(request, as_result);
   if (accept_error) {
+    clients_.erase(place);
     co_return;
   }
-  const auto place = clients_.insert(clients_.end(), client);
   asio::co_spawn(client->socket.get_executor(), write(client), asio::detached);
   beast::flat_buffer buffer;
   const auto [read_error, bytes] = co_await client->socket.async_read(buffer, as_result);
@@ -63,6 +83,9 @@ asio::awaitable<void> StreamHub::write(std::shared_ptr<Client> client) {
       client->texts.pop_front();
       client->socket.text(true);
       error = std::get<0>(co_await client->socket.async_write(asio::buffer(*text), as_result));
+    } else if (client->closing) {
+      co_await client->socket.async_close(*client->closing, as_result);
+      client->close();
     } else if (client->state) {
       const StreamMessage state = *std::exchange(client->state, std::nullopt);
       client->socket.binary(true);
@@ -86,14 +109,46 @@ void StreamHub::send_state(const StreamMessage& state) {
 void StreamHub::send_text(const nlohmann::json& message) {
   const auto text = std::make_shared<const std::string>(message.dump());
   for (const auto& client : clients_) {
-    if (client->texts.size() == backlog) {
-      spdlog::warn("a stream client is {} messages behind and was dropped", backlog);
-      client->close();
-      continue;
-    }
-    client->texts.push_back(text);
-    client->news.cancel();
+    client->send(text);
   }
+}
+
+void StreamHub::send_text(const std::function<nlohmann::json(const Caller&)>& message_for) {
+  for (const auto& client : clients_) {
+    client->send(std::make_shared<const std::string>(message_for(client->watcher.caller).dump()));
+  }
+}
+
+void StreamHub::end_session(std::uint32_t session) {
+  const nlohmann::json message{{"type", "session"}, {"ended", true}};
+  for (const auto& client : clients_) {
+    if (client->watcher.caller.session == session) {
+      client->send(std::make_shared<const std::string>(message.dump()));
+      client->close_after_texts({session_ended_code, "the session ended"});
+    }
+  }
+}
+
+bool StreamHub::disconnect(std::uint32_t id) {
+  const auto found = std::ranges::find(clients_, id, [](const auto& client) { return client->watcher.id; });
+  if (found == clients_.end()) {
+    return false;
+  }
+  (*found)->close_after_texts({websocket::close_code::going_away, "disconnected by a user"});
+  return true;
+}
+
+std::vector<StreamHub::Watcher> StreamHub::watchers() const {
+  std::vector<Watcher> watchers;
+  for (const auto& client : clients_) {
+    watchers.push_back(client->watcher);
+  }
+  return watchers;
+}
+
+bool StreamHub::watched_by(std::uint32_t session) const {
+  return std::ranges::any_of(clients_,
+                             [&](const auto& client) { return client->watcher.caller.session == session; });
 }
 
 }  // namespace interlock::web

@@ -8,14 +8,19 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/websocket.hpp>
+#include <cstdint>
 #include <deque>
+#include <functional>
 #include <list>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "http/access.hpp"
 #include "http/message.hpp"
 #include "http/stream_message.hpp"
+#include "time/utc_time.hpp"
 
 namespace interlock::web {
 
@@ -26,14 +31,36 @@ class StreamHub {
   /** Text messages that wait for one client; one more, and the client is dropped. */
   static constexpr std::size_t backlog = 1024;
 
+  /** A client, as others see it. */
+  struct Watcher {
+    std::uint32_t id = 0; /**< never given twice */
+    Caller caller;
+    UtcTime since;
+  };
+
   /** Accepts the WebSocket and serves it until either side ends it. */
-  boost::asio::awaitable<void> serve(boost::beast::tcp_stream stream, Request request);
+  boost::asio::awaitable<void> serve(boost::beast::tcp_stream stream, Request request, Caller caller);
 
   /** To every client; a state that was not sent yet is replaced by the newer one. */
   void send_state(const StreamMessage& state);
 
   /** To every client, in order; a client that cannot keep up is dropped, never a message. */
   void send_text(const nlohmann::json& message);
+
+  /** As `send_text`, with a message of its own for each client. */
+  void send_text(const std::function<nlohmann::json(const Caller&)>& message_for);
+
+  /** Tells the clients of that session that it ended, and closes them with code 4401. */
+  void end_session(std::uint32_t session);
+
+  /** Closes one client; false when there is none of that number. */
+  bool disconnect(std::uint32_t id);
+
+  /** Oldest first. */
+  [[nodiscard]] std::vector<Watcher> watchers() const;
+
+  /** Whether a client of that session watches. */
+  [[nodiscard]] bool watched_by(std::uint32_t session) const;
 
   [[nodiscard]] bool full() const { return clients_.size() >= capacity; }
   [[nodiscard]] bool empty() const { return clients_.empty(); }
@@ -42,22 +69,29 @@ class StreamHub {
   using Socket = boost::beast::websocket::stream<boost::beast::tcp_stream>;
 
   struct Client {
-    explicit Client(boost::beast::tcp_stream stream)
+    Client(boost::beast::tcp_stream stream, Watcher watching)
         : socket(std::move(stream)),
+          watcher(std::move(watching)),
           news(socket.get_executor(), boost::asio::steady_timer::time_point::max()) {}
 
+    void send(std::shared_ptr<const std::string> text);
     void close();
+    /** Closes it once it has got what waits for it. */
+    void close_after_texts(boost::beast::websocket::close_reason reason);
 
     Socket socket;
+    Watcher watcher;
     boost::asio::steady_timer news; /**< cancelled when there is something to send, or to end */
     std::deque<std::shared_ptr<const std::string>> texts;
     std::optional<StreamMessage> state;
+    std::optional<boost::beast::websocket::close_reason> closing;
     bool open = true;
   };
 
   static boost::asio::awaitable<void> write(std::shared_ptr<Client> client);
 
-  std::list<std::shared_ptr<Client>> clients_;
+  std::list<std::shared_ptr<Client>> clients_; /**< oldest first */
+  std::uint32_t last_id_ = 0;
 };
 
 }  // namespace interlock::web

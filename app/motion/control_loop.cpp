@@ -16,8 +16,6 @@ constexpr milliseconds snapshot_timeout{20};
 constexpr milliseconds shortest_back_off{20};
 constexpr milliseconds longest_back_off{500};
 constexpr std::uint32_t heartbeat_period_ticks = 20;
-/** Who holds motion authority. There is one console until users are known. */
-constexpr std::uint32_t console_holder = 1;
 /** Room in the notice queue that events leave to answers. */
 constexpr std::size_t answer_reserve = 2 * Mailbox::command_capacity;
 
@@ -110,7 +108,9 @@ void ControlLoop::obey_stop() noexcept {
   if (stops_seen_ == stops_sent_) {
     return;
   }
-  conductor_.end_all(OrderReason::stopped, view_.snapshot.state.tick);
+  const bool holder_changed = mailbox_.holder.load(std::memory_order_relaxed) != holder_sent_;
+  conductor_.end_all(holder_changed ? OrderReason::authority_changed : OrderReason::stopped,
+                     view_.snapshot.state.tick);
   if (port_.send(request_of(ILK_REQUEST_STOP), StopOrigin{stops_seen_})) {
     stops_sent_ = stops_seen_;
   }
@@ -158,14 +158,17 @@ void ControlLoop::dispatch_verdict(const ilk_event_t& event) noexcept {
 
 void ControlLoop::send_heartbeat() noexcept {
   const std::uint32_t now = view_.snapshot.state.tick;
-  const bool due = !heartbeat_sent_ || now - heartbeat_tick_ >= heartbeat_period_ticks;
+  const std::uint32_t holder = mailbox_.holder.load(std::memory_order_acquire);
+  const bool due =
+      !heartbeat_sent_ || holder != holder_sent_ || now - heartbeat_tick_ >= heartbeat_period_ticks;
   if (!due || view_.snapshot.state.mode == ILK_MODE_INIT) {
     return;
   }
   ilk_request_t request = request_of(ILK_REQUEST_HEARTBEAT);
-  request.holder = console_holder;
+  request.holder = holder;
   if (port_.send(request, HeartbeatOrigin{})) {
     heartbeat_sent_ = true;
+    holder_sent_ = holder;
     heartbeat_tick_ = now;
   }
 }

@@ -60,6 +60,7 @@ class ControlLoop {
   std::string attach_complaint_;
   std::chrono::milliseconds back_off_;
   std::uint32_t heartbeat_tick_ = 0;
+  std::uint32_t holder_sent_ = 0;
   std::uint32_t stops_seen_ = 0;
   std::uint32_t stops_sent_ = 0;
   std::uint32_t events_lost_ = 0;    /**< by the link, as last seen */

@@ -77,6 +77,8 @@ struct Mailbox {
   boost::lockfree::spsc_queue<Notice, boost::lockfree::capacity<notice_capacity>> notices;
   TripleBuffer<ControlView> view;
   std::atomic<std::uint32_t> stops{0}; /**< STOPs asked for since start */
+  /** Number of the present motion authority; 0: nobody. Changed before the STOP that each change is. */
+  std::atomic<std::uint32_t> holder{0};
   WakeSignal network_wake;             /**< a notice came or an order changed */
 };
 

@@ -73,7 +73,7 @@ Answering MotorRoutes::act(const Call& call) const {
   if (!request) {
     co_return fail(not_found("action " + action, "enable, disable, clear-fault, home or set-home"));
   }
-  co_return co_await context_.ask_kernel(*request, (*axis)->slot, (*axis)->name + " " + action);
+  co_return co_await context_.ask_kernel(call.caller, *request, (*axis)->slot, (*axis)->name + " " + action);
 }
 
 }  // namespace interlock::web

@@ -17,9 +17,10 @@ using nlohmann::json;
 
 SystemRoutes::SystemRoutes(const Context& context, Router& router) : context_(context) {
   router.add(verb::get, "/api/status", anybody, [this](const Call&) -> Answering { co_return status(); });
-  router.add(verb::post, "/api/stop", anybody, [this](const Call&) { return stop(); });
-  router.add(verb::post, "/api/reset", holder,
-             [this](const Call&) { return context_.ask_kernel(ILK_REQUEST_RESET, 0, "reset"); });
+  router.add(verb::post, "/api/stop", anybody, [this](const Call& call) { return stop(call); });
+  router.add(verb::post, "/api/reset", holder, [this](const Call& call) {
+    return context_.ask_kernel(call.caller, ILK_REQUEST_RESET, 0, "reset");
+  });
   router.add(verb::get, "/api/stream", viewers, [](const Call&) -> Answering {
     co_return fail({.status = Status::upgrade_required,
                     .code = "UPGRADE_REQUIRED",
@@ -34,10 +35,14 @@ Reply SystemRoutes::status() const {
                                          std::chrono::steady_clock::now())};
 }
 
-Answering SystemRoutes::stop() const {
-  spdlog::warn("STOP");
+Answering SystemRoutes::stop(const Call& call) const {
+  auto stopping = context_.control.stop();
+  // On its way to the kernel before anything is written, be it to a log.
+  spdlog::warn("STOP by {}", call.caller.user.empty() ? call.caller.peer : call.caller.user);
   context_.book.abort_all("STOP.");
-  const auto answer = co_await context_.control.stop();
+  json detail{{"peer", call.caller.peer}};
+  context_.store.note(context_.entry(call.caller, AuditKind::stop, std::move(detail)));
+  const auto answer = co_await std::move(stopping);
   json body{{"verdict", nullptr}, {"tick", nullptr}};
   if (answer && answer->verdict) {
     body["verdict"] = catalog::name(catalog::Family::verdict, *answer->verdict);

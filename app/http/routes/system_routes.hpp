@@ -16,7 +16,7 @@ class SystemRoutes {
 
  private:
   [[nodiscard]] Reply status() const;
-  [[nodiscard]] boost::asio::awaitable<Reply> stop() const;
+  [[nodiscard]] boost::asio::awaitable<Reply> stop(const Call& call) const;
 
   const Context& context_;
 };

@@ -1,0 +1,71 @@
+/**
+ * @file
+ * The motion authority: the one session that may move the robot, and those that ask to.
+ */
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "time/utc_time.hpp"
+
+namespace interlock::web {
+
+/** A session's hold of the authority, or its wish for it. */
+struct Claim {
+  std::uint32_t session = 0;
+  std::string user;
+  UtcTime since;
+
+  bool operator==(const Claim&) const = default;
+};
+
+/** Belongs to the network thread. Who may change it is checked by whoever changes it. */
+class Authority {
+ public:
+  /** `first_number` is before that of the first hold. It should be no number that an app before may have
+   * had: a kernel that runs on would not see that the holder is another one. */
+  explicit Authority(std::uint32_t first_number) : number_(first_number) {}
+
+  /** Told of each change: of the holder (`holder_changed`), or only of the wishes. */
+  using Listener = std::function<void(bool holder_changed)>;
+
+  void on_change(Listener listener) { listener_ = std::move(listener); }
+
+  [[nodiscard]] bool held_by(std::uint32_t session) const { return holder_ && holder_->session == session; }
+  [[nodiscard]] const std::optional<Claim>& holder() const { return holder_; }
+  [[nodiscard]] const std::vector<Claim>& requests() const { return requests_; }
+
+  /** The wish of that session, or null. */
+  [[nodiscard]] const Claim* request_of(std::uint32_t session) const;
+
+  /** Number of the present hold: 0 while nobody holds it, else one that no hold before had. */
+  [[nodiscard]] std::uint32_t number() const { return holder_ ? number_ : 0; }
+
+  /** Gives it to that session, whoever holds it. Its wish is granted thereby; nothing changes when it holds
+   * it. */
+  void give(Claim to);
+
+  /** Notes the wish of a session; nothing changes when it has one, or holds the authority. */
+  void request(Claim wish);
+
+  /** Takes hold and wish from that session. */
+  void release(std::uint32_t session);
+
+  /** Schema `Authority` of spec/openapi.yaml, as that session sees it. */
+  [[nodiscard]] nlohmann::json shown_to(std::uint32_t session) const;
+
+ private:
+  bool drop_request(std::uint32_t session);
+
+  std::optional<Claim> holder_;
+  std::vector<Claim> requests_; /**< oldest first */
+  std::uint32_t number_;
+  Listener listener_ = [](bool) {};
+};
+
+}  // namespace interlock::web

@@ -1,0 +1,174 @@
+#include "http/live_sessions.hpp"
+
+#include <algorithm>
+
+#include "store/digest.hpp"
+
+namespace interlock::web {
+namespace {
+
+constexpr std::chrono::seconds store_uses_after{60};
+constexpr std::size_t token_length = 43;
+
+bool is_over(const Session& session, UtcTime now) {
+  return now >= session.expires() || now >= session.last_seen + session_idle_limit;
+}
+
+/** What one sweep has to do in the store. */
+struct Sweep {
+  std::vector<Session> uses;
+  std::set<std::uint32_t> known;
+  std::set<std::uint32_t> to_end;
+  UtcTime now;
+
+  /** Returns the numbers of the known sessions that have ended. */
+  Stored<std::vector<std::uint32_t>> operator()(Store& store) const {
+    return store.transact([this](Transaction& transaction) -> Stored<std::vector<std::uint32_t>> {
+      Sessions sessions(transaction);
+      Audit audit(transaction);
+      for (const Session& used : uses) {
+        sessions.touch(used.number, used.last_seen);
+      }
+      for (const std::uint32_t number : to_end) {
+        sessions.end(number);
+      }
+      for (const Session& over : sessions.end_expired(now)) {
+        audit.append(session_ended(over, "expired", now));
+      }
+      std::vector<std::uint32_t> gone;
+      std::ranges::copy_if(known, std::back_inserter(gone),
+                           [&](std::uint32_t number) { return !sessions.find(number, now); });
+      return gone;
+    });
+  }
+};
+
+}  // namespace
+
+AuditEntry session_ended(const Session& session, const std::string& reason, UtcTime now) {
+  return {.time = now,
+          .tick = std::nullopt,
+          .actor = session.user.name,
+          .session = session.number,
+          .kind = AuditKind::session_ended,
+          .detail = {{"reason", reason}}};
+}
+
+std::optional<Session> LiveSessions::find_at_hand(const std::string& token) {
+  const auto found = number_of_token_.find(sha256_hex(token));
+  if (found == number_of_token_.end()) {
+    return std::nullopt;
+  }
+  const std::uint32_t number = found->second;
+  auto session = known(number);
+  if (session) {
+    touch(number);
+  }
+  return session;
+}
+
+boost::asio::awaitable<std::optional<Session>> LiveSessions::find(std::string token) {
+  if (token.size() != token_length) {
+    co_return std::nullopt;
+  }
+  if (auto session = find_at_hand(token)) {
+    co_return session;
+  }
+  const auto stored = co_await store_.run([token, now = clock_()](Store& store) {
+    return store.read([&](Transaction& transaction) -> Stored<std::optional<Session>> {
+      return Sessions(transaction).find(token, now);
+    });
+  });
+  if (!stored || !*stored || to_end_.contains((*stored)->number)) {
+    co_return std::nullopt;
+  }
+  live_.try_emplace((*stored)->number, Live{**stored, (*stored)->last_seen});
+  number_of_token_[sha256_hex(token)] = (*stored)->number;
+  co_return find_at_hand(token);
+}
+
+std::optional<Session> LiveSessions::known(std::uint32_t number) const {
+  const auto found = live_.find(number);
+  const bool lives = found != live_.end() && !is_over(found->second.session, clock_());
+  return lives ? std::optional(found->second.session) : std::nullopt;
+}
+
+void LiveSessions::add(const NewSession& opened) {
+  live_[opened.session.number] = Live{opened.session, opened.session.last_seen};
+  number_of_token_[sha256_hex(opened.token)] = opened.session.number;
+}
+
+void LiveSessions::touch(std::uint32_t number) {
+  const auto found = live_.find(number);
+  const UtcTime now = clock_();
+  if (found != live_.end() && !is_over(found->second.session, now)) {
+    found->second.session.last_seen = now;
+  }
+}
+
+void LiveSessions::forget(const std::vector<Session>& ended) {
+  for (const Session& each : ended) {
+    drop(each.number);
+  }
+}
+
+void LiveSessions::end(std::uint32_t number) {
+  to_end_.insert(number);
+  drop(number);
+}
+
+void LiveSessions::drop(std::uint32_t number) {
+  if (live_.erase(number) != 0) {
+    std::erase_if(number_of_token_, [&](const auto& each) { return each.second == number; });
+    listener_(number);
+  }
+}
+
+void LiveSessions::drop_those_over(UtcTime now) {
+  std::vector<Session> over;
+  for (const auto& [number, live] : live_) {
+    if (is_over(live.session, now)) {
+      over.push_back(live.session);
+    }
+  }
+  forget(over);
+}
+
+/** Seldom enough for the disk, and always before the store would end a session that was used since. */
+std::vector<Session> LiveSessions::uses_to_store(UtcTime now) const {
+  std::vector<Session> uses;
+  for (const auto& [number, live] : live_) {
+    const bool due = live.session.last_seen - live.seen_stored >= store_uses_after ||
+                     now + store_uses_after >= live.seen_stored + session_idle_limit;
+    if (due && live.session.last_seen > live.seen_stored) {
+      uses.push_back(live.session);
+    }
+  }
+  return uses;
+}
+
+boost::asio::awaitable<void> LiveSessions::sweep() {
+  const UtcTime now = clock_();
+  drop_those_over(now);
+  Sweep work{uses_to_store(now), {}, to_end_, now};
+  for (const auto& [number, live] : live_) {
+    work.known.insert(number);
+  }
+  const auto gone = co_await store_.run(work);
+  if (!gone) {
+    co_return;
+  }
+  for (const std::uint32_t number : work.to_end) {
+    to_end_.erase(number);
+  }
+  for (const Session& used : work.uses) {
+    if (const auto found = live_.find(used.number); found != live_.end()) {
+      found->second.seen_stored = used.last_seen;
+    }
+  }
+  for (const std::uint32_t number : *gone) {
+    drop(number);
+  }
+}
+
+}  // namespace interlock::web

@@ -1,0 +1,83 @@
+/**
+ * @file
+ * Who is logged in, at hand for each request: the sessions of the store that were used since the app started.
+ *
+ * Belongs to the network thread. What the store knows is asked once; its idle times are written back now and
+ * then, and a session that somebody else ended there (the command line) ends here within seconds.
+ */
+#pragma once
+
+#include <boost/asio/awaitable.hpp>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "http/store_gateway.hpp"
+#include "store/sessions.hpp"
+
+namespace interlock::web {
+
+class LiveSessions {
+ public:
+  using Clock = std::function<UtcTime()>;
+  using Listener = std::function<void(std::uint32_t session)>;
+
+  /** `store` must outlive it. */
+  LiveSessions(StoreGateway& store, Clock clock) : store_(store), clock_(std::move(clock)) {}
+
+  /** Told of each session that has ended, whatever ended it. */
+  void on_end(Listener listener) { listener_ = std::move(listener); }
+
+  /** The living session of that token, which is used thereby; without asking the store. */
+  std::optional<Session> find_at_hand(const std::string& token);
+
+  /** As `find_at_hand`, and asks the store for one that is not at hand; nothing while the store fails. */
+  boost::asio::awaitable<std::optional<Session>> find(std::string token);
+
+  /** The living session of that number, if it is at hand. */
+  [[nodiscard]] std::optional<Session> known(std::uint32_t number) const;
+
+  /** Whether that session has not ended. */
+  [[nodiscard]] bool lives(std::uint32_t number) const { return known(number).has_value(); }
+
+  /** A session was opened in the store. */
+  void add(const NewSession& opened);
+
+  /** That session was used, for instance by its open stream. */
+  void touch(std::uint32_t number);
+
+  /** Sessions were ended in the store. */
+  void forget(const std::vector<Session>& ended);
+
+  /** Ends a session here at once, and in the store as soon as that works. */
+  void end(std::uint32_t number);
+
+  /** Ends what is over, and brings store and memory to agree. */
+  boost::asio::awaitable<void> sweep();
+
+ private:
+  struct Live {
+    Session session;     /**< `last_seen` is its last use */
+    UtcTime seen_stored; /**< `last_seen` in the store */
+  };
+
+  void drop(std::uint32_t number);
+  void drop_those_over(UtcTime now);
+  [[nodiscard]] std::vector<Session> uses_to_store(UtcTime now) const;
+
+  StoreGateway& store_;
+  Clock clock_;
+  Listener listener_ = [](std::uint32_t) {};
+  std::map<std::uint32_t, Live> live_;
+  std::map<std::string, std::uint32_t> number_of_token_; /**< by SHA-256 of the token */
+  std::set<std::uint32_t> to_end_;                       /**< ended here, not yet in the store */
+};
+
+/** Audit record of a session that ended. */
+AuditEntry session_ended(const Session& session, const std::string& reason, UtcTime now);
+
+}  // namespace interlock::web

@@ -1,0 +1,33 @@
+/**
+ * @file
+ * Routes of one's own account: login, logout, session and password.
+ */
+#pragma once
+
+#include "http/context.hpp"
+#include "http/login_guard.hpp"
+#include "http/router.hpp"
+#include "store/sessions.hpp"
+
+namespace interlock::web {
+
+/** Name of the cookie that is the session. */
+constexpr std::string_view session_cookie = "interlock_session";
+
+class AccountRoutes {
+ public:
+  /** Both must outlive it. */
+  AccountRoutes(const Context& context, Router& router);
+
+ private:
+  boost::asio::awaitable<Reply> login(const Call& call);
+  boost::asio::awaitable<Reply> logout(const Call& call);
+  boost::asio::awaitable<Reply> change_password(const Call& call);
+  [[nodiscard]] Reply session(const Call& call) const;
+  [[nodiscard]] tl::expected<void, Problem> need_no_wait(const std::string& name) const;
+
+  const Context& context_;
+  LoginGuard guard_;
+};
+
+}  // namespace interlock::web

@@ -1,0 +1,109 @@
+#include "http/routes/authority_routes.hpp"
+
+#include <limits>
+
+#include "http/fields.hpp"
+#include "http/problems.hpp"
+
+namespace interlock::web {
+namespace {
+
+using Answering = boost::asio::awaitable<Reply>;
+using boost::beast::http::verb;
+using nlohmann::json;
+
+Problem asks_not(std::int64_t session) {
+  return not_found("request of session " + std::to_string(session), "one that /api/authority lists");
+}
+
+tl::expected<std::uint32_t, Problem> session_of(const Request& request) {
+  return parse_body(request).and_then([](const json& body) -> tl::expected<std::uint32_t, Problem> {
+    Fields fields(body, {"session"});
+    fields.require({{"session", "a session's number"}});
+    const auto session = fields.integer("session", 1, std::numeric_limits<std::uint32_t>::max());
+    if (fields.problem()) {
+      return fail(*fields.problem());
+    }
+    return static_cast<std::uint32_t>(*session);
+  });
+}
+
+}  // namespace
+
+AuthorityRoutes::AuthorityRoutes(const Context& context, Router& router) : context_(context) {
+  router.add(verb::get, "/api/authority", viewers,
+             [this](const Call& call) -> Answering { co_return shown(call); });
+  router.add(verb::post, "/api/authority/request", engineers,
+             [this](const Call& call) { return request(call); });
+  router.add(verb::post, "/api/authority/release", engineers,
+             [this](const Call& call) -> Answering { co_return release(call); });
+  router.add(verb::post, "/api/authority/hand-over", holder,
+             [this](const Call& call) { return hand_over(call); });
+  router.add(verb::post, "/api/authority/take-over", admins,
+             [this](const Call& call) { return take_over(call); });
+}
+
+Success AuthorityRoutes::shown(const Call& call, Status status) const {
+  return {status, context_.authority.shown_to(call.caller.session)};
+}
+
+boost::asio::awaitable<tl::expected<void, Problem>> AuthorityRoutes::announce(const Call& call,
+                                                                              const char* action) const {
+  json detail{{"action", action}};
+  return context_.announce(call.caller, AuditKind::authority, std::move(detail));
+}
+
+Answering AuthorityRoutes::request(const Call& call) const {
+  Authority& authority = context_.authority;
+  if (authority.held_by(call.caller.session)) {
+    co_return shown(call);
+  }
+  if (const auto announced = co_await announce(call, "request"); !announced) {
+    co_return fail(announced.error());
+  }
+  Claim claim{call.caller.session, call.caller.user, context_.clock()};
+  if (!authority.holder()) {
+    authority.give(std::move(claim));
+  } else {
+    authority.request(std::move(claim));
+  }
+  co_return shown(call, authority.held_by(call.caller.session) ? Status::ok : Status::accepted);
+}
+
+/** Waits for no store: giving up the authority ends motion. */
+Reply AuthorityRoutes::release(const Call& call) const {
+  json detail{{"action", "release"}};
+  context_.store.note(context_.entry(call.caller, AuditKind::authority, std::move(detail)));
+  context_.authority.release(call.caller.session);
+  return shown(call);
+}
+
+Answering AuthorityRoutes::hand_over(const Call& call) const {
+  Authority& authority = context_.authority;
+  const auto session = session_of(call.request);
+  if (!session) {
+    co_return fail(session.error());
+  }
+  if (authority.request_of(*session) == nullptr) {
+    co_return fail(asks_not(*session));
+  }
+  if (const auto announced = co_await announce(call, "hand over"); !announced) {
+    co_return fail(announced.error());
+  }
+  const Claim* const wish = authority.request_of(*session);
+  if (wish == nullptr) {
+    co_return fail(asks_not(*session));
+  }
+  authority.give({wish->session, wish->user, context_.clock()});
+  co_return shown(call);
+}
+
+Answering AuthorityRoutes::take_over(const Call& call) const {
+  if (const auto announced = co_await announce(call, "take over"); !announced) {
+    co_return fail(announced.error());
+  }
+  context_.authority.give({call.caller.session, call.caller.user, context_.clock()});
+  co_return shown(call);
+}
+
+}  // namespace interlock::web
