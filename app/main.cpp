@@ -16,6 +16,7 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -221,8 +222,9 @@ int run(const Options& options) {
     return unusable(log.error());
   }
   try {
-    const auto served =
-        load_model(options).and_then([&](const Model& model) { return serve(options, model); });
+    const auto served = load_model(options).and_then([&](const Model& model) {
+      return open_store(options).and_then([&](Store store) { return serve(options, model, store); });
+    });
     return served ? 0 : unusable(served.error());
   } catch (const std::exception& error) {
     spdlog::critical("uncaught exception: {}", error.what());

@@ -123,13 +123,16 @@ Result<std::vector<Supervised>> programs_of(const RunOptions& options, const Ins
   return programs;
 }
 
-void announce(const CompiledRobot& compiled, const Places& places, std::ostream& output) {
+void announce(const CompiledRobot& compiled, const Places& places, const std::string& first_login,
+              std::ostream& output) {
   const std::string line(60, '=');
   output << '\n'
          << line << "\n  " << compiled.robot.title << ", simulated (configuration "
          << config_hash(compiled.config) << ")\n\n  "
          << (places.web ? "Open " + url_of(places)
                         : "HTTP API at " + url_of(places) + "; the console is not built")
+         << (first_login.empty() ? ""
+                                 : "\n\n  First login, shown only now (user, password):\n  " + first_login)
          << "\n\n  Ctrl-C stops everything.\n"
          << line << "\n\nready " << url_of(places) << std::endl;
 }
@@ -171,7 +174,7 @@ Result<void> supervise(const RunOptions& options, const Installation& installati
     return tl::unexpected(programs.error());
   }
   Supervisor supervisor(std::move(*programs), signals, output);
-  return supervisor.run([&] { announce(compiled, places, output); });
+  return supervisor.run([&] { announce(compiled, places, supervisor.take_first_login(), output); });
 }
 
 }  // namespace

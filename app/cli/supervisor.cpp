@@ -33,6 +33,8 @@ sigset_t termination_signals() {
   return signals;
 }
 
+constexpr std::string_view first_login = "first login: ";
+
 bool says_ready(std::string_view line) { return line == "ready" || line.starts_with("ready "); }
 
 }  // namespace
@@ -206,6 +208,11 @@ void Supervisor::collect_events(Deadline deadline) {
 
 void Supervisor::forward_output(Task& task, bool rest) {
   for (const std::string& line : task.child->read_lines(rest)) {
+    if (line.starts_with(first_login)) {
+      output_ << line << '\n';
+      first_login_ = line.substr(first_login.size());
+      continue;
+    }
     output_ << '[' << task.supervised.program.name << "] " << line << '\n';
     if (says_ready(line)) {
       events_.push_back(Ready{task});

@@ -13,6 +13,7 @@
 #include <optional>
 #include <ostream>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -49,7 +50,10 @@ struct Supervised {
 
 class Supervisor {
  public:
-  /** Output of the children, prefixed with their names, and what happens to them goes to `output`. */
+  /**
+   * Output of the children, prefixed with their names, and what happens to them goes to `output`. Only a line
+   * "first login: USER PASSWORD" stays as it is, for scripts.
+   */
   Supervisor(std::vector<Supervised> programs, const SignalEvents& signals, std::ostream& output);
 
   /**
@@ -59,6 +63,10 @@ class Supervisor {
    * @return nothing after a signal, the failure otherwise. No child is left in either case.
    */
   Result<void> run(const std::function<void()>& when_ready);
+
+  /** User and password that a program has offered for the first login since this was last called; empty when
+   * there were none. */
+  [[nodiscard]] std::string take_first_login() { return std::exchange(first_login_, {}); }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -98,6 +106,7 @@ class Supervisor {
   std::deque<Event> events_;
   RestartBudget budget_;
   Deadline ready_until_; /**< for the task that is starting */
+  std::string first_login_;
   std::ostream& output_;
 };
 

@@ -107,7 +107,8 @@ void StreamHub::send_state(const StreamMessage& state) {
 }
 
 void StreamHub::send_text(const nlohmann::json& message) {
-  const auto text = std::make_shared<const std::string>(message.dump());
+  const auto text = std::make_shared<const std::string>(
+      message.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   for (const auto& client : clients_) {
     client->send(text);
   }

@@ -5,8 +5,17 @@ from collections.abc import Callable
 
 from bare_kernel import DEADLINE_S
 from stack import Stack
+from websockets.sync.client import ClientConnection, connect
 
 LATERAL = 4
+
+
+def open_stream(stack: Stack, origin: str | None = None) -> ClientConnection:
+    """The stream, for the session of `stack.api`."""
+    cookie = f"interlock_session={stack.api.cookies['interlock_session']}"
+    return connect(
+        f"ws://127.0.0.1:{stack.port}/api/stream", origin=origin, additional_headers={"Cookie": cookie}
+    )
 
 
 def wait_until(what: str, condition: Callable[[], bool]) -> None:

@@ -58,7 +58,8 @@ class Output:
 
 
 class Stack:
-    """One running robot. `control` commands the plant, `api` speaks HTTP to the app."""
+    """One running robot. `control` commands the plant, `api` speaks HTTP to the app as an administrator who
+    holds the motion authority."""
 
     def __init__(self, directory: Path, *arguments: str | Path) -> None:
         self.state = directory / "state"
@@ -78,12 +79,40 @@ class Stack:
         self._connections = contextlib.ExitStack()
         try:
             self.url = self.output.wait_for(r"^ready (http\S+)")[1]
-            self.api = self._connections.enter_context(httpx.Client(base_url=self.url, timeout=DEADLINE_S))
+            self.password = self._first_password(directory / "password")
+            self.api = self.client("admin", self.password)
+            self.take_authority()
             self.status_when(lambda status: status["connected"])
         except BaseException:
             self.run.kill()
             self.run.wait()
             raise
+
+    def _first_password(self, kept: Path) -> str:
+        """As the first start with this state says it; a later one knows it from the first."""
+        if not kept.exists():
+            kept.write_text(self.output.wait_for(r"^first login: admin (\S+)$")[1])
+        return kept.read_text()
+
+    def visitor(self) -> httpx.Client:
+        """A client that nobody is logged in at."""
+        return self._connections.enter_context(httpx.Client(base_url=self.url, timeout=DEADLINE_S))
+
+    def client(self, name: str, password: str) -> httpx.Client:
+        """A client at which that user is logged in, in a session of its own."""
+        client = self.visitor()
+        client.post("/api/login", json={"name": name, "password": password}).raise_for_status()
+        return client
+
+    def client_of_new(self, name: str, role: str) -> httpx.Client:
+        """A client at which a user is logged in who was just added."""
+        user = {"name": name, "role": role, "password": f"password of {name}"}
+        self.api.post("/api/users", json=user).raise_for_status()
+        return self.client(name, user["password"])
+
+    def take_authority(self) -> None:
+        """Anew after the app was started anew: sessions outlive it, the authority does not."""
+        assert self.api.post("/api/authority/request").status_code == 200
 
     def connect_control(self) -> None:
         """Opens `control`, the plant's control socket, in the directory that was given for the sockets."""

@@ -12,6 +12,7 @@ from motion import (
     LATERAL,
     act,
     motor,
+    open_stream,
     press,
     proposal,
     propose,
@@ -23,7 +24,7 @@ from motion import (
 )
 from stack import Stack
 from websockets.exceptions import InvalidStatus
-from websockets.sync.client import ClientConnection, connect
+from websockets.sync.client import ClientConnection
 
 EMPTY_SLOT = 5
 ROTATION = 1
@@ -36,10 +37,6 @@ PRESS_TICKS = 10
 @pytest.fixture
 def robot(stack: StackFactory) -> Stack:
     return stack()
-
-
-def open_stream(robot: Stack, origin: str | None = None) -> ClientConnection:
-    return connect(f"ws://127.0.0.1:{robot.port}/api/stream", origin=origin)
 
 
 def texts(stream: ClientConnection) -> Iterator[dict]:
@@ -75,7 +72,7 @@ def test_every_readable_path_answers_as_described(robot: Stack) -> None:
 
 def test_every_path_answers_its_methods_and_no_others(robot: Stack) -> None:
     for path, operations in paths().items():
-        target = path.replace("{slot}", str(LATERAL)).replace("{id}", "1").replace("{action}", "disable")
+        target = path.replace("{axis}", str(LATERAL)).replace("{id}", "1").replace("{action}", "disable")
         for method in METHODS - operations.keys():
             answer = robot.api.request(method, target.replace("{command}", "status"))
             problem(answer, 405, "METHOD_NOT_ALLOWED")
@@ -84,7 +81,7 @@ def test_every_path_answers_its_methods_and_no_others(robot: Stack) -> None:
 
 def test_every_action_on_a_motor_answers_with_a_verdict(robot: Stack) -> None:
     unlock(robot)
-    item = spec()["paths"]["/api/motors/{slot}/{action}"]
+    item = spec()["paths"]["/api/motors/{axis}/{action}"]
     [actions] = [each["schema"]["enum"] for each in item["parameters"] if each.get("name") == "action"]
     for action in actions:
         answer = judge(robot.api.post(f"/api/motors/{LATERAL}/{action}"))

@@ -6,8 +6,7 @@ from pathlib import Path
 
 from conftest import StackFactory
 from interface import spec
-from motion import LATERAL, propose, to_motion, wait_for_proposal
-from websockets.sync.client import connect
+from motion import LATERAL, open_stream, propose, to_motion, wait_for_proposal
 
 CATALOG = tomllib.loads((Path(__file__).resolve().parents[2] / "spec/catalog.toml").read_text())
 
@@ -41,7 +40,7 @@ def test_the_stream_shows_what_the_paths_show(stack: StackFactory) -> None:
     wait_for_proposal(robot, propose(robot, -300), "done")
     robot.control("pedal", pressed=False)
     propose(robot, -200)
-    with connect(f"ws://127.0.0.1:{robot.port}/api/stream") as stream:
+    with open_stream(robot) as stream:
         before = robot.status()
         header, slots = next(
             decoded

@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/connect.hpp>
 #include <boost/asio/detached.hpp>
@@ -17,13 +18,17 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
+#include <filesystem>
 #include <fstream>
 #include <future>
 #include <memory>
 #include <thread>
 
 #include "http/server.hpp"
+#include "http/store_gateway.hpp"
 #include "robot_fixture.hpp"
+#include "store/audit.hpp"
+#include "store/sessions.hpp"
 #include "temporary_folder.hpp"
 
 namespace interlock::web {
@@ -46,19 +51,94 @@ struct Answered {
   }
 };
 
-class HttpTest : public testing::Test {
+/** A store in a file of its own, and a second connection to it for the test. */
+class StoreFixture : public testing::Test {
+ protected:
+  /** Adds a user who cannot log in with a password but has sessions. The first one is an administrator. */
+  void add_user(const std::string& name, Role role) {
+    const auto added = mine_.transact([&](Transaction& transaction) {
+      return Users(transaction).add(name, role, PasswordHash("of no password"), now());
+    });
+    ASSERT_TRUE(added);
+  }
+
+  /** A new session of that user, opened past the server; the token. */
+  std::string token_of(const std::string& name) {
+    const auto opened =
+        mine_.transact([&](Transaction& transaction) { return Sessions(transaction).create(name, now()); });
+    EXPECT_TRUE(opened);
+    return opened ? opened->token : "";
+  }
+
+  /** The audit's records, oldest first. */
+  std::vector<AuditRecord> audit() {
+    return *mine_.read([](Transaction& transaction) -> Stored<std::vector<AuditRecord>> {
+      return Audit(transaction).list(1000);
+    });
+  }
+
+  /** The details of the records of that kind, oldest first. */
+  std::vector<json> audit(const std::string& kind) {
+    std::vector<json> details;
+    for (const AuditRecord& record : audit()) {
+      if (record.kind == kind) {
+        details.push_back(json::parse(record.detail));
+      }
+    }
+    return details;
+  }
+
+  [[nodiscard]] UtcTime now() const { return UtcTime(std::chrono::seconds(seconds_.load())); }
+  void pass(std::chrono::seconds time) { seconds_ += time.count(); }
+
+  test::TemporaryFolder folder_;
+  std::atomic<std::int64_t> seconds_{1'700'000'000}; /**< the app's clock */
+  Store store_ = *Store::open(folder_.path() / "state" / "interlock.db");
+  Store mine_ = *Store::open(folder_.path() / "state" / "interlock.db");
+};
+
+/** `edna`, an engineer, is logged in and holds the authority, unless a test says otherwise. */
+class HttpTest : public StoreFixture {
  protected:
   HttpTest() {
-    std::ofstream(folder_.path() / "index.html") << "<title>console</title>";
+    std::filesystem::create_directory(folder_.path() / "web");
+    std::ofstream(folder_.path() / "web" / "index.html") << "<title>console</title>";
+    add_user("ada", Role::admin);
+    add_user("edna", Role::engineer);
+    add_user("vic", Role::viewer);
     const auto listening = server_.listen({"127.0.0.1", 0});
     EXPECT_TRUE(listening);
     asio::co_spawn(network_, api_.listen(), asio::detached);
     asio::co_spawn(network_, api_.beat(), asio::detached);
     asio::co_spawn(network_, server_.accept(), asio::detached);
     thread_ = std::jthread([this] { network_.run(); });
+    log_in("edna");
+    EXPECT_EQ(post("/api/authority/request").status, 200u);
+    // The test is the control thread: it has seen the STOP that a change of the authority is.
+    mailbox_->stops = 0;
   }
 
-  ~HttpTest() override { network_.stop(); }
+  ~HttpTest() override {
+    network_.stop();
+    thread_.join();
+  }
+
+  /** From now on requests come from a new session of that user. */
+  void log_in(const std::string& name) { token_ = token_of(name); }
+
+  /** From now on requests come from nobody. */
+  void become_nobody() { token_.clear(); }
+
+  /** What `work` gives when its requests come from the session of that token. */
+  template <typename Work>
+  auto as(const std::string& token, Work work) {
+    const std::string former = std::exchange(token_, token);
+    auto result = work();
+    token_ = former;
+    return result;
+  }
+
+  [[nodiscard]] std::string cookie() const { return "interlock_session=" + token_; }
 
   [[nodiscard]] std::string host() const { return "127.0.0.1:" + std::to_string(server_.port()); }
 
@@ -78,6 +158,9 @@ class HttpTest : public testing::Test {
   Answered send(Request request) {
     if (request[http::field::host].empty()) {
       request.set(http::field::host, host());
+    }
+    if (request[http::field::cookie].empty() && !token_.empty()) {
+      request.set(http::field::cookie, cookie());
     }
     request.prepare_payload();
     tcp::socket socket = connect();
@@ -123,8 +206,45 @@ class HttpTest : public testing::Test {
 
   websocket::stream<tcp::socket> open_stream() {
     websocket::stream<tcp::socket> stream(connect());
+    show_cookie(stream);
     stream.handshake(host(), "/api/stream");
     return stream;
+  }
+
+  void show_cookie(websocket::stream<tcp::socket>& stream) {
+    stream.set_option(websocket::stream_base::decorator(
+        [sent = cookie()](websocket::request_type& request) { request.set(http::field::cookie, sent); }));
+  }
+
+  /** The next text message of that type. */
+  json next_text(websocket::stream<tcp::socket>& stream, const std::string& type) {
+    for (;;) {
+      beast::flat_buffer buffer;
+      stream.read(buffer);
+      json message =
+          stream.got_text() ? json::parse(beast::buffers_to_string(buffer.data())) : json::object();
+      if (message.value("type", "") == type) {
+        return message;
+      }
+    }
+  }
+
+  /** The code with which the server closes the stream. */
+  unsigned close_code(websocket::stream<tcp::socket>& stream) {
+    beast::error_code error;
+    while (!error) {
+      beast::flat_buffer buffer;
+      stream.read(buffer, error);
+    }
+    EXPECT_EQ(error, websocket::error::closed);
+    return stream.reason().code;
+  }
+
+  /** The kernel accepts the next request. */
+  std::uint32_t accept_next() {
+    const auto asked = std::get<Ask>(next_command());
+    answer(Answer{asked.ticket, ILK_VERDICT_ACCEPTED, 6});
+    return asked.kind;
   }
 
   /** Runs in the network thread and waits for it. */
@@ -138,12 +258,14 @@ class HttpTest : public testing::Test {
     done.get_future().get();
   }
 
-  test::TemporaryFolder folder_;
+  std::string token_;
   asio::io_context network_{1};
   asio::io_context client_{1};
   std::unique_ptr<Mailbox> mailbox_ = std::make_unique<Mailbox>();
-  Api api_{network_.get_executor(), test::neuro(), test::neuro_config(), *mailbox_, ""};
-  Server server_{network_.get_executor(), api_, StaticFiles(folder_.path())};
+  StoreGateway gateway_{network_.get_executor(), store_};
+  Api api_{network_.get_executor(), test::neuro(), test::neuro_config(), *mailbox_, "", gateway_,
+           [this] { return now(); }};
+  Server server_{network_.get_executor(), api_, StaticFiles(folder_.path() / "web")};
   std::jthread thread_;
 };
 

@@ -358,6 +358,7 @@ TEST_F(HttpTest, TooManyStreamsAreRefusedByName) {
     streams.push_back(open_stream());
   }
   websocket::stream<tcp::socket> one_more(connect());
+  show_cookie(one_more);
   websocket::response_type response;
   beast::error_code error;
   one_more.handshake(response, host(), "/api/stream", error);
@@ -373,25 +374,17 @@ TEST_F(HttpTest, IdleConnectionsMakeRoomForNewOnes) {
   EXPECT_EQ(post("/api/stop").status, 200u);
 }
 
-TEST(HttpListen, SaysThatAPortIsBusy) {
-  asio::io_context network;
-  const std::unique_ptr<Mailbox> mailbox = std::make_unique<Mailbox>();
-  Api api(network.get_executor(), test::neuro(), test::neuro_config(), *mailbox, "");
-  Server first(network.get_executor(), api, StaticFiles({}));
-  Server second(network.get_executor(), api, StaticFiles({}));
-  ASSERT_TRUE(first.listen({"127.0.0.1", 0}));
-  const auto listening = second.listen({"127.0.0.1", first.port()});
+TEST_F(HttpTest, APortThatIsBusyIsNamed) {
+  Server second(network_.get_executor(), api_, StaticFiles({}));
+  const auto listening = second.listen({"127.0.0.1", server_.port()});
   ASSERT_FALSE(listening);
-  EXPECT_THAT(listening.error(), HasSubstr(std::to_string(first.port())));
+  EXPECT_THAT(listening.error(), HasSubstr(std::to_string(server_.port())));
   EXPECT_THAT(listening.error(), HasSubstr("--port"));
 }
 
-TEST(HttpListen, LetsNoOtherMachineIn) {
-  asio::io_context network;
-  const std::unique_ptr<Mailbox> mailbox = std::make_unique<Mailbox>();
-  Api api(network.get_executor(), test::neuro(), test::neuro_config(), *mailbox, "");
+TEST_F(HttpTest, NoOtherMachineIsLetIn) {
   for (const std::string address : {"0.0.0.0", "::", "192.0.2.1", "example"}) {
-    Server server(network.get_executor(), api, StaticFiles({}));
+    Server server(network_.get_executor(), api_, StaticFiles({}));
     const auto listening = server.listen({address, 0});
     ASSERT_FALSE(listening) << address;
     EXPECT_THAT(listening.error(), HasSubstr(address));

@@ -47,6 +47,19 @@ class SupervisorTest : public test::ScratchFolder {
   std::ostringstream output_;
 };
 
+TEST_F(SupervisorTest, passes_a_first_login_on_as_it_is_and_gives_it_out_once) {
+  Supervisor supervisor({shell("app", "echo first login: admin a b; echo ready; " + stay)}, signals_,
+                        output_);
+  std::string offered;
+  ASSERT_TRUE(supervisor.run([&] {
+    offered = supervisor.take_first_login();
+    ask_to_stop();
+  }));
+  EXPECT_EQ(offered, "admin a b");
+  EXPECT_EQ(supervisor.take_first_login(), "");
+  EXPECT_THAT(output_.str(), testing::StartsWith("first login: admin a b\n"));
+}
+
 TEST_F(SupervisorTest, starts_each_program_when_the_one_before_is_ready) {
   const std::string order = file("order");
   const auto note = [&](const std::string& word) {

@@ -1,0 +1,162 @@
+"""Who may use what, on a whole robot: the rights of spec/openapi.yaml, held by real sessions."""
+
+import re
+import signal
+import subprocess
+
+import httpx
+import pytest
+from bare_kernel import BIN, DEADLINE_S
+from conftest import StackFactory
+from interface import judge, paths
+from motion import LATERAL, open_stream, proposal, propose, to_motion, wait_for_mode, wait_until
+from stack import Stack
+from websockets.exceptions import ConnectionClosed
+
+SESSION_ENDED = 4401
+
+
+@pytest.fixture
+def robot(stack: StackFactory) -> Stack:
+    return stack()
+
+
+def problem(answer: httpx.Response, status: int, code: str) -> dict:
+    judge(answer)
+    assert (answer.status_code, answer.json()["code"]) == (status, code), answer.text
+    return answer.json()
+
+
+def operations_for(role: str) -> list[tuple[str, str, bool]]:
+    """Method, path and whether the authority is needed, of what that role is the least for."""
+    return [
+        (method, re.sub(r"\{\w+\}", "1", path), operation.get("x-authority", False))
+        for path, operations in paths().items()
+        for method, operation in operations.items()
+        if operation["x-role"] == role
+    ]
+
+
+def test_every_operation_asks_for_the_role_and_the_authority_that_the_interface_states(robot: Stack) -> None:
+    ranks = ["public", "viewer", "engineer", "admin"]
+    clients = {
+        "public": robot.visitor(),
+        "viewer": robot.client_of_new("vic", "viewer"),
+        "engineer": robot.client_of_new("edna", "engineer"),
+    }
+    for least in ranks[1:]:
+        for method, target, needs_authority in operations_for(least):
+            for role, client in clients.items():
+                if ranks.index(role) < ranks.index(least):
+                    code = "LOGIN" if role == "public" else "ROLE"
+                    problem(client.request(method, target), 401 if role == "public" else 403, code)
+                elif needs_authority:
+                    problem(client.request(method, target), 409, "AUTHORITY")
+    assert robot.api.get("/api/authority").json()["mine"]
+
+
+def test_status_session_and_stop_need_no_login(robot: Stack) -> None:
+    visitor = robot.visitor()
+    assert judge(visitor.get("/api/status")).status_code == 200
+    assert judge(visitor.get("/api/session")).json()["user"] is None
+    assert judge(visitor.post("/api/stop")).json()["verdict"] == "ACCEPTED"
+
+
+def test_a_hand_over_ends_motion_and_aborts_every_proposal(stack: StackFactory) -> None:
+    robot = stack(speed=1)
+    edna = robot.client_of_new("edna", "engineer")
+    to_motion(robot)
+    number = propose(robot, -1900)
+    before = robot.status()["holder"]
+    asked = judge(edna.post("/api/authority/request"))
+    assert asked.status_code == 202
+    [wish] = asked.json()["requests"]
+    handed = judge(robot.api.post("/api/authority/hand-over", json={"session": wish["session"]}))
+    assert handed.json()["holder"]["user"] == "edna"
+    assert proposal(robot, number)["state"] == "aborted"
+    wait_for_mode(robot, "READY")
+    wait_until("the kernel knows", lambda: robot.status()["holder"] not in {0, before})
+    problem(robot.api.post(f"/api/motors/{LATERAL}/enable"), 409, "AUTHORITY")
+    assert judge(edna.post(f"/api/motors/{LATERAL}/disable")).status_code == 200
+
+
+def test_an_authority_that_is_released_is_nobodys_in_the_kernel_too(robot: Stack) -> None:
+    wait_until("held", lambda: robot.status()["holder"] != 0)
+    assert judge(robot.api.post("/api/authority/release")).json()["holder"] is None
+    wait_until("nobody", lambda: robot.status()["holder"] == 0)
+
+
+def test_a_session_that_ends_closes_its_stream_and_gives_up_the_authority(robot: Stack) -> None:
+    vic = robot.client_of_new("vic", "viewer")
+    with open_stream(robot) as stream:
+        judge(robot.api.post("/api/logout"))
+        with pytest.raises(ConnectionClosed) as closed:
+            while True:
+                stream.recv()
+    assert closed.value.rcvd is not None
+    assert closed.value.rcvd.code == SESSION_ENDED
+    assert judge(vic.get("/api/authority")).json()["holder"] is None
+
+
+def test_a_pedal_of_a_session_that_ends_comes_up(stack: StackFactory) -> None:
+    robot = stack(speed=0.1)
+    robot.api.post("/api/bench/pedal", json={"pressed": True}).raise_for_status()
+    pressed = robot.control("record_event", kind="pedal_pressed")["event_tick"]
+    judge(robot.api.post("/api/logout"))
+    wait_until(
+        "released",
+        lambda: (robot.control("record_event", kind="pedal_released")["event_tick"] or 0) > (pressed or 0),
+    )
+
+
+def test_sessions_outlive_the_app_and_the_authority_does_not(robot: Stack) -> None:
+    robot.signal("app", signal.SIGKILL)
+    robot.output.wait_for(r"^ready ", count=2)
+    assert judge(robot.api.get("/api/session")).json()["user"]["name"] == "admin"
+    assert judge(robot.api.get("/api/authority")).json()["holder"] is None
+    robot.take_authority()
+
+
+def test_the_first_login_is_shown_once_and_in_no_file(robot: Stack) -> None:
+    robot.signal("app", signal.SIGKILL)
+    robot.output.wait_for(r"^ready ", count=2)
+    offers = [line for line in robot.output.lines if line.startswith("first login: ")]
+    assert offers == [f"first login: admin {robot.password}"]
+    for file in robot.state.rglob("*"):
+        assert not file.is_file() or robot.password.encode() not in file.read_bytes(), file
+
+
+def test_the_audit_tells_what_was_done_and_its_chain_is_sound(robot: Stack) -> None:
+    edna = robot.client_of_new("edna", "engineer")
+    visitor = robot.visitor()
+    visitor.post("/api/login", json={"name": "edna", "password": "wrong password"})
+    to_motion(robot)
+    propose(robot, -200)
+    robot.api.post("/api/stop")
+    edna.post("/api/logout")
+    wanted = {
+        "start",
+        "login",
+        "login_refused",
+        "logout",
+        "user",
+        "authority",
+        "proposal",
+        "request",
+        "verdict",
+    }
+
+    def kinds() -> set[str]:
+        records = robot.api.get("/api/audit", params={"records": 1000}).raise_for_status().json()
+        assert "wrong password" not in str(records)
+        return {record["kind"] for record in records}
+
+    wait_until("recorded", lambda: kinds() >= wanted | {"stop"})
+    verified = subprocess.run(
+        [BIN / "interlock", "audit", "verify", "--state", robot.state],
+        capture_output=True,
+        text=True,
+        timeout=DEADLINE_S,
+        check=False,
+    )
+    assert verified.returncode == 0, verified.stderr

@@ -1,0 +1,242 @@
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <algorithm>
+#include <set>
+
+#include "http_fixture.hpp"
+
+namespace interlock::web {
+namespace {
+
+using testing::HasSubstr;
+
+class AuthorityTest : public HttpTest {
+ protected:
+  json authority() { return json::parse(get("/api/authority").body); }
+
+  json authority_seen_by(const std::string& token) {
+    return as(token, [this] { return authority(); });
+  }
+
+  Answered post_as(const std::string& token, const std::string& target, const std::string& body = "") {
+    return as(token, [&] { return post(target, body); });
+  }
+
+  std::string propose() {
+    const Answered made = post("/api/proposals", R"({"slot":3,"target_counts":1000})");
+    EXPECT_EQ(made.status, 201u) << made.body;
+    return "/api/proposals/" + std::to_string(json::parse(made.body)["id"].get<int>());
+  }
+};
+
+TEST_F(AuthorityTest, RightsAreCheckedInTheirOrder) {
+  show(test::ready_view());
+  const std::string body = R"({"slot":99})";
+  EXPECT_EQ(post("/api/nothing").status, 404u);
+  become_nobody();
+  EXPECT_EQ(send({http::verb::delete_, "/api/proposals", 11}).status, 405u);
+  EXPECT_EQ(post("/api/proposals", body).problem()["code"], "LOGIN");
+  log_in("vic");
+  EXPECT_EQ(post("/api/proposals", body).problem()["code"], "ROLE");
+  log_in("ada");
+  const json problem = post("/api/proposals", body).problem();
+  EXPECT_EQ(problem["code"], "AUTHORITY");
+  EXPECT_THAT(problem["detail"].get<std::string>(), HasSubstr("edna"));
+  EXPECT_EQ(get("/api/proposals").body, "[]");
+}
+
+TEST_F(AuthorityTest, NobodyButAnybodyStops) {
+  become_nobody();
+  EXPECT_EQ(post("/api/stop").status, 200u);
+  EXPECT_EQ(mailbox_->stops.load(), 1u);
+}
+
+TEST_F(AuthorityTest, WhoeverAsksFirstHoldsItAndOthersAreNoted) {
+  const std::string ada = token_of("ada");
+  const Answered asked = post_as(ada, "/api/authority/request");
+  EXPECT_EQ(asked.status, 202u);
+  const json seen = json::parse(asked.body);
+  EXPECT_EQ(seen["holder"]["user"], "edna");
+  EXPECT_EQ(seen["mine"], false);
+  EXPECT_EQ(seen["requests"][0]["user"], "ada");
+  EXPECT_EQ(authority()["mine"], true);
+  EXPECT_EQ(post("/api/authority/request").status, 200u);
+  EXPECT_EQ(post_as(ada, "/api/authority/request").status, 202u);
+  EXPECT_EQ(authority()["requests"].size(), 1u);
+  EXPECT_EQ(mailbox_->stops.load(), 0u) << "a wish stops nothing";
+}
+
+TEST_F(AuthorityTest, AHandOverGoesOnlyToAnAskingSession) {
+  const std::string ada = token_of("ada");
+  EXPECT_EQ(post("/api/authority/hand-over", R"({"session":999})").status, 404u);
+  EXPECT_EQ(post("/api/authority/hand-over", R"({"session":0})").status, 422u);
+  const json asked = json::parse(post_as(ada, "/api/authority/request").body);
+  const json to{{"session", asked["requests"][0]["session"]}};
+  EXPECT_EQ(post_as(ada, "/api/authority/hand-over", to.dump()).problem()["code"], "AUTHORITY");
+  EXPECT_EQ(post("/api/authority/hand-over", to.dump()).status, 200u);
+  EXPECT_EQ(authority()["holder"]["user"], "ada");
+  EXPECT_TRUE(authority()["requests"].empty());
+  EXPECT_EQ(post("/api/reset").problem()["code"], "AUTHORITY");
+}
+
+TEST_F(AuthorityTest, OnlyAnAdministratorTakesOver) {
+  const std::string other = token_of("edna");
+  EXPECT_EQ(post_as(other, "/api/authority/take-over").problem()["code"], "ROLE");
+  EXPECT_EQ(authority()["mine"], true);
+  EXPECT_EQ(post_as(token_of("ada"), "/api/authority/take-over").status, 200u);
+  EXPECT_EQ(authority()["holder"]["user"], "ada");
+}
+
+TEST_F(AuthorityTest, EachChangeStopsAbortsAndHasANewNumber) {
+  show(test::ready_view());
+  const std::string ada = token_of("ada");
+  std::set<std::uint32_t> numbers{mailbox_->holder.load()};
+  const std::string proposal = propose();
+  ASSERT_EQ(post_as(ada, "/api/authority/take-over").status, 200u);
+  EXPECT_EQ(json::parse(get(proposal).body)["state"], "aborted");
+  EXPECT_EQ(mailbox_->stops.load(), 1u);
+  numbers.insert(mailbox_->holder.load());
+  ASSERT_EQ(post_as(ada, "/api/authority/release").status, 200u);
+  EXPECT_EQ(mailbox_->holder.load(), 0u);
+  EXPECT_EQ(mailbox_->stops.load(), 2u);
+  ASSERT_EQ(post("/api/authority/request").status, 200u);
+  numbers.insert(mailbox_->holder.load());
+  EXPECT_EQ(numbers.size(), 3u);
+  EXPECT_FALSE(numbers.contains(0));
+}
+
+TEST_F(AuthorityTest, ReleaseWithdrawsAWishAndElseDoesNothing) {
+  const std::string ada = token_of("ada");
+  ASSERT_EQ(post_as(ada, "/api/authority/release").status, 200u);
+  (void)post_as(ada, "/api/authority/request");
+  ASSERT_EQ(post_as(ada, "/api/authority/release").status, 200u);
+  EXPECT_TRUE(authority()["requests"].empty());
+  EXPECT_EQ(authority()["mine"], true);
+  EXPECT_EQ(mailbox_->stops.load(), 0u);
+}
+
+TEST_F(AuthorityTest, LogoutReleasesIt) {
+  show(test::ready_view());
+  const std::string proposal = propose();
+  ASSERT_EQ(post("/api/logout").status, 200u);
+  log_in("vic");
+  EXPECT_TRUE(authority()["holder"].is_null());
+  EXPECT_EQ(json::parse(get(proposal).body)["state"], "aborted");
+}
+
+TEST_F(AuthorityTest, AMinuteWithoutARequestReleasesIt) {
+  const std::string vic = token_of("vic");
+  pass(std::chrono::seconds(59));
+  EXPECT_EQ(authority()["mine"], true);
+  pass(std::chrono::seconds(60));
+  while (!authority_seen_by(vic)["holder"].is_null()) {
+    std::this_thread::yield();
+  }
+  EXPECT_EQ(mailbox_->holder.load(), 0u);
+}
+
+TEST_F(AuthorityTest, AnOpenStreamKeepsIt) {
+  auto stream = open_stream();
+  const std::string vic = token_of("vic");
+  for (int i = 0; i < 4; ++i) {
+    pass(std::chrono::seconds(40));
+    const json seen = authority_seen_by(vic);
+    // The next look of the app after sessions comes after this second.
+    beast::flat_buffer buffer;
+    for (int beats = 0; beats < 40; ++beats) {
+      buffer.clear();
+      stream.read(buffer);
+    }
+    EXPECT_EQ(authority_seen_by(vic)["holder"]["user"], "edna") << i;
+  }
+}
+
+TEST_F(AuthorityTest, TheStreamTellsEachClientWhetherItIsTheirs) {
+  auto mine = open_stream();
+  const std::string vic = token_of("vic");
+  auto others = as(vic, [this] { return open_stream(); });
+  (void)post_as(token_of("ada"), "/api/authority/request");
+  EXPECT_EQ(next_text(mine, "authority")["mine"], true);
+  const json seen = next_text(others, "authority");
+  EXPECT_EQ(seen["mine"], false);
+  EXPECT_EQ(seen["requests"][0]["user"], "ada");
+}
+
+TEST_F(AuthorityTest, TheStreamNeedsASession) {
+  become_nobody();
+  websocket::stream<tcp::socket> stream(connect());
+  websocket::response_type response;
+  beast::error_code error;
+  stream.handshake(response, host(), "/api/stream", error);
+  EXPECT_EQ(error, websocket::error::upgrade_declined);
+  EXPECT_EQ(response.result_int(), 401u);
+}
+
+TEST_F(AuthorityTest, TheStreamOfASessionThatEndsIsClosedAndSaysWhy) {
+  const std::string vic = token_of("vic");
+  auto stream = as(vic, [this] { return open_stream(); });
+  auto staying = open_stream();
+  ASSERT_EQ(post_as(vic, "/api/logout").status, 200u);
+  EXPECT_EQ(next_text(stream, "session")["ended"], true);
+  EXPECT_EQ(close_code(stream), 4401u);
+  beast::flat_buffer buffer;
+  staying.read(buffer);
+}
+
+TEST_F(AuthorityTest, WhatAUserAsksOfTheKernelIsRecordedBeforeItIsSent) {
+  show(test::ready_view());
+  auto asking = std::async(std::launch::async, [this] { return post("/api/motors/3/enable"); });
+  const auto asked = std::get<Ask>(next_command());
+  ASSERT_EQ(audit("request").size(), 1u);
+  EXPECT_EQ(audit("request")[0]["request"], "ENABLE");
+  answer(Answer{asked.ticket, ILK_VERDICT_ACCEPTED, 6});
+  EXPECT_EQ(asking.get().status, 200u);
+}
+
+TEST_F(AuthorityTest, TheAuditHasWhoWhatAndWhen) {
+  show(test::ready_view());
+  ASSERT_EQ(post_as(token_of("ada"), "/api/authority/take-over").status, 200u);
+  while (audit("authority").size() < 4) {
+    std::this_thread::yield();
+  }
+  const auto records = audit();
+  const auto taken = std::ranges::find_if(
+      records, [](const AuditRecord& each) { return each.detail.find("take over") != std::string::npos; });
+  ASSERT_NE(taken, records.end());
+  EXPECT_EQ(taken->actor, "ada");
+  EXPECT_EQ(taken->tick, 1000);
+  EXPECT_EQ(taken->time, iso_8601(now()));
+  EXPECT_EQ(audit("authority").back()["holder"], "ada");
+}
+
+/** A store whose records cannot be appended to, as if the disk were full. */
+class BrokenStoreTest : public AuthorityTest {
+ protected:
+  BrokenStoreTest() {
+    SQLite::Database database((folder_.path() / "state" / "interlock.db").string(), SQLite::OPEN_READWRITE);
+    database.exec("CREATE TRIGGER broken BEFORE INSERT ON audit BEGIN SELECT RAISE(ABORT, 'disk full'); END");
+  }
+};
+
+TEST_F(BrokenStoreTest, ChangesAreRefusedAndNothingIsChanged) {
+  show(test::ready_view());
+  for (const char* const target : {"/api/reset", "/api/motors/3/enable"}) {
+    EXPECT_EQ(post(target).problem()["code"], "STORE") << target;
+  }
+  EXPECT_EQ(mailbox_->commands.read_available(), 0u);
+  EXPECT_EQ(post_as(token_of("ada"), "/api/authority/take-over").problem()["code"], "STORE");
+  EXPECT_EQ(authority()["mine"], true);
+}
+
+TEST_F(BrokenStoreTest, StopObservationAndReleaseGoOn) {
+  EXPECT_EQ(post("/api/stop").status, 200u);
+  EXPECT_EQ(mailbox_->stops.load(), 1u);
+  EXPECT_EQ(get("/api/status").status, 200u);
+  EXPECT_EQ(post("/api/authority/release").status, 200u);
+  EXPECT_TRUE(authority()["holder"].is_null());
+  EXPECT_EQ(post("/api/logout").status, 200u);
+  EXPECT_EQ(get("/api/motors").status, 401u);
+}
+
+}  // namespace
+}  // namespace interlock::web
