@@ -38,6 +38,7 @@ namespace {
 
 constexpr int exit_failed = 1;
 constexpr int exit_unusable = 2;
+constexpr std::chrono::seconds session_sweep_pause{1};
 
 struct Options {
   std::string robot_file;
@@ -187,6 +188,7 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   const std::jthread control_thread([&](const std::stop_token& stop) { control.run(stop); });
   boost::asio::co_spawn(executor, api.listen(), boost::asio::detached);
   boost::asio::co_spawn(executor, api.beat(), boost::asio::detached);
+  boost::asio::co_spawn(executor, api.sweep_sessions(session_sweep_pause), boost::asio::detached);
   boost::asio::co_spawn(executor, server.accept(), boost::asio::detached);
   const std::string url = url_of(options.listen, server.port());
   spdlog::info("interlock-app {} {} serves {} at {}", version(), commit(), model.robot.name, url);

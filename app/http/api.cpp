@@ -18,7 +18,6 @@ using nlohmann::json;
 using std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds beat_period{33};
-constexpr std::chrono::seconds look_at_sessions_every{1};
 /** Without any request, and without an open stream, which counts as one. */
 constexpr std::chrono::seconds authority_idle_limit{60};
 constexpr auto as_result = asio::as_tuple(asio::use_awaitable);
@@ -159,35 +158,34 @@ void Api::look_after_sessions() {
       authority_.release(holding->session);
     }
   }
-  if (!std::exchange(sweeping_, true)) {
-    asio::co_spawn(context_.executor, sweep_sessions(), asio::detached);
-  }
 }
 
-asio::awaitable<void> Api::sweep_sessions() {
-  co_await sessions_.sweep();
-  sweeping_ = false;
+asio::awaitable<void> Api::sweep_sessions(std::chrono::milliseconds pause) {
+  asio::steady_timer timer(context_.executor);
+  for (;;) {
+    co_await sessions_.sweep();
+    timer.expires_after(pause);
+    const auto [error] = co_await timer.async_wait(as_result);
+    if (error) {
+      co_return;
+    }
+  }
 }
 
 asio::awaitable<void> Api::beat() {
   asio::steady_timer timer(context_.executor, steady_clock::now());
-  auto sessions_due = steady_clock::now();
   for (;;) {
     timer.expires_at(std::max(timer.expiry() + beat_period, steady_clock::now()));
     const auto [error] = co_await timer.async_wait(as_result);
     if (error) {
       co_return;
     }
-    const auto now = steady_clock::now();
     const ControlView& seen = context_.view();
     if (!stream_.empty()) {
-      stream_.send_state(encode_state(seen, context_.config, open_targets(), now));
+      stream_.send_state(encode_state(seen, context_.config, open_targets(), steady_clock::now()));
     }
     look_after_pedal(seen);
-    if (now >= sessions_due) {
-      sessions_due = now + look_at_sessions_every;
-      look_after_sessions();
-    }
+    look_after_sessions();
   }
 }
 

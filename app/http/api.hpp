@@ -41,9 +41,12 @@ class Api {
   /** Follows the control thread's notices; ends with the io_context. */
   boost::asio::awaitable<void> listen() { return control_.listen(); }
 
-  /** Sends the state to the stream 30 times a second and looks after the bench pedal, the sessions and the
-   * authority; ends with the io_context. */
+  /** Sends the state to the stream 30 times a second and looks after the bench pedal and the authority; ends
+   * with the io_context. */
   boost::asio::awaitable<void> beat();
+
+  /** Ends sessions that are over, again after each pause; ends with the io_context. */
+  boost::asio::awaitable<void> sweep_sessions(std::chrono::milliseconds pause);
 
   /** Releases a pedal that is held over the network. */
   boost::asio::awaitable<void> release_pedal() { return bench_.release_pedal(); }
@@ -54,7 +57,6 @@ class Api {
   void follow_sessions();
   void look_after_pedal(const ControlView& seen);
   void look_after_sessions();
-  boost::asio::awaitable<void> sweep_sessions();
   [[nodiscard]] OpenTargets open_targets() const;
 
   ControlClient control_;
@@ -63,7 +65,6 @@ class Api {
   Bench bench_;
   LiveSessions sessions_;
   Authority authority_;
-  bool sweeping_ = false;
   Context context_;
   Router router_;
   SystemRoutes system_routes_{context_, router_};

@@ -51,7 +51,8 @@ AuditEntry Context::entry(const Caller& caller, AuditKind kind, nlohmann::json d
 boost::asio::awaitable<tl::expected<void, Problem>> Context::announce(const Caller& caller, AuditKind kind,
                                                                       nlohmann::json detail) const {
   const bool held = authority.held_by(caller.session);
-  auto recorded = co_await store.record(entry(caller, kind, std::move(detail)));
+  AuditEntry announced = entry(caller, kind, std::move(detail));
+  auto recorded = co_await store.record(std::move(announced));
   if (!recorded) {
     co_return recorded;
   }

@@ -74,11 +74,12 @@ boost::asio::awaitable<std::optional<Session>> LiveSessions::find(std::string to
   if (auto session = find_at_hand(token)) {
     co_return session;
   }
-  const auto stored = co_await store_.run([token, now = clock_()](Store& store) {
+  auto work = [token, now = clock_()](Store& store) {
     return store.read([&](Transaction& transaction) -> Stored<std::optional<Session>> {
       return Sessions(transaction).find(token, now);
     });
-  });
+  };
+  const auto stored = co_await store_.run(std::move(work));
   if (!stored || !*stored || to_end_.contains((*stored)->number)) {
     co_return std::nullopt;
   }
@@ -154,7 +155,8 @@ boost::asio::awaitable<void> LiveSessions::sweep() {
   for (const auto& [number, live] : live_) {
     work.known.insert(number);
   }
-  const auto gone = co_await store_.run(work);
+  Sweep sent = work;
+  const auto gone = co_await store_.run(std::move(sent));
   if (!gone) {
     co_return;
   }

@@ -107,14 +107,19 @@ std::optional<std::string> cookie_of(const Request& request, std::string_view na
   std::optional<std::string> found;
   const auto [first, last] = request.equal_range(http::field::cookie);
   for (auto header = first; header != last; ++header) {
-    for (const auto& [key, value] : http::param_list(";" + std::string(header->value()))) {
-      if (std::string_view(key.data(), key.size()) != name) {
+    std::string_view rest(header->value().data(), header->value().size());
+    while (!rest.empty()) {
+      const std::string_view pair = rest.substr(0, rest.find(';'));
+      rest.remove_prefix(std::min(pair.size() + 1, rest.size()));
+      const std::size_t start = std::min(pair.find_first_not_of(' '), pair.size());
+      const std::size_t equals = pair.find('=', start);
+      if (equals == std::string_view::npos || pair.substr(start, equals - start) != name) {
         continue;
       }
       if (found) {
         return std::nullopt;
       }
-      found.emplace(value);
+      found.emplace(pair.substr(equals + 1));
     }
   }
   return found;

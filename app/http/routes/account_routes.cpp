@@ -199,8 +199,8 @@ Answering AccountRoutes::login(const Call& call) {
   const UtcTime now = context_.clock();
   const std::uint32_t former = call.caller.session;
   guard_.begin(name, now);
-  auto opened = co_await context_.store.run(
-      Login{name, Password(std::move(credentials->second)), call.caller.peer, former, now});
+  Login work{name, Password(std::move(credentials->second)), call.caller.peer, former, now};
+  auto opened = co_await context_.store.run(std::move(work));
   if (!opened) {
     guard_.end_unjudged(name);
     co_return fail(opened.error());
@@ -224,7 +224,8 @@ Answering AccountRoutes::logout(const Call& call) {
   context_.sessions.end(call.caller.session);
   if (session) {
     // A store that fails keeps nobody logged in: the session has ended here, and will there.
-    (void)co_await context_.store.run(Logout{*session, context_.clock()});
+    Logout work{*session, context_.clock()};
+    (void)co_await context_.store.run(std::move(work));
   }
   spdlog::info("{} logged out, session {}", call.caller.user, call.caller.session);
   co_return Success{Status::ok, session_json(std::nullopt), cookie("", std::chrono::seconds(0))};
@@ -241,9 +242,9 @@ Answering AccountRoutes::change_password(const Call& call) {
   }
   const UtcTime now = context_.clock();
   guard_.begin(name, now);
-  const auto changed = co_await context_.store.run(
-      PasswordChange{name, call.caller.session, Password(std::move(passwords->first)),
-                     Password(std::move(passwords->second)), now});
+  PasswordChange work{name, call.caller.session, Password(std::move(passwords->first)),
+                      Password(std::move(passwords->second)), now};
+  const auto changed = co_await context_.store.run(std::move(work));
   if (!changed) {
     guard_.end_unjudged(name);
     co_return fail(changed.error());

@@ -167,10 +167,11 @@ Answering UserRoutes::add(const Call& call) const {
 
 Answering UserRoutes::change(const Call& call) const {
   const std::string& user = call.parameters[0];
-  const auto exists = co_await context_.store.run([user](Store& store) {
+  auto look = [user](Store& store) {
     return store.read(
         [&](Transaction& transaction) -> Stored<bool> { return Users(transaction).find(user).has_value(); });
-  });
+  };
+  const auto exists = co_await context_.store.run(std::move(look));
   if (!exists || !*exists) {
     co_return fail(exists ? not_found("user " + user, "a name that /api/users lists") : exists.error());
   }

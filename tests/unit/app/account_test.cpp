@@ -125,6 +125,7 @@ TEST_F(AccountTest, ASessionEndsThirtyMinutesAfterItsLastRequest) {
   for (int i = 0; i < 3; ++i) {
     pass(std::chrono::minutes(29));
     EXPECT_EQ(session_of(token)["user"]["name"], "max");
+    wait_until_use_is_stored(token);
   }
   pass(std::chrono::minutes(30));
   EXPECT_TRUE(session_of(token)["user"].is_null());
@@ -135,6 +136,7 @@ TEST_F(AccountTest, ASessionEndsTwelveHoursAfterLoginHoweverItIsUsed) {
   for (int i = 0; i < 35; ++i) {
     pass(std::chrono::minutes(20));
     ASSERT_EQ(session_of(token)["user"]["name"], "max") << i;
+    wait_until_use_is_stored(token);
   }
   pass(std::chrono::minutes(20));
   EXPECT_TRUE(session_of(token)["user"].is_null());

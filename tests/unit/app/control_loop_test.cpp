@@ -15,10 +15,18 @@ using test::neuro_config;
 
 using ControlLoopTest = test::ControlLoopTest;
 
+TEST_F(ControlLoopTest, TellsTheKernelOfAChangedHolderInTheNextTick) {
+  tick();
+  mailbox_->holder = 7;
+  tick();
+  ASSERT_NE(sent(ILK_REQUEST_HEARTBEAT), nullptr);
+  EXPECT_EQ(sent(ILK_REQUEST_HEARTBEAT)->holder, 7u);
+}
+
 TEST_F(ControlLoopTest, BeatsAtOnceAndWellWithinTheAppTimeout) {
   tick();
   ASSERT_NE(sent(ILK_REQUEST_HEARTBEAT), nullptr);
-  EXPECT_NE(sent(ILK_REQUEST_HEARTBEAT)->holder, 0u);
+  EXPECT_EQ(sent(ILK_REQUEST_HEARTBEAT)->holder, 0u) << "nobody holds the authority yet";
   std::uint32_t longest = 0;
   for (std::uint32_t since = 1, i = 0; i < 500; ++i, ++since) {
     tick();

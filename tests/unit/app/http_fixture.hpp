@@ -18,7 +18,6 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
-#include <filesystem>
 #include <fstream>
 #include <future>
 #include <memory>
@@ -70,6 +69,17 @@ class StoreFixture : public testing::Test {
     return opened ? opened->token : "";
   }
 
+  /** Waits until the store knows that the session was used just now. */
+  void wait_until_use_is_stored(const std::string& token) {
+    for (bool stored = false; !stored;) {
+      const auto found = mine_.read([&](Transaction& transaction) -> Stored<std::optional<Session>> {
+        return Sessions(transaction).find(token, now());
+      });
+      ASSERT_TRUE(found && *found);
+      stored = (*found)->last_seen == now();
+    }
+  }
+
   /** The audit's records, oldest first. */
   std::vector<AuditRecord> audit() {
     return *mine_.read([](Transaction& transaction) -> Stored<std::vector<AuditRecord>> {
@@ -101,8 +111,7 @@ class StoreFixture : public testing::Test {
 class HttpTest : public StoreFixture {
  protected:
   HttpTest() {
-    std::filesystem::create_directory(folder_.path() / "web");
-    std::ofstream(folder_.path() / "web" / "index.html") << "<title>console</title>";
+    std::ofstream(web_.path() / "index.html") << "<title>console</title>";
     add_user("ada", Role::admin);
     add_user("edna", Role::engineer);
     add_user("vic", Role::viewer);
@@ -110,6 +119,7 @@ class HttpTest : public StoreFixture {
     EXPECT_TRUE(listening);
     asio::co_spawn(network_, api_.listen(), asio::detached);
     asio::co_spawn(network_, api_.beat(), asio::detached);
+    asio::co_spawn(network_, api_.sweep_sessions(std::chrono::milliseconds(5)), asio::detached);
     asio::co_spawn(network_, server_.accept(), asio::detached);
     thread_ = std::jthread([this] { network_.run(); });
     log_in("edna");
@@ -258,6 +268,7 @@ class HttpTest : public StoreFixture {
     done.get_future().get();
   }
 
+  test::TemporaryFolder web_;
   std::string token_;
   asio::io_context network_{1};
   asio::io_context client_{1};
@@ -265,7 +276,7 @@ class HttpTest : public StoreFixture {
   StoreGateway gateway_{network_.get_executor(), store_};
   Api api_{network_.get_executor(), test::neuro(), test::neuro_config(), *mailbox_, "", gateway_,
            [this] { return now(); }};
-  Server server_{network_.get_executor(), api_, StaticFiles(folder_.path() / "web")};
+  Server server_{network_.get_executor(), api_, StaticFiles(web_.path())};
   std::jthread thread_;
 };
 

@@ -29,7 +29,7 @@ TEST(Query, ThatIsMalformedNamesThePlace) {
 
 TEST(Cookie, IsFoundAmongOthers) {
   Request request = request_for("/");
-  request.set(http::field::cookie, "theme=dark; interlock_session=abc-_123; x=y");
+  request.set(http::field::cookie, "theme={\"dark\"}; interlock_session=abc-_123; x");
   EXPECT_EQ(cookie_of(request, "interlock_session"), "abc-_123");
   EXPECT_EQ(cookie_of(request, "session"), std::nullopt);
 }
