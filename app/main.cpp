@@ -162,12 +162,12 @@ Stored<void> let_somebody_in(Store& store) {
       });
 }
 
-tl::expected<void, std::string> serve(const Options& options, const Model& model, Store& store) {
+tl::expected<void, std::string> serve(const Options& options, const Model& model, Store& store, Log& log) {
   boost::asio::io_context network(1);
   const auto executor = network.get_executor();
   const auto mailbox = std::make_unique<Mailbox>();
   web::StoreGateway gateway(executor, store);
-  web::Api api(executor, model.robot, model.config, *mailbox, options.bench_socket, gateway);
+  web::Api api(executor, model.robot, model.config, *mailbox, options.bench_socket, gateway, log);
   web::Server server(executor, api, web::StaticFiles(options.web_directory));
   if (auto listening = server.listen(options.listen); !listening) {
     return listening;
@@ -225,7 +225,7 @@ int run(const Options& options) {
   }
   try {
     const auto served = load_model(options).and_then([&](const Model& model) {
-      return open_store(options).and_then([&](Store store) { return serve(options, model, store); });
+      return open_store(options).and_then([&](Store store) { return serve(options, model, store, **log); });
     });
     return served ? 0 : unusable(served.error());
   } catch (const std::exception& error) {

@@ -25,16 +25,17 @@ constexpr auto as_result = asio::as_tuple(asio::use_awaitable);
 }  // namespace
 
 Api::Api(const asio::any_io_executor& executor, const Robot& robot, const ilk_config_t& config,
-         Mailbox& mailbox, const std::string& bench_socket, StoreGateway& store,
+         Mailbox& mailbox, const std::string& bench_socket, StoreGateway& store, Log& log,
          std::function<UtcTime()> clock)
     : control_(executor, mailbox),
       book_(
           robot, config, [this](const Command& command) { return control_.send(command); }, clock),
+      log_tail_(executor, log.ring(), stream_),
       bench_(executor, bench_socket),
       sessions_(store, clock),
       authority_(static_cast<std::uint32_t>(std::chrono::system_clock::to_time_t(clock()))),
       context_{executor, robot, config,    control_,   book_, stream_,
-               bench_,   store, sessions_, authority_, clock},
+               bench_,   store, sessions_, authority_, log,   clock},
       router_([this](const Caller& caller) -> std::optional<Problem> {
         const auto held = context_.need_authority(caller);
         return held ? std::nullopt : std::optional(held.error());
@@ -57,6 +58,11 @@ void Api::follow_proposals() {
     }
     context_.store.note(std::move(entry));
     message["type"] = "proposal";
+    stream_.send_text(message);
+  });
+  book_.on_mode_change([this](std::string_view mode) {
+    json message = mode_json(context_.robot, mode);
+    message["type"] = "mode";
     stream_.send_text(message);
   });
 }
@@ -130,16 +136,6 @@ asio::awaitable<Caller> Api::caller_of(const Request& request, std::string peer)
   co_return caller;
 }
 
-OpenTargets Api::open_targets() const {
-  OpenTargets targets{};
-  for (const Axis& axis : context_.robot.axes) {
-    if (const Proposal* open = book_.open_of(axis.slot)) {
-      targets[axis.slot] = {true, open->move.target_counts};
-    }
-  }
-  return targets;
-}
-
 void Api::look_after_pedal(const ControlView& seen) {
   if (bench_.overdue(seen)) {
     spdlog::warn("the bench pedal was not renewed for 500 ms: released");
@@ -182,7 +178,8 @@ asio::awaitable<void> Api::beat() {
     }
     const ControlView& seen = context_.view();
     if (!stream_.empty()) {
-      stream_.send_state(encode_state(seen, context_.config, open_targets(), steady_clock::now()));
+      stream_.send_state(
+          encode_state(seen, context_.config, open_targets(context_.robot, book_), steady_clock::now()));
     }
     look_after_pedal(seen);
     look_after_sessions();

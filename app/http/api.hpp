@@ -7,13 +7,20 @@
 #include <string>
 
 #include "http/context.hpp"
+#include "http/log_tail.hpp"
 #include "http/router.hpp"
 #include "http/routes/account_routes.hpp"
+#include "http/routes/audit_routes.hpp"
 #include "http/routes/authority_routes.hpp"
 #include "http/routes/bench_routes.hpp"
+#include "http/routes/communication_routes.hpp"
+#include "http/routes/log_routes.hpp"
+#include "http/routes/mode_routes.hpp"
 #include "http/routes/motor_routes.hpp"
+#include "http/routes/position_routes.hpp"
 #include "http/routes/proposal_routes.hpp"
 #include "http/routes/system_routes.hpp"
+#include "http/routes/targeting_routes.hpp"
 #include "http/routes/user_routes.hpp"
 
 namespace interlock::web {
@@ -22,14 +29,14 @@ namespace interlock::web {
 class Api {
  public:
   /**
-   * `robot`, `config`, `mailbox` and `store` must outlive it.
+   * `robot`, `config`, `mailbox`, `store` and `log` must outlive it.
    *
    * @param bench_socket empty means that the hardware is real
    * @param clock time of day, by which sessions end
    */
   Api(
       const boost::asio::any_io_executor& executor, const Robot& robot, const ilk_config_t& config,
-      Mailbox& mailbox, const std::string& bench_socket, StoreGateway& store,
+      Mailbox& mailbox, const std::string& bench_socket, StoreGateway& store, Log& log,
       std::function<UtcTime()> clock = [] { return std::chrono::system_clock::now(); });
 
   [[nodiscard]] const Router& router() const { return router_; }
@@ -57,23 +64,29 @@ class Api {
   void follow_sessions();
   void look_after_pedal(const ControlView& seen);
   void look_after_sessions();
-  [[nodiscard]] OpenTargets open_targets() const;
 
   ControlClient control_;
   ProposalBook book_;
   StreamHub stream_;
+  LogTail log_tail_;
   Bench bench_;
   LiveSessions sessions_;
   Authority authority_;
   Context context_;
   Router router_;
   SystemRoutes system_routes_{context_, router_};
+  PositionRoutes position_routes_{context_, router_}; /**< before the axes, whose pattern its paths match */
   MotorRoutes motor_routes_{context_, router_};
   ProposalRoutes proposal_routes_{context_, router_};
   BenchRoutes bench_routes_{context_, router_};
   AccountRoutes account_routes_{context_, router_};
   UserRoutes user_routes_{context_, router_};
   AuthorityRoutes authority_routes_{context_, router_};
+  ModeRoutes mode_routes_{context_, router_};
+  LogRoutes log_routes_{context_, router_};
+  TargetingRoutes targeting_routes_{context_, router_};
+  CommunicationRoutes communication_routes_{context_, router_};
+  AuditRoutes audit_routes_{context_, router_};
 };
 
 }  // namespace interlock::web

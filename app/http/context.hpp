@@ -16,6 +16,7 @@
 #include "http/message.hpp"
 #include "http/store_gateway.hpp"
 #include "http/stream_hub.hpp"
+#include "log/log.hpp"
 #include "proposals/proposal_book.hpp"
 #include "robot/robot.hpp"
 
@@ -32,6 +33,7 @@ struct Context {
   StoreGateway& store;
   LiveSessions& sessions;
   Authority& authority;
+  Log& log;
   std::function<UtcTime()> clock;
 
   /** The newest view; what it says of orders is in the book already. The reference holds until the next

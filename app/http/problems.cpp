@@ -24,7 +24,13 @@ Problem no_kernel(const std::string& detail) {
 }
 
 Problem refused(const Refusal& refusal) {
-  return {.status = refusal.code == "OVERLOADED" ? Status::service_unavailable : Status::conflict,
+  Status status = Status::conflict;
+  if (refusal.code == "OVERLOADED") {
+    status = Status::service_unavailable;
+  } else if (refusal.code == "NOT_FOUND") {
+    status = Status::not_found;
+  }
+  return {.status = status,
           .code = refusal.code,
           .detail = refusal.detail,
           .expected = refusal.expected,

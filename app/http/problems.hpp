@@ -24,7 +24,8 @@ Problem login_needed();
 /** 503 NO_KERNEL. */
 Problem no_kernel(const std::string& detail);
 
-/** What the kernel or the proposals' checks refused: 409, or 503 when the control thread takes no more. */
+/** What the kernel or the proposals' checks refused: 409, 404 for what the robot has not, or 503 when the
+ * control thread takes no more. */
 Problem refused(const Refusal& refusal);
 
 }  // namespace interlock::web

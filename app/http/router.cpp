@@ -54,11 +54,13 @@ boost::asio::awaitable<Reply> Router::route(const Request& request, const Caller
   const std::string path = path_of(request);
   const std::vector<std::string> segments = segments_of(path);
   std::string allowed;
+  const std::vector<std::string>* pattern = nullptr;
   for (const Route& route : routes_) {
     const auto parameters = match(route.segments, segments);
-    if (!parameters) {
+    if (!parameters || (pattern != nullptr && *pattern != route.segments)) {
       continue;
     }
+    pattern = &route.segments;
     if (route.method == request.method()) {
       if (auto problem = check(route.access, caller)) {
         co_return fail(std::move(*problem));

@@ -34,7 +34,8 @@ class Router {
 
   explicit Router(NeedAuthority need_authority) : need_authority_(std::move(need_authority)) {}
 
-  /** `pattern` as in spec/openapi.yaml: "/api/motors/{axis}". */
+  /** `pattern` as in spec/openapi.yaml: "/api/motors/{axis}". Of patterns that a path matches, the one that
+   * was added first has it alone. */
   void add(boost::beast::http::verb method, std::string_view pattern, Access access, Handler handler);
 
   /** Nothing when the caller has that right, else 401 LOGIN, 403 ROLE or 409 AUTHORITY. */

@@ -40,13 +40,15 @@ json cards_json(const ilk_config_t& config, const ilk_state_t& state) {
   json cards = json::array();
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     const ilk_axis_t& axis = state.axis[slot];
-    if (config.axis[slot].card != ILK_CARD_NONE) {
-      cards.push_back({{"slot", slot},
-                       {"card", catalog::name(Family::card, config.axis[slot].card)},
-                       {"detected", axis.card_seen != 0 && axis.bad_frames < config.bad_frame_limit},
-                       {"heartbeat", axis.heartbeat},
-                       {"checksum_failures", axis.checksum_failures}});
-    }
+    const bool expected = config.axis[slot].card != ILK_CARD_NONE;
+    cards.push_back(
+        {{"slot", slot},
+         {"card", catalog::name(Family::card, config.axis[slot].card)},
+         {"detected", expected && axis.card_seen != 0 && axis.bad_frames < config.bad_frame_limit},
+         {"heartbeat", axis.heartbeat},
+         // A frame is valid only when its heartbeat advanced.
+         {"heartbeat_live", expected && axis.card_valid != 0},
+         {"checksum_failures", axis.checksum_failures}});
   }
   return cards;
 }
@@ -108,7 +110,7 @@ json event_body(const ilk_event_t& event) {
 }  // namespace
 
 json status_json(const Robot& robot, const ilk_config_t& config, const ControlView& view,
-                 std::chrono::steady_clock::time_point now) {
+                 std::string_view app_mode, std::chrono::steady_clock::time_point now) {
   static const ControlView nothing{};
   const ControlView& shown = view.attached ? view : nothing;
   const ilk_snapshot_t& snapshot = shown.snapshot;
@@ -133,6 +135,7 @@ json status_json(const Robot& robot, const ilk_config_t& config, const ControlVi
           {"pedal_armed", state.pedal_armed != 0},
           {"app_alive", state.app_alive != 0},
           {"holder", state.holder},
+          {"app_mode", app_mode},
           {"overruns", snapshot.overruns},
           {"config_crc", config_hash(config)},
           {"age_ms", age.count()},
@@ -141,7 +144,8 @@ json status_json(const Robot& robot, const ilk_config_t& config, const ControlVi
           {"timing", timing_json(snapshot.timing)}};
 }
 
-json motor_json(const Axis& axis, const ilk_config_t& config, const ControlView& view, const Proposal* open) {
+json motor_json(const Axis& axis, const ilk_config_t& config, const ControlView& view,
+                const ProposalBook& book) {
   const ilk_axis_config_t& rules = config.axis[axis.slot];
   const ilk_axis_t& state = view.snapshot.state.axis[axis.slot];
   const SetpointRange range = setpoint_range(rules, state, view.snapshot.state.mode);
@@ -163,6 +167,8 @@ json motor_json(const Axis& axis, const ilk_config_t& config, const ControlView&
              {"soft_min_counts", rules.min_counts},
              {"soft_max_counts", rules.max_counts},
              {"homed", state.homed != 0},
+             {"homing", book.homes(axis.slot)},
+             {"has_switch", rules.limit_side != ILK_LIMIT_NONE},
              {"switch", state.switch_triggered != 0},
              {"limit_side", catalog::name(Family::limit_side, rules.limit_side)},
              {"gate", catalog::name(Family::gate, view.snapshot.gate[axis.slot])},
@@ -170,7 +176,7 @@ json motor_json(const Axis& axis, const ilk_config_t& config, const ControlView&
              {"max_drive", rules.max_drive},
              {"unhomed_max_drive", rules.unhomed_max_drive},
              {"deadband_counts", rules.deadband_counts}};
-  if (open != nullptr) {
+  if (const Proposal* open = book.open_of(axis.slot)) {
     motor["setpoint_counts"] = open->move.target_counts;
     motor["setpoint"] = open->target;
   }

@@ -6,20 +6,21 @@
 
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "motion/mailbox.hpp"
-#include "proposals/proposal.hpp"
+#include "proposals/proposal_book.hpp"
 #include "robot/robot.hpp"
 
 namespace interlock::web {
 
 /** Schema `Status`. */
 nlohmann::json status_json(const Robot& robot, const ilk_config_t& config, const ControlView& view,
-                           std::chrono::steady_clock::time_point now);
+                           std::string_view app_mode, std::chrono::steady_clock::time_point now);
 
-/** Schema `Motor`. `open` is the open proposal of the axis, or null. */
+/** Schema `Motor`. */
 nlohmann::json motor_json(const Axis& axis, const ilk_config_t& config, const ControlView& view,
-                          const Proposal* open);
+                          const ProposalBook& book);
 
 /** Text message of the stream for a kernel event. */
 nlohmann::json event_json(const ilk_event_t& event);

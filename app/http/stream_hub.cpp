@@ -51,8 +51,10 @@ void StreamHub::Client::send(std::shared_ptr<const std::string> text) {
 }
 
 asio::awaitable<void> StreamHub::serve(beast::tcp_stream stream, Request request, Caller caller) {
+  beast::error_code unknown;
+  const std::uint16_t port = stream.socket().local_endpoint(unknown).port();
   auto client = std::make_shared<Client>(
-      std::move(stream), Watcher{++last_id_, std::move(caller), std::chrono::system_clock::now()});
+      std::move(stream), Watcher{++last_id_, std::move(caller), std::chrono::system_clock::now(), port});
   beast::get_lowest_layer(client->socket).expires_never();
   client->socket.set_option(timeouts());
   client->socket.read_message_max(longest_client_message);

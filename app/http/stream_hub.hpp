@@ -36,6 +36,7 @@ class StreamHub {
     std::uint32_t id = 0; /**< never given twice */
     Caller caller;
     UtcTime since;
+    std::uint16_t port = 0; /**< of this app, that it came to */
   };
 
   /** Accepts the WebSocket and serves it until either side ends it. */

@@ -87,6 +87,16 @@ void put_slot(Words& words, const ControlView& view, const ilk_axis_config_t& ru
 
 }  // namespace
 
+OpenTargets open_targets(const Robot& robot, const ProposalBook& book) {
+  OpenTargets targets{};
+  for (const Axis& axis : robot.axes) {
+    if (const Proposal* open = book.open_of(axis.slot)) {
+      targets[axis.slot] = {true, open->move.target_counts};
+    }
+  }
+  return targets;
+}
+
 StreamMessage encode_state(const ControlView& view, const ilk_config_t& config, const OpenTargets& targets,
                            std::chrono::steady_clock::time_point now) {
   static const ControlView nothing{};

@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "motion/mailbox.hpp"
+#include "proposals/proposal_book.hpp"
 #include "robot/robot.hpp"
 
 namespace interlock::web {
@@ -27,6 +28,9 @@ struct OpenTarget {
   std::int32_t target_counts = 0;
 };
 using OpenTargets = std::array<OpenTarget, ILK_SLOTS>;
+
+/** Of the moves that are open in the book. */
+OpenTargets open_targets(const Robot& robot, const ProposalBook& book);
 
 /** The view at that time, little-endian. Without a kernel everything but magic, version and slot count is
  * zero. */

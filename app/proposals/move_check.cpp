@@ -37,13 +37,20 @@ Refusal verdict_refusal(std::uint32_t verdict, const std::string& where, const s
                  std::string(entry.next_step)};
 }
 
-tl::expected<void, Refusal> check_system(const ilk_config_t& config, const ControlView& view) {
-  const ilk_snapshot_t& snapshot = view.snapshot;
-  if (snapshot.config_crc != config.crc) {
+tl::expected<void, Refusal> check_configuration(const ilk_config_t& config, const ControlView& view) {
+  if (view.snapshot.config_crc != config.crc) {
     return tl::make_unexpected(
         Refusal{"CONFIG_MISMATCH", "The kernel runs another configuration than this app's robot file.",
                 "configuration " + config_hash(config), "Start kernel and app with the same robot."});
   }
+  return {};
+}
+
+tl::expected<void, Refusal> check_system(const ilk_config_t& config, const ControlView& view) {
+  if (const auto same = check_configuration(config, view); !same) {
+    return same;
+  }
+  const ilk_snapshot_t& snapshot = view.snapshot;
   if (snapshot.state.mode != ILK_MODE_READY && snapshot.state.mode != ILK_MODE_MOTION) {
     return refused(ILK_VERDICT_MODE, current(catalog::Family::mode, snapshot.state.mode, "mode"),
                    "READY or MOTION");

@@ -33,6 +33,9 @@ struct Refusal {
 tl::expected<void, Refusal> check_move(const Axis& axis, const ilk_config_t& config, const ControlView& view,
                                        const MoveDraft& draft);
 
+/** Whether the kernel runs the app's configuration: CONFIG_MISMATCH. */
+tl::expected<void, Refusal> check_configuration(const ilk_config_t& config, const ControlView& view);
+
 /** Whether the kernel runs the app's configuration and takes motion at all: CONFIG_MISMATCH, MODE. */
 tl::expected<void, Refusal> check_system(const ilk_config_t& config, const ControlView& view);
 

@@ -14,7 +14,6 @@ std::optional<std::uint32_t> request_of_action(const std::string& action) {
   constexpr std::pair<const char*, std::uint32_t> actions[] = {{"enable", ILK_REQUEST_ENABLE},
                                                                {"disable", ILK_REQUEST_DISABLE},
                                                                {"clear-fault", ILK_REQUEST_CLEAR_FAULT},
-                                                               {"home", ILK_REQUEST_HOME},
                                                                {"set-home", ILK_REQUEST_SET_HOME}};
   for (const auto& [name, request] : actions) {
     if (action == name) {
@@ -34,11 +33,11 @@ MotorRoutes::MotorRoutes(const Context& context, Router& router) : context_(cont
              [this](const Call& call) { return act(call); });
 }
 
-tl::expected<const Axis*, Problem> MotorRoutes::axis_of(const std::string& slot) const {
-  const auto number = number_in(slot);
-  const Axis* axis = number ? context_.robot.at_slot(*number) : nullptr;
+tl::expected<const Axis*, Problem> MotorRoutes::axis_of(const std::string& slot_or_name) const {
+  const auto slot = number_in(slot_or_name);
+  const Axis* axis = slot ? context_.robot.at_slot(*slot) : context_.robot.find(slot_or_name);
   if (axis == nullptr) {
-    return fail(not_found("axis in slot " + slot, "a slot that /api/motors lists"));
+    return fail(not_found("axis " + slot_or_name, "slot or name of an axis that /api/motors lists"));
   }
   return axis;
 }
@@ -48,7 +47,7 @@ Reply MotorRoutes::motors() const {
     const ControlView& now = context_.view();
     json motors = json::array();
     for (const Axis& axis : context_.robot.axes) {
-      motors.push_back(motor_json(axis, context_.config, now, context_.book.open_of(axis.slot)));
+      motors.push_back(motor_json(axis, context_.config, now, context_.book));
     }
     return Success{Status::ok, std::move(motors)};
   });
@@ -58,7 +57,7 @@ Reply MotorRoutes::motor(const Call& call) const {
   return axis_of(call.parameters[0]).and_then([this](const Axis* axis) -> Reply {
     return context_.need_kernel().map([&] {
       const ControlView& now = context_.view();
-      return Success{Status::ok, motor_json(*axis, context_.config, now, context_.book.open_of(axis->slot))};
+      return Success{Status::ok, motor_json(*axis, context_.config, now, context_.book)};
     });
   });
 }
@@ -71,7 +70,7 @@ Answering MotorRoutes::act(const Call& call) const {
   const std::string& action = call.parameters[1];
   const auto request = request_of_action(action);
   if (!request) {
-    co_return fail(not_found("action " + action, "enable, disable, clear-fault, home or set-home"));
+    co_return fail(not_found("action " + action, "enable, disable, clear-fault or set-home"));
   }
   co_return co_await context_.ask_kernel(call.caller, *request, (*axis)->slot, (*axis)->name + " " + action);
 }

@@ -18,7 +18,7 @@ class MotorRoutes {
   [[nodiscard]] Reply motors() const;
   [[nodiscard]] Reply motor(const Call& call) const;
   [[nodiscard]] boost::asio::awaitable<Reply> act(const Call& call) const;
-  [[nodiscard]] tl::expected<const Axis*, Problem> axis_of(const std::string& slot) const;
+  [[nodiscard]] tl::expected<const Axis*, Problem> axis_of(const std::string& slot_or_name) const;
 
   const Context& context_;
 };

@@ -1,6 +1,8 @@
 #include "http/routes/proposal_routes.hpp"
 
+#include <array>
 #include <limits>
+#include <variant>
 
 #include "http/fields.hpp"
 #include "http/problems.hpp"
@@ -13,18 +15,26 @@ using Answering = boost::asio::awaitable<Reply>;
 using boost::beast::http::verb;
 using nlohmann::json;
 
-/** Reads a `ProposalDraft`. */
-tl::expected<MoveDraft, Problem> draft_of(const json& body, const Robot& robot, const std::string& author) {
-  constexpr std::int64_t lowest = std::numeric_limits<std::int32_t>::min();
-  constexpr std::int64_t highest = std::numeric_limits<std::int32_t>::max();
-  Fields fields(body, {"slot", "target", "target_counts", "drive"});
+using Draft = std::variant<MoveDraft, HomeDraft>;
+
+constexpr std::int64_t lowest_counts = std::numeric_limits<std::int32_t>::min();
+constexpr std::int64_t highest_counts = std::numeric_limits<std::int32_t>::max();
+
+tl::expected<const Axis*, Problem> axis_in(const Robot& robot, std::int64_t slot) {
+  const Axis* axis = robot.at_slot(static_cast<std::uint32_t>(slot));
+  if (axis == nullptr) {
+    return fail(not_found("axis in slot " + std::to_string(slot), "a slot that /api/motors lists"));
+  }
+  return axis;
+}
+
+tl::expected<Draft, Problem> move_of(const json& body, const Robot& robot, const std::string& author) {
+  Fields fields(body, {"kind", "slot", "target", "target_counts", "drive"});
   const auto slot = fields.integer("slot", 0, ILK_SLOTS - 1);
   const auto target = fields.number("target");
-  auto target_counts = fields.integer("target_counts", lowest, highest);
-  const auto drive = fields.integer("drive", 1, highest);
-  if (!fields.has("slot")) {
-    fields.reject("slot", "is missing", "an integer from 0 to " + std::to_string(ILK_SLOTS - 1));
-  }
+  auto target_counts = fields.integer("target_counts", lowest_counts, highest_counts);
+  const auto drive = fields.integer("drive", 1, highest_counts);
+  fields.require({{"slot", "an integer from 0 to 9"}});
   if (fields.has("target") == fields.has("target_counts")) {
     fields.reject("target", "and target_counts: one is needed, not both",
                   "target in the axis' unit, or target_counts");
@@ -32,12 +42,12 @@ tl::expected<MoveDraft, Problem> draft_of(const json& body, const Robot& robot, 
   if (fields.problem()) {
     return fail(*fields.problem());
   }
-  const Axis* axis = robot.at_slot(static_cast<std::uint32_t>(*slot));
-  if (axis == nullptr) {
-    return fail(not_found("axis in slot " + std::to_string(*slot), "a slot that /api/motors lists"));
+  const auto axis = axis_in(robot, *slot);
+  if (!axis) {
+    return fail(axis.error());
   }
   if (target) {
-    const auto counts = axis->to_counts(*target);
+    const auto counts = (*axis)->to_counts(*target);
     if (!counts) {
       fields.reject("target", "is beyond every encoder",
                     "a position within the range that /api/motors shows");
@@ -45,11 +55,47 @@ tl::expected<MoveDraft, Problem> draft_of(const json& body, const Robot& robot, 
     }
     target_counts = *counts;
   }
-  MoveDraft draft{axis->slot, static_cast<std::int32_t>(*target_counts), std::nullopt, author};
+  MoveDraft draft{(*axis)->slot, static_cast<std::int32_t>(*target_counts), std::nullopt, author};
   if (drive) {
     draft.drive = static_cast<std::uint32_t>(*drive);
   }
   return draft;
+}
+
+tl::expected<Draft, Problem> home_of(const json& body, const Robot& robot, const std::string& author) {
+  Fields fields(body, {"kind", "slot", "step"});
+  const auto slot = fields.integer("slot", 0, ILK_SLOTS - 1);
+  auto step = fields.text("step");
+  if (fields.has("slot") && fields.has("step")) {
+    fields.reject("step", "and slot: at most one of them", "a slot, a step, or neither");
+  }
+  if (fields.problem()) {
+    return fail(*fields.problem());
+  }
+  HomeDraft draft{std::nullopt, std::nullopt, author};
+  if (slot) {
+    const auto axis = axis_in(robot, *slot);
+    if (!axis) {
+      return fail(axis.error());
+    }
+    draft.slot = (*axis)->slot;
+  }
+  if (step && robot.find_home_step(*step) == nullptr) {
+    return fail(not_found("home step " + *step, "a step that /api/robots lists"));
+  }
+  draft.step = std::move(step);
+  return draft;
+}
+
+/** Reads a `ProposalDraft`. */
+tl::expected<Draft, Problem> draft_of(const json& body, const Robot& robot, const std::string& author) {
+  constexpr std::array<std::string_view, 2> kinds{"move", "home"};
+  Fields fields(body, {"kind", "slot", "step", "target", "target_counts", "drive"});
+  const auto kind = fields.choice("kind", kinds);
+  if (fields.problem()) {
+    return fail(*fields.problem());
+  }
+  return kind == "home" ? home_of(body, robot, author) : move_of(body, robot, author);
 }
 
 }  // namespace
@@ -76,9 +122,11 @@ Reply ProposalRoutes::list() const {
 Reply ProposalRoutes::propose(const Call& call) const {
   return parse_body(call.request)
       .and_then([&](const json& body) { return draft_of(body, context_.robot, call.caller.user); })
-      .and_then([this](const MoveDraft& draft) -> Reply {
+      .and_then([this](const Draft& draft) -> Reply {
         return context_.need_kernel().and_then([&]() -> Reply {
-          return context_.book.propose(draft, context_.view())
+          const auto* move = std::get_if<MoveDraft>(&draft);
+          return (move != nullptr ? context_.book.propose(*move, context_.view())
+                                  : context_.book.propose_home(std::get<HomeDraft>(draft), context_.view()))
               .map([](const Proposal& made) { return Success{Status::created, to_json(made)}; })
               .map_error(refused);
         });

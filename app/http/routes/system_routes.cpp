@@ -32,7 +32,7 @@ SystemRoutes::SystemRoutes(const Context& context, Router& router) : context_(co
 
 Reply SystemRoutes::status() const {
   return Success{Status::ok, status_json(context_.robot, context_.config, context_.view(),
-                                         std::chrono::steady_clock::now())};
+                                         context_.book.app_mode(), std::chrono::steady_clock::now())};
 }
 
 Answering SystemRoutes::stop(const Call& call) const {

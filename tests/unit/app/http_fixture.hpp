@@ -272,9 +272,10 @@ class HttpTest : public StoreFixture {
   std::string token_;
   asio::io_context network_{1};
   asio::io_context client_{1};
+  std::unique_ptr<Log> log_ = Log::start({}, LogLevel::info).value();
   std::unique_ptr<Mailbox> mailbox_ = std::make_unique<Mailbox>();
   StoreGateway gateway_{network_.get_executor(), store_};
-  Api api_{network_.get_executor(), test::neuro(), test::neuro_config(), *mailbox_, "", gateway_,
+  Api api_{network_.get_executor(), test::neuro(), test::neuro_config(), *mailbox_, "", gateway_, *log_,
            [this] { return now(); }};
   Server server_{network_.get_executor(), api_, StaticFiles(web_.path())};
   std::jthread thread_;

@@ -214,9 +214,9 @@ TEST_F(HttpTest, AnOrderCarriesTheStopsThatItsAuthorHasSeen) {
 
 TEST_F(HttpTest, AVerdictOfTheKernelIsTheAnswer) {
   show(test::ready_view());
-  auto asking = std::async(std::launch::async, [this] { return post("/api/motors/3/home"); });
+  auto asking = std::async(std::launch::async, [this] { return post("/api/motors/3/set-home"); });
   const auto ask = std::get<Ask>(next_command());
-  EXPECT_EQ(ask.kind, static_cast<std::uint32_t>(ILK_REQUEST_HOME));
+  EXPECT_EQ(ask.kind, static_cast<std::uint32_t>(ILK_REQUEST_SET_HOME));
   EXPECT_EQ(ask.slot, insertion);
   answer(Answer{ask.ticket, ILK_VERDICT_MODE, 6});
   const Answered answered = asking.get();
@@ -290,7 +290,11 @@ TEST_F(HttpTest, TheStreamTellsOfProposalsAndEventsInOrder) {
     stream.read(buffer);
     if (stream.got_text()) {
       const json message = json::parse(beast::buffers_to_string(buffer.data()));
-      texts.push_back(message["type"] == "proposal" ? message["state"] : message["kind"]);
+      if (message["type"] == "proposal") {
+        texts.push_back(message["state"]);
+      } else if (message["type"] == "event") {
+        texts.push_back(message["kind"]);
+      }
     }
   }
   EXPECT_THAT(texts, testing::ElementsAre("drafted", "checked", "approved", "mode"));

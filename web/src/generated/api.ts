@@ -537,7 +537,8 @@ export interface paths {
          *     replaces every open proposal, and until it has ended moves are refused (MODE_HOME).
          *     Refused here, in this order: another configuration than the kernel's (CONFIG_MISMATCH), a locked system (MODE),
          *     an axis that is FAULTED, homing (BUSY) or DISABLED, a drive above its bound (DRIVE), a target outside
-         *     `min_counts` to `max_counts` of the motor (RANGE); homing an axis that has no switch (NO_SWITCH).
+         *     `min_counts` to `max_counts` of the motor (RANGE); homing an axis that has no switch (NO_SWITCH), or
+         *     a home step that goes to positions, of an axis that is not homed by then (NOT_HOMED).
          *     A refused draft stays in the list.
          */
         post: operations["createProposal"];
@@ -688,7 +689,7 @@ export interface components {
             status: number;
             /**
              * @description Verdict name, or NOT_FOUND, METHOD_NOT_ALLOWED, MALFORMED, INVALID, TOO_LARGE, HOST, ORIGIN, UPGRADE_REQUIRED,
-             *     LOGIN, CREDENTIALS, BACK_OFF, ROLE, AUTHORITY, EXISTS, LAST_ADMIN, STORE, MODE_HOME,
+             *     LOGIN, CREDENTIALS, BACK_OFF, ROLE, AUTHORITY, EXISTS, LAST_ADMIN, STORE, MODE_HOME, NOT_HOMED,
              *     POSITIONS_ROBOT, POSITIONS_CONFIG, POSITIONS_VERSION,
              *     NO_KERNEL, NO_BENCH, PEDAL_LAPSED, CONFIG_MISMATCH, ENDED, OVERLOADED, INTERNAL.
              */
@@ -966,9 +967,12 @@ export interface components {
             /** @description Names; each is in the file. */
             axes: string[];
         };
-        /** @description 4x4 homogeneous matrix, row-major, mm. Numeric strings are accepted for its numbers. */
+        /**
+         * @description 4x4 homogeneous matrix, row-major, mm. Numeric strings are accepted for its numbers. Its rotation is one within
+         *     0.001, its last row 0 0 0 1, its origin within -10000 to 10000.
+         */
         Pose: (number | string)[];
-        /** @description x, y, z in mm. Numeric strings are accepted. */
+        /** @description x, y, z in mm, -10000 to 10000. Numeric strings are accepted. */
         Point: (number | string)[];
         /** @description mm, -1000 to 1000. */
         Offset: number | string;
@@ -1688,7 +1692,7 @@ export interface operations {
             400: components["responses"]["Malformed"];
             401: components["responses"]["Login"];
             403: components["responses"]["Role"];
-            /** @description POSITIONS_ROBOT, POSITIONS_CONFIG or POSITIONS_VERSION: the file is of another robot, configuration or version; or AUTHORITY. */
+            /** @description POSITIONS_ROBOT, POSITIONS_CONFIG or POSITIONS_VERSION: the file is of another robot, configuration or version; CONFIG_MISMATCH; or AUTHORITY. */
             409: {
                 headers: {
                     [name: string]: unknown;

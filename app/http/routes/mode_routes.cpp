@@ -1,0 +1,108 @@
+#include "http/routes/mode_routes.hpp"
+
+#include "http/fields.hpp"
+#include "http/problems.hpp"
+#include "robot/compile.hpp"
+
+namespace interlock::web {
+namespace {
+
+using Answering = boost::asio::awaitable<Reply>;
+using boost::beast::http::verb;
+using nlohmann::json;
+
+const char* kind_of(const HomeStep& step) {
+  if (!step.home.empty()) {
+    return "home";
+  }
+  return step.nudge.empty() ? "move" : "nudge";
+}
+
+json axes_of(const HomeStep& step, const Robot& robot) {
+  json names = json::array();
+  for (const std::uint32_t slot : step.home) {
+    names.push_back(robot.at_slot(slot)->name);
+  }
+  for (const auto* travels : {&step.nudge, &step.move}) {
+    for (const AxisCounts& travel : *travels) {
+      names.push_back(robot.at_slot(travel.slot)->name);
+    }
+  }
+  return names;
+}
+
+json robot_json(const Robot& robot, const ilk_config_t& config) {
+  json steps = json::array();
+  for (const HomeStep& step : robot.home_steps) {
+    steps.push_back({{"name", step.name},
+                     {"title", step.title},
+                     {"kind", kind_of(step)},
+                     {"axes", axes_of(step, robot)}});
+  }
+  json axes = json::array();
+  for (const Axis& axis : robot.axes) {
+    axes.push_back(axis.name);
+  }
+  return {{"name", robot.name},
+          {"title", robot.title},
+          {"config_crc", config_hash(config)},
+          {"kinematics", family_name(robot.kinematics)},
+          {"modes", robot.modes},
+          {"home_steps", std::move(steps)},
+          {"axes", std::move(axes)}};
+}
+
+}  // namespace
+
+json mode_json(const Robot& robot, std::string_view mode) { return {{"mode", mode}, {"modes", robot.modes}}; }
+
+ModeRoutes::ModeRoutes(const Context& context, Router& router) : context_(context) {
+  router.add(verb::get, "/api/robots", viewers, [this](const Call&) -> Answering { co_return robots(); });
+  router.add(verb::get, "/api/mode", viewers, [this](const Call&) -> Answering { co_return mode(); });
+  router.add(verb::put, "/api/mode", holder,
+             [this](const Call& call) -> Answering { co_return set_mode(call); });
+}
+
+Reply ModeRoutes::robots() const {
+  return Success{.body = json::array({robot_json(context_.robot, context_.config)})};
+}
+
+Reply ModeRoutes::mode() const {
+  (void)context_.view();
+  return Success{.body = mode_json(context_.robot, context_.book.app_mode())};
+}
+
+Reply ModeRoutes::set_mode(const Call& call) const {
+  return parse_body(call.request).and_then([&](const json& body) -> Reply {
+    const std::vector<std::string_view> modes(context_.robot.modes.begin(), context_.robot.modes.end());
+    Fields fields(body, {"mode"});
+    const auto wanted = fields.choice("mode", modes);
+    fields.require({{"mode", "a mode of the robot"}});
+    if (fields.problem()) {
+      return fail(*fields.problem());
+    }
+    return *wanted == "home" ? go_home(call.caller.user) : go_manual();
+  });
+}
+
+Reply ModeRoutes::go_home(const std::string& author) const {
+  return context_.need_kernel().and_then([&]() -> Reply {
+    return context_.book.propose_home({std::nullopt, std::nullopt, author}, context_.view())
+        .map_error(refused)
+        .and_then([this](const Proposal&) { return mode(); });
+  });
+}
+
+Reply ModeRoutes::go_manual() const {
+  (void)context_.view();
+  const Proposal* open = context_.book.open_home();
+  if (open != nullptr) {
+    const auto aborted = context_.book.abort(open->id);
+    if (!aborted) {
+      return fail(refused(aborted.error()));
+    }
+  }
+  return mode();
+}
+
+}  // namespace interlock::web

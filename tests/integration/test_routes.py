@@ -1,0 +1,335 @@
+"""Positions, targeting, logs, connections, cards and modes over HTTP, on a whole robot."""
+
+import json
+import re
+from collections.abc import Callable, Iterator
+
+import httpx
+import pytest
+from conftest import StackFactory
+from interface import judge
+from motion import (
+    LATERAL,
+    act,
+    motor,
+    open_stream,
+    press,
+    propose,
+    unlock,
+    wait_for_mode,
+    wait_for_proposal,
+    wait_until,
+)
+from stack import Stack
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import ClientConnection
+
+POSE = [0, -1, 0, 10.5, 1, 0, 0, -20, 0, 0, 1, 30, 0, 0, 0, 1]
+
+
+@pytest.fixture
+def robot(stack: StackFactory) -> Stack:
+    return stack()
+
+
+def problem(answer: httpx.Response, status: int, code: str) -> dict:
+    judge(answer)
+    assert (answer.status_code, answer.json()["code"]) == (status, code), answer.text
+    return answer.json()
+
+
+def at_rest(robot: Stack) -> None:
+    """Unlocked, and every axis so still that the kernel takes its position."""
+    unlock(robot)
+    wait_until(
+        "at rest",
+        lambda: {row["verdict"] for row in zero_all(robot)} <= {"ACCEPTED", "RANGE"},
+    )
+
+
+def zero_all(robot: Stack) -> list[dict]:
+    return judge(robot.api.post("/api/motors/zero-all")).raise_for_status().json()
+
+
+def saved(robot: Stack) -> dict:
+    answer = judge(robot.api.get("/api/positions")).raise_for_status()
+    assert re.fullmatch(
+        r'attachment; filename="neuro-positions-\d{8}T\d{6}Z\.json"', answer.headers["content-disposition"]
+    )
+    return answer.json()
+
+
+def restore(robot: Stack, file: dict, *axes: str) -> httpx.Response:
+    return judge(robot.api.put("/api/motors/restore", json={"file": file, "axes": list(axes)}))
+
+
+def restored_at_rest(robot: Stack, file: dict, *axes: str) -> list[dict]:
+    """The verdicts once no encoder trembles any more."""
+    rows: list[dict] = []
+
+    def settled() -> bool:
+        rows[:] = restore(robot, file, *axes).raise_for_status().json()
+        return all(row["verdict"] != "BUSY" for row in rows)
+
+    wait_until("at rest", settled)
+    return rows
+
+
+def positions(robot: Stack) -> dict[str, int]:
+    return {each["name"]: each["position_counts"] for each in robot.api.get("/api/motors").json()}
+
+
+def names(robot: Stack) -> list[str]:
+    return judge(robot.api.get("/api/robots")).json()[0]["axes"]
+
+
+def test_zero_all_answers_for_every_axis_in_the_order_of_the_robot(robot: Stack) -> None:
+    at_rest(robot)
+    rows = zero_all(robot)
+    assert [row["axis"] for row in rows] == names(robot)
+    for row in rows:
+        axis = motor(robot, row["slot"])
+        assert axis["homed"] == (row["verdict"] == "ACCEPTED")
+        assert axis["position_counts"] == 0 or row["verdict"] != "ACCEPTED"
+
+
+def test_positions_outlive_the_robot_and_come_back_by_restore(stack: StackFactory) -> None:
+    before = stack()
+    at_rest(before)
+    act(before, "enable")
+    press(before)
+    wait_for_proposal(before, propose(before, -300), "done")
+    file = saved(before)
+    name = motor(before)["name"]
+    [moved] = [axis["position_counts"] for axis in file["axes"] if axis["axis"] == name]
+    assert moved != 0
+    assert {axis["axis"] for axis in file["axes"]} == set(names(before))
+
+    after = stack(seed=2)
+    unlock(after)
+    row = next(
+        row
+        for row in judge(after.api.post("/api/positions/compare", json=file)).json()["axes"]
+        if row["axis"] == name
+    )
+    assert (row["saved_counts"], row["enabled"], row["restorable"]) == (moved, True, True)
+    [verdict] = restored_at_rest(after, file, name)
+    assert verdict["verdict"] == "ACCEPTED"
+    axis = motor(after)
+    assert axis["position_counts"] == moved
+    assert not axis["homed"]
+    assert axis["state"] == "DISABLED"
+    assert axis["setpoint_counts"] is None
+
+
+def test_a_position_beyond_the_limits_is_refused_by_its_verdict(robot: Stack) -> None:
+    at_rest(robot)
+    file = saved(robot)
+    name = motor(robot)["name"]
+    for axis in file["axes"]:
+        if axis["axis"] == name:
+            axis["position_counts"] = motor(robot)["soft_max_counts"] + 1
+    compared = judge(robot.api.post("/api/positions/compare", json=file)).json()
+    assert [row["axis"] for row in compared["axes"] if not row["restorable"]] == [name]
+    before = positions(robot)
+    [row] = restored_at_rest(robot, file, name)
+    assert row["verdict"] == "RANGE"
+    assert row["detail"]
+    assert positions(robot) == before
+
+
+CHANGES: dict[str, tuple[Callable[[dict], object], int, str]] = {
+    "another robot": (lambda file: file.update(robot="prostate"), 409, "POSITIONS_ROBOT"),
+    "another configuration": (lambda file: file.update(config_crc="00c0ffee"), 409, "POSITIONS_CONFIG"),
+    "another version": (lambda file: file.update(version=2, novelty=1), 409, "POSITIONS_VERSION"),
+    "another format": (lambda file: file.update(format="positions"), 422, "INVALID"),
+    "an axis twice": (lambda file: file["axes"].append(file["axes"][0]), 422, "INVALID"),
+    "an unknown axis": (lambda file: file["axes"][0].update(axis="elbow"), 422, "INVALID"),
+    "an axis missing": (lambda file: file["axes"].pop(), 422, "INVALID"),
+    "an unknown field": (lambda file: file.update(note="mine"), 422, "INVALID"),
+    "a wrong type": (lambda file: file["axes"][0].update(homed="yes"), 422, "INVALID"),
+}
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_a_changed_file_is_refused_and_nothing_is_restored(robot: Stack, change: str) -> None:
+    at_rest(robot)
+    alter, status, code = CHANGES[change]
+    file = saved(robot)
+    name = file["axes"][-1]["axis"]
+    for axis in file["axes"]:
+        axis["position_counts"] += 1
+    alter(file)
+    before = positions(robot)
+    assert problem(robot.api.post("/api/positions/compare", json=file), status, code)["expected"]
+    problem(restore(robot, file, name), status, code)
+    assert positions(robot) == before
+
+
+def test_a_truncated_file_is_malformed(robot: Stack) -> None:
+    text = json.dumps(saved(robot))
+    answer = robot.api.post("/api/positions/compare", content=text[: len(text) // 2])
+    problem(answer, 400, "MALFORMED")
+
+
+def test_an_axis_is_named_by_slot_or_by_name(robot: Stack) -> None:
+    axis = judge(robot.api.get(f"/api/motors/{LATERAL}")).json()
+    assert judge(robot.api.get(f"/api/motors/{axis['name']}")).json()["slot"] == LATERAL
+    unlock(robot)
+    judge(robot.api.post(f"/api/motors/{axis['name']}/enable")).raise_for_status()
+    assert motor(robot)["state"] == "ENABLED"
+
+
+def test_ten_slots_show_their_cards_and_a_card_that_fails(robot: Stack) -> None:
+    cards = judge(robot.api.get("/api/status")).json()["cards"]
+    assert [card["slot"] for card in cards] == list(range(10))
+    for card in cards:
+        assert card["detected"] == (card["card"] != "NONE")
+    failures = cards[LATERAL]["checksum_failures"]
+    robot.control("frame", slot=LATERAL, fault="corrupt", count=2)
+    wait_until(
+        "checksum failures",
+        lambda: robot.status()["cards"][LATERAL]["checksum_failures"] >= failures + 2,
+    )
+    robot.control("card_power", slot=LATERAL, on=False)
+    wait_until("card lost", lambda: not robot.status()["cards"][LATERAL]["detected"])
+    lost = robot.status()["cards"][LATERAL]
+    assert not lost["heartbeat_live"]
+    robot.control("card_power", slot=LATERAL, on=True)
+    robot.control("card_reset", slot=LATERAL)
+    wait_until("card is back", lambda: robot.status()["cards"][LATERAL]["heartbeat_live"])
+    assert all(card["detected"] for card in robot.status()["cards"] if card["card"] != "NONE")
+
+
+def test_the_robot_goes_home_by_its_mode_and_back(robot: Stack) -> None:
+    modes = judge(robot.api.get("/api/mode")).json()
+    assert modes == {"mode": "manual", "modes": judge(robot.api.get("/api/robots")).json()[0]["modes"]}
+    problem(robot.api.put("/api/mode", json={"mode": "home"}), 409, "MODE")
+    unlock(robot)
+    for axis in robot.api.get("/api/motors").json():
+        act(robot, "enable", axis["slot"])
+    assert judge(robot.api.put("/api/mode", json={"mode": "home"})).json()["mode"] == "home"
+    assert robot.status()["app_mode"] == "home"
+    draft = {"slot": LATERAL, "target_counts": 0}
+    problem(robot.api.post("/api/proposals", json=draft), 409, "MODE_HOME")
+    assert judge(robot.api.put("/api/mode", json={"mode": "manual"})).json()["mode"] == "manual"
+    states = [each["state"] for each in robot.api.get("/api/proposals").json() if each["kind"] == "home"]
+    assert states == ["aborted", "refused"]
+
+
+def test_the_robot_homes_by_its_mode_and_is_manual_again(robot: Stack) -> None:
+    unlock(robot)
+    axes = robot.api.get("/api/motors").json()
+    for axis in axes:
+        act(robot, "enable", axis["slot"])
+    judge(robot.api.put("/api/mode", json={"mode": "home"})).raise_for_status()
+    press(robot)
+    wait_until("manual again", lambda: robot.status()["app_mode"] == "manual")
+    assert robot.api.get("/api/proposals").json()[0]["state"] == "done"
+    assert all(motor(robot, axis["slot"])["homed"] for axis in axes if axis["has_switch"])
+    wait_for_mode(robot, "MOTION")
+
+
+def test_targeting_comes_back_as_it_was_set(robot: Stack) -> None:
+    body = {"registration": [str(each) for each in POSE], "ignore_registration_rotation": True}
+    judge(robot.api.put("/api/targeting/registration", json=body)).raise_for_status()
+    judge(robot.api.put("/api/targeting/current", json={"current_position": POSE})).raise_for_status()
+    target = {
+        "entry_point": ["1.5", 2, "-3e1"],
+        "target_point": [4, 5, 6],
+        "canula_to_treatment_offset": "7.5",
+    }
+    answer = judge(robot.api.put("/api/targeting/target", json=target)).raise_for_status()
+    values = judge(robot.api.get("/api/targeting")).json()
+    assert values == answer.json()
+    assert values["registration"] == values["reported_position"] == POSE
+    assert values["ignore_registration_rotation"] is True
+    assert values["entry_point"] == [1.5, 2, -30]
+    assert values["cannula_to_treatment_offset"] == values["canula_to_treatment_offset"] == 7.5
+    judge(robot.api.put("/api/targeting/target", json={"cannula_to_treatment_offset": 8})).raise_for_status()
+    assert robot.api.get("/api/targeting").json()["canula_to_treatment_offset"] == 8
+    records = judge(robot.api.get("/api/audit")).json()
+    changes = [record["detail"] for record in records if record["kind"] == "setting"]
+    assert changes[-1]["old"]["cannula_to_treatment_offset"] == 7.5
+    assert changes[-1]["new"]["cannula_to_treatment_offset"] == 8
+
+
+@pytest.mark.parametrize(
+    ("path", "body", "field"),
+    [
+        ("registration", {"registration": POSE[:15]}, "registration"),
+        ("registration", {"registration": [2, *POSE[1:]]}, "registration"),
+        ("registration", {"registration": ["x", *POSE[1:]]}, "registration[0]"),
+        ("registration", {"registration": [*POSE[:15], 2]}, "registration[15]"),
+        ("current", {}, "current_position"),
+        ("target", {"target_point": [0, 0, 10001]}, "target_point[2]"),
+        ("target", {"robot_to_entry_offset": 1001}, "robot_to_entry_offset"),
+        (
+            "target",
+            {"cannula_to_treatment_offset": 1, "canula_to_treatment_offset": 1},
+            "canula_to_treatment_offset",
+        ),
+    ],
+)
+def test_wrong_targeting_is_named_and_changes_nothing(
+    robot: Stack, path: str, body: dict, field: str
+) -> None:
+    before = robot.api.get("/api/targeting").json()
+    answer = robot.api.put(f"/api/targeting/{path}", json=body)
+    assert problem(answer, 422, "INVALID")["field"] == field
+    assert robot.api.get("/api/targeting").json() == before
+
+
+def logged(stream: ClientConnection) -> Iterator[dict]:
+    for message in stream:
+        if isinstance(message, str) and json.loads(message)["type"] == "log":
+            yield json.loads(message)
+
+
+def test_the_log_is_read_follows_live_and_changes_its_level(robot: Stack) -> None:
+    log = judge(robot.api.get("/api/logs?lines=1000")).json()
+    assert log["level"] == "info"
+    numbers = [line["sequence"] for line in log["lines"]]
+    assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
+    assert any("attached to the kernel" in line["text"] for line in log["lines"])
+    with open_stream(robot) as stream:
+        changed = judge(robot.api.put("/api/logs", json={"level": "debug"})).raise_for_status().json()
+        assert changed == {"level": "debug", "lines": []}
+        robot.api.get("/api/mode")
+        line = next(line for line in logged(stream) if "/api/mode" in line["text"])
+        assert line["level"] == "debug"
+    lines = judge(robot.api.get("/api/logs?level=debug&lines=1000")).json()["lines"]
+    assert line["sequence"] in [each["sequence"] for each in lines]
+    assert robot.password not in json.dumps(lines)
+    problem(robot.api.get("/api/logs?lines=0"), 422, "INVALID")
+    problem(robot.api.get("/api/logs?level=loud"), 422, "INVALID")
+    problem(robot.api.put("/api/logs", json={"level": "loud"}), 422, "INVALID")
+    assert robot.api.get("/api/logs").json()["level"] == "debug"
+
+
+def read_to_end(stream: ClientConnection) -> None:
+    while True:
+        stream.recv()
+
+
+def consoles(robot: Stack) -> list[dict]:
+    connections = judge(robot.api.get("/api/communications")).json()
+    return [each for each in connections if each["type"] == "console"]
+
+
+def test_every_connection_is_listed_and_a_console_can_be_disconnected(robot: Stack) -> None:
+    types = {each["type"]: each["connected"] for each in robot.api.get("/api/communications").json()}
+    assert types == {"kernel": True, "bench": True}
+    with open_stream(robot) as first, open_stream(robot) as second:
+        wait_until("both are listed", lambda: len(consoles(robot)) == 2)
+        gone, stays = consoles(robot)
+        assert gone["client"] == "{}:{}".format(*first.local_address[:2])
+        assert (gone["user"], gone["port"]) == ("admin", robot.port)
+        left = judge(robot.api.put("/api/communications/disconnect", json={"id": gone["id"]}))
+        left.raise_for_status()
+        wait_until("one is left", lambda: [each["id"] for each in consoles(robot)] == [stays["id"]])
+        with pytest.raises(ConnectionClosed):
+            read_to_end(first)
+        assert second.recv()
+        problem(robot.api.put("/api/communications/disconnect", json={"id": gone["id"]}), 404, "NOT_FOUND")
+        problem(robot.api.put("/api/communications/disconnect", json={}), 422, "INVALID")

@@ -1,0 +1,68 @@
+#include "http_fixture.hpp"
+
+namespace interlock::web {
+namespace {
+
+using test::insertion;
+using test::neuro;
+
+using MotorRoutesTest = HttpTest;
+
+TEST_F(MotorRoutesTest, AnAxisIsNamedBySlotOrByName) {
+  show(test::ready_view());
+  const json by_slot = json::parse(get("/api/motors/3").body);
+  const json by_name = json::parse(get("/api/motors/" + neuro().at_slot(insertion)->name).body);
+  EXPECT_EQ(by_slot["name"], neuro().at_slot(insertion)->name);
+  EXPECT_EQ(by_slot, by_name);
+  EXPECT_EQ(get("/api/motors/elbow").status, 404u);
+}
+
+TEST_F(MotorRoutesTest, AnAxisSaysWhetherItHomesAndHasASwitch) {
+  show(test::ready_view());
+  for (const json& motor : json::parse(get("/api/motors").body)) {
+    const Axis& axis = *neuro().find(motor["name"].get<std::string>());
+    EXPECT_EQ(motor["homing"], false);
+    EXPECT_EQ(motor["has_switch"], axis.limit != ILK_LIMIT_NONE);
+  }
+}
+
+TEST_F(MotorRoutesTest, AnActionByNameReachesTheSlot) {
+  show(test::ready_view());
+  const std::string path = "/api/motors/" + neuro().at_slot(insertion)->name + "/enable";
+  auto enabling = std::async(std::launch::async, [&] { return post(path); });
+  const auto ask = std::get<Ask>(next_command());
+  EXPECT_EQ(ask.slot, insertion);
+  answer(Answer{ask.ticket, ILK_VERDICT_ACCEPTED, 7});
+  EXPECT_EQ(json::parse(enabling.get().body)["tick"], 7);
+}
+
+TEST_F(MotorRoutesTest, HomingIsAProposalAndNoAction) {
+  show(test::ready_view());
+  EXPECT_EQ(post("/api/motors/3/home").status, 404u);
+  Command command;
+  EXPECT_FALSE(mailbox_->commands.pop(command));
+}
+
+TEST_F(MotorRoutesTest, StatusShowsAllTenSlots) {
+  ControlView view = test::ready_view();
+  view.snapshot.state.axis[insertion].card_valid = 0;
+  view.snapshot.state.axis[insertion].heartbeat = 77;
+  view.snapshot.state.axis[insertion].checksum_failures = 3;
+  show(view);
+  const json cards = json::parse(get("/api/status").body)["cards"];
+  ASSERT_EQ(cards.size(), static_cast<std::size_t>(ILK_SLOTS));
+  for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
+    const bool has_axis = neuro().at_slot(slot) != nullptr;
+    EXPECT_EQ(cards[slot]["slot"], slot);
+    EXPECT_EQ(cards[slot]["card"] == "NONE", test::neuro_config().axis[slot].card == ILK_CARD_NONE);
+    if (has_axis) {
+      EXPECT_EQ(cards[slot]["detected"], true);
+      EXPECT_EQ(cards[slot]["heartbeat_live"], slot != insertion);
+    }
+  }
+  EXPECT_EQ(cards[insertion]["heartbeat"], 77);
+  EXPECT_EQ(cards[insertion]["checksum_failures"], 3);
+}
+
+}  // namespace
+}  // namespace interlock::web

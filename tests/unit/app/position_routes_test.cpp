@@ -1,0 +1,197 @@
+#include <algorithm>
+
+#include "http_fixture.hpp"
+
+namespace interlock::web {
+namespace {
+
+using test::insertion;
+using test::neuro;
+using testing::HasSubstr;
+
+class PositionRoutesTest : public HttpTest {
+ protected:
+  PositionRoutesTest() { show(test::ready_view()); }
+
+  /** The saved file, once a kernel is seen. */
+  json saved() { return json::parse(get("/api/positions").body); }
+
+  static json restore(const json& file, const std::vector<std::string>& axes) {
+    return {{"file", file}, {"axes", axes}};
+  }
+
+  void expect_nothing_asked() {
+    Command command;
+    EXPECT_FALSE(mailbox_->commands.pop(command));
+  }
+};
+
+TEST_F(PositionRoutesTest, SavedPositionsAreAFileWithAName) {
+  const Answered answered = get("/api/positions");
+  ASSERT_EQ(answered.status, 200u);
+  EXPECT_THAT(std::string(answered.headers["Content-Disposition"]),
+              testing::MatchesRegex("attachment; filename=\"neuro-positions-[0-9]+T[0-9]+Z\\.json\""));
+  EXPECT_EQ(json::parse(answered.body)["axes"].size(), neuro().axes.size());
+}
+
+TEST_F(PositionRoutesTest, TheSetpointOfAnOpenMoveIsSavedWithIt) {
+  ASSERT_EQ(post("/api/proposals", R"({"slot":3,"target_counts":1000})").status, 201u);
+  for (const json& axis : saved()["axes"]) {
+    const bool moves = axis["axis"] == neuro().at_slot(insertion)->name;
+    EXPECT_EQ(axis["setpoint_counts"], moves ? json(1000) : json());
+  }
+}
+
+TEST_F(PositionRoutesTest, ComparingShowsBothAndChangesNothing) {
+  json file = saved();
+  file["axes"][0]["position_counts"] = 1;
+  const Answered answered = post("/api/positions/compare", file.dump());
+  ASSERT_EQ(answered.status, 200u);
+  const json row = json::parse(answered.body)["axes"][0];
+  EXPECT_EQ(row["axis"], neuro().axes[0].name);
+  EXPECT_EQ(row["saved_counts"], 1);
+  EXPECT_EQ(row["now_counts"], test::ready_view().snapshot.state.axis[neuro().axes[0].slot].position_counts);
+  expect_nothing_asked();
+}
+
+TEST_F(PositionRoutesTest, AForeignFileIsRefusedAndNothingIsRestored) {
+  const std::pair<const char*, json> changes[] = {
+      {"POSITIONS_VERSION", {{"version", 2}}},
+      {"POSITIONS_ROBOT", {{"robot", "prostate"}}},
+      {"POSITIONS_CONFIG", {{"config_crc", "00000000"}}},
+  };
+  for (const auto& [code, change] : changes) {
+    json file = saved();
+    file.update(change);
+    const Answered compared = post("/api/positions/compare", file.dump());
+    EXPECT_EQ(compared.status, 409u);
+    EXPECT_EQ(compared.problem()["code"], code);
+    const Answered restored = put("/api/motors/restore", restore(file, {neuro().axes[0].name}).dump());
+    EXPECT_EQ(restored.status, 409u);
+    EXPECT_EQ(restored.problem()["code"], code);
+  }
+  expect_nothing_asked();
+}
+
+TEST_F(PositionRoutesTest, AWrongWishIsNamedAndNothingIsRestored) {
+  const std::string first = neuro().axes[0].name;
+  json broken = saved();
+  broken["axes"][1]["homed"] = 7;
+  const std::pair<json, const char*> cases[] = {
+      {restore(broken, {first}), "file.axes[1].homed"},
+      {restore(saved(), {}), "axes"},
+      {restore(saved(), {first, "elbow"}), "axes[1]"},
+      {restore(saved(), {first, first}), "axes[0]"},
+      {{{"axes", {first}}}, "file"},
+      {{{"file", saved()}}, "axes"},
+      {{{"file", saved()}, {"axes", first}}, "axes"},
+      {{{"file", saved()}, {"axes", {first}}, {"enable", true}}, "enable"}};
+  for (const auto& [body, field] : cases) {
+    const Answered answered = put("/api/motors/restore", body.dump());
+    EXPECT_EQ(answered.status, 422u) << body;
+    EXPECT_EQ(answered.problem()["field"], field);
+  }
+  EXPECT_EQ(put("/api/motors/restore", "{\"file\":").problem()["code"], "MALFORMED");
+  EXPECT_EQ(post("/api/positions/compare", saved().dump().substr(0, 40)).problem()["code"], "MALFORMED");
+  expect_nothing_asked();
+}
+
+TEST_F(PositionRoutesTest, RestoringAsksForEachNamedAxisInTheOrderOfTheRobotAndReportsEachVerdict) {
+  json file = saved();
+  std::vector<std::string> names;
+  for (const Axis& axis : neuro().axes) {
+    names.push_back(axis.name);
+  }
+  const std::vector<std::string> wanted{names[2], names[0]};
+  for (json& axis : file["axes"]) {
+    axis["position_counts"] = axis["axis"] == names[0] ? 11 : 22;
+  }
+  auto restoring = std::async(std::launch::async,
+                              [&] { return put("/api/motors/restore", restore(file, wanted).dump()); });
+  const auto first = std::get<Ask>(next_command());
+  EXPECT_EQ(first.kind, static_cast<std::uint32_t>(ILK_REQUEST_RESTORE));
+  EXPECT_EQ(first.slot, neuro().axes[0].slot);
+  EXPECT_EQ(first.target_counts, 11);
+  answer(Answer{first.ticket, ILK_VERDICT_BUSY, 5});
+  const auto second = std::get<Ask>(next_command());
+  EXPECT_EQ(second.slot, neuro().axes[2].slot);
+  EXPECT_EQ(second.target_counts, 22);
+  answer(Answer{second.ticket, ILK_VERDICT_ACCEPTED, 6});
+  const Answered answered = restoring.get();
+  ASSERT_EQ(answered.status, 200u);
+  const json rows = json::parse(answered.body);
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0]["verdict"], "BUSY");
+  EXPECT_FALSE(rows[0]["detail"].get<std::string>().empty());
+  EXPECT_EQ(rows[1]["verdict"], "ACCEPTED");
+  EXPECT_FALSE(rows[1].contains("detail"));
+  expect_nothing_asked();
+  EXPECT_EQ(audit("restore").at(0)["axes"], json({{names[0], 11}, {names[2], 22}}));
+}
+
+TEST_F(PositionRoutesTest, AKernelOfAnotherConfigurationRestoresNothing) {
+  const json file = saved();
+  ControlView other = test::ready_view();
+  other.snapshot.config_crc ^= 1u;
+  show(other);
+  const Answered answered = put("/api/motors/restore", restore(file, {neuro().axes[0].name}).dump());
+  EXPECT_EQ(answered.status, 409u);
+  EXPECT_EQ(answered.problem()["code"], "CONFIG_MISMATCH");
+  expect_nothing_asked();
+}
+
+TEST_F(PositionRoutesTest, ZeroAllAsksForEveryAxisInTheOrderOfTheRobot) {
+  auto zeroing = std::async(std::launch::async, [this] { return post("/api/motors/zero-all"); });
+  for (const Axis& axis : neuro().axes) {
+    const auto ask = std::get<Ask>(next_command());
+    EXPECT_EQ(ask.kind, static_cast<std::uint32_t>(ILK_REQUEST_SET_HOME));
+    EXPECT_EQ(ask.slot, axis.slot);
+    answer(Answer{ask.ticket, ILK_VERDICT_ACCEPTED, 5});
+  }
+  const Answered answered = zeroing.get();
+  ASSERT_EQ(answered.status, 200u);
+  EXPECT_EQ(json::parse(answered.body).size(), neuro().axes.size());
+}
+
+TEST_F(PositionRoutesTest, WhenTheKernelFallsSilentTheRestIsNotSent) {
+  auto zeroing = std::async(std::launch::async, [this] { return post("/api/motors/zero-all"); });
+  answer(Answer{std::get<Ask>(next_command()).ticket, ILK_VERDICT_ACCEPTED, 5});
+  answer(Answer{std::get<Ask>(next_command()).ticket, std::nullopt, 0});
+  const json rows = json::parse(zeroing.get().body);
+  EXPECT_EQ(rows[0]["verdict"], "ACCEPTED");
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    EXPECT_TRUE(rows[i]["verdict"].is_null());
+    EXPECT_THAT(rows[i]["detail"].get<std::string>(), HasSubstr(i == 1 ? "did not answer" : "Not sent"));
+  }
+  expect_nothing_asked();
+}
+
+TEST_F(PositionRoutesTest, WhoLosesTheAuthorityMeanwhileSetsNoFurtherAxis) {
+  const std::string admin = token_of("ada");
+  auto zeroing = std::async(std::launch::async, [this] { return post("/api/motors/zero-all"); });
+  const auto first = std::get<Ask>(next_command());
+  EXPECT_EQ(as(admin, [this] { return post("/api/authority/take-over"); }).status, 200u);
+  answer(Answer{first.ticket, ILK_VERDICT_ACCEPTED, 5});
+  const json rows = json::parse(zeroing.get().body);
+  EXPECT_EQ(rows[0]["verdict"], "ACCEPTED");
+  EXPECT_THAT(rows[1]["detail"].get<std::string>(), HasSubstr("authority"));
+  expect_nothing_asked();
+}
+
+TEST_F(PositionRoutesTest, WithoutAKernelNothingIsSavedComparedOrSet) {
+  const json file = saved();
+  show(ControlView{});
+  EXPECT_EQ(get("/api/positions").problem()["code"], "NO_KERNEL");
+  EXPECT_EQ(post("/api/positions/compare", file.dump()).problem()["code"], "NO_KERNEL");
+  EXPECT_EQ(put("/api/motors/restore", restore(file, {neuro().axes[0].name}).dump()).status, 503u);
+  EXPECT_EQ(post("/api/motors/zero-all").status, 503u);
+  expect_nothing_asked();
+}
+
+TEST_F(PositionRoutesTest, ThePathsOfSeveralAxesAreNoAxes) {
+  EXPECT_EQ(get("/api/motors/zero-all").headers[http::field::allow], "POST");
+  EXPECT_EQ(get("/api/motors/restore").headers[http::field::allow], "PUT");
+}
+
+}  // namespace
+}  // namespace interlock::web

@@ -1,0 +1,81 @@
+#include "http/targeting.hpp"
+#include "http_fixture.hpp"
+
+namespace interlock::web {
+namespace {
+
+class TargetingRoutesTest : public HttpTest {
+ protected:
+  json targeting() { return json::parse(get("/api/targeting").body); }
+};
+
+const json pose{"0", -1, 0, 10.5, 1, 0, 0, -20, 0, 0, "1.0", 30, 0, 0, 0, 1};
+const json pose_as_numbers{0.0, -1.0, 0.0, 10.5, 1.0, 0.0, 0.0, -20.0,
+                           0.0, 0.0,  1.0, 30.0, 0.0, 0.0, 0.0, 1.0};
+
+TEST_F(TargetingRoutesTest, StartsWithTheProbeOfTheRobot) {
+  const json values = targeting();
+  EXPECT_EQ(values["treatment_to_tip_offset"], test::neuro().probe.treatment_to_tip_mm);
+  EXPECT_EQ(values["treatment_to_robot_at_home"], test::neuro().probe.treatment_to_robot_at_home_mm);
+  EXPECT_TRUE(values["target_point"].is_null());
+}
+
+TEST_F(TargetingRoutesTest, WhatIsSetIsAnsweredAndKept) {
+  const json registration{{"registration", pose}, {"ignore_registration_rotation", true}};
+  ASSERT_EQ(put("/api/targeting/registration", registration.dump()).status, 200u);
+  ASSERT_EQ(put("/api/targeting/current", json{{"current_position", pose}}.dump()).status, 200u);
+  const json target{
+      {"entry_point", {"1", 2, 3}}, {"target_point", {4, 5, 6}}, {"canula_to_treatment_offset", "7.5"}};
+  const Answered answered = put("/api/targeting/target", target.dump());
+  ASSERT_EQ(answered.status, 200u);
+  const json values = targeting();
+  EXPECT_EQ(json::parse(answered.body), values);
+  EXPECT_EQ(values["registration"], pose_as_numbers);
+  EXPECT_EQ(values["reported_position"], pose_as_numbers);
+  EXPECT_EQ(values["ignore_registration_rotation"], true);
+  EXPECT_EQ(values["entry_point"], json({1.0, 2.0, 3.0}));
+  EXPECT_EQ(values["cannula_to_treatment_offset"], 7.5);
+  EXPECT_EQ(values["canula_to_treatment_offset"], 7.5);
+}
+
+TEST_F(TargetingRoutesTest, AChangeIsAuditedWithOldAndNew) {
+  ASSERT_EQ(put("/api/targeting/target", R"({"target_point":[1,2,3]})").status, 200u);
+  const auto records = audit("setting");
+  ASSERT_EQ(records.size(), 1u);
+  EXPECT_EQ(records[0]["setting"], "targeting");
+  EXPECT_EQ(records[0]["old"], json({{"target_point", nullptr}}));
+  EXPECT_EQ(records[0]["new"], json({{"target_point", {1.0, 2.0, 3.0}}}));
+}
+
+TEST_F(TargetingRoutesTest, WhatChangesNothingIsNoRecord) {
+  EXPECT_EQ(put("/api/targeting/target", "{}").status, 200u);
+  EXPECT_TRUE(audit("setting").empty());
+}
+
+TEST_F(TargetingRoutesTest, WhatIsRefusedHasChangedNothing) {
+  const json before = targeting();
+  const std::pair<std::string, std::string> cases[] = {
+      {"registration", R"({"registration":[1,2,3]})"},
+      {"registration", R"({"registration":[2,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]})"},
+      {"registration", R"({})"},
+      {"registration", R"({"registration":"identity"})"},
+      {"current", R"({"current_position":[1,0,0,0,0,1,0,0,0,0,-1,0,0,0,0,1]})"},
+      {"target", R"({"entry_point":[1,2,"three"]})"},
+      {"target", R"({"target_point":[1,2,10001]})"},
+      {"target", R"({"robot_to_entry_offset":1001})"},
+      {"target", R"({"robot_to_entry_offset":"12mm"})"},
+      {"target", R"({"cannula_to_treatment_offset":1,"canula_to_treatment_offset":1})"},
+      {"target", R"({"depth":1})"},
+      {"target", R"([])"}};
+  for (const auto& [path, body] : cases) {
+    const Answered answered = put("/api/targeting/" + path, body);
+    EXPECT_EQ(answered.status, 422u) << body;
+    EXPECT_EQ(answered.problem()["code"], "INVALID") << body;
+  }
+  EXPECT_EQ(put("/api/targeting/target", "{").problem()["code"], "MALFORMED");
+  EXPECT_EQ(targeting(), before);
+  EXPECT_TRUE(audit("setting").empty());
+}
+
+}  // namespace
+}  // namespace interlock::web
