@@ -80,7 +80,7 @@ function CardLine({ card }: { readonly card: CardStatus }) {
     <tr data-empty={empty}>
       <td>{card.slot}</td>
       <th scope="row" title={entry("card", card.card).meaning}>
-        {empty ? "empty" : card.card}
+        {empty ? "empty" : card.card.replaceAll("_", " ")}
       </th>
       <td className={lost ? "bad" : ""}>{mark(empty, card.detected, "yes", "NO")}</td>
       <td className={silent ? "bad" : ""} title={`heartbeat ${card.heartbeat}`}>
