@@ -26,6 +26,14 @@ export class Axis {
     await this.expectState("ENABLED");
   }
 
+  /** Declares that the axis is at home; the kernel wants it at rest, so one that still settles is asked again. */
+  async setHome(): Promise<void> {
+    await expect(async () => {
+      await this.press("Set Home");
+      await expect(this.row.getByText("UNHOMED")).toHaveCount(0, { timeout: 2000 });
+    }).toPass();
+  }
+
   /** Types a target in the axis' unit and proposes it. */
   async propose(target: string): Promise<void> {
     await this.row.getByRole("textbox").fill(target);

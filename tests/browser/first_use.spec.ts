@@ -291,8 +291,7 @@ test("the picture of the README comes from a real run", async ({ robot, page }) 
   await robot.unlockRobot();
   for (const title of ["Probe rotation", "Axial feet"]) {
     await robot.axis(title).enable();
-    await robot.axis(title).press("Set Home");
-    await expect(robot.axis(title).row.getByText("UNHOMED")).toHaveCount(0);
+    await robot.axis(title).setHome();
   }
   await robot.axis("Probe insertion").propose("30");
   await robot.axis("Probe insertion").expectRefusal("DISABLED");

@@ -21,32 +21,29 @@ test("Go Home runs an axis to its switch, and its limits become known", async ({
   await expect(robot.button("Go Home Probe insertion")).toBeEnabled();
 });
 
-test("Home all goes step by step, each with a press of the pedal of its own", async ({ robot }) => {
+test("Home all goes through the steps while the pedal is held, and ends in manual mode", async ({
+  robot,
+  page,
+}) => {
   test.setTimeout(180_000);
+  const titles = ["Yaw", "Pitch", "Probe insertion", "Lateral", "Axial head"];
   await robot.unlockRobot();
-  for (const title of ["Yaw", "Pitch", "Probe insertion", "Lateral", "Axial head"]) {
-    await robot.axis(title).enable();
-  }
+  for (const title of titles) await robot.axis(title).enable();
   await robot.button("Home all").click();
-  const progress = robot.panel("Homing progress");
-  await expect(progress.getByRole("listitem").filter({ hasText: "Probe out" })).toHaveAttribute(
-    "aria-current",
-    "step",
-  );
+  const step = (title: string) =>
+    robot.panel("Homing progress").getByRole("listitem").filter({ hasText: title });
+  await expect(step("Probe out")).toHaveAttribute("aria-current", "step");
   await expect(robot.button("Waits Yaw")).toBeDisabled();
   await robot.latchPedal();
-  const second = progress.getByRole("listitem").filter({ hasText: "Angles" });
-  await expect(second).toHaveAttribute("aria-current", "step", { timeout: homingTakes });
-  await expect(progress).toContainText(/release the pedal/i);
-  await robot.latch.click();
-  await robot.expectMode("READY");
-  await robot.latchPedal();
-  for (const title of ["Yaw", "Pitch"]) {
-    await expect(robot.axis(title).row.getByText("UNHOMED")).toHaveCount(0, { timeout: homingTakes });
+  await expect(step("Angles")).toHaveAttribute("aria-current", "step", { timeout: homingTakes });
+  await expect(step("Probe out")).toContainText("done");
+  await expect(robot.button("Homing.. Yaw")).toBeDisabled();
+  await expect(robot.proposal(1)).toContainText("done", { timeout: homingTakes });
+  for (const title of titles) {
+    await expect(robot.axis(title).row.getByText("UNHOMED")).toHaveCount(0);
   }
-  await robot.button("Abort homing").click();
-  await expect(progress).toHaveCount(0);
-  await expect(robot.proposal(1)).toContainText("aborted");
+  await expect(robot.panel("Homing progress")).toHaveCount(0);
+  await expect(page.getByRole("status", { name: "Robot mode now" })).toHaveText("manual");
 });
 
 test("an axis without a switch is homed by Set Home alone", async ({ robot }) => {
@@ -54,8 +51,7 @@ test("an axis without a switch is homed by Set Home alone", async ({ robot }) =>
   await robot.unlockRobot();
   await expect(robot.button("Go Home Probe rotation")).toBeDisabled();
   await expect(robot.button("Go Home Probe rotation")).toHaveAttribute("title", /press Set Home/);
-  await axis.press("Set Home");
-  await expect(axis.row.getByText("UNHOMED")).toHaveCount(0);
+  await axis.setHome();
   await expect(axis.row.getByText("359.82°", { exact: true })).toBeVisible();
 });
 
@@ -111,6 +107,7 @@ test.describe("the prostate robot", () => {
     await expect(progress.getByRole("listitem").nth(1)).toHaveAttribute("aria-current", "step", {
       timeout: homingTakes,
     });
+    await expect(progress).toContainText(/release the pedal/i, { timeout: homingTakes });
     await robot.stop.click();
     await expect(progress).toHaveCount(0);
     await expect(robot.proposal(1)).toContainText("aborted");
