@@ -1,0 +1,78 @@
+"""Whatever is sent, the answer is one that spec/openapi.yaml describes, and never a failure of the app."""
+
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import schemathesis
+from hypothesis import HealthCheck, given, settings
+from interface import spec
+from schemathesis.checks import load_all_checks
+from schemathesis.specs.openapi.checks import (
+    content_type_conformance,
+    response_schema_conformance,
+    status_code_conformance,
+)
+from stack import Stack
+
+EXAMPLES = 25
+# The stream is no HTTP exchange, and the session of these tests has to last.
+LEFT_OUT = {"stream", "logout"}
+# Those of the table in `info.description`, which every path can answer.
+COMMON = ("403", "404", "405", "400")
+
+load_all_checks()
+
+
+def load() -> schemathesis.schemas.BaseSchema:
+    described = spec()
+    for methods in described["paths"].values():
+        for method, operation in methods.items():
+            if method == "parameters":
+                continue
+            for status in COMMON:
+                operation["responses"].setdefault(status, {"$ref": "#/components/responses/NotFound"})
+    return schemathesis.openapi.from_dict(described)
+
+
+SCHEMA = load()
+OPERATIONS = [
+    pytest.param(operation, id=operation.label)
+    for operation in (result.ok() for result in SCHEMA.get_all_operations())
+    if operation.definition.raw["operationId"] not in LEFT_OUT
+]
+
+
+@pytest.fixture(scope="module")
+def robot() -> Iterator[Stack]:
+    with tempfile.TemporaryDirectory(prefix="interlock-test-") as directory:
+        started = Stack(Path(directory), "--clock", "sim", "--speed", "1")
+        try:
+            yield started
+        finally:
+            started.close()
+
+
+@pytest.mark.parametrize("operation", OPERATIONS)
+def test_every_answer_is_described(robot: Stack, operation: schemathesis.APIOperation) -> None:
+    cookie = "; ".join(f"{name}={value}" for name, value in robot.api.cookies.items())
+
+    @settings(
+        max_examples=EXAMPLES,
+        derandomize=True,
+        deadline=None,
+        database=None,
+        suppress_health_check=list(HealthCheck),
+    )
+    @given(case=operation.as_strategy())
+    def ask(case: schemathesis.Case) -> None:
+        response = case.call(base_url=robot.url, headers={"Cookie": cookie})
+        assert response.status_code < 500 or response.status_code == 503, response.text
+        case.validate_response(
+            response,
+            checks=[status_code_conformance, content_type_conformance, response_schema_conformance],
+        )
+
+    ask()
+    assert robot.status()["connected"]
