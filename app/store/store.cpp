@@ -1,7 +1,10 @@
 #include "store/store.hpp"
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <sqlite3.h>
 
+#include <chrono>
+#include <thread>
 #include <utility>
 
 #include "store/digest.hpp"
@@ -13,6 +16,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/** SQLite waits for no lock when it changes the journal mode, so a process that opens the same new store at
+ * the same moment makes it fail at once. */
+void use_write_ahead_log(SQLite::Database& database) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::milliseconds(store_patience_ms);
+  for (;;) {
+    try {
+      database.exec("PRAGMA journal_mode = WAL");
+      return;
+    } catch (const SQLite::Exception& error) {
+      if (error.getErrorCode() != SQLITE_BUSY || std::chrono::steady_clock::now() > deadline) {
+        throw;
+      }
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+}
+
 Stored<std::unique_ptr<SQLite::Database>> connect(const fs::path& file) {
   try {
     auto database =
@@ -20,7 +40,7 @@ Stored<std::unique_ptr<SQLite::Database>> connect(const fs::path& file) {
     if (const Stored<void> checked = check_schema(*database, migrations()); !checked) {
       return tl::unexpected(checked.error());
     }
-    database->exec("PRAGMA journal_mode = WAL");
+    use_write_ahead_log(*database);
     // FULL: a commit is on the disk before it is acknowledged, whatever happens to the machine.
     database->exec("PRAGMA synchronous = FULL");
     database->exec("PRAGMA foreign_keys = ON");

@@ -247,7 +247,7 @@ def test_loss_of_a_required_sensor_ends_motion(trainer: Stack) -> None:
 
 def test_prostate_robot_runs_and_its_force_sensor_can_be_pressed(stack: StackFactory) -> None:
     prostate = stack(robot="prostate")
-    prostate.status_when(lambda status: len(status["cards"]) == 7)
+    prostate.status_when(lambda status: sum(card["detected"] for card in status["cards"]) == 7)
     prostate.control("force", slot=3, adc=3, counts=-200)
     wait_until("the force to act", lambda: readings(prostate) == {2: 1970, 3: 1580})
     to_motion(prostate, ROTATION)
