@@ -45,7 +45,7 @@ build: setup $(release)/build.ninja build/stamps/console ## Build everything (th
 	@ninja -C $(release) | sed -uE '/: Entering directory|Re-checking globbed|Reading the commit|no work to do/d'
 
 .PHONY: run
-run: build ## Start simulated robot, kernel, app and console: [ROBOT=neuro] [PORT=8080]
+run: build ## Start simulated robot, kernel, app and console: [ROBOT=neuro|prostate] [PORT=8080]
 	@exec $(release)/bin/interlock run --robot $(ROBOT) --port $(PORT)
 
 .PHONY: test test-unit test-console test-integration test-browser

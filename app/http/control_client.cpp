@@ -22,11 +22,10 @@ ControlClient::ControlClient(const asio::any_io_executor& executor, Mailbox& mai
     : executor_(executor), mailbox_(mailbox), wake_(executor, ::dup(mailbox.network_wake.descriptor())) {}
 
 bool ControlClient::send(Command command) {
-  const std::uint32_t stops = mailbox_.stops.load(std::memory_order_relaxed);
   if (auto* order = std::get_if<Order>(&command)) {
-    order->stops = stops;
+    order->stops = stops();
   } else if (auto* home = std::get_if<HomeOrder>(&command)) {
-    home->stops = stops;
+    home->stops = stops();
   }
   return mailbox_.commands.push(command);
 }

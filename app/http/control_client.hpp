@@ -24,6 +24,9 @@ class ControlClient {
   /** What the control thread saw last. The reference holds until the next call. */
   [[nodiscard]] const ControlView& view() { return mailbox_.view.newest(); }
 
+  /** STOPs and changes of the motion authority so far. */
+  [[nodiscard]] std::uint32_t stops() const { return mailbox_.stops.load(std::memory_order_relaxed); }
+
   /** Hands over a command, an order marked as newer than every STOP so far; false when the queue is full. */
   bool send(Command command);
 

@@ -79,7 +79,7 @@ struct Mailbox {
   std::atomic<std::uint32_t> stops{0}; /**< STOPs asked for since start */
   /** Number of the present motion authority; 0: nobody. Changed before the STOP that each change is. */
   std::atomic<std::uint32_t> holder{0};
-  WakeSignal network_wake;             /**< a notice came or an order changed */
+  WakeSignal network_wake; /**< a notice came or an order changed */
 };
 
 }  // namespace interlock

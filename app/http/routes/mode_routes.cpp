@@ -2,6 +2,7 @@
 
 #include "http/fields.hpp"
 #include "http/problems.hpp"
+#include "http/proposing.hpp"
 #include "robot/compile.hpp"
 
 namespace interlock::web {
@@ -59,8 +60,7 @@ json mode_json(const Robot& robot, std::string_view mode) { return {{"mode", mod
 ModeRoutes::ModeRoutes(const Context& context, Router& router) : context_(context) {
   router.add(verb::get, "/api/robots", viewers, [this](const Call&) -> Answering { co_return robots(); });
   router.add(verb::get, "/api/mode", viewers, [this](const Call&) -> Answering { co_return mode(); });
-  router.add(verb::put, "/api/mode", holder,
-             [this](const Call& call) -> Answering { co_return set_mode(call); });
+  router.add(verb::put, "/api/mode", holder, [this](const Call& call) { return set_mode(call); });
 }
 
 Reply ModeRoutes::robots() const {
@@ -72,8 +72,8 @@ Reply ModeRoutes::mode() const {
   return Success{.body = mode_json(context_.robot, context_.book.app_mode())};
 }
 
-Reply ModeRoutes::set_mode(const Call& call) const {
-  return parse_body(call.request).and_then([&](const json& body) -> Reply {
+tl::expected<std::string, Problem> ModeRoutes::wanted_mode(const Call& call) const {
+  return parse_body(call.request).and_then([&](const json& body) -> tl::expected<std::string, Problem> {
     const std::vector<std::string_view> modes(context_.robot.modes.begin(), context_.robot.modes.end());
     Fields fields(body, {"mode"});
     const auto wanted = fields.choice("mode", modes);
@@ -81,16 +81,24 @@ Reply ModeRoutes::set_mode(const Call& call) const {
     if (fields.problem()) {
       return fail(*fields.problem());
     }
-    return *wanted == "home" ? go_home(call.caller.user) : go_manual();
+    return std::string(*wanted);
   });
 }
 
-Reply ModeRoutes::go_home(const std::string& author) const {
-  return context_.need_kernel().and_then([&]() -> Reply {
-    return context_.book.propose_home({std::nullopt, std::nullopt, author}, context_.view())
-        .map_error(refused)
-        .and_then([this](const Proposal&) { return mode(); });
-  });
+Answering ModeRoutes::set_mode(const Call& call) const {
+  const auto wanted = wanted_mode(call);
+  if (!wanted) {
+    co_return fail(wanted.error());
+  }
+  if (*wanted != "home") {
+    co_return go_manual();
+  }
+  if (const auto kernel = context_.need_kernel(); !kernel) {
+    co_return fail(kernel.error());
+  }
+  Draft whole_robot = HomeDraft{std::nullopt, std::nullopt, call.caller.user};
+  auto made = co_await propose(context_, call.caller, std::move(whole_robot));
+  co_return std::move(made).and_then([this](const Proposal&) { return mode(); });
 }
 
 Reply ModeRoutes::go_manual() const {

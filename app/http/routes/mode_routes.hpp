@@ -20,8 +20,8 @@ class ModeRoutes {
  private:
   [[nodiscard]] Reply robots() const;
   [[nodiscard]] Reply mode() const;
-  [[nodiscard]] Reply set_mode(const Call& call) const;
-  [[nodiscard]] Reply go_home(const std::string& author) const;
+  [[nodiscard]] tl::expected<std::string, Problem> wanted_mode(const Call& call) const;
+  [[nodiscard]] boost::asio::awaitable<Reply> set_mode(const Call& call) const;
   [[nodiscard]] Reply go_manual() const;
 
   const Context& context_;

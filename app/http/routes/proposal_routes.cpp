@@ -2,10 +2,10 @@
 
 #include <array>
 #include <limits>
-#include <variant>
 
 #include "http/fields.hpp"
 #include "http/problems.hpp"
+#include "http/proposing.hpp"
 #include "proposals/proposal_json.hpp"
 
 namespace interlock::web {
@@ -14,8 +14,6 @@ namespace {
 using Answering = boost::asio::awaitable<Reply>;
 using boost::beast::http::verb;
 using nlohmann::json;
-
-using Draft = std::variant<MoveDraft, HomeDraft>;
 
 constexpr std::int64_t lowest_counts = std::numeric_limits<std::int32_t>::min();
 constexpr std::int64_t highest_counts = std::numeric_limits<std::int32_t>::max();
@@ -102,8 +100,7 @@ tl::expected<Draft, Problem> draft_of(const json& body, const Robot& robot, cons
 
 ProposalRoutes::ProposalRoutes(const Context& context, Router& router) : context_(context) {
   router.add(verb::get, "/api/proposals", viewers, [this](const Call&) -> Answering { co_return list(); });
-  router.add(verb::post, "/api/proposals", holder,
-             [this](const Call& call) -> Answering { co_return propose(call); });
+  router.add(verb::post, "/api/proposals", holder, [this](const Call& call) { return propose(call); });
   router.add(verb::get, "/api/proposals/{id}", viewers,
              [this](const Call& call) -> Answering { co_return show(call); });
   router.add(verb::post, "/api/proposals/{id}/abort", holder,
@@ -119,18 +116,19 @@ Reply ProposalRoutes::list() const {
   return Success{Status::ok, std::move(list)};
 }
 
-Reply ProposalRoutes::propose(const Call& call) const {
-  return parse_body(call.request)
-      .and_then([&](const json& body) { return draft_of(body, context_.robot, call.caller.user); })
-      .and_then([this](const Draft& draft) -> Reply {
-        return context_.need_kernel().and_then([&]() -> Reply {
-          const auto* move = std::get_if<MoveDraft>(&draft);
-          return (move != nullptr ? context_.book.propose(*move, context_.view())
-                                  : context_.book.propose_home(std::get<HomeDraft>(draft), context_.view()))
-              .map([](const Proposal& made) { return Success{Status::created, to_json(made)}; })
-              .map_error(refused);
-        });
-      });
+Answering ProposalRoutes::propose(const Call& call) const {
+  auto draft = parse_body(call.request).and_then([&](const json& body) {
+    return draft_of(body, context_.robot, call.caller.user);
+  });
+  if (!draft) {
+    co_return fail(draft.error());
+  }
+  if (const auto kernel = context_.need_kernel(); !kernel) {
+    co_return fail(kernel.error());
+  }
+  auto made = co_await web::propose(context_, call.caller, std::move(*draft));
+  co_return std::move(made).map(
+      [](const Proposal& proposal) { return Success{Status::created, to_json(proposal)}; });
 }
 
 Reply ProposalRoutes::show(const Call& call) const {

@@ -16,7 +16,7 @@ class ProposalRoutes {
 
  private:
   [[nodiscard]] Reply list() const;
-  [[nodiscard]] Reply propose(const Call& call) const;
+  [[nodiscard]] boost::asio::awaitable<Reply> propose(const Call& call) const;
   [[nodiscard]] Reply show(const Call& call) const;
   [[nodiscard]] Reply abort(const Call& call) const;
 

@@ -1,0 +1,63 @@
+#include "http/proposing.hpp"
+
+#include "http/problems.hpp"
+
+namespace interlock::web {
+namespace {
+
+using nlohmann::json;
+
+json detail_of(const MoveDraft& draft, const Robot& robot) {
+  json detail{
+      {"kind", "move"}, {"axis", robot.at_slot(draft.slot)->name}, {"target_counts", draft.target_counts}};
+  if (draft.drive) {
+    detail["drive"] = *draft.drive;
+  }
+  return detail;
+}
+
+json detail_of(const HomeDraft& draft, const Robot& robot) {
+  json detail{{"kind", "home"}};
+  if (draft.slot) {
+    detail["axis"] = robot.at_slot(*draft.slot)->name;
+  }
+  if (draft.step) {
+    detail["step"] = *draft.step;
+  }
+  return detail;
+}
+
+Problem stopped_meanwhile() {
+  return {.status = Status::conflict,
+          .code = "STOPPED",
+          .detail = "STOP was pressed before the proposal was made.",
+          .next_step = "Propose it again, if it is still wanted."};
+}
+
+tl::expected<Proposal, Refusal> enter(ProposalBook& book, const Draft& draft, const ControlView& view) {
+  if (const auto* move = std::get_if<MoveDraft>(&draft)) {
+    return book.propose(*move, view);
+  }
+  return book.propose_home(std::get<HomeDraft>(draft), view);
+}
+
+}  // namespace
+
+boost::asio::awaitable<tl::expected<Proposal, Problem>> propose(const Context& context, const Caller& caller,
+                                                                Draft draft) {
+  const std::uint32_t stops = context.control.stops();
+  json asked{{"asked", std::visit([&](const auto& each) { return detail_of(each, context.robot); }, draft)}};
+  const auto announced = co_await context.announce(caller, AuditKind::proposal, std::move(asked));
+  if (!announced) {
+    co_return fail(announced.error());
+  }
+  if (context.control.stops() != stops) {
+    co_return fail(stopped_meanwhile());
+  }
+  if (const auto kernel = context.need_kernel(); !kernel) {
+    co_return fail(kernel.error());
+  }
+  co_return enter(context.book, draft, context.view()).map_error(refused);
+}
+
+}  // namespace interlock::web

@@ -1,0 +1,62 @@
+"""While the store cannot be written: STOP acts at once, and nothing moves that was not recorded first."""
+
+import contextlib
+import sqlite3
+import threading
+from collections.abc import Iterator
+
+import httpx
+from conftest import StackFactory
+from motion import LATERAL, is_driven, proposal, propose, to_motion, wait_for_proposal, wait_until
+from stack import Stack
+
+
+@contextlib.contextmanager
+def busy_store(robot: Stack) -> Iterator[None]:
+    """Another process writes, so that the app's records have to wait."""
+    with contextlib.closing(sqlite3.connect(robot.state / "interlock.db", isolation_level=None)) as store:
+        store.execute("BEGIN IMMEDIATE")
+        yield
+        store.execute("ROLLBACK")
+
+
+class Proposing(threading.Thread):
+    """Proposes a move; the answer comes when the store can be written again."""
+
+    def __init__(self, robot: Stack) -> None:
+        super().__init__()
+        self.client = robot.visitor()
+        self.client.cookies = robot.api.cookies
+
+    def run(self) -> None:
+        draft = {"slot": LATERAL, "target_counts": -500}
+        self.answer: httpx.Response = self.client.post("/api/proposals", json=draft)
+
+
+def test_STOP_acts_without_the_store_and_outlives_a_proposal_that_waits_for_it(stack: StackFactory) -> None:
+    robot = stack(speed=1)
+    to_motion(robot)
+    proposing = Proposing(robot)
+    moving = propose(robot, -900)
+    wait_until("driven", lambda: is_driven(robot))
+    with busy_store(robot):
+        proposing.start()
+        for _ in range(5):  # Each is answered after the app has seen what was sent before.
+            robot.status()
+        stopped = robot.api.post("/api/stop").raise_for_status()
+        assert stopped.json()["verdict"] == "ACCEPTED"
+        assert not is_driven(robot)
+        assert proposing.is_alive()
+    proposing.join()
+    assert (proposing.answer.status_code, proposing.answer.json()["code"]) == (409, "STOPPED")
+    assert proposal(robot, moving)["state"] == "aborted"
+    assert all(each["state"] != "approved" for each in robot.api.get("/api/proposals").json())
+
+
+def test_a_move_is_recorded_before_it_is_acknowledged(stack: StackFactory) -> None:
+    robot = stack()
+    to_motion(robot)
+    wait_for_proposal(robot, propose(robot, -300), "done")
+    records = robot.api.get("/api/audit").raise_for_status().json()
+    asked = [record["detail"]["asked"] for record in records if "asked" in record["detail"]]
+    assert {"kind": "move", "axis": "lateral", "target_counts": -300} in asked
