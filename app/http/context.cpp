@@ -39,7 +39,8 @@ AuditEntry Context::entry(const Caller& caller, AuditKind kind, nlohmann::json d
                    .session = std::nullopt,
                    .kind = kind,
                    .detail = std::move(detail)};
-  if (const ControlView& now = control.view(); now.attached) {
+  // Not the newest view: whoever changes a proposal is in the middle of reading this one.
+  if (const ControlView& now = control.current(); now.attached) {
     entry.tick = now.snapshot.state.tick;
   }
   if (caller.session != 0) {
@@ -81,7 +82,11 @@ boost::asio::awaitable<Reply> Context::ask_kernel(const Caller& caller, std::uin
       co_return fail(announced.error());
     }
   }
+  const std::uint32_t stops = control.stops();
   const auto answer = co_await control.ask(kind, slot, target_counts);
+  if (answer && !answer->verdict && control.stops() != stops) {
+    co_return fail(stopped_meanwhile(where));
+  }
   if (!answer || !answer->verdict) {
     co_return fail(no_kernel("The kernel did not answer within a second."));
   }

@@ -26,6 +26,8 @@ bool ControlClient::send(Command command) {
     order->stops = stops();
   } else if (auto* home = std::get_if<HomeOrder>(&command)) {
     home->stops = stops();
+  } else if (auto* asked = std::get_if<Ask>(&command)) {
+    asked->stops = stops();
   }
   return mailbox_.commands.push(command);
 }
@@ -35,7 +37,7 @@ asio::awaitable<std::optional<Answer>> ControlClient::ask(std::uint32_t kind, st
   const auto deadline = steady_clock::now() + ask_timeout;
   Waiter<Answer> waiter{std::nullopt, asio::steady_timer(executor_, deadline)};
   const std::uint32_t ticket = ++last_ticket_;
-  if (!send(Ask{ticket, kind, slot, target_counts, deadline})) {
+  if (!send(Ask{ticket, kind, slot, target_counts, deadline, 0})) {
     co_return std::nullopt;
   }
   asks_[ticket] = &waiter;

@@ -24,14 +24,17 @@ class ControlClient {
   /** What the control thread saw last. The reference holds until the next call. */
   [[nodiscard]] const ControlView& view() { return mailbox_.view.newest(); }
 
+  /** The view that `view` gave last. */
+  [[nodiscard]] const ControlView& current() const { return mailbox_.view.current(); }
+
   /** STOPs and changes of the motion authority so far. */
   [[nodiscard]] std::uint32_t stops() const { return mailbox_.stops.load(std::memory_order_relaxed); }
 
-  /** Hands over a command, an order marked as newer than every STOP so far; false when the queue is full. */
+  /** Hands over a command, marked as newer than every STOP so far; false when the queue is full. */
   bool send(Command command);
 
   /** Sends one request to the kernel, a RESTORE with its position; empty when no verdict came within a
-   * second.
+   * second, without verdict when a STOP overtook it.
    */
   boost::asio::awaitable<std::optional<Answer>> ask(std::uint32_t kind, std::uint32_t slot,
                                                     std::int32_t target_counts = 0);

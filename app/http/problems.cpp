@@ -23,6 +23,13 @@ Problem no_kernel(const std::string& detail) {
           .next_step = "Start interlock-kernel, or look at its log; the app attaches by itself."};
 }
 
+Problem stopped_meanwhile(const std::string& what) {
+  return {.status = Status::conflict,
+          .code = "STOPPED",
+          .detail = "STOP came before " + what + " was sent.",
+          .next_step = "Ask for it again, if it is still wanted."};
+}
+
 Problem refused(const Refusal& refusal) {
   Status status = Status::conflict;
   if (refusal.code == "OVERLOADED") {

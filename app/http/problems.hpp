@@ -24,6 +24,9 @@ Problem login_needed();
 /** 503 NO_KERNEL. */
 Problem no_kernel(const std::string& detail);
 
+/** 409 STOPPED: STOP was pressed, or the motion authority changed, before `what` was sent. */
+Problem stopped_meanwhile(const std::string& what);
+
 /** What the kernel or the proposals' checks refused: 409, 404 for what the robot has not, or 503 when the
  * control thread takes no more. */
 Problem refused(const Refusal& refusal);

@@ -27,13 +27,6 @@ json detail_of(const HomeDraft& draft, const Robot& robot) {
   return detail;
 }
 
-Problem stopped_meanwhile() {
-  return {.status = Status::conflict,
-          .code = "STOPPED",
-          .detail = "STOP was pressed before the proposal was made.",
-          .next_step = "Propose it again, if it is still wanted."};
-}
-
 tl::expected<Proposal, Refusal> enter(ProposalBook& book, const Draft& draft, const ControlView& view) {
   if (const auto* move = std::get_if<MoveDraft>(&draft)) {
     return book.propose(*move, view);
@@ -52,7 +45,7 @@ boost::asio::awaitable<tl::expected<Proposal, Problem>> propose(const Context& c
     co_return fail(announced.error());
   }
   if (context.control.stops() != stops) {
-    co_return fail(stopped_meanwhile());
+    co_return fail(stopped_meanwhile("the proposal"));
   }
   if (const auto kernel = context.need_kernel(); !kernel) {
     co_return fail(kernel.error());

@@ -70,7 +70,7 @@ asio::awaitable<tl::expected<void, Problem>> StoreGateway::record(AuditEntry ent
 }
 
 void StoreGateway::note(AuditEntry entry) {
-  if (notes_.size() == most_notes) {
+  if (notes_.size() >= most_notes) {
     spdlog::error("the store does not take the audit's records: one more is lost");
     return;
   }

@@ -1,8 +1,11 @@
 #include "log/log.hpp"
 
+#include <fcntl.h>
 #include <spdlog/sinks/rotating_file_sink.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <array>
 #include <utility>
@@ -26,10 +29,22 @@ std::shared_ptr<spdlog::logger> logger_of(spdlog::sink_ptr sink) {
   return logger;
 }
 
+/**
+ * Whoever reads standard error through a pipe and stops reading must not hold up the app, STOP least of all.
+ * What finds no room there is still in the file and in the ring.
+ */
+void wait_for_no_reader() {
+  struct stat status{};
+  if (fstat(STDERR_FILENO, &status) == 0 && S_ISFIFO(status.st_mode)) {
+    fcntl(STDERR_FILENO, F_SETFL, fcntl(STDERR_FILENO, F_GETFL) | O_NONBLOCK);
+  }
+}
+
 }  // namespace
 
 tl::expected<std::unique_ptr<Log>, std::string> Log::start(const std::filesystem::path& file,
                                                            LogLevel level) {
+  wait_for_no_reader();
   std::vector<spdlog::sink_ptr> sinks{std::make_shared<spdlog::sinks::stderr_color_sink_mt>()};
   if (!file.empty()) {
     try {

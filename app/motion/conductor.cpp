@@ -19,6 +19,11 @@ void Conductor::end(std::uint32_t proposal, OrderReason reason, std::uint32_t ti
   home_.end(proposal, reason, tick);
 }
 
+void Conductor::end_axis(std::uint32_t slot, OrderReason reason, std::uint32_t tick) noexcept {
+  manual_.end_axis(slot, reason, tick);
+  home_.end_axis(slot, reason, tick);
+}
+
 void Conductor::end_all(OrderReason reason, std::uint32_t tick) noexcept {
   manual_.end_all(reason, tick);
   home_.end_all(reason, tick);

@@ -24,6 +24,9 @@ class Conductor {
   /** Aborts the order of that proposal, if it is open. */
   void end(std::uint32_t proposal, OrderReason reason, std::uint32_t tick) noexcept;
 
+  /** Aborts the open order that moves the axis in `slot`, if there is one. */
+  void end_axis(std::uint32_t slot, OrderReason reason, std::uint32_t tick) noexcept;
+
   void end_all(OrderReason reason, std::uint32_t tick) noexcept;
 
   /** The requests to send in this tick, first one first. */

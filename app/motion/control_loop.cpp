@@ -146,6 +146,9 @@ void ControlLoop::dispatch_verdict(const ilk_event_t& event) noexcept {
     conductor_.on_verdict(*wish, verdict, event.tick);
   } else if (const auto* ask = std::get_if<AskOrigin>(&*origin)) {
     notify(Answer{ask->ticket, verdict, event.tick});
+    if (verdict == ILK_VERDICT_ACCEPTED) {
+      end_orders_overtaken_by(event);
+    }
   } else if (const auto* asked_stop = std::get_if<StopOrigin>(&*origin)) {
     notify(StopAnswer{asked_stop->stops, verdict, event.tick});
   }
@@ -153,6 +156,22 @@ void ControlLoop::dispatch_verdict(const ilk_event_t& event) noexcept {
   const bool routine = is_move || std::holds_alternative<HeartbeatOrigin>(*origin);
   if (!routine || verdict != ILK_VERDICT_ACCEPTED) {
     notify(event);
+  }
+}
+
+/** A position means something else, or the axis was disabled if only within one tick: its order is not
+ * wanted. */
+void ControlLoop::end_orders_overtaken_by(const ilk_event_t& accepted) noexcept {
+  switch (accepted.value[1]) {
+    case ILK_REQUEST_DISABLE:
+      conductor_.end_axis(accepted.value[2], OrderReason::axis_disabled, accepted.tick);
+      break;
+    case ILK_REQUEST_SET_HOME:
+    case ILK_REQUEST_RESTORE:
+      conductor_.end_axis(accepted.value[2], OrderReason::position_declared, accepted.tick);
+      break;
+    default:
+      break;
   }
 }
 
@@ -197,19 +216,29 @@ bool ControlLoop::take(const Command& command) noexcept {
 template <typename AnyOrder>
 bool ControlLoop::take_order(const AnyOrder& order) noexcept {
   const std::uint32_t now = view_.snapshot.state.tick;
-  const auto newer_than_stop = static_cast<std::int32_t>(order.stops - stops_seen_);
-  if (newer_than_stop > 0) {
+  const std::int32_t newer = newer_than_stop(order.stops);
+  if (newer > 0) {
     return false;
   }
   conductor_.take(order, now);
-  if (newer_than_stop < 0) {
+  if (newer < 0) {
     conductor_.end(order.proposal, OrderReason::stopped, now);
   }
   return true;
 }
 
+/** Below 0: it was asked for before the newest STOP; above 0: that STOP has still to be obeyed. */
+std::int32_t ControlLoop::newer_than_stop(std::uint32_t stops) const noexcept {
+  return static_cast<std::int32_t>(stops - stops_seen_);
+}
+
 bool ControlLoop::send(const Ask& ask) noexcept {
-  if (std::chrono::steady_clock::now() > ask.deadline) {
+  const std::int32_t newer = newer_than_stop(ask.stops);
+  if (newer > 0) {
+    return false;
+  }
+  const bool overtaken = newer < 0 && ask.kind != ILK_REQUEST_DISABLE;
+  if (overtaken || std::chrono::steady_clock::now() > ask.deadline) {
     answer_lost(AskOrigin{ask.ticket});
     return true;
   }

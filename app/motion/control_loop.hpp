@@ -41,7 +41,9 @@ class ControlLoop {
   [[nodiscard]] bool take(const Command& command) noexcept;
   template <typename AnyOrder>
   [[nodiscard]] bool take_order(const AnyOrder& order) noexcept;
+  [[nodiscard]] std::int32_t newer_than_stop(std::uint32_t stops) const noexcept;
   [[nodiscard]] bool send(const Ask& ask) noexcept;
+  void end_orders_overtaken_by(const ilk_event_t& accepted) noexcept;
   void send_wishes() noexcept;
   void publish() noexcept;
 

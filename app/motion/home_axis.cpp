@@ -48,8 +48,8 @@ void HomeAxis::start(const ilk_snapshot_t& snapshot) noexcept {
 }
 
 /**
- * As far towards the end of the nudge as this press allows. An axis that is homed knows its soft limits: it
- * goes no farther than they allow, and that is its end.
+ * As far towards the end of the nudge as this press allows. A homed axis goes as one that is not: axes that
+ * are nudged together keep together. Its soft limits are the end of its nudge, too.
  */
 void HomeAxis::start_slice(const ilk_snapshot_t& snapshot) noexcept {
   const ilk_axis_t& axis = snapshot.state.axis[slot_];
@@ -57,13 +57,21 @@ void HomeAxis::start_slice(const ilk_snapshot_t& snapshot) noexcept {
     marked_ = true;
     mark_raw_ = axis.raw;
   }
-  const std::int64_t left = counts_ - travelled_counts(axis);
-  const std::int64_t end = axis.position_counts + left;
+  const std::int64_t position = axis.position_counts;
+  const std::int64_t end = position + counts_ - travelled_counts(axis);
   const SetpointRange range = setpoint_range(plan_.rules, axis, snapshot.state.mode);
-  const std::int64_t target = std::clamp<std::int64_t>(end, range.lowest_counts, range.highest_counts);
-  last_slice_ = target == end || axis.homed != 0;
+  const std::int64_t allowed_end = std::clamp<std::int64_t>(end, range.lowest_counts, range.highest_counts);
+  ilk_axis_t as_unhomed = axis;
+  as_unhomed.homed = 0;
+  const SetpointRange press = setpoint_range(plan_.rules, as_unhomed, snapshot.state.mode);
+  // Homing in the same press may have carried the axis farther than a slice: then it waits here for the next
+  // one.
+  const std::int64_t target =
+      allowed_end > position ? std::max(position, std::min<std::int64_t>(allowed_end, press.highest_counts))
+                             : std::min(position, std::max<std::int64_t>(allowed_end, press.lowest_counts));
+  last_slice_ = target == end || (axis.homed != 0 && target == allowed_end);
   stopping_ = false;
-  move_.aim(static_cast<std::int32_t>(target), 0);
+  move_.aim(static_cast<std::int32_t>(target), plan_.rules.unhomed_max_drive);
   move_.start(snapshot);
 }
 

@@ -92,6 +92,12 @@ void HomeMode::end(std::uint32_t proposal, OrderReason reason, std::uint32_t tic
   }
 }
 
+void HomeMode::end_axis(std::uint32_t slot, OrderReason reason, std::uint32_t tick) noexcept {
+  if (is_open() && slot < ILK_SLOTS && (involved_ & bit(slot)) != 0) {
+    fail(reason, 0, slot, tick);
+  }
+}
+
 void HomeMode::end_all(OrderReason reason, std::uint32_t tick) noexcept {
   if (is_open()) {
     finish(OrderPhase::aborted, reason, 0, tick);

@@ -29,6 +29,7 @@ class HomeMode final : public Mode {
 
   void end(std::uint32_t proposal, OrderReason reason, std::uint32_t tick) noexcept override;
   void end_all(OrderReason reason, std::uint32_t tick) noexcept override;
+  void end_axis(std::uint32_t slot, OrderReason reason, std::uint32_t tick) noexcept override;
   void tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept override;
   void on_unsent(const Wish& wish) noexcept override;
   void on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept override;

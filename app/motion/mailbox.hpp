@@ -34,6 +34,7 @@ struct Ask {
   std::uint32_t slot = 0;
   std::int32_t target_counts = 0;                 /**< position of a RESTORE */
   std::chrono::steady_clock::time_point deadline; /**< later than this nobody waits, so it is not sent */
+  std::uint32_t stops = 0;                        /**< as in `Order`; DISABLE is sent all the same */
 };
 
 using Command = std::variant<Order, HomeOrder, Cancel, Ask>;

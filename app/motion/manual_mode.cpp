@@ -37,6 +37,12 @@ void ManualMode::end(std::uint32_t proposal, OrderReason reason, std::uint32_t t
   }
 }
 
+void ManualMode::end_axis(std::uint32_t slot, OrderReason reason, std::uint32_t tick) noexcept {
+  if (slot < ILK_SLOTS && is_open(orders_[slot].phase)) {
+    set_phase(slot, OrderPhase::aborted, reason, 0, tick);
+  }
+}
+
 void ManualMode::end_all(OrderReason reason, std::uint32_t tick) noexcept {
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     if (is_open(orders_[slot].phase)) {

@@ -25,6 +25,9 @@ class Mode {
   /** Aborts every open order. */
   virtual void end_all(OrderReason reason, std::uint32_t tick) noexcept = 0;
 
+  /** Aborts the open order that moves the axis in `slot`, if there is one. */
+  virtual void end_axis(std::uint32_t slot, OrderReason reason, std::uint32_t tick) noexcept = 0;
+
   /** Looks at a snapshot; adds the requests to send in this tick. */
   virtual void tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept = 0;
 

@@ -59,7 +59,8 @@ enum class OrderReason : std::uint8_t {
   press_again,     /**< the travel that one press allows is used up: waits for a release and a press */
   not_homed,       /**< a step moves an axis to a position, and the axis is not homed */
   verdict_lost,    /**< the kernel's answer to a HOME got lost */
-  authority_changed
+  authority_changed,
+  position_declared /**< SET_HOME or RESTORE gave the axis another position */
 };
 
 /** Level, not edge: the newest view always tells the whole truth about the slot's newest order. */

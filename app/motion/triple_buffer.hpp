@@ -26,6 +26,9 @@ class TripleBuffer {
     writing_ = before & index;
   }
 
+  /** Reader only: the value that `newest` gave last. */
+  [[nodiscard]] const T& current() const noexcept { return copies_[reading_]; }
+
   /** Reader only: the newest value; the reference holds until the next call. */
   [[nodiscard]] const T& newest() noexcept {
     if ((between_.load(std::memory_order_relaxed) & fresh) != 0) {

@@ -50,6 +50,8 @@ std::string end_words(const std::string& axis, const OrderStatus& status) {
       return "The kernel's answer about " + axis + " was lost; propose it again.";
     case OrderReason::authority_changed:
       return "Motion authority changed; propose it again.";
+    case OrderReason::position_declared:
+      return axis + " was given another position by Set Home or Restore; propose it again.";
   }
   return "";
 }
@@ -106,6 +108,17 @@ std::string work_words(const Robot& robot, const Proposal& proposal, std::uint32
             std::to_string(proposal.step_count);
   }
   return text;
+}
+
+/** "Homed yaw and pitch." Axes that were only moved are not homed by it. */
+std::string done_words(const Robot& robot, const Proposal& proposal) {
+  std::vector<std::uint32_t> homed = proposal.step_count == 0 ? proposal.slots : std::vector<std::uint32_t>();
+  for (std::uint32_t i = 0; i < proposal.step_count; ++i) {
+    const HomeStep& step = robot.home_steps[proposal.first_step + i];
+    homed.insert(homed.end(), step.home.begin(), step.home.end());
+  }
+  return homed.empty() ? "Moved " + listed(robot, proposal.slots) + "; nothing was homed by it."
+                       : "Homed " + listed(robot, homed) + ".";
 }
 
 /** "12.4 mm left" */
@@ -181,7 +194,7 @@ std::string detail_of(const Robot& robot, const Proposal& proposal, const HomeSt
     case OrderPhase::paused:
       return paused_words(robot, status);
     case OrderPhase::done:
-      return "Homed " + listed(robot, proposal.slots) + ".";
+      return done_words(robot, proposal);
     default:
       return capital(end_words(axis, status.order));
   }

@@ -93,6 +93,10 @@ Answering ModeRoutes::set_mode(const Call& call) const {
   if (*wanted != "home") {
     co_return go_manual();
   }
+  (void)context_.view();
+  if (context_.book.open_home() != nullptr) {
+    co_return mode();
+  }
   if (const auto kernel = context_.need_kernel(); !kernel) {
     co_return fail(kernel.error());
   }

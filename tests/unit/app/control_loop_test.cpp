@@ -125,6 +125,64 @@ TEST_F(ControlLoopTest, AnOrderOlderThanTheStopNeverMoves) {
   EXPECT_EQ(order().reason, OrderReason::stopped);
 }
 
+TEST_F(ControlLoopTest, ARequestOlderThanTheStopIsNotSent) {
+  command(ask(7, ILK_REQUEST_ENABLE));
+  command(ask(8, ILK_REQUEST_DISABLE));
+  stop();
+  tick();
+  EXPECT_EQ(sent(ILK_REQUEST_ENABLE), nullptr);
+  EXPECT_NE(sent(ILK_REQUEST_DISABLE), nullptr);
+  const auto answers = notices<Answer>();
+  ASSERT_EQ(answers.size(), 1u);
+  EXPECT_EQ(answers[0].ticket, 7u);
+  EXPECT_FALSE(answers[0].verdict);
+}
+
+TEST_F(ControlLoopTest, ARequestNewerThanTheStopIsSent) {
+  stop();
+  Ask newer = ask(7, ILK_REQUEST_ENABLE);
+  newer.stops = 1;
+  command(newer);
+  tick();
+  EXPECT_NE(sent(ILK_REQUEST_ENABLE), nullptr);
+}
+
+TEST_F(ControlLoopTest, AnAxisThatIsGivenAnotherPositionOrDisabledLosesItsOrder) {
+  std::uint32_t proposal = 0;
+  for (const auto& [kind, reason] : {std::pair(ILK_REQUEST_SET_HOME, OrderReason::position_declared),
+                                     std::pair(ILK_REQUEST_RESTORE, OrderReason::position_declared),
+                                     std::pair(ILK_REQUEST_DISABLE, OrderReason::axis_disabled)}) {
+    command(Order{++proposal, insertion, 1500, 0, 0});
+    command(ask(7, kind));
+    tick();
+    ASSERT_NE(sent(kind), nullptr);
+    ASSERT_EQ(order().phase, OrderPhase::waiting);
+    kernel_.push_verdict(*sent(kind), ILK_VERDICT_ACCEPTED, 5);
+    tick();
+    EXPECT_EQ(order().phase, OrderPhase::aborted);
+    EXPECT_EQ(order().reason, reason);
+  }
+}
+
+TEST_F(ControlLoopTest, ARefusedRequestLeavesTheOrderAlone) {
+  command(Order{1, insertion, 1500, 0, 0});
+  command(ask(7, ILK_REQUEST_SET_HOME));
+  tick();
+  kernel_.push_verdict(*sent(ILK_REQUEST_SET_HOME), ILK_VERDICT_PEDAL_DOWN, 5);
+  tick();
+  EXPECT_EQ(order().phase, OrderPhase::waiting);
+}
+
+TEST_F(ControlLoopTest, HomingOfAnAxisThatIsGivenAnotherPositionEnds) {
+  command(HomeOrder{1, 0, 0, insertion, 0});
+  command(ask(7, ILK_REQUEST_SET_HOME));
+  tick();
+  kernel_.push_verdict(*sent(ILK_REQUEST_SET_HOME), ILK_VERDICT_ACCEPTED, 5);
+  tick();
+  EXPECT_EQ(home().phase, OrderPhase::aborted);
+  EXPECT_EQ(home().reason, OrderReason::position_declared);
+}
+
 TEST_F(ControlLoopTest, AnOrderNewerThanTheStopMoves) {
   stop();
   command(Order{1, insertion, 1500, 0, 1});

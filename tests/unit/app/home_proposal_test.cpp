@@ -284,6 +284,18 @@ TEST_F(HomeProposalTest, TellsEachStepInWords) {
                           "park: Moves probe insertion and probe rotation into position; step 5 of 5."));
 }
 
+TEST_F(HomeProposalTest, SaysHomedOnlyOfAxesThatWentToTheirSwitch) {
+  (void)home_step("angles");
+  report(OrderPhase::done, OrderReason::arrived, 0, angles);
+  EXPECT_EQ(detail(), "Homed yaw and pitch.");
+}
+
+TEST_F(HomeProposalTest, SaysOfAStepThatOnlyMovesThatNothingWasHomed) {
+  (void)home_step("aside");
+  report(OrderPhase::done, OrderReason::arrived, 0, aside);
+  EXPECT_EQ(detail(), "Moved probe rotation; nothing was homed by it.");
+}
+
 TEST_F(HomeProposalTest, SaysWhatIsLeftInTheUnitOfTheAxis) {
   (void)home_all();
   report(OrderPhase::paused, OrderReason::press_again, 0, aside, insertion, -586);

@@ -120,6 +120,24 @@ TEST_F(ProstateRobot, MayBeHomedAgainWhenItIsHomed) {
   expect_homed_and_parked(*loop);
 }
 
+TEST_F(ProstateRobot, KeepsASideTogetherWhenOnlyOneOfItsSlidersIsHomed) {
+  const auto loop = robot_at(parked);
+  home(*loop, 1);
+  expect_homed_and_parked(*loop);
+  const std::uint32_t front = slot("front_right");
+  const std::uint32_t back = slot("back_right");
+  loop->request(ILK_REQUEST_RESTORE, front, loop->state().axis[front].position_counts);
+  ASSERT_EQ(loop->state().axis[front].homed, 0u);
+  double most_skew_counts = 0;
+  loop->watch([&] {
+    const double skew = loop->true_position(front) - loop->true_position(back);
+    most_skew_counts = std::max(most_skew_counts, std::abs(skew));
+  });
+  home(*loop, 2);
+  EXPECT_LE(most_skew_counts / prostate().find("front_right")->counts_per_unit, 5.0);
+  expect_homed_and_parked(*loop);
+}
+
 INSTANTIATE_TEST_SUITE_P(Starts, ProstateHoming,
                          testing::Values(parked, Start{"right_at_its_outer_end", 119.0, -185.0},
                                          Start{"left_at_its_outer_end", 185.0, -120.0}),

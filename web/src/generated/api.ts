@@ -245,7 +245,7 @@ export interface paths {
         get: operations["getMode"];
         /**
          * Changes the mode. `home` proposes all of the robot's home steps, as `POST /api/proposals` with `{"kind":"home"}`
-         *     does, and is refused as that is; it ends in `manual` by itself. `manual` aborts what the other mode had open.
+         *     does, and is refused as that is; it ends in `manual` by itself, and changes nothing while homing is open. `manual` aborts what the other mode had open.
          */
         put: operations["setMode"];
         post?: never;
