@@ -40,6 +40,8 @@ class StoreGateway {
   /**
    * Runs `work(Store&)`, which returns a `Stored<...>`, in the store's thread, after everything that was
    * asked for or noted before. Errors and exceptions become the problem of `problem_of`.
+   *
+   * Pass a named `work` by `std::move`: GCC 12 destroys twice what a temporary inside `co_await` captured.
    */
   template <typename Work>
   auto run(Work work) -> boost::asio::awaitable<
