@@ -1,6 +1,5 @@
-"""Who may use what, on a whole robot: the rights of spec/openapi.yaml, held by real sessions."""
+"""Sessions, authority and what is recorded of them, on a whole robot (rights by route: test_roles.py)."""
 
-import re
 import signal
 import subprocess
 
@@ -8,7 +7,7 @@ import httpx
 import pytest
 from bare_kernel import BIN, DEADLINE_S
 from conftest import StackFactory
-from interface import judge, paths
+from interface import judge
 from motion import LATERAL, open_stream, proposal, propose, to_motion, wait_for_mode, wait_until
 from stack import Stack
 from websockets.exceptions import ConnectionClosed
@@ -30,37 +29,9 @@ def problem(answer: httpx.Response, status: int, code: str) -> dict:
     return answer.json()
 
 
-def operations_for(role: str) -> list[tuple[str, str, bool]]:
-    """Method, path and whether the authority is needed, of what that role is the least for."""
-    return [
-        (method, re.sub(r"\{\w+\}", "1", path), operation.get("x-authority", False))
-        for path, operations in paths().items()
-        for method, operation in operations.items()
-        if operation["x-role"] == role
-    ]
-
-
 def read_to_the_end(stream: ClientConnection) -> None:
     while True:
         stream.recv()
-
-
-def test_every_operation_asks_for_the_role_and_the_authority_that_the_interface_states(robot: Stack) -> None:
-    ranks = ["public", "viewer", "engineer", "admin"]
-    clients = {
-        "public": robot.visitor(),
-        "viewer": robot.client_of_new("vic", "viewer"),
-        "engineer": robot.client_of_new("edna", "engineer"),
-    }
-    for least in ranks[1:]:
-        for method, target, needs_authority in operations_for(least):
-            for role, client in clients.items():
-                if ranks.index(role) < ranks.index(least):
-                    code = "LOGIN" if role == "public" else "ROLE"
-                    problem(client.request(method, target), 401 if role == "public" else 403, code)
-                elif needs_authority:
-                    problem(client.request(method, target), 409, "AUTHORITY")
-    assert robot.api.get("/api/authority").json()["mine"]
 
 
 def test_status_session_and_stop_need_no_login(robot: Stack) -> None:
