@@ -1,0 +1,61 @@
+"""What a rung of the verification ladder leaves behind: one JSON file and its raw logs, under build/evidence/."""
+
+import json
+import subprocess
+import time
+from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+EVIDENCE = ROOT / "build" / "evidence"
+
+SOUND = ("PASSED", "BOUNDED")
+"""The statuses that may carry a claim. A bounded result says its bounds in its figures."""
+STATUSES = (*SOUND, "UNKNOWN", "FAILED", "VACUOUS")
+
+
+def log_directory(rung: str) -> Path:
+    """The directory for the raw logs of a rung, made if it is missing."""
+    directory = EVIDENCE / rung
+    directory.mkdir(parents=True, exist_ok=True)
+    return directory
+
+
+def commit() -> str:
+    """The commit that the sources are at, with `+changes` when they differ from it."""
+
+    def git(*arguments: str) -> str:
+        return subprocess.run(["git", *arguments], cwd=ROOT, check=True, capture_output=True, text=True).stdout.strip()
+
+    return git("rev-parse", "HEAD") + ("+changes" if git("status", "--porcelain") else "")
+
+
+def write(
+    rung: str,
+    status: str,
+    tools: Mapping[str, str],
+    figures: Mapping[str, float],
+    supports: Sequence[str],
+    started: float,
+) -> int:
+    """Writes build/evidence/RUNG.json and returns the exit status of the rung: 0 only for PASSED and BOUNDED.
+
+    `tools` gives each tool's version by its name, `supports` the properties (P1 to P16, L1, L2) that the result
+    carries, `started` the `time.monotonic()` at which the rung began. Raises ValueError for an unknown status.
+    """
+    if status not in STATUSES:
+        raise ValueError(f"status of {rung}: '{status}'; expected one of {', '.join(STATUSES)}")
+    document = {
+        "id": rung,
+        "status": status,
+        "tool": {"name": ", ".join(tools), "version": ", ".join(tools.values())},
+        "commit": commit(),
+        "date": datetime.now(UTC).isoformat(timespec="seconds"),
+        "duration_s": round(time.monotonic() - started, 1),
+        "figures": dict(figures),
+        "supports": list(supports),
+        "log": str(log_directory(rung).relative_to(EVIDENCE)),
+    }
+    (EVIDENCE / f"{rung}.json").write_text(json.dumps(document, indent=2) + "\n", "utf-8")
+    return 0 if status in SOUND else 1
