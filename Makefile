@@ -72,6 +72,11 @@ selftest: setup ## Show that seeded faults turn tests red: a third, chosen by th
 selftest-all: setup ## Show that every seeded fault turns its test red
 	@tests/failure/run.py --all
 
+.PHONY: verify
+verify: ## Climb the verification ladder: [FRESH=1] runs again what has not changed
+	@$(setup) packages provers
+	@/usr/bin/python3 verification/evidence/verify.py
+
 .PHONY: bench
 bench: build ## Measure time, text size and stack of a kernel step against their limits
 	@python verification/bench/run.py

@@ -1,4 +1,4 @@
-"""What a rung of the verification ladder leaves behind: one JSON file and its raw logs, under build/evidence/."""
+"""What a rung of the verification ladder leaves in build/evidence/: one JSON file and its raw logs."""
 
 import json
 import subprocess
@@ -26,7 +26,8 @@ def commit() -> str:
     """The commit that the sources are at, with `+changes` when they differ from it."""
 
     def git(*arguments: str) -> str:
-        return subprocess.run(["git", *arguments], cwd=ROOT, check=True, capture_output=True, text=True).stdout.strip()
+        done = subprocess.run(["git", *arguments], cwd=ROOT, check=True, capture_output=True, text=True)
+        return done.stdout.strip()
 
     return git("rev-parse", "HEAD") + ("+changes" if git("status", "--porcelain") else "")
 
@@ -41,8 +42,9 @@ def write(
 ) -> int:
     """Writes build/evidence/RUNG.json and returns the exit status of the rung: 0 only for PASSED and BOUNDED.
 
-    `tools` gives each tool's version by its name, `supports` the properties (P1 to P16, L1, L2) that the result
-    carries, `started` the `time.monotonic()` at which the rung began. Raises ValueError for an unknown status.
+    `tools` gives each tool's version by its name, `supports` the properties (P1 to P16, L1, L2) that the
+    result carries, `started` the `time.monotonic()` at which the rung began. Raises ValueError for an unknown
+    status.
     """
     if status not in STATUSES:
         raise ValueError(f"status of {rung}: '{status}'; expected one of {', '.join(STATUSES)}")

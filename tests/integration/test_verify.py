@@ -1,0 +1,147 @@
+"""The runner of the verification ladder: a rung passes by its exact figures, and by nothing else."""
+
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+EVIDENCE = Path(__file__).resolve().parents[2] / "verification/evidence"
+RUNG = """\
+import sys, time
+sys.path.insert(0, "verification/evidence")
+import evidence
+with open("build/runs", "a") as runs:
+    runs.write("x")
+print("what the tool said")
+figures = {{"goals": {goals}}}
+sys.exit(evidence.write("proof", "{status}", {{"prover": "1.0"}}, figures, ["P1"], time.monotonic()))
+"""
+EXPECTED = """\
+[rung.proof]
+command = "python3 verification/proof/run.py"
+inputs = ["verification/proof/*", "kernel/src/*"]
+cores = 1
+memory_gb = 1
+status = "PASSED"
+[rung.proof.figures]
+goals = 7
+"""
+
+
+class Tree:
+    """A small project with one rung."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        shutil.copytree(
+            EVIDENCE, path / "verification/evidence", ignore=shutil.ignore_patterns("__pycache__")
+        )
+        self.write("verification/expected.toml", EXPECTED)
+        self.write("verification/toolchain/packages.txt", "gcc\n")
+        self.write("kernel/include/interlock/kernel.h", "\n")
+        self.write("kernel/src/step.c", "int step;\n")
+        self.write("build/runs", "")
+        self.rung("PASSED", 7)
+        for command in ("init -q", "add .", "-c user.name=a -c user.email=b commit -qm tree"):
+            subprocess.run(["git", *command.split()], cwd=path, check=True)
+
+    def write(self, name: str, text: str) -> None:
+        (self.path / name).parent.mkdir(parents=True, exist_ok=True)
+        (self.path / name).write_text(text, "utf-8")
+
+    def rung(self, status: str, goals: int) -> None:
+        self.write("verification/proof/run.py", RUNG.format(status=status, goals=goals))
+
+    def verify(self, *arguments: str) -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, "verification/evidence/verify.py", *arguments]
+        return subprocess.run(command, cwd=self.path, capture_output=True, text=True)
+
+    def runs(self) -> int:
+        return len((self.path / "build/runs").read_text("utf-8"))
+
+
+@pytest.fixture
+def tree(tmp_path: Path) -> Tree:
+    return Tree(tmp_path)
+
+
+def test_a_rung_with_its_expected_status_and_figures_passes(tree: Tree) -> None:
+    done = tree.verify()
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "goals=7" in done.stdout
+    summary = json.loads((tree.path / "build/evidence/summary.json").read_text("utf-8"))
+    assert summary["passed"] is True
+    assert [(rung["id"], rung["faults"]) for rung in summary["rungs"]] == [("proof", [])]
+
+
+@pytest.mark.parametrize(
+    ("status", "goals", "fault"),
+    [
+        ("PASSED", 6, "goals 6, expected 7"),
+        ("PASSED", 8, "goals 8, expected 7"),
+        ("BOUNDED", 7, "status BOUNDED, expected PASSED"),
+        ("VACUOUS", 7, "status VACUOUS, expected PASSED"),
+        ("FAILED", 7, "status FAILED, expected PASSED"),
+    ],
+)
+def test_a_rung_that_shows_anything_else_fails_and_says_what(
+    tree: Tree, status: str, goals: int, fault: str
+) -> None:
+    tree.rung(status, goals)
+    done = tree.verify()
+    assert done.returncode == 1
+    assert fault in done.stdout
+    assert "what the tool said" in done.stdout
+
+
+def test_evidence_of_an_earlier_run_does_not_stand_in_for_a_rung_that_dies(tree: Tree) -> None:
+    assert tree.verify().returncode == 0
+    tree.write("verification/proof/run.py", "raise SystemExit(0)\n")
+    done = tree.verify()
+    assert done.returncode == 1
+    assert "left no evidence" in done.stdout
+
+
+def test_a_rung_runs_again_only_when_an_input_or_its_expectation_changed_or_fresh_asks(tree: Tree) -> None:
+    tree.verify()
+    tree.verify()
+    assert tree.runs() == 1
+    tree.write("kernel/src/step.c", "int step = 1;\n")
+    tree.verify()
+    assert tree.runs() == 2
+    tree.verify("--fresh")
+    assert tree.runs() == 3
+
+
+def test_a_failed_rung_is_never_kept(tree: Tree) -> None:
+    tree.rung("PASSED", 6)
+    tree.verify()
+    tree.verify()
+    assert tree.runs() == 2
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (("goals = 7", "goals = 7\n[rung.other]"), "[rung.other]: keys missing or unknown"),
+        (("PASSED", "FINE"), "status 'FINE'; expected one of PASSED"),
+        (("kernel/src/*", "kernel/nowhere/*"), "no file matches the input 'kernel/nowhere/*'"),
+    ],
+)
+def test_an_expectation_that_cannot_be_used_is_refused_by_name(
+    tree: Tree, change: tuple[str, str], message: str
+) -> None:
+    tree.write("verification/expected.toml", EXPECTED.replace(*change))
+    done = tree.verify()
+    assert done.returncode == 2
+    assert message in done.stderr
+    assert tree.runs() == 0
+
+
+def test_a_rung_that_there_is_not_is_refused_with_those_that_there_are(tree: Tree) -> None:
+    done = tree.verify("prof")
+    assert done.returncode == 2
+    assert "no rung 'prof'; expected one of proof" in done.stderr

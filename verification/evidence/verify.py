@@ -1,0 +1,216 @@
+#!/usr/bin/env python3
+"""Runs the rungs of the verification ladder and holds what they show against what they must show.
+
+Usage: verify.py [--fresh] [RUNG...]. Without names, every rung of verification/expected.toml. A rung whose
+inputs have not changed since it last showed what it must is not run again, unless --fresh (or FRESH=1) forces
+it. Rungs run side by side where cores (JOBS, all by default) and memory allow.
+
+What a rung prints goes to build/evidence/ID/run.log. Results: a table on standard output,
+build/evidence/summary.json for machines, build/reports/verify.xml as JUnit. Exits 1 unless every rung
+has its expected status and its exact expected figures.
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import threading
+import time
+import xml.etree.ElementTree as ElementTree
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from evidence import EVIDENCE, ROOT, commit, log_directory
+from ladder import EXPECTED, Rung, UnusableError, content_key, read_expected, select
+
+
+@dataclass(frozen=True)
+class Result:
+    rung: Rung
+    evidence: dict[str, object]
+    faults: tuple[str, ...]
+    """What is not as expected, a sentence each; none when all is."""
+    cached: bool
+
+
+def read_evidence(rung: Rung) -> dict[str, object]:
+    """What the rung left behind, or an empty dictionary."""
+    try:
+        return json.loads((EVIDENCE / f"{rung.name}.json").read_text("utf-8"))
+    except (OSError, json.JSONDecodeError):
+        return {}
+
+
+def faults_of(rung: Rung, evidence: dict[str, object], exit_status: int) -> tuple[str, ...]:
+    """Where the evidence differs from what is expected. The exit status alone never makes a rung good."""
+    if not evidence:
+        return (f"left no evidence; exit status {exit_status}",)
+    faults = []
+    if evidence["status"] != rung.status:
+        faults.append(f"status {evidence['status']}, expected {rung.status}")
+    figures = evidence["figures"]
+    for name, expected in rung.figures.items():
+        found = figures.get(name)
+        if found != expected:
+            faults.append(f"{name} {'missing' if found is None else found}, expected {expected}")
+    if exit_status and not faults:
+        faults.append(f"exit status {exit_status}")
+    return tuple(faults)
+
+
+def run(rung: Rung) -> Result:
+    """Runs one rung. Evidence of an earlier run is removed first, so that none can stand in for this one."""
+    (EVIDENCE / f"{rung.name}.json").unlink(missing_ok=True)
+    key_file = EVIDENCE / f"{rung.name}.key"
+    key_file.unlink(missing_ok=True)
+    key = content_key(rung)
+    environment = os.environ | {"JOBS": str(rung.cores), "PYTHONDONTWRITEBYTECODE": "1"}
+    with (log_directory(rung.name) / "run.log").open("wb") as log:
+        done = subprocess.run(
+            rung.command.split(), cwd=ROOT, env=environment, stdin=subprocess.DEVNULL, stdout=log, stderr=log
+        )
+    evidence = read_evidence(rung)
+    faults = faults_of(rung, evidence, done.returncode)
+    if not faults:
+        key_file.write_text(key, "utf-8")
+    return Result(rung, evidence, faults, cached=False)
+
+
+def cached(rung: Rung) -> Result | None:
+    """The result of an earlier run over the same inputs, if that run showed what it must."""
+    try:
+        same = (EVIDENCE / f"{rung.name}.key").read_text("utf-8") == content_key(rung)
+    except OSError:
+        return None
+    evidence = read_evidence(rung)
+    return Result(rung, evidence, (), cached=True) if same and evidence else None
+
+
+class Machine:
+    """Cores and memory, lent to rungs while they run. A rung that wants more than there is gets all of it."""
+
+    def __init__(self, cores: int, memory_gb: float) -> None:
+        self.changed = threading.Condition()
+        self.whole = (cores, memory_gb)
+        self.free = [float(cores), memory_gb]
+
+    def run(self, rung: Rung) -> Result:
+        wants = [min(rung.cores, self.whole[0]), min(rung.memory_gb, self.whole[1])]
+        with self.changed:
+            self.changed.wait_for(
+                lambda: all(want <= free for want, free in zip(wants, self.free, strict=True))
+            )
+            self.free = [free - want for want, free in zip(wants, self.free, strict=True)]
+        try:
+            return run(rung)
+        finally:
+            with self.changed:
+                self.free = [free + want for want, free in zip(wants, self.free, strict=True)]
+                self.changed.notify_all()
+
+
+def free_memory_gb() -> float:
+    text = Path("/proc/meminfo").read_text("ascii")
+    kibibytes = next(line.split()[1] for line in text.splitlines() if line.startswith("MemAvailable"))
+    return int(kibibytes) / 2**20
+
+
+def line(result: Result) -> str:
+    """One row of the table: rung, status, seconds, figures, tool."""
+    evidence = result.evidence
+    status = "FAILED" if result.faults else str(evidence["status"])
+    seconds = f"{evidence.get('duration_s', '-')}{' (kept)' if result.cached else ''}"
+    figures = " ".join(f"{name}={value:,}" for name, value in dict(evidence.get("figures", {})).items())
+    tool = dict(evidence.get("tool", {"name": "-", "version": ""}))
+    row = f"{result.rung.name:<12} {status:<8} {seconds:>13}  {figures}  [{tool['name']} {tool['version']}]"
+    return "\n".join([row, *(f"{'':<12} {fault}" for fault in result.faults)])
+
+
+def show_end_of_log(result: Result) -> None:
+    log = log_directory(result.rung.name) / "run.log"
+    print(f"--- the end of {log.relative_to(ROOT)}:")
+    print("\n".join(log.read_text("utf-8", "replace").splitlines()[-60:]))
+
+
+def climb(rungs: Sequence[Rung], fresh: bool, cores: int) -> list[Result]:
+    """Runs what must be run, printing each row as it comes; the results have the order of the rungs."""
+    results: dict[str, Result] = {}
+    printing = threading.Lock()
+    machine = Machine(cores, free_memory_gb())
+
+    def note(result: Result) -> None:
+        with printing:
+            results[result.rung.name] = result
+            print(line(result), flush=True)
+
+    waiting = []
+    for rung in rungs:
+        kept = None if fresh else cached(rung)
+        if kept:
+            note(kept)
+        else:
+            waiting.append(threading.Thread(target=lambda rung=rung: note(machine.run(rung))))
+    for thread in waiting:
+        thread.start()
+    for thread in waiting:
+        thread.join()
+    return [results[rung.name] for rung in rungs]
+
+
+def write_summary(results: Sequence[Result], seconds: float) -> None:
+    document = {
+        "commit": commit(),
+        "duration_s": round(seconds, 1),
+        "passed": not any(result.faults for result in results),
+        "rungs": [
+            {
+                "expected_status": result.rung.status,
+                "faults": result.faults,
+                "kept": result.cached,
+                **result.evidence,
+            }
+            for result in results
+        ],
+    }
+    (EVIDENCE / "summary.json").write_text(json.dumps(document, indent=2) + "\n", "utf-8")
+
+
+def write_junit(results: Sequence[Result], path: Path) -> None:
+    suite = ElementTree.Element("testsuite", name="verify", tests=str(len(results)))
+    for result in results:
+        case = ElementTree.SubElement(suite, "testcase", classname="verify", name=result.rung.name)
+        case.set("time", str(result.evidence.get("duration_s", 0)))
+        if result.faults:
+            ElementTree.SubElement(case, "failure", message="; ".join(result.faults))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    ElementTree.ElementTree(suite).write(path, encoding="utf-8", xml_declaration=True)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description="Run the verification ladder.")
+    parser.add_argument("rungs", nargs="*", metavar="RUNG")
+    parser.add_argument("--fresh", action="store_true", default=os.environ.get("FRESH") == "1")
+    arguments = parser.parse_args()
+    started = time.monotonic()
+    try:
+        rungs = select(read_expected(EXPECTED), arguments.rungs)
+        for rung in rungs:
+            content_key(rung)
+        results = climb(rungs, arguments.fresh, int(os.environ.get("JOBS", os.cpu_count() or 1)))
+    except UnusableError as error:
+        print(f"verify: {error}", file=sys.stderr)
+        return 2
+    write_summary(results, time.monotonic() - started)
+    write_junit(results, ROOT / "build" / "reports" / "verify.xml")
+    failed = [result for result in results if result.faults]
+    for result in failed:
+        show_end_of_log(result)
+    seconds = time.monotonic() - started
+    print(f"{len(results) - len(failed)} of {len(results)} rungs as expected in {seconds:.0f} s")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
