@@ -12,11 +12,30 @@
 
 /** `value + 1`, stopping at `ceiling`; a value beyond the ceiling comes back to it. */
 static inline uint32_t count_up(uint32_t value, uint32_t ceiling) {
-  return (value < ceiling) ? (value + 1u) : ceiling;
+  uint32_t next = ceiling;
+  if (value < ceiling) {
+    next = value + 1u;
+  }
+  return next;
 }
 
 /** `value - 1`, stopping at zero. */
-static inline uint32_t count_down(uint32_t value) { return (value > 0u) ? (value - 1u) : 0u; }
+static inline uint32_t count_down(uint32_t value) {
+  uint32_t next = 0u;
+  if (value > 0u) {
+    next = value - 1u;
+  }
+  return next;
+}
+
+/** A truth as the word that stands for it: 1 or 0. */
+static inline uint32_t flag_of(bool truth) {
+  uint32_t flag = 0u;
+  if (truth) {
+    flag = 1u;
+  }
+  return flag;
+}
 
 /** Sum, stopping at the ends of `int32_t`. */
 static inline int32_t add_saturating(int32_t a, int32_t b) {
@@ -25,7 +44,7 @@ static inline int32_t add_saturating(int32_t a, int32_t b) {
   if (sum > (int64_t)INT32_MAX) {
     result = INT32_MAX;
   } else if (sum < (int64_t)INT32_MIN) {
-    result = INT32_MIN;
+    result = (int32_t)INT32_MIN;
   } else {
     result = (int32_t)sum;
   }
@@ -48,13 +67,16 @@ static inline uint32_t magnitude(int32_t value) {
 
 /** The two's complement value of a word, without implementation-defined conversion. */
 static inline int32_t signed_of(uint32_t word) {
-  return (word <= (uint32_t)INT32_MAX) ? (int32_t)word : (-(int32_t)(UINT32_MAX - word) - 1);
+  const uint32_t complement = UINT32_MAX - word;
+  return (word <= (uint32_t)INT32_MAX) ? (int32_t)word : (-(int32_t)complement - 1);
 }
 
 /** Motion from one counter reading to another, modulo 2^32, in the sense of the position. */
 static inline int32_t travel_between(const ilk_axis_config_t *config, uint32_t from_raw, uint32_t to_raw) {
-  const uint32_t difference =
-      (config->direction_correction != 0u) ? (from_raw - to_raw) : (to_raw - from_raw);
+  uint32_t difference = to_raw - from_raw;
+  if (config->direction_correction != 0u) {
+    difference = from_raw - to_raw;
+  }
   return signed_of(difference);
 }
 

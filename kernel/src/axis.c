@@ -38,7 +38,12 @@ static bool loses_reference(ilk_fault_t fault) {
          (fault == ILK_FAULT_HOMING_TIMEOUT);
 }
 
-bool ilk_axis_fault(ilk_axis_t *axis, ilk_fault_t fault, int32_t value, uint32_t tick) {
+/**
+ * Faults the axis. The first fault is kept until CLEAR_FAULT.
+ *
+ * @return true when the fault is new.
+ */
+static bool raise_fault(ilk_axis_t *axis, ilk_fault_t fault, int32_t value, uint32_t tick) {
   const bool is_new = axis->state != (uint32_t)ILK_AXIS_FAULTED;
   if (is_new) {
     ilk_axis_drop_motion(axis);
@@ -69,7 +74,7 @@ static bool heartbeat_advanced(const ilk_axis_t *axis, const ilk_reading_t *read
 void ilk_observe_card(ilk_axis_t *axis, const ilk_reading_t *reading, bool received, uint32_t tick) {
   const bool valid =
       received && reading->intact && echo_is_current(reading, tick) && heartbeat_advanced(axis, reading);
-  axis->card_valid = valid ? 1u : 0u;
+  axis->card_valid = flag_of(valid);
   if (valid) {
     axis->bad_frames = 0u;
     axis->heartbeat = reading->heartbeat;
@@ -208,7 +213,8 @@ static finding_t observe_missing(const ilk_config_t *config, ilk_axis_t *axis) {
   if (ilk_card_is_lost(config, axis)) {
     axis->card_seen = 0u;
     finding.fault = ILK_FAULT_CARD_LOST;
-    finding.value = (int32_t)(axis->bad_frames & (uint32_t)INT32_MAX);
+    const uint32_t missed = axis->bad_frames & (uint32_t)INT32_MAX;
+    finding.value = (int32_t)missed;
   }
   return finding;
 }
@@ -234,7 +240,7 @@ bool ilk_observe_axis(const ilk_config_t *config, const ilk_axis_config_t *axis_
                       const ilk_reading_t *reading, uint32_t tick) {
   const bool valid = axis->card_valid != 0u;
   const bool has_switch = axis_config->limit_side != (uint32_t)ILK_LIMIT_NONE;
-  axis->switch_triggered = (has_switch && (!valid || reading->switch_triggered)) ? 1u : 0u;
+  axis->switch_triggered = flag_of(has_switch && (!valid || reading->switch_triggered));
   axis->ticks_since_frame = count_up(axis->ticks_since_frame, UINT32_MAX);
   run_lease_down(axis);
   finding_t finding = valid ? observe_valid(axis_config, axis, reading) : observe_missing(config, axis);
@@ -245,7 +251,7 @@ bool ilk_observe_axis(const ilk_config_t *config, const ilk_axis_config_t *axis_
   }
   bool faulted = false;
   if (finding.fault != ILK_FAULT_NONE) {
-    faulted = ilk_axis_fault(axis, finding.fault, finding.value, tick);
+    faulted = raise_fault(axis, finding.fault, finding.value, tick);
   }
   return faulted;
 }

@@ -17,13 +17,6 @@ void ilk_axis_drop_motion(ilk_axis_t *axis);
 /** Takes the axis out of motion. A FAULTED axis stays FAULTED. */
 void ilk_axis_disable(ilk_axis_t *axis);
 
-/**
- * Faults the axis. The first fault is kept until CLEAR_FAULT.
- *
- * @return true when the fault is new.
- */
-bool ilk_axis_fault(ilk_axis_t *axis, ilk_fault_t fault, int32_t value, uint32_t tick);
-
 /** True when the card has given `bad_frame_limit` bad frames in a row. */
 bool ilk_card_is_lost(const ilk_config_t *config, const ilk_axis_t *axis);
 

@@ -1,6 +1,7 @@
 #include "config.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 
 #include "arith.h"
 #include "crc32.h"
@@ -61,7 +62,8 @@ uint32_t ilk_crc_system_config(uint32_t crc, const ilk_config_t *config) {
   next = ilk_crc32_word(next, config->overrun_limit);
   return next;
 }
-_Static_assert(sizeof(ilk_config_t) == ((ILK_SLOTS * sizeof(ilk_axis_config_t)) + (11u * sizeof(uint32_t))),
+_Static_assert(sizeof(ilk_config_t) ==
+                   (((size_t)ILK_SLOTS * sizeof(ilk_axis_config_t)) + (11u * sizeof(uint32_t))),
                "every word is in the CRC");
 
 uint32_t ilk_config_crc(const ilk_config_t *config) {

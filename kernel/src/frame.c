@@ -4,23 +4,18 @@
 
 _Static_assert((ILK_FRAME_WORDS == 32) || (ILK_FRAME_WORDS == 64), "frames have 32 or 64 words");
 
-enum { CHECKSUM_WORD = ILK_FRAME_WORDS - 1, SPEED_POINTS = 24 };
-
+#define CHECKSUM_WORD (ILK_FRAME_WORDS - 1)
 #define START_WORD 0xfefefe01u
 #define FRAME_SUM 0xffffffffu
 #define SWITCH_OPEN_BIT 0x00080000u
 #define PWM_REVERSED 0x80000000u
+#define WAVE_REVERSED 0x01000000u
 #define NON_PWM_FORWARD 0x40000000u
 #define NON_PWM_REVERSED 0xc0000000u
 
 #define FREQUENCY_OF_REST 1196612456u
 #define FREQUENCY_STEP 4063228u
-
-/** Speed at each point of the published map, the faster of both directions, in thousandths of a revolution
-    per minute: kinematics of the published high-frequency motor, spec/frames.md. */
-static const uint32_t speed_map[SPEED_POINTS] = {
-    0u,     54u,    189u,   331u,   614u,   1095u,  2020u,   3222u,   3773u,   6383u,   11445u,  15308u,
-    20955u, 27358u, 36039u, 45548u, 58997u, 78710u, 105850u, 141386u, 188106u, 247388u, 317394u, 397785u};
+#define SPEED_POINTS 24u
 
 /** Sum of all words; the checksum makes it FRAME_SUM. */
 static uint32_t sum_of(const uint32_t frame[ILK_FRAME_WORDS]) {
@@ -44,16 +39,24 @@ ilk_reading_t ilk_frame_unpack(const uint32_t frame[ILK_FRAME_WORDS]) {
   return reading;
 }
 
-uint32_t ilk_frequency_word(uint32_t drive) {
+/** Frequency word of a high-frequency card for a drive in thousandths of a revolution per minute. */
+static uint32_t frequency_word(uint32_t drive) {
+  /* Speed at each point of the published map, the faster of both directions, in thousandths of a revolution
+     per minute: kinematics of the published high-frequency motor, spec/frames.md. */
+  static const uint32_t speed_map[SPEED_POINTS] = {
+      0u,     54u,    189u,   331u,   614u,   1095u,  2020u,   3222u,   3773u,   6383u,   11445u,  15308u,
+      20955u, 27358u, 36039u, 45548u, 58997u, 78710u, 105850u, 141386u, 188106u, 247388u, 317394u, 397785u};
   uint32_t point = 1u;
-  while ((point < ((uint32_t)SPEED_POINTS - 1u)) && (speed_map[point] < drive)) {
+  while ((point < (SPEED_POINTS - 1u)) && (speed_map[point] < drive)) {
     point++;
   }
   const uint32_t slower = speed_map[point - 1u];
   const uint32_t faster = speed_map[point];
-  const uint32_t above = (drive > faster) ? (faster - slower) : (drive - slower);
+  const uint32_t reached = (drive < faster) ? drive : faster;
+  const uint64_t above = (uint64_t)reached - slower;
+  const uint64_t width = (uint64_t)faster - slower;
   /* Rounding the descent down rounds the word up, to the slower side. */
-  const uint64_t descent = ((uint64_t)above * FREQUENCY_STEP) / (uint64_t)(faster - slower);
+  const uint64_t descent = (above * FREQUENCY_STEP) / width;
   return FREQUENCY_OF_REST - ((point - 1u) * FREQUENCY_STEP) - (uint32_t)descent;
 }
 
@@ -90,9 +93,9 @@ static drive_words_t drive_words(const ilk_axis_config_t *config, const ilk_comm
       words.amplifier = 1u;
       break;
     case (uint32_t)ILK_CARD_HIGH_FREQUENCY:
-      words.wave1 = ((decreases ? 0u : 1u) << 24) | command->amplitude;
-      words.wave2 = ((decreases ? 1u : 0u) << 24) | command->amplitude;
-      words.frequency1 = ilk_frequency_word(command->drive);
+      words.wave1 = (decreases ? 0u : WAVE_REVERSED) | command->amplitude;
+      words.wave2 = (decreases ? WAVE_REVERSED : 0u) | command->amplitude;
+      words.frequency1 = frequency_word(command->drive);
       words.frequency2 = words.frequency1;
       words.amplifier = 1u;
       break;

@@ -28,7 +28,4 @@ ilk_reading_t ilk_frame_unpack(const uint32_t frame[ILK_FRAME_WORDS]);
 void ilk_frame_pack(const ilk_axis_config_t *config, const ilk_command_t *command, uint32_t tick,
                     uint32_t frame[ILK_FRAME_WORDS]);
 
-/** Frequency word of a high-frequency card for a drive in thousandths of a revolution per minute. */
-uint32_t ilk_frequency_word(uint32_t drive);
-
 #endif

@@ -1,5 +1,7 @@
 #include "integrity.h"
 
+#include <stddef.h>
+
 #include "arith.h"
 #include "config.h"
 #include "crc32.h"
@@ -90,7 +92,7 @@ static uint32_t system_digest(const ilk_state_t *state) {
   even = mix(even, state->requests_refused);
   return mix(even, odd);
 }
-_Static_assert(sizeof(ilk_state_t) == ((ILK_SLOTS * sizeof(ilk_axis_t)) + (27u * sizeof(uint32_t))),
+_Static_assert(sizeof(ilk_state_t) == (((size_t)ILK_SLOTS * sizeof(ilk_axis_t)) + (27u * sizeof(uint32_t))),
                "every word is sealed, or is the seal");
 
 /** Each part has a digest of its own, made in two lanes, so that a processor can work on several at once. */
@@ -111,13 +113,17 @@ static bool axis_codes_are_known(const ilk_axis_t *axis) {
          (axis->homed <= 1u);
 }
 
+static bool both_or_neither(bool a, bool b) { return a == b; }
+
 /** Each state of an axis has exactly the company that belongs to it. */
 static bool axis_agrees(const ilk_axis_t *axis) {
   const bool faulted = axis->state == (uint32_t)ILK_AXIS_FAULTED;
   const bool moving = axis->state == (uint32_t)ILK_AXIS_MOVING;
   const bool homing = axis->state == (uint32_t)ILK_AXIS_HOMING;
-  return (faulted == (axis->fault != (uint32_t)ILK_FAULT_NONE)) && (moving == (axis->lease_ticks != 0u)) &&
-         (homing == (axis->homing_phase != (uint32_t)ILK_HOMING_NONE)) && (!homing || (axis->homed == 0u));
+  return both_or_neither(faulted, axis->fault != (uint32_t)ILK_FAULT_NONE) &&
+         both_or_neither(moving, axis->lease_ticks != 0u) &&
+         both_or_neither(homing, axis->homing_phase != (uint32_t)ILK_HOMING_NONE) &&
+         (!homing || (axis->homed == 0u));
 }
 
 /** What the mode allows an axis to be. */
@@ -140,8 +146,8 @@ static bool axis_fits_mode(const ilk_axis_t *axis, uint32_t mode) {
 static bool system_agrees(const ilk_state_t *state) {
   const bool locked = state->mode == (uint32_t)ILK_MODE_LOCKED;
   return (state->mode < ILK_MODE_COUNT) && (state->cause < ILK_CAUSE_COUNT) &&
-         (locked == (state->cause != (uint32_t)ILK_CAUSE_NONE)) && (state->pedal < ILK_PEDAL_COUNT) &&
-         (state->config_slice < (uint32_t)ILK_SLOTS);
+         both_or_neither(locked, state->cause != (uint32_t)ILK_CAUSE_NONE) &&
+         (state->pedal < ILK_PEDAL_COUNT) && (state->config_slice < (uint32_t)ILK_SLOTS);
 }
 
 bool ilk_state_is_sound(const ilk_state_t *state) {
@@ -189,9 +195,8 @@ void ilk_state_rebuild(ilk_state_t *state, const ilk_config_t *config, ilk_cause
 
 /** A configuration that was not trusted becomes so by a whole pass that agrees and by being valid (P13). */
 static uint32_t trust_after_pass(const ilk_config_t *config, const ilk_state_t *state) {
-  const bool trusted =
-      (state->config_sound != 0u) || (ilk_config_validate(config).error == (uint32_t)ILK_CONFIG_ERROR_NONE);
-  return trusted ? 1u : 0u;
+  return flag_of((state->config_sound != 0u) ||
+                 (ilk_config_validate(config).error == (uint32_t)ILK_CONFIG_ERROR_NONE));
 }
 
 ilk_config_check_t ilk_config_check_slice(const ilk_config_t *config, ilk_state_t *state) {
@@ -218,7 +223,7 @@ ilk_config_verdict_t ilk_init(const ilk_config_t *config, ilk_state_t *state) {
   const ilk_config_verdict_t verdict = ilk_config_validate(config);
   const bool valid = verdict.error == (uint32_t)ILK_CONFIG_ERROR_NONE;
   ilk_state_rebuild(state, config, ILK_CAUSE_BOOT, 0u);
-  state->config_sound = valid ? 1u : 0u;
+  state->config_sound = flag_of(valid);
   if (!valid) {
     state->mode = (uint32_t)ILK_MODE_INIT;
     state->cause = (uint32_t)ILK_CAUSE_NONE;

@@ -78,7 +78,7 @@ static void observe_app(const ilk_config_t *config, ilk_state_t *state, const il
     state->app_age_ticks = UINT32_MAX;
   }
   state->app_age_ticks = count_up(state->app_age_ticks, UINT32_MAX);
-  state->app_alive = (state->app_age_ticks < config->app_timeout_ticks) ? 1u : 0u;
+  state->app_alive = flag_of(state->app_age_ticks < config->app_timeout_ticks);
 }
 
 static void observe_deadline(ilk_state_t *state, const ilk_inputs_t *in) {
@@ -94,7 +94,7 @@ void ilk_observe_system(const ilk_config_t *config, ilk_state_t *state, const il
   observe_app(config, state, in);
   observe_pedal(config, state, in);
   observe_deadline(state, in);
-  state->estop = (in->estop_loop_closed == CLOSED) ? 0u : 1u;
+  state->estop = flag_of(in->estop_loop_closed != CLOSED);
 }
 
 static uint32_t contacts(const ilk_inputs_t *in) {

@@ -9,9 +9,6 @@
 #include "mode.h"
 #include "request.h"
 
-static const ilk_command_t zero_drive = {
-    .direction = (uint32_t)ILK_DIRECTION_NONE, .drive = 0u, .amplitude = 0u};
-
 /** Phase 1: state and a slice of the configuration. Nothing else of a damaged state is looked at. */
 static void check_integrity(const ilk_config_t *config, ilk_state_t *state, ilk_alarms_t *alarms) {
   if (!ilk_state_is_sound(state)) {
@@ -110,6 +107,8 @@ static void answer_requests(const ilk_config_t *config, ilk_state_t *state, cons
 
 /** Phase 7: what each axis wants goes through the output gate, or is zero drive. */
 static void drive_axes(const ilk_config_t *config, ilk_state_t *state, ilk_outputs_t *out) {
+  static const ilk_command_t zero_drive = {
+      .direction = (uint32_t)ILK_DIRECTION_NONE, .drive = 0u, .amplitude = 0u};
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
     const ilk_axis_config_t *axis_config = &config->axis[slot];
     ilk_axis_t *axis = &state->axis[slot];
@@ -175,11 +174,11 @@ static void publish(const ilk_config_t *config, ilk_state_t *state, ilk_outputs_
 
 void ilk_step(const ilk_config_t *config, ilk_state_t *state, const ilk_inputs_t *in,
               const ilk_request_t requests[], uint32_t count, ilk_outputs_t *out) {
-  ilk_reading_t readings[ILK_SLOTS];
   ilk_alarms_t alarms = {.new_fault = false};
 
   check_integrity(config, state, &alarms);
   if (state->mode != (uint32_t)ILK_MODE_INIT) {
+    ilk_reading_t readings[ILK_SLOTS];
     read_frames(config, state, in, readings);
     ilk_observe_system(config, state, in);
     observe_axes(config, state, readings, &alarms);
