@@ -9,10 +9,6 @@ static bool names_axis(uint32_t kind) {
   return (kind >= (uint32_t)ILK_REQUEST_DISABLE) && (kind <= (uint32_t)ILK_REQUEST_RESTORE);
 }
 
-static bool is_known(uint32_t kind) {
-  return (kind >= (uint32_t)ILK_REQUEST_HEARTBEAT) && (kind <= (uint32_t)ILK_REQUEST_RESTORE);
-}
-
 /** Newer by less than half of the number space; gaps are allowed, repeats and returns are not. */
 static bool is_newer(uint32_t sequence, uint32_t last) {
   const uint32_t ahead = sequence - last;
@@ -25,10 +21,8 @@ static bool axis_is(const ilk_axis_t *axis, ilk_axis_state_t state) { return axi
 
 static bool pedal_is_up(const ilk_state_t *state) { return state->pedal == (uint32_t)ILK_PEDAL_RELEASED; }
 
-/** At rest: not driven, and the counter did not change since the last tick. */
-static bool is_at_rest(const ilk_axis_t *axis) {
-  return (axis->driven_direction == (uint32_t)ILK_DIRECTION_NONE) && (axis->delta_counts == 0);
-}
+/** The counter did not change since the last tick. In READY, where this is asked, no axis is driven. */
+static bool is_at_rest(const ilk_axis_t *axis) { return axis->delta_counts == 0; }
 
 static ilk_verdict_t check_reset(const ilk_state_t *state) {
   ilk_verdict_t verdict = ILK_VERDICT_ACCEPTED;
@@ -173,7 +167,7 @@ static ilk_verdict_t check_declare(const ilk_axis_config_t *config, const ilk_st
   return verdict;
 }
 
-/** The row of the request table, from left to right. */
+/** The row of the request table, from left to right; UNKNOWN without one, for which no axis was named. */
 static ilk_verdict_t check_row(const ilk_config_t *config, const ilk_state_t *state,
                                const ilk_request_t *request) {
   const uint32_t slot = names_axis(request->kind) ? request->axis : 0u;
@@ -223,8 +217,6 @@ ilk_verdict_t ilk_request_judge(const ilk_config_t *config, const ilk_state_t *s
     verdict = ILK_VERDICT_CHECKSUM;
   } else if (!is_newer(request->sequence, state->last_sequence)) {
     verdict = ILK_VERDICT_SEQUENCE;
-  } else if (!is_known(request->kind)) {
-    verdict = ILK_VERDICT_UNKNOWN;
   } else if (names_axis(request->kind) &&
              ((request->axis >= (uint32_t)ILK_SLOTS) || !has_axis(&config->axis[request->axis]))) {
     verdict = ILK_VERDICT_AXIS;

@@ -146,11 +146,11 @@ static void arm_pedal(const ilk_config_t *config, ilk_state_t *state) {
   }
 }
 
+/** Asked after `arm_pedal`: a pedal that is armed says that the app lives. */
 static bool motion_may_begin(const ilk_config_t *config, const ilk_state_t *state,
                              const ilk_alarms_t *alarms) {
   return (state->pedal_armed != 0u) && (state->pedal == (uint32_t)ILK_PEDAL_PRESSED) &&
-         (state->pedal_pressed_ticks >= config->pedal_debounce_ticks) && (state->app_alive != 0u) &&
-         !alarms->required_card_lost;
+         (state->pedal_pressed_ticks >= config->pedal_debounce_ticks) && !alarms->required_card_lost;
 }
 
 void ilk_change_mode(const ilk_config_t *config, ilk_state_t *state, const ilk_alarms_t *alarms,
