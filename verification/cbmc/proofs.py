@@ -1,0 +1,99 @@
+"""What a proof is: the proof.toml beside its harness.c, read and checked.
+
+proves          one sentence: what the harness shows
+supports        the properties of the kernel that it carries
+sources         the files of kernel/src that are linked to the harness, as shipped
+defines         preprocessor symbols with their values, as for a build with other frames
+unwind          iterations that close a loop not named in unwindset
+unwindset       iterations by loop (`FUNCTION.NUMBER`), where they differ
+seconds         processor time that both runs take together on an idle core
+properties      how many properties must be proved, no more and no fewer
+reachable       cover goals of the harness that must be reachable
+contradictions  cover goals of the harness that must be unreachable
+[[replaced]]    function, by (a function of the harness), proved_in (the proof that justifies it), because
+[[wraps]]       function, because: an unsigned overflow that is meant; each must be shown to happen
+"""
+
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+
+
+@dataclass(frozen=True)
+class Replacement:
+    """A function whose calls go to a stub of the harness."""
+
+    function: str
+    by: str
+    proved_in: str
+    because: str
+
+
+@dataclass(frozen=True)
+class Wrap:
+    """A function whose unsigned arithmetic is meant to wrap."""
+
+    function: str
+    because: str
+
+
+@dataclass(frozen=True)
+class Proof:
+    """One harness and what it must come to."""
+
+    name: str
+    proves: str
+    supports: list[str]
+    sources: list[str]
+    seconds: float
+    properties: int
+    reachable: frozenset[str]
+    contradictions: frozenset[str]
+    unwind: int = 1
+    unwindset: dict[str, int] = field(default_factory=dict)
+    defines: dict[str, str | int] = field(default_factory=dict)
+    replaced: list[Replacement] = field(default_factory=list)
+    wraps: list[Wrap] = field(default_factory=list)
+
+    @property
+    def harness(self) -> Path:
+        """The C file with the function `harness`."""
+        return HERE / self.name / "harness.c"
+
+
+def load(path: Path) -> Proof:
+    """Reads one proof.toml. Raises SystemExit naming the file when something is missing, unknown or empty."""
+    table = tomllib.loads(path.read_text("utf-8"))
+    try:
+        proof = Proof(
+            **{
+                **table,
+                "name": path.parent.name,
+                "reachable": frozenset(table["reachable"]),
+                "contradictions": frozenset(table["contradictions"]),
+                "replaced": [Replacement(**entry) for entry in table.get("replaced", [])],
+                "wraps": [Wrap(**entry) for entry in table.get("wraps", [])],
+            }
+        )
+    except (KeyError, TypeError) as error:
+        raise SystemExit(f"{path}: {error}; expected the entries that proofs.py describes") from error
+    for entry in ("proves", "supports", "reachable", "contradictions"):
+        if not getattr(proof, entry):
+            raise SystemExit(f"{path}: '{entry}' is empty; a proof says what it shows and that it could fail")
+    return proof
+
+
+def load_all() -> list[Proof]:
+    """All proofs. Raises SystemExit when a replacement rests on a proof that does not exist."""
+    proofs = [load(path) for path in sorted(HERE.glob("*/proof.toml"))]
+    names = {proof.name for proof in proofs}
+    for proof in proofs:
+        for replacement in proof.replaced:
+            if replacement.proved_in not in names:
+                raise SystemExit(
+                    f"{proof.name}/proof.toml: '{replacement.function}' is replaced, which"
+                    f" '{replacement.proved_in}' should justify; there is no such proof"
+                )
+    return proofs

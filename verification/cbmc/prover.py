@@ -1,0 +1,213 @@
+"""Runs CBMC's tools on one proof. Every proof is checked with the same flags; none can switch a check off."""
+
+import json
+import resource
+import subprocess
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from proofs import HERE, Proof
+
+ROOT = HERE.parents[1]
+TOOLS = ROOT / "build" / "provers" / "bin"
+MEMORY_BYTES = 6 * 10**9
+PATIENCE = 10
+"""A run is given up after so many times its expected time, but never before LEAST_SECONDS."""
+LEAST_SECONDS = 180
+
+COMPILE_SECONDS = 60
+
+COMPILE = [
+    "-std=c11",
+    "-ffreestanding",
+    "-I",
+    "verification/cbmc/include",
+    "-I",
+    "kernel/include",
+    "-I",
+    "kernel/src",
+]
+CHECKS = [
+    "--bounds-check",
+    "--pointer-check",
+    "--pointer-primitive-check",
+    "--pointer-overflow-check",
+    "--div-by-zero-check",
+    "--signed-overflow-check",
+    "--unsigned-overflow-check",
+    "--conversion-check",
+    "--undefined-shift-check",
+    "--enum-range-check",
+    "--unwinding-assertions",
+]
+
+
+@dataclass(frozen=True)
+class Property:
+    """A property as CBMC names it, and whether it holds."""
+
+    name: str
+    function: str
+    description: str
+    place: str
+    holds: bool
+
+
+@dataclass(frozen=True)
+class Result:
+    """What one run told. `trouble` says why it told nothing."""
+
+    seconds: float
+    properties: list[Property] = field(default_factory=list)
+    trouble: str = ""
+
+
+JSON = ["--json-ui", "--verbosity", "4"]
+
+
+def version() -> str:
+    """The version of CBMC, as it tells it."""
+    told = subprocess.run([TOOLS / "cbmc", "--version"], check=True, capture_output=True, text=True).stdout
+    return told.split()[0]
+
+
+def call(tool: str, arguments: list[str], log: Path, seconds: float) -> str:
+    """Runs a tool from the top of the tree, within memory and time, and returns its output, as in `log`."""
+
+    def bound_memory() -> None:
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES))
+
+    with log.open("w", encoding="utf-8") as output:
+        subprocess.run(
+            [TOOLS / tool, *arguments],
+            cwd=ROOT,
+            stdout=output,
+            stderr=subprocess.STDOUT,
+            timeout=seconds,
+            preexec_fn=bound_memory,
+            check=False,
+        )
+    return log.read_text("utf-8")
+
+
+def compiled(proof: Proof, logs: Path, kind: str) -> Path:
+    """The goto program of a proof, with its replacements. Raises ValueError with the tool's words."""
+    logs.mkdir(parents=True, exist_ok=True)
+    program, linked = logs / f"{kind}.goto", logs / f"{kind}.linked.goto"
+    program.unlink(missing_ok=True)
+    linked.unlink(missing_ok=True)
+    files = [str(proof.harness.relative_to(ROOT)), *(f"kernel/src/{source}" for source in proof.sources)]
+    defines = [f"-D{name}={value}" for name, value in proof.defines.items()]
+    defines += ["-DILK_COVER"] if kind == "cover" else []
+    told = call(
+        "goto-cc",
+        [*COMPILE, *defines, "--function", "harness", "-o", str(linked), *files],
+        logs / f"{kind}.compile.log",
+        COMPILE_SECONDS,
+    )
+    if not linked.exists():
+        raise ValueError(told.strip())
+    replaced = [part for one in proof.replaced for part in ("--replace-calls", f"{one.function}:{one.by}")]
+    told = call(
+        "goto-instrument",
+        [*replaced, "--drop-unused-functions", str(linked), str(program)],
+        logs / f"{kind}.replace.log",
+        COMPILE_SECONDS,
+    )
+    if not program.exists():
+        raise ValueError(told.strip())
+    return program
+
+
+def patience(proof: Proof) -> float:
+    """Seconds after which a run of this proof is given up."""
+    return max(LEAST_SECONDS, PATIENCE * proof.seconds)
+
+
+def bounds(proof: Proof) -> list[str]:
+    """How far loops are unwound."""
+    named = [f"{loop}:{count}" for loop, count in proof.unwindset.items()]
+    return ["--unwind", str(proof.unwind), *(["--unwindset", ",".join(named)] if named else [])]
+
+
+def messages(text: str) -> list[dict]:
+    """CBMC's JSON output. Raises ValueError when it broke off."""
+    try:
+        return json.loads(text)
+    except json.JSONDecodeError as error:
+        raise ValueError(f"CBMC broke off: {text.strip()[-300:]}") from error
+
+
+def entries(told: list[dict], key: str) -> list[dict]:
+    """The list that CBMC gives under `key`. Raises ValueError with its last words when there is none."""
+    for message in told:
+        if key in message:
+            return message[key]
+    words = [message["messageText"] for message in told if message.get("messageType") == "ERROR"]
+    raise ValueError("CBMC gave no answer: " + "; ".join(words))
+
+
+def property_of(entry: dict, name: str, holds: bool) -> Property:
+    """A property or a goal from CBMC's JSON. Copies of an inline function go by the function's own name."""
+    place = entry.get("sourceLocation", {})
+    function = place.get("function", entry[name]).split("$link")[0]
+    return Property(
+        entry[name],
+        function,
+        entry["description"],
+        f"{place.get('file', '?')}:{place.get('line', '?')}",
+        holds,
+    )
+
+
+def timed(run: Callable[[], list[Property]], proof: Proof) -> Result:
+    """Runs, measures, and turns whatever keeps the tools from an answer into words."""
+    started = time.monotonic()
+    try:
+        found = run()
+    except ValueError as error:
+        return Result(time.monotonic() - started, trouble=str(error))
+    except subprocess.TimeoutExpired:
+        return Result(time.monotonic() - started, trouble=f"no answer in {patience(proof):.0f} s")
+    return Result(time.monotonic() - started, found)
+
+
+def check_properties(proof: Proof, logs: Path) -> Result:
+    """Tries to prove every assertion of the harness and every check in the code that it reaches."""
+
+    def prove() -> list[Property]:
+        program = compiled(proof, logs, "proof")
+        told = messages(
+            call("cbmc", [*JSON, *CHECKS, *bounds(proof), str(program)], logs / "proof.json", patience(proof))
+        )
+        return [
+            property_of(entry, "property", entry["status"] == "SUCCESS") for entry in entries(told, "result")
+        ]
+
+    return timed(prove, proof)
+
+
+def check_goals(proof: Proof, logs: Path) -> Result:
+    """Tries to reach every cover goal of the harness."""
+
+    def reach() -> list[Property]:
+        program = compiled(proof, logs, "cover")
+        arguments = [*JSON, "--cover", "cover", *bounds(proof), str(program)]
+        told = messages(call("cbmc", arguments, logs / "cover.json", patience(proof)))
+        return [
+            property_of(entry, "goal", entry["status"] == "satisfied") for entry in entries(told, "goals")
+        ]
+
+    return timed(reach, proof)
+
+
+def trace(proof: Proof, name: str, logs: Path) -> list[dict]:
+    """The steps that lead to a failed property; none when CBMC does not find them again."""
+    arguments = [*JSON, *CHECKS, *bounds(proof), "--trace", "--property", name, str(logs / "proof.goto")]
+    try:
+        told = messages(call("cbmc", arguments, logs / "trace.json", patience(proof)))
+        return next((entry["trace"] for entry in entries(told, "result") if "trace" in entry), [])
+    except (ValueError, subprocess.TimeoutExpired):
+        return []
