@@ -59,11 +59,10 @@ def c_header(catalog: Catalog) -> str:
 C_CONFIG_ERRORS = """/* {notice} */
 #include "config_error_text.h"
 
-static const ilk_config_error_text_t texts[ILK_CONFIG_ERROR_COUNT] = {{
-{rows}
-}};
-
 ilk_config_error_text_t ilk_config_error_text(uint32_t error) {{
+  static const ilk_config_error_text_t texts[ILK_CONFIG_ERROR_COUNT] = {{
+{rows}
+  }};
   static const ilk_config_error_text_t unknown = {{"UNKNOWN", "The code is not in the catalog."}};
   return error < ILK_CONFIG_ERROR_COUNT ? texts[error] : unknown;
 }}
@@ -72,7 +71,7 @@ ilk_config_error_text_t ilk_config_error_text(uint32_t error) {{
 
 def c_config_errors(catalog: Catalog) -> str:
     rows = (
-        f'  [ILK_CONFIG_ERROR_{code["name"]}] = {{"{code["name"]}", {json.dumps(code["meaning"])}}},'
+        f'    [ILK_CONFIG_ERROR_{code["name"]}] = {{"{code["name"]}", {json.dumps(code["meaning"])}}},'
         for code in catalog["config_error"]
     )
     return C_CONFIG_ERRORS.format(notice=NOTICE, rows="\n".join(rows))

@@ -13,6 +13,7 @@
 #include "clock.h"
 #include "link_socket.h"
 #include "service_thread.h"
+#include "timespec.h"
 
 #define NS_PER_MS 1000000u
 /**
@@ -75,6 +76,8 @@ static int connect_plant(const ilk_bus_sim_t *sim, ilk_error_t *error) {
                    sim->address.sun_path, strerror(errno));
   } else if (greet(descriptor, &sim->hello, error)) {
     return descriptor;
+  } else {
+    /* `greet` has given the reason. */
   }
   (void)close(descriptor);
   return -1;
@@ -111,8 +114,8 @@ static bool reconnect(ilk_bus_sim_t *sim) {
 static void *watch(void *argument) {
   ilk_bus_sim_t *sim = argument;
   for (;;) {
-    struct pollfd events[] = {{.fd = sim->stop, .events = POLLIN},
-                              {.fd = sim->descriptor, .events = POLLRDHUP}};
+    struct pollfd events[2] = {{.fd = sim->stop, .events = POLLIN},
+                               {.fd = sim->descriptor, .events = POLLRDHUP}};
     (void)poll(events, 2, -1);
     if (events[0].revents != 0 || (events[1].revents != 0 && !reconnect(sim))) {
       return NULL;
@@ -167,8 +170,7 @@ typedef enum { REPLY_NONE, REPLY_RECEIVED, REPLY_LOST } reply_result_t;
 
 static reply_result_t receive_reply(ilk_bus_sim_t *sim, uint64_t patience_ns) {
   struct pollfd wanted = {.fd = sim->descriptor, .events = POLLIN};
-  const struct timespec patience = {.tv_sec = (time_t)(patience_ns / 1000000000u),
-                                    .tv_nsec = (long)(patience_ns % 1000000000u)};
+  const struct timespec patience = ilk_timespec(patience_ns);
   if (ppoll(&wanted, 1, &patience, NULL) <= 0) {
     return REPLY_NONE;
   }
@@ -183,8 +185,8 @@ static reply_result_t receive_reply(ilk_bus_sim_t *sim, uint64_t patience_ns) {
 static reply_result_t exchange(ilk_bus_sim_t *sim, uint32_t tick, const ilk_outputs_t *out) {
   sim->exchange.magic = ILK_SIM_MAGIC;
   sim->exchange.tick = tick;
-  memcpy(sim->exchange.lamp, out->lamp, sizeof out->lamp);
-  memcpy(sim->exchange.frame, out->frame, sizeof out->frame);
+  (void)memcpy(sim->exchange.lamp, out->lamp, sizeof out->lamp);
+  (void)memcpy(sim->exchange.frame, out->frame, sizeof out->frame);
   if (send(sim->descriptor, &sim->exchange, sizeof sim->exchange, MSG_DONTWAIT | MSG_NOSIGNAL) !=
       (ssize_t)sizeof sim->exchange) {
     return REPLY_LOST;
@@ -210,14 +212,15 @@ static reply_result_t exchange_in_step(ilk_bus_sim_t *sim, uint32_t tick, const 
 static bool transact(void *driver, uint32_t tick, const ilk_outputs_t *out, ilk_inputs_t *in) {
   ilk_bus_sim_t *sim = driver;
   const reply_result_t result = exchange_in_step(sim, tick, out);
-  in->transaction_done = result == REPLY_RECEIVED ? 1u : 0u;
+  in->transaction_done = 0u;
   in->frames_received = 0u;
   if (result == REPLY_RECEIVED) {
+    in->transaction_done = 1u;
     in->frames_received = sim->reply.frames_received;
     in->pedal_no_closed = sim->reply.pedal_no_closed;
     in->pedal_nc_closed = sim->reply.pedal_nc_closed;
     in->estop_loop_closed = sim->reply.estop_loop_closed;
-    memcpy(in->frame, sim->reply.frame, sizeof in->frame);
+    (void)memcpy(in->frame, sim->reply.frame, sizeof in->frame);
   }
   return result != REPLY_LOST;
 }

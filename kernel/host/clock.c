@@ -2,6 +2,8 @@
 
 #include <time.h>
 
+#include "timespec.h"
+
 #define NS_PER_S 1000000000u
 
 uint64_t ilk_now_ns(void) {
@@ -42,7 +44,6 @@ uint64_t ilk_ticker_begin(ilk_ticker_t *ticker, uint64_t now_ns) {
 }
 
 void ilk_sleep_until(uint64_t deadline_ns) {
-  const struct timespec deadline = {.tv_sec = (time_t)(deadline_ns / NS_PER_S),
-                                    .tv_nsec = (long)(deadline_ns % NS_PER_S)};
+  const struct timespec deadline = ilk_timespec(deadline_ns);
   (void)clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, NULL);
 }

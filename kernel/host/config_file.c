@@ -12,7 +12,7 @@
 static ssize_t read_up_to(int descriptor, unsigned char *bytes, size_t wanted) {
   size_t filled = 0;
   while (filled < wanted) {
-    const ssize_t got = read(descriptor, bytes + filled, wanted - filled);
+    const ssize_t got = read(descriptor, &bytes[filled], wanted - filled);
     if (got <= 0) {
       return got < 0 ? -1 : (ssize_t)filled;
     }
@@ -40,7 +40,7 @@ static bool read_config(const char *path, ilk_config_t *config, ilk_error_t *err
         "this release",
         path, length > (ssize_t)sizeof *config ? "at least " : "", length, sizeof *config);
   }
-  memcpy(config, bytes, sizeof *config);
+  (void)memcpy(config, bytes, sizeof *config);
   return true;
 }
 
@@ -49,11 +49,11 @@ bool ilk_config_load(const char *path, ilk_config_t *config, ilk_error_t *error)
     return false;
   }
   const ilk_config_verdict_t verdict = ilk_config_validate(config);
-  if (verdict.error == ILK_CONFIG_ERROR_NONE) {
+  if (verdict.error == (uint32_t)ILK_CONFIG_ERROR_NONE) {
     return true;
   }
   const ilk_config_error_text_t text = ilk_config_error_text(verdict.error);
-  if (verdict.slot < ILK_SLOTS) {
+  if (verdict.slot < (uint32_t)ILK_SLOTS) {
     return ilk_fail(error, "configuration '%s' refused, slot %u: %s: %s", path, verdict.slot, text.name,
                     text.meaning);
   }

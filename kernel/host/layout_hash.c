@@ -1,11 +1,11 @@
 #include "layout_table.h"
 
 static uint32_t crc_word(uint32_t crc, uint32_t word) {
-  crc ^= word;
+  uint32_t next = crc ^ word;
   for (unsigned bit = 0; bit < 32u; ++bit) {
-    crc = (crc >> 1) ^ ((crc & 1u) != 0u ? 0xEDB88320u : 0u);
+    next = (next >> 1) ^ (((next & 1u) != 0u) ? 0xEDB88320u : 0u);
   }
-  return crc;
+  return next;
 }
 
 uint32_t ilk_layout_crc(const ilk_layout_field_t fields[], size_t count) {

@@ -1,9 +1,8 @@
 #include "interlock/link_reader.h"
 
-#include <time.h>
-
 #include "atomic_words.h"
 #include "futex.h"
+#include "timespec.h"
 
 #define ATTEMPTS 100u
 
@@ -33,8 +32,7 @@ static bool newer_snapshot(uint32_t current, uint32_t lock) {
 }
 
 bool ilk_link_wait_snapshot(const ilk_link_kernel_region_t *region, uint32_t lock, uint32_t timeout_ms) {
-  const struct timespec timeout = {.tv_sec = (time_t)(timeout_ms / 1000u),
-                                   .tv_nsec = (long)(timeout_ms % 1000u) * 1000000L};
+  const struct timespec timeout = ilk_timespec((uint64_t)timeout_ms * 1000000u);
   for (unsigned attempt = 0; attempt < ATTEMPTS; ++attempt) {
     const uint32_t current = __atomic_load_n(&region->snapshot_lock, __ATOMIC_ACQUIRE);
     if (newer_snapshot(current, lock)) {

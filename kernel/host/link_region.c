@@ -19,7 +19,10 @@ static int create_region(const char *name, size_t bytes) {
 
 static void *map_region(int descriptor, size_t bytes, int protection) {
   void *address = mmap(NULL, bytes, protection, MAP_SHARED | MAP_POPULATE, descriptor, 0);
-  return address == MAP_FAILED ? NULL : address;
+  if (address == MAP_FAILED) {
+    address = NULL;
+  }
+  return address;
 }
 
 static bool create_kernel_region(ilk_link_regions_t *regions, uint32_t generation) {
@@ -76,7 +79,7 @@ void ilk_link_regions_close(ilk_link_regions_t *regions) {
 /** `munmap` wants a pointer to writable memory even for a mapping that can only be read. */
 static void unmap_region(const void *address, size_t bytes) {
   void *mapped = NULL;
-  memcpy(&mapped, &address, sizeof mapped);
+  (void)memcpy(&mapped, &address, sizeof mapped);
   if (mapped != NULL) {
     (void)munmap(mapped, bytes);
   }

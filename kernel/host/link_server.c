@@ -68,7 +68,7 @@ static bool send_hello(int client, const ilk_attachment_t *attachment) {
   header->cmsg_level = SOL_SOCKET;
   header->cmsg_type = SCM_RIGHTS;
   header->cmsg_len = CMSG_LEN(sizeof descriptors);
-  memcpy(CMSG_DATA(header), descriptors, sizeof descriptors);
+  (void)memcpy(CMSG_DATA(header), descriptors, sizeof descriptors);
   return sendmsg(client, &message, MSG_NOSIGNAL) == (ssize_t)sizeof hello;
 }
 
@@ -124,9 +124,9 @@ static bool uncollected(const ilk_link_server_t *server) {
 static void *serve(void *argument) {
   ilk_link_server_t *server = argument;
   for (;;) {
-    struct pollfd events[] = {{.fd = server->stop, .events = POLLIN},
-                              {.fd = server->client, .events = POLLIN | POLLRDHUP},
-                              {.fd = server->listener, .events = POLLIN}};
+    struct pollfd events[3] = {{.fd = server->stop, .events = POLLIN},
+                               {.fd = server->client, .events = POLLIN | POLLRDHUP},
+                               {.fd = server->listener, .events = POLLIN}};
     (void)poll(events, 3, uncollected(server) ? COLLECT_INTERVAL_MS : -1);
     if (events[0].revents != 0) {
       return NULL;

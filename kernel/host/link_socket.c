@@ -16,14 +16,14 @@ bool ilk_unix_address(const char *path, struct sockaddr_un *address, ilk_error_t
                     "socket path '%s' has %zu characters; expected 1 to %zu; choose a shorter directory",
                     path, length, sizeof address->sun_path - 1u);
   }
-  memcpy(address->sun_path, path, length + 1u);
+  (void)memcpy(address->sun_path, path, length + 1u);
   return true;
 }
 
 /** Two kernels that start together must not take each other's socket for a stale one. */
 static int lock_directory(const char *path) {
-  char copy[sizeof((struct sockaddr_un *)0)->sun_path];
-  memcpy(copy, path, strlen(path) + 1u);
+  char copy[sizeof(struct sockaddr_un)];
+  (void)memcpy(copy, path, strlen(path) + 1u);
   const int directory = open(dirname(copy), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (directory >= 0 && flock(directory, LOCK_EX) != 0) {
     (void)close(directory);
@@ -36,7 +36,7 @@ static int lock_directory(const char *path) {
  * A probe of another socket type never reaches the accept queue: it is refused with EPROTOTYPE by a
  * living socket and with ECONNREFUSED by a stale one.
  */
-static bool is_held(const struct sockaddr_un *address) {
+static bool is_served(const struct sockaddr_un *address) {
   const int probe = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   const bool stale = probe >= 0 && connect(probe, (const struct sockaddr *)address, sizeof *address) != 0 &&
                      errno == ECONNREFUSED;
@@ -56,7 +56,7 @@ static ilk_listen_result_t remove_stale(const struct sockaddr_un *address, ilk_e
                    address->sun_path);
     return ILK_LISTEN_FAILED;
   }
-  if (is_held(address)) {
+  if (is_served(address)) {
     (void)ilk_fail(error, "link '%s' is served by a running kernel; stop it or choose another path",
                    address->sun_path);
     return ILK_LISTEN_TAKEN;
@@ -75,7 +75,7 @@ static bool bind_and_listen(ilk_link_socket_t *link, ilk_error_t *error) {
   if (link->descriptor < 0) {
     return ilk_fail(error, "cannot create the link's socket: %s", strerror(errno));
   }
-  const mode_t mask = umask(0177);
+  const mode_t mask = umask(S_IXUSR | S_IRWXG | S_IRWXO);
   const int bound = bind(link->descriptor, (const struct sockaddr *)&link->address, sizeof link->address);
   const int reason = errno;
   (void)umask(mask);

@@ -81,11 +81,11 @@ static void step(ilk_loop_t *loop) {
   ilk_step(loop->config, &shown->state, &shown->inputs, loop->request, count, &loop->out);
 }
 
-static void publish(ilk_loop_t *loop) {
+static void publish_tick(ilk_loop_t *loop) {
   ilk_snapshot_t *shown = &loop->shown;
-  memcpy(shown->command, loop->out.command, sizeof shown->command);
-  memcpy(shown->gate, loop->out.gate, sizeof shown->gate);
-  memcpy(shown->lamp, loop->out.lamp, sizeof shown->lamp);
+  (void)memcpy(shown->command, loop->out.command, sizeof shown->command);
+  (void)memcpy(shown->gate, loop->out.gate, sizeof shown->gate);
+  (void)memcpy(shown->lamp, loop->out.lamp, sizeof shown->lamp);
   ilk_publisher_publish(&loop->publisher, shown, &loop->out, loop->request_tail);
 }
 
@@ -109,7 +109,7 @@ void ilk_loop_tick(ilk_loop_t *loop) {
   const uint64_t stepped_ns = ilk_now_ns();
   ilk_timing_add(timing, ILK_PHASE_STEP, stepped_ns - transacted_ns);
 
-  publish(loop);
+  publish_tick(loop);
   ilk_timing_add(timing, ILK_PHASE_PUBLISH, ilk_now_ns() - stepped_ns);
 }
 

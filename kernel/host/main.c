@@ -14,7 +14,10 @@
 #include "options.h"
 #include "realtime.h"
 
-enum { EXIT_ENDED = 0, EXIT_SYSTEM = 1, EXIT_REFUSED = 2, EXIT_TAKEN = 3 };
+#define EXIT_ENDED 0
+#define EXIT_SYSTEM 1
+#define EXIT_REFUSED 2
+#define EXIT_TAKEN 3
 
 static volatile sig_atomic_t stop_requested;
 

@@ -11,7 +11,7 @@
 #define DEFAULT_PRIORITY 80
 #define MAX_SPEED 1000.0
 
-const char ilk_options_help[] =
+const char *const ilk_options_help =
     "usage: interlock-kernel --config FILE.ilkc --bus sim:SOCKET --link SOCKET\n"
     "                        [--clock real|sim] [--speed X] [--core N] [--priority N]\n"
     "\n"
@@ -38,8 +38,9 @@ static bool parse_whole_number(const char *text, int least, int most, int *value
 
 static bool parse_speed(const char *text, double *speed) {
   char *end = NULL;
+  errno = 0;
   const double number = strtod(text, &end);
-  if (end == text || *end != '\0' || !isfinite(number) || number < 0.0 || number > MAX_SPEED) {
+  if (errno != 0 || end == text || *end != '\0' || !isfinite(number) || number < 0.0 || number > MAX_SPEED) {
     return false;
   }
   *speed = number;
@@ -62,26 +63,14 @@ static bool parse_bus(const char *text, const char **path) {
   return **path != '\0';
 }
 
-enum {
-  OPTION_CONFIG = 1,
-  OPTION_BUS,
-  OPTION_LINK,
-  OPTION_CLOCK,
-  OPTION_SPEED,
-  OPTION_CORE,
-  OPTION_PRIORITY,
-  OPTION_HELP
-};
-
-static const struct option known_options[] = {{"config", required_argument, NULL, OPTION_CONFIG},
-                                              {"bus", required_argument, NULL, OPTION_BUS},
-                                              {"link", required_argument, NULL, OPTION_LINK},
-                                              {"clock", required_argument, NULL, OPTION_CLOCK},
-                                              {"speed", required_argument, NULL, OPTION_SPEED},
-                                              {"core", required_argument, NULL, OPTION_CORE},
-                                              {"priority", required_argument, NULL, OPTION_PRIORITY},
-                                              {"help", no_argument, NULL, OPTION_HELP},
-                                              {NULL, 0, NULL, 0}};
+#define OPTION_CONFIG 1
+#define OPTION_BUS 2
+#define OPTION_LINK 3
+#define OPTION_CLOCK 4
+#define OPTION_SPEED 5
+#define OPTION_CORE 6
+#define OPTION_PRIORITY 7
+#define OPTION_HELP 8
 
 /** Returns NULL when the value was taken, otherwise what was expected. */
 static const char *take_option(int option, const char *value, ilk_options_t *options) {
@@ -122,10 +111,10 @@ static bool check_together(const ilk_options_t *options, bool speed_given, ilk_e
 }
 
 static bool report_unusable(int option, const char *word, ilk_error_t *error) {
-  if (option == ':') {
+  if (option == (int)':') {
     return ilk_fail(error, "%s needs a value; see --help", word);
   }
-  if (isgraph(optopt)) {
+  if (isgraph(optopt) != 0) {
     return ilk_fail(error, "-%c is not an option of interlock-kernel; see --help", optopt);
   }
   return ilk_fail(error, "%s is not an option of interlock-kernel; see --help", word);
@@ -133,6 +122,15 @@ static bool report_unusable(int option, const char *word, ilk_error_t *error) {
 
 ilk_options_result_t ilk_options_parse(int argc, char *const argv[], ilk_options_t *options,
                                        ilk_error_t *error) {
+  static const struct option known_options[] = {{"config", required_argument, NULL, OPTION_CONFIG},
+                                                {"bus", required_argument, NULL, OPTION_BUS},
+                                                {"link", required_argument, NULL, OPTION_LINK},
+                                                {"clock", required_argument, NULL, OPTION_CLOCK},
+                                                {"speed", required_argument, NULL, OPTION_SPEED},
+                                                {"core", required_argument, NULL, OPTION_CORE},
+                                                {"priority", required_argument, NULL, OPTION_PRIORITY},
+                                                {"help", no_argument, NULL, OPTION_HELP},
+                                                {NULL, 0, NULL, 0}};
   *options = (ilk_options_t){.clock = ILK_CLOCK_REAL, .speed = 1.0, .core = -1, .priority = DEFAULT_PRIORITY};
   bool speed_given = false;
   opterr = 0;
@@ -145,7 +143,7 @@ ilk_options_result_t ilk_options_parse(int argc, char *const argv[], ilk_options
     if (option == OPTION_HELP) {
       return ILK_OPTIONS_HELP;
     }
-    if (option == '?' || option == ':') {
+    if (option == (int)'?' || option == (int)':') {
       (void)report_unusable(option, argv[optind - 1], error);
       return ILK_OPTIONS_BAD;
     }

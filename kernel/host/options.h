@@ -25,7 +25,7 @@ typedef struct {
 typedef enum { ILK_OPTIONS_RUN, ILK_OPTIONS_HELP, ILK_OPTIONS_BAD } ilk_options_result_t;
 
 /** Text for `--help`. */
-extern const char ilk_options_help[];
+extern const char *const ilk_options_help;
 
 /** Reads the command line. When it is bad, `error` names the option, what was given and what was expected. */
 ilk_options_result_t ilk_options_parse(int argc, char *const argv[], ilk_options_t *options,

@@ -9,7 +9,8 @@
 #define LOOK_INTERVAL_NS 1000000L
 
 bool ilk_pacing_may_go_on(uint32_t tick, uint32_t seen_tick) {
-  return (int32_t)(tick + 1u - seen_tick) <= (int32_t)ILK_LINK_TICKS_AHEAD;
+  const uint32_t ahead = tick + 1u - seen_tick;
+  return (int32_t)ahead <= (int32_t)ILK_LINK_TICKS_AHEAD;
 }
 
 static bool may_go_on(ilk_pacing_t *pacing, uint32_t tick, uint32_t seen_tick) {

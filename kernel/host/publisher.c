@@ -13,7 +13,7 @@ static void note_axis(ilk_axis_told_t *told, const ilk_axis_t *axis) {
 
 void ilk_publisher_init(ilk_publisher_t *publisher, const ilk_state_t *state) {
   *publisher = (ilk_publisher_t){.region = NULL, .mode = state->mode};
-  for (uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
+  for (uint32_t slot = 0; slot < (uint32_t)ILK_SLOTS; ++slot) {
     note_axis(&publisher->axis[slot], &state->axis[slot]);
   }
 }
@@ -32,15 +32,14 @@ static void put_event(ilk_publisher_t *publisher, const ilk_event_t *event) {
   ilk_event_t *shared = &region->event[publisher->events % ILK_LINK_EVENTS];
   __atomic_store_n(&shared->number, 0u, __ATOMIC_RELAXED);
   __atomic_thread_fence(__ATOMIC_RELEASE);
-  ilk_words_store(&shared->kind, &event->kind,
-                  (sizeof *event - offsetof(ilk_event_t, kind)) / sizeof(uint32_t));
+  ilk_words_store(&shared->kind, &event->kind, (sizeof *event - sizeof event->number) / sizeof(uint32_t));
   publisher->events += 1u;
   __atomic_store_n(&shared->number, publisher->events, __ATOMIC_RELEASE);
   __atomic_store_n(&region->event_head, publisher->events, __ATOMIC_RELEASE);
 }
 
 static void put_verdicts(ilk_publisher_t *publisher, uint32_t tick, const ilk_outputs_t *out) {
-  for (uint32_t i = 0; i < out->verdict_count && i < ILK_REQUESTS_PER_TICK; ++i) {
+  for (uint32_t i = 0; i < out->verdict_count && i < (uint32_t)ILK_REQUESTS_PER_TICK; ++i) {
     const ilk_verdict_record_t *verdict = &out->verdict[i];
     put_event(publisher,
               &(ilk_event_t){.kind = ILK_EVENT_VERDICT,
@@ -62,7 +61,7 @@ static void put_mode_change(ilk_publisher_t *publisher, const ilk_state_t *state
 static void put_axis_changes(ilk_publisher_t *publisher, uint32_t tick, uint32_t slot,
                              const ilk_axis_t *axis) {
   ilk_axis_told_t *told = &publisher->axis[slot];
-  if (axis->fault != told->fault && axis->fault != ILK_FAULT_NONE) {
+  if (axis->fault != told->fault && axis->fault != (uint32_t)ILK_FAULT_NONE) {
     put_event(publisher, &(ilk_event_t){.kind = ILK_EVENT_FAULT,
                                         .tick = tick,
                                         .value = {slot, axis->fault, (uint32_t)axis->fault_value, 0u}});
@@ -91,7 +90,7 @@ void ilk_publisher_publish(ilk_publisher_t *publisher, const ilk_snapshot_t *sna
   const ilk_state_t *state = &snapshot->state;
   put_verdicts(publisher, state->tick, out);
   put_mode_change(publisher, state);
-  for (uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
+  for (uint32_t slot = 0; slot < (uint32_t)ILK_SLOTS; ++slot) {
     put_axis_changes(publisher, state->tick, slot, &state->axis[slot]);
   }
   if (publisher->region != NULL) {

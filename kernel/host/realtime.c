@@ -24,9 +24,9 @@ const char *ilk_realtime_name(ilk_rt_measure_t measure) {
 }
 
 static void note(ilk_realtime_t *realtime, ilk_rt_measure_t measure, bool granted) {
-  realtime->asked |= 1u << measure;
+  realtime->asked |= 1u << (uint32_t)measure;
   if (granted) {
-    realtime->granted |= 1u << measure;
+    realtime->granted |= 1u << (uint32_t)measure;
   } else {
     realtime->refusal[measure] = errno;
   }
@@ -62,7 +62,7 @@ void ilk_realtime_acquire(ilk_realtime_t *realtime, ilk_clock_t clock, int core,
   if (clock == ILK_CLOCK_SIM) {
     return;
   }
-  note(realtime, ILK_RT_TIMER, prctl(PR_SET_TIMERSLACK, 1ul, 0ul, 0ul, 0ul) == 0);
+  note(realtime, ILK_RT_TIMER, prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL) == 0);
   note(realtime, ILK_RT_MLOCK, lock_memory());
   if (core >= 0) {
     note(realtime, ILK_RT_PINNED, pin(core));

@@ -16,7 +16,8 @@ uint32_t ilk_ring_read(const ilk_link_app_region_t *app, uint32_t *tail, uint32_
     *tail = head;
     return 0u;
   }
-  const uint32_t count = waiting < ILK_REQUESTS_PER_TICK ? waiting : ILK_REQUESTS_PER_TICK;
+  const uint32_t count =
+      waiting < (uint32_t)ILK_REQUESTS_PER_TICK ? waiting : (uint32_t)ILK_REQUESTS_PER_TICK;
   for (uint32_t i = 0; i < count; ++i) {
     ilk_words_load((uint32_t *)&requests[i], (const uint32_t *)&app->request[(*tail + i) % ILK_LINK_REQUESTS],
                    sizeof(ilk_request_t) / sizeof(uint32_t));
