@@ -11,7 +11,9 @@ properties      how many properties must be proved, no more and no fewer
 reachable       cover goals of the harness that must be reachable
 contradictions  cover goals of the harness that must be unreachable
 [[replaced]]    function, by (a function of the harness), proved_in (the proof that justifies it), because
-[[wraps]]       function, because: an unsigned overflow that is meant; each must be shown to happen
+[[wraps]]       function, because: an unsigned overflow, or a negative number made a word, that is
+                meant; each must be shown to happen
+solver          "z3" where the built-in solver finds no answer; the built-in one otherwise
 """
 
 import tomllib
@@ -33,7 +35,7 @@ class Replacement:
 
 @dataclass(frozen=True)
 class Wrap:
-    """A function whose unsigned arithmetic is meant to wrap."""
+    """A function whose arithmetic is meant to be modulo 2^32."""
 
     function: str
     because: str
@@ -54,6 +56,7 @@ class Proof:
     unwind: int = 1
     unwindset: dict[str, int] = field(default_factory=dict)
     defines: dict[str, str | int] = field(default_factory=dict)
+    solver: str = ""
     replaced: list[Replacement] = field(default_factory=list)
     wraps: list[Wrap] = field(default_factory=list)
 

@@ -126,10 +126,12 @@ def patience(proof: Proof) -> float:
     return max(LEAST_SECONDS, PATIENCE * proof.seconds)
 
 
-def bounds(proof: Proof) -> list[str]:
-    """How far loops are unwound."""
+def options(proof: Proof) -> list[str]:
+    """How far loops are unwound, and the solver where it is not the built-in one."""
     named = [f"{loop}:{count}" for loop, count in proof.unwindset.items()]
-    return ["--unwind", str(proof.unwind), *(["--unwindset", ",".join(named)] if named else [])]
+    unwindset = ["--unwindset", ",".join(named)] if named else []
+    solver = [f"--{proof.solver}"] if proof.solver else []
+    return ["--unwind", str(proof.unwind), *unwindset, *solver]
 
 
 def messages(text: str) -> list[dict]:
@@ -180,7 +182,9 @@ def check_properties(proof: Proof, logs: Path) -> Result:
     def prove() -> list[Property]:
         program = compiled(proof, logs, "proof")
         told = messages(
-            call("cbmc", [*JSON, *CHECKS, *bounds(proof), str(program)], logs / "proof.json", patience(proof))
+            call(
+                "cbmc", [*JSON, *CHECKS, *options(proof), str(program)], logs / "proof.json", patience(proof)
+            )
         )
         return [
             property_of(entry, "property", entry["status"] == "SUCCESS") for entry in entries(told, "result")
@@ -194,7 +198,7 @@ def check_goals(proof: Proof, logs: Path) -> Result:
 
     def reach() -> list[Property]:
         program = compiled(proof, logs, "cover")
-        arguments = [*JSON, "--cover", "cover", *bounds(proof), str(program)]
+        arguments = [*JSON, "--cover", "cover", *options(proof), str(program)]
         told = messages(call("cbmc", arguments, logs / "cover.json", patience(proof)))
         return [
             property_of(entry, "goal", entry["status"] == "satisfied") for entry in entries(told, "goals")
@@ -205,7 +209,7 @@ def check_goals(proof: Proof, logs: Path) -> Result:
 
 def trace(proof: Proof, name: str, logs: Path) -> list[dict]:
     """The steps that lead to a failed property; none when CBMC does not find them again."""
-    arguments = [*JSON, *CHECKS, *bounds(proof), "--trace", "--property", name, str(logs / "proof.goto")]
+    arguments = [*JSON, *CHECKS, *options(proof), "--trace", "--property", name, str(logs / "proof.goto")]
     try:
         told = messages(call("cbmc", arguments, logs / "trace.json", patience(proof)))
         return next((entry["trace"] for entry in entries(told, "result") if "trace" in entry), [])

@@ -8,7 +8,8 @@ from proofs import Proof
 from prover import Property, Result
 
 GOAL_NAME = re.compile(r"condition '(\w+)")
-UNSIGNED_OVERFLOW = "arithmetic overflow on unsigned"
+MODULAR = ("arithmetic overflow on unsigned", "arithmetic overflow on signed to unsigned type conversion")
+"""Checks of arithmetic modulo 2^32, which the language defines, but which must be meant."""
 
 
 @dataclass(frozen=True)
@@ -29,9 +30,9 @@ class Outcome:
 
 
 def is_meant(proof: Proof, found: Property) -> bool:
-    """True for an unsigned overflow in a function that is meant to wrap."""
+    """True for arithmetic modulo 2^32 in a function that is meant to wrap."""
     wrapping = {one.function for one in proof.wraps}
-    return found.description.startswith(UNSIGNED_OVERFLOW) and found.function in wrapping
+    return found.description.startswith(MODULAR) and found.function in wrapping
 
 
 def idle_wraps(proof: Proof, found: list[Property]) -> Iterator[str]:
