@@ -22,13 +22,12 @@ bool is_limit(std::uint32_t gate) noexcept {
 void AxisMove::aim(std::int32_t target_counts, std::uint32_t max_drive) noexcept {
   target_counts_ = target_counts;
   max_drive_ = max_drive;
-  sent_drive_ = 0;
 }
 
 void AxisMove::start(const ilk_snapshot_t& snapshot) noexcept {
   rest_.restart(snapshot.state.axis[slot_].position_counts, snapshot.state.tick);
   unblocked_tick_ = snapshot.state.tick;
-  holds_lease_ = false;
+  due_at_once_ = true;
 }
 
 AxisMove::Progress AxisMove::watch(const ilk_snapshot_t& snapshot) noexcept {
@@ -52,24 +51,35 @@ bool AxisMove::held_back(const ilk_snapshot_t& snapshot) noexcept {
 void AxisMove::hold(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
   const std::uint32_t now = snapshot.state.tick;
   const std::uint32_t drive = wanted_drive(snapshot.state.axis[slot_]);
-  const std::uint32_t change = std::max(drive, sent_drive_) - std::min(drive, sent_drive_);
-  const bool due = now - sent_tick_ >= lease_ticks_ / renewals_per_lease;
-  if (!holds_lease_ || due || change > sent_drive_ / drive_step_fraction) {
+  const std::uint32_t change = std::max(drive, sent_.drive) - std::min(drive, sent_.drive);
+  const bool due = due_at_once_ || !sent_.may_drive || now - sent_.tick >= lease_ticks_ / renewals_per_lease;
+  if (due || change > sent_.drive / drive_step_fraction) {
     wishes.add(wish_for(proposal, drive, lease_ticks_));
-    holds_lease_ = true;
-    sent_tick_ = now;
-    sent_drive_ = drive;
+    note_sent({true, now, drive});
   }
 }
 
 void AxisMove::let_go(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
-  if (!holds_lease_) {
+  if (!sent_.may_drive) {
     return;
   }
-  holds_lease_ = false;
-  if (snapshot.state.mode == ILK_MODE_MOTION && snapshot.state.axis[slot_].state == ILK_AXIS_MOVING) {
+  const std::uint32_t state = snapshot.state.axis[slot_].state;
+  const bool may_move = state == ILK_AXIS_MOVING || state == ILK_AXIS_ENABLED;
+  if (snapshot.state.mode == ILK_MODE_MOTION && may_move) {
     wishes.add(wish_for(proposal, 0, 1));
   }
+  note_sent({false, snapshot.state.tick, 0});
+}
+
+void AxisMove::note_sent(const Sent& sent) noexcept {
+  before_ = sent_;
+  sent_ = sent;
+  due_at_once_ = false;
+}
+
+void AxisMove::on_unsent() noexcept {
+  sent_ = before_;
+  due_at_once_ = true;
 }
 
 std::uint32_t AxisMove::wanted_drive(const ilk_axis_t& axis) const noexcept {

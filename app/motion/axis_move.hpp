@@ -30,7 +30,7 @@ class AxisMove {
   /** Sets a new target. `max_drive` 0: the axis' own bound. */
   void aim(std::int32_t target_counts, std::uint32_t max_drive) noexcept;
 
-  /** The pedal was pressed, or the aim is new: the kernel holds no lease for it. */
+  /** The pedal was pressed, or the aim is new: a MOVE is due at once. */
   void start(const ilk_snapshot_t& snapshot) noexcept;
 
   /** How far the axis has come since `start`. */
@@ -39,12 +39,24 @@ class AxisMove {
   /** Wishes for a MOVE when the lease or the drive has to be renewed. */
   void hold(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept;
 
-  /** Gives back the lease, if the kernel may still hold one. */
+  /**
+   * Gives back the lease, if the kernel may still hold one. A snapshot that shows the axis at rest proves
+   * nothing: the newest MOVE may have crossed it.
+   */
   void let_go(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept;
 
-  void on_unsent(const Wish& wish) noexcept { holds_lease_ = wish.drive == 0; }
+  /** The wish of this tick was not sent: what was sent before it still stands. */
+  void on_unsent() noexcept;
 
  private:
+  /** The newest MOVE. */
+  struct Sent {
+    bool may_drive = false; /**< its lease may still drive the axis */
+    std::uint32_t tick = 0;
+    std::uint32_t drive = 0;
+  };
+
+  void note_sent(const Sent& sent) noexcept;
   [[nodiscard]] bool held_back(const ilk_snapshot_t& snapshot) noexcept;
   [[nodiscard]] std::uint32_t wanted_drive(const ilk_axis_t& axis) const noexcept;
   [[nodiscard]] Wish wish_for(std::uint32_t proposal, std::uint32_t drive,
@@ -55,9 +67,9 @@ class AxisMove {
   std::uint32_t lease_ticks_ = 1;
   std::int32_t target_counts_ = 0;
   std::uint32_t max_drive_ = 0;
-  bool holds_lease_ = false;         /**< a MOVE was sent that may still drive the axis */
-  std::uint32_t sent_tick_ = 0;      /**< of the newest MOVE */
-  std::uint32_t sent_drive_ = 0;     /**< of the newest MOVE */
+  Sent sent_;
+  Sent before_;                      /**< before `sent_`, which the port may not have taken */
+  bool due_at_once_ = false;         /**< nothing was sent since the start, or since what could not be sent */
   std::uint32_t unblocked_tick_ = 0; /**< newest tick in which no limit held the axis back */
   RestWatch rest_;
 };

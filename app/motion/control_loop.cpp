@@ -6,6 +6,8 @@
 #include <thread>
 #include <utility>
 
+#include "motion/overtaking.hpp"
+
 namespace interlock {
 namespace {
 
@@ -128,7 +130,7 @@ void ControlLoop::read_events() noexcept {
   if (link_.events_lost() != events_lost_) {
     events_dropped_ += link_.events_lost() - events_lost_;
     events_lost_ = link_.events_lost();
-    port_.forget_all([this](const RequestOrigin& origin) { answer_lost(origin); });
+    port_.forget_all([this](const RequestOrigin& origin) { lose_verdict(origin); });
   }
   if (events_dropped_ != 0 && room_for_events()) {
     notify(EventsLost{std::exchange(events_dropped_, 0)});
@@ -146,8 +148,8 @@ void ControlLoop::dispatch_verdict(const ilk_event_t& event) noexcept {
     conductor_.on_verdict(*wish, verdict, event.tick);
   } else if (const auto* ask = std::get_if<AskOrigin>(&*origin)) {
     notify(Answer{ask->ticket, verdict, event.tick});
-    if (verdict == ILK_VERDICT_ACCEPTED) {
-      end_orders_overtaken_by(event);
+    if (const auto reason = end_by(ask->kind); reason && verdict == ILK_VERDICT_ACCEPTED) {
+      conductor_.end_axis(ask->slot, *reason, event.tick);
     }
   } else if (const auto* asked_stop = std::get_if<StopOrigin>(&*origin)) {
     notify(StopAnswer{asked_stop->stops, verdict, event.tick});
@@ -159,20 +161,14 @@ void ControlLoop::dispatch_verdict(const ilk_event_t& event) noexcept {
   }
 }
 
-/** A position means something else, or the axis was disabled if only within one tick: its order is not
- * wanted. */
-void ControlLoop::end_orders_overtaken_by(const ilk_event_t& accepted) noexcept {
-  switch (accepted.value[1]) {
-    case ILK_REQUEST_DISABLE:
-      conductor_.end_axis(accepted.value[2], OrderReason::axis_disabled, accepted.tick);
-      break;
-    case ILK_REQUEST_SET_HOME:
-    case ILK_REQUEST_RESTORE:
-      conductor_.end_axis(accepted.value[2], OrderReason::position_declared, accepted.tick);
-      break;
-    default:
-      break;
+/** The kernel may have accepted it, and a snapshot does not show what an axis was in between: an order that
+ * the acceptance would have ended goes on only if somebody proposes it again. */
+void ControlLoop::lose_verdict(const RequestOrigin& origin) noexcept {
+  const auto* ask = std::get_if<AskOrigin>(&origin);
+  if (ask != nullptr && end_by(ask->kind)) {
+    conductor_.end_axis(ask->slot, OrderReason::verdict_lost, view_.snapshot.state.tick);
   }
+  answer_lost(origin);
 }
 
 void ControlLoop::send_heartbeat() noexcept {
@@ -233,18 +229,19 @@ std::int32_t ControlLoop::newer_than_stop(std::uint32_t stops) const noexcept {
 }
 
 bool ControlLoop::send(const Ask& ask) noexcept {
+  const AskOrigin origin{ask.ticket, ask.kind, ask.slot};
   const std::int32_t newer = newer_than_stop(ask.stops);
   if (newer > 0) {
     return false;
   }
   const bool overtaken = newer < 0 && ask.kind != ILK_REQUEST_DISABLE;
   if (overtaken || std::chrono::steady_clock::now() > ask.deadline) {
-    answer_lost(AskOrigin{ask.ticket});
+    answer_lost(origin);
     return true;
   }
   ilk_request_t request = request_of(ask.kind, ask.slot);
   request.target_counts = ask.target_counts;
-  return port_.send(request, AskOrigin{ask.ticket});
+  return port_.send(request, origin);
 }
 
 void ControlLoop::send_wishes() noexcept {
@@ -280,7 +277,7 @@ void ControlLoop::refuse_commands() noexcept {
       conductor_.take(*home, tick);
       conductor_.end(home->proposal, OrderReason::link_lost, tick);
     } else if (const auto* ask = std::get_if<Ask>(&command)) {
-      answer_lost(AskOrigin{ask->ticket});
+      answer_lost(AskOrigin{ask->ticket, ask->kind, ask->slot});
     }
   });
   const std::uint32_t stops = mailbox_.stops.load(std::memory_order_acquire);

@@ -43,7 +43,7 @@ class ControlLoop {
   [[nodiscard]] bool take_order(const AnyOrder& order) noexcept;
   [[nodiscard]] std::int32_t newer_than_stop(std::uint32_t stops) const noexcept;
   [[nodiscard]] bool send(const Ask& ask) noexcept;
-  void end_orders_overtaken_by(const ilk_event_t& accepted) noexcept;
+  void lose_verdict(const RequestOrigin& origin) noexcept;
   void send_wishes() noexcept;
   void publish() noexcept;
 

@@ -85,8 +85,7 @@ std::int32_t HomeAxis::left_counts(const ilk_snapshot_t& snapshot) const noexcep
   if (kind_ != HomeStepKind::nudge || progress_ == HomeProgress::arrived) {
     return 0;
   }
-  return static_cast<std::int32_t>(marked_ ? counts_ - travelled_counts(snapshot.state.axis[slot_])
-                                           : counts_);
+  return marked_ ? saturated(counts_ - travelled_counts(snapshot.state.axis[slot_])) : counts_;
 }
 
 HomeProgress HomeAxis::watch(const ilk_snapshot_t& snapshot) noexcept {
@@ -181,7 +180,7 @@ void HomeAxis::on_unsent(const Wish& wish) noexcept {
   if (wish.origin.kind == ILK_REQUEST_HOME) {
     asked_ = false;
   } else {
-    move_.on_unsent(wish);
+    move_.on_unsent();
   }
 }
 

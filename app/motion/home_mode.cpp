@@ -1,9 +1,9 @@
 #include "motion/home_mode.hpp"
 
-#include <cstdlib>
 #include <utility>
 
 #include "motion/obstacle.hpp"
+#include "motion/rest_watch.hpp"
 
 namespace interlock {
 namespace {
@@ -187,7 +187,7 @@ void HomeMode::pause(OrderReason reason, const ilk_snapshot_t& snapshot) noexcep
   status_.left_counts = 0;
   for (const AxisCounts& each : step().axes()) {
     const std::int32_t left = axes_[each.slot].left_counts(snapshot);
-    if (std::abs(left) > std::abs(status_.left_counts)) {
+    if (distance(left, 0) > distance(status_.left_counts, 0)) {
       status_.left_counts = left;
       status_.slot = each.slot;
     }

@@ -118,7 +118,7 @@ void ManualMode::follow(std::uint32_t slot, const ilk_snapshot_t& snapshot) noex
 void ManualMode::on_unsent(const Wish& wish) noexcept {
   const std::uint32_t slot = wish.origin.slot;
   if (slot < ILK_SLOTS && orders_[slot].proposal == wish.origin.proposal) {
-    jobs_[slot].move.on_unsent(wish);
+    jobs_[slot].move.on_unsent();
   }
 }
 

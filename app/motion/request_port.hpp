@@ -15,9 +15,11 @@
 
 namespace interlock {
 
-/** The ticket of an `Ask`. */
+/** What of an `Ask` is still of interest when its verdict comes. */
 struct AskOrigin {
   std::uint32_t ticket = 0;
+  std::uint32_t kind = 0; /**< ilk_request_kind_t */
+  std::uint32_t slot = 0;
 };
 
 /** Number of the newest STOP that the request stands for. */

@@ -4,14 +4,10 @@
 #include <limits>
 
 namespace interlock {
-namespace {
-
 std::int32_t saturated(std::int64_t counts) noexcept {
   return static_cast<std::int32_t>(std::clamp<std::int64_t>(counts, std::numeric_limits<std::int32_t>::min(),
                                                             std::numeric_limits<std::int32_t>::max()));
 }
-
-}  // namespace
 
 SetpointRange setpoint_range(const ilk_axis_config_t& rules, const ilk_axis_t& axis,
                              std::uint32_t mode) noexcept {

@@ -21,6 +21,9 @@ struct SetpointRange {
   bool operator==(const SetpointRange&) const = default;
 };
 
+/** The nearest count that 32 bits hold. */
+std::int32_t saturated(std::int64_t counts) noexcept;
+
 /**
  * The range of the verdict RANGE: the soft limits less the coasting distance when homed, else the travel less
  * the coasting distance that one press of the pedal allows. Outside MOTION that travel starts where the axis

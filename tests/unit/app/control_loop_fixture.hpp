@@ -61,6 +61,13 @@ class ControlLoopTest : public testing::Test {
 
   void command(const Command& command) { ASSERT_TRUE(mailbox_->commands.push(command)); }
 
+  /** Three more events than the ring holds, so that whatever was in it is lost. */
+  void lose_events() {
+    for (std::uint32_t i = 0; i < ILK_LINK_EVENTS + 3; ++i) {
+      kernel_.push_event({0, ILK_EVENT_MODE, i, {}});
+    }
+  }
+
   static Ask ask(std::uint32_t ticket, std::uint32_t kind) {
     return {ticket, kind, insertion, 0, std::chrono::steady_clock::now() + std::chrono::hours(1)};
   }

@@ -230,9 +230,7 @@ TEST_F(ControlLoopTest, PassesKernelEventsOn) {
 TEST_F(ControlLoopTest, ReportsLostEventsAndTheAnswersThatWentWithThem) {
   command(ask(7, ILK_REQUEST_ENABLE));
   tick();
-  for (std::uint32_t i = 0; i < ILK_LINK_EVENTS + 3; ++i) {
-    kernel_.push_event({0, ILK_EVENT_MODE, i, {}});
-  }
+  lose_events();
   tick();
   std::uint32_t lost = 0;
   std::size_t unanswered = 0;
@@ -245,6 +243,38 @@ TEST_F(ControlLoopTest, ReportsLostEventsAndTheAnswersThatWentWithThem) {
   });
   EXPECT_EQ(lost, 3u);
   EXPECT_EQ(unanswered, 1u);
+}
+
+TEST_F(ControlLoopTest, ALostVerdictThatMayHaveEndedAnOrderEndsIt) {
+  std::uint32_t proposal = 0;
+  for (const auto kind : {ILK_REQUEST_DISABLE, ILK_REQUEST_SET_HOME, ILK_REQUEST_RESTORE}) {
+    command(Order{++proposal, insertion, 1500, 0, 0});
+    command(ask(7, kind));
+    tick();
+    ASSERT_NE(sent(kind), nullptr);
+    kernel_.push_verdict(*sent(kind), ILK_VERDICT_ACCEPTED, 5);
+    lose_events();
+    tick();
+    EXPECT_EQ(order().phase, OrderPhase::aborted);
+    EXPECT_EQ(order().reason, OrderReason::verdict_lost);
+  }
+}
+
+TEST_F(ControlLoopTest, LostEventsLeaveOtherOrdersToTheSnapshot) {
+  command(Order{1, insertion, 1500, 0, 0});
+  Ask other_axis = ask(7, ILK_REQUEST_DISABLE);
+  other_axis.slot = test::rotation;
+  command(other_axis);
+  command(ask(8, ILK_REQUEST_ENABLE));
+  tick();
+  lose_events();
+  tick();
+  EXPECT_EQ(order().phase, OrderPhase::waiting);
+  snapshot_.state.axis[insertion].state = ILK_AXIS_DISABLED;
+  lose_events();
+  tick();
+  EXPECT_EQ(order().phase, OrderPhase::aborted);
+  EXPECT_EQ(order().reason, OrderReason::axis_disabled);
 }
 
 TEST_F(ControlLoopTest, ALostLinkEndsOrdersAndAnswersAsksAndIsAttachedAgain) {
@@ -315,9 +345,7 @@ TEST_F(ControlLoopTest, ALostVerdictEndsHoming) {
   command(HomeOrder{1, 0, 0, insertion, 0});
   snapshot_.state.mode = ILK_MODE_MOTION;
   tick();
-  for (std::uint32_t i = 0; i < ILK_LINK_EVENTS + 3; ++i) {
-    kernel_.push_event({0, ILK_EVENT_MODE, i, {}});
-  }
+  lose_events();
   tick();
   EXPECT_EQ(home().reason, OrderReason::verdict_lost);
 }

@@ -293,6 +293,28 @@ TEST_F(HomeModeTest, APressAfterAMinuteFindsNothingToHome) {
   EXPECT_EQ(phase(), OrderPhase::expired);
 }
 
+TEST_F(HomeModeTest, TellsWhatIsLeftOfTheLongestNudgeThereIs) {
+  Robot robot = neuro();
+  robot.home_steps = {{"far", "Far", {}, {{yaw, INT32_MIN}, {pitch, 5}}, {}}};
+  HomeMode mode(RobotPlan(robot, neuro_config()));
+  const auto tick = [&](std::uint32_t system_mode) {
+    ++snapshot_.state.tick;
+    snapshot_.state.mode = system_mode;
+    Wishes wishes;
+    mode.tick(snapshot_, wishes);
+  };
+  mode.take(HomeOrder{1, 0, 1, 0, 0}, snapshot_.state.tick);
+  tick(ILK_MODE_MOTION);
+  tick(ILK_MODE_READY);
+  EXPECT_EQ(mode.status().order.phase, OrderPhase::paused);
+  EXPECT_EQ(mode.status().slot, yaw);
+  EXPECT_EQ(mode.status().left_counts, INT32_MIN);
+  axis(yaw).raw += neuro_config().axis[yaw].direction_correction != 0 ? -1u : 1u;
+  tick(ILK_MODE_MOTION);
+  tick(ILK_MODE_READY);
+  EXPECT_EQ(mode.status().left_counts, INT32_MIN) << "a distance beyond 32 bits";
+}
+
 TEST_F(HomeModeTest, SurvivesTheWrapOfTheTickCounter) {
   snapshot_.state.tick = UINT32_MAX - 10;
   home_axis();

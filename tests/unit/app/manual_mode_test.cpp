@@ -188,6 +188,7 @@ TEST_F(ManualModeTest, ARefusalOfTheKernelEndsTheOrderWithItsVerdict) {
   EXPECT_EQ(status().phase, OrderPhase::refused);
   EXPECT_EQ(status().code, static_cast<std::uint32_t>(ILK_VERDICT_RANGE));
   EXPECT_EQ(status().tick, 1234u);
+  EXPECT_EQ(tick().at(0).drive, 0u) << "an earlier lease may still drive the axis";
   EXPECT_THAT(tick(), testing::IsEmpty());
 }
 
@@ -216,6 +217,49 @@ TEST_F(ManualModeTest, CancellingGivesBackTheLease) {
   ASSERT_EQ(wishes.size(), 1u);
   EXPECT_EQ(wishes[0].drive, 0u);
   EXPECT_EQ(wishes[0].lease_ticks, 1u);
+  EXPECT_THAT(tick(), testing::IsEmpty());
+}
+
+TEST_F(ManualModeTest, CancellingGivesBackALeaseThatNoSnapshotShowsYet) {
+  order();
+  press();
+  ASSERT_EQ(axis().state, static_cast<std::uint32_t>(ILK_AXIS_ENABLED));
+  mode_.end(1, OrderReason::cancelled, snapshot_.state.tick);
+  const auto wishes = tick();
+  ASSERT_EQ(wishes.size(), 1u);
+  EXPECT_EQ(wishes[0].drive, 0u);
+  EXPECT_THAT(tick(), testing::IsEmpty());
+}
+
+TEST_F(ManualModeTest, CancellingGivesBackTheLeaseWhoseRenewalWasNotSent) {
+  order();
+  press();
+  axis().state = ILK_AXIS_MOVING;
+  const auto renewal = tick(neuro_config().lease_max_ticks);
+  mode_.on_unsent(renewal.at(0));
+  mode_.end(1, OrderReason::cancelled, snapshot_.state.tick);
+  const auto wishes = tick();
+  ASSERT_EQ(wishes.size(), 1u);
+  EXPECT_EQ(wishes[0].drive, 0u);
+}
+
+TEST_F(ManualModeTest, CancellingGivesBackTheLeaseOfTheOrderThatItReplaced) {
+  order(1);
+  press();
+  axis().state = ILK_AXIS_MOVING;
+  order(2, insertion, 1000);
+  mode_.on_unsent(tick().at(0));
+  mode_.end(2, OrderReason::cancelled, snapshot_.state.tick);
+  const auto wishes = tick();
+  ASSERT_EQ(wishes.size(), 1u);
+  EXPECT_EQ(wishes[0].drive, 0u);
+}
+
+TEST_F(ManualModeTest, NothingIsGivenBackWhereNothingWasSent) {
+  order();
+  snapshot_.state.mode = ILK_MODE_MOTION;
+  mode_.on_unsent(tick().at(0));
+  mode_.end(1, OrderReason::cancelled, snapshot_.state.tick);
   EXPECT_THAT(tick(), testing::IsEmpty());
 }
 
