@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include "proposals/separation.hpp"
+
 namespace interlock {
 namespace {
 
@@ -76,6 +78,16 @@ tl::expected<void, Refusal> check_moves(const Robot& robot, const ControlView& v
   return {};
 }
 
+std::vector<HomeStep> steps_of(const Robot& robot, const HomePlan& plan) {
+  if (plan.step_count == 0) {
+    HomeStep alone;
+    alone.home = plan.slots;
+    return {alone};
+  }
+  const auto first = robot.home_steps.begin() + plan.first_step;
+  return {first, first + plan.step_count};
+}
+
 bool goes_to_switch(const Robot& robot, const HomePlan& plan, std::uint32_t slot) {
   if (plan.step_count == 0) {
     return true;
@@ -121,7 +133,11 @@ tl::expected<void, Refusal> check_home(const Robot& robot, const ilk_config_t& c
           verdict_refusal(ILK_VERDICT_NO_SWITCH, axis.name, "an axis with a limit switch"));
     }
   }
-  return check_moves(robot, view, plan);
+  if (auto homed = check_moves(robot, view, plan); !homed) {
+    return homed;
+  }
+  const std::vector<HomeStep> steps = steps_of(robot, plan);
+  return check_separation(robot, view, steps);
 }
 
 }  // namespace interlock

@@ -1,0 +1,159 @@
+#include "proposals/separation.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "proposals/proposal_book.hpp"
+#include "robot/robot_file.hpp"
+#include "robot_fixture.hpp"
+
+namespace interlock {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const Robot& prostate() {
+  static const Robot robot = [] {
+    auto loaded = load_robot(INTERLOCK_ROBOTS "/prostate.toml");
+    return loaded ? *loaded : throw std::runtime_error(loaded.error().message());
+  }();
+  return robot;
+}
+
+class SeparationTest : public testing::Test {
+ protected:
+  SeparationTest() : config_(test::config_of(prostate())), view_(test::ready_view()) {
+    view_.snapshot.config_crc = config_.crc;
+    for (const Axis& axis : prostate().axes) {
+      ilk_axis_t& state = view_.snapshot.state.axis[axis.slot];
+      state = {};
+      state.state = ILK_AXIS_ENABLED;
+    }
+  }
+
+  void homed_at(const char* name, double mm) {
+    const Axis& axis = *prostate().find(name);
+    view_.snapshot.state.axis[axis.slot].homed = 1;
+    view_.snapshot.state.axis[axis.slot].position_counts = *axis.to_counts(mm);
+  }
+
+  void left_homed_at(double mm) {
+    homed_at("back_left", mm);
+    homed_at("front_left", mm);
+  }
+
+  void right_homed_at(double mm) {
+    homed_at("back_right", mm);
+    homed_at("front_right", mm);
+  }
+
+  /** The code that refuses the step; empty when it may run. */
+  std::string step(const std::string& name) {
+    return code_of(book_.propose_home({std::nullopt, name, "ann"}, view_));
+  }
+  std::string axis(const char* name) {
+    return code_of(book_.propose_home({prostate().find(name)->slot, std::nullopt, "ann"}, view_));
+  }
+  std::string all() { return code_of(book_.propose_home({std::nullopt, std::nullopt, "ann"}, view_)); }
+
+  static std::string code_of(const tl::expected<Proposal, Refusal>& proposal) {
+    return proposal ? "" : proposal.error().code;
+  }
+
+  const ilk_config_t config_;
+  ControlView view_;
+  std::vector<Command> sent_;
+  ProposalBook book_{prostate(), config_,
+                     [this](const Command& command) {
+                       sent_.push_back(command);
+                       return true;
+                     },
+                     [] { return UtcTime{}; }};
+};
+
+TEST_F(SeparationTest, AllStepsMakeRoomForEachOtherWhereverTheSlidersStand) {
+  EXPECT_EQ(all(), "");
+  left_homed_at(187.0);
+  EXPECT_EQ(all(), "");
+  right_homed_at(-187.0);
+  EXPECT_EQ(all(), "");
+}
+
+TEST_F(SeparationTest, OneSideDoesNotHomeWhileTheOtherIsUnknown) {
+  EXPECT_EQ(step("left_home"), "SEPARATION");
+  EXPECT_EQ(step("right_home"), "SEPARATION");
+  for (const char* name : {"back_left", "front_left", "back_right", "front_right"}) {
+    EXPECT_EQ(axis(name), "SEPARATION") << name;
+  }
+  EXPECT_THAT(sent_, IsEmpty());
+}
+
+TEST_F(SeparationTest, TheRefusalNamesThePairAndTheWayOut) {
+  const auto refused = book_.propose_home({std::nullopt, "left_home", "ann"}, view_);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().detail, HasSubstr("back_left and back_right could part by 372.8 mm"));
+  EXPECT_THAT(refused.error().expected, HasSubstr("308.0 mm"));
+  EXPECT_THAT(refused.error().next_step, HasSubstr("Run all home steps"));
+}
+
+TEST_F(SeparationTest, ASideHomesWhenTheOtherIsHomedFarEnoughInward) {
+  right_homed_at(-119.0);
+  EXPECT_EQ(step("left_home"), "");
+  right_homed_at(-119.2);
+  EXPECT_EQ(step("left_home"), "SEPARATION") << "the front pair";
+  EXPECT_EQ(axis("back_left"), "") << "its own pair has room";
+  EXPECT_EQ(axis("front_left"), "SEPARATION");
+  left_homed_at(40.4);
+  EXPECT_EQ(step("right_home"), "");
+}
+
+TEST_F(SeparationTest, OneSliderOfTheOtherSideThatIsNotHomedIsEnough) {
+  homed_at("back_right", -50.0);
+  EXPECT_EQ(axis("back_left"), "");
+  EXPECT_EQ(axis("front_left"), "SEPARATION");
+  EXPECT_EQ(step("left_home"), "SEPARATION");
+}
+
+TEST_F(SeparationTest, ParkingASideNeedsRoomToo) {
+  left_homed_at(187.0);
+  right_homed_at(-50.0);
+  EXPECT_EQ(step("right_park"), "SEPARATION");
+  left_homed_at(158.0);
+  EXPECT_EQ(step("right_park"), "");
+  right_homed_at(-150.0);
+  left_homed_at(40.4);
+  EXPECT_EQ(step("left_park"), "");
+}
+
+TEST_F(SeparationTest, StepsThatOnlyBringSlidersTogetherAreAllowed) {
+  EXPECT_EQ(step("needle_out"), "");
+  EXPECT_EQ(step("right_inward"), "");
+  left_homed_at(187.0);
+  EXPECT_EQ(step("left_inward"), "");
+  right_homed_at(-187.0);
+  EXPECT_EQ(step("left_inward"), "") << "found too far apart";
+  EXPECT_EQ(step("right_park"), "") << "farther out than where it parks";
+}
+
+TEST_F(SeparationTest, ANudgeOutwardsCountsInFull) {
+  Robot robot = prostate();
+  const Axis& back_right = *robot.find("back_right");
+  robot.home_steps = {{"out", "Out", {}, {{back_right.slot, -25000}}, {}}};
+  right_homed_at(-100.0);
+  left_homed_at(187.0);
+  EXPECT_TRUE(check_separation(robot, view_, robot.home_steps));
+  homed_at("back_right", -112.0);
+  EXPECT_FALSE(check_separation(robot, view_, robot.home_steps));
+}
+
+TEST_F(SeparationTest, ARobotWithoutSuchPairsIsNotConcerned) {
+  EXPECT_TRUE(check_separation(test::neuro(), test::ready_view(), test::neuro().home_steps));
+}
+
+}  // namespace
+}  // namespace interlock
