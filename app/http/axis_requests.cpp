@@ -37,8 +37,9 @@ boost::asio::awaitable<json> ask_each(const Context& context, const Caller& call
     if (obstacle.empty() && !context.authority.held_by(caller.session)) {
       obstacle = "the motion authority was lost meanwhile.";
     }
-    if (!obstacle.empty()) {
-      rows.push_back(not_sent(*request.axis, obstacle));
+    const std::string& reason = request.not_sent_because.empty() ? obstacle : request.not_sent_because;
+    if (!reason.empty()) {
+      rows.push_back(not_sent(*request.axis, reason));
       continue;
     }
     const auto answer = co_await context.control.ask(request.kind, request.axis->slot, request.target_counts);

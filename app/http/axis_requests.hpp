@@ -17,6 +17,7 @@ struct AxisRequest {
   const Axis* axis = nullptr;
   std::uint32_t kind = 0;         /**< ilk_request_kind_t */
   std::int32_t target_counts = 0; /**< position of a RESTORE */
+  std::string not_sent_because{}; /**< not empty: it only gets its row, with these words */
 };
 
 /**

@@ -27,9 +27,11 @@ export class Axis {
   }
 
   /** Declares that the axis is at home; the kernel wants it at rest, so one that still settles is asked again. */
-  async setHome(): Promise<void> {
+  async setHome(overridden = false): Promise<void> {
+    const question = this.page.getByRole("region", { name: `Override the switch of ${this.title}?` });
     await expect(async () => {
       await this.press("Set Home");
+      if (overridden) await question.getByRole("button", { name: "Set Home all the same" }).click();
       await expect(this.row.getByText("UNHOMED")).toHaveCount(0, { timeout: 2000 });
     }).toPass();
   }

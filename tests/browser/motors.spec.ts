@@ -55,19 +55,41 @@ test("an axis without a switch is homed by Set Home alone", async ({ robot }) =>
   await expect(axis.row.getByText("359.82°", { exact: true })).toBeVisible();
 });
 
+test("Set Home of an axis with a switch asks before it overrides the switch", async ({ robot, page }) => {
+  const axis = robot.axis("Lateral");
+  await robot.unlockRobot();
+  await axis.press("Set Home");
+  const question = robot.panel("Override the switch of Lateral?");
+  await expect(question).toContainText("Go Home");
+  await page.keyboard.press("Escape");
+  await expect(question).toHaveCount(0);
+  await axis.press("Set Home");
+  await question.getByRole("button", { name: "Cancel" }).click();
+  await expect(question).toHaveCount(0);
+  await expect(axis.row.getByText("UNHOMED")).toBeVisible();
+
+  await axis.setHome(true);
+  await expect(question).toHaveCount(0);
+  await robot.open("Audit");
+  await expect(robot.panel("Audit")).toContainText("lateral set-home, its switch overridden");
+});
+
 test("Zero all asks first, and shows the verdict of every axis", async ({ robot, page }) => {
   await robot.unlockRobot();
   await robot.button("Zero all").click();
-  const question = robot.panel("Declare every axis at home?");
+  const question = robot.panel("Declare every axis without a switch at home?");
   await page.keyboard.press("Escape");
   await expect(question).toHaveCount(0);
   await expect(robot.axis("Yaw").row.getByText("UNHOMED")).toBeVisible();
 
   await robot.button("Zero all").click();
-  await question.getByRole("button", { name: "Set Home of all axes" }).click();
+  await question.getByRole("button", { name: "Set Home of these axes" }).click();
   const answer = robot.panel("Answer to Zero all");
   await expect(answer.getByRole("listitem")).toHaveCount(7);
   await expect(answer.getByRole("listitem").filter({ hasText: "Probe rotation" })).toContainText("ACCEPTED");
+  const yaw = answer.getByRole("listitem").filter({ hasText: "Yaw" });
+  await expect(yaw).toContainText("Not sent: it has a limit switch");
+  await expect(robot.axis("Yaw").row.getByText("UNHOMED")).toBeVisible();
   await expect(robot.axis("Probe rotation").row.getByText("UNHOMED")).toHaveCount(0);
 });
 

@@ -1,11 +1,15 @@
 import { defineConfig } from "@playwright/test";
 import { reports } from "./places";
 
-/** Debian's Chromium, one page at a time, against the real processes on the simulated clock. */
+/**
+ * Debian's Chromium against the real processes on the simulated clock. Each test has a robot of its own, on a port of its
+ * own, so that two run side by side, whichever file they are in.
+ */
 export default defineConfig({
   testDir: ".",
   outputDir: `${reports}/browser`,
-  workers: 1,
+  workers: 2,
+  fullyParallel: true,
   retries: 0,
   forbidOnly: true,
   timeout: 60_000,

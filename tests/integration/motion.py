@@ -50,10 +50,18 @@ def press(stack: Stack) -> None:
     wait_for_mode(stack, "MOTION")
 
 
+def set_home(stack: Stack, axis: int | str = LATERAL) -> None:
+    """Declares that the axis stands at home, whatever its switch would tell, as soon as it is at rest."""
+    path = f"/api/motors/{axis}/set-home"
+    wait_until(
+        f"{axis} at rest", lambda: stack.api.post(path, json={"override_switch": True}).status_code == 200
+    )
+
+
 def to_motion(stack: Stack, slot: int = LATERAL) -> None:
     """Unlocks, references the axis where it stands, enables it and presses the pedal."""
     unlock(stack)
-    wait_until("at rest", lambda: stack.api.post(f"/api/motors/{slot}/set-home").status_code == 200)
+    set_home(stack, slot)
     act(stack, "enable", slot)
     press(stack)
 

@@ -15,6 +15,7 @@ from motion import (
     open_stream,
     press,
     propose,
+    set_home,
     unlock,
     wait_for_mode,
     wait_for_proposal,
@@ -43,7 +44,7 @@ def at_rest(robot: Stack) -> None:
     unlock(robot)
     wait_until(
         "at rest",
-        lambda: {row["verdict"] for row in zero_all(robot)} <= {"ACCEPTED", "RANGE"},
+        lambda: all(row["verdict"] in ("ACCEPTED", None) for row in zero_all(robot)),
     )
 
 
@@ -75,6 +76,10 @@ def restored_at_rest(robot: Stack, file: dict, *axes: str) -> list[dict]:
     return rows
 
 
+def motor_title(robot: Stack, slot: int) -> str:
+    return next((each["title"] for each in robot.api.get("/api/motors").json() if each["slot"] == slot), "")
+
+
 def positions(robot: Stack) -> dict[str, int]:
     return {each["name"]: each["position_counts"] for each in robot.api.get("/api/motors").json()}
 
@@ -89,13 +94,42 @@ def test_zero_all_answers_for_every_axis_in_the_order_of_the_robot(robot: Stack)
     assert [row["axis"] for row in rows] == names(robot)
     for row in rows:
         axis = motor(robot, row["slot"])
-        assert axis["homed"] == (row["verdict"] == "ACCEPTED")
-        assert axis["position_counts"] == 0 or row["verdict"] != "ACCEPTED"
+        assert row["verdict"] == (None if axis["has_switch"] else "ACCEPTED")
+        assert axis["homed"] == (not axis["has_switch"])
+        assert axis["position_counts"] == 0 or axis["has_switch"]
+        assert ("Not sent: it has a limit switch" in row.get("detail", "")) == axis["has_switch"]
+
+
+def test_an_axis_with_a_switch_is_declared_at_home_only_against_its_switch(robot: Stack) -> None:
+    unlock(robot)
+    problem(robot.api.post(f"/api/motors/{LATERAL}/set-home"), 409, "HAS_SWITCH")
+    assert not motor(robot)["homed"]
+    set_home(robot)
+    assert motor(robot)["homed"]
+    said = [record["detail"].get("what") for record in robot.api.get("/api/audit").json()]
+    assert "lateral set-home, its switch overridden" in said
+    assert "lateral set-home" not in said
+
+
+def test_one_side_of_the_prostate_robot_does_not_home_while_the_other_is_unknown(stack: StackFactory) -> None:
+    prostate = stack(robot="prostate")
+    unlock(prostate)
+    sliders = [slot for slot in range(10) if "slider" in motor_title(prostate, slot)]
+    assert len(sliders) == 4
+    for slot in sliders:
+        act(prostate, "enable", slot)
+    for draft in ({"step": "left_home"}, {"step": "right_home"}, *({"slot": slot} for slot in sliders)):
+        refused = prostate.api.post("/api/proposals", json={"kind": "home", **draft})
+        assert "part" in problem(refused, 409, "SEPARATION")["detail"]
+    assert prostate.api.get("/api/mode").json()["mode"] == "manual"
+    inward = {"kind": "home", "step": "right_inward"}
+    assert prostate.api.post("/api/proposals", json=inward).status_code == 201
 
 
 def test_positions_outlive_the_robot_and_come_back_by_restore(stack: StackFactory) -> None:
     before = stack()
-    at_rest(before)
+    unlock(before)
+    set_home(before)
     act(before, "enable")
     press(before)
     wait_for_proposal(before, propose(before, -300), "done")

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from bare_kernel import BIN
-from motion import act, motor, press, propose, unlock, wait_until
+from motion import act, motor, press, propose, set_home, unlock, wait_until
 from stack import Stack
 
 # An axis of each robot that is homed where it stands, and a setpoint for it.
@@ -55,7 +55,7 @@ def check_stalls(robot: Stack, axis: str) -> None:
     """A jammed axis that is driven towards a setpoint faults, and is cleared by hand."""
     slot = slot_of(robot, axis)
     unlock(robot)
-    wait_until("at rest", lambda: robot.api.post(f"/api/motors/{axis}/set-home").status_code == 200)
+    set_home(robot, axis)
     assert motor(robot, slot)["fault"] == "NONE"
     act(robot, "enable", slot)
     robot.control("jam", slot=slot, jammed=True)
@@ -184,7 +184,7 @@ def test_Motor_GetMinTicksGetMaxTicks(neuro: Stack) -> None:
     before = motor(neuro, feet)
     assert not before["homed"]
     assert before["max_counts"] - before["min_counts"] < before["soft_max_counts"] - before["soft_min_counts"]
-    wait_until("at rest", lambda: neuro.api.post("/api/motors/feet/set-home").status_code == 200)
+    set_home(neuro, "feet")
     wait_until("homed", lambda: motor(neuro, feet)["homed"])
     after = motor(neuro, feet)
     assert (after["soft_min_counts"], after["soft_max_counts"]) == (-5512, 5906)

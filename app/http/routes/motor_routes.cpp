@@ -1,6 +1,8 @@
 #include "http/routes/motor_routes.hpp"
 
+#include "http/fields.hpp"
 #include "http/problems.hpp"
+#include "http/set_home.hpp"
 #include "http/status_json.hpp"
 
 namespace interlock::web {
@@ -21,6 +23,37 @@ std::optional<std::uint32_t> request_of_action(const std::string& action) {
     }
   }
   return std::nullopt;
+}
+
+/** Whether the caller says that an axis stands at home whatever its switch would tell. */
+tl::expected<bool, Problem> overrides_switch(const Call& call) {
+  if (call.request.body().empty()) {
+    return false;
+  }
+  return parse_body(call.request).and_then([](const json& body) -> tl::expected<bool, Problem> {
+    Fields fields(body, {"override_switch"});
+    const bool overrides = fields.boolean("override_switch").value_or(false);
+    if (fields.problem()) {
+      return fail(*fields.problem());
+    }
+    return overrides;
+  });
+}
+
+/** What is asked of the axis, as the audit is to name it; 409 HAS_SWITCH where its switch is to be asked. */
+tl::expected<std::string, Problem> set_home_of(const Axis& axis, const Call& call) {
+  const auto overrides = overrides_switch(call);
+  if (!overrides) {
+    return fail(overrides.error());
+  }
+  const std::string what = axis.name + " set-home";
+  if (!has_switch(axis)) {
+    return what;
+  }
+  if (!*overrides) {
+    return fail(refused(switch_knows_home(axis)));
+  }
+  return what + ", its switch overridden";
 }
 
 }  // namespace
@@ -72,7 +105,15 @@ Answering MotorRoutes::act(const Call& call) const {
   if (!request) {
     co_return fail(not_found("action " + action, "enable, disable, clear-fault or set-home"));
   }
-  co_return co_await context_.ask_kernel(call.caller, *request, (*axis)->slot, (*axis)->name + " " + action);
+  std::string what = (*axis)->name + " " + action;
+  if (*request == ILK_REQUEST_SET_HOME) {
+    auto declared = set_home_of(**axis, call);
+    if (!declared) {
+      co_return fail(declared.error());
+    }
+    what = std::move(*declared);
+  }
+  co_return co_await context_.ask_kernel(call.caller, *request, (*axis)->slot, std::move(what));
 }
 
 }  // namespace interlock::web

@@ -6,6 +6,7 @@
 #include "http/fields.hpp"
 #include "http/positions_file.hpp"
 #include "http/problems.hpp"
+#include "http/set_home.hpp"
 
 namespace interlock::web {
 namespace {
@@ -123,9 +124,13 @@ Answering PositionRoutes::zero_all(const Call& call) const {
   }
   std::vector<AxisRequest> requests;
   for (const Axis& axis : context_.robot.axes) {
-    requests.push_back({&axis, ILK_REQUEST_SET_HOME});
+    AxisRequest request{.axis = &axis, .kind = ILK_REQUEST_SET_HOME};
+    if (has_switch(axis)) {
+      request.not_sent_because = "it has a limit switch, which tells where its home is. Home it.";
+    }
+    requests.push_back(std::move(request));
   }
-  json detail{{"request", "SET_HOME"}, {"what", "every axis"}};
+  json detail{{"request", "SET_HOME"}, {"what", "every axis without a switch"}};
   const auto announced = co_await context_.announce(call.caller, AuditKind::request, std::move(detail));
   if (!announced) {
     co_return fail(announced.error());

@@ -214,9 +214,9 @@ TEST_F(HttpTest, AnOrderCarriesTheStopsThatItsAuthorHasSeen) {
 
 TEST_F(HttpTest, AVerdictOfTheKernelIsTheAnswer) {
   show(test::ready_view());
-  auto asking = std::async(std::launch::async, [this] { return post("/api/motors/3/set-home"); });
+  auto asking = std::async(std::launch::async, [this] { return post("/api/motors/3/clear-fault"); });
   const auto ask = std::get<Ask>(next_command());
-  EXPECT_EQ(ask.kind, static_cast<std::uint32_t>(ILK_REQUEST_SET_HOME));
+  EXPECT_EQ(ask.kind, static_cast<std::uint32_t>(ILK_REQUEST_CLEAR_FAULT));
   EXPECT_EQ(ask.slot, insertion);
   answer(Answer{ask.ticket, ILK_VERDICT_MODE, 6});
   const Answered answered = asking.get();

@@ -5,6 +5,7 @@ namespace {
 
 using test::insertion;
 using test::neuro;
+using test::rotation;
 
 using MotorRoutesTest = HttpTest;
 
@@ -34,6 +35,46 @@ TEST_F(MotorRoutesTest, AnActionByNameReachesTheSlot) {
   EXPECT_EQ(ask.slot, insertion);
   answer(Answer{ask.ticket, ILK_VERDICT_ACCEPTED, 7});
   EXPECT_EQ(json::parse(enabling.get().body)["tick"], 7);
+}
+
+TEST_F(MotorRoutesTest, AnAxisWithoutASwitchIsDeclaredAtHome) {
+  show(test::ready_view());
+  auto declaring = std::async(std::launch::async, [this] { return post("/api/motors/1/set-home"); });
+  const auto ask = std::get<Ask>(next_command());
+  EXPECT_EQ(ask.kind, static_cast<std::uint32_t>(ILK_REQUEST_SET_HOME));
+  EXPECT_EQ(ask.slot, rotation);
+  answer(Answer{ask.ticket, ILK_VERDICT_ACCEPTED, 7});
+  EXPECT_EQ(declaring.get().status, 200u);
+  EXPECT_EQ(audit("request").at(0)["what"], neuro().at_slot(rotation)->name + " set-home");
+}
+
+TEST_F(MotorRoutesTest, AnAxisWithASwitchIsNotDeclaredAtHomeUnawares) {
+  show(test::ready_view());
+  for (const char* body : {"", "{}", R"({"override_switch":false})"}) {
+    const Answered answered = post("/api/motors/3/set-home", body);
+    EXPECT_EQ(answered.status, 409u);
+    EXPECT_EQ(answered.problem()["code"], "HAS_SWITCH");
+    EXPECT_FALSE(answered.problem()["next_step"].get<std::string>().empty());
+  }
+  EXPECT_EQ(post("/api/motors/3/set-home", "{").status, 400u);
+  EXPECT_EQ(post("/api/motors/3/set-home", R"({"override_switch":"yes"})").status, 422u);
+  EXPECT_EQ(post("/api/motors/3/set-home", R"({"override":true})").status, 422u);
+  Command command;
+  EXPECT_FALSE(mailbox_->commands.pop(command));
+  EXPECT_TRUE(audit("request").empty());
+}
+
+TEST_F(MotorRoutesTest, WhoOverridesASwitchIsInTheAudit) {
+  show(test::ready_view());
+  auto declaring = std::async(
+      std::launch::async, [this] { return post("/api/motors/3/set-home", R"({"override_switch":true})"); });
+  const auto ask = std::get<Ask>(next_command());
+  EXPECT_EQ(ask.kind, static_cast<std::uint32_t>(ILK_REQUEST_SET_HOME));
+  EXPECT_EQ(ask.slot, insertion);
+  answer(Answer{ask.ticket, ILK_VERDICT_ACCEPTED, 7});
+  EXPECT_EQ(declaring.get().status, 200u);
+  EXPECT_EQ(audit("request").at(0)["what"],
+            neuro().at_slot(insertion)->name + " set-home, its switch overridden");
 }
 
 TEST_F(MotorRoutesTest, HomingIsAProposalAndNoAction) {

@@ -20,6 +20,20 @@ class PositionRoutesTest : public HttpTest {
     return {{"file", file}, {"axes", axes}};
   }
 
+  static std::vector<const Axis*> without_switch() {
+    std::vector<const Axis*> axes;
+    for (const Axis& axis : neuro().axes) {
+      if (axis.limit == ILK_LIMIT_NONE) {
+        axes.push_back(&axis);
+      }
+    }
+    return axes;
+  }
+
+  static json row_of(const json& rows, const Axis& axis) {
+    return *std::ranges::find_if(rows, [&](const json& row) { return row["axis"] == axis.name; });
+  }
+
   void expect_nothing_asked() {
     Command command;
     EXPECT_FALSE(mailbox_->commands.pop(command));
@@ -140,29 +154,35 @@ TEST_F(PositionRoutesTest, AKernelOfAnotherConfigurationRestoresNothing) {
   expect_nothing_asked();
 }
 
-TEST_F(PositionRoutesTest, ZeroAllAsksForEveryAxisInTheOrderOfTheRobot) {
+TEST_F(PositionRoutesTest, ZeroAllAsksForEveryAxisWithoutASwitchInTheOrderOfTheRobot) {
   auto zeroing = std::async(std::launch::async, [this] { return post("/api/motors/zero-all"); });
-  for (const Axis& axis : neuro().axes) {
+  for (const Axis* axis : without_switch()) {
     const auto ask = std::get<Ask>(next_command());
     EXPECT_EQ(ask.kind, static_cast<std::uint32_t>(ILK_REQUEST_SET_HOME));
-    EXPECT_EQ(ask.slot, axis.slot);
+    EXPECT_EQ(ask.slot, axis->slot);
     answer(Answer{ask.ticket, ILK_VERDICT_ACCEPTED, 5});
   }
   const Answered answered = zeroing.get();
   ASSERT_EQ(answered.status, 200u);
-  EXPECT_EQ(json::parse(answered.body).size(), neuro().axes.size());
+  const json rows = json::parse(answered.body);
+  ASSERT_EQ(rows.size(), neuro().axes.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const bool has_switch = neuro().axes[i].limit != ILK_LIMIT_NONE;
+    EXPECT_EQ(rows[i]["axis"], neuro().axes[i].name);
+    EXPECT_EQ(rows[i]["verdict"].is_null(), has_switch);
+    EXPECT_EQ(rows[i].value("detail", "").find("Not sent: it has a limit switch") == 0, has_switch);
+  }
+  expect_nothing_asked();
+  EXPECT_EQ(audit("request").at(0)["what"], "every axis without a switch");
 }
 
 TEST_F(PositionRoutesTest, WhenTheKernelFallsSilentTheRestIsNotSent) {
   auto zeroing = std::async(std::launch::async, [this] { return post("/api/motors/zero-all"); });
-  answer(Answer{std::get<Ask>(next_command()).ticket, ILK_VERDICT_ACCEPTED, 5});
   answer(Answer{std::get<Ask>(next_command()).ticket, std::nullopt, 0});
   const json rows = json::parse(zeroing.get().body);
-  EXPECT_EQ(rows[0]["verdict"], "ACCEPTED");
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    EXPECT_TRUE(rows[i]["verdict"].is_null());
-    EXPECT_THAT(rows[i]["detail"].get<std::string>(), HasSubstr(i == 1 ? "did not answer" : "Not sent"));
-  }
+  EXPECT_THAT(row_of(rows, *without_switch()[0])["detail"].get<std::string>(), HasSubstr("did not answer"));
+  EXPECT_THAT(row_of(rows, *without_switch()[1])["detail"].get<std::string>(),
+              HasSubstr("Not sent: the kernel"));
   expect_nothing_asked();
 }
 
@@ -173,8 +193,8 @@ TEST_F(PositionRoutesTest, WhoLosesTheAuthorityMeanwhileSetsNoFurtherAxis) {
   EXPECT_EQ(as(admin, [this] { return post("/api/authority/take-over"); }).status, 200u);
   answer(Answer{first.ticket, ILK_VERDICT_ACCEPTED, 5});
   const json rows = json::parse(zeroing.get().body);
-  EXPECT_EQ(rows[0]["verdict"], "ACCEPTED");
-  EXPECT_THAT(rows[1]["detail"].get<std::string>(), HasSubstr("authority"));
+  EXPECT_EQ(row_of(rows, *without_switch()[0])["verdict"], "ACCEPTED");
+  EXPECT_THAT(row_of(rows, *without_switch()[1])["detail"].get<std::string>(), HasSubstr("authority"));
   expect_nothing_asked();
 }
 

@@ -156,6 +156,13 @@ export const api = {
   motors: () => read(() => http.GET("/api/motors")),
   act: (axis: number, action: AxisAction) =>
     act(() => http.POST("/api/motors/{axis}/{action}", { params: { path: { axis: String(axis), action } } })),
+  setHomeAgainstSwitch: (axis: number) =>
+    act(() =>
+      http.POST("/api/motors/{axis}/{action}", {
+        params: { path: { axis: String(axis), action: "set-home" } },
+        body: { override_switch: true },
+      }),
+    ),
   zeroAll: () => act(() => slowHttp.POST("/api/motors/zero-all")),
   proposals: () => read(() => http.GET("/api/proposals")),
   propose: (draft: ProposalDraft) => act(() => http.POST("/api/proposals", { body: draft })),

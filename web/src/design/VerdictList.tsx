@@ -23,7 +23,7 @@ export function VerdictList({ title, verdicts, notice, onClose }: VerdictListPro
             <li key={slot} data-accepted={verdict === "ACCEPTED"}>
               <i aria-hidden="true">{verdict === "ACCEPTED" ? "✓" : "✕"}</i>{" "}
               <strong>{motors.find((motor) => motor.slot === slot)?.title ?? axis}</strong>{" "}
-              {verdict ?? "NO ANSWER"} {detail !== undefined && <span className="next-step">{detail}</span>}
+              {verdict ?? "NO VERDICT"} {detail !== undefined && <span className="next-step">{detail}</span>}
             </li>
           ))}
         </ul>

@@ -264,7 +264,10 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Sends SET_HOME for every axis in the order of the file; each has its own verdict. */
+        /**
+         * Sends SET_HOME for every axis without a switch, in the order of the file; each has its own verdict. An axis with a
+         *     switch is left alone, and its row says so.
+         */
         post: operations["zeroAll"];
         delete?: never;
         options?: never;
@@ -513,7 +516,11 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Sends one request for the axis to the kernel and waits for its verdict. Homing is motion, hence a proposal. */
+        /**
+         * Sends one request for the axis to the kernel and waits for its verdict. Homing is motion, hence a proposal.
+         *     `set-home` of an axis with a switch is refused (HAS_SWITCH) unless the body overrides the switch; the other actions
+         *     have no body.
+         */
         post: operations["actOnMotor"];
         delete?: never;
         options?: never;
@@ -537,8 +544,9 @@ export interface paths {
          *     replaces every open proposal, and until it has ended moves are refused (MODE_HOME).
          *     Refused here, in this order: another configuration than the kernel's (CONFIG_MISMATCH), a locked system (MODE),
          *     an axis that is FAULTED, homing (BUSY) or DISABLED, a drive above its bound (DRIVE), a target outside
-         *     `min_counts` to `max_counts` of the motor (RANGE); homing an axis that has no switch (NO_SWITCH), or
-         *     a home step that goes to positions, of an axis that is not homed by then (NOT_HOMED).
+         *     `min_counts` to `max_counts` of the motor (RANGE); homing an axis that has no switch (NO_SWITCH),
+         *     a home step that goes to positions, of an axis that is not homed by then (NOT_HOMED), or homing that could part two
+         *     sliders of one linkage too far, where one that is not homed may be anywhere in its range (SEPARATION).
          *     A refused draft stays in the list.
          */
         post: operations["createProposal"];
@@ -689,7 +697,7 @@ export interface components {
             status: number;
             /**
              * @description Verdict name, or NOT_FOUND, METHOD_NOT_ALLOWED, MALFORMED, INVALID, TOO_LARGE, HOST, ORIGIN, UPGRADE_REQUIRED,
-             *     LOGIN, CREDENTIALS, BACK_OFF, ROLE, AUTHORITY, EXISTS, LAST_ADMIN, STORE, STOPPED, MODE_HOME, NOT_HOMED,
+             *     LOGIN, CREDENTIALS, BACK_OFF, ROLE, AUTHORITY, EXISTS, LAST_ADMIN, STORE, STOPPED, MODE_HOME, NOT_HOMED, SEPARATION, HAS_SWITCH,
              *     POSITIONS_ROBOT, POSITIONS_CONFIG, POSITIONS_VERSION,
              *     NO_KERNEL, NO_BENCH, PEDAL_LAPSED, CONFIG_MISMATCH, ENDED, OVERLOADED, INTERNAL.
              */
@@ -922,10 +930,17 @@ export interface components {
         ModeChange: {
             mode: string;
         };
+        SetHome: {
+            /**
+             * @description The axis stands at home, whatever its limit switch would tell. The soft limit at the end without the switch
+             *     depends on this word alone.
+             */
+            override_switch?: boolean;
+        };
         AxisVerdicts: {
             slot: number;
             axis: string;
-            /** @description Null when the kernel did not answer. */
+            /** @description Null when the request was not sent, or the kernel did not answer. */
             verdict: string | null;
             /** @description What the verdict means, and what to do, unless it is ACCEPTED. */
             detail?: string;
@@ -2069,7 +2084,11 @@ export interface operations {
             };
             cookie?: never;
         };
-        requestBody?: never;
+        requestBody?: {
+            content: {
+                "application/json": components["schemas"]["SetHome"];
+            };
+        };
         responses: {
             /** @description The kernel accepted. */
             200: {
@@ -2080,10 +2099,12 @@ export interface operations {
                     "application/json": components["schemas"]["VerdictAnswer"];
                 };
             };
+            400: components["responses"]["Malformed"];
             401: components["responses"]["Login"];
             403: components["responses"]["Role"];
             404: components["responses"]["NotFound"];
             409: components["responses"]["Refused"];
+            422: components["responses"]["Invalid"];
             503: components["responses"]["NoKernel"];
         };
     };

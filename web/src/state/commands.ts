@@ -40,6 +40,11 @@ export async function act(slot: number, action: AxisAction): Promise<void> {
   tell(slot, await api.act(slot, action));
 }
 
+/** Declares that an axis stands at home whatever its switch would tell; a refusal is shown at the axis. */
+export async function setHomeAgainstSwitch(slot: number): Promise<void> {
+  tell(slot, await api.setHomeAgainstSwitch(slot));
+}
+
 /** Proposes a move or homing; a refusal is shown where it belongs, the proposal itself comes by the stream. */
 export async function propose(draft: ProposalDraft): Promise<void> {
   tell(draft.slot ?? "robot", await api.propose(draft));

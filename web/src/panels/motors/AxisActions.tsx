@@ -1,6 +1,8 @@
+import { useCallback, useState } from "react";
 import type { Motor } from "../../api/client";
 import { CommandButton } from "../../design/CommandButton";
-import { act, propose } from "../../state/commands";
+import { Confirm } from "../../design/Confirm";
+import { act, propose, setHomeAgainstSwitch } from "../../state/commands";
 import type { HomingPart } from "../../state/proposals";
 import type { AxisFrame } from "../../stream/decode";
 
@@ -41,10 +43,44 @@ export function AxisActions({ motor, axis, homing }: AxisActionsProps) {
       >
         {homing === null ? "Go Home" : homingWords[homing]}
       </CommandButton>
-      <CommandButton need="holder" label={`Set Home ${title}`} onCommand={() => act(slot, "set-home")}>
+      <SetHome motor={motor} />
+    </div>
+  );
+}
+
+/** Where a switch tells where home is, the operator is asked before it is overridden. */
+function SetHome({ motor }: { readonly motor: Motor }) {
+  const { slot, title, has_switch } = motor;
+  const [asked, setAsked] = useState(false);
+  const close = useCallback(() => setAsked(false), []);
+  const declare = (): Promise<void> => {
+    close();
+    return setHomeAgainstSwitch(slot);
+  };
+  return (
+    <>
+      <CommandButton
+        need="holder"
+        label={`Set Home ${title}`}
+        onCommand={() => (has_switch ? setAsked(true) : act(slot, "set-home"))}
+      >
         Set Home
       </CommandButton>
-    </div>
+      {asked && (
+        <Confirm
+          title={`Override the switch of ${title}?`}
+          action="Set Home all the same"
+          onConfirm={declare}
+          onCancel={close}
+        >
+          <p>
+            Its limit switch tells where home is: Go Home asks it. If the axis does not stand at home now, its
+            other end has no limit that holds. Do this only when the switch is broken and you know where the
+            axis stands.
+          </p>
+        </Confirm>
+      )}
+    </>
   );
 }
 

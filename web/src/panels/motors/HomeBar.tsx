@@ -45,6 +45,7 @@ type ZeroPhase =
 
 function ZeroAll({ off }: { readonly off: string | null }) {
   const [zero, setZero] = useState<ZeroPhase>({ phase: "idle" });
+  const motors = useConsole((state) => state.motors).filter((motor) => !motor.has_switch);
   const close = (): void => setZero({ phase: "idle" });
   const send = async (): Promise<void> => {
     const outcome = await api.zeroAll();
@@ -61,12 +62,20 @@ function ZeroAll({ off }: { readonly off: string | null }) {
       </CommandButton>
       {zero.phase === "asked" && (
         <Confirm
-          title="Declare every axis at home?"
-          action="Set Home of all axes"
+          title="Declare every axis without a switch at home?"
+          action="Set Home of these axes"
           onConfirm={send}
           onCancel={close}
         >
-          <p>Each axis takes its home position for where it stands now. Do this only when that is true.</p>
+          <p>
+            Each of these axes takes its home position for where it stands now. Do this only when that is
+            true. An axis with a switch is left alone: home it.
+          </p>
+          <ul>
+            {motors.map(({ slot, title }) => (
+              <li key={slot}>{title}</li>
+            ))}
+          </ul>
         </Confirm>
       )}
       {zero.phase === "answered" && (
