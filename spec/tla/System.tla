@@ -29,6 +29,25 @@ SystemType(c, holders) ==
     overruns_in_row: 0..c.overrun_limit, bus_bad_ticks: 0..c.bad_frame_limit,
     config_sound: BOOLEAN ]
 
+(* What holds between the fields at the end of every tick. It is inductive: a tick
+   keeps it whatever comes in. *)
+SystemInvariant(c, s) ==
+  /\ (s.mode = "LOCKED") = (s.cause # "NONE")
+  /\ s.mode # "LOCKED" => s.causes_seen = {}
+  /\ s.mode # "READY" => ~s.pedal_armed /\ s.pedal_released_ticks = 0
+  /\ s.pedal_armed => s.app_alive
+  /\ s.pedal_pressed_ticks > 0 => s.pedal_armed /\ s.pedal = "PRESSED"
+  /\ s.pedal_released_ticks > 0 => s.app_alive /\ s.pedal = "RELEASED"
+  /\ s.pedal_disagree_ticks > 0 => s.pedal = "DISAGREE"
+  /\ s.app_alive => s.app_age_ticks < c.app_timeout_ticks
+  /\ s.mode \in {"READY", "MOTION"} =>
+       /\ ~s.estop
+       /\ s.config_sound
+       /\ s.bus_bad_ticks < c.bad_frame_limit
+       /\ s.overruns_in_row < c.overrun_limit
+       /\ s.pedal_disagree_ticks <= c.pedal_disagree_ticks
+  /\ s.mode = "MOTION" => s.pedal = "PRESSED" /\ s.app_alive
+
 (* After ilk_init, or when a damaged state was rebuilt: nothing is known, so all
    is taken to be at its worst. *)
 Rebuilt(c, cause, holder) ==
