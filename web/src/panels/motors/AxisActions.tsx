@@ -1,8 +1,6 @@
-import { useCallback, useState } from "react";
 import type { Motor } from "../../api/client";
 import { CommandButton } from "../../design/CommandButton";
-import { Confirm } from "../../design/Confirm";
-import { act, propose, setHomeAgainstSwitch } from "../../state/commands";
+import { act, propose } from "../../state/commands";
 import type { HomingPart } from "../../state/proposals";
 import type { AxisFrame } from "../../stream/decode";
 
@@ -10,10 +8,12 @@ interface AxisActionsProps {
   readonly motor: Motor;
   readonly axis: AxisFrame;
   readonly homing: HomingPart | null;
+  /** Set Home is wanted of an axis whose switch tells where home is. */
+  readonly onOverride: () => void;
 }
 
-export function AxisActions({ motor, axis, homing }: AxisActionsProps) {
-  const { slot, title } = motor;
+export function AxisActions({ motor, axis, homing, onOverride }: AxisActionsProps) {
+  const { slot, title, has_switch } = motor;
   const disabled = axis.state === "DISABLED";
   const faulted = axis.state === "FAULTED";
   return (
@@ -43,44 +43,14 @@ export function AxisActions({ motor, axis, homing }: AxisActionsProps) {
       >
         {homing === null ? "Go Home" : homingWords[homing]}
       </CommandButton>
-      <SetHome motor={motor} />
-    </div>
-  );
-}
-
-/** Where a switch tells where home is, the operator is asked before it is overridden. */
-function SetHome({ motor }: { readonly motor: Motor }) {
-  const { slot, title, has_switch } = motor;
-  const [asked, setAsked] = useState(false);
-  const close = useCallback(() => setAsked(false), []);
-  const declare = (): Promise<void> => {
-    close();
-    return setHomeAgainstSwitch(slot);
-  };
-  return (
-    <>
       <CommandButton
         need="holder"
         label={`Set Home ${title}`}
-        onCommand={() => (has_switch ? setAsked(true) : act(slot, "set-home"))}
+        onCommand={() => (has_switch ? onOverride() : act(slot, "set-home"))}
       >
         Set Home
       </CommandButton>
-      {asked && (
-        <Confirm
-          title={`Override the switch of ${title}?`}
-          action="Set Home all the same"
-          onConfirm={declare}
-          onCancel={close}
-        >
-          <p>
-            Its limit switch tells where home is: Go Home asks it. If the axis does not stand at home now, its
-            other end has no limit that holds. Do this only when the switch is broken and you know where the
-            axis stands.
-          </p>
-        </Confirm>
-      )}
-    </>
+    </div>
   );
 }
 

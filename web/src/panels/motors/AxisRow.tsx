@@ -1,4 +1,4 @@
-import { useState } from "react";
+import { useCallback, useState } from "react";
 import type { Motor } from "../../api/client";
 import { CommandButton } from "../../design/CommandButton";
 import { Refusal } from "../../design/Refusal";
@@ -10,6 +10,7 @@ import type { AxisFrame } from "../../stream/decode";
 import { formatCounts } from "../../units/units";
 import { AxisActions } from "./AxisActions";
 import { explainDrive, explainFault, type FaultStory } from "./explain";
+import { OverrideSwitch } from "./OverrideSwitch";
 import { SwitchLamp } from "./SwitchLamp";
 import { TargetEntry } from "./TargetEntry";
 import { Track } from "./Track";
@@ -24,6 +25,8 @@ interface AxisRowProps {
 export function AxisRow({ motor, homing }: AxisRowProps) {
   const axis = useConsole((state) => state.frame?.axes[motor.slot]);
   const notice = useConsole((state) => state.notices[motor.slot]);
+  const [overriding, setOverriding] = useState(false);
+  const leaveSwitch = useCallback(() => setOverriding(false), []);
   if (axis === undefined) return null;
   const fault = explainFault(axis);
   return (
@@ -44,8 +47,9 @@ export function AxisRow({ motor, homing }: AxisRowProps) {
         <small>{axis.positionCounts} counts</small>
       </output>
       <TargetEntry motor={motor} />
-      <AxisActions motor={motor} axis={axis} homing={homing} />
+      <AxisActions motor={motor} axis={axis} homing={homing} onOverride={() => setOverriding(true)} />
       <div className="axis-words">
+        {overriding && <OverrideSwitch motor={motor} onClose={leaveSwitch} />}
         {fault === null ? (
           <DriveWords motor={motor} axis={axis} />
         ) : (
