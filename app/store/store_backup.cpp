@@ -24,9 +24,9 @@ namespace fs = std::filesystem;
 
 fs::path with_suffix(fs::path file, const std::string& suffix) { return file += suffix; }
 
-/** Removes a file that is being made, and what is put beside it meanwhile. */
-void remove_unfinished(const fs::path& file) {
-  std::vector<std::string> suffixes{"", "-wal", "-shm", "-journal", ".lock"};
+/** Removes what is put beside a file while it is being made. */
+void remove_beside(const fs::path& file) {
+  std::vector<std::string> suffixes{"-wal", "-shm", "-journal", ".lock"};
   for (std::size_t version = 1; version < migrations().size(); ++version) {
     suffixes.push_back(".schema-" + std::to_string(version));
   }
@@ -34,6 +34,12 @@ void remove_unfinished(const fs::path& file) {
   for (const std::string& suffix : suffixes) {
     fs::remove(with_suffix(file, suffix), ignored);
   }
+}
+
+void remove_unfinished(const fs::path& file) {
+  remove_beside(file);
+  std::error_code ignored;
+  fs::remove(file, ignored);
 }
 
 /** Has whatever is left of a file removed when the work on it ends, well or not. */
@@ -68,7 +74,7 @@ Stored<void> must_exist(const fs::path& file, const std::string& what) {
   return {};
 }
 
-/** Copies a store and checks the copy. */
+/** Copies a store to a private, empty file and checks the copy. */
 Stored<StoreSummary> copy_checked(const fs::path& source, const fs::path& target) {
   try {
     {
@@ -77,9 +83,7 @@ Stored<StoreSummary> copy_checked(const fs::path& source, const fs::path& target
         return tl::unexpected(checked.error());
       }
     }
-    if (const Stored<void> copied = copy_store(source, target); !copied) {
-      return tl::unexpected(copied.error());
-    }
+    copy_store_into(source, target);
     SQLite::Database copy(target.string(), SQLite::OPEN_READWRITE, store_patience_ms);
     return check_contents(copy).map([&] {
       const auto users = copy.execAndGet("SELECT count(*) FROM users").getInt64();
@@ -165,11 +169,7 @@ std::string name_suffix(UtcTime now) {
 }  // namespace
 
 Stored<StoreSummary> backup_store(const fs::path& store, const fs::path& target) {
-  const fs::path part = with_suffix(target, ".part");
-  const Stored<void> possible =
-      must_exist(store, "store").and_then([&] { return must_be_free(target); }).and_then([&] {
-        return must_be_free(part);
-      });
+  const Stored<void> possible = must_exist(store, "store").and_then([&] { return must_be_free(target); });
   if (!possible) {
     return tl::unexpected(possible.error());
   }
@@ -177,7 +177,14 @@ Stored<StoreSummary> backup_store(const fs::path& store, const fs::path& target)
   if (!lock) {
     return tl::unexpected(lock.error());
   }
+  const fs::path part = with_suffix(target, ".interlock-part");
+  const auto held = UnfinishedFile::begin(part);
+  if (!held) {
+    return tl::unexpected(held.error());
+  }
   const Unfinished unfinished(part);
+  // A journal that a killed backup left would be played back into the copy.
+  remove_beside(part);
   Stored<StoreSummary> summary = copy_checked(store, unfinished.file());
   if (!summary) {
     return summary;
@@ -199,6 +206,9 @@ Stored<Restored> restore_store(const fs::path& backup, const fs::path& store, Ut
   const Unfinished unfinished(with_suffix(store, ".restoring"));
   // One that was killed may have left something.
   remove_unfinished(unfinished.file());
+  if (const Stored<void> made = make_private_file(unfinished.file()); !made) {
+    return tl::unexpected(made.error());
+  }
   Stored<StoreSummary> summary = copy_checked(backup, unfinished.file());
   if (!summary) {
     summary.error().next_step = "choose another backup";

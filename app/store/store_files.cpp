@@ -70,6 +70,34 @@ Stored<void> make_private_file(const fs::path& file) {
   return tl::unexpected(file_error(file, "cannot be made", errno));
 }
 
+Stored<std::unique_ptr<UnfinishedFile>> UnfinishedFile::begin(const fs::path& file) {
+  const int fd = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, private_file_mode);
+  if (fd < 0) {
+    return tl::unexpected(file_error(file, "cannot be made", errno));
+  }
+  std::unique_ptr<UnfinishedFile> unfinished(new UnfinishedFile(fd));
+  const bool alone = ::flock(fd, LOCK_EX | LOCK_NB) == 0;
+  struct stat locked{};
+  struct stat named{};
+  const bool same = ::fstat(fd, &locked) == 0 && ::stat(file.c_str(), &named) == 0 &&
+                    locked.st_ino == named.st_ino && locked.st_dev == named.st_dev;
+  if (!alone || !same) {
+    return tl::unexpected(StoreError{StoreError::Kind::exists,
+                                     file.string() + " is being written by another process", "", "",
+                                     "try again when that has ended"});
+  }
+  if (!S_ISREG(locked.st_mode) || locked.st_uid != ::geteuid()) {
+    return tl::unexpected(StoreError{StoreError::Kind::exists, file.string() + " is somebody else's", "",
+                                     "a name that is free", "choose another, or move that file away"});
+  }
+  if (::fchmod(fd, private_file_mode) != 0 || ::ftruncate(fd, 0) != 0) {
+    return tl::unexpected(file_error(file, "cannot be made", errno));
+  }
+  return unfinished;
+}
+
+UnfinishedFile::~UnfinishedFile() { ::close(fd_); }
+
 Stored<void> sync_folder(const fs::path& folder) {
   const fs::path named = folder.empty() ? fs::path(".") : folder;
   const int fd = ::open(named.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -85,6 +113,11 @@ Stored<void> copy_store(const fs::path& source, const fs::path& target) {
   if (const Stored<void> made = make_private_file(target); !made) {
     return made;
   }
+  copy_store_into(source, target);
+  return {};
+}
+
+void copy_store_into(const fs::path& source, const fs::path& target) {
   SQLite::Database from(source.string(), SQLite::OPEN_READWRITE, store_patience_ms);
   SQLite::Database to(target.string(), SQLite::OPEN_READWRITE, store_patience_ms);
   SQLite::Backup copy(to, from);
@@ -93,7 +126,6 @@ Stored<void> copy_store(const fs::path& source, const fs::path& target) {
     throw SQLite::Exception("the store stayed busy", SQLITE_BUSY);
   }
   to.exec("PRAGMA journal_mode = DELETE");
-  return {};
 }
 
 void copy_before_migration(const fs::path& file, int version) {

@@ -43,12 +43,34 @@ Stored<void> make_private_folder(const std::filesystem::path& folder);
 /** Makes an empty file with mode 0600. Refused, exists: something of that name is there. */
 Stored<void> make_private_file(const std::filesystem::path& file);
 
+/**
+ * A file that is being made under a name of its own, private and locked for as long as this lives. A process
+ * that was killed over one leaves it behind, unlocked: the next one of that name takes it over.
+ */
+class UnfinishedFile {
+ public:
+  /** Refused, exists: another process is making it, or it is not ours to overwrite. */
+  static Stored<std::unique_ptr<UnfinishedFile>> begin(const std::filesystem::path& file);
+
+  UnfinishedFile(const UnfinishedFile&) = delete;
+  UnfinishedFile& operator=(const UnfinishedFile&) = delete;
+  ~UnfinishedFile();
+
+ private:
+  explicit UnfinishedFile(int fd) : fd_(fd) {}
+
+  int fd_;
+};
+
 /** Makes sure that names given or taken in the folder are on the disk. */
 Stored<void> sync_folder(const std::filesystem::path& folder);
 
 /** Copies what is committed in a store to the new, private file `target`, while others may go on writing.
  * The copy is one file, without a write-ahead log. Throws SQLite::Exception. */
 Stored<void> copy_store(const std::filesystem::path& source, const std::filesystem::path& target);
+
+/** As `copy_store`, to an empty file that is there. */
+void copy_store_into(const std::filesystem::path& source, const std::filesystem::path& target);
 
 /** Copies a store to `FILE.schema-VERSION`, or `FILE.schema-VERSION.N` where earlier ones are. Throws
  * SQLite::Exception. */

@@ -8,6 +8,7 @@
 #include "store/sessions.hpp"
 #include "store/settings.hpp"
 #include "store/store_backup.hpp"
+#include "store/store_files.hpp"
 #include "store_fixture.hpp"
 
 namespace interlock {
@@ -84,13 +85,40 @@ TEST_F(BackupTest, IsOnePrivateFile) {
 
 TEST_F(BackupTest, OverwritesNothing) {
   make_store(1);
-  for (const char* const name : {"backup.db", "backup.db.part"}) {
-    std::ofstream(folder_ / name) << "mine";
-    const auto before = everything();
-    EXPECT_EQ(backup_store(file_, backup_).error().kind, Kind::exists);
-    EXPECT_EQ(everything(), before);
-    fs::remove(folder_ / name);
+  std::ofstream(backup_) << "mine";
+  const auto before = everything();
+  EXPECT_EQ(backup_store(file_, backup_).error().kind, Kind::exists);
+  EXPECT_EQ(everything(), before);
+}
+
+TEST_F(BackupTest, TakesOverWhatAKilledBackupLeft) {
+  make_store(3);
+  const auto before = everything();
+  for (const char* const left : {"backup.db.interlock-part", "backup.db.interlock-part-journal"}) {
+    std::ofstream(folder_ / left) << "half of a copy";
   }
+  ASSERT_TRUE(backup_store(file_, backup_));
+  EXPECT_EQ(records_of(backup_), 3);
+  EXPECT_FALSE(fs::exists(folder_ / "backup.db.interlock-part"));
+  EXPECT_FALSE(fs::exists(folder_ / "backup.db.interlock-part-journal"));
+}
+
+TEST_F(BackupTest, LeavesTheCopyToAnotherBackupThatIsMakingIt) {
+  make_store(3);
+  const auto other = UnfinishedFile::begin(backup_.string() + ".interlock-part");
+  ASSERT_TRUE(other);
+  const auto before = everything();
+  EXPECT_EQ(backup_store(file_, backup_).error().kind, Kind::exists);
+  EXPECT_EQ(everything(), before);
+}
+
+TEST_F(BackupTest, FollowsNoLinkToAFileOfSomebodyElse) {
+  make_store(3);
+  std::ofstream(folder_ / "precious") << "mine";
+  fs::create_symlink(folder_ / "precious", folder_ / "backup.db.interlock-part");
+  const auto before = everything();
+  EXPECT_FALSE(backup_store(file_, backup_));
+  EXPECT_EQ(everything(), before);
 }
 
 TEST_F(BackupTest, NeedsAStore) {
