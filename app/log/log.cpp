@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <utility>
 
 #include "log/repeat_filter.hpp"
@@ -59,15 +60,18 @@ tl::expected<std::unique_ptr<Log>, std::string> Log::start(const std::filesystem
 }
 
 Log::Log(std::vector<spdlog::sink_ptr> sinks, LogLevel level)
-    : logger_(logger_of(std::make_shared<RepeatFilter>(std::move(sinks), ring_))) {
+    : filter_(std::make_shared<RepeatFilter>(std::move(sinks), ring_)), logger_(logger_of(filter_)) {
   set_level(level);
   spdlog::set_default_logger(logger_);
 }
 
 Log::~Log() {
   ring_.on_line([] {});
+  filter_->end();
   spdlog::set_default_logger(logger_of(std::make_shared<spdlog::sinks::stderr_color_sink_mt>()));
 }
+
+void Log::tell_repetitions() { filter_->tell_overdue(std::chrono::system_clock::now()); }
 
 LogLevel Log::level() const {
   const spdlog::level::level_enum level = logger_->level();

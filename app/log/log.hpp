@@ -17,6 +17,8 @@
 
 namespace interlock {
 
+class RepeatFilter;
+
 class Log {
  public:
   static constexpr std::size_t file_bytes = 5u << 20u;
@@ -40,12 +42,16 @@ class Log {
   [[nodiscard]] LogLevel level() const;
   void set_level(LogLevel level);
 
+  /** Says how often the last line came again, unless that is still going on; to be called now and then. */
+  void tell_repetitions();
+
   [[nodiscard]] LogRing& ring() { return ring_; }
 
  private:
   Log(std::vector<spdlog::sink_ptr> sinks, LogLevel level);
 
   LogRing ring_;
+  std::shared_ptr<RepeatFilter> filter_;
   std::shared_ptr<spdlog::logger> logger_;
 };
 

@@ -22,6 +22,22 @@ LogLevel level_of(spdlog::level::level_enum level) {
   }
 }
 
+std::string on_one_line(const std::string& text) {
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string line;
+  for (const char each : text) {
+    const auto byte = static_cast<unsigned char>(each);
+    if (byte >= 0x20 && byte != 0x7f) {
+      line += each;
+    } else {
+      line += "\\x";
+      line += digits[byte >> 4u];
+      line += digits[byte & 0xfu];
+    }
+  }
+  return line;
+}
+
 }  // namespace
 
 RepeatFilter::RepeatFilter(std::vector<spdlog::sink_ptr> sinks, LogRing& ring)
@@ -32,12 +48,30 @@ void RepeatFilter::sink_it_(const spdlog::details::log_msg& message) {
     ++repetitions_;
     return;
   }
-  tell_repetitions(message);
+  tell_repetitions(message.time);
   any_ = true;
   last_text_.assign(message.payload.begin(), message.payload.end());
   last_level_ = message.level;
+  last_logger_.assign(message.logger_name.begin(), message.logger_name.end());
   last_time_ = message.time;
-  pass(message, 0);
+  const std::string line = on_one_line(last_text_);
+  spdlog::details::log_msg passed = message;
+  passed.payload = line;
+  pass(passed, 0);
+}
+
+void RepeatFilter::tell_overdue(UtcTime now) {
+  const std::lock_guard lock(mutex_);
+  if (now - last_time_ >= longest_silence) {
+    tell_repetitions(now);
+    flush_();
+  }
+}
+
+void RepeatFilter::end() {
+  const std::lock_guard lock(mutex_);
+  tell_repetitions(std::chrono::system_clock::now());
+  flush_();
 }
 
 bool RepeatFilter::is_repetition(const spdlog::details::log_msg& message) const {
@@ -45,14 +79,14 @@ bool RepeatFilter::is_repetition(const spdlog::details::log_msg& message) const 
          std::string_view(message.payload.data(), message.payload.size()) == last_text_;
 }
 
-void RepeatFilter::tell_repetitions(const spdlog::details::log_msg& next) {
+void RepeatFilter::tell_repetitions(UtcTime now) {
   if (repetitions_ == 0) {
     return;
   }
   const std::uint64_t count = std::exchange(repetitions_, 0);
   const std::string text =
       "last message repeated " + std::to_string(count) + (count == 1 ? " time" : " times");
-  spdlog::details::log_msg told(next.time, spdlog::source_loc{}, next.logger_name, last_level_, text);
+  spdlog::details::log_msg told(now, spdlog::source_loc{}, last_logger_, last_level_, text);
   pass(told, count);
 }
 

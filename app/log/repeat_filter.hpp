@@ -20,6 +20,8 @@ namespace interlock {
  * Passes messages on to other sinks and to the ring. A message equal to the one before it is counted instead:
  * the next other message, or the same one after `longest_silence`, comes after a line "last message repeated
  * N times".
+ *
+ * A line stays one line, whatever is in the message: control characters are escaped as \\xNN.
  */
 class RepeatFilter final : public spdlog::sinks::base_sink<std::mutex> {
  public:
@@ -27,6 +29,13 @@ class RepeatFilter final : public spdlog::sinks::base_sink<std::mutex> {
 
   /** `ring` must outlive the filter. */
   RepeatFilter(std::vector<spdlog::sink_ptr> sinks, LogRing& ring);
+
+  /** Tells of repetitions that no other message will bring to light soon: `longest_silence` after the first.
+   */
+  void tell_overdue(UtcTime now);
+
+  /** Tells of those that are left. */
+  void end();
 
  protected:
   void sink_it_(const spdlog::details::log_msg& message) override;
@@ -36,7 +45,7 @@ class RepeatFilter final : public spdlog::sinks::base_sink<std::mutex> {
 
  private:
   [[nodiscard]] bool is_repetition(const spdlog::details::log_msg& message) const;
-  void tell_repetitions(const spdlog::details::log_msg& next);
+  void tell_repetitions(UtcTime now);
   void pass(const spdlog::details::log_msg& message, std::uint64_t repeated);
 
   std::vector<spdlog::sink_ptr> sinks_;
@@ -44,6 +53,7 @@ class RepeatFilter final : public spdlog::sinks::base_sink<std::mutex> {
   bool any_ = false;
   std::string last_text_;
   spdlog::level::level_enum last_level_ = spdlog::level::off;
+  std::string last_logger_;
   UtcTime last_time_;
   std::uint64_t repetitions_ = 0;
 };

@@ -89,5 +89,29 @@ TEST_F(RepeatFilterTest, ALineKeepsTheTimeOfItsMessage) {
   EXPECT_EQ(ring_.after(0).front().time, now_);
 }
 
+TEST_F(RepeatFilterTest, RepetitionsAtTheEndAreTold) {
+  say("again");
+  say("again");
+  filter_.end();
+  EXPECT_THAT(kept(), ElementsAre(Pair("again", 0u), Pair("last message repeated 1 time", 1u)));
+  filter_.end();
+  EXPECT_EQ(kept().size(), 2u);
+}
+
+TEST_F(RepeatFilterTest, RepetitionsAreToldWithoutAnotherMessageOnceTheyAreOver) {
+  say("again");
+  say("again");
+  filter_.tell_overdue(now_ + seconds(9));
+  EXPECT_EQ(kept().size(), 1u);
+  filter_.tell_overdue(now_ + RepeatFilter::longest_silence);
+  EXPECT_THAT(kept(), ElementsAre(Pair("again", 0u), Pair("last message repeated 1 time", 1u)));
+}
+
+TEST_F(RepeatFilterTest, AMessageStaysOnItsLine) {
+  say("GET /a\n2024-01-01 critical forged\x1b[31m\x7f\r\ttab");
+  EXPECT_THAT(kept(),
+              ElementsAre(Pair("GET /a\\x0a2024-01-01 critical forged\\x1b[31m\\x7f\\x0d\\x09tab", 0u)));
+}
+
 }  // namespace
 }  // namespace interlock
