@@ -7,6 +7,8 @@
 #include <boost/asio/detached.hpp>
 #include <boost/asio/use_awaitable.hpp>
 
+#include "http/problems.hpp"
+#include "http/same_origin.hpp"
 #include "http/status_json.hpp"
 #include "proposals/proposal_json.hpp"
 
@@ -24,18 +26,20 @@ constexpr auto as_result = asio::as_tuple(asio::use_awaitable);
 
 }  // namespace
 
+bool is_always_answered(std::string_view path) { return path == "/api/stop" || path == "/api/status"; }
+
 Api::Api(const asio::any_io_executor& executor, const Robot& robot, const ilk_config_t& config,
          Mailbox& mailbox, const std::string& bench_socket, StoreGateway& store, Log& log,
-         std::function<UtcTime()> clock)
+         const Clocks& clocks)
     : control_(executor, mailbox),
       book_(
-          robot, config, [this](const Command& command) { return control_.send(command); }, clock),
+          robot, config, [this](const Command& command) { return control_.send(command); }, clocks.utc),
       log_tail_(executor, log.ring(), stream_),
       bench_(executor, bench_socket),
-      sessions_(store, clock),
-      authority_(static_cast<std::uint32_t>(std::chrono::system_clock::to_time_t(clock()))),
-      context_{executor, robot, config,    control_,   book_, stream_,
-               bench_,   store, sessions_, authority_, log,   clock},
+      sessions_(store, clocks),
+      authority_(static_cast<std::uint32_t>(std::chrono::system_clock::to_time_t(clocks.utc()))),
+      context_{executor, robot,     config,     control_,   book_, stream_,    bench_,
+               store,    sessions_, authority_, passwords_, log,   clocks.utc, clocks.steady},
       router_([this](const Caller& caller) -> std::optional<Problem> {
         const auto held = context_.need_authority(caller);
         return held ? std::nullopt : std::optional(held.error());
@@ -116,24 +120,44 @@ void Api::follow_sessions() {
   });
 }
 
-asio::awaitable<Caller> Api::caller_of(const Request& request, std::string peer) {
+asio::awaitable<tl::expected<Caller, Problem>> Api::caller_of(const Request& request, std::string peer) {
   Caller caller;
   caller.peer = std::move(peer);
-  const auto token = cookie_of(request, session_cookie);
-  if (!token) {
-    co_return caller;
+  const auto session = co_await session_of(request);
+  if (!session) {
+    co_return fail(session.error());
   }
-  std::optional<Session> session = sessions_.find_at_hand(*token);
-  // STOP waits for no store: it needs no login, and names the user only if that is at hand.
-  if (!session && path_of(request) != "/api/stop") {
-    session = co_await sessions_.find(*token);
-  }
-  if (session) {
-    caller.session = session->number;
-    caller.user = session->user.name;
-    caller.role = session->user.role;
+  if (*session) {
+    caller.session = (*session)->number;
+    caller.user = (*session)->user.name;
+    caller.role = (*session)->user.role;
   }
   co_return caller;
+}
+
+/** Of several cookies of the name, which pages of other ports of this machine can set, one that opens nothing
+ * takes nothing away; two that open different sessions leave open which is meant. */
+asio::awaitable<tl::expected<std::optional<Session>, Problem>> Api::session_of(const Request& request) {
+  std::optional<Session> found;
+  const std::string name = session_cookie(request);
+  const std::vector<std::string> tokens = cookies_of(request, name);
+  for (const std::string& token : tokens) {
+    std::optional<Session> session = sessions_.find_at_hand(token);
+    if (!session && !is_always_answered(path_of(request))) {
+      auto stored = co_await sessions_.find(token);
+      if (!stored) {
+        co_return fail(stored.error());
+      }
+      session = std::move(*stored);
+    }
+    if (session && found && session->number != found->number) {
+      co_return std::nullopt;
+    }
+    if (session) {
+      found = std::move(session);
+    }
+  }
+  co_return found;
 }
 
 void Api::look_after_pedal(const ControlView& seen) {
@@ -148,8 +172,8 @@ void Api::look_after_sessions() {
     sessions_.touch(watcher.caller.session);
   }
   if (const auto& holding = authority_.holder()) {
-    const auto session = sessions_.known(holding->session);
-    if (!session || context_.clock() - session->last_seen >= authority_idle_limit) {
+    const auto idle = sessions_.idle(holding->session);
+    if (!idle || *idle >= authority_idle_limit) {
       spdlog::warn("{} was away for too long", holding->user);
       authority_.release(holding->session);
     }
@@ -160,6 +184,7 @@ asio::awaitable<void> Api::sweep_sessions(std::chrono::milliseconds pause) {
   asio::steady_timer timer(context_.executor);
   for (;;) {
     co_await sessions_.sweep();
+    context_.log.tell_repetitions();
     timer.expires_after(pause);
     const auto [error] = co_await timer.async_wait(as_result);
     if (error) {

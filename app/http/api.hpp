@@ -4,7 +4,9 @@
  */
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "http/context.hpp"
 #include "http/log_tail.hpp"
@@ -25,6 +27,9 @@
 
 namespace interlock::web {
 
+/** STOP and the status: they wait for no store, and are answered however many connections there are. */
+bool is_always_answered(std::string_view path);
+
 /** What the interface shows and commands. Everything belongs to the network thread. */
 class Api {
  public:
@@ -32,16 +37,16 @@ class Api {
    * `robot`, `config`, `mailbox`, `store` and `log` must outlive it.
    *
    * @param bench_socket empty means that the hardware is real
-   * @param clock time of day, by which sessions end
    */
-  Api(
-      const boost::asio::any_io_executor& executor, const Robot& robot, const ilk_config_t& config,
+  Api(const boost::asio::any_io_executor& executor, const Robot& robot, const ilk_config_t& config,
       Mailbox& mailbox, const std::string& bench_socket, StoreGateway& store, Log& log,
-      std::function<UtcTime()> clock = [] { return std::chrono::system_clock::now(); });
+      const Clocks& clocks = {});
 
   [[nodiscard]] const Router& router() const { return router_; }
-  /** Who sends a request over the connection of that peer. */
-  boost::asio::awaitable<Caller> caller_of(const Request& request, std::string peer);
+
+  /** Who sends a request over the connection of that peer: nobody, unless its cookies open exactly one
+   * session. 503 STORE when that cannot be told. */
+  boost::asio::awaitable<tl::expected<Caller, Problem>> caller_of(const Request& request, std::string peer);
 
   [[nodiscard]] StreamHub& stream() { return stream_; }
 
@@ -52,7 +57,8 @@ class Api {
    * with the io_context. */
   boost::asio::awaitable<void> beat();
 
-  /** Ends sessions that are over, again after each pause; ends with the io_context. */
+  /** Ends sessions that are over and logs how often the last line came again, after each pause; ends with the
+   * io_context. */
   boost::asio::awaitable<void> sweep_sessions(std::chrono::milliseconds pause);
 
   /** Releases a pedal that is held over the network. */
@@ -64,6 +70,7 @@ class Api {
   void follow_sessions();
   void look_after_pedal(const ControlView& seen);
   void look_after_sessions();
+  boost::asio::awaitable<tl::expected<std::optional<Session>, Problem>> session_of(const Request& request);
 
   ControlClient control_;
   ProposalBook book_;
@@ -72,6 +79,7 @@ class Api {
   Bench bench_;
   LiveSessions sessions_;
   Authority authority_;
+  PasswordPool passwords_;
   Context context_;
   Router router_;
   SystemRoutes system_routes_{context_, router_};

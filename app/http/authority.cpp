@@ -26,6 +26,7 @@ void Authority::give(Claim to) {
   drop_request(to.session);
   holder_ = std::move(to);
   number_ = number_ + 1 != 0 ? number_ + 1 : 1;
+  *present_ = number_;
   listener_(true);
 }
 
@@ -41,6 +42,7 @@ void Authority::release(std::uint32_t session) {
   const bool wished = drop_request(session);
   if (held) {
     holder_.reset();
+    *present_ = 0;
   }
   if (held || wished) {
     listener_(held);

@@ -4,8 +4,10 @@
  */
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -31,6 +33,9 @@ class Authority {
    * had: a kernel that runs on would not see that the holder is another one. */
   explicit Authority(std::uint32_t first_number) : number_(first_number) {}
 
+  /** A number of a hold that any thread may read, also after the authority itself is gone. */
+  using SharedNumber = std::shared_ptr<const std::atomic<std::uint32_t>>;
+
   /** Told of each change: of the holder (`holder_changed`), or only of the wishes. */
   using Listener = std::function<void(bool holder_changed)>;
 
@@ -44,7 +49,10 @@ class Authority {
   [[nodiscard]] const Claim* request_of(std::uint32_t session) const;
 
   /** Number of the present hold: 0 while nobody holds it, else one that no hold before had. */
-  [[nodiscard]] std::uint32_t number() const { return holder_ ? number_ : 0; }
+  [[nodiscard]] std::uint32_t number() const { return *present_; }
+
+  /** The same for other threads, as it changes. */
+  [[nodiscard]] SharedNumber shared_number() const { return present_; }
 
   /** Gives it to that session, whoever holds it. Its wish is granted thereby; nothing changes when it holds
    * it. */
@@ -64,7 +72,8 @@ class Authority {
 
   std::optional<Claim> holder_;
   std::vector<Claim> requests_; /**< oldest first */
-  std::uint32_t number_;
+  std::uint32_t number_;        /**< of the last hold */
+  std::shared_ptr<std::atomic<std::uint32_t>> present_ = std::make_shared<std::atomic<std::uint32_t>>(0);
   Listener listener_ = [](bool) {};
 };
 

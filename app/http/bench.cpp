@@ -89,6 +89,15 @@ tl::expected<void, Problem> Bench::take_pedal(json& fields, const ControlView& v
   return {};
 }
 
+boost::asio::awaitable<std::optional<UtcTime>> Bench::connected_since() {
+  if (!client_) {
+    co_return std::nullopt;
+  }
+  json status{{"command", "status"}};
+  (void)co_await client_->command(std::move(status));
+  co_return client_->since();
+}
+
 boost::asio::awaitable<void> Bench::release_pedal() {
   if (pedal_.held()) {
     pedal_.release();

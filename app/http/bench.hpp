@@ -32,6 +32,9 @@ class Bench {
   boost::asio::awaitable<Reply> command(std::string name, nlohmann::json fields, const ControlView& view,
                                         std::uint32_t session);
 
+  /** Since when the simulated hardware is connected, as far as it answers now; nothing when it does not. */
+  boost::asio::awaitable<std::optional<UtcTime>> connected_since();
+
   /** Releases a pedal that is held over the network. */
   boost::asio::awaitable<void> release_pedal();
 

@@ -47,6 +47,7 @@ asio::awaitable<BenchReply> BenchClient::exchange(const json& command) {
   if (error) {
     error_code ignored;
     socket_.close(ignored);
+    since_.reset();
     received_.clear();
     co_return unreachable("The simulated hardware at " + path_ + " does not answer: " + error.message() +
                           ".");
@@ -61,6 +62,7 @@ asio::awaitable<error_code> BenchClient::write_and_read(const std::string& line)
     if (error) {
       co_return error;
     }
+    since_ = std::chrono::system_clock::now();
   }
   asio::steady_timer limit(executor_, answer_timeout);
   limit.async_wait([this](error_code cancelled) {

@@ -13,6 +13,8 @@
 #include <string>
 #include <tl/expected.hpp>
 
+#include "time/utc_time.hpp"
+
 namespace interlock::web {
 
 /** Why the simulated hardware did not do what it was told. */
@@ -32,6 +34,9 @@ class BenchClient {
   /** Sends one command and waits for its answer, at most two seconds. */
   boost::asio::awaitable<BenchReply> command(nlohmann::json command);
 
+  /** Since when the connection stands; nothing without one. */
+  [[nodiscard]] const std::optional<UtcTime>& since() const { return since_; }
+
  private:
   using Turn = boost::asio::experimental::channel<void(boost::system::error_code)>;
 
@@ -46,6 +51,7 @@ class BenchClient {
   std::string answer_;
   Turn turn_;
   std::uint64_t last_id_ = 0;
+  std::optional<UtcTime> since_;
 };
 
 }  // namespace interlock::web

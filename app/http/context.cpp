@@ -4,6 +4,24 @@
 #include "robot/catalog.hpp"
 
 namespace interlock::web {
+namespace {
+
+/** The record of what somebody is about to do, who must be logged in still. */
+struct Announcement {
+  AuditEntry entry;
+  std::uint32_t session = 0;
+  Role role = Role::viewer;
+
+  Stored<void> operator()(Store& store) const {
+    return store.transact([this](Transaction& transaction) -> Stored<void> {
+      return Sessions(transaction).need(session, role, entry.time).map([&](const Session&) {
+        Audit(transaction).append(entry);
+      });
+    });
+  }
+};
+
+}  // namespace
 
 const ControlView& Context::view() const {
   const ControlView& newest = control.view();
@@ -52,8 +70,9 @@ AuditEntry Context::entry(const Caller& caller, AuditKind kind, nlohmann::json d
 boost::asio::awaitable<tl::expected<void, Problem>> Context::announce(const Caller& caller, AuditKind kind,
                                                                       nlohmann::json detail) const {
   const bool held = authority.held_by(caller.session);
-  AuditEntry announced = entry(caller, kind, std::move(detail));
-  auto recorded = co_await store.record(std::move(announced));
+  Announcement announced{entry(caller, kind, std::move(detail)), caller.session,
+                         caller.role.value_or(Role::admin)};
+  auto recorded = co_await store.run(std::move(announced));
   if (!recorded) {
     co_return recorded;
   }

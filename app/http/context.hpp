@@ -11,9 +11,11 @@
 #include "http/access.hpp"
 #include "http/authority.hpp"
 #include "http/bench.hpp"
+#include "http/clocks.hpp"
 #include "http/control_client.hpp"
 #include "http/live_sessions.hpp"
 #include "http/message.hpp"
+#include "http/password_pool.hpp"
 #include "http/store_gateway.hpp"
 #include "http/stream_hub.hpp"
 #include "log/log.hpp"
@@ -33,8 +35,10 @@ struct Context {
   StoreGateway& store;
   LiveSessions& sessions;
   Authority& authority;
+  PasswordPool& passwords;
   Log& log;
   std::function<UtcTime()> clock;
+  std::function<SteadyTime()> steady_clock;
 
   /** The newest view; what it says of orders is in the book already. The reference holds until the next
    * call. */

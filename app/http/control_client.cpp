@@ -21,6 +21,17 @@ constexpr auto as_result = asio::as_tuple(asio::use_awaitable);
 ControlClient::ControlClient(const asio::any_io_executor& executor, Mailbox& mailbox)
     : executor_(executor), mailbox_(mailbox), wake_(executor, ::dup(mailbox.network_wake.descriptor())) {}
 
+const ControlView& ControlClient::view() {
+  const ControlView& newest = mailbox_.view.newest();
+  if (!newest.attached) {
+    since_.reset();
+  } else if (!since_ || newest.generation != generation_) {
+    since_ = std::chrono::system_clock::now();
+    generation_ = newest.generation;
+  }
+  return newest;
+}
+
 bool ControlClient::send(Command command) {
   if (auto* order = std::get_if<Order>(&command)) {
     order->stops = stops();

@@ -14,6 +14,7 @@
 #include <optional>
 
 #include "motion/mailbox.hpp"
+#include "time/utc_time.hpp"
 
 namespace interlock::web {
 
@@ -22,7 +23,10 @@ class ControlClient {
   ControlClient(const boost::asio::any_io_executor& executor, Mailbox& mailbox);
 
   /** What the control thread saw last. The reference holds until the next call. */
-  [[nodiscard]] const ControlView& view() { return mailbox_.view.newest(); }
+  [[nodiscard]] const ControlView& view();
+
+  /** Since when this kernel is connected; nothing without one. */
+  [[nodiscard]] const std::optional<UtcTime>& since() const { return since_; }
 
   /** The view that `view` gave last. */
   [[nodiscard]] const ControlView& current() const { return mailbox_.view.current(); }
@@ -71,6 +75,8 @@ class ControlClient {
   boost::asio::any_io_executor executor_;
   Mailbox& mailbox_;
   boost::asio::posix::stream_descriptor wake_;
+  std::optional<UtcTime> since_;
+  std::uint32_t generation_ = 0; /**< of the kernel's link, at `since_` */
   std::uint32_t last_ticket_ = 0;
   std::map<std::uint32_t, Waiter<Answer>*> asks_;
   std::multimap<std::uint32_t, Waiter<StopAnswer>*> stops_;

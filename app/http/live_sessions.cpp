@@ -1,6 +1,7 @@
 #include "http/live_sessions.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "store/digest.hpp"
 
@@ -10,15 +11,11 @@ namespace {
 constexpr std::chrono::seconds store_uses_after{60};
 constexpr std::size_t token_length = 43;
 
-bool is_over(const Session& session, UtcTime now) {
-  return now >= session.expires() || now >= session.last_seen + session_idle_limit;
-}
-
 /** What one sweep has to do in the store. */
 struct Sweep {
   std::vector<Session> uses;
   std::set<std::uint32_t> known;
-  std::set<std::uint32_t> to_end;
+  std::map<std::uint32_t, AuditEntry> to_end;
   UtcTime now;
 
   /** Returns the numbers of the known sessions that have ended. */
@@ -29,8 +26,10 @@ struct Sweep {
       for (const Session& used : uses) {
         sessions.touch(used.number, used.last_seen);
       }
-      for (const std::uint32_t number : to_end) {
-        sessions.end(number);
+      for (const auto& [number, record] : to_end) {
+        if (sessions.end(number)) {
+          audit.append(record);
+        }
       }
       for (const Session& over : sessions.end_expired(now)) {
         audit.append(session_ended(over, "expired", now));
@@ -67,43 +66,46 @@ std::optional<Session> LiveSessions::find_at_hand(const std::string& token) {
   return session;
 }
 
-boost::asio::awaitable<std::optional<Session>> LiveSessions::find(std::string token) {
+boost::asio::awaitable<tl::expected<std::optional<Session>, Problem>> LiveSessions::find(std::string token) {
   if (token.size() != token_length) {
     co_return std::nullopt;
   }
   if (auto session = find_at_hand(token)) {
     co_return session;
   }
-  auto work = [token, now = clock_()](Store& store) {
+  auto work = [token, now = clocks_.utc()](Store& store) {
     return store.read([&](Transaction& transaction) -> Stored<std::optional<Session>> {
       return Sessions(transaction).find(token, now);
     });
   };
   const auto stored = co_await store_.run(std::move(work));
-  if (!stored || !*stored || to_end_.contains((*stored)->number)) {
+  if (!stored) {
+    co_return tl::make_unexpected(stored.error());
+  }
+  if (!*stored || to_end_.contains((*stored)->number)) {
     co_return std::nullopt;
   }
-  live_.try_emplace((*stored)->number, Live{**stored, (*stored)->last_seen});
+  live_.try_emplace((*stored)->number, live(**stored));
   number_of_token_[sha256_hex(token)] = (*stored)->number;
   co_return find_at_hand(token);
 }
 
 std::optional<Session> LiveSessions::known(std::uint32_t number) const {
   const auto found = live_.find(number);
-  const bool lives = found != live_.end() && !is_over(found->second.session, clock_());
+  const bool lives = found != live_.end() && !is_over(found->second);
   return lives ? std::optional(found->second.session) : std::nullopt;
 }
 
 void LiveSessions::add(const NewSession& opened) {
-  live_[opened.session.number] = Live{opened.session, opened.session.last_seen};
+  live_[opened.session.number] = live(opened.session);
   number_of_token_[sha256_hex(opened.token)] = opened.session.number;
 }
 
 void LiveSessions::touch(std::uint32_t number) {
   const auto found = live_.find(number);
-  const UtcTime now = clock_();
-  if (found != live_.end() && !is_over(found->second.session, now)) {
-    found->second.session.last_seen = now;
+  if (found != live_.end() && !is_over(found->second)) {
+    found->second.session.last_seen = clocks_.utc();
+    found->second.used = clocks_.steady();
   }
 }
 
@@ -113,9 +115,29 @@ void LiveSessions::forget(const std::vector<Session>& ended) {
   }
 }
 
-void LiveSessions::end(std::uint32_t number) {
-  to_end_.insert(number);
+void LiveSessions::end(std::uint32_t number, AuditEntry record) {
+  to_end_.try_emplace(number, std::move(record));
   drop(number);
+}
+
+std::optional<std::chrono::steady_clock::duration> LiveSessions::idle(std::uint32_t number) const {
+  const auto found = live_.find(number);
+  if (found == live_.end() || is_over(found->second)) {
+    return std::nullopt;
+  }
+  return clocks_.steady() - found->second.used;
+}
+
+LiveSessions::Live LiveSessions::live(const Session& session) const {
+  const UtcTime now = clocks_.utc();
+  const SteadyTime passing = clocks_.steady();
+  const auto idle = std::max(now - session.last_seen, UtcTime::duration::zero());
+  return {session, session.last_seen, passing - idle, passing + (session.expires() - now)};
+}
+
+bool LiveSessions::is_over(const Live& live) const {
+  const SteadyTime now = clocks_.steady();
+  return now >= live.ends || now - live.used >= session_idle_limit;
 }
 
 void LiveSessions::drop(std::uint32_t number) {
@@ -125,14 +147,17 @@ void LiveSessions::drop(std::uint32_t number) {
   }
 }
 
-void LiveSessions::drop_those_over(UtcTime now) {
+/** In the store, too, which has only the clock and may think that they live. */
+void LiveSessions::drop_those_over() {
   std::vector<Session> over;
   for (const auto& [number, live] : live_) {
-    if (is_over(live.session, now)) {
+    if (is_over(live)) {
       over.push_back(live.session);
     }
   }
-  forget(over);
+  for (const Session& each : over) {
+    end(each.number, session_ended(each, "expired", clocks_.utc()));
+  }
 }
 
 /** Seldom enough for the disk, and always before the store would end a session that was used since. */
@@ -149,8 +174,8 @@ std::vector<Session> LiveSessions::uses_to_store(UtcTime now) const {
 }
 
 boost::asio::awaitable<void> LiveSessions::sweep() {
-  const UtcTime now = clock_();
-  drop_those_over(now);
+  const UtcTime now = clocks_.utc();
+  drop_those_over();
   Sweep work{uses_to_store(now), {}, to_end_, now};
   for (const auto& [number, live] : live_) {
     work.known.insert(number);
@@ -160,7 +185,7 @@ boost::asio::awaitable<void> LiveSessions::sweep() {
   if (!gone) {
     co_return;
   }
-  for (const std::uint32_t number : work.to_end) {
+  for (const auto& [number, record] : work.to_end) {
     to_end_.erase(number);
   }
   for (const Session& used : work.uses) {

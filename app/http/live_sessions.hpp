@@ -8,14 +8,15 @@
 #pragma once
 
 #include <boost/asio/awaitable.hpp>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
+#include "http/clocks.hpp"
 #include "http/store_gateway.hpp"
 #include "store/sessions.hpp"
 
@@ -23,11 +24,10 @@ namespace interlock::web {
 
 class LiveSessions {
  public:
-  using Clock = std::function<UtcTime()>;
   using Listener = std::function<void(std::uint32_t session)>;
 
   /** `store` must outlive it. */
-  LiveSessions(StoreGateway& store, Clock clock) : store_(store), clock_(std::move(clock)) {}
+  LiveSessions(StoreGateway& store, Clocks clocks) : store_(store), clocks_(std::move(clocks)) {}
 
   /** Told of each session that has ended, whatever ended it. */
   void on_end(Listener listener) { listener_ = std::move(listener); }
@@ -35,14 +35,17 @@ class LiveSessions {
   /** The living session of that token, which is used thereby; without asking the store. */
   std::optional<Session> find_at_hand(const std::string& token);
 
-  /** As `find_at_hand`, and asks the store for one that is not at hand; nothing while the store fails. */
-  boost::asio::awaitable<std::optional<Session>> find(std::string token);
+  /** As `find_at_hand`, and asks the store for one that is not at hand; 503 STORE while that fails. */
+  boost::asio::awaitable<tl::expected<std::optional<Session>, Problem>> find(std::string token);
 
   /** The living session of that number, if it is at hand. */
   [[nodiscard]] std::optional<Session> known(std::uint32_t number) const;
 
   /** Whether that session has not ended. */
   [[nodiscard]] bool lives(std::uint32_t number) const { return known(number).has_value(); }
+
+  /** How long ago that session was last used, if it is at hand and lives. */
+  [[nodiscard]] std::optional<std::chrono::steady_clock::duration> idle(std::uint32_t number) const;
 
   /** A session was opened in the store. */
   void add(const NewSession& opened);
@@ -53,8 +56,11 @@ class LiveSessions {
   /** Sessions were ended in the store. */
   void forget(const std::vector<Session>& ended);
 
-  /** Ends a session here at once, and in the store as soon as that works. */
-  void end(std::uint32_t number);
+  /** A session was ended in the store. */
+  void forget(std::uint32_t number) { drop(number); }
+
+  /** Ends a session here at once, and in the store as soon as that works, which `record` will say there. */
+  void end(std::uint32_t number, AuditEntry record);
 
   /** Ends what is over, and brings store and memory to agree. */
   boost::asio::awaitable<void> sweep();
@@ -63,18 +69,23 @@ class LiveSessions {
   struct Live {
     Session session;     /**< `last_seen` is its last use */
     UtcTime seen_stored; /**< `last_seen` in the store */
+    SteadyTime used;     /**< when that was, whatever the clock was set to since */
+    SteadyTime ends;     /**< at the latest */
   };
 
+  [[nodiscard]] Live live(const Session& session) const;
+  [[nodiscard]] bool is_over(const Live& live) const;
+
   void drop(std::uint32_t number);
-  void drop_those_over(UtcTime now);
+  void drop_those_over();
   [[nodiscard]] std::vector<Session> uses_to_store(UtcTime now) const;
 
   StoreGateway& store_;
-  Clock clock_;
+  Clocks clocks_;
   Listener listener_ = [](std::uint32_t) {};
   std::map<std::uint32_t, Live> live_;
   std::map<std::string, std::uint32_t> number_of_token_; /**< by SHA-256 of the token */
-  std::set<std::uint32_t> to_end_;                       /**< ended here, not yet in the store */
+  std::map<std::uint32_t, AuditEntry> to_end_;           /**< ended here, not yet in the store */
 };
 
 /** Audit record of a session that ended. */

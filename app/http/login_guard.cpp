@@ -23,10 +23,7 @@ std::chrono::seconds wait_after(unsigned wrong) {
 
 }  // namespace
 
-std::chrono::seconds LoginGuard::wait(const std::string& name, UtcTime now) const {
-  if (judging_ >= most_at_once) {
-    return std::chrono::seconds(1);
-  }
+std::chrono::seconds LoginGuard::wait(const std::string& name, SteadyTime now) const {
   const auto found = attempts_.find(key_of(name));
   if (found == attempts_.end()) {
     return std::chrono::seconds(0);
@@ -35,8 +32,7 @@ std::chrono::seconds LoginGuard::wait(const std::string& name, UtcTime now) cons
   return std::max(std::chrono::ceil<std::chrono::seconds>(left), std::chrono::seconds(0));
 }
 
-void LoginGuard::begin(const std::string& name, UtcTime now) {
-  ++judging_;
+void LoginGuard::begin(const std::string& name, SteadyTime now) {
   if (attempts_.size() >= capacity && !attempts_.contains(key_of(name))) {
     attempts_.erase(
         std::ranges::min_element(attempts_, {}, [](const auto& each) { return each.second.last; }));
@@ -47,14 +43,12 @@ void LoginGuard::begin(const std::string& name, UtcTime now) {
 }
 
 void LoginGuard::end(const std::string& name, bool right) {
-  --judging_;
   if (right) {
     attempts_.erase(key_of(name));
   }
 }
 
 void LoginGuard::end_unjudged(const std::string& name) {
-  --judging_;
   if (const auto found = attempts_.find(key_of(name)); found != attempts_.end()) {
     --found->second.wrong;
   }

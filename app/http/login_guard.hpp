@@ -9,7 +9,7 @@
 #include <map>
 #include <string>
 
-#include "time/utc_time.hpp"
+#include "http/clocks.hpp"
 
 namespace interlock::web {
 
@@ -17,15 +17,13 @@ class LoginGuard {
  public:
   /** Names that are remembered; beyond them the one whose last attempt is oldest is forgotten. */
   static constexpr std::size_t capacity = 4096;
-  /** Attempts that are judged at the same time, each of which costs time and memory. */
-  static constexpr std::size_t most_at_once = 4;
 
   /** How long an attempt for that name has to wait; zero: it may be judged now. */
-  [[nodiscard]] std::chrono::seconds wait(const std::string& name, UtcTime now) const;
+  [[nodiscard]] std::chrono::seconds wait(const std::string& name, SteadyTime now) const;
 
   /** An attempt is about to be judged. It counts as wrong until it turns out right, so that many at the same
    * time gain nothing. */
-  void begin(const std::string& name, UtcTime now);
+  void begin(const std::string& name, SteadyTime now);
 
   /** The attempt was judged. */
   void end(const std::string& name, bool right);
@@ -36,12 +34,11 @@ class LoginGuard {
  private:
   struct Attempts {
     unsigned wrong = 0; /**< in a row */
-    UtcTime last;
+    SteadyTime last;
   };
 
   std::map<std::string, Attempts>
       attempts_; /**< by the name, or by its beginning if it is too long for one */
-  std::size_t judging_ = 0;
 };
 
 }  // namespace interlock::web

@@ -4,11 +4,16 @@
 #include <charconv>
 #include <string_view>
 
+#include "http/json_shape.hpp"
+
 namespace interlock::web {
 namespace {
 
 namespace http = boost::beast::http;
 using nlohmann::json;
+
+/** A browser sends the most specific first; whoever sends more has made them up. */
+constexpr std::size_t most_cookies = 4;
 
 /** Headers that names in a path may carry bytes that are no UTF-8; they are shown as replacement characters.
  */
@@ -103,8 +108,8 @@ tl::expected<json, Problem> parse_query(const Request& request) {
   return query;
 }
 
-std::optional<std::string> cookie_of(const Request& request, std::string_view name) {
-  std::optional<std::string> found;
+std::vector<std::string> cookies_of(const Request& request, std::string_view name) {
+  std::vector<std::string> found;
   const auto [first, last] = request.equal_range(http::field::cookie);
   for (auto header = first; header != last; ++header) {
     std::string_view rest(header->value().data(), header->value().size());
@@ -116,10 +121,10 @@ std::optional<std::string> cookie_of(const Request& request, std::string_view na
       if (equals == std::string_view::npos || pair.substr(start, equals - start) != name) {
         continue;
       }
-      if (found) {
-        return std::nullopt;
+      const std::string_view value = pair.substr(equals + 1);
+      if (found.size() < most_cookies && std::ranges::find(found, value) == found.end()) {
+        found.emplace_back(value);
       }
-      found.emplace(pair.substr(equals + 1));
     }
   }
   return found;
@@ -133,6 +138,13 @@ std::optional<std::uint32_t> number_in(std::string_view text) {
 }
 
 tl::expected<json, Problem> parse_body(const Request& request) {
+  if (const auto flaw = flaw_of_json(request.body())) {
+    return tl::make_unexpected(Problem{.status = Status::bad_request,
+                                       .code = "MALFORMED",
+                                       .detail = "The body " + *flaw + ".",
+                                       .expected = "one JSON object, each key once, at most " +
+                                                   std::to_string(deepest_json) + " levels deep"});
+  }
   json body = json::parse(request.body(), nullptr, false);
   if (body.is_discarded()) {
     return tl::make_unexpected(Problem{.status = Status::bad_request,

@@ -58,13 +58,14 @@ std::string path_of(const Request& request);
  */
 tl::expected<nlohmann::json, Problem> parse_query(const Request& request);
 
-/** The value of that cookie; nothing when the request does not bring it exactly once. */
-std::optional<std::string> cookie_of(const Request& request, std::string_view name);
+/** The different values of the cookies of that name, at most four. */
+std::vector<std::string> cookies_of(const Request& request, std::string_view name);
 
 /** The text as a whole decimal number; nothing when it is none. */
 std::optional<std::uint32_t> number_in(std::string_view text);
 
-/** The body as JSON; 400 MALFORMED when it is none. */
+/** The body as JSON; 400 MALFORMED when it is none, nests deeper than 64, or has a key twice in one object.
+ */
 tl::expected<nlohmann::json, Problem> parse_body(const Request& request);
 
 }  // namespace interlock::web

@@ -1,5 +1,6 @@
 #include "http/same_origin.hpp"
 
+#include <algorithm>
 #include <string_view>
 
 namespace interlock::web {
@@ -7,18 +8,23 @@ namespace {
 
 namespace http = boost::beast::http;
 
+constexpr std::uint32_t default_port = 80;
+
 std::string_view value_of(const Request& request, http::field field) {
   const auto value = request[field];
   return {value.data(), value.size()};
 }
 
-std::string_view without_port(std::string_view host) {
+/** Where the colon before the port stands, or the end. */
+std::size_t end_of_name(std::string_view host) {
   const std::size_t bracket = host.rfind(']');
   const std::size_t colon = host.rfind(':');
   const bool has_port =
       colon != std::string_view::npos && (bracket == std::string_view::npos || colon > bracket);
-  return has_port ? host.substr(0, colon) : host;
+  return has_port ? colon : host.size();
 }
+
+std::string_view without_port(std::string_view host) { return host.substr(0, end_of_name(host)); }
 
 }  // namespace
 
@@ -45,6 +51,12 @@ std::optional<Problem> check_origin(const Request& request) {
                  .detail = "The page of \"" + std::string(origin) + "\" may not do this.",
                  .expected = own,
                  .next_step = "Use the console that this server brings."};
+}
+
+std::string session_cookie(const Request& request) {
+  const std::string_view host = value_of(request, http::field::host);
+  const auto port = number_in(host.substr(std::min(end_of_name(host) + 1, host.size())));
+  return "interlock_session_" + std::to_string(port.value_or(default_port));
 }
 
 bool is_safe(http::verb method) { return method == http::verb::get || method == http::verb::head; }

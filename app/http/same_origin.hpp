@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "http/message.hpp"
 
@@ -16,6 +17,12 @@ std::optional<Problem> check_host(const Request& request);
 /** 403 ORIGIN when the request was sent by a page of another origin. Requests that no page sent carry no
  * origin. */
 std::optional<Problem> check_origin(const Request& request);
+
+/**
+ * Name of the cookie that is the session: `interlock_session_8080`, with the port that the browser came to.
+ * Cookies know no ports, so that two robots on one machine would else log each other out.
+ */
+std::string session_cookie(const Request& request);
 
 /** Whether the method only reads. */
 bool is_safe(boost::beast::http::verb method);

@@ -1,6 +1,7 @@
 #include "http/server.hpp"
 
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
@@ -67,6 +68,25 @@ void log_transaction(const Request& request, const Caller& caller, Status status
                 std::string(request.method_string()), path_of(request), static_cast<unsigned>(status));
 }
 
+Problem all_at_work(std::size_t ceiling) {
+  return {.status = Status::service_unavailable,
+          .code = "OVERLOADED",
+          .detail = "All " + std::to_string(ceiling) + " connections are at work.",
+          .next_step = "Try again in a moment; STOP and the status are answered still.",
+          .headers = {{"Retry-After", "1"}}};
+}
+
+/** So many connections that the app itself and the reserve have descriptors left. */
+std::size_t ceiling_of_process() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) {
+    return Server::capacity;
+  }
+  constexpr std::size_t kept = Server::own_descriptors + Server::reserve;
+  const std::size_t granted = limit.rlim_cur;
+  return granted > kept ? std::min(Server::capacity, granted - kept) : 1;
+}
+
 bool is_protocol_error(const beast::error_code& error) {
   static const auto& category = beast::error_code(http::error::bad_method).category();
   return error.category() == category && error != http::error::end_of_stream &&
@@ -75,7 +95,8 @@ bool is_protocol_error(const beast::error_code& error) {
 
 }  // namespace
 
-Server::Connection::Connection(beast::tcp_stream connected) : stream(std::move(connected)) {
+Server::Connection::Connection(beast::tcp_stream connected, Place granted)
+    : stream(std::move(connected)), place(granted) {
   beast::error_code error;
   const auto from = stream.socket().remote_endpoint(error);
   if (!error) {
@@ -94,6 +115,7 @@ tl::expected<void, std::string> Server::listen(const Listen& where) {
                                " would let other machines in, and there is no encryption; expected "
                                "127.0.0.1 or ::1. Use an SSH tunnel to reach it from elsewhere");
   }
+  ceiling_ = ceiling_of_process();
   acceptor_.open(address.is_v6() ? tcp::v6() : tcp::v4(), error);
   if (!error) {
     acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
@@ -113,45 +135,77 @@ tl::expected<void, std::string> Server::listen(const Listen& where) {
 }
 
 asio::awaitable<void> Server::accept() {
-  asio::steady_timer pause(acceptor_.get_executor());
   for (;;) {
     auto [error, socket] = co_await acceptor_.async_accept(as_result);
     if (error == asio::error::operation_aborted) {
       co_return;
     }
     if (error) {
-      // Out of descriptors, most likely: trying again at once would only burn the processor.
-      spdlog::error("cannot accept a connection: {}", error.message());
-      pause.expires_after(std::chrono::milliseconds(100));
-      co_await pause.async_wait(as_result);
-      continue;
+      co_await survive(error);
+    } else if (const auto place = place_for_another()) {
+      admit(std::move(socket), *place);
     }
-    make_room();
-    auto connection = std::make_shared<Connection>(beast::tcp_stream(std::move(socket)));
-    const auto place = connections_.insert(connections_.end(), connection);
-    asio::co_spawn(acceptor_.get_executor(), serve(connection),
-                   [this, place](const std::exception_ptr& thrown) {
-                     connections_.erase(place);
-                     if (thrown) {
-                       try {
-                         std::rethrow_exception(thrown);
-                       } catch (const std::exception& exception) {
-                         spdlog::critical("a connection ended by an exception: {}", exception.what());
-                       }
-                     }
-                   });
   }
 }
 
-void Server::make_room() {
-  if (connections_.size() < capacity) {
-    return;
+/** Out of descriptors, most likely: whoever waits for nothing gives one back, be it for a STOP. Without such
+ * a one, trying again at once would only burn the processor. */
+asio::awaitable<void> Server::survive(const beast::error_code& error) {
+  spdlog::error("cannot accept a connection: {}", error.message());
+  if (close_oldest_idle(Place::common) || close_oldest_idle(Place::reserve)) {
+    co_return;
   }
-  const auto idle = std::find_if(connections_.begin(), connections_.end(),
-                                 [](const auto& connection) { return connection->waiting; });
-  if (idle != connections_.end()) {
-    (*idle)->stream.close();
+  asio::steady_timer pause(acceptor_.get_executor(), std::chrono::milliseconds(100));
+  co_await pause.async_wait(as_result);
+}
+
+void Server::admit(tcp::socket socket, Place place) {
+  auto connection = std::make_shared<Connection>(beast::tcp_stream(std::move(socket)), place);
+  const auto listed = connections_.insert(connections_.end(), connection);
+  asio::co_spawn(acceptor_.get_executor(), serve(connection),
+                 [this, listed](const std::exception_ptr& thrown) {
+                   connections_.erase(listed);
+                   if (thrown) {
+                     try {
+                       std::rethrow_exception(thrown);
+                     } catch (const std::exception& exception) {
+                       spdlog::critical("a connection ended by an exception: {}", exception.what());
+                     }
+                   }
+                 });
+}
+
+std::size_t Server::connections() const { return open_in(Place::common) + open_in(Place::reserve); }
+
+std::size_t Server::at_work() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(connections_, [](const auto& each) { return !each->closed && !each->waiting; }));
+}
+
+std::size_t Server::open_in(Place place) const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      connections_, [&](const auto& each) { return !each->closed && each->place == place; }));
+}
+
+std::optional<Server::Place> Server::place_for_another() {
+  if (open_in(Place::common) < ceiling_ || close_oldest_idle(Place::common)) {
+    return Place::common;
   }
+  if (open_in(Place::reserve) < reserve || close_oldest_idle(Place::reserve)) {
+    return Place::reserve;
+  }
+  return std::nullopt;
+}
+
+bool Server::close_oldest_idle(Place place) {
+  const auto idle = std::ranges::find_if(
+      connections_, [&](const auto& each) { return !each->closed && each->waiting && each->place == place; });
+  if (idle == connections_.end()) {
+    return false;
+  }
+  (*idle)->closed = true;
+  (*idle)->stream.close();
+  return true;
 }
 
 asio::awaitable<void> Server::serve(std::shared_ptr<Connection> connection) {
@@ -169,14 +223,15 @@ asio::awaitable<void> Server::serve(std::shared_ptr<Connection> connection) {
       co_return;
     }
     Request request = parser.release();
-    if (beast::websocket::is_upgrade(request) && path_of(request) == "/api/stream") {
+    if (connection->place == Place::common && beast::websocket::is_upgrade(request) &&
+        path_of(request) == "/api/stream") {
       co_await serve_stream(*connection, std::move(request));
       co_return;
     }
     connection->stream.expires_never();
-    Response response = co_await respond(request, connection->peer);
+    Response response = co_await respond(request, *connection);
     keep_alive = co_await answer(*connection, std::move(response), request.method() == http::verb::head,
-                                 request.keep_alive());
+                                 request.keep_alive() && connection->place == Place::common);
   }
   beast::error_code ignored;
   connection->stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
@@ -187,14 +242,18 @@ asio::awaitable<void> Server::serve_stream(Connection& connection, Request reque
   std::optional<Problem> problem = check_host(request);
   problem = problem ? problem : check_origin(request);
   if (!problem) {
-    caller = co_await api_.caller_of(request, connection.peer);
-    problem = api_.router().check(viewers, caller);
+    auto known = co_await api_.caller_of(request, connection.peer);
+    if (known) {
+      caller = std::move(*known);
+    }
+    problem = known ? api_.router().check(viewers, caller) : std::optional(known.error());
   }
-  if (!problem && api_.stream().full()) {
+  if (!problem && api_.stream().full(caller.session)) {
     problem = Problem{.status = Status::service_unavailable,
                       .code = "OVERLOADED",
                       .detail = "Too many clients watch the stream.",
-                      .expected = "at most " + std::to_string(StreamHub::capacity),
+                      .expected = "at most " + std::to_string(StreamHub::capacity) + ", of one session " +
+                                  std::to_string(StreamHub::session_capacity),
                       .next_step = "Close another console."};
   }
   log_transaction(request, caller, problem ? problem->status : Status::switching_protocols);
@@ -205,7 +264,7 @@ asio::awaitable<void> Server::serve_stream(Connection& connection, Request reque
   co_await api_.stream().serve(std::move(connection.stream), std::move(request), std::move(caller));
 }
 
-asio::awaitable<Response> Server::respond(const Request& request, const std::string& peer) {
+asio::awaitable<Response> Server::respond(const Request& request, const Connection& connection) {
   std::optional<Problem> problem = check_host(request);
   if (!problem && !is_safe(request.method())) {
     problem = check_origin(request);
@@ -214,8 +273,11 @@ asio::awaitable<Response> Server::respond(const Request& request, const std::str
     co_return problem_response(*problem);
   }
   const std::string path = path_of(request);
+  if (connection.place == Place::reserve && !is_always_answered(path)) {
+    co_return problem_response(all_at_work(ceiling_));
+  }
   if (path == "/api" || path.starts_with("/api/")) {
-    co_return co_await respond_api(request, peer);
+    co_return co_await respond_api(request, connection.peer);
   }
   co_return files_.serve(request);
 }
@@ -223,9 +285,12 @@ asio::awaitable<Response> Server::respond(const Request& request, const std::str
 asio::awaitable<Response> Server::respond_api(const Request& request, const std::string& peer) {
   std::string thrown;
   try {
-    const Caller caller = co_await api_.caller_of(request, peer);
-    const Reply reply = co_await api_.router().route(request, caller);
-    log_transaction(request, caller, reply ? reply->status : reply.error().status);
+    const auto caller = co_await api_.caller_of(request, peer);
+    if (!caller) {
+      co_return problem_response(caller.error());
+    }
+    const Reply reply = co_await api_.router().route(request, *caller);
+    log_transaction(request, *caller, reply ? reply->status : reply.error().status);
     co_return reply ? json_response(*reply) : problem_response(reply.error());
   } catch (const std::exception& exception) {
     thrown = exception.what();

@@ -2,28 +2,25 @@
 
 #include <spdlog/spdlog.h>
 
-#include <boost/asio/post.hpp>
-#include <iterator>
-#include <memory>
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <string>
 
 namespace interlock::web {
 namespace {
 
 namespace asio = boost::asio;
 
+constexpr auto as_result = asio::as_tuple(asio::use_awaitable);
+
 bool is_failure(const StoreError& error) {
   return error.kind == StoreError::Kind::unavailable || error.kind == StoreError::Kind::newer ||
          error.kind == StoreError::Kind::damaged;
 }
 
-Stored<void> append_all(Store& store, const std::vector<AuditEntry>& entries) {
-  return store.transact([&](Transaction& transaction) -> Stored<void> {
-    Audit audit(transaction);
-    for (const AuditEntry& entry : entries) {
-      audit.append(entry);
-    }
-    return {};
-  });
+StoreError failure(std::string problem) {
+  return {StoreError::Kind::unavailable, std::move(problem), "", "",
+          "see what else uses the store, and whether the disk is full or slow"};
 }
 
 std::pair<Status, const char*> answer_to(StoreError::Kind kind) {
@@ -36,6 +33,10 @@ std::pair<Status, const char*> answer_to(StoreError::Kind kind) {
       return {Status::not_found, "NOT_FOUND"};
     case StoreError::Kind::last_admin:
       return {Status::conflict, "LAST_ADMIN"};
+    case StoreError::Kind::session_over:
+      return {Status::unauthorized, "LOGIN"};
+    case StoreError::Kind::role:
+      return {Status::forbidden, "ROLE"};
     case StoreError::Kind::outdated:
     case StoreError::Kind::unavailable:
     case StoreError::Kind::newer:
@@ -57,51 +58,96 @@ Problem problem_of(const StoreError& error) {
           .next_step = error.next_step};
 }
 
-StoreGateway::StoreGateway(asio::any_io_executor network, Store& store)
-    : network_(std::move(network)), store_(store) {}
+StoreGateway::StoreGateway(asio::any_io_executor network, Store& store, std::chrono::milliseconds patience)
+    : network_(std::move(network)), store_(store), patience_(patience) {}
 
 StoreGateway::~StoreGateway() {
-  send_notes();
+  asio::post(pool_, [this] { (void)write_notes(); });
   pool_.join();
 }
 
-asio::awaitable<tl::expected<void, Problem>> StoreGateway::record(AuditEntry entry) {
-  return run([entries = std::vector{std::move(entry)}](Store& store) { return append_all(store, entries); });
+Stored<void> StoreGateway::may_commit(StoreOrder& order, const Stored<void>& noted) {
+  if (!noted) {
+    return noted;
+  }
+  if (!order.begin_commit()) {
+    return tl::make_unexpected(failure("nobody waits for the change any more"));
+  }
+  return {};
+}
+
+asio::awaitable<void> StoreGateway::patiently(Wait& wait) const {
+  wait.timer.expires_after(patience_);
+  co_await wait.timer.async_wait(as_result);
+  if (!wait.done && !wait.order.abandon()) {
+    wait.timer.expires_after(patience_);
+    co_await wait.timer.async_wait(as_result);
+  }
+}
+
+Problem StoreGateway::too_late(const StoreOrder& order) {
+  const std::string waited = std::to_string(patience_.count()) + " ms";
+  if (order.abandoned()) {
+    const StoreError error = failure("the store did not answer within " + waited + "; nothing was changed");
+    watch(&error);
+    return problem_of(error);
+  }
+  StoreError error = failure("the disk has not confirmed the change for " + waited +
+                             "; whether it is kept is not known yet");
+  watch(&error);
+  error.next_step = "look whether it is there before you try again";
+  return problem_of(error);
 }
 
 void StoreGateway::note(AuditEntry entry) {
-  if (notes_.size() >= most_notes) {
-    spdlog::error("the store does not take the audit's records: one more is lost");
+  if (!notes_.add(std::move(entry))) {
+    spdlog::error("the store does not take the audit's records: some are lost");
     return;
   }
-  notes_.push_back(std::move(entry));
-  if (!std::exchange(sending_soon_, true)) {
-    asio::post(network_, [this] {
-      sending_soon_ = false;
-      send_notes();
-    });
-  }
+  send_notes();
 }
 
+/** At most one batch is on its way, so that the records stay in their order. */
 void StoreGateway::send_notes() {
-  if (notes_.empty()) {
+  if (std::exchange(sending_, true)) {
     return;
   }
-  asio::post(pool_, [this, notes = std::exchange(notes_, {})]() mutable {
-    auto written = append_all(store_, notes);
-    asio::post(network_, [this, written, notes = std::move(notes)]() mutable {
-      watch(written ? nullptr : &written.error());
-      if (!written) {
-        take_back(std::move(notes));
-      }
+  // After what the network thread is doing now, which may note more.
+  asio::post(network_, [this] {
+    asio::post(pool_, [this] {
+      asio::post(network_, [this, written = write_notes()] {
+        sending_ = false;
+        watch(written ? nullptr : &written.error());
+        if (written && !notes_.empty()) {
+          send_notes();
+        }
+      });
     });
   });
 }
 
-/** What could not be written goes out again with the next record or note. */
-void StoreGateway::take_back(std::vector<AuditEntry> notes) {
-  notes.insert(notes.end(), std::move_iterator(notes_.begin()), std::move_iterator(notes_.end()));
-  notes_ = std::move(notes);
+/** In the store's thread. What could not be written goes out again with the next record or note. */
+Stored<void> StoreGateway::write_notes() {
+  AuditNotes::Batch batch = notes_.take();
+  if (batch.empty()) {
+    return {};
+  }
+  const auto append = [&](Store& store) {
+    return store.transact([&](Transaction& transaction) -> Stored<void> {
+      Audit audit(transaction);
+      for (const AuditEntry& entry : batch) {
+        audit.append(entry);
+      }
+      return {};
+    });
+  };
+  Stored<void> written = caught(append);
+  if (written) {
+    notes_.confirm();
+  } else {
+    notes_.give_back(std::move(batch));
+  }
+  return written;
 }
 
 /** The log hears of a failure once, and of its end. */

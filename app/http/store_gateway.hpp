@@ -1,35 +1,40 @@
 /**
  * @file
  * The way from the network thread to the store, which has a thread of its own: the network never waits for
- * the disk.
+ * the disk, and nobody waits for it without an end.
  */
 #pragma once
 
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>
-#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/thread_pool.hpp>
-#include <boost/asio/use_awaitable.hpp>
+#include <chrono>
 #include <exception>
+#include <memory>
+#include <optional>
 #include <utility>
-#include <vector>
 
+#include "http/audit_notes.hpp"
 #include "http/message.hpp"
+#include "http/store_order.hpp"
 #include "store/audit.hpp"
 #include "store/store.hpp"
 
 namespace interlock::web {
 
-/** 422 INVALID, 404, 409 EXISTS or LAST_ADMIN, or 503 STORE when the file fails. */
+/** 401 LOGIN, 403 ROLE, 422 INVALID, 404, 409 EXISTS or LAST_ADMIN, or 503 STORE when the file fails. */
 Problem problem_of(const StoreError& error);
 
 class StoreGateway {
  public:
-  /** Notes that wait while the store fails; beyond them the newest are lost, which the log says. */
-  static constexpr std::size_t most_notes = 4096;
+  /** How long somebody waits for the store before being told that it does not answer. */
+  static constexpr std::chrono::milliseconds usual_patience{5000};
 
   /** `network` is the executor of the thread that uses the gateway; `store` must outlive it. */
-  StoreGateway(boost::asio::any_io_executor network, Store& store);
+  StoreGateway(boost::asio::any_io_executor network, Store& store,
+               std::chrono::milliseconds patience = usual_patience);
 
   /** Writes what was noted, as far as the store takes it. */
   ~StoreGateway();
@@ -38,47 +43,96 @@ class StoreGateway {
   StoreGateway& operator=(const StoreGateway&) = delete;
 
   /**
-   * Runs `work(Store&)`, which returns a `Stored<...>`, in the store's thread, after everything that was
-   * asked for or noted before. Errors and exceptions become the problem of `problem_of`.
+   * Runs `work(Store&)`, which returns a `Stored<...>` and commits at most one transaction, in the store's
+   * thread, after everything that was asked for or noted before. Errors and exceptions become the problem of
+   * `problem_of`. What was noted before and cannot be written lets nothing be committed after it.
+   *
+   * 503 STORE when it takes longer than the patience: then nothing was and nothing will be committed. Only a
+   * COMMIT that is on its way to the disk is waited for once as long again; if it takes longer than that, the
+   * problem says that nobody knows what became of it.
    *
    * Pass a named `work` by `std::move`: GCC 12 destroys twice what a temporary inside `co_await` captured.
    */
   template <typename Work>
   auto run(Work work) -> boost::asio::awaitable<
       tl::expected<typename std::invoke_result_t<Work, Store&>::value_type, Problem>> {
-    send_notes();
-    auto result =
-        co_await boost::asio::co_spawn(pool_, in_store(store_, std::move(work)), boost::asio::use_awaitable);
-    watch(result ? nullptr : &result.error());
-    co_return std::move(result).map_error(problem_of);
+    using Result = std::invoke_result_t<Work, Store&>;
+    const auto wait = std::make_shared<WaitFor<Result>>(network_);
+    boost::asio::post(pool_, [this, wait, work = std::move(work)]() mutable {
+      if (!wait->order.abandoned()) {
+        auto [result, noted] = in_store(wait->order, work);
+        report(wait, std::move(result), std::move(noted));
+      }
+    });
+    co_await patiently(*wait);
+    if (!wait->result) {
+      co_return tl::make_unexpected(too_late(wait->order));
+    }
+    co_return std::move(*wait->result).map_error(problem_of);
   }
-
-  /** Writes a record that must be on the disk before anything else happens. */
-  boost::asio::awaitable<tl::expected<void, Problem>> record(AuditEntry entry);
 
   /** Writes a record soon, and those that are noted at about the same time with it. Nobody waits for it. */
   void note(AuditEntry entry);
 
  private:
+  /** One who waits for the store. */
+  struct Wait {
+    explicit Wait(const boost::asio::any_io_executor& network) : timer(network) {}
+
+    StoreOrder order;
+    boost::asio::steady_timer timer; /**< of the network thread; cancelled when it is done */
+    bool done = false;
+  };
+
+  template <typename Result>
+  struct WaitFor : Wait {
+    using Wait::Wait;
+    std::optional<Result> result;
+  };
+
+  /** In the store's thread: the notes, then the work. */
   template <typename Work>
-  static auto in_store(Store& store, Work work)
-      -> boost::asio::awaitable<std::invoke_result_t<Work, Store&>> {
+  auto in_store(StoreOrder& order, Work& work)
+      -> std::pair<std::invoke_result_t<Work, Store&>, Stored<void>> {
+    Stored<void> noted = write_notes();
+    store_.check_commits([&] { return may_commit(order, noted); });
+    auto result = caught(work);
+    store_.check_commits(Store::commit_always);
+    return {std::move(result), std::move(noted)};
+  }
+
+  template <typename Work>
+  auto caught(Work& work) -> std::invoke_result_t<Work, Store&> {
     try {
-      co_return work(store);
+      return work(store_);
     } catch (const std::exception& exception) {
-      co_return tl::make_unexpected(StoreError{StoreError::Kind::unavailable, exception.what(), "", "", ""});
+      return tl::make_unexpected(StoreError{StoreError::Kind::unavailable, exception.what(), "", "", ""});
     }
   }
 
+  template <typename Result>
+  void report(const std::shared_ptr<WaitFor<Result>>& wait, Result result, Stored<void> noted) {
+    boost::asio::post(network_, [this, wait, result = std::move(result), noted = std::move(noted)]() mutable {
+      watch(!noted ? &noted.error() : !result ? &result.error() : nullptr);
+      wait->result = std::move(result);
+      wait->done = true;
+      wait->timer.cancel();
+    });
+  }
+
+  static Stored<void> may_commit(StoreOrder& order, const Stored<void>& noted);
+  boost::asio::awaitable<void> patiently(Wait& wait) const;
+  Problem too_late(const StoreOrder& order);
   void send_notes();
-  void take_back(std::vector<AuditEntry> notes);
+  Stored<void> write_notes();
   void watch(const StoreError* error);
 
   boost::asio::any_io_executor network_;
   Store& store_;
+  std::chrono::milliseconds patience_;
   boost::asio::thread_pool pool_{1};
-  std::vector<AuditEntry> notes_;
-  bool sending_soon_ = false;
+  AuditNotes notes_;
+  bool sending_ = false; /**< notes are on their way, or about to be */
   bool failing_ = false; /**< as far as the log was told */
 };
 

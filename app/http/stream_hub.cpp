@@ -18,6 +18,7 @@ namespace beast = boost::beast;
 namespace websocket = boost::beast::websocket;
 
 constexpr std::size_t longest_client_message = 1024;
+constexpr std::chrono::seconds closing_patience{2};
 constexpr auto session_ended_code = static_cast<websocket::close_code>(4401);
 constexpr auto as_result = asio::as_tuple(asio::use_awaitable);
 
@@ -32,12 +33,22 @@ websocket::stream_base::timeout timeouts() {
 void StreamHub::Client::close() {
   open = false;
   news.cancel();
+  patience.cancel();
   beast::get_lowest_layer(socket).close();
 }
 
-void StreamHub::Client::close_after_texts(websocket::close_reason reason) {
-  closing = std::move(reason);
-  news.cancel();
+/** Closes it once it has got what waits for it, or soon in any case: a client that takes nothing must not
+ * outlive its session. */
+void StreamHub::close_after_texts(const std::shared_ptr<Client>& client, websocket::close_reason reason) {
+  client->closing = std::move(reason);
+  client->news.cancel();
+  client->patience.expires_after(closing_patience);
+  client->patience.async_wait([client](const beast::error_code& cancelled) {
+    if (!cancelled && client->open) {
+      spdlog::warn("a stream client did not take its end and was dropped");
+      client->close();
+    }
+  });
 }
 
 void StreamHub::Client::send(std::shared_ptr<const std::string> text) {
@@ -63,6 +74,7 @@ asio::awaitable<void> StreamHub::serve(beast::tcp_stream stream, Request request
   const auto [accept_error] = co_await client->socket.async_accept(request, as_result);
   if (accept_error) {
     clients_.erase(place);
+    client->close();
     co_return;
   }
   asio::co_spawn(client->socket.get_executor(), write(client), asio::detached);
@@ -127,7 +139,7 @@ void StreamHub::end_session(std::uint32_t session) {
   for (const auto& client : clients_) {
     if (client->watcher.caller.session == session) {
       client->send(std::make_shared<const std::string>(message.dump()));
-      client->close_after_texts({session_ended_code, "the session ended"});
+      close_after_texts(client, {session_ended_code, "the session ended"});
     }
   }
 }
@@ -137,7 +149,7 @@ bool StreamHub::disconnect(std::uint32_t id) {
   if (found == clients_.end()) {
     return false;
   }
-  (*found)->close_after_texts({websocket::close_code::going_away, "disconnected by a user"});
+  close_after_texts(*found, {websocket::close_code::going_away, "disconnected by a user"});
   return true;
 }
 
@@ -149,9 +161,10 @@ std::vector<StreamHub::Watcher> StreamHub::watchers() const {
   return watchers;
 }
 
-bool StreamHub::watched_by(std::uint32_t session) const {
-  return std::ranges::any_of(clients_,
-                             [&](const auto& client) { return client->watcher.caller.session == session; });
+bool StreamHub::full(std::uint32_t session) const {
+  const auto of_session = std::ranges::count_if(
+      clients_, [&](const auto& client) { return client->watcher.caller.session == session; });
+  return clients_.size() >= capacity || static_cast<std::size_t>(of_session) >= session_capacity;
 }
 
 }  // namespace interlock::web

@@ -28,6 +28,8 @@ class StreamHub {
  public:
   /** Clients at the same time. */
   static constexpr std::size_t capacity = 32;
+  /** Of those, clients of one session: a browser's windows. */
+  static constexpr std::size_t session_capacity = 8;
   /** Text messages that wait for one client; one more, and the client is dropped. */
   static constexpr std::size_t backlog = 1024;
 
@@ -60,10 +62,8 @@ class StreamHub {
   /** Oldest first. */
   [[nodiscard]] std::vector<Watcher> watchers() const;
 
-  /** Whether a client of that session watches. */
-  [[nodiscard]] bool watched_by(std::uint32_t session) const;
-
-  [[nodiscard]] bool full() const { return clients_.size() >= capacity; }
+  /** Whether there is no room for another client, or for another one of that session. */
+  [[nodiscard]] bool full(std::uint32_t session) const;
   [[nodiscard]] bool empty() const { return clients_.empty(); }
 
  private:
@@ -73,22 +73,24 @@ class StreamHub {
     Client(boost::beast::tcp_stream stream, Watcher watching)
         : socket(std::move(stream)),
           watcher(std::move(watching)),
-          news(socket.get_executor(), boost::asio::steady_timer::time_point::max()) {}
+          news(socket.get_executor(), boost::asio::steady_timer::time_point::max()),
+          patience(socket.get_executor()) {}
 
     void send(std::shared_ptr<const std::string> text);
     void close();
-    /** Closes it once it has got what waits for it. */
-    void close_after_texts(boost::beast::websocket::close_reason reason);
 
     Socket socket;
     Watcher watcher;
-    boost::asio::steady_timer news; /**< cancelled when there is something to send, or to end */
+    boost::asio::steady_timer news;     /**< cancelled when there is something to send, or to end */
+    boost::asio::steady_timer patience; /**< with a client that is to end */
     std::deque<std::shared_ptr<const std::string>> texts;
     std::optional<StreamMessage> state;
     std::optional<boost::beast::websocket::close_reason> closing;
     bool open = true;
   };
 
+  static void close_after_texts(const std::shared_ptr<Client>& client,
+                                boost::beast::websocket::close_reason reason);
   static boost::asio::awaitable<void> write(std::shared_ptr<Client> client);
 
   std::list<std::shared_ptr<Client>> clients_; /**< oldest first */

@@ -48,6 +48,12 @@ std::string_view audit_kind_name(AuditKind kind) {
       return "setting";
     case AuditKind::restore:
       return "restore";
+    case AuditKind::bench:
+      return "bench";
+    case AuditKind::connection:
+      return "connection";
+    case AuditKind::records_lost:
+      return "records_lost";
   }
   return "unknown";
 }

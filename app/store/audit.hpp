@@ -30,7 +30,10 @@ enum class AuditKind {
   verdict,
   stop,
   setting,
-  restore
+  restore,
+  bench,
+  connection,
+  records_lost
 };
 
 /** The name in spec/openapi.yaml: "login_refused". */

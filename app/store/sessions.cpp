@@ -71,6 +71,20 @@ std::optional<Session> Sessions::find(std::uint32_t number, UtcTime now) const {
   return living_session_in(rows, now);
 }
 
+Stored<Session> Sessions::need(std::uint32_t number, Role least, UtcTime now) const {
+  std::optional<Session> session = find(number, now);
+  if (!session) {
+    return tl::unexpected(StoreError{StoreError::Kind::session_over,
+                                     "Nobody is logged in, or the session ended", "", "", "Log in."});
+  }
+  if (session->user.role < least) {
+    const std::string is = session->user.name + " is " + std::string(role_name(session->user.role));
+    return tl::unexpected(StoreError{StoreError::Kind::role, is, "", std::string(role_name(least)),
+                                     "Log in as a user with that role, or ask an administrator for it."});
+  }
+  return std::move(*session);
+}
+
 void Sessions::touch(std::uint32_t number, UtcTime now) {
   if (!find(number, now)) {
     return;
@@ -81,10 +95,10 @@ void Sessions::touch(std::uint32_t number, UtcTime now) {
   update.exec();
 }
 
-void Sessions::end(std::uint32_t number) {
+bool Sessions::end(std::uint32_t number) {
   SQLite::Statement remove(database_, "DELETE FROM sessions WHERE number = ?");
   remove.bind(1, static_cast<std::int64_t>(number));
-  remove.exec();
+  return remove.exec() != 0;
 }
 
 std::vector<Session> Sessions::end_all_of_user(const std::string& user, std::optional<std::uint32_t> except) {

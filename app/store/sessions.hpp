@@ -58,11 +58,14 @@ class Sessions {
   /** The living session of that number. */
   [[nodiscard]] std::optional<Session> find(std::uint32_t number, UtcTime now) const;
 
+  /** As `find`, for whoever is about to change something. Refused: session_over, role (below `least`). */
+  [[nodiscard]] Stored<Session> need(std::uint32_t number, Role least, UtcTime now) const;
+
   /** Notes that a session was used. One that is over stays over. */
   void touch(std::uint32_t number, UtcTime now);
 
-  /** Ends one session, if there is one of that number. */
-  void end(std::uint32_t number);
+  /** Ends one session; whether there was one of that number. */
+  bool end(std::uint32_t number);
 
   /** Ends the user's sessions, but for one where one is given, and returns them. */
   std::vector<Session> end_all_of_user(const std::string& user,

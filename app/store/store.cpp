@@ -99,6 +99,7 @@ Store& Store::operator=(Store&& other) noexcept {
   // The connection goes before the lock that guards it.
   database_ = std::move(other.database_);
   lock_ = std::move(other.lock_);
+  commit_check_ = std::move(other.commit_check_);
   return *this;
 }
 

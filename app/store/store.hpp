@@ -18,8 +18,10 @@
 
 #include <concepts>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <type_traits>
+#include <utility>
 
 #include "store/sqlite_forward.hpp"
 #include "store/store_error.hpp"
@@ -82,6 +84,9 @@ class Store {
       Transaction transaction(*database_, Transaction::Kind::writing);
       auto result = std::forward<Work>(work)(transaction);
       if (result) {
+        if (const Stored<void> allowed = commit_check_(); !allowed) {
+          return tl::unexpected(allowed.error());
+        }
         transaction.commit();
       }
       return result;
@@ -89,6 +94,15 @@ class Store {
       return tl::unexpected(caught());
     }
   }
+
+  /** Asked right before a transaction is committed; an error undoes it and is what `transact` returns. */
+  using CommitCheck = std::function<Stored<void>()>;
+
+  /** Has `check` asked from now on, in the place of the one before. */
+  void check_commits(CommitCheck check) { commit_check_ = std::move(check); }
+
+  /** Commits whatever is to be committed. */
+  static Stored<void> commit_always() { return {}; }
 
   /** Runs `work(Transaction&)` on one consistent state of the file, beside a writer. What it writes is not
    * kept. */
@@ -110,6 +124,7 @@ class Store {
 
   std::unique_ptr<StoreLock> lock_;
   std::unique_ptr<SQLite::Database> database_;
+  CommitCheck commit_check_ = commit_always;
 };
 
 }  // namespace interlock

@@ -12,14 +12,16 @@ namespace interlock {
 /** A refusal by a rule, or a failure of the file. Whoever gets one knows that nothing was changed. */
 struct StoreError {
   enum class Kind {
-    invalid,     /**< a value breaks a rule: `field` and `expected` say which */
-    exists,      /**< the name is taken */
-    not_found,   /**< there is nothing of that name */
-    last_admin,  /**< somebody who may administer must be left */
-    outdated,    /**< what was decided upon has changed meanwhile: begin anew */
-    unavailable, /**< the file cannot be read or written now: disk full, no permission, busy */
-    newer,       /**< the file was written by a newer release */
-    damaged      /**< the file is not a sound store of Interlock */
+    invalid,      /**< a value breaks a rule: `field` and `expected` say which */
+    exists,       /**< the name is taken */
+    not_found,    /**< there is nothing of that name */
+    last_admin,   /**< somebody who may administer must be left */
+    session_over, /**< whoever asked is not logged in any more */
+    role,         /**< the user who asked may not, or not any more */
+    outdated,     /**< what was decided upon has changed meanwhile: begin anew */
+    unavailable,  /**< the file cannot be read or written now: disk full, no permission, busy */
+    newer,        /**< the file was written by a newer release */
+    damaged       /**< the file is not a sound store of Interlock */
   };
 
   Kind kind = Kind::unavailable;

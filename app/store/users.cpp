@@ -182,24 +182,24 @@ bool Users::is_last_admin(const User& user) const {
              1;
 }
 
-Stored<std::optional<Authenticated>> authenticate(Store& store, const std::string& name,
-                                                  const Password& password) {
-  struct Found {
-    std::optional<User> user;
-    PasswordHash hash;
-  };
-  const auto found = store.read([&](Transaction& transaction) -> Stored<Found> {
+Stored<Credentials> credentials_of(Store& store, const std::string& name) {
+  return store.read([&](Transaction& transaction) -> Stored<Credentials> {
     const Users users(transaction);
-    return Found{users.find(name), users.password_of(name)};
+    return Credentials{users.find(name), users.password_of(name)};
   });
-  if (!found) {
-    return tl::unexpected(found.error());
-  }
-  const bool matches = found->hash.matches(password);
-  if (!matches || !found->user || !found->user->enabled) {
+}
+
+std::optional<Authenticated> judge(const Credentials& credentials, const Password& password) {
+  const bool matches = credentials.hash.matches(password);
+  if (!matches || !credentials.user || !credentials.user->enabled) {
     return std::nullopt;
   }
-  return Authenticated{*found->user, found->hash};
+  return Authenticated{*credentials.user, credentials.hash};
+}
+
+Stored<std::optional<Authenticated>> authenticate(Store& store, const std::string& name,
+                                                  const Password& password) {
+  return credentials_of(store, name).map([&](const Credentials& found) { return judge(found, password); });
 }
 
 }  // namespace interlock

@@ -11,7 +11,7 @@ import yaml
 SPEC = Path(__file__).resolve().parents[2] / "spec/openapi.yaml"
 METHODS = {"get", "post", "put", "patch", "delete"}
 # Those of the table in `info.description`, which every path can answer.
-COMMON = {400, 401, 403, 404, 405, 413, 431, 500}
+COMMON = {400, 401, 403, 404, 405, 413, 431, 500, 503}
 
 
 @cache

@@ -12,7 +12,8 @@ LATERAL = 4
 
 def open_stream(stack: Stack, origin: str | None = None) -> ClientConnection:
     """The stream, for the session of `stack.api`."""
-    cookie = f"interlock_session={stack.api.cookies['interlock_session']}"
+    name = f"interlock_session_{stack.port}"
+    cookie = f"{name}={stack.api.cookies[name]}"
     return connect(
         f"ws://127.0.0.1:{stack.port}/api/stream", origin=origin, additional_headers={"Cookie": cookie}
     )

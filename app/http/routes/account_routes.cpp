@@ -3,7 +3,9 @@
 #include <spdlog/spdlog.h>
 
 #include "http/fields.hpp"
+#include "http/new_hash.hpp"
 #include "http/problems.hpp"
+#include "http/same_origin.hpp"
 
 namespace interlock::web {
 namespace {
@@ -21,8 +23,8 @@ json session_json(const std::optional<Session>& session) {
           {"expires", iso_8601(session->expires())}};
 }
 
-Headers cookie(const std::string& token, std::chrono::seconds age) {
-  return {{"Set-Cookie", std::string(session_cookie) + "=" + token + "; Path=/; HttpOnly; SameSite=Strict" +
+Headers cookie(const Request& request, const std::string& token, std::chrono::seconds age) {
+  return {{"Set-Cookie", session_cookie(request) + "=" + token + "; Path=/; HttpOnly; SameSite=Strict" +
                              "; Max-Age=" + std::to_string(age.count())}};
 }
 
@@ -46,22 +48,28 @@ tl::expected<std::pair<std::string, std::string>, Problem> two_texts(const Reque
       });
 }
 
-/** Judges a name and a password and opens a session, all of it recorded. */
+Problem logged_out_here_only(const Request& request, const Problem& failure) {
+  return {.status = failure.status,
+          .code = failure.code,
+          .detail = "You are logged out, but the store does not know it yet: " + failure.detail,
+          .next_step =
+              "Nothing; it is told as soon as it works. Only if the app ends before that, the session "
+              "lives until it expires.",
+          .headers = cookie(request, "", std::chrono::seconds(0))};
+}
+
+/** Opens a session for whoever gave the right password, or records that somebody did not. */
 struct Login {
   std::string name;
-  Password password;
+  std::optional<Authenticated> authenticated;
   std::string peer;
   std::uint32_t former = 0; /**< session of the same browser, which ends */
   UtcTime now;
 
-  /** Nothing when name or password is wrong. */
+  /** Nothing when name or password is wrong, or has become so meanwhile. */
   Stored<std::optional<NewSession>> operator()(Store& store) const {
-    const auto authenticated = authenticate(store, name, password);
-    if (!authenticated) {
-      return tl::unexpected(authenticated.error());
-    }
     return store.transact([&](Transaction& transaction) -> Stored<std::optional<NewSession>> {
-      if (!*authenticated || !Users(transaction).note_login(**authenticated, now)) {
+      if (!authenticated || !Users(transaction).note_login(*authenticated, now)) {
         refuse(transaction);
         return std::nullopt;
       }
@@ -100,14 +108,14 @@ struct Login {
 };
 
 struct Logout {
-  Session session;
-  UtcTime now;
+  std::uint32_t session = 0;
+  AuditEntry record;
 
   Stored<void> operator()(Store& store) const {
     return store.transact([this](Transaction& transaction) -> Stored<void> {
-      Sessions(transaction).end(session.number);
-      Audit(transaction)
-          .append({now, std::nullopt, session.user.name, session.number, AuditKind::logout, json::object()});
+      if (Sessions(transaction).end(session)) {
+        Audit(transaction).append(record);
+      }
       return {};
     });
   }
@@ -122,31 +130,21 @@ struct ChangedPassword {
 struct PasswordChange {
   std::string name;
   std::uint32_t session = 0; /**< goes on */
-  Password current;
-  Password next;
+  PasswordHash current;
+  PasswordHash next;
   UtcTime now;
 
-  /** Nothing when the current password is wrong. */
+  /** Nothing when the current password is another one by now. */
   Stored<std::optional<ChangedPassword>> operator()(Store& store) const {
-    const auto authenticated = authenticate(store, name, current);
-    if (!authenticated) {
-      return tl::unexpected(authenticated.error());
-    }
-    if (!*authenticated) {
-      return std::nullopt;
-    }
-    const auto hash = PasswordHash::of_new(next, name);
-    if (!hash) {
-      StoreError error = hash.error();
-      error.field = "new";
-      return tl::unexpected(error);
-    }
     return store.transact([&](Transaction& transaction) -> Stored<std::optional<ChangedPassword>> {
+      if (const auto lives = Sessions(transaction).need(session, Role::viewer, now); !lives) {
+        return tl::unexpected(lives.error());
+      }
       Users users(transaction);
-      if (!(users.password_of(name) == (*authenticated)->password)) {
+      if (!(users.password_of(name) == current)) {
         return std::nullopt;
       }
-      return users.change(name, {.role = {}, .password = *hash, .enabled = {}}).map([&](const User& user) {
+      return users.change(name, {.role = {}, .password = next, .enabled = {}}).map([&](const User& user) {
         ChangedPassword changed{user, Sessions(transaction).end_all_of_user(name, session)};
         Audit audit(transaction);
         json detail{{"action", "change"}, {"name", name}, {"password", "changed"}};
@@ -175,7 +173,7 @@ Reply AccountRoutes::session(const Call& call) const {
 }
 
 tl::expected<void, Problem> AccountRoutes::need_no_wait(const std::string& name) const {
-  const auto wait = guard_.wait(name, context_.clock());
+  const auto wait = guard_.wait(name, context_.steady_clock());
   if (wait.count() == 0) {
     return {};
   }
@@ -196,10 +194,15 @@ Answering AccountRoutes::login(const Call& call) {
   if (const auto free = need_no_wait(name); !free) {
     co_return fail(free.error());
   }
-  const UtcTime now = context_.clock();
+  guard_.begin(name, context_.steady_clock());
+  Password password(std::move(credentials->second));
+  auto authenticated = co_await authenticate(name, std::move(password));
+  if (!authenticated) {
+    guard_.end_unjudged(name);
+    co_return fail(authenticated.error());
+  }
   const std::uint32_t former = call.caller.session;
-  guard_.begin(name, now);
-  Login work{name, Password(std::move(credentials->second)), call.caller.peer, former, now};
+  Login work{name, std::move(*authenticated), call.caller.peer, former, context_.clock()};
   auto opened = co_await context_.store.run(std::move(work));
   if (!opened) {
     guard_.end_unjudged(name);
@@ -214,21 +217,34 @@ Answering AccountRoutes::login(const Call& call) {
   const NewSession& made = **opened;
   context_.sessions.add(made);
   context_.sessions.forget(made.ended);
-  context_.sessions.end(former);
+  context_.sessions.forget(former);
   spdlog::info("{}: {} logged in, session {}", call.caller.peer, name, made.session.number);
-  co_return Success{Status::ok, session_json(made.session), cookie(made.token, session_lifetime)};
+  co_return Success{Status::ok, session_json(made.session),
+                    cookie(call.request, made.token, session_lifetime)};
 }
 
 Answering AccountRoutes::logout(const Call& call) {
-  const auto session = context_.sessions.known(call.caller.session);
-  context_.sessions.end(call.caller.session);
-  if (session) {
-    // A store that fails keeps nobody logged in: the session has ended here, and will there.
-    Logout work{*session, context_.clock()};
-    (void)co_await context_.store.run(std::move(work));
-  }
+  // A store that fails keeps nobody logged in: the session ends here at once, and there when it can.
+  Logout work{call.caller.session, context_.entry(call.caller, AuditKind::logout, json::object())};
+  context_.sessions.end(call.caller.session, work.record);
   spdlog::info("{} logged out, session {}", call.caller.user, call.caller.session);
-  co_return Success{Status::ok, session_json(std::nullopt), cookie("", std::chrono::seconds(0))};
+  const auto stored = co_await context_.store.run(std::move(work));
+  if (!stored) {
+    co_return fail(logged_out_here_only(call.request, stored.error()));
+  }
+  co_return Success{Status::ok, session_json(std::nullopt),
+                    cookie(call.request, "", std::chrono::seconds(0))};
+}
+
+boost::asio::awaitable<tl::expected<std::optional<Authenticated>, Problem>> AccountRoutes::authenticate(
+    std::string name, Password password) {
+  auto look = [name](Store& store) { return credentials_of(store, name); };
+  auto found = co_await context_.store.run(std::move(look));
+  if (!found) {
+    co_return fail(found.error());
+  }
+  auto work = [found = std::move(*found), password = std::move(password)] { return judge(found, password); };
+  co_return co_await context_.passwords.run(std::move(work));
 }
 
 Answering AccountRoutes::change_password(const Call& call) {
@@ -240,16 +256,27 @@ Answering AccountRoutes::change_password(const Call& call) {
   if (const auto free = need_no_wait(name); !free) {
     co_return fail(free.error());
   }
-  const UtcTime now = context_.clock();
-  guard_.begin(name, now);
-  PasswordChange work{name, call.caller.session, Password(std::move(passwords->first)),
-                      Password(std::move(passwords->second)), now};
+  guard_.begin(name, context_.steady_clock());
+  Password current(std::move(passwords->first));
+  auto authenticated = co_await authenticate(name, std::move(current));
+  if (!authenticated) {
+    guard_.end_unjudged(name);
+    co_return fail(authenticated.error());
+  }
+  guard_.end(name, authenticated->has_value());
+  if (!*authenticated) {
+    co_return fail(wrong_credentials(Status::forbidden, "The current password is wrong."));
+  }
+  Password wished(std::move(passwords->second));
+  const auto next = co_await new_hash(context_.passwords, name, std::move(wished), "new");
+  if (!next) {
+    co_return fail(next.error());
+  }
+  PasswordChange work{name, call.caller.session, (*authenticated)->password, *next, context_.clock()};
   const auto changed = co_await context_.store.run(std::move(work));
   if (!changed) {
-    guard_.end_unjudged(name);
     co_return fail(changed.error());
   }
-  guard_.end(name, changed->has_value());
   if (!*changed) {
     co_return fail(wrong_credentials(Status::forbidden, "The current password is wrong."));
   }

@@ -11,9 +11,6 @@
 
 namespace interlock::web {
 
-/** Name of the cookie that is the session. */
-constexpr std::string_view session_cookie = "interlock_session";
-
 class AccountRoutes {
  public:
   /** Both must outlive it. */
@@ -25,6 +22,8 @@ class AccountRoutes {
   boost::asio::awaitable<Reply> change_password(const Call& call);
   [[nodiscard]] Reply session(const Call& call) const;
   [[nodiscard]] tl::expected<void, Problem> need_no_wait(const std::string& name) const;
+  boost::asio::awaitable<tl::expected<std::optional<Authenticated>, Problem>> authenticate(std::string name,
+                                                                                           Password password);
 
   const Context& context_;
   LoginGuard guard_;

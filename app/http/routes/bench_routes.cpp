@@ -9,6 +9,12 @@ using Answering = boost::asio::awaitable<Reply>;
 using boost::beast::http::verb;
 using nlohmann::json;
 
+/** Whether a command is more than a question, or than the renewal of a pedal's hold five times a second. */
+bool changes_something(const std::string& command, const json& fields) {
+  const bool question = command == "status" || command == "record" || command == "record_event";
+  return !question && !(command == "pedal" && fields.value("renew", json()) == json(true));
+}
+
 }  // namespace
 
 BenchRoutes::BenchRoutes(const Context& context, Router& router) : context_(context) {
@@ -35,6 +41,10 @@ Answering BenchRoutes::command(const Call& call) const {
                     .detail = "The body must be an object without command and id.",
                     .field = body->is_object() ? "command" : "",
                     .expected = "the fields of models/plant/README.md"});
+  }
+  if (changes_something(call.parameters[0], *body)) {
+    json detail{{"command", call.parameters[0]}, {"fields", *body}};
+    context_.store.note(context_.entry(call.caller, AuditKind::bench, std::move(detail)));
   }
   co_return co_await context_.bench.command(call.parameters[0], std::move(*body), context_.view(),
                                             call.caller.session);

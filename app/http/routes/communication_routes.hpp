@@ -15,8 +15,8 @@ class CommunicationRoutes {
   CommunicationRoutes(const Context& context, Router& router);
 
  private:
-  [[nodiscard]] Reply list() const;
-  [[nodiscard]] Reply disconnect(const Call& call) const;
+  [[nodiscard]] boost::asio::awaitable<Reply> list() const;
+  [[nodiscard]] boost::asio::awaitable<Reply> disconnect(const Call& call) const;
 
   const Context& context_;
 };

@@ -60,6 +60,22 @@ struct Changed {
   tl::expected<Targeting, Problem> targeting;
 };
 
+/** The hold of the motion authority by which a change is made. */
+struct Hold {
+  Authority::SharedNumber present;
+  std::uint32_t number = 0;
+
+  [[nodiscard]] bool lasts() const { return *present == number; }
+};
+
+Problem authority_lost() {
+  return {.status = Status::conflict,
+          .code = "AUTHORITY",
+          .detail = "The motion authority changed before this was kept.",
+          .expected = "the motion authority",
+          .next_step = "Request it."};
+}
+
 }  // namespace
 
 TargetingRoutes::TargetingRoutes(const Context& context, Router& router) : context_(context) {
@@ -86,10 +102,18 @@ Answering TargetingRoutes::change(const Call& call, Change make) const {
   if (!body) {
     co_return fail(body.error());
   }
-  auto keep = [robot = &context_.robot, make, body = *body,
+  const Authority& authority = context_.authority;
+  auto keep = [robot = &context_.robot, make, body = *body, session = call.caller.session,
+               hold = Hold{authority.shared_number(), authority.number()},
                entry = context_.entry(call.caller, AuditKind::setting, json::object())](Store& store) {
     return store.transact([&](Transaction& transaction) -> Stored<Changed> {
+      if (const auto lives = Sessions(transaction).need(session, Role::engineer, entry.time); !lives) {
+        return tl::unexpected(lives.error());
+      }
       return find_targeting(transaction, *robot).map([&](const Targeting& before) -> Changed {
+        if (!hold.lasts()) {
+          return {fail(authority_lost())};
+        }
         Changed after{make(before, body)};
         if (after.targeting && *after.targeting != before) {
           set_targeting(transaction, before, *after.targeting, entry);

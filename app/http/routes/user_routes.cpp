@@ -5,6 +5,7 @@
 #include <array>
 
 #include "http/fields.hpp"
+#include "http/new_hash.hpp"
 #include "http/problems.hpp"
 
 namespace interlock::web {
@@ -16,11 +17,16 @@ using nlohmann::json;
 
 constexpr std::array<std::string_view, 3> roles{"viewer", "engineer", "admin"};
 
-/** Who administers, for the audit. */
+/** Who administers. */
 struct Administrator {
   std::string user;
   std::uint32_t session = 0;
   UtcTime now;
+
+  /** Whether that is still so, as the transaction sees it. */
+  [[nodiscard]] Stored<Session> need(Transaction& transaction) const {
+    return Sessions(transaction).need(session, Role::admin, now);
+  }
 
   [[nodiscard]] AuditEntry entry(json detail) const {
     return {now, std::nullopt, user, session, AuditKind::user, std::move(detail)};
@@ -30,20 +36,18 @@ struct Administrator {
 struct NewUser {
   std::string name;
   Role role = Role::viewer;
-  Password password;
+  PasswordHash password;
   Administrator by;
 
   Stored<User> operator()(Store& store) const {
-    const auto hash = PasswordHash::of_new(password, name);
-    if (!hash) {
-      return tl::unexpected(hash.error());
-    }
     return store.transact([&](Transaction& transaction) {
-      return Users(transaction).add(name, role, *hash, by.now).map([&](User user) {
-        json detail{{"action", "add"}, {"name", name}, {"role", role_name(role)}};
-        Audit(transaction).append(by.entry(std::move(detail)));
-        return user;
-      });
+      return by.need(transaction)
+          .and_then([&](const Session&) { return Users(transaction).add(name, role, password, by.now); })
+          .map([&](User user) {
+            json detail{{"action", "add"}, {"name", name}, {"role", role_name(role)}};
+            Audit(transaction).append(by.entry(std::move(detail)));
+            return user;
+          });
     });
   }
 };
@@ -56,26 +60,19 @@ struct ChangedUser {
 
 struct Change {
   std::string name;
-  std::optional<Role> role;
-  std::optional<bool> enabled;
-  std::optional<Password> password;
+  UserChange change;
   Administrator by;
 
   Stored<ChangedUser> operator()(Store& store) const {
-    UserChange change{role, std::nullopt, enabled};
-    if (password) {
-      const auto hash = PasswordHash::of_new(*password, name);
-      if (!hash) {
-        return tl::unexpected(hash.error());
-      }
-      change.password = *hash;
-    }
     return store.transact([&](Transaction& transaction) -> Stored<ChangedUser> {
+      if (const auto administers = by.need(transaction); !administers) {
+        return tl::unexpected(administers.error());
+      }
       Users users(transaction);
       const auto before = users.find(name);
       return users.change(name, change).map([&](const User& after) {
         ChangedUser changed{after, {}};
-        if (password || !(before == after)) {
+        if (change.password || !(before == after)) {
           changed.ended = Sessions(transaction).end_all_of_user(name);
           record(transaction, changed);
         }
@@ -89,7 +86,7 @@ struct Change {
                 {"name", name},
                 {"role", role_name(changed.user.role)},
                 {"enabled", changed.user.enabled}};
-    if (password) {
+    if (change.password) {
       detail["password"] = "changed";
     }
     Audit audit(transaction);
@@ -100,34 +97,45 @@ struct Change {
   }
 };
 
-tl::expected<NewUser, Problem> new_user(const Request& request, Administrator by) {
-  return parse_body(request).and_then([&](const json& body) -> tl::expected<NewUser, Problem> {
+/** What the body of a request asks for. */
+struct Wish {
+  std::string name;
+  std::optional<Role> role;
+  std::optional<bool> enabled;
+  std::optional<Password> password;
+};
+
+Wish read_wish(Fields& fields, std::string name) {
+  const auto role = fields.choice("role", roles);
+  auto password = fields.text("password");
+  Wish wish{std::move(name), role ? find_role(*role) : std::nullopt, std::nullopt, std::nullopt};
+  if (password) {
+    wish.password.emplace(std::move(*password));
+  }
+  return wish;
+}
+
+tl::expected<Wish, Problem> new_user(const Request& request) {
+  return parse_body(request).and_then([&](const json& body) -> tl::expected<Wish, Problem> {
     Fields fields(body, {"name", "role", "password"});
     fields.require({{"name", "a text"}, {"role", "viewer, engineer or admin"}, {"password", "a text"}});
-    const auto name = fields.text("name");
-    const auto role = fields.choice("role", roles);
-    auto password = fields.text("password");
+    Wish wish = read_wish(fields, fields.text("name").value_or(""));
     if (fields.problem()) {
       return fail(*fields.problem());
     }
-    return NewUser{*name, *find_role(*role), Password(std::move(*password)), std::move(by)};
+    return wish;
   });
 }
 
-tl::expected<Change, Problem> change_of(const Request& request, const std::string& user, Administrator by) {
-  return parse_body(request).and_then([&](const json& body) -> tl::expected<Change, Problem> {
+tl::expected<Wish, Problem> change_of(const Request& request, const std::string& user) {
+  return parse_body(request).and_then([&](const json& body) -> tl::expected<Wish, Problem> {
     Fields fields(body, {"role", "password", "enabled"});
-    const auto role = fields.choice("role", roles);
-    auto password = fields.text("password");
-    const auto enabled = fields.boolean("enabled");
+    Wish wish = read_wish(fields, user);
+    wish.enabled = fields.boolean("enabled");
     if (fields.problem()) {
       return fail(*fields.problem());
     }
-    Change change{user, role ? find_role(*role) : std::nullopt, enabled, std::nullopt, std::move(by)};
-    if (password) {
-      change.password.emplace(std::move(*password));
-    }
-    return change;
+    return wish;
   });
 }
 
@@ -154,11 +162,19 @@ Answering UserRoutes::list() const {
 }
 
 Answering UserRoutes::add(const Call& call) const {
-  auto wished = new_user(call.request, {call.caller.user, call.caller.session, context_.clock()});
+  auto wished = new_user(call.request);
   if (!wished) {
     co_return fail(wished.error());
   }
-  const auto added = co_await context_.store.run(std::move(*wished));
+  auto hash = co_await new_hash(context_.passwords, wished->name, std::move(*wished->password), "password");
+  if (!hash) {
+    co_return fail(hash.error());
+  }
+  NewUser work{wished->name,
+               *wished->role,
+               std::move(*hash),
+               {call.caller.user, call.caller.session, context_.clock()}};
+  const auto added = co_await context_.store.run(std::move(work));
   if (added) {
     spdlog::info("{} added the user {}", call.caller.user, added->name);
   }
@@ -175,11 +191,21 @@ Answering UserRoutes::change(const Call& call) const {
   if (!exists || !*exists) {
     co_return fail(exists ? not_found("user " + user, "a name that /api/users lists") : exists.error());
   }
-  auto wished = change_of(call.request, user, {call.caller.user, call.caller.session, context_.clock()});
+  auto wished = change_of(call.request, user);
   if (!wished) {
     co_return fail(wished.error());
   }
-  const auto changed = co_await context_.store.run(std::move(*wished));
+  Change work{
+      user, {wished->role, std::nullopt, wished->enabled}, {call.caller.user, call.caller.session, {}}};
+  if (wished->password) {
+    auto hash = co_await new_hash(context_.passwords, user, std::move(*wished->password), "password");
+    if (!hash) {
+      co_return fail(hash.error());
+    }
+    work.change.password = std::move(*hash);
+  }
+  work.by.now = context_.clock();
+  const auto changed = co_await context_.store.run(std::move(work));
   if (!changed) {
     co_return fail(changed.error());
   }

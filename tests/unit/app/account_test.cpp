@@ -49,8 +49,8 @@ TEST_F(AccountTest, LoginOpensASessionByAStrictCookie) {
   const Answered answered = try_login("max", password);
   ASSERT_EQ(answered.status, 200u);
   EXPECT_THAT(std::string(answered.headers[http::field::set_cookie]),
-              AllOf(HasSubstr("interlock_session="), HasSubstr("; HttpOnly"), HasSubstr("; SameSite=Strict"),
-                    HasSubstr("; Path=/")));
+              AllOf(HasSubstr("interlock_session_" + std::to_string(server_.port()) + "="),
+                    HasSubstr("; HttpOnly"), HasSubstr("; SameSite=Strict"), HasSubstr("; Path=/")));
   const json session = json::parse(answered.body);
   EXPECT_EQ(session["user"]["name"], "max");
   EXPECT_EQ(session["expires"], iso_8601(now() + std::chrono::hours(12)));

@@ -26,8 +26,10 @@ class CommunicationRoutesTest : public HttpTest {
 TEST_F(CommunicationRoutesTest, TheKernelIsListedWhetherConnectedOrNot) {
   EXPECT_EQ(connections()[0]["type"], "kernel");
   EXPECT_EQ(connections()[0]["connected"], false);
+  EXPECT_TRUE(connections()[0]["since"].is_null());
   show(test::ready_view());
   EXPECT_EQ(connections()[0]["connected"], true);
+  EXPECT_TRUE(connections()[0]["since"].is_string());
   EXPECT_TRUE(connections()[0]["id"].is_null());
   EXPECT_EQ(connections().size(), 1u) << "real hardware has no bench";
 }
@@ -51,6 +53,10 @@ TEST_F(CommunicationRoutesTest, ADisconnectedConsoleIsGoneAndTheOtherStays) {
   consoles(2);
   ASSERT_EQ(put("/api/communications/disconnect", json{{"id", gone}}.dump()).status, 200u);
   EXPECT_NE(consoles(1)[0]["id"], gone);
+  const std::vector<json> recorded = audit("connection");
+  ASSERT_EQ(recorded.size(), 1u);
+  EXPECT_EQ(recorded[0]["action"], "disconnect");
+  EXPECT_EQ(recorded[0]["user"], "edna");
   beast::flat_buffer buffer;
   beast::error_code error;
   while (!error) {

@@ -99,10 +99,20 @@ class StoreFixture : public testing::Test {
   }
 
   [[nodiscard]] UtcTime now() const { return UtcTime(std::chrono::seconds(seconds_.load())); }
-  void pass(std::chrono::seconds time) { seconds_ += time.count(); }
+  [[nodiscard]] SteadyTime steady_now() const { return SteadyTime(std::chrono::seconds(passed_.load())); }
+
+  /** Time passes. */
+  void pass(std::chrono::seconds time) {
+    passed_ += time.count();
+    seconds_ += time.count();
+  }
+
+  /** Somebody sets the clock by as much. */
+  void set_clock(std::chrono::seconds change) { seconds_ += change.count(); }
 
   test::TemporaryFolder folder_;
   std::atomic<std::int64_t> seconds_{1'700'000'000}; /**< the app's clock */
+  std::atomic<std::int64_t> passed_{1'000'000};      /**< time that passes whatever the clock says */
   Store store_ = *Store::open(folder_.path() / "state" / "interlock.db");
   Store mine_ = *Store::open(folder_.path() / "state" / "interlock.db");
 };
@@ -110,7 +120,8 @@ class StoreFixture : public testing::Test {
 /** `edna`, an engineer, is logged in and holds the authority, unless a test says otherwise. */
 class HttpTest : public StoreFixture {
  protected:
-  HttpTest() {
+  explicit HttpTest(std::chrono::milliseconds patience_with_store = StoreGateway::usual_patience)
+      : patience_with_store_(patience_with_store) {
     std::ofstream(web_.path() / "index.html") << "<title>console</title>";
     add_user("ada", Role::admin);
     add_user("edna", Role::engineer);
@@ -148,7 +159,9 @@ class HttpTest : public StoreFixture {
     return result;
   }
 
-  [[nodiscard]] std::string cookie() const { return "interlock_session=" + token_; }
+  [[nodiscard]] std::string cookie() const {
+    return "interlock_session_" + std::to_string(server_.port()) + "=" + token_;
+  }
 
   [[nodiscard]] std::string host() const { return "127.0.0.1:" + std::to_string(server_.port()); }
 
@@ -268,15 +281,22 @@ class HttpTest : public StoreFixture {
     done.get_future().get();
   }
 
+  std::chrono::milliseconds patience_with_store_;
   test::TemporaryFolder web_;
   std::string token_;
   asio::io_context network_{1};
   asio::io_context client_{1};
   std::unique_ptr<Log> log_ = Log::start({}, LogLevel::info).value();
   std::unique_ptr<Mailbox> mailbox_ = std::make_unique<Mailbox>();
-  StoreGateway gateway_{network_.get_executor(), store_};
-  Api api_{network_.get_executor(), test::neuro(), test::neuro_config(), *mailbox_, "", gateway_, *log_,
-           [this] { return now(); }};
+  StoreGateway gateway_{network_.get_executor(), store_, patience_with_store_};
+  Api api_{network_.get_executor(),
+           test::neuro(),
+           test::neuro_config(),
+           *mailbox_,
+           "",
+           gateway_,
+           *log_,
+           Clocks{[this] { return now(); }, [this] { return steady_now(); }}};
   Server server_{network_.get_executor(), api_, StaticFiles(web_.path())};
   std::jthread thread_;
 };

@@ -359,8 +359,12 @@ TEST_F(HttpTest, ClosedStreamsMakeRoomForOthers) {
 TEST_F(HttpTest, TooManyStreamsAreRefusedByName) {
   std::vector<websocket::stream<tcp::socket>> streams;
   for (std::size_t i = 0; i < StreamHub::capacity; ++i) {
+    if (i % StreamHub::session_capacity == 0) {
+      log_in("edna");
+    }
     streams.push_back(open_stream());
   }
+  log_in("ada");
   websocket::stream<tcp::socket> one_more(connect());
   show_cookie(one_more);
   websocket::response_type response;

@@ -1,9 +1,15 @@
 #include "http/message.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "http/same_origin.hpp"
 
 namespace interlock::web {
 namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
 
 namespace http = boost::beast::http;
 using nlohmann::json;
@@ -30,14 +36,53 @@ TEST(Query, ThatIsMalformedNamesThePlace) {
 TEST(Cookie, IsFoundAmongOthers) {
   Request request = request_for("/");
   request.set(http::field::cookie, "theme={\"dark\"}; interlock_session=abc-_123; x");
-  EXPECT_EQ(cookie_of(request, "interlock_session"), "abc-_123");
-  EXPECT_EQ(cookie_of(request, "session"), std::nullopt);
+  EXPECT_THAT(cookies_of(request, "interlock_session"), ElementsAre("abc-_123"));
+  EXPECT_THAT(cookies_of(request, "session"), ElementsAre());
 }
 
-TEST(Cookie, ThatComesTwiceIsNone) {
+TEST(Cookie, HasEachOfItsValuesOnceAndNotMoreThanFour) {
   Request request = request_for("/");
-  request.set(http::field::cookie, "a=1; a=2");
-  EXPECT_EQ(cookie_of(request, "a"), std::nullopt);
+  request.set(http::field::cookie, "a=1; a=2; a=1");
+  EXPECT_THAT(cookies_of(request, "a"), ElementsAre("1", "2"));
+  request.set(http::field::cookie, "a=1; a=2; a=3; a=4; a=5");
+  EXPECT_EQ(cookies_of(request, "a").size(), 4u);
+}
+
+TEST(Cookie, OfTheSessionNamesThePortThatTheBrowserCameTo) {
+  const std::pair<const char*, const char*> cases[] = {{"127.0.0.1:8080", "interlock_session_8080"},
+                                                       {"[::1]:8081", "interlock_session_8081"},
+                                                       {"[::1]", "interlock_session_80"},
+                                                       {"localhost", "interlock_session_80"}};
+  for (const auto& [host, name] : cases) {
+    Request request = request_for("/");
+    request.set(http::field::host, host);
+    EXPECT_EQ(session_cookie(request), name);
+  }
+}
+
+tl::expected<json, Problem> parsed(const std::string& body) {
+  Request request = request_for("/");
+  request.body() = body;
+  return parse_body(request);
+}
+
+TEST(Body, MayNotNestDeeperThanSixtyFour) {
+  const auto nested = [](std::size_t depth) { return std::string(depth, '[') + std::string(depth, ']'); };
+  EXPECT_TRUE(parsed(nested(64)));
+  for (const std::size_t depth : {65u, 10'000u, 30'000u}) {
+    const auto refused = parsed(nested(depth));
+    ASSERT_FALSE(refused) << depth;
+    EXPECT_EQ(refused.error().status, Status::bad_request);
+    EXPECT_THAT(refused.error().expected, HasSubstr("64"));
+  }
+}
+
+TEST(Body, MayNotHaveAKeyTwiceInOneObject) {
+  const auto refused = parsed(R"({"a":1,"b":[{"x":1,"x":2}]})");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, "MALFORMED");
+  EXPECT_THAT(refused.error().detail, HasSubstr("\"x\""));
+  EXPECT_TRUE(parsed(R"({"a":{"x":1},"b":{"x":2},"x":[{"x":1},{"x":1}]})"));
 }
 
 TEST(Headers, OfAnAnswerAreSent) {

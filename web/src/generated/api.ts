@@ -67,7 +67,10 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Ends the session; motion authority that it held is released. */
+        /**
+         * Ends the session at once; motion authority that it held is released. 503 STORE: so it is, but the store does not
+         *     know it yet; the app tells it as soon as it works.
+         */
         post: operations["logout"];
         delete?: never;
         options?: never;
@@ -1046,7 +1049,10 @@ export interface components {
             user: string | null;
             /** @description Port of this app that it came to. */
             port: number | null;
-            /** Format: date-time */
+            /**
+             * Format: date-time
+             * @description Null when it is not connected.
+             */
             since: string | null;
         };
         Disconnect: {
@@ -1078,7 +1084,7 @@ export interface components {
             actor: string;
             session: number | null;
             /** @enum {string} */
-            kind: "start" | "login" | "login_refused" | "logout" | "session_ended" | "user" | "authority" | "proposal" | "request" | "verdict" | "stop" | "setting" | "restore";
+            kind: "start" | "login" | "login_refused" | "logout" | "session_ended" | "user" | "authority" | "proposal" | "request" | "verdict" | "stop" | "setting" | "restore" | "bench" | "connection" | "records_lost";
             detail: Record<string, unknown>;
             /** @description SHA-256, 64 hex digits. */
             hash: string;
@@ -1125,7 +1131,7 @@ export interface components {
                 "application/problem+json": components["schemas"]["Problem"];
             };
         };
-        /** @description STORE: the store cannot be read or written; nothing was changed. */
+        /** @description STORE: the store cannot be read or written, or did not answer within 5 s; nothing was changed and nothing will be, unless `detail` says that this is not known. OVERLOADED: too many passwords are being checked. */
         NoStore: {
             headers: {
                 [name: string]: unknown;
@@ -1306,6 +1312,7 @@ export interface operations {
                 };
             };
             401: components["responses"]["Login"];
+            503: components["responses"]["NoStore"];
         };
     };
     changePassword: {
@@ -1940,6 +1947,7 @@ export interface operations {
             403: components["responses"]["Role"];
             404: components["responses"]["NotFound"];
             422: components["responses"]["Invalid"];
+            503: components["responses"]["NoStore"];
         };
     };
     getLogs: {
@@ -2348,7 +2356,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description 32 clients watch already; `code` is OVERLOADED. */
+            /** @description 32 clients watch already, or 8 of this session; `code` is OVERLOADED. */
             503: {
                 headers: {
                     [name: string]: unknown;

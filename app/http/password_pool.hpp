@@ -1,0 +1,74 @@
+/**
+ * @file
+ * Threads that hash passwords, each of which takes a tenth of a second and 64 MiB: neither the network nor
+ * the store waits for them.
+ */
+#pragma once
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <cstddef>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include "http/message.hpp"
+
+namespace interlock::web {
+
+/** Belongs to the network thread. */
+class PasswordPool {
+ public:
+  static constexpr std::size_t threads = 2;
+  /** Passwords that are hashed or wait for it; one more is refused. */
+  static constexpr std::size_t capacity = 64;
+
+  /**
+   * What `work()` gives, run in one of the threads in the order of asking. 503 OVERLOADED when too many wait.
+   *
+   * Pass a named `work` by `std::move`: GCC 12 destroys twice what a temporary inside `co_await` captured.
+   */
+  template <typename Work>
+  auto run(Work work) -> boost::asio::awaitable<tl::expected<std::invoke_result_t<Work>, Problem>> {
+    if (asked_ >= capacity) {
+      co_return tl::make_unexpected(full());
+    }
+    const Place place(asked_);
+    auto result = co_await boost::asio::co_spawn(pool_, in_pool(std::move(work)), boost::asio::use_awaitable);
+    co_return std::move(*result);
+  }
+
+ private:
+  /** One of the passwords that are asked for, for as long as it lives. */
+  class Place {
+   public:
+    explicit Place(std::size_t& asked) : asked_(asked) { ++asked_; }
+    Place(const Place&) = delete;
+    Place& operator=(const Place&) = delete;
+    ~Place() { --asked_; }
+
+   private:
+    std::size_t& asked_;
+  };
+
+  /** Optional, as Asio makes an empty result before it has one. */
+  template <typename Work>
+  static auto in_pool(Work work) -> boost::asio::awaitable<std::optional<std::invoke_result_t<Work>>> {
+    co_return std::optional(work());
+  }
+
+  static Problem full() {
+    return {.status = Status::service_unavailable,
+            .code = "OVERLOADED",
+            .detail = "Too many passwords are being checked.",
+            .next_step = "Try again in a moment.",
+            .headers = {{"Retry-After", "1"}}};
+  }
+
+  std::size_t asked_ = 0;
+  boost::asio::thread_pool pool_{threads};
+};
+
+}  // namespace interlock::web
