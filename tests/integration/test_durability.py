@@ -47,6 +47,10 @@ class App:
                     return
         raise AssertionError(f"the app ended with {self.process.wait()} before it was ready")
 
+    def cookie(self, token: str) -> str:
+        """The session's cookie, whose name has the port: another one in each life."""
+        return f"interlock_session_{self.port}={token}"
+
     def kill(self) -> None:
         self.process.kill()
         self.process.wait()
@@ -94,12 +98,13 @@ def ask(app: App, method: str, path: str, cookie: str, body: dict) -> HTTPRespon
 
 
 def log_in(app: App) -> str:
-    """The cookie of a session, which outlives the app."""
+    """The token of a session, which outlives the app."""
     answer = ask(app, "POST", "/api/login", "", {"name": "admin", "password": app.password})
-    return answer.headers["Set-Cookie"].partition(";")[0]
+    return answer.headers["Set-Cookie"].partition(";")[0].partition("=")[2]
 
 
-def write_until_killed(app: App, cookie: str, life: int, seconds: float) -> list[list[int]]:
+def write_until_killed(app: App, token: str, life: int, seconds: float) -> list[list[int]]:
+    cookie = app.cookie(token)
     ask(app, "POST", "/api/authority/request", cookie, {})
     writers = [Writer(app, cookie, life, number) for number in range(WRITERS)]
     for writer in writers:
@@ -127,12 +132,12 @@ def test_what_was_acknowledged_outlives_a_kill_at_any_instant(short_tmp_path: Pa
     with bare_kernel(clock="real") as kernel:
         app = App(kernel, state)
         app.start()
-        cookie = log_in(app)
+        token = log_in(app)
         acknowledged: list[list[int]] = []
         for life in range(KILLS):
-            acknowledged += write_until_killed(app, cookie, life, dice.uniform(0, LONGEST_LIFE_S))
+            acknowledged += write_until_killed(app, token, life, dice.uniform(0, LONGEST_LIFE_S))
             app.start()
-        kept = json.load(ask(app, "GET", "/api/targeting", cookie, {}))["target_point"]
+        kept = json.load(ask(app, "GET", "/api/targeting", app.cookie(token), {}))["target_point"]
         stop(app.process)
 
     audited = audited_targets(state)
