@@ -68,11 +68,22 @@ def in_words(name: str, value: str, names: dict[tuple[str, int], str]) -> str:
     return f"{name} = {value} ({code})" if code else f"{name} = {value}"
 
 
+def telling(values: dict[str, str]) -> dict[str, str]:
+    """Without what is zero, or the same as in the structure before: of a state afterwards, what has changed."""
+    last: dict[str, str] = {}
+    told = {}
+    for name, value in values.items():
+        plain = {"FALSE": "0", "TRUE": "1"}.get(value, value)
+        field = name.partition(".")[2] or name
+        if plain != last.get(field, "0"):
+            told[name] = plain
+        last[field] = plain
+    return told
+
+
 def describe(proof: Proof, failed: Property, steps: list[dict]) -> str:
-    """Which property failed, where, and every variable of the harness that is not zero."""
+    """Which property failed, where, and with which values in the harness."""
     names = code_names()
-    told = [
-        in_words(name, value, names) for name, value in chosen(steps).items() if value not in ("0", "FALSE")
-    ]
-    heading = f"    {proof.name}: {failed.description}\n    {failed.name} at {failed.place}; all else zero:"
+    heading = f"    {proof.name}: {failed.description}\n    {failed.name} at {failed.place}, with"
+    told = [in_words(name, value, names) for name, value in telling(chosen(steps)).items()]
     return "\n".join([heading, *(f"      {line}" for line in told)])

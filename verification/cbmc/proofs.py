@@ -89,14 +89,16 @@ def load(path: Path) -> Proof:
 
 
 def load_all() -> list[Proof]:
-    """All proofs. Raises SystemExit when a replacement rests on a proof that does not exist."""
-    proofs = [load(path) for path in sorted(HERE.glob("*/proof.toml"))]
+    """All proofs."""
+    return [load(path) for path in sorted(HERE.glob("*/proof.toml"))]
+
+
+def unjustified(proofs: list[Proof]) -> list[str]:
+    """Replacements that rest on a proof which is not among these."""
     names = {proof.name for proof in proofs}
-    for proof in proofs:
-        for replacement in proof.replaced:
-            if replacement.proved_in not in names:
-                raise SystemExit(
-                    f"{proof.name}/proof.toml: '{replacement.function}' is replaced, which"
-                    f" '{replacement.proved_in}' should justify; there is no such proof"
-                )
-    return proofs
+    return [
+        f"{proof.name}/proof.toml: '{one.function}' is replaced by right of '{one.proved_in}'; there is no such proof"
+        for proof in proofs
+        for one in proof.replaced
+        if one.proved_in not in names
+    ]

@@ -19,7 +19,7 @@ sys.path.append(str(Path(__file__).resolve().parents[1] / "evidence"))
 import evidence
 import prover
 from counterexample import describe
-from proofs import Proof, load_all
+from proofs import Proof, load_all, unjustified
 from verdicts import Outcome, judge
 
 WORST_FIRST = ("FAILED", "VACUOUS", "UNKNOWN", "PASSED")
@@ -83,6 +83,8 @@ def main() -> int:
     unknown = set(names) - {proof.name for proof in proofs}
     if unknown:
         parser.error(f"no such proof: {', '.join(sorted(unknown))}")
+    if not names and unjustified(proofs):
+        parser.error("\n".join(unjustified(proofs)))
     chosen = [proof for proof in proofs if not names or proof.name in names]
     outcomes = run(chosen, evidence.log_directory("cbmc"))
     status = worst(outcomes)

@@ -5,12 +5,9 @@
  * Configuration, state, axis and wish are arbitrary bits: P1, P2 and P3 hold whatever damage they bear (P14).
  */
 #include "gate.h"
+#include "counts.h"
 #include "proof.h"
 #include "valid.h"
-
-static int64_t sign(uint32_t direction) {
-  return (direction == ILK_DIRECTION_INCREASING) ? 1 : (direction == ILK_DIRECTION_DECREASING) ? -1 : 0;
-}
 
 static void show_wish(const ilk_axis_config_t* axis_config, const ilk_axis_t* axis) {
   const ilk_command_t wish = ilk_wanted_command(axis_config, axis);
@@ -23,10 +20,11 @@ static void show_wish(const ilk_axis_config_t* axis_config, const ilk_axis_t* ax
     SHOW((wish.direction == ILK_DIRECTION_DECREASING) == (-distance > deadband), "MOVE: down to one below");
     SHOW((wish.drive == axis->drive) && (wish.amplitude == axis->amplitude), "MOVE: as accepted");
   } else if (axis->state == ILK_AXIS_HOMING) {
-    const int64_t side = upper ? 1 : -1;
-    SHOW(sign(wish.direction) == ((axis->homing_phase == ILK_HOMING_SEEK)       ? side
-                                  : (axis->homing_phase == ILK_HOMING_BACK_OFF) ? -side
-                                                                                : 0),
+    const uint32_t to_switch = upper ? ILK_DIRECTION_INCREASING : ILK_DIRECTION_DECREASING;
+    const uint32_t from_switch = upper ? ILK_DIRECTION_DECREASING : ILK_DIRECTION_INCREASING;
+    SHOW(wish.direction == ((axis->homing_phase == ILK_HOMING_SEEK)       ? to_switch
+                            : (axis->homing_phase == ILK_HOMING_BACK_OFF) ? from_switch
+                                                                          : ILK_DIRECTION_NONE),
          "HOME: away from a switch that is triggered, then towards it, then rest");
     SHOW((wish.drive == axis_config->home_drive) && (wish.amplitude == axis_config->home_amplitude),
          "HOME: at the homing drive");
@@ -35,14 +33,15 @@ static void show_wish(const ilk_axis_config_t* axis_config, const ilk_axis_t* ax
   }
   SHOW(wish.direction < ILK_DIRECTION_COUNT, "a wish has a known direction");
   GOAL(goal_moves_down, (axis->state == ILK_AXIS_MOVING) && (wish.direction == ILK_DIRECTION_DECREASING));
-  GOAL(goal_backs_off_upwards, (axis->homing_phase == ILK_HOMING_BACK_OFF) && (sign(wish.direction) == 1));
+  GOAL(goal_backs_off_upwards, (axis->homing_phase == ILK_HOMING_BACK_OFF) && (wish.direction == ILK_DIRECTION_INCREASING));
   GOAL(goal_arrived, (axis->state == ILK_AXIS_MOVING) && (wish.direction == ILK_DIRECTION_NONE));
 }
 
 /** Fills in which gates block, each stated from kernel.md alone. */
 static void judge_gates(const ilk_axis_config_t* axis_config, const ilk_state_t* state,
                         const ilk_axis_t* axis, const ilk_command_t* wish, bool blocks[ILK_GATE_COUNT]) {
-  const int64_t to = sign(wish->direction);
+  const bool up = wish->direction == ILK_DIRECTION_INCREASING;
+  const bool down = wish->direction == ILK_DIRECTION_DECREASING;
   const int64_t position = axis->position_counts;
   const int64_t coast = axis_config->coast_counts;
   const bool homing = axis->state == ILK_AXIS_HOMING;
@@ -55,15 +54,15 @@ static void judge_gates(const ilk_axis_config_t* axis_config, const ilk_state_t*
   blocks[ILK_GATE_CARD] = axis->card_valid == 0u;
   blocks[ILK_GATE_ENABLE] = (axis->state != ILK_AXIS_ENABLED) && (axis->state != ILK_AXIS_MOVING) && !homing;
   blocks[ILK_GATE_LEASE] = !homing && ((axis->state != ILK_AXIS_MOVING) || (axis->lease_ticks == 0u));
-  blocks[ILK_GATE_SETPOINT] = (to == 0) || (wish->drive == 0u);
+  blocks[ILK_GATE_SETPOINT] = (!up && !down) || (wish->drive == 0u);
   blocks[ILK_GATE_HARD_LIMIT] =
-      (axis->switch_triggered != 0u) && (((to > 0) && (axis_config->limit_side == ILK_LIMIT_UPPER)) ||
-                                         ((to < 0) && (axis_config->limit_side == ILK_LIMIT_LOWER)));
-  blocks[ILK_GATE_SOFT_LIMIT] = homed && (((to > 0) && ((position + coast) >= axis_config->max_counts)) ||
-                                          ((to < 0) && ((position - coast) <= axis_config->min_counts)));
+      (axis->switch_triggered != 0u) && ((up && (axis_config->limit_side == ILK_LIMIT_UPPER)) ||
+                                         (down && (axis_config->limit_side == ILK_LIMIT_LOWER)));
+  blocks[ILK_GATE_SOFT_LIMIT] = homed && ((up && ((position + coast) >= axis_config->max_counts)) ||
+                                          (down && ((position - coast) <= axis_config->min_counts)));
   blocks[ILK_GATE_UNHOMED_TRAVEL] =
       !homed && !homing &&
-      (((to * axis->press_travel_counts) + coast) >= (int64_t)axis_config->unhomed_travel_counts);
+      ((directed(wish->direction, axis->press_travel_counts) + coast) >= (int64_t)axis_config->unhomed_travel_counts);
   blocks[ILK_GATE_DRIVE] = (wish->drive > bound) || (wish->drive > largest_drive_of(axis_config->card)) ||
                            (wish->amplitude > axis_config->max_amplitude) || (wish->amplitude > 255u);
 }
