@@ -294,6 +294,18 @@ TEST(Locking, disables_every_axis_but_the_faulted_and_keeps_homed) {
   EXPECT_EQ(bench.fault(slot::non_pwm_upper), ILK_FAULT_JUMP);
 }
 
+TEST(Locking, a_pedal_that_disagrees_leaves_its_contacts_as_the_value_of_the_cause) {
+  for (const uint32_t closed : {0u, 1u}) {
+    Bench bench;
+    bench.to_ready();
+    bench.pedal_no_closed = closed;
+    bench.pedal_nc_closed = closed;
+    bench.ticks(bench.config().pedal_disagree_ticks + 1);
+    ASSERT_EQ(bench.cause(), ILK_CAUSE_PEDAL);
+    EXPECT_EQ(bench.state().cause_value, closed == 1 ? 3u : 0u);
+  }
+}
+
 TEST(Locking, an_axis_fault_does_not_block_RESET) {
   Bench bench;
   bench.ticks(5);

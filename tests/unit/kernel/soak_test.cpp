@@ -171,6 +171,8 @@ TEST(P15_total, arbitrary_bits_everywhere_drive_nothing_unsafe) {
     for (uint32_t index = 0; index < out.verdict_count; ++index) {
       ASSERT_LT(out.verdict[index].verdict, ILK_VERDICT_COUNT);
     }
+    for (const uint32_t gate : out.gate) ASSERT_LT(gate, ILK_GATE_COUNT);
+    for (const uint32_t colour : out.lamp) ASSERT_LT(colour, ILK_COLOUR_COUNT);
   }
 }
 
