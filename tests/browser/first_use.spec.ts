@@ -14,7 +14,7 @@ test("a newcomer unlocks, enables, drags, holds the pedal, arrives, and letting 
   await robot.unlockRobot();
   await axis.enable();
 
-  await axis.drag(5);
+  await axis.drag(3);
   const target = await axis.circle();
   expect(Math.abs(target - (await axis.counts()))).toBeGreaterThan(100);
   await expect(robot.proposal(1)).toHaveCount(0);
