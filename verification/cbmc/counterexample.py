@@ -69,7 +69,7 @@ def in_words(name: str, value: str, names: dict[tuple[str, int], str]) -> str:
 
 
 def telling(values: dict[str, str]) -> dict[str, str]:
-    """Without what is zero, or the same as in the structure before: of a state afterwards, what has changed."""
+    """Without what is zero, or as in the structure before: of a state afterwards, what has changed."""
     last: dict[str, str] = {}
     told = {}
     for name, value in values.items():

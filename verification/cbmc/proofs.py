@@ -97,7 +97,7 @@ def unjustified(proofs: list[Proof]) -> list[str]:
     """Replacements that rest on a proof which is not among these."""
     names = {proof.name for proof in proofs}
     return [
-        f"{proof.name}/proof.toml: '{one.function}' is replaced by right of '{one.proved_in}'; there is no such proof"
+        f"{proof.name}/proof.toml: {one.function} is replaced by right of {one.proved_in}, which is no proof"
         for proof in proofs
         for one in proof.replaced
         if one.proved_in not in names

@@ -78,8 +78,8 @@ def version() -> str:
 def call(tool: str, arguments: list[str], log: Path, seconds: int) -> str:
     """Runs a tool from the top of the tree and returns its output, as in `log`.
 
-    Raises ValueError when the tool took more than `seconds` of processor time, which do not depend on what else
-    the machine does.
+    Raises ValueError when the tool took more than `seconds` of processor time, which do not depend on what
+    else the machine does.
     """
 
     def bound() -> None:
@@ -102,9 +102,8 @@ def call(tool: str, arguments: list[str], log: Path, seconds: int) -> str:
 
 def replacements(proof: Proof, linked: Path, logs: Path) -> list[str]:
     """How to turn calls to the stubs. An inline function of a header has a copy for each file that calls it."""
-    listed = call(
-        "goto-instrument", ["--list-goto-functions", str(linked)], logs / "functions.log", COMPILE_SECONDS
-    )
+    list_functions = ["--list-goto-functions", str(linked)]
+    listed = call("goto-instrument", list_functions, logs / "functions.log", COMPILE_SECONDS)
     present = re.findall(r"/\* (\S+) \*/", listed)
     arguments = []
     for one in proof.replaced:

@@ -3,7 +3,6 @@
  * The arithmetic on which everything rests, against the same in 64 bits.
  */
 #include "arith.h"
-
 #include "counts.h"
 #include "proof.h"
 

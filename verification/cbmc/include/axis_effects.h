@@ -8,7 +8,8 @@
 #include "interlock/types.h"
 #include "proof.h"
 
-/** Without setpoint, lease and homing; a setpoint that is gone counts as changed while the stall count runs. */
+/** Without setpoint, lease and homing; a setpoint that is gone counts as changed while the stall count runs.
+ */
 static ilk_axis_t dropped(ilk_axis_t axis) {
   if ((axis.state == ILK_AXIS_MOVING) || (axis.state == ILK_AXIS_HOMING)) {
     axis.state = ILK_AXIS_ENABLED;
@@ -39,7 +40,7 @@ static ilk_axis_t after_entering(uint32_t mode, ilk_axis_t axis) {
 }
 
 /** Shows field by field that two axes are the same. */
-static void show_same_axis(const ilk_axis_t *after, const ilk_axis_t *expected) {
+static void show_same_axis(const ilk_axis_t* after, const ilk_axis_t* expected) {
   SHOW((after->state == expected->state) && (after->homed == expected->homed), "axis: state and homed");
   SHOW((after->fault == expected->fault) && (after->fault_tick == expected->fault_tick) &&
            (after->fault_value == expected->fault_value),
@@ -48,7 +49,8 @@ static void show_same_axis(const ilk_axis_t *after, const ilk_axis_t *expected) 
            (after->amplitude == expected->amplitude) && (after->lease_ticks == expected->lease_ticks),
        "P12: axis: setpoint, drive, amplitude and lease");
   SHOW((after->homing_phase == expected->homing_phase) && (after->homing_ticks == expected->homing_ticks) &&
-           (after->homing_mark_raw == expected->homing_mark_raw) && (after->rest_ticks == expected->rest_ticks),
+           (after->homing_mark_raw == expected->homing_mark_raw) &&
+           (after->rest_ticks == expected->rest_ticks),
        "axis: homing");
   SHOW((after->stall_driven_ticks == expected->stall_driven_ticks) &&
            (after->stall_mark_raw == expected->stall_mark_raw) &&
@@ -65,8 +67,9 @@ static void show_same_axis(const ilk_axis_t *after, const ilk_axis_t *expected) 
            (after->delta_counts == expected->delta_counts) &&
            (after->press_travel_counts == expected->press_travel_counts),
        "P4, P7: axis: position and travel");
-  SHOW((after->switch_triggered == expected->switch_triggered) && (after->card_valid == expected->card_valid) &&
-           (after->card_seen == expected->card_seen) && (after->bad_frames == expected->bad_frames) &&
+  SHOW((after->switch_triggered == expected->switch_triggered) &&
+           (after->card_valid == expected->card_valid) && (after->card_seen == expected->card_seen) &&
+           (after->bad_frames == expected->bad_frames) &&
            (after->checksum_failures == expected->checksum_failures) &&
            (after->heartbeat == expected->heartbeat) && (after->card_time_us == expected->card_time_us) &&
            (after->card_status == expected->card_status) &&
@@ -75,7 +78,7 @@ static void show_same_axis(const ilk_axis_t *after, const ilk_axis_t *expected) 
 }
 
 /** Shows field by field that the words of the system are the same. */
-static void show_same_system(const ilk_state_t *after, const ilk_state_t *expected) {
+static void show_same_system(const ilk_state_t* after, const ilk_state_t* expected) {
   SHOW(after->mode == expected->mode, "P2, P8, P9, P10: the mode");
   SHOW((after->cause == expected->cause) && (after->cause_tick == expected->cause_tick) &&
            (after->cause_value == expected->cause_value),

@@ -1,7 +1,7 @@
 /**
  * @file
- * Counts and directions in 64-bit arithmetic, where nothing wraps or saturates unless it says so. Written apart
- * from the kernel's arith.h.
+ * Counts and directions in 64-bit arithmetic, where nothing wraps or saturates unless it says so. Written
+ * apart from the kernel's arith.h.
  */
 #ifndef ILK_PROOF_COUNTS_H
 #define ILK_PROOF_COUNTS_H
@@ -18,7 +18,8 @@ static int64_t held(int64_t value) {
 
 static int64_t distance(int64_t value) { return (value < 0) ? -value : value; }
 
-/** Travel counted along a direction; none without a direction. Nothing is multiplied: that costs a prover most. */
+/** Travel counted along a direction; none without a direction. Nothing is multiplied: that costs a prover
+ * most. */
 static int64_t directed(uint32_t direction, int64_t travel) {
   return (direction == ILK_DIRECTION_INCREASING)   ? travel
          : (direction == ILK_DIRECTION_DECREASING) ? -travel
@@ -32,7 +33,7 @@ static int64_t one_more(int64_t value, int64_t ceiling) { return (value < ceilin
 static int64_t one_less(int64_t value) { return (value > 0) ? (value - 1) : 0; }
 
 /** Motion between two readings of a counter modulo 2^32, in the sense of the position. */
-static int64_t travelled(const ilk_axis_config_t *config, uint32_t from_raw, uint32_t to_raw) {
+static int64_t travelled(const ilk_axis_config_t* config, uint32_t from_raw, uint32_t to_raw) {
   const int64_t turn = (int64_t)1 << 32;
   const int64_t plain = (int64_t)to_raw - (int64_t)from_raw;
   const int64_t sensed = (config->direction_correction != 0u) ? -plain : plain;
