@@ -9,6 +9,10 @@
 #define AMPLITUDE_MAX 255u
 
 /** The kernel, not the app, picks the direction: towards the setpoint, none within the deadband. */
+/*@ requires readable: \valid_read(config) && \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  exact: \result == setpoint_direction(config, axis);
+  @*/
 static uint32_t direction_to_setpoint(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
   const int64_t distance = (int64_t)axis->setpoint_counts - (int64_t)axis->position_counts;
   const int64_t deadband = (int64_t)config->deadband_counts;
@@ -43,16 +47,28 @@ ilk_command_t ilk_wanted_command(const ilk_axis_config_t *config, const ilk_axis
   return wanted;
 }
 
+/*@ requires readable: \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  exact: \result <==> held(axis);
+  @*/
 static bool is_held(const ilk_axis_t *axis) {
   return ((axis->state == (uint32_t)ILK_AXIS_MOVING) && (axis->lease_ticks != 0u)) ||
          (axis->state == (uint32_t)ILK_AXIS_HOMING);
 }
 
+/*@ requires readable: \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  exact: \result <==> !in_service(axis);
+  @*/
 static bool is_out_of_motion(const ilk_axis_t *axis) {
   return (axis->state == (uint32_t)ILK_AXIS_DISABLED) || (axis->state >= (uint32_t)ILK_AXIS_FAULTED);
 }
 
 /** True when the wish is no motion at all. */
+/*@ requires readable: \valid_read(wanted);
+  @ assigns  \nothing;
+  @ ensures  exact: \result <==> !asks_for_motion(wanted);
+  @*/
 static bool asks_for_nothing(const ilk_command_t *wanted) {
   const bool directed = (wanted->direction == (uint32_t)ILK_DIRECTION_INCREASING) ||
                         (wanted->direction == (uint32_t)ILK_DIRECTION_DECREASING);
@@ -60,6 +76,10 @@ static bool asks_for_nothing(const ilk_command_t *wanted) {
 }
 
 /** P3: towards a triggered switch. */
+/*@ requires readable: \valid_read(config) && \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  P3_hard_limit: \result <==> !clear_of_switch(config, axis, direction);
+  @*/
 static bool presses_on_switch(const ilk_axis_config_t *config, const ilk_axis_t *axis, uint32_t direction) {
   const bool towards = ((config->limit_side == (uint32_t)ILK_LIMIT_UPPER) &&
                         (direction == (uint32_t)ILK_DIRECTION_INCREASING)) ||
@@ -69,6 +89,10 @@ static bool presses_on_switch(const ilk_axis_config_t *config, const ilk_axis_t 
 }
 
 /** P4: outward, where coasting would cross the soft limit. */
+/*@ requires readable: \valid_read(config) && \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  P4_soft_limit: \result <==> !within_soft_range(config, axis, direction);
+  @*/
 static bool leaves_soft_range(const ilk_axis_config_t *config, const ilk_axis_t *axis, uint32_t direction) {
   const int64_t coast = (int64_t)config->coast_counts;
   const int64_t position = (int64_t)axis->position_counts;
@@ -80,6 +104,10 @@ static bool leaves_soft_range(const ilk_axis_config_t *config, const ilk_axis_t 
 }
 
 /** P7: onward, where coasting would exceed the travel allowed before homing. Homing has bounds of its own. */
+/*@ requires readable: \valid_read(config) && \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  P7_travel: \result <==> !within_unhomed_travel(config, axis, direction);
+  @*/
 static bool exceeds_unhomed_travel(const ilk_axis_config_t *config, const ilk_axis_t *axis,
                                    uint32_t direction) {
   const int64_t reach = (int64_t)config->unhomed_travel_counts - (int64_t)config->coast_counts;
@@ -88,6 +116,10 @@ static bool exceeds_unhomed_travel(const ilk_axis_config_t *config, const ilk_ax
 }
 
 /** P7: more than the axis may, or more than its card's words can carry. */
+/*@ requires readable: \valid_read(config) && \valid_read(axis) && \valid_read(wanted);
+  @ assigns  \nothing;
+  @ ensures  P7_drive: \result <==> !within_drive(config, axis, wanted);
+  @*/
 static bool exceeds_drive(const ilk_axis_config_t *config, const ilk_axis_t *axis,
                           const ilk_command_t *wanted) {
   const uint32_t bound = (axis->homed != 0u) ? config->max_drive : config->unhomed_max_drive;

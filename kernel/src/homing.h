@@ -7,6 +7,7 @@
 
 #include <stdint.h>
 
+#include "interlock/acsl.h"
 #include "interlock/types.h"
 
 /** Why homing failed, or NONE. */
@@ -22,6 +23,11 @@ void ilk_homing_begin(const ilk_axis_config_t *config, ilk_axis_t *axis);
 ilk_homing_result_t ilk_homing_advance(const ilk_axis_config_t *config, ilk_axis_t *axis);
 
 /** Direction in which homing wants to drive now; ilk_direction_t. */
+/*@ requires readable: \valid_read(config) && \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  exact: \result == homing_direction(config, axis);
+  @ ensures  P3_hard_limit: axis->homing_phase == ILK_HOMING_BACK_OFF ==> \result != switch_direction(config);
+  @*/
 uint32_t ilk_homing_direction(const ilk_axis_config_t *config, const ilk_axis_t *axis);
 
 #endif

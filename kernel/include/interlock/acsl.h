@@ -1,0 +1,224 @@
+/**
+ * @file
+ * The words that the kernel's contracts share. ACSL only: a compiler sees comments. docs/wp.md says how to
+ * read them.
+ */
+#ifndef INTERLOCK_ACSL_H
+#define INTERLOCK_ACSL_H
+
+#include "interlock/types.h"
+
+/* Arithmetic. */
+
+/*@ // Conversion to a word is modulo 2^32 (C11 6.3.1.3), which the provers' library leaves open beyond the word.
+  @ axiomatic Words {
+  @   axiom word_from_below: \forall integer value;
+  @     -4294967296 <= value < 0 ==> (uint32_t)value == value + 4294967296;
+  @   axiom word_from_above: \forall integer value;
+  @     4294967296 <= value < 8589934592 ==> (uint32_t)value == value - 4294967296;
+  @ }
+  @
+  @ logic integer clamped(integer value) = \max(INT32_MIN, \min(value, INT32_MAX));
+  @
+  @ // The value that is equal to the difference of two words modulo 2^32 and fits int32_t.
+  @ logic integer wrapped(integer difference) = difference > INT32_MAX   ? difference - 4294967296
+  @                                             : difference < INT32_MIN ? difference + 4294967296
+  @                                                                      : difference;
+  @
+  @ // Motion from one counter reading to another, in the sense of the position.
+  @ logic integer travel(ilk_axis_config_t *config, integer from_raw, integer to_raw) =
+  @   config->direction_correction != 0 ? wrapped(from_raw - to_raw) : wrapped(to_raw - from_raw);
+  @
+  @ // Travel counted positive along a direction.
+  @ logic integer advance(integer direction, integer travelled) =
+  @   direction == ILK_DIRECTION_INCREASING   ? travelled
+  @   : direction == ILK_DIRECTION_DECREASING ? clamped(-travelled)
+  @                                           : 0;
+  @*/
+
+/* Configuration. */
+
+/*@ predicate carries_axis(ilk_axis_config_t *config) =
+  @   config->card == ILK_CARD_PWM || config->card == ILK_CARD_NON_PWM || config->card == ILK_CARD_ANALOG
+  @   || config->card == ILK_CARD_HIGH_FREQUENCY;
+  @
+  @ predicate carries_card(ilk_axis_config_t *config) = carries_axis(config) || config->card == ILK_CARD_SENSOR;
+  @
+  @ // Largest drive that the words of a card can carry.
+  @ logic integer card_drive(integer card) =
+  @   card == ILK_CARD_PWM || card == ILK_CARD_ANALOG ? 0x7fffffff
+  @   : card == ILK_CARD_NON_PWM                      ? 0x3fffffff
+  @   : card == ILK_CARD_HIGH_FREQUENCY               ? 397785
+  @                                                   : 0;
+  @
+  @ // The direction that presses on the switch.
+  @ logic integer switch_direction(ilk_axis_config_t *config) =
+  @   config->limit_side == ILK_LIMIT_UPPER   ? ILK_DIRECTION_INCREASING
+  @   : config->limit_side == ILK_LIMIT_LOWER ? ILK_DIRECTION_DECREASING
+  @                                           : ILK_DIRECTION_NONE;
+  @*/
+
+/* Axis. */
+
+/*@ predicate in_service(ilk_axis_t *axis) =
+  @   axis->state == ILK_AXIS_ENABLED || axis->state == ILK_AXIS_MOVING || axis->state == ILK_AXIS_HOMING;
+  @
+  @ // A move whose lease lives, or homing.
+  @ predicate held(ilk_axis_t *axis) =
+  @   (axis->state == ILK_AXIS_MOVING && axis->lease_ticks != 0) || axis->state == ILK_AXIS_HOMING;
+  @
+  @ // Towards the setpoint, none within the deadband.
+  @ logic integer setpoint_direction(ilk_axis_config_t *config, ilk_axis_t *axis) =
+  @   axis->setpoint_counts - axis->position_counts > config->deadband_counts   ? ILK_DIRECTION_INCREASING
+  @   : axis->position_counts - axis->setpoint_counts > config->deadband_counts ? ILK_DIRECTION_DECREASING
+  @                                                                             : ILK_DIRECTION_NONE;
+  @
+  @ // Away from the switch, then towards it; a side that is not UPPER counts as LOWER.
+  @ logic integer homing_direction(ilk_axis_config_t *config, ilk_axis_t *axis) =
+  @   axis->homing_phase == ILK_HOMING_SEEK
+  @     ? (config->limit_side == ILK_LIMIT_UPPER ? ILK_DIRECTION_INCREASING : ILK_DIRECTION_DECREASING)
+  @   : axis->homing_phase == ILK_HOMING_BACK_OFF
+  @     ? (config->limit_side == ILK_LIMIT_UPPER ? ILK_DIRECTION_DECREASING : ILK_DIRECTION_INCREASING)
+  @     : ILK_DIRECTION_NONE;
+  @
+  @ // How far the axis has come along a direction since a reading.
+  @ logic integer progress(ilk_axis_config_t *config, ilk_axis_t *axis, integer mark_raw, integer direction) =
+  @   advance(direction, travel(config, mark_raw, axis->raw));
+  @
+  @ // P7: farthest travel of a phase of homing.
+  @ logic integer homing_bound(ilk_axis_config_t *config, ilk_axis_t *axis) =
+  @   axis->homing_phase == ILK_HOMING_BACK_OFF ? config->home_backoff_counts : config->home_travel_counts;
+  @
+  @ // Codes that the catalog knows, and each state with exactly the company that belongs to it (the invariant).
+  @ predicate sound_axis(ilk_axis_t *axis) =
+  @   axis->state < ILK_AXIS_COUNT && axis->fault < ILK_FAULT_COUNT && axis->homing_phase < ILK_HOMING_COUNT
+  @   && axis->driven_direction < ILK_DIRECTION_COUNT && axis->stall_direction < ILK_DIRECTION_COUNT
+  @   && axis->reverse_direction < ILK_DIRECTION_COUNT && axis->homed <= 1
+  @   && (axis->state == ILK_AXIS_FAULTED <==> axis->fault != ILK_FAULT_NONE)
+  @   && (axis->state == ILK_AXIS_MOVING <==> axis->lease_ticks != 0)
+  @   && (axis->state == ILK_AXIS_HOMING <==> axis->homing_phase != ILK_HOMING_NONE)
+  @   && (axis->state == ILK_AXIS_HOMING ==> axis->homed == 0);
+  @
+  @ // What a mode lets an axis be (the invariant).
+  @ predicate fits_mode(ilk_axis_t *axis, integer mode) =
+  @   mode == ILK_MODE_MOTION
+  @   || (mode == ILK_MODE_READY && axis->state != ILK_AXIS_MOVING && axis->state != ILK_AXIS_HOMING)
+  @   || axis->state == ILK_AXIS_DISABLED || axis->state == ILK_AXIS_FAULTED;
+  @
+  @ // P12: no move, no homing, nothing that could start one.
+  @ predicate quiet(ilk_axis_t *axis) =
+  @   axis->state != ILK_AXIS_MOVING && axis->state != ILK_AXIS_HOMING && axis->homing_phase == ILK_HOMING_NONE
+  @   && axis->drive == 0 && axis->amplitude == 0 && axis->lease_ticks == 0 && axis->setpoint_counts == 0;
+  @
+  @ // P8: what ending motion leaves alone: the fault, the reference, every reading and every mark.
+  @ predicate kept{Before, After}(ilk_axis_t *axis) =
+  @   (\at(axis->state, After) == ILK_AXIS_FAULTED <==> \at(axis->state, Before) == ILK_AXIS_FAULTED)
+  @   && \at(axis->fault, After) == \at(axis->fault, Before)
+  @   && \at(axis->fault_tick, After) == \at(axis->fault_tick, Before)
+  @   && \at(axis->fault_value, After) == \at(axis->fault_value, Before)
+  @   && \at(axis->homed, After) == \at(axis->homed, Before)
+  @   && \at(axis->switch_triggered, After) == \at(axis->switch_triggered, Before)
+  @   && \at(axis->card_valid, After) == \at(axis->card_valid, Before)
+  @   && \at(axis->card_seen, After) == \at(axis->card_seen, Before)
+  @   && \at(axis->bad_frames, After) == \at(axis->bad_frames, Before)
+  @   && \at(axis->checksum_failures, After) == \at(axis->checksum_failures, Before)
+  @   && \at(axis->heartbeat, After) == \at(axis->heartbeat, Before)
+  @   && \at(axis->card_time_us, After) == \at(axis->card_time_us, Before)
+  @   && \at(axis->card_status, After) == \at(axis->card_status, Before)
+  @   && \at(axis->ticks_since_frame, After) == \at(axis->ticks_since_frame, Before)
+  @   && \at(axis->raw, After) == \at(axis->raw, Before)
+  @   && \at(axis->position_counts, After) == \at(axis->position_counts, Before)
+  @   && \at(axis->delta_counts, After) == \at(axis->delta_counts, Before)
+  @   && \at(axis->driven_direction, After) == \at(axis->driven_direction, Before)
+  @   && \at(axis->stall_driven_ticks, After) == \at(axis->stall_driven_ticks, Before)
+  @   && \at(axis->stall_mark_raw, After) == \at(axis->stall_mark_raw, Before)
+  @   && \at(axis->stall_direction, After) == \at(axis->stall_direction, Before)
+  @   && \at(axis->reverse_mark_raw, After) == \at(axis->reverse_mark_raw, Before)
+  @   && \at(axis->reverse_direction, After) == \at(axis->reverse_direction, Before)
+  @   && \at(axis->drift_mark_raw, After) == \at(axis->drift_mark_raw, Before)
+  @   && \at(axis->undriven_ticks, After) == \at(axis->undriven_ticks, Before)
+  @   && \at(axis->homing_ticks, After) == \at(axis->homing_ticks, Before)
+  @   && \at(axis->homing_mark_raw, After) == \at(axis->homing_mark_raw, Before)
+  @   && \at(axis->rest_ticks, After) == \at(axis->rest_ticks, Before);
+  @
+  @ logic integer drive_bound(ilk_axis_config_t *config, ilk_axis_t *axis) =
+  @   axis->homed != 0 ? config->max_drive : config->unhomed_max_drive;
+  @*/
+
+/* System. */
+
+/*@ // What the pedal's contacts say together; anything not clearly pressed or released is a disagreement.
+  @ logic integer pedal_reading(ilk_config_t *config, ilk_inputs_t *in) =
+  @   in->pedal_no_closed == 1 && (config->pedal_channels == 1 || in->pedal_nc_closed == 0)   ? ILK_PEDAL_PRESSED
+  @   : in->pedal_no_closed == 0 && (config->pedal_channels == 1 || in->pedal_nc_closed == 1) ? ILK_PEDAL_RELEASED
+  @                                                                                           : ILK_PEDAL_DISAGREE;
+  @
+  @ predicate sound_system(ilk_state_t *state) =
+  @   state->mode < ILK_MODE_COUNT && state->cause < ILK_CAUSE_COUNT && state->pedal < ILK_PEDAL_COUNT
+  @   && state->config_slice < ILK_SLOTS && (state->mode == ILK_MODE_LOCKED <==> state->cause != ILK_CAUSE_NONE);
+  @
+  @ predicate sound_axes(ilk_state_t *state) =
+  @   \forall integer slot; 0 <= slot < ILK_SLOTS ==> sound_axis(&state->axis[slot]);
+  @
+  @ predicate axes_fit_mode(ilk_state_t *state) =
+  @   \forall integer slot; 0 <= slot < ILK_SLOTS ==> fits_mode(&state->axis[slot], state->mode);
+  @
+  @ // The invariant of the step, besides the seal.
+  @ predicate sound(ilk_state_t *state) = sound_system(state) && sound_axes(state) && axes_fit_mode(state);
+  @
+  @ // P12
+  @ predicate all_quiet(ilk_state_t *state) =
+  @   \forall integer slot; 0 <= slot < ILK_SLOTS ==> quiet(&state->axis[slot]);
+  @
+  @ // P8: no axis became or ceased to be FAULTED between two points.
+  @ predicate faults_kept{Before, After}(ilk_state_t *state) =
+  @   \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @     (\at(state->axis[slot].state, After) == ILK_AXIS_FAULTED
+  @      <==> \at(state->axis[slot].state, Before) == ILK_AXIS_FAULTED);
+  @
+  @ // P8: the cause that locked, its tick and its value.
+  @ predicate cause_kept{Before, After}(ilk_state_t *state) =
+  @   \at(state->cause, After) == \at(state->cause, Before)
+  @   && \at(state->cause_tick, After) == \at(state->cause_tick, Before)
+  @   && \at(state->cause_value, After) == \at(state->cause_value, Before);
+  @*/
+
+/* The output gate. */
+
+/*@ // P1: what must hold now for any drive: on the side of the system ...
+  @ predicate consented(ilk_state_t *state) =
+  @   state->mode == ILK_MODE_MOTION && state->pedal == ILK_PEDAL_PRESSED && state->estop == 0;
+  @
+  @ // ... and on the side of the axis.
+  @ predicate may_drive(ilk_state_t *state, ilk_axis_t *axis) =
+  @   consented(state) && axis->card_valid != 0 && in_service(axis) && held(axis);
+  @
+  @ predicate asks_for_motion(ilk_command_t *wanted) = wanted->drive != 0 &&
+  @   (wanted->direction == ILK_DIRECTION_INCREASING || wanted->direction == ILK_DIRECTION_DECREASING);
+  @
+  @ // P3: not towards a triggered switch.
+  @ predicate clear_of_switch(ilk_axis_config_t *config, ilk_axis_t *axis, integer direction) =
+  @   axis->switch_triggered != 0 && direction != ILK_DIRECTION_NONE ==> direction != switch_direction(config);
+  @
+  @ // P4: coasting from here ends within the soft limits.
+  @ predicate within_soft_range(ilk_axis_config_t *config, ilk_axis_t *axis, integer direction) =
+  @   axis->homed != 0 ==>
+  @     (direction == ILK_DIRECTION_INCREASING ==> axis->position_counts + config->coast_counts < config->max_counts)
+  @     && (direction == ILK_DIRECTION_DECREASING ==> axis->position_counts - config->coast_counts > config->min_counts);
+  @
+  @ // P7: coasting from here ends within the travel that one press of the pedal gives an axis that is not homed.
+  @ predicate within_unhomed_travel(ilk_axis_config_t *config, ilk_axis_t *axis, integer direction) =
+  @   axis->homed == 0 && axis->state != ILK_AXIS_HOMING ==>
+  @     advance(direction, axis->press_travel_counts) + config->coast_counts < config->unhomed_travel_counts;
+  @
+  @ // P7: no more than the axis may, nor than the words of its card can carry.
+  @ predicate within_drive(ilk_axis_config_t *config, ilk_axis_t *axis, ilk_command_t *wanted) =
+  @   wanted->drive <= drive_bound(config, axis) && wanted->drive <= card_drive(config->card)
+  @   && wanted->amplitude <= config->max_amplitude && wanted->amplitude <= 255;
+  @
+  @ predicate within_limits(ilk_axis_config_t *config, ilk_axis_t *axis, ilk_command_t *wanted) =
+  @   clear_of_switch(config, axis, wanted->direction) && within_soft_range(config, axis, wanted->direction)
+  @   && within_unhomed_travel(config, axis, wanted->direction) && within_drive(config, axis, wanted);
+  @*/
+
+#endif

@@ -1,0 +1,184 @@
+#!/usr/bin/env python3
+"""The contract rung: every function of the core keeps its ACSL contract, whatever it is given.
+
+Each file of the core is given to Frama-C's WP on its own, functions of headers once. The goals of each
+function are compared with expected.json, exactly; places that a smoke test shows to be out of reach must be
+in dead.toml, each with its reason. Without arguments all files are proved and the evidence is written; with
+the names of files only those, and none is written; nor with `--cached`, which takes as proved what an earlier
+such run proved. `--accept` writes expected.json anew from what was proved.
+"""
+
+import argparse
+import json
+import os
+import re
+import subprocess
+import sys
+import time
+import tomllib
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict
+from pathlib import Path
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "evidence"))
+
+import evidence
+from wp import CORE, ROOT, Place, Report, defined_functions, prove
+
+HERE = Path(__file__).resolve().parent
+EXPECTED = HERE / "expected.json"
+HEADERS = ("arith.h", "crc32.h")
+"""Headers with functions in them."""
+
+Functions = Mapping[str, Sequence[str]]
+Expected = Mapping[str, Mapping[str, Mapping[str, int]]]
+
+
+def functions_by_unit() -> dict[str, list[str]]:
+    """Each function of the core, at the one file that defines it."""
+    units = [*HEADERS, *sorted(path.name for path in CORE.glob("*.c"))]
+    seen: set[str] = set()
+    by_unit = {}
+    for unit in units:
+        own = [function for function in defined_functions(unit) if function not in seen]
+        if unit in HEADERS:
+            seen.update(own)
+        if own:
+            by_unit[unit] = own
+    return by_unit
+
+
+def write_prover_list(directory: Path) -> None:
+    """Why3's list of provers, made anew, so that nobody's home directory decides what is run."""
+    config = directory / "why3.conf"
+    config.unlink(missing_ok=True)
+    subprocess.run(["why3", "--config", str(config), "config", "detect"], check=True, capture_output=True)
+
+
+def version(command: Sequence[str]) -> str:
+    """The version number in what a tool says of itself."""
+    text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    number = re.search(r"\d+(?:\.\d+)+\S*", text)
+    return number.group(0) if number else text.strip()
+
+
+def tools() -> dict[str, str]:
+    return {
+        "Frama-C": version(["frama-c", "-version"]),
+        "Why3": version(["why3", "--version"]),
+        "Z3": version(["z3", "--version"]),
+        "CVC4": version(["cvc4", "--version"]),
+    }
+
+
+def allowed_dead() -> set[tuple[str, str]]:
+    """File and text of each line that may be out of reach."""
+    document = tomllib.loads((HERE / "dead.toml").read_text("utf-8"))
+    return {(entry["file"], entry["line"]) for entry in document.get("dead", [])}
+
+
+def line_of(place: Place) -> tuple[str, str]:
+    """File and text of the line of a place."""
+    return place.file, (CORE / place.file).read_text("utf-8").splitlines()[place.line - 1].strip()
+
+
+def show(kind: str, place: Place) -> None:
+    print(f"    {kind} {place.file}:{place.line} {place.function}: {place.clause}")
+
+
+def judge(unit: str, report: Report, expected: Expected, allowed: set[tuple[str, str]]) -> dict[str, int]:
+    """Prints how a file came out; returns its figures, with `wrong` the number of things that are."""
+    counts = report.counts.values()
+    goals, proved = sum(c.goals for c in counts), sum(c.qed + c.smt for c in counts)
+    smoke = sum(c.smoke for c in counts)
+    dead = [place for place in report.dead if line_of(place) not in allowed]
+    differing = [
+        function
+        for function in report.counts.keys() | expected.get(unit, {}).keys()
+        if function not in report.counts
+        or asdict(report.counts[function]) != expected.get(unit, {}).get(function)
+    ]
+    print(
+        f"{unit:14} {len(counts):3} functions {proved:5}/{goals:<5} goals {smoke:4} smoke tests"
+        f" {report.seconds:7.1f} s",
+        flush=True,
+    )
+    for place in report.unproved:
+        show("NOT PROVED", place)
+    for place in dead:
+        show("OUT OF REACH", place)
+    for function in report.uncontracted:
+        print(f"    NO CONTRACT {unit} {function}: say what it assigns and ensures")
+    for function in sorted(differing):
+        was, now = expected.get(unit, {}).get(function), report.counts.get(function)
+        print(f"    GOALS DIFFER {unit} {function}: expected {was}, got {now and asdict(now)}")
+    return {
+        "functions": len(counts),
+        "goals": goals,
+        "proved": proved,
+        "smoke_tests": smoke,
+        "smoke_failed": len(dead),
+        "wrong": goals - proved + len(report.uncontracted) + len(differing),
+    }
+
+
+def run(functions: Functions, directory: Path, cache: Path | None) -> dict[str, Report]:
+    """Proves the files, the largest first, on as many cores as JOBS says."""
+    largest_first = sorted(functions, key=lambda unit: (CORE / unit).stat().st_size, reverse=True)
+    with ThreadPoolExecutor(max_workers=int(os.environ.get("JOBS", "1"))) as pool:
+        started = {
+            unit: pool.submit(prove, unit, functions[unit], directory, cache) for unit in largest_first
+        }
+        return {unit: future.result() for unit, future in started.items()}
+
+
+def accept(reports: Mapping[str, Report]) -> None:
+    """Writes expected.json anew for the files that were proved."""
+    expected = json.loads(EXPECTED.read_text("utf-8")) if EXPECTED.exists() else {}
+    for unit, report in reports.items():
+        expected[unit] = {function: asdict(counts) for function, counts in sorted(report.counts.items())}
+    EXPECTED.write_text(json.dumps(expected, indent=1, sort_keys=True) + "\n", "utf-8")
+
+
+def properties(reports: Sequence[Report]) -> list[str]:
+    """The properties that proved clauses are named for, such as P1 for P1_gate."""
+    names = {match.group(0) for r in reports for c in r.clauses if (match := re.match(r"P\d+(?=_)", c))}
+    return sorted(names, key=lambda name: int(name[1:]))
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("units", nargs="*", help="files of kernel/src to prove; all when none is named")
+    parser.add_argument("--cached", action="store_true", help="reuse goals proved before; write no evidence")
+    parser.add_argument("--accept", action="store_true", help="write expected.json anew")
+    arguments = parser.parse_args()
+    started = time.monotonic()
+    directory = evidence.log_directory("wp")
+    write_prover_list(directory)
+    functions = functions_by_unit()
+    chosen = {unit: own for unit, own in functions.items() if not arguments.units or unit in arguments.units}
+    cache = ROOT / "build/wp-cache" if arguments.cached else None
+    if cache:
+        cache.mkdir(parents=True, exist_ok=True)
+    reports = run(chosen, directory, cache)
+    if arguments.accept:
+        accept(reports)
+    expected = json.loads(EXPECTED.read_text("utf-8"))
+    allowed = allowed_dead()
+    figures = [judge(unit, report, expected, allowed) for unit, report in sorted(reports.items())]
+    total = {key: sum(figure[key] for figure in figures) for key in figures[0]}
+    used = {line_of(place) for report in reports.values() for place in report.dead}
+    unused = sorted(allowed - used) if not arguments.units else []
+    for file, line in unused:
+        print(f"    IN REACH {file}: '{line}' is in dead.toml; take it out")
+    wrong = total.pop("wrong") + len(unused)
+    status = "FAILED" if wrong else ("VACUOUS" if total["smoke_failed"] else "PASSED")
+    print(f"{status}: {total}")
+    if arguments.units or cache:
+        return 0 if status == "PASSED" else 1
+    return evidence.write("wp", status, tools(), total, properties(list(reports.values())), started)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,136 @@
+"""Frama-C's WP on one file of the kernel: what to run, and what its reports say."""
+
+import csv
+import json
+import os
+import re
+import subprocess
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+CORE = ROOT / "kernel/src"
+
+WRAPPING = frozenset(
+    {"arith.h", "checks.c", "config.c", "crc32.h", "crc32.c", "frame.c", "integrity.c", "step.c"}
+)
+"""Files that compute modulo 2^32 on purpose (counters, sequence numbers, checksums, digests). In every other
+file an unsigned operation that leaves its type is a goal that cannot be proved."""
+
+PREPROCESSOR = f"-I{ROOT / 'kernel/include'} -I{CORE} -DILK_FRAME_WORDS=32"
+PARSE = ["frama-c", "-c11", "-machdep", "gcc_x86_64", f"-cpp-extra-args={PREPROCESSOR}"]
+PROVE = [
+    *("-warn-signed-downcast", "-wp", "-wp-rte", "-wp-model", "Typed"),
+    *("-wp-prover", "z3,cvc4", "-wp-timeout", "10", "-wp-par", "1"),
+    *("-wp-smoke-tests", "-wp-smoke-timeout", "2"),
+]
+SMOKE = "_wp_smoke_"
+
+
+@dataclass
+class Counts:
+    """Goals of one function: proved without a prover (`qed`), by one (`smt`), not at all; and smoke tests."""
+
+    goals: int = 0
+    qed: int = 0
+    smt: int = 0
+    smoke: int = 0
+
+
+@dataclass(frozen=True)
+class Place:
+    """Something that did not come out as it should: where, and the clause with its property."""
+
+    file: str
+    line: int
+    function: str
+    clause: str
+
+
+@dataclass
+class Report:
+    """What WP said about one file."""
+
+    counts: dict[str, Counts] = field(default_factory=dict)
+    unproved: list[Place] = field(default_factory=list)
+    dead: list[Place] = field(default_factory=list)
+    uncontracted: list[str] = field(default_factory=list)
+    clauses: set[str] = field(default_factory=set)
+    seconds: float = 0.0
+    log: Path = Path()
+
+
+def defined_functions(unit: str) -> list[str]:
+    """Functions that the file and the headers it includes define, as Frama-C counts them."""
+    text = subprocess.run(
+        [*PARSE, str(CORE / unit), "-metrics"], check=True, capture_output=True, text=True
+    ).stdout
+    listed = re.search(r"Defined functions \(\d+\)\n\s*=+\n(.*?)\n\s*\n", text, re.DOTALL)
+    if listed is None:
+        raise SystemExit(f"{unit}: Frama-C's metrics list no functions:\n{text}")
+    return re.findall(r"(\w+) \(\d+ calls?\)", listed.group(1))
+
+
+def prove(unit: str, functions: list[str], directory: Path, cache: Path | None) -> Report:
+    """Proves the contracts of `functions`, which `unit` defines. Raw output goes to `directory`.
+
+    With a `cache`, goals that were proved before are not proved again; evidence is made without one.
+    """
+    stem = directory / unit
+    overflow = [] if unit in WRAPPING else ["-warn-unsigned-overflow"]
+    caching = ["-wp-cache", "update", "-wp-cache-dir", str(cache)] if cache else ["-wp-cache", "none"]
+    command = [
+        *(*PARSE, str(CORE / unit), *PROVE, *overflow, *caching, "-wp-fct", ",".join(functions)),
+        *("-wp-report-json", f"{stem}.json", "-then", "-report-csv", f"{stem}.csv"),
+    ]
+    started = time.monotonic()
+    environment = {**os.environ, "WHY3CONFIG": str(directory / "why3.conf")}
+    outcome = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
+    report = Report(seconds=time.monotonic() - started, log=Path(f"{stem}.log"))
+    report.log.write_text(outcome.stdout + outcome.stderr, "utf-8")
+    if outcome.returncode != 0:
+        raise SystemExit(f"{unit}: Frama-C gave up; see {report.log}\n{outcome.stdout[-2000:]}")
+    count_goals(report, json.loads(Path(f"{stem}.json").read_text("utf-8")), functions)
+    find_unproved(report, Path(f"{stem}.csv"), functions)
+    return report
+
+
+def count_goals(report: Report, document: dict, functions: list[str]) -> None:
+    """Goals by function, from WP's report."""
+    for function in functions:
+        counts = report.counts.setdefault(function, Counts())
+        for name, provers in document["wp:functions"].get(function, {}).items():
+            if name == "wp:section":
+                continue
+            total = provers["wp:main"]["total"]
+            if SMOKE in name:
+                counts.smoke += total
+                continue
+            qed = provers.get("qed", {}).get("valid", 0)
+            counts.goals += total
+            counts.qed += qed
+            counts.smt += provers["wp:main"].get("valid", 0) - qed
+
+
+def find_unproved(report: Report, table: Path, functions: list[str]) -> None:
+    """Clauses not proved, places out of reach, and functions that do not say what they assign and ensure.
+
+    A smoke test that fails shows in the table as an assertion of falsehood that was proved.
+    """
+    stated: dict[str, set[str]] = {function: set() for function in functions}
+    with table.open(encoding="utf-8", newline="") as rows:
+        for row in csv.DictReader(rows, delimiter="\t", quoting=csv.QUOTE_NONE):
+            place = Place(
+                row["file"], int(row["line"]), row["function"], f"{row['property kind']} {row['property']}"
+            )
+            if row["status"] == "Invalid or unreachable":
+                report.dead.append(place)
+            elif row["function"] in stated and row["directory"].startswith("kernel"):
+                stated[row["function"]].add(row["property kind"])
+                if row["status"] in ("Valid", "Partially proven"):
+                    report.clauses.add(row["property"].split(":")[0])
+                else:
+                    report.unproved.append(place)
+    needed = {"assigns clause", "postcondition"}
+    report.uncontracted = [function for function, kinds in stated.items() if not needed <= kinds]
