@@ -269,8 +269,15 @@ static ilk_config_error_t axis_error(const ilk_axis_config_t *axis, uint32_t per
 
 /** A slot without a motor carries nothing but its card and, for a sensor, `required`. */
 static bool is_bare(const ilk_axis_config_t *axis) {
-  const ilk_axis_config_t bare = {.card = axis->card, .required = axis->required};
-  return ilk_crc_axis_config(ILK_CRC32_START, axis) == ilk_crc_axis_config(ILK_CRC32_START, &bare);
+  const uint32_t bits =
+      axis->motor_direction | axis->direction_correction | axis->limit_side | (uint32_t)axis->min_counts |
+      (uint32_t)axis->max_counts | (uint32_t)axis->home_offset_counts | axis->coast_counts |
+      axis->backlash_counts | axis->noise_counts | axis->deadband_counts | axis->max_drive |
+      axis->unhomed_max_drive | axis->max_amplitude | axis->unhomed_travel_counts | axis->home_drive |
+      axis->home_amplitude | axis->home_travel_counts | axis->home_backoff_counts | axis->home_timeout_ticks |
+      axis->home_rest_ticks | axis->home_speed_counts_per_s | axis->stall_ticks | axis->stall_min_counts |
+      axis->reverse_counts | axis->drift_counts | axis->settle_ticks | axis->max_delta_counts;
+  return bits == 0u;
 }
 
 static ilk_config_error_t slot_error(const ilk_axis_config_t *axis, uint32_t period_us) {

@@ -131,6 +131,12 @@ std::vector<Rule> axis_rules() {
       unsigned_rule("direction_correction", ILK_CONFIG_ERROR_FLAG, f, &A::direction_correction, 1, 2),
       unsigned_rule("empty_slot_required", ILK_CONFIG_ERROR_EMPTY_SLOT, slot::empty, &A::required, 0, 1),
       unsigned_rule("empty_slot_field", ILK_CONFIG_ERROR_EMPTY_SLOT, slot::empty, &A::max_delta_counts, 0, 1),
+      {"empty_slot_fields_that_cancel_in_a_crc", ILK_CONFIG_ERROR_EMPTY_SLOT, slot::empty,
+       [](ilk_config_t&) {},
+       [](ilk_config_t& config) {
+         config.axis[slot::empty].motor_direction = 1;
+         config.axis[slot::empty].direction_correction = 0xB8BC6765u;
+       }},
       signed_rule("empty_slot_limit", ILK_CONFIG_ERROR_EMPTY_SLOT, slot::empty, &A::max_counts, 0, 1),
       unsigned_rule("sensor_slot_field", ILK_CONFIG_ERROR_EMPTY_SLOT, slot::sensor, &A::max_drive, 0, 1),
       unsigned_rule("limit_side", ILK_CONFIG_ERROR_LIMIT_SIDE, s, &A::limit_side, ILK_LIMIT_UPPER, 3),
