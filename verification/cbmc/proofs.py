@@ -21,6 +21,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
+
 ANY = "any"
 """In place of a proof: the stand-in gives back anything, so that nothing has to be shown of the function."""
 

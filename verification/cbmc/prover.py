@@ -101,7 +101,7 @@ def call(tool: str, arguments: list[str], log: Path, seconds: int) -> str:
 
 
 def replacements(proof: Proof, linked: Path, logs: Path) -> list[str]:
-    """How to turn calls to the stubs. An inline function of a header has a copy for each file that calls it."""
+    """How to turn calls to the stubs. An inline function has a copy for each file that calls it."""
     list_functions = ["--list-goto-functions", str(linked)]
     listed = call("goto-instrument", list_functions, logs / "functions.log", COMPILE_SECONDS)
     present = re.findall(r"/\* (\S+) \*/", listed)
