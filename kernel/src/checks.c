@@ -5,25 +5,56 @@
 #include "mode.h"
 #include "request.h"
 
+/*@ assigns \nothing;
+  @ ensures exact: \result <==> names_axis(kind);
+  @*/
 static bool names_axis(uint32_t kind) {
   return (kind >= (uint32_t)ILK_REQUEST_DISABLE) && (kind <= (uint32_t)ILK_REQUEST_RESTORE);
 }
 
 /** Newer by less than half of the number space; gaps are allowed, repeats and returns are not. */
+/*@ assigns \nothing;
+  @ ensures exact: \result <==> 0 < (sequence >= last ? sequence - last : sequence - last + 4294967296) <= INT32_MAX;
+  @*/
 static bool is_newer(uint32_t sequence, uint32_t last) {
   const uint32_t ahead = sequence - last;
   return (ahead != 0u) && (ahead <= (uint32_t)INT32_MAX);
 }
 
+/*@ requires readable: \valid_read(state);
+  @ assigns  \nothing;
+  @ ensures  exact: \result <==> state->mode == mode;
+  @*/
 static bool mode_is(const ilk_state_t *state, ilk_mode_t mode) { return state->mode == (uint32_t)mode; }
 
+/*@ requires readable: \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  exact: \result <==> axis->state == state;
+  @*/
 static bool axis_is(const ilk_axis_t *axis, ilk_axis_state_t state) { return axis->state == (uint32_t)state; }
 
+/*@ requires readable: \valid_read(state);
+  @ assigns  \nothing;
+  @ ensures  exact: \result <==> state->pedal == ILK_PEDAL_RELEASED;
+  @*/
 static bool pedal_is_up(const ilk_state_t *state) { return state->pedal == (uint32_t)ILK_PEDAL_RELEASED; }
 
 /** The counter did not change since the last tick. In READY, where this is asked, no axis is driven. */
+/*@ requires readable: \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  exact: \result <==> axis->delta_counts == 0;
+  @*/
 static bool is_at_rest(const ilk_axis_t *axis) { return axis->delta_counts == 0; }
 
+/*@ requires readable: \valid_read(state);
+  @ assigns  \nothing;
+  @ ensures  P8_latch: \result == ILK_VERDICT_ACCEPTED <==> reset_allowed(state);
+  @ ensures  mode: \result == ILK_VERDICT_MODE <==> state->mode != ILK_MODE_LOCKED;
+  @ ensures  P9_pedal: \result == ILK_VERDICT_PEDAL_DOWN <==>
+  @   state->mode == ILK_MODE_LOCKED && state->pedal != ILK_PEDAL_RELEASED;
+  @ ensures  verdict: \result == ILK_VERDICT_ACCEPTED || \result == ILK_VERDICT_MODE
+  @   || \result == ILK_VERDICT_PEDAL_DOWN || \result == ILK_VERDICT_CAUSE_PRESENT;
+  @*/
 static ilk_verdict_t check_reset(const ilk_state_t *state) {
   ilk_verdict_t verdict = ILK_VERDICT_ACCEPTED;
   if (!mode_is(state, ILK_MODE_LOCKED)) {
@@ -38,6 +69,13 @@ static ilk_verdict_t check_reset(const ilk_state_t *state) {
   return verdict;
 }
 
+/*@ requires readable: \valid_read(state) && \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  accepted: \result == ILK_VERDICT_ACCEPTED <==> disable_allowed(state, axis);
+  @ ensures  mode: \result == ILK_VERDICT_MODE <==> state->mode == ILK_MODE_INIT;
+  @ ensures  verdict: \result == ILK_VERDICT_ACCEPTED || \result == ILK_VERDICT_MODE
+  @   || \result == ILK_VERDICT_FAULTED;
+  @*/
 static ilk_verdict_t check_disable(const ilk_state_t *state, const ilk_axis_t *axis) {
   ilk_verdict_t verdict = ILK_VERDICT_ACCEPTED;
   if (mode_is(state, ILK_MODE_INIT)) {
@@ -50,6 +88,16 @@ static ilk_verdict_t check_disable(const ilk_state_t *state, const ilk_axis_t *a
   return verdict;
 }
 
+/*@ requires readable: \valid_read(state) && \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  accepted: \result == ILK_VERDICT_ACCEPTED <==> enable_allowed(state, axis);
+  @ ensures  mode: \result == ILK_VERDICT_MODE <==>
+  @   state->mode != ILK_MODE_READY && state->mode != ILK_MODE_MOTION;
+  @ ensures  faulted: \result == ILK_VERDICT_FAULTED <==> axis->state == ILK_AXIS_FAULTED
+  @   && (state->mode == ILK_MODE_READY || state->mode == ILK_MODE_MOTION);
+  @ ensures  verdict: \result == ILK_VERDICT_ACCEPTED || \result == ILK_VERDICT_MODE
+  @   || \result == ILK_VERDICT_FAULTED || \result == ILK_VERDICT_CARD;
+  @*/
 static ilk_verdict_t check_enable(const ilk_state_t *state, const ilk_axis_t *axis) {
   ilk_verdict_t verdict = ILK_VERDICT_ACCEPTED;
   if (!mode_is(state, ILK_MODE_READY) && !mode_is(state, ILK_MODE_MOTION)) {
@@ -64,6 +112,18 @@ static ilk_verdict_t check_enable(const ilk_state_t *state, const ilk_axis_t *ax
   return verdict;
 }
 
+/*@ requires readable: \valid_read(state) && \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  P8_latch: \result == ILK_VERDICT_ACCEPTED <==> clear_fault_allowed(state, axis);
+  @ ensures  mode: \result == ILK_VERDICT_MODE <==> state->mode == ILK_MODE_INIT;
+  @ ensures  no_fault: \result == ILK_VERDICT_NO_FAULT <==>
+  @   state->mode != ILK_MODE_INIT && axis->state != ILK_AXIS_FAULTED;
+  @ ensures  cause_present: \result == ILK_VERDICT_CAUSE_PRESENT <==> state->mode != ILK_MODE_INIT
+  @   && axis->state == ILK_AXIS_FAULTED && (axis->card_valid == 0 || axis->fault_tick == state->tick);
+  @ ensures  verdict: \result == ILK_VERDICT_ACCEPTED || \result == ILK_VERDICT_MODE
+  @   || \result == ILK_VERDICT_NO_FAULT || \result == ILK_VERDICT_CAUSE_PRESENT
+  @   || \result == ILK_VERDICT_PEDAL_DOWN;
+  @*/
 static ilk_verdict_t check_clear_fault(const ilk_state_t *state, const ilk_axis_t *axis) {
   ilk_verdict_t verdict = ILK_VERDICT_ACCEPTED;
   if (mode_is(state, ILK_MODE_INIT)) {
@@ -81,6 +141,17 @@ static ilk_verdict_t check_clear_fault(const ilk_state_t *state, const ilk_axis_
 }
 
 /** What MOVE and HOME ask of mode and axis alike. */
+/*@ requires readable: \valid_read(state) && \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  accepted: \result == ILK_VERDICT_ACCEPTED <==> motion_allowed(state, axis);
+  @ ensures  mode: \result == ILK_VERDICT_MODE <==> state->mode != ILK_MODE_MOTION;
+  @ ensures  faulted: \result == ILK_VERDICT_FAULTED <==>
+  @   state->mode == ILK_MODE_MOTION && axis->state == ILK_AXIS_FAULTED;
+  @ ensures  disabled: \result == ILK_VERDICT_DISABLED <==>
+  @   state->mode == ILK_MODE_MOTION && axis->state == ILK_AXIS_DISABLED;
+  @ ensures  verdict: \result == ILK_VERDICT_ACCEPTED || \result == ILK_VERDICT_MODE
+  @   || \result == ILK_VERDICT_FAULTED || \result == ILK_VERDICT_DISABLED || \result == ILK_VERDICT_BUSY;
+  @*/
 static ilk_verdict_t check_may_move(const ilk_state_t *state, const ilk_axis_t *axis) {
   ilk_verdict_t verdict = ILK_VERDICT_ACCEPTED;
   if (!mode_is(state, ILK_MODE_MOTION)) {
@@ -97,6 +168,10 @@ static ilk_verdict_t check_may_move(const ilk_state_t *state, const ilk_axis_t *
   return verdict;
 }
 
+/*@ requires readable: \valid_read(config) && \valid_read(axis) && \valid_read(request);
+  @ assigns  \nothing;
+  @ ensures  P7_bounds: \result <==> drive_allowed(config, axis, request);
+  @*/
 static bool drive_is_within(const ilk_axis_config_t *config, const ilk_axis_t *axis,
                             const ilk_request_t *request) {
   const uint32_t bound = (axis->homed != 0u) ? config->max_drive : config->unhomed_max_drive;
@@ -104,6 +179,10 @@ static bool drive_is_within(const ilk_axis_config_t *config, const ilk_axis_t *a
 }
 
 /** A setpoint from which the axis can coast without crossing its soft limit, or its unhomed travel. */
+/*@ requires readable: \valid_read(config) && \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  P4_soft_limit: \result <==> setpoint_allowed(config, axis, setpoint);
+  @*/
 static bool setpoint_is_within(const ilk_axis_config_t *config, const ilk_axis_t *axis, int32_t setpoint) {
   const int64_t coast = (int64_t)config->coast_counts;
   int64_t lowest = (int64_t)config->min_counts + coast;
@@ -117,6 +196,19 @@ static bool setpoint_is_within(const ilk_axis_config_t *config, const ilk_axis_t
   return ((int64_t)setpoint >= lowest) && ((int64_t)setpoint <= highest);
 }
 
+/*@ requires readable: \valid_read(config) && \valid_read(state) && \valid_read(request);
+  @ requires slot: request->axis < ILK_SLOTS;
+  @ assigns  \nothing;
+  @ ensures  accepted: \result == ILK_VERDICT_ACCEPTED <==> move_allowed(config, state, request);
+  @ ensures  lease: \result == ILK_VERDICT_LEASE <==> motion_allowed(state, &state->axis[request->axis])
+  @   && !(0 < request->lease_ticks <= config->lease_max_ticks);
+  @ ensures  P7_drive: \result == ILK_VERDICT_DRIVE <==> motion_allowed(state, &state->axis[request->axis])
+  @   && 0 < request->lease_ticks <= config->lease_max_ticks
+  @   && !drive_allowed(&config->axis[request->axis], &state->axis[request->axis], request);
+  @ ensures  verdict: \result == ILK_VERDICT_ACCEPTED || \result == ILK_VERDICT_MODE
+  @   || \result == ILK_VERDICT_FAULTED || \result == ILK_VERDICT_DISABLED || \result == ILK_VERDICT_BUSY
+  @   || \result == ILK_VERDICT_LEASE || \result == ILK_VERDICT_DRIVE || \result == ILK_VERDICT_RANGE;
+  @*/
 static ilk_verdict_t check_move(const ilk_config_t *config, const ilk_state_t *state,
                                 const ilk_request_t *request) {
   const ilk_axis_config_t *axis_config = &config->axis[request->axis];
@@ -136,6 +228,16 @@ static ilk_verdict_t check_move(const ilk_config_t *config, const ilk_state_t *s
   return verdict;
 }
 
+/*@ requires readable: \valid_read(config) && \valid_read(state) && \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  accepted: \result == ILK_VERDICT_ACCEPTED <==>
+  @   motion_allowed(state, axis) && config->limit_side != ILK_LIMIT_NONE;
+  @ ensures  no_switch: \result == ILK_VERDICT_NO_SWITCH <==>
+  @   motion_allowed(state, axis) && config->limit_side == ILK_LIMIT_NONE;
+  @ ensures  verdict: \result == ILK_VERDICT_ACCEPTED || \result == ILK_VERDICT_MODE
+  @   || \result == ILK_VERDICT_FAULTED || \result == ILK_VERDICT_DISABLED || \result == ILK_VERDICT_BUSY
+  @   || \result == ILK_VERDICT_NO_SWITCH;
+  @*/
 static ilk_verdict_t check_home(const ilk_axis_config_t *config, const ilk_state_t *state,
                                 const ilk_axis_t *axis) {
   ilk_verdict_t verdict = check_may_move(state, axis);
@@ -146,6 +248,16 @@ static ilk_verdict_t check_home(const ilk_axis_config_t *config, const ilk_state
 }
 
 /** SET_HOME and RESTORE declare where a resting axis stands: nowhere that its soft limits exclude. */
+/*@ requires readable: \valid_read(config) && \valid_read(state) && \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  P4_soft_limit: \result == ILK_VERDICT_ACCEPTED <==> declare_allowed(config, state, axis, position);
+  @ ensures  mode: \result == ILK_VERDICT_MODE <==> state->mode != ILK_MODE_READY;
+  @ ensures  pedal: \result == ILK_VERDICT_PEDAL_DOWN <==>
+  @   state->mode == ILK_MODE_READY && state->pedal != ILK_PEDAL_RELEASED;
+  @ ensures  verdict: \result == ILK_VERDICT_ACCEPTED || \result == ILK_VERDICT_MODE
+  @   || \result == ILK_VERDICT_PEDAL_DOWN || \result == ILK_VERDICT_FAULTED || \result == ILK_VERDICT_CARD
+  @   || \result == ILK_VERDICT_BUSY || \result == ILK_VERDICT_RANGE;
+  @*/
 static ilk_verdict_t check_declare(const ilk_axis_config_t *config, const ilk_state_t *state,
                                    const ilk_axis_t *axis, int32_t position) {
   ilk_verdict_t verdict = ILK_VERDICT_ACCEPTED;
@@ -168,6 +280,16 @@ static ilk_verdict_t check_declare(const ilk_axis_config_t *config, const ilk_st
 }
 
 /** The row of the request table, from left to right; UNKNOWN without one, for which no axis was named. */
+/*@ requires readable: \valid_read(config) && \valid_read(state) && \valid_read(request);
+  @ requires slot: names_axis(request->kind) ==> request->axis < ILK_SLOTS;
+  @ assigns  \nothing;
+  @ ensures  row: \result == ILK_VERDICT_ACCEPTED <==> acceptable(config, state, request)
+  @   && ILK_REQUEST_HEARTBEAT <= request->kind <= ILK_REQUEST_RESTORE;
+  @ ensures  verdict: 0 <= \result < ILK_VERDICT_COUNT && \result != ILK_VERDICT_CHECKSUM
+  @   && \result != ILK_VERDICT_SEQUENCE && \result != ILK_VERDICT_AXIS;
+  @ ensures  unknown: \result == ILK_VERDICT_UNKNOWN <==>
+  @   !(ILK_REQUEST_HEARTBEAT <= request->kind <= ILK_REQUEST_RESTORE);
+  @*/
 static ilk_verdict_t check_row(const ilk_config_t *config, const ilk_state_t *state,
                                const ilk_request_t *request) {
   const uint32_t slot = names_axis(request->kind) ? request->axis : 0u;

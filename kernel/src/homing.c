@@ -4,6 +4,10 @@
 
 #include "arith.h"
 
+/*@ requires valid: \valid(axis);
+  @ assigns  axis->homing_phase, axis->homing_mark_raw, axis->rest_ticks;
+  @ ensures  phase: axis->homing_phase == phase && axis->homing_mark_raw == axis->raw && axis->rest_ticks == 0;
+  @*/
 static void enter_phase(ilk_axis_t *axis, ilk_homing_phase_t phase) {
   axis->homing_phase = (uint32_t)phase;
   axis->homing_mark_raw = axis->raw;
@@ -18,11 +22,21 @@ void ilk_homing_begin(const ilk_axis_config_t *config, ilk_axis_t *axis) {
   enter_phase(axis, (axis->switch_triggered != 0u) ? ILK_HOMING_BACK_OFF : ILK_HOMING_SEEK);
 }
 
+/*@ requires readable: \valid_read(config);
+  @ assigns  \nothing;
+  @ ensures  exact: \result ==
+  @   (config->limit_side == ILK_LIMIT_UPPER ? ILK_DIRECTION_INCREASING : ILK_DIRECTION_DECREASING);
+  @*/
 static uint32_t towards_switch(const ilk_axis_config_t *config) {
   return (config->limit_side == (uint32_t)ILK_LIMIT_UPPER) ? (uint32_t)ILK_DIRECTION_INCREASING
                                                            : (uint32_t)ILK_DIRECTION_DECREASING;
 }
 
+/*@ requires readable: \valid_read(config);
+  @ assigns  \nothing;
+  @ ensures  exact: \result ==
+  @   (config->limit_side == ILK_LIMIT_UPPER ? ILK_DIRECTION_DECREASING : ILK_DIRECTION_INCREASING);
+  @*/
 static uint32_t away_from_switch(const ilk_axis_config_t *config) {
   return (config->limit_side == (uint32_t)ILK_LIMIT_UPPER) ? (uint32_t)ILK_DIRECTION_DECREASING
                                                            : (uint32_t)ILK_DIRECTION_INCREASING;
@@ -44,6 +58,23 @@ uint32_t ilk_homing_direction(const ilk_axis_config_t *config, const ilk_axis_t 
   return direction;
 }
 
+/*@ requires valid: \valid_read(config) && \valid(axis) && \separated(config, axis);
+  @ assigns  axis->rest_ticks, axis->homing_phase, axis->homing_mark_raw, axis->state, axis->homed;
+  @ behavior rested:
+  @   assumes \let rest = axis->delta_counts == 0 ? axis->rest_ticks + 1 : 0; rest >= config->home_rest_ticks;
+  @   ensures homed: axis->homed == 1 && axis->state == ILK_AXIS_ENABLED;
+  @   ensures done: axis->homing_phase == ILK_HOMING_NONE && axis->rest_ticks == 0
+  @     && axis->homing_mark_raw == axis->raw;
+  @ behavior waits:
+  @   assumes \let rest = axis->delta_counts == 0 ? axis->rest_ticks + 1 : 0; rest < config->home_rest_ticks;
+  @   assigns axis->rest_ticks;
+  @   ensures rest: axis->rest_ticks == (axis->delta_counts == 0 ? \old(axis->rest_ticks) + 1 : 0);
+  @   ensures same: axis->state == \old(axis->state) && axis->homed == \old(axis->homed)
+  @     && axis->homing_phase == \old(axis->homing_phase)
+  @     && axis->homing_mark_raw == \old(axis->homing_mark_raw);
+  @ complete behaviors;
+  @ disjoint behaviors;
+  @*/
 static void wait_for_rest(const ilk_axis_config_t *config, ilk_axis_t *axis) {
   axis->rest_ticks = (axis->delta_counts == 0) ? count_up(axis->rest_ticks, config->home_rest_ticks) : 0u;
   if (axis->rest_ticks >= config->home_rest_ticks) {
@@ -54,6 +85,25 @@ static void wait_for_rest(const ilk_axis_config_t *config, ilk_axis_t *axis) {
 }
 
 /** A switch that was not read validly makes no edge: only valid frames get here. */
+/*@ requires valid: \valid_read(config) && \valid(axis) && \separated(config, axis);
+  @ requires homing: axis->state == ILK_AXIS_HOMING && axis->homing_phase < ILK_HOMING_COUNT
+  @   && axis->homing_phase != ILK_HOMING_NONE;
+  @ assigns  axis->state, axis->homed, axis->position_counts, axis->homing_phase, axis->homing_mark_raw,
+  @          axis->rest_ticks;
+  @ ensures  opened: \old(axis->homing_phase) == ILK_HOMING_BACK_OFF ==> axis->state == ILK_AXIS_HOMING
+  @   && axis->homing_phase == (axis->switch_triggered == 0 ? ILK_HOMING_SEEK : ILK_HOMING_BACK_OFF);
+  @ ensures  closed: \old(axis->homing_phase) == ILK_HOMING_SEEK ==> axis->state == ILK_AXIS_HOMING
+  @   && axis->homing_phase == (axis->switch_triggered != 0 ? ILK_HOMING_REST : ILK_HOMING_SEEK);
+  @ ensures  reference: axis->position_counts ==
+  @   (\old(axis->homing_phase) == ILK_HOMING_SEEK && axis->switch_triggered != 0
+  @     ? config->home_offset_counts : \old(axis->position_counts));
+  @ ensures  rests: \old(axis->homing_phase) == ILK_HOMING_REST ==>
+  @   (axis->state == ILK_AXIS_HOMING && axis->homing_phase == ILK_HOMING_REST)
+  @   || (axis->state == ILK_AXIS_ENABLED && axis->homing_phase == ILK_HOMING_NONE);
+  @ ensures  homed_at_rest: axis->homed == (axis->state == ILK_AXIS_ENABLED ? 1 : \old(axis->homed));
+  @ ensures  mark: axis->homing_mark_raw ==
+  @   (axis->homing_phase != \old(axis->homing_phase) ? axis->raw : \old(axis->homing_mark_raw));
+  @*/
 static void look_for_edge(const ilk_axis_config_t *config, ilk_axis_t *axis) {
   const bool triggered = axis->switch_triggered != 0u;
   switch (axis->homing_phase) {
@@ -74,6 +124,10 @@ static void look_for_edge(const ilk_axis_config_t *config, ilk_axis_t *axis) {
   }
 }
 
+/*@ requires readable: \valid_read(config) && \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  exact: \result == homing_bound(config, axis);
+  @*/
 static uint32_t travel_bound(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
   return (axis->homing_phase == (uint32_t)ILK_HOMING_BACK_OFF) ? config->home_backoff_counts
                                                                : config->home_travel_counts;

@@ -85,6 +85,25 @@
   @ logic integer progress(ilk_axis_config_t *config, ilk_axis_t *axis, integer mark_raw, integer direction) =
   @   advance(direction, travel(config, mark_raw, axis->raw));
   @
+  @ // P6: farther than the axis can move since its last valid frame; a product beyond uint32_t is no bound.
+  @ predicate jumped(ilk_axis_config_t *config, ilk_axis_t *axis) =
+  @   \abs(axis->delta_counts) > \min(config->max_delta_counts * axis->ticks_since_frame, UINT32_MAX);
+  @
+  @ // P6: too far against the command since the farthest point.
+  @ predicate reversed(ilk_axis_config_t *config, ilk_axis_t *axis) = axis->driven_direction != ILK_DIRECTION_NONE
+  @   && progress(config, axis, axis->reverse_mark_raw, axis->reverse_direction) < -config->reverse_counts;
+  @
+  @ // P6: too far from where the undriven axis had settled.
+  @ predicate drifted(ilk_axis_config_t *config, ilk_axis_t *axis) =
+  @   axis->state != ILK_AXIS_DISABLED && axis->state != ILK_AXIS_FAULTED
+  @   && axis->undriven_ticks >= config->settle_ticks
+  @   && \abs(travel(config, axis->drift_mark_raw, axis->raw)) > config->drift_counts;
+  @
+  @ // P5: driven for too long without progress.
+  @ predicate stalled(ilk_axis_config_t *config, ilk_axis_t *axis) =
+  @   axis->state != ILK_AXIS_DISABLED && axis->state != ILK_AXIS_FAULTED
+  @   && axis->stall_driven_ticks >= config->stall_ticks;
+  @
   @ // P7: farthest travel of a phase of homing.
   @ logic integer homing_bound(ilk_axis_config_t *config, ilk_axis_t *axis) =
   @   axis->homing_phase == ILK_HOMING_BACK_OFF ? config->home_backoff_counts : config->home_travel_counts;
@@ -181,6 +200,65 @@
   @   \at(state->cause, After) == \at(state->cause, Before)
   @   && \at(state->cause_tick, After) == \at(state->cause_tick, Before)
   @   && \at(state->cause_value, After) == \at(state->cause_value, Before);
+  @*/
+
+/* Requests. */
+
+/*@ predicate names_axis(integer kind) = ILK_REQUEST_DISABLE <= kind <= ILK_REQUEST_RESTORE;
+  @
+  @ predicate reset_allowed(ilk_state_t *state) =
+  @   state->mode == ILK_MODE_LOCKED && state->pedal == ILK_PEDAL_RELEASED && state->estop == 0
+  @   && state->bus_bad_ticks == 0 && state->overruns_in_row == 0 && state->config_sound != 0
+  @   && state->app_alive != 0;
+  @
+  @ predicate disable_allowed(ilk_state_t *state, ilk_axis_t *axis) =
+  @   state->mode != ILK_MODE_INIT && axis->state != ILK_AXIS_FAULTED;
+  @
+  @ predicate enable_allowed(ilk_state_t *state, ilk_axis_t *axis) =
+  @   (state->mode == ILK_MODE_READY || state->mode == ILK_MODE_MOTION) && axis->state != ILK_AXIS_FAULTED
+  @   && axis->card_valid != 0;
+  @
+  @ predicate clear_fault_allowed(ilk_state_t *state, ilk_axis_t *axis) =
+  @   state->mode != ILK_MODE_INIT && axis->state == ILK_AXIS_FAULTED && axis->card_valid != 0
+  @   && axis->fault_tick != state->tick && state->pedal == ILK_PEDAL_RELEASED;
+  @
+  @ predicate motion_allowed(ilk_state_t *state, ilk_axis_t *axis) =
+  @   state->mode == ILK_MODE_MOTION && axis->state != ILK_AXIS_FAULTED && axis->state != ILK_AXIS_DISABLED
+  @   && axis->state != ILK_AXIS_HOMING;
+  @
+  @ // P4 and P7: coasting beyond the setpoint stays within the soft limits, or within the unhomed travel.
+  @ predicate setpoint_allowed(ilk_axis_config_t *config, ilk_axis_t *axis, integer setpoint) =
+  @   axis->homed != 0
+  @     ? config->min_counts + config->coast_counts <= setpoint <= config->max_counts - config->coast_counts
+  @     : \abs(setpoint - (axis->position_counts - axis->press_travel_counts))
+  @         <= config->unhomed_travel_counts - config->coast_counts;
+  @
+  @ predicate drive_allowed(ilk_axis_config_t *config, ilk_axis_t *axis, ilk_request_t *request) =
+  @   request->drive <= drive_bound(config, axis) && request->amplitude <= config->max_amplitude;
+  @
+  @ predicate move_allowed(ilk_config_t *config, ilk_state_t *state, ilk_request_t *request) =
+  @   motion_allowed(state, &state->axis[request->axis]) && 0 < request->lease_ticks <= config->lease_max_ticks
+  @   && drive_allowed(&config->axis[request->axis], &state->axis[request->axis], request)
+  @   && setpoint_allowed(&config->axis[request->axis], &state->axis[request->axis], request->target_counts);
+  @
+  @ predicate declare_allowed(ilk_axis_config_t *config, ilk_state_t *state, ilk_axis_t *axis, integer position) =
+  @   state->mode == ILK_MODE_READY && state->pedal == ILK_PEDAL_RELEASED && axis->state != ILK_AXIS_FAULTED
+  @   && axis->card_valid != 0 && axis->delta_counts == 0 && config->min_counts <= position <= config->max_counts;
+  @
+  @ // The row of the request table that the kind of the request names.
+  @ predicate acceptable(ilk_config_t *config, ilk_state_t *state, ilk_request_t *request) =
+  @   (request->kind == ILK_REQUEST_HEARTBEAT || request->kind == ILK_REQUEST_STOP ==> state->mode != ILK_MODE_INIT)
+  @   && (request->kind == ILK_REQUEST_RESET ==> reset_allowed(state))
+  @   && (request->kind == ILK_REQUEST_DISABLE ==> disable_allowed(state, &state->axis[request->axis]))
+  @   && (request->kind == ILK_REQUEST_ENABLE ==> enable_allowed(state, &state->axis[request->axis]))
+  @   && (request->kind == ILK_REQUEST_CLEAR_FAULT ==> clear_fault_allowed(state, &state->axis[request->axis]))
+  @   && (request->kind == ILK_REQUEST_MOVE ==> move_allowed(config, state, request))
+  @   && (request->kind == ILK_REQUEST_HOME ==> motion_allowed(state, &state->axis[request->axis])
+  @       && config->axis[request->axis].limit_side != ILK_LIMIT_NONE)
+  @   && (request->kind == ILK_REQUEST_SET_HOME ==>
+  @       declare_allowed(&config->axis[request->axis], state, &state->axis[request->axis], 0))
+  @   && (request->kind == ILK_REQUEST_RESTORE ==> declare_allowed(
+  @       &config->axis[request->axis], state, &state->axis[request->axis], request->target_counts));
   @*/
 
 /* The output gate. */

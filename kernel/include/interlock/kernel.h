@@ -10,6 +10,7 @@
 
 #include <stdint.h>
 
+#include "interlock/acsl.h"
 #include "interlock/types.h"
 
 #ifdef __cplusplus
@@ -23,6 +24,9 @@ ilk_config_verdict_t ilk_config_validate(const ilk_config_t *config);
 uint32_t ilk_config_crc(const ilk_config_t *config);
 
 /** CRC-32 (IEEE 802.3, reflected) of all words before `crc`, each least significant byte first. */
+/*@ requires readable: \valid_read(request);
+  @ assigns  \nothing;
+  @*/
 uint32_t ilk_request_crc(const ilk_request_t *request);
 
 /**
