@@ -28,7 +28,9 @@ int main(void) {
   CHECK_ALL
   RELATION_ALL
   __CPROVER_assert(keeps(c, b), "frame: nothing else changes");
+#ifndef WITHOUT_GOALS
   REACH_ALL
+#endif
   (void)b;
   (void)c;
   return 0;

@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parents[2]
 HERE = Path(__file__).resolve().parent
 PROVERS = ROOT / "build" / "provers"
 TLA = ROOT / "spec" / "tla"
-CBMC_SECONDS = 120
+CBMC_SECONDS = 900
 
 
 class ToolError(Exception):
@@ -82,8 +82,9 @@ def cbmc(case: Path, kernel: Path, included: Sequence[str]) -> Proof:
     log = case / "cbmc.log"
     sources = kernel_sources(kernel, included)
     flags = [f"-I{case}", f"-I{kernel}/include", f"-I{kernel}/src", "-DILK_FRAME_WORDS=32", "--slice-formula"]
-    flags += ["--no-standard-checks", "--unwinding-assertions", "--drop-unused-functions", "--trace"]
-    status, text = run([str(PROVERS / "bin" / "cbmc"), *flags, str(HERE / "prove.c"), *sources], log, ROOT, CBMC_SECONDS)
+    flags += ["--no-standard-checks", "--unwinding-assertions", "--drop-unused-functions"]
+    command = [str(PROVERS / "bin" / "cbmc"), *flags, str(HERE / "prove.c"), *sources]
+    status, text = run(command, log, ROOT, CBMC_SECONDS)
     results = list(RESULT.finditer(text))
     if status not in (0, 10) or not results:
         raise ToolError(f"CBMC gave no result for {case.name} (status {status}); log {log}")
@@ -97,6 +98,7 @@ def cbmc(case: Path, kernel: Path, included: Sequence[str]) -> Proof:
         else:
             proof.reached += 1
     if proof.failed:
+        _, text = run([*command, "--trace", "-DWITHOUT_GOALS"], case / "counterexample.log", ROOT, CBMC_SECONDS)
         proof.case = counterexample(text, proof.failed[0])
     return proof
 
