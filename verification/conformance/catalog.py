@@ -30,8 +30,8 @@ class Kind:
     """How a column's tokens in the model relate to a word of the kernel.
 
     `spelling` names a family of the catalog, or one of `flag` (any word but 0 is TRUE), `contact`, `number`,
-    `cap:N` (unsigned; N stands for every value from N on), `clamp:LOW:HIGH` (signed; an end stands for all values
-    beyond it), `within` (signed; looked at only within the model's range), `bit:N` (one bit of a word).
+    `cap:N` (unsigned; N stands for every value from N on), `clamp:LOW:HIGH` (signed; an end stands for all
+    values beyond it), `within` (signed; only the model's range is looked at), `bit:N` (one bit of a word).
     """
 
     def __init__(self, spelling: str, names: dict[str, dict[str, int]]) -> None:
@@ -43,7 +43,7 @@ class Kind:
             self.codes = self.codes | UNKNOWN_REQUEST
 
     def code(self, token: str) -> int:
-        """The number for a token as TLC prints it. Raises ValueError for a token that is neither name nor number."""
+        """The number for a token of TLC. Raises ValueError for one that is neither name nor number."""
         name = token.strip('"')
         return self.codes[name] if name in self.codes else int(name)
 

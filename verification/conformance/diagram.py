@@ -9,7 +9,7 @@ NO_ROW = -(2**31) + 1
 
 @dataclass(frozen=True)
 class Node:
-    """Chooses among `children` by the value of the input `level`; a child is a node's index or a leaf's value."""
+    """Chooses among `children` by the input `level`; a child is a node's index or a leaf's value."""
 
     level: int
     children: tuple[tuple[bool, int], ...]
@@ -24,7 +24,7 @@ class Diagram:
 
 
 def reduce(leaves: Sequence[int], sizes: Sequence[int]) -> Diagram:
-    """The diagram of a dense table: `leaves` in lexicographic order of the inputs, whose domains have `sizes`.
+    """The diagram of a dense table: `leaves` in lexicographic order of inputs whose domains have `sizes`.
 
     Equal parts are shared, and a choice without consequence is left out.
     """

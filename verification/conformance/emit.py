@@ -13,7 +13,9 @@ REACHED_AT_MOST = 24
 def reader(name: str, columns: list[Column]) -> str:
     """C function that gives the codes of the columns of a case."""
     lines = [f"static void {name}(const case_t *c, const case_t *b, int32_t *codes) {{", "  (void)b;"]
-    lines += [f"  codes[{index}] = {column.read}; /* {column.name} */" for index, column in enumerate(columns)]
+    lines += [
+        f"  codes[{index}] = {column.read}; /* {column.name} */" for index, column in enumerate(columns)
+    ]
     return "\n".join([*lines, "}", ""])
 
 
@@ -26,15 +28,27 @@ def writer(columns: list[Column]) -> str:
 
 
 def settings(phase: Phase) -> str:
-    """C function that sets the model's constants, and the condition that a case stands for the model's world."""
+    """C functions that set the model's constants, and tell whether a case stands for its world."""
     lines = [
-        f"  c->{group}.{name} = {value};" for group, values in phase.constants.items() for name, value in values.items()
+        f"  c->{group}.{name} = {value};"
+        for group, values in phase.constants.items()
+        for name, value in values.items()
     ]
     lines += [f"  {statement}" for statement in phase.configure]
     conditions = [f"  if (!({condition})) {{ return 0; }}" for condition in phase.assume]
     return "\n".join(
-        ["static void configure(case_t *c) {", *lines, "}", "static int may_be(const case_t *c) {", "  (void)c;"]
-        + [*conditions, "  return 1;", "}", f"static void call(case_t *c) {{ {phase.call} }}", ""]
+        [
+            "static void configure(case_t *c) {",
+            *lines,
+            "}",
+            "static int may_be(const case_t *c) {",
+            "  (void)c;",
+            *conditions,
+            "  return 1;",
+            "}",
+            f"static void call(case_t *c) {{ {phase.call} }}",
+            "",
+        ]
     )
 
 
@@ -53,11 +67,26 @@ def frame(phase: Phase) -> str:
     for structure, member in re.findall(r"(ilk_state_t|ilk_axis_t) (\w+);", phase.subject):
         words += [f"{member}.{name}" for name in fields_of(structure)]
         if structure == "ilk_state_t":
-            words += [f"{member}.axis[{slot}].{name}" for slot in range(10) for name in fields_of("ilk_axis_t")]
+            words += [
+                f"{member}.axis[{slot}].{name}" for slot in range(10) for name in fields_of("ilk_axis_t")
+            ]
     changes = [column.at for column in phase.outputs if column.at] + phase.changes
-    kept = [word for word in words if not any(word == change or word.startswith((f"{change}.", f"{change}[")) for change in changes)]
+    kept = [
+        word
+        for word in words
+        if not any(word == change or word.startswith((f"{change}.", f"{change}[")) for change in changes)
+    ]
     lines = [f"  if (c->{word} != b->{word}) {{ return false; }}" for word in kept]
-    return "\n".join(["static bool keeps(const case_t *c, const case_t *b) {", "  (void)c; (void)b;", *lines, "  return true;", "}", ""])
+    return "\n".join(
+        [
+            "static bool keeps(const case_t *c, const case_t *b) {",
+            "  (void)c; (void)b;",
+            *lines,
+            "  return true;",
+            "}",
+            "",
+        ]
+    )
 
 
 def checks(table: Table) -> str:
@@ -69,13 +98,20 @@ def checks(table: Table) -> str:
     for index, column in enumerate(phase.outputs):
         answers = sorted({outputs[index] for _, outputs in table.rows})
         if len(answers) <= REACHED_AT_MOST:
-            reached += [f'REACH({index}, {value}, "{column.name} {column.kind.text(value)}")' for value in answers]
+            reached += [
+                f'REACH({index}, {value}, "{column.name} {column.kind.text(value)}")' for value in answers
+            ]
     within = " ".join(
         f"WITHIN({index}, {domain[0]}, {domain[-1]})"
         for index, (input_, domain) in enumerate(zip(phase.inputs, table.domains, strict=True))
         if input_.kind.name == "within"
     )
-    macros = {"CHECK_ALL": columns, "RELATION_ALL": relations, "REACH_ALL": " ".join(reached), "WITHIN_ALL": within}
+    macros = {
+        "CHECK_ALL": columns,
+        "RELATION_ALL": relations,
+        "REACH_ALL": " ".join(reached),
+        "WITHIN_ALL": within,
+    }
     return "".join(f"#define {name} {text}\n" for name, text in macros.items())
 
 
@@ -93,7 +129,13 @@ def tables(table: Table) -> str:
         for level, domain in enumerate(table.domains)
     ]
     known_all = " &&\n         ".join(known)
-    return "\n".join([*parts, f"static int has_row(const int32_t *in) {{\n  return {known_all} && has_row_within(in);\n}}", ""])
+    return "\n".join(
+        [
+            *parts,
+            f"static int has_row(const int32_t *in) {{\n  return {known_all} && has_row_within(in);\n}}",
+            "",
+        ]
+    )
 
 
 def case_header(table: Table, model_hash: str) -> str:
@@ -102,7 +144,7 @@ def case_header(table: Table, model_hash: str) -> str:
     names = ", ".join(f'"{column.name}"' for column in [*phase.inputs, *phase.outputs])
     return "\n".join(
         [
-            f"/* {phase.name}: {phase.title}. Generated from the model {model_hash}; rows {table.digest()}. */",
+            f"/* {phase.name}: {phase.title}. From the model {model_hash}, rows {table.digest()}. */",
             "#include <stdbool.h>",
             "#include <stdint.h>",
             '#include "interlock/kernel.h"',

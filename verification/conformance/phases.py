@@ -37,14 +37,17 @@ class Report:
         """One line for people."""
         verdict = "FAILED" if self.faults else "agrees"
         return (
-            f"{self.name}: {verdict}, {self.rows} rows, {self.states} states, {self.proved} assertions proved, "
-            f"{self.proved_rows} rows proved, {self.reached} answers reached, {self.seconds:.0f} s"
+            f"{self.name}: {verdict}, {self.rows} rows, {self.states} states; proved: "
+            f"{self.proved_rows} rows by {self.proved} assertions, {self.reached} answers reached; "
+            f"{self.seconds:.0f} s"
         )
 
 
 def names() -> list[str]:
     """All phases, the longest first."""
-    return sorted((path.stem for path in (HERE / "phases").glob("*.toml")), key=lambda name: name != "change_mode")
+    return sorted(
+        (path.stem for path in (HERE / "phases").glob("*.toml")), key=lambda name: name != "change_mode"
+    )
 
 
 def model_hash(phase: Phase, model: Path = TLA) -> str:
@@ -60,7 +63,9 @@ def table_of(phase: Phase, folder: Path, model: Path = TLA) -> Table:
     """Lets TLC print the phase's rows. Raises ToolError when it does not finish them."""
     status, text = tlc(HERE / "rows" / f"{phase.rows}.tla", folder, phase.model_constants(), model)
     if status != 0:
-        raise ToolError(f"TLC did not finish the rows of {phase.name} (status {status}); log {folder / 'tlc.log'}")
+        raise ToolError(
+            f"TLC did not finish the rows of {phase.name} (status {status}); log {folder / 'tlc.log'}"
+        )
     return read_rows(phase, text)
 
 
@@ -80,7 +85,8 @@ def explain(table: Table, line: str) -> str:
     case = ", ".join(f"{c.name}={c.kind.text(v)}" for c, v in zip(phase.inputs, inputs, strict=True))
     column = next(c for c in [*phase.outputs, *phase.inputs] if c.name == found[3])
     expected, got = column.kind.text(int(found[4])), column.kind.text(int(found[5]))
-    return f"{phase.name}, {phase.title}: with {case}: {column.name} is {expected} in the model, {got} in the {found[1]}"
+    answers = f"{column.name} is {expected} in the model, {got} in the {found[1]}"
+    return f"{phase.name}, {phase.title}: with {case}: {answers}"
 
 
 def run_rows(table: Table, folder: Path) -> list[str]:
@@ -88,7 +94,9 @@ def run_rows(table: Table, folder: Path) -> list[str]:
     _, text = run([str(folder / "run_rows"), str(folder / "rows.bin")], folder / "rows.log")
     end = re.search(r"^ROWS (\d+) DIFFERENCES (\d+)$", text, re.MULTILINE)
     if end is None or int(end[1]) != len(table.rows):
-        raise ToolError(f"the compiled kernel did not finish the rows of {table.phase.name}; log {folder / 'rows.log'}")
+        raise ToolError(
+            f"the compiled kernel did not finish the rows of {table.phase.name}; log {folder / 'rows.log'}"
+        )
     return [explain(table, line) for line in text.splitlines() if line.startswith("DIFFERS")][:SHOWN]
 
 
@@ -97,7 +105,10 @@ def prove(phase: Phase, folder: Path, kernel: Path, report: Report) -> None:
     proof = cbmc(folder, kernel, [*phase.includes, *phase.stands_in])
     report.proved, report.reached = len(proof.proved), proof.reached
     report.proved_rows = 0 if proof.failed else report.rows
-    case = ", ".join(f"{column.name}={column.kind.text(code)}" for column, code in zip(phase.inputs, proof.case, strict=False))
+    case = ", ".join(
+        f"{column.name}={column.kind.text(code)}"
+        for column, code in zip(phase.inputs, proof.case, strict=False)
+    )
     report.faults += [f"{phase.name}: not proved: {text}; for example with {case}" for text in proof.failed]
     report.faults += [f"{phase.name}: vacuous: {text} never happens" for text in proof.unreached]
 
@@ -125,7 +136,13 @@ def write_manifest(reports: list[Report]) -> None:
     """Writes what the tables are, to be committed with the model."""
     lines = ["# What the model says of each phase: written by run.py --update, compared on every run."]
     for report in sorted(reports, key=lambda each: each.name):
-        lines += ["", f"[{report.name}]", f'model = "{report.model}"', f"rows = {report.rows}", f'table = "{report.table}"']
+        lines += [
+            "",
+            f"[{report.name}]",
+            f'model = "{report.model}"',
+            f"rows = {report.rows}",
+            f'table = "{report.table}"',
+        ]
     MANIFEST.write_text("\n".join(lines) + "\n", "utf-8")
 
 
@@ -135,8 +152,13 @@ def against_manifest(reports: list[Report], only: str = "") -> list[str]:
     if only:
         committed = {only: committed.get(only)}
     found = {r.name: {"model": r.model, "rows": r.rows, "table": r.table} for r in reports}
-    different = sorted(name for name in committed.keys() | found.keys() if committed.get(name) != found.get(name))
-    return [f"manifest.toml is stale or edited by hand at {name}; run.py --update writes it anew" for name in different]
+    different = sorted(
+        name for name in committed.keys() | found.keys() if committed.get(name) != found.get(name)
+    )
+    return [
+        f"manifest.toml is stale or edited by hand at {name}; run.py --update writes it anew"
+        for name in different
+    ]
 
 
 def uncovered() -> list[str]:

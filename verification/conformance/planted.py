@@ -10,7 +10,7 @@ from tools import HERE, ROOT, TLA
 
 
 def planted_copy(source: Path, target: Path, edit: dict[str, str]) -> Path:
-    """A copy of a folder with the difference in it. Raises TableError when its place is not there exactly once."""
+    """A copy of a folder with the difference in it. Raises TableError when its place is not there once."""
     shutil.rmtree(target, ignore_errors=True)
     shutil.copytree(source, target)
     path = target / edit["file"]
@@ -30,7 +30,9 @@ def findings(path: Path) -> dict[str, bool]:
     phase = load_phase(HERE / "phases" / f"{edit['phase']}.toml")
     table = phases.table_of(phase, folder, model)
     phases.build(phase, table, folder, kernel, model)
-    report = phases.Report(phase.name, model=phases.model_hash(phase, model), table=table.digest(), rows=len(table.rows))
+    report = phases.Report(
+        phase.name, model=phases.model_hash(phase, model), table=table.digest(), rows=len(table.rows)
+    )
     found = {"the compiled kernel on all rows": bool(phases.run_rows(table, folder))}
     phases.prove(phase, folder, kernel, report)
     found["the proof"] = any("not proved" in fault for fault in report.faults)
@@ -44,7 +46,11 @@ def check_all() -> tuple[int, list[str]]:
     count, missed = 0, []
     for path in sorted((HERE / "planted").glob("*.toml")):
         found = findings(path)
-        blind = [f"planted difference {path.stem}: {part} did not find it" for part, saw in found.items() if not saw]
+        blind = [
+            f"planted difference {path.stem}: {part} did not find it"
+            for part, saw in found.items()
+            if not saw
+        ]
         missed += blind
         count += not blind
         print(f"planted {path.stem}: {'missed' if blind else 'found by ' + ', '.join(found)}", flush=True)

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Rung 2 of the ladder: the kernel and the model agree on every state and every input, phase by phase.
 
-TLC prints each phase's whole transition relation; CBMC proves that the C of the phase computes the same for all
-concrete inputs, and the compiled kernel runs over all rows. `--update` writes manifest.toml anew, for a commit
-that changes the model; `--only PHASE` looks at one phase and leaves no evidence. See docs/conformance.md.
+TLC prints each phase's whole transition relation; CBMC proves that the C of the phase computes the same for
+all concrete inputs, and the compiled kernel runs over all rows. `--update` writes manifest.toml anew, for a
+commit that changes the model; `--only PHASE` looks at one phase and leaves no evidence. See
+docs/conformance.md.
 """
 
 import argparse
@@ -77,7 +78,9 @@ def rung(arguments: argparse.Namespace) -> int:
 def main() -> int:
     """The command line."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--update", action="store_true", help="write manifest.toml from what the model says now")
+    parser.add_argument(
+        "--update", action="store_true", help="write manifest.toml from what the model says now"
+    )
     parser.add_argument("--only", action="append", metavar="PHASE", help="look at this phase alone")
     try:
         return rung(parser.parse_args())

