@@ -34,10 +34,10 @@ bool ilk_unix_address(const char *path, struct sockaddr_un *address, ilk_error_t
  * Listens on `path`, readable and writable by the owner alone. Replaces a socket that nobody holds any
  * more, and nothing else.
  */
-ilk_listen_result_t ilk_link_listen(ilk_link_socket_t *socket, const char *path, ilk_error_t *error);
+ilk_listen_result_t ilk_link_listen(ilk_link_socket_t *link, const char *path, ilk_error_t *error);
 
 /** Stops listening and removes the socket's file. */
-void ilk_link_unlisten(ilk_link_socket_t *socket);
+void ilk_link_unlisten(ilk_link_socket_t *link);
 
 #ifdef __cplusplus
 }

@@ -1,0 +1,1 @@
+#pragma once /* seed: scan guard */
