@@ -3,8 +3,8 @@
 
 PASSED: every statement, branch and condition is shown, for frames of 32 and of 64 words, and every logical
 operator of the core belongs to a decision that was measured. VACUOUS: a run of a few tests shows just as
-much, or a decision was not measured. There is no list of exceptions: what could not be covered was taken out of
-the core.
+much, or a decision was not measured. There is no list of exceptions: what could not be covered was taken
+out of the core.
 """
 
 import re
