@@ -9,25 +9,24 @@ import argparse
 import datetime
 import json
 import re
-import shutil
 import subprocess
 import sys
 import time
 from pathlib import Path
 
+sys.path.append(str(Path(__file__).resolve().parents[1] / "target"))
+
+import size
+
 ROOT = Path(__file__).resolve().parents[2]
+
 EVIDENCE = ROOT / "build/evidence"
-CORE = ROOT / "kernel/src"
-INCLUDES = ["-I", str(ROOT / "kernel/include"), "-I", str(CORE)]
-CORTEX_M = ["arm-none-eabi-gcc", "-mcpu=cortex-m4", "-mthumb", "-Os"]
-HOST = ["gcc", "-O3"]
 CALLGRIND_STEPS = 500
 
 LIMITS = {
     "step_ns_median": 1000,
     "step_ns_worst_path": 2000,
-    "cortex_m_text_bytes": 16384,
-    "stack_bytes": 1024,
+    **size.LIMITS,
 }
 
 
@@ -57,67 +56,6 @@ def instructions_per_step(binary: Path, scenario: str) -> int:
     return int(summary.group(1)) // CALLGRIND_STEPS
 
 
-def compile_core(compiler: list[str], directory: Path) -> list[Path]:
-    """Compiles every file of the core; the compiler leaves its stack report beside each object."""
-    shutil.rmtree(directory, ignore_errors=True)
-    directory.mkdir(parents=True)
-    objects = []
-    for source in sorted(CORE.glob("*.c")):
-        obj = directory / f"{source.stem}.o"
-        run(
-            [
-                *compiler,
-                "-std=c11",
-                "-ffreestanding",
-                "-DILK_FRAME_WORDS=32",
-                "-fcallgraph-info=su",
-                *INCLUDES,
-                "-c",
-                str(source),
-                "-o",
-                str(obj),
-            ]
-        )
-        objects.append(obj)
-    return objects
-
-
-def text_bytes(objects: list[Path], size_tool: str) -> int:
-    rows = run([size_tool, *map(str, objects)]).splitlines()[1:]
-    return sum(int(row.split()[0]) for row in rows)
-
-
-def stack_bytes(directory: Path, entry: str) -> int:
-    """Deepest chain of calls from `entry`, by the compiler's frame sizes and call graph.
-
-    The core has no recursion and no function pointer; a cycle or a frame of unbounded size is an error.
-    """
-    frames: dict[str, int] = {}
-    calls: dict[str, set[str]] = {}
-    for report in directory.glob("*.ci"):
-        text = report.read_text()
-        for title, label in re.findall(r'node: \{ title: "([^"]+)" label: "([^"]+)"', text):
-            frame = re.search(r"(\d+) bytes \((\w+)", label)
-            if frame is None:
-                frames.setdefault(title, 0)
-            elif frame.group(2) != "static":
-                raise SystemExit(f"{title}: stack use is {frame.group(2)}, expected static")
-            else:
-                frames[title] = int(frame.group(1))
-        for source, target in re.findall(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"', text):
-            calls.setdefault(source, set()).add(target)
-
-    def deepest(name: str, path: tuple[str, ...]) -> int:
-        if name in path:
-            raise SystemExit(f"recursion: {' -> '.join((*path, name))}")
-        below = [deepest(callee, (*path, name)) for callee in sorted(calls.get(name, ()))]
-        return frames.get(name, 0) + max(below, default=0)
-
-    if entry not in frames:
-        raise SystemExit(f"{entry}: not in the compiler's call graph")
-    return deepest(entry, ())
-
-
 def evidence(figures: dict[str, float], started: float, detail: dict) -> dict:
     commit = run(["git", "-C", str(ROOT), "rev-parse", "HEAD"]).strip()
     return {
@@ -145,9 +83,6 @@ def main() -> int:
     timed = {words: json.loads(run([str(arguments.bin / name)])) for words, name in binaries.items()}
     scenarios = timed[32]["scenarios"]
     counted = {name: instructions_per_step(arguments.bin / "step_bench", name) for name in scenarios}
-    cortex = compile_core(CORTEX_M, ROOT / "build/bench/cortex-m")
-    compile_core(HOST, ROOT / "build/bench/host")
-
     figures = {
         "step_ns_median": scenarios["moving"]["median_ns"],
         "step_ns_p999": scenarios["moving"]["p999_ns"],
@@ -157,11 +92,7 @@ def main() -> int:
         "step_instructions_median": counted["moving"],
         "step_instructions_worst_path": max(counted.values()),
         "reference_ns": timed[32]["reference_ns"],
-        "cortex_m_text_bytes": text_bytes(cortex, "arm-none-eabi-size"),
-        "stack_bytes": max(
-            stack_bytes(ROOT / "build/bench/cortex-m", "ilk_step"),
-            stack_bytes(ROOT / "build/bench/host", "ilk_step"),
-        ),
+        **size.measure(ROOT / "build/bench"),
     }
     detail = {"timed": timed, "instructions": counted, "limits": LIMITS}
     record = evidence(figures, started, detail)
