@@ -3,8 +3,8 @@
  * P13: when one slot of a configuration is valid, and what the step may rely on then. The slot is arbitrary
  * bits.
  *
- * Whether homing ends in time is replaced by an arbitrary answer: what its two products of 64 bits say is left to
- * the tests of its edges in P13_configuration.
+ * Whether homing ends in time is replaced by an arbitrary answer: what its two products of 64 bits say is
+ * left to the tests of its edges in P13_configuration.
  */
 #include "config.c"
 #include "proof.h"
