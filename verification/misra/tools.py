@@ -6,6 +6,7 @@ so only in passing, so that it must be looked for.
 
 import os
 import re
+import shutil
 import subprocess
 from collections.abc import Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -79,7 +80,17 @@ def cppcheck(files: Sequence[str], log: Path) -> set[Finding]:
 
     Headers must be among the files: the addon looks at comments and spelling only in files that it is given.
     """
-    command = ["cppcheck", "--addon=misra", "--std=c11", "--platform=unix64", "--library=posix,gnu"]
+    scratch = GENERATED / log.stem  # cppcheck's notes, which would else lie beside the sources
+    shutil.rmtree(scratch, ignore_errors=True)
+    scratch.mkdir(parents=True)
+    command = [
+        "cppcheck",
+        f"--cppcheck-build-dir={scratch}",
+        "--addon=misra",
+        "--std=c11",
+        "--platform=unix64",
+        "--library=posix,gnu",
+    ]
     command += ["--enable=warning,style,performance,portability,information", "--force"]
     command += ["--suppress=missingIncludeSystem", "--template={file}|{line}|{id}|{severity}|{message}"]
     command += [*DEFINES, *(f"-I{directory}" for directory in INCLUDES), *files]
