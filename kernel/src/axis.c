@@ -181,10 +181,10 @@ static void advance_marks(const ilk_axis_config_t *config, ilk_axis_t *axis) {
   if (progress_from(config, axis, axis->reverse_mark_raw, axis->reverse_direction) > 0) {
     axis->reverse_mark_raw = axis->raw;
   }
+  axis->undriven_ticks = was_driven(axis) ? 0u : count_up(axis->undriven_ticks, config->settle_ticks);
   if (made_progress(config, axis)) {
     clear_stall_count(axis);
   }
-  axis->undriven_ticks = was_driven(axis) ? 0u : count_up(axis->undriven_ticks, config->settle_ticks);
   if (!is_enabled(axis) || (axis->undriven_ticks < config->settle_ticks)) {
     axis->drift_mark_raw = axis->raw;
   }

@@ -103,13 +103,14 @@ AdvanceReverseMark(a) ==
   IF Along(a.reverse_direction, a.since_reverse_mark) > 0
   THEN [a EXCEPT !.since_reverse_mark = 0] ELSE a
 
+CountUndriven(k, a) ==
+  [a EXCEPT !.undriven_ticks = IF WasDriven(a) THEN 0 ELSE CountUp(@, k.settle_ticks)]
+
 AdvanceStallMark(k, a) == IF MadeProgress(k, a) THEN ClearStallCount(a) ELSE a
 
 AdvanceDriftMark(k, a) ==
-  LET undriven == IF WasDriven(a) THEN 0 ELSE CountUp(a.undriven_ticks, k.settle_ticks)
-      settled  == IsEnabled(a) /\ undriven >= k.settle_ticks
-  IN  [a EXCEPT !.undriven_ticks = undriven,
-                !.since_drift_mark = IF settled THEN a.since_drift_mark ELSE 0]
+  LET settled == IsEnabled(a) /\ a.undriven_ticks >= k.settle_ticks
+  IN  [a EXCEPT !.since_drift_mark = IF settled THEN @ ELSE 0]
 
 Jumped(k, a)   == Magnitude(a.delta_counts) > k.max_delta_counts * a.ticks_since_frame
 Reversed(k, a) == WasDriven(a) /\ -Along(a.reverse_direction, a.since_reverse_mark) > k.reverse_counts
@@ -183,7 +184,7 @@ Awaited(c, k, a, reading) ==
     !.ticks_since_frame = CountUp(a.ticks_since_frame, c.bad_frame_limit)])
 
 ObserveValid(k, a, reading) ==
-  LET followed == AdvanceReverseMark(Follow(a, reading.moved))
+  LET followed == CountUndriven(k, AdvanceReverseMark(Follow(a, reading.moved)))
       marked   == AdvanceDriftMark(k, AdvanceStallMark(k, followed))
   IN  [ axis  |-> [marked EXCEPT !.ticks_since_frame = 0, !.driven_direction = "NONE"],
         fault |-> JudgeMotion(k, marked) ]

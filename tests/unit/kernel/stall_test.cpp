@@ -67,6 +67,13 @@ TEST(P5_stall, keeps_the_axis_undriven_until_cleared_and_enabled) {
   EXPECT_EQ(bench.fault(axis), ILK_FAULT_NONE) << "the count began anew";
 }
 
+TEST(P5_stall, progress_in_the_first_frame_after_a_rest_counts_at_once) {
+  Bench bench = jammed_bench();
+  bench.keep_moving(axis, 80, 1);
+  bench.motor[axis].travelled += 2;
+  EXPECT_EQ(driven_until_fault(bench, 80), stall_ticks) << "not a frame later";
+}
+
 TEST(P5_stall, progress_of_its_minimum_clears) {
   Bench bench = jammed_bench();
   for (int round = 0; round < 10; ++round) {

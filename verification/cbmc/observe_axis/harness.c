@@ -47,19 +47,19 @@ static void follow(const ilk_axis_config_t* config, ilk_axis_t* axis, uint32_t r
 
 /** The farthest point in the driven direction, progress before the axis had settled, and where it settled. */
 static void move_marks(const ilk_axis_config_t* config, ilk_axis_t* axis) {
-  const bool settled_before = axis->undriven_ticks >= config->settle_ticks;
   const int64_t onward = progress(config, axis, axis->stall_mark_raw, axis->stall_direction);
   if (progress(config, axis, axis->reverse_mark_raw, axis->reverse_direction) > 0) {
     axis->reverse_mark_raw = axis->raw;
   }
-  if (!settled_before && (onward > 0) && (onward >= (int64_t)config->stall_min_counts)) {
+  axis->undriven_ticks = (axis->driven_direction != ILK_DIRECTION_NONE)
+                             ? 0u
+                             : (uint32_t)one_more(axis->undriven_ticks, config->settle_ticks);
+  if ((axis->undriven_ticks < config->settle_ticks) && (onward > 0) &&
+      (onward >= (int64_t)config->stall_min_counts)) {
     axis->stall_driven_ticks = 0u;
     axis->setpoint_changed = 0u;
     axis->stall_mark_raw = axis->raw;
   }
-  axis->undriven_ticks = (axis->driven_direction != ILK_DIRECTION_NONE)
-                             ? 0u
-                             : (uint32_t)one_more(axis->undriven_ticks, config->settle_ticks);
   if (!enabled(axis) || (axis->undriven_ticks < config->settle_ticks)) {
     axis->drift_mark_raw = axis->raw;
   }

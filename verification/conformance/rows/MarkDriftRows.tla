@@ -7,8 +7,9 @@ CONSTANTS settle_ticks
 
 ASSUME
   \A driven \in Directions, undriven \in 0..settle_ticks, state \in AxisStates, since \in -2..2 :
-    LET before == [ driven_direction |-> driven, undriven_ticks |-> undriven, state |-> state,
+    LET k      == [ settle_ticks |-> settle_ticks ]
+        before == [ driven_direction |-> driven, undriven_ticks |-> undriven, state |-> state,
                     since_drift_mark |-> since ]
-        a == AdvanceDriftMark([settle_ticks |-> settle_ticks], before)
+        a == AdvanceDriftMark(k, CountUndriven(k, before))
     IN PrintT(<< driven, undriven, state, since, a.since_drift_mark, a.undriven_ticks >>)
 ==============================================================================
