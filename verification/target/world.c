@@ -256,7 +256,7 @@ uint32_t world_requests(world_t *world, const ilk_config_t *config, const ilk_st
       request->kind = (uint32_t)ILK_REQUEST_HEARTBEAT;
     }
     world->sequence++;
-    request->sequence = world->sequence;
+    request->sequence = dice_one_in(dice, 700u) ? 1u : world->sequence;
     request->crc = ilk_request_crc(request);
     if (dice_one_in(dice, 500u)) {
       request->drive ^= 1u;
