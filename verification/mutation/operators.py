@@ -1,8 +1,8 @@
 """One-token mutants of the kernel's core: what a slip of the pen could have made of a line.
 
-The operators are those of Offutt et al., "An experimental determination of sufficient mutant operators" (1996),
-as far as C without pointers arithmetic knows them: relation, logical connector, negation, arithmetic, constant,
-statement deletion; and one for this kernel, the exchange of an enumerator for its neighbour.
+The operators are those of Offutt et al., "An experimental determination of sufficient mutant operators"
+(1996), as far as C without pointer arithmetic knows them: relation, logical connector, negation, arithmetic,
+constant, statement deletion; and one for this kernel, the exchange of an enumerator for its neighbour.
 """
 
 import hashlib
@@ -11,7 +11,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-RELATIONS = {"<": ("<=", ">="), "<=": ("<", ">"), ">": (">=", "<"), ">=": (">", "<"), "==": ("!=",), "!=": ("==",)}
+RELATIONS = {
+    "<": ("<=", ">="),
+    "<=": ("<", ">"),
+    ">": (">=", "<"),
+    ">=": (">", "<"),
+    "==": ("!=",),
+    "!=": ("==",),
+}
 TOKENS = {
     "relation": (re.compile(r"(?<= )(<=|>=|==|!=|<|>)(?= )"), RELATIONS),
     "connector": (re.compile(r"&&|\|\|"), {"&&": ("||",), "||": ("&&",)}),
@@ -21,7 +28,9 @@ TOKENS = {
     "negation": (re.compile(r"!(?=\w)"), {"!": ("",)}),
 }
 ENUMERATOR = re.compile(r"\bILK_[A-Z]+(?:_[A-Z]+)*\b")
-DELETABLE = re.compile(r"^\s+(?!return|static|const|bool|u?int\d+_t|ilk_\w+_t |finding_t|case|default|break)\S.*;$")
+DELETABLE = re.compile(
+    r"^\s+(?!return|static|const|bool|u?int\d+_t|ilk_\w+_t |finding_t|case|default|break)\S.*;$"
+)
 SKIPPED = re.compile(r"^\s*(#|/\*|\*|//|_Static_assert|case |default:)")
 
 
@@ -90,6 +99,4 @@ def mutants_of(root: Path, files: list[str]) -> list[Mutant]:
 
 def draw(mutants: list[Mutant], count: int, seed: str) -> list[Mutant]:
     """`count` of them, chosen by `seed` alone, the same on every machine."""
-    return sorted(
-        mutants, key=lambda mutant: hashlib.sha256(f"{seed} {mutant}".encode()).digest()
-    )[:count]
+    return sorted(mutants, key=lambda mutant: hashlib.sha256(f"{seed} {mutant}".encode()).digest())[:count]
