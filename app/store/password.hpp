@@ -26,7 +26,10 @@ class Password {
   /** 20 characters that cannot be mistaken for one another, 100 bits of them random. */
   static Stored<Password> random();
 
-  [[nodiscard]] std::string_view text() const { return {text_.data(), text_.size()}; }
+  /** Never null, also when empty: the library that hashes it must not be given null. */
+  [[nodiscard]] std::string_view text() const {
+    return text_.empty() ? std::string_view("") : std::string_view(text_.data(), text_.size());
+  }
 
  private:
   /** Not a string: a short one would leave a copy behind when it is moved. */

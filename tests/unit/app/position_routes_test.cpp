@@ -50,7 +50,8 @@ TEST_F(PositionRoutesTest, SavedPositionsAreAFileWithAName) {
 
 TEST_F(PositionRoutesTest, TheSetpointOfAnOpenMoveIsSavedWithIt) {
   ASSERT_EQ(post("/api/proposals", R"({"slot":3,"target_counts":1000})").status, 201u);
-  for (const json& axis : saved()["axes"]) {
+  const json file = saved();
+  for (const json& axis : file.at("axes")) {
     const bool moves = axis["axis"] == neuro().at_slot(insertion)->name;
     EXPECT_EQ(axis["setpoint_counts"], moves ? json(1000) : json());
   }
