@@ -1,8 +1,8 @@
 /**
  * @file
  * For CBMC: one phase of the tick on every case that stands for a state of the model, whatever the rest of it
- * holds. Each column of the answer must be the table's, and nothing else may change. The assertions that begin
- * with "reach" must fail: each of them shows that an answer occurs.
+ * holds. Each column of the answer must be the table's, and nothing else may change. The assertions that
+ * begin with "reach" must fail: each of them shows that an answer occurs.
  */
 #include "case.h"
 
@@ -16,8 +16,8 @@ int main(void) {
   configure(&after);
   __CPROVER_assume(may_be(&after));
   const case_t before = after;
-  const case_t *b = &before;
-  const case_t *c = &after;
+  const case_t* b = &before;
+  const case_t* c = &after;
   int32_t in[INPUTS];
   int32_t out[OUTPUTS];
   read_inputs(b, b, in);
@@ -31,7 +31,8 @@ int main(void) {
 #ifndef WITHOUT_GOALS
   REACH_ALL
 #endif
-  (void)b;
+      (void)
+      b;
   (void)c;
   return 0;
 }

@@ -1,7 +1,8 @@
 /**
  * @file
  * The compiled kernel on every row that the model gave: each answer must be the row's, and so must be the
- * generated table's, from which the proof goes. Prints what differs, then the number of rows and of differences.
+ * generated table's, from which the proof goes. Prints what differs, then the number of rows and of
+ * differences.
  */
 #include <stdio.h>
 #include <string.h>
@@ -10,13 +11,13 @@
 
 enum { SHOWN = 5, WIDTH = INPUTS + OUTPUTS };
 
-static const case_t *before_of(const case_t *c) {
+static const case_t* before_of(const case_t* c) {
   static case_t before;
   before = *c;
   return &before;
 }
 
-static int differs(const char *what, long row, int column, int32_t expected, int32_t got, long shown) {
+static int differs(const char* what, long row, int column, int32_t expected, int32_t got, long shown) {
   if (expected == got) {
     return 0;
   }
@@ -26,7 +27,7 @@ static int differs(const char *what, long row, int column, int32_t expected, int
   return 1;
 }
 
-static int32_t table_column(int index, const int32_t *in) {
+static int32_t table_column(int index, const int32_t* in) {
 #define CHECK(column, answer, name) \
   if (index == (column)) {          \
     return (answer);                \
@@ -36,7 +37,7 @@ static int32_t table_column(int index, const int32_t *in) {
   return 0;
 }
 
-static int breaks(const char *what, long row, int holds, long shown) {
+static int breaks(const char* what, long row, int holds, long shown) {
   if (!holds && shown < SHOWN) {
     (void)printf("DIFFERS at row %ld: %s\n", row, what);
   }
@@ -44,7 +45,7 @@ static int breaks(const char *what, long row, int holds, long shown) {
 }
 
 /** What is broken of the rest: relations, and that nothing changes but what may. */
-static long check_rest(const case_t *c, const case_t *b, long number, long shown) {
+static long check_rest(const case_t* c, const case_t* b, long number, long shown) {
   long broken = 0;
 #define RELATION(holds, name) broken += breaks(name, number, holds, shown + broken);
   RELATION_ALL
@@ -59,7 +60,7 @@ static long check_row(const int32_t row[WIDTH], long number, long shown) {
   memset(&now, 0, sizeof now);
   configure(&now);
   write_inputs(&now, row);
-  const case_t *b = before_of(&now);
+  const case_t* b = before_of(&now);
   read_inputs(b, b, codes);
   for (int i = 0; i < INPUTS; ++i) {
     differences += differs("input", number, i, row[i], codes[i], shown + differences);
@@ -68,15 +69,17 @@ static long check_row(const int32_t row[WIDTH], long number, long shown) {
   call(&now);
   read_outputs(&now, b, codes + INPUTS);
   for (int i = 0; i < OUTPUTS; ++i) {
-    differences += differs("kernel", number, INPUTS + i, row[INPUTS + i], codes[INPUTS + i], shown + differences);
-    differences += differs("table", number, INPUTS + i, row[INPUTS + i], table_column(i, row), shown + differences);
+    differences +=
+        differs("kernel", number, INPUTS + i, row[INPUTS + i], codes[INPUTS + i], shown + differences);
+    differences +=
+        differs("table", number, INPUTS + i, row[INPUTS + i], table_column(i, row), shown + differences);
   }
   differences += breaks("it is not in the table", number, has_row(row), shown + differences);
   return differences + check_rest(&now, b, number, shown + differences);
 }
 
-int main(int count, char **arguments) {
-  FILE *file = (count == 2) ? fopen(arguments[1], "rb") : NULL;
+int main(int count, char** arguments) {
+  FILE* file = (count == 2) ? fopen(arguments[1], "rb") : NULL;
   if (file == NULL) {
     (void)fprintf(stderr, "usage: run_rows FILE, with rows of %d words\n", (int)WIDTH);
     return 2;

@@ -4,8 +4,8 @@
  *
  * Configuration, state, axis and wish are arbitrary bits: P1, P2 and P3 hold whatever damage they bear (P14).
  */
-#include "gate.h"
 #include "counts.h"
+#include "gate.h"
 #include "proof.h"
 #include "valid.h"
 
@@ -33,7 +33,8 @@ static void show_wish(const ilk_axis_config_t* axis_config, const ilk_axis_t* ax
   }
   SHOW(wish.direction < ILK_DIRECTION_COUNT, "a wish has a known direction");
   GOAL(goal_moves_down, (axis->state == ILK_AXIS_MOVING) && (wish.direction == ILK_DIRECTION_DECREASING));
-  GOAL(goal_backs_off_upwards, (axis->homing_phase == ILK_HOMING_BACK_OFF) && (wish.direction == ILK_DIRECTION_INCREASING));
+  GOAL(goal_backs_off_upwards,
+       (axis->homing_phase == ILK_HOMING_BACK_OFF) && (wish.direction == ILK_DIRECTION_INCREASING));
   GOAL(goal_arrived, (axis->state == ILK_AXIS_MOVING) && (wish.direction == ILK_DIRECTION_NONE));
 }
 
@@ -60,9 +61,9 @@ static void judge_gates(const ilk_axis_config_t* axis_config, const ilk_state_t*
                                          (down && (axis_config->limit_side == ILK_LIMIT_LOWER)));
   blocks[ILK_GATE_SOFT_LIMIT] = homed && ((up && ((position + coast) >= axis_config->max_counts)) ||
                                           (down && ((position - coast) <= axis_config->min_counts)));
-  blocks[ILK_GATE_UNHOMED_TRAVEL] =
-      !homed && !homing &&
-      ((directed(wish->direction, axis->press_travel_counts) + coast) >= (int64_t)axis_config->unhomed_travel_counts);
+  blocks[ILK_GATE_UNHOMED_TRAVEL] = !homed && !homing &&
+                                    ((directed(wish->direction, axis->press_travel_counts) + coast) >=
+                                     (int64_t)axis_config->unhomed_travel_counts);
   blocks[ILK_GATE_DRIVE] = (wish->drive > bound) || (wish->drive > largest_drive_of(axis_config->card)) ||
                            (wish->amplitude > axis_config->max_amplitude) || (wish->amplitude > 255u);
 }

@@ -1,10 +1,9 @@
 /**
  * @file
- * The invariant that every proof takes for granted is the one that the kernel checks at run time, and a start and
- * a rebuilt state satisfy it.
+ * The invariant that every proof takes for granted is the one that the kernel checks at run time, and a start
+ * and a rebuilt state satisfy it.
  */
 #include "integrity.h"
-
 #include "interlock/kernel.h"
 #include "proof.h"
 #include "sound.h"
@@ -13,19 +12,19 @@ static uint32_t digest_of_state;
 static uint32_t error_of_config;
 
 /** Stands for `state_digest`: the digest of this one state. */
-uint32_t some_digest(const ilk_state_t *state) {
+uint32_t some_digest(const ilk_state_t* state) {
   (void)state;
   return digest_of_state;
 }
 
 /** Stands for `ilk_config_validate`: any verdict. */
-ilk_config_verdict_t some_validation(const ilk_config_t *config) {
+ilk_config_verdict_t some_validation(const ilk_config_t* config) {
   (void)config;
   const ilk_config_verdict_t verdict = {.error = error_of_config, .slot = 0u};
   return verdict;
 }
 
-static bool sound_but_seal(const ilk_state_t *state) {
+static bool sound_but_seal(const ilk_state_t* state) {
   bool sound = sound_system(state);
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
     sound = sound && sound_axis(&state->axis[slot], state->mode);
@@ -34,9 +33,9 @@ static bool sound_but_seal(const ilk_state_t *state) {
 }
 
 /** An arbitrary slot of a state that owes nothing to the one before. */
-static void show_blank(const ilk_state_t *state, uint32_t slot) {
+static void show_blank(const ilk_state_t* state, uint32_t slot) {
   const ilk_axis_t blank = state->axis[slot];
-  const ilk_axis_t *axis = &blank;
+  const ilk_axis_t* axis = &blank;
   SHOW(sound_system(state) && sound_axis(axis, state->mode), "P15: it satisfies the invariant");
   SHOW((axis->state == ILK_AXIS_DISABLED) && (axis->homed == 0u) && (axis->card_seen == 0u),
        "P14: a rebuilt axis is disabled, not homed, and its card unknown");
@@ -45,14 +44,16 @@ static void show_blank(const ilk_state_t *state, uint32_t slot) {
        "P14: nothing of the axis before is left");
 }
 
-static void show_rebuilt(const ilk_config_t *config, ilk_state_t *state, uint32_t slot, uint32_t value) {
+static void show_rebuilt(const ilk_config_t* config, ilk_state_t* state, uint32_t slot, uint32_t value) {
   ilk_state_rebuild(state, config, ILK_CAUSE_INTEGRITY, value);
-  SHOW((state->mode == ILK_MODE_LOCKED) && (state->cause == ILK_CAUSE_INTEGRITY) && (state->cause_value == value) &&
-           (state->causes_seen == (1u << ILK_CAUSE_INTEGRITY)) && (state->cause_tick == 0u) && (state->tick == 0u),
+  SHOW((state->mode == ILK_MODE_LOCKED) && (state->cause == ILK_CAUSE_INTEGRITY) &&
+           (state->cause_value == value) && (state->causes_seen == (1u << ILK_CAUSE_INTEGRITY)) &&
+           (state->cause_tick == 0u) && (state->tick == 0u),
        "P14: damage ends in LOCKED (INTEGRITY)");
-  SHOW((state->pedal == ILK_PEDAL_DISAGREE) && (state->pedal_armed == 0u) && (state->pedal_pressed_ticks == 0u) &&
-           (state->pedal_released_ticks == 0u) && (state->pedal_disagree_ticks == 0u) && (state->estop == 1u) &&
-           (state->app_alive == 0u) && (state->app_age_ticks == UINT32_MAX),
+  SHOW((state->pedal == ILK_PEDAL_DISAGREE) && (state->pedal_armed == 0u) &&
+           (state->pedal_pressed_ticks == 0u) && (state->pedal_released_ticks == 0u) &&
+           (state->pedal_disagree_ticks == 0u) && (state->estop == 1u) && (state->app_alive == 0u) &&
+           (state->app_age_ticks == UINT32_MAX),
        "P9, P10: no consent and no app survive");
   SHOW((state->config_sound == 0u) && (state->config_slice == 0u) && (state->config_crc == config->crc) &&
            (state->config_partial_crc == 0xffffffffu),
@@ -64,11 +65,12 @@ static void show_rebuilt(const ilk_config_t *config, ilk_state_t *state, uint32_
   show_blank(state, slot);
 }
 
-static void show_started(const ilk_config_t *config, ilk_state_t *state, uint32_t slot) {
+static void show_started(const ilk_config_t* config, ilk_state_t* state, uint32_t slot) {
   const ilk_config_verdict_t verdict = ilk_init(config, state);
   const bool valid = verdict.error == ILK_CONFIG_ERROR_NONE;
   SHOW(verdict.error == error_of_config, "P13: the verdict of validation is told");
-  SHOW(state->mode == (valid ? ILK_MODE_LOCKED : ILK_MODE_INIT), "P13: only a valid configuration leaves INIT");
+  SHOW(state->mode == (valid ? ILK_MODE_LOCKED : ILK_MODE_INIT),
+       "P13: only a valid configuration leaves INIT");
   SHOW(state->cause == (valid ? ILK_CAUSE_BOOT : ILK_CAUSE_NONE), "P8: LOCKED (BOOT) at the start");
   SHOW(state->causes_seen == (valid ? (1u << ILK_CAUSE_BOOT) : 0u), "P8: BOOT is in the list");
   SHOW(state->config_sound == (valid ? 1u : 0u), "P13: trusted when valid");
