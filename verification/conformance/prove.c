@@ -20,6 +20,8 @@ int main(void) {
   const case_t* c = &after;
   int32_t in[INPUTS];
   int32_t out[OUTPUTS];
+  (void)b;
+  (void)c;
   read_inputs(b, b, in);
   WITHIN_ALL
   __CPROVER_assert(has_row(in), "row for every input");
@@ -31,8 +33,5 @@ int main(void) {
 #ifndef WITHOUT_GOALS
   REACH_ALL
 #endif
-      (void)
-      b;
-  (void)c;
   return 0;
 }
