@@ -20,6 +20,7 @@ KEYS = {
 WHOLE_PROGRAM = {"2.3", "2.5", "8.7"}
 """Rules about what no other file uses. The checker sees the C files only; the console, the tests and the
 proofs use the kernel's headers, too."""
+SOURCES = {".c", ".h", ".cpp", ".hpp"}
 OTHER_USERS = ("app", "models", "tests", "verification/bench", "verification/cbmc", "verification/target")
 
 
@@ -75,7 +76,7 @@ def used_elsewhere(finding: Finding) -> bool:
     if finding.check not in WHOLE_PROGRAM or not name:
         return False
     use = re.compile(rf"\b{name}\b")
-    files = (path for place in OTHER_USERS for path in (ROOT / place).glob("**/*.[ch]*"))
+    files = (path for place in OTHER_USERS for path in (ROOT / place).rglob("*") if path.suffix in SOURCES)
     return any(use.search(path.read_text("utf-8")) for path in files)
 
 
