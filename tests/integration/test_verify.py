@@ -9,7 +9,11 @@ from pathlib import Path
 
 import pytest
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "verification/evidence"))
+from tlc_command import tlc_command
+
 EVIDENCE = Path(__file__).resolve().parents[2] / "verification/evidence"
+
 RUNG = """\
 import sys, time
 sys.path.insert(0, "verification/evidence")
@@ -147,3 +151,13 @@ def test_a_rung_that_there_is_not_is_refused_with_those_that_there_are(tree: Tre
     done = tree.verify("prof")
     assert done.returncode == 2
     assert "no rung 'prof'; expected one of proof" in done.stderr
+
+
+def test_searches_side_by_side_unpack_their_standard_modules_apart(tmp_path: Path) -> None:
+    places = set()
+    for name in ("one", "two"):
+        option = "-Djava.io.tmpdir="
+        command = tlc_command(tmp_path / name, stack_mb=16)
+        places |= {Path(word.removeprefix(option)) for word in command if word.startswith(option)}
+    assert len(places) == 2
+    assert all(place.is_dir() and tmp_path in place.parents for place in places)

