@@ -56,7 +56,7 @@ for (const robotName of ["neuro", "prostate"] as const) {
       const line = table.getByRole("row").filter({ hasText: title });
       await expect(line.getByRole("checkbox")).toBeChecked();
       await expect(line).toContainText("disabled");
-      expect(await axis.counts()).toBe(before);
+      await expect.poll(() => axis.counts()).toBe(before);
       await table.getByRole("button", { name: "Set 1 position" }).click();
 
       const answer = robot.panel("Answer to Load positions");

@@ -21,7 +21,7 @@ interface ComparisonTableProps {
 export function ComparisonTable({ name, comparison, onConfirm, onCancel }: ComparisonTableProps) {
   const motors = useConsole((state) => state.motors);
   const reason = useReason("holder");
-  const [chosen, setChosen] = useState<ReadonlySet<string>>(() => axesThatDiffer(comparison.axes));
+  const [chosen, setChosen] = useState<ReadonlySet<string>>(() => axesThatDiffer(comparison.axes, motors));
   const choose = (axis: string, wanted: boolean): void => {
     const others = [...chosen].filter((each) => each !== axis);
     setChosen(new Set(wanted ? [...others, axis] : others));
