@@ -3,9 +3,11 @@
 
 Each file of the core is given to Frama-C's WP on its own, functions of headers once. The goals of each
 function are compared with expected.json, exactly; places that a smoke test shows to be out of reach must be
-in dead.toml, each with its reason. Without arguments all files are proved and the evidence is written; with
-the names of files only those, and none is written; nor with `--cached`, which takes as proved what an earlier
-such run proved. `--accept` writes expected.json anew from what was proved.
+in dead.toml, each with its reason. Without arguments the files of expected.json are proved and the evidence
+is written. It counts, and the output names, the functions of the other files, of which nothing is claimed,
+and contracts of such functions that the proofs take for granted. With the names of files only these are
+proved, and no evidence is written; nor with `--cached`, which takes as proved what an earlier such run
+proved. `--accept` writes expected.json anew from what was proved.
 """
 
 import argparse
@@ -16,37 +18,44 @@ import subprocess
 import sys
 import time
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "evidence"))
 
 import evidence
-from wp import CORE, ROOT, Place, Report, defined_functions, prove
+from wp import CORE, ROOT, Place, Report, functions_of, prove
 
 HERE = Path(__file__).resolve().parent
 EXPECTED = HERE / "expected.json"
 HEADERS = ("arith.h", "crc32.h")
 """Headers with functions in them."""
 
-Functions = Mapping[str, Sequence[str]]
 Expected = Mapping[str, Mapping[str, Mapping[str, int]]]
 
 
-def functions_by_unit() -> dict[str, list[str]]:
-    """Each function of the core, at the one file that defines it."""
-    units = [*HEADERS, *sorted(path.name for path in CORE.glob("*.c"))]
+@dataclass(frozen=True)
+class Unit:
+    """A file of the core: functions whose one definition it holds, and those of other files that it calls."""
+
+    own: tuple[str, ...]
+    called: frozenset[str]
+
+
+def units_of_core() -> dict[str, Unit]:
+    """The files that define functions, by name. A header's functions are its own in no other file."""
     seen: set[str] = set()
-    by_unit = {}
-    for unit in units:
-        own = [function for function in defined_functions(unit) if function not in seen]
-        if unit in HEADERS:
+    units = {}
+    for name in (*HEADERS, *sorted(path.name for path in CORE.glob("*.c"))):
+        functions = functions_of(name)
+        own = tuple(function for function in functions.defined if function not in seen)
+        if name in HEADERS:
             seen.update(own)
         if own:
-            by_unit[unit] = own
-    return by_unit
+            units[name] = Unit(own, functions.called - set(own))
+    return units
 
 
 def write_prover_list(directory: Path) -> None:
@@ -123,19 +132,23 @@ def judge(unit: str, report: Report, expected: Expected, allowed: set[tuple[str,
     }
 
 
-def run(functions: Functions, directory: Path, cache: Path | None) -> dict[str, Report]:
+def run(units: Mapping[str, Unit], directory: Path, cache: Path | None) -> dict[str, Report]:
     """Proves the files, the largest first, on as many cores as JOBS says."""
-    largest_first = sorted(functions, key=lambda unit: (CORE / unit).stat().st_size, reverse=True)
+    largest_first = sorted(units, key=lambda name: (CORE / name).stat().st_size, reverse=True)
     with ThreadPoolExecutor(max_workers=int(os.environ.get("JOBS", "1"))) as pool:
         started = {
-            unit: pool.submit(prove, unit, functions[unit], directory, cache) for unit in largest_first
+            name: pool.submit(prove, name, units[name].own, directory, cache) for name in largest_first
         }
-        return {unit: future.result() for unit, future in started.items()}
+        return {name: future.result() for name, future in started.items()}
+
+
+def read_expected() -> Expected:
+    return json.loads(EXPECTED.read_text("utf-8"))
 
 
 def accept(reports: Mapping[str, Report]) -> None:
     """Writes expected.json anew for the files that were proved."""
-    expected = json.loads(EXPECTED.read_text("utf-8")) if EXPECTED.exists() else {}
+    expected = dict(read_expected())
     for unit, report in reports.items():
         expected[unit] = {function: asdict(counts) for function, counts in sorted(report.counts.items())}
     EXPECTED.write_text(json.dumps(expected, indent=1, sort_keys=True) + "\n", "utf-8")
@@ -147,32 +160,67 @@ def properties(reports: Sequence[Report]) -> list[str]:
     return sorted(names, key=lambda name: int(name[1:]))
 
 
+def judge_all(reports: Mapping[str, Report], expected: Expected, whole: bool) -> dict[str, int]:
+    """Judges each file; returns the sums of their figures. Of the `whole`, dead.toml has no idle entry."""
+    allowed = allowed_dead()
+    figures = [judge(name, report, expected, allowed) for name, report in sorted(reports.items())]
+    total = {key: sum(figure[key] for figure in figures) for key in figures[0]}
+    used = {line_of(place) for report in reports.values() for place in report.dead}
+    for file, line in sorted(allowed - used) if whole else []:
+        print(f"    IN REACH {file}: '{line}' is in dead.toml; take it out")
+        total["wrong"] += 1
+    return total
+
+
+def reach(units: Mapping[str, Unit], proved: Collection[str], expected: Expected) -> dict[str, int]:
+    """How far the proofs reach: functions without one, and contracts of those that the `proved` files use."""
+    missing = {name: unit.own for name, unit in units.items() if name not in expected}
+    without = {function for functions in missing.values() for function in functions}
+    assumed = {name: sorted(units[name].called & without) for name in sorted(proved)}
+    for name, functions in missing.items():
+        print(f"{name:14} no contract proof of {', '.join(functions)}")
+    for name, functions in assumed.items():
+        for function in functions:
+            print(f"{name:14} takes for granted the contract of {function}")
+    return {
+        "functions_without_contract_proof": len(without),
+        "assumed_contracts": len({function for functions in assumed.values() for function in functions}),
+    }
+
+
+def choose(units: Mapping[str, Unit], names: Sequence[str]) -> dict[str, Unit]:
+    """The named files. Exits when the core has no such file."""
+    unknown = sorted(set(names) - units.keys())
+    if unknown:
+        raise SystemExit(
+            f"no functions in '{unknown[0]}' of the core; expected one of {', '.join(sorted(units))}"
+        )
+    return {name: units[name] for name in names}
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("units", nargs="*", help="files of kernel/src to prove; all when none is named")
+    parser.add_argument(
+        "units", nargs="*", help="files of kernel/src to prove; those of expected.json when none"
+    )
     parser.add_argument("--cached", action="store_true", help="reuse goals proved before; write no evidence")
     parser.add_argument("--accept", action="store_true", help="write expected.json anew")
     arguments = parser.parse_args()
     started = time.monotonic()
     directory = evidence.log_directory("wp")
     write_prover_list(directory)
-    functions = functions_by_unit()
-    chosen = {unit: own for unit, own in functions.items() if not arguments.units or unit in arguments.units}
+    units = units_of_core()
+    chosen = choose(units, arguments.units or sorted(read_expected()))
     cache = ROOT / "build/wp-cache" if arguments.cached else None
     if cache:
         cache.mkdir(parents=True, exist_ok=True)
     reports = run(chosen, directory, cache)
     if arguments.accept:
         accept(reports)
-    expected = json.loads(EXPECTED.read_text("utf-8"))
-    allowed = allowed_dead()
-    figures = [judge(unit, report, expected, allowed) for unit, report in sorted(reports.items())]
-    total = {key: sum(figure[key] for figure in figures) for key in figures[0]}
-    used = {line_of(place) for report in reports.values() for place in report.dead}
-    unused = sorted(allowed - used) if not arguments.units else []
-    for file, line in unused:
-        print(f"    IN REACH {file}: '{line}' is in dead.toml; take it out")
-    wrong = total.pop("wrong") + len(unused)
+    expected = read_expected()
+    total = judge_all(reports, expected, whole=not arguments.units)
+    wrong = total.pop("wrong")
+    total |= reach(units, chosen, expected)
     status = "FAILED" if wrong else ("VACUOUS" if total["smoke_failed"] else "PASSED")
     print(f"{status}: {total}")
     if arguments.units or cache:

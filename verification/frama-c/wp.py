@@ -6,6 +6,7 @@ import os
 import re
 import subprocess
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -26,6 +27,14 @@ PROVE = [
     *("-wp-smoke-tests", "-wp-smoke-timeout", "2"),
 ]
 SMOKE = "_wp_smoke_"
+
+
+@dataclass(frozen=True)
+class Functions:
+    """The functions that a file and its headers define, and those called there, whoever defines them."""
+
+    defined: tuple[str, ...]
+    called: frozenset[str]
 
 
 @dataclass
@@ -61,18 +70,24 @@ class Report:
     log: Path = Path()
 
 
-def defined_functions(unit: str) -> list[str]:
-    """Functions that the file and the headers it includes define, as Frama-C counts them."""
-    text = subprocess.run(
-        [*PARSE, str(CORE / unit), "-metrics"], check=True, capture_output=True, text=True
-    ).stdout
-    listed = re.search(r"Defined functions \(\d+\)\n\s*=+\n(.*?)\n\s*\n", text, re.DOTALL)
-    if listed is None:
-        raise SystemExit(f"{unit}: Frama-C's metrics list no functions:\n{text}")
-    return re.findall(r"(\w+) \(\d+ calls?\)", listed.group(1))
+def functions_of(unit: str) -> Functions:
+    """Functions of a file and of the headers that it includes, as Frama-C counts them."""
+    command = [*PARSE, str(CORE / unit), "-metrics"]
+    text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+    def listed(title: str) -> list[tuple[str, str]]:
+        found = re.search(rf"{title} \(\d+\)\n\s*=+\n(.*?)\n\s*\n", text, re.DOTALL)
+        if found is None:
+            raise SystemExit(f"{unit}: Frama-C's metrics have no list '{title}':\n{text}")
+        return re.findall(r"(\w+) \((\d+) calls?\)", found.group(1))
+
+    defined = listed("Defined functions")
+    declared = [*listed("Specified-only functions"), *listed("Undefined and unspecified functions")]
+    called = (name for name, calls in (*defined, *declared) if calls != "0")
+    return Functions(tuple(name for name, _ in defined), frozenset(called))
 
 
-def prove(unit: str, functions: list[str], directory: Path, cache: Path | None) -> Report:
+def prove(unit: str, functions: Sequence[str], directory: Path, cache: Path | None) -> Report:
     """Proves the contracts of `functions`, which `unit` defines. Raw output goes to `directory`.
 
     With a `cache`, goals that were proved before are not proved again; evidence is made without one.
@@ -96,7 +111,7 @@ def prove(unit: str, functions: list[str], directory: Path, cache: Path | None) 
     return report
 
 
-def count_goals(report: Report, document: dict, functions: list[str]) -> None:
+def count_goals(report: Report, document: dict, functions: Sequence[str]) -> None:
     """Goals by function, from WP's report."""
     for function in functions:
         counts = report.counts.setdefault(function, Counts())
@@ -113,14 +128,17 @@ def count_goals(report: Report, document: dict, functions: list[str]) -> None:
             counts.smt += provers["wp:main"].get("valid", 0) - qed
 
 
-def find_unproved(report: Report, table: Path, functions: list[str]) -> None:
+def find_unproved(report: Report, table: Path, functions: Sequence[str]) -> None:
     """Clauses not proved, places out of reach, and functions that do not say what they assign and ensure.
 
-    A smoke test that fails shows in the table as an assertion of falsehood that was proved.
+    A smoke test that fails shows in the table as an assertion of falsehood that was proved. The text of a
+    property may go on in lines that have no other column.
     """
     stated: dict[str, set[str]] = {function: set() for function in functions}
     with table.open(encoding="utf-8", newline="") as rows:
         for row in csv.DictReader(rows, delimiter="\t", quoting=csv.QUOTE_NONE):
+            if row["line"] is None:
+                continue
             place = Place(
                 row["file"], int(row["line"]), row["function"], f"{row['property kind']} {row['property']}"
             )
