@@ -7,6 +7,7 @@
 
 #include <stdbool.h>
 
+#include "interlock/acsl.h"
 #include "interlock/types.h"
 
 /** What the tick has seen that ends MOTION or locks, besides what the state itself tells. */
@@ -27,6 +28,11 @@ void ilk_mode_lock(ilk_state_t *state, ilk_cause_t cause, uint32_t value);
 void ilk_pedal_disarm(ilk_state_t *state);
 
 /** True while something that locks is there, or the app or the bus is not (RESET: CAUSE_PRESENT). */
+/*@ requires readable: \valid_read(state);
+  @ assigns  \nothing;
+  @ ensures  P8_latch: \result <==> state->estop != 0 || state->bus_bad_ticks != 0 || state->overruns_in_row != 0
+  @   || state->config_sound == 0 || state->app_alive == 0;
+  @*/
 bool ilk_cause_is_present(const ilk_state_t *state);
 
 /** Phase 3: pedal, E-stop, age of the app, overruns. */
