@@ -125,7 +125,7 @@ Wishes ==
 
 MovingWishes == {MoveTo(1, 2, 2), MoveTo(1, 1, 2), MoveTo(-1, 1, 1)}
 
-(* Refused everywhere, but for the first where an axis that is not homed reaches it. *)
+(* Refused, but for the first where an axis that is not homed reaches it. *)
 Unwelcome == <<MoveTo(k.max_counts, 1, 2), MoveTo(0, k.max_drive + 1, 2),
                MoveTo(0, 1, c.lease_max_ticks + 1)>>
 
@@ -254,7 +254,7 @@ JumpTick == \E m \in Jumps :
   Met("JumpTick") /\ Step(Input(Held, "CLOSED", Reading(m, "GOOD"), Alive))
 
 RequestTick == Met("RequestTick") /\ \E wish \in Wishes : Step(Still(Held, Append(Alive, wish)))
-RefusedTick == Met("RefusedTick") /\ Step(Still(Held, Alive \o Unwelcome))
+RefusedTick == system.mode = "MOTION" /\ Met("RefusedTick") /\ Step(Still(Held, Alive \o Unwelcome))
 PedalTick   == Met("PedalTick") /\ Step(Still(NotHeld, Alive))
 SilentTick  == Met("SilentTick") /\ Step(Still(Held, <<>>))
 EstopTick   == Met("EstopTick") /\ Step(Input(Held, "OPEN", Reading(0, "GOOD"), Alive))
