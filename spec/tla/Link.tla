@@ -13,7 +13,7 @@
 (* a shared word is a step of its own. Words between two fences are stored *)
 (* and loaded in any order, which covers relaxed accesses.                 *)
 (***************************************************************************)
-EXTENDS Integers, Sequences
+EXTENDS Integers, Sequences, Meets
 
 CONSTANTS
   Lying,         \* TRUE: the app's region holds anything; FALSE: what an honest app wrote
@@ -220,8 +220,21 @@ Unlock ==
   /\ UNCHANGED <<private, app_region, shared_tail, snap, stored, event_ring, reading>>
 
 KernelStep ==
-  \/ Begin \/ Attach \/ Stay \/ LoadHead \/ LoadWord \/ CopyDone \/ Judge
-  \/ ClearNumber \/ StoreEventWord \/ SetNumber \/ MoveHead \/ PublishTail \/ Lock \/ StoreWord \/ Unlock
+  \/ Begin /\ Met("Begin")
+  \/ Attach /\ Met("Attach")
+  \/ Stay /\ Met("Stay")
+  \/ LoadHead /\ Met("LoadHead")
+  \/ LoadWord /\ Met("LoadWord")
+  \/ CopyDone /\ Met("CopyDone")
+  \/ Judge /\ Met("Judge")
+  \/ ClearNumber /\ Met("ClearNumber")
+  \/ StoreEventWord /\ Met("StoreEventWord")
+  \/ SetNumber /\ Met("SetNumber")
+  \/ MoveHead /\ Met("MoveHead")
+  \/ PublishTail /\ Met("PublishTail")
+  \/ Lock /\ Met("Lock")
+  \/ StoreWord /\ Met("StoreWord")
+  \/ Unlock /\ Met("Unlock")
 
 \* ---- The app's writer, when it is honest: ilk_link_put_request ----
 PutWord ==
@@ -290,9 +303,15 @@ Use ==
   /\ UNCHANGED <<kernel, private, app_region, shared_tail, snapshot, event_ring, next, got, lost>>
 
 AppStep ==
-  \/ PutWord \/ PutDone
-  \/ ReadLock \/ ReadWord \/ CheckLock
-  \/ FindEvent \/ ReadEventWord \/ CheckEvent \/ Use
+  \/ PutWord /\ Met("PutWord")
+  \/ PutDone /\ Met("PutDone")
+  \/ ReadLock /\ Met("ReadLock")
+  \/ ReadWord /\ Met("ReadWord")
+  \/ CheckLock /\ Met("CheckLock")
+  \/ FindEvent /\ Met("FindEvent")
+  \/ ReadEventWord /\ Met("ReadEventWord")
+  \/ CheckEvent /\ Met("CheckEvent")
+  \/ Use /\ Met("Use")
 
 Next == KernelStep \/ AppStep
 Spec == Init /\ [][Next]_vars
@@ -326,14 +345,15 @@ K8_never_waits == tick < Ticks => ENABLED KernelStep
 \* An honest app's requests are all used, in its order, and none is overwritten before it was read.
 K9_honest_is_served == ~Lying /\ kernel = "event number" => verdict.used /\ verdict.record = Honest(taken - Len(batch))
 
-\* ---- Reachability: each property is about something that happens ----
-NeverAccepted == reader # "snapshot accepted"
-NeverReceived == reader # "event accepted"
-NeverLost == lost = 0
-NeverUsed == ~verdict.used
-NeverUsedLater == ~(verdict.used /\ generation > 1)
-NeverRefused == ~(kernel = "event number" /\ ~verdict.used)
-NeverFull == work < 1 + PerTick * 3
-NeverDone == ~(tick = Ticks /\ kernel = "begin")
-NeverWrapped == ~(verdict.used /\ verdict.record.sequence > Ring)
+\* ---- What the properties are about does happen: each says so ----
+About ==
+  [](/\ reader = "snapshot accepted" => Met("K1_whole_snapshot")
+     /\ reader = "event accepted" => Met("K2_whole_event")
+     /\ lost > 0 => Met("K3_events_accounted")
+     /\ verdict.used => Met("K4_used_is_sound")
+     /\ verdict.used /\ generation > 1 => Met("K5_used_is_current")
+     /\ kernel = "event number" /\ taken > 1 => Met("K6_one_verdict")
+     /\ work = 1 + PerTick * 3 => Met("K7_bounded_work")
+     /\ tick = Ticks /\ kernel = "begin" => Met("K8_never_waits")
+     /\ verdict.used /\ verdict.record.sequence > Ring => Met("K9_honest_is_served"))
 =============================================================================
