@@ -142,8 +142,7 @@ TEST_F(AuthorityTest, AnOpenStreamKeepsIt) {
     pass(std::chrono::seconds(40));
     // A state that was made after this moment: the app has looked after its sessions since.
     for (int states = 0; states < 3; ++states) {
-      beast::flat_buffer buffer;
-      stream.read(buffer);
+      ASSERT_TRUE(stream.next());
     }
     EXPECT_EQ(authority_seen_by(vic)["holder"]["user"], "edna") << i;
   }
@@ -154,20 +153,15 @@ TEST_F(AuthorityTest, TheStreamTellsEachClientWhetherItIsTheirs) {
   const std::string vic = token_of("vic");
   auto others = as(vic, [this] { return open_stream(); });
   (void)post_as(token_of("ada"), "/api/authority/request");
-  EXPECT_EQ(next_text(mine, "authority")["mine"], true);
-  const json seen = next_text(others, "authority");
+  EXPECT_EQ(mine.next_text("authority")["mine"], true);
+  const json seen = others.next_text("authority");
   EXPECT_EQ(seen["mine"], false);
   EXPECT_EQ(seen["requests"][0]["user"], "ada");
 }
 
 TEST_F(AuthorityTest, TheStreamNeedsASession) {
   become_nobody();
-  websocket::stream<tcp::socket> stream(connect());
-  websocket::response_type response;
-  beast::error_code error;
-  stream.handshake(response, host(), "/api/stream", error);
-  EXPECT_EQ(error, websocket::error::upgrade_declined);
-  EXPECT_EQ(response.result_int(), 401u);
+  EXPECT_EQ(test::StreamClient(connect()).open(host(), ""), 401u);
 }
 
 TEST_F(AuthorityTest, TheStreamOfASessionThatEndsIsClosedAndSaysWhy) {
@@ -175,10 +169,9 @@ TEST_F(AuthorityTest, TheStreamOfASessionThatEndsIsClosedAndSaysWhy) {
   auto stream = as(vic, [this] { return open_stream(); });
   auto staying = open_stream();
   ASSERT_EQ(post_as(vic, "/api/logout").status, 200u);
-  EXPECT_EQ(next_text(stream, "session")["ended"], true);
-  EXPECT_EQ(close_code(stream), 4401u);
-  beast::flat_buffer buffer;
-  staying.read(buffer);
+  EXPECT_EQ(stream.next_text("session")["ended"], true);
+  EXPECT_EQ(stream.close_code(), 4401u);
+  EXPECT_TRUE(staying.next());
 }
 
 TEST_F(AuthorityTest, WhatAUserAsksOfTheKernelIsRecordedBeforeItIsSent) {

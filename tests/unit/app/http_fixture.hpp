@@ -9,16 +9,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <boost/asio/co_spawn.hpp>
-#include <boost/asio/connect.hpp>
-#include <boost/asio/detached.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/beast/core/buffers_to_string.hpp>
-#include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/http.hpp>
-#include <boost/beast/websocket.hpp>
-#include <fstream>
+#include <boost/beast/http/fields.hpp>
 #include <future>
 #include <memory>
 #include <thread>
@@ -27,7 +20,7 @@
 #include "http/store_gateway.hpp"
 #include "robot_fixture.hpp"
 #include "store/audit.hpp"
-#include "store/sessions.hpp"
+#include "stream_client.hpp"
 #include "temporary_folder.hpp"
 
 namespace interlock::web {
@@ -35,7 +28,6 @@ namespace interlock::web {
 namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = boost::beast::http;
-namespace websocket = boost::beast::websocket;
 using asio::ip::tcp;
 using nlohmann::json;
 
@@ -54,49 +46,19 @@ struct Answered {
 class StoreFixture : public testing::Test {
  protected:
   /** Adds a user who cannot log in with a password but has sessions. The first one is an administrator. */
-  void add_user(const std::string& name, Role role) {
-    const auto added = mine_.transact([&](Transaction& transaction) {
-      return Users(transaction).add(name, role, PasswordHash("of no password"), now());
-    });
-    ASSERT_TRUE(added);
-  }
+  void add_user(const std::string& name, Role role);
 
   /** A new session of that user, opened past the server; the token. */
-  std::string token_of(const std::string& name) {
-    const auto opened =
-        mine_.transact([&](Transaction& transaction) { return Sessions(transaction).create(name, now()); });
-    EXPECT_TRUE(opened);
-    return opened ? opened->token : "";
-  }
+  std::string token_of(const std::string& name);
 
   /** Waits until the store knows that the session was used just now. */
-  void wait_until_use_is_stored(const std::string& token) {
-    for (bool stored = false; !stored;) {
-      const auto found = mine_.read([&](Transaction& transaction) -> Stored<std::optional<Session>> {
-        return Sessions(transaction).find(token, now());
-      });
-      ASSERT_TRUE(found && *found);
-      stored = (*found)->last_seen == now();
-    }
-  }
+  void wait_until_use_is_stored(const std::string& token);
 
   /** The audit's records, oldest first. */
-  std::vector<AuditRecord> audit() {
-    return *mine_.read([](Transaction& transaction) -> Stored<std::vector<AuditRecord>> {
-      return Audit(transaction).list(1000);
-    });
-  }
+  std::vector<AuditRecord> audit();
 
   /** The details of the records of that kind, oldest first. */
-  std::vector<json> audit(const std::string& kind) {
-    std::vector<json> details;
-    for (const AuditRecord& record : audit()) {
-      if (record.kind == kind) {
-        details.push_back(json::parse(record.detail));
-      }
-    }
-    return details;
-  }
+  std::vector<json> audit(const std::string& kind);
 
   [[nodiscard]] UtcTime now() const { return UtcTime(std::chrono::seconds(seconds_.load())); }
   [[nodiscard]] SteadyTime steady_now() const { return SteadyTime(std::chrono::seconds(passed_.load())); }
@@ -120,29 +82,9 @@ class StoreFixture : public testing::Test {
 /** `edna`, an engineer, is logged in and holds the authority, unless a test says otherwise. */
 class HttpTest : public StoreFixture {
  protected:
-  explicit HttpTest(std::chrono::milliseconds patience_with_store = StoreGateway::usual_patience)
-      : patience_with_store_(patience_with_store) {
-    std::ofstream(web_.path() / "index.html") << "<title>console</title>";
-    add_user("ada", Role::admin);
-    add_user("edna", Role::engineer);
-    add_user("vic", Role::viewer);
-    const auto listening = server_.listen({"127.0.0.1", 0});
-    EXPECT_TRUE(listening);
-    asio::co_spawn(network_, api_.listen(), asio::detached);
-    asio::co_spawn(network_, api_.beat(), asio::detached);
-    asio::co_spawn(network_, api_.sweep_sessions(std::chrono::milliseconds(5)), asio::detached);
-    asio::co_spawn(network_, server_.accept(), asio::detached);
-    thread_ = std::jthread([this] { network_.run(); });
-    log_in("edna");
-    EXPECT_EQ(post("/api/authority/request").status, 200u);
-    // The test is the control thread: it has seen the STOP that a change of the authority is.
-    mailbox_->stops = 0;
-  }
+  explicit HttpTest(std::chrono::milliseconds patience_with_store = StoreGateway::usual_patience);
 
-  ~HttpTest() override {
-    network_.stop();
-    thread_.join();
-  }
+  ~HttpTest() override;
 
   /** From now on requests come from a new session of that user. */
   void log_in(const std::string& name) { token_ = token_of(name); }
@@ -165,110 +107,36 @@ class HttpTest : public StoreFixture {
 
   [[nodiscard]] std::string host() const { return "127.0.0.1:" + std::to_string(server_.port()); }
 
-  tcp::socket connect() {
-    tcp::socket socket(client_);
-    socket.connect({asio::ip::make_address("127.0.0.1"), server_.port()});
-    return socket;
-  }
+  tcp::socket connect();
 
-  Answered read(tcp::socket& socket) {
-    beast::flat_buffer buffer;
-    http::response<http::string_body> response;
-    http::read(socket, buffer, response);
-    return {response.result_int(), response.base(), response.body()};
-  }
+  Answered read(tcp::socket& socket);
 
-  Answered send(Request request) {
-    if (request[http::field::host].empty()) {
-      request.set(http::field::host, host());
-    }
-    if (request[http::field::cookie].empty() && !token_.empty()) {
-      request.set(http::field::cookie, cookie());
-    }
-    request.prepare_payload();
-    tcp::socket socket = connect();
-    http::write(socket, request);
-    return read(socket);
-  }
+  Answered send(Request request);
 
-  Answered get(const std::string& target) { return send({http::verb::get, target, 11}); }
+  Answered get(const std::string& target);
 
-  Answered post(const std::string& target, const std::string& body = "") {
-    return send({http::verb::post, target, 11, body});
-  }
+  Answered post(const std::string& target, const std::string& body = "");
 
-  Answered put(const std::string& target, const std::string& body) {
-    return send({http::verb::put, target, 11, body});
-  }
+  Answered put(const std::string& target, const std::string& body);
 
-  Answered post_raw(const std::string& bytes) {
-    tcp::socket socket = connect();
-    asio::write(socket, asio::buffer(bytes));
-    return read(socket);
-  }
+  Answered post_raw(const std::string& bytes);
 
-  void show(const ControlView& view) {
-    mailbox_->view.writing() = view;
-    mailbox_->view.publish();
-    mailbox_->network_wake.signal();
-  }
+  void show(const ControlView& view);
 
   /** The next command that the server sends. */
-  Command next_command() {
-    Command command;
-    while (!mailbox_->commands.pop(command)) {
-      std::this_thread::yield();
-    }
-    return command;
-  }
+  Command next_command();
 
-  void answer(const Notice& notice) {
-    ASSERT_TRUE(mailbox_->notices.push(notice));
-    mailbox_->network_wake.signal();
-  }
+  void answer(const Notice& notice);
 
-  websocket::stream<tcp::socket> open_stream() {
-    websocket::stream<tcp::socket> stream(connect());
-    show_cookie(stream);
-    stream.handshake(host(), "/api/stream");
-    return stream;
-  }
+  /** The stream of the session in use. */
+  test::StreamClient open_stream();
 
-  void show_cookie(websocket::stream<tcp::socket>& stream) {
-    stream.set_option(websocket::stream_base::decorator(
-        [sent = cookie()](websocket::request_type& request) { request.set(http::field::cookie, sent); }));
-  }
-
-  /** The next text message of that type. */
-  json next_text(websocket::stream<tcp::socket>& stream, const std::string& type) {
-    for (;;) {
-      beast::flat_buffer buffer;
-      stream.read(buffer);
-      json message =
-          stream.got_text() ? json::parse(beast::buffers_to_string(buffer.data())) : json::object();
-      if (message.value("type", "") == type) {
-        return message;
-      }
-    }
-  }
-
-  /** The code with which the server closes the stream. */
-  unsigned close_code(websocket::stream<tcp::socket>& stream) {
-    beast::error_code error;
-    while (!error) {
-      beast::flat_buffer buffer;
-      stream.read(buffer, error);
-    }
-    EXPECT_EQ(error, websocket::error::closed);
-    return stream.reason().code;
-  }
+  /** The status with which the server answers a further stream of the session in use; 101 when it opens it.
+   */
+  unsigned status_of_one_more_stream();
 
   /** The kernel accepts the next request. */
-  std::uint32_t accept_next() {
-    const auto asked = std::get<Ask>(next_command());
-    answer(Answer{asked.ticket, ILK_VERDICT_ACCEPTED, 6});
-    return asked.kind;
-  }
+  std::uint32_t accept_next();
 
   /** Runs in the network thread and waits for it. */
   template <typename Work>

@@ -271,72 +271,54 @@ TEST_F(HttpTest, TheStreamIsAWebSocket) {
 TEST_F(HttpTest, TheStreamShowsTheState) {
   show(test::ready_view());
   auto stream = open_stream();
-  beast::flat_buffer buffer;
-  stream.read(buffer);
-  EXPECT_TRUE(stream.got_binary());
-  EXPECT_EQ(buffer.size(), stream_bytes);
+  const std::optional<test::StreamMessage> state = stream.next();
+  ASSERT_TRUE(state);
+  EXPECT_FALSE(state->text);
+  EXPECT_EQ(state->data.size(), stream_bytes);
 }
 
 TEST_F(HttpTest, TheStreamTellsOfProposalsAndEventsInOrder) {
   show(test::ready_view());
   auto stream = open_stream();
-  beast::flat_buffer buffer;
-  stream.read(buffer);
+  ASSERT_TRUE(stream.next());
   ASSERT_EQ(post("/api/proposals", R"({"slot":3,"target_counts":1000})").status, 201u);
   answer(ilk_event_t{0, ILK_EVENT_MODE, 12, {ILK_MODE_READY, ILK_MODE_MOTION, 0, 0}});
   std::vector<std::string> texts;
   while (texts.size() < 4) {
-    buffer.clear();
-    stream.read(buffer);
-    if (stream.got_text()) {
-      const json message = json::parse(beast::buffers_to_string(buffer.data()));
-      if (message["type"] == "proposal") {
-        texts.push_back(message["state"]);
-      } else if (message["type"] == "event") {
-        texts.push_back(message["kind"]);
-      }
+    const json message = stream.next_text();
+    if (message["type"] == "proposal") {
+      texts.push_back(message["state"]);
+    } else if (message["type"] == "event") {
+      texts.push_back(message["kind"]);
     }
   }
   EXPECT_THAT(texts, testing::ElementsAre("drafted", "checked", "approved", "mode"));
 }
 
 TEST_F(HttpTest, TheStreamRefusesAPageOfAnotherOrigin) {
-  websocket::stream<tcp::socket> stream(connect());
-  stream.set_option(websocket::stream_base::decorator(
-      [](websocket::request_type& request) { request.set(http::field::origin, "http://evil.example"); }));
-  beast::error_code error;
-  stream.handshake(host(), "/api/stream", error);
-  EXPECT_EQ(error, websocket::error::upgrade_declined);
+  test::StreamClient stream(connect());
+  EXPECT_EQ(stream.open(host(), "", "http://evil.example"), 403u);
 }
 
 TEST_F(HttpTest, AClientThatTalksToTheStreamIsToldSo) {
   auto stream = open_stream();
-  stream.write(asio::buffer(std::string("hello")));
-  beast::flat_buffer buffer;
-  beast::error_code error;
-  while (!error) {
-    stream.read(buffer, error);
-  }
-  EXPECT_EQ(error, websocket::error::closed);
-  EXPECT_EQ(stream.reason().code, websocket::close_code::policy_error);
+  stream.send("hello");
+  constexpr unsigned policy_error = 1008;
+  EXPECT_EQ(stream.close_code(), policy_error);
 }
 
 TEST_F(HttpTest, AClientThatCannotKeepUpIsDroppedNotItsMessages) {
   auto stream = open_stream();
-  beast::flat_buffer buffer;
-  stream.read(buffer);
+  ASSERT_TRUE(stream.next());
   in_network([this] {
     for (std::size_t i = 0; i <= StreamHub::backlog; ++i) {
       api_.stream().send_text({{"number", i}});
     }
   });
-  beast::error_code error;
   std::size_t expected = 0;
-  while (!error) {
-    buffer.clear();
-    stream.read(buffer, error);
-    if (!error && stream.got_text()) {
-      EXPECT_EQ(json::parse(beast::buffers_to_string(buffer.data()))["number"], expected++);
+  while (const std::optional<test::StreamMessage> message = stream.next()) {
+    if (message->text) {
+      EXPECT_EQ(json::parse(message->data)["number"], expected++);
     }
   }
   EXPECT_LE(expected, StreamHub::backlog);
@@ -345,19 +327,16 @@ TEST_F(HttpTest, AClientThatCannotKeepUpIsDroppedNotItsMessages) {
 
 TEST_F(HttpTest, ClosedStreamsMakeRoomForOthers) {
   for (std::size_t i = 0; i < 2 * StreamHub::capacity; ++i) {
-    auto stream = open_stream();
-    stream.close(websocket::close_code::normal);
+    open_stream().close();
   }
   for (bool empty = false; !empty;) {
     in_network([&] { empty = api_.stream().empty(); });
   }
-  auto stream = open_stream();
-  beast::flat_buffer buffer;
-  stream.read(buffer);
+  EXPECT_TRUE(open_stream().next());
 }
 
 TEST_F(HttpTest, TooManyStreamsAreRefusedByName) {
-  std::vector<websocket::stream<tcp::socket>> streams;
+  std::vector<test::StreamClient> streams;
   for (std::size_t i = 0; i < StreamHub::capacity; ++i) {
     if (i % StreamHub::session_capacity == 0) {
       log_in("edna");
@@ -365,13 +344,7 @@ TEST_F(HttpTest, TooManyStreamsAreRefusedByName) {
     streams.push_back(open_stream());
   }
   log_in("ada");
-  websocket::stream<tcp::socket> one_more(connect());
-  show_cookie(one_more);
-  websocket::response_type response;
-  beast::error_code error;
-  one_more.handshake(response, host(), "/api/stream", error);
-  EXPECT_EQ(error, websocket::error::upgrade_declined);
-  EXPECT_EQ(response.result_int(), 503u);
+  EXPECT_EQ(status_of_one_more_stream(), 503u);
 }
 
 TEST_F(HttpTest, IdleConnectionsMakeRoomForNewOnes) {

@@ -112,21 +112,14 @@ TEST_F(ModeRoutesTest, AWrongWishForHomingIsNamed) {
 TEST_F(ModeRoutesTest, TheStreamTellsOfEachMode) {
   show(test::ready_view());
   auto stream = open_stream();
-  beast::flat_buffer buffer;
-  stream.read(buffer);
+  ASSERT_TRUE(stream.next());
   ASSERT_EQ(set_mode("home").status, 200u);
   ASSERT_EQ(set_mode("manual").status, 200u);
   std::vector<std::string> modes;
   while (modes.size() < 2) {
-    buffer.clear();
-    stream.read(buffer);
-    if (stream.got_text()) {
-      const json message = json::parse(beast::buffers_to_string(buffer.data()));
-      if (message["type"] == "mode") {
-        EXPECT_EQ(message["modes"], json(neuro().modes));
-        modes.push_back(message["mode"]);
-      }
-    }
+    const json message = stream.next_text("mode");
+    EXPECT_EQ(message["modes"], json(neuro().modes));
+    modes.push_back(message["mode"]);
   }
   EXPECT_THAT(modes, testing::ElementsAre("home", "manual"));
 }

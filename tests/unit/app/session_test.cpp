@@ -46,8 +46,7 @@ TEST_F(SessionTest, WhoeverSetsTheClockEndsNoSessionAndNoAuthority) {
   auto watching = as(token_of("vic"), [this] { return open_stream(); });
   set_clock(std::chrono::minutes(20));
   for (int state = 0; state < 3; ++state) {  // With each of them idle sessions are looked for.
-    beast::flat_buffer buffer;
-    watching.read(buffer);
+    ASSERT_TRUE(watching.next());
   }
   EXPECT_EQ(get("/api/motors").status, 503u) << "logged in, only without a kernel";
   EXPECT_EQ(json::parse(get("/api/authority").body)["mine"], true);
@@ -60,16 +59,11 @@ TEST_F(SessionTest, SettingTheClockBackProlongsNoSession) {
 }
 
 TEST_F(SessionTest, OneSessionDoesNotTakeEveryStream) {
-  std::vector<websocket::stream<tcp::socket>> own;
+  std::vector<test::StreamClient> own;
   for (std::size_t i = 0; i < StreamHub::session_capacity; ++i) {
     own.push_back(open_stream());
   }
-  websocket::stream<tcp::socket> one_more(connect());
-  show_cookie(one_more);
-  websocket::response_type response;
-  beast::error_code error;
-  one_more.handshake(response, host(), "/api/stream", error);
-  EXPECT_EQ(response.result_int(), 503u);
+  EXPECT_EQ(status_of_one_more_stream(), 503u);
   log_in("vic");
   auto other = open_stream();
   EXPECT_EQ(streams(), StreamHub::session_capacity + 1);
