@@ -254,7 +254,7 @@ JumpTick == \E m \in Jumps :
   Met("JumpTick") /\ Step(Input(Held, "CLOSED", Reading(m, "GOOD"), Alive))
 
 RequestTick == Met("RequestTick") /\ \E wish \in Wishes : Step(Still(Held, Append(Alive, wish)))
-RefusedTick == system.mode = "MOTION" /\ Met("RefusedTick") /\ Step(Still(Held, Alive \o Unwelcome))
+RefusedTick == system.mode # "LOCKED" /\ Met("RefusedTick") /\ Step(Still(Held, Alive \o Unwelcome))
 PedalTick   == Met("PedalTick") /\ Step(Still(NotHeld, Alive))
 SilentTick  == Met("SilentTick") /\ Step(Still(Held, <<>>))
 EstopTick   == Met("EstopTick") /\ Step(Input(Held, "OPEN", Reading(0, "GOOD"), Alive))
