@@ -104,7 +104,7 @@ def replacements(proof: Proof, linked: Path, logs: Path) -> list[str]:
     """How to turn calls to the stubs. An inline function has a copy for each file that calls it."""
     list_functions = ["--list-goto-functions", str(linked)]
     listed = call("goto-instrument", list_functions, logs / "functions.log", COMPILE_SECONDS)
-    present = re.findall(r"/\* (\S+) \*/", listed)
+    present = re.findall(r"/\* ([^\s,]+)", listed)
     arguments = []
     for one in proof.replaced:
         copies = [name for name in present if name.split("$link")[0] == one.function]
