@@ -48,11 +48,13 @@ def contract_probe(file: Path) -> Probe:
 
 
 def proof_probes(tree: Path, file: Path) -> Iterator[Probe]:
-    """The CBMC proofs that link the file, the fastest first; for a header, those that link any file."""
+    """The CBMC proofs that link or include the file, the fastest first; for a header, all of them."""
     proofs = []
     for path in (tree / "verification/cbmc").glob("*/proof.toml"):
         table = tomllib.loads(path.read_text("utf-8"))
-        if file.suffix == ".h" or file.name in table["sources"]:
+        harness = (path.parent / "harness.c").read_text("utf-8")
+        linked = file.name in table["sources"] or f'#include "{file.name}"' in harness
+        if file.suffix == ".h" or linked:
             proofs.append((table["seconds"], path.parent.name))
     for _, name in sorted(proofs):
         command = (sys.executable, "verification/cbmc/run.py", name)
