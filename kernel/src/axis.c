@@ -33,6 +33,10 @@ void ilk_axis_disable(ilk_axis_t *axis) {
 }
 
 /** Faults after which the counter no longer tells where the axis is. */
+/*@ assigns \nothing;
+  @ ensures exact: \result <==> fault == ILK_FAULT_JUMP || fault == ILK_FAULT_CARD_LOST
+  @   || fault == ILK_FAULT_HOMING_TRAVEL || fault == ILK_FAULT_HOMING_TIMEOUT;
+  @*/
 static bool loses_reference(ilk_fault_t fault) {
   return (fault == ILK_FAULT_JUMP) || (fault == ILK_FAULT_CARD_LOST) || (fault == ILK_FAULT_HOMING_TRAVEL) ||
          (fault == ILK_FAULT_HOMING_TIMEOUT);
@@ -43,6 +47,22 @@ static bool loses_reference(ilk_fault_t fault) {
  *
  * @return true when the fault is new.
  */
+/*@ requires valid: \valid(axis);
+  @ requires fault: ILK_FAULT_NONE < fault < ILK_FAULT_COUNT;
+  @ assigns  axis->state, axis->setpoint_counts, axis->drive, axis->amplitude, axis->lease_ticks,
+  @          axis->homing_phase, axis->setpoint_changed, axis->fault, axis->fault_tick, axis->fault_value,
+  @          axis->homed;
+  @ ensures  P6_faulted: axis->state == ILK_AXIS_FAULTED;
+  @ ensures  new: \result <==> \old(axis->state) != ILK_AXIS_FAULTED;
+  @ ensures  P8_first_fault: \old(axis->state) != ILK_AXIS_FAULTED ==> quiet(axis)
+  @   && axis->fault == fault && axis->fault_tick == tick && axis->fault_value == value;
+  @ ensures  P8_latch: \old(axis->state) == ILK_AXIS_FAULTED ==> axis->fault == \old(axis->fault)
+  @   && axis->fault_tick == \old(axis->fault_tick) && axis->fault_value == \old(axis->fault_value)
+  @   && axis->lease_ticks == \old(axis->lease_ticks) && axis->homing_phase == \old(axis->homing_phase);
+  @ ensures  reference: axis->homed ==
+  @   (fault == ILK_FAULT_STALL || fault == ILK_FAULT_REVERSE || fault == ILK_FAULT_DRIFT
+  @     ? \old(axis->homed) : 0);
+  @*/
 static bool raise_fault(ilk_axis_t *axis, ilk_fault_t fault, int32_t value, uint32_t tick) {
   const bool is_new = axis->state != (uint32_t)ILK_AXIS_FAULTED;
   if (is_new) {
@@ -63,10 +83,18 @@ bool ilk_card_is_lost(const ilk_config_t *config, const ilk_axis_t *axis) {
 }
 
 /** Built after the card heard the frame of the transaction before; not judged until one was sent. */
+/*@ requires readable: \valid_read(reading);
+  @ assigns  \nothing;
+  @ ensures  exact: \result <==> tick < 2 || reading->tick_echo == tick - 2;
+  @*/
 static bool echo_is_current(const ilk_reading_t *reading, uint32_t tick) {
   return (tick < 2u) || (reading->tick_echo == (tick - 2u));
 }
 
+/*@ requires readable: \valid_read(axis) && \valid_read(reading);
+  @ assigns  \nothing;
+  @ ensures  exact: \result <==> axis->card_seen == 0 || reading->heartbeat != axis->heartbeat;
+  @*/
 static bool heartbeat_advanced(const ilk_axis_t *axis, const ilk_reading_t *reading) {
   return (axis->card_seen == 0u) || (reading->heartbeat != axis->heartbeat);
 }
@@ -88,14 +116,28 @@ void ilk_observe_card(ilk_axis_t *axis, const ilk_reading_t *reading, bool recei
   }
 }
 
+/*@ requires readable: \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  exact: \result <==> axis->state != ILK_AXIS_DISABLED && axis->state != ILK_AXIS_FAULTED;
+  @*/
 static bool is_enabled(const ilk_axis_t *axis) {
   return (axis->state != (uint32_t)ILK_AXIS_DISABLED) && (axis->state != (uint32_t)ILK_AXIS_FAULTED);
 }
 
+/*@ requires readable: \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  exact: \result <==> axis->driven_direction != ILK_DIRECTION_NONE;
+  @*/
 static bool was_driven(const ilk_axis_t *axis) {
   return axis->driven_direction != (uint32_t)ILK_DIRECTION_NONE;
 }
 
+/*@ requires readable: \valid_read(config) && \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  P6_jump: \result.fault == ILK_FAULT_JUMP <==> jumped(config, axis);
+  @ ensures  only: \result.fault == ILK_FAULT_JUMP || \result.fault == ILK_FAULT_NONE;
+  @ ensures  value: \result.fault == ILK_FAULT_JUMP ==> \result.value == axis->delta_counts;
+  @*/
 static finding_t judge_jump(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
   const uint32_t farthest = multiply_saturating(config->max_delta_counts, axis->ticks_since_frame);
   finding_t finding = nothing_found;
@@ -107,11 +149,22 @@ static finding_t judge_jump(const ilk_axis_config_t *config, const ilk_axis_t *a
 }
 
 /** How far the axis has come along `direction` since the reading `mark`. */
+/*@ requires readable: \valid_read(config) && \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  exact: \result == progress(config, axis, mark_raw, direction);
+  @*/
 static int32_t progress_from(const ilk_axis_config_t *config, const ilk_axis_t *axis, uint32_t mark_raw,
                              uint32_t direction) {
   return along(direction, travel_between(config, mark_raw, axis->raw));
 }
 
+/*@ requires readable: \valid_read(config) && \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  P6_reverse: \result.fault == ILK_FAULT_REVERSE <==> reversed(config, axis);
+  @ ensures  only: \result.fault == ILK_FAULT_REVERSE || \result.fault == ILK_FAULT_NONE;
+  @ ensures  value: \result.fault == ILK_FAULT_REVERSE ==> \result.value ==
+  @   clamped(-progress(config, axis, axis->reverse_mark_raw, axis->reverse_direction));
+  @*/
 static finding_t judge_reverse(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
   const int32_t progress = progress_from(config, axis, axis->reverse_mark_raw, axis->reverse_direction);
   finding_t finding = nothing_found;
@@ -122,6 +175,13 @@ static finding_t judge_reverse(const ilk_axis_config_t *config, const ilk_axis_t
   return finding;
 }
 
+/*@ requires readable: \valid_read(config) && \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  P6_drift: \result.fault == ILK_FAULT_DRIFT <==> drifted(config, axis);
+  @ ensures  only: \result.fault == ILK_FAULT_DRIFT || \result.fault == ILK_FAULT_NONE;
+  @ ensures  value: \result.fault == ILK_FAULT_DRIFT ==>
+  @   \result.value == travel(config, axis->drift_mark_raw, axis->raw);
+  @*/
 static finding_t judge_drift(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
   const int32_t drift = travel_between(config, axis->drift_mark_raw, axis->raw);
   finding_t finding = nothing_found;
@@ -133,6 +193,13 @@ static finding_t judge_drift(const ilk_axis_config_t *config, const ilk_axis_t *
   return finding;
 }
 
+/*@ requires readable: \valid_read(config) && \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  P5_stall: \result.fault == ILK_FAULT_STALL <==> stalled(config, axis);
+  @ ensures  only: \result.fault == ILK_FAULT_STALL || \result.fault == ILK_FAULT_NONE;
+  @ ensures  value: \result.fault == ILK_FAULT_STALL ==> \result.value ==
+  @   progress(config, axis, axis->stall_mark_raw, axis->stall_direction);
+  @*/
 static finding_t judge_stall(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
   finding_t finding = nothing_found;
   if (is_enabled(axis) && (axis->stall_driven_ticks >= config->stall_ticks)) {
@@ -142,10 +209,20 @@ static finding_t judge_stall(const ilk_axis_config_t *config, const ilk_axis_t *
   return finding;
 }
 
+/*@ assigns \nothing;
+  @ ensures exact: earlier.fault != ILK_FAULT_NONE
+  @   ? \result.fault == earlier.fault && \result.value == earlier.value
+  @   : \result.fault == later.fault && \result.value == later.value;
+  @*/
 static finding_t first_of(finding_t earlier, finding_t later) {
   return (earlier.fault != ILK_FAULT_NONE) ? earlier : later;
 }
 
+/*@ requires valid: \valid(axis);
+  @ assigns  axis->stall_driven_ticks, axis->setpoint_changed, axis->stall_mark_raw;
+  @ ensures  P5_stall: axis->stall_driven_ticks == 0 && axis->setpoint_changed == 0
+  @   && axis->stall_mark_raw == axis->raw;
+  @*/
 static void clear_stall_count(ilk_axis_t *axis) {
   axis->stall_driven_ticks = 0u;
   axis->setpoint_changed = 0u;
@@ -153,6 +230,23 @@ static void clear_stall_count(ilk_axis_t *axis) {
 }
 
 /** Moves position and marks to a new reading. */
+/*@ requires valid: \valid_read(config) && \valid(axis) && \separated(config, axis);
+  @ assigns  axis->card_seen, axis->raw, axis->ticks_since_frame, axis->reverse_mark_raw, axis->drift_mark_raw,
+  @          axis->stall_mark_raw, axis->homing_mark_raw, axis->delta_counts, axis->position_counts,
+  @          axis->press_travel_counts;
+  @ ensures  raw: axis->raw == raw && (\old(axis->card_seen) == 0 ? axis->card_seen == 1
+  @   : axis->card_seen == \old(axis->card_seen));
+  @ ensures  delta: axis->delta_counts == (\old(axis->card_seen) == 0 ? 0 : travel(config, \old(axis->raw), raw));
+  @ ensures  position: axis->position_counts == clamped(\old(axis->position_counts) + axis->delta_counts);
+  @ ensures  P7_travel: axis->press_travel_counts == clamped(\old(axis->press_travel_counts) + axis->delta_counts);
+  @ ensures  new_card: \old(axis->card_seen) == 0 ==> axis->ticks_since_frame == 0
+  @   && axis->reverse_mark_raw == raw && axis->drift_mark_raw == raw && axis->stall_mark_raw == raw
+  @   && axis->homing_mark_raw == raw;
+  @ ensures  P6_marks: \old(axis->card_seen) != 0 ==> axis->reverse_mark_raw == \old(axis->reverse_mark_raw)
+  @   && axis->drift_mark_raw == \old(axis->drift_mark_raw) && axis->stall_mark_raw == \old(axis->stall_mark_raw)
+  @   && axis->homing_mark_raw == \old(axis->homing_mark_raw)
+  @   && axis->ticks_since_frame == \old(axis->ticks_since_frame);
+  @*/
 static void follow(const ilk_axis_config_t *config, ilk_axis_t *axis, uint32_t raw) {
   if (axis->card_seen == 0u) {
     axis->card_seen = 1u;
@@ -170,6 +264,12 @@ static void follow(const ilk_axis_config_t *config, ilk_axis_t *axis, uint32_t r
 }
 
 /** Motion counts as progress only until the axis has settled: later it is not the drive's doing. */
+/*@ requires readable: \valid_read(config) && \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  P5_stall: \result <==> axis->undriven_ticks < config->settle_ticks
+  @   && progress(config, axis, axis->stall_mark_raw, axis->stall_direction) > 0
+  @   && progress(config, axis, axis->stall_mark_raw, axis->stall_direction) >= config->stall_min_counts;
+  @*/
 static bool made_progress(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
   const int32_t progress = progress_from(config, axis, axis->stall_mark_raw, axis->stall_direction);
   return (axis->undriven_ticks < config->settle_ticks) && (progress > 0) &&
@@ -177,6 +277,19 @@ static bool made_progress(const ilk_axis_config_t *config, const ilk_axis_t *axi
 }
 
 /** Marks that follow the axis while it does nothing wrong. */
+/*@ requires valid: \valid_read(config) && \valid(axis) && \separated(config, axis);
+  @ assigns  axis->reverse_mark_raw, axis->stall_driven_ticks, axis->setpoint_changed, axis->stall_mark_raw,
+  @          axis->undriven_ticks, axis->drift_mark_raw;
+  @ ensures  P6_reverse: axis->reverse_mark_raw == axis->raw
+  @   || axis->reverse_mark_raw == \old(axis->reverse_mark_raw);
+  @ ensures  P6_undriven: axis->undriven_ticks == (axis->driven_direction != ILK_DIRECTION_NONE ? 0
+  @   : \min(\old(axis->undriven_ticks) + 1, config->settle_ticks));
+  @ ensures  P6_drift: axis->drift_mark_raw == (axis->state == ILK_AXIS_DISABLED
+  @   || axis->state == ILK_AXIS_FAULTED || axis->undriven_ticks < config->settle_ticks
+  @   ? axis->raw : \old(axis->drift_mark_raw));
+  @ ensures  P5_stall: axis->stall_driven_ticks == 0
+  @   || axis->stall_driven_ticks == \old(axis->stall_driven_ticks);
+  @*/
 static void advance_marks(const ilk_axis_config_t *config, ilk_axis_t *axis) {
   if (progress_from(config, axis, axis->reverse_mark_raw, axis->reverse_direction) > 0) {
     axis->reverse_mark_raw = axis->raw;
@@ -190,6 +303,17 @@ static void advance_marks(const ilk_axis_config_t *config, ilk_axis_t *axis) {
   }
 }
 
+/*@ requires readable: \valid_read(config) && \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  P6_jump: jumped(config, axis) <==> \result.fault == ILK_FAULT_JUMP;
+  @ ensures  P6_reverse: reversed(config, axis) ==> \result.fault != ILK_FAULT_NONE;
+  @ ensures  P6_drift: drifted(config, axis) ==> \result.fault != ILK_FAULT_NONE;
+  @ ensures  P5_stall: stalled(config, axis) ==> \result.fault != ILK_FAULT_NONE;
+  @ ensures  founded: \result.fault == ILK_FAULT_NONE || \result.fault == ILK_FAULT_JUMP
+  @   || (\result.fault == ILK_FAULT_REVERSE && reversed(config, axis))
+  @   || (\result.fault == ILK_FAULT_DRIFT && drifted(config, axis))
+  @   || (\result.fault == ILK_FAULT_STALL && stalled(config, axis));
+  @*/
 static finding_t judge_motion(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
   finding_t finding = judge_jump(config, axis);
   finding = first_of(finding, judge_reverse(config, axis));
@@ -198,6 +322,19 @@ static finding_t judge_motion(const ilk_axis_config_t *config, const ilk_axis_t 
   return finding;
 }
 
+/*@ requires valid: \valid_read(config) && \valid(axis) && \valid_read(reading);
+  @ requires apart: \separated(config, axis, reading);
+  @ assigns  axis->card_seen, axis->raw, axis->ticks_since_frame, axis->reverse_mark_raw, axis->drift_mark_raw,
+  @          axis->stall_mark_raw, axis->homing_mark_raw, axis->delta_counts, axis->position_counts,
+  @          axis->press_travel_counts, axis->stall_driven_ticks, axis->setpoint_changed, axis->undriven_ticks,
+  @          axis->driven_direction;
+  @ ensures  seen: axis->raw == \old(reading->raw) && axis->ticks_since_frame == 0
+  @   && axis->driven_direction == ILK_DIRECTION_NONE;
+  @ ensures  P5_stall: \result.fault == ILK_FAULT_NONE
+  @   && axis->state != ILK_AXIS_DISABLED && axis->state != ILK_AXIS_FAULTED ==>
+  @     axis->stall_driven_ticks < \old(config->stall_ticks);
+  @ ensures  known: 0 <= \result.fault <= ILK_FAULT_JUMP;
+  @*/
 static finding_t observe_valid(const ilk_axis_config_t *config, ilk_axis_t *axis,
                                const ilk_reading_t *reading) {
   follow(config, axis, reading->raw);
@@ -208,6 +345,13 @@ static finding_t observe_valid(const ilk_axis_config_t *config, ilk_axis_t *axis
   return finding;
 }
 
+/*@ requires valid: \valid_read(config) && \valid(axis) && \separated(config, axis);
+  @ assigns  axis->card_seen;
+  @ ensures  lost: axis->bad_frames >= config->bad_frame_limit ==>
+  @   \result.fault == ILK_FAULT_CARD_LOST && axis->card_seen == 0;
+  @ ensures  kept: axis->bad_frames < config->bad_frame_limit ==>
+  @   \result.fault == ILK_FAULT_NONE && axis->card_seen == \old(axis->card_seen);
+  @*/
 static finding_t observe_missing(const ilk_config_t *config, ilk_axis_t *axis) {
   finding_t finding = nothing_found;
   if (ilk_card_is_lost(config, axis)) {
@@ -219,6 +363,14 @@ static finding_t observe_missing(const ilk_config_t *config, ilk_axis_t *axis) {
   return finding;
 }
 
+/*@ requires valid: \valid(axis);
+  @ requires sound: sound_axis(axis);
+  @ assigns  axis->lease_ticks, axis->state;
+  @ ensures  P15_invariant: sound_axis(axis);
+  @ ensures  lease: axis->lease_ticks == \max(\old(axis->lease_ticks) - 1, 0);
+  @ ensures  P1_lease: axis->state == (\old(axis->state) == ILK_AXIS_MOVING && axis->lease_ticks == 0
+  @   ? ILK_AXIS_ENABLED : \old(axis->state));
+  @*/
 static void run_lease_down(ilk_axis_t *axis) {
   axis->lease_ticks = count_down(axis->lease_ticks);
   if ((axis->state == (uint32_t)ILK_AXIS_MOVING) && (axis->lease_ticks == 0u)) {

@@ -3,11 +3,12 @@
 
 Each file of the core is given to Frama-C's WP on its own, functions of headers once. The goals of each
 function are compared with expected.json, exactly; places that a smoke test shows to be out of reach must be
-in dead.toml, each with its reason. Without arguments the files of expected.json are proved and the evidence
-is written. It counts, and the output names, the functions of the other files, of which nothing is claimed,
-and contracts of such functions that the proofs take for granted. With the names of files only these are
+in dead.toml, each with its reason. Without arguments the functions of expected.json are proved and the
+evidence is written. It counts, and the output names, the other functions, of which nothing is claimed, and
+contracts of such functions that the proved files take for granted. With the names of files only these are
 proved, and no evidence is written; nor with `--cached`, which takes as proved what an earlier such run
-proved. `--accept` writes expected.json anew from what was proved.
+proved. `--all` tries the other functions of the files, too; `--accept` then writes expected.json anew, with
+the functions of which all is proved.
 """
 
 import argparse
@@ -38,7 +39,7 @@ Expected = Mapping[str, Mapping[str, Mapping[str, int]]]
 
 @dataclass(frozen=True)
 class Unit:
-    """A file of the core: functions whose one definition it holds, and those of other files that it calls."""
+    """A file of the core: the functions whose one definition it holds, and all that are called there."""
 
     own: tuple[str, ...]
     called: frozenset[str]
@@ -54,7 +55,7 @@ def units_of_core() -> dict[str, Unit]:
         if name in HEADERS:
             seen.update(own)
         if own:
-            units[name] = Unit(own, functions.called - set(own))
+            units[name] = Unit(own, functions.called)
     return units
 
 
@@ -132,12 +133,12 @@ def judge(unit: str, report: Report, expected: Expected, allowed: set[tuple[str,
     }
 
 
-def run(units: Mapping[str, Unit], directory: Path, cache: Path | None) -> dict[str, Report]:
-    """Proves the files, the largest first, on as many cores as JOBS says."""
-    largest_first = sorted(units, key=lambda name: (CORE / name).stat().st_size, reverse=True)
+def run(functions: Mapping[str, Sequence[str]], directory: Path, cache: Path | None) -> dict[str, Report]:
+    """Proves functions of each file, the largest first, on as many cores as JOBS says."""
+    largest_first = sorted(functions, key=lambda name: (CORE / name).stat().st_size, reverse=True)
     with ThreadPoolExecutor(max_workers=int(os.environ.get("JOBS", "1"))) as pool:
         started = {
-            name: pool.submit(prove, name, units[name].own, directory, cache) for name in largest_first
+            name: pool.submit(prove, name, functions[name], directory, cache) for name in largest_first
         }
         return {name: future.result() for name, future in started.items()}
 
@@ -146,11 +147,18 @@ def read_expected() -> Expected:
     return json.loads(EXPECTED.read_text("utf-8"))
 
 
+def proved_functions(report: Report) -> dict[str, dict[str, int]]:
+    """The functions that say what they assign and ensure, and of which every goal is proved, by name."""
+    return {
+        function: asdict(counts)
+        for function, counts in sorted(report.counts.items())
+        if function not in report.uncontracted and counts.goals == counts.qed + counts.smt
+    }
+
+
 def accept(reports: Mapping[str, Report]) -> None:
-    """Writes expected.json anew for the files that were proved."""
-    expected = dict(read_expected())
-    for unit, report in reports.items():
-        expected[unit] = {function: asdict(counts) for function, counts in sorted(report.counts.items())}
+    """Writes expected.json anew for the files that were tried."""
+    expected = {**read_expected(), **{name: proved_functions(report) for name, report in reports.items()}}
     EXPECTED.write_text(json.dumps(expected, indent=1, sort_keys=True) + "\n", "utf-8")
 
 
@@ -172,13 +180,14 @@ def judge_all(reports: Mapping[str, Report], expected: Expected, whole: bool) ->
     return total
 
 
-def reach(units: Mapping[str, Unit], proved: Collection[str], expected: Expected) -> dict[str, int]:
-    """How far the proofs reach: functions without one, and contracts of those that the `proved` files use."""
-    missing = {name: unit.own for name, unit in units.items() if name not in expected}
+def reach(units: Mapping[str, Unit], tried: Collection[str], expected: Expected) -> dict[str, int]:
+    """How far the proofs reach: functions without one, and contracts of those that the `tried` files use."""
+    missing = {name: [f for f in unit.own if f not in expected.get(name, {})] for name, unit in units.items()}
     without = {function for functions in missing.values() for function in functions}
-    assumed = {name: sorted(units[name].called & without) for name in sorted(proved)}
+    assumed = {name: sorted(units[name].called & without) for name in sorted(tried)}
     for name, functions in missing.items():
-        print(f"{name:14} no contract proof of {', '.join(functions)}")
+        if functions:
+            print(f"{name:14} no contract proof of {', '.join(functions)}")
     for name, functions in assumed.items():
         for function in functions:
             print(f"{name:14} takes for granted the contract of {function}")
@@ -188,14 +197,14 @@ def reach(units: Mapping[str, Unit], proved: Collection[str], expected: Expected
     }
 
 
-def choose(units: Mapping[str, Unit], names: Sequence[str]) -> dict[str, Unit]:
-    """The named files. Exits when the core has no such file."""
+def choose(units: Mapping[str, Unit], names: Sequence[str], expected: Expected) -> dict[str, list[str]]:
+    """The functions to prove of each named file: those expected. Exits when the core has no such file."""
     unknown = sorted(set(names) - units.keys())
     if unknown:
         raise SystemExit(
             f"no functions in '{unknown[0]}' of the core; expected one of {', '.join(sorted(units))}"
         )
-    return {name: units[name] for name in names}
+    return {name: [f for f in units[name].own if f in expected.get(name, {})] for name in names}
 
 
 def main() -> int:
@@ -203,6 +212,7 @@ def main() -> int:
     parser.add_argument(
         "units", nargs="*", help="files of kernel/src to prove; those of expected.json when none"
     )
+    parser.add_argument("--all", action="store_true", help="try the functions that are not expected, too")
     parser.add_argument("--cached", action="store_true", help="reuse goals proved before; write no evidence")
     parser.add_argument("--accept", action="store_true", help="write expected.json anew")
     arguments = parser.parse_args()
@@ -210,20 +220,25 @@ def main() -> int:
     directory = evidence.log_directory("wp")
     write_prover_list(directory)
     units = units_of_core()
-    chosen = choose(units, arguments.units or sorted(read_expected()))
+    expected = read_expected()
+    chosen = choose(units, arguments.units or sorted(expected), expected)
+    if arguments.all:
+        chosen = {name: list(units[name].own) for name in chosen}
+    elif not all(chosen.values()):
+        raise SystemExit("a file of which nothing is expected to be proved: use --all")
     cache = ROOT / "build/wp-cache" if arguments.cached else None
     if cache:
         cache.mkdir(parents=True, exist_ok=True)
     reports = run(chosen, directory, cache)
     if arguments.accept:
         accept(reports)
-    expected = read_expected()
+        expected = read_expected()
     total = judge_all(reports, expected, whole=not arguments.units)
     wrong = total.pop("wrong")
     total |= reach(units, chosen, expected)
     status = "FAILED" if wrong else ("VACUOUS" if total["smoke_failed"] else "PASSED")
     print(f"{status}: {total}")
-    if arguments.units or cache:
+    if arguments.units or arguments.all or cache:
         return 0 if status == "PASSED" else 1
     return evidence.write("wp", status, tools(), total, properties(list(reports.values())), started)
 

@@ -23,7 +23,7 @@ PREPROCESSOR = f"-I{ROOT / 'kernel/include'} -I{CORE} -DILK_FRAME_WORDS=32"
 PARSE = ["frama-c", "-c11", "-machdep", "gcc_x86_64", f"-cpp-extra-args={PREPROCESSOR}"]
 PROVE = [
     *("-warn-signed-downcast", "-wp", "-wp-rte", "-wp-model", "Typed"),
-    *("-wp-prover", "z3,cvc4", "-wp-timeout", "10", "-wp-par", "1"),
+    *("-wp-prover", "z3,cvc4", "-wp-timeout", "20", "-wp-par", "1"),
     *("-wp-smoke-tests", "-wp-smoke-timeout", "2"),
 ]
 SMOKE = "_wp_smoke_"
