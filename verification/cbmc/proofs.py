@@ -14,11 +14,13 @@ contradictions  cover goals of the harness that must be unreachable
 [[wraps]]       function, because: an unsigned overflow, or a negative number made a word, that is
                 meant; each must be shown to happen
 solver          "z3" where the built-in solver finds no answer; the built-in one otherwise
+[variants.NAME] the same proof once more, as NAME: those of the entries above that differ there
 """
 
 import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 HERE = Path(__file__).resolve().parent
 
@@ -49,6 +51,7 @@ class Proof:
     """One harness and what it must come to."""
 
     name: str
+    directory: Path
     proves: str
     supports: list[str]
     sources: list[str]
@@ -66,17 +69,17 @@ class Proof:
     @property
     def harness(self) -> Path:
         """The C file with the function `harness`."""
-        return HERE / self.name / "harness.c"
+        return self.directory / "harness.c"
 
 
-def load(path: Path) -> Proof:
-    """Reads one proof.toml. Raises SystemExit naming the file when something is missing, unknown or empty."""
-    table = tomllib.loads(path.read_text("utf-8"))
+def proof_of(path: Path, name: str, table: dict[str, Any]) -> Proof:
+    """The proof of a table. Raises SystemExit naming the file for an entry missing, unknown or empty."""
     try:
         proof = Proof(
             **{
                 **table,
-                "name": path.parent.name,
+                "name": name,
+                "directory": path.parent,
                 "reachable": frozenset(table["reachable"]),
                 "contradictions": frozenset(table["contradictions"]),
                 "replaced": [Replacement(**entry) for entry in table.get("replaced", [])],
@@ -91,9 +94,20 @@ def load(path: Path) -> Proof:
     return proof
 
 
+def load(path: Path) -> list[Proof]:
+    """The proof of one proof.toml and its variants. Raises SystemExit as `proof_of` does."""
+    table = tomllib.loads(path.read_text("utf-8"))
+    variants = table.pop("variants", {})
+    name = path.parent.name
+    return [
+        proof_of(path, name, table),
+        *(proof_of(path, f"{name}-{variant}", table | differs) for variant, differs in variants.items()),
+    ]
+
+
 def load_all() -> list[Proof]:
     """All proofs."""
-    return [load(path) for path in sorted(HERE.glob("*/proof.toml"))]
+    return [proof for path in sorted(HERE.glob("*/proof.toml")) for proof in load(path)]
 
 
 def unjustified(proofs: list[Proof]) -> list[str]:

@@ -80,12 +80,12 @@ def main() -> int:
     names = parser.parse_args().names
     started = time.monotonic()
     proofs = load_all()
-    unknown = set(names) - {proof.name for proof in proofs}
+    unknown = set(names) - {name for proof in proofs for name in (proof.name, proof.directory.name)}
     if unknown:
         parser.error(f"no such proof: {', '.join(sorted(unknown))}")
     if not names and unjustified(proofs):
         parser.error("\n".join(unjustified(proofs)))
-    chosen = [proof for proof in proofs if not names or proof.name in names]
+    chosen = [proof for proof in proofs if not names or {proof.name, proof.directory.name} & set(names)]
     outcomes = run(chosen, evidence.log_directory("cbmc"))
     status = worst(outcomes)
     print(f"{status}: {figures(outcomes)} in {time.monotonic() - started:.0f} s")
