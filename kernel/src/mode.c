@@ -42,6 +42,10 @@ bool ilk_cause_is_present(const ilk_state_t *state) {
 }
 
 /** Any reading that is neither clearly pressed nor clearly released is a disagreement. */
+/*@ requires readable: \valid_read(config) && \valid_read(in);
+  @ assigns  \nothing;
+  @ ensures  P2_pedal: \result == pedal_reading(config, in);
+  @*/
 static ilk_pedal_t pedal_reading(const ilk_config_t *config, const ilk_inputs_t *in) {
   const bool single = config->pedal_channels == 1u;
   const bool nc_says_pressed = single || (in->pedal_nc_closed == OPEN);
@@ -71,6 +75,14 @@ static void observe_pedal(const ilk_config_t *config, ilk_state_t *state, const 
                                    : 0u;
 }
 
+/*@ requires valid: \valid_read(config) && \valid(state) && \valid_read(in) && \separated(config, state, in);
+  @ assigns  state->link_generation, state->last_sequence, state->app_age_ticks, state->app_alive;
+  @ ensures  P10_silence: state->app_alive == (state->app_age_ticks < config->app_timeout_ticks ? 1 : 0);
+  @ ensures  P10_age: state->app_age_ticks == (in->link_generation == \old(state->link_generation)
+  @   ? \min(\old(state->app_age_ticks) + 1, UINT32_MAX) : UINT32_MAX);
+  @ ensures  attachment: state->link_generation == in->link_generation && state->last_sequence ==
+  @   (in->link_generation == \old(state->link_generation) ? \old(state->last_sequence) : 0);
+  @*/
 static void observe_app(const ilk_config_t *config, ilk_state_t *state, const ilk_inputs_t *in) {
   if (in->link_generation != state->link_generation) {
     state->link_generation = in->link_generation;
@@ -81,6 +93,13 @@ static void observe_app(const ilk_config_t *config, ilk_state_t *state, const il
   state->app_alive = flag_of(state->app_age_ticks < config->app_timeout_ticks);
 }
 
+/*@ requires valid: \valid(state) && \valid_read(in) && \separated(state, in);
+  @ assigns  state->overruns_in_row, state->overruns;
+  @ ensures  in_row: state->overruns_in_row ==
+  @   (in->deadline_missed != 0 ? \min(\old(state->overruns_in_row) + 1, UINT32_MAX) : 0);
+  @ ensures  ever: state->overruns == (in->deadline_missed != 0
+  @   ? \min(\old(state->overruns) + 1, UINT32_MAX) : \old(state->overruns));
+  @*/
 static void observe_deadline(ilk_state_t *state, const ilk_inputs_t *in) {
   if (in->deadline_missed != 0u) {
     state->overruns_in_row = count_up(state->overruns_in_row, UINT32_MAX);
@@ -129,6 +148,11 @@ static void lock_on_causes(const ilk_config_t *config, ilk_state_t *state, const
 }
 
 /** MOTION holds only while the pedal is pressed, the app lives and nothing new is wrong. */
+/*@ requires readable: \valid_read(state) && \valid_read(alarms);
+  @ assigns  \nothing;
+  @ ensures  P2_stop: \result <==> state->pedal != ILK_PEDAL_PRESSED || state->app_alive == 0
+  @   || alarms->new_fault != 0 || alarms->required_card_lost != 0;
+  @*/
 static bool motion_must_end(const ilk_state_t *state, const ilk_alarms_t *alarms) {
   return (state->pedal != (uint32_t)ILK_PEDAL_PRESSED) || (state->app_alive == 0u) || alarms->new_fault ||
          alarms->required_card_lost;
@@ -136,6 +160,15 @@ static bool motion_must_end(const ilk_state_t *state, const ilk_alarms_t *alarms
 
 /** A release counts as arming only when seen whole in READY with the app alive; without the app no consent
  * lasts. */
+/*@ requires valid: \valid_read(config) && \valid(state) && \separated(config, state);
+  @ assigns  state->pedal_armed, state->pedal_pressed_ticks, state->pedal_released_ticks;
+  @ ensures  P9_silence: state->app_alive == 0 ==> state->pedal_armed == 0 && state->pedal_pressed_ticks == 0
+  @   && state->pedal_released_ticks == 0;
+  @ ensures  P9_armed: state->app_alive != 0 ==> state->pedal_armed ==
+  @     (state->pedal_released_ticks >= config->pedal_debounce_ticks ? 1 : \old(state->pedal_armed))
+  @   && state->pedal_pressed_ticks == \old(state->pedal_pressed_ticks)
+  @   && state->pedal_released_ticks == \old(state->pedal_released_ticks);
+  @*/
 static void arm_pedal(const ilk_config_t *config, ilk_state_t *state) {
   if (state->app_alive == 0u) {
     ilk_pedal_disarm(state);
@@ -147,6 +180,12 @@ static void arm_pedal(const ilk_config_t *config, ilk_state_t *state) {
 }
 
 /** Asked after `arm_pedal`: a pedal that is armed says that the app lives. */
+/*@ requires readable: \valid_read(config) && \valid_read(state) && \valid_read(alarms);
+  @ assigns  \nothing;
+  @ ensures  P9_consent: \result <==> state->pedal_armed != 0 && state->pedal == ILK_PEDAL_PRESSED
+  @   && state->pedal_pressed_ticks >= config->pedal_debounce_ticks
+  @   && alarms->required_card_lost == 0;
+  @*/
 static bool motion_may_begin(const ilk_config_t *config, const ilk_state_t *state,
                              const ilk_alarms_t *alarms) {
   return (state->pedal_armed != 0u) && (state->pedal == (uint32_t)ILK_PEDAL_PRESSED) &&

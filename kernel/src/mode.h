@@ -25,6 +25,11 @@ void ilk_mode_enter(ilk_state_t *state, ilk_mode_t mode);
 void ilk_mode_lock(ilk_state_t *state, ilk_cause_t cause, uint32_t value);
 
 /** Takes back the consent that the pedal gave: it must be released and pressed anew. */
+/*@ requires valid: \valid(state);
+  @ assigns  state->pedal_armed, state->pedal_pressed_ticks, state->pedal_released_ticks;
+  @ ensures  P9_consent: state->pedal_armed == 0 && state->pedal_pressed_ticks == 0
+  @   && state->pedal_released_ticks == 0;
+  @*/
 void ilk_pedal_disarm(ilk_state_t *state);
 
 /** True while something that locks is there, or the app or the bus is not (RESET: CAUSE_PRESENT). */
