@@ -66,11 +66,15 @@ test-browser: build ## Run the tests that click through the console
 	@npm --prefix web run --silent test:browser
 
 .PHONY: selftest selftest-all
-selftest: setup ## Show that seeded faults turn tests red: a third, chosen by the commit
+selftest: setup ## Show that seeded faults turn tests and proofs red: a third, chosen by the commit
 	@tests/failure/run.py
+	@$(setup) packages provers
+	@/usr/bin/python3 verification/mutation/faults.py
 
-selftest-all: setup ## Show that every seeded fault turns its test red
+selftest-all: setup ## Show that every seeded fault turns its test or proof red
 	@tests/failure/run.py --all
+	@$(setup) packages provers
+	@/usr/bin/python3 verification/mutation/faults.py --all
 
 .PHONY: verify
 verify: ## Climb the verification ladder: [FRESH=1] runs again what has not changed

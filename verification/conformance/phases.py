@@ -69,10 +69,15 @@ def table_of(phase: Phase, folder: Path, model: Path = TLA) -> Table:
     return read_rows(phase, text)
 
 
-def build(phase: Phase, table: Table, folder: Path, kernel: Path, model: Path = TLA) -> None:
-    """Writes case.h and the rows, and compiles the native run."""
+def write_case(phase: Phase, table: Table, folder: Path, model: Path = TLA) -> None:
+    """Writes the phase's table as case.h, for the proof, and its rows, for the compiled kernel."""
     (folder / "case.h").write_text(case_header(table, model_hash(phase, model)), "utf-8")
     (folder / "rows.bin").write_bytes(table.packed())
+
+
+def build(phase: Phase, table: Table, folder: Path, kernel: Path, model: Path = TLA) -> None:
+    """Writes case.h and the rows, and compiles the native run."""
+    write_case(phase, table, folder, model)
     compile_rows(folder, kernel, phase.includes)
 
 

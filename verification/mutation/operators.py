@@ -7,9 +7,12 @@ constant, statement deletion; and one for this kernel, the exchange of an enumer
 
 import hashlib
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
+
+T = TypeVar("T")
 
 RELATIONS = {
     "<": ("<=", ">="),
@@ -97,6 +100,6 @@ def mutants_of(root: Path, files: list[str]) -> list[Mutant]:
     ]
 
 
-def draw(mutants: list[Mutant], count: int, seed: str) -> list[Mutant]:
+def draw(candidates: Sequence[T], count: int, seed: str) -> list[T]:
     """`count` of them, chosen by `seed` alone, the same on every machine."""
-    return sorted(mutants, key=lambda mutant: hashlib.sha256(f"{seed} {mutant}".encode()).digest())[:count]
+    return sorted(candidates, key=lambda each: hashlib.sha256(f"{seed} {each}".encode()).digest())[:count]

@@ -42,34 +42,53 @@ class Probe:
         return found.group().strip() if found else ""
 
 
-def contract_probe(file: Path) -> Probe:
-    command = (sys.executable, "verification/frama-c/run.py", file.name)
-    return Probe("wp", file.name, command, re.compile(r"^ +(NOT PROVED|OUT OF REACH) .*$", re.MULTILINE))
+def contract_probe(file: str) -> Probe:
+    """The contracts of one file of kernel/src."""
+    command = (sys.executable, "verification/frama-c/run.py", file)
+    return Probe("wp", file, command, re.compile(r"^ +(NOT PROVED|OUT OF REACH) .*$", re.MULTILINE))
 
 
-def proof_probes(tree: Path, file: Path) -> Iterator[Probe]:
-    """The CBMC proofs that link or include the file, the fastest first; for a header, all of them."""
+def proof_probe(name: str) -> Probe:
+    """One proof of verification/cbmc."""
+    command = (sys.executable, "verification/cbmc/run.py", name)
+    return Probe(
+        "cbmc", name, command, re.compile(r"^ +(\w+: .*|goal \w+ is \w+; expected.*)$", re.MULTILINE)
+    )
+
+
+def row_probe(phase: str) -> Probe:
+    """The compiled kernel over the model's rows of one phase, or of `all`; see rows.py."""
+    names = () if phase == "all" else (phase,)
+    command = (sys.executable, str(HERE / "rows.py"), ".", *names)
+    return Probe(
+        "conformance", phase, command, re.compile(r"^\w+: (\d+ rows differ|the run).*$", re.MULTILINE)
+    )
+
+
+KINDS = {"wp": contract_probe, "cbmc": proof_probe, "conformance": row_probe}
+
+
+def probe_named(name: str) -> Probe:
+    """The probe that is called `RUNG PART`. Raises KeyError for an unknown rung."""
+    rung, part = name.split(" ", 1)
+    return KINDS[rung](part)
+
+
+def proofs_about(tree: Path, file: Path) -> Iterator[str]:
+    """The CBMC proofs that link or take in the file, the fastest first; all of them for a header."""
     proofs = []
     for path in (tree / "verification/cbmc").glob("*/proof.toml"):
         table = tomllib.loads(path.read_text("utf-8"))
-        harness = (path.parent / "harness.c").read_text("utf-8")
-        linked = file.name in table["sources"] or f'#include "{file.name}"' in harness
-        if file.suffix == ".h" or linked:
+        harness = path.with_name("harness.c").read_text("utf-8")
+        taken_in = f'#include "{file.name}"' in harness
+        if file.suffix == ".h" or taken_in or file.name in table["sources"]:
             proofs.append((table["seconds"], path.parent.name))
-    for _, name in sorted(proofs):
-        command = (sys.executable, "verification/cbmc/run.py", name)
-        yield Probe("cbmc", name, command, re.compile(r"^(FAILED|VACUOUS) .*\n.*$", re.MULTILINE))
-
-
-def row_probe() -> Probe:
-    """The compiled kernel over the rows of the model; see rows.py."""
-    command = (sys.executable, str(HERE / "rows.py"), "kernel", "build/rows")
-    return Probe("conformance", "rows", command, re.compile(r"^\w+: \d+ rows differ$", re.MULTILINE))
+    return (name for _, name in sorted(proofs))
 
 
 def probes_for(tree: Path, file: Path) -> Iterator[Probe]:
     """All that can see this file of kernel/src; contracts only where they are proved of the sound file."""
-    yield row_probe()
-    yield from proof_probes(tree, file)
+    yield row_probe("all")
+    yield from map(proof_probe, proofs_about(tree, file))
     if file.name in json.loads((tree / "verification/frama-c/expected.json").read_text("utf-8")):
-        yield contract_probe(file)
+        yield contract_probe(file.name)

@@ -1,58 +1,81 @@
 #!/usr/bin/env python3
-"""Runs a changed kernel over the rows that the model printed for the tree as it is: rows.py KERNEL FOLDER.
+"""Runs a changed kernel over the rows that the model printed: rows.py TREE [PHASE ...].
 
-KERNEL is the folder `kernel` of the changed tree; FOLDER takes what is built. The rows are those that
-verification/conformance/run.py left in build/evidence/conformance. Prints each phase that differs, as
-`PHASE: N rows differ`; exits 2 when the rows of a phase are missing.
+Without a phase over those of all. TREE is the changed copy of the project; what is built stays in its
+build/rows. The rows are those that verification/conformance/run.py left here; those that are missing are
+printed by TLC anew. Prints each phase that differs, as `PHASE: N rows differ, first in COLUMN`.
 """
 
 import re
-import shutil
 import subprocess
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-CONFORMANCE = ROOT / "verification" / "conformance"
-sys.path.append(str(CONFORMANCE))
+sys.path.append(str(Path(__file__).resolve().parents[1] / "conformance"))
 
-from table import load_phase  # noqa: E402
-from tools import kernel_sources  # noqa: E402
-
-
-def compiled(case: Path, kernel: Path, included: list[str]) -> bool:
-    """Whether the native run of a phase could be built; without optimisation, as it is run only once."""
-    flags = ["-std=c11", "-O1", f"-I{case}", f"-I{kernel}/include", f"-I{kernel}/src", "-DILK_FRAME_WORDS=32"]
-    command = ["gcc", *flags, str(CONFORMANCE / "run_rows.c"), *kernel_sources(kernel, included)]
-    return subprocess.run([*command, "-o", str(case / "run_rows")], capture_output=True).returncode == 0
+import phases
+from table import Phase, load_phase
+from tools import HERE, kernel_sources
 
 
-def differing(case: Path) -> int:
-    """How many rows differ; one when the run broke off."""
-    command = [str(case / "run_rows"), str(case / "rows.bin")]
-    done = subprocess.run(command, capture_output=True, text=True, errors="replace")
+def phase_named(name: str) -> Phase:
+    """The phase of that name in verification/conformance."""
+    return load_phase(HERE / "phases" / f"{name}.toml")
+
+
+def all_phases() -> list[str]:
+    """The names of all phases of the tick."""
+    return phases.names()
+
+
+def are_current(phase: Phase, folder: Path) -> bool:
+    """Whether the rows in this folder are those of the model as it is."""
+    header = folder / "case.h"
+    return (folder / "rows.bin").is_file() and phases.model_hash(phase) in header.read_text("utf-8")
+
+
+def print_missing(names: Iterable[str]) -> None:
+    """Lets TLC print the rows of these phases where they are missing or older than the model."""
+    for phase in map(phase_named, names):
+        folder = phases.OUTPUT / phase.name
+        if not are_current(phase, folder):
+            phases.write_case(phase, phases.table_of(phase, folder), folder)
+
+
+def compile_kernel(kernel: Path, folder: Path) -> list[str]:
+    """Compiles the changed kernel once for all phases; gives the compiler's flags."""
+    folder.mkdir(parents=True, exist_ok=True)
+    flags = ["-std=c11", "-O1", "-w", f"-I{kernel}/include", f"-I{kernel}/src", "-DILK_FRAME_WORDS=32"]
+    sources = sorted(str(path) for path in (kernel / "src").glob("*.c"))
+    subprocess.run(["gcc", *flags, "-c", *sources], cwd=folder, check=True, capture_output=True)
+    return flags
+
+
+def difference(phase: Phase, kernel: Path, folder: Path, flags: list[str]) -> str:
+    """How many rows the changed kernel answers otherwise; empty when none."""
+    case, program = phases.OUTPUT / phase.name, folder / phase.name
+    objects = [f"{folder}/{Path(source).stem}.o" for source in kernel_sources(kernel, phase.includes)]
+    command = ["gcc", *flags, f"-I{case}", str(HERE / "run_rows.c"), *objects, "-o", str(program)]
+    subprocess.run(command, check=True, capture_output=True)
+    done = subprocess.run([program, case / "rows.bin"], capture_output=True, text=True, errors="replace")
     end = re.search(r"^ROWS \d+ DIFFERENCES (\d+)$", done.stdout, re.MULTILINE)
-    return int(end[1]) if end else 1
+    if end is None:
+        return f"{phase.name}: the run broke off"
+    first = re.search(r"^DIFFERS kernel \d+ (.+) -?\d+ -?\d+$", done.stdout, re.MULTILINE)
+    return f"{phase.name}: {end[1]} rows differ, first in {first[1] if first else '?'}" if int(end[1]) else ""
 
 
 def main() -> int:
-    kernel, folder = (Path(argument).resolve() for argument in sys.argv[1:3])
-    for path in sorted((CONFORMANCE / "phases").glob("*.toml")):
-        phase, case = load_phase(path), folder / path.stem
-        case.mkdir(parents=True, exist_ok=True)
-        for name in ("case.h", "rows.bin"):
-            source = ROOT / "build/evidence/conformance" / path.stem / name
-            if not source.is_file():
-                print(
-                    f"rows.py: {source} is missing; run verification/conformance/run.py first",
-                    file=sys.stderr,
-                )
-                return 2
-            shutil.copyfile(source, case / name)
-        if not compiled(case, kernel, phase.includes):
-            print(f"{path.stem}: does not compile", file=sys.stderr)
-        elif rows := differing(case):
-            print(f"{path.stem}: {rows} rows differ", flush=True)
+    """The command line."""
+    tree, names = Path(sys.argv[1]).resolve(), sys.argv[2:] or all_phases()
+    folder = tree / "build" / "rows"
+    print_missing(names)
+    flags = compile_kernel(tree / "kernel", folder)
+    for name in names:
+        found = difference(phase_named(name), tree / "kernel", folder, flags)
+        if found:
+            print(found, flush=True)
     return 0
 
 

@@ -4,7 +4,7 @@
 Usage: run.py [--count N] [--seed TEXT] [--matrix]. Draws N mutants (100) by the seed (the commit), drops
 those that do not compile, takes those that the compiler turns into the same code, or that equivalent.toml
 names with a reason, as equivalent, and shows each other one to the probes of probes.py until one catches it;
-with --matrix to all of them. Needs the rows that verification/conformance/run.py leaves.
+with --matrix to all of them.
 
 Prints a line for each mutant, the survivors at the end, and writes build/evidence/mutation.json.
 """
@@ -12,7 +12,6 @@ Prints a line for each mutant, the survivors at the end, and writes build/eviden
 import argparse
 import hashlib
 import os
-import shutil
 import subprocess
 import sys
 import time
@@ -28,11 +27,11 @@ sys.path.append(str(Path(__file__).resolve().parents[1] / "evidence"))
 import evidence
 from operators import Mutant, draw, mutants_of
 from probes import probes_for
+from rows import all_phases, print_missing
+from tree import ROOT, make_tree, seeded
 
-ROOT = evidence.ROOT
 HERE = Path(__file__).resolve().parent
 WORK = ROOT / "build" / "mutation"
-COPIED = ("kernel", "spec", "verification")
 FLAGS = ["-std=c11", "-O2", "-ffreestanding", "-S", "-Ikernel/include", "-Ikernel/src", "-o", "-"]
 GOAL_PCT = 90
 
@@ -51,16 +50,6 @@ def core_files() -> list[str]:
     """The files of the core that hold decisions; the CRC's table is data, proved entry by entry."""
     files = sorted(path for path in (ROOT / "kernel/src").iterdir() if path.name != "crc32_table.c")
     return [str(path.relative_to(ROOT)) for path in files]
-
-
-def make_tree(tree: Path) -> Path:
-    """A copy of what the probes need, in which mutants are seeded."""
-    shutil.rmtree(tree, ignore_errors=True)
-    for folder in COPIED:
-        shutil.copytree(ROOT / folder, tree / folder, ignore=shutil.ignore_patterns("__pycache__"))
-    (tree / "build").mkdir()
-    (tree / "build/provers").symlink_to(ROOT / "build/provers")
-    return tree
 
 
 def object_code(tree: Path) -> str:
@@ -85,16 +74,6 @@ def recorded_equivalents() -> dict[tuple[str, str, str], str]:
     return {(entry["file"], entry["before"], entry["after"]): entry["reason"] for entry in entries}
 
 
-def seed_into(tree: Path, mutant: Mutant) -> str:
-    """Writes the mutant into the tree and returns the text that was there."""
-    path = tree / mutant.file
-    text = path.read_text("utf-8")
-    lines = text.splitlines(keepends=True)
-    lines[mutant.line - 1] = lines[mutant.line - 1].replace(mutant.before, mutant.after)
-    path.write_text("".join(lines), "utf-8")
-    return text
-
-
 def catches(tree: Path, mutant: Mutant, every: bool) -> list[str]:
     """What catches the mutant that is in the tree: the first probe, or every one."""
     found = []
@@ -110,8 +89,7 @@ def catches(tree: Path, mutant: Mutant, every: bool) -> list[str]:
 def judge(tree: Path, mutant: Mutant, sound_code: str, every: bool) -> Verdict | None:
     """What becomes of one mutant; nothing when it does not compile."""
     started = time.monotonic()
-    original = seed_into(tree, mutant)
-    try:
+    with seeded(tree, mutant.file, mutant.line, mutant.before, mutant.after):
         code = object_code(tree)
         if not code:
             return None
@@ -121,8 +99,6 @@ def judge(tree: Path, mutant: Mutant, sound_code: str, every: bool) -> Verdict |
             return Verdict(mutant, "equivalent", (why,), time.monotonic() - started)
         found = catches(tree, mutant, every)
         return Verdict(mutant, "caught" if found else "survived", tuple(found), time.monotonic() - started)
-    finally:
-        (tree / mutant.file).write_text(original, "utf-8")
 
 
 def show(verdict: Verdict) -> None:
@@ -182,9 +158,7 @@ def main() -> int:
     parser.add_argument("--matrix", action="store_true", help="show each mutant to every probe")
     arguments = parser.parse_args()
     started = time.monotonic()
-    if not (evidence.EVIDENCE / "conformance.json").is_file():
-        print("mutation: the rows of the model are missing; run `make verify` first", file=sys.stderr)
-        return 2
+    print_missing(all_phases())
     mutants = draw(mutants_of(ROOT, core_files()), arguments.count, arguments.seed)
     print(f"mutation: {len(mutants)} mutants, drawn by {arguments.seed}")
     return report(judge_all(mutants, arguments.matrix), len(mutants), started)

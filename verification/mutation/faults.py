@@ -1,0 +1,156 @@
+#!/usr/bin/env python3
+"""Shows that the rungs notice faults: seeds each line of faults.toml and wants the named proofs to fail.
+
+Usage: faults.py [--all | --seed TEXT] [--find] [NAME ...]. Without a name a third of the faults, chosen by
+the seed (the commit). A fault counts as caught when each `RUNG PART` that its `caught_by` names notices it.
+With --find every part of every rung is tried instead, and what catches the fault is printed, one part a rung,
+to be written into faults.toml.
+
+Prints a table of faults and rungs; writes build/evidence/faults.json.
+"""
+
+import argparse
+import os
+import sys
+import time
+import tomllib
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from queue import SimpleQueue
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "evidence"))
+
+import evidence
+from operators import draw
+from probes import Probe, probe_named, probes_for
+from rows import all_phases, print_missing
+from tree import ROOT, UnusableFaultError, line_of, make_tree, seeded
+
+FAULTS = Path(__file__).with_name("faults.toml")
+RUNGS = ("conformance", "cbmc", "wp")
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One changed line of the kernel: which promise it breaks, and what must notice."""
+
+    name: str
+    why: str
+    file: str
+    before: str
+    after: str
+    caught_by: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    fault: Fault
+    told: dict[str, str]
+    """What each part said that caught it."""
+    complaint: str
+    seconds: float
+
+
+def read_faults() -> list[Fault]:
+    """All faults, in the order of the file."""
+    entries = tomllib.loads(FAULTS.read_text("utf-8"))["fault"]
+    return [Fault(**{**entry, "caught_by": tuple(entry["caught_by"])}) for entry in entries]
+
+
+def catches(probes: Sequence[Probe], tree: Path) -> Iterator[tuple[str, str]]:
+    """The parts that notice, with what they say; after the first of a rung the rest of it is not asked."""
+    done: set[str] = set()
+    for probe in probes:
+        told = "" if probe.rung in done else probe.catch(tree)
+        if told:
+            done.add(probe.rung)
+            part = told.partition(":")[0] if probe.rung == "conformance" else probe.part
+            yield f"{probe.rung} {part}", told
+
+
+def judge(fault: Fault, tree: Path, find: bool) -> Outcome:
+    """Seeds the fault and asks the parts that must notice it, or all."""
+    started = time.monotonic()
+    try:
+        line = line_of((tree / fault.file).read_text("utf-8"), fault.before, fault.file)
+        probes = list(probes_for(tree, Path(fault.file))) if find else [*map(probe_named, fault.caught_by)]
+        with seeded(tree, fault.file, line, fault.before, fault.after):
+            told = dict(catches(probes, tree))
+        missed = [] if find else [part for part in fault.caught_by if part not in told]
+        complaint = f"unnoticed by {', '.join(missed)}" if missed else "" if told else "unnoticed by all"
+    except UnusableFaultError as error:
+        told, complaint = {}, str(error)
+    return Outcome(fault, told, complaint, time.monotonic() - started)
+
+
+def show(outcome: Outcome) -> None:
+    verdict = "FAILED" if outcome.complaint else "caught"
+    print(f"{verdict}  {outcome.fault.name:<36} {outcome.seconds:6.1f} s  {outcome.complaint}")
+    for part, told in outcome.told.items():
+        print(f"        {part}: {told}", flush=True)
+
+
+def judge_all(faults: Sequence[Fault], find: bool) -> list[Outcome]:
+    """Judges the faults on as many trees as JOBS says, printing each as it is done."""
+    jobs = int(os.environ.get("JOBS", os.cpu_count() or 1))
+    trees: SimpleQueue[Path] = SimpleQueue()
+    for number in range(jobs):
+        trees.put(make_tree(ROOT / f"build/mutation/fault-tree-{number}"))
+
+    def one(fault: Fault) -> Outcome:
+        tree = trees.get()
+        try:
+            outcome = judge(fault, tree, find)
+        finally:
+            trees.put(tree)
+        show(outcome)
+        return outcome
+
+    with ThreadPoolExecutor(jobs) as pool:
+        return list(pool.map(one, faults))
+
+
+def phases_named_by(faults: Sequence[Fault]) -> set[str]:
+    """The phases of the tick whose rows must notice one of the faults."""
+    probes = (probe_named(name) for fault in faults for name in fault.caught_by)
+    return {probe.part for probe in probes if probe.rung == "conformance"}
+
+
+def table(outcomes: Sequence[Outcome]) -> str:
+    """Which rung caught which fault, by which of its parts."""
+    lines = [f"{'fault':<36} " + " ".join(f"{rung:<18}" for rung in RUNGS)]
+    for outcome in outcomes:
+        parts = dict(part.split(" ", 1) for part in outcome.told)
+        lines.append(f"{outcome.fault.name:<36} " + " ".join(f"{parts.get(rung, '-'):<18}" for rung in RUNGS))
+    return "\n".join(line.rstrip() for line in lines)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("names", nargs="*", help="faults to seed")
+    parser.add_argument("--all", action="store_true", help="seed every fault")
+    parser.add_argument("--seed", default=evidence.commit(), help="chooses a third (the commit)")
+    parser.add_argument("--find", action="store_true", help="try every part of every rung")
+    arguments = parser.parse_args()
+    started = time.monotonic()
+    faults = read_faults()
+    if unknown := set(arguments.names) - {fault.name for fault in faults}:
+        parser.error(f"no fault of that name in faults.toml: {', '.join(sorted(unknown))}")
+    if arguments.names:
+        chosen = [fault for fault in faults if fault.name in arguments.names]
+    else:
+        chosen = faults if arguments.all else draw(faults, -(-len(faults) // 3), arguments.seed)
+    print(f"faults: {len(chosen)} of {len(faults)} seeded one at a time", flush=True)
+    # Before the trees are used side by side, or two of them would write the same rows.
+    print_missing(all_phases() if arguments.find else phases_named_by(chosen))
+    outcomes = judge_all(chosen, arguments.find)
+    print(table(outcomes))
+    figures = {"faults": len(outcomes), "caught": sum(not outcome.complaint for outcome in outcomes)}
+    passed = figures["faults"] == figures["caught"] > 0
+    return evidence.write("faults", "PASSED" if passed else "FAILED", {"gcc": "12"}, figures, [], started)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
