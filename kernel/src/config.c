@@ -66,8 +66,15 @@ _Static_assert(sizeof(ilk_config_t) ==
                    (((size_t)ILK_SLOTS * sizeof(ilk_axis_config_t)) + (11u * sizeof(uint32_t))),
                "every word is in the CRC");
 
+/*@ ensures P14_crc: \result == config_crc(config);
+  @*/
 uint32_t ilk_config_crc(const ilk_config_t *config) {
   uint32_t crc = ilk_crc_system_config(ILK_CRC32_START, config);
+  /*@ loop invariant bounds: 0 <= slot <= ILK_SLOTS;
+    @ loop invariant P14_crc: crc == crc_of_axes(config, slot);
+    @ loop assigns slot, crc;
+    @ loop variant ILK_SLOTS - slot;
+    @*/
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
     crc = ilk_crc_axis_config(crc, &config->axis[slot]);
   }
@@ -94,17 +101,30 @@ uint32_t ilk_card_max_drive(uint32_t card) {
   return largest;
 }
 
+/*@ assigns \nothing;
+  @ ensures exact: \result <==> lowest <= value <= highest;
+  @*/
 static bool within(uint64_t value, uint64_t lowest, uint64_t highest) {
   return (value >= lowest) && (value <= highest);
 }
 
 /** True when `ticks` is at least one and lasts no longer than `limit_ms`. */
+/*@ assigns \nothing;
+  @ ensures exact: \result <==> lasts(ticks, period_us, limit_ms);
+  @*/
 static bool lasts_at_most(uint32_t ticks, uint32_t period_us, uint32_t limit_ms) {
   return (ticks > 0u) && (((uint64_t)ticks * period_us) <= ((uint64_t)limit_ms * MICROSECONDS_PER_MS));
 }
 
+/*@ assigns \nothing;
+  @ ensures exact: \result <==> value <= 1;
+  @*/
 static bool is_flag(uint32_t value) { return value <= 1u; }
 
+/*@ requires readable: \valid_read(config);
+  @ assigns  \nothing;
+  @ ensures  P13_exact: \result == system_error(config);
+  @*/
 static ilk_config_error_t system_error(const ilk_config_t *config) {
   ilk_config_error_t error = ILK_CONFIG_ERROR_NONE;
   if (config->version != ILK_CONFIG_VERSION) {
@@ -135,15 +155,28 @@ static ilk_config_error_t system_error(const ilk_config_t *config) {
   return error;
 }
 
+/*@ requires readable: \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  exact: \result <==> ordered_limits(axis);
+  @*/
 static bool soft_limits_are_ordered(const ilk_axis_config_t *axis) {
   return (axis->min_counts < axis->max_counts) && (axis->min_counts >= -SOFT_LIMIT_MAX) &&
          (axis->max_counts <= SOFT_LIMIT_MAX);
 }
 
+/*@ requires readable: \valid_read(axis);
+  @ requires ordered: ordered_limits(axis);
+  @ assigns  \nothing;
+  @ ensures  exact: \result == range(axis);
+  @*/
 static uint32_t range_of(const ilk_axis_config_t *axis) {
   return (uint32_t)axis->max_counts - (uint32_t)axis->min_counts;
 }
 
+/*@ requires readable: \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  P13_exact: \result == geometry_rule(axis);
+  @*/
 static ilk_config_error_t geometry_error(const ilk_axis_config_t *axis) {
   ilk_config_error_t error = ILK_CONFIG_ERROR_NONE;
   if (!is_flag(axis->required) || !is_flag(axis->motor_direction) || !is_flag(axis->direction_correction)) {
@@ -164,11 +197,20 @@ static ilk_config_error_t geometry_error(const ilk_axis_config_t *axis) {
   return error;
 }
 
+/*@ requires readable: \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  exact: \result <==> amplitude_allowed(axis);
+  @*/
 static bool amplitude_fits(const ilk_axis_config_t *axis) {
   const bool has_amplitude = axis->card == (uint32_t)ILK_CARD_HIGH_FREQUENCY;
   return has_amplitude ? within(axis->max_amplitude, 1u, AMPLITUDE_MAX) : (axis->max_amplitude == 0u);
 }
 
+/*@ requires readable: \valid_read(axis);
+  @ requires geometry: geometry_rule(axis) == ILK_CONFIG_ERROR_NONE;
+  @ assigns  \nothing;
+  @ ensures  P13_exact: \result == drive_rule(axis);
+  @*/
 static ilk_config_error_t drive_error(const ilk_axis_config_t *axis) {
   ilk_config_error_t error = ILK_CONFIG_ERROR_NONE;
   if (!within(axis->max_drive, 1u, ilk_card_max_drive(axis->card))) {
@@ -186,6 +228,11 @@ static ilk_config_error_t drive_error(const ilk_axis_config_t *axis) {
 }
 
 /** At its slowest the axis backs off, crosses the whole travel and rests before homing times out (L2). */
+/*@ requires readable: \valid_read(axis);
+  @ requires rest: axis->home_rest_ticks <= axis->home_timeout_ticks;
+  @ assigns  \nothing;
+  @ ensures  L2_homing_ends: \result <==> homing_suffices(axis, period_us);
+  @*/
 static bool homing_time_suffices(const ilk_axis_config_t *axis, uint32_t period_us) {
   const uint64_t moving_us = (uint64_t)(axis->home_timeout_ticks - axis->home_rest_ticks) * period_us;
   const uint64_t distance = (uint64_t)axis->home_travel_counts + axis->home_backoff_counts;
@@ -193,6 +240,11 @@ static bool homing_time_suffices(const ilk_axis_config_t *axis, uint32_t period_
   return short_enough && ((moving_us * axis->home_speed_counts_per_s) >= (distance * MICROSECONDS_PER_S));
 }
 
+/*@ requires readable: \valid_read(axis);
+  @ requires geometry: geometry_rule(axis) == ILK_CONFIG_ERROR_NONE;
+  @ assigns  \nothing;
+  @ ensures  P13_exact: \result == homing_rule(axis, period_us);
+  @*/
 static ilk_config_error_t homing_error(const ilk_axis_config_t *axis, uint32_t period_us) {
   const uint64_t range = range_of(axis);
   ilk_config_error_t error = ILK_CONFIG_ERROR_NONE;
@@ -213,6 +265,10 @@ static ilk_config_error_t homing_error(const ilk_axis_config_t *axis, uint32_t p
 }
 
 /** An axis without a switch is homed by SET_HOME; homing fields that mean nothing must be zero. */
+/*@ requires readable: \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  P13_exact: \result == switchless_rule(axis);
+  @*/
 static ilk_config_error_t switchless_error(const ilk_axis_config_t *axis) {
   ilk_config_error_t error = ILK_CONFIG_ERROR_NONE;
   if (axis->home_drive != 0u) {
@@ -231,6 +287,11 @@ static ilk_config_error_t switchless_error(const ilk_axis_config_t *axis) {
   return error;
 }
 
+/*@ requires readable: \valid_read(axis);
+  @ requires geometry: geometry_rule(axis) == ILK_CONFIG_ERROR_NONE;
+  @ assigns  \nothing;
+  @ ensures  P13_exact: \result == watch_rule(axis, period_us);
+  @*/
 static ilk_config_error_t watch_error(const ilk_axis_config_t *axis, uint32_t period_us) {
   const uint64_t range = range_of(axis);
   const uint64_t innocent = (uint64_t)axis->coast_counts + axis->backlash_counts + axis->noise_counts;
@@ -252,6 +313,10 @@ static ilk_config_error_t watch_error(const ilk_axis_config_t *axis, uint32_t pe
   return error;
 }
 
+/*@ requires readable: \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  P13_exact: \result == axis_rule(axis, period_us);
+  @*/
 static ilk_config_error_t axis_error(const ilk_axis_config_t *axis, uint32_t period_us) {
   ilk_config_error_t error = geometry_error(axis);
   if (error == ILK_CONFIG_ERROR_NONE) {
@@ -268,6 +333,10 @@ static ilk_config_error_t axis_error(const ilk_axis_config_t *axis, uint32_t per
 }
 
 /** A slot without a motor carries nothing but its card and, for a sensor, `required`. */
+/*@ requires readable: \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  P13_bare: \result <==> bare(axis);
+  @*/
 static bool is_bare(const ilk_axis_config_t *axis) {
   const uint32_t bits =
       axis->motor_direction | axis->direction_correction | axis->limit_side | (uint32_t)axis->min_counts |
@@ -280,6 +349,10 @@ static bool is_bare(const ilk_axis_config_t *axis) {
   return bits == 0u;
 }
 
+/*@ requires readable: \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  P13_exact: \result == slot_rule(axis, period_us);
+  @*/
 static ilk_config_error_t slot_error(const ilk_axis_config_t *axis, uint32_t period_us) {
   ilk_config_error_t error = ILK_CONFIG_ERROR_NONE;
   if (axis->card >= ILK_CARD_COUNT) {
@@ -296,16 +369,41 @@ static ilk_config_error_t slot_error(const ilk_axis_config_t *axis, uint32_t per
   return error;
 }
 
+/*@ requires readable: \valid_read(config);
+  @ assigns  \nothing;
+  @ ensures  exact: \result <==> some_axis(config, ILK_SLOTS);
+  @*/
 static bool any_axis(const ilk_config_t *config) {
   bool found = false;
+  /*@ loop invariant bounds: 0 <= slot <= ILK_SLOTS;
+    @ loop invariant found: found <==> some_axis(config, slot);
+    @ loop assigns slot, found;
+    @ loop variant ILK_SLOTS - slot;
+    @*/
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
     found = found || has_axis(&config->axis[slot]);
   }
   return found;
 }
 
+/*@ ensures P13_exact: \result.error == ILK_CONFIG_ERROR_NONE <==>
+  @   valid_config(config) && config->crc == config_crc(config);
+  @ ensures P13_system: system_error(config) != ILK_CONFIG_ERROR_NONE ==>
+  @   \result.error == system_error(config) && \result.slot == ILK_SLOTS;
+  @*/
 ilk_config_verdict_t ilk_config_validate(const ilk_config_t *config) {
   ilk_config_verdict_t verdict = {.error = (uint32_t)system_error(config), .slot = (uint32_t)ILK_SLOTS};
+  /*@ loop invariant bounds: 0 <= slot <= ILK_SLOTS;
+    @ loop invariant valid: verdict.error == ILK_CONFIG_ERROR_NONE ==>
+    @   system_error(config) == ILK_CONFIG_ERROR_NONE && valid_slots(config, slot) && verdict.slot == ILK_SLOTS;
+    @ loop invariant first: verdict.error != ILK_CONFIG_ERROR_NONE ==>
+    @   (system_error(config) != ILK_CONFIG_ERROR_NONE
+    @     ? verdict.slot == ILK_SLOTS && verdict.error == system_error(config)
+    @     : verdict.slot == slot - 1 && valid_slots(config, slot - 1)
+    @       && verdict.error == slot_rule(&config->axis[slot - 1], config->period_us));
+    @ loop assigns slot, verdict;
+    @ loop variant ILK_SLOTS - slot;
+    @*/
   for (uint32_t slot = 0u; (slot < (uint32_t)ILK_SLOTS) && (verdict.error == (uint32_t)ILK_CONFIG_ERROR_NONE);
        slot++) {
     verdict.error = (uint32_t)slot_error(&config->axis[slot], config->period_us);

@@ -298,14 +298,6 @@
   @   clear_of_switch(config, axis, wanted->direction) && within_soft_range(config, axis, wanted->direction)
   @   && within_unhomed_travel(config, axis, wanted->direction) && within_drive(config, axis, wanted);
   @
-  @ predicate no_drive(ilk_command_t *command) =
-  @   command->direction == ILK_DIRECTION_NONE && command->drive == 0 && command->amplitude == 0;
-  @
-  @ // What may leave the gate: nothing, or motion that everything allows.
-  @ predicate lawful(ilk_axis_config_t *config, ilk_state_t *state, ilk_axis_t *axis, ilk_command_t *command) =
-  @   no_drive(command)
-  @   || (may_drive(state, axis) && asks_for_motion(command) && within_limits(config, axis, command));
-  @
   @ // P16: the words that move a motor are zero.
   @ predicate still_frame(uint32_t *frame) =
   @   frame[2] == 0 && frame[3] == 0 && frame[4] == 0 && frame[5] == 0 && frame[6] == 0 && frame[14] == 0;

@@ -10,7 +10,7 @@
 
 #include <stdint.h>
 
-#include "interlock/acsl.h"
+#include "interlock/acsl_config.h"
 #include "interlock/types.h"
 
 #ifdef __cplusplus
@@ -18,9 +18,20 @@ extern "C" {
 #endif
 
 /** First rule of the configuration that is broken, or NONE (property P13). */
+/*@ requires readable: \valid_read(config);
+  @ assigns  \nothing;
+  @ ensures  P13_valid: \result.error == ILK_CONFIG_ERROR_NONE ==> valid_config(config);
+  @ ensures  known: \result.error < ILK_CONFIG_ERROR_COUNT && \result.slot <= ILK_SLOTS;
+  @ ensures  P13_first: \result.slot < ILK_SLOTS ==> valid_slots(config, \result.slot)
+  @   && \result.error == slot_rule(&config->axis[\result.slot], config->period_us)
+  @   && \result.error != ILK_CONFIG_ERROR_NONE;
+  @*/
 ilk_config_verdict_t ilk_config_validate(const ilk_config_t *config);
 
 /** CRC-32 (IEEE 802.3, reflected) of all words before `crc`, each least significant byte first. */
+/*@ requires readable: \valid_read(config);
+  @ assigns  \nothing;
+  @*/
 uint32_t ilk_config_crc(const ilk_config_t *config);
 
 /** CRC-32 (IEEE 802.3, reflected) of all words before `crc`, each least significant byte first. */
