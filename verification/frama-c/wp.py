@@ -24,7 +24,7 @@ PARSE = ["frama-c", "-c11", "-machdep", "gcc_x86_64", f"-cpp-extra-args={PREPROC
 PROVE = [
     *("-warn-signed-downcast", "-wp", "-wp-rte", "-wp-model", "Typed"),
     *("-wp-prover", "z3,cvc4", "-wp-timeout", "20", "-wp-par", "1"),
-    *("-wp-smoke-tests", "-wp-smoke-timeout", "2"),
+    *("-wp-smoke-tests", "-wp-smoke-timeout", "1"),
 ]
 SMOKE = "_wp_smoke_"
 
