@@ -115,8 +115,8 @@ void LiveSessions::forget(const std::vector<Session>& ended) {
   }
 }
 
-void LiveSessions::end(std::uint32_t number, AuditEntry record) {
-  to_end_.try_emplace(number, std::move(record));
+void LiveSessions::end(std::uint32_t number, const AuditEntry& record) {
+  to_end_.try_emplace(number, record);
   drop(number);
 }
 

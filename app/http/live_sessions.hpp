@@ -60,7 +60,7 @@ class LiveSessions {
   void forget(std::uint32_t number) { drop(number); }
 
   /** Ends a session here at once, and in the store as soon as that works, which `record` will say there. */
-  void end(std::uint32_t number, AuditEntry record);
+  void end(std::uint32_t number, const AuditEntry& record);
 
   /** Ends what is over, and brings store and memory to agree. */
   boost::asio::awaitable<void> sweep();
