@@ -43,6 +43,87 @@ static bool valid_slot(const ilk_axis_config_t* axis, uint32_t period_us) {
              : (((axis->card == ILK_CARD_NONE) || (axis->card == ILK_CARD_SENSOR)) && valid_bare(axis));
 }
 
+static bool lasts(uint32_t ticks, uint32_t period_us, int64_t longest_us) {
+  return (ticks > 0u) && (((int64_t)ticks * (int64_t)period_us) <= longest_us);
+}
+
+static bool a_tenth(int64_t counts, int64_t lowest, int64_t range) {
+  return (counts >= lowest) && ((10 * counts) <= range);
+}
+
+/** The first rule that geometry and drive of an axis break. */
+static uint32_t first_broken_bound(const ilk_axis_config_t* axis) {
+  const int64_t range = range_counts(axis);
+  const int64_t farthest = (int64_t)1 << 30;
+  const bool waves = axis->card == ILK_CARD_HIGH_FREQUENCY;
+  const bool flags =
+      (axis->required <= 1u) && (axis->motor_direction <= 1u) && (axis->direction_correction <= 1u);
+  const bool limits = (range > 0) && (axis->min_counts >= -farthest) && (axis->max_counts <= farthest);
+  const bool amplitudes = between(axis->max_amplitude, waves ? 1 : 0, waves ? 255 : 0) &&
+                          (axis->home_amplitude <= axis->max_amplitude);
+  return !flags                                  ? ILK_CONFIG_ERROR_FLAG
+         : (axis->limit_side >= ILK_LIMIT_COUNT) ? ILK_CONFIG_ERROR_LIMIT_SIDE
+         : !limits                               ? ILK_CONFIG_ERROR_SOFT_LIMITS
+         : !between(axis->home_offset_counts, axis->min_counts, axis->max_counts)
+             ? ILK_CONFIG_ERROR_HOME_OFFSET
+         : !((axis->coast_counts > 0u) && ((2 * (int64_t)axis->coast_counts) < range))
+             ? ILK_CONFIG_ERROR_COAST
+         : !((axis->deadband_counts > 0u) && ((2 * (int64_t)axis->deadband_counts) < range))
+             ? ILK_CONFIG_ERROR_DEADBAND
+         : !between(axis->max_drive, 1, largest_drive_of(axis->card)) ? ILK_CONFIG_ERROR_MAX_DRIVE
+         : !a_tenth(axis->unhomed_max_drive, 1, axis->max_drive)      ? ILK_CONFIG_ERROR_UNHOMED_DRIVE
+         : !amplitudes                                                ? ILK_CONFIG_ERROR_AMPLITUDE
+         : !a_tenth(axis->unhomed_travel_counts, (int64_t)axis->coast_counts + 1, range)
+             ? ILK_CONFIG_ERROR_UNHOMED_TRAVEL
+             : ILK_CONFIG_ERROR_NONE;
+}
+
+/** The first rule of homing that is broken: of its bounds at a switch, of its absence without one. */
+static uint32_t first_broken_homing(const ilk_axis_config_t* axis) {
+  const int64_t range = range_counts(axis);
+  const bool switched = axis->limit_side != ILK_LIMIT_NONE;
+  const bool drive =
+      switched ? between(axis->home_drive, 1, axis->unhomed_max_drive) : (axis->home_drive == 0u);
+  const bool travel = switched ? between(axis->home_travel_counts, range + axis->coast_counts, 2 * range)
+                               : (axis->home_travel_counts == 0u);
+  const bool backoff =
+      switched ? a_tenth(axis->home_backoff_counts, 1, range) : (axis->home_backoff_counts == 0u);
+  const bool rest =
+      switched ? between(axis->home_rest_ticks, 1, axis->home_timeout_ticks) : (axis->home_rest_ticks == 0u);
+  const bool timeout =
+      switched ? in_time : ((axis->home_timeout_ticks == 0u) && (axis->home_speed_counts_per_s == 0u));
+  return !drive     ? ILK_CONFIG_ERROR_HOME_DRIVE
+         : !travel  ? ILK_CONFIG_ERROR_HOME_TRAVEL
+         : !backoff ? ILK_CONFIG_ERROR_HOME_BACKOFF
+         : !rest    ? ILK_CONFIG_ERROR_HOME_REST
+         : !timeout ? ILK_CONFIG_ERROR_HOME_TIMEOUT
+                    : ILK_CONFIG_ERROR_NONE;
+}
+
+/** The first rule of watching an axis that is broken. */
+static uint32_t first_broken_watch(const ilk_axis_config_t* axis, uint32_t period_us) {
+  const int64_t range = range_counts(axis);
+  const int64_t innocent = (int64_t)axis->coast_counts + axis->backlash_counts + axis->noise_counts;
+  const bool stall = lasts(axis->stall_ticks, period_us, 500000) &&
+                     a_tenth(axis->stall_min_counts, (int64_t)axis->noise_counts + 1, range);
+  return !stall                                            ? ILK_CONFIG_ERROR_STALL
+         : !a_tenth(axis->reverse_counts, innocent, range) ? ILK_CONFIG_ERROR_REVERSE
+         : !a_tenth(axis->drift_counts, innocent, range)   ? ILK_CONFIG_ERROR_DRIFT
+         : !lasts(axis->settle_ticks, period_us, 1000000)  ? ILK_CONFIG_ERROR_SETTLE
+         : !((axis->max_delta_counts > 0u) && ((2 * (int64_t)axis->max_delta_counts) <= range))
+             ? ILK_CONFIG_ERROR_MAX_DELTA
+             : ILK_CONFIG_ERROR_NONE;
+}
+
+/** The first rule of an axis that is broken, in the order of the catalog; NONE when all are kept. */
+static uint32_t first_broken_rule(const ilk_axis_config_t* axis, uint32_t period_us) {
+  const uint32_t bound = first_broken_bound(axis);
+  const uint32_t homing = first_broken_homing(axis);
+  return (bound != ILK_CONFIG_ERROR_NONE)    ? bound
+         : (homing != ILK_CONFIG_ERROR_NONE) ? homing
+                                             : first_broken_watch(axis, period_us);
+}
+
 /** What the other proofs and the step take from a valid axis. */
 static void show_reliance(const ilk_axis_config_t* axis) {
   const int64_t coast = axis->coast_counts;
@@ -71,6 +152,8 @@ void harness(void) {
   const bool valid = error == ILK_CONFIG_ERROR_NONE;
   SHOW(valid == valid_slot(&axis, period_us),
        "P13: a slot is accepted exactly when each field is in its range");
+  SHOW(IMPLIES(is_motor_card(axis.card), error == first_broken_rule(&axis, period_us)),
+       "P13: of an axis the first broken rule is told");
   if (valid && is_motor_card(axis.card)) {
     show_reliance(&axis);
   }
