@@ -24,8 +24,10 @@ PARSE = ["frama-c", "-c11", "-machdep", "gcc_x86_64", f"-cpp-extra-args={PREPROC
 PROVE = [
     *("-warn-signed-downcast", "-wp", "-wp-rte", "-wp-model", "Typed"),
     *("-wp-prover", "z3,cvc4", "-wp-timeout", "20", "-wp-par", "1"),
-    *("-wp-smoke-tests", "-wp-smoke-timeout", "1"),
 ]
+SMOKE_TEST = ["-then", "-wp", "-wp-smoke-tests", "-wp-smoke-timeout", "1", "-wp-prover=-cvc4"]
+"""A second run, of the smoke tests alone, without CVC4: a test that passes takes each prover its whole
+second, and of a hundred goals CVC4 proves one that Z3 does not. WP forgets between runs what to prove."""
 SMOKE = "_wp_smoke_"
 
 
@@ -95,8 +97,9 @@ def prove(unit: str, functions: Sequence[str], directory: Path, cache: Path | No
     stem = directory / unit
     overflow = [] if unit in WRAPPING else ["-warn-unsigned-overflow"]
     caching = ["-wp-cache", "update", "-wp-cache-dir", str(cache)] if cache else ["-wp-cache", "none"]
+    chosen = ["-wp-fct", ",".join(functions)]
     command = [
-        *(*PARSE, str(CORE / unit), *PROVE, *overflow, *caching, "-wp-fct", ",".join(functions)),
+        *(*PARSE, str(CORE / unit), *PROVE, *overflow, *caching, *chosen, *SMOKE_TEST, *chosen),
         *("-wp-report-json", f"{stem}.json", "-then", "-report-csv", f"{stem}.csv"),
     ]
     started = time.monotonic()
