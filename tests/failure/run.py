@@ -73,6 +73,27 @@ def git(directory: Path, *arguments: str) -> str:
     return subprocess.run(command, cwd=directory, check=True, capture_output=True, text=True).stdout
 
 
+def check_applies(root: Path, fault: Fault) -> None:
+    """Raises UnusableError unless the fault can be seeded into the tree under `root`."""
+    done = subprocess.run(
+        ["git", "apply", "--check", fault.path], cwd=root, capture_output=True, text=True, check=False
+    )
+    if done.returncode:
+        raise UnusableError(f"{fault.path.name} no longer applies; renew it: {done.stderr.strip()}")
+
+
+def check(root: Path, paths: list[Path]) -> int:
+    """Names the faults that cannot be seeded any more; 1 when there is one."""
+    wrong = 0
+    for path in paths:
+        try:
+            check_applies(root, read_fault(path))
+        except UnusableError as error:
+            wrong = 1
+            print(error)
+    return wrong
+
+
 class Tree:
     """A copy of the source tree under `work` in which faults are seeded, built and tested."""
 
@@ -194,12 +215,15 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", help="faults to seed (default: a third, by the seed)")
     parser.add_argument("--all", action="store_true", help="seed every fault")
+    parser.add_argument("--check", action="store_true", help="only show that each can still be seeded")
     parser.add_argument("--seed", help="chooses the third (default: the commit)")
     parser.add_argument("--root", type=Path, default=ROOT, help="source tree (default: this one)")
     arguments = parser.parse_args()
     root: Path = arguments.root.resolve()
 
     paths = sorted((root / "tests/failure").glob("*.patch"))
+    if arguments.check:
+        return check(root, paths)
     if arguments.names:
         unknown = set(arguments.names) - {path.stem for path in paths}
         if unknown:

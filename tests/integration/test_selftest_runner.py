@@ -67,6 +67,16 @@ def test_an_effective_fault_is_noticed(root: Path) -> None:
     assert [case.attrib["name"] for case in report] == ["limit"]
 
 
+def test_a_check_names_each_patch_that_no_longer_applies(root: Path) -> None:
+    seed(root, HEADER + EFFECTIVE)
+    assert selftest(root, "--check").returncode == 0
+    seed(root, HEADER + EFFECTIVE.replace("-LIMIT = 10", "-LIMIT = 12"), "stale")
+    done = selftest(root, "--check")
+    assert done.returncode == 1
+    assert done.stdout.startswith("stale.patch no longer applies; renew it")
+    assert "limit.patch" not in done.stdout
+
+
 @pytest.mark.parametrize(
     ("patch", "complaint"),
     [

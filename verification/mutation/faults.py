@@ -1,24 +1,21 @@
 #!/usr/bin/env python3
 """Shows that the rungs notice faults: seeds each line of faults.toml and wants the named proofs to fail.
 
-Usage: faults.py [--all | --seed TEXT] [--find] [NAME ...]. Without a name a third of the faults, chosen by
+Usage: faults.py [--check | --all | --seed TEXT] [--find] [NAME ...]. Without a name a third of the faults, chosen by
 the seed (the commit). A fault counts as caught when each `RUNG PART` that its `caught_by` names notices it.
 With --find every part of every rung is tried instead, and what catches the fault is printed, one part a rung,
-to be written into faults.toml.
+to be written into faults.toml. With --check nothing is seeded: only lines that the kernel no longer has are named.
 
 Prints a table of faults and rungs; writes build/evidence/faults.json.
 """
 
 import argparse
-import os
 import sys
 import time
 import tomllib
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
-from queue import SimpleQueue
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "evidence"))
 
@@ -26,7 +23,7 @@ import evidence
 from operators import draw
 from probes import Probe, probe_named, probes_for
 from rows import all_phases, print_missing
-from tree import ROOT, UnusableFaultError, line_of, make_tree, seeded
+from tree import ROOT, UnusableFaultError, line_of, on_trees, seeded
 
 FAULTS = Path(__file__).with_name("faults.toml")
 RUNGS = ("conformance", "cbmc", "wp")
@@ -57,6 +54,18 @@ def read_faults() -> list[Fault]:
     """All faults, in the order of the file."""
     entries = tomllib.loads(FAULTS.read_text("utf-8"))["fault"]
     return [Fault(**{**entry, "caught_by": tuple(entry["caught_by"])}) for entry in entries]
+
+
+def check(faults: Sequence[Fault]) -> int:
+    """Names the faults whose line the kernel no longer has exactly once; 1 when there is one."""
+    wrong = 0
+    for fault in faults:
+        try:
+            line_of((ROOT / fault.file).read_text("utf-8"), fault.before, fault.file)
+        except UnusableFaultError as error:
+            wrong = 1
+            print(f"{fault.name}: {error}")
+    return wrong
 
 
 def catches(probes: Sequence[Probe], tree: Path) -> Iterator[tuple[str, str]]:
@@ -93,23 +102,14 @@ def show(outcome: Outcome) -> None:
 
 
 def judge_all(faults: Sequence[Fault], find: bool) -> list[Outcome]:
-    """Judges the faults on as many trees as JOBS says, printing each as it is done."""
-    jobs = int(os.environ.get("JOBS", os.cpu_count() or 1))
-    trees: SimpleQueue[Path] = SimpleQueue()
-    for number in range(jobs):
-        trees.put(make_tree(ROOT / f"build/mutation/fault-tree-{number}"))
+    """Judges the faults, printing each as it is done."""
 
-    def one(fault: Fault) -> Outcome:
-        tree = trees.get()
-        try:
-            outcome = judge(fault, tree, find)
-        finally:
-            trees.put(tree)
+    def one(tree: Path, fault: Fault) -> Outcome:
+        outcome = judge(fault, tree, find)
         show(outcome)
         return outcome
 
-    with ThreadPoolExecutor(jobs) as pool:
-        return list(pool.map(one, faults))
+    return on_trees("fault-tree", faults, one)
 
 
 def phases_named_by(faults: Sequence[Fault]) -> set[str]:
@@ -130,12 +130,15 @@ def table(outcomes: Sequence[Outcome]) -> str:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", help="faults to seed")
+    parser.add_argument("--check", action="store_true", help="only show that each can still be seeded")
     parser.add_argument("--all", action="store_true", help="seed every fault")
     parser.add_argument("--seed", default=evidence.commit(), help="chooses a third (the commit)")
     parser.add_argument("--find", action="store_true", help="try every part of every rung")
     arguments = parser.parse_args()
     started = time.monotonic()
     faults = read_faults()
+    if arguments.check:
+        return check(faults)
     if unknown := set(arguments.names) - {fault.name for fault in faults}:
         parser.error(f"no fault of that name in faults.toml: {', '.join(sorted(unknown))}")
     if arguments.names:

@@ -11,16 +11,13 @@ Prints a line for each mutant, the survivors at the end, and writes build/eviden
 
 import argparse
 import hashlib
-import os
 import subprocess
 import sys
 import time
 import tomllib
 from collections import Counter
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
-from queue import SimpleQueue
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "evidence"))
 
@@ -28,10 +25,9 @@ import evidence
 from operators import Mutant, draw, mutants_of
 from probes import probes_for
 from rows import all_phases, print_missing
-from tree import ROOT, make_tree, seeded
+from tree import ROOT, on_trees, seeded
 
 HERE = Path(__file__).resolve().parent
-WORK = ROOT / "build" / "mutation"
 FLAGS = ["-std=c11", "-O2", "-ffreestanding", "-S", "-Ikernel/include", "-Ikernel/src", "-o", "-"]
 GOAL_PCT = 90
 
@@ -110,27 +106,16 @@ def show(verdict: Verdict) -> None:
 
 
 def judge_all(mutants: list[Mutant], every: bool) -> list[Verdict]:
-    """Judges the mutants on as many trees as JOBS says, printing each as it is done."""
-    jobs = int(os.environ.get("JOBS", os.cpu_count() or 1))
-    trees: SimpleQueue[Path] = SimpleQueue()
-    for number in range(jobs):
-        trees.put(make_tree(WORK / f"tree-{number}"))
-    first = trees.get()
-    sound_code = object_code(first)
-    trees.put(first)
+    """Judges the mutants, printing each as it is done."""
+    sound_code = object_code(ROOT)
 
-    def one(mutant: Mutant) -> Verdict | None:
-        tree = trees.get()
-        try:
-            verdict = judge(tree, mutant, sound_code, every)
-        finally:
-            trees.put(tree)
+    def one(tree: Path, mutant: Mutant) -> Verdict | None:
+        verdict = judge(tree, mutant, sound_code, every)
         if verdict:
             show(verdict)
         return verdict
 
-    with ThreadPoolExecutor(jobs) as pool:
-        return [verdict for verdict in pool.map(one, mutants) if verdict]
+    return [verdict for verdict in on_trees("mutant-tree", mutants, one) if verdict]
 
 
 def report(verdicts: list[Verdict], drawn: int, started: float) -> int:

@@ -1,12 +1,18 @@
 """A copy of what the rungs read, in which one fault at a time is seeded into the kernel."""
 
+import os
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
+from queue import SimpleQueue
+from typing import TypeVar
 
 ROOT = Path(__file__).resolve().parents[2]
 COPIED = ("kernel", "spec", "verification")
+Item = TypeVar("Item")
+Outcome = TypeVar("Outcome")
 
 
 class UnusableFaultError(Exception):
@@ -21,6 +27,24 @@ def make_tree(tree: Path) -> Path:
     (tree / "build").mkdir()
     (tree / "build/provers").symlink_to(ROOT / "build/provers")
     return tree
+
+
+def on_trees(stem: str, items: Sequence[Item], judge: Callable[[Path, Item], Outcome]) -> list[Outcome]:
+    """What `judge` says of each item, each time in a tree of its own, on as many as JOBS says."""
+    jobs = int(os.environ.get("JOBS", os.cpu_count() or 1))
+    trees: SimpleQueue[Path] = SimpleQueue()
+    for number in range(jobs):
+        trees.put(make_tree(ROOT / f"build/mutation/{stem}-{number}"))
+
+    def one(item: Item) -> Outcome:
+        tree = trees.get()
+        try:
+            return judge(tree, item)
+        finally:
+            trees.put(tree)
+
+    with ThreadPoolExecutor(jobs) as pool:
+        return list(pool.map(one, items))
 
 
 @contextmanager
