@@ -16,10 +16,6 @@ SmallSystem ==
     pedal_debounce_ticks |-> 2, pedal_disagree_ticks |-> 1,
     bad_frame_limit |-> 2, overrun_limit |-> 1 ]
 
-(* For the induction, which begins in every state that the invariant allows. *)
-TinySystem ==
-  [SmallSystem EXCEPT !.pedal_debounce_ticks = 1, !.bad_frame_limit = 1]
-
 VARIABLES
   system,         \* the kernel's record
   configuration,  \* of the environment: what the memory of the configuration holds
@@ -184,25 +180,6 @@ DisturbedTick == Met("DisturbedTick") /\ \E in \in DisturbedInputs : Step(in)
 Next == QuietTick \/ DisturbedTick
 
 Spec == Init /\ [][Next]_vars
-
-(* Induction: every state that satisfies the invariant is an initial one, reachable
-   or not. That no step leaves them is the invariant's being inductive. *)
-AllStates ==
-  [ mode: Modes, cause: Causes, causes_seen: {{}}, pedal: PedalStates, pedal_armed: BOOLEAN,
-    pedal_pressed_ticks: 0..c.pedal_debounce_ticks,
-    pedal_released_ticks: 0..c.pedal_debounce_ticks,
-    pedal_disagree_ticks: 0..(c.pedal_disagree_ticks + 1),
-    estop: BOOLEAN, app_age_ticks: 0..c.app_timeout_ticks, app_alive: BOOLEAN,
-    holder: Holders, overruns_in_row: 0..c.overrun_limit,
-    bus_bad_ticks: 0..c.bad_frame_limit, config_sound: BOOLEAN ]
-
-InductiveInit ==
-  /\ configuration \in [valid: {TRUE}, damaged: {FALSE}, missed: {FALSE}, slice: {0}, age: {0}]
-  /\ system \in {s \in AllStates : SystemInvariant(c, s)}
-  /\ seen = Nothing
-  /\ io = NoTick
-
-InductiveSpec == InductiveInit /\ [][Next]_vars
 
 -------------------------------------------------------------------------------
 (* Properties, as in kernel.md. In each the primed io is this very tick. *)
