@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <initializer_list>
 
+#include "cli/alignment_line.hpp"
+#include "cli/kinematics_fields.hpp"
 #include "kinematics/neuro_kinematics.hpp"
 #include "kinematics/prostate_kinematics.hpp"
 
@@ -13,83 +14,6 @@ using Eigen::Vector3d;
 using nlohmann::json;
 
 namespace {
-
-/** What was read or solved, or the object that says what is wrong. */
-template <typename Value>
-using Solved = tl::expected<Value, json>;
-
-tl::unexpected<json> refused(std::string_view code, const std::string& text) {
-  return tl::unexpected(json{{"code", code}, {"text", text}});
-}
-
-json error_object(const KinematicsError& error) {
-  return {{"code", code_name(error.code)}, {"text", error.message()},
-          {"quantity", error.quantity},    {"value", error.value ? json(*error.value) : json()},
-          {"lowest", error.lowest},        {"highest", error.highest}};
-}
-
-template <typename Value>
-Solved<Value> solved(const KinematicsResult<Value>& result) {
-  return result.map_error(error_object);
-}
-
-/** Whether the object has all of these keys. */
-bool has(const json& object, std::initializer_list<std::string_view> keys) {
-  return std::ranges::all_of(keys, [&](std::string_view key) { return object.contains(key); });
-}
-
-/** Nothing, when the object has no keys but these: a slip of the pen must not pass for a default. */
-template <typename Keys>
-Solved<void> check_keys(const json& object, const Keys& keys) {
-  for (const auto& [key, value] : object.items()) {
-    if (std::ranges::find(keys, key) == std::ranges::end(keys)) {
-      std::string known;
-      for (const auto& name : keys) {
-        known += (known.empty() ? "" : ", ") + std::string(name);
-      }
-      return refused("BAD_FIELD", key + ": not known here; expected " + known);
-    }
-  }
-  return {};
-}
-
-Solved<double> number(const json& value, const std::string& name) {
-  if (!value.is_number()) {
-    return refused("BAD_FIELD", name + ": expected a number");
-  }
-  return value.get<double>();
-}
-
-Solved<double> number_or_zero(const json& object, const std::string& key) {
-  return object.contains(key) ? number(object[key], key) : Solved<double>(0.0);
-}
-
-template <std::size_t count>
-Solved<std::array<double, count>> numbers(const json& object, const std::string& key) {
-  const json& list = object[key];
-  if (!list.is_array() || list.size() != count) {
-    return refused("BAD_FIELD", key + ": expected an array of " + std::to_string(count) + " numbers");
-  }
-  std::array<double, count> read{};
-  for (std::size_t index = 0; index < count; ++index) {
-    const Solved<double> entry = number(list[index], key + '[' + std::to_string(index) + ']');
-    if (!entry) {
-      return tl::unexpected(entry.error());
-    }
-    read[index] = *entry;
-  }
-  return read;
-}
-
-Solved<Vector3d> point(const json& object, const std::string& key) {
-  return numbers<3>(object, key).map([](const std::array<double, 3>& read) {
-    return Vector3d(read[0], read[1], read[2]);
-  });
-}
-
-Solved<Pose> pose(const json& object) {
-  return numbers<16>(object, "pose").and_then([](const RowMajor& read) { return solved(pose_from(read)); });
-}
 
 /** The joints of a robot under the names of its axes. */
 template <typename Joints, std::size_t count>
@@ -238,24 +162,15 @@ Solved<json> solve(const Family& family, KinematicsTask task, const json& reques
   });
 }
 
-Solved<json> parse(std::string_view line) {
-  try {
-    json request = json::parse(line);
-    if (request.is_object()) {
-      return request;
-    }
-    return refused("BAD_JSON", "expected one JSON object in the line");
-  } catch (const json::parse_error& error) {
-    return refused("BAD_JSON", "expected one JSON object in the line; not JSON from byte " +
-                                   std::to_string(error.byte) + " on");
-  } catch (const json::exception&) {
-    return refused("BAD_JSON", "expected one JSON object in the line; a number is too large");
-  }
-}
-
 }  // namespace
 
 KinematicsResult<KinematicsLines> KinematicsLines::create(const Robot& robot, KinematicsTask task) {
+  if (task == KinematicsTask::alignment) {
+    return RobotKinematics::create(robot).map([&](const RobotKinematics& kinematics) {
+      return KinematicsLines(
+          [robot, kinematics](const json& request) { return align_line(robot, kinematics, request); });
+    });
+  }
   const auto lines_of = [&](auto family) {
     return KinematicsLines(
         [family = std::move(family), task](const json& request) { return solve(family, task, request); });
@@ -272,7 +187,7 @@ KinematicsResult<KinematicsLines> KinematicsLines::create(const Robot& robot, Ki
 }
 
 KinematicsLines::Answer KinematicsLines::answer(std::string_view line, std::size_t number) const {
-  const Solved<json> answer = parse(line).and_then(solve_);
+  const Solved<json> answer = parse_line(line).and_then(solve_);
   const json object = answer ? *answer : json{{"line", number}, {"error", answer.error()}};
   return {object.dump(), answer.has_value()};
 }

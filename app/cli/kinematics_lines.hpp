@@ -17,8 +17,9 @@
 namespace interlock::cli {
 
 enum class KinematicsTask {
-  forward, /**< `fk`: joints to a pose */
-  inverse, /**< `ik`: a pose, or entry and target, to joints */
+  forward,   /**< `fk`: joints to a pose */
+  inverse,   /**< `ik`: a pose, or entry and target, to joints */
+  alignment, /**< `align`: entry and target in the scanner to setpoints, and what they reach */
 };
 
 class KinematicsLines {

@@ -93,8 +93,11 @@ void add_kinematics(CLI::App& cli, KinematicsOptions& options) {
   CLI::App* const command =
       cli.add_subcommand("kinematics", "Solve kinematics: a JSON object a line in, one out");
   command->require_subcommand(1);
-  for (CLI::App* const task : {command->add_subcommand("fk", "Joints to the pose of the tool"),
-                               command->add_subcommand("ik", "Pose, or entry and target, to joints")}) {
+  for (CLI::App* const task :
+       {command->add_subcommand("fk", "Joints to the pose of the tool"),
+        command->add_subcommand("ik", "Pose, or entry and target, to joints"),
+        command->add_subcommand("align",
+                                "Entry and target in the scanner to setpoints and what they reach")}) {
     task->add_option("--robot", options.robot, "Name of a robot, or its file")->required();
     task->add_option("--set", options.settings, "KEY=VALUE in place of the file's [kinematics] and [probe]");
   }
@@ -109,6 +112,13 @@ void add_model(CLI::App& cli, CommandLine& line) {
   CLI::App* const compile = model->add_subcommand("compile", "Write the kernel's binary configuration");
   compile->add_option("FILE", line.model, "Robot file")->required();
   compile->add_option("-o,--output", line.config, "Configuration file; default ROBOT.ilkc");
+}
+
+KinematicsTask task_of(const CLI::App& kinematics) {
+  if (kinematics.got_subcommand("align")) {
+    return KinematicsTask::alignment;
+  }
+  return kinematics.got_subcommand("fk") ? KinematicsTask::forward : KinematicsTask::inverse;
 }
 
 Result<void> execute(const CLI::App& cli, const CommandLine& line) {
@@ -128,9 +138,8 @@ Result<void> execute(const CLI::App& cli, const CommandLine& line) {
     return line.store.execute(Installation::current(), std::cout);
   }
   if (const CLI::App& kinematics = *cli.get_subcommand("kinematics"); kinematics.parsed()) {
-    const KinematicsTask task =
-        kinematics.got_subcommand("fk") ? KinematicsTask::forward : KinematicsTask::inverse;
-    return answer_kinematics(task, line.kinematics, Installation::current(), std::cin, std::cout);
+    return answer_kinematics(task_of(kinematics), line.kinematics, Installation::current(), std::cin,
+                             std::cout);
   }
   const CLI::App& model = *cli.get_subcommand("model");
   return model.got_subcommand("check") ? check_model(line.model, line.model_json, std::cout)

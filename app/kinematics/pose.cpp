@@ -27,26 +27,27 @@ Eigen::Matrix3d rotation_z(double angle_rad) noexcept {
   return (Eigen::Matrix3d() << c, -s, 0, s, c, 0, 0, 0, 1).finished();
 }
 
-KinematicsResult<void> check_rigid(const Pose& pose) noexcept {
+KinematicsResult<void> check_rigid(const Pose& pose, double tolerance) noexcept {
   const Eigen::Matrix3d rotation = pose.linear();
   for (int entry = 0; entry < 9; ++entry) {
-    const auto checked = check_range("pose_rotation_entry", rotation.data()[entry], -1.0 - rigid_tolerance,
-                                     1.0 + rigid_tolerance, Code::not_rigid);
+    const auto checked = check_range("pose_rotation_entry", rotation.data()[entry], -1.0 - tolerance,
+                                     1.0 + tolerance, Code::not_rigid);
     if (!checked) {
       return checked;
     }
   }
   const Eigen::Matrix3d gram = rotation.transpose() * rotation;
   const double slip = (gram - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  return check_range("pose_orthonormality_error", slip, 0.0, rigid_tolerance, Code::not_rigid)
+  return check_range("pose_orthonormality_error", slip, 0.0, tolerance, Code::not_rigid)
       .and_then([&] {
-        return check_range("pose_determinant", rotation.determinant(), 1.0 - rigid_tolerance,
-                           1.0 + rigid_tolerance, Code::not_rigid);
+        // All but the sign follows from the line before, within half of this.
+        return check_range("pose_determinant", rotation.determinant(), 1.0 - 3.0 * tolerance,
+                           1.0 + 3.0 * tolerance, Code::not_rigid);
       })
       .and_then([&] { return check_point({"pose_x_mm", "pose_y_mm", "pose_z_mm"}, pose.translation()); });
 }
 
-KinematicsResult<Pose> pose_from(const RowMajor& numbers) noexcept {
+KinematicsResult<Pose> pose_from(const RowMajor& numbers, double tolerance) noexcept {
   Pose pose;
   pose.matrix() = Eigen::Map<const RowMajorMatrix>(numbers.data());
   for (int column = 0; column < 4; ++column) {
@@ -57,7 +58,7 @@ KinematicsResult<Pose> pose_from(const RowMajor& numbers) noexcept {
       return tl::unexpected(checked.error());
     }
   }
-  return check_rigid(pose).map([&] { return pose; });
+  return check_rigid(pose, tolerance).map([&] { return pose; });
 }
 
 RowMajor row_major(const Pose& pose) noexcept {

@@ -18,7 +18,8 @@ using Pose = Eigen::Isometry3d;
  */
 using RowMajor = std::array<double, 16>;
 
-/** Largest entry of RᵀR - I, and distance of det R from +1, of a matrix that counts as rigid. */
+/** Largest entry of RᵀR - I of a matrix that counts as rigid; its determinant is then within 3 times of +1.
+ */
 inline constexpr double rigid_tolerance = 1e-6;
 
 /** Standard right-handed rotations. */
@@ -26,12 +27,12 @@ Eigen::Matrix3d rotation_x(double angle_rad) noexcept;
 Eigen::Matrix3d rotation_y(double angle_rad) noexcept;
 Eigen::Matrix3d rotation_z(double angle_rad) noexcept;
 
-/** Nothing, when the pose is finite, its rotation proper to `rigid_tolerance`, its translation within range.
- */
-KinematicsResult<void> check_rigid(const Pose& pose) noexcept;
+/** Nothing, when the pose is finite, its rotation proper to the tolerance, its translation within range. */
+KinematicsResult<void> check_rigid(const Pose& pose, double tolerance = rigid_tolerance) noexcept;
 
-/** The pose of a homogeneous matrix, when it is rigid and its last row is exactly 0 0 0 1. */
-KinematicsResult<Pose> pose_from(const RowMajor& numbers) noexcept;
+/** The pose of a homogeneous matrix, when it is rigid to the tolerance and its last row is exactly 0 0 0 1.
+ */
+KinematicsResult<Pose> pose_from(const RowMajor& numbers, double tolerance = rigid_tolerance) noexcept;
 
 /** The homogeneous matrix of a pose. */
 RowMajor row_major(const Pose& pose) noexcept;

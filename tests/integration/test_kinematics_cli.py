@@ -128,6 +128,61 @@ def test_prostate_pose_leads_to_joints_and_back() -> None:
     assert back["joints"] == pytest.approx(joints, abs=EXACT)
 
 
+QUARTER_TURN = [0, -1, 0, 10.5, 1, 0, 0, -20, 0, 0, 1, 30, 0, 0, 0, 1]
+
+
+def through(matrix: list[float], point: list[float]) -> list[float]:
+    rows = [matrix[start : start + 4] for start in (0, 4, 8)]
+    return [sum(a * b for a, b in zip(row, [*point, 1], strict=True)) for row in rows]
+
+
+def test_a_target_in_the_scanner_becomes_setpoints_whatever_the_registration() -> None:
+    aim = {"entry": [8, 250, 70], "target": [5, 200, 60]}
+    registered = {name: through(QUARTER_TURN, point) for name, point in aim.items()}
+    lines = [aim, {**registered, "registration": QUARTER_TURN}]
+    code, [here, there], _ = kinematics("align", "--robot", "neuro", lines=lines)
+    assert code == DONE
+    assert here["setpoints"] == there["setpoints"]
+    assert here["setpoints"]["head"]["position"] == pytest.approx(-18.420966, abs=0.51 / 78.74)
+    assert here["clamped"] == there["clamped"] == []
+    assert_near([there["desired"][index] for index in (3, 7, 11)], registered["target"])
+    tip = [there["reachable"][index] for index in (3, 7, 11)]
+    offset = [a - b for a, b in zip(tip, registered["target"], strict=True)]
+    assert_near(there["deviation"]["offset_mm"], offset)
+    assert there["deviation"]["distance_mm"] == pytest.approx(math.hypot(*offset))
+    assert 0 < there["deviation"]["distance_mm"] < 0.1
+
+    joints = {name: each["position"] for name, each in here["setpoints"].items()}
+    code, [reached], _ = kinematics("fk", "--robot", "neuro", lines=[{"joints": joints}])
+    assert code == DONE
+    assert_near(reached["pose"], here["reachable"])
+
+
+def test_a_target_beyond_an_axis_names_it_and_how_far_the_robot_falls_short() -> None:
+    code, [answer], _ = kinematics(
+        "align", "--robot", "neuro", lines=[{"entry": [8, 250, 70], "target": [5, 160, 50]}]
+    )
+    assert code == DONE
+    assert answer["clamped"] == ["insertion"]
+    assert answer["deviation"]["distance_mm"] > 20
+
+
+def test_an_alignment_that_cannot_be_is_refused_with_its_reason() -> None:
+    good = {"entry": [8, 250, 70], "target": [5, 200, 60]}
+    bad = [
+        ({**good, "registration": [2, *QUARTER_TURN[1:]]}, "NOT_RIGID"),
+        ({**good, "registration": QUARTER_TURN[:15]}, "BAD_FIELD"),
+        ({**good, "ignore_registration_rotation": 1}, "BAD_FIELD"),
+        ({"entry": [8, 250, 70]}, "BAD_FIELD"),
+        ({**good, "probe_rotation": 1}, "BAD_FIELD"),
+        ({**good, "target": [8, 250, 70]}, "DEGENERATE"),
+        ({"entry": [8, 350, 70], "target": [5, 300, 60]}, "OUT_OF_REACH"),
+    ]
+    code, answers, _ = kinematics("align", "--robot", "neuro", lines=[line for line, _ in bad])
+    assert code == REFUSED
+    assert [answer["error"]["code"] for answer in answers] == [expected for _, expected in bad]
+
+
 def test_bad_lines_are_answered_in_their_place_and_the_rest_goes_on() -> None:
     good = {"entry": [8, 250, 70], "target": [5, 200, 60]}
     bad = {

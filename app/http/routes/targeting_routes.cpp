@@ -1,5 +1,6 @@
 #include "http/routes/targeting_routes.hpp"
 
+#include "http/alignment_view.hpp"
 #include "http/problems.hpp"
 #include "store/settings.hpp"
 
@@ -80,6 +81,8 @@ Problem authority_lost() {
 
 TargetingRoutes::TargetingRoutes(const Context& context, Router& router) : context_(context) {
   router.add(verb::get, "/api/targeting", viewers, [this](const Call&) { return show(); });
+  router.add(verb::get, "/api/targeting/alignment", viewers,
+             [this](const Call&) { return show_alignment(); });
   add_change(router, "/api/targeting/registration", with_registration);
   add_change(router, "/api/targeting/current", with_reported_pose);
   add_change(router, "/api/targeting/target", with_target);
@@ -89,12 +92,23 @@ void TargetingRoutes::add_change(Router& router, const char* path, Change make) 
   router.add(verb::put, path, holder, [this, make](const Call& call) { return change(call, make); });
 }
 
-Answering TargetingRoutes::show() const {
+boost::asio::awaitable<tl::expected<Targeting, Problem>> TargetingRoutes::present() const {
   auto find = [robot = &context_.robot](Store& store) {
     return store.read([&](Transaction& transaction) { return find_targeting(transaction, *robot); });
   };
-  const auto found = co_await context_.store.run(std::move(find));
+  co_return co_await context_.store.run(std::move(find));
+}
+
+Answering TargetingRoutes::show() const {
+  const auto found = co_await present();
   co_return found.map([](const Targeting& targeting) { return Success{.body = to_json(targeting)}; });
+}
+
+Answering TargetingRoutes::show_alignment() const {
+  const auto found = co_await present();
+  co_return found.map([&](const Targeting& targeting) {
+    return Success{.body = alignment_view(context_.robot, targeting, context_.view())};
+  });
 }
 
 Answering TargetingRoutes::change(const Call& call, Change make) const {

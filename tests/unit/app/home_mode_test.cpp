@@ -10,16 +10,13 @@
 namespace interlock {
 namespace {
 
+using test::angles;
 using test::insertion;
 using test::neuro;
 using test::neuro_config;
+using test::pitch;
 using test::rotation;
-
-constexpr std::uint32_t minute_ticks = 60000;
-constexpr std::uint32_t yaw = 0;
-constexpr std::uint32_t pitch = 2;
-/** The neuro robot's step of two axes. */
-constexpr std::uint32_t angles = 1;
+using test::yaw;
 
 class HomeModeTest : public testing::Test {
  protected:
@@ -266,7 +263,7 @@ TEST_F(HomeModeTest, WishesThatWereNotSentAreRepeated) {
 
 TEST_F(HomeModeTest, ExpiresAfterAMinuteOfKernelTimeWithoutThePedal) {
   home_axis();
-  (void)tick(minute_ticks);
+  (void)tick(test::minute_ticks);
   EXPECT_EQ(phase(), OrderPhase::waiting);
   (void)tick();
   EXPECT_EQ(phase(), OrderPhase::expired);
@@ -275,12 +272,12 @@ TEST_F(HomeModeTest, ExpiresAfterAMinuteOfKernelTimeWithoutThePedal) {
 
 TEST_F(HomeModeTest, TheMinuteBeginsAnewWithEachPause) {
   home_axis();
-  (void)tick(minute_ticks - 1);
+  (void)tick(test::minute_ticks - 1);
   press();
   (void)tick();
   release();
   (void)tick();
-  (void)tick(minute_ticks);
+  (void)tick(test::minute_ticks);
   EXPECT_EQ(phase(), OrderPhase::paused);
   (void)tick();
   EXPECT_EQ(phase(), OrderPhase::expired);
@@ -289,7 +286,7 @@ TEST_F(HomeModeTest, TheMinuteBeginsAnewWithEachPause) {
 TEST_F(HomeModeTest, APressAfterAMinuteFindsNothingToHome) {
   home_axis();
   press();
-  EXPECT_THAT(tick(minute_ticks + 1), testing::IsEmpty());
+  EXPECT_THAT(tick(test::minute_ticks + 1), testing::IsEmpty());
   EXPECT_EQ(phase(), OrderPhase::expired);
 }
 

@@ -12,16 +12,15 @@
 namespace interlock {
 namespace {
 
+using test::angles;
 using test::insertion;
 using test::neuro_config;
+using test::pitch;
 using test::rotation;
+using test::yaw;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-constexpr std::uint32_t yaw = 0;
-constexpr std::uint32_t pitch = 2;
-constexpr std::uint32_t angles = 1;
 
 /** The neuro robot, with a nudge before its steps and a move after them. */
 const Robot& robot() {

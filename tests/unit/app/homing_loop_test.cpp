@@ -12,16 +12,15 @@
 namespace interlock {
 namespace {
 
+using test::angles;
 using test::ClosedLoop;
 using test::insertion;
 using test::neuro;
+using test::pitch;
 using test::rotation;
 using test::UnhomedBounds;
+using test::yaw;
 
-constexpr std::uint32_t minute_ticks = 60000;
-constexpr std::uint32_t yaw = 0;
-constexpr std::uint32_t pitch = 2;
-constexpr std::uint32_t angles = 1;
 constexpr HomeOrder every_step{1, 0, 3, 0, 0};
 constexpr HomeOrder the_angles{1, angles, 1, 0, 0};
 constexpr HomeOrder the_insertion{1, 0, 0, insertion, 0};
@@ -37,7 +36,8 @@ Robot neuro_with(std::vector<HomeStep> steps) {
 class HomingOnThePlant : public testing::TestWithParam<std::uint32_t> {
  protected:
   /** Runs until the order has ended, pressing the pedal anew whenever a slice of a nudge is used up. */
-  static std::uint32_t presses_to_the_end(ClosedLoop& loop, std::uint32_t most_ticks = 4 * minute_ticks) {
+  static std::uint32_t presses_to_the_end(ClosedLoop& loop,
+                                          std::uint32_t most_ticks = 4 * test::minute_ticks) {
     std::uint32_t presses = 1;
     loop.pedal(true);
     for (std::uint32_t i = 0; i < most_ticks && is_open(loop.home().order.phase); ++i) {
@@ -53,7 +53,7 @@ class HomingOnThePlant : public testing::TestWithParam<std::uint32_t> {
 
   template <typename Condition>
   static bool run_until(ClosedLoop& loop, Condition condition) {
-    for (std::uint32_t i = 0; i < minute_ticks && !condition(); ++i) {
+    for (std::uint32_t i = 0; i < test::minute_ticks && !condition(); ++i) {
       loop.tick();
     }
     return condition();

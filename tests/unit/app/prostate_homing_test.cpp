@@ -14,17 +14,10 @@ namespace interlock {
 namespace {
 
 using test::ClosedLoop;
+using test::prostate;
 
 constexpr double most_separation_mm = 308.0;
 constexpr std::uint32_t most_ticks = 600000;
-
-const Robot& prostate() {
-  static const Robot robot = [] {
-    auto loaded = load_robot(INTERLOCK_ROBOTS "/prostate.toml");
-    return loaded ? *loaded : throw std::runtime_error(loaded.error().message());
-  }();
-  return robot;
-}
 
 /** Where the sliders stand at power-on, in mm. */
 struct Start {

@@ -3,17 +3,8 @@
 #include <stdexcept>
 
 #include "robot/compile.hpp"
-#include "robot/robot_file.hpp"
 
 namespace interlock::test {
-
-const Robot& neuro() {
-  static const Robot robot = [] {
-    auto loaded = load_robot(INTERLOCK_ROBOTS "/neuro.toml");
-    return loaded ? *loaded : throw std::runtime_error(loaded.error().message());
-  }();
-  return robot;
-}
 
 const ilk_config_t& neuro_config() {
   static const ilk_config_t config = config_of(neuro());

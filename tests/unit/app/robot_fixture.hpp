@@ -1,20 +1,25 @@
 /**
  * @file
- * The neuro robot and its configuration, as every test of the app uses them.
+ * The robots' configuration, as every test of the app uses them.
  */
 #pragma once
 
 #include "motion/mailbox.hpp"
-#include "robot/robot.hpp"
+#include "project_robots.hpp"
 
 namespace interlock::test {
 
-/** Slots of the neuro robot: a homeable axis, and one without a switch. */
-constexpr std::uint32_t insertion = 3;
+/** Slots of the neuro robot: `insertion` has a switch, `rotation` has none. */
+constexpr std::uint32_t yaw = 0;
 constexpr std::uint32_t rotation = 1;
+constexpr std::uint32_t pitch = 2;
+constexpr std::uint32_t insertion = 3;
 constexpr std::uint32_t empty_slot = 5;
+/** The neuro robot's home step of two axes, yaw and pitch. */
+constexpr std::uint32_t angles = 1;
 
-const Robot& neuro();
+constexpr std::uint32_t minute_ticks = 60000;
+
 const ilk_config_t& neuro_config();
 
 /** The kernel's configuration of a robot, which must be valid. */

@@ -14,16 +14,9 @@
 namespace interlock {
 namespace {
 
+using test::prostate;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-const Robot& prostate() {
-  static const Robot robot = [] {
-    auto loaded = load_robot(INTERLOCK_ROBOTS "/prostate.toml");
-    return loaded ? *loaded : throw std::runtime_error(loaded.error().message());
-  }();
-  return robot;
-}
 
 class SeparationTest : public testing::Test {
  protected:

@@ -9,7 +9,7 @@ class TargetingRoutesTest : public HttpTest {
   json targeting() { return json::parse(get("/api/targeting").body); }
 };
 
-const json pose{"0", -1, 0, 10.5, 1, 0, 0, -20, 0, 0, "1.0", 30, 0, 0, 0, 1};
+const json quarter_turn{"0", -1, 0, 10.5, 1, 0, 0, -20, 0, 0, "1.0", 30, 0, 0, 0, 1};
 const json pose_as_numbers{0.0, -1.0, 0.0, 10.5, 1.0, 0.0, 0.0, -20.0,
                            0.0, 0.0,  1.0, 30.0, 0.0, 0.0, 0.0, 1.0};
 
@@ -21,9 +21,9 @@ TEST_F(TargetingRoutesTest, StartsWithTheProbeOfTheRobot) {
 }
 
 TEST_F(TargetingRoutesTest, WhatIsSetIsAnsweredAndKept) {
-  const json registration{{"registration", pose}, {"ignore_registration_rotation", true}};
+  const json registration{{"registration", quarter_turn}, {"ignore_registration_rotation", true}};
   ASSERT_EQ(put("/api/targeting/registration", registration.dump()).status, 200u);
-  ASSERT_EQ(put("/api/targeting/current", json{{"current_position", pose}}.dump()).status, 200u);
+  ASSERT_EQ(put("/api/targeting/current", json{{"current_position", quarter_turn}}.dump()).status, 200u);
   const json target{
       {"entry_point", {"1", 2, 3}}, {"target_point", {4, 5, 6}}, {"canula_to_treatment_offset", "7.5"}};
   const Answered answered = put("/api/targeting/target", target.dump());

@@ -349,6 +349,23 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/targeting/alignment": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** What entry and target ask of the axes, what the robot reaches of it, and where it is now. Moves nothing. */
+        get: operations["getAlignment"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/targeting/registration": {
         parameters: {
             query?: never;
@@ -1016,6 +1033,52 @@ export interface components {
             treatment_to_robot_at_home: number;
             /** @description As an imager reported it. */
             reported_position: number[] | null;
+        };
+        /** @description Poses are of the treatment point, in the scanner's frame (RAS), mm, 16 numbers row by row. In the place of what is not known stands a problem. */
+        AlignmentView: {
+            alignment: components["schemas"]["Alignment"] | null;
+            alignment_problem: components["schemas"]["TargetingProblem"] | null;
+            /** @description By the encoders; null unless every axis of the kinematics is homed. */
+            current: number[] | null;
+            current_problem: components["schemas"]["TargetingProblem"] | null;
+            /** @description Of the current pose from the desired one. */
+            current_deviation: components["schemas"]["Deviation"] | null;
+        };
+        Alignment: {
+            /** @description As entry and target ask. */
+            desired: number[];
+            /** @description Where the setpoints lead: whole counts, within the ranges of the axes. */
+            reachable: number[];
+            /** @description A beyond the reachable treatment point. */
+            reachable_tip: number[];
+            /** @description By the name of the axis; what the kernel accepts once the axis is homed. */
+            setpoints: {
+                [key: string]: {
+                    counts: number;
+                    /** @description In the axis' unit. */
+                    position: number;
+                };
+            };
+            /** @description Axes of which the target asks for more than their range. */
+            clamped: string[];
+            deviation: components["schemas"]["Deviation"];
+            /** @description D + insertion - C; the NeuroRobot's alone. */
+            cannula_length_mm: number | null;
+        };
+        Deviation: {
+            offset_mm: number[];
+            distance_mm: number;
+            /** @description Between the two ways in which the probe advances. */
+            angle_deg: number;
+        };
+        TargetingProblem: {
+            /** @description NO_TARGET, NO_KERNEL, NOT_HOMED, or why the kinematics has no answer. */
+            code: string;
+            text: string;
+            quantity?: string;
+            value?: number | null;
+            lowest?: number;
+            highest?: number;
         };
         RegistrationChange: {
             registration: components["schemas"]["Pose"];
@@ -1803,6 +1866,28 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Targeting"];
+                };
+            };
+            401: components["responses"]["Login"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    getAlignment: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Alignment and current pose, or a problem in the place of either. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AlignmentView"];
                 };
             };
             401: components["responses"]["Login"];

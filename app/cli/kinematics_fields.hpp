@@ -1,0 +1,59 @@
+/** @file Reading the fields of a line of `interlock kinematics`; what is wrong comes back as its error
+ * object. */
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "kinematics/kinematics_error.hpp"
+#include "kinematics/pose.hpp"
+#include "targeting/targeting_json.hpp"
+
+namespace interlock::cli {
+
+/** What was read or solved, or the object that says what is wrong. */
+template <typename Value>
+using Solved = tl::expected<Value, nlohmann::json>;
+
+tl::unexpected<nlohmann::json> refused(std::string_view code, const std::string& text);
+
+template <typename Value>
+Solved<Value> solved(const KinematicsResult<Value>& result) {
+  return result.map_error([](const KinematicsError& error) { return to_json(error); });
+}
+
+/** The one JSON object of a line. */
+Solved<nlohmann::json> parse_line(std::string_view line);
+
+/** Whether the object has all of these keys. */
+bool has(const nlohmann::json& object, std::initializer_list<std::string_view> keys);
+
+/** Nothing, when the object has no keys but these: a slip of the pen must not pass for a default. */
+template <typename Keys>
+Solved<void> check_keys(const nlohmann::json& object, const Keys& keys) {
+  for (const auto& [key, value] : object.items()) {
+    if (std::ranges::find(keys, key) == std::ranges::end(keys)) {
+      std::string known;
+      for (const auto& name : keys) {
+        known += (known.empty() ? "" : ", ") + std::string(name);
+      }
+      return refused("BAD_FIELD", key + ": not known here; expected " + known);
+    }
+  }
+  return {};
+}
+
+Solved<double> number(const nlohmann::json& value, const std::string& name);
+Solved<double> number_or_zero(const nlohmann::json& object, const std::string& key);
+Solved<bool> flag_or_false(const nlohmann::json& object, const std::string& key);
+Solved<Eigen::Vector3d> point(const nlohmann::json& object, const std::string& key);
+Solved<RowMajor> matrix(const nlohmann::json& object, const std::string& key);
+
+/** The rigid pose under `pose`. */
+Solved<Pose> pose(const nlohmann::json& object);
+
+}  // namespace interlock::cli

@@ -1,0 +1,105 @@
+#include "http/alignment_view.hpp"
+
+#include "targeting/targeting_json.hpp"
+
+namespace interlock::web {
+namespace {
+
+using nlohmann::json;
+
+/** A value, or the problem in its place. */
+template <typename Value>
+using Known = tl::expected<Value, json>;
+
+tl::unexpected<json> unknown(const char* code, const std::string& text) {
+  return tl::unexpected(json{{"code", code}, {"text", text}});
+}
+
+json problem_of(const KinematicsError& error) { return to_json(error); }
+
+Eigen::Vector3d vector(const Point& point) { return Eigen::Vector3d(point.data()); }
+
+ProbeOffsets probe_of(const Targeting& targeting) {
+  return {targeting.treatment_to_tip_mm, targeting.robot_to_entry_mm, targeting.cannula_to_treatment_mm,
+          targeting.treatment_to_robot_at_home_mm};
+}
+
+/** What all of it is computed with. */
+struct Setup {
+  RobotKinematics kinematics;
+  Registration registration;
+};
+
+Known<Setup> setup_of(const Robot& robot, const Targeting& targeting) {
+  return RobotKinematics::create(robot, probe_of(targeting))
+      .and_then([&](const RobotKinematics& kinematics) {
+        return Registration::create(targeting.registration, targeting.ignore_registration_rotation)
+            .map([&](const Registration& registration) { return Setup{kinematics, registration}; });
+      })
+      .map_error(problem_of);
+}
+
+Known<Alignment> alignment_of(const Robot& robot, const Targeting& targeting, const Setup& setup) {
+  if (!targeting.entry_point || !targeting.target_point) {
+    return unknown("NO_TARGET", "Entry and target are not both set.");
+  }
+  const Aim aim{vector(*targeting.entry_point), vector(*targeting.target_point), 0.0};
+  return align(robot, setup.kinematics, setup.registration, aim).map_error(problem_of);
+}
+
+Known<AxisPositions> positions_of(const Robot& robot, const ControlView& view) {
+  if (!view.attached) {
+    return unknown("NO_KERNEL", "The app is not connected to the kernel.");
+  }
+  AxisPositions positions;
+  std::string missing;
+  for (const Axis& axis : robot.axes) {
+    const ilk_axis_t& state = view.snapshot.state.axis[axis.slot];
+    positions.push_back(axis.to_unit(state.position_counts));
+    if (state.homed == 0 && !axis.role.empty()) {
+      missing += (missing.empty() ? "" : ", ") + axis.title;
+    }
+  }
+  if (!missing.empty()) {
+    return unknown("NOT_HOMED", "Where the robot is, is not known before these are homed: " + missing + ".");
+  }
+  return positions;
+}
+
+Known<interlock::Pose> current_of(const Robot& robot, const ControlView& view, const Setup& setup) {
+  return positions_of(robot, view).and_then([&](const AxisPositions& positions) {
+    return setup.kinematics.zframe_from_treatment(positions)
+        .map([&](const interlock::Pose& pose) { return setup.registration.scanner_from_zframe() * pose; })
+        .map_error(problem_of);
+  });
+}
+
+}  // namespace
+
+json alignment_view(const Robot& robot, const Targeting& targeting, const ControlView& view) {
+  const Known<Setup> setup = setup_of(robot, targeting);
+  const auto alignment =
+      setup.and_then([&](const Setup& with) { return alignment_of(robot, targeting, with); });
+  const auto current = setup.and_then([&](const Setup& with) { return current_of(robot, view, with); });
+  json answer{{"alignment", nullptr},
+              {"alignment_problem", nullptr},
+              {"current", nullptr},
+              {"current_problem", nullptr},
+              {"current_deviation", nullptr}};
+  if (alignment) {
+    answer["alignment"] = to_json(robot, *alignment);
+  } else {
+    answer["alignment_problem"] = alignment.error();
+  }
+  if (current) {
+    answer["current"] = row_major(*current);
+  } else {
+    answer["current_problem"] = current.error();
+  }
+  if (alignment && current) {
+    answer["current_deviation"] = to_json(deviation(*current, alignment->desired));
+  }
+  return answer;
+}
+
+}  // namespace interlock::web

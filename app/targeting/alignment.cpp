@@ -1,0 +1,67 @@
+#include "targeting/alignment.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace interlock {
+namespace {
+
+AxisSetpoint setpoint_of(const Axis& axis, double position) {
+  const std::int32_t lowest = axis.lowest_setpoint_counts();
+  const std::int32_t highest = axis.highest_setpoint_counts();
+  const double within = std::clamp(position, axis.to_unit(lowest), axis.to_unit(highest));
+  const std::int32_t counts = std::clamp(axis.to_counts(within).value_or(lowest), lowest, highest);
+  const double half_count = 0.5 / std::abs(axis.counts_per_unit);
+  return {axis.slot, counts, std::abs(within - position) > half_count};
+}
+
+std::optional<double> cannula_length(const Robot& robot, const ProbeOffsets& probe,
+                                     std::span<const double> positions) {
+  if (!std::holds_alternative<NeuroRcm>(robot.kinematics)) {
+    return std::nullopt;
+  }
+  const auto insertion = std::ranges::find(robot.axes, "insertion", &Axis::role) - robot.axes.begin();
+  return probe.treatment_to_robot_at_home_mm + positions[static_cast<std::size_t>(insertion)] -
+         probe.cannula_to_treatment_mm;
+}
+
+}  // namespace
+
+Deviation deviation(const Pose& reached, const Pose& desired) noexcept {
+  const Eigen::Vector3d offset = reached.translation() - desired.translation();
+  const Eigen::Vector3d ahead = reached.linear().col(2);
+  const Eigen::Vector3d wanted = desired.linear().col(2);
+  return {offset, offset.norm(), std::atan2(ahead.cross(wanted).norm(), ahead.dot(wanted))};
+}
+
+KinematicsResult<Alignment> align(const Robot& robot, const RobotKinematics& kinematics,
+                                  const Registration& registration, const Aim& aim) {
+  const Pose& scanner_from_zframe = registration.scanner_from_zframe();
+  const Pose zframe_from_scanner = scanner_from_zframe.inverse();
+  const auto wanted = kinematics.positions_for(zframe_from_scanner * aim.entry,
+                                               zframe_from_scanner * aim.target, aim.rotation_rad);
+  const auto desired =
+      wanted.and_then([&](const AxisPositions& exact) { return kinematics.zframe_from_treatment(exact); });
+  if (!desired) {
+    return tl::unexpected(desired.error());
+  }
+  Alignment alignment;
+  AxisPositions positions = *wanted;
+  for (std::size_t place = 0; place < positions.size(); ++place) {
+    if (const Axis& axis = robot.axes[place]; !axis.role.empty()) {
+      alignment.setpoints.push_back(setpoint_of(axis, positions[place]));
+      positions[place] = axis.to_unit(alignment.setpoints.back().counts);
+    }
+  }
+  return kinematics.zframe_from_treatment(positions).map([&](const Pose& reached) {
+    alignment.desired = scanner_from_zframe * *desired;
+    alignment.reachable = scanner_from_zframe * reached;
+    alignment.reachable_tip =
+        alignment.reachable * Eigen::Vector3d(0.0, 0.0, kinematics.probe().treatment_to_tip_mm);
+    alignment.deviation = deviation(alignment.reachable, alignment.desired);
+    alignment.cannula_length_mm = cannula_length(robot, kinematics.probe(), positions);
+    return alignment;
+  });
+}
+
+}  // namespace interlock

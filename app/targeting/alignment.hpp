@@ -1,0 +1,59 @@
+/**
+ * @file
+ * What a target asks of the axes, what they can do of it, and how far the two are apart.
+ *
+ * Poses and points are in the scanner's RAS frame, mm.
+ */
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "targeting/registration.hpp"
+#include "targeting/robot_kinematics.hpp"
+
+namespace interlock {
+
+/** A straight way in. */
+struct Aim {
+  Eigen::Vector3d entry = Eigen::Vector3d::Zero();
+  Eigen::Vector3d target = Eigen::Vector3d::Zero();
+  double rotation_rad = 0.0; /**< of the probe about its axis */
+};
+
+/** How far a reached pose is from a desired one. */
+struct Deviation {
+  Eigen::Vector3d offset_mm = Eigen::Vector3d::Zero(); /**< reached minus desired treatment point, RAS */
+  double distance_mm = 0.0;
+  double angle_rad = 0.0; /**< between the two ways in which the probe advances, 0 to pi */
+};
+
+Deviation deviation(const Pose& reached, const Pose& desired) noexcept;
+
+/** The setpoint of one axis, within what the kernel accepts of it once homed. */
+struct AxisSetpoint {
+  std::uint32_t slot = 0;
+  std::int32_t counts = 0;
+  bool clamped = false; /**< the aim asked for more */
+};
+
+struct Alignment {
+  Pose desired;                        /**< of the treatment point, as the aim asks */
+  std::vector<AxisSetpoint> setpoints; /**< of the axes with a role, in the order of the robot's axes */
+  Pose reachable;                      /**< where the setpoints lead: whole counts, clamped */
+  Eigen::Vector3d reachable_tip = Eigen::Vector3d::Zero(); /**< A beyond the reachable treatment point */
+  Deviation deviation;                                     /**< of the reachable pose from the desired one */
+  /** D + insertion - C; the NeuroRobot's alone. */
+  std::optional<double> cannula_length_mm;
+};
+
+/**
+ * Aligns the robot with an aim. Desired and reachable differ by the rounding to counts, and where an axis is
+ * clamped. Errors are those of the kinematics; SEPARATION also where the clamped sliders would leave their
+ * window.
+ */
+KinematicsResult<Alignment> align(const Robot& robot, const RobotKinematics& kinematics,
+                                  const Registration& registration, const Aim& aim);
+
+}  // namespace interlock

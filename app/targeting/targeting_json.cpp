@@ -1,0 +1,47 @@
+#include "targeting/targeting_json.hpp"
+
+#include <numbers>
+
+namespace interlock {
+
+using nlohmann::json;
+
+namespace {
+
+json list_of(const Eigen::Vector3d& point) { return {point.x(), point.y(), point.z()}; }
+
+}  // namespace
+
+json to_json(const KinematicsError& error) {
+  return {{"code", code_name(error.code)}, {"text", error.message()},
+          {"quantity", error.quantity},    {"value", error.value ? json(*error.value) : json()},
+          {"lowest", error.lowest},        {"highest", error.highest}};
+}
+
+json to_json(const Deviation& deviation) {
+  return {{"offset_mm", list_of(deviation.offset_mm)},
+          {"distance_mm", deviation.distance_mm},
+          {"angle_deg", deviation.angle_rad * 180.0 / std::numbers::pi}};
+}
+
+json to_json(const Robot& robot, const Alignment& alignment) {
+  json setpoints = json::object();
+  json clamped = json::array();
+  for (const AxisSetpoint& setpoint : alignment.setpoints) {
+    const Axis& axis = *robot.at_slot(setpoint.slot);
+    setpoints[axis.name] = {{"counts", setpoint.counts}, {"position", axis.to_unit(setpoint.counts)}};
+    if (setpoint.clamped) {
+      clamped.push_back(axis.name);
+    }
+  }
+  const auto& length = alignment.cannula_length_mm;
+  return {{"desired", row_major(alignment.desired)},
+          {"reachable", row_major(alignment.reachable)},
+          {"reachable_tip", list_of(alignment.reachable_tip)},
+          {"setpoints", setpoints},
+          {"clamped", clamped},
+          {"deviation", to_json(alignment.deviation)},
+          {"cannula_length_mm", length ? json(*length) : json()}};
+}
+
+}  // namespace interlock
