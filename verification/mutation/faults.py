@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Shows that the rungs notice faults: seeds each line of faults.toml and wants the named proofs to fail.
 
-Usage: faults.py [--check | --all | --seed TEXT] [--find] [NAME ...]. Without a name a third of the faults, chosen by
-the seed (the commit). A fault counts as caught when each `RUNG PART` that its `caught_by` names notices it.
-With --find every part of every rung is tried instead, and what catches the fault is printed, one part a rung,
-to be written into faults.toml. With --check nothing is seeded: only lines that the kernel no longer has are named.
+Usage: faults.py [--check | --all | --seed TEXT] [--find] [NAME ...]. Without a name a third of the faults,
+chosen by the seed (the commit). A fault counts as caught when each `RUNG PART` that its `caught_by` names
+notices it. With --find every part of every rung is tried instead, and what catches the fault is printed, one
+part a rung, to be written into faults.toml. With --check nothing is seeded: it names only those faults whose
+line the kernel no longer has.
 
 Prints a table of faults and rungs; writes build/evidence/faults.json.
 """
