@@ -65,7 +65,7 @@ TrajectoryResult<void> check_within(std::string_view column, double value, doubl
 std::string number_text(double number) {
   std::array<char, 32> text{};
   const std::to_chars_result end =
-      std::to_chars(text.data(), text.data() + text.size(), number, std::chars_format::general, 6);
+      std::to_chars(text.data(), text.data() + text.size(), number, std::chars_format::general, 12);
   return {text.data(), end.ptr};
 }
 

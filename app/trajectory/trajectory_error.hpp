@@ -36,7 +36,8 @@ struct TrajectoryError {
   std::string problem;  /**< what was found */
   std::string expected; /**< what belongs there instead */
 
-  /** One line for people: "line 3, yaw [rad]: -2 is out of range; expected -1.5205 to -0.00502639". */
+  /** One line for people: "line 3, yaw [rad]: -2 is out of range; expected -1.52048253330 to
+   * -0.00502638853983". */
   [[nodiscard]] std::string message() const;
 
   bool operator==(const TrajectoryError&) const = default;
@@ -51,7 +52,7 @@ using TrajectoryResult = tl::expected<Value, TrajectoryError>;
 /** Nothing, when `value` is finite and within both ends; `column` names it in the error. */
 TrajectoryResult<void> check_within(std::string_view column, double value, double lowest, double highest);
 
-/** A number as errors show it: six digits, as short as they get. */
+/** A number as errors show it: twelve digits, as short as they get. */
 std::string number_text(double number);
 
 }  // namespace interlock

@@ -174,7 +174,7 @@ TEST(PlanMove, WhatIsNoNumberOrNotPositiveIsRefusedByName) {
   EXPECT_EQ(refused(target_of("yaw", {0.0}, 0.0, {2.0, -2.0})).column, "yaw lowest position");
   AxisTarget target = target_of("yaw", {0.0}, 1.0);
   target.axis.limits.jerk = 0.0;
-  EXPECT_EQ(refused(target).message(), "yaw jerk limit: 0 is out of range; expected 1e-06 to 1e+06");
+  EXPECT_EQ(refused(target).message(), "yaw jerk limit: 0 is out of range; expected 1e-06 to 1000000");
   EXPECT_EQ(refused(target_of("yaw", {0.0}, 1.0), -1.0).column, "minimum duration [s]");
   EXPECT_EQ(refused(target_of("yaw", {0.0}, 1.0), 7601.0).code, Code::out_of_range);
   EXPECT_EQ(plan_move({}).error().code, Code::empty);
