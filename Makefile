@@ -22,8 +22,8 @@ help: ## List the targets
 	@sed -nE 's/^([a-z-]+):.*## (.*)/\1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 18
 
 .PHONY: setup
-setup: ## Install what is missing: Debian packages, Python environment, Node, node modules
-	@$(setup) packages python web
+setup: ## Install what is missing: Debian packages, Python environment, Node, node modules, Ruckig
+	@$(setup) packages python libraries web
 
 .PHONY: generate
 generate: ## Write the tables that come from spec/catalog.toml

@@ -11,10 +11,10 @@ namespace interlock::cli {
 
 /** Exit codes of `interlock`, as `interlock --help` lists them. */
 enum class ExitCode : int {
-  done = 0, /**< done; `run`: stopped by a signal */
-  refused =
-      1, /**< a robot file or a line of `kinematics` that is not valid, a broken audit, a rule of the store */
-  usage = 2, /**< the command line is not understood */
+  done = 0,    /**< done; `run`: stopped by a signal */
+  refused = 1, /**< a robot file, a trajectory or a line of `kinematics` that is not valid, a broken audit, a
+                  rule of the store */
+  usage = 2,   /**< the command line is not understood */
   precondition =
       3, /**< something stands in the way: busy port, second instance, missing file, no permission */
   process_ended = 4,   /**< kernel or simulator ended, or did not start */

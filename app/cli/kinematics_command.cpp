@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-#include "robot/robot_file.hpp"
+#include "cli/named_robot.hpp"
 
 namespace interlock::cli {
 
@@ -97,13 +97,9 @@ Result<void> change(Robot& robot, std::string_view assignment) {
 }
 
 Result<Robot> load(const KinematicsOptions& options, const Installation& installation) {
-  const Result<std::filesystem::path> file = installation.robot(options.robot);
-  if (!file) {
-    return tl::unexpected(file.error());
-  }
-  tl::expected<Robot, RobotError> robot = load_robot(*file);
+  Result<Robot> robot = named_robot(options.robot, installation);
   if (!robot) {
-    return failed(ExitCode::refused, robot.error().message());
+    return robot;
   }
   for (const std::string& assignment : options.settings) {
     const Result<void> changed = change(*robot, assignment);
@@ -111,7 +107,7 @@ Result<Robot> load(const KinematicsOptions& options, const Installation& install
       return tl::unexpected(changed.error());
     }
   }
-  return std::move(*robot);
+  return robot;
 }
 
 }  // namespace

@@ -17,15 +17,17 @@
 #include "cli/run_command.hpp"
 #include "cli/status_command.hpp"
 #include "cli/store_command_line.hpp"
+#include "cli/trajectory_command.hpp"
 #include "robot/compile.hpp"
 
 namespace interlock::cli {
 namespace {
 
 constexpr const char* footer =
-    "Exit codes: 0 done; 1 refused: robot file, input line, broken audit, rule of the store; 2 command line\n"
-    "not understood; 3 something stands in the way (busy port, second instance, missing file); 4 kernel or\n"
-    "simulator ended; 5 the app kept ending; 6 no answer.";
+    "Exit codes: 0 done; 1 refused: robot file, input line, trajectory, broken audit, rule of the store;\n"
+    "2 command line not understood; 3 something stands in the way (busy port, second instance, missing "
+    "file);\n"
+    "4 kernel or simulator ended; 5 the app kept ending; 6 no answer.";
 
 Result<void> show_version(const std::string& robot, std::ostream& output) {
   output << "interlock " << version() << ", commit " << commit() << '\n';
@@ -51,6 +53,7 @@ struct CommandLine {
   RunOptions run;
   StatusOptions status;
   KinematicsOptions kinematics;
+  TrajectoryOptions trajectory;
   std::filesystem::path model;
   bool model_json = false;
   std::filesystem::path config;
@@ -103,6 +106,20 @@ void add_kinematics(CLI::App& cli, KinematicsOptions& options) {
   }
 }
 
+void add_trajectory(CLI::App& cli, TrajectoryOptions& options) {
+  CLI::App* const command = cli.add_subcommand("trajectory", "Check a trajectory that is written in a file");
+  command->require_subcommand(1);
+  CLI::App* const check =
+      command->add_subcommand("check", "Say whether a robot can follow it, in one JSON object");
+  check->add_option("--robot", options.robot, "Name of a robot, or its file")->required();
+  check
+      ->add_option("--max-velocity", options.max_velocities,
+                   "AXIS=VALUE that the axis may not exceed, in its unit per second")
+      ->allow_extra_args(false);
+  check->add_option("FILE", options.file, "Trajectory: time [s],AXIS [UNIT],... and rows of numbers")
+      ->required();
+}
+
 void add_model(CLI::App& cli, CommandLine& line) {
   CLI::App* const model = cli.add_subcommand("model", "Check or compile a robot file");
   model->require_subcommand(1);
@@ -141,6 +158,9 @@ Result<void> execute(const CLI::App& cli, const CommandLine& line) {
     return answer_kinematics(task_of(kinematics), line.kinematics, Installation::current(), std::cin,
                              std::cout);
   }
+  if (cli.got_subcommand("trajectory")) {
+    return check_trajectory(line.trajectory, Installation::current(), std::cout);
+  }
   const CLI::App& model = *cli.get_subcommand("model");
   return model.got_subcommand("check") ? check_model(line.model, line.model_json, std::cout)
                                        : compile_model(line.model, line.config, std::cout);
@@ -164,6 +184,7 @@ int main(int argc, char** argv) {
   add_run(cli, line.run);
   add_status(cli, line.status);
   add_kinematics(cli, line.kinematics);
+  add_trajectory(cli, line.trajectory);
   add_model(cli, line);
   line.store.describe(cli);
   try {

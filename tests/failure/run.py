@@ -149,7 +149,8 @@ class Tree:
         if fault.target == "pytest":
             return self.command(sys.executable, "-m", "pytest", "-q", fault.test)
         if not (self.build / "build.ninja").is_file():
-            self.must("cmake", "--preset", "release", "-B", self.build)
+            ruckig = f"-DINTERLOCK_RUCKIG={self.source / 'build/libraries/ruckig'}"
+            self.must("cmake", "--preset", "release", "-B", self.build, ruckig)
         self.must("ninja", "-C", self.build, fault.target)
         return self.command(self.build / "bin" / fault.target, f"--gtest_filter={fault.test}")
 

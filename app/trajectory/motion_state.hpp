@@ -1,0 +1,30 @@
+/** @file Where an axis is and how it moves, in the axis' unit (mm or rad) and seconds. */
+#pragma once
+
+namespace interlock {
+
+struct MotionState {
+  double position = 0.0;
+  double velocity = 0.0;
+  double acceleration = 0.0;
+
+  bool operator==(const MotionState&) const = default;
+};
+
+/** Positions between which an axis may be, both ends in it. */
+struct PositionRange {
+  double lowest = 0.0;
+  double highest = 0.0;
+
+  bool operator==(const PositionRange&) const = default;
+};
+
+/**
+ * Ranges in which numbers of this folder mean something, in the axis' unit and seconds: far beyond both
+ * robots, and such that every intermediate result stays finite.
+ */
+inline constexpr double position_limit = 1e6;
+inline constexpr double smallest_rate = 1e-6; /**< of velocity, acceleration and jerk */
+inline constexpr double largest_rate = 1e6;
+
+}  // namespace interlock

@@ -1,0 +1,73 @@
+/**
+ * @file
+ * A jerk-limited motion of several axes that arrive together, planned by Ruckig from any state in which they
+ * are.
+ *
+ * Move: from where the axes are, and however they move, to rest at their targets, in the shortest time that
+ * velocity, acceleration and jerk of every axis allow, or in a longer one. From rest the axes move in
+ * proportion, along the straight line from positions to targets. An axis that is faster than its limits is
+ * braked first.
+ *
+ * Stop: every axis by itself, to rest as soon as its limits allow.
+ *
+ * To plan anew on the way, start from `at` of the plan that is being followed. Planning allocates and takes
+ * some microseconds an axis: it has no place in the control thread. A finished plan only answers.
+ *
+ * Units are those of the axes (mm or rad) and seconds.
+ */
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "trajectory/motion_state.hpp"
+#include "trajectory/piecewise_motion.hpp"
+#include "trajectory/trajectory_error.hpp"
+
+namespace interlock {
+
+/** Longer plans are refused: Ruckig's limit, a little over two hours. */
+inline constexpr double longest_plan_s = 7600.0;
+
+/** Rounding is forgiven by this much where a plan is held against the positions allowed. */
+inline constexpr double planning_slack = 1e-7;
+
+/** Largest magnitudes of an axis' rates, each from `smallest_rate` to `largest_rate`. */
+struct RateLimits {
+  double velocity = 0.0;
+  double acceleration = 0.0;
+  double jerk = 0.0;
+};
+
+/** One axis of a plan. */
+struct PlannedAxis {
+  std::string name; /**< for errors */
+  MotionState now;
+  RateLimits limits;
+};
+
+/** An axis and where it shall go. */
+struct AxisTarget {
+  PlannedAxis axis;
+  double position = 0.0; /**< where it comes to rest */
+  PositionRange allowed; /**< for the target and the whole way there; a start outside may come back in */
+};
+
+struct SynchronisedPlan {
+  std::vector<PiecewiseMotion> axes; /**< in the order in which they were given */
+  double duration_s = 0.0;           /**< until the last is at rest */
+};
+
+/**
+ * Plans a move that takes at least `minimum_duration_s`. NOT_FINITE and OUT_OF_RANGE name axis and quantity,
+ * OUT_OF_RANGE also when an axis is too fast to stay within its positions; NO_SOLUTION says why Ruckig found
+ * none.
+ */
+TrajectoryResult<SynchronisedPlan> plan_move(std::span<const AxisTarget> targets,
+                                             double minimum_duration_s = 0.0);
+
+/** Plans a stop. Where it leads is for the caller to judge, by `reach`: a stop is never refused for that. */
+TrajectoryResult<SynchronisedPlan> plan_stop(std::span<const PlannedAxis> axes);
+
+}  // namespace interlock

@@ -1,0 +1,33 @@
+#include "trajectory/timed_trajectory.hpp"
+
+#include <algorithm>
+#include <ranges>
+
+namespace interlock {
+
+MotionState TimedTrajectory::at(std::size_t axis, double time_s) const noexcept {
+  const TrajectoryAxis& moved = axes_[axis];
+  if (!(time_s >= begin_s())) {
+    return {row(0)[moved.position_place], 0.0, 0.0};
+  }
+  if (time_s >= end_s()) {
+    return {row(rows() - 1)[moved.position_place], 0.0, 0.0};
+  }
+  const auto indices = std::views::iota(std::size_t{0}, rows());
+  const auto next = *std::ranges::upper_bound(indices, time_s, {},
+                                              [this](std::size_t index) { return this->time_s(index); });
+  return piece_between(moved, row(next - 1), row(next)).after(time_s - this->time_s(next - 1));
+}
+
+JerkPiece piece_between(const TrajectoryAxis& axis, std::span<const double> from,
+                        std::span<const double> to) noexcept {
+  const double duration_s = to.front() - from.front();
+  const double start = from[axis.position_place];
+  const double end = to[axis.position_place];
+  if (const auto velocity = axis.velocity_place) {
+    return JerkPiece::between(start, from[*velocity], end, to[*velocity], duration_s);
+  }
+  return JerkPiece::line(start, end, duration_s);
+}
+
+}  // namespace interlock

@@ -1,0 +1,72 @@
+#include "trajectory/trajectory_error.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace interlock {
+
+using Code = TrajectoryError::Code;
+
+std::string_view code_name(Code code) {
+  switch (code) {
+    case Code::not_finite:
+      return "NOT_FINITE";
+    case Code::out_of_range:
+      return "OUT_OF_RANGE";
+    case Code::too_fast:
+      return "TOO_FAST";
+    case Code::empty:
+      return "EMPTY";
+    case Code::too_large:
+      return "TOO_LARGE";
+    case Code::bad_header:
+      return "BAD_HEADER";
+    case Code::unknown_axis:
+      return "UNKNOWN_AXIS";
+    case Code::repeated_axis:
+      return "REPEATED_AXIS";
+    case Code::wrong_unit:
+      return "WRONG_UNIT";
+    case Code::wrong_columns:
+      return "WRONG_COLUMNS";
+    case Code::not_a_number:
+      return "NOT_A_NUMBER";
+    case Code::unsorted_times:
+      return "UNSORTED_TIMES";
+    case Code::no_solution:
+      return "NO_SOLUTION";
+    default:
+      return "UNKNOWN";
+  }
+}
+
+std::string TrajectoryError::message() const {
+  std::string place = line == 0 ? "" : "line " + std::to_string(line);
+  if (!column.empty()) {
+    place += (place.empty() ? "" : ", ") + column;
+  }
+  return place + (place.empty() ? "" : ": ") + problem + "; expected " + expected;
+}
+
+TrajectoryResult<void> check_within(std::string_view column, double value, double lowest, double highest) {
+  const std::string range = number_text(lowest) + " to " + number_text(highest);
+  if (!std::isfinite(value)) {
+    return tl::unexpected(
+        TrajectoryError{Code::not_finite, 0, std::string(column), "not a finite number", range});
+  }
+  if (value < lowest || value > highest) {
+    return tl::unexpected(TrajectoryError{Code::out_of_range, 0, std::string(column),
+                                          number_text(value) + " is out of range", range});
+  }
+  return {};
+}
+
+std::string number_text(double number) {
+  std::array<char, 32> text{};
+  const std::to_chars_result end =
+      std::to_chars(text.data(), text.data() + text.size(), number, std::chars_format::general, 12);
+  return {text.data(), end.ptr};
+}
+
+}  // namespace interlock

@@ -1,0 +1,82 @@
+"""`interlock trajectory check`: a file in, one JSON object out."""
+
+import json
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import pytest
+from bare_kernel import BIN, DEADLINE_S
+from test_run import DONE, PRECONDITION, REFUSED, USAGE
+
+GOOD = "time [s],yaw [rad],insertion [mm],insertion [mm/s]\n0,-0.5,10,0\n2,-0.7,14,0\n"
+
+
+def check(*arguments: str | Path, robot: str = "neuro") -> tuple[int, dict[str, Any] | None, str]:
+    """Exit code, answer and message of one run."""
+    command = [str(part) for part in (BIN / "interlock", "trajectory", "check", "--robot", robot, *arguments)]
+    run = subprocess.run(command, capture_output=True, text=True, timeout=DEADLINE_S)
+    return run.returncode, json.loads(run.stdout) if run.stdout else None, run.stderr
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    path = tmp_path / "trajectory.csv"
+    path.write_text(GOOD)
+    return path
+
+
+def test_a_good_trajectory_is_told_with_its_reach(file: Path) -> None:
+    code, answer, message = check(file)
+    assert (code, message) == (DONE, "")
+    assert answer is not None
+    assert (answer["rows"], answer["duration_s"]) == (2, 2.0)
+    assert answer["axes"]["yaw"] == {
+        "unit": "rad",
+        "lowest": -0.7,
+        "highest": -0.5,
+        "top_speed": pytest.approx(0.1),
+    }
+    assert answer["axes"]["insertion"]["top_speed"] == pytest.approx(3.0)
+
+
+def test_a_bad_row_is_refused_by_line_and_column(file: Path) -> None:
+    file.write_text(GOOD + "3,-0.7,nan,0\n")
+    code, answer, message = check(file)
+    assert code == REFUSED
+    assert answer is not None
+    error = answer["error"]
+    assert (error["code"], error["line"], error["column"]) == ("NOT_FINITE", 4, "insertion [mm]")
+    assert error["text"] in message
+
+
+def test_an_axis_of_another_robot_is_refused(file: Path) -> None:
+    code, answer, _ = check(file, robot="prostate")
+    assert code == REFUSED
+    assert answer is not None
+    assert (answer["error"]["code"], answer["error"]["column"]) == ("UNKNOWN_AXIS", "yaw [rad]")
+
+
+def test_a_limit_of_velocity_comes_from_the_command_line(file: Path) -> None:
+    assert check("--max-velocity", "yaw=0.1", "--max-velocity", "insertion=3", file)[0] == DONE
+    code, answer, _ = check("--max-velocity", "insertion=2.9", file)
+    assert code == REFUSED
+    assert answer is not None
+    assert (answer["error"]["code"], answer["error"]["line"]) == ("TOO_FAST", 3)
+    assert check("--max-velocity", "insertion", file)[0] == USAGE
+
+
+def test_a_million_rows_are_refused_unread(file: Path) -> None:
+    file.write_text("time [s],yaw [rad]\n" + "not a row\n" * 1_000_000)
+    code, answer, _ = check(file)
+    assert code == REFUSED
+    assert answer is not None
+    assert answer["error"]["code"] == "TOO_LARGE"
+    assert answer["error"]["line"] is None
+
+
+def test_a_file_that_is_not_there_stands_in_the_way(tmp_path: Path) -> None:
+    for path in (tmp_path / "none.csv", tmp_path):
+        code, answer, message = check(path)
+        assert (code, answer) == (PRECONDITION, None)
+        assert "cannot be read" in message
