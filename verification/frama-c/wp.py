@@ -26,7 +26,7 @@ PROVE = [
     *("-wp-prover", "z3,cvc4", "-wp-timeout", "20", "-wp-par", "1"),
 ]
 SMOKE_TEST = ["-then", "-wp", "-wp-smoke-tests", "-wp-prover=-cvc4"]
-SMOKE_TEST += ["-wp-steps", "1000000", "-wp-smoke-timeout", "20"]
+SMOKE_TEST += ["-wp-steps", "300000", "-wp-smoke-timeout", "2"]
 """A second run, of the smoke tests alone: one that passes takes all that a prover may take. Hence Z3 alone,
 bounded in its own steps, which are the same on every machine. WP forgets between runs what to prove."""
 SMOKE = "_wp_smoke_"
