@@ -41,6 +41,30 @@ void ilk_pedal_disarm(ilk_state_t *state);
 bool ilk_cause_is_present(const ilk_state_t *state);
 
 /** Phase 3: pedal, E-stop, age of the app, overruns. */
+/*@ requires valid: \valid_read(config) && \valid(state) && \valid_read(in);
+  @ requires apart: \separated(state, config) && \separated(state, in);
+  @ assigns  state->link_generation, state->last_sequence, state->app_age_ticks, state->app_alive, state->pedal,
+  @          state->pedal_disagree_ticks, state->pedal_released_ticks, state->pedal_pressed_ticks,
+  @          state->overruns_in_row, state->overruns, state->estop;
+  @ ensures  P2_estop: state->estop == (\old(in->estop_loop_closed) == 1 ? 0 : 1);
+  @ ensures  P2_pedal: state->pedal == \old(pedal_reading(config, in));
+  @ ensures  P10_silence: state->app_alive == (state->app_age_ticks < \old(config->app_timeout_ticks) ? 1 : 0);
+  @ ensures  P10_age: state->app_age_ticks == (\old(in->link_generation) == \old(state->link_generation)
+  @   ? \min(\old(state->app_age_ticks) + 1, UINT32_MAX) : UINT32_MAX);
+  @ ensures  P9_release: state->pedal_released_ticks ==
+  @   (state->pedal == ILK_PEDAL_RELEASED && state->mode == ILK_MODE_READY && state->app_alive != 0
+  @     ? \min(\old(state->pedal_released_ticks) + 1, \old(config->pedal_debounce_ticks)) : 0);
+  @ ensures  P9_press: state->pedal_pressed_ticks == (state->pedal == ILK_PEDAL_PRESSED && state->pedal_armed != 0
+  @   ? \min(\old(state->pedal_pressed_ticks) + 1, \old(config->pedal_debounce_ticks)) : 0);
+  @ ensures  disagreement: state->pedal_disagree_ticks == (state->pedal == ILK_PEDAL_DISAGREE
+  @   ? \min(\old(state->pedal_disagree_ticks) + 1, UINT32_MAX) : 0);
+  @ ensures  overruns_in_row: state->overruns_in_row ==
+  @   (\old(in->deadline_missed) != 0 ? \min(\old(state->overruns_in_row) + 1, UINT32_MAX) : 0);
+  @ ensures  overruns: state->overruns == (\old(in->deadline_missed) != 0
+  @   ? \min(\old(state->overruns) + 1, UINT32_MAX) : \old(state->overruns));
+  @ ensures  attachment: state->link_generation == \old(in->link_generation) && state->last_sequence ==
+  @   (\old(in->link_generation) == \old(state->link_generation) ? \old(state->last_sequence) : 0);
+  @*/
 void ilk_observe_system(const ilk_config_t *config, ilk_state_t *state, const ilk_inputs_t *in);
 
 /** Phase 5: at most one transition per rule of the mode table. */
