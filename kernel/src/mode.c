@@ -12,18 +12,76 @@ void ilk_pedal_disarm(ilk_state_t *state) {
   state->pedal_released_ticks = 0u;
 }
 
+/*@ requires valid: \valid(axis);
+  @ assigns  axis->state, axis->setpoint_counts, axis->drive, axis->amplitude, axis->lease_ticks,
+  @          axis->homing_phase, axis->setpoint_changed, axis->press_travel_counts;
+  @ ensures  P12_no_leap: axis->homing_phase == ILK_HOMING_NONE && axis->drive == 0 && axis->amplitude == 0
+  @   && axis->lease_ticks == 0 && axis->setpoint_counts == 0;
+  @ ensures  P8_latch: axis->state == state_entering(mode, \old(axis->state));
+  @ ensures  P7_travel: axis->press_travel_counts == (mode == ILK_MODE_MOTION ? 0 : \old(axis->press_travel_counts));
+  @ ensures  P5_stall: axis->setpoint_changed ==
+  @   (axis->stall_driven_ticks != 0 ? 1 : \old(axis->setpoint_changed));
+  @*/
+static void enter_axis(ilk_axis_t *axis, ilk_mode_t mode) {
+  ilk_axis_drop_motion(axis);
+  if (mode == ILK_MODE_LOCKED) {
+    ilk_axis_disable(axis);
+  }
+  if (mode == ILK_MODE_MOTION) {
+    axis->press_travel_counts = 0;
+  }
+}
+
+/*@ requires valid: \valid(state);
+  @ assigns  state->axis[0 .. ILK_SLOTS - 1].state, state->axis[0 .. ILK_SLOTS - 1].setpoint_counts,
+  @          state->axis[0 .. ILK_SLOTS - 1].drive, state->axis[0 .. ILK_SLOTS - 1].amplitude,
+  @          state->axis[0 .. ILK_SLOTS - 1].lease_ticks, state->axis[0 .. ILK_SLOTS - 1].homing_phase,
+  @          state->axis[0 .. ILK_SLOTS - 1].setpoint_changed, state->axis[0 .. ILK_SLOTS - 1].press_travel_counts;
+  @ ensures  P12_no_leap: all_quiet(state);
+  @ ensures  P8_latch: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   state->axis[slot].state == state_entering(mode, \old(state->axis[slot].state));
+  @ ensures  P7_travel: \forall integer slot; 0 <= slot < ILK_SLOTS ==> state->axis[slot].press_travel_counts ==
+  @   (mode == ILK_MODE_MOTION ? 0 : \old(state->axis[slot].press_travel_counts));
+  @ ensures  P5_stall: \forall integer slot; 0 <= slot < ILK_SLOTS ==> state->axis[slot].setpoint_changed ==
+  @   (state->axis[slot].stall_driven_ticks != 0 ? 1 : \old(state->axis[slot].setpoint_changed));
+  @*/
+static void enter_axes(ilk_state_t *state, ilk_mode_t mode) {
+  /*@ loop invariant range: 0 <= slot <= ILK_SLOTS;
+    @ loop invariant P12_homing: \forall integer done; 0 <= done < slot ==>
+    @   state->axis[done].homing_phase == ILK_HOMING_NONE && state->axis[done].lease_ticks == 0;
+    @ loop invariant P12_drive: \forall integer done; 0 <= done < slot ==>
+    @   state->axis[done].drive == 0 && state->axis[done].amplitude == 0;
+    @ loop invariant P12_setpoint: \forall integer done; 0 <= done < slot ==> state->axis[done].setpoint_counts == 0;
+    @ loop invariant P8_latch: \forall integer done; 0 <= done < slot ==>
+    @   state->axis[done].state == state_entering(mode, \at(state->axis[done].state, Pre));
+    @ loop invariant P7_travel: \forall integer done; 0 <= done < slot ==> state->axis[done].press_travel_counts ==
+    @   (mode == ILK_MODE_MOTION ? 0 : \at(state->axis[done].press_travel_counts, Pre));
+    @ loop invariant P5_stall: \forall integer done; 0 <= done < slot ==> state->axis[done].setpoint_changed ==
+    @   (state->axis[done].stall_driven_ticks != 0 ? 1 : \at(state->axis[done].setpoint_changed, Pre));
+    @ loop invariant unchanged: \forall integer left; slot <= left < ILK_SLOTS ==>
+    @   state->axis[left].state == \at(state->axis[left].state, Pre);
+    @ loop invariant left: \forall integer left; slot <= left < ILK_SLOTS ==>
+    @   state->axis[left].press_travel_counts == \at(state->axis[left].press_travel_counts, Pre)
+    @   && state->axis[left].setpoint_changed == \at(state->axis[left].setpoint_changed, Pre);
+    @ loop assigns slot, state->axis[0 .. ILK_SLOTS - 1].state, state->axis[0 .. ILK_SLOTS - 1].setpoint_counts,
+    @      state->axis[0 .. ILK_SLOTS - 1].drive, state->axis[0 .. ILK_SLOTS - 1].amplitude,
+    @      state->axis[0 .. ILK_SLOTS - 1].lease_ticks, state->axis[0 .. ILK_SLOTS - 1].homing_phase,
+    @      state->axis[0 .. ILK_SLOTS - 1].setpoint_changed, state->axis[0 .. ILK_SLOTS - 1].press_travel_counts;
+    @ loop variant ILK_SLOTS - slot;
+    @*/
+  for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
+    enter_axis(&state->axis[slot], mode);
+    /*@ assert P8_latch: \forall integer now; now == slot ==>
+      @   state->axis[now].state == state_entering(mode, \at(state->axis[now].state, Pre)); */
+    /*@ assert P8_before: \forall integer done; 0 <= done < slot ==>
+      @   state->axis[done].state == \at(state->axis[done].state, LoopCurrent); */
+  }
+}
+
 void ilk_mode_enter(ilk_state_t *state, ilk_mode_t mode) {
+  enter_axes(state, mode);
   state->mode = (uint32_t)mode;
   ilk_pedal_disarm(state);
-  for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
-    ilk_axis_drop_motion(&state->axis[slot]);
-    if (mode == ILK_MODE_LOCKED) {
-      ilk_axis_disable(&state->axis[slot]);
-    }
-    if (mode == ILK_MODE_MOTION) {
-      state->axis[slot].press_travel_counts = 0;
-    }
-  }
 }
 
 void ilk_mode_lock(ilk_state_t *state, ilk_cause_t cause, uint32_t value) {

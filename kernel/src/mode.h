@@ -19,6 +19,23 @@ typedef struct {
 } ilk_alarms_t;
 
 /** Enters `mode` and drops what does not survive the change. */
+/*@ requires valid: \valid(state);
+  @ assigns  state->mode, state->pedal_armed, state->pedal_pressed_ticks, state->pedal_released_ticks,
+  @          state->axis[0 .. ILK_SLOTS - 1].state, state->axis[0 .. ILK_SLOTS - 1].setpoint_counts,
+  @          state->axis[0 .. ILK_SLOTS - 1].drive, state->axis[0 .. ILK_SLOTS - 1].amplitude,
+  @          state->axis[0 .. ILK_SLOTS - 1].lease_ticks, state->axis[0 .. ILK_SLOTS - 1].homing_phase,
+  @          state->axis[0 .. ILK_SLOTS - 1].setpoint_changed, state->axis[0 .. ILK_SLOTS - 1].press_travel_counts;
+  @ ensures  mode: state->mode == mode;
+  @ ensures  P9_consent: state->pedal_armed == 0 && state->pedal_pressed_ticks == 0
+  @   && state->pedal_released_ticks == 0;
+  @ ensures  P12_no_leap: all_quiet(state);
+  @ ensures  P8_latch: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   state->axis[slot].state == state_entering(mode, \old(state->axis[slot].state));
+  @ ensures  P7_travel: \forall integer slot; 0 <= slot < ILK_SLOTS ==> state->axis[slot].press_travel_counts ==
+  @   (mode == ILK_MODE_MOTION ? 0 : \old(state->axis[slot].press_travel_counts));
+  @ ensures  P5_stall: \forall integer slot; 0 <= slot < ILK_SLOTS ==> state->axis[slot].setpoint_changed ==
+  @   (state->axis[slot].stall_driven_ticks != 0 ? 1 : \old(state->axis[slot].setpoint_changed));
+  @*/
 void ilk_mode_enter(ilk_state_t *state, ilk_mode_t mode);
 
 /** LOCKED with this cause, or one more cause in the list of those seen. */

@@ -195,6 +195,13 @@
   @     (\at(state->axis[slot].state, After) == ILK_AXIS_FAULTED
   @      <==> \at(state->axis[slot].state, Before) == ILK_AXIS_FAULTED);
   @
+  @ // P8, P12: the state in which entering a mode leaves an axis that was in another. A fault stays.
+  @ logic integer state_entering(integer mode, integer state) =
+  @   state == ILK_AXIS_FAULTED                                ? ILK_AXIS_FAULTED
+  @   : mode == ILK_MODE_LOCKED                                ? ILK_AXIS_DISABLED
+  @   : state == ILK_AXIS_MOVING || state == ILK_AXIS_HOMING ? ILK_AXIS_ENABLED
+  @                                                            : state;
+  @
   @ // P8: the cause that locked, its tick and its value.
   @ predicate cause_kept{Before, After}(ilk_state_t *state) =
   @   \at(state->cause, After) == \at(state->cause, Before)
