@@ -32,18 +32,47 @@ static void enter_axis(ilk_axis_t *axis, ilk_mode_t mode) {
   }
 }
 
+/** The axis of one slot, and no other. */
+/*@ requires valid: \valid(state) && slot < ILK_SLOTS;
+  @ assigns  state->axis[0 .. ILK_SLOTS - 1];
+  @ ensures  P12_no_leap: quiet(&state->axis[slot]);
+  @ ensures  P8_latch: state->axis[slot].state == state_entering(mode, \old(state->axis[slot].state));
+  @ ensures  P7_travel: state->axis[slot].press_travel_counts ==
+  @   (mode == ILK_MODE_MOTION ? 0 : \old(state->axis[slot].press_travel_counts));
+  @ ensures  P5_stall: state->axis[slot].setpoint_changed ==
+  @   (\old(state->axis[slot].stall_driven_ticks) != 0 ? 1 : \old(state->axis[slot].setpoint_changed));
+  @ ensures  P8_faults: fault_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P4_place: place_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P5_progress: progress_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P6_marks: marks_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  motion_below: \forall integer other; 0 <= other < slot ==> motion_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  P8_faults_below: \forall integer other; 0 <= other < slot ==> fault_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  P4_place_below: \forall integer other; 0 <= other < slot ==> place_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  P5_progress_below: \forall integer other; 0 <= other < slot ==> progress_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  P6_marks_below: \forall integer other; 0 <= other < slot ==> marks_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  motion_above: \forall integer other; slot < other < ILK_SLOTS ==> motion_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  P8_faults_above: \forall integer other; slot < other < ILK_SLOTS ==> fault_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  P4_place_above: \forall integer other; slot < other < ILK_SLOTS ==> place_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  P5_progress_above: \forall integer other; slot < other < ILK_SLOTS ==> progress_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  P6_marks_above: \forall integer other; slot < other < ILK_SLOTS ==> marks_kept{Pre, Post}(&state->axis[other]);
+  @*/
+static void enter_slot(ilk_state_t *state, uint32_t slot, ilk_mode_t mode) {
+  enter_axis(&state->axis[slot], mode);
+}
+
 /*@ requires valid: \valid(state);
-  @ assigns  state->axis[0 .. ILK_SLOTS - 1].state, state->axis[0 .. ILK_SLOTS - 1].setpoint_counts,
-  @          state->axis[0 .. ILK_SLOTS - 1].drive, state->axis[0 .. ILK_SLOTS - 1].amplitude,
-  @          state->axis[0 .. ILK_SLOTS - 1].lease_ticks, state->axis[0 .. ILK_SLOTS - 1].homing_phase,
-  @          state->axis[0 .. ILK_SLOTS - 1].setpoint_changed, state->axis[0 .. ILK_SLOTS - 1].press_travel_counts;
+  @ assigns  state->axis[0 .. ILK_SLOTS - 1];
   @ ensures  P12_no_leap: all_quiet(state);
   @ ensures  P8_latch: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
   @   state->axis[slot].state == state_entering(mode, \old(state->axis[slot].state));
   @ ensures  P7_travel: \forall integer slot; 0 <= slot < ILK_SLOTS ==> state->axis[slot].press_travel_counts ==
   @   (mode == ILK_MODE_MOTION ? 0 : \old(state->axis[slot].press_travel_counts));
   @ ensures  P5_stall: \forall integer slot; 0 <= slot < ILK_SLOTS ==> state->axis[slot].setpoint_changed ==
-  @   (state->axis[slot].stall_driven_ticks != 0 ? 1 : \old(state->axis[slot].setpoint_changed));
+  @   (\old(state->axis[slot].stall_driven_ticks) != 0 ? 1 : \old(state->axis[slot].setpoint_changed));
+  @ ensures  P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==> fault_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==> place_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==> progress_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==> marks_kept{Pre, Post}(&state->axis[slot]);
   @*/
 static void enter_axes(ilk_state_t *state, ilk_mode_t mode) {
   /*@ loop invariant range: 0 <= slot <= ILK_SLOTS;
@@ -57,24 +86,21 @@ static void enter_axes(ilk_state_t *state, ilk_mode_t mode) {
     @ loop invariant P7_travel: \forall integer done; 0 <= done < slot ==> state->axis[done].press_travel_counts ==
     @   (mode == ILK_MODE_MOTION ? 0 : \at(state->axis[done].press_travel_counts, Pre));
     @ loop invariant P5_stall: \forall integer done; 0 <= done < slot ==> state->axis[done].setpoint_changed ==
-    @   (state->axis[done].stall_driven_ticks != 0 ? 1 : \at(state->axis[done].setpoint_changed, Pre));
+    @   (\at(state->axis[done].stall_driven_ticks, Pre) != 0 ? 1 : \at(state->axis[done].setpoint_changed, Pre));
     @ loop invariant unchanged: \forall integer left; slot <= left < ILK_SLOTS ==>
     @   state->axis[left].state == \at(state->axis[left].state, Pre);
     @ loop invariant left: \forall integer left; slot <= left < ILK_SLOTS ==>
     @   state->axis[left].press_travel_counts == \at(state->axis[left].press_travel_counts, Pre)
     @   && state->axis[left].setpoint_changed == \at(state->axis[left].setpoint_changed, Pre);
-    @ loop assigns slot, state->axis[0 .. ILK_SLOTS - 1].state, state->axis[0 .. ILK_SLOTS - 1].setpoint_counts,
-    @      state->axis[0 .. ILK_SLOTS - 1].drive, state->axis[0 .. ILK_SLOTS - 1].amplitude,
-    @      state->axis[0 .. ILK_SLOTS - 1].lease_ticks, state->axis[0 .. ILK_SLOTS - 1].homing_phase,
-    @      state->axis[0 .. ILK_SLOTS - 1].setpoint_changed, state->axis[0 .. ILK_SLOTS - 1].press_travel_counts;
+    @ loop invariant P8_faults: \forall integer any; 0 <= any < ILK_SLOTS ==> fault_kept{Pre, Here}(&state->axis[any]);
+    @ loop invariant P4_place: \forall integer any; 0 <= any < ILK_SLOTS ==> place_kept{Pre, Here}(&state->axis[any]);
+    @ loop invariant P5_progress: \forall integer any; 0 <= any < ILK_SLOTS ==> progress_kept{Pre, Here}(&state->axis[any]);
+    @ loop invariant P6_marks: \forall integer any; 0 <= any < ILK_SLOTS ==> marks_kept{Pre, Here}(&state->axis[any]);
+    @ loop assigns slot, state->axis[0 .. ILK_SLOTS - 1];
     @ loop variant ILK_SLOTS - slot;
     @*/
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
-    enter_axis(&state->axis[slot], mode);
-    /*@ assert P8_latch: \forall integer now; now == slot ==>
-      @   state->axis[now].state == state_entering(mode, \at(state->axis[now].state, Pre)); */
-    /*@ assert P8_before: \forall integer done; 0 <= done < slot ==>
-      @   state->axis[done].state == \at(state->axis[done].state, LoopCurrent); */
+    enter_slot(state, slot, mode);
   }
 }
 
@@ -85,6 +111,12 @@ void ilk_mode_enter(ilk_state_t *state, ilk_mode_t mode) {
 }
 
 void ilk_mode_lock(ilk_state_t *state, ilk_cause_t cause, uint32_t value) {
+  /*@ assert boot: cause == ILK_CAUSE_BOOT ==> (1 << cause) == 2; */
+  /*@ assert estop: cause == ILK_CAUSE_ESTOP ==> (1 << cause) == 4; */
+  /*@ assert bus: cause == ILK_CAUSE_BUS ==> (1 << cause) == 8; */
+  /*@ assert pedal: cause == ILK_CAUSE_PEDAL ==> (1 << cause) == 16; */
+  /*@ assert integrity: cause == ILK_CAUSE_INTEGRITY ==> (1 << cause) == 32; */
+  /*@ assert overrun: cause == ILK_CAUSE_OVERRUN ==> (1 << cause) == 64; */
   if (state->mode != (uint32_t)ILK_MODE_LOCKED) {
     state->cause = (uint32_t)cause;
     state->cause_tick = state->tick;

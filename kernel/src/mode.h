@@ -21,10 +21,7 @@ typedef struct {
 /** Enters `mode` and drops what does not survive the change. */
 /*@ requires valid: \valid(state);
   @ assigns  state->mode, state->pedal_armed, state->pedal_pressed_ticks, state->pedal_released_ticks,
-  @          state->axis[0 .. ILK_SLOTS - 1].state, state->axis[0 .. ILK_SLOTS - 1].setpoint_counts,
-  @          state->axis[0 .. ILK_SLOTS - 1].drive, state->axis[0 .. ILK_SLOTS - 1].amplitude,
-  @          state->axis[0 .. ILK_SLOTS - 1].lease_ticks, state->axis[0 .. ILK_SLOTS - 1].homing_phase,
-  @          state->axis[0 .. ILK_SLOTS - 1].setpoint_changed, state->axis[0 .. ILK_SLOTS - 1].press_travel_counts;
+  @          state->axis[0 .. ILK_SLOTS - 1];
   @ ensures  mode: state->mode == mode;
   @ ensures  P9_consent: state->pedal_armed == 0 && state->pedal_pressed_ticks == 0
   @   && state->pedal_released_ticks == 0;
@@ -34,11 +31,36 @@ typedef struct {
   @ ensures  P7_travel: \forall integer slot; 0 <= slot < ILK_SLOTS ==> state->axis[slot].press_travel_counts ==
   @   (mode == ILK_MODE_MOTION ? 0 : \old(state->axis[slot].press_travel_counts));
   @ ensures  P5_stall: \forall integer slot; 0 <= slot < ILK_SLOTS ==> state->axis[slot].setpoint_changed ==
-  @   (state->axis[slot].stall_driven_ticks != 0 ? 1 : \old(state->axis[slot].setpoint_changed));
+  @   (\old(state->axis[slot].stall_driven_ticks) != 0 ? 1 : \old(state->axis[slot].setpoint_changed));
+  @ ensures  P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==> fault_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==> place_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==> progress_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==> marks_kept{Pre, Post}(&state->axis[slot]);
   @*/
 void ilk_mode_enter(ilk_state_t *state, ilk_mode_t mode);
 
 /** LOCKED with this cause, or one more cause in the list of those seen. */
+/*@ requires valid: \valid(state);
+  @ requires cause: ILK_CAUSE_NONE < cause < ILK_CAUSE_COUNT;
+  @ assigns  state->mode, state->cause, state->cause_tick, state->cause_value, state->causes_seen,
+  @          state->pedal_armed, state->pedal_pressed_ticks, state->pedal_released_ticks,
+  @          state->axis[0 .. ILK_SLOTS - 1];
+  @ ensures  P2_stop: state->mode == ILK_MODE_LOCKED;
+  @ ensures  P8_first_cause: \old(state->mode) != ILK_MODE_LOCKED ==>
+  @   state->cause == cause && state->cause_tick == state->tick && state->cause_value == value;
+  @ ensures  P8_latch: \old(state->mode) == ILK_MODE_LOCKED ==> cause_kept{Pre, Post}(state);
+  @ ensures  P8_listed: state->causes_seen == (\old(state->causes_seen) | (1 << cause));
+  @ ensures  P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==> fault_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==> place_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==> progress_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==> marks_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P8_states: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   state->axis[slot].state == (\old(state->mode) == ILK_MODE_LOCKED ? \old(state->axis[slot].state)
+  @     : state_entering(ILK_MODE_LOCKED, \old(state->axis[slot].state)));
+  @ ensures  P9_consent: \old(state->mode) != ILK_MODE_LOCKED ==> state->pedal_armed == 0
+  @   && state->pedal_pressed_ticks == 0 && state->pedal_released_ticks == 0;
+  @ ensures  P12_no_leap: \old(state->mode) != ILK_MODE_LOCKED ==> all_quiet(state);
+  @*/
 void ilk_mode_lock(ilk_state_t *state, ilk_cause_t cause, uint32_t value);
 
 /** Takes back the consent that the pedal gave: it must be released and pressed anew. */
