@@ -105,9 +105,14 @@ static void enter_axes(ilk_state_t *state, ilk_mode_t mode) {
 }
 
 void ilk_mode_enter(ilk_state_t *state, ilk_mode_t mode) {
-  enter_axes(state, mode);
   state->mode = (uint32_t)mode;
   ilk_pedal_disarm(state);
+  /*@ assert motion: \forall integer slot; 0 <= slot < ILK_SLOTS ==> motion_kept{Pre, Here}(&state->axis[slot]); */
+  /*@ assert P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==> fault_kept{Pre, Here}(&state->axis[slot]); */
+  /*@ assert P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==> place_kept{Pre, Here}(&state->axis[slot]); */
+  /*@ assert P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==> progress_kept{Pre, Here}(&state->axis[slot]); */
+  /*@ assert P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==> marks_kept{Pre, Here}(&state->axis[slot]); */
+  enter_axes(state, mode);
 }
 
 void ilk_mode_lock(ilk_state_t *state, ilk_cause_t cause, uint32_t value) {

@@ -54,11 +54,13 @@ void ilk_mode_enter(ilk_state_t *state, ilk_mode_t mode);
   @ ensures  P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==> place_kept{Pre, Post}(&state->axis[slot]);
   @ ensures  P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==> progress_kept{Pre, Post}(&state->axis[slot]);
   @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==> marks_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P8_states: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-  @   state->axis[slot].state == (\old(state->mode) == ILK_MODE_LOCKED ? \old(state->axis[slot].state)
-  @     : state_entering(ILK_MODE_LOCKED, \old(state->axis[slot].state)));
+  @ ensures  P8_states: \old(state->mode) != ILK_MODE_LOCKED ==> \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   state->axis[slot].state == state_entering(ILK_MODE_LOCKED, \old(state->axis[slot].state));
+  @ ensures  P8_still: \old(state->mode) == ILK_MODE_LOCKED ==> \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   motion_kept{Pre, Post}(&state->axis[slot]);
   @ ensures  P9_consent: \old(state->mode) != ILK_MODE_LOCKED ==> state->pedal_armed == 0
   @   && state->pedal_pressed_ticks == 0 && state->pedal_released_ticks == 0;
+  @ ensures  P9_still: \old(state->mode) == ILK_MODE_LOCKED ==> consent_kept{Pre, Post}(state);
   @ ensures  P12_no_leap: \old(state->mode) != ILK_MODE_LOCKED ==> all_quiet(state);
   @*/
 void ilk_mode_lock(ilk_state_t *state, ilk_cause_t cause, uint32_t value);

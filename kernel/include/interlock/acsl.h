@@ -245,6 +245,12 @@
   @   : state == ILK_AXIS_MOVING || state == ILK_AXIS_HOMING ? ILK_AXIS_ENABLED
   @                                                            : state;
   @
+  @ // P9: the consent that the pedal gave.
+  @ predicate consent_kept{Before, After}(ilk_state_t *state) =
+  @   \at(state->pedal_armed, After) == \at(state->pedal_armed, Before)
+  @   && \at(state->pedal_pressed_ticks, After) == \at(state->pedal_pressed_ticks, Before)
+  @   && \at(state->pedal_released_ticks, After) == \at(state->pedal_released_ticks, Before);
+  @
   @ // P8: the cause that locked, its tick and its value.
   @ predicate cause_kept{Before, After}(ilk_state_t *state) =
   @   \at(state->cause, After) == \at(state->cause, Before)
