@@ -137,6 +137,36 @@ static void apply_move(ilk_axis_t *axis, const ilk_request_t *request) {
   axis->lease_ticks = request->lease_ticks;
 }
 
+/*@ requires valid: \valid_read(config) && \valid(axis) && \valid_read(request);
+  @ requires apart: \separated(axis, config) && \separated(axis, request);
+  @ requires accepted: suits_axis(axis, request);
+  @ requires sound: sound_axis(axis);
+  @ assigns  axis->state, axis->fault, axis->fault_tick, axis->fault_value, axis->homed, axis->position_counts,
+  @          axis->setpoint_counts, axis->drive, axis->amplitude, axis->lease_ticks, axis->stall_driven_ticks,
+  @          axis->setpoint_changed, axis->homing_phase, axis->homing_ticks, axis->homing_mark_raw, axis->rest_ticks;
+  @ ensures  P15_invariant: sound_axis(axis);
+  @ ensures  P8_latch: \old(request->kind) != ILK_REQUEST_CLEAR_FAULT ==> axis->fault == \old(axis->fault)
+  @   && axis->fault_tick == \old(axis->fault_tick) && axis->fault_value == \old(axis->fault_value);
+  @ ensures  P8_cleared: \old(request->kind) == ILK_REQUEST_CLEAR_FAULT ==>
+  @   axis->state == ILK_AXIS_DISABLED && axis->fault == ILK_FAULT_NONE;
+  @ ensures  disabled: \old(request->kind) == ILK_REQUEST_DISABLE ==> quiet(axis) && axis->state ==
+  @   (\old(axis->state) == ILK_AXIS_FAULTED ? ILK_AXIS_FAULTED : ILK_AXIS_DISABLED);
+  @ ensures  enabled: \old(request->kind) == ILK_REQUEST_ENABLE ==> axis->state ==
+  @   (\old(axis->state) == ILK_AXIS_DISABLED ? ILK_AXIS_ENABLED : \old(axis->state));
+  @ ensures  moved: axis->state == ILK_AXIS_MOVING ==>
+  @   \old(request->kind) == ILK_REQUEST_MOVE || \old(axis->state) == ILK_AXIS_MOVING;
+  @ ensures  P7_drive: \old(request->kind) == ILK_REQUEST_MOVE ==> axis->state == ILK_AXIS_MOVING
+  @   && axis->setpoint_counts == \old(request->target_counts) && axis->drive == \old(request->drive)
+  @   && axis->amplitude == \old(request->amplitude) && axis->lease_ticks == \old(request->lease_ticks);
+  @ ensures  P7_homing: \old(request->kind) == ILK_REQUEST_HOME ==>
+  @   axis->state == ILK_AXIS_HOMING && axis->homed == 0 && axis->lease_ticks == 0;
+  @ ensures  P4_position: axis->position_counts == (\old(request->kind) == ILK_REQUEST_SET_HOME ? 0
+  @   : \old(request->kind) == ILK_REQUEST_RESTORE ? \old(request->target_counts) : \old(axis->position_counts));
+  @ ensures  P4_homed: axis->homed == (\old(request->kind) == ILK_REQUEST_SET_HOME ? 1
+  @   : \old(request->kind) == ILK_REQUEST_RESTORE || \old(request->kind) == ILK_REQUEST_HOME ? 0 : \old(axis->homed));
+  @ ensures  P5_stall: axis->stall_driven_ticks == (\old(request->kind) == ILK_REQUEST_CLEAR_FAULT
+  @   && \old(axis->fault) == ILK_FAULT_STALL ? 0 : \old(axis->stall_driven_ticks));
+  @*/
 static void apply_to_axis(const ilk_axis_config_t *config, ilk_axis_t *axis, const ilk_request_t *request) {
   switch (request->kind) {
     case (uint32_t)ILK_REQUEST_DISABLE:

@@ -317,6 +317,15 @@
   @       &config->axis[request->axis], state, &state->axis[request->axis], request->target_counts));
   @*/
 
+/*@ // What acceptance says of the axis that a request names.
+  @ predicate suits_axis(ilk_axis_t *axis, ilk_request_t *request) =
+  @   (request->kind == ILK_REQUEST_CLEAR_FAULT ==> axis->state == ILK_AXIS_FAULTED)
+  @   && (request->kind == ILK_REQUEST_MOVE || request->kind == ILK_REQUEST_HOME ==>
+  @       axis->state == ILK_AXIS_ENABLED || axis->state == ILK_AXIS_MOVING)
+  @   && (request->kind == ILK_REQUEST_MOVE ==> request->lease_ticks != 0)
+  @   && (request->kind == ILK_REQUEST_SET_HOME ==> axis->state != ILK_AXIS_HOMING);
+  @*/
+
 /* The output gate. */
 
 /*@ // P1: what must hold now for any drive: on the side of the system ...
