@@ -12,21 +12,116 @@ void ilk_pedal_disarm(ilk_state_t *state) {
   state->pedal_released_ticks = 0u;
 }
 
-void ilk_mode_enter(ilk_state_t *state, ilk_mode_t mode) {
-  state->mode = (uint32_t)mode;
-  ilk_pedal_disarm(state);
-  for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
-    ilk_axis_drop_motion(&state->axis[slot]);
-    if (mode == ILK_MODE_LOCKED) {
-      ilk_axis_disable(&state->axis[slot]);
-    }
-    if (mode == ILK_MODE_MOTION) {
-      state->axis[slot].press_travel_counts = 0;
-    }
+/*@ requires valid: \valid(axis);
+  @ assigns  axis->state, axis->setpoint_counts, axis->drive, axis->amplitude, axis->lease_ticks,
+  @          axis->homing_phase, axis->setpoint_changed, axis->press_travel_counts;
+  @ ensures  P12_no_leap: axis->homing_phase == ILK_HOMING_NONE && axis->drive == 0 && axis->amplitude == 0
+  @   && axis->lease_ticks == 0 && axis->setpoint_counts == 0;
+  @ ensures  P8_latch: axis->state == state_entering(mode, \old(axis->state));
+  @ ensures  P7_travel: axis->press_travel_counts == (mode == ILK_MODE_MOTION ? 0 : \old(axis->press_travel_counts));
+  @ ensures  P5_stall: axis->setpoint_changed ==
+  @   (axis->stall_driven_ticks != 0 ? 1 : \old(axis->setpoint_changed));
+  @*/
+static void enter_axis(ilk_axis_t *axis, ilk_mode_t mode) {
+  ilk_axis_drop_motion(axis);
+  if (mode == ILK_MODE_LOCKED) {
+    ilk_axis_disable(axis);
+  }
+  if (mode == ILK_MODE_MOTION) {
+    axis->press_travel_counts = 0;
   }
 }
 
+/** The axis of one slot, and no other. */
+/*@ requires valid: \valid(state) && slot < ILK_SLOTS;
+  @ assigns  state->axis[0 .. ILK_SLOTS - 1];
+  @ ensures  P12_no_leap: quiet(&state->axis[slot]);
+  @ ensures  P8_latch: state->axis[slot].state == state_entering(mode, \old(state->axis[slot].state));
+  @ ensures  P7_travel: state->axis[slot].press_travel_counts ==
+  @   (mode == ILK_MODE_MOTION ? 0 : \old(state->axis[slot].press_travel_counts));
+  @ ensures  P5_stall: state->axis[slot].setpoint_changed ==
+  @   (\old(state->axis[slot].stall_driven_ticks) != 0 ? 1 : \old(state->axis[slot].setpoint_changed));
+  @ ensures  P8_faults: fault_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P4_place: place_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P5_progress: progress_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P6_marks: marks_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  motion_below: \forall integer other; 0 <= other < slot ==> motion_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  P8_faults_below: \forall integer other; 0 <= other < slot ==> fault_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  P4_place_below: \forall integer other; 0 <= other < slot ==> place_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  P5_progress_below: \forall integer other; 0 <= other < slot ==> progress_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  P6_marks_below: \forall integer other; 0 <= other < slot ==> marks_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  motion_above: \forall integer other; slot < other < ILK_SLOTS ==> motion_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  P8_faults_above: \forall integer other; slot < other < ILK_SLOTS ==> fault_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  P4_place_above: \forall integer other; slot < other < ILK_SLOTS ==> place_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  P5_progress_above: \forall integer other; slot < other < ILK_SLOTS ==> progress_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  P6_marks_above: \forall integer other; slot < other < ILK_SLOTS ==> marks_kept{Pre, Post}(&state->axis[other]);
+  @*/
+static void enter_slot(ilk_state_t *state, uint32_t slot, ilk_mode_t mode) {
+  enter_axis(&state->axis[slot], mode);
+}
+
+/*@ requires valid: \valid(state);
+  @ assigns  state->axis[0 .. ILK_SLOTS - 1];
+  @ ensures  P12_no_leap: all_quiet(state);
+  @ ensures  P8_latch: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   state->axis[slot].state == state_entering(mode, \old(state->axis[slot].state));
+  @ ensures  P7_travel: \forall integer slot; 0 <= slot < ILK_SLOTS ==> state->axis[slot].press_travel_counts ==
+  @   (mode == ILK_MODE_MOTION ? 0 : \old(state->axis[slot].press_travel_counts));
+  @ ensures  P5_stall: \forall integer slot; 0 <= slot < ILK_SLOTS ==> state->axis[slot].setpoint_changed ==
+  @   (\old(state->axis[slot].stall_driven_ticks) != 0 ? 1 : \old(state->axis[slot].setpoint_changed));
+  @ ensures  P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==> fault_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==> place_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==> progress_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==> marks_kept{Pre, Post}(&state->axis[slot]);
+  @*/
+static void enter_axes(ilk_state_t *state, ilk_mode_t mode) {
+  /*@ loop invariant range: 0 <= slot <= ILK_SLOTS;
+    @ loop invariant P12_homing: \forall integer done; 0 <= done < slot ==>
+    @   state->axis[done].homing_phase == ILK_HOMING_NONE && state->axis[done].lease_ticks == 0;
+    @ loop invariant P12_drive: \forall integer done; 0 <= done < slot ==>
+    @   state->axis[done].drive == 0 && state->axis[done].amplitude == 0;
+    @ loop invariant P12_setpoint: \forall integer done; 0 <= done < slot ==> state->axis[done].setpoint_counts == 0;
+    @ loop invariant P8_latch: \forall integer done; 0 <= done < slot ==>
+    @   state->axis[done].state == state_entering(mode, \at(state->axis[done].state, Pre));
+    @ loop invariant P7_travel: \forall integer done; 0 <= done < slot ==> state->axis[done].press_travel_counts ==
+    @   (mode == ILK_MODE_MOTION ? 0 : \at(state->axis[done].press_travel_counts, Pre));
+    @ loop invariant P5_stall: \forall integer done; 0 <= done < slot ==> state->axis[done].setpoint_changed ==
+    @   (\at(state->axis[done].stall_driven_ticks, Pre) != 0 ? 1 : \at(state->axis[done].setpoint_changed, Pre));
+    @ loop invariant unchanged: \forall integer left; slot <= left < ILK_SLOTS ==>
+    @   state->axis[left].state == \at(state->axis[left].state, Pre);
+    @ loop invariant left: \forall integer left; slot <= left < ILK_SLOTS ==>
+    @   state->axis[left].press_travel_counts == \at(state->axis[left].press_travel_counts, Pre)
+    @   && state->axis[left].setpoint_changed == \at(state->axis[left].setpoint_changed, Pre);
+    @ loop invariant P8_faults: \forall integer any; 0 <= any < ILK_SLOTS ==> fault_kept{Pre, Here}(&state->axis[any]);
+    @ loop invariant P4_place: \forall integer any; 0 <= any < ILK_SLOTS ==> place_kept{Pre, Here}(&state->axis[any]);
+    @ loop invariant P5_progress: \forall integer any; 0 <= any < ILK_SLOTS ==> progress_kept{Pre, Here}(&state->axis[any]);
+    @ loop invariant P6_marks: \forall integer any; 0 <= any < ILK_SLOTS ==> marks_kept{Pre, Here}(&state->axis[any]);
+    @ loop assigns slot, state->axis[0 .. ILK_SLOTS - 1];
+    @ loop variant ILK_SLOTS - slot;
+    @*/
+  for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
+    enter_slot(state, slot, mode);
+  }
+}
+
+void ilk_mode_enter(ilk_state_t *state, ilk_mode_t mode) {
+  state->mode = (uint32_t)mode;
+  ilk_pedal_disarm(state);
+  /*@ assert motion: \forall integer slot; 0 <= slot < ILK_SLOTS ==> motion_kept{Pre, Here}(&state->axis[slot]); */
+  /*@ assert P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==> fault_kept{Pre, Here}(&state->axis[slot]); */
+  /*@ assert P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==> place_kept{Pre, Here}(&state->axis[slot]); */
+  /*@ assert P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==> progress_kept{Pre, Here}(&state->axis[slot]); */
+  /*@ assert P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==> marks_kept{Pre, Here}(&state->axis[slot]); */
+  enter_axes(state, mode);
+}
+
 void ilk_mode_lock(ilk_state_t *state, ilk_cause_t cause, uint32_t value) {
+  /*@ assert boot: cause == ILK_CAUSE_BOOT ==> (1 << cause) == 2; */
+  /*@ assert estop: cause == ILK_CAUSE_ESTOP ==> (1 << cause) == 4; */
+  /*@ assert bus: cause == ILK_CAUSE_BUS ==> (1 << cause) == 8; */
+  /*@ assert pedal: cause == ILK_CAUSE_PEDAL ==> (1 << cause) == 16; */
+  /*@ assert integrity: cause == ILK_CAUSE_INTEGRITY ==> (1 << cause) == 32; */
+  /*@ assert overrun: cause == ILK_CAUSE_OVERRUN ==> (1 << cause) == 64; */
   if (state->mode != (uint32_t)ILK_MODE_LOCKED) {
     state->cause = (uint32_t)cause;
     state->cause_tick = state->tick;
@@ -61,27 +156,49 @@ static ilk_pedal_t pedal_reading(const ilk_config_t *config, const ilk_inputs_t 
   return pedal;
 }
 
-static void observe_pedal(const ilk_config_t *config, ilk_state_t *state, const ilk_inputs_t *in) {
-  const ilk_pedal_t pedal = pedal_reading(config, in);
-  const bool may_arm = (state->mode == (uint32_t)ILK_MODE_READY) && (state->app_alive != 0u);
-  state->pedal = (uint32_t)pedal;
-  state->pedal_disagree_ticks =
-      (pedal == ILK_PEDAL_DISAGREE) ? count_up(state->pedal_disagree_ticks, UINT32_MAX) : 0u;
-  state->pedal_released_ticks = ((pedal == ILK_PEDAL_RELEASED) && may_arm)
-                                    ? count_up(state->pedal_released_ticks, config->pedal_debounce_ticks)
-                                    : 0u;
-  state->pedal_pressed_ticks = ((pedal == ILK_PEDAL_PRESSED) && (state->pedal_armed != 0u))
-                                   ? count_up(state->pedal_pressed_ticks, config->pedal_debounce_ticks)
-                                   : 0u;
+/** How long a condition has held, when so far it had for `ticks`. */
+/*@ assigns \nothing;
+  @ ensures exact: \result == (holds ? \min(ticks + 1, ceiling) : 0);
+  @*/
+static uint32_t ticks_in_row(bool holds, uint32_t ticks, uint32_t ceiling) {
+  uint32_t next = 0u;
+  if (holds) {
+    next = count_up(ticks, ceiling);
+  }
+  return next;
 }
 
-/*@ requires valid: \valid_read(config) && \valid(state) && \valid_read(in) && \separated(config, state, in);
+/*@ requires valid: \valid(state);
+  @ assigns  state->pedal, state->pedal_disagree_ticks, state->pedal_released_ticks, state->pedal_pressed_ticks;
+  @ ensures  P2_pedal: state->pedal == pedal;
+  @ ensures  disagreement: state->pedal_disagree_ticks == (state->pedal == ILK_PEDAL_DISAGREE
+  @   ? \min(\old(state->pedal_disagree_ticks) + 1, UINT32_MAX) : 0);
+  @ ensures  P9_release: state->pedal_released_ticks ==
+  @   (state->pedal == ILK_PEDAL_RELEASED && state->mode == ILK_MODE_READY && state->app_alive != 0
+  @     ? \min(\old(state->pedal_released_ticks) + 1, debounce_ticks) : 0);
+  @ ensures  P9_press: state->pedal_pressed_ticks == (state->pedal == ILK_PEDAL_PRESSED && state->pedal_armed != 0
+  @   ? \min(\old(state->pedal_pressed_ticks) + 1, debounce_ticks) : 0);
+  @*/
+static void observe_pedal(ilk_state_t *state, ilk_pedal_t pedal, uint32_t debounce_ticks) {
+  const bool may_arm = (state->mode == (uint32_t)ILK_MODE_READY) && (state->app_alive != 0u);
+  const bool armed = state->pedal_armed != 0u;
+  state->pedal = (uint32_t)pedal;
+  state->pedal_disagree_ticks =
+      ticks_in_row(pedal == ILK_PEDAL_DISAGREE, state->pedal_disagree_ticks, UINT32_MAX);
+  state->pedal_released_ticks =
+      ticks_in_row((pedal == ILK_PEDAL_RELEASED) && may_arm, state->pedal_released_ticks, debounce_ticks);
+  state->pedal_pressed_ticks =
+      ticks_in_row((pedal == ILK_PEDAL_PRESSED) && armed, state->pedal_pressed_ticks, debounce_ticks);
+}
+
+/*@ requires valid: \valid_read(config) && \valid(state) && \valid_read(in);
+  @ requires apart: \separated(state, config) && \separated(state, in);
   @ assigns  state->link_generation, state->last_sequence, state->app_age_ticks, state->app_alive;
-  @ ensures  P10_silence: state->app_alive == (state->app_age_ticks < config->app_timeout_ticks ? 1 : 0);
-  @ ensures  P10_age: state->app_age_ticks == (in->link_generation == \old(state->link_generation)
+  @ ensures  P10_silence: state->app_alive == (state->app_age_ticks < \old(config->app_timeout_ticks) ? 1 : 0);
+  @ ensures  P10_age: state->app_age_ticks == (\old(in->link_generation) == \old(state->link_generation)
   @   ? \min(\old(state->app_age_ticks) + 1, UINT32_MAX) : UINT32_MAX);
-  @ ensures  attachment: state->link_generation == in->link_generation && state->last_sequence ==
-  @   (in->link_generation == \old(state->link_generation) ? \old(state->last_sequence) : 0);
+  @ ensures  attachment: state->link_generation == \old(in->link_generation) && state->last_sequence ==
+  @   (\old(in->link_generation) == \old(state->link_generation) ? \old(state->last_sequence) : 0);
   @*/
 static void observe_app(const ilk_config_t *config, ilk_state_t *state, const ilk_inputs_t *in) {
   if (in->link_generation != state->link_generation) {
@@ -93,35 +210,50 @@ static void observe_app(const ilk_config_t *config, ilk_state_t *state, const il
   state->app_alive = flag_of(state->app_age_ticks < config->app_timeout_ticks);
 }
 
-/*@ requires valid: \valid(state) && \valid_read(in) && \separated(state, in);
+/*@ requires valid: \valid(state);
   @ assigns  state->overruns_in_row, state->overruns;
-  @ ensures  in_row: state->overruns_in_row ==
-  @   (in->deadline_missed != 0 ? \min(\old(state->overruns_in_row) + 1, UINT32_MAX) : 0);
-  @ ensures  ever: state->overruns == (in->deadline_missed != 0
-  @   ? \min(\old(state->overruns) + 1, UINT32_MAX) : \old(state->overruns));
+  @ ensures  in_row: state->overruns_in_row == (missed ? \min(\old(state->overruns_in_row) + 1, UINT32_MAX) : 0);
+  @ ensures  ever: state->overruns ==
+  @   (missed ? \min(\old(state->overruns) + 1, UINT32_MAX) : \old(state->overruns));
   @*/
-static void observe_deadline(ilk_state_t *state, const ilk_inputs_t *in) {
-  if (in->deadline_missed != 0u) {
-    state->overruns_in_row = count_up(state->overruns_in_row, UINT32_MAX);
+static void observe_deadline(ilk_state_t *state, bool missed) {
+  state->overruns_in_row = ticks_in_row(missed, state->overruns_in_row, UINT32_MAX);
+  if (missed) {
     state->overruns = count_up(state->overruns, UINT32_MAX);
-  } else {
-    state->overruns_in_row = 0u;
   }
 }
 
+/** The inputs are read before anything is written. */
 void ilk_observe_system(const ilk_config_t *config, ilk_state_t *state, const ilk_inputs_t *in) {
-  observe_app(config, state, in);
-  observe_pedal(config, state, in);
-  observe_deadline(state, in);
+  const ilk_pedal_t pedal = pedal_reading(config, in);
+  const uint32_t debounce_ticks = config->pedal_debounce_ticks;
+  const bool missed = in->deadline_missed != 0u;
   state->estop = flag_of(in->estop_loop_closed != CLOSED);
+  observe_app(config, state, in);
+  observe_pedal(state, pedal, debounce_ticks);
+  observe_deadline(state, missed);
 }
 
+/** The contacts as read: normally open in bit 0, normally closed in bit 1. */
+/*@ requires readable: \valid_read(in);
+  @ assigns  \nothing;
+  @ ensures  exact: \result == (in->pedal_no_closed != 0 ? 1 : 0) + (in->pedal_nc_closed != 0 ? 2 : 0);
+  @*/
 static uint32_t contacts(const ilk_inputs_t *in) {
-  return ((in->pedal_no_closed == OPEN) ? 0u : 1u) | ((in->pedal_nc_closed == OPEN) ? 0u : 2u);
+  return ((in->pedal_no_closed == OPEN) ? 0u : 1u) + ((in->pedal_nc_closed == OPEN) ? 0u : 2u);
 }
 
 /** A damaged configuration may have counted the wrong way until it was found. */
+/*@ requires valid: \valid(state);
+  @ assigns  state->axis[0 .. ILK_SLOTS - 1].homed;
+  @ ensures  P14_references: \forall integer slot; 0 <= slot < ILK_SLOTS ==> state->axis[slot].homed == 0;
+  @*/
 static void lose_references(ilk_state_t *state) {
+  /*@ loop invariant range: 0 <= slot <= ILK_SLOTS;
+    @ loop invariant lost: \forall integer done; 0 <= done < slot ==> state->axis[done].homed == 0;
+    @ loop assigns slot, state->axis[0 .. ILK_SLOTS - 1].homed;
+    @ loop variant ILK_SLOTS - slot;
+    @*/
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
     state->axis[slot].homed = 0u;
   }

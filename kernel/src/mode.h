@@ -19,9 +19,50 @@ typedef struct {
 } ilk_alarms_t;
 
 /** Enters `mode` and drops what does not survive the change. */
+/*@ requires valid: \valid(state);
+  @ assigns  state->mode, state->pedal_armed, state->pedal_pressed_ticks, state->pedal_released_ticks,
+  @          state->axis[0 .. ILK_SLOTS - 1];
+  @ ensures  mode: state->mode == mode;
+  @ ensures  P9_consent: state->pedal_armed == 0 && state->pedal_pressed_ticks == 0
+  @   && state->pedal_released_ticks == 0;
+  @ ensures  P12_no_leap: all_quiet(state);
+  @ ensures  P8_latch: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   state->axis[slot].state == state_entering(mode, \old(state->axis[slot].state));
+  @ ensures  P7_travel: \forall integer slot; 0 <= slot < ILK_SLOTS ==> state->axis[slot].press_travel_counts ==
+  @   (mode == ILK_MODE_MOTION ? 0 : \old(state->axis[slot].press_travel_counts));
+  @ ensures  P5_stall: \forall integer slot; 0 <= slot < ILK_SLOTS ==> state->axis[slot].setpoint_changed ==
+  @   (\old(state->axis[slot].stall_driven_ticks) != 0 ? 1 : \old(state->axis[slot].setpoint_changed));
+  @ ensures  P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==> fault_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==> place_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==> progress_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==> marks_kept{Pre, Post}(&state->axis[slot]);
+  @*/
 void ilk_mode_enter(ilk_state_t *state, ilk_mode_t mode);
 
 /** LOCKED with this cause, or one more cause in the list of those seen. */
+/*@ requires valid: \valid(state);
+  @ requires cause: ILK_CAUSE_NONE < cause < ILK_CAUSE_COUNT;
+  @ assigns  state->mode, state->cause, state->cause_tick, state->cause_value, state->causes_seen,
+  @          state->pedal_armed, state->pedal_pressed_ticks, state->pedal_released_ticks,
+  @          state->axis[0 .. ILK_SLOTS - 1];
+  @ ensures  P2_stop: state->mode == ILK_MODE_LOCKED;
+  @ ensures  P8_first_cause: \old(state->mode) != ILK_MODE_LOCKED ==>
+  @   state->cause == cause && state->cause_tick == state->tick && state->cause_value == value;
+  @ ensures  P8_latch: \old(state->mode) == ILK_MODE_LOCKED ==> cause_kept{Pre, Post}(state);
+  @ ensures  P8_listed: state->causes_seen == (\old(state->causes_seen) | (1 << cause));
+  @ ensures  P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==> fault_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==> place_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==> progress_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==> marks_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P8_states: \old(state->mode) != ILK_MODE_LOCKED ==> \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   state->axis[slot].state == state_entering(ILK_MODE_LOCKED, \old(state->axis[slot].state));
+  @ ensures  P8_still: \old(state->mode) == ILK_MODE_LOCKED ==> \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   motion_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P9_consent: \old(state->mode) != ILK_MODE_LOCKED ==> state->pedal_armed == 0
+  @   && state->pedal_pressed_ticks == 0 && state->pedal_released_ticks == 0;
+  @ ensures  P9_still: \old(state->mode) == ILK_MODE_LOCKED ==> consent_kept{Pre, Post}(state);
+  @ ensures  P12_no_leap: \old(state->mode) != ILK_MODE_LOCKED ==> all_quiet(state);
+  @*/
 void ilk_mode_lock(ilk_state_t *state, ilk_cause_t cause, uint32_t value);
 
 /** Takes back the consent that the pedal gave: it must be released and pressed anew. */
@@ -41,6 +82,30 @@ void ilk_pedal_disarm(ilk_state_t *state);
 bool ilk_cause_is_present(const ilk_state_t *state);
 
 /** Phase 3: pedal, E-stop, age of the app, overruns. */
+/*@ requires valid: \valid_read(config) && \valid(state) && \valid_read(in);
+  @ requires apart: \separated(state, config) && \separated(state, in);
+  @ assigns  state->link_generation, state->last_sequence, state->app_age_ticks, state->app_alive, state->pedal,
+  @          state->pedal_disagree_ticks, state->pedal_released_ticks, state->pedal_pressed_ticks,
+  @          state->overruns_in_row, state->overruns, state->estop;
+  @ ensures  P2_estop: state->estop == (\old(in->estop_loop_closed) == 1 ? 0 : 1);
+  @ ensures  P2_pedal: state->pedal == \old(pedal_reading(config, in));
+  @ ensures  P10_silence: state->app_alive == (state->app_age_ticks < \old(config->app_timeout_ticks) ? 1 : 0);
+  @ ensures  P10_age: state->app_age_ticks == (\old(in->link_generation) == \old(state->link_generation)
+  @   ? \min(\old(state->app_age_ticks) + 1, UINT32_MAX) : UINT32_MAX);
+  @ ensures  P9_release: state->pedal_released_ticks ==
+  @   (state->pedal == ILK_PEDAL_RELEASED && state->mode == ILK_MODE_READY && state->app_alive != 0
+  @     ? \min(\old(state->pedal_released_ticks) + 1, \old(config->pedal_debounce_ticks)) : 0);
+  @ ensures  P9_press: state->pedal_pressed_ticks == (state->pedal == ILK_PEDAL_PRESSED && state->pedal_armed != 0
+  @   ? \min(\old(state->pedal_pressed_ticks) + 1, \old(config->pedal_debounce_ticks)) : 0);
+  @ ensures  disagreement: state->pedal_disagree_ticks == (state->pedal == ILK_PEDAL_DISAGREE
+  @   ? \min(\old(state->pedal_disagree_ticks) + 1, UINT32_MAX) : 0);
+  @ ensures  overruns_in_row: state->overruns_in_row ==
+  @   (\old(in->deadline_missed) != 0 ? \min(\old(state->overruns_in_row) + 1, UINT32_MAX) : 0);
+  @ ensures  overruns: state->overruns == (\old(in->deadline_missed) != 0
+  @   ? \min(\old(state->overruns) + 1, UINT32_MAX) : \old(state->overruns));
+  @ ensures  attachment: state->link_generation == \old(in->link_generation) && state->last_sequence ==
+  @   (\old(in->link_generation) == \old(state->link_generation) ? \old(state->last_sequence) : 0);
+  @*/
 void ilk_observe_system(const ilk_config_t *config, ilk_state_t *state, const ilk_inputs_t *in);
 
 /** Phase 5: at most one transition per rule of the mode table. */

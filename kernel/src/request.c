@@ -5,6 +5,27 @@
 #include "homing.h"
 #include "mode.h"
 
+/** A new holder finds no consent and no motion. */
+/*@ requires valid: \valid(state);
+  @ assigns  state->app_age_ticks, state->holder, state->mode, state->pedal_armed, state->pedal_pressed_ticks,
+  @          state->pedal_released_ticks, state->axis[0 .. ILK_SLOTS - 1];
+  @ ensures  P10_silence: state->app_age_ticks == 0;
+  @ ensures  holder: state->holder == holder;
+  @ ensures  P9_consent: \old(state->holder) != holder ==> state->mode != ILK_MODE_MOTION && state->pedal_armed == 0
+  @   && state->pedal_pressed_ticks == 0 && state->pedal_released_ticks == 0;
+  @ ensures  P9_still: \old(state->holder) == holder ==> consent_kept{Pre, Post}(state);
+  @ ensures  P8_latch: state->mode == (\old(state->holder) != holder && \old(state->mode) == ILK_MODE_MOTION
+  @   ? ILK_MODE_READY : \old(state->mode));
+  @ ensures  P12_no_leap: state->mode != \old(state->mode) ==> all_quiet(state);
+  @ ensures  P8_still: state->mode == \old(state->mode) ==> \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   motion_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P8_states: state->mode != \old(state->mode) ==> \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   state->axis[slot].state == state_entering(ILK_MODE_READY, \old(state->axis[slot].state));
+  @ ensures  P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==> fault_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==> place_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==> progress_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==> marks_kept{Pre, Post}(&state->axis[slot]);
+  @*/
 static void apply_heartbeat(ilk_state_t *state, uint32_t holder) {
   state->app_age_ticks = 0u;
   if (state->holder != holder) {
@@ -16,12 +37,45 @@ static void apply_heartbeat(ilk_state_t *state, uint32_t holder) {
   }
 }
 
+/*@ requires valid: \valid(state);
+  @ assigns  state->mode, state->pedal_armed, state->pedal_pressed_ticks,
+  @          state->pedal_released_ticks, state->axis[0 .. ILK_SLOTS - 1];
+  @ ensures  P2_stop: state->mode == (\old(state->mode) == ILK_MODE_MOTION ? ILK_MODE_READY : \old(state->mode));
+  @ ensures  P9_consent: \old(state->mode) == ILK_MODE_MOTION ==> state->pedal_armed == 0
+  @   && state->pedal_pressed_ticks == 0 && state->pedal_released_ticks == 0;
+  @ ensures  P9_still: \old(state->mode) != ILK_MODE_MOTION ==> consent_kept{Pre, Post}(state);
+  @ ensures  P12_no_leap: \old(state->mode) == ILK_MODE_MOTION ==> all_quiet(state);
+  @ ensures  P8_still: \old(state->mode) != ILK_MODE_MOTION ==> \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   motion_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P8_states: \old(state->mode) == ILK_MODE_MOTION ==> \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   state->axis[slot].state == state_entering(ILK_MODE_READY, \old(state->axis[slot].state));
+  @ ensures  P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==> fault_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==> place_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==> progress_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==> marks_kept{Pre, Post}(&state->axis[slot]);
+  @*/
 static void apply_stop(ilk_state_t *state) {
   if (state->mode == (uint32_t)ILK_MODE_MOTION) {
     ilk_mode_enter(state, ILK_MODE_READY);
   }
 }
 
+/*@ requires valid: \valid(state);
+  @ assigns  state->cause, state->cause_tick, state->cause_value, state->causes_seen, state->mode,
+  @          state->pedal_armed, state->pedal_pressed_ticks,
+  @          state->pedal_released_ticks, state->axis[0 .. ILK_SLOTS - 1];
+  @ ensures  P8_latch: state->mode == ILK_MODE_READY && state->cause == ILK_CAUSE_NONE && state->cause_tick == 0
+  @   && state->cause_value == 0 && state->causes_seen == 0;
+  @ ensures  P9_consent: state->pedal_armed == 0 && state->pedal_pressed_ticks == 0
+  @   && state->pedal_released_ticks == 0;
+  @ ensures  P12_no_leap: all_quiet(state);
+  @ ensures  P8_states: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   state->axis[slot].state == state_entering(ILK_MODE_READY, \old(state->axis[slot].state));
+  @ ensures  P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==> fault_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==> place_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==> progress_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==> marks_kept{Pre, Post}(&state->axis[slot]);
+  @*/
 static void apply_reset(ilk_state_t *state) {
   state->cause = (uint32_t)ILK_CAUSE_NONE;
   state->cause_tick = 0u;
@@ -30,6 +84,10 @@ static void apply_reset(ilk_state_t *state) {
   ilk_mode_enter(state, ILK_MODE_READY);
 }
 
+/*@ requires valid: \valid(axis);
+  @ assigns  axis->state;
+  @ ensures  exact: axis->state == (\old(axis->state) == ILK_AXIS_DISABLED ? ILK_AXIS_ENABLED : \old(axis->state));
+  @*/
 static void apply_enable(ilk_axis_t *axis) {
   if (axis->state == (uint32_t)ILK_AXIS_DISABLED) {
     axis->state = (uint32_t)ILK_AXIS_ENABLED;
@@ -37,6 +95,16 @@ static void apply_enable(ilk_axis_t *axis) {
 }
 
 /** The stall count starts anew only after a stall: no other fault excuses an axis that makes no progress. */
+/*@ requires valid: \valid(axis);
+  @ assigns  axis->state, axis->fault, axis->fault_tick, axis->fault_value, axis->stall_driven_ticks,
+  @          axis->setpoint_changed;
+  @ ensures  P8_latch: axis->state == ILK_AXIS_DISABLED && axis->fault == ILK_FAULT_NONE && axis->fault_tick == 0
+  @   && axis->fault_value == 0;
+  @ ensures  P5_stall: axis->stall_driven_ticks ==
+  @   (\old(axis->fault) == ILK_FAULT_STALL ? 0 : \old(axis->stall_driven_ticks));
+  @ ensures  P5_setpoint: axis->setpoint_changed ==
+  @   (\old(axis->fault) == ILK_FAULT_STALL ? 0 : \old(axis->setpoint_changed));
+  @*/
 static void apply_clear_fault(ilk_axis_t *axis) {
   if (axis->fault == (uint32_t)ILK_FAULT_STALL) {
     axis->stall_driven_ticks = 0u;
@@ -48,6 +116,16 @@ static void apply_clear_fault(ilk_axis_t *axis) {
   axis->fault_value = 0;
 }
 
+/*@ requires valid: \valid(axis) && \valid_read(request) && \separated(axis, request);
+  @ assigns  axis->state, axis->setpoint_counts, axis->drive, axis->amplitude, axis->lease_ticks,
+  @          axis->setpoint_changed;
+  @ ensures  move: axis->state == ILK_AXIS_MOVING && axis->setpoint_counts == \old(request->target_counts);
+  @ ensures  P7_drive: axis->drive == \old(request->drive) && axis->amplitude == \old(request->amplitude);
+  @ ensures  P1_lease: axis->lease_ticks == \old(request->lease_ticks);
+  @ ensures  P5_stall: axis->setpoint_changed ==
+  @   (\old(axis->setpoint_counts) != \old(request->target_counts) && \old(axis->stall_driven_ticks) != 0
+  @     ? 1 : \old(axis->setpoint_changed));
+  @*/
 static void apply_move(ilk_axis_t *axis, const ilk_request_t *request) {
   if ((axis->setpoint_counts != request->target_counts) && (axis->stall_driven_ticks != 0u)) {
     axis->setpoint_changed = 1u;
@@ -59,6 +137,36 @@ static void apply_move(ilk_axis_t *axis, const ilk_request_t *request) {
   axis->lease_ticks = request->lease_ticks;
 }
 
+/*@ requires valid: \valid_read(config) && \valid(axis) && \valid_read(request);
+  @ requires apart: \separated(axis, config) && \separated(axis, request);
+  @ requires accepted: suits_axis(axis, request);
+  @ requires sound: sound_axis(axis);
+  @ assigns  axis->state, axis->fault, axis->fault_tick, axis->fault_value, axis->homed, axis->position_counts,
+  @          axis->setpoint_counts, axis->drive, axis->amplitude, axis->lease_ticks, axis->stall_driven_ticks,
+  @          axis->setpoint_changed, axis->homing_phase, axis->homing_ticks, axis->homing_mark_raw, axis->rest_ticks;
+  @ ensures  P15_invariant: sound_axis(axis);
+  @ ensures  P8_latch: \old(request->kind) != ILK_REQUEST_CLEAR_FAULT ==> axis->fault == \old(axis->fault)
+  @   && axis->fault_tick == \old(axis->fault_tick) && axis->fault_value == \old(axis->fault_value);
+  @ ensures  P8_cleared: \old(request->kind) == ILK_REQUEST_CLEAR_FAULT ==>
+  @   axis->state == ILK_AXIS_DISABLED && axis->fault == ILK_FAULT_NONE;
+  @ ensures  disabled: \old(request->kind) == ILK_REQUEST_DISABLE ==> quiet(axis) && axis->state ==
+  @   (\old(axis->state) == ILK_AXIS_FAULTED ? ILK_AXIS_FAULTED : ILK_AXIS_DISABLED);
+  @ ensures  enabled: \old(request->kind) == ILK_REQUEST_ENABLE ==> axis->state ==
+  @   (\old(axis->state) == ILK_AXIS_DISABLED ? ILK_AXIS_ENABLED : \old(axis->state));
+  @ ensures  moved: axis->state == ILK_AXIS_MOVING ==>
+  @   \old(request->kind) == ILK_REQUEST_MOVE || \old(axis->state) == ILK_AXIS_MOVING;
+  @ ensures  P7_drive: \old(request->kind) == ILK_REQUEST_MOVE ==> axis->state == ILK_AXIS_MOVING
+  @   && axis->setpoint_counts == \old(request->target_counts) && axis->drive == \old(request->drive)
+  @   && axis->amplitude == \old(request->amplitude) && axis->lease_ticks == \old(request->lease_ticks);
+  @ ensures  P7_homing: \old(request->kind) == ILK_REQUEST_HOME ==>
+  @   axis->state == ILK_AXIS_HOMING && axis->homed == 0 && axis->lease_ticks == 0;
+  @ ensures  P4_position: axis->position_counts == (\old(request->kind) == ILK_REQUEST_SET_HOME ? 0
+  @   : \old(request->kind) == ILK_REQUEST_RESTORE ? \old(request->target_counts) : \old(axis->position_counts));
+  @ ensures  P4_homed: axis->homed == (\old(request->kind) == ILK_REQUEST_SET_HOME ? 1
+  @   : \old(request->kind) == ILK_REQUEST_RESTORE || \old(request->kind) == ILK_REQUEST_HOME ? 0 : \old(axis->homed));
+  @ ensures  P5_stall: axis->stall_driven_ticks == (\old(request->kind) == ILK_REQUEST_CLEAR_FAULT
+  @   && \old(axis->fault) == ILK_FAULT_STALL ? 0 : \old(axis->stall_driven_ticks));
+  @*/
 static void apply_to_axis(const ilk_axis_config_t *config, ilk_axis_t *axis, const ilk_request_t *request) {
   switch (request->kind) {
     case (uint32_t)ILK_REQUEST_DISABLE:

@@ -195,6 +195,62 @@
   @     (\at(state->axis[slot].state, After) == ILK_AXIS_FAULTED
   @      <==> \at(state->axis[slot].state, Before) == ILK_AXIS_FAULTED);
   @
+  @ // P8: the fault of an axis, when and with what it came, and the reference that it may have cost.
+  @ predicate fault_kept{Before, After}(ilk_axis_t *axis) =
+  @   \at(axis->fault, After) == \at(axis->fault, Before)
+  @   && \at(axis->fault_tick, After) == \at(axis->fault_tick, Before)
+  @   && \at(axis->fault_value, After) == \at(axis->fault_value, Before)
+  @   && \at(axis->homed, After) == \at(axis->homed, Before);
+  @
+  @ // P4, P16: where the axis stands, by what its card said.
+  @ predicate place_kept{Before, After}(ilk_axis_t *axis) =
+  @   \at(axis->position_counts, After) == \at(axis->position_counts, Before)
+  @   && \at(axis->raw, After) == \at(axis->raw, Before)
+  @   && \at(axis->delta_counts, After) == \at(axis->delta_counts, Before)
+  @   && \at(axis->switch_triggered, After) == \at(axis->switch_triggered, Before)
+  @   && \at(axis->card_valid, After) == \at(axis->card_valid, Before)
+  @   && \at(axis->card_seen, After) == \at(axis->card_seen, Before)
+  @   && \at(axis->bad_frames, After) == \at(axis->bad_frames, Before);
+  @
+  @ // P5: the count that ends in a stall, and from where progress is measured.
+  @ predicate progress_kept{Before, After}(ilk_axis_t *axis) =
+  @   \at(axis->stall_driven_ticks, After) == \at(axis->stall_driven_ticks, Before)
+  @   && \at(axis->stall_mark_raw, After) == \at(axis->stall_mark_raw, Before)
+  @   && \at(axis->stall_direction, After) == \at(axis->stall_direction, Before);
+  @
+  @ // P6: from where motion against the command and drift are measured.
+  @ predicate marks_kept{Before, After}(ilk_axis_t *axis) =
+  @   \at(axis->reverse_mark_raw, After) == \at(axis->reverse_mark_raw, Before)
+  @   && \at(axis->reverse_direction, After) == \at(axis->reverse_direction, Before)
+  @   && \at(axis->drift_mark_raw, After) == \at(axis->drift_mark_raw, Before)
+  @   && \at(axis->undriven_ticks, After) == \at(axis->undriven_ticks, Before)
+  @   && \at(axis->driven_direction, After) == \at(axis->driven_direction, Before)
+  @   && \at(axis->ticks_since_frame, After) == \at(axis->ticks_since_frame, Before);
+  @
+  @ // P12: what entering a mode may change.
+  @ predicate motion_kept{Before, After}(ilk_axis_t *axis) =
+  @   \at(axis->state, After) == \at(axis->state, Before)
+  @   && \at(axis->setpoint_counts, After) == \at(axis->setpoint_counts, Before)
+  @   && \at(axis->drive, After) == \at(axis->drive, Before)
+  @   && \at(axis->amplitude, After) == \at(axis->amplitude, Before)
+  @   && \at(axis->lease_ticks, After) == \at(axis->lease_ticks, Before)
+  @   && \at(axis->homing_phase, After) == \at(axis->homing_phase, Before)
+  @   && \at(axis->setpoint_changed, After) == \at(axis->setpoint_changed, Before)
+  @   && \at(axis->press_travel_counts, After) == \at(axis->press_travel_counts, Before);
+  @
+  @ // P8, P12: the state in which entering a mode leaves an axis that was in another. A fault stays.
+  @ logic integer state_entering(integer mode, integer state) =
+  @   state == ILK_AXIS_FAULTED                                ? ILK_AXIS_FAULTED
+  @   : mode == ILK_MODE_LOCKED                                ? ILK_AXIS_DISABLED
+  @   : state == ILK_AXIS_MOVING || state == ILK_AXIS_HOMING ? ILK_AXIS_ENABLED
+  @                                                            : state;
+  @
+  @ // P9: the consent that the pedal gave.
+  @ predicate consent_kept{Before, After}(ilk_state_t *state) =
+  @   \at(state->pedal_armed, After) == \at(state->pedal_armed, Before)
+  @   && \at(state->pedal_pressed_ticks, After) == \at(state->pedal_pressed_ticks, Before)
+  @   && \at(state->pedal_released_ticks, After) == \at(state->pedal_released_ticks, Before);
+  @
   @ // P8: the cause that locked, its tick and its value.
   @ predicate cause_kept{Before, After}(ilk_state_t *state) =
   @   \at(state->cause, After) == \at(state->cause, Before)
@@ -259,6 +315,15 @@
   @       declare_allowed(&config->axis[request->axis], state, &state->axis[request->axis], 0))
   @   && (request->kind == ILK_REQUEST_RESTORE ==> declare_allowed(
   @       &config->axis[request->axis], state, &state->axis[request->axis], request->target_counts));
+  @*/
+
+/*@ // What acceptance says of the axis that a request names.
+  @ predicate suits_axis(ilk_axis_t *axis, ilk_request_t *request) =
+  @   (request->kind == ILK_REQUEST_CLEAR_FAULT ==> axis->state == ILK_AXIS_FAULTED)
+  @   && (request->kind == ILK_REQUEST_MOVE || request->kind == ILK_REQUEST_HOME ==>
+  @       axis->state == ILK_AXIS_ENABLED || axis->state == ILK_AXIS_MOVING)
+  @   && (request->kind == ILK_REQUEST_MOVE ==> request->lease_ticks != 0)
+  @   && (request->kind == ILK_REQUEST_SET_HOME ==> axis->state != ILK_AXIS_HOMING);
   @*/
 
 /* The output gate. */
