@@ -27,8 +27,9 @@ ilk_verdict_t ilk_request_judge(const ilk_config_t *config, const ilk_state_t *s
   @ requires known: ILK_REQUEST_HEARTBEAT <= request->kind <= ILK_REQUEST_RESTORE;
   @ requires accepted: applicable(state, request);
   @ requires sound: names_axis(request->kind) ==> sound_axis(&state->axis[request->axis]);
-  @ assigns  state->app_age_ticks, state->holder, state->mode, state->cause, state->cause_tick, state->cause_value,
-  @          state->causes_seen, state->pedal_armed, state->pedal_pressed_ticks, state->pedal_released_ticks,
+  @ assigns  state->app_age_ticks, state->holder, state->mode, state->cause, state->cause_tick,
+  @          state->cause_value, state->causes_seen, state->pedal_armed,
+  @          state->pedal_pressed_ticks, state->pedal_released_ticks,
   @          state->axis[0 .. ILK_SLOTS - 1];
   @ ensures  P2_stop: \old(request->kind) == ILK_REQUEST_STOP ==> state->mode != ILK_MODE_MOTION;
   @ ensures  P8_latch: \old(state->mode) == ILK_MODE_LOCKED ==>
