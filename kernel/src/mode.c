@@ -18,7 +18,8 @@ void ilk_pedal_disarm(ilk_state_t *state) {
   @ ensures  P12_no_leap: axis->homing_phase == ILK_HOMING_NONE && axis->drive == 0 && axis->amplitude == 0
   @   && axis->lease_ticks == 0 && axis->setpoint_counts == 0;
   @ ensures  P8_latch: axis->state == state_entering(mode, \old(axis->state));
-  @ ensures  P7_travel: axis->press_travel_counts == (mode == ILK_MODE_MOTION ? 0 : \old(axis->press_travel_counts));
+  @ ensures  P7_travel: axis->press_travel_counts == (mode == ILK_MODE_MOTION ? 0
+  @   : \old(axis->press_travel_counts));
   @ ensures  P5_stall: axis->setpoint_changed ==
   @   (axis->stall_driven_ticks != 0 ? 1 : \old(axis->setpoint_changed));
   @*/
@@ -45,16 +46,26 @@ static void enter_axis(ilk_axis_t *axis, ilk_mode_t mode) {
   @ ensures  P4_place: place_kept{Pre, Post}(&state->axis[slot]);
   @ ensures  P5_progress: progress_kept{Pre, Post}(&state->axis[slot]);
   @ ensures  P6_marks: marks_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  motion_below: \forall integer other; 0 <= other < slot ==> motion_kept{Pre, Post}(&state->axis[other]);
-  @ ensures  P8_faults_below: \forall integer other; 0 <= other < slot ==> fault_kept{Pre, Post}(&state->axis[other]);
-  @ ensures  P4_place_below: \forall integer other; 0 <= other < slot ==> place_kept{Pre, Post}(&state->axis[other]);
-  @ ensures  P5_progress_below: \forall integer other; 0 <= other < slot ==> progress_kept{Pre, Post}(&state->axis[other]);
-  @ ensures  P6_marks_below: \forall integer other; 0 <= other < slot ==> marks_kept{Pre, Post}(&state->axis[other]);
-  @ ensures  motion_above: \forall integer other; slot < other < ILK_SLOTS ==> motion_kept{Pre, Post}(&state->axis[other]);
-  @ ensures  P8_faults_above: \forall integer other; slot < other < ILK_SLOTS ==> fault_kept{Pre, Post}(&state->axis[other]);
-  @ ensures  P4_place_above: \forall integer other; slot < other < ILK_SLOTS ==> place_kept{Pre, Post}(&state->axis[other]);
-  @ ensures  P5_progress_above: \forall integer other; slot < other < ILK_SLOTS ==> progress_kept{Pre, Post}(&state->axis[other]);
-  @ ensures  P6_marks_above: \forall integer other; slot < other < ILK_SLOTS ==> marks_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  motion_below: \forall integer other; 0 <= other < slot ==>
+  @   motion_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  P8_faults_below: \forall integer other; 0 <= other < slot ==>
+  @   fault_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  P4_place_below: \forall integer other; 0 <= other < slot ==>
+  @   place_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  P5_progress_below: \forall integer other; 0 <= other < slot ==>
+  @   progress_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  P6_marks_below: \forall integer other; 0 <= other < slot ==>
+  @   marks_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  motion_above: \forall integer other; slot < other < ILK_SLOTS ==>
+  @   motion_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  P8_faults_above: \forall integer other; slot < other < ILK_SLOTS ==>
+  @   fault_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  P4_place_above: \forall integer other; slot < other < ILK_SLOTS ==>
+  @   place_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  P5_progress_above: \forall integer other; slot < other < ILK_SLOTS ==>
+  @   progress_kept{Pre, Post}(&state->axis[other]);
+  @ ensures  P6_marks_above: \forall integer other; slot < other < ILK_SLOTS ==>
+  @   marks_kept{Pre, Post}(&state->axis[other]);
   @*/
 static void enter_slot(ilk_state_t *state, uint32_t slot, ilk_mode_t mode) {
   enter_axis(&state->axis[slot], mode);
@@ -65,14 +76,19 @@ static void enter_slot(ilk_state_t *state, uint32_t slot, ilk_mode_t mode) {
   @ ensures  P12_no_leap: all_quiet(state);
   @ ensures  P8_latch: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
   @   state->axis[slot].state == state_entering(mode, \old(state->axis[slot].state));
-  @ ensures  P7_travel: \forall integer slot; 0 <= slot < ILK_SLOTS ==> state->axis[slot].press_travel_counts ==
+  @ ensures  P7_travel: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   state->axis[slot].press_travel_counts ==
   @   (mode == ILK_MODE_MOTION ? 0 : \old(state->axis[slot].press_travel_counts));
   @ ensures  P5_stall: \forall integer slot; 0 <= slot < ILK_SLOTS ==> state->axis[slot].setpoint_changed ==
   @   (\old(state->axis[slot].stall_driven_ticks) != 0 ? 1 : \old(state->axis[slot].setpoint_changed));
-  @ ensures  P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==> fault_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==> place_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==> progress_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==> marks_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   fault_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   place_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   progress_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   marks_kept{Pre, Post}(&state->axis[slot]);
   @*/
 static void enter_axes(ilk_state_t *state, ilk_mode_t mode) {
   /*@ loop invariant range: 0 <= slot <= ILK_SLOTS;
@@ -80,22 +96,30 @@ static void enter_axes(ilk_state_t *state, ilk_mode_t mode) {
     @   state->axis[done].homing_phase == ILK_HOMING_NONE && state->axis[done].lease_ticks == 0;
     @ loop invariant P12_drive: \forall integer done; 0 <= done < slot ==>
     @   state->axis[done].drive == 0 && state->axis[done].amplitude == 0;
-    @ loop invariant P12_setpoint: \forall integer done; 0 <= done < slot ==> state->axis[done].setpoint_counts == 0;
+    @ loop invariant P12_setpoint: \forall integer done; 0 <= done < slot ==>
+    @   state->axis[done].setpoint_counts == 0;
     @ loop invariant P8_latch: \forall integer done; 0 <= done < slot ==>
     @   state->axis[done].state == state_entering(mode, \at(state->axis[done].state, Pre));
-    @ loop invariant P7_travel: \forall integer done; 0 <= done < slot ==> state->axis[done].press_travel_counts ==
+    @ loop invariant P7_travel: \forall integer done; 0 <= done < slot ==>
+    @   state->axis[done].press_travel_counts ==
     @   (mode == ILK_MODE_MOTION ? 0 : \at(state->axis[done].press_travel_counts, Pre));
-    @ loop invariant P5_stall: \forall integer done; 0 <= done < slot ==> state->axis[done].setpoint_changed ==
-    @   (\at(state->axis[done].stall_driven_ticks, Pre) != 0 ? 1 : \at(state->axis[done].setpoint_changed, Pre));
+    @ loop invariant P5_stall: \forall integer done; 0 <= done < slot ==>
+    @   state->axis[done].setpoint_changed ==
+    @   (\at(state->axis[done].stall_driven_ticks, Pre) != 0 ? 1
+    @   : \at(state->axis[done].setpoint_changed, Pre));
     @ loop invariant unchanged: \forall integer left; slot <= left < ILK_SLOTS ==>
     @   state->axis[left].state == \at(state->axis[left].state, Pre);
     @ loop invariant left: \forall integer left; slot <= left < ILK_SLOTS ==>
     @   state->axis[left].press_travel_counts == \at(state->axis[left].press_travel_counts, Pre)
     @   && state->axis[left].setpoint_changed == \at(state->axis[left].setpoint_changed, Pre);
-    @ loop invariant P8_faults: \forall integer any; 0 <= any < ILK_SLOTS ==> fault_kept{Pre, Here}(&state->axis[any]);
-    @ loop invariant P4_place: \forall integer any; 0 <= any < ILK_SLOTS ==> place_kept{Pre, Here}(&state->axis[any]);
-    @ loop invariant P5_progress: \forall integer any; 0 <= any < ILK_SLOTS ==> progress_kept{Pre, Here}(&state->axis[any]);
-    @ loop invariant P6_marks: \forall integer any; 0 <= any < ILK_SLOTS ==> marks_kept{Pre, Here}(&state->axis[any]);
+    @ loop invariant P8_faults: \forall integer any; 0 <= any < ILK_SLOTS ==>
+    @   fault_kept{Pre, Here}(&state->axis[any]);
+    @ loop invariant P4_place: \forall integer any; 0 <= any < ILK_SLOTS ==>
+    @   place_kept{Pre, Here}(&state->axis[any]);
+    @ loop invariant P5_progress: \forall integer any; 0 <= any < ILK_SLOTS ==>
+    @   progress_kept{Pre, Here}(&state->axis[any]);
+    @ loop invariant P6_marks: \forall integer any; 0 <= any < ILK_SLOTS ==>
+    @   marks_kept{Pre, Here}(&state->axis[any]);
     @ loop assigns slot, state->axis[0 .. ILK_SLOTS - 1];
     @ loop variant ILK_SLOTS - slot;
     @*/
@@ -107,11 +131,16 @@ static void enter_axes(ilk_state_t *state, ilk_mode_t mode) {
 void ilk_mode_enter(ilk_state_t *state, ilk_mode_t mode) {
   state->mode = (uint32_t)mode;
   ilk_pedal_disarm(state);
-  /*@ assert motion: \forall integer slot; 0 <= slot < ILK_SLOTS ==> motion_kept{Pre, Here}(&state->axis[slot]); */
-  /*@ assert P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==> fault_kept{Pre, Here}(&state->axis[slot]); */
-  /*@ assert P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==> place_kept{Pre, Here}(&state->axis[slot]); */
-  /*@ assert P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==> progress_kept{Pre, Here}(&state->axis[slot]); */
-  /*@ assert P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==> marks_kept{Pre, Here}(&state->axis[slot]); */
+  /*@ assert motion: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+    @   motion_kept{Pre, Here}(&state->axis[slot]); */
+  /*@ assert P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+    @   fault_kept{Pre, Here}(&state->axis[slot]); */
+  /*@ assert P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+    @   place_kept{Pre, Here}(&state->axis[slot]); */
+  /*@ assert P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+    @   progress_kept{Pre, Here}(&state->axis[slot]); */
+  /*@ assert P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+    @   marks_kept{Pre, Here}(&state->axis[slot]); */
   enter_axes(state, mode);
 }
 
@@ -169,14 +198,16 @@ static uint32_t ticks_in_row(bool holds, uint32_t ticks, uint32_t ceiling) {
 }
 
 /*@ requires valid: \valid(state);
-  @ assigns  state->pedal, state->pedal_disagree_ticks, state->pedal_released_ticks, state->pedal_pressed_ticks;
+  @ assigns  state->pedal, state->pedal_disagree_ticks, state->pedal_released_ticks,
+  @          state->pedal_pressed_ticks;
   @ ensures  P2_pedal: state->pedal == pedal;
   @ ensures  disagreement: state->pedal_disagree_ticks == (state->pedal == ILK_PEDAL_DISAGREE
   @   ? \min(\old(state->pedal_disagree_ticks) + 1, UINT32_MAX) : 0);
   @ ensures  P9_release: state->pedal_released_ticks ==
   @   (state->pedal == ILK_PEDAL_RELEASED && state->mode == ILK_MODE_READY && state->app_alive != 0
   @     ? \min(\old(state->pedal_released_ticks) + 1, debounce_ticks) : 0);
-  @ ensures  P9_press: state->pedal_pressed_ticks == (state->pedal == ILK_PEDAL_PRESSED && state->pedal_armed != 0
+  @ ensures  P9_press: state->pedal_pressed_ticks == (state->pedal == ILK_PEDAL_PRESSED
+  @   && state->pedal_armed != 0
   @   ? \min(\old(state->pedal_pressed_ticks) + 1, debounce_ticks) : 0);
   @*/
 static void observe_pedal(ilk_state_t *state, ilk_pedal_t pedal, uint32_t debounce_ticks) {
@@ -194,7 +225,8 @@ static void observe_pedal(ilk_state_t *state, ilk_pedal_t pedal, uint32_t deboun
 /*@ requires valid: \valid_read(config) && \valid(state) && \valid_read(in);
   @ requires apart: \separated(state, config) && \separated(state, in);
   @ assigns  state->link_generation, state->last_sequence, state->app_age_ticks, state->app_alive;
-  @ ensures  P10_silence: state->app_alive == (state->app_age_ticks < \old(config->app_timeout_ticks) ? 1 : 0);
+  @ ensures  P10_silence: state->app_alive == (state->app_age_ticks < \old(config->app_timeout_ticks) ? 1
+  @   : 0);
   @ ensures  P10_age: state->app_age_ticks == (\old(in->link_generation) == \old(state->link_generation)
   @   ? \min(\old(state->app_age_ticks) + 1, UINT32_MAX) : UINT32_MAX);
   @ ensures  attachment: state->link_generation == \old(in->link_generation) && state->last_sequence ==
@@ -212,7 +244,8 @@ static void observe_app(const ilk_config_t *config, ilk_state_t *state, const il
 
 /*@ requires valid: \valid(state);
   @ assigns  state->overruns_in_row, state->overruns;
-  @ ensures  in_row: state->overruns_in_row == (missed ? \min(\old(state->overruns_in_row) + 1, UINT32_MAX) : 0);
+  @ ensures  in_row: state->overruns_in_row == (missed
+  @   ? \min(\old(state->overruns_in_row) + 1, UINT32_MAX) : 0);
   @ ensures  ever: state->overruns ==
   @   (missed ? \min(\old(state->overruns) + 1, UINT32_MAX) : \old(state->overruns));
   @*/

@@ -28,14 +28,19 @@ typedef struct {
   @ ensures  P12_no_leap: all_quiet(state);
   @ ensures  P8_latch: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
   @   state->axis[slot].state == state_entering(mode, \old(state->axis[slot].state));
-  @ ensures  P7_travel: \forall integer slot; 0 <= slot < ILK_SLOTS ==> state->axis[slot].press_travel_counts ==
+  @ ensures  P7_travel: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   state->axis[slot].press_travel_counts ==
   @   (mode == ILK_MODE_MOTION ? 0 : \old(state->axis[slot].press_travel_counts));
   @ ensures  P5_stall: \forall integer slot; 0 <= slot < ILK_SLOTS ==> state->axis[slot].setpoint_changed ==
   @   (\old(state->axis[slot].stall_driven_ticks) != 0 ? 1 : \old(state->axis[slot].setpoint_changed));
-  @ ensures  P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==> fault_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==> place_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==> progress_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==> marks_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   fault_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   place_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   progress_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   marks_kept{Pre, Post}(&state->axis[slot]);
   @*/
 void ilk_mode_enter(ilk_state_t *state, ilk_mode_t mode);
 
@@ -50,13 +55,19 @@ void ilk_mode_enter(ilk_state_t *state, ilk_mode_t mode);
   @   state->cause == cause && state->cause_tick == state->tick && state->cause_value == value;
   @ ensures  P8_latch: \old(state->mode) == ILK_MODE_LOCKED ==> cause_kept{Pre, Post}(state);
   @ ensures  P8_listed: state->causes_seen == (\old(state->causes_seen) | (1 << cause));
-  @ ensures  P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==> fault_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==> place_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==> progress_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==> marks_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P8_states: \old(state->mode) != ILK_MODE_LOCKED ==> \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @ ensures  P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   fault_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   place_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   progress_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   marks_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P8_states: \old(state->mode) != ILK_MODE_LOCKED ==>
+  @   \forall integer slot; 0 <= slot < ILK_SLOTS ==>
   @   state->axis[slot].state == state_entering(ILK_MODE_LOCKED, \old(state->axis[slot].state));
-  @ ensures  P8_still: \old(state->mode) == ILK_MODE_LOCKED ==> \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @ ensures  P8_still: \old(state->mode) == ILK_MODE_LOCKED ==>
+  @   \forall integer slot; 0 <= slot < ILK_SLOTS ==>
   @   motion_kept{Pre, Post}(&state->axis[slot]);
   @ ensures  P9_consent: \old(state->mode) != ILK_MODE_LOCKED ==> state->pedal_armed == 0
   @   && state->pedal_pressed_ticks == 0 && state->pedal_released_ticks == 0;
@@ -84,18 +95,20 @@ bool ilk_cause_is_present(const ilk_state_t *state);
 /** Phase 3: pedal, E-stop, age of the app, overruns. */
 /*@ requires valid: \valid_read(config) && \valid(state) && \valid_read(in);
   @ requires apart: \separated(state, config) && \separated(state, in);
-  @ assigns  state->link_generation, state->last_sequence, state->app_age_ticks, state->app_alive, state->pedal,
-  @          state->pedal_disagree_ticks, state->pedal_released_ticks, state->pedal_pressed_ticks,
-  @          state->overruns_in_row, state->overruns, state->estop;
+  @ assigns  state->link_generation, state->last_sequence, state->app_age_ticks, state->app_alive,
+  @          state->pedal, state->pedal_disagree_ticks, state->pedal_released_ticks,
+  @          state->pedal_pressed_ticks, state->overruns_in_row, state->overruns, state->estop;
   @ ensures  P2_estop: state->estop == (\old(in->estop_loop_closed) == 1 ? 0 : 1);
   @ ensures  P2_pedal: state->pedal == \old(pedal_reading(config, in));
-  @ ensures  P10_silence: state->app_alive == (state->app_age_ticks < \old(config->app_timeout_ticks) ? 1 : 0);
+  @ ensures  P10_silence: state->app_alive == (state->app_age_ticks < \old(config->app_timeout_ticks) ? 1
+  @   : 0);
   @ ensures  P10_age: state->app_age_ticks == (\old(in->link_generation) == \old(state->link_generation)
   @   ? \min(\old(state->app_age_ticks) + 1, UINT32_MAX) : UINT32_MAX);
   @ ensures  P9_release: state->pedal_released_ticks ==
   @   (state->pedal == ILK_PEDAL_RELEASED && state->mode == ILK_MODE_READY && state->app_alive != 0
   @     ? \min(\old(state->pedal_released_ticks) + 1, \old(config->pedal_debounce_ticks)) : 0);
-  @ ensures  P9_press: state->pedal_pressed_ticks == (state->pedal == ILK_PEDAL_PRESSED && state->pedal_armed != 0
+  @ ensures  P9_press: state->pedal_pressed_ticks == (state->pedal == ILK_PEDAL_PRESSED
+  @   && state->pedal_armed != 0
   @   ? \min(\old(state->pedal_pressed_ticks) + 1, \old(config->pedal_debounce_ticks)) : 0);
   @ ensures  disagreement: state->pedal_disagree_ticks == (state->pedal == ILK_PEDAL_DISAGREE
   @   ? \min(\old(state->pedal_disagree_ticks) + 1, UINT32_MAX) : 0);

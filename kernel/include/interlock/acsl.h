@@ -317,13 +317,28 @@
   @       &config->axis[request->axis], state, &state->axis[request->axis], request->target_counts));
   @*/
 
-/*@ // What acceptance says of the axis that a request names.
+/*@ // The state in which an accepted request leaves the axis that it names.
+  @ logic integer state_requested(integer kind, integer state) =
+  @   kind == ILK_REQUEST_DISABLE      ? (state == ILK_AXIS_FAULTED ? ILK_AXIS_FAULTED : ILK_AXIS_DISABLED)
+  @   : kind == ILK_REQUEST_ENABLE      ? (state == ILK_AXIS_DISABLED ? ILK_AXIS_ENABLED : state)
+  @   : kind == ILK_REQUEST_CLEAR_FAULT ? ILK_AXIS_DISABLED
+  @   : kind == ILK_REQUEST_MOVE        ? ILK_AXIS_MOVING
+  @   : kind == ILK_REQUEST_HOME        ? ILK_AXIS_HOMING
+  @                                     : state;
+  @
+  @ // What acceptance says of the axis that a request names.
   @ predicate suits_axis(ilk_axis_t *axis, ilk_request_t *request) =
   @   (request->kind == ILK_REQUEST_CLEAR_FAULT ==> axis->state == ILK_AXIS_FAULTED)
   @   && (request->kind == ILK_REQUEST_MOVE || request->kind == ILK_REQUEST_HOME ==>
   @       axis->state == ILK_AXIS_ENABLED || axis->state == ILK_AXIS_MOVING)
   @   && (request->kind == ILK_REQUEST_MOVE ==> request->lease_ticks != 0)
   @   && (request->kind == ILK_REQUEST_SET_HOME ==> axis->state != ILK_AXIS_HOMING);
+  @
+  @ // What is left of acceptance for carrying a request out.
+  @ predicate applicable(ilk_state_t *state, ilk_request_t *request) =
+  @   (request->kind == ILK_REQUEST_RESET ==> state->mode == ILK_MODE_LOCKED)
+  @   && (names_axis(request->kind) ==>
+  @       request->axis < ILK_SLOTS && suits_axis(&state->axis[request->axis], request));
   @*/
 
 /* The output gate. */
