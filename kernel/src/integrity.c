@@ -14,12 +14,37 @@
 
 /** Mixes a word into the digest. The step can be undone, so a change of any one word changes the result;
    product and rotation together spread it over all bits, so that changes of several words do not cancel. */
+/*@ assigns \nothing;
+  @ ensures P14_mix: \result == mixed(digest, word);
+  @*/
 static uint32_t mix(uint32_t digest, uint32_t word) {
   const uint32_t mixed = digest ^ word;
   return ((mixed << 13) | (mixed >> 19)) * SEAL_FACTOR;
 }
 
+/*@ requires readable: \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  P14_every_word: \result == axis_seal(axis);
+  @*/
 static uint32_t axis_digest(const ilk_axis_t *axis) {
+  /*@ assert readable: \valid_read(&axis->state) && \valid_read(&axis->fault)
+    @   && \valid_read(&axis->fault_tick) && \valid_read(&axis->fault_value) && \valid_read(&axis->homed)
+    @   && \valid_read(&axis->switch_triggered) && \valid_read(&axis->card_valid)
+    @   && \valid_read(&axis->card_seen) && \valid_read(&axis->bad_frames)
+    @   && \valid_read(&axis->checksum_failures) && \valid_read(&axis->heartbeat)
+    @   && \valid_read(&axis->card_time_us) && \valid_read(&axis->card_status)
+    @   && \valid_read(&axis->ticks_since_frame) && \valid_read(&axis->raw)
+    @   && \valid_read(&axis->position_counts) && \valid_read(&axis->delta_counts)
+    @   && \valid_read(&axis->setpoint_counts) && \valid_read(&axis->drive) && \valid_read(&axis->amplitude)
+    @   && \valid_read(&axis->lease_ticks) && \valid_read(&axis->driven_direction)
+    @   && \valid_read(&axis->press_travel_counts) && \valid_read(&axis->stall_driven_ticks)
+    @   && \valid_read(&axis->stall_mark_raw) && \valid_read(&axis->stall_direction)
+    @   && \valid_read(&axis->setpoint_changed) && \valid_read(&axis->reverse_mark_raw)
+    @   && \valid_read(&axis->reverse_direction) && \valid_read(&axis->drift_mark_raw)
+    @   && \valid_read(&axis->undriven_ticks) && \valid_read(&axis->homing_phase)
+    @   && \valid_read(&axis->homing_ticks) && \valid_read(&axis->homing_mark_raw)
+    @   && \valid_read(&axis->rest_ticks);
+    @*/
   uint32_t even = SEAL_SEED;
   uint32_t odd = SEAL_SEED;
   even = mix(even, axis->state);
@@ -61,7 +86,24 @@ static uint32_t axis_digest(const ilk_axis_t *axis) {
 }
 _Static_assert(sizeof(ilk_axis_t) == (35u * sizeof(uint32_t)), "every word is sealed");
 
+/*@ requires readable: \valid_read(state);
+  @ assigns  \nothing;
+  @ ensures  P14_every_word: \result == seal_of(state, 0);
+  @*/
 static uint32_t system_digest(const ilk_state_t *state) {
+  /*@ assert readable: \valid_read(&state->tick) && \valid_read(&state->mode) && \valid_read(&state->cause)
+    @   && \valid_read(&state->cause_tick) && \valid_read(&state->cause_value)
+    @   && \valid_read(&state->causes_seen) && \valid_read(&state->pedal) && \valid_read(&state->pedal_armed)
+    @   && \valid_read(&state->pedal_pressed_ticks) && \valid_read(&state->pedal_released_ticks)
+    @   && \valid_read(&state->pedal_disagree_ticks) && \valid_read(&state->estop)
+    @   && \valid_read(&state->app_age_ticks) && \valid_read(&state->app_alive) && \valid_read(&state->holder)
+    @   && \valid_read(&state->link_generation) && \valid_read(&state->last_sequence)
+    @   && \valid_read(&state->overruns_in_row) && \valid_read(&state->overruns)
+    @   && \valid_read(&state->bus_bad_ticks) && \valid_read(&state->config_crc)
+    @   && \valid_read(&state->config_slice) && \valid_read(&state->config_partial_crc)
+    @   && \valid_read(&state->config_sound) && \valid_read(&state->requests_accepted)
+    @   && \valid_read(&state->requests_refused);
+    @*/
   uint32_t even = SEAL_SEED;
   uint32_t odd = SEAL_SEED;
   odd = mix(odd, state->tick);
@@ -96,16 +138,39 @@ _Static_assert(sizeof(ilk_state_t) == (((size_t)ILK_SLOTS * sizeof(ilk_axis_t)) 
                "every word is sealed, or is the seal");
 
 /** Each part has a digest of its own, made in two lanes, so that a processor can work on several at once. */
+/*@ requires readable: \valid_read(state);
+  @ assigns  \nothing;
+  @ ensures  P14_every_word: \result == seal_of(state, ILK_SLOTS);
+  @*/
 static uint32_t state_digest(const ilk_state_t *state) {
   uint32_t digest = system_digest(state);
+  /*@ loop invariant bounds: 0 <= slot <= ILK_SLOTS;
+    @ loop invariant P14_every_word: digest == seal_of(state, slot);
+    @ loop assigns slot, digest;
+    @ loop variant ILK_SLOTS - slot;
+    @*/
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
     digest = mix(digest, axis_digest(&state->axis[slot]));
   }
   return digest;
 }
 
-void ilk_state_seal(ilk_state_t *state) { state->seal = state_digest(state); }
+/*@ requires valid: \valid(state);
+  @ assigns  state->seal;
+  @ ensures  P14_seal: state->seal == seal;
+  @ ensures  P15_system: \old(sound_system(state)) ==> sound_system(state);
+  @ ensures  P15_axes: \old(sound_axes(state)) ==> sound_axes(state);
+  @ ensures  P15_mode: \old(axes_fit_mode(state)) ==> axes_fit_mode(state);
+  @ ensures  P14_blank: \old(blank_axes(state)) ==> blank_axes(state);
+  @*/
+static void write_seal(ilk_state_t *state, uint32_t seal) { state->seal = seal; }
 
+void ilk_state_seal(ilk_state_t *state) { write_seal(state, state_digest(state)); }
+
+/*@ requires readable: \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  exact: \result <==> known_codes(axis);
+  @*/
 static bool axis_codes_are_known(const ilk_axis_t *axis) {
   return (axis->state < ILK_AXIS_COUNT) && (axis->fault < ILK_FAULT_COUNT) &&
          (axis->driven_direction < ILK_DIRECTION_COUNT) && (axis->stall_direction < ILK_DIRECTION_COUNT) &&
@@ -113,9 +178,16 @@ static bool axis_codes_are_known(const ilk_axis_t *axis) {
          (axis->homed <= 1u);
 }
 
+/*@ assigns \nothing;
+  @ ensures exact: \result <==> (a <==> b);
+  @*/
 static bool both_or_neither(bool a, bool b) { return a == b; }
 
 /** Each state of an axis has exactly the company that belongs to it. */
+/*@ requires readable: \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  P14_invariant: \result && known_codes(axis) <==> sound_axis(axis);
+  @*/
 static bool axis_agrees(const ilk_axis_t *axis) {
   const bool faulted = axis->state == (uint32_t)ILK_AXIS_FAULTED;
   const bool moving = axis->state == (uint32_t)ILK_AXIS_MOVING;
@@ -127,22 +199,34 @@ static bool axis_agrees(const ilk_axis_t *axis) {
 }
 
 /** What the mode allows an axis to be. */
+/*@ requires readable: \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  P14_invariant: \result <==> fits_mode(axis, mode);
+  @*/
 static bool axis_fits_mode(const ilk_axis_t *axis, uint32_t mode) {
+  const bool in_motion =
+      (axis->state == (uint32_t)ILK_AXIS_MOVING) || (axis->state == (uint32_t)ILK_AXIS_HOMING);
+  const bool out_of_service =
+      (axis->state == (uint32_t)ILK_AXIS_DISABLED) || (axis->state == (uint32_t)ILK_AXIS_FAULTED);
   bool fits = false;
   switch (mode) {
     case (uint32_t)ILK_MODE_MOTION:
       fits = true;
       break;
     case (uint32_t)ILK_MODE_READY:
-      fits = (axis->state != (uint32_t)ILK_AXIS_MOVING) && (axis->state != (uint32_t)ILK_AXIS_HOMING);
+      fits = !in_motion;
       break;
     default: /* INIT and LOCKED */
-      fits = (axis->state == (uint32_t)ILK_AXIS_DISABLED) || (axis->state == (uint32_t)ILK_AXIS_FAULTED);
+      fits = out_of_service;
       break;
   }
   return fits;
 }
 
+/*@ requires readable: \valid_read(state);
+  @ assigns  \nothing;
+  @ ensures  P14_invariant: \result <==> sound_system(state);
+  @*/
 static bool system_agrees(const ilk_state_t *state) {
   const bool locked = state->mode == (uint32_t)ILK_MODE_LOCKED;
   return (state->mode < ILK_MODE_COUNT) && (state->cause < ILK_CAUSE_COUNT) &&
@@ -150,20 +234,75 @@ static bool system_agrees(const ilk_state_t *state) {
          (state->pedal < ILK_PEDAL_COUNT) && (state->config_slice < (uint32_t)ILK_SLOTS);
 }
 
-bool ilk_state_is_sound(const ilk_state_t *state) {
-  bool sound = (state->seal == state_digest(state)) && system_agrees(state);
+/*@ requires readable: \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  P14_invariant: \result <==> sound_axis(axis) && fits_mode(axis, mode);
+  @*/
+static bool axis_is_sound(const ilk_axis_t *axis, uint32_t mode) {
+  return axis_codes_are_known(axis) && axis_agrees(axis) && axis_fits_mode(axis, mode);
+}
+
+/*@ requires readable: \valid_read(state);
+  @ assigns  \nothing;
+  @ ensures  P14_codes: \result ==> sound_axes(state);
+  @ ensures  P14_mode: \result ==> axes_fit_mode(state);
+  @ ensures  only: !\result ==> !(sound_axes(state) && axes_fit_mode(state));
+  @*/
+static bool axes_are_sound(const ilk_state_t *state) {
+  bool sound = true;
+  /*@ loop invariant bounds: 0 <= slot <= ILK_SLOTS;
+    @ loop invariant P14_codes: sound ==> \forall integer index; 0 <= index < slot ==>
+    @   sound_axis(&state->axis[index]);
+    @ loop invariant P14_mode: sound ==> \forall integer index; 0 <= index < slot ==>
+    @   fits_mode(&state->axis[index], state->mode);
+    @ loop invariant only: !sound ==> 0 < slot
+    @   && !(sound_axis(&state->axis[slot - 1]) && fits_mode(&state->axis[slot - 1], state->mode));
+    @ loop assigns slot, sound;
+    @ loop variant ILK_SLOTS - slot;
+    @*/
   for (uint32_t slot = 0u; (slot < (uint32_t)ILK_SLOTS) && sound; slot++) {
-    const ilk_axis_t *axis = &state->axis[slot];
-    sound = axis_codes_are_known(axis) && axis_agrees(axis) && axis_fits_mode(axis, state->mode);
+    sound = axis_is_sound(&state->axis[slot], state->mode);
   }
   return sound;
 }
 
-void ilk_state_rebuild(ilk_state_t *state, const ilk_config_t *config, ilk_cause_t cause, uint32_t value) {
-  static const ilk_axis_t blank = {0};
+bool ilk_state_is_sound(const ilk_state_t *state) {
+  return (state->seal == state_digest(state)) && system_agrees(state) && axes_are_sound(state);
+}
+
+/*@ assigns \nothing;
+  @ ensures P14_blank: \result.state == ILK_AXIS_DISABLED && \result.fault == ILK_FAULT_NONE
+  @   && \result.homed == 0 && \result.card_valid == 0 && \result.card_seen == 0 && \result.lease_ticks == 0
+  @   && \result.homing_phase == ILK_HOMING_NONE && \result.driven_direction == ILK_DIRECTION_NONE
+  @   && \result.stall_direction == ILK_DIRECTION_NONE && \result.reverse_direction == ILK_DIRECTION_NONE;
+  @*/
+static ilk_axis_t unknown_axis(void) {
+  static const ilk_axis_t unknown = {0};
+  return unknown;
+}
+
+/*@ requires valid: \valid(axis);
+  @ assigns  *axis;
+  @ ensures  P14_blank: blank_axis(axis);
+  @*/
+static void forget_axis(ilk_axis_t *axis) { *axis = unknown_axis(); }
+
+/*@ requires valid: \valid(state);
+  @ assigns  state->axis[0 .. ILK_SLOTS - 1];
+  @ ensures  P14_blank: blank_axes(state);
+  @*/
+static void forget_axes(ilk_state_t *state) {
+  /*@ loop invariant bounds: 0 <= slot <= ILK_SLOTS;
+    @ loop invariant P14_blank: \forall integer index; 0 <= index < slot ==> blank_axis(&state->axis[index]);
+    @ loop assigns slot, state->axis[0 .. ILK_SLOTS - 1];
+    @ loop variant ILK_SLOTS - slot;
+    @*/
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
-    state->axis[slot] = blank;
+    forget_axis(&state->axis[slot]);
   }
+}
+
+void ilk_state_rebuild(ilk_state_t *state, const ilk_config_t *config, ilk_cause_t cause, uint32_t value) {
   state->tick = 0u;
   state->mode = (uint32_t)ILK_MODE_LOCKED;
   state->cause = (uint32_t)cause;
@@ -191,9 +330,16 @@ void ilk_state_rebuild(ilk_state_t *state, const ilk_config_t *config, ilk_cause
   state->requests_accepted = 0u;
   state->requests_refused = 0u;
   state->seal = 0u;
+  forget_axes(state);
 }
 
 /** A configuration that was not trusted becomes so by a whole pass that agrees and by being valid (P13). */
+/*@ requires readable: \valid_read(config) && \valid_read(state);
+  @ assigns  \nothing;
+  @ ensures  flag: \result == 0 || \result == 1;
+  @ ensures  trusted: state->config_sound != 0 ==> \result == 1;
+  @ ensures  P13_valid: state->config_sound == 0 && \result == 1 ==> valid_config(config);
+  @*/
 static uint32_t trust_after_pass(const ilk_config_t *config, const ilk_state_t *state) {
   return flag_of((state->config_sound != 0u) ||
                  (ilk_config_validate(config).error == (uint32_t)ILK_CONFIG_ERROR_NONE));
@@ -219,16 +365,33 @@ ilk_config_check_t ilk_config_check_slice(const ilk_config_t *config, ilk_state_
   return check;
 }
 
-ilk_config_verdict_t ilk_init(const ilk_config_t *config, ilk_state_t *state) {
-  const ilk_config_verdict_t verdict = ilk_config_validate(config);
-  const bool valid = verdict.error == (uint32_t)ILK_CONFIG_ERROR_NONE;
-  ilk_state_rebuild(state, config, ILK_CAUSE_BOOT, 0u);
+/** A state that was just rebuilt waits for RESET, or for another configuration. */
+/*@ requires valid: \valid(state);
+  @ requires rebuilt: state->mode == ILK_MODE_LOCKED;
+  @ assigns  state->config_sound, state->mode, state->cause, state->causes_seen;
+  @ ensures  P13_trusted: valid ==> state->config_sound == 1
+  @   && state->mode == ILK_MODE_LOCKED && state->cause == \old(state->cause);
+  @ ensures  P13_refused: !valid ==> state->config_sound == 0
+  @   && state->mode == ILK_MODE_INIT && state->cause == ILK_CAUSE_NONE && state->causes_seen == 0;
+  @ ensures  P15_system: \old(sound_system(state)) ==> sound_system(state);
+  @ ensures  P15_axes: \old(sound_axes(state)) ==> sound_axes(state);
+  @ ensures  P15_mode: \old(axes_fit_mode(state)) ==> axes_fit_mode(state);
+  @ ensures  P14_blank: \old(blank_axes(state)) ==> blank_axes(state);
+  @*/
+static void begin(ilk_state_t *state, bool valid) {
   state->config_sound = flag_of(valid);
   if (!valid) {
     state->mode = (uint32_t)ILK_MODE_INIT;
     state->cause = (uint32_t)ILK_CAUSE_NONE;
     state->causes_seen = 0u;
   }
+}
+
+ilk_config_verdict_t ilk_init(const ilk_config_t *config, ilk_state_t *state) {
+  const ilk_config_verdict_t verdict = ilk_config_validate(config);
+  const bool valid = verdict.error == (uint32_t)ILK_CONFIG_ERROR_NONE;
+  ilk_state_rebuild(state, config, ILK_CAUSE_BOOT, 0u);
+  begin(state, valid);
   ilk_state_seal(state);
   return verdict;
 }

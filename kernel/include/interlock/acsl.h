@@ -108,11 +108,14 @@
   @ logic integer homing_bound(ilk_axis_config_t *config, ilk_axis_t *axis) =
   @   axis->homing_phase == ILK_HOMING_BACK_OFF ? config->home_backoff_counts : config->home_travel_counts;
   @
-  @ // Codes that the catalog knows, and each state with exactly the company that belongs to it (the invariant).
-  @ predicate sound_axis(ilk_axis_t *axis) =
+  @ // Codes that the catalog knows.
+  @ predicate known_codes(ilk_axis_t *axis) =
   @   axis->state < ILK_AXIS_COUNT && axis->fault < ILK_FAULT_COUNT && axis->homing_phase < ILK_HOMING_COUNT
   @   && axis->driven_direction < ILK_DIRECTION_COUNT && axis->stall_direction < ILK_DIRECTION_COUNT
-  @   && axis->reverse_direction < ILK_DIRECTION_COUNT && axis->homed <= 1
+  @   && axis->reverse_direction < ILK_DIRECTION_COUNT && axis->homed <= 1;
+  @
+  @ // Known codes, and each state with exactly the company that belongs to it (the invariant).
+  @ predicate sound_axis(ilk_axis_t *axis) = known_codes(axis)
   @   && (axis->state == ILK_AXIS_FAULTED <==> axis->fault != ILK_FAULT_NONE)
   @   && (axis->state == ILK_AXIS_MOVING <==> axis->lease_ticks != 0)
   @   && (axis->state == ILK_AXIS_HOMING <==> axis->homing_phase != ILK_HOMING_NONE)
@@ -381,6 +384,107 @@
   @ // P16: the words that move a motor are zero.
   @ predicate still_frame(uint32_t *frame) =
   @   frame[2] == 0 && frame[3] == 0 && frame[4] == 0 && frame[5] == 0 && frame[6] == 0 && frame[14] == 0;
+  @*/
+
+/* The step. */
+
+/*@ // P16: the card of this slot answered in this tick.
+  @ predicate card_answered(ilk_inputs_t *in, integer slot) =
+  @   in->transaction_done == 1 && ((in->frames_received >> slot) & 1) != 0;
+  @
+  @ // P11: the one answer to a request.
+  @ predicate records(ilk_verdict_record_t *entry, integer tick, ilk_request_t *request, integer verdict) =
+  @   entry->tick == tick && entry->sequence == request->sequence && entry->kind == request->kind
+  @   && entry->axis == request->axis && entry->verdict == verdict;
+  @
+  @ predicate blank_record(ilk_verdict_record_t *entry) =
+  @   entry->tick == 0 && entry->sequence == 0 && entry->kind == 0 && entry->axis == 0 && entry->verdict == 0;
+  @
+  @ predicate some_fault(ilk_state_t *state, integer slots, integer fault) =
+  @   \exists integer slot; 0 <= slot < slots && state->axis[slot].fault == fault;
+  @
+  @ predicate zero_drive(ilk_command_t *command) =
+  @   command->direction == ILK_DIRECTION_NONE && command->drive == 0 && command->amplitude == 0;
+  @
+  @ // P1: only through an open gate, else zero drive.
+  @ predicate passed(ilk_state_t *state, ilk_outputs_t *out, integer slot) =
+  @   out->gate[slot] == ILK_GATE_OPEN ==> may_drive(state, &state->axis[slot]);
+  @
+  @ predicate stopped(ilk_outputs_t *out, integer slot) =
+  @   out->gate[slot] != ILK_GATE_OPEN ==> zero_drive(&out->command[slot]);
+  @
+  @ // P3, P4 and P7 of what leaves an open gate.
+  @ predicate off_switch(ilk_config_t *config, ilk_state_t *state, ilk_outputs_t *out, integer slot) =
+  @   out->gate[slot] == ILK_GATE_OPEN ==>
+  @     clear_of_switch(&config->axis[slot], &state->axis[slot], out->command[slot].direction);
+  @
+  @ predicate in_soft_range(ilk_config_t *config, ilk_state_t *state, ilk_outputs_t *out, integer slot) =
+  @   out->gate[slot] == ILK_GATE_OPEN ==>
+  @     within_soft_range(&config->axis[slot], &state->axis[slot], out->command[slot].direction);
+  @
+  @ predicate in_unhomed_travel(ilk_config_t *config, ilk_state_t *state, ilk_outputs_t *out, integer slot) =
+  @   out->gate[slot] == ILK_GATE_OPEN ==>
+  @     within_unhomed_travel(&config->axis[slot], &state->axis[slot], out->command[slot].direction);
+  @
+  @ predicate in_drive(ilk_config_t *config, ilk_state_t *state, ilk_outputs_t *out, integer slot) =
+  @   out->gate[slot] == ILK_GATE_OPEN ==>
+  @     within_drive(&config->axis[slot], &state->axis[slot], &out->command[slot]);
+  @*/
+
+/* Integrity (P14). */
+
+/*@ // An axis of which nothing is known and that nothing drives.
+  @ predicate blank_axis(ilk_axis_t *axis) =
+  @   axis->state == ILK_AXIS_DISABLED && axis->fault == ILK_FAULT_NONE && axis->homed == 0
+  @   && axis->card_valid == 0 && axis->card_seen == 0 && axis->lease_ticks == 0
+  @   && axis->homing_phase == ILK_HOMING_NONE && axis->driven_direction == ILK_DIRECTION_NONE
+  @   && axis->stall_direction == ILK_DIRECTION_NONE && axis->reverse_direction == ILK_DIRECTION_NONE;
+  @
+  @ predicate blank_axes(ilk_state_t *state) =
+  @   \forall integer slot; 0 <= slot < ILK_SLOTS ==> blank_axis(&state->axis[slot]);
+  @
+  @ // What one more word makes of the digest.
+  @ logic integer mixed(integer running, integer next) = \let changed = (uint32_t)(running ^ next);
+  @   (uint32_t)(((uint32_t)(changed << 13) | (changed >> 19)) * 0x9e3779b1);
+  @
+  @ // Every word of an axis, in two lanes, ...
+  @ logic integer axis_seal_even(ilk_axis_t *axis) =
+  @   mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(
+  @   mixed(mixed(0x494c4b31, axis->state), axis->fault_tick), axis->homed), axis->card_valid),
+  @     axis->bad_frames), axis->heartbeat), axis->card_status), axis->raw), (uint32_t)axis->delta_counts),
+  @     axis->drive), axis->lease_ticks), (uint32_t)axis->press_travel_counts), axis->stall_mark_raw),
+  @     axis->setpoint_changed), axis->reverse_direction), axis->undriven_ticks), axis->homing_ticks),
+  @     axis->rest_ticks);
+  @
+  @ logic integer axis_seal_odd(ilk_axis_t *axis) =
+  @   mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(
+  @   mixed(0x494c4b31, axis->fault), (uint32_t)axis->fault_value), axis->switch_triggered), axis->card_seen),
+  @     axis->checksum_failures), axis->card_time_us), axis->ticks_since_frame),
+  @     (uint32_t)axis->position_counts), (uint32_t)axis->setpoint_counts), axis->amplitude),
+  @     axis->driven_direction), axis->stall_driven_ticks), axis->stall_direction), axis->reverse_mark_raw),
+  @     axis->drift_mark_raw), axis->homing_phase), axis->homing_mark_raw);
+  @
+  @ logic integer axis_seal(ilk_axis_t *axis) = mixed(axis_seal_even(axis), axis_seal_odd(axis));
+  @
+  @ // ... every word of the system but the seal, ...
+  @ logic integer system_seal_even(ilk_state_t *state) =
+  @   mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(0x494c4b31, state->mode),
+  @     state->cause_tick), state->causes_seen), state->pedal_armed), state->pedal_released_ticks),
+  @     state->estop), state->app_alive), state->link_generation), state->overruns_in_row),
+  @     state->bus_bad_ticks), state->config_slice), state->config_sound), state->requests_refused);
+  @
+  @ logic integer system_seal_odd(ilk_state_t *state) =
+  @   mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(0x494c4b31, state->tick),
+  @     state->cause), state->cause_value), state->pedal), state->pedal_pressed_ticks),
+  @     state->pedal_disagree_ticks), state->app_age_ticks), state->holder), state->last_sequence),
+  @     state->overruns), state->config_crc), state->config_partial_crc), state->requests_accepted);
+  @
+  @ // ... then the first axes.
+  @ logic integer seal_of(ilk_state_t *state, integer slots) =
+  @   slots <= 0 ? mixed(system_seal_even(state), system_seal_odd(state))
+  @              : mixed(seal_of(state, slots - 1), axis_seal(&state->axis[slots - 1]));
+  @
+  @ predicate sealed(ilk_state_t *state) = state->seal == seal_of(state, ILK_SLOTS);
   @*/
 
 #endif

@@ -44,6 +44,15 @@ uint32_t ilk_request_crc(const ilk_request_t *request);
  * Starts the kernel: a valid configuration leads to LOCKED (BOOT), any other to INIT, in which
  * every step puts out zero.
  */
+/*@ requires valid: \valid_read(config) && \valid(state) && \separated(config, state);
+  @ assigns  *state;
+  @ ensures  P15_invariant: sound(state);
+  @ ensures  P13_init: \result.error != ILK_CONFIG_ERROR_NONE <==> state->mode == ILK_MODE_INIT;
+  @ ensures  P13_valid: state->mode != ILK_MODE_INIT ==> \old(valid_config(config)) && state->config_sound == 1;
+  @ ensures  boot: \result.error == ILK_CONFIG_ERROR_NONE ==>
+  @   state->mode == ILK_MODE_LOCKED && state->cause == ILK_CAUSE_BOOT;
+  @ ensures  P12_no_leap: blank_axes(state);
+  @*/
 ilk_config_verdict_t ilk_init(const ilk_config_t *config, ilk_state_t *state);
 
 /**
