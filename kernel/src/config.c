@@ -123,15 +123,16 @@ static bool is_flag(uint32_t value) { return value <= 1u; }
 
 /*@ requires readable: \valid_read(config);
   @ assigns  \nothing;
-  @ ensures  P13_exact: \result == system_error(config);
+  @ ensures  P13_exact: \result == common_rule(config, crc);
+  @ ensures  known: \result < ILK_CONFIG_ERROR_COUNT;
   @*/
-static ilk_config_error_t system_error(const ilk_config_t *config) {
+static ilk_config_error_t system_error(const ilk_config_t *config, uint32_t crc) {
   ilk_config_error_t error = ILK_CONFIG_ERROR_NONE;
   if (config->version != ILK_CONFIG_VERSION) {
     error = ILK_CONFIG_ERROR_VERSION;
   } else if (config->size_bytes != (uint32_t)sizeof(ilk_config_t)) {
     error = ILK_CONFIG_ERROR_SIZE;
-  } else if (config->crc != ilk_config_crc(config)) {
+  } else if (config->crc != crc) {
     error = ILK_CONFIG_ERROR_CRC;
   } else if (!within(config->period_us, 125u, 2000u)) {
     error = ILK_CONFIG_ERROR_PERIOD;
@@ -176,6 +177,7 @@ static uint32_t range_of(const ilk_axis_config_t *axis) {
 /*@ requires readable: \valid_read(axis);
   @ assigns  \nothing;
   @ ensures  P13_exact: \result == geometry_rule(axis);
+  @ ensures  known: \result < ILK_CONFIG_ERROR_COUNT;
   @*/
 static ilk_config_error_t geometry_error(const ilk_axis_config_t *axis) {
   ilk_config_error_t error = ILK_CONFIG_ERROR_NONE;
@@ -210,6 +212,7 @@ static bool amplitude_fits(const ilk_axis_config_t *axis) {
   @ requires geometry: geometry_rule(axis) == ILK_CONFIG_ERROR_NONE;
   @ assigns  \nothing;
   @ ensures  P13_exact: \result == drive_rule(axis);
+  @ ensures  known: \result < ILK_CONFIG_ERROR_COUNT;
   @*/
 static ilk_config_error_t drive_error(const ilk_axis_config_t *axis) {
   ilk_config_error_t error = ILK_CONFIG_ERROR_NONE;
@@ -244,6 +247,7 @@ static bool homing_time_suffices(const ilk_axis_config_t *axis, uint32_t period_
   @ requires geometry: geometry_rule(axis) == ILK_CONFIG_ERROR_NONE;
   @ assigns  \nothing;
   @ ensures  P13_exact: \result == homing_rule(axis, period_us);
+  @ ensures  known: \result < ILK_CONFIG_ERROR_COUNT;
   @*/
 static ilk_config_error_t homing_error(const ilk_axis_config_t *axis, uint32_t period_us) {
   const uint64_t range = range_of(axis);
@@ -268,6 +272,7 @@ static ilk_config_error_t homing_error(const ilk_axis_config_t *axis, uint32_t p
 /*@ requires readable: \valid_read(axis);
   @ assigns  \nothing;
   @ ensures  P13_exact: \result == switchless_rule(axis);
+  @ ensures  known: \result < ILK_CONFIG_ERROR_COUNT;
   @*/
 static ilk_config_error_t switchless_error(const ilk_axis_config_t *axis) {
   ilk_config_error_t error = ILK_CONFIG_ERROR_NONE;
@@ -291,6 +296,7 @@ static ilk_config_error_t switchless_error(const ilk_axis_config_t *axis) {
   @ requires geometry: geometry_rule(axis) == ILK_CONFIG_ERROR_NONE;
   @ assigns  \nothing;
   @ ensures  P13_exact: \result == watch_rule(axis, period_us);
+  @ ensures  known: \result < ILK_CONFIG_ERROR_COUNT;
   @*/
 static ilk_config_error_t watch_error(const ilk_axis_config_t *axis, uint32_t period_us) {
   const uint64_t range = range_of(axis);
@@ -316,6 +322,7 @@ static ilk_config_error_t watch_error(const ilk_axis_config_t *axis, uint32_t pe
 /*@ requires readable: \valid_read(axis);
   @ assigns  \nothing;
   @ ensures  P13_exact: \result == axis_rule(axis, period_us);
+  @ ensures  known: \result < ILK_CONFIG_ERROR_COUNT;
   @*/
 static ilk_config_error_t axis_error(const ilk_axis_config_t *axis, uint32_t period_us) {
   ilk_config_error_t error = geometry_error(axis);
@@ -352,6 +359,7 @@ static bool is_bare(const ilk_axis_config_t *axis) {
 /*@ requires readable: \valid_read(axis);
   @ assigns  \nothing;
   @ ensures  P13_exact: \result == slot_rule(axis, period_us);
+  @ ensures  known: \result < ILK_CONFIG_ERROR_COUNT;
   @*/
 static ilk_config_error_t slot_error(const ilk_axis_config_t *axis, uint32_t period_us) {
   ilk_config_error_t error = ILK_CONFIG_ERROR_NONE;
@@ -386,21 +394,38 @@ static bool any_axis(const ilk_config_t *config) {
   return found;
 }
 
-/*@ ensures P13_exact: \result.error == ILK_CONFIG_ERROR_NONE <==>
-  @   valid_config(config) && config->crc == config_crc(config);
-  @ ensures P13_system: system_error(config) != ILK_CONFIG_ERROR_NONE ==>
-  @   \result.error == system_error(config) && \result.slot == ILK_SLOTS;
+/** The first broken rule and where; `crc` is that of the words that are there. */
+/*@ requires readable: \valid_read(config);
+  @ assigns  \nothing;
+  @ ensures  P13_valid: \result.error == ILK_CONFIG_ERROR_NONE ==> valid_config(config);
+  @ ensures  known: \result.error < ILK_CONFIG_ERROR_COUNT && \result.slot <= ILK_SLOTS;
+  @ ensures  P13_first: \result.slot < ILK_SLOTS ==> valid_slots(config, \result.slot)
+  @   && \result.error == slot_rule(&config->axis[\result.slot], config->period_us)
+  @   && \result.error != ILK_CONFIG_ERROR_NONE;
+  @ ensures  P13_exact: \result.error == ILK_CONFIG_ERROR_NONE <==>
+  @   valid_config(config) && config->crc == crc;
+  @ ensures  P13_system: common_rule(config, crc) != ILK_CONFIG_ERROR_NONE ==>
+  @   \result.error == common_rule(config, crc) && \result.slot == ILK_SLOTS;
+  @ ensures  P13_slots: common_rule(config, crc) == ILK_CONFIG_ERROR_NONE
+  @   && !valid_slots(config, ILK_SLOTS) ==> \result.slot < ILK_SLOTS;
+  @ ensures  P13_no_axis: common_rule(config, crc) == ILK_CONFIG_ERROR_NONE
+  @   && valid_slots(config, ILK_SLOTS) && !some_axis(config, ILK_SLOTS) ==>
+  @     \result.error == ILK_CONFIG_ERROR_NO_AXIS && \result.slot == ILK_SLOTS;
+  @ ensures  P13_none_named: \result.error == ILK_CONFIG_ERROR_NONE ==> \result.slot == ILK_SLOTS;
   @*/
-ilk_config_verdict_t ilk_config_validate(const ilk_config_t *config) {
-  ilk_config_verdict_t verdict = {.error = (uint32_t)system_error(config), .slot = (uint32_t)ILK_SLOTS};
+static ilk_config_verdict_t first_error(const ilk_config_t *config, uint32_t crc) {
+  ilk_config_verdict_t verdict = {.error = (uint32_t)system_error(config, crc), .slot = (uint32_t)ILK_SLOTS};
   /*@ loop invariant bounds: 0 <= slot <= ILK_SLOTS;
-    @ loop invariant valid: verdict.error == ILK_CONFIG_ERROR_NONE ==>
-    @   system_error(config) == ILK_CONFIG_ERROR_NONE && valid_slots(config, slot) && verdict.slot == ILK_SLOTS;
-    @ loop invariant first: verdict.error != ILK_CONFIG_ERROR_NONE ==>
-    @   (system_error(config) != ILK_CONFIG_ERROR_NONE
-    @     ? verdict.slot == ILK_SLOTS && verdict.error == system_error(config)
-    @     : verdict.slot == slot - 1 && valid_slots(config, slot - 1)
-    @       && verdict.error == slot_rule(&config->axis[slot - 1], config->period_us));
+    @ loop invariant known: verdict.error < ILK_CONFIG_ERROR_COUNT && verdict.slot <= ILK_SLOTS;
+    @ loop invariant system: common_rule(config, crc) != ILK_CONFIG_ERROR_NONE ==>
+    @   verdict.error == common_rule(config, crc) && verdict.slot == ILK_SLOTS;
+    @ loop invariant slots: common_rule(config, crc) == ILK_CONFIG_ERROR_NONE && verdict.slot == ILK_SLOTS ==>
+    @   verdict.error == ILK_CONFIG_ERROR_NONE;
+    @ loop invariant valid: verdict.error == ILK_CONFIG_ERROR_NONE ==> valid_slots(config, slot);
+    @ loop invariant none_named: verdict.error == ILK_CONFIG_ERROR_NONE ==> verdict.slot == ILK_SLOTS;
+    @ loop invariant first: verdict.slot < ILK_SLOTS ==> valid_slots(config, verdict.slot)
+    @   && verdict.error == slot_rule(&config->axis[verdict.slot], config->period_us)
+    @   && verdict.error != ILK_CONFIG_ERROR_NONE;
     @ loop assigns slot, verdict;
     @ loop variant ILK_SLOTS - slot;
     @*/
@@ -413,4 +438,19 @@ ilk_config_verdict_t ilk_config_validate(const ilk_config_t *config) {
     verdict.error = (uint32_t)ILK_CONFIG_ERROR_NO_AXIS;
   }
   return verdict;
+}
+
+/*@ ensures P13_exact: \result.error == ILK_CONFIG_ERROR_NONE <==>
+  @   valid_config(config) && config->crc == config_crc(config);
+  @ ensures P13_system: common_rule(config, config_crc(config)) != ILK_CONFIG_ERROR_NONE ==>
+  @   \result.error == common_rule(config, config_crc(config)) && \result.slot == ILK_SLOTS;
+  @ ensures P13_slots: common_rule(config, config_crc(config)) == ILK_CONFIG_ERROR_NONE
+  @   && !valid_slots(config, ILK_SLOTS) ==> \result.slot < ILK_SLOTS;
+  @ ensures P13_no_axis: common_rule(config, config_crc(config)) == ILK_CONFIG_ERROR_NONE
+  @   && valid_slots(config, ILK_SLOTS) && !some_axis(config, ILK_SLOTS) ==>
+  @     \result.error == ILK_CONFIG_ERROR_NO_AXIS && \result.slot == ILK_SLOTS;
+  @ ensures P13_none_named: \result.error == ILK_CONFIG_ERROR_NONE ==> \result.slot == ILK_SLOTS;
+  @*/
+ilk_config_verdict_t ilk_config_validate(const ilk_config_t *config) {
+  return first_error(config, ilk_config_crc(config));
 }

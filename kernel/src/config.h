@@ -37,12 +37,6 @@
   @              : axis_crc(crc_of_axes(config, slots - 1), &config->axis[slots - 1]);
   @
   @ logic integer config_crc(ilk_config_t *config) = crc_of_axes(config, ILK_SLOTS) ^ 0xffffffff;
-  @
-  @ logic integer system_error(ilk_config_t *config) =
-  @   config->version != ILK_CONFIG_VERSION           ? ILK_CONFIG_ERROR_VERSION
-  @   : config->size_bytes != sizeof(ilk_config_t)    ? ILK_CONFIG_ERROR_SIZE
-  @   : config->crc != config_crc(config)             ? ILK_CONFIG_ERROR_CRC
-  @                                                   : system_rule(config);
   @*/
 
 /** The running CRC-32 after one axis' words. */
