@@ -13,11 +13,7 @@
 #define MICROSECONDS_PER_S 1000000u
 #define HOMING_MAX_US 600000000u /* ten minutes */
 
-/*@ requires readable: \valid_read(axis);
-  @ assigns  \nothing;
-  @ ensures  P14_every_word: \result == mounting_crc(crc, axis);
-  @*/
-static uint32_t crc_mounting(uint32_t crc, const ilk_axis_config_t *axis) {
+uint32_t ilk_crc_axis_config(uint32_t crc, const ilk_axis_config_t *axis) {
   uint32_t next = crc;
   next = ilk_crc32_word(next, axis->card);
   next = ilk_crc32_word(next, axis->required);
@@ -27,15 +23,6 @@ static uint32_t crc_mounting(uint32_t crc, const ilk_axis_config_t *axis) {
   next = ilk_crc32_word(next, (uint32_t)axis->min_counts);
   next = ilk_crc32_word(next, (uint32_t)axis->max_counts);
   next = ilk_crc32_word(next, (uint32_t)axis->home_offset_counts);
-  return next;
-}
-
-/*@ requires readable: \valid_read(axis);
-  @ assigns  \nothing;
-  @ ensures  P14_every_word: \result == bounds_crc(crc, axis);
-  @*/
-static uint32_t crc_bounds(uint32_t crc, const ilk_axis_config_t *axis) {
-  uint32_t next = crc;
   next = ilk_crc32_word(next, axis->coast_counts);
   next = ilk_crc32_word(next, axis->backlash_counts);
   next = ilk_crc32_word(next, axis->noise_counts);
@@ -44,15 +31,6 @@ static uint32_t crc_bounds(uint32_t crc, const ilk_axis_config_t *axis) {
   next = ilk_crc32_word(next, axis->unhomed_max_drive);
   next = ilk_crc32_word(next, axis->max_amplitude);
   next = ilk_crc32_word(next, axis->unhomed_travel_counts);
-  return next;
-}
-
-/*@ requires readable: \valid_read(axis);
-  @ assigns  \nothing;
-  @ ensures  P14_every_word: \result == homing_crc(crc, axis);
-  @*/
-static uint32_t crc_homing(uint32_t crc, const ilk_axis_config_t *axis) {
-  uint32_t next = crc;
   next = ilk_crc32_word(next, axis->home_drive);
   next = ilk_crc32_word(next, axis->home_amplitude);
   next = ilk_crc32_word(next, axis->home_travel_counts);
@@ -60,29 +38,12 @@ static uint32_t crc_homing(uint32_t crc, const ilk_axis_config_t *axis) {
   next = ilk_crc32_word(next, axis->home_timeout_ticks);
   next = ilk_crc32_word(next, axis->home_rest_ticks);
   next = ilk_crc32_word(next, axis->home_speed_counts_per_s);
-  return next;
-}
-
-/*@ requires readable: \valid_read(axis);
-  @ assigns  \nothing;
-  @ ensures  P14_every_word: \result == watch_crc(crc, axis);
-  @*/
-static uint32_t crc_watch(uint32_t crc, const ilk_axis_config_t *axis) {
-  uint32_t next = crc;
   next = ilk_crc32_word(next, axis->stall_ticks);
   next = ilk_crc32_word(next, axis->stall_min_counts);
   next = ilk_crc32_word(next, axis->reverse_counts);
   next = ilk_crc32_word(next, axis->drift_counts);
   next = ilk_crc32_word(next, axis->settle_ticks);
   next = ilk_crc32_word(next, axis->max_delta_counts);
-  return next;
-}
-
-uint32_t ilk_crc_axis_config(uint32_t crc, const ilk_axis_config_t *axis) {
-  uint32_t next = crc_mounting(crc, axis);
-  next = crc_bounds(next, axis);
-  next = crc_homing(next, axis);
-  next = crc_watch(next, axis);
   return next;
 }
 _Static_assert(sizeof(ilk_axis_config_t) == (29u * sizeof(uint32_t)), "every word is in the CRC");
@@ -162,10 +123,10 @@ static bool is_flag(uint32_t value) { return value <= 1u; }
 
 /*@ requires readable: \valid_read(config);
   @ assigns  \nothing;
-  @ ensures  P13_exact: \result == header_rule(config, crc);
+  @ ensures  P13_exact: \result == common_rule(config, crc);
   @ ensures  known: \result < ILK_CONFIG_ERROR_COUNT;
   @*/
-static ilk_config_error_t header_error(const ilk_config_t *config, uint32_t crc) {
+static ilk_config_error_t system_error(const ilk_config_t *config, uint32_t crc) {
   ilk_config_error_t error = ILK_CONFIG_ERROR_NONE;
   if (config->version != ILK_CONFIG_VERSION) {
     error = ILK_CONFIG_ERROR_VERSION;
@@ -173,20 +134,7 @@ static ilk_config_error_t header_error(const ilk_config_t *config, uint32_t crc)
     error = ILK_CONFIG_ERROR_SIZE;
   } else if (config->crc != crc) {
     error = ILK_CONFIG_ERROR_CRC;
-  } else {
-    error = ILK_CONFIG_ERROR_NONE;
-  }
-  return error;
-}
-
-/*@ requires readable: \valid_read(config);
-  @ assigns  \nothing;
-  @ ensures  P13_exact: \result == system_rule(config);
-  @ ensures  known: \result < ILK_CONFIG_ERROR_COUNT;
-  @*/
-static ilk_config_error_t system_error(const ilk_config_t *config) {
-  ilk_config_error_t error = ILK_CONFIG_ERROR_NONE;
-  if (!within(config->period_us, 125u, 2000u)) {
+  } else if (!within(config->period_us, 125u, 2000u)) {
     error = ILK_CONFIG_ERROR_PERIOD;
   } else if (!within(config->pedal_channels, 1u, 2u)) {
     error = ILK_CONFIG_ERROR_PEDAL_CHANNELS;
@@ -391,56 +339,21 @@ static ilk_config_error_t axis_error(const ilk_axis_config_t *axis, uint32_t per
   return error;
 }
 
-/*@ requires readable: \valid_read(axis);
-  @ assigns  \nothing;
-  @ ensures  P13_bare: \result <==> no_mounting(axis);
-  @*/
-static bool has_no_mounting(const ilk_axis_config_t *axis) {
-  const uint32_t bits = axis->motor_direction | axis->direction_correction | axis->limit_side |
-                        (uint32_t)axis->min_counts | (uint32_t)axis->max_counts |
-                        (uint32_t)axis->home_offset_counts;
-  return bits == 0u;
-}
-
-/*@ requires readable: \valid_read(axis);
-  @ assigns  \nothing;
-  @ ensures  P13_bare: \result <==> no_bounds(axis);
-  @*/
-static bool has_no_bounds(const ilk_axis_config_t *axis) {
-  const uint32_t bits = axis->coast_counts | axis->backlash_counts | axis->noise_counts |
-                        axis->deadband_counts | axis->max_drive | axis->unhomed_max_drive |
-                        axis->max_amplitude | axis->unhomed_travel_counts;
-  return bits == 0u;
-}
-
-/*@ requires readable: \valid_read(axis);
-  @ assigns  \nothing;
-  @ ensures  P13_bare: \result <==> no_homing(axis);
-  @*/
-static bool has_no_homing(const ilk_axis_config_t *axis) {
-  const uint32_t bits = axis->home_drive | axis->home_amplitude | axis->home_travel_counts |
-                        axis->home_backoff_counts | axis->home_timeout_ticks | axis->home_rest_ticks |
-                        axis->home_speed_counts_per_s;
-  return bits == 0u;
-}
-
-/*@ requires readable: \valid_read(axis);
-  @ assigns  \nothing;
-  @ ensures  P13_bare: \result <==> no_watch(axis);
-  @*/
-static bool has_no_watch(const ilk_axis_config_t *axis) {
-  const uint32_t bits = axis->stall_ticks | axis->stall_min_counts | axis->reverse_counts |
-                        axis->drift_counts | axis->settle_ticks | axis->max_delta_counts;
-  return bits == 0u;
-}
-
 /** A slot without a motor carries nothing but its card and, for a sensor, `required`. */
 /*@ requires readable: \valid_read(axis);
   @ assigns  \nothing;
   @ ensures  P13_bare: \result <==> bare(axis);
   @*/
 static bool is_bare(const ilk_axis_config_t *axis) {
-  return has_no_mounting(axis) && has_no_bounds(axis) && has_no_homing(axis) && has_no_watch(axis);
+  const uint32_t bits =
+      axis->motor_direction | axis->direction_correction | axis->limit_side | (uint32_t)axis->min_counts |
+      (uint32_t)axis->max_counts | (uint32_t)axis->home_offset_counts | axis->coast_counts |
+      axis->backlash_counts | axis->noise_counts | axis->deadband_counts | axis->max_drive |
+      axis->unhomed_max_drive | axis->max_amplitude | axis->unhomed_travel_counts | axis->home_drive |
+      axis->home_amplitude | axis->home_travel_counts | axis->home_backoff_counts | axis->home_timeout_ticks |
+      axis->home_rest_ticks | axis->home_speed_counts_per_s | axis->stall_ticks | axis->stall_min_counts |
+      axis->reverse_counts | axis->drift_counts | axis->settle_ticks | axis->max_delta_counts;
+  return bits == 0u;
 }
 
 /*@ requires readable: \valid_read(axis);
@@ -481,21 +394,35 @@ static bool any_axis(const ilk_config_t *config) {
   return found;
 }
 
+/** The first broken rule and where; `crc` is that of the words that are there. */
 /*@ requires readable: \valid_read(config);
   @ assigns  \nothing;
+  @ ensures  P13_valid: \result.error == ILK_CONFIG_ERROR_NONE ==> valid_config(config);
+  @ ensures  known: \result.error < ILK_CONFIG_ERROR_COUNT && \result.slot <= ILK_SLOTS;
   @ ensures  P13_first: \result.slot < ILK_SLOTS ==> valid_slots(config, \result.slot)
   @   && \result.error == slot_rule(&config->axis[\result.slot], config->period_us)
   @   && \result.error != ILK_CONFIG_ERROR_NONE;
-  @ ensures  known: \result.error < ILK_CONFIG_ERROR_COUNT && \result.slot <= ILK_SLOTS;
-  @ ensures  P13_all: \result.slot == ILK_SLOTS ==> valid_slots(config, ILK_SLOTS)
-  @   && \result.error == ILK_CONFIG_ERROR_NONE;
+  @ ensures  P13_exact: \result.error == ILK_CONFIG_ERROR_NONE <==>
+  @   valid_config(config) && config->crc == crc;
+  @ ensures  P13_system: common_rule(config, crc) != ILK_CONFIG_ERROR_NONE ==>
+  @   \result.error == common_rule(config, crc) && \result.slot == ILK_SLOTS;
+  @ ensures  P13_slots: common_rule(config, crc) == ILK_CONFIG_ERROR_NONE
+  @   && !valid_slots(config, ILK_SLOTS) ==> \result.slot < ILK_SLOTS;
+  @ ensures  P13_no_axis: common_rule(config, crc) == ILK_CONFIG_ERROR_NONE
+  @   && valid_slots(config, ILK_SLOTS) && !some_axis(config, ILK_SLOTS) ==>
+  @     \result.error == ILK_CONFIG_ERROR_NO_AXIS && \result.slot == ILK_SLOTS;
+  @ ensures  P13_none_named: \result.error == ILK_CONFIG_ERROR_NONE ==> \result.slot == ILK_SLOTS;
   @*/
-static ilk_config_verdict_t first_slot_error(const ilk_config_t *config) {
-  ilk_config_verdict_t verdict = {.error = (uint32_t)ILK_CONFIG_ERROR_NONE, .slot = (uint32_t)ILK_SLOTS};
+static ilk_config_verdict_t first_error(const ilk_config_t *config, uint32_t crc) {
+  ilk_config_verdict_t verdict = {.error = (uint32_t)system_error(config, crc), .slot = (uint32_t)ILK_SLOTS};
   /*@ loop invariant bounds: 0 <= slot <= ILK_SLOTS;
     @ loop invariant known: verdict.error < ILK_CONFIG_ERROR_COUNT && verdict.slot <= ILK_SLOTS;
-    @ loop invariant all: verdict.slot == ILK_SLOTS ==> valid_slots(config, slot)
-    @   && verdict.error == ILK_CONFIG_ERROR_NONE;
+    @ loop invariant system: common_rule(config, crc) != ILK_CONFIG_ERROR_NONE ==>
+    @   verdict.error == common_rule(config, crc) && verdict.slot == ILK_SLOTS;
+    @ loop invariant slots: common_rule(config, crc) == ILK_CONFIG_ERROR_NONE && verdict.slot == ILK_SLOTS ==>
+    @   verdict.error == ILK_CONFIG_ERROR_NONE;
+    @ loop invariant valid: verdict.error == ILK_CONFIG_ERROR_NONE ==> valid_slots(config, slot);
+    @ loop invariant none_named: verdict.error == ILK_CONFIG_ERROR_NONE ==> verdict.slot == ILK_SLOTS;
     @ loop invariant first: verdict.slot < ILK_SLOTS ==> valid_slots(config, verdict.slot)
     @   && verdict.error == slot_rule(&config->axis[verdict.slot], config->period_us)
     @   && verdict.error != ILK_CONFIG_ERROR_NONE;
@@ -507,52 +434,22 @@ static ilk_config_verdict_t first_slot_error(const ilk_config_t *config) {
     verdict.error = (uint32_t)slot_error(&config->axis[slot], config->period_us);
     verdict.slot = (verdict.error == (uint32_t)ILK_CONFIG_ERROR_NONE) ? (uint32_t)ILK_SLOTS : slot;
   }
-  return verdict;
-}
-
-/** The verdict on a configuration; `crc` is that of the words that are there. */
-/*@ requires readable: \valid_read(config);
-  @ assigns  \nothing;
-  @ ensures  P13_valid: \result.error == ILK_CONFIG_ERROR_NONE ==> valid_config(config);
-  @ ensures  known: \result.error < ILK_CONFIG_ERROR_COUNT && \result.slot <= ILK_SLOTS;
-  @ ensures  P13_first: \result.slot < ILK_SLOTS ==> valid_slots(config, \result.slot)
-  @   && \result.error == slot_rule(&config->axis[\result.slot], config->period_us)
-  @   && \result.error != ILK_CONFIG_ERROR_NONE;
-  @ ensures  P13_common: common_rule(config, crc) != ILK_CONFIG_ERROR_NONE ==>
-  @   \result.error == common_rule(config, crc) && \result.slot == ILK_SLOTS;
-  @ ensures  P13_slots: common_rule(config, crc) == ILK_CONFIG_ERROR_NONE && !valid_slots(config, ILK_SLOTS) ==>
-  @   \result.slot < ILK_SLOTS;
-  @ ensures  P13_no_axis: common_rule(config, crc) == ILK_CONFIG_ERROR_NONE && valid_slots(config, ILK_SLOTS)
-  @   && !some_axis(config, ILK_SLOTS) ==>
-  @     \result.error == ILK_CONFIG_ERROR_NO_AXIS && \result.slot == ILK_SLOTS;
-  @ ensures  P13_accepted: common_rule(config, crc) == ILK_CONFIG_ERROR_NONE && valid_slots(config, ILK_SLOTS)
-  @   && some_axis(config, ILK_SLOTS) ==>
-  @     \result.error == ILK_CONFIG_ERROR_NONE && \result.slot == ILK_SLOTS;
-  @*/
-static ilk_config_verdict_t first_error(const ilk_config_t *config, uint32_t crc) {
-  ilk_config_verdict_t verdict = {.error = (uint32_t)header_error(config, crc), .slot = (uint32_t)ILK_SLOTS};
-  if (verdict.error == (uint32_t)ILK_CONFIG_ERROR_NONE) {
-    verdict.error = (uint32_t)system_error(config);
-  }
-  if (verdict.error == (uint32_t)ILK_CONFIG_ERROR_NONE) {
-    verdict = first_slot_error(config);
-  }
   if ((verdict.error == (uint32_t)ILK_CONFIG_ERROR_NONE) && !any_axis(config)) {
     verdict.error = (uint32_t)ILK_CONFIG_ERROR_NO_AXIS;
   }
   return verdict;
 }
 
-/*@ ensures P13_common: common_rule(config, config_crc(config)) != ILK_CONFIG_ERROR_NONE ==>
+/*@ ensures P13_exact: \result.error == ILK_CONFIG_ERROR_NONE <==>
+  @   valid_config(config) && config->crc == config_crc(config);
+  @ ensures P13_system: common_rule(config, config_crc(config)) != ILK_CONFIG_ERROR_NONE ==>
   @   \result.error == common_rule(config, config_crc(config)) && \result.slot == ILK_SLOTS;
-  @ ensures P13_slots: common_rule(config, config_crc(config)) == ILK_CONFIG_ERROR_NONE && !valid_slots(config, ILK_SLOTS) ==>
-  @   \result.slot < ILK_SLOTS;
-  @ ensures P13_no_axis: common_rule(config, config_crc(config)) == ILK_CONFIG_ERROR_NONE && valid_slots(config, ILK_SLOTS)
-  @   && !some_axis(config, ILK_SLOTS) ==>
+  @ ensures P13_slots: common_rule(config, config_crc(config)) == ILK_CONFIG_ERROR_NONE
+  @   && !valid_slots(config, ILK_SLOTS) ==> \result.slot < ILK_SLOTS;
+  @ ensures P13_no_axis: common_rule(config, config_crc(config)) == ILK_CONFIG_ERROR_NONE
+  @   && valid_slots(config, ILK_SLOTS) && !some_axis(config, ILK_SLOTS) ==>
   @     \result.error == ILK_CONFIG_ERROR_NO_AXIS && \result.slot == ILK_SLOTS;
-  @ ensures P13_accepted: common_rule(config, config_crc(config)) == ILK_CONFIG_ERROR_NONE && valid_slots(config, ILK_SLOTS)
-  @   && some_axis(config, ILK_SLOTS) ==>
-  @     \result.error == ILK_CONFIG_ERROR_NONE && \result.slot == ILK_SLOTS;
+  @ ensures P13_none_named: \result.error == ILK_CONFIG_ERROR_NONE ==> \result.slot == ILK_SLOTS;
   @*/
 ilk_config_verdict_t ilk_config_validate(const ilk_config_t *config) {
   return first_error(config, ilk_config_crc(config));

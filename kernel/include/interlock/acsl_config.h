@@ -30,6 +30,13 @@
   @   : !(1 <= config->overrun_limit <= 10)                           ? ILK_CONFIG_ERROR_OVERRUNS
   @                                                                   : ILK_CONFIG_ERROR_NONE;
   @
+  @ // All rules that are no slot's; `crc` is that of the words that are there.
+  @ logic integer common_rule(ilk_config_t *config, integer crc) =
+  @   config->version != ILK_CONFIG_VERSION           ? ILK_CONFIG_ERROR_VERSION
+  @   : config->size_bytes != sizeof(ilk_config_t)    ? ILK_CONFIG_ERROR_SIZE
+  @   : config->crc != crc                            ? ILK_CONFIG_ERROR_CRC
+  @                                                   : system_rule(config);
+  @
   @ logic boolean ordered_limits(ilk_axis_config_t *axis) =
   @   -1073741824 <= axis->min_counts < axis->max_counts <= 1073741824;
   @
