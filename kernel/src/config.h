@@ -11,28 +11,19 @@
 #include "interlock/acsl_config.h"
 #include "interlock/types.h"
 
-/*@ // P14: every word of an axis, group by group, then every word of the system, in the CRC.
-  @ logic integer mounting_crc(integer crc, ilk_axis_config_t *axis) =
-  @   crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc, axis->card),
-  @     axis->required), axis->motor_direction), axis->direction_correction), axis->limit_side),
-  @     (uint32_t)axis->min_counts), (uint32_t)axis->max_counts), (uint32_t)axis->home_offset_counts);
-  @
-  @ logic integer bounds_crc(integer crc, ilk_axis_config_t *axis) =
-  @   crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc, axis->coast_counts),
-  @     axis->backlash_counts), axis->noise_counts), axis->deadband_counts), axis->max_drive),
-  @     axis->unhomed_max_drive), axis->max_amplitude), axis->unhomed_travel_counts);
-  @
-  @ logic integer homing_crc(integer crc, ilk_axis_config_t *axis) =
-  @   crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc, axis->home_drive),
-  @     axis->home_amplitude), axis->home_travel_counts), axis->home_backoff_counts), axis->home_timeout_ticks),
-  @     axis->home_rest_ticks), axis->home_speed_counts_per_s);
-  @
-  @ logic integer watch_crc(integer crc, ilk_axis_config_t *axis) =
-  @   crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc, axis->stall_ticks), axis->stall_min_counts),
-  @     axis->reverse_counts), axis->drift_counts), axis->settle_ticks), axis->max_delta_counts);
-  @
+/*@ // P14: every word of an axis, then every word of the system, in the CRC.
   @ logic integer axis_crc(integer crc, ilk_axis_config_t *axis) =
-  @   watch_crc(homing_crc(bounds_crc(mounting_crc(crc, axis), axis), axis), axis);
+  @   crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(
+  @     crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(
+  @     crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc, axis->card), axis->required),
+  @     axis->motor_direction), axis->direction_correction), axis->limit_side), (uint32_t)axis->min_counts),
+  @     (uint32_t)axis->max_counts), (uint32_t)axis->home_offset_counts), axis->coast_counts),
+  @     axis->backlash_counts), axis->noise_counts), axis->deadband_counts), axis->max_drive),
+  @     axis->unhomed_max_drive), axis->max_amplitude), axis->unhomed_travel_counts), axis->home_drive),
+  @     axis->home_amplitude), axis->home_travel_counts), axis->home_backoff_counts),
+  @     axis->home_timeout_ticks), axis->home_rest_ticks), axis->home_speed_counts_per_s),
+  @     axis->stall_ticks), axis->stall_min_counts), axis->reverse_counts), axis->drift_counts),
+  @     axis->settle_ticks), axis->max_delta_counts);
   @
   @ logic integer system_crc(integer crc, ilk_config_t *config) =
   @   crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc,

@@ -12,13 +12,7 @@
   @ logic boolean lasts(integer ticks, integer period_us, integer limit_ms) =
   @   0 < ticks && ticks * period_us <= limit_ms * 1000;
   @
-  @ // The header's rules; `crc` is that of the words that are there.
-  @ logic integer header_rule(ilk_config_t *config, integer crc) =
-  @   config->version != ILK_CONFIG_VERSION                           ? ILK_CONFIG_ERROR_VERSION
-  @   : config->size_bytes != sizeof(ilk_config_t)                    ? ILK_CONFIG_ERROR_SIZE
-  @   : config->crc != crc                                            ? ILK_CONFIG_ERROR_CRC
-  @                                                                   : ILK_CONFIG_ERROR_NONE;
-  @
+  @ // The system's rules after the CRC.
   @ logic integer system_rule(ilk_config_t *config) =
   @   !(125 <= config->period_us <= 2000)                             ? ILK_CONFIG_ERROR_PERIOD
   @   : !(1 <= config->pedal_channels <= 2)                           ? ILK_CONFIG_ERROR_PEDAL_CHANNELS
@@ -51,12 +45,8 @@
   @   : !(0 < 2 * axis->deadband_counts < range(axis))                  ? ILK_CONFIG_ERROR_DEADBAND
   @                                                                     : ILK_CONFIG_ERROR_NONE;
   @
-  @ logic integer least_amplitude(integer card) = card == ILK_CARD_HIGH_FREQUENCY ? 1 : 0;
-  @
-  @ logic integer largest_amplitude(integer card) = card == ILK_CARD_HIGH_FREQUENCY ? 255 : 0;
-  @
   @ logic boolean amplitude_allowed(ilk_axis_config_t *axis) =
-  @   least_amplitude(axis->card) <= axis->max_amplitude <= largest_amplitude(axis->card);
+  @   axis->card == ILK_CARD_HIGH_FREQUENCY ? 1 <= axis->max_amplitude <= 255 : axis->max_amplitude == 0;
   @
   @ logic integer drive_rule(ilk_axis_config_t *axis) =
   @   !(1 <= axis->max_drive <= card_drive(axis->card))                 ? ILK_CONFIG_ERROR_MAX_DRIVE
@@ -111,30 +101,18 @@
   @     ? homing_rule(axis, period_us)
   @                                                : watch_rule(axis, period_us);
   @
-  @ // Zero, as an inequality: an equality inside a truth value is slow to decide.
-  @ logic boolean zero(integer word) = 0 <= word <= 0;
-  @
-  @ logic boolean no_mounting(ilk_axis_config_t *axis) =
-  @   zero(axis->motor_direction) && zero(axis->direction_correction) && zero(axis->limit_side)
-  @   && zero(axis->min_counts) && zero(axis->max_counts) && zero(axis->home_offset_counts);
-  @
-  @ logic boolean no_bounds(ilk_axis_config_t *axis) =
-  @   zero(axis->coast_counts) && zero(axis->backlash_counts) && zero(axis->noise_counts)
-  @   && zero(axis->deadband_counts) && zero(axis->max_drive) && zero(axis->unhomed_max_drive)
-  @   && zero(axis->max_amplitude) && zero(axis->unhomed_travel_counts);
-  @
-  @ logic boolean no_homing(ilk_axis_config_t *axis) =
-  @   zero(axis->home_drive) && zero(axis->home_amplitude) && zero(axis->home_travel_counts)
-  @   && zero(axis->home_backoff_counts) && zero(axis->home_timeout_ticks) && zero(axis->home_rest_ticks)
-  @   && zero(axis->home_speed_counts_per_s);
-  @
-  @ logic boolean no_watch(ilk_axis_config_t *axis) =
-  @   zero(axis->stall_ticks) && zero(axis->stall_min_counts) && zero(axis->reverse_counts)
-  @   && zero(axis->drift_counts) && zero(axis->settle_ticks) && zero(axis->max_delta_counts);
-  @
   @ // Nothing that only a motor has.
   @ logic boolean bare(ilk_axis_config_t *axis) =
-  @   no_mounting(axis) && no_bounds(axis) && no_homing(axis) && no_watch(axis);
+  @   axis->motor_direction == 0 && axis->direction_correction == 0 && axis->limit_side == 0
+  @   && axis->min_counts == 0 && axis->max_counts == 0 && axis->home_offset_counts == 0
+  @   && axis->coast_counts == 0 && axis->backlash_counts == 0 && axis->noise_counts == 0
+  @   && axis->deadband_counts == 0 && axis->max_drive == 0 && axis->unhomed_max_drive == 0
+  @   && axis->max_amplitude == 0 && axis->unhomed_travel_counts == 0 && axis->home_drive == 0
+  @   && axis->home_amplitude == 0 && axis->home_travel_counts == 0
+  @   && axis->home_backoff_counts == 0 && axis->home_timeout_ticks == 0
+  @   && axis->home_rest_ticks == 0 && axis->home_speed_counts_per_s == 0 && axis->stall_ticks == 0
+  @   && axis->stall_min_counts == 0 && axis->reverse_counts == 0 && axis->drift_counts == 0
+  @   && axis->settle_ticks == 0 && axis->max_delta_counts == 0;
   @
   @ logic integer slot_rule(ilk_axis_config_t *axis, integer period_us) =
   @   axis->card >= ILK_CARD_COUNT ? ILK_CONFIG_ERROR_CARD
@@ -149,10 +127,6 @@
   @ predicate valid_slots(ilk_config_t *config, integer slots) =
   @   \forall integer slot; 0 <= slot < slots ==>
   @     slot_rule(&config->axis[slot], config->period_us) == ILK_CONFIG_ERROR_NONE;
-  @
-  @ // The rules that are no slot's, in their order.
-  @ logic integer common_rule(ilk_config_t *config, integer crc) =
-  @   header_rule(config, crc) != ILK_CONFIG_ERROR_NONE ? header_rule(config, crc) : system_rule(config);
   @
   @ // P13: every rule besides the CRC.
   @ predicate valid_config(ilk_config_t *config) =
