@@ -103,7 +103,8 @@ def call(tool: str, arguments: list[str], log: Path, seconds: int) -> str:
 def replacements(proof: Proof, linked: Path, logs: Path) -> list[str]:
     """How to turn calls to the stubs. An inline function has a copy for each file that calls it."""
     list_functions = ["--list-goto-functions", str(linked)]
-    listed = call("goto-instrument", list_functions, logs / "functions.log", COMPILE_SECONDS)
+    log = logs / f"{linked.name}.functions.log"  # properties and goals of a proof are compiled side by side
+    listed = call("goto-instrument", list_functions, log, COMPILE_SECONDS)
     present = re.findall(r"/\* ([^\s,]+)", listed)
     arguments = []
     for one in proof.replaced:
