@@ -126,6 +126,31 @@ std::optional<Homing> read_optional_homing(TableReader& table, const Axis& axis,
   return std::nullopt;
 }
 
+double read_rate(TableReader& table, std::string_view key) {
+  constexpr double largest_rate = 1e9;
+  const double rate = table.number(key);
+  if (!(rate > 0.0 && rate <= largest_rate)) {
+    table.refuse(key, "the rate is not above zero, or beyond any motor", "a number above 0, at most 1e9");
+    return 1.0;
+  }
+  return rate;
+}
+
+MotionRates read_motion(TableReader table) {
+  MotionRates motion;
+  motion.full_speed_counts_per_s = read_rate(table, "full_speed_counts_per_s");
+  motion.velocity_counts_per_s = read_rate(table, "velocity_counts_per_s");
+  motion.acceleration_counts_per_s2 = read_rate(table, "acceleration_counts_per_s2");
+  motion.jerk_counts_per_s3 = read_rate(table, "jerk_counts_per_s3");
+  motion.following_error_counts = table.integer<std::uint32_t>("following_error_counts");
+  if (motion.velocity_counts_per_s > motion.full_speed_counts_per_s) {
+    table.refuse("velocity_counts_per_s", "the axis cannot go that fast",
+                 "full_speed_counts_per_s at most, better less");
+  }
+  table.refuse_unknown_keys();
+  return motion;
+}
+
 }  // namespace
 
 Axis read_axis(TableReader table, const Robot& robot) {
@@ -155,6 +180,9 @@ Axis read_axis(TableReader table, const Robot& robot) {
   axis.stall = read_stall(table.table("stall"), robot.period_us);
   axis.runaway = read_runaway(table.table("runaway"));
   axis.homing = read_optional_homing(table, axis, robot.period_us);
+  if (table.has("motion")) {
+    axis.motion = read_motion(table.table("motion"));
+  }
   table.refuse_unknown_keys();
   return axis;
 }

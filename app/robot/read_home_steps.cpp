@@ -19,6 +19,27 @@ std::string axis_names(const Robot& robot) {
   return names;
 }
 
+/** Reads counts by axis; `refuse` judges each of them. */
+template <typename Refuse>
+std::vector<AxisCounts> read_counts(TableReader& table, std::string_view kind, const Robot& robot,
+                                    Refuse refuse) {
+  TableReader entries = table.table(kind);
+  std::vector<AxisCounts> travel;
+  for (const std::string& name : entries.keys()) {
+    const auto counts = entries.integer<std::int32_t>(name);
+    if (const Axis* const axis = robot.find(name)) {
+      refuse(entries, *axis, counts);
+      travel.push_back({axis->slot, counts});
+    } else {
+      entries.refuse(name, "no axis is called " + quoted(name), "one of " + axis_names(robot));
+    }
+  }
+  if (travel.empty()) {
+    table.refuse(kind, "it names no axis", "counts for at least one axis");
+  }
+  return travel;
+}
+
 /** Reads the steps in their order and remembers which axes have homed by then. */
 class StepReader {
  public:
@@ -76,39 +97,21 @@ class StepReader {
     return slots;
   }
 
-  /** Reads counts by axis; `refuse` judges each of them. */
-  template <typename Refuse>
-  std::vector<AxisCounts> read_counts(TableReader& table, std::string_view kind, Refuse refuse) const {
-    TableReader entries = table.table(kind);
-    std::vector<AxisCounts> travel;
-    for (const std::string& name : entries.keys()) {
-      const auto counts = entries.integer<std::int32_t>(name);
-      if (const Axis* const axis = robot_.find(name)) {
-        refuse(entries, *axis, counts);
-        travel.push_back({axis->slot, counts});
-      } else {
-        entries.refuse(name, "no axis is called " + quoted(name), "one of " + axis_names(robot_));
-      }
-    }
-    if (travel.empty()) {
-      table.refuse(kind, "it names no axis", "counts for at least one axis");
-    }
-    return travel;
-  }
-
   std::vector<AxisCounts> read_nudge(TableReader& table) const {
-    return read_counts(table, "nudge", [this](TableReader& entries, const Axis& axis, std::int32_t counts) {
-      if (!has_switch(axis) || homes(axis)) {
-        entries.refuse(axis.name, has_switch(axis) ? "the axis is homed by then" : "the axis has no switch",
-                       "an axis that a later step homes");
-      } else if (counts == 0) {
-        entries.refuse(axis.name, "0 counts are no travel", "a signed distance in counts");
-      }
-    });
+    return read_counts(
+        table, "nudge", robot_, [this](TableReader& entries, const Axis& axis, std::int32_t counts) {
+          if (!has_switch(axis) || homes(axis)) {
+            entries.refuse(axis.name,
+                           has_switch(axis) ? "the axis is homed by then" : "the axis has no switch",
+                           "an axis that a later step homes");
+          } else if (counts == 0) {
+            entries.refuse(axis.name, "0 counts are no travel", "a signed distance in counts");
+          }
+        });
   }
 
   std::vector<AxisCounts> read_move(TableReader& table) const {
-    return read_counts(table, "move", [this](TableReader& entries, const Axis& axis, std::int32_t) {
+    return read_counts(table, "move", robot_, [this](TableReader& entries, const Axis& axis, std::int32_t) {
       if (!homes(axis)) {  // An axis without a switch is homed by hand, on which no step can rely.
         entries.refuse(axis.name, "the axis is not homed by then", "an axis that an earlier step homes");
       }
@@ -135,6 +138,20 @@ void read_home_steps(TableReader& table, Robot& robot) {
                    "every axis with a switch in exactly one home list");
     }
   }
+}
+
+void read_draping(TableReader& table, Robot& robot) {
+  if (!table.has("draping")) {
+    return;
+  }
+  robot.draping =
+      read_counts(table, "draping", robot, [](TableReader& entries, const Axis& axis, std::int32_t counts) {
+        if (!axis.accepts_setpoint(counts)) {
+          entries.refuse(axis.name, std::to_string(counts) + " counts lead out of the range of the axis",
+                         "counts from " + std::to_string(axis.lowest_setpoint_counts()) + " to " +
+                             std::to_string(axis.highest_setpoint_counts()));
+        }
+      });
 }
 
 }  // namespace interlock

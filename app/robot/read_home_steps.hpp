@@ -1,6 +1,6 @@
 /**
  * @file
- * Reads the [[home_step]] tables of a robot file. Private to this folder.
+ * Reads the [[home_step]] and [draping] tables of a robot file. Private to this folder.
  */
 #pragma once
 
@@ -15,5 +15,8 @@ namespace interlock {
  * position is known, a move of one whose position is not.
  */
 void read_home_steps(TableReader& table, Robot& robot);
+
+/** Reads the setpoints of the mode "draping", when there are any; each within what the kernel accepts. */
+void read_draping(TableReader& table, Robot& robot);
 
 }  // namespace interlock

@@ -100,6 +100,18 @@ struct RunawayRule {
   bool operator==(const RunawayRule&) const = default;
 };
 
+/** How an axis may move together with others, along a path in time. */
+struct MotionRates {
+  double full_speed_counts_per_s = 0.0; /**< of the unloaded axis at `drive.max` */
+  double velocity_counts_per_s =
+      0.0; /**< largest planned speed, below full speed: the rest is for catching up */
+  double acceleration_counts_per_s2 = 0.0;
+  double jerk_counts_per_s3 = 0.0;
+  std::uint32_t following_error_counts = 0; /**< distance from the path that ends the motion */
+
+  bool operator==(const MotionRates&) const = default;
+};
+
 /** One motor axis. The slot of its card is its number everywhere. */
 struct Axis {
   std::uint32_t slot = 0;
@@ -125,6 +137,7 @@ struct Axis {
   StallRule stall;
   RunawayRule runaway;
   std::optional<Homing> homing;
+  std::optional<MotionRates> motion; /**< without them the axis moves alone only */
 
   /** Counts in the axis' unit. */
   [[nodiscard]] double to_unit(std::int32_t counts) const;
@@ -208,6 +221,7 @@ struct Robot {
   std::vector<Axis> axes;
   std::vector<Sensor> sensors;
   std::vector<HomeStep> home_steps; /**< in the order in which they run; each axis with a switch homes once */
+  std::vector<AxisCounts> draping; /**< setpoints of the mode "draping"; the other axes stay where they are */
   Origin origin;
 
   /** The axis of that name, or null. */

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "robot/modes.hpp"
 #include "robot/read_cards.hpp"
 #include "robot/read_home_steps.hpp"
 #include "robot/read_kinematics.hpp"
@@ -14,8 +15,6 @@ namespace interlock {
 namespace {
 
 constexpr std::uintmax_t largest_file_bytes = std::uintmax_t{1} << 20;
-
-constexpr std::array<std::string_view, 2> known_modes{"manual", "home"};
 
 Pedal read_pedal(TableReader table, std::uint32_t period_us) {
   Pedal pedal;
@@ -43,10 +42,10 @@ void read_axes(TableReader& table, Robot& robot) {
 }
 
 std::vector<std::string> read_modes(TableReader& table) {
-  const std::string expected = "\"manual\" first, and then each other mode of manual, home once";
+  const std::string expected = "\"manual\" first, and then each other mode of " + mode_names() + " once";
   std::vector<std::string> modes;
   for (std::string& mode : table.texts("modes", expected)) {
-    if (std::ranges::find(known_modes, mode) == known_modes.end()) {
+    if (!mode_of(mode)) {
       table.refuse("modes", "no mode is called \"" + mode + '"', expected);
     }
     if (std::ranges::find(modes, mode) != modes.end()) {
@@ -54,7 +53,7 @@ std::vector<std::string> read_modes(TableReader& table) {
     }
     modes.push_back(std::move(mode));
   }
-  if (modes.empty() || modes.front() != known_modes.front()) {
+  if (modes.empty() || modes.front() != mode_name(RobotMode::manual)) {
     table.refuse("modes", "the first mode is not \"manual\"", expected);
   }
   return modes;
@@ -66,6 +65,28 @@ void read_sensors(TableReader& table, Robot& robot) {
   }
   for (TableReader& entry : table.tables("sensor", "one [[sensor]] table for each sensor card")) {
     robot.sensors.push_back(read_sensor(std::move(entry), robot));
+  }
+}
+
+/** What each mode but "manual" needs of the robot is there. */
+void refuse_unserved_modes(TableReader& table, const Robot& robot) {
+  if (robot.has_mode("home") && robot.home_steps.empty()) {
+    table.refuse("modes", "there is no step of homing for the mode \"home\"",
+                 "a [[home_step]], or no such mode");
+  }
+  if (robot.has_mode("draping") && robot.draping.empty()) {
+    table.refuse("modes", "there are no setpoints for the mode \"draping\"",
+                 "a [draping] table, or no such mode");
+  }
+  const auto alone = std::ranges::find_if(robot.axes, [](const Axis& axis) { return !axis.motion; });
+  const auto needs_motion = std::ranges::find_if(robot.modes, [](const std::string& name) {
+    const auto mode = mode_of(name);
+    return mode && moves_along_paths(*mode);
+  });
+  if (alone != robot.axes.end() && needs_motion != robot.modes.end()) {
+    table.refuse("modes",
+                 "the axis \"" + alone->name + "\" has no rates for the mode \"" + *needs_motion + '"',
+                 "`motion` for each axis, or no such mode");
   }
 }
 
@@ -85,10 +106,8 @@ Robot read_robot(ReadLog& log, const toml::table& root) {
   refuse_unplayed_roles(table, robot);
   read_sensors(table, robot);
   read_home_steps(table, robot);
-  if (robot.has_mode("home") && robot.home_steps.empty()) {
-    table.refuse("modes", "there is no step of homing for the mode \"home\"",
-                 "a [[home_step]], or no such mode");
-  }
+  read_draping(table, robot);
+  refuse_unserved_modes(table, robot);
   table.refuse_unknown_keys();
   return robot;
 }

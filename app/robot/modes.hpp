@@ -1,0 +1,62 @@
+/** @file The ways of moving a robot, by name. */
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace interlock {
+
+enum class RobotMode : std::uint8_t {
+  manual,      /**< each axis to its own setpoint */
+  home,        /**< the steps of homing */
+  coordinated, /**< several axes to their setpoints, arriving together */
+  trajectory,  /**< along a loaded trajectory, in time */
+  draping      /**< to the setpoints in which the robot is draped */
+};
+
+namespace detail {
+
+struct NamedMode {
+  RobotMode mode;
+  std::string_view name;
+};
+
+inline constexpr std::array<NamedMode, 5> named_modes{{{RobotMode::manual, "manual"},
+                                                       {RobotMode::home, "home"},
+                                                       {RobotMode::coordinated, "coordinated"},
+                                                       {RobotMode::trajectory, "trajectory"},
+                                                       {RobotMode::draping, "draping"}}};
+
+}  // namespace detail
+
+/** As files and the interface spell it. */
+constexpr std::string_view mode_name(RobotMode mode) noexcept {
+  return detail::named_modes[static_cast<std::size_t>(mode)].name;
+}
+
+/** The mode of that name. */
+constexpr std::optional<RobotMode> mode_of(std::string_view name) noexcept {
+  for (const detail::NamedMode& each : detail::named_modes) {
+    if (each.name == name) {
+      return each.mode;
+    }
+  }
+  return std::nullopt;
+}
+
+/** Whether its axes move together, so that each of them needs rates. */
+constexpr bool moves_along_paths(RobotMode mode) noexcept { return mode > RobotMode::home; }
+
+/** All names, for messages. */
+inline std::string mode_names() {
+  std::string names;
+  for (const detail::NamedMode& each : detail::named_modes) {
+    names += (names.empty() ? "" : ", ") + std::string(each.name);
+  }
+  return names;
+}
+
+}  // namespace interlock
