@@ -19,6 +19,17 @@ MotionState TimedTrajectory::at(std::size_t axis, double time_s) const noexcept 
   return piece_between(moved, row(next - 1), row(next)).after(time_s - this->time_s(next - 1));
 }
 
+PositionRange TimedTrajectory::reach(std::size_t axis, std::size_t index) const noexcept {
+  const TrajectoryAxis& moved = axes_[axis];
+  const double start = row(index)[moved.position_place];
+  PositionRange range{start, start};
+  if (index + 1 < rows()) {
+    piece_between(moved, row(index), row(index + 1)).widen(range, time_s(index + 1) - time_s(index));
+    widen(range, row(index + 1)[moved.position_place]);
+  }
+  return range;
+}
+
 JerkPiece piece_between(const TrajectoryAxis& axis, std::span<const double> from,
                         std::span<const double> to) noexcept {
   const double duration_s = to.front() - from.front();

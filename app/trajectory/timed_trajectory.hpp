@@ -54,6 +54,9 @@ class TimedTrajectory {
    * row. */
   [[nodiscard]] MotionState at(std::size_t axis, double time_s) const noexcept;
 
+  /** The positions through which an axis passes from a row to the next; of the last row, its own. */
+  [[nodiscard]] PositionRange reach(std::size_t axis, std::size_t row) const noexcept;
+
  private:
   friend class TrajectoryBuilder;
 
