@@ -10,6 +10,7 @@
 
 #include "interlock/link.h"
 #include "motion/axis_plan.hpp"
+#include "motion/move_lease.hpp"
 #include "motion/rest_watch.hpp"
 #include "motion/wish.hpp"
 
@@ -25,7 +26,7 @@ class AxisMove {
 
   AxisMove() = default;
   AxisMove(std::uint32_t slot, const AxisPlan& plan, std::uint32_t lease_ticks) noexcept
-      : slot_(slot), plan_(plan), lease_ticks_(lease_ticks) {}
+      : slot_(slot), plan_(plan), lease_(slot, plan, lease_ticks) {}
 
   /** Sets a new target. `max_drive` 0: the axis' own bound. */
   void aim(std::int32_t target_counts, std::uint32_t max_drive) noexcept;
@@ -39,37 +40,23 @@ class AxisMove {
   /** Wishes for a MOVE when the lease or the drive has to be renewed. */
   void hold(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept;
 
-  /**
-   * Gives back the lease, if the kernel may still hold one. A snapshot that shows the axis at rest proves
-   * nothing: the newest MOVE may have crossed it.
-   */
-  void let_go(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept;
+  /** Gives back the lease, if the kernel may still hold one. */
+  void let_go(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
+    lease_.let_go(proposal, snapshot, wishes);
+  }
 
   /** The wish of this tick was not sent: what was sent before it still stands. */
-  void on_unsent() noexcept;
+  void on_unsent() noexcept { lease_.on_unsent(); }
 
  private:
-  /** The newest MOVE. */
-  struct Sent {
-    bool may_drive = false; /**< its lease may still drive the axis */
-    std::uint32_t tick = 0;
-    std::uint32_t drive = 0;
-  };
-
-  void note_sent(const Sent& sent) noexcept;
   [[nodiscard]] bool held_back(const ilk_snapshot_t& snapshot) noexcept;
   [[nodiscard]] std::uint32_t wanted_drive(const ilk_axis_t& axis) const noexcept;
-  [[nodiscard]] Wish wish_for(std::uint32_t proposal, std::uint32_t drive,
-                              std::uint32_t lease_ticks) const noexcept;
 
   std::uint32_t slot_ = 0;
   AxisPlan plan_;
-  std::uint32_t lease_ticks_ = 1;
+  MoveLease lease_;
   std::int32_t target_counts_ = 0;
   std::uint32_t max_drive_ = 0;
-  Sent sent_;
-  Sent before_;                      /**< before `sent_`, which the port may not have taken */
-  bool due_at_once_ = false;         /**< nothing was sent since the start, or since what could not be sent */
   std::uint32_t unblocked_tick_ = 0; /**< newest tick in which no limit held the axis back */
   RestWatch rest_;
 };

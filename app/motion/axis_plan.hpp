@@ -16,10 +16,12 @@
 
 namespace interlock {
 
-/** The kernel's rules for an axis and the smallest drive that a controller asks for. */
+/** The kernel's rules for an axis and what a controller needs to know besides. */
 struct AxisPlan {
   ilk_axis_config_t rules{};
-  std::uint32_t min_drive = 0;
+  std::uint32_t min_drive = 0; /**< smallest drive that a controller asks for */
+  double counts_per_unit = 1.0;
+  MotionRates rates; /**< all zero: the axis moves alone only */
 };
 
 /** How the axes of a home step go. */
@@ -87,9 +89,12 @@ struct RobotPlan {
         lease_max_ticks(config.lease_max_ticks),
         home_steps(robot.home_steps.begin(), robot.home_steps.end()) {
     for (const Axis& each : robot.axes) {
-      axis[each.slot] = AxisPlan{config.axis[each.slot], each.drive.min};
+      axis[each.slot] = AxisPlan{config.axis[each.slot], each.drive.min, each.counts_per_unit,
+                                 each.motion.value_or(MotionRates{})};
     }
   }
+
+  [[nodiscard]] double period_s() const noexcept { return static_cast<double>(period_us) * 1e-6; }
 
   /** Lease of a move: short, so that a silent app stops early. */
   [[nodiscard]] std::uint32_t lease_ticks() const noexcept {

@@ -8,18 +8,22 @@
 
 #include "motion/home_mode.hpp"
 #include "motion/manual_mode.hpp"
+#include "motion/path_mode.hpp"
 
 namespace interlock {
 
 class Conductor {
  public:
-  explicit Conductor(const RobotPlan& plan) : manual_(plan), home_(plan) {}
+  explicit Conductor(const RobotPlan& plan) : manual_(plan), home_(plan), path_(plan) {}
 
-  /** Takes a move; while homing is open it is ended at once. */
+  /** Takes a move; while homing or a path is open it is ended at once. */
   void take(const Order& order, std::uint32_t tick) noexcept;
 
-  /** Takes homing; open moves end. */
+  /** Takes homing; open moves and an open path end. */
   void take(const HomeOrder& order, std::uint32_t tick) noexcept;
+
+  /** Takes a path; whatever else is open ends. */
+  void take(const PathOrder& order, std::uint32_t tick) noexcept;
 
   /** Aborts the order of that proposal, if it is open. */
   void end(std::uint32_t proposal, OrderReason reason, std::uint32_t tick) noexcept;
@@ -38,10 +42,12 @@ class Conductor {
 
   [[nodiscard]] const OrderTable& orders() const noexcept { return manual_.orders(); }
   [[nodiscard]] const HomeStatus& home() const noexcept { return home_.status(); }
+  [[nodiscard]] const PathStatus& path() const noexcept { return path_.status(); }
 
  private:
   ManualMode manual_;
   HomeMode home_;
+  PathMode path_;
 };
 
 }  // namespace interlock

@@ -202,6 +202,9 @@ bool ControlLoop::take(const Command& command) noexcept {
   if (const auto* order = std::get_if<HomeOrder>(&command)) {
     return take_order(*order);
   }
+  if (const auto* order = std::get_if<PathOrder>(&command)) {
+    return take_order(*order);
+  }
   if (const auto* cancel = std::get_if<Cancel>(&command)) {
     conductor_.end(cancel->proposal, OrderReason::cancelled, view_.snapshot.state.tick);
     return true;
@@ -256,12 +259,15 @@ void ControlLoop::send_wishes() noexcept {
 void ControlLoop::publish() noexcept {
   view_.orders = conductor_.orders();
   view_.home = conductor_.home();
+  view_.path = conductor_.path();
   mailbox_.view.writing() = view_;
   mailbox_.view.publish();
-  const bool changed = view_.orders != published_orders_ || view_.home != published_home_;
+  const bool changed =
+      view_.orders != published_orders_ || view_.home != published_home_ || view_.path != published_path_;
   if (std::exchange(noticed_, false) || changed) {
     published_orders_ = view_.orders;
     published_home_ = view_.home;
+    published_path_ = view_.path;
     mailbox_.network_wake.signal();
   }
 }
@@ -276,6 +282,9 @@ void ControlLoop::refuse_commands() noexcept {
     } else if (const auto* home = std::get_if<HomeOrder>(&command)) {
       conductor_.take(*home, tick);
       conductor_.end(home->proposal, OrderReason::link_lost, tick);
+    } else if (const auto* path = std::get_if<PathOrder>(&command)) {
+      conductor_.take(*path, tick);
+      conductor_.end(path->proposal, OrderReason::link_lost, tick);
     } else if (const auto* ask = std::get_if<Ask>(&command)) {
       answer_lost(AskOrigin{ask->ticket, ask->kind, ask->slot});
     }

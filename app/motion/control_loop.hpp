@@ -59,6 +59,7 @@ class ControlLoop {
   ControlView view_;
   OrderTable published_orders_{};
   HomeStatus published_home_;
+  PathStatus published_path_;
   std::string attach_complaint_;
   std::chrono::milliseconds back_off_;
   std::uint32_t heartbeat_tick_ = 0;

@@ -37,7 +37,7 @@ struct Ask {
   std::uint32_t stops = 0;                        /**< as in `Order`; DISABLE is sent all the same */
 };
 
-using Command = std::variant<Order, HomeOrder, Cancel, Ask>;
+using Command = std::variant<Order, HomeOrder, PathOrder, Cancel, Ask>;
 
 /** The kernel's word on an `Ask`; no verdict: it was not sent, or the answer got lost with the link. */
 struct Answer {
@@ -68,6 +68,7 @@ struct ControlView {
   ilk_snapshot_t snapshot{};
   OrderTable orders{};
   HomeStatus home;
+  PathStatus path;
 };
 
 struct Mailbox {

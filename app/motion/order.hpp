@@ -1,6 +1,7 @@
 /**
  * @file
- * Orders: what the control thread carries out of an approved proposal, a move of one axis or homing.
+ * Orders: what the control thread carries out of an approved proposal: a move of one axis, homing, or several
+ * axes along a path.
  */
 #pragma once
 
@@ -34,6 +35,15 @@ struct HomeOrder {
   std::uint32_t stops = 0; /**< as in `Order` */
 };
 
+struct PathProgram;
+
+/** Several axes together, along the legs of a program. */
+struct PathOrder {
+  std::uint32_t proposal = 0;
+  const PathProgram* program = nullptr; /**< outlives the order: see `PathStatus` */
+  std::uint32_t stops = 0;              /**< as in `Order` */
+};
+
 /** Where an order stands. The last five are final. */
 enum class OrderPhase : std::uint8_t { none, waiting, executing, paused, done, refused, aborted, expired };
 
@@ -60,7 +70,11 @@ enum class OrderReason : std::uint8_t {
   not_homed,       /**< a step moves an axis to a position, and the axis is not homed */
   verdict_lost,    /**< the kernel's answer to a HOME got lost */
   authority_changed,
-  position_declared /**< SET_HOME or RESTORE gave the axis another position */
+  position_declared, /**< SET_HOME or RESTORE gave the axis another position */
+  superseded,        /**< another motion took over the axes */
+  off_path,          /**< an axis strayed from its path */
+  goal_late,         /**< an axis did not come to rest at its goal in time */
+  no_path            /**< no motion within the limits leads there from where the axes are */
 };
 
 /** Level, not edge: the newest view always tells the whole truth about the slot's newest order. */
@@ -84,6 +98,18 @@ struct HomeStatus {
   std::int32_t left_counts = 0; /**< of the nudge of that axis, signed; 0 where nothing is left */
 
   bool operator==(const HomeStatus&) const = default;
+};
+
+/**
+ * Where the newest path order stands. The program of an order is no longer read once this names a later
+ * proposal, or its own as final.
+ */
+struct PathStatus {
+  OrderStatus order;
+  std::uint32_t leg = 0;  /**< index of the leg that runs or is next */
+  std::uint32_t slot = 0; /**< axis that the reason is about */
+
+  bool operator==(const PathStatus&) const = default;
 };
 
 }  // namespace interlock

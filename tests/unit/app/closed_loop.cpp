@@ -159,6 +159,22 @@ void ClosedLoop::make_ready(std::uint32_t slot) {
   run(latency_ + 1);
 }
 
+void ClosedLoop::make_all_ready() {
+  for (const Axis& axis : robot_.axes) {
+    request(ILK_REQUEST_SET_HOME, axis.slot);
+  }
+  enable_all();
+  pedal(true);
+}
+
+PathStatus ClosedLoop::carry_out(const PathOrder& order, std::uint32_t most_ticks) {
+  give(order);
+  for (std::uint32_t i = 0; i < most_ticks && is_open(conductor_.path().order.phase); ++i) {
+    tick();
+  }
+  return conductor_.path();
+}
+
 OrderStatus ClosedLoop::carry_out(const Order& order, std::uint32_t most_ticks) {
   give(order);
   for (std::uint32_t i = 0; i < most_ticks && is_open(conductor_.orders()[order.slot].phase); ++i) {

@@ -46,12 +46,19 @@ class ClosedLoop {
     return plant_.station(slot)->position_counts();
   }
 
+  /** Declares every axis homed where it stands, enables them all and holds the pedal. */
+  void make_all_ready();
+
   /** Homes the axis as it wants to be homed, enables it, and holds the pedal. */
   void make_ready(std::uint32_t slot);
 
   /** Gives an order at the tick that the mode sees. */
   void give(const Order& order) { conductor_.take(order, seen_tick_); }
   void give(const HomeOrder& order) { conductor_.take(order, seen_tick_); }
+  void give(const PathOrder& order) { conductor_.take(order, seen_tick_); }
+
+  /** Gives a path and returns its status once it is final, or after so many ticks. */
+  PathStatus carry_out(const PathOrder& order, std::uint32_t most_ticks);
 
   /** Gives an order and returns its status once it is final, or after so many ticks. */
   OrderStatus carry_out(const Order& order, std::uint32_t most_ticks);
@@ -64,6 +71,7 @@ class ClosedLoop {
   [[nodiscard]] const ilk_config_t& config() const { return config_; }
   [[nodiscard]] OrderStatus order(std::uint32_t slot) const { return conductor_.orders()[slot]; }
   [[nodiscard]] const HomeStatus& home() const { return conductor_.home(); }
+  [[nodiscard]] const PathStatus& path() const { return conductor_.path(); }
   void cancel(std::uint32_t proposal) { conductor_.end(proposal, OrderReason::cancelled, seen_tick_); }
 
   /** STOP, as the control thread obeys it. */

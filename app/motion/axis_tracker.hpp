@@ -1,0 +1,55 @@
+/**
+ * @file
+ * One axis along a path: the speed that the path asks for and what it takes to catch up, as a drive.
+ *
+ * The kernel picks the direction, towards the MOVE's target. So the target runs a lease ahead of the path: an
+ * app that falls silent leaves an axis that stops on its path. An axis that is ahead of its path waits for it
+ * with zero drive; it never turns round for that.
+ */
+#pragma once
+
+#include <cstdint>
+
+#include "motion/move_lease.hpp"
+#include "motion/path_walk.hpp"
+#include "motion/rest_watch.hpp"
+
+namespace interlock {
+
+class AxisTracker {
+ public:
+  AxisTracker() = default;
+  AxisTracker(std::uint32_t slot, const AxisPlan& plan, std::uint32_t lease_ticks) noexcept
+      : slot_(slot), plan_(plan), lease_(slot, plan, lease_ticks) {}
+
+  /** A path begins: a MOVE is due at once. */
+  void start(const ilk_snapshot_t& snapshot) noexcept;
+
+  /** Whether the axis is further from its point than its robot file allows. */
+  [[nodiscard]] bool off_path(const ilk_snapshot_t& snapshot, const PathPoint& point) const noexcept;
+
+  /** Whether the axis rests within the deadband of the point, which is the end of its path. */
+  [[nodiscard]] bool arrived(const ilk_snapshot_t& snapshot, const PathPoint& point) noexcept;
+
+  /** Wishes for what follows the path from here. */
+  void hold(std::uint32_t proposal, const ilk_snapshot_t& snapshot, const PathPoint& point,
+            Wishes& wishes) noexcept;
+
+  /** Gives back the lease, if the kernel may still hold one. */
+  void let_go(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
+    lease_.let_go(proposal, snapshot, wishes);
+  }
+
+  /** The wish of this tick was not sent: what was sent before it still stands. */
+  void on_unsent() noexcept { lease_.on_unsent(); }
+
+ private:
+  [[nodiscard]] std::uint32_t drive_at(double counts_per_s) const noexcept;
+
+  std::uint32_t slot_ = 0;
+  AxisPlan plan_;
+  MoveLease lease_;
+  RestWatch rest_;
+};
+
+}  // namespace interlock

@@ -1,0 +1,53 @@
+#include "motion/move_lease.hpp"
+
+#include <algorithm>
+
+namespace interlock {
+namespace {
+
+constexpr std::uint32_t renewals_per_lease = 3;
+/** A change of the wanted drive below this fraction of the last one waits for the renewal. */
+constexpr std::uint32_t drive_step_fraction = 16;
+
+}  // namespace
+
+void MoveLease::hold(std::uint32_t proposal, std::uint32_t tick, std::int32_t target_counts,
+                     std::uint32_t drive, Wishes& wishes) noexcept {
+  const std::uint32_t change = std::max(drive, sent_.drive) - std::min(drive, sent_.drive);
+  const bool due = due_at_once_ || !sent_.may_drive || tick - sent_.tick >= lease_ticks_ / renewals_per_lease;
+  if (due || target_counts != sent_.target_counts || change > sent_.drive / drive_step_fraction) {
+    send(proposal, {true, tick, target_counts, drive}, lease_ticks_, wishes);
+  }
+}
+
+void MoveLease::let_go(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
+  if (!sent_.may_drive) {
+    return;
+  }
+  const std::uint32_t state = snapshot.state.axis[slot_].state;
+  const bool may_move = state == ILK_AXIS_MOVING || state == ILK_AXIS_ENABLED;
+  const Sent nothing{false, snapshot.state.tick, sent_.target_counts, 0};
+  if (snapshot.state.mode == ILK_MODE_MOTION && may_move) {
+    send(proposal, nothing, 1, wishes);
+  } else {
+    before_ = sent_;
+    sent_ = nothing;
+    due_at_once_ = false;
+  }
+}
+
+void MoveLease::send(std::uint32_t proposal, const Sent& sent, std::uint32_t lease_ticks,
+                     Wishes& wishes) noexcept {
+  wishes.add(
+      {{ILK_REQUEST_MOVE, slot_, proposal}, sent.target_counts, sent.drive, max_amplitude_, lease_ticks});
+  before_ = sent_;
+  sent_ = sent;
+  due_at_once_ = false;
+}
+
+void MoveLease::on_unsent() noexcept {
+  sent_ = before_;
+  due_at_once_ = true;
+}
+
+}  // namespace interlock

@@ -1,0 +1,43 @@
+/**
+ * @file
+ * What several axes are to do together: legs, one after the other.
+ *
+ * Made and owned by the network thread; the control thread only reads it while the order that names it is
+ * open.
+ */
+#pragma once
+
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+#include "robot/robot.hpp"
+#include "trajectory/timed_trajectory.hpp"
+
+namespace interlock {
+
+/** Axes to positions, jerk-limited, arriving together; the others stay where they are. */
+struct MoveLeg {
+  std::vector<AxisCounts> targets; /**< each slot at most once */
+  double minimum_duration_s = 0.0;
+  double dwell_s = 0.0; /**< rest at the targets */
+};
+
+/** First to where the trajectory begins, as a `MoveLeg` would, then along it in time. */
+struct TimedLeg {
+  TimedTrajectory trajectory;
+};
+
+using PathLeg = std::variant<MoveLeg, TimedLeg>;
+
+struct PathProgram {
+  std::vector<PathLeg> legs;
+
+  /** Bit n: a leg moves the axis in slot n. */
+  [[nodiscard]] std::uint32_t mask() const noexcept;
+};
+
+/** Bit n: the leg moves the axis in slot n. */
+[[nodiscard]] std::uint32_t mask_of(const PathLeg& leg) noexcept;
+
+}  // namespace interlock

@@ -1,0 +1,293 @@
+#include "motion/path_mode.hpp"
+
+#include <gmock/gmock.h>
+
+#include <array>
+#include <cmath>
+
+#include "closed_loop.hpp"
+#include "counted_allocations.hpp"
+#include "plant/parameters_file.hpp"
+#include "trajectory/trajectory_csv.hpp"
+
+namespace interlock {
+namespace {
+
+using test::ClosedLoop;
+using test::config_of;
+using test::minute_ticks;
+using test::neuro;
+using test::prostate;
+
+constexpr std::uint32_t lateral = 4;
+constexpr std::uint32_t feet = 6;
+constexpr std::uint32_t head = 7;
+
+/** Every axis was declared homed where it starts, so that these are distances. */
+const std::vector<AxisCounts> neuro_targets{
+    {test::yaw, -600}, {test::rotation, 2500}, {test::pitch, -300}, {test::insertion, 900},
+    {lateral, -1100},  {feet, -700},           {head, -2000}};
+
+PathProgram program_of(std::vector<PathLeg> legs) { return PathProgram{std::move(legs)}; }
+
+PathProgram move_of(const std::vector<AxisCounts>& targets, double minimum_duration_s = 0.0) {
+  return program_of({MoveLeg{targets, minimum_duration_s, 0.0}});
+}
+
+void expect_done(const PathStatus& status) {
+  EXPECT_EQ(status.order.phase, OrderPhase::done)
+      << "reason " << static_cast<int>(status.order.reason) << ", code " << status.order.code << ", slot "
+      << status.slot << ", leg " << status.leg;
+}
+
+void expect_at(const ClosedLoop& loop, const Robot& robot, const std::vector<AxisCounts>& targets) {
+  for (const AxisCounts& target : targets) {
+    const Axis& axis = *robot.at_slot(target.slot);
+    EXPECT_LE(std::abs(loop.state().axis[target.slot].position_counts - target.counts),
+              static_cast<std::int32_t>(axis.deadband_counts))
+        << axis.name;
+  }
+}
+
+/** Latency of the link in ticks: the real clock, and the farthest that a simulated kernel runs ahead. */
+class PathModeOnThePlant : public testing::TestWithParam<std::uint32_t> {};
+
+TEST_P(PathModeOnThePlant, CoordinatedAxesArriveAtRestWithinTheirDeadbands) {
+  ClosedLoop loop(5, GetParam());
+  loop.make_all_ready();
+  const PathProgram program = move_of(neuro_targets);
+  expect_done(loop.carry_out({1, &program, 0}, minute_ticks));
+  loop.run(100);
+  expect_at(loop, neuro(), neuro_targets);
+  EXPECT_EQ(loop.refusals(), 0u);
+  EXPECT_LE(loop.most_requests_in_a_tick(), ILK_REQUESTS_PER_TICK);
+  for (const AxisCounts& target : neuro_targets) {
+    EXPECT_EQ(loop.outputs().command[target.slot].drive, 0u);
+  }
+}
+
+TEST_P(PathModeOnThePlant, NoAxisOvershootsBeyondDeadbandAndCoast) {
+  ClosedLoop loop(7, GetParam());
+  loop.make_all_ready();
+  const PathProgram program = move_of(neuro_targets);
+  loop.watch([&] {
+    for (const AxisCounts& target : neuro_targets) {
+      const std::int32_t direction = target.counts < 0 ? -1 : 1;
+      const std::int32_t beyond =
+          direction * (loop.state().axis[target.slot].position_counts - target.counts);
+      const ilk_axis_config_t& rules = loop.config().axis[target.slot];
+      ASSERT_LE(beyond, static_cast<std::int32_t>(rules.deadband_counts + rules.coast_counts));
+    }
+  });
+  expect_done(loop.carry_out({1, &program, 0}, minute_ticks));
+}
+
+TEST_P(PathModeOnThePlant, ReleasePausesAndTheNextPressGoesOn) {
+  ClosedLoop loop(11, GetParam());
+  loop.make_all_ready();
+  const PathProgram program = move_of(neuro_targets);
+  (void)loop.carry_out({1, &program, 0}, 1000);
+  ASSERT_EQ(loop.path().order.phase, OrderPhase::executing);
+  loop.pedal(false);
+  EXPECT_EQ(loop.path().order.phase, OrderPhase::paused);
+  const std::int32_t paused_at = loop.state().axis[head].position_counts;
+  loop.run(1000);
+  EXPECT_NEAR(loop.state().axis[head].position_counts, paused_at, 1);
+  loop.pedal(true);
+  for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.path().order.phase); ++i) {
+    loop.tick();
+  }
+  expect_done(loop.path());
+  expect_at(loop, neuro(), neuro_targets);
+  EXPECT_EQ(loop.refusals(), 0u);
+}
+
+TEST_P(PathModeOnThePlant, AJammedAxisStopsAllOthersAtOnce) {
+  ClosedLoop loop(13, GetParam());
+  loop.make_all_ready();
+  const PathProgram program = move_of(neuro_targets);
+  (void)loop.carry_out({1, &program, 0}, 1000);
+  loop.happen(plant::command::JamAxis{head, true});
+  for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.path().order.phase); ++i) {
+    loop.tick();
+  }
+  EXPECT_EQ(loop.path().order.phase, OrderPhase::aborted);
+  EXPECT_EQ(loop.path().order.reason, OrderReason::off_path);
+  EXPECT_EQ(loop.path().slot, head);
+  loop.run(2 + GetParam());
+  for (const AxisCounts& target : neuro_targets) {
+    EXPECT_EQ(loop.outputs().command[target.slot].drive, 0u);
+  }
+}
+
+TEST_P(PathModeOnThePlant, ATrajectoryIsFollowedInTimeFromWhereItBegins) {
+  ClosedLoop loop(17, GetParam());
+  loop.make_all_ready();
+  const auto trajectory = read_trajectory(
+      "time [s],yaw [rad],yaw [rad/s],insertion [mm]\n"
+      "0,-0.1,0,2\n1,-0.3,-0.3,8\n2,-0.5,0,8\n3,-0.3,0,4\n",
+      neuro());
+  ASSERT_TRUE(trajectory) << trajectory.error().message();
+  const PathProgram program = program_of({TimedLeg{*trajectory}});
+  std::uint32_t executing_ticks = 0;
+  loop.give(PathOrder{1, &program, 0});
+  for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.path().order.phase); ++i) {
+    loop.tick();
+    executing_ticks += loop.path().order.phase == OrderPhase::executing ? 1u : 0u;
+  }
+  expect_done(loop.path());
+  const auto yaw_end = *neuro().at_slot(test::yaw)->to_counts(-0.3);
+  const auto insertion_end = *neuro().at_slot(test::insertion)->to_counts(4.0);
+  expect_at(loop, neuro(), {{test::yaw, yaw_end}, {test::insertion, insertion_end}});
+  EXPECT_GT(executing_ticks, 3000u);
+  EXPECT_EQ(loop.refusals(), 0u);
+}
+
+TEST_P(PathModeOnThePlant, LegsFollowOneAnotherAndDwell) {
+  ClosedLoop loop(19, GetParam());
+  loop.make_all_ready();
+  const PathProgram program = program_of({MoveLeg{{{test::insertion, 300}}, 0.0, 0.5},
+                                          MoveLeg{{{test::yaw, -200}, {head, -400}}, 0.0, 0.0},
+                                          MoveLeg{{{test::insertion, 100}}, 2.0, 0.0}});
+  loop.give(PathOrder{1, &program, 0});
+  std::array<std::uint32_t, 3> ticks_of_leg{};
+  for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.path().order.phase); ++i) {
+    loop.tick();
+    ++ticks_of_leg[loop.path().leg];
+  }
+  expect_done(loop.path());
+  expect_at(loop, neuro(), {{test::insertion, 100}, {test::yaw, -200}, {head, -400}});
+  EXPECT_GT(ticks_of_leg[0], 500u + 300u);
+  EXPECT_GT(ticks_of_leg[2], 2000u);
+}
+
+TEST_P(PathModeOnThePlant, TheProstateRobotsSlidersMoveTogether) {
+  Robot robot = prostate();
+  robot.home_steps.clear();
+  for (Axis& axis : robot.axes) {
+    axis.soft_limits = {-200000, 300000};  // declared homed where they start, for this test alone
+    axis.home_offset_counts = 0;
+    axis.limit = ILK_LIMIT_NONE;
+    axis.homing.reset();
+  }
+  const auto plant =
+      plant::load_parameters(INTERLOCK_ROBOTS "/../plant/prostate.toml", config_of(prostate()));
+  ASSERT_TRUE(plant) << plant.error();
+  plant::Parameters centred = *plant;
+  for (const Axis& axis : robot.axes) {
+    centred.axis[axis.slot].start_counts = 0;
+  }
+  const std::vector<AxisCounts> targets{{0, 3000},  {1, 40000},  {2, 20000},
+                                        {4, 25000}, {5, -15000}, {6, -30000}};
+  ClosedLoop loop(23, GetParam(), robot, centred);
+  loop.make_all_ready();
+  const PathProgram program = move_of(targets);
+  expect_done(loop.carry_out({1, &program, 0}, minute_ticks));
+  expect_at(loop, robot, targets);
+  EXPECT_EQ(loop.refusals(), 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Latency, PathModeOnThePlant, testing::Values(1u, 8u));
+
+/** Arrival is 99 hundredths of the way: of a jerk-limited motion the last count takes longer the shorter the
+ * way is. */
+TEST(PathMode, AxesArriveWithinTwoMillisecondsOfEachOther) {
+  ClosedLoop loop(29, 1);
+  loop.make_all_ready();
+  const PathProgram program = move_of(neuro_targets);
+  std::array<double, ILK_SLOTS> starts{};
+  for (const AxisCounts& target : neuro_targets) {
+    starts[target.slot] = loop.true_position(target.slot);
+  }
+  std::array<std::uint32_t, ILK_SLOTS> arrived{};
+  loop.watch([&] {
+    for (const AxisCounts& target : neuro_targets) {
+      const double share = (loop.true_position(target.slot) - starts[target.slot]) / target.counts;
+      if (arrived[target.slot] == 0 && share >= 0.99) {
+        arrived[target.slot] = loop.state().tick;
+      }
+    }
+  });
+  expect_done(loop.carry_out({1, &program, 0}, minute_ticks));
+  std::uint32_t first = ~0u;
+  std::uint32_t last = 0;
+  for (const AxisCounts& target : neuro_targets) {
+    first = std::min(first, arrived[target.slot]);
+    last = std::max(last, arrived[target.slot]);
+  }
+  EXPECT_LE(last - first, 2u);
+}
+
+TEST(PathMode, ATickAllocatesNothing) {
+  ClosedLoop loop(31, 1);
+  PathMode mode(RobotPlan(neuro(), config_of(neuro())));
+  const PathProgram program =
+      program_of({MoveLeg{neuro_targets, 0.0, 0.0}, MoveLeg{{{head, -100}}, 0.0, 0.0}});
+  ilk_snapshot_t snapshot{};
+  snapshot.state.mode = ILK_MODE_MOTION;
+  for (const AxisCounts& target : neuro_targets) {
+    snapshot.state.axis[target.slot].state = ILK_AXIS_ENABLED;
+    snapshot.state.axis[target.slot].homed = 1;
+  }
+  test::count_allocations_of(pthread_self());
+  mode.take({1, &program, 0}, 0);
+  for (std::uint32_t tick = 1; tick < 30; ++tick) {
+    snapshot.state.tick = tick;
+    Wishes wishes;
+    mode.tick(snapshot, wishes);
+  }
+  const std::uint32_t allocations = test::counted_allocations();
+  test::count_allocations_of();
+  EXPECT_EQ(mode.status().order.phase, OrderPhase::executing);
+  EXPECT_EQ(allocations, 0u);
+}
+
+TEST(PathMode, AnAxisThatIsNotHomedEndsThePathBeforeItMoves) {
+  ClosedLoop loop(37, 1);
+  loop.enable_all();
+  loop.pedal(true);
+  const PathProgram program = move_of(neuro_targets);
+  const PathStatus status = loop.carry_out({1, &program, 0}, 100);
+  EXPECT_EQ(status.order.phase, OrderPhase::aborted);
+  EXPECT_EQ(status.order.reason, OrderReason::not_homed);
+}
+
+TEST(PathMode, ARobotWithoutRatesHasNoPath) {
+  Robot robot = neuro();
+  for (Axis& axis : robot.axes) {
+    axis.motion.reset();
+  }
+  ClosedLoop loop(41, 1, robot);
+  loop.make_all_ready();
+  const PathProgram program = move_of(neuro_targets);
+  const PathStatus status = loop.carry_out({1, &program, 0}, 100);
+  EXPECT_EQ(status.order.phase, OrderPhase::aborted);
+  EXPECT_EQ(status.order.reason, OrderReason::no_path);
+  EXPECT_EQ(loop.state().axis[head].position_counts, 0);
+}
+
+TEST(PathMode, HomingAndMovesAndPathsDoNotShareAxes) {
+  ClosedLoop loop(43, 1);
+  loop.make_all_ready();
+  const PathProgram program = move_of(neuro_targets);
+  (void)loop.carry_out({1, &program, 0}, 500);
+  loop.give(Order{2, test::yaw, -100, 0, 0});
+  EXPECT_EQ(loop.order(test::yaw).reason, OrderReason::superseded);
+  EXPECT_EQ(loop.path().order.phase, OrderPhase::executing);
+  loop.give(HomeOrder{3, 0, 1, 0, 0});
+  EXPECT_EQ(loop.path().order.reason, OrderReason::axis_homing);
+  loop.give(PathOrder{4, &program, 0});
+  EXPECT_EQ(loop.home().order.reason, OrderReason::superseded);
+}
+
+TEST(PathMode, APathThatNobodyPressesThePedalForExpires) {
+  ClosedLoop loop(47, 1);
+  loop.make_all_ready();
+  loop.pedal(false);
+  const PathProgram program = move_of(neuro_targets);
+  const PathStatus status = loop.carry_out({1, &program, 0}, minute_ticks + 10);
+  EXPECT_EQ(status.order.phase, OrderPhase::expired);
+}
+
+}  // namespace
+}  // namespace interlock
