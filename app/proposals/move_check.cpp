@@ -14,18 +14,18 @@ tl::unexpected<Refusal> refused(std::uint32_t verdict, const std::string& where,
   return tl::make_unexpected(verdict_refusal(verdict, where, expected));
 }
 
+std::string current(catalog::Family family, std::uint32_t number, const char* what) {
+  return std::string(what) + " is " + catalog::name(family, number);
+}
+
+}  // namespace
+
 std::string counts_and_unit(const Axis& axis, std::int32_t counts) {
   const double rounded = std::round(axis.to_unit(counts) * 1000.0) / 1000.0;
   std::string number = std::to_string(rounded);
   number.erase(number.find('.') + 4);
   return std::to_string(counts) + " counts (" + number + " " + std::string(unit_name(axis.unit)) + ")";
 }
-
-std::string current(catalog::Family family, std::uint32_t number, const char* what) {
-  return std::string(what) + " is " + catalog::name(family, number);
-}
-
-}  // namespace
 
 Refusal verdict_refusal(std::uint32_t verdict, const std::string& where, const std::string& expected) {
   const catalog::Entry& entry = catalog::entry(catalog::Family::verdict, verdict);

@@ -42,6 +42,9 @@ tl::expected<void, Refusal> check_system(const ilk_config_t& config, const Contr
 /** Whether the axis may be moved by anybody: FAULTED, DISABLED. An axis that is homing may. */
 tl::expected<void, Refusal> check_axis(const Axis& axis, const ControlView& view);
 
+/** "12 counts (0.254 mm)" */
+std::string counts_and_unit(const Axis& axis, std::int32_t counts);
+
 /** A refusal in the words of the catalog's verdict. */
 Refusal verdict_refusal(std::uint32_t verdict, const std::string& where, const std::string& expected = "");
 

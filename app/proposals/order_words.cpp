@@ -52,6 +52,14 @@ std::string end_words(const std::string& axis, const OrderStatus& status) {
       return "Motion authority changed; propose it again.";
     case OrderReason::position_declared:
       return axis + " was given another position by Set Home or Restore; propose it again.";
+    case OrderReason::superseded:
+      return "Another motion took over the axes.";
+    case OrderReason::off_path:
+      return axis + " strayed too far from its path, so every axis was stopped. Look for what holds it back.";
+    case OrderReason::goal_late:
+      return axis + " did not come to rest at its goal within 5 s. Look for what holds it back.";
+    case OrderReason::no_path:
+      return "No motion within the rates of the axes leads there from where they are; propose it again.";
   }
   return "";
 }
@@ -197,6 +205,25 @@ std::string detail_of(const Robot& robot, const Proposal& proposal, const HomeSt
       return done_words(robot, proposal);
     default:
       return capital(end_words(axis, status.order));
+  }
+}
+
+std::string detail_of(const Robot& robot, const Proposal& proposal, const PathStatus& status) {
+  const std::size_t legs = proposal.path.program->legs.size();
+  const std::string part =
+      legs > 1 ? ", part " + std::to_string(status.leg + 1) + " of " + std::to_string(legs) : "";
+  switch (status.order.phase) {
+    case OrderPhase::none:
+    case OrderPhase::waiting:
+      return "Waits for the pedal.";
+    case OrderPhase::executing:
+      return "Moves " + listed(robot, proposal.slots) + " while the pedal is held" + part + ".";
+    case OrderPhase::paused:
+      return "Motion ended" + part + "; press and hold the pedal within 60 s to go on.";
+    case OrderPhase::done:
+      return "All axes rest within the deadband of their goals.";
+    default:
+      return capital(end_words(title_of(robot, status.slot), status.order));
   }
 }
 

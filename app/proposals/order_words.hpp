@@ -22,6 +22,9 @@ std::string detail_of(const OrderStatus& status);
 /** Why homing stands where it does, what it does now, and what to do next. */
 std::string detail_of(const Robot& robot, const Proposal& proposal, const HomeStatus& status);
 
+/** Why a path stands where it does, what it does now, and what to do next. */
+std::string detail_of(const Robot& robot, const Proposal& proposal, const PathStatus& status);
+
 /** The verdict that ended the order; empty for every other end. */
 std::optional<std::string> verdict_of(const OrderStatus& status);
 

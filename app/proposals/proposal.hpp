@@ -1,6 +1,7 @@
 /**
  * @file
- * A proposal: one wished-for motion, a move of one axis or homing, its author and what became of it.
+ * A proposal: one wished-for motion, a move of one axis, homing, or a path of several axes, its author and
+ * what became of it.
  *
  *     drafted -> checked -> approved -> executing <-> paused
  *        |          |          |            |
@@ -9,11 +10,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "motion/path_program.hpp"
+#include "robot/modes.hpp"
 #include "time/utc_time.hpp"
 
 namespace interlock {
@@ -57,12 +61,40 @@ struct HomeDraft {
   std::string author;
 };
 
-enum class ProposalKind : std::uint8_t { move, home };
+/** Who thought of a motion. */
+enum class ProposalSource : std::uint8_t {
+  console, /**< somebody who watches the robot: proposing it approves it */
+  file     /**< a loaded trajectory: somebody has to approve it, unless the robot file says otherwise */
+};
+
+/** As the interface spells it. */
+constexpr std::string_view source_name(ProposalSource source) noexcept {
+  return source == ProposalSource::console ? "console" : "file";
+}
+
+/** A wish for a motion of several axes together. */
+struct PathDraft {
+  RobotMode mode = RobotMode::coordinated;
+  std::shared_ptr<const PathProgram> program; /**< never null */
+  ProposalSource source = ProposalSource::console;
+  /** It follows from registration, probe and target of that revision: stale once these change. */
+  std::optional<std::uint32_t> targeting_revision;
+  std::string author;
+};
+
+enum class ProposalKind : std::uint8_t { move, home, path };
+
+/** As the interface spells it. */
+constexpr std::string_view kind_name(ProposalKind kind) noexcept {
+  constexpr std::string_view names[] = {"move", "home", "path"};
+  return names[static_cast<std::size_t>(kind)];
+}
 
 struct Proposal {
   std::uint32_t id = 0;
   ProposalKind kind = ProposalKind::move;
   MoveDraft move;                   /**< of kind move */
+  PathDraft path;                   /**< of kind path */
   std::string author;               /**< name of the user */
   std::vector<std::uint32_t> slots; /**< of all axes that it moves, each once */
   std::vector<std::string> axes;    /**< their names */
@@ -71,6 +103,9 @@ struct Proposal {
   std::uint32_t first_step = 0;     /**< index of the robot's home steps; of kind home */
   std::uint32_t step_count = 0;     /**< home steps; 0: none but the axis alone */
   std::string step;                 /**< name of the home step that runs or is next; else empty */
+  std::vector<AxisCounts> ends;     /**< where the axes come to rest; of kind path, once checked */
+  double duration_s = 0.0;          /**< of the planned motion; of kind path, once checked */
+  std::uint32_t leg = 0;            /**< index of the leg that runs or is next; of kind path */
   ProposalState state = ProposalState::drafted;
   UtcTime created;
   std::uint32_t created_tick = 0; /**< kernel tick */

@@ -1,6 +1,7 @@
 #include "proposals/proposal_book.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "proposals/home_plan.hpp"
@@ -9,8 +10,22 @@
 namespace interlock {
 namespace {
 
+/** For somebody to look at what a file asks for. */
+constexpr std::chrono::minutes approval_wait{10};
+
 Refusal overloaded(const std::string& next_step) {
   return {"OVERLOADED", "The control thread takes no more commands now.", "", next_step};
+}
+
+/** The axes of a mask, in the order in which people see them. */
+std::vector<std::uint32_t> slots_of(const Robot& robot, std::uint32_t mask) {
+  std::vector<std::uint32_t> slots;
+  for (const Axis& axis : robot.axes) {
+    if (((mask >> axis.slot) & 1u) != 0) {
+      slots.push_back(axis.slot);
+    }
+  }
+  return slots;
 }
 
 }  // namespace
@@ -32,6 +47,11 @@ tl::expected<Proposal, Refusal> ProposalBook::propose(const MoveDraft& move, con
     return tl::make_unexpected(refuse(
         proposal, Refusal{"MODE_HOME", "Proposal " + std::to_string(home->id) + " is homing the robot.",
                           "no open proposal of homing", "Wait until it has ended, or abort it."}));
+  }
+  if (const Proposal* path = open_path()) {
+    return tl::make_unexpected(
+        refuse(proposal, Refusal{"MODE_PATH", "Proposal " + std::to_string(path->id) + " moves several axes.",
+                                 "no open proposal of a path", "Wait until it has ended, or abort it."}));
   }
   const auto checked = check_move(*axis, config_, view, move);
   if (!checked) {
@@ -62,17 +82,80 @@ tl::expected<Proposal, Refusal> ProposalBook::propose_home(const HomeDraft& home
                  HomeOrder{proposal.id, plan->first_step, plan->step_count, plan->slots.front(), 0});
 }
 
+tl::expected<Proposal, Refusal> ProposalBook::propose_path(const PathDraft& path, const ControlView& view) {
+  Proposal drafted;
+  drafted.kind = ProposalKind::path;
+  drafted.path = path;
+  drafted.author = path.author;
+  Proposal& proposal = draft(std::move(drafted), slots_of(robot_, path.program->mask()), view);
+  if (path.targeting_revision && *path.targeting_revision != targeting_revision_) {
+    return tl::make_unexpected(refuse(
+        proposal, Refusal{"STALE", "Registration, probe or target changed meanwhile.",
+                          "the present registration, probe and target", "Look at them, and propose again."}));
+  }
+  if (const auto checked = check(proposal, view); !checked) {
+    return tl::make_unexpected(checked.error());
+  }
+  if (path.source == ProposalSource::console || robot_.auto_approve) {
+    return approve_path(proposal);
+  }
+  become(proposal, ProposalState::checked, "Every check passed. Waits for somebody to approve it.");
+  return proposal;
+}
+
+/** Checks a path from where the axes are now. */
+tl::expected<void, Refusal> ProposalBook::check(Proposal& proposal, const ControlView& view) {
+  const auto preview = check_path(robot_, config_, view, *proposal.path.program);
+  if (!preview) {
+    return tl::make_unexpected(refuse(proposal, preview.error()));
+  }
+  proposal.ends = preview->ends;
+  proposal.duration_s = preview->duration_s;
+  return {};
+}
+
+tl::expected<Proposal, Refusal> ProposalBook::approve(std::uint32_t id, const ControlView& view) {
+  Proposal* proposal = find_mutable(id);
+  if (proposal == nullptr || proposal->state != ProposalState::checked) {
+    const std::string state = proposal == nullptr ? "unknown" : std::string(state_name(proposal->state));
+    return tl::make_unexpected(Refusal{"NOT_WAITING", "Proposal " + std::to_string(id) + " is " + state + ".",
+                                       "a proposal that is checked", "Propose it again."});
+  }
+  return check(*proposal, view).and_then([&] { return approve_path(*proposal); });
+}
+
+tl::expected<Proposal, Refusal> ProposalBook::approve_path(Proposal& proposal) {
+  become(proposal, ProposalState::checked, "Every check passed.");
+  // Lent before it is handed over: the control thread may take it at once.
+  lent_.push_back({proposal.id, proposal.path.program});
+  return approve(proposal, PathOrder{proposal.id, proposal.path.program.get(), 0});
+}
+
+void ProposalBook::end_stale() {
+  ++targeting_revision_;
+  for (Proposal& each : book_) {
+    if (each.path.targeting_revision && is_open(each.state)) {
+      const bool waits = each.state == ProposalState::checked || send_(Cancel{each.id});
+      become(each, ProposalState::aborted,
+             std::string("Registration, probe or target changed, from which it followed; propose it again.") +
+                 (waits ? "" : " The control thread takes no commands now: press STOP."));
+    }
+  }
+  tell_mode();
+}
+
 /** Hands the order over; what it replaces ends. */
 tl::expected<Proposal, Refusal> ProposalBook::approve(Proposal& proposal, const Command& order) {
   if (!send_(order)) {
+    std::erase_if(lent_, [&](const Lent& each) { return each.proposal == proposal.id; });
     return tl::make_unexpected(
         refuse(proposal, overloaded("Try again; if it happens again, report it with the log.")));
   }
   replace_open(proposal);
-  const bool is_move = proposal.kind == ProposalKind::move;
+  const bool homes = proposal.kind == ProposalKind::home;
   become(proposal, ProposalState::approved,
-         is_move ? detail_of(OrderStatus{})
-                 : detail_of(robot_, proposal, HomeStatus{{}, proposal.first_step, 0, 0}));
+         homes ? detail_of(robot_, proposal, HomeStatus{{}, proposal.first_step, 0, 0})
+               : detail_of(OrderStatus{}));
   tell_mode();
   return proposal;
 }
@@ -80,9 +163,13 @@ tl::expected<Proposal, Refusal> ProposalBook::approve(Proposal& proposal, const 
 Proposal& ProposalBook::draft(Proposal proposal, const std::vector<std::uint32_t>& slots,
                               const ControlView& view) {
   if (book_.size() == capacity) {
-    // At most one proposal an axis is open, so there is always an ended one to forget.
-    book_.erase(
-        std::find_if(book_.begin(), book_.end(), [](const Proposal& each) { return !is_open(each.state); }));
+    // At most one proposal an axis is approved; of those that wait for somebody to approve them, the oldest
+    // goes when all have not ended.
+    const auto ended =
+        std::find_if(book_.begin(), book_.end(), [](const Proposal& each) { return !is_open(each.state); });
+    const auto waiting = std::find_if(book_.begin(), book_.end(),
+                                      [](const Proposal& each) { return !is_approved(each.state); });
+    book_.erase(ended != book_.end() ? ended : waiting);
   }
   proposal.id = ++last_id_;
   proposal.slots = slots;
@@ -98,11 +185,11 @@ Proposal& ProposalBook::draft(Proposal proposal, const std::vector<std::uint32_t
   return book_.back();
 }
 
-/** A move replaces the open one of its axis, homing every open proposal. */
+/** A move replaces the approved one of its axis, homing and a path every approved proposal. */
 void ProposalBook::replace_open(const Proposal& by) {
   for (Proposal& each : book_) {
-    const bool in_the_way = by.kind == ProposalKind::home || each.slots == by.slots;
-    if (in_the_way && each.id != by.id && is_open(each.state)) {
+    const bool in_the_way = by.kind != ProposalKind::move || each.slots == by.slots;
+    if (in_the_way && each.id != by.id && is_approved(each.state)) {
       become(each, ProposalState::aborted, "Replaced by proposal " + std::to_string(by.id) + ".");
     }
   }
@@ -142,7 +229,40 @@ void ProposalBook::follow(const ControlView& view) {
     follow_move(status);
   }
   follow_home(view.home);
+  follow_path(view.path);
+  discard_waiting(view);
+  std::erase_if(lent_, [&path = view.path.order](const Lent& each) {
+    return path.proposal > each.proposal || (path.proposal == each.proposal && !is_open(path.phase));
+  });
   tell_mode();
+}
+
+/** What waits for approval is discarded by a lock, as all that was approved is, and does not wait for ever.
+ */
+void ProposalBook::discard_waiting(const ControlView& view) {
+  const bool locked = view.attached && view.snapshot.state.mode == ILK_MODE_LOCKED;
+  for (Proposal& each : book_) {
+    if (each.state == ProposalState::checked && locked) {
+      become(each, ProposalState::aborted, "The kernel locked before it was approved; propose it again.");
+    } else if (each.state == ProposalState::checked && clock_() - each.created > approval_wait) {
+      become(each, ProposalState::expired, "Nobody approved it within 10 minutes; propose it again.");
+    }
+  }
+}
+
+void ProposalBook::follow_path(const PathStatus& status) {
+  Proposal* proposal = find_mutable(status.order.proposal);
+  const ProposalState state = state_of(status.order.phase);
+  if (proposal == nullptr || proposal->kind != ProposalKind::path || !is_open(proposal->state)) {
+    return;
+  }
+  std::string detail = detail_of(robot_, *proposal, status);
+  const bool same = proposal->state == state;
+  if (same ? detail == proposal->detail : !may_become(proposal->state, state)) {
+    return;
+  }
+  proposal->leg = status.leg;
+  become(*proposal, state, std::move(detail), verdict_of(status.order));
 }
 
 void ProposalBook::follow_move(const OrderStatus& status) {
@@ -190,7 +310,20 @@ void ProposalBook::tell_mode() {
   }
 }
 
-std::string_view ProposalBook::app_mode() const { return open_home() == nullptr ? "manual" : "home"; }
+std::string_view ProposalBook::app_mode() const {
+  if (open_home() != nullptr) {
+    return mode_name(RobotMode::home);
+  }
+  const Proposal* path = open_path();
+  return mode_name(path == nullptr ? RobotMode::manual : path->path.mode);
+}
+
+const Proposal* ProposalBook::open_path() const {
+  const auto found = std::find_if(book_.begin(), book_.end(), [](const Proposal& each) {
+    return each.kind == ProposalKind::path && is_approved(each.state);
+  });
+  return found == book_.end() ? nullptr : &*found;
+}
 
 const Proposal* ProposalBook::open_home() const {
   const auto found = std::find_if(book_.begin(), book_.end(), [](const Proposal& each) {

@@ -16,6 +16,7 @@
 
 #include "motion/mailbox.hpp"
 #include "proposals/move_check.hpp"
+#include "proposals/path_check.hpp"
 #include "proposals/proposal.hpp"
 #include "robot/robot.hpp"
 
@@ -29,7 +30,7 @@ class ProposalBook {
   using Send = std::function<bool(const Command&)>;
   /** Told of each proposal that changed. */
   using Listener = std::function<void(const Proposal&)>;
-  /** Told of the new mode, "manual" or "home". */
+  /** Told of the new mode, a name of robot/modes.hpp. */
   using ModeListener = std::function<void(std::string_view)>;
   using Clock = std::function<UtcTime()>;
 
@@ -42,7 +43,8 @@ class ProposalBook {
 
   /**
    * Drafts a move, checks it and approves it, as its author releases it by proposing it. An open proposal of
-   * the same axis is aborted. Refused with MODE_HOME while homing is open. A refused draft stays in the book.
+   * the same axis is aborted. Refused with MODE_HOME while homing is open, with MODE_PATH while a path is. A
+   * refused draft stays in the book.
    */
   tl::expected<Proposal, Refusal> propose(const MoveDraft& draft, const ControlView& view);
 
@@ -53,6 +55,22 @@ class ProposalBook {
    */
   tl::expected<Proposal, Refusal> propose_home(const HomeDraft& draft, const ControlView& view);
 
+  /**
+   * Drafts a motion of several axes and checks it (path_check.hpp). One from the console, or of a robot that
+   * approves by itself, is approved, and every other approved proposal is aborted; another one waits for
+   * `approve`. STALE when it followed from targeting that has changed. A refused draft stays in the book.
+   */
+  tl::expected<Proposal, Refusal> propose_path(const PathDraft& draft, const ControlView& view);
+
+  /** Checks a proposal that waits for it anew, and approves it: NOT_WAITING when none of that number does. */
+  tl::expected<Proposal, Refusal> approve(std::uint32_t id, const ControlView& view);
+
+  /** Counts the changes of registration, probe and target. */
+  [[nodiscard]] std::uint32_t targeting_revision() const { return targeting_revision_; }
+
+  /** Registration, probe or target changed: ends every open proposal that followed from them. */
+  void end_stale();
+
   /** Ends an open proposal; an executing one stops at once. The id must exist. */
   tl::expected<Proposal, Refusal> abort(std::uint32_t id);
 
@@ -62,7 +80,7 @@ class ProposalBook {
   /** Takes over where the control thread's orders stand. */
   void follow(const ControlView& view);
 
-  /** "home" while homing is open, else "manual". */
+  /** "home" while homing is open, the mode of a path while it is, else "manual". */
   [[nodiscard]] std::string_view app_mode() const;
 
   /** The proposal of that number, or null. */
@@ -74,6 +92,9 @@ class ProposalBook {
   /** The open proposal of homing, or null. */
   [[nodiscard]] const Proposal* open_home() const;
 
+  /** The approved proposal of a path, or null. */
+  [[nodiscard]] const Proposal* open_path() const;
+
   /** Whether open homing moves the axis. */
   [[nodiscard]] bool homes(std::uint32_t slot) const;
 
@@ -82,13 +103,23 @@ class ProposalBook {
 
  private:
   Proposal& draft(Proposal proposal, const std::vector<std::uint32_t>& slots, const ControlView& view);
+  /** A program that the control thread may still read. */
+  struct Lent {
+    std::uint32_t proposal = 0;
+    std::shared_ptr<const PathProgram> program;
+  };
+
   tl::expected<Proposal, Refusal> approve(Proposal& proposal, const Command& order);
+  tl::expected<void, Refusal> check(Proposal& proposal, const ControlView& view);
+  tl::expected<Proposal, Refusal> approve_path(Proposal& proposal);
   void replace_open(const Proposal& by);
   Refusal refuse(Proposal& proposal, Refusal refusal);
   void become(Proposal& proposal, ProposalState state, std::string detail,
               std::optional<std::string> verdict = std::nullopt);
   void follow_move(const OrderStatus& status);
   void follow_home(const HomeStatus& status);
+  void follow_path(const PathStatus& status);
+  void discard_waiting(const ControlView& view);
   void tell_mode();
   Proposal* find_mutable(std::uint32_t id);
 
@@ -100,6 +131,8 @@ class ProposalBook {
   ModeListener mode_listener_ = [](std::string_view) {};
   std::string_view told_mode_ = "manual";
   std::deque<Proposal> book_; /**< oldest first */
+  std::vector<Lent> lent_;
+  std::uint32_t targeting_revision_ = 0;
   std::uint32_t last_id_ = 0;
 };
 

@@ -4,16 +4,33 @@
 
 namespace interlock {
 
+namespace {
+
+/** What only a path has. */
+void add_path(nlohmann::json& json, const Proposal& proposal) {
+  nlohmann::json ends = nlohmann::json::array();
+  for (const AxisCounts& end : proposal.ends) {
+    ends.push_back({{"slot", end.slot}, {"target_counts", end.counts}});
+  }
+  json["mode"] = mode_name(proposal.path.mode);
+  json["legs"] = proposal.path.program->legs.size();
+  json["leg"] = proposal.leg;
+  json["duration_s"] = proposal.duration_s;
+  json["ends"] = std::move(ends);
+}
+
+}  // namespace
+
 nlohmann::json to_json(const Proposal& proposal) {
   const bool is_move = proposal.kind == ProposalKind::move;
   nlohmann::json json{{"id", proposal.id},
-                      {"kind", is_move ? "move" : "home"},
+                      {"kind", kind_name(proposal.kind)},
                       {"slot", nullptr},
                       {"axis", nullptr},
                       {"axes", proposal.axes},
                       {"step", nullptr},
                       {"author", proposal.author},
-                      {"source", "console"},
+                      {"source", source_name(proposal.path.source)},
                       {"state", state_name(proposal.state)},
                       {"target_counts", nullptr},
                       {"target", nullptr},
@@ -29,6 +46,9 @@ nlohmann::json to_json(const Proposal& proposal) {
   if (is_move) {
     json["target_counts"] = proposal.move.target_counts;
     json["target"] = proposal.target;
+  }
+  if (proposal.kind == ProposalKind::path) {
+    add_path(json, proposal);
   }
   if (!proposal.step.empty()) {
     json["step"] = proposal.step;

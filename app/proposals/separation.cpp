@@ -33,6 +33,14 @@ class Slider {
   }
 
   [[nodiscard]] const Axis& axis() const { return axis_; }
+
+  /** How far outwards that position is. */
+  [[nodiscard]] double outwards_mm(std::int32_t counts) const { return to_mm(counts); }
+
+  /** The outermost of positions in mm. */
+  [[nodiscard]] double outermost_mm(const PositionRange& range) const {
+    return per_mm_ > 0.0 ? range.highest : -range.lowest;
+  }
   [[nodiscard]] const Reach& reach() const { return reach_; }
   void arrive(const Reach& reach) { reach_ = reach; }
 
@@ -77,12 +85,14 @@ struct Pair {
   double most_mm;
 };
 
-std::vector<Pair> pairs_of(const Robot& robot, const ControlView& view) {
+/** The pairs, each slider in the state in which `state_of(slot)` says that it is. */
+template <typename StateOf>
+std::vector<Pair> pairs_of(const Robot& robot, const StateOf& state_of) {
   std::vector<Pair> pairs;
   const auto* trapezoids = std::get_if<ProstateTrapezoids>(&robot.kinematics);
   const auto slider = [&](const char* role, bool upwards_is_outwards) {
     const Axis& axis = *robot.with_role(role);
-    return Slider(axis, upwards_is_outwards, view.snapshot.state.axis[axis.slot]);
+    return Slider(axis, upwards_is_outwards, state_of(axis.slot));
   };
   if (trapezoids != nullptr) {
     pairs.push_back({slider("back_left", true), slider("back_right", false), trapezoids->max_separation_mm});
@@ -108,6 +118,37 @@ Refusal too_far(const Pair& pair, double separation_mm) {
           "Run all home steps, which make room first; once homed, move the other slider inwards."};
 }
 
+Refusal parted(const Pair& pair, double separation_mm) {
+  return {"SEPARATION",
+          pair.left.axis().name + " and " + pair.right.axis().name + " would part by " +
+              in_mm(separation_mm) + ".",
+          "a separation of at most " + in_mm(pair.most_mm), "Choose targets that are closer together."};
+}
+
+using Positions = std::array<std::int32_t, ILK_SLOTS>;
+
+std::vector<Pair> pairs_at(const Robot& robot, const Positions& positions) {
+  return pairs_of(robot, [&positions](std::uint32_t slot) {
+    ilk_axis_t state{};
+    state.homed = 1;
+    state.position_counts = positions[slot];
+    return state;
+  });
+}
+
+/** How far outwards a slider comes from one row to the next. */
+double outermost_mm(const Slider& slider, const Positions& positions, const TimedTrajectory& trajectory,
+                    std::size_t row) {
+  const auto& axes = trajectory.axes();
+  const auto moved = std::find_if(axes.begin(), axes.end(), [&slider](const TrajectoryAxis& axis) {
+    return axis.slot == slider.axis().slot;
+  });
+  if (moved == axes.end()) {
+    return slider.outwards_mm(positions[slider.axis().slot]);
+  }
+  return slider.outermost_mm(trajectory.reach(static_cast<std::size_t>(moved - axes.begin()), row));
+}
+
 /** A step that only brings sliders together is allowed wherever they stand. */
 tl::expected<void, Refusal> run(Pair& pair, const HomeStep& step) {
   const Sweep left = pair.left.sweep_of(step);
@@ -126,10 +167,37 @@ tl::expected<void, Refusal> run(Pair& pair, const HomeStep& step) {
 
 tl::expected<void, Refusal> check_separation(const Robot& robot, const ControlView& view,
                                              std::span<const HomeStep> steps) {
-  for (Pair& pair : pairs_of(robot, view)) {
+  const auto state_of = [&view](std::uint32_t slot) { return view.snapshot.state.axis[slot]; };
+  for (Pair& pair : pairs_of(robot, state_of)) {
     for (const HomeStep& step : steps) {
       if (auto stays = run(pair, step); !stays) {
         return stays;
+      }
+    }
+  }
+  return {};
+}
+
+tl::expected<void, Refusal> check_separation(const Robot& robot, const Positions& positions) {
+  for (const Pair& pair : pairs_at(robot, positions)) {
+    const double separation_mm = pair.left.reach().outer_mm + pair.right.reach().outer_mm;
+    if (separation_mm > pair.most_mm) {
+      return tl::make_unexpected(parted(pair, separation_mm));
+    }
+  }
+  return {};
+}
+
+tl::expected<void, Refusal> check_separation(const Robot& robot, const Positions& positions,
+                                             const TimedTrajectory& trajectory) {
+  for (const Pair& pair : pairs_at(robot, positions)) {
+    for (std::size_t row = 0; row < trajectory.rows(); ++row) {
+      const double separation_mm = outermost_mm(pair.left, positions, trajectory, row) +
+                                   outermost_mm(pair.right, positions, trajectory, row);
+      if (separation_mm > pair.most_mm) {
+        Refusal refusal = parted(pair, separation_mm);
+        refusal.detail = "After row " + std::to_string(row + 1) + ": " + refusal.detail;
+        return tl::make_unexpected(std::move(refusal));
       }
     }
   }
