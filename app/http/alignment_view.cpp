@@ -102,4 +102,16 @@ json alignment_view(const Robot& robot, const Targeting& targeting, const Contro
   return answer;
 }
 
+tl::expected<Alignment, Problem> alignment_with(const Robot& robot, const Targeting& targeting) {
+  return setup_of(robot, targeting)
+      .and_then([&](const Setup& with) { return alignment_of(robot, targeting, with); })
+      .map_error([](const json& problem) {
+        return Problem{.status = Status::conflict,
+                       .code = problem.at("code"),
+                       .detail = problem.at("text"),
+                       .expected = "entry and target that the robot can reach",
+                       .next_step = "Look at GET /api/targeting/alignment, and set others."};
+      });
+}
+
 }  // namespace interlock::web

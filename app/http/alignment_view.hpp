@@ -7,6 +7,7 @@
 #include "http/targeting.hpp"
 #include "motion/mailbox.hpp"
 #include "robot/robot.hpp"
+#include "targeting/alignment.hpp"
 
 namespace interlock::web {
 
@@ -15,5 +16,8 @@ namespace interlock::web {
  * a problem in its place when there is none.
  */
 nlohmann::json alignment_view(const Robot& robot, const Targeting& targeting, const ControlView& view);
+
+/** The alignment with entry and target; 409 with the code of the problem when there is none. */
+tl::expected<Alignment, Problem> alignment_with(const Robot& robot, const Targeting& targeting);
 
 }  // namespace interlock::web

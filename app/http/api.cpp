@@ -38,8 +38,8 @@ Api::Api(const asio::any_io_executor& executor, const Robot& robot, const ilk_co
       bench_(executor, bench_socket),
       sessions_(store, clocks),
       authority_(static_cast<std::uint32_t>(std::chrono::system_clock::to_time_t(clocks.utc()))),
-      context_{executor, robot,     config,     control_,   book_, stream_,    bench_,
-               store,    sessions_, authority_, passwords_, log,   clocks.utc, clocks.steady},
+      context_{executor,  robot,      config, control_,    book_, stream_,    bench_,       store,
+               sessions_, authority_, work_,  trajectory_, log,   clocks.utc, clocks.steady},
       router_([this](const Caller& caller) -> std::optional<Problem> {
         const auto held = context_.need_authority(caller);
         return held ? std::nullopt : std::optional(held.error());
@@ -63,6 +63,9 @@ void Api::follow_proposals() {
     context_.store.note(std::move(entry));
     message["type"] = "proposal";
     stream_.send_text(message);
+    if (proposal.state == ProposalState::done && proposal.path.program == trajectory_.program) {
+      trajectory_ = {};
+    }
   });
   book_.on_mode_change([this](std::string_view mode) {
     json message = mode_json(context_.robot, mode);

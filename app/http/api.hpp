@@ -23,6 +23,7 @@
 #include "http/routes/proposal_routes.hpp"
 #include "http/routes/system_routes.hpp"
 #include "http/routes/targeting_routes.hpp"
+#include "http/routes/trajectory_routes.hpp"
 #include "http/routes/user_routes.hpp"
 
 namespace interlock::web {
@@ -79,7 +80,8 @@ class Api {
   Bench bench_;
   LiveSessions sessions_;
   Authority authority_;
-  PasswordPool passwords_;
+  WorkPool work_;
+  LoadedTrajectory trajectory_;
   Context context_;
   Router router_;
   SystemRoutes system_routes_{context_, router_};
@@ -93,6 +95,7 @@ class Api {
   ModeRoutes mode_routes_{context_, router_};
   LogRoutes log_routes_{context_, router_};
   TargetingRoutes targeting_routes_{context_, router_};
+  TrajectoryRoutes trajectory_routes_{context_, router_};
   CommunicationRoutes communication_routes_{context_, router_};
   AuditRoutes audit_routes_{context_, router_};
 };

@@ -14,10 +14,11 @@
 #include "http/clocks.hpp"
 #include "http/control_client.hpp"
 #include "http/live_sessions.hpp"
+#include "http/loaded_trajectory.hpp"
 #include "http/message.hpp"
-#include "http/password_pool.hpp"
 #include "http/store_gateway.hpp"
 #include "http/stream_hub.hpp"
+#include "http/work_pool.hpp"
 #include "log/log.hpp"
 #include "proposals/proposal_book.hpp"
 #include "robot/robot.hpp"
@@ -35,7 +36,8 @@ struct Context {
   StoreGateway& store;
   LiveSessions& sessions;
   Authority& authority;
-  PasswordPool& passwords;
+  WorkPool& work;
+  LoadedTrajectory& trajectory;
   Log& log;
   std::function<UtcTime()> clock;
   std::function<SteadyTime()> steady_clock;

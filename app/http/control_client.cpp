@@ -37,6 +37,8 @@ bool ControlClient::send(Command command) {
     order->stops = stops();
   } else if (auto* home = std::get_if<HomeOrder>(&command)) {
     home->stops = stops();
+  } else if (auto* path = std::get_if<PathOrder>(&command)) {
+    path->stops = stops();
   } else if (auto* asked = std::get_if<Ask>(&command)) {
     asked->stops = stops();
   }

@@ -4,7 +4,7 @@
 
 namespace interlock::web {
 
-boost::asio::awaitable<tl::expected<PasswordHash, Problem>> new_hash(PasswordPool& pool, std::string user,
+boost::asio::awaitable<tl::expected<PasswordHash, Problem>> new_hash(WorkPool& pool, std::string user,
                                                                      Password password, std::string field) {
   auto work = [user = std::move(user), password = std::move(password)] {
     return PasswordHash::of_new(password, user);

@@ -6,13 +6,13 @@
 
 #include <string>
 
-#include "http/password_pool.hpp"
+#include "http/work_pool.hpp"
 #include "store/password.hpp"
 
 namespace interlock::web {
 
 /** 422 INVALID, naming `field`, when the user may not have that password; 503 OVERLOADED. */
-boost::asio::awaitable<tl::expected<PasswordHash, Problem>> new_hash(PasswordPool& pool, std::string user,
+boost::asio::awaitable<tl::expected<PasswordHash, Problem>> new_hash(WorkPool& pool, std::string user,
                                                                      Password password, std::string field);
 
 }  // namespace interlock::web

@@ -27,9 +27,22 @@ json detail_of(const HomeDraft& draft, const Robot& robot) {
   return detail;
 }
 
+json detail_of(const PathDraft& draft, const Robot& robot) {
+  json axes = json::array();
+  for (const Axis& axis : robot.axes) {
+    if (((draft.program->mask() >> axis.slot) & 1u) != 0) {
+      axes.push_back(axis.name);
+    }
+  }
+  return {{"kind", "path"}, {"mode", mode_name(draft.mode)}, {"axes", std::move(axes)}};
+}
+
 tl::expected<Proposal, Refusal> enter(ProposalBook& book, const Draft& draft, const ControlView& view) {
   if (const auto* move = std::get_if<MoveDraft>(&draft)) {
     return book.propose(*move, view);
+  }
+  if (const auto* path = std::get_if<PathDraft>(&draft)) {
+    return book.propose_path(*path, view);
   }
   return book.propose_home(std::get<HomeDraft>(draft), view);
 }

@@ -49,7 +49,9 @@ Problem problem_of(const beast::error_code& error) {
     return {.status = Status::payload_too_large,
             .code = "TOO_LARGE",
             .detail = "The body is too large.",
-            .expected = "at most " + std::to_string(Server::longest_body) + " bytes"};
+            .expected = "at most " + std::to_string(Server::longest_body) +
+                        " bytes; a trajectory of the holder of " + "motion authority at most " +
+                        std::to_string(Server::longest_trajectory)};
   }
   if (error == http::error::header_limit || error == http::error::buffer_overflow) {
     return {.status = Status::request_header_fields_too_large,
@@ -211,12 +213,22 @@ bool Server::close_oldest_idle(Place place) {
 asio::awaitable<void> Server::serve(std::shared_ptr<Connection> connection) {
   for (bool keep_alive = true; keep_alive;) {
     http::request_parser<http::string_body> parser;
-    parser.body_limit(longest_body);
+    parser.body_limit(longest_trajectory);
     parser.header_limit(longest_header);
     connection->stream.expires_after(request_timeout);
     connection->waiting = true;
-    const auto [error, bytes] =
-        co_await http::async_read(connection->stream, connection->buffer, parser, as_result);
+    auto [error, header_bytes] =
+        co_await http::async_read_header(connection->stream, connection->buffer, parser, as_result);
+    if (!error) {
+      const std::uint64_t limit = co_await body_limit_of(parser.get(), connection->peer);
+      parser.body_limit(limit);
+      if (parser.content_length().value_or(0) > limit) {
+        error = http::error::body_limit;
+      } else {
+        std::tie(error, std::ignore) =
+            co_await http::async_read(connection->stream, connection->buffer, parser, as_result);
+      }
+    }
     connection->waiting = false;
     if (error) {
       co_await refuse(*connection, error);
@@ -235,6 +247,15 @@ asio::awaitable<void> Server::serve(std::shared_ptr<Connection> connection) {
   }
   beast::error_code ignored;
   connection->stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
+}
+
+/** Only who may load a trajectory may send much. */
+asio::awaitable<std::uint64_t> Server::body_limit_of(const Request& header, const std::string& peer) {
+  if (header.method() != http::verb::put || path_of(header) != TrajectoryRoutes::path) {
+    co_return longest_body;
+  }
+  const auto caller = co_await api_.caller_of(header, peer);
+  co_return caller && !api_.router().check(holder, *caller) ? longest_trajectory : longest_body;
 }
 
 asio::awaitable<void> Server::serve_stream(Connection& connection, Request request) {

@@ -37,6 +37,8 @@ class Server {
   /** Descriptors that are no connections: store, logs, link to the kernel, event loop. */
   static constexpr std::size_t own_descriptors = 64;
   static constexpr std::uint64_t longest_body = 64u * 1024u;
+  /** Of a trajectory that somebody uploads who may load one. */
+  static constexpr std::uint64_t longest_trajectory = 16u * 1024u * 1024u;
   static constexpr std::uint32_t longest_header = 16u * 1024u;
 
   Server(const boost::asio::any_io_executor& executor, Api& api, StaticFiles files)
@@ -75,6 +77,7 @@ class Server {
   };
 
   boost::asio::awaitable<void> serve(std::shared_ptr<Connection> connection);
+  boost::asio::awaitable<std::uint64_t> body_limit_of(const Request& header, const std::string& peer);
   boost::asio::awaitable<void> serve_stream(Connection& connection, Request request);
   boost::asio::awaitable<Response> respond(const Request& request, const Connection& connection);
   boost::asio::awaitable<Response> respond_api(const Request& request, const std::string& peer);

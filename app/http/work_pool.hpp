@@ -1,7 +1,7 @@
 /**
  * @file
- * Threads that hash passwords, each of which takes a tenth of a second and 64 MiB: neither the network nor
- * the store waits for them.
+ * Threads for what takes long: hashing a password (a tenth of a second and 64 MiB), reading a trajectory.
+ * Neither the network nor the store waits for them.
  */
 #pragma once
 
@@ -19,10 +19,10 @@
 namespace interlock::web {
 
 /** Belongs to the network thread. */
-class PasswordPool {
+class WorkPool {
  public:
   static constexpr std::size_t threads = 2;
-  /** Passwords that are hashed or wait for it; one more is refused. */
+  /** Pieces of work that are done or wait; one more is refused. */
   static constexpr std::size_t capacity = 64;
 
   /**
@@ -41,7 +41,7 @@ class PasswordPool {
   }
 
  private:
-  /** One of the passwords that are asked for, for as long as it lives. */
+  /** One of the pieces that are asked for, for as long as it lives. */
   class Place {
    public:
     explicit Place(std::size_t& asked) : asked_(asked) { ++asked_; }
@@ -62,7 +62,7 @@ class PasswordPool {
   static Problem full() {
     return {.status = Status::service_unavailable,
             .code = "OVERLOADED",
-            .detail = "Too many passwords are being checked.",
+            .detail = "Too many passwords and trajectories wait to be looked at.",
             .next_step = "Try again in a moment.",
             .headers = {{"Retry-After", "1"}}};
   }

@@ -244,7 +244,7 @@ boost::asio::awaitable<tl::expected<std::optional<Authenticated>, Problem>> Acco
     co_return fail(found.error());
   }
   auto work = [found = std::move(*found), password = std::move(password)] { return judge(found, password); };
-  co_return co_await context_.passwords.run(std::move(work));
+  co_return co_await context_.work.run(std::move(work));
 }
 
 Answering AccountRoutes::change_password(const Call& call) {
@@ -268,7 +268,7 @@ Answering AccountRoutes::change_password(const Call& call) {
     co_return fail(wrong_credentials(Status::forbidden, "The current password is wrong."));
   }
   Password wished(std::move(passwords->second));
-  const auto next = co_await new_hash(context_.passwords, name, std::move(wished), "new");
+  const auto next = co_await new_hash(context_.work, name, std::move(wished), "new");
   if (!next) {
     co_return fail(next.error());
   }

@@ -1,6 +1,7 @@
 #include "http/routes/mode_routes.hpp"
 
 #include "http/fields.hpp"
+#include "http/path_drafts.hpp"
 #include "http/problems.hpp"
 #include "http/proposing.hpp"
 #include "robot/compile.hpp"
@@ -85,29 +86,53 @@ tl::expected<std::string, Problem> ModeRoutes::wanted_mode(const Call& call) con
   });
 }
 
+tl::expected<Draft, Problem> ModeRoutes::draft_for(RobotMode mode, const std::string& author) const {
+  switch (mode) {
+    case RobotMode::trajectory:
+      return trajectory_draft(context_.trajectory, author);
+    case RobotMode::draping:
+      return draping_draft(context_.robot, author);
+    case RobotMode::coordinated:
+      return fail(Problem{.status = Status::conflict,
+                          .code = "NO_TARGETS",
+                          .detail = "Coordinated motion needs targets, which a mode does not name.",
+                          .expected = "a proposal of kind coordinated or pose",
+                          .next_step = "Propose it by POST /api/proposals."});
+    case RobotMode::home:
+    case RobotMode::manual:
+      break;
+  }
+  return HomeDraft{std::nullopt, std::nullopt, author};
+}
+
 Answering ModeRoutes::set_mode(const Call& call) const {
   const auto wanted = wanted_mode(call);
   if (!wanted) {
     co_return fail(wanted.error());
   }
-  if (*wanted != "home") {
+  const RobotMode mode_wanted = mode_of(*wanted).value_or(RobotMode::manual);
+  if (mode_wanted == RobotMode::manual) {
     co_return go_manual();
   }
   (void)context_.view();
-  if (context_.book.open_home() != nullptr) {
+  if (context_.book.app_mode() == *wanted) {
     co_return mode();
   }
   if (const auto kernel = context_.need_kernel(); !kernel) {
     co_return fail(kernel.error());
   }
-  Draft whole_robot = HomeDraft{std::nullopt, std::nullopt, call.caller.user};
-  auto made = co_await propose(context_, call.caller, std::move(whole_robot));
+  auto draft = draft_for(mode_wanted, call.caller.user);
+  if (!draft) {
+    co_return fail(draft.error());
+  }
+  auto made = co_await propose(context_, call.caller, std::move(*draft));
   co_return std::move(made).and_then([this](const Proposal&) { return mode(); });
 }
 
 Reply ModeRoutes::go_manual() const {
   (void)context_.view();
-  const Proposal* open = context_.book.open_home();
+  const Proposal* home = context_.book.open_home();
+  const Proposal* open = home == nullptr ? context_.book.open_path() : home;
   if (open != nullptr) {
     const auto aborted = context_.book.abort(open->id);
     if (!aborted) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "http/context.hpp"
+#include "http/proposing.hpp"
 #include "http/router.hpp"
 
 namespace interlock::web {
@@ -22,6 +23,7 @@ class ModeRoutes {
   [[nodiscard]] Reply mode() const;
   [[nodiscard]] tl::expected<std::string, Problem> wanted_mode(const Call& call) const;
   [[nodiscard]] boost::asio::awaitable<Reply> set_mode(const Call& call) const;
+  [[nodiscard]] tl::expected<Draft, Problem> draft_for(RobotMode mode, const std::string& author) const;
   [[nodiscard]] Reply go_manual() const;
 
   const Context& context_;

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "http/fields.hpp"
+#include "http/path_drafts.hpp"
 #include "http/problems.hpp"
 #include "http/proposing.hpp"
 #include "proposals/proposal_json.hpp"
@@ -17,6 +18,7 @@ using nlohmann::json;
 
 constexpr std::int64_t lowest_counts = std::numeric_limits<std::int32_t>::min();
 constexpr std::int64_t highest_counts = std::numeric_limits<std::int32_t>::max();
+constexpr double longest_move_s = 3600.0;
 
 tl::expected<const Axis*, Problem> axis_in(const Robot& robot, std::int64_t slot) {
   const Axis* axis = robot.at_slot(static_cast<std::uint32_t>(slot));
@@ -85,15 +87,44 @@ tl::expected<Draft, Problem> home_of(const json& body, const Robot& robot, const
   return draft;
 }
 
-/** Reads a `ProposalDraft`. */
-tl::expected<Draft, Problem> draft_of(const json& body, const Robot& robot, const std::string& author) {
-  constexpr std::array<std::string_view, 2> kinds{"move", "home"};
-  Fields fields(body, {"kind", "slot", "step", "target", "target_counts", "drive"});
+tl::expected<Draft, Problem> coordinated_of(const json& body, const Robot& robot, const std::string& author) {
+  Fields fields(body, {"kind", "targets", "duration_s"});
+  fields.require({{"targets", "positions by axis"}});
+  const double duration_s = fields.number("duration_s", 0.0, longest_move_s).value_or(0.0);
+  if (fields.problem()) {
+    return fail(*fields.problem());
+  }
+  return coordinated_draft(robot, *fields.value("targets"), duration_s, author);
+}
+
+tl::expected<PoseWish, Problem> pose_of(const json& body) {
+  constexpr std::array<std::string_view, 2> poses{"desired", "reachable"};
+  Fields fields(body, {"kind", "pose", "insert"});
+  const auto pose = fields.choice("pose", poses);
+  const bool insert = fields.boolean("insert").value_or(false);
+  if (fields.problem()) {
+    return fail(*fields.problem());
+  }
+  return PoseWish{pose == "reachable", insert};
+}
+
+tl::expected<std::string, Problem> kind_of(const json& body) {
+  constexpr std::array<std::string_view, 6> kinds{"move", "home",       "coordinated",
+                                                  "pose", "trajectory", "draping"};
+  Fields fields(body, {"kind", "slot", "step", "target", "target_counts", "drive", "targets", "duration_s",
+                       "pose", "insert"});
   const auto kind = fields.choice("kind", kinds);
   if (fields.problem()) {
     return fail(*fields.problem());
   }
-  return kind == "home" ? home_of(body, robot, author) : move_of(body, robot, author);
+  return kind.value_or("move");
+}
+
+/** Nothing but the kind. */
+tl::expected<void, Problem> alone(const json& body) {
+  const Fields fields(body, {"kind"});
+  return fields.problem() ? tl::expected<void, Problem>(fail(*fields.problem()))
+                          : tl::expected<void, Problem>();
 }
 
 }  // namespace
@@ -103,6 +134,8 @@ ProposalRoutes::ProposalRoutes(const Context& context, Router& router) : context
   router.add(verb::post, "/api/proposals", holder, [this](const Call& call) { return propose(call); });
   router.add(verb::get, "/api/proposals/{id}", viewers,
              [this](const Call& call) -> Answering { co_return show(call); });
+  router.add(verb::post, "/api/proposals/{id}/approve", holder,
+             [this](const Call& call) { return approve(call); });
   router.add(verb::post, "/api/proposals/{id}/abort", holder,
              [this](const Call& call) -> Answering { co_return abort(call); });
 }
@@ -116,10 +149,35 @@ Reply ProposalRoutes::list() const {
   return Success{Status::ok, std::move(list)};
 }
 
+/** Reads a `ProposalDraft`. */
+boost::asio::awaitable<tl::expected<Draft, Problem>> ProposalRoutes::draft_of(const Call& call) const {
+  const auto body = parse_body(call.request);
+  const auto kind = body.and_then(kind_of);
+  if (!kind) {
+    co_return fail(kind.error());
+  }
+  const std::string& author = call.caller.user;
+  if (*kind == "pose") {
+    const auto wish = pose_of(*body);
+    if (!wish) {
+      co_return fail(wish.error());
+    }
+    co_return co_await pose_draft(context_, *wish, author);
+  }
+  if (*kind == "trajectory") {
+    co_return alone(*body).and_then([&] { return trajectory_draft(context_.trajectory, author); });
+  }
+  if (*kind == "draping") {
+    co_return alone(*body).and_then([&] { return draping_draft(context_.robot, author); });
+  }
+  if (*kind == "coordinated") {
+    co_return coordinated_of(*body, context_.robot, author);
+  }
+  co_return *kind == "home" ? home_of(*body, context_.robot, author) : move_of(*body, context_.robot, author);
+}
+
 Answering ProposalRoutes::propose(const Call& call) const {
-  auto draft = parse_body(call.request).and_then([&](const json& body) {
-    return draft_of(body, context_.robot, call.caller.user);
-  });
+  auto draft = co_await draft_of(call);
   if (!draft) {
     co_return fail(draft.error());
   }
@@ -129,6 +187,29 @@ Answering ProposalRoutes::propose(const Call& call) const {
   auto made = co_await web::propose(context_, call.caller, std::move(*draft));
   co_return std::move(made).map(
       [](const Proposal& proposal) { return Success{Status::created, to_json(proposal)}; });
+}
+
+Answering ProposalRoutes::approve(const Call& call) const {
+  const auto shown = show(call);
+  if (!shown) {
+    co_return shown;
+  }
+  const std::uint32_t id = *number_in(call.parameters[0]);
+  const std::uint32_t stops = context_.control.stops();
+  json asked{{"approved", id}};
+  const auto announced = co_await context_.announce(call.caller, AuditKind::proposal, std::move(asked));
+  if (!announced) {
+    co_return fail(announced.error());
+  }
+  if (context_.control.stops() != stops) {
+    co_return fail(stopped_meanwhile("the approval"));
+  }
+  if (const auto kernel = context_.need_kernel(); !kernel) {
+    co_return fail(kernel.error());
+  }
+  co_return context_.book.approve(id, context_.view())
+      .map([](const Proposal& approved) { return Success{Status::ok, to_json(approved)}; })
+      .map_error(refused);
 }
 
 Reply ProposalRoutes::show(const Call& call) const {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "http/context.hpp"
+#include "http/proposing.hpp"
 #include "http/router.hpp"
 
 namespace interlock::web {
@@ -16,7 +17,9 @@ class ProposalRoutes {
 
  private:
   [[nodiscard]] Reply list() const;
+  [[nodiscard]] boost::asio::awaitable<tl::expected<Draft, Problem>> draft_of(const Call& call) const;
   [[nodiscard]] boost::asio::awaitable<Reply> propose(const Call& call) const;
+  [[nodiscard]] boost::asio::awaitable<Reply> approve(const Call& call) const;
   [[nodiscard]] Reply show(const Call& call) const;
   [[nodiscard]] Reply abort(const Call& call) const;
 

@@ -2,7 +2,7 @@
 
 #include "http/alignment_view.hpp"
 #include "http/problems.hpp"
-#include "store/settings.hpp"
+#include "http/targeting_store.hpp"
 
 namespace interlock::web {
 namespace {
@@ -11,55 +11,17 @@ using Answering = boost::asio::awaitable<Reply>;
 using boost::beast::http::verb;
 using nlohmann::json;
 
-constexpr const char* setting_key = "targeting";
-
-/** What the robot's file says, until somebody sets others. */
-Targeting first_targeting(const Robot& robot) {
-  Targeting first;
-  first.treatment_to_tip_mm = robot.probe.treatment_to_tip_mm;
-  first.robot_to_entry_mm = robot.probe.robot_to_entry_mm;
-  first.cannula_to_treatment_mm = robot.probe.cannula_to_treatment_mm;
-  first.treatment_to_robot_at_home_mm = robot.probe.treatment_to_robot_at_home_mm;
-  return first;
-}
-
-Stored<Targeting> find_targeting(Transaction& transaction, const Robot& robot) {
-  const auto setting = Settings(transaction).find(setting_key);
-  if (!setting) {
-    return first_targeting(robot);
-  }
-  return stored_targeting(setting->value).map_error([](const Problem& problem) {
-    return StoreError{StoreError::Kind::damaged, "the stored targeting is unusable: " + problem.detail, "",
-                      problem.expected, "Restore the store from a backup."};
-  });
-}
-
-/** Only what differs, so that the record shows the change. */
-json difference(const json& values, const json& other) {
-  json differing = json::object();
-  for (const auto& [name, value] : values.items()) {
-    if (other[name] != value) {
-      differing[name] = value;
-    }
-  }
-  return differing;
-}
-
-void set_targeting(Transaction& transaction, const Targeting& before, const Targeting& after,
-                   AuditEntry entry) {
-  const json old_values = to_json(before);
-  const json new_values = to_json(after);
-  entry.detail = {{"setting", setting_key},
-                  {"old", difference(old_values, new_values)},
-                  {"new", difference(new_values, old_values)}};
-  Settings(transaction).set(setting_key, new_values, entry.time);
-  Audit(transaction).append(entry);
-}
-
 /** A refusal of the body is a value here, as the store did not fail. */
 struct Changed {
   tl::expected<Targeting, Problem> targeting;
+  bool leads_elsewhere = false; /**< than before: what followed from it is stale */
 };
+
+/** A pose that an imager reports moves nothing. */
+bool leads_elsewhere(Targeting before, const Targeting& after) {
+  before.reported_position = after.reported_position;
+  return before != after;
+}
 
 /** The hold of the motion authority by which a change is made. */
 struct Hold {
@@ -92,20 +54,13 @@ void TargetingRoutes::add_change(Router& router, const char* path, Change make) 
   router.add(verb::put, path, holder, [this, make](const Call& call) { return change(call, make); });
 }
 
-boost::asio::awaitable<tl::expected<Targeting, Problem>> TargetingRoutes::present() const {
-  auto find = [robot = &context_.robot](Store& store) {
-    return store.read([&](Transaction& transaction) { return find_targeting(transaction, *robot); });
-  };
-  co_return co_await context_.store.run(std::move(find));
-}
-
 Answering TargetingRoutes::show() const {
-  const auto found = co_await present();
+  const auto found = co_await present_targeting(context_);
   co_return found.map([](const Targeting& targeting) { return Success{.body = to_json(targeting)}; });
 }
 
 Answering TargetingRoutes::show_alignment() const {
-  const auto found = co_await present();
+  const auto found = co_await present_targeting(context_);
   co_return found.map([&](const Targeting& targeting) {
     return Success{.body = alignment_view(context_.robot, targeting, context_.view())};
   });
@@ -126,11 +81,12 @@ Answering TargetingRoutes::change(const Call& call, Change make) const {
       }
       return find_targeting(transaction, *robot).map([&](const Targeting& before) -> Changed {
         if (!hold.lasts()) {
-          return {fail(authority_lost())};
+          return {fail(authority_lost()), false};
         }
         Changed after{make(before, body)};
         if (after.targeting && *after.targeting != before) {
           set_targeting(transaction, before, *after.targeting, entry);
+          after.leads_elsewhere = leads_elsewhere(before, *after.targeting);
         }
         return after;
       });
@@ -139,6 +95,9 @@ Answering TargetingRoutes::change(const Call& call, Change make) const {
   const auto changed = co_await context_.store.run(std::move(keep));
   if (!changed) {
     co_return fail(changed.error());
+  }
+  if (changed->leads_elsewhere) {
+    context_.book.end_stale();
   }
   co_return changed->targeting.map(
       [](const Targeting& targeting) { return Success{.body = to_json(targeting)}; });

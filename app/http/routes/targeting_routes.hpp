@@ -22,7 +22,6 @@ class TargetingRoutes {
   using Change = tl::expected<Targeting, Problem> (*)(Targeting, const nlohmann::json&);
 
   void add_change(Router& router, const char* path, Change make);
-  [[nodiscard]] boost::asio::awaitable<tl::expected<Targeting, Problem>> present() const;
   [[nodiscard]] boost::asio::awaitable<Reply> show() const;
   [[nodiscard]] boost::asio::awaitable<Reply> show_alignment() const;
   [[nodiscard]] boost::asio::awaitable<Reply> change(const Call& call, Change make) const;

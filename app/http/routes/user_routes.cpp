@@ -166,7 +166,7 @@ Answering UserRoutes::add(const Call& call) const {
   if (!wished) {
     co_return fail(wished.error());
   }
-  auto hash = co_await new_hash(context_.passwords, wished->name, std::move(*wished->password), "password");
+  auto hash = co_await new_hash(context_.work, wished->name, std::move(*wished->password), "password");
   if (!hash) {
     co_return fail(hash.error());
   }
@@ -198,7 +198,7 @@ Answering UserRoutes::change(const Call& call) const {
   Change work{
       user, {wished->role, std::nullopt, wished->enabled}, {call.caller.user, call.caller.session, {}}};
   if (wished->password) {
-    auto hash = co_await new_hash(context_.passwords, user, std::move(*wished->password), "password");
+    auto hash = co_await new_hash(context_.work, user, std::move(*wished->password), "password");
     if (!hash) {
       co_return fail(hash.error());
     }

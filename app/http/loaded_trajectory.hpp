@@ -1,0 +1,27 @@
+/** @file The trajectory that is loaded, until it was carried out or somebody takes it away. */
+#pragma once
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "motion/path_program.hpp"
+#include "robot/robot.hpp"
+#include "time/utc_time.hpp"
+#include "trajectory/trajectory_builder.hpp"
+
+namespace interlock::web {
+
+/** Belongs to the network thread. */
+struct LoadedTrajectory {
+  std::shared_ptr<const PathProgram> program; /**< null: none is loaded; else one leg, timed */
+  std::string author;
+  UtcTime loaded;
+};
+
+/** Schema `LoadedTrajectory` of spec/openapi.yaml. */
+nlohmann::json to_json(const LoadedTrajectory& loaded);
+
+/** Largest speed of each axis, in its unit per second, as its rates allow. */
+VelocityLimits velocity_limits(const Robot& robot);
+
+}  // namespace interlock::web

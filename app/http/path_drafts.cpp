@@ -1,0 +1,120 @@
+#include "http/path_drafts.hpp"
+
+#include "http/alignment_view.hpp"
+#include "http/fields.hpp"
+#include "http/problems.hpp"
+#include "http/targeting_store.hpp"
+
+namespace interlock::web {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::string_view insertion_role = "insertion";
+
+PathDraft draft_of(RobotMode mode, std::vector<PathLeg> legs, const std::string& author) {
+  return {mode, std::make_shared<const PathProgram>(PathProgram{std::move(legs)}), ProposalSource::console,
+          std::nullopt, author};
+}
+
+/** Axes that the aim asks more of than they can do. */
+std::string clamped_axes(const Robot& robot, const Alignment& alignment) {
+  std::string names;
+  for (const AxisSetpoint& setpoint : alignment.setpoints) {
+    if (setpoint.clamped) {
+      names += (names.empty() ? "" : ", ") + robot.at_slot(setpoint.slot)->title;
+    }
+  }
+  return names;
+}
+
+std::vector<PathLeg> legs_to(const Robot& robot, const Alignment& alignment, bool insert) {
+  const Axis* insertion = robot.with_role(insertion_role);
+  MoveLeg out;
+  MoveLeg align;
+  MoveLeg in;
+  for (const AxisSetpoint& setpoint : alignment.setpoints) {
+    const AxisCounts target{setpoint.slot, setpoint.counts};
+    if (insertion == nullptr || setpoint.slot != insertion->slot) {
+      align.targets.push_back(target);
+      continue;
+    }
+    out.targets.push_back({setpoint.slot, insertion->lowest_setpoint_counts()});
+    in.targets.push_back(target);
+  }
+  std::vector<PathLeg> legs;
+  for (MoveLeg* leg : {&out, &align, insert ? &in : nullptr}) {
+    if (leg != nullptr && !leg->targets.empty()) {
+      legs.emplace_back(std::move(*leg));
+    }
+  }
+  return legs;
+}
+
+}  // namespace
+
+tl::expected<PathDraft, Problem> coordinated_draft(const Robot& robot, const json& targets,
+                                                   double minimum_duration_s, const std::string& author) {
+  if (!targets.is_object() || targets.empty()) {
+    return fail(invalid("targets", "targets name no axis", "an object of positions by axis, at least one"));
+  }
+  MoveLeg leg;
+  leg.minimum_duration_s = minimum_duration_s;
+  for (const auto& [name, position] : targets.items()) {
+    const Axis* axis = robot.find(name);
+    if (axis == nullptr) {
+      return fail(invalid("targets." + name, "no axis is called " + name, "a name that /api/motors lists"));
+    }
+    const auto counts = position.is_number() ? axis->to_counts(position.get<double>()) : std::nullopt;
+    if (!counts) {
+      return fail(invalid("targets." + name, "it is no position of this axis",
+                          "a number in " + std::string(unit_name(axis->unit))));
+    }
+    leg.targets.push_back({axis->slot, *counts});
+  }
+  return draft_of(RobotMode::coordinated, {std::move(leg)}, author);
+}
+
+tl::expected<PathDraft, Problem> draping_draft(const Robot& robot, const std::string& author) {
+  if (robot.draping.empty()) {
+    return fail(not_found("setpoint for draping", "a [draping] table in the robot's file"));
+  }
+  return draft_of(RobotMode::draping, {MoveLeg{robot.draping, 0.0, 0.0}}, author);
+}
+
+tl::expected<PathDraft, Problem> trajectory_draft(const LoadedTrajectory& loaded, const std::string& author) {
+  if (loaded.program == nullptr) {
+    return fail(Problem{.status = Status::conflict,
+                        .code = "EMPTY",
+                        .detail = "No trajectory is loaded; the robot stays in manual mode.",
+                        .expected = "a loaded trajectory",
+                        .next_step = "Load one by PUT /api/trajectory."});
+  }
+  return PathDraft{RobotMode::trajectory, loaded.program, ProposalSource::file, std::nullopt, author};
+}
+
+boost::asio::awaitable<tl::expected<PathDraft, Problem>> pose_draft(const Context& context, PoseWish wish,
+                                                                    std::string author) {
+  const std::uint32_t revision = context.book.targeting_revision();
+  const auto targeting = co_await present_targeting(context);
+  if (!targeting) {
+    co_return fail(targeting.error());
+  }
+  const auto alignment = alignment_with(context.robot, *targeting);
+  if (!alignment) {
+    co_return fail(alignment.error());
+  }
+  const std::string clamped = clamped_axes(context.robot, *alignment);
+  if (!clamped.empty() && !wish.reachable) {
+    co_return fail(Problem{.status = Status::conflict,
+                           .code = "UNREACHABLE",
+                           .detail = "These axes end before the desired pose: " + clamped + ".",
+                           .expected = "a target within reach",
+                           .next_step = "Set another target, or propose the reachable pose."});
+  }
+  PathDraft draft = draft_of(RobotMode::coordinated, legs_to(context.robot, *alignment, wish.insert), author);
+  draft.targeting_revision = revision;
+  co_return draft;
+}
+
+}  // namespace interlock::web

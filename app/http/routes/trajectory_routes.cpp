@@ -1,0 +1,71 @@
+#include "http/routes/trajectory_routes.hpp"
+
+#include "http/problems.hpp"
+#include "trajectory/trajectory_csv.hpp"
+
+namespace interlock::web {
+namespace {
+
+using Answering = boost::asio::awaitable<Reply>;
+using boost::beast::http::verb;
+using nlohmann::json;
+
+Problem unreadable(const TrajectoryError& error) {
+  return {.status = Status::unprocessable_entity,
+          .code = std::string(code_name(error.code)),
+          .detail = error.message(),
+          .field = error.column,
+          .expected = error.expected,
+          .next_step = "Nothing was loaded. Mend the trajectory, and load it again."};
+}
+
+json summary_of(const LoadedTrajectory& loaded) {
+  const json whole = to_json(loaded);
+  return {{"rows", whole["rows"]}, {"duration_s", whole["duration_s"]}};
+}
+
+}  // namespace
+
+TrajectoryRoutes::TrajectoryRoutes(const Context& context, Router& router) : context_(context) {
+  router.add(verb::get, path, viewers, [this](const Call&) -> Answering { co_return show(); });
+  router.add(verb::put, path, holder, [this](const Call& call) { return load(call); });
+  router.add(verb::delete_, path, holder, [this](const Call& call) { return unload(call); });
+}
+
+Reply TrajectoryRoutes::show() const { return Success{.body = to_json(context_.trajectory)}; }
+
+Answering TrajectoryRoutes::load(const Call& call) const {
+  auto work = [text = call.request.body(), robot = &context_.robot] {
+    return read_trajectory(text, *robot, velocity_limits(*robot));
+  };
+  auto done = co_await context_.work.run(std::move(work));
+  if (!done) {
+    co_return fail(done.error());
+  }
+  if (!*done) {
+    co_return fail(unreadable(done->error()));
+  }
+  std::vector<PathLeg> legs;
+  legs.emplace_back(TimedLeg{std::move(**done)});
+  LoadedTrajectory loaded{std::make_shared<const PathProgram>(PathProgram{std::move(legs)}), call.caller.user,
+                          context_.clock()};
+  json detail{{"trajectory", summary_of(loaded)}};
+  const auto announced = co_await context_.announce(call.caller, AuditKind::setting, std::move(detail));
+  if (!announced) {
+    co_return fail(announced.error());
+  }
+  context_.trajectory = std::move(loaded);
+  co_return show();
+}
+
+Answering TrajectoryRoutes::unload(const Call& call) const {
+  json detail{{"trajectory", nullptr}};
+  const auto announced = co_await context_.announce(call.caller, AuditKind::setting, std::move(detail));
+  if (!announced) {
+    co_return fail(announced.error());
+  }
+  context_.trajectory = {};
+  co_return show();
+}
+
+}  // namespace interlock::web
