@@ -1,6 +1,6 @@
-"""Measures the kernel step against the limits of its specification and writes build/evidence/bench.json.
+"""Measures the kernel step and the control tick against their limits and writes build/evidence/bench.json.
 
-Time comes from `step_bench`, instructions from callgrind, text size and stack from the compiler's own report.
+Time comes from `step_bench` and `control_bench`, instructions from callgrind, text size and stack from the compiler's own report.
 Times depend on the machine and its load, so no test asserts them: the evidence says FAILED when a figure is
 above its limit, and the table marks it.
 """
@@ -26,6 +26,7 @@ CALLGRIND_STEPS = 500
 LIMITS = {
     "step_ns_median": 1000,
     "step_ns_worst_path": 2000,
+    "control_tick_ns_p999": 50_000,
     **size.LIMITS,
 }
 
@@ -61,7 +62,7 @@ def evidence(figures: dict[str, float], started: float, detail: dict) -> dict:
     return {
         "id": "bench",
         "status": "PASSED" if all(figures[name] <= limit for name, limit in LIMITS.items()) else "FAILED",
-        "tool": {"name": "step_bench, callgrind, gcc", "version": run(["gcc", "-dumpfullversion"]).strip()},
+        "tool": {"name": "step_bench, control_bench, callgrind, gcc", "version": run(["gcc", "-dumpfullversion"]).strip()},
         "commit": commit,
         "date": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
         "duration_s": round(time.monotonic() - started, 1),
@@ -82,6 +83,7 @@ def main() -> int:
     binaries = {32: "step_bench", 64: "step_bench_64"}
     timed = {words: json.loads(run([str(arguments.bin / name)])) for words, name in binaries.items()}
     scenarios = timed[32]["scenarios"]
+    control = json.loads(run([str(arguments.bin / "control_bench"), str(ROOT / "models/robots/neuro.toml")]))
     counted = {name: instructions_per_step(arguments.bin / "step_bench", name) for name in scenarios}
     figures = {
         "step_ns_median": scenarios["moving"]["median_ns"],
@@ -91,10 +93,12 @@ def main() -> int:
         "step_ns_median_64_words": timed[64]["scenarios"]["moving"]["median_ns"],
         "step_instructions_median": counted["moving"],
         "step_instructions_worst_path": max(counted.values()),
+        "control_tick_ns_median": control["median_ns"],
+        "control_tick_ns_p999": control["p999_ns"],
         "reference_ns": timed[32]["reference_ns"],
         **size.measure(ROOT / "build/bench"),
     }
-    detail = {"timed": timed, "instructions": counted, "limits": LIMITS}
+    detail = {"timed": timed, "control": control, "instructions": counted, "limits": LIMITS}
     record = evidence(figures, started, detail)
     (EVIDENCE / "bench.json").write_text(json.dumps(record, indent=2) + "\n")
     (EVIDENCE / "bench.log.json").write_text(json.dumps(detail, indent=2) + "\n")
