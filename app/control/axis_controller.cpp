@@ -71,15 +71,21 @@ ControlResult<AxisController> AxisController::create(const AxisControlRules& rul
 }
 
 AxisOutput AxisController::update(const ilk_axis_t& axis, std::uint32_t tick, const Setpoint& setpoint,
-                                  std::int32_t target_counts) noexcept {
+                                  std::int32_t target_counts, std::uint32_t ceiling_drive) noexcept {
   const double elapsed = elapsed_s(tick);
   last_tick_ = tick;
   estimator_.add(axis.position_counts, axis.card_time_us);
   AxisOutput output;
   output.velocity = estimator_.estimate();
   const std::int64_t way = std::int64_t{target_counts} - axis.position_counts;
-  const ControlResult<PivOutput> piv = piv_.update(
-      {setpoint, static_cast<double>(axis.position_counts), output.velocity, way < 0 ? -1 : 1, elapsed});
+  const int direction = way < 0 ? -1 : 1;
+  const ControlResult<PivOutput> piv =
+      piv_.update({.setpoint = setpoint,
+                   .position_counts = static_cast<double>(axis.position_counts),
+                   .velocity = output.velocity,
+                   .direction = direction,
+                   .elapsed_s = elapsed,
+                   .ceiling_counts_per_s = direction * map_.speed(ceiling_drive, direction)});
   if (!piv) {
     output.error = piv.error();
     return output;
@@ -89,7 +95,7 @@ AxisOutput AxisController::update(const ilk_axis_t& axis, std::uint32_t tick, co
     piv_.reset();
     return output;
   }
-  output.drive = map_.drive(piv->counts_per_s);
+  output.drive = std::min(map_.drive(piv->counts_per_s), ceiling_drive);
   return output;
 }
 

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "control/control_error.hpp"
@@ -63,10 +64,12 @@ class AxisController {
 
   /**
    * One control tick. `axis` and `tick` are those of a snapshot, `setpoint` is for the time of that tick,
-   * `target_counts` where the move ends.
+   * `target_counts` where the move ends, `ceiling_drive` the largest drive that the move may have now: that
+   * of the order, or of an axis that is not homed.
    */
   AxisOutput update(const ilk_axis_t& axis, std::uint32_t tick, const Setpoint& setpoint,
-                    std::int32_t target_counts) noexcept;
+                    std::int32_t target_counts,
+                    std::uint32_t ceiling_drive = std::numeric_limits<std::uint32_t>::max()) noexcept;
 
   /** Follows the velocity of an axis that is not driven, so that it is known when a move begins. */
   void observe(const ilk_axis_t& axis, std::uint32_t tick) noexcept;

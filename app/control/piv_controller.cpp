@@ -27,6 +27,8 @@ ControlResult<void> check(const PivInput& input) noexcept {
       .and_then([&] { return require_within("velocity", measured.counts_per_s, -most, most); })
       .and_then([&] { return require_within("age of the velocity", measured.age_s, 0.0, longest_s); })
       .and_then(
+          [&] { return require_within("ceiling", std::min(input.ceiling_counts_per_s, most), 0.0, most); })
+      .and_then(
           [&] { return require_within("time since the last update", input.elapsed_s, 0.0, longest_s); });
 }
 
@@ -64,7 +66,7 @@ ControlResult<PivOutput> PivController::update(const PivInput& input) noexcept {
                            : 0.0;
   const double wanted = velocity_wanted + setpoint.acceleration_counts_per_s2 * rules_.lead_s +
                         rules_.gains.velocity * error + integral_;
-  output_ = held(wanted, input.elapsed_s);
+  output_ = held(wanted, input);
   integrate(error, wanted, input.elapsed_s);
   return PivOutput{wanted, output_};
 }
@@ -81,14 +83,15 @@ void PivController::turn(int direction) noexcept {
   }
 }
 
-double PivController::held(double wanted, double elapsed_s) const noexcept {
-  const double along = std::clamp(direction_ * wanted, 0.0, rules_.full_speed_counts_per_s);
+double PivController::held(double wanted, const PivInput& input) const noexcept {
+  const double most = std::min(rules_.full_speed_counts_per_s, input.ceiling_counts_per_s);
+  const double along = std::max(0.0, std::min(direction_ * wanted, most));
   if (along == 0.0) {
     return 0.0;
   }
-  const double step = rules_.rate_counts_per_s2 * elapsed_s;
+  const double step = rules_.rate_counts_per_s2 * input.elapsed_s;
   const double before = direction_ * output_;
-  return direction_ * std::clamp(along, before - step, before + step);
+  return direction_ * std::clamp(along, std::min(before - step, most), before + step);
 }
 
 void PivController::integrate(double error, double wanted, double elapsed_s) noexcept {

@@ -15,18 +15,19 @@
  * latency and the motor's lag take away (`lead`), so that the loop corrects errors and does not make the
  * motion.
  *
- * The kernel drives an axis only towards its setpoint. So the output is held within 0 and full speed in the
- * direction of travel: an output against it is no drive, never a reversal.
+ * The kernel drives an axis only towards its setpoint. So the output is held within 0 and full speed, or the
+ * move's own ceiling, in the direction of travel: an output against it is no drive, never a reversal.
  *
  * Anti-windup is by conditional integration: while the output is held at a bound, or by the limit of its
  * rate, the integral only moves the way that leads off it. The integral has a bound of its own, and a new
  * direction of travel empties it.
  *
- * The rate of the output is limited, but not where it goes to zero because it points against the travel:
- * nothing delays a stop.
+ * The rate of the output is limited, but not where it goes to zero because it points against the travel, nor
+ * where the ceiling comes down: nothing delays a stop.
  */
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "control/control_error.hpp"
@@ -59,6 +60,7 @@ struct PivInput {
   std::optional<VelocityEstimate> velocity; /**< without it there is no V and no I */
   int direction = 1;                        /**< of travel: the sign of target minus position */
   double elapsed_s = 0.0;                   /**< since the last update */
+  double ceiling_counts_per_s = std::numeric_limits<double>::infinity(); /**< largest output of this move */
 };
 
 struct PivOutput {
@@ -83,7 +85,7 @@ class PivController {
   explicit PivController(const PivRules& rules) noexcept : rules_(rules) {}
 
   void turn(int direction) noexcept;
-  [[nodiscard]] double held(double wanted, double elapsed_s) const noexcept;
+  [[nodiscard]] double held(double wanted, const PivInput& input) const noexcept;
   void integrate(double error, double wanted, double elapsed_s) noexcept;
 
   PivRules rules_;

@@ -103,6 +103,26 @@ TEST(AxisController, WhatIsNoNumberIsZeroDriveAndSaysWhich) {
   EXPECT_FALSE(control.update(moving(0, 51), 51, {100, 500, 0}, 600).error) << "it goes on";
 }
 
+TEST(AxisController, ALowerCeilingHoldsTheDriveAtOnceAndWindsNothingUp) {
+  for (const Axis* axis : {&yaw(), &rotation()}) {
+    const std::uint32_t ceiling = axis->drive.max / 4;
+    const double full_speed = mapped_full_speed(*axis).value_or(1000.0);
+    const Setpoint ahead{0.05 * full_speed, 0, 0};
+    AxisController control = controller(*axis);
+    for (std::uint32_t tick = 0; tick < 20'000; ++tick) {
+      const bool held = tick >= 100;
+      const AxisOutput output =
+          control.update(moving(0, tick), tick, ahead, 600, held ? ceiling : axis->drive.max);
+      ASSERT_LE(output.drive, held ? ceiling : axis->drive.max) << tick;
+    }
+    EXPECT_GE(control.update(moving(0, 20'000), 20'000, ahead, 600, ceiling).drive, ceiling - 1)
+        << axis->name;
+    // The error has gone: an integral from these twenty seconds would still drive the axis.
+    const AxisOutput after = control.update(moving(0, 20'001), 20'001, {}, 600);
+    EXPECT_NEAR(after.piv.wanted_counts_per_s, 0.0, 0.05 * full_speed) << axis->name;
+  }
+}
+
 TEST(AxisController, KnowsTheVelocityAtTheStartWhenItWasObserved) {
   AxisController control = controller();
   EXPECT_FALSE(control.update(moving(500, 0), 0, {}, 600).velocity);
