@@ -1,8 +1,8 @@
 """Measures the kernel step and the control tick against their limits and writes build/evidence/bench.json.
 
-Time comes from `step_bench` and `control_bench`, instructions from callgrind, text size and stack from the compiler's own report.
-Times depend on the machine and its load, so no test asserts them: the evidence says FAILED when a figure is
-above its limit, and the table marks it.
+Time comes from `step_bench` and `control_bench`, instructions from callgrind, text size and stack from the
+compiler's own report. Times depend on the machine and its load, so no test asserts them: the evidence says
+FAILED when a figure is above its limit, and the table marks it.
 """
 
 import argparse
@@ -62,7 +62,10 @@ def evidence(figures: dict[str, float], started: float, detail: dict) -> dict:
     return {
         "id": "bench",
         "status": "PASSED" if all(figures[name] <= limit for name, limit in LIMITS.items()) else "FAILED",
-        "tool": {"name": "step_bench, control_bench, callgrind, gcc", "version": run(["gcc", "-dumpfullversion"]).strip()},
+        "tool": {
+            "name": "step_bench, control_bench, callgrind, gcc",
+            "version": run(["gcc", "-dumpfullversion"]).strip(),
+        },
         "commit": commit,
         "date": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
         "duration_s": round(time.monotonic() - started, 1),
