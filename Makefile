@@ -82,7 +82,7 @@ verify: ## Climb the verification ladder: [FRESH=1] runs again what has not chan
 	@/usr/bin/python3 verification/evidence/verify.py
 
 .PHONY: bench
-bench: build ## Measure time, text size and stack of a kernel step against their limits
+bench: build ## Measure kernel step (time, text size, stack) and control tick against their limits
 	@python verification/bench/run.py
 
 .PHONY: install

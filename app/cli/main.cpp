@@ -18,6 +18,7 @@
 #include "cli/status_command.hpp"
 #include "cli/store_command_line.hpp"
 #include "cli/trajectory_command.hpp"
+#include "cli/tune_command.hpp"
 #include "robot/compile.hpp"
 
 namespace interlock::cli {
@@ -54,6 +55,7 @@ struct CommandLine {
   StatusOptions status;
   KinematicsOptions kinematics;
   TrajectoryOptions trajectory;
+  TuneOptions tune;
   std::filesystem::path model;
   bool model_json = false;
   std::filesystem::path config;
@@ -120,6 +122,35 @@ void add_trajectory(CLI::App& cli, TrajectoryOptions& options) {
       ->required();
 }
 
+void add_tune(CLI::App& cli, TuneOptions& options) {
+  CLI::App* const command =
+      cli.add_subcommand("tune", "Run a step of an axis on the simulated hardware and say how good it was");
+  command->add_option("--robot", options.robot, "Name of a robot, or its file")->required();
+  command->add_option("--axis", options.step.axis, "Name of the axis")->required();
+  command->add_option("--move", options.step.move_counts,
+                      "Counts from where it stands; default: what full speed makes in 0.6 s, or half of its "
+                      "way, away from the switch");
+  command->add_option("--cruise", options.step.cruise_counts_per_s,
+                      "Speed of the profile in counts/s; default: five sixths of full speed");
+  command->add_option("--full-speed", options.step.full_speed_counts_per_s,
+                      "Speed at full drive that the controller believes in; default: that of the plant");
+  PivGains& gains = options.step.gains;
+  command->add_option("--position-gain", gains.position_per_s, "Velocity for a count of position error, 1/s")
+      ->capture_default_str();
+  command->add_option("--velocity-gain", gains.velocity, "Output for a velocity error, no unit")
+      ->capture_default_str();
+  command->add_option("--integral-gain", gains.integral_per_s, "Growth of the output, 1/s")
+      ->capture_default_str();
+  command->add_option("--late", options.step.late_ticks, "Ticks by which each move reaches the kernel late")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
+  command->add_option("--seed", options.step.seed, "Seed of the plant's noise")->capture_default_str();
+  command->add_option("--plant", options.plant, "Parameters of the simulated hardware")
+      ->check(CLI::ExistingFile);
+  command->add_option("--csv", options.csv, "File for the table, a row a tick");
+  command->add_option("--svg", options.svg, "File for the plot of position, velocity and control output");
+}
+
 void add_model(CLI::App& cli, CommandLine& line) {
   CLI::App* const model = cli.add_subcommand("model", "Check or compile a robot file");
   model->require_subcommand(1);
@@ -161,6 +192,9 @@ Result<void> execute(const CLI::App& cli, const CommandLine& line) {
   if (cli.got_subcommand("trajectory")) {
     return check_trajectory(line.trajectory, Installation::current(), std::cout);
   }
+  if (cli.got_subcommand("tune")) {
+    return tune(line.tune, Installation::current(), std::cout);
+  }
   const CLI::App& model = *cli.get_subcommand("model");
   return model.got_subcommand("check") ? check_model(line.model, line.model_json, std::cout)
                                        : compile_model(line.model, line.config, std::cout);
@@ -185,6 +219,7 @@ int main(int argc, char** argv) {
   add_status(cli, line.status);
   add_kinematics(cli, line.kinematics);
   add_trajectory(cli, line.trajectory);
+  add_tune(cli, line.tune);
   add_model(cli, line);
   line.store.describe(cli);
   try {

@@ -1,6 +1,7 @@
-"""Measures the kernel step against the limits of its specification and writes build/evidence/bench.json.
+"""Measures the kernel step and the control tick against their limits and writes build/evidence/bench.json.
 
-Time comes from `step_bench`, instructions from callgrind, text size and stack from the compiler's own report.
+Time comes from `step_bench` and `control_bench`, instructions from callgrind, text size and stack from the
+compiler's own report.
 Times depend on the machine and its load, so no test asserts them: the evidence says FAILED when a figure is
 above its limit, and the table marks it. A neighbour on the same physical core nearly doubles a step for
 seconds at a time. So every scenario is timed in several rounds: the limit is held against the median of the
@@ -32,6 +33,7 @@ ROUNDS = 9
 LIMITS = {
     "step_ns_median": 1000,
     "step_ns_worst_path": 2000,
+    "control_tick_ns_p999": 50_000,
     **size.LIMITS,
 }
 
@@ -75,7 +77,10 @@ def evidence(figures: dict[str, float], started: float, detail: dict) -> dict:
     return {
         "id": "bench",
         "status": "PASSED" if all(figures[name] <= limit for name, limit in LIMITS.items()) else "FAILED",
-        "tool": {"name": "step_bench, callgrind, gcc", "version": run(["gcc", "-dumpfullversion"]).strip()},
+        "tool": {
+            "name": "step_bench, control_bench, callgrind, gcc",
+            "version": run(["gcc", "-dumpfullversion"]).strip(),
+        },
         "commit": commit,
         "date": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
         "duration_s": round(time.monotonic() - started, 1),
@@ -101,6 +106,7 @@ def main() -> int:
             timed[words].append(json.loads(run([str(arguments.bin / name)])))
     print(file=sys.stderr)
     scenarios = quietest(timed[32])
+    control = json.loads(run([str(arguments.bin / "control_bench"), str(ROOT / "models/robots/neuro.toml")]))
     counted = {name: instructions_per_step(arguments.bin / "step_bench", name) for name in scenarios}
     figures = {
         "step_ns_median": scenarios["moving"]["median_ns"],
@@ -113,10 +119,12 @@ def main() -> int:
         "step_ns_median_64_words": quietest(timed[64])["moving"]["median_ns"],
         "step_instructions_median": counted["moving"],
         "step_instructions_worst_path": max(counted.values()),
+        "control_tick_ns_median": control["median_ns"],
+        "control_tick_ns_p999": control["p999_ns"],
         "reference_ns": statistics.median(each["reference_ns"] for each in timed[32]),
         **size.measure(ROOT / "build/bench"),
     }
-    detail = {"timed": timed, "instructions": counted, "limits": LIMITS}
+    detail = {"timed": timed, "control": control, "instructions": counted, "limits": LIMITS}
     record = evidence(figures, started, detail)
     (EVIDENCE / "bench.json").write_text(json.dumps(record, indent=2) + "\n")
     (EVIDENCE / "bench.log.json").write_text(json.dumps(detail, indent=2) + "\n")

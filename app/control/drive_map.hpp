@@ -1,0 +1,58 @@
+/**
+ * @file
+ * From the speed that a controller wants to the drive that the kernel takes, and back.
+ *
+ * Drive is a magnitude from 0 to `max_drive` for every card; the kernel packs it into the card's words and
+ * picks the direction itself. By card:
+ *
+ *     PWM, NON_PWM, ANALOG   drive = dead_zone + |v| / full_speed (max_drive - dead_zone)
+ *     HIGH_FREQUENCY         |v| in revolutions per minute -> frequency word of that direction -> drive
+ *
+ * The three linear cards differ in the word that the kernel builds, not in the drive. A speed other than zero
+ * gives at least `min_drive`, so that the axis moves; what is too fast gives `max_drive`: clamped, not masked
+ * as in the published listing, where 0xEFFF loses a bit.
+ */
+#pragma once
+
+#include <cstdint>
+
+#include "control/control_error.hpp"
+#include "interlock/types.h"
+
+namespace interlock {
+
+struct DriveMapRules {
+  ilk_card_t card = ILK_CARD_NONE;
+  bool motor_direction = true; /**< as in the robot file; chooses the column of the published map */
+  std::uint32_t max_drive = 0;
+  std::uint32_t min_drive = 0;          /**< smallest drive that moves the axis */
+  double dead_zone_drive = 0.0;         /**< linear cards: up to it nothing moves; 0 leaves it to the
+                                             integral */
+  double full_speed_counts_per_s = 0.0; /**< linear cards: at `max_drive` */
+  double counts_per_revolution = 0.0;   /**< HIGH_FREQUENCY: of the motor in the published map */
+};
+
+class DriveMap {
+ public:
+  /** Refused for a card without a motor, a `min_drive` above `max_drive` and speeds that are not above 0. */
+  static ControlResult<DriveMap> create(const DriveMapRules& rules) noexcept;
+
+  /** The drive for a speed, positive towards larger positions. Zero for zero and for what is no number. */
+  [[nodiscard]] std::uint32_t drive(double counts_per_s) const noexcept;
+
+  /** Speed of the axis at a drive, with the sign of `direction`; a drive above `max_drive` counts as that. */
+  [[nodiscard]] double speed(std::uint32_t drive, int direction) const noexcept;
+
+  /** What the axis reaches in both directions. */
+  [[nodiscard]] double full_speed() const noexcept;
+
+ private:
+  explicit DriveMap(const DriveMapRules& rules) noexcept : rules_(rules) {}
+
+  [[nodiscard]] double frequency_drive(double counts_per_s) const noexcept;
+  [[nodiscard]] double frequency_speed(std::uint32_t drive, bool decreasing) const noexcept;
+
+  DriveMapRules rules_;
+};
+
+}  // namespace interlock

@@ -1,0 +1,131 @@
+#include "tuning/step_rig.hpp"
+
+#include <algorithm>
+
+#include "robot/catalog.hpp"
+
+namespace interlock {
+namespace {
+
+/** Longer than pedal debouncing, switch bounce and settling take. */
+constexpr std::uint32_t settle_ms = 200;
+constexpr std::uint32_t holder = 1;
+
+std::string at(const char* what, catalog::Family family, std::uint32_t code) {
+  return std::string(what) + catalog::name(family, code);
+}
+
+}  // namespace
+
+StepRig::StepRig(const ilk_config_t& config, const plant::Parameters& parameters, std::uint64_t seed,
+                 std::uint32_t slot)
+    : config_(config), slot_(slot), plant_(config, parameters, seed) {
+  requests_.reserve(ILK_REQUESTS_PER_TICK);
+}
+
+RigResult<void> StepRig::make_ready() {
+  if (const std::uint32_t error = ilk_init(&config_, &state_).error; error != ILK_CONFIG_ERROR_NONE) {
+    return tl::unexpected(at("the kernel refuses the robot: ", catalog::Family::config_error, error));
+  }
+  const std::uint32_t settle_ticks = settle_ms * 1000 / config_.period_us;
+  const bool has_switch = config_.axis[slot_].limit_side != ILK_LIMIT_NONE;
+  const auto step = [&](ilk_request_kind_t kind) {
+    ask(kind);
+    return run(settle_ticks);
+  };
+  const RigResult<void> moving =
+      run(settle_ticks)
+          .and_then([&] { return step(ILK_REQUEST_RESET); })
+          .and_then([&] { return step(ILK_REQUEST_ENABLE); })
+          .and_then([&] { return has_switch ? RigResult<void>() : step(ILK_REQUEST_SET_HOME); })
+          .and_then([&] { return press_pedal(); })
+          .and_then([&] { return run(settle_ticks); });
+  if (!moving || !has_switch) {
+    return moving;
+  }
+  ask(ILK_REQUEST_HOME);
+  for (std::uint32_t n = 0; n < config_.axis[slot_].home_timeout_ticks && axis().homed == 0; ++n) {
+    if (const RigResult<void> ticked = tick(); !ticked) {
+      return ticked;
+    }
+  }
+  return run(settle_ticks);
+}
+
+void StepRig::move(std::int32_t target_counts, std::uint32_t drive) {
+  ilk_request_t request{};
+  request.kind = ILK_REQUEST_MOVE;
+  request.axis = slot_;
+  request.target_counts = target_counts;
+  request.drive = drive;
+  request.amplitude = config_.axis[slot_].max_amplitude;
+  request.lease_ticks = config_.lease_max_ticks;
+  put(request);
+}
+
+RigResult<void> StepRig::tick() {
+  ilk_request_t heartbeat{};
+  heartbeat.kind = ILK_REQUEST_HEARTBEAT;
+  heartbeat.holder = holder;
+  put(heartbeat);
+  ilk_sim_exchange_t exchange{};
+  exchange.magic = ILK_SIM_MAGIC;
+  exchange.tick = state_.tick;
+  std::copy(&outputs_.frame[0][0], &outputs_.frame[0][0] + ILK_SLOTS * ILK_FRAME_WORDS,
+            &exchange.frame[0][0]);
+  const ilk_sim_reply_t reply = plant_.tick(exchange);
+  ilk_inputs_t inputs{};
+  inputs.link_generation = 1;
+  inputs.transaction_done = 1;
+  inputs.frames_received = reply.frames_received;
+  inputs.pedal_no_closed = reply.pedal_no_closed;
+  inputs.pedal_nc_closed = reply.pedal_nc_closed;
+  inputs.estop_loop_closed = reply.estop_loop_closed;
+  std::copy(&reply.frame[0][0], &reply.frame[0][0] + ILK_SLOTS * ILK_FRAME_WORDS, &inputs.frame[0][0]);
+  ilk_step(&config_, &state_, &inputs, requests_.data(), static_cast<std::uint32_t>(requests_.size()),
+           &outputs_);
+  requests_.clear();
+  return judge();
+}
+
+RigResult<void> StepRig::judge() const {
+  if (axis().state == ILK_AXIS_FAULTED) {
+    return tl::unexpected(at("the axis faulted: ", catalog::Family::fault, axis().fault));
+  }
+  for (std::uint32_t n = 0; n < outputs_.verdict_count; ++n) {
+    const ilk_verdict_record_t& record = outputs_.verdict[n];
+    if (record.verdict != ILK_VERDICT_ACCEPTED) {
+      return tl::unexpected(at("the kernel refuses ", catalog::Family::request, record.kind) +
+                            at(": ", catalog::Family::verdict, record.verdict));
+    }
+  }
+  return {};
+}
+
+void StepRig::put(ilk_request_t request) {
+  request.sequence = ++sequence_;
+  request.crc = ilk_request_crc(&request);
+  requests_.push_back(request);
+}
+
+void StepRig::ask(ilk_request_kind_t kind) {
+  ilk_request_t request{};
+  request.kind = kind;
+  request.axis = slot_;
+  put(request);
+}
+
+RigResult<void> StepRig::press_pedal() {
+  return plant_.schedule(plant::command::PressPedal{true}).map([](std::uint64_t) {});
+}
+
+RigResult<void> StepRig::run(std::uint32_t ticks) {
+  for (std::uint32_t n = 0; n < ticks; ++n) {
+    if (RigResult<void> ticked = tick(); !ticked) {
+      return ticked;
+    }
+  }
+  return {};
+}
+
+}  // namespace interlock
