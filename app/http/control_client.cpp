@@ -74,8 +74,8 @@ asio::awaitable<std::optional<StopAnswer>> ControlClient::stop_answered(std::uin
   co_return waiter.result;
 }
 
-void ControlClient::change_holder(std::uint32_t holder) {
-  mailbox_.holder.store(holder, std::memory_order_release);
+void ControlClient::change_holder(std::uint32_t number) {
+  mailbox_.holder.store(number, std::memory_order_release);
   mailbox_.stops.fetch_add(1, std::memory_order_release);
 }
 

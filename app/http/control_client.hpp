@@ -51,7 +51,7 @@ class ControlClient {
    * Tells the kernel of a change of the motion authority, whose number `holder` is; 0: nobody has it. It is a
    * STOP, too: no order that was given before starts or goes on.
    */
-  void change_holder(std::uint32_t holder);
+  void change_holder(std::uint32_t number);
 
   /** Told of each kernel event, and of each lot of events that was lost. */
   std::function<void(const ilk_event_t&)> on_event = [](const ilk_event_t&) {};

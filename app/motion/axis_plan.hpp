@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "control/axis_controller.hpp"
 #include "interlock/types.h"
 #include "robot/robot.hpp"
 
@@ -21,7 +22,8 @@ struct AxisPlan {
   ilk_axis_config_t rules{};
   std::uint32_t min_drive = 0; /**< smallest drive that a controller asks for */
   double counts_per_unit = 1.0;
-  MotionRates rates; /**< all zero: the axis moves alone only */
+  MotionRates rates;        /**< all zero: the axis moves alone only */
+  AxisControlRules control; /**< along a path; without rates they make no controller */
 };
 
 /** How the axes of a home step go. */
@@ -89,8 +91,9 @@ struct RobotPlan {
         lease_max_ticks(config.lease_max_ticks),
         home_steps(robot.home_steps.begin(), robot.home_steps.end()) {
     for (const Axis& each : robot.axes) {
-      axis[each.slot] = AxisPlan{config.axis[each.slot], each.drive.min, each.counts_per_unit,
-                                 each.motion.value_or(MotionRates{})};
+      const MotionRates rates = each.motion.value_or(MotionRates{});
+      axis[each.slot] = AxisPlan{config.axis[each.slot], each.drive.min, each.counts_per_unit, rates,
+                                 control_rules(each, config.period_us, rates.full_speed_counts_per_s)};
     }
   }
 

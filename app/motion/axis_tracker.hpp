@@ -1,6 +1,6 @@
 /**
  * @file
- * One axis along a path: the speed that the path asks for and what it takes to catch up, as a drive.
+ * One axis along a path, by the velocity-regulated controller of `app/control`.
  *
  * The kernel picks the direction, towards the MOVE's target. So the target runs a lease ahead of the path: an
  * app that falls silent leaves an axis that stops on its path. An axis that is ahead of its path waits for it
@@ -9,7 +9,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
+#include "control/axis_controller.hpp"
 #include "motion/move_lease.hpp"
 #include "motion/path_walk.hpp"
 #include "motion/rest_watch.hpp"
@@ -19,8 +21,7 @@ namespace interlock {
 class AxisTracker {
  public:
   AxisTracker() = default;
-  AxisTracker(std::uint32_t slot, const AxisPlan& plan, std::uint32_t lease_ticks) noexcept
-      : slot_(slot), plan_(plan), lease_(slot, plan, lease_ticks) {}
+  AxisTracker(std::uint32_t slot, const AxisPlan& plan, std::uint32_t lease_ticks);
 
   /** A path begins: a MOVE is due at once. */
   void start(const ilk_snapshot_t& snapshot) noexcept;
@@ -35,20 +36,17 @@ class AxisTracker {
   void hold(std::uint32_t proposal, const ilk_snapshot_t& snapshot, const PathPoint& point,
             Wishes& wishes) noexcept;
 
-  /** Gives back the lease, if the kernel may still hold one. */
-  void let_go(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
-    lease_.let_go(proposal, snapshot, wishes);
-  }
+  /** Gives back the lease, if the kernel may still hold one; the velocity is followed on. */
+  void let_go(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept;
 
   /** The wish of this tick was not sent: what was sent before it still stands. */
   void on_unsent() noexcept { lease_.on_unsent(); }
 
  private:
-  [[nodiscard]] std::uint32_t drive_at(double counts_per_s) const noexcept;
-
   std::uint32_t slot_ = 0;
   AxisPlan plan_;
   MoveLease lease_;
+  std::optional<AxisController> controller_; /**< none: no path moves the axis, as it has no rates */
   RestWatch rest_;
 };
 

@@ -3,6 +3,14 @@
 #include <algorithm>
 
 namespace interlock {
+namespace {
+
+Setpoint in_counts(const MotionState& state, double counts_per_unit) noexcept {
+  return {state.position * counts_per_unit, state.velocity * counts_per_unit,
+          state.acceleration * counts_per_unit};
+}
+
+}  // namespace
 
 PathWalk::PathWalk(const RobotPlan& plan) : plan_(plan), lease_s_(plan.lease_ticks() * plan.period_s()) {}
 
@@ -86,14 +94,11 @@ const PathWalk::Points& PathWalk::points() noexcept {
 void PathWalk::point_along_approach() noexcept {
   const auto ahead = planner_.at(approach_s_ + lease_s_);
   for (std::size_t place = 0; place < ahead.size(); ++place) {
-    points_[slots_[place]].ahead = ahead[place].position * plan_.axis[slots_[place]].counts_per_unit;
+    points_[slots_[place]].ahead_counts = ahead[place].position * plan_.axis[slots_[place]].counts_per_unit;
   }
   const auto now = planner_.at(approach_s_);
   for (std::size_t place = 0; place < now.size(); ++place) {
-    PathPoint& point = points_[slots_[place]];
-    const double counts_per_unit = plan_.axis[slots_[place]].counts_per_unit;
-    point.position = now[place].position * counts_per_unit;
-    point.velocity = now[place].velocity * counts_per_unit;
+    points_[slots_[place]].now = in_counts(now[place], plan_.axis[slots_[place]].counts_per_unit);
   }
 }
 
@@ -102,7 +107,7 @@ void PathWalk::point_along_trajectory(const TimedTrajectory& timed) noexcept {
     const std::uint32_t slot = timed.axes()[axis].slot;
     const double counts_per_unit = plan_.axis[slot].counts_per_unit;
     const MotionState now = timed.at(axis, trajectory_s_);
-    points_[slot] = {now.position * counts_per_unit, now.velocity * counts_per_unit,
+    points_[slot] = {in_counts(now, counts_per_unit),
                      timed.at(axis, trajectory_s_ + lease_s_).position * counts_per_unit};
   }
 }

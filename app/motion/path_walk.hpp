@@ -11,6 +11,7 @@
 #include <array>
 #include <cstdint>
 
+#include "control/setpoint.hpp"
 #include "interlock/link.h"
 #include "motion/axis_plan.hpp"
 #include "motion/path_program.hpp"
@@ -18,11 +19,10 @@
 
 namespace interlock {
 
-/** What a path demands of one axis at one moment, in counts. */
+/** What a path demands of one axis at one moment. */
 struct PathPoint {
-  double position = 0.0;
-  double velocity = 0.0; /**< per second */
-  double ahead = 0.0;    /**< where the path is a lease later */
+  Setpoint now;
+  double ahead_counts = 0.0; /**< where the path is a lease later */
 };
 
 class PathWalk {

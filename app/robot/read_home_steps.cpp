@@ -141,17 +141,10 @@ void read_home_steps(TableReader& table, Robot& robot) {
 }
 
 void read_draping(TableReader& table, Robot& robot) {
-  if (!table.has("draping")) {
-    return;
+  if (table.has("draping")) {
+    robot.draping =
+        read_counts(table, "draping", robot, [](const TableReader&, const Axis&, std::int32_t) {});
   }
-  robot.draping =
-      read_counts(table, "draping", robot, [](TableReader& entries, const Axis& axis, std::int32_t counts) {
-        if (!axis.accepts_setpoint(counts)) {
-          entries.refuse(axis.name, std::to_string(counts) + " counts lead out of the range of the axis",
-                         "counts from " + std::to_string(axis.lowest_setpoint_counts()) + " to " +
-                             std::to_string(axis.highest_setpoint_counts()));
-        }
-      });
 }
 
 }  // namespace interlock

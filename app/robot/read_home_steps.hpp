@@ -16,7 +16,7 @@ namespace interlock {
  */
 void read_home_steps(TableReader& table, Robot& robot);
 
-/** Reads the setpoints of the mode "draping", when there are any; each within what the kernel accepts. */
+/** Reads the setpoints of the mode "draping", when there are any. */
 void read_draping(TableReader& table, Robot& robot);
 
 }  // namespace interlock

@@ -68,9 +68,22 @@ RobotError error_at(const Origin& origin, std::string key, std::string problem, 
 
 RobotError travel_refused(const Robot& robot, const std::string& path, const AxisCounts& travel,
                           std::int64_t lowest, std::int64_t highest) {
-  return error_at(robot.origin, "home_step." + path + robot.at_slot(travel.slot)->name,
+  return error_at(robot.origin, path + robot.at_slot(travel.slot)->name,
                   std::to_string(travel.counts) + " counts lead out of the range of the axis",
                   "counts from " + std::to_string(lowest) + " to " + std::to_string(highest));
+}
+
+/** The first setpoint that the kernel would not accept from the homed axis. */
+std::optional<RobotError> setpoint_out_of_range(const Robot& robot, const std::string& path,
+                                                const std::vector<AxisCounts>& setpoints) {
+  for (const AxisCounts& setpoint : setpoints) {
+    const Axis& axis = *robot.at_slot(setpoint.slot);
+    if (!axis.accepts_setpoint(setpoint.counts)) {
+      return travel_refused(robot, path, setpoint, axis.lowest_setpoint_counts(),
+                            axis.highest_setpoint_counts());
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -118,18 +131,14 @@ std::optional<RobotError> step_out_of_range(const Robot& robot) {
       const SoftLimits& limits = robot.at_slot(nudge.slot)->soft_limits;
       const std::int64_t range = std::int64_t{limits.max_counts} - limits.min_counts;
       if (nudge.counts < -range || nudge.counts > range) {
-        return travel_refused(robot, step.name + ".nudge.", nudge, -range, range);
+        return travel_refused(robot, "home_step." + step.name + ".nudge.", nudge, -range, range);
       }
     }
-    for (const AxisCounts& move : step.move) {
-      const Axis& axis = *robot.at_slot(move.slot);
-      if (!axis.accepts_setpoint(move.counts)) {
-        return travel_refused(robot, step.name + ".move.", move, axis.lowest_setpoint_counts(),
-                              axis.highest_setpoint_counts());
-      }
+    if (auto error = setpoint_out_of_range(robot, "home_step." + step.name + ".move.", step.move)) {
+      return error;
     }
   }
-  return std::nullopt;
+  return setpoint_out_of_range(robot, "draping.", robot.draping);
 }
 
 }  // namespace interlock

@@ -19,7 +19,8 @@ RobotError kernel_rule_broken(const Robot& robot, ilk_config_verdict_t verdict);
 /** The first card in a slot that does not exist, or of a type that nobody can drive. */
 std::optional<RobotError> card_out_of_place(const Robot& robot);
 
-/** The first step of homing whose travel leaves the range of its axis; the kernel knows nothing of steps. */
+/** The first travel of homing, or setpoint of draping, that leaves the range of its axis; the kernel knows
+ * nothing of either. */
 std::optional<RobotError> step_out_of_range(const Robot& robot);
 
 }  // namespace interlock

@@ -55,12 +55,13 @@ TEST_F(ModeRoutesTest, ManualWhileManualLeavesMovesAlone) {
 TEST_F(ModeRoutesTest, AModeThatTheRobotHasNotIsNamedWithThoseThatItHas) {
   show(test::ready_view());
   for (const std::string body :
-       {R"({"mode":"draping"})", R"({"mode":3})", "{}", R"({"mode":"home","slot":3})"}) {
+       {R"({"mode":"sweeping"})", R"({"mode":3})", "{}", R"({"mode":"home","slot":3})"}) {
     const Answered answered = put("/api/mode", body);
     EXPECT_EQ(answered.status, 422u) << body;
     EXPECT_EQ(answered.problem()["code"], "INVALID") << body;
   }
-  EXPECT_EQ(set_mode("draping").problem()["expected"], "one of manual, home");
+  EXPECT_EQ(set_mode("sweeping").problem()["expected"],
+            "one of manual, home, coordinated, trajectory, draping");
   EXPECT_EQ(put("/api/mode", "{").status, 400u);
   EXPECT_EQ(mode()["mode"], "manual");
 }

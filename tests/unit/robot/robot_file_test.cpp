@@ -23,7 +23,9 @@ TEST(RobotFile, neuro_reads_as_written) {
   EXPECT_EQ(robot.name, "neuro");
   EXPECT_EQ(robot.period_us, 1000u);
   EXPECT_EQ(robot.pedal, (Pedal{2, 10, 50}));
-  EXPECT_THAT(robot.modes, ElementsAre("manual", "home"));
+  EXPECT_THAT(robot.modes, ElementsAre("manual", "home", "coordinated", "trajectory", "draping"));
+  EXPECT_THAT(robot.draping, ElementsAre(AxisCounts{7, -3543}, AxisCounts{2, 358}, AxisCounts{0, -597}));
+  EXPECT_EQ(robot.find("yaw")->motion, (MotionRates{1000.0, 600.0, 6000.0, 120000.0, 40}));
   EXPECT_FALSE(robot.auto_approve);
   EXPECT_EQ(robot.loop, (LoopLimits{100, 100, 3, 3}));
   EXPECT_EQ(robot.kinematics,
@@ -322,7 +324,7 @@ TEST(RobotRole, is_played_in_its_unit) {
 TEST(RobotRole, may_be_none) {
   std::string text = test::neuro_text();
   const std::size_t feet = text.find("[[axis]]\nname = \"feet\"");
-  std::string spare = text.substr(feet, text.find("[[home_step]]") - feet);
+  std::string spare = text.substr(feet, text.find("# The published setpoints") - feet);
   for (const auto& [from, to] : {std::pair{"\"feet\"\ntitle", "\"spare\"\ntitle"},
                                  std::pair{"slot = 6", "slot = 9"}, std::pair{"role = \"feet\"\n", ""}}) {
     spare.replace(spare.find(from), std::string_view(from).size(), to);

@@ -41,7 +41,7 @@ TEST(Robot, finds_steps_modes_and_sensors_by_name) {
   EXPECT_EQ(robot.find_home_step("angles")->title, "Angles");
   EXPECT_EQ(robot.find_home_step("elbow"), nullptr);
   EXPECT_TRUE(robot.has_mode("home"));
-  EXPECT_FALSE(robot.has_mode("draping"));
+  EXPECT_FALSE(robot.has_mode("frequency_sweep"));
   EXPECT_EQ(robot.find_sensor("force"), nullptr);
   EXPECT_EQ(robot.sensor_at_slot(3), nullptr) << "an axis is no sensor";
 }

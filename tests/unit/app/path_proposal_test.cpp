@@ -1,0 +1,227 @@
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "proposals/proposal_book.hpp"
+#include "proposals/proposal_json.hpp"
+#include "robot_fixture.hpp"
+#include "trajectory/trajectory_csv.hpp"
+
+namespace interlock {
+namespace {
+
+using test::neuro;
+using test::neuro_config;
+using test::prostate;
+
+constexpr std::uint32_t head_axis = 7;
+
+std::shared_ptr<const PathProgram> shared_program(std::vector<PathLeg> legs) {
+  return std::make_shared<const PathProgram>(PathProgram{std::move(legs)});
+}
+
+PathDraft draft_to(std::vector<AxisCounts> targets) {
+  return {RobotMode::coordinated, shared_program({MoveLeg{std::move(targets), 0.0, 0.0}}),
+          ProposalSource::console, std::nullopt, "edna"};
+}
+
+PathDraft file_draft() {
+  const auto trajectory = read_trajectory("time [s],yaw [rad]\n0,-0.5\n2,-0.7\n", neuro());
+  return {RobotMode::trajectory, shared_program({TimedLeg{trajectory.value()}}), ProposalSource::file,
+          std::nullopt, "edna"};
+}
+
+class PathProposalTest : public testing::Test {
+ protected:
+  PathProposalTest() : view_(test::ready_view()) {}
+
+  void report(std::uint32_t proposal, OrderPhase phase, OrderReason reason = OrderReason::none) {
+    ControlView view = view_;
+    view.path.order = {proposal, phase, reason, 0, 0};
+    book_.follow(view);
+  }
+
+  void expect_refused(const PathDraft& draft, const std::string& code) {
+    const auto proposal = book_.propose_path(draft, view_);
+    ASSERT_FALSE(proposal);
+    EXPECT_EQ(proposal.error().code, code) << proposal.error().detail;
+    EXPECT_FALSE(proposal.error().next_step.empty());
+    EXPECT_THAT(sent_, testing::IsEmpty());
+  }
+
+  ilk_axis_t& axis(std::uint32_t slot) { return view_.snapshot.state.axis[slot]; }
+  [[nodiscard]] ProposalState state(std::uint32_t id) const { return book_.find(id)->state; }
+
+  ControlView view_;
+  UtcTime now_{std::chrono::milliseconds(1714566896789)};
+  std::vector<Command> sent_;
+  ProposalBook book_{neuro(), neuro_config(),
+                     [this](const Command& command) {
+                       sent_.push_back(command);
+                       return true;
+                     },
+                     [this] { return now_; }};
+};
+
+TEST_F(PathProposalTest, AConsolesPathIsCheckedApprovedAndOrdered) {
+  const auto proposal = book_.propose_path(draft_to({{test::yaw, -300}, {head_axis, -1000}}), view_);
+  ASSERT_TRUE(proposal) << proposal.error().detail;
+  EXPECT_EQ(proposal->state, ProposalState::approved);
+  EXPECT_EQ(proposal->axes, (std::vector<std::string>{"yaw", "head"}));
+  EXPECT_EQ(proposal->ends, (std::vector<AxisCounts>{{test::yaw, -300}, {head_axis, -1000}}));
+  EXPECT_GT(proposal->duration_s, 1.0);
+  ASSERT_EQ(sent_.size(), 1u);
+  EXPECT_EQ(std::get<PathOrder>(sent_.front()).proposal, proposal->id);
+  EXPECT_EQ(book_.app_mode(), "coordinated");
+  report(proposal->id, OrderPhase::executing);
+  EXPECT_EQ(state(1), ProposalState::executing);
+  report(proposal->id, OrderPhase::done, OrderReason::arrived);
+  EXPECT_EQ(state(1), ProposalState::done);
+  EXPECT_EQ(book_.app_mode(), "manual");
+}
+
+TEST_F(PathProposalTest, AProgramLivesUntilTheControlThreadNoLongerReadsIt) {
+  std::weak_ptr<const PathProgram> watched;
+  {
+    PathDraft draft = draft_to({{test::yaw, -300}});
+    watched = draft.program;
+    ASSERT_TRUE(book_.propose_path(draft, view_));
+  }
+  ASSERT_TRUE(book_.abort(1));
+  for (std::uint32_t id = 2; id < 2 + ProposalBook::capacity; ++id) {
+    ASSERT_TRUE(book_.propose({test::insertion, 1000, std::nullopt, "edna"}, view_));
+  }
+  ASSERT_EQ(book_.find(1), nullptr) << "the book has forgotten the proposal";
+  EXPECT_FALSE(watched.expired()) << "its order may still be in the queue, or be carried out";
+  report(1, OrderPhase::executing);
+  EXPECT_FALSE(watched.expired());
+  report(1, OrderPhase::aborted, OrderReason::cancelled);
+  EXPECT_TRUE(watched.expired());
+}
+
+TEST_F(PathProposalTest, WhatCannotBeMovedIsRefusedWithItsReason) {
+  axis(head_axis).homed = 0;
+  expect_refused(draft_to({{head_axis, -1000}}), "NOT_HOMED");
+  axis(head_axis).homed = 1;
+  axis(head_axis).state = ILK_AXIS_DISABLED;
+  expect_refused(draft_to({{test::yaw, -300}, {head_axis, -1000}}), "DISABLED");
+  axis(head_axis).state = ILK_AXIS_FAULTED;
+  expect_refused(draft_to({{head_axis, -1000}}), "FAULTED");
+  axis(head_axis).state = ILK_AXIS_HOMING;
+  expect_refused(draft_to({{head_axis, -1000}}), "BUSY");
+  axis(head_axis).state = ILK_AXIS_ENABLED;
+  expect_refused(draft_to({{head_axis, 1}}), "RANGE");
+  view_.snapshot.state.mode = ILK_MODE_LOCKED;
+  expect_refused(draft_to({{head_axis, -1000}}), "MODE");
+}
+
+TEST_F(PathProposalTest, ALaterLegIsCheckedFromWhereTheOneBeforeEnds) {
+  PathDraft draft = draft_to({{head_axis, -1000}});
+  draft.program = shared_program({MoveLeg{{{head_axis, -1000}}, 3.0, 0.5}, MoveLeg{{{head_axis, -11000}}, 0.0, 0.0}});
+  const auto good = book_.propose_path(draft, view_);
+  ASSERT_TRUE(good);
+  EXPECT_GT(good->duration_s, 3.5 + 10000.0 / 600.0);
+  sent_.clear();
+  draft.program = shared_program({MoveLeg{{{head_axis, -1000}}, 0.0, 0.0}, MoveLeg{{{head_axis, -12000}}, 0.0, 0.0}});
+  expect_refused(draft, "RANGE");
+}
+
+TEST_F(PathProposalTest, AFileWaitsForApprovalAndIsCheckedAnewThen) {
+  const auto waiting = book_.propose_path(file_draft(), view_);
+  ASSERT_TRUE(waiting);
+  EXPECT_EQ(waiting->state, ProposalState::checked);
+  EXPECT_EQ(to_json(*waiting)["source"], "file");
+  EXPECT_THAT(sent_, testing::IsEmpty());
+  EXPECT_EQ(book_.app_mode(), "manual");
+  axis(test::yaw).homed = 0;
+  const auto unfit = book_.approve(1, view_);
+  ASSERT_FALSE(unfit);
+  EXPECT_EQ(unfit.error().code, "NOT_HOMED");
+  EXPECT_EQ(state(1), ProposalState::refused);
+  axis(test::yaw).homed = 1;
+  ASSERT_TRUE(book_.propose_path(file_draft(), view_));
+  ASSERT_TRUE(book_.approve(2, view_));
+  EXPECT_EQ(std::get<PathOrder>(sent_.back()).proposal, 2u);
+  EXPECT_EQ(book_.app_mode(), "trajectory");
+  const auto twice = book_.approve(2, view_);
+  ASSERT_FALSE(twice);
+  EXPECT_EQ(twice.error().code, "NOT_WAITING");
+}
+
+TEST_F(PathProposalTest, ALockDiscardsWhatWaits) {
+  ASSERT_TRUE(book_.propose_path(file_draft(), view_));
+  view_.snapshot.state.mode = ILK_MODE_LOCKED;
+  book_.follow(view_);
+  EXPECT_EQ(state(1), ProposalState::aborted);
+}
+
+TEST_F(PathProposalTest, WhatNobodyApprovesExpires) {
+  ASSERT_TRUE(book_.propose_path(file_draft(), view_));
+  now_ += std::chrono::minutes(10);
+  book_.follow(view_);
+  EXPECT_EQ(state(1), ProposalState::checked);
+  now_ += std::chrono::milliseconds(1);
+  book_.follow(view_);
+  EXPECT_EQ(state(1), ProposalState::expired);
+}
+
+TEST_F(PathProposalTest, ChangedTargetingEndsWhatFollowedFromIt) {
+  PathDraft aligned = draft_to({{head_axis, -1000}});
+  aligned.targeting_revision = book_.targeting_revision();
+  ASSERT_TRUE(book_.propose_path(aligned, view_));
+  book_.end_stale();
+  EXPECT_EQ(state(1), ProposalState::aborted);
+  EXPECT_EQ(std::get<Cancel>(sent_.back()).proposal, 1u);
+  sent_.clear();
+  expect_refused(aligned, "STALE");
+  ASSERT_TRUE(book_.propose_path(draft_to({{head_axis, -1000}}), view_));
+  book_.end_stale();
+  EXPECT_EQ(state(3), ProposalState::approved) << "it names its targets itself";
+}
+
+TEST_F(PathProposalTest, APathReplacesEveryApprovedMotionAndKeepsMovesAway) {
+  ASSERT_TRUE(book_.propose({test::insertion, 1000, std::nullopt, "edna"}, view_));
+  ASSERT_TRUE(book_.propose_path(draft_to({{head_axis, -1000}}), view_));
+  EXPECT_EQ(state(1), ProposalState::aborted);
+  const auto move = book_.propose({test::insertion, 900, std::nullopt, "edna"}, view_);
+  ASSERT_FALSE(move);
+  EXPECT_EQ(move.error().code, "MODE_PATH");
+  ASSERT_TRUE(book_.propose_path(draft_to({{head_axis, -900}}), view_));
+  EXPECT_EQ(state(2), ProposalState::aborted);
+}
+
+TEST(PathSeparation, LinkedSlidersMayNotPartTooFarAtAnyTargetOrRow) {
+  const ilk_config_t config = test::config_of(prostate());
+  ControlView view;
+  view.attached = true;
+  view.snapshot.config_crc = config.crc;
+  view.snapshot.state.mode = ILK_MODE_READY;
+  for (const Axis& axis : prostate().axes) {
+    ilk_axis_t& state = view.snapshot.state.axis[axis.slot];
+    state.homed = 1;
+    state.state = ILK_AXIS_ENABLED;
+    const bool right = axis.name.ends_with("right");
+    state.position_counts = axis.role == "insertion"  ? 1000
+                            : axis.role == "rotation" ? 0
+                            : right                   ? -375000
+                                                      : 375000;
+  }
+  const auto code = [&](const PathProgram& program) {
+    const auto checked = check_path(prostate(), config, view, program);
+    return checked ? std::string("passes") : checked.error().code;
+  };
+  const std::uint32_t left = prostate().find("front_left")->slot;
+  const std::uint32_t right = prostate().find("front_right")->slot;
+  EXPECT_EQ(code({{MoveLeg{{{left, 460000}}, 0.0, 0.0}}}), "SEPARATION");
+  EXPECT_EQ(code({{MoveLeg{{{left, 460000}, {right, -290000}}, 0.0, 0.0}}}), "passes");
+  const auto timed = [](const std::string& rows) {
+    return PathProgram{{TimedLeg{
+        read_trajectory("time [s],front_left [mm],front_right [mm]\n" + rows, prostate()).value()}}};
+  };
+  EXPECT_EQ(code(timed("0,150,-150\n10,184,-116\n")), "passes");
+  EXPECT_EQ(code(timed("0,150,-150\n10,184,-150\n")), "SEPARATION");
+}
+
+}  // namespace
+}  // namespace interlock

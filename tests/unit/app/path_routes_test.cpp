@@ -1,0 +1,169 @@
+#include <sstream>
+
+#include "http_fixture.hpp"
+
+namespace interlock::web {
+namespace {
+
+class PathRoutesTest : public HttpTest {
+ protected:
+  PathRoutesTest() { show(test::ready_view()); }
+
+  Answered propose(const json& body) { return post("/api/proposals", body.dump()); }
+
+  Answered remove(const std::string& target) {
+    Request request{http::verb::delete_, target, 11};
+    return send(std::move(request));
+  }
+
+  json proposal(int id) { return json::parse(get("/api/proposals/" + std::to_string(id)).body); }
+
+  void report(std::uint32_t proposal, OrderPhase phase) {
+    ControlView view = test::ready_view();
+    view.path.order = {proposal, phase, OrderReason::arrived, 0, 0};
+    show(view);
+  }
+};
+
+constexpr const char* short_trajectory = "time [s],yaw [rad]\n0,-0.5\n2,-0.7\n";
+
+TEST_F(PathRoutesTest, CoordinatedMotionTakesPositionsByAxis) {
+  const Answered made = propose({{"kind", "coordinated"}, {"targets", {{"yaw", -0.5}, {"head", -20.0}}}});
+  ASSERT_EQ(made.status, 201u) << made.body;
+  const json body = json::parse(made.body);
+  EXPECT_EQ(body["kind"], "path");
+  EXPECT_EQ(body["mode"], "coordinated");
+  EXPECT_EQ(body["axes"], json({"yaw", "head"}));
+  EXPECT_EQ(body["ends"][0], json({{"slot", 0}, {"target_counts", -398}}));
+  EXPECT_EQ(std::get<PathOrder>(next_command()).proposal, body["id"]);
+}
+
+TEST_F(PathRoutesTest, WhatIsNoCoordinatedMotionIsNamed) {
+  const std::pair<json, std::string> cases[] = {
+      {{{"kind", "coordinated"}}, "targets"},
+      {{{"kind", "coordinated"}, {"targets", json::object()}}, "targets"},
+      {{{"kind", "coordinated"}, {"targets", {{"elbow", 1}}}}, "targets.elbow"},
+      {{{"kind", "coordinated"}, {"targets", {{"yaw", "far"}}}}, "targets.yaw"},
+      {{{"kind", "coordinated"}, {"targets", {{"yaw", 1e300}}}}, "targets.yaw"},
+      {{{"kind", "coordinated"}, {"targets", {{"yaw", -0.5}}}, {"duration_s", -1}}, "duration_s"},
+      {{{"kind", "pose"}, {"pose", "current"}}, "pose"},
+      {{{"kind", "draping"}, {"slot", 1}}, "slot"}};
+  for (const auto& [body, field] : cases) {
+    const Answered refused = propose(body);
+    EXPECT_EQ(refused.status, 422u) << body;
+    EXPECT_EQ(refused.problem()["field"], field) << body;
+  }
+}
+
+TEST_F(PathRoutesTest, APoseIsAlignedWithTheProbeOutFirst) {
+  ASSERT_EQ(put("/api/targeting/target", R"({"entry_point":[8,250,70],"target_point":[5,200,60]})").status,
+            200u);
+  const Answered made = propose({{"kind", "pose"}, {"insert", true}});
+  ASSERT_EQ(made.status, 201u) << made.body;
+  const json body = json::parse(made.body);
+  EXPECT_EQ(body["legs"], 3);
+  const PathOrder order = std::get<PathOrder>(next_command());
+  const auto& out = std::get<MoveLeg>(order.program->legs.front());
+  ASSERT_EQ(out.targets.size(), 1u);
+  EXPECT_EQ(out.targets.front(),
+            (AxisCounts{test::insertion, test::neuro().at_slot(test::insertion)->lowest_setpoint_counts()}));
+}
+
+TEST_F(PathRoutesTest, AChangedRegistrationEndsThePoseThatFollowedFromTheOldOne) {
+  ASSERT_EQ(put("/api/targeting/target", R"({"entry_point":[8,250,70],"target_point":[5,200,60]})").status,
+            200u);
+  ASSERT_EQ(propose({{"kind", "pose"}}).status, 201u);
+  const json reported{{"current_position", {1, 0, 0, 5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}};
+  ASSERT_EQ(put("/api/targeting/current", reported.dump()).status, 200u);
+  EXPECT_EQ(proposal(1)["state"], "approved") << "what an imager reports moves nothing";
+  const json moved{{"registration", {1, 0, 0, 5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}};
+  ASSERT_EQ(put("/api/targeting/registration", moved.dump()).status, 200u);
+  EXPECT_EQ(proposal(1)["state"], "aborted");
+}
+
+TEST_F(PathRoutesTest, AnUnreachableTargetIsRefusedUntilTheReachablePoseIsAskedFor) {
+  // Straight down the robot's own axis, too far to the side for the lateral axis.
+  ASSERT_EQ(put("/api/targeting/target", R"({"entry_point":[60,245,60],"target_point":[60,205,60]})").status,
+            200u);
+  const Answered refused = propose({{"kind", "pose"}});
+  EXPECT_EQ(refused.status, 409u) << refused.body;
+  EXPECT_EQ(refused.problem()["code"], "UNREACHABLE");
+  EXPECT_NE(refused.problem()["detail"].get<std::string>().find("Lateral"), std::string::npos);
+  EXPECT_EQ(propose({{"kind", "pose"}, {"pose", "reachable"}}).status, 201u);
+}
+
+TEST_F(PathRoutesTest, WithoutATargetThereIsNoPose) {
+  const Answered refused = propose({{"kind", "pose"}});
+  EXPECT_EQ(refused.status, 409u);
+  EXPECT_EQ(refused.problem()["code"], "NO_TARGET");
+}
+
+TEST_F(PathRoutesTest, ATrajectoryIsLoadedProposedApprovedAndUnloadedOnceDone) {
+  const Answered loaded = put("/api/trajectory", short_trajectory);
+  ASSERT_EQ(loaded.status, 200u) << loaded.body;
+  EXPECT_EQ(json::parse(loaded.body)["rows"], 2);
+  EXPECT_EQ(json::parse(loaded.body)["author"], "edna");
+  const Answered made = propose({{"kind", "trajectory"}});
+  ASSERT_EQ(made.status, 201u) << made.body;
+  EXPECT_EQ(json::parse(made.body)["state"], "checked");
+  EXPECT_EQ(json::parse(get("/api/mode").body)["mode"], "manual");
+  const Answered approved = post("/api/proposals/1/approve");
+  ASSERT_EQ(approved.status, 200u) << approved.body;
+  EXPECT_EQ(json::parse(get("/api/mode").body)["mode"], "trajectory");
+  EXPECT_EQ(std::get<PathOrder>(next_command()).proposal, 1u);
+  report(1, OrderPhase::done);
+  EXPECT_EQ(proposal(1)["state"], "done");
+  EXPECT_EQ(json::parse(get("/api/trajectory").body)["rows"], 0);
+  EXPECT_EQ(json::parse(get("/api/mode").body)["mode"], "manual");
+}
+
+TEST_F(PathRoutesTest, WithoutATrajectoryTheRobotStaysInManual) {
+  const Answered refused = put("/api/mode", R"({"mode":"trajectory"})");
+  EXPECT_EQ(refused.status, 409u);
+  EXPECT_EQ(refused.problem()["code"], "EMPTY");
+  EXPECT_EQ(json::parse(get("/api/mode").body)["mode"], "manual");
+  EXPECT_EQ(put("/api/mode", R"({"mode":"coordinated"})").problem()["code"], "NO_TARGETS");
+}
+
+TEST_F(PathRoutesTest, ABadTrajectoryIsRefusedWholeWithItsLine) {
+  ASSERT_EQ(put("/api/trajectory", short_trajectory).status, 200u);
+  std::ostringstream rows;
+  rows << "time [s],yaw [rad]\n";
+  for (int row = 0; row < 2000; ++row) {
+    rows << row << ',' << (row == 975 ? 3.0 : -0.5) << '\n';
+  }
+  const Answered refused = put("/api/trajectory", rows.str());
+  EXPECT_EQ(refused.status, 422u);
+  EXPECT_EQ(refused.problem()["code"], "OUT_OF_RANGE");
+  EXPECT_EQ(refused.problem()["field"], "yaw [rad]");
+  EXPECT_NE(refused.problem()["detail"].get<std::string>().find("line 977"), std::string::npos);
+  EXPECT_EQ(put("/api/trajectory", "time [s],yaw [rad]\n0,-0.5\n0.1,-0.9\n").problem()["code"], "TOO_FAST");
+  EXPECT_EQ(put("/api/trajectory", "").problem()["code"], "EMPTY");
+  EXPECT_EQ(json::parse(get("/api/trajectory").body)["rows"], 2) << "what was loaded stays";
+  EXPECT_EQ(remove("/api/trajectory").status, 200u);
+  EXPECT_EQ(json::parse(get("/api/trajectory").body)["rows"], 0);
+}
+
+TEST_F(PathRoutesTest, OnlyTheHolderMaySendALargeTrajectory) {
+  std::ostringstream rows;
+  rows << "time [s],yaw [rad]\n";
+  for (int row = 0; row < 20000; ++row) {
+    rows << row << ",-0.5\n";
+  }
+  ASSERT_GT(rows.str().size(), Server::longest_body);
+  EXPECT_EQ(put("/api/trajectory", rows.str()).status, 200u);
+  become_nobody();
+  EXPECT_EQ(put("/api/trajectory", rows.str()).status, 413u);
+}
+
+TEST_F(PathRoutesTest, DrapingGoesToTheSetpointsOfTheFile) {
+  ASSERT_EQ(put("/api/mode", R"({"mode":"draping"})").status, 200u);
+  const json made = proposal(1);
+  EXPECT_EQ(made["mode"], "draping");
+  EXPECT_EQ(made["axes"], json({"yaw", "pitch", "head"}));
+  EXPECT_EQ(put("/api/mode", R"({"mode":"manual"})").status, 200u);
+  EXPECT_EQ(proposal(1)["state"], "aborted");
+}
+
+}  // namespace
+}  // namespace interlock::web
