@@ -48,6 +48,10 @@ RigResult<Plan> plan(const Axis& axis, std::uint32_t period_us, const StepOption
   if (!profile) {
     return tl::unexpected(profile.error().message());
   }
+  if (profile->duration_s() > longest_profile_s) {
+    return tl::unexpected("the move would take " + number_text(profile->duration_s()) +
+                          " s; expected at most " + number_text(longest_profile_s));
+  }
   const auto controller = AxisController::create(control_rules(axis, period_us, full_speed, options.gains));
   if (!controller) {
     return tl::unexpected(controller.error().message());

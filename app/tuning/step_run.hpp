@@ -50,6 +50,9 @@ struct StepRun {
   std::vector<StepRow> rows;      /**< until `after_profile_s` after it */
 };
 
+/** Longer profiles are refused: a run is kept whole, a row a tick. */
+inline constexpr double longest_profile_s = 600.0;
+
 /** How long a run goes on after its profile. */
 inline constexpr double after_profile_s = 1.0;
 

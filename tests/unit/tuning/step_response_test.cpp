@@ -131,6 +131,8 @@ TEST(StepResponse, WhatCannotBeRunIsRefusedByName) {
               testing::EndsWith("yaw reaches -1210 to -4"));
   EXPECT_THAT(run(neuro(), {.axis = "yaw", .cruise_counts_per_s = std::nan("")}).error(),
               testing::HasSubstr("cruise_velocity"));
+  EXPECT_THAT(run(neuro(), {.axis = "yaw", .cruise_counts_per_s = 1e-3}).error(),
+              testing::EndsWith("s; expected at most 600"));
   EXPECT_EQ(run(neuro(), {.axis = "yaw", .gains = {.position_per_s = -1.0}}).error(),
             "position gain is out of range");
 }
