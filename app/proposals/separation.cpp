@@ -37,10 +37,11 @@ class Slider {
   /** How far outwards that position is. */
   [[nodiscard]] double outwards_mm(std::int32_t counts) const { return to_mm(counts); }
 
-  /** The outermost of positions in mm. */
-  [[nodiscard]] double outermost_mm(const PositionRange& range) const {
-    return per_mm_ > 0.0 ? range.highest : -range.lowest;
+  /** Motion in mm as motion outwards. */
+  [[nodiscard]] JerkPiece outwards(JerkPiece motion) const {
+    return per_mm_ > 0.0 ? motion : JerkPiece{-motion.start, -motion.jerk};
   }
+
   [[nodiscard]] const Reach& reach() const { return reach_; }
   void arrive(const Reach& reach) { reach_ = reach; }
 
@@ -136,17 +137,28 @@ std::vector<Pair> pairs_at(const Robot& robot, const Positions& positions) {
   });
 }
 
-/** How far outwards a slider comes from one row to the next. */
-double outermost_mm(const Slider& slider, const Positions& positions, const TimedTrajectory& trajectory,
-                    std::size_t row) {
+/** How a slider moves outwards from one row to the next. */
+JerkPiece outwards(const Slider& slider, const Positions& positions, const TimedTrajectory& trajectory,
+                   std::size_t row) {
   const auto& axes = trajectory.axes();
   const auto moved = std::find_if(axes.begin(), axes.end(), [&slider](const TrajectoryAxis& axis) {
     return axis.slot == slider.axis().slot;
   });
   if (moved == axes.end()) {
-    return slider.outwards_mm(positions[slider.axis().slot]);
+    return {{slider.outwards_mm(positions[slider.axis().slot]), 0.0, 0.0}, 0.0};
   }
-  return slider.outermost_mm(trajectory.reach(static_cast<std::size_t>(moved - axes.begin()), row));
+  return slider.outwards(trajectory.piece(static_cast<std::size_t>(moved - axes.begin()), row));
+}
+
+/** The farthest that a pair parts from one row to the next. Two cubics of the same time add to one. */
+double farthest_mm(const Pair& pair, const Positions& positions, const TimedTrajectory& trajectory,
+                   std::size_t row) {
+  const JerkPiece left = outwards(pair.left, positions, trajectory, row);
+  const JerkPiece right = outwards(pair.right, positions, trajectory, row);
+  const JerkPiece apart{left.start + right.start, left.jerk + right.jerk};
+  PositionRange range{apart.start.position, apart.start.position};
+  apart.widen(range, trajectory.step_s(row));
+  return range.highest;
 }
 
 /** A step that only brings sliders together is allowed wherever they stand. */
@@ -192,8 +204,7 @@ tl::expected<void, Refusal> check_separation(const Robot& robot, const Positions
                                              const TimedTrajectory& trajectory) {
   for (const Pair& pair : pairs_at(robot, positions)) {
     for (std::size_t row = 0; row < trajectory.rows(); ++row) {
-      const double separation_mm = outermost_mm(pair.left, positions, trajectory, row) +
-                                   outermost_mm(pair.right, positions, trajectory, row);
+      const double separation_mm = farthest_mm(pair, positions, trajectory, row);
       if (separation_mm > pair.most_mm) {
         Refusal refusal = parted(pair, separation_mm);
         refusal.detail = "After row " + std::to_string(row + 1) + ": " + refusal.detail;

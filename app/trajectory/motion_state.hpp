@@ -11,6 +11,15 @@ struct MotionState {
   bool operator==(const MotionState&) const = default;
 };
 
+constexpr MotionState operator+(const MotionState& one, const MotionState& other) noexcept {
+  return {one.position + other.position, one.velocity + other.velocity,
+          one.acceleration + other.acceleration};
+}
+
+constexpr MotionState operator-(const MotionState& state) noexcept {
+  return {-state.position, -state.velocity, -state.acceleration};
+}
+
 /** Positions between which an axis may be, both ends in it. */
 struct PositionRange {
   double lowest = 0.0;

@@ -19,15 +19,16 @@ MotionState TimedTrajectory::at(std::size_t axis, double time_s) const noexcept 
   return piece_between(moved, row(next - 1), row(next)).after(time_s - this->time_s(next - 1));
 }
 
-PositionRange TimedTrajectory::reach(std::size_t axis, std::size_t index) const noexcept {
+JerkPiece TimedTrajectory::piece(std::size_t axis, std::size_t index) const noexcept {
   const TrajectoryAxis& moved = axes_[axis];
-  const double start = row(index)[moved.position_place];
-  PositionRange range{start, start};
-  if (index + 1 < rows()) {
-    piece_between(moved, row(index), row(index + 1)).widen(range, time_s(index + 1) - time_s(index));
-    widen(range, row(index + 1)[moved.position_place]);
+  if (index + 1 == rows()) {
+    return {{row(index)[moved.position_place], 0.0, 0.0}, 0.0};
   }
-  return range;
+  return piece_between(moved, row(index), row(index + 1));
+}
+
+double TimedTrajectory::step_s(std::size_t index) const noexcept {
+  return index + 1 == rows() ? 0.0 : time_s(index + 1) - time_s(index);
 }
 
 JerkPiece piece_between(const TrajectoryAxis& axis, std::span<const double> from,

@@ -54,8 +54,11 @@ class TimedTrajectory {
    * row. */
   [[nodiscard]] MotionState at(std::size_t axis, double time_s) const noexcept;
 
-  /** The positions through which an axis passes from a row to the next; of the last row, its own. */
-  [[nodiscard]] PositionRange reach(std::size_t axis, std::size_t row) const noexcept;
+  /** How an axis moves from a row to the next; from the last row on it stands. */
+  [[nodiscard]] JerkPiece piece(std::size_t axis, std::size_t row) const noexcept;
+
+  /** From a row to the next; 0 for the last row. */
+  [[nodiscard]] double step_s(std::size_t row) const noexcept;
 
  private:
   friend class TrajectoryBuilder;

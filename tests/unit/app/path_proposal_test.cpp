@@ -118,12 +118,14 @@ TEST_F(PathProposalTest, WhatCannotBeMovedIsRefusedWithItsReason) {
 
 TEST_F(PathProposalTest, ALaterLegIsCheckedFromWhereTheOneBeforeEnds) {
   PathDraft draft = draft_to({{head_axis, -1000}});
-  draft.program = shared_program({MoveLeg{{{head_axis, -1000}}, 3.0, 0.5}, MoveLeg{{{head_axis, -11000}}, 0.0, 0.0}});
+  draft.program =
+      shared_program({MoveLeg{{{head_axis, -1000}}, 3.0, 0.5}, MoveLeg{{{head_axis, -11000}}, 0.0, 0.0}});
   const auto good = book_.propose_path(draft, view_);
   ASSERT_TRUE(good);
   EXPECT_GT(good->duration_s, 3.5 + 10000.0 / 600.0);
   sent_.clear();
-  draft.program = shared_program({MoveLeg{{{head_axis, -1000}}, 0.0, 0.0}, MoveLeg{{{head_axis, -12000}}, 0.0, 0.0}});
+  draft.program =
+      shared_program({MoveLeg{{{head_axis, -1000}}, 0.0, 0.0}, MoveLeg{{{head_axis, -12000}}, 0.0, 0.0}});
   expect_refused(draft, "RANGE");
 }
 

@@ -248,7 +248,9 @@ export interface paths {
         get: operations["getMode"];
         /**
          * Changes the mode. `home` proposes all of the robot's home steps, as `POST /api/proposals` with `{"kind":"home"}`
-         *     does, and is refused as that is; it ends in `manual` by itself, and changes nothing while homing is open. `manual` aborts what the other mode had open.
+         *     does, and is refused as that is; it ends in `manual` by itself, and changes nothing while homing is open.
+         *     `trajectory` and `draping` propose as `{"kind":"trajectory"}` and `{"kind":"draping"}` do; without a loaded trajectory the
+         *     robot stays in `manual` (EMPTY). `coordinated` needs targets, so it is proposed only (NO_TARGETS). `manual` aborts what the other mode had open.
          */
         put: operations["setMode"];
         post?: never;
@@ -327,6 +329,29 @@ export interface paths {
         /** Checks a saved file and sets its positions beside the present ones. Changes nothing. */
         post: operations["comparePositions"];
         delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/trajectory": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The loaded trajectory; one without rows when none is. */
+        get: operations["getTrajectory"];
+        /**
+         * Loads a trajectory: a header and rows with commas, as `interlock trajectory check` reads them (docs/trajectories.md).
+         *     It is checked as a whole, velocities against the rates of the axes as well; when a row is wrong nothing is loaded, and the problem has
+         *     the code, line and column. It moves nothing: propose it by `{"kind":"trajectory"}`. It is unloaded when it was carried out.
+         */
+        put: operations["loadTrajectory"];
+        post?: never;
+        /** Unloads the trajectory; a proposal that was made of it stays. */
+        delete: operations["unloadTrajectory"];
         options?: never;
         head?: never;
         patch?: never;
@@ -559,14 +584,18 @@ export interface paths {
         get: operations["listProposals"];
         put?: never;
         /**
-         * Drafts a move of one axis, or homing, checks it and, since the console's author releases it by creating it,
-         *     approves it. It executes while the pedal is held. A newer move of the same axis replaces an open one; homing
-         *     replaces every open proposal, and until it has ended moves are refused (MODE_HOME).
+         * Drafts a move of one axis, homing, or a motion of several axes, checks it and, since the console's author releases it by creating it,
+         *     approves it. A trajectory, which comes from a file, waits for `approve`, unless the robot's file says `auto_approve`.
+         *     It executes while the pedal is held. A newer move of the same axis replaces an open one; homing and motions of several
+         *     axes replace every approved proposal, and until they have ended moves are refused (MODE_HOME, MODE_PATH).
          *     Refused here, in this order: another configuration than the kernel's (CONFIG_MISMATCH), a locked system (MODE),
          *     an axis that is FAULTED, homing (BUSY) or DISABLED, a drive above its bound (DRIVE), a target outside
          *     `min_counts` to `max_counts` of the motor (RANGE); homing an axis that has no switch (NO_SWITCH),
          *     a home step that goes to positions, of an axis that is not homed by then (NOT_HOMED), or homing that could part two
          *     sliders of one linkage too far, where one that is not homed may be anywhere in its range (SEPARATION).
+         *     Motions of several axes: axes that are not homed (NOT_HOMED), targets out of range (RANGE), sliders too far apart (SEPARATION),
+         *     no motion within the rates of the axes (NO_PATH); a pose that cannot be had (UNREACHABLE, or a problem of `alignment`),
+         *     or whose registration, probe or target changed meanwhile (STALE); no trajectory loaded (EMPTY).
          *     A refused draft stays in the list.
          */
         post: operations["createProposal"];
@@ -589,6 +618,28 @@ export interface paths {
         get: operations["getProposal"];
         put?: never;
         post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/proposals/{id}/approve": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["parameters"]["ProposalId"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Checks a proposal that is `checked` anew and approves it; it executes while the pedal is held. 409 NOT_WAITING when it does not
+         *     wait for that. Nobody's approval comes for 10 minutes, or the kernel locks: it ends.
+         */
+        post: operations["approveProposal"];
         delete?: never;
         options?: never;
         head?: never;
@@ -717,9 +768,10 @@ export interface components {
             status: number;
             /**
              * @description Verdict name, or NOT_FOUND, METHOD_NOT_ALLOWED, MALFORMED, INVALID, TOO_LARGE, HOST, ORIGIN, UPGRADE_REQUIRED,
-             *     LOGIN, CREDENTIALS, BACK_OFF, ROLE, AUTHORITY, EXISTS, LAST_ADMIN, STORE, STOPPED, MODE_HOME, NOT_HOMED, SEPARATION, HAS_SWITCH,
+             *     LOGIN, CREDENTIALS, BACK_OFF, ROLE, AUTHORITY, EXISTS, LAST_ADMIN, STORE, STOPPED, MODE_HOME, MODE_PATH, NOT_HOMED, SEPARATION, HAS_SWITCH,
              *     POSITIONS_ROBOT, POSITIONS_CONFIG, POSITIONS_VERSION,
-             *     NO_KERNEL, NO_BENCH, PEDAL_LAPSED, CONFIG_MISMATCH, ENDED, OVERLOADED, INTERNAL.
+             *     NO_KERNEL, NO_BENCH, PEDAL_LAPSED, CONFIG_MISMATCH, ENDED, OVERLOADED, INTERNAL; of paths NO_PATH, UNREACHABLE, STALE,
+             *     EMPTY, NO_TARGETS, NOT_WAITING; of a trajectory or a pose a code of `interlock trajectory check` or of `interlock kinematics`.
              */
             code: string;
             /** @description What, where. */
@@ -820,13 +872,33 @@ export interface components {
         /**
          * @description A move (the default `kind`) needs `slot` and exactly one of `target` and `target_counts`. Homing takes at most one of `slot` (that axis) and
          *     `step` (one home step of the robot); with neither it runs all steps in the order of the robot's file.
+         *     `coordinated` takes `targets` and perhaps `duration_s`. `pose` aligns the probe with entry and target: it takes the probe out,
+         *     moves all other axes together and, with `insert`, inserts the probe. `trajectory` follows the loaded one, `draping` goes
+         *     to the setpoints of the robot's file; they take nothing else.
          */
         ProposalDraft: {
             /**
              * @default move
              * @enum {string}
              */
-            kind: "move" | "home";
+            kind: "move" | "home" | "coordinated" | "pose" | "trajectory" | "draping";
+            /** @description Positions by axis, in its unit; the axes arrive together. */
+            targets?: {
+                [key: string]: number;
+            };
+            /** @description Least duration of the motion. */
+            duration_s?: number;
+            /**
+             * @description Reachable: as far as the axes go, where the desired one cannot be had.
+             * @default desired
+             * @enum {string}
+             */
+            pose: "desired" | "reachable";
+            /**
+             * @description Insert the probe once it is aligned.
+             * @default false
+             */
+            insert: boolean;
             /** @description Name of a home step. */
             step?: string;
             slot?: number;
@@ -839,7 +911,20 @@ export interface components {
         Proposal: {
             id: number;
             /** @enum {string} */
-            kind: "move" | "home";
+            kind: "move" | "home" | "path";
+            /** @description Of a path: as in /api/mode. */
+            mode?: string;
+            /** @description Of a path: its parts, one after the other. */
+            legs?: number;
+            /** @description Of a path: the part that runs or is next, from 0. */
+            leg?: number;
+            /** @description Of a path: of the planned motion. */
+            duration_s?: number;
+            /** @description Of a path, once checked: where its axes come to rest. */
+            ends?: {
+                slot: number;
+                target_counts: number;
+            }[];
             /** @description Null when several axes move. */
             slot: number | null;
             axis: string | null;
@@ -849,10 +934,10 @@ export interface components {
             step?: string | null;
             author: string;
             /** @enum {string} */
-            source: "console";
+            source: "console" | "file";
             /** @enum {string} */
             state: "drafted" | "checked" | "approved" | "executing" | "paused" | "done" | "refused" | "aborted" | "expired";
-            /** @description Null for homing. */
+            /** @description Null unless one axis moves. */
             target_counts: number | null;
             target: number | null;
             drive?: number;
@@ -1099,6 +1184,24 @@ export interface components {
              */
             canula_to_treatment_offset?: number | string;
             treatment_to_robot_at_home?: components["schemas"]["Offset"];
+        };
+        LoadedTrajectory: {
+            rows: number;
+            duration_s: number;
+            axes: {
+                slot: number;
+                name: string;
+                /** @enum {string} */
+                unit: "mm" | "rad";
+                /** @description Between the rows as well. */
+                lowest: number;
+                highest: number;
+                /** @description In its unit per second. */
+                top_speed: number;
+            }[];
+            author: string | null;
+            /** Format: date-time */
+            loaded: string | null;
         };
         Connection: {
             /** @description By which it can be disconnected; null when it cannot. */
@@ -1850,6 +1953,80 @@ export interface operations {
             503: components["responses"]["NoKernel"];
         };
     };
+    getTrajectory: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description What is loaded. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["LoadedTrajectory"];
+                };
+            };
+            401: components["responses"]["Login"];
+        };
+    };
+    loadTrajectory: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "text/csv": string;
+            };
+        };
+        responses: {
+            /** @description What is loaded. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["LoadedTrajectory"];
+                };
+            };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            409: components["responses"]["Authority"];
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoKernel"];
+        };
+    };
+    unloadTrajectory: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Nothing is loaded. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["LoadedTrajectory"];
+                };
+            };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            409: components["responses"]["Authority"];
+            503: components["responses"]["NoKernel"];
+        };
+    };
     getTargeting: {
         parameters: {
             query?: never;
@@ -2275,6 +2452,33 @@ export interface operations {
             };
             401: components["responses"]["Login"];
             404: components["responses"]["NotFound"];
+        };
+    };
+    approveProposal: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["parameters"]["ProposalId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Approved. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Proposal"];
+                };
+            };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            404: components["responses"]["NotFound"];
+            409: components["responses"]["Refused"];
+            503: components["responses"]["NoKernel"];
         };
     };
     abortProposal: {

@@ -1,0 +1,92 @@
+"""Several axes together on real processes: coordinated motion, a trajectory, a pose, and what ends them."""
+
+import pytest
+from conftest import StackFactory
+from motion import act, motor, press, proposal, set_home, unlock, wait_for_proposal, wait_until
+from stack import Stack
+
+YAW, ROTATION, PITCH, INSERTION, LATERAL, FEET, HEAD = 0, 1, 2, 3, 4, 6, 7
+AXES = (YAW, ROTATION, PITCH, INSERTION, LATERAL, FEET, HEAD)
+
+
+def ready(stack: StackFactory, **options: int) -> Stack:
+    """Every axis referenced where it stands and enabled."""
+    robot = stack(**options)
+    unlock(robot)
+    for axis in AXES:
+        set_home(robot, axis)
+        act(robot, "enable", axis)
+    return robot
+
+
+def propose(robot: Stack, **body: object) -> int:
+    answer = robot.api.post("/api/proposals", json=body)
+    assert answer.status_code == 201, answer.text
+    return answer.json()["id"]
+
+
+def assert_at(robot: Stack, slot: int, position: float) -> None:
+    axis = motor(robot, slot)
+    tolerance = (axis["deadband_counts"] + 0.5) / axis["counts_per_unit"]
+    assert axis["position"] == pytest.approx(position, abs=tolerance), axis["name"]
+
+
+def test_seven_axes_arrive_together_and_the_pedal_pauses_them(stack: StackFactory) -> None:
+    robot = ready(stack)
+    targets = {"yaw": -0.5, "probe_rotation": 1.0, "pitch": -0.3, "insertion": 15.0, "lateral": -20.0}
+    targets |= {"feet": -10.0, "head": -25.0}
+    number = propose(robot, kind="coordinated", targets=targets)
+    press(robot)
+    wait_for_proposal(robot, number, "executing")
+    robot.control("pedal", pressed=False)
+    wait_for_proposal(robot, number, "paused")
+    press(robot)
+    wait_for_proposal(robot, number, "done")
+    for name, position in targets.items():
+        assert_at(robot, robot.api.get(f"/api/motors/{name}").json()["slot"], position)
+    assert robot.status()["app_mode"] == "manual"
+
+
+def test_a_trajectory_from_a_file_waits_for_approval_and_is_followed(stack: StackFactory) -> None:
+    robot = ready(stack)
+    rows = "time [s],yaw [rad],insertion [mm]\n0,-0.1,1\n1,-0.4,4\n2.5,-0.2,8\n"
+    loaded = robot.api.put("/api/trajectory", content=rows, headers={"Content-Type": "text/csv"})
+    assert loaded.status_code == 200, loaded.text
+    number = propose(robot, kind="trajectory")
+    assert proposal(robot, number)["state"] == "checked"
+    press(robot)
+    approved = robot.api.post(f"/api/proposals/{number}/approve")
+    assert approved.status_code == 200, approved.text
+    wait_for_proposal(robot, number, "done")
+    assert_at(robot, YAW, -0.2)
+    assert_at(robot, INSERTION, 8.0)
+    assert robot.api.get("/api/trajectory").json()["rows"] == 0
+
+
+def test_a_jammed_axis_ends_the_path_of_all(stack: StackFactory) -> None:
+    robot = ready(stack)
+    number = propose(robot, kind="coordinated", targets={"lateral": -20.0, "head": -25.0})
+    press(robot)
+    wait_for_proposal(robot, number, "executing")
+    robot.control("jam", slot=HEAD, jammed=True)
+    wait_for_proposal(robot, number, "aborted")
+    assert "head" in proposal(robot, number)["detail"].lower()
+    wait_until("zero drive", lambda: all(motor(robot, slot)["gate"] != "OPEN" for slot in AXES))
+
+
+def test_stop_ends_a_path(stack: StackFactory) -> None:
+    robot = ready(stack)
+    number = propose(robot, kind="coordinated", targets={"lateral": -20.0, "head": -25.0})
+    press(robot)
+    wait_for_proposal(robot, number, "executing")
+    robot.api.post("/api/stop").raise_for_status()
+    wait_for_proposal(robot, number, "aborted")
+
+
+def test_a_million_rows_are_refused_and_nothing_moves(stack: StackFactory) -> None:
+    robot = ready(stack)
+    rows = "time [s],yaw [rad]\n" + "".join(f"{row},-0.1\n" for row in range(1_000_000))
+    refused = robot.api.put("/api/trajectory", content=rows, headers={"Content-Type": "text/csv"})
+    assert refused.status_code == 422, refused.text
+    assert refused.json()["code"] == "TOO_LARGE"
+    assert robot.api.get("/api/trajectory").json()["rows"] == 0
