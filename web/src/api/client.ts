@@ -166,6 +166,7 @@ export const api = {
   zeroAll: () => act(() => slowHttp.POST("/api/motors/zero-all")),
   proposals: () => read(() => http.GET("/api/proposals")),
   propose: (draft: ProposalDraft) => act(() => http.POST("/api/proposals", { body: draft })),
+  approve: (id: number) => act(() => http.POST("/api/proposals/{id}/approve", { params: { path: { id } } })),
   abort: (id: number) => act(() => http.POST("/api/proposals/{id}/abort", { params: { path: { id } } })),
   reset: () => act(() => http.POST("/api/reset")),
 

@@ -889,16 +889,12 @@ export interface components {
             /** @description Least duration of the motion. */
             duration_s?: number;
             /**
-             * @description Reachable: as far as the axes go, where the desired one cannot be had.
-             * @default desired
+             * @description Desired unless said otherwise. Reachable: as far as the axes go, where the desired one cannot be had.
              * @enum {string}
              */
-            pose: "desired" | "reachable";
-            /**
-             * @description Insert the probe once it is aligned.
-             * @default false
-             */
-            insert: boolean;
+            pose?: "desired" | "reachable";
+            /** @description Insert the probe once it is aligned; else it stays out. */
+            insert?: boolean;
             /** @description Name of a home step. */
             step?: string;
             slot?: number;

@@ -55,6 +55,11 @@ export async function abort(id: number, slot: number | null): Promise<void> {
   tell(slot ?? "robot", await api.abort(id));
 }
 
+/** Approves a proposal that waits for it; a refusal is shown where the robot's are. */
+export async function approve(id: number): Promise<void> {
+  tell("robot", await api.approve(id));
+}
+
 /** Changes the robot's mode; a refusal is shown at the selector. */
 export async function setMode(mode: string): Promise<void> {
   const outcome = await api.setMode(mode);

@@ -2,7 +2,7 @@ import type { Motor, Proposal } from "../../api/client";
 import { CommandButton } from "../../design/CommandButton";
 import { Panel } from "../../design/Panel";
 import { entry } from "../../generated/catalog";
-import { abort } from "../../state/commands";
+import { abort, approve } from "../../state/commands";
 import { noticeOfProposal } from "../../state/notice";
 import { isOpen } from "../../state/proposals";
 import { useConsole } from "../../state/store";
@@ -36,7 +36,7 @@ type State = Proposal["state"];
 
 const looks: Record<State, { readonly shape: string; readonly tone: string }> = {
   drafted: { shape: "·", tone: "" },
-  checked: { shape: "·", tone: "" },
+  checked: { shape: "?", tone: "wish" },
   approved: { shape: "◷", tone: "wish" },
   executing: { shape: "▶", tone: "wish" },
   paused: { shape: "‖", tone: "wish" },
@@ -80,6 +80,15 @@ function ProposalItem({
       </span>
       <span className="proposal-foot">
         {proposal.author} · <time dateTime={proposal.created}>{localTime(proposal.created)}</time>
+        {proposal.state === "checked" && (
+          <CommandButton
+            need="holder"
+            label={`Approve proposal ${proposal.id}`}
+            onCommand={() => approve(proposal.id)}
+          >
+            Approve
+          </CommandButton>
+        )}
         {isOpen(proposal) && (
           <CommandButton
             need="holder"
@@ -95,6 +104,10 @@ function ProposalItem({
   );
 }
 
+function capital(word: string): string {
+  return word.charAt(0).toUpperCase() + word.slice(1);
+}
+
 interface WishProps {
   readonly proposal: Proposal;
   readonly motor: Motor | undefined;
@@ -106,6 +119,14 @@ function Wish({ proposal, motor }: WishProps) {
     return (
       <>
         Home <strong>{name ?? `${proposal.axes.length} axes`}</strong>
+      </>
+    );
+  }
+  if (proposal.kind === "path") {
+    return (
+      <>
+        <strong>{capital(proposal.mode ?? "path")}</strong>: {proposal.axes.join(", ")}
+        {proposal.duration_s !== undefined && ` in ${proposal.duration_s.toFixed(1)} s`}
       </>
     );
   }
