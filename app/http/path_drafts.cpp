@@ -11,6 +11,9 @@ namespace {
 using nlohmann::json;
 
 constexpr std::string_view insertion_role = "insertion";
+constexpr std::string_view rotation_role = "probe_rotation";
+constexpr std::size_t most_ablation_steps = 200;
+constexpr double longest_dwell_s = 3600.0;
 
 PathDraft draft_of(RobotMode mode, std::vector<PathLeg> legs, const std::string& author) {
   return {mode, std::make_shared<const PathProgram>(PathProgram{std::move(legs)}), ProposalSource::console,
@@ -26,6 +29,26 @@ std::string clamped_axes(const Robot& robot, const Alignment& alignment) {
     }
   }
   return names;
+}
+
+tl::expected<MoveLeg, Problem> ablation_leg(const Axis& rotation, const Axis& insertion, const json& step,
+                                            const std::string& where) {
+  Fields fields(step, {"probe_rotation", "insertion", "dwell_s"}, where);
+  const auto turned = fields.number("probe_rotation");
+  const auto inserted = fields.number("insertion");
+  const auto dwell_s = fields.number("dwell_s", 0.0, longest_dwell_s);
+  fields.require({{"probe_rotation", "an angle in rad"},
+                  {"insertion", "a depth in mm"},
+                  {"dwell_s", "a rest in seconds"}});
+  if (fields.problem()) {
+    return fail(*fields.problem());
+  }
+  const auto turned_counts = rotation.to_counts(*turned);
+  const auto inserted_counts = insertion.to_counts(*inserted);
+  if (!turned_counts || !inserted_counts) {
+    return fail(invalid(where, "it is beyond every encoder", "positions within reach of the axes"));
+  }
+  return MoveLeg{{{rotation.slot, *turned_counts}, {insertion.slot, *inserted_counts}}, 0.0, *dwell_s};
 }
 
 std::vector<PathLeg> legs_to(const Robot& robot, const Alignment& alignment, bool insert) {
@@ -73,6 +96,27 @@ tl::expected<PathDraft, Problem> coordinated_draft(const Robot& robot, const jso
     leg.targets.push_back({axis->slot, *counts});
   }
   return draft_of(RobotMode::coordinated, {std::move(leg)}, author);
+}
+
+tl::expected<PathDraft, Problem> ablation_draft(const Robot& robot, const json& steps,
+                                                const std::string& author) {
+  const Axis* rotation = robot.with_role(rotation_role);
+  const Axis* insertion = robot.with_role(insertion_role);
+  if (rotation == nullptr || insertion == nullptr || !robot.has_mode(mode_name(RobotMode::ablation))) {
+    return fail(not_found("probe for ablation", "a robot with the mode ablation"));
+  }
+  if (!steps.is_array() || steps.empty() || steps.size() > most_ablation_steps) {
+    return fail(invalid("steps", "steps are none, or too many", "an array of 1 to 200 steps"));
+  }
+  std::vector<PathLeg> legs;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const auto leg = ablation_leg(*rotation, *insertion, steps[i], "steps[" + std::to_string(i) + "]");
+    if (!leg) {
+      return fail(leg.error());
+    }
+    legs.emplace_back(*leg);
+  }
+  return draft_of(RobotMode::ablation, std::move(legs), author);
 }
 
 tl::expected<PathDraft, Problem> draping_draft(const Robot& robot, const std::string& author) {

@@ -19,6 +19,13 @@ struct PoseWish {
 tl::expected<PathDraft, Problem> coordinated_draft(const Robot& robot, const nlohmann::json& targets,
                                                    double minimum_duration_s, const std::string& author);
 
+/**
+ * Turns and inserts the probe through `steps`, an array of `AblationStep` (spec/openapi.yaml), resting at
+ * each; 404 NOT_FOUND for a robot without a probe to turn.
+ */
+tl::expected<PathDraft, Problem> ablation_draft(const Robot& robot, const nlohmann::json& steps,
+                                                const std::string& author);
+
 /** The setpoints in which the robot is draped; 404 NOT_FOUND when its file has none. */
 tl::expected<PathDraft, Problem> draping_draft(const Robot& robot, const std::string& author);
 

@@ -14,7 +14,8 @@ enum class RobotMode : std::uint8_t {
   home,        /**< the steps of homing */
   coordinated, /**< several axes to their setpoints, arriving together */
   trajectory,  /**< along a loaded trajectory, in time */
-  draping      /**< to the setpoints in which the robot is draped */
+  draping,     /**< to the setpoints in which the robot is draped */
+  ablation     /**< the probe through a list of angles and depths, with rest at each */
 };
 
 namespace detail {
@@ -24,11 +25,12 @@ struct NamedMode {
   std::string_view name;
 };
 
-inline constexpr std::array<NamedMode, 5> named_modes{{{RobotMode::manual, "manual"},
+inline constexpr std::array<NamedMode, 6> named_modes{{{RobotMode::manual, "manual"},
                                                        {RobotMode::home, "home"},
                                                        {RobotMode::coordinated, "coordinated"},
                                                        {RobotMode::trajectory, "trajectory"},
-                                                       {RobotMode::draping, "draping"}}};
+                                                       {RobotMode::draping, "draping"},
+                                                       {RobotMode::ablation, "ablation"}}};
 
 }  // namespace detail
 

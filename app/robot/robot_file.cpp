@@ -78,6 +78,10 @@ void refuse_unserved_modes(TableReader& table, const Robot& robot) {
     table.refuse("modes", "there are no setpoints for the mode \"draping\"",
                  "a [draping] table, or no such mode");
   }
+  if (robot.has_mode("ablation") && robot.with_role("probe_rotation") == nullptr) {
+    table.refuse("modes", "no probe can be turned for the mode \"ablation\"",
+                 "a robot of the family neuro_rcm, or no such mode");
+  }
   const auto alone = std::ranges::find_if(robot.axes, [](const Axis& axis) { return !axis.motion; });
   const auto needs_motion = std::ranges::find_if(robot.modes, [](const std::string& name) {
     const auto mode = mode_of(name);

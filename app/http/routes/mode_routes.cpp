@@ -92,11 +92,12 @@ tl::expected<Draft, Problem> ModeRoutes::draft_for(RobotMode mode, const std::st
       return trajectory_draft(context_.trajectory, author);
     case RobotMode::draping:
       return draping_draft(context_.robot, author);
+    case RobotMode::ablation:
     case RobotMode::coordinated:
       return fail(Problem{.status = Status::conflict,
                           .code = "NO_TARGETS",
-                          .detail = "Coordinated motion needs targets, which a mode does not name.",
-                          .expected = "a proposal of kind coordinated or pose",
+                          .detail = "Such motion needs targets, which a mode does not name.",
+                          .expected = "a proposal of kind coordinated, pose or ablation",
                           .next_step = "Propose it by POST /api/proposals."});
     case RobotMode::home:
     case RobotMode::manual:

@@ -97,6 +97,15 @@ tl::expected<Draft, Problem> coordinated_of(const json& body, const Robot& robot
   return coordinated_draft(robot, *fields.value("targets"), duration_s, author);
 }
 
+tl::expected<Draft, Problem> ablation_of(const json& body, const Robot& robot, const std::string& author) {
+  Fields fields(body, {"kind", "steps"});
+  fields.require({{"steps", "angles, depths and rests"}});
+  if (fields.problem()) {
+    return fail(*fields.problem());
+  }
+  return ablation_draft(robot, *fields.value("steps"), author);
+}
+
 tl::expected<PoseWish, Problem> pose_of(const json& body) {
   constexpr std::array<std::string_view, 2> poses{"desired", "reachable"};
   Fields fields(body, {"kind", "pose", "insert"});
@@ -109,10 +118,10 @@ tl::expected<PoseWish, Problem> pose_of(const json& body) {
 }
 
 tl::expected<std::string, Problem> kind_of(const json& body) {
-  constexpr std::array<std::string_view, 6> kinds{"move", "home",       "coordinated",
-                                                  "pose", "trajectory", "draping"};
+  constexpr std::array<std::string_view, 7> kinds{"move",       "home",    "coordinated", "pose",
+                                                  "trajectory", "draping", "ablation"};
   Fields fields(body, {"kind", "slot", "step", "target", "target_counts", "drive", "targets", "duration_s",
-                       "pose", "insert"});
+                       "pose", "insert", "steps"});
   const auto kind = fields.choice("kind", kinds);
   if (fields.problem()) {
     return fail(*fields.problem());
@@ -169,6 +178,9 @@ boost::asio::awaitable<tl::expected<Draft, Problem>> ProposalRoutes::draft_of(co
   }
   if (*kind == "draping") {
     co_return alone(*body).and_then([&] { return draping_draft(context_.robot, author); });
+  }
+  if (*kind == "ablation") {
+    co_return ablation_of(*body, context_.robot, author);
   }
   if (*kind == "coordinated") {
     co_return coordinated_of(*body, context_.robot, author);

@@ -61,7 +61,7 @@ TEST_F(ModeRoutesTest, AModeThatTheRobotHasNotIsNamedWithThoseThatItHas) {
     EXPECT_EQ(answered.problem()["code"], "INVALID") << body;
   }
   EXPECT_EQ(set_mode("sweeping").problem()["expected"],
-            "one of manual, home, coordinated, trajectory, draping");
+            "one of manual, home, coordinated, trajectory, draping, ablation");
   EXPECT_EQ(put("/api/mode", "{").status, 400u);
   EXPECT_EQ(mode()["mode"], "manual");
 }

@@ -156,6 +156,30 @@ TEST_F(PathRoutesTest, OnlyTheHolderMaySendALargeTrajectory) {
   EXPECT_EQ(put("/api/trajectory", rows.str()).status, 413u);
 }
 
+TEST_F(PathRoutesTest, AblationTurnsAndInsertsTheProbeThroughItsSteps) {
+  const json steps{{{"probe_rotation", 0.5}, {"insertion", 10.0}, {"dwell_s", 2.0}},
+                   {{"probe_rotation", -0.5}, {"insertion", 12.0}, {"dwell_s", 0.0}}};
+  const Answered made = propose({{"kind", "ablation"}, {"steps", steps}});
+  ASSERT_EQ(made.status, 201u) << made.body;
+  const json body = json::parse(made.body);
+  EXPECT_EQ(body["mode"], "ablation");
+  EXPECT_EQ(body["axes"], json({"probe_rotation", "insertion"}));
+  EXPECT_EQ(body["legs"], 2);
+  EXPECT_GT(body["duration_s"], 2.0);
+  const PathOrder order = std::get<PathOrder>(next_command());
+  EXPECT_EQ(std::get<MoveLeg>(order.program->legs.front()).dwell_s, 2.0);
+  const std::pair<json, std::string> wrong[] = {
+      {json::array(), "steps"},
+      {json(201, steps[0]), "steps"},
+      {{steps[0], {{"probe_rotation", 0.5}, {"insertion", 10.0}}}, "steps[1].dwell_s"},
+      {{{{"probe_rotation", 1e300}, {"insertion", 10.0}, {"dwell_s", 2.0}}}, "steps[0]"}};
+  for (const auto& [bad, field] : wrong) {
+    const Answered refused = propose({{"kind", "ablation"}, {"steps", bad}});
+    EXPECT_EQ(refused.status, 422u) << bad;
+    EXPECT_EQ(refused.problem()["field"], field) << bad;
+  }
+}
+
 TEST_F(PathRoutesTest, DrapingGoesToTheSetpointsOfTheFile) {
   ASSERT_EQ(put("/api/mode", R"({"mode":"draping"})").status, 200u);
   const json made = proposal(1);

@@ -250,7 +250,7 @@ export interface paths {
          * Changes the mode. `home` proposes all of the robot's home steps, as `POST /api/proposals` with `{"kind":"home"}`
          *     does, and is refused as that is; it ends in `manual` by itself, and changes nothing while homing is open.
          *     `trajectory` and `draping` propose as `{"kind":"trajectory"}` and `{"kind":"draping"}` do; without a loaded trajectory the
-         *     robot stays in `manual` (EMPTY). `coordinated` needs targets, so it is proposed only (NO_TARGETS). `manual` aborts what the other mode had open.
+         *     robot stays in `manual` (EMPTY). `coordinated` and `ablation` need targets, so they are proposed only (NO_TARGETS). `manual` aborts what the other mode had open.
          */
         put: operations["setMode"];
         post?: never;
@@ -874,14 +874,16 @@ export interface components {
          *     `step` (one home step of the robot); with neither it runs all steps in the order of the robot's file.
          *     `coordinated` takes `targets` and perhaps `duration_s`. `pose` aligns the probe with entry and target: it takes the probe out,
          *     moves all other axes together and, with `insert`, inserts the probe. `trajectory` follows the loaded one, `draping` goes
-         *     to the setpoints of the robot's file; they take nothing else.
+         *     to the setpoints of the robot's file; they take nothing else. `ablation` turns and inserts the probe through `steps`, one
+         *     after the other, and rests at each.
          */
         ProposalDraft: {
             /**
              * @default move
              * @enum {string}
              */
-            kind: "move" | "home" | "coordinated" | "pose" | "trajectory" | "draping";
+            kind: "move" | "home" | "coordinated" | "pose" | "trajectory" | "draping" | "ablation";
+            steps?: components["schemas"]["AblationStep"][];
             /** @description Positions by axis, in its unit; the axes arrive together. */
             targets?: {
                 [key: string]: number;
@@ -1180,6 +1182,14 @@ export interface components {
              */
             canula_to_treatment_offset?: number | string;
             treatment_to_robot_at_home?: components["schemas"]["Offset"];
+        };
+        AblationStep: {
+            /** @description In rad. */
+            probe_rotation: number;
+            /** @description In mm. */
+            insertion: number;
+            /** @description Rest there. */
+            dwell_s: number;
         };
         LoadedTrajectory: {
             rows: number;
