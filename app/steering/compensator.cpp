@@ -30,6 +30,7 @@ KinematicsResult<Compensator> Compensator::create(const CompensatorParameters& p
       .and_then([&] { return check_range("commit_mm", parameters.commit_mm, 0.0, 100.0); })
       .and_then(
           [&] { return check_range("arrived_mm", parameters.arrived_mm, 10.0 * shortest_ahead_mm, 10.0); })
+      .and_then([&] { return check_range("miss_mm", parameters.miss_mm, 0.0, 100.0); })
       .and_then([&] { return steering_target(target_mm); })
       .and_then([&](const SteeringTarget&) { return TipEstimator::create(parameters.tip, axes.time_s); })
       .map([&](TipEstimator tip) { return Compensator(parameters, axes, *law, std::move(tip), *target); });
@@ -96,12 +97,16 @@ KinematicsResult<SteeringCommand> Compensator::planned(const SteeringTarget& tar
   const auto share = parameters_.share_rule == ShareRule::averaged
                          ? law_.averaged_share(wanted_per_mm, largest_per_mm)
                          : published_share(wanted_per_mm, largest_per_mm);
-  return share.map([&](const CurvShare& chosen) {
-    SteeringCommand next;
-    next.wanted_rotation_rad = within_turn_rad(axes.rotation_rad + target.turn_rad);
-    next.alpha = chosen.alpha;
-    next.reachable = chosen.reachable;
-    return next;
+  const double ahead_mm = target.arc_mm - target.extra_mm;
+  return share.and_then([&](const CurvShare& chosen) {
+    return smallest_miss_mm(target.beside_mm, ahead_mm, largest_per_mm).map([&](double miss_mm) {
+      SteeringCommand next;
+      next.wanted_rotation_rad = within_turn_rad(axes.rotation_rad + target.turn_rad);
+      next.alpha = chosen.alpha;
+      next.expected_miss_mm = miss_mm;
+      next.reachable = miss_mm <= parameters_.miss_mm;
+      return next;
+    });
   });
 }
 

@@ -23,11 +23,12 @@ enum class ShareRule {
 };
 
 struct CompensatorParameters {
-  CurvParameters curv;
-  TipBelief tip;
-  TargetBelief target;
+  CurvParameters curv{};
+  TipBelief tip{};
+  TargetBelief target{};
   ShareRule share_rule = ShareRule::averaged;
   double commit_mm = 2.0;   /**< the last plan stands from there to the target: it is too late to bend */
+  double miss_mm = 1.0;     /**< a target that the needle can come so close to counts as reachable */
   double arrived_mm = 0.05; /**< ahead of the tip, at which the needle is there */
 };
 
@@ -49,6 +50,7 @@ struct SteeringCommand {
   double rotation_rad_s = 0.0;      /**< speed for the rotation axis; 0 once arrived */
   double wanted_rotation_rad = 0.0; /**< theta_d, within [0, 2 pi) */
   double alpha = 0.0;
+  double expected_miss_mm = 0.0;      /**< that even the largest curvature leaves */
   bool reachable = true;              /**< false: the needle bends as far as it can and will still miss */
   double insertion_setpoint_mm = 0.0; /**< at which the tip meets the target's depth */
   bool arrived = false;               /**< stays so */

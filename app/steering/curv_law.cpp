@@ -30,7 +30,8 @@ double mean_direction(double alpha, double width_rad) noexcept {
 
 KinematicsResult<void> check_curvatures(double curvature_per_mm, double largest_per_mm) noexcept {
   return check_range("curvature_per_mm", curvature_per_mm, 0.0, curvature_limit_per_mm).and_then([&] {
-    return check_range("largest_curvature_per_mm", largest_per_mm, 1e-6, curvature_limit_per_mm);
+    return check_range("largest_curvature_per_mm", largest_per_mm, smallest_bend_per_mm,
+                       curvature_limit_per_mm);
   });
 }
 

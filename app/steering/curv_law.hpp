@@ -38,6 +38,9 @@ struct CurvShare {
 /** Largest curvature that any function here takes: a circle of 1 mm, per mm. */
 inline constexpr double curvature_limit_per_mm = 1.0;
 
+/** Every needle bends at least so much when it does not turn. */
+inline constexpr double smallest_bend_per_mm = 1e-6;
+
 /** The published fit of alpha to curvature; a curvature from `largest_per_mm` on is not reachable. */
 KinematicsResult<CurvShare> published_share(double curvature_per_mm, double largest_per_mm) noexcept;
 

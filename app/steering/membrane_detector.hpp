@@ -32,17 +32,17 @@ double cue_offset_mm(const CueParameters& cue, double since_s) noexcept;
 
 struct MembraneParameters {
   double period_s = 0.001;        /**< of the samples */
-  double cutoff_hz = 30.0;        /**< of the low-pass, first order */
+  double cutoff_hz = 20.0;        /**< of the low-pass, first order */
   double arm_mm = 5.0;            /**< listens so far before and behind the expected depth */
   double skip_mm = 8.0;           /**< gives the membrane up so far behind it; above `arm_mm` */
   double least_peak_n = 0.5;      /**< below it nothing held the needle back */
-  double least_drop_n = 0.2;      /**< from the peak */
+  double least_drop_n = 0.5;      /**< from the peak */
   double least_drop_share = 0.15; /**< of the peak, where that is more */
   double drop_time_s = 0.15;      /**< between peak and drop, at most 1 s */
   double slowest_mm_s = 0.5;      /**< slower is not going in */
-  double slowest_share = 0.5;     /**< of the speed at the peak: a hand that lets go is no puncture */
+  double slowest_share = 0.85;    /**< of the speed at the peak: a hand that lets go is no puncture */
   double refractory_s = 0.5;      /**< after a find; also covers the cue */
-  CueParameters cue;
+  CueParameters cue{};
 };
 
 /** One control period. */

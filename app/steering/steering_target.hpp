@@ -22,7 +22,15 @@ struct SteeringTarget {
   double curvature_per_mm = 0.0; /**< of the circle through tip and target that leaves the tip along z */
   double arc_mm = 0.0;           /**< along that circle */
   double extra_mm = 0.0;         /**< by how much the arc is longer than straight ahead */
+  double beside_mm = 0.0;        /**< of the tip's way ahead */
 };
+
+/**
+ * By how much a needle misses a target that lies `beside_mm` of its way and `ahead_mm` ahead, when it bends
+ * towards it as far as it can; 0 for a target within reach.
+ */
+KinematicsResult<double> smallest_miss_mm(double beside_mm, double ahead_mm,
+                                          double largest_curvature_per_mm) noexcept;
 
 /** Shortest distance ahead for which there is a way to steer. */
 inline constexpr double shortest_ahead_mm = 1e-3;

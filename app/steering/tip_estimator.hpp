@@ -31,7 +31,7 @@ struct TipBelief {
   double start_sd_mm = 0.5;             /**< of the entry, each coordinate */
   double direction_sd_rad = 0.0175;     /**< of the way ahead at the entry */
   double bevel_sd_rad = 0.05;           /**< of the bevel's angle at rotation 0 */
-  double direction_drift_rad = 3e-4;    /**< a millimetre of depth, growing with its root */
+  double direction_drift_rad = 1e-3;    /**< a millimetre of depth, growing with its root */
   double curvature_drift_per_mm = 2e-5; /**< a millimetre of depth, growing with its root */
   double image_sd_mm = 0.5;             /**< of an image of the tip, each coordinate */
   double widest_surprise_sd = 6.0;      /**< an image further from where it is expected is refused */

@@ -26,7 +26,8 @@ Pose exponential(const Eigen::Vector3d& translation, const Eigen::Vector3d& rota
   // Below this the next terms of the series are smaller than the last digit.
   const bool small = angle < 1e-3;
   const double sine_ratio = small ? 1.0 - squared / 6.0 + squared * squared / 120.0 : std::sin(angle) / angle;
-  const double cosine_ratio = small ? 0.5 - squared / 24.0 : (1.0 - std::cos(angle)) / squared;
+  const double half_ratio = small ? 0.5 - squared / 48.0 : std::sin(angle / 2.0) / angle;
+  const double cosine_ratio = 2.0 * half_ratio * half_ratio;  // (1 - cos) / squared, without its cancellation
   const double rest_ratio = small ? 1.0 / 6.0 - squared / 120.0 : (1.0 - sine_ratio) / squared;
   const Eigen::Matrix3d cross = cross_matrix(rotation);
   const Eigen::Matrix3d cross_squared = cross * cross;
