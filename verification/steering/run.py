@@ -1,8 +1,8 @@
 """Runs the study of steering and membrane detection and writes build/evidence/steering.json.
 
-The parameters were tuned on seeds 1 to 100; what is reported comes from seeds 101 to 300 (docs/steering.md). The
-same seeds give the same figures, but for the last digits of the machine's mathematics library, so the limits
-are asserted: exits 1 when a figure is beyond one.
+The parameters were tuned on seeds 1 to 100; what is reported comes from seeds 101 to 300 (docs/steering.md).
+The same seeds give the same figures, but for the last digits of the machine's mathematics library, so the
+limits are asserted: exits 1 when a figure is beyond one.
 """
 
 import argparse
