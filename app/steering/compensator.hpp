@@ -65,7 +65,7 @@ class Compensator {
 
   /**
    * One control period. A needle that was withdrawn a little bends nothing until it is as deep again; it may
-   * turn meanwhile. An error leaves everything as it was, and the caller stops the needle.
+   * turn meanwhile. On an error the caller stops the needle.
    */
   KinematicsResult<SteeringCommand> step(const NeedleAxes& axes) noexcept;
 

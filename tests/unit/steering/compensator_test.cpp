@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "../app/counted_allocations.hpp"
 #include "not_numbers.hpp"
 
 namespace interlock::test {
@@ -111,6 +112,25 @@ TEST(Compensator, bends_nothing_while_the_needle_is_withdrawn) {
   EXPECT_LT((compensator.tip().guide_from_tip.translation() - deepest).norm(), 1e-12);
   ASSERT_TRUE(compensator.step({4.0, 31.0, 0.0}));
   EXPECT_NEAR((compensator.tip().guide_from_tip.translation() - deepest).norm(), 1.0, 1e-3);
+}
+
+TEST(Compensator, allocates_nothing_after_it_is_made) {
+  Compensator compensator = towards({4, 2, 100});
+  count_allocations_of(pthread_self());
+  bool all_well = true;
+  for (int tick = 1; tick <= 5000; ++tick) {
+    const double time_s = 0.005 * tick;
+    all_well =
+        compensator.step({time_s, 4.0 * time_s, std::fmod(10.0 * time_s, 6.0)}).has_value() && all_well;
+    if (tick % 400 == 0) {
+      const Vector3d shown = compensator.tip().guide_from_tip.translation() - Vector3d(0, 0, 4);
+      all_well = compensator.see({time_s - 1.0, shown, {4, 2, 100}}).has_value() && all_well;
+    }
+  }
+  const std::uint32_t allocations = counted_allocations();
+  count_allocations_of();
+  EXPECT_TRUE(all_well);
+  EXPECT_EQ(allocations, 0u);
 }
 
 TEST(Compensator, answers_nonsense_with_an_error) {

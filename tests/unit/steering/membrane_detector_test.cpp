@@ -7,6 +7,7 @@
 #include <functional>
 #include <numbers>
 
+#include "../app/counted_allocations.hpp"
 #include "not_numbers.hpp"
 
 namespace interlock::test {
@@ -192,6 +193,20 @@ TEST(MembraneDetector, finds_or_skips_each_membrane_once_in_order_whatever_comes
       done = detector.records().size();
     }
   }
+}
+
+TEST(MembraneDetector, allocates_nothing_after_it_is_made) {
+  MembraneDetector detector = expecting({20.0});
+  const auto force_n = torn_at(20.0, 2.0);
+  bool found = false;
+  count_allocations_of(pthread_self());
+  for (double depth_mm = 0.0; depth_mm < 30.0; depth_mm += speed_mm_s * period_s) {
+    found = detector.step({force_n(depth_mm), depth_mm, speed_mm_s})->found || found;
+  }
+  const std::uint32_t allocations = counted_allocations();
+  count_allocations_of();
+  EXPECT_TRUE(found);
+  EXPECT_EQ(allocations, 0u);
 }
 
 TEST(MembraneDetector, answers_nonsense_with_an_error) {
