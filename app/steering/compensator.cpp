@@ -63,9 +63,10 @@ KinematicsResult<SteeringCommand> Compensator::step(const NeedleAxes& axes) noex
 }
 
 KinematicsResult<void> Compensator::see(const NeedleImage& image) noexcept {
-  return check_point({"target_x_mm", "target_y_mm", "target_z_mm"}, image.target_mm)
+  TargetFilter target = target_;
+  return target.see(image.time_s, image.target_mm)
       .and_then([&] { return tip_.see(image.time_s, image.tip_mm); })
-      .and_then([&] { return target_.see(image.time_s, image.target_mm); });
+      .map([&] { target_ = target; });
 }
 
 KinematicsResult<SteeringCommand> Compensator::command(const NeedleAxes& axes) const noexcept {

@@ -69,7 +69,7 @@ class Compensator {
    */
   KinematicsResult<SteeringCommand> step(const NeedleAxes& axes) noexcept;
 
-  /** An image has arrived; images come in the order of their exposures. */
+  /** An image has arrived; images come in the order of their exposures. A refused one counts for nothing. */
   KinematicsResult<void> see(const NeedleImage& image) noexcept;
 
   [[nodiscard]] const TipEstimate& tip() const noexcept { return tip_.now(); }

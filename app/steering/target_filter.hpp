@@ -10,11 +10,12 @@
 
 namespace interlock {
 
-/** Standard deviations, each coordinate. */
+/** Standard deviations of each coordinate, but for the last. */
 struct TargetBelief {
   double shift_sd_mm = 6.0; /**< of the target from where it was planned: published shifts go up to 10 mm */
   double wander_mm = 0.05;  /**< in a second, growing with its root */
   double image_sd_mm = 0.5;
+  double farthest_mm = 30.0; /**< from where it was planned; an image beyond shows something else */
 };
 
 class TargetFilter {
@@ -23,7 +24,8 @@ class TargetFilter {
   static KinematicsResult<TargetFilter> create(const TargetBelief& belief, const Eigen::Vector3d& target_mm,
                                                double time_s) noexcept;
 
-  /** An image of that time, which is not before the last one, shows the target. */
+  /** An image of that time, which is not before the last one, shows the target; on an error it counts for
+   * nothing. */
   KinematicsResult<void> see(double time_s, const Eigen::Vector3d& target_mm) noexcept;
 
   [[nodiscard]] const Eigen::Vector3d& target_mm() const noexcept { return target_mm_; }
@@ -32,6 +34,7 @@ class TargetFilter {
   TargetFilter(const TargetBelief& belief, const Eigen::Vector3d& target_mm, double time_s) noexcept;
 
   TargetBelief belief_;
+  Eigen::Vector3d planned_mm_;
   Eigen::Vector3d target_mm_;
   double variance_mm2_;
   double time_s_;

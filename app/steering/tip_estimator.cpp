@@ -175,8 +175,8 @@ void TipEstimator::correct(const Error& error) noexcept {
 }
 
 void TipEstimator::play_again() noexcept {
-  now_ = {anchor_, curvature_per_mm_, std::sqrt(covariance_(6, 6)),
-          std::sqrt(covariance_.topLeftCorner<3, 3>().trace() / 3.0)};
+  now_ = {anchor_, curvature_per_mm_, std::sqrt(std::max(0.0, covariance_(6, 6))),
+          std::sqrt(std::max(0.0, covariance_.topLeftCorner<3, 3>().trace() / 3.0))};
   for (std::size_t kept = 0; kept < count_; ++kept) {
     now_.guide_from_tip =
         now_.guide_from_tip * step_of(motions_[(first_ + kept) % motions_.size()].motion, curvature_per_mm_);

@@ -77,6 +77,17 @@ TEST(Compensator, aims_at_the_target_that_an_image_shows) {
   EXPECT_GT(command.alpha, 0.5);
 }
 
+TEST(Compensator, takes_all_of_an_image_or_nothing) {
+  Compensator compensator = towards({0, 0, 100});
+  ASSERT_TRUE(compensator.step({1.0, 5.0, 0.0}));
+  const Pose before = compensator.tip().guide_from_tip;
+  EXPECT_FALSE(compensator.see({0.5, {0, 0, 2.5}, {0, 40, 100}}));
+  EXPECT_FALSE(compensator.see({0.5, {0, 30, 2.5}, {0, 4, 100}}));
+  EXPECT_EQ(compensator.tip().guide_from_tip.matrix(), before.matrix());
+  EXPECT_EQ(compensator.target_mm(), Vector3d(0, 0, 100));
+  EXPECT_TRUE(compensator.see({0.5, {0, 0, 2.5}, {0, 4, 100}}));
+}
+
 TEST(Compensator, is_there_once_and_for_all) {
   Compensator compensator = towards({0, 0, 20});
   EXPECT_FALSE(compensator.step({1.0, 19.9, 0.0})->arrived);

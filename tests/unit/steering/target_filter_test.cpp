@@ -50,6 +50,13 @@ TEST(TargetFilter, follows_a_target_that_shifts_late) {
   EXPECT_LT((target.target_mm() - shifted).norm(), 0.1);
 }
 
+TEST(TargetFilter, refuses_what_is_too_far_off_to_be_the_target) {
+  TargetFilter target = TargetFilter::create({}, planned, 0.0).value();
+  EXPECT_EQ(target.see(1.0, planned + Vector3d(0.0, 31.0, 0.0)).error().quantity, "target_shift_mm");
+  EXPECT_EQ(target.target_mm(), planned);
+  EXPECT_TRUE(target.see(1.0, planned + Vector3d(0.0, 29.0, 0.0)));
+}
+
 TEST(TargetFilter, answers_nonsense_with_an_error) {
   TargetFilter target = TargetFilter::create({}, planned, 5.0).value();
   for (const double value : not_numbers) {
