@@ -85,6 +85,10 @@ verify: ## Climb the verification ladder: [FRESH=1] runs again what has not chan
 bench: build ## Measure kernel step (time, text size, stack) and control tick against their limits
 	@python verification/bench/run.py
 
+.PHONY: study
+study: build ## Measure steering and membrane detection on simulated insertions against their limits
+	@python verification/steering/run.py
+
 .PHONY: install
 install: build ## Install programs, robot files and console: [PREFIX=/usr/local] [DESTDIR=]
 	@cmake --install $(release) --prefix $(PREFIX) >/dev/null
