@@ -144,7 +144,37 @@ void ilk_mode_enter(ilk_state_t *state, ilk_mode_t mode) {
   enter_axes(state, mode);
 }
 
-void ilk_mode_lock(ilk_state_t *state, ilk_cause_t cause, uint32_t value, uint32_t causes) {
+/** LOCKED with this cause, unless LOCKED already; `causes`, a bit each, join the list of those seen. */
+/*@ requires valid: \valid(state);
+  @ requires cause: ILK_CAUSE_NONE < cause < ILK_CAUSE_COUNT;
+  @ assigns  state->mode, state->cause, state->cause_tick, state->cause_value, state->causes_seen,
+  @          state->pedal_armed, state->pedal_pressed_ticks, state->pedal_released_ticks,
+  @          state->axis[0 .. ILK_SLOTS - 1];
+  @ ensures  P2_stop: state->mode == ILK_MODE_LOCKED;
+  @ ensures  P8_first_cause: \old(state->mode) != ILK_MODE_LOCKED ==>
+  @   state->cause == cause && state->cause_tick == state->tick && state->cause_value == value;
+  @ ensures  P8_latch: \old(state->mode) == ILK_MODE_LOCKED ==> cause_kept{Pre, Post}(state);
+  @ ensures  P8_listed: state->causes_seen == (\old(state->causes_seen) | causes);
+  @ ensures  P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   fault_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   place_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   progress_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   marks_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P8_states: \old(state->mode) != ILK_MODE_LOCKED ==>
+  @   \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   state->axis[slot].state == state_entering(ILK_MODE_LOCKED, \old(state->axis[slot].state));
+  @ ensures  P8_still: \old(state->mode) == ILK_MODE_LOCKED ==>
+  @   \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   motion_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P9_consent: \old(state->mode) != ILK_MODE_LOCKED ==> state->pedal_armed == 0
+  @   && state->pedal_pressed_ticks == 0 && state->pedal_released_ticks == 0;
+  @ ensures  P9_still: \old(state->mode) == ILK_MODE_LOCKED ==> consent_kept{Pre, Post}(state);
+  @ ensures  P12_no_leap: \old(state->mode) != ILK_MODE_LOCKED ==> all_quiet(state);
+  @*/
+static void lock(ilk_state_t *state, ilk_cause_t cause, uint32_t value, uint32_t causes) {
   if (state->mode != (uint32_t)ILK_MODE_LOCKED) {
     state->cause = (uint32_t)cause;
     state->cause_tick = state->tick;
@@ -377,7 +407,7 @@ static void lock_on_causes(const ilk_config_t *config, ilk_state_t *state, const
     lose_references(state);
   }
   if (causes.first != ILK_CAUSE_NONE) {
-    ilk_mode_lock(state, causes.first, causes.value, causes.all);
+    lock(state, causes.first, causes.value, causes.all);
   }
 }
 
