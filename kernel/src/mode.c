@@ -144,20 +144,44 @@ void ilk_mode_enter(ilk_state_t *state, ilk_mode_t mode) {
   enter_axes(state, mode);
 }
 
-void ilk_mode_lock(ilk_state_t *state, ilk_cause_t cause, uint32_t value) {
-  /*@ assert boot: cause == ILK_CAUSE_BOOT ==> (1 << cause) == 2; */
-  /*@ assert estop: cause == ILK_CAUSE_ESTOP ==> (1 << cause) == 4; */
-  /*@ assert bus: cause == ILK_CAUSE_BUS ==> (1 << cause) == 8; */
-  /*@ assert pedal: cause == ILK_CAUSE_PEDAL ==> (1 << cause) == 16; */
-  /*@ assert integrity: cause == ILK_CAUSE_INTEGRITY ==> (1 << cause) == 32; */
-  /*@ assert overrun: cause == ILK_CAUSE_OVERRUN ==> (1 << cause) == 64; */
+/** LOCKED with this cause, unless LOCKED already; `causes`, a bit each, join the list of those seen. */
+/*@ requires valid: \valid(state);
+  @ requires cause: ILK_CAUSE_NONE < cause < ILK_CAUSE_COUNT;
+  @ assigns  state->mode, state->cause, state->cause_tick, state->cause_value, state->causes_seen,
+  @          state->pedal_armed, state->pedal_pressed_ticks, state->pedal_released_ticks,
+  @          state->axis[0 .. ILK_SLOTS - 1];
+  @ ensures  P2_stop: state->mode == ILK_MODE_LOCKED;
+  @ ensures  P8_first_cause: \old(state->mode) != ILK_MODE_LOCKED ==>
+  @   state->cause == cause && state->cause_tick == state->tick && state->cause_value == value;
+  @ ensures  P8_latch: \old(state->mode) == ILK_MODE_LOCKED ==> cause_kept{Pre, Post}(state);
+  @ ensures  P8_listed: state->causes_seen == (\old(state->causes_seen) | causes);
+  @ ensures  P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   fault_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   place_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   progress_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   marks_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P8_states: \old(state->mode) != ILK_MODE_LOCKED ==>
+  @   \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   state->axis[slot].state == state_entering(ILK_MODE_LOCKED, \old(state->axis[slot].state));
+  @ ensures  P8_still: \old(state->mode) == ILK_MODE_LOCKED ==>
+  @   \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   motion_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P9_consent: \old(state->mode) != ILK_MODE_LOCKED ==> state->pedal_armed == 0
+  @   && state->pedal_pressed_ticks == 0 && state->pedal_released_ticks == 0;
+  @ ensures  P9_still: \old(state->mode) == ILK_MODE_LOCKED ==> consent_kept{Pre, Post}(state);
+  @ ensures  P12_no_leap: \old(state->mode) != ILK_MODE_LOCKED ==> all_quiet(state);
+  @*/
+static void lock(ilk_state_t *state, ilk_cause_t cause, uint32_t value, uint32_t causes) {
   if (state->mode != (uint32_t)ILK_MODE_LOCKED) {
     state->cause = (uint32_t)cause;
     state->cause_tick = state->tick;
     state->cause_value = value;
     ilk_mode_enter(state, ILK_MODE_LOCKED);
   }
-  state->causes_seen |= 1u << (uint32_t)cause;
+  state->causes_seen |= causes;
 }
 
 bool ilk_cause_is_present(const ilk_state_t *state) {
@@ -278,13 +302,21 @@ static uint32_t contacts(const ilk_inputs_t *in) {
 
 /** A damaged configuration may have counted the wrong way until it was found. */
 /*@ requires valid: \valid(state);
-  @ assigns  state->axis[0 .. ILK_SLOTS - 1].homed;
+  @ assigns  state->axis[0 .. ILK_SLOTS - 1];
   @ ensures  P14_references: \forall integer slot; 0 <= slot < ILK_SLOTS ==> state->axis[slot].homed == 0;
+  @ ensures  P12_motion: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   motion_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P8_latch: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   fault_latched{Pre, Post}(&state->axis[slot]);
   @*/
 static void lose_references(ilk_state_t *state) {
   /*@ loop invariant range: 0 <= slot <= ILK_SLOTS;
     @ loop invariant lost: \forall integer done; 0 <= done < slot ==> state->axis[done].homed == 0;
-    @ loop assigns slot, state->axis[0 .. ILK_SLOTS - 1].homed;
+    @ loop invariant P12_motion: \forall integer any; 0 <= any < ILK_SLOTS ==>
+    @   motion_kept{Pre, Here}(&state->axis[any]);
+    @ loop invariant P8_latch: \forall integer any; 0 <= any < ILK_SLOTS ==>
+    @   fault_latched{Pre, Here}(&state->axis[any]);
+    @ loop assigns slot, state->axis[0 .. ILK_SLOTS - 1];
     @ loop variant ILK_SLOTS - slot;
     @*/
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
@@ -292,23 +324,90 @@ static void lose_references(ilk_state_t *state) {
   }
 }
 
+/** What locks in a tick: the first cause with its value, or NONE, and all causes that are there, a bit each.
+ */
+typedef struct {
+  ilk_cause_t first;
+  uint32_t value;
+  uint32_t all;
+} causes_t;
+
+/** One more cause, when it is there. */
+/*@ requires cause: ILK_CAUSE_ESTOP <= cause < ILK_CAUSE_COUNT;
+  @ assigns  \nothing;
+  @ ensures  P8_first_cause: present && before.first == ILK_CAUSE_NONE
+  @   ? \result.first == cause && \result.value == value
+  @   : \result.first == before.first && \result.value == before.value;
+  @ ensures  P8_listed: \result.all == (present ? (before.all | (1 << cause)) : before.all);
+  @*/
+static causes_t with_cause(causes_t before, bool present, ilk_cause_t cause, uint32_t value) {
+  /*@ assert estop: cause == ILK_CAUSE_ESTOP ==> (1 << cause) == 4; */
+  /*@ assert bus: cause == ILK_CAUSE_BUS ==> (1 << cause) == 8; */
+  /*@ assert pedal: cause == ILK_CAUSE_PEDAL ==> (1 << cause) == 16; */
+  /*@ assert integrity: cause == ILK_CAUSE_INTEGRITY ==> (1 << cause) == 32; */
+  /*@ assert overrun: cause == ILK_CAUSE_OVERRUN ==> (1 << cause) == 64; */
+  causes_t causes = before;
+  if (present) {
+    if (before.first == ILK_CAUSE_NONE) {
+      causes.first = cause;
+      causes.value = value;
+    }
+    causes.all = before.all | (1u << (uint32_t)cause);
+  }
+  return causes;
+}
+
+/*@ requires readable: \valid_read(config) && \valid_read(state) && \valid_read(alarms) && \valid_read(in);
+  @ assigns  \nothing;
+  @ ensures  P8_first_cause: \result.first == first_cause(config, state, alarms);
+  @ ensures  P8_value: \result.value == first_value(config, state, alarms, in);
+  @ ensures  P8_listed: \result.all == all_causes(config, state, alarms);
+  @*/
+static causes_t causes_present(const ilk_config_t *config, const ilk_state_t *state,
+                               const ilk_alarms_t *alarms, const ilk_inputs_t *in) {
+  causes_t causes = {.first = ILK_CAUSE_NONE, .value = 0u, .all = 0u};
+  causes = with_cause(causes, alarms->configuration_damaged, ILK_CAUSE_INTEGRITY, alarms->configuration_crc);
+  causes = with_cause(causes, state->estop != 0u, ILK_CAUSE_ESTOP, in->estop_loop_closed);
+  causes = with_cause(causes, state->bus_bad_ticks >= config->bad_frame_limit, ILK_CAUSE_BUS,
+                      state->bus_bad_ticks);
+  causes = with_cause(causes, state->pedal_disagree_ticks > config->pedal_disagree_ticks, ILK_CAUSE_PEDAL,
+                      contacts(in));
+  causes = with_cause(causes, state->overruns_in_row >= config->overrun_limit, ILK_CAUSE_OVERRUN,
+                      state->overruns_in_row);
+  return causes;
+}
+
+/*@ requires valid: \valid_read(config) && \valid(state) && \valid_read(alarms) && \valid_read(in);
+  @ requires apart: \separated(state, config) && \separated(state, alarms) && \separated(state, in);
+  @ assigns  state->mode, state->cause, state->cause_tick, state->cause_value, state->causes_seen,
+  @          state->pedal_armed, state->pedal_pressed_ticks, state->pedal_released_ticks,
+  @          state->axis[0 .. ILK_SLOTS - 1];
+  @ ensures  P8_locked: state->mode == (\old(first_cause(config, state, alarms)) != ILK_CAUSE_NONE
+  @   ? ILK_MODE_LOCKED : \old(state->mode));
+  @ ensures  P8_first_cause: \old(first_cause(config, state, alarms)) != ILK_CAUSE_NONE
+  @   && \old(state->mode) != ILK_MODE_LOCKED ==>
+  @   state->cause == \old(first_cause(config, state, alarms)) && state->cause_tick == state->tick
+  @   && state->cause_value == \old(first_value(config, state, alarms, in));
+  @ ensures  P8_latch: \old(state->mode) == ILK_MODE_LOCKED
+  @   || \old(first_cause(config, state, alarms)) == ILK_CAUSE_NONE ==> cause_kept{Pre, Post}(state);
+  @ ensures  P8_listed: state->causes_seen == (\old(first_cause(config, state, alarms)) == ILK_CAUSE_NONE
+  @   ? \old(state->causes_seen)
+  @   : (\old(state->causes_seen) | \old(all_causes(config, state, alarms))));
+  @ ensures  P9_again: state->mode != \old(state->mode) ==> state->pedal_armed == 0
+  @   && state->pedal_pressed_ticks == 0 && state->pedal_released_ticks == 0;
+  @ ensures  P9_still: state->mode == \old(state->mode) ==> consent_kept{Pre, Post}(state);
+  @ ensures  P12_no_leap: state->mode != \old(state->mode) ==> all_quiet(state);
+  @ ensures  P14_references: alarms->configuration_damaged != 0 ==>
+  @   \forall integer slot; 0 <= slot < ILK_SLOTS ==> state->axis[slot].homed == 0;
+  @*/
 static void lock_on_causes(const ilk_config_t *config, ilk_state_t *state, const ilk_alarms_t *alarms,
                            const ilk_inputs_t *in) {
+  const causes_t causes = causes_present(config, state, alarms, in);
   if (alarms->configuration_damaged) {
-    ilk_mode_lock(state, ILK_CAUSE_INTEGRITY, alarms->configuration_crc);
     lose_references(state);
   }
-  if (state->estop != 0u) {
-    ilk_mode_lock(state, ILK_CAUSE_ESTOP, in->estop_loop_closed);
-  }
-  if (state->bus_bad_ticks >= config->bad_frame_limit) {
-    ilk_mode_lock(state, ILK_CAUSE_BUS, state->bus_bad_ticks);
-  }
-  if (state->pedal_disagree_ticks > config->pedal_disagree_ticks) {
-    ilk_mode_lock(state, ILK_CAUSE_PEDAL, contacts(in));
-  }
-  if (state->overruns_in_row >= config->overrun_limit) {
-    ilk_mode_lock(state, ILK_CAUSE_OVERRUN, state->overruns_in_row);
+  if (causes.first != ILK_CAUSE_NONE) {
+    lock(state, causes.first, causes.value, causes.all);
   }
 }
 

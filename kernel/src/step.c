@@ -22,6 +22,10 @@ static void check_integrity(const ilk_config_t *config, ilk_state_t *state, ilk_
 }
 
 /** True when the card of this slot answered in this tick. */
+/*@ requires readable: \valid_read(in) && slot < ILK_SLOTS;
+  @ assigns  \nothing;
+  @ ensures  P16_answered: \result <==> card_answered(in, slot);
+  @*/
 static bool answered(const ilk_inputs_t *in, uint32_t slot) {
   return (in->transaction_done == 1u) && (((in->frames_received >> slot) & 1u) != 0u);
 }
@@ -40,36 +44,128 @@ static void read_frames(const ilk_config_t *config, ilk_state_t *state, const il
   state->bus_bad_ticks = any_valid ? 0u : count_up(state->bus_bad_ticks, UINT32_MAX);
 }
 
+/**
+ * The axis or sensor of one slot, and no other.
+ *
+ * @return true when the axis faulted in this tick.
+ */
+/*@ requires valid: \valid_read(config) && \valid(state) && \valid_read(reading) && slot < ILK_SLOTS;
+  @ requires apart: \separated(config, state, reading);
+  @ requires sound: sound_axis(&state->axis[slot]) && axes_fit_mode(state);
+  @ assigns  state->axis[0 .. ILK_SLOTS - 1];
+  @ ensures  P15_axis: sound_axis(&state->axis[slot]);
+  @ ensures  P15_mode: fits_mode(&state->axis[slot], state->mode);
+  @ ensures  P15_mode_below: \forall integer other; 0 <= other < slot ==>
+  @   fits_mode(&state->axis[other], state->mode);
+  @ ensures  P15_mode_above: \forall integer other; slot < other < ILK_SLOTS ==>
+  @   fits_mode(&state->axis[other], state->mode);
+  @ ensures  P8_latch: fault_latched{Pre, Post}(&state->axis[slot]);
+  @ ensures  P6_new: \result ==> state->axis[slot].state == ILK_AXIS_FAULTED;
+  @ ensures  P6_seen: \old(state->axis[slot].state) != ILK_AXIS_FAULTED
+  @   && state->axis[slot].state == ILK_AXIS_FAULTED ==> \result;
+  @ ensures  P8_below: \forall integer other; 0 <= other < slot ==>
+  @   fault_latched{Pre, Post}(&state->axis[other]);
+  @ ensures  P6_below: \forall integer other; 0 <= other < slot ==>
+  @   state->axis[other].state == \old(state->axis[other].state);
+  @ ensures  P15_below: \forall integer other; 0 <= other < slot ==>
+  @   \old(sound_axis(&state->axis[other])) ==> sound_axis(&state->axis[other]);
+  @ ensures  P8_above: \forall integer other; slot < other < ILK_SLOTS ==>
+  @   fault_latched{Pre, Post}(&state->axis[other]);
+  @ ensures  P6_above: \forall integer other; slot < other < ILK_SLOTS ==>
+  @   state->axis[other].state == \old(state->axis[other].state);
+  @ ensures  P15_above: \forall integer other; slot < other < ILK_SLOTS ==>
+  @   \old(sound_axis(&state->axis[other])) ==> sound_axis(&state->axis[other]);
+  @*/
+static bool observe_slot(const ilk_config_t *config, ilk_state_t *state, uint32_t slot,
+                         const ilk_reading_t *reading) {
+  const ilk_axis_config_t *axis_config = &config->axis[slot];
+  bool faulted = false;
+  if (has_axis(axis_config)) {
+    faulted = ilk_observe_axis(config, axis_config, &state->axis[slot], reading, state->tick);
+  } else {
+    ilk_observe_sensor(config, &state->axis[slot]);
+  }
+  return faulted;
+}
+
 /** Phase 4: each axis, judged by what this tick's frames say. */
+/*@ requires valid: \valid_read(config) && \valid(state) && \valid_read(readings + (0 .. ILK_SLOTS - 1))
+  @   && \valid(alarms);
+  @ requires apart: \separated(config, state, readings + (0 .. ILK_SLOTS - 1), alarms);
+  @ requires sound: sound_axes(state) && axes_fit_mode(state);
+  @ assigns  state->axis[0 .. ILK_SLOTS - 1], alarms->new_fault, alarms->required_card_lost;
+  @ ensures  P15_axes: sound_axes(state);
+  @ ensures  P15_mode: axes_fit_mode(state);
+  @ ensures  P8_latch: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   fault_latched{Pre, Post}(&state->axis[slot]);
+  @ ensures  P6_new: \forall integer slot; 0 <= slot < ILK_SLOTS
+  @   && \old(state->axis[slot].state) != ILK_AXIS_FAULTED
+  @   && state->axis[slot].state == ILK_AXIS_FAULTED ==> alarms->new_fault != 0;
+  @*/
 static void observe_axes(const ilk_config_t *config, ilk_state_t *state,
                          const ilk_reading_t readings[ILK_SLOTS], ilk_alarms_t *alarms) {
+  /*@ loop invariant range: 0 <= slot <= ILK_SLOTS;
+    @ loop invariant P15_axes: sound_axes(state);
+    @ loop invariant P15_mode: axes_fit_mode(state);
+    @ loop invariant P8_latch: \forall integer any; 0 <= any < ILK_SLOTS ==>
+    @   fault_latched{Pre, Here}(&state->axis[any]);
+    @ loop invariant P6_new: \forall integer done; 0 <= done < slot
+    @   && \at(state->axis[done].state, Pre) != ILK_AXIS_FAULTED
+    @   && state->axis[done].state == ILK_AXIS_FAULTED ==> alarms->new_fault != 0;
+    @ loop invariant P6_left: \forall integer left; slot <= left < ILK_SLOTS ==>
+    @   state->axis[left].state == \at(state->axis[left].state, Pre);
+    @ loop assigns slot, state->axis[0 .. ILK_SLOTS - 1], alarms->new_fault, alarms->required_card_lost;
+    @ loop variant ILK_SLOTS - slot;
+    @*/
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
-    const ilk_axis_config_t *axis_config = &config->axis[slot];
-    ilk_axis_t *axis = &state->axis[slot];
-    if (has_axis(axis_config)) {
-      const bool faulted = ilk_observe_axis(config, axis_config, axis, &readings[slot], state->tick);
-      alarms->new_fault = alarms->new_fault || faulted;
-    } else {
-      ilk_observe_sensor(config, axis);
-    }
-    if ((axis_config->required != 0u) && ilk_card_is_lost(config, axis)) {
+    const bool faulted = observe_slot(config, state, slot, &readings[slot]);
+    alarms->new_fault = alarms->new_fault || faulted;
+    if ((config->axis[slot].required != 0u) && ilk_card_is_lost(config, &state->axis[slot])) {
       alarms->required_card_lost = true;
     }
   }
 }
 
+/*@ requires readable: \valid_read(request);
+  @ assigns  \nothing;
+  @ ensures  P11_one_verdict: \result.tick == tick && \result.sequence == request->sequence
+  @   && \result.kind == request->kind && \result.axis == request->axis && \result.verdict == verdict;
+  @*/
+static ilk_verdict_record_t record_of(uint32_t tick, const ilk_request_t *request, ilk_verdict_t verdict) {
+  const ilk_verdict_record_t record = {.tick = tick,
+                                       .sequence = request->sequence,
+                                       .kind = request->kind,
+                                       .axis = request->axis,
+                                       .verdict = (uint32_t)verdict};
+  return record;
+}
+
+/*@ requires valid: \valid_read(state) && \valid_read(request) && \valid(out);
+  @ requires apart: \separated(out, state) && \separated(out, request);
+  @ requires room: out->verdict_count < ILK_REQUESTS_PER_TICK;
+  @ assigns  out->verdict_count, out->verdict[0 .. ILK_REQUESTS_PER_TICK - 1];
+  @ ensures  P11_counted: out->verdict_count == \old(out->verdict_count) + 1;
+  @ ensures  P11_one_verdict: records(&out->verdict[\old(out->verdict_count)], state->tick, request, verdict);
+  @ ensures  P11_earlier: \forall integer index; 0 <= index < \old(out->verdict_count) ==>
+  @   record_kept{Pre, Post}(&out->verdict[index]);
+  @*/
 static void answer(const ilk_state_t *state, const ilk_request_t *request, ilk_verdict_t verdict,
                    ilk_outputs_t *out) {
-  ilk_verdict_record_t *record = &out->verdict[out->verdict_count];
-  record->tick = state->tick;
-  record->sequence = request->sequence;
-  record->kind = request->kind;
-  record->axis = request->axis;
-  record->verdict = (uint32_t)verdict;
+  out->verdict[out->verdict_count] = record_of(state->tick, request, verdict);
   out->verdict_count++;
 }
 
 /** Every request that is intact and in order uses up its number, whatever the verdict. */
+/*@ requires valid: \valid(state) && \valid_read(request) && \separated(state, request);
+  @ assigns  state->last_sequence, state->requests_accepted, state->requests_refused;
+  @ ensures  P11_number: state->last_sequence ==
+  @   (verdict == ILK_VERDICT_CHECKSUM || verdict == ILK_VERDICT_SEQUENCE ? \old(state->last_sequence)
+  @   : request->sequence);
+  @ ensures  P11_accepted: state->requests_accepted == (verdict == ILK_VERDICT_ACCEPTED
+  @   ? \min(\old(state->requests_accepted) + 1, UINT32_MAX) : \old(state->requests_accepted));
+  @ ensures  P11_refused: state->requests_refused == (verdict == ILK_VERDICT_ACCEPTED
+  @   ? \old(state->requests_refused) : \min(\old(state->requests_refused) + 1, UINT32_MAX));
+  @*/
 static void count_verdict(ilk_state_t *state, const ilk_request_t *request, ilk_verdict_t verdict) {
   if ((verdict != ILK_VERDICT_CHECKSUM) && (verdict != ILK_VERDICT_SEQUENCE)) {
     state->last_sequence = request->sequence;
@@ -81,11 +177,35 @@ static void count_verdict(ilk_state_t *state, const ilk_request_t *request, ilk_
   }
 }
 
-/** Entries that no request of this tick fills say nothing. */
-static void clear_unused_verdicts(ilk_outputs_t *out) {
+/*@ assigns \nothing;
+  @ ensures P11_unused: \result.tick == 0 && \result.sequence == 0 && \result.kind == 0 && \result.axis == 0
+  @   && \result.verdict == 0;
+  @*/
+static ilk_verdict_record_t no_record(void) {
   static const ilk_verdict_record_t none = {0};
+  return none;
+}
+
+/** Entries that no request of this tick fills say nothing. */
+/*@ requires valid: \valid(out);
+  @ requires given: out->verdict_count <= ILK_REQUESTS_PER_TICK;
+  @ assigns  out->verdict[0 .. ILK_REQUESTS_PER_TICK - 1];
+  @ ensures  P11_given: \forall integer index; 0 <= index < out->verdict_count ==>
+  @   record_kept{Pre, Post}(&out->verdict[index]);
+  @ ensures  P11_unused: \forall integer index; out->verdict_count <= index < ILK_REQUESTS_PER_TICK ==>
+  @   blank_record(&out->verdict[index]);
+  @*/
+static void clear_unused_verdicts(ilk_outputs_t *out) {
+  /*@ loop invariant range: out->verdict_count <= index <= ILK_REQUESTS_PER_TICK;
+    @ loop invariant P11_given: \forall integer given; 0 <= given < out->verdict_count ==>
+    @   record_kept{Pre, Here}(&out->verdict[given]);
+    @ loop invariant P11_unused: \forall integer cleared; out->verdict_count <= cleared < index ==>
+    @   blank_record(&out->verdict[cleared]);
+    @ loop assigns index, out->verdict[0 .. ILK_REQUESTS_PER_TICK - 1];
+    @ loop variant ILK_REQUESTS_PER_TICK - index;
+    @*/
   for (uint32_t index = out->verdict_count; index < (uint32_t)ILK_REQUESTS_PER_TICK; index++) {
-    out->verdict[index] = none;
+    out->verdict[index] = no_record();
   }
 }
 
@@ -127,6 +247,11 @@ static void drive_axes(const ilk_config_t *config, ilk_state_t *state, ilk_outpu
   }
 }
 
+/*@ requires readable: \valid_read(state);
+  @ assigns  \nothing;
+  @ ensures  exact: \result == (state->estop != 0 ? ILK_COLOUR_RED
+  @   : state->mode == ILK_MODE_MOTION ? ILK_COLOUR_GREEN : ILK_COLOUR_OFF);
+  @*/
 static ilk_colour_t pedal_colour(const ilk_state_t *state) {
   ilk_colour_t colour = ILK_COLOUR_OFF;
   if (state->estop != 0u) {
@@ -139,8 +264,23 @@ static ilk_colour_t pedal_colour(const ilk_state_t *state) {
   return colour;
 }
 
+/*@ requires readable: \valid_read(state);
+  @ assigns  \nothing;
+  @ ensures  P5_stall: \result == ILK_COLOUR_PURPLE <==> some_fault(state, ILK_SLOTS, ILK_FAULT_STALL);
+  @ ensures  none: \result == ILK_COLOUR_OFF <==> free_of_faults(state, ILK_SLOTS);
+  @ ensures  known: \result == ILK_COLOUR_OFF || \result == ILK_COLOUR_AMBER
+  @   || \result == ILK_COLOUR_PURPLE;
+  @*/
 static ilk_colour_t stall_colour(const ilk_state_t *state) {
   ilk_colour_t colour = ILK_COLOUR_OFF;
+  /*@ loop invariant range: 0 <= slot <= ILK_SLOTS;
+    @ loop invariant P5_stall: colour == ILK_COLOUR_PURPLE <==> some_fault(state, slot, ILK_FAULT_STALL);
+    @ loop invariant none: colour == ILK_COLOUR_OFF <==> free_of_faults(state, slot);
+    @ loop invariant known: colour == ILK_COLOUR_OFF || colour == ILK_COLOUR_AMBER
+    @   || colour == ILK_COLOUR_PURPLE;
+    @ loop assigns slot, colour;
+    @ loop variant ILK_SLOTS - slot;
+    @*/
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
     if (state->axis[slot].fault == (uint32_t)ILK_FAULT_STALL) {
       colour = ILK_COLOUR_PURPLE;
@@ -153,6 +293,18 @@ static ilk_colour_t stall_colour(const ilk_state_t *state) {
   return colour;
 }
 
+/*@ requires valid: \valid_read(state) && \valid(out) && \separated(state, out);
+  @ assigns  out->lamp[0 .. ILK_LAMP_COUNT - 1];
+  @ ensures  pedal: out->lamp[ILK_LAMP_PEDAL] == (state->estop != 0 ? ILK_COLOUR_RED
+  @   : state->mode == ILK_MODE_MOTION ? ILK_COLOUR_GREEN : ILK_COLOUR_OFF);
+  @ ensures  network: out->lamp[ILK_LAMP_NETWORK] ==
+  @   (state->app_alive != 0 ? ILK_COLOUR_GREEN : ILK_COLOUR_RED);
+  @ ensures  controller: out->lamp[ILK_LAMP_CONTROLLER] ==
+  @   (state->mode == ILK_MODE_READY || state->mode == ILK_MODE_MOTION ? ILK_COLOUR_GREEN : ILK_COLOUR_RED);
+  @ ensures  stall: out->lamp[ILK_LAMP_STALL] == ILK_COLOUR_PURPLE
+  @   <==> some_fault(state, ILK_SLOTS, ILK_FAULT_STALL);
+  @ ensures  fault: out->lamp[ILK_LAMP_STALL] == ILK_COLOUR_OFF <==> free_of_faults(state, ILK_SLOTS);
+  @*/
 static void light_lamps(const ilk_state_t *state, ilk_outputs_t *out) {
   const bool unlocked =
       (state->mode == (uint32_t)ILK_MODE_READY) || (state->mode == (uint32_t)ILK_MODE_MOTION);

@@ -205,6 +205,13 @@
   @   && \at(axis->fault_value, After) == \at(axis->fault_value, Before)
   @   && \at(axis->homed, After) == \at(axis->homed, Before);
   @
+  @ // P8: a fault that was there stays, with its tick and its value.
+  @ predicate fault_latched{Before, After}(ilk_axis_t *axis) =
+  @   \at(axis->state, Before) == ILK_AXIS_FAULTED ==> \at(axis->state, After) == ILK_AXIS_FAULTED
+  @   && \at(axis->fault, After) == \at(axis->fault, Before)
+  @   && \at(axis->fault_tick, After) == \at(axis->fault_tick, Before)
+  @   && \at(axis->fault_value, After) == \at(axis->fault_value, Before);
+  @
   @ // P4, P16: where the axis stands, by what its card said.
   @ predicate place_kept{Before, After}(ilk_axis_t *axis) =
   @   \at(axis->position_counts, After) == \at(axis->position_counts, Before)
@@ -400,8 +407,18 @@
   @ predicate blank_record(ilk_verdict_record_t *entry) =
   @   entry->tick == 0 && entry->sequence == 0 && entry->kind == 0 && entry->axis == 0 && entry->verdict == 0;
   @
+  @ predicate record_kept{Before, After}(ilk_verdict_record_t *entry) =
+  @   \at(entry->tick, After) == \at(entry->tick, Before)
+  @   && \at(entry->sequence, After) == \at(entry->sequence, Before)
+  @   && \at(entry->kind, After) == \at(entry->kind, Before)
+  @   && \at(entry->axis, After) == \at(entry->axis, Before)
+  @   && \at(entry->verdict, After) == \at(entry->verdict, Before);
+  @
   @ predicate some_fault(ilk_state_t *state, integer slots, integer fault) =
   @   \exists integer slot; 0 <= slot < slots && state->axis[slot].fault == fault;
+  @
+  @ predicate free_of_faults(ilk_state_t *state, integer slots) =
+  @   \forall integer slot; 0 <= slot < slots ==> state->axis[slot].fault == ILK_FAULT_NONE;
   @
   @ predicate zero_drive(ilk_command_t *command) =
   @   command->direction == ILK_DIRECTION_NONE && command->drive == 0 && command->amplitude == 0;
