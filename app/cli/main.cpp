@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "build_info/build_info.hpp"
+#include "cli/demo_command.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/installation.hpp"
 #include "cli/kinematics_command.hpp"
@@ -55,6 +56,7 @@ struct CommandLine {
   StatusOptions status;
   KinematicsOptions kinematics;
   TrajectoryOptions trajectory;
+  DemoCommandOptions demo;
   TuneOptions tune;
   std::filesystem::path model;
   bool model_json = false;
@@ -120,6 +122,19 @@ void add_trajectory(CLI::App& cli, TrajectoryOptions& options) {
       ->allow_extra_args(false);
   check->add_option("FILE", options.file, "Trajectory: time [s],AXIS [UNIT],... and rows of numbers")
       ->required();
+}
+
+void add_demo(CLI::App& cli, DemoCommandOptions& options) {
+  CLI::App* const command = cli.add_subcommand(
+      "demo", "Run the thesis' targeting workflow on the simulated hardware, and show how near it came");
+  command->add_option("ROBOT", options.robot, "neuro, prostate, or a robot's file")->required();
+  command->add_option("--seed", options.demo.seed, "Of registration, plant and random targets")
+      ->capture_default_str();
+  command->add_option("--random-targets", options.demo.random_targets, "Targets that are only computed")
+      ->check(CLI::Range(0, 1000000))
+      ->capture_default_str();
+  command->add_option("--csv", options.csv, "Where the table of the targets goes");
+  command->add_flag("--json", options.json, "One JSON object");
 }
 
 void add_tune(CLI::App& cli, TuneOptions& options) {
@@ -192,6 +207,9 @@ Result<void> execute(const CLI::App& cli, const CommandLine& line) {
   if (cli.got_subcommand("trajectory")) {
     return check_trajectory(line.trajectory, Installation::current(), std::cout);
   }
+  if (cli.got_subcommand("demo")) {
+    return demo(line.demo, Installation::current(), std::cout, std::cerr);
+  }
   if (cli.got_subcommand("tune")) {
     return tune(line.tune, Installation::current(), std::cout);
   }
@@ -220,6 +238,7 @@ int main(int argc, char** argv) {
   add_kinematics(cli, line.kinematics);
   add_trajectory(cli, line.trajectory);
   add_tune(cli, line.tune);
+  add_demo(cli, line.demo);
   add_model(cli, line);
   line.store.describe(cli);
   try {

@@ -1,9 +1,9 @@
 #include "cli/tune_command.hpp"
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "cli/named_robot.hpp"
+#include "cli/write_file.hpp"
 #include "plant/parameters_file.hpp"
 #include "robot/compile.hpp"
 #include "tuning/step_csv.hpp"
@@ -40,19 +40,6 @@ Result<StepRun> run_of(const TuneOptions& options, const Robot& robot, const Ins
   });
 }
 
-Result<void> write(const std::filesystem::path& file, const std::string& text) {
-  if (file.empty()) {
-    return {};
-  }
-  std::ofstream output(file, std::ios::binary);
-  output << text;
-  output.close();
-  if (!output) {
-    return failed(ExitCode::precondition, file.string() + ": cannot be written; choose another file");
-  }
-  return {};
-}
-
 nlohmann::ordered_json to_json(const Robot& robot, const StepRun& run) {
   const StepFigures figures = figures_of(run);
   return {{"robot", robot.name},
@@ -80,8 +67,8 @@ Result<void> tune(const TuneOptions& options, const Installation& installation, 
     const std::string title = robot->title + ": " + robot->find(run.axis)->title + ", " +
                               std::to_string(run.from_counts) + " to " + std::to_string(run.target_counts) +
                               " counts";
-    return write(options.csv, step_csv(run))
-        .and_then([&] { return write(options.svg, step_svg(run, title)); })
+    return write_file(options.csv, step_csv(run))
+        .and_then([&] { return write_file(options.svg, step_svg(run, title)); })
         .map([&] { output << to_json(*robot, run).dump() << '\n'; });
   });
 }

@@ -4,6 +4,7 @@
 #include "http/fields.hpp"
 #include "http/problems.hpp"
 #include "http/targeting_store.hpp"
+#include "proposals/pose_program.hpp"
 
 namespace interlock::web {
 namespace {
@@ -15,8 +16,8 @@ constexpr std::string_view rotation_role = "probe_rotation";
 constexpr std::size_t most_ablation_steps = 200;
 constexpr double longest_dwell_s = 3600.0;
 
-PathDraft draft_of(RobotMode mode, std::vector<PathLeg> legs, const std::string& author) {
-  return {mode, std::make_shared<const PathProgram>(PathProgram{std::move(legs)}), ProposalSource::console,
+PathDraft draft_of(RobotMode mode, PathProgram program, const std::string& author) {
+  return {mode, std::make_shared<const PathProgram>(std::move(program)), ProposalSource::console,
           std::nullopt, author};
 }
 
@@ -51,29 +52,6 @@ tl::expected<MoveLeg, Problem> ablation_leg(const Axis& rotation, const Axis& in
   return MoveLeg{{{rotation.slot, *turned_counts}, {insertion.slot, *inserted_counts}}, 0.0, *dwell_s};
 }
 
-std::vector<PathLeg> legs_to(const Robot& robot, const Alignment& alignment, bool insert) {
-  const Axis* insertion = robot.with_role(insertion_role);
-  MoveLeg out;
-  MoveLeg align;
-  MoveLeg in;
-  for (const AxisSetpoint& setpoint : alignment.setpoints) {
-    const AxisCounts target{setpoint.slot, setpoint.counts};
-    if (insertion == nullptr || setpoint.slot != insertion->slot) {
-      align.targets.push_back(target);
-      continue;
-    }
-    out.targets.push_back({setpoint.slot, insertion->lowest_setpoint_counts()});
-    in.targets.push_back(target);
-  }
-  std::vector<PathLeg> legs;
-  for (MoveLeg* leg : {&out, &align, insert ? &in : nullptr}) {
-    if (leg != nullptr && !leg->targets.empty()) {
-      legs.emplace_back(std::move(*leg));
-    }
-  }
-  return legs;
-}
-
 }  // namespace
 
 tl::expected<PathDraft, Problem> coordinated_draft(const Robot& robot, const json& targets,
@@ -95,7 +73,7 @@ tl::expected<PathDraft, Problem> coordinated_draft(const Robot& robot, const jso
     }
     leg.targets.push_back({axis->slot, *counts});
   }
-  return draft_of(RobotMode::coordinated, {std::move(leg)}, author);
+  return draft_of(RobotMode::coordinated, {{std::move(leg)}}, author);
 }
 
 tl::expected<PathDraft, Problem> ablation_draft(const Robot& robot, const json& steps,
@@ -116,14 +94,14 @@ tl::expected<PathDraft, Problem> ablation_draft(const Robot& robot, const json& 
     }
     legs.emplace_back(*leg);
   }
-  return draft_of(RobotMode::ablation, std::move(legs), author);
+  return draft_of(RobotMode::ablation, {std::move(legs)}, author);
 }
 
 tl::expected<PathDraft, Problem> draping_draft(const Robot& robot, const std::string& author) {
   if (robot.draping.empty()) {
     return fail(not_found("setpoint for draping", "a [draping] table in the robot's file"));
   }
-  return draft_of(RobotMode::draping, {MoveLeg{robot.draping, 0.0, 0.0}}, author);
+  return draft_of(RobotMode::draping, {{MoveLeg{robot.draping, 0.0, 0.0}}}, author);
 }
 
 tl::expected<PathDraft, Problem> trajectory_draft(const LoadedTrajectory& loaded, const std::string& author) {
@@ -156,7 +134,8 @@ boost::asio::awaitable<tl::expected<PathDraft, Problem>> pose_draft(const Contex
                            .expected = "a target within reach",
                            .next_step = "Set another target, or propose the reachable pose."});
   }
-  PathDraft draft = draft_of(RobotMode::coordinated, legs_to(context.robot, *alignment, wish.insert), author);
+  PathDraft draft =
+      draft_of(RobotMode::coordinated, pose_program(context.robot, *alignment, wish.insert), author);
   draft.targeting_revision = revision;
   co_return draft;
 }

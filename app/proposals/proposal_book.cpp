@@ -163,13 +163,7 @@ tl::expected<Proposal, Refusal> ProposalBook::approve(Proposal& proposal, const 
 Proposal& ProposalBook::draft(Proposal proposal, const std::vector<std::uint32_t>& slots,
                               const ControlView& view) {
   if (book_.size() == capacity) {
-    // At most one proposal an axis is approved; of those that wait for somebody to approve them, the oldest
-    // goes when all have not ended.
-    const auto ended =
-        std::find_if(book_.begin(), book_.end(), [](const Proposal& each) { return !is_open(each.state); });
-    const auto waiting = std::find_if(book_.begin(), book_.end(),
-                                      [](const Proposal& each) { return !is_approved(each.state); });
-    book_.erase(ended != book_.end() ? ended : waiting);
+    forget_one();
   }
   proposal.id = ++last_id_;
   proposal.slots = slots;
@@ -183,6 +177,16 @@ Proposal& ProposalBook::draft(Proposal proposal, const std::vector<std::uint32_t
   book_.push_back(std::move(proposal));
   listener_(book_.back());
   return book_.back();
+}
+
+/** An ended proposal, or the oldest that waits for approval: at most one an axis is approved. */
+void ProposalBook::forget_one() {
+  auto forgotten = std::ranges::find_if(book_, [](const Proposal& each) { return !is_open(each.state); });
+  if (forgotten == book_.end()) {
+    forgotten = std::ranges::find_if(book_, [](const Proposal& each) { return !is_approved(each.state); });
+    become(*forgotten, ProposalState::aborted, "Too many newer proposals; propose it again.");
+  }
+  book_.erase(forgotten);
 }
 
 /** A move replaces the approved one of its axis, homing and a path every approved proposal. */

@@ -112,6 +112,7 @@ class ProposalBook {
   tl::expected<Proposal, Refusal> approve(Proposal& proposal, const Command& order);
   tl::expected<void, Refusal> check(Proposal& proposal, const ControlView& view);
   tl::expected<Proposal, Refusal> approve_path(Proposal& proposal);
+  void forget_one();
   void replace_open(const Proposal& by);
   Refusal refuse(Proposal& proposal, Refusal refusal);
   void become(Proposal& proposal, ProposalState state, std::string detail,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "plant/exchange.hpp"
 #include "robot/catalog.hpp"
 
 namespace interlock {
@@ -68,20 +69,7 @@ RigResult<void> StepRig::tick() {
   heartbeat.kind = ILK_REQUEST_HEARTBEAT;
   heartbeat.holder = holder;
   put(heartbeat);
-  ilk_sim_exchange_t exchange{};
-  exchange.magic = ILK_SIM_MAGIC;
-  exchange.tick = state_.tick;
-  std::copy(&outputs_.frame[0][0], &outputs_.frame[0][0] + ILK_SLOTS * ILK_FRAME_WORDS,
-            &exchange.frame[0][0]);
-  const ilk_sim_reply_t reply = plant_.tick(exchange);
-  ilk_inputs_t inputs{};
-  inputs.link_generation = 1;
-  inputs.transaction_done = 1;
-  inputs.frames_received = reply.frames_received;
-  inputs.pedal_no_closed = reply.pedal_no_closed;
-  inputs.pedal_nc_closed = reply.pedal_nc_closed;
-  inputs.estop_loop_closed = reply.estop_loop_closed;
-  std::copy(&reply.frame[0][0], &reply.frame[0][0] + ILK_SLOTS * ILK_FRAME_WORDS, &inputs.frame[0][0]);
+  const ilk_inputs_t inputs = plant::exchange(plant_, outputs_, state_.tick);
   ilk_step(&config_, &state_, &inputs, requests_.data(), static_cast<std::uint32_t>(requests_.size()),
            &outputs_);
   requests_.clear();

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "plant/exchange.hpp"
+
 namespace interlock::test {
 namespace {
 
@@ -48,20 +50,7 @@ ilk_snapshot_t ClosedLoop::snapshot() const {
 }
 
 void ClosedLoop::tick() {
-  ilk_sim_exchange_t exchange{};
-  exchange.magic = ILK_SIM_MAGIC;
-  exchange.tick = state_.tick;
-  std::copy(&outputs_.frame[0][0], &outputs_.frame[0][0] + ILK_SLOTS * ILK_FRAME_WORDS,
-            &exchange.frame[0][0]);
-  const ilk_sim_reply_t reply = plant_.tick(exchange);
-  ilk_inputs_t inputs{};
-  inputs.link_generation = 1;
-  inputs.transaction_done = 1;
-  inputs.frames_received = reply.frames_received;
-  inputs.pedal_no_closed = reply.pedal_no_closed;
-  inputs.pedal_nc_closed = reply.pedal_nc_closed;
-  inputs.estop_loop_closed = reply.estop_loop_closed;
-  std::copy(&reply.frame[0][0], &reply.frame[0][0] + ILK_SLOTS * ILK_FRAME_WORDS, &inputs.frame[0][0]);
+  const ilk_inputs_t inputs = plant::exchange(plant_, outputs_, state_.tick);
   if (state_.tick % heartbeat_ticks == 0) {
     ilk_request_t heartbeat{};
     heartbeat.kind = ILK_REQUEST_HEARTBEAT;

@@ -168,6 +168,20 @@ TEST_F(PathProposalTest, WhatNobodyApprovesExpires) {
   EXPECT_EQ(state(1), ProposalState::expired);
 }
 
+TEST_F(PathProposalTest, AFullBookTellsTheOldestThatWaitsThatItGoes) {
+  std::vector<std::uint32_t> ended;
+  book_.on_change([&](const Proposal& each) {
+    if (!is_open(each.state)) {
+      ended.push_back(each.id);
+    }
+  });
+  for (std::size_t i = 0; i <= ProposalBook::capacity; ++i) {
+    ASSERT_TRUE(book_.propose_path(file_draft(), view_));
+  }
+  EXPECT_EQ(ended, std::vector<std::uint32_t>{1});
+  EXPECT_EQ(book_.find(1), nullptr);
+}
+
 TEST_F(PathProposalTest, ChangedTargetingEndsWhatFollowedFromIt) {
   PathDraft aligned = draft_to({{head_axis, -1000}});
   aligned.targeting_revision = book_.targeting_revision();

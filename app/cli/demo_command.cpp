@@ -1,0 +1,135 @@
+#include "cli/demo_command.hpp"
+
+#include <array>
+#include <cstdio>
+#include <iomanip>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "cli/named_robot.hpp"
+#include "cli/write_file.hpp"
+#include "plant/parameters_file.hpp"
+#include "robot/compile.hpp"
+
+namespace interlock::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+Failure refusal(const std::string& text) { return {ExitCode::refused, text}; }
+
+std::array<double, 3> numbers(const Eigen::Vector3d& point) { return {point.x(), point.y(), point.z()}; }
+
+ordered_json to_json(const DemoTrial& trial) {
+  ordered_json json{{"desired_mm", numbers(trial.desired)},
+                    {"thesis_error_mm", numbers(trial.thesis_error)},
+                    {"refused", trial.refused.empty() ? ordered_json() : ordered_json(trial.refused)}};
+  if (trial.refused.empty()) {
+    json["reached_mm"] = numbers(trial.reached);
+    json["error_mm"] = numbers(trial.error());
+    json["time_s"] = trial.time_s;
+  }
+  return json;
+}
+
+ordered_json to_json(const Robot& robot, const DemoOptions& options, const DemoReport& report) {
+  const ThesisTable& table = thesis_table(robot);
+  ordered_json trials = ordered_json::array();
+  for (const DemoTrial& trial : report.trials) {
+    trials.push_back(to_json(trial));
+  }
+  return {{"robot", robot.name},
+          {"seed", options.seed},
+          {"table", table.title},
+          {"mapping", table.mapping},
+          {"trials", std::move(trials)},
+          {"random",
+           {{"tried", report.random.tried},
+            {"refused", report.random.refused},
+            {"rms_mm", report.random.rms_mm},
+            {"worst_mm", report.random.worst_mm}}}};
+}
+
+std::string three(const Eigen::Vector3d& point, const char* format) {
+  char text[80];
+  std::snprintf(text, sizeof text, format, point.x(), point.y(), point.z());
+  return text;
+}
+
+std::string text_of(const Robot& robot, const DemoReport& report) {
+  const ThesisTable& table = thesis_table(robot);
+  std::ostringstream text;
+  text << table.title << ": " << table.mapping << ".\n\n"
+       << "target  desired (RAS, mm)             reached                       error                   "
+          "thesis' error\n";
+  for (std::size_t n = 0; n < report.trials.size(); ++n) {
+    const DemoTrial& trial = report.trials[n];
+    text << std::left << std::setw(8) << n + 1 << three(trial.desired, "%9.3f %9.3f %9.3f ");
+    if (trial.refused.empty()) {
+      text << three(trial.reached, "%9.3f %9.3f %9.3f ") << three(trial.error(), "%7.3f %7.3f %7.3f ")
+           << three(trial.thesis_error, "%7.3f %7.3f %7.3f") << '\n';
+    } else {
+      text << "refused: " << trial.refused << '\n';
+    }
+  }
+  char random[160];
+  std::snprintf(
+      random, sizeof random,
+      "\n%zu random targets: %zu refused, the others reached within %.4f mm RMS, %.4f mm at worst, by whole "
+      "counts\n",
+      report.random.tried, report.random.refused, report.random.rms_mm, report.random.worst_mm);
+  text << random;
+  return text.str();
+}
+
+std::string csv_of(const DemoReport& report) {
+  std::ostringstream text;
+  text << "target,desired_r_mm,desired_a_mm,desired_s_mm,reached_r_mm,reached_a_mm,reached_s_mm,error_r_mm,"
+          "error_a_mm,"
+          "error_s_mm,thesis_error_1_mm,thesis_error_2_mm,thesis_error_3_mm,time_s\n";
+  for (std::size_t n = 0; n < report.trials.size(); ++n) {
+    const DemoTrial& trial = report.trials[n];
+    if (trial.refused.empty()) {
+      text << n + 1 << ',' << three(trial.desired, "%.4f,%.4f,%.4f,")
+           << three(trial.reached, "%.4f,%.4f,%.4f,") << three(trial.error(), "%.4f,%.4f,%.4f,")
+           << three(trial.thesis_error, "%.4f,%.4f,%.4f,") << trial.time_s << '\n';
+    }
+  }
+  return text.str();
+}
+
+Result<DemoReport> report_of(const DemoCommandOptions& options, const Robot& robot,
+                             const Installation& installation, std::ostream& progress) {
+  const auto config = compile(robot);
+  if (!config) {
+    return tl::unexpected(refusal(config.error().message()));
+  }
+  return installation.plant(robot.name).and_then([&](const std::filesystem::path& file) {
+    return plant::load_parameters(file, *config)
+        .map_error(refusal)
+        .and_then([&](const plant::Parameters& plant) {
+          const auto tell = [&progress](const std::string& what) {
+            progress << "demo: " << what << std::endl;
+          };
+          return run_demo(robot, *config, plant, options.demo, tell).map_error(refusal);
+        });
+  });
+}
+
+}  // namespace
+
+Result<void> demo(const DemoCommandOptions& options, const Installation& installation, std::ostream& output,
+                  std::ostream& progress) {
+  const Result<Robot> robot = named_robot(options.robot, installation);
+  if (!robot) {
+    return tl::unexpected(robot.error());
+  }
+  return report_of(options, *robot, installation, progress).and_then([&](const DemoReport& report) {
+    return write_file(options.csv, csv_of(report)).map([&] {
+      output << (options.json ? to_json(*robot, options.demo, report).dump() + '\n'
+                              : text_of(*robot, report));
+    });
+  });
+}
+
+}  // namespace interlock::cli

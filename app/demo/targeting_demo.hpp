@@ -1,0 +1,60 @@
+/**
+ * @file
+ * The targeting workflow of the thesis (figures 33 and 35) on the simulated hardware, unattended: home,
+ * register by a random rigid registration, and for each target align with the probe out, insert, confirm by a
+ * scan, retract.
+ *
+ * The scan is the true pose of the simulated robot, so that the error is that of the robot: homing, counts,
+ * deadbands, backlash. Points and errors are in the scanner's RAS frame, mm.
+ */
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "demo/robot_rig.hpp"
+#include "demo/thesis_trials.hpp"
+
+namespace interlock {
+
+struct DemoOptions {
+  std::uint64_t seed = 1;             /**< of registration, plant and random targets */
+  std::size_t random_targets = 10000; /**< reached by computation alone: setpoints in whole counts */
+};
+
+/** What became of one target. */
+struct DemoTrial {
+  Eigen::Vector3d desired;
+  Eigen::Vector3d reached;      /**< as the scan shows it */
+  Eigen::Vector3d thesis_error; /**< recomputed from the printed positions, in the frame of the table */
+  double time_s = 0.0;          /**< simulated, from the first move to the scan */
+  std::string refused;          /**< why it was not tried; empty: it was */
+
+  [[nodiscard]] Eigen::Vector3d error() const { return reached - desired; }
+};
+
+/** How far random targets are from what whole counts reach. */
+struct RandomTargets {
+  std::size_t tried = 0;
+  std::size_t refused = 0; /**< by the geometry, or where an axis would have to go beyond its range */
+  double rms_mm = 0.0;
+  double worst_mm = 0.0;
+};
+
+struct DemoReport {
+  std::vector<DemoTrial> trials;
+  RandomTargets random;
+};
+
+/** Told what is done now, for people. */
+using DemoProgress = std::function<void(const std::string&)>;
+
+/** Runs the workflow. A target that cannot be had is told in its trial; an error ends the demonstration. */
+DemoResult<DemoReport> run_demo(const Robot& robot, const ilk_config_t& config,
+                                const plant::Parameters& parameters, const DemoOptions& options,
+                                const DemoProgress& progress);
+
+}  // namespace interlock
