@@ -86,14 +86,6 @@ DemoResult<void> RobotRig::carry_out(const PathProgram& program) {
                                                 : failed(ended(robot_, status.slot, status.order));
 }
 
-AxisPositions RobotRig::positions() const {
-  AxisPositions positions;
-  for (const Axis& axis : robot_.axes) {
-    positions.push_back(axis.to_unit(state_.axis[axis.slot].position_counts));
-  }
-  return positions;
-}
-
 AxisPositions RobotRig::true_positions() const {
   AxisPositions positions;
   for (const Axis& axis : robot_.axes) {

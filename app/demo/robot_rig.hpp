@@ -37,10 +37,7 @@ class RobotRig {
   /** Carries out a program with the pedal held; the error says which axis ended it and why. */
   DemoResult<void> carry_out(const PathProgram& program);
 
-  /** By the encoders, in the units of the axes, in their order. */
-  [[nodiscard]] AxisPositions positions() const;
-
-  /** Where the axes truly are: what a scan would show. */
+  /** Where the axes truly are, in their units and order: what a scan would show. */
   [[nodiscard]] AxisPositions true_positions() const;
 
   /** Simulated time. */
