@@ -38,14 +38,14 @@ Result<void> save_config(const ilk_config_t& config, const fs::path& file) {
   return {};
 }
 
-Result<void> check_model(const fs::path& file, bool json, std::ostream& output) {
+Result<void> check_model(const fs::path& file, bool as_json, std::ostream& output) {
   const tl::expected<CompiledRobot, RobotError> compiled = compiled_robot(file);
   if (!compiled) {
-    output << (json ? model_json(compiled.error()) : "");
+    output << (as_json ? model_json(compiled.error()) : "");
     return tl::unexpected(refusal(compiled.error()));
   }
   const auto& [robot, config] = *compiled;
-  output << (json ? model_json(robot, config) : model_text(robot, config));
+  output << (as_json ? model_json(robot, config) : model_text(robot, config));
   return {};
 }
 

@@ -109,15 +109,16 @@ ordered_json sensor_json(const Sensor& sensor) {
 
 ordered_json step_json(const Robot& robot, const HomeStep& step) {
   const Travel travel = travel_of(robot, step);
-  ordered_json json{{"name", step.name}, {"title", step.title}, {"kind", travel.kind}, {"axes", travel.axes}};
+  ordered_json object{
+      {"name", step.name}, {"title", step.title}, {"kind", travel.kind}, {"axes", travel.axes}};
   if (!travel.counts.empty()) {
     ordered_json counts = ordered_json::object();
     for (const AxisCounts& each : travel.counts) {
       counts[robot.at_slot(each.slot)->name] = each.counts;
     }
-    json["counts"] = counts;
+    object["counts"] = counts;
   }
-  return json;
+  return object;
 }
 
 }  // namespace
@@ -135,34 +136,34 @@ std::string model_text(const Robot& robot, const ilk_config_t& config) {
 }
 
 std::string model_json(const Robot& robot, const ilk_config_t& config) {
-  ordered_json json{{"valid", true},
-                    {"file", robot.origin.file},
-                    {"name", robot.name},
-                    {"title", robot.title},
-                    {"config_crc", config_hash(config)},
-                    {"period_us", robot.period_us},
-                    {"kinematics", family_name(robot.kinematics)},
-                    {"modes", robot.modes},
-                    {"auto_approve", robot.auto_approve},
-                    {"axes", ordered_json::array()},
-                    {"sensors", ordered_json::array()},
-                    {"home_steps", ordered_json::array()}};
+  ordered_json object{{"valid", true},
+                      {"file", robot.origin.file},
+                      {"name", robot.name},
+                      {"title", robot.title},
+                      {"config_crc", config_hash(config)},
+                      {"period_us", robot.period_us},
+                      {"kinematics", family_name(robot.kinematics)},
+                      {"modes", robot.modes},
+                      {"auto_approve", robot.auto_approve},
+                      {"axes", ordered_json::array()},
+                      {"sensors", ordered_json::array()},
+                      {"home_steps", ordered_json::array()}};
   for (const Axis& axis : robot.axes) {
-    json["axes"].push_back(axis_json(axis));
+    object["axes"].push_back(axis_json(axis));
   }
   for (const Sensor& sensor : robot.sensors) {
-    json["sensors"].push_back(sensor_json(sensor));
+    object["sensors"].push_back(sensor_json(sensor));
   }
   for (const HomeStep& step : robot.home_steps) {
-    json["home_steps"].push_back(step_json(robot, step));
+    object["home_steps"].push_back(step_json(robot, step));
   }
-  return json.dump(2) + '\n';
+  return object.dump(2) + '\n';
 }
 
 std::string model_json(const RobotError& error) {
-  const ordered_json json{{"valid", false},   {"file", error.file},       {"line", error.line},
-                          {"key", error.key}, {"problem", error.problem}, {"expected", error.expected}};
-  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
+  const ordered_json object{{"valid", false},   {"file", error.file},       {"line", error.line},
+                            {"key", error.key}, {"problem", error.problem}, {"expected", error.expected}};
+  return object.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }
 
 }  // namespace interlock::cli

@@ -13,7 +13,6 @@ constexpr double integral_share = 0.5;
 /** After a longer gap the integral does not make up for the ticks that were missed. */
 constexpr std::uint32_t most_elapsed_ticks = 10;
 constexpr std::uint32_t fewest_periods = 4;
-constexpr double us_per_s = 1e6;
 
 DriveMapRules drive_rules(const Axis& axis, double full_speed_counts_per_s) {
   return {

@@ -4,12 +4,6 @@
 #include <cmath>
 
 namespace interlock {
-namespace {
-
-constexpr double us_per_s = 1e6;
-
-}  // namespace
-
 void VelocityEstimator::add(std::int32_t position_counts, std::uint32_t time_us) noexcept {
   if (count_ != 0) {
     const std::uint32_t later_us = time_us - sample(0).time_us;

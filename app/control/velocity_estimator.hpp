@@ -19,6 +19,8 @@
 
 namespace interlock {
 
+inline constexpr double us_per_s = 1e6;
+
 struct VelocityRules {
   std::uint32_t window_us = 20'000;
   double fastest_counts_per_s = 0.0; /**< a larger step than this speed explains is a jump, not motion */

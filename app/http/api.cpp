@@ -2,14 +2,13 @@
 
 #include <spdlog/spdlog.h>
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
-#include <boost/asio/use_awaitable.hpp>
 
 #include "http/problems.hpp"
 #include "http/same_origin.hpp"
 #include "http/status_json.hpp"
+#include "network/as_result.hpp"
 #include "proposals/proposal_json.hpp"
 
 namespace interlock::web {
@@ -22,7 +21,6 @@ using std::chrono::steady_clock;
 constexpr std::chrono::milliseconds beat_period{33};
 /** Without any request, and without an open stream, which counts as one. */
 constexpr std::chrono::seconds authority_idle_limit{60};
-constexpr auto as_result = asio::as_tuple(asio::use_awaitable);
 
 }  // namespace
 

@@ -1,12 +1,12 @@
 #include "http/bench_client.hpp"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/read_until.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 #include <chrono>
+
+#include "network/as_result.hpp"
 
 namespace interlock::web {
 namespace {
@@ -17,7 +17,6 @@ using nlohmann::json;
 
 constexpr std::chrono::seconds answer_timeout{2};
 constexpr std::size_t longest_answer = 16u << 20u;
-constexpr auto as_result = asio::as_tuple(asio::use_awaitable);
 
 tl::unexpected<BenchError> unreachable(const std::string& detail) {
   return tl::make_unexpected(BenchError{BenchError::Kind::unreachable, detail});

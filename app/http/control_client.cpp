@@ -2,9 +2,9 @@
 
 #include <unistd.h>
 
-#include <boost/asio/as_tuple.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <chrono>
+
+#include "network/as_result.hpp"
 
 namespace interlock::web {
 namespace {
@@ -14,7 +14,6 @@ using std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds ask_timeout{1000};
 constexpr std::chrono::milliseconds stop_timeout{300};
-constexpr auto as_result = asio::as_tuple(asio::use_awaitable);
 
 }  // namespace
 

@@ -5,11 +5,9 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <chrono>
@@ -18,6 +16,7 @@
 #include <sstream>
 
 #include "http/same_origin.hpp"
+#include "network/as_result.hpp"
 
 namespace interlock::web {
 namespace {
@@ -31,7 +30,6 @@ constexpr std::chrono::seconds request_timeout{30};
 constexpr std::chrono::seconds answer_timeout{10};
 constexpr std::chrono::seconds drain_timeout{1};
 constexpr std::size_t drain_bytes = 4u << 20u;
-constexpr auto as_result = asio::as_tuple(asio::use_awaitable);
 
 constexpr const char* content_security_policy =
     "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; connect-src 'self'; img-src 'self' data:; "

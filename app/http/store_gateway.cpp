@@ -2,16 +2,14 @@
 
 #include <spdlog/spdlog.h>
 
-#include <boost/asio/as_tuple.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <string>
+
+#include "network/as_result.hpp"
 
 namespace interlock::web {
 namespace {
 
 namespace asio = boost::asio;
-
-constexpr auto as_result = asio::as_tuple(asio::use_awaitable);
 
 bool is_failure(const StoreError& error) {
   return error.kind == StoreError::Kind::unavailable || error.kind == StoreError::Kind::newer ||

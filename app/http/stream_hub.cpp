@@ -3,12 +3,16 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
-#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/websocket.hpp>
+#include <deque>
+#include <optional>
+
+#include "network/as_result.hpp"
 
 namespace interlock::web {
 namespace {
@@ -20,7 +24,6 @@ namespace websocket = boost::beast::websocket;
 constexpr std::size_t longest_client_message = 1024;
 constexpr std::chrono::seconds closing_patience{2};
 constexpr auto session_ended_code = static_cast<websocket::close_code>(4401);
-constexpr auto as_result = asio::as_tuple(asio::use_awaitable);
 
 websocket::stream_base::timeout timeouts() {
   return {.handshake_timeout = std::chrono::seconds(5),
@@ -29,6 +32,27 @@ websocket::stream_base::timeout timeouts() {
 }
 
 }  // namespace
+
+struct StreamHub::Client {
+  Client(beast::tcp_stream stream, Watcher watching)
+      : socket(std::move(stream)),
+        watcher(std::move(watching)),
+        news(socket.get_executor(), asio::steady_timer::time_point::max()),
+        patience(socket.get_executor()) {}
+
+  void send(std::shared_ptr<const std::string> text);
+  void close();
+  static void close_after_texts(const std::shared_ptr<Client>& client, websocket::close_reason reason);
+
+  websocket::stream<beast::tcp_stream, false> socket; /**< without compression: no browser is far away */
+  Watcher watcher;
+  asio::steady_timer news;     /**< cancelled when there is something to send, or to end */
+  asio::steady_timer patience; /**< with a client that is to end */
+  std::deque<std::shared_ptr<const std::string>> texts;
+  std::optional<StreamMessage> state;
+  std::optional<websocket::close_reason> closing;
+  bool open = true;
+};
 
 void StreamHub::Client::close() {
   open = false;
@@ -39,7 +63,8 @@ void StreamHub::Client::close() {
 
 /** Closes it once it has got what waits for it, or soon in any case: a client that takes nothing must not
  * outlive its session. */
-void StreamHub::close_after_texts(const std::shared_ptr<Client>& client, websocket::close_reason reason) {
+void StreamHub::Client::close_after_texts(const std::shared_ptr<Client>& client,
+                                          websocket::close_reason reason) {
   client->closing = std::move(reason);
   client->news.cancel();
   client->patience.expires_after(closing_patience);
@@ -139,7 +164,7 @@ void StreamHub::end_session(std::uint32_t session) {
   for (const auto& client : clients_) {
     if (client->watcher.caller.session == session) {
       client->send(std::make_shared<const std::string>(message.dump()));
-      close_after_texts(client, {session_ended_code, "the session ended"});
+      Client::close_after_texts(client, {session_ended_code, "the session ended"});
     }
   }
 }
@@ -149,7 +174,7 @@ bool StreamHub::disconnect(std::uint32_t id) {
   if (found == clients_.end()) {
     return false;
   }
-  close_after_texts(*found, {websocket::close_code::going_away, "disconnected by a user"});
+  Client::close_after_texts(*found, {websocket::close_code::going_away, "disconnected by a user"});
   return true;
 }
 

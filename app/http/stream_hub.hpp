@@ -5,15 +5,11 @@
 #pragma once
 
 #include <boost/asio/awaitable.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
-#include <boost/beast/websocket.hpp>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <list>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -67,30 +63,8 @@ class StreamHub {
   [[nodiscard]] bool empty() const { return clients_.empty(); }
 
  private:
-  using Socket = boost::beast::websocket::stream<boost::beast::tcp_stream>;
+  struct Client; /**< in the source: its WebSocket is a large header that nobody else needs */
 
-  struct Client {
-    Client(boost::beast::tcp_stream stream, Watcher watching)
-        : socket(std::move(stream)),
-          watcher(std::move(watching)),
-          news(socket.get_executor(), boost::asio::steady_timer::time_point::max()),
-          patience(socket.get_executor()) {}
-
-    void send(std::shared_ptr<const std::string> text);
-    void close();
-
-    Socket socket;
-    Watcher watcher;
-    boost::asio::steady_timer news;     /**< cancelled when there is something to send, or to end */
-    boost::asio::steady_timer patience; /**< with a client that is to end */
-    std::deque<std::shared_ptr<const std::string>> texts;
-    std::optional<StreamMessage> state;
-    std::optional<boost::beast::websocket::close_reason> closing;
-    bool open = true;
-  };
-
-  static void close_after_texts(const std::shared_ptr<Client>& client,
-                                boost::beast::websocket::close_reason reason);
   static boost::asio::awaitable<void> write(std::shared_ptr<Client> client);
 
   std::list<std::shared_ptr<Client>> clients_; /**< oldest first */

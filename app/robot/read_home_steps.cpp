@@ -9,7 +9,7 @@ constexpr std::array<std::string_view, 3> kinds{"home", "nudge", "move"};
 
 bool has_switch(const Axis& axis) { return axis.limit != ILK_LIMIT_NONE; }
 
-std::string quoted(const std::string& name) { return '"' + name + '"'; }
+std::string in_quotes(const std::string& name) { return '"' + name + '"'; }
 
 std::string axis_names(const Robot& robot) {
   std::string names;
@@ -31,7 +31,7 @@ std::vector<AxisCounts> read_counts(TableReader& table, std::string_view kind, c
       refuse(entries, *axis, counts);
       travel.push_back({axis->slot, counts});
     } else {
-      entries.refuse(name, "no axis is called " + quoted(name), "one of " + axis_names(robot));
+      entries.refuse(name, "no axis is called " + in_quotes(name), "one of " + axis_names(robot));
     }
   }
   if (travel.empty()) {
@@ -50,7 +50,8 @@ class StepReader {
     step.name = table.identifier("name");
     table.rename("home_step." + step.name);
     if (std::ranges::find(robot_.home_steps, step.name, &HomeStep::name) != robot_.home_steps.end()) {
-      table.refuse("name", "another step is called " + quoted(step.name) + " already", "a name of its own");
+      table.refuse("name", "another step is called " + in_quotes(step.name) + " already",
+                   "a name of its own");
     }
     step.title = table.text("title");
     read_travel(table, step);
@@ -82,11 +83,11 @@ class StepReader {
     for (const std::string& name : table.texts("home", expected)) {
       const Axis* const axis = robot_.find(name);
       if (!axis) {
-        table.refuse("home", "no axis is called " + quoted(name), expected);
+        table.refuse("home", "no axis is called " + in_quotes(name), expected);
       } else if (!has_switch(*axis)) {
-        table.refuse("home", quoted(name) + " has no switch to home at", expected);
+        table.refuse("home", in_quotes(name) + " has no switch to home at", expected);
       } else if (!homed_.insert(axis->slot).second) {
-        table.refuse("home", quoted(name) + " homes twice", expected);
+        table.refuse("home", in_quotes(name) + " homes twice", expected);
       } else {
         slots.push_back(axis->slot);
       }
@@ -134,7 +135,7 @@ void read_home_steps(TableReader& table, Robot& robot) {
   }
   for (const Axis& axis : robot.axes) {
     if (has_switch(axis) && !reader.homes(axis)) {
-      table.refuse("home_step", "no step homes " + quoted(axis.name),
+      table.refuse("home_step", "no step homes " + in_quotes(axis.name),
                    "every axis with a switch in exactly one home list");
     }
   }

@@ -8,7 +8,7 @@ namespace {
 constexpr std::int64_t analog_inputs = 4;
 constexpr std::int64_t largest_reading = 0xFFFF;
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 3> units{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 3> sensor_units{{
     {"N", "N"},
     {"N mm", "N mm"},
     {"unspecified", "unspecified"},
@@ -38,7 +38,7 @@ SensorChannel read_channel(TableReader table, const Sensor& sensor) {
   channel.slope = read_slope(table);
   channel.intercept = table.number("intercept");
   channel.reference = static_cast<std::uint32_t>(table.integer_between("reference", 0, largest_reading));
-  channel.unit = table.choice("unit", units);
+  channel.unit = table.choice("unit", sensor_units);
   table.refuse_unknown_keys();
   return channel;
 }

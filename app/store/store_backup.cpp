@@ -22,8 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path with_suffix(fs::path file, const std::string& suffix) { return file += suffix; }
-
 /** Removes what is put beside a file while it is being made. */
 void remove_beside(const fs::path& file) {
   std::vector<std::string> suffixes{"-wal", "-shm", "-journal", ".lock"};

@@ -19,9 +19,9 @@ namespace fs = std::filesystem;
 constexpr mode_t private_folder_mode = 0700;
 constexpr mode_t private_file_mode = 0600;
 
-fs::path with_suffix(fs::path file, const std::string& suffix) { return file += suffix; }
-
 }  // namespace
+
+fs::path with_suffix(fs::path file, const std::string& suffix) { return file += suffix; }
 
 Stored<std::unique_ptr<StoreLock>> StoreLock::take(const fs::path& store, Kind kind) {
   const fs::path file = with_suffix(store, ".lock");

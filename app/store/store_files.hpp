@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <system_error>
 
 #include "store/sqlite_forward.hpp"
@@ -15,6 +16,9 @@ namespace interlock {
 
 /** How long a connection waits for another one that writes, in milliseconds. */
 constexpr int store_patience_ms = 5000;
+
+/** `FILE` and the suffix, in the same folder. */
+std::filesystem::path with_suffix(std::filesystem::path file, const std::string& suffix);
 
 /**
  * Holds `FILE.lock`: shared by all who have the store open, or alone, by whoever puts another file in its

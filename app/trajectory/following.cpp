@@ -6,7 +6,7 @@
 namespace interlock {
 namespace {
 
-using Code = FollowingState::Code;
+using FollowingCode = FollowingState::Code;
 
 constexpr double smallest_tolerance = 1e-9;
 constexpr double longest_goal_wait_s = 3600.0;
@@ -32,7 +32,9 @@ Worst worst_of(const TimedTrajectory& trajectory, const FollowingRules& rules, d
   return worst;
 }
 
-FollowingState state_of(Code code, const Worst& worst) noexcept { return {code, worst.axis, worst.distance}; }
+FollowingState state_of(FollowingCode code, const Worst& worst) noexcept {
+  return {code, worst.axis, worst.distance};
+}
 
 }  // namespace
 
@@ -57,17 +59,17 @@ FollowingState follow(const TimedTrajectory& trajectory, const FollowingRules& r
                       std::span<const double> measured) noexcept {
   const Worst path = worst_of(trajectory, rules, time_s, measured, &FollowingTolerance::path);
   if (path.share > 1) {
-    return state_of(Code::off_path, path);
+    return state_of(FollowingCode::off_path, path);
   }
   if (!(time_s >= trajectory.end_s())) {
-    return state_of(Code::under_way, path);
+    return state_of(FollowingCode::under_way, path);
   }
   const Worst goal = worst_of(trajectory, rules, time_s, measured, &FollowingTolerance::goal);
   if (goal.share <= 1) {
-    return state_of(Code::reached, goal);
+    return state_of(FollowingCode::reached, goal);
   }
   const bool late = time_s > trajectory.end_s() + rules.goal_wait_s;
-  return state_of(late ? Code::goal_late : Code::under_way, goal);
+  return state_of(late ? FollowingCode::goal_late : FollowingCode::under_way, goal);
 }
 
 }  // namespace interlock

@@ -9,7 +9,7 @@ namespace interlock {
 namespace {
 
 /** Longer than pedal debouncing, switch bounce and settling take. */
-constexpr std::uint32_t settle_ms = 200;
+constexpr std::uint32_t time_to_settle_ms = 200;
 constexpr std::uint32_t holder = 1;
 
 std::string at(const char* what, catalog::Family family, std::uint32_t code) {
@@ -28,7 +28,7 @@ RigResult<void> StepRig::make_ready() {
   if (const std::uint32_t error = ilk_init(&config_, &state_).error; error != ILK_CONFIG_ERROR_NONE) {
     return tl::unexpected(at("the kernel refuses the robot: ", catalog::Family::config_error, error));
   }
-  const std::uint32_t settle_ticks = settle_ms * 1000 / config_.period_us;
+  const std::uint32_t settle_ticks = time_to_settle_ms * 1000 / config_.period_us;
   const bool has_switch = config_.axis[slot_].limit_side != ILK_LIMIT_NONE;
   const auto step = [&](ilk_request_kind_t kind) {
     ask(kind);

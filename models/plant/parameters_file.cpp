@@ -121,7 +121,7 @@ class Reader {
   std::string fault_;
 };
 
-constexpr double kFarthestCounts = 1 << 30;
+constexpr double kFarthestStart = 1 << 30;
 
 void read_dynamics(Reader& reader, const toml::table& table, AxisParameters& axis) {
   reader.number(table, "dead_zone_fraction", {0, 0.9}, axis.dead_zone_fraction);
@@ -151,8 +151,8 @@ void read_start(Reader& reader, const toml::table& table, const ilk_axis_config_
                 AxisParameters& axis) {
   double from_switch = 0;
   const bool absolute =
-      reader.number(table, "start_counts", {-kFarthestCounts, kFarthestCounts}, axis.start_counts);
-  const bool relative = reader.number(table, "start_from_switch_counts", {0, kFarthestCounts}, from_switch);
+      reader.number(table, "start_counts", {-kFarthestStart, kFarthestStart}, axis.start_counts);
+  const bool relative = reader.number(table, "start_from_switch_counts", {0, kFarthestStart}, from_switch);
   if (absolute == relative) {
     reader.fail(table, "start_counts", "expected either start_counts or start_from_switch_counts");
     return;

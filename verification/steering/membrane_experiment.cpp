@@ -11,7 +11,6 @@ namespace interlock::experiment {
 namespace {
 
 constexpr double end_mm = 100.0;
-constexpr double longest_s = 300.0;
 constexpr std::array planned_mm{20.0, 45.0, 70.0};
 
 /** How far a membrane gives way before it tears, about the mean of what is drawn below. */

@@ -15,6 +15,9 @@ namespace interlock::experiment {
 
 inline constexpr double period_s = 0.001;
 
+/** No insertion goes on for longer. */
+inline constexpr double longest_s = 300.0;
+
 /** Streams of one seed, one for each part of the world, so that they do not disturb each other. */
 enum Stream : std::uint64_t { world = 1, hand, sensor, tissue, image };
 

@@ -10,8 +10,6 @@
 namespace interlock::experiment {
 namespace {
 
-constexpr double longest_s = 300.0;
-
 /** Steering plans anew every so many periods, 5 ms; an image costs it a step for each of them since the last.
  */
 constexpr std::uint64_t periods_a_plan = 5;

@@ -18,7 +18,7 @@ constexpr PivRules rules{.gains = {.position_per_s = 15.0, .velocity = 0.3, .int
                          .rate_counts_per_s2 = 20'000.0,
                          .integral_counts_per_s = 500.0};
 
-PivController controller(const PivRules& with = rules) { return PivController::create(with).value(); }
+PivController piv_controller(const PivRules& with = rules) { return PivController::create(with).value(); }
 
 /** An axis that stands at 0 or moves evenly, and should be elsewhere or move otherwise. */
 PivInput input(double position_setpoint, double velocity_setpoint, double velocity, int direction = 1) {
@@ -34,8 +34,8 @@ TEST(PivController, MirroredErrorsGiveMirroredOutputs) {
   std::uniform_real_distribution position(-100.0, 100.0);
   std::uniform_real_distribution speed(-1200.0, 1200.0);
   for (int trial = 0; trial < 200; ++trial) {
-    PivController upwards = controller();
-    PivController downwards = controller();
+    PivController upwards = piv_controller();
+    PivController downwards = piv_controller();
     for (int tick = 0; tick < 50; ++tick) {
       const double p = position(generator);
       const double v = speed(generator);
@@ -51,7 +51,7 @@ TEST(PivController, MirroredErrorsGiveMirroredOutputs) {
 TEST(PivController, ASpeedThatIsTooHighLowersTheOutputAndOneTooLowRaisesIt) {
   for (const int direction : {1, -1}) {
     const auto output = [&](double velocity) {
-      return controller().update(input(0, direction * 500, direction * velocity, direction)).value();
+      return piv_controller().update(input(0, direction * 500, direction * velocity, direction)).value();
     };
     const double even = direction * output(500).wanted_counts_per_s;
     EXPECT_EQ(even, 500.0);
@@ -61,7 +61,7 @@ TEST(PivController, ASpeedThatIsTooHighLowersTheOutputAndOneTooLowRaisesIt) {
 }
 
 TEST(PivController, AnOutputAgainstTheTravelIsZeroDriveAtOnce) {
-  PivController piv = controller();
+  PivController piv = piv_controller();
   for (int tick = 0; tick < 100; ++tick) {
     (void)piv.update(input(10, 800, 500));
   }
@@ -75,7 +75,7 @@ TEST(PivController, NoOutputIsEverAgainstTheTravelTooFastOrTooSudden) {
   std::mt19937_64 generator(2);
   std::uniform_real_distribution wild(-3000.0, 3000.0);
   for (int trial = 0; trial < 300; ++trial) {
-    PivController piv = controller();
+    PivController piv = piv_controller();
     const int direction = trial % 2 == 0 ? 1 : -1;
     double before = 0.0;
     for (int tick = 0; tick < 100; ++tick) {
@@ -96,7 +96,7 @@ TEST(PivController, NoOutputIsEverAgainstTheTravelTooFastOrTooSudden) {
 TEST(PivController, DoesNotWindUpWhileItsOutputIsHeld) {
   const auto seconds = [](double time_s) { return static_cast<int>(time_s / tick_s); };
   for (const double position_error : {200.0, -200.0}) {
-    PivController piv = controller();
+    PivController piv = piv_controller();
     for (int tick = 0; tick < seconds(60); ++tick) {
       (void)piv.update(input(position_error, 0, 0));
     }
@@ -110,7 +110,7 @@ TEST(PivController, DoesNotWindUpWhileItsOutputIsHeld) {
 TEST(PivController, TheIntegralHasABoundOfItsOwn) {
   PivRules slow = rules;
   slow.integral_counts_per_s = 50.0;
-  PivController piv = controller(slow);
+  PivController piv = piv_controller(slow);
   for (int tick = 0; tick < 10'000; ++tick) {
     (void)piv.update(input(0, 500, 200));
     ASSERT_LE(piv.integral_counts_per_s(), 50.0);
@@ -120,7 +120,7 @@ TEST(PivController, TheIntegralHasABoundOfItsOwn) {
 
 TEST(PivController, TheIntegralTakesWhatTheFeedForwardLacks) {
   // A motor that makes four fifths of what is asked of it.
-  PivController piv = controller();
+  PivController piv = piv_controller();
   double velocity = 0.0;
   for (int tick = 0; tick < 5000; ++tick) {
     velocity = 0.8 * piv.update(input(0, 500, velocity)).value().counts_per_s;
@@ -129,7 +129,7 @@ TEST(PivController, TheIntegralTakesWhatTheFeedForwardLacks) {
 }
 
 TEST(PivController, AChangeOfDirectionAndAResetEmptyTheIntegral) {
-  PivController piv = controller();
+  PivController piv = piv_controller();
   const auto wind = [&] {
     for (int tick = 0; tick < 200; ++tick) {
       (void)piv.update(input(0, 500, 400, 1));
@@ -145,7 +145,7 @@ TEST(PivController, AChangeOfDirectionAndAResetEmptyTheIntegral) {
 }
 
 TEST(PivController, WithoutAVelocityItFollowsByPositionAlone) {
-  PivController piv = controller();
+  PivController piv = piv_controller();
   PivInput blind = input(2, 500, 0);
   blind.velocity.reset();
   for (int tick = 0; tick < 1000; ++tick) {
@@ -168,7 +168,7 @@ TEST(PivController, WhatIsNoNumberIsAnErrorAndLeavesNothingBehind) {
     inputs[5].*own[0] = bad;
     inputs[6].*own[1] = bad;
     for (const PivInput& each : inputs) {
-      PivController piv = controller();
+      PivController piv = piv_controller();
       for (int tick = 0; tick < 100; ++tick) {
         (void)piv.update(input(0, 500, 400));
       }

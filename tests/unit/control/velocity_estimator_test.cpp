@@ -9,7 +9,7 @@
 namespace interlock {
 namespace {
 
-constexpr VelocityRules rules{.window_us = 20'000, .fastest_counts_per_s = 8000, .noise_counts = 1};
+constexpr VelocityRules velocity_rules{.window_us = 20'000, .fastest_counts_per_s = 8000, .noise_counts = 1};
 
 /** A clock that wraps soon after the start. */
 constexpr std::uint32_t before_wrap = std::numeric_limits<std::uint32_t>::max() - 5'000;
@@ -19,8 +19,8 @@ std::int32_t counts_at(double counts_per_s, std::uint32_t elapsed_us) {
 }
 
 /** An estimator that saw an axis at an even speed for some milliseconds, by a clock that wraps meanwhile. */
-VelocityEstimator moving(double counts_per_s, std::uint32_t milliseconds) {
-  VelocityEstimator estimator(rules);
+VelocityEstimator moving_estimator(double counts_per_s, std::uint32_t milliseconds) {
+  VelocityEstimator estimator(velocity_rules);
   for (std::uint32_t n = 0; n <= milliseconds; ++n) {
     estimator.add(counts_at(counts_per_s, n * 1000), before_wrap + n * 1000);
   }
@@ -29,7 +29,7 @@ VelocityEstimator moving(double counts_per_s, std::uint32_t milliseconds) {
 
 TEST(VelocityEstimator, OfWholeCountsIsExactAcrossTheWrapOfTheClock) {
   for (const double speed : {3000.0, -2000.0, 0.0}) {
-    const auto estimate = moving(speed, 40).estimate();
+    const auto estimate = moving_estimator(speed, 40).estimate();
     ASSERT_TRUE(estimate);
     EXPECT_NEAR(estimate->counts_per_s, speed, 1e-9);
     EXPECT_NEAR(estimate->age_s, 0.010, 1e-12) << "half of the window";
@@ -37,7 +37,7 @@ TEST(VelocityEstimator, OfWholeCountsIsExactAcrossTheWrapOfTheClock) {
 }
 
 TEST(VelocityEstimator, OfTheThesisSpeedIsWithinThreePercentWhereTwoReadingsAreNoUseAtAll) {
-  VelocityEstimator estimator(rules);
+  VelocityEstimator estimator(velocity_rules);
   double worst = 0.0;
   double worst_difference = 0.0;
   std::int32_t before = 0;
@@ -61,23 +61,23 @@ TEST(VelocityEstimator, HasTheStandardDeviationThatItsHeaderStates) {
   constexpr int trials = 4000;
   for (int trial = 0; trial < trials; ++trial) {
     const double truth = speed(generator);
-    const double error = moving(truth, 20).estimate().value().counts_per_s - truth;
+    const double error = moving_estimator(truth, 20).estimate().value().counts_per_s - truth;
     sum += error * error;
   }
   EXPECT_NEAR(std::sqrt(sum / trials), 12.0, 1.0);
 }
 
 TEST(VelocityEstimator, SaysNothingUntilHalfAWindowIsCovered) {
-  EXPECT_FALSE(VelocityEstimator(rules).estimate());
-  EXPECT_FALSE(moving(1000, 0).estimate());
-  EXPECT_FALSE(moving(1000, 9).estimate());
-  EXPECT_TRUE(moving(1000, 10).estimate());
+  EXPECT_FALSE(VelocityEstimator(velocity_rules).estimate());
+  EXPECT_FALSE(moving_estimator(1000, 0).estimate());
+  EXPECT_FALSE(moving_estimator(1000, 9).estimate());
+  EXPECT_TRUE(moving_estimator(1000, 10).estimate());
 }
 
 TEST(VelocityEstimator, FollowsTimestampsAndNotTheNumberOfReadings) {
   std::mt19937_64 generator(5);
   std::uniform_int_distribution<std::uint32_t> late(500, 3000);
-  VelocityEstimator estimator(rules);
+  VelocityEstimator estimator(velocity_rules);
   std::uint32_t elapsed_us = 0;
   for (int n = 0; n < 200; ++n) {
     estimator.add(counts_at(2500.0, elapsed_us), before_wrap + elapsed_us);
@@ -87,7 +87,7 @@ TEST(VelocityEstimator, FollowsTimestampsAndNotTheNumberOfReadings) {
 }
 
 TEST(VelocityEstimator, LeavesOutRepeatedAndLateReadings) {
-  VelocityEstimator estimator = moving(1000, 30);
+  VelocityEstimator estimator = moving_estimator(1000, 30);
   const auto before = estimator.estimate();
   estimator.add(30, before_wrap + 30'000);
   estimator.add(7, before_wrap + 30'000);
@@ -101,7 +101,7 @@ TEST(VelocityEstimator, BeginsAnewAfterAJumpAGapOrARestartedClock) {
        {std::pair{30 + 500, before_wrap + 31'000}, std::pair{30 - 500, before_wrap + 31'000},
         std::pair{31, before_wrap + 51'000}, std::pair{31, before_wrap + 9'999},
         std::pair{31, before_wrap + 30'000 + (1u << 31)}}) {
-    VelocityEstimator estimator = moving(1000, 30);
+    VelocityEstimator estimator = moving_estimator(1000, 30);
     estimator.add(position, time_us);
     EXPECT_FALSE(estimator.estimate()) << position << " at " << time_us;
     for (std::uint32_t n = 1; n <= 20; ++n) {
@@ -112,7 +112,7 @@ TEST(VelocityEstimator, BeginsAnewAfterAJumpAGapOrARestartedClock) {
 }
 
 TEST(VelocityEstimator, ForgetsWhatItSawAtAReset) {
-  VelocityEstimator estimator = moving(1000, 30);
+  VelocityEstimator estimator = moving_estimator(1000, 30);
   estimator.reset();
   EXPECT_FALSE(estimator.estimate());
 }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "expectations.hpp"
 #include "random_joints.hpp"
 #include "robots.hpp"
 
@@ -15,16 +16,7 @@ using Code = KinematicsError::Code;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double reference_digits = 1e-6;
-constexpr double exact = 1e-9;
-constexpr int round_trips = 100'000;
-
 const Matrix3d home_rotation = (Matrix3d() << -1, 0, 0, 0, 0, -1, 0, -1, 0).finished();
-
-void expect_near(const Vector3d& actual, const Vector3d& expected, double tolerance) {
-  EXPECT_LE((actual - expected).cwiseAbs().maxCoeff(), tolerance)
-      << "got " << actual.transpose() << ", expected " << expected.transpose();
-}
 
 struct ForwardCase {
   NeuroJoints joints;

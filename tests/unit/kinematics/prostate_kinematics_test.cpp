@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "expectations.hpp"
 #include "random_joints.hpp"
 #include "robots.hpp"
 
@@ -15,15 +16,6 @@ namespace {
 using Code = KinematicsError::Code;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-constexpr double reference_digits = 1e-6;
-constexpr double exact = 1e-9;
-constexpr int round_trips = 100'000;
-
-void expect_near(const Vector3d& actual, const Vector3d& expected, double tolerance) {
-  EXPECT_LE((actual - expected).cwiseAbs().maxCoeff(), tolerance)
-      << "got " << actual.transpose() << ", expected " << expected.transpose();
-}
 
 Pose angulated_pose(const Vector3d& tip, double yaw_rad, double pitch_rad) {
   Pose pose = Pose::Identity();

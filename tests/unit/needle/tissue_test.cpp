@@ -6,7 +6,7 @@
 namespace interlock::needle::test {
 namespace {
 
-constexpr double period_s = 0.001;
+constexpr double press_period_s = 0.001;
 constexpr double step_mm = 0.004;
 
 /** Two layers, no noise, no viscosity: each force follows from the table in the header. */
@@ -29,15 +29,15 @@ class Insertion {
     const double way_mm = depth_mm > depth_mm_ ? step_mm : -step_mm;
     while (std::abs(depth_mm_ - depth_mm) > step_mm) {
       depth_mm_ += way_mm;
-      force_n_ = tissue_.press(depth_mm_, period_s);
+      force_n_ = tissue_.press(depth_mm_, press_period_s);
       largest_n_ = std::max(largest_n_, force_n_);
     }
     return force_n_;
   }
 
   double rest(double time_s) {
-    for (double passed_s = 0.0; passed_s < time_s; passed_s += period_s) {
-      force_n_ = tissue_.press(depth_mm_, period_s);
+    for (double passed_s = 0.0; passed_s < time_s; passed_s += press_period_s) {
+      force_n_ = tissue_.press(depth_mm_, press_period_s);
     }
     return force_n_;
   }
@@ -104,7 +104,7 @@ TEST(Tissue, resists_speed_by_its_viscosity) {
   Insertion slow(parameters);
   parameters.viscosity_n_s_per_mm = 0.03;
   Insertion viscous(parameters);
-  EXPECT_NEAR(viscous.to(10.0) - slow.to(10.0), 0.03 * step_mm / period_s, 1e-9);
+  EXPECT_NEAR(viscous.to(10.0) - slow.to(10.0), 0.03 * step_mm / press_period_s, 1e-9);
 }
 
 TEST(Tissue, has_a_texture_of_its_deviation_that_a_seed_repeats) {

@@ -12,7 +12,7 @@ namespace {
 using Code = KinematicsError::Code;
 using Eigen::Vector3d;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 Compensator towards(const Vector3d& target_mm, const CompensatorParameters& parameters = {}) {
   return Compensator::create(parameters, NeedleAxes{}, target_mm).value();

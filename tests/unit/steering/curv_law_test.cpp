@@ -13,7 +13,7 @@ namespace {
 using ::testing::DoubleNear;
 using Code = KinematicsError::Code;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 CurvLaw law() { return CurvLaw::create({}).value(); }
 

@@ -13,7 +13,7 @@ namespace {
 using Code = KinematicsError::Code;
 using Eigen::Vector3d;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 TEST(SteeringTarget, turns_from_minus_y_about_the_needle) {
   EXPECT_NEAR(wrapped_rad(steering_target({0, -5, 50})->turn_rad), 0.0, 1e-12);

@@ -71,7 +71,7 @@ TEST(TipModel, goes_straight_at_full_spin_within_the_ripple) {
 
 TEST(TipModel, agrees_with_the_simulated_needle) {
   Generator generator(4);
-  constexpr double period_s = 0.001;
+  constexpr double step_s = 0.001;
   double worst = 0.0;
   for (int trial = 0; trial < 20; ++trial) {
     needle::NeedleParameters parameters;
@@ -82,8 +82,8 @@ TEST(TipModel, agrees_with_the_simulated_needle) {
     for (int step = 0; step < 10'000; ++step) {
       const double speed = between(generator, 0.0, 10.0);
       const double spin = between(generator, -15.0, 15.0);
-      needle.advance(speed, spin, period_s);
-      tip = moved_tip(tip, {period_s * speed, period_s * spin}, parameters.curvature_per_mm).value();
+      needle.advance(speed, spin, step_s);
+      tip = moved_tip(tip, {step_s * speed, step_s * spin}, parameters.curvature_per_mm).value();
     }
     worst = std::max(worst, (needle.tip_mm() - tip.translation()).norm());
     ASSERT_LT((needle.ahead() - tip.linear().col(2)).norm(), 1e-6);
