@@ -60,7 +60,7 @@ test-console: setup ## Run the console's unit tests
 	@npm --prefix web run --silent test -- --reporter=default --reporter=junit --outputFile=../$(reports)/console.xml
 
 test-integration: build ## Run the tests on real processes
-	@pytest --junitxml=$(reports)/integration.xml tests/integration
+	@pytest --numprocesses=3 --dist=loadscope --junitxml=$(reports)/integration.xml tests/integration
 
 test-browser: build ## Run the tests that click through the console
 	@npm --prefix web run --silent test:browser

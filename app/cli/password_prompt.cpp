@@ -1,6 +1,7 @@
 #include "cli/password_prompt.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -20,13 +21,19 @@ constexpr std::size_t longest_line = 1024;
 
 void interrupt(int /*signal*/) {}
 
-/** The terminal without echo. A signal that would end the program ends the reading instead, so that the echo
- * comes back. */
+/** The terminal without echo. A signal that would end the program ends the wait for input instead, so that
+ * the echo comes back. It is held back until then: one between two waits is not lost. */
 class Silence {
  public:
   explicit Silence(int terminal) : terminal_(terminal) {
     struct sigaction action{};
     action.sa_handler = interrupt;
+    sigset_t held;
+    ::sigemptyset(&held);
+    for (const int signal : signals) {
+      ::sigaddset(&held, signal);
+    }
+    ::sigprocmask(SIG_BLOCK, &held, &mask_);
     for (std::size_t at = 0; at < signals.size(); ++at) {
       ::sigaction(signals[at], &action, &before_[at]);
     }
@@ -44,6 +51,13 @@ class Silence {
     for (std::size_t at = 0; at < signals.size(); ++at) {
       ::sigaction(signals[at], &before_[at], nullptr);
     }
+    ::sigprocmask(SIG_SETMASK, &mask_, nullptr);
+  }
+
+  /** False with EINTR when a signal came, before or during the wait. */
+  [[nodiscard]] bool wait_for_input() const {
+    pollfd input{.fd = terminal_, .events = POLLIN, .revents = 0};
+    return ::ppoll(&input, 1, nullptr, &mask_) == 1;
   }
 
   explicit operator bool() const { return silent_; }
@@ -54,8 +68,16 @@ class Silence {
   int terminal_;
   bool silent_ = false;
   termios attributes_{};
+  sigset_t mask_{};
   std::array<struct sigaction, signals.size()> before_{};
 };
+
+tl::unexpected<Failure> not_read(int error_number) {
+  return failed(ExitCode::precondition,
+                error_number == EINTR
+                    ? "interrupted; nothing was changed"
+                    : "the password cannot be read: " + std::generic_category().message(error_number));
+}
 
 Result<Password> read_line(int file) {
   std::string line;
@@ -68,10 +90,7 @@ Result<Password> read_line(int file) {
   const int error_number = errno;
   Password password(std::move(line));
   if (count < 0) {
-    return failed(ExitCode::precondition,
-                  error_number == EINTR
-                      ? "interrupted; nothing was changed"
-                      : "the password cannot be read: " + std::generic_category().message(error_number));
+    return not_read(error_number);
   }
   if (count == 0 && password.text().empty()) {
     return failed(ExitCode::precondition, "no password was given; nothing was changed");
@@ -84,9 +103,9 @@ void show(int terminal, std::string_view text) {
   [[maybe_unused]] const ssize_t shown = ::write(terminal, text.data(), text.size());
 }
 
-Result<Password> ask(int terminal, const std::string& prompt) {
+Result<Password> ask(int terminal, const Silence& silence, const std::string& prompt) {
   show(terminal, prompt);
-  Result<Password> password = read_line(terminal);
+  Result<Password> password = silence.wait_for_input() ? read_line(terminal) : not_read(errno);
   show(terminal, "\n");
   return password;
 }
@@ -104,11 +123,11 @@ Result<Password> ask_for_new_password(const std::string& user) {
     return failed(ExitCode::precondition,
                   "the terminal would show the password; give it with --password-stdin");
   }
-  Result<Password> first = ask(terminal.get(), "New password of " + user + ": ");
+  Result<Password> first = ask(terminal.get(), silence, "New password of " + user + ": ");
   if (!first) {
     return first;
   }
-  const Result<Password> second = ask(terminal.get(), "Once more: ");
+  const Result<Password> second = ask(terminal.get(), silence, "Once more: ");
   if (!second) {
     return tl::unexpected(second.error());
   }

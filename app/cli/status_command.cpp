@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 using catalog::Family;
 using nlohmann::json;
 
-constexpr auto patience = 5s;
+constexpr auto answer_patience = 5s;
 
 class Table {
  public:
@@ -95,7 +95,7 @@ Result<std::string> status_table(const std::string& body) {
 }
 
 Result<void> show_status(const StatusOptions& options, std::ostream& output) {
-  const Result<HttpAnswer> answer = http_get(options.port, "/api/status", patience);
+  const Result<HttpAnswer> answer = http_get(options.port, "/api/status", answer_patience);
   if (!answer) {
     return tl::unexpected(answer.error());
   }

@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr TrapezoidNames names{"separation_mm", "rise_mm"};
+constexpr TrapezoidNames stage_names{"separation_mm", "rise_mm"};
 
 /** Rotation of the RCM frame in the zFrame at yaw = pitch = 0. It is its own inverse. */
 Matrix3d home_rotation() noexcept { return (Matrix3d() << -1, 0, 0, 0, 0, -1, 0, -1, 0).finished(); }
@@ -75,7 +75,8 @@ KinematicsResult<Pose> NeuroKinematics::pose_along_probe(const NeuroJoints& join
                                                          double offset_mm) const noexcept {
   return check_joints(neuro_joint_fields, joints)
       .and_then([&] {
-        return trapezoid_.rise_mm(geometry_.home_separation_mm + joints.head_mm - joints.feet_mm, names);
+        return trapezoid_.rise_mm(geometry_.home_separation_mm + joints.head_mm - joints.feet_mm,
+                                  stage_names);
       })
       .map([&](double rise_mm) {
         const Vector3d rcm(geometry_.home_rcm_mm[0] + joints.lateral_mm,
@@ -142,12 +143,13 @@ KinematicsResult<NeuroJoints> NeuroKinematics::solve(const Angles& angles, const
       .and_then([&] {
         const Vector3d rcm_home(geometry_.home_rcm_mm[0], geometry_.home_rcm_mm[1], geometry_.home_rcm_mm[2]);
         const Vector3d shift = target - rcm_to_treatment_mm * rotation_of(joints).col(2) - rcm_home;
-        return trapezoid_.separation_mm(shift.y() + home_rise_mm_, names).map([&](double separation_mm) {
-          const double opening_mm = separation_mm - geometry_.home_separation_mm;
-          joints.lateral_mm = shift.x();
-          joints.head_mm = shift.z() + opening_mm / 2.0;
-          joints.feet_mm = shift.z() - opening_mm / 2.0;
-        });
+        return trapezoid_.separation_mm(shift.y() + home_rise_mm_, stage_names)
+            .map([&](double separation_mm) {
+              const double opening_mm = separation_mm - geometry_.home_separation_mm;
+              joints.lateral_mm = shift.x();
+              joints.head_mm = shift.z() + opening_mm / 2.0;
+              joints.feet_mm = shift.z() - opening_mm / 2.0;
+            });
       })
       .and_then([&] { return check_joints(neuro_joint_fields, joints); })
       .map([&] { return joints; });

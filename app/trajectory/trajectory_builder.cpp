@@ -8,9 +8,9 @@
 
 namespace interlock {
 
-using Code = TrajectoryError::Code;
-
 namespace {
+
+using Code = TrajectoryError::Code;
 
 bool accepts(const Axis& axis, double position) {
   const std::optional<std::int32_t> counts = axis.to_counts(position);

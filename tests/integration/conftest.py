@@ -1,5 +1,6 @@
 """Fixtures for every integration test. Programs come from $INTERLOCK_BIN, by default build/release/bin."""
 
+import signal
 import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -8,6 +9,10 @@ import pytest
 from stack import Stack
 
 StackFactory = Callable[..., Stack]
+
+
+# A worker of pytest-xdist ignores Ctrl-C, and its programs would inherit that.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture

@@ -246,6 +246,15 @@ def test_interrupted_question_changes_nothing_and_leaves_the_echo_on(
     assert "bob" not in store.users()
 
 
+def test_an_interruption_before_the_question_is_not_lost(store: Store, at_terminal: Terminal) -> None:
+    while at_terminal.echoes():
+        assert os.waitpid(at_terminal.pid, os.WNOHANG) == (0, 0)
+    os.kill(at_terminal.pid, signal.SIGINT)
+    at_terminal.wait_for("interrupted; nothing was changed")
+    assert at_terminal.end() == PRECONDITION
+    assert "bob" not in store.users()
+
+
 def canonical(record: dict, previous: str, detail: str) -> bytes:
     """The encoding as docs/store.md describes it, written anew."""
     fields = [
