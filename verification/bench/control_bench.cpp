@@ -1,18 +1,18 @@
-/// Times the control tick of the NeuroRobot's seven axes: velocity estimate, controller and drive map of
+/// Times the control tick of all axes of a robot: velocity estimate, controller and drive map of
 /// each, on readings of axes that move. Prints one JSON object.
 ///
 /// Usage: control_bench ROBOT_FILE
 
-#include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
 
 #include "control/axis_controller.hpp"
 #include "robot/robot_file.hpp"
+#include "timing.hpp"
 
 namespace {
 
@@ -29,15 +29,6 @@ std::uint64_t control_tick(std::vector<interlock::AxisController>& controllers, 
     drives += controller.update(seen, tick, setpoint, 1'000'000'000).drive;
   }
   return drives;
-}
-
-nlohmann::json summary(std::vector<std::int64_t> times, std::size_t axes) {
-  std::sort(times.begin(), times.end());
-  const auto at = [&](double share) {
-    return times[static_cast<std::size_t>(share * static_cast<double>(times.size() - 1))];
-  };
-  return {{"axes", axes},       {"ticks", times.size()}, {"median_ns", at(0.5)},
-          {"p99_ns", at(0.99)}, {"p999_ns", at(0.999)},  {"max_ns", times.back()}};
 }
 
 }  // namespace
@@ -66,17 +57,18 @@ int main(int argc, char** argv) {
     ilk_axis_t seen{};
     seen.position_counts = static_cast<std::int32_t>(std::floor(position));
     seen.card_time_us = tick * robot->period_us;
-    const auto start = std::chrono::steady_clock::now();
-    drives += control_tick(controllers, seen, tick, {position, kSpeed, 0.0});
-    const auto spent = std::chrono::steady_clock::now() - start;
+    const std::int64_t spent_ns = interlock::bench::time_of(
+        [&] { drives += control_tick(controllers, seen, tick, {position, kSpeed, 0.0}); });
     if (tick >= kWarmUpTicks) {
-      times.push_back(std::chrono::nanoseconds(spent).count());
+      times.push_back(spent_ns);
     }
   }
   if (drives == 0) {
     std::cerr << "no axis was driven\n";
     return 1;
   }
-  std::cout << summary(times, controllers.size()).dump() << "\n";
+  nlohmann::json printed = interlock::bench::summary(std::move(times));
+  printed["axes"] = controllers.size();
+  std::cout << printed.dump() << "\n";
   return 0;
 }
