@@ -21,15 +21,25 @@ Failure refusal(const std::string& text) { return {ExitCode::refused, text}; }
 std::array<double, 3> numbers(const Eigen::Vector3d& point) { return {point.x(), point.y(), point.z()}; }
 
 ordered_json to_json(const DemoTrial& trial) {
-  ordered_json json{{"desired_mm", numbers(trial.desired)},
+  ordered_json json{{"target", trial.target},
+                    {"desired_mm", numbers(trial.desired)},
                     {"thesis_error_mm", numbers(trial.thesis_error)},
                     {"refused", trial.refused.empty() ? ordered_json() : ordered_json(trial.refused)}};
   if (trial.refused.empty()) {
-    json["reached_mm"] = numbers(trial.reached);
+    json["insertions"] = trial.reached.size();
+    json["reached_mm"] = numbers(trial.reached.back());
     json["error_mm"] = numbers(trial.error());
+    json["first_error_mm"] = numbers(trial.first_error());
     json["time_s"] = trial.time_s;
   }
   return json;
+}
+
+ordered_json to_json(const ErrorDistribution& distribution) {
+  return {
+      {"insertions", distribution.insertions}, {"mean_absolute_mm", numbers(distribution.mean_absolute_mm)},
+      {"mean_mm", distribution.mean_mm},       {"median_mm", distribution.median_mm},
+      {"p95_mm", distribution.p95_mm},         {"worst_mm", distribution.worst_mm}};
 }
 
 ordered_json to_json(const Robot& robot, const DemoOptions& options, const DemoReport& report) {
@@ -38,16 +48,24 @@ ordered_json to_json(const Robot& robot, const DemoOptions& options, const DemoR
   for (const DemoTrial& trial : report.trials) {
     trials.push_back(to_json(trial));
   }
-  return {{"robot", robot.name},
-          {"seed", options.seed},
-          {"table", table.title},
-          {"mapping", table.mapping},
-          {"trials", std::move(trials)},
-          {"random",
-           {{"tried", report.random.tried},
-            {"refused", report.random.refused},
-            {"rms_mm", report.random.rms_mm},
-            {"worst_mm", report.random.worst_mm}}}};
+  return {
+      {"robot", robot.name},
+      {"seed", options.seed},
+      {"table", table.title},
+      {"mapping", table.mapping},
+      {"trials", std::move(trials)},
+      {"tolerance_mm", options.tolerance_mm},
+      {"injected_error",
+       {{"mean_mm", numbers(report.injected.mean)}, {"deviation_mm", numbers(report.injected.deviation)}}},
+      {"distributions",
+       {{"first_scan", to_json(report.first_scan)},
+        {"last_scan", to_json(report.last_scan)},
+        {"thesis", to_json(report.thesis)}}},
+      {"random",
+       {{"tried", report.random.tried},
+        {"refused", report.random.refused},
+        {"rms_mm", report.random.rms_mm},
+        {"worst_mm", report.random.worst_mm}}}};
 }
 
 std::string three(const Eigen::Vector3d& point, const char* format) {
@@ -56,22 +74,36 @@ std::string three(const Eigen::Vector3d& point, const char* format) {
   return text;
 }
 
+std::string row_of(const char* name, const ErrorDistribution& distribution) {
+  std::ostringstream text;
+  text << std::left << std::setw(12) << name << std::right << std::setw(10) << distribution.insertions
+       << "   " << three(distribution.mean_absolute_mm, "%7.3f %7.3f %7.3f") << std::fixed
+       << std::setprecision(3);
+  for (const double figure :
+       {distribution.mean_mm, distribution.median_mm, distribution.p95_mm, distribution.worst_mm}) {
+    text << std::setw(9) << figure;
+  }
+  return text.str() + '\n';
+}
+
 std::string text_of(const Robot& robot, const DemoReport& report) {
   const ThesisTable& table = thesis_table(robot);
   std::ostringstream text;
   text << table.title << ": " << table.mapping << ".\n\n"
        << "target  desired (RAS, mm)             reached                       error                   "
-          "thesis' error\n";
-  for (std::size_t n = 0; n < report.trials.size(); ++n) {
-    const DemoTrial& trial = report.trials[n];
-    text << std::left << std::setw(8) << n + 1 << three(trial.desired, "%9.3f %9.3f %9.3f ");
+          "insertions  thesis' error\n";
+  for (const DemoTrial& trial : report.trials) {
+    text << std::left << std::setw(8) << trial.target << three(trial.desired, "%9.3f %9.3f %9.3f ");
     if (trial.refused.empty()) {
-      text << three(trial.reached, "%9.3f %9.3f %9.3f ") << three(trial.error(), "%7.3f %7.3f %7.3f ")
-           << three(trial.thesis_error, "%7.3f %7.3f %7.3f") << '\n';
+      text << three(trial.reached.back(), "%9.3f %9.3f %9.3f ") << three(trial.error(), "%7.3f %7.3f %7.3f ")
+           << std::setw(12) << trial.reached.size() << three(trial.thesis_error, "%7.3f %7.3f %7.3f") << '\n';
     } else {
       text << "refused: " << trial.refused << '\n';
     }
   }
+  text << "\nerrors (mm)       count   of each axis of the table     mean   median      p95    worst\n"
+       << row_of("first scan", report.first_scan) << row_of("last scan", report.last_scan)
+       << row_of("thesis", report.thesis);
   char random[160];
   std::snprintf(
       random, sizeof random,
@@ -84,14 +116,15 @@ std::string text_of(const Robot& robot, const DemoReport& report) {
 
 std::string csv_of(const DemoReport& report) {
   std::ostringstream text;
-  text << "target,desired_r_mm,desired_a_mm,desired_s_mm,reached_r_mm,reached_a_mm,reached_s_mm,error_r_mm,"
+  text << "target,insertions,first_error_r_mm,first_error_a_mm,first_error_s_mm,desired_r_mm,desired_a_mm,"
+          "desired_s_mm,reached_r_mm,reached_a_mm,reached_s_mm,error_r_mm,"
           "error_a_mm,"
           "error_s_mm,thesis_error_1_mm,thesis_error_2_mm,thesis_error_3_mm,time_s\n";
-  for (std::size_t n = 0; n < report.trials.size(); ++n) {
-    const DemoTrial& trial = report.trials[n];
+  for (const DemoTrial& trial : report.trials) {
     if (trial.refused.empty()) {
-      text << n + 1 << ',' << three(trial.desired, "%.4f,%.4f,%.4f,")
-           << three(trial.reached, "%.4f,%.4f,%.4f,") << three(trial.error(), "%.4f,%.4f,%.4f,")
+      text << trial.target << ',' << trial.reached.size() << ','
+           << three(trial.first_error(), "%.4f,%.4f,%.4f,") << three(trial.desired, "%.4f,%.4f,%.4f,")
+           << three(trial.reached.back(), "%.4f,%.4f,%.4f,") << three(trial.error(), "%.4f,%.4f,%.4f,")
            << three(trial.thesis_error, "%.4f,%.4f,%.4f,") << trial.time_s << '\n';
     }
   }

@@ -133,6 +133,14 @@ void add_demo(CLI::App& cli, DemoCommandOptions& options) {
   command->add_option("--random-targets", options.demo.random_targets, "Targets that are only computed")
       ->check(CLI::Range(0, 1000000))
       ->capture_default_str();
+  command->add_option("--rounds", options.demo.rounds, "How often each target of the table is visited")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_option("--tolerance", options.demo.tolerance_mm, "Distance from the target that may stay, mm")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  command->add_flag("--mechanical-error", options.demo.mechanical_error,
+                    "Add the thesis' errors behind the encoders");
   command->add_option("--csv", options.csv, "Where the table of the targets goes");
   command->add_flag("--json", options.json, "One JSON object");
 }

@@ -24,6 +24,9 @@ Registration random_registration(std::mt19937_64& random) {
   return Registration::create(row_major(pose)).value();
 }
 
+/** After so many the last one stays, however far off. */
+constexpr std::size_t most_insertions = 3;
+
 bool is_clamped(const Alignment& alignment) {
   return std::ranges::any_of(alignment.setpoints, &AxisSetpoint::clamped);
 }
@@ -31,48 +34,82 @@ bool is_clamped(const Alignment& alignment) {
 /** Everything that a target needs. */
 class Demo {
  public:
-  Demo(const Robot& robot, const RobotKinematics& kinematics, RobotRig& rig, const Registration& registration)
-      : robot_(robot), kinematics_(kinematics), rig_(rig), registration_(registration) {}
+  Demo(const Robot& robot, const RobotKinematics& kinematics, RobotRig& rig, const Registration& registration,
+       const MechanicalError& mechanical, double tolerance_mm, std::mt19937_64& random)
+      : robot_(robot),
+        kinematics_(kinematics),
+        rig_(rig),
+        registration_(registration),
+        mechanical_(mechanical),
+        tolerance_mm_(tolerance_mm),
+        random_(random) {}
 
-  DemoResult<DemoTrial> carry_out(const ThesisTrial& trial) {
+  DemoResult<DemoTrial> carry_out(std::size_t target) {
+    const ThesisTrial& trial = thesis_table(robot_).trials[target - 1];
     const Pose& scanner = registration_.scanner_from_zframe();
     const Way way = way_of(robot_, trial);
-    DemoTrial done;
-    done.desired = scanner * way.target;
-    done.thesis_error = trial.actual - trial.desired;
-    const auto alignment =
-        align(robot_, kinematics_, registration_, {scanner * way.entry, done.desired, 0.0});
-    if (!alignment) {
-      done.refused = alignment.error().message();
-      return done;
-    }
-    if (is_clamped(*alignment)) {
-      done.refused = "an axis would have to go beyond its range";
-      return done;
-    }
+    DemoTrial done{.target = target,
+                   .desired = scanner * way.target,
+                   .reached = {},
+                   .thesis_error = trial.actual - trial.desired,
+                   .time_s = 0.0,
+                   .refused = {}};
     const double begun_s = rig_.time_s();
-    const PathProgram program = pose_program(robot_, *alignment, true);
-    return rig_.carry_out(program).and_then([&]() -> DemoResult<DemoTrial> {
-      done.time_s = rig_.time_s() - begun_s;
-      return scan().map([&](const Pose& pose) {
-        done.reached = pose.translation();
+    Eigen::Vector3d seen_off = Eigen::Vector3d::Zero();
+    Eigen::Vector3d correction = Eigen::Vector3d::Zero();
+    while (done.reached.size() < most_insertions) {
+      const auto alignment = align(robot_, kinematics_, registration_,
+                                   {scanner * way.entry + correction, done.desired + correction, 0.0});
+      if (!alignment || is_clamped(*alignment)) {
+        if (done.reached.empty()) {
+          done.refused =
+              alignment ? "an axis would have to go beyond its range" : alignment.error().message();
+        }
         return done;
-      });
-    });
+      }
+      const auto reached = insert(*alignment);
+      if (!reached) {
+        return tl::unexpected(reached.error());
+      }
+      done.reached.push_back(*reached);
+      done.time_s = rig_.time_s() - begun_s;
+      if (done.error().norm() <= tolerance_mm_) {
+        return done;
+      }
+      // The mean of what each insertion was off from where it aimed: one scan alone shows chance, too.
+      seen_off += *reached - done.desired - correction;
+      correction = -seen_off / static_cast<double>(done.reached.size());
+    }
+    return done;
+  }
+
+  /** An error in the scanner's frame, in the axes of the table. */
+  [[nodiscard]] Eigen::Vector3d in_table(const Eigen::Vector3d& error) const {
+    return zframe_from_table(robot_).transpose() *
+           (registration_.scanner_from_zframe().linear().transpose() * error);
   }
 
  private:
-  /** The treatment point as a scan would show it. */
-  [[nodiscard]] DemoResult<Pose> scan() const {
-    return kinematics_.zframe_from_treatment(rig_.true_positions())
-        .map([this](const Pose& pose) -> Pose { return registration_.scanner_from_zframe() * pose; })
-        .map_error([](const KinematicsError& error) { return error.message(); });
+  /** Takes the probe out, aligns and inserts; where the scan then shows the treatment point. */
+  DemoResult<Eigen::Vector3d> insert(const Alignment& alignment) {
+    return rig_.carry_out(pose_program(robot_, alignment, true))
+        .and_then([&]() -> DemoResult<Eigen::Vector3d> {
+          return kinematics_.zframe_from_treatment(rig_.true_positions())
+              .map([this](const Pose& pose) -> Eigen::Vector3d {
+                const Eigen::Vector3d behind = zframe_from_table(robot_) * mechanical_.draw(random_);
+                return registration_.scanner_from_zframe() * (pose.translation() + behind);
+              })
+              .map_error([](const KinematicsError& error) { return error.message(); });
+        });
   }
 
   const Robot& robot_;
   const RobotKinematics& kinematics_;
   RobotRig& rig_;
   const Registration& registration_;
+  const MechanicalError& mechanical_;
+  double tolerance_mm_;
+  std::mt19937_64& random_;
 };
 
 /** Positions of all axes, each within what the kernel accepts. */
@@ -142,15 +179,32 @@ DemoResult<DemoReport> run_demo(const Robot& robot, const ilk_config_t& config,
     return tl::unexpected(ready.error());
   }
   DemoReport report;
-  Demo demo(robot, *kinematics, rig, registration);
-  for (const ThesisTrial& trial : thesis_table(robot).trials) {
-    progress("target " + std::to_string(report.trials.size() + 1));
-    auto done = demo.carry_out(trial);
+  if (options.mechanical_error) {
+    report.injected = published_error(robot);
+  }
+  // Chance of its own: the random targets are the same with and without an injected error.
+  std::mt19937_64 chance(options.seed + 1);
+  Demo demo(robot, *kinematics, rig, registration, report.injected, options.tolerance_mm, chance);
+  std::vector<Eigen::Vector3d> first_errors;
+  std::vector<Eigen::Vector3d> last_errors;
+  const std::size_t targets = thesis_table(robot).trials.size();
+  for (std::size_t visit = 0; visit < options.rounds * targets; ++visit) {
+    const std::string name = "target " + std::to_string(visit % targets + 1) +
+                             (options.rounds == 1 ? "" : ", round " + std::to_string(visit / targets + 1));
+    progress(name);
+    auto done = demo.carry_out(visit % targets + 1);
     if (!done) {
-      return tl::unexpected("target " + std::to_string(report.trials.size() + 1) + ": " + done.error());
+      return tl::unexpected(name + ": " + done.error());
+    }
+    if (done->refused.empty()) {
+      first_errors.push_back(demo.in_table(done->first_error()));
+      last_errors.push_back(demo.in_table(done->error()));
     }
     report.trials.push_back(std::move(*done));
   }
+  report.first_scan = distribution_of(first_errors);
+  report.last_scan = distribution_of(last_errors);
+  report.thesis = published_distribution(robot);
   if (!robot.draping.empty()) {
     progress("draping");
     const PathProgram removal{{MoveLeg{robot.draping, 0.0, 0.0}}};

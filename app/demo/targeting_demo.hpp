@@ -2,10 +2,12 @@
  * @file
  * The targeting workflow of the thesis (figures 33 and 35) on the simulated hardware, unattended: home,
  * register by a random rigid registration, and for each target align with the probe out, insert, confirm by a
- * scan, retract.
+ * scan, retract, and go there once more when the scan shows it too far off, corrected by what the scans
+ * showed.
  *
  * The scan is the true pose of the simulated robot, so that the error is that of the robot: homing, counts,
- * deadbands, backlash. Points and errors are in the scanner's RAS frame, mm.
+ * deadbands, backlash, and if asked for a mechanical error behind the encoders. Points and errors are in the
+ * scanner's RAS frame, mm.
  */
 #pragma once
 
@@ -16,6 +18,7 @@
 #include <vector>
 
 #include "demo/robot_rig.hpp"
+#include "demo/targeting_errors.hpp"
 #include "demo/thesis_trials.hpp"
 
 namespace interlock {
@@ -23,17 +26,22 @@ namespace interlock {
 struct DemoOptions {
   std::uint64_t seed = 1;             /**< of registration, plant and random targets */
   std::size_t random_targets = 10000; /**< reached by computation alone: setpoints in whole counts */
+  std::size_t rounds = 1;             /**< how often each target of the table is visited */
+  double tolerance_mm = 0.05;         /**< distance from the target at which an insertion stays */
+  bool mechanical_error = false;      /**< inject the published one */
 };
 
 /** What became of one target. */
 struct DemoTrial {
+  std::size_t target = 0; /**< from 1, in the order of the table */
   Eigen::Vector3d desired;
-  Eigen::Vector3d reached;      /**< as the scan shows it */
+  std::vector<Eigen::Vector3d> reached; /**< as the scan after each insertion shows it; the last one stays */
   Eigen::Vector3d thesis_error; /**< recomputed from the printed positions, in the frame of the table */
-  double time_s = 0.0;          /**< simulated, from the first move to the scan */
+  double time_s = 0.0;          /**< simulated, from the first move to the last scan */
   std::string refused;          /**< why it was not tried; empty: it was */
 
-  [[nodiscard]] Eigen::Vector3d error() const { return reached - desired; }
+  [[nodiscard]] Eigen::Vector3d first_error() const { return reached.front() - desired; }
+  [[nodiscard]] Eigen::Vector3d error() const { return reached.back() - desired; }
 };
 
 /** How far random targets are from what whole counts reach. */
@@ -46,6 +54,10 @@ struct RandomTargets {
 
 struct DemoReport {
   std::vector<DemoTrial> trials;
+  MechanicalError injected;     /**< zero unless asked for */
+  ErrorDistribution first_scan; /**< as all of these in the axes of the table */
+  ErrorDistribution last_scan;
+  ErrorDistribution thesis;
   RandomTargets random;
 };
 

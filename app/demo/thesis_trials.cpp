@@ -76,6 +76,11 @@ const ThesisTable& thesis_table(const Robot& robot) {
   return std::holds_alternative<NeuroRcm>(robot.kinematics) ? neuro_table : prostate_table;
 }
 
+Eigen::Matrix3d zframe_from_table(const Robot& robot) {
+  const bool is_neuro = std::holds_alternative<NeuroRcm>(robot.kinematics);
+  return is_neuro ? Eigen::Matrix3d::Identity() : (Eigen::Matrix3d() << 0, 1, 0, 1, 0, 0, 0, 0, 1).finished();
+}
+
 Way way_of(const Robot& robot, const ThesisTrial& trial) {
   const auto* prostate = std::get_if<ProstateTrapezoids>(&robot.kinematics);
   return prostate == nullptr ? neuro_way(trial) : prostate_way(*prostate, trial);

@@ -35,6 +35,10 @@ struct Way {
 /** The table of the robot's family. */
 const ThesisTable& thesis_table(const Robot& robot);
 
+/** Carries a difference of two points in the frame of the table to the robot's zFrame. Its transpose goes
+ * back. */
+Eigen::Matrix3d zframe_from_table(const Robot& robot);
+
 /** Where a trial leads the robot. */
 Way way_of(const Robot& robot, const ThesisTrial& trial);
 

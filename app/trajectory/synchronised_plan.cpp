@@ -1,7 +1,8 @@
 #include "trajectory/synchronised_plan.hpp"
 
 #include <algorithm>
-#include <ruckig/ruckig.hpp>
+
+#include "trajectory/ruckig_calculate.hpp"
 
 namespace interlock {
 
@@ -94,10 +95,10 @@ TrajectoryError refusal(ruckig::Result result) {
 }
 
 /** The profiles of all axes. */
-TrajectoryResult<Output> solved(const Input& input) {
+TrajectoryResult<Output> solved(Input& input) {
   Planner planner(input.degrees_of_freedom);
   Output output(input.degrees_of_freedom);
-  const ruckig::Result result = planner.calculate(input, output);
+  const ruckig::Result result = calculate(planner, input, output);
   if (result != ruckig::Working && result != ruckig::Finished) {
     return tl::unexpected(refusal(result));
   }

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ruckig/ruckig.hpp>
+
+#include "trajectory/ruckig_calculate.hpp"
 
 namespace interlock {
 namespace {
@@ -72,7 +73,7 @@ bool TickPlanner::plan(std::span<const AxisPath> axes, double minimum_duration_s
     return false;
   }
   shop.input.minimum_duration = minimum_duration_s;
-  const ruckig::Result result = shop.planner.calculate(shop.input, shop.plan);
+  const ruckig::Result result = calculate(shop.planner, shop.input, shop.plan);
   if (result != ruckig::Working && result != ruckig::Finished) {
     return false;
   }

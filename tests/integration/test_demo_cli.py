@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 import subprocess
 from pathlib import Path
 
@@ -46,6 +47,31 @@ def test_every_target_of_the_thesis_is_reached_within_a_tenth_of_a_millimetre(
     assert answer["random"]["worst_mm"] <= MECHANICAL_ERROR_MM
     with table.open() as file:
         assert len(list(csv.DictReader(file))) == 7
+
+
+def test_a_scan_that_shows_the_target_missed_leads_there_once_more() -> None:
+    trials = json.loads(demo("neuro", "--json", "--random-targets", "0", "--tolerance", "0.05").stdout)[
+        "trials"
+    ]
+    again = [trial for trial in trials if trial["insertions"] > 1]
+    assert again
+    for trial in again:
+        assert math.hypot(*trial["first_error_mm"]) > 0.05
+        assert trial["insertions"] == 3 or math.hypot(*trial["error_mm"]) <= 0.05
+    once = json.loads(demo("neuro", "--json", "--random-targets", "0", "--tolerance", "1").stdout)["trials"]
+    assert {trial["insertions"] for trial in once} == {1}
+
+
+@pytest.mark.parametrize("robot", ["neuro", "prostate"])
+def test_injected_mechanical_errors_are_distributed_as_the_thesis_errors(robot: str) -> None:
+    arguments = ("--json", "--random-targets", "0", "--rounds", "30", "--mechanical-error")
+    answer = json.loads(demo(robot, *arguments, "--tolerance", "100").stdout)
+    shown, printed = answer["distributions"]["first_scan"], answer["distributions"]["thesis"]
+    assert shown == answer["distributions"]["last_scan"]
+    assert (shown["insertions"], printed["insertions"]) == (210, 7)
+    assert shown["mean_mm"] == pytest.approx(printed["mean_mm"], rel=0.25)
+    without = json.loads(demo(robot, "--json", "--random-targets", "0").stdout)
+    assert without["injected_error"] == {"mean_mm": [0, 0, 0], "deviation_mm": [0, 0, 0]}
 
 
 def test_the_same_seed_gives_the_same_demonstration_and_another_one_another(tmp_path: Path) -> None:

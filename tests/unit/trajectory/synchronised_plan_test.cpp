@@ -2,9 +2,12 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
+
+#include "trajectory/tick_planner.hpp"
 
 namespace interlock {
 namespace {
@@ -141,6 +144,23 @@ TEST(PlanMove, AxesThatAreThereStayThere) {
   EXPECT_EQ(plan->duration_s, 0.0);
   EXPECT_EQ(plan->axes[0].at(0.0), (MotionState{3.0, 0.0, 0.0}));
   EXPECT_EQ(plan->axes[0].reach(), (PositionRange{3.0, 3.0}));
+}
+
+TEST(PlanMove, EveryWayOfWholeCountsHasAPlan) {
+  const double unit = 1.0 / 39.3663;
+  const RateLimits limits{500 * unit, 5000 * unit, 100'000 * unit};
+  TickPlanner planner;
+  for (int from = -1200; from <= 0; from += 7) {
+    for (int counts = 1; counts <= 60; ++counts) {
+      AxisTarget target = target_of("insertion", {from * unit}, (from + counts) * unit);
+      target.axis.limits = limits;
+      const auto plan = plan_move(std::vector{target});
+      ASSERT_TRUE(plan) << from << ' ' << counts << ": " << plan.error().message();
+      const std::array path{TickPlanner::AxisPath{target.axis.now, target.position, limits}};
+      ASSERT_TRUE(planner.plan(path, 0.0)) << from << ' ' << counts;
+      ASSERT_NEAR(planner.duration_s(), plan->duration_s, 1e-9);
+    }
+  }
 }
 
 TEST(PlanMove, AnAxisTooFastToStayWithinItsPositionsIsRefused) {
