@@ -10,6 +10,13 @@
 #include "request.h"
 
 /** Phase 1: state and a slice of the configuration. Nothing else of a damaged state is looked at. */
+/*@ requires valid: \valid_read(config) && \valid(state) && \valid(alarms);
+  @ requires apart: \separated(config, state, alarms);
+  @ assigns  *state, alarms->configuration_damaged, alarms->configuration_crc;
+  @ ensures  P14_contained: !\old(sealed(state) && sound(state)) ==>
+  @   state->mode == ILK_MODE_LOCKED && state->cause == ILK_CAUSE_INTEGRITY;
+  @ ensures  P13_untrusted: !\old(sealed(state) && sound(state)) ==> state->config_sound == 0;
+  @*/
 static void check_integrity(const ilk_config_t *config, ilk_state_t *state, ilk_alarms_t *alarms) {
   if (!ilk_state_is_sound(state)) {
     ilk_state_rebuild(state, config, ILK_CAUSE_INTEGRITY, state->seal);
