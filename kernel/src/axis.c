@@ -388,6 +388,37 @@ void ilk_observe_sensor(const ilk_config_t *config, ilk_axis_t *axis) {
   }
 }
 
+/** Homing by what the frame said, then the fault that was found first. */
+/*@ requires valid: \valid_read(config) && \valid(axis) && \separated(config, axis);
+  @ requires sound: sound_axis(axis);
+  @ requires known: seen.fault < ILK_FAULT_COUNT;
+  @ assigns  axis->state, axis->setpoint_counts, axis->drive, axis->amplitude, axis->lease_ticks,
+  @          axis->homing_phase, axis->setpoint_changed, axis->fault, axis->fault_tick, axis->fault_value,
+  @          axis->homed, axis->position_counts, axis->homing_ticks, axis->homing_mark_raw, axis->rest_ticks;
+  @ ensures  P15_invariant: sound_axis(axis);
+  @ ensures  P6_faulted: seen.fault != ILK_FAULT_NONE ==> axis->state == ILK_AXIS_FAULTED;
+  @ ensures  P6_reference: seen.fault == ILK_FAULT_CARD_LOST || seen.fault == ILK_FAULT_JUMP ==> axis->homed == 0;
+  @ ensures  new: \result <==> \old(axis->state) != ILK_AXIS_FAULTED && axis->state == ILK_AXIS_FAULTED;
+  @ ensures  P8_first_fault: \result && seen.fault != ILK_FAULT_NONE ==>
+  @   axis->fault == seen.fault && axis->fault_tick == tick && axis->fault_value == seen.value;
+  @ ensures  P8_latch: fault_latched{Pre, Post}(axis);
+  @ ensures  mode: axis->state == \old(axis->state) || axis->state == ILK_AXIS_FAULTED
+  @   || (\old(axis->state) == ILK_AXIS_HOMING && axis->state == ILK_AXIS_ENABLED);
+  @*/
+static bool conclude(const ilk_axis_config_t *config, ilk_axis_t *axis, finding_t seen, uint32_t tick) {
+  const ilk_homing_result_t homing = ilk_homing_advance(config, axis);
+  finding_t finding = seen;
+  if (homing.fault != ILK_FAULT_NONE) {
+    const finding_t homing_finding = {.fault = homing.fault, .value = homing.value};
+    finding = first_of(seen, homing_finding);
+  }
+  bool faulted = false;
+  if (finding.fault != ILK_FAULT_NONE) {
+    faulted = raise_fault(axis, finding.fault, finding.value, tick);
+  }
+  return faulted;
+}
+
 bool ilk_observe_axis(const ilk_config_t *config, const ilk_axis_config_t *axis_config, ilk_axis_t *axis,
                       const ilk_reading_t *reading, uint32_t tick) {
   const bool valid = axis->card_valid != 0u;
@@ -395,17 +426,10 @@ bool ilk_observe_axis(const ilk_config_t *config, const ilk_axis_config_t *axis_
   axis->switch_triggered = flag_of(has_switch && (!valid || reading->switch_triggered));
   axis->ticks_since_frame = count_up(axis->ticks_since_frame, UINT32_MAX);
   run_lease_down(axis);
-  finding_t finding = valid ? observe_valid(axis_config, axis, reading) : observe_missing(config, axis);
-  const ilk_homing_result_t homing = ilk_homing_advance(axis_config, axis);
-  if (homing.fault != ILK_FAULT_NONE) {
-    const finding_t homing_finding = {.fault = homing.fault, .value = homing.value};
-    finding = first_of(finding, homing_finding);
-  }
-  bool faulted = false;
-  if (finding.fault != ILK_FAULT_NONE) {
-    faulted = raise_fault(axis, finding.fault, finding.value, tick);
-  }
-  return faulted;
+  const finding_t seen = valid ? observe_valid(axis_config, axis, reading) : observe_missing(config, axis);
+  /*@ assert P15_invariant: sound_axis(axis); */
+  /*@ assert P8_latch: fault_latched{Pre, Here}(axis); */
+  return conclude(axis_config, axis, seen, tick);
 }
 
 void ilk_axis_note_drive(const ilk_axis_config_t *config, ilk_axis_t *axis, uint32_t direction) {

@@ -10,6 +10,13 @@
 #include "request.h"
 
 /** Phase 1: state and a slice of the configuration. Nothing else of a damaged state is looked at. */
+/*@ requires valid: \valid_read(config) && \valid(state) && \valid(alarms);
+  @ requires apart: \separated(config, state, alarms);
+  @ assigns  *state, alarms->configuration_damaged, alarms->configuration_crc;
+  @ ensures  P14_contained: !\old(sealed(state) && sound(state)) ==>
+  @   state->mode == ILK_MODE_LOCKED && state->cause == ILK_CAUSE_INTEGRITY;
+  @ ensures  P13_untrusted: !\old(sealed(state) && sound(state)) ==> state->config_sound == 0;
+  @*/
 static void check_integrity(const ilk_config_t *config, ilk_state_t *state, ilk_alarms_t *alarms) {
   if (!ilk_state_is_sound(state)) {
     ilk_state_rebuild(state, config, ILK_CAUSE_INTEGRITY, state->seal);
@@ -31,9 +38,21 @@ static bool answered(const ilk_inputs_t *in, uint32_t slot) {
 }
 
 /** Phase 2: checksum, freshness and counters of each card, and whether the bus says anything at all. */
+/*@ requires valid: \valid_read(config) && \valid(state) && \valid_read(in)
+  @   && \valid(readings + (0 .. ILK_SLOTS - 1));
+  @ requires apart: \separated(config, state, readings + (0 .. ILK_SLOTS - 1))
+  @   && \separated(in, state, readings + (0 .. ILK_SLOTS - 1));
+  @ assigns  state->axis[0 .. ILK_SLOTS - 1], state->bus_bad_ticks, readings[0 .. ILK_SLOTS - 1];
+  @ ensures  P2_bus: state->bus_bad_ticks == 0
+  @   || state->bus_bad_ticks == \min(\old(state->bus_bad_ticks) + 1, UINT32_MAX);
+  @*/
 static void read_frames(const ilk_config_t *config, ilk_state_t *state, const ilk_inputs_t *in,
                         ilk_reading_t readings[ILK_SLOTS]) {
   bool any_valid = false;
+  /*@ loop invariant range: 0 <= slot <= ILK_SLOTS;
+    @ loop assigns slot, any_valid, state->axis[0 .. ILK_SLOTS - 1], readings[0 .. ILK_SLOTS - 1];
+    @ loop variant ILK_SLOTS - slot;
+    @*/
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
     readings[slot] = ilk_frame_unpack(in->frame[slot]);
     if (has_card(&config->axis[slot])) {
