@@ -1,6 +1,10 @@
 """Frequency Sweep on real processes: within the band of the axis, and never beyond it."""
 
+import subprocess
+from pathlib import Path
+
 import pytest
+from bare_kernel import BIN, ROOT
 from conftest import StackFactory
 from motion import act, motor, press, proposal, set_home, unlock, wait_for_proposal, wait_until
 from stack import Stack
@@ -67,3 +71,16 @@ def test_a_sweep_without_all_its_fields_is_none(stack: StackFactory, field: str)
     robot = ready(stack)
     answer = sweep(robot, **{name: value for name, value in BAND.items() if name != field})
     assert (answer["status"], answer["field"]) == (422, field)
+
+
+def test_a_robot_without_a_high_frequency_card_lists_no_sweep(tmp_path: Path) -> None:
+    listed = (
+        (ROOT / "models/robots/neuro.toml")
+        .read_text()
+        .replace('"ablation"]', '"ablation", "frequency_sweep"]')
+    )
+    file = tmp_path / "neuro.toml"
+    file.write_text(listed)
+    checked = subprocess.run([BIN / "interlock", "model", "check", file], capture_output=True, text=True)
+    assert checked.returncode == 1
+    assert "no axis has a high-frequency card" in checked.stderr
