@@ -20,6 +20,11 @@ inline constexpr std::uint32_t word_step = 4063228;
 inline constexpr std::uint32_t points = 24;
 inline constexpr std::uint32_t fastest_word = slowest_word - (points - 1) * word_step;
 
+/** The published relation of word and frequency. */
+inline constexpr double words_per_hz = 22009.0;
+
+constexpr double hz_of(std::uint32_t word) noexcept { return word / words_per_hz; }
+
 /** Column of the map: which of its two wave tables the card plays first. */
 enum class Wave : std::uint8_t {
   positive, /**< direction bit 0 */

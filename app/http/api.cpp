@@ -19,6 +19,8 @@ using nlohmann::json;
 using std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds beat_period{33};
+/** Ten times a second. */
+constexpr std::uint32_t beats_per_biopsy = 3;
 /** Without any request, and without an open stream, which counts as one. */
 constexpr std::chrono::seconds authority_idle_limit{60};
 
@@ -34,10 +36,11 @@ Api::Api(const asio::any_io_executor& executor, const Robot& robot, const ilk_co
           robot, config, [this](const Command& command) { return control_.send(command); }, clocks.utc),
       log_tail_(executor, log.ring(), stream_),
       bench_(executor, bench_socket),
+      biopsy_(robot),
       sessions_(store, clocks),
       authority_(static_cast<std::uint32_t>(std::chrono::system_clock::to_time_t(clocks.utc()))),
-      context_{executor,  robot,      config, control_,    book_, stream_,    bench_,       store,
-               sessions_, authority_, work_,  trajectory_, log,   clocks.utc, clocks.steady},
+      context_{executor, robot,     config,     control_, book_,       stream_, bench_,     biopsy_,
+               store,    sessions_, authority_, work_,    trajectory_, log,     clocks.utc, clocks.steady},
       router_([this](const Caller& caller) -> std::optional<Problem> {
         const auto held = context_.need_authority(caller);
         return held ? std::nullopt : std::optional(held.error());
@@ -161,6 +164,15 @@ asio::awaitable<tl::expected<std::optional<Session>, Problem>> Api::session_of(c
   co_return found;
 }
 
+void Api::tell_biopsy(const ControlView& seen) {
+  if (!biopsy_.has_needle() || stream_.empty() || ++beats_ % beats_per_biopsy != 0) {
+    return;
+  }
+  json message = biopsy_.to_json(seen, book_.open_biopsy() != nullptr);
+  message["type"] = "biopsy";
+  stream_.send_text(message);
+}
+
 void Api::look_after_pedal(const ControlView& seen) {
   if (bench_.overdue(seen)) {
     spdlog::warn("the bench pedal was not renewed for 500 ms: released");
@@ -207,6 +219,7 @@ asio::awaitable<void> Api::beat() {
       stream_.send_state(
           encode_state(seen, context_.config, open_targets(context_.robot, book_), steady_clock::now()));
     }
+    tell_biopsy(seen);
     look_after_pedal(seen);
     look_after_sessions();
   }

@@ -15,6 +15,7 @@
 #include "http/routes/audit_routes.hpp"
 #include "http/routes/authority_routes.hpp"
 #include "http/routes/bench_routes.hpp"
+#include "http/routes/biopsy_routes.hpp"
 #include "http/routes/communication_routes.hpp"
 #include "http/routes/log_routes.hpp"
 #include "http/routes/mode_routes.hpp"
@@ -69,6 +70,7 @@ class Api {
   void follow_proposals();
   void follow_kernel();
   void follow_sessions();
+  void tell_biopsy(const ControlView& seen);
   void look_after_pedal(const ControlView& seen);
   void look_after_sessions();
   boost::asio::awaitable<tl::expected<std::optional<Session>, Problem>> session_of(const Request& request);
@@ -78,17 +80,20 @@ class Api {
   StreamHub stream_;
   LogTail log_tail_;
   Bench bench_;
+  BiopsyDesk biopsy_;
   LiveSessions sessions_;
   Authority authority_;
   WorkPool work_;
   LoadedTrajectory trajectory_;
   Context context_;
   Router router_;
+  std::uint32_t beats_ = 0;
   SystemRoutes system_routes_{context_, router_};
   PositionRoutes position_routes_{context_, router_}; /**< before the axes, whose pattern its paths match */
   MotorRoutes motor_routes_{context_, router_};
   ProposalRoutes proposal_routes_{context_, router_};
   BenchRoutes bench_routes_{context_, router_};
+  BiopsyRoutes biopsy_routes_{context_, router_};
   AccountRoutes account_routes_{context_, router_};
   UserRoutes user_routes_{context_, router_};
   AuthorityRoutes authority_routes_{context_, router_};

@@ -26,6 +26,7 @@ struct Announcement {
 const ControlView& Context::view() const {
   const ControlView& newest = control.view();
   book.follow(newest);
+  biopsy.follow(newest);
   return newest;
 }
 

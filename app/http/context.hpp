@@ -11,6 +11,7 @@
 #include "http/access.hpp"
 #include "http/authority.hpp"
 #include "http/bench.hpp"
+#include "http/biopsy_desk.hpp"
 #include "http/clocks.hpp"
 #include "http/control_client.hpp"
 #include "http/live_sessions.hpp"
@@ -33,6 +34,7 @@ struct Context {
   ProposalBook& book;
   StreamHub& stream;
   Bench& bench;
+  BiopsyDesk& biopsy;
   StoreGateway& store;
   LiveSessions& sessions;
   Authority& authority;

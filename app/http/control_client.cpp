@@ -32,15 +32,13 @@ const ControlView& ControlClient::view() {
 }
 
 bool ControlClient::send(Command command) {
-  if (auto* order = std::get_if<Order>(&command)) {
-    order->stops = stops();
-  } else if (auto* home = std::get_if<HomeOrder>(&command)) {
-    home->stops = stops();
-  } else if (auto* path = std::get_if<PathOrder>(&command)) {
-    path->stops = stops();
-  } else if (auto* asked = std::get_if<Ask>(&command)) {
-    asked->stops = stops();
-  }
+  std::visit(
+      [this](auto& each) {
+        if constexpr (requires { each.stops; }) {
+          each.stops = stops();
+        }
+      },
+      command);
   return mailbox_.commands.push(command);
 }
 

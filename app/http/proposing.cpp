@@ -1,5 +1,6 @@
 #include "http/proposing.hpp"
 
+#include "control/frequency_map.hpp"
 #include "http/problems.hpp"
 
 namespace interlock::web {
@@ -37,12 +38,30 @@ json detail_of(const PathDraft& draft, const Robot& robot) {
   return {{"kind", "path"}, {"mode", mode_name(draft.mode)}, {"axes", std::move(axes)}};
 }
 
+json detail_of(const SweepDraft& draft, const Robot& robot) {
+  return {{"kind", "sweep"},
+          {"axis", robot.at_slot(draft.slot)->name},
+          {"from_hz", frequency_map::hz_of(draft.steps.word(0))},
+          {"to_hz", frequency_map::hz_of(draft.steps.word(draft.steps.count - 1))},
+          {"count", draft.steps.count}};
+}
+
+json detail_of(const BiopsyDraft& draft, const Robot& /*robot*/) {
+  return {{"kind", "biopsy"}, {"target_mm", draft.target_mm}};
+}
+
 tl::expected<Proposal, Refusal> enter(ProposalBook& book, const Draft& draft, const ControlView& view) {
   if (const auto* move = std::get_if<MoveDraft>(&draft)) {
     return book.propose(*move, view);
   }
   if (const auto* path = std::get_if<PathDraft>(&draft)) {
     return book.propose_path(*path, view);
+  }
+  if (const auto* biopsy = std::get_if<BiopsyDraft>(&draft)) {
+    return book.propose_biopsy(*biopsy, view);
+  }
+  if (const auto* sweep = std::get_if<SweepDraft>(&draft)) {
+    return book.propose_sweep(*sweep, view);
   }
   return book.propose_home(std::get<HomeDraft>(draft), view);
 }
@@ -63,7 +82,11 @@ boost::asio::awaitable<tl::expected<Proposal, Problem>> propose(const Context& c
   if (const auto kernel = context.need_kernel(); !kernel) {
     co_return fail(kernel.error());
   }
-  co_return enter(context.book, draft, context.view()).map_error(refused);
+  auto made = enter(context.book, draft, context.view());
+  if (made && made->kind == ProposalKind::biopsy) {
+    context.biopsy.begin(made->id);
+  }
+  co_return std::move(made).map_error(refused);
 }
 
 }  // namespace interlock::web

@@ -10,7 +10,7 @@
 
 namespace interlock::web {
 
-using Draft = std::variant<MoveDraft, HomeDraft, PathDraft>;
+using Draft = std::variant<MoveDraft, HomeDraft, PathDraft, SweepDraft, BiopsyDraft>;
 
 /**
  * Records the draft in the audit, then proposes it. Nothing is proposed when that fails (503 STORE), when the

@@ -8,11 +8,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "control/axis_controller.hpp"
 #include "interlock/types.h"
+#include "motion/force_watch.hpp"
 #include "robot/robot.hpp"
 
 namespace interlock {
@@ -79,17 +81,32 @@ class HomeStepPlan {
   std::uint32_t mask_ = 0;
 };
 
+/** The needle of a robot that takes biopsies. */
+struct NeedlePlan {
+  std::uint32_t insertion_slot = 0;
+  std::uint32_t rotation_slot = 0;
+  ForceInputs force;
+};
+
 /** The robot as the control thread sees it. A slot without a motor has `rules.max_drive == 0`. */
 struct RobotPlan {
   std::array<AxisPlan, ILK_SLOTS> axis{};
   std::uint32_t period_us = 1000;
   std::uint32_t lease_max_ticks = 0;
   std::vector<HomeStepPlan> home_steps;
+  std::optional<NeedlePlan> needle;
 
   RobotPlan(const Robot& robot, const ilk_config_t& config)
       : period_us(config.period_us),
         lease_max_ticks(config.lease_max_ticks),
         home_steps(robot.home_steps.begin(), robot.home_steps.end()) {
+    const Axis* insertion = robot.with_role("insertion");
+    const Axis* rotation = robot.with_role("rotation");
+    if (robot.biopsy && insertion != nullptr && rotation != nullptr) {
+      const Biopsy& biopsy = *robot.biopsy;
+      needle = NeedlePlan{
+          insertion->slot, rotation->slot, {biopsy.sensor_slot, biopsy.hand.adc, biopsy.needle.adc}};
+    }
     for (const Axis& each : robot.axes) {
       const MotionRates rates = each.motion.value_or(MotionRates{});
       axis[each.slot] = AxisPlan{config.axis[each.slot], each.drive.min, each.counts_per_unit, rates,

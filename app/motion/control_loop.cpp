@@ -188,32 +188,18 @@ void ControlLoop::send_heartbeat() noexcept {
   }
 }
 
+/** One that is not taken now stays at the head of the queue until the next tick. */
 void ControlLoop::take_commands() noexcept {
-  while (mailbox_.commands.read_available() != 0 && take(mailbox_.commands.front())) {
+  const auto taken = [this](const Command& command) {
+    return std::visit([this](const auto& each) { return take(each); }, command);
+  };
+  while (mailbox_.commands.read_available() != 0 && taken(mailbox_.commands.front())) {
     mailbox_.commands.pop();
   }
 }
 
-/** False: not now, so it stays at the head of the queue until the next tick. */
-bool ControlLoop::take(const Command& command) noexcept {
-  if (const auto* order = std::get_if<Order>(&command)) {
-    return take_order(*order);
-  }
-  if (const auto* order = std::get_if<HomeOrder>(&command)) {
-    return take_order(*order);
-  }
-  if (const auto* order = std::get_if<PathOrder>(&command)) {
-    return take_order(*order);
-  }
-  if (const auto* cancel = std::get_if<Cancel>(&command)) {
-    conductor_.end(cancel->proposal, OrderReason::cancelled, view_.snapshot.state.tick);
-    return true;
-  }
-  return send(std::get<Ask>(command));
-}
-
 template <typename AnyOrder>
-bool ControlLoop::take_order(const AnyOrder& order) noexcept {
+bool ControlLoop::take(const AnyOrder& order) noexcept {
   const std::uint32_t now = view_.snapshot.state.tick;
   const std::int32_t newer = newer_than_stop(order.stops);
   if (newer > 0) {
@@ -226,12 +212,22 @@ bool ControlLoop::take_order(const AnyOrder& order) noexcept {
   return true;
 }
 
+bool ControlLoop::take(const SeenImage& seen) noexcept {
+  conductor_.see(seen);
+  return true;
+}
+
+bool ControlLoop::take(const Cancel& cancel) noexcept {
+  conductor_.end(cancel.proposal, OrderReason::cancelled, view_.snapshot.state.tick);
+  return true;
+}
+
 /** Below 0: it was asked for before the newest STOP; above 0: that STOP has still to be obeyed. */
 std::int32_t ControlLoop::newer_than_stop(std::uint32_t stops) const noexcept {
   return static_cast<std::int32_t>(stops - stops_seen_);
 }
 
-bool ControlLoop::send(const Ask& ask) noexcept {
+bool ControlLoop::take(const Ask& ask) noexcept {
   const AskOrigin origin{ask.ticket, ask.kind, ask.slot};
   const std::int32_t newer = newer_than_stop(ask.stops);
   if (newer > 0) {
@@ -260,35 +256,29 @@ void ControlLoop::publish() noexcept {
   view_.orders = conductor_.orders();
   view_.home = conductor_.home();
   view_.path = conductor_.path();
+  view_.sweep = conductor_.sweep();
+  view_.biopsy = conductor_.biopsy().status();
+  view_.biopsy_now = conductor_.biopsy().now();
+  view_.force = conductor_.biopsy().force();
   mailbox_.view.writing() = view_;
   mailbox_.view.publish();
-  const bool changed =
-      view_.orders != published_orders_ || view_.home != published_home_ || view_.path != published_path_;
+  const bool changed = view_.orders != published_orders_ || view_.home != published_home_ ||
+                       view_.path != published_path_ || view_.sweep != published_sweep_ ||
+                       view_.biopsy != published_biopsy_;
   if (std::exchange(noticed_, false) || changed) {
     published_orders_ = view_.orders;
     published_home_ = view_.home;
     published_path_ = view_.path;
+    published_sweep_ = view_.sweep;
+    published_biopsy_ = view_.biopsy;
     mailbox_.network_wake.signal();
   }
 }
 
 void ControlLoop::refuse_commands() noexcept {
-  const std::uint32_t tick = view_.snapshot.state.tick;
   const bool any = mailbox_.commands.read_available() != 0;
-  mailbox_.commands.consume_all([this, tick](const Command& command) {
-    if (const auto* order = std::get_if<Order>(&command)) {
-      conductor_.take(*order, tick);
-      conductor_.end(order->proposal, OrderReason::link_lost, tick);
-    } else if (const auto* home = std::get_if<HomeOrder>(&command)) {
-      conductor_.take(*home, tick);
-      conductor_.end(home->proposal, OrderReason::link_lost, tick);
-    } else if (const auto* path = std::get_if<PathOrder>(&command)) {
-      conductor_.take(*path, tick);
-      conductor_.end(path->proposal, OrderReason::link_lost, tick);
-    } else if (const auto* ask = std::get_if<Ask>(&command)) {
-      answer_lost(AskOrigin{ask->ticket, ask->kind, ask->slot});
-    }
-  });
+  mailbox_.commands.consume_all(
+      [this](const Command& command) { std::visit([this](const auto& each) { refuse(each); }, command); });
   const std::uint32_t stops = mailbox_.stops.load(std::memory_order_acquire);
   if (stops != stops_sent_) {
     stops_sent_ = stops;
@@ -298,6 +288,23 @@ void ControlLoop::refuse_commands() noexcept {
     publish();
   }
 }
+
+template <typename AnyOrder>
+void ControlLoop::refuse(const AnyOrder& order) noexcept {
+  const std::uint32_t tick = view_.snapshot.state.tick;
+  conductor_.take(order, tick);
+  conductor_.end(order.proposal, OrderReason::link_lost, tick);
+}
+
+void ControlLoop::refuse(const SeenImage& /*seen*/) noexcept {
+  // Without the link no biopsy is open.
+}
+
+void ControlLoop::refuse(const Cancel& /*cancel*/) noexcept {
+  // Without the link nothing is open.
+}
+
+void ControlLoop::refuse(const Ask& ask) noexcept { answer_lost(AskOrigin{ask.ticket, ask.kind, ask.slot}); }
 
 void ControlLoop::answer_lost(const RequestOrigin& origin) noexcept {
   if (const auto* ask = std::get_if<AskOrigin>(&origin)) {

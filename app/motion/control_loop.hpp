@@ -38,16 +38,22 @@ class ControlLoop {
   void dispatch_verdict(const ilk_event_t& event) noexcept;
   void send_heartbeat() noexcept;
   void take_commands() noexcept;
-  [[nodiscard]] bool take(const Command& command) noexcept;
   template <typename AnyOrder>
-  [[nodiscard]] bool take_order(const AnyOrder& order) noexcept;
+  [[nodiscard]] bool take(const AnyOrder& order) noexcept;
+  [[nodiscard]] bool take(const SeenImage& seen) noexcept;
+  [[nodiscard]] bool take(const Cancel& cancel) noexcept;
+  [[nodiscard]] bool take(const Ask& ask) noexcept;
   [[nodiscard]] std::int32_t newer_than_stop(std::uint32_t stops) const noexcept;
-  [[nodiscard]] bool send(const Ask& ask) noexcept;
   void lose_verdict(const RequestOrigin& origin) noexcept;
   void send_wishes() noexcept;
   void publish() noexcept;
 
   void refuse_commands() noexcept;
+  template <typename AnyOrder>
+  void refuse(const AnyOrder& order) noexcept;
+  void refuse(const SeenImage& seen) noexcept;
+  void refuse(const Cancel& cancel) noexcept;
+  void refuse(const Ask& ask) noexcept;
   void answer_lost(const RequestOrigin& origin) noexcept;
   [[nodiscard]] bool room_for_events() const noexcept;
   void notify(const Notice& notice) noexcept;
@@ -60,6 +66,8 @@ class ControlLoop {
   OrderTable published_orders_{};
   HomeStatus published_home_;
   PathStatus published_path_;
+  SweepStatus published_sweep_;
+  BiopsyStatus published_biopsy_;
   std::string attach_complaint_;
   std::chrono::milliseconds back_off_;
   std::uint32_t heartbeat_tick_ = 0;

@@ -16,6 +16,8 @@
 #include <variant>
 
 #include "interlock/link.h"
+#include "motion/biopsy_run.hpp"
+#include "motion/force_watch.hpp"
 #include "motion/order.hpp"
 #include "motion/triple_buffer.hpp"
 #include "motion/wake_signal.hpp"
@@ -37,7 +39,7 @@ struct Ask {
   std::uint32_t stops = 0;                        /**< as in `Order`; DISABLE is sent all the same */
 };
 
-using Command = std::variant<Order, HomeOrder, PathOrder, Cancel, Ask>;
+using Command = std::variant<Order, HomeOrder, PathOrder, SweepOrder, BiopsyOrder, SeenImage, Cancel, Ask>;
 
 /** The kernel's word on an `Ask`; no verdict: it was not sent, or the answer got lost with the link. */
 struct Answer {
@@ -69,6 +71,10 @@ struct ControlView {
   OrderTable orders{};
   HomeStatus home;
   PathStatus path;
+  SweepStatus sweep;
+  BiopsyStatus biopsy;
+  BiopsyNow biopsy_now;
+  ForceReadings force; /**< of a robot with a needle */
 };
 
 struct Mailbox {

@@ -44,6 +44,30 @@ struct PathOrder {
   std::uint32_t stops = 0;              /**< as in `Order` */
 };
 
+/** Frequencies of a sweep, as words of the published map (control/frequency_map.hpp), one after the other. */
+struct FrequencySteps {
+  /** So many may a sweep have. */
+  static constexpr std::uint32_t most = 200;
+
+  std::uint32_t first_word = 0;
+  std::int32_t step_words = 0;   /**< from each to the next; below 0: towards faster turning */
+  std::uint32_t count = 0;       /**< 1 to `most` */
+  std::uint32_t dwell_ticks = 0; /**< at each, of driven time */
+
+  [[nodiscard]] constexpr std::uint32_t word(std::uint32_t step) const noexcept {
+    return first_word + step * static_cast<std::uint32_t>(step_words);
+  }
+  bool operator==(const FrequencySteps&) const = default;
+};
+
+/** One high-frequency axis through a list of frequencies. */
+struct SweepOrder {
+  std::uint32_t proposal = 0;
+  std::uint32_t slot = 0;
+  FrequencySteps steps;
+  std::uint32_t stops = 0; /**< as in `Order` */
+};
+
 /** Where an order stands. The last five are final. */
 enum class OrderPhase : std::uint8_t { none, waiting, executing, paused, done, refused, aborted, expired };
 
@@ -74,6 +98,9 @@ enum class OrderReason : std::uint8_t {
   superseded,        /**< another motion took over the axes */
   off_path,          /**< an axis strayed from its path */
   goal_late,         /**< an axis did not come to rest at its goal in time */
+  force_stale,       /**< the newest force is too old to act upon */
+  steering_failed,   /**< `code` is the KinematicsError::Code */
+  swept,             /**< every frequency was held for its time */
   no_path            /**< no motion within the limits leads there from where the axes are */
 };
 
@@ -110,6 +137,16 @@ struct PathStatus {
   std::uint32_t slot = 0; /**< axis that the reason is about */
 
   bool operator==(const PathStatus&) const = default;
+};
+
+/** Where the newest sweep stands, and what it has measured. */
+struct SweepStatus {
+  OrderStatus order;
+  std::uint32_t step = 0; /**< index of the frequency that runs or is next; their number once done */
+  /** Mean speed at each frequency that is over; 0 where the dwell was too short for a steady speed. */
+  std::array<float, FrequencySteps::most> counts_per_s{};
+
+  bool operator==(const SweepStatus&) const = default;
 };
 
 }  // namespace interlock

@@ -1,11 +1,13 @@
 #include "proposals/order_words.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <vector>
 
+#include "control/frequency_map.hpp"
 #include "robot/catalog.hpp"
 
 namespace interlock {
@@ -23,7 +25,11 @@ std::string end_words(const std::string& axis, const OrderStatus& status) {
     case OrderReason::arrived:
     case OrderReason::pedal_released:
     case OrderReason::press_again:
+    case OrderReason::swept:
+    case OrderReason::steering_failed:
       return "";
+    case OrderReason::force_stale:
+      return "The force sensor told nothing new for too long, so the needle was stopped. Look at its card.";
     case OrderReason::kernel_refused:
       return "The kernel refused: " + words(catalog::Family::verdict, status.code);
     case OrderReason::stopped:
@@ -143,6 +149,14 @@ std::string left_words(const Robot& robot, const HomeStatus& status) {
   return number.data();
 }
 
+/** ", 52000.0 Hz, frequency 3 of 12" */
+std::string frequency_words(const FrequencySteps& steps, std::uint32_t step) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), ", %.1f Hz, frequency %u of %u",
+                frequency_map::hz_of(steps.word(step)), step + 1, steps.count);
+  return text.data();
+}
+
 std::string paused_words(const Robot& robot, const HomeStatus& status) {
   const bool again = status.order.reason == OrderReason::press_again;
   const std::string left = left_words(robot, status);
@@ -225,6 +239,48 @@ std::string detail_of(const Robot& robot, const Proposal& proposal, const PathSt
     default:
       return capital(end_words(title_of(robot, status.slot), status.order));
   }
+}
+
+std::string detail_of(const Robot& robot, const Proposal& proposal, const SweepStatus& status) {
+  const FrequencySteps& steps = proposal.sweep.steps;
+  const std::string part = frequency_words(steps, std::min(status.step, steps.count - 1));
+  switch (status.order.phase) {
+    case OrderPhase::none:
+    case OrderPhase::waiting:
+      return "Waits for the pedal.";
+    case OrderPhase::executing:
+      return "Turns " + listed(robot, proposal.slots) + " while the pedal is held" + part + ".";
+    case OrderPhase::paused:
+      return "Motion ended" + part + "; press and hold the pedal within 60 s to go on.";
+    case OrderPhase::done:
+      return "Each of " + std::to_string(steps.count) + " frequencies was held for its time.";
+    default:
+      return capital(end_words(title_of(robot, proposal.sweep.slot), status.order));
+  }
+}
+
+std::string detail_of(const Robot& robot, const BiopsyStatus& status) {
+  const std::string found =
+      status.membranes == 0 ? "" : "; membranes passed: " + std::to_string(status.membranes);
+  switch (status.order.phase) {
+    case OrderPhase::none:
+    case OrderPhase::waiting:
+      return "Waits for the pedal; then the hand on the force sensor pushes the needle.";
+    case OrderPhase::executing:
+      return "Follows the hand while the pedal is held" + found + ".";
+    case OrderPhase::paused:
+      return "Motion ended" + found + "; press and hold the pedal within 60 s to go on.";
+    case OrderPhase::done:
+      return "The tip is at the depth of its target" + found + ".";
+    default:
+      break;
+  }
+  if (status.order.reason == OrderReason::steering_failed) {
+    return "Steering cannot work with " + std::string(status.quantity) + " (" +
+           std::string(code_name(static_cast<KinematicsError::Code>(status.order.code))) +
+           "), so the needle was stopped. Withdraw it, look at target and images, and propose it again.";
+  }
+  return capital(end_words(title_of(robot, status.slot), status.order));
 }
 
 std::optional<std::string> verdict_of(const OrderStatus& status) {

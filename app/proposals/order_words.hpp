@@ -25,6 +25,12 @@ std::string detail_of(const Robot& robot, const Proposal& proposal, const HomeSt
 /** Why a path stands where it does, what it does now, and what to do next. */
 std::string detail_of(const Robot& robot, const Proposal& proposal, const PathStatus& status);
 
+/** Why a sweep stands where it does, what it does now, and what to do next. */
+std::string detail_of(const Robot& robot, const Proposal& proposal, const SweepStatus& status);
+
+/** Why a biopsy stands where it does, what it does now, and what to do next. */
+std::string detail_of(const Robot& robot, const BiopsyStatus& status);
+
 /** The verdict that ended the order; empty for every other end. */
 std::optional<std::string> verdict_of(const OrderStatus& status);
 

@@ -15,27 +15,6 @@ using Checked = tl::expected<void, Refusal>;
 /** Positions by slot, in counts; those of slots without a moved axis mean nothing. */
 using Positions = std::array<std::int32_t, ILK_SLOTS>;
 
-Checked check_axes(const Robot& robot, const ControlView& view, std::uint32_t mask) {
-  for (const Axis& axis : robot.axes) {
-    if (((mask >> axis.slot) & 1u) == 0) {
-      continue;
-    }
-    const ilk_axis_t& state = view.snapshot.state.axis[axis.slot];
-    if (auto able = check_axis(axis, view); !able) {
-      return able;
-    }
-    if (state.state == ILK_AXIS_HOMING) {
-      return tl::make_unexpected(verdict_refusal(ILK_VERDICT_BUSY, axis.name, "an axis that is not homing"));
-    }
-    if (state.homed == 0) {
-      return tl::make_unexpected(Refusal{"NOT_HOMED",
-                                         axis.name + " is not homed, so it cannot go to a position.",
-                                         "homed axes", "Home " + axis.name + " first."});
-    }
-  }
-  return {};
-}
-
 /** The positions of a trajectory were held against the ranges when it was read. */
 Checked check_range(const Robot& robot, const MoveLeg& leg) {
   for (const AxisCounts& target : leg.targets) {
@@ -139,6 +118,27 @@ class PathCheck {
 };
 
 }  // namespace
+
+Checked check_axes(const Robot& robot, const ControlView& view, std::uint32_t mask) {
+  for (const Axis& axis : robot.axes) {
+    if (((mask >> axis.slot) & 1u) == 0) {
+      continue;
+    }
+    const ilk_axis_t& state = view.snapshot.state.axis[axis.slot];
+    if (auto able = check_axis(axis, view); !able) {
+      return able;
+    }
+    if (state.state == ILK_AXIS_HOMING) {
+      return tl::make_unexpected(verdict_refusal(ILK_VERDICT_BUSY, axis.name, "an axis that is not homing"));
+    }
+    if (state.homed == 0) {
+      return tl::make_unexpected(Refusal{"NOT_HOMED",
+                                         axis.name + " is not homed, so it cannot go to a position.",
+                                         "homed axes", "Home " + axis.name + " first."});
+    }
+  }
+  return {};
+}
 
 tl::expected<PathPreview, Refusal> check_path(const Robot& robot, const ilk_config_t& config,
                                               const ControlView& view, const PathProgram& program) {

@@ -18,6 +18,10 @@ struct PathPreview {
   double duration_s = 0.0;      /**< of the planned motion; settling at the end of each leg is not in it */
 };
 
+/** Whether each axis of the mask, bit n for slot n, may go to a position: FAULTED, DISABLED, BUSY, NOT_HOMED.
+ */
+tl::expected<void, Refusal> check_axes(const Robot& robot, const ControlView& view, std::uint32_t mask);
+
 /**
  * Judges a program against the newest view, leg by leg, from where the axes are: CONFIG_MISMATCH, MODE, then
  * for each axis FAULTED, DISABLED, BUSY while homing and NOT_HOMED, then RANGE for each target, SEPARATION

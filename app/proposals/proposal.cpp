@@ -52,4 +52,20 @@ bool may_become(ProposalState from, ProposalState to) noexcept {
   return false;
 }
 
+RobotMode robot_mode(const Proposal& proposal) noexcept {
+  switch (proposal.kind) {
+    case ProposalKind::move:
+      return RobotMode::manual;
+    case ProposalKind::home:
+      return RobotMode::home;
+    case ProposalKind::path:
+      return proposal.path.mode;
+    case ProposalKind::sweep:
+      return RobotMode::frequency_sweep;
+    case ProposalKind::biopsy:
+      return RobotMode::cooperative_biopsy;
+  }
+  return RobotMode::manual;
+}
+
 }  // namespace interlock

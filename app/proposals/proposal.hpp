@@ -9,6 +9,7 @@
  */
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -16,6 +17,8 @@
 #include <string_view>
 #include <vector>
 
+#include "motion/biopsy_run.hpp"
+#include "motion/order.hpp"
 #include "motion/path_program.hpp"
 #include "robot/modes.hpp"
 #include "time/utc_time.hpp"
@@ -82,30 +85,48 @@ struct PathDraft {
   std::string author;
 };
 
-enum class ProposalKind : std::uint8_t { move, home, path };
+/** A wish to turn a high-frequency axis at one frequency after the other. */
+struct SweepDraft {
+  std::uint32_t slot = 0;
+  FrequencySteps steps;
+  std::string author;
+};
+
+/** A wish to take a biopsy at a target. */
+struct BiopsyDraft {
+  std::shared_ptr<BiopsyRun> run;    /**< never null; the control thread's once it is approved */
+  std::array<double, 3> target_mm{}; /**< in the guide frame of motion/biopsy_run.hpp */
+  std::string author;
+  std::uint32_t start_tick = 0; /**< kernel tick of the run's time 0 */
+};
+
+enum class ProposalKind : std::uint8_t { move, home, path, sweep, biopsy };
 
 /** As the interface spells it. */
 constexpr std::string_view kind_name(ProposalKind kind) noexcept {
-  constexpr std::string_view names[] = {"move", "home", "path"};
+  constexpr std::string_view names[] = {"move", "home", "path", "sweep", "biopsy"};
   return names[static_cast<std::size_t>(kind)];
 }
 
 struct Proposal {
   std::uint32_t id = 0;
   ProposalKind kind = ProposalKind::move;
-  MoveDraft move;                   /**< of kind move */
-  PathDraft path;                   /**< of kind path */
-  std::string author;               /**< name of the user */
-  std::vector<std::uint32_t> slots; /**< of all axes that it moves, each once */
-  std::vector<std::string> axes;    /**< their names */
-  std::string axis;                 /**< name of the axis; empty when there are several */
-  double target = 0.0;              /**< in the axis' unit; of kind move */
-  std::uint32_t first_step = 0;     /**< index of the robot's home steps; of kind home */
-  std::uint32_t step_count = 0;     /**< home steps; 0: none but the axis alone */
-  std::string step;                 /**< name of the home step that runs or is next; else empty */
-  std::vector<AxisCounts> ends;     /**< where the axes come to rest; of kind path, once checked */
-  double duration_s = 0.0;          /**< of the planned motion; of kind path, once checked */
-  std::uint32_t leg = 0;            /**< index of the leg that runs or is next; of kind path */
+  MoveDraft move;                         /**< of kind move */
+  PathDraft path;                         /**< of kind path */
+  BiopsyDraft biopsy;                     /**< of kind biopsy */
+  SweepDraft sweep;                       /**< of kind sweep */
+  std::string author;                     /**< name of the user */
+  std::vector<std::uint32_t> slots;       /**< of all axes that it moves, each once */
+  std::vector<std::string> axes;          /**< their names */
+  std::string axis;                       /**< name of the axis; empty when there are several */
+  double target = 0.0;                    /**< in the axis' unit; of kind move */
+  std::uint32_t first_step = 0;           /**< index of the robot's home steps; of kind home */
+  std::uint32_t step_count = 0;           /**< home steps; 0: none but the axis alone */
+  std::string step;                       /**< name of the home step that runs or is next; else empty */
+  std::vector<AxisCounts> ends;           /**< where the axes come to rest; of kind path, once checked */
+  double duration_s = 0.0;                /**< of the planned motion; of kind path, once checked */
+  std::uint32_t leg = 0;                  /**< index of the leg that runs or is next; of kind path */
+  std::vector<float> speeds_counts_per_s; /**< measured at each frequency that is over; of kind sweep */
   ProposalState state = ProposalState::drafted;
   UtcTime created;
   std::uint32_t created_tick = 0; /**< kernel tick */
@@ -113,5 +134,8 @@ struct Proposal {
   std::optional<std::string> verdict; /**< that refused or ended it */
   std::string detail;                 /**< why it is in this state, for people */
 };
+
+/** The mode in which the proposal is carried out. */
+RobotMode robot_mode(const Proposal& proposal) noexcept;
 
 }  // namespace interlock

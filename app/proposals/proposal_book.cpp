@@ -4,8 +4,10 @@
 #include <chrono>
 #include <utility>
 
+#include "proposals/biopsy_check.hpp"
 #include "proposals/home_plan.hpp"
 #include "proposals/order_words.hpp"
+#include "proposals/sweep_check.hpp"
 
 namespace interlock {
 namespace {
@@ -48,10 +50,12 @@ tl::expected<Proposal, Refusal> ProposalBook::propose(const MoveDraft& move, con
         proposal, Refusal{"MODE_HOME", "Proposal " + std::to_string(home->id) + " is homing the robot.",
                           "no open proposal of homing", "Wait until it has ended, or abort it."}));
   }
-  if (const Proposal* path = open_path()) {
-    return tl::make_unexpected(
-        refuse(proposal, Refusal{"MODE_PATH", "Proposal " + std::to_string(path->id) + " moves several axes.",
-                                 "no open proposal of a path", "Wait until it has ended, or abort it."}));
+  if (const Proposal* open = open_mode()) {
+    return tl::make_unexpected(refuse(
+        proposal, Refusal{"MODE_PATH",
+                          "Proposal " + std::to_string(open->id) + " moves " +
+                              (open->slots.size() == 1 ? open->axis : std::string("several axes")) + ".",
+                          "no open proposal of another mode", "Wait until it has ended, or abort it."}));
   }
   const auto checked = check_move(*axis, config_, view, move);
   if (!checked) {
@@ -103,6 +107,45 @@ tl::expected<Proposal, Refusal> ProposalBook::propose_path(const PathDraft& path
   return proposal;
 }
 
+tl::expected<Proposal, Refusal> ProposalBook::propose_sweep(const SweepDraft& sweep,
+                                                            const ControlView& view) {
+  if (robot_.at_slot(sweep.slot) == nullptr) {
+    return tl::make_unexpected(verdict_refusal(ILK_VERDICT_AXIS, "slot " + std::to_string(sweep.slot)));
+  }
+  Proposal drafted;
+  drafted.kind = ProposalKind::sweep;
+  drafted.sweep = sweep;
+  drafted.author = sweep.author;
+  Proposal& proposal = draft(std::move(drafted), {sweep.slot}, view);
+  if (const auto checked = check_sweep(robot_, config_, view, sweep); !checked) {
+    return tl::make_unexpected(refuse(proposal, checked.error()));
+  }
+  become(proposal, ProposalState::checked, "Inside the band of the axis.");
+  return approve(proposal, SweepOrder{proposal.id, sweep.slot, sweep.steps, 0});
+}
+
+tl::expected<Proposal, Refusal> ProposalBook::propose_biopsy(const BiopsyDraft& biopsy,
+                                                             const ControlView& view) {
+  Proposal drafted;
+  drafted.kind = ProposalKind::biopsy;
+  drafted.biopsy = biopsy;
+  drafted.author = biopsy.author;
+  const std::vector<std::uint32_t> slots{robot_.with_role("insertion")->slot,
+                                         robot_.with_role("rotation")->slot};
+  Proposal& proposal = draft(std::move(drafted), slots, view);
+  if (const auto checked = check_biopsy(robot_, config_, view, biopsy); !checked) {
+    return tl::make_unexpected(refuse(proposal, checked.error()));
+  }
+  become(proposal, ProposalState::checked, "The needle is at the skin, and the hand's force is heard.");
+  lent_.push_back({proposal.id, ProposalKind::biopsy, biopsy.run});
+  return approve(proposal, BiopsyOrder{proposal.id, biopsy.run.get(), 0});
+}
+
+bool ProposalBook::show_image(const NeedleImage& image) {
+  const Proposal* open = open_biopsy();
+  return open != nullptr && send_(SeenImage{open->id, image});
+}
+
 /** Checks a path from where the axes are now. */
 tl::expected<void, Refusal> ProposalBook::check(Proposal& proposal, const ControlView& view) {
   const auto preview = check_path(robot_, config_, view, *proposal.path.program);
@@ -127,7 +170,7 @@ tl::expected<Proposal, Refusal> ProposalBook::approve(std::uint32_t id, const Co
 tl::expected<Proposal, Refusal> ProposalBook::approve_path(Proposal& proposal) {
   become(proposal, ProposalState::checked, "Every check passed.");
   // Lent before it is handed over: the control thread may take it at once.
-  lent_.push_back({proposal.id, proposal.path.program});
+  lent_.push_back({proposal.id, ProposalKind::path, proposal.path.program});
   return approve(proposal, PathOrder{proposal.id, proposal.path.program.get(), 0});
 }
 
@@ -234,11 +277,18 @@ void ProposalBook::follow(const ControlView& view) {
   }
   follow_home(view.home);
   follow_path(view.path);
+  follow_sweep(view.sweep);
   discard_waiting(view);
-  std::erase_if(lent_, [&path = view.path.order](const Lent& each) {
-    return path.proposal > each.proposal || (path.proposal == each.proposal && !is_open(path.phase));
-  });
+  follow_biopsy(view.biopsy);
+  take_back(view);
   tell_mode();
+}
+
+void ProposalBook::take_back(const ControlView& view) {
+  std::erase_if(lent_, [&view](const Lent& each) {
+    const OrderStatus& order = each.kind == ProposalKind::path ? view.path.order : view.biopsy.order;
+    return order.proposal > each.proposal || (order.proposal == each.proposal && !is_open(order.phase));
+  });
 }
 
 /** What waits for approval is discarded by a lock, as all that was approved is, and does not wait for ever.
@@ -266,6 +316,36 @@ void ProposalBook::follow_path(const PathStatus& status) {
     return;
   }
   proposal->leg = status.leg;
+  become(*proposal, state, std::move(detail), verdict_of(status.order));
+}
+
+void ProposalBook::follow_biopsy(const BiopsyStatus& status) {
+  Proposal* proposal = find_mutable(status.order.proposal);
+  const ProposalState state = state_of(status.order.phase);
+  if (proposal == nullptr || proposal->kind != ProposalKind::biopsy || !is_open(proposal->state)) {
+    return;
+  }
+  std::string detail = detail_of(robot_, status);
+  const bool same = proposal->state == state;
+  if (same ? detail == proposal->detail : !may_become(proposal->state, state)) {
+    return;
+  }
+  become(*proposal, state, std::move(detail), verdict_of(status.order));
+}
+
+void ProposalBook::follow_sweep(const SweepStatus& status) {
+  Proposal* proposal = find_mutable(status.order.proposal);
+  const ProposalState state = state_of(status.order.phase);
+  if (proposal == nullptr || proposal->kind != ProposalKind::sweep || !is_open(proposal->state)) {
+    return;
+  }
+  std::string detail = detail_of(robot_, *proposal, status);
+  const bool same = proposal->state == state;
+  if (same ? detail == proposal->detail : !may_become(proposal->state, state)) {
+    return;
+  }
+  proposal->speeds_counts_per_s.assign(status.counts_per_s.begin(),
+                                       status.counts_per_s.begin() + status.step);
   become(*proposal, state, std::move(detail), verdict_of(status.order));
 }
 
@@ -303,6 +383,7 @@ void ProposalBook::become(Proposal& proposal, ProposalState state, std::string d
   if (!is_open(state)) {
     proposal.ended = clock_();
     proposal.step.clear();
+    proposal.biopsy.run.reset();  // what the control thread may still use is lent
   }
   listener_(proposal);
 }
@@ -318,15 +399,20 @@ std::string_view ProposalBook::app_mode() const {
   if (open_home() != nullptr) {
     return mode_name(RobotMode::home);
   }
-  const Proposal* path = open_path();
-  return mode_name(path == nullptr ? RobotMode::manual : path->path.mode);
+  const Proposal* open = open_mode();
+  return mode_name(open == nullptr ? RobotMode::manual : robot_mode(*open));
 }
 
-const Proposal* ProposalBook::open_path() const {
+const Proposal* ProposalBook::open_mode() const {
   const auto found = std::find_if(book_.begin(), book_.end(), [](const Proposal& each) {
-    return each.kind == ProposalKind::path && is_approved(each.state);
+    return robot_mode(each) > RobotMode::home && is_approved(each.state);
   });
   return found == book_.end() ? nullptr : &*found;
+}
+
+const Proposal* ProposalBook::open_biopsy() const {
+  const Proposal* open = open_mode();
+  return open != nullptr && open->kind == ProposalKind::biopsy ? open : nullptr;
 }
 
 const Proposal* ProposalBook::open_home() const {

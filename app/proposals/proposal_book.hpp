@@ -43,8 +43,8 @@ class ProposalBook {
 
   /**
    * Drafts a move, checks it and approves it, as its author releases it by proposing it. An open proposal of
-   * the same axis is aborted. Refused with MODE_HOME while homing is open, with MODE_PATH while a path is. A
-   * refused draft stays in the book.
+   * the same axis is aborted. Refused with MODE_HOME while homing is open, with MODE_PATH while another mode
+   * is. A refused draft stays in the book.
    */
   tl::expected<Proposal, Refusal> propose(const MoveDraft& draft, const ControlView& view);
 
@@ -61,6 +61,21 @@ class ProposalBook {
    * `approve`. STALE when it followed from targeting that has changed. A refused draft stays in the book.
    */
   tl::expected<Proposal, Refusal> propose_path(const PathDraft& draft, const ControlView& view);
+
+  /**
+   * Drafts a sweep of frequency, checks it (sweep_check.hpp) and approves it. Every other approved proposal
+   * is aborted. A refused draft stays in the book; one of a slot without an axis (AXIS) is none.
+   */
+  tl::expected<Proposal, Refusal> propose_sweep(const SweepDraft& draft, const ControlView& view);
+
+  /**
+   * Drafts a biopsy, checks it (biopsy_check.hpp) and approves it. Every other approved proposal is aborted.
+   * A refused draft stays in the book.
+   */
+  tl::expected<Proposal, Refusal> propose_biopsy(const BiopsyDraft& draft, const ControlView& view);
+
+  /** Hands an image to the open biopsy; false when none is open, or the control thread takes none now. */
+  bool show_image(const NeedleImage& image);
 
   /** Checks a proposal that waits for it anew, and approves it: NOT_WAITING when none of that number does. */
   tl::expected<Proposal, Refusal> approve(std::uint32_t id, const ControlView& view);
@@ -80,7 +95,7 @@ class ProposalBook {
   /** Takes over where the control thread's orders stand. */
   void follow(const ControlView& view);
 
-  /** "home" while homing is open, the mode of a path while it is, else "manual". */
+  /** "home" while homing is open, the mode of a path or sweep while it is, else "manual". */
   [[nodiscard]] std::string_view app_mode() const;
 
   /** The proposal of that number, or null. */
@@ -92,8 +107,11 @@ class ProposalBook {
   /** The open proposal of homing, or null. */
   [[nodiscard]] const Proposal* open_home() const;
 
-  /** The approved proposal of a path, or null. */
-  [[nodiscard]] const Proposal* open_path() const;
+  /** The approved proposal of a mode that is neither Manual nor Home, or null. */
+  [[nodiscard]] const Proposal* open_mode() const;
+
+  /** The approved proposal of a biopsy, or null. */
+  [[nodiscard]] const Proposal* open_biopsy() const;
 
   /** Whether open homing moves the axis. */
   [[nodiscard]] bool homes(std::uint32_t slot) const;
@@ -103,10 +121,11 @@ class ProposalBook {
 
  private:
   Proposal& draft(Proposal proposal, const std::vector<std::uint32_t>& slots, const ControlView& view);
-  /** A program that the control thread may still read. */
+  /** Something that the control thread may still use. */
   struct Lent {
     std::uint32_t proposal = 0;
-    std::shared_ptr<const PathProgram> program;
+    ProposalKind kind = ProposalKind::path;
+    std::shared_ptr<const void> what;
   };
 
   tl::expected<Proposal, Refusal> approve(Proposal& proposal, const Command& order);
@@ -120,6 +139,9 @@ class ProposalBook {
   void follow_move(const OrderStatus& status);
   void follow_home(const HomeStatus& status);
   void follow_path(const PathStatus& status);
+  void follow_sweep(const SweepStatus& status);
+  void follow_biopsy(const BiopsyStatus& status);
+  void take_back(const ControlView& view);
   void discard_waiting(const ControlView& view);
   void tell_mode();
   Proposal* find_mutable(std::uint32_t id);

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "control/frequency_map.hpp"
+
 namespace interlock {
 
 namespace {
@@ -17,6 +19,22 @@ void add_path(nlohmann::json& json, const Proposal& proposal) {
   json["leg"] = proposal.leg;
   json["duration_s"] = proposal.duration_s;
   json["ends"] = std::move(ends);
+}
+
+/** What only a sweep has. */
+void add_sweep(nlohmann::json& json, const Proposal& proposal) {
+  const FrequencySteps& steps = proposal.sweep.steps;
+  nlohmann::json frequencies = nlohmann::json::array();
+  for (std::uint32_t step = 0; step < steps.count; ++step) {
+    nlohmann::json row{{"hz", frequency_map::hz_of(steps.word(step))}, {"counts_per_s", nullptr}};
+    if (step < proposal.speeds_counts_per_s.size() && proposal.speeds_counts_per_s[step] > 0.0F) {
+      row["counts_per_s"] = proposal.speeds_counts_per_s[step];
+    }
+    frequencies.push_back(std::move(row));
+  }
+  json["mode"] = mode_name(RobotMode::frequency_sweep);
+  json["dwell_ticks"] = steps.dwell_ticks;
+  json["frequencies"] = std::move(frequencies);
 }
 
 }  // namespace
@@ -49,6 +67,13 @@ nlohmann::json to_json(const Proposal& proposal) {
   }
   if (proposal.kind == ProposalKind::path) {
     add_path(json, proposal);
+  }
+  if (proposal.kind == ProposalKind::sweep) {
+    add_sweep(json, proposal);
+  }
+  if (proposal.kind == ProposalKind::biopsy) {
+    json["mode"] = mode_name(RobotMode::cooperative_biopsy);
+    json["target_mm"] = proposal.biopsy.target_mm;
   }
   if (!proposal.step.empty()) {
     json["step"] = proposal.step;

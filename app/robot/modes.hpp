@@ -10,12 +10,14 @@
 namespace interlock {
 
 enum class RobotMode : std::uint8_t {
-  manual,      /**< each axis to its own setpoint */
-  home,        /**< the steps of homing */
-  coordinated, /**< several axes to their setpoints, arriving together */
-  trajectory,  /**< along a loaded trajectory, in time */
-  draping,     /**< to the setpoints in which the robot is draped */
-  ablation     /**< the probe through a list of angles and depths, with rest at each */
+  manual,             /**< each axis to its own setpoint */
+  home,               /**< the steps of homing */
+  coordinated,        /**< several axes to their setpoints, arriving together */
+  trajectory,         /**< along a loaded trajectory, in time */
+  draping,            /**< to the setpoints in which the robot is draped */
+  ablation,           /**< the probe through a list of angles and depths, with rest at each */
+  cooperative_biopsy, /**< the needle, pushed by the surgeon's hand and turned towards its target */
+  frequency_sweep     /**< a high-frequency axis through a list of frequencies */
 };
 
 namespace detail {
@@ -25,12 +27,14 @@ struct NamedMode {
   std::string_view name;
 };
 
-inline constexpr std::array<NamedMode, 6> named_modes{{{RobotMode::manual, "manual"},
+inline constexpr std::array<NamedMode, 8> named_modes{{{RobotMode::manual, "manual"},
                                                        {RobotMode::home, "home"},
                                                        {RobotMode::coordinated, "coordinated"},
                                                        {RobotMode::trajectory, "trajectory"},
                                                        {RobotMode::draping, "draping"},
-                                                       {RobotMode::ablation, "ablation"}}};
+                                                       {RobotMode::ablation, "ablation"},
+                                                       {RobotMode::cooperative_biopsy, "cooperative_biopsy"},
+                                                       {RobotMode::frequency_sweep, "frequency_sweep"}}};
 
 }  // namespace detail
 
@@ -50,7 +54,9 @@ constexpr std::optional<RobotMode> mode_of(std::string_view name) noexcept {
 }
 
 /** Whether its axes move together, so that each of them needs rates. */
-constexpr bool moves_along_paths(RobotMode mode) noexcept { return mode > RobotMode::home; }
+constexpr bool moves_along_paths(RobotMode mode) noexcept {
+  return mode > RobotMode::home && mode != RobotMode::frequency_sweep;
+}
 
 /** All names, for messages. */
 inline std::string mode_names() {

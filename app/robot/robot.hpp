@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "interlock/types.h"
+#include "robot/biopsy.hpp"
 #include "robot/kinematics.hpp"
 #include "robot/sensor.hpp"
 #include "robot/unit.hpp"
@@ -222,6 +223,7 @@ struct Robot {
   std::vector<Sensor> sensors;
   std::vector<HomeStep> home_steps; /**< in the order in which they run; each axis with a switch homes once */
   std::vector<AxisCounts> draping; /**< setpoints of the mode "draping"; the other axes stay where they are */
+  std::optional<Biopsy> biopsy;    /**< of the mode "cooperative_biopsy" */
   Origin origin;
 
   /** The axis of that name, or null. */

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "robot/modes.hpp"
+#include "robot/read_biopsy.hpp"
 #include "robot/read_cards.hpp"
 #include "robot/read_home_steps.hpp"
 #include "robot/read_kinematics.hpp"
@@ -82,6 +83,17 @@ void refuse_unserved_modes(TableReader& table, const Robot& robot) {
     table.refuse("modes", "no probe can be turned for the mode \"ablation\"",
                  "a robot of the family neuro_rcm, or no such mode");
   }
+  const bool needle = robot.with_role("insertion") != nullptr && robot.with_role("rotation") != nullptr;
+  if (robot.has_mode("cooperative_biopsy") && (!robot.biopsy || !needle)) {
+    table.refuse("modes", "there is no needle, or nothing is said of it, for the mode \"cooperative_biopsy\"",
+                 "axes with the roles insertion and rotation and a [biopsy] table, or no such mode");
+  }
+  const bool sweeps =
+      std::ranges::any_of(robot.axes, [](const Axis& axis) { return axis.card == ILK_CARD_HIGH_FREQUENCY; });
+  if (robot.has_mode("frequency_sweep") && !sweeps) {
+    table.refuse("modes", "no axis has a high-frequency card for the mode \"frequency_sweep\"",
+                 "an axis with such a card, or no such mode");
+  }
   const auto alone = std::ranges::find_if(robot.axes, [](const Axis& axis) { return !axis.motion; });
   const auto needs_motion = std::ranges::find_if(robot.modes, [](const std::string& name) {
     const auto mode = mode_of(name);
@@ -111,6 +123,7 @@ Robot read_robot(ReadLog& log, const toml::table& root) {
   read_sensors(table, robot);
   read_home_steps(table, robot);
   read_draping(table, robot);
+  read_biopsy(table, robot);
   refuse_unserved_modes(table, robot);
   table.refuse_unknown_keys();
   return robot;

@@ -135,16 +135,21 @@ double TableReader::number_between(std::string_view key, double lowest, double h
 
 std::vector<double> TableReader::numbers(std::string_view key, std::size_t count) {
   const std::string expected = "an array of " + std::to_string(count) + " finite numbers";
+  std::vector<double> found = numbers(key, expected);
+  if (found.size() != count) {
+    refuse(key, std::to_string(found.size()) + " entries are given", expected);
+    found.assign(count, 0.0);
+  }
+  return found;
+}
+
+std::vector<double> TableReader::numbers(std::string_view key, const std::string& expected) {
   std::vector<double> found;
   for (const toml::node& entry : array(key, expected)) {
     found.push_back(entry.is_number() ? entry.value<double>().value_or(0.0) : std::nan(""));
     if (!std::isfinite(found.back())) {
       refuse_value(key, entry, expected);
     }
-  }
-  if (found.size() != count) {
-    refuse(key, std::to_string(found.size()) + " entries are given", expected);
-    found.assign(count, 0.0);
   }
   return found;
 }

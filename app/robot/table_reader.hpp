@@ -60,6 +60,9 @@ class TableReader {
   /** An array of exactly `count` finite numbers; zeros when it is none. */
   std::vector<double> numbers(std::string_view key, std::size_t count);
 
+  /** An array of finite numbers; `expected` says for what. */
+  std::vector<double> numbers(std::string_view key, const std::string& expected);
+
   /** A whole number that the type can hold. */
   template <typename Integer>
   Integer integer(std::string_view key) {

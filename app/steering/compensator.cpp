@@ -64,9 +64,8 @@ KinematicsResult<SteeringCommand> Compensator::step(const NeedleAxes& axes) noex
 
 KinematicsResult<void> Compensator::see(const NeedleImage& image) noexcept {
   TargetFilter target = target_;
-  return target.see(image.time_s, image.target_mm)
-      .and_then([&] { return tip_.see(image.time_s, image.tip_mm); })
-      .map([&] { target_ = target; });
+  const auto seen = image.target_mm ? target.see(image.time_s, *image.target_mm) : KinematicsResult<void>();
+  return seen.and_then([&] { return tip_.see(image.time_s, image.tip_mm); }).map([&] { target_ = target; });
 }
 
 KinematicsResult<SteeringCommand> Compensator::command(const NeedleAxes& axes) const noexcept {

@@ -8,6 +8,8 @@
  */
 #pragma once
 
+#include <optional>
+
 #include "steering/curv_law.hpp"
 #include "steering/steering_target.hpp"
 #include "steering/sweep.hpp"
@@ -43,7 +45,7 @@ struct NeedleAxes {
 struct NeedleImage {
   double time_s = 0.0; /**< of its exposure */
   Eigen::Vector3d tip_mm = Eigen::Vector3d::Zero();
-  Eigen::Vector3d target_mm = Eigen::Vector3d::Zero();
+  std::optional<Eigen::Vector3d> target_mm; /**< nothing where the image does not show the target */
 };
 
 struct SteeringCommand {

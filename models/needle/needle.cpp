@@ -29,6 +29,10 @@ void Needle::advance(double wanted_insertion_mm_s, double wanted_rotation_rad_s,
   rotation_rad_s_ += share * (wanted_rotation_rad_s - rotation_rad_s_);
   const double turned_rad = period_s * rotation_rad_s_;
   const double way_mm = period_s * std::max(0.0, insertion_mm_s_);
+  move(way_mm, turned_rad);
+}
+
+void Needle::move(double way_mm, double turned_rad) {
   turn(turned_rad / 2.0);
   go(way_mm);
   wander(way_mm);

@@ -36,6 +36,9 @@ class Needle {
   /** One period: the axes' speeds follow what is wanted; an insertion below 0 leaves the tip where it is. */
   void advance(double wanted_insertion_mm_s, double wanted_rotation_rad_s, double period_s);
 
+  /** The axes have moved the needle: so far ahead, not below 0, while it turned by so much. */
+  void move(double way_mm, double turned_rad);
+
   const Eigen::Vector3d& tip_mm() const { return tip_mm_; }
   const Eigen::Vector3d& ahead() const { return ahead_; }
   double insertion_mm() const { return insertion_mm_; }

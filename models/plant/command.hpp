@@ -5,6 +5,7 @@
 #ifndef INTERLOCK_PLANT_COMMAND_HPP
 #define INTERLOCK_PLANT_COMMAND_HPP
 
+#include <array>
 #include <optional>
 #include <variant>
 
@@ -17,6 +18,8 @@ inline constexpr std::int32_t kMostCounts = 1'000'000;
 inline constexpr double kMostCountsPerTick = 1000;
 inline constexpr std::int32_t kMostForceCounts = 65535;
 inline constexpr std::uint32_t kMostFrames = 1'000'000;
+inline constexpr double kMostHandForce = 100;
+inline constexpr double kMostShift = 100;
 
 struct PressPedal {
   bool pressed;
@@ -94,12 +97,22 @@ struct FailTransactions {
   std::uint32_t count;
 };
 
+/** The surgeon presses on the hand's force sensor. */
+struct PressHand {
+  double force_n; /**< 0 lets go */
+};
+
+/** The target of the needle moves. */
+struct ShiftTarget {
+  std::array<double, 3> by_mm; /**< in the guide frame */
+};
+
 /** Ends every fault; pedal and E-stop stay as they are, and so do commands for later ticks. */
 struct Clear {};
 
 using Command = std::variant<PressPedal, StickPedalContact, PullEstop, JamAxis, PushAxis, JumpCounter,
                              RunAway, ReverseMotor, StickEncoder, StickSwitch, PressSensor, SpoilFrames,
-                             ResetCard, PowerCard, FailTransactions, Clear>;
+                             ResetCard, PowerCard, FailTransactions, PressHand, ShiftTarget, Clear>;
 
 }  // namespace interlock::plant::command
 

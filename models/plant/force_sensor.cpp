@@ -9,8 +9,8 @@ std::uint16_t ForceSensor::at(std::size_t input, std::int64_t noise_counts) cons
   if (!parameters_.input[input]) {
     return 0;
   }
-  const std::int64_t counts =
-      std::int64_t{parameters_.input[input]->zero_counts} + force_counts_[input] + noise_counts;
+  const std::int64_t counts = std::int64_t{parameters_.input[input]->zero_counts} + force_counts_[input] +
+                              load_counts_[input] + noise_counts;
   return static_cast<std::uint16_t>(
       std::clamp<std::int64_t>(counts, 0, std::numeric_limits<std::uint16_t>::max()));
 }

@@ -20,7 +20,10 @@ class ForceSensor {
   /** Presses on the sensor: its input reads so many counts more, or less, until it is pressed again. */
   void press(std::size_t input, std::int32_t counts) { force_counts_[input] = counts; }
 
-  /** Nothing presses on any input. */
+  /** Something in the surroundings presses besides. */
+  void load(std::size_t input, std::int32_t counts) { load_counts_[input] = counts; }
+
+  /** No hand presses on any input. */
   void release() { force_counts_ = {}; }
 
   /** What the converters read now, noise included; 0 where nothing is connected. */
@@ -39,6 +42,7 @@ class ForceSensor {
   SensorParameters parameters_;
   Random noise_;
   std::array<std::int32_t, wire::kAnalogInputs> force_counts_{};
+  std::array<std::int32_t, wire::kAnalogInputs> load_counts_{};
 };
 
 }  // namespace interlock::plant

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "interlock/types.h"
+#include "plant/scene.hpp"
 #include "plant/wire.hpp"
 
 namespace interlock::plant {
@@ -64,6 +65,7 @@ struct Parameters {
   EstopParameters estop;
   std::array<AxisParameters, ILK_SLOTS> axis;     /**< by slot; unused where the robot has no motor card */
   std::array<SensorParameters, ILK_SLOTS> sensor; /**< by slot; unused where it has no sensor card */
+  std::optional<SceneParameters> scene;           /**< nothing: the axes touch nothing */
 };
 
 /** True when the card of this type (ilk_card_t) drives a motor. */

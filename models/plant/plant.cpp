@@ -182,11 +182,26 @@ void Plant::step(Microseconds elapsed) {
     }
     station->card.advance(elapsed);
   }
+  touch(elapsed);
   pedal_.advance(elapsed);
   estop_loop_.advance(elapsed);
   time_ += elapsed;
   note_amplifiers();
   note_silence();
+}
+
+void Plant::touch(Microseconds elapsed) {
+  if (!surroundings_) {
+    return;
+  }
+  AxisPositions positions{};
+  for (std::size_t slot = 0; slot < ILK_SLOTS; ++slot) {
+    positions[slot] = stations_[slot] ? stations_[slot]->position_counts() : 0.0;
+  }
+  surroundings_->advance(positions, elapsed);
+  for (const SensorLoad& load : surroundings_->loads()) {
+    stations_[load.slot]->sensor->load(load.input, load.counts);
+  }
 }
 
 }  // namespace interlock::plant

@@ -14,6 +14,7 @@
 #define INTERLOCK_PLANT_PLANT_HPP
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <tl/expected.hpp>
@@ -26,6 +27,7 @@
 #include "plant/pedal.hpp"
 #include "plant/record.hpp"
 #include "plant/schedule.hpp"
+#include "plant/surroundings.hpp"
 
 namespace interlock::plant {
 
@@ -44,6 +46,12 @@ class Plant {
  public:
   /** @param robot as `load_robot` accepts it */
   Plant(const ilk_config_t& robot, const Parameters& parameters, std::uint64_t seed);
+
+  /** From now on the axes touch that. */
+  void surround(std::unique_ptr<Surroundings> surroundings) { surroundings_ = std::move(surroundings); }
+
+  /** Null where the axes touch nothing. */
+  const Surroundings* surroundings() const { return surroundings_.get(); }
 
   /** One transaction: due commands act, every input is latched, then the cards hear their frames. */
   ilk_sim_reply_t exchange(const ilk_sim_exchange_t& exchange) noexcept;
@@ -98,6 +106,7 @@ class Plant {
   void note_silence();
   Microseconds until_next_watchdog(Microseconds longest) const;
   void step(Microseconds elapsed);
+  void touch(Microseconds elapsed);
 
   void apply(const command::PressPedal& wish);
   void apply(const command::StickPedalContact& wish);
@@ -114,6 +123,8 @@ class Plant {
   void apply(const command::ResetCard& wish);
   void apply(const command::PowerCard& wish);
   void apply(const command::FailTransactions& wish);
+  void apply(const command::PressHand& wish);
+  void apply(const command::ShiftTarget& wish);
   void apply(const command::Clear& wish);
 
   Microseconds period_;
@@ -125,6 +136,7 @@ class Plant {
   std::array<std::uint32_t, ILK_LAMP_COUNT> lamps_{};
   std::uint32_t failing_transactions_ = 0;
   Schedule schedule_;
+  std::unique_ptr<Surroundings> surroundings_;
 
   Record record_;
   std::optional<Microseconds> last_exchange_;

@@ -20,6 +20,8 @@ constexpr bool kNeedsAxis =
     !std::is_same_v<Wish, command::ResetCard> && !std::is_same_v<Wish, command::PowerCard> &&
     !std::is_same_v<Wish, command::PressSensor>;
 
+constexpr const char* kNoNeedle = "the plant file has no [needle]";
+
 std::string slot_text(std::size_t slot) { return "slot " + std::to_string(slot); }
 
 std::optional<std::string> sensor_refusal(const std::optional<ForceSensor>& sensor,
@@ -58,6 +60,9 @@ std::optional<std::string> Plant::refusal(const command::Command& command) const
           return refuse_slot(wish.slot, kNeedsAxis<Wish>, std::is_same_v<Wish, command::StickSwitch>);
         } else if constexpr (std::is_same_v<Wish, command::SpoilFrames>) {
           return wish.slot ? refuse_slot(*wish.slot, false, false) : std::nullopt;
+        } else if constexpr (std::is_same_v<Wish, command::PressHand> ||
+                             std::is_same_v<Wish, command::ShiftTarget>) {
+          return surroundings_ ? std::nullopt : std::optional<std::string>(kNoNeedle);
         } else {
           return std::nullopt;
         }
@@ -151,7 +156,14 @@ void Plant::apply(const command::PowerCard& wish) {
 
 void Plant::apply(const command::FailTransactions& wish) { failing_transactions_ = wish.count; }
 
+void Plant::apply(const command::PressHand& wish) { surroundings_->press_hand(wish.force_n); }
+
+void Plant::apply(const command::ShiftTarget& wish) { surroundings_->shift_target(wish.by_mm); }
+
 void Plant::apply(const command::Clear&) {
+  if (surroundings_) {
+    surroundings_->press_hand(0.0);
+  }
   pedal_.normally_open().stick(std::nullopt);
   pedal_.normally_closed().stick(std::nullopt);
   failing_transactions_ = 0;

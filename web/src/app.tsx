@@ -1,6 +1,7 @@
 import { AccountPage } from "./panels/account/AccountPage";
 import { AuditPage } from "./panels/audit/AuditPage";
 import { BenchPanel } from "./panels/bench/BenchPanel";
+import { BiopsyPanel } from "./panels/biopsy/BiopsyPanel";
 import { CommunicationPanel } from "./panels/communication/CommunicationPanel";
 import { Cover } from "./panels/cover/Cover";
 import { Header } from "./panels/header/Header";
@@ -42,6 +43,7 @@ function Sheet({ of: Content }: { readonly of: () => React.ReactNode }) {
 
 function RobotPage() {
   const level = useConsole((state) => state.freshness.level);
+  const takesBiopsies = useConsole((state) => state.robot?.modes.includes("cooperative_biopsy") ?? false);
   const simulated = useConsole((state) => state.frame?.simulated ?? false);
   return (
     <div className="stage">
@@ -53,6 +55,7 @@ function RobotPage() {
         </div>
         <div className="side">
           {simulated && <BenchPanel />}
+          {takesBiopsies && <BiopsyPanel />}
           <ProposalsPanel />
           <StatusPanel />
         </div>

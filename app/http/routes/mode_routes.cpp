@@ -4,6 +4,7 @@
 #include "http/path_drafts.hpp"
 #include "http/problems.hpp"
 #include "http/proposing.hpp"
+#include "http/sweep_draft.hpp"
 #include "robot/compile.hpp"
 
 namespace interlock::web {
@@ -93,12 +94,15 @@ tl::expected<Draft, Problem> ModeRoutes::draft_for(RobotMode mode, const std::st
     case RobotMode::draping:
       return draping_draft(context_.robot, author);
     case RobotMode::ablation:
+    case RobotMode::cooperative_biopsy:
     case RobotMode::coordinated:
       return fail(Problem{.status = Status::conflict,
                           .code = "NO_TARGETS",
                           .detail = "Such motion needs targets, which a mode does not name.",
-                          .expected = "a proposal of kind coordinated, pose or ablation",
+                          .expected = "a proposal of kind coordinated, pose, ablation or biopsy",
                           .next_step = "Propose it by POST /api/proposals."});
+    case RobotMode::frequency_sweep:
+      return whole_sweep_draft(context_.robot, author);
     case RobotMode::home:
     case RobotMode::manual:
       break;
@@ -133,7 +137,7 @@ Answering ModeRoutes::set_mode(const Call& call) const {
 Reply ModeRoutes::go_manual() const {
   (void)context_.view();
   const Proposal* home = context_.book.open_home();
-  const Proposal* open = home == nullptr ? context_.book.open_path() : home;
+  const Proposal* open = home == nullptr ? context_.book.open_mode() : home;
   if (open != nullptr) {
     const auto aborted = context_.book.abort(open->id);
     if (!aborted) {

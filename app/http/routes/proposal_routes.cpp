@@ -7,6 +7,7 @@
 #include "http/path_drafts.hpp"
 #include "http/problems.hpp"
 #include "http/proposing.hpp"
+#include "http/sweep_draft.hpp"
 #include "proposals/proposal_json.hpp"
 
 namespace interlock::web {
@@ -117,11 +118,23 @@ tl::expected<PoseWish, Problem> pose_of(const json& body) {
   return PoseWish{pose == "reachable", insert};
 }
 
-tl::expected<std::string, Problem> kind_of(const json& body) {
-  constexpr std::array<std::string_view, 7> kinds{"move",       "home",    "coordinated", "pose",
-                                                  "trajectory", "draping", "ablation"};
-  Fields fields(body, {"kind", "slot", "step", "target", "target_counts", "drive", "targets", "duration_s",
-                       "pose", "insert", "steps"});
+/** In the guide frame. */
+tl::expected<std::array<double, 3>, Problem> biopsy_target_of(const json& body) {
+  Fields fields(body, {"kind", "target_mm"});
+  const auto target_mm = fields.numbers("target_mm", 3);
+  fields.require({{"target_mm", "a point in the guide frame"}});
+  if (fields.problem()) {
+    return fail(*fields.problem());
+  }
+  return std::array{(*target_mm)[0], (*target_mm)[1], (*target_mm)[2]};
+}
+
+tl::expected<std::string, Problem> kind_in(const json& body) {
+  constexpr std::array<std::string_view, 9> kinds{"biopsy",     "move",    "home",     "coordinated", "pose",
+                                                  "trajectory", "draping", "ablation", "sweep"};
+  Fields fields(body,
+                {"kind", "slot", "step", "target", "target_counts", "drive", "targets", "duration_s", "pose",
+                 "insert", "steps", "axis", "from_hz", "to_hz", "step_hz", "dwell_s", "target_mm"});
   const auto kind = fields.choice("kind", kinds);
   if (fields.problem()) {
     return fail(*fields.problem());
@@ -161,7 +174,7 @@ Reply ProposalRoutes::list() const {
 /** Reads a `ProposalDraft`. */
 boost::asio::awaitable<tl::expected<Draft, Problem>> ProposalRoutes::draft_of(const Call& call) const {
   const auto body = parse_body(call.request);
-  const auto kind = body.and_then(kind_of);
+  const auto kind = body.and_then(kind_in);
   if (!kind) {
     co_return fail(kind.error());
   }
@@ -181,6 +194,19 @@ boost::asio::awaitable<tl::expected<Draft, Problem>> ProposalRoutes::draft_of(co
   }
   if (*kind == "ablation") {
     co_return ablation_of(*body, context_.robot, author);
+  }
+  if (*kind == "biopsy") {
+    const auto target_mm = biopsy_target_of(*body);
+    if (!target_mm) {
+      co_return fail(target_mm.error());
+    }
+    if (const auto kernel = context_.need_kernel(); !kernel) {
+      co_return fail(kernel.error());
+    }
+    co_return context_.biopsy.draft(*target_mm, context_.view(), author);
+  }
+  if (*kind == "sweep") {
+    co_return sweep_draft(context_.robot, *body, author);
   }
   if (*kind == "coordinated") {
     co_return coordinated_of(*body, context_.robot, author);

@@ -2,6 +2,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <vector>
 
 #include "plant/sim/choices.hpp"
 #include "plant/sim/protocol.hpp"
@@ -104,6 +105,16 @@ json sensor_status(std::size_t slot, const ForceSensor& sensor) {
   return {{"slot", slot}, {"name", sensor.name()}, {"inputs", inputs}};
 }
 
+json needle_status(const Surroundings& surroundings) {
+  const NeedleTruth truth = surroundings.truth();
+  return {{"depth_mm", truth.depth_mm},
+          {"tip_mm", truth.tip_mm},
+          {"target_mm", truth.target_mm},
+          {"hand_n", truth.hand_n},
+          {"needle_n", truth.needle_n},
+          {"punctures_mm", std::vector<double>(truth.punctures_mm.begin(), truth.punctures_mm.end())}};
+}
+
 template <typename Values>
 void append_list(std::string& text, const char* name, const Values& values) {
   text += ",\"";
@@ -190,18 +201,36 @@ json status_of(const Plant& plant, std::optional<ilk_clock_t> clock) {
   if (clock) {
     kernel["clock"] = *clock == ILK_CLOCK_SIM ? "sim" : "real";
   }
-  return {{"kernel", kernel},
-          {"pedal",
-           {{"pressed", plant.pedal().is_pressed()},
-            {"no_closed", newest.pedal_no_closed},
-            {"nc_closed", newest.pedal_nc_closed},
-            {"no", name_of_state(kContactStates, plant.pedal().normally_open().stuck())},
-            {"nc", name_of_state(kContactStates, plant.pedal().normally_closed().stuck())}}},
-          {"estop", {{"pulled", plant.estop_pulled()}, {"loop_closed", newest.estop_loop_closed}}},
-          {"lamps", lamps},
-          {"axes", axes},
-          {"sensors", sensors},
-          {"cards", cards}};
+  json status{{"kernel", kernel},
+              {"pedal",
+               {{"pressed", plant.pedal().is_pressed()},
+                {"no_closed", newest.pedal_no_closed},
+                {"nc_closed", newest.pedal_nc_closed},
+                {"no", name_of_state(kContactStates, plant.pedal().normally_open().stuck())},
+                {"nc", name_of_state(kContactStates, plant.pedal().normally_closed().stuck())}}},
+              {"estop", {{"pulled", plant.estop_pulled()}, {"loop_closed", newest.estop_loop_closed}}},
+              {"lamps", lamps},
+              {"axes", axes},
+              {"sensors", sensors},
+              {"cards", cards}};
+  if (const Surroundings* surroundings = plant.surroundings()) {
+    status["needle"] = needle_status(*surroundings);
+  }
+  return status;
+}
+
+json image_of(const Plant& plant) {
+  const Surroundings* surroundings = plant.surroundings();
+  if (surroundings == nullptr || !surroundings->newest_image()) {
+    return {{"image", nullptr}};
+  }
+  const TipImage& image = *surroundings->newest_image();
+  const double now_s = static_cast<double>(plant.time().count()) * 1e-6;
+  return {{"image",
+           {{"time_s", image.time_s},
+            {"age_s", now_s - image.time_s},
+            {"tip_mm", image.tip_mm},
+            {"target_mm", image.target_mm}}}};
 }
 
 json newest_of(const Plant& plant, Event kind) {

@@ -119,6 +119,8 @@ void ControlClient::answer_query(const Request& request, Plant& plant, const Bus
     long_answer_.emplace(request.id, plant, *range);
   } else if (const auto* event = std::get_if<EventQuery>(&request.wish)) {
     unsent_ += accepted(request.id, plant.ticks(), newest_of(plant, event->kind));
+  } else if (std::holds_alternative<ImageQuery>(request.wish)) {
+    unsent_ += accepted(request.id, plant.ticks(), image_of(plant));
   } else {
     unsent_ += accepted(request.id, plant.ticks(), status_of(plant, bus.clock()));
   }

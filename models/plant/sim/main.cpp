@@ -11,7 +11,9 @@
 #include <csignal>
 #include <cstring>
 #include <iostream>
+#include <memory>
 
+#include "needle/scene.hpp"
 #include "plant/parameters_file.hpp"
 #include "plant/robot_file.hpp"
 #include "plant/sim/control_server.hpp"
@@ -96,6 +98,9 @@ int run(const Options& options) {
     return fail(control_listener.error());
   }
   Plant plant(*robot, *parameters, options.seed);
+  if (parameters->scene) {
+    plant.surround(std::make_unique<interlock::needle::Scene>(*parameters->scene, options.seed));
+  }
   BusServer bus(std::move(*bus_listener), plant, robot->crc);
   ControlServer control(std::move(*control_listener), plant, bus);
   std::cout << "ready bus=" << options.bus << " control=" << options.control << std::endl;

@@ -18,6 +18,9 @@ namespace interlock::plant::sim {
 
 struct StatusQuery {};
 
+/** The newest image of the needle's tip. */
+struct ImageQuery {};
+
 /** Entries from the first to the last tick, both included. */
 struct RecordQuery {
   std::uint64_t from;
@@ -28,7 +31,7 @@ struct EventQuery {
   Event kind;
 };
 
-using Wish = std::variant<command::Command, StatusQuery, RecordQuery, EventQuery>;
+using Wish = std::variant<command::Command, StatusQuery, ImageQuery, RecordQuery, EventQuery>;
 
 struct Request {
   nlohmann::json id;               /**< as in the line; null when there was none */
@@ -53,6 +56,9 @@ std::string refused(const Refusal& refusal);
 
 /** All that a bench shows. `clock` is that of the attached kernel. */
 nlohmann::json status_of(const Plant& plant, std::optional<ilk_clock_t> clock);
+
+/** The answer to an image query; `image` is null before the first one. */
+nlohmann::json image_of(const Plant& plant);
 
 /** The answer to an event query: the tick, or null when it never happened. */
 nlohmann::json newest_of(const Plant& plant, Event kind);

@@ -57,6 +57,21 @@ class Fields {
 
   std::size_t analog_input() { return static_cast<std::size_t>(integer("adc", 1, wire::kAnalogInputs)) - 1; }
 
+  std::array<double, 3> shift() {
+    const json* value = take("by_mm");
+    std::array<double, 3> by_mm{};
+    bool fits = value != nullptr && value->is_array() && value->size() == by_mm.size();
+    for (std::size_t place = 0; fits && place < by_mm.size(); ++place) {
+      const json& number = (*value)[place];
+      fits = number.is_number() && std::abs(number.get<double>()) <= command::kMostShift;
+      by_mm[place] = fits ? number.get<double>() : 0.0;
+    }
+    if (!fits) {
+      fail("by_mm", "expected three numbers from -100 to 100");
+    }
+    return by_mm;
+  }
+
   std::int32_t force_counts() {
     return static_cast<std::int32_t>(
         integer("counts", -command::kMostForceCounts, command::kMostForceCounts));
@@ -160,11 +175,15 @@ constexpr std::array kForms = {
     Form{
         "force",
         [](Fields& f) -> Wish { return command::PressSensor{f.slot(), f.analog_input(), f.force_counts()}; }},
+    Form{"hand",
+         [](Fields& f) -> Wish { return command::PressHand{f.number("newtons", command::kMostHandForce)}; }},
+    Form{"target", [](Fields& f) -> Wish { return command::ShiftTarget{f.shift()}; }},
     Form{"frame", [](Fields& f) -> Wish { return read_frame_fault(f); }},
     Form{"card_reset", [](Fields& f) -> Wish { return command::ResetCard{f.slot()}; }},
     Form{"card_power", [](Fields& f) -> Wish { return command::PowerCard{f.slot(), f.flag("on")}; }},
     Form{"transaction", [](Fields& f) -> Wish { return command::FailTransactions{f.count()}; }},
     Form{"clear", [](Fields&) -> Wish { return command::Clear{}; }},
+    Form{"image", [](Fields&) -> Wish { return ImageQuery{}; }},
     Form{"status", [](Fields&) -> Wish { return StatusQuery{}; }},
     Form{"record", [](Fields& f) -> Wish { return read_range(f); }},
     Form{"record_event", [](Fields& f) -> Wish { return EventQuery{f.choice("kind", kEvents)}; }},

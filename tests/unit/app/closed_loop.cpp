@@ -44,13 +44,14 @@ ilk_snapshot_t ClosedLoop::snapshot() const {
   snapshot.period_us = config_.period_us;
   snapshot.config_crc = config_.crc;
   snapshot.state = state_;
+  snapshot.inputs = inputs_;
   std::copy(std::begin(outputs_.command), std::end(outputs_.command), snapshot.command);
   std::copy(std::begin(outputs_.gate), std::end(outputs_.gate), snapshot.gate);
   return snapshot;
 }
 
 void ClosedLoop::tick() {
-  const ilk_inputs_t inputs = plant::exchange(plant_, outputs_, state_.tick);
+  inputs_ = plant::exchange(plant_, outputs_, state_.tick);
   if (state_.tick % heartbeat_ticks == 0) {
     ilk_request_t heartbeat{};
     heartbeat.kind = ILK_REQUEST_HEARTBEAT;
@@ -58,12 +59,14 @@ void ClosedLoop::tick() {
     put(heartbeat);
   }
   most_requests_ = std::max(most_requests_, static_cast<std::uint32_t>(requests_.size()));
-  ilk_step(&config_, &state_, &inputs, requests_.data(), static_cast<std::uint32_t>(requests_.size()),
+  ilk_step(&config_, &state_, &inputs_, requests_.data(), static_cast<std::uint32_t>(requests_.size()),
            &outputs_);
   requests_.clear();
   deliver_verdicts();
   on_their_way_.push_back(snapshot());
-  if (on_their_way_.size() > latency_) {
+  if (silent_) {
+    on_their_way_.clear();
+  } else if (on_their_way_.size() > latency_) {
     seen_tick_ = on_their_way_.front().state.tick;
     const Wishes wishes = conductor_.tick(on_their_way_.front());
     on_their_way_.pop_front();

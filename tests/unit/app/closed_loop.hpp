@@ -56,6 +56,8 @@ class ClosedLoop {
   void give(const Order& order) { conductor_.take(order, seen_tick_); }
   void give(const HomeOrder& order) { conductor_.take(order, seen_tick_); }
   void give(const PathOrder& order) { conductor_.take(order, seen_tick_); }
+  void give(const BiopsyOrder& order) { conductor_.take(order, seen_tick_); }
+  void give(const SweepOrder& order) { conductor_.take(order, seen_tick_); }
 
   /** Gives a path and returns its status once it is final, or after so many ticks. */
   PathStatus carry_out(const PathOrder& order, std::uint32_t most_ticks);
@@ -72,6 +74,14 @@ class ClosedLoop {
   [[nodiscard]] OrderStatus order(std::uint32_t slot) const { return conductor_.orders()[slot]; }
   [[nodiscard]] const HomeStatus& home() const { return conductor_.home(); }
   [[nodiscard]] const PathStatus& path() const { return conductor_.path(); }
+  [[nodiscard]] const SweepStatus& sweep() const { return conductor_.sweep(); }
+  [[nodiscard]] const BiopsyMode& biopsy() const { return conductor_.biopsy(); }
+  void show(const SeenImage& image) { conductor_.see(image); }
+  [[nodiscard]] std::uint32_t seen_tick() const { return seen_tick_; }
+  plant::Plant& plant() { return plant_; }
+
+  /** The app falls silent but for its heartbeat, or speaks again. */
+  void silence(bool silent) { silent_ = silent; }
   void cancel(std::uint32_t proposal) { conductor_.end(proposal, OrderReason::cancelled, seen_tick_); }
 
   /** STOP, as the control thread obeys it. */
@@ -97,6 +107,8 @@ class ClosedLoop {
   ilk_config_t config_;
   ilk_state_t state_{};
   ilk_outputs_t outputs_{};
+  ilk_inputs_t inputs_{};
+  bool silent_ = false;
   plant::Plant plant_;
   Conductor conductor_;
   std::uint32_t latency_;

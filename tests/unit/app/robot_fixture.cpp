@@ -16,16 +16,19 @@ ilk_config_t config_of(const Robot& robot) {
   return compiled ? *compiled : throw std::runtime_error(compiled.error().message());
 }
 
-ControlView ready_view() {
+ControlView ready_view() { return ready_view(neuro()); }
+
+ControlView ready_view(const Robot& robot) {
+  const ilk_config_t config = config_of(robot);
   ControlView view;
   view.attached = true;
   view.generation = 1;
   view.received = std::chrono::steady_clock::now();
-  view.snapshot.config_crc = neuro_config().crc;
-  view.snapshot.period_us = neuro_config().period_us;
+  view.snapshot.config_crc = config.crc;
+  view.snapshot.period_us = config.period_us;
   view.snapshot.state.tick = 1000;
   view.snapshot.state.mode = ILK_MODE_READY;
-  for (const Axis& axis : neuro().axes) {
+  for (const Axis& axis : robot.axes) {
     ilk_axis_t& state = view.snapshot.state.axis[axis.slot];
     state.state = ILK_AXIS_ENABLED;
     state.homed = 1;

@@ -27,5 +27,6 @@ ilk_config_t config_of(const Robot& robot);
 
 /** A view of an attached kernel in READY, every axis homed at the middle of its range and enabled. */
 ControlView ready_view();
+ControlView ready_view(const Robot& robot);
 
 }  // namespace interlock::test

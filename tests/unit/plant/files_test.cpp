@@ -131,6 +131,49 @@ TEST(PlantFile, FaultNamesFileLineKeyAndWhatWasExpected) {
   EXPECT_THAT(fault_of_plant("[[axis]\n"), StartsWith("p.toml:1: "));
 }
 
+/** A plant file with a needle: one motor for all, and a sensor whose ADC 1 is connected. */
+std::string needle_plant(const std::string& needle) {
+  return "[[axis]]\nslot = 0\nname = \"a\"\nstart_counts = 0\n[[sensor]]\nslot = 3\nname = \"f\"\n"
+         "[[sensor.input]]\nadc = 1\nzero_counts = 9\n" +
+         needle;
+}
+
+std::string fault_of_needle(const std::string& needle) {
+  ilk_config_t robot{};
+  robot.axis[0].card = ILK_CARD_PWM;
+  robot.axis[0].max_counts = 100;
+  robot.axis[3].card = ILK_CARD_SENSOR;
+  const TemporaryFolder folder;
+  const auto loaded = load_parameters(folder.write("p.toml", needle_plant(needle)), robot);
+  return loaded ? "" : loaded.error().substr(loaded.error().rfind("p.toml"));
+}
+
+const std::string kNeedle =
+    "[needle]\n[needle.insertion]\nslot = 0\ncounts_per_unit = 5\n[needle.rotation]\nslot = 0\n"
+    "counts_per_unit = 5\n[needle.hand]\nslot = 3\nadc = 1\ncounts_per_newton = 9\n[needle.tip]\nslot = 3\n"
+    "adc = 1\ncounts_per_newton = 9\n";
+
+TEST(PlantFile, ANeedleIsReadWithItsTissue) {
+  EXPECT_EQ(fault_of_needle(kNeedle), "");
+  EXPECT_EQ(fault_of_needle(kNeedle + "[[layer]]\ncutting_n = 1\n[[membrane]]\ndepth_mm = 4\n[target]\n"
+                                      "position_mm = [1, 2, 3]\n[image]\nage_s = 0.5\n"),
+            "");
+}
+
+TEST(PlantFile, AFaultOfNeedleOrTissueIsNamed) {
+  EXPECT_EQ(fault_of_needle("[target]\nposition_mm = [1, 2, 3]\n"),
+            "p.toml:11: target: there is no [needle] to work on it");
+  EXPECT_EQ(fault_of_needle("[needle]\n"), "p.toml:11: insertion: expected a table [needle.insertion]");
+  EXPECT_EQ(fault_of_needle(kNeedle + "[[membrane]]\ndepth_mm = 9\n[[membrane]]\ndepth_mm = 8\n"),
+            "p.toml:29: depth_mm: expected a number from 9 to 1000");
+  EXPECT_EQ(fault_of_needle(kNeedle + "[target]\nposition_mm = [1, 2]\n"),
+            "p.toml:26: position_mm: expected three numbers in mm, in the guide frame");
+  EXPECT_THAT(fault_of_needle(kNeedle + "[image]\nage_ms = 1\n"), HasSubstr("age_ms: unknown key"));
+  std::string unread = kNeedle;
+  unread.replace(unread.find("adc = 1"), 7, "adc = 2");
+  EXPECT_THAT(fault_of_needle(unread), HasSubstr("adc: expected a connected input of a [[sensor]]"));
+}
+
 TEST(PlantFile, MissingFileIsNamed) {
   const auto loaded = load_parameters("/nonexistent/plant.toml", sample_robot());
   ASSERT_FALSE(loaded);

@@ -23,6 +23,9 @@ export type AxisVerdict = Schemas["AxisVerdicts"][number];
 export type PositionsFile = Schemas["PositionsFile"];
 export type PositionsComparison = Schemas["PositionsComparison"];
 export type Connection = Schemas["Connection"];
+export type Biopsy = Schemas["Biopsy"];
+export type BiopsyNow = Schemas["BiopsyNow"];
+export type Force = Schemas["Force"];
 export type LogLevel = Schemas["LogLevel"];
 export type LogLine = Schemas["LogLine"];
 export type AuditRecord = Schemas["AuditRecord"];
@@ -176,6 +179,12 @@ export const api = {
     act(() => http.POST("/api/positions/compare", { body: file as PositionsFile })),
   restore: (file: PositionsFile, axes: string[]) =>
     act(() => slowHttp.PUT("/api/motors/restore", { body: { file, axes } })),
+
+  biopsy: () => read(() => http.GET("/api/biopsy")),
+  zeroForces: () => act(() => http.POST("/api/biopsy/zero")),
+  setMembranes: (depths_mm: number[]) =>
+    act(() => http.PUT("/api/biopsy/membranes", { body: { depths_mm, next: 0 } })),
+  resetMembranes: () => act(() => http.POST("/api/biopsy/membranes/reset")),
 
   communications: () => read(() => http.GET("/api/communications")),
   disconnect: (id: number) => act(() => http.PUT("/api/communications/disconnect", { body: { id } })),

@@ -250,7 +250,8 @@ export interface paths {
          * Changes the mode. `home` proposes all of the robot's home steps, as `POST /api/proposals` with `{"kind":"home"}`
          *     does, and is refused as that is; it ends in `manual` by itself, and changes nothing while homing is open.
          *     `trajectory` and `draping` propose as `{"kind":"trajectory"}` and `{"kind":"draping"}` do; without a loaded trajectory the
-         *     robot stays in `manual` (EMPTY). `coordinated` and `ablation` need targets, so they are proposed only (NO_TARGETS). `manual` aborts what the other mode had open.
+         *     robot stays in `manual` (EMPTY). `frequency_sweep` proposes a sweep of the whole band of the robot's first high-frequency axis, in
+         *     published steps of a second each. `coordinated`, `ablation` and `cooperative_biopsy` need targets, so they are proposed only (NO_TARGETS). `manual` aborts what the other mode had open.
          */
         put: operations["setMode"];
         post?: never;
@@ -352,6 +353,103 @@ export interface paths {
         post?: never;
         /** Unloads the trajectory; a proposal that was made of it stays. */
         delete: operations["unloadTrajectory"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/biopsy": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Cooperative Biopsy: both forces, the membranes, and what an open biopsy does. 404 for a robot without a needle. The stream tells
+         *     the same ten times a second, as a text message of type `biopsy`.
+         */
+        get: operations["getBiopsy"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/biopsy/membranes": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Sets the depths at which membranes are expected, and which of them is the next; none was found then. 409 BIOPSY_OPEN while
+         *     a biopsy is open.
+         */
+        put: operations["setMembranes"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/biopsy/membranes/reset": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Expects all membranes again, the first one next. 409 BIOPSY_OPEN while a biopsy is open. */
+        post: operations["resetMembranes"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/biopsy/zero": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Takes the mean of the last 128 readings as the zero of both forces. 409 ZEROING when they are too few, spread wider than noise
+         *     or are far from the zero of the robot file; 409 BIOPSY_OPEN while a biopsy is open. A start of the app takes the zero of the file.
+         */
+        post: operations["zeroForce"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/biopsy/images": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * An image of the tip, and perhaps of the target, for the open biopsy (409 NO_BIOPSY when none is). Images come in the order of their
+         *     exposures. One that cannot be counts for nothing but `images_refused`.
+         */
+        post: operations["showNeedleImage"];
+        delete?: never;
         options?: never;
         head?: never;
         patch?: never;
@@ -875,14 +973,27 @@ export interface components {
          *     `coordinated` takes `targets` and perhaps `duration_s`. `pose` aligns the probe with entry and target: it takes the probe out,
          *     moves all other axes together and, with `insert`, inserts the probe. `trajectory` follows the loaded one, `draping` goes
          *     to the setpoints of the robot's file; they take nothing else. `ablation` turns and inserts the probe through `steps`, one
-         *     after the other, and rests at each.
+         *     after the other, and rests at each. `sweep` turns the high-frequency `axis` at one frequency after the other, `from_hz` to
+         *     `to_hz` in steps of `step_hz`, each for `dwell_s` of driven time, to and fro within its range; frequencies outside of the axis'
+         *     allowed band are refused (DRIVE), and so is the published range. `biopsy` has the surgeon's hand push the needle towards
+         *     `target_mm` (docs/biopsy.md): FORCE_STALE without a force of the last 20 ms, IN_TISSUE when the tip is past the skin.
          */
         ProposalDraft: {
             /**
              * @default move
              * @enum {string}
              */
-            kind: "move" | "home" | "coordinated" | "pose" | "trajectory" | "draping" | "ablation";
+            kind: "move" | "home" | "coordinated" | "pose" | "trajectory" | "draping" | "ablation" | "sweep" | "biopsy";
+            /** @description Of a biopsy: target in the guide frame, see NeedleImage. */
+            target_mm?: number[];
+            /** @description Of a sweep: name of a high-frequency axis. */
+            axis?: string;
+            /** @description Of a sweep, as all that follow to dwell_s: first frequency. */
+            from_hz?: number;
+            to_hz?: number;
+            /** @description At most 200 frequencies. */
+            step_hz?: number;
+            dwell_s?: number;
             steps?: components["schemas"]["AblationStep"][];
             /** @description Positions by axis, in its unit; the axes arrive together. */
             targets?: {
@@ -909,9 +1020,18 @@ export interface components {
         Proposal: {
             id: number;
             /** @enum {string} */
-            kind: "move" | "home" | "path";
-            /** @description Of a path: as in /api/mode. */
+            kind: "move" | "home" | "path" | "sweep" | "biopsy";
+            /** @description Of a biopsy: in the guide frame. */
+            target_mm?: number[];
+            /** @description Of a path, a sweep and a biopsy: as in /api/mode. */
             mode?: string;
+            /** @description Of a sweep: driven time at each frequency. */
+            dwell_ticks?: number;
+            /** @description Of a sweep: its frequencies, and the mean speed at each that is over; null before, and where the dwell was too short. */
+            frequencies?: {
+                hz: number;
+                counts_per_s: number | null;
+            }[];
             /** @description Of a path: its parts, one after the other. */
             legs?: number;
             /** @description Of a path: the part that runs or is next, from 0. */
@@ -1025,6 +1145,69 @@ export interface components {
                 axes: string[];
             }[];
             axes: string[];
+        };
+        Force: {
+            /** @description Newest reading of the converter; null before the first one. */
+            raw_counts: number | null;
+            /** @description Calibrated: by the published line, less the zero. */
+            force_n: number | null;
+            /** @description Mean reading that counts as no force. */
+            zero_counts: number | null;
+        };
+        Biopsy: {
+            /** @description A biopsy is approved. */
+            open: boolean;
+            hand: components["schemas"]["Force"];
+            needle: components["schemas"]["Force"];
+            /** @description Since the newest reading of both; null before it. */
+            force_age_ms: number | null;
+            membranes: {
+                /** @description Expected below the skin. */
+                depth_mm: number;
+                /** @enum {string} */
+                state: "expected" | "next" | "passed";
+                /** @description Depth at which it tore; null unless it was found. */
+                found_mm: number | null;
+            }[];
+            /** @description Index of the next one, from 0; their number when none is left. */
+            next: number;
+            left: number;
+            /** @description What the open biopsy does; null when none is. */
+            now: null | components["schemas"]["BiopsyNow"];
+        };
+        BiopsyNow: {
+            /** @description Of the insertion, below the skin. */
+            depth_mm: number;
+            speed_mm_s: number;
+            /** @description To the target's depth. */
+            left_mm: number;
+            /** @description A membrane is listened for. */
+            armed: boolean;
+            /** @description The needle trembles, for it has punctured a membrane. */
+            cue: boolean;
+            wanted_rotation_rad: number;
+            /** @description Share of CURV: 0 straight, 1 as far as the needle bends. */
+            alpha: number;
+            /** @description Largest of this needle, as estimated. */
+            curvature_per_mm: number;
+            expected_miss_mm: number;
+            /** @description False: even the largest curvature will miss the target. */
+            reachable: boolean;
+            images: number;
+            images_refused: number;
+        };
+        Membranes: {
+            /** @description Below the skin, each below the one before. */
+            depths_mm: number[];
+            /** @default 0 */
+            next: number;
+        };
+        /** @description In the guide frame: origin where the tip touches the skin, z ahead; at rotation 0 the bevel bends the path towards -y. */
+        NeedleImage: {
+            tip_mm: number[];
+            target_mm?: number[];
+            /** @description Since its exposure. */
+            age_ms: number;
         };
         ModeAnswer: {
             mode: string;
@@ -2030,6 +2213,140 @@ export interface operations {
             401: components["responses"]["Login"];
             403: components["responses"]["Role"];
             409: components["responses"]["Authority"];
+            503: components["responses"]["NoKernel"];
+        };
+    };
+    getBiopsy: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The biopsy as it is then. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Biopsy"];
+                };
+            };
+            401: components["responses"]["Login"];
+            404: components["responses"]["NotFound"];
+        };
+    };
+    setMembranes: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Membranes"];
+            };
+        };
+        responses: {
+            /** @description The biopsy as it is then. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Biopsy"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            404: components["responses"]["NotFound"];
+            409: components["responses"]["Refused"];
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoKernel"];
+        };
+    };
+    resetMembranes: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The biopsy as it is then. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Biopsy"];
+                };
+            };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            404: components["responses"]["NotFound"];
+            409: components["responses"]["Refused"];
+            503: components["responses"]["NoKernel"];
+        };
+    };
+    zeroForce: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The biopsy as it is then. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Biopsy"];
+                };
+            };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            404: components["responses"]["NotFound"];
+            409: components["responses"]["Refused"];
+            503: components["responses"]["NoKernel"];
+        };
+    };
+    showNeedleImage: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NeedleImage"];
+            };
+        };
+        responses: {
+            /** @description The biopsy as it is then. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Biopsy"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            404: components["responses"]["NotFound"];
+            409: components["responses"]["Refused"];
+            422: components["responses"]["Invalid"];
             503: components["responses"]["NoKernel"];
         };
     };

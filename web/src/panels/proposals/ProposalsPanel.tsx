@@ -130,6 +130,14 @@ function Wish({ proposal, motor }: WishProps) {
       </>
     );
   }
+  if (proposal.kind === "sweep" || proposal.kind === "biopsy") {
+    return (
+      <>
+        <strong>{proposal.kind === "sweep" ? "Frequency sweep" : "Cooperative biopsy"}</strong>:{" "}
+        {proposal.axes.join(", ")}
+      </>
+    );
+  }
   const counts = proposal.target_counts ?? 0;
   return (
     <>

@@ -1,0 +1,278 @@
+#include "motion/biopsy_mode.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "motion/setpoint_range.hpp"
+
+namespace interlock {
+namespace {
+
+/** With the lease and two ticks of latency between a snapshot and its MOVE: 20 ms. */
+constexpr double force_patience_s = 0.008;
+constexpr double longest_lease_s = 0.010;
+/** How often the turning is planned anew (docs/steering.md). */
+constexpr double steering_period_s = 0.005;
+/** A snapshot that comes later than this is heard as one that came so late. */
+constexpr std::uint32_t most_missed_ticks = 20;
+
+std::uint32_t ticks_of(double time_s, double period_s) noexcept {
+  return std::max(1u, static_cast<std::uint32_t>(time_s / period_s));
+}
+
+std::uint32_t lease_ticks(const RobotPlan& plan) noexcept {
+  return std::min(plan.lease_ticks(), ticks_of(longest_lease_s, plan.period_s()));
+}
+
+}  // namespace
+
+void BiopsyMode::Guided::start(const ilk_snapshot_t& snapshot, std::uint32_t slot) noexcept {
+  position = snapshot.state.axis[slot].position_counts / counts_per_unit;
+  speed = 0.0;
+  tracker.start(snapshot);
+  aim(0.0, 0.0, 0.0);
+}
+
+void BiopsyMode::Guided::go(double wanted, double time_s) noexcept {
+  const double fastest = rates.velocity_counts_per_s / counts_per_unit;
+  const double change = rates.acceleration_counts_per_s2 / counts_per_unit * time_s;
+  speed += std::clamp(std::clamp(wanted, -fastest, fastest) - speed, -change, change);
+  position += speed * time_s;
+}
+
+void BiopsyMode::Guided::aim(double offset, double offset_speed, double lease_s) noexcept {
+  point.now = {(position + offset) * counts_per_unit, (speed + offset_speed) * counts_per_unit, 0.0};
+  point.ahead_counts = point.now.position_counts + point.now.velocity_counts_per_s * lease_s;
+}
+
+BiopsyMode::BiopsyMode(const RobotPlan& plan)
+    : needle_(plan.needle),
+      period_s_(plan.period_s()),
+      force_patience_ticks_(ticks_of(force_patience_s, period_s_)),
+      steering_ticks_(ticks_of(steering_period_s, period_s_)),
+      lease_s_(lease_ticks(plan) * period_s_),
+      order_(plan.patience_ticks()),
+      force_(needle_ ? needle_->force : ForceInputs{}) {
+  if (needle_) {
+    const auto guided = [&](std::uint32_t slot) {
+      const AxisPlan& axis = plan.axis[slot];
+      return Guided{
+          AxisTracker(slot, axis, lease_ticks(plan)), axis.rates, axis.counts_per_unit, 0.0, 0.0, {}};
+    };
+    insertion_ = guided(needle_->insertion_slot);
+    rotation_ = guided(needle_->rotation_slot);
+    const ilk_axis_config_t& rules = plan.axis[needle_->insertion_slot].rules;
+    deepest_allowed_mm_ =
+        (static_cast<double>(rules.max_counts) - rules.coast_counts) / insertion_.counts_per_unit;
+  }
+}
+
+void BiopsyMode::take(const BiopsyOrder& order, std::uint32_t tick) noexcept {
+  run_ = order.run;
+  status_ = BiopsyStatus{};
+  now_ = BiopsyNow{};
+  command_ = SteeringCommand{};
+  cue_mm_ = 0.0;
+  steered_tick_ = order.run->start_tick;
+  order_.take(order.proposal, needle_ ? (1u << needle_->insertion_slot) | (1u << needle_->rotation_slot) : 0u,
+              tick);
+  if (!needle_) {
+    order_.end_all(OrderReason::no_path, tick);
+  }
+  tell();
+}
+
+void BiopsyMode::see(const SeenImage& seen) noexcept {
+  if (is_open() && seen.proposal == status_.order.proposal) {
+    const bool taken = run_->compensator.see(seen.image).has_value();
+    now_.images += taken ? 1u : 0u;
+    now_.images_refused += taken ? 0u : 1u;
+  }
+}
+
+void BiopsyMode::end(std::uint32_t proposal, OrderReason reason, std::uint32_t tick) noexcept {
+  order_.end(proposal, reason, tick);
+  tell();
+}
+
+void BiopsyMode::end_all(OrderReason reason, std::uint32_t tick) noexcept {
+  order_.end_all(reason, tick);
+  tell();
+}
+
+void BiopsyMode::end_axis(std::uint32_t slot, OrderReason reason, std::uint32_t tick) noexcept {
+  order_.end_axis(slot, reason, tick);
+  tell();
+}
+
+void BiopsyMode::tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
+  if (!needle_) {
+    return;
+  }
+  force_.look(snapshot);
+  switch (order_.judge(snapshot)) {
+    case HeldOrder::Work::begin:
+      begin(snapshot);
+      break;
+    case HeldOrder::Work::go_on:
+      go_on(snapshot);
+      break;
+    case HeldOrder::Work::none:
+      break;
+  }
+  tell();
+  const std::uint32_t proposal = status_.order.proposal;
+  for (Guided* axis : {&insertion_, &rotation_}) {
+    if (order_.executes()) {
+      axis->tracker.hold(proposal, snapshot, axis->point, wishes);
+    } else {
+      axis->tracker.let_go(proposal, snapshot, wishes);
+    }
+  }
+}
+
+/** From the start, or on after a pause: from where the axes are, at rest. */
+void BiopsyMode::begin(const ilk_snapshot_t& snapshot) noexcept {
+  insertion_.start(snapshot, needle_->insertion_slot);
+  rotation_.start(snapshot, needle_->rotation_slot);
+  seen_tick_ = snapshot.state.tick;
+  cue_mm_ = 0.0;
+}
+
+void BiopsyMode::go_on(const ilk_snapshot_t& snapshot) noexcept {
+  const std::uint32_t tick = snapshot.state.tick;
+  const std::uint32_t ticks = std::min(tick - seen_tick_, most_missed_ticks);
+  const double time_s = ticks * period_s_;
+  seen_tick_ = tick;
+  if (force_.readings().age_ticks(tick) > force_patience_ticks_) {
+    fail(OrderReason::force_stale, needle_->force.slot, tick);
+    return;
+  }
+  if (!plan_steering(snapshot) || !push(snapshot, time_s) || !listen(snapshot, ticks)) {
+    return;
+  }
+  rotation_.go(insertion_.speed > 0.0 ? command_.rotation_rad_s : 0.0, time_s);
+  rotation_.aim(0.0, 0.0, lease_s_);
+  for (const auto& [axis, slot] :
+       {std::pair{&insertion_, needle_->insertion_slot}, std::pair{&rotation_, needle_->rotation_slot}}) {
+    if (axis->tracker.off_path(snapshot, axis->point)) {
+      fail(OrderReason::off_path, slot, tick);
+      return;
+    }
+  }
+  if (command_.arrived) {
+    order_.finish(OrderReason::arrived, tick);
+  }
+}
+
+bool BiopsyMode::plan_steering(const ilk_snapshot_t& snapshot) noexcept {
+  const std::uint32_t tick = snapshot.state.tick;
+  if (tick - steered_tick_ < steering_ticks_) {
+    return true;
+  }
+  steered_tick_ = tick;
+  const double rotation_rad =
+      snapshot.state.axis[needle_->rotation_slot].position_counts / rotation_.counts_per_unit;
+  const auto planned = run_->compensator.step(
+      {(tick - run_->start_tick) * period_s_, std::max(0.0, depth_mm(snapshot)), rotation_rad});
+  if (!planned) {
+    return fails(planned.error(), tick);
+  }
+  command_ = *planned;
+  now_.wanted_rotation_rad = command_.wanted_rotation_rad;
+  now_.alpha = command_.alpha;
+  now_.curvature_per_mm = run_->compensator.tip().curvature_per_mm;
+  now_.expected_miss_mm = command_.expected_miss_mm;
+  now_.reachable = command_.reachable;
+  return true;
+}
+
+/** The hand's force makes the speed; never past the target's depth, nor past what the axis may. */
+bool BiopsyMode::push(const ilk_snapshot_t& snapshot, double time_s) noexcept {
+  const double end_mm = std::min(command_.insertion_setpoint_mm + run_->entry_mm, deepest_allowed_mm_);
+  const double left_mm = std::max(0.0, end_mm - insertion_.position);
+  now_.left_mm = left_mm;
+  const auto wanted = run_->hand.force_n(force_.readings().hand).and_then([&](double force_n) {
+    return cooperative_speed(run_->hand_law, force_n, true, left_mm);
+  });
+  if (!wanted) {
+    return fails(wanted.error(), snapshot.state.tick);
+  }
+  const double before_mm = insertion_.position;
+  insertion_.go(*wanted, time_s);
+  insertion_.position = std::min(insertion_.position, std::max(before_mm, end_mm));
+  return true;
+}
+
+bool BiopsyMode::listen(const ilk_snapshot_t& snapshot, std::uint32_t ticks) noexcept {
+  const std::uint32_t tick = snapshot.state.tick;
+  now_.depth_mm = depth_mm(snapshot);
+  now_.speed_mm_s = insertion_.speed;
+  const auto force_n = run_->needle.force_n(force_.readings().needle);
+  if (!force_n) {
+    return fails(force_n.error(), tick);
+  }
+  MembraneState heard;
+  // One sample a period, those that this thread missed included: the detector counts its time by them.
+  for (std::uint32_t n = 0; n < ticks; ++n) {
+    const auto state = run_->detector.step({*force_n, now_.depth_mm, insertion_.speed});
+    if (!state) {
+      return fails(state.error(), tick);
+    }
+    heard = *state;
+  }
+  const auto records = run_->detector.records();
+  status_.membranes = static_cast<std::uint32_t>(records.size());
+  for (std::size_t membrane = 0; membrane < records.size(); ++membrane) {
+    status_.found_mm[membrane] = records[membrane].value_or(-1.0);
+  }
+  const double before_mm = cue_mm_;
+  cue_mm_ = heard.cue_offset_mm;
+  now_.armed = heard.armed;
+  now_.cue = cue_mm_ != 0.0;
+  insertion_.aim(cue_mm_, ticks == 0 ? 0.0 : (cue_mm_ - before_mm) / (ticks * period_s_), lease_s_);
+  return true;
+}
+
+void BiopsyMode::fail(OrderReason reason, std::uint32_t slot, std::uint32_t tick) noexcept {
+  order_.fail(reason, 0, slot, tick);
+}
+
+/** Ends the order; false, for whoever called. */
+bool BiopsyMode::fails(const KinematicsError& error, std::uint32_t tick) noexcept {
+  status_.quantity = error.quantity;
+  order_.fail(OrderReason::steering_failed, static_cast<std::uint32_t>(error.code), needle_->insertion_slot,
+              tick);
+  return false;
+}
+
+void BiopsyMode::tell() noexcept {
+  status_.order = order_.status();
+  status_.slot = order_.slot();
+}
+
+double BiopsyMode::depth_mm(const ilk_snapshot_t& snapshot) const noexcept {
+  return snapshot.state.axis[needle_->insertion_slot].position_counts / insertion_.counts_per_unit -
+         run_->entry_mm;
+}
+
+void BiopsyMode::on_unsent(const Wish& wish) noexcept {
+  if (needle_ && wish.origin.proposal == status_.order.proposal) {
+    if (wish.origin.slot == needle_->insertion_slot) {
+      insertion_.tracker.on_unsent();
+    } else if (wish.origin.slot == needle_->rotation_slot) {
+      rotation_.tracker.on_unsent();
+    }
+  }
+}
+
+void BiopsyMode::on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept {
+  order_.on_verdict(origin, verdict, tick);
+  tell();
+}
+
+void BiopsyMode::on_verdict_lost(const WishOrigin& /*origin*/, std::uint32_t /*tick*/) noexcept {
+  // A MOVE is renewed before its lease runs out, and each renewal has a verdict of its own.
+}
+
+}  // namespace interlock

@@ -1,0 +1,91 @@
+/**
+ * @file
+ * Cooperative Biopsy: the surgeon's hand on the force sensor pushes the needle, for as long as the pedal is
+ * held; the needle turns towards its target, and trembles for a moment when it has punctured a membrane.
+ *
+ * The force is never acted upon for longer than 20 ms: after 8 ms without a new reading the order ends, and a
+ * MOVE holds for 10 ms at most, so that an app that falls silent keeps that promise as well. Every error of
+ * force or steering ends the order for both axes, which give back their drive.
+ */
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "motion/axis_tracker.hpp"
+#include "motion/biopsy_run.hpp"
+#include "motion/force_watch.hpp"
+#include "motion/held_order.hpp"
+#include "motion/mode.hpp"
+
+namespace interlock {
+
+class BiopsyMode final : public Mode {
+ public:
+  explicit BiopsyMode(const RobotPlan& plan);
+
+  /** Takes an order; an open one is replaced. A robot without a needle refuses it. */
+  void take(const BiopsyOrder& order, std::uint32_t tick) noexcept;
+
+  /** An image of tip and target; one that cannot be is counted and changes nothing. */
+  void see(const SeenImage& seen) noexcept;
+
+  void end(std::uint32_t proposal, OrderReason reason, std::uint32_t tick) noexcept override;
+  void end_all(OrderReason reason, std::uint32_t tick) noexcept override;
+  void end_axis(std::uint32_t slot, OrderReason reason, std::uint32_t tick) noexcept override;
+  void tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept override;
+  void on_unsent(const Wish& wish) noexcept override;
+  void on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept override;
+  void on_verdict_lost(const WishOrigin& origin, std::uint32_t tick) noexcept override;
+
+  [[nodiscard]] bool is_open() const noexcept { return order_.is_open(); }
+  [[nodiscard]] const BiopsyStatus& status() const noexcept { return status_; }
+  [[nodiscard]] const BiopsyNow& now() const noexcept { return now_; }
+  [[nodiscard]] const ForceReadings& force() const noexcept { return force_.readings(); }
+
+ private:
+  /** One axis along a speed that is decided tick by tick. */
+  struct Guided {
+    AxisTracker tracker;
+    MotionRates rates;
+    double counts_per_unit = 1.0;
+    double position = 0.0; /**< in the axis' unit, as are those below */
+    double speed = 0.0;
+    PathPoint point;
+
+    void start(const ilk_snapshot_t& snapshot, std::uint32_t slot) noexcept;
+    /** Approaches the wanted speed within the rates of the axis. */
+    void go(double wanted, double time_s) noexcept;
+    void aim(double offset, double offset_speed, double lease_s) noexcept;
+  };
+
+  void begin(const ilk_snapshot_t& snapshot) noexcept;
+  void go_on(const ilk_snapshot_t& snapshot) noexcept;
+  [[nodiscard]] bool plan_steering(const ilk_snapshot_t& snapshot) noexcept;
+  [[nodiscard]] bool push(const ilk_snapshot_t& snapshot, double time_s) noexcept;
+  [[nodiscard]] bool listen(const ilk_snapshot_t& snapshot, std::uint32_t ticks) noexcept;
+  void fail(OrderReason reason, std::uint32_t slot, std::uint32_t tick) noexcept;
+  [[nodiscard]] bool fails(const KinematicsError& error, std::uint32_t tick) noexcept;
+  void tell() noexcept;
+  [[nodiscard]] double depth_mm(const ilk_snapshot_t& snapshot) const noexcept;
+
+  const std::optional<NeedlePlan> needle_;
+  const double period_s_;
+  const std::uint32_t force_patience_ticks_;
+  const std::uint32_t steering_ticks_;
+  const double lease_s_;
+  HeldOrder order_;
+  ForceWatch force_;
+  BiopsyRun* run_ = nullptr; /**< of the open order */
+  BiopsyStatus status_;
+  BiopsyNow now_;
+  Guided insertion_;
+  Guided rotation_;
+  SteeringCommand command_;
+  double deepest_allowed_mm_ = 0.0; /**< position of the insertion */
+  double cue_mm_ = 0.0;
+  std::uint32_t seen_tick_ = 0;    /**< of the snapshot before, while executing */
+  std::uint32_t steered_tick_ = 0; /**< of the newest plan */
+};
+
+}  // namespace interlock

@@ -1,0 +1,91 @@
+/**
+ * @file
+ * One biopsy: what the network thread prepares and the control thread then carries out, and what it tells.
+ *
+ * Depths are along the needle from the skin. The guide frame has its origin where the tip touches the skin, z
+ * ahead; at rotation 0 the bevel bends the path towards -y (steering/compensator.hpp).
+ */
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "motion/order.hpp"
+#include "robot/biopsy.hpp"
+#include "steering/compensator.hpp"
+#include "steering/cooperative_insertion.hpp"
+#include "steering/force_calibration.hpp"
+#include "steering/membrane_detector.hpp"
+
+namespace interlock {
+
+/**
+ * The parts of a biopsy that remember. From the moment its order is handed over the control thread alone
+ * touches it, until `BiopsyStatus` names a later proposal, or its own as final.
+ */
+struct BiopsyRun {
+  std::uint32_t start_tick = 0; /**< kernel tick of its time 0 */
+  double entry_mm = 0.0;        /**< insertion at which the tip is at the skin */
+  CooperativeParameters hand_law;
+  ForceCalibration hand;
+  ForceCalibration needle;
+  Compensator compensator;
+  MembraneDetector detector;
+};
+
+/** Where a biopsy begins. */
+struct BiopsyStart {
+  std::uint32_t tick = 0;    /**< of the kernel */
+  double insertion_mm = 0.0; /**< positions of the axes then */
+  double rotation_rad = 0.0;
+  Eigen::Vector3d target_mm = Eigen::Vector3d::Zero();
+  std::span<const double> membranes_mm; /**< that are expected, increasing */
+};
+
+/** Takes all the memory that the biopsy will ever need; or what of it steering cannot work with. */
+KinematicsResult<BiopsyRun> make_biopsy_run(const Biopsy& biopsy, double period_s, const BiopsyStart& start,
+                                            const ForceCalibration& hand, const ForceCalibration& needle);
+
+/** The needle, pushed by the surgeon's hand and turned towards its target. */
+struct BiopsyOrder {
+  std::uint32_t proposal = 0;
+  BiopsyRun* run = nullptr;
+  std::uint32_t stops = 0; /**< as in `Order` */
+};
+
+/** An image for the biopsy of that proposal; ignored by any other one. */
+struct SeenImage {
+  std::uint32_t proposal = 0;
+  NeedleImage image; /**< in the time of its run */
+};
+
+/** Where the newest biopsy stands. */
+struct BiopsyStatus {
+  OrderStatus order;
+  std::uint32_t slot = 0;                                /**< axis or card that the reason is about */
+  std::string_view quantity;                             /**< that steering could not work with; a literal */
+  std::uint32_t membranes = 0;                           /**< found or skipped, of those it was given */
+  std::array<double, Biopsy::most_membranes> found_mm{}; /**< depth of each; below 0: skipped */
+
+  bool operator==(const BiopsyStatus&) const = default;
+};
+
+/** What the biopsy does now; of no meaning unless one is open. */
+struct BiopsyNow {
+  double depth_mm = 0.0;
+  double speed_mm_s = 0.0;
+  double left_mm = 0.0; /**< to the target's depth */
+  bool armed = false;   /**< listens for a membrane */
+  bool cue = false;
+  double wanted_rotation_rad = 0.0;
+  double alpha = 0.0;
+  double curvature_per_mm = 0.0; /**< largest, as estimated */
+  double expected_miss_mm = 0.0;
+  bool reachable = true;
+  std::uint32_t images = 0;
+  std::uint32_t images_refused = 0;
+};
+
+}  // namespace interlock

@@ -1,0 +1,64 @@
+/**
+ * @file
+ * Frequency Sweep: one high-frequency axis turns at one frequency after the other, for as long as the pedal
+ * is held, and its speed at each is measured.
+ *
+ * The axis goes to and fro between the ends of its range; before it turns round it comes to rest. Each
+ * frequency lasts for its dwell in driven time: a pause, or turning round, is not counted. The kernel knows
+ * drives, not frequencies, and refuses one beyond the axis' band.
+ */
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "motion/held_order.hpp"
+#include "motion/mode.hpp"
+#include "motion/move_lease.hpp"
+#include "motion/rest_watch.hpp"
+
+namespace interlock {
+
+class SweepMode final : public Mode {
+ public:
+  explicit SweepMode(const RobotPlan& plan);
+
+  /** Takes an order, whose slot holds an axis; an open one is replaced. */
+  void take(const SweepOrder& order, std::uint32_t tick) noexcept;
+
+  void end(std::uint32_t proposal, OrderReason reason, std::uint32_t tick) noexcept override;
+  void end_all(OrderReason reason, std::uint32_t tick) noexcept override;
+  void end_axis(std::uint32_t slot, OrderReason reason, std::uint32_t tick) noexcept override;
+  void tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept override;
+  void on_unsent(const Wish& wish) noexcept override;
+  void on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept override;
+  void on_verdict_lost(const WishOrigin& origin, std::uint32_t tick) noexcept override;
+
+  [[nodiscard]] bool is_open() const noexcept { return order_.is_open(); }
+  [[nodiscard]] const SweepStatus& status() const noexcept { return status_; }
+
+ private:
+  void begin(const ilk_snapshot_t& snapshot) noexcept;
+  void go_on(const ilk_snapshot_t& snapshot) noexcept;
+  void measure(const ilk_axis_t& axis, std::uint32_t ticks) noexcept;
+  void end_step(std::uint32_t tick) noexcept;
+  [[nodiscard]] std::int32_t target_counts(const ilk_snapshot_t& snapshot) const noexcept;
+
+  const RobotPlan plan_;
+  const std::uint32_t settle_ticks_;
+  HeldOrder order_;
+  SweepOrder sweep_;
+  SweepStatus status_;
+  std::array<MoveLease, ILK_SLOTS> leases_{};
+  RestWatch rest_;
+  bool upwards_ = true;
+  bool turning_ = false;             /**< without drive, until it rests */
+  std::uint32_t seen_tick_ = 0;      /**< of the snapshot before, while executing */
+  std::int32_t seen_counts_ = 0;     /**< position in it */
+  std::uint32_t driven_ticks_ = 0;   /**< of this step */
+  std::uint32_t steady_ticks_ = 0;   /**< since the axis began to go this way at this frequency */
+  std::uint32_t measured_ticks_ = 0; /**< of this step, at steady speed */
+  double measured_counts_ = 0.0;     /**< gone in them */
+};
+
+}  // namespace interlock

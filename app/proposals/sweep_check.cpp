@@ -1,0 +1,88 @@
+#include "proposals/sweep_check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "control/axis_controller.hpp"
+#include "proposals/path_check.hpp"
+
+namespace interlock {
+namespace {
+
+std::string hz_words(double lowest_hz, double highest_hz) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%.1f to %.1f Hz", lowest_hz, highest_hz);
+  return text.data();
+}
+
+/** The fastest and the slowest word whose drive the axis may have. */
+struct WordBand {
+  std::uint32_t fastest = 0;
+  std::uint32_t slowest = 0;
+};
+
+WordBand words_of(const Axis& axis) noexcept {
+  const std::uint32_t least = control_rules(axis, 1000, 1.0).drive.min_drive;
+  return {frequency_map::word_of(axis.drive.max), frequency_map::word_of(least)};
+}
+
+}  // namespace
+
+std::optional<FrequencyBand> frequency_band(const Axis& axis) noexcept {
+  if (axis.card != ILK_CARD_HIGH_FREQUENCY) {
+    return std::nullopt;
+  }
+  const WordBand words = words_of(axis);
+  return FrequencyBand{frequency_map::hz_of(words.fastest), frequency_map::hz_of(words.slowest)};
+}
+
+std::optional<FrequencySteps> frequency_steps(double from_hz, double to_hz, double step_hz,
+                                              std::uint32_t dwell_ticks) noexcept {
+  const double step = std::round(step_hz * frequency_map::words_per_hz);
+  const double first = std::round(from_hz * frequency_map::words_per_hz);
+  const double last = std::round(to_hz * frequency_map::words_per_hz);
+  const double count = std::floor(std::abs(last - first) / step) + 1.0;
+  const bool fits = step >= 1.0 && step <= INT32_MAX && count <= FrequencySteps::most;
+  if (!fits || !(first >= 0.0 && first <= UINT32_MAX && last >= 0.0 && last <= UINT32_MAX)) {
+    return std::nullopt;
+  }
+  const auto words = static_cast<std::int32_t>(step);
+  return FrequencySteps{static_cast<std::uint32_t>(first), last < first ? -words : words,
+                        static_cast<std::uint32_t>(count), dwell_ticks};
+}
+
+std::optional<FrequencySteps> whole_band(const Axis& axis, std::uint32_t period_us) noexcept {
+  const auto band = frequency_band(axis);
+  if (!band) {
+    return std::nullopt;
+  }
+  const auto dwell_ticks = static_cast<std::uint32_t>(published_sweep_dwell_s * 1e6 / period_us);
+  return frequency_steps(band->highest_hz, band->lowest_hz, published_sweep_step_hz, dwell_ticks);
+}
+
+tl::expected<void, Refusal> check_sweep(const Robot& robot, const ilk_config_t& config,
+                                        const ControlView& view, const SweepDraft& draft) {
+  const Axis& axis = *robot.at_slot(draft.slot);
+  return check_system(config, view)
+      .and_then([&] { return check_axes(robot, view, 1u << draft.slot); })
+      .and_then([&]() -> tl::expected<void, Refusal> {
+        const WordBand band = words_of(axis);
+        const std::uint32_t first = draft.steps.word(0);
+        const std::uint32_t last = draft.steps.word(draft.steps.count - 1);
+        const auto [fastest, slowest] = std::minmax(first, last);
+        if (fastest >= band.fastest && slowest <= band.slowest) {
+          return {};
+        }
+        return tl::make_unexpected(verdict_refusal(
+            ILK_VERDICT_DRIVE,
+            axis.name + " " + hz_words(frequency_map::hz_of(fastest), frequency_map::hz_of(slowest)),
+            "frequencies from " +
+                hz_words(frequency_map::hz_of(band.fastest), frequency_map::hz_of(band.slowest)) +
+                ", the axis' allowed band; the published sweep from " +
+                hz_words(published_sweep.lowest_hz, published_sweep.highest_hz) + " leaves it"));
+      });
+}
+
+}  // namespace interlock

@@ -1,0 +1,168 @@
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "http/sweep_draft.hpp"
+#include "proposals/proposal_book.hpp"
+#include "proposals/proposal_json.hpp"
+#include "proposals/sweep_check.hpp"
+#include "robot_fixture.hpp"
+
+namespace interlock {
+namespace {
+
+using nlohmann::json;
+using test::prostate;
+using testing::HasSubstr;
+
+constexpr std::uint32_t turned_axis = 0;
+
+SweepDraft draft_of(double from_hz, double to_hz, double step_hz = 100.0) {
+  return {turned_axis, *frequency_steps(from_hz, to_hz, step_hz, 1000), "edna"};
+}
+
+std::string code_of(const tl::expected<void, Refusal>& checked) {
+  return checked ? "allowed" : checked.error().code;
+}
+
+class SweepProposalTest : public testing::Test {
+ protected:
+  void expect_refused(const SweepDraft& draft, const std::string& code) {
+    const auto proposal = book_.propose_sweep(draft, view_);
+    ASSERT_FALSE(proposal);
+    EXPECT_EQ(proposal.error().code, code) << proposal.error().detail;
+    EXPECT_FALSE(proposal.error().next_step.empty());
+    EXPECT_THAT(sent_, testing::IsEmpty());
+  }
+
+  void report(OrderPhase phase, std::uint32_t step) {
+    view_.sweep.order = {1, phase, OrderReason::swept, 0, 0};
+    view_.sweep.step = step;
+    book_.follow(view_);
+  }
+
+  const ilk_config_t config_ = test::config_of(prostate());
+  ControlView view_ = test::ready_view(prostate());
+  UtcTime now_{std::chrono::milliseconds(1714566896789)};
+  std::vector<Command> sent_;
+  ProposalBook book_{prostate(), config_,
+                     [this](const Command& command) {
+                       sent_.push_back(command);
+                       return true;
+                     },
+                     [this] { return now_; }};
+};
+
+TEST_F(SweepProposalTest, TheBandIsThatOfThePublishedStartAndMaximumVelocity) {
+  const auto band = frequency_band(*prostate().at_slot(turned_axis));
+  ASSERT_TRUE(band);
+  EXPECT_NEAR(band->highest_hz, 0x45A0DB84 / 22009.0, 0.001);
+  EXPECT_NEAR(band->lowest_hz, 0x42B8DBB4 / 22009.0, 0.001);
+  EXPECT_FALSE(frequency_band(*prostate().find("insertion")));
+}
+
+TEST_F(SweepProposalTest, ASweepWithinTheBandIsApprovedAndOrdered) {
+  const auto proposal = book_.propose_sweep(draft_of(53000, 51000), view_);
+  ASSERT_TRUE(proposal) << proposal.error().detail;
+  EXPECT_EQ(proposal->state, ProposalState::approved);
+  const auto& order = std::get<SweepOrder>(sent_.front());
+  EXPECT_EQ(order.slot, turned_axis);
+  EXPECT_EQ(order.steps.count, 21u);
+  EXPECT_EQ(order.steps.word(20), 22009u * 51000u);
+  EXPECT_EQ(book_.app_mode(), "frequency_sweep");
+  report(OrderPhase::executing, 4);
+  EXPECT_THAT(book_.find(1)->detail, HasSubstr("52600.0 Hz, frequency 5 of 21"));
+  report(OrderPhase::done, 21);
+  EXPECT_EQ(book_.app_mode(), "manual");
+}
+
+TEST_F(SweepProposalTest, BothEndsOfTheBandAreAllowedAndAWordBeyondIsNot) {
+  const FrequencyBand band = *frequency_band(*prostate().at_slot(turned_axis));
+  const SweepDraft whole = draft_of(band.highest_hz, band.lowest_hz, band.highest_hz - band.lowest_hz);
+  EXPECT_TRUE(check_sweep(prostate(), config_, view_, whole));
+  SweepDraft beyond = whole;
+  ++beyond.steps.first_word;
+  EXPECT_EQ(code_of(check_sweep(prostate(), config_, view_, beyond)), "DRIVE");
+  beyond.steps.first_word -= 2;
+  EXPECT_EQ(code_of(check_sweep(prostate(), config_, view_, beyond)), "DRIVE") << "faster than allowed";
+}
+
+TEST_F(SweepProposalTest, ThePublishedRangeIsRefusedAndBothRangesAreNamed) {
+  const SweepDraft published =
+      draft_of(published_sweep.highest_hz, published_sweep.lowest_hz, published_sweep_step_hz);
+  EXPECT_EQ(published.steps.first_word, 0x48000000u);
+  const auto proposal = book_.propose_sweep(published, view_);
+  ASSERT_FALSE(proposal);
+  EXPECT_EQ(proposal.error().code, "DRIVE");
+  EXPECT_THAT(proposal.error().expected, HasSubstr("50861.5 to 53076.9 Hz"));
+  EXPECT_THAT(proposal.error().expected, HasSubstr("48786.5 to 54884.8 Hz"));
+  EXPECT_THAT(sent_, testing::IsEmpty());
+  EXPECT_EQ(book_.find(1)->state, ProposalState::refused);
+}
+
+TEST_F(SweepProposalTest, AnAxisThatCannotBeMovedIsRefusedWithItsReason) {
+  ilk_axis_t& axis = view_.snapshot.state.axis[turned_axis];
+  axis.homed = 0;
+  expect_refused(draft_of(53000, 51000), "NOT_HOMED");
+  axis.homed = 1;
+  axis.state = ILK_AXIS_DISABLED;
+  expect_refused(draft_of(53000, 51000), "DISABLED");
+  view_.snapshot.state.mode = ILK_MODE_LOCKED;
+  expect_refused(draft_of(53000, 51000), "MODE");
+}
+
+TEST_F(SweepProposalTest, AMoveIsRefusedWhileASweepIsOpen) {
+  ASSERT_TRUE(book_.propose_sweep(draft_of(53000, 51000), view_));
+  const auto move = book_.propose(MoveDraft{turned_axis, 100, std::nullopt, "edna"}, view_);
+  ASSERT_FALSE(move);
+  EXPECT_EQ(move.error().code, "MODE_PATH");
+}
+
+TEST_F(SweepProposalTest, MeasuredSpeedsAreShownWithTheirFrequencies) {
+  ASSERT_TRUE(book_.propose_sweep(draft_of(52000, 51900), view_));
+  view_.sweep.counts_per_s[0] = 250.0F;
+  report(OrderPhase::executing, 1);
+  const json shown = to_json(*book_.find(1));
+  EXPECT_EQ(shown["mode"], "frequency_sweep");
+  EXPECT_EQ(shown["frequencies"][0], json({{"hz", 52000.0}, {"counts_per_s", 250.0}}));
+  EXPECT_EQ(shown["frequencies"][1], json({{"hz", 51900.0}, {"counts_per_s", nullptr}}));
+}
+
+TEST(FrequencySteps, ThatNobodyCouldHoldAreNone) {
+  EXPECT_FALSE(frequency_steps(53000, 51000, 0.0, 1));
+  EXPECT_FALSE(frequency_steps(53000, 51000, -1.0, 1));
+  EXPECT_FALSE(frequency_steps(53000, 51000, 10.0, 1)) << "201 frequencies";
+  EXPECT_FALSE(frequency_steps(1e9, 51000, 1e6, 1));
+  EXPECT_TRUE(frequency_steps(52990, 51000, 10.0, 1)) << "200 frequencies";
+}
+
+TEST(SweepDrafts, NameTheFieldThatIsWrong) {
+  const json good{{"kind", "sweep"}, {"axis", "rotation"}, {"from_hz", 53000},
+                  {"to_hz", 51000},  {"step_hz", 100},     {"dwell_s", 0.5}};
+  const auto draft = web::sweep_draft(prostate(), good, "edna");
+  ASSERT_TRUE(draft);
+  EXPECT_EQ(draft->steps.dwell_ticks, 500u);
+  const std::pair<const char*, json> cases[] = {
+      {"axis", "insertion"}, {"axis", "elbow"}, {"from_hz", "low"}, {"step_hz", 1}, {"dwell_s", 0}};
+  for (const auto& [field, value] : cases) {
+    json bad = good;
+    bad[field] = value;
+    const auto refused = web::sweep_draft(prostate(), bad, "edna");
+    ASSERT_FALSE(refused) << bad;
+    EXPECT_EQ(refused.error().field, field) << bad;
+  }
+  EXPECT_EQ(web::sweep_draft(test::neuro(), good, "edna").error().code, "NOT_FOUND");
+}
+
+TEST(SweepDrafts, TheWholeBandIsSweptInPublishedSteps) {
+  const auto draft = web::whole_sweep_draft(prostate(), "edna");
+  ASSERT_TRUE(draft);
+  EXPECT_EQ(draft->steps.step_words, -1000000);
+  EXPECT_EQ(draft->steps.count, 49u);
+  EXPECT_EQ(draft->steps.dwell_ticks, 1000u);
+  EXPECT_TRUE(check_sweep(prostate(), test::config_of(prostate()), test::ready_view(prostate()), *draft));
+}
+
+}  // namespace
+}  // namespace interlock
