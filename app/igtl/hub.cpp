@@ -253,6 +253,9 @@ void Hub::take(Session& session, Frame frame) {
   if (session.peer.heard.size() < most_names || session.peer.heard.contains(message->device)) {
     Heard& heard = session.peer.heard[message->device];
     heard.type = header.type;
+    if (heard.count != 0) {
+      heard.interval = session.last_heard - heard.last;
+    }
     heard.last = session.last_heard;
     ++heard.count;
   }
@@ -360,6 +363,12 @@ void Hub::show(PeerId to, const std::string& device, const Body& body) {
       {type, device}, write_frame(session->peer.version, type, device, timestamp_now(), encode(body)));
   session->peer.replaced += is_new ? 0u : 1u;
   session->news.cancel();
+}
+
+void Hub::count_refusal(PeerId id) {
+  if (const SessionPointer session = session_of(id)) {
+    ++session->peer.refused;
+  }
 }
 
 bool Hub::set_role(PeerId id, Role role) {

@@ -49,6 +49,7 @@ struct Heard {
   std::string type; /**< of the last one */
   std::uint64_t count = 0;
   std::chrono::steady_clock::time_point last;
+  std::optional<std::chrono::steady_clock::duration> interval; /**< between the last two */
 };
 
 /** A connection, as others see it. */
@@ -62,7 +63,7 @@ struct Peer {
   std::map<std::string, Heard> heard; /**< by name; the names that came first */
   std::uint64_t received = 0;
   std::uint64_t sent = 0;
-  std::uint64_t refused = 0;  /**< messages that were skipped */
+  std::uint64_t refused = 0;  /**< messages that were skipped or unwanted */
   std::uint64_t replaced = 0; /**< values that a newer one overtook before they were sent */
   std::optional<std::chrono::microseconds> round_trip; /**< as TCP measures it */
 };
@@ -117,6 +118,9 @@ class Hub {
 
   /** Sends the newest value: one of that type and name that still waits is replaced. */
   void show(PeerId to, const std::string& device, const Body& body);
+
+  /** Counts a message that was understood and is unwanted. */
+  void count_refusal(PeerId id);
 
   /** False when there is no such connection. */
   bool set_role(PeerId id, Role role);
