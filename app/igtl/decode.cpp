@@ -1,6 +1,5 @@
 #include "igtl/decode.hpp"
 
-#include <igtlCapabilityMessage.h>
 #include <igtlPositionMessage.h>
 #include <igtlStatusMessage.h>
 #include <igtlStringMessage.h>
@@ -243,18 +242,13 @@ Decoded decode_sensor(Bytes content) {
 }
 
 Decoded decode_capability(Bytes content) {
-  for (std::size_t at = 0; at < content.size(); at += type_width) {
-    if (!read_field(content.subspan(at, type_width), Fault::text)) {
-      return refused(Fault::text);
-    }
-  }
   Capability capability;
-  if (!content.empty()) {
-    const auto message = unpacked<::igtl::CapabilityMessage>("CAPABILITY", content);
-    if (!message) {
-      return refused(Fault::wrong_size);
+  for (std::size_t at = 0; at < content.size(); at += type_width) {
+    auto type = read_field(content.subspan(at, type_width), Fault::text);
+    if (!type) {
+      return refused(type.error());
     }
-    capability.types = message->GetTypes();
+    capability.types.push_back(std::move(*type));
   }
   return capability;
 }

@@ -2,11 +2,12 @@
  * @file
  * From a frame to a message.
  *
- * Debian's libopenigtlink unpacks TRANSFORM, STRING, STATUS, POSITION, CAPABILITY, STT_TDATA and RTS_TDATA,
+ * Debian's libopenigtlink unpacks TRANSFORM, STRING, STATUS, POSITION, STT_TDATA and RTS_TDATA,
  * once everything was checked here that it trusts: it reads beyond bodies whose inner lengths are wrong.
  * Where no check makes it safe, the type is decoded here: POINT and TDATA, whose numbers it reads by pointers
  * to odd addresses, which some processors refuse; SENSOR, as it swaps as many numbers as the body claims to
- * have before it looks whether they are there; NDARRAY, as it never frees what it unpacked.
+ * have before it looks whether they are there; NDARRAY and CAPABILITY, as it
+ * never frees all of what it unpacked.
  */
 #pragma once
 

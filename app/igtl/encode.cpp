@@ -1,6 +1,5 @@
 #include "igtl/encode.hpp"
 
-#include <igtlCapabilityMessage.h>
 #include <igtlPositionMessage.h>
 #include <igtlStatusMessage.h>
 #include <igtlStringMessage.h>
@@ -136,9 +135,11 @@ struct Encoder {
   }
 
   ByteVector operator()(const Capability& capability) const {
-    const auto message = ::igtl::CapabilityMessage::New();
-    message->SetTypes(capability.types);
-    return packed(message);
+    ByteVector bytes;
+    for (const std::string& type : capability.types) {
+      append_field(bytes, type, type_width);
+    }
+    return bytes;
   }
 
   ByteVector operator()(const Query&) const { return {}; }
