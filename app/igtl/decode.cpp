@@ -1,7 +1,6 @@
 #include "igtl/decode.hpp"
 
 #include <igtlPositionMessage.h>
-#include <igtlStatusMessage.h>
 #include <igtlStringMessage.h>
 #include <igtlTrackingDataMessage.h>
 #include <igtlTransformMessage.h>
@@ -103,12 +102,10 @@ Decoded decode_status(Bytes content) {
   if (!name || content.back() != 0) {
     return refused(Fault::text);
   }
-  const auto message = unpacked<::igtl::StatusMessage>("STATUS", content);
-  if (!message) {
-    return refused(Fault::wrong_size);
-  }
-  Status status{static_cast<StatusCode>(message->GetCode()), message->GetSubCode(), *name,
-                message->GetStatusString()};
+  const Bytes text = content.subspan(status_name_at + status_name_width);
+  Status status{static_cast<StatusCode>(read_number<std::uint16_t>(content, 0)),
+                static_cast<std::int64_t>(read_number<std::uint64_t>(content, 2)), *name,
+                std::string(text.begin(), std::ranges::find(text, std::uint8_t{0}))};
   return is_legible(status.text) ? Decoded(std::move(status)) : refused(Fault::text);
 }
 

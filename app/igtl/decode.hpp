@@ -2,7 +2,7 @@
  * @file
  * From a frame to a message.
  *
- * Debian's libopenigtlink unpacks TRANSFORM, STRING, STATUS, POSITION, STT_TDATA and RTS_TDATA,
+ * Debian's libopenigtlink unpacks TRANSFORM, STRING, POSITION, STT_TDATA and RTS_TDATA,
  * once everything was checked here that it trusts: it reads beyond bodies whose inner lengths are wrong.
  * Where no check makes it safe, the type is decoded here: POINT and TDATA, whose numbers it reads by pointers
  * to odd addresses, which some processors refuse; SENSOR, as it swaps as many numbers as the body claims to
