@@ -8,6 +8,7 @@ MAKEFLAGS += --no-print-directory
 ROBOT ?= neuro
 PORT ?= 8080
 PREFIX ?= /usr/local
+FUZZ_SECONDS ?= 30
 
 setup := verification/toolchain/setup
 release := build/release
@@ -64,6 +65,10 @@ test-integration: build ## Run the tests on real processes
 
 test-browser: build ## Run the tests that click through the console
 	@npm --prefix web run --silent test:browser
+
+.PHONY: fuzz
+fuzz: setup ## Throw bytes at the OpenIGTLink decoders under sanitizers: [FUZZ_SECONDS=30]
+	@tests/fuzz/run $(FUZZ_SECONDS)
 
 .PHONY: selftest selftest-all
 selftest: setup ## Show that seeded faults turn tests and proofs red: a third, chosen by the commit

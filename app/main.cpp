@@ -49,6 +49,7 @@ struct Options {
   std::string web_directory;
   std::string state_directory;
   std::string log_level = "info";
+  std::optional<std::uint16_t> igtl_port; /**< in place of the robot file's */
 };
 
 /** The robot and the configuration that the kernel was started with. */
@@ -72,6 +73,9 @@ void describe(CLI::App& cli, Options& options) {
       ->check(CLI::ExistingDirectory);
   cli.add_option("--state", options.state_directory, "folder of the store and the logs, made if missing")
       ->required();
+  cli.add_option("--igtl-port", options.igtl_port,
+                 "port for OpenIGTLink, in place of the robot file's; 0: any")
+      ->check(CLI::Range(0, 65535));
   cli.add_option("--log-level", options.log_level, "debug, info, warning, error or critical")
       ->check(CLI::IsMember({"debug", "info", "warning", "error", "critical"}))
       ->capture_default_str();
@@ -162,6 +166,23 @@ Stored<void> let_somebody_in(Store& store) {
       });
 }
 
+/** Listens for navigation programs when the robot's file or the command line says so. */
+tl::expected<void, std::string> listen_for_navigation(const Options& options, const Robot& robot,
+                                                      web::Navigation& navigation) {
+  if (!robot.openigtlink && !options.igtl_port) {
+    return {};
+  }
+  const OpenIgtLink link = robot.openigtlink.value_or(OpenIgtLink{});
+  const auto port = options.igtl_port.value_or(static_cast<std::uint16_t>(link.port));
+  return navigation.hub()
+      .listen({link.bind, port, link.allow, std::chrono::milliseconds(link.heartbeat_ms)})
+      .map([&] {
+        navigation.start();
+        spdlog::info("OpenIGTLink listens on {}:{}", link.bind, navigation.hub().port());
+        std::cout << "OpenIGTLink " << link.bind << ':' << navigation.hub().port() << std::endl;
+      });
+}
+
 tl::expected<void, std::string> serve(const Options& options, const Model& model, Store& store, Log& log) {
   boost::asio::io_context network(1);
   const auto executor = network.get_executor();
@@ -170,6 +191,9 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   web::Api api(executor, model.robot, model.config, *mailbox, options.bench_socket, gateway, log);
   web::Server server(executor, api, web::StaticFiles(options.web_directory));
   if (auto listening = server.listen(options.listen); !listening) {
+    return listening;
+  }
+  if (auto listening = listen_for_navigation(options, model.robot, api.navigation()); !listening) {
     return listening;
   }
   const auto begun = record_start(store, model).and_then([&] { return let_somebody_in(store); });

@@ -69,6 +69,8 @@ void add_run(CLI::App& cli, RunOptions& options) {
   command->add_option("--robot", options.robot, "Name of a robot, or its file")->capture_default_str();
   command->add_option("--port", options.port, "Port of the console on 127.0.0.1; 0 takes one that is free")
       ->capture_default_str();
+  command->add_option("--igtl-port", options.igtl_port,
+                      "Port for OpenIGTLink, in place of the robot file's; 0 takes one that is free");
   const std::map<std::string, ClockChoice> clocks{{"real", ClockChoice::real}, {"sim", ClockChoice::sim}};
   CLI::Option* const clock =
       command

@@ -102,6 +102,22 @@ json alignment_view(const Robot& robot, const Targeting& targeting, const Contro
   return answer;
 }
 
+RobotPoses robot_poses(const Robot& robot, const Targeting& targeting, const ControlView& view) {
+  RobotPoses poses;
+  const Known<Setup> setup = setup_of(robot, targeting);
+  if (!setup) {
+    return poses;
+  }
+  if (const auto alignment = alignment_of(robot, targeting, *setup)) {
+    poses.desired = row_major(alignment->desired);
+    poses.setpoints = alignment->setpoints;
+  }
+  if (const auto current = current_of(robot, view, *setup)) {
+    poses.current = row_major(*current);
+  }
+  return poses;
+}
+
 tl::expected<Alignment, Problem> alignment_with(const Robot& robot, const Targeting& targeting) {
   return setup_of(robot, targeting)
       .and_then([&](const Setup& with) { return alignment_of(robot, targeting, with); })

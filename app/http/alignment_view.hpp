@@ -3,6 +3,8 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
 
 #include "http/targeting.hpp"
 #include "motion/mailbox.hpp"
@@ -16,6 +18,15 @@ namespace interlock::web {
  * a problem in its place when there is none.
  */
 nlohmann::json alignment_view(const Robot& robot, const Targeting& targeting, const ControlView& view);
+
+/** The same as values; empty where there is a problem. Poses are in the scanner's frame (RAS), mm. */
+struct RobotPoses {
+  std::optional<Pose> current;         /**< of the treatment point, by the encoders */
+  std::optional<Pose> desired;         /**< as entry and target ask */
+  std::vector<AxisSetpoint> setpoints; /**< that lead there */
+};
+
+RobotPoses robot_poses(const Robot& robot, const Targeting& targeting, const ControlView& view);
 
 /** The alignment with entry and target; 409 with the code of the problem when there is none. */
 tl::expected<Alignment, Problem> alignment_with(const Robot& robot, const Targeting& targeting);

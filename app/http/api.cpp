@@ -41,6 +41,7 @@ Api::Api(const asio::any_io_executor& executor, const Robot& robot, const ilk_co
       authority_(static_cast<std::uint32_t>(std::chrono::system_clock::to_time_t(clocks.utc()))),
       context_{executor, robot,     config,     control_, book_,       stream_, bench_,     biopsy_,
                store,    sessions_, authority_, work_,    trajectory_, log,     clocks.utc, clocks.steady},
+      navigation_(context_),
       router_([this](const Caller& caller) -> std::optional<Problem> {
         const auto held = context_.need_authority(caller);
         return held ? std::nullopt : std::optional(held.error());
@@ -64,6 +65,7 @@ void Api::follow_proposals() {
     context_.store.note(std::move(entry));
     message["type"] = "proposal";
     stream_.send_text(message);
+    navigation_.tell(proposal);
     if (proposal.state == ProposalState::done && proposal.path.program == trajectory_.program) {
       trajectory_ = {};
     }
@@ -106,6 +108,7 @@ void Api::follow_sessions() {
     if (holder_changed) {
       control_.change_holder(authority_.number());
       book_.abort_all("The motion authority changed.");
+      navigation_.drop_controller();
       const auto& holding = authority_.holder();
       spdlog::warn("motion authority: {}", holding ? holding->user : "nobody");
       json detail{{"action", "change"},

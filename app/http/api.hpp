@@ -10,6 +10,7 @@
 
 #include "http/context.hpp"
 #include "http/log_tail.hpp"
+#include "http/navigation.hpp"
 #include "http/router.hpp"
 #include "http/routes/account_routes.hpp"
 #include "http/routes/audit_routes.hpp"
@@ -52,6 +53,9 @@ class Api {
 
   [[nodiscard]] StreamHub& stream() { return stream_; }
 
+  /** The navigation programs; they come once its hub listens and it was started. */
+  [[nodiscard]] Navigation& navigation() { return navigation_; }
+
   /** Follows the control thread's notices; ends with the io_context. */
   boost::asio::awaitable<void> listen() { return control_.listen(); }
 
@@ -86,6 +90,7 @@ class Api {
   WorkPool work_;
   LoadedTrajectory trajectory_;
   Context context_;
+  Navigation navigation_;
   Router router_;
   std::uint32_t beats_ = 0;
   SystemRoutes system_routes_{context_, router_};
@@ -101,7 +106,7 @@ class Api {
   LogRoutes log_routes_{context_, router_};
   TargetingRoutes targeting_routes_{context_, router_};
   TrajectoryRoutes trajectory_routes_{context_, router_};
-  CommunicationRoutes communication_routes_{context_, router_};
+  CommunicationRoutes communication_routes_{context_, navigation_, router_};
   AuditRoutes audit_routes_{context_, router_};
 };
 

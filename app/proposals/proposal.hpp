@@ -66,13 +66,15 @@ struct HomeDraft {
 
 /** Who thought of a motion. */
 enum class ProposalSource : std::uint8_t {
-  console, /**< somebody who watches the robot: proposing it approves it */
-  file     /**< a loaded trajectory: somebody has to approve it, unless the robot file says otherwise */
+  console,    /**< somebody who watches the robot: proposing it approves it */
+  file,       /**< a loaded trajectory: somebody has to approve it, unless the robot file says otherwise */
+  openigtlink /**< a navigation program: as a file */
 };
 
 /** As the interface spells it. */
 constexpr std::string_view source_name(ProposalSource source) noexcept {
-  return source == ProposalSource::console ? "console" : "file";
+  constexpr std::string_view names[] = {"console", "file", "openigtlink"};
+  return names[static_cast<std::size_t>(source)];
 }
 
 /** A wish for a motion of several axes together. */

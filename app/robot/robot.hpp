@@ -200,6 +200,16 @@ struct HomeStep {
   bool operator==(const HomeStep&) const = default;
 };
 
+/** How navigation programs reach the robot by OpenIGTLink. */
+struct OpenIgtLink {
+  std::string bind = "127.0.0.1"; /**< address to listen on */
+  std::uint32_t port = 18944;
+  std::vector<std::string> allow; /**< addresses that may connect; empty: this machine's own */
+  std::uint32_t heartbeat_ms = 0; /**< silence by which the controller counts as lost; 0: none does */
+
+  bool operator==(const OpenIgtLink&) const = default;
+};
+
 /** Where the robot was written down, so that later findings can name the place. */
 struct Origin {
   std::string file;
@@ -224,6 +234,7 @@ struct Robot {
   std::vector<HomeStep> home_steps; /**< in the order in which they run; each axis with a switch homes once */
   std::vector<AxisCounts> draping; /**< setpoints of the mode "draping"; the other axes stay where they are */
   std::optional<Biopsy> biopsy;    /**< of the mode "cooperative_biopsy" */
+  std::optional<OpenIgtLink> openigtlink; /**< none: it does not listen for them */
   Origin origin;
 
   /** The axis of that name, or null. */

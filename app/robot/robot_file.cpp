@@ -1,6 +1,7 @@
 #include "robot/robot_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <sstream>
 #include <system_error>
@@ -69,6 +70,23 @@ void read_sensors(TableReader& table, Robot& robot) {
   }
 }
 
+/** Of the dialects there is one. */
+OpenIgtLink read_openigtlink(TableReader table) {
+  constexpr std::array<std::pair<std::string_view, int>, 1> dialects{{{"thesis", 0}}};
+  OpenIgtLink link;
+  link.bind = table.text("bind");
+  link.port = static_cast<std::uint32_t>(table.integer_between("port", 1, 65535));
+  table.choice("dialect", dialects);
+  if (table.has("allow")) {
+    link.allow = table.texts("allow", "addresses of the machines that may connect");
+  }
+  if (table.has("heartbeat_ms")) {
+    link.heartbeat_ms = static_cast<std::uint32_t>(table.integer_between("heartbeat_ms", 50, 10000));
+  }
+  table.refuse_unknown_keys();
+  return link;
+}
+
 /** What each mode but "manual" needs of the robot is there. */
 void refuse_unserved_modes(TableReader& table, const Robot& robot) {
   if (robot.has_mode("home") && robot.home_steps.empty()) {
@@ -124,6 +142,9 @@ Robot read_robot(ReadLog& log, const toml::table& root) {
   read_home_steps(table, robot);
   read_draping(table, robot);
   read_biopsy(table, robot);
+  if (table.has("openigtlink")) {
+    robot.openigtlink = read_openigtlink(table.table("openigtlink"));
+  }
   refuse_unserved_modes(table, robot);
   table.refuse_unknown_keys();
   return robot;

@@ -27,7 +27,13 @@ def stack(short_tmp_path: Path) -> Iterator[StackFactory]:
     """Starts whole robots: `stack(clock="sim", speed=0)`. Each is stopped when the test ends."""
     running: list[Stack] = []
 
-    def start(clock: str = "sim", speed: float = 0, robot: str | Path = "neuro", seed: int = 1) -> Stack:
+    def start(
+        clock: str = "sim",
+        speed: float = 0,
+        robot: str | Path = "neuro",
+        seed: int = 1,
+        igtl: bool = False,
+    ) -> Stack:
         directory = short_tmp_path / str(len(running))
         arguments = [
             "--robot",
@@ -41,6 +47,8 @@ def stack(short_tmp_path: Path) -> Iterator[StackFactory]:
         ]
         if clock == "sim":
             arguments += ["--speed", str(speed)]
+        if igtl:
+            arguments += ["--igtl-port", "0"]
         started = Stack(directory, *arguments)
         running.append(started)
         started.connect_control()

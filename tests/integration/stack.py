@@ -124,6 +124,11 @@ class Stack:
     def port(self) -> int:
         return httpx.URL(self.url).port or 80
 
+    @property
+    def igtl_port(self) -> int:
+        """Of a robot that was started with `igtl=True`."""
+        return int(self.output.wait_for(r"OpenIGTLink 127\.0\.0\.1:(\d+)$")[1])
+
     def pid(self, name: str) -> int:
         """Process of the simulator, the kernel or the app."""
         for child in Path(f"/proc/{self.run.pid}/task/{self.run.pid}/children").read_text().split():

@@ -3,6 +3,8 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <limits>
 
 #include "http/fields.hpp"
@@ -50,9 +52,71 @@ json console_connection(const StreamHub::Watcher& watcher) {
           {"since", iso_8601(watcher.since)}};
 }
 
+const char* role_word(igtl::Role role) { return role == igtl::Role::controller ? "controller" : "observer"; }
+
+/** Schema `NavigationConnection`. */
+json navigation_json(const igtl::Peer& peer) {
+  using Seconds = std::chrono::duration<double>;
+  json messages = json::array();
+  for (const auto& [name, heard] : peer.heard) {
+    const Seconds age = std::chrono::steady_clock::now() - heard.last;
+    messages.push_back({{"name", name},
+                        {"type", heard.type},
+                        {"count", heard.count},
+                        {"age_s", age.count()},
+                        {"rate_hz", heard.interval && heard.interval->count() > 0
+                                        ? json(1.0 / Seconds(*heard.interval).count())
+                                        : json()}});
+  }
+  return {{"id", peer.id},
+          {"client", peer.address},
+          {"port", peer.port},
+          {"dialect", "thesis"},
+          {"role", role_word(peer.role)},
+          {"header_version", peer.version},
+          {"since", iso_8601(peer.since)},
+          {"received", peer.received},
+          {"sent", peer.sent},
+          {"refused", peer.refused},
+          {"replaced", peer.replaced},
+          {"round_trip_ms", peer.round_trip ? json(Seconds(*peer.round_trip).count() * 1000.0) : json()},
+          {"messages", std::move(messages)}};
+}
+
+tl::expected<igtl::Role, Problem> role_in(const Request& request) {
+  return parse_body(request).and_then([](const json& body) -> tl::expected<igtl::Role, Problem> {
+    constexpr std::array<std::string_view, 2> roles{"observer", "controller"};
+    Fields fields(body, {"role"});
+    const auto role = fields.choice("role", roles);
+    fields.require({{"role", "observer or controller"}});
+    if (fields.problem()) {
+      return fail(*fields.problem());
+    }
+    return role == "controller" ? igtl::Role::controller : igtl::Role::observer;
+  });
+}
+
+Problem no_navigation(std::string_view id) {
+  return not_found("OpenIGTLink connection " + std::string(id),
+                   "an id that /api/communications/connections lists");
+}
+
+json openigtlink_connection(const igtl::Peer& peer) {
+  return {{"id", nullptr},     {"type", "openigtlink"},        {"name", "OpenIGTLink"},
+          {"connected", true}, {"client", peer.address},       {"user", nullptr},
+          {"port", peer.port}, {"since", iso_8601(peer.since)}};
+}
+
 }  // namespace
 
-CommunicationRoutes::CommunicationRoutes(const Context& context, Router& router) : context_(context) {
+CommunicationRoutes::CommunicationRoutes(const Context& context, Navigation& navigation, Router& router)
+    : context_(context), navigation_(navigation) {
+  router.add(verb::get, "/api/communications/connections", viewers,
+             [this](const Call&) -> Answering { co_return list_navigation(); });
+  router.add(verb::delete_, "/api/communications/connections/{id}", engineers,
+             [this](const Call& call) { return end_navigation(call); });
+  router.add(verb::put, "/api/communications/connections/{id}/role", holder,
+             [this](const Call& call) { return set_role(call); });
   router.add(verb::get, "/api/communications", viewers, [this](const Call&) { return list(); });
   router.add(verb::put, "/api/communications/disconnect", engineers,
              [this](const Call& call) { return disconnect(call); });
@@ -68,7 +132,56 @@ Answering CommunicationRoutes::list() const {
   for (const StreamHub::Watcher& watcher : context_.stream.watchers()) {
     connections.push_back(console_connection(watcher));
   }
+  for (const igtl::Peer& peer : navigation_.hub().peers()) {
+    connections.push_back(openigtlink_connection(peer));
+  }
   co_return Success{.body = std::move(connections)};
+}
+
+Reply CommunicationRoutes::list_navigation() const {
+  json connections = json::array();
+  for (const igtl::Peer& peer : navigation_.hub().peers()) {
+    connections.push_back(navigation_json(peer));
+  }
+  return Success{.body = std::move(connections)};
+}
+
+Answering CommunicationRoutes::end_navigation(const Call& call) const {
+  const std::uint32_t id = number_in(call.parameters[0]).value_or(0);
+  const auto peer = navigation_.hub().find(id);
+  if (!peer) {
+    co_return fail(no_navigation(call.parameters[0]));
+  }
+  json detail{{"action", "disconnect"}, {"id", id}, {"client", peer->address}};
+  const auto announced = co_await context_.announce(call.caller, AuditKind::connection, std::move(detail));
+  if (!announced) {
+    co_return fail(announced.error());
+  }
+  if (!navigation_.hub().disconnect(id, "disconnected by " + call.caller.user)) {
+    co_return fail(no_navigation(call.parameters[0]));
+  }
+  co_return list_navigation();
+}
+
+Answering CommunicationRoutes::set_role(const Call& call) const {
+  const std::uint32_t id = number_in(call.parameters[0]).value_or(0);
+  const auto role = role_in(call.request);
+  if (!role) {
+    co_return fail(role.error());
+  }
+  const auto peer = navigation_.hub().find(id);
+  if (!peer) {
+    co_return fail(no_navigation(call.parameters[0]));
+  }
+  json detail{{"action", "role"}, {"id", id}, {"client", peer->address}, {"role", role_word(*role)}};
+  const auto announced = co_await context_.announce(call.caller, AuditKind::connection, std::move(detail));
+  if (!announced) {
+    co_return fail(announced.error());
+  }
+  if (!navigation_.set_role(id, *role, call.caller)) {
+    co_return fail(no_navigation(call.parameters[0]));
+  }
+  co_return list_navigation();
 }
 
 Answering CommunicationRoutes::disconnect(const Call& call) const {

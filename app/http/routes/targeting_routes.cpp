@@ -2,6 +2,7 @@
 
 #include "http/alignment_view.hpp"
 #include "http/problems.hpp"
+#include "http/targeting_change.hpp"
 #include "http/targeting_store.hpp"
 
 namespace interlock::web {
@@ -10,34 +11,6 @@ namespace {
 using Answering = boost::asio::awaitable<Reply>;
 using boost::beast::http::verb;
 using nlohmann::json;
-
-/** A refusal of the body is a value here, as the store did not fail. */
-struct Changed {
-  tl::expected<Targeting, Problem> targeting;
-  bool leads_elsewhere = false; /**< than before: what followed from it is stale */
-};
-
-/** A pose that an imager reports moves nothing. */
-bool leads_elsewhere(Targeting before, const Targeting& after) {
-  before.reported_position = after.reported_position;
-  return before != after;
-}
-
-/** The hold of the motion authority by which a change is made. */
-struct Hold {
-  Authority::SharedNumber present;
-  std::uint32_t number = 0;
-
-  [[nodiscard]] bool lasts() const { return *present == number; }
-};
-
-Problem authority_lost() {
-  return {.status = Status::conflict,
-          .code = "AUTHORITY",
-          .detail = "The motion authority changed before this was kept.",
-          .expected = "the motion authority",
-          .next_step = "Request it."};
-}
 
 }  // namespace
 
@@ -50,7 +23,7 @@ TargetingRoutes::TargetingRoutes(const Context& context, Router& router) : conte
   add_change(router, "/api/targeting/target", with_target);
 }
 
-void TargetingRoutes::add_change(Router& router, const char* path, Change make) {
+void TargetingRoutes::add_change(Router& router, const char* path, TargetingChange make) {
   router.add(verb::put, path, holder, [this, make](const Call& call) { return change(call, make); });
 }
 
@@ -66,41 +39,13 @@ Answering TargetingRoutes::show_alignment() const {
   });
 }
 
-Answering TargetingRoutes::change(const Call& call, Change make) const {
+Answering TargetingRoutes::change(const Call& call, TargetingChange make) const {
   const auto body = parse_body(call.request);
   if (!body) {
     co_return fail(body.error());
   }
-  const Authority& authority = context_.authority;
-  auto keep = [robot = &context_.robot, make, body = *body, session = call.caller.session,
-               hold = Hold{authority.shared_number(), authority.number()},
-               entry = context_.entry(call.caller, AuditKind::setting, json::object())](Store& store) {
-    return store.transact([&](Transaction& transaction) -> Stored<Changed> {
-      if (const auto lives = Sessions(transaction).need(session, Role::engineer, entry.time); !lives) {
-        return tl::unexpected(lives.error());
-      }
-      return find_targeting(transaction, *robot).map([&](const Targeting& before) -> Changed {
-        if (!hold.lasts()) {
-          return {fail(authority_lost()), false};
-        }
-        Changed after{make(before, body)};
-        if (after.targeting && *after.targeting != before) {
-          set_targeting(transaction, before, *after.targeting, entry);
-          after.leads_elsewhere = leads_elsewhere(before, *after.targeting);
-        }
-        return after;
-      });
-    });
-  };
-  const auto changed = co_await context_.store.run(std::move(keep));
-  if (!changed) {
-    co_return fail(changed.error());
-  }
-  if (changed->leads_elsewhere) {
-    context_.book.end_stale();
-  }
-  co_return changed->targeting.map(
-      [](const Targeting& targeting) { return Success{.body = to_json(targeting)}; });
+  const auto changed = co_await change_targeting(context_, call.caller, make, *body);
+  co_return changed.map([](const Targeting& targeting) { return Success{.body = to_json(targeting)}; });
 }
 
 }  // namespace interlock::web

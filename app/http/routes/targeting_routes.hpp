@@ -8,7 +8,7 @@
 
 #include "http/context.hpp"
 #include "http/router.hpp"
-#include "http/targeting.hpp"
+#include "http/targeting_change.hpp"
 
 namespace interlock::web {
 
@@ -18,13 +18,10 @@ class TargetingRoutes {
   TargetingRoutes(const Context& context, Router& router);
 
  private:
-  /** What a body makes of the values before. */
-  using Change = tl::expected<Targeting, Problem> (*)(Targeting, const nlohmann::json&);
-
-  void add_change(Router& router, const char* path, Change make);
+  void add_change(Router& router, const char* path, TargetingChange make);
   [[nodiscard]] boost::asio::awaitable<Reply> show() const;
   [[nodiscard]] boost::asio::awaitable<Reply> show_alignment() const;
-  [[nodiscard]] boost::asio::awaitable<Reply> change(const Call& call, Change make) const;
+  [[nodiscard]] boost::asio::awaitable<Reply> change(const Call& call, TargetingChange make) const;
 
   const Context& context_;
 };

@@ -1,6 +1,7 @@
 #include "http/routes/trajectory_routes.hpp"
 
 #include "http/problems.hpp"
+#include "http/trajectory_loading.hpp"
 #include "trajectory/trajectory_csv.hpp"
 
 namespace interlock::web {
@@ -9,20 +10,6 @@ namespace {
 using Answering = boost::asio::awaitable<Reply>;
 using boost::beast::http::verb;
 using nlohmann::json;
-
-Problem unreadable(const TrajectoryError& error) {
-  return {.status = Status::unprocessable_entity,
-          .code = std::string(code_name(error.code)),
-          .detail = error.message(),
-          .field = error.column,
-          .expected = error.expected,
-          .next_step = "Nothing was loaded. Mend the trajectory, and load it again."};
-}
-
-json summary_of(const LoadedTrajectory& loaded) {
-  const json whole = to_json(loaded);
-  return {{"rows", whole["rows"]}, {"duration_s", whole["duration_s"]}};
-}
 
 }  // namespace
 
@@ -45,16 +32,10 @@ Answering TrajectoryRoutes::load(const Call& call) const {
   if (!*done) {
     co_return fail(unreadable(done->error()));
   }
-  std::vector<PathLeg> legs;
-  legs.emplace_back(TimedLeg{std::move(**done)});
-  LoadedTrajectory loaded{std::make_shared<const PathProgram>(PathProgram{std::move(legs)}), call.caller.user,
-                          context_.clock()};
-  json detail{{"trajectory", summary_of(loaded)}};
-  const auto announced = co_await context_.announce(call.caller, AuditKind::setting, std::move(detail));
-  if (!announced) {
-    co_return fail(announced.error());
+  const auto loaded = co_await load_trajectory(context_, call.caller, std::move(**done));
+  if (!loaded) {
+    co_return fail(loaded.error());
   }
-  context_.trajectory = std::move(loaded);
   co_return show();
 }
 

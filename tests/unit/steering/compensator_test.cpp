@@ -71,7 +71,7 @@ TEST(Compensator, turns_to_and_fro_within_one_turn) {
 TEST(Compensator, aims_at_the_target_that_an_image_shows) {
   Compensator compensator = towards({0, 0, 100});
   ASSERT_TRUE(compensator.step({0.001, 0.0, 0.0}));
-  ASSERT_TRUE(compensator.see({0.0005, Vector3d::Zero(), {0, 6, 100}}));
+  ASSERT_TRUE(compensator.see({0.0005, Vector3d::Zero(), Vector3d(0, 6, 100)}));
   const SteeringCommand command = compensator.step({0.002, 0.0, 0.0}).value();
   EXPECT_NEAR(command.wanted_rotation_rad, pi, 0.1);
   EXPECT_GT(command.alpha, 0.5);
@@ -81,11 +81,11 @@ TEST(Compensator, takes_all_of_an_image_or_nothing) {
   Compensator compensator = towards({0, 0, 100});
   ASSERT_TRUE(compensator.step({1.0, 5.0, 0.0}));
   const Pose before = compensator.tip().guide_from_tip;
-  EXPECT_FALSE(compensator.see({0.5, {0, 0, 2.5}, {0, 40, 100}}));
-  EXPECT_FALSE(compensator.see({0.5, {0, 30, 2.5}, {0, 4, 100}}));
+  EXPECT_FALSE(compensator.see({0.5, {0, 0, 2.5}, Vector3d(0, 40, 100)}));
+  EXPECT_FALSE(compensator.see({0.5, {0, 30, 2.5}, Vector3d(0, 4, 100)}));
   EXPECT_EQ(compensator.tip().guide_from_tip.matrix(), before.matrix());
   EXPECT_EQ(compensator.target_mm(), Vector3d(0, 0, 100));
-  EXPECT_TRUE(compensator.see({0.5, {0, 0, 2.5}, {0, 4, 100}}));
+  EXPECT_TRUE(compensator.see({0.5, {0, 0, 2.5}, Vector3d(0, 4, 100)}));
 }
 
 TEST(Compensator, is_there_once_and_for_all) {
@@ -135,7 +135,7 @@ TEST(Compensator, allocates_nothing_after_it_is_made) {
         compensator.step({time_s, 4.0 * time_s, std::fmod(10.0 * time_s, 6.0)}).has_value() && all_well;
     if (tick % 400 == 0) {
       const Vector3d shown = compensator.tip().guide_from_tip.translation() - Vector3d(0, 0, 4);
-      all_well = compensator.see({time_s - 1.0, shown, {4, 2, 100}}).has_value() && all_well;
+      all_well = compensator.see({time_s - 1.0, shown, Vector3d(4, 2, 100)}).has_value() && all_well;
     }
   }
   const std::uint32_t allocations = counted_allocations();
@@ -151,8 +151,8 @@ TEST(Compensator, answers_nonsense_with_an_error) {
     EXPECT_EQ(compensator.step({value, 5.0, 0.0}).error().code, Code::not_finite);
     EXPECT_EQ(compensator.step({2.0, value, 0.0}).error().code, Code::not_finite);
     EXPECT_EQ(compensator.step({2.0, 5.0, value}).error().code, Code::not_finite);
-    EXPECT_EQ(compensator.see({0.5, {value, 0, 0}, {0, 0, 100}}).error().code, Code::not_finite);
-    EXPECT_EQ(compensator.see({0.5, {0, 0, 5}, {0, value, 100}}).error().code, Code::not_finite);
+    EXPECT_EQ(compensator.see({0.5, {value, 0, 0}, Vector3d(0, 0, 100)}).error().code, Code::not_finite);
+    EXPECT_EQ(compensator.see({0.5, {0, 0, 5}, Vector3d(0, value, 100)}).error().code, Code::not_finite);
     EXPECT_EQ(Compensator::create({}, {}, {value, 0, 100}).error().code, Code::not_finite);
     EXPECT_EQ(Compensator::create({.commit_mm = value}, {}, {0, 0, 100}).error().code, Code::not_finite);
   }

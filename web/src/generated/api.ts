@@ -574,6 +574,57 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/communications/connections": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Connections of navigation programs by OpenIGTLink. */
+        get: operations["listNavigationConnections"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/communications/connections/{id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /** Ends a connection; what moves for it stops. Its program may come back. */
+        delete: operations["endNavigationConnection"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/communications/connections/{id}/role": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /** Makes a connection the controller, which acts for the caller until the motion authority changes, or an observer. */
+        put: operations["setNavigationRole"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/logs": {
         parameters: {
             query?: never;
@@ -1052,7 +1103,7 @@ export interface components {
             step?: string | null;
             author: string;
             /** @enum {string} */
-            source: "console" | "file";
+            source: "console" | "file" | "openigtlink";
             /** @enum {string} */
             state: "drafted" | "checked" | "approved" | "executing" | "paused" | "done" | "refused" | "aborted" | "expired";
             /** @description Null unless one axis moves. */
@@ -1396,7 +1447,7 @@ export interface components {
             /** @description By which it can be disconnected; null when it cannot. */
             id: number | null;
             /** @enum {string} */
-            type: "kernel" | "bench" | "console";
+            type: "kernel" | "bench" | "console" | "openigtlink";
             name: string;
             connected: boolean;
             /** @description Address of the peer. */
@@ -1409,6 +1460,46 @@ export interface components {
              * @description Null when it is not connected.
              */
             since: string | null;
+        };
+        NavigationConnection: {
+            id: number;
+            /** @description Address and port of the program. */
+            client: string;
+            /** @description Port of this app that it came to. */
+            port: number;
+            /** @enum {string} */
+            dialect: "thesis";
+            /** @enum {string} */
+            role: "observer" | "controller";
+            /**
+             * @description In which it is answered.
+             * @enum {integer}
+             */
+            header_version: 1 | 2;
+            /** Format: date-time */
+            since: string;
+            received: number;
+            sent: number;
+            /** @description Messages that could not be read or were not wanted. */
+            refused: number;
+            /** @description Values that a newer one overtook before they were sent. */
+            replaced: number;
+            /** @description As TCP measures it. */
+            round_trip_ms: number | null;
+            /** @description The last message of each name. */
+            messages: components["schemas"]["HeardMessage"][];
+        };
+        HeardMessage: {
+            name: string;
+            type: string;
+            count: number;
+            age_s: number;
+            /** @description By the last two. */
+            rate_hz: number | null;
+        };
+        NavigationRole: {
+            /** @enum {string} */
+            role: "observer" | "controller";
         };
         Disconnect: {
             id: number;
@@ -2531,6 +2622,86 @@ export interface operations {
             401: components["responses"]["Login"];
             403: components["responses"]["Role"];
             404: components["responses"]["NotFound"];
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    listNavigationConnections: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Connections, oldest first. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["NavigationConnection"][];
+                };
+            };
+            401: components["responses"]["Login"];
+        };
+    };
+    endNavigationConnection: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The connections that are left. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["NavigationConnection"][];
+                };
+            };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            404: components["responses"]["NotFound"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    setNavigationRole: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: number;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NavigationRole"];
+            };
+        };
+        responses: {
+            /** @description The connections. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["NavigationConnection"][];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            404: components["responses"]["NotFound"];
+            409: components["responses"]["Authority"];
             422: components["responses"]["Invalid"];
             503: components["responses"]["NoStore"];
         };

@@ -1,0 +1,23 @@
+/**
+ * @file
+ * From a frame to a message.
+ *
+ * Debian's libopenigtlink unpacks TRANSFORM, STRING, POSITION, STT_TDATA and RTS_TDATA,
+ * once everything was checked here that it trusts: it reads beyond bodies whose inner lengths are wrong.
+ * Where no check makes it safe, the type is decoded here: POINT and TDATA, whose numbers it reads by pointers
+ * to odd addresses, which some processors refuse; SENSOR, as it swaps as many numbers as the body claims to
+ * have before it looks whether they are there; NDARRAY and CAPABILITY, as it
+ * never frees all of what it unpacked.
+ */
+#pragma once
+
+#include <tl/expected.hpp>
+
+#include "igtl/message.hpp"
+
+namespace interlock::igtl {
+
+/** The message of a frame that a FrameReader gave. */
+tl::expected<Message, Fault> decode(Frame frame);
+
+}  // namespace interlock::igtl

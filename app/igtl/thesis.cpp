@@ -1,0 +1,250 @@
+#include "igtl/thesis.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+namespace interlock::igtl {
+namespace {
+
+using Reading = tl::expected<Wish, Unwanted>;
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  std::ranges::transform(result, result.begin(), [](char each) {
+    return each >= 'A' && each <= 'Z' ? static_cast<char>(each + 32) : each;
+  });
+  return result;
+}
+
+tl::unexpected<Unwanted> unwanted(StatusCode code, std::string reason) {
+  return tl::unexpected(Unwanted{code, std::move(reason)});
+}
+
+tl::unexpected<Unwanted> wrong_type(const Message& message, const char* expected) {
+  return unwanted(StatusCode::configuration,
+                  message.device + " came as " + type_of(message.body) + "; expected " + expected + ".");
+}
+
+template <typename Made>
+Reading with_matrix(const Message& message) {
+  const auto* transform = std::get_if<Transform>(&message.body);
+  return transform != nullptr ? Reading(Made{transform->matrix}) : wrong_type(message, "TRANSFORM");
+}
+
+/** One point, or the origin of a pose, as different programs send it. */
+Reading point_of(const Message& message, bool is_target) {
+  if (const auto* points = std::get_if<Points>(&message.body)) {
+    if (points->points.size() != 1) {
+      return unwanted(
+          StatusCode::configuration,
+          message.device + " holds " + std::to_string(points->points.size()) + " points; expected one.");
+    }
+    return SetPoint{is_target, points->points[0].position};
+  }
+  if (const auto* transform = std::get_if<Transform>(&message.body)) {
+    return SetPoint{is_target, {transform->matrix[3], transform->matrix[7], transform->matrix[11]}};
+  }
+  if (const auto* position = std::get_if<Position>(&message.body)) {
+    return SetPoint{is_target, position->position};
+  }
+  return wrong_type(message, "POINT, POSITION or TRANSFORM");
+}
+
+Reading offset_of(const Message& message, std::string_view field) {
+  const auto* text = std::get_if<Text>(&message.body);
+  if (text == nullptr) {
+    return wrong_type(message, "STRING");
+  }
+  double mm = 0.0;
+  const char* const end = text->text.data() + text->text.size();
+  const auto [stopped, error] = std::from_chars(text->text.data(), end, mm);
+  if (error != std::errc() || stopped != end || !std::isfinite(mm)) {
+    return unwanted(StatusCode::configuration,
+                    message.device + " is \"" + text->text + "\"; expected a number in mm, such as 12.5.");
+  }
+  return SetOffset{field, mm};
+}
+
+Reading rows_of(const Message& message) {
+  const auto* array = std::get_if<Array>(&message.body);
+  if (array == nullptr) {
+    return wrong_type(message, "NDARRAY");
+  }
+  if (array->size.size() != 2) {
+    return unwanted(StatusCode::configuration, message.device + " has " + std::to_string(array->size.size()) +
+                                                   " dimensions; expected two, rows and columns.");
+  }
+  return LoadRows{array->size[1], array->values};
+}
+
+Reading mode_of_text(const Message& message) {
+  const auto* text = std::get_if<Text>(&message.body);
+  if (text == nullptr) {
+    return wrong_type(message, "STRING");
+  }
+  std::string mode = lower(text->text);
+  if (mode == "stop" || mode == "emergency") {
+    return Stop{};
+  }
+  return SetMode{std::move(mode)};
+}
+
+/** One name of the dialect. */
+struct Name {
+  std::string_view name;
+  Reading (*read)(const Message&);
+};
+
+constexpr std::array<Name, 15> names{{
+    {"registration", with_matrix<SetRegistration>},
+    {"current_pose", with_matrix<ReportPose>},
+    {"tip_pose",
+     [](const Message& message) -> Reading {
+       return std::holds_alternative<Transform>(message.body) ? Reading(Noted{})
+                                                              : wrong_type(message, "TRANSFORM");
+     }},
+    {"imager_status",
+     [](const Message& message) -> Reading {
+       return std::holds_alternative<Text>(message.body) ? Reading(Noted{})
+                                                         : wrong_type(message, "STRING or STATUS");
+     }},
+    {"entry_point", [](const Message& message) { return point_of(message, false); }},
+    {"target_point", [](const Message& message) { return point_of(message, true); }},
+    {"treatment_to_tip",
+     [](const Message& message) { return offset_of(message, "treatment_to_tip_offset"); }},
+    {"robot_to_entry", [](const Message& message) { return offset_of(message, "robot_to_entry_offset"); }},
+    {"cannula_to_treatment",
+     [](const Message& message) { return offset_of(message, "cannula_to_treatment_offset"); }},
+    {"robot_treatment_home",
+     [](const Message& message) { return offset_of(message, "treatment_to_robot_at_home"); }},
+    {"trajectory", rows_of},
+    {"mode", mode_of_text},
+    {"start_up", [](const Message&) -> Reading { return SetMode{"home"}; }},
+    {"stop", [](const Message&) -> Reading { return Stop{}; }},
+    {"emergency", [](const Message&) -> Reading { return Stop{}; }},
+}};
+
+/** Commands of CRTK that set a setpoint, with or without a namespace before them. */
+bool is_setpoint(std::string_view name) {
+  const std::string_view command =
+      name.substr(name.rfind('/') == std::string_view::npos ? 0 : name.rfind('/') + 1);
+  return command.starts_with("servo_") || command.starts_with("move_");
+}
+
+Reading named(const Message& message) {
+  const std::string name = lower(message.device);
+  const auto found = std::ranges::find(names, name, &Name::name);
+  if (found != names.end()) {
+    return found->read(message);
+  }
+  if (is_setpoint(name)) {
+    return unwanted(StatusCode::access_denied,
+                    message.device +
+                        " would be a setpoint, and none is taken from the network; send entry and "
+                        "target or a trajectory, then a MODE that somebody approves.");
+  }
+  return unwanted(
+      StatusCode::unknown_instruction,
+      "The name \"" + message.device + "\" means nothing here; docs/openigtlink.md lists the names.");
+}
+
+std::string listed(const std::vector<double>& values) {
+  std::string text;
+  for (const double value : values) {
+    std::array<char, 32> digits{};
+    const int length = std::snprintf(digits.data(), digits.size(), "%.6g", value);
+    text += (text.empty() ? "" : ",") + std::string(digits.data(), static_cast<std::size_t>(length));
+  }
+  return text;
+}
+
+Points point(const char* name, const Position3& position) {
+  return {{{name, "Fiducial", {255, 0, 0, 255}, position, 0.0, ""}}};
+}
+
+/** Positions, and velocities below them once these are known. */
+Array joint_states(const RobotState& state) {
+  Array array{{1, static_cast<std::uint16_t>(state.measured_jp.size())}, state.measured_jp};
+  if (state.measured_jv.size() == state.measured_jp.size()) {
+    array.size[0] = 2;
+    array.values.insert(array.values.end(), state.measured_jv.begin(), state.measured_jv.end());
+  }
+  return array;
+}
+
+}  // namespace
+
+Reading read_wish(const Message& message) {
+  if (const auto* query = std::get_if<Query>(&message.body)) {
+    return Show{*query, message.device};
+  }
+  if (const auto* start = std::get_if<StartTracking>(&message.body)) {
+    return Track{start->interval_ms};
+  }
+  if (std::holds_alternative<StopTracking>(message.body)) {
+    return Track{};
+  }
+  if (std::holds_alternative<Status>(message.body) || std::holds_alternative<Capability>(message.body) ||
+      std::holds_alternative<TrackingReply>(message.body)) {
+    return Noted{false};
+  }
+  return named(message);
+}
+
+bool needs_control(const Wish& wish) noexcept {
+  return std::holds_alternative<SetRegistration>(wish) || std::holds_alternative<ReportPose>(wish) ||
+         std::holds_alternative<SetPoint>(wish) || std::holds_alternative<SetOffset>(wish) ||
+         std::holds_alternative<LoadRows>(wish) || std::holds_alternative<SetMode>(wish);
+}
+
+std::vector<Outgoing> messages_of(const RobotState& state) {
+  std::vector<Outgoing> messages{
+      {"scanner_to_robot_reg", Transform{state.scanner_from_robot}},
+      {"treatment_to_tip", Text{listed({state.treatment_to_tip_mm})}},
+      {"robot_to_entry", Text{listed({state.robot_to_entry_mm})}},
+      {"cannula_to_treatment", Text{listed({state.cannula_to_treatment_mm})}},
+      {"robot_treatment_home", Text{listed({state.treatment_to_robot_at_home_mm})}},
+      {"mode", Text{state.mode}},
+      {"robot_status", state.health}};
+  if (state.entry) {
+    messages.emplace_back("entry_point", point("entry_point", *state.entry));
+  }
+  if (state.target) {
+    messages.emplace_back("target_point", point("target_point", *state.target));
+  }
+  if (state.desired_cp) {
+    messages.emplace_back("desired_cp", Transform{*state.desired_cp});
+    messages.emplace_back("setpoint_cp", Transform{*state.desired_cp});
+  }
+  if (!state.desired_jp.empty()) {
+    messages.emplace_back("desired_jp", Text{listed(state.desired_jp)});
+  }
+  if (state.measured_cp) {
+    messages.emplace_back("measured_cp", Transform{*state.measured_cp});
+  }
+  if (!state.measured_jp.empty()) {
+    messages.emplace_back("measured_jp", Text{listed(state.measured_jp)});
+    messages.emplace_back("measured_js", joint_states(state));
+  }
+  if (!state.measured_jv.empty()) {
+    messages.emplace_back("measured_jv", Text{listed(state.measured_jv)});
+  }
+  return messages;
+}
+
+TrackingData tracking_of(const RobotState& state) {
+  constexpr std::uint8_t six_degrees = 2;
+  TrackingData data{{{"scanner_to_robot_reg", six_degrees, state.scanner_from_robot}}};
+  if (state.measured_cp) {
+    data.tools.push_back({"measured_cp", six_degrees, *state.measured_cp});
+  }
+  if (state.desired_cp) {
+    data.tools.push_back({"desired_cp", six_degrees, *state.desired_cp});
+  }
+  return data;
+}
+
+}  // namespace interlock::igtl

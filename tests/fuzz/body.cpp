@@ -1,0 +1,41 @@
+/** Any bytes as the content of a message of each type: whatever is understood says the same after it was
+ * written and read again. The first byte chooses the type. */
+#include <array>
+#include <cstdlib>
+#include <string_view>
+
+#include "igtl/decode.hpp"
+#include "igtl/encode.hpp"
+#include "igtl/thesis.hpp"
+
+namespace {
+
+using namespace interlock::igtl;
+
+constexpr std::array<std::string_view, 13> types{
+    "TRANSFORM", "STRING",    "STATUS",  "POINT",  "POSITION",   "TDATA",    "STT_TDATA",
+    "STP_TDATA", "RTS_TDATA", "NDARRAY", "SENSOR", "CAPABILITY", "GET_TRANS"};
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) {
+    return 0;
+  }
+  const std::string_view type = types[data[0] % types.size()];
+  const ByteVector content(data + 1, data + size);
+  if (!is_size_of(type, content.size())) {
+    return 0;
+  }
+  const auto message = decode({{1, std::string(type), "", 0, content.size(), 0}, content, 0, {}});
+  if (!message) {
+    return 0;
+  }
+  (void)read_wish(*message);
+  const ByteVector written = encode(message->body);
+  const auto again = decode({{1, std::string(type), "", 0, written.size(), 0}, written, 0, {}});
+  if (!again || !(again->body == message->body)) {
+    std::abort();
+  }
+  return 0;
+}

@@ -1,0 +1,423 @@
+"""OpenIGTLink on a whole robot: with pyigtl as the navigation program, and with bytes that none sends."""
+
+import contextlib
+import os
+import signal
+import socket
+import struct
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pyigtl
+import pytest
+from bare_kernel import DEADLINE_S
+from conftest import StackFactory
+from interface import judge
+from motion import LATERAL, act, press, set_home, unlock, wait_for_mode, wait_until
+from pyigtl import messages as wire
+from stack import Stack
+
+OK, ACCESS_DENIED, CONFIGURATION, UNKNOWN_INSTRUCTION = 1, 5, 10, 12
+CHECKSUM, NOT_READY = 9, 13
+CONNECTIONS = "/api/communications/connections"
+REGISTRATION = [0, -1, 0, 12.5, 1, 0, 0, -3, 0, 0, 1, 40, 0, 0, 0, 1]
+
+
+class Status(wire.MessageBase):
+    """STATUS, which pyigtl lacks."""
+
+    def __init__(self, device_name: str | None = None, code: int = OK, text: str = "") -> None:
+        super().__init__(device_name=device_name)
+        self._message_type = "STATUS"
+        self._valid_message = True
+        self.code, self.sub_code, self.name, self.text = code, 0, "", text
+
+    def _pack_content(self) -> bytes:
+        return (
+            struct.pack(">Hq20s", self.code, self.sub_code, self.name.encode()) + self.text.encode() + b"\0"
+        )
+
+    def _unpack_content(self, content: bytes) -> None:
+        self.code, self.sub_code, name = struct.unpack(">Hq20s", content[:30])
+        self.name = name.rstrip(b"\0").decode()
+        self.text = content[30:].rstrip(b"\0").decode()
+
+
+class Query(wire.MessageBase):
+    """GET_ of a type, which has no body."""
+
+    def __init__(self, kind: str, device_name: str = "") -> None:
+        super().__init__(device_name=device_name)
+        self._message_type = "GET_" + kind
+        self._valid_message = True
+
+
+class Rows(wire.MessageBase):
+    """NDARRAY of float64 in two dimensions, which pyigtl lacks."""
+
+    def __init__(self, rows: list[list[float]], device_name: str) -> None:
+        super().__init__(device_name=device_name)
+        self._message_type = "NDARRAY"
+        self._valid_message = True
+        self.rows = rows
+
+    def _pack_content(self) -> bytes:
+        values = [value for row in self.rows for value in row]
+        head = struct.pack(">BBHH", 11, 2, len(self.rows), len(self.rows[0]))
+        return head + struct.pack(f">{len(values)}d", *values)
+
+
+wire.message_type_to_class_constructor["STATUS"] = Status
+
+
+class Navigator:
+    """A navigation program: pyigtl, with one header version."""
+
+    def __init__(self, port: int, version: int = 1) -> None:
+        self.version = version
+        self.client = pyigtl.OpenIGTLinkClient("127.0.0.1", port)
+        wait_until("connected", self.client.is_connected)
+
+    def send(self, message: wire.MessageBase) -> None:
+        message.header_version = self.version
+        if self.version == 2:
+            message.metadata = {"dummy": "dummy"}
+        assert self.client.send_message(message)
+
+    def receive(self, name: str) -> wire.MessageBase:
+        message = self.client.wait_for_message(name, timeout=DEADLINE_S)
+        assert message is not None, f"no message {name}"
+        return message
+
+    def ask(self, message: wire.MessageBase) -> Status:
+        """The STATUS that answers a message."""
+        self.send(message)
+        answer = self.receive(message.device_name)
+        assert isinstance(answer, Status)
+        return answer
+
+    def stop(self) -> None:
+        self.client.stop()
+
+
+@pytest.fixture
+def robot(stack: StackFactory) -> Stack:
+    started = stack(speed=1, igtl=True)
+    unlock(started)
+    return started
+
+
+@pytest.fixture
+def navigate(robot: Stack) -> Iterator[Callable[..., Navigator]]:
+    navigators: list[Navigator] = []
+
+    def connect(version: int = 1) -> Navigator:
+        navigators.append(Navigator(robot.igtl_port, version))
+        return navigators[-1]
+
+    yield connect
+    for navigator in navigators:
+        navigator.stop()
+
+
+def connections(robot: Stack) -> list[dict]:
+    return judge(robot.api.get(CONNECTIONS)).raise_for_status().json()
+
+
+def make_controller(robot: Stack, place: int = -1) -> int:
+    """The newest connection, or that one, becomes the controller."""
+    wait_until("listed", lambda: len(connections(robot)) > 0)
+    number = connections(robot)[place]["id"]
+    answer = robot.api.put(f"{CONNECTIONS}/{number}/role", json={"role": "controller"})
+    assert judge(answer).status_code == 200, answer.text
+    return number
+
+
+def transform(name: str, matrix: list[float]) -> pyigtl.TransformMessage:
+    return pyigtl.TransformMessage(np.array(matrix, dtype=float).reshape(4, 4), device_name=name)
+
+
+def text(name: str, content: str) -> pyigtl.StringMessage:
+    return pyigtl.StringMessage(content, device_name=name)
+
+
+def home_all(robot: Stack) -> None:
+    for axis in robot.api.get("/api/motors").json():
+        set_home(robot, axis["slot"])
+        act(robot, "enable", axis["slot"])
+
+
+def within_reach(axis: dict) -> float:
+    """Where the axis stands, or as near to it as its soft limits let a trajectory come."""
+    lowest, highest = (axis[end] / axis["counts_per_unit"] for end in ("min_counts", "max_counts"))
+    margin = 0.02 * (highest - lowest)
+    return min(max(axis["position"], lowest + margin), highest - margin)
+
+
+@pytest.mark.parametrize("version", [1, 2])
+def test_the_whole_state_comes_on_connecting_in_the_version_that_the_program_speaks(
+    robot: Stack, navigate: Callable[..., Navigator], version: int
+) -> None:
+    navigator = navigate(version)
+    assert np.array_equal(navigator.receive("scanner_to_robot_reg").matrix, np.eye(4))
+    assert navigator.receive("mode").string == "manual"
+    assert navigator.receive("treatment_to_tip").string
+    assert len(navigator.receive("measured_jp").string.split(",")) == len(robot.api.get("/api/motors").json())
+    assert navigator.receive("robot_status").code == OK
+    answer = navigator.ask(text("IMAGER_STATUS", "scanning"))
+    assert (answer.code, answer.header_version) == (OK, version)
+    assert connections(robot)[0]["header_version"] == version
+
+
+@pytest.mark.parametrize("version", [1, 2])
+def test_what_the_controller_sets_is_stored_told_to_all_and_audited(
+    robot: Stack, navigate: Callable[..., Navigator], version: int
+) -> None:
+    observer = navigate()
+    observer.receive("scanner_to_robot_reg")
+    navigator = navigate(version)
+    wait_until("both listed", lambda: len(connections(robot)) == 2)
+    make_controller(robot)
+    assert navigator.ask(transform("REGISTRATION", REGISTRATION)).code == OK
+    assert observer.receive("scanner_to_robot_reg").matrix.ravel().tolist() == REGISTRATION
+    points = {"ENTRY_POINT": [1.5, 2, 3], "TARGET_POINT": [4, 5, 60]}
+    for name, position in points.items():
+        assert navigator.ask(pyigtl.PointMessage([position], names=["p"], device_name=name)).code == OK
+    assert navigator.ask(text("ROBOT_TO_ENTRY", "7.25")).code == OK
+    assert navigator.ask(transform("CURRENT_POSE", REGISTRATION)).code == OK
+    kept = robot.api.get("/api/targeting").json()
+    assert kept["registration"] == REGISTRATION
+    assert (kept["entry_point"], kept["target_point"]) == ([1.5, 2, 3], [4, 5, 60])
+    assert kept["robot_to_entry_offset"] == 7.25
+    assert kept["reported_position"] == REGISTRATION
+    records = robot.api.get("/api/audit", params={"records": 100}).json()
+    heard = [each["detail"]["name"] for each in records if each["detail"].get("action") == "message"]
+    assert heard == ["REGISTRATION", "ENTRY_POINT", "TARGET_POINT", "ROBOT_TO_ENTRY", "CURRENT_POSE"]
+
+
+def test_a_pose_of_an_imager_never_takes_the_encoders_place(
+    robot: Stack, navigate: Callable[..., Navigator]
+) -> None:
+    home_all(robot)
+    navigator = navigate()
+    measured = navigator.receive("measured_cp").matrix
+    make_controller(robot)
+    assert navigator.ask(transform("CURRENT_POSE", REGISTRATION)).code == OK
+    navigator.send(Query("TRANS", "measured_cp"))
+    assert np.array_equal(navigator.receive("measured_cp").matrix, measured)
+    shown = robot.api.get("/api/targeting/alignment").json()["current"]
+    assert np.allclose(np.array(shown).reshape(4, 4), measured, atol=1e-4)
+
+
+def test_an_observer_changes_nothing_and_may_stop(robot: Stack, navigate: Callable[..., Navigator]) -> None:
+    navigator = navigate()
+    before = robot.api.get("/api/targeting").json()
+    for message in (transform("REGISTRATION", REGISTRATION), text("MODE", "draping"), text("START_UP", "")):
+        answer = navigator.ask(message)
+        assert (answer.code, answer.name) == (ACCESS_DENIED, "AUTHORITY")
+    assert robot.api.get("/api/targeting").json() == before
+    assert navigator.ask(text("STOP", "")).code == OK
+    records = robot.api.get("/api/audit").json()
+    assert [each["kind"] for each in records].count("stop") == 1
+    assert connections(robot)[0]["refused"] == 3
+
+
+REFUSED = [
+    ("shear", transform("REGISTRATION", [1, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]), CONFIGURATION),
+    ("zeros", transform("REGISTRATION", [0] * 15 + [1]), CONFIGURATION),
+    ("mirror", transform("REGISTRATION", [-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]), CONFIGURATION),
+    ("far", pyigtl.PointMessage([[1e6, 0, 0]], device_name="TARGET_POINT"), CONFIGURATION),
+    ("two points", pyigtl.PointMessage([[1, 0, 0], [2, 0, 0]], device_name="ENTRY_POINT"), CONFIGURATION),
+    ("word for number", text("TREATMENT_TO_TIP", "long"), CONFIGURATION),
+    ("large offset", text("TREATMENT_TO_TIP", "2000"), CONFIGURATION),
+    ("wrong type", text("REGISTRATION", "x"), CONFIGURATION),
+    ("setpoint", transform("servo_cp", REGISTRATION), ACCESS_DENIED),
+    ("unknown name", text("FIRE", ""), UNKNOWN_INSTRUCTION),
+    ("unknown mode", text("MODE", "dance"), UNKNOWN_INSTRUCTION),
+    ("homing", text("START_UP", ""), UNKNOWN_INSTRUCTION),
+    ("no trajectory", text("MODE", "trajectory"), NOT_READY),
+    ("no target", text("MODE", "targeting"), NOT_READY),
+    ("columns", Rows([[0, 1], [1, 1]], "TRAJECTORY"), CONFIGURATION),
+]
+
+
+def test_what_cannot_be_is_refused_with_its_reason(robot: Stack, navigate: Callable[..., Navigator]) -> None:
+    navigator = navigate(2)
+    make_controller(robot)
+    before = robot.api.get("/api/targeting").json()
+    for what, message, code in REFUSED:
+        answer = navigator.ask(message)
+        assert answer.code == code, (what, answer.text)
+        assert answer.text, what
+    assert robot.api.get("/api/targeting").json() == before
+    assert robot.api.get("/api/proposals").json() == []
+    assert connections(robot)[0]["refused"] == len(REFUSED)
+
+
+def test_a_trajectory_becomes_a_proposal_that_somebody_has_to_approve(
+    robot: Stack, navigate: Callable[..., Navigator]
+) -> None:
+    home_all(robot)
+    axes = robot.api.get("/api/motors").json()
+    here = [within_reach(axis) for axis in axes]
+    navigator = navigate()
+    make_controller(robot)
+    answer = navigator.ask(Rows([[0, *here], [2, *here]], "TRAJECTORY"))
+    assert answer.code == OK, answer.text
+    assert robot.api.get("/api/trajectory").json()["rows"] == 2
+    answer = navigator.ask(text("MODE", "trajectory"))
+    assert answer.code == OK, answer.text
+    told = navigator.receive("proposal")
+    assert told.name in ("drafted", "checked")
+    [proposal] = judge(robot.api.get("/api/proposals")).json()
+    assert (proposal["source"], proposal["state"]) == ("openigtlink", "checked")
+    assert robot.api.get("/api/mode").json()["mode"] == "manual"
+
+
+def moving(robot: Stack, navigate: Callable[..., Navigator]) -> Navigator:
+    """The robot moves along a trajectory of the controller's."""
+    home_all(robot)
+    axes = robot.api.get("/api/motors").json()
+    here = [within_reach(axis) for axis in axes]
+    there = [
+        place - (1.0 if axis["slot"] == LATERAL else 0.0) for place, axis in zip(here, axes, strict=True)
+    ]
+    navigator = navigate()
+    make_controller(robot)
+    assert navigator.ask(Rows([[0, *here], [8, *there]], "TRAJECTORY")).code == OK
+    assert navigator.ask(text("MODE", "trajectory")).code == OK
+    [proposal] = robot.api.get("/api/proposals").json()
+    robot.api.post(f"/api/proposals/{proposal['id']}/approve").raise_for_status()
+    press(robot)
+    wait_until("it moves", lambda: robot.api.get("/api/proposals").json()[0]["state"] == "executing")
+    return navigator
+
+
+def test_the_loss_of_the_controller_stops_what_moves(
+    robot: Stack, navigate: Callable[..., Navigator]
+) -> None:
+    navigator = moving(robot, navigate)
+    navigator.stop()
+    wait_until("ended", lambda: robot.api.get("/api/proposals").json()[0]["state"] == "aborted")
+    wait_for_mode(robot, "READY")
+    [proposal] = robot.api.get("/api/proposals").json()
+    assert "controller was lost" in proposal["detail"]
+
+
+def test_stop_over_openigtlink_stops_what_moves(robot: Stack, navigate: Callable[..., Navigator]) -> None:
+    navigator = moving(robot, navigate)
+    assert navigator.ask(text("STOP", "")).code == OK
+    wait_until("ended", lambda: robot.api.get("/api/proposals").json()[0]["state"] == "aborted")
+
+
+def test_the_role_ends_with_the_motion_authority(robot: Stack, navigate: Callable[..., Navigator]) -> None:
+    navigator = navigate()
+    make_controller(robot)
+    assert navigator.ask(text("ROBOT_TO_ENTRY", "1")).code == OK
+    robot.api.post("/api/authority/release").raise_for_status()
+    assert navigator.ask(text("ROBOT_TO_ENTRY", "2")).code == ACCESS_DENIED
+    assert connections(robot)[0]["role"] == "observer"
+    refused = robot.api.put(f"{CONNECTIONS}/{connections(robot)[0]['id']}/role", json={"role": "controller"})
+    assert judge(refused).status_code == 409
+
+
+def test_there_is_one_controller(robot: Stack, navigate: Callable[..., Navigator]) -> None:
+    navigate()
+    wait_until("one", lambda: len(connections(robot)) == 1)
+    make_controller(robot, 0)
+    navigate()
+    wait_until("two", lambda: len(connections(robot)) == 2)
+    make_controller(robot, 1)
+    assert [each["role"] for each in connections(robot)] == ["observer", "controller"]
+
+
+def test_each_connection_is_shown_and_can_be_ended(robot: Stack, navigate: Callable[..., Navigator]) -> None:
+    navigator = navigate()
+    navigator.ask(text("IMAGER_STATUS", "scanning"))
+    [shown] = connections(robot)
+    assert shown["dialect"] == "thesis"
+    assert shown["port"] == robot.igtl_port
+    [heard] = shown["messages"]
+    assert (heard["name"], heard["type"], heard["count"]) == ("IMAGER_STATUS", "STRING", 1)
+    assert 0 <= heard["age_s"] < DEADLINE_S
+    listed = judge(robot.api.get("/api/communications")).json()
+    assert [each["client"] for each in listed if each["type"] == "openigtlink"] == [shown["client"]]
+    assert judge(robot.api.delete(f"{CONNECTIONS}/{shown['id']}")).status_code == 200
+    assert judge(robot.api.delete(f"{CONNECTIONS}/{shown['id']}")).status_code == 404
+    assert judge(robot.api.put(f"{CONNECTIONS}/{shown['id']}/role", json={"role": "king"})).status_code == 422
+
+
+def bare(robot: Stack) -> socket.socket:
+    connection = socket.create_connection(("127.0.0.1", robot.igtl_port), timeout=DEADLINE_S)
+    connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    return connection
+
+
+def header(kind: bytes, size: int, crc: int = 0, version: int = 1) -> bytes:
+    return struct.pack(">H12s20sQQQ", version, kind, b"NAME", 0, size, crc)
+
+
+HOSTILE = [
+    header(b"VIDEO", 0xFFFFFFFF) + bytes(400),
+    header(b"STRING", 2**64 - 1) + bytes(400),
+    header(b"TRANSFORM", 2**32 + 48) + bytes(48),
+    header(b"TRANSFORM", 0x7FFFFFFF) + bytes(400),
+    header(b"TRANSFORM", 0),
+    header(b"TRANSFORM", 47) + bytes(47),
+    header(b"STRING", 4) + b"\0\3\xff\xff",
+    header(b"STRING", 12, version=2) + b"\xff" * 12,
+    header(b"STRING", 4, version=9) + bytes(4),
+    b"GET / HTTP/1.1\r\nHost: x\r\n\r\n" + bytes(100),
+    bytes(58),
+]
+
+
+def test_hostile_bytes_harm_nobody(robot: Stack, navigate: Callable[..., Navigator]) -> None:
+    navigator = navigate()
+    app = robot.pid("app")
+    for hostile in HOSTILE:
+        with bare(robot) as connection:
+            connection.sendall(hostile)
+            connection.shutdown(socket.SHUT_WR)
+            with contextlib.suppress(ConnectionResetError):
+                while connection.recv(4096):
+                    pass
+    assert navigator.ask(text("IMAGER_STATUS", "still here")).code == OK
+    assert robot.pid("app") == app
+
+
+def test_a_program_that_is_frozen_disturbs_nobody(robot: Stack, navigate: Callable[..., Navigator]) -> None:
+    code = (
+        "import socket, sys\n"
+        "peer = socket.create_connection(('127.0.0.1', int(sys.argv[1])))\n"
+        "print('on', flush=True)\n"
+        "sys.stdin.read()\n"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", code, str(robot.igtl_port)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as frozen:
+        assert frozen.stdout is not None
+        assert frozen.stdout.readline() == "on\n"
+        os.kill(frozen.pid, signal.SIGSTOP)
+        navigator = navigate()
+        assert navigator.ask(text("IMAGER_STATUS", "scanning")).code == OK
+        frozen.kill()
+    wait_until("it is gone", lambda: len(connections(robot)) == 1)
+
+
+def test_two_hundred_connections_leave_no_descriptor(robot: Stack) -> None:
+    descriptors = Path(f"/proc/{robot.pid('app')}/fd")
+    bare(robot).close()
+    wait_until("gone", lambda: connections(robot) == [])
+    before = len(list(descriptors.iterdir()))
+    for _ in range(200):
+        with bare(robot) as connection:
+            connection.recv(58)
+    wait_until("all gone", lambda: connections(robot) == [])
+    assert len(list(descriptors.iterdir())) <= before

@@ -1,0 +1,152 @@
+#include "igtl/thesis.hpp"
+
+#include <gmock/gmock.h>
+
+namespace interlock::igtl {
+namespace {
+
+using testing::HasSubstr;
+
+tl::expected<Wish, Unwanted> wish_of(const std::string& device, Body body) {
+  return read_wish({device, std::move(body), 0, 1, {}});
+}
+
+Matrix shifted(double x, double y, double z) { return {1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1}; }
+
+TEST(Thesis, NamesAreTakenInUpperAndLowerCase) {
+  for (const char* name : {"REGISTRATION", "Registration", "registration"}) {
+    const auto wish = wish_of(name, Transform{shifted(1, 2, 3)});
+    ASSERT_TRUE(wish.has_value()) << name;
+    EXPECT_EQ(std::get<SetRegistration>(*wish).scanner_from_robot, shifted(1, 2, 3));
+  }
+}
+
+TEST(Thesis, PoseOfAnImagerIsReportedAndNoMore) {
+  const auto wish = wish_of("CURRENT_POSE", Transform{shifted(1, 2, 3)});
+  EXPECT_TRUE(std::holds_alternative<ReportPose>(wish.value()));
+  EXPECT_TRUE(std::holds_alternative<Noted>(wish_of("TIP_POSE", Transform{}).value()));
+  EXPECT_TRUE(std::holds_alternative<Noted>(wish_of("IMAGER_STATUS", Text{"scanning"}).value()));
+  EXPECT_TRUE(std::holds_alternative<Noted>(wish_of("IMAGER_STATUS", Status{}).value()));
+}
+
+TEST(Thesis, APointComesAsPointPositionOrPose) {
+  const Position3 expected{4, 5, 6};
+  const std::vector<Body> bodies{Points{{{"x", "", {}, expected, 0, ""}}}, Position{expected, std::nullopt},
+                                 Transform{shifted(4, 5, 6)}};
+  for (const Body& body : bodies) {
+    const auto target = std::get<SetPoint>(wish_of("TARGET_POINT", body).value());
+    EXPECT_TRUE(target.is_target);
+    EXPECT_EQ(target.position, expected);
+    EXPECT_FALSE(std::get<SetPoint>(wish_of("ENTRY_POINT", body).value()).is_target);
+  }
+  EXPECT_EQ(wish_of("TARGET_POINT", Points{}).error().code, StatusCode::configuration);
+  EXPECT_EQ(wish_of("TARGET_POINT", Points{{{}, {}}}).error().code, StatusCode::configuration);
+}
+
+TEST(Thesis, OffsetsAreNumbersInWords) {
+  const auto offset = std::get<SetOffset>(wish_of("treatment_to_tip", Text{"-12.5"}).value());
+  EXPECT_EQ(offset.field, "treatment_to_tip_offset");
+  EXPECT_EQ(offset.mm, -12.5);
+  EXPECT_EQ(std::get<SetOffset>(wish_of("robot_treatment_home", Text{"3"}).value()).field,
+            "treatment_to_robot_at_home");
+  for (const char* wrong : {"", "x", "1,5", "1 ", "inf", "nan", "1e999"}) {
+    EXPECT_FALSE(wish_of("robot_to_entry", Text{wrong}).has_value()) << wrong;
+  }
+}
+
+TEST(Thesis, TrajectoryHasRowsAndColumns) {
+  const auto rows = std::get<LoadRows>(wish_of("TRAJECTORY", Array{{2, 3}, {0, 1, 2, 3, 4, 5}}).value());
+  EXPECT_EQ(rows.columns, 3u);
+  EXPECT_EQ(rows.values.size(), 6u);
+  EXPECT_THAT(wish_of("TRAJECTORY", Array{{6}, {0, 1, 2, 3, 4, 5}}).error().reason,
+              HasSubstr("1 dimensions"));
+  EXPECT_THAT(wish_of("TRAJECTORY", TrackingData{}).error().reason, HasSubstr("expected NDARRAY"));
+}
+
+TEST(Thesis, StopIsUnderstoodHoweverItIsSaid) {
+  const std::vector<std::pair<const char*, Body>> said{{"STOP", Text{""}},
+                                                       {"stop", Transform{}},
+                                                       {"EMERGENCY", Text{"now"}},
+                                                       {"MODE", Text{"STOP"}},
+                                                       {"mode", Text{"emergency"}}};
+  for (const auto& [name, body] : said) {
+    const auto wish = wish_of(name, body);
+    ASSERT_TRUE(wish.has_value()) << name;
+    EXPECT_TRUE(std::holds_alternative<Stop>(*wish)) << name;
+    EXPECT_FALSE(needs_control(*wish)) << "anybody may stop the robot";
+  }
+}
+
+TEST(Thesis, NoSetpointIsTakenFromTheNetwork) {
+  for (const char* name : {"servo_cp", "move_cp", "neuro/servo_jp", "NEURO/MOVE_JP", "servo_cf"}) {
+    EXPECT_EQ(wish_of(name, Transform{}).error().code, StatusCode::access_denied) << name;
+  }
+}
+
+TEST(Thesis, AStatusIsNotAnsweredSoThatTwoProgramsDoNotAnswerEachOtherForEver) {
+  EXPECT_FALSE(std::get<Noted>(wish_of("", Status{}).value()).is_answered);
+}
+
+TEST(Thesis, UnknownNamesAreRefusedByName) {
+  const auto refused = wish_of("TARGET", Transform{});
+  EXPECT_EQ(refused.error().code, StatusCode::unknown_instruction);
+  EXPECT_THAT(refused.error().reason, HasSubstr("TARGET"));
+}
+
+TEST(Thesis, WhatChangesTheRobotIsTheControllersAlone) {
+  for (const auto& [name, body] :
+       std::vector<std::pair<const char*, Body>>{{"REGISTRATION", Transform{}},
+                                                 {"CURRENT_POSE", Transform{}},
+                                                 {"ENTRY_POINT", Transform{}},
+                                                 {"robot_to_entry", Text{"1"}},
+                                                 {"TRAJECTORY", Array{{1, 2}, {0, 0}}},
+                                                 {"MODE", Text{"draping"}},
+                                                 {"START_UP", Text{""}}}) {
+    EXPECT_TRUE(needs_control(wish_of(name, body).value())) << name;
+  }
+  EXPECT_FALSE(needs_control(wish_of("measured_cp", Query{"TRANS"}).value()));
+  EXPECT_FALSE(needs_control(wish_of("", StartTracking{}).value()));
+}
+
+const Body* find(const std::vector<Outgoing>& messages, const std::string& name) {
+  const auto found = std::ranges::find(messages, name, &Outgoing::first);
+  return found == messages.end() ? nullptr : &found->second;
+}
+
+TEST(Thesis, WhatIsNotKnownIsNotSent) {
+  const auto messages = messages_of({});
+  for (const char* name :
+       {"measured_cp", "desired_cp", "entry_point", "target_point", "measured_jp", "measured_jv"}) {
+    EXPECT_EQ(find(messages, name), nullptr) << name;
+  }
+  ASSERT_NE(find(messages, "scanner_to_robot_reg"), nullptr);
+}
+
+TEST(Thesis, EveryStateHasItsName) {
+  RobotState state;
+  state.scanner_from_robot = shifted(1, 0, 0);
+  state.measured_cp = shifted(2, 0, 0);
+  state.desired_cp = shifted(3, 0, 0);
+  state.entry = Position3{4, 0, 0};
+  state.target = Position3{5, 0, 0};
+  state.treatment_to_tip_mm = 1.5;
+  state.measured_jp = {0.25, -1e-9};
+  state.measured_jv = {1, 2};
+  state.desired_jp = {7, 8};
+  const auto messages = messages_of(state);
+  EXPECT_EQ(*find(messages, "scanner_to_robot_reg"), Body(Transform{shifted(1, 0, 0)}));
+  EXPECT_EQ(*find(messages, "measured_cp"), Body(Transform{shifted(2, 0, 0)}));
+  EXPECT_EQ(*find(messages, "desired_cp"), Body(Transform{shifted(3, 0, 0)}));
+  EXPECT_EQ(*find(messages, "setpoint_cp"), *find(messages, "desired_cp"));
+  EXPECT_EQ(std::get<Points>(*find(messages, "entry_point")).points.at(0).position, (Position3{4, 0, 0}));
+  EXPECT_EQ(std::get<Points>(*find(messages, "target_point")).points.at(0).position, (Position3{5, 0, 0}));
+  EXPECT_EQ(*find(messages, "treatment_to_tip"), Body(Text{"1.5"}));
+  EXPECT_EQ(*find(messages, "measured_jp"), Body(Text{"0.25,-1e-09"}));
+  EXPECT_EQ(*find(messages, "desired_jp"), Body(Text{"7,8"}));
+  EXPECT_EQ(*find(messages, "measured_jv"), Body(Text{"1,2"}));
+  EXPECT_EQ(*find(messages, "measured_js"), Body(Array{{2, 2}, {0.25, -1e-9, 1, 2}}));
+  EXPECT_EQ(tracking_of(state).tools.size(), 3u);
+}
+
+}  // namespace
+}  // namespace interlock::igtl
