@@ -370,7 +370,7 @@ asio::awaitable<Navigation::Done> Navigation::load(const Caller& caller, const i
 
 Navigation::Done Navigation::go_manual() const {
   (void)context_.view();
-  const Proposal* open = context_.book.open_path();
+  const Proposal* open = context_.book.open_mode();
   if (open != nullptr) {
     if (const auto ended = context_.book.abort(open->id); !ended) {
       return fail(refused(ended.error()));

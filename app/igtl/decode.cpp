@@ -1,6 +1,5 @@
 #include "igtl/decode.hpp"
 
-#include <igtlPositionMessage.h>
 #include <igtlStringMessage.h>
 #include <igtlTrackingDataMessage.h>
 #include <igtlTransformMessage.h>
@@ -17,12 +16,11 @@ namespace {
 using Decoded = tl::expected<Body, Fault>;
 
 constexpr std::size_t status_name_at = 10;
-constexpr std::size_t status_name_width = 20;
+constexpr std::size_t position_only_bytes = 12;
 constexpr std::size_t point_bytes = 136;
 constexpr std::size_t tool_bytes = 70;
 constexpr std::size_t sensor_head_bytes = 10;
 constexpr std::uint8_t float32_elements = 10;
-constexpr std::uint8_t float64_elements = 11;
 
 tl::unexpected<Fault> refused(Fault fault) { return tl::unexpected(fault); }
 
@@ -96,7 +94,7 @@ Decoded decode_text(Bytes content) {
   return Text{message->GetString()};
 }
 
-/** The library takes the name and the message to be terminated, so they must be. */
+/** Name and text must be terminated. */
 Decoded decode_status(Bytes content) {
   const auto name = text_in(content.subspan(status_name_at, status_name_width));
   if (!name || content.back() != 0) {
@@ -110,21 +108,23 @@ Decoded decode_status(Bytes content) {
 }
 
 Decoded decode_position(Bytes content) {
-  const auto message = unpacked<::igtl::PositionMessage>("POSITION", content);
-  if (!message) {
-    return refused(Fault::wrong_size);
-  }
-  std::array<float, 3> place{};
-  std::array<float, 4> turn{};
-  message->GetPosition(place.data());
-  message->GetQuaternion(turn.data());
   Position position;
-  std::ranges::copy(place, position.position.begin());
+  for (std::size_t axis = 0; axis < position.position.size(); ++axis) {
+    position.position[axis] = read_float32(content, 4 * axis);
+  }
   bool finite = is_finite(position.position);
-  if (content.size() > 12) {
-    position.rotation.emplace();
-    std::ranges::copy(turn, position.rotation->begin());
-    finite = finite && is_finite(*position.rotation);
+  if (content.size() > position_only_bytes) {
+    std::array<double, 4> rotation{};
+    const std::size_t parts = (content.size() - position_only_bytes) / 4;
+    for (std::size_t part = 0; part < parts; ++part) {
+      rotation[part] = read_float32(content, position_only_bytes + 4 * part);
+    }
+    if (parts < rotation.size()) {
+      const double rest = rotation[0] * rotation[0] + rotation[1] * rotation[1] + rotation[2] * rotation[2];
+      rotation[3] = std::sqrt(std::max(0.0, 1.0 - rest));
+    }
+    finite = finite && is_finite(rotation);
+    position.rotation = rotation;
   }
   return finite ? Decoded(position) : refused(Fault::not_finite);
 }

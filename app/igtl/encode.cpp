@@ -1,7 +1,5 @@
 #include "igtl/encode.hpp"
 
-#include <igtlPositionMessage.h>
-#include <igtlStatusMessage.h>
 #include <igtlStringMessage.h>
 #include <igtlTrackingDataMessage.h>
 #include <igtlTransformMessage.h>
@@ -14,7 +12,6 @@ namespace interlock::igtl {
 namespace {
 
 constexpr std::uint16_t ascii_encoding = 3;
-constexpr std::uint8_t float64_elements = 11;
 constexpr std::size_t longest_text = 65535;
 constexpr std::size_t longest_status_text = 4096;
 
@@ -48,12 +45,13 @@ struct Encoder {
   }
 
   ByteVector operator()(const Status& status) const {
-    const auto message = ::igtl::StatusMessage::New();
-    message->SetCode(static_cast<int>(status.code));
-    message->SetSubCode(status.sub_code);
-    message->SetErrorName(fitted(status.name, 20).c_str());
-    message->SetStatusString(status.text.substr(0, longest_status_text).c_str());
-    return packed(message);
+    ByteVector bytes;
+    append_number(bytes, static_cast<std::uint16_t>(status.code));
+    append_number(bytes, static_cast<std::uint64_t>(status.sub_code));
+    append_field(bytes, fitted(status.name, status_name_width), status_name_width);
+    const std::string text = status.text.substr(0, longest_status_text);
+    append_field(bytes, text, text.size() + 1);
+    return bytes;
   }
 
   ByteVector operator()(const Points& points) const {
@@ -72,20 +70,16 @@ struct Encoder {
   }
 
   ByteVector operator()(const Position& position) const {
-    const auto message = ::igtl::PositionMessage::New();
-    message->SetPackType(position.rotation ? ::igtl::PositionMessage::ALL
-                                           : ::igtl::PositionMessage::POSITION_ONLY);
-    std::array<float, 3> place{};
-    std::ranges::transform(position.position, place.begin(),
-                           [](double value) { return static_cast<float>(value); });
-    message->SetPosition(place.data());
-    if (position.rotation) {
-      std::array<float, 4> turn{};
-      std::ranges::transform(*position.rotation, turn.begin(),
-                             [](double value) { return static_cast<float>(value); });
-      message->SetQuaternion(turn.data());
+    ByteVector bytes;
+    for (const double coordinate : position.position) {
+      append_float32(bytes, coordinate);
     }
-    return packed(message);
+    if (position.rotation) {
+      for (const double component : *position.rotation) {
+        append_float32(bytes, component);
+      }
+    }
+    return bytes;
   }
 
   ByteVector operator()(const TrackingData& data) const {

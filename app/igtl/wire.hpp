@@ -14,6 +14,9 @@ namespace interlock::igtl {
 using Bytes = std::span<const std::uint8_t>;
 using ByteVector = std::vector<std::uint8_t>;
 
+inline constexpr std::size_t status_name_width = 20;
+inline constexpr std::uint8_t float64_elements = 11; /**< of an NDARRAY */
+
 /** Never by a cast: fields of a body stand at odd addresses, which some processors cannot read. */
 template <std::unsigned_integral Number>
 constexpr Number read_number(Bytes bytes, std::size_t at) noexcept {
