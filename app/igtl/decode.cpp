@@ -121,7 +121,7 @@ Decoded decode_position(Bytes content) {
     }
     if (parts < rotation.size()) {
       const double rest = rotation[0] * rotation[0] + rotation[1] * rotation[1] + rotation[2] * rotation[2];
-      rotation[3] = std::sqrt(std::max(0.0, 1.0 - rest));
+      rotation[3] = static_cast<float>(std::sqrt(std::max(0.0, 1.0 - rest)));
     }
     finite = finite && is_finite(rotation);
     position.rotation = rotation;

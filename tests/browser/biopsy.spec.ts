@@ -14,10 +14,10 @@ test("forces are shown and zeroed, membranes set and reset", async ({ robot }) =
   const membranes = panel.getByRole("list", { name: "Membranes" }).getByRole("listitem");
   await expect(membranes).toHaveText(["25 mm: next", "50 mm: expected"]);
   await panel.getByLabel("Membranes, mm").fill("20, 35, 60");
-  await panel.getByRole("button", { name: "Set membranes" }).click();
+  await panel.getByRole("button", { name: "Set membranes", exact: true }).click();
   await expect(membranes).toHaveText(["20 mm: next", "35 mm: expected", "60 mm: expected"]);
   await panel.getByLabel("Membranes, mm").fill("20, 20");
-  await panel.getByRole("button", { name: "Set membranes" }).click();
+  await panel.getByRole("button", { name: "Set membranes", exact: true }).click();
   await expect(panel.getByRole("alert")).toContainText("INVALID");
   await panel.getByRole("button", { name: "Reset membranes" }).click();
   await expect(membranes.first()).toHaveText("20 mm: next");

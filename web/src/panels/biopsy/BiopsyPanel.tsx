@@ -52,10 +52,10 @@ function Forces({ biopsy, onZero }: ForcesProps) {
           <tr>
             <th scope="col">Force</th>
             <th scope="col" className="number">
-              Raw counts
+              Counts
             </th>
             <th scope="col" className="number">
-              Newtons
+              N
             </th>
             <th scope="col" className="number">
               Zero
