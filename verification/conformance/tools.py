@@ -97,8 +97,7 @@ RESULT = re.compile(
 
 
 SEARCHED_AS_THEY_ARE = {"apply_axis", "gate_front", "judge_door", "judge_system", "wanted"}
-"""Phases whose formulas MiniSat answers sooner than it simplifies them: two to twenty times. The answer is the
-same."""
+"""Phases whose formulas MiniSat answers sooner than it simplifies them: two to twenty times."""
 
 
 def cbmc(case: Path, kernel: Path, included: Sequence[str]) -> Proof:
