@@ -16,11 +16,14 @@ interface Ready {
   readonly url: string;
   /** Of the user `admin`, said once at the first start. */
   readonly password: string;
+  /** Where navigation programs are served. */
+  readonly igtlPort: number;
 }
 
 export class Stack {
   readonly url: string;
   readonly password: string;
+  readonly igtlPort: number;
 
   private constructor(
     private readonly run: ChildProcess,
@@ -29,6 +32,7 @@ export class Stack {
   ) {
     this.url = ready.url;
     this.password = ready.password;
+    this.igtlPort = ready.igtlPort;
   }
 
   /** Starts the robot with a fresh state and waits for its ready line. */
@@ -36,7 +40,10 @@ export class Stack {
     const state = mkdtempSync(path.join(tmpdir(), "interlock-browser-"));
     const run = spawn(
       path.join(programs, "interlock"),
-      ["run", "--robot", robot, "--clock", "sim", "--speed", SPEED, "--port", "0", "--state", state],
+      [
+        ...["run", "--robot", robot, "--clock", "sim", "--speed", SPEED],
+        ...["--port", "0", "--igtl-port", "0", "--state", state],
+      ],
       { stdio: ["ignore", "pipe", "pipe"] },
     );
     return new Stack(run, state, await readiness(run));
@@ -81,6 +88,7 @@ function processOf(pid: string): { name: string; parent: string } {
 function readiness(run: ChildProcess): Promise<Ready> {
   const said: string[] = [];
   let password: string | undefined;
+  let igtlPort: string | undefined;
   return new Promise((resolve, reject) => {
     const giveUp = (reason: string): void => {
       run.kill("SIGKILL");
@@ -97,12 +105,14 @@ function readiness(run: ChildProcess): Promise<Ready> {
       createInterface({ input: stream }).on("line", (line) => {
         said.push(line);
         password ??= /^first login: admin (\S+)$/.exec(line)?.[1];
+        igtlPort ??= /OpenIGTLink 127\.0\.0\.1:(\d+)$/.exec(line)?.[1];
         const url = /^ready (http:\S+)/.exec(line)?.[1];
         if (url === undefined) return;
         clearTimeout(timer);
         run.removeAllListeners("exit");
         if (password === undefined) giveUp("said no first login");
-        else resolve({ url, password });
+        else if (igtlPort === undefined) giveUp("said no port of OpenIGTLink");
+        else resolve({ url, password, igtlPort: Number(igtlPort) });
       });
     }
   });

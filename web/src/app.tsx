@@ -8,6 +8,7 @@ import { Header } from "./panels/header/Header";
 import { LogPanel } from "./panels/log/LogPanel";
 import { LoginPage } from "./panels/login/LoginPage";
 import { MotorsPanel } from "./panels/motors/MotorsPanel";
+import { NavigationPanel } from "./panels/navigation/NavigationPanel";
 import { ProposalsPanel } from "./panels/proposals/ProposalsPanel";
 import { StatusPanel } from "./panels/status/StatusPanel";
 import { UsersPage } from "./panels/users/UsersPage";
@@ -52,6 +53,7 @@ function RobotPage() {
           <MotorsPanel />
           <LogPanel />
           <CommunicationPanel />
+          <NavigationPanel />
         </div>
         <div className="side">
           {simulated && <BenchPanel />}

@@ -23,6 +23,8 @@ export type AxisVerdict = Schemas["AxisVerdicts"][number];
 export type PositionsFile = Schemas["PositionsFile"];
 export type PositionsComparison = Schemas["PositionsComparison"];
 export type Connection = Schemas["Connection"];
+export type NavigationConnection = Schemas["NavigationConnection"];
+export type NavigationRole = NavigationConnection["role"];
 export type Biopsy = Schemas["Biopsy"];
 export type BiopsyNow = Schemas["BiopsyNow"];
 export type Force = Schemas["Force"];
@@ -188,6 +190,13 @@ export const api = {
 
   communications: () => read(() => http.GET("/api/communications")),
   disconnect: (id: number) => act(() => http.PUT("/api/communications/disconnect", { body: { id } })),
+  navigationConnections: () => read(() => http.GET("/api/communications/connections")),
+  endNavigation: (id: number) =>
+    act(() => http.DELETE("/api/communications/connections/{id}", { params: { path: { id } } })),
+  setNavigationRole: (id: number, role: NavigationRole) =>
+    act(() =>
+      http.PUT("/api/communications/connections/{id}/role", { params: { path: { id } }, body: { role } }),
+    ),
   logs: (lines: number) => read(() => http.GET("/api/logs", { params: { query: { lines } } })),
   setLogLevel: (level: LogLevel) => act(() => http.PUT("/api/logs", { body: { level } })),
   audit: (records: number, before?: number) =>
