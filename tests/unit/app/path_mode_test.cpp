@@ -212,6 +212,36 @@ class VelocitySteps {
   double largest_ = 0.0;
 };
 
+/** A motion that no planner makes: it would have to last for eleven days. */
+TEST_P(PathModeOnThePlant, APlanThatFailsInMotionStopsTheAxesWithinTheirCoast) {
+  ClosedLoop loop(53, GetParam());
+  loop.make_all_ready();
+  const PathProgram there = move_of(neuro_targets);
+  const PathProgram nowhere = move_of(neuro_targets, 1e6);
+  (void)loop.carry_out({1, &there, 0}, 1500);
+  std::array<double, ILK_SLOTS> before{};
+  for (const AxisCounts& target : neuro_targets) {
+    before[target.slot] = loop.true_position(target.slot);
+  }
+  const PathStatus status = loop.carry_out({2, &nowhere, 0}, 100);
+  EXPECT_EQ(status.order.phase, OrderPhase::aborted);
+  EXPECT_EQ(status.order.reason, OrderReason::no_path);
+  loop.run(2 + GetParam());
+  for (const AxisCounts& target : neuro_targets) {
+    EXPECT_EQ(loop.outputs().command[target.slot].drive, 0u) << target.slot;
+  }
+  loop.run(500);
+  for (const AxisCounts& target : neuro_targets) {
+    const Axis& axis = *neuro().at_slot(target.slot);
+    // What it goes until the MOVE is taken back, and then its coast.
+    const double latency_s = 0.001 * (2 + GetParam());
+    const double farthest =
+        latency_s * axis.motion->full_speed_counts_per_s + axis.mechanics.coast_counts + 1;
+    EXPECT_LE(std::abs(loop.true_position(target.slot) - before[target.slot]), farthest) << axis.name;
+  }
+  EXPECT_EQ(loop.refusals(), 0u);
+}
+
 /** Its rows go straight at 0.6 rad/s from the first moment on, which is 477 counts/s. */
 TEST_P(PathModeOnThePlant, ATrajectoryThatBeginsInMotionIsBegunAtTheVelocityOfItsAxes) {
   ClosedLoop loop(31, GetParam());
