@@ -20,6 +20,20 @@ Failure refusal(const std::string& text) { return {ExitCode::refused, text}; }
 
 std::array<double, 3> numbers(const Eigen::Vector3d& point) { return {point.x(), point.y(), point.z()}; }
 
+ordered_json to_json(const std::optional<DemoAblation>& ablation) {
+  return ablation ? ordered_json{{"steps", ablation->steps}, {"time_s", ablation->time_s}} : ordered_json();
+}
+
+ordered_json to_json(const std::optional<NeedleInsertion>& biopsy) {
+  if (!biopsy) {
+    return {};
+  }
+  return {{"depth_mm", biopsy->depth_mm},
+          {"punctures_mm", biopsy->punctures_mm},
+          {"found_mm", biopsy->found_mm},
+          {"images", biopsy->images}};
+}
+
 ordered_json to_json(const DemoTrial& trial) {
   ordered_json json{{"target", trial.target},
                     {"desired_mm", numbers(trial.desired)},
@@ -31,6 +45,8 @@ ordered_json to_json(const DemoTrial& trial) {
     json["error_mm"] = numbers(trial.error());
     json["first_error_mm"] = numbers(trial.first_error());
     json["time_s"] = trial.time_s;
+    json["ablation"] = to_json(trial.ablation);
+    json["biopsy"] = to_json(trial.biopsy);
   }
   return json;
 }
@@ -86,6 +102,22 @@ std::string row_of(const char* name, const ErrorDistribution& distribution) {
   return text.str() + '\n';
 }
 
+/** What was done at a target besides reaching it. */
+std::string treatment_of(const DemoTrial& trial) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(1);
+  if (trial.ablation) {
+    text << "target " << trial.target << ": ablated at " << trial.ablation->steps
+         << " angles and depths within " << trial.ablation->time_s << " s\n";
+  }
+  if (trial.biopsy) {
+    text << "target " << trial.target << ": needle pushed " << trial.biopsy->depth_mm << " mm deep, "
+         << trial.biopsy->found_mm.size() << " of " << trial.biopsy->punctures_mm.size()
+         << " punctures noticed, " << trial.biopsy->images << " images taken\n";
+  }
+  return text.str();
+}
+
 std::string text_of(const Robot& robot, const DemoReport& report) {
   const ThesisTable& table = thesis_table(robot);
   std::ostringstream text;
@@ -100,6 +132,10 @@ std::string text_of(const Robot& robot, const DemoReport& report) {
     } else {
       text << "refused: " << trial.refused << '\n';
     }
+  }
+  text << '\n';
+  for (const DemoTrial& trial : report.trials) {
+    text << treatment_of(trial);
   }
   text << "\nerrors (mm)       count   of each axis of the table     mean   median      p95    worst\n"
        << row_of("first scan", report.first_scan) << row_of("last scan", report.last_scan)
@@ -131,6 +167,37 @@ std::string csv_of(const DemoReport& report) {
   return text.str();
 }
 
+/** Drawing and table of each axis that the motion moved; nothing when `folder` is empty. */
+Result<void> plot(const std::filesystem::path& folder, const Robot& robot, const std::string& name,
+                  const MotionRecord& record) {
+  Result<void> written;
+  for (std::size_t axis = 0; axis < robot.axes.size() && !folder.empty(); ++axis) {
+    if (!record.moved(axis)) {
+      continue;
+    }
+    const Axis& shown = robot.axes[axis];
+    const std::string file = name + "-" + shown.name;
+    const std::string title = robot.title + ": " + name + ", " + shown.title;
+    written =
+        written
+            .and_then(
+                [&] { return write_file(folder / (file + ".svg"), motion_svg(record, axis, shown, title)); })
+            .and_then([&] { return write_file(folder / (file + ".csv"), motion_csv(record, axis, shown)); });
+  }
+  return written;
+}
+
+/** The folder exists then, unless its name is empty. */
+Result<void> make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  if (!folder.empty() && !std::filesystem::is_directory(folder) &&
+      !std::filesystem::create_directories(folder, error)) {
+    return tl::unexpected(
+        Failure{ExitCode::precondition, folder.string() + " cannot be made: " + error.message()});
+  }
+  return {};
+}
+
 Result<DemoReport> report_of(const DemoCommandOptions& options, const Robot& robot,
                              const Installation& installation, std::ostream& progress) {
   const auto config = compile(robot);
@@ -141,10 +208,15 @@ Result<DemoReport> report_of(const DemoCommandOptions& options, const Robot& rob
     return plant::load_parameters(file, *config)
         .map_error(refusal)
         .and_then([&](const plant::Parameters& plant) {
-          const auto tell = [&progress](const std::string& what) {
-            progress << "demo: " << what << std::endl;
-          };
-          return run_demo(robot, *config, plant, options.demo, tell).map_error(refusal);
+          Result<void> plotted;
+          const DemoAudience audience{
+              [&](const std::string& what) { progress << "demo: " << what << std::endl; },
+              [&](const std::string& name, const MotionRecord& record) {
+                plotted = plotted.and_then([&] { return plot(options.plot, robot, name, record); });
+              }};
+          return run_demo(robot, *config, plant, options.demo, audience)
+              .map_error(refusal)
+              .and_then([&](DemoReport report) { return plotted.map([&] { return std::move(report); }); });
         });
   });
 }
@@ -157,12 +229,14 @@ Result<void> demo(const DemoCommandOptions& options, const Installation& install
   if (!robot) {
     return tl::unexpected(robot.error());
   }
-  return report_of(options, *robot, installation, progress).and_then([&](const DemoReport& report) {
-    return write_file(options.csv, csv_of(report)).map([&] {
-      output << (options.json ? to_json(*robot, options.demo, report).dump() + '\n'
-                              : text_of(*robot, report));
-    });
-  });
+  return make_folder(options.plot)
+      .and_then([&] { return report_of(options, *robot, installation, progress); })
+      .and_then([&](const DemoReport& report) {
+        return write_file(options.csv, csv_of(report)).map([&] {
+          output << (options.json ? to_json(*robot, options.demo, report).dump() + '\n'
+                                  : text_of(*robot, report));
+        });
+      });
 }
 
 }  // namespace interlock::cli

@@ -18,8 +18,9 @@ namespace interlock::cli {
 struct DemoCommandOptions {
   std::string robot; /**< name of a robot, or its file */
   DemoOptions demo;
-  std::filesystem::path csv; /**< where the trials go; empty: nowhere */
-  bool json = false;         /**< answer for programs */
+  std::filesystem::path csv;  /**< where the trials go; empty: nowhere */
+  std::filesystem::path plot; /**< folder for the motions of the first round; empty: none */
+  bool json = false;          /**< answer for programs */
 };
 
 /**

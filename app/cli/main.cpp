@@ -143,7 +143,14 @@ void add_demo(CLI::App& cli, DemoCommandOptions& options) {
       ->capture_default_str();
   command->add_flag("--mechanical-error", options.demo.mechanical_error,
                     "Add the thesis' errors behind the encoders");
+  command->add_flag("--targeting-only", options.demo.targeting_only,
+                    "Neither ablate nor have a hand push the needle: the thesis' tables");
+  command->add_option("--dwell", options.demo.dwell_s, "Rest at each angle and depth of an ablation, s")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
   command->add_option("--csv", options.csv, "Where the table of the targets goes");
+  command->add_option("--plot", options.plot,
+                      "Folder for position, velocity and error of each axis, as drawings and tables");
   command->add_flag("--json", options.json, "One JSON object");
 }
 

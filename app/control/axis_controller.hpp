@@ -74,6 +74,9 @@ class AxisController {
   /** Follows the velocity of an axis that is not driven, so that it is known when a move begins. */
   void observe(const ilk_axis_t& axis, std::uint32_t tick) noexcept;
 
+  /** As the readings so far tell it; nothing until there are enough of them. */
+  [[nodiscard]] std::optional<VelocityEstimate> velocity() const noexcept { return estimator_.estimate(); }
+
  private:
   AxisController(const AxisControlRules& rules, const PivController& piv, const DriveMap& map) noexcept
       : rules_(rules), estimator_(rules.velocity), piv_(piv), map_(map) {}

@@ -1,7 +1,11 @@
 #include "demo/robot_rig.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <memory>
+#include <span>
 
+#include "needle/scene.hpp"
 #include "plant/exchange.hpp"
 #include "robot/catalog.hpp"
 
@@ -13,6 +17,9 @@ constexpr double settle_s = 0.2;
 /** Longer than homing of either robot takes, or the longest way. */
 constexpr double patience_s = 1800.0;
 constexpr std::uint32_t holder = 1;
+/** A hand in the middle of those of models/needle. */
+constexpr double hand_n = 4.5;
+constexpr double record_period_s = 0.005;
 
 tl::unexpected<std::string> failed(std::string what) { return tl::unexpected(std::move(what)); }
 
@@ -29,6 +36,7 @@ RobotRig::RobotRig(const Robot& robot, const ilk_config_t& config, const plant::
                    std::uint64_t seed)
     : robot_(robot),
       config_(config),
+      parameters_(parameters),
       plant_(config, parameters, seed),
       conductor_(RobotPlan(robot, config)) {}
 
@@ -73,6 +81,7 @@ DemoResult<void> RobotRig::home() {
 }
 
 DemoResult<void> RobotRig::carry_out(const PathProgram& program) {
+  begin_record();
   conductor_.take(PathOrder{++proposal_, &program, 0}, state_.tick);
   set_pedal(true);
   const std::uint32_t begun = state_.tick;
@@ -84,6 +93,114 @@ DemoResult<void> RobotRig::carry_out(const PathProgram& program) {
   set_pedal(false);
   return status.order.phase == OrderPhase::done ? DemoResult<void>()
                                                 : failed(ended(robot_, status.slot, status.order));
+}
+
+DemoResult<NeedleInsertion> RobotRig::take_biopsy(const Eigen::Vector3d& target_mm,
+                                                  std::uint64_t tissue_seed) {
+  if (!parameters_.scene || !robot_.biopsy) {
+    return failed("the robot has no needle, or its plant has no tissue");
+  }
+  plant::SceneParameters scene = *parameters_.scene;
+  scene.target_mm = {target_mm.x(), target_mm.y(), target_mm.z()};
+  scene.entry_mm = robot_.biopsy->entry_mm;
+  plant_.surround(std::make_unique<needle::Scene>(scene, tissue_seed));
+  const std::uint32_t scene_tick = state_.tick;
+  run(ticks_of(settle_s));
+  DemoResult<BiopsyRun> prepared = begin_biopsy(target_mm);
+  if (!prepared) {
+    return failed(prepared.error());
+  }
+  begin_record();
+  conductor_.take(BiopsyOrder{++proposal_, &*prepared, 0}, state_.tick);
+  set_pedal(true);
+  press_hand(hand_n);
+  follow_biopsy(prepared->start_tick, scene_tick);
+  press_hand(0.0);
+  const BiopsyStatus status = conductor_.biopsy().status();
+  conductor_.end(proposal_, OrderReason::cancelled, state_.tick);
+  set_pedal(false);
+  if (status.order.phase != OrderPhase::done) {
+    return failed(ended(robot_, status.slot, status.order) + " " + std::string(status.quantity));
+  }
+  const plant::NeedleTruth truth = plant_.surroundings()->truth();
+  NeedleInsertion done{Eigen::Map<const Eigen::Vector3d>(truth.tip_mm.data()),
+                       truth.depth_mm,
+                       {truth.punctures_mm.begin(), truth.punctures_mm.end()},
+                       {},
+                       conductor_.biopsy().now().images};
+  std::ranges::copy_if(std::span(status.found_mm).first(status.membranes), std::back_inserter(done.found_mm),
+                       [](double found_mm) { return found_mm >= 0.0; });
+  return done;
+}
+
+/** With both forces zeroed, as nothing touches the sensor now. */
+DemoResult<BiopsyRun> RobotRig::begin_biopsy(const Eigen::Vector3d& target_mm) {
+  const Biopsy& biopsy = *robot_.biopsy;
+  const ForceReadings& force = conductor_.biopsy().force();
+  const auto zeroed = [&](const SensorChannel& channel, std::span<const std::uint32_t> readings) {
+    return ForceCalibration::create(channel, biopsy.units_per_newton)
+        .and_then([&](const ForceCalibration& made) { return made.zeroed(readings, ZeroingRules{}); });
+  };
+  const auto position = [&](const char* role) {
+    const Axis& axis = *robot_.with_role(role);
+    return axis.to_unit(state_.axis[axis.slot].position_counts);
+  };
+  const BiopsyStart start{state_.tick, position("insertion"), position("rotation"), target_mm,
+                          biopsy.membranes_mm};
+  return zeroed(biopsy.hand, force.recent_hand())
+      .and_then([&](const ForceCalibration& hand) {
+        return zeroed(biopsy.needle, force.recent_needle()).and_then([&](const ForceCalibration& needle) {
+          return make_biopsy_run(biopsy, config_.period_us * 1e-6, start, hand, needle);
+        });
+      })
+      .map_error([](const KinematicsError& error) { return error.message(); });
+}
+
+/** Until it ends. Hands on each image that was exposed since its start. */
+void RobotRig::follow_biopsy(std::uint32_t start_tick, std::uint32_t scene_tick) {
+  const double started_s = (start_tick - scene_tick) * static_cast<double>(config_.period_us) * 1e-6;
+  const std::uint32_t begun = state_.tick;
+  double shown_s = started_s;
+  while (conductor_.biopsy().is_open() && state_.tick - begun < ticks_of(patience_s)) {
+    tick();
+    const auto& image = plant_.surroundings()->newest_image();
+    if (image && image->time_s > shown_s) {
+      shown_s = image->time_s;
+      conductor_.see({proposal_,
+                      {image->time_s - started_s, Eigen::Map<const Eigen::Vector3d>(image->tip_mm.data()),
+                       Eigen::Map<const Eigen::Vector3d>(image->target_mm.data())}});
+    }
+  }
+}
+
+void RobotRig::press_hand(double newtons) {
+  static_cast<void>(plant_.schedule(plant::command::PressHand{newtons}));
+}
+
+void RobotRig::begin_record() {
+  record_ = {{}, std::vector<std::vector<AxisSample>>(robot_.axes.size())};
+  record_tick_ = state_.tick;
+}
+
+void RobotRig::note() {
+  if (record_.axes.empty() || (state_.tick - record_tick_) % ticks_of(record_period_s) != 0) {
+    return;
+  }
+  record_.times_s.push_back((state_.tick - record_tick_) * static_cast<double>(config_.period_us) * 1e-6);
+  for (std::size_t place = 0; place < robot_.axes.size(); ++place) {
+    const std::uint32_t slot = robot_.axes[place].slot;
+    record_.axes[place].push_back({state_.axis[slot].position_counts,
+                                   plant_.station(slot)->axis->speed_counts_per_s(),
+                                   conductor_.setpoint(slot), outputs_.command[slot].drive});
+  }
+}
+
+AxisPositions RobotRig::positions() const {
+  AxisPositions positions;
+  for (const Axis& axis : robot_.axes) {
+    positions.push_back(axis.to_unit(state_.axis[axis.slot].position_counts));
+  }
+  return positions;
 }
 
 AxisPositions RobotRig::true_positions() const {
@@ -142,8 +259,8 @@ void RobotRig::tick() {
   heartbeat.kind = ILK_REQUEST_HEARTBEAT;
   heartbeat.holder = holder;
   put(heartbeat);
-  const ilk_inputs_t inputs = plant::exchange(plant_, outputs_, state_.tick);
-  ilk_step(&config_, &state_, &inputs, requests_.data(), static_cast<std::uint32_t>(requests_.size()),
+  inputs_ = plant::exchange(plant_, outputs_, state_.tick);
+  ilk_step(&config_, &state_, &inputs_, requests_.data(), static_cast<std::uint32_t>(requests_.size()),
            &outputs_);
   requests_.clear();
   settle_verdicts();
@@ -151,6 +268,7 @@ void RobotRig::tick() {
   for (const Wish& wish : wishes.all()) {
     sent_.push_back({put(request_of(wish)), wish.origin});
   }
+  note();
 }
 
 void RobotRig::settle_verdicts() {
@@ -171,6 +289,7 @@ ilk_snapshot_t RobotRig::snapshot() const {
   snapshot.period_us = config_.period_us;
   snapshot.config_crc = config_.crc;
   snapshot.state = state_;
+  snapshot.inputs = inputs_;
   std::copy(std::begin(outputs_.command), std::end(outputs_.command), snapshot.command);
   std::copy(std::begin(outputs_.gate), std::end(outputs_.gate), snapshot.gate);
   return snapshot;

@@ -13,6 +13,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
+#include "demo/motion_record.hpp"
 #include "interlock/kernel.h"
 #include "motion/conductor.hpp"
 #include "plant/plant.hpp"
@@ -23,6 +24,15 @@ namespace interlock {
 /** A value, or what went wrong, for people. */
 template <typename Value>
 using DemoResult = tl::expected<Value, std::string>;
+
+/** How a needle that a hand pushed ended. */
+struct NeedleInsertion {
+  Eigen::Vector3d tip_mm = Eigen::Vector3d::Zero(); /**< true, in the guide frame */
+  double depth_mm = 0.0;                            /**< true */
+  std::vector<double> punctures_mm;                 /**< depths at which membranes truly tore */
+  std::vector<double> found_mm;                     /**< depths at which the app noticed one */
+  std::uint32_t images = 0;                         /**< of the tip, that the compensation took */
+};
 
 class RobotRig {
  public:
@@ -36,6 +46,19 @@ class RobotRig {
 
   /** Carries out a program with the pedal held; the error says which axis ended it and why. */
   DemoResult<void> carry_out(const PathProgram& program);
+
+  /**
+   * Has a hand push the needle to a target in the guide frame (motion/biopsy_run.hpp), through tissue that no
+   * needle has been in: membranes and scanner are those of the plant's file, which must have a needle, and
+   * images are handed on as they come. The pedal is held.
+   */
+  DemoResult<NeedleInsertion> take_biopsy(const Eigen::Vector3d& target_mm, std::uint64_t tissue_seed);
+
+  /** What the axes did in the newest motion, every 5 ms. */
+  [[nodiscard]] const MotionRecord& record() const { return record_; }
+
+  /** Where the axes are as the kernel reads them, in their units and order. */
+  [[nodiscard]] AxisPositions positions() const;
 
   /** Where the axes truly are, in their units and order: what a scan would show. */
   [[nodiscard]] AxisPositions true_positions() const;
@@ -51,6 +74,11 @@ class RobotRig {
 
   DemoResult<void> start();
   DemoResult<void> home();
+  DemoResult<BiopsyRun> begin_biopsy(const Eigen::Vector3d& target_mm);
+  void follow_biopsy(std::uint32_t start_tick, std::uint32_t scene_tick);
+  void begin_record();
+  void note();
+  void press_hand(double newtons);
   void tick();
   void run(std::uint32_t ticks);
   void set_pedal(bool pressed);
@@ -62,14 +90,18 @@ class RobotRig {
 
   const Robot& robot_;
   ilk_config_t config_;
+  plant::Parameters parameters_;
   plant::Plant plant_;
   Conductor conductor_;
   ilk_state_t state_{};
+  ilk_inputs_t inputs_{};
   ilk_outputs_t outputs_{};
   std::vector<ilk_request_t> requests_;
   std::vector<Sent> sent_;
   std::uint32_t sequence_ = 0;
   std::uint32_t proposal_ = 0;
+  MotionRecord record_;
+  std::uint32_t record_tick_ = 0; /**< at which the newest motion was ordered */
 };
 
 }  // namespace interlock

@@ -1,10 +1,14 @@
 #include "demo/targeting_demo.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <random>
 
+#include "proposals/ablation_program.hpp"
 #include "proposals/pose_program.hpp"
+#include "targeting/guide_frame.hpp"
 
 namespace interlock {
 namespace {
@@ -31,54 +35,71 @@ bool is_clamped(const Alignment& alignment) {
   return std::ranges::any_of(alignment.setpoints, &AxisSetpoint::clamped);
 }
 
+/** Places of the probe about a treated target: round it at the target itself, then a little nearer. */
+constexpr std::array ablation_angles_rad{0.0, std::numbers::pi / 2, std::numbers::pi, -std::numbers::pi / 2};
+constexpr std::array ablation_retreats_mm{0.0, 5.0};
+
+/** Through every angle at every depth, beginning where the probe is. */
+std::optional<PathProgram> ablation_of(const Robot& robot, double insertion_mm, double dwell_s) {
+  PathProgram program;
+  for (const double retreat_mm : ablation_retreats_mm) {
+    for (const double angle_rad : ablation_angles_rad) {
+      const auto leg = ablation_leg(robot, {angle_rad, insertion_mm - retreat_mm, dwell_s});
+      const bool reachable = leg && std::ranges::all_of(leg->targets, [&](const AxisCounts& target) {
+                               return robot.at_slot(target.slot)->accepts_setpoint(target.counts);
+                             });
+      if (!reachable) {
+        return std::nullopt;
+      }
+      program.legs.emplace_back(*leg);
+    }
+  }
+  return program;
+}
+
+/** The probe or needle out as far as it goes, then the robot to where its file wants it for removal. */
+PathProgram removal_of(const Robot& robot) {
+  const Axis& insertion = *robot.with_role("insertion");
+  PathProgram removal{{MoveLeg{{{insertion.slot, insertion.lowest_setpoint_counts()}}, 0.0, 0.0}}};
+  if (!robot.draping.empty()) {
+    removal.legs.emplace_back(MoveLeg{robot.draping, 0.0, 0.0});
+  }
+  return removal;
+}
+
 /** Everything that a target needs. */
 class Demo {
  public:
   Demo(const Robot& robot, const RobotKinematics& kinematics, RobotRig& rig, const Registration& registration,
-       const MechanicalError& mechanical, double tolerance_mm, std::mt19937_64& random)
+       const MechanicalError& mechanical, const DemoOptions& options, const DemoAudience& audience)
       : robot_(robot),
         kinematics_(kinematics),
         rig_(rig),
         registration_(registration),
         mechanical_(mechanical),
-        tolerance_mm_(tolerance_mm),
-        random_(random) {}
+        options_(options),
+        audience_(audience),
+        // Chance of its own: the random targets are the same with and without an injected error.
+        random_(options.seed + 1) {}
 
-  DemoResult<DemoTrial> carry_out(std::size_t target) {
-    const ThesisTrial& trial = thesis_table(robot_).trials[target - 1];
-    const Pose& scanner = registration_.scanner_from_zframe();
-    const Way way = way_of(robot_, trial);
-    DemoTrial done{.target = target,
-                   .desired = scanner * way.target,
-                   .reached = {},
-                   .thesis_error = trial.actual - trial.desired,
-                   .time_s = 0.0,
-                   .refused = {}};
+  /** @param name of the visit, for files; empty: its motions are not shown */
+  DemoResult<DemoTrial> carry_out(std::size_t target, const std::string& name) {
     const double begun_s = rig_.time_s();
-    Eigen::Vector3d seen_off = Eigen::Vector3d::Zero();
-    Eigen::Vector3d correction = Eigen::Vector3d::Zero();
-    while (done.reached.size() < most_insertions) {
-      const auto alignment = align(robot_, kinematics_, registration_,
-                                   {scanner * way.entry + correction, done.desired + correction, 0.0});
-      if (!alignment || is_clamped(*alignment)) {
-        if (done.reached.empty()) {
-          done.refused =
-              alignment ? "an axis would have to go beyond its range" : alignment.error().message();
-        }
-        return done;
+    name_ = name;
+    DemoResult<DemoTrial> done = reach(target);
+    if (!done || !done->refused.empty()) {
+      return done;
+    }
+    done->time_s = rig_.time_s() - begun_s;
+    if (can_ablate(robot_) && !options_.targeting_only) {
+      if (const auto ablated = ablate(*done); !ablated) {
+        return failed("ablation: ", ablated.error());
       }
-      const auto reached = insert(*alignment);
-      if (!reached) {
-        return tl::unexpected(reached.error());
+    }
+    if (!options_.targeting_only) {
+      if (const auto removed = rig_.carry_out(removal_of(robot_)); !removed) {
+        return failed("removal: ", removed.error());
       }
-      done.reached.push_back(*reached);
-      done.time_s = rig_.time_s() - begun_s;
-      if (done.error().norm() <= tolerance_mm_) {
-        return done;
-      }
-      // The mean of what each insertion was off from where it aimed: one scan alone shows chance, too.
-      seen_off += *reached - done.desired - correction;
-      correction = -seen_off / static_cast<double>(done.reached.size());
     }
     return done;
   }
@@ -90,17 +111,111 @@ class Demo {
   }
 
  private:
+  static tl::unexpected<std::string> failed(const char* what, const std::string& why) {
+    return tl::unexpected(what + why);
+  }
+
+  [[nodiscard]] bool takes_biopsies() const { return robot_.biopsy && !options_.targeting_only; }
+
+  /** Aims, inserts and scans, until the target is met or was tried often enough. */
+  DemoResult<DemoTrial> reach(std::size_t target) {
+    const ThesisTrial& trial = thesis_table(robot_).trials[target - 1];
+    const Pose& scanner = registration_.scanner_from_zframe();
+    const Way way = way_of(robot_, trial);
+    DemoTrial done{.target = target,
+                   .desired = scanner * way.target,
+                   .reached = {},
+                   .thesis_error = trial.actual - trial.desired,
+                   .time_s = 0.0,
+                   .refused = {},
+                   .ablation = {},
+                   .biopsy = {}};
+    // The second needle into the same tissue would follow the first one's way.
+    const std::size_t most = takes_biopsies() ? 1 : most_insertions;
+    Eigen::Vector3d seen_off = Eigen::Vector3d::Zero();
+    Eigen::Vector3d correction = Eigen::Vector3d::Zero();
+    while (done.reached.size() < most) {
+      const auto alignment = align(robot_, kinematics_, registration_,
+                                   {scanner * way.entry + correction, done.desired + correction, 0.0});
+      if (!alignment || is_clamped(*alignment)) {
+        if (done.reached.empty()) {
+          done.refused =
+              alignment ? "an axis would have to go beyond its range" : alignment.error().message();
+        }
+        return done;
+      }
+      const auto reached = takes_biopsies() ? push(*alignment, way, done) : insert(*alignment, done);
+      if (!reached) {
+        return tl::unexpected(reached.error());
+      }
+      done.reached.push_back(*reached);
+      if (done.error().norm() <= options_.tolerance_mm) {
+        return done;
+      }
+      // The mean of what each insertion was off from where it aimed: one scan alone shows chance, too.
+      seen_off += *reached - done.desired - correction;
+      correction = -seen_off / static_cast<double>(done.reached.size());
+    }
+    return done;
+  }
+
   /** Takes the probe out, aligns and inserts; where the scan then shows the treatment point. */
-  DemoResult<Eigen::Vector3d> insert(const Alignment& alignment) {
-    return rig_.carry_out(pose_program(robot_, alignment, true))
-        .and_then([&]() -> DemoResult<Eigen::Vector3d> {
-          return kinematics_.zframe_from_treatment(rig_.true_positions())
-              .map([this](const Pose& pose) -> Eigen::Vector3d {
-                const Eigen::Vector3d behind = zframe_from_table(robot_) * mechanical_.draw(random_);
-                return registration_.scanner_from_zframe() * (pose.translation() + behind);
-              })
-              .map_error([](const KinematicsError& error) { return error.message(); });
+  DemoResult<Eigen::Vector3d> insert(const Alignment& alignment, const DemoTrial& trial) {
+    const auto reached = rig_.carry_out(pose_program(robot_, alignment, true)).and_then([&] {
+      return kinematics_.zframe_from_treatment(rig_.true_positions())
+          .map([this](const Pose& pose) { return scanned(pose.translation()); })
+          .map_error([](const KinematicsError& error) { return error.message(); });
+    });
+    show("insertion-" + std::to_string(trial.reached.size() + 1));
+    return reached;
+  }
+
+  /** Takes the needle out, lines up, and has it pushed to the target; where the scan then shows its tip. */
+  DemoResult<Eigen::Vector3d> push(const Alignment& alignment, const Way& way, DemoTrial& trial) {
+    const auto lined_up = rig_.carry_out(pose_program(robot_, alignment, false));
+    show("alignment");
+    return lined_up.and_then([&] { return guide(rig_.positions()); })
+        .and_then(
+            [&](const Pose& planned) { return rig_.take_biopsy(planned.inverse() * way.target, random_()); })
+        .and_then([&](const NeedleInsertion& pushed) {
+          show("biopsy");
+          trial.biopsy = pushed;
+          return guide(rig_.true_positions()).map([&](const Pose& pose) {
+            return scanned(pose * pushed.tip_mm);
+          });
         });
+  }
+
+  [[nodiscard]] DemoResult<Pose> guide(const AxisPositions& positions) const {
+    return zframe_from_guide(robot_, kinematics_, positions).map_error([](const KinematicsError& error) {
+      return error.message();
+    });
+  }
+
+  /** A point of the zFrame as a scan shows it. */
+  [[nodiscard]] Eigen::Vector3d scanned(const Eigen::Vector3d& in_zframe) {
+    return registration_.scanner_from_zframe() *
+           (in_zframe + zframe_from_table(robot_) * mechanical_.draw(random_));
+  }
+
+  DemoResult<void> ablate(DemoTrial& trial) {
+    const Axis& insertion = *robot_.with_role("insertion");
+    const double inserted_mm = rig_.positions()[static_cast<std::size_t>(&insertion - robot_.axes.data())];
+    const auto program = ablation_of(robot_, inserted_mm, options_.dwell_s);
+    if (!program) {
+      return tl::unexpected(std::string("an angle or a depth is beyond the axes"));
+    }
+    const double begun_s = rig_.time_s();
+    const auto done = rig_.carry_out(*program);
+    show("ablation");
+    trial.ablation = {program->legs.size(), rig_.time_s() - begun_s};
+    return done;
+  }
+
+  void show(const std::string& motion) const {
+    if (!name_.empty()) {
+      audience_.motion(name_ + "-" + motion, rig_.record());
+    }
   }
 
   const Robot& robot_;
@@ -108,8 +223,10 @@ class Demo {
   RobotRig& rig_;
   const Registration& registration_;
   const MechanicalError& mechanical_;
-  double tolerance_mm_;
-  std::mt19937_64& random_;
+  const DemoOptions& options_;
+  const DemoAudience& audience_;
+  std::mt19937_64 random_;
+  std::string name_;
 };
 
 /** Positions of all axes, each within what the kernel accepts. */
@@ -162,11 +279,21 @@ RandomTargets reach_random(const Robot& robot, const RobotKinematics& kinematics
   return result;
 }
 
+/** With a phantom a millimetre in front of the needle when it is out, so that all targets are in it. */
+Robot before_phantom(Robot robot) {
+  constexpr double gap_mm = 1.0;
+  if (const Axis* insertion = robot.with_role("insertion"); robot.biopsy && insertion != nullptr) {
+    robot.biopsy->entry_mm = insertion->to_unit(insertion->lowest_setpoint_counts()) + gap_mm;
+  }
+  return robot;
+}
+
 }  // namespace
 
-DemoResult<DemoReport> run_demo(const Robot& robot, const ilk_config_t& config,
+DemoResult<DemoReport> run_demo(const Robot& described, const ilk_config_t& config,
                                 const plant::Parameters& parameters, const DemoOptions& options,
-                                const DemoProgress& progress) {
+                                const DemoAudience& audience) {
+  const Robot robot = before_phantom(described);
   const auto kinematics = RobotKinematics::create(robot);
   if (!kinematics) {
     return tl::unexpected(kinematics.error().message());
@@ -174,7 +301,7 @@ DemoResult<DemoReport> run_demo(const Robot& robot, const ilk_config_t& config,
   std::mt19937_64 random(options.seed);
   const Registration registration = random_registration(random);
   RobotRig rig(robot, config, parameters, options.seed);
-  progress("homing");
+  audience.progress("homing");
   if (const auto ready = rig.make_ready(); !ready) {
     return tl::unexpected(ready.error());
   }
@@ -182,17 +309,16 @@ DemoResult<DemoReport> run_demo(const Robot& robot, const ilk_config_t& config,
   if (options.mechanical_error) {
     report.injected = published_error(robot);
   }
-  // Chance of its own: the random targets are the same with and without an injected error.
-  std::mt19937_64 chance(options.seed + 1);
-  Demo demo(robot, *kinematics, rig, registration, report.injected, options.tolerance_mm, chance);
+  Demo demo(robot, *kinematics, rig, registration, report.injected, options, audience);
   std::vector<Eigen::Vector3d> first_errors;
   std::vector<Eigen::Vector3d> last_errors;
   const std::size_t targets = thesis_table(robot).trials.size();
   for (std::size_t visit = 0; visit < options.rounds * targets; ++visit) {
     const std::string name = "target " + std::to_string(visit % targets + 1) +
                              (options.rounds == 1 ? "" : ", round " + std::to_string(visit / targets + 1));
-    progress(name);
-    auto done = demo.carry_out(visit % targets + 1);
+    audience.progress(name);
+    auto done = demo.carry_out(visit % targets + 1,
+                               visit < targets ? "target-" + std::to_string(visit + 1) : std::string());
     if (!done) {
       return tl::unexpected(name + ": " + done.error());
     }
@@ -205,14 +331,14 @@ DemoResult<DemoReport> run_demo(const Robot& robot, const ilk_config_t& config,
   report.first_scan = distribution_of(first_errors);
   report.last_scan = distribution_of(last_errors);
   report.thesis = published_distribution(robot);
-  if (!robot.draping.empty()) {
-    progress("draping");
+  if (options.targeting_only && !robot.draping.empty()) {
+    audience.progress("draping");
     const PathProgram removal{{MoveLeg{robot.draping, 0.0, 0.0}}};
     if (const auto draped = rig.carry_out(removal); !draped) {
       return tl::unexpected("draping: " + draped.error());
     }
   }
-  progress("random targets");
+  audience.progress("random targets");
   report.random = reach_random(robot, *kinematics, registration, options.random_targets, random);
   return report;
 }

@@ -1,19 +1,27 @@
 /**
  * @file
- * The targeting workflow of the thesis (figures 33 and 35) on the simulated hardware, unattended: home,
- * register by a random rigid registration, and for each target align with the probe out, insert, confirm by a
- * scan, retract, and go there once more when the scan shows it too far off, corrected by what the scans
- * showed.
+ * The workflows of the thesis (figures 33 and 35) on the simulated hardware, unattended: home, register by a
+ * random rigid registration, and for each target
  *
- * The scan is the true pose of the simulated robot, so that the error is that of the robot: homing, counts,
- * deadbands, backlash, and if asked for a mechanical error behind the encoders. Points and errors are in the
- * scanner's RAS frame, mm.
+ * - NeuroRobot: align with the probe out, insert, confirm by a scan, retract and go there once more when the
+ *   scan shows it too far off, corrected by what the scans showed; then ablate through angles and depths;
+ * - prostate robot: line up with the needle out, have a hand push the needle while compensation steers it and
+ *   membranes are noticed, confirm by a scan;
+ * - retract, and re-orient for the removal of who lies in the scanner, where the robot's file says how.
+ *
+ * With `targeting_only` nothing is treated and both robots insert as the NeuroRobot does: the experiments of
+ * the thesis' tables.
+ *
+ * The scan is the true pose of the simulated robot, or the true tip of its needle in tissue, so that the
+ * error is that of the robot: homing, counts, deadbands, backlash, the bending of the needle, and if asked
+ * for a mechanical error behind the encoders. Points and errors are in the scanner's RAS frame, mm.
  */
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +37,14 @@ struct DemoOptions {
   std::size_t rounds = 1;             /**< how often each target of the table is visited */
   double tolerance_mm = 0.05;         /**< distance from the target at which an insertion stays */
   bool mechanical_error = false;      /**< inject the published one */
+  bool targeting_only = false;        /**< no ablation, no biopsy */
+  double dwell_s = 2.0;               /**< of each step of an ablation */
+};
+
+/** An ablation as it was carried out. */
+struct DemoAblation {
+  std::size_t steps = 0;
+  double time_s = 0.0; /**< simulated */
 };
 
 /** What became of one target. */
@@ -39,6 +55,8 @@ struct DemoTrial {
   Eigen::Vector3d thesis_error; /**< recomputed from the printed positions, in the frame of the table */
   double time_s = 0.0;          /**< simulated, from the first move to the last scan */
   std::string refused;          /**< why it was not tried; empty: it was */
+  std::optional<DemoAblation> ablation;
+  std::optional<NeedleInsertion> biopsy;
 
   [[nodiscard]] Eigen::Vector3d first_error() const { return reached.front() - desired; }
   [[nodiscard]] Eigen::Vector3d error() const { return reached.back() - desired; }
@@ -61,12 +79,18 @@ struct DemoReport {
   RandomTargets random;
 };
 
-/** Told what is done now, for people. */
-using DemoProgress = std::function<void(const std::string&)>;
+/** Who looks on. */
+struct DemoAudience {
+  /** Told what is done now, for people. */
+  std::function<void(const std::string&)> progress;
+  /** Shown each motion of the first round but the last one of a target, with a name for files:
+   * "target-3-insertion-1". */
+  std::function<void(const std::string&, const MotionRecord&)> motion;
+};
 
 /** Runs the workflow. A target that cannot be had is told in its trial; an error ends the demonstration. */
-DemoResult<DemoReport> run_demo(const Robot& robot, const ilk_config_t& config,
+DemoResult<DemoReport> run_demo(const Robot& described, const ilk_config_t& config,
                                 const plant::Parameters& parameters, const DemoOptions& options,
-                                const DemoProgress& progress);
+                                const DemoAudience& audience);
 
 }  // namespace interlock

@@ -1,5 +1,6 @@
 #include "http/alignment_view.hpp"
 
+#include "targeting/guide_frame.hpp"
 #include "targeting/targeting_json.hpp"
 
 namespace interlock::web {
@@ -116,6 +117,31 @@ RobotPoses robot_poses(const Robot& robot, const Targeting& targeting, const Con
     poses.current = row_major(*current);
   }
   return poses;
+}
+
+tl::expected<NeedleTarget, Problem> needle_target(const Robot& robot, const Targeting& targeting,
+                                                  const ControlView& view) {
+  return setup_of(robot, targeting)
+      .and_then([&](const Setup& with) -> Known<NeedleTarget> {
+        if (!targeting.target_point) {
+          return unknown("NO_TARGET", "The target is not set.");
+        }
+        return positions_of(robot, view)
+            .and_then([&](const AxisPositions& positions) {
+              return zframe_from_guide(robot, with.kinematics, positions).map_error(problem_of);
+            })
+            .map([&](const interlock::Pose& zframe_from_guide) {
+              const interlock::Pose pose = with.registration.scanner_from_zframe() * zframe_from_guide;
+              return NeedleTarget{pose, pose.inverse() * vector(*targeting.target_point)};
+            });
+      })
+      .map_error([](const json& problem) {
+        return Problem{.status = Status::conflict,
+                       .code = problem.at("code"),
+                       .detail = problem.at("text"),
+                       .expected = "a target, and a robot that is homed and lined up with it",
+                       .next_step = "Look at GET /api/targeting/alignment."};
+      });
 }
 
 tl::expected<Alignment, Problem> alignment_with(const Robot& robot, const Targeting& targeting) {

@@ -28,6 +28,17 @@ struct RobotPoses {
 
 RobotPoses robot_poses(const Robot& robot, const Targeting& targeting, const ControlView& view);
 
+/** The target of the targeting as the needle of a robot that takes biopsies sees it. */
+struct NeedleTarget {
+  interlock::Pose scanner_from_guide;                 /**< guide frame of motion/biopsy_run.hpp */
+  Eigen::Vector3d guide_mm = Eigen::Vector3d::Zero(); /**< in that frame */
+};
+
+/** Of a robot with a [biopsy] table, where its axes are now; 409 with the code of the problem when there is
+ * none. */
+tl::expected<NeedleTarget, Problem> needle_target(const Robot& robot, const Targeting& targeting,
+                                                  const ControlView& view);
+
 /** The alignment with entry and target; 409 with the code of the problem when there is none. */
 tl::expected<Alignment, Problem> alignment_with(const Robot& robot, const Targeting& targeting);
 

@@ -83,7 +83,12 @@ tl::expected<BiopsyDraft, Problem> BiopsyDesk::draft(const std::array<double, 3>
   if (!run) {
     return fail(invalid("target_mm", run.error().message(), "a target ahead of the needle"));
   }
-  return BiopsyDraft{std::make_shared<BiopsyRun>(std::move(*run)), target_mm, author, start.tick};
+  return BiopsyDraft{std::make_shared<BiopsyRun>(std::move(*run)),
+                     target_mm,
+                     author,
+                     start.tick,
+                     std::nullopt,
+                     std::nullopt};
 }
 
 void BiopsyDesk::begin(std::uint32_t proposal) {

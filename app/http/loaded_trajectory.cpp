@@ -30,7 +30,7 @@ VelocityLimits velocity_limits(const Robot& robot) {
   VelocityLimits limits;
   for (const Axis& axis : robot.axes) {
     if (axis.motion) {
-      limits.emplace(axis.name, axis.motion->velocity_counts_per_s / axis.counts_per_unit);
+      limits.emplace(axis.name, axis.motion->in_units(axis.counts_per_unit).velocity);
     }
   }
   return limits;

@@ -4,6 +4,7 @@
 #include "http/fields.hpp"
 #include "http/problems.hpp"
 #include "http/targeting_store.hpp"
+#include "proposals/ablation_program.hpp"
 #include "proposals/pose_program.hpp"
 
 namespace interlock::web {
@@ -11,8 +12,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::string_view insertion_role = "insertion";
-constexpr std::string_view rotation_role = "probe_rotation";
 constexpr std::size_t most_ablation_steps = 200;
 constexpr double longest_dwell_s = 3600.0;
 
@@ -32,8 +31,8 @@ std::string clamped_axes(const Robot& robot, const Alignment& alignment) {
   return names;
 }
 
-tl::expected<MoveLeg, Problem> ablation_leg(const Axis& rotation, const Axis& insertion, const json& step,
-                                            const std::string& where) {
+tl::expected<MoveLeg, Problem> ablation_leg_in(const Robot& robot, const json& step,
+                                               const std::string& where) {
   Fields fields(step, {"probe_rotation", "insertion", "dwell_s"}, where);
   const auto turned = fields.number("probe_rotation");
   const auto inserted = fields.number("insertion");
@@ -44,12 +43,11 @@ tl::expected<MoveLeg, Problem> ablation_leg(const Axis& rotation, const Axis& in
   if (fields.problem()) {
     return fail(*fields.problem());
   }
-  const auto turned_counts = rotation.to_counts(*turned);
-  const auto inserted_counts = insertion.to_counts(*inserted);
-  if (!turned_counts || !inserted_counts) {
+  auto leg = ablation_leg(robot, {*turned, *inserted, *dwell_s});
+  if (!leg) {
     return fail(invalid(where, "it is beyond every encoder", "positions within reach of the axes"));
   }
-  return MoveLeg{{{rotation.slot, *turned_counts}, {insertion.slot, *inserted_counts}}, 0.0, *dwell_s};
+  return *std::move(leg);
 }
 
 }  // namespace
@@ -78,9 +76,7 @@ tl::expected<PathDraft, Problem> coordinated_draft(const Robot& robot, const jso
 
 tl::expected<PathDraft, Problem> ablation_draft(const Robot& robot, const json& steps,
                                                 const std::string& author) {
-  const Axis* rotation = robot.with_role(rotation_role);
-  const Axis* insertion = robot.with_role(insertion_role);
-  if (rotation == nullptr || insertion == nullptr || !robot.has_mode(mode_name(RobotMode::ablation))) {
+  if (!can_ablate(robot)) {
     return fail(not_found("probe for ablation", "a robot with the mode ablation"));
   }
   if (!steps.is_array() || steps.empty() || steps.size() > most_ablation_steps) {
@@ -88,7 +84,7 @@ tl::expected<PathDraft, Problem> ablation_draft(const Robot& robot, const json& 
   }
   std::vector<PathLeg> legs;
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    const auto leg = ablation_leg(*rotation, *insertion, steps[i], "steps[" + std::to_string(i) + "]");
+    const auto leg = ablation_leg_in(robot, steps[i], "steps[" + std::to_string(i) + "]");
     if (!leg) {
       return fail(leg.error());
     }

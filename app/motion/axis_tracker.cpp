@@ -33,6 +33,12 @@ void AxisTracker::start(const ilk_snapshot_t& snapshot) noexcept {
   lease_.renew_at_once();
 }
 
+double AxisTracker::velocity_counts_per_s() const noexcept {
+  const auto velocity = controller_ ? controller_->velocity() : std::nullopt;
+  const double fastest_noise = (plan_.rules.noise_counts + 1.0) / plan_.control.velocity.window_us * us_per_s;
+  return velocity && std::abs(velocity->counts_per_s) > fastest_noise ? velocity->counts_per_s : 0.0;
+}
+
 bool AxisTracker::off_path(const ilk_snapshot_t& snapshot, const PathPoint& point) const noexcept {
   const double error = point.now.position_counts - snapshot.state.axis[slot_].position_counts;
   return !(std::abs(error) <= plan_.rates.following_error_counts);

@@ -26,6 +26,9 @@ class AxisTracker {
   /** A path begins: a MOVE is due at once. */
   void start(const ilk_snapshot_t& snapshot) noexcept;
 
+  /** How fast the axis moves now; 0 when that may as well be the noise of its counter. */
+  [[nodiscard]] double velocity_counts_per_s() const noexcept;
+
   /** Whether the axis is further from its point than its robot file allows. */
   [[nodiscard]] bool off_path(const ilk_snapshot_t& snapshot, const PathPoint& point) const noexcept;
 

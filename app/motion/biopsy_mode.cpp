@@ -34,9 +34,9 @@ void BiopsyMode::Guided::start(const ilk_snapshot_t& snapshot, std::uint32_t slo
 }
 
 void BiopsyMode::Guided::go(double wanted, double time_s) noexcept {
-  const double fastest = rates.velocity_counts_per_s / counts_per_unit;
-  const double change = rates.acceleration_counts_per_s2 / counts_per_unit * time_s;
-  speed += std::clamp(std::clamp(wanted, -fastest, fastest) - speed, -change, change);
+  const RateLimits limits = rates.in_units(counts_per_unit);
+  const double change = limits.acceleration * time_s;
+  speed += std::clamp(std::clamp(wanted, -limits.velocity, limits.velocity) - speed, -change, change);
   position += speed * time_s;
 }
 
@@ -129,6 +129,13 @@ void BiopsyMode::tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
       axis->tracker.let_go(proposal, snapshot, wishes);
     }
   }
+}
+
+std::optional<Setpoint> BiopsyMode::setpoint(std::uint32_t slot) const noexcept {
+  if (!order_.executes() || !order_.moves(slot)) {
+    return std::nullopt;
+  }
+  return (slot == needle_->insertion_slot ? insertion_ : rotation_).point.now;
 }
 
 /** From the start, or on after a pause: from where the axes are, at rest. */

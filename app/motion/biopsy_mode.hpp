@@ -41,6 +41,9 @@ class BiopsyMode final : public Mode {
   [[nodiscard]] bool is_open() const noexcept { return order_.is_open(); }
   [[nodiscard]] const BiopsyStatus& status() const noexcept { return status_; }
   [[nodiscard]] const BiopsyNow& now() const noexcept { return now_; }
+  /** Where the axis in `slot` should be now; nothing unless an executing biopsy moves it. */
+  [[nodiscard]] std::optional<Setpoint> setpoint(std::uint32_t slot) const noexcept;
+
   [[nodiscard]] const ForceReadings& force() const noexcept { return force_.readings(); }
 
  private:

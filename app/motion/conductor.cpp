@@ -53,6 +53,11 @@ Wishes Conductor::tick(const ilk_snapshot_t& snapshot) noexcept {
   return wishes;
 }
 
+std::optional<Setpoint> Conductor::setpoint(std::uint32_t slot) const noexcept {
+  const std::optional<Setpoint> along_path = path_.setpoint(slot);
+  return along_path ? along_path : biopsy_.setpoint(slot);
+}
+
 void Conductor::on_unsent(const Wish& wish) noexcept {
   each_mode([&](Mode& mode) { mode.on_unsent(wish); });
 }

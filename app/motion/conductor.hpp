@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "motion/biopsy_mode.hpp"
 #include "motion/home_mode.hpp"
@@ -56,6 +57,9 @@ class Conductor {
   [[nodiscard]] const HomeStatus& home() const noexcept { return home_.status(); }
   [[nodiscard]] const PathStatus& path() const noexcept { return path_.status(); }
   [[nodiscard]] const SweepStatus& sweep() const noexcept { return sweep_.status(); }
+  /** Where a path or a biopsy wants the axis in `slot` now; nothing when neither moves it. */
+  [[nodiscard]] std::optional<Setpoint> setpoint(std::uint32_t slot) const noexcept;
+
   [[nodiscard]] const BiopsyMode& biopsy() const noexcept { return biopsy_; }
 
  private:

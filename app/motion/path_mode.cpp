@@ -1,7 +1,5 @@
 #include "motion/path_mode.hpp"
 
-#include "motion/obstacle.hpp"
-
 namespace interlock {
 namespace {
 
@@ -12,125 +10,76 @@ constexpr double settle_s = 5.0;
 
 PathMode::PathMode(const RobotPlan& plan)
     : period_s_(plan.period_s()),
-      patience_ticks_(plan.patience_ticks()),
       settle_ticks_(static_cast<std::uint32_t>(settle_s / plan.period_s())),
-      walk_(plan) {
+      walk_(plan),
+      order_(plan.patience_ticks()) {
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     trackers_[slot] = AxisTracker(slot, plan.axis[slot], plan.lease_ticks());
   }
 }
 
-void PathMode::set_phase(OrderPhase phase, OrderReason reason, std::uint32_t code,
-                         std::uint32_t tick) noexcept {
-  status_.order = {order_.proposal, phase, reason, code, tick};
-}
-
-void PathMode::fail(OrderReason reason, std::uint32_t code, std::uint32_t slot, std::uint32_t tick) noexcept {
-  status_.slot = slot;
-  set_phase(OrderPhase::aborted, reason, code, tick);
-}
-
 void PathMode::take(const PathOrder& order, std::uint32_t tick) noexcept {
-  order_ = order;
-  status_ = PathStatus{};
-  involved_ = order.program->mask();
-  idle_since_ = tick;
-  if (order.program->legs.empty()) {
-    set_phase(OrderPhase::done, OrderReason::arrived, 0, tick);
-    return;
+  program_ = order.program;
+  leg_ = 0;
+  order_.take(order.proposal, program_->mask(), tick);
+  if (program_->legs.empty()) {
+    order_.finish(OrderReason::arrived, tick);
+  } else {
+    walk_.take(program_->legs.front());
   }
-  walk_.take(order.program->legs.front());
-  set_phase(OrderPhase::waiting, OrderReason::none, 0, tick);
+  tell();
 }
 
 void PathMode::end(std::uint32_t proposal, OrderReason reason, std::uint32_t tick) noexcept {
-  if (order_.proposal == proposal) {
-    end_all(reason, tick);
-  }
+  order_.end(proposal, reason, tick);
+  tell();
 }
 
 void PathMode::end_all(OrderReason reason, std::uint32_t tick) noexcept {
-  if (is_open()) {
-    set_phase(OrderPhase::aborted, reason, 0, tick);
-  }
-}
-
-void PathMode::end_axis(std::uint32_t slot, OrderReason reason, std::uint32_t tick) noexcept {
-  if (is_open() && slot < ILK_SLOTS && ((involved_ >> slot) & 1u) != 0) {
-    fail(reason, 0, slot, tick);
-  }
-}
-
-void PathMode::tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
-  if (is_open()) {
-    judge(snapshot);
-  }
-  const bool executing = status_.order.phase == OrderPhase::executing;
-  for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
-    if (executing && moves(slot)) {
-      trackers_[slot].hold(order_.proposal, snapshot, points_[slot], wishes);
-    } else {
-      trackers_[slot].let_go(order_.proposal, snapshot, wishes);
-    }
-  }
-}
-
-void PathMode::judge(const ilk_snapshot_t& snapshot) noexcept {
-  const std::uint32_t now = snapshot.state.tick;
-  if (meets_obstacle(snapshot)) {
-    return;
-  }
-  if (snapshot.state.mode == ILK_MODE_MOTION) {
-    go(snapshot);
-  } else if (status_.order.phase == OrderPhase::executing) {
-    set_phase(OrderPhase::paused, OrderReason::pedal_released, 0, now);
-    idle_since_ = now;
-  } else if (waited_too_long(now)) {
-    set_phase(OrderPhase::expired, OrderReason::waited_too_long, 0, now);
-  }
+  order_.end_all(reason, tick);
+  tell();
 }
 
 /** Axes that a later leg moves count as well: what could not be carried out whole is not begun. */
-bool PathMode::meets_obstacle(const ilk_snapshot_t& snapshot) noexcept {
-  const std::uint32_t now = snapshot.state.tick;
+void PathMode::end_axis(std::uint32_t slot, OrderReason reason, std::uint32_t tick) noexcept {
+  order_.end_axis(slot, reason, tick);
+  tell();
+}
+
+void PathMode::tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
+  switch (order_.judge(snapshot)) {
+    case HeldOrder::Work::begin:
+      begin(snapshot);
+      break;
+    case HeldOrder::Work::go_on:
+      follow(snapshot);
+      break;
+    case HeldOrder::Work::none:
+      break;
+  }
+  tell();
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
-    if (((involved_ >> slot) & 1u) == 0) {
-      continue;
-    }
-    const ilk_axis_t& axis = snapshot.state.axis[slot];
-    if (const auto obstacle = obstacle_of(snapshot, slot)) {
-      fail(obstacle->reason, obstacle->code, slot, now);
-    } else if (axis.state == ILK_AXIS_HOMING) {
-      fail(OrderReason::axis_homing, 0, slot, now);
-    } else if (axis.homed == 0) {
-      fail(OrderReason::not_homed, 0, slot, now);
-    }
-    if (!is_open()) {
-      return true;
+    if (follows(slot)) {
+      trackers_[slot].hold(status_.order.proposal, snapshot, points_[slot], wishes);
+    } else {
+      trackers_[slot].let_go(status_.order.proposal, snapshot, wishes);
     }
   }
-  return false;
 }
 
-bool PathMode::waited_too_long(std::uint32_t tick) const noexcept {
-  return tick - idle_since_ > patience_ticks_;
-}
-
-void PathMode::go(const ilk_snapshot_t& snapshot) noexcept {
-  if (status_.order.phase == OrderPhase::executing) {
-    follow(snapshot);
-  } else if (waited_too_long(snapshot.state.tick)) {
-    set_phase(OrderPhase::expired, OrderReason::waited_too_long, 0, snapshot.state.tick);
-  } else {
-    begin(snapshot);
-  }
+std::optional<Setpoint> PathMode::setpoint(std::uint32_t slot) const noexcept {
+  return slot < ILK_SLOTS && follows(slot) ? std::optional(points_[slot].now) : std::nullopt;
 }
 
 /** Begins the leg, or goes on with it after a pause. */
 void PathMode::begin(const ilk_snapshot_t& snapshot) noexcept {
   const std::uint32_t now = snapshot.state.tick;
-  if (!walk_.begin(snapshot)) {
-    set_phase(OrderPhase::aborted, OrderReason::no_path, 0, now);
+  std::array<double, ILK_SLOTS> velocities{};
+  for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
+    velocities[slot] = trackers_[slot].velocity_counts_per_s();
+  }
+  if (!walk_.begin(snapshot, velocities)) {
+    order_.end_all(OrderReason::no_path, now);
     return;
   }
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
@@ -140,7 +89,6 @@ void PathMode::begin(const ilk_snapshot_t& snapshot) noexcept {
   seen_tick_ = now;
   end_tick_ = now;
   resting_ = false;
-  set_phase(OrderPhase::executing, OrderReason::none, 0, now);
 }
 
 void PathMode::follow(const ilk_snapshot_t& snapshot) noexcept {
@@ -162,7 +110,7 @@ void PathMode::follow(const ilk_snapshot_t& snapshot) noexcept {
 bool PathMode::strays(const ilk_snapshot_t& snapshot) noexcept {
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     if (moves(slot) && trackers_[slot].off_path(snapshot, points_[slot])) {
-      fail(OrderReason::off_path, 0, slot, snapshot.state.tick);
+      order_.fail(OrderReason::off_path, 0, slot, snapshot.state.tick);
       return true;
     }
   }
@@ -181,7 +129,7 @@ void PathMode::settle(const ilk_snapshot_t& snapshot) noexcept {
   if (late != ILK_SLOTS) {
     resting_ = false;
     if (now - end_tick_ > settle_ticks_) {
-      fail(OrderReason::goal_late, snapshot.gate[late], late, now);
+      order_.fail(OrderReason::goal_late, snapshot.gate[late], late, now);
     }
     return;
   }
@@ -202,29 +150,26 @@ void PathMode::end_leg(const ilk_snapshot_t& snapshot) noexcept {
   if (walk_.go_on()) {
     return;
   }
-  if (status_.leg + 1 == order_.program->legs.size()) {
-    set_phase(OrderPhase::done, OrderReason::arrived, 0, now);
+  if (leg_ + 1 == program_->legs.size()) {
+    order_.finish(OrderReason::arrived, now);
     return;
   }
-  ++status_.leg;
-  walk_.take(order_.program->legs[status_.leg]);
+  ++leg_;
+  walk_.take(program_->legs[leg_]);
   begin(snapshot);
 }
 
+void PathMode::tell() noexcept { status_ = {order_.status(), leg_, order_.slot()}; }
+
 void PathMode::on_unsent(const Wish& wish) noexcept {
-  if (wish.origin.slot < ILK_SLOTS && wish.origin.proposal == order_.proposal) {
+  if (wish.origin.slot < ILK_SLOTS && wish.origin.proposal == status_.order.proposal) {
     trackers_[wish.origin.slot].on_unsent();
   }
 }
 
 void PathMode::on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept {
-  // MODE says only that the pedal was released between the snapshot and the request; the next snapshot
-  // pauses.
-  const bool routine = verdict == ILK_VERDICT_ACCEPTED || verdict == ILK_VERDICT_MODE;
-  if (!routine && origin.proposal == order_.proposal && is_open()) {
-    status_.slot = origin.slot;
-    set_phase(OrderPhase::refused, OrderReason::kernel_refused, verdict, tick);
-  }
+  order_.on_verdict(origin, verdict, tick);
+  tell();
 }
 
 void PathMode::on_verdict_lost(const WishOrigin& /*origin*/, std::uint32_t /*tick*/) noexcept {

@@ -1,6 +1,7 @@
 #include "motion/path_walk.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace interlock {
 namespace {
@@ -11,6 +12,24 @@ Setpoint in_counts(const MotionState& state, double counts_per_unit) noexcept {
 }
 
 }  // namespace
+
+double PaceRise::passed_s(double time_s) const noexcept {
+  if (time_s >= duration_s) {
+    return time_s - duration_s / 2;
+  }
+  const double share = time_s / duration_s;
+  return duration_s * share * share * share * (1.0 - share / 2);
+}
+
+double PaceRise::pace(double time_s) const noexcept {
+  const double share = time_s < duration_s ? time_s / duration_s : 1.0;
+  return share * share * (3.0 - 2.0 * share);
+}
+
+double PaceRise::pace_per_s(double time_s) const noexcept {
+  const double share = time_s < duration_s ? time_s / duration_s : 1.0;
+  return duration_s > 0.0 ? 6.0 * share * (1.0 - share) / duration_s : 0.0;
+}
 
 PathWalk::PathWalk(const RobotPlan& plan) : plan_(plan), lease_s_(plan.lease_ticks() * plan.period_s()) {}
 
@@ -25,40 +44,60 @@ void PathWalk::take(const PathLeg& leg) noexcept {
   trajectory_s_ = timed == nullptr ? 0.0 : timed->begin_s();
 }
 
-bool PathWalk::begin(const ilk_snapshot_t& snapshot) noexcept {
+bool PathWalk::begin(const ilk_snapshot_t& snapshot,
+                     const std::array<double, ILK_SLOTS>& velocities_counts_per_s) noexcept {
   stage_ = Stage::approach;
-  approach_s_ = 0.0;
+  stage_s_ = 0.0;
   axes_ = 0;
   double minimum_duration_s = 0.0;
+  const auto now = [&](std::uint32_t slot) {
+    const double position = snapshot.state.axis[slot].position_counts;
+    return MotionState{position, velocities_counts_per_s[slot], 0.0};
+  };
   if (const TimedTrajectory* timed = trajectory()) {
     for (std::size_t axis = 0; axis < timed->axes().size(); ++axis) {
       const std::uint32_t slot = timed->axes()[axis].slot;
-      approach(snapshot, slot, timed->at(axis, trajectory_s_).position * plan_.axis[slot].counts_per_unit);
+      approach(now(slot), slot, timed->at(axis, trajectory_s_).position * plan_.axis[slot].counts_per_unit);
     }
   } else {
     const auto& move = std::get<MoveLeg>(*leg_);
     minimum_duration_s = move.minimum_duration_s;
     for (const AxisCounts& target : move.targets) {
-      approach(snapshot, target.slot, target.counts);
+      approach(now(target.slot), target.slot, target.counts);
     }
   }
   return planner_.plan(std::span(approach_).first(axes_), minimum_duration_s);
 }
 
-void PathWalk::approach(const ilk_snapshot_t& snapshot, std::uint32_t slot, double target_counts) noexcept {
+void PathWalk::approach(const MotionState& now_counts, std::uint32_t slot, double target_counts) noexcept {
   const AxisPlan& axis = plan_.axis[slot];
-  const double units_per_count = 1.0 / axis.counts_per_unit;
-  const MotionState now{snapshot.state.axis[slot].position_counts * units_per_count, 0.0, 0.0};
-  const RateLimits limits{axis.rates.velocity_counts_per_s * units_per_count,
-                          axis.rates.acceleration_counts_per_s2 * units_per_count,
-                          axis.rates.jerk_counts_per_s3 * units_per_count};
-  approach_[axes_] = {now, target_counts * units_per_count, limits};
+  const MotionState now{now_counts.position / axis.counts_per_unit,
+                        now_counts.velocity / axis.counts_per_unit, 0.0};
+  approach_[axes_] = {now, target_counts / axis.counts_per_unit, axis.rates.in_units(axis.counts_per_unit)};
   slots_[axes_] = slot;
   ++axes_;
 }
 
+/** As slowly as the slowest axis needs to come up to its velocity there within acceleration and jerk. */
+void PathWalk::begin_trajectory(const TimedTrajectory& timed) noexcept {
+  stage_ = Stage::trajectory;
+  stage_s_ = 0.0;
+  begun_s_ = trajectory_s_;
+  rise_.duration_s = 0.0;
+  for (std::size_t axis = 0; axis < timed.axes().size(); ++axis) {
+    const AxisPlan& plan = plan_.axis[timed.axes()[axis].slot];
+    const RateLimits limits = plan.rates.in_units(plan.counts_per_unit);
+    const double speed = std::abs(timed.at(axis, trajectory_s_).velocity);
+    rise_.duration_s = std::max({rise_.duration_s, PaceRise::steepest * speed / limits.acceleration,
+                                 std::sqrt(PaceRise::sharpest * speed / limits.jerk)});
+  }
+}
+
 void PathWalk::advance(double time_s) noexcept {
-  (stage_ == Stage::approach ? approach_s_ : trajectory_s_) += time_s;
+  stage_s_ += time_s;
+  if (stage_ == Stage::trajectory) {
+    trajectory_s_ = begun_s_ + rise_.passed_s(stage_s_);
+  }
 }
 
 bool PathWalk::at_end() const noexcept {
@@ -66,13 +105,15 @@ bool PathWalk::at_end() const noexcept {
   if (stage_ == Stage::trajectory && timed != nullptr) {
     return trajectory_s_ >= timed->end_s();
   }
-  return approach_s_ >= planner_.duration_s();
+  return stage_s_ >= planner_.duration_s();
 }
 
 bool PathWalk::go_on() noexcept {
   const TimedTrajectory* timed = trajectory();
   const bool left = stage_ == Stage::approach && timed != nullptr && trajectory_s_ < timed->end_s();
-  stage_ = left ? Stage::trajectory : stage_;
+  if (left) {
+    begin_trajectory(*timed);
+  }
   return left;
 }
 
@@ -92,23 +133,27 @@ const PathWalk::Points& PathWalk::points() noexcept {
 }
 
 void PathWalk::point_along_approach() noexcept {
-  const auto ahead = planner_.at(approach_s_ + lease_s_);
+  const auto ahead = planner_.at(stage_s_ + lease_s_);
   for (std::size_t place = 0; place < ahead.size(); ++place) {
     points_[slots_[place]].ahead_counts = ahead[place].position * plan_.axis[slots_[place]].counts_per_unit;
   }
-  const auto now = planner_.at(approach_s_);
+  const auto now = planner_.at(stage_s_);
   for (std::size_t place = 0; place < now.size(); ++place) {
     points_[slots_[place]].now = in_counts(now[place], plan_.axis[slots_[place]].counts_per_unit);
   }
 }
 
 void PathWalk::point_along_trajectory(const TimedTrajectory& timed) noexcept {
+  const double pace = rise_.pace(stage_s_);
+  const double pace_per_s = rise_.pace_per_s(stage_s_);
+  const double ahead_s = begun_s_ + rise_.passed_s(stage_s_ + lease_s_);
   for (std::size_t axis = 0; axis < timed.axes().size(); ++axis) {
     const std::uint32_t slot = timed.axes()[axis].slot;
     const double counts_per_unit = plan_.axis[slot].counts_per_unit;
-    const MotionState now = timed.at(axis, trajectory_s_);
-    points_[slot] = {in_counts(now, counts_per_unit),
-                     timed.at(axis, trajectory_s_ + lease_s_).position * counts_per_unit};
+    const MotionState there = timed.at(axis, trajectory_s_);
+    const MotionState now{there.position, pace * there.velocity,
+                          pace * pace * there.acceleration + pace_per_s * there.velocity};
+    points_[slot] = {in_counts(now, counts_per_unit), timed.at(axis, ahead_s).position * counts_per_unit};
   }
 }
 

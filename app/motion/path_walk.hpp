@@ -4,7 +4,8 @@
  * leg has one.
  *
  * Time is that of the walk: whoever walks may stand still for as long as he likes, and then begins anew from
- * wherever the axes are.
+ * wherever the axes are. Velocities do not leap where a stage begins: the approach begins at those of the
+ * axes, and a trajectory that begins in motion is come up to within the axes' rates.
  */
 #pragma once
 
@@ -25,6 +26,24 @@ struct PathPoint {
   double ahead_counts = 0.0; /**< where the path is a lease later */
 };
 
+/**
+ * How the time of a trajectory comes up to that of the clock, so that axes at rest come up to a trajectory
+ * that is in motion: every position is the trajectory's, only later. The pace is 3 s^2 - 2 s^3 of the share s
+ * of its duration.
+ */
+struct PaceRise {
+  /** Largest rise of the pace a second, and of that, for a rise of one second. */
+  static constexpr double steepest = 1.5;
+  static constexpr double sharpest = 6.0;
+
+  double duration_s = 0.0; /**< 0: at once */
+
+  /** Time that has passed on the trajectory so long after its beginning. */
+  [[nodiscard]] double passed_s(double time_s) const noexcept;
+  [[nodiscard]] double pace(double time_s) const noexcept;
+  [[nodiscard]] double pace_per_s(double time_s) const noexcept;
+};
+
 class PathWalk {
  public:
   using Points = std::array<PathPoint, ILK_SLOTS>;
@@ -35,10 +54,11 @@ class PathWalk {
   void take(const PathLeg& leg) noexcept;
 
   /**
-   * Begins, or begins anew after a pause: plans the approach from where the axes are, at rest, to the leg's
-   * targets, or to where its trajectory is to go on. False: there is no such way.
+   * Begins, or begins anew after a pause: plans the approach from where the axes are, and how fast they move
+   * by slot, to the leg's targets, or to where its trajectory is to go on. False: there is no such way.
    */
-  [[nodiscard]] bool begin(const ilk_snapshot_t& snapshot) noexcept;
+  [[nodiscard]] bool begin(const ilk_snapshot_t& snapshot,
+                           const std::array<double, ILK_SLOTS>& velocities_counts_per_s) noexcept;
 
   void advance(double time_s) noexcept;
 
@@ -62,7 +82,8 @@ class PathWalk {
   enum class Stage : std::uint8_t { approach, trajectory };
 
   [[nodiscard]] const TimedTrajectory* trajectory() const noexcept;
-  void approach(const ilk_snapshot_t& snapshot, std::uint32_t slot, double target_counts) noexcept;
+  void approach(const MotionState& now_counts, std::uint32_t slot, double target_counts) noexcept;
+  void begin_trajectory(const TimedTrajectory& timed) noexcept;
   void point_along_approach() noexcept;
   void point_along_trajectory(const TimedTrajectory& trajectory) noexcept;
 
@@ -74,8 +95,10 @@ class PathWalk {
   std::array<TickPlanner::AxisPath, TickPlanner::capacity> approach_{};
   std::array<std::uint32_t, TickPlanner::capacity> slots_{}; /**< of the axes of `approach_` */
   std::size_t axes_ = 0;
-  double approach_s_ = 0.0;   /**< since the approach began */
+  double stage_s_ = 0.0;      /**< since approach or trajectory began */
   double trajectory_s_ = 0.0; /**< time of the trajectory's rows to which the walk has come */
+  double begun_s_ = 0.0;      /**< that at which its stage began */
+  PaceRise rise_;             /**< of the trajectory's time, from rest */
   Points points_{};
 };
 

@@ -30,13 +30,8 @@ Checked check_range(const Robot& robot, const MoveLeg& leg) {
 }
 
 AxisTarget target_of(const Axis& axis, std::int32_t now_counts, std::int32_t target_counts) {
-  const double units = 1.0 / axis.counts_per_unit;
-  const MotionRates rates = axis.motion.value_or(MotionRates{});
-  const double now = axis.to_unit(now_counts);
-  return {{axis.name,
-           {now, 0.0, 0.0},
-           {rates.velocity_counts_per_s * units, rates.acceleration_counts_per_s2 * units,
-            rates.jerk_counts_per_s3 * units}},
+  const RateLimits limits = axis.motion.value_or(MotionRates{}).in_units(axis.counts_per_unit);
+  return {{axis.name, {axis.to_unit(now_counts), 0.0, 0.0}, limits},
           axis.to_unit(target_counts),
           {axis.to_unit(axis.lowest_setpoint_counts()), axis.to_unit(axis.highest_setpoint_counts())}};
 }

@@ -68,4 +68,9 @@ RobotMode robot_mode(const Proposal& proposal) noexcept {
   return RobotMode::manual;
 }
 
+std::optional<std::uint32_t> targeting_revision(const Proposal& proposal) noexcept {
+  const bool is_biopsy = proposal.kind == ProposalKind::biopsy;
+  return is_biopsy ? proposal.biopsy.targeting_revision : proposal.path.targeting_revision;
+}
+
 }  // namespace interlock

@@ -17,6 +17,7 @@
 #include <string_view>
 #include <vector>
 
+#include "kinematics/pose.hpp"
 #include "motion/biopsy_run.hpp"
 #include "motion/order.hpp"
 #include "motion/path_program.hpp"
@@ -100,6 +101,9 @@ struct BiopsyDraft {
   std::array<double, 3> target_mm{}; /**< in the guide frame of motion/biopsy_run.hpp */
   std::string author;
   std::uint32_t start_tick = 0; /**< kernel tick of the run's time 0 */
+  /** The guide frame in the scanner's, where the target was given in that. */
+  std::optional<Pose> scanner_from_guide;
+  std::optional<std::uint32_t> targeting_revision; /**< as of a `PathDraft` */
 };
 
 enum class ProposalKind : std::uint8_t { move, home, path, sweep, biopsy };
@@ -136,6 +140,9 @@ struct Proposal {
   std::optional<std::string> verdict; /**< that refused or ended it */
   std::string detail;                 /**< why it is in this state, for people */
 };
+
+/** Of registration, probe and target from which the proposal followed; nothing: from none. */
+std::optional<std::uint32_t> targeting_revision(const Proposal& proposal) noexcept;
 
 /** The mode in which the proposal is carried out. */
 RobotMode robot_mode(const Proposal& proposal) noexcept;

@@ -92,10 +92,8 @@ tl::expected<Proposal, Refusal> ProposalBook::propose_path(const PathDraft& path
   drafted.path = path;
   drafted.author = path.author;
   Proposal& proposal = draft(std::move(drafted), slots_of(robot_, path.program->mask()), view);
-  if (path.targeting_revision && *path.targeting_revision != targeting_revision_) {
-    return tl::make_unexpected(refuse(
-        proposal, Refusal{"STALE", "Registration, probe or target changed meanwhile.",
-                          "the present registration, probe and target", "Look at them, and propose again."}));
+  if (const auto current = check_current(proposal); !current) {
+    return tl::make_unexpected(current.error());
   }
   if (const auto checked = check(proposal, view); !checked) {
     return tl::make_unexpected(checked.error());
@@ -133,6 +131,9 @@ tl::expected<Proposal, Refusal> ProposalBook::propose_biopsy(const BiopsyDraft& 
   const std::vector<std::uint32_t> slots{robot_.with_role("insertion")->slot,
                                          robot_.with_role("rotation")->slot};
   Proposal& proposal = draft(std::move(drafted), slots, view);
+  if (const auto current = check_current(proposal); !current) {
+    return tl::make_unexpected(current.error());
+  }
   if (const auto checked = check_biopsy(robot_, config_, view, biopsy); !checked) {
     return tl::make_unexpected(refuse(proposal, checked.error()));
   }
@@ -144,6 +145,17 @@ tl::expected<Proposal, Refusal> ProposalBook::propose_biopsy(const BiopsyDraft& 
 bool ProposalBook::show_image(const NeedleImage& image) {
   const Proposal* open = open_biopsy();
   return open != nullptr && send_(SeenImage{open->id, image});
+}
+
+/** Refuses what followed from targeting that has changed since. */
+tl::expected<void, Refusal> ProposalBook::check_current(Proposal& proposal) {
+  const auto revision = interlock::targeting_revision(proposal);
+  if (revision && *revision != targeting_revision_) {
+    return tl::make_unexpected(refuse(
+        proposal, Refusal{"STALE", "Registration, probe or target changed meanwhile.",
+                          "the present registration, probe and target", "Look at them, and propose again."}));
+  }
+  return {};
 }
 
 /** Checks a path from where the axes are now. */
@@ -177,7 +189,7 @@ tl::expected<Proposal, Refusal> ProposalBook::approve_path(Proposal& proposal) {
 void ProposalBook::end_stale() {
   ++targeting_revision_;
   for (Proposal& each : book_) {
-    if (each.path.targeting_revision && is_open(each.state)) {
+    if (interlock::targeting_revision(each) && is_open(each.state)) {
       const bool waits = each.state == ProposalState::checked || send_(Cancel{each.id});
       become(each, ProposalState::aborted,
              std::string("Registration, probe or target changed, from which it followed; propose it again.") +

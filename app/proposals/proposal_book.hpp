@@ -70,7 +70,7 @@ class ProposalBook {
 
   /**
    * Drafts a biopsy, checks it (biopsy_check.hpp) and approves it. Every other approved proposal is aborted.
-   * A refused draft stays in the book.
+   * STALE when it followed from targeting that has changed. A refused draft stays in the book.
    */
   tl::expected<Proposal, Refusal> propose_biopsy(const BiopsyDraft& draft, const ControlView& view);
 
@@ -129,6 +129,7 @@ class ProposalBook {
   };
 
   tl::expected<Proposal, Refusal> approve(Proposal& proposal, const Command& order);
+  tl::expected<void, Refusal> check_current(Proposal& proposal);
   tl::expected<void, Refusal> check(Proposal& proposal, const ControlView& view);
   tl::expected<Proposal, Refusal> approve_path(Proposal& proposal);
   void forget_one();

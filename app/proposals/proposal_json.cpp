@@ -74,6 +74,10 @@ nlohmann::json to_json(const Proposal& proposal) {
   if (proposal.kind == ProposalKind::biopsy) {
     json["mode"] = mode_name(RobotMode::cooperative_biopsy);
     json["target_mm"] = proposal.biopsy.target_mm;
+    if (const auto& scanner_from_guide = proposal.biopsy.scanner_from_guide) {
+      const Eigen::Vector3d target = *scanner_from_guide * Eigen::Vector3d(proposal.biopsy.target_mm.data());
+      json["target_point"] = {target.x(), target.y(), target.z()};
+    }
   }
   if (!proposal.step.empty()) {
     json["step"] = proposal.step;

@@ -22,6 +22,7 @@
 #include "interlock/types.h"
 #include "robot/biopsy.hpp"
 #include "robot/kinematics.hpp"
+#include "robot/motion_rates.hpp"
 #include "robot/sensor.hpp"
 #include "robot/unit.hpp"
 
@@ -99,18 +100,6 @@ struct RunawayRule {
   std::uint32_t drift_counts = 0;   /**< tolerated while enabled but not driven */
 
   bool operator==(const RunawayRule&) const = default;
-};
-
-/** How an axis may move together with others, along a path in time. */
-struct MotionRates {
-  double full_speed_counts_per_s = 0.0; /**< of the unloaded axis at `drive.max` */
-  double velocity_counts_per_s =
-      0.0; /**< largest planned speed, below full speed: the rest is for catching up */
-  double acceleration_counts_per_s2 = 0.0;
-  double jerk_counts_per_s3 = 0.0;
-  std::uint32_t following_error_counts = 0; /**< distance from the path that ends the motion */
-
-  bool operator==(const MotionRates&) const = default;
 };
 
 /** One motor axis. The slot of its card is its number everywhere. */

@@ -21,6 +21,7 @@
 #include <string>
 #include <vector>
 
+#include "robot/motion_rates.hpp"
 #include "trajectory/motion_state.hpp"
 #include "trajectory/piecewise_motion.hpp"
 #include "trajectory/trajectory_error.hpp"
@@ -33,18 +34,11 @@ inline constexpr double longest_plan_s = 7600.0;
 /** Rounding is forgiven by this much where a plan is held against the positions allowed. */
 inline constexpr double planning_slack = 1e-7;
 
-/** Largest magnitudes of an axis' rates, each from `smallest_rate` to `largest_rate`. */
-struct RateLimits {
-  double velocity = 0.0;
-  double acceleration = 0.0;
-  double jerk = 0.0;
-};
-
 /** One axis of a plan. */
 struct PlannedAxis {
   std::string name; /**< for errors */
   MotionState now;
-  RateLimits limits;
+  RateLimits limits; /**< each from `smallest_rate` to `largest_rate` */
 };
 
 /** An axis and where it shall go. */

@@ -1,199 +1,44 @@
 #include "tuning/step_svg.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdio>
-#include <functional>
-#include <limits>
-#include <string_view>
-#include <vector>
+#include <optional>
+
+#include "chart/time_chart.hpp"
 
 namespace interlock {
 namespace {
 
-constexpr double width = 900.0;
-constexpr double panel_height = 190.0;
-constexpr double panel_distance = 250.0;
-constexpr double left = 90.0;
-constexpr double top = 50.0;
-constexpr double right_margin = 20.0;
-constexpr double bottom_margin = 10.0;
-constexpr int panels = 3;
-/** More points than pixels show nothing more. */
-constexpr std::size_t most_points = 1500;
-constexpr int ticks_wanted = 5;
+constexpr const char* blue = "#0b62a4";
+constexpr const char* red = "#d1495b";
+constexpr const char* grey = "#9aa5b1";
 
-struct Series {
-  std::string_view name;
-  std::string_view colour;
-  std::function<std::optional<double>(const StepRow&)> value;
-};
-
-struct Panel {
-  std::string_view label; /**< quantity and unit */
-  std::vector<Series> series;
-};
-
-struct Range {
-  double lowest;
-  double highest;
-};
-
-template <typename... Values>
-std::string text(const char* format, Values... values) {
-  std::array<char, 256> buffer{};
-  const int length = std::snprintf(buffer.data(), buffer.size(), format, values...);
-  return {buffer.data(), std::min(static_cast<std::size_t>(length), buffer.size() - 1)};
-}
-
-std::string escaped(std::string_view plain) {
-  std::string safe;
-  for (const char each : plain) {
-    switch (each) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      default:
-        safe += each;
-        break;
-    }
+template <typename Value>
+ChartSeries series(const StepRun& run, const char* name, const char* colour, Value value) {
+  ChartSeries made{name, colour, {}};
+  made.values.reserve(run.rows.size());
+  for (const StepRow& row : run.rows) {
+    made.values.emplace_back(value(row));
   }
-  return safe;
-}
-
-std::string label(double x, double y, const char* anchor, std::string_view words) {
-  return text("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">", x, y, anchor) + escaped(words) + "</text>\n";
-}
-
-std::string line(double x1, double y1, double x2, double y2, const char* colour) {
-  return text("<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" stroke=\"%s\"/>\n", x1, y1, x2, y2,
-              colour);
-}
-
-/** 1, 2 or 5 times a power of ten, for about `ticks_wanted` ticks. */
-double tick_distance(const Range& range) {
-  const double rough = (range.highest - range.lowest) / ticks_wanted;
-  const double power = std::pow(10.0, std::floor(std::log10(rough)));
-  const double share = rough / power;
-  return power * (share < 1.5 ? 1.0 : share < 3.5 ? 2.0 : share < 7.5 ? 5.0 : 10.0);
-}
-
-Range range_of(const Panel& panel, const std::vector<StepRow>& rows) {
-  Range range{0.0, 0.0};
-  for (const Series& series : panel.series) {
-    for (const StepRow& row : rows) {
-      const double value = series.value(row).value_or(0.0);
-      range = {std::min(range.lowest, value), std::max(range.highest, value)};
-    }
-  }
-  const double margin = std::max(0.05 * (range.highest - range.lowest), 1e-3);
-  return {range.lowest - margin, range.highest + margin};
-}
-
-/** Draws panels whose time axes agree. */
-class Sheet {
- public:
-  explicit Sheet(const StepRun& run)
-      : run_(run), time_{0.0, std::max(run.rows.back().time_s, run.period_s)} {}
-
-  std::string draw(const Panel& panel, int place) const {
-    const double upper = top + place * panel_distance;
-    const Range range = range_of(panel, run_.rows);
-    std::string svg = grid(range, upper);
-    svg += label(left, upper - 8, "start", panel.label);
-    double legend = width - right_margin;
-    for (const Series& series : panel.series) {
-      svg += curve(series, range, upper);
-      svg += "<g fill=\"" + std::string(series.colour) + "\">" +
-             label(legend, upper - 8, "end", series.name) + "</g>\n";
-      legend -= 110;
-    }
-    return svg;
-  }
-
- private:
-  [[nodiscard]] double x(double time_s) const {
-    return left + (time_s - time_.lowest) / (time_.highest - time_.lowest) * (width - left - right_margin);
-  }
-
-  static double y(double value, const Range& range, double upper) {
-    return upper + (range.highest - value) / (range.highest - range.lowest) * panel_height;
-  }
-
-  [[nodiscard]] std::string grid(const Range& range, double upper) const {
-    const double lower = upper + panel_height;
-    std::string svg;
-    const double rise = tick_distance(range);
-    // Adding zero makes no minus of a zero that was rounded from below.
-    for (double n = std::ceil(range.lowest / rise) + 0.0; n * rise <= range.highest; n += 1.0) {
-      const double height = y(n * rise, range, upper);
-      svg += line(left, height, width - right_margin, height, "#ddd");
-      svg += label(left - 6, height + 4, "end", text("%.6g", n * rise));
-    }
-    const double step = tick_distance(time_);
-    for (double n = 0.0; n * step <= time_.highest; n += 1.0) {
-      svg += line(x(n * step), upper, x(n * step), lower, "#ddd");
-      svg += label(x(n * step), lower + 16, "middle", text("%.6g", n * step));
-    }
-    svg += label((left + width - right_margin) / 2, lower + 32, "middle", "time [s]");
-    return svg + text(
-                     "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"none\" "
-                     "stroke=\"#444\"/>\n",
-                     left, upper, width - left - right_margin, panel_height);
-  }
-
-  [[nodiscard]] std::string curve(const Series& series, const Range& range, double upper) const {
-    const std::size_t stride = run_.rows.size() / most_points + 1;
-    std::string points;
-    for (std::size_t n = 0; n < run_.rows.size(); n += stride) {
-      if (const std::optional<double> value = series.value(run_.rows[n])) {
-        points += text("%.1f,%.1f ", x(run_.rows[n].time_s), y(*value, range, upper));
-      }
-    }
-    return "<polyline fill=\"none\" stroke=\"" + std::string(series.colour) + "\" points=\"" + points +
-           "\"/>\n";
-  }
-
-  const StepRun& run_;
-  Range time_;
-};
-
-std::array<Panel, panels> panels_of() {
-  return {
-      Panel{"position [counts]",
-            {{"measured", "#0b62a4", [](const StepRow& row) { return row.position_counts; }},
-             {"setpoint", "#d1495b", [](const StepRow& row) { return row.setpoint.position_counts; }}}},
-      Panel{"velocity [counts/s]",
-            {{"estimated", "#9aa5b1", [](const StepRow& row) { return row.estimated_velocity_counts_per_s; }},
-             {"true", "#0b62a4", [](const StepRow& row) { return row.true_velocity_counts_per_s; }},
-             {"setpoint", "#d1495b", [](const StepRow& row) { return row.setpoint.velocity_counts_per_s; }}}},
-      Panel{"control output [drive]", {{"drive", "#0b62a4", [](const StepRow& row) { return row.drive; }}}}};
+  return made;
 }
 
 }  // namespace
 
 std::string step_svg(const StepRun& run, const std::string& title) {
-  const double height = top + panels * panel_distance - bottom_margin;
-  std::string svg = text(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\" width=\"%.0f\" "
-      "height=\"%.0f\" font-family=\"sans-serif\" font-size=\"12\">\n",
-      width, height, width, height);
-  svg += "<title>" + escaped(title) + "</title>\n";
-  svg += text("<rect width=\"%.0f\" height=\"%.0f\" fill=\"#fff\"/>\n", width, height);
-  svg += "<g font-size=\"15\">" + label(width / 2, 20, "middle", title) + "</g>\n";
-  const Sheet sheet(run);
-  int place = 0;
-  for (const Panel& panel : panels_of()) {
-    svg += sheet.draw(panel, place++);
+  TimeChart chart{title, {}, {}};
+  for (const StepRow& row : run.rows) {
+    chart.times_s.push_back(row.time_s);
   }
-  return svg + "</svg>\n";
+  chart.panels = {
+      {"position [counts]",
+       {series(run, "measured", blue, [](const StepRow& row) { return row.position_counts; }),
+        series(run, "setpoint", red, [](const StepRow& row) { return row.setpoint.position_counts; })}},
+      {"velocity [counts/s]",
+       {series(run, "estimated", grey,
+               [](const StepRow& row) { return row.estimated_velocity_counts_per_s; }),
+        series(run, "true", blue, [](const StepRow& row) { return row.true_velocity_counts_per_s; }),
+        series(run, "setpoint", red, [](const StepRow& row) { return row.setpoint.velocity_counts_per_s; })}},
+      {"control output [drive]", {series(run, "drive", blue, [](const StepRow& row) { return row.drive; })}}};
+  return svg_of(chart);
 }
 
 }  // namespace interlock

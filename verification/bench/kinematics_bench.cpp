@@ -164,13 +164,6 @@ nlohmann::json time_closed_form(const Robot& robot, std::vector<Pose>& poses) {
   return {{"fk", summary(std::move(forward_times))}, {"ik", inverse}};
 }
 
-RateLimits rates_of(const Axis& axis) {
-  const MotionRates rates = axis.motion.value_or(MotionRates{});
-  return {rates.velocity_counts_per_s / axis.counts_per_unit,
-          rates.acceleration_counts_per_s2 / axis.counts_per_unit,
-          rates.jerk_counts_per_s3 / axis.counts_per_unit};
-}
-
 /// All axes that move together get new targets somewhere on their way to the ones before.
 nlohmann::json time_replanning(const Robot& robot) {
   Generator generator(kSeed);
@@ -179,7 +172,7 @@ nlohmann::json time_replanning(const Robot& robot) {
   for (const Axis& axis : robot.axes) {
     if (axis.motion) {
       axes.push_back(&axis);
-      paths.push_back({{}, 0.0, rates_of(axis)});
+      paths.push_back({{}, 0.0, axis.motion->in_units(axis.counts_per_unit)});
     }
   }
   TickPlanner planner;

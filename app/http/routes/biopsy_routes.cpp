@@ -1,7 +1,10 @@
 #include "http/routes/biopsy_routes.hpp"
 
+#include <array>
+
 #include "http/fields.hpp"
 #include "http/problems.hpp"
+#include "http/tip_image.hpp"
 
 namespace interlock::web {
 namespace {
@@ -135,37 +138,24 @@ Reply BiopsyRoutes::take_image(const Call& call) const {
 }
 
 Reply BiopsyRoutes::show_image(const json& body) const {
-  Fields fields(body, {"tip_mm", "target_mm", "age_ms"});
+  constexpr std::array<std::string_view, 2> frames{"guide", "scanner"};
+  Fields fields(body, {"tip_mm", "target_mm", "age_ms", "frame"});
   const auto tip_mm = fields.numbers("tip_mm", 3);
   const auto target_mm = fields.numbers("target_mm", 3);
   const auto age_ms = fields.number("age_ms", 0.0, oldest_image_ms);
-  fields.require({{"tip_mm", "the tip in the guide frame"}, {"age_ms", "time since the exposure"}});
+  const auto frame = fields.choice("frame", frames);
+  fields.require({{"tip_mm", "the tip"}, {"age_ms", "time since the exposure"}});
   if (fields.problem()) {
     return fail(*fields.problem());
   }
-  const ControlView& view = context_.view();
-  const Proposal* open = context_.book.open_biopsy();
-  if (open == nullptr) {
-    return fail(Problem{.status = Status::conflict,
-                        .code = "NO_BIOPSY",
-                        .detail = "No biopsy is open, so nobody takes images of the needle.",
-                        .expected = "an open biopsy",
-                        .next_step = "Propose one by POST /api/proposals."});
-  }
-  const std::uint32_t ticks = view.snapshot.state.tick - open->biopsy.start_tick;
-  NeedleImage image;
-  image.time_s = ticks * (context_.robot.period_us * 1e-6) - *age_ms * 1e-3;
+  TipImage image;
+  image.frame = frame == "scanner" ? ImageFrame::scanner : ImageFrame::guide;
   image.tip_mm = point_of(*tip_mm);
   if (target_mm) {
     image.target_mm = point_of(*target_mm);
   }
-  if (!context_.book.show_image(image)) {
-    return fail(Problem{.status = Status::service_unavailable,
-                        .code = "OVERLOADED",
-                        .detail = "The control thread takes no more images now.",
-                        .next_step = "Send the next one."});
-  }
-  return show();
+  image.age_ms = *age_ms;
+  return show_tip_image(context_, image).and_then([&] { return show(); });
 }
 
 }  // namespace interlock::web

@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 
+#include "http/biopsy_draft.hpp"
 #include "http/fields.hpp"
 #include "http/path_drafts.hpp"
 #include "http/problems.hpp"
@@ -118,15 +119,15 @@ tl::expected<PoseWish, Problem> pose_of(const json& body) {
   return PoseWish{pose == "reachable", insert};
 }
 
-/** In the guide frame. */
-tl::expected<std::array<double, 3>, Problem> biopsy_target_of(const json& body) {
+/** In the guide frame; nothing: the target of the targeting. */
+tl::expected<std::optional<std::array<double, 3>>, Problem> biopsy_target_of(const json& body) {
   Fields fields(body, {"kind", "target_mm"});
   const auto target_mm = fields.numbers("target_mm", 3);
-  fields.require({{"target_mm", "a point in the guide frame"}});
   if (fields.problem()) {
     return fail(*fields.problem());
   }
-  return std::array{(*target_mm)[0], (*target_mm)[1], (*target_mm)[2]};
+  return target_mm ? std::optional(std::array{(*target_mm)[0], (*target_mm)[1], (*target_mm)[2]})
+                   : std::nullopt;
 }
 
 tl::expected<std::string, Problem> kind_in(const json& body) {
@@ -200,10 +201,7 @@ boost::asio::awaitable<tl::expected<Draft, Problem>> ProposalRoutes::draft_of(co
     if (!target_mm) {
       co_return fail(target_mm.error());
     }
-    if (const auto kernel = context_.need_kernel(); !kernel) {
-      co_return fail(kernel.error());
-    }
-    co_return context_.biopsy.draft(*target_mm, context_.view(), author);
+    co_return co_await biopsy_draft(context_, *target_mm, author);
   }
   if (*kind == "sweep") {
     co_return sweep_draft(context_.robot, *body, author);

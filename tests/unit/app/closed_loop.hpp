@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -74,6 +75,9 @@ class ClosedLoop {
   [[nodiscard]] OrderStatus order(std::uint32_t slot) const { return conductor_.orders()[slot]; }
   [[nodiscard]] const HomeStatus& home() const { return conductor_.home(); }
   [[nodiscard]] const PathStatus& path() const { return conductor_.path(); }
+  [[nodiscard]] std::optional<Setpoint> setpoint(std::uint32_t slot) const {
+    return conductor_.setpoint(slot);
+  }
   [[nodiscard]] const SweepStatus& sweep() const { return conductor_.sweep(); }
   [[nodiscard]] const BiopsyMode& biopsy() const { return conductor_.biopsy(); }
   void show(const SeenImage& image) { conductor_.see(image); }

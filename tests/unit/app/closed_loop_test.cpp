@@ -9,10 +9,9 @@ namespace interlock {
 namespace {
 
 using test::ClosedLoop;
+using test::minute_ticks;
 using test::neuro;
 using test::neuro_config;
-
-constexpr std::uint32_t minute_ticks = 60000;
 
 /** Latency of the link in ticks: the real clock, and the farthest that a simulated kernel runs ahead. */
 class ManualModeOnThePlant : public testing::TestWithParam<std::uint32_t> {};

@@ -84,6 +84,10 @@ class HttpTest : public StoreFixture {
  protected:
   explicit HttpTest(std::chrono::milliseconds patience_with_store = StoreGateway::usual_patience);
 
+  /** Of another robot than the NeuroRobot. Both must outlive the test. */
+  HttpTest(const Robot& robot, const ilk_config_t& config,
+           std::chrono::milliseconds patience_with_store = StoreGateway::usual_patience);
+
   ~HttpTest() override;
 
   /** From now on requests come from a new session of that user. */
@@ -149,6 +153,8 @@ class HttpTest : public StoreFixture {
     done.get_future().get();
   }
 
+  const Robot& robot_;
+  const ilk_config_t& config_;
   std::chrono::milliseconds patience_with_store_;
   test::TemporaryFolder web_;
   std::string token_;
@@ -158,8 +164,8 @@ class HttpTest : public StoreFixture {
   std::unique_ptr<Mailbox> mailbox_ = std::make_unique<Mailbox>();
   StoreGateway gateway_{network_.get_executor(), store_, patience_with_store_};
   Api api_{network_.get_executor(),
-           test::neuro(),
-           test::neuro_config(),
+           robot_,
+           config_,
            *mailbox_,
            "",
            gateway_,

@@ -9,10 +9,9 @@ namespace interlock {
 namespace {
 
 using test::insertion;
+using test::minute_ticks;
 using test::neuro;
 using test::neuro_config;
-
-constexpr std::uint32_t minute_ticks = 60000;
 
 class ManualModeTest : public testing::Test {
  protected:

@@ -187,6 +187,107 @@ TEST_P(PathModeOnThePlant, TheProstateRobotsSlidersMoveTogether) {
   EXPECT_EQ(loop.refusals(), 0u);
 }
 
+/** Largest change of an axis' velocity setpoint from a tick to the next, from rest on, and back to it. */
+class VelocitySteps {
+ public:
+  VelocitySteps(const ClosedLoop& loop, std::uint32_t slot) : loop_(loop), slot_(slot) {}
+
+  void look() {
+    const auto setpoint = loop_.setpoint(slot_);
+    // A release takes the motor's power: what the setpoint was then has no bearing on what comes.
+    if (const double now = setpoint ? setpoint->velocity_counts_per_s : 0.0; setpoint) {
+      largest_ = std::max(largest_, std::abs(now - before_));
+      before_ = now;
+    } else {
+      before_ = 0.0;
+    }
+  }
+
+  [[nodiscard]] double largest() const { return largest_; }
+
+ private:
+  const ClosedLoop& loop_;
+  std::uint32_t slot_;
+  double before_ = 0.0;
+  double largest_ = 0.0;
+};
+
+/** A motion that no planner makes: it would have to last for eleven days. */
+TEST_P(PathModeOnThePlant, APlanThatFailsInMotionStopsTheAxesWithinTheirCoast) {
+  ClosedLoop loop(53, GetParam());
+  loop.make_all_ready();
+  const PathProgram there = move_of(neuro_targets);
+  const PathProgram nowhere = move_of(neuro_targets, 1e6);
+  (void)loop.carry_out({1, &there, 0}, 1500);
+  std::array<double, ILK_SLOTS> before{};
+  for (const AxisCounts& target : neuro_targets) {
+    before[target.slot] = loop.true_position(target.slot);
+  }
+  const PathStatus status = loop.carry_out({2, &nowhere, 0}, 100);
+  EXPECT_EQ(status.order.phase, OrderPhase::aborted);
+  EXPECT_EQ(status.order.reason, OrderReason::no_path);
+  loop.run(2 + GetParam());
+  for (const AxisCounts& target : neuro_targets) {
+    EXPECT_EQ(loop.outputs().command[target.slot].drive, 0u) << target.slot;
+  }
+  loop.run(500);
+  for (const AxisCounts& target : neuro_targets) {
+    const Axis& axis = *neuro().at_slot(target.slot);
+    // What it goes until the MOVE is taken back, and then its coast.
+    const double latency_s = 0.001 * (2 + GetParam());
+    const double farthest =
+        latency_s * axis.motion->full_speed_counts_per_s + axis.mechanics.coast_counts + 1;
+    EXPECT_LE(std::abs(loop.true_position(target.slot) - before[target.slot]), farthest) << axis.name;
+  }
+  EXPECT_EQ(loop.refusals(), 0u);
+}
+
+/** Its rows go straight at 0.6 rad/s from the first moment on, which is 477 counts/s. */
+TEST_P(PathModeOnThePlant, ATrajectoryThatBeginsInMotionIsBegunAtTheVelocityOfItsAxes) {
+  ClosedLoop loop(31, GetParam());
+  loop.make_all_ready();
+  const auto trajectory =
+      read_trajectory("time [s],yaw [rad],yaw [rad/s]\n0,-0.1,-0.6\n1,-0.7,-0.6\n2,-1.0,0\n", neuro());
+  ASSERT_TRUE(trajectory) << trajectory.error().message();
+  const PathProgram program = program_of({TimedLeg{*trajectory}});
+  VelocitySteps steps(loop, test::yaw);
+  loop.watch([&] { steps.look(); });
+  (void)loop.carry_out({1, &program, 0}, 1200);
+  ASSERT_EQ(loop.path().order.phase, OrderPhase::executing);
+  loop.pedal(false);
+  loop.pedal(true);
+  for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.path().order.phase); ++i) {
+    loop.tick();
+  }
+  expect_done(loop.path());
+  const double acceleration = neuro().at_slot(test::yaw)->motion->acceleration_counts_per_s2;
+  EXPECT_LE(steps.largest(), 1.01 * acceleration * 0.001);
+  EXPECT_EQ(loop.refusals(), 0u);
+}
+
+/** The order before is ended by the one that follows, at some 600 counts/s and with the pedal held. */
+TEST_P(PathModeOnThePlant, APathThatReplacesAnotherBeginsAtTheVelocityThatItsAxesHave) {
+  ClosedLoop loop(37, GetParam());
+  loop.make_all_ready();
+  const PathProgram there = move_of({{test::yaw, -600}});
+  const PathProgram elsewhere = move_of({{test::yaw, -700}});
+  (void)loop.carry_out({1, &there, 0}, 600);
+  const double before = loop.true_position(test::yaw);
+  loop.tick();
+  const double speed = (loop.true_position(test::yaw) - before) / 0.001;
+  ASSERT_LT(speed, -400.0);
+  std::optional<double> begun;
+  loop.watch([&] {
+    if (const auto setpoint = loop.setpoint(test::yaw); setpoint && !begun) {
+      begun = setpoint->velocity_counts_per_s;
+    }
+  });
+  expect_done(loop.carry_out({2, &elsewhere, 0}, minute_ticks));
+  ASSERT_TRUE(begun);
+  EXPECT_NEAR(*begun, speed, 60.0);
+  expect_at(loop, neuro(), {{test::yaw, -700}});
+}
+
 INSTANTIATE_TEST_SUITE_P(Latency, PathModeOnThePlant, testing::Values(1u, 8u));
 
 /** At nine tenths of their ways. What a controller cannot see, the way of one count, is allowed besides. */

@@ -151,6 +151,13 @@ TEST_F(PathProposalTest, AFileWaitsForApprovalAndIsCheckedAnewThen) {
   EXPECT_EQ(twice.error().code, "NOT_WAITING");
 }
 
+TEST_F(PathProposalTest, AMotionThatCouldNotBePlannedIsToldInWords) {
+  ASSERT_TRUE(book_.propose_path(draft_to({{test::yaw, -300}}), view_));
+  report(1, OrderPhase::aborted, OrderReason::no_path);
+  EXPECT_EQ(state(1), ProposalState::aborted);
+  EXPECT_THAT(book_.find(1)->detail, testing::HasSubstr("No motion within the rates of the axes"));
+}
+
 TEST_F(PathProposalTest, ALockDiscardsWhatWaits) {
   ASSERT_TRUE(book_.propose_path(file_draft(), view_));
   view_.snapshot.state.mode = ILK_MODE_LOCKED;

@@ -1,5 +1,6 @@
 #include "robot_fixture.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "robot/compile.hpp"
@@ -8,6 +9,11 @@ namespace interlock::test {
 
 const ilk_config_t& neuro_config() {
   static const ilk_config_t config = config_of(neuro());
+  return config;
+}
+
+const ilk_config_t& prostate_config() {
+  static const ilk_config_t config = config_of(prostate());
   return config;
 }
 
@@ -36,6 +42,23 @@ ControlView ready_view(const Robot& robot) {
     state.card_valid = 1;
     state.position_counts = (axis.soft_limits.min_counts + axis.soft_limits.max_counts) / 2;
   }
+  return view;
+}
+
+ControlView needle_view(std::uint32_t hand_counts, std::uint32_t needle_counts) {
+  ControlView view = ready_view(prostate());
+  for (const Axis& axis : prostate().axes) {
+    std::int32_t& position = view.snapshot.state.axis[axis.slot].position_counts;
+    const bool is_slider = axis.role != "insertion" && axis.role != "rotation";
+    const std::int32_t parked = position < 0 ? -375000 : 375000;
+    position = is_slider ? parked : std::max(0, axis.lowest_setpoint_counts());
+  }
+  view.force.count = 1000;
+  view.force.tick = view.snapshot.state.tick;
+  view.force.hand = hand_counts;
+  view.force.needle = needle_counts;
+  view.force.last_hand.fill(hand_counts);
+  view.force.last_needle.fill(needle_counts);
   return view;
 }
 

@@ -21,6 +21,7 @@ constexpr std::uint32_t angles = 1;
 constexpr std::uint32_t minute_ticks = 60000;
 
 const ilk_config_t& neuro_config();
+const ilk_config_t& prostate_config();
 
 /** The kernel's configuration of a robot, which must be valid. */
 ilk_config_t config_of(const Robot& robot);
@@ -28,5 +29,8 @@ ilk_config_t config_of(const Robot& robot);
 /** A view of an attached kernel in READY, every axis homed at the middle of its range and enabled. */
 ControlView ready_view();
 ControlView ready_view(const Robot& robot);
+
+/** The same of the prostate robot, its sliders parked and its needle out; both forces were read now. */
+ControlView needle_view(std::uint32_t hand_counts = 1970, std::uint32_t needle_counts = 1780);
 
 }  // namespace interlock::test

@@ -18,7 +18,7 @@ using test::prostate;
 /** Slot of the prostate robot's needle rotation. */
 constexpr std::uint32_t needle_turn = 0;
 
-const ilk_axis_config_t& rules() {
+const ilk_axis_config_t& rotation_rules() {
   static const ilk_config_t config = test::config_of(prostate());
   return config.axis[needle_turn];
 }
@@ -60,7 +60,7 @@ class SweepModeTest : public testing::TestWithParam<std::uint32_t> {
 TEST_P(SweepModeTest, EachFrequencyIsHeldAndALowerOneTurnsFaster) {
   constexpr std::uint32_t count = 8;
   loop_.watch([&] {
-    ASSERT_LE(drive(), rules().max_drive);
+    ASSERT_LE(drive(), rotation_rules().max_drive);
     ASSERT_TRUE(drive() == 0 || drive() >= prostate().at_slot(needle_turn)->drive.min) << drive();
   });
   loop_.give(whole(count, 600));
@@ -113,9 +113,9 @@ TEST_P(SweepModeTest, TheAxisTurnsRoundBeforeItsLimitsAndRestsBetween) {
   ASSERT_EQ(loop_.sweep().order.phase, OrderPhase::done);
   EXPECT_GE(turns, 3u);
   EXPECT_GE(shortest_rest, 50u);
-  EXPECT_GE(lowest, rules().min_counts);
-  EXPECT_LE(highest, rules().max_counts);
-  EXPECT_LT(lowest, rules().min_counts / 2);
+  EXPECT_GE(lowest, rotation_rules().min_counts);
+  EXPECT_LE(highest, rotation_rules().max_counts);
+  EXPECT_LT(lowest, rotation_rules().min_counts / 2);
 }
 
 TEST_P(SweepModeTest, ReleasePausesAndTheNextPressGoesOnWithTheSameFrequency) {

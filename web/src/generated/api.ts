@@ -1027,7 +1027,9 @@ export interface components {
          *     after the other, and rests at each. `sweep` turns the high-frequency `axis` at one frequency after the other, `from_hz` to
          *     `to_hz` in steps of `step_hz`, each for `dwell_s` of driven time, to and fro within its range; frequencies outside of the axis'
          *     allowed band are refused (DRIVE), and so is the published range. `biopsy` has the surgeon's hand push the needle towards
-         *     `target_mm` (docs/biopsy.md): FORCE_STALE without a force of the last 20 ms, IN_TISSUE when the tip is past the skin.
+         *     `target_mm`, or without it towards the target point of the targeting (docs/biopsy.md): FORCE_STALE without a force of the last 20 ms,
+         *     IN_TISSUE when the tip is past the skin; NO_TARGET, NOT_HOMED or UNREACHABLE when the targeting's target cannot be had from where the
+         *     needle is. A biopsy that followed from the targeting ends when that changes.
          */
         ProposalDraft: {
             /**
@@ -1035,7 +1037,7 @@ export interface components {
              * @enum {string}
              */
             kind: "move" | "home" | "coordinated" | "pose" | "trajectory" | "draping" | "ablation" | "sweep" | "biopsy";
-            /** @description Of a biopsy: target in the guide frame, see NeedleImage. */
+            /** @description Of a biopsy: target in the guide frame, see NeedleImage; without it the target point of the targeting. */
             target_mm?: number[];
             /** @description Of a sweep: name of a high-frequency axis. */
             axis?: string;
@@ -1074,6 +1076,8 @@ export interface components {
             kind: "move" | "home" | "path" | "sweep" | "biopsy";
             /** @description Of a biopsy: in the guide frame. */
             target_mm?: number[];
+            /** @description Of a biopsy at the target of the targeting: in the scanner (RAS), mm. */
+            target_point?: number[];
             /** @description Of a path, a sweep and a biopsy: as in /api/mode. */
             mode?: string;
             /** @description Of a sweep: driven time at each frequency. */
@@ -1253,8 +1257,17 @@ export interface components {
             /** @default 0 */
             next: number;
         };
-        /** @description In the guide frame: origin where the tip touches the skin, z ahead; at rotation 0 the bevel bends the path towards -y. */
+        /**
+         * @description The guide frame: origin where the tip touches the skin, z ahead; at rotation 0 the bevel bends the path towards -y. Points of the scanner
+         *     (RAS) are taken for a biopsy at the target of the targeting (else 409 NO_FRAME).
+         */
         NeedleImage: {
+            /**
+             * @description Of both points.
+             * @default guide
+             * @enum {string}
+             */
+            frame: "guide" | "scanner";
             tip_mm: number[];
             target_mm?: number[];
             /** @description Since its exposure. */
