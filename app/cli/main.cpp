@@ -71,6 +71,10 @@ void add_run(CLI::App& cli, RunOptions& options) {
       ->capture_default_str();
   command->add_option("--igtl-port", options.igtl_port,
                       "Port for OpenIGTLink, in place of the robot file's; 0 takes one that is free");
+  command
+      ->add_option("--igtl-dialect", options.igtl_dialect,
+                   "Dialect of OpenIGTLink, in place of the robot file's: thesis, brp2013 or wpi2024")
+      ->check(CLI::IsMember({"thesis", "brp2013", "wpi2024"}));
   const std::map<std::string, ClockChoice> clocks{{"real", ClockChoice::real}, {"sim", ClockChoice::sim}};
   CLI::Option* const clock =
       command
