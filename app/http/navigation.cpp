@@ -295,6 +295,7 @@ asio::awaitable<void> Navigation::keep_targeting() {
 asio::awaitable<void> Navigation::tell_all() {
   asio::steady_timer timer(context_.executor);
   SteadyTime next_telling;
+  SteadyTime next_due;
   for (;;) {
     timer.expires_after(fastest_tracking);
     const auto [error] = co_await timer.async_wait(navigation_result);
@@ -309,6 +310,9 @@ asio::awaitable<void> Navigation::tell_all() {
       next_telling = now + telling_period;
       velocities_.measure(context_.robot, context_.view());
       tell_messages(now);
+    }
+    if (now >= next_due) {
+      next_due = now + (is_moving() ? motion_period : telling_period);
       tell_what_is_due(now);
     }
     tell_tracking(now);
@@ -335,11 +339,17 @@ void Navigation::tell_messages(SteadyTime now) {
   }
 }
 
+/** Whether a motion is approved that a controller's loss has to end. */
+bool Navigation::is_moving() const {
+  return mandate_ && (context_.book.open_mode() != nullptr || context_.book.open_home() != nullptr);
+}
+
 /** In order with the answers. */
 void Navigation::tell_what_is_due(SteadyTime now) {
   const igtl::RobotState present = state();
   for (auto& [peer, session] : sessions_) {
-    for (const auto& [name, body] : session.dialect->beat(now, present)) {
+    const bool has_to_hear = is_moving() && mandate_->peer == peer;
+    for (const auto& [name, body] : session.dialect->beat(now, present, has_to_hear)) {
       hub_.reply(peer, name, body);
     }
   }

@@ -42,6 +42,9 @@ class Navigation {
   static constexpr std::size_t backlog = 64;
   /** Between two looks at what has changed and is to be told. */
   static constexpr std::chrono::milliseconds telling_period{100};
+  /** Between two messages to the controller while something moves: that its machine is gone shows by one that
+   * is not acknowledged. */
+  static constexpr std::chrono::milliseconds motion_period{50};
   /** Between two health messages, although nothing has changed. */
   static constexpr std::chrono::milliseconds health_period{1000};
 
@@ -119,6 +122,7 @@ class Navigation {
   void tell_messages(SteadyTime now);
   void tell_what_is_due(SteadyTime now);
   void tell_tracking(SteadyTime now);
+  [[nodiscard]] bool is_moving() const;
   [[nodiscard]] igtl::RobotState state() const;
 
   const Context& context_;

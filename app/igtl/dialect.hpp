@@ -89,8 +89,9 @@ class Dialect {
   /** What is to be told whenever it changes. */
   [[nodiscard]] virtual Outgoings told(const RobotState& state) const = 0;
 
-  /** What is due by now; asked ten times a second. */
-  virtual Outgoings beat(Time now, const RobotState& state) = 0;
+  /** What is due by now; asked ten times a second and more. `has_to_hear`: something at least, by which it is
+   * seen whether the peer is still there. */
+  virtual Outgoings beat(Time now, const RobotState& state, bool has_to_hear) = 0;
 };
 
 /** The dialect of that name of the robot's file, for one connection; null when there is none. */

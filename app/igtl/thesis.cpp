@@ -84,6 +84,19 @@ Reading mode_of_text(const Message& message) {
   return SetMode{std::move(mode)};
 }
 
+/** Heard from an imager, and noted when it can be one. */
+Reading tip_pose(const Message& message) {
+  const auto* transform = std::get_if<Transform>(&message.body);
+  if (transform == nullptr) {
+    return wrong_type(message, "TRANSFORM");
+  }
+  if (!is_rigid(transform->matrix)) {
+    return unwanted(StatusCode::configuration,
+                    message.device + " is no rigid motion; expected R^T R = 1 within 0.001, determinant 1.");
+  }
+  return Noted{};
+}
+
 /** One name of the dialect. */
 struct Name {
   std::string_view name;
@@ -93,11 +106,7 @@ struct Name {
 constexpr std::array<Name, 15> names{{
     {"registration", with_matrix<SetRegistration>},
     {"current_pose", with_matrix<ReportPose>},
-    {"tip_pose",
-     [](const Message& message) -> Reading {
-       return std::holds_alternative<Transform>(message.body) ? Reading(Noted{})
-                                                              : wrong_type(message, "TRANSFORM");
-     }},
+    {"tip_pose", tip_pose},
     {"imager_status",
      [](const Message& message) -> Reading {
        return std::holds_alternative<Text>(message.body) ? Reading(Noted{})
@@ -195,7 +204,9 @@ Outgoings Thesis::follow(const Motion& motion, const RobotState& /*state*/) {
   return {{"proposal", motion.status}};
 }
 
-Outgoings Thesis::beat(Time /*now*/, const RobotState& /*state*/) { return {}; }
+Outgoings Thesis::beat(Time /*now*/, const RobotState& state, bool has_to_hear) {
+  return has_to_hear ? Outgoings{{"robot_status", state.health}} : Outgoings{};
+}
 
 Outgoings Thesis::told(const RobotState& state) const { return messages_of(state); }
 

@@ -19,7 +19,7 @@ class Thesis final : public Dialect {
   Reaction finish(const std::string& device, const Wish& wish, const Outcome& outcome) override;
   Outgoings follow(const Motion& motion, const RobotState& state) override;
   [[nodiscard]] Outgoings told(const RobotState& state) const override;
-  Outgoings beat(Time now, const RobotState& state) override;
+  Outgoings beat(Time now, const RobotState& state, bool has_to_hear) override;
 };
 
 /** What the message, which is no query, asks for. */

@@ -341,10 +341,13 @@ Outgoings Workphases::told(const RobotState& state) const {
   return {{error_name, state.health}};
 }
 
-Outgoings Workphases::beat(Time now, const RobotState& state) {
+Outgoings Workphases::beat(Time now, const RobotState& state, bool has_to_hear) {
   Outgoings due;
   if (phase_ == Phase::move_to_target && aim_ != Aim::nothing) {
     due = position_of(state);
+  }
+  if (due.empty() && has_to_hear) {
+    due.emplace_back(current_status_name, current_status(StatusCode::ok));
   }
   for (auto& [name, since] : expected_) {
     since = since.value_or(now);

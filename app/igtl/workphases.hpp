@@ -30,7 +30,7 @@ class Workphases : public Dialect {
   Reaction finish(const std::string& device, const Wish& wish, const Outcome& outcome) override;
   Outgoings follow(const Motion& motion, const RobotState& state) override;
   [[nodiscard]] Outgoings told(const RobotState& state) const override;
-  Outgoings beat(Time now, const RobotState& state) override;
+  Outgoings beat(Time now, const RobotState& state, bool has_to_hear) override;
 
  protected:
   /** Why the phase may not be entered now; empty: it may. */

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "igtl/header.hpp"
+
 namespace interlock::igtl {
 namespace {
 
@@ -85,7 +87,7 @@ Reaction Wpi2024::take_text(const std::string& name, const Text& text, const Rob
     return refuse("ACK_" + name, StatusCode::unknown_instruction,
                   "Steering is not tuned from the network; the robot's file says how it steers.");
   }
-  return refuse("ACK_" + name, StatusCode::invalid,
+  return refuse(("ACK_" + name).substr(0, device_width), StatusCode::invalid,
                 "The name \"" + name + "\" means nothing here; docs/openigtlink.md lists the names.");
 }
 

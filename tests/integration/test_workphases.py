@@ -47,9 +47,12 @@ class Phases(Navigator):
         """What was heard since then."""
         return [message for _, message in self.heard.all[self.since :]]
 
-    def shorts(self) -> list[str]:
+    def answers(self) -> list[wire.MessageBase]:
         """The same, the stream of positions apart."""
-        return [short(each) for each in self.messages() if each.device_name != "CURRENT_POSITION"]
+        return [each for each in self.messages() if each.device_name != "CURRENT_POSITION"]
+
+    def shorts(self) -> list[str]:
+        return [short(each) for each in self.answers()]
 
     def expect(self, message: wire.MessageBase, *answers: str) -> list[wire.MessageBase]:
         """Exactly these answers come, in this order; ACK and CURRENT_STATUS within their limit."""
@@ -61,7 +64,7 @@ class Phases(Navigator):
         for at, each in messages:
             if each.device_name.startswith("ACK_") or each.device_name == "CURRENT_STATUS":
                 assert at - sent < LIMIT_S, f"{short(each)} after {at - sent:.3f} s"
-        return self.messages()
+        return self.answers()
 
     def await_answers(self, *answers: str) -> None:
         deadline = time.monotonic() + DEADLINE_S

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 namespace interlock::igtl {
 namespace {
 
@@ -27,6 +29,33 @@ TEST(Thesis, PoseOfAnImagerIsReportedAndNoMore) {
   EXPECT_TRUE(std::holds_alternative<Noted>(wish_of("TIP_POSE", Transform{}).value()));
   EXPECT_TRUE(std::holds_alternative<Noted>(wish_of("IMAGER_STATUS", Text{"scanning"}).value()));
   EXPECT_TRUE(std::holds_alternative<Noted>(wish_of("IMAGER_STATUS", Status{}).value()));
+}
+
+TEST(Thesis, ATipPoseThatIsNoRigidMotionIsRefused) {
+  const Matrix mirror{-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  const Matrix shear{1, 0.01, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  const Matrix twice{2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1};
+  for (const Matrix& wrong : {mirror, shear, twice, Matrix{}}) {
+    EXPECT_EQ(wish_of("TIP_POSE", Transform{wrong}).error().code, StatusCode::configuration);
+  }
+  const double angle = 0.3;
+  const Matrix turned{std::cos(angle),
+                      -std::sin(angle),
+                      0,
+                      5,
+                      std::sin(angle),
+                      std::cos(angle),
+                      0,
+                      6,
+                      0,
+                      0,
+                      1,
+                      7,
+                      0,
+                      0,
+                      0,
+                      1};
+  EXPECT_TRUE(wish_of("TIP_POSE", Transform{turned}).has_value());
 }
 
 TEST(Thesis, APointComesAsPointPositionOrPose) {

@@ -78,7 +78,9 @@ class Talk {
     return shorts(dialect_->follow({proposal, true, {code, proposal, "done", ""}}, state));
   }
 
-  Shorts due(std::chrono::milliseconds after) { return shorts(dialect_->beat(Dialect::Time(after), state)); }
+  Shorts due(std::chrono::milliseconds after, bool has_to_hear = false) {
+    return shorts(dialect_->beat(Dialect::Time(after), state, has_to_hear));
+  }
 
   /** Up to a stored target. */
   void target() {
@@ -187,6 +189,15 @@ TEST_P(EachDialect, TheMoveStreamsThePositionAndEndsWithItsStatusAndOnePositionM
   EXPECT_EQ(talk.due(60000ms), Shorts{"CURRENT_POSITION TRANSFORM"}) << "a stream is no silence";
   EXPECT_EQ(talk.over(8), (Shorts{"MOVE_TO_TARGET 1", "CURRENT_POSITION TRANSFORM"}));
   EXPECT_EQ(talk.due(60100ms), Shorts{});
+}
+
+TEST_P(EachDialect, WhileItMovesTheControllerHearsSomething) {
+  talk.target();
+  talk.ask("MOVE_TO_TARGET");
+  talk.proposed(8);
+  EXPECT_EQ(talk.due(50ms, true), Shorts{"CURRENT_POSITION TRANSFORM"});
+  talk.state.measured_cp.reset();
+  EXPECT_EQ(talk.due(100ms, true), Shorts{"CURRENT_STATUS 1 MOVE_TO_TARGET"});
 }
 
 TEST_P(EachDialect, AMoveThatIsAbortedSaysSo) {
