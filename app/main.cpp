@@ -50,6 +50,7 @@ struct Options {
   std::string state_directory;
   std::string log_level = "info";
   std::optional<std::uint16_t> igtl_port; /**< in place of the robot file's */
+  std::string igtl_dialect;               /**< in place of the robot file's, unless empty */
 };
 
 /** The robot and the configuration that the kernel was started with. */
@@ -76,6 +77,9 @@ void describe(CLI::App& cli, Options& options) {
   cli.add_option("--igtl-port", options.igtl_port,
                  "port for OpenIGTLink, in place of the robot file's; 0: any")
       ->check(CLI::Range(0, 65535));
+  cli.add_option("--igtl-dialect", options.igtl_dialect,
+                 "dialect of OpenIGTLink, in place of the robot file's: thesis, brp2013 or wpi2024")
+      ->check(CLI::IsMember({"thesis", "brp2013", "wpi2024"}));
   cli.add_option("--log-level", options.log_level, "debug, info, warning, error or critical")
       ->check(CLI::IsMember({"debug", "info", "warning", "error", "critical"}))
       ->capture_default_str();
@@ -174,10 +178,21 @@ tl::expected<void, std::string> listen_for_navigation(const Options& options, co
   }
   const OpenIgtLink link = robot.openigtlink.value_or(OpenIgtLink{});
   const auto port = options.igtl_port.value_or(static_cast<std::uint16_t>(link.port));
+  web::NavigationOptions wanted{options.igtl_dialect.empty() ? link.dialect : options.igtl_dialect,
+                                link.first_controls, std::nullopt};
+  if (!link.connect_address.empty()) {
+    boost::system::error_code error;
+    const auto address = boost::asio::ip::make_address(link.connect_address, error);
+    if (error) {
+      return tl::make_unexpected(options.robot_file + ": [openigtlink] connect: \"" + link.connect_address +
+                                 "\" is no address; expected one such as 10.0.0.7");
+    }
+    wanted.connect = boost::asio::ip::tcp::endpoint(address, static_cast<std::uint16_t>(link.connect_port));
+  }
   return navigation.hub()
       .listen({link.bind, port, link.allow, std::chrono::milliseconds(link.heartbeat_ms)})
       .map([&] {
-        navigation.start();
+        navigation.start(std::move(wanted));
         spdlog::info("OpenIGTLink listens on {}:{}", link.bind, navigation.hub().port());
         std::cout << "OpenIGTLink " << link.bind << ':' << navigation.hub().port() << std::endl;
       });

@@ -12,6 +12,7 @@
 #include "build_info/build_info.hpp"
 #include "cli/demo_command.hpp"
 #include "cli/exit_code.hpp"
+#include "cli/igtl_command.hpp"
 #include "cli/installation.hpp"
 #include "cli/kinematics_command.hpp"
 #include "cli/model_commands.hpp"
@@ -26,7 +27,7 @@ namespace interlock::cli {
 namespace {
 
 constexpr const char* footer =
-    "Exit codes: 0 done; 1 refused: robot file, input line, trajectory, broken audit, rule of the store;\n"
+    "Exit codes: 0 done; 1 refused: robot file, input line, trajectory, broken audit, rule of the store, message;\n"
     "2 command line not understood; 3 something stands in the way (busy port, second instance, missing "
     "file);\n"
     "4 kernel or simulator ended; 5 the app kept ending; 6 no answer.";
@@ -58,6 +59,7 @@ struct CommandLine {
   TrajectoryOptions trajectory;
   DemoCommandOptions demo;
   TuneOptions tune;
+  IgtlOptions igtl;
   std::filesystem::path model;
   bool model_json = false;
   std::filesystem::path config;
@@ -71,6 +73,10 @@ void add_run(CLI::App& cli, RunOptions& options) {
       ->capture_default_str();
   command->add_option("--igtl-port", options.igtl_port,
                       "Port for OpenIGTLink, in place of the robot file's; 0 takes one that is free");
+  command
+      ->add_option("--igtl-dialect", options.igtl_dialect,
+                   "Dialect of OpenIGTLink, in place of the robot file's: thesis, brp2013 or wpi2024")
+      ->check(CLI::IsMember({"thesis", "brp2013", "wpi2024"}));
   const std::map<std::string, ClockChoice> clocks{{"real", ClockChoice::real}, {"sim", ClockChoice::sim}};
   CLI::Option* const clock =
       command
@@ -230,6 +236,9 @@ Result<void> execute(const CLI::App& cli, const CommandLine& line) {
   if (cli.got_subcommand("tune")) {
     return tune(line.tune, Installation::current(), std::cout);
   }
+  if (const CLI::App& igtl = *cli.get_subcommand("igtl"); igtl.parsed()) {
+    return speak_igtl(igtl, line.igtl, std::cout);
+  }
   const CLI::App& model = *cli.get_subcommand("model");
   return model.got_subcommand("check") ? check_model(line.model, line.model_json, std::cout)
                                        : compile_model(line.model, line.config, std::cout);
@@ -256,6 +265,7 @@ int main(int argc, char** argv) {
   add_trajectory(cli, line.trajectory);
   add_tune(cli, line.tune);
   add_demo(cli, line.demo);
+  add_igtl(cli, line.igtl);
   add_model(cli, line);
   line.store.describe(cli);
   try {

@@ -104,6 +104,9 @@ Program app(const RunOptions& options, const Places& places, const RuntimeDirect
   if (places.web) {
     program.arguments.insert(program.arguments.end(), {"--web", *places.web});
   }
+  if (!options.igtl_dialect.empty()) {
+    program.arguments.insert(program.arguments.end(), {"--igtl-dialect", options.igtl_dialect});
+  }
   if (options.igtl_port) {
     program.arguments.insert(program.arguments.end(), {"--igtl-port", std::to_string(*options.igtl_port)});
   }

@@ -22,6 +22,7 @@ struct RunOptions {
   std::string robot = "neuro";            /**< name or file */
   std::uint16_t port = 8080;              /**< 0: one that is free */
   std::optional<std::uint16_t> igtl_port; /**< for OpenIGTLink, in place of the robot file's */
+  std::string igtl_dialect;               /**< in place of the robot file's, unless empty */
   ClockChoice clock = ClockChoice::real;
   std::optional<double> speed;       /**< simulated clock: multiple of real time, 0 as fast as possible */
   std::optional<std::uint32_t> seed; /**< of the simulated hardware */

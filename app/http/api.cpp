@@ -108,7 +108,7 @@ void Api::follow_sessions() {
     if (holder_changed) {
       control_.change_holder(authority_.number());
       book_.abort_all("The motion authority changed.");
-      navigation_.drop_controller();
+      navigation_.change_authority();
       const auto& holding = authority_.holder();
       spdlog::warn("motion authority: {}", holding ? holding->user : "nobody");
       json detail{{"action", "change"},

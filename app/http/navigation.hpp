@@ -14,22 +14,37 @@
 #include <chrono>
 #include <deque>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "http/context.hpp"
+#include "http/navigation_state.hpp"
 #include "http/targeting.hpp"
+#include "igtl/dialect.hpp"
 #include "igtl/hub.hpp"
-#include "igtl/thesis.hpp"
 
 namespace interlock::web {
 
+struct NavigationOptions {
+  std::string dialect = "thesis"; /**< a name that `igtl::make_dialect` knows */
+  /** The first connection is the controller of whoever holds the motion authority. */
+  bool first_controls = false;
+  /** A program that listens, to which the app connects, again and again. */
+  std::optional<boost::asio::ip::tcp::endpoint> connect;
+};
+
 class Navigation {
  public:
+  /** Between two attempts to connect. */
+  static constexpr std::chrono::milliseconds connect_pause{500};
   /** Wishes that wait; one more is refused. */
   static constexpr std::size_t backlog = 64;
   /** Between two looks at what has changed and is to be told. */
   static constexpr std::chrono::milliseconds telling_period{100};
+  /** Between two messages to the controller while something moves: that its machine is gone shows by one that
+   * is not acknowledged. */
+  static constexpr std::chrono::milliseconds motion_period{50};
   /** Between two health messages, although nothing has changed. */
   static constexpr std::chrono::milliseconds health_period{1000};
 
@@ -40,7 +55,9 @@ class Navigation {
   [[nodiscard]] const igtl::Hub& hub() const { return hub_; }
 
   /** Serves connections until the io_context ends. */
-  void start();
+  void start(NavigationOptions options);
+
+  [[nodiscard]] const std::string& dialect() const { return options_.dialect; }
 
   /**
    * Makes a connection the controller or an observer. The controller acts for the caller, who must hold the
@@ -50,7 +67,7 @@ class Navigation {
   bool set_role(igtl::PeerId id, igtl::Role role, const Caller& caller);
 
   /** The motion authority has changed: nobody acts for the former holder any more. */
-  void drop_controller();
+  void change_authority();
 
   /** Tells of a proposal that came from a navigation program. */
   void tell(const Proposal& proposal);
@@ -70,56 +87,54 @@ class Navigation {
     igtl::Wish wish;
   };
 
-  /** What a peer was told, and wants to be told. */
-  struct Told {
-    std::map<std::string, igtl::Body> messages; /**< by name */
+  /** How a peer is talked to, what it was told, and wants to be told. */
+  struct Session {
+    std::unique_ptr<igtl::Dialect> dialect;
+    std::map<std::string, igtl::Body> told; /**< by name */
     SteadyTime health;
     std::optional<std::chrono::milliseconds> tracking; /**< between two TDATA */
     SteadyTime tracked;
   };
 
-  /** Positions at a tick, from which velocities follow. */
-  struct Passed {
-    std::uint32_t tick = 0;
-    std::vector<double> positions;
-  };
-
-  using Done = tl::expected<std::string, Problem>;
+  using Stopping = boost::asio::awaitable<std::optional<StopAnswer>>;
 
   void listen_to_hub();
   void take(igtl::PeerId peer, const igtl::Message& message);
-  void stop(igtl::PeerId peer, const std::string& device);
+  void react(igtl::PeerId peer, const std::string& device, igtl::Reaction reaction);
+  void enqueue(igtl::PeerId peer, const std::string& device, igtl::Wish wish);
+  void finish(igtl::PeerId peer, const std::string& device, const igtl::Wish& wish,
+              const igtl::Outcome& outcome);
+  void end_motion(std::uint32_t proposal);
+  Stopping stop(igtl::PeerId peer);
+  boost::asio::awaitable<void> finish_stop(igtl::PeerId peer, std::string device, igtl::Wish wish,
+                                           Stopping stopping);
   void track(igtl::PeerId peer, const igtl::Track& wish);
-  void show(igtl::PeerId peer, const igtl::Show& wish);
   void lose(const igtl::Peer& peer, const std::string& reason);
-  void answer(igtl::PeerId peer, const std::string& device, const std::string& text);
-  void refuse(igtl::PeerId peer, const std::string& device, const igtl::Status& status);
+  void let_first_control();
+  void note_refusal(igtl::PeerId peer, const std::string& device, const std::string& reason);
   [[nodiscard]] tl::expected<Caller, Problem> mandate_of(igtl::PeerId peer) const;
 
   boost::asio::awaitable<void> work();
-  boost::asio::awaitable<Done> carry_out(const Task& task, const Caller& caller);
-  boost::asio::awaitable<Done> change(const Caller& caller, const igtl::Wish& wish);
-  boost::asio::awaitable<Done> load(const Caller& caller, const igtl::LoadRows& rows);
-  boost::asio::awaitable<Done> enter_mode(const Caller& caller, std::string mode);
-  [[nodiscard]] Done go_manual() const;
-
   boost::asio::awaitable<void> tell_all();
+  boost::asio::awaitable<void> keep_targeting();
   boost::asio::awaitable<void> refresh_targeting();
-  void measure_velocities();
+  void follow(const igtl::Motion& motion);
   void tell_messages(SteadyTime now);
+  void tell_what_is_due(SteadyTime now);
   void tell_tracking(SteadyTime now);
+  [[nodiscard]] bool is_moving() const;
   [[nodiscard]] igtl::RobotState state() const;
 
   const Context& context_;
+  NavigationOptions options_;
   igtl::Hub hub_;
   std::optional<Mandate> mandate_;
   std::deque<Task> tasks_;
   boost::asio::steady_timer news_; /**< cancelled when there is a task */
-  std::map<igtl::PeerId, Told> told_;
+  std::map<igtl::PeerId, Session> sessions_;
   Targeting targeting_;
   std::optional<std::uint32_t> targeting_revision_; /**< of `targeting_`; empty: none was read yet */
-  Passed passed_;
-  std::vector<double> velocities_; /**< units/s; empty while unknown */
+  AxisVelocities velocities_;
 };
 
 }  // namespace interlock::web

@@ -209,4 +209,13 @@ tl::expected<Targeting, Problem> with_target(Targeting targeting, const json& bo
   return unless_wrong(fields, targeting);
 }
 
+tl::expected<Pose, Problem> rigid_pose(const json& body, const std::string& name) {
+  Fields fields(body, {name.c_str()});
+  const auto pose = read_pose(fields, name);
+  if (fields.problem()) {
+    return tl::make_unexpected(*fields.problem());
+  }
+  return *pose;
+}
+
 }  // namespace interlock::web

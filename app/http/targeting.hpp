@@ -9,6 +9,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 
 #include "http/message.hpp"
 
@@ -51,5 +52,8 @@ tl::expected<Targeting, Problem> stored_targeting(const nlohmann::json& stored);
 tl::expected<Targeting, Problem> with_registration(Targeting targeting, const nlohmann::json& body);
 tl::expected<Targeting, Problem> with_reported_pose(Targeting targeting, const nlohmann::json& body);
 tl::expected<Targeting, Problem> with_target(Targeting targeting, const nlohmann::json& body);
+
+/** A rigid pose in the field `name` of a body; 422 INVALID naming the element, and the rule. */
+tl::expected<Pose, Problem> rigid_pose(const nlohmann::json& body, const std::string& name);
 
 }  // namespace interlock::web

@@ -28,6 +28,7 @@ std::string_view fault_text(Fault fault) noexcept;
 
 /** Codes of STATUS. */
 enum class StatusCode : std::uint16_t {
+  invalid = 0,
   ok = 1,
   unknown_error = 2,
   not_found = 4,

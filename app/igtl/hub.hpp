@@ -82,7 +82,7 @@ class Hub {
   /** With a peer that does not take what is sent to it. */
   static constexpr std::chrono::milliseconds write_patience{1000};
   /** How long the loss of a controller's machine goes unnoticed while something is sent to it. */
-  static constexpr std::chrono::milliseconds controller_patience{250};
+  static constexpr std::chrono::milliseconds controller_patience{200};
   static constexpr std::chrono::milliseconds beat_period{25};
   /** Messages of one peer in a `rate_window`; what comes beyond waits in its connection. */
   static constexpr std::size_t most_messages = 100;

@@ -1,6 +1,7 @@
 #include "igtl/message.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace interlock::igtl {
 namespace {
@@ -16,6 +17,23 @@ static_assert(std::variant_size_v<Body> == type_names.size() + 1);
 constexpr std::size_t shortest_query = 5;
 
 }  // namespace
+
+bool is_rigid(const Matrix& matrix) noexcept {
+  constexpr double tolerance = 1e-3;
+  const auto at = [&](std::size_t row, std::size_t column) { return matrix[4 * row + column]; };
+  double worst = 0.0;
+  for (std::size_t one = 0; one < 3; ++one) {
+    for (std::size_t other = one; other < 3; ++other) {
+      const double product =
+          at(0, one) * at(0, other) + at(1, one) * at(1, other) + at(2, one) * at(2, other);
+      worst = std::max(worst, std::abs(product - (one == other ? 1.0 : 0.0)));
+    }
+  }
+  const double determinant = at(0, 0) * (at(1, 1) * at(2, 2) - at(1, 2) * at(2, 1)) -
+                             at(0, 1) * (at(1, 0) * at(2, 2) - at(1, 2) * at(2, 0)) +
+                             at(0, 2) * (at(1, 0) * at(2, 1) - at(1, 1) * at(2, 0));
+  return worst <= tolerance && determinant > 0.0;
+}
 
 bool asks_for(const Query& query, std::string_view type) noexcept {
   return type.starts_with(query.type) && query.type.size() >= std::min(shortest_query, type.size());

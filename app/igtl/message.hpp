@@ -139,6 +139,9 @@ struct Message {
   Metadata metadata;
 };
 
+/** Whether the matrix is a rotation and a shift: R^T R = 1 within 0.001, no mirror. */
+bool is_rigid(const Matrix& matrix) noexcept;
+
 /** Whether a query, cut short or not, asks for that type. */
 bool asks_for(const Query& query, std::string_view type) noexcept;
 

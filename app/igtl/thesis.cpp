@@ -11,14 +11,6 @@ namespace {
 
 using Reading = tl::expected<Wish, Unwanted>;
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::ranges::transform(result, result.begin(), [](char each) {
-    return each >= 'A' && each <= 'Z' ? static_cast<char>(each + 32) : each;
-  });
-  return result;
-}
-
 tl::unexpected<Unwanted> unwanted(StatusCode code, std::string reason) {
   return tl::unexpected(Unwanted{code, std::move(reason)});
 }
@@ -92,6 +84,19 @@ Reading mode_of_text(const Message& message) {
   return SetMode{std::move(mode)};
 }
 
+/** Heard from an imager, and noted when it can be one. */
+Reading tip_pose(const Message& message) {
+  const auto* transform = std::get_if<Transform>(&message.body);
+  if (transform == nullptr) {
+    return wrong_type(message, "TRANSFORM");
+  }
+  if (!is_rigid(transform->matrix)) {
+    return unwanted(StatusCode::configuration,
+                    message.device + " is no rigid motion; expected R^T R = 1 within 0.001, determinant 1.");
+  }
+  return Noted{};
+}
+
 /** One name of the dialect. */
 struct Name {
   std::string_view name;
@@ -101,11 +106,7 @@ struct Name {
 constexpr std::array<Name, 15> names{{
     {"registration", with_matrix<SetRegistration>},
     {"current_pose", with_matrix<ReportPose>},
-    {"tip_pose",
-     [](const Message& message) -> Reading {
-       return std::holds_alternative<Transform>(message.body) ? Reading(Noted{})
-                                                              : wrong_type(message, "TRANSFORM");
-     }},
+    {"tip_pose", tip_pose},
     {"imager_status",
      [](const Message& message) -> Reading {
        return std::holds_alternative<Text>(message.body) ? Reading(Noted{})
@@ -177,10 +178,39 @@ Array joint_states(const RobotState& state) {
 
 }  // namespace
 
-Reading read_wish(const Message& message) {
+Reaction Thesis::take(const Message& message, const RobotState& state, bool /*controls*/) {
   if (const auto* query = std::get_if<Query>(&message.body)) {
-    return Show{*query, message.device};
+    return answer_query(*query, message.device, messages_of(state), state);
   }
+  auto wish = read_wish(message);
+  if (!wish) {
+    const Unwanted& why = wish.error();
+    return {{{message.device, Status{why.code, 0, "UNWANTED", why.reason}}}, std::nullopt, {}, why.reason};
+  }
+  if (const auto* noted = std::get_if<Noted>(&*wish)) {
+    return noted->is_answered ? finish(message.device, *wish, {{StatusCode::ok, 0, "OK", "Noted."}})
+                              : Reaction{};
+  }
+  return {{}, std::move(*wish)};
+}
+
+Outgoings Thesis::take_broken(const std::string& device, const Status& fault) { return {{device, fault}}; }
+
+Reaction Thesis::finish(const std::string& device, const Wish& /*wish*/, const Outcome& outcome) {
+  return {{{device, outcome.status}}, std::nullopt};
+}
+
+Outgoings Thesis::follow(const Motion& motion, const RobotState& /*state*/) {
+  return {{"proposal", motion.status}};
+}
+
+Outgoings Thesis::beat(Time /*now*/, const RobotState& state, bool has_to_hear) {
+  return has_to_hear ? Outgoings{{"robot_status", state.health}} : Outgoings{};
+}
+
+Outgoings Thesis::told(const RobotState& state) const { return messages_of(state); }
+
+Reading read_wish(const Message& message) {
   if (const auto* start = std::get_if<StartTracking>(&message.body)) {
     return Track{start->interval_ms};
   }
@@ -194,21 +224,14 @@ Reading read_wish(const Message& message) {
   return named(message);
 }
 
-bool needs_control(const Wish& wish) noexcept {
-  return std::holds_alternative<SetRegistration>(wish) || std::holds_alternative<ReportPose>(wish) ||
-         std::holds_alternative<SetPoint>(wish) || std::holds_alternative<SetOffset>(wish) ||
-         std::holds_alternative<LoadRows>(wish) || std::holds_alternative<SetMode>(wish);
-}
-
-std::vector<Outgoing> messages_of(const RobotState& state) {
-  std::vector<Outgoing> messages{
-      {"scanner_to_robot_reg", Transform{state.scanner_from_robot}},
-      {"treatment_to_tip", Text{listed({state.treatment_to_tip_mm})}},
-      {"robot_to_entry", Text{listed({state.robot_to_entry_mm})}},
-      {"cannula_to_treatment", Text{listed({state.cannula_to_treatment_mm})}},
-      {"robot_treatment_home", Text{listed({state.treatment_to_robot_at_home_mm})}},
-      {"mode", Text{state.mode}},
-      {"robot_status", state.health}};
+Outgoings messages_of(const RobotState& state) {
+  Outgoings messages{{"scanner_to_robot_reg", Transform{state.scanner_from_robot}},
+                     {"treatment_to_tip", Text{listed({state.treatment_to_tip_mm})}},
+                     {"robot_to_entry", Text{listed({state.robot_to_entry_mm})}},
+                     {"cannula_to_treatment", Text{listed({state.cannula_to_treatment_mm})}},
+                     {"robot_treatment_home", Text{listed({state.treatment_to_robot_at_home_mm})}},
+                     {"mode", Text{state.mode}},
+                     {"robot_status", state.health}};
   if (state.entry) {
     messages.emplace_back("entry_point", point("entry_point", *state.entry));
   }
@@ -233,18 +256,6 @@ std::vector<Outgoing> messages_of(const RobotState& state) {
     messages.emplace_back("measured_jv", Text{listed(state.measured_jv)});
   }
   return messages;
-}
-
-TrackingData tracking_of(const RobotState& state) {
-  constexpr std::uint8_t six_degrees = 2;
-  TrackingData data{{{"scanner_to_robot_reg", six_degrees, state.scanner_from_robot}}};
-  if (state.measured_cp) {
-    data.tools.push_back({"measured_cp", six_degrees, *state.measured_cp});
-  }
-  if (state.desired_cp) {
-    data.tools.push_back({"desired_cp", six_degrees, *state.desired_cp});
-  }
-  return data;
 }
 
 }  // namespace interlock::igtl

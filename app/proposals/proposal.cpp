@@ -52,6 +52,10 @@ bool may_become(ProposalState from, ProposalState to) noexcept {
   return false;
 }
 
+ProposalSource source_of(const Proposal& proposal) noexcept {
+  return proposal.kind == ProposalKind::home ? proposal.home.source : proposal.path.source;
+}
+
 RobotMode robot_mode(const Proposal& proposal) noexcept {
   switch (proposal.kind) {
     case ProposalKind::move:

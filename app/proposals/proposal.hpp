@@ -58,13 +58,6 @@ struct MoveDraft {
   std::string author;
 };
 
-/** A wish for homing: of one axis, of one step, or of all steps in the order of the robot's file. */
-struct HomeDraft {
-  std::optional<std::uint32_t> slot;
-  std::optional<std::string> step; /**< name; not together with `slot` */
-  std::string author;
-};
-
 /** Who thought of a motion. */
 enum class ProposalSource : std::uint8_t {
   console,    /**< somebody who watches the robot: proposing it approves it */
@@ -77,6 +70,14 @@ constexpr std::string_view source_name(ProposalSource source) noexcept {
   constexpr std::string_view names[] = {"console", "file", "openigtlink"};
   return names[static_cast<std::size_t>(source)];
 }
+
+/** A wish for homing: of one axis, of one step, or of all steps in the order of the robot's file. */
+struct HomeDraft {
+  std::optional<std::uint32_t> slot;
+  std::optional<std::string> step; /**< name; not together with `slot` */
+  std::string author;
+  ProposalSource source = ProposalSource::console;
+};
 
 /** A wish for a motion of several axes together. */
 struct PathDraft {
@@ -118,6 +119,7 @@ struct Proposal {
   std::uint32_t id = 0;
   ProposalKind kind = ProposalKind::move;
   MoveDraft move;                         /**< of kind move */
+  HomeDraft home;                         /**< of kind home */
   PathDraft path;                         /**< of kind path */
   BiopsyDraft biopsy;                     /**< of kind biopsy */
   SweepDraft sweep;                       /**< of kind sweep */
@@ -143,6 +145,9 @@ struct Proposal {
 
 /** Of registration, probe and target from which the proposal followed; nothing: from none. */
 std::optional<std::uint32_t> targeting_revision(const Proposal& proposal) noexcept;
+
+/** Who thought of it. */
+ProposalSource source_of(const Proposal& proposal) noexcept;
 
 /** The mode in which the proposal is carried out. */
 RobotMode robot_mode(const Proposal& proposal) noexcept;

@@ -72,6 +72,7 @@ tl::expected<Proposal, Refusal> ProposalBook::propose_home(const HomeDraft& home
   }
   Proposal drafted;
   drafted.kind = ProposalKind::home;
+  drafted.home = home;
   drafted.author = home.author;
   drafted.first_step = plan->first_step;
   drafted.step_count = plan->step_count;
@@ -81,9 +82,11 @@ tl::expected<Proposal, Refusal> ProposalBook::propose_home(const HomeDraft& home
   if (!checked) {
     return tl::make_unexpected(refuse(proposal, checked.error()));
   }
-  become(proposal, ProposalState::checked, "Every axis may be homed now.");
-  return approve(proposal,
-                 HomeOrder{proposal.id, plan->first_step, plan->step_count, plan->slots.front(), 0});
+  if (approves(home.source)) {
+    return approve_home(proposal, view);
+  }
+  become(proposal, ProposalState::checked, "Every axis may be homed. Waits for somebody to approve it.");
+  return proposal;
 }
 
 tl::expected<Proposal, Refusal> ProposalBook::propose_path(const PathDraft& path, const ControlView& view) {
@@ -98,7 +101,7 @@ tl::expected<Proposal, Refusal> ProposalBook::propose_path(const PathDraft& path
   if (const auto checked = check(proposal, view); !checked) {
     return tl::make_unexpected(checked.error());
   }
-  if (path.source == ProposalSource::console || robot_.auto_approve) {
+  if (approves(path.source)) {
     return approve_path(proposal);
   }
   become(proposal, ProposalState::checked, "Every check passed. Waits for somebody to approve it.");
@@ -176,7 +179,28 @@ tl::expected<Proposal, Refusal> ProposalBook::approve(std::uint32_t id, const Co
     return tl::make_unexpected(Refusal{"NOT_WAITING", "Proposal " + std::to_string(id) + " is " + state + ".",
                                        "a proposal that is checked", "Propose it again."});
   }
+  if (proposal->kind == ProposalKind::home) {
+    return approve_home(*proposal, view);
+  }
   return check(*proposal, view).and_then([&] { return approve_path(*proposal); });
+}
+
+/** Whether such proposals need no click. */
+bool ProposalBook::approves(ProposalSource source) const {
+  return source == ProposalSource::console || robot_.auto_approve;
+}
+
+tl::expected<Proposal, Refusal> ProposalBook::approve_home(Proposal& proposal, const ControlView& view) {
+  const auto plan = plan_home(robot_, proposal.home);
+  if (!plan) {
+    return tl::make_unexpected(refuse(proposal, plan.error()));
+  }
+  if (const auto checked = check_home(robot_, config_, view, *plan); !checked) {
+    return tl::make_unexpected(refuse(proposal, checked.error()));
+  }
+  become(proposal, ProposalState::checked, "Every axis may be homed now.");
+  return approve(proposal,
+                 HomeOrder{proposal.id, plan->first_step, plan->step_count, plan->slots.front(), 0});
 }
 
 tl::expected<Proposal, Refusal> ProposalBook::approve_path(Proposal& proposal) {

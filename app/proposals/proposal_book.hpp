@@ -49,8 +49,9 @@ class ProposalBook {
   tl::expected<Proposal, Refusal> propose(const MoveDraft& draft, const ControlView& view);
 
   /**
-   * Drafts homing of one axis, one step or all steps, checks it (home_plan.hpp) and approves it. Every open
-   * proposal is aborted. A refused draft stays in the book; one that names what the robot has not (AXIS,
+   * Drafts homing of one axis, one step or all steps and checks it (home_plan.hpp). One from the console, or
+   * of a robot that approves by itself, is approved, and every other approved proposal is aborted; another
+   * one waits for `approve`. A refused draft stays in the book; one that names what the robot has not (AXIS,
    * NOT_FOUND, INVALID) is none.
    */
   tl::expected<Proposal, Refusal> propose_home(const HomeDraft& draft, const ControlView& view);
@@ -132,6 +133,8 @@ class ProposalBook {
   tl::expected<void, Refusal> check_current(Proposal& proposal);
   tl::expected<void, Refusal> check(Proposal& proposal, const ControlView& view);
   tl::expected<Proposal, Refusal> approve_path(Proposal& proposal);
+  tl::expected<Proposal, Refusal> approve_home(Proposal& proposal, const ControlView& view);
+  [[nodiscard]] bool approves(ProposalSource source) const;
   void forget_one();
   void replace_open(const Proposal& by);
   Refusal refuse(Proposal& proposal, Refusal refusal);

@@ -48,7 +48,7 @@ nlohmann::json to_json(const Proposal& proposal) {
                       {"axes", proposal.axes},
                       {"step", nullptr},
                       {"author", proposal.author},
-                      {"source", source_name(proposal.path.source)},
+                      {"source", source_name(source_of(proposal))},
                       {"state", state_name(proposal.state)},
                       {"target_counts", nullptr},
                       {"target", nullptr},

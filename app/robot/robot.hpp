@@ -193,8 +193,13 @@ struct HomeStep {
 struct OpenIgtLink {
   std::string bind = "127.0.0.1"; /**< address to listen on */
   std::uint32_t port = 18944;
+  std::string dialect = "thesis"; /**< thesis, brp2013 or wpi2024 */
   std::vector<std::string> allow; /**< addresses that may connect; empty: this machine's own */
   std::uint32_t heartbeat_ms = 0; /**< silence by which the controller counts as lost; 0: none does */
+  std::string connect_address; /**< of a program that listens, to which the app connects, too; empty: none */
+  std::uint32_t connect_port = 0;
+  /** The first connection is the controller of whoever holds the motion authority, without being asked. */
+  bool first_controls = false;
 
   bool operator==(const OpenIgtLink&) const = default;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <fstream>
 #include <sstream>
 #include <system_error>
@@ -70,18 +71,41 @@ void read_sensors(TableReader& table, Robot& robot) {
   }
 }
 
-/** Of the dialects there is one. */
+/** "ADDRESS:PORT". */
+void read_connect(TableReader& table, OpenIgtLink& link) {
+  const std::string place = table.text("connect");
+  const std::size_t colon = place.rfind(':');
+  std::uint32_t port = 0;
+  const char* const end = place.data() + place.size();
+  const char* const digits = colon == std::string::npos ? end : place.data() + colon + 1;
+  const auto [stopped, error] = std::from_chars(digits, end, port);
+  if (colon == 0 || error != std::errc() || stopped != end || port == 0 || port > 65535) {
+    table.refuse("connect", "\"" + place + "\" is no address with a port",
+                 "the address and port of a program that listens, such as \"10.0.0.7:18944\"");
+    return;
+  }
+  link.connect_address = place.substr(0, colon);
+  link.connect_port = port;
+}
+
 OpenIgtLink read_openigtlink(TableReader table) {
-  constexpr std::array<std::pair<std::string_view, int>, 1> dialects{{{"thesis", 0}}};
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 3> dialects{
+      {{"thesis", "thesis"}, {"brp2013", "brp2013"}, {"wpi2024", "wpi2024"}}};
   OpenIgtLink link;
   link.bind = table.text("bind");
   link.port = static_cast<std::uint32_t>(table.integer_between("port", 1, 65535));
-  table.choice("dialect", dialects);
+  link.dialect = table.choice("dialect", dialects);
   if (table.has("allow")) {
     link.allow = table.texts("allow", "addresses of the machines that may connect");
   }
   if (table.has("heartbeat_ms")) {
     link.heartbeat_ms = static_cast<std::uint32_t>(table.integer_between("heartbeat_ms", 50, 10000));
+  }
+  if (table.has("connect")) {
+    read_connect(table, link);
+  }
+  if (table.has("first_controls")) {
+    link.first_controls = table.boolean("first_controls");
   }
   table.refuse_unknown_keys();
   return link;

@@ -1,11 +1,14 @@
 /** Any bytes as a stream of OpenIGTLink: the same comes of them however they are split, and whatever is read
  * can be judged. */
 #include <algorithm>
+#include <array>
 #include <cstdlib>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "igtl/decode.hpp"
-#include "igtl/thesis.hpp"
+#include "igtl/dialect.hpp"
 
 namespace {
 
@@ -14,15 +17,45 @@ using namespace interlock::igtl;
 struct Seen {
   std::vector<Header> headers;
   std::vector<Fault> faults;
+  std::vector<std::string> answers; /**< names of what every dialect answers */
 
   bool operator==(const Seen&) const = default;
 };
 
-void note(Seen& seen, Arrival arrival) {
+/** One connection in each dialect, whose controller it is; every wish is granted. */
+struct Talks {
+  std::array<std::unique_ptr<Dialect>, 3> dialects{make_dialect("thesis"), make_dialect("brp2013"),
+                                                   make_dialect("wpi2024")};
+
+  void take(Seen& seen, const Message& message) {
+    const RobotState state;
+    for (const auto& dialect : dialects) {
+      Reaction reaction = dialect->take(message, state, true);
+      note_answers(seen, reaction);
+      for (int follow_up = 0; reaction.wish && follow_up < 3; ++follow_up) {
+        Outcome outcome{{StatusCode::ok, 0, "OK", ""}};
+        outcome.target = state.scanner_from_robot;
+        reaction = dialect->finish(message.device, *reaction.wish, outcome);
+        note_answers(seen, reaction);
+      }
+    }
+  }
+
+  static void note_answers(Seen& seen, const Reaction& reaction) {
+    for (const auto& [name, body] : reaction.replies) {
+      seen.answers.push_back(name);
+      if (name.size() > device_width) {
+        std::abort();
+      }
+    }
+  }
+};
+
+void note(Seen& seen, Talks& talks, Arrival arrival) {
   if (auto* frame = std::get_if<Frame>(&arrival)) {
     seen.headers.push_back(frame->header);
     if (const auto message = decode(std::move(*frame))) {
-      (void)read_wish(*message);
+      talks.take(seen, *message);
     } else {
       seen.faults.push_back(message.error());
     }
@@ -35,6 +68,7 @@ void note(Seen& seen, Arrival arrival) {
 Seen read_in_pieces(Bytes input, std::size_t piece) {
   Seen seen;
   FrameReader reader;
+  Talks talks;
   while (!input.empty()) {
     Bytes some = input.first(std::min(piece, input.size()));
     input = input.subspan(some.size());
@@ -44,7 +78,7 @@ Seen read_in_pieces(Bytes input, std::size_t piece) {
         seen.faults.push_back(broken->fault);
         return seen;
       }
-      note(seen, std::move(arrival));
+      note(seen, talks, std::move(arrival));
     }
   }
   return seen;

@@ -33,6 +33,7 @@ def stack(short_tmp_path: Path) -> Iterator[StackFactory]:
         robot: str | Path = "neuro",
         seed: int = 1,
         igtl: bool = False,
+        dialect: str = "thesis",
     ) -> Stack:
         directory = short_tmp_path / str(len(running))
         arguments = [
@@ -48,7 +49,7 @@ def stack(short_tmp_path: Path) -> Iterator[StackFactory]:
         if clock == "sim":
             arguments += ["--speed", str(speed)]
         if igtl:
-            arguments += ["--igtl-port", "0"]
+            arguments += ["--igtl-port", "0", "--igtl-dialect", dialect]
         started = Stack(directory, *arguments)
         running.append(started)
         started.connect_control()

@@ -17,90 +17,13 @@ from bare_kernel import DEADLINE_S
 from conftest import StackFactory
 from interface import judge
 from motion import LATERAL, act, press, set_home, unlock, wait_for_mode, wait_until
-from pyigtl import messages as wire
+from navigator import OK, Navigator, Query, Rows, text, transform
 from stack import Stack
 
-OK, ACCESS_DENIED, CONFIGURATION, UNKNOWN_INSTRUCTION = 1, 5, 10, 12
+ACCESS_DENIED, CONFIGURATION, UNKNOWN_INSTRUCTION = 5, 10, 12
 CHECKSUM, NOT_READY = 9, 13
 CONNECTIONS = "/api/communications/connections"
 REGISTRATION = [0, -1, 0, 12.5, 1, 0, 0, -3, 0, 0, 1, 40, 0, 0, 0, 1]
-
-
-class Status(wire.MessageBase):
-    """STATUS, which pyigtl lacks."""
-
-    def __init__(self, device_name: str | None = None, code: int = OK, text: str = "") -> None:
-        super().__init__(device_name=device_name)
-        self._message_type = "STATUS"
-        self._valid_message = True
-        self.code, self.sub_code, self.name, self.text = code, 0, "", text
-
-    def _pack_content(self) -> bytes:
-        return (
-            struct.pack(">Hq20s", self.code, self.sub_code, self.name.encode()) + self.text.encode() + b"\0"
-        )
-
-    def _unpack_content(self, content: bytes) -> None:
-        self.code, self.sub_code, name = struct.unpack(">Hq20s", content[:30])
-        self.name = name.rstrip(b"\0").decode()
-        self.text = content[30:].rstrip(b"\0").decode()
-
-
-class Query(wire.MessageBase):
-    """GET_ of a type, which has no body."""
-
-    def __init__(self, kind: str, device_name: str = "") -> None:
-        super().__init__(device_name=device_name)
-        self._message_type = "GET_" + kind
-        self._valid_message = True
-
-
-class Rows(wire.MessageBase):
-    """NDARRAY of float64 in two dimensions, which pyigtl lacks."""
-
-    def __init__(self, rows: list[list[float]], device_name: str) -> None:
-        super().__init__(device_name=device_name)
-        self._message_type = "NDARRAY"
-        self._valid_message = True
-        self.rows = rows
-
-    def _pack_content(self) -> bytes:
-        values = [value for row in self.rows for value in row]
-        head = struct.pack(">BBHH", 11, 2, len(self.rows), len(self.rows[0]))
-        return head + struct.pack(f">{len(values)}d", *values)
-
-
-wire.message_type_to_class_constructor["STATUS"] = Status
-
-
-class Navigator:
-    """A navigation program: pyigtl, with one header version."""
-
-    def __init__(self, port: int, version: int = 1) -> None:
-        self.version = version
-        self.client = pyigtl.OpenIGTLinkClient("127.0.0.1", port)
-        wait_until("connected", self.client.is_connected)
-
-    def send(self, message: wire.MessageBase) -> None:
-        message.header_version = self.version
-        if self.version == 2:
-            message.metadata = {"dummy": "dummy"}
-        assert self.client.send_message(message)
-
-    def receive(self, name: str) -> wire.MessageBase:
-        message = self.client.wait_for_message(name, timeout=DEADLINE_S)
-        assert message is not None, f"no message {name}"
-        return message
-
-    def ask(self, message: wire.MessageBase) -> Status:
-        """The STATUS that answers a message."""
-        self.send(message)
-        answer = self.receive(message.device_name)
-        assert isinstance(answer, Status)
-        return answer
-
-    def stop(self) -> None:
-        self.client.stop()
 
 
 @pytest.fixture
@@ -134,14 +57,6 @@ def make_controller(robot: Stack, place: int = -1) -> int:
     answer = robot.api.put(f"{CONNECTIONS}/{number}/role", json={"role": "controller"})
     assert judge(answer).status_code == 200, answer.text
     return number
-
-
-def transform(name: str, matrix: list[float]) -> pyigtl.TransformMessage:
-    return pyigtl.TransformMessage(np.array(matrix, dtype=float).reshape(4, 4), device_name=name)
-
-
-def text(name: str, content: str) -> pyigtl.StringMessage:
-    return pyigtl.StringMessage(content, device_name=name)
 
 
 def home_all(robot: Stack) -> None:

@@ -3,6 +3,7 @@
 Time comes from `step_bench`, `control_bench` and `kinematics_bench`, instructions from callgrind, text size
 and stack from the compiler's own report. Kinematics and plans have no limit: KDL's numerical solver stands
 beside them, on a chain that reaches the same poses.
+Answers over OpenIGTLink (igtl_reply.py) stand beside those of a server on Debian's library.
 Times depend on the machine and its load, so no test asserts them: the evidence says FAILED when a figure is
 above its limit, and the table marks it. A neighbour on the same physical core nearly doubles a step for
 seconds at a time. So every scenario is timed in several rounds: the limit is held against the median of the
@@ -23,6 +24,7 @@ from pathlib import Path
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "target"))
 
+import igtl_reply
 import size
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -37,6 +39,7 @@ LIMITS = {
     "step_ns_worst_path": 2000,
     "control_tick_ns_p999_neuro": 50_000,
     "control_tick_ns_p999_prostate": 50_000,
+    **{f"igtl_reply_us_p99_{dialect}": 100_000 for dialect in igtl_reply.DIALECTS},
     **size.LIMITS,
 }
 
@@ -144,7 +147,16 @@ def main() -> int:
     }
     for robot, times in robots.items():
         figures |= robot_figures(robot, times)
-    detail = {"timed": timed, "robots": robots, "instructions": counted, "limits": LIMITS}
+    replies = igtl_reply.measure(arguments.bin)
+    for server, times in replies.items():
+        figures |= {f"igtl_reply_us_{key}_{server}": value for key, value in times.items()}
+    detail = {
+        "igtl_reply": replies,
+        "timed": timed,
+        "robots": robots,
+        "instructions": counted,
+        "limits": LIMITS,
+    }
     record = evidence(figures, started, detail)
     (EVIDENCE / "bench.json").write_text(json.dumps(record, indent=2) + "\n")
     (EVIDENCE / "bench.log.json").write_text(json.dumps(detail, indent=2) + "\n")

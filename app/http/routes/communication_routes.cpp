@@ -55,7 +55,7 @@ json console_connection(const StreamHub::Watcher& watcher) {
 const char* role_word(igtl::Role role) { return role == igtl::Role::controller ? "controller" : "observer"; }
 
 /** Schema `NavigationConnection`. */
-json navigation_json(const igtl::Peer& peer) {
+json navigation_json(const igtl::Peer& peer, const std::string& dialect) {
   using Seconds = std::chrono::duration<double>;
   json messages = json::array();
   for (const auto& [name, heard] : peer.heard) {
@@ -71,7 +71,7 @@ json navigation_json(const igtl::Peer& peer) {
   return {{"id", peer.id},
           {"client", peer.address},
           {"port", peer.port},
-          {"dialect", "thesis"},
+          {"dialect", dialect},
           {"role", role_word(peer.role)},
           {"header_version", peer.version},
           {"since", iso_8601(peer.since)},
@@ -141,7 +141,7 @@ Answering CommunicationRoutes::list() const {
 Reply CommunicationRoutes::list_navigation() const {
   json connections = json::array();
   for (const igtl::Peer& peer : navigation_.hub().peers()) {
-    connections.push_back(navigation_json(peer));
+    connections.push_back(navigation_json(peer, navigation_.dialect()));
   }
   return Success{.body = std::move(connections)};
 }

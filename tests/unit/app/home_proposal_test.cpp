@@ -105,6 +105,31 @@ TEST_F(HomeProposalTest, OrdersOneAxis) {
   EXPECT_EQ(order.slot, insertion);
 }
 
+TEST_F(HomeProposalTest, AWishFromOpenIgtLinkWaitsUntilSomebodyApprovesIt) {
+  const auto waiting =
+      book_.propose_home({insertion, std::nullopt, "ann", ProposalSource::openigtlink}, view_);
+  ASSERT_TRUE(waiting);
+  EXPECT_EQ(waiting->state, ProposalState::checked);
+  EXPECT_EQ(source_of(*waiting), ProposalSource::openigtlink);
+  EXPECT_THAT(sent_, IsEmpty());
+  EXPECT_EQ(book_.app_mode(), "manual");
+  ASSERT_TRUE(book_.approve(waiting->id, view_));
+  EXPECT_EQ(std::get<HomeOrder>(sent_.at(0)).slot, insertion);
+  EXPECT_EQ(book_.app_mode(), "home");
+}
+
+TEST_F(HomeProposalTest, WhatWaitsIsCheckedAnewWhenItIsApproved) {
+  const auto waiting =
+      book_.propose_home({insertion, std::nullopt, "ann", ProposalSource::openigtlink}, view_);
+  ASSERT_TRUE(waiting);
+  axis(insertion).state = ILK_AXIS_DISABLED;
+  const auto refused = book_.approve(waiting->id, view_);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, "DISABLED");
+  EXPECT_EQ(state(waiting->id), ProposalState::refused);
+  EXPECT_THAT(sent_, IsEmpty());
+}
+
 TEST_F(HomeProposalTest, OrdersOneStepByItsName) {
   const auto proposal = home_step("angles");
   ASSERT_TRUE(proposal);

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 namespace interlock::igtl {
 namespace {
 
@@ -27,6 +29,33 @@ TEST(Thesis, PoseOfAnImagerIsReportedAndNoMore) {
   EXPECT_TRUE(std::holds_alternative<Noted>(wish_of("TIP_POSE", Transform{}).value()));
   EXPECT_TRUE(std::holds_alternative<Noted>(wish_of("IMAGER_STATUS", Text{"scanning"}).value()));
   EXPECT_TRUE(std::holds_alternative<Noted>(wish_of("IMAGER_STATUS", Status{}).value()));
+}
+
+TEST(Thesis, ATipPoseThatIsNoRigidMotionIsRefused) {
+  const Matrix mirror{-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  const Matrix shear{1, 0.01, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  const Matrix twice{2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1};
+  for (const Matrix& wrong : {mirror, shear, twice, Matrix{}}) {
+    EXPECT_EQ(wish_of("TIP_POSE", Transform{wrong}).error().code, StatusCode::configuration);
+  }
+  const double angle = 0.3;
+  const Matrix turned{std::cos(angle),
+                      -std::sin(angle),
+                      0,
+                      5,
+                      std::sin(angle),
+                      std::cos(angle),
+                      0,
+                      6,
+                      0,
+                      0,
+                      1,
+                      7,
+                      0,
+                      0,
+                      0,
+                      1};
+  EXPECT_TRUE(wish_of("TIP_POSE", Transform{turned}).has_value());
 }
 
 TEST(Thesis, APointComesAsPointPositionOrPose) {
@@ -104,11 +133,10 @@ TEST(Thesis, WhatChangesTheRobotIsTheControllersAlone) {
                                                  {"START_UP", Text{""}}}) {
     EXPECT_TRUE(needs_control(wish_of(name, body).value())) << name;
   }
-  EXPECT_FALSE(needs_control(wish_of("measured_cp", Query{"TRANS"}).value()));
   EXPECT_FALSE(needs_control(wish_of("", StartTracking{}).value()));
 }
 
-const Body* find(const std::vector<Outgoing>& messages, const std::string& name) {
+const Body* find(const Outgoings& messages, const std::string& name) {
   const auto found = std::ranges::find(messages, name, &Outgoing::first);
   return found == messages.end() ? nullptr : &found->second;
 }
@@ -146,6 +174,33 @@ TEST(Thesis, EveryStateHasItsName) {
   EXPECT_EQ(*find(messages, "measured_jv"), Body(Text{"1,2"}));
   EXPECT_EQ(*find(messages, "measured_js"), Body(Array{{2, 2}, {0.25, -1e-9, 1, 2}}));
   EXPECT_EQ(tracking_of(state).tools.size(), 3u);
+}
+
+TEST(Thesis, AQueryIsAnsweredByNameOrByTypeAndNothingElseIsMadeUp) {
+  Thesis dialect;
+  RobotState state;
+  state.measured_cp = shifted(2, 0, 0);
+  const auto ask = [&](const char* type, const char* device) {
+    return dialect.take({device, Query{type}, 0, 1, {}}, state, true);
+  };
+  const Outgoings named = ask("TRANS", "measured_cp").replies;
+  EXPECT_THAT(named, testing::ElementsAre(Outgoing("measured_cp", Transform{shifted(2, 0, 0)})));
+  EXPECT_EQ(ask("TRANSFORM", "").replies.size(), 2u) << "registration and measured_cp";
+  const Reaction none = ask("TRANS", "desired_cp");
+  EXPECT_EQ(std::get<Status>(none.replies.at(0).second).code, StatusCode::not_found);
+  EXPECT_THAT(none.refused, HasSubstr("desired_cp"));
+  EXPECT_TRUE(std::holds_alternative<Capability>(ask("CAPABIL", "").replies.at(0).second));
+  EXPECT_TRUE(std::holds_alternative<TrackingData>(ask("TDATA", "").replies.at(0).second));
+}
+
+TEST(Thesis, AWishIsAnsweredUnderItsOwnNameOnceItIsDone) {
+  Thesis dialect;
+  const Reaction reaction = dialect.take({"Mode", Text{"draping"}, 0, 1, {}}, {}, true);
+  EXPECT_TRUE(reaction.replies.empty());
+  ASSERT_TRUE(reaction.wish.has_value());
+  const Status status{StatusCode::not_ready, 0, "NO_KERNEL", "why"};
+  EXPECT_THAT(dialect.finish("Mode", *reaction.wish, {status}).replies,
+              testing::ElementsAre(Outgoing("Mode", status)));
 }
 
 }  // namespace

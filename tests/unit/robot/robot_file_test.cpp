@@ -268,6 +268,52 @@ TEST(RobotFile, a_robot_without_switches_needs_no_steps) {
   EXPECT_THAT(robot->home_steps, testing::IsEmpty());
 }
 
+/** The neuro robot's file with an [openigtlink] table of these lines. */
+std::string with_openigtlink(const std::string& lines) {
+  return test::neuro_text() + "\n[openigtlink]\n" + lines;
+}
+
+constexpr const char* usual_openigtlink = "bind = \"127.0.0.1\"\nport = 18944\ndialect = \"thesis\"\n";
+
+TEST(RobotFile, openigtlink_reads_as_written) {
+  const auto robot = parse_robot(
+      with_openigtlink("bind = \"0.0.0.0\"\nport = 1\ndialect = \"wpi2024\"\nallow = [\"10.0.0.7\"]\n"
+                       "heartbeat_ms = 200\nconnect = \"10.0.0.8:65535\"\nfirst_controls = true\n"),
+      "igtl.toml");
+  ASSERT_TRUE(robot) << robot.error().message();
+  EXPECT_EQ(robot->openigtlink,
+            (OpenIgtLink{"0.0.0.0", 1, "wpi2024", {"10.0.0.7"}, 200, "10.0.0.8", 65535, true}));
+  EXPECT_EQ(parse_robot(with_openigtlink(usual_openigtlink), "igtl.toml")->openigtlink, OpenIgtLink{});
+  EXPECT_FALSE(test::neuro().openigtlink.has_value());
+}
+
+TEST(RobotFile, a_broken_key_of_openigtlink_is_named) {
+  const std::string usual = usual_openigtlink;
+  const std::vector<std::pair<std::string, std::string>> broken{
+      {"port = 1\ndialect = \"thesis\"\n", "bind"},
+      {"bind = \"\"\nport = 1\ndialect = \"thesis\"\n", "bind"},
+      {"bind = \"::1\"\nport = 0\ndialect = \"thesis\"\n", "port"},
+      {"bind = \"::1\"\nport = 65536\ndialect = \"thesis\"\n", "port"},
+      {"bind = \"::1\"\nport = 1\ndialect = \"Thesis\"\n", "dialect"},
+      {"bind = \"::1\"\nport = 1\n", "dialect"},
+      {usual + "allow = \"10.0.0.7\"\n", "allow"},
+      {usual + "heartbeat_ms = 49\n", "heartbeat_ms"},
+      {usual + "connect = \"10.0.0.7\"\n", "connect"},
+      {usual + "connect = \":18944\"\n", "connect"},
+      {usual + "connect = \"10.0.0.7:\"\n", "connect"},
+      {usual + "connect = \"10.0.0.7:0\"\n", "connect"},
+      {usual + "connect = \"10.0.0.7:65536\"\n", "connect"},
+      {usual + "connect = \"10.0.0.7:80x\"\n", "connect"},
+      {usual + "first_controls = 1\n", "first_controls"},
+      {usual + "colour = 1\n", "colour"}};
+  for (const auto& [lines, key] : broken) {
+    const auto robot = parse_robot(with_openigtlink(lines), "igtl.toml");
+    ASSERT_FALSE(robot) << lines;
+    EXPECT_EQ(robot.error().key, "openigtlink." + key) << lines;
+    EXPECT_FALSE(robot.error().expected.empty()) << lines;
+  }
+}
+
 TEST(RobotFile, an_axis_that_is_no_table_is_refused) {
   const std::string text = test::neuro_text();
   const std::string head = text.substr(0, text.find("[[axis]]"));

@@ -1,0 +1,376 @@
+#include "http/navigation_wishes.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "http/alignment_view.hpp"
+#include "http/path_drafts.hpp"
+#include "http/problems.hpp"
+#include "http/proposing.hpp"
+#include "http/targeting_change.hpp"
+#include "http/targeting_store.hpp"
+#include "http/trajectory_loading.hpp"
+#include "targeting/targeting_json.hpp"
+#include "trajectory/trajectory_builder.hpp"
+
+namespace interlock::web {
+namespace {
+
+namespace asio = boost::asio;
+using igtl::StatusCode;
+using nlohmann::json;
+using Done = tl::expected<igtl::Outcome, Problem>;
+
+constexpr const char* known_modes = "manual, trajectory, draping, targeting or insertion";
+
+/** Between entry and target, when nobody has set both. */
+constexpr double usual_depth_mm = 50.0;
+/** Farther from a target the reachable one is another. */
+constexpr double moved_mm = 0.1;
+/** Sub-codes of a target's STATUS. */
+constexpr std::int64_t invalid_target = 1;
+constexpr std::int64_t moved_target = 3;
+
+igtl::Outcome well(std::string text) { return {{StatusCode::ok, 0, "OK", std::move(text)}}; }
+
+igtl::Outcome proposed(const Proposal& proposal) {
+  igtl::Outcome outcome = well("Proposal " + std::to_string(proposal.id) + ": " + proposal.detail);
+  outcome.proposal = proposal.id;
+  return outcome;
+}
+
+StatusCode status_code(const Problem& problem) {
+  static const std::map<std::string, StatusCode> codes{
+      {"AUTHORITY", StatusCode::access_denied},  {"LOGIN", StatusCode::access_denied},
+      {"ROLE", StatusCode::access_denied},       {"OVERLOADED", StatusCode::busy},
+      {"UNREACHABLE", StatusCode::unreachable},  {"INVALID", StatusCode::configuration},
+      {"MODE", StatusCode::unknown_instruction}, {"NOT_FOUND", StatusCode::not_found},
+      {"INTERNAL", StatusCode::unknown_error}};
+  const auto found = codes.find(problem.code);
+  if (found != codes.end()) {
+    return found->second;
+  }
+  return problem.status == Status::unprocessable_entity ? StatusCode::configuration : StatusCode::not_ready;
+}
+
+/** What the body of a change of targeting says, and who reads it. */
+struct Asked {
+  TargetingChange make;
+  json body;
+};
+
+std::optional<Asked> targeting_of(const igtl::Wish& wish) {
+  if (const auto* registration = std::get_if<igtl::SetRegistration>(&wish)) {
+    return Asked{with_registration, {{"registration", registration->scanner_from_robot}}};
+  }
+  if (const auto* pose = std::get_if<igtl::ReportPose>(&wish)) {
+    return Asked{with_reported_pose, {{"current_position", pose->scanner_from_probe}}};
+  }
+  if (const auto* point = std::get_if<igtl::SetPoint>(&wish)) {
+    return Asked{with_target, {{point->is_target ? "target_point" : "entry_point", point->position}}};
+  }
+  if (const auto* offset = std::get_if<igtl::SetOffset>(&wish)) {
+    return Asked{with_target, {{std::string(offset->field), offset->mm}}};
+  }
+  return std::nullopt;
+}
+
+/** Names of the columns: a time, then a position, or a position and a velocity, of each axis of the robot. */
+tl::expected<std::vector<std::string>, Problem> columns_of(const Robot& robot, std::size_t count) {
+  const std::size_t axes = robot.axes.size();
+  if (count != 1 + axes && count != 1 + 2 * axes) {
+    return fail({.status = Status::unprocessable_entity,
+                 .code = "COLUMNS",
+                 .detail = "The trajectory has " + std::to_string(count) + " columns.",
+                 .expected = std::to_string(1 + axes) + " (time and positions) or " +
+                             std::to_string(1 + 2 * axes) + " (with velocities), axes in the file's order"});
+  }
+  std::vector<std::string> columns{"time [s]"};
+  for (const Axis& axis : robot.axes) {
+    const std::string unit(unit_name(axis.unit));
+    columns.push_back(axis.name + " [" + unit + "]");
+    if (count != 1 + axes) {
+      columns.push_back(axis.name + " [" + unit + "/s]");
+    }
+  }
+  return columns;
+}
+
+TrajectoryResult<TimedTrajectory> built(const igtl::LoadRows& rows, std::vector<std::string> columns,
+                                        const Robot& robot) {
+  auto builder = TrajectoryBuilder::create(std::move(columns), robot, velocity_limits(robot));
+  if (!builder) {
+    return tl::unexpected(builder.error());
+  }
+  for (std::size_t at = 0; at < rows.values.size(); at += rows.columns) {
+    if (const auto added = builder->add({&rows.values[at], rows.columns}); !added) {
+      return tl::unexpected(added.error());
+    }
+  }
+  return std::move(*builder).finish();
+}
+
+asio::awaitable<Done> change(const Context& context, const Caller& caller, const igtl::Wish& wish) {
+  auto asked = targeting_of(wish);
+  if (!asked) {
+    co_return fail({.code = "INTERNAL", .detail = "Nobody carries out such a wish."});
+  }
+  const auto changed = co_await change_targeting(context, caller, asked->make, std::move(asked->body));
+  co_return changed.map([&context](const Targeting& targeting) {
+    igtl::Outcome outcome = well("It was stored.");
+    if (const auto alignment = alignment_with(context.robot, targeting)) {
+      outcome.target = row_major(alignment->desired);
+      outcome.reachable = row_major(alignment->reachable);
+    }
+    return outcome;
+  });
+}
+
+asio::awaitable<Done> load(const Context& context, const Caller& caller, const igtl::LoadRows& rows) {
+  auto columns = columns_of(context.robot, rows.columns);
+  if (!columns) {
+    co_return fail(columns.error());
+  }
+  auto work = [rows, columns = std::move(*columns), robot = &context.robot] {
+    return built(rows, columns, *robot);
+  };
+  auto done = co_await context.work.run(std::move(work));
+  if (!done) {
+    co_return fail(done.error());
+  }
+  if (!*done) {
+    co_return fail(unreadable(done->error()));
+  }
+  const auto loaded = co_await load_trajectory(context, caller, std::move(**done));
+  co_return loaded.map([] { return well("The trajectory was loaded."); });
+}
+
+Done go_manual(const Context& context) {
+  (void)context.view();
+  const Proposal* home = context.book.open_home();
+  const Proposal* open = home == nullptr ? context.book.open_mode() : home;
+  if (open != nullptr) {
+    if (const auto ended = context.book.abort(open->id); !ended) {
+      return fail(refused(ended.error()));
+    }
+  }
+  return well("The robot is in manual mode.");
+}
+
+asio::awaitable<Done> propose_path(const Context& context, const Caller& caller,
+                                   tl::expected<PathDraft, Problem> draft) {
+  if (!draft) {
+    co_return fail(draft.error());
+  }
+  draft->source = ProposalSource::openigtlink;
+  Draft wanted = std::move(*draft);
+  const auto made = co_await propose(context, caller, std::move(wanted));
+  co_return made.map(proposed);
+}
+
+asio::awaitable<Done> enter_mode(const Context& context, const Caller& caller, std::string mode) {
+  if (mode == "manual") {
+    co_return go_manual(context);
+  }
+  tl::expected<PathDraft, Problem> draft = fail({.status = Status::conflict,
+                                                 .code = "MODE",
+                                                 .detail = "\"" + mode + "\" cannot be had from here.",
+                                                 .expected = known_modes,
+                                                 .next_step = "Homing is started in the console."});
+  if (mode == "trajectory") {
+    draft = trajectory_draft(context.trajectory, caller.user);
+  } else if (mode == "draping") {
+    draft = draping_draft(context.robot, caller.user);
+  } else if (mode == "targeting" || mode == "insertion") {
+    draft = co_await pose_draft(context, PoseWish{false, mode == "insertion"}, caller.user);
+  }
+  co_return co_await propose_path(context, caller, std::move(draft));
+}
+
+asio::awaitable<Done> move_to_target(const Context& context, const Caller& caller, bool takes_reachable) {
+  auto draft = co_await pose_draft(context, PoseWish{takes_reachable, true}, caller.user);
+  co_return co_await propose_path(context, caller, std::move(draft));
+}
+
+asio::awaitable<Done> retract(const Context& context, const Caller& caller) {
+  const Axis* insertion = context.robot.with_role("insertion");
+  if (insertion == nullptr) {
+    co_return fail(not_found("axis that inserts the probe", "a robot with such an axis"));
+  }
+  PathProgram program{{MoveLeg{{{insertion->slot, insertion->lowest_setpoint_counts()}}, 0.0, 0.0}}};
+  tl::expected<PathDraft, Problem> draft =
+      PathDraft{RobotMode::coordinated, std::make_shared<const PathProgram>(std::move(program)),
+                ProposalSource::openigtlink, std::nullopt, caller.user};
+  co_return co_await propose_path(context, caller, std::move(draft));
+}
+
+/** Whether each axis that homing brings to its switch has been there. */
+bool is_homed(const Robot& robot, const ControlView& view) {
+  return view.attached && !robot.home_steps.empty() &&
+         std::ranges::all_of(robot.home_steps, [&](const HomeStep& step) {
+           return std::ranges::all_of(
+               step.home, [&](std::uint32_t slot) { return view.snapshot.state.axis[slot].homed != 0; });
+         });
+}
+
+asio::awaitable<Done> start_up(const Context& context, const Caller& caller) {
+  if (is_homed(context.robot, context.view())) {
+    co_return well("Every axis is homed.");
+  }
+  Draft wanted = HomeDraft{std::nullopt, std::nullopt, caller.user, ProposalSource::openigtlink};
+  const auto made = co_await propose(context, caller, std::move(wanted));
+  co_return made.map(proposed);
+}
+
+/** Which way the probe comes is kept, and from how far. */
+void aim_at(Targeting& targeting, const igtl::Matrix& pose) {
+  double depth_mm = usual_depth_mm;
+  if (targeting.entry_point && targeting.target_point) {
+    const Point& from = *targeting.entry_point;
+    const Point& to = *targeting.target_point;
+    depth_mm = std::max(1.0, std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]));
+  }
+  targeting.target_point = {pose[3], pose[7], pose[11]};
+  targeting.entry_point = {pose[3] - depth_mm * pose[2], pose[7] - depth_mm * pose[6],
+                           pose[11] - depth_mm * pose[10]};
+}
+
+Problem out_of_reach(const std::string& why) {
+  return {.status = Status::conflict,
+          .code = "UNREACHABLE",
+          .detail = "The target is out of reach: " + why,
+          .expected = "a target within reach of the axes",
+          .next_step = "Send another one."};
+}
+
+asio::awaitable<Done> set_target(const Context& context, const Caller& caller, igtl::SetTargetPose wish) {
+  const auto before = co_await present_targeting(context);
+  if (!before) {
+    co_return fail(before.error());
+  }
+  Targeting wanted = *before;
+  aim_at(wanted, wish.scanner_from_target);
+  const auto alignment = alignment_with(context.robot, wanted);
+  if (!alignment) {
+    co_return fail(out_of_reach(alignment.error().detail));
+  }
+  const bool is_moved = std::ranges::any_of(alignment->setpoints, &AxisSetpoint::clamped) &&
+                        alignment->deviation.distance_mm > moved_mm;
+  if (is_moved && !wish.takes_reachable) {
+    co_return fail(out_of_reach("an axis ends before it."));
+  }
+  igtl::Outcome outcome = well("The target was stored.");
+  outcome.target = row_major(alignment->desired);
+  outcome.reachable = row_major(alignment->reachable);
+  if (is_moved) {
+    outcome.status = {StatusCode::configuration, moved_target, "MOVED",
+                      "The target was out of reach and was moved to the nearest pose that can be had."};
+    outcome.target = outcome.reachable;
+    aim_at(wanted, *outcome.reachable);
+  }
+  json body{{"entry_point", *wanted.entry_point}, {"target_point", *wanted.target_point}};
+  const auto changed = co_await change_targeting(context, caller, with_target, std::move(body));
+  co_return changed.map([&outcome](const Targeting&) { return outcome; });
+}
+
+/** A STATUS says which kind of refusal a target met. */
+asio::awaitable<Done> set_target_pose(const Context& context, const Caller& caller,
+                                      igtl::SetTargetPose wish) {
+  if (const auto pose = rigid_pose({{"target", wish.scanner_from_target}}, "target"); !pose) {
+    igtl::Outcome outcome{status_of(pose.error())};
+    outcome.status.sub_code = invalid_target;
+    co_return outcome;
+  }
+  co_return co_await set_target(context, caller, wish);
+}
+
+asio::awaitable<Done> disable_all(const Context& context) {
+  for (const Axis& axis : context.robot.axes) {
+    const auto answer = co_await context.control.ask(ILK_REQUEST_DISABLE, axis.slot);
+    if (!answer || !answer->verdict) {
+      co_return fail(no_kernel("The kernel did not answer within a second."));
+    }
+    if (*answer->verdict != ILK_VERDICT_ACCEPTED) {
+      co_return fail(refused(verdict_refusal(*answer->verdict, axis.name)));
+    }
+  }
+  co_return well("Every axis is disabled.");
+}
+
+asio::awaitable<Done> cut_power(const Context& context) {
+  if (const Done ended = go_manual(context); !ended) {
+    co_return fail(ended.error());
+  }
+  co_return co_await disable_all(context);
+}
+
+asio::awaitable<Done> done_for(const Context& context, const Caller& caller, const igtl::Wish& wish) {
+  if (const auto* rows = std::get_if<igtl::LoadRows>(&wish)) {
+    co_return co_await load(context, caller, *rows);
+  }
+  if (const auto* mode = std::get_if<igtl::SetMode>(&wish)) {
+    co_return co_await enter_mode(context, caller, mode->mode);
+  }
+  if (std::holds_alternative<igtl::StartUp>(wish)) {
+    co_return co_await start_up(context, caller);
+  }
+  if (const auto* target = std::get_if<igtl::SetTargetPose>(&wish)) {
+    co_return co_await set_target_pose(context, caller, *target);
+  }
+  if (const auto* move = std::get_if<igtl::MoveToTarget>(&wish)) {
+    co_return co_await move_to_target(context, caller, move->takes_reachable);
+  }
+  if (std::holds_alternative<igtl::RetractProbe>(wish)) {
+    co_return co_await retract(context, caller);
+  }
+  if (std::holds_alternative<igtl::CutPower>(wish)) {
+    co_return co_await cut_power(context);
+  }
+  co_return co_await change(context, caller, wish);
+}
+
+}  // namespace
+
+igtl::Status status_of(const Problem& problem) {
+  std::string text = problem.detail;
+  text += problem.expected.empty() ? "" : " Expected: " + problem.expected + ".";
+  text += problem.next_step.empty() ? "" : " " + problem.next_step;
+  return {status_code(problem), 0, problem.code, std::move(text)};
+}
+
+asio::awaitable<igtl::Outcome> carry_out(const Context& context, const Caller& caller, std::string device,
+                                         igtl::Wish wish) {
+  json detail{{"action", "message"}, {"name", device}, {"client", caller.peer}};
+  context.store.note(context.entry(caller, AuditKind::connection, std::move(detail)));
+  std::string thrown;
+  try {
+    const Done done = co_await done_for(context, caller, wish);
+    co_return done ? *done : igtl::Outcome{status_of(done.error())};
+  } catch (const std::exception& exception) {
+    thrown = exception.what();
+  }
+  spdlog::critical("OpenIGTLink message \"{}\" threw: {}", device, thrown);
+  co_return igtl::Outcome{status_of(
+      {.code = "INTERNAL", .detail = "The app failed to do it.", .next_step = "Report it with the log."})};
+}
+
+asio::awaitable<igtl::Outcome> stopped(const Context& context,
+                                       asio::awaitable<std::optional<StopAnswer>> answered, bool cuts_power) {
+  const std::optional<StopAnswer> answer = co_await std::move(answered);
+  if (!answer || answer->verdict != ILK_VERDICT_ACCEPTED) {
+    co_return igtl::Outcome{{StatusCode::not_ready, 0, "NO_KERNEL",
+                             "STOP was sent, and no kernel has confirmed it. Release the pedal."}};
+  }
+  if (!cuts_power) {
+    co_return well("The kernel has stopped all motion.");
+  }
+  const Done cut = co_await disable_all(context);
+  co_return cut ? *cut : igtl::Outcome{status_of(cut.error())};
+}
+
+}  // namespace interlock::web

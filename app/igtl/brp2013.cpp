@@ -1,0 +1,7 @@
+#include "igtl/brp2013.hpp"
+
+namespace interlock::igtl {
+
+std::string Brp2013::forbids(Phase /*wanted*/, const RobotState& /*state*/) const { return {}; }
+
+}  // namespace interlock::igtl

@@ -1,0 +1,59 @@
+#include "igtl/dialect.hpp"
+
+#include <algorithm>
+
+namespace interlock::igtl {
+namespace {
+
+Capability capabilities() {
+  return {{"TRANSFORM", "STRING", "STATUS", "POINT", "POSITION", "NDARRAY", "TDATA", "GET_CAPABIL",
+           "STT_TDATA", "STP_TDATA"}};
+}
+
+}  // namespace
+
+bool needs_control(const Wish& wish) noexcept {
+  return !std::holds_alternative<Stop>(wish) && !std::holds_alternative<Track>(wish) &&
+         !std::holds_alternative<Noted>(wish);
+}
+
+TrackingData tracking_of(const RobotState& state) {
+  constexpr std::uint8_t six_degrees = 2;
+  TrackingData data{{{"scanner_to_robot_reg", six_degrees, state.scanner_from_robot}}};
+  if (state.measured_cp) {
+    data.tools.push_back({"measured_cp", six_degrees, *state.measured_cp});
+  }
+  if (state.desired_cp) {
+    data.tools.push_back({"desired_cp", six_degrees, *state.desired_cp});
+  }
+  return data;
+}
+
+Reaction answer_query(const Query& query, const std::string& device, const Outgoings& known,
+                      const RobotState& state) {
+  if (asks_for(query, "CAPABILITY")) {
+    return {{{device, capabilities()}}, std::nullopt};
+  }
+  if (asks_for(query, "TDATA")) {
+    return {{{device, tracking_of(state)}}, std::nullopt};
+  }
+  Reaction reaction;
+  std::ranges::copy_if(known, std::back_inserter(reaction.replies), [&](const Outgoing& each) {
+    return asks_for(query, type_of(each.second)) && (device.empty() || device == each.first);
+  });
+  if (reaction.replies.empty()) {
+    reaction.refused = "There is no " + query.type + " \"" + device + "\" now.";
+    reaction.replies.emplace_back(device, Status{StatusCode::not_found, 0, "NOT_FOUND", reaction.refused});
+  }
+  return reaction;
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  std::ranges::transform(result, result.begin(), [](char each) {
+    return each >= 'A' && each <= 'Z' ? static_cast<char>(each + 32) : each;
+  });
+  return result;
+}
+
+}  // namespace interlock::igtl

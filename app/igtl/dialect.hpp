@@ -1,0 +1,114 @@
+/**
+ * @file
+ * How a navigation program and the robot talk: which messages mean what, and what is answered in which order.
+ *
+ * One dialect object serves one connection. It decides what is said and what is wished for; it sends nothing
+ * and moves nothing.
+ */
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "igtl/wish.hpp"
+
+namespace interlock::igtl {
+
+/** What the robot tells of itself. */
+struct RobotState {
+  Matrix scanner_from_robot = Transform{}.matrix;
+  std::optional<Matrix> measured_cp; /**< treatment point by the encoders; none while it is unknown */
+  std::optional<Matrix> desired_cp;  /**< treatment point at entry and target; none without these */
+  std::optional<Position3> entry;
+  std::optional<Position3> target;
+  double treatment_to_tip_mm = 0.0;
+  double robot_to_entry_mm = 0.0;
+  double cannula_to_treatment_mm = 0.0;
+  double treatment_to_robot_at_home_mm = 0.0;
+  std::string mode;                /**< "manual" */
+  std::vector<double> measured_jp; /**< axes in the order of the robot's file, in their units */
+  std::vector<double> measured_jv; /**< their velocities, units/s; empty while unknown */
+  std::vector<double> desired_jp;
+  bool is_probe_out = false; /**< homed, and as far out as it goes */
+  Status health;
+};
+
+/** A message to be sent: its name, and what is in it. */
+using Outgoing = std::pair<std::string, Body>;
+using Outgoings = std::vector<Outgoing>;
+
+/** What became of a wish. */
+struct Outcome {
+  Status status;
+  std::optional<std::uint32_t> proposal = {}; /**< that it became; the motion has its own end */
+  std::optional<Matrix> target = {};          /**< treatment point that entry and target ask for now */
+  std::optional<Matrix> reachable = {};       /**< the nearest to it that the axes can do */
+};
+
+/** A motion that came of a wish has changed. */
+struct Motion {
+  std::uint32_t proposal = 0; /**< its number */
+  bool is_over = false;
+  Status status;
+};
+
+/** What follows from a message or an outcome. */
+struct Reaction {
+  Outgoings replies;                      /**< to be sent at once, in this order */
+  std::optional<Wish> wish;               /**< to be carried out; its outcome is for `finish` */
+  std::optional<std::uint32_t> ends = {}; /**< a proposal that is wanted no more */
+  std::string refused = {}; /**< why the message is refused, for the log; empty when it is not */
+};
+
+class Dialect {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  Dialect() = default;
+  Dialect(const Dialect&) = delete;
+  Dialect& operator=(const Dialect&) = delete;
+  virtual ~Dialect() = default;
+
+  /** A message came; `controls`: from the controller. */
+  virtual Reaction take(const Message& message, const RobotState& state, bool controls) = 0;
+
+  /** A message came that cannot be read. */
+  virtual Outgoings take_broken(const std::string& device, const Status& fault) = 0;
+
+  /** A wish that came under that name was carried out or refused. */
+  virtual Reaction finish(const std::string& device, const Wish& wish, const Outcome& outcome) = 0;
+
+  /** A motion has changed. */
+  virtual Outgoings follow(const Motion& motion, const RobotState& state) = 0;
+
+  /** What is to be told whenever it changes. */
+  [[nodiscard]] virtual Outgoings told(const RobotState& state) const = 0;
+
+  /** What is due by now; asked ten times a second and more. `has_to_hear`: something at least, by which it is
+   * seen whether the peer is still there. */
+  virtual Outgoings beat(Time now, const RobotState& state, bool has_to_hear) = 0;
+};
+
+/** The dialect of that name of the robot's file, for one connection; null when there is none. */
+std::unique_ptr<Dialect> make_dialect(std::string_view name);
+
+/** Whether a wish changes what the robot will do, hence is the controller's alone. */
+bool needs_control(const Wish& wish) noexcept;
+
+/** The poses as one TDATA message. */
+TrackingData tracking_of(const RobotState& state);
+
+/** What a query asks for: of `known`, what bears that name, or all of that type when the name is empty; else
+ * what every dialect knows. STATUS 4 when there is no such thing. */
+Reaction answer_query(const Query& query, const std::string& device, const Outgoings& known,
+                      const RobotState& state);
+
+/** A name in lower case. */
+std::string lower(std::string_view text);
+
+}  // namespace interlock::igtl

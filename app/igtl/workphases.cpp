@@ -1,0 +1,365 @@
+#include "igtl/workphases.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace interlock::igtl {
+namespace {
+
+constexpr std::size_t prefix_width = 4;
+constexpr const char* current_status_name = "CURRENT_STATUS";
+constexpr const char* current_position_name = "CURRENT_POSITION";
+constexpr const char* error_name = "ERROR";
+constexpr const char* target_name = "TARGET";
+
+std::string word_of(Phase phase) { return std::string(phase_name(phase)); }
+
+Outgoings position_of(const RobotState& state) {
+  if (!state.measured_cp) {
+    return {};
+  }
+  return {{current_position_name, Transform{*state.measured_cp}}};
+}
+
+bool is_stop(Phase phase) { return phase == Phase::stop || phase == Phase::emergency; }
+
+}  // namespace
+
+Reaction Workphases::refuse(const std::string& name, StatusCode code, const std::string& reason,
+                            std::int64_t sub_code) {
+  Reaction reaction{{{name, Status{code, sub_code, "REFUSED", reason}}}, std::nullopt};
+  reaction.refused = reason;
+  return reaction;
+}
+
+Reaction Workphases::take(const Message& message, const RobotState& state, bool controls) {
+  if (const auto* query = std::get_if<Query>(&message.body)) {
+    return answer_query(*query, message.device, known(state), state);
+  }
+  if (const auto* start = std::get_if<StartTracking>(&message.body)) {
+    return {{}, Track{start->interval_ms}};
+  }
+  if (std::holds_alternative<StopTracking>(message.body)) {
+    return {{}, Track{}};
+  }
+  if (std::holds_alternative<Status>(message.body) || std::holds_alternative<Capability>(message.body) ||
+      std::holds_alternative<TrackingReply>(message.body)) {
+    return {};
+  }
+  const std::string prefix = message.device.substr(0, prefix_width);
+  const std::string id = message.device.substr(std::min(prefix_width, message.device.size()));
+  if (prefix == "CMD_") {
+    return request(id, message, state, controls);
+  }
+  if (prefix == "CLB_") {
+    return calibrate(id, message);
+  }
+  return prefix == "TGT_" ? target(id, message) : take_other(message, state);
+}
+
+Outgoings Workphases::take_broken(const std::string& device, const Status& fault) {
+  Status told = fault;
+  told.text = device + ": " + fault.text;
+  return {{error_name, told}};
+}
+
+/** CMD_: a phase is asked for. */
+Reaction Workphases::request(const std::string& id, const Message& message, const RobotState& state,
+                             bool controls) {
+  const auto* text = std::get_if<Text>(&message.body);
+  if (text == nullptr) {
+    return refuse(error_name, StatusCode::configuration,
+                  message.device + " came as " + type_of(message.body) + "; expected STRING.");
+  }
+  Reaction reaction{{{"ACK_" + id, *text}}, std::nullopt};
+  const auto wanted = requested_phase(text->text);
+  StatusCode code = StatusCode::ok;
+  if (!wanted) {
+    code = StatusCode::unknown_instruction;
+    reaction.refused = "There is no phase \"" + text->text + "\"; docs/openigtlink.md lists them.";
+    reaction.replies.emplace_back(error_name, Status{code, 0, "UNKNOWN", reaction.refused});
+    return reaction;
+  }
+  if (!is_stop(*wanted)) {
+    code = controls ? StatusCode::not_ready : StatusCode::access_denied;
+    reaction.refused = controls
+                           ? forbids(*wanted, state)
+                           : "This connection is an observer; whoever holds the motion authority makes it "
+                             "the controller, under Communication.";
+  }
+  if (reaction.refused.empty()) {
+    enter(*wanted, reaction);
+    return reaction;
+  }
+  reaction.replies.emplace_back(current_status_name, current_status(code, reaction.refused));
+  reaction.replies.emplace_back(word_of(*wanted), Status{code, 0, "REFUSED", reaction.refused});
+  return reaction;
+}
+
+void Workphases::enter(Phase wanted, Reaction& reaction) {
+  const Phase from = std::exchange(phase_, wanted);
+  before_ = is_stop(from) ? before_ : from;
+  drop_motion(reaction);
+  reaction.replies.emplace_back(current_status_name, current_status(StatusCode::ok));
+  const auto tell = [&](StatusCode code, const std::string& reason) {
+    const bool refused = code != StatusCode::ok;
+    reaction.refused = refused ? reason : "";
+    reaction.replies.emplace_back(word_of(wanted), Status{code, 0, refused ? "REFUSED" : "OK", reason});
+  };
+  switch (wanted) {
+    case Phase::start_up:
+      aim_for(Aim::start_up, StartUp{}, reaction);
+      break;
+    case Phase::planning:
+    case Phase::calibration:
+      if (tells_every_entry()) {
+        tell(StatusCode::ok, "");
+      }
+      break;
+    case Phase::targeting:
+      if (calibrated_) {
+        tell(StatusCode::ok, "");
+      } else {
+        tell(uncalibrated(), "No calibration came by this connection; send CLB_ in the phase CALIBRATION.");
+      }
+      break;
+    case Phase::move_to_target:
+      if (from == Phase::manual) {
+        tell(StatusCode::not_ready, "The motors have no power after MANUAL; begin with START_UP.");
+      } else if (!has_target_) {
+        tell(StatusCode::not_ready, "There is no target; send TGT_ in the phase TARGETING.");
+      } else {
+        aim_for(Aim::target, MoveToTarget{takes_reachable()}, reaction);
+      }
+      break;
+    case Phase::manual:
+      reaction.wish = CutPower{};
+      break;
+    case Phase::stop:
+    case Phase::emergency:
+      reaction.wish = Stop{wanted == Phase::emergency};
+      break;
+    case Phase::undefined:
+      break;
+  }
+  if (reaction.wish && wanted != Phase::move_to_target) {
+    expected_[word_of(wanted)] = std::nullopt;
+  }
+}
+
+void Workphases::aim_for(Aim aim, Wish wish, Reaction& reaction) {
+  drop_motion(reaction);
+  aim_ = aim;
+  reaction.wish = std::move(wish);
+}
+
+void Workphases::drop_motion(Reaction& reaction) {
+  if (motion_) {
+    reaction.ends = std::exchange(motion_, std::nullopt);
+  }
+  aim_ = Aim::nothing;
+}
+
+/** CLB_: the robot's pose in the scanner. */
+Reaction Workphases::calibrate(const std::string& id, const Message& message) {
+  const auto* matrix = std::get_if<Transform>(&message.body);
+  if (matrix == nullptr) {
+    return refuse(word_of(Phase::calibration), StatusCode::configuration,
+                  message.device + " came as " + type_of(message.body) + "; expected TRANSFORM.");
+  }
+  Reaction reaction{{{"ACK_" + id, *matrix}}, SetRegistration{matrix->matrix}};
+  if (phase_ != Phase::calibration) {
+    reaction.wish.reset();
+    reaction.refused = "A calibration is taken in the phase CALIBRATION alone.";
+    reaction.replies.emplace_back(word_of(Phase::calibration),
+                                  Status{StatusCode::not_ready, 0, "REFUSED", reaction.refused});
+    return reaction;
+  }
+  expected_[word_of(Phase::calibration)] = std::nullopt;
+  return reaction;
+}
+
+/** TGT_: the pose that the probe is to have. */
+Reaction Workphases::target(const std::string& id, const Message& message) {
+  const auto* matrix = std::get_if<Transform>(&message.body);
+  if (matrix == nullptr) {
+    return refuse(target_name, StatusCode::configuration,
+                  message.device + " came as " + type_of(message.body) + "; expected TRANSFORM.");
+  }
+  Reaction reaction{{{"ACK_" + id, *matrix}}, SetTargetPose{matrix->matrix, takes_reachable()}};
+  if (!takes_target() || !calibrated_) {
+    reaction.wish.reset();
+    reaction.refused = calibrated_ ? "No target is taken in the phase " + word_of(phase_) + "."
+                                   : "No calibration came by this connection.";
+    reaction.replies.emplace_back(target_name, Status{StatusCode::not_ready, 0, "REFUSED", reaction.refused});
+    return reaction;
+  }
+  drop_motion(reaction);
+  expected_[target_name] = std::nullopt;
+  return reaction;
+}
+
+Reaction Workphases::finish(const std::string& /*device*/, const Wish& wish, const Outcome& outcome) {
+  if (std::holds_alternative<SetRegistration>(wish)) {
+    return finish_calibration(outcome);
+  }
+  if (const auto* target = std::get_if<SetTargetPose>(&wish)) {
+    return finish_target(*target, outcome);
+  }
+  if (std::holds_alternative<StartUp>(wish)) {
+    return settle(Aim::start_up, outcome);
+  }
+  if (std::holds_alternative<MoveToTarget>(wish)) {
+    return settle(Aim::target, outcome);
+  }
+  std::string name;
+  if (const auto* stop = std::get_if<Stop>(&wish)) {
+    name = word_of(stop->cuts_power ? Phase::emergency : Phase::stop);
+  } else if (std::holds_alternative<CutPower>(wish)) {
+    name = word_of(Phase::manual);
+  } else {
+    return finish_other(wish, outcome);
+  }
+  expected_.erase(name);
+  return {{{name, outcome.status}}, std::nullopt};
+}
+
+Reaction Workphases::finish_calibration(const Outcome& outcome) {
+  const std::string name = word_of(Phase::calibration);
+  expected_.erase(name);
+  Reaction reaction{{{name, outcome.status}}, std::nullopt};
+  if (outcome.status.code == StatusCode::ok) {
+    calibrated_ = true;
+    const Outgoings more = after_storing(outcome);
+    reaction.replies.insert(reaction.replies.end(), more.begin(), more.end());
+  }
+  return reaction;
+}
+
+/** A target that is refused leaves none: nobody shall go to the one before unawares. */
+Reaction Workphases::finish_target(const SetTargetPose& wish, const Outcome& outcome) {
+  expected_.erase(target_name);
+  has_target_ = outcome.target.has_value();
+  Status status = outcome.status;
+  status.code = status.code == StatusCode::unreachable ? StatusCode::configuration : status.code;
+  status.sub_code = takes_reachable() ? status.sub_code : 0;
+  Reaction reaction{{{target_name, status}}, std::nullopt};
+  if (!has_target_) {
+    return reaction;
+  }
+  reaction.replies.emplace_back(target_name, Transform{*outcome.target});
+  const Outgoings more = after_storing(outcome);
+  reaction.replies.insert(reaction.replies.end(), more.begin(), more.end());
+  if (phase_ == Phase::move_to_target) {
+    aim_for(Aim::target, MoveToTarget{wish.takes_reachable}, reaction);
+  }
+  return reaction;
+}
+
+Reaction Workphases::settle(Aim aim, const Outcome& outcome) {
+  if (outcome.proposal && aim_ == aim) {
+    Reaction reaction;
+    reaction.ends = std::exchange(motion_, outcome.proposal);
+    return reaction;
+  }
+  Reaction reaction;
+  reaction.ends = outcome.proposal;
+  if (aim_ == aim) {
+    aim_ = Aim::nothing;
+  }
+  const std::string name = name_of(aim);
+  expected_.erase(name);
+  reaction.replies.emplace_back(
+      name, outcome.proposal ? Status{StatusCode::not_ready, 0, "REPLACED", "Another phase was asked for."}
+                             : outcome.status);
+  return reaction;
+}
+
+std::string Workphases::name_of(Aim aim) {
+  switch (aim) {
+    case Aim::start_up:
+      return std::string(phase_name(Phase::start_up));
+    case Aim::retraction:
+      return "RETRACT_NEEDLE";
+    case Aim::target:
+    case Aim::nothing:
+      break;
+  }
+  return std::string(phase_name(Phase::move_to_target));
+}
+
+Reaction Workphases::take_other(const Message& message, const RobotState& /*state*/) {
+  return refuse(
+      error_name, StatusCode::unknown_instruction,
+      "The name \"" + message.device + "\" means nothing here; docs/openigtlink.md lists the names.");
+}
+
+Reaction Workphases::finish_other(const Wish& /*wish*/, const Outcome& /*outcome*/) { return {}; }
+
+Outgoings Workphases::after_storing(const Outcome& /*outcome*/) const { return {}; }
+
+Outgoings Workphases::follow(const Motion& motion, const RobotState& state) {
+  if (motion_ != motion.proposal || !motion.is_over) {
+    return {};
+  }
+  motion_.reset();
+  const Aim aim = std::exchange(aim_, Aim::nothing);
+  const std::string name = name_of(aim);
+  expected_.erase(name);
+  Status status = motion.status;
+  status.sub_code = 0;
+  Outgoings replies{{name, status}};
+  if (aim == Aim::target) {
+    const Outgoings last = position_of(state);
+    replies.insert(replies.end(), last.begin(), last.end());
+  }
+  return replies;
+}
+
+Status Workphases::current_status(StatusCode code, std::string text) const {
+  return {code, 0, word_of(phase_), std::move(text)};
+}
+
+Outgoings Workphases::known(const RobotState& state) const {
+  const bool is_known = phase_ != Phase::undefined;
+  Outgoings messages = position_of(state);
+  if (has_target_ && state.desired_cp) {
+    messages.emplace_back("TARGET_POSITION", Transform{*state.desired_cp});
+  }
+  if (calibrated_) {
+    messages.emplace_back("CALIBRATION", Transform{state.scanner_from_robot});
+  }
+  messages.emplace_back(current_status_name,
+                        current_status(is_known ? StatusCode::ok : StatusCode::configuration));
+  return messages;
+}
+
+Outgoings Workphases::told(const RobotState& state) const {
+  if (state.health.code == StatusCode::ok) {
+    return {};
+  }
+  return {{error_name, state.health}};
+}
+
+Outgoings Workphases::beat(Time now, const RobotState& state, bool has_to_hear) {
+  Outgoings due;
+  if (phase_ == Phase::move_to_target && aim_ != Aim::nothing) {
+    due = position_of(state);
+  }
+  if (due.empty() && has_to_hear) {
+    due.emplace_back(current_status_name, current_status(StatusCode::ok));
+  }
+  for (auto& [name, since] : expected_) {
+    since = since.value_or(now);
+    if (now - *since > longest_silence) {
+      since = Time::max();
+      due.emplace_back(name, Status{StatusCode::busy, 0, "BUSY",
+                                    aim_ == Aim::nothing
+                                        ? "It is still being done."
+                                        : "Motion waits for approval, for the pedal, or is not over yet."});
+    }
+  }
+  return due;
+}
+
+}  // namespace interlock::igtl

@@ -1,0 +1,111 @@
+"""A navigation program: pyigtl, with what it lacks."""
+
+import struct
+import time
+
+import numpy as np
+import pyigtl
+from bare_kernel import DEADLINE_S
+from motion import wait_until
+from pyigtl import messages as wire
+
+OK = 1
+
+
+class Status(wire.MessageBase):
+    """STATUS, which pyigtl lacks."""
+
+    def __init__(self, device_name: str | None = None, code: int = OK, text: str = "") -> None:
+        super().__init__(device_name=device_name)
+        self._message_type = "STATUS"
+        self._valid_message = True
+        self.code, self.sub_code, self.name, self.text = code, 0, "", text
+
+    def _pack_content(self) -> bytes:
+        return (
+            struct.pack(">Hq20s", self.code, self.sub_code, self.name.encode()) + self.text.encode() + b"\0"
+        )
+
+    def _unpack_content(self, content: bytes) -> None:
+        self.code, self.sub_code, name = struct.unpack(">Hq20s", content[:30])
+        self.name = name.rstrip(b"\0").decode()
+        self.text = content[30:].rstrip(b"\0").decode()
+
+
+class Query(wire.MessageBase):
+    """GET_ of a type, which has no body."""
+
+    def __init__(self, kind: str, device_name: str = "") -> None:
+        super().__init__(device_name=device_name)
+        self._message_type = "GET_" + kind
+        self._valid_message = True
+
+
+class Rows(wire.MessageBase):
+    """NDARRAY of float64 in two dimensions, which pyigtl lacks."""
+
+    def __init__(self, rows: list[list[float]], device_name: str) -> None:
+        super().__init__(device_name=device_name)
+        self._message_type = "NDARRAY"
+        self._valid_message = True
+        self.rows = rows
+
+    def _pack_content(self) -> bytes:
+        values = [value for row in self.rows for value in row]
+        head = struct.pack(">BBHH", 11, 2, len(self.rows), len(self.rows[0]))
+        return head + struct.pack(f">{len(values)}d", *values)
+
+
+wire.message_type_to_class_constructor["STATUS"] = Status
+
+
+class Heard(dict):
+    """The messages that pyigtl keeps, the newest of each name, and besides all of them in their order."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.all: list[tuple[float, wire.MessageBase]] = []
+
+    def __setitem__(self, name: str, message: wire.MessageBase) -> None:
+        self.all.append((time.monotonic(), message))
+        super().__setitem__(name, message)
+
+
+class Navigator:
+    """A navigation program: pyigtl, with one header version."""
+
+    def __init__(self, port: int, version: int = 1) -> None:
+        self.version = version
+        self.client = pyigtl.OpenIGTLinkClient("127.0.0.1", port, start_now=False)
+        self.heard = self.client.incoming_messages = Heard()
+        self.client.start()
+        wait_until("connected", self.client.is_connected)
+
+    def send(self, message: wire.MessageBase) -> None:
+        message.header_version = self.version
+        if self.version == 2:
+            message.metadata = {"dummy": "dummy"}
+        assert self.client.send_message(message)
+
+    def receive(self, name: str) -> wire.MessageBase:
+        message = self.client.wait_for_message(name, timeout=DEADLINE_S)
+        assert message is not None, f"no message {name}"
+        return message
+
+    def ask(self, message: wire.MessageBase) -> Status:
+        """The STATUS that answers a message."""
+        self.send(message)
+        answer = self.receive(message.device_name)
+        assert isinstance(answer, Status)
+        return answer
+
+    def stop(self) -> None:
+        self.client.stop()
+
+
+def transform(name: str, matrix: list[float]) -> pyigtl.TransformMessage:
+    return pyigtl.TransformMessage(np.array(matrix, dtype=float).reshape(4, 4), device_name=name)
+
+
+def text(name: str, content: str) -> pyigtl.StringMessage:
+    return pyigtl.StringMessage(content, device_name=name)

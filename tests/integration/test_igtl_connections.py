@@ -1,0 +1,195 @@
+"""What [openigtlink] of a robot's file says of connections, and `interlock igtl` at the other end of one."""
+
+import contextlib
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pyigtl
+import pytest
+from bare_kernel import BIN, DEADLINE_S
+from conftest import StackFactory
+from interface import judge
+from motion import (
+    LATERAL,
+    is_driven,
+    propose,
+    record,
+    to_motion,
+    wait_until,
+)
+from navigator import OK, Navigator, text
+from stack import Stack
+
+CONNECTIONS = "/api/communications/connections"
+NEURO = Path(__file__).resolve().parents[2] / "models/robots/neuro.toml"
+HEARTBEAT_MS = 200
+LOSS_MS = 300
+
+RobotFile = Callable[..., Path]
+
+
+@pytest.fixture
+def robot_file(tmp_path: Path) -> RobotFile:
+    """The neuro robot's file with these keys of [openigtlink] besides the usual ones."""
+
+    def write(**keys: object) -> Path:
+        table = {"bind": "127.0.0.1", "port": 18944, "dialect": "thesis"} | keys
+        lines = [f"{key} = {json.dumps(value)}" for key, value in table.items()]
+        file = tmp_path / "neuro.toml"
+        file.write_text(NEURO.read_text() + "\n[openigtlink]\n" + "\n".join(lines) + "\n")
+        return file
+
+    return write
+
+
+def connections(robot: Stack) -> list[dict]:
+    return judge(robot.api.get(CONNECTIONS)).raise_for_status().json()
+
+
+def igtl(robot: Stack, *arguments: str) -> subprocess.CompletedProcess:
+    command = [str(BIN / "interlock"), "igtl", *arguments, "--port", str(robot.igtl_port)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=DEADLINE_S, check=False)
+
+
+def free_port() -> int:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        return server.getsockname()[1]
+
+
+@contextlib.contextmanager
+def listening(port: int) -> Iterator[pyigtl.OpenIGTLinkServer]:
+    server = pyigtl.OpenIGTLinkServer(port=port, local_server=True)
+    try:
+        yield server
+    finally:
+        server.stop()
+
+
+def test_the_robot_connects_to_a_program_that_listens(stack: StackFactory, robot_file: RobotFile) -> None:
+    port = free_port()
+    file = robot_file(connect=f"127.0.0.1:{port}", first_controls=True)
+    with listening(port) as server:
+        robot = stack(speed=1, robot=file, igtl=True)
+        mode = server.wait_for_message("mode", timeout=DEADLINE_S)
+        assert mode is not None
+        assert mode.string == "manual"
+        wait_until("the controller", lambda: [each["role"] for each in connections(robot)] == ["controller"])
+        server.send_message(text("ROBOT_TO_ENTRY", "7.25"))
+        answer = server.wait_for_message("ROBOT_TO_ENTRY", timeout=DEADLINE_S)
+        assert answer is not None
+        assert answer.code == OK
+        assert robot.api.get("/api/targeting").json()["robot_to_entry_offset"] == 7.25
+        assert judge(robot.api.delete(f"{CONNECTIONS}/{connections(robot)[0]['id']}")).status_code == 200
+        wait_until("connected again", lambda: [each["id"] for each in connections(robot)] == [2])
+
+
+def test_the_first_connection_controls_where_the_file_says_so(
+    stack: StackFactory, robot_file: RobotFile
+) -> None:
+    robot = stack(speed=1, robot=robot_file(first_controls=True), igtl=True)
+    first = Navigator(robot.igtl_port)
+    wait_until("one", lambda: len(connections(robot)) == 1)
+    second = Navigator(robot.igtl_port)
+    wait_until("two", lambda: len(connections(robot)) == 2)
+    assert [each["role"] for each in connections(robot)] == ["controller", "observer"]
+    assert first.ask(text("ROBOT_TO_ENTRY", "7.25")).code == OK
+    robot.api.post("/api/authority/release").raise_for_status()
+    assert [each["role"] for each in connections(robot)] == ["observer", "observer"]
+    robot.take_authority()
+    assert [each["role"] for each in connections(robot)] == ["controller", "observer"]
+    records = robot.api.get("/api/audit", params={"records": 100}).json()
+    given = [each for each in records if each["detail"].get("action") == "role"]
+    assert [each["actor"] for each in given] == ["admin", "admin"]
+    first.stop()
+    second.stop()
+
+
+def test_a_controller_that_freezes_stops_the_motion_within_300_ms(
+    stack: StackFactory, robot_file: RobotFile
+) -> None:
+    """A frozen program is what a pulled cable is to the app, but for what TCP notices by itself."""
+    robot = stack(speed=1, robot=robot_file(heartbeat_ms=HEARTBEAT_MS), igtl=True)
+    code = (
+        "import select, socket, struct, sys\n"
+        "peer = socket.create_connection(('127.0.0.1', int(sys.argv[1])))\n"
+        "beat = struct.pack('>H12s20sQQQ', 1, b'GET_STATUS', b'robot_status', 0, 0, 0)\n"
+        "while True:\n"
+        "    peer.sendall(beat)\n"
+        "    while select.select([peer], [], [], 0.02)[0]:\n"
+        "        peer.recv(65536) or sys.exit()\n"
+        "        peer.sendall(beat)\n"
+    )
+    with subprocess.Popen([sys.executable, "-c", code, str(robot.igtl_port)]) as program:
+        wait_until("connected", lambda: len(connections(robot)) == 1)
+        number = connections(robot)[0]["id"]
+        answer = robot.api.put(f"{CONNECTIONS}/{number}/role", json={"role": "controller"})
+        assert judge(answer).status_code == 200
+        to_motion(robot)
+        propose(robot, -1900)
+        wait_until("driven", lambda: is_driven(robot))
+        frozen_at = robot.control("status")["tick"]
+        os.kill(program.pid, signal.SIGSTOP)
+        wait_until("ended", lambda: robot.api.get("/api/proposals").json()[0]["state"] == "aborted")
+        program.kill()
+    entries = record(robot, frozen_at, frozen_at + 2 * LOSS_MS)
+    driven = [entry["tick"] - frozen_at for entry in entries if entry["drive"][LATERAL]]
+    assert driven, "it had to move when its controller froze"
+    assert max(driven) < LOSS_MS
+    assert "controller was lost" in robot.api.get("/api/proposals").json()[0]["detail"]
+
+
+def test_send_shows_the_answer_and_listen_what_the_robot_tells(stack: StackFactory) -> None:
+    robot = stack(speed=1, igtl=True)
+    noted = igtl(robot, "send", "string", "IMAGER_STATUS", "scanning")
+    assert (noted.returncode, noted.stdout) == (0, "IMAGER_STATUS STATUS 1 OK: Noted.\n")
+    refused = igtl(robot, "send", "transform", "REGISTRATION", "1", "-2.5", "3", "--json")
+    assert refused.returncode == 1
+    assert (json.loads(refused.stdout)["code"], json.loads(refused.stdout)["error"]) == (5, "AUTHORITY")
+    assert "observer" in refused.stderr
+    asked = igtl(robot, "send", "get", "scanner_to_robot_reg", "TRANSFORM", "--json")
+    assert json.loads(asked.stdout)["matrix"] == [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
+    heard = igtl(robot, "listen", "--name", "mode", "--count", "1", "--wait", "5")
+    assert (heard.returncode, heard.stdout) == (0, "mode STRING manual\n")
+    point = igtl(robot, "send", "point", "TARGET_POINT", "1", "2", "3")
+    assert (point.returncode, "AUTHORITY" in point.stdout) == (1, True)
+
+
+def test_phase_shows_each_answer_with_its_time(stack: StackFactory) -> None:
+    robot = stack(speed=1, igtl=True, dialect="brp2013")
+    stop = igtl(robot, "phase", "STOP", "--id", "7")
+    assert stop.returncode == 0, stop.stderr
+    lines = stop.stdout.splitlines()
+    assert [line.split(" ms  ")[1].split()[0] for line in lines] == ["ACK_7", "CURRENT_STATUS", "STOP"]
+    assert all(float(line.split()[0]) < 1000 for line in lines)
+    refused = igtl(robot, "phase", "START_UP", "--json")
+    assert refused.returncode == 1
+    assert [json.loads(line)["name"] for line in refused.stdout.splitlines()][-1] == "START_UP"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "words"),
+    [
+        (["send", "string", "X", "y", "--port", "1"], 6, "interlock run --igtl-port"),
+        (["send", "transform", "X", "1", "2"], 2, "3 numbers"),
+        (["send", "transform", "X", "1", "2", "x"], 2, "no number"),
+        (["send", "point", "X", "1"], 2, "3 numbers"),
+        (["send", "status", "X", "70000"], 2, "code"),
+        (["send", "string", "X"], 2, "one text"),
+        (["send", "song", "X", "y"], 2, "song"),
+        (["send", "string", "x" * 21, "y"], 2, "20"),
+        (["phase"], 2, "PHASE"),
+        (["listen", "--wait", "-1"], 2, "--wait"),
+    ],
+)
+def test_what_is_wrong_is_named(arguments: list[str], code: int, words: str) -> None:
+    done = subprocess.run(
+        [str(BIN / "interlock"), "igtl", *arguments], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == code
+    assert words in done.stderr

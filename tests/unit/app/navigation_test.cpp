@@ -1,0 +1,104 @@
+#include "http/navigation.hpp"
+
+#include "http_fixture.hpp"
+#include "igtl/client.hpp"
+
+namespace interlock::web {
+namespace {
+
+using igtl::StatusCode;
+
+
+/** A navigation program on the app's port, in the dialect brp2013; the test is the kernel's side. */
+class NavigationTest : public HttpTest {
+ protected:
+  NavigationTest() {
+    in_network([this] {
+      igtl::HubOptions options;
+      options.port = 0;
+      EXPECT_TRUE(api_.navigation().hub().listen(options).has_value());
+      api_.navigation().start({"brp2013", false, std::nullopt});
+    });
+    show(test::ready_view());
+    EXPECT_TRUE(program_.connect("127.0.0.1", api_.navigation().hub().port(), soon()).has_value());
+    EXPECT_EQ(ask("WHO"), "ERROR 12") << "the connection is listed by now";
+  }
+
+  static igtl::Client::Deadline soon() { return std::chrono::steady_clock::now() + std::chrono::seconds(5); }
+
+  void become_controller() {
+    const json listed = json::parse(get("/api/communications/connections").body);
+    const std::string path = "/api/communications/connections/" + listed[0]["id"].dump() + "/role";
+    ASSERT_EQ(put(path, R"({"role":"controller"})").status, 200u);
+  }
+
+  void request(const std::string& phase) {
+    EXPECT_TRUE(program_.send("CMD_1", igtl::Text{phase}, soon()).has_value());
+  }
+
+  /** The next message, other than ACK and CURRENT_STATUS: its name and code. */
+  std::string next_answer() {
+    for (;;) {
+      const auto message = program_.receive(soon());
+      if (!message || !*message) {
+        return "nothing";
+      }
+      const auto* status = std::get_if<igtl::Status>(&(*message)->body);
+      if (status != nullptr && (*message)->device != "CURRENT_STATUS") {
+        return (*message)->device + " " + std::to_string(static_cast<int>(status->code));
+      }
+    }
+  }
+
+  std::string ask(const std::string& phase) {
+    request(phase);
+    return next_answer();
+  }
+
+  igtl::Client program_;
+};
+
+TEST_F(NavigationTest, StopIsAskedForOnceAndAnsweredWhenTheKernelHasAccepted) {
+  request("STOP");
+  while (mailbox_->stops == 0) {
+    std::this_thread::yield();
+  }
+  EXPECT_EQ(mailbox_->stops, 1u);
+  answer(StopAnswer{1, ILK_VERDICT_ACCEPTED, 6});
+  EXPECT_EQ(next_answer(), "STOP 1");
+}
+
+TEST_F(NavigationTest, AStopThatNoKernelConfirmsIsNotSaidToBeDone) {
+  EXPECT_EQ(ask("STOP"), "STOP 13");
+  EXPECT_EQ(mailbox_->stops, 1u);
+}
+
+TEST_F(NavigationTest, ManualDisablesEveryAxisForTheControllerAlone) {
+  EXPECT_EQ(ask("MANUAL"), "MANUAL 5");
+  become_controller();
+  request("MANUAL");
+  for (std::size_t i = 0; i < test::neuro().axes.size(); ++i) {
+    EXPECT_EQ(accept_next(), ILK_REQUEST_DISABLE);
+  }
+  EXPECT_EQ(next_answer(), "MANUAL 1");
+}
+
+TEST_F(NavigationTest, AHomedRobotHasStartedUp) {
+  become_controller();
+  ControlView view = test::ready_view();
+  for (const Axis& axis : test::neuro().axes) {
+    view.snapshot.state.axis[axis.slot].homed = 1;
+  }
+  show(view);
+  EXPECT_EQ(ask("START_UP"), "START_UP 1");
+  EXPECT_EQ(json::parse(get("/api/proposals").body), json::array());
+}
+
+TEST_F(NavigationTest, TheRoleEndsWithTheAuthority) {
+  become_controller();
+  EXPECT_EQ(post("/api/authority/release").status, 200u);
+  EXPECT_EQ(ask("START_UP"), "START_UP 5");
+}
+
+}  // namespace
+}  // namespace interlock::web
