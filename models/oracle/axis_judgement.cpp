@@ -5,13 +5,28 @@
 #include "oracle/axis_watch.hpp"
 
 namespace interlock::oracle {
+namespace {
+
+/** Counts by which an axis has to be inside of its soft range before leaving it counts: it creeps to rest at
+ * a switch that sits at the limit. */
+constexpr std::int64_t kEntered = 3;
+
+}  // namespace
+
+void AxisWatch::judge_due(const Observation& seen, Findings& findings) const noexcept {
+  const bool claimed = seen.claim.axes[static_cast<std::size_t>(slot_)].mode == AxisMode::kFaulted;
+  if (has_axis(rules_.card) && due_.is_due && !claimed) {
+    findings.report(seen.tick, due_.property, slot_, due_.reason);
+  }
+  if (drift_put_off_ && !claimed) {
+    findings.report(seen.tick, Property::kP6, slot_,
+                    "drifts unnoticed because missing frames put off the watch");
+  }
+}
 
 void AxisWatch::judge_latch(const Observation& seen, Findings& findings) noexcept {
   const AxisClaim& claim = seen.claim.axes[static_cast<std::size_t>(slot_)];
   const bool claimed = claim.mode == AxisMode::kFaulted;
-  if (due_.is_due && !claimed) {
-    findings.report(seen.tick, due_.property, slot_, due_.reason);
-  }
   if (!seen.state_damaged && faulted_ && !cleared_now_) {
     if (!claimed) {
       findings.report(seen.tick, Property::kP8, slot_, "a fault was left without an accepted CLEAR_FAULT");
@@ -138,10 +153,14 @@ void AxisWatch::judge_truth(const Observation& seen, Findings& findings) noexcep
   const Truth& truth = seen.truth[static_cast<std::size_t>(slot_)];
   const std::int64_t position = truth.position - truth_offset_;
   const bool inside = homed_ && truth_known_ && position >= rules_.soft_min && position <= rules_.soft_max;
+  const bool well_inside =
+      inside && position - rules_.soft_min >= kEntered && rules_.soft_max - position >= kEntered;
   if (truth.keeps_promise && homed_ && was_inside_ && !inside) {
     findings.report(seen.tick, Property::kP4, slot_, "the axis itself left its soft range");
   }
-  was_inside_ = inside;
+  was_inside_ = inside && (was_inside_ || well_inside);
+  // What it did while it was homed does not count against the unhomed travel.
+  free_of_press_ = free_of_press_ || homed_;
   if (truth.keeps_promise && !homed_ && truth_marked_ && !free_of_press_ &&
       std::abs(truth.position - truth_at_press_) > rules_.unhomed_travel) {
     findings.report(seen.tick, Property::kP7, slot_, "the axis itself went beyond its unhomed travel");
@@ -160,7 +179,7 @@ void AxisWatch::judge(const Observation& seen, Findings& findings) noexcept {
     drop_motion();
   }
   enabled_ = enabled_ && (seen.claim.mode == Mode::kReady || seen.claim.mode == Mode::kMotion);
-  if (!homed_ && (faulted_ || !truth_known_)) {
+  if (!homed_ && (faulted_ || cleared_now_ || !truth_known_)) {
     origin_ = seen.claim.axes[slot].position - path_;
   }
   if (!wire::is_zero_drive(seen.to_card[slot])) {

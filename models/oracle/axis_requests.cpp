@@ -53,6 +53,14 @@ void AxisWatch::accept_clear(const Observation& seen, const Gates& gates, Findin
   forget_progress();
 }
 
+/** When the counter has rested is the kernel's word: an accepted request shows that homing has just ended. */
+void AxisWatch::end_homing_at_rest() noexcept {
+  if (homing_ == Homing::kResting) {
+    homing_ = Homing::kNone;
+    homed_ = true;
+  }
+}
+
 void AxisWatch::accept_move(const Observation& seen, const Message& message, const Gates& gates,
                             Findings& findings) noexcept {
   if (!gates.may_be_in_motion) {
@@ -61,6 +69,7 @@ void AxisWatch::accept_move(const Observation& seen, const Message& message, con
   if (faulted_ || !enabled_) {
     findings.report(seen.tick, Property::kP1, slot_, "MOVE accepted on an axis that is not enabled");
   }
+  end_homing_at_rest();
   if (homing_ != Homing::kNone) {
     findings.report(seen.tick, Property::kP11, slot_, "MOVE accepted during homing");
   }
@@ -94,6 +103,7 @@ void AxisWatch::accept_home(const Observation& seen, const Gates& gates, Finding
   if (faulted_ || !enabled_) {
     findings.report(seen.tick, Property::kP1, slot_, "HOME accepted on an axis that is not enabled");
   }
+  end_homing_at_rest();
   if (homing_ != Homing::kNone) {
     findings.report(seen.tick, Property::kP11, slot_, "HOME accepted during homing");
   }
@@ -102,7 +112,7 @@ void AxisWatch::accept_home(const Observation& seen, const Gates& gates, Finding
   }
   drop_motion();
   homing_ = Homing::kSeeking;
-  switch_seen_open_ = false;
+  switch_seen_open_ = valid_ && !switch_triggered_;
   homed_ = false;
   free_of_press_ = true;
 }
@@ -119,7 +129,12 @@ void AxisWatch::accept_position(const Observation& seen, const Message& message,
     findings.report(seen.tick, Property::kP11, slot_,
                     "a position declared on a faulted axis or without a card");
   }
-  if (was_driven_in(seen.tick - 1) || !still_) {
+  if (is_first_reading_) {
+    findings.report(seen.tick, Property::kP11, slot_,
+                    "a position declared on the first reading of a card, rest unknown");
+  } else if (was_driven_in(seen.tick - 1)) {
+    findings.report(seen.tick, Property::kP11, slot_, "a position declared in the tick in which drive ended");
+  } else if (!still_) {
     findings.report(seen.tick, Property::kP11, slot_, "a position declared on an axis that is not at rest");
   }
   if (position < rules_.soft_min || position > rules_.soft_max) {

@@ -7,6 +7,8 @@
 namespace interlock::oracle {
 namespace {
 
+constexpr std::uint32_t kFirstJudgedEcho =
+    2; /**< before that tick of the kernel no frame can have been answered */
 constexpr std::uint32_t kMostMessages = 16; /**< that the kernel looks at in one tick */
 
 }  // namespace
@@ -22,13 +24,38 @@ bool Oracle::any_drive(const Observation& seen) const noexcept {
   return !std::ranges::all_of(seen.to_card, wire::is_zero_drive);
 }
 
+std::uint32_t Oracle::counter_of(const Observation& seen) const noexcept {
+  const auto card = std::ranges::find_if(
+      rules_.axes, [](CardKind kind) { return kind != CardKind::kNone; }, &AxisRules::card);
+  return card == rules_.axes.end()
+             ? seen.tick
+             : wire::tick_counter(seen.to_card[static_cast<std::size_t>(card - rules_.axes.begin())]);
+}
+
+/** A kernel whose memory was damaged may count from its start again, in LOCKED. */
+bool Oracle::starts_anew(const Observation& seen) const noexcept {
+  return seen.state_damaged && seen.claim.mode == Mode::kLocked && counter_of(seen) != sent_counters_[0] + 1;
+}
+
+void Oracle::note_counter(const Observation& seen) noexcept {
+  const std::uint32_t counter = counter_of(seen);
+  const bool anew = kernel_ticks_ == 0 || starts_anew(seen);
+  if (!anew && counter != sent_counters_[0] + 1) {
+    findings_.report(seen.tick, Property::kP16, kNoAxis, "the tick counter does not count");
+  }
+  kernel_ticks_ = anew ? 1 : std::min(kernel_ticks_ + 1, kFirstJudgedEcho);
+  sent_counters_ = {counter, sent_counters_[0]};
+}
+
 void Oracle::judge_frames(const Observation& seen) noexcept {
+  note_counter(seen);
   for (std::size_t slot = 0; slot < kSlots; slot++) {
     const wire::FrameView frame = seen.to_card[slot];
     const auto axis = static_cast<std::int8_t>(slot);
     if (rules_.axes[slot].card != CardKind::kNone &&
-        (!wire::is_intact(frame) || wire::tick_counter(frame) != seen.tick)) {
-      findings_.report(seen.tick, Property::kP16, axis, "a frame without start word, checksum or this tick");
+        (!wire::is_intact(frame) || wire::tick_counter(frame) != sent_counters_[0])) {
+      findings_.report(seen.tick, Property::kP16, axis,
+                       "a frame without start word, checksum or the tick of the others");
     }
     if (!has_axis(rules_.axes[slot].card) && !wire::is_zero_drive(frame)) {
       findings_.report(seen.tick, Property::kP16, axis, "drive words for a slot without an axis");
@@ -150,25 +177,33 @@ void Oracle::take_messages(const Observation& seen) noexcept {
 std::span<const Finding> Oracle::step(const Observation& seen) noexcept {
   findings_.clear();
   const bool in_motion = system_.before() == Mode::kMotion;
+  const Echo echo{kernel_ticks_ >= kFirstJudgedEcho, sent_counters_[1]};
   bool any_card_valid = false;
   bool new_fault = false;
   bool required_card_lost = false;
   for (std::size_t slot = 0; slot < kSlots; slot++) {
-    axes_[slot].see(seen, in_motion);
+    axes_[slot].see(seen, echo, in_motion);
     any_card_valid = any_card_valid || axes_[slot].card_valid();
     new_fault = new_fault || axes_[slot].faults_now(seen);
     required_card_lost = required_card_lost || (rules_.axes[slot].required && axes_[slot].card_lost());
   }
+  if (starts_anew(seen)) {
+    std::ranges::for_each(axes_, [&seen](AxisWatch& axis) { axis.forget(seen.tick); });
+    sequence_known_ = false;
+  }
   system_.see(seen, any_card_valid);
   system_.decide(seen, new_fault, required_card_lost);
+  for (const AxisWatch& axis : axes_) {
+    axis.judge_due(seen, findings_);
+  }
   take_messages(seen);
-  system_.judge(seen, findings_);
   judge_frames(seen);
   judge_stop(seen);
   judge_damage(seen);
   for (AxisWatch& axis : axes_) {
     axis.judge(seen, findings_);
   }
+  system_.judge(seen, findings_);
   return findings_.kept();
 }
 

@@ -39,6 +39,9 @@ class Oracle {
   void take_messages(const Observation& seen) noexcept;
   void take_accepted(const Observation& seen, const Message& message) noexcept;
   bool is_in_order(const Message& message) noexcept;
+  std::uint32_t counter_of(const Observation& seen) const noexcept;
+  bool starts_anew(const Observation& seen) const noexcept;
+  void note_counter(const Observation& seen) noexcept;
   bool any_drive(const Observation& seen) const noexcept;
 
   SystemRules rules_;
@@ -47,6 +50,8 @@ class Oracle {
   Findings findings_;
   bool sequence_known_ = false;
   std::uint32_t sequence_ = 0;
+  std::uint32_t kernel_ticks_ = 0;               /**< since the kernel counts from its start */
+  std::array<std::uint32_t, 2> sent_counters_{}; /**< of the last tick and the one before */
 };
 
 }  // namespace interlock::oracle
