@@ -143,7 +143,7 @@ void AxisWatch::judge_drive(const Observation& seen, const wire::Drive& drive,
       findings.report(seen.tick, Property::kP1, slot_, "driven, but not towards its setpoint");
     }
   }
-  if (driven_ticks_ >= rules_.stall_ticks) {
+  if (is_stalled()) {
     findings.report(seen.tick, Property::kP5, slot_, "driven longer than allowed without progress");
   }
   judge_limits(seen, drive, findings);

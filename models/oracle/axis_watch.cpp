@@ -25,6 +25,7 @@ void AxisWatch::refer_to(const Observation& seen, std::int64_t position) noexcep
 
 void AxisWatch::forget_progress() noexcept {
   driven_ticks_ = 0;
+  standing_ticks_ = 0;
   one_target_ = true;
   progress_path_ = path_;
 }
@@ -66,6 +67,7 @@ void AxisWatch::judge_motion_seen(const Observation& seen, std::int64_t moved) n
   }
   if (sense_ * (path_ - farthest_path_) > 0) {
     farthest_path_ = path_;
+    standing_ticks_ = 0;
   }
   if (undriven_frames_ == 0 && sense_ * (farthest_path_ - path_) > rules_.reverse) {
     require_fault(Property::kP6, "moves against its command");
@@ -73,7 +75,7 @@ void AxisWatch::judge_motion_seen(const Observation& seen, std::int64_t moved) n
   if (!is_settled_by_frames() && sense_ * (path_ - progress_path_) >= rules_.stall_min) {
     forget_progress();
   }
-  if (driven_ticks_ >= rules_.stall_ticks) {
+  if (is_stalled()) {
     require_fault(Property::kP5, "stalls");
   }
   judge_rest_seen(seen.tick, path_ - moved);
@@ -192,6 +194,7 @@ void AxisWatch::note_drive(const Observation& seen, bool rises) noexcept {
   one_target_ = has_lease_ && (driven_ticks_ == 0 || (one_target_ && counted_target_ == target_));
   counted_target_ = target_;
   driven_ticks_++;
+  standing_ticks_++;
 }
 
 void AxisWatch::note_arrival() noexcept {

@@ -96,6 +96,11 @@ class AxisWatch {
   bool is_settled(std::uint32_t tick) const noexcept { return tick - driven_tick_ > rules_.settle_ticks; }
   /** The same, counted in the frames that were valid: missing ones delay it. */
   bool is_settled_by_frames() const noexcept { return undriven_frames_ >= rules_.settle_ticks; }
+  /** From which reading progress is measured depends on when it was last told; what has not got any farther
+   * for so long is stalled by every reading. */
+  bool is_stalled() const noexcept {
+    return driven_ticks_ >= rules_.stall_ticks && standing_ticks_ >= rules_.stall_ticks;
+  }
   bool was_driven_in(std::uint32_t tick) const noexcept { return sense_ != 0 && driven_tick_ == tick; }
   bool lease_is_live(std::uint32_t tick) const noexcept {
     return has_lease_ && tick - lease_start_ < lease_ticks_;
@@ -150,6 +155,7 @@ class AxisWatch {
   std::uint32_t driven_tick_ = 0;     /**< of the newest drive, or from when on none is known */
   std::uint32_t undriven_frames_ = 0; /**< valid ones since the newest drive */
   std::uint32_t driven_ticks_ = 0;    /**< since progress */
+  std::uint32_t standing_ticks_ = 0;  /**< driven ones since it got any farther */
   bool one_target_ = true;            /**< all ticks counted in driven_ticks_ had the same setpoint */
   std::int32_t counted_target_ = 0;
 

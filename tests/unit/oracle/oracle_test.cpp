@@ -222,7 +222,7 @@ const Case kCases[] = {
        for (int tick = 0; tick < 48; tick++) {
          play_move(stage, 60 - tick % 2, 100);
        }
-       run_moving(stage, 1, seeded ? 1 : 3);
+       run_moving(stage, 1, seeded ? 0 : 3);
        stage.run(30);
      }},
     {"P6_jump", Property::kP6,
