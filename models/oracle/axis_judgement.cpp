@@ -179,7 +179,7 @@ void AxisWatch::judge(const Observation& seen, Findings& findings) noexcept {
     drop_motion();
   }
   enabled_ = enabled_ && (seen.claim.mode == Mode::kReady || seen.claim.mode == Mode::kMotion);
-  if (!homed_ && (faulted_ || cleared_now_ || !truth_known_)) {
+  if (!homed_ && (faulted_ || cleared_now_ || !truth_known_ || seen.claim.mode == Mode::kLocked)) {
     origin_ = seen.claim.axes[slot].position - path_;
   }
   if (!wire::is_zero_drive(seen.to_card[slot])) {
