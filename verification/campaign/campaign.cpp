@@ -77,14 +77,14 @@ std::string text_of(const Failure& failure) {
 }
 
 void report(const Choices& choices, const Case& plan, const Failure& failure) {
+  std::cerr << "seed " << plan.seed << " case " << plan.number << " " << text_of(failure) << std::endl;
   const Case small = shrink(plan, failure);
   const std::filesystem::path file =
       choices.failures / ("case-" + std::to_string(plan.seed) + "-" + std::to_string(plan.number) + ".txt");
   std::filesystem::create_directories(choices.failures);
   std::ofstream out(file);
   write_case(out, small);
-  std::cerr << "seed " << plan.seed << " case " << plan.number << " " << text_of(failure) << "\n  "
-            << small.faults.size() << " faults in " << small.ticks
+  std::cerr << "  " << small.faults.size() << " faults in " << small.ticks
             << " ticks are enough; see it again: kernel_campaign --replay " << file.string() << "\n";
 }
 

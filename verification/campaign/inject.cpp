@@ -93,45 +93,47 @@ void World::inject(const Fault& fault) {
   }
 }
 
-bool World::pedal_sticks_soon() const {
+bool World::another_holds_the_pedal() const {
   const auto upcoming = std::span(plan_.faults).subspan(next_fault_);
-  return std::ranges::any_of(upcoming, [this](const Fault& fault) {
-    return fault.kind == FaultKind::kPedalStuck && fault.tick <= tick_ + kEdgeTicks;
-  });
+  return tick_ < pedal_held_until_ || std::ranges::any_of(
+                                          upcoming,
+                                          [this](const Fault& fault) {
+                                            const bool holds = fault.kind == FaultKind::kPedalStuck ||
+                                                               fault.kind == FaultKind::kPedalBounces ||
+                                                               fault.kind == FaultKind::kPedalHalfPressed;
+                                            return holds && fault.tick <= tick_ + kEdgeTicks;
+                                          });
 }
 
 void World::inject_pedal(const Fault& fault) {
   const bool two_channels = robot_.config.pedal_channels == 2;
   const bool normally_open = !two_channels || sense_of(fault);
+  // A contact that another fault holds may read pressed whatever this one does.
+  if (fault.kind != FaultKind::kPedalStuck && fault.kind != FaultKind::kPedalUndefined &&
+      !another_holds_the_pedal()) {
+    demand(kEdgeTicks, oracle::kNoAxis, fault.kind);
+  }
   switch (fault.kind) {
     case FaultKind::kPedalReleased:
       app_.lift_foot(fault.ticks);
-      // Contacts that are both stuck, or the only one, cannot tell.
-      if (!plant_.pedal().has_stuck_contact() && tick_ >= pedal_stuck_until_ && !pedal_sticks_soon()) {
-        demand(kEdgeTicks, oracle::kNoAxis, fault.kind);
-      }
-      break;
+      return;
     case FaultKind::kPedalBounces:
       for (std::uint32_t tick = 0; tick < fault.ticks; tick++) {
         act(command::StickPedalContact{normally_open, tick % 2 == 0 ? !normally_open : normally_open}, tick);
       }
-      act(command::StickPedalContact{normally_open, std::nullopt}, fault.ticks);
-      demand(kEdgeTicks, oracle::kNoAxis, fault.kind);
       break;
     case FaultKind::kPedalHalfPressed:
       act(command::StickPedalContact{normally_open, !normally_open});
-      act(command::StickPedalContact{normally_open, std::nullopt}, fault.ticks);
-      demand(kEdgeTicks, oracle::kNoAxis, fault.kind);
       break;
     case FaultKind::kPedalStuck:
-      pedal_stuck_until_ = std::max(pedal_stuck_until_, tick_ + fault.ticks);
       act(command::StickPedalContact{normally_open, normally_open});
-      act(command::StickPedalContact{normally_open, std::nullopt}, fault.ticks);
       break;
     default:
       undefined_pedal_ticks_ = std::max(undefined_pedal_ticks_, fault.ticks);
-      break;
+      return;
   }
+  act(command::StickPedalContact{normally_open, std::nullopt}, fault.ticks);
+  pedal_held_until_ = std::max(pedal_held_until_, tick_ + fault.ticks + 1);
 }
 
 void World::inject_card(const Fault& fault) {

@@ -73,7 +73,7 @@ class World {
  private:
   void inject(const Fault& fault);
   void inject_pedal(const Fault& fault);
-  bool pedal_sticks_soon() const;
+  bool another_holds_the_pedal() const;
   void inject_card(const Fault& fault);
   void inject_axis(const Fault& fault);
   void inject_switch(const Fault& fault);
@@ -112,7 +112,7 @@ class World {
   std::size_t next_fault_ = 0;
   bool foot_was_down_ = false;
   std::uint32_t shown_generation_ = 0;
-  std::uint32_t pedal_stuck_until_ = 0;
+  std::uint32_t pedal_held_until_ = 0;
   std::uint32_t undefined_pedal_ticks_ = 0;
   std::uint32_t undefined_estop_ticks_ = 0;
   std::uint32_t overrun_ticks_ = 0;
