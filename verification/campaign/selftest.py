@@ -7,7 +7,6 @@ found when the campaign reports something unsafe or late within the seconds give
 
 import argparse
 import json
-import re
 import subprocess
 import sys
 import tempfile
@@ -19,14 +18,22 @@ sys.path.insert(0, str(ROOT / "tests/failure"))
 import run as failure  # noqa: E402
 
 SEED = 1
+LAST_PROPERTY = 13
+
+
+# One of two places that keep a rule: without it the other still does, so no output differs. The patch beside
+# this file takes the rule from both.
+MASKED = {"P4_soft_limit_without_coast": "P4_soft_limit_in_both_places"}
+
+
+def property_of(path: Path) -> int:
+    return int(path.stem.partition("_")[0][1:])
 
 
 def chosen(names: list[str]) -> list[Path]:
-    paths = sorted(
-        (ROOT / "tests/failure").glob("P*.patch"), key=lambda path: int(re.match(r"P(\d+)", path.stem)[1])
-    )
-    paths = [path for path in paths if int(re.match(r"P(\d+)", path.stem)[1]) <= 13]
-    return [path for path in paths if not names or path.stem in names]
+    paths = [*(ROOT / "tests/failure").glob("P*.patch"), *Path(__file__).parent.glob("P*.patch")]
+    paths = [path for path in paths if property_of(path) <= LAST_PROPERTY and path.stem not in MASKED]
+    return sorted((path for path in paths if not names or path.stem in names), key=property_of)
 
 
 def campaign(tree: failure.Tree, seconds: float, work: Path) -> dict:

@@ -14,6 +14,7 @@ constexpr std::uint64_t kRobotStream = 3;
 constexpr std::uint64_t kCaseFactor = 0x9e3779b97f4a7c15u;
 constexpr std::uint32_t kSweepInterval = 64; /**< ticks from one sweep of flipped bits to the next */
 constexpr std::uint32_t kSweptBits = 16;
+constexpr std::uint64_t kSweepStart = 4999;   /**< bits from where one case begins to where the next does */
 constexpr std::uint32_t kRecoveryTicks = 300; /**< after a lie of the encoder, until nothing moves any more */
 
 /** Disagreements with the kernel that docs/reliability.md reports as open: counted, but no end of a case. */
@@ -96,7 +97,7 @@ World::World(const Case& plan)
       app_(robot_.config, plan.seed ^ (plan.number * kCaseFactor)),
       plant_(robot_.config, robot_.plant, plan.seed ^ (plan.number * kCaseFactor)),
       oracle_(robot_.rules),
-      sweep_bit_(plan.number * kStateBits / 2 % kStateBits) {
+      sweep_bit_(plan.number * kSweepStart % kStateBits) {
   ilk_init(&config_, &state_);
   for (std::size_t slot = 0; slot < ILK_SLOTS; slot++) {
     seen_.from_card[slot] = inputs_.frame[slot];
