@@ -161,6 +161,7 @@ void AxisWatch::accept(const Observation& seen, const Message& message, const Ga
       if (faulted_) {
         findings.report(seen.tick, Property::kP11, slot_, "DISABLE accepted on a faulted axis");
       }
+      end_homing_at_rest();
       enabled_ = false;
       drop_motion();
       break;
