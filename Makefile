@@ -9,6 +9,8 @@ ROBOT ?= neuro
 PORT ?= 8080
 PREFIX ?= /usr/local
 FUZZ_SECONDS ?= 30
+# SECONDS is bash's own variable, so only one from the command line counts.
+campaign_length = $(if $(TICKS),--ticks $(TICKS),$(if $(filter command,$(firstword $(origin SECONDS))),--seconds $(SECONDS)))
 
 setup := verification/toolchain/setup
 release := build/release
@@ -85,6 +87,13 @@ selftest-all: setup ## Show that every seeded fault turns its test or proof red
 verify: ## Climb the verification ladder: [FRESH=1] runs again what has not changed
 	@$(setup) packages provers
 	@/usr/bin/python3 verification/evidence/verify.py
+
+.PHONY: campaign campaign-selftest
+campaign: build ## Throw faults at kernel core and plant before the oracle: [SECONDS=300 | TICKS=] [SEED=1]
+	@python verification/campaign/run.py --seed $(or $(SEED),1) $(campaign_length)
+
+campaign-selftest: setup ## Show that the campaign finds each seeded fault of the kernel within a minute
+	@python verification/campaign/selftest.py
 
 .PHONY: bench
 bench: build ## Measure kernel step (time, text size, stack) and control tick against their limits

@@ -1,0 +1,207 @@
+#include "oracle/axis_watch.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace interlock::oracle {
+
+bool AxisWatch::is_fresh(const wire::Reading& reading, const Echo& echo) const noexcept {
+  const bool new_heartbeat = !heard_ || reading.heartbeat != heartbeat_;
+  return new_heartbeat && (!echo.is_judged || reading.tick_echo == echo.expected);
+}
+
+void AxisWatch::require_fault(Property property, std::string_view reason) noexcept {
+  if (!faulted_ && !due_.is_due) {
+    due_ = {true, property, reason};
+  }
+}
+
+void AxisWatch::refer_to(const Observation& seen, std::int64_t position) noexcept {
+  origin_ = position - path_;
+  truth_known_ = true;
+  was_inside_ = false;
+  truth_offset_ = seen.truth[static_cast<std::size_t>(slot_)].position - position;
+}
+
+void AxisWatch::forget_progress() noexcept {
+  driven_ticks_ = 0;
+  standing_ticks_ = 0;
+  one_target_ = true;
+  progress_path_ = path_;
+}
+
+bool AxisWatch::RestMark::is_left(std::int64_t path_before, std::int64_t path,
+                                  std::int64_t allowed) noexcept {
+  // Which of two readings is the mark is left open: only what is too far from both is drift by any reading.
+  if (!is_set) {
+    is_set = true;
+    lowest = std::min(path_before, path);
+    highest = std::max(path_before, path);
+  }
+  return path - highest > allowed || lowest - path > allowed;
+}
+
+void AxisWatch::judge_rest_seen(std::uint32_t tick, std::int64_t path_before) noexcept {
+  const bool by_ticks = enabled_ && is_settled(tick);
+  const bool by_frames = by_ticks && is_settled_by_frames();
+  rest_by_ticks_.is_set = rest_by_ticks_.is_set && by_ticks;
+  rest_by_frames_.is_set = rest_by_frames_.is_set && by_frames;
+  if (by_frames && rest_by_frames_.is_left(path_before, path_, rules_.drift)) {
+    require_fault(Property::kP6, "drifts while enabled and not driven");
+  }
+  if (by_ticks && rest_by_ticks_.is_left(path_before, path_, rules_.drift)) {
+    drift_put_off_ = !faulted_ && !due_.is_due;
+  }
+}
+
+void AxisWatch::count_undriven(std::uint32_t tick) noexcept {
+  const bool driven_since_valid = sense_ != 0 && tick - driven_tick_ <= tick - valid_tick_;
+  undriven_frames_ = driven_since_valid ? 0 : std::min(undriven_frames_ + 1, rules_.settle_ticks);
+}
+
+void AxisWatch::judge_motion_seen(const Observation& seen, std::int64_t moved) noexcept {
+  const std::uint32_t ticks = seen.tick - valid_tick_;
+  count_undriven(seen.tick);
+  if (std::abs(moved) > std::int64_t{rules_.max_delta} * ticks) {
+    require_fault(Property::kP6, "jumps");
+  }
+  if (sense_ * (path_ - farthest_path_) > 0) {
+    farthest_path_ = path_;
+    standing_ticks_ = 0;
+  }
+  if (undriven_frames_ == 0 && sense_ * (farthest_path_ - path_) > rules_.reverse) {
+    require_fault(Property::kP6, "moves against its command");
+  }
+  if (!is_settled_by_frames() && sense_ * (path_ - progress_path_) >= rules_.stall_min) {
+    forget_progress();
+  }
+  if (is_stalled()) {
+    require_fault(Property::kP5, "stalls");
+  }
+  judge_rest_seen(seen.tick, path_ - moved);
+}
+
+void AxisWatch::follow_homing(const Observation& seen) noexcept {
+  if (homing_ != Homing::kSeeking) {
+    return;
+  }
+  if (!switch_triggered_) {
+    switch_seen_open_ = true;
+  } else if (switch_seen_open_) {
+    refer_to(seen, rules_.home_offset);
+    homing_ = Homing::kResting;
+  }
+}
+
+void AxisWatch::mark_press(const Observation& seen) noexcept {
+  press_path_ = path_;
+  truth_marked_ = true;
+  truth_at_press_ = seen.truth[static_cast<std::size_t>(slot_)].position;
+  free_of_press_ = false;
+}
+
+bool AxisWatch::take_in(const Observation& seen, const Echo& echo) noexcept {
+  const auto slot = static_cast<std::size_t>(slot_);
+  if (seen.transaction_failed || !seen.received[slot] || !wire::is_intact(seen.from_card[slot])) {
+    return false;
+  }
+  const wire::Reading reading = wire::read(seen.from_card[slot]);
+  if (!is_fresh(reading, echo)) {
+    return false;
+  }
+  const auto difference = static_cast<std::int32_t>(reading.counter - counter_);
+  switch_triggered_ = rules_.switch_end != SwitchEnd::kNone && reading.switch_triggered;
+  heard_ = true;
+  heartbeat_ = reading.heartbeat;
+  counter_ = reading.counter;
+  if (followed_ && has_axis(rules_.card)) {
+    const std::int64_t moved = rules_.counter_falls ? -std::int64_t{difference} : std::int64_t{difference};
+    path_ += moved;
+    still_ = difference == 0;
+    judge_motion_seen(seen, moved);
+    follow_homing(seen);
+  } else {
+    // Nothing tells what the axis did meanwhile: it is measured anew from here.
+    farthest_path_ = path_;
+    progress_path_ = path_;
+    count_undriven(seen.tick);
+  }
+  is_first_reading_ = !followed_;
+  followed_ = true;
+  valid_tick_ = seen.tick;
+  return true;
+}
+
+void AxisWatch::see(const Observation& seen, const Echo& echo, bool in_motion) noexcept {
+  due_ = {};
+  drift_put_off_ = false;
+  cleared_now_ = false;
+  fault_is_new_ = seen.claim.axes[static_cast<std::size_t>(slot_)].mode == AxisMode::kFaulted && !faulted_;
+  switch_triggered_ = true;
+  still_ = false;
+  if (rules_.card == CardKind::kNone) {
+    return;
+  }
+  valid_ = take_in(seen, echo);
+  if (valid_) {
+    bad_frames_ = 0;
+  } else {
+    bad_frames_++;
+  }
+  if (card_lost()) {
+    heard_ = false;
+    followed_ = false;
+    require_fault(Property::kP1, "its card is lost");
+  }
+  if (!in_motion) {
+    mark_press(seen);
+  }
+}
+
+void AxisWatch::forget(std::uint32_t tick) noexcept {
+  due_ = {};
+  bad_frames_ = valid_ ? 0 : 1;
+  heard_ = false;
+  followed_ = valid_;
+  faulted_ = false;
+  fault_code_ = 0;
+  enabled_ = false;
+  homed_ = false;
+  truth_known_ = false;
+  sense_ = 0;
+  driven_tick_ = tick;
+  rest_by_ticks_ = {};
+  rest_by_frames_ = {};
+  undriven_frames_ = 0;
+  drop_motion();
+  had_lease_ = false;
+  forget_progress();
+}
+
+bool AxisWatch::faults_now(const Observation& seen) const noexcept {
+  const bool claimed = seen.claim.axes[static_cast<std::size_t>(slot_)].mode == AxisMode::kFaulted;
+  return has_axis(rules_.card) && !faulted_ && claimed;
+}
+
+void AxisWatch::note_drive(const Observation& seen, bool rises) noexcept {
+  const std::int32_t sense = rises ? 1 : -1;
+  if (sense != sense_ || is_settled_by_frames()) {
+    farthest_path_ = path_;
+    progress_path_ = path_;
+  }
+  sense_ = sense;
+  driven_tick_ = seen.tick;
+  one_target_ = has_lease_ && (driven_ticks_ == 0 || (one_target_ && counted_target_ == target_));
+  counted_target_ = target_;
+  driven_ticks_++;
+  standing_ticks_++;
+}
+
+void AxisWatch::note_arrival() noexcept {
+  const bool counted = driven_ticks_ > 0 && one_target_ && has_lease_ && counted_target_ == target_;
+  if (valid_ && counted && std::abs(target_ - position()) <= rules_.deadband) {
+    forget_progress();
+  }
+}
+
+}  // namespace interlock::oracle

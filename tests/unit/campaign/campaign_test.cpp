@@ -1,0 +1,97 @@
+/**
+ * @file
+ * The campaign itself: what makes its result worth something.
+ */
+#include <gmock/gmock.h>
+
+#include <set>
+#include <sstream>
+
+#include "case_file.hpp"
+#include "flip.hpp"
+#include "interlock/kernel.h"
+#include "plan.hpp"
+#include "robot.hpp"
+#include "shrink.hpp"
+
+namespace interlock::campaign {
+namespace {
+
+TEST(Campaign, P13_robots_are_valid_for_the_kernel_and_permitted_for_the_oracle) {
+  for (std::uint64_t seed = 0; seed < 500; seed++) {
+    plant::Random random(seed, 0);
+    const Robot robot = make_robot(random);
+    const ilk_config_verdict_t verdict = ilk_config_validate(&robot.config);
+    EXPECT_EQ(verdict.error, ILK_CONFIG_ERROR_NONE) << "seed " << seed << ", slot " << verdict.slot;
+    EXPECT_TRUE(oracle::are_permitted(robot.rules)) << "seed " << seed;
+  }
+}
+
+TEST(Campaign, Draws_every_kind_of_fault_alone_and_in_pairs) {
+  std::set<FaultKind> kinds;
+  bool pairs = false;
+  for (std::uint64_t number = 0; number < 20; number++) {
+    const Case plan = make_case(7, number);
+    for (std::size_t n = 0; n < plan.faults.size(); n++) {
+      kinds.insert(plan.faults[n].kind);
+      pairs = pairs || (n > 0 && plan.faults[n].tick == plan.faults[n - 1].tick);
+    }
+  }
+  EXPECT_EQ(kinds.size(), kFaultKinds);
+  EXPECT_TRUE(pairs);
+}
+
+TEST(Campaign, Case_runs_twice_to_the_same_bits) {
+  Case plan = make_case(3, 1);
+  plan.ticks = 5000;
+  const Outcome first = run(plan);
+  const Outcome second = run(plan);
+  EXPECT_EQ(first.totals.digest, second.totals.digest);
+  EXPECT_EQ(first.totals.moves_accepted, second.totals.moves_accepted);
+  plan.seed = 4;
+  EXPECT_NE(run(plan).totals.digest, first.totals.digest);
+}
+
+TEST(Campaign, Moves_the_robot_and_demands_stops) {
+  const Outcome outcome = run(make_case(3, 2));
+  EXPECT_FALSE(outcome.failure) << outcome.failure->reason;
+  EXPECT_GT(outcome.totals.motion_ticks, outcome.totals.ticks / 10);
+  EXPECT_GT(outcome.totals.driven_axis_ticks, outcome.totals.ticks / 2);
+  EXPECT_GT(outcome.totals.moves_accepted, 500u);
+  EXPECT_GT(outcome.totals.stops_met, 50u);
+}
+
+TEST(Campaign, P14_flip_changes_one_bit_and_back) {
+  plant::Random random(1, 0);
+  ilk_config_t config = make_robot(random).config;
+  const std::uint32_t before = config.axis[3].max_drive;
+  const std::size_t bit = (offsetof(ilk_config_t, axis[3].max_drive)) * 8 + 5;
+  flip(config, bit);
+  EXPECT_EQ(config.axis[3].max_drive, before ^ 1u << 5);
+  flip(config, bit);
+  EXPECT_EQ(config.axis[3].max_drive, before);
+}
+
+TEST(CaseFile, Reads_what_it_wrote) {
+  const Case plan = make_case(5, 9);
+  std::stringstream text;
+  write_case(text, plan);
+  const auto read = read_case(text);
+  ASSERT_TRUE(read) << read.error();
+  EXPECT_EQ(read->seed, plan.seed);
+  EXPECT_EQ(read->number, plan.number);
+  EXPECT_EQ(read->ticks, plan.ticks);
+  ASSERT_EQ(read->faults.size(), plan.faults.size());
+  EXPECT_EQ(read->faults.back().kind, plan.faults.back().kind);
+  EXPECT_EQ(read->faults.back().amount, plan.faults.back().amount);
+}
+
+TEST(CaseFile, Names_the_line_that_it_does_not_understand) {
+  std::stringstream text("interlock campaign case 1\nseed 1\nfault 5 99 0 0 0\n");
+  const auto read = read_case(text);
+  ASSERT_FALSE(read);
+  EXPECT_THAT(read.error(), testing::StartsWith("line 3:"));
+}
+
+}  // namespace
+}  // namespace interlock::campaign

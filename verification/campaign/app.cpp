@@ -1,0 +1,258 @@
+#include "app.hpp"
+
+#include <algorithm>
+
+#include "interlock/kernel.h"
+
+namespace interlock::campaign {
+namespace {
+
+constexpr std::uint64_t kAppStream = 2;
+constexpr std::uint32_t kPatience = 60;       /**< ticks pressed without MOTION after which the foot lifts */
+constexpr std::uint32_t kLongestHold = 2500;  /**< ticks of a press */
+constexpr std::uint32_t kActionInterval = 10; /**< ticks between two requests for an axis outside of MOTION */
+
+void count_down(std::uint32_t& ticks) {
+  if (ticks > 0) {
+    ticks--;
+  }
+}
+
+oracle::Order order_of(std::uint32_t kind) {
+  switch (kind) {
+    case ILK_REQUEST_HEARTBEAT:
+      return oracle::Order::kHeartbeat;
+    case ILK_REQUEST_STOP:
+      return oracle::Order::kStop;
+    case ILK_REQUEST_RESET:
+      return oracle::Order::kReset;
+    case ILK_REQUEST_DISABLE:
+      return oracle::Order::kDisable;
+    case ILK_REQUEST_ENABLE:
+      return oracle::Order::kEnable;
+    case ILK_REQUEST_CLEAR_FAULT:
+      return oracle::Order::kClearFault;
+    case ILK_REQUEST_MOVE:
+      return oracle::Order::kMove;
+    case ILK_REQUEST_HOME:
+      return oracle::Order::kHome;
+    case ILK_REQUEST_SET_HOME:
+      return oracle::Order::kSetHome;
+    case ILK_REQUEST_RESTORE:
+      return oracle::Order::kRestore;
+    default:
+      return oracle::Order::kUnknown;
+  }
+}
+
+oracle::Message message_of(const ilk_request_t& request, bool intact) {
+  oracle::Message message;
+  message.order = order_of(request.kind);
+  message.intact = intact;
+  message.sequence = request.sequence;
+  message.axis = request.axis;
+  message.holder = request.holder;
+  message.target = request.target_counts;
+  message.drive = request.drive;
+  message.amplitude = request.amplitude;
+  message.lease_ticks = request.lease_ticks;
+  return message;
+}
+
+}  // namespace
+
+App::App(const ilk_config_t& config, std::uint64_t seed)
+    : config_(config), random_(seed, kAppStream), sweeps_(random_.chance(0.25)) {}
+
+void App::attach_anew() {
+  generation_++;
+  sequence_ = 0;
+}
+
+void App::send(ilk_request_t request, bool intact) {
+  if (count_ == kMostRequests) {
+    return;
+  }
+  request.crc = ilk_request_crc(&request) ^ (intact ? 0u : 1u << random_.below(32));
+  messages_[count_] = message_of(request, intact);
+  requests_[count_] = request;
+  count_++;
+}
+
+ilk_request_t App::draft(ilk_request_kind_t kind, std::uint32_t slot) {
+  ilk_request_t request{};
+  request.sequence = ++sequence_;
+  request.kind = kind;
+  request.axis = slot;
+  request.holder = holder_;
+  return request;
+}
+
+void App::ask(ilk_request_kind_t kind, std::uint32_t slot) { send(draft(kind, slot)); }
+
+void App::move_foot(const ilk_state_t& shown) {
+  const bool in_motion = shown.mode == ILK_MODE_MOTION;
+  if (in_motion && !was_in_motion_) {
+    foot_ticks_ = sweeps_ ? ++swept_ticks_ : 1 + random_.below(kLongestHold);
+  }
+  if (was_in_motion_ && !in_motion) {
+    foot_ticks_ = 0;
+  }
+  was_in_motion_ = in_motion;
+  if (shown.mode == ILK_MODE_LOCKED && foot_down_) {
+    foot_ticks_ = 0;
+  }
+  if (foot_ticks_ > 0) {
+    foot_ticks_--;
+  } else {
+    foot_down_ = !foot_down_ && shown.mode == ILK_MODE_READY;
+    foot_ticks_ = foot_down_ ? kPatience : config_.pedal_debounce_ticks + 8 + random_.below(40);
+  }
+}
+
+void App::prepare_axis(std::uint32_t tick, const ilk_state_t& shown, std::uint32_t slot) {
+  const ilk_axis_t& axis = shown.axis[slot];
+  const ilk_axis_config_t& bounds = config_.axis[slot];
+  if ((tick + slot) % kActionInterval != 0) {
+    return;
+  }
+  if (axis.state == ILK_AXIS_FAULTED) {
+    ask(ILK_REQUEST_CLEAR_FAULT, slot);
+  } else if (axis.homed == 0 && random_.chance(0.02)) {
+    ilk_request_t request = draft(ILK_REQUEST_RESTORE, slot);
+    request.target_counts =
+        bounds.min_counts + static_cast<std::int32_t>(random_.below(
+                                static_cast<std::uint32_t>(bounds.max_counts - bounds.min_counts)));
+    send(request);
+  } else if (axis.homed == 0 && random_.chance(bounds.limit_side == ILK_LIMIT_NONE ? 0.7 : 0.3)) {
+    ask(ILK_REQUEST_SET_HOME, slot);
+  } else if (axis.state == ILK_AXIS_DISABLED) {
+    ask(ILK_REQUEST_ENABLE, slot);
+  }
+}
+
+void App::choose_target(const ilk_state_t& shown, std::uint32_t slot) {
+  const ilk_axis_config_t& bounds = config_.axis[slot];
+  const ilk_axis_t& axis = shown.axis[slot];
+  Intent& intent = intents_[slot];
+  const auto coast = static_cast<std::int32_t>(bounds.coast_counts);
+  if (axis.homed != 0) {
+    const std::int32_t lowest = bounds.min_counts + coast;
+    const std::int32_t highest = bounds.max_counts - coast;
+    intent.target =
+        lowest + static_cast<std::int32_t>(random_.below(static_cast<std::uint32_t>(highest - lowest) + 1));
+    intent.target = random_.chance(0.1) ? lowest : random_.chance(0.1) ? highest : intent.target;
+    intent.drive =
+        random_.chance(0.5) ? bounds.max_drive : bounds.max_drive / 8 + random_.below(bounds.max_drive / 2);
+  } else {
+    const std::int32_t room = static_cast<std::int32_t>(bounds.unhomed_travel_counts) - coast;
+    const std::int32_t start = axis.position_counts - axis.press_travel_counts;
+    intent.target = start + (random_.coin() ? room : -room);
+    intent.drive = bounds.unhomed_max_drive;
+  }
+}
+
+void App::drive_axis(std::uint32_t tick, const ilk_state_t& shown, std::uint32_t slot) {
+  const ilk_axis_t& axis = shown.axis[slot];
+  Intent& intent = intents_[slot];
+  if (!intent.takes_part || tick < intent.renew_tick ||
+      (axis.state != ILK_AXIS_ENABLED && axis.state != ILK_AXIS_MOVING)) {
+    return;
+  }
+  if (intent.homes) {
+    intent.homes = false;
+    choose_target(shown, slot);
+    ask(ILK_REQUEST_HOME, slot);
+    return;
+  }
+  const std::int64_t way = std::int64_t{intent.target} - axis.position_counts;
+  if (std::abs(way) <= std::int64_t{config_.axis[slot].deadband_counts} || random_.chance(0.05)) {
+    choose_target(shown, slot);
+  }
+  if (axis.homed == 0) {
+    intent.drive = config_.axis[slot].unhomed_max_drive;
+  }
+  ilk_request_t request = draft(ILK_REQUEST_MOVE, slot);
+  request.target_counts = intent.target;
+  request.drive = intent.drive;
+  request.amplitude = config_.axis[slot].max_amplitude;
+  request.lease_ticks = 1 + random_.below(config_.lease_max_ticks);
+  intent.renew_tick = tick + 1 + random_.below(config_.lease_max_ticks);
+  send(request);
+}
+
+void App::tell_a_lie(const ilk_state_t& shown) {
+  constexpr std::uint32_t extremes[] = {0, 1, 0x7FFFFFFF, 0x80000000u, 0xFFFFFFFFu};
+  const auto wild = [this, &extremes] {
+    return random_.coin() ? extremes[random_.below(std::size(extremes))] : random_.below(0xFFFFFFFF);
+  };
+  ilk_request_t request{};
+  request.sequence = random_.chance(0.9) ? ++sequence_ : sequence_ - random_.below(3);
+  request.kind = random_.below(ILK_REQUEST_COUNT + 2);
+  request.axis = random_.below(ILK_SLOTS + 1);
+  const std::uint32_t slot = std::min<std::uint32_t>(request.axis, ILK_SLOTS - 1);
+  const ilk_axis_config_t& bounds = config_.axis[slot];
+  const std::int32_t near_limit = (random_.coin() ? bounds.min_counts : bounds.max_counts);
+  const auto offset = static_cast<std::int32_t>(random_.below(2 * bounds.coast_counts + 3)) -
+                      static_cast<std::int32_t>(bounds.coast_counts) - 1;
+  const std::int32_t plausible =
+      random_.coin() ? near_limit + offset
+                     : shown.axis[slot].position_counts + static_cast<std::int32_t>(random_.below(401)) - 200;
+  request.target_counts = random_.chance(0.8) ? plausible : static_cast<std::int32_t>(wild());
+  request.drive =
+      random_.chance(0.8) ? bounds.max_drive / (random_.coin() ? 1 : 10) + random_.below(2) : wild();
+  request.amplitude = bounds.max_amplitude + (random_.chance(0.1) ? random_.below(80) : 0);
+  request.lease_ticks = random_.chance(0.8) ? 1 + random_.below(config_.lease_max_ticks + 1) : wild();
+  request.holder = random_.chance(0.95) ? holder_ : wild();
+  send(request, !random_.chance(0.1));
+}
+
+void App::act(std::uint32_t tick, const ilk_state_t& shown) {
+  count_ = 0;
+  const bool enters = shown.mode == ILK_MODE_MOTION && !was_in_motion_;
+  move_foot(shown);
+  if (enters) {
+    for (std::uint32_t slot = 0; slot < ILK_SLOTS; slot++) {
+      const bool has_switch = config_.axis[slot].limit_side != ILK_LIMIT_NONE;
+      intents_[slot] = {random_.chance(0.8),
+                        has_switch && random_.chance(shown.axis[slot].homed != 0 ? 0.02 : 0.6)};
+      intents_[slot].renew_tick = tick + random_.below(20);
+      choose_target(shown, slot);
+    }
+  }
+  if (silent_ticks_ == 0) {
+    if (tick >= next_heartbeat_) {
+      ask(ILK_REQUEST_HEARTBEAT);
+      heartbeat_tick_ = tick;
+      next_heartbeat_ = tick + 1 + random_.below(config_.app_timeout_ticks / 3);
+    }
+    if (shown.mode == ILK_MODE_LOCKED && tick % 7 == 0) {
+      ask(ILK_REQUEST_RESET);
+    }
+    for (std::uint32_t slot = 0; slot < ILK_SLOTS; slot++) {
+      if (shown.mode == ILK_MODE_READY) {
+        prepare_axis(tick, shown, slot);
+      } else if (shown.mode == ILK_MODE_MOTION) {
+        drive_axis(tick, shown, slot);
+      }
+    }
+    if (shown.mode == ILK_MODE_MOTION && random_.chance(0.0005)) {
+      ask(random_.coin() ? ILK_REQUEST_STOP : ILK_REQUEST_DISABLE, random_.below(ILK_SLOTS));
+    }
+    for (std::uint32_t lies = lying_ticks_ > 0 ? 2 : 0; lies > 0; lies--) {
+      tell_a_lie(shown);
+    }
+    while (flooding_ticks_ > 0 && count_ < kMostRequests) {
+      tell_a_lie(shown);
+    }
+  }
+  count_down(silent_ticks_);
+  count_down(lying_ticks_);
+  count_down(flooding_ticks_);
+  if (lifted_ticks_ > 0) {
+    lifted_ticks_--;
+    foot_down_ = false;
+  }
+}
+
+}  // namespace interlock::campaign

@@ -1,0 +1,112 @@
+#include "plan.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "interlock/types.h"
+#include "plant/random.hpp"
+
+namespace interlock::campaign {
+namespace {
+
+constexpr std::uint64_t kPlanStream = 1;
+constexpr std::uint32_t kCaseTicks = 20'000;
+constexpr std::uint32_t kQuietTicks = 400; /**< before the first fault */
+
+/** How often a kind is drawn, and how long it lasts. */
+struct Habit {
+  FaultKind kind;
+  std::string_view name;
+  std::uint32_t weight;
+  std::uint32_t shortest;
+  std::uint32_t longest;
+};
+
+// What is over in a tick or two is drawn often, what takes a recovery seldom: else nothing would ever move.
+constexpr std::array<Habit, kFaultKinds> kHabits{{
+    {FaultKind::kPedalReleased, "pedal released", 60, 1, 40},
+    {FaultKind::kPedalBounces, "pedal bounces", 20, 2, 30},
+    {FaultKind::kPedalHalfPressed, "pedal half pressed", 15, 1, 80},
+    {FaultKind::kPedalStuck, "pedal stuck", 15, 20, 200},
+    {FaultKind::kPedalUndefined, "pedal contact undefined", 10, 1, 4},
+    {FaultKind::kEstopPulled, "E-stop pulled", 25, 1, 60},
+    {FaultKind::kEstopUndefined, "E-stop undefined", 6, 1, 2},
+    {FaultKind::kFrameCorrupt, "frame corrupt", 130, 1, 6},
+    {FaultKind::kFrameDropped, "frame dropped", 110, 1, 6},
+    {FaultKind::kFrameLate, "frame late", 110, 1, 6},
+    {FaultKind::kFrameRepeated, "frame repeated", 110, 1, 6},
+    {FaultKind::kCardDeaf, "card deaf", 60, 1, 8},
+    {FaultKind::kCardReset, "card reset", 15, 1, 1},
+    {FaultKind::kCardUnplugged, "card unplugged", 10, 2, 60},
+    {FaultKind::kTransactionFails, "transaction fails", 20, 1, 6},
+    {FaultKind::kEncoderStuck, "encoder stuck", 30, 20, 800},
+    {FaultKind::kEncoderJumps, "encoder jumps", 40, 1, 1},
+    {FaultKind::kEncoderSlips, "encoder slips", 30, 10, 200},
+    {FaultKind::kEncoderReversed, "encoder reversed", 25, 50, 500},
+    {FaultKind::kAxisDrifts, "axis drifts", 25, 100, 600},
+    {FaultKind::kSwitchStuckOpen, "switch stuck open", 30, 50, 2000},
+    {FaultKind::kSwitchStuckClosed, "switch stuck triggered", 40, 1, 400},
+    {FaultKind::kSwitchBounces, "switch bounces", 30, 2, 60},
+    {FaultKind::kAxisJammed, "axis jammed", 40, 20, 900},
+    {FaultKind::kAxisRunsAway, "axis runs away", 25, 5, 100},
+    {FaultKind::kAxisPushed, "axis pushed", 20, 100, 100},
+    {FaultKind::kAppSilent, "app silent", 20, 20, 400},
+    {FaultKind::kAppLies, "app lies", 60, 1, 60},
+    {FaultKind::kAppFloods, "app floods", 40, 1, 20},
+    {FaultKind::kAppAttachesAnew, "app attaches anew", 8, 1, 1},
+    {FaultKind::kOtherHolder, "other holder", 8, 1, 1},
+    {FaultKind::kClockOverruns, "clock overruns", 20, 1, 6},
+    {FaultKind::kStateBitFlips, "bit of the state flips", 10, 1, 1},
+    {FaultKind::kConfigBitFlips, "bit of the configuration flips", 12, 30, 30},
+}};
+
+constexpr bool habits_are_in_order() {
+  for (std::size_t kind = 0; kind < kFaultKinds; kind++) {
+    if (static_cast<std::size_t>(kHabits[kind].kind) != kind) {
+      return false;
+    }
+  }
+  return true;
+}
+static_assert(habits_are_in_order(), "a kind names its row");
+
+std::uint32_t total_weight() {
+  std::uint32_t total = 0;
+  for (const Habit& habit : kHabits) {
+    total += habit.weight;
+  }
+  return total;
+}
+
+Fault draw(plant::Random& random, std::uint32_t tick) {
+  std::uint32_t left = random.below(total_weight());
+  const Habit* habit = kHabits.data();
+  while (left >= habit->weight) {
+    left -= habit->weight;
+    habit++;
+  }
+  return {tick, habit->kind, random.below(ILK_SLOTS),
+          habit->shortest + random.below(habit->longest - habit->shortest + 1), random.below(0xFFFFFFFF)};
+}
+
+}  // namespace
+
+std::string_view name_of(FaultKind kind) { return kHabits[static_cast<std::size_t>(kind)].name; }
+
+Case make_case(std::uint64_t seed, std::uint64_t number) {
+  plant::Random random(seed ^ (number * 0x9e3779b97f4a7c15u), kPlanStream);
+  Case plan{seed, number, kCaseTicks, {}};
+  std::uint32_t tick = kQuietTicks;
+  while (tick < kCaseTicks) {
+    plan.faults.push_back(draw(random, tick));
+    if (random.chance(0.35)) {
+      plan.faults.push_back(draw(random, tick + random.below(4)));
+    }
+    // Bursts, with pauses in which the robot gets into motion again.
+    tick += random.chance(0.8) ? 1 + random.below(90) : 100 + random.below(400);
+  }
+  std::ranges::stable_sort(plan.faults, {}, &Fault::tick);
+  return plan;
+}
+
+}  // namespace interlock::campaign

@@ -1,0 +1,34 @@
+/**
+ * @file
+ * A robot for one case: ten axes of all card types with seeded numbers, as the kernel's configuration, as the
+ * plant's parameters and as the oracle's rules.
+ */
+#ifndef INTERLOCK_CAMPAIGN_ROBOT_HPP
+#define INTERLOCK_CAMPAIGN_ROBOT_HPP
+
+#include <optional>
+
+#include "interlock/types.h"
+#include "oracle/rules.hpp"
+#include "plant/parameters.hpp"
+#include "plant/random.hpp"
+
+namespace interlock::campaign {
+
+/** Ticks within which damage to the configuration has to be met: it is checked a slot a tick, so two passes
+ * see all. */
+inline constexpr std::uint32_t kConfigPassTicks = 2 * ILK_SLOTS;
+
+struct Robot {
+  ilk_config_t config;
+  plant::Parameters plant;
+  oracle::SystemRules rules;
+  std::optional<std::size_t> far_coaster; /**< axis that coasts farther than its configuration says */
+};
+
+/** The configuration is valid by construction. */
+Robot make_robot(plant::Random& random);
+
+}  // namespace interlock::campaign
+
+#endif

@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+"""Runs the fault campaign on several processes and writes build/evidence/campaign.json.
+
+Each process runs every N-th case, so the same number of cases gives the same totals however many run at once.
+PASSED needs: nothing unsafe, nothing late, no flipped bit unmet; and motion, homings and stops happened.
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "evidence"))
+import evidence
+
+CASE_TICKS = 20_000
+SUMMED = (
+    "ticks",
+    "faults_injected",
+    "unsafe",
+    "late",
+    "open_findings",
+    "bit_flips",
+    "bit_flips_unsafe",
+    "stops_met",
+    "motion_ticks",
+    "driven_axis_ticks",
+    "homings",
+    "moves_accepted",
+    "requests_refused",
+    "cases",
+)
+HAPPENED = ("motion_ticks", "driven_axis_ticks", "homings", "moves_accepted", "stops_met", "bit_flips")
+SUPPORTS = (*(f"P{number}" for number in range(1, 15)), "P16")
+
+
+def merge(parts: list[dict]) -> dict[str, float]:
+    """Totals of all processes; bits of state and configuration that were flipped at least once."""
+    figures: dict[str, float] = {key: sum(part[key] for part in parts) for key in SUMMED}
+    for key in ("state_bits", "config_bits"):
+        flipped = 0
+        for part in parts:
+            flipped |= int(part[key], 16)
+        figures[f"{key}_flipped"] = flipped.bit_count()
+    processor_s = sum(part["processor_s"] for part in parts)
+    figures["processor_s"] = round(processor_s, 1)
+    figures["ticks_per_processor_s"] = round(figures["ticks"] / processor_s)
+    # A sum modulo 2^53: any reader of JSON keeps it exactly.
+    figures["digest"] = sum(part["digest"] for part in parts) % 2**53
+    return figures
+
+
+def start(arguments: argparse.Namespace, job: int, log: Path) -> subprocess.Popen[str]:
+    command = [str(arguments.bin / "kernel_campaign"), "--seed", str(arguments.seed), "--first", str(job)]
+    command += ["--stride", str(arguments.jobs), "--failures", str(log)]
+    if arguments.ticks:
+        cases = -(-arguments.ticks // CASE_TICKS)
+        command += ["--cases", str(len(range(job, cases, arguments.jobs)))]
+    else:
+        command += ["--seconds", str(arguments.seconds)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+
+
+def print_table(figures: dict[str, float], parts: list[dict]) -> None:
+    for key, value in figures.items():
+        print(f"{key:24} {value:>16,}")
+    kinds = {kind: sum(part["faults_by_kind"][kind] for part in parts) for kind in parts[0]["faults_by_kind"]}
+    print("\ninjected")
+    for kind, count in sorted(kinds.items(), key=lambda item: -item[1]):
+        print(f"  {kind:34} {count:>12,}")
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--bin", type=Path, default=evidence.ROOT / "build/release/bin")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--seconds", type=float, default=300, help="of processor time, each process")
+    parser.add_argument("--ticks", type=int, default=0, help="in all, instead of --seconds")
+    arguments = parser.parse_args()
+    if arguments.ticks:
+        arguments.jobs = min(arguments.jobs, -(-arguments.ticks // CASE_TICKS))
+    started = time.monotonic()
+    log = evidence.log_directory("campaign")
+    print(f"campaign: seed {arguments.seed}, {arguments.jobs} processes", flush=True)
+    running = [start(arguments, job, log) for job in range(arguments.jobs)]
+    outputs = [process.communicate()[0] for process in running]
+    if any(process.returncode not in (0, 1) for process in running):
+        print("campaign: a process did not end by itself", file=sys.stderr)
+        return 2
+    parts = [json.loads(output) for output in outputs]
+    (log / "totals.json").write_text(json.dumps(parts, indent=1) + "\n", "utf-8")
+    figures = merge(parts)
+    figures["seed"] = arguments.seed
+    print_table(figures, parts)
+    failed = [part["first_failure"]["text"] for part in parts if "first_failure" in part]
+    for text in failed:
+        print(f"unsafe or late: {text}")
+    status = "PASSED"
+    if failed or figures["unsafe"] or figures["late"] or figures["bit_flips_unsafe"]:
+        status = "FAILED"
+    elif not all(figures[key] for key in HAPPENED):
+        status = "VACUOUS"
+    print(f"campaign: {status}")
+    return evidence.write(
+        "campaign", status, {"kernel_campaign": evidence.commit()[:12]}, figures, SUPPORTS, started
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(main())

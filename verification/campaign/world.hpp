@@ -1,0 +1,136 @@
+/**
+ * @file
+ * One case: kernel core, plant, app and oracle in one process, a tick at a time, with the plan's faults.
+ */
+#ifndef INTERLOCK_CAMPAIGN_WORLD_HPP
+#define INTERLOCK_CAMPAIGN_WORLD_HPP
+
+#include <array>
+#include <bitset>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "app.hpp"
+#include "interlock/types.h"
+#include "oracle/oracle.hpp"
+#include "oracle/stop_clock.hpp"
+#include "plan.hpp"
+#include "plant/plant.hpp"
+#include "robot.hpp"
+
+namespace interlock::campaign {
+
+inline constexpr std::size_t kStateBits = sizeof(ilk_state_t) * 8;
+inline constexpr std::size_t kConfigBits = sizeof(ilk_config_t) * 8;
+
+/** What a campaign counts. Sums of cases do not depend on the order in which they ran. */
+struct Totals {
+  std::uint64_t ticks = 0;
+  std::uint64_t faults_injected = 0;
+  std::uint64_t unsafe = 0;
+  std::uint64_t late = 0;
+  std::uint64_t open_findings = 0; /**< disagreements that are known and not yet settled */
+  std::uint64_t bit_flips = 0;
+  std::uint64_t bit_flips_unsafe = 0;
+  std::uint64_t stops_met = 0;    /**< demanded by a fault and met within their time */
+  std::uint64_t motion_ticks = 0; /**< in MOTION */
+  std::uint64_t driven_axis_ticks = 0;
+  std::uint64_t homings = 0; /**< completed at a switch */
+  std::uint64_t moves_accepted = 0;
+  std::uint64_t requests_refused = 0;
+  std::uint64_t digest = 0; /**< of all outputs; the same seeds give the same sum */
+  std::array<std::uint64_t, kFaultKinds> faults_by_kind{};
+  std::array<std::uint64_t, ILK_FAULT_COUNT> axis_faults{};
+  std::array<std::uint64_t, ILK_CAUSE_COUNT> causes{};
+  std::bitset<kStateBits> state_bits;
+  std::bitset<kConfigBits> config_bits;
+
+  void add(const Totals& other);
+};
+
+/** The first thing that went wrong in a case. */
+struct Failure {
+  std::uint32_t tick = 0;
+  unsigned property = 0; /**< 1 for P1 and so on; 0 for a stop that came late */
+  int axis = oracle::kNoAxis;
+  std::string_view reason;
+};
+
+class World {
+ public:
+  explicit World(const Case& plan);
+
+  /** One tick; what went wrong in it, if anything did. */
+  std::optional<Failure> step();
+
+  const Totals& totals() const { return totals_; }
+  const ilk_state_t& state() const { return state_; }
+  const ilk_outputs_t& outputs() const { return outputs_; }
+  double true_position(std::size_t slot) const { return plant_.station(slot)->position_counts(); }
+
+ private:
+  void inject(const Fault& fault);
+  void inject_pedal(const Fault& fault);
+  bool another_holds_the_pedal() const;
+  void inject_card(const Fault& fault);
+  void inject_axis(const Fault& fault);
+  void inject_switch(const Fault& fault);
+  void inject_app(const Fault& fault);
+  void inject_memory(const Fault& fault);
+  void demand(std::uint32_t within, std::int8_t axis, FaultKind kind);
+  void act(const plant::command::Command& command, std::uint32_t after = 0);
+  void break_promise(std::size_t slot, std::uint32_t ticks);
+  void renew_promises();
+  void exchange();
+  void spoil_inputs();
+  void run_kernel();
+  void sweep_flips(const ilk_state_t& before);
+  void show_oracle();
+  void count();
+  std::optional<Failure> judge();
+  bool is_open(const oracle::Finding& finding) const;
+  bool is_excused(const oracle::Finding& finding) const;
+
+  Case plan_;
+  plant::Random random_;
+  Robot robot_;
+  ilk_config_t config_; /**< as the kernel sees it; may be damaged */
+  ilk_state_t state_{};
+  ilk_inputs_t inputs_{};
+  ilk_outputs_t outputs_{};
+  ilk_outputs_t undamaged_{};
+  App app_;
+  plant::Plant plant_;
+  oracle::Oracle oracle_;
+  oracle::StopClock clock_;
+  oracle::Observation seen_;
+  std::vector<oracle::wire::FrameView> undamaged_frames_;
+
+  std::uint32_t tick_ = 0;
+  std::size_t next_fault_ = 0;
+  bool foot_was_down_ = false;
+  std::uint32_t shown_generation_ = 0;
+  std::uint32_t pedal_held_until_ = 0;
+  std::uint32_t undefined_pedal_ticks_ = 0;
+  std::uint32_t undefined_estop_ticks_ = 0;
+  std::uint32_t overrun_ticks_ = 0;
+  std::uint32_t failing_ticks_ = 0;
+  std::uint32_t config_damage_ticks_ = 0;
+  std::uint32_t config_damage_left_ = 0;
+  std::size_t config_bit_ = 0;
+  std::optional<std::size_t> state_bit_;
+  std::size_t sweep_bit_;
+  std::uint32_t config_flips_ = 0;
+  std::array<std::uint32_t, ILK_SLOTS> broken_until_{};
+  std::array<bool, ILK_SLOTS> broken_{};
+  std::array<bool, ILK_SLOTS> was_homing_{};
+  std::array<std::uint32_t, ILK_SLOTS> fault_before_{};
+  std::uint32_t mode_before_ = ILK_MODE_INIT;
+  Totals totals_;
+};
+
+}  // namespace interlock::campaign
+
+#endif
