@@ -1481,7 +1481,7 @@ export interface components {
             /** @description Port of this app that it came to. */
             port: number;
             /** @enum {string} */
-            dialect: "thesis";
+            dialect: "thesis" | "brp2013" | "wpi2024";
             /** @enum {string} */
             role: "observer" | "controller";
             /**
