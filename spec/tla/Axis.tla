@@ -206,7 +206,7 @@ ObserveAxis(c, k, a, reading) ==
 (* Phase 6: the row of the request table, from left to right. A request has kind,
    target (MOVE: setpoint, RESTORE: position), drive and lease. *)
 PedalIsUp(s) == s.pedal = "RELEASED"
-IsAtRest(a)  == ~WasDriven(a) /\ a.delta_counts = 0
+IsAtRest(a)  == a.undriven_ticks > 0 /\ a.delta_counts = 0
 
 JudgeDisable(s, a) ==
   IF s.mode = "INIT" THEN "MODE"

@@ -20,7 +20,6 @@ constexpr std::uint32_t kRecoveryTicks = 300; /**< after a lie of the encoder, u
 /** Disagreements with the kernel that docs/reliability.md reports as open: counted, but no end of a case. */
 constexpr std::string_view kOpenFindings[] = {
     "a position declared on the first reading of a card, rest unknown",
-    "a position declared in the tick in which drive ended",
     "drifts unnoticed because missing frames put off the watch",
 };
 

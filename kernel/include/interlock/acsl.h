@@ -307,9 +307,12 @@
   @   && drive_allowed(&config->axis[request->axis], &state->axis[request->axis], request)
   @   && setpoint_allowed(&config->axis[request->axis], &state->axis[request->axis], request->target_counts);
   @
+  @ // A valid frame counts the ticks without drive before it.
+  @ predicate at_rest(ilk_axis_t *axis) = axis->undriven_ticks > 0 && axis->delta_counts == 0;
+  @
   @ predicate declare_allowed(ilk_axis_config_t *config, ilk_state_t *state, ilk_axis_t *axis, integer position) =
   @   state->mode == ILK_MODE_READY && state->pedal == ILK_PEDAL_RELEASED && axis->state != ILK_AXIS_FAULTED
-  @   && axis->card_valid != 0 && axis->delta_counts == 0 && config->min_counts <= position <= config->max_counts;
+  @   && axis->card_valid != 0 && at_rest(axis) && config->min_counts <= position <= config->max_counts;
   @
   @ // The row of the request table that the kind of the request names.
   @ predicate acceptable(ilk_config_t *config, ilk_state_t *state, ilk_request_t *request) =

@@ -516,6 +516,17 @@ TEST_P(Request_SET_HOME_and_RESTORE, is_BUSY_while_the_counter_changes) {
   }
 }
 
+/** A motor that has not moved yet may still coast. */
+TEST_P(Request_SET_HOME_and_RESTORE, is_BUSY_in_the_tick_in_which_drive_ends) {
+  Bench bench = homed_motion_bench();
+  bench.motor[axis].frozen = true;
+  ASSERT_EQ(bench.ask(move(axis, 50)), ILK_VERDICT_ACCEPTED);
+  ASSERT_NE(bench.out().command[axis].drive, 0u);
+  bench.pedal(false);
+  expect_refused(bench, request(), ILK_VERDICT_BUSY);
+  EXPECT_EQ(bench.ask(request()), ILK_VERDICT_ACCEPTED);
+}
+
 TEST_P(Request_SET_HOME_and_RESTORE, checks_in_order) {
   Bench locked = locked_bench();
   locked.pedal(true);

@@ -1,17 +1,16 @@
 -------------------------- MODULE JudgeDeclareRows ---------------------------
-(* Phase 6: SET_HOME and RESTORE. A valid frame says that nothing was driven
-   since. The records hold what it may read and nothing else: TLC fails at
-   any other field. *)
+(* Phase 6: SET_HOME and RESTORE. The records hold what it may read and nothing
+   else: TLC fails at any other field. *)
 EXTENDS Axis, TLC
 
 CONSTANTS reach
 
 ASSUME
   \A kind \in {"SET_HOME", "RESTORE"}, mode \in Modes, pedal \in PedalStates, state \in AxisStates, valid \in BOOLEAN :
-  \A driven \in (IF valid THEN {"NONE"} ELSE Directions), delta \in -1..1, target \in -5..5 :
-    LET a == [state |-> state, card_valid |-> valid, driven_direction |-> driven, delta_counts |-> delta]
+  \A undriven \in 0..2, delta \in -1..1, target \in -5..5 :
+    LET a == [state |-> state, card_valid |-> valid, undriven_ticks |-> undriven, delta_counts |-> delta]
         k == [min_counts |-> -reach, max_counts |-> reach]
         request == [kind |-> kind, target |-> target]
         verdict == JudgeAxis([unread |-> 0], k, [mode |-> mode, pedal |-> pedal], a, request)
-    IN PrintT(<< kind, mode, pedal, state, valid, driven, delta, target, verdict >>)
+    IN PrintT(<< kind, mode, pedal, state, valid, undriven, delta, target, verdict >>)
 ==============================================================================
