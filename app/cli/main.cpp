@@ -27,7 +27,8 @@ namespace interlock::cli {
 namespace {
 
 constexpr const char* footer =
-    "Exit codes: 0 done; 1 refused: robot file, input line, trajectory, broken audit, rule of the store, message;\n"
+    "Exit codes: 0 done; 1 refused: robot file, input line, trajectory, broken audit, rule of the store, "
+    "message;\n"
     "2 command line not understood; 3 something stands in the way (busy port, second instance, missing "
     "file);\n"
     "4 kernel or simulator ended; 5 the app kept ending; 6 no answer.";

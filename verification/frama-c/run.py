@@ -64,14 +64,17 @@ def write_prover_list(directory: Path) -> None:
 
     Z3 must not choose its search by the look of a goal: for most of ours it then misses, in minutes, what the
     plain search finds in milliseconds. Nor does it look for models of quantified formulas: that finds none of
-    our proofs, and what is not provable takes it all its steps (decision 14). Why3 puts an argument that stands
+    our proofs, and what is not provable takes it all its steps (decision 14). Why3 puts arguments that stand
     behind the path before its own.
     """
     config = directory / "why3.conf"
     config.unlink(missing_ok=True)
     subprocess.run(["why3", "--config", str(config), "config", "detect"], check=True, capture_output=True)
     text, found = re.subn(
-        r'^(path = ".*/z3)"$', r'\1 smt.auto_config=false smt.mbqi=false"', config.read_text("utf-8"), flags=re.M
+        r'^(path = ".*/z3)"$',
+        r'\1 smt.auto_config=false smt.mbqi=false"',
+        config.read_text("utf-8"),
+        flags=re.M,
     )
     if found != 1:
         raise SystemExit(f"Why3 found {found} provers named z3, not one; see {config}")

@@ -8,7 +8,6 @@ namespace {
 
 using igtl::StatusCode;
 
-
 /** A navigation program on the app's port, in the dialect brp2013; the test is the kernel's side. */
 class NavigationTest : public HttpTest {
  protected:
