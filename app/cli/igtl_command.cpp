@@ -133,6 +133,14 @@ std::string milliseconds_since(Clock::time_point asked) {
   return text.data();
 }
 
+/** An ERROR of another code tells of the kernel, whatever was asked: that it is locked, when the robot has
+ * just started. */
+bool is_unknown_phase(const Message& message) {
+  const igtl::Status* const status = refusal_in(message);
+  return message.device == "ERROR" && status != nullptr &&
+         status->code == igtl::StatusCode::unknown_instruction;
+}
+
 Result<void> drive(Client& client, const IgtlOptions& options, const std::string& phase,
                    std::ostream& output) {
   const auto deadline = in_seconds(options.seconds > 0.0 ? options.seconds : usual_phase_seconds);
@@ -143,12 +151,12 @@ Result<void> drive(Client& client, const IgtlOptions& options, const std::string
   bool is_entered = false;
   std::optional<std::string> refused;
   const auto ended = follow(client, options, deadline, [&](const Message& message) {
+    const igtl::Status* const status = refusal_in(message);
     const bool is_current = message.device == "CURRENT_STATUS";
-    const bool is_last = message.device == phase || message.device == "ERROR";
+    const bool is_last = message.device == phase || is_unknown_phase(message);
     if (is_current || is_last || message.device == "ACK_" + options.id) {
       print(message, options, milliseconds_since(asked), output);
     }
-    const igtl::Status* const status = refusal_in(message);
     is_entered = is_entered || (is_current && status == nullptr);
     if (is_last && status != nullptr && status->code != igtl::StatusCode::busy) {
       refused = status->text;

@@ -167,6 +167,8 @@ def test_phase_shows_each_answer_with_its_time(stack: StackFactory) -> None:
     lines = stop.stdout.splitlines()
     assert [line.split(" ms  ")[1].split()[0] for line in lines] == ["ACK_7", "CURRENT_STATUS", "STOP"]
     assert all(float(line.split()[0]) < 1000 for line in lines)
+    unknown = igtl(robot, "phase", "NO_SUCH_PHASE", "--id", "8")
+    assert (unknown.returncode, "There is no phase" in unknown.stderr) == (1, True)
     refused = igtl(robot, "phase", "START_UP", "--json")
     assert refused.returncode == 1
     assert [json.loads(line)["name"] for line in refused.stdout.splitlines()][-1] == "START_UP"
