@@ -111,8 +111,9 @@ def prove(unit: str, functions: Sequence[str], directory: Path, cache: Path | No
         *("-wp-report-json", f"{stem}.json", "-then", "-report-csv", f"{stem}.csv"),
     ]
     started = time.monotonic()
-    environment = {**os.environ, "WHY3CONFIG": str(directory / "why3.conf")}
-    outcome = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
+    # Frama-C tells the folders of places as seen from $PWD, wherever it runs.
+    environment = {**os.environ, "WHY3CONFIG": str(directory / "why3.conf"), "PWD": str(ROOT)}
+    outcome = subprocess.run(command, capture_output=True, text=True, env=environment, cwd=ROOT, check=False)
     report = Report(seconds=time.monotonic() - started, log=Path(f"{stem}.log"))
     report.log.write_text(outcome.stdout + outcome.stderr, "utf-8")
     if outcome.returncode != 0:
