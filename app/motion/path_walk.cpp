@@ -13,24 +13,6 @@ Setpoint in_counts(const MotionState& state, double counts_per_unit) noexcept {
 
 }  // namespace
 
-double PaceRise::passed_s(double time_s) const noexcept {
-  if (time_s >= duration_s) {
-    return time_s - duration_s / 2;
-  }
-  const double share = time_s / duration_s;
-  return duration_s * share * share * share * (1.0 - share / 2);
-}
-
-double PaceRise::pace(double time_s) const noexcept {
-  const double share = time_s < duration_s ? time_s / duration_s : 1.0;
-  return share * share * (3.0 - 2.0 * share);
-}
-
-double PaceRise::pace_per_s(double time_s) const noexcept {
-  const double share = time_s < duration_s ? time_s / duration_s : 1.0;
-  return duration_s > 0.0 ? 6.0 * share * (1.0 - share) / duration_s : 0.0;
-}
-
 PathWalk::PathWalk(const RobotPlan& plan) : plan_(plan), lease_s_(plan.lease_ticks() * plan.period_s()) {}
 
 const TimedTrajectory* PathWalk::trajectory() const noexcept {
@@ -78,34 +60,27 @@ void PathWalk::approach(const MotionState& now_counts, std::uint32_t slot, doubl
   ++axes_;
 }
 
-/** As slowly as the slowest axis needs to come up to its velocity there within acceleration and jerk. */
+/** As slowly as the slowest axis needs to come up to its velocity there within acceleration and jerk, and to
+ * come to rest at the last row. */
 void PathWalk::begin_trajectory(const TimedTrajectory& timed) noexcept {
   stage_ = Stage::trajectory;
   stage_s_ = 0.0;
   begun_s_ = trajectory_s_;
-  rise_.duration_s = 0.0;
-  for (std::size_t axis = 0; axis < timed.axes().size(); ++axis) {
-    const AxisPlan& plan = plan_.axis[timed.axes()[axis].slot];
-    const RateLimits limits = plan.rates.in_units(plan.counts_per_unit);
-    const double speed = std::abs(timed.at(axis, trajectory_s_).velocity);
-    rise_.duration_s = std::max({rise_.duration_s, PaceRise::steepest * speed / limits.acceleration,
-                                 std::sqrt(PaceRise::sharpest * speed / limits.jerk)});
-  }
+  pace_ = pace_along(timed, begun_s_, [this](std::uint32_t slot) {
+    return plan_.axis[slot].rates.in_units(plan_.axis[slot].counts_per_unit);
+  });
 }
 
 void PathWalk::advance(double time_s) noexcept {
   stage_s_ += time_s;
-  if (stage_ == Stage::trajectory) {
-    trajectory_s_ = begun_s_ + rise_.passed_s(stage_s_);
+  const TimedTrajectory* timed = trajectory();
+  if (stage_ == Stage::trajectory && timed != nullptr) {
+    trajectory_s_ = at_end() ? timed->end_s() : begun_s_ + pace_.passed_s(stage_s_);
   }
 }
 
 bool PathWalk::at_end() const noexcept {
-  const TimedTrajectory* timed = trajectory();
-  if (stage_ == Stage::trajectory && timed != nullptr) {
-    return trajectory_s_ >= timed->end_s();
-  }
-  return stage_s_ >= planner_.duration_s();
+  return stage_s_ >= (stage_ == Stage::trajectory ? pace_.duration_s() : planner_.duration_s());
 }
 
 bool PathWalk::go_on() noexcept {
@@ -144,9 +119,9 @@ void PathWalk::point_along_approach() noexcept {
 }
 
 void PathWalk::point_along_trajectory(const TimedTrajectory& timed) noexcept {
-  const double pace = rise_.pace(stage_s_);
-  const double pace_per_s = rise_.pace_per_s(stage_s_);
-  const double ahead_s = begun_s_ + rise_.passed_s(stage_s_ + lease_s_);
+  const double pace = pace_.pace(stage_s_);
+  const double pace_per_s = pace_.pace_per_s(stage_s_);
+  const double ahead_s = begun_s_ + pace_.passed_s(stage_s_ + lease_s_);
   for (std::size_t axis = 0; axis < timed.axes().size(); ++axis) {
     const std::uint32_t slot = timed.axes()[axis].slot;
     const double counts_per_unit = plan_.axis[slot].counts_per_unit;

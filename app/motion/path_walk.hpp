@@ -5,7 +5,7 @@
  *
  * Time is that of the walk: whoever walks may stand still for as long as he likes, and then begins anew from
  * wherever the axes are. Velocities do not leap where a stage begins: the approach begins at those of the
- * axes, and a trajectory that begins in motion is come up to within the axes' rates.
+ * axes, and a trajectory that begins or ends in motion is come up to, and left, within the axes' rates.
  */
 #pragma once
 
@@ -16,6 +16,7 @@
 #include "interlock/link.h"
 #include "motion/axis_plan.hpp"
 #include "motion/path_program.hpp"
+#include "motion/trajectory_pace.hpp"
 #include "trajectory/tick_planner.hpp"
 
 namespace interlock {
@@ -24,24 +25,6 @@ namespace interlock {
 struct PathPoint {
   Setpoint now;
   double ahead_counts = 0.0; /**< where the path is a lease later */
-};
-
-/**
- * How the time of a trajectory comes up to that of the clock, so that axes at rest come up to a trajectory
- * that is in motion: every position is the trajectory's, only later. The pace is 3 s^2 - 2 s^3 of the share s
- * of its duration.
- */
-struct PaceRise {
-  /** Largest rise of the pace a second, and of that, for a rise of one second. */
-  static constexpr double steepest = 1.5;
-  static constexpr double sharpest = 6.0;
-
-  double duration_s = 0.0; /**< 0: at once */
-
-  /** Time that has passed on the trajectory so long after its beginning. */
-  [[nodiscard]] double passed_s(double time_s) const noexcept;
-  [[nodiscard]] double pace(double time_s) const noexcept;
-  [[nodiscard]] double pace_per_s(double time_s) const noexcept;
 };
 
 class PathWalk {
@@ -98,7 +81,7 @@ class PathWalk {
   double stage_s_ = 0.0;      /**< since approach or trajectory began */
   double trajectory_s_ = 0.0; /**< time of the trajectory's rows to which the walk has come */
   double begun_s_ = 0.0;      /**< that at which its stage began */
-  PaceRise rise_;             /**< of the trajectory's time, from rest */
+  TrajectoryPace pace_;       /**< of the trajectory's time, from rest to rest */
   Points points_{};
 };
 

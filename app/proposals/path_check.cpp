@@ -4,6 +4,7 @@
 #include <string>
 
 #include "motion/setpoint_range.hpp"
+#include "motion/trajectory_pace.hpp"
 #include "proposals/separation.hpp"
 #include "trajectory/synchronised_plan.hpp"
 
@@ -29,9 +30,12 @@ Checked check_range(const Robot& robot, const MoveLeg& leg) {
   return {};
 }
 
+RateLimits limits_of(const Axis& axis) {
+  return axis.motion.value_or(MotionRates{}).in_units(axis.counts_per_unit);
+}
+
 AxisTarget target_of(const Axis& axis, std::int32_t now_counts, std::int32_t target_counts) {
-  const RateLimits limits = axis.motion.value_or(MotionRates{}).in_units(axis.counts_per_unit);
-  return {{axis.name, {axis.to_unit(now_counts), 0.0, 0.0}, limits},
+  return {{axis.name, {axis.to_unit(now_counts), 0.0, 0.0}, limits_of(axis)},
           axis.to_unit(target_counts),
           {axis.to_unit(axis.lowest_setpoint_counts()), axis.to_unit(axis.highest_setpoint_counts())}};
 }
@@ -91,7 +95,9 @@ class PathCheck {
     return (*this)(approach_of(robot_, trajectory, trajectory.begin_s())).and_then([&] {
       const auto stays = check_separation(robot_, positions_, trajectory);
       arrive(positions_, approach_of(robot_, trajectory, trajectory.end_s()));
-      duration_s_ += trajectory.duration_s();
+      duration_s_ += pace_along(trajectory, trajectory.begin_s(), [this](std::uint32_t slot) {
+                       return limits_of(*robot_.at_slot(slot));
+                     }).duration_s();
       return stays;
     });
   }

@@ -27,6 +27,14 @@ JerkPiece TimedTrajectory::piece(std::size_t axis, std::size_t index) const noex
   return piece_between(moved, row(index), row(index + 1));
 }
 
+double TimedTrajectory::last_velocity(std::size_t axis) const noexcept {
+  if (rows() == 1) {
+    return 0.0;
+  }
+  const std::size_t before = rows() - 2;
+  return piece(axis, before).after(step_s(before)).velocity;
+}
+
 double TimedTrajectory::step_s(std::size_t index) const noexcept {
   return index + 1 == rows() ? 0.0 : time_s(index + 1) - time_s(index);
 }

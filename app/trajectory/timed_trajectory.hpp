@@ -57,6 +57,9 @@ class TimedTrajectory {
   /** How an axis moves from a row to the next; from the last row on it stands. */
   [[nodiscard]] JerkPiece piece(std::size_t axis, std::size_t row) const noexcept;
 
+  /** How fast an axis, by its place among `axes`, comes to the last row; 0 when that is the only one. */
+  [[nodiscard]] double last_velocity(std::size_t axis) const noexcept;
+
   /** From a row to the next; 0 for the last row. */
   [[nodiscard]] double step_s(std::size_t row) const noexcept;
 

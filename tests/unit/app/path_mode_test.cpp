@@ -265,6 +265,31 @@ TEST_P(PathModeOnThePlant, ATrajectoryThatBeginsInMotionIsBegunAtTheVelocityOfIt
   EXPECT_EQ(loop.refusals(), 0u);
 }
 
+/** Yaw arrives at 0.6 rad/s, which is 477 counts/s, insertion along a straight line at 4 mm/s. */
+TEST_P(PathModeOnThePlant, ATrajectoryThatEndsInMotionComesToRestAtItsLastRow) {
+  ClosedLoop loop(59, GetParam());
+  loop.make_all_ready();
+  const auto trajectory = read_trajectory(
+      "time [s],yaw [rad],yaw [rad/s],insertion [mm]\n0,-0.1,0,2\n1,-0.5,-0.6,6\n1.5,-0.8,-0.6,8\n", neuro());
+  ASSERT_TRUE(trajectory) << trajectory.error().message();
+  const PathProgram program = program_of({TimedLeg{*trajectory}});
+  const std::int32_t yaw_end = *neuro().at_slot(test::yaw)->to_counts(-0.8);
+  const std::int32_t insertion_end = *neuro().at_slot(test::insertion)->to_counts(8.0);
+  const ilk_axis_config_t& rules = loop.config().axis[test::yaw];
+  VelocitySteps steps(loop, test::yaw);
+  std::int32_t farthest = 0;
+  loop.watch([&] {
+    steps.look();
+    farthest = std::min(farthest, loop.state().axis[test::yaw].position_counts);
+  });
+  expect_done(loop.carry_out({1, &program, 0}, minute_ticks));
+  const double acceleration = neuro().at_slot(test::yaw)->motion->acceleration_counts_per_s2;
+  EXPECT_LE(steps.largest(), 1.01 * acceleration * 0.001);
+  EXPECT_GE(farthest, yaw_end - static_cast<std::int32_t>(rules.deadband_counts + rules.coast_counts));
+  expect_at(loop, neuro(), {{test::yaw, yaw_end}, {test::insertion, insertion_end}});
+  EXPECT_EQ(loop.refusals(), 0u);
+}
+
 /** The order before is ended by the one that follows, at some 600 counts/s and with the pedal held. */
 TEST_P(PathModeOnThePlant, APathThatReplacesAnotherBeginsAtTheVelocityThatItsAxesHave) {
   ClosedLoop loop(37, GetParam());
