@@ -315,33 +315,6 @@ TEST_P(PathModeOnThePlant, APathThatReplacesAnotherBeginsAtTheVelocityThatItsAxe
 
 INSTANTIATE_TEST_SUITE_P(Latency, PathModeOnThePlant, testing::Values(1u, 8u));
 
-/** At nine tenths of their ways. What a controller cannot see, the way of one count, is allowed besides. */
-TEST(PathMode, AxesKeepWithinTwoMillisecondsOfEachOther) {
-  ClosedLoop loop(29, 1);
-  loop.make_all_ready();
-  const PathProgram program = move_of(neuro_targets);
-  std::array<double, ILK_SLOTS> starts{};
-  for (const AxisCounts& target : neuro_targets) {
-    starts[target.slot] = loop.true_position(target.slot);
-  }
-  std::array<std::uint32_t, ILK_SLOTS> passed{};
-  loop.watch([&] {
-    for (const AxisCounts& target : neuro_targets) {
-      const double share = (loop.true_position(target.slot) - starts[target.slot]) / target.counts;
-      if (passed[target.slot] == 0 && share >= 0.9) {
-        passed[target.slot] = loop.state().tick;
-      }
-    }
-  });
-  expect_done(loop.carry_out({1, &program, 0}, minute_ticks));
-  // The probe rotation has the longest way, so it sets the pace: 600 of its counts a second.
-  constexpr double longest_way = 2500.0;
-  for (const AxisCounts& target : neuro_targets) {
-    const double ticks_of_a_count = 1000.0 / (600.0 * std::abs(target.counts) / longest_way);
-    EXPECT_NEAR(passed[target.slot], passed[test::rotation], 2.0 + ticks_of_a_count) << target.slot;
-  }
-}
-
 TEST(PathMode, ATickAllocatesNothing) {
   PathMode mode(RobotPlan(neuro(), config_of(neuro())));
   const PathProgram program =
