@@ -43,9 +43,12 @@ TrajectoryResult<void> check_limits(const VelocityLimits& limits, const Robot& r
 
 }  // namespace
 
-TrajectoryError wrong_columns(std::size_t line, std::size_t fields, std::size_t columns) {
-  return {Code::wrong_columns, line, "", std::to_string(fields) + (fields == 1 ? " field" : " fields"),
-          std::to_string(columns) + " as in the header"};
+TrajectoryError wrong_columns(std::size_t line, std::size_t fields, std::span<const std::string> columns) {
+  const bool missing = fields < columns.size();
+  return {Code::wrong_columns, line,
+          missing ? columns[fields] : "column " + std::to_string(columns.size() + 1),
+          std::to_string(fields) + (fields == 1 ? " field" : " fields"),
+          std::to_string(columns.size()) + " as in the header"};
 }
 
 TrajectoryResult<TrajectoryBuilder> TrajectoryBuilder::create(std::vector<std::string> columns,
@@ -95,14 +98,15 @@ TrajectoryResult<void> TrajectoryBuilder::add(std::span<const double> row) {
 
 TrajectoryResult<TimedTrajectory> TrajectoryBuilder::finish() && {
   if (trajectory_.rows() == 0) {
-    return tl::unexpected(TrajectoryError{Code::empty, 0, "", "no row", "at least one row below the header"});
+    return tl::unexpected(TrajectoryError{Code::empty, line(), columns_.front(), "no row",
+                                          "at least one row below the header"});
   }
   return std::move(trajectory_);
 }
 
 TrajectoryResult<void> TrajectoryBuilder::check_numbers(std::span<const double> row) const {
   if (row.size() != columns_.size()) {
-    return tl::unexpected(wrong_columns(line(), row.size(), columns_.size()));
+    return tl::unexpected(wrong_columns(line(), row.size(), columns_));
   }
   const auto bad = std::ranges::find_if_not(row, [](double number) { return std::isfinite(number); });
   if (bad != row.end()) {

@@ -35,8 +35,9 @@ inline constexpr double velocity_slack = 1e-9;
 /** Largest speed of axes by name, in their units per second. */
 using VelocityLimits = std::map<std::string, double, std::less<>>;
 
-/** The error of a row whose fields are not as many as the columns. */
-TrajectoryError wrong_columns(std::size_t line, std::size_t fields, std::size_t columns);
+/** The error of a row whose fields are not as many as the columns: names the first that is missing, or too
+ * many. */
+TrajectoryError wrong_columns(std::size_t line, std::size_t fields, std::span<const std::string> columns);
 
 class TrajectoryBuilder {
  public:

@@ -4,6 +4,8 @@
 #include <charconv>
 #include <utility>
 
+#include "trajectory/trajectory_header.hpp"
+
 namespace interlock {
 namespace {
 
@@ -77,7 +79,7 @@ TrajectoryResult<double> number_of(std::string_view field) {
 TrajectoryResult<void> read_row(std::string_view line, const TrajectoryBuilder& builder,
                                 std::vector<double>& row) {
   if (const std::size_t count = count_fields(line); count != row.size()) {
-    return tl::unexpected(wrong_columns(builder.line(), count, row.size()));
+    return tl::unexpected(wrong_columns(builder.line(), count, builder.columns()));
   }
   for (std::size_t place = 0; place < row.size(); ++place) {
     const TrajectoryResult<double> number = number_of(trimmed(take(line, ',')));
@@ -106,12 +108,15 @@ TrajectoryResult<TimedTrajectory> read_rows(std::string_view rows, TrajectoryBui
 
 TrajectoryResult<void> check_size(std::string_view text) {
   if (text.empty()) {
-    return tl::unexpected(TrajectoryError{Code::empty, 0, "", "no text", "a header and rows"});
+    return tl::unexpected(
+        TrajectoryError{Code::empty, 1, std::string(time_column), "no text", "a header and rows"});
   }
   const auto lines =
       static_cast<std::size_t>(std::ranges::count(text, '\n')) + (text.ends_with('\n') ? 0 : 1);
-  if (text.size() > most_trajectory_bytes || lines > most_trajectory_rows + 1) {
-    return tl::unexpected(TrajectoryError{Code::too_large, 0, "", "too long a text",
+  constexpr std::size_t most_lines = most_trajectory_rows + 1;
+  if (text.size() > most_trajectory_bytes || lines > most_lines) {
+    return tl::unexpected(TrajectoryError{Code::too_large, lines > most_lines ? most_lines + 1 : 0, "",
+                                          "too long a text",
                                           std::to_string(most_trajectory_rows) + " rows and " +
                                               std::to_string(most_trajectory_bytes) + " bytes at most"});
   }

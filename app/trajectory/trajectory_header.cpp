@@ -9,8 +9,6 @@ namespace {
 
 using Code = TrajectoryError::Code;
 
-constexpr std::string_view time_column = "time [s]";
-
 /** `NAME [UNIT]`. */
 struct Label {
   std::string_view name;

@@ -9,12 +9,16 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "robot/robot.hpp"
 #include "trajectory/trajectory_error.hpp"
 
 namespace interlock {
+
+/** The first column. */
+inline constexpr std::string_view time_column = "time [s]";
 
 /** The columns of one axis; the place 0 is the column of the times. */
 struct AxisColumns {

@@ -1,6 +1,7 @@
 """Several axes together on real processes: coordinated motion, a trajectory, a pose, and what ends them."""
 
 import pytest
+from bad_trajectories import BAD_TRAJECTORIES
 from conftest import StackFactory
 from motion import act, motor, press, proposal, set_home, unlock, wait_for_proposal, wait_until
 from stack import Stack
@@ -83,25 +84,6 @@ def test_stop_ends_a_path(stack: StackFactory) -> None:
     wait_for_proposal(robot, number, "aborted")
 
 
-def rows_of(count: int, wrong: dict[int, str] | None = None) -> str:
-    """A trajectory of so many rows; some lines, the header being line 1, are others."""
-    header = "time [s],yaw [rad],insertion [mm]\n"
-    lines = (f"{row * 0.01:.2f},-0.2,5" for row in range(count))
-    return header + "".join((wrong or {}).get(row + 2, line) + "\n" for row, line in enumerate(lines))
-
-
-A_MILLION_ROWS = "time [s],yaw [rad]\n" + "".join(f"{row},-0.1\n" for row in range(1_000_000))
-BAD_TRAJECTORIES = {
-    "unsorted times": (rows_of(50, {30: "0.05,-0.2,5"}), "UNSORTED_TIMES", "line 30", "time [s]"),
-    "too few columns": (rows_of(50, {12: "0.10,-0.2"}), "WRONG_COLUMNS", "line 12", None),
-    "unknown column": ("time [s],elbow [rad]\n0,0\n", "UNKNOWN_AXIS", "", "elbow [rad]"),
-    "no number": (rows_of(50, {20: "0.18,nan,5"}), "NOT_FINITE", "line 20", "yaw [rad]"),
-    "beyond a limit": (rows_of(2000, {977: "9.75,-0.2,5000"}), "OUT_OF_RANGE", "line 977", "insertion [mm]"),
-    "a million rows": (A_MILLION_ROWS, "TOO_LARGE", "", None),
-    "empty": ("", "EMPTY", "", None),
-}
-
-
 def test_bad_trajectories_are_refused_whole_with_row_column_and_reason_and_nothing_moves(
     stack: StackFactory,
 ) -> None:
@@ -109,12 +91,12 @@ def test_bad_trajectories_are_refused_whole_with_row_column_and_reason_and_nothi
     press(robot)
     before = [motor(robot, slot)["position_counts"] for slot in AXES]
     proposed = robot.api.get("/api/proposals").json()
-    for name, (rows, code, line, column) in BAD_TRAJECTORIES.items():
-        refused = robot.api.put("/api/trajectory", content=rows, headers={"Content-Type": "text/csv"})
+    for name, bad in BAD_TRAJECTORIES.items():
+        refused = robot.api.put("/api/trajectory", content=bad.text, headers={"Content-Type": "text/csv"})
         problem = refused.json()
-        assert (refused.status_code, problem["code"]) == (422, code), (name, problem)
-        assert line in problem["detail"], (name, problem)
-        assert column is None or problem["field"] == column, (name, problem)
+        assert (refused.status_code, problem["code"]) == (422, bad.code), (name, problem)
+        assert problem["detail"].startswith(bad.place), (name, problem)
+        assert problem.get("field") == bad.column, (name, problem)
         assert robot.api.get("/api/trajectory").json()["rows"] == 0, name
         mode = robot.api.put("/api/mode", json={"mode": "trajectory"})
         assert (mode.status_code, mode.json()["code"]) == (409, "EMPTY"), name

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from bad_trajectories import BAD_TRAJECTORIES
 from bare_kernel import BIN, DEADLINE_S
 from test_run import DONE, PRECONDITION, REFUSED, USAGE
 
@@ -66,13 +67,17 @@ def test_a_limit_of_velocity_comes_from_the_command_line(file: Path) -> None:
     assert check("--max-velocity", "insertion", file)[0] == USAGE
 
 
-def test_a_million_rows_are_refused_unread(file: Path) -> None:
-    file.write_text("time [s],yaw [rad]\n" + "not a row\n" * 1_000_000)
-    code, answer, _ = check(file)
+@pytest.mark.parametrize("name", BAD_TRAJECTORIES)
+def test_a_bad_file_is_refused_with_row_column_and_reason(file: Path, name: str) -> None:
+    bad = BAD_TRAJECTORIES[name]
+    file.write_text(bad.text)
+    code, answer, message = check(file)
     assert code == REFUSED
     assert answer is not None
-    assert answer["error"]["code"] == "TOO_LARGE"
-    assert answer["error"]["line"] is None
+    error = answer["error"]
+    assert (error["code"], error["line"], error["column"]) == (bad.code, bad.line, bad.column)
+    assert error["text"].startswith(bad.place)
+    assert error["text"] in message
 
 
 def test_a_file_that_is_not_there_stands_in_the_way(tmp_path: Path) -> None:

@@ -66,7 +66,7 @@ TEST(TrajectoryCsv, LineEndsBlanksAndAByteOrderMarkDoNotMatter) {
 TEST(TrajectoryCsv, NamesTheColumnOfABadHeader) {
   const std::string row = "\n0,0,0\n";
   expect_refused({
-      {"", Code::empty, 0, ""},
+      {"", Code::empty, 1, "time [s]"},
       {"yaw [rad],time [s]" + row, Code::bad_header, 1, "yaw [rad]"},
       {"time [ms],yaw [rad]" + row, Code::bad_header, 1, "time [ms]"},
       {"time [s]\n0\n", Code::bad_header, 1, ""},
@@ -87,10 +87,10 @@ TEST(TrajectoryCsv, NamesTheColumnOfABadHeader) {
 TEST(TrajectoryCsv, NamesLineAndColumnOfABadRow) {
   const std::string good = "time [s],yaw [rad],insertion [mm]\n0,-0.5,10\n1,-0.5,10\n";
   expect_refused({
-      {"time [s],yaw [rad]\n", Code::empty, 0, ""},
-      {good + "2,-0.5\n", Code::wrong_columns, 4, ""},
-      {good + "2,-0.5,10,\n", Code::wrong_columns, 4, ""},
-      {good + "\n", Code::wrong_columns, 4, ""},
+      {"time [s],yaw [rad]\n", Code::empty, 2, "time [s]"},
+      {good + "2,-0.5\n", Code::wrong_columns, 4, "insertion [mm]"},
+      {good + "2,-0.5,10,\n", Code::wrong_columns, 4, "column 4"},
+      {good + "\n", Code::wrong_columns, 4, "yaw [rad]"},
       {good + "2,x,10\n", Code::not_a_number, 4, "yaw [rad]"},
       {good + "2,-0.5,\n", Code::not_a_number, 4, "insertion [mm]"},
       {good + "2,-0.5,10 mm\n", Code::not_a_number, 4, "insertion [mm]"},
@@ -165,6 +165,7 @@ TEST(TrajectoryCsv, MoreRowsThanTheCeilingAreRefusedUnread) {
   EXPECT_EQ(trajectory_of(text).rows(), most_trajectory_rows);
   text += "not read\n";
   EXPECT_EQ(error_of(text).code, Code::too_large);
+  EXPECT_EQ(error_of(text).line, most_trajectory_rows + 2);
   EXPECT_EQ(error_of(std::string(most_trajectory_bytes + 1, ' ')).code, Code::too_large);
 }
 
