@@ -49,6 +49,7 @@ Api::Api(const asio::any_io_executor& executor, const Robot& robot, const ilk_co
   follow_proposals();
   follow_kernel();
   follow_sessions();
+  follow_streams();
 }
 
 void Api::follow_proposals() {
@@ -93,6 +94,18 @@ void Api::follow_kernel() {
   control_.on_events_lost = [this](const EventsLost& lost) {
     spdlog::warn("{} kernel events were lost", lost.count);
     stream_.send_text(events_lost_json(lost.count));
+  };
+}
+
+void Api::follow_streams() {
+  stream_.on_change = [this](const StreamHub::Watcher& watcher, bool opened) {
+    stream_.send_text({{"type", "connection"},
+                       {"change", opened ? "opened" : "closed"},
+                       {"connection", "console"},
+                       {"id", watcher.id},
+                       {"client", watcher.caller.peer},
+                       {"user", watcher.caller.user}},
+                      watcher.id);
   };
 }
 

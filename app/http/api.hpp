@@ -74,6 +74,7 @@ class Api {
   void follow_proposals();
   void follow_kernel();
   void follow_sessions();
+  void follow_streams();
   void tell_biopsy(const ControlView& seen);
   void look_after_pedal(const ControlView& seen);
   void look_after_sessions();

@@ -57,6 +57,9 @@ void Navigation::start(NavigationOptions options) {
 void Navigation::listen_to_hub() {
   hub_.on_open = [this](PeerId peer) {
     sessions_[peer].dialect = igtl::make_dialect(options_.dialect);
+    if (const auto opened = hub_.find(peer)) {
+      announce("opened", *opened);
+    }
     let_first_control();
   };
   hub_.on_message = [this](PeerId peer, const igtl::Message& message) { take(peer, message); };
@@ -170,14 +173,13 @@ void Navigation::track(PeerId peer, const igtl::Track& wish) {
 
 /** A robot that moves for a program which is gone stops. */
 void Navigation::lose(const igtl::Peer& peer, const std::string& reason) {
+  announce("closed", peer, reason);
   sessions_.erase(peer.id);
   std::erase_if(tasks_, [&](const Task& task) { return task.peer == peer.id; });
   if (!mandate_ || mandate_->peer != peer.id) {
     return;
   }
-  const std::vector<Proposal> proposals = context_.book.newest_first();
-  const bool moves =
-      std::ranges::any_of(proposals, [](const Proposal& each) { return is_approved(each.state); });
+  const bool moves = context_.book.may_move();
   if (moves) {
     (void)context_.control.stop();
   }
@@ -189,13 +191,34 @@ void Navigation::lose(const igtl::Peer& peer, const std::string& reason) {
   mandate_.reset();
 }
 
+/** Consoles learn of it without asking. */
+void Navigation::announce(const char* change, const igtl::Peer& peer, const std::string& reason) {
+  json message{{"type", "connection"}, {"change", change},       {"connection", "openigtlink"},
+               {"id", peer.id},        {"client", peer.address}, {"role", igtl::role_word(peer.role)}};
+  if (!reason.empty()) {
+    message["reason"] = reason;
+  }
+  context_.stream.send_text(message);
+}
+
+bool Navigation::give_role(PeerId id, igtl::Role role) {
+  const auto before = hub_.find(id);
+  if (!before || !hub_.set_role(id, role)) {
+    return false;
+  }
+  if (before->role != role) {
+    announce("role", *hub_.find(id));
+  }
+  return true;
+}
+
 bool Navigation::set_role(PeerId id, igtl::Role role, const Caller& caller) {
-  if (!hub_.set_role(id, role)) {
+  if (!give_role(id, role)) {
     return false;
   }
   if (role == igtl::Role::controller) {
     if (mandate_ && mandate_->peer != id) {
-      hub_.set_role(mandate_->peer, igtl::Role::observer);
+      give_role(mandate_->peer, igtl::Role::observer);
     }
     mandate_ = {id, caller, context_.authority.number()};
     mandate_->caller.peer = "openigtlink " + hub_.find(id)->address;
@@ -207,7 +230,7 @@ bool Navigation::set_role(PeerId id, igtl::Role role, const Caller& caller) {
 
 void Navigation::change_authority() {
   if (mandate_) {
-    hub_.set_role(mandate_->peer, igtl::Role::observer);
+    give_role(mandate_->peer, igtl::Role::observer);
     mandate_.reset();
   }
   let_first_control();
@@ -340,9 +363,7 @@ void Navigation::tell_messages(SteadyTime now) {
 }
 
 /** Whether a motion is approved that a controller's loss has to end. */
-bool Navigation::is_moving() const {
-  return mandate_ && (context_.book.open_mode() != nullptr || context_.book.open_home() != nullptr);
-}
+bool Navigation::is_moving() const { return mandate_ && context_.book.may_move(); }
 
 /** In order with the answers. */
 void Navigation::tell_what_is_due(SteadyTime now) {

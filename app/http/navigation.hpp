@@ -111,6 +111,8 @@ class Navigation {
   void track(igtl::PeerId peer, const igtl::Track& wish);
   void lose(const igtl::Peer& peer, const std::string& reason);
   void let_first_control();
+  void announce(const char* change, const igtl::Peer& peer, const std::string& reason = "");
+  bool give_role(igtl::PeerId id, igtl::Role role);
   void note_refusal(igtl::PeerId peer, const std::string& device, const std::string& reason);
   [[nodiscard]] tl::expected<Caller, Problem> mandate_of(igtl::PeerId peer) const;
 

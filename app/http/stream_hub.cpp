@@ -102,6 +102,7 @@ asio::awaitable<void> StreamHub::serve(beast::tcp_stream stream, Request request
     client->close();
     co_return;
   }
+  on_change(client->watcher, true);
   asio::co_spawn(client->socket.get_executor(), write(client), asio::detached);
   beast::flat_buffer buffer;
   const auto [read_error, bytes] = co_await client->socket.async_read(buffer, as_result);
@@ -112,6 +113,7 @@ asio::awaitable<void> StreamHub::serve(beast::tcp_stream stream, Request request
   }
   clients_.erase(place);
   client->close();
+  on_change(client->watcher, false);
 }
 
 asio::awaitable<void> StreamHub::write(std::shared_ptr<Client> client) {
@@ -145,11 +147,13 @@ void StreamHub::send_state(const StreamMessage& state) {
   }
 }
 
-void StreamHub::send_text(const nlohmann::json& message) {
+void StreamHub::send_text(const nlohmann::json& message, std::uint32_t except) {
   const auto text = std::make_shared<const std::string>(
       message.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   for (const auto& client : clients_) {
-    client->send(text);
+    if (client->watcher.id != except) {
+      client->send(text);
+    }
   }
 }
 

@@ -37,14 +37,18 @@ class StreamHub {
     std::uint16_t port = 0; /**< of this app, that it came to */
   };
 
+  /** Told of each client that has come (true) or gone. */
+  std::function<void(const Watcher&, bool)> on_change = [](const Watcher&, bool) {};
+
   /** Accepts the WebSocket and serves it until either side ends it. */
   boost::asio::awaitable<void> serve(boost::beast::tcp_stream stream, Request request, Caller caller);
 
   /** To every client; a state that was not sent yet is replaced by the newer one. */
   void send_state(const StreamMessage& state);
 
-  /** To every client, in order; a client that cannot keep up is dropped, never a message. */
-  void send_text(const nlohmann::json& message);
+  /** To every client but the one of number `except`, in order; a client that cannot keep up is dropped, never
+   * a message. */
+  void send_text(const nlohmann::json& message, std::uint32_t except = 0);
 
   /** As `send_text`, with a message of its own for each client. */
   void send_text(const std::function<nlohmann::json(const Caller&)>& message_for);

@@ -33,6 +33,11 @@ namespace interlock::igtl {
 
 enum class Role : std::uint8_t { observer, controller };
 
+/** As the interface spells it. */
+constexpr const char* role_word(Role role) noexcept {
+  return role == Role::controller ? "controller" : "observer";
+}
+
 /** Number of a connection; never given twice. */
 using PeerId = std::uint32_t;
 

@@ -458,6 +458,10 @@ const Proposal* ProposalBook::open_home() const {
   return found == book_.end() ? nullptr : &*found;
 }
 
+bool ProposalBook::may_move() const {
+  return std::ranges::any_of(book_, [](const Proposal& each) { return is_approved(each.state); });
+}
+
 bool ProposalBook::homes(std::uint32_t slot) const {
   const Proposal* home = open_home();
   return home != nullptr && std::find(home->slots.begin(), home->slots.end(), slot) != home->slots.end();

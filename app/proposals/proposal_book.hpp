@@ -114,6 +114,9 @@ class ProposalBook {
   /** The approved proposal of a biopsy, or null. */
   [[nodiscard]] const Proposal* open_biopsy() const;
 
+  /** Whether nothing but the pedal keeps a proposal, of whatever kind, from motion. */
+  [[nodiscard]] bool may_move() const;
+
   /** Whether open homing moves the axis. */
   [[nodiscard]] bool homes(std::uint32_t slot) const;
 

@@ -52,8 +52,6 @@ json console_connection(const StreamHub::Watcher& watcher) {
           {"since", iso_8601(watcher.since)}};
 }
 
-const char* role_word(igtl::Role role) { return role == igtl::Role::controller ? "controller" : "observer"; }
-
 /** Schema `NavigationConnection`. */
 json navigation_json(const igtl::Peer& peer, const std::string& dialect) {
   using Seconds = std::chrono::duration<double>;
@@ -72,7 +70,7 @@ json navigation_json(const igtl::Peer& peer, const std::string& dialect) {
           {"client", peer.address},
           {"port", peer.port},
           {"dialect", dialect},
-          {"role", role_word(peer.role)},
+          {"role", igtl::role_word(peer.role)},
           {"header_version", peer.version},
           {"since", iso_8601(peer.since)},
           {"received", peer.received},
@@ -173,7 +171,7 @@ Answering CommunicationRoutes::set_role(const Call& call) const {
   if (!peer) {
     co_return fail(no_navigation(call.parameters[0]));
   }
-  json detail{{"action", "role"}, {"id", id}, {"client", peer->address}, {"role", role_word(*role)}};
+  json detail{{"action", "role"}, {"id", id}, {"client", peer->address}, {"role", igtl::role_word(*role)}};
   const auto announced = co_await context_.announce(call.caller, AuditKind::connection, std::move(detail));
   if (!announced) {
     co_return fail(announced.error());

@@ -46,6 +46,21 @@ TEST_F(CommunicationRoutesTest, EachConsoleIsListedWithPeerUserAndPort) {
   EXPECT_FALSE(found[0]["since"].get<std::string>().empty());
 }
 
+TEST_F(CommunicationRoutesTest, AConsoleIsToldOfAnotherThatComesAndGoes) {
+  auto first = open_stream();
+  consoles(1);
+  auto second = open_stream();
+  const json came = first.next_text("connection");
+  EXPECT_EQ(came["change"], "opened");
+  EXPECT_EQ(came["connection"], "console");
+  EXPECT_EQ(came["client"], "127.0.0.1:" + std::to_string(second.local_port()));
+  EXPECT_EQ(came["user"], "edna");
+  second.close();
+  const json went = first.next_text("connection");
+  EXPECT_EQ(went["change"], "closed");
+  EXPECT_EQ(went["id"], came["id"]);
+}
+
 TEST_F(CommunicationRoutesTest, ADisconnectedConsoleIsGoneAndTheOtherStays) {
   auto first = open_stream();
   const json gone = consoles(1)[0]["id"];

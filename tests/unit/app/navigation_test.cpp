@@ -93,6 +93,34 @@ TEST_F(NavigationTest, AHomedRobotHasStartedUp) {
   EXPECT_EQ(json::parse(get("/api/proposals").body), json::array());
 }
 
+TEST_F(NavigationTest, AConsoleIsToldOfConnectionsRolesAndTheirEnd) {
+  auto stream = open_stream();
+  igtl::Client other;
+  ASSERT_TRUE(other.connect("127.0.0.1", api_.navigation().hub().port(), soon()).has_value());
+  json told = stream.next_text("connection");
+  while (told["connection"] != "openigtlink") {
+    told = stream.next_text("connection");
+  }
+  const json id = told["id"];
+  EXPECT_EQ(told["change"], "opened");
+  EXPECT_EQ(told["role"], "observer");
+  become_controller();
+  told = stream.next_text("connection");
+  EXPECT_EQ(told["change"], "role");
+  EXPECT_EQ(told["role"], "controller");
+  EXPECT_NE(told["id"], id);
+  EXPECT_EQ(post("/api/authority/release").status, 200u);
+  told = stream.next_text("connection");
+  EXPECT_EQ(told["change"], "role");
+  EXPECT_EQ(told["role"], "observer");
+  const std::string path = "/api/communications/connections/" + id.dump();
+  ASSERT_EQ(send(Request{http::verb::delete_, path, 11}).status, 200u);
+  told = stream.next_text("connection");
+  EXPECT_EQ(told["change"], "closed");
+  EXPECT_EQ(told["id"], id);
+  EXPECT_NE(told["reason"].get<std::string>().find("disconnected by"), std::string::npos);
+}
+
 TEST_F(NavigationTest, TheRoleEndsWithTheAuthority) {
   become_controller();
   EXPECT_EQ(post("/api/authority/release").status, 200u);
