@@ -1,5 +1,7 @@
 #include "http/alignment_view.hpp"
 
+#include <algorithm>
+
 #include "targeting/guide_frame.hpp"
 #include "targeting/targeting_json.hpp"
 
@@ -142,6 +144,12 @@ tl::expected<NeedleTarget, Problem> needle_target(const Robot& robot, const Targ
                        .expected = "a target, and a robot that is homed and lined up with it",
                        .next_step = "Look at GET /api/targeting/alignment."};
       });
+}
+
+bool is_out_of_reach(const Alignment& alignment) {
+  constexpr double moved_mm = 0.1;
+  return std::ranges::any_of(alignment.setpoints, &AxisSetpoint::clamped) &&
+         alignment.deviation.distance_mm > moved_mm;
 }
 
 tl::expected<Alignment, Problem> alignment_with(const Robot& robot, const Targeting& targeting) {

@@ -39,6 +39,10 @@ struct NeedleTarget {
 tl::expected<NeedleTarget, Problem> needle_target(const Robot& robot, const Targeting& targeting,
                                                   const ControlView& view);
 
+/** Whether an axis ends before the aim, and the reachable pose is another one because of that: more than 0.1
+ * mm off. */
+bool is_out_of_reach(const Alignment& alignment);
+
 /** The alignment with entry and target; 409 with the code of the problem when there is none. */
 tl::expected<Alignment, Problem> alignment_with(const Robot& robot, const Targeting& targeting);
 

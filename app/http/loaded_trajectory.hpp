@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "motion/path_program.hpp"
 #include "robot/robot.hpp"
@@ -16,6 +17,8 @@ struct LoadedTrajectory {
   std::shared_ptr<const PathProgram> program; /**< null: none is loaded; else one leg, timed */
   std::string author;
   UtcTime loaded;
+  /** It follows from registration, probe and target of that revision: stale once these change. */
+  std::optional<std::uint32_t> targeting_revision = std::nullopt;
 };
 
 /** Schema `LoadedTrajectory` of spec/openapi.yaml. */

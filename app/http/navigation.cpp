@@ -63,8 +63,9 @@ void Navigation::listen_to_hub() {
     let_first_control();
   };
   hub_.on_message = [this](PeerId peer, const igtl::Message& message) { take(peer, message); };
-  hub_.on_refused = [this](PeerId peer, const igtl::Header& header, igtl::Fault fault) {
-    const std::string text = header.type + ": " + std::string(igtl::fault_text(fault)) + ".";
+  hub_.on_refused = [this](PeerId peer, const igtl::Header& header, const igtl::FaultAt& fault) {
+    const std::string place = fault.place.empty() ? "" : ", " + fault.place;
+    const std::string text = header.type + place + ": " + std::string(igtl::fault_text(fault)) + ".";
     spdlog::warn("OpenIGTLink connection {}: \"{}\" was refused: {}", peer, header.device, text);
     const igtl::Status status{igtl::status_of(fault), 0, "FORMAT", text};
     for (const auto& [name, body] : sessions_.at(peer).dialect->take_broken(header.device, status)) {

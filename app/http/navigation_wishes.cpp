@@ -12,11 +12,11 @@
 #include "http/path_drafts.hpp"
 #include "http/problems.hpp"
 #include "http/proposing.hpp"
+#include "http/sent_trajectory.hpp"
 #include "http/targeting_change.hpp"
 #include "http/targeting_store.hpp"
 #include "http/trajectory_loading.hpp"
 #include "targeting/targeting_json.hpp"
-#include "trajectory/trajectory_builder.hpp"
 
 namespace interlock::web {
 namespace {
@@ -25,13 +25,10 @@ namespace asio = boost::asio;
 using igtl::StatusCode;
 using nlohmann::json;
 using Done = tl::expected<igtl::Outcome, Problem>;
+using Sent = tl::expected<TimedTrajectory, Problem>;
 
 constexpr const char* known_modes = "manual, trajectory, draping, targeting or insertion";
 
-/** Between entry and target, when nobody has set both. */
-constexpr double usual_depth_mm = 50.0;
-/** Farther from a target the reachable one is another. */
-constexpr double moved_mm = 0.1;
 /** Sub-codes of a target's STATUS. */
 constexpr std::int64_t invalid_target = 1;
 constexpr std::int64_t moved_target = 3;
@@ -80,41 +77,6 @@ std::optional<Asked> targeting_of(const igtl::Wish& wish) {
   return std::nullopt;
 }
 
-/** Names of the columns: a time, then a position, or a position and a velocity, of each axis of the robot. */
-tl::expected<std::vector<std::string>, Problem> columns_of(const Robot& robot, std::size_t count) {
-  const std::size_t axes = robot.axes.size();
-  if (count != 1 + axes && count != 1 + 2 * axes) {
-    return fail({.status = Status::unprocessable_entity,
-                 .code = "COLUMNS",
-                 .detail = "The trajectory has " + std::to_string(count) + " columns.",
-                 .expected = std::to_string(1 + axes) + " (time and positions) or " +
-                             std::to_string(1 + 2 * axes) + " (with velocities), axes in the file's order"});
-  }
-  std::vector<std::string> columns{"time [s]"};
-  for (const Axis& axis : robot.axes) {
-    const std::string unit(unit_name(axis.unit));
-    columns.push_back(axis.name + " [" + unit + "]");
-    if (count != 1 + axes) {
-      columns.push_back(axis.name + " [" + unit + "/s]");
-    }
-  }
-  return columns;
-}
-
-TrajectoryResult<TimedTrajectory> built(const igtl::LoadRows& rows, std::vector<std::string> columns,
-                                        const Robot& robot) {
-  auto builder = TrajectoryBuilder::create(std::move(columns), robot, velocity_limits(robot));
-  if (!builder) {
-    return tl::unexpected(builder.error());
-  }
-  for (std::size_t at = 0; at < rows.values.size(); at += rows.columns) {
-    if (const auto added = builder->add({&rows.values[at], rows.columns}); !added) {
-      return tl::unexpected(added.error());
-    }
-  }
-  return std::move(*builder).finish();
-}
-
 asio::awaitable<Done> change(const Context& context, const Caller& caller, const igtl::Wish& wish) {
   auto asked = targeting_of(wish);
   if (!asked) {
@@ -131,23 +93,40 @@ asio::awaitable<Done> change(const Context& context, const Caller& caller, const
   });
 }
 
-asio::awaitable<Done> load(const Context& context, const Caller& caller, const igtl::LoadRows& rows) {
-  auto columns = columns_of(context.robot, rows.columns);
-  if (!columns) {
-    co_return fail(columns.error());
+asio::awaitable<Done> load(const Context& context, const Caller& caller, Sent sent,
+                           std::optional<std::uint32_t> targeting_revision) {
+  if (!sent) {
+    co_return fail(sent.error());
   }
-  auto work = [rows, columns = std::move(*columns), robot = &context.robot] {
-    return built(rows, columns, *robot);
+  const auto loaded = co_await load_trajectory(context, caller, std::move(*sent), targeting_revision);
+  co_return loaded.map([] { return well("The trajectory was loaded."); });
+}
+
+asio::awaitable<Done> load_rows(const Context& context, const Caller& caller, igtl::LoadRows rows) {
+  auto work = [rows = std::move(rows), robot = &context.robot] { return trajectory_of(*robot, rows); };
+  auto done = co_await context.work.run(std::move(work));
+  if (!done) {
+    co_return fail(done.error());
+  }
+  co_return co_await load(context, caller, std::move(*done), std::nullopt);
+}
+
+/** Where poses lead the axes depends on registration and probe, so that the trajectory is stale when these
+ * change. */
+asio::awaitable<Done> load_poses(const Context& context, const Caller& caller, igtl::LoadPoses poses) {
+  const std::uint32_t revision = context.book.targeting_revision();
+  const auto targeting = co_await present_targeting(context);
+  if (!targeting) {
+    co_return fail(targeting.error());
+  }
+  auto work = [poses = std::move(poses), targeting = *targeting, robot = &context.robot] {
+    return trajectory_of(*robot, targeting, poses);
   };
   auto done = co_await context.work.run(std::move(work));
   if (!done) {
     co_return fail(done.error());
   }
-  if (!*done) {
-    co_return fail(unreadable(done->error()));
-  }
-  const auto loaded = co_await load_trajectory(context, caller, std::move(**done));
-  co_return loaded.map([] { return well("The trajectory was loaded."); });
+  co_return co_await load(context, caller, std::move(*done), revision);
 }
 
 Done go_manual(const Context& context) {
@@ -227,19 +206,6 @@ asio::awaitable<Done> start_up(const Context& context, const Caller& caller) {
   co_return made.map(proposed);
 }
 
-/** Which way the probe comes is kept, and from how far. */
-void aim_at(Targeting& targeting, const igtl::Matrix& pose) {
-  double depth_mm = usual_depth_mm;
-  if (targeting.entry_point && targeting.target_point) {
-    const Point& from = *targeting.entry_point;
-    const Point& to = *targeting.target_point;
-    depth_mm = std::max(1.0, std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]));
-  }
-  targeting.target_point = {pose[3], pose[7], pose[11]};
-  targeting.entry_point = {pose[3] - depth_mm * pose[2], pose[7] - depth_mm * pose[6],
-                           pose[11] - depth_mm * pose[10]};
-}
-
 Problem out_of_reach(const std::string& why) {
   return {.status = Status::conflict,
           .code = "UNREACHABLE",
@@ -259,8 +225,7 @@ asio::awaitable<Done> set_target(const Context& context, const Caller& caller, i
   if (!alignment) {
     co_return fail(out_of_reach(alignment.error().detail));
   }
-  const bool is_moved = std::ranges::any_of(alignment->setpoints, &AxisSetpoint::clamped) &&
-                        alignment->deviation.distance_mm > moved_mm;
+  const bool is_moved = is_out_of_reach(*alignment);
   if (is_moved && !wish.takes_reachable) {
     co_return fail(out_of_reach("an axis ends before it."));
   }
@@ -311,7 +276,10 @@ asio::awaitable<Done> cut_power(const Context& context) {
 
 asio::awaitable<Done> done_for(const Context& context, const Caller& caller, const igtl::Wish& wish) {
   if (const auto* rows = std::get_if<igtl::LoadRows>(&wish)) {
-    co_return co_await load(context, caller, *rows);
+    co_return co_await load_rows(context, caller, *rows);
+  }
+  if (const auto* poses = std::get_if<igtl::LoadPoses>(&wish)) {
+    co_return co_await load_poses(context, caller, *poses);
   }
   if (const auto* mode = std::get_if<igtl::SetMode>(&wish)) {
     co_return co_await enter_mode(context, caller, mode->mode);

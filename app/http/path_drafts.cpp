@@ -108,7 +108,8 @@ tl::expected<PathDraft, Problem> trajectory_draft(const LoadedTrajectory& loaded
                         .expected = "a loaded trajectory",
                         .next_step = "Load one by PUT /api/trajectory."});
   }
-  return PathDraft{RobotMode::trajectory, loaded.program, ProposalSource::file, std::nullopt, author};
+  return PathDraft{RobotMode::trajectory, loaded.program, ProposalSource::file, loaded.targeting_revision,
+                   author};
 }
 
 boost::asio::awaitable<tl::expected<PathDraft, Problem>> pose_draft(const Context& context, PoseWish wish,

@@ -218,4 +218,17 @@ tl::expected<Pose, Problem> rigid_pose(const json& body, const std::string& name
   return *pose;
 }
 
+void aim_at(Targeting& targeting, const Pose& pose) {
+  constexpr double usual_depth_mm = 50.0;
+  double depth_mm = usual_depth_mm;
+  if (targeting.entry_point && targeting.target_point) {
+    const Point& from = *targeting.entry_point;
+    const Point& to = *targeting.target_point;
+    depth_mm = std::max(1.0, std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]));
+  }
+  targeting.target_point = {pose[3], pose[7], pose[11]};
+  targeting.entry_point = {pose[3] - depth_mm * pose[2], pose[7] - depth_mm * pose[6],
+                           pose[11] - depth_mm * pose[10]};
+}
+
 }  // namespace interlock::web

@@ -53,6 +53,10 @@ tl::expected<Targeting, Problem> with_registration(Targeting targeting, const nl
 tl::expected<Targeting, Problem> with_reported_pose(Targeting targeting, const nlohmann::json& body);
 tl::expected<Targeting, Problem> with_target(Targeting targeting, const nlohmann::json& body);
 
+/** Sets entry and target by the pose that the treatment point is to have: it comes along the pose's third
+ * axis, from as far off as entry and target were before, or 50 mm. */
+void aim_at(Targeting& targeting, const Pose& pose);
+
 /** A rigid pose in the field `name` of a body; 422 INVALID naming the element, and the rule. */
 tl::expected<Pose, Problem> rigid_pose(const nlohmann::json& body, const std::string& name);
 

@@ -23,12 +23,13 @@ Problem unreadable(const TrajectoryError& error) {
           .next_step = "Nothing was loaded. Mend the trajectory, and load it again."};
 }
 
-boost::asio::awaitable<tl::expected<void, Problem>> load_trajectory(const Context& context, Caller caller,
-                                                                    TimedTrajectory trajectory) {
+boost::asio::awaitable<tl::expected<void, Problem>> load_trajectory(
+    const Context& context, Caller caller, TimedTrajectory trajectory,
+    std::optional<std::uint32_t> targeting_revision) {
   std::vector<PathLeg> legs;
   legs.emplace_back(TimedLeg{std::move(trajectory)});
   LoadedTrajectory loaded{std::make_shared<const PathProgram>(PathProgram{std::move(legs)}), caller.user,
-                          context.clock()};
+                          context.clock(), targeting_revision};
   json detail{{"trajectory", summary_of(loaded)}};
   auto announced = co_await context.announce(caller, AuditKind::setting, std::move(detail));
   if (announced) {

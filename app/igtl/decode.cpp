@@ -13,7 +13,7 @@
 namespace interlock::igtl {
 namespace {
 
-using Decoded = tl::expected<Body, Fault>;
+using Decoded = tl::expected<Body, FaultAt>;
 
 constexpr std::size_t status_name_at = 10;
 constexpr std::size_t position_only_bytes = 12;
@@ -163,6 +163,9 @@ Decoded decode_points(Bytes content) {
   return points;
 }
 
+/** Counted from 1, as people do. */
+std::string row_text(std::size_t row) { return "row " + std::to_string(row + 1); }
+
 Decoded decode_tracking(Bytes content) {
   TrackingData data;
   for (std::size_t at = 0; at < content.size(); at += tool_bytes) {
@@ -173,7 +176,7 @@ Decoded decode_tracking(Bytes content) {
     }
     Tool tool{std::move(*name), bytes[20], matrix_at(bytes, 22)};
     if (!is_finite(tool.matrix)) {
-      return refused(Fault::not_finite);
+      return tl::unexpected(FaultAt(Fault::not_finite, row_text(data.tools.size()) + ", matrix"));
     }
     data.tools.push_back(std::move(tool));
   }
@@ -197,6 +200,14 @@ Decoded decode_tracking_reply(Bytes content) {
     return refused(Fault::wrong_size);
   }
   return TrackingReply{message->GetStatus() == 0};
+}
+
+/** Where an element of an array is. */
+std::string place_in(const std::vector<std::uint16_t>& size, std::size_t element) {
+  if (size.size() != 2) {
+    return "element " + std::to_string(element + 1);
+  }
+  return row_text(element / size[1]) + ", column " + std::to_string(element % size[1] + 1);
 }
 
 /** Element type, number of dimensions, each dimension, elements: they must make up the whole body. */
@@ -223,7 +234,12 @@ Decoded decode_array(Bytes content) {
     array.values.push_back(elements == float32_elements ? read_float32(content, at)
                                                         : read_float64(content, at));
   }
-  return is_finite(array.values) ? Decoded(std::move(array)) : refused(Fault::not_finite);
+  const auto bad = std::ranges::find_if_not(array.values, [](double value) { return std::isfinite(value); });
+  if (bad != array.values.end()) {
+    return tl::unexpected(FaultAt(
+        Fault::not_finite, place_in(array.size, static_cast<std::size_t>(bad - array.values.begin()))));
+  }
+  return array;
 }
 
 Decoded decode_sensor(Bytes content) {
@@ -281,7 +297,7 @@ Decoded decode_body(const std::string& type, Bytes content) {
 
 }  // namespace
 
-tl::expected<Message, Fault> decode(Frame frame) {
+tl::expected<Message, FaultAt> decode(Frame frame) {
   return decode_body(frame.header.type, frame.content).map([&](Body&& body) {
     return Message{std::move(frame.header.device), std::move(body), frame.header.timestamp,
                    frame.header.version, std::move(frame.metadata)};

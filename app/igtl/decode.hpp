@@ -18,6 +18,6 @@
 namespace interlock::igtl {
 
 /** The message of a frame that a FrameReader gave. */
-tl::expected<Message, Fault> decode(Frame frame);
+tl::expected<Message, FaultAt> decode(Frame frame);
 
 }  // namespace interlock::igtl

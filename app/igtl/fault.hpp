@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
+#include <utility>
 
 namespace interlock::igtl {
 
@@ -21,6 +23,15 @@ enum class Fault : std::uint8_t {
   text,            /**< a text is unterminated, has an unknown encoding, or characters that cannot be shown */
   element_type,    /**< an array of something else than floating-point numbers */
   late             /**< it began and did not end in time */
+};
+
+/** A fault, and where in the body it is. */
+struct FaultAt {
+  Fault fault;
+  std::string place; /**< for people: "row 3, column 2"; empty: nowhere in particular */
+
+  FaultAt(Fault what, std::string where = "") : fault(what), place(std::move(where)) {}
+  operator Fault() const noexcept { return fault; }
 };
 
 /** For people: what is wrong, and what was expected. */

@@ -262,7 +262,7 @@ void Hub::take(Session& session, Frame frame) {
   on_message(session.peer.id, *message);
 }
 
-void Hub::refuse(Session& session, const Header& header, Fault fault) {
+void Hub::refuse(Session& session, const Header& header, const FaultAt& fault) {
   ++session.peer.refused;
   session.last_heard = Clock::now();
   on_refused(session.peer.id, header, fault);

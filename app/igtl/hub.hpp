@@ -115,7 +115,8 @@ class Hub {
   /** Told of each connection, its messages, those that are skipped, and its end with the reason. */
   std::function<void(PeerId)> on_open = [](PeerId) {};
   std::function<void(PeerId, const Message&)> on_message = [](PeerId, const Message&) {};
-  std::function<void(PeerId, const Header&, Fault)> on_refused = [](PeerId, const Header&, Fault) {};
+  std::function<void(PeerId, const Header&, const FaultAt&)> on_refused = [](PeerId, const Header&,
+                                                                             const FaultAt&) {};
   std::function<void(const Peer&, const std::string&)> on_close = [](const Peer&, const std::string&) {};
 
   /** Sends in order and drops nothing. */
@@ -173,7 +174,7 @@ class Hub {
   static boost::asio::awaitable<void> write(SessionPointer session);
   boost::asio::awaitable<void> slow_down(SessionPointer session);
   void take(Session& session, Frame frame);
-  void refuse(Session& session, const Header& header, Fault fault);
+  void refuse(Session& session, const Header& header, const FaultAt& fault);
   void look_after(Session& session, Clock::time_point now) const;
   static void close(Session& session, const std::string& reason);
   static void set_patience(Session& session, std::chrono::milliseconds patience);

@@ -45,31 +45,57 @@ Reading point_of(const Message& message, bool is_target) {
   return wrong_type(message, "POINT, POSITION or TRANSFORM");
 }
 
+/** A finite number that is the whole text. */
+std::optional<double> number_of(const std::string& text) {
+  double number = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, number);
+  const bool whole = error == std::errc() && stopped == end && std::isfinite(number);
+  return whole ? std::optional(number) : std::nullopt;
+}
+
 Reading offset_of(const Message& message, std::string_view field) {
   const auto* text = std::get_if<Text>(&message.body);
   if (text == nullptr) {
     return wrong_type(message, "STRING");
   }
-  double mm = 0.0;
-  const char* const end = text->text.data() + text->text.size();
-  const auto [stopped, error] = std::from_chars(text->text.data(), end, mm);
-  if (error != std::errc() || stopped != end || !std::isfinite(mm)) {
+  const std::optional<double> mm = number_of(text->text);
+  if (!mm) {
     return unwanted(StatusCode::configuration,
                     message.device + " is \"" + text->text + "\"; expected a number in mm, such as 12.5.");
   }
-  return SetOffset{field, mm};
+  return SetOffset{field, *mm};
 }
 
-Reading rows_of(const Message& message) {
-  const auto* array = std::get_if<Array>(&message.body);
-  if (array == nullptr) {
-    return wrong_type(message, "NDARRAY");
-  }
-  if (array->size.size() != 2) {
-    return unwanted(StatusCode::configuration, message.device + " has " + std::to_string(array->size.size()) +
+Reading rows_of(const std::string& device, const Array& array) {
+  if (array.size.size() != 2) {
+    return unwanted(StatusCode::configuration, device + " has " + std::to_string(array.size.size()) +
                                                    " dimensions; expected two, rows and columns.");
   }
-  return LoadRows{array->size[1], array->values};
+  return LoadRows{array.size[1], array.values};
+}
+
+/** Each element of a TDATA is a pose, and its name the time. */
+Reading poses_of(const std::string& device, const TrackingData& data) {
+  LoadPoses wish;
+  for (const Tool& tool : data.tools) {
+    const std::optional<double> time_s = number_of(tool.name);
+    if (!time_s) {
+      return unwanted(StatusCode::configuration, device + ", row " + std::to_string(wish.poses.size() + 1) +
+                                                     ", name: \"" + tool.name +
+                                                     "\" is no time; expected a number in s, such as 0.25.");
+    }
+    wish.poses.push_back({*time_s, tool.matrix});
+  }
+  return wish;
+}
+
+Reading trajectory_of(const Message& message) {
+  if (const auto* array = std::get_if<Array>(&message.body)) {
+    return rows_of(message.device, *array);
+  }
+  const auto* data = std::get_if<TrackingData>(&message.body);
+  return data != nullptr ? poses_of(message.device, *data) : wrong_type(message, "NDARRAY or TDATA");
 }
 
 Reading mode_of_text(const Message& message) {
@@ -121,7 +147,7 @@ constexpr std::array<Name, 15> names{{
      [](const Message& message) { return offset_of(message, "cannula_to_treatment_offset"); }},
     {"robot_treatment_home",
      [](const Message& message) { return offset_of(message, "treatment_to_robot_at_home"); }},
-    {"trajectory", rows_of},
+    {"trajectory", trajectory_of},
     {"mode", mode_of_text},
     {"start_up", [](const Message&) -> Reading { return SetMode{"home"}; }},
     {"stop", [](const Message&) -> Reading { return Stop{}; }},

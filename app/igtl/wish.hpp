@@ -46,6 +46,17 @@ struct LoadRows {
   std::vector<double> values; /**< row by row */
 };
 
+/** Where the probe's treatment point is to be, and when. */
+struct TimedPose {
+  double time_s = 0.0;
+  Matrix scanner_from_treatment;
+};
+
+/** A trajectory of such poses. */
+struct LoadPoses {
+  std::vector<TimedPose> poses;
+};
+
 /** A mode, in lower case. */
 struct SetMode {
   std::string mode;
@@ -87,8 +98,8 @@ struct Noted {
   bool is_answered = true; /**< a STATUS is not, else two programs would answer each other for ever */
 };
 
-using Wish = std::variant<SetRegistration, ReportPose, SetPoint, SetOffset, LoadRows, SetMode, Stop, StartUp,
-                          SetTargetPose, MoveToTarget, RetractProbe, CutPower, Track, Noted>;
+using Wish = std::variant<SetRegistration, ReportPose, SetPoint, SetOffset, LoadRows, LoadPoses, SetMode,
+                          Stop, StartUp, SetTargetPose, MoveToTarget, RetractProbe, CutPower, Track, Noted>;
 
 /** Why a message is refused. */
 struct Unwanted {

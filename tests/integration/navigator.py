@@ -56,6 +56,21 @@ class Rows(wire.MessageBase):
         return head + struct.pack(f">{len(values)}d", *values)
 
 
+class Poses(wire.MessageBase):
+    """TDATA, which pyigtl lacks: 4x4 matrices by name."""
+
+    def __init__(self, poses: list[tuple[str, np.ndarray]], device_name: str) -> None:
+        super().__init__(device_name=device_name)
+        self._message_type = "TDATA"
+        self._valid_message = True
+        self.poses = poses
+
+    def _pack_content(self) -> bytes:
+        return b"".join(
+            struct.pack(">20sBx12f", name.encode(), 2, *matrix[:3].T.ravel()) for name, matrix in self.poses
+        )
+
+
 wire.message_type_to_class_constructor["STATUS"] = Status
 
 

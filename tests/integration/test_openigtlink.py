@@ -17,12 +17,13 @@ from bare_kernel import DEADLINE_S
 from conftest import StackFactory
 from interface import judge
 from motion import LATERAL, act, press, set_home, unlock, wait_for_mode, wait_until
-from navigator import OK, Navigator, Query, Rows, text, transform
+from navigator import OK, Navigator, Poses, Query, Rows, text, transform
 from stack import Stack
 
 ACCESS_DENIED, CONFIGURATION, UNKNOWN_INSTRUCTION = 5, 10, 12
-CHECKSUM, NOT_READY = 9, 13
+UNREACHABLE, CHECKSUM, NOT_READY = 8, 9, 13
 CONNECTIONS = "/api/communications/connections"
+ENTRY, TARGET = [8, 250, 70], [5, 200, 60]
 REGISTRATION = [0, -1, 0, 12.5, 1, 0, 0, -3, 0, 0, 1, 40, 0, 0, 0, 1]
 
 
@@ -190,6 +191,105 @@ def test_a_trajectory_becomes_a_proposal_that_somebody_has_to_approve(
     [proposal] = judge(robot.api.get("/api/proposals")).json()
     assert (proposal["source"], proposal["state"]) == ("openigtlink", "checked")
     assert robot.api.get("/api/mode").json()["mode"] == "manual"
+
+
+def bad_arrays(axes: list[dict]) -> dict[str, tuple[Rows, str]]:
+    """Trajectories of 2000 rows at one place, each wrong in one way, and where they are."""
+    here = [within_reach(axis) for axis in axes]
+    first, last = (f"{axis['name']} [{axis['unit']}]" for axis in (axes[0], axes[-1]))
+
+    def rows(wrong: dict[int, list[float]], width: int = 1 + len(here)) -> Rows:
+        array = [wrong.get(row + 1, [row * 0.01, *here])[:width] for row in range(2000)]
+        return Rows(array, "TRAJECTORY")
+
+    return {
+        "unsorted times": (rows({30: [0.05, *here]}), "Row 30, time [s]: "),
+        "beyond a limit": (rows({977: [9.76, *here[:-1], 1e4]}), f"Row 977, {last}: "),
+        "no number": (rows({20: [0.19, float("nan"), *here[1:]]}), "NDARRAY, row 20, column 2: "),
+        "too few columns": (rows({}, width=len(here)), f"Row 1, {last}: "),
+        "too many columns": (Rows([[0, *here, 1]], "TRAJECTORY"), "Row 1, column 9: "),
+        "too fast": (rows({2: [0.001, here[0] - 0.1, *here[1:]]}), f"Row 2, {first}: "),
+        "empty": (Rows([[]], "TRAJECTORY"), "NDARRAY: "),
+    }
+
+
+def test_a_bad_array_is_refused_whole_with_row_column_and_reason_and_nothing_moves(
+    robot: Stack, navigate: Callable[..., Navigator]
+) -> None:
+    home_all(robot)
+    axes = robot.api.get("/api/motors").json()
+    press(robot)
+    navigator = navigate()
+    make_controller(robot)
+    for name, (message, place) in bad_arrays(axes).items():
+        answer = navigator.ask(message)
+        assert answer.code == CONFIGURATION, (name, answer.text)
+        assert answer.text.startswith(place), (name, answer.text)
+        assert robot.api.get("/api/trajectory").json()["rows"] == 0, name
+    now = robot.api.get("/api/motors").json()
+    moved = [
+        abs(after["position_counts"] - axis["position_counts"]) for after, axis in zip(now, axes, strict=True)
+    ]
+    assert max(moved) <= 1
+    assert robot.api.get("/api/proposals").json() == []
+
+
+def test_poses_become_a_trajectory_that_leads_the_treatment_point_through_them(
+    robot: Stack, navigate: Callable[..., Navigator]
+) -> None:
+    """From 2 mm before the pose that the alignment reaches to that pose."""
+    home_all(robot)
+    navigator = navigate()
+    make_controller(robot)
+    target = {"entry_point": ENTRY, "target_point": TARGET}
+    judge(robot.api.put("/api/targeting/target", json=target)).raise_for_status()
+    reached = robot.api.get("/api/targeting/alignment").json()["alignment"]
+    goal = np.array(reached["reachable"]).reshape(4, 4)
+    drawn_back = goal.copy()
+    drawn_back[:3, 3] -= 2.0 * goal[:3, 2]
+    answer = navigator.ask(Poses([("0", drawn_back), ("4.5", goal)], "TRAJECTORY"))
+    assert answer.code == OK, answer.text
+    loaded = robot.api.get("/api/trajectory").json()
+    assert (loaded["rows"], loaded["duration_s"]) == (2, 4.5)
+    for axis in loaded["axes"]:
+        there = reached["setpoints"][axis["name"]]["position"]
+        assert min(abs(axis[end] - there) for end in ("lowest", "highest")) < 0.05, axis
+    assert max(axis["highest"] - axis["lowest"] for axis in loaded["axes"] if axis["unit"] == "mm") > 1.0
+    assert navigator.ask(text("MODE", "trajectory")).code == OK
+    judge(
+        robot.api.put("/api/targeting/registration", json={"registration": REGISTRATION})
+    ).raise_for_status()
+    wait_until("it is stale", lambda: robot.api.get("/api/proposals").json()[0]["state"] == "aborted")
+    refused = navigator.ask(text("MODE", "trajectory"))
+    assert (refused.code, refused.name) == (NOT_READY, "STALE")
+
+
+def test_bad_poses_are_refused_with_row_column_and_reason(
+    robot: Stack, navigate: Callable[..., Navigator]
+) -> None:
+    home_all(robot)
+    navigator = navigate()
+    make_controller(robot)
+    target = {"entry_point": ENTRY, "target_point": TARGET}
+    judge(robot.api.put("/api/targeting/target", json=target)).raise_for_status()
+    reached = robot.api.get("/api/targeting/alignment").json()["alignment"]
+    good = np.array(reached["reachable"]).reshape(4, 4)
+    far = good.copy()
+    far[:3, 3] += 500.0 * good[:3, 2]
+    shear, not_a_number = good.copy(), good.copy()
+    shear[0, 1] += 0.1
+    not_a_number[1, 3] = np.nan
+    for second, place in (
+        (("word", good), "TRAJECTORY, row 2, name: "),
+        (("0", good), "Row 2, time [s]: "),
+        (("1", shear), "Row 2, pose: "),
+        (("1", far), "Row 2, "),
+        (("1", not_a_number), "TDATA, row 2, matrix: "),
+    ):
+        answer = navigator.ask(Poses([("0", good), second], "TRAJECTORY"))
+        assert answer.code in (CONFIGURATION, UNREACHABLE), answer.text
+        assert answer.text.startswith(place), answer.text
+    assert robot.api.get("/api/trajectory").json()["rows"] == 0
 
 
 def moving(robot: Stack, navigate: Callable[..., Navigator]) -> Navigator:

@@ -89,7 +89,21 @@ TEST(Thesis, TrajectoryHasRowsAndColumns) {
   EXPECT_EQ(rows.values.size(), 6u);
   EXPECT_THAT(wish_of("TRAJECTORY", Array{{6}, {0, 1, 2, 3, 4, 5}}).error().reason,
               HasSubstr("1 dimensions"));
-  EXPECT_THAT(wish_of("TRAJECTORY", TrackingData{}).error().reason, HasSubstr("expected NDARRAY"));
+  EXPECT_THAT(wish_of("TRAJECTORY", Transform{}).error().reason, HasSubstr("expected NDARRAY or TDATA"));
+}
+
+TEST(Thesis, TrajectoryOfPosesHasItsTimesAsNames) {
+  const TrackingData data{{{"0", 2, shifted(1, 2, 3)}, {"0.25", 2, shifted(4, 5, 6)}}};
+  const auto wish = std::get<LoadPoses>(wish_of("TRAJECTORY", data).value());
+  ASSERT_EQ(wish.poses.size(), 2u);
+  EXPECT_EQ(wish.poses[1].time_s, 0.25);
+  EXPECT_EQ(wish.poses[1].scanner_from_treatment, shifted(4, 5, 6));
+  EXPECT_TRUE(needs_control(wish));
+  for (const char* wrong : {"", "tip", "1s", "nan", "inf", "1e999"}) {
+    const auto refused = wish_of("TRAJECTORY", TrackingData{{{"0", 2, {}}, {wrong, 2, {}}}});
+    ASSERT_FALSE(refused.has_value()) << wrong;
+    EXPECT_THAT(refused.error().reason, HasSubstr("row 2, name")) << wrong;
+  }
 }
 
 TEST(Thesis, StopIsUnderstoodHoweverItIsSaid) {
