@@ -69,8 +69,8 @@ test-browser: build ## Run the tests that click through the console
 	@npm --prefix web run --silent test:browser
 
 .PHONY: fuzz
-fuzz: setup ## Throw bytes at the OpenIGTLink decoders under sanitizers: [FUZZ_SECONDS=30]
-	@tests/fuzz/run $(FUZZ_SECONDS)
+fuzz: setup ## Throw bytes at the OpenIGTLink decoders under sanitizers: [FUZZ_SECONDS=30 | FUZZ_RUNS=10000000]
+	@tests/fuzz/run $(if $(FUZZ_RUNS),runs $(FUZZ_RUNS),seconds $(FUZZ_SECONDS))
 
 .PHONY: selftest selftest-all
 selftest: setup ## Show that seeded faults turn tests and proofs red: a third, chosen by the commit
