@@ -16,7 +16,7 @@ import pytest
 from bare_kernel import DEADLINE_S
 from conftest import StackFactory
 from interface import judge
-from motion import LATERAL, act, press, set_home, unlock, wait_for_mode, wait_until
+from motion import LATERAL, act, motor, press, propose, set_home, unlock, wait_for_mode, wait_until
 from navigator import OK, Navigator, Poses, Query, Rows, text, transform
 from stack import Stack
 
@@ -290,6 +290,24 @@ def test_bad_poses_are_refused_with_row_column_and_reason(
         assert answer.code in (CONFIGURATION, UNREACHABLE), answer.text
         assert answer.text.startswith(place), answer.text
     assert robot.api.get("/api/trajectory").json()["rows"] == 0
+
+
+def test_the_controller_hears_something_every_50_ms_while_a_move_of_one_axis_is_approved(
+    robot: Stack, navigate: Callable[..., Navigator]
+) -> None:
+    home_all(robot)
+    navigator = navigate()
+    make_controller(robot)
+    axis = motor(robot, LATERAL)
+    propose(robot, (axis["min_counts"] + axis["max_counts"]) // 2)
+    begun = len(navigator.heard.all)
+
+    def times() -> list[float]:
+        heard = navigator.heard.all[begun:]
+        return [when for when, message in heard if message.device_name == "robot_status"]
+
+    wait_until("told twenty times", lambda: len(times()) >= 20)
+    assert times()[19] - times()[0] < 5.0, "at rest it would be once a second"
 
 
 def moving(robot: Stack, navigate: Callable[..., Navigator]) -> Navigator:
