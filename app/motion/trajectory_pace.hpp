@@ -17,7 +17,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "trajectory/motion_state.hpp"
+#include "robot/motion_rates.hpp"
 #include "trajectory/timed_trajectory.hpp"
 
 namespace interlock {
