@@ -72,6 +72,10 @@ test-browser: build ## Run the tests that click through the console
 fuzz: setup ## Throw bytes at the OpenIGTLink decoders under sanitizers: [FUZZ_SECONDS=30 | FUZZ_RUNS=10000000]
 	@tests/fuzz/run $(if $(FUZZ_RUNS),runs $(FUZZ_RUNS),seconds $(FUZZ_SECONDS))
 
+.PHONY: soak
+soak: build ## Let the robot move for half an hour under OpenIGTLink clients and reconnect storms: [MINUTES=30]
+	@python verification/soak/run.py --minutes $(or $(MINUTES),30)
+
 .PHONY: selftest selftest-all
 selftest: setup ## Show that seeded faults turn tests and proofs red: a third, chosen by the commit
 	@tests/failure/run.py
