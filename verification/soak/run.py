@@ -183,16 +183,22 @@ def moving_robot() -> Iterator[tuple[Stack, Mover]]:
             robot.close()
 
 
+def give_role(robot: Stack, client: Client, role: str) -> None:
+    """Once the robot lists the client."""
+    listed: dict[str, int] = {}
+    deadline = time.monotonic() + 10
+    while client.address not in listed and time.monotonic() < deadline:
+        answer = robot.api.get("/api/communications/connections").raise_for_status()
+        listed = {each["client"]: each["id"] for each in answer.json()}
+    assert client.address in listed, "a client was not admitted"
+    path = f"/api/communications/connections/{listed[client.address]}/role"
+    robot.api.put(path, json={"role": role}).raise_for_status()
+
+
 def connect(robot: Stack) -> list[Client]:
     """Four programs, of which the first is the controller."""
     clients = [Client(robot.igtl_port) for _ in range(CLIENTS)]
-    listed: dict[str, int] = {}
-    deadline = time.monotonic() + 10
-    while clients[0].address not in listed and time.monotonic() < deadline:
-        answer = robot.api.get("/api/communications/connections").raise_for_status()
-        listed = {each["client"]: each["id"] for each in answer.json()}
-    role = f"/api/communications/connections/{listed[clients[0].address]}/role"
-    robot.api.put(role, json={"role": "controller"}).raise_for_status()
+    give_role(robot, clients[0], "controller")
     for client in clients:
         client.start()
     return clients
@@ -219,6 +225,8 @@ def measure(minutes: float) -> dict:
         loaded, timing_loaded = watch.follow(loaded_windows, "under load", tell)
         memory = watch.memory_kib[first_sample:]
         storm.end()
+        # The end of the controller's connection would stop what moves.
+        give_role(robot, clients[0], "observer")
         for client in clients:
             client.end()
         after, timing_after = watch.follow(idle_windows, "nobody connected", lambda _: "")
