@@ -68,8 +68,7 @@ Recorded<RecordingFolder> RecordingFolder::open(fs::path folder, std::uint64_t k
 
 fs::path RecordingFolder::file(const ilk_run_description_t& run, ilk_recorded_why_t why,
                                std::uint32_t tick) const {
-  return folder_ / (compact_time(joined(run.begun_utc_ms)) + '-' + why_name(why) + '-' +
-                    std::to_string(tick) + finished_ending);
+  return folder_ / recording_name(run, why, tick);
 }
 
 void RecordingFolder::make_room() const {
@@ -86,6 +85,11 @@ void RecordingFolder::make_room() const {
     fs::remove(recording.file, ignored);
     bytes -= recording.bytes;
   }
+}
+
+std::string recording_name(const ilk_run_description_t& run, ilk_recorded_why_t why, std::uint32_t tick) {
+  return compact_time(joined(run.begun_utc_ms)) + '-' + why_name(why) + '-' + std::to_string(tick) +
+         finished_ending;
 }
 
 fs::path part_of(const fs::path& file) { return file.string() + part_ending; }

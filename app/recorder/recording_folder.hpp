@@ -20,8 +20,6 @@ class RecordingFolder {
    * earlier, but can be read. */
   static Recorded<RecordingFolder> open(std::filesystem::path folder, std::uint64_t keep_bytes);
 
-  /** TIME-WHY-TICK.ilkr, TIME being that at which the kernel's run began: the same event has the same name.
-   */
   [[nodiscard]] std::filesystem::path file(const ilk_run_description_t& run, ilk_recorded_why_t why,
                                            std::uint32_t tick) const;
 
@@ -37,6 +35,9 @@ class RecordingFolder {
   std::filesystem::path folder_;
   std::uint64_t keep_bytes_;
 };
+
+/** TIME-WHY-TICK.ilkr, TIME being that at which the kernel's run began: the same event has the same name. */
+std::string recording_name(const ilk_run_description_t& run, ilk_recorded_why_t why, std::uint32_t tick);
 
 /** The file while it is being written. */
 std::filesystem::path part_of(const std::filesystem::path& file);
