@@ -7,35 +7,25 @@
 #include <utility>
 #include <vector>
 
+#include "interlock/recording_file.h"
+
 namespace interlock::recorder {
 namespace {
 
-template <typename Header>
-std::uint32_t crc_before(const Header& header, std::size_t crc_offset) {
-  return ilk_recording_crc(reinterpret_cast<const std::uint32_t*>(&header),
-                           static_cast<std::uint32_t>(crc_offset / sizeof(std::uint32_t)));
-}
-
 ilk_recording_header_t header_of(const ilk_run_description_t& run, const RecordingSubject& subject) {
   ilk_recording_header_t header{};
-  header.magic = ILK_RECORDING_MAGIC;
   header.why = subject.why;
   header.tick = subject.tick;
   subject.build.copy(header.build, sizeof header.build - 1);
   header.run = run;
-  header.crc = crc_before(header, offsetof(ilk_recording_header_t, crc));
+  ilk_recording_seal_header(&header);
   return header;
 }
 
 /** Header, payload and trailer, as they stand in the file. */
 std::vector<std::uint32_t> encoded(const BlockCopy& block) {
   const auto used = static_cast<std::uint32_t>(block.payload.size());
-  ilk_block_header_t header{};
-  header.magic = ILK_BLOCK_MAGIC;
-  header.number = block.number;
-  header.used = used;
-  header.payload_crc = ilk_recording_crc(block.payload.data(), used);
-  header.header_crc = crc_before(header, offsetof(ilk_block_header_t, header_crc));
+  const ilk_block_header_t header = ilk_recording_block_header(block.number, block.payload.data(), used);
   const auto* const head = reinterpret_cast<const std::uint32_t*>(&header);
   std::vector<std::uint32_t> words(head, head + sizeof header / sizeof *head);
   words.insert(words.end(), block.payload.begin(), block.payload.end());

@@ -34,13 +34,12 @@ def reachable(known: dict[str, Fields], root: str) -> list[str]:
 
 
 def row(known: dict[str, Fields], structure: str, kind: str, name: str, array: bool) -> str:
-    element = f"(({structure} *)0)->{name}" + ("[0]" if array else "")
+    field = f"(({structure} *)0)->{name}"
+    element_bytes = f"(uint32_t)sizeof({field}[0])" if array else "0u"
     inner = f"&table_of_{kind}" if kind in known else "NULL"
     integer = "true" if kind == "int32_t" else "false"
-    return (
-        f'  {{"{name}", (uint32_t)offsetof({structure}, {name}), (uint32_t)sizeof((({structure} *)0)->{name}), '
-        f"{f'(uint32_t)sizeof({element})' if array else '0u'}, {integer}, {inner}}},"
-    )
+    place = f"(uint32_t)offsetof({structure}, {name}), (uint32_t)sizeof({field})"
+    return f'  {{"{name}", {place}, {element_bytes}, {integer}, {inner}}},'
 
 
 def table(known: dict[str, Fields], name: str) -> str:

@@ -24,6 +24,20 @@ static bool rest_is_zero(FILE *file) {
   }
 }
 
+void ilk_recording_seal_header(ilk_recording_header_t *header) {
+  header->magic = ILK_RECORDING_MAGIC;
+  header->crc = ilk_recording_crc((const uint32_t *)header, CRC_WORDS(ilk_recording_header_t, crc));
+}
+
+ilk_block_header_t ilk_recording_block_header(uint32_t number, const uint32_t *payload, uint32_t used) {
+  ilk_block_header_t header = {.magic = ILK_BLOCK_MAGIC,
+                               .number = number,
+                               .used = used,
+                               .payload_crc = ilk_recording_crc(payload, used)};
+  header.header_crc = ilk_recording_crc((const uint32_t *)&header, CRC_WORDS(ilk_block_header_t, header_crc));
+  return header;
+}
+
 ilk_header_result_t ilk_recording_begin(ilk_recording_t *recording, FILE *file) {
   ilk_recording_header_t *header = &recording->header;
   recording->file = file;

@@ -96,9 +96,8 @@ void ilk_replay_recording(ilk_recording_t *recording, ilk_replay_report_t *repor
   while (report->result == ILK_REPLAY_IDENTICAL && report->end == ILK_FILE_BLOCK) {
     report->end = ilk_recording_next(recording);
     if (report->end == ILK_FILE_BLOCK) {
-      report->result =
-          ilk_replay_block(&report->replay, recording->number, ilk_recording_payload(recording),
-                           recording->used, &report->difference, visitor, context);
+      report->result = ilk_replay_block(&report->replay, recording->number, ilk_recording_payload(recording),
+                                        recording->used, &report->difference, visitor, context);
     }
   }
 }

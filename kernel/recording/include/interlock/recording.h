@@ -95,14 +95,14 @@ typedef struct {
 } ilk_run_description_t;
 
 /**
- * Begins a ring; the blocks begin at ILK_RING_HEADER_BYTES. The kernel holds the file's lock (`flock`) for as long as
- * it lives.
+ * Begins a ring; the blocks begin at ILK_RING_HEADER_BYTES. The kernel holds the file's lock (`flock`) for as
+ * long as it lives.
  */
 typedef struct {
-  uint32_t magic;      /**< written last */
-  uint32_t blocks;     /**< block n is at place n modulo this */
-  uint32_t closed;     /**< 1: the kernel ended in order */
-  uint32_t head;       /**< number of the block that is being written, 0 before the first */
+  uint32_t magic;  /**< written last */
+  uint32_t blocks; /**< block n is at place n modulo this */
+  uint32_t closed; /**< 1: the kernel ended in order */
+  uint32_t head;   /**< number of the block that is being written, 0 before the first */
   ilk_run_description_t run;
 } ilk_ring_header_t;
 

@@ -1,6 +1,6 @@
 /**
  * @file
- * Reads a recording from a file, block by block.
+ * A recording as a file: what its writer puts around each block, and its reader, block by block.
  */
 #ifndef INTERLOCK_RECORDING_FILE_H
 #define INTERLOCK_RECORDING_FILE_H
@@ -14,6 +14,12 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/** Completes a header: magic and checksum. */
+void ilk_recording_seal_header(ilk_recording_header_t *header);
+
+/** The header of a block with this payload; in a file ILK_BLOCK_TRAILER follows the payload. */
+ilk_block_header_t ilk_recording_block_header(uint32_t number, const uint32_t *payload, uint32_t used);
 
 /** What stands where the next block should. */
 typedef enum {
