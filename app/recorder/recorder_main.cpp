@@ -51,6 +51,12 @@ bool end_is_asked(const FileHandle& signals) {
   return poll(&waiting, 1, look_interval_ms) > 0;
 }
 
+/** The ring of a kernel that lives; nothing while there is none. */
+std::optional<Ring> live_ring(const fs::path& file) {
+  Recorded<Ring> ring = Ring::open(file);
+  return ring && ring->writer_lives() ? std::optional<Ring>(std::move(*ring)) : std::nullopt;
+}
+
 /** What an earlier run left in memory, its kernel and its recorder being dead. */
 void rescue(const Options& options, const RecordingFolder& folder, const std::string& build) {
   std::error_code ignored;
@@ -69,12 +75,6 @@ void rescue(const Options& options, const RecordingFolder& folder, const std::st
     say(blocks ? "rescued " + file.string() : "cannot record: " + blocks.error());
   }
   fs::remove(options.ring, ignored);
-}
-
-/** The ring of a kernel that lives; nothing while there is none. */
-std::optional<Ring> live_ring(const fs::path& file) {
-  Recorded<Ring> ring = Ring::open(file);
-  return ring && ring->writer_lives() ? std::optional<Ring>(std::move(*ring)) : std::nullopt;
 }
 
 /** Follows one kernel; true when the recorder was asked to end before the kernel did. */
@@ -107,6 +107,8 @@ int record(const Options& options) {
   terms.continuous = options.continuous;
   terms.build = std::string(version()) + ' ' + std::string(commit());
   rescue(options, *folder, terms.build);
+  const std::optional<Ring> going_on = live_ring(options.ring);
+  folder->finish_parts(going_on ? &going_on->run() : nullptr);
   say("ready recordings=" + folder->path().string());
   while (!end_is_asked(signals)) {
     const std::optional<Ring> ring = live_ring(options.ring);

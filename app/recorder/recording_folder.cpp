@@ -42,18 +42,6 @@ std::vector<Kept> finished_in(const fs::path& folder) {
   return found;
 }
 
-void finish_cut_off(const fs::path& folder) {
-  std::error_code ignored;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
-    fs::path finished = entry.path();
-    finished.replace_extension();
-    if (entry.path().extension() == part_ending && finished.extension() == finished_ending &&
-        !fs::exists(finished, ignored)) {
-      fs::rename(entry.path(), finished, ignored);
-    }
-  }
-}
-
 }  // namespace
 
 Recorded<RecordingFolder> RecordingFolder::open(fs::path folder, std::uint64_t keep_bytes) {
@@ -62,13 +50,26 @@ Recorded<RecordingFolder> RecordingFolder::open(fs::path folder, std::uint64_t k
   if (error) {
     return tl::unexpected(folder.string() + ": " + error.message());
   }
-  finish_cut_off(folder);
   return RecordingFolder(std::move(folder), keep_bytes);
 }
 
 fs::path RecordingFolder::file(const ilk_run_description_t& run, ilk_recorded_why_t why,
                                std::uint32_t tick) const {
   return folder_ / recording_name(run, why, tick);
+}
+
+void RecordingFolder::finish_parts(const ilk_run_description_t* going_on) const {
+  const std::string kept = going_on == nullptr ? "" : compact_time(joined(going_on->begun_utc_ms)) + '-';
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_, ignored)) {
+    fs::path finished = entry.path();
+    finished.replace_extension();
+    const bool is_kept = going_on != nullptr && entry.path().filename().string().starts_with(kept);
+    if (entry.path().extension() == part_ending && finished.extension() == finished_ending && !is_kept &&
+        !fs::exists(finished, ignored)) {
+      fs::rename(entry.path(), finished, ignored);
+    }
+  }
 }
 
 void RecordingFolder::make_room() const {

@@ -16,12 +16,15 @@ namespace interlock::recorder {
 /** A finished recording ends with `.ilkr`; one that is being written, or was cut off, with `.ilkr.part`. */
 class RecordingFolder {
  public:
-  /** The folder is made if missing. Recordings of other runs that were cut off become finished ones: they end
-   * earlier, but can be read. */
+  /** The folder is made if missing. */
   static Recorded<RecordingFolder> open(std::filesystem::path folder, std::uint64_t keep_bytes);
 
   [[nodiscard]] std::filesystem::path file(const ilk_run_description_t& run, ilk_recorded_why_t why,
                                            std::uint32_t tick) const;
+
+  /** Recordings that were cut off become finished ones, which end earlier but can be read: all but those of
+   * the run that is still going on, if one is. */
+  void finish_parts(const ilk_run_description_t* going_on) const;
 
   /** Removes the oldest finished recordings until those left are within the limit. */
   void make_room() const;

@@ -206,8 +206,14 @@ TEST_F(RecorderTest, OldestRecordingsMakeRoomForNewOnes) {
 
 TEST_F(RecorderTest, CutOffRecordingOfAnEarlierRunIsKept) {
   std::ofstream(folder_->path() / "x-lock-7.ilkr.part") << "cut off";
-  ASSERT_TRUE(RecordingFolder::open(folder_->path(), 1'000'000));
-  EXPECT_THAT(files(), ElementsAre("lock-7.ilkr"));
+  run_.press_estop();
+  const std::uint32_t locked = run_.state().tick;
+  calm(100);
+  folder_->finish_parts(&ring_->run());
+  const std::string going_on = "lock-" + std::to_string(locked) + ".ilkr";
+  EXPECT_THAT(files(), UnorderedElementsAre("lock-7.ilkr", going_on + ".part"));
+  folder_->finish_parts(nullptr);
+  EXPECT_THAT(files(), UnorderedElementsAre("lock-7.ilkr", going_on));
 }
 
 TEST_F(RecorderTest, FullDiskIsToldAndTheKernelIsNotAsked) {
