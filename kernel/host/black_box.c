@@ -12,10 +12,14 @@
 
 #define US_PER_S 1000000u
 #define SPARE_BLOCKS 2u
+#define WORDS_A_PAIR (sizeof(uint64_t) / sizeof(uint32_t))
+#define HEAD_PAIRS (sizeof(ilk_tick_record_t) / sizeof(uint64_t))
 
 uint32_t ilk_black_box_blocks(uint32_t period_us, uint32_t seconds) {
-  const uint64_t ticks = (((uint64_t)seconds * US_PER_S) + period_us - 1u) / period_us;
-  return (uint32_t)((ticks + ILK_BLOCK_TICKS_MIN - 1u) / ILK_BLOCK_TICKS_MIN) + SPARE_BLOCKS;
+  const uint64_t period = period_us;
+  const uint64_t ticks = (((uint64_t)seconds * US_PER_S) + period - 1u) / period;
+  const uint64_t ticks_a_block = (uint64_t)ILK_BLOCK_TICKS_MIN;
+  return (uint32_t)((ticks + ticks_a_block - 1u) / ticks_a_block) + SPARE_BLOCKS;
 }
 
 static void split(uint32_t words[2], uint64_t value) {
@@ -41,6 +45,10 @@ static void describe(ilk_ring_header_t *ring, const ilk_black_box_terms_t *terms
   split(ring->run.begun_monotonic_ns, ilk_now_ns());
 }
 
+static void *map_part(int descriptor, size_t offset, size_t bytes) {
+  return mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, descriptor, (off_t)offset);
+}
+
 /** Takes all memory now, so that no tick waits for any; 0 or the reason. */
 static int map_ring(ilk_black_box_t *box) {
   const int taken = posix_fallocate(box->descriptor, 0, (off_t)box->bytes);
@@ -50,12 +58,13 @@ static int map_ring(ilk_black_box_t *box) {
   if (flock(box->descriptor, LOCK_EX | LOCK_NB) != 0) {
     return errno;
   }
-  void *address =
-      mmap(NULL, box->bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, box->descriptor, 0);
-  if (address == MAP_FAILED) {
+  void *header = map_part(box->descriptor, 0u, ILK_RING_HEADER_BYTES);
+  void *blocks = map_part(box->descriptor, ILK_RING_HEADER_BYTES, box->bytes - ILK_RING_HEADER_BYTES);
+  if (header == MAP_FAILED || blocks == MAP_FAILED) {
     return errno;
   }
-  box->ring = address;
+  box->ring = header;
+  box->blocks = blocks;
   return 0;
 }
 
@@ -82,21 +91,21 @@ bool ilk_black_box_create(ilk_black_box_t *box, const char *path, const ilk_blac
   return true;
 }
 
-static uint32_t *payload_of(ilk_block_header_t *block) { return (uint32_t *)(void *)(block + 1); }
+static uint32_t words_of(size_t pairs) { return (uint32_t)(pairs * WORDS_A_PAIR); }
 
 /** A reader that copies the old block at this place sees its number gone before any word of it changes. */
 static void open_block(ilk_black_box_t *box) {
   ilk_ring_header_t *ring = box->ring;
   const uint32_t number = ring->head + 1u;
-  unsigned char *blocks = (unsigned char *)ring + ILK_RING_HEADER_BYTES;
-  box->block = (ilk_block_header_t *)(void *)&blocks[(size_t)(number % ring->blocks) * ILK_BLOCK_BYTES];
-  __atomic_store_n(&box->block->number, 0u, __ATOMIC_RELAXED);
+  box->block = &box->blocks[number % ring->blocks];
+  ilk_block_header_t *header = &box->block->header;
+  __atomic_store_n(&header->number, 0u, __ATOMIC_RELAXED);
   __atomic_thread_fence(__ATOMIC_RELEASE);
-  (void)memcpy(payload_of(box->block), &box->tick[box->newest], ILK_OPENING_WORDS * sizeof(uint32_t));
-  box->used = (uint32_t)ILK_OPENING_WORDS;
-  box->block->magic = ILK_BLOCK_MAGIC;
-  box->block->used = box->used;
-  __atomic_store_n(&box->block->number, number, __ATOMIC_RELEASE);
+  (void)memcpy(box->block->payload, box->tick[box->newest].pair, sizeof box->tick[0].pair);
+  box->used = ILK_PAIRS;
+  header->magic = ILK_BLOCK_MAGIC;
+  header->used = words_of(box->used);
+  __atomic_store_n(&header->number, number, __ATOMIC_RELEASE);
   __atomic_store_n(&ring->head, number, __ATOMIC_RELEASE);
 }
 
@@ -113,14 +122,14 @@ static bool group_changed(const uint64_t now[GROUP], const uint64_t before[GROUP
 
 /** Copies the pairs that changed, and marks them; returns how many. Most groups did not change at all. */
 static size_t put_changes(ilk_tick_record_t *head, const uint64_t now[ILK_PAIRS],
-                          const uint64_t before[ILK_PAIRS], uint64_t *to) {
+                          const uint64_t before[ILK_PAIRS], uint64_t to[]) {
   size_t count = 0u;
   for (size_t word = 0u; word < ILK_CHANGED_WORDS; ++word) {
     uint32_t bits = 0u;
-    for (size_t group = 0u; group < 32u; group += GROUP) {
+    for (uint32_t group = 0u; group < 32u; group += GROUP) {
       const size_t first = (word * 32u) + group;
       if (group_changed(&now[first], &before[first])) {
-        for (size_t i = 0u; i < GROUP; ++i) {
+        for (uint32_t i = 0u; i < GROUP; ++i) {
           const uint32_t changed = (now[first + i] != before[first + i]) ? 1u : 0u;
           to[count] = now[first + i];
           count += changed;
@@ -133,40 +142,41 @@ static size_t put_changes(ilk_tick_record_t *head, const uint64_t now[ILK_PAIRS]
   return count;
 }
 
-/** Appends the requests to a record of so many words; returns its words then, made even. */
-static uint32_t put_requests(uint32_t *record, uint32_t words, const ilk_request_t requests[],
-                             uint32_t count) {
-  (void)memcpy(&record[words], requests, count * sizeof(ilk_request_t));
-  words += count * (uint32_t)(sizeof(ilk_request_t) / sizeof(uint32_t));
-  if ((words & 1u) != 0u) {
-    record[words] = 0u;
-    words += 1u;
+/** Copies the requests, the last pair filled up with zero; returns how many pairs they take. */
+static size_t put_requests(uint64_t to[], const ilk_request_t requests[], uint32_t count) {
+  const size_t bytes = count * sizeof(ilk_request_t);
+  const size_t pairs = (bytes + sizeof(uint64_t) - 1u) / sizeof(uint64_t);
+  if (pairs > 0u) {
+    to[pairs - 1u] = 0u;
   }
-  return words;
+  (void)memcpy(to, requests, bytes);
+  return pairs;
 }
 
 static void put_record(ilk_black_box_t *box, uint64_t begun_ns, const ilk_request_t requests[],
                        uint32_t count) {
   const ilk_picture_pairs_t *now = &box->tick[box->newest];
   const ilk_state_t *state = &now->picture.state;
-  uint32_t *record = payload_of(box->block) + box->used;
-  ilk_tick_record_t *head = (ilk_tick_record_t *)(void *)record;
-  uint64_t *pairs = (uint64_t *)(void *)(head + 1);
-  const size_t changed = put_changes(head, now->pair, box->tick[box->newest ^ 1u].pair, pairs);
-  head->words = put_requests(record, (uint32_t)((sizeof *head + (changed * sizeof *pairs)) / sizeof *record),
-                             requests, count);
-  head->tick = state->tick;
-  head->alarm = ilk_alarm_of(state);
-  head->request_count = count;
-  split(head->state_hash, ilk_state_hash(state));
-  split(head->begun_ns, begun_ns);
-  box->used += head->words;
-  __atomic_store_n(&box->block->used, box->used, __ATOMIC_RELEASE);
+  uint64_t *record = &box->block->payload[box->used];
+  ilk_tick_record_t head;
+  size_t pairs = HEAD_PAIRS;
+  pairs += put_changes(&head, now->pair, box->tick[box->newest ^ 1u].pair, &record[pairs]);
+  pairs += put_requests(&record[pairs], requests, count);
+  head.words = words_of(pairs);
+  head.tick = state->tick;
+  head.alarm = ilk_alarm_of(state);
+  head.request_count = count;
+  split(head.state_hash, ilk_state_hash(state));
+  split(head.begun_ns, begun_ns);
+  (void)memcpy(record, &head, sizeof head);
+  box->used += pairs;
+  __atomic_store_n(&box->block->header.used, words_of(box->used), __ATOMIC_RELEASE);
 }
 
 /** The store behind the last changed pair is a pair beyond the longest record. */
 static bool is_full(const ilk_black_box_t *box) {
-  return box->used + ILK_RECORD_WORDS_MAX + 2u > ILK_PAYLOAD_WORDS_MAX;
+  const size_t longest = (ILK_RECORD_WORDS_MAX / WORDS_A_PAIR) + 1u;
+  return (box->used + longest) > (ILK_PAYLOAD_WORDS_MAX / WORDS_A_PAIR);
 }
 
 void ilk_black_box_note(ilk_black_box_t *box, uint64_t begun_ns, const ilk_state_t *state,
@@ -185,6 +195,7 @@ void ilk_black_box_note(ilk_black_box_t *box, uint64_t begun_ns, const ilk_state
 
 void ilk_black_box_close(ilk_black_box_t *box) {
   __atomic_store_n(&box->ring->closed, 1u, __ATOMIC_RELEASE);
-  (void)munmap(box->ring, box->bytes);
+  (void)munmap(box->blocks, box->bytes - ILK_RING_HEADER_BYTES);
+  (void)munmap(box->ring, ILK_RING_HEADER_BYTES);
   (void)close(box->descriptor);
 }

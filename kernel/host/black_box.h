@@ -22,10 +22,11 @@ extern "C" {
 
 typedef struct {
   ilk_ring_header_t *ring;
-  size_t bytes;                /**< of the whole mapping */
+  ilk_block_t *blocks;         /**< of the ring */
+  size_t bytes;                /**< of the whole file */
   int descriptor;              /**< whose lock says that the kernel lives */
-  ilk_block_header_t *block;   /**< that is being written */
-  uint32_t used;               /**< words of its payload */
+  ilk_block_t *block;          /**< that is being written */
+  size_t used;                 /**< pairs of its payload */
   uint32_t newest;             /**< which of the pictures is the newest */
   ilk_picture_pairs_t tick[2]; /**< the newest picture, and the one before */
 } ilk_black_box_t;

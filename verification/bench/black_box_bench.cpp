@@ -49,7 +49,7 @@ std::uint64_t timed_tick(Run& run) {
 
 /// Bytes that the ring took for the ticks, the openings of its blocks included.
 double bytes_of(const ilk_black_box_t& box) {
-  return (box.ring->head - 1.0) * ILK_BLOCK_BYTES + box.used * double{sizeof(std::uint32_t)};
+  return (box.ring->head - 1.0) * ILK_BLOCK_BYTES + static_cast<double>(box.used) * sizeof(std::uint64_t);
 }
 
 }  // namespace

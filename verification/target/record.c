@@ -32,12 +32,13 @@ static void write_header(FILE *file) {
   (void)fwrite(&header, sizeof header, 1u, file);
 }
 
-static void write_block(FILE *file, const ilk_block_header_t *block, uint32_t number) {
-  const uint32_t *payload = (const uint32_t *)(const void *)(block + 1);
-  const ilk_block_header_t header = ilk_recording_block_header(number, payload, block->used);
+static void write_block(FILE *file, const ilk_block_t *block, uint32_t number) {
+  const uint32_t used = block->header.used;
+  const uint32_t *payload = (const uint32_t *)block->payload;
+  const ilk_block_header_t header = ilk_recording_block_header(number, payload, used);
   const uint32_t trailer = ILK_BLOCK_TRAILER(number);
   (void)fwrite(&header, sizeof header, 1u, file);
-  (void)fwrite(payload, sizeof *payload, block->used, file);
+  (void)fwrite(payload, sizeof *payload, used, file);
   (void)fwrite(&trailer, sizeof trailer, 1u, file);
 }
 
@@ -63,7 +64,7 @@ uint32_t run_image(void) {
   ilk_black_box_begin(&box, &state);
   write_header(file);
   for (uint32_t tick = 0u; tick < (uint32_t)RECORDED_TICKS; tick++) {
-    const ilk_block_header_t *block = box.block;
+    const ilk_block_t *block = box.block;
     const uint32_t number = box.ring->head;
     run_tick();
     if (box.ring->head != number) {

@@ -91,8 +91,8 @@ TEST_F(Loop, BlackBoxGetsEachTickWithItsRequests) {
   attachment.regions.app = app;
   ilk_block_cursor_t cursor{};
   auto tick = std::make_unique<ilk_recorded_tick_t>();
-  ASSERT_TRUE(
-      ilk_block_begin(&cursor, reinterpret_cast<const uint32_t*>(box->block + 1), box->used, tick.get()));
+  ASSERT_TRUE(ilk_block_begin(&cursor, reinterpret_cast<const uint32_t*>(box->block->payload),
+                              box->block->header.used, tick.get()));
   ASSERT_EQ(ilk_block_next(&cursor, tick.get()), ILK_TICK_READ);
   EXPECT_EQ(tick->request_count, 0u);
   ASSERT_EQ(ilk_block_next(&cursor, tick.get()), ILK_TICK_READ);

@@ -48,7 +48,8 @@ void RecordedRun::close() {
 }
 
 void RecordedRun::die() {
-  munmap(box_.ring, box_.bytes);
+  munmap(box_.blocks, box_.bytes - ILK_RING_HEADER_BYTES);
+  munmap(box_.ring, ILK_RING_HEADER_BYTES);
   ::close(box_.descriptor);
   open_ = false;
 }

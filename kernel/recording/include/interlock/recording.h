@@ -72,6 +72,12 @@ typedef struct {
   uint32_t header_crc;  /**< CRC-32 of the words above */
 } ilk_block_header_t;
 
+/** A block of the ring. */
+typedef struct {
+  ilk_block_header_t header;
+  uint64_t payload[(ILK_BLOCK_BYTES - sizeof(ilk_block_header_t)) / sizeof(uint64_t)];
+} ilk_block_t;
+
 /** Ends a block in a file: what was never written is zero, and no number makes this word zero. */
 #define ILK_BLOCK_TRAILER(number) (ILK_BLOCK_MAGIC ^ (number))
 
@@ -135,6 +141,7 @@ typedef struct {
 _Static_assert(sizeof(ilk_picture_pairs_t) == ILK_PAIRS * sizeof(uint64_t), "pairs cover the picture");
 _Static_assert(sizeof(ilk_tick_record_t) % sizeof(uint64_t) == 0u, "changed pairs are aligned");
 _Static_assert(sizeof(ilk_block_header_t) % sizeof(uint64_t) == 0u, "a block's payload is aligned");
+_Static_assert(sizeof(ilk_block_t) == ILK_BLOCK_BYTES, "blocks leave no gap");
 _Static_assert(sizeof(ilk_ring_header_t) <= ILK_RING_HEADER_BYTES, "the ring's header fits");
 #endif
 
