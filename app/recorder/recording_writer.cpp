@@ -7,8 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "interlock/recording_file.h"
-
 namespace interlock::recorder {
 namespace {
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <string>
 
-#include "interlock/recording.h"
+#include "interlock/recording_file.h"
 #include "recorder/file_handle.hpp"
 #include "recorder/recorder_error.hpp"
 #include "recorder/ring.hpp"

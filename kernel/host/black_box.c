@@ -5,7 +5,6 @@
 #include <string.h>
 #include <sys/file.h>
 #include <sys/mman.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "clock.h"
@@ -15,7 +14,9 @@
 #define WORDS_A_PAIR (sizeof(uint64_t) / sizeof(uint32_t))
 #define HEAD_PAIRS (sizeof(ilk_tick_record_t) / sizeof(uint64_t))
 
-uint32_t ilk_black_box_blocks(uint32_t period_us, uint32_t seconds) {
+/** Blocks that hold so many seconds whatever changes: whole ones, the one being written, the one being
+ * reused. */
+static uint32_t blocks_for(uint32_t period_us, uint32_t seconds) {
   const uint64_t period = period_us;
   const uint64_t ticks = (((uint64_t)seconds * US_PER_S) + period - 1u) / period;
   const uint64_t ticks_a_block = (uint64_t)ILK_BLOCK_TICKS_MIN;
@@ -27,12 +28,6 @@ static void split(uint32_t words[2], uint64_t value) {
   words[1] = (uint32_t)(value >> 32);
 }
 
-static uint64_t utc_ms(void) {
-  struct timespec now;
-  (void)clock_gettime(CLOCK_REALTIME, &now);
-  return ((uint64_t)now.tv_sec * 1000u) + ((uint64_t)now.tv_nsec / 1000000u);
-}
-
 static void describe(ilk_ring_header_t *ring, const ilk_black_box_terms_t *terms, uint32_t blocks) {
   ring->blocks = blocks;
   ring->run = (ilk_run_description_t){.version = ILK_RECORDING_VERSION,
@@ -41,7 +36,7 @@ static void describe(ilk_ring_header_t *ring, const ilk_black_box_terms_t *terms
                                       .clock = (uint32_t)terms->clock,
                                       .simulated = terms->simulated ? 1u : 0u,
                                       .config = *terms->config};
-  split(ring->run.begun_utc_ms, utc_ms());
+  split(ring->run.begun_utc_ms, ilk_utc_ms());
   split(ring->run.begun_monotonic_ns, ilk_now_ns());
 }
 
@@ -70,7 +65,7 @@ static int map_ring(ilk_black_box_t *box) {
 
 bool ilk_black_box_create(ilk_black_box_t *box, const char *path, const ilk_black_box_terms_t *terms,
                           ilk_error_t *error) {
-  const uint32_t blocks = ilk_black_box_blocks(terms->config->period_us, terms->seconds);
+  const uint32_t blocks = blocks_for(terms->config->period_us, terms->seconds);
   *box = (ilk_black_box_t){.bytes = ILK_RING_HEADER_BYTES + ((size_t)blocks * ILK_BLOCK_BYTES)};
   (void)unlink(path);
   box->descriptor = open(path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, S_IRUSR | S_IWUSR);
@@ -130,10 +125,12 @@ static size_t put_changes(ilk_tick_record_t *head, const uint64_t now[ILK_PAIRS]
       const size_t first = (word * 32u) + group;
       if (group_changed(&now[first], &before[first])) {
         for (uint32_t i = 0u; i < GROUP; ++i) {
-          const uint32_t changed = (now[first + i] != before[first + i]) ? 1u : 0u;
-          to[count] = now[first + i];
+          const uint64_t pair = now[first + i];
+          const uint32_t changed = (pair != before[first + i]) ? 1u : 0u;
+          const uint32_t place = group + i;
+          to[count] = pair;
           count += changed;
-          bits |= changed << (group + i);
+          bits |= changed << place;
         }
       }
     }

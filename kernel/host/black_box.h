@@ -39,9 +39,6 @@ typedef struct {
   uint32_t seconds; /**< that it holds at least, however much changes in each tick */
 } ilk_black_box_terms_t;
 
-/** Blocks of a ring that holds so many seconds: whole ones, the one being written, the one being reused. */
-uint32_t ilk_black_box_blocks(uint32_t period_us, uint32_t seconds);
-
 /**
  * Makes the ring in a new file, which takes the place of an old one, with all its memory.
  *

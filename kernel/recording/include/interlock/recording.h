@@ -15,14 +15,14 @@
 #ifndef INTERLOCK_RECORDING_H
 #define INTERLOCK_RECORDING_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 #include "interlock/types.h"
 
 #define ILK_RECORDING_VERSION 1u
-#define ILK_RING_MAGIC 0x474e4952u      /* "RING" */
-#define ILK_RECORDING_MAGIC 0x524b4c49u /* "ILKR" */
-#define ILK_BLOCK_MAGIC 0x4b434c42u     /* "BLCK" */
+#define ILK_RING_MAGIC 0x474e4952u  /* "RING" */
+#define ILK_BLOCK_MAGIC 0x4b434c42u /* "BLCK" */
 
 /** A block of the ring, its header included. */
 #define ILK_BLOCK_BYTES (256u * 1024u)
@@ -57,9 +57,9 @@ typedef struct {
 } ilk_tick_record_t;
 
 /** Longest record of a tick, in words. */
-#define ILK_RECORD_WORDS_MAX                                  \
-  ((sizeof(ilk_tick_record_t) + sizeof(ilk_picture_pairs_t) + \
-    (ILK_REQUESTS_PER_TICK * sizeof(ilk_request_t))) /        \
+#define ILK_RECORD_WORDS_MAX                                   \
+  ((sizeof(ilk_tick_record_t) + sizeof(ilk_picture_pairs_t) +  \
+    ((size_t)ILK_REQUESTS_PER_TICK * sizeof(ilk_request_t))) / \
    sizeof(uint32_t))
 
 /** Heads a block. In the ring the checksums are zero. */
@@ -77,9 +77,6 @@ typedef struct {
   ilk_block_header_t header;
   uint64_t payload[(ILK_BLOCK_BYTES - sizeof(ilk_block_header_t)) / sizeof(uint64_t)];
 } ilk_block_t;
-
-/** Ends a block in a file: what was never written is zero, and no number makes this word zero. */
-#define ILK_BLOCK_TRAILER(number) (ILK_BLOCK_MAGIC ^ (number))
 
 /** Words of the longest payload, and of the shortest. */
 #define ILK_PAYLOAD_WORDS_MAX ((ILK_BLOCK_BYTES - sizeof(ilk_block_header_t)) / sizeof(uint32_t))
@@ -113,29 +110,6 @@ typedef struct {
 } ilk_ring_header_t;
 
 #define ILK_RING_HEADER_BYTES 4096u
-
-/** Why a recording was begun. */
-typedef enum {
-  ILK_RECORDED_CONTINUOUSLY = 0,
-  ILK_RECORDED_ON_LOCK = 1,  /**< the kernel locked */
-  ILK_RECORDED_ON_FAULT = 2, /**< an axis faulted */
-  ILK_RECORDED_ON_DEMAND = 3,
-  ILK_RECORDED_ON_END = 4,   /**< the kernel ended out of order */
-  ILK_RECORDED_ON_RESCUE = 5 /**< found in memory by the next start */
-} ilk_recorded_why_t;
-
-#define ILK_RECORDED_WHYS 6u
-#define ILK_BUILD_TEXT_BYTES 64u
-
-/** Begins a recording. */
-typedef struct {
-  uint32_t magic;
-  uint32_t why;                     /**< ilk_recorded_why_t */
-  uint32_t tick;                    /**< of the event, or the newest one when the recording began */
-  char build[ILK_BUILD_TEXT_BYTES]; /**< version and commit of the program that wrote it, zeros behind */
-  ilk_run_description_t run;
-  uint32_t crc; /**< CRC-32 of the words above */
-} ilk_recording_header_t;
 
 #ifndef __cplusplus
 _Static_assert(sizeof(ilk_picture_pairs_t) == ILK_PAIRS * sizeof(uint64_t), "pairs cover the picture");

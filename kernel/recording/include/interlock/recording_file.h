@@ -11,6 +11,34 @@
 
 #include "interlock/recording.h"
 
+#define ILK_RECORDING_MAGIC 0x524b4c49u /* "ILKR" */
+
+/** Ends a block in a file: what was never written is zero, and no number makes this word zero. */
+#define ILK_BLOCK_TRAILER(number) (ILK_BLOCK_MAGIC ^ (number))
+
+/** Why a recording was begun. */
+typedef enum {
+  ILK_RECORDED_CONTINUOUSLY = 0,
+  ILK_RECORDED_ON_LOCK = 1,  /**< the kernel locked */
+  ILK_RECORDED_ON_FAULT = 2, /**< an axis faulted */
+  ILK_RECORDED_ON_DEMAND = 3,
+  ILK_RECORDED_ON_END = 4,   /**< the kernel ended out of order */
+  ILK_RECORDED_ON_RESCUE = 5 /**< found in memory by the next start */
+} ilk_recorded_why_t;
+
+#define ILK_RECORDED_WHYS 6u
+#define ILK_BUILD_TEXT_BYTES 64u
+
+/** Begins a recording. */
+typedef struct {
+  uint32_t magic;
+  uint32_t why;                     /**< ilk_recorded_why_t */
+  uint32_t tick;                    /**< of the event, or the newest one when the recording began */
+  char build[ILK_BUILD_TEXT_BYTES]; /**< version and commit of the program that wrote it, zeros behind */
+  ilk_run_description_t run;
+  uint32_t crc; /**< CRC-32 of the words above */
+} ilk_recording_header_t;
+
 #ifdef __cplusplus
 extern "C" {
 #endif
