@@ -126,7 +126,10 @@ static size_t put_changes(ilk_tick_record_t *head, const uint64_t now[ILK_PAIRS]
       if (group_changed(&now[first], &before[first])) {
         for (uint32_t i = 0u; i < GROUP; ++i) {
           const uint64_t pair = now[first + i];
-          const uint32_t changed = (pair != before[first + i]) ? 1u : 0u;
+          uint32_t changed = 0u;
+          if (pair != before[first + i]) {
+            changed = 1u;
+          }
           const uint32_t place = group + i;
           to[count] = pair;
           count += changed;
