@@ -16,6 +16,8 @@
 #include "cli/installation.hpp"
 #include "cli/kinematics_command.hpp"
 #include "cli/model_commands.hpp"
+#include "cli/record_command.hpp"
+#include "cli/replay_command.hpp"
 #include "cli/run_command.hpp"
 #include "cli/status_command.hpp"
 #include "cli/store_command_line.hpp"
@@ -28,7 +30,7 @@ namespace {
 
 constexpr const char* footer =
     "Exit codes: 0 done; 1 refused: robot file, input line, trajectory, broken audit, rule of the store, "
-    "message;\n"
+    "message,\nrecording that differs or is damaged;\n"
     "2 command line not understood; 3 something stands in the way (busy port, second instance, missing "
     "file);\n"
     "4 kernel or simulator ended; 5 the app kept ending; 6 no answer.";
@@ -55,6 +57,8 @@ struct CommandLine {
   bool version = false;
   std::string version_robot;
   RunOptions run;
+  RecordOptions record;
+  ReplayOptions replay;
   StatusOptions status;
   KinematicsOptions kinematics;
   TrajectoryOptions trajectory;
@@ -96,6 +100,32 @@ void add_run(CLI::App& cli, RunOptions& options) {
   command->add_option("--plant", options.plant, "Parameters of the simulated hardware")
       ->check(CLI::ExistingFile);
   command->add_option("--web", options.web, "Directory of the built console")->check(CLI::ExistingDirectory);
+  command->add_flag("--record", options.record,
+                    "Record all of the run; without it, the minute around each lock and fault is");
+  command
+      ->add_option("--black-box-seconds", options.black_box_s,
+                   "Time that the black box in memory holds at least; default 60")
+      ->check(CLI::Range(1, 3600));
+}
+
+void add_record(CLI::App& cli, RecordOptions& options) {
+  CLI::App* const command =
+      cli.add_subcommand("record", "Write out what the black box of a running or killed kernel holds");
+  command->add_option("--robot", options.place.robot, "Name of a robot, or its file")->capture_default_str();
+  command->add_option("--state", options.place.state,
+                      "State directory; default $XDG_STATE_HOME/interlock/ROBOT");
+  command->add_option("--seconds", options.seconds, "Time that is wanted of it")
+      ->check(CLI::Range(1, 3600))
+      ->capture_default_str();
+  command->add_option("-o,--output", options.file, "File to make; default: among the robot's recordings");
+}
+
+void add_replay(CLI::App& cli, ReplayOptions& options) {
+  CLI::App* const command = cli.add_subcommand(
+      "replay", "Run the kernel core again on a recording: identical, or the first bit that differs");
+  command->add_option("FILE", options.file, "Recording")->required();
+  command->add_option("--csv", options.csv, "File for a table, a row a tick");
+  command->add_option("--plot", options.plot, "File for a plot of positions, drives and mode, as SVG");
 }
 
 void add_status(CLI::App& cli, StatusOptions& options) {
@@ -221,6 +251,12 @@ Result<void> execute(const CLI::App& cli, const CommandLine& line) {
   if (cli.got_subcommand("status")) {
     return show_status(line.status, std::cout);
   }
+  if (cli.got_subcommand("record")) {
+    return record(line.record, Installation::current(), std::cout);
+  }
+  if (cli.got_subcommand("replay")) {
+    return replay(line.replay, std::cout);
+  }
   if (line.store.chosen()) {
     return line.store.execute(Installation::current(), std::cout);
   }
@@ -262,6 +298,8 @@ int main(int argc, char** argv) {
   cli.require_subcommand(0, 1);
   add_run(cli, line.run);
   add_status(cli, line.status);
+  add_record(cli, line.record);
+  add_replay(cli, line.replay);
   add_kinematics(cli, line.kinematics);
   add_trajectory(cli, line.trajectory);
   add_tune(cli, line.tune);

@@ -6,10 +6,12 @@
 #include <sys/socket.h>
 
 #include <cerrno>
+#include <chrono>
 #include <system_error>
 #include <utility>
 #include <vector>
 
+#include "cli/black_box_place.hpp"
 #include "cli/instance_lock.hpp"
 #include "cli/model_commands.hpp"
 #include "cli/runtime_directory.hpp"
@@ -58,6 +60,9 @@ Result<void> check_core(const RunOptions& options) {
                     std::to_string(CPU_COUNT(&cores)) + "; choose another core, or leave --core out");
 }
 
+/** For the recorder to write out a minute on a slow disk. */
+constexpr std::chrono::seconds longest_recording_end{30};
+
 /** Where one run keeps its things. */
 struct Places {
   fs::path robot_file;
@@ -81,11 +86,27 @@ Program simulator(const RunOptions& options, const Places& places, const Runtime
   return program;
 }
 
-Program kernel(const RunOptions& options, const RuntimeDirectory& directory) {
+Program recorder(const RunOptions& options, const Places& places) {
+  Program program{"recorder",
+                  "interlock-recorder",
+                  {"--black-box", black_box_file(places.state), "--folder", recordings_folder(places.state)}};
+  if (options.record) {
+    program.arguments.emplace_back("--continuous");
+  }
+  program.kept_off_core = options.core;
+  return program;
+}
+
+Program kernel(const RunOptions& options, const Places& places, const RuntimeDirectory& directory) {
   Program program{"kernel",
                   "interlock-kernel",
                   {"--config", directory.config(), "--bus", "sim:" + directory.bus().string(), "--link",
-                   directory.link(), "--clock", options.clock == ClockChoice::real ? "real" : "sim"}};
+                   directory.link(), "--clock", options.clock == ClockChoice::real ? "real" : "sim",
+                   "--black-box", black_box_file(places.state)}};
+  if (options.black_box_s) {
+    program.arguments.insert(program.arguments.end(),
+                             {"--black-box-seconds", std::to_string(*options.black_box_s)});
+  }
   if (options.speed) {
     program.arguments.insert(program.arguments.end(), {"--speed", std::to_string(*options.speed)});
   }
@@ -116,8 +137,10 @@ Program app(const RunOptions& options, const Places& places, const RuntimeDirect
 
 Result<std::vector<Supervised>> programs_of(const RunOptions& options, const Installation& installation,
                                             const Places& places, const RuntimeDirectory& directory) {
+  // The recorder before the kernel: it rescues what an earlier run left, and is stopped after the last tick.
   std::vector<Supervised> programs{{simulator(options, places, directory), false},
-                                   {kernel(options, directory), false},
+                                   {recorder(options, places), true, longest_recording_end},
+                                   {kernel(options, places, directory), false},
                                    {app(options, places, directory), true}};
   for (Supervised& supervised : programs) {
     Result<fs::path> file = installation.program(supervised.program.file);

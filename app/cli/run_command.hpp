@@ -31,6 +31,8 @@ struct RunOptions {
   std::filesystem::path sockets;     /**< empty: a private directory */
   std::filesystem::path plant;       /**< empty: models/plant/ROBOT.toml */
   std::filesystem::path web;         /**< empty: the console of the installation or the source tree */
+  bool record = false;               /**< all of the run, not only the time around events */
+  std::optional<std::uint32_t> black_box_s; /**< that the black box holds at least; default 60 */
 };
 
 /**

@@ -54,9 +54,13 @@ void StoreCommandLine::describe_store(CLI::App& cli) {
 }
 
 void StoreCommandLine::describe_audit(CLI::App& cli) {
-  CLI::App* const audit = cli.add_subcommand("audit", "Verify or list the audit");
+  CLI::App* const audit = cli.add_subcommand("audit", "Verify, list, export or retire the audit");
   audit->require_subcommand(1);
-  add(audit, "verify", "Check the whole chain of records and show its head", audit_, verify_audit)
+  CLI::App* const verify =
+      add(audit, "verify", "Check the whole chain of records and show its head", audit_, verify_audit);
+  verify->add_option("--file", audit_.file, "Exported records, in place of the store's")
+      ->check(CLI::ExistingFile);
+  verify
       ->add_option("--expect", audit_.expected_hash,
                    "A head that was noted before, which the chain must contain: shows records cut off")
       ->check(CLI::Validator(
@@ -66,6 +70,15 @@ void StoreCommandLine::describe_audit(CLI::App& cli) {
             return is_hash ? std::string() : "expected 64 lower-case hex digits";
           },
           "HASH"));
+  add(audit, "export", "Write all records into a new file, which verifies by itself", audit_, export_audit)
+      ->add_option("FILE", audit_.file, "File to make")
+      ->required();
+  CLI::App* const retire = add(audit, "retire", "Move old records into a new file, and leave a record of it",
+                               audit_, retire_audit);
+  retire->add_option("--keep-days", audit_.keep_days, "Records of so many days stay")
+      ->required()
+      ->check(CLI::Range(0, 100000));
+  retire->add_option("FILE", audit_.file, "File to make")->required();
   CLI::App* const list = add(audit, "list", "Show the newest records, oldest first", audit_, list_audit);
   list->add_option("-n,--records", audit_.records, "How many")
       ->check(CLI::Range(1, 1000000))

@@ -21,9 +21,6 @@ constexpr auto restart_window = 60s;
 /** Far beyond any start on a busy machine: what has not started by then hangs. */
 constexpr auto longest_start = 30s;
 
-/** From the request to end until the child is killed. */
-constexpr auto longest_end = 3s;
-
 sigset_t termination_signals() {
   sigset_t signals;
   sigemptyset(&signals);
@@ -155,7 +152,7 @@ void Supervisor::stop(Task& task) {
     return;
   }
   task.child->send(SIGTERM);
-  Deadline patience = Clock::now() + longest_end;
+  Deadline patience = Clock::now() + task.supervised.longest_end;
   while (task.child) {
     const Event event = next_event(patience);
     if (std::holds_alternative<TimedOut>(event) || std::holds_alternative<StopAsked>(event)) {

@@ -45,7 +45,8 @@ class SignalEvents {
 /** A program and what its end means. */
 struct Supervised {
   Program program;
-  bool restarts = false; /**< once it was ready, its end is no reason to stop the others */
+  bool restarts = false;               /**< once it was ready, its end is no reason to stop the others */
+  std::chrono::seconds longest_end{3}; /**< from the request to end until it is killed */
 };
 
 class Supervisor {

@@ -54,6 +54,8 @@ std::string_view audit_kind_name(AuditKind kind) {
       return "connection";
     case AuditKind::records_lost:
       return "records_lost";
+    case AuditKind::retention:
+      return "retention";
   }
   return "unknown";
 }
@@ -97,6 +99,39 @@ AuditHead Audit::head() const {
   SQLite::Statement select(database_, "SELECT number, hash FROM audit ORDER BY number DESC LIMIT 1");
   return select.executeStep() ? AuditHead{select.getColumn(0).getInt64(), select.getColumn(1).getString()}
                               : AuditHead{};
+}
+
+std::vector<AuditRecord> Audit::older_than(UtcTime time) const {
+  SQLite::Statement select(
+      database_, std::string("SELECT ") + audit_columns +
+                     " FROM audit WHERE number < (SELECT coalesce(min(number), 1 + (SELECT max(number) "
+                     "FROM audit)) FROM audit WHERE time >= ?) ORDER BY number");
+  select.bind(1, iso_8601(time));
+  std::vector<AuditRecord> records;
+  while (select.executeStep()) {
+    records.push_back(audit_record(select));
+  }
+  return records;
+}
+
+AuditHead Audit::anchor() const { return audit_anchor(database_); }
+
+AuditRecord Audit::retire(const AuditHead& last, AuditEntry entry) {
+  entry.kind = AuditKind::retention;
+  entry.detail["removed_to"] = last.number;
+  entry.detail["hash"] = last.hash;
+  AuditRecord record = append(entry);
+  SQLite::Statement move(
+      database_,
+      "INSERT INTO audit_anchor VALUES (1, ?1, ?2) ON CONFLICT (one) DO UPDATE SET number = ?1, "
+      "hash = ?2");
+  move.bind(1, last.number);
+  move.bind(2, last.hash);
+  move.exec();
+  SQLite::Statement remove(database_, "DELETE FROM audit WHERE number <= ?");
+  remove.bind(1, last.number);
+  remove.exec();
+  return record;
 }
 
 tl::expected<AuditHead, AuditBreak> Audit::verify(const std::optional<std::string>& noted) const {

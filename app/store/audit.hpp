@@ -33,7 +33,8 @@ enum class AuditKind {
   restore,
   bench,
   connection,
-  records_lost
+  records_lost,
+  retention
 };
 
 /** The name in spec/openapi.yaml: "login_refused". */
@@ -71,6 +72,18 @@ class Audit {
 
   /** The last record's number and hash. */
   [[nodiscard]] AuditHead head() const;
+
+  /** The records that are kept before any of that time or later; oldest first. */
+  [[nodiscard]] std::vector<AuditRecord> older_than(UtcTime time) const;
+
+  /** Behind which the first kept record stands: zeros until records were retired. */
+  [[nodiscard]] AuditHead anchor() const;
+
+  /**
+   * Removes the records up to `last`, one of those that are kept. The record that accounts for it is appended
+   * with `entry`'s detail and the anchor; `verify` wants that record.
+   */
+  AuditRecord retire(const AuditHead& last, AuditEntry entry);
 
   /**
    * Goes over the whole chain and returns its head, or the first place where it is broken.

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <tl/expected.hpp>
+#include <utility>
 
 namespace interlock {
 
@@ -50,9 +51,12 @@ struct AuditBreak {
   std::string problem;     /**< what differs, for people */
 };
 
-/** Follows a chain from its first record on. */
+/** Follows a chain, from its first record on or from a later one. */
 class AuditChain {
  public:
+  /** Behind which the first record to follow stands. */
+  explicit AuditChain(AuditHead behind = {}) : head_(std::move(behind)) {}
+
   /** The next record; the break if it does not continue the chain. */
   tl::expected<void, AuditBreak> follow(const AuditRecord& record);
 

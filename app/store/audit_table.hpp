@@ -18,6 +18,9 @@ constexpr const char* audit_columns = "number, time, tick, actor, session, kind,
 /** The record in the statement's current row. */
 AuditRecord audit_record(SQLite::Statement& row);
 
+/** See `Audit::anchor`. Throws SQLite::Exception. */
+AuditHead audit_anchor(SQLite::Database& database);
+
 /** See `Audit::verify`. Throws SQLite::Exception. */
 tl::expected<AuditHead, AuditBreak> verify_audit(SQLite::Database& database,
                                                  const std::optional<std::string>& noted);

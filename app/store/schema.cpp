@@ -59,7 +59,29 @@ WHEN NEW.number IS NOT (SELECT coalesce(max(number), 0) + 1 FROM audit)
 BEGIN SELECT RAISE(ABORT, 'the audit is only appended to'); END;
 )sql";
 
-constexpr std::array scripts_of_all_versions{version_1};
+/** Old records may be retired: up to an anchor, which only moves on. */
+constexpr const char* version_2 = R"sql(
+CREATE TABLE audit_anchor (
+  one INTEGER PRIMARY KEY CHECK (one = 1),
+  number INTEGER NOT NULL,
+  hash TEXT NOT NULL
+) STRICT;
+
+CREATE TRIGGER audit_anchor_moves_on BEFORE UPDATE ON audit_anchor
+WHEN NEW.number <= OLD.number
+BEGIN SELECT RAISE(ABORT, 'the anchor of the audit only moves on'); END;
+
+CREATE TRIGGER audit_anchor_is_not_removed BEFORE DELETE ON audit_anchor
+BEGIN SELECT RAISE(ABORT, 'the anchor of the audit only moves on'); END;
+
+DROP TRIGGER audit_is_not_removed;
+
+CREATE TRIGGER audit_is_not_removed BEFORE DELETE ON audit
+WHEN OLD.number > (SELECT coalesce(max(number), 0) FROM audit_anchor)
+BEGIN SELECT RAISE(ABORT, 'the audit is only appended to'); END;
+)sql";
+
+constexpr std::array scripts_of_all_versions{version_1, version_2};
 
 int pragma(SQLite::Database& database, const char* name) {
   return database.execAndGet(std::string("PRAGMA ") + name).getInt();

@@ -12,6 +12,12 @@ uint64_t ilk_now_ns(void) {
   return (uint64_t)now.tv_sec * NS_PER_S + (uint64_t)now.tv_nsec;
 }
 
+uint64_t ilk_utc_ms(void) {
+  struct timespec now;
+  (void)clock_gettime(CLOCK_REALTIME, &now);
+  return ((uint64_t)now.tv_sec * 1000u) + ((uint64_t)now.tv_nsec / 1000000u);
+}
+
 void ilk_ticker_init(ilk_ticker_t *ticker, ilk_clock_t clock, uint32_t period_us, double speed,
                      uint64_t now_ns) {
   const uint64_t period_ns = (uint64_t)period_us * 1000u;

@@ -28,6 +28,9 @@ typedef struct {
 /** CLOCK_MONOTONIC in nanoseconds. */
 uint64_t ilk_now_ns(void);
 
+/** Milliseconds of UTC since 1970. */
+uint64_t ilk_utc_ms(void);
+
 /**
  * @param speed multiple of real time in the simulated clock, 0: as fast as possible; real clock: ignored.
  * @param now_ns from which the first deadline counts.

@@ -26,6 +26,11 @@ void ilk_loop_init(ilk_loop_t *loop, const ilk_config_t *config, const ilk_run_t
   ilk_ticker_init(&loop->ticker, terms->clock, config->period_us, terms->speed, ilk_now_ns());
 }
 
+void ilk_loop_record(ilk_loop_t *loop, ilk_black_box_t *black_box) {
+  loop->black_box = black_box;
+  ilk_black_box_begin(black_box, &loop->shown.state);
+}
+
 bool ilk_loop_is_missed(const ilk_loop_t *loop, uint64_t late_ns) {
   const uint64_t excused_ns = loop->bus.simulated ? loop->bus_ns : 0u;
   return loop->shown.degraded == 0u && late_ns > loop->ticker.period_ns + excused_ns;
@@ -75,10 +80,12 @@ static uint32_t read_requests(ilk_loop_t *loop) {
                        loop->request);
 }
 
-static void step(ilk_loop_t *loop) {
+/** Returns how many requests were judged. */
+static uint32_t step(ilk_loop_t *loop) {
   ilk_snapshot_t *shown = &loop->shown;
   const uint32_t count = read_requests(loop);
   ilk_step(loop->config, &shown->state, &shown->inputs, loop->request, count, &loop->out);
+  return count;
 }
 
 static void publish_tick(ilk_loop_t *loop) {
@@ -105,11 +112,15 @@ void ilk_loop_tick(ilk_loop_t *loop) {
   loop->bus_ns = transacted_ns - begun_ns;
   ilk_timing_add(timing, ILK_PHASE_BUS, loop->bus_ns);
 
-  step(loop);
+  const uint32_t requests = step(loop);
   const uint64_t stepped_ns = ilk_now_ns();
   ilk_timing_add(timing, ILK_PHASE_STEP, stepped_ns - transacted_ns);
 
   publish_tick(loop);
+  if (loop->black_box != NULL) {
+    ilk_black_box_note(loop->black_box, begun_ns, &loop->shown.state, &loop->shown.inputs, loop->request,
+                       requests, &loop->out);
+  }
   ilk_timing_add(timing, ILK_PHASE_PUBLISH, ilk_now_ns() - stepped_ns);
 }
 

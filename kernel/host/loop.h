@@ -10,6 +10,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "black_box.h"
 #include "bus.h"
 #include "clock.h"
 #include "interlock/link.h"
@@ -34,6 +35,7 @@ typedef struct {
   ilk_attachment_t *attachment; /**< being served, or NULL */
   uint32_t request_tail;        /**< of that attachment */
   ilk_publisher_t publisher;
+  ilk_black_box_t *black_box; /**< or NULL */
   ilk_request_t request[ILK_REQUESTS_PER_TICK];
   ilk_outputs_t out;
   ilk_snapshot_t shown; /**< holds the kernel's state and inputs themselves */
@@ -50,6 +52,9 @@ typedef struct {
 /** Starts the kernel core on a valid configuration; the first deadline counts from now. */
 void ilk_loop_init(ilk_loop_t *loop, const ilk_config_t *config, const ilk_run_terms_t *terms, ilk_bus_t bus,
                    ilk_link_mailbox_t *mailbox, const volatile sig_atomic_t *stop);
+
+/** Records each tick from now on; before the first one. */
+void ilk_loop_record(ilk_loop_t *loop, ilk_black_box_t *black_box);
 
 /**
  * Whether a tick that began `late_ns` after its deadline counts against the kernel's overrun limit.

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "black_box.h"
 #include "bus_sim.h"
 #include "config_file.h"
 #include "link_server.h"
@@ -25,6 +26,7 @@ static volatile sig_atomic_t stop_requested;
 static ilk_config_t config;
 static ilk_bus_sim_t bus;
 static ilk_link_server_t server;
+static ilk_black_box_t black_box;
 static ilk_loop_t loop;
 
 static void request_stop(int number) {
@@ -70,6 +72,10 @@ static void report_start(const ilk_options_t *options, const ilk_realtime_t *rea
   (void)printf("  %-20s sim:%s, frames of %d words\n", "bus", options->bus_path, ILK_FRAME_WORDS);
   (void)printf("  %-20s %s, CRC-32 0x%08x\n", "configuration", options->config_path, config.crc);
   report_measures(realtime);
+  if (options->black_box_path != NULL) {
+    (void)printf("  %-20s %s, %zu MiB for %d s or more\n", "black box", options->black_box_path,
+                 black_box.bytes >> 20, options->black_box_seconds);
+  }
   (void)printf("ready link=%s\n", options->link_path);
   (void)fflush(stdout);
 }
@@ -94,8 +100,29 @@ static int run_loop(const ilk_options_t *options) {
                                  .degraded = permit == ILK_RUN_DEGRADED,
                                  .granted = realtime.granted};
   ilk_loop_init(&loop, &config, &terms, driver, &server.mailbox, &stop_requested);
+  if (options->black_box_path != NULL) {
+    ilk_loop_record(&loop, &black_box);
+  }
   ilk_loop_run(&loop);
   return EXIT_ENDED;
+}
+
+/** Runs the loop with its black box, whose memory is taken first: it counts among what is to be locked. */
+static int run_recorded(const ilk_options_t *options) {
+  ilk_error_t error;
+  if (options->black_box_path == NULL) {
+    return run_loop(options);
+  }
+  const ilk_black_box_terms_t terms = {.config = &config,
+                                       .clock = options->clock,
+                                       .simulated = ilk_bus_sim_driver(&bus).simulated,
+                                       .seconds = (uint32_t)options->black_box_seconds};
+  if (!ilk_black_box_create(&black_box, options->black_box_path, &terms, &error)) {
+    return report_failure(&error, EXIT_REFUSED);
+  }
+  const int code = run_loop(options);
+  ilk_black_box_close(&black_box);
+  return code;
 }
 
 static int run_with_link(const ilk_options_t *options, const ilk_link_socket_t *link) {
@@ -105,7 +132,7 @@ static int run_with_link(const ilk_options_t *options, const ilk_link_socket_t *
   }
   int code = EXIT_SYSTEM;
   if (ilk_link_server_start(&server, link->descriptor, &error)) {
-    code = run_loop(options);
+    code = run_recorded(options);
     ilk_link_server_stop(&server, loop.attachment);
   } else {
     (void)report_failure(&error, code);

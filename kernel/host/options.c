@@ -10,10 +10,13 @@
 
 #define DEFAULT_PRIORITY 80
 #define MAX_SPEED 1000.0
+#define DEFAULT_BLACK_BOX_SECONDS 60
+#define MAX_BLACK_BOX_SECONDS 3600
 
 const char *const ilk_options_help =
     "usage: interlock-kernel --config FILE.ilkc --bus sim:SOCKET --link SOCKET\n"
     "                        [--clock real|sim] [--speed X] [--core N] [--priority N]\n"
+    "                        [--black-box FILE] [--black-box-seconds N]\n"
     "\n"
     "  --config FILE    compiled robot configuration (interlock model compile)\n"
     "  --bus sim:PATH   card bus: the simulator that listens on that socket\n"
@@ -22,6 +25,9 @@ const char *const ilk_options_help =
     "  --speed X        simulated clock: multiple of real time, 0 to 1000 (default 1); 0: unpaced\n"
     "  --core N         run the loop on that core (default: any)\n"
     "  --priority N     SCHED_FIFO priority of the loop, 1 to 99 (default 80)\n"
+    "  --black-box FILE record each tick in that file, which should lie in memory (/dev/shm)\n"
+    "  --black-box-seconds N\n"
+    "                   time that it holds at least, 1 to 3600 (default 60)\n"
     "\n"
     "exit codes: 0 ended by signal, 1 system failure, 2 refused to start, 3 link already served\n";
 
@@ -71,6 +77,8 @@ static bool parse_bus(const char *text, const char **path) {
 #define OPTION_CORE 6
 #define OPTION_PRIORITY 7
 #define OPTION_HELP 8
+#define OPTION_BLACK_BOX 9
+#define OPTION_BLACK_BOX_SECONDS 10
 
 /** Returns NULL when the value was taken, otherwise what was expected. */
 static const char *take_option(int option, const char *value, ilk_options_t *options) {
@@ -91,6 +99,13 @@ static const char *take_option(int option, const char *value, ilk_options_t *opt
       return parse_whole_number(value, 0, CPU_SETSIZE - 1, &options->core) ? NULL : "the number of a core";
     case OPTION_PRIORITY:
       return parse_whole_number(value, 1, 99, &options->priority) ? NULL : "a number from 1 to 99";
+    case OPTION_BLACK_BOX:
+      options->black_box_path = value;
+      return *value != '\0' ? NULL : "a file";
+    case OPTION_BLACK_BOX_SECONDS:
+      return parse_whole_number(value, 1, MAX_BLACK_BOX_SECONDS, &options->black_box_seconds)
+                 ? NULL
+                 : "a number from 1 to 3600";
     default:
       return "a known option";
   }
@@ -122,16 +137,23 @@ static bool report_unusable(int option, const char *word, ilk_error_t *error) {
 
 ilk_options_result_t ilk_options_parse(int argc, char *const argv[], ilk_options_t *options,
                                        ilk_error_t *error) {
-  static const struct option known_options[] = {{"config", required_argument, NULL, OPTION_CONFIG},
-                                                {"bus", required_argument, NULL, OPTION_BUS},
-                                                {"link", required_argument, NULL, OPTION_LINK},
-                                                {"clock", required_argument, NULL, OPTION_CLOCK},
-                                                {"speed", required_argument, NULL, OPTION_SPEED},
-                                                {"core", required_argument, NULL, OPTION_CORE},
-                                                {"priority", required_argument, NULL, OPTION_PRIORITY},
-                                                {"help", no_argument, NULL, OPTION_HELP},
-                                                {NULL, 0, NULL, 0}};
-  *options = (ilk_options_t){.clock = ILK_CLOCK_REAL, .speed = 1.0, .core = -1, .priority = DEFAULT_PRIORITY};
+  static const struct option known_options[] = {
+      {"config", required_argument, NULL, OPTION_CONFIG},
+      {"bus", required_argument, NULL, OPTION_BUS},
+      {"link", required_argument, NULL, OPTION_LINK},
+      {"clock", required_argument, NULL, OPTION_CLOCK},
+      {"speed", required_argument, NULL, OPTION_SPEED},
+      {"core", required_argument, NULL, OPTION_CORE},
+      {"priority", required_argument, NULL, OPTION_PRIORITY},
+      {"help", no_argument, NULL, OPTION_HELP},
+      {"black-box", required_argument, NULL, OPTION_BLACK_BOX},
+      {"black-box-seconds", required_argument, NULL, OPTION_BLACK_BOX_SECONDS},
+      {NULL, 0, NULL, 0}};
+  *options = (ilk_options_t){.clock = ILK_CLOCK_REAL,
+                             .speed = 1.0,
+                             .core = -1,
+                             .priority = DEFAULT_PRIORITY,
+                             .black_box_seconds = DEFAULT_BLACK_BOX_SECONDS};
   bool speed_given = false;
   opterr = 0;
   optind = 0;

@@ -16,6 +16,8 @@ typedef struct {
   const char *config_path;
   const char *bus_path; /**< socket of the simulated bus */
   const char *link_path;
+  const char *black_box_path; /**< NULL: nothing is recorded */
+  int black_box_seconds;
   ilk_clock_t clock;
   double speed; /**< of the simulated clock, 0: as fast as possible */
   int core;     /**< -1: any */

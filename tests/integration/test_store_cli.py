@@ -388,3 +388,34 @@ def test_users_and_backups_are_made_while_the_robot_runs(stack: StackFactory, tm
     assert running.add("ann").returncode == DONE
     assert running("store", "backup", tmp_path / "backup.db").returncode == DONE
     assert running("audit", "verify").returncode == DONE
+
+
+def test_export_of_the_audit_verifies_without_the_store(store: Store, tmp_path: Path) -> None:
+    store.add("ann")
+    file = tmp_path / "audit.jsonl"
+    assert store("audit", "export", file).returncode == 0
+    verified = interlock("audit", "verify", "--file", file, "--expect", store.head())
+    assert verified.returncode == 0, verified.stderr
+    assert verified.stdout.split()[-1] == store.head()
+    file.write_text(file.read_text().replace("ann", "eve"))
+    broken = interlock("audit", "verify", "--file", file)
+    assert broken.returncode == 1
+    assert "the audit is not sound: record 1" in broken.stderr
+
+
+def test_retired_records_and_the_rest_make_one_chain(store: Store, tmp_path: Path) -> None:
+    store.add("ann")
+    store.add("bob", role="viewer")
+    before, noted = store.audit(), store.head()
+    file = tmp_path / "old.jsonl"
+    assert "no record is older" in store("audit", "retire", "--keep-days", "1", file).stdout
+    done = store("audit", "retire", "--keep-days", "0", file)
+    assert done.returncode == 0, done.stderr
+    (left,) = store.audit()
+    assert left["kind"] == "retention"
+    assert left["detail"] == {"file": "old.jsonl", "hash": noted, "removed_to": before[-1]["number"]}
+    assert store("audit", "verify", "--expect", noted).returncode == 0
+    assert interlock("audit", "verify", "--file", file).stdout.split()[-1] == noted
+    assert store("audit", "retire", "--keep-days", "0", file).returncode == 1
+    store.execute("DROP TRIGGER audit_anchor_is_not_removed; DELETE FROM audit_anchor")
+    assert store("audit", "verify").returncode == 1

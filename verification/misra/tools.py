@@ -17,7 +17,14 @@ ROOT = Path(__file__).resolve().parents[2]
 GENERATED = ROOT / "build" / "misra"
 JOBS = int(os.environ.get("JOBS", "1"))
 
-INCLUDES = ["kernel/include", "kernel/src", "kernel/host", "kernel/host/include", "build/misra"]
+INCLUDES = [
+    "kernel/include",
+    "kernel/src",
+    "kernel/host",
+    "kernel/host/include",
+    "kernel/recording/include",
+    "build/misra",
+]
 DEFINES = ["-D_GNU_SOURCE", "-DILK_FRAME_WORDS=32"]
 FLAGS = ["-std=c11", *DEFINES, *(f"-I{directory}" for directory in INCLUDES)]
 

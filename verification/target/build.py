@@ -1,6 +1,7 @@
 """Builds and runs the test images: for this machine, for a Cortex-A9 under Linux, for a bare Cortex-M4."""
 
 import os
+import shutil
 import subprocess
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -79,14 +80,39 @@ def run(command: Sequence[str], accepted: tuple[int, ...] = (0,)) -> str:
     return done.stdout
 
 
-def image(machine: Machine, program: str, name: str, defines: Sequence[str]) -> list[str]:
-    """Builds trace.c or vectors.c around the core; returns the command that runs it."""
+def image(
+    machine: Machine, program: str, name: str, defines: Sequence[str], core: Sequence[Path] = CORE
+) -> list[str]:
+    """Builds trace.c, vectors.c or replay.c around the core; returns the command that runs it."""
     BUILD.mkdir(parents=True, exist_ok=True)
     output = BUILD / f"{machine.name}-{name}"
     parts = [HERE / f"{part}.c" for part in (program, "world", "counts", "platform")]
-    sources = [*CORE, *parts, HERE / machine.platform]
+    sources = [*core, *parts, HERE / machine.platform]
+    if program in ("record", "replay"):
+        sources += sorted((ROOT / "kernel/recording").glob("*.c"))
+        defines = [*defines, *recording_flags()]
+    if program == "record":
+        sources += [ROOT / f"kernel/host/{part}.c" for part in ("black_box", "clock", "error")]
+        defines = [*defines, "-D_GNU_SOURCE", f"-I{ROOT / 'kernel/host'}"]
     run([*machine.compiler, *FLAGS, *defines, *map(str, sources), "-o", str(output)])
     return [*machine.runner, str(output)]
+
+
+def recording_flags() -> list[str]:
+    """Include paths of the recording library, its generated table written."""
+    recording, tables = ROOT / "kernel/recording", BUILD / "recorded_field_tables.h"
+    headers = [ROOT / "kernel/include/interlock/types.h", recording / "include/interlock/recording.h"]
+    run(["/usr/bin/python3", *map(str, (recording / "generate_recorded_fields.py", tables, *headers))])
+    return [f"-I{recording / 'include'}", f"-I{BUILD}"]
+
+
+def core_with(patch: str) -> list[Path]:
+    """The core's sources with a seeded fault of tests/failure in them."""
+    folder = BUILD / patch
+    shutil.rmtree(folder, ignore_errors=True)
+    shutil.copytree(ROOT / "kernel/src", folder / "kernel/src")
+    run(["patch", "-p1", "-s", "-d", str(folder), "-i", str(ROOT / f"tests/failure/{patch}.patch")])
+    return sorted((folder / "kernel/src").glob("*.c"))
 
 
 def unit_tests() -> list[str]:

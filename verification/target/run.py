@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """The target rung: the same bits on x86-64, a Cortex-A9 and a bare Cortex-M4, and size and stack in bounds.
 
-The unit tests run under qemu-arm. A long random trace gives one digest on x86-64 and on the Cortex-A9. Single
-ticks from any sound state give one digest each: x86-64 makes the table, both ARM machines compare with it,
-and must find the entry that was changed in a copy of it. PASSED: no difference. VACUOUS: the planted
-difference was not found, or trace and vectors do not bring every mode, cause, fault, verdict and gate.
+The unit tests run under qemu-arm. A long random trace gives one digest on x86-64 and on the Cortex-A9. Ten
+minutes with faults, recorded by the black box, are replayed by both, and by a kernel with a rule removed,
+which must be told at the word that differs first. Single ticks from any sound state give one digest each:
+x86-64 makes the table, both ARM machines compare with it, and must find the entry that was changed in a
+copy of it. PASSED: no difference. VACUOUS: the planted difference or the removed rule was not found, or
+trace and vectors do not bring every mode, cause, fault, verdict and gate.
 """
 
 import re
@@ -19,10 +21,24 @@ sys.path.append(str(Path(__file__).resolve().parents[1] / "evidence"))
 import evidence
 import size
 
-from build import BUILD, CORTEX_A9, CORTEX_M4, NATIVE, ROOT, Machine, TargetError, image, run, unit_tests
+from build import (
+    BUILD,
+    CORTEX_A9,
+    CORTEX_M4,
+    NATIVE,
+    ROOT,
+    Machine,
+    TargetError,
+    core_with,
+    image,
+    run,
+    unit_tests,
+)
 
 VECTORS = 20_000
 TICKS = 1_000_000
+RECORDED_TICKS = 600_000
+RECORDED_FAULT = "P5_stall_cleared_by_move"
 PLANTED = 12_345
 SHOWN_ELSEWHERE = {"mode": {0}, "cause": {5}, "gate": {2, 3}}
 """By number: INIT needs a bad configuration, INTEGRITY damaged memory; the gate's terms for pedal and E-stop
@@ -84,6 +100,32 @@ def compare(machine: Machine, table: Path) -> tuple[list[int], str]:
     return [int(number) for number in numbers], output
 
 
+def record() -> list[str]:
+    """Records ten minutes with faults on x86-64; returns what tells the replay which file it is."""
+    file = [f'-DRECORDING="{BUILD / "run.ilkr"}"']
+    command = image(NATIVE, "record", "record", [*file, f"-DRECORDED_TICKS={RECORDED_TICKS}"])
+    timed(f"{RECORDED_TICKS} ticks recorded, x86-64", lambda: run(command))
+    return file
+
+
+def replay(machine: Machine, file: list[str]) -> bool:
+    """Whether all of the recording comes out the same on this machine."""
+    command = image(machine, "replay", "replay", file)
+    output = timed(f"replayed, {machine.name}", lambda: run(command, (0, 1)))
+    keep(f"replay-{machine.name}", output)
+    return output.endswith(f"ticks {RECORDED_TICKS}\nidentical\n")
+
+
+def changed_kernel_differs(file: list[str]) -> bool:
+    """Whether the replay by a kernel with a rule removed names the word that differs first."""
+    command = image(NATIVE, "replay", "replay-changed", file, core_with(RECORDED_FAULT))
+    output = keep("replay-changed", timed("replayed, changed kernel", lambda: run(command, (0, 1))))
+    return (
+        re.search(r"^differs tick \d+ state\.axis\[\d\]\.stall_driven_ticks bit \d+$", output, re.M)
+        is not None
+    )
+
+
 def run_unit_tests() -> int:
     """Number of unit tests that passed on the Cortex-A9. Raises TargetError when one does not."""
     command = timed("unit tests built for Cortex-A9", unit_tests)
@@ -118,7 +160,13 @@ def measure(figures: dict[str, float]) -> tuple[list[str], list[str]]:
         for number in found
     ]
     found = {machine.name: compare(machine, planted)[0] for machine in machines}
+    recording = record()
+    replayed = {machine.name: replay(machine, recording) for machine in (NATIVE, CORTEX_A9)}
+    wrong += [f"{name}: the recorded run differs" for name, same in replayed.items() if not same]
+    changed_found = changed_kernel_differs(recording)
+    (BUILD / "run.ilkr").unlink()
     vacuous = [f"{name}: the planted difference was not found" for name in found if found[name] != [PLANTED]]
+    vacuous += [] if changed_found else ["the replay does not notice a changed kernel"]
     vacuous += never_seen(traces[NATIVE.name], compared[CORTEX_M4.name][1])
     figures.update(
         vectors=VECTORS,
@@ -126,6 +174,9 @@ def measure(figures: dict[str, float]) -> tuple[list[str], list[str]]:
         planted_found=sum(numbers == [PLANTED] for numbers in found.values()),
         trace_ticks=TICKS,
         trace_differs=len(set(traces.values())) - 1,
+        replayed_ticks=RECORDED_TICKS,
+        replays_differing=sum(not same for same in replayed.values()),
+        changed_kernel_found=int(changed_found),
         unit_tests=run_unit_tests(),
         **sizes,
     )

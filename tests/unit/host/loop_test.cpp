@@ -8,6 +8,7 @@
 #include "fixtures.hpp"
 #include "interlock/kernel.h"
 #include "interlock/link_reader.h"
+#include "interlock/recorded_block.h"
 
 namespace {
 
@@ -67,6 +68,40 @@ TEST_F(Loop, TickIsOneTransactionOneStepOneSnapshot) {
     EXPECT_EQ(std::memcmp(&snapshot.inputs, &loop.shown.inputs, sizeof snapshot.inputs), 0);
     EXPECT_EQ(attachment.regions.kernel->snapshot_lock, 2 * n);
   }
+}
+
+TEST_F(Loop, BlackBoxGetsEachTickWithItsRequests) {
+  const interlock::host_test::TemporaryDirectory directory;
+  auto box = std::make_unique<ilk_black_box_t>();
+  const ilk_black_box_terms_t terms{&config, ILK_CLOCK_SIM, true, 1};
+  ilk_error_t error{};
+  ASSERT_TRUE(ilk_black_box_create(box.get(), directory.file("ring").c_str(), &terms, &error)) << error.text;
+  ilk_loop_record(&loop, box.get());
+  attach(1);
+  ilk_request_t request{};
+  request.sequence = 1;
+  request.kind = ILK_REQUEST_HEARTBEAT;
+  request.crc = ilk_request_crc(&request);
+  ilk_loop_tick(&loop);
+  auto* app = const_cast<ilk_link_app_region_t*>(attachment.regions.app);
+  ilk_link_app_region_t written{};
+  ASSERT_TRUE(ilk_link_put_request(attachment.regions.kernel, &written, &request));
+  attachment.regions.app = &written;
+  ilk_loop_tick(&loop);
+  attachment.regions.app = app;
+  ilk_block_cursor_t cursor{};
+  auto tick = std::make_unique<ilk_recorded_tick_t>();
+  ASSERT_TRUE(ilk_block_begin(&cursor, reinterpret_cast<const uint32_t*>(box->block->payload),
+                              box->block->header.used, tick.get()));
+  ASSERT_EQ(ilk_block_next(&cursor, tick.get()), ILK_TICK_READ);
+  EXPECT_EQ(tick->request_count, 0u);
+  ASSERT_EQ(ilk_block_next(&cursor, tick.get()), ILK_TICK_READ);
+  ASSERT_EQ(tick->request_count, 1u);
+  EXPECT_EQ(std::memcmp(&tick->request[0], &request, sizeof request), 0);
+  EXPECT_EQ(std::memcmp(&tick->now.picture.state, &loop.shown.state, sizeof loop.shown.state), 0);
+  EXPECT_EQ(std::memcmp(&tick->now.picture.out, &loop.out, sizeof loop.out), 0);
+  EXPECT_EQ(ilk_block_next(&cursor, tick.get()), ILK_TICK_NONE);
+  ilk_black_box_close(box.get());
 }
 
 TEST_F(Loop, RunsAndCountsTimeWithoutAnyApp) {

@@ -48,6 +48,18 @@ TEST(Options, DefaultsAreTheWallClockAnyCoreAndPriority80) {
   EXPECT_EQ(parsed.options.clock, ILK_CLOCK_REAL);
   EXPECT_EQ(parsed.options.core, -1);
   EXPECT_EQ(parsed.options.priority, 80);
+  EXPECT_EQ(parsed.options.black_box_path, nullptr);
+}
+
+TEST(Options, BlackBoxHoldsAMinuteUnlessToldOtherwise) {
+  const Parsed parsed = parse(complete({"--black-box", "/dev/shm/box"}));
+  ASSERT_EQ(parsed.result, ILK_OPTIONS_RUN) << parsed.error;
+  EXPECT_STREQ(parsed.options.black_box_path, "/dev/shm/box");
+  EXPECT_EQ(parsed.options.black_box_seconds, 60);
+  EXPECT_EQ(parse(complete({"--black-box-seconds", "5"})).options.black_box_seconds, 5);
+  const Parsed none = parse(complete({"--black-box-seconds", "0"}));
+  EXPECT_EQ(none.result, ILK_OPTIONS_BAD);
+  EXPECT_THAT(none.error, HasSubstr("--black-box-seconds is '0'; expected a number from 1 to 3600"));
 }
 
 TEST(Options, EveryOptionIsTaken) {

@@ -1543,7 +1543,7 @@ export interface components {
             actor: string;
             session: number | null;
             /** @enum {string} */
-            kind: "start" | "login" | "login_refused" | "logout" | "session_ended" | "user" | "authority" | "proposal" | "request" | "verdict" | "stop" | "setting" | "restore" | "bench" | "connection" | "records_lost";
+            kind: "start" | "login" | "login_refused" | "logout" | "session_ended" | "user" | "authority" | "proposal" | "request" | "verdict" | "stop" | "setting" | "restore" | "bench" | "connection" | "records_lost" | "retention";
             detail: Record<string, unknown>;
             /** @description SHA-256, 64 hex digits. */
             hash: string;

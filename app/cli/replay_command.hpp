@@ -1,0 +1,28 @@
+/**
+ * @file
+ * `interlock replay`: runs the kernel core again on a recording.
+ */
+#pragma once
+
+#include <filesystem>
+#include <ostream>
+
+#include "cli/exit_code.hpp"
+
+namespace interlock::cli {
+
+struct ReplayOptions {
+  std::filesystem::path file;
+  std::filesystem::path csv;  /**< a row a tick; empty: none */
+  std::filesystem::path plot; /**< positions, drives and mode as SVG; empty: none */
+};
+
+/**
+ * Says "identical", or names the first bit that comes out differently.
+ *
+ * @return REFUSED for a difference, a damaged file, or one of another release; PRECONDITION when a file cannot be
+ * read or written.
+ */
+Result<void> replay(const ReplayOptions& options, std::ostream& output);
+
+}  // namespace interlock::cli

@@ -1,0 +1,85 @@
+/**
+ * @file
+ * What is kept of a run: all of it, or the time around each event. Copies the kernel's black box to the disk,
+ * and never touches its loop.
+ */
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "recorder/recording_folder.hpp"
+#include "recorder/recording_writer.hpp"
+#include "recorder/ring.hpp"
+
+namespace interlock::recorder {
+
+struct RecorderTerms {
+  bool continuous = false;
+  std::uint32_t before_s = 60; /**< of kernel time, that a recording of an event holds before it */
+  std::uint32_t after_s = 2;   /**< of kernel time, after it */
+  std::uint64_t part_bytes = std::uint64_t{256}
+                             << 20; /**< at which a continuous recording goes on in a new file */
+  std::string build;
+};
+
+/** What the recorder has to tell: "recording FILE", "FILE is complete", or why something failed. */
+using Tell = std::function<void(const std::string&)>;
+
+/**
+ * Follows one ring. An event is the kernel's locking, an axis' fault, or an end of the kernel out of order; a
+ * recording begins `before_s` before it, and ends `after_s` after it or after the last event that came
+ * meanwhile.
+ *
+ * Starting again on the same ring comes to the same recordings; those that are complete already stay as they
+ * are.
+ */
+class Recorder {
+ public:
+  Recorder(const Ring& ring, const RecordingFolder& folder, RecorderTerms terms, Tell tell);
+
+  /** Takes in what has come since the last call. */
+  void step();
+
+  /** Writes out all there is; after the kernel's end, or when the recorder itself is to end. */
+  void finish();
+
+ private:
+  /** A recording that is being written; without a writer, one that is complete already. */
+  struct Active {
+    std::filesystem::path file;
+    std::optional<RecordingWriter> writer;
+    std::uint32_t next_block;
+    std::optional<std::uint32_t> last_tick; /**< nothing: goes on */
+  };
+
+  void take_in(const TickHead& head);
+  void event(ilk_recorded_why_t why, std::uint32_t tick);
+  void begin(ilk_recorded_why_t why, std::uint32_t tick, std::uint32_t first_block);
+  void append_complete_blocks();
+  void append(std::uint32_t number);
+  void go_on_in_a_new_part();
+  void end_recording();
+  void complete();
+  void fail(const std::string& reason);
+  [[nodiscard]] bool may_begin() const;
+
+  const Ring& ring_;
+  const RecordingFolder& folder_;
+  RecorderTerms terms_;
+  Tell tell_;
+  RingPlace place_;
+  std::optional<TickHead> newest_;
+  std::optional<Active> active_;
+  std::chrono::steady_clock::time_point retry_at_; /**< after the disk refused */
+};
+
+/** Writes the newest `seconds` of kernel time into a new file; returns how many blocks. */
+Recorded<std::uint32_t> record_now(const Ring& ring, const std::filesystem::path& file,
+                                   const RecordingSubject& subject, std::uint32_t seconds);
+
+}  // namespace interlock::recorder

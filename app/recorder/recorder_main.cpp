@@ -1,0 +1,139 @@
+/**
+ * @file
+ * interlock-recorder: keeps what the kernel's black box holds. A process of its own, so that neither the
+ * kernel's nor the app's death takes the recording along, and none of them ever waits for a disk.
+ */
+#include <poll.h>
+#include <sys/signalfd.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+#include <string>
+
+#include "build_info/build_info.hpp"
+#include "recorder/recorder.hpp"
+
+namespace interlock::recorder {
+namespace {
+
+namespace fs = std::filesystem;
+
+/** Between two looks at the ring; a block takes a tenth of a second or more to fill. */
+constexpr int look_interval_ms = 20;
+
+struct Options {
+  fs::path ring;
+  fs::path folder;
+  bool continuous = false;
+  std::uint64_t keep_mib = 4096;
+};
+
+void say(const std::string& line) { std::cout << line << std::endl; }
+
+/** The signals that ask to end, as a descriptor. */
+FileHandle end_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  sigprocmask(SIG_BLOCK, &signals, nullptr);
+  return FileHandle(signalfd(-1, &signals, SFD_CLOEXEC));
+}
+
+/** Waits for the next look; true when it is time to end. */
+bool end_is_asked(const FileHandle& signals) {
+  pollfd waiting{signals.get(), POLLIN, 0};
+  return poll(&waiting, 1, look_interval_ms) > 0;
+}
+
+/** The ring of a kernel that lives; nothing while there is none. */
+std::optional<Ring> live_ring(const fs::path& file) {
+  Recorded<Ring> ring = Ring::open(file);
+  return ring && ring->writer_lives() ? std::optional<Ring>(std::move(*ring)) : std::nullopt;
+}
+
+/** What an earlier run left in memory, its kernel and its recorder being dead. */
+void rescue(const Options& options, const RecordingFolder& folder, const std::string& build) {
+  std::error_code ignored;
+  if (!fs::exists(options.ring, ignored)) {
+    return;
+  }
+  const Recorded<Ring> ring = Ring::open(options.ring);
+  if (ring && ring->writer_lives()) {
+    return;
+  }
+  if (ring && ring->head() != 0) {
+    const std::uint32_t tick = ring->opening_tick(ring->head()).value_or(0);
+    const fs::path file = folder.file(ring->run(), ILK_RECORDED_ON_RESCUE, tick);
+    const Recorded<std::uint32_t> blocks =
+        record_now(*ring, file, {ILK_RECORDED_ON_RESCUE, tick, build}, RecorderTerms{}.before_s);
+    say(blocks ? "rescued " + file.string() : "cannot record: " + blocks.error());
+  }
+  fs::remove(options.ring, ignored);
+}
+
+/** Follows one kernel; true when the recorder was asked to end before the kernel did. */
+bool follow(const Ring& ring, const Options& options, const RecordingFolder& folder,
+            const RecorderTerms& terms, const FileHandle& signals) {
+  Recorder recorder(ring, folder, terms, say);
+  bool asked = false;
+  bool lives = true;
+  while (lives && !asked) {
+    asked = end_is_asked(signals);
+    lives = ring.writer_lives();
+    recorder.step();
+  }
+  recorder.finish();
+  if (!lives) {
+    std::error_code ignored;
+    fs::remove(options.ring, ignored);
+  }
+  return asked;
+}
+
+int record(const Options& options) {
+  const FileHandle signals = end_signals();
+  const Recorded<RecordingFolder> folder = RecordingFolder::open(options.folder, options.keep_mib << 20);
+  if (!folder) {
+    std::cerr << "interlock-recorder: " << folder.error() << std::endl;
+    return 3;
+  }
+  RecorderTerms terms;
+  terms.continuous = options.continuous;
+  terms.build = std::string(version()) + ' ' + std::string(commit());
+  rescue(options, *folder, terms.build);
+  const std::optional<Ring> going_on = live_ring(options.ring);
+  folder->finish_parts(going_on ? &going_on->run() : nullptr);
+  say("ready recordings=" + folder->path().string());
+  while (!end_is_asked(signals)) {
+    const std::optional<Ring> ring = live_ring(options.ring);
+    if (ring && follow(*ring, options, *folder, terms, signals)) {
+      break;
+    }
+  }
+  return 0;
+}
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App cli("Keeps what the kernel's black box holds", "interlock-recorder");
+  cli.add_option("--black-box", options.ring, "File of the kernel's black box")->required();
+  cli.add_option("--folder", options.folder, "Where the recordings go")->required();
+  cli.add_flag("--continuous", options.continuous, "Record everything, not only the time around events");
+  cli.add_option("--keep-mib", options.keep_mib,
+                 "Finished recordings that are kept, MiB; the oldest go first")
+      ->check(CLI::Range(1, 1 << 24))
+      ->capture_default_str();
+  CLI11_PARSE(cli, argc, argv);
+  return record(options);
+}
+
+}  // namespace
+}  // namespace interlock::recorder
+
+int main(int argc, char** argv) { return interlock::recorder::main(argc, argv); }

@@ -1,0 +1,82 @@
+#include "recorder/recording_writer.hpp"
+
+#include <fcntl.h>
+
+#include <cerrno>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace interlock::recorder {
+namespace {
+
+ilk_recording_header_t header_of(const ilk_run_description_t& run, const RecordingSubject& subject) {
+  ilk_recording_header_t header{};
+  header.why = subject.why;
+  header.tick = subject.tick;
+  subject.build.copy(header.build, sizeof header.build - 1);
+  header.run = run;
+  ilk_recording_seal_header(&header);
+  return header;
+}
+
+/** Header, payload and trailer, as they stand in the file. */
+std::vector<std::uint32_t> encoded(const BlockCopy& block) {
+  const auto used = static_cast<std::uint32_t>(block.payload.size());
+  const ilk_block_header_t header = ilk_recording_block_header(block.number, block.payload.data(), used);
+  const auto* const head = reinterpret_cast<const std::uint32_t*>(&header);
+  std::vector<std::uint32_t> words(head, head + sizeof header / sizeof *head);
+  words.insert(words.end(), block.payload.begin(), block.payload.end());
+  words.push_back(ILK_BLOCK_TRAILER(block.number));
+  return words;
+}
+
+}  // namespace
+
+Recorded<RecordingWriter> RecordingWriter::create(const std::filesystem::path& path,
+                                                  const ilk_run_description_t& run,
+                                                  const RecordingSubject& subject) {
+  FileHandle file(
+      open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, S_IRUSR | S_IWUSR));
+  if (!file) {
+    return failed_with(path.string(), errno);
+  }
+  RecordingWriter writer(std::move(file), path.string());
+  const ilk_recording_header_t header = header_of(run, subject);
+  if (Recorded<void> written = writer.write(&header, sizeof header); !written) {
+    return tl::unexpected(written.error());
+  }
+  const FileHandle folder(open(path.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!folder || fsync(folder.get()) != 0) {
+    return failed_with(path.parent_path().string(), errno);
+  }
+  return writer;
+}
+
+Recorded<void> RecordingWriter::append(const BlockCopy& block) {
+  const std::vector<std::uint32_t> words = encoded(block);
+  return write(words.data(), words.size() * sizeof words.front());
+}
+
+Recorded<void> RecordingWriter::write(const void* bytes, std::size_t count) {
+  const auto* from = static_cast<const std::byte*>(bytes);
+  std::size_t left = count;
+  while (left > 0) {
+    const ssize_t written = ::write(file_.get(), from, left);
+    if (written < 0 && errno == EINTR) {
+      continue;
+    }
+    if (written <= 0) {
+      return failed_with(name_, errno);
+    }
+    from += written;
+    left -= static_cast<std::size_t>(written);
+  }
+  if (fdatasync(file_.get()) != 0) {
+    return failed_with(name_, errno);
+  }
+  bytes_ += count;
+  return {};
+}
+
+}  // namespace interlock::recorder

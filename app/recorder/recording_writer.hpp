@@ -1,0 +1,46 @@
+/**
+ * @file
+ * Writes a recording so that a kill or a power cut costs its last block at most.
+ */
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "interlock/recording_file.h"
+#include "recorder/file_handle.hpp"
+#include "recorder/recorder_error.hpp"
+#include "recorder/ring.hpp"
+
+namespace interlock::recorder {
+
+/** What a recording is of. */
+struct RecordingSubject {
+  ilk_recorded_why_t why = ILK_RECORDED_CONTINUOUSLY;
+  std::uint32_t tick = 0; /**< of the event */
+  std::string build;      /**< version and commit of this program */
+};
+
+class RecordingWriter {
+ public:
+  /** Begins the file anew, with its header on the disk. */
+  static Recorded<RecordingWriter> create(const std::filesystem::path& file, const ilk_run_description_t& run,
+                                          const RecordingSubject& subject);
+
+  /** Appends a block; it is on the disk when this returns. */
+  Recorded<void> append(const BlockCopy& block);
+
+  [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
+
+ private:
+  RecordingWriter(FileHandle file, std::string name) : file_(std::move(file)), name_(std::move(name)) {}
+
+  Recorded<void> write(const void* bytes, std::size_t count);
+
+  FileHandle file_;
+  std::string name_;
+  std::uint64_t bytes_ = 0;
+};
+
+}  // namespace interlock::recorder
