@@ -220,6 +220,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/kernel/configuration": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * The binary configuration that the app's robot file compiles to, for whoever runs the kernel's code beside the
+         *     kernel, as the console does to tell what it would answer. The kernel runs the same one when its `config_crc` is `crc`.
+         */
+        get: operations["getKernelConfiguration"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/robots": {
         parameters: {
             query?: never;
@@ -1185,6 +1205,12 @@ export interface components {
             /** @description Of one of the requests. */
             session: number;
         };
+        KernelConfiguration: {
+            /** @description The last word, eight hex digits. */
+            crc: string;
+            /** @description `ilk_config_t` of kernel/include/interlock/types.h, word for word. */
+            words: number[];
+        };
         Robot: {
             name: string;
             title: string;
@@ -2050,6 +2076,27 @@ export interface operations {
             401: components["responses"]["Login"];
             403: components["responses"]["Role"];
             503: components["responses"]["NoStore"];
+        };
+    };
+    getKernelConfiguration: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Configuration. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["KernelConfiguration"];
+                };
+            };
+            401: components["responses"]["Login"];
         };
     };
     listRobots: {
