@@ -18,6 +18,7 @@ export type UserChange = Schemas["UserChange"];
 export type Authority = Schemas["Authority"];
 export type Claim = Schemas["Claim"];
 export type Robot = Schemas["Robot"];
+export type KernelConfiguration = Schemas["KernelConfiguration"];
 export type ModeAnswer = Schemas["ModeAnswer"];
 export type AxisVerdict = Schemas["AxisVerdicts"][number];
 export type PositionsFile = Schemas["PositionsFile"];
@@ -155,6 +156,7 @@ export const api = {
     act(() => http.POST("/api/authority/hand-over", { body: { session } })),
   takeOverAuthority: () => act(() => http.POST("/api/authority/take-over")),
 
+  kernelConfiguration: () => read(() => http.GET("/api/kernel/configuration")),
   robots: () => read(() => http.GET("/api/robots")),
   mode: () => read(() => http.GET("/api/mode")),
   setMode: (mode: string) => act(() => http.PUT("/api/mode", { body: { mode } })),

@@ -5,6 +5,7 @@ import { AuthorityBar } from "./AuthorityBar";
 
 const pages: readonly { readonly route: Route; readonly title: string; readonly adminOnly: boolean }[] = [
   { route: "robot", title: "Robot", adminOnly: false },
+  { route: "codes", title: "Codes", adminOnly: false },
   { route: "users", title: "Users", adminOnly: true },
   { route: "audit", title: "Audit", adminOnly: true },
 ];
