@@ -141,6 +141,14 @@ export class ConsolePage {
     await expect(this.authority).toContainText("(you)");
   }
 
+  /** Presses the theme's button until it is that one. */
+  async chooseTheme(theme: "light" | "dark"): Promise<void> {
+    await expect(async () => {
+      await this.page.getByRole("button", { name: /^Theme:/ }).click();
+      await expect(this.button(`Theme: ${theme}`)).toBeVisible({ timeout: 200 });
+    }).toPass();
+  }
+
   async open(page: "Robot" | "Codes" | "Users" | "Audit" | "Account"): Promise<void> {
     await this.page.getByRole("link", { name: page }).click();
   }

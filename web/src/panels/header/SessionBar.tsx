@@ -1,7 +1,9 @@
 import { logout } from "../../state/commands";
 import { type Route, useRoute } from "../../state/route";
 import { useConsole } from "../../state/store";
+import { KeysHelp } from "../keys/KeysHelp";
 import { AuthorityBar } from "./AuthorityBar";
+import { ThemeButton } from "./ThemeButton";
 
 const pages: readonly { readonly route: Route; readonly title: string; readonly adminOnly: boolean }[] = [
   { route: "robot", title: "Robot", adminOnly: false },
@@ -28,6 +30,8 @@ export function SessionBar() {
       </nav>
       <AuthorityBar />
       <div className="who">
+        <ThemeButton user={name} />
+        <KeysHelp />
         <a
           href="#/account"
           aria-current={shown === "account" ? "page" : undefined}
