@@ -18,6 +18,9 @@ test("? shows what the keys do, and is a letter where somebody types", async ({ 
   await robot.axis("Lateral").row.getByRole("textbox").press("?");
   await expect(help).toHaveCount(0);
   await robot.button("Keys").click();
+  await expect(help).toBeVisible();
+  await robot.stop.click();
+  await expect(robot.stopAnswer).toHaveText("STOP accepted");
   await page.keyboard.press("Escape");
   await expect(robot.stopAnswer).toHaveText("STOP accepted");
   await expect(help).toHaveCount(0);
