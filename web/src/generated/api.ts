@@ -774,6 +774,46 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/jog": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Proposes a move to the end of the axis' range in a direction, which goes on only while it is renewed: 200 ms after the
+         *     last renewal the app aborts it, of the kernel's time in the simulated clock, of the wall's else. It moves while the
+         *     pedal is held, as every move. RANGE where the axis stands at that end.
+         */
+        post: operations["beginJog"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/jog/{id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["parameters"]["ProposalId"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        /** Goes on with a jog. One that has ended, or was not renewed in time, does not come back (JOG_LAPSED). */
+        put: operations["renewJog"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/proposals/{id}": {
         parameters: {
             query?: never;
@@ -939,7 +979,7 @@ export interface components {
              * @description Verdict name, or NOT_FOUND, METHOD_NOT_ALLOWED, MALFORMED, INVALID, TOO_LARGE, HOST, ORIGIN, UPGRADE_REQUIRED,
              *     LOGIN, CREDENTIALS, BACK_OFF, ROLE, AUTHORITY, EXISTS, LAST_ADMIN, STORE, STOPPED, MODE_HOME, MODE_PATH, NOT_HOMED, SEPARATION, HAS_SWITCH,
              *     POSITIONS_ROBOT, POSITIONS_CONFIG, POSITIONS_VERSION,
-             *     NO_KERNEL, NO_BENCH, PEDAL_LAPSED, CONFIG_MISMATCH, ENDED, OVERLOADED, INTERNAL; of paths NO_PATH, UNREACHABLE, STALE,
+             *     NO_KERNEL, NO_BENCH, PEDAL_LAPSED, JOG_LAPSED, CONFIG_MISMATCH, ENDED, OVERLOADED, INTERNAL; of paths NO_PATH, UNREACHABLE, STALE,
              *     EMPTY, NO_TARGETS, NOT_WAITING; of a trajectory or a pose a code of `interlock trajectory check` or of `interlock kinematics`.
              */
             code: string;
@@ -1089,6 +1129,11 @@ export interface components {
             target_counts?: number;
             /** @description Upper bound of the drive; default: the axis' bound. */
             drive?: number;
+        };
+        JogStart: {
+            slot: number;
+            /** @enum {string} */
+            direction: "increasing" | "decreasing";
         };
         Proposal: {
             id: number;
@@ -2981,6 +3026,71 @@ export interface operations {
             404: components["responses"]["NotFound"];
             409: components["responses"]["Refused"];
             422: components["responses"]["Invalid"];
+            503: components["responses"]["NoKernel"];
+        };
+    };
+    beginJog: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["JogStart"];
+            };
+        };
+        responses: {
+            /** @description The proposal; abort it to end the jog. */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Proposal"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            404: components["responses"]["NotFound"];
+            409: components["responses"]["Refused"];
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoKernel"];
+        };
+    };
+    renewJog: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["parameters"]["ProposalId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The proposal. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Proposal"];
+                };
+            };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            /** @description JOG_LAPSED. */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
             503: components["responses"]["NoKernel"];
         };
     };

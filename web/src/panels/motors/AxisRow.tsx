@@ -12,6 +12,7 @@ import { formatCounts } from "../../units/units";
 import { AxisActions } from "./AxisActions";
 import { explainDrive, explainFault, type FaultStory } from "./explain";
 import { GateList } from "./GateList";
+import { JogPad } from "./JogPad";
 import { OverrideSwitch } from "./OverrideSwitch";
 import { SwitchLamp } from "./SwitchLamp";
 import { TargetEntry } from "./TargetEntry";
@@ -135,11 +136,12 @@ function DriveWords({ motor, axis }: AxisProps) {
           )}
           {story.text} {story.nextStep !== "" && <span className="next-step">{story.nextStep}</span>}
         </p>
+        {axis.state !== "DISABLED" && <JogPad motor={motor} axis={axis} />}
         <button
           type="button"
           className="button quiet why"
           aria-expanded={asked}
-          aria-label={`Why is ${motor.title} not moving?`}
+          aria-label={`${asked ? "Close" : "Why not moving?"} ${motor.title}`}
           onClick={() => setAsked(!asked)}
         >
           {asked ? "Close" : "Why not moving?"}
