@@ -18,7 +18,7 @@ reports := build/reports
 export PATH := $(CURDIR)/build/venv/bin:$(PATH)
 export PYTHONDONTWRITEBYTECODE := 1
 
-web_sources = $(shell find web spec/openapi.yaml -name node_modules -prune -o -name dist -prune -o -type f -print)
+web_sources = $(shell find web kernel/src kernel/include spec/openapi.yaml -name node_modules -prune -o -name dist -prune -o -type f -print)
 
 .PHONY: help
 help: ## List the targets
@@ -59,7 +59,7 @@ test-unit: build ## Run the GoogleTest programs
 	@mkdir -p $(reports)
 	@ctest --preset release --progress --no-tests=error --output-junit $(CURDIR)/$(reports)/unit.xml
 
-test-console: setup ## Run the console's unit tests
+test-console: setup ## Run the console's unit tests, and compare its kernel with the native one
 	@npm --prefix web run --silent test -- --reporter=default --reporter=junit --outputFile=../$(reports)/console.xml
 
 test-integration: build ## Run the tests on real processes
@@ -89,7 +89,7 @@ selftest-all: setup ## Show that every seeded fault turns its test or proof red
 
 .PHONY: verify
 verify: ## Climb the verification ladder: [FRESH=1] runs again what has not changed
-	@$(setup) packages provers
+	@$(setup) packages python provers
 	@/usr/bin/python3 verification/evidence/verify.py
 
 .PHONY: campaign campaign-selftest
@@ -124,4 +124,4 @@ format: setup ## Rewrite C, C++ and Python in the project's style
 
 .PHONY: clean
 clean: ## Remove everything that was built; run-time state stays
-	rm -rf build web/dist web/node_modules
+	rm -rf build web/dist web/node_modules web/kernel/kernel.wasm

@@ -196,6 +196,22 @@ void Api::look_after_pedal(const ControlView& seen) {
   }
 }
 
+void Api::look_after_jogs(const ControlView& seen) {
+  for (const std::uint32_t id : jogs_.running()) {
+    const Proposal* jog = book_.find(id);
+    if (jog == nullptr || !is_open(jog->state)) {
+      jogs_.end(id);
+    }
+  }
+  // One that cannot be aborted now is tried again at the next beat.
+  for (const std::uint32_t id : jogs_.lapsed(seen, context_.steady_clock())) {
+    spdlog::warn("jog {} was not renewed for {} ms: it ends", id, JogDesk::patience.count());
+    if (const auto aborted = book_.abort(id); !aborted) {
+      spdlog::error("jog {} does not end: {}", id, aborted.error().detail);
+    }
+  }
+}
+
 void Api::look_after_sessions() {
   for (const StreamHub::Watcher& watcher : stream_.watchers()) {
     sessions_.touch(watcher.caller.session);
@@ -237,6 +253,7 @@ asio::awaitable<void> Api::beat() {
     }
     tell_biopsy(seen);
     look_after_pedal(seen);
+    look_after_jogs(seen);
     look_after_sessions();
   }
 }

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "http/context.hpp"
+#include "http/jog_desk.hpp"
 #include "http/log_tail.hpp"
 #include "http/navigation.hpp"
 #include "http/router.hpp"
@@ -18,6 +19,7 @@
 #include "http/routes/bench_routes.hpp"
 #include "http/routes/biopsy_routes.hpp"
 #include "http/routes/communication_routes.hpp"
+#include "http/routes/jog_routes.hpp"
 #include "http/routes/log_routes.hpp"
 #include "http/routes/mode_routes.hpp"
 #include "http/routes/motor_routes.hpp"
@@ -59,8 +61,8 @@ class Api {
   /** Follows the control thread's notices; ends with the io_context. */
   boost::asio::awaitable<void> listen() { return control_.listen(); }
 
-  /** Sends the state to the stream 30 times a second and looks after the bench pedal and the authority; ends
-   * with the io_context. */
+  /** Sends the state to the stream 30 times a second and looks after the bench pedal, jogs and the authority;
+   * ends with the io_context. */
   boost::asio::awaitable<void> beat();
 
   /** Ends sessions that are over and logs how often the last line came again, after each pause; ends with the
@@ -77,6 +79,7 @@ class Api {
   void follow_streams();
   void tell_biopsy(const ControlView& seen);
   void look_after_pedal(const ControlView& seen);
+  void look_after_jogs(const ControlView& seen);
   void look_after_sessions();
   boost::asio::awaitable<tl::expected<std::optional<Session>, Problem>> session_of(const Request& request);
 
@@ -90,6 +93,7 @@ class Api {
   Authority authority_;
   WorkPool work_;
   LoadedTrajectory trajectory_;
+  JogDesk jogs_;
   Context context_;
   Navigation navigation_;
   Router router_;
@@ -98,6 +102,7 @@ class Api {
   PositionRoutes position_routes_{context_, router_}; /**< before the axes, whose pattern its paths match */
   MotorRoutes motor_routes_{context_, router_};
   ProposalRoutes proposal_routes_{context_, router_};
+  JogRoutes jog_routes_{context_, jogs_, router_};
   BenchRoutes bench_routes_{context_, router_};
   BiopsyRoutes biopsy_routes_{context_, router_};
   AccountRoutes account_routes_{context_, router_};

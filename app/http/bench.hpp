@@ -9,13 +9,16 @@
 
 #include "http/access.hpp"
 #include "http/bench_client.hpp"
-#include "http/bench_pedal.hpp"
+#include "http/held_lease.hpp"
 #include "http/message.hpp"
 
 namespace interlock::web {
 
 class Bench {
  public:
+  /** For which a pedal stays down without a renewal. */
+  static constexpr std::chrono::milliseconds pedal_patience{500};
+
   /** An empty `socket_path` means that the hardware is real. */
   Bench(const boost::asio::any_io_executor& executor, const std::string& socket_path);
 
@@ -49,7 +52,7 @@ class Bench {
                                          std::uint32_t session);
 
   std::optional<BenchClient> client_;
-  BenchPedal pedal_;
+  HeldLease pedal_{pedal_patience};
   std::uint32_t presser_ = 0; /**< session that pressed last */
 };
 

@@ -1,6 +1,7 @@
 #include "http/stream_message.hpp"
 
 #include <algorithm>
+#include <bit>
 
 #include "interlock/sim_bus.h"
 #include "motion/axis_plan.hpp"
@@ -85,6 +86,13 @@ void put_slot(Words& words, const ControlView& view, const ilk_axis_config_t& ru
   words.put(range.highest_counts);
 }
 
+/** The kernel's state, word for word. */
+void put_state(Words& words, const ilk_state_t& state) {
+  for (const std::uint32_t word : std::bit_cast<std::array<std::uint32_t, stream_state_words>>(state)) {
+    words.put(word);
+  }
+}
+
 }  // namespace
 
 OpenTargets open_targets(const Robot& robot, const ProposalBook& book) {
@@ -107,6 +115,7 @@ StreamMessage encode_state(const ControlView& view, const ilk_config_t& config, 
   for (std::size_t slot = 0; slot < ILK_SLOTS; ++slot) {
     put_slot(words, shown, config.axis[slot], view.attached ? targets[slot] : OpenTarget{}, slot);
   }
+  put_state(words, shown.snapshot.state);
   return message;
 }
 

@@ -4,12 +4,15 @@ import { expect, type Locator, type Page } from "@playwright/test";
 export class Axis {
   readonly row: Locator;
   readonly track: Locator;
+  /** What the kernel in the page says of the target that is typed or dragged. */
+  readonly foretelling: Locator;
 
   constructor(
     private readonly page: Page,
     private readonly title: string,
   ) {
     this.row = page.getByRole("listitem", { name: `Axis ${title}`, exact: true });
+    this.foretelling = this.row.getByRole("status").filter({ hasText: /would|cannot be told/ });
     this.track = page.getByRole("slider", { name: `${title} target` });
   }
 
@@ -138,7 +141,15 @@ export class ConsolePage {
     await expect(this.authority).toContainText("(you)");
   }
 
-  async open(page: "Robot" | "Users" | "Audit" | "Account"): Promise<void> {
+  /** Presses the theme's button until it is that one. */
+  async chooseTheme(theme: "light" | "dark"): Promise<void> {
+    await expect(async () => {
+      await this.page.getByRole("button", { name: /^Theme:/ }).click();
+      await expect(this.button(`Theme: ${theme}`)).toBeVisible({ timeout: 200 });
+    }).toPass();
+  }
+
+  async open(page: "Robot" | "Codes" | "Users" | "Audit" | "Account"): Promise<void> {
     await this.page.getByRole("link", { name: page }).click();
   }
 

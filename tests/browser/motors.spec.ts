@@ -98,7 +98,7 @@ test("Zero all asks first, and shows the verdict of every axis", async ({ robot,
 test("Why not moving? marks the gate that blocks, with the next step", async ({ robot }) => {
   const axis = robot.axis("Yaw");
   await robot.unlockRobot();
-  await axis.row.getByRole("button", { name: "Why is Yaw not moving?" }).click();
+  await axis.row.getByRole("button", { name: "Why not moving? Yaw" }).click();
   const gates = axis.row.getByRole("list", { name: "Gates of Yaw" });
   const line = (gate: string) => gates.getByRole("listitem").filter({ hasText: gate });
   await expect(line("MODE")).toContainText("BLOCKS");

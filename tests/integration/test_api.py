@@ -2,6 +2,8 @@
 
 import json
 import signal
+import struct
+import zlib
 from collections.abc import Iterator
 
 import httpx
@@ -68,6 +70,15 @@ def test_every_readable_path_answers_as_described(robot: Stack) -> None:
         "/api/bench",
     ):
         assert judge(robot.api.get(target)).status_code == 200
+
+
+def test_the_configuration_for_the_page_is_the_one_that_the_kernel_runs(robot: Stack) -> None:
+    answer = judge(robot.api.get("/api/kernel/configuration")).raise_for_status().json()
+    words = answer["words"]
+    packed = struct.pack(f"<{len(words)}I", *words)
+    assert words[1] == len(packed)
+    assert zlib.crc32(packed[:-4]) == words[-1]
+    assert answer["crc"] == f"{words[-1]:08x}" == robot.status()["config_crc"]
 
 
 def test_every_path_answers_its_methods_and_no_others(robot: Stack) -> None:

@@ -29,7 +29,8 @@ def decode(message: bytes) -> tuple[dict[str, int], list[dict[str, int]]]:
     for field in layout["header"]:
         if "value" in field:
             assert header[field["name"]] == field["value"], field
-    assert len(message) == header_bytes + header["slots"] * slot_bytes
+    state_bytes = 4 * layout["state_words"]
+    assert len(message) == header_bytes + header["slots"] * slot_bytes + state_bytes
     slots = [block(layout["slot"], header_bytes + slot * slot_bytes) for slot in range(header["slots"])]
     return header, slots
 

@@ -7,6 +7,7 @@ import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import page
 from catalog import families
 from emit import case_header
 from table import Phase, Table, TableError, load_phase, read_rows
@@ -30,6 +31,7 @@ class Report:
     proved: int = 0
     proved_rows: int = 0
     reached: int = 0
+    page_rows: int = 0
     seconds: float = 0.0
     faults: list[str] = field(default_factory=list)
 
@@ -97,6 +99,11 @@ def explain(table: Table, line: str) -> str:
 def run_rows(table: Table, folder: Path) -> list[str]:
     """The compiled kernel on all rows; what differs."""
     _, text = run([str(folder / "run_rows"), str(folder / "rows.bin")], folder / "rows.log")
+    return differences(table, text, folder)
+
+
+def differences(table: Table, text: str, folder: Path) -> list[str]:
+    """What the run of all rows found. Raises ToolError when it did not come to their end."""
     end = re.search(r"^ROWS (\d+) DIFFERENCES (\d+)$", text, re.MULTILINE)
     if end is None or int(end[1]) != len(table.rows):
         raise ToolError(
@@ -129,6 +136,10 @@ def check(name: str) -> Report:
         build(phase, table, folder, KERNEL)
         report.table, report.rows, report.states = table.digest(), len(table.rows), table.states()
         report.faults += run_rows(table, folder)
+        if page.is_asked(phase):
+            text = page.run_rows(phase, table, folder / "rows.bin", report.model)
+            report.faults += [f"in the page: {fault}" for fault in differences(table, text, folder / "page")]
+            report.page_rows = report.rows
         if not phase.rows_only:
             prove(phase, folder, KERNEL, report)
     except (TableError, ToolError) as error:

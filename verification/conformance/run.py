@@ -34,6 +34,7 @@ def figures_of(reports: list[phases.Report], found: int, steps: int) -> dict[str
         "rows_proved": sum(report.proved_rows for report in reports),
         "assertions_proved": sum(report.proved for report in reports),
         "answers_reached": sum(report.reached for report in reports),
+        "page_rows": sum(report.page_rows for report in reports),
         "mismatches": sum(len(report.faults) for report in reports),
         "planted_found": found,
         "trace_steps": steps,

@@ -2,6 +2,7 @@ import { AccountPage } from "./panels/account/AccountPage";
 import { AuditPage } from "./panels/audit/AuditPage";
 import { BenchPanel } from "./panels/bench/BenchPanel";
 import { BiopsyPanel } from "./panels/biopsy/BiopsyPanel";
+import { CodesPage } from "./panels/codes/CodesPage";
 import { CommunicationPanel } from "./panels/communication/CommunicationPanel";
 import { Cover } from "./panels/cover/Cover";
 import { Header } from "./panels/header/Header";
@@ -12,6 +13,7 @@ import { NavigationPanel } from "./panels/navigation/NavigationPanel";
 import { ProposalsPanel } from "./panels/proposals/ProposalsPanel";
 import { StatusPanel } from "./panels/status/StatusPanel";
 import { UsersPage } from "./panels/users/UsersPage";
+import { WhyPanel } from "./panels/why/WhyPanel";
 import { useRoute } from "./state/route";
 import { useConsole } from "./state/store";
 
@@ -28,6 +30,7 @@ export function App() {
 function Page() {
   const route = useRoute();
   const admin = useConsole((state) => state.login.phase === "in" && state.login.user.role === "admin");
+  if (route === "codes") return <Sheet of={CodesPage} />;
   if (route === "account") return <Sheet of={AccountPage} />;
   if (route === "users" && admin) return <Sheet of={UsersPage} />;
   if (route === "audit" && admin) return <Sheet of={AuditPage} />;
@@ -59,6 +62,7 @@ function RobotPage() {
           {simulated && <BenchPanel />}
           {takesBiopsies && <BiopsyPanel />}
           <ProposalsPanel />
+          <WhyPanel />
           <StatusPanel />
         </div>
       </main>

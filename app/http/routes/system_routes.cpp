@@ -2,9 +2,13 @@
 
 #include <spdlog/spdlog.h>
 
+#include <array>
+#include <bit>
+
 #include "http/problems.hpp"
 #include "http/status_json.hpp"
 #include "robot/catalog.hpp"
+#include "robot/compile.hpp"
 
 namespace interlock::web {
 namespace {
@@ -17,6 +21,8 @@ using nlohmann::json;
 
 SystemRoutes::SystemRoutes(const Context& context, Router& router) : context_(context) {
   router.add(verb::get, "/api/status", anybody, [this](const Call&) -> Answering { co_return status(); });
+  router.add(verb::get, "/api/kernel/configuration", viewers,
+             [this](const Call&) -> Answering { co_return configuration(); });
   router.add(verb::post, "/api/stop", anybody, [this](const Call& call) { return stop(call); });
   router.add(verb::post, "/api/reset", holder, [this](const Call& call) {
     return context_.ask_kernel(call.caller, ILK_REQUEST_RESET, 0, "reset");
@@ -33,6 +39,13 @@ SystemRoutes::SystemRoutes(const Context& context, Router& router) : context_(co
 Reply SystemRoutes::status() const {
   return Success{Status::ok, status_json(context_.robot, context_.config, context_.view(),
                                          context_.book.app_mode(), std::chrono::steady_clock::now())};
+}
+
+/** Of the app's robot file; whether the kernel runs it, its CRC tells. */
+Reply SystemRoutes::configuration() const {
+  using Words = std::array<std::uint32_t, sizeof(ilk_config_t) / sizeof(std::uint32_t)>;
+  return Success{
+      .body = {{"crc", config_hash(context_.config)}, {"words", std::bit_cast<Words>(context_.config)}}};
 }
 
 Answering SystemRoutes::stop(const Call& call) const {

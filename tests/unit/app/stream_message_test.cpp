@@ -44,6 +44,16 @@ TEST(StreamMessage, ShowsTheOpenTargetOfAnAxis) {
   EXPECT_EQ(std::bit_cast<std::int32_t>(words[slot + 7]), -7);
 }
 
+TEST(StreamMessage, EndsWithTheStateOfTheKernelWordForWord) {
+  ControlView view = test::ready_view();
+  view.snapshot.state.seal = 0x89ABCDEFu;
+  const auto words = words_of(encode_state(view, test::neuro_config(), {}, view.received));
+  const std::size_t state = stream_header_words + ILK_SLOTS * stream_slot_words;
+  ASSERT_EQ(words.size(), state + sizeof(ilk_state_t) / 4);
+  EXPECT_EQ(std::memcmp(&words[state], &view.snapshot.state, sizeof(ilk_state_t)), 0);
+  EXPECT_EQ(words.back(), 0x89ABCDEFu);
+}
+
 TEST(StreamMessage, SaturatesItsAge) {
   const ControlView view = test::ready_view();
   const auto later = [&](auto age) {

@@ -6,6 +6,8 @@ type Schemas = components["schemas"];
 
 export type Motor = Schemas["Motor"];
 export type Proposal = Schemas["Proposal"];
+export type JogStart = Schemas["JogStart"];
+export type JogDirection = JogStart["direction"];
 export type ProposalDraft = Schemas["ProposalDraft"];
 export type Status = Schemas["Status"];
 export type CardStatus = Status["cards"][number];
@@ -18,6 +20,7 @@ export type UserChange = Schemas["UserChange"];
 export type Authority = Schemas["Authority"];
 export type Claim = Schemas["Claim"];
 export type Robot = Schemas["Robot"];
+export type KernelConfiguration = Schemas["KernelConfiguration"];
 export type ModeAnswer = Schemas["ModeAnswer"];
 export type AxisVerdict = Schemas["AxisVerdicts"][number];
 export type PositionsFile = Schemas["PositionsFile"];
@@ -155,6 +158,7 @@ export const api = {
     act(() => http.POST("/api/authority/hand-over", { body: { session } })),
   takeOverAuthority: () => act(() => http.POST("/api/authority/take-over")),
 
+  kernelConfiguration: () => read(() => http.GET("/api/kernel/configuration")),
   robots: () => read(() => http.GET("/api/robots")),
   mode: () => read(() => http.GET("/api/mode")),
   setMode: (mode: string) => act(() => http.PUT("/api/mode", { body: { mode } })),
@@ -171,6 +175,8 @@ export const api = {
   zeroAll: () => act(() => slowHttp.POST("/api/motors/zero-all")),
   proposals: () => read(() => http.GET("/api/proposals")),
   propose: (draft: ProposalDraft) => act(() => http.POST("/api/proposals", { body: draft })),
+  beginJog: (start: JogStart) => act(() => http.POST("/api/jog", { body: start })),
+  renewJog: (id: number) => act(() => http.PUT("/api/jog/{id}", { params: { path: { id } } })),
   approve: (id: number) => act(() => http.POST("/api/proposals/{id}/approve", { params: { path: { id } } })),
   abort: (id: number) => act(() => http.POST("/api/proposals/{id}/abort", { params: { path: { id } } })),
   reset: () => act(() => http.POST("/api/reset")),

@@ -220,6 +220,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/kernel/configuration": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * The binary configuration that the app's robot file compiles to, for whoever runs the kernel's code beside the
+         *     kernel, as the console does to tell what it would answer. The kernel runs the same one when its `config_crc` is `crc`.
+         */
+        get: operations["getKernelConfiguration"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/robots": {
         parameters: {
             query?: never;
@@ -754,6 +774,46 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/jog": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Proposes a move to the end of the axis' range in a direction, which goes on only while it is renewed: 200 ms after the
+         *     last renewal the app aborts it, of the kernel's time in the simulated clock, of the wall's else. It moves while the
+         *     pedal is held, as every move. RANGE where the axis stands at that end.
+         */
+        post: operations["beginJog"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/jog/{id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["parameters"]["ProposalId"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        /** Goes on with a jog. One that has ended, or was not renewed in time, does not come back (JOG_LAPSED). */
+        put: operations["renewJog"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/proposals/{id}": {
         parameters: {
             query?: never;
@@ -919,7 +979,7 @@ export interface components {
              * @description Verdict name, or NOT_FOUND, METHOD_NOT_ALLOWED, MALFORMED, INVALID, TOO_LARGE, HOST, ORIGIN, UPGRADE_REQUIRED,
              *     LOGIN, CREDENTIALS, BACK_OFF, ROLE, AUTHORITY, EXISTS, LAST_ADMIN, STORE, STOPPED, MODE_HOME, MODE_PATH, NOT_HOMED, SEPARATION, HAS_SWITCH,
              *     POSITIONS_ROBOT, POSITIONS_CONFIG, POSITIONS_VERSION,
-             *     NO_KERNEL, NO_BENCH, PEDAL_LAPSED, CONFIG_MISMATCH, ENDED, OVERLOADED, INTERNAL; of paths NO_PATH, UNREACHABLE, STALE,
+             *     NO_KERNEL, NO_BENCH, PEDAL_LAPSED, JOG_LAPSED, CONFIG_MISMATCH, ENDED, OVERLOADED, INTERNAL; of paths NO_PATH, UNREACHABLE, STALE,
              *     EMPTY, NO_TARGETS, NOT_WAITING; of a trajectory or a pose a code of `interlock trajectory check` or of `interlock kinematics`.
              */
             code: string;
@@ -1070,6 +1130,11 @@ export interface components {
             /** @description Upper bound of the drive; default: the axis' bound. */
             drive?: number;
         };
+        JogStart: {
+            slot: number;
+            /** @enum {string} */
+            direction: "increasing" | "decreasing";
+        };
         Proposal: {
             id: number;
             /** @enum {string} */
@@ -1184,6 +1249,12 @@ export interface components {
         HandOver: {
             /** @description Of one of the requests. */
             session: number;
+        };
+        KernelConfiguration: {
+            /** @description The last word, eight hex digits. */
+            crc: string;
+            /** @description `ilk_config_t` of kernel/include/interlock/types.h, word for word. */
+            words: number[];
         };
         Robot: {
             name: string;
@@ -2050,6 +2121,27 @@ export interface operations {
             401: components["responses"]["Login"];
             403: components["responses"]["Role"];
             503: components["responses"]["NoStore"];
+        };
+    };
+    getKernelConfiguration: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Configuration. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["KernelConfiguration"];
+                };
+            };
+            401: components["responses"]["Login"];
         };
     };
     listRobots: {
@@ -2934,6 +3026,71 @@ export interface operations {
             404: components["responses"]["NotFound"];
             409: components["responses"]["Refused"];
             422: components["responses"]["Invalid"];
+            503: components["responses"]["NoKernel"];
+        };
+    };
+    beginJog: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["JogStart"];
+            };
+        };
+        responses: {
+            /** @description The proposal; abort it to end the jog. */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Proposal"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            404: components["responses"]["NotFound"];
+            409: components["responses"]["Refused"];
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoKernel"];
+        };
+    };
+    renewJog: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["parameters"]["ProposalId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The proposal. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Proposal"];
+                };
+            };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            /** @description JOG_LAPSED. */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
             503: components["responses"]["NoKernel"];
         };
     };

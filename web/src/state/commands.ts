@@ -1,6 +1,14 @@
 /** What a click does: one call to the app, its answer into the store. */
-import { type Authority, type AxisAction, api, type Outcome, type ProposalDraft } from "../api/client";
+import {
+  type Authority,
+  type AxisAction,
+  api,
+  type JogDirection,
+  type Outcome,
+  type ProposalDraft,
+} from "../api/client";
 import { leave } from "./feed";
+import type { HoldStep, SendStep } from "./hold";
 import { noticeOfProblem } from "./notice";
 import { type Place, useConsole, withBenchAnswer, withNotice } from "./store";
 
@@ -55,6 +63,25 @@ export async function abort(id: number, slot: number | null): Promise<void> {
   tell(slot ?? "robot", await api.abort(id));
 }
 
+/** One jog of an axis: begins, renews and ends it; a refusal is shown at the axis. */
+export function jogger(slot: number, direction: JogDirection): SendStep {
+  let id: number | null = null;
+  return async (step) => {
+    if (step === "press") {
+      const begun = await api.beginJog({ slot, direction });
+      id = begun.ok ? begun.value.id : null;
+      tell(slot, begun);
+      return begun.ok;
+    }
+    if (id === null) return false;
+    if (step === "renew") return (await api.renewJog(id)).ok;
+    const ended = id;
+    id = null;
+    // A jog that came to its end, or that the app has ended, needs no end.
+    return (await api.abort(ended)).ok;
+  };
+}
+
 /** Approves a proposal that waits for it; a refusal is shown where the robot's are. */
 export async function approve(id: number): Promise<void> {
   tell("robot", await api.approve(id));
@@ -79,14 +106,14 @@ export async function bench(command: string, fields: Record<string, unknown>): P
   useConsole.setState((state) => withBenchAnswer(state, command, notice));
 }
 
-const pedalFields = {
+const pedalFields: Record<HoldStep, Record<string, unknown>> = {
   press: { pressed: true },
   renew: { pressed: true, renew: true },
   release: { pressed: false },
-} as const;
+};
 
 /** Moves the simulated pedal. The refusal of a renewal stays in sight until the next press. */
-export async function movePedal(footwork: keyof typeof pedalFields): Promise<boolean> {
+export async function movePedal(footwork: HoldStep): Promise<boolean> {
   const outcome = await api.benchCommand("pedal", pedalFields[footwork]);
   const notice = outcome.ok ? null : noticeOfProblem(outcome.problem);
   if (footwork === "press" || notice !== null) {

@@ -1,5 +1,6 @@
 /** Feeds the store: session, stream, what the app knows that the stream does not carry, and the passing of time. */
 import { api, onLoggedOut, type Session } from "../api/client";
+import { kernelWith } from "../kernel/asking";
 import { openStream, type Phase } from "../stream/connection";
 import { decodeFrame, FrameError } from "../stream/decode";
 import { MOST_LINES, mergeLines } from "./log";
@@ -133,9 +134,10 @@ async function loadDescription(): Promise<void> {
   clearTimeout(reload);
   describedConfigCrc = null;
   const before = useConsole.getState();
-  const [robots, motors, mode, authority, logs, proposals] = await Promise.all([
+  const [robots, motors, configuration, mode, authority, logs, proposals] = await Promise.all([
     api.robots(),
     api.motors(),
+    api.kernelConfiguration(),
     api.mode(),
     api.authority(),
     api.logs(MOST_LINES),
@@ -145,6 +147,9 @@ async function loadDescription(): Promise<void> {
   const robot = robots.ok ? robots.value[0] : undefined;
   if (robot !== undefined) useConsole.setState({ robot });
   if (motors.ok) useConsole.setState({ motors: motors.value });
+  const pageKernel = configuration.ok ? await kernelWith(configuration.value) : null;
+  if (useConsole.getState().login.phase !== "in") return;
+  useConsole.setState({ pageKernel });
   // What the stream told meanwhile is newer than the answer.
   const { mode: newestMode, authority: newestAuthority } = useConsole.getState();
   if (mode.ok && newestMode === before.mode) useConsole.setState({ mode: mode.value });
@@ -161,7 +166,8 @@ async function loadDescription(): Promise<void> {
       proposals: mergeProposals(newSince(before.proposals, state.proposals), proposals.value),
     }));
   }
-  const complete = robots.ok && motors.ok && mode.ok && authority.ok && logs.ok && proposals.ok;
+  const complete =
+    robots.ok && motors.ok && configuration.ok && mode.ok && authority.ok && logs.ok && proposals.ok;
   if (complete) describedConfigCrc = useConsole.getState().frame?.configCrc ?? null;
   else reload = setTimeout(() => void loadDescription(), RETRY_PAUSE_MS);
 }

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { routeOf } from "./route";
+import { codeHash, codeOf, routeOf } from "./route";
 
 describe("routeOf", () => {
   it.each([
@@ -10,7 +10,22 @@ describe("routeOf", () => {
     ["#/account", "account"],
     ["#/nowhere", "robot"],
     ["#/users/7", "robot"],
+    ["#/codes", "codes"],
+    ["#/codes/verdict/RANGE", "codes"],
   ])("%j is the page %s", (hash, route) => {
     expect(routeOf(hash)).toBe(route);
   });
+});
+
+describe("codeOf", () => {
+  it("finds the code that a link leads to", () => {
+    expect(codeOf(codeHash("verdict", "RANGE"))).toEqual({ family: "verdict", code: "RANGE" });
+  });
+
+  it.each(["#/codes", "#/codes/verdict", "#/codes/verdict/NOTHING", "#/codes/toString/RANGE", "#/users"])(
+    "finds none in %j",
+    (hash) => {
+      expect(codeOf(hash)).toBeNull();
+    },
+  );
 });

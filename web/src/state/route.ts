@@ -1,13 +1,41 @@
 /** The page that is shown, kept in the hash, so that reloading, links and the back button work. */
 import { useSyncExternalStore } from "react";
+import { catalog, type Family } from "../generated/catalog";
 
-export const routes = ["robot", "users", "audit", "account"] as const;
+export const routes = ["robot", "codes", "users", "audit", "account"] as const;
 export type Route = (typeof routes)[number];
 
-/** The page that a hash names; the robot for every other. */
+/** A place in the catalog of codes. */
+export interface CodePlace {
+  readonly family: Family;
+  readonly code: string;
+}
+
+/** The page that a hash names; the robot for every other. Only the codes have places within. */
 export function routeOf(hash: string): Route {
-  const name = hash.replace(/^#\/?/, "");
-  return routes.find((route) => route === name) ?? "robot";
+  const [name, ...place] = segments(hash);
+  const named = routes.find((route) => route === name);
+  return named === undefined || (place.length > 0 && named !== "codes") ? "robot" : named;
+}
+
+/** The code that a hash leads to; null when it names none. */
+export function codeOf(hash: string): CodePlace | null {
+  const [page, family, code] = segments(hash);
+  if (page !== "codes" || family === undefined || !isFamily(family)) return null;
+  return catalog[family].some(({ name }) => name === code) ? { family, code: code ?? "" } : null;
+}
+
+/** The hash that leads to a code. */
+export function codeHash(family: Family, code: string): string {
+  return `#/codes/${family}/${code}`;
+}
+
+function segments(hash: string): string[] {
+  return hash.replace(/^#\/?/, "").split("/");
+}
+
+function isFamily(name: string): name is Family {
+  return Object.hasOwn(catalog, name);
 }
 
 function subscribe(listener: () => void): () => void {
@@ -15,6 +43,15 @@ function subscribe(listener: () => void): () => void {
   return () => window.removeEventListener("hashchange", listener);
 }
 
+function useHash(): string {
+  return useSyncExternalStore(subscribe, () => window.location.hash);
+}
+
 export function useRoute(): Route {
-  return useSyncExternalStore(subscribe, () => routeOf(window.location.hash));
+  return routeOf(useHash());
+}
+
+export function useCodePlace(): CodePlace | null {
+  const hash = useHash();
+  return codeOf(hash);
 }

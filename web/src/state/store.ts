@@ -11,6 +11,7 @@ import type {
   Status,
   User,
 } from "../api/client";
+import type { ConfiguredKernel } from "../kernel/asking";
 import type { Phase } from "../stream/connection";
 import type { Frame, Glance } from "../stream/decode";
 import { type Freshness, judgeFreshness, polled, streamed } from "./freshness";
@@ -47,6 +48,8 @@ export interface ConsoleState {
   readonly statusAtMs: number | null;
   readonly robot: Robot | null;
   readonly motors: readonly Motor[];
+  /** The kernel in the page; null until it is loaded, and where it cannot be. */
+  readonly pageKernel: ConfiguredKernel | null;
   readonly mode: ModeAnswer | null;
   readonly authority: Authority | null;
   /** Why the authority did not change as asked. */
@@ -81,6 +84,7 @@ export const initialState: ConsoleState = {
   statusAtMs: null,
   robot: null,
   motors: [],
+  pageKernel: null,
   mode: null,
   authority: null,
   authorityNotice: null,

@@ -1,15 +1,20 @@
 import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
-import { decodeFrame, FrameError, headerFields, signedSlotFields, slotFields } from "./decode";
+import { decodeFrame, FrameError, headerFields, STATE_WORDS, signedSlotFields, slotFields } from "./decode";
 
 type Words = Record<string, number>;
 
-const soundHeader: Words = { magic: 0x53574b49, version: 1, connected: 1, slots: 10 };
+const soundHeader: Words = { magic: 0x53574b49, version: 2, connected: 1, slots: 10 };
 
-function message(header: Words = {}, slots: Record<number, Words> = {}): ArrayBuffer {
+function message(
+  header: Words = {},
+  slots: Record<number, Words> = {},
+  state: readonly number[] = [],
+): ArrayBuffer {
   const values = { ...soundHeader, ...header };
   const words = headerFields.map((name) => values[name] ?? 0);
   for (let slot = 0; slot < 10; slot++) words.push(...slotFields.map((name) => slots[slot]?.[name] ?? 0));
+  words.push(...Array.from({ length: STATE_WORDS }, (_, index) => state[index] ?? 0));
   const view = new DataView(new ArrayBuffer(words.length * 4));
   words.forEach((word, index) => {
     view.setUint32(index * 4, word >>> 0, true);
@@ -17,9 +22,13 @@ function message(header: Words = {}, slots: Record<number, Words> = {}): ArrayBu
   return view.buffer;
 }
 
-function contractFields(block: "header" | "slot"): { name: string; signed: boolean }[] {
+function contract(): string {
   const yaml = readFileSync(new URL("../../../spec/openapi.yaml", import.meta.url), "utf8");
-  const stream = yaml.slice(yaml.indexOf("x-stream:\n"));
+  return yaml.slice(yaml.indexOf("x-stream:\n"));
+}
+
+function contractFields(block: "header" | "slot"): { name: string; signed: boolean }[] {
+  const stream = contract();
   const section = stream.slice(stream.indexOf(`    ${block}:`));
   const lines = section.split("\n").slice(1);
   const end = lines.findIndex((line) => !line.startsWith("      - "));
@@ -33,6 +42,10 @@ describe("the field tables", () => {
   it("are those of spec/openapi.yaml, in its order", () => {
     expect(headerFields).toEqual(contractFields("header").map((field) => field.name));
     expect(slotFields).toEqual(contractFields("slot").map((field) => field.name));
+  });
+
+  it("leave room for the state that spec/openapi.yaml names", () => {
+    expect(contract()).toContain(`state_words: ${STATE_WORDS}\n`);
   });
 
   it("agree with spec/openapi.yaml about signs", () => {
@@ -72,6 +85,12 @@ describe("decodeFrame", () => {
     expect(frame.axes[9]?.cardValid).toBe(true);
   });
 
+  it("hands the kernel's state on byte for byte", () => {
+    const { state } = decodeFrame(message({}, {}, [0x04030201]));
+    expect(state.length).toBe(4 * STATE_WORDS);
+    expect([...state.subarray(0, 5)]).toEqual([1, 2, 3, 4, 0]);
+  });
+
   it("keeps tick and counters unsigned", () => {
     expect(decodeFrame(message({ tick: 0xffffffff })).tick).toBe(4294967295);
   });
@@ -88,7 +107,7 @@ describe("decodeFrame", () => {
     ["too short", message().slice(4)],
     ["empty", new ArrayBuffer(0)],
     ["of another magic", message({ magic: 1 })],
-    ["of another version", message({ version: 2 })],
+    ["of another version", message({ version: 1 })],
     ["of another slot count", message({ slots: 9 })],
   ])("refuses a message that is %s", (_, bytes) => {
     expect(() => decodeFrame(bytes)).toThrow(FrameError);

@@ -1,12 +1,13 @@
 /**
  * The stream's binary message, as `components/x-stream` of spec/openapi.yaml lays it down:
- * little-endian 32-bit words, a header and one block for each slot.
+ * little-endian 32-bit words, a header, one block for each slot, and the kernel's whole state.
  */
 import { type CodeName, entry, type Family } from "../generated/catalog";
 
 const MAGIC = 0x53574b49;
-const VERSION = 1;
+const VERSION = 2;
 const SLOTS = 10;
+export const STATE_WORDS = 377;
 
 export const headerFields = [
   "magic",
@@ -111,15 +112,18 @@ export interface Frame extends Glance {
   readonly lamps: readonly Code<"colour">[];
   /** By slot. */
   readonly axes: readonly AxisFrame[];
+  /** `ilk_state_t`, for the kernel in the page. */
+  readonly state: Uint8Array;
 }
 
 /** The message is not one that this console understands; the text says what differs. */
 export class FrameError extends Error {}
 
 const WORD = 4;
-const MESSAGE_BYTES = (headerFields.length + SLOTS * slotFields.length) * WORD;
+const STATE_OFFSET = (headerFields.length + SLOTS * slotFields.length) * WORD;
+const MESSAGE_BYTES = STATE_OFFSET + STATE_WORDS * WORD;
 
-/** @throws FrameError when length, magic, version or slot count is not that of version 1. */
+/** @throws FrameError when length, magic, version or slot count is not that of version 2. */
 export function decodeFrame(message: ArrayBuffer): Frame {
   if (message.byteLength !== MESSAGE_BYTES) {
     throw new FrameError(`stream message of ${message.byteLength} bytes, expected ${MESSAGE_BYTES}`);
@@ -154,6 +158,7 @@ export function decodeFrame(message: ArrayBuffer): Frame {
     configCrc: header.config_crc.toString(16).padStart(8, "0"),
     lamps: [0, 8, 16, 24].map((shift) => nameOf("colour", (header.lamps >>> shift) & 0xff)),
     axes: Array.from({ length: SLOTS }, (_, slot) => decodeAxis(view, slot)),
+    state: new Uint8Array(message, STATE_OFFSET),
   };
 }
 

@@ -16,7 +16,8 @@ export function unitWord(scale: Scale): string {
   return scale.unit === "rad" ? "degrees" : "millimetres";
 }
 
-function shownPerCount(scale: Scale): number {
+/** What one count is in the unit that is shown. */
+export function shownPerCount(scale: Scale): number {
   return (scale.unit === "rad" ? DEGREES_PER_RADIAN : 1) / scale.counts_per_unit;
 }
 

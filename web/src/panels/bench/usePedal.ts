@@ -1,7 +1,10 @@
 import { useEffect, useState } from "react";
 import { movePedal } from "../../state/commands";
+import { Hold } from "../../state/hold";
 import { useConsole } from "../../state/store";
-import { PedalFoot } from "./pedal";
+
+/** The app releases the pedal 500 ms after the last renewal. */
+const RENEW_EVERY_MS = 150;
 
 /**
  * The pedal under a pointer, with a latch for those who need the pointer elsewhere. Whatever takes the page out
@@ -13,10 +16,11 @@ export function usePedal() {
   const [latched, setLatched] = useState(false);
   const blind = useConsole((state) => state.freshness.level === "covered");
   const [foot] = useState(() => {
-    return new PedalFoot(movePedal, () => {
+    const lift = (): void => {
       setHeld(false);
       setLatched(false);
-    });
+    };
+    return new Hold(movePedal, lift, RENEW_EVERY_MS);
   });
   const down = (held || latched) && !blind;
 

@@ -1,10 +1,13 @@
 import { logout } from "../../state/commands";
 import { type Route, useRoute } from "../../state/route";
 import { useConsole } from "../../state/store";
+import { KeysHelp } from "../keys/KeysHelp";
 import { AuthorityBar } from "./AuthorityBar";
+import { ThemeButton } from "./ThemeButton";
 
 const pages: readonly { readonly route: Route; readonly title: string; readonly adminOnly: boolean }[] = [
   { route: "robot", title: "Robot", adminOnly: false },
+  { route: "codes", title: "Codes", adminOnly: false },
   { route: "users", title: "Users", adminOnly: true },
   { route: "audit", title: "Audit", adminOnly: true },
 ];
@@ -27,6 +30,8 @@ export function SessionBar() {
       </nav>
       <AuthorityBar />
       <div className="who">
+        <ThemeButton user={name} />
+        <KeysHelp />
         <a
           href="#/account"
           aria-current={shown === "account" ? "page" : undefined}

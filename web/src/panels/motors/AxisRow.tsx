@@ -3,6 +3,7 @@ import type { Motor } from "../../api/client";
 import { CommandButton } from "../../design/CommandButton";
 import { Refusal } from "../../design/Refusal";
 import { entry } from "../../generated/catalog";
+import { MoveForetelling } from "../../kernel/MoveForetelling";
 import { act } from "../../state/commands";
 import type { HomingPart } from "../../state/proposals";
 import { useConsole } from "../../state/store";
@@ -10,11 +11,13 @@ import type { AxisFrame } from "../../stream/decode";
 import { formatCounts } from "../../units/units";
 import { AxisActions } from "./AxisActions";
 import { explainDrive, explainFault, type FaultStory } from "./explain";
+import { GateList } from "./GateList";
+import { JogPad } from "./JogPad";
 import { OverrideSwitch } from "./OverrideSwitch";
 import { SwitchLamp } from "./SwitchLamp";
 import { TargetEntry } from "./TargetEntry";
 import { Track } from "./Track";
-import { WhyNotMoving } from "./WhyNotMoving";
+import { usePreview } from "./usePreview";
 
 interface AxisRowProps {
   readonly motor: Motor;
@@ -26,15 +29,18 @@ export function AxisRow({ motor, homing }: AxisRowProps) {
   const axis = useConsole((state) => state.frame?.axes[motor.slot]);
   const notice = useConsole((state) => state.notices[motor.slot]);
   const [overriding, setOverriding] = useState(false);
+  const [preview, setPreview] = usePreview();
+  const [typed, setTyped] = useState<number | null>(null);
   const leaveSwitch = useCallback(() => setOverriding(false), []);
   if (axis === undefined) return null;
   const fault = explainFault(axis);
+  const wished = preview?.counts ?? typed;
   return (
     <li className="axis-row" data-state={axis.state} aria-label={`Axis ${motor.title}`}>
       <Identity motor={motor} axis={axis} />
       <div className="track-area">
         <SwitchLamp motor={motor} axis={axis} side="LOWER" />
-        <Track motor={motor} axis={axis} />
+        <Track motor={motor} axis={axis} preview={preview} onPreview={setPreview} />
         <SwitchLamp motor={motor} axis={axis} side="UPPER" />
       </div>
       <output
@@ -46,10 +52,11 @@ export function AxisRow({ motor, homing }: AxisRowProps) {
         {formatCounts(motor, axis.positionCounts)}
         <small>{axis.positionCounts} counts</small>
       </output>
-      <TargetEntry motor={motor} />
+      <TargetEntry motor={motor} onTyped={setTyped} />
       <AxisActions motor={motor} axis={axis} homing={homing} onOverride={() => setOverriding(true)} />
       <div className="axis-words">
         {overriding && <OverrideSwitch motor={motor} onClose={leaveSwitch} />}
+        {wished !== null && <MoveForetelling motor={motor} axis={axis} targetCounts={wished} />}
         {fault === null ? (
           <DriveWords motor={motor} axis={axis} />
         ) : (
@@ -115,7 +122,9 @@ function Identity({ motor, axis }: AxisProps) {
 
 function DriveWords({ motor, axis }: AxisProps) {
   const [asked, setAsked] = useState(false);
-  const story = explainDrive(motor, axis);
+  const frame = useConsole((state) => state.frame);
+  if (frame === null) return null;
+  const story = explainDrive(frame, motor, axis);
   return (
     <>
       <div className="drive-line">
@@ -127,17 +136,18 @@ function DriveWords({ motor, axis }: AxisProps) {
           )}
           {story.text} {story.nextStep !== "" && <span className="next-step">{story.nextStep}</span>}
         </p>
+        {axis.state !== "DISABLED" && <JogPad motor={motor} axis={axis} />}
         <button
           type="button"
           className="button quiet why"
           aria-expanded={asked}
-          aria-label={`Why is ${motor.title} not moving?`}
+          aria-label={`${asked ? "Close" : "Why not moving?"} ${motor.title}`}
           onClick={() => setAsked(!asked)}
         >
           {asked ? "Close" : "Why not moving?"}
         </button>
       </div>
-      {asked && <WhyNotMoving title={motor.title} axis={axis} />}
+      {asked && <GateList motor={motor} axis={axis} />}
     </>
   );
 }

@@ -4,17 +4,30 @@ import { propose } from "../../state/commands";
 import { useReason } from "../../state/useReason";
 import { parseEntry, unitName, unitWord } from "../../units/units";
 
+interface TargetEntryProps {
+  readonly motor: Motor;
+  /** Told of what is typed: counts, null while it is no target and once it was proposed. */
+  readonly onTyped: (counts: number | null) => void;
+}
+
 /** A target typed in the axis' unit. */
-export function TargetEntry({ motor }: { readonly motor: Motor }) {
+export function TargetEntry({ motor, onTyped }: TargetEntryProps) {
   const [text, setText] = useState("");
   const [expected, setExpected] = useState<string | null>(null);
   const messageId = useId();
   const reason = useReason("holder");
 
+  const onType = (typed: string): void => {
+    setText(typed);
+    const entered = parseEntry(motor, typed);
+    onTyped(entered.ok ? Math.round(entered.value * motor.counts_per_unit) : null);
+  };
+
   const onSubmit = (event: FormEvent): void => {
     event.preventDefault();
     const entered = parseEntry(motor, text);
     setExpected(entered.ok ? null : entered.expected);
+    onTyped(null);
     if (entered.ok) void propose({ kind: "move", slot: motor.slot, target: entered.value });
   };
 
@@ -31,7 +44,7 @@ export function TargetEntry({ motor }: { readonly motor: Motor }) {
           aria-label={`${motor.title} target in ${unitWord(motor)}`}
           aria-invalid={expected !== null}
           aria-describedby={messageId}
-          onChange={(event) => setText(event.target.value)}
+          onChange={(event) => onType(event.target.value)}
         />
         <span className="unit">{unitName(motor)}</span>
       </span>

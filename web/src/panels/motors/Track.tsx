@@ -6,7 +6,7 @@ import type { AxisFrame } from "../../stream/decode";
 import { formatCounts } from "../../units/units";
 import { countsAt, fractionOf, isAllowed, previewAfterKey, trackDomain } from "./geometry";
 import { TrackDrawing } from "./TrackDrawing";
-import { usePreview } from "./usePreview";
+import type { Preview } from "./usePreview";
 
 /** Only a grip on the circle starts a drag: a click elsewhere on the track proposes nothing. */
 const GRIP_PX = 16;
@@ -14,6 +14,8 @@ const GRIP_PX = 16;
 interface TrackProps {
   readonly motor: Motor;
   readonly axis: AxisFrame;
+  readonly preview: Preview | null;
+  readonly onPreview: (preview: Preview | null) => void;
 }
 
 interface Grip {
@@ -26,8 +28,7 @@ interface Grip {
  * Measured position (diamond), setpoint (circle) and range of an axis. Dragging the circle, or arrow keys,
  * preview; releasing the drag, or Enter, proposes. The kernel judges the proposal: the track refuses nothing.
  */
-export function Track({ motor, axis }: TrackProps) {
-  const [preview, setPreview] = usePreview();
+export function Track({ motor, axis, preview, onPreview: setPreview }: TrackProps) {
   const reason = useReason("holder");
   const grip = useRef<Grip | null>(null);
   const domain = trackDomain(motor, axis);

@@ -1,9 +1,10 @@
 import { describe, expect, it } from "vitest";
 import type { Motor } from "../../api/client";
-import { catalog } from "../../generated/catalog";
-import type { AxisFrame } from "../../stream/decode";
+import { catalog, entry } from "../../generated/catalog";
+import type { AxisFrame, Frame } from "../../stream/decode";
 import { explainDrive, explainFault } from "./explain";
 
+const frame = { mode: "LOCKED", cause: "BUS" } as Frame;
 const motor = { max_drive: 1000 } as Motor;
 const axis = { state: "ENABLED", fault: "NONE", gate: "LEASE", direction: "NONE", drive: 0 } as AxisFrame;
 
@@ -11,18 +12,20 @@ describe("explainDrive", () => {
   it.each(catalog.gate.filter((gate) => gate.name !== "OPEN"))(
     "names gate $name and its next step",
     (gate) => {
-      expect(explainDrive(motor, { ...axis, gate: gate.name })).toEqual({
+      expect(explainDrive(frame, motor, { ...axis, gate: gate.name })).toEqual({
         driven: false,
         gate: gate.name,
         text: gate.meaning,
-        nextStep: gate.next_step,
+        nextStep: gate.name === "MODE" ? entry("cause", "BUS").next_step : gate.next_step,
       });
     },
   );
 
   it("says where and how hard a driven axis is driven", () => {
     const driven = { ...axis, gate: "OPEN", direction: "DECREASING", drive: 100 } as AxisFrame;
-    expect(explainDrive(motor, driven).text).toBe("Driven towards smaller positions, 10 % of full drive.");
+    expect(explainDrive(frame, motor, driven).text).toBe(
+      "Driven towards smaller positions, 10 % of full drive.",
+    );
   });
 });
 

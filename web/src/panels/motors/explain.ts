@@ -1,7 +1,8 @@
 /** Why an axis does what it does, in words. */
 import type { Motor } from "../../api/client";
 import { entry } from "../../generated/catalog";
-import type { AxisFrame } from "../../stream/decode";
+import type { AxisFrame, Frame } from "../../stream/decode";
+import { modeStep } from "./gates";
 
 export interface DriveStory {
   readonly driven: boolean;
@@ -12,10 +13,12 @@ export interface DriveStory {
 }
 
 /** The gate that keeps the axis from being driven, or how it is driven. */
-export function explainDrive(motor: Motor, axis: AxisFrame): DriveStory {
+export function explainDrive(frame: Frame, motor: Motor, axis: AxisFrame): DriveStory {
   const gate = entry("gate", axis.gate);
-  if (axis.gate !== "OPEN")
-    return { driven: false, gate: gate.name, text: gate.meaning, nextStep: gate.next_step };
+  if (axis.gate !== "OPEN") {
+    const nextStep = axis.gate === "MODE" ? modeStep(frame) : gate.next_step;
+    return { driven: false, gate: gate.name, text: gate.meaning, nextStep };
+  }
   const share = Math.round((100 * axis.drive) / motor.max_drive);
   const sense = entry("direction", axis.direction).meaning.replace(/\.$/, "").toLowerCase();
   return { driven: true, gate: gate.name, text: `Driven ${sense}, ${share} % of full drive.`, nextStep: "" };

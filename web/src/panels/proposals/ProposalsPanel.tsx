@@ -2,6 +2,7 @@ import type { Motor, Proposal } from "../../api/client";
 import { CommandButton } from "../../design/CommandButton";
 import { Panel } from "../../design/Panel";
 import { entry } from "../../generated/catalog";
+import { MoveForetelling } from "../../kernel/MoveForetelling";
 import { abort, approve } from "../../state/commands";
 import { noticeOfProposal } from "../../state/notice";
 import { isOpen } from "../../state/proposals";
@@ -78,6 +79,7 @@ function ProposalItem({
           <span className="next-step">{entry("verdict", proposal.verdict).next_step}</span>
         )}
       </span>
+      <WaitingMove proposal={proposal} motor={motor} />
       <span className="proposal-foot">
         {proposal.author} · <time dateTime={proposal.created}>{localTime(proposal.created)}</time>
         {proposal.state === "checked" && (
@@ -102,6 +104,17 @@ function ProposalItem({
       </span>
     </li>
   );
+}
+
+const waiting: ReadonlySet<State> = new Set(["checked", "approved", "paused"]);
+
+/** What the kernel would say to a move that waits, for the approval or the pedal. */
+function WaitingMove({ proposal, motor }: WishProps) {
+  const axis = useConsole((state) => (motor === undefined ? undefined : state.frame?.axes[motor.slot]));
+  const { kind, state, target_counts } = proposal;
+  if (kind !== "move" || !waiting.has(state) || target_counts == null) return null;
+  if (motor === undefined || axis === undefined) return null;
+  return <MoveForetelling motor={motor} axis={axis} targetCounts={target_counts} />;
 }
 
 function capital(word: string): string {

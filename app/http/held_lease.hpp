@@ -1,6 +1,6 @@
 /**
  * @file
- * The dead man's switch of a pedal that is held over the network: not renewed in time, it counts as released.
+ * The dead man's switch of what is held over the network: not renewed in time, it counts as let go.
  */
 #pragma once
 
@@ -11,11 +11,14 @@
 
 namespace interlock::web {
 
-class BenchPedal {
+class HeldLease {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
-  /** The pedal was pressed, or its hold renewed. */
+  /** @param patience for which a hold lasts without a renewal */
+  explicit HeldLease(std::chrono::milliseconds patience) : patience_(patience) {}
+
+  /** The hold began, or was renewed. */
   void hold(const ControlView& view, TimePoint now);
 
   void release() { held_ = false; }
@@ -23,12 +26,13 @@ class BenchPedal {
   [[nodiscard]] bool held() const { return held_; }
 
   /**
-   * Whether a held pedal was not renewed for 500 ms: of the kernel's time in the simulated clock, so that a
-   * busy machine releases nothing, else of the wall's.
+   * Whether what is held was not renewed in time: of the kernel's in the simulated clock, so that a busy
+   * machine lets nothing go, else of the wall's.
    */
   [[nodiscard]] bool overdue(const ControlView& view, TimePoint now) const;
 
  private:
+  std::chrono::milliseconds patience_;
   bool held_ = false;
   TimePoint renewed_;
   std::uint32_t renewed_tick_ = 0;

@@ -1,10 +1,12 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
-import { type Footwork, PedalFoot, RENEW_EVERY_MS } from "./pedal";
+import { Hold, type HoldStep } from "./hold";
 
-let sent: Footwork[];
+const RENEW_EVERY_MS = 150;
+
+let sent: HoldStep[];
 let answers: ((heard: boolean) => void)[];
 let lapses: number;
-let foot: PedalFoot;
+let hold: Hold;
 
 const answerAll = async (heard = true): Promise<void> => {
   for (const answer of answers.splice(0)) answer(heard);
@@ -16,14 +18,15 @@ beforeEach(() => {
   sent = [];
   answers = [];
   lapses = 0;
-  foot = new PedalFoot(
-    (footwork) => {
-      sent.push(footwork);
+  hold = new Hold(
+    (step) => {
+      sent.push(step);
       return new Promise((resolve) => answers.push(resolve));
     },
     () => {
       lapses += 1;
     },
+    RENEW_EVERY_MS,
   );
 });
 
@@ -31,9 +34,9 @@ afterEach(() => {
   vi.useRealTimers();
 });
 
-describe("PedalFoot", () => {
+describe("Hold", () => {
   it("presses at once and renews while held", async () => {
-    foot.press();
+    hold.press();
     expect(sent).toEqual(["press"]);
     await answerAll();
     await vi.advanceTimersByTimeAsync(RENEW_EVERY_MS);
@@ -43,10 +46,10 @@ describe("PedalFoot", () => {
   });
 
   it("releases at once between two renewals, and only once", async () => {
-    foot.press();
+    hold.press();
     await answerAll();
-    foot.release();
-    foot.release();
+    hold.release();
+    hold.release();
     await vi.advanceTimersByTimeAsync(0);
     await answerAll();
     await vi.advanceTimersByTimeAsync(10 * RENEW_EVERY_MS);
@@ -54,8 +57,8 @@ describe("PedalFoot", () => {
   });
 
   it("never lets the release overtake a press without an answer", async () => {
-    foot.press();
-    foot.release();
+    hold.press();
+    hold.release();
     await vi.advanceTimersByTimeAsync(10 * RENEW_EVERY_MS);
     expect(sent).toEqual(["press"]);
     await answerAll();
@@ -63,24 +66,24 @@ describe("PedalFoot", () => {
   });
 
   it("presses again after a release that is still on its way", async () => {
-    foot.press();
+    hold.press();
     await answerAll();
-    foot.release();
+    hold.release();
     await vi.advanceTimersByTimeAsync(0);
-    foot.press();
+    hold.press();
     expect(sent).toEqual(["press", "release"]);
     await answerAll();
     expect(sent).toEqual(["press", "release", "press"]);
   });
 
   it("sends nothing when released without a press", async () => {
-    foot.release();
+    hold.release();
     await vi.advanceTimersByTimeAsync(10 * RENEW_EVERY_MS);
     expect(sent).toEqual([]);
   });
 
   it("comes off instead of pressing anew when a renewal is refused", async () => {
-    foot.press();
+    hold.press();
     await answerAll();
     await vi.advanceTimersByTimeAsync(RENEW_EVERY_MS);
     await answerAll(false);
@@ -91,7 +94,7 @@ describe("PedalFoot", () => {
   });
 
   it("comes off when a press is refused", async () => {
-    foot.press();
+    hold.press();
     await answerAll(false);
     await answerAll();
     await vi.advanceTimersByTimeAsync(10 * RENEW_EVERY_MS);
@@ -100,9 +103,9 @@ describe("PedalFoot", () => {
   });
 
   it("does not count a release as a lapse", async () => {
-    foot.press();
+    hold.press();
     await answerAll();
-    foot.release();
+    hold.release();
     await vi.advanceTimersByTimeAsync(0);
     await answerAll();
     expect(lapses).toBe(0);

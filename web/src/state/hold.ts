@@ -1,26 +1,25 @@
 /**
- * A foot on the simulated pedal. The app lets the pedal go by itself 500 ms after the last press or renewal it
- * heard, so a held pedal is renewed again and again. What the foot does goes out one after the other: a release
- * that overtook a renewal would be undone by it. The app refuses a renewal that comes too late; then the foot comes
- * off, since pressing anew would be a consent that nobody gave.
+ * Something that is held over the network: the simulated pedal, a jog. The app lets it go by itself soon after the last
+ * press or renewal that it heard, so it is renewed again and again. What is done goes out one after the other: a release
+ * that overtook a renewal would be undone by it. The app refuses a renewal that comes too late; then it is let go, since
+ * pressing anew would be a consent that nobody gave.
  */
 
-export type Footwork = "press" | "renew" | "release";
+export type HoldStep = "press" | "renew" | "release";
 
-/** Sends what the foot does; false when it was refused or not heard. */
-export type SendFootwork = (footwork: Footwork) => Promise<boolean>;
+/** Sends what is done; false when it was refused or not heard. */
+export type SendStep = (step: HoldStep) => Promise<boolean>;
 
-export const RENEW_EVERY_MS = 150;
-
-export class PedalFoot {
+export class Hold {
   private down = false;
   private running = false;
   private wake: () => void = () => undefined;
 
-  /** `onLapse` is told when the foot comes off without `release`. */
+  /** `onLapse` is told when it ends without `release`. */
   constructor(
-    private readonly send: SendFootwork,
+    private readonly send: SendStep,
     private readonly onLapse: () => void,
+    private readonly renewEveryMs: number,
   ) {}
 
   press(): void {
@@ -42,7 +41,7 @@ export class PedalFoot {
     this.running = false;
   }
 
-  /** Presses, and renews until the foot comes off. */
+  /** Presses, and renews until it is let go. */
   private async hold(): Promise<void> {
     let heard = await this.send("press");
     while (heard && this.down) {
@@ -56,7 +55,7 @@ export class PedalFoot {
 
   private renewalOrRelease(): Promise<void> {
     return new Promise((resolve) => {
-      const timer = setTimeout(resolve, RENEW_EVERY_MS);
+      const timer = setTimeout(resolve, this.renewEveryMs);
       this.wake = () => {
         clearTimeout(timer);
         resolve();

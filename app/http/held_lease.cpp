@@ -1,30 +1,25 @@
-#include "http/bench_pedal.hpp"
+#include "http/held_lease.hpp"
 
 #include "interlock/sim_bus.h"
 
 namespace interlock::web {
-namespace {
 
-constexpr std::chrono::milliseconds patience{500};
-
-}  // namespace
-
-void BenchPedal::hold(const ControlView& view, TimePoint now) {
+void HeldLease::hold(const ControlView& view, TimePoint now) {
   held_ = true;
   renewed_ = now;
   renewed_tick_ = view.snapshot.state.tick;
 }
 
-bool BenchPedal::overdue(const ControlView& view, TimePoint now) const {
+bool HeldLease::overdue(const ControlView& view, TimePoint now) const {
   if (!held_) {
     return false;
   }
   if (!view.attached || view.snapshot.clock != ILK_CLOCK_SIM) {
-    return now - renewed_ >= patience;
+    return now - renewed_ >= patience_;
   }
   const std::uint64_t ticks = view.snapshot.state.tick - renewed_tick_;
   return ticks * view.snapshot.period_us >=
-         static_cast<std::uint64_t>(std::chrono::microseconds(patience).count());
+         static_cast<std::uint64_t>(std::chrono::microseconds(patience_).count());
 }
 
 }  // namespace interlock::web

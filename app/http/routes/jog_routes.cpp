@@ -1,0 +1,102 @@
+#include "http/routes/jog_routes.hpp"
+
+#include <array>
+
+#include "http/fields.hpp"
+#include "http/problems.hpp"
+#include "http/proposing.hpp"
+#include "motion/setpoint_range.hpp"
+#include "proposals/proposal_json.hpp"
+
+namespace interlock::web {
+namespace {
+
+using Answering = boost::asio::awaitable<Reply>;
+using boost::beast::http::verb;
+using nlohmann::json;
+
+struct JogWish {
+  const Axis* axis = nullptr;
+  bool increasing = false;
+};
+
+tl::expected<JogWish, Problem> wish_in(const json& body, const Robot& robot) {
+  constexpr std::array<std::string_view, 2> directions{"increasing", "decreasing"};
+  Fields fields(body, {"slot", "direction"});
+  const auto slot = fields.integer("slot", 0, ILK_SLOTS - 1);
+  const auto direction = fields.choice("direction", directions);
+  fields.require({{"slot", "an integer from 0 to 9"}, {"direction", "increasing or decreasing"}});
+  if (fields.problem()) {
+    return fail(*fields.problem());
+  }
+  const Axis* axis = robot.at_slot(static_cast<std::uint32_t>(*slot));
+  if (axis == nullptr) {
+    return fail(not_found("axis in slot " + std::to_string(*slot), "a slot that /api/motors lists"));
+  }
+  return JogWish{axis, direction == "increasing"};
+}
+
+/** A move to the end of the range in that direction; RANGE where that would lead the other way. */
+tl::expected<Draft, Problem> draft_of(const JogWish& wish, const Context& context,
+                                      const std::string& author) {
+  const ilk_state_t& state = context.view().snapshot.state;
+  const std::uint32_t slot = wish.axis->slot;
+  const SetpointRange range = setpoint_range(context.config.axis[slot], state.axis[slot], state.mode);
+  const std::int32_t here = state.axis[slot].position_counts;
+  const std::int32_t end = wish.increasing ? range.highest_counts : range.lowest_counts;
+  if (wish.increasing ? end <= here : end >= here) {
+    return fail(refused(verdict_refusal(
+        ILK_VERDICT_RANGE, wish.axis->name + " stands at its end, " + counts_and_unit(*wish.axis, here),
+        "the other direction")));
+  }
+  return MoveDraft{slot, end, std::nullopt, author};
+}
+
+Problem jog_lapsed() {
+  return {.status = Status::conflict,
+          .code = "JOG_LAPSED",
+          .detail = "That jog has ended, or was not renewed within " +
+                    std::to_string(JogDesk::patience.count()) + " ms.",
+          .next_step = "Jog again."};
+}
+
+}  // namespace
+
+JogRoutes::JogRoutes(const Context& context, JogDesk& jogs, Router& router) : context_(context), jogs_(jogs) {
+  router.add(verb::post, "/api/jog", holder, [this](const Call& call) { return begin(call); });
+  router.add(verb::put, "/api/jog/{id}", holder,
+             [this](const Call& call) -> Answering { co_return renew(call); });
+}
+
+Answering JogRoutes::begin(const Call& call) const {
+  const auto wish =
+      parse_body(call.request).and_then([&](const json& body) { return wish_in(body, context_.robot); });
+  if (!wish) {
+    co_return fail(wish.error());
+  }
+  if (const auto kernel = context_.need_kernel(); !kernel) {
+    co_return fail(kernel.error());
+  }
+  auto draft = draft_of(*wish, context_, call.caller.user);
+  if (!draft) {
+    co_return fail(draft.error());
+  }
+  const auto made = co_await propose(context_, call.caller, std::move(*draft));
+  if (!made) {
+    co_return fail(made.error());
+  }
+  jogs_.begin(made->id, context_.view(), context_.steady_clock());
+  co_return Success{Status::created, to_json(*made)};
+}
+
+Reply JogRoutes::renew(const Call& call) const {
+  const auto id = number_in(call.parameters[0]);
+  const ControlView& now = context_.view();
+  const Proposal* jog = id ? context_.book.find(*id) : nullptr;
+  if (jog == nullptr || !is_open(jog->state) || !jogs_.renew(*id, now, context_.steady_clock())) {
+    return fail(jog_lapsed());
+  }
+  return Success{Status::ok, to_json(*jog)};
+}
+
+}  // namespace interlock::web

@@ -1,0 +1,97 @@
+/** What the kernel in the page says before anything is sent, and what the robot's kernel then says. */
+import { expect, test } from "./fixtures";
+
+test("a target beyond the range is said to be refused before it is sent, in the axis' unit", async ({
+  robot,
+  page,
+}) => {
+  const axis = robot.axis("Lateral");
+  await robot.unlockRobot();
+  await axis.enable();
+  await axis.setHome(true);
+  const asked: string[] = [];
+  page.on("request", (request) => {
+    if (request.method() !== "GET") asked.push(new URL(request.url()).pathname);
+  });
+  await axis.row.getByRole("textbox").fill("12.4");
+  await expect(axis.foretelling).toContainText("RANGE would be refused: lateral 12.40 mm, allowed -49.");
+  await axis.row.getByRole("textbox").fill("-3");
+  await expect(axis.foretelling).toContainText("ACCEPTED would be accepted once the pedal is pressed.");
+  expect(asked).toEqual([]);
+
+  await axis.propose("12.4");
+  await axis.expectRefusal("RANGE");
+  await axis.propose("-3");
+  await expect(robot.proposal(2)).toContainText("would be accepted once the pedal is pressed");
+  await robot.latchPedal();
+  await expect(robot.proposal(2)).toContainText("done");
+});
+
+test("a drag shows what its release would bring, and the code leads to its page", async ({ robot, page }) => {
+  const axis = robot.axis("Probe rotation");
+  await robot.unlockRobot();
+  await axis.drag(3);
+  await expect(axis.foretelling).toContainText("DISABLED would be refused: The axis is not enabled.");
+  await page.mouse.up();
+  await axis.expectRefusal("DISABLED");
+
+  await axis.row.getByRole("textbox").fill("5");
+  await axis.foretelling.getByRole("link", { name: "DISABLED" }).click();
+  const code = robot.panel("Verdicts").getByRole("article", { name: "DISABLED" });
+  await expect(code).toHaveAttribute("aria-current", "location");
+  await expect(code).toContainText("Enable the axis.");
+  await robot.panel("Codes").getByRole("searchbox", { name: "Find" }).fill("obstacle encoder");
+  await expect(robot.panel("Codes").getByRole("article")).toHaveCount(1);
+  await expect(robot.panel("Faults").getByRole("article", { name: "STALL" })).toBeVisible();
+});
+
+test("while the system is locked, the foretold refusal names the cause and its next step", async ({
+  robot,
+}) => {
+  const axis = robot.axis("Lateral");
+  await robot.expectMode("LOCKED");
+  await axis.row.getByRole("textbox").fill("1");
+  await expect(axis.foretelling).toContainText("MODE would be refused: LOCKED by BOOT.");
+  await expect(axis.foretelling).toContainText("then press Unlock");
+});
+
+test("Why not moving? follows the newest proposal from the blocking gate to the drive", async ({ robot }) => {
+  const why = robot.panel("Why not moving?");
+  const gates = why.getByRole("list", { name: "Gates of Probe rotation" });
+  const gate = (name: string) => gates.getByRole("listitem", { name: `Gate ${name}`, exact: true });
+  const axis = robot.axis("Probe rotation");
+  await robot.unlockRobot();
+  await axis.enable();
+  await axis.propose("40");
+  await expect(gate("MODE")).toContainText("BLOCKS");
+  await expect(why).toContainText("The pedal is armed: press and hold the pedal.");
+  await expect(gate("PEDAL")).toContainText("closed too");
+  await expect(gate("LEASE")).toContainText("follows");
+  for (const name of ["ESTOP", "ENABLE", "SETPOINT", "DRIVE"]) await expect(gate(name)).toContainText("open");
+  await robot.latchPedal();
+  await expect(why).toContainText("Probe rotation is driven.");
+  await robot.stop.click();
+  await expect(why).not.toContainText("is driven");
+
+  await why.getByRole("combobox", { name: "Axis" }).selectOption("Lateral");
+  const lateral = why.getByRole("list", { name: "Gates of Lateral" });
+  await expect(lateral.getByRole("listitem", { name: "Gate ENABLE" })).toContainText("closed too");
+  await expect(lateral.getByRole("listitem", { name: "Gate SETPOINT" })).toContainText("judged later");
+});
+
+test("without the page's kernel the console says that it cannot foretell, and works on", async ({
+  front,
+  stack,
+  page,
+}) => {
+  await page.route("**/*.wasm", (route) => route.fulfill({ status: 503 }));
+  await page.reload();
+  await front.logIn("admin", stack.password);
+  await front.requestAuthority();
+  await front.unlockRobot();
+  const axis = front.axis("Probe rotation");
+  await axis.row.getByRole("textbox").fill("5");
+  await expect(axis.foretelling).toContainText("cannot be told on this page");
+  await axis.propose("5");
+  await axis.expectRefusal("DISABLED");
+});

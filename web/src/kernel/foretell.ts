@@ -1,0 +1,71 @@
+/** What will become of a move, in words, by the kernel in the page. */
+import type { Motor } from "../api/client";
+import { entry } from "../generated/catalog";
+import type { AxisFrame, Frame } from "../stream/decode";
+import { formatCounts, formatNumber } from "../units/units";
+import type { Foresight } from "./pageKernel";
+
+export interface Foretelling {
+  readonly outcome: "moves" | "held" | "refused";
+  /** The code that decides, of `family`. */
+  readonly code: string;
+  readonly family: "verdict" | "gate";
+  readonly text: string;
+  readonly nextStep: string;
+}
+
+/** Gates that an accepted move passes, or that are no obstacle to it. */
+const harmless: ReadonlySet<string> = new Set(["OPEN", "SETPOINT"]);
+
+export function foretell(
+  frame: Frame,
+  motor: Motor,
+  axis: AxisFrame,
+  targetCounts: number,
+  { verdict, gate, mode }: Foresight,
+): Foretelling {
+  if (verdict !== "ACCEPTED") {
+    const nextStep = mode === "LOCKED" ? entry("cause", frame.cause).next_step : "";
+    return {
+      ...{ outcome: "refused", code: verdict, family: "verdict" },
+      text: refusalWords(frame, motor, axis, targetCounts, verdict, mode),
+      nextStep: nextStep === "" ? entry("verdict", verdict).next_step : nextStep,
+    };
+  }
+  const obstacle = entry("gate", gate);
+  if (!harmless.has(gate)) {
+    return {
+      ...{ outcome: "held", code: gate, family: "gate" },
+      text: `would be accepted, but not driven: ${obstacle.meaning}`,
+      nextStep: obstacle.next_step,
+    };
+  }
+  const arrived = gate === "SETPOINT";
+  return {
+    ...{ outcome: "moves", code: "ACCEPTED", family: "verdict" },
+    text: arrived
+      ? "would be accepted; the axis stands there already."
+      : frame.mode === "MOTION"
+        ? "would be accepted, and move at once."
+        : "would be accepted once the pedal is pressed.",
+    nextStep: "",
+  };
+}
+
+function refusalWords(
+  frame: Frame,
+  motor: Motor,
+  axis: AxisFrame,
+  targetCounts: number,
+  verdict: string,
+  mode: string,
+): string {
+  if (verdict === "RANGE") {
+    const allowed = `${formatNumber(motor, axis.minCounts)} to ${formatNumber(motor, axis.maxCounts)}`;
+    return `would be refused: ${motor.name} ${formatCounts(motor, targetCounts)}, allowed ${allowed}.`;
+  }
+  if (verdict === "MODE" && mode === "LOCKED") return `would be refused: LOCKED by ${frame.cause}.`;
+  if (verdict === "MODE" && mode === "READY")
+    return "would not be sent: the pedal does not start MOTION now, as a required card is lost.";
+  return `would be refused: ${entry("verdict", verdict).meaning}`;
+}

@@ -1,0 +1,256 @@
+import { describe, expect, it } from "vitest";
+import { catalog } from "../generated/catalog";
+import { bytesOf, instantiate, KernelBench, nativeVectors } from "./kernelBench";
+import { PageKernel } from "./pageKernel";
+
+const VECTORS = 10_000;
+const GATES_AT = 30;
+const AXIS_SLOTS = [0, 1, 2, 3, 4, 5, 6, 7];
+const { config } = nativeVectors(0);
+
+function pageKernel(): PageKernel {
+  const kernel = new PageKernel(instantiate());
+  expect(kernel.configure(bytesOf(config))).toBe(true);
+  return kernel;
+}
+
+/** The kernel in the page, shown what the bench's kernel knows now. */
+function looking(bench: KernelBench): PageKernel {
+  const kernel = pageKernel();
+  expect(kernel.see(bench.stateBytes())).toBe(true);
+  return kernel;
+}
+
+describe("the kernel in WebAssembly", () => {
+  it(`decides ${VECTORS} ticks, half of them from any sound state, as the native kernel does, word for word`, () => {
+    const bench = new KernelBench(config);
+    const page = pageKernel();
+    const seen = { mode: new Set<number>(), gate: new Set<string>(), verdict: new Set<string>() };
+    const wrong: string[] = [];
+    let number = 0;
+    for (const vector of nativeVectors(VECTORS).vectors) {
+      bench.state.set(vector.state);
+      bench.inputs.set(vector.inputs);
+      bench.requests.set(vector.requests);
+      bench.step(vector.count);
+      if (!same(bench.state, vector.stateAfter)) wrong.push(`vector ${number} state`);
+      if (!same(bench.outputs, vector.outputs)) wrong.push(`vector ${number} outputs`);
+      seen.mode.add(vector.stateAfter[1] ?? -1);
+      page.see(bytesOf(vector.stateAfter));
+      for (const slot of AXIS_SLOTS) {
+        const expected = catalog.gate[vector.outputs[GATES_AT + slot] ?? -1];
+        seen.gate.add(expected?.name ?? "none");
+        const firstClosed = page.walkGates(slot, null).indexOf("closed");
+        const walked = catalog.gate[Math.max(firstClosed, 0)]?.name;
+        if (page.gate(slot) !== expected?.name) wrong.push(`vector ${number} gate of slot ${slot}`);
+        if (walked !== expected?.name) wrong.push(`vector ${number} walk of slot ${slot}`);
+      }
+      for (let request = 0; request < vector.count; request++)
+        seen.verdict.add(catalog.verdict[vector.outputs[365 + 5 * request + 4] ?? -1]?.name ?? "none");
+      number += 1;
+    }
+    expect(wrong).toEqual([]);
+    expect(number).toBe(VECTORS);
+    // A kernel without a valid configuration is in INIT; these vectors have one.
+    expect(seen.mode).toEqual(new Set([1, 2, 3]));
+    // Before the gates of pedal and E-stop MOTION ends, and before that of the soft limit a setpoint is refused: rung 2
+    // of the ladder brings them.
+    const brought = catalog.gate.filter(({ name }) => !["PEDAL", "ESTOP", "SOFT_LIMIT"].includes(name));
+    expect(seen.gate).toEqual(new Set(brought.map(({ name }) => name)));
+    // The app of this world moves no axis that it did not enable; that of the next tests does.
+    const answered = catalog.verdict.filter(({ name }) => name !== "DISABLED");
+    expect(seen.verdict).toEqual(new Set(answered.map(({ name }) => name)));
+  }, 60_000);
+
+  it("takes no configuration that a kernel would refuse", () => {
+    const damaged = bytesOf(config);
+    damaged[100] = (damaged[100] ?? 0) ^ 1;
+    const kernel = new PageKernel(instantiate());
+    expect(kernel.configure(damaged)).toBe(false);
+    expect(kernel.configure(bytesOf(config).subarray(4))).toBe(false);
+    expect(kernel.configure(bytesOf(config))).toBe(true);
+  });
+
+  it("takes no state that was damaged on its way, whichever byte it is", () => {
+    const bench = new KernelBench(config);
+    bench.ready(1, true);
+    const kernel = pageKernel();
+    const state = bench.stateBytes();
+    for (let byte = 0; byte < state.length; byte++) {
+      const damaged = state.slice();
+      damaged[byte] = (damaged[byte] ?? 0) ^ 0x10;
+      expect(kernel.see(damaged), `byte ${byte}`).toBe(false);
+    }
+    expect(kernel.see(state)).toBe(true);
+  });
+
+  it("takes no state of another configuration", () => {
+    const other = config.slice();
+    const bench = new KernelBench(other);
+    const kernel = new PageKernel(instantiate());
+    expect(kernel.see(bench.stateBytes())).toBe(false);
+  });
+});
+
+describe("foreseeMove", () => {
+  const targets = [
+    -1001,
+    -991,
+    -990,
+    -100,
+    -91,
+    -90,
+    0,
+    90,
+    91,
+    100,
+    990,
+    991,
+    1001,
+    2 ** 31 - 1,
+    -(2 ** 31),
+  ];
+
+  it.each([
+    ["homed", true],
+    ["not homed", false],
+  ])("says before the pedal is pressed what the kernel says to a move of an axis that is %s", (_, homed) => {
+    const said = targets.map((target) => {
+      const bench = new KernelBench(config);
+      bench.ready(1, homed);
+      const foreseen = looking(bench).foreseeMove(1, target);
+      bench.press();
+      const verdict = bench.move(1, target);
+      expect(foreseen, `target ${target}`).toEqual({ verdict, gate: bench.gate(1), mode: "MOTION" });
+      return verdict;
+    });
+    expect(new Set(said)).toEqual(new Set(["ACCEPTED", "RANGE"]));
+  });
+
+  it("counts the travel of a press that goes on", () => {
+    const bench = new KernelBench(config);
+    bench.ready(1, false);
+    bench.press();
+    for (let step = 0; step < 40; step++) {
+      bench.raw[1] = (bench.raw[1] ?? 0) + 1;
+      bench.move(1, 80);
+    }
+    const kernel = looking(bench);
+    expect(kernel.foreseeMove(1, 90).verdict).toBe("ACCEPTED");
+    expect(kernel.foreseeMove(1, 91).verdict).toBe("RANGE");
+    expect([bench.move(1, 90), bench.move(1, 91)]).toEqual(["ACCEPTED", "RANGE"]);
+  });
+
+  it("foresees the switch that would hold an accepted move back", () => {
+    const bench = new KernelBench(config);
+    bench.atSwitch.add(2);
+    bench.ready(2, true);
+    const kernel = looking(bench);
+    expect(kernel.foreseeMove(2, 500)).toEqual({ verdict: "ACCEPTED", gate: "HARD_LIMIT", mode: "MOTION" });
+    expect(kernel.foreseeMove(2, -500)).toEqual({ verdict: "ACCEPTED", gate: "OPEN", mode: "MOTION" });
+    bench.press();
+    expect([bench.move(2, 500), bench.gate(2)]).toEqual(["ACCEPTED", "HARD_LIMIT"]);
+  });
+
+  it("wants the axis enabled, and supposes a release of a pedal that is held already", () => {
+    const bench = new KernelBench(config);
+    bench.ready(1, true);
+    bench.press();
+    bench.tick({ kind: "STOP" });
+    expect([bench.mode, bench.pressed]).toEqual(["READY", true]);
+    expect(looking(bench).foreseeMove(1, 10)).toMatchObject({ verdict: "ACCEPTED", mode: "MOTION" });
+    expect(looking(bench).foreseeMove(3, 10)).toMatchObject({ verdict: "DISABLED", mode: "MOTION" });
+  });
+
+  it("sees no way out of LOCKED", () => {
+    const bench = new KernelBench(config);
+    bench.ticks(5);
+    expect([bench.mode, bench.cause]).toEqual(["LOCKED", "BOOT"]);
+    expect(looking(bench).foreseeMove(1, 10)).toMatchObject({ verdict: "MODE", mode: "LOCKED" });
+  });
+
+  it("sees that the loss of a required card keeps MOTION from beginning", () => {
+    const bench = new KernelBench(config);
+    bench.ready(1, true);
+    bench.silent.add(8);
+    bench.ticks(10);
+    expect(looking(bench).foreseeMove(1, 10)).toMatchObject({ verdict: "MODE", mode: "READY" });
+    bench.press();
+    expect([bench.mode, bench.move(1, 10)]).toEqual(["READY", "MODE"]);
+  });
+
+  it("knows no axis where there is none", () => {
+    const bench = new KernelBench(config);
+    bench.ticks(5);
+    for (const slot of [8, 9, 10, 4294967295])
+      expect(looking(bench).foreseeMove(slot, 0).verdict).toBe("AXIS");
+  });
+});
+
+describe("judge", () => {
+  it("gives the verdict on a request now", () => {
+    const bench = new KernelBench(config);
+    bench.ready(1, true);
+    const kernel = looking(bench);
+    expect(kernel.judge("MOVE", 1, 5)).toBe("MODE");
+    expect(kernel.judge("ENABLE", 2)).toBe("ACCEPTED");
+    expect(kernel.judge("CLEAR_FAULT", 1)).toBe("NO_FAULT");
+    expect(kernel.judge("RESTORE", 1, 1001)).toBe("RANGE");
+    expect(kernel.judge("HOME", 9)).toBe("AXIS");
+  });
+});
+
+describe("walkGates", () => {
+  const closed = (bench: KernelBench, slot: number, target: number | null): string[] => {
+    const stands = looking(bench).walkGates(slot, target);
+    return catalog.gate.filter(({ number }) => stands[number] === "closed").map(({ name }) => name);
+  };
+  const unjudged = (bench: KernelBench, slot: number, target: number | null): string[] => {
+    const stands = looking(bench).walkGates(slot, target);
+    return catalog.gate.filter(({ number }) => stands[number] === "unjudged").map(({ name }) => name);
+  };
+
+  it("names every gate that is closed, not only the first", () => {
+    const bench = new KernelBench(config);
+    bench.ready(1, true);
+    bench.estop = true;
+    bench.silent.add(1);
+    bench.ticks(2);
+    expect(closed(bench, 1, null)).toEqual(["MODE", "PEDAL", "ESTOP", "CARD", "ENABLE", "LEASE"]);
+  });
+
+  it("judges the gates of the wish only when a move waits", () => {
+    const bench = new KernelBench(config);
+    bench.atSwitch.add(2);
+    bench.ready(2, true);
+    expect(closed(bench, 2, null)).toEqual(["MODE", "PEDAL", "LEASE"]);
+    expect(unjudged(bench, 2, null)).toContain("HARD_LIMIT");
+    expect(closed(bench, 2, 500)).toEqual(["MODE", "PEDAL", "LEASE", "HARD_LIMIT"]);
+    expect(closed(bench, 2, -500)).toEqual(["MODE", "PEDAL", "LEASE"]);
+    expect(unjudged(bench, 2, -500)).toEqual([]);
+    expect(closed(bench, 2, 1)).toEqual(["MODE", "PEDAL", "LEASE", "SETPOINT"]);
+  });
+
+  it("does not guess how a switch stands whose card is silent", () => {
+    const bench = new KernelBench(config);
+    bench.ready(2, true);
+    bench.silent.add(2);
+    bench.ticks(1);
+    expect(closed(bench, 2, 500)).toEqual(["MODE", "PEDAL", "CARD", "LEASE"]);
+    expect(unjudged(bench, 2, 500)).toContain("HARD_LIMIT");
+  });
+
+  it("has every gate open while the axis is driven", () => {
+    const bench = new KernelBench(config);
+    bench.ready(1, true);
+    bench.press();
+    bench.move(1, 500);
+    expect(bench.gate(1)).toBe("OPEN");
+    expect(closed(bench, 1, null)).toEqual([]);
+    expect(unjudged(bench, 1, null)).toEqual([]);
+  });
+});
+
+function same(a: Uint32Array, b: Uint32Array): boolean {
+  return a.length === b.length && a.every((word, index) => word === b[index]);
+}
