@@ -1,0 +1,122 @@
+#!/usr/bin/env python3
+"""Writes the trace report of this commit into build/report and judges it. Usage: report.py [--gate-only]
+
+Reads spec/requirements by StrictDoc, the functions of kernel/src, and the evidence in build/evidence and
+build/reports. Writes index.html, matrix.html, trace.html, results.html, matrix.csv, trace.json and
+StrictDoc's own pages. Prints every line that is missing or wrong; exits 1 when there is one, 2 when there is
+no report.
+"""
+
+import argparse
+import json
+import sys
+import tomllib
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "evidence"))
+
+import documents
+import evidence
+import gate
+import pages
+from components import shipped
+from exporter import RefusedError, export, stage
+from items import read_items
+from ladder import UnusableError, content_key, read_expected
+from matrix import as_csv, negative_lists, rows
+from results import Source, read_results
+from sources import functions_of, read_links
+
+
+def read_toml(path: Path) -> dict:
+    return tomllib.loads(path.read_text("utf-8"))
+
+
+def rung_keys(root: Path) -> dict[str, bool]:
+    """For each rung of the ladder, whether its evidence was made from the inputs that stand here now."""
+    current = {}
+    for rung in read_expected(root / "verification/expected.toml"):
+        try:
+            kept = (root / "build/evidence" / f"{rung.name}.key").read_text("utf-8")
+            current[rung.name] = kept == content_key(rung)
+        except (OSError, UnusableError):
+            current[rung.name] = False
+    return current
+
+
+def read_project(root: Path, output: Path, commit: str) -> gate.Project:
+    """All that the gate looks at. Raises RefusedError for documents that StrictDoc does not take."""
+    requirements = root / "spec/requirements"
+    stage(requirements, output / "source")
+    printed = export(output / "source", requirements / "strictdoc_config.py", output / "stated", "json")
+    current = rung_keys(root)
+    source = Source(root, commit, lambda name: current.get(name, False))
+    return gate.Project(
+        root=root,
+        items=read_items(output / "stated/json/index.json"),
+        functions=functions_of(root),
+        links=read_links(requirements / "links.toml"),
+        results=read_results(source, current),
+        reviewed=read_toml(requirements / "reviewed.toml"),
+        clauses=read_toml(requirements / "clauses.toml"),
+        components=shipped(root),
+        exporter_log=printed,
+    )
+
+
+def write(of: gate.Trace, found: Sequence[gate.Finding], output: Path, commit: str) -> None:
+    """The pages, CSV and JSON; then StrictDoc's documents with units and results among them."""
+    for name, text in pages.write_all(of, found, commit).items():
+        (output / name).write_text(text, "utf-8")
+    matrix = rows(of)
+    (output / "matrix.csv").write_text(as_csv(matrix), "utf-8")
+    summary = {
+        "commit": commit,
+        "counts": pages.counts(of),
+        "rows": len(matrix),
+        "negative_lists": negative_lists(of),
+        "findings": [{"rule": one.rule, "uid": one.uid, "text": one.text} for one in found],
+    }
+    (output / "trace.json").write_text(json.dumps(summary, indent=2) + "\n", "utf-8")
+    (output / "source/90_units.sdoc").write_text(documents.units(of), "utf-8")
+    (output / "source/91_results.sdoc").write_text(documents.results(of), "utf-8")
+    config = of.project.root / "spec/requirements/strictdoc_config.py"
+    log = export(output / "source", config, output / "strictdoc", "html,json")
+    (output / "strictdoc.log").write_text(log, "utf-8")
+
+
+def print_findings(found: Sequence[gate.Finding]) -> None:
+    """One line for each thing that is wrong, with all that it is wrong of."""
+    alike: dict[tuple[str, str], list[str]] = {}
+    for one in found:
+        alike.setdefault((one.rule, one.text), []).append(one.uid)
+    for (rule, text), uids in alike.items():
+        print(f"{rule} {text}: {', '.join(uids)}")
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description="Write and judge the trace report.")
+    parser.add_argument("--gate-only", action="store_true", help="judge, and write no pages")
+    arguments = parser.parse_args()
+    root = evidence.ROOT
+    output = root / "build/report"
+    commit = evidence.commit()
+    try:
+        of = gate.trace(read_project(root, output, commit))
+        found = gate.findings(of)
+        if not arguments.gate_only:
+            write(of, found, output, commit)
+    except (RefusedError, UnusableError, ValueError, OSError) as error:
+        print(f"report: {error}", file=sys.stderr)
+        return 2
+    print_findings(found)
+    by_rule = ", ".join(f"{rule} {count}" for rule, count in Counter(one.rule for one in found).items())
+    print(", ".join(f"{count} {name}" for name, count in pages.counts(of).items()))
+    print(f"gate: {len(found)} lines are missing or wrong ({by_rule})" if found else "gate: green")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
