@@ -1,5 +1,6 @@
 """The report as pages that work without a network: overview, matrix, and every item with both directions."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import fields
 from html import escape
@@ -12,6 +13,7 @@ from results import Result
 
 STYLE = Path(__file__).with_name("style.css").read_text("utf-8")
 FILTER = Path(__file__).with_name("filter.js").read_text("utf-8")
+LINK = re.compile(r'href="([^"]+)"')
 MENU = {
     "Overview": "index.html",
     "Matrix": "matrix.html",

@@ -12,7 +12,7 @@ import json
 import sys
 import tomllib
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "evidence"))
@@ -23,7 +23,7 @@ import gate
 import pages
 from components import shipped
 from exporter import RefusedError, export, stage
-from items import read_items
+from items import Items, read_items
 from ladder import UnusableError, content_key, read_expected
 from matrix import as_csv, negative_lists, rows
 from results import Source, read_results
@@ -46,22 +46,29 @@ def rung_keys(root: Path) -> dict[str, bool]:
     return current
 
 
-def read_project(root: Path, output: Path, commit: str) -> gate.Project:
-    """All that the gate looks at. Raises RefusedError for documents that StrictDoc does not take."""
+def read_stated(root: Path, output: Path) -> tuple[Items, str]:
+    """What spec/requirements says, and what StrictDoc printed. Raises RefusedError when it takes it not."""
     requirements = root / "spec/requirements"
     stage(requirements, output / "source")
     printed = export(output / "source", requirements / "strictdoc_config.py", output / "stated", "json")
-    current = rung_keys(root)
-    source = Source(root, commit, lambda name: current.get(name, False))
+    return read_items(output / "stated/json/index.json"), printed
+
+
+def read_project(
+    source: Source, stated: tuple[Items, str], rungs: Iterable[str], components: Mapping[str, str]
+) -> gate.Project:
+    """All that the gate looks at: what is stated, what stands in the sources, and the evidence of `rungs`."""
+    requirements = source.root / "spec/requirements"
+    items, printed = stated
     return gate.Project(
-        root=root,
-        items=read_items(output / "stated/json/index.json"),
-        functions=functions_of(root),
+        root=source.root,
+        items=items,
+        functions=functions_of(source.root),
         links=read_links(requirements / "links.toml"),
-        results=read_results(source, current),
+        results=read_results(source, rungs),
         reviewed=read_toml(requirements / "reviewed.toml"),
         clauses=read_toml(requirements / "clauses.toml"),
-        components=shipped(root),
+        components=components,
         exporter_log=printed,
     )
 
@@ -104,7 +111,9 @@ def main() -> int:
     output = root / "build/report"
     commit = evidence.commit()
     try:
-        of = gate.trace(read_project(root, output, commit))
+        current = rung_keys(root)
+        source = Source(root, commit, current.__getitem__)
+        of = gate.trace(read_project(source, read_stated(root, output), current, shipped(root)))
         found = gate.findings(of)
         if not arguments.gate_only:
             write(of, found, output, commit)

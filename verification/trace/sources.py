@@ -50,9 +50,12 @@ def comments_above(text: str, place: int) -> str:
 
 def functions_of(root: Path) -> list[Function]:
     """Every function that kernel/src defines, by file and line."""
-    texts = {path: path.read_text("utf-8") for path in sorted((root / "kernel/src").glob("*.[ch]"))}
+    sources = sorted((root / "kernel/src").glob("*.[ch]"))
+    public = sorted((root / "kernel/include").glob("**/*.h"))
+    texts = {path: path.read_text("utf-8") for path in (*sources, *public)}
     found = []
-    for path, text in texts.items():
+    for path in sources:
+        text = texts[path]
         for match in FUNCTION.finditer(text):
             name = match["name"]
             above = comments_above(text, match.start())

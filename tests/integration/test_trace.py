@@ -1,0 +1,226 @@
+"""The trace report: each planted defect turns the gate red by its rule; no status is better than its log."""
+
+import json
+import shutil
+import sys
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "verification/trace"))
+
+import exporter
+import gate
+import pages
+from items import Items, fingerprint
+from matrix import as_csv, negative_lists, rows
+from report import read_project, read_stated
+from results import Source, read_results
+from review import write_reviewed
+from sources import Function, functions_of, read_links
+
+ROOT = Path(__file__).resolve().parents[2]
+PLANTED = ROOT / "verification/trace/planted"
+DEFECTS = sorted(PLANTED.glob("*.toml"))
+RUNGS = ("cbmc", "wp", "model", "conformance", "misra")
+
+
+def read_defect(path: Path) -> dict:
+    return tomllib.loads(path.read_text("utf-8"))
+
+
+def reviewed(items: Items) -> dict[str, str]:
+    return {item.uid: fingerprint(items, item) for item in items}
+
+
+class Tree:
+    """The clean project of the planted defects, at a place of its own."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        shutil.copytree(PLANTED / "clean", path, dirs_exist_ok=True)
+        for name in ("grammar.sgra", "strictdoc_config.py"):
+            shutil.copy(ROOT / "spec/requirements" / name, path / "spec/requirements")
+        (path / "spec/requirements/reviewed.toml").write_text("", "utf-8")
+
+    def stated(self) -> tuple[Items, str]:
+        return read_stated(self.path, self.path / "build/report")
+
+    def change(self, file: str, old: str, new: str) -> None:
+        text = (self.path / file).read_text("utf-8")
+        assert text.count(old) == 1, f"{file}: '{old}' stands there {text.count(old)} times"
+        (self.path / file).write_text(text.replace(old, new), "utf-8")
+
+    def plant(self, defect: dict) -> None:
+        for change in defect.get("change", []):
+            self.change(change["file"], change["old"], change["new"])
+        if "remove" in defect:
+            (self.path / defect["remove"]).unlink()
+
+    def project(self, stated: tuple[Items, str], reviews: dict[str, str]) -> gate.Project:
+        source = Source(self.path, "built", lambda _: False)
+        project = read_project(source, stated, RUNGS, {"libc6": "2.36"})
+        return replace(project, reviewed=reviews)
+
+
+@pytest.fixture(scope="module")
+def clean(tmp_path_factory: pytest.TempPathFactory) -> tuple[Items, str]:
+    """What the clean project states."""
+    return Tree(tmp_path_factory.mktemp("clean")).stated()
+
+
+@pytest.fixture
+def tree(tmp_path: Path) -> Tree:
+    return Tree(tmp_path)
+
+
+def found(project: gate.Project) -> list[str]:
+    return sorted(f"{one.rule} {one.uid}" for one in gate.findings(gate.trace(project)))
+
+
+def test_the_clean_project_is_green(tree: Tree, clean: tuple[Items, str]) -> None:
+    project = tree.project(clean, reviewed(clean[0]))
+    assert found(project) == []
+    assert not any(negative_lists(gate.trace(project)).values())
+
+
+def test_every_rule_has_a_planted_defect() -> None:
+    planted = {one.split(" ")[0] for path in DEFECTS for one in read_defect(path)["finds"]}
+    assert planted == {rule.__name__.upper() for rule in gate.RULES}
+
+
+@pytest.mark.parametrize("path", DEFECTS, ids=lambda path: path.stem)
+def test_a_planted_defect_turns_the_gate_red_by_its_rule(
+    path: Path, tree: Tree, clean: tuple[Items, str]
+) -> None:
+    defect = read_defect(path)
+    tree.plant(defect)
+    documents = any(change["file"].endswith(".sdoc") for change in defect.get("change", []))
+    items, printed = tree.stated() if documents else clean
+    # A changed text is suspect by itself; only the defects of G8 are about that.
+    changed = any(one.startswith("G8") for one in defect["finds"])
+    reviews = reviewed(clean[0] if changed else items)
+    project = tree.project((items, printed + defect.get("prints", "")), reviews)
+    assert found(project) == sorted(defect["finds"]), defect["why"]
+
+
+def test_a_link_that_the_documents_refuse_ends_the_report(tree: Tree) -> None:
+    tree.change("spec/requirements/10_risk.sdoc", "VALUE: CA-01", "VALUE: CA-99")
+    with pytest.raises(exporter.RefusedError, match="CA-99"):
+        tree.stated()
+
+
+def test_a_review_takes_the_suspicion_away(tree: Tree, clean: tuple[Items, str]) -> None:
+    defect = read_defect(PLANTED / "G8_requirement_changed.toml")
+    tree.plant(defect)
+    stated = tree.stated()
+    file = tree.path / "spec/requirements/reviewed.toml"
+    write_reviewed(clean[0], file, set(clean[0].by_uid))
+    suspect = tree.project(stated, read_defect(file))
+    assert found(suspect) == ["G8 P1", "G8 SRS-K-001"]
+    write_reviewed(stated[0], file, {"SRS-K-001", "P1"})
+    assert found(tree.project(stated, read_defect(file))) == []
+
+
+def test_an_anomaly_covers_the_result_that_it_names_and_no_other(
+    tree: Tree, clean: tuple[Items, str]
+) -> None:
+    tree.plant(read_defect(PLANTED / "G5_failed_proof.toml"))
+    path = tree.path / "spec/requirements/20_requirements.sdoc"
+    anomaly = (
+        "\n[ANOMALY]\nUID: AN-01\nTITLE: Known\nCOVERS: CBMC:gate\nSTATEMENT: It fails.\n"
+        "EVALUATION: Harmless.\nRELATIONS:\n- TYPE: Parent\n  VALUE: SRS-K-001\n  ROLE: Affects\n"
+    )
+    path.write_text(path.read_text("utf-8") + anomaly, "utf-8")
+    stated = tree.stated()
+    assert found(tree.project(stated, reviewed(stated[0]))) == []
+    tree.plant(read_defect(PLANTED / "G5_failed_test.toml"))
+    assert found(tree.project(stated, reviewed(stated[0]))) == ["G5 TEST:unit:kernel_tests.Lamps"]
+
+
+def test_csv_and_pages_of_the_same_evidence_are_the_same_bytes(tree: Tree, clean: tuple[Items, str]) -> None:
+    def written() -> tuple[str, dict[str, str]]:
+        of = gate.trace(tree.project(clean, reviewed(clean[0])))
+        return as_csv(rows(of)), pages.write_all(of, gate.findings(of), "built")
+
+    assert written() == written()
+
+
+def test_every_link_of_the_pages_leads_to_something(tree: Tree, clean: tuple[Items, str]) -> None:
+    of = gate.trace(tree.project(clean, reviewed(clean[0])))
+    written = pages.write_all(of, [], "built")
+    links = [(name, link) for name, text in written.items() for link in pages.LINK.findall(text)]
+    assert len(links) > 100
+    for name, link in links:
+        target, _, anchor = link.partition("#")
+        target = target.partition("?")[0]
+        if target in written:
+            assert not anchor or f'id="{anchor}"' in written[target], f"{name}: {link}"
+        elif target.startswith(pages.TOP):
+            assert (tree.path / target.removeprefix(f"{pages.TOP}/")).exists(), f"{name}: {link}"
+        else:
+            assert target in pages.MENU.values(), f"{name}: {link}"
+
+
+def test_a_row_leads_from_the_hazard_to_its_raw_results(tree: Tree, clean: tuple[Items, str]) -> None:
+    of = gate.trace(tree.project(clean, reviewed(clean[0])))
+    first = rows(of)[0]
+    assert first.hazard == "H-01 Motion without command"
+    assert first.requirement == "SRS-K-001 Output gate"
+    assert first.properties == "P1"
+    assert first.code == "kernel/src/gate.c:4 may_drive"
+    assert first.results.split("; ") == [
+        "CBMC:gate PASSED",
+        "CONFORMANCE PASSED",
+        "TEST:unit:kernel_tests.P1_gate PASSED",
+        "TLC:axis:P1_gate BOUNDED",
+        "WP:gate.c:may_drive PASSED",
+    ]
+    assert first.status == "BOUNDED"
+
+
+def test_without_evidence_every_result_is_unknown(tree: Tree) -> None:
+    shutil.rmtree(tree.path / "build")
+    results = read_results(Source(tree.path, "built", lambda _: True), RUNGS)
+    assert len(results) == len(RUNGS) + 4
+    assert {one.status for one in results} == {"UNKNOWN"}
+
+
+def test_a_result_is_no_better_than_its_rung(tree: Tree) -> None:
+    for rung in RUNGS:
+        path = tree.path / f"build/evidence/{rung}.json"
+        document = json.loads(path.read_text("utf-8"))
+        path.write_text(json.dumps(document | {"status": "UNKNOWN"}), "utf-8")
+    results = read_results(Source(tree.path, "built", lambda _: True), RUNGS, ())
+    assert {one.status for one in results} == {"UNKNOWN"}
+
+
+def test_evidence_of_another_commit_is_fresh_while_its_inputs_are_the_same(tree: Tree) -> None:
+    source = Source(tree.path, "later", lambda rung: rung == "misra")
+    results = {one.uid: one.fresh for one in read_results(source, RUNGS)}
+    assert results["MISRA"]
+    assert not results["CBMC:gate"]
+    assert not results["TEST:unit:kernel_tests.P1_gate"]
+
+
+def test_every_function_that_is_proved_is_found_with_its_contract() -> None:
+    expected = json.loads((ROOT / "verification/frama-c/expected.json").read_text("utf-8"))
+    proved = {(f"kernel/src/{unit}", name) for unit, functions in expected.items() for name in functions}
+    functions: list[Function] = functions_of(ROOT)
+    contracted = {(one.file, one.name) for one in functions if "ensures" in one.contract}
+    assert proved <= {(one.file, one.name) for one in functions}
+    assert proved <= contracted
+
+
+def test_the_projects_own_requirements_hold_together(tmp_path: Path) -> None:
+    items, printed = read_stated(ROOT, tmp_path)
+    links = read_links(ROOT / "spec/requirements/links.toml")
+    project = gate.Project(ROOT, items, functions_of(ROOT), links, [], {}, {}, {}, printed)
+    of = gate.Trace(project)
+    stated = [one for rule in (gate.g1, gate.g2, gate.g3, gate.g6) for one in rule(of)]
+    assert [str(one) for one in stated] == []
+    missing = [path for paths in links.code.values() for path in paths if not (ROOT / path).exists()]
+    assert missing == []
+    assert {*links.code, *links.tests, *links.results} <= set(items.by_uid)
