@@ -22,6 +22,11 @@ MENU = {
     "Documents": "strictdoc/html/index.html",
     "CSV": "matrix.csv",
 }
+CONTENTS = (
+    *("Function", "InputOutput", "Interface", "Alarm", "Security", "UserInterface"),
+    *("Data", "Installation", "Operation", "Network", "Maintenance", "Regulatory"),
+)
+"""Contents a to l of clause 5.2.2, as grammar.sgra names them."""
 TOP = "../.."
 """From build/report to the top of the tree."""
 
@@ -91,6 +96,14 @@ def counts(of: Trace) -> dict[str, int]:
     }
 
 
+def requirements_by_content(of: Trace) -> dict[str, int]:
+    """How many software requirements have each content of clause 5.2.2, so that one without any shows."""
+    found = dict.fromkeys(CONTENTS, 0)
+    for requirement in of.project.items.of("REQUIREMENT"):
+        found[requirement.fields["CATEGORY"]] += 1
+    return found
+
+
 def overview(of: Trace, found: Sequence[Finding], commit: str) -> str:
     """Counts, the gate, the negative lists, coverage by hazard."""
     figures = table(("figure", "count"), [(escape(name), str(count)) for name, count in counts(of).items()])
@@ -123,7 +136,17 @@ def overview(of: Trace, found: Sequence[Finding], commit: str) -> str:
             for one in coverage(of)
         ],
     )
-    sections = {"Gate": gate, "Coverage by hazard": covered, "Negative lists": negative, "Figures": figures}
+    contents = table(
+        ("content of 5.2.2", "requirements"),
+        [(escape(name), str(count)) for name, count in requirements_by_content(of).items()],
+    )
+    sections = {
+        "Gate": gate,
+        "Coverage by hazard": covered,
+        "Negative lists": negative,
+        "Figures": figures,
+        "Software requirements by content": contents,
+    }
     note = f"<p>Commit {escape(commit)}. Evidence organised by IEC 62304 clause.</p>"
     return page(
         "Interlock: trace report",
