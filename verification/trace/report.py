@@ -9,10 +9,12 @@ no report.
 
 import argparse
 import json
+import shutil
 import sys
 import tomllib
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "evidence"))
@@ -73,8 +75,17 @@ def read_project(
     )
 
 
-def write(of: gate.Trace, found: Sequence[gate.Finding], output: Path, commit: str) -> None:
-    """The pages, CSV and JSON; then StrictDoc's documents with units and results among them."""
+def write_documents(of: gate.Trace, output: Path) -> str:
+    """Writes units and results as documents, and all documents as pages. Returns what StrictDoc printed."""
+    (output / "source/90_units.sdoc").write_text(documents.units(of), "utf-8")
+    (output / "source/91_results.sdoc").write_text(documents.results(of), "utf-8")
+    shutil.rmtree(output / "strictdoc", ignore_errors=True)
+    config = of.project.root / "spec/requirements/strictdoc_config.py"
+    return export(output / "source", config, output / "strictdoc", "html,json")
+
+
+def write_pages(of: gate.Trace, found: Sequence[gate.Finding], output: Path, commit: str) -> None:
+    """Writes our own pages, the matrix as CSV, and figures and findings as JSON."""
     for name, text in pages.write_all(of, found, commit).items():
         (output / name).write_text(text, "utf-8")
     matrix = rows(of)
@@ -87,11 +98,6 @@ def write(of: gate.Trace, found: Sequence[gate.Finding], output: Path, commit: s
         "findings": [{"rule": one.rule, "uid": one.uid, "text": one.text} for one in found],
     }
     (output / "trace.json").write_text(json.dumps(summary, indent=2) + "\n", "utf-8")
-    (output / "source/90_units.sdoc").write_text(documents.units(of), "utf-8")
-    (output / "source/91_results.sdoc").write_text(documents.results(of), "utf-8")
-    config = of.project.root / "spec/requirements/strictdoc_config.py"
-    log = export(output / "source", config, output / "strictdoc", "html,json")
-    (output / "strictdoc.log").write_text(log, "utf-8")
 
 
 def print_findings(found: Sequence[gate.Finding]) -> None:
@@ -113,10 +119,14 @@ def main() -> int:
     try:
         current = rung_keys(root)
         source = Source(root, commit, current.__getitem__)
-        of = gate.trace(read_project(source, read_stated(root, output), current, shipped(root)))
+        project = read_project(source, read_stated(root, output), current, shipped(root))
+        if not arguments.gate_only:
+            printed = write_documents(gate.trace(project), output)
+            project = replace(project, exporter_log=project.exporter_log + printed)
+        of = gate.trace(project)
         found = gate.findings(of)
         if not arguments.gate_only:
-            write(of, found, output, commit)
+            write_pages(of, found, output, commit)
     except (RefusedError, UnusableError, ValueError, OSError) as error:
         print(f"report: {error}", file=sys.stderr)
         return 2
