@@ -14,6 +14,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "verification/trace
 import exporter
 import gate
 import pages
+from components import Component, bill_of_materials
 from items import Items, fingerprint
 from matrix import as_csv, negative_lists, rows
 from report import read_project, read_stated
@@ -24,6 +25,7 @@ from sources import Function, functions_of, read_links
 ROOT = Path(__file__).resolve().parents[2]
 PLANTED = ROOT / "verification/trace/planted"
 DEFECTS = sorted(PLANTED.glob("*.toml"))
+LIBC = Component("libc6", "2.36", "pkg:deb/debian/libc6@2.36")
 RUNGS = ("cbmc", "wp", "model", "conformance", "misra")
 
 
@@ -61,7 +63,7 @@ class Tree:
 
     def project(self, stated: tuple[Items, str], reviews: dict[str, str]) -> gate.Project:
         source = Source(self.path, "built", lambda _: False)
-        project = read_project(source, stated, RUNGS, {"libc6": "2.36"})
+        project = read_project(source, stated, RUNGS, [LIBC])
         return replace(project, reviewed=reviews)
 
 
@@ -151,17 +153,27 @@ def test_csv_and_pages_of_the_same_evidence_are_the_same_bytes(tree: Tree, clean
 def test_every_link_of_the_pages_leads_to_something(tree: Tree, clean: tuple[Items, str]) -> None:
     of = gate.trace(tree.project(clean, reviewed(clean[0])))
     written = pages.write_all(of, [], "built")
-    links = [(name, link) for name, text in written.items() for link in pages.LINK.findall(text)]
-    assert len(links) > 100
-    for name, link in links:
-        target, _, anchor = link.partition("#")
-        target = target.partition("?")[0]
-        if target in written:
-            assert not anchor or f'id="{anchor}"' in written[target], f"{name}: {link}"
-        elif target.startswith(pages.TOP):
-            assert (tree.path / target.removeprefix(f"{pages.TOP}/")).exists(), f"{name}: {link}"
-        else:
-            assert target in pages.MENU.values(), f"{name}: {link}"
+    output = tree.path / "build/report"
+    for name in ("strictdoc/html/index.html", "matrix.csv", "sbom.json"):
+        (output / name).parent.mkdir(parents=True, exist_ok=True)
+        (output / name).touch()
+    assert sum(len(pages.LINK.findall(text)) for text in written.values()) > 100
+    assert pages.broken_links(written, output) == set()
+    (tree.path / "build/evidence/cbmc/gate/proof.json").unlink()
+    (output / "matrix.csv").unlink()
+    log = "../../build/evidence/cbmc/gate/proof.json"
+    assert pages.broken_links(written, output) == {
+        ("results.html", log),
+        *((name, "matrix.csv") for name in written),
+    }
+    written["trace.html"] = written["trace.html"].replace('id="CA-01"', 'id="CA-02"')
+    assert ("trace.html", "trace.html#CA-01") in pages.broken_links(written, output)
+
+
+def test_the_bill_of_materials_names_what_is_shipped() -> None:
+    bill = bill_of_materials([LIBC], "built")
+    assert (bill["bomFormat"], bill["specVersion"]) == ("CycloneDX", "1.6")
+    assert [one["purl"] for one in bill["components"]] == [LIBC.purl]
 
 
 def test_a_row_leads_from_the_hazard_to_its_raw_results(tree: Tree, clean: tuple[Items, str]) -> None:
@@ -217,7 +229,7 @@ def test_every_function_that_is_proved_is_found_with_its_contract() -> None:
 def test_the_projects_own_requirements_hold_together(tmp_path: Path) -> None:
     items, printed = read_stated(ROOT, tmp_path)
     links = read_links(ROOT / "spec/requirements/links.toml")
-    project = gate.Project(ROOT, items, functions_of(ROOT), links, [], {}, {}, {}, printed)
+    project = gate.Project(ROOT, items, functions_of(ROOT), links, [], {}, {}, [], printed)
     of = gate.Trace(project)
     stated = [one for rule in (gate.g1, gate.g2, gate.g3, gate.g6) for one in rule(of)]
     assert [str(one) for one in stated] == []

@@ -56,7 +56,8 @@ def units(of: Trace) -> str:
             *(parent(uid, "Fulfils") for uid in requirements),
             source_file(function.file, function.name),
         ]
-        return node("UNIT", [*fields, ("STATEMENT", contract)], relations)
+        statement = f"{function.purpose}\n\n{contract}".strip()
+        return node("UNIT", [*fields, ("STATEMENT", statement)], relations)
 
     head = HEAD.format(title="Detailed design: units of the kernel core", uid="DOC-UNITS")
     return head + "".join(unit(function) for function in of.project.functions)
@@ -78,7 +79,8 @@ def results(of: Trace) -> str:
             ("LOG", result.log),
             ("STATEMENT", result.bounds),
         ]
-        place = [source_file(result.place)] if (of.project.root / result.place).is_file() else []
+        function = result.function.rpartition(":")[2]
+        place = [source_file(result.place, function)] if (of.project.root / result.place).is_file() else []
         return node("RESULT", fields, [*(parent(uid, "Verifies") for uid in supported), *place])
 
     head = HEAD.format(title="Verification results", uid="DOC-RESULTS")

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from pathlib import Path
 
+from components import Component
 from items import GENERATED, Item, Items, fingerprint
 from results import SOUND, Result
 from sources import Function, Links
@@ -24,8 +25,8 @@ class Project:
     """Fingerprint of each item at its last review."""
     clauses: Mapping[str, Mapping[str, object]]
     """Clause by clause, what shows it, or the gap in words."""
-    components: Mapping[str, str]
-    """What is shipped beside our own code, by name with version; empty when it is not known."""
+    components: Sequence[Component]
+    """What is shipped beside our own code; empty when it is not known."""
     exporter_log: str = ""
     """What StrictDoc printed."""
 
@@ -135,12 +136,10 @@ def g2(of: Trace) -> Iterator[Finding]:
 
 
 def g3(of: Trace) -> Iterator[Finding]:
-    """Each approved requirement has a parent, an item of the architecture and code; each has one *shall*."""
+    """Each requirement has a parent, an item of the architecture and code; each has one *shall*."""
     project = of.project
     fulfilled = {uid for one in project.functions for uid in project.links.requirements_of(one)}
     for requirement in project.items.of("REQUIREMENT"):
-        if requirement.fields["STATUS"] != "Approved":
-            yield Finding("G3", requirement.uid, f"is {requirement.fields['STATUS']}, not Approved")
         if not requirement.parents_by("Refines"):
             yield Finding("G3", requirement.uid, "refines no system requirement")
         if len(requirement.parents_by("Allocated")) != 1:
@@ -247,9 +246,10 @@ def g10(of: Trace) -> Iterator[Finding]:
     if not of.project.components:
         yield Finding("G10", "SBOM", "what is shipped is not known: build the release first")
         return
-    for name in sorted(set(of.project.components) - set(described)):
-        yield Finding("G10", name, f"{of.project.components[name]} is shipped, but no SOUP item describes it")
-    for name in sorted(set(described) - set(of.project.components)):
+    shipped = {one.name: one for one in of.project.components}
+    for name in sorted(set(shipped) - set(described)):
+        yield Finding("G10", name, f"{shipped[name].purl} is shipped, but no SOUP item describes it")
+    for name in sorted(set(described) - set(shipped)):
         yield Finding("G10", described[name], f"describes {name}, which is not shipped")
 
 
@@ -265,6 +265,14 @@ def g11(of: Trace) -> Iterator[Finding]:
 
 
 RULES: Sequence[Callable[[Trace], Iterator[Finding]]] = (g1, g2, g3, g4, g5, g6, g7, g8, g9, g10, g11)
+
+
+def alike(found: Sequence[Finding]) -> dict[tuple[str, str], list[str]]:
+    """Findings by rule and text, each with all UIDs that it is said of."""
+    groups: dict[tuple[str, str], list[str]] = {}
+    for one in found:
+        groups.setdefault((one.rule, one.text), []).append(one.uid)
+    return groups
 
 
 def findings(of: Trace) -> list[Finding]:

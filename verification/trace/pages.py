@@ -1,12 +1,12 @@
 """The report as pages that work without a network: overview, matrix, and every item with both directions."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
-from html import escape
+from html import escape, unescape
 from pathlib import Path
 
-from gate import Finding, Trace
+from gate import Finding, Trace, alike
 from items import Item
 from matrix import Row, code_of, coverage, negative_lists, rows, status_of
 from results import Result
@@ -14,6 +14,7 @@ from results import Result
 STYLE = Path(__file__).with_name("style.css").read_text("utf-8")
 FILTER = Path(__file__).with_name("filter.js").read_text("utf-8")
 LINK = re.compile(r'href="([^"]+)"')
+ANCHOR = re.compile(r'id="([^"]+)"')
 MENU = {
     "Overview": "index.html",
     "Matrix": "matrix.html",
@@ -21,6 +22,7 @@ MENU = {
     "Results": "results.html",
     "Documents": "strictdoc/html/index.html",
     "CSV": "matrix.csv",
+    "SBOM": "sbom.json",
 }
 CONTENTS = (
     *("Function", "InputOutput", "Interface", "Alarm", "Security", "UserInterface"),
@@ -63,6 +65,11 @@ def status(word: str) -> str:
 
 def listed(lines: Sequence[str]) -> str:
     return "<ul>" + "".join(f"<li>{line}" for line in lines) + "</ul>" if lines else "<p>None.</p>"
+
+
+def folded(title: str, uids: Sequence[str]) -> str:
+    """A line that opens to a list."""
+    return f"<details><summary>{escape(title)}</summary>{listed([escape(uid) for uid in uids])}</details>"
 
 
 def table(headings: Sequence[str], lines: Sequence[Sequence[str]]) -> str:
@@ -112,11 +119,10 @@ def overview(of: Trace, found: Sequence[Finding], commit: str) -> str:
         if not found
         else f"<p>{status('FAILED')}: {len(found)} lines are missing or wrong.</p>"
     )
-    gate += listed([escape(str(finding)) for finding in found])
-    negative = "".join(
-        f"<h3>{escape(title)}: {len(uids)}</h3>{listed([escape(uid) for uid in uids])}"
-        for title, uids in negative_lists(of).items()
+    gate += "".join(
+        folded(f"{rule} {text}: {len(uids)}", uids) for (rule, text), uids in alike(found).items()
     )
+    negative = "".join(folded(f"{title}: {len(uids)}", uids) for title, uids in negative_lists(of).items())
 
     def row_link(hazard: Item) -> str:
         words = f"{hazard.uid} {hazard.title}"
@@ -142,8 +148,8 @@ def overview(of: Trace, found: Sequence[Finding], commit: str) -> str:
     )
     sections = {
         "Gate": gate,
+        "Must be empty at a release": negative,
         "Coverage by hazard": covered,
-        "Negative lists": negative,
         "Figures": figures,
         "Software requirements by content": contents,
     }
@@ -230,6 +236,20 @@ def results_page(of: Trace) -> str:
         return f'<article id="{escape(result.uid)}" data-line>{head}<dl>{body}</dl></article>'
 
     return page("Results", filtered("".join(article(one) for one in of.project.results)), FILTER)
+
+
+def broken_links(written: Mapping[str, str], output: Path) -> set[tuple[str, str]]:
+    """Page and link of each link that leads to no anchor and no file. `output` is where the pages stand."""
+    anchors = {name: set(ANCHOR.findall(text)) for name, text in written.items()}
+    broken = set()
+    for name, text in written.items():
+        for link in set(LINK.findall(text)):
+            target, _, anchor = unescape(link).partition("#")
+            target = target.partition("?")[0]
+            there = target in written or (output / target).exists()
+            if not there or (anchor and escape(anchor) not in anchors.get(target, ())):
+                broken.add((name, link))
+    return broken
 
 
 def write_all(of: Trace, found: Sequence[Finding], commit: str) -> dict[str, str]:

@@ -2,7 +2,7 @@
 """Writes the trace report of this commit into build/report and judges it. Usage: report.py [--gate-only]
 
 Reads spec/requirements by StrictDoc, the functions of kernel/src, and the evidence in build/evidence and
-build/reports. Writes index.html, matrix.html, trace.html, results.html, matrix.csv, trace.json and
+build/reports. Writes index.html, matrix.html, trace.html, results.html, matrix.csv, trace.json, sbom.json and
 StrictDoc's own pages. Prints every line that is missing or wrong; exits 1 when there is one, 2 when there is
 no report.
 """
@@ -13,7 +13,7 @@ import shutil
 import sys
 import tomllib
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -23,7 +23,7 @@ import documents
 import evidence
 import gate
 import pages
-from components import shipped
+from components import Component, bill_of_materials, shipped
 from exporter import RefusedError, export, stage
 from items import Items, read_items
 from ladder import UnusableError, content_key, read_expected
@@ -57,7 +57,7 @@ def read_stated(root: Path, output: Path) -> tuple[Items, str]:
 
 
 def read_project(
-    source: Source, stated: tuple[Items, str], rungs: Iterable[str], components: Mapping[str, str]
+    source: Source, stated: tuple[Items, str], rungs: Iterable[str], components: Sequence[Component]
 ) -> gate.Project:
     """All that the gate looks at: what is stated, what stands in the sources, and the evidence of `rungs`."""
     requirements = source.root / "spec/requirements"
@@ -84,9 +84,19 @@ def write_documents(of: gate.Trace, output: Path) -> str:
     return export(output / "source", config, output / "strictdoc", "html,json")
 
 
-def write_pages(of: gate.Trace, found: Sequence[gate.Finding], output: Path, commit: str) -> None:
-    """Writes our own pages, the matrix as CSV, and figures and findings as JSON."""
-    for name, text in pages.write_all(of, found, commit).items():
+def dump(document: object) -> str:
+    return json.dumps(document, indent=2) + "\n"
+
+
+def write_pages(
+    of: gate.Trace, found: Sequence[gate.Finding], output: Path, commit: str
+) -> list[gate.Finding]:
+    """Writes our own pages, the matrix as CSV, figures, findings and bill of materials as JSON.
+
+    Returns a finding for each link of the pages that leads nowhere.
+    """
+    written = pages.write_all(of, found, commit)
+    for name, text in written.items():
         (output / name).write_text(text, "utf-8")
     matrix = rows(of)
     (output / "matrix.csv").write_text(as_csv(matrix), "utf-8")
@@ -97,16 +107,11 @@ def write_pages(of: gate.Trace, found: Sequence[gate.Finding], output: Path, com
         "negative_lists": negative_lists(of),
         "findings": [{"rule": one.rule, "uid": one.uid, "text": one.text} for one in found],
     }
-    (output / "trace.json").write_text(json.dumps(summary, indent=2) + "\n", "utf-8")
-
-
-def print_findings(found: Sequence[gate.Finding]) -> None:
-    """One line for each thing that is wrong, with all that it is wrong of."""
-    alike: dict[tuple[str, str], list[str]] = {}
-    for one in found:
-        alike.setdefault((one.rule, one.text), []).append(one.uid)
-    for (rule, text), uids in alike.items():
-        print(f"{rule} {text}: {', '.join(uids)}")
+    (output / "trace.json").write_text(dump(summary), "utf-8")
+    materials = bill_of_materials(of.project.components, commit)
+    (output / "sbom.json").write_text(dump(materials), "utf-8")
+    broken = sorted(pages.broken_links(written, output))
+    return [gate.Finding("G9", page, f"its link {link} leads nowhere") for page, link in broken]
 
 
 def main() -> int:
@@ -126,11 +131,12 @@ def main() -> int:
         of = gate.trace(project)
         found = gate.findings(of)
         if not arguments.gate_only:
-            write_pages(of, found, output, commit)
+            found += write_pages(of, found, output, commit)
     except (RefusedError, UnusableError, ValueError, OSError) as error:
         print(f"report: {error}", file=sys.stderr)
         return 2
-    print_findings(found)
+    for (rule, text), uids in gate.alike(found).items():
+        print(f"{rule} {text}: {', '.join(uids)}")
     by_rule = ", ".join(f"{rule} {count}" for rule, count in Counter(one.rule for one in found).items())
     print(", ".join(f"{count} {name}" for name, count in pages.counts(of).items()))
     print(f"gate: {len(found)} lines are missing or wrong ({by_rule})" if found else "gate: green")

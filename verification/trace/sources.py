@@ -13,16 +13,20 @@ FUNCTION = re.compile(
 """The head of a function's definition as clang-format sets it: from the first column to its brace."""
 COMMENT = re.compile(r"/\*.*?\*/\s*\Z", re.DOTALL)
 CONTRACT = re.compile(r"/\*@(.*?)\*/", re.DOTALL)
+PURPOSE = re.compile(r"/\*\*(.*?)\*/", re.DOTALL)
+STARS = re.compile(r"^ *\* ?", re.MULTILINE)
 MARGIN = re.compile(r"^ *@ ?", re.MULTILINE)
 
 
 @dataclass(frozen=True)
 class Function:
-    """A function of the kernel core, with the contract at its definition or declaration."""
+    """A function of the kernel core, with what stands above its definition or declaration."""
 
     name: str
     file: str
     line: int
+    purpose: str
+    """The comment above it, in words."""
     contract: str
 
 
@@ -62,8 +66,9 @@ def functions_of(root: Path) -> list[Function]:
             if not CONTRACT.search(above):
                 above = declaration_comments(texts, name)
             contract = "\n".join(MARGIN.sub("", part).strip() for part in CONTRACT.findall(above))
+            purpose = "\n".join(STARS.sub("", part).strip() for part in PURPOSE.findall(above))
             line = text.count("\n", 0, match.start()) + 1
-            found.append(Function(name, path.relative_to(root).as_posix(), line, contract))
+            found.append(Function(name, path.relative_to(root).as_posix(), line, purpose, contract))
     return found
 
 
