@@ -2,6 +2,7 @@
 
 import json
 import shutil
+import subprocess
 import sys
 import tomllib
 from dataclasses import replace
@@ -215,6 +216,78 @@ def test_evidence_of_another_commit_is_fresh_while_its_inputs_are_the_same(tree:
     assert results["MISRA"]
     assert not results["CBMC:gate"]
     assert not results["TEST:unit:kernel_tests.P1_gate"]
+
+
+RUNG = 'command = "true"\ninputs = []\ncores = 1\nmemory_gb = 1\nstatus = "PASSED"\n'
+
+
+class Repository(Tree):
+    """The clean project as a repository of its own, with the programs that report on it."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(path)
+        for name in ("trace", "evidence"):
+            ignored = shutil.ignore_patterns("__pycache__", "planted")
+            shutil.copytree(ROOT / "verification" / name, path / "verification" / name, ignore=ignored)
+        rungs = "".join(f"[rung.{name}]\n{RUNG}[rung.{name}.figures]\n" for name in RUNGS)
+        self.write("verification/expected.toml", rungs)
+        self.write("verification/toolchain/libraries.txt", "")
+        self.write("web/package.json", '{"dependencies": {}}')
+        self.write("web/package-lock.json", '{"packages": {}}')
+        self.write(".gitignore", "/build/\n__pycache__/\n")
+        # Any program that needs the C library and nothing else.
+        self.write("build/release/bin/interlock", "")
+        shutil.copy("/bin/true", path / "build/release/bin/interlock")
+        self.git("init", "-q")
+        assert self.run("trace/review.py", "--all").returncode == 0
+        self.git("add", ".")
+        self.git("-c", "user.name=a", "-c", "user.email=b", "commit", "-qm", "tree")
+        self.head = self.git("rev-parse", "HEAD")
+        for file in [*path.glob("build/evidence/*.json"), *path.glob("build/reports/*.run.json")]:
+            file.write_text(file.read_text("utf-8").replace('"built"', f'"{self.head}"'), "utf-8")
+
+    def write(self, name: str, text: str) -> None:
+        (self.path / name).parent.mkdir(parents=True, exist_ok=True)
+        (self.path / name).write_text(text, "utf-8")
+
+    def git(self, *arguments: str) -> str:
+        command = ["git", *arguments]
+        return subprocess.run(
+            command, cwd=self.path, check=True, capture_output=True, text=True
+        ).stdout.strip()
+
+    def run(self, program: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, str(self.path / "verification" / program), *arguments]
+        return subprocess.run(command, cwd=self.path, capture_output=True, text=True)
+
+
+def test_the_report_of_a_clean_project_is_written_and_a_defect_fails_it_by_name(tmp_path: Path) -> None:
+    repository = Repository(tmp_path)
+    done = repository.run("trace/report.py")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout.splitlines()[-1] == "gate: green"
+    report = tmp_path / "build/report"
+    summary = json.loads((report / "trace.json").read_text("utf-8"))
+    assert summary["commit"] == repository.head
+    assert summary["findings"] == []
+    page = report / "strictdoc/html/_source_files/kernel/src/gate.c.html"
+    assert "UNIT-gate.c-may_drive" in page.read_text("utf-8")
+    repository.plant(read_defect(PLANTED / "G5_failed_test.toml"))
+    done = repository.run("trace/report.py", "--gate-only")
+    assert done.returncode == 1, done.stdout + done.stderr
+    assert "G5 FAILED" in done.stdout
+    assert "TEST:unit:kernel_tests.Lamps" in done.stdout
+
+
+def test_a_run_of_tests_begins_without_the_report_of_the_last_one(tmp_path: Path) -> None:
+    repository = Repository(tmp_path)
+    reports = tmp_path / "build/reports"
+    assert repository.run("evidence/begin_tests.py", "integration").returncode == 0
+    assert not (reports / "integration.xml").exists()
+    run = json.loads((reports / "integration.run.json").read_text("utf-8"))
+    assert run["commit"] == repository.head
+    assert run["tool"].startswith("pytest ")
+    assert (reports / "unit.xml").exists()
 
 
 def test_every_function_that_is_proved_is_found_with_its_contract() -> None:
