@@ -1,11 +1,13 @@
 """The trace report: each planted defect turns the gate red by its rule; no status is better than its log."""
 
 import json
+import re
 import shutil
 import subprocess
 import sys
 import tomllib
 from dataclasses import replace
+from fnmatch import fnmatchcase
 from pathlib import Path
 
 import pytest
@@ -24,6 +26,7 @@ from review import write_reviewed
 from sources import Function, functions_of, read_links
 
 ROOT = Path(__file__).resolve().parents[2]
+LINKS = ROOT / "spec/requirements/links.toml"
 PLANTED = ROOT / "verification/trace/planted"
 DEFECTS = sorted(PLANTED.glob("*.toml"))
 LIBC = Component("libc6", "2.36", "pkg:deb/debian/libc6@2.36")
@@ -299,9 +302,45 @@ def test_every_function_that_is_proved_is_found_with_its_contract() -> None:
     assert proved <= contracted
 
 
+GTEST = re.compile(r"^TEST(?:_P|_F)?\((\w+),\s*(\w+)", re.MULTILINE)
+
+
+def tests_in_the_sources() -> dict[str, list[str]]:
+    """The tests of each suite as the sources name them, without what a run adds."""
+
+    def texts(pattern: str) -> list[tuple[Path, str]]:
+        return [(path, path.read_text("utf-8")) for path in sorted((ROOT / "tests").glob(pattern))]
+
+    return {
+        "unit": [".".join(names) for _, text in texts("unit/**/*.cpp") for names in GTEST.findall(text)],
+        "integration": [
+            f"tests.integration.{path.stem}::{name}"
+            for path, text in texts("integration/test_*.py")
+            for name in re.findall(r"^def (test_\w+)", text, re.MULTILINE)
+        ],
+        "browser": [
+            f"{path.name}::{name}"
+            for path, text in texts("browser/*.spec.ts")
+            for name in re.findall(r"\btest\(\s*[`\"]([^`\"]+)", text.replace("${way}", "Esc"))
+        ],
+    }
+
+
+def test_each_test_that_a_requirement_names_stands_in_the_sources() -> None:
+    written = tests_in_the_sources()
+    patterns = {one for named in read_links(LINKS).tests.values() for one in named}
+    missing = []
+    for pattern in patterns:
+        suite, _, name = pattern.partition(":")
+        shapes = (name, f"{name}*")
+        if not any(fnmatchcase(test, shape) for test in written[suite] for shape in shapes):
+            missing.append(pattern)
+    assert missing == []
+
+
 def test_the_projects_own_requirements_hold_together(tmp_path: Path) -> None:
     items, printed = read_stated(ROOT, tmp_path)
-    links = read_links(ROOT / "spec/requirements/links.toml")
+    links = read_links(LINKS)
     project = gate.Project(ROOT, items, functions_of(ROOT), links, [], {}, {}, [], printed)
     of = gate.Trace(project)
     stated = [one for rule in (gate.g1, gate.g2, gate.g3, gate.g6) for one in rule(of)]
