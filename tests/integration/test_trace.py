@@ -338,6 +338,15 @@ def test_each_test_that_a_requirement_names_stands_in_the_sources() -> None:
     assert missing == []
 
 
+def test_the_criteria_of_units_name_results_that_there_are() -> None:
+    text = (ROOT / "spec/requirements/55_unit_acceptance.sdoc").read_text("utf-8")
+    named = {one.partition(":")[2] for one in re.findall(r"`((?:TEST:unit|CBMC):[^`*]+)`", text)}
+    proofs = {path.parent.name for path in (ROOT / "verification/cbmc").glob("*/proof.toml")}
+    suites = {f"kernel_tests.{one.partition('.')[0]}" for one in tests_in_the_sources()["unit"]}
+    assert len(named) > 5
+    assert {one.removeprefix("unit:") for one in named} <= proofs | suites
+
+
 def test_the_projects_own_requirements_hold_together(tmp_path: Path) -> None:
     items, printed = read_stated(ROOT, tmp_path)
     links = read_links(LINKS)
