@@ -1,5 +1,6 @@
 """The trace report: each planted defect turns the gate red by its rule; no status is better than its log."""
 
+import hashlib
 import json
 import re
 import shutil
@@ -158,7 +159,7 @@ def test_every_link_of_the_pages_leads_to_something(tree: Tree, clean: tuple[Ite
     of = gate.trace(tree.project(clean, reviewed(clean[0])))
     written = pages.write_all(of, [], "built")
     output = tree.path / "build/report"
-    for name in ("strictdoc/html/index.html", "matrix.csv", "sbom.json"):
+    for name in ("strictdoc/html/index.html", "matrix.csv", "sbom.json", "release.json"):
         (output / name).parent.mkdir(parents=True, exist_ok=True)
         (output / name).touch()
     assert sum(len(pages.LINK.findall(text)) for text in written.values()) > 100
@@ -273,6 +274,11 @@ def test_the_report_of_a_clean_project_is_written_and_a_defect_fails_it_by_name(
     summary = json.loads((report / "trace.json").read_text("utf-8"))
     assert summary["commit"] == repository.head
     assert summary["findings"] == []
+    release = json.loads((report / "release.json").read_text("utf-8"))
+    program = tmp_path / "build/release/bin/interlock"
+    assert release["files"] == {
+        "build/release/bin/interlock": hashlib.sha256(program.read_bytes()).hexdigest()
+    }
     page = report / "strictdoc/html/_source_files/kernel/src/gate.c.html"
     assert "UNIT-gate.c-may_drive" in page.read_text("utf-8")
     repository.plant(read_defect(PLANTED / "G5_failed_test.toml"))

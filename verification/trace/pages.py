@@ -23,6 +23,7 @@ MENU = {
     "Documents": "strictdoc/html/index.html",
     "CSV": "matrix.csv",
     "SBOM": "sbom.json",
+    "Release": "release.json",
 }
 CONTENTS = (
     *("Function", "InputOutput", "Interface", "Alarm", "Security", "UserInterface"),

@@ -2,9 +2,9 @@
 """Writes the trace report of this commit into build/report and judges it. Usage: report.py [--gate-only]
 
 Reads spec/requirements by StrictDoc, the functions of kernel/src, and the evidence in build/evidence and
-build/reports. Writes index.html, matrix.html, trace.html, results.html, matrix.csv, trace.json, sbom.json and
-StrictDoc's own pages. Prints every line that is missing or wrong; exits 1 when there is one, 2 when there is
-no report.
+build/reports. Writes index.html, matrix.html, trace.html, results.html, matrix.csv, trace.json, sbom.json,
+release.json and StrictDoc's own pages. Prints every line that is missing or wrong; exits 1 when there is one,
+2 when there is no report.
 """
 
 import argparse
@@ -23,6 +23,7 @@ import documents
 import evidence
 import gate
 import pages
+import release
 from components import Component, bill_of_materials, shipped
 from exporter import RefusedError, export, stage
 from items import Items, read_items
@@ -110,6 +111,7 @@ def write_pages(
     (output / "trace.json").write_text(dump(summary), "utf-8")
     materials = bill_of_materials(of.project.components, commit)
     (output / "sbom.json").write_text(dump(materials), "utf-8")
+    (output / "release.json").write_text(dump(release.record(of, found, commit)), "utf-8")
     broken = sorted(pages.broken_links(written, output))
     return [gate.Finding("G9", page, f"its link {link} leads nowhere") for page, link in broken]
 
