@@ -299,6 +299,14 @@ def test_a_run_of_tests_begins_without_the_report_of_the_last_one(tmp_path: Path
     assert (reports / "unit.xml").exists()
 
 
+def test_evidence_of_a_tree_with_changes_is_stale_for_the_next_one(tree: Tree) -> None:
+    for file in (tree.path / "build").glob("*/*.json"):
+        file.write_text(file.read_text("utf-8").replace('"built"', '"built+changes"'), "utf-8")
+    results = read_results(Source(tree.path, "built+changes", lambda _: False), RUNGS)
+    assert len(results) > len(RUNGS)
+    assert not any(one.fresh for one in results)
+
+
 def test_every_function_that_is_proved_is_found_with_its_contract() -> None:
     expected = json.loads((ROOT / "verification/frama-c/expected.json").read_text("utf-8"))
     proved = {(f"kernel/src/{unit}", name) for unit, functions in expected.items() for name in functions}

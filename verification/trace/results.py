@@ -63,6 +63,10 @@ class Source:
     is_current: Callable[[str], bool]
     """Whether a rung's inputs are those from which its evidence was made."""
 
+    def made(self, commit: str) -> bool:
+        """Whether what names `commit` was made from it. Two trees with changes of their own may differ."""
+        return commit == self.commit and not commit.endswith("+changes")
+
     @property
     def evidence(self) -> Path:
         return self.root / "build/evidence"
@@ -112,7 +116,7 @@ def read_rung(source: Source, name: str) -> Rung | None:
             date=document["date"],
             figures=document["figures"],
             supports=frozenset(document["supports"]),
-            fresh=document["commit"] == source.commit or source.is_current(name),
+            fresh=source.made(document["commit"]) or source.is_current(name),
             logs=logs.relative_to(source.root).as_posix(),
             text=printed.read_text("utf-8", "replace") if printed.exists() else "",
         )
@@ -343,7 +347,7 @@ def suites(source: Source, suite: str) -> Iterator[Result]:
             bounds=f"{len(tests) - len(failures)} of {len(tests)} tests passed",
             log=f"build/reports/{suite}.xml",
             supports=frozenset(one for name, _ in tests for one in PROPERTY.findall(f"{name}_")),
-            fresh=bool(run["commit"]) and run["commit"] == source.commit,
+            fresh=source.made(run["commit"]),
             cases=tuple(name for name, _ in tests),
             failures=failures,
         )
