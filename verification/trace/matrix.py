@@ -19,6 +19,7 @@ class Row:
     hazard: str
     situation: str
     cause: str
+    cause_item: str
     cause_kind: str
     initial_risk: str
     control: str
@@ -32,6 +33,7 @@ class Row:
     methods: str
     results: str
     status: str
+    dates: str
     commits: str
     tools: str
     residual: str
@@ -91,6 +93,7 @@ def rows(of: Trace) -> list[Row]:
                 hazard=named(hazard),
                 situation=hazard.fields["SITUATION"],
                 cause=named(cause),
+                cause_item=cause.fields.get("ITEM", cause.fields.get("INTERFACE", "")),
                 cause_kind=cause.fields.get("KIND", cause.fields.get("STRIDE", "")),
                 initial_risk=f"{hazard.fields['SEVERITY']}, taken to occur",
                 control=named(control),
@@ -104,6 +107,7 @@ def rows(of: Trace) -> list[Row]:
                 methods=requirement.fields["VERIFICATION"],
                 results="; ".join(f"{one.uid} {one.status}" for one in results),
                 status=status_of(results),
+                dates="; ".join(sorted({one.date[:10] for one in results if one.date})),
                 commits="; ".join(sorted({one.commit[:12] for one in results if one.commit})),
                 tools="; ".join(sorted({one.tool for one in results})),
                 residual=hazard.fields["RESIDUAL"],
