@@ -361,6 +361,14 @@ def test_the_criteria_of_units_name_results_that_there_are() -> None:
     assert {one.removeprefix("unit:") for one in named} <= proofs | suites
 
 
+def test_every_cause_makes_a_control_action_unsafe() -> None:
+    text = (ROOT / "spec/requirements/20_risk.sdoc").read_text("utf-8")
+    table = "\n".join(line for line in text.splitlines() if line.startswith("| "))
+    stated = re.findall(r"^UID: (CA-\d+)$", text, re.MULTILINE)
+    assert len(stated) > 30
+    assert set(re.findall(r"CA-\d+", table)) == set(stated)
+
+
 def test_the_projects_own_requirements_hold_together(tmp_path: Path) -> None:
     items, printed = read_stated(ROOT, tmp_path)
     links = read_links(LINKS)
