@@ -56,16 +56,19 @@ test: build ## Run the unit, integration and browser tests; reports in build/rep
 	@$(MAKE) --keep-going test-unit test-console test-integration test-browser
 
 test-unit: build ## Run the GoogleTest programs
-	@mkdir -p $(reports)
+	@verification/evidence/begin_tests.py unit
 	@ctest --preset release --progress --no-tests=error --output-junit $(CURDIR)/$(reports)/unit.xml
 
 test-console: setup ## Run the console's unit tests, and compare its kernel with the native one
+	@verification/evidence/begin_tests.py console
 	@npm --prefix web run --silent test -- --reporter=default --reporter=junit --outputFile=../$(reports)/console.xml
 
 test-integration: build ## Run the tests on real processes
+	@verification/evidence/begin_tests.py integration
 	@pytest --numprocesses=3 --dist=loadscope --junitxml=$(reports)/integration.xml tests/integration
 
 test-browser: build ## Run the tests that click through the console
+	@verification/evidence/begin_tests.py browser
 	@npm --prefix web run --silent test:browser
 
 .PHONY: fuzz
@@ -91,6 +94,10 @@ selftest-all: setup ## Show that every seeded fault turns its test or proof red
 verify: ## Climb the verification ladder: [FRESH=1] runs again what has not changed
 	@$(setup) packages python provers
 	@/usr/bin/python3 verification/evidence/verify.py
+
+.PHONY: report
+report: setup ## Write the trace report from the evidence of this commit, and name every line that is missing
+	@python verification/trace/report.py
 
 .PHONY: campaign campaign-selftest
 campaign: build ## Throw faults at kernel core and plant before the oracle: [SECONDS=300 | TICKS=] [SEED=1]

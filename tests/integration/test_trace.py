@@ -1,0 +1,381 @@
+"""The trace report: each planted defect turns the gate red by its rule; no status is better than its log."""
+
+import hashlib
+import json
+import re
+import shutil
+import subprocess
+import sys
+import tomllib
+from dataclasses import replace
+from fnmatch import fnmatchcase
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "verification/trace"))
+
+import exporter
+import gate
+import pages
+from components import Component, bill_of_materials
+from items import Items, fingerprint
+from matrix import as_csv, negative_lists, rows
+from report import read_project, read_stated
+from results import Source, read_results
+from review import write_reviewed
+from sources import Function, functions_of, read_links
+
+ROOT = Path(__file__).resolve().parents[2]
+LINKS = ROOT / "spec/requirements/links.toml"
+PLANTED = ROOT / "verification/trace/planted"
+DEFECTS = sorted(PLANTED.glob("*.toml"))
+LIBC = Component("libc6", "2.36", "pkg:deb/debian/libc6@2.36")
+RUNGS = ("cbmc", "wp", "model", "conformance", "misra")
+
+
+def read_defect(path: Path) -> dict:
+    return tomllib.loads(path.read_text("utf-8"))
+
+
+def reviewed(items: Items) -> dict[str, str]:
+    return {item.uid: fingerprint(items, item) for item in items}
+
+
+class Tree:
+    """The clean project of the planted defects, at a place of its own."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        shutil.copytree(PLANTED / "clean", path, dirs_exist_ok=True)
+        for name in ("grammar.sgra", "strictdoc_config.py"):
+            shutil.copy(ROOT / "spec/requirements" / name, path / "spec/requirements")
+        (path / "spec/requirements/reviewed.toml").write_text("", "utf-8")
+
+    def stated(self) -> tuple[Items, str]:
+        return read_stated(self.path, self.path / "build/report")
+
+    def change(self, file: str, old: str, new: str) -> None:
+        text = (self.path / file).read_text("utf-8")
+        assert text.count(old) == 1, f"{file}: '{old}' stands there {text.count(old)} times"
+        (self.path / file).write_text(text.replace(old, new), "utf-8")
+
+    def plant(self, defect: dict) -> None:
+        for change in defect.get("change", []):
+            self.change(change["file"], change["old"], change["new"])
+        if "remove" in defect:
+            (self.path / defect["remove"]).unlink()
+
+    def project(self, stated: tuple[Items, str], reviews: dict[str, str]) -> gate.Project:
+        source = Source(self.path, "built", lambda _: False)
+        project = read_project(source, stated, RUNGS, [LIBC])
+        return replace(project, reviewed=reviews)
+
+
+@pytest.fixture(scope="module")
+def clean(tmp_path_factory: pytest.TempPathFactory) -> tuple[Items, str]:
+    """What the clean project states."""
+    return Tree(tmp_path_factory.mktemp("clean")).stated()
+
+
+@pytest.fixture
+def tree(tmp_path: Path) -> Tree:
+    return Tree(tmp_path)
+
+
+def found(project: gate.Project) -> list[str]:
+    return sorted(f"{one.rule} {one.uid}" for one in gate.findings(gate.trace(project)))
+
+
+def test_the_clean_project_is_green(tree: Tree, clean: tuple[Items, str]) -> None:
+    project = tree.project(clean, reviewed(clean[0]))
+    assert found(project) == []
+    assert not any(negative_lists(gate.trace(project)).values())
+
+
+def test_every_rule_has_a_planted_defect() -> None:
+    planted = {one.split(" ")[0] for path in DEFECTS for one in read_defect(path)["finds"]}
+    assert planted == {rule.__name__.upper() for rule in gate.RULES}
+
+
+@pytest.mark.parametrize("path", DEFECTS, ids=lambda path: path.stem)
+def test_a_planted_defect_turns_the_gate_red_by_its_rule(
+    path: Path, tree: Tree, clean: tuple[Items, str]
+) -> None:
+    defect = read_defect(path)
+    tree.plant(defect)
+    documents = any(change["file"].endswith(".sdoc") for change in defect.get("change", []))
+    items, printed = tree.stated() if documents else clean
+    # A changed text is suspect by itself; only the defects of G8 are about that.
+    changed = any(one.startswith("G8") for one in defect["finds"])
+    reviews = reviewed(clean[0] if changed else items)
+    project = tree.project((items, printed + defect.get("prints", "")), reviews)
+    assert found(project) == sorted(defect["finds"]), defect["why"]
+
+
+def test_a_link_that_the_documents_refuse_ends_the_report(tree: Tree) -> None:
+    tree.change("spec/requirements/10_risk.sdoc", "VALUE: CA-01", "VALUE: CA-99")
+    with pytest.raises(exporter.RefusedError, match="CA-99"):
+        tree.stated()
+
+
+def test_a_review_takes_the_suspicion_away(tree: Tree, clean: tuple[Items, str]) -> None:
+    defect = read_defect(PLANTED / "G8_requirement_changed.toml")
+    tree.plant(defect)
+    stated = tree.stated()
+    file = tree.path / "spec/requirements/reviewed.toml"
+    write_reviewed(clean[0], file, set(clean[0].by_uid))
+    suspect = tree.project(stated, read_defect(file))
+    assert found(suspect) == ["G8 P1", "G8 SRS-K-001"]
+    write_reviewed(stated[0], file, {"SRS-K-001", "P1"})
+    assert found(tree.project(stated, read_defect(file))) == []
+
+
+def test_an_anomaly_covers_the_result_that_it_names_and_no_other(
+    tree: Tree, clean: tuple[Items, str]
+) -> None:
+    tree.plant(read_defect(PLANTED / "G5_failed_proof.toml"))
+    path = tree.path / "spec/requirements/20_requirements.sdoc"
+    anomaly = (
+        "\n[ANOMALY]\nUID: AN-01\nTITLE: Known\nCOVERS: CBMC:gate\nSTATEMENT: It fails.\n"
+        "EVALUATION: Harmless.\nRELATIONS:\n- TYPE: Parent\n  VALUE: SRS-K-001\n  ROLE: Affects\n"
+    )
+    path.write_text(path.read_text("utf-8") + anomaly, "utf-8")
+    stated = tree.stated()
+    assert found(tree.project(stated, reviewed(stated[0]))) == []
+    tree.plant(read_defect(PLANTED / "G5_failed_test.toml"))
+    assert found(tree.project(stated, reviewed(stated[0]))) == ["G5 TEST:unit:kernel_tests.Lamps"]
+
+
+def test_csv_and_pages_of_the_same_evidence_are_the_same_bytes(tree: Tree, clean: tuple[Items, str]) -> None:
+    def written() -> tuple[str, dict[str, str]]:
+        of = gate.trace(tree.project(clean, reviewed(clean[0])))
+        return as_csv(rows(of)), pages.write_all(of, gate.findings(of), "built")
+
+    assert written() == written()
+
+
+def test_every_link_of_the_pages_leads_to_something(tree: Tree, clean: tuple[Items, str]) -> None:
+    of = gate.trace(tree.project(clean, reviewed(clean[0])))
+    written = pages.write_all(of, [], "built")
+    output = tree.path / "build/report"
+    for name in ("strictdoc/html/index.html", "matrix.csv", "sbom.json", "release.json"):
+        (output / name).parent.mkdir(parents=True, exist_ok=True)
+        (output / name).touch()
+    assert sum(len(pages.LINK.findall(text)) for text in written.values()) > 100
+    assert pages.broken_links(written, output) == set()
+    (tree.path / "build/evidence/cbmc/gate/proof.json").unlink()
+    (output / "matrix.csv").unlink()
+    log = "../../build/evidence/cbmc/gate/proof.json"
+    assert pages.broken_links(written, output) == {
+        ("results.html", log),
+        *((name, "matrix.csv") for name in written),
+    }
+    written["trace.html"] = written["trace.html"].replace('id="CA-01"', 'id="CA-02"')
+    assert ("trace.html", "trace.html#CA-01") in pages.broken_links(written, output)
+
+
+def test_the_bill_of_materials_names_what_is_shipped() -> None:
+    bill = bill_of_materials([LIBC], "built")
+    assert (bill["bomFormat"], bill["specVersion"]) == ("CycloneDX", "1.6")
+    assert [one["purl"] for one in bill["components"]] == [LIBC.purl]
+
+
+def test_a_row_leads_from_the_hazard_to_its_raw_results(tree: Tree, clean: tuple[Items, str]) -> None:
+    of = gate.trace(tree.project(clean, reviewed(clean[0])))
+    first = rows(of)[0]
+    assert first.hazard == "H-01 Motion without command"
+    assert first.requirement == "SRS-K-001 Output gate"
+    assert first.properties == "P1"
+    assert first.code == "kernel/src/gate.c:4 may_drive"
+    assert first.results.split("; ") == [
+        "CBMC:gate PASSED",
+        "CONFORMANCE PASSED",
+        "TEST:unit:kernel_tests.P1_gate PASSED",
+        "TLC:axis:P1_gate BOUNDED",
+        "WP:gate.c:may_drive PASSED",
+    ]
+    assert first.status == "BOUNDED"
+
+
+def test_without_evidence_every_result_is_unknown(tree: Tree) -> None:
+    shutil.rmtree(tree.path / "build")
+    results = read_results(Source(tree.path, "built", lambda _: True), RUNGS)
+    assert len(results) == len(RUNGS) + 4
+    assert {one.status for one in results} == {"UNKNOWN"}
+
+
+def test_a_result_is_no_better_than_its_rung(tree: Tree) -> None:
+    for rung in RUNGS:
+        path = tree.path / f"build/evidence/{rung}.json"
+        document = json.loads(path.read_text("utf-8"))
+        path.write_text(json.dumps(document | {"status": "UNKNOWN"}), "utf-8")
+    results = read_results(Source(tree.path, "built", lambda _: True), RUNGS, ())
+    assert {one.status for one in results} == {"UNKNOWN"}
+
+
+def test_evidence_of_another_commit_is_fresh_while_its_inputs_are_the_same(tree: Tree) -> None:
+    source = Source(tree.path, "later", lambda rung: rung == "misra")
+    results = {one.uid: one.fresh for one in read_results(source, RUNGS)}
+    assert results["MISRA"]
+    assert not results["CBMC:gate"]
+    assert not results["TEST:unit:kernel_tests.P1_gate"]
+
+
+RUNG = 'command = "true"\ninputs = []\ncores = 1\nmemory_gb = 1\nstatus = "PASSED"\n'
+
+
+class Repository(Tree):
+    """The clean project as a repository of its own, with the programs that report on it."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(path)
+        for name in ("trace", "evidence"):
+            ignored = shutil.ignore_patterns("__pycache__", "planted")
+            shutil.copytree(ROOT / "verification" / name, path / "verification" / name, ignore=ignored)
+        rungs = "".join(f"[rung.{name}]\n{RUNG}[rung.{name}.figures]\n" for name in RUNGS)
+        self.write("verification/expected.toml", rungs)
+        self.write("verification/toolchain/libraries.txt", "")
+        self.write("web/package.json", '{"dependencies": {}}')
+        self.write("web/package-lock.json", '{"packages": {}}')
+        self.write(".gitignore", "/build/\n__pycache__/\n")
+        # Any program that needs the C library and nothing else.
+        self.write("build/release/bin/interlock", "")
+        shutil.copy("/bin/true", path / "build/release/bin/interlock")
+        self.git("init", "-q")
+        assert self.run("trace/review.py", "--all").returncode == 0
+        self.git("add", ".")
+        self.git("-c", "user.name=a", "-c", "user.email=b", "commit", "-qm", "tree")
+        self.head = self.git("rev-parse", "HEAD")
+        for file in [*path.glob("build/evidence/*.json"), *path.glob("build/reports/*.run.json")]:
+            file.write_text(file.read_text("utf-8").replace('"built"', f'"{self.head}"'), "utf-8")
+
+    def write(self, name: str, text: str) -> None:
+        (self.path / name).parent.mkdir(parents=True, exist_ok=True)
+        (self.path / name).write_text(text, "utf-8")
+
+    def git(self, *arguments: str) -> str:
+        command = ["git", *arguments]
+        return subprocess.run(
+            command, cwd=self.path, check=True, capture_output=True, text=True
+        ).stdout.strip()
+
+    def run(self, program: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, str(self.path / "verification" / program), *arguments]
+        return subprocess.run(command, cwd=self.path, capture_output=True, text=True)
+
+
+def test_the_report_of_a_clean_project_is_written_and_a_defect_fails_it_by_name(tmp_path: Path) -> None:
+    repository = Repository(tmp_path)
+    done = repository.run("trace/report.py")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout.splitlines()[-1] == "gate: green"
+    report = tmp_path / "build/report"
+    summary = json.loads((report / "trace.json").read_text("utf-8"))
+    assert summary["commit"] == repository.head
+    assert summary["findings"] == []
+    release = json.loads((report / "release.json").read_text("utf-8"))
+    program = tmp_path / "build/release/bin/interlock"
+    assert release["files"] == {
+        "build/release/bin/interlock": hashlib.sha256(program.read_bytes()).hexdigest()
+    }
+    page = report / "strictdoc/html/_source_files/kernel/src/gate.c.html"
+    assert "UNIT-gate.c-may_drive" in page.read_text("utf-8")
+    repository.plant(read_defect(PLANTED / "G5_failed_test.toml"))
+    done = repository.run("trace/report.py", "--gate-only")
+    assert done.returncode == 1, done.stdout + done.stderr
+    assert "G5 FAILED" in done.stdout
+    assert "TEST:unit:kernel_tests.Lamps" in done.stdout
+
+
+def test_a_run_of_tests_begins_without_the_report_of_the_last_one(tmp_path: Path) -> None:
+    repository = Repository(tmp_path)
+    reports = tmp_path / "build/reports"
+    assert repository.run("evidence/begin_tests.py", "integration").returncode == 0
+    assert not (reports / "integration.xml").exists()
+    run = json.loads((reports / "integration.run.json").read_text("utf-8"))
+    assert run["commit"] == repository.head
+    assert run["tool"].startswith("pytest ")
+    assert (reports / "unit.xml").exists()
+
+
+def test_evidence_of_a_tree_with_changes_is_stale_for_the_next_one(tree: Tree) -> None:
+    for file in (tree.path / "build").glob("*/*.json"):
+        file.write_text(file.read_text("utf-8").replace('"built"', '"built+changes"'), "utf-8")
+    results = read_results(Source(tree.path, "built+changes", lambda _: False), RUNGS)
+    assert len(results) > len(RUNGS)
+    assert not any(one.fresh for one in results)
+
+
+def test_every_function_that_is_proved_is_found_with_its_contract() -> None:
+    expected = json.loads((ROOT / "verification/frama-c/expected.json").read_text("utf-8"))
+    proved = {(f"kernel/src/{unit}", name) for unit, functions in expected.items() for name in functions}
+    functions: list[Function] = functions_of(ROOT)
+    contracted = {(one.file, one.name) for one in functions if "ensures" in one.contract}
+    assert proved <= {(one.file, one.name) for one in functions}
+    assert proved <= contracted
+
+
+GTEST = re.compile(r"^TEST(?:_P|_F)?\((\w+),\s*(\w+)", re.MULTILINE)
+
+
+def tests_in_the_sources() -> dict[str, list[str]]:
+    """The tests of each suite as the sources name them, without what a run adds."""
+
+    def texts(pattern: str) -> list[tuple[Path, str]]:
+        return [(path, path.read_text("utf-8")) for path in sorted((ROOT / "tests").glob(pattern))]
+
+    return {
+        "unit": [".".join(names) for _, text in texts("unit/**/*.cpp") for names in GTEST.findall(text)],
+        "integration": [
+            f"tests.integration.{path.stem}::{name}"
+            for path, text in texts("integration/test_*.py")
+            for name in re.findall(r"^def (test_\w+)", text, re.MULTILINE)
+        ],
+        "browser": [
+            f"{path.name}::{name}"
+            for path, text in texts("browser/*.spec.ts")
+            for name in re.findall(r"\btest\(\s*[`\"]([^`\"]+)", text.replace("${way}", "Esc"))
+        ],
+    }
+
+
+def test_each_test_that_a_requirement_names_stands_in_the_sources() -> None:
+    written = tests_in_the_sources()
+    patterns = {one for named in read_links(LINKS).tests.values() for one in named}
+    missing = []
+    for pattern in patterns:
+        suite, _, name = pattern.partition(":")
+        shapes = (name, f"{name}*")
+        if not any(fnmatchcase(test, shape) for test in written[suite] for shape in shapes):
+            missing.append(pattern)
+    assert missing == []
+
+
+def test_the_criteria_of_units_name_results_that_there_are() -> None:
+    text = (ROOT / "spec/requirements/55_unit_acceptance.sdoc").read_text("utf-8")
+    named = {one.partition(":")[2] for one in re.findall(r"`((?:TEST:unit|CBMC):[^`*]+)`", text)}
+    proofs = {path.parent.name for path in (ROOT / "verification/cbmc").glob("*/proof.toml")}
+    suites = {f"kernel_tests.{one.partition('.')[0]}" for one in tests_in_the_sources()["unit"]}
+    assert len(named) > 5
+    assert {one.removeprefix("unit:") for one in named} <= proofs | suites
+
+
+def test_every_cause_makes_a_control_action_unsafe() -> None:
+    text = (ROOT / "spec/requirements/20_risk.sdoc").read_text("utf-8")
+    table = "\n".join(line for line in text.splitlines() if line.startswith("| "))
+    stated = re.findall(r"^UID: (CA-\d+)$", text, re.MULTILINE)
+    assert len(stated) > 30
+    assert set(re.findall(r"CA-\d+", table)) == set(stated)
+
+
+def test_the_projects_own_requirements_hold_together(tmp_path: Path) -> None:
+    items, printed = read_stated(ROOT, tmp_path)
+    links = read_links(LINKS)
+    project = gate.Project(ROOT, items, functions_of(ROOT), links, [], {}, {}, [], printed)
+    of = gate.Trace(project)
+    stated = [one for rule in (gate.g1, gate.g2, gate.g3, gate.g6) for one in rule(of)]
+    assert [str(one) for one in stated] == []
+    missing = [path for paths in links.code.values() for path in paths if not (ROOT / path).exists()]
+    assert missing == []
+    assert {*links.code, *links.tests, *links.results} <= set(items.by_uid)

@@ -1,0 +1,1 @@
+/** The gate, for any pedal. */

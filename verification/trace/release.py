@@ -1,0 +1,34 @@
+"""The record of a release: what was built, from which commit, by which commands, and what is known of it."""
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from gate import Finding, Trace
+
+COMMANDS = ("make build", "make test", "make verify", "make report")
+"""What leads from a fresh clone on Debian 12 to what is recorded."""
+
+
+def digest(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def built_files(root: Path) -> list[Path]:
+    """Programs and console as they were built."""
+    programs = sorted((root / "build/release/bin").glob("interlock*"))
+    console = [path for path in sorted((root / "web/dist").rglob("*")) if path.is_file()]
+    return [*programs, *console]
+
+
+def record(of: Trace, found: Sequence[Finding], commit: str) -> Mapping[str, object]:
+    """The record, with the number of findings and the anomalies that stand."""
+    root = of.project.root
+    return {
+        "commit": commit,
+        "commands": list(COMMANDS),
+        "files": {path.relative_to(root).as_posix(): digest(path) for path in built_files(root)},
+        "components": {one.purl: one.version for one in of.project.components},
+        "anomalies": {one.uid: one.title for one in of.project.items.of("ANOMALY")},
+        "findings": len(found),
+    }

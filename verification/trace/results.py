@@ -1,0 +1,365 @@
+"""Results of proofs and tests, converted from build/evidence and the JUnit reports in build/reports.
+
+Nothing here is written by hand: a status comes from what a tool left behind, or the result is UNKNOWN. Each
+rung of the ladder that judges several things (harnesses, functions, properties, phases) gives a result for
+each of them; the rung's own status caps theirs.
+"""
+
+import json
+import re
+import tomllib
+import xml.etree.ElementTree as ElementTree
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+SOUND = ("PASSED", "BOUNDED")
+PROPERTY = re.compile(r"(?<![A-Za-z0-9])(P(?:1[0-6]|[1-9])|L[12])(?=_)")
+"""A property's identifier where a name begins with it: P1_gate, test_P2_P8_..., ensures P7_drive."""
+TYPES = "TypeOK"
+"""The invariant of each model that says what its variables range over; no requirement rests on it."""
+GTEST_GROUP = re.compile(r"(?:\w+\.(?=[\w/]+\.\w))?[\w/]+(?=\.)")
+"""Program, where CTest has it in the name, and suite; a parameter after the test's name may hold anything."""
+SUITES = ("unit", "integration", "console", "browser")
+
+
+@dataclass(frozen=True)
+class Result:
+    """What one tool says about one thing."""
+
+    uid: str
+    title: str
+    method: str
+    """Test, Proof, ModelCheck or Analysis, as in the field VERIFICATION of a requirement."""
+    status: str
+    tool: str
+    commit: str
+    date: str
+    bounds: str
+    """Counts, and what bounds them."""
+    log: str
+    """The raw log, from the top of the tree."""
+    supports: frozenset[str]
+    """Identifiers of properties."""
+    place: str = ""
+    """What was run, from the top of the tree: harness, model, test program."""
+    fresh: bool = True
+    """False when what it was made from has changed since."""
+    function: str = ""
+    """For a contract: FILE:NAME of the function that keeps it."""
+    cases: tuple[str, ...] = ()
+    """For tests: the names of all that ran."""
+    failures: tuple[str, ...] = ()
+    """For tests: those that did not pass, skipped ones among them."""
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where evidence lies, and what it must be made from."""
+
+    root: Path
+    commit: str
+    """The commit for which the report is made, with `+changes` where the tree differs from it."""
+    is_current: Callable[[str], bool]
+    """Whether a rung's inputs are those from which its evidence was made."""
+
+    def made(self, commit: str) -> bool:
+        """Whether what names `commit` was made from it. Two trees with changes of their own may differ."""
+        return commit == self.commit and not commit.endswith("+changes")
+
+    @property
+    def evidence(self) -> Path:
+        return self.root / "build/evidence"
+
+
+@dataclass(frozen=True)
+class Rung:
+    """What build/evidence/ID.json says."""
+
+    name: str
+    status: str
+    tool: str
+    commit: str
+    date: str
+    figures: Mapping[str, float]
+    supports: frozenset[str]
+    fresh: bool
+    logs: str
+    text: str = field(repr=False)
+    """What the rung printed."""
+
+    def result(self, uid: str, title: str, method: str, status: str, **more: object) -> Result:
+        """A result of this rung. It is no better than the rung as a whole."""
+        capped = status if self.status in SOUND else self.status
+        common = {"tool": self.tool, "commit": self.commit, "date": self.date, "fresh": self.fresh}
+        defaults = {"bounds": "", "log": f"{self.logs}/run.log", "supports": frozenset()}
+        return Result(uid=uid, title=title, method=method, status=capped, **{**common, **defaults, **more})
+
+
+def named_tools(names: str, versions: str) -> str:
+    """Each tool with its version, from the two lists that a rung writes."""
+    pairs = zip(names.split(", "), versions.split(", "), strict=True)
+    return ", ".join(f"{name} {version}" for name, version in pairs)
+
+
+def read_rung(source: Source, name: str) -> Rung | None:
+    """The evidence of a rung, or nothing when there is none that can be read."""
+    try:
+        document = json.loads((source.evidence / f"{name}.json").read_text("utf-8"))
+        logs = source.evidence / name
+        printed = logs / "run.log"
+        return Rung(
+            name=name,
+            status=document["status"],
+            tool=named_tools(document["tool"]["name"], document["tool"]["version"]),
+            commit=document["commit"],
+            date=document["date"],
+            figures=document["figures"],
+            supports=frozenset(document["supports"]),
+            fresh=source.made(document["commit"]) or source.is_current(name),
+            logs=logs.relative_to(source.root).as_posix(),
+            text=printed.read_text("utf-8", "replace") if printed.exists() else "",
+        )
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def figures_in_words(figures: Mapping[str, float]) -> str:
+    return ", ".join(
+        f"{name} {value:g}" if isinstance(value, float) else f"{name} {value}"
+        for name, value in figures.items()
+    )
+
+
+def cbmc(source: Source, rung: Rung) -> Iterator[Result]:
+    """A result for each proof, from the line that the rung printed for it."""
+    line = re.compile(
+        r"^(PASSED|UNKNOWN|FAILED|VACUOUS)\s+(\S+)\s+(\d+) properties\s+(\d+)/(\d+)\s+goals", re.MULTILINE
+    )
+    said = {match[2]: match for match in line.finditer(rung.text)}
+    for path in sorted((source.root / "verification/cbmc").glob("*/proof.toml")):
+        table = tomllib.loads(path.read_text("utf-8"))
+        variants = table.pop("variants", {})
+        name = path.parent.name
+        for proof, differs in {
+            name: {},
+            **{f"{name}-{one}": entries for one, entries in variants.items()},
+        }.items():
+            facts = {**table, **differs}
+            match = said.get(proof)
+            bounds = (
+                "not run"
+                if match is None
+                else (f"{match[3]} properties; {match[4]} of {match[5]} cover goals reached; loops closed")
+            )
+            yield rung.result(
+                f"CBMC:{proof}",
+                str(facts["proves"]),
+                "Proof",
+                match[1] if match else "UNKNOWN",
+                bounds=bounds,
+                log=f"{rung.logs}/{proof}/proof.json",
+                supports=frozenset(facts["supports"]),
+                place=f"verification/cbmc/{name}/harness.c",
+            )
+
+
+def contracts(source: Source, rung: Rung) -> Iterator[Result]:
+    """A result for the contract of each function, from WP's own report of the file."""
+    expected = json.loads((source.root / "verification/frama-c/expected.json").read_text("utf-8"))
+    for unit, functions in expected.items():
+        report = source.evidence / "wp" / f"{unit}.json"
+        try:
+            goals = json.loads(report.read_text("utf-8"))["wp:functions"]
+        except (OSError, json.JSONDecodeError, KeyError):
+            goals = {}
+        for function, wanted in functions.items():
+            clauses = {
+                name: one["wp:main"] for name, one in goals.get(function, {}).items() if name != "wp:section"
+            }
+            proofs = {name: main for name, main in clauses.items() if "_wp_smoke_" not in name}
+            total = sum(main["total"] for main in proofs.values())
+            valid = sum(main.get("valid", 0) for main in proofs.values())
+            status = "UNKNOWN" if valid < total or not total else "PASSED"
+            smoke = sum(main["total"] for name, main in clauses.items() if name not in proofs)
+            if total and smoke < wanted["smoke"]:
+                status = "VACUOUS"
+            yield rung.result(
+                f"WP:{unit}:{function}",
+                f"Contract of {function}",
+                "Proof",
+                status,
+                bounds=f"{valid} of {total} goals; {smoke} smoke tests passed",
+                log=f"{rung.logs}/{unit}.json",
+                supports=frozenset(one for name in proofs for one in PROPERTY.findall(name)),
+                place=f"kernel/src/{unit}",
+                function=f"kernel/src/{unit}:{function}",
+            )
+
+
+def model(source: Source, rung: Rung) -> Iterator[Result]:
+    """A result for each property of each model, and whether a wrong variant of it was refuted."""
+    said = {
+        match[2]: match
+        for match in re.finditer(r"^(\w+)\s+[\d.]+ s\s+(\w+) +(\d+) states", rung.text, re.MULTILINE)
+    }
+    refuted = re.findall(r"^ok +[\d.]+ s +\w+: wrong variant (\w+) +refuted", rung.text, re.MULTILINE)
+    models = tomllib.loads((source.root / "verification/model/models.toml").read_text("utf-8"))["model"]
+    for one in models:
+        name = one["name"]
+        match = said.get(name)
+        for stated in sorted({*one.get("invariants", ()), *one["properties"]} - {TYPES}):
+            found = frozenset(PROPERTY.findall(f"{stated}_"))
+            teeth = sum(wrong.startswith(f"{stated.split('_')[0]}_") for wrong in refuted)
+            status = "UNKNOWN" if match is None else ("BOUNDED" if match[1] == "ok" else "FAILED")
+            if status == "BOUNDED" and not teeth:
+                status = "VACUOUS"
+            states = match[3] if match else "no"
+            constants = f"constants {'; '.join(one['constants'])}"
+            yield rung.result(
+                f"TLC:{name}:{stated}",
+                f"{stated} in model {name}",
+                "ModelCheck",
+                status,
+                bounds=f"{states} distinct states; {teeth} wrong variants refuted; {constants}",
+                log=f"{rung.logs}/{name}/holds/tlc.log",
+                supports=found,
+                place=f"spec/tla/{one['module']}.tla",
+            )
+
+
+def conformance(source: Source, rung: Rung) -> Iterator[Result]:
+    """A result for the whole, which carries the model's properties to the C, and one for each phase.
+
+    A phase that the compiled kernel alone was compared on is BOUNDED.
+    """
+    yield rung.result(
+        "CONFORMANCE",
+        "Every phase of the C does what the model says",
+        "ModelCheck",
+        rung.status,
+        bounds=figures_in_words(rung.figures),
+        supports=rung.supports,
+    )
+    line = re.compile(
+        r"^(\w+): agrees, (\d+) rows, (\d+) states; proved: (\d+) rows by (\d+) assertions", re.MULTILINE
+    )
+    said = {match[1]: match for match in line.finditer(rung.text)}
+    for path in sorted((source.root / "verification/conformance/phases").glob("*.toml")):
+        match = said.get(path.stem)
+        status = "UNKNOWN" if match is None else ("PASSED" if match[2] == match[4] else "BOUNDED")
+        yield rung.result(
+            f"CONFORMANCE:{path.stem}",
+            tomllib.loads(path.read_text("utf-8"))["title"],
+            "ModelCheck",
+            status,
+            bounds=f"{match[2]} rows of the model, {match[4]} of them for all inputs" if match else "not run",
+            log=f"{rung.logs}/{path.stem}",
+            place=path.relative_to(source.root).as_posix(),
+        )
+
+
+def whole(title: str) -> Callable[[Source, Rung], Iterator[Result]]:
+    """A converter for a rung that judges one thing."""
+
+    def convert(_: Source, rung: Rung) -> Iterator[Result]:
+        yield rung.result(
+            rung.name.upper(),
+            title,
+            "Analysis",
+            rung.status,
+            bounds=figures_in_words(rung.figures),
+            supports=rung.supports,
+        )
+
+    return convert
+
+
+CONVERTERS: Mapping[str, Callable[[Source, Rung], Iterator[Result]]] = {
+    "cbmc": cbmc,
+    "wp": contracts,
+    "model": model,
+    "conformance": conformance,
+    "misra": whole("MISRA C:2012, gcc -fanalyzer and clang-tidy on the kernel"),
+    "coverage": whole("Statement, branch and MC/DC coverage of the core by its unit tests"),
+    "target": whole("The same bits on x86-64, Cortex-A9 and Cortex-M4"),
+}
+
+
+def missing_rung(name: str) -> Result:
+    """Stands for a rung that left no evidence, so that its absence is a line of the report."""
+    return Result(
+        uid=name.upper(),
+        title=f"Rung {name}: no evidence",
+        method="Analysis",
+        status="UNKNOWN",
+        tool="none",
+        commit="",
+        date="",
+        bounds="not run",
+        log=f"build/evidence/{name}.json",
+        supports=frozenset(),
+        fresh=False,
+    )
+
+
+def test_group(suite: str, case: ElementTree.Element) -> tuple[str, str]:
+    """Group and full name of a test case: its GoogleTest suite, or its file."""
+    classname, name = case.get("classname", ""), case.get("name", "")
+    if suite == "unit":
+        group = GTEST_GROUP.match(name)
+        return group[0] if group else name, name
+    return classname, f"{classname}::{name}"
+
+
+def suites(source: Source, suite: str) -> Iterator[Result]:
+    """A result for each group of tests in a JUnit report. A skipped test did not pass.
+
+    The report tells neither commit nor tool: `make test` leaves them beside it as SUITE.run.json.
+    """
+    report = source.root / f"build/reports/{suite}.xml"
+    try:
+        cases = list(ElementTree.parse(report).getroot().iter("testcase"))
+    except (OSError, ElementTree.ParseError):
+        cases = []
+    try:
+        run = json.loads((source.root / f"build/reports/{suite}.run.json").read_text("utf-8"))
+    except (OSError, json.JSONDecodeError):
+        run = {"commit": "", "date": "", "tool": "unknown"}
+    if not cases:
+        yield replace(missing_rung(f"test-{suite}"), method="Test", log=f"build/reports/{suite}.xml")
+    groups: dict[str, list[tuple[str, bool]]] = {}
+    for case in cases:
+        group, name = test_group(suite, case)
+        passed = all(case.find(tag) is None for tag in ("failure", "error", "skipped"))
+        passed = passed and case.get("status", "run") == "run"
+        groups.setdefault(group, []).append((name, passed))
+    for group, tests in groups.items():
+        failures = tuple(name for name, passed in tests if not passed)
+        yield Result(
+            uid=f"TEST:{suite}:{group}",
+            title=f"Tests {group} ({suite})",
+            method="Test",
+            status="FAILED" if failures else "PASSED",
+            tool=run["tool"],
+            commit=run["commit"],
+            date=run["date"],
+            bounds=f"{len(tests) - len(failures)} of {len(tests)} tests passed",
+            log=f"build/reports/{suite}.xml",
+            supports=frozenset(one for name, _ in tests for one in PROPERTY.findall(f"{name}_")),
+            fresh=source.made(run["commit"]),
+            cases=tuple(name for name, _ in tests),
+            failures=failures,
+        )
+
+
+def read_results(source: Source, rungs: Iterable[str], names: Sequence[str] = SUITES) -> list[Result]:
+    """All results, by their UIDs. A rung or suite that left nothing is UNKNOWN."""
+    found: list[Result] = []
+    for name in rungs:
+        rung = read_rung(source, name)
+        convert = CONVERTERS.get(name, whole(f"Rung {name}"))
+        found += convert(source, rung) if rung else [missing_rung(name)]
+    for name in names:
+        found += suites(source, name)
+    return sorted(found, key=lambda result: result.uid)
