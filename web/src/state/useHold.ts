@@ -1,6 +1,7 @@
-import { useEffect, useState } from "react";
+import { useCallback, useEffect, useState } from "react";
 import { Hold, type SendStep } from "./hold";
 import { useConsole } from "./store";
+import { useLetGo } from "./useLetGo";
 
 interface UseHold {
   readonly down: boolean;
@@ -17,7 +18,8 @@ export function useHold(send: SendStep, renewEveryMs: number, mayNot: boolean): 
   const [wanted, setWanted] = useState(false);
   const blind = useConsole((state) => state.freshness.level === "covered");
   const stops = useConsole((state) => state.stops);
-  const [hold] = useState(() => new Hold(send, () => setWanted(false), renewEveryMs));
+  const letGo = useCallback(() => setWanted(false), []);
+  const [hold] = useState(() => new Hold(send, letGo, renewEveryMs));
   const down = wanted && !blind && !mayNot;
 
   useEffect(() => {
@@ -26,24 +28,12 @@ export function useHold(send: SendStep, renewEveryMs: number, mayNot: boolean): 
   }, [down, hold]);
 
   useEffect(() => {
-    if (stops > 0 || blind || mayNot) setWanted(false);
-  }, [stops, blind, mayNot]);
+    if (stops > 0 || blind || mayNot) letGo();
+  }, [stops, blind, mayNot, letGo]);
 
-  useEffect(() => {
-    const letGo = (): void => setWanted(false);
-    const onVisibility = (): void => {
-      if (document.hidden) letGo();
-    };
-    window.addEventListener("blur", letGo);
-    window.addEventListener("pagehide", letGo);
-    document.addEventListener("visibilitychange", onVisibility);
-    return () => {
-      window.removeEventListener("blur", letGo);
-      window.removeEventListener("pagehide", letGo);
-      document.removeEventListener("visibilitychange", onVisibility);
-      hold.release();
-    };
-  }, [hold]);
+  useLetGo(letGo);
 
-  return { down, press: () => setWanted(true), letGo: () => setWanted(false) };
+  useEffect(() => () => hold.release(), [hold]);
+
+  return { down, press: () => setWanted(true), letGo };
 }

@@ -1,7 +1,8 @@
-import { useEffect, useState } from "react";
+import { useCallback, useEffect, useState } from "react";
 import { movePedal } from "../../state/commands";
 import { Hold } from "../../state/hold";
 import { useConsole } from "../../state/store";
+import { useLetGo } from "../../state/useLetGo";
 
 /** The app releases the pedal 500 ms after the last renewal. */
 const RENEW_EVERY_MS = 150;
@@ -15,13 +16,11 @@ export function usePedal() {
   const [held, setHeld] = useState(false);
   const [latched, setLatched] = useState(false);
   const blind = useConsole((state) => state.freshness.level === "covered");
-  const [foot] = useState(() => {
-    const lift = (): void => {
-      setHeld(false);
-      setLatched(false);
-    };
-    return new Hold(movePedal, lift, RENEW_EVERY_MS);
-  });
+  const lift = useCallback(() => {
+    setHeld(false);
+    setLatched(false);
+  }, []);
+  const [foot] = useState(() => new Hold(movePedal, lift, RENEW_EVERY_MS));
   const down = (held || latched) && !blind;
 
   useEffect(() => {
@@ -30,24 +29,12 @@ export function usePedal() {
   }, [down, foot]);
 
   useEffect(() => {
-    const letGo = (): void => {
-      setHeld(false);
-      setLatched(false);
-    };
-    const onVisibility = (): void => {
-      if (document.hidden) letGo();
-    };
-    if (blind) letGo();
-    window.addEventListener("blur", letGo);
-    window.addEventListener("pagehide", letGo);
-    document.addEventListener("visibilitychange", onVisibility);
-    return () => {
-      window.removeEventListener("blur", letGo);
-      window.removeEventListener("pagehide", letGo);
-      document.removeEventListener("visibilitychange", onVisibility);
-      foot.release();
-    };
-  }, [blind, foot]);
+    if (blind) lift();
+  }, [blind, lift]);
+
+  useLetGo(lift);
+
+  useEffect(() => () => foot.release(), [foot]);
 
   return {
     down,
