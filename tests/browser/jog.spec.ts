@@ -1,7 +1,18 @@
 /** Jogging: by increments, and for as long as a button is held. */
+import type { Page } from "@playwright/test";
+import type { ConsolePage } from "./console_page";
 import { expect, test } from "./fixtures";
 
 const title = "Probe rotation";
+
+/** With the pedal held, presses the button that jogs the axis upwards, and keeps it down. */
+async function holdJog(robot: ConsolePage, page: Page): Promise<void> {
+  await robot.unlockRobot();
+  await robot.axis(title).enable();
+  await robot.latchPedal();
+  await robot.button(`Hold to jog ${title} towards larger positions`).hover();
+  await page.mouse.down();
+}
 
 test("a step proposes a move by the chosen increment, from where the axis is to go", async ({ robot }) => {
   const axis = robot.axis(title);
@@ -20,11 +31,7 @@ test("a held button jogs while the pedal is held, and letting it go ends the jog
   page,
 }) => {
   const axis = robot.axis(title);
-  await robot.unlockRobot();
-  await axis.enable();
-  await robot.latchPedal();
-  await robot.button(`Hold to jog ${title} towards larger positions`).hover();
-  await page.mouse.down();
+  await holdJog(robot, page);
   await expect.poll(() => axis.counts()).toBeGreaterThan(20);
   await page.mouse.up();
   await expect(robot.proposal(1)).toContainText("aborted");
@@ -37,14 +44,10 @@ for (const [way, loss] of [
   ["another window takes the focus", (page) => page.evaluate(() => window.dispatchEvent(new Event("blur")))],
   ["the network is cut", (page) => page.route("**/api/jog/*", () => undefined)],
   ["STOP is pressed by key", (page) => page.keyboard.press("Escape")],
-] as const satisfies readonly [string, (page: import("@playwright/test").Page) => Promise<unknown>][]) {
+] as const satisfies readonly [string, (page: Page) => Promise<unknown>][]) {
   test(`a held jog ends when ${way}, though button and pedal stay down`, async ({ robot, page }) => {
     const axis = robot.axis(title);
-    await robot.unlockRobot();
-    await axis.enable();
-    await robot.latchPedal();
-    await robot.button(`Hold to jog ${title} towards larger positions`).hover();
-    await page.mouse.down();
+    await holdJog(robot, page);
     await expect.poll(() => axis.counts()).toBeGreaterThan(10);
     await loss(page);
     await expect(robot.proposal(1)).toContainText("aborted");

@@ -234,16 +234,22 @@ def test_a_bad_array_is_refused_whole_with_row_column_and_reason_and_nothing_mov
     assert robot.api.get("/api/proposals").json() == []
 
 
-def test_poses_become_a_trajectory_that_leads_the_treatment_point_through_them(
-    robot: Stack, navigate: Callable[..., Navigator]
-) -> None:
-    """From 2 mm before the pose that the alignment reaches to that pose."""
+def aim(robot: Stack, navigate: Callable[..., Navigator]) -> tuple[Navigator, dict]:
+    """A controller of the homed robot, and the alignment that reaches for ENTRY and TARGET."""
     home_all(robot)
     navigator = navigate()
     make_controller(robot)
     target = {"entry_point": ENTRY, "target_point": TARGET}
     judge(robot.api.put("/api/targeting/target", json=target)).raise_for_status()
     reached = robot.api.get("/api/targeting/alignment").json()["alignment"]
+    return navigator, reached
+
+
+def test_poses_become_a_trajectory_that_leads_the_treatment_point_through_them(
+    robot: Stack, navigate: Callable[..., Navigator]
+) -> None:
+    """From 2 mm before the pose that the alignment reaches to that pose."""
+    navigator, reached = aim(robot, navigate)
     goal = np.array(reached["reachable"]).reshape(4, 4)
     drawn_back = goal.copy()
     drawn_back[:3, 3] -= 2.0 * goal[:3, 2]
@@ -267,12 +273,7 @@ def test_poses_become_a_trajectory_that_leads_the_treatment_point_through_them(
 def test_bad_poses_are_refused_with_row_column_and_reason(
     robot: Stack, navigate: Callable[..., Navigator]
 ) -> None:
-    home_all(robot)
-    navigator = navigate()
-    make_controller(robot)
-    target = {"entry_point": ENTRY, "target_point": TARGET}
-    judge(robot.api.put("/api/targeting/target", json=target)).raise_for_status()
-    reached = robot.api.get("/api/targeting/alignment").json()["alignment"]
+    navigator, reached = aim(robot, navigate)
     good = np.array(reached["reachable"]).reshape(4, 4)
     far = good.copy()
     far[:3, 3] += 500.0 * good[:3, 2]
