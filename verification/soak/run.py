@@ -190,8 +190,8 @@ def runs_in_time(robot: Stack) -> bool:
     wait for a processor, and what it is late by would count as missed by the kernel."""
     pid = robot.pid("simulator")
     try:
-        for thread in os.listdir(f"/proc/{pid}/task"):
-            os.sched_setscheduler(int(thread), os.SCHED_FIFO, os.sched_param(PLANT_PRIORITY))
+        for thread in Path(f"/proc/{pid}/task").iterdir():
+            os.sched_setscheduler(int(thread.name), os.SCHED_FIFO, os.sched_param(PLANT_PRIORITY))
     except PermissionError:
         return False
     return True
