@@ -165,6 +165,7 @@ class Mover(threading.Thread):
         self._robot = robot
         self._ending = threading.Event()
         self._turn = 0
+        self.last = "no move was proposed"
 
     def end(self) -> None:
         self._ending.set()
@@ -173,14 +174,18 @@ class Mover(threading.Thread):
     def run(self) -> None:
         while not self._ending.wait(START_PAUSE_S / 5):
             # What breaks is the scenario's business: the robot stops, and is brought up again by its hands.
-            with contextlib.suppress(*BROKEN):
+            try:
                 self._move()
+            except BROKEN as error:
+                self.last = f"{type(error).__name__}: {error}"
 
     def _move(self) -> None:
         self._turn += 1
         path = f"/api/proposals/{propose(self._robot, ENDS_COUNTS[self._turn % 2])}"
         while not self._ending.wait(START_PAUSE_S / 5):
-            if self._robot.api.get(path).raise_for_status().json()["state"] not in ("approved", "executing"):
+            proposal = self._robot.api.get(path).raise_for_status().json()
+            self.last = f"{proposal['state']}: {proposal['detail']}"
+            if proposal["state"] not in ("approved", "executing"):
                 return
 
 
@@ -247,11 +252,16 @@ def bring_up(robot: Stack) -> None:
     press(robot)
 
 
-def wait_until_driven(robot: Stack) -> None:
+def wait_until_driven(robot: Stack, mover: Mover) -> None:
     """As the plant sees it on the wire."""
     begun = robot.control("status")["tick"]
-    driven = "last_nonzero_drive"
-    eventually("driven", lambda: (robot.control("record_event", kind=driven)["event_tick"] or 0) > begun)
+
+    def is_driven() -> bool:
+        last = robot.control("record_event", kind="last_nonzero_drive")["event_tick"]
+        assert (last or 0) > begun, f"the last move: {mover.last}"
+        return True
+
+    eventually("driven", is_driven)
 
 
 def environment_is(**values: str) -> None:
