@@ -199,6 +199,8 @@ class Clerk(threading.Thread):
         self._ending = threading.Event()
         self._count = 0
         self._number = number
+        self.between_writes = threading.Lock()
+        """Held by who must not be in the way of a write; it waits for one that is under way."""
 
     def end(self) -> None:
         self._ending.set()
@@ -215,7 +217,7 @@ class Clerk(threading.Thread):
 
     def run(self) -> None:
         while not self._ending.wait(START_PAUSE_S / 5):
-            with contextlib.suppress(*BROKEN):
+            with self.between_writes, contextlib.suppress(*BROKEN):
                 self.write(self._robot)
 
 

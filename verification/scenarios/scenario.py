@@ -66,7 +66,12 @@ class Scenario:
             pause = threading.Event()
             pause.wait(self.plan.instant_s)
             living = self.living(robot)
-            with faults.FAULTS[self.plan.fault](robot, self.plan, self.folder):
+            with contextlib.ExitStack() as lasting:
+                # While ext4 is aborted it confirms writes that it then loses (docs/reliability.md).
+                with (
+                    clerk.between_writes if self.plan.fault == "read_only_disk" else contextlib.nullcontext()
+                ):
+                    lasting.enter_context(faults.FAULTS[self.plan.fault](robot, self.plan, self.folder))
                 fault_tick = self.tick_of(robot)
                 pause.wait(self.plan.lasts_s)
                 self.meet(robot, fault_tick)
