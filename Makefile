@@ -122,6 +122,11 @@ study: build ## Measure steering and membrane detection on simulated insertions 
 install: build ## Install programs, robot files and console: [PREFIX=/usr/local] [DESTDIR=]
 	@cmake --install $(release) --prefix $(PREFIX) >/dev/null
 
+.PHONY: package
+package: build ## Make the Debian package, in build/release/package/
+	@cd $(release) && cpack --config CPackConfig.cmake >package.log || { cat package.log; exit 1; }
+	@ls $(release)/package/*.deb
+
 .PHONY: lint format
 lint: build ## Check style, naming, generated files and leftovers
 	@verification/toolchain/lint
