@@ -106,6 +106,10 @@ campaign: build ## Throw faults at kernel core and plant before the oracle: [SEC
 campaign-selftest: setup ## Show that the campaign finds each seeded fault of the kernel within a minute
 	@python verification/campaign/selftest.py
 
+.PHONY: scenarios
+scenarios: build ## Kill, freeze, starve and flood the real processes, 200 times: [SEED=1] [COUNT=200] [ONLY=number]
+	@python verification/scenarios/run.py --seed $(or $(SEED),1) $(if $(ONLY),--only $(ONLY),--count $(or $(COUNT),200))
+
 .PHONY: bench
 bench: build ## Measure kernel step (time, text size, stack) and control tick against their limits
 	@python verification/bench/run.py
@@ -117,6 +121,11 @@ study: build ## Measure steering and membrane detection on simulated insertions 
 .PHONY: install
 install: build ## Install programs, robot files and console: [PREFIX=/usr/local] [DESTDIR=]
 	@cmake --install $(release) --prefix $(PREFIX) >/dev/null
+
+.PHONY: package
+package: build ## Make the Debian package, in build/release/package/
+	@cd $(release) && cpack --config CPackConfig.cmake >package.log || { cat package.log; exit 1; }
+	@ls $(release)/package/*.deb
 
 .PHONY: lint format
 lint: build ## Check style, naming, generated files and leftovers

@@ -10,6 +10,9 @@
 #include <boost/asio/detached.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/this_coro.hpp>
+#include <boost/asio/use_awaitable.hpp>
 #include <csignal>
 #include <exception>
 #include <filesystem>
@@ -29,6 +32,8 @@
 #include "robot/catalog.hpp"
 #include "robot/compile.hpp"
 #include "robot/robot_file.hpp"
+#include "service/capabilities.hpp"
+#include "service/service_manager.hpp"
 #include "store/audit.hpp"
 #include "store/first_admin.hpp"
 #include "store/store.hpp"
@@ -198,7 +203,21 @@ tl::expected<void, std::string> listen_for_navigation(const Options& options, co
       });
 }
 
+/** The network thread says so, of the control thread: neither may stand still. */
+boost::asio::awaitable<void> tell_service_manager(ServiceManager& manager, const ControlLoop& control) {
+  boost::asio::steady_timer timer(co_await boost::asio::this_coro::executor);
+  while (manager.pause().count() > 0) {
+    manager.say_alive(control.rounds());
+    timer.expires_after(manager.pause());
+    co_await timer.async_wait(boost::asio::use_awaitable);
+  }
+}
+
 tl::expected<void, std::string> serve(const Options& options, const Model& model, Store& store, Log& log) {
+  auto manager = ServiceManager::connect();
+  if (!manager) {
+    return tl::make_unexpected(manager.error());
+  }
   boost::asio::io_context network(1);
   const auto executor = network.get_executor();
   const auto mailbox = std::make_unique<Mailbox>();
@@ -229,9 +248,11 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   boost::asio::co_spawn(executor, api.beat(), boost::asio::detached);
   boost::asio::co_spawn(executor, api.sweep_sessions(session_sweep_pause), boost::asio::detached);
   boost::asio::co_spawn(executor, server.accept(), boost::asio::detached);
+  boost::asio::co_spawn(executor, tell_service_manager(*manager, control), boost::asio::detached);
   const std::string url = url_of(options.listen, server.port());
   spdlog::info("interlock-app {} {} serves {} at {}", version(), commit(), model.robot.name, url);
   std::cout << "ready " << url << std::endl;
+  manager->say_ready();
   network.run();
   return {};
 }
@@ -258,6 +279,9 @@ int run(const Options& options) {
     std::cerr << "interlock-app: " << reason << std::endl;
     return exit_unusable;
   };
+  if (const auto given_up = give_up_capabilities(); !given_up) {
+    return unusable(given_up.error());
+  }
   const auto log = start_log(options);
   if (!log) {
     return unusable(log.error());

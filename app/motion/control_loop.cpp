@@ -35,6 +35,7 @@ ControlLoop::ControlLoop(std::string link_socket, const RobotPlan& plan, Mailbox
 
 void ControlLoop::run(const std::stop_token& stop) noexcept {
   while (!stop.stop_requested()) {
+    rounds_.fetch_add(1, std::memory_order_relaxed);
     if (!link_.attached()) {
       attach_or_back_off(stop);
       continue;

@@ -8,6 +8,7 @@
  */
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <stop_token>
@@ -27,6 +28,9 @@ class ControlLoop {
 
   /** Serves until stopped, attaching again and again. On leaving it asks the kernel to end MOTION. */
   void run(const std::stop_token& stop) noexcept;
+
+  /** How often the loop has gone round, with a kernel or without one; wraps. For any thread. */
+  [[nodiscard]] std::uint32_t rounds() const noexcept { return rounds_.load(std::memory_order_relaxed); }
 
  private:
   void attach_or_back_off(const std::stop_token& stop) noexcept;
@@ -78,6 +82,7 @@ class ControlLoop {
   std::uint32_t events_dropped_ = 0; /**< of which the network was not told yet */
   bool heartbeat_sent_ = false;
   bool noticed_ = false;
+  std::atomic<std::uint32_t> rounds_ = 0;
 };
 
 }  // namespace interlock

@@ -112,6 +112,12 @@ ilk_listen_result_t ilk_link_listen(ilk_link_socket_t *link, const char *path, i
   return result;
 }
 
+bool ilk_link_share(const ilk_link_socket_t *link, ilk_error_t *error) {
+  const char *path = link->address.sun_path;
+  return chmod(path, S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP) == 0 ||
+         ilk_fail(error, "link '%s' cannot be shared with its group: %s", path, strerror(errno));
+}
+
 void ilk_link_unlisten(ilk_link_socket_t *link) {
   struct stat status;
   if (lstat(link->address.sun_path, &status) == 0 && status.st_dev == link->device &&

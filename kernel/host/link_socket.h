@@ -36,6 +36,9 @@ bool ilk_unix_address(const char *path, struct sockaddr_un *address, ilk_error_t
  */
 ilk_listen_result_t ilk_link_listen(ilk_link_socket_t *link, const char *path, ilk_error_t *error);
 
+/** Lets the members of this process' group connect, too; at first only its user may. */
+bool ilk_link_share(const ilk_link_socket_t *link, ilk_error_t *error);
+
 /** Stops listening and removes the socket's file. */
 void ilk_link_unlisten(ilk_link_socket_t *link);
 

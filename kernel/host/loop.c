@@ -102,6 +102,7 @@ void ilk_loop_tick(ilk_loop_t *loop) {
   if (*loop->stop != 0) {
     return;
   }
+  (void)__atomic_add_fetch(&loop->beats, 1u, __ATOMIC_RELAXED);
   const uint64_t begun_ns = ilk_now_ns();
   note_lateness(loop, ilk_ticker_begin(&loop->ticker, begun_ns));
   serve_newest_attachment(loop);

@@ -30,6 +30,7 @@ typedef struct {
 
   ilk_ticker_t ticker;
   ilk_pacing_t pacing;
+  uint32_t beats; /**< ticks begun, atomic, for whoever watches the loop; wraps */
   bool bus_alive;
   uint64_t bus_ns;              /**< time of the newest transaction */
   ilk_attachment_t *attachment; /**< being served, or NULL */

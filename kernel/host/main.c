@@ -8,12 +8,14 @@
 
 #include "black_box.h"
 #include "bus_sim.h"
+#include "bus_spi.h"
 #include "config_file.h"
 #include "link_server.h"
 #include "link_socket.h"
 #include "loop.h"
 #include "options.h"
 #include "realtime.h"
+#include "watchdog.h"
 
 #define EXIT_ENDED 0
 #define EXIT_SYSTEM 1
@@ -24,10 +26,13 @@ static volatile sig_atomic_t stop_requested;
 
 /** Static: nothing that the loop uses is allocated, and its size is known at compile time. */
 static ilk_config_t config;
-static ilk_bus_sim_t bus;
+static ilk_bus_sim_t sim_bus;
+static ilk_bus_spi_t spi_bus;
+static ilk_bus_t bus;
 static ilk_link_server_t server;
 static ilk_black_box_t black_box;
 static ilk_loop_t loop;
+static ilk_watchdog_t watchdog;
 
 static void request_stop(int number) {
   (void)number;
@@ -69,7 +74,8 @@ static void report_start(const ilk_options_t *options, const ilk_realtime_t *rea
     (void)printf("  %-20s simulated, speed %g%s\n", "clock", options->speed,
                  options->speed > 0.0 ? "" : " (as fast as possible)");
   }
-  (void)printf("  %-20s sim:%s, frames of %d words\n", "bus", options->bus_path, ILK_FRAME_WORDS);
+  (void)printf("  %-20s %s:%s, frames of %d words\n", "bus", options->bus == ILK_BUS_SPI ? "spi" : "sim",
+               options->bus_path, ILK_FRAME_WORDS);
   (void)printf("  %-20s %s, CRC-32 0x%08x\n", "configuration", options->config_path, config.crc);
   report_measures(realtime);
   if (options->black_box_path != NULL) {
@@ -84,9 +90,8 @@ static void report_start(const ilk_options_t *options, const ilk_realtime_t *rea
 static int run_loop(const ilk_options_t *options) {
   ilk_realtime_t realtime;
   ilk_realtime_acquire(&realtime, options->clock, options->core, options->priority);
-  const ilk_bus_t driver = ilk_bus_sim_driver(&bus);
   const ilk_run_permit_t permit =
-      ilk_realtime_permit(options->clock, driver.simulated, realtime.asked, realtime.granted);
+      ilk_realtime_permit(options->clock, bus.simulated, realtime.asked, realtime.granted);
   if (permit == ILK_REFUSE) {
     ilk_error_t error;
     (void)ilk_fail(&error,
@@ -99,10 +104,11 @@ static int run_loop(const ilk_options_t *options) {
                                  .speed = options->speed,
                                  .degraded = permit == ILK_RUN_DEGRADED,
                                  .granted = realtime.granted};
-  ilk_loop_init(&loop, &config, &terms, driver, &server.mailbox, &stop_requested);
+  ilk_loop_init(&loop, &config, &terms, bus, &server.mailbox, &stop_requested);
   if (options->black_box_path != NULL) {
     ilk_loop_record(&loop, &black_box);
   }
+  ilk_watchdog_ready(&watchdog);
   ilk_loop_run(&loop);
   return EXIT_ENDED;
 }
@@ -115,7 +121,7 @@ static int run_recorded(const ilk_options_t *options) {
   }
   const ilk_black_box_terms_t terms = {.config = &config,
                                        .clock = options->clock,
-                                       .simulated = ilk_bus_sim_driver(&bus).simulated,
+                                       .simulated = bus.simulated,
                                        .seconds = (uint32_t)options->black_box_seconds};
   if (!ilk_black_box_create(&black_box, options->black_box_path, &terms, &error)) {
     return report_failure(&error, EXIT_REFUSED);
@@ -125,19 +131,53 @@ static int run_recorded(const ilk_options_t *options) {
   return code;
 }
 
+static bool open_simulated(const ilk_options_t *options, ilk_error_t *error) {
+  const bool opened =
+      ilk_bus_sim_open(&sim_bus, options->bus_path, options->clock, config.period_us, config.crc, error);
+  bus = ilk_bus_sim_driver(&sim_bus);
+  return opened;
+}
+
+static bool open_wired(const ilk_options_t *options, ilk_error_t *error) {
+  ilk_spi_wiring_t wiring;
+  const bool opened = ilk_spi_wiring_load(options->bus_path, &config, &wiring, error) &&
+                      ilk_bus_spi_open(&spi_bus, &wiring, error);
+  bus = ilk_bus_spi_driver(&spi_bus);
+  return opened;
+}
+
+static void close_bus(void) {
+  if (bus.simulated) {
+    ilk_bus_sim_close(&sim_bus);
+  } else {
+    ilk_bus_spi_close(&spi_bus);
+  }
+}
+
+/** Its thread begins before the real-time rights are taken, as those of bus and link do. */
+static int run_watched(const ilk_options_t *options) {
+  ilk_error_t error;
+  const int code = ilk_watchdog_start(&watchdog, &loop.beats, &error) ? run_recorded(options)
+                                                                      : report_failure(&error, EXIT_SYSTEM);
+  ilk_watchdog_stop(&watchdog);
+  return code;
+}
+
 static int run_with_link(const ilk_options_t *options, const ilk_link_socket_t *link) {
   ilk_error_t error;
-  if (!ilk_bus_sim_open(&bus, options->bus_path, options->clock, config.period_us, config.crc, &error)) {
+  const bool opened =
+      options->bus == ILK_BUS_SPI ? open_wired(options, &error) : open_simulated(options, &error);
+  if (!opened) {
     return report_failure(&error, EXIT_REFUSED);
   }
   int code = EXIT_SYSTEM;
   if (ilk_link_server_start(&server, link->descriptor, &error)) {
-    code = run_recorded(options);
+    code = run_watched(options);
     ilk_link_server_stop(&server, loop.attachment);
   } else {
     (void)report_failure(&error, code);
   }
-  ilk_bus_sim_close(&bus);
+  close_bus();
   return code;
 }
 
@@ -150,6 +190,10 @@ static int run(const ilk_options_t *options) {
   const ilk_listen_result_t listening = ilk_link_listen(&link, options->link_path, &error);
   if (listening != ILK_LISTEN_OK) {
     return report_failure(&error, listening == ILK_LISTEN_TAKEN ? EXIT_TAKEN : EXIT_REFUSED);
+  }
+  if (options->link_shared && !ilk_link_share(&link, &error)) {
+    ilk_link_unlisten(&link);
+    return report_failure(&error, EXIT_REFUSED);
   }
   catch_signals();
   const int code = run_with_link(options, &link);

@@ -14,13 +14,15 @@
 #define MAX_BLACK_BOX_SECONDS 3600
 
 const char *const ilk_options_help =
-    "usage: interlock-kernel --config FILE.ilkc --bus sim:SOCKET --link SOCKET\n"
-    "                        [--clock real|sim] [--speed X] [--core N] [--priority N]\n"
+    "usage: interlock-kernel --config FILE.ilkc --bus sim:SOCKET|spi:FILE --link SOCKET\n"
+    "                        [--link-shared] [--clock real|sim] [--speed X] [--core N] [--priority N]\n"
     "                        [--black-box FILE] [--black-box-seconds N]\n"
     "\n"
     "  --config FILE    compiled robot configuration (interlock model compile)\n"
     "  --bus sim:PATH   card bus: the simulator that listens on that socket\n"
+    "  --bus spi:FILE   card bus: the devices that the wiring names (docs/deployment.md)\n"
     "  --link PATH      socket to serve the app on\n"
+    "  --link-shared    for the members of the kernel's group, too; else for its user alone\n"
     "  --clock CLOCK    real: wall clock (default); sim: time passes with the simulator alone\n"
     "  --speed X        simulated clock: multiple of real time, 0 to 1000 (default 1); 0: unpaced\n"
     "  --core N         run the loop on that core (default: any)\n"
@@ -62,11 +64,15 @@ static bool parse_clock(const char *text, ilk_clock_t *clock) {
   return strcmp(text, "sim") == 0;
 }
 
-static bool parse_bus(const char *text, const char **path) {
-  static const char prefix[] = "sim:";
-  const size_t length = sizeof prefix - 1u;
-  *path = text + (strncmp(text, prefix, length) == 0 ? length : strlen(text));
-  return **path != '\0';
+static bool parse_bus(const char *text, ilk_options_t *options) {
+  static const char sim[] = "sim:";
+  static const char spi[] = "spi:";
+  const size_t length = sizeof sim - 1u;
+  const bool is_spi = strncmp(text, spi, length) == 0;
+  const bool known = is_spi || strncmp(text, sim, length) == 0;
+  options->bus = is_spi ? ILK_BUS_SPI : ILK_BUS_SIM;
+  options->bus_path = &text[known ? length : strlen(text)];
+  return *options->bus_path != '\0';
 }
 
 #define OPTION_CONFIG 1
@@ -79,6 +85,7 @@ static bool parse_bus(const char *text, const char **path) {
 #define OPTION_HELP 8
 #define OPTION_BLACK_BOX 9
 #define OPTION_BLACK_BOX_SECONDS 10
+#define OPTION_LINK_SHARED 11
 
 /** Returns NULL when the value was taken, otherwise what was expected. */
 static const char *take_option(int option, const char *value, ilk_options_t *options) {
@@ -87,10 +94,13 @@ static const char *take_option(int option, const char *value, ilk_options_t *opt
       options->config_path = value;
       return *value != '\0' ? NULL : "a file";
     case OPTION_BUS:
-      return parse_bus(value, &options->bus_path) ? NULL : "sim:SOCKET";
+      return parse_bus(value, options) ? NULL : "sim:SOCKET or spi:FILE";
     case OPTION_LINK:
       options->link_path = value;
       return *value != '\0' ? NULL : "the path of a socket";
+    case OPTION_LINK_SHARED:
+      options->link_shared = true;
+      return NULL;
     case OPTION_CLOCK:
       return parse_clock(value, &options->clock) ? NULL : "real or sim";
     case OPTION_SPEED:
@@ -113,7 +123,7 @@ static const char *take_option(int option, const char *value, ilk_options_t *opt
 
 static bool check_together(const ilk_options_t *options, bool speed_given, ilk_error_t *error) {
   const char *missing = options->config_path == NULL ? "--config FILE.ilkc"
-                        : options->bus_path == NULL  ? "--bus sim:SOCKET"
+                        : options->bus_path == NULL  ? "--bus sim:SOCKET or spi:FILE"
                         : options->link_path == NULL ? "--link SOCKET"
                                                      : NULL;
   if (missing != NULL) {
@@ -148,6 +158,7 @@ ilk_options_result_t ilk_options_parse(int argc, char *const argv[], ilk_options
       {"help", no_argument, NULL, OPTION_HELP},
       {"black-box", required_argument, NULL, OPTION_BLACK_BOX},
       {"black-box-seconds", required_argument, NULL, OPTION_BLACK_BOX_SECONDS},
+      {"link-shared", no_argument, NULL, OPTION_LINK_SHARED},
       {NULL, 0, NULL, 0}};
   *options = (ilk_options_t){.clock = ILK_CLOCK_REAL,
                              .speed = 1.0,

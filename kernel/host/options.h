@@ -12,10 +12,14 @@
 extern "C" {
 #endif
 
+typedef enum { ILK_BUS_SIM, ILK_BUS_SPI } ilk_bus_kind_t;
+
 typedef struct {
   const char *config_path;
-  const char *bus_path; /**< socket of the simulated bus */
+  ilk_bus_kind_t bus;
+  const char *bus_path; /**< socket of the simulated bus, or wiring of the real one */
   const char *link_path;
+  bool link_shared;           /**< with the kernel's group */
   const char *black_box_path; /**< NULL: nothing is recorded */
   int black_box_seconds;
   ilk_clock_t clock;

@@ -51,6 +51,14 @@ TEST(Options, DefaultsAreTheWallClockAnyCoreAndPriority80) {
   EXPECT_EQ(parsed.options.black_box_path, nullptr);
 }
 
+TEST(Options, TheBusIsTheSimulatorOrWiredCards) {
+  EXPECT_EQ(parse(complete()).options.bus, ILK_BUS_SIM);
+  const Parsed wired = parse(complete({"--bus", "spi:/etc/interlock/wiring"}));
+  ASSERT_EQ(wired.result, ILK_OPTIONS_RUN) << wired.error;
+  EXPECT_EQ(wired.options.bus, ILK_BUS_SPI);
+  EXPECT_STREQ(wired.options.bus_path, "/etc/interlock/wiring");
+}
+
 TEST(Options, BlackBoxHoldsAMinuteUnlessToldOtherwise) {
   const Parsed parsed = parse(complete({"--black-box", "/dev/shm/box"}));
   ASSERT_EQ(parsed.result, ILK_OPTIONS_RUN) << parsed.error;
@@ -75,7 +83,7 @@ TEST(Options, HelpIsNoError) { EXPECT_EQ(parse({"--help"}).result, ILK_OPTIONS_H
 
 TEST(Options, MissingOnesAreNamed) {
   EXPECT_THAT(parse({}).error, HasSubstr("--config FILE.ilkc is missing"));
-  EXPECT_THAT(parse({"--config", "r"}).error, HasSubstr("--bus sim:SOCKET is missing"));
+  EXPECT_THAT(parse({"--config", "r"}).error, HasSubstr("--bus sim:SOCKET or spi:FILE is missing"));
   EXPECT_THAT(parse({"--config", "r", "--bus", "sim:b"}).error, HasSubstr("--link SOCKET is missing"));
 }
 
@@ -85,8 +93,8 @@ TEST(Options, BadValuesAreNamedWithWhatWasExpected) {
   };
   const std::vector<Row> bad{
       {"--clock", "wall", "real or sim"},
-      {"--bus", "spi:/dev/spidev0.0", "sim:SOCKET"},
-      {"--bus", "sim:", "sim:SOCKET"},
+      {"--bus", "spi:", "sim:SOCKET or spi:FILE"},
+      {"--bus", "sim:", "sim:SOCKET or spi:FILE"},
       {"--speed", "-1", "a number from 0 to 1000"},
       {"--speed", "nan", "a number from 0 to 1000"},
       {"--speed", "1x", "a number from 0 to 1000"},

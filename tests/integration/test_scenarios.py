@@ -1,0 +1,106 @@
+"""`make scenarios`: a few of them, drawn by a seed; equal seeds are equal; and its judge is not blind."""
+
+import random
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "verification/scenarios"))
+
+import judge
+from plan import FAULTS, PROCESSES, plan
+from run import figures_of, run_scenario, verdict_of
+
+SEED = 20_261
+CHOSEN = sorted(random.Random(SEED).sample(range(len(FAULTS)), 5))
+OFF, ON = [0] * 10, [0, 0, 0, 0, 300, 0, 0, 0, 0, 0]
+
+
+def entry(tick: int, drive: list[int] = OFF, pedal: bool = True, estop: bool = True) -> dict:
+    return {
+        "tick": tick,
+        "kernel_tick": tick + 1000,
+        "pedal_no": pedal,
+        "pedal_nc": not pedal,
+        "estop_loop": estop,
+        "drive": drive,
+        "amplifier": OFF,
+    }
+
+
+def released_at(released: int, last_driven: int) -> list[dict]:
+    """Driven from the tenth tick to the last one given; the pedal is up from another tick on."""
+    return [
+        entry(tick, ON if 10 <= tick <= last_driven else OFF, pedal=tick < released) for tick in range(100)
+    ]
+
+
+@pytest.mark.parametrize("number", CHOSEN, ids=lambda number: plan(SEED, number).fault)
+def test_a_fault_of_real_processes_leaves_no_drive_no_process_and_no_lost_record(number: int) -> None:
+    outcome = run_scenario(SEED, number)
+    if outcome["skipped"]:
+        pytest.skip("a disk that breaks needs root")
+    assert outcome["findings"] == [], f"again: make scenarios SEED={SEED} ONLY={number}"
+    assert outcome["fault"] == plan(SEED, number).fault
+    assert outcome["figures"]["acknowledged"] > 0
+
+
+def test_a_scenario_is_its_seed_and_its_number() -> None:
+    assert [plan(7, number) for number in range(60)] == [plan(7, number) for number in range(60)]
+    assert [plan(7, number) for number in range(60)] != [
+        replace(plan(8, number), seed=7) for number in range(60)
+    ]
+
+
+def test_every_kind_of_fault_comes_in_each_turn_and_every_order_of_processes_is_drawn() -> None:
+    drawn = [plan(1, number) for number in range(20 * len(FAULTS))]
+    for turn in range(20):
+        kinds = [one.fault for one in drawn[turn * len(FAULTS) : (turn + 1) * len(FAULTS)]]
+        assert sorted(kinds) == sorted(FAULTS)
+    assert len({one.end_order for one in drawn}) == len({one.start_order for one in drawn}) == 24
+    assert all(sorted(one.start_order) == sorted(PROCESSES) for one in drawn)
+    assert {one.stop for one in drawn} == {"pedal", "estop", "request"}
+
+
+def test_P2_a_drive_that_outlives_the_pedal_by_more_than_two_ticks_is_found() -> None:
+    assert judge.driven_without_consent(released_at(50, last_driven=51)) == []
+    assert len(judge.driven_without_consent(released_at(50, last_driven=52))) == 1
+    pulled = [entry(tick, ON if 10 <= tick <= 60 else OFF, estop=tick < 50) for tick in range(100)]
+    assert len(judge.driven_without_consent(pulled)) == 9
+
+
+def test_P10_a_drive_later_than_allowed_after_the_fault_is_found() -> None:
+    record = released_at(100, last_driven=62)
+    assert judge.stop_ticks(record, fault=50) == 12
+    assert judge.driven_later_than(record, 50, 12) == []
+    assert len(judge.driven_later_than(record, 50, 11)) == 1
+    assert judge.stop_ticks(record, fault=62) == 0
+
+
+def test_a_card_that_outlives_the_silence_of_the_kernel_is_found() -> None:
+    assert judge.amplifier_outlives_silence(100, 105) == []
+    assert len(judge.amplifier_outlives_silence(100, 106)) == 1
+    assert len(judge.amplifier_outlives_silence(100, None)) == 1
+    assert judge.silences([entry(1), entry(6), entry(12)]) == [(6, 12)]
+
+
+def test_a_record_that_was_acknowledged_and_is_gone_is_found() -> None:
+    assert judge.lost_records([[1, 1, 0]], [[1, 1, 0], [2, 1, 0]]) == []
+    assert len(judge.lost_records([[1, 1, 0], [3, 1, 0]], [[1, 1, 0]])) == 1
+
+
+def test_the_verdict_asks_for_every_kind_and_for_records() -> None:
+    outcomes: list[dict] = [
+        {"fault": fault, "skipped": False, "findings": [], "figures": {"acknowledged": 3, "stop_ticks": 2}}
+        for fault in FAULTS
+    ]
+    wanted = len(FAULTS)
+    assert verdict_of(figures_of(1, outcomes), wanted) == "PASSED"
+    assert verdict_of(figures_of(1, outcomes[1:]), wanted) == "VACUOUS"
+    assert verdict_of(figures_of(1, [one | {"figures": {}} for one in outcomes]), wanted) == "VACUOUS"
+    assert (
+        verdict_of(figures_of(1, [*outcomes[1:], outcomes[0] | {"findings": ["driven"]}]), wanted) == "FAILED"
+    )
+    assert verdict_of(figures_of(1, [*outcomes[1:], outcomes[0] | {"skipped": True}]), wanted) == "UNKNOWN"
