@@ -12,6 +12,7 @@
 extern "C" {
 #endif
 
+/** What the command line asked for. */
 typedef struct {
   const char *config_path;
   const char *bus_path; /**< socket of the simulated bus */
@@ -24,6 +25,7 @@ typedef struct {
   int priority; /**< SCHED_FIFO, 1 to 99 */
 } ilk_options_t;
 
+/** What is to be done after reading the command line. */
 typedef enum { ILK_OPTIONS_RUN, ILK_OPTIONS_HELP, ILK_OPTIONS_BAD } ilk_options_result_t;
 
 /** Text for `--help`. */
