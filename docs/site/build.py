@@ -21,6 +21,7 @@ import code_pages
 import documented
 import evidence
 import http_page
+from report_copy import copy_report
 from staging import Staging
 
 HERE = Path(__file__).resolve().parent
@@ -96,10 +97,8 @@ def main() -> int:
         run([*sphinx, "-c", str(HERE), "-d", str(output / "cache"), str(output / "source"), str(site)], root)
         shutil.copytree(output / "doxygen/html", site / "doxygen")
         if (root / "build/report/index.html").is_file():
-            shutil.copytree(
-                root / "build/report", site / "report", ignore=shutil.ignore_patterns("cache", "source")
-            )
-        for page in (*site.glob("*.html"), *site.glob("[!r]*/**/*.html")):
+            copy_report(root, site)
+        for page in site.rglob("*.html"):
             page.write_text(without_inline(page.read_text("utf-8")), "utf-8")
     except FailedError as error:
         print(error, file=sys.stderr)

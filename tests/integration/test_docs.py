@@ -13,6 +13,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs/site"))
 import code_pages
 import documented
 import http_page
+from report_copy import copy_report
 from staging import Staging
 
 import build
@@ -95,6 +96,30 @@ def test_a_link_to_nothing_stops_the_build(tmp_path: Path) -> None:
 def test_pages_carry_nothing_that_the_apps_policy_forbids() -> None:
     page = '<script src="a.js"></script><script>run()</script><td style="x">c</td><a onclick="f()">b</a>'
     assert build.without_inline(page) == '<script src="a.js"></script><td>c</td><a>b</a>'
+
+
+def test_the_report_on_the_site_leads_to_copies_and_nowhere_else(tmp_path: Path) -> None:
+    root, site = tmp_path / "tree", tmp_path / "site"
+    for folder in ("build/report/papers", "build/report/strictdoc", "kernel", "build/evidence/cbmc"):
+        (root / folder).mkdir(parents=True)
+    for name in ("kernel/a.c", "build/report/matrix.csv", "build/report/papers/index.html"):
+        (root / name).write_text(name)
+    (root / "build/report/strictdoc/index.html").write_text("<script>run()</script>")
+    (root / "build/report/index.html").write_text(
+        '<a href="../../kernel/a.c">code</a><a href="../../build/evidence/cbmc">logs</a>'
+        '<a href="matrix.csv">csv</a><a href="index.html#P1">here</a><a href="#P2">below</a>'
+        '<a href="papers/index.html">papers</a><a href="strictdoc/index.html">documents</a>'
+        '<a href="gone.html">x</a>'
+    )
+    copy_report(root, site)
+    assert (site / "report/index.html").read_text() == (
+        '<a href="../tree/kernel/a.c">code</a><a>logs</a>'
+        '<a href="matrix.csv">csv</a><a href="index.html#P1">here</a><a href="#P2">below</a>'
+        '<a href="papers/index.html">papers</a><a>documents</a><a>x</a>'
+    )
+    assert (site / "tree/kernel/a.c").read_text() == "kernel/a.c"
+    assert (site / "report/papers/index.html").is_file()
+    assert not (site / "report/strictdoc").exists()
 
 
 def test_the_http_reference_has_every_operation_schema_and_word_of_the_stream() -> None:
