@@ -99,6 +99,10 @@ verify: ## Climb the verification ladder: [FRESH=1] runs again what has not chan
 report: setup ## Write the trace report from the evidence of this commit, and name every line that is missing
 	@python verification/trace/report.py
 
+.PHONY: docs
+docs: setup ## Write the documentation site, with search and the code's call graphs, to build/docs/site
+	@python docs/site/build.py
+
 .PHONY: campaign campaign-selftest
 campaign: build ## Throw faults at kernel core and plant before the oracle: [SECONDS=300 | TICKS=] [SEED=1]
 	@python verification/campaign/run.py --seed $(or $(SEED),1) $(campaign_length)

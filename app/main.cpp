@@ -52,6 +52,7 @@ struct Options {
   std::string bench_socket;
   web::Listen listen;
   std::string web_directory;
+  std::string docs_directory;
   std::string state_directory;
   std::string log_level = "info";
   std::optional<std::uint16_t> igtl_port; /**< in place of the robot file's */
@@ -76,6 +77,8 @@ void describe(CLI::App& cli, Options& options) {
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
   cli.add_option("--web", options.web_directory, "folder of the built console")
+      ->check(CLI::ExistingDirectory);
+  cli.add_option("--docs", options.docs_directory, "folder of the built documents")
       ->check(CLI::ExistingDirectory);
   cli.add_option("--state", options.state_directory, "folder of the store and the logs, made if missing")
       ->required();
@@ -223,7 +226,7 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   const auto mailbox = std::make_unique<Mailbox>();
   web::StoreGateway gateway(executor, store);
   web::Api api(executor, model.robot, model.config, *mailbox, options.bench_socket, gateway, log);
-  web::Server server(executor, api, web::StaticFiles(options.web_directory));
+  web::Server server(executor, api, web::StaticFiles(options.web_directory, options.docs_directory));
   if (auto listening = server.listen(options.listen); !listening) {
     return listening;
   }

@@ -45,14 +45,16 @@ def problems(catalog: Catalog) -> list[str]:
 
 
 def c_header(catalog: Catalog) -> str:
-    lines = [f"/* {NOTICE} */", "#ifndef INTERLOCK_CATALOG_H", "#define INTERLOCK_CATALOG_H", ""]
+    about = f"/**\n * @file\n * Every mode, request, verdict, cause, fault and gate by its number. {NOTICE}\n */"
+    lines = [about, "#ifndef INTERLOCK_CATALOG_H", "#define INTERLOCK_CATALOG_H", ""]
     for name, family in catalog["family"].items():
         lines += [f"/** {family['about']} */", "typedef enum {"]
         width = max(len(code["name"]) for code in catalog[name])
         for code in catalog[name]:
             entry = f"{family['prefix']}_{code['name']} = {code['number']},"
             lines.append(f"  {entry:<{len(family['prefix']) + width + 6}} /**< {code['meaning']} */")
-        lines += [f"}} {family['type']};", "", f"#define {family['prefix']}_COUNT {len(catalog[name])}u", ""]
+        count = f"#define {family['prefix']}_COUNT {len(catalog[name])}u"
+        lines += [f"}} {family['type']};", "", f"/** Codes of {family['type']}. */", count, ""]
     return "\n".join([*lines, "#endif", ""])
 
 

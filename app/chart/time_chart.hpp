@@ -1,4 +1,7 @@
-/** @file Quantities over time as a picture: panels one above the other whose time axes agree. */
+/**
+ * @file
+ * Quantities over time as a picture: panels one above the other whose time axes agree.
+ */
 #pragma once
 
 #include <optional>
@@ -14,6 +17,7 @@ struct ChartSeries {
   std::vector<std::optional<double>> values; /**< one for each time of the chart */
 };
 
+/** One panel: its series share an axis of values. */
 struct ChartPanel {
   std::string label; /**< quantity and unit */
   std::vector<ChartSeries> series;

@@ -1,4 +1,7 @@
-/** @file One line of `interlock kinematics align`. */
+/**
+ * @file
+ * One line of `interlock kinematics align`.
+ */
 #pragma once
 
 #include "cli/kinematics_fields.hpp"

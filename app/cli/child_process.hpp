@@ -34,6 +34,7 @@ std::string describe_end(int wait_status);
  */
 class ChildProcess {
  public:
+  /** Starts the program; its output comes through a pipe. */
   static Result<ChildProcess> start(const Program& program);
 
   ChildProcess(ChildProcess&& other) noexcept;
@@ -48,6 +49,7 @@ class ChildProcess {
   /** Readable when there is output, or the end of it; -1 after that end. */
   [[nodiscard]] int output_fd() const { return output_.get(); }
 
+  /** Sends a signal to the process. */
   void send(int signal) const;
 
   /** Complete lines written since the last call, without waiting; with `rest`, an incomplete last one

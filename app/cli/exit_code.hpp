@@ -28,6 +28,7 @@ struct Failure {
   std::string text;
 };
 
+/** What a command gives, or why it ends and with which exit code. */
 template <typename Value>
 using Result = tl::expected<Value, Failure>;
 

@@ -1,4 +1,7 @@
-/** @file Messages of OpenIGTLink as words of a command line, and as lines. */
+/**
+ * @file
+ * Messages of OpenIGTLink as words of a command line, and as lines.
+ */
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -55,4 +55,15 @@ std::optional<fs::path> Installation::web() const {
   return std::nullopt;
 }
 
+std::optional<fs::path> Installation::documents() const {
+  for (const fs::path& root : roots_) {
+    for (const char* const folder : {"documents", "build/docs/site"}) {
+      if (fs::exists(root / folder / "index.html")) {
+        return root / folder;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace interlock::cli

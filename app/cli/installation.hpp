@@ -1,6 +1,7 @@
 /**
  * @file
- * Where things are: programs beside this one, models and console in the installation or the source tree.
+ * Where things are: programs beside this one; models, console and documents in the installation or the source
+ * tree.
  */
 #pragma once
 
@@ -34,6 +35,9 @@ class Installation {
 
   /** The built console, if there is one. */
   [[nodiscard]] std::optional<std::filesystem::path> web() const;
+
+  /** The built documents, if there are any. */
+  [[nodiscard]] std::optional<std::filesystem::path> documents() const;
 
  private:
   [[nodiscard]] Result<std::filesystem::path> model(const std::string& kind, const std::string& name) const;

@@ -1,5 +1,8 @@
-/** @file Reading the fields of a line of `interlock kinematics`; what is wrong comes back as its error
- * object. */
+/**
+ * @file
+ * Reading the fields of a line of `interlock kinematics`; what is wrong comes back as its error
+ * object.
+ */
 #pragma once
 
 #include <algorithm>
@@ -19,8 +22,10 @@ namespace interlock::cli {
 template <typename Value>
 using Solved = tl::expected<Value, nlohmann::json>;
 
+/** The answer that refuses a line, with a code of the kinematics. */
 tl::unexpected<nlohmann::json> refused(std::string_view code, const std::string& text);
 
+/** What kinematics answered, an error as the object that a line gets. */
 template <typename Value>
 Solved<Value> solved(const KinematicsResult<Value>& result) {
   return result.map_error([](const KinematicsError& error) { return to_json(error); });
@@ -47,10 +52,15 @@ Solved<void> check_keys(const nlohmann::json& object, const Keys& keys) {
   return {};
 }
 
+/** The number of that name. */
 Solved<double> number(const nlohmann::json& value, const std::string& name);
+/** The number under that key; 0 when the key is missing. */
 Solved<double> number_or_zero(const nlohmann::json& object, const std::string& key);
+/** The flag under that key; false when the key is missing. */
 Solved<bool> flag_or_false(const nlohmann::json& object, const std::string& key);
+/** Three numbers: x, y, z. */
 Solved<Eigen::Vector3d> point(const nlohmann::json& object, const std::string& key);
+/** A matrix row by row. */
 Solved<RowMajor> matrix(const nlohmann::json& object, const std::string& key);
 
 /** The rigid pose under `pose`. */

@@ -16,12 +16,14 @@
 
 namespace interlock::cli {
 
+/** What is computed for each line. */
 enum class KinematicsTask {
   forward,   /**< `fk`: joints to a pose */
   inverse,   /**< `ik`: a pose, or entry and target, to joints */
   alignment, /**< `align`: entry and target in the scanner to setpoints, and what they reach */
 };
 
+/** Answers lines of JSON with lines of JSON, for one robot and one task. */
 class KinematicsLines {
  public:
   /** The answer to one line, without its end. */

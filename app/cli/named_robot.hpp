@@ -1,4 +1,7 @@
-/** @file The robot that a command line names. */
+/**
+ * @file
+ * The robot that a command line names.
+ */
 #pragma once
 
 #include <string>

@@ -34,6 +34,7 @@ class ReplayCsv {
  public:
   ReplayCsv(const ReplayedRobot& robot, std::ostream& output);
 
+  /** Appends the row of one tick. */
   void add(const ilk_recorded_tick_t& tick);
 
  private:
@@ -46,6 +47,7 @@ class ReplayPlot {
  public:
   ReplayPlot(const ReplayedRobot& robot, std::string title);
 
+  /** Takes in one tick. */
   void add(const ilk_recorded_tick_t& tick);
 
   [[nodiscard]] const TimeChart& chart() const { return chart_; }

@@ -13,6 +13,7 @@ namespace interlock::cli {
 /** Allows a number of restarts within any window of time. */
 class RestartBudget {
  public:
+  /** The clock of restarts. */
   using Time = std::chrono::steady_clock::time_point;
 
   RestartBudget(std::size_t restarts, std::chrono::seconds window) : restarts_(restarts), window_(window) {}

@@ -69,6 +69,7 @@ struct Places {
   fs::path plant_file;
   fs::path state;
   std::optional<fs::path> web;
+  std::optional<fs::path> documents;
   std::uint16_t port;
 };
 
@@ -125,6 +126,9 @@ Program app(const RunOptions& options, const Places& places, const RuntimeDirect
   if (places.web) {
     program.arguments.insert(program.arguments.end(), {"--web", *places.web});
   }
+  if (places.documents) {
+    program.arguments.insert(program.arguments.end(), {"--docs", *places.documents});
+  }
   if (!options.igtl_dialect.empty()) {
     program.arguments.insert(program.arguments.end(), {"--igtl-dialect", options.igtl_dialect});
   }
@@ -174,7 +178,11 @@ Result<Places> places_of(const RunOptions& options, const Installation& installa
   if (!plant || !state) {
     return tl::unexpected(!plant ? plant.error() : state.error());
   }
-  return Places{robot_file, *plant, *state, options.web.empty() ? installation.web() : options.web,
+  return Places{robot_file,
+                *plant,
+                *state,
+                options.web.empty() ? installation.web() : options.web,
+                installation.documents(),
                 options.port};
 }
 

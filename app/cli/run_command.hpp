@@ -18,6 +18,7 @@ namespace interlock::cli {
 /** Clock of the simulated robot's kernel; see design.md, "Clocks". */
 enum class ClockChoice { real, sim };
 
+/** What `interlock run` was asked for. */
 struct RunOptions {
   std::string robot = "neuro";            /**< name or file */
   std::uint16_t port = 8080;              /**< 0: one that is free */

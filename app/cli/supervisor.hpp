@@ -49,6 +49,8 @@ struct Supervised {
   std::chrono::seconds longest_end{3}; /**< from the request to end until it is killed */
 };
 
+/** Starts programs, passes on what they say, starts some of them again, and stops all when one that must live
+ * ends. */
 class Supervisor {
  public:
   /**

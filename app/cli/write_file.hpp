@@ -1,4 +1,7 @@
-/** @file Files that a command leaves behind. */
+/**
+ * @file
+ * Files that a command leaves behind.
+ */
 #pragma once
 
 #include <filesystem>

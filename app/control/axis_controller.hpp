@@ -58,8 +58,10 @@ struct AxisOutput {
   std::optional<ControlError> error; /**< then the drive is zero */
 };
 
+/** From setpoint and reading to the drive word of one axis, tick by tick. */
 class AxisController {
  public:
+  /** Refused for rules that the velocity estimate, the PIV law or the drive map refuses. */
   static ControlResult<AxisController> create(const AxisControlRules& rules) noexcept;
 
   /**

@@ -14,6 +14,7 @@ namespace interlock {
 
 /** A number that no controller can work with. */
 struct ControlError {
+  /** Kinds of refusal. */
   enum class Code : std::uint8_t {
     not_finite,   /**< NaN or infinity, given or computed */
     out_of_range, /**< a rule or gain beyond where it means something */
@@ -28,6 +29,7 @@ struct ControlError {
   bool operator==(const ControlError&) const = default;
 };
 
+/** A value, or why the controllers refuse. */
 template <typename Value>
 using ControlResult = tl::expected<Value, ControlError>;
 

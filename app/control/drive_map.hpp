@@ -21,6 +21,7 @@
 
 namespace interlock {
 
+/** What the map of one axis is made from. */
 struct DriveMapRules {
   ilk_card_t card = ILK_CARD_NONE;
   bool motor_direction = true; /**< as in the robot file; chooses the column of the published map */
@@ -32,6 +33,7 @@ struct DriveMapRules {
   double counts_per_revolution = 0.0;   /**< HIGH_FREQUENCY: of the motor in the published map */
 };
 
+/** From a wanted speed to the drive word of a card. */
 class DriveMap {
  public:
   /** Refused for a card without a motor, a `min_drive` above `max_drive` and speeds that are not above 0. */

@@ -23,6 +23,7 @@ inline constexpr std::uint32_t fastest_word = slowest_word - (points - 1) * word
 /** The published relation of word and frequency. */
 inline constexpr double words_per_hz = 22009.0;
 
+/** The frequency (Hz) of a frequency word. */
 constexpr double hz_of(std::uint32_t word) noexcept { return word / words_per_hz; }
 
 /** Column of the map: which of its two wave tables the card plays first. */

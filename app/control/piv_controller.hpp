@@ -45,6 +45,7 @@ struct PivGains {
   bool operator==(const PivGains&) const = default;
 };
 
+/** What the law of one axis is made from. */
 struct PivRules {
   PivGains gains;
   double full_speed_counts_per_s = 0.0; /**< largest output */
@@ -63,11 +64,13 @@ struct PivInput {
   double ceiling_counts_per_s = std::numeric_limits<double>::infinity(); /**< largest output of this move */
 };
 
+/** What the law asks for in one tick. */
 struct PivOutput {
   double wanted_counts_per_s = 0.0; /**< before bounds and rate limit; its sign may be against the travel */
   double counts_per_s = 0.0;        /**< in the direction of travel, or zero */
 };
 
+/** Proportional on position, integral and velocity terms on speed, with anti-windup. */
 class PivController {
  public:
   /** Refused for gains, speeds and rates that are no numbers or beyond where they mean something. */

@@ -1,4 +1,7 @@
-/** @file Where an axis should be and how it should move, in encoder counts and seconds. */
+/**
+ * @file
+ * Where an axis should be and how it should move, in encoder counts and seconds.
+ */
 #pragma once
 
 namespace interlock {

@@ -21,12 +21,14 @@ namespace interlock {
 
 inline constexpr double us_per_s = 1e6;
 
+/** How the estimate of one axis is made. */
 struct VelocityRules {
   std::uint32_t window_us = 20'000;
   double fastest_counts_per_s = 0.0; /**< a larger step than this speed explains is a jump, not motion */
   double noise_counts = 0.0;         /**< peak-to-peak noise of the counter, on top of that speed */
 };
 
+/** A velocity and how old it is. */
 struct VelocityEstimate {
   double counts_per_s = 0.0;
   double age_s = 0.0; /**< from the time to which it belongs to the newest reading */
@@ -34,6 +36,7 @@ struct VelocityEstimate {
   bool operator==(const VelocityEstimate&) const = default;
 };
 
+/** Velocity of one axis from the card's timestamps. */
 class VelocityEstimator {
  public:
   /** Readings that are kept at most: 20 ms at the shortest control period. */

@@ -22,6 +22,7 @@ struct AxisSample {
   std::uint32_t drive = 0;            /**< that the kernel gives */
 };
 
+/** What the axes did in one motion. */
 struct MotionRecord {
   std::vector<double> times_s;               /**< since the motion was ordered */
   std::vector<std::vector<AxisSample>> axes; /**< in the order of the robot's axes; one sample each time */

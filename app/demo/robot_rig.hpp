@@ -34,6 +34,7 @@ struct NeedleInsertion {
   std::uint32_t images = 0;                         /**< of the tip, that the compensation took */
 };
 
+/** Kernel core and plant in this process, driven as the app drives them. */
 class RobotRig {
  public:
   /** `robot` must outlive it; `config` is the compiled robot. */

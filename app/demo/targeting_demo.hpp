@@ -31,6 +31,7 @@
 
 namespace interlock {
 
+/** What the demonstration was asked for. */
 struct DemoOptions {
   std::uint64_t seed = 1;             /**< of registration, plant and random targets */
   std::size_t random_targets = 10000; /**< reached by computation alone: setpoints in whole counts */
@@ -70,6 +71,7 @@ struct RandomTargets {
   double worst_mm = 0.0;
 };
 
+/** What came of all trials. */
 struct DemoReport {
   std::vector<DemoTrial> trials;
   MechanicalError injected;     /**< zero unless asked for */

@@ -22,6 +22,7 @@ struct MechanicalError {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   Eigen::Vector3d deviation = Eigen::Vector3d::Zero();
 
+  /** One error (mm), drawn from the distribution. */
   [[nodiscard]] Eigen::Vector3d draw(std::mt19937_64& random) const;
 };
 

@@ -1,5 +1,8 @@
-/** @file What the targeting asks of the robot and where the robot is: schema `AlignmentView` of
- * spec/openapi.yaml. */
+/**
+ * @file
+ * What the targeting asks of the robot and where the robot is: schema `AlignmentView` of
+ * spec/openapi.yaml.
+ */
 #pragma once
 
 #include <nlohmann/json.hpp>

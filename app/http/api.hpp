@@ -53,6 +53,7 @@ class Api {
    * session. 503 STORE when that cannot be told. */
   boost::asio::awaitable<tl::expected<Caller, Problem>> caller_of(const Request& request, std::string peer);
 
+  /** Who follows the state. */
   [[nodiscard]] StreamHub& stream() { return stream_; }
 
   /** The navigation programs; they come once its hub listens and it was started. */

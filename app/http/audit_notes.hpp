@@ -15,6 +15,7 @@ namespace interlock::web {
 /** Any thread may add; one thread at a time takes. */
 class AuditNotes {
  public:
+  /** Records that are written together. */
   using Batch = std::list<AuditEntry>;
 
   /** Records that wait, those that were taken and not confirmed among them. Beyond them the newest are lost;
@@ -33,6 +34,7 @@ class AuditNotes {
   /** What was taken could not be written: it waits again, before whatever came meanwhile. */
   void give_back(Batch batch);
 
+  /** Whether no record waits. */
   [[nodiscard]] bool empty() const;
 
  private:

@@ -39,8 +39,10 @@ class Authority {
   /** Told of each change: of the holder (`holder_changed`), or only of the wishes. */
   using Listener = std::function<void(bool holder_changed)>;
 
+  /** Has the listener called after each change of holder or requests. */
   void on_change(Listener listener) { listener_ = std::move(listener); }
 
+  /** Whether that session holds the authority. */
   [[nodiscard]] bool held_by(std::uint32_t session) const { return holder_ && holder_->session == session; }
   [[nodiscard]] const std::optional<Claim>& holder() const { return holder_; }
   [[nodiscard]] const std::vector<Claim>& requests() const { return requests_; }

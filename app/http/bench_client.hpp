@@ -19,11 +19,13 @@ namespace interlock::web {
 
 /** Why the simulated hardware did not do what it was told. */
 struct BenchError {
+  /** Whether the bench answered at all. */
   enum class Kind { refused, unreachable };
   Kind kind = Kind::unreachable;
   std::string detail;
 };
 
+/** The bench's answer, or why there is none. */
 using BenchReply = tl::expected<nlohmann::json, BenchError>;
 
 /** One connection, made when needed; commands are carried out in the order in which they were given. */

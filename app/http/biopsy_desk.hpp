@@ -25,6 +25,7 @@ struct Membranes {
   std::size_t next = 0;
 };
 
+/** What is set for the next biopsy, and what it may be. */
 class BiopsyDesk {
  public:
   /** `robot` must outlive it. */

@@ -1,4 +1,6 @@
-/** @file A biopsy that somebody may propose, at a point of the guide frame or at the target of the targeting.
+/**
+ * @file
+ * A biopsy that somebody may propose, at a point of the guide frame or at the target of the targeting.
  */
 #pragma once
 

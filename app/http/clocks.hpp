@@ -12,8 +12,10 @@
 
 namespace interlock::web {
 
+/** A time that only runs forward. */
 using SteadyTime = std::chrono::steady_clock::time_point;
 
+/** Both clocks; tests bring their own. */
 struct Clocks {
   std::function<UtcTime()> utc = [] { return std::chrono::system_clock::now(); };
   std::function<SteadyTime()> steady = [] { return std::chrono::steady_clock::now(); };

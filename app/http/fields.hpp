@@ -30,6 +30,7 @@ class Fields {
    */
   Fields(const nlohmann::json& object, std::initializer_list<const char*> known, std::string where = "");
 
+  /** Whether the body has a field of that name. */
   [[nodiscard]] bool has(const std::string& name) const;
 
   /** An integer from `lowest` to `highest`; nothing when the field is absent. */
@@ -49,8 +50,10 @@ class Fields {
    */
   std::optional<std::vector<double>> numbers(const std::string& name, std::size_t count);
 
+  /** A field that is true or false; a problem is noted when it is not. */
   std::optional<bool> boolean(const std::string& name);
 
+  /** A field that is a text; a problem is noted when it is not. */
   std::optional<std::string> text(const std::string& name);
 
   /** One of `choices`; nothing when the field is absent. */

@@ -13,6 +13,7 @@ namespace interlock::web {
 
 class HeldLease {
  public:
+  /** A time of the clock that leases run on. */
   using TimePoint = std::chrono::steady_clock::time_point;
 
   /** @param patience for which a hold lasts without a renewal */
@@ -21,6 +22,7 @@ class HeldLease {
   /** The hold began, or was renewed. */
   void hold(const ControlView& view, TimePoint now);
 
+  /** Lets go now. */
   void release() { held_ = false; }
 
   [[nodiscard]] bool held() const { return held_; }

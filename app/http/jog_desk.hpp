@@ -15,6 +15,7 @@ namespace interlock::web {
 
 class JogDesk {
  public:
+  /** A time of the clock that leases run on. */
   using TimePoint = HeldLease::TimePoint;
 
   /** For which a jog goes on without a renewal. */

@@ -24,6 +24,7 @@ namespace interlock::web {
 
 class LiveSessions {
  public:
+  /** Is told the number of a session that ended. */
   using Listener = std::function<void(std::uint32_t session)>;
 
   /** `store` must outlive it. */

@@ -1,4 +1,7 @@
-/** @file The trajectory that is loaded, until it was carried out or somebody takes it away. */
+/**
+ * @file
+ * The trajectory that is loaded, until it was carried out or somebody takes it away.
+ */
 #pragma once
 
 #include <memory>

@@ -16,8 +16,11 @@
 
 namespace interlock::web {
 
+/** A request as it came. */
 using Request = boost::beast::http::request<boost::beast::http::string_body>;
+/** An answer as it goes. */
 using Response = boost::beast::http::response<boost::beast::http::string_body>;
+/** A status code of HTTP. */
 using Status = boost::beast::http::status;
 
 /** Names and values. */
@@ -34,12 +37,14 @@ struct Problem {
   Headers headers = {};       /**< besides those that every answer has */
 };
 
+/** An answer that is no problem. */
 struct Success {
   Status status = Status::ok;
   nlohmann::json body = {};
   Headers headers = {}; /**< besides those that every answer has */
 };
 
+/** What a route answers. */
 using Reply = tl::expected<Success, Problem>;
 
 /** Answer in JSON. */

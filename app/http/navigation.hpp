@@ -26,6 +26,7 @@
 
 namespace interlock::web {
 
+/** How the app speaks OpenIGTLink. */
 struct NavigationOptions {
   std::string dialect = "thesis"; /**< a name that `igtl::make_dialect` knows */
   /** The first connection is the controller of whoever holds the motion authority. */
@@ -34,6 +35,7 @@ struct NavigationOptions {
   std::optional<boost::asio::ip::tcp::endpoint> connect;
 };
 
+/** Ties the hub of OpenIGTLink to robot, proposals and authority. */
 class Navigation {
  public:
   /** Between two attempts to connect. */
@@ -51,6 +53,7 @@ class Navigation {
   /** `context` must outlive it. */
   explicit Navigation(const Context& context);
 
+  /** The connections of OpenIGTLink. */
   [[nodiscard]] igtl::Hub& hub() { return hub_; }
   [[nodiscard]] const igtl::Hub& hub() const { return hub_; }
 

@@ -1,4 +1,7 @@
-/** @file What navigation programs are told of the robot. */
+/**
+ * @file
+ * What navigation programs are told of the robot.
+ */
 #pragma once
 
 #include <cstdint>
@@ -13,6 +16,7 @@ namespace interlock::web {
 /** Velocities of the axes, from two positions, as the kernel tells none. */
 class AxisVelocities {
  public:
+  /** Takes in what the control thread saw last. */
   void measure(const Robot& robot, const ControlView& view);
 
   /** Units/s, in the order of the robot's axes; empty while unknown. */

@@ -31,6 +31,7 @@ struct SavedPositions {
   UtcTime saved;
   std::vector<SavedAxis> axes; /**< every axis of the robot, in the order of its file */
 
+  /** The saved axis of that slot, or null. */
   [[nodiscard]] const SavedAxis* at_slot(std::uint32_t slot) const;
 };
 

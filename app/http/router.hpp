@@ -25,8 +25,10 @@ struct Call {
   const Caller& caller;
 };
 
+/** What answers a call. */
 using Handler = std::function<boost::asio::awaitable<Reply>(const Call&)>;
 
+/** Finds the route of a request and checks who may use it. */
 class Router {
  public:
   /** Nothing when that caller holds the motion authority, else 409 AUTHORITY naming who does. */

@@ -26,6 +26,7 @@ struct Listen {
   std::uint16_t port = 8080; /**< 0: any free one */
 };
 
+/** Accepts connections and answers them from API, stream and files. */
 class Server {
  public:
   /** Connections at the same time, as far as the descriptors of the process go that far; the oldest one that

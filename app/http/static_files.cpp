@@ -17,14 +17,16 @@ namespace {
 namespace http = boost::beast::http;
 namespace fs = std::filesystem;
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 13> content_types{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 15> content_types{{
     {".css", "text/css; charset=utf-8"},
+    {".csv", "text/csv; charset=utf-8"},
     {".html", "text/html; charset=utf-8"},
     {".ico", "image/x-icon"},
     {".jpg", "image/jpeg"},
     {".js", "text/javascript; charset=utf-8"},
     {".json", "application/json"},
     {".map", "application/json"},
+    {".pdf", "application/pdf"},
     {".png", "image/png"},
     {".svg", "image/svg+xml"},
     {".txt", "text/plain; charset=utf-8"},
@@ -32,6 +34,9 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 13> content_
     {".webmanifest", "application/manifest+json"},
     {".woff2", "font/woff2"},
 }};
+
+constexpr std::string_view documents_path = "/docs";
+constexpr std::string_view documents_index = "/docs/";
 
 std::string_view content_type_of(const fs::path& file) {
   const std::string extension = file.extension().string();
@@ -58,22 +63,37 @@ std::optional<fs::path> file_of(const fs::path& root, const std::string& path) {
   return file;
 }
 
+fs::path canonical_or_empty(const fs::path& folder) {
+  std::error_code error;
+  return folder.empty() ? folder : fs::canonical(folder, error);
+}
+
+std::string how_to_bring(bool is_document) {
+  return is_document ? "Run `make docs`, and start interlock-app with --docs DIR, the built site."
+                     : "Start interlock-app with --web DIR, the built console.";
+}
+
 }  // namespace
 
-StaticFiles::StaticFiles(const fs::path& root) {
-  std::error_code error;
-  root_ = root.empty() ? root : fs::canonical(root, error);
-}
+StaticFiles::StaticFiles(const fs::path& console, const fs::path& documents)
+    : console_(canonical_or_empty(console)), documents_(canonical_or_empty(documents)) {}
 
 Response StaticFiles::serve(const Request& request) const {
   const std::string path = path_of(request);
-  const auto file = file_of(root_, path);
+  const bool is_document = path == documents_path || path.starts_with(documents_index);
+  const fs::path& root = is_document ? documents_ : console_;
+  const auto file = file_of(root, is_document ? path.substr(documents_path.size()) : path);
+  if (!file && path == documents_path && !documents_.empty()) {
+    // Without the slash the links of the first page would lead beside the documents.
+    Response moved{Status::permanent_redirect, 11};
+    moved.set(http::field::location, std::string(documents_index));
+    return moved;
+  }
   if (!file) {
-    return problem_response(
-        {.status = Status::not_found,
-         .code = "NOT_FOUND",
-         .detail = "There is no " + path + ".",
-         .next_step = root_.empty() ? "Start interlock-app with --web DIR, the built console." : ""});
+    return problem_response({.status = Status::not_found,
+                             .code = "NOT_FOUND",
+                             .detail = "There is no " + path + ".",
+                             .next_step = root.empty() ? how_to_bring(is_document) : ""});
   }
   if (!is_safe(request.method())) {
     return problem_response(

@@ -56,7 +56,8 @@ Problem problem_of(const StoreError& error) {
           .next_step = error.next_step};
 }
 
-StoreGateway::StoreGateway(asio::any_io_executor network, Store& store, std::chrono::milliseconds patience)
+StoreGateway::StoreGateway(boost::asio::any_io_executor network, Store& store,
+                           std::chrono::milliseconds patience)
     : network_(std::move(network)), store_(store), patience_(patience) {}
 
 StoreGateway::~StoreGateway() {

@@ -22,6 +22,7 @@ constexpr std::size_t stream_state_words = sizeof(ilk_state_t) / 4;
 constexpr std::size_t stream_bytes =
     4 * (stream_header_words + ILK_SLOTS * stream_slot_words + stream_state_words);
 
+/** One binary message. */
 using StreamMessage = std::array<std::uint8_t, stream_bytes>;
 
 /** Target of the open proposal of each axis that has one. */
@@ -29,6 +30,7 @@ struct OpenTarget {
   bool open = false;
   std::int32_t target_counts = 0;
 };
+/** For each slot, where its open proposal leads. */
 using OpenTargets = std::array<OpenTarget, ILK_SLOTS>;
 
 /** Of the moves that are open in the book. */

@@ -15,7 +15,9 @@
 
 namespace interlock::web {
 
+/** A matrix of 4 by 4, row by row, in mm. */
 using Pose = std::array<double, 16>;
+/** x, y and z in mm. */
 using Point = std::array<double, 3>;
 
 /** Farthest coordinate of a point, or of the origin of a pose. */
@@ -25,6 +27,7 @@ constexpr double largest_offset_mm = 1000.0;
 /** How far the elements of R^T R may be from those of the identity, and its determinant from 1. */
 constexpr double rigid_tolerance = 1e-3;
 
+/** What an aim is made from. */
 struct Targeting {
   Pose registration{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; /**< the robot in the scanner */
   bool ignore_registration_rotation = false;
@@ -50,7 +53,9 @@ tl::expected<Targeting, Problem> stored_targeting(const nlohmann::json& stored);
  * rule.
  */
 tl::expected<Targeting, Problem> with_registration(Targeting targeting, const nlohmann::json& body);
+/** The targeting with the robot's pose as the imager reports it. */
 tl::expected<Targeting, Problem> with_reported_pose(Targeting targeting, const nlohmann::json& body);
+/** The targeting with another target. */
 tl::expected<Targeting, Problem> with_target(Targeting targeting, const nlohmann::json& body);
 
 /** Sets entry and target by the pose that the treatment point is to have: it comes along the pose's third

@@ -1,4 +1,7 @@
-/** @file Where the values of `Targeting` are kept: a setting of the store, audited. */
+/**
+ * @file
+ * Where the values of `Targeting` are kept: a setting of the store, audited.
+ */
 #pragma once
 
 #include "http/context.hpp"

@@ -1,4 +1,7 @@
-/** @file The one way in which an image of the needle's tip reaches the open biopsy, whoever sends it. */
+/**
+ * @file
+ * The one way in which an image of the needle's tip reaches the open biopsy, whoever sends it.
+ */
 #pragma once
 
 #include <Eigen/Core>

@@ -22,6 +22,7 @@ namespace interlock::igtl {
 
 class Client {
  public:
+  /** When a call gives up. */
   using Deadline = std::chrono::steady_clock::time_point;
 
   Client() : socket_(context_) {}
@@ -29,6 +30,7 @@ class Client {
   /** `host` is a name or an address. The error says what the network says. */
   tl::expected<void, std::string> connect(const std::string& host, std::uint16_t port, Deadline deadline);
 
+  /** Sends one message, or says why it did not go. */
   tl::expected<void, std::string> send(const std::string& device, const Body& body, Deadline deadline);
 
   /** The next message that is understood; none when the deadline comes first. An error: the connection ended

@@ -1,4 +1,7 @@
-/** @file The checksum of OpenIGTLink: CRC-64 of ECMA-182, not reflected, from 0, without a final XOR. */
+/**
+ * @file
+ * The checksum of OpenIGTLink: CRC-64 of ECMA-182, not reflected, from 0, without a final XOR.
+ */
 #pragma once
 
 #include "igtl/wire.hpp"

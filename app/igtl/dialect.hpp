@@ -40,6 +40,7 @@ struct RobotState {
 
 /** A message to be sent: its name, and what is in it. */
 using Outgoing = std::pair<std::string, Body>;
+/** Messages that go out, in their order. */
 using Outgoings = std::vector<Outgoing>;
 
 /** What became of a wish. */
@@ -65,8 +66,10 @@ struct Reaction {
   std::string refused = {}; /**< why the message is refused, for the log; empty when it is not */
 };
 
+/** Names and order of messages: what a message asks for, and how state and answers are told. */
 class Dialect {
  public:
+  /** A time of the clock that dialects run on. */
   using Time = std::chrono::steady_clock::time_point;
 
   Dialect() = default;

@@ -1,4 +1,7 @@
-/** @file From a message's body to bytes. */
+/**
+ * @file
+ * From a message's body to bytes.
+ */
 #pragma once
 
 #include "igtl/message.hpp"

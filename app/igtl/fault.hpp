@@ -1,4 +1,7 @@
-/** @file What can be wrong with a message of OpenIGTLink, before anybody asks what it wants. */
+/**
+ * @file
+ * What can be wrong with a message of OpenIGTLink, before anybody asks what it wants.
+ */
 #pragma once
 
 #include <cstdint>
@@ -8,6 +11,7 @@
 
 namespace interlock::igtl {
 
+/** Every reason for which a message is refused. */
 enum class Fault : std::uint8_t {
   version,         /**< of the header: neither 1 nor 2 */
   type_name,       /**< empty, not printable, or with something after its end */

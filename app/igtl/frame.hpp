@@ -20,6 +20,7 @@ namespace interlock::igtl {
 /** Keys and values. */
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 
+/** One message, checked but not yet read. */
 struct Frame {
   Header header;
   ByteVector content;           /**< the body without what version 2 adds */
@@ -41,6 +42,7 @@ struct Broken {
 /** What came of the bytes: nothing yet, or one thing. */
 using Arrival = std::variant<std::monostate, Frame, Refused, Broken>;
 
+/** Cuts a stream of bytes into messages. */
 class FrameReader {
  public:
   /** Takes bytes off the front of `input` until something came of them or they are used up. */

@@ -31,6 +31,7 @@
 
 namespace interlock::igtl {
 
+/** What a connection may do. */
 enum class Role : std::uint8_t { observer, controller };
 
 /** As the interface spells it. */
@@ -41,6 +42,7 @@ constexpr const char* role_word(Role role) noexcept {
 /** Number of a connection; never given twice. */
 using PeerId = std::uint32_t;
 
+/** Where the hub listens, and whom it lets in. */
 struct HubOptions {
   std::string address = "127.0.0.1";
   std::uint16_t port = 18944;     /**< 0: any free one */
@@ -73,8 +75,10 @@ struct Peer {
   std::optional<std::chrono::microseconds> round_trip; /**< as TCP measures it */
 };
 
+/** Listens, keeps the connections, and passes on what they ask and are told. */
 class Hub {
  public:
+  /** What the connections run on. */
   using Executor = boost::asio::any_io_executor;
 
   static constexpr std::size_t capacity = 16;

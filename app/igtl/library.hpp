@@ -1,4 +1,7 @@
-/** @file The way into and out of Debian's libopenigtlink. Private to this folder. */
+/**
+ * @file
+ * The way into and out of Debian's libopenigtlink. Private to this folder.
+ */
 #pragma once
 
 #include <igtlMessageHeader.h>

@@ -17,21 +17,26 @@
 
 namespace interlock::igtl {
 
+/** A matrix of 4 by 4, row by row. */
 using Matrix = std::array<double, 16>;
+/** x, y and z in mm. */
 using Position3 = std::array<double, 3>;
 
+/** TRANSFORM. */
 struct Transform {
   Matrix matrix{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
   bool operator==(const Transform&) const = default;
 };
 
+/** STRING. */
 struct Text {
   std::string text;
 
   bool operator==(const Text&) const = default;
 };
 
+/** STATUS. */
 struct Status {
   StatusCode code = StatusCode::ok;
   std::int64_t sub_code = 0;
@@ -41,6 +46,7 @@ struct Status {
   bool operator==(const Status&) const = default;
 };
 
+/** One point of a list. */
 struct LabeledPoint {
   std::string name;  /**< at most 63 characters travel */
   std::string group; /**< at most 31 */
@@ -52,12 +58,14 @@ struct LabeledPoint {
   bool operator==(const LabeledPoint&) const = default;
 };
 
+/** POINT. */
 struct Points {
   std::vector<LabeledPoint> points;
 
   bool operator==(const Points&) const = default;
 };
 
+/** POSITION, by some called QTRANS. */
 struct Position {
   Position3 position{};
   std::optional<std::array<double, 4>> rotation; /**< quaternion x, y, z, w; of three numbers w follows */
@@ -65,6 +73,7 @@ struct Position {
   bool operator==(const Position&) const = default;
 };
 
+/** One tool that is tracked. */
 struct Tool {
   std::string name; /**< at most 19 characters travel */
   std::uint8_t kind = 1;
@@ -73,6 +82,7 @@ struct Tool {
   bool operator==(const Tool&) const = default;
 };
 
+/** TDATA. */
 struct TrackingData {
   std::vector<Tool> tools;
 
@@ -107,6 +117,7 @@ struct Array {
   bool operator==(const Array&) const = default;
 };
 
+/** SENSOR. */
 struct Sensor {
   std::uint8_t status = 0;
   std::uint64_t unit = 0; /**< packed as the protocol has it */
@@ -115,6 +126,7 @@ struct Sensor {
   bool operator==(const Sensor&) const = default;
 };
 
+/** CAPABILITY. */
 struct Capability {
   std::vector<std::string> types;
 
@@ -128,9 +140,11 @@ struct Query {
   bool operator==(const Query&) const = default;
 };
 
+/** What a message says. */
 using Body = std::variant<Transform, Text, Status, Points, Position, TrackingData, StartTracking,
                           StopTracking, TrackingReply, Array, Sensor, Capability, Query>;
 
+/** A message as programs send it. */
 struct Message {
   std::string device;
   Body body;

@@ -1,4 +1,7 @@
-/** @file The workphases of a needle placement, by which the protocol of the prostate robots is told apart. */
+/**
+ * @file
+ * The workphases of a needle placement, by which the protocol of the prostate robots is told apart.
+ */
 #pragma once
 
 #include <cstdint>

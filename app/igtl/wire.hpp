@@ -1,4 +1,7 @@
-/** @file Numbers as they stand on the wire: big-endian, at any address. */
+/**
+ * @file
+ * Numbers as they stand on the wire: big-endian, at any address.
+ */
 #pragma once
 
 #include <bit>
@@ -11,7 +14,9 @@
 
 namespace interlock::igtl {
 
+/** Bytes that somebody else keeps. */
 using Bytes = std::span<const std::uint8_t>;
+/** Bytes of one's own. */
 using ByteVector = std::vector<std::uint8_t>;
 
 inline constexpr std::size_t status_name_width = 20;
@@ -27,6 +32,7 @@ constexpr Number read_number(Bytes bytes, std::size_t at) noexcept {
   return number;
 }
 
+/** Appends a number, its highest byte first. */
 template <std::unsigned_integral Number>
 void append_number(ByteVector& bytes, Number number) {
   for (std::size_t i = sizeof(Number); i-- > 0;) {
@@ -34,18 +40,22 @@ void append_number(ByteVector& bytes, Number number) {
   }
 }
 
+/** The number of 32 bits at that byte. */
 constexpr double read_float32(Bytes bytes, std::size_t at) noexcept {
   return static_cast<double>(std::bit_cast<float>(read_number<std::uint32_t>(bytes, at)));
 }
 
+/** The number of 64 bits at that byte. */
 constexpr double read_float64(Bytes bytes, std::size_t at) noexcept {
   return std::bit_cast<double>(read_number<std::uint64_t>(bytes, at));
 }
 
+/** Appends a number in 32 bits. */
 inline void append_float32(ByteVector& bytes, double value) {
   append_number(bytes, std::bit_cast<std::uint32_t>(static_cast<float>(value)));
 }
 
+/** Appends a number in 64 bits. */
 inline void append_float64(ByteVector& bytes, double value) {
   append_number(bytes, std::bit_cast<std::uint64_t>(value));
 }

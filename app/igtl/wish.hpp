@@ -98,6 +98,7 @@ struct Noted {
   bool is_answered = true; /**< a STATUS is not, else two programs would answer each other for ever */
 };
 
+/** Anything that a message may ask for. */
 using Wish = std::variant<SetRegistration, ReportPose, SetPoint, SetOffset, LoadRows, LoadPoses, SetMode,
                           Stop, StartUp, SetTargetPose, MoveToTarget, RetractProbe, CutPower, Track, Noted>;
 

@@ -15,6 +15,7 @@ namespace interlock {
 /** The first quantity outside of its domain. Holds no memory of its own, so that making one allocates
  * nothing. */
 struct KinematicsError {
+  /** Kinds of refusal. */
   enum class Code {
     not_finite,   /**< NaN or infinity came in */
     out_of_range, /**< a number beyond the range in which it means something */
@@ -41,6 +42,7 @@ struct KinematicsError {
 /** For programs: "NOT_FINITE", "OUT_OF_REACH" and so on. */
 std::string_view code_name(KinematicsError::Code code);
 
+/** A value, or why kinematics has none. */
 template <typename Value>
 using KinematicsResult = tl::expected<Value, KinematicsError>;
 

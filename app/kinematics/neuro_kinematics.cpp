@@ -89,7 +89,8 @@ KinematicsResult<Pose> NeuroKinematics::pose_along_probe(const NeuroJoints& join
       });
 }
 
-KinematicsResult<NeuroJoints> NeuroKinematics::joints_for(const Vector3d& entry, const Vector3d& target,
+KinematicsResult<NeuroJoints> NeuroKinematics::joints_for(const Eigen::Vector3d& entry,
+                                                          const Eigen::Vector3d& target,
                                                           double probe_rotation_rad) const noexcept {
   return path_length_mm(entry, target).and_then([&](double length_mm) {
     const Vector3d approach = home_rotation() * (target - entry) / length_mm;
@@ -101,7 +102,7 @@ KinematicsResult<NeuroJoints> NeuroKinematics::joints_for(const Vector3d& entry,
 }
 
 KinematicsResult<NeuroJoints> NeuroKinematics::joints_for(const Pose& zframe_from_treatment,
-                                                          const Vector3d& entry) const noexcept {
+                                                          const Eigen::Vector3d& entry) const noexcept {
   const Vector3d target = zframe_from_treatment.translation();
   const Vector3d axis = zframe_from_treatment.linear().col(2);
   return check_rigid(zframe_from_treatment)

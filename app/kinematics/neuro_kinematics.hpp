@@ -46,6 +46,7 @@ inline constexpr double axis_tolerance = 1e-4;
 /** Cosine of the pitch below which the yaw is undetermined. */
 inline constexpr double smallest_cos_pitch = 1e-3;
 
+/** Closed forms of the robot with a remote centre of motion. */
 class NeuroKinematics {
  public:
   /** Refused unless lengths are finite and within range and the home separation is inside of the window. */

@@ -1,4 +1,7 @@
-/** @file The straight way from entry to target. */
+/**
+ * @file
+ * The straight way from entry to target.
+ */
 #pragma once
 
 #include <Eigen/Core>

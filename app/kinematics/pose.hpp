@@ -12,6 +12,7 @@
 
 namespace interlock {
 
+/** A rigid transform; lengths in mm. */
 using Pose = Eigen::Isometry3d;
 
 /** Sixteen numbers of a homogeneous matrix, row by row, as the HTTP interface and the command line write it.

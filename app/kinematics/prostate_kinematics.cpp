@@ -117,7 +117,8 @@ KinematicsResult<ProstateJoints> ProstateKinematics::joints_for(const Pose& base
   });
 }
 
-KinematicsResult<ProstateJoints> ProstateKinematics::joints_for(const Vector3d& entry, const Vector3d& target,
+KinematicsResult<ProstateJoints> ProstateKinematics::joints_for(const Eigen::Vector3d& entry,
+                                                                const Eigen::Vector3d& target,
                                                                 double rotation_rad) const noexcept {
   return path_length_mm(entry, target).and_then([&](double length_mm) {
     const Vector3d approach = (target - entry) / length_mm;
@@ -127,7 +128,7 @@ KinematicsResult<ProstateJoints> ProstateKinematics::joints_for(const Vector3d& 
   });
 }
 
-KinematicsResult<ProstateJoints> ProstateKinematics::joints_for(const Vector3d& target,
+KinematicsResult<ProstateJoints> ProstateKinematics::joints_for(const Eigen::Vector3d& target,
                                                                 double rotation_rad) const noexcept {
   return check_point({"target_x_mm", "target_y_mm", "target_z_mm"}, target).and_then([&] {
     return solve({0.0, 0.0, rotation_rad}, target);

@@ -50,6 +50,7 @@ inline constexpr double dead_centre_clearance_mm = 1.0;
 /** Largest angulation that a geometry may allow. */
 inline constexpr double steepest_angulation_rad = 1.0;
 
+/** Closed forms of the robot with two trapezoid stages. */
 class ProstateKinematics {
  public:
   /** Refused unless lengths are finite and within range, and the angulation at most

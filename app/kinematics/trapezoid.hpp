@@ -37,6 +37,7 @@ struct TrapezoidNames {
  */
 inline constexpr double dead_centre_margin_mm = 1e-3;
 
+/** One stage: two sliders that carry a bar by links of equal length. */
 class Trapezoid {
  public:
   /** Refused unless lengths are positive and the window keeps `dead_centre_margin_mm` off both dead centres.

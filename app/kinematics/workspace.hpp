@@ -36,6 +36,7 @@ struct WorkspaceSample {
   Eigen::Vector3d approach;    /**< unit vector of its advance */
 };
 
+/** What random joints reach. */
 template <typename Joints>
 struct Workspace {
   std::vector<WorkspaceSample<Joints>> samples;

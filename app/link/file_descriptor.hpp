@@ -28,6 +28,7 @@ class FileDescriptor {
 /** Owns one shared mapping of the start of a file, or none. */
 class SharedMapping {
  public:
+  /** What the mapping may be used for. */
   enum class Access { read_only, read_write };
 
   SharedMapping() = default;

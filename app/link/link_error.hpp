@@ -10,6 +10,7 @@ namespace interlock {
 
 /** One failed attempt to attach. */
 struct LinkError {
+  /** Why there is no link. */
   enum class Kind {
     unreachable,  /**< nobody listens at the socket; trying again later may help */
     silent,       /**< connected, but no hello came in time */

@@ -40,11 +40,13 @@ class Log {
 
   /** Lines below this level are not written. */
   [[nodiscard]] LogLevel level() const;
+  /** Lines below this level are no longer written. */
   void set_level(LogLevel level);
 
   /** Says how often the last line came again, unless that is still going on; to be called now and then. */
   void tell_repetitions();
 
+  /** The newest lines, for those who watch. */
   [[nodiscard]] LogRing& ring() { return ring_; }
 
  private:

@@ -16,6 +16,7 @@ enum class LogLevel : std::uint8_t { debug, info, warning, error, critical };
 /** As the interface spells them, in the order of `LogLevel`. */
 constexpr std::array<std::string_view, 5> log_level_names{"debug", "info", "warning", "error", "critical"};
 
+/** As options and lines spell it. */
 constexpr std::string_view name_of(LogLevel level) noexcept {
   return log_level_names[static_cast<std::size_t>(level)];
 }

@@ -17,6 +17,7 @@
 
 namespace interlock {
 
+/** One line as it was written. */
 struct LogLine {
   std::uint64_t sequence = 0; /**< from 1, without a gap */
   UtcTime time;

@@ -18,6 +18,7 @@ namespace interlock {
 
 class AxisMove {
  public:
+  /** How far a move came. */
   enum class Progress : std::uint8_t {
     going,
     arrived, /**< at rest within the deadband */

@@ -44,13 +44,17 @@ class Conductor {
   /** Aborts the open order that moves the axis in `slot`, if there is one. */
   void end_axis(std::uint32_t slot, OrderReason reason, std::uint32_t tick) noexcept;
 
+  /** Ends every open order for that reason. */
   void end_all(OrderReason reason, std::uint32_t tick) noexcept;
 
   /** The requests to send in this tick, first one first. */
   [[nodiscard]] Wishes tick(const ilk_snapshot_t& snapshot) noexcept;
 
+  /** A request that the link did not take. */
   void on_unsent(const Wish& wish) noexcept;
+  /** The kernel's answer to a request. */
   void on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept;
+  /** The kernel's answer to a request will never be known. */
   void on_verdict_lost(const WishOrigin& origin, std::uint32_t tick) noexcept;
 
   [[nodiscard]] const OrderTable& orders() const noexcept { return manual_.orders(); }

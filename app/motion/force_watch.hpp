@@ -53,10 +53,12 @@ struct ForceReadings {
   }
 };
 
+/** Follows both forces from snapshot to snapshot. */
 class ForceWatch {
  public:
   explicit ForceWatch(const ForceInputs& inputs) noexcept : inputs_(inputs) {}
 
+  /** Takes in one snapshot. */
   void look(const ilk_snapshot_t& snapshot) noexcept;
 
   [[nodiscard]] const ForceReadings& readings() const noexcept { return readings_; }

@@ -56,6 +56,7 @@ class HeldOrder {
 
   [[nodiscard]] bool is_open() const noexcept { return interlock::is_open(status_.phase); }
   [[nodiscard]] bool executes() const noexcept { return status_.phase == OrderPhase::executing; }
+  /** Whether the order has a part for that slot. */
   [[nodiscard]] bool moves(std::uint32_t slot) const noexcept {
     return slot < ILK_SLOTS && ((axes_ >> slot) & 1u) != 0;
   }

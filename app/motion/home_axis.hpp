@@ -23,6 +23,7 @@ enum class HomeProgress : std::uint8_t {
   not_homed   /**< a position is no place for an axis that is not homed */
 };
 
+/** Homes one axis, from the first request to rest. */
 class HomeAxis {
  public:
   HomeAxis() = default;
@@ -53,6 +54,7 @@ class HomeAxis {
   /** Gives back a lease. What the kernel does by itself, homing, only the end of MOTION ends. */
   void let_go(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept;
 
+  /** A request that the link did not take. */
   void on_unsent(const Wish& wish) noexcept;
 
   /** The kernel judged the HOME of this step. */

@@ -39,6 +39,7 @@ struct Ask {
   std::uint32_t stops = 0;                        /**< as in `Order`; DISABLE is sent all the same */
 };
 
+/** Anything that the network threads ask of the control thread. */
 using Command = std::variant<Order, HomeOrder, PathOrder, SweepOrder, BiopsyOrder, SeenImage, Cancel, Ask>;
 
 /** The kernel's word on an `Ask`; no verdict: it was not sent, or the answer got lost with the link. */
@@ -60,6 +61,7 @@ struct EventsLost {
   std::uint32_t count = 0;
 };
 
+/** Anything that the control thread tells. */
 using Notice = std::variant<ilk_event_t, Answer, StopAnswer, EventsLost>;
 
 /** What the control thread sees, whole. */
@@ -77,6 +79,7 @@ struct ControlView {
   ForceReadings force; /**< of a robot with a needle */
 };
 
+/** Both queues, and what the control thread saw last. */
 struct Mailbox {
   static constexpr std::size_t command_capacity = 256;
   static constexpr std::size_t notice_capacity = 4096;

@@ -54,6 +54,7 @@ struct FrequencySteps {
   std::uint32_t count = 0;       /**< 1 to `most` */
   std::uint32_t dwell_ticks = 0; /**< at each, of driven time */
 
+  /** The frequency word of a step. */
   [[nodiscard]] constexpr std::uint32_t word(std::uint32_t step) const noexcept {
     return first_word + step * static_cast<std::uint32_t>(step_words);
   }
@@ -71,6 +72,7 @@ struct SweepOrder {
 /** Where an order stands. The last five are final. */
 enum class OrderPhase : std::uint8_t { none, waiting, executing, paused, done, refused, aborted, expired };
 
+/** Whether an order in this phase can still move something. */
 constexpr bool is_open(OrderPhase phase) noexcept {
   return phase == OrderPhase::waiting || phase == OrderPhase::executing || phase == OrderPhase::paused;
 }
@@ -115,6 +117,7 @@ struct OrderStatus {
   bool operator==(const OrderStatus&) const = default;
 };
 
+/** For each slot, its newest order. */
 using OrderTable = std::array<OrderStatus, ILK_SLOTS>;
 
 /** Where the newest homing order stands. */

@@ -28,8 +28,10 @@ struct TimedLeg {
   TimedTrajectory trajectory;
 };
 
+/** One part of a path. */
 using PathLeg = std::variant<MoveLeg, TimedLeg>;
 
+/** A whole path, leg by leg. */
 struct PathProgram {
   std::vector<PathLeg> legs;
 

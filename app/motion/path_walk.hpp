@@ -27,8 +27,10 @@ struct PathPoint {
   double ahead_counts = 0.0; /**< where the path is a lease later */
 };
 
+/** Where each axis has to be at each time of a path. */
 class PathWalk {
  public:
+  /** For each slot, where its axis has to be. */
   using Points = std::array<PathPoint, ILK_SLOTS>;
 
   explicit PathWalk(const RobotPlan& plan);
@@ -43,6 +45,7 @@ class PathWalk {
   [[nodiscard]] bool begin(const ilk_snapshot_t& snapshot,
                            const std::array<double, ILK_SLOTS>& velocities_counts_per_s) noexcept;
 
+  /** Goes on to that time, which never runs back. */
   void advance(double time_s) noexcept;
 
   /** Where each axis of the leg should be now, by slot; the points of others mean nothing. */

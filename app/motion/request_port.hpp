@@ -27,11 +27,13 @@ struct StopOrigin {
   std::uint32_t stops = 0;
 };
 
+/** The app's heartbeat, which no order sent. */
 struct HeartbeatOrigin {};
 
 /** Who sent a request. */
 using RequestOrigin = std::variant<HeartbeatOrigin, WishOrigin, AskOrigin, StopOrigin>;
 
+/** Sends requests by the link and remembers who sent each, until its verdict comes. */
 class RequestPort {
  public:
   explicit RequestPort(LinkClient& link) noexcept : link_(link) {}

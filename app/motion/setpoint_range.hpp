@@ -15,6 +15,7 @@ struct SetpointRange {
   std::int32_t lowest_counts = 0;
   std::int32_t highest_counts = 0;
 
+  /** Whether a position lies within, ends included. */
   [[nodiscard]] bool contains(std::int32_t counts) const noexcept {
     return lowest_counts <= counts && counts <= highest_counts;
   }

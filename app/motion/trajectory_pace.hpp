@@ -38,7 +38,9 @@ class TrajectoryPace {
 
   /** Time of the trajectory that has passed so long after the beginning. */
   [[nodiscard]] double passed_s(double time_s) const noexcept;
+  /** How fast the trajectory's time runs then, 1 being as stated. */
   [[nodiscard]] double pace(double time_s) const noexcept;
+  /** How fast the pace changes then. */
   [[nodiscard]] double pace_per_s(double time_s) const noexcept;
 
  private:

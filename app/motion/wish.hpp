@@ -48,6 +48,7 @@ class Wishes {
  public:
   static constexpr std::size_t capacity = 2 * ILK_SLOTS + 1;
 
+  /** Appends a wish; beyond the capacity it is dropped. */
   void add(const Wish& wish) noexcept {
     if (count_ < capacity) {
       wishes_[count_++] = wish;

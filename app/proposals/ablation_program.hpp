@@ -1,4 +1,7 @@
-/** @file From angles and depths of the probe to the motion of the mode "ablation". */
+/**
+ * @file
+ * From angles and depths of the probe to the motion of the mode "ablation".
+ */
 #pragma once
 
 #include <optional>

@@ -1,4 +1,7 @@
-/** @file From an alignment to the motion that reaches it. */
+/**
+ * @file
+ * From an alignment to the motion that reaches it.
+ */
 #pragma once
 
 #include "motion/path_program.hpp"

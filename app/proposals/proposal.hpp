@@ -26,6 +26,7 @@
 
 namespace interlock {
 
+/** Where a proposal stands on its way. */
 enum class ProposalState : std::uint8_t {
   drafted,
   checked,
@@ -107,6 +108,7 @@ struct BiopsyDraft {
   std::optional<std::uint32_t> targeting_revision; /**< as of a `PathDraft` */
 };
 
+/** What would move. */
 enum class ProposalKind : std::uint8_t { move, home, path, sweep, biopsy };
 
 /** As the interface spells it. */
@@ -115,6 +117,7 @@ constexpr std::string_view kind_name(ProposalKind kind) noexcept {
   return names[static_cast<std::size_t>(kind)];
 }
 
+/** One motion that somebody proposed. */
 struct Proposal {
   std::uint32_t id = 0;
   ProposalKind kind = ProposalKind::move;

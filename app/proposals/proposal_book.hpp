@@ -32,13 +32,16 @@ class ProposalBook {
   using Listener = std::function<void(const Proposal&)>;
   /** Told of the new mode, a name of robot/modes.hpp. */
   using ModeListener = std::function<void(std::string_view)>;
+  /** Tells the time in UTC. */
   using Clock = std::function<UtcTime()>;
 
   /** `robot` and `config` must outlive the book. */
   ProposalBook(const Robot& robot, const ilk_config_t& config, Send send, Clock clock);
 
+  /** Has the listener called after each change of a proposal. */
   void on_change(Listener listener) { listener_ = std::move(listener); }
 
+  /** Has the listener called after each change of the robot's mode. */
   void on_mode_change(ModeListener listener) { mode_listener_ = std::move(listener); }
 
   /**

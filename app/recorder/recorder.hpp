@@ -18,6 +18,7 @@
 
 namespace interlock::recorder {
 
+/** What is recorded, and how much of it. */
 struct RecorderTerms {
   bool continuous = false;
   std::uint32_t before_s = 60; /**< of kernel time, that a recording of an event holds before it */

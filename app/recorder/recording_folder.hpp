@@ -19,6 +19,7 @@ class RecordingFolder {
   /** The folder is made if missing. */
   static Recorded<RecordingFolder> open(std::filesystem::path folder, std::uint64_t keep_bytes);
 
+  /** Where a recording of that run and reason goes. */
   [[nodiscard]] std::filesystem::path file(const ilk_run_description_t& run, ilk_recorded_why_t why,
                                            std::uint32_t tick) const;
 

@@ -22,6 +22,7 @@ struct RecordingSubject {
   std::string build;      /**< version and commit of this program */
 };
 
+/** Writes one recording, block by block. */
 class RecordingWriter {
  public:
   /** Begins the file anew, with its header on the disk. */

@@ -1,4 +1,7 @@
-/** @file The ways of moving a robot, by name. */
+/**
+ * @file
+ * The ways of moving a robot, by name.
+ */
 #pragma once
 
 #include <array>
@@ -9,6 +12,7 @@
 
 namespace interlock {
 
+/** What a robot may be asked to do. */
 enum class RobotMode : std::uint8_t {
   manual,             /**< each axis to its own setpoint */
   home,               /**< the steps of homing */
@@ -22,6 +26,7 @@ enum class RobotMode : std::uint8_t {
 
 namespace detail {
 
+/** A mode as files and programs spell it. */
 struct NamedMode {
   RobotMode mode;
   std::string_view name;

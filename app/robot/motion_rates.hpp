@@ -1,4 +1,7 @@
-/** @file How fast an axis may move, in counts and in its unit. */
+/**
+ * @file
+ * How fast an axis may move, in counts and in its unit.
+ */
 #pragma once
 
 #include <cstdint>

@@ -249,6 +249,7 @@ struct Robot {
   /** The step of homing of that name, or null. */
   [[nodiscard]] const HomeStep* find_home_step(std::string_view step_name) const;
 
+  /** Whether the file gives the robot this mode. */
   [[nodiscard]] bool has_mode(std::string_view mode) const;
 
   bool operator==(const Robot&) const = default;

@@ -33,6 +33,7 @@ struct ReadLog {
   void refuse(std::uint32_t line, std::string key, std::string problem, std::string expected);
 };
 
+/** Reads the keys of one table and notes what is wrong with them. */
 class TableReader {
  public:
   /** @param path dotted path of the table, empty for the whole file. The table and the log must outlive this.
@@ -49,6 +50,7 @@ class TableReader {
    */
   std::string identifier(std::string_view key);
 
+  /** The value of a key that is true or false. */
   bool boolean(std::string_view key);
 
   /** A finite number; an integer will do. */

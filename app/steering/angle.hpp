@@ -1,4 +1,7 @@
-/** @file Angles on the circle. */
+/**
+ * @file
+ * Angles on the circle.
+ */
 #pragma once
 
 #include <cmath>

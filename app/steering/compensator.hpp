@@ -24,6 +24,7 @@ enum class ShareRule {
   published, /**< by the published fit, which knows one needle alone */
 };
 
+/** What the compensator is made from. */
 struct CompensatorParameters {
   CurvParameters curv{};
   TipBelief tip{};
@@ -48,6 +49,7 @@ struct NeedleImage {
   std::optional<Eigen::Vector3d> target_mm; /**< nothing where the image does not show the target */
 };
 
+/** What the rotation has to do now. */
 struct SteeringCommand {
   double rotation_rad_s = 0.0;      /**< speed for the rotation axis; 0 once arrived */
   double wanted_rotation_rad = 0.0; /**< theta_d, within [0, 2 pi) */
@@ -58,6 +60,7 @@ struct SteeringCommand {
   bool arrived = false;               /**< stays so */
 };
 
+/** Turns the needle such that its tip ends at the target. */
 class Compensator {
  public:
   /** @param axes where the axes are at the needle's contact with the tissue

@@ -24,6 +24,7 @@
 
 namespace interlock {
 
+/** Speeds and shape of the law. */
 struct CurvParameters {
   double fastest_rad_s = 2.0 * full_turn_rad; /**< w_max, 0.1 to 1000; published clinical maximum 120 rpm */
   double width_rad = std::numbers::pi / 3.0;  /**< c, 0.1 to pi; published: 60 degrees */
@@ -47,6 +48,7 @@ KinematicsResult<CurvShare> published_share(double curvature_per_mm, double larg
 /** The law with its parameters, and the averaged curvature as a table. */
 class CurvLaw {
  public:
+  /** Refused for parameters out of their ranges. */
   static KinematicsResult<CurvLaw> create(const CurvParameters& parameters) noexcept;
 
   /**

@@ -27,6 +27,7 @@ struct ZeroingRules {
   double farthest_n = 5.0;      /**< from the zero of the robot file: more is a load or a broken sensor */
 };
 
+/** From readings of a channel to newtons. */
 class ForceCalibration {
  public:
   /** The zero is the channel's reference until it is taken anew. @param units_per_newton sign included */

@@ -30,6 +30,7 @@ struct CueParameters {
 /** What the cue adds to the insertion setpoint (mm), that long after its start; 0 before and after it. */
 double cue_offset_mm(const CueParameters& cue, double since_s) noexcept;
 
+/** How the detector looks at the force. */
 struct MembraneParameters {
   double period_s = 0.001;        /**< of the samples */
   double cutoff_hz = 20.0;        /**< of the low-pass, first order */
@@ -55,12 +56,14 @@ struct MembraneSample {
 /** What became of a membrane: depth at which it tore, or nothing where it was skipped. */
 using MembraneRecord = std::optional<double>;
 
+/** What the detector knows in one period. */
 struct MembraneState {
   bool armed = false;
   bool found = false;         /**< in this very period */
   double cue_offset_mm = 0.0; /**< for the insertion setpoint */
 };
 
+/** Notices a puncture in the force at the needle. */
 class MembraneDetector {
  public:
   static constexpr std::size_t most_membranes = 16;

@@ -18,6 +18,7 @@ struct TargetBelief {
   double farthest_mm = 30.0; /**< from where it was planned; an image beyond shows something else */
 };
 
+/** Follows a target through late, noisy images. */
 class TargetFilter {
  public:
   /** The target was planned at `target_mm` in the guide frame, and is believed to be there at `time_s`. */

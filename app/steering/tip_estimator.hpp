@@ -37,6 +37,7 @@ struct TipBelief {
   double widest_surprise_sd = 6.0;      /**< an image further from where it is expected is refused */
 };
 
+/** Where the tip is believed to be. */
 struct TipEstimate {
   Pose guide_from_tip = Pose::Identity();
   double curvature_per_mm = 0.0;    /**< largest of this needle in this tissue */
@@ -44,6 +45,7 @@ struct TipEstimate {
   double position_sd_mm = 0.0;      /**< root mean square of the three, as of the anchor */
 };
 
+/** Follows the tip by the axes, corrected by late images. */
 class TipEstimator {
  public:
   /** Motions that are kept; beyond that the anchor moves on, and images of before it come too late. */

@@ -17,6 +17,7 @@
 
 namespace interlock {
 
+/** What a record tells of. */
 enum class AuditKind {
   start,
   login,

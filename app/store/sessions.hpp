@@ -19,6 +19,7 @@ constexpr std::chrono::minutes session_idle_limit{30};
 constexpr std::chrono::hours session_lifetime{12};
 constexpr int sessions_of_one_user = 16;
 
+/** Somebody who is logged in. */
 struct Session {
   std::uint32_t number = 0; /**< never given twice */
   User user;

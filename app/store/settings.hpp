@@ -12,6 +12,7 @@
 
 namespace interlock {
 
+/** One setting and when it was set. */
 struct Setting {
   nlohmann::json value;
   UtcTime updated;
@@ -22,8 +23,10 @@ class Settings {
  public:
   explicit Settings(Transaction& transaction) : database_(transaction.database()) {}
 
+  /** The setting of that key, where there is one. */
   [[nodiscard]] std::optional<Setting> find(const std::string& key) const;
 
+  /** Sets it, in place of what was there. */
   void set(const std::string& key, const nlohmann::json& value, UtcTime now);
 
  private:

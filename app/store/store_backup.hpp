@@ -19,6 +19,7 @@ struct StoreSummary {
   AuditHead head;
 };
 
+/** What a restore brought back. */
 struct Restored {
   StoreSummary summary;
   std::optional<std::filesystem::path> replaced; /**< where the store is that was there before */

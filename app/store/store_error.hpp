@@ -11,6 +11,7 @@ namespace interlock {
 
 /** A refusal by a rule, or a failure of the file. Whoever gets one knows that nothing was changed. */
 struct StoreError {
+  /** What went wrong. */
   enum class Kind {
     invalid,      /**< a value breaks a rule: `field` and `expected` say which */
     exists,       /**< the name is taken */
@@ -36,6 +37,7 @@ struct StoreError {
   bool operator==(const StoreError&) const = default;
 };
 
+/** A value, or why the store has none. */
 template <typename Value>
 using Stored = tl::expected<Value, StoreError>;
 

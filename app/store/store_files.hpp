@@ -26,6 +26,7 @@ std::filesystem::path with_suffix(std::filesystem::path file, const std::string&
  */
 class StoreLock {
  public:
+  /** Whether others may hold it, too. */
   enum class Kind { shared, alone };
 
   /** Refused, unavailable: somebody holds it the other way. */

@@ -24,6 +24,7 @@ std::string_view role_name(Role role);
 /** The role of that name. */
 std::optional<Role> find_role(std::string_view name);
 
+/** Somebody who may log in. */
 struct User {
   std::string name;
   Role role = Role::viewer;
@@ -76,6 +77,7 @@ class Users {
   /** Writes down a login. Refused, outdated: the user was disabled, or has another password by now. */
   Stored<User> note_login(const Authenticated& login, UtcTime now);
 
+  /** The user of that name, where there is one. */
   [[nodiscard]] std::optional<User> find(const std::string& name) const;
 
   /** Everybody, by name. */

@@ -38,6 +38,7 @@ struct AxisSetpoint {
   bool clamped = false; /**< the aim asked for more */
 };
 
+/** What an aim asks of the robot. */
 struct Alignment {
   Pose desired;                        /**< of the treatment point, as the aim asks */
   std::vector<AxisSetpoint> setpoints; /**< of the axes with a role, in the order of the robot's axes */

@@ -1,4 +1,7 @@
-/** @file Where the needle of a robot that takes biopsies would touch the skin. */
+/**
+ * @file
+ * Where the needle of a robot that takes biopsies would touch the skin.
+ */
 #pragma once
 
 #include "targeting/robot_kinematics.hpp"

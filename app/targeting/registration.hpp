@@ -1,4 +1,7 @@
-/** @file Where the robot stands in the scanner. */
+/**
+ * @file
+ * Where the robot stands in the scanner.
+ */
 #pragma once
 
 #include "kinematics/pose.hpp"

@@ -23,10 +23,12 @@ namespace interlock {
  * role in the kinematics. */
 using AxisPositions = std::vector<double>;
 
+/** The kinematics of a robot, of whatever family. */
 class RobotKinematics {
  public:
   /** With the probe of the robot's file, or another one. Refused when the geometry cannot work. */
   static KinematicsResult<RobotKinematics> create(const Robot& robot);
+  /** With another probe than that of the robot's file. */
   static KinematicsResult<RobotKinematics> create(const Robot& robot, const ProbeOffsets& probe);
 
   [[nodiscard]] const ProbeOffsets& probe() const { return probe_; }

@@ -1,4 +1,7 @@
-/** @file Alignments and refusals of the kinematics as JSON, for the command line and the HTTP interface. */
+/**
+ * @file
+ * Alignments and refusals of the kinematics as JSON, for the command line and the HTTP interface.
+ */
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -23,6 +23,7 @@ struct FollowingTolerance {
   double goal = 0.0; /**< at most `path` */
 };
 
+/** How closely a trajectory has to be followed. */
 struct FollowingRules {
   std::vector<FollowingTolerance> axes; /**< in the order of the trajectory's axes */
   double goal_wait_s = 0.0;             /**< after the trajectory's end */
@@ -30,6 +31,7 @@ struct FollowingRules {
 
 /** How far the following is. */
 struct FollowingState {
+  /** What came of following it. */
   enum class Code {
     under_way,
     reached,   /**< the trajectory is over, and all axes are at its goal */

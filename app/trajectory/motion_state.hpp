@@ -1,8 +1,12 @@
-/** @file Where an axis is and how it moves, in the axis' unit (mm or rad) and seconds. */
+/**
+ * @file
+ * Where an axis is and how it moves, in the axis' unit (mm or rad) and seconds.
+ */
 #pragma once
 
 namespace interlock {
 
+/** Position and its first two derivatives. */
 struct MotionState {
   double position = 0.0;
   double velocity = 0.0;

@@ -1,4 +1,7 @@
-/** @file The motion of one axis as pieces of constant jerk, one after the other, and then rest. */
+/**
+ * @file
+ * The motion of one axis as pieces of constant jerk, one after the other, and then rest.
+ */
 #pragma once
 
 #include <vector>

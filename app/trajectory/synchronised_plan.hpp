@@ -48,6 +48,7 @@ struct AxisTarget {
   PositionRange allowed; /**< for the target and the whole way there; a start outside may come back in */
 };
 
+/** Motions of several axes that end at the same time. */
 struct SynchronisedPlan {
   std::vector<PiecewiseMotion> axes; /**< in the order in which they were given */
   double duration_s = 0.0;           /**< until the last is at rest */

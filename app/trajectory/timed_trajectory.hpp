@@ -35,6 +35,7 @@ struct TrajectoryAxis {
   double top_speed = 0.0; /**< between the rows as well */
 };
 
+/** Rows of time and positions, and what lies between them. */
 class TimedTrajectory {
  public:
   [[nodiscard]] std::size_t rows() const noexcept { return numbers_.size() / row_size_; }

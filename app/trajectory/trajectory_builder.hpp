@@ -39,6 +39,7 @@ using VelocityLimits = std::map<std::string, double, std::less<>>;
  * many. */
 TrajectoryError wrong_columns(std::size_t line, std::size_t fields, std::span<const std::string> columns);
 
+/** Takes rows one by one and checks each. */
 class TrajectoryBuilder {
  public:
   /** Begins with the columns' names, as `read_header` describes them. A limit has to name an axis and be

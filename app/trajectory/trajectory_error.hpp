@@ -14,6 +14,7 @@ namespace interlock {
 
 /** The first thing wrong with a trajectory, or with what it should be made of. */
 struct TrajectoryError {
+  /** Kinds of refusal. */
   enum class Code {
     not_finite,     /**< NaN or infinity came in */
     out_of_range,   /**< a number beyond its limits: soft limits less coast, or where it means something */
@@ -46,6 +47,7 @@ struct TrajectoryError {
 /** For programs: "NOT_FINITE", "UNKNOWN_AXIS" and so on. */
 std::string_view code_name(TrajectoryError::Code code);
 
+/** A value, or why there is no trajectory. */
 template <typename Value>
 using TrajectoryResult = tl::expected<Value, TrajectoryError>;
 

@@ -27,6 +27,7 @@ namespace interlock {
 /** A smaller share of the way would be a jump. */
 inline constexpr double smallest_ramp_share = 1e-3;
 
+/** Bounds of the profile. */
 struct TrapezoidRules {
   double cruise_velocity = 0.0;
   double max_acceleration = 0.0;
@@ -35,6 +36,7 @@ struct TrapezoidRules {
                                   The thesis: a twentieth of it */
 };
 
+/** A motion that speeds up, cruises and slows down. */
 class TrapezoidProfile {
  public:
   /**

@@ -1,4 +1,7 @@
-/** @file A run as a table: a row for each control tick. */
+/**
+ * @file
+ * A run as a table: a row for each control tick.
+ */
 #pragma once
 
 #include <string>

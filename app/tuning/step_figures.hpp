@@ -1,4 +1,7 @@
-/** @file How good a step was, in numbers. */
+/**
+ * @file
+ * How good a step was, in numbers.
+ */
 #pragma once
 
 #include <cstdint>

@@ -19,9 +19,11 @@
 
 namespace interlock {
 
+/** A value, or why the rig has none. */
 template <typename Value>
 using RigResult = tl::expected<Value, std::string>;
 
+/** Kernel core and plant in this process, with one axis that moves. */
 class StepRig {
  public:
   /** `config` is the compiled `robot`; `axis` one of its axes. */

@@ -15,6 +15,7 @@
 
 namespace interlock {
 
+/** What step is run. */
 struct StepOptions {
   std::string axis; /**< its name in the robot file */
   std::optional<std::int32_t> move_counts =
@@ -38,6 +39,7 @@ struct StepRow {
   std::uint32_t drive = 0; /**< that the controller asked for */
 };
 
+/** What the axis did in a step. */
 struct StepRun {
   std::string axis;
   std::int32_t from_counts = 0;

@@ -1,4 +1,7 @@
-/** @file A run as a picture: position, velocity and control output over time, one above the other. */
+/**
+ * @file
+ * A run as a picture: position, velocity and control output over time, one above the other.
+ */
 #pragma once
 
 #include <string>

@@ -20,6 +20,7 @@
 extern "C" {
 #endif
 
+/** The ring that is being written. */
 typedef struct {
   ilk_ring_header_t *ring;
   ilk_block_t *blocks;         /**< of the ring */

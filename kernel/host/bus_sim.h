@@ -43,6 +43,7 @@ bool ilk_bus_sim_open(ilk_bus_sim_t *sim, const char *path, ilk_clock_t clock, u
 /** The driver for the loop. */
 ilk_bus_t ilk_bus_sim_driver(ilk_bus_sim_t *sim);
 
+/** Closes the connection; nothing to do when there is none. */
 void ilk_bus_sim_close(ilk_bus_sim_t *sim);
 
 #ifdef __cplusplus

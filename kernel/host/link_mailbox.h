@@ -24,6 +24,7 @@ typedef struct {
   uint32_t open; /**< 1 until the app's socket closes; atomic */
 } ilk_attachment_t;
 
+/** Hands apps over between the thread that accepts them and the loop. */
 typedef struct {
   ilk_attachment_t *offered; /**< atomic */
   ilk_attachment_t *retired; /**< atomic */

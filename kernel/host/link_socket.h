@@ -14,12 +14,14 @@
 extern "C" {
 #endif
 
+/** Whether the socket could be taken. */
 typedef enum {
   ILK_LISTEN_OK,
   ILK_LISTEN_TAKEN, /**< a living process holds the path; it was not disturbed */
   ILK_LISTEN_FAILED
 } ilk_listen_result_t;
 
+/** A listening socket that is ours. */
 typedef struct {
   int descriptor;
   struct sockaddr_un address;

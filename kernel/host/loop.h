@@ -22,6 +22,7 @@
 extern "C" {
 #endif
 
+/** What the loop works with. */
 typedef struct {
   const ilk_config_t *config;
   ilk_bus_t bus;

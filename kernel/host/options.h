@@ -12,8 +12,10 @@
 extern "C" {
 #endif
 
+/** How the motor cards are reached. */
 typedef enum { ILK_BUS_SIM, ILK_BUS_SPI } ilk_bus_kind_t;
 
+/** What the command line asked for. */
 typedef struct {
   const char *config_path;
   ilk_bus_kind_t bus;
@@ -28,6 +30,7 @@ typedef struct {
   int priority; /**< SCHED_FIFO, 1 to 99 */
 } ilk_options_t;
 
+/** What is to be done after reading the command line. */
 typedef enum { ILK_OPTIONS_RUN, ILK_OPTIONS_HELP, ILK_OPTIONS_BAD } ilk_options_result_t;
 
 /** Text for `--help`. */

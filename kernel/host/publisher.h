@@ -20,6 +20,7 @@ typedef struct {
   uint32_t homed;
 } ilk_axis_told_t;
 
+/** Where snapshots and events go, and what was told last. */
 typedef struct {
   ilk_link_kernel_region_t *region; /**< NULL while no app is attached */
   uint32_t lock;                    /**< own copy of `snapshot_lock` */

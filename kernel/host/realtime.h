@@ -17,6 +17,7 @@ extern "C" {
 
 #define ILK_RT_COUNT 4u
 
+/** What was asked of the system, and what it gave. */
 typedef struct {
   uint32_t asked;            /**< bits by ilk_rt_measure_t */
   uint32_t granted;          /**< bits by ilk_rt_measure_t */

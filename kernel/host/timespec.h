@@ -8,6 +8,7 @@
 #include <stdint.h>
 #include <time.h>
 
+/** The same time in seconds and nanoseconds. */
 static inline struct timespec ilk_timespec(uint64_t nanoseconds) {
   const uint64_t seconds = nanoseconds / 1000000000u;
   const uint64_t rest = nanoseconds % 1000000000u;

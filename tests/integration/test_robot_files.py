@@ -13,7 +13,7 @@ import jsonschema
 import pytest
 from bare_kernel import BIN, ROOT
 from conftest import StackFactory
-from motion import motor, propose, to_motion, wait_for_mode, wait_for_proposal, wait_until
+from motion import act, motor, press, propose, to_motion, unlock, wait_for_mode, wait_for_proposal, wait_until
 from stack import Stack
 from test_run import DONE, REFUSED, interlock
 
@@ -23,11 +23,13 @@ BROKEN = tomllib.loads((FILES / "broken.toml").read_text())
 ROTATION = 0
 DRILL = 0
 GRIP = 5
+DESK_SLOTS = (0, 2, 3, 4, 5)
 SCHEMA = json.loads((ROOT / "models/robots/robot.schema.json").read_text())
 
 # SHA-256 of the compiled configuration. Another value means that the kernel will be told something else: say
 # so in the commit that changes it.
 COMPILED = {
+    "desk": "f40925467aedf0e109b0e7b81e7a2f338b351decad07c3c8fa6641aaf54b9f98",
     "neuro": "75b2e1469e1b3bafda105f6d9bf443a9f4b47eee276b1ec5ded4a726a89189d7",
     "prostate": "d60262a837688aad3315025f564814c6681ec20a8dc7253be9edeb86ab8bf2e7",
 }
@@ -83,9 +85,7 @@ def test_schema_refuses_what_is_wrong_in_structure_and_leaves_clashes_to_the_pro
     assert schema_refuses(broken_text(case)) == BROKEN[case]["schema"]
 
 
-@pytest.mark.parametrize(
-    "file", [robot_file("neuro"), robot_file("prostate"), TRAINER], ids=lambda path: path.stem
-)
+@pytest.mark.parametrize("file", [*map(robot_file, COMPILED), TRAINER], ids=lambda path: path.stem)
 def test_sound_robot_satisfies_the_schema_that_its_first_line_names(file: Path) -> None:
     named = file.read_text().splitlines()[0].removeprefix("#:schema ")
     assert (file.parent / named).resolve() == ROOT / "models/robots/robot.schema.json"
@@ -230,6 +230,24 @@ def test_robot_of_known_parts_moves_by_its_files_alone(trainer: Stack) -> None:
     wait_for_proposal(trainer, propose(trainer, 500, DRILL), "done")
     assert motor(trainer, DRILL)["position_counts"] == pytest.approx(500, abs=2)
     assert plant_counts(trainer, DRILL) - start == pytest.approx(500, abs=3)
+
+
+def test_robot_of_the_integrators_guide_homes_as_a_whole_and_moves(stack: StackFactory) -> None:
+    desk = stack(robot="desk")
+    assert desk.status()["robot"] == "desk"
+    unlock(desk)
+    for slot in DESK_SLOTS:
+        act(desk, "enable", slot)
+    number = desk.api.post("/api/proposals", json={"kind": "home"}).raise_for_status().json()["id"]
+    press(desk)
+    wait_for_proposal(desk, number, "done")
+    motors = {one["name"]: one for one in (motor(desk, slot) for slot in DESK_SLOTS)}
+    assert all(one["homed"] for one in motors.values())
+    middle = {"front_left": 1800, "front_right": -1800, "back_left": 1800, "back_right": -1800}
+    reached = {name: motors[name]["position_counts"] for name in middle}
+    assert reached == pytest.approx(middle, abs=3)
+    wait_for_proposal(desk, propose(desk, 1200, DESK_SLOTS[0]), "done")
+    assert plant_counts(desk, DESK_SLOTS[0]) == pytest.approx(1200, abs=3)
 
 
 def test_sensor_card_is_seen_and_is_no_axis(trainer: Stack) -> None:

@@ -1,4 +1,7 @@
-/* Generated from spec/catalog.toml by `make generate`. Do not edit. */
+/**
+ * @file
+ * Every mode, request, verdict, cause, fault and gate by its number. Generated from spec/catalog.toml by `make generate`. Do not edit.
+ */
 #ifndef INTERLOCK_CATALOG_H
 #define INTERLOCK_CATALOG_H
 
@@ -10,6 +13,7 @@ typedef enum {
   ILK_MODE_MOTION = 3, /**< The pedal is held after fresh consent; accepted moves drive their axes. */
 } ilk_mode_t;
 
+/** Codes of ilk_mode_t. */
 #define ILK_MODE_COUNT 4u
 
 /** States of an axis. */
@@ -21,6 +25,7 @@ typedef enum {
   ILK_AXIS_FAULTED = 4,  /**< The axis broke a rule and is not driven. */
 } ilk_axis_state_t;
 
+/** Codes of ilk_axis_state_t. */
 #define ILK_AXIS_COUNT 5u
 
 /** Requests of the app. `fields` are read by the kernel; `checks` are the verdicts that can refuse it, in order, after CHECKSUM, SEQUENCE, UNKNOWN and AXIS. */
@@ -37,6 +42,7 @@ typedef enum {
   ILK_REQUEST_RESTORE = 10,    /**< Set the position from a saved one; the axis is not homed afterwards. */
 } ilk_request_kind_t;
 
+/** Codes of ilk_request_kind_t. */
 #define ILK_REQUEST_COUNT 10u
 
 /** The one answer to a request. */
@@ -60,6 +66,7 @@ typedef enum {
   ILK_VERDICT_NO_SWITCH = 16,    /**< The axis has no limit switch to home at. */
 } ilk_verdict_t;
 
+/** Codes of ilk_verdict_t. */
 #define ILK_VERDICT_COUNT 17u
 
 /** Why the system is LOCKED. */
@@ -73,6 +80,7 @@ typedef enum {
   ILK_CAUSE_OVERRUN = 6,   /**< The control loop missed its deadline several times in a row. Value: misses in a row. */
 } ilk_cause_t;
 
+/** Codes of ilk_cause_t. */
 #define ILK_CAUSE_COUNT 7u
 
 /** Why an axis is FAULTED. */
@@ -87,6 +95,7 @@ typedef enum {
   ILK_FAULT_HOMING_TIMEOUT = 7, /**< Homing took too long. Value: homing phase. */
 } ilk_fault_t;
 
+/** Codes of ilk_fault_t. */
 #define ILK_FAULT_COUNT 8u
 
 /** The conditions between a wish and a driven axis, in the order in which they are checked. The first that does not hold blocks. */
@@ -105,6 +114,7 @@ typedef enum {
   ILK_GATE_DRIVE = 11,         /**< The drive that was asked for is above its bound. */
 } ilk_gate_t;
 
+/** Codes of ilk_gate_t. */
 #define ILK_GATE_COUNT 12u
 
 /** The first rule that a refused configuration breaks. */
@@ -146,6 +156,7 @@ typedef enum {
   ILK_CONFIG_ERROR_MAX_DELTA = 34,     /**< `max_delta_counts` is zero or more than half of the range. */
 } ilk_config_error_t;
 
+/** Codes of ilk_config_error_t. */
 #define ILK_CONFIG_ERROR_COUNT 35u
 
 /** Kinds of motor cards. */
@@ -158,6 +169,7 @@ typedef enum {
   ILK_CARD_SENSOR = 5,         /**< No motor; analog inputs only. */
 } ilk_card_t;
 
+/** Codes of ilk_card_t. */
 #define ILK_CARD_COUNT 6u
 
 /** The end of the axis at which its switch sits. */
@@ -167,6 +179,7 @@ typedef enum {
   ILK_LIMIT_UPPER = 2, /**< The switch sits at the upper end; it blocks increasing motion. */
 } ilk_limit_side_t;
 
+/** Codes of ilk_limit_side_t. */
 #define ILK_LIMIT_COUNT 3u
 
 /** Sense of motion, as the position counts. */
@@ -176,6 +189,7 @@ typedef enum {
   ILK_DIRECTION_DECREASING = 2, /**< Towards smaller positions. */
 } ilk_direction_t;
 
+/** Codes of ilk_direction_t. */
 #define ILK_DIRECTION_COUNT 3u
 
 /** Phases of homing. */
@@ -186,6 +200,7 @@ typedef enum {
   ILK_HOMING_REST = 3,     /**< At the switch; waits until the counter rests. */
 } ilk_homing_phase_t;
 
+/** Codes of ilk_homing_phase_t. */
 #define ILK_HOMING_COUNT 4u
 
 /** What the pedal's channels say together. */
@@ -195,6 +210,7 @@ typedef enum {
   ILK_PEDAL_DISAGREE = 2, /**< The channels do not agree, or a contact was not read validly. */
 } ilk_pedal_t;
 
+/** Codes of ilk_pedal_t. */
 #define ILK_PEDAL_COUNT 3u
 
 /** Lamps of the front panel. */
@@ -205,6 +221,7 @@ typedef enum {
   ILK_LAMP_STALL = 3,      /**< Purple while an axis has a STALL, amber while one has another fault. */
 } ilk_lamp_t;
 
+/** Codes of ilk_lamp_t. */
 #define ILK_LAMP_COUNT 4u
 
 /** Colours of a lamp. */
@@ -216,6 +233,7 @@ typedef enum {
   ILK_COLOUR_PURPLE = 4, /**< Purple. */
 } ilk_colour_t;
 
+/** Codes of ilk_colour_t. */
 #define ILK_COLOUR_COUNT 5u
 
 #endif

@@ -23,7 +23,9 @@
 
 #include "interlock/types.h"
 
+/** First word of both regions and of the hello. */
 #define ILK_LINK_MAGIC 0x4c4b4c49u /* "ILKL" */
+/** Of the format; another one is refused. */
 #define ILK_LINK_VERSION 1u
 
 /** Requests in flight. A power of two; four ticks' worth. */
@@ -43,7 +45,7 @@ typedef enum {
   ILK_PHASE_BUS = 1,     /**< bus transaction */
   ILK_PHASE_STEP = 2,    /**< ring reader and `ilk_step` */
   ILK_PHASE_PUBLISH = 3, /**< snapshot and events */
-  ILK_PHASE_COUNT = 4
+  ILK_PHASE_COUNT = 4    /**< how many there are */
 } ilk_phase_t;
 
 /** Real-time measures; bit n of `granted` is set when the executive got it. */
@@ -54,6 +56,7 @@ typedef enum {
   ILK_RT_TIMER = 3   /**< timer slack of one nanosecond */
 } ilk_rt_measure_t;
 
+/** How often each part of a tick took how long. */
 typedef struct {
   uint32_t bucket[ILK_PHASE_COUNT][ILK_LINK_BUCKETS]; /**< counts, saturating */
   uint32_t max_ns[ILK_PHASE_COUNT];                   /**< largest seen, saturating */
@@ -61,21 +64,21 @@ typedef struct {
 
 /** What the kernel shows of itself, whole, once a tick. */
 typedef struct {
-  uint32_t clock;     /**< ilk_clock_t of sim_bus.h */
-  uint32_t simulated; /**< 1: the bus is a simulator */
-  uint32_t degraded;  /**< 1: real clock without the real-time measures it needs */
-  uint32_t granted;   /**< bits by ilk_rt_measure_t */
-  uint32_t period_us;
-  uint32_t config_crc;
+  uint32_t clock;            /**< ilk_clock_t of sim_bus.h */
+  uint32_t simulated;        /**< 1: the bus is a simulator */
+  uint32_t degraded;         /**< 1: real clock without the real-time measures it needs */
+  uint32_t granted;          /**< bits by ilk_rt_measure_t */
+  uint32_t period_us;        /**< control period */
+  uint32_t config_crc;       /**< of the configuration that runs */
   uint32_t requests_dropped; /**< records skipped because the ring was overrun, saturating */
   uint32_t overruns;         /**< ticks that began more than a period late (real clock), saturating; counted
                                   also when degraded, while `state.overruns` counts those that can lock */
-  ilk_state_t state;
-  ilk_inputs_t inputs;
-  ilk_command_t command[ILK_SLOTS];
-  uint32_t gate[ILK_SLOTS];
-  uint32_t lamp[ILK_LAMP_COUNT];
-  ilk_timing_t timing;
+  ilk_state_t state;         /**< all of it, sealed */
+  ilk_inputs_t inputs;       /**< of this tick */
+  ilk_command_t command[ILK_SLOTS]; /**< what goes to each card */
+  uint32_t gate[ILK_SLOTS];         /**< ilk_gate_t: the first that blocks each axis */
+  uint32_t lamp[ILK_LAMP_COUNT];    /**< ilk_colour_t of each lamp */
+  ilk_timing_t timing;              /**< how long each part of a tick took */
 } ilk_snapshot_t;
 
 /** Kinds of events. */
@@ -86,46 +89,47 @@ typedef enum {
   ILK_EVENT_AXIS = 4     /**< an axis changed state or `homed`: value = slot, from, to, homed */
 } ilk_event_kind_t;
 
+/** One thing that happened. */
 typedef struct {
-  uint32_t number; /**< 1 for the first event of the attachment; written last, 0 while being written */
-  uint32_t kind;   /**< ilk_event_kind_t */
-  uint32_t tick;
-  uint32_t value[4];
+  uint32_t number;   /**< 1 for the first event of the attachment; written last, 0 while being written */
+  uint32_t kind;     /**< ilk_event_kind_t */
+  uint32_t tick;     /**< in which it happened */
+  uint32_t value[4]; /**< meaning by kind */
 } ilk_event_t;
 
 /** Written by the kernel, readable by the app. */
 typedef struct {
-  uint32_t magic;
-  uint32_t version;
-  uint32_t layout_hash;
-  uint32_t generation;
-  uint32_t request_tail;  /**< requests consumed; the app may write up to ILK_LINK_REQUESTS beyond it */
-  uint32_t event_head;    /**< events written, wrapping */
-  uint32_t snapshot_lock; /**< seqlock: odd while the snapshot is being written, 0 until the first one;
-                               also the futex to wait on */
-  ilk_snapshot_t snapshot;
-  ilk_event_t event[ILK_LINK_EVENTS];
+  uint32_t magic;          /**< ILK_LINK_MAGIC */
+  uint32_t version;        /**< ILK_LINK_VERSION */
+  uint32_t layout_hash;    /**< `ilk_link_layout_hash` */
+  uint32_t generation;     /**< counts attachments */
+  uint32_t request_tail;   /**< requests consumed; the app may write up to ILK_LINK_REQUESTS beyond it */
+  uint32_t event_head;     /**< events written, wrapping */
+  uint32_t snapshot_lock;  /**< seqlock: odd while the snapshot is being written, 0 until the first one;
+                                also the futex to wait on */
+  ilk_snapshot_t snapshot; /**< whole while `snapshot_lock` is even and unchanged */
+  ilk_event_t event[ILK_LINK_EVENTS]; /**< ring, by number */
 } ilk_link_kernel_region_t;
 
 /** Written by the app, readable by the kernel. */
 typedef struct {
-  uint32_t magic;
+  uint32_t magic;        /**< ILK_LINK_MAGIC */
   uint32_t request_head; /**< requests written, wrapping */
   uint32_t seen_tick;    /**< newest tick whose snapshot the app has handled; paces the simulated clock.
                               Wake its futex after writing: a kernel that waits for it then goes on at
                               once, else within a millisecond. An app that leaves it unchanged for 2 s of
                               wall time is no longer waited for until it changes */
-  ilk_request_t request[ILK_LINK_REQUESTS];
+  ilk_request_t request[ILK_LINK_REQUESTS]; /**< ring, by count */
 } ilk_link_app_region_t;
 
 /** First and only message on the socket, with both descriptors: kernel region, then app region. */
 typedef struct {
-  uint32_t magic;
-  uint32_t version;
-  uint32_t layout_hash; /**< `ilk_link_layout_hash` of the kernel's build */
-  uint32_t generation;
-  uint32_t kernel_region_bytes;
-  uint32_t app_region_bytes;
+  uint32_t magic;               /**< ILK_LINK_MAGIC */
+  uint32_t version;             /**< ILK_LINK_VERSION */
+  uint32_t layout_hash;         /**< `ilk_link_layout_hash` of the kernel's build */
+  uint32_t generation;          /**< counts attachments */
+  uint32_t kernel_region_bytes; /**< size of the first descriptor's region */
+  uint32_t app_region_bytes;    /**< size of the second descriptor's region */
 } ilk_link_hello_t;
 
 #ifdef __cplusplus

@@ -14,8 +14,11 @@
 
 #include "interlock/types.h"
 
+/** First word of each message. */
 #define ILK_SIM_MAGIC 0x534b4c49u /* "ILKS" */
+/** First word of a reply that says that the whole transaction failed. */
 #define ILK_SIM_FAILED 0u
+/** Of the format; another one is refused. */
 #define ILK_SIM_VERSION 1u
 
 /** Who decides how plant time passes. */
@@ -24,30 +27,33 @@ typedef enum {
   ILK_CLOCK_SIM = 1   /**< plant time advances by one period with each exchange, and only then */
 } ilk_clock_t;
 
+/** First message of the kernel. */
 typedef struct {
-  uint32_t magic;
-  uint32_t version;
+  uint32_t magic;       /**< ILK_SIM_MAGIC */
+  uint32_t version;     /**< ILK_SIM_VERSION */
   uint32_t frame_words; /**< ILK_FRAME_WORDS of the sender */
-  uint32_t period_us;
-  uint32_t clock;      /**< ilk_clock_t */
-  uint32_t config_crc; /**< of the kernel's configuration, for the record */
+  uint32_t period_us;   /**< control period */
+  uint32_t clock;       /**< ilk_clock_t */
+  uint32_t config_crc;  /**< of the kernel's configuration, for the record */
 } ilk_sim_hello_t;
 
+/** What goes to the cards in one tick. */
 typedef struct {
-  uint32_t magic;
-  uint32_t tick; /**< kernel tick, for the record */
-  uint32_t lamp[ILK_LAMP_COUNT];
-  uint32_t frame[ILK_SLOTS][ILK_FRAME_WORDS];
+  uint32_t magic;                             /**< ILK_SIM_MAGIC */
+  uint32_t tick;                              /**< kernel tick, for the record */
+  uint32_t lamp[ILK_LAMP_COUNT];              /**< ilk_colour_t of each lamp */
+  uint32_t frame[ILK_SLOTS][ILK_FRAME_WORDS]; /**< to the card of each slot */
 } ilk_sim_exchange_t;
 
+/** What the cards and contacts answer. */
 typedef struct {
-  uint32_t magic;
-  uint32_t tick;            /**< of the exchange that this answers */
-  uint32_t frames_received; /**< bit n: slot n answered */
-  uint32_t pedal_no_closed;
-  uint32_t pedal_nc_closed;
-  uint32_t estop_loop_closed;
-  uint32_t frame[ILK_SLOTS][ILK_FRAME_WORDS];
+  uint32_t magic;                             /**< ILK_SIM_MAGIC, or ILK_SIM_FAILED */
+  uint32_t tick;                              /**< of the exchange that this answers */
+  uint32_t frames_received;                   /**< bit n: slot n answered */
+  uint32_t pedal_no_closed;                   /**< normally open contact: 1 closed */
+  uint32_t pedal_nc_closed;                   /**< normally closed contact: 1 closed */
+  uint32_t estop_loop_closed;                 /**< 1 while nobody pulls it */
+  uint32_t frame[ILK_SLOTS][ILK_FRAME_WORDS]; /**< from the card of each slot */
 } ilk_sim_reply_t;
 
 #endif

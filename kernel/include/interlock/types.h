@@ -75,8 +75,8 @@ typedef struct {
   uint32_t pedal_disagree_ticks; /**< disagreement of the channels that locks */
   uint32_t bad_frame_limit;      /**< bad frames in a row that lose a card, or the bus */
   uint32_t overrun_limit;        /**< missed deadlines in a row that lock */
-  ilk_axis_config_t axis[ILK_SLOTS];
-  uint32_t crc; /**< `ilk_config_crc` of the words above */
+  ilk_axis_config_t axis[ILK_SLOTS]; /**< by slot */
+  uint32_t crc;                      /**< `ilk_config_crc` of the words above */
 } ilk_config_t;
 
 /** What the kernel remembers of one axis. */
@@ -146,8 +146,8 @@ typedef struct {
   uint32_t config_sound;         /**< 0: damaged; 1: the last whole pass agreed */
   uint32_t requests_accepted;    /**< since boot, saturating */
   uint32_t requests_refused;     /**< since boot, saturating */
-  ilk_axis_t axis[ILK_SLOTS];
-  uint32_t seal; /**< digest of all words above */
+  ilk_axis_t axis[ILK_SLOTS];    /**< by slot */
+  uint32_t seal;                 /**< digest of all words above */
 } ilk_state_t;
 
 /** What the executive saw in this tick. Contacts: 1 closed, 0 open; any other value counts as unsafe. */

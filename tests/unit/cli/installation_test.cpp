@@ -47,5 +47,14 @@ TEST_F(InstallationTest, sources_of_the_console_are_no_console) {
   EXPECT_EQ(installation().web(), folder_ / "source/web/dist");
 }
 
+TEST_F(InstallationTest, documents_are_there_once_they_were_built) {
+  touch("source/docs/manual.md");
+  EXPECT_EQ(installation().documents(), std::nullopt);
+  touch("source/build/docs/site/index.html");
+  EXPECT_EQ(installation().documents(), folder_ / "source/build/docs/site");
+  touch("share/documents/index.html");
+  EXPECT_EQ(installation().documents(), folder_ / "share/documents");
+}
+
 }  // namespace
 }  // namespace interlock::cli

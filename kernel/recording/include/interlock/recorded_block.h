@@ -32,6 +32,7 @@ typedef struct {
   uint32_t place; /**< words read */
 } ilk_block_cursor_t;
 
+/** What comes next in a block. */
 typedef enum {
   ILK_TICK_READ = 0,
   ILK_TICK_NONE = 1, /**< the block ends here */

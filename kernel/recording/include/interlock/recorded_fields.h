@@ -39,8 +39,11 @@ typedef struct {
 extern "C" {
 #endif
 
+/** The fields of what is recorded each tick. */
 const ilk_field_table_t *ilk_picture_fields(void);
+/** The fields of a request. */
 const ilk_field_table_t *ilk_request_fields(void);
+/** The fields of a configuration. */
 const ilk_field_table_t *ilk_config_fields(void);
 
 /** The name of the word at a byte offset; empty outside of the structure. */

@@ -39,6 +39,7 @@ typedef struct {
   uint32_t last_tick;  /**< of the newest one */
 } ilk_replay_t;
 
+/** What came of replaying a block. */
 typedef enum {
   ILK_REPLAY_IDENTICAL = 0,
   ILK_REPLAY_DIFFERS = 1,

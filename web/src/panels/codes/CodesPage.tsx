@@ -2,6 +2,7 @@ import { useEffect, useState } from "react";
 import { Panel } from "../../design/Panel";
 import { type CatalogEntry, catalog, type Family } from "../../generated/catalog";
 import { codeHash, useCodePlace } from "../../state/route";
+import { evidencePlace, useHasEvidence } from "./evidence";
 import { isFound } from "./find";
 import "./codes.css";
 
@@ -22,6 +23,7 @@ const shown: readonly { readonly family: Family; readonly title: string; readonl
 /** Every code that an operator meets: what it means, what probably caused it, what to do next. */
 export function CodesPage() {
   const [sought, setSought] = useState("");
+  const hasEvidence = useHasEvidence();
   return (
     <Panel title="Codes" className="page-panel codes">
       <p className="page-words">
@@ -42,7 +44,7 @@ export function CodesPage() {
             <h3>{title}</h3>
             <p className="page-words">{words}</p>
             {codes.map((code) => (
-              <Code key={code.name} family={family} code={code} />
+              <Code key={code.name} family={family} code={code} hasEvidence={hasEvidence} />
             ))}
           </section>
         );
@@ -51,7 +53,13 @@ export function CodesPage() {
   );
 }
 
-function Code({ family, code }: { readonly family: Family; readonly code: CatalogEntry }) {
+interface CodeProps {
+  readonly family: Family;
+  readonly code: CatalogEntry;
+  readonly hasEvidence: boolean;
+}
+
+function Code({ family, code, hasEvidence }: CodeProps) {
   const place = useCodePlace();
   const meant = place?.family === family && place.code === code.name;
   const id = `${family}-${code.name}`;
@@ -71,6 +79,18 @@ function Code({ family, code }: { readonly family: Family; readonly code: Catalo
         <dd>{code.next_step}</dd>
         <dt>Clears when</dt>
         <dd>{code.clears}</dd>
+        {hasEvidence && code.properties.length > 0 && (
+          <>
+            <dt>Evidence</dt>
+            <dd>
+              {code.properties.map((property) => (
+                <a key={property} href={evidencePlace(property)}>
+                  {property}{" "}
+                </a>
+              ))}
+            </dd>
+          </>
+        )}
       </dl>
     </article>
   );
