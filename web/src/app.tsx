@@ -50,8 +50,8 @@ function RobotPage() {
   const takesBiopsies = useConsole((state) => state.robot?.modes.includes("cooperative_biopsy") ?? false);
   const simulated = useConsole((state) => state.frame?.simulated ?? false);
   return (
-    <div className="stage">
-      <main className="panels" data-level={level} inert={level === "covered"}>
+    <main className="stage" data-level={level}>
+      <div className="panels" inert={level === "covered"}>
         <div className="main-column">
           <MotorsPanel />
           <LogPanel />
@@ -65,8 +65,8 @@ function RobotPage() {
           <WhyPanel />
           <StatusPanel />
         </div>
-      </main>
+      </div>
       <Cover />
-    </div>
+    </main>
   );
 }

@@ -36,8 +36,8 @@ export function SessionBar() {
           href="#/account"
           aria-current={shown === "account" ? "page" : undefined}
           title="Change your password"
-          aria-label="Account"
         >
+          <span className="visually-hidden">Account </span>
           <strong>{name}</strong> · {role}
         </a>
         <button type="button" className="button" onClick={() => void logout()}>
