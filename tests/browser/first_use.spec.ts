@@ -186,21 +186,34 @@ test("data of a silent app are greyed, then covered, and STOP says that it was n
   await robot.unlockRobot();
   const panels = page.getByRole("main");
   await expect(panels).toHaveAttribute("data-level", "live");
-  const levels = page.evaluate(
+  // What is shown in each painted frame, until the panels are covered.
+  const shown = page.evaluate(
     () =>
-      new Promise<string[]>((resolve) => {
-        const main = document.querySelector("main");
-        const seen: string[] = [];
-        const observer = new MutationObserver(() => {
-          seen.push(main?.dataset.level ?? "");
-          if (seen.at(-1) === "covered") resolve(seen);
-        });
-        if (main !== null) observer.observe(main, { attributeFilter: ["data-level"] });
+      new Promise<{ level: string; age: string; header: string }[]>((resolve) => {
+        const seen: { level: string; age: string; header: string }[] = [];
+        const look = (): void => {
+          const level = document.querySelector("main")?.dataset.level ?? "";
+          const header = document.querySelector("header")?.dataset.level ?? "";
+          const age = document.querySelector(".connection dd:last-of-type")?.textContent ?? "";
+          seen.push({ level, age, header });
+          if (level === "covered") resolve(seen);
+          else requestAnimationFrame(look);
+        };
+        look();
       }),
   );
   stack.signalApp("SIGSTOP");
   try {
-    expect((await levels).filter((level) => level !== "live")).toEqual(["grey", "covered"]);
+    const frames = await shown;
+    for (const { level, age, header } of frames) {
+      const ageMs = age.endsWith(" ms") ? Number.parseInt(age, 10) : 1000 * Number.parseFloat(age);
+      // An age that is shown as a bound was rounded to it from either side.
+      if (ageMs === 250 || ageMs === 1000) continue;
+      expect(level, `at an age of ${age}`).toBe(ageMs < 250 ? "live" : ageMs < 1000 ? "grey" : "covered");
+      expect(header).toBe(level);
+    }
+    const order = frames.map(({ level }) => level).filter((level, at, all) => level !== all[at - 1]);
+    expect(order.slice(order.lastIndexOf("live"))).toEqual(["live", "grey", "covered"]);
     await expect(page.getByRole("heading", { name: /No data for/ })).toBeVisible();
     await robot.expectMode("UNKNOWN");
     await expect(robot.unlock).toBeDisabled();

@@ -31,11 +31,11 @@ test("only who holds the authority makes a program the controller", async ({ rob
       .panel("Navigation")
       .getByRole("listitem", { name: `Navigation program ${program.name}` });
     await expect(line).toContainText("observer");
-    await line.getByRole("button", { name: /the controller$/ }).click();
+    await line.getByRole("button", { name: /^Make controller/ }).click();
     await expect(line).toContainText("▶ controller");
     await robot.button("Release").click();
     await expect(line).toContainText("observer");
-    await expect(line.getByRole("button", { name: /the controller$/ })).toBeDisabled();
+    await expect(line.getByRole("button", { name: /^Make controller/ })).toBeDisabled();
   } finally {
     program.end();
   }

@@ -15,9 +15,11 @@ async function save(robot: ConsolePage): Promise<Saved> {
   return { name: download.suggestedFilename(), text: readFileSync(await download.path(), "utf8") };
 }
 
+const loadButton = (robot: ConsolePage) => robot.page.getByRole("button", { name: /^Load positions/ });
+
 async function load(robot: ConsolePage, name: string, text: string): Promise<void> {
   const choosing = robot.page.waitForEvent("filechooser");
-  await robot.button("Load positions").click();
+  await loadButton(robot).click();
   const chooser = await choosing;
   await chooser.setFiles({ name, mimeType: "application/json", buffer: Buffer.from(text) });
 }
@@ -73,7 +75,7 @@ for (const robotName of ["neuro", "prostate"] as const) {
       await axis.expectState("DISABLED");
 
       const dataTransfer = await carry(robot, saved.name, saved.text);
-      await robot.button("Load positions").dispatchEvent("drop", { dataTransfer });
+      await loadButton(robot).dispatchEvent("drop", { dataTransfer });
       await table.getByRole("button", { name: "Set 1 position" }).click();
       await expectPosition(axis, before);
     });

@@ -1,19 +1,10 @@
 import { AccountPage } from "./panels/account/AccountPage";
 import { AuditPage } from "./panels/audit/AuditPage";
-import { BenchPanel } from "./panels/bench/BenchPanel";
-import { BiopsyPanel } from "./panels/biopsy/BiopsyPanel";
 import { CodesPage } from "./panels/codes/CodesPage";
-import { CommunicationPanel } from "./panels/communication/CommunicationPanel";
-import { Cover } from "./panels/cover/Cover";
 import { Header } from "./panels/header/Header";
-import { LogPanel } from "./panels/log/LogPanel";
 import { LoginPage } from "./panels/login/LoginPage";
-import { MotorsPanel } from "./panels/motors/MotorsPanel";
-import { NavigationPanel } from "./panels/navigation/NavigationPanel";
-import { ProposalsPanel } from "./panels/proposals/ProposalsPanel";
-import { StatusPanel } from "./panels/status/StatusPanel";
+import { RobotPage } from "./panels/robot/RobotPage";
 import { UsersPage } from "./panels/users/UsersPage";
-import { WhyPanel } from "./panels/why/WhyPanel";
 import { useRoute } from "./state/route";
 import { useConsole } from "./state/store";
 
@@ -29,12 +20,13 @@ export function App() {
 
 function Page() {
   const route = useRoute();
-  const admin = useConsole((state) => state.login.phase === "in" && state.login.user.role === "admin");
+  const user = useConsole((state) => (state.login.phase === "in" ? state.login.user : null));
+  const admin = user?.role === "admin";
   if (route === "codes") return <Sheet of={CodesPage} />;
   if (route === "account") return <Sheet of={AccountPage} />;
   if (route === "users" && admin) return <Sheet of={UsersPage} />;
   if (route === "audit" && admin) return <Sheet of={AuditPage} />;
-  return <RobotPage />;
+  return user === null ? null : <RobotPage user={user.name} />;
 }
 
 function Sheet({ of: Content }: { readonly of: () => React.ReactNode }) {
@@ -42,31 +34,5 @@ function Sheet({ of: Content }: { readonly of: () => React.ReactNode }) {
     <main className="sheet">
       <Content />
     </main>
-  );
-}
-
-function RobotPage() {
-  const level = useConsole((state) => state.freshness.level);
-  const takesBiopsies = useConsole((state) => state.robot?.modes.includes("cooperative_biopsy") ?? false);
-  const simulated = useConsole((state) => state.frame?.simulated ?? false);
-  return (
-    <div className="stage">
-      <main className="panels" data-level={level} inert={level === "covered"}>
-        <div className="main-column">
-          <MotorsPanel />
-          <LogPanel />
-          <CommunicationPanel />
-          <NavigationPanel />
-        </div>
-        <div className="side">
-          {simulated && <BenchPanel />}
-          {takesBiopsies && <BiopsyPanel />}
-          <ProposalsPanel />
-          <WhyPanel />
-          <StatusPanel />
-        </div>
-      </main>
-      <Cover />
-    </div>
   );
 }

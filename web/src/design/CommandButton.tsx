@@ -14,11 +14,15 @@ interface CommandButtonProps {
   readonly children: ReactNode;
 }
 
-/** Asks the app for something. Waits for the answer before it can be pressed again: a double click asks once. */
+/**
+ * Asks the app for something. Waits for the answer before it can be pressed again: a double click asks once. Meanwhile it
+ * keeps the focus, which a disabled button would lose.
+ */
 export function CommandButton(props: CommandButtonProps) {
   const reason = useReason(props.need) ?? props.off ?? null;
   const [waiting, setWaiting] = useState(false);
   const onClick = async (): Promise<void> => {
+    if (waiting) return;
     setWaiting(true);
     try {
       await props.onCommand();
@@ -30,7 +34,8 @@ export function CommandButton(props: CommandButtonProps) {
     <button
       type="button"
       className={`button ${props.className ?? ""}`}
-      disabled={reason !== null || waiting}
+      disabled={reason !== null}
+      aria-disabled={waiting}
       title={reason ?? undefined}
       aria-label={props.label}
       aria-pressed={props.pressed}

@@ -1,7 +1,8 @@
-import type { ReactNode } from "react";
+import { type ReactNode, useContext } from "react";
 import { formatAge } from "../state/freshness";
 import { type ConsoleState, useConsole } from "../state/store";
 import type { Asked } from "../state/usePolled";
+import { PlaceContext, PlaceTools } from "./PanelPlace";
 import "./panel.css";
 
 interface PanelProps {
@@ -16,14 +17,16 @@ interface PanelProps {
 
 /** A titled part of the page with the dot in its corner that tells whether its data live. */
 export function Panel({ title, className, asked, tools, children }: PanelProps) {
+  const folded = useContext(PlaceContext)?.folded ?? false;
   return (
-    <section className={`panel ${className ?? ""}`} aria-label={title}>
+    <section className={`panel ${className ?? ""} ${folded ? "folded" : ""}`} aria-label={title}>
       <header className="panel-head">
         <h2>{title}</h2>
-        {tools !== undefined && <div className="panel-tools">{tools}</div>}
+        {tools !== undefined && !folded && <div className="panel-tools">{tools}</div>}
+        <PlaceTools title={title} />
         <LifeDot asked={asked} />
       </header>
-      {children}
+      {!folded && children}
     </section>
   );
 }

@@ -3,6 +3,7 @@ import { api, onLoggedOut, type Session } from "../api/client";
 import { kernelWith } from "../kernel/asking";
 import { openStream, type Phase } from "../stream/connection";
 import { decodeFrame, FrameError } from "../stream/decode";
+import { untilWorseMs } from "./freshness";
 import { MOST_LINES, mergeLines } from "./log";
 import { type StreamMessage, streamMessage } from "./messages";
 import type { Notice } from "./notice";
@@ -30,10 +31,27 @@ export const sessionEnded: Notice = {
 
 /** Starts feeding the store, for as long as the page is there. */
 export function startFeed(): void {
-  setInterval(() => useConsole.setState((state) => withTime(state, performance.now())), TIME_STEP_MS);
+  setInterval(passTime, TIME_STEP_MS);
   onLoggedOut(() => leave(sessionEnded));
   void findSession();
   void keepStatus();
+}
+
+let worsening: ReturnType<typeof setTimeout> | undefined;
+
+function passTime(): void {
+  useConsole.setState((state) => withTime(state, performance.now()));
+}
+
+/** Judges the data again just when they will be too old to be shown as they are, unless newer ones come before. */
+function awaitWorsening(): void {
+  clearTimeout(worsening);
+  const waitMs = untilWorseMs(useConsole.getState().freshness);
+  if (waitMs === null) return;
+  worsening = setTimeout(() => {
+    passTime();
+    awaitWorsening();
+  }, waitMs + 1);
 }
 
 let reload: ReturnType<typeof setTimeout> | undefined;
@@ -96,6 +114,7 @@ function onBinary(message: ArrayBuffer): void {
   try {
     const frame = decodeFrame(message);
     useConsole.setState((state) => withFrame(state, frame, nowMs));
+    awaitWorsening();
     if (frame.connected && frame.configCrc !== (describedConfigCrc ?? frame.configCrc))
       void loadDescription();
   } catch (error) {

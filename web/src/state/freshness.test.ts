@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { type Evidence, formatAge, judgeFreshness, polled } from "./freshness";
+import { type Evidence, formatAge, judgeFreshness, polled, untilWorseMs } from "./freshness";
 
 const glance = { connected: true, ageMs: 40 };
 const evidence: Evidence = { phase: "open", glance, arrivedAtMs: 1000, frameError: null };
@@ -52,6 +52,18 @@ describe("judgeFreshness", () => {
 
   it("does not grow younger when the clock steps back", () => {
     expect(judgeFreshness(evidence, 0).ageMs).toBe(40);
+  });
+});
+
+describe("untilWorseMs", () => {
+  it.each([
+    [1000, 210],
+    [1210, 0],
+    [1211, 749],
+    [1960, 0],
+    [1961, null],
+  ])("at %i ms waits %j ms for the next bound", (now, wait) => {
+    expect(untilWorseMs(judgeFreshness(evidence, now))).toBe(wait);
   });
 });
 

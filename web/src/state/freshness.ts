@@ -42,6 +42,13 @@ export function judgeFreshness(evidence: Evidence, nowMs: number, patience: Pati
   };
 }
 
+/** How long until streamed data that do not change are judged anew; null when they cannot fall further. */
+export function untilWorseMs({ level, ageMs }: Freshness): number | null {
+  if (level === "covered" || ageMs === null) return null;
+  const boundMs = level === "live" ? streamed.greyAfterMs : streamed.coverAfterMs;
+  return Math.max(0, boundMs - ageMs);
+}
+
 /** An age for people: milliseconds up to a second, then seconds. */
 export function formatAge(ageMs: number | null): string {
   if (ageMs === null) return "none";

@@ -67,6 +67,8 @@ export interface ConsoleState {
   readonly stop: StopReport;
   /** Grows with every STOP; previews that began before it are dropped. */
   readonly stops: number;
+  /** Whether the user arranges the panels of the robot's page. */
+  readonly arranging: boolean;
 }
 
 export const MOST_PROPOSALS = 200;
@@ -96,6 +98,7 @@ export const initialState: ConsoleState = {
   benchRefusal: null,
   stop: { phase: "idle" },
   stops: 0,
+  arranging: false,
 };
 
 export const useConsole = create<ConsoleState>(() => initialState);

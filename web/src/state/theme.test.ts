@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
-import { chosenTheme, nextTheme, rememberTheme, type Shelf } from "./theme";
+import type { Shelf } from "./shelf";
+import { chosenTheme, nextTheme, rememberTheme } from "./theme";
 
 function shelf(): Shelf {
   const kept = new Map<string, string>();

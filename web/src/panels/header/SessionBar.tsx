@@ -30,14 +30,15 @@ export function SessionBar() {
       </nav>
       <AuthorityBar />
       <div className="who">
+        {shown === "robot" && <ArrangeButton />}
         <ThemeButton user={name} />
         <KeysHelp />
         <a
           href="#/account"
           aria-current={shown === "account" ? "page" : undefined}
           title="Change your password"
-          aria-label="Account"
         >
+          <span className="visually-hidden">Account </span>
           <strong>{name}</strong> · {role}
         </a>
         <button type="button" className="button" onClick={() => void logout()}>
@@ -45,5 +46,20 @@ export function SessionBar() {
         </button>
       </div>
     </div>
+  );
+}
+
+/** Offers buttons in the head of each panel that move and fold it. */
+function ArrangeButton() {
+  const arranging = useConsole((state) => state.arranging);
+  return (
+    <button
+      type="button"
+      className="button quiet"
+      aria-pressed={arranging}
+      onClick={() => useConsole.setState({ arranging: !arranging })}
+    >
+      Arrange
+    </button>
   );
 }

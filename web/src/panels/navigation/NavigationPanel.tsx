@@ -87,7 +87,7 @@ function RoleButton({ connection, send }: ProgramProps) {
     <CommandButton
       need="holder"
       className="quiet small"
-      label={`Make navigation program ${client} the ${other}`}
+      label={`Make ${other}: navigation program ${client}`}
       onCommand={() => send(() => api.setNavigationRole(id, other))}
     >
       Make {other}

@@ -19,7 +19,6 @@ export function LoadButton({ onFile }: { readonly onFile: (file: File) => void }
       <button
         type="button"
         className={`button ${over ? "drop" : ""}`}
-        aria-label="Load positions"
         disabled={reason !== null}
         title={reason ?? "Choose a saved file, or drop it here"}
         onClick={() => input.current?.click()}
@@ -30,7 +29,7 @@ export function LoadButton({ onFile }: { readonly onFile: (file: File) => void }
         onDragLeave={() => setOver(false)}
         onDrop={onDrop}
       >
-        Load <small>or drop a file here</small>
+        Load<span className="visually-hidden"> positions</span> <small>or drop a file here</small>
       </button>
       <input
         ref={input}

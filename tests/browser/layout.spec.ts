@@ -1,0 +1,37 @@
+/** The panels where a user wants them. */
+import type { Page } from "@playwright/test";
+import { expect, test } from "./fixtures";
+
+const password = "correct horse battery";
+
+/** The titles in the order of the page, which is the order of Tab and of a screen reader. */
+const titles = (page: Page): Promise<string[]> =>
+  page.getByRole("main").locator(".panel h2").allTextContents();
+
+test("panels are moved and folded by keys, and come back so for that user alone", async ({
+  robot,
+  other,
+  page,
+}) => {
+  await robot.addUser("ann", "engineer", password);
+  const before = await titles(page);
+  await robot.button("Arrange").click();
+  await robot.button("Move Status up").focus();
+  await page.keyboard.press("Enter");
+  await page.keyboard.press("Enter");
+  await expect(robot.button("Move Status up")).toBeFocused();
+  await robot.button("Move Proposals to the other column").press("Enter");
+  await expect(robot.button("Move Proposals to the other column")).toBeFocused();
+  await robot.button("Fold Log").press("Enter");
+  await robot.button("Arrange").click();
+  const arranged = ["Motors", "Log", "Communication", "Navigation", "Proposals", "Bench", "Status"];
+  const expected = [...arranged, ...before.filter((title) => !arranged.includes(title))];
+  expect(await titles(page)).toEqual(expected);
+  await expect(robot.panel("Log").getByRole("list")).toHaveCount(0);
+
+  await page.reload();
+  await expect(robot.panel("Log").getByRole("button", { name: "Unfold Log" })).toBeVisible();
+  await expect.poll(() => titles(page)).toEqual(expected);
+  await other.logIn("ann", password);
+  await expect.poll(() => titles(other.page)).toEqual(before);
+});
