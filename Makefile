@@ -107,8 +107,8 @@ campaign-selftest: setup ## Show that the campaign finds each seeded fault of th
 	@python verification/campaign/selftest.py
 
 .PHONY: bench
-bench: build ## Measure kernel step (time, text size, stack) and control tick against their limits
-	@python verification/bench/run.py
+bench: build ## Measure step, loop, reaction, link and rate beside cyclictest: [DURATION=10] [RATE_SECONDS=2]
+	@python verification/bench/run.py --duration $(or $(DURATION),10) --rate-seconds $(or $(RATE_SECONDS),2)
 
 .PHONY: study
 study: build ## Measure steering and membrane detection on simulated insertions against their limits
