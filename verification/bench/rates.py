@@ -1,8 +1,9 @@
 """How fast the loop could run: the highest rate at which no deadline is missed, and cyclictest's beside it.
 
-The periods tried are those that a configuration may have, 2000 us down to 125 us, a quarter shorter each. At
-each the executive runs with the plant in its own process and nobody attached (executive_bench rate), then
-cyclictest for as long on the same core. The rate stated is the last before the first miss.
+The periods tried are those that a configuration may have, 2000 us down to 125 us, and that divide the times
+of the robot's file. At each the executive runs with the plant in its own process and nobody attached
+(executive_bench rate), then cyclictest for as long on the same core. The rate stated is the last before the
+first miss.
 """
 
 import json
@@ -14,7 +15,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-PERIODS_US = (2000, 1500, 1125, 1000, 800, 600, 450, 340, 255, 190, 145, 125)
+PERIODS_US = (2000, 1000, 500, 400, 250, 200, 125)
 PRIORITY = 80
 
 
