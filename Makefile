@@ -95,6 +95,11 @@ verify: ## Climb the verification ladder: [FRESH=1] runs again what has not chan
 	@$(setup) packages python provers
 	@/usr/bin/python3 verification/evidence/verify.py
 
+.PHONY: mutate
+mutate: build ## Draw mutants of the core and show each to tests, conformance, proofs, contracts: [SEED=] [COUNT=400]
+	@$(setup) packages provers
+	@/usr/bin/python3 verification/mutation/run.py --count $(or $(COUNT),400) $(if $(SEED),--seed $(SEED))
+
 .PHONY: report
 report: setup ## Write the trace report from the evidence of this commit, and name every line that is missing
 	@python verification/trace/report.py

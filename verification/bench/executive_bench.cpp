@@ -56,7 +56,8 @@ constexpr int kPriority = 80;
 constexpr std::chrono::milliseconds kPatience{2000};
 constexpr std::uint32_t kHeartbeatTicks = 10;
 constexpr std::uint32_t kRetryTicks = 20;
-constexpr std::uint32_t kDrivenTicks = 3; /**< before the foot leaves: the axis is well on its way */
+constexpr std::uint32_t kPressTicks = 200; /**< within which a press moves the axis */
+constexpr std::uint32_t kDrivenTicks = 3;  /**< before the foot leaves: the axis is well on its way */
 
 [[noreturn]] void give_up(const std::string& what) {
   std::cerr << "executive_bench: " << what << '\n';
@@ -90,6 +91,9 @@ class PlantBus {
     release_at_ns_ = kNever;
     pressed_ = true;
   }
+
+  /// The foot leaves, and nothing is measured.
+  void lift() { pressed_ = false; }
 
   /// The contacts open at that moment; `reaction` is there once the wire has answered.
   void release_at(std::uint64_t when_ns) {
@@ -312,16 +316,20 @@ struct Task {
   std::uint64_t seed;
 };
 
-/// The foot is down and the axis on its way.
+/// The foot is down and the axis on its way. A press that leads to nothing is tried anew: the machine may
+/// have kept the app from its heartbeat, which ends motion until the foot has left.
 void get_moving(Mover& mover, PlantBus& bus) {
-  bool down = false;
+  std::optional<std::uint32_t> pressed_for;
   for (std::uint32_t driven = 0; driven < kDrivenTicks;) {
     mover.follow();
-    if (!down && mover.may_press()) {
-      bus.press();
-      down = true;
-    }
     driven = mover.is_driven() ? driven + 1 : 0;
+    if (pressed_for && ++*pressed_for > kPressTicks) {
+      bus.lift();
+      pressed_for.reset();
+    } else if (!pressed_for && mover.may_press()) {
+      bus.press();
+      pressed_for = 0;
+    }
   }
 }
 
