@@ -95,6 +95,11 @@ verify: ## Climb the verification ladder: [FRESH=1] runs again what has not chan
 	@$(setup) packages python provers
 	@/usr/bin/python3 verification/evidence/verify.py
 
+.PHONY: mutate
+mutate: build ## Draw mutants of the core and show each to tests, conformance, proofs, contracts: [SEED=] [COUNT=400]
+	@$(setup) packages provers
+	@/usr/bin/python3 verification/mutation/run.py --count $(or $(COUNT),400) $(if $(SEED),--seed $(SEED))
+
 .PHONY: report
 report: setup ## Write the trace report from the evidence of this commit, and name every line that is missing
 	@python verification/trace/report.py
@@ -115,8 +120,8 @@ scenarios: build ## Kill, freeze, starve and flood the real processes, 200 times
 	@python verification/scenarios/run.py --seed $(or $(SEED),1) $(if $(ONLY),--only $(ONLY),--count $(or $(COUNT),200))
 
 .PHONY: bench
-bench: build ## Measure kernel step (time, text size, stack) and control tick against their limits
-	@python verification/bench/run.py
+bench: build ## Measure step, loop, reaction, link and rate beside cyclictest: [DURATION=10] [RATE_SECONDS=2]
+	@python verification/bench/run.py --duration $(or $(DURATION),10) --rate-seconds $(or $(RATE_SECONDS),2)
 
 .PHONY: study
 study: build ## Measure steering and membrane detection on simulated insertions against their limits

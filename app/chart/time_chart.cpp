@@ -94,7 +94,9 @@ Range range_of(const ChartPanel& panel) {
 class Sheet {
  public:
   explicit Sheet(const TimeChart& chart)
-      : times_s_(chart.times_s), time_{0.0, std::max(chart.times_s.back(), shortest_s)} {}
+      : times_s_(chart.times_s),
+        x_label_(chart.x_label),
+        time_{0.0, std::max(chart.times_s.back(), shortest_s)} {}
 
   std::string draw(const ChartPanel& panel, std::size_t place) const {
     const double upper = top + static_cast<double>(place) * panel_distance;
@@ -135,7 +137,7 @@ class Sheet {
       svg += line(x(n * step), upper, x(n * step), lower, "#ddd");
       svg += label(x(n * step), lower + 16, "middle", text("%.6g", n * step));
     }
-    svg += label((left + width - right_margin) / 2, lower + 32, "middle", "time [s]");
+    svg += label((left + width - right_margin) / 2, lower + 32, "middle", x_label_);
     return svg + text(
                      "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"none\" "
                      "stroke=\"#444\"/>\n",
@@ -166,6 +168,7 @@ class Sheet {
   }
 
   const std::vector<double>& times_s_;
+  const std::string& x_label_;
   Range time_;
 };
 

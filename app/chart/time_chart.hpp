@@ -28,6 +28,7 @@ struct TimeChart {
   std::string title;
   std::vector<double> times_s; /**< from 0, increasing; at least one */
   std::vector<ChartPanel> panels;
+  std::string x_label = "time [s]"; /**< for what is drawn over another quantity than time */
 };
 
 /** A whole SVG document that needs nothing else; of long curves it draws as many points as can be seen. */

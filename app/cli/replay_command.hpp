@@ -15,13 +15,14 @@ struct ReplayOptions {
   std::filesystem::path file;
   std::filesystem::path csv;  /**< a row a tick; empty: none */
   std::filesystem::path plot; /**< positions, drives and mode as SVG; empty: none */
+  bool model = false;         /**< ask the TLA+ model whether it accepts the run, too */
 };
 
 /**
- * Says "identical", or names the first bit that comes out differently.
+ * Says "identical", or names the first bit that comes out differently; then, if asked, what the model says.
  *
- * @return REFUSED for a difference, a damaged file, or one of another release; PRECONDITION when a file cannot be
- * read or written.
+ * @return REFUSED for a difference, a tick that the model rejects, a damaged file, or one of another release;
+ * PRECONDITION when a file cannot be read or written, or the model's checker is not there.
  */
 Result<void> replay(const ReplayOptions& options, std::ostream& output);
 

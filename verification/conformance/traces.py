@@ -24,7 +24,7 @@ def driver() -> Path:
         f"-I{kernel}/src",
         "-DILK_FRAME_WORDS=32",
     ]
-    sources = [str(HERE / "trace" / "driver.c"), *kernel_sources(kernel, [])]
+    sources = [*map(str, sorted((HERE / "trace").glob("*.c"))), *kernel_sources(kernel, [])]
     status, _ = run(["gcc", *flags, *sources, "-o", str(program)], FOLDER / "gcc.log")
     if status != 0:
         raise ToolError(f"the driver of the traces does not compile; log {FOLDER / 'gcc.log'}")
@@ -43,10 +43,18 @@ def doctored(trace: str, tick: int) -> str:
 
 
 def judge(name: str, trace: str) -> tuple[int, int, str]:
-    """What the model says of a trace: ticks accepted, the tick rejected or 0, and the difference."""
+    """What the model says of a trace; see `judge_in`."""
     folder = FOLDER / name
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "TraceData.tla").write_text(trace, "utf-8")
+    return judge_in(folder)
+
+
+def judge_in(folder: Path) -> tuple[int, int, str]:
+    """What the model says of FOLDER/TraceData.tla: ticks accepted, the tick rejected or 0, the difference.
+
+    Raises ToolError.
+    """
     checks = {"SPECIFICATION": "Spec", "VIEW": "View", "INVARIANT": "Accepted", "CHECK_DEADLOCK": "FALSE"}
     status, text = tlc(HERE / "trace" / "Trace.tla", folder, {}, checks=checks)
     rejected = re.search(r'<<\s*"REJECTED",\s*(\d+),(.*?)^\S', text, re.DOTALL | re.MULTILINE)
@@ -54,9 +62,7 @@ def judge(name: str, trace: str) -> tuple[int, int, str]:
         return int(rejected[1]) - 1, int(rejected[1]), " ".join(rejected[2].split())
     accepted = re.search(r'<<"ACCEPTED", (\d+)>>', text)
     if status != 0 or accepted is None:
-        raise ToolError(
-            f"TLC came to no end with the trace {name} (status {status}); log {folder / 'tlc.log'}"
-        )
+        raise ToolError(f"TLC came to no end with the trace {folder.name} (status {status}):\n{text[-2000:]}")
     return int(accepted[1]), 0, ""
 
 

@@ -1,8 +1,9 @@
 """One-token mutants of the kernel's core: what a slip of the pen could have made of a line.
 
 The operators are those of Offutt et al., "An experimental determination of sufficient mutant operators"
-(1996), as far as C without pointer arithmetic knows them: relation, logical connector, negation, arithmetic,
-constant, statement deletion; and one for this kernel, the exchange of an enumerator for its neighbour.
+(1996), as far as C without pointer arithmetic knows them: relation (each for each other), logical connector,
+negation, arithmetic, constant, statement deletion; and for this kernel the exchange of an enumerator for its
+neighbour, a condition turned round, and nothing in place of a result or an assigned value.
 """
 
 import hashlib
@@ -14,14 +15,8 @@ from typing import TypeVar
 
 T = TypeVar("T")
 
-RELATIONS = {
-    "<": ("<=", ">="),
-    "<=": ("<", ">"),
-    ">": (">=", "<"),
-    ">=": (">", "<"),
-    "==": ("!=",),
-    "!=": ("==",),
-}
+RELATION = ("<", "<=", ">", ">=", "==", "!=")
+RELATIONS = {each: tuple(other for other in RELATION if other != each) for each in RELATION}
 TOKENS = {
     "relation": (re.compile(r"(?<= )(<=|>=|==|!=|<|>)(?= )"), RELATIONS),
     "connector": (re.compile(r"&&|\|\|"), {"&&": ("||",), "||": ("&&",)}),
@@ -29,11 +24,16 @@ TOKENS = {
     "increment": (re.compile(r"\+\+"), {"++": ("--",)}),
     "constant": (re.compile(r"\b[01]u\b"), {"0u": ("1u",), "1u": ("0u", "2u")}),
     "negation": (re.compile(r"!(?=\w)"), {"!": ("",)}),
+    "boolean": (re.compile(r"\b(?:true|false)\b"), {"true": ("false",), "false": ("true",)}),
 }
+CONDITION = re.compile(r"\b(if|while) \((?P<condition>.*)\) \{$")
+RETURNED = re.compile(r"\breturn (?P<value>[^;]+);")
+ASSIGNED = re.compile(r"^\s+(?:const \w+ )?\S+ = (?P<value>[^;{]+);$")
 ENUMERATOR = re.compile(r"\bILK_[A-Z]+(?:_[A-Z]+)*\b")
 DELETABLE = re.compile(
     r"^\s+(?!return|static|const|bool|u?int\d+_t|ilk_\w+_t |finding_t|case|default|break)\S.*;$"
 )
+EMPTIED = re.compile(r"\{ (?P<body>(?!return)\S.*;) \}$")
 SKIPPED = re.compile(r"^\s*(#|/\*|\*|//|_Static_assert|case |default:)")
 
 
@@ -85,6 +85,16 @@ def changes(line: str, next_of: dict[str, str]) -> Iterator[tuple[str, str]]:
     for found in ENUMERATOR.finditer(line):
         if found.group() in next_of:
             yield "enumerator", line[: found.start()] + next_of[found.group()] + line[found.end() :]
+    for operator, pattern, group in (
+        ("condition", CONDITION, "condition"),
+        ("result", RETURNED, "value"),
+        ("value", ASSIGNED, "value"),
+    ):
+        if found := pattern.search(line):
+            new = f"!({found[group]})" if operator == "condition" else "0"
+            yield operator, line[: found.start(group)] + new + line[found.end(group) :]
+    if found := EMPTIED.search(line):
+        yield "deletion", line[: found.start("body")] + ";" + line[found.end("body") :]
     if DELETABLE.match(line) and line.count("(") == line.count(")"):
         yield "deletion", line[: len(line) - len(line.lstrip())] + ";"
 

@@ -65,7 +65,13 @@ def row_probe(phase: str) -> Probe:
     )
 
 
-KINDS = {"wp": contract_probe, "cbmc": proof_probe, "conformance": row_probe}
+def test_probe(part: str) -> Probe:
+    """The kernel's unit tests, all of them."""
+    command = (sys.executable, str(HERE / "unit_tests.py"), ".")
+    return Probe("tests", part, command, re.compile(r"^FAILED.*$", re.MULTILINE))
+
+
+KINDS = {"tests": test_probe, "wp": contract_probe, "cbmc": proof_probe, "conformance": row_probe}
 
 
 def probe_named(name: str) -> Probe:
@@ -84,6 +90,12 @@ def proofs_about(tree: Path, file: Path) -> Iterator[str]:
         if file.suffix == ".h" or taken_in or file.name in table["sources"]:
             proofs.append((table["seconds"], path.parent.name))
     return (name for _, name in sorted(proofs))
+
+
+def probes_of_mutants(tree: Path, file: Path) -> Iterator[Probe]:
+    """The unit tests, which cost least, then all that `probes_for` gives."""
+    yield test_probe("kernel_tests")
+    yield from probes_for(tree, file)
 
 
 def probes_for(tree: Path, file: Path) -> Iterator[Probe]:

@@ -52,6 +52,14 @@ TEST(TimeChart, EveryPanelHasAFrameAndItsLabel) {
   EXPECT_THAT(svg, HasSubstr("error [counts]"));
 }
 
+TEST(TimeChart, WhatIsDrawnOverAnotherQuantityThanTimeSaysSo) {
+  TimeChart chart = chart_of({0.0, 1.0});
+  EXPECT_THAT(svg_of(chart), HasSubstr("time [s]"));
+  chart.x_label = "loop time [us]";
+  EXPECT_THAT(svg_of(chart), HasSubstr("loop time [us]"));
+  EXPECT_THAT(svg_of(chart), Not(HasSubstr("time [s]")));
+}
+
 TEST(TimeChart, ValuesThatNeverChangeHaveAScale) {
   for (const double value : {0.0, -375000.0, 1e-9}) {
     const std::string svg = svg_of(chart_of({value, value, value}));

@@ -1,32 +1,25 @@
 --------------------------------- MODULE Trace ---------------------------------
-(* Does the model do what the kernel did? Trace is what driver.c printed of a run of
-   the real kernel: one tuple a tick, as Told below takes it apart. The model takes
-   the same inputs and requests, from its own state, and must come to the same
-   verdicts, outputs and state. *)
+(* Does the model do what the kernel did? TraceData is what told.c printed of a run
+   of the real kernel: its configuration, the state that it began with, and one tuple
+   a tick, as Told below takes it apart. The model takes the same inputs and requests,
+   from its own state, and must come to the same verdicts, outputs and state. *)
 EXTENDS Kernel, TraceData
 
 VARIABLES step,   \* ticks that are accepted
           kernel, \* the model's own state
           same    \* the latest tick ended as the kernel says
 
-Configuration ==
-  [ pedal_channels |-> 2, app_timeout_ticks |-> 8, lease_max_ticks |-> 12, pedal_debounce_ticks |-> 3,
-    pedal_disagree_ticks |-> 4, bad_frame_limit |-> 3, overrun_limit |-> 3 ]
-
-Axis0 ==
-  [ limit_side |-> "LOWER", min_counts |-> -200, max_counts |-> 200, home_offset_counts |-> -190,
-    coast_counts |-> 6, deadband_counts |-> 3, max_drive |-> 100, unhomed_max_drive |-> 10,
-    unhomed_travel_counts |-> 40, home_drive |-> 10, home_travel_counts |-> 420, home_backoff_counts |-> 40,
-    home_timeout_ticks |-> 400, home_rest_ticks |-> 3, stall_ticks |-> 15, stall_min_counts |-> 4,
-    reverse_counts |-> 8, drift_counts |-> 8, settle_ticks |-> 5, max_delta_counts |-> 9, required |-> TRUE ]
-
-K == [x \in {0} |-> Axis0]
+(* The axes, and the place of each in what is told. *)
+Axes     == {Slots[i] : i \in 1..Len(Slots)}
+Place(x) == CHOOSE i \in 1..Len(Slots) : Slots[i] = x
+K        == TLCEval([x \in Axes |-> AxisConfigurations[Place(x)]])
 
 Input(told) ==
   [ pedal_no |-> told[1][1], pedal_nc |-> told[1][2], estop_loop |-> told[1][3],
     deadline_missed |-> told[1][4], new_attachment |-> told[1][5], config_pass |-> told[1][6],
     any_valid |-> TRUE, state_damaged |-> FALSE,
-    readings |-> [x \in {0} |-> [frame |-> told[1][7], moved |-> told[1][8], switch |-> told[1][9]]],
+    readings |-> [x \in Axes |-> LET reading == told[1][7][Place(x)]
+                                 IN  [frame |-> reading[1], moved |-> reading[2], switch |-> reading[3]]],
     requests |-> [i \in 1..Len(told[2]) |->
       LET request == told[2][i]
       IN  [ door |-> request[1], kind |-> request[2], axis |-> request[3], target |-> request[4],
@@ -47,16 +40,40 @@ AxisAsTold(a) ==
      a.since_drift_mark, a.undriven_ticks, a.homing_phase, a.homing_ticks, a.since_homing_mark,
      a.rest_ticks >>
 
+(* The same, from what was told to the model's records. *)
+SystemTold(s) ==
+  [ mode |-> s[1], cause |-> s[2], causes_seen |-> s[3], pedal |-> s[4], pedal_armed |-> s[5],
+    pedal_pressed_ticks |-> s[6], pedal_released_ticks |-> s[7], pedal_disagree_ticks |-> s[8],
+    estop |-> s[9], app_age_ticks |-> s[10], app_alive |-> s[11], holder |-> s[12],
+    overruns_in_row |-> s[13], bus_bad_ticks |-> s[14], config_sound |-> s[15] ]
+
+AxisTold(a) ==
+  [ state |-> a[1], fault |-> a[2], fault_now |-> FALSE, homed |-> a[3], switch_triggered |-> a[4],
+    card_valid |-> a[5], card_seen |-> a[6], bad_frames |-> a[7], ticks_since_frame |-> a[8],
+    position_counts |-> a[9], delta_counts |-> a[10], setpoint_counts |-> a[11], drive |-> a[12],
+    lease_ticks |-> a[13], driven_direction |-> a[14], press_travel_counts |-> a[15],
+    stall_driven_ticks |-> a[16], since_stall_mark |-> a[17], stall_direction |-> a[18],
+    setpoint_changed |-> a[19], since_reverse_mark |-> a[20], reverse_direction |-> a[21],
+    since_drift_mark |-> a[22], undriven_ticks |-> a[23], homing_phase |-> a[24],
+    homing_ticks |-> a[25], since_homing_mark |-> a[26], rest_ticks |-> a[27] ]
+
 (* What the model says, in the order in which the kernel told it. *)
 Answer(after) ==
-  << [i \in 1..Len(after.answers) |-> after.answers[i].verdict], SystemAsTold(after.system),
-     AxisAsTold(after.axes[0]), <<after.gate[0], after.command[0].direction, after.command[0].drive>> >>
+  LET OutputOf(x) == <<after.gate[x], after.command[x].direction, after.command[x].drive>>
+  IN  << [i \in 1..Len(after.answers) |-> after.answers[i].verdict], SystemAsTold(after.system),
+         [i \in 1..Len(Slots) |-> AxisAsTold(after.axes[Slots[i]])],
+         [i \in 1..Len(Slots) |-> OutputOf(Slots[i])] >>
 
 Told(told) == << Verdicts(told), told[3], told[4], told[5] >>
 
+(* A run that begins with the kernel's boot begins as the model's does. *)
+Booting  == [system |-> Booted(Configuration, TRUE, 0), axes |-> [x \in Axes |-> BlankAxis]]
+Starting == [system |-> SystemTold(Start[1]), axes |-> [x \in Axes |-> AxisTold(Start[2][Place(x)])]]
+ASSUME FromBoot => Starting = Booting
+
 Init ==
   /\ step = 0
-  /\ kernel = [system |-> Booted(Configuration, TRUE, 0), axes |-> [x \in {0} |-> BlankAxis]]
+  /\ kernel = Starting
   /\ same = TRUE
 
 (* A difference is shown, and ends the run. *)

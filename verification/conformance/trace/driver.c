@@ -1,7 +1,7 @@
 /**
  * @file
- * Runs the kernel core against a small random world and prints what happened as the TLA+ sequence that
- * Trace.tla reads: one tuple a tick, inputs first, then what the kernel did. The seed alone decides the run.
+ * Runs the kernel core against a small random world and tells Trace.tla what happened. The seed alone decides
+ * the run.
  *
  * The world: a person at the pedal, an E-stop, an app that speaks, mumbles, falls silent and is replaced, a
  * card that drops frames, and a motor that moves, coasts, sticks, slips and drifts.
@@ -14,28 +14,11 @@
 
 #include "arith.h"
 #include "interlock/kernel.h"
+#include "told.h"
 
 enum { GOOD, MISSING, CORRUPT, LATE, REPEATED, SPAN_TICKS = 60 };
 
 static const char* const frame_name[] = {"GOOD", "MISSING", "CORRUPT", "LATE", "REPEATED"};
-static const char* const contact_name[] = {"OPEN", "CLOSED", "INVALID"};
-static const char* const pedal_name[] = {"RELEASED", "PRESSED", "DISAGREE"};
-static const char* const mode_name[] = {"INIT", "LOCKED", "READY", "MOTION"};
-static const char* const cause_name[] = {"NONE", "BOOT", "ESTOP", "BUS", "PEDAL", "INTEGRITY", "OVERRUN"};
-static const char* const state_name[] = {"DISABLED", "ENABLED", "MOVING", "HOMING", "FAULTED"};
-static const char* const fault_name[] = {"NONE", "STALL",     "REVERSE",       "DRIFT",
-                                         "JUMP", "CARD_LOST", "HOMING_TRAVEL", "HOMING_TIMEOUT"};
-static const char* const direction_name[] = {"NONE", "INCREASING", "DECREASING"};
-static const char* const phase_name[] = {"NONE", "BACK_OFF", "SEEK", "REST"};
-static const char* const kind_name[] = {"NONSENSE",    "HEARTBEAT", "STOP", "RESET",    "DISABLE", "ENABLE",
-                                        "CLEAR_FAULT", "MOVE",      "HOME", "SET_HOME", "RESTORE"};
-static const char* const verdict_name[] = {
-    "ACCEPTED", "CHECKSUM", "SEQUENCE", "UNKNOWN", "AXIS",  "MODE",  "PEDAL_DOWN", "CAUSE_PRESENT", "FAULTED",
-    "CARD",     "NO_FAULT", "DISABLED", "BUSY",    "LEASE", "DRIVE", "RANGE",      "NO_SWITCH"};
-static const char* const gate_name[] = {"OPEN",       "MODE",       "PEDAL",          "ESTOP",
-                                        "CARD",       "ENABLE",     "LEASE",          "SETPOINT",
-                                        "HARD_LIMIT", "SOFT_LIMIT", "UNHOMED_TRAVEL", "DRIVE"};
-
 typedef struct {
   uint64_t dice;
   ilk_config_t config;
@@ -190,62 +173,17 @@ static uint32_t wish(world_t* world) {
   return happens(world, 20u) ? roll(world, 11u) : kind;
 }
 
-static const char* yes(bool holds) { return holds ? "TRUE" : "FALSE"; }
-
-static const char* contact(uint32_t word) { return contact_name[word > 2u ? 2u : word]; }
-
-static uint32_t least(uint32_t a, uint32_t b) { return a < b ? a : b; }
-
-static int32_t since(const world_t* world, uint32_t mark) {
-  return travel_between(&world->config.axis[0], mark, world->state.axis[0].raw);
-}
-
-static void print_system(const world_t* world) {
-  const ilk_state_t* s = &world->state;
-  const ilk_config_t* c = &world->config;
-  printf("<<\"%s\",\"%s\",{", mode_name[s->mode], cause_name[s->cause]);
-  const char* comma = "";
-  for (uint32_t cause = 1u; cause < ILK_CAUSE_COUNT; cause++) {
-    if (((s->causes_seen >> cause) & 1u) != 0u) {
-      printf("%s\"%s\"", comma, cause_name[cause]);
-      comma = ",";
-    }
-  }
-  printf("},\"%s\",%s,%u,%u,%u,%s,%u,%s,%u,%u,%u,%s>>", pedal_name[s->pedal], yes(s->pedal_armed != 0u),
-         s->pedal_pressed_ticks, s->pedal_released_ticks,
-         least(s->pedal_disagree_ticks, c->pedal_disagree_ticks + 1u), yes(s->estop != 0u),
-         least(s->app_age_ticks, c->app_timeout_ticks), yes(s->app_alive != 0u), s->holder,
-         least(s->overruns_in_row, c->overrun_limit), least(s->bus_bad_ticks, c->bad_frame_limit),
-         yes(s->config_sound != 0u));
-}
-
-static void print_axis(const world_t* world) {
-  const ilk_axis_t* a = &world->state.axis[0];
-  const uint32_t limit = world->config.bad_frame_limit;
-  printf(
-      "<<\"%s\",\"%s\",%s,%s,%s,%s,%u,%u,%d,%d,%d,%u,%u,\"%s\",%d,%u,%d,\"%s\",%s,%d,\"%s\",%d,%u,\"%s\",%u,%"
-      "d,%u>>",
-      state_name[a->state], fault_name[a->fault], yes(a->homed != 0u), yes(a->switch_triggered != 0u),
-      yes(a->card_valid != 0u), yes(a->card_seen != 0u), least(a->bad_frames, limit),
-      least(a->ticks_since_frame, limit), a->position_counts, a->delta_counts, a->setpoint_counts, a->drive,
-      a->lease_ticks, direction_name[a->driven_direction], a->press_travel_counts,
-      least(a->stall_driven_ticks, world->config.axis[0].stall_ticks), since(world, a->stall_mark_raw),
-      direction_name[a->stall_direction], yes(a->setpoint_changed != 0u), since(world, a->reverse_mark_raw),
-      direction_name[a->reverse_direction], since(world, a->drift_mark_raw), a->undriven_ticks,
-      phase_name[a->homing_phase], a->homing_ticks, since(world, a->homing_mark_raw), a->rest_ticks);
-}
-
-static void tick(world_t* world, long number) {
+static void tick(world_t* world, bool first) {
   const char* door[2] = {"", ""};
   world->count = 0u;
   person(world);
   motor(world);
-  const bool attached = happens(world, 2u);
-  if (attached) {
+  told_tick_t told = {.attached = happens(world, 2u)};
+  if (told.attached) {
     world->in.link_generation++;
     world->sequence = 0u;
   }
-  const uint32_t frame = card(world);
+  told.reading[0].frame = frame_name[card(world)];
   if (happens(world, 900u)) {
     door[0] = ask(world, ILK_REQUEST_HEARTBEAT);
   }
@@ -253,26 +191,13 @@ static void tick(world_t* world, long number) {
     const uint32_t place = world->count;
     door[place] = ask(world, wish(world));
   }
-  const bool pass_ends = world->state.config_slice == (uint32_t)ILK_SLOTS - 1u;
-  const int32_t moved = signed_of(world->counter - world->state.axis[0].raw);
+  told.config_pass = world->state.config_slice == (uint32_t)ILK_SLOTS - 1u ? "AGREES" : "NONE";
+  told.reading[0].moved =
+      world->state.axis[0].card_seen != 0u ? signed_of(world->counter - world->state.axis[0].raw) : 0;
+  told.reading[0].at_switch = world->place <= -190;
   ilk_step(&world->config, &world->state, &world->in, world->request, world->count, &world->out);
-  printf("%s<<<<\"%s\",\"%s\",\"%s\",%s,%s,\"%s\",\"%s\",%d,%s>>,<<", number == 0 ? "" : ",\n",
-         contact(world->in.pedal_no_closed), contact(world->in.pedal_nc_closed),
-         contact(world->in.estop_loop_closed), yes(world->in.deadline_missed != 0u), yes(attached),
-         pass_ends ? "AGREES" : "NONE", frame_name[frame], world->state.axis[0].card_seen != 0u ? moved : 0,
-         yes(world->place <= -190));
-  for (uint32_t i = 0u; i < world->count; i++) {
-    const ilk_request_t* request = &world->request[i];
-    printf("%s<<\"%s\",\"%s\",%u,%d,%u,%u,%u,\"%s\">>", i == 0u ? "" : ",", door[i], kind_name[request->kind],
-           request->axis, request->target_counts, request->drive, request->lease_ticks, request->holder,
-           verdict_name[world->out.verdict[i].verdict]);
-  }
-  printf(">>,");
-  print_system(world);
-  printf(",");
-  print_axis(world);
-  printf(",<<\"%s\",\"%s\",%u>>>>", gate_name[world->out.gate[0]],
-         direction_name[world->out.command[0].direction], world->out.command[0].drive);
+  told_tick(stdout, &world->config, &told, &world->in, world->request, door, world->count, &world->state,
+            &world->out, first);
 }
 
 int main(int count, char** arguments) {
@@ -288,10 +213,10 @@ int main(int count, char** arguments) {
     (void)fprintf(stderr, "the kernel refuses the configuration of the trace: error %u\n", verdict.error);
     return 1;
   }
-  printf("---- MODULE TraceData ----\nEXTENDS Integers\nTrace == <<\n");
+  told_begin(stdout, &world.config, &world.state, true);
   for (long number = 0; number < strtol(arguments[2], NULL, 10); number++) {
-    tick(&world, number);
+    tick(&world, number == 0);
   }
-  printf("\n>>\n====\n");
+  told_end(stdout);
   return 0;
 }

