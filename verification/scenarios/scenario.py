@@ -155,10 +155,11 @@ class Scenario:
     def demand_stop(self, robot: Supervised | Services) -> None:
         """Pedal and E-stop act on the wire within their two ticks, a request once it is answered."""
         await_motion(robot, LONGEST_REST_S)
+        before = robot.control("status")["tick"]
         self.ask_for_stop(robot)
         asked = robot.control("status")["tick"]
         record = self.record_until(robot, asked + SETTLED_TICKS)
-        self.figures["moving"] = judge.was_moving(record, asked)
+        self.figures["moving"] = judge.was_moving(record, before)
         self.findings += judge.driven_without_consent(record)
         if self.plan.stop == "request":
             self.figures["stop_ticks"] = judge.stop_ticks(record, asked)
