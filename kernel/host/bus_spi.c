@@ -172,8 +172,8 @@ static void to_words(const uint8_t bytes[ILK_FRAME_BYTES], uint32_t words[ILK_FR
 }
 
 /** Whether all words went out and came in. */
-static bool exchange(ilk_bus_spi_t *spi, size_t slot, const uint32_t out[ILK_FRAME_WORDS],
-                     uint32_t in[ILK_FRAME_WORDS]) {
+static bool exchange_with(ilk_bus_spi_t *spi, size_t slot, const uint32_t out[ILK_FRAME_WORDS],
+                          uint32_t in[ILK_FRAME_WORDS]) {
   const struct spi_ioc_transfer transfer = {.tx_buf = (uint64_t)(uintptr_t)spi->sent,
                                             .rx_buf = (uint64_t)(uintptr_t)spi->received,
                                             .len = (uint32_t)ILK_FRAME_BYTES,
@@ -192,7 +192,7 @@ static uint32_t exchange_all(ilk_bus_spi_t *spi, const ilk_outputs_t *out, ilk_i
   uint32_t received = 0u;
   uint32_t bit = 1u;
   for (size_t slot = 0; slot < (size_t)ILK_SLOTS; ++slot) {
-    if (spi->card[slot] >= 0 && exchange(spi, slot, out->frame[slot], in->frame[slot])) {
+    if (spi->card[slot] >= 0 && exchange_with(spi, slot, out->frame[slot], in->frame[slot])) {
       received |= bit;
     }
     bit <<= 1;
@@ -252,7 +252,7 @@ static void show_lamps(ilk_bus_spi_t *spi, const ilk_outputs_t *out) {
 }
 
 /** There is always another side to wait for: the clock. */
-static bool transact(void *driver, uint32_t tick, const ilk_outputs_t *out, ilk_inputs_t *in) {
+static bool transact_cards(void *driver, uint32_t tick, const ilk_outputs_t *out, ilk_inputs_t *in) {
   ilk_bus_spi_t *spi = driver;
   (void)tick;
   const uint32_t received = exchange_all(spi, out, in);
@@ -267,5 +267,5 @@ static bool transact(void *driver, uint32_t tick, const ilk_outputs_t *out, ilk_
 }
 
 ilk_bus_t ilk_bus_spi_driver(ilk_bus_spi_t *spi) {
-  return (ilk_bus_t){.driver = spi, .simulated = false, .transact = transact};
+  return (ilk_bus_t){.driver = spi, .simulated = false, .transact = transact_cards};
 }

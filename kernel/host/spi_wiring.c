@@ -19,7 +19,7 @@ typedef struct {
   char *word[WORDS_MAX];
 } words_t;
 
-static words_t split(char *line) {
+static words_t words_of_line(char *line) {
   words_t words = {0};
   char *rest = NULL;
   line[strcspn(line, "#")] = '\0';
@@ -132,7 +132,7 @@ static bool take_text(const char *path, char *text, ilk_spi_wiring_t *wiring, il
       next = &next[1];
     }
     number += 1u;
-    const words_t words = split(line);
+    const words_t words = words_of_line(line);
     const char *expected = words.count == 0u ? NULL : take_line(&words, wiring);
     if (expected != NULL) {
       return ilk_fail(error, "wiring '%s', line %u: expected %s", path, number, expected);

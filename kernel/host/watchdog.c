@@ -19,7 +19,7 @@ static void tell_when_it_goes_on(ilk_watchdog_t *watchdog) {
   }
 }
 
-static void *watch(void *argument) {
+static void *watch_loop(void *argument) {
   ilk_watchdog_t *watchdog = argument;
   const uint32_t share_ms = watchdog->notify.watchdog_ms / TELLS_A_WATCHDOG;
   const int pause_ms = (int)share_ms;
@@ -42,7 +42,7 @@ bool ilk_watchdog_start(ilk_watchdog_t *watchdog, const uint32_t *beats, ilk_err
   if (watchdog->stop < 0) {
     return ilk_fail(error, "cannot create the watchdog's stop event: %s", strerror(errno));
   }
-  watchdog->watched = ilk_service_thread_start(&watchdog->thread, watch, watchdog, error);
+  watchdog->watched = ilk_service_thread_start(&watchdog->thread, watch_loop, watchdog, error);
   return watchdog->watched;
 }
 

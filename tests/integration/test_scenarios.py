@@ -77,6 +77,8 @@ def test_P10_a_drive_later_than_allowed_after_the_fault_is_found() -> None:
     assert judge.driven_later_than(record, 50, 12) == []
     assert len(judge.driven_later_than(record, 50, 11)) == 1
     assert judge.stop_ticks(record, fault=62) == 0
+    assert judge.was_moving(record, tick=99)
+    assert not judge.was_moving(released_at(100, last_driven=40), tick=99)
 
 
 def test_a_card_that_outlives_the_silence_of_the_kernel_is_found() -> None:
@@ -91,15 +93,17 @@ def test_a_record_that_was_acknowledged_and_is_gone_is_found() -> None:
     assert len(judge.lost_records([[1, 1, 0], [3, 1, 0]], [[1, 1, 0]])) == 1
 
 
-def test_the_verdict_asks_for_every_kind_and_for_records() -> None:
+def test_the_verdict_asks_for_every_kind_for_records_and_for_stops_in_motion() -> None:
     outcomes: list[dict] = [
-        {"fault": fault, "skipped": False, "findings": [], "figures": {"acknowledged": 3, "stop_ticks": 2}}
+        {"fault": fault, "skipped": False, "findings": [], "figures": {"acknowledged": 3, "moving": True}}
         for fault in FAULTS
     ]
     wanted = len(FAULTS)
     assert verdict_of(figures_of(1, outcomes), wanted) == "PASSED"
     assert verdict_of(figures_of(1, outcomes[1:]), wanted) == "VACUOUS"
-    assert verdict_of(figures_of(1, [one | {"figures": {}} for one in outcomes]), wanted) == "VACUOUS"
+    for nothing in ({"acknowledged": 3}, {"moving": True}):
+        idle = [one | {"figures": nothing} for one in outcomes]
+        assert verdict_of(figures_of(1, idle), wanted) == "VACUOUS"
     assert (
         verdict_of(figures_of(1, [*outcomes[1:], outcomes[0] | {"findings": ["driven"]}]), wanted) == "FAILED"
     )

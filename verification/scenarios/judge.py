@@ -11,6 +11,7 @@ WIRE_TICKS = 2
 """From a contact's edge to zero drive on the wire."""
 CARD_WATCHDOG_TICKS = 5
 """From the last valid frame to an amplifier that is off, in periods of the plant."""
+MOVING_TICKS = 50
 APP_TIMEOUT_TICKS = 100
 """From the app's last heartbeat to the end of MOTION."""
 
@@ -39,6 +40,11 @@ def driven_without_consent(entries: Sequence[dict]) -> list[str]:
 def last_driven(entries: Sequence[dict], after: int) -> dict | None:
     """The newest exchange that drives, of those after that tick of the plant."""
     return next((one for one in reversed(entries) if one["tick"] > after and is_driven(one)), None)
+
+
+def was_moving(entries: Sequence[dict], tick: int) -> bool:
+    """Whether something was driven just before that tick of the plant: a stop of what rests shows nothing."""
+    return any(is_driven(one) for one in entries if tick - MOVING_TICKS < one["tick"] <= tick)
 
 
 def stop_ticks(entries: Sequence[dict], fault: int) -> int:

@@ -46,7 +46,7 @@ class Plan:
     number: int
     fault: str
     instant_s: float
-    """From the first driven tick to the fault."""
+    """From the first driven tick to the fault, which then waits for the next one."""
     lasts_s: float
     """From the fault to the stop that is demanded, or that came by itself."""
     stop: str

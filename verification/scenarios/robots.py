@@ -23,6 +23,7 @@ BROKEN = (AssertionError, OSError, httpx.HTTPError, json.JSONDecodeError)
 BLACK_BOX_S = 5
 ENDS_COUNTS = (-900, -100)
 START_PAUSE_S = 0.05
+JUST_NOW_TICKS = 10
 PROGRAM_OF = PROGRAMS | {"recorder": "interlock-recorder"}
 
 
@@ -265,6 +266,15 @@ def wait_until_driven(robot: Stack, mover: Mover) -> None:
         return True
 
     eventually("driven", is_driven)
+
+
+def await_motion(robot: Stack, patience_s: float) -> None:
+    """Until something is driven at this moment, or patience ends: a fault may have stopped it already."""
+    deadline = time.monotonic() + patience_s
+    while time.monotonic() < deadline:
+        driven = robot.control("record_event", kind="last_nonzero_drive")
+        if robot.control("status")["tick"] - (driven["event_tick"] or 0) <= JUST_NOW_TICKS:
+            return
 
 
 def environment_is(**values: str) -> None:

@@ -85,6 +85,7 @@ def figures_of(seed: int, outcomes: Sequence[dict]) -> dict[str, float]:
         "findings": sum(len(outcome["findings"]) for outcome in outcomes),
         "kinds": len(kinds),
         "records_acknowledged": sum(outcome["figures"].get("acknowledged", 0) for outcome in outcomes),
+        "stopped_in_motion": sum(outcome["figures"].get("moving", False) for outcome in outcomes),
         "stop_ticks_worst": worst(outcomes, "stop_ticks"),
         "stop_request_ms_worst": worst(outcomes, "stop_request_ms"),
         "bring_up_s_worst": worst(outcomes, "bring_up_s"),
@@ -94,8 +95,10 @@ def figures_of(seed: int, outcomes: Sequence[dict]) -> dict[str, float]:
 def verdict_of(figures: dict[str, float], wanted: int) -> str:
     if figures["failed"]:
         return "FAILED"
-    if not figures["records_acknowledged"] or figures["kinds"] + figures["skipped"] < min(
-        wanted, len(FAULTS)
+    if (
+        not figures["records_acknowledged"]
+        or not figures["stopped_in_motion"]
+        or figures["kinds"] + figures["skipped"] < min(wanted, len(FAULTS))
     ):
         return "VACUOUS"
     return "UNKNOWN" if figures["skipped"] else "PASSED"

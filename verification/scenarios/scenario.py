@@ -24,9 +24,21 @@ import faults
 import judge
 from bare_kernel import BIN
 from plan import AS_SERVICES, Plan, plan
-from robots import BROKEN, Clerk, Mover, Services, Supervised, bring_up, eventually, wait_until_driven
+from robots import (
+    BROKEN,
+    Clerk,
+    Mover,
+    Services,
+    Supervised,
+    await_motion,
+    bring_up,
+    eventually,
+    wait_until_driven,
+)
 
 SETTLED_TICKS = 250
+LONGEST_REST_S = 2.0
+"""Between two moves, on a machine that does much else."""
 NOTHING_ON_THE_WIRE = ("kill_simulator", "kill_supervisor", "restart_in_order")
 """The plant itself has gone: what a new one records is judged."""
 
@@ -66,6 +78,7 @@ class Scenario:
             pause = threading.Event()
             pause.wait(self.plan.instant_s)
             living = self.living(robot)
+            await_motion(robot, LONGEST_REST_S)
             with contextlib.ExitStack() as lasting:
                 # While ext4 is aborted it confirms writes that it then loses (docs/reliability.md).
                 with (
@@ -101,6 +114,7 @@ class Scenario:
                 self.meet_silence(robot)
             case "kill_app" | "freeze_app":
                 record = self.record_until(robot, fault_tick + 2 * judge.APP_TIMEOUT_TICKS)
+                self.figures["moving"] = judge.was_moving(record, fault_tick)
                 self.figures["stop_ticks"] = judge.stop_ticks(record, fault_tick)
                 limit = judge.APP_TIMEOUT_TICKS + judge.WIRE_TICKS
                 self.findings += judge.driven_later_than(record, fault_tick, limit)
@@ -118,7 +132,8 @@ class Scenario:
             now = robot.control("status")["tick"]
             return robot.control("record", **{"from": max(0, now - 5000), "to": now})["entries"][-1]
 
-        if any(last_exchange()["amplifier"]):
+        self.figures["moving"] = any(last_exchange()["amplifier"])
+        if self.figures["moving"]:
             eventually("amplifiers off", lambda: (amplifiers_off() or 0) >= last_exchange()["tick"])
             last = last_exchange()["tick"]
             self.figures["stop_ticks"] = (amplifiers_off() or 0) - last
@@ -139,9 +154,12 @@ class Scenario:
 
     def demand_stop(self, robot: Supervised | Services) -> None:
         """Pedal and E-stop act on the wire within their two ticks, a request once it is answered."""
+        await_motion(robot, LONGEST_REST_S)
+        before = robot.control("status")["tick"]
         self.ask_for_stop(robot)
         asked = robot.control("status")["tick"]
         record = self.record_until(robot, asked + SETTLED_TICKS)
+        self.figures["moving"] = judge.was_moving(record, before)
         self.findings += judge.driven_without_consent(record)
         if self.plan.stop == "request":
             self.figures["stop_ticks"] = judge.stop_ticks(record, asked)
