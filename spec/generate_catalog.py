@@ -45,7 +45,8 @@ def problems(catalog: Catalog) -> list[str]:
 
 
 def c_header(catalog: Catalog) -> str:
-    about = f"/**\n * @file\n * Every mode, request, verdict, cause, fault and gate by its number. {NOTICE}\n */"
+    says = "Every mode, request, verdict, cause, fault and gate by its number."
+    about = f"/**\n * @file\n * {says} {NOTICE}\n */"
     lines = [about, "#ifndef INTERLOCK_CATALOG_H", "#define INTERLOCK_CATALOG_H", ""]
     for name, family in catalog["family"].items():
         lines += [f"/** {family['about']} */", "typedef enum {"]

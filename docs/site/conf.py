@@ -23,7 +23,7 @@ html_theme = "alabaster"
 html_theme_options = {
     "description": "Control software for MRI-compatible surgical robots",
     "fixed_sidebar": True,
-    "page_width": "1200px",
+    "page_width": "1040px",
     "sidebar_width": "250px",
     "font_family": "Inter, system-ui, sans-serif",
     "head_font_family": "Inter, system-ui, sans-serif",

@@ -45,20 +45,9 @@ test("a drag shows what its release would bring, and the code leads to its page"
   await expect(robot.panel("Faults").getByRole("article", { name: "STALL" })).toBeVisible();
 });
 
-test("each code leads to its evidence where the app serves the report, and says nothing where it does not", async ({
-  robot,
-  page,
-}) => {
-  await page.route("**/docs/report/trace.html", (route) => route.fulfill({ status: 404 }));
+test("each code leads to what it rests on", async ({ robot }) => {
   await robot.open("Codes");
   const stall = robot.panel("Faults").getByRole("article", { name: "STALL" });
-  await expect(stall).toContainText("Clears when");
-  await expect(stall.getByText("Evidence")).toHaveCount(0);
-
-  await robot.open("Robot");
-  await page.unroute("**/docs/report/trace.html");
-  await page.route("**/docs/report/trace.html", (route) => route.fulfill({ status: 200 }));
-  await robot.open("Codes");
   await expect(stall.getByRole("link", { name: "P5" })).toHaveAttribute("href", "/docs/report/trace.html#P5");
 });
 

@@ -135,6 +135,13 @@ def test_the_http_reference_has_every_operation_schema_and_word_of_the_stream() 
         assert f"`{word['name']}`" in page
 
 
+def test_every_file_that_doxygen_is_given_is_there() -> None:
+    named = re.findall(r"docs/site/\S+", (ROOT / "docs/site/Doxyfile").read_text("utf-8"))
+    named = [name for name in named if not name.endswith(".py")]
+    assert len(named) == 3
+    assert [name for name in named if not (ROOT / name).is_file()] == []
+
+
 def test_every_document_has_a_place_on_the_site() -> None:
     index = (ROOT / "docs/site/index.md").read_text("utf-8").split()
     assert {path.stem for path in (ROOT / "docs").glob("*.md")} <= set(index)

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import random
 import re
 import shutil
 import subprocess
@@ -9,6 +10,8 @@ import sys
 import tomllib
 from dataclasses import replace
 from fnmatch import fnmatchcase
+from html import escape, unescape
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -20,9 +23,9 @@ import gate
 import pages
 from components import Component, bill_of_materials
 from items import Items, fingerprint
-from matrix import as_csv, negative_lists, rows
+from matrix import Row, as_csv, negative_lists, rows
 from report import read_project, read_stated
-from results import Source, read_results
+from results import MEASURED, Result, Source, read_results
 from review import write_reviewed
 from sources import Function, functions_of, read_links
 
@@ -42,6 +45,18 @@ def reviewed(items: Items) -> dict[str, str]:
     return {item.uid: fingerprint(items, item) for item in items}
 
 
+SAME_BYTES = ("matrix.csv", "trace.json", "sbom.json", "release.json", "strictdoc/json/index.json")
+"""What two clean runs on the same evidence must agree on to the last byte."""
+PAPER = """[[paper]]
+name = "01-all"
+title = "All"
+clauses = "5"
+tells = "All of it."
+not_covered = "Nothing."
+chapters = ["Risk", "matrix"]
+"""
+
+
 class Tree:
     """The clean project of the planted defects, at a place of its own."""
 
@@ -59,6 +74,20 @@ class Tree:
         text = (self.path / file).read_text("utf-8")
         assert text.count(old) == 1, f"{file}: '{old}' stands there {text.count(old)} times"
         (self.path / file).write_text(text.replace(old, new), "utf-8")
+
+    def measure(self, name: str, **changed: object) -> None:
+        """Leaves the evidence of a measurement."""
+        document = {
+            "status": "PASSED",
+            "tool": {"name": "bench, gcc", "version": "12"},
+            "commit": "built",
+            "date": "2026-01-01T00:00:00+00:00",
+            "figures": {"faults": 3},
+            "supports": ["P1"],
+            "log": f"build/evidence/{name}.json",
+        }
+        path = self.path / f"build/evidence/{name}.json"
+        path.write_text(json.dumps(document | changed, indent=2), "utf-8")
 
     def plant(self, defect: dict) -> None:
         for change in defect.get("change", []):
@@ -159,7 +188,8 @@ def test_every_link_of_the_pages_leads_to_something(tree: Tree, clean: tuple[Ite
     of = gate.trace(tree.project(clean, reviewed(clean[0])))
     written = pages.write_all(of, [], "built")
     output = tree.path / "build/report"
-    for name in ("strictdoc/html/index.html", "matrix.csv", "sbom.json", "release.json"):
+    beside = ("papers/index.html", "strictdoc/html/index.html", "matrix.csv", "sbom.json", "release.json")
+    for name in beside:
         (output / name).parent.mkdir(parents=True, exist_ok=True)
         (output / name).touch()
     assert sum(len(pages.LINK.findall(text)) for text in written.values()) > 100
@@ -169,10 +199,62 @@ def test_every_link_of_the_pages_leads_to_something(tree: Tree, clean: tuple[Ite
     log = "../../build/evidence/cbmc/gate/proof.json"
     assert pages.broken_links(written, output) == {
         ("results.html", log),
-        *((name, "matrix.csv") for name in written),
+        *((name, "matrix.csv") for name in written if name.endswith(".html")),
     }
     written["trace.html"] = written["trace.html"].replace('id="CA-01"', 'id="CA-02"')
     assert ("trace.html", "trace.html#CA-01") in pages.broken_links(written, output)
+
+
+def opened(place: str, written: dict[str, str], output: Path) -> str:
+    """What stands where a link of our pages leads: the text from its anchor on, or the file."""
+    name, _, anchor = unescape(place).partition("#")
+    if name not in written:
+        return (output / name).read_text("utf-8", "replace")
+    assert f'id="{escape(anchor)}"' in written[name], place
+    return written[name].partition(f'id="{escape(anchor)}"')[2].partition("</article>")[0]
+
+
+def open_row(row: Row, written: dict[str, str], output: Path, root: Path) -> None:
+    """Goes from the hazard by cause, control and requirements to the lines of the code, and back."""
+    steps = (row.hazard, row.cause, row.control, row.system_requirement, row.requirement)
+    uids = [step.split(" ")[0] for step in steps]
+    for above, below in pairwise(uids):
+        assert f'href="trace.html#{below}"' in opened(f"trace.html#{above}", written, output)
+        assert f'href="trace.html#{above}"' in opened(f"trace.html#{below}", written, output)
+    requirement = opened(f"trace.html#{uids[-1]}", written, output)
+    for code in filter(None, row.code.split("; ")):
+        file, line, name = re.fullmatch(r"([^: ]+)(?::(\d+) (\w+))?", code).groups()
+        assert f'href="../../{file}"' in requirement
+        assert (root / file).exists()
+        assert not line or name in (root / file).read_text("utf-8").splitlines()[int(line) - 1]
+
+
+def test_rows_chosen_by_seed_open_from_the_hazard_to_the_raw_log(
+    tree: Tree, clean: tuple[Items, str]
+) -> None:
+    of = gate.trace(tree.project(clean, reviewed(clean[0])))
+    written = pages.write_all(of, [], "built")
+    output = tree.path / "build/report"
+    for row in random.Random(62304).choices(rows(of), k=20):
+        open_row(row, written, output, tree.path)
+        for result in row.results.split("; "):
+            uid, status = result.split(" ")
+            page = opened(f"results.html#{uid}", written, output)
+            assert status in page
+            assert f'href="trace.html#{row.requirement.split(" ")[0]}"' in page
+            [log] = re.findall(r'<dt>Raw log<dd><a href="([^"]+)"', page)
+            assert (output / unescape(log)).resolve().exists(), log
+
+
+def test_twenty_rows_of_the_real_matrix_open_from_the_hazard_to_the_code(tmp_path: Path) -> None:
+    source = Source(ROOT, "built", lambda _: False)
+    of = gate.trace(read_project(source, read_stated(ROOT, tmp_path / "build/report"), (), ()))
+    written = pages.write_all(of, [], "built")
+    found = rows(of)
+    assert len(found) > 500
+    for row in random.Random(62304).sample(found, k=20):
+        assert row.code or row.methods == "Analysis"
+        open_row(row, written, ROOT / "build/report", ROOT)
 
 
 def test_the_bill_of_materials_names_what_is_shipped() -> None:
@@ -214,6 +296,30 @@ def test_a_result_is_no_better_than_its_rung(tree: Tree) -> None:
     assert {one.status for one in results} == {"UNKNOWN"}
 
 
+def test_a_measurement_counts_for_the_commit_that_it_was_made_from(tree: Tree) -> None:
+    def campaign(commit: str = "built", **changed: object) -> Result:
+        tree.measure("campaign", **changed)
+        source = Source(tree.path, commit, lambda _: True)
+        [result] = read_results(source, (), (), ["campaign"])
+        return result
+
+    result = campaign()
+    assert (result.uid, result.status, result.fresh) == ("CAMPAIGN", "PASSED", True)
+    assert (result.tool, result.bounds) == ("bench, gcc 12", "faults 3")
+    assert (tree.path / result.log).is_file()
+    assert result.supports == {"P1"}
+    assert not campaign("later").fresh
+    assert campaign(status="VACUOUS").status == "VACUOUS"
+    assert campaign(log="campaign").log == "build/evidence/campaign"
+    assert campaign(tool=None).status == "UNKNOWN"
+
+
+def test_a_measurement_that_was_not_made_is_unknown(tree: Tree) -> None:
+    results = read_results(Source(tree.path, "built", lambda _: True), (), (), MEASURED)
+    assert [one.uid for one in results] == ["BENCH", "CAMPAIGN", "FAULTS", "MUTATION", "STEERING"]
+    assert {one.status for one in results} == {"UNKNOWN"}
+
+
 def test_evidence_of_another_commit_is_fresh_while_its_inputs_are_the_same(tree: Tree) -> None:
     source = Source(tree.path, "later", lambda rung: rung == "misra")
     results = {one.uid: one.fresh for one in read_results(source, RUNGS)}
@@ -239,6 +345,10 @@ class Repository(Tree):
         self.write("web/package.json", '{"dependencies": {}}')
         self.write("web/package-lock.json", '{"packages": {}}')
         self.write(".gitignore", "/build/\n__pycache__/\n")
+        self.write("CMakeLists.txt", "project(interlock VERSION 9.8.7)\n")
+        self.write("verification/trace/papers.toml", PAPER)
+        for name in MEASURED:
+            self.measure(name)
         # Any program that needs the C library and nothing else.
         self.write("build/release/bin/interlock", "")
         shutil.copy("/bin/true", path / "build/release/bin/interlock")
@@ -265,6 +375,7 @@ class Repository(Tree):
         return subprocess.run(command, cwd=self.path, capture_output=True, text=True)
 
 
+@pytest.mark.timeout(300)
 def test_the_report_of_a_clean_project_is_written_and_a_defect_fails_it_by_name(tmp_path: Path) -> None:
     repository = Repository(tmp_path)
     done = repository.run("trace/report.py")
@@ -281,6 +392,14 @@ def test_the_report_of_a_clean_project_is_written_and_a_defect_fails_it_by_name(
     }
     page = report / "strictdoc/html/_source_files/kernel/src/gate.c.html"
     assert "UNIT-gate.c-may_drive" in page.read_text("utf-8")
+    assert (report / "papers/01-all.pdf").read_bytes().startswith(b"%PDF")
+    for path in report.glob("*.html"):
+        assert "<style" not in path.read_text("utf-8")
+        assert "<script>" not in path.read_text("utf-8")
+    first = {name: (report / name).read_bytes() for name in SAME_BYTES}
+    shutil.rmtree(report)
+    assert repository.run("trace/report.py").returncode == 0
+    assert {name: (report / name).read_bytes() for name in SAME_BYTES} == first
     repository.plant(read_defect(PLANTED / "G5_failed_test.toml"))
     done = repository.run("trace/report.py", "--gate-only")
     assert done.returncode == 1, done.stdout + done.stderr

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from pathlib import Path
 
+import fretish
 from components import Component
 from items import GENERATED, Item, Items, fingerprint
 from results import SOUND, Result
@@ -136,7 +137,7 @@ def g2(of: Trace) -> Iterator[Finding]:
 
 
 def g3(of: Trace) -> Iterator[Finding]:
-    """Each requirement has a parent, an item of the architecture and code; each has one *shall*."""
+    """Each requirement has a parent, an item, code, one *shall*, and no FRETish that breaks its grammar."""
     project = of.project
     fulfilled = {uid for one in project.functions for uid in project.links.requirements_of(one)}
     for requirement in project.items.of("REQUIREMENT"):
@@ -147,6 +148,11 @@ def g3(of: Trace) -> Iterator[Finding]:
         analysed = methods_of(requirement) == ["Analysis"]
         if not (analysed or requirement.uid in fulfilled or project.links.code.get(requirement.uid)):
             yield Finding("G3", requirement.uid, "no function or file fulfils it")
+        try:
+            if "FRETISH" in requirement.fields:
+                fretish.check(requirement.fields["FRETISH"])
+        except fretish.FretishError as error:
+            yield Finding("G3", requirement.uid, f"its FRETish is not: {error}")
     for requirement in project.items.of("REQUIREMENT", "SYSREQ"):
         if len(re.findall(r"\bshall\b", requirement.statement)) != 1:
             yield Finding("G3", requirement.uid, "does not say 'shall' exactly once")

@@ -11,8 +11,8 @@ from items import Item
 from matrix import Row, code_of, coverage, negative_lists, rows, status_of
 from results import Result
 
-STYLE = Path(__file__).with_name("style.css").read_text("utf-8")
-FILTER = Path(__file__).with_name("filter.js").read_text("utf-8")
+STYLE = "style.css"
+FILTER = "filter.js"
 LINK = re.compile(r'href="([^"]+)"')
 ANCHOR = re.compile(r'id="([^"]+)"')
 MENU = {
@@ -20,6 +20,7 @@ MENU = {
     "Matrix": "matrix.html",
     "Items": "trace.html",
     "Results": "results.html",
+    "Papers": "papers/index.html",
     "Documents": "strictdoc/html/index.html",
     "CSV": "matrix.csv",
     "SBOM": "sbom.json",
@@ -35,9 +36,9 @@ TOP = "../.."
 
 
 def page(title: str, body: str, script: str = "") -> str:
-    head = f'<meta charset="utf-8"><title>{escape(title)}</title><style>{STYLE}</style>'
+    head = f'<meta charset="utf-8"><title>{escape(title)}</title><link rel=stylesheet href="{STYLE}">'
     menu = "".join(f'<a href="{target}">{name}</a>' for name, target in MENU.items())
-    tail = f"<script>{script}</script>" if script else ""
+    tail = f'<script src="{script}"></script>' if script else ""
     whole = f"<nav>{menu}</nav><h1>{escape(title)}</h1>{body}{tail}"
     return f"<!doctype html><html lang=en>{head}{whole}</html>\n"
 
@@ -254,8 +255,10 @@ def broken_links(written: Mapping[str, str], output: Path) -> set[tuple[str, str
 
 
 def write_all(of: Trace, found: Sequence[Finding], commit: str) -> dict[str, str]:
-    """The pages by file name."""
+    """The pages by file name, with the two files that they share."""
+    shared = {name: Path(__file__).with_name(name).read_text("utf-8") for name in (STYLE, FILTER)}
     return {
+        **shared,
         "index.html": overview(of, found, commit),
         "matrix.html": matrix_page(of, rows(of)),
         "trace.html": items_page(of),

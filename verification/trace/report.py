@@ -3,12 +3,13 @@
 
 Reads spec/requirements by StrictDoc, the functions of kernel/src, and the evidence in build/evidence and
 build/reports. Writes index.html, matrix.html, trace.html, results.html, matrix.csv, trace.json, sbom.json,
-release.json and StrictDoc's own pages. Prints every line that is missing or wrong; exits 1 when there is one,
-2 when there is no report.
+release.json, StrictDoc's own pages, and the papers as HTML and PDF. Prints every line that is missing or
+wrong; exits 1 when there is one, 2 when there is no report.
 """
 
 import argparse
 import json
+import re
 import shutil
 import sys
 import tomllib
@@ -23,18 +24,24 @@ import documents
 import evidence
 import gate
 import pages
+import papers
 import release
 from components import Component, bill_of_materials, shipped
 from exporter import RefusedError, export, stage
 from items import Items, read_items
 from ladder import UnusableError, content_key, read_expected
 from matrix import as_csv, negative_lists, rows
-from results import Source, read_results
+from results import MEASURED, Source, read_results
 from sources import functions_of, read_links
 
 
 def read_toml(path: Path) -> dict:
     return tomllib.loads(path.read_text("utf-8"))
+
+
+def version(root: Path) -> str:
+    """The version that CMakeLists.txt gives the project."""
+    return re.search(r"project\(interlock VERSION (\S+)", (root / "CMakeLists.txt").read_text("utf-8"))[1]
 
 
 def rung_keys(root: Path) -> dict[str, bool]:
@@ -58,9 +65,13 @@ def read_stated(root: Path, output: Path) -> tuple[Items, str]:
 
 
 def read_project(
-    source: Source, stated: tuple[Items, str], rungs: Iterable[str], components: Sequence[Component]
+    source: Source,
+    stated: tuple[Items, str],
+    rungs: Iterable[str],
+    components: Sequence[Component],
+    measurements: Iterable[str] = (),
 ) -> gate.Project:
-    """All that the gate looks at: what is stated, what stands in the sources, and the evidence of `rungs`."""
+    """All that the gate looks at: what is stated, sources, evidence of `rungs` and `measurements`."""
     requirements = source.root / "spec/requirements"
     items, printed = stated
     return gate.Project(
@@ -68,7 +79,7 @@ def read_project(
         items=items,
         functions=functions_of(source.root),
         links=read_links(requirements / "links.toml"),
-        results=read_results(source, rungs),
+        results=read_results(source, rungs, measurements=measurements),
         reviewed=read_toml(requirements / "reviewed.toml"),
         clauses=read_toml(requirements / "clauses.toml"),
         components=components,
@@ -126,13 +137,16 @@ def main() -> int:
     try:
         current = rung_keys(root)
         source = Source(root, commit, current.__getitem__)
-        project = read_project(source, read_stated(root, output), current, shipped(root))
+        project = read_project(source, read_stated(root, output), current, shipped(root), MEASURED)
         if not arguments.gate_only:
             printed = write_documents(gate.trace(project), output)
             project = replace(project, exporter_log=project.exporter_log + printed)
         of = gate.trace(project)
         found = gate.findings(of)
         if not arguments.gate_only:
+            stated = papers.read_documents(output / "stated/json/index.json")
+            set_of = papers.Source(of, stated, found, commit, version(root))
+            papers.write_papers(set_of, output / "papers", papers.read_papers())
             found += write_pages(of, found, output, commit)
     except (RefusedError, UnusableError, ValueError, OSError) as error:
         print(f"report: {error}", file=sys.stderr)

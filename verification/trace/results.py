@@ -97,8 +97,10 @@ class Rung:
 
 
 def named_tools(names: str, versions: str) -> str:
-    """Each tool with its version, from the two lists that a rung writes."""
-    pairs = zip(names.split(", "), versions.split(", "), strict=True)
+    """Each tool with its version, from two lists; lists of unlike length as they are."""
+    pairs = list(zip(names.split(", "), versions.split(", "), strict=False))
+    if len(pairs) != len(names.split(", ")) or len(pairs) != len(versions.split(", ")):
+        return f"{names} {versions}"
     return ", ".join(f"{name} {version}" for name, version in pairs)
 
 
@@ -286,6 +288,37 @@ CONVERTERS: Mapping[str, Callable[[Source, Rung], Iterator[Result]]] = {
 }
 
 
+MEASURED: Mapping[str, str] = {
+    "bench": "Times, text size and stack within their limits",
+    "campaign": "Faults at kernel core and plant, judged by the oracle",
+    "faults": "Seeded faults of the kernel turn their proofs red",
+    "mutation": "Mutants of the kernel core are found by its tests",
+    "steering": "Steering and membrane detection within their limits",
+}
+"""What other targets than `make verify` leave in build/evidence, each judged as a whole."""
+
+
+def measured(source: Source, name: str) -> Result:
+    """The result of one of them. It is fresh when it was made from this commit."""
+    rung = read_rung(source, name)
+    if rung is None:
+        return replace(missing_rung(name), title=f"{MEASURED[name]}: no evidence")
+    log = json.loads((source.evidence / f"{name}.json").read_text("utf-8")).get("log", "")
+    log = log if log.startswith("build/") else f"build/evidence/{log or name}"
+    bounds = figures_in_words(rung.figures)
+    fresh = source.made(rung.commit)
+    return rung.result(
+        name.upper(),
+        MEASURED[name],
+        "Analysis",
+        rung.status,
+        bounds=bounds,
+        log=log,
+        supports=rung.supports,
+        fresh=fresh,
+    )
+
+
 def missing_rung(name: str) -> Result:
     """Stands for a rung that left no evidence, so that its absence is a line of the report."""
     return Result(
@@ -353,13 +386,16 @@ def suites(source: Source, suite: str) -> Iterator[Result]:
         )
 
 
-def read_results(source: Source, rungs: Iterable[str], names: Sequence[str] = SUITES) -> list[Result]:
-    """All results, by their UIDs. A rung or suite that left nothing is UNKNOWN."""
+def read_results(
+    source: Source, rungs: Iterable[str], names: Sequence[str] = SUITES, measurements: Iterable[str] = ()
+) -> list[Result]:
+    """All results, by their UIDs. A rung, suite or measurement that left nothing is UNKNOWN."""
     found: list[Result] = []
     for name in rungs:
         rung = read_rung(source, name)
         convert = CONVERTERS.get(name, whole(f"Rung {name}"))
         found += convert(source, rung) if rung else [missing_rung(name)]
+    found += [measured(source, name) for name in measurements]
     for name in names:
         found += suites(source, name)
     return sorted(found, key=lambda result: result.uid)

@@ -2,7 +2,7 @@ import { useEffect, useState } from "react";
 import { Panel } from "../../design/Panel";
 import { type CatalogEntry, catalog, type Family } from "../../generated/catalog";
 import { codeHash, useCodePlace } from "../../state/route";
-import { evidencePlace, useHasEvidence } from "./evidence";
+import { evidencePlace } from "./evidence";
 import { isFound } from "./find";
 import "./codes.css";
 
@@ -23,7 +23,6 @@ const shown: readonly { readonly family: Family; readonly title: string; readonl
 /** Every code that an operator meets: what it means, what probably caused it, what to do next. */
 export function CodesPage() {
   const [sought, setSought] = useState("");
-  const hasEvidence = useHasEvidence();
   return (
     <Panel title="Codes" className="page-panel codes">
       <p className="page-words">
@@ -44,7 +43,7 @@ export function CodesPage() {
             <h3>{title}</h3>
             <p className="page-words">{words}</p>
             {codes.map((code) => (
-              <Code key={code.name} family={family} code={code} hasEvidence={hasEvidence} />
+              <Code key={code.name} family={family} code={code} />
             ))}
           </section>
         );
@@ -53,13 +52,7 @@ export function CodesPage() {
   );
 }
 
-interface CodeProps {
-  readonly family: Family;
-  readonly code: CatalogEntry;
-  readonly hasEvidence: boolean;
-}
-
-function Code({ family, code, hasEvidence }: CodeProps) {
+function Code({ family, code }: { readonly family: Family; readonly code: CatalogEntry }) {
   const place = useCodePlace();
   const meant = place?.family === family && place.code === code.name;
   const id = `${family}-${code.name}`;
@@ -79,12 +72,12 @@ function Code({ family, code, hasEvidence }: CodeProps) {
         <dd>{code.next_step}</dd>
         <dt>Clears when</dt>
         <dd>{code.clears}</dd>
-        {hasEvidence && code.properties.length > 0 && (
+        {code.properties.length > 0 && (
           <>
             <dt>Evidence</dt>
             <dd>
               {code.properties.map((property) => (
-                <a key={property} href={evidencePlace(property)}>
+                <a key={property} href={evidencePlace(property)} target="_blank" rel="noreferrer">
                   {property}{" "}
                 </a>
               ))}

@@ -1,23 +1,6 @@
-/** Where the documents tell what a code rests on, when they were built and the app serves them. */
-import { useEffect, useState } from "react";
-
-const page = "/docs/report/trace.html";
+/** Where the documents tell what a code rests on. An app that has none answers how to bring them. */
 
 /** The page of a property: the requirements that it formalises, their code, and every result. */
 export function evidencePlace(property: string): string {
-  return `${page}#${property}`;
-}
-
-/** Whether the app serves the report. */
-export function useHasEvidence(): boolean {
-  const [has, setHas] = useState(false);
-  useEffect(() => {
-    const asked = new AbortController();
-    fetch(page, { method: "HEAD", signal: asked.signal }).then(
-      ({ ok }) => setHas(ok),
-      () => setHas(false),
-    );
-    return () => asked.abort();
-  }, []);
-  return has;
+  return `/docs/report/trace.html#${property}`;
 }

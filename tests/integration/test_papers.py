@@ -1,0 +1,97 @@
+"""The document set: each paper opens as a PDF with title, contents and page numbers, and has every item."""
+
+import re
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from pypdf import PdfReader
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "verification/trace"))
+
+import diagrams
+import gate
+import papers
+from items import Items
+from test_trace import ROOT, Tree, reviewed
+
+CHAPTERS = ("Risk", "Requirements", "units", "methods", "results of units", "clauses", "findings", "matrix")
+
+
+@pytest.fixture(scope="module")
+def source(tmp_path_factory: pytest.TempPathFactory) -> papers.Source:
+    """The clean project of the planted defects."""
+    tree = Tree(tmp_path_factory.mktemp("papers"))
+    stated: tuple[Items, str] = tree.stated()
+    project = tree.project(stated, reviewed(stated[0]))
+    of = gate.trace(project)
+    documents = papers.read_documents(tree.path / "build/report/stated/json/index.json")
+    return papers.Source(of, documents, gate.findings(of), "abcdef0123456789", "9.8.7")
+
+
+@pytest.fixture(scope="module")
+def pages(source: papers.Source, tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    """The text of each page of a paper with every kind of chapter."""
+    paper = papers.Paper("99-all", "Everything", "5.2", "All of it.", "Nothing.", CHAPTERS)
+    [pdf] = papers.write_papers(source, tmp_path_factory.mktemp("out"), [paper])
+    return [page.extract_text() for page in PdfReader(pdf).pages]
+
+
+def test_a_paper_opens_with_title_version_commit_and_what_it_does_not_cover(pages: list[str]) -> None:
+    for text in ("Everything", "9.8.7", "abcdef0123456789", "Nothing.", "5.2"):
+        assert text in pages[0]
+
+
+def test_contents_name_the_page_on_which_each_chapter_begins(pages: list[str]) -> None:
+    contents = pages[1]
+    assert contents.startswith("Contents")
+    for title in ("Risk", "Requirements", "Units", "Methods", "Results", "Clauses", "Matrix"):
+        [number] = re.findall(rf"^{title}[ .]*?(\d+)$", contents, re.MULTILINE)
+        assert title in pages[int(number) - 1]
+        assert f"{number} / {len(pages)}" in pages[int(number) - 1]
+
+
+def test_a_paper_leaves_no_item_function_result_or_clause_out(
+    pages: list[str], source: papers.Source
+) -> None:
+    text = re.sub(r"\s", "", "".join(pages))
+    project = source.trace.project
+    named = [
+        *(item.uid for item in project.items),
+        *(one.name for one in project.functions),
+        *(one.uid for one in project.results if one.uid.startswith(("CBMC", "WP", "TLC", "TEST:unit"))),
+        *project.clauses,
+    ]
+    assert [one for one in named if one.replace(" ", "") not in text] == []
+
+
+def test_every_chapter_of_the_set_is_one_that_there_is() -> None:
+    stated = {
+        line.removeprefix("UID: ")
+        for path in (ROOT / "spec/requirements").glob("*.sdoc")
+        for line in path.read_text("utf-8").splitlines()[:4]
+        if line.startswith("UID: ")
+    }
+    told = {name for paper in papers.read_papers() for name in paper.chapters}
+    files = {name for name in told if name.endswith(".md")}
+    assert told - files - set(papers.TABLES) == stated
+    assert all((ROOT / name).is_file() for name in files)
+    assert set(papers.TABLES) <= told
+
+
+def test_a_chapter_that_there_is_not_is_refused(source: papers.Source) -> None:
+    with pytest.raises(KeyError):
+        papers.chapter(source, "DOC-NONE")
+
+
+def test_edition_2_says_only_what_is_known() -> None:
+    clauses = tomllib.loads((ROOT / "spec/requirements/clauses.toml").read_text("utf-8"))
+    for clause, entry in clauses.items():
+        expected = {"A": None, "B": "rigor level II", "C": "rigor level II"}[entry["class"]]
+        assert entry.get("edition_2") == expected, clause
+
+
+def test_what_follows_from_other_arrows_is_left_out_of_the_diagram() -> None:
+    edges = {"cli": {"http", "robot"}, "http": {"robot"}, "robot": set()}
+    assert diagrams.reduced(edges) == {"cli": {"http"}, "http": {"robot"}, "robot": set()}
