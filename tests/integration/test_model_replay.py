@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from bare_kernel import BIN, ROOT
-from test_recorder import RecordedKernelFactory, recorded, unlock
+from test_recorder import RecordedKernelFactory, interlock, recorded, unlock, wait_for
 
 __all__ = ["recorded"]
 
@@ -31,7 +31,10 @@ def recording(recorded: RecordedKernelFactory) -> Path:
     kernel.app.run(20)
     kernel.kernel.terminate()
     kernel.kernel.wait()
-    return kernel.wait_for_file("continuous")
+    # Named for the lock, or as continuous: the recorder may come to see both at once.
+    wait_for("a recording", lambda: any(kernel.recordings.glob("*.ilkr")))
+    [file] = kernel.recordings.glob("*.ilkr")
+    return file
 
 
 def test_a_recording_is_told_in_parts_that_continue_each_other(recording: Path, tmp_path: Path) -> None:
@@ -58,6 +61,15 @@ def test_the_model_accepts_a_recorded_run_and_rejects_a_doctored_one(recording: 
     lines[first + 19] = re.sub(r'"LOCKED","BOOT"', '"READY","NONE"', lines[first + 19], count=1)
     data.write_text("\n".join(lines))
     assert traces.judge_in(part.folder)[1] == 20
+
+
+@pytest.mark.skipif(not JAR.is_file(), reason="the model's checker is not installed: make verify")
+def test_replay_asks_the_model_after_the_kernel(recording: Path) -> None:
+    done = interlock("replay", recording, "--model")
+    assert done.returncode == 0, done.stdout + done.stderr
+    ticks = re.search(r"^(\d+) ticks \(1 to \1\)", done.stdout, re.MULTILINE)
+    assert ticks is not None
+    assert done.stdout.endswith(f"identical\nthe model accepts all {ticks[1]} ticks\n")
 
 
 def test_a_file_that_is_no_recording_is_not_told(tmp_path: Path) -> None:

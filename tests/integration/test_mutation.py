@@ -11,6 +11,7 @@ sys.path.append(str(ROOT / "verification/mutation"))
 from equal import core_files, is_same, shown_equal, write_sound
 from functions import Function, callers_of, function_at, functions_in, functions_of
 from operators import Mutant, draw, mutants_of
+from rows import compile_kernel
 from tree import make_tree, seeded
 from verdicts import kernel_digests
 
@@ -65,6 +66,22 @@ def test_a_verdict_outlives_a_comment_but_not_a_change_of_code(tmp_path: Path) -
     assert kernel_digests(tree)[1] != whole
     header.write_text(header.read_text() + "#define SAID 1\n")
     assert kernel_digests(tree)[0] != code
+
+
+def test_what_did_not_change_is_not_compiled_again(tmp_path: Path) -> None:
+    tree = make_tree(tmp_path / "tree")
+    objects = tmp_path / "objects"
+    compile_kernel(tree / "kernel", objects)
+    first = {path.name: path.read_bytes() for path in objects.glob("*.o")}
+    times = {path.name: path.stat().st_mtime_ns for path in objects.glob("*.o")}
+    function, mutant = small_function()
+    with seeded(tree, mutant.file, mutant.line, mutant.before, mutant.after):
+        compile_kernel(tree / "kernel", objects)
+        again = {path.name for path in objects.glob("*.o") if path.stat().st_mtime_ns != times[path.name]}
+        assert again == {Path(function.file).stem + ".o"}
+        assert (objects / again.pop()).read_bytes() != first[Path(function.file).stem + ".o"]
+    compile_kernel(tree / "kernel", objects)
+    assert {path.name: path.read_bytes() for path in objects.glob("*.o")} == first
 
 
 def small_function() -> tuple[Function, Mutant]:

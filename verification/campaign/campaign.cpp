@@ -62,6 +62,7 @@ nlohmann::json json_of(const Totals& totals) {
           {"homings", totals.homings},
           {"moves_accepted", totals.moves_accepted},
           {"requests_refused", totals.requests_refused},
+          {"configurations_refused", totals.configurations_refused},
           {"digest", totals.digest},
           {"faults_by_kind", kinds},
           {"axis_faults", totals.axis_faults},

@@ -6,11 +6,13 @@
 
 #include "flip.hpp"
 #include "interlock/kernel.h"
+#include "refusal.hpp"
 
 namespace interlock::campaign {
 namespace {
 
 constexpr std::uint64_t kRobotStream = 3;
+constexpr std::uint64_t kRefusalStream = 4;
 constexpr std::uint64_t kCaseFactor = 0x9e3779b97f4a7c15u;
 constexpr std::uint32_t kSweepInterval = 64; /**< ticks from one sweep of flipped bits to the next */
 constexpr std::uint32_t kSweptBits = 16;
@@ -80,6 +82,7 @@ void Totals::add(const Totals& other) {
   homings += other.homings;
   moves_accepted += other.moves_accepted;
   requests_refused += other.requests_refused;
+  configurations_refused += other.configurations_refused;
   digest += other.digest;
   std::ranges::transform(faults_by_kind, other.faults_by_kind, faults_by_kind.begin(), std::plus{});
   std::ranges::transform(axis_faults, other.axis_faults, axis_faults.begin(), std::plus{});
@@ -97,6 +100,9 @@ World::World(const Case& plan)
       plant_(robot_.config, robot_.plant, plan.seed ^ (plan.number * kCaseFactor)),
       oracle_(robot_.rules),
       sweep_bit_(plan.number * kSweepStart % kStateBits) {
+  plant::Random refusals(plan.seed ^ (plan.number * kCaseFactor), kRefusalStream);
+  unrefused_ = judge_refusals(robot_.config, refusals);
+  totals_.configurations_refused = unrefused_ ? 0 : spoilings();
   ilk_init(&config_, &state_);
   for (std::size_t slot = 0; slot < ILK_SLOTS; slot++) {
     seen_.from_card[slot] = inputs_.frame[slot];
@@ -322,6 +328,9 @@ std::optional<Failure> World::step() {
   show_oracle();
   count();
   std::optional<Failure> failure = judge();
+  if (unrefused_) {
+    failure = Failure{tick_, static_cast<unsigned>(oracle::Property::kP13), oracle::kNoAxis, *unrefused_};
+  }
   if (!failure && totals_.bit_flips_unsafe != flips_unsafe) {
     failure = Failure{tick_, static_cast<unsigned>(oracle::Property::kP14), oracle::kNoAxis,
                       "a flipped bit of the state was not met"};

@@ -40,7 +40,8 @@ struct Totals {
   std::uint64_t homings = 0; /**< completed at a switch */
   std::uint64_t moves_accepted = 0;
   std::uint64_t requests_refused = 0;
-  std::uint64_t digest = 0; /**< of all outputs; the same seeds give the same sum */
+  std::uint64_t configurations_refused = 0; /**< of those that have to be */
+  std::uint64_t digest = 0;                 /**< of all outputs; the same seeds give the same sum */
   std::array<std::uint64_t, kFaultKinds> faults_by_kind{};
   std::array<std::uint64_t, ILK_FAULT_COUNT> axis_faults{};
   std::array<std::uint64_t, ILK_CAUSE_COUNT> causes{};
@@ -128,6 +129,7 @@ class World {
   std::array<bool, ILK_SLOTS> was_homing_{};
   std::array<std::uint32_t, ILK_SLOTS> fault_before_{};
   std::uint32_t mode_before_ = ILK_MODE_INIT;
+  std::optional<std::string_view> unrefused_; /**< what a kernel did that had to stay in INIT */
   Totals totals_;
 };
 

@@ -162,17 +162,17 @@ def is_same(function: Function, tree: Path, folder: Path) -> bool:
     return "VERIFICATION SUCCESSFUL" in done.stdout and '"same"' in text
 
 
-def shown_equal(tree: Path, file: str, line: int) -> str:
+def shown_equal(tree: Path, file: str, line: int, levels: int = LEVELS) -> str:
     """Where CBMC shows that a mutant makes no difference; empty when it does not.
 
-    `tree` holds the mutant, ROOT the sound kernel.
+    `tree` holds the mutant, ROOT the sound kernel; with one level only the changed function is asked about.
     """
     functions = core_functions()
     asked = [each for each in functions if each.file == file and each.first_line <= line <= each.last_line]
     folder = tree / "build/equal"
     folder.mkdir(parents=True, exist_ok=True)
     write_sound(ROOT / "kernel", folder)
-    for _ in range(LEVELS):
+    for _ in range(levels):
         if not asked:
             return ""
         if all(is_same(each, tree, folder) for each in asked):

@@ -6,6 +6,7 @@ build/rows. The rows are those that verification/conformance/run.py left here; t
 printed by TLC anew. Prints each phase that differs, as `PHASE: N rows differ, first in COLUMN`.
 """
 
+import hashlib
 import re
 import subprocess
 import sys
@@ -44,11 +45,21 @@ def print_missing(names: Iterable[str]) -> None:
 
 
 def compile_kernel(kernel: Path, folder: Path) -> list[str]:
-    """Compiles the changed kernel once for all phases; gives the compiler's flags."""
+    """Compiles what changed of the kernel since the last time in this folder; gives the compiler's flags."""
     folder.mkdir(parents=True, exist_ok=True)
     flags = ["-std=c11", "-O1", "-w", f"-I{kernel}/include", f"-I{kernel}/src", "-DILK_FRAME_WORDS=32"]
-    sources = sorted(str(path) for path in (kernel / "src").glob("*.c"))
-    subprocess.run(["gcc", *flags, "-c", *sources], cwd=folder, check=True, capture_output=True)
+    headers = b"".join(path.read_bytes() for path in sorted(kernel.rglob("*.h")))
+    changed = []
+    for source in sorted((kernel / "src").glob("*.c")):
+        key = hashlib.sha256(headers + source.read_bytes()).hexdigest()
+        kept = folder / f"{source.stem}.key"
+        if not kept.is_file() or kept.read_text("utf-8") != key:
+            changed.append((source, kept, key))
+    if changed:
+        sources = [str(source) for source, _, _ in changed]
+        subprocess.run(["gcc", *flags, "-c", *sources], cwd=folder, check=True, capture_output=True)
+    for _, kept, key in changed:
+        kept.write_text(key, "utf-8")
     return flags
 
 

@@ -11,6 +11,7 @@
 #include "flip.hpp"
 #include "interlock/kernel.h"
 #include "plan.hpp"
+#include "refusal.hpp"
 #include "robot.hpp"
 #include "shrink.hpp"
 
@@ -25,6 +26,28 @@ TEST(Campaign, P13_robots_are_valid_for_the_kernel_and_permitted_for_the_oracle)
     EXPECT_EQ(verdict.error, ILK_CONFIG_ERROR_NONE) << "seed " << seed << ", slot " << verdict.slot;
     EXPECT_TRUE(oracle::are_permitted(robot.rules)) << "seed " << seed;
   }
+}
+
+TEST(Campaign, P13_every_spoilt_configuration_breaks_a_rule_of_its_own) {
+  std::set<std::uint32_t> rules;
+  for (std::uint64_t seed = 0; seed < 50; seed++) {
+    plant::Random random(seed, 0);
+    const Robot robot = make_robot(random);
+    for (std::size_t way = 0; way < spoilings(); way++) {
+      const ilk_config_t wrong = spoilt(robot.config, way, random);
+      const std::uint32_t error = ilk_config_validate(&wrong).error;
+      EXPECT_NE(error, ILK_CONFIG_ERROR_NONE) << "seed " << seed << ", way " << way;
+      rules.insert(error);
+    }
+  }
+  EXPECT_GE(rules.size(), 18u);
+}
+
+TEST(Campaign, P13_a_kernel_that_starts_with_a_valid_configuration_is_not_taken_for_inert) {
+  plant::Random random(1, 0);
+  const Robot robot = make_robot(random);
+  EXPECT_EQ(judge_refusals(robot.config, random), std::nullopt);
+  EXPECT_FALSE(stays_inert(robot.config, 0));
 }
 
 TEST(Campaign, Draws_every_kind_of_fault_alone_and_in_pairs) {
