@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import distributed
 import pytest
 from bare_kernel import BIN, ROOT
 
@@ -55,7 +56,6 @@ def totals(*options: str) -> dict[str, int]:
 
 
 def test_a_cluster_comes_to_the_same_totals(campaign: object, tmp_path: Path) -> None:
-    distributed = pytest.importorskip("distributed", reason="Dask is not installed: make setup")
     whole = totals("--cases", "3", "--failures", str(tmp_path))
     parts = [["--seed", "5", "--first", str(job), "--stride", "3", "--cases", "1"] for job in range(3)]
     with distributed.LocalCluster(
