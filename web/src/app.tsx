@@ -1,3 +1,4 @@
+import { lazy, Suspense } from "react";
 import { AccountPage } from "./panels/account/AccountPage";
 import { AuditPage } from "./panels/audit/AuditPage";
 import { BenchPanel } from "./panels/bench/BenchPanel";
@@ -17,6 +18,9 @@ import { WhyPanel } from "./panels/why/WhyPanel";
 import { useRoute } from "./state/route";
 import { useConsole } from "./state/store";
 
+/** Loaded with the first look at it: drawing takes more code than all the rest. */
+const PlotsPage = lazy(() => import("./panels/plots/PlotsPage"));
+
 export function App() {
   const loggedIn = useConsole((state) => state.login.phase === "in");
   return (
@@ -30,6 +34,7 @@ export function App() {
 function Page() {
   const route = useRoute();
   const admin = useConsole((state) => state.login.phase === "in" && state.login.user.role === "admin");
+  if (route === "plots") return <Loaded of={PlotsPage} />;
   if (route === "codes") return <Sheet of={CodesPage} />;
   if (route === "account") return <Sheet of={AccountPage} />;
   if (route === "users" && admin) return <Sheet of={UsersPage} />;
@@ -42,6 +47,14 @@ function Sheet({ of: Content }: { readonly of: () => React.ReactNode }) {
     <main className="sheet">
       <Content />
     </main>
+  );
+}
+
+function Loaded({ of: Content }: { readonly of: React.ComponentType }) {
+  return (
+    <Suspense fallback={<p className="sheet">The page is being loaded.</p>}>
+      <Content />
+    </Suspense>
   );
 }
 

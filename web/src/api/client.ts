@@ -33,6 +33,9 @@ export type BiopsyNow = Schemas["BiopsyNow"];
 export type Force = Schemas["Force"];
 export type LogLevel = Schemas["LogLevel"];
 export type LogLine = Schemas["LogLine"];
+export type HistoryRows = Schemas["History"];
+export type Extremes = Schemas["Extremes"];
+export type Capture = Schemas["Capture"];
 export type AuditRecord = Schemas["AuditRecord"];
 export type AxisAction = paths["/api/motors/{axis}/{action}"]["post"]["parameters"]["path"]["action"];
 
@@ -202,6 +205,14 @@ export const api = {
   setNavigationRole: (id: number, role: NavigationRole) =>
     act(() =>
       http.PUT("/api/communications/connections/{id}/role", { params: { path: { id } }, body: { role } }),
+    ),
+  history: (after: number) => read(() => http.GET("/api/history", { params: { query: { after } } })),
+  /** `until`: last tick; undefined: the newest. */
+  capture: (slot: number, seconds: number, until?: number) =>
+    read(() =>
+      http.GET("/api/capture", {
+        params: { query: until === undefined ? { slot, seconds } : { slot, seconds, until } },
+      }),
     ),
   logs: (lines: number) => read(() => http.GET("/api/logs", { params: { query: { lines } } })),
   setLogLevel: (level: LogLevel) => act(() => http.PUT("/api/logs", { body: { level } })),

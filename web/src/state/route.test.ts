@@ -5,6 +5,7 @@ describe("routeOf", () => {
   it.each([
     ["", "robot"],
     ["#/robot", "robot"],
+    ["#/plots", "plots"],
     ["#/users", "users"],
     ["#audit", "audit"],
     ["#/account", "account"],
