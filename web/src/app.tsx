@@ -20,6 +20,7 @@ import { useConsole } from "./state/store";
 
 /** Loaded with the first look at it: drawing takes more code than all the rest. */
 const PlotsPage = lazy(() => import("./panels/plots/PlotsPage"));
+const ViewPage = lazy(() => import("./panels/view/ViewPage"));
 
 export function App() {
   const loggedIn = useConsole((state) => state.login.phase === "in");
@@ -35,6 +36,7 @@ function Page() {
   const route = useRoute();
   const admin = useConsole((state) => state.login.phase === "in" && state.login.user.role === "admin");
   if (route === "plots") return <Loaded of={PlotsPage} />;
+  if (route === "view") return <Loaded of={ViewPage} />;
   if (route === "codes") return <Sheet of={CodesPage} />;
   if (route === "account") return <Sheet of={AccountPage} />;
   if (route === "users" && admin) return <Sheet of={UsersPage} />;

@@ -36,6 +36,8 @@ export type LogLine = Schemas["LogLine"];
 export type HistoryRows = Schemas["History"];
 export type Extremes = Schemas["Extremes"];
 export type Capture = Schemas["Capture"];
+export type Targeting = Schemas["Targeting"];
+export type AlignmentView = Schemas["AlignmentView"];
 export type AuditRecord = Schemas["AuditRecord"];
 export type AxisAction = paths["/api/motors/{axis}/{action}"]["post"]["parameters"]["path"]["action"];
 
@@ -214,6 +216,8 @@ export const api = {
         params: { query: until === undefined ? { slot, seconds } : { slot, seconds, until } },
       }),
     ),
+  targeting: () => read(() => http.GET("/api/targeting")),
+  alignment: () => read(() => http.GET("/api/targeting/alignment")),
   logs: (lines: number) => read(() => http.GET("/api/logs", { params: { query: { lines } } })),
   setLogLevel: (level: LogLevel) => act(() => http.PUT("/api/logs", { body: { level } })),
   audit: (records: number, before?: number) =>

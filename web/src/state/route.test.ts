@@ -6,6 +6,7 @@ describe("routeOf", () => {
     ["", "robot"],
     ["#/robot", "robot"],
     ["#/plots", "plots"],
+    ["#/view", "view"],
     ["#/users", "users"],
     ["#audit", "audit"],
     ["#/account", "account"],
