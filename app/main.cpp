@@ -25,6 +25,7 @@
 #include <thread>
 
 #include "build_info/build_info.hpp"
+#include "history/history_feed.hpp"
 #include "http/server.hpp"
 #include "interlock/kernel.h"
 #include "log/log.hpp"
@@ -50,6 +51,7 @@ struct Options {
   std::string config_file;
   std::string link_socket;
   std::string bench_socket;
+  std::string black_box;
   web::Listen listen;
   std::string web_directory;
   std::string docs_directory;
@@ -72,6 +74,7 @@ void describe(CLI::App& cli, Options& options) {
       ->required();
   cli.add_option("--link", options.link_socket, "the kernel's link socket")->required();
   cli.add_option("--bench", options.bench_socket, "control socket of the simulated hardware");
+  cli.add_option("--black-box", options.black_box, "file of the kernel's black box, to show single ticks");
   cli.add_option("--listen", options.listen.address, "loopback address to serve on")->capture_default_str();
   cli.add_option("--port", options.listen.port, "port to serve on; 0: any free one")
       ->check(CLI::Range(0, 65535))
@@ -225,7 +228,10 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   const auto executor = network.get_executor();
   const auto mailbox = std::make_unique<Mailbox>();
   web::StoreGateway gateway(executor, store);
-  web::Api api(executor, model.robot, model.config, *mailbox, options.bench_socket, gateway, log);
+  const RobotPlan plan(model.robot, model.config);
+  HistoryFeed history(plan);
+  web::Api api(executor, model.robot, model.config, *mailbox, options.bench_socket, gateway, log, {},
+               {&history, options.black_box});
   web::Server server(executor, api, web::StaticFiles(options.web_directory, options.docs_directory));
   if (auto listening = server.listen(options.listen); !listening) {
     return listening;
@@ -245,7 +251,7 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
                             [&](const std::exception_ptr&) { network.stop(); });
     }
   });
-  ControlLoop control(options.link_socket, RobotPlan(model.robot, model.config), *mailbox);
+  ControlLoop control(options.link_socket, plan, *mailbox, &history);
   const std::jthread control_thread([&](const std::stop_token& stop) { control.run(stop); });
   boost::asio::co_spawn(executor, api.listen(), boost::asio::detached);
   boost::asio::co_spawn(executor, api.beat(), boost::asio::detached);

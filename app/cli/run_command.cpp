@@ -118,11 +118,11 @@ Program kernel(const RunOptions& options, const Places& places, const RuntimeDir
 }
 
 Program app(const RunOptions& options, const Places& places, const RuntimeDirectory& directory) {
-  Program program{
-      "app",
-      "interlock-app",
-      {"--robot", places.robot_file, "--config", directory.config(), "--link", directory.link(), "--bench",
-       directory.control(), "--port", std::to_string(places.port), "--state", places.state}};
+  Program program{"app",
+                  "interlock-app",
+                  {"--robot", places.robot_file, "--config", directory.config(), "--link", directory.link(),
+                   "--bench", directory.control(), "--port", std::to_string(places.port), "--state",
+                   places.state, "--black-box", black_box_file(places.state)}};
   if (places.web) {
     program.arguments.insert(program.arguments.end(), {"--web", *places.web});
   }

@@ -30,7 +30,7 @@ bool is_always_answered(std::string_view path) { return path == "/api/stop" || p
 
 Api::Api(const asio::any_io_executor& executor, const Robot& robot, const ilk_config_t& config,
          Mailbox& mailbox, const std::string& bench_socket, StoreGateway& store, Log& log,
-         const Clocks& clocks)
+         const Clocks& clocks, Past past)
     : control_(executor, mailbox),
       book_(
           robot, config, [this](const Command& command) { return control_.send(command); }, clocks.utc),
@@ -45,7 +45,8 @@ Api::Api(const asio::any_io_executor& executor, const Robot& robot, const ilk_co
       router_([this](const Caller& caller) -> std::optional<Problem> {
         const auto held = context_.need_authority(caller);
         return held ? std::nullopt : std::optional(held.error());
-      }) {
+      }),
+      history_routes_(context_, std::move(past), router_) {
   follow_proposals();
   follow_kernel();
   follow_sessions();
@@ -246,6 +247,7 @@ asio::awaitable<void> Api::beat() {
     if (error) {
       co_return;
     }
+    history_routes_.keep();
     const ControlView& seen = context_.view();
     if (!stream_.empty()) {
       stream_.send_state(

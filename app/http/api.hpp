@@ -19,6 +19,7 @@
 #include "http/routes/bench_routes.hpp"
 #include "http/routes/biopsy_routes.hpp"
 #include "http/routes/communication_routes.hpp"
+#include "http/routes/history_routes.hpp"
 #include "http/routes/jog_routes.hpp"
 #include "http/routes/log_routes.hpp"
 #include "http/routes/mode_routes.hpp"
@@ -42,10 +43,11 @@ class Api {
    * `robot`, `config`, `mailbox`, `store` and `log` must outlive it.
    *
    * @param bench_socket empty means that the hardware is real
+   * @param past what is known of former ticks
    */
   Api(const boost::asio::any_io_executor& executor, const Robot& robot, const ilk_config_t& config,
       Mailbox& mailbox, const std::string& bench_socket, StoreGateway& store, Log& log,
-      const Clocks& clocks = {});
+      const Clocks& clocks = {}, Past past = {});
 
   [[nodiscard]] const Router& router() const { return router_; }
 
@@ -111,6 +113,7 @@ class Api {
   AuthorityRoutes authority_routes_{context_, router_};
   ModeRoutes mode_routes_{context_, router_};
   LogRoutes log_routes_{context_, router_};
+  HistoryRoutes history_routes_;
   TargetingRoutes targeting_routes_{context_, router_};
   TrajectoryRoutes trajectory_routes_{context_, router_};
   CommunicationRoutes communication_routes_{context_, navigation_, router_};

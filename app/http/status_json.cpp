@@ -166,6 +166,8 @@ json motor_json(const Axis& axis, const ilk_config_t& config, const ControlView&
              {"max_counts", range.highest_counts},
              {"soft_min_counts", rules.min_counts},
              {"soft_max_counts", rules.max_counts},
+             {"coast_counts", rules.coast_counts},
+             {"unhomed_travel_counts", rules.unhomed_travel_counts},
              {"homed", state.homed != 0},
              {"homing", book.homes(axis.slot)},
              {"has_switch", rules.limit_side != ILK_LIMIT_NONE},

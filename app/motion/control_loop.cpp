@@ -30,8 +30,13 @@ ilk_request_t request_of(std::uint32_t kind, std::uint32_t slot = 0) noexcept {
 
 }  // namespace
 
-ControlLoop::ControlLoop(std::string link_socket, const RobotPlan& plan, Mailbox& mailbox)
-    : link_(std::move(link_socket)), conductor_(plan), mailbox_(mailbox), back_off_(shortest_back_off) {}
+ControlLoop::ControlLoop(std::string link_socket, const RobotPlan& plan, Mailbox& mailbox,
+                         TickObserver* observer)
+    : link_(std::move(link_socket)),
+      conductor_(plan),
+      mailbox_(mailbox),
+      observer_(observer),
+      back_off_(shortest_back_off) {}
 
 void ControlLoop::run(const std::stop_token& stop) noexcept {
   while (!stop.stop_requested()) {
@@ -103,6 +108,9 @@ void ControlLoop::tick() noexcept {
   take_commands();
   send_wishes();
   publish();
+  if (observer_ != nullptr) {
+    observer_->see(view_);
+  }
   link_.publish_seen(view_.snapshot.state.tick);
 }
 

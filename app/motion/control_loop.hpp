@@ -19,12 +19,15 @@
 #include "motion/conductor.hpp"
 #include "motion/mailbox.hpp"
 #include "motion/request_port.hpp"
+#include "motion/tick_observer.hpp"
 
 namespace interlock {
 
 class ControlLoop {
  public:
-  ControlLoop(std::string link_socket, const RobotPlan& plan, Mailbox& mailbox);
+  /** @param observer shown each tick; it must outlive the loop */
+  ControlLoop(std::string link_socket, const RobotPlan& plan, Mailbox& mailbox,
+              TickObserver* observer = nullptr);
 
   /** Serves until stopped, attaching again and again. On leaving it asks the kernel to end MOTION. */
   void run(const std::stop_token& stop) noexcept;
@@ -66,6 +69,7 @@ class ControlLoop {
   RequestPort port_{link_};
   Conductor conductor_;
   Mailbox& mailbox_;
+  TickObserver* observer_;
   ControlView view_;
   OrderTable published_orders_{};
   HomeStatus published_home_;

@@ -1,3 +1,4 @@
+import { lazy, Suspense } from "react";
 import { AccountPage } from "./panels/account/AccountPage";
 import { AuditPage } from "./panels/audit/AuditPage";
 import { CodesPage } from "./panels/codes/CodesPage";
@@ -7,6 +8,10 @@ import { RobotPage } from "./panels/robot/RobotPage";
 import { UsersPage } from "./panels/users/UsersPage";
 import { useRoute } from "./state/route";
 import { useConsole } from "./state/store";
+
+/** Loaded with the first look at it: drawing takes more code than all the rest. */
+const PlotsPage = lazy(() => import("./panels/plots/PlotsPage"));
+const ViewPage = lazy(() => import("./panels/view/ViewPage"));
 
 export function App() {
   const loggedIn = useConsole((state) => state.login.phase === "in");
@@ -22,6 +27,8 @@ function Page() {
   const route = useRoute();
   const user = useConsole((state) => (state.login.phase === "in" ? state.login.user : null));
   const admin = user?.role === "admin";
+  if (route === "plots") return <Loaded of={PlotsPage} />;
+  if (route === "view") return <Loaded of={ViewPage} />;
   if (route === "codes") return <Sheet of={CodesPage} />;
   if (route === "account") return <Sheet of={AccountPage} />;
   if (route === "users" && admin) return <Sheet of={UsersPage} />;
@@ -34,5 +41,13 @@ function Sheet({ of: Content }: { readonly of: () => React.ReactNode }) {
     <main className="sheet">
       <Content />
     </main>
+  );
+}
+
+function Loaded({ of: Content }: { readonly of: React.ComponentType }) {
+  return (
+    <Suspense fallback={<p className="sheet">The page is being loaded.</p>}>
+      <Content />
+    </Suspense>
   );
 }

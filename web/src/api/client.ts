@@ -33,6 +33,11 @@ export type BiopsyNow = Schemas["BiopsyNow"];
 export type Force = Schemas["Force"];
 export type LogLevel = Schemas["LogLevel"];
 export type LogLine = Schemas["LogLine"];
+export type HistoryRows = Schemas["History"];
+export type Extremes = Schemas["Extremes"];
+export type Capture = Schemas["Capture"];
+export type Targeting = Schemas["Targeting"];
+export type AlignmentView = Schemas["AlignmentView"];
 export type AuditRecord = Schemas["AuditRecord"];
 export type AxisAction = paths["/api/motors/{axis}/{action}"]["post"]["parameters"]["path"]["action"];
 
@@ -203,6 +208,16 @@ export const api = {
     act(() =>
       http.PUT("/api/communications/connections/{id}/role", { params: { path: { id } }, body: { role } }),
     ),
+  history: (after: number) => read(() => http.GET("/api/history", { params: { query: { after } } })),
+  /** `until`: last tick; undefined: the newest. */
+  capture: (slot: number, seconds: number, until?: number) =>
+    read(() =>
+      http.GET("/api/capture", {
+        params: { query: until === undefined ? { slot, seconds } : { slot, seconds, until } },
+      }),
+    ),
+  targeting: () => read(() => http.GET("/api/targeting")),
+  alignment: () => read(() => http.GET("/api/targeting/alignment")),
   logs: (lines: number) => read(() => http.GET("/api/logs", { params: { query: { lines } } })),
   setLogLevel: (level: LogLevel) => act(() => http.PUT("/api/logs", { body: { level } })),
   audit: (records: number, before?: number) =>

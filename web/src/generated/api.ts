@@ -663,6 +663,46 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/history": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * The last two minutes of each axis, for plots. Each row covers the ticks of 33 ms and has the least and the greatest
+         *     value of all of them that the app saw, so that no peak is lost. At most 300 rows, oldest first.
+         */
+        get: operations["getHistory"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/capture": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * One axis in every single tick, read from the kernel's black box, which holds a minute. Ticks that it does not hold are
+         *     left out.
+         */
+        get: operations["getCapture"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/audit": {
         parameters: {
             query?: never;
@@ -979,7 +1019,7 @@ export interface components {
              * @description Verdict name, or NOT_FOUND, METHOD_NOT_ALLOWED, MALFORMED, INVALID, TOO_LARGE, HOST, ORIGIN, UPGRADE_REQUIRED,
              *     LOGIN, CREDENTIALS, BACK_OFF, ROLE, AUTHORITY, EXISTS, LAST_ADMIN, STORE, STOPPED, MODE_HOME, MODE_PATH, NOT_HOMED, SEPARATION, HAS_SWITCH,
              *     POSITIONS_ROBOT, POSITIONS_CONFIG, POSITIONS_VERSION,
-             *     NO_KERNEL, NO_BENCH, PEDAL_LAPSED, JOG_LAPSED, CONFIG_MISMATCH, ENDED, OVERLOADED, INTERNAL; of paths NO_PATH, UNREACHABLE, STALE,
+             *     NO_KERNEL, NO_BENCH, NO_BLACK_BOX, PEDAL_LAPSED, JOG_LAPSED, CONFIG_MISMATCH, ENDED, OVERLOADED, INTERNAL; of paths NO_PATH, UNREACHABLE, STALE,
              *     EMPTY, NO_TARGETS, NOT_WAITING; of a trajectory or a pose a code of `interlock trajectory check` or of `interlock kinematics`.
              */
             code: string;
@@ -1037,11 +1077,16 @@ export interface components {
             }[];
             /** @description Per phase of the tick, histogram in powers of two of nanoseconds, and the maximum. */
             timing: {
-                [key: string]: {
-                    max_ns?: number;
-                    buckets?: number[];
-                };
+                wake: components["schemas"]["PhaseTiming"];
+                bus: components["schemas"]["PhaseTiming"];
+                step: components["schemas"]["PhaseTiming"];
+                publish: components["schemas"]["PhaseTiming"];
             };
+        };
+        PhaseTiming: {
+            max_ns: number;
+            /** @description Ticks that took from 2^n to 2^(n+1) ns, n from 0. */
+            buckets: number[];
         };
         Motor: {
             slot: number;
@@ -1065,6 +1110,10 @@ export interface components {
             max_counts: number;
             soft_min_counts: number;
             soft_max_counts: number;
+            /** @description Farthest travel from the last reading that allowed drive until rest. */
+            coast_counts: number;
+            /** @description Farthest travel while the pedal stays pressed and the axis is not homed. */
+            unhomed_travel_counts: number;
             homed: boolean;
             /** @description An open proposal homes this axis. */
             homing: boolean;
@@ -1587,6 +1636,61 @@ export interface components {
         };
         Disconnect: {
             id: number;
+        };
+        /** @description Of the ticks of each row; null where none had the quantity. */
+        Extremes: {
+            least: (number | null)[];
+            greatest: (number | null)[];
+        };
+        History: {
+            /** @description Seconds since 1970 at which the app began; numbers of two runs of the app are no sequence. */
+            app_begun_s: number;
+            period_us: number;
+            /** @description Ticks that a row covers when none was missed. */
+            ticks_of_bucket: number;
+            /** @description Number of the first row. */
+            first: number;
+            /** @description Number of the last row; what to ask `after` next. */
+            next: number;
+            /** @description There are further rows already. */
+            more: boolean;
+            /** @description Grows when the kernel's ticks began anew. */
+            run: number[];
+            /** @description Newest tick of each row. */
+            last_tick: number[];
+            /** @description Ticks of each row that the app saw; the extremes are theirs. */
+            ticks: number[];
+            axes: {
+                slot: number;
+                /** @description Of valid frames. */
+                position_counts: components["schemas"]["Extremes"];
+                /** @description While the axis is MOVING. */
+                setpoint_counts: components["schemas"]["Extremes"];
+                /** @description Setpoint less position, while the axis is MOVING. */
+                error_counts: components["schemas"]["Extremes"];
+                /** @description Slope of the last 20 ms by the card's clock. */
+                velocity_counts_per_s: components["schemas"]["Extremes"];
+                /** @description Card words that left the kernel's gate; negative: decreasing. */
+                drive: components["schemas"]["Extremes"];
+            }[];
+            /** @description Of a robot with a needle, by the zeroes of now. */
+            forces: null | {
+                hand_n: components["schemas"]["Extremes"];
+                needle_n: components["schemas"]["Extremes"];
+            };
+        };
+        Capture: {
+            slot: number;
+            period_us: number;
+            tick: number[];
+            /** @description When each tick began, in microseconds after the first one. */
+            begun_us: number[];
+            /** @description Null without a valid frame. */
+            position_counts: (number | null)[];
+            /** @description While the axis is MOVING, else null. */
+            setpoint_counts: (number | null)[];
+            /** @description Card words that left the kernel's gate; negative: decreasing. */
+            drive: number[];
         };
         LogLine: {
             sequence: number;
@@ -2864,6 +2968,68 @@ export interface operations {
             403: components["responses"]["Role"];
             422: components["responses"]["Invalid"];
             503: components["responses"]["NoStore"];
+        };
+    };
+    getHistory: {
+        parameters: {
+            query?: {
+                /** @description Only rows after this number, as `next` of an answer before; 0: all. */
+                after?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Rows, column by column. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["History"];
+                };
+            };
+            401: components["responses"]["Login"];
+            422: components["responses"]["Invalid"];
+        };
+    };
+    getCapture: {
+        parameters: {
+            query: {
+                slot: number;
+                /** @description Of kernel time. */
+                seconds?: number;
+                /** @description Last tick; left out: the newest. */
+                until?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Ticks, column by column, oldest first. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Capture"];
+                };
+            };
+            401: components["responses"]["Login"];
+            422: components["responses"]["Invalid"];
+            /** @description `NO_BLACK_BOX`: there is none that can be read. `OVERLOADED`: too much else waits. */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
         };
     };
     getAudit: {

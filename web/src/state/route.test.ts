@@ -5,6 +5,8 @@ describe("routeOf", () => {
   it.each([
     ["", "robot"],
     ["#/robot", "robot"],
+    ["#/plots", "plots"],
+    ["#/view", "view"],
     ["#/users", "users"],
     ["#audit", "audit"],
     ["#/account", "account"],

@@ -1,5 +1,6 @@
 import { useCallback, useState } from "react";
 import type { Motor } from "../../api/client";
+import { CodeLink } from "../../design/CodeLink";
 import { CommandButton } from "../../design/CommandButton";
 import { Refusal } from "../../design/Refusal";
 import { entry } from "../../generated/catalog";
@@ -10,6 +11,7 @@ import { useConsole } from "../../state/store";
 import type { AxisFrame } from "../../stream/decode";
 import { formatCounts } from "../../units/units";
 import { AxisActions } from "./AxisActions";
+import { ErrorLine } from "./ErrorLine";
 import { explainDrive, explainFault, type FaultStory } from "./explain";
 import { GateList } from "./GateList";
 import { JogPad } from "./JogPad";
@@ -36,7 +38,12 @@ export function AxisRow({ motor, homing }: AxisRowProps) {
   const fault = explainFault(axis);
   const wished = preview?.counts ?? typed;
   return (
-    <li className="axis-row" data-state={axis.state} aria-label={`Axis ${motor.title}`}>
+    <li
+      className="axis-row"
+      data-state={axis.state}
+      data-homed={axis.homed}
+      aria-label={`Axis ${motor.title}`}
+    >
       <Identity motor={motor} axis={axis} />
       <div className="track-area">
         <SwitchLamp motor={motor} axis={axis} side="LOWER" />
@@ -51,6 +58,9 @@ export function AxisRow({ motor, homing }: AxisRowProps) {
       >
         {formatCounts(motor, axis.positionCounts)}
         <small>{axis.positionCounts} counts</small>
+        <small title="Farthest travel from the last reading that allowed drive until rest">
+          stops ≤ {formatCounts(motor, motor.coast_counts)}
+        </small>
       </output>
       <TargetEntry motor={motor} onTyped={setTyped} />
       <AxisActions motor={motor} axis={axis} homing={homing} onOverride={() => setOverriding(true)} />
@@ -62,6 +72,7 @@ export function AxisRow({ motor, homing }: AxisRowProps) {
         ) : (
           <FaultWords motor={motor} fault={fault} />
         )}
+        <ErrorLine motor={motor} />
         {notice !== undefined && (
           <Refusal
             place={motor.slot}
@@ -106,9 +117,9 @@ function Identity({ motor, axis }: AxisProps) {
       {!axis.homed && (
         <span
           className="chip unhomed"
-          title="No reference: slow and short moves only. Home the axis for its full range."
+          title={`No reference: what is shown is no place. Slow, and at most ${unhomedTravel(motor)} for each press of the pedal, until the axis is homed.`}
         >
-          UNHOMED
+          <i aria-hidden="true">◌</i> UNHOMED · ≤ {unhomedTravel(motor)}
         </span>
       )}
       {!axis.cardValid && (
@@ -118,6 +129,10 @@ function Identity({ motor, axis }: AxisProps) {
       )}
     </div>
   );
+}
+
+function unhomedTravel(motor: Motor): string {
+  return formatCounts(motor, motor.unhomed_travel_counts);
 }
 
 function DriveWords({ motor, axis }: AxisProps) {
@@ -131,7 +146,11 @@ function DriveWords({ motor, axis }: AxisProps) {
         <p className="drive-words" title={`${story.text} ${story.nextStep}`}>
           {!story.driven && (
             <>
-              Not driven: <strong>{story.gate}</strong> ·{" "}
+              Not driven:{" "}
+              <strong>
+                <CodeLink family="gate" code={story.gate} />
+              </strong>{" "}
+              ·{" "}
             </>
           )}
           {story.text} {story.nextStep !== "" && <span className="next-step">{story.nextStep}</span>}
@@ -156,8 +175,10 @@ function FaultWords({ motor, fault }: { readonly motor: Motor; readonly fault: F
   return (
     <div className="fault-words" role="alert">
       <p title={fault.evidence}>
-        <strong>▲ {fault.name}</strong> {fault.meaning} <em>Likely: {fault.cause}</em>{" "}
-        <span className="next-step">{fault.nextStep}</span>
+        <strong>
+          ▲ <CodeLink family="fault" code={fault.name} />
+        </strong>{" "}
+        {fault.meaning} <em>Likely: {fault.cause}</em> <span className="next-step">{fault.nextStep}</span>
       </p>
       <CommandButton
         need="holder"

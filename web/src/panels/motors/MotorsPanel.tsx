@@ -11,6 +11,7 @@ import { AxisRow } from "./AxisRow";
 import { HomeBar } from "./HomeBar";
 import { HomingProgress } from "./HomingProgress";
 import "./motors.css";
+import { useErrorWatch } from "./useErrorWatch";
 
 /** The robot's axes in the order of its file. */
 export function MotorsPanel() {
@@ -19,6 +20,7 @@ export function MotorsPanel() {
   const homing = useConsole((state) => openHoming(state.proposals));
   const notice = useConsole((state) => state.notices.robot);
   const loading = useLoad();
+  useErrorWatch();
   const tools = (
     <>
       <SaveButton />

@@ -2,7 +2,7 @@ import { useId } from "react";
 import type { Motor } from "../../api/client";
 import type { AxisFrame } from "../../stream/decode";
 import { formatCounts } from "../../units/units";
-import { type Domain, fractionOf, isAllowed } from "./geometry";
+import { type Domain, fractionOf, isAllowed, stoppingRange } from "./geometry";
 
 interface TrackDrawingProps {
   readonly motor: Motor;
@@ -68,6 +68,7 @@ export function TrackDrawing({ motor, axis, domain, previewCounts }: TrackDrawin
           y2={RAIL_Y}
         />
       )}
+      <StoppingGhost motor={motor} axis={axis} at={at} span={span} />
       <svg aria-hidden="true" className="measured" x={at(axis.positionCounts)} y={RAIL_Y} overflow="visible">
         <path d="M0-7.5 7.5 0 0 7.5-7.5 0z" />
       </svg>
@@ -87,6 +88,28 @@ export function TrackDrawing({ motor, axis, domain, previewCounts }: TrackDrawin
         </g>
       )}
     </svg>
+  );
+}
+
+interface StoppingGhostProps {
+  readonly motor: Motor;
+  readonly axis: AxisFrame;
+  readonly at: (counts: number) => string;
+  readonly span: (from: number, to: number) => string;
+}
+
+/** Where a driven axis comes to rest at the latest when its drive is taken away now. */
+function StoppingGhost({ motor, axis, at, span }: StoppingGhostProps) {
+  const ghost = stoppingRange(motor, axis);
+  if (ghost === null) return null;
+  return (
+    <rect
+      className="stopping"
+      x={at(ghost.min)}
+      width={span(ghost.min, ghost.max)}
+      y={RAIL_Y - 6}
+      height="12"
+    />
   );
 }
 

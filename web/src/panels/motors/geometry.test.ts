@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import type { Motor } from "../../api/client";
 import type { AxisFrame } from "../../stream/decode";
-import { countsAt, fractionOf, isAllowed, previewAfterKey, trackDomain } from "./geometry";
+import { countsAt, fractionOf, isAllowed, previewAfterKey, stoppingRange, trackDomain } from "./geometry";
 
 const motor = { soft_min_counts: -1000, soft_max_counts: 1000 } as Motor;
 const axis = { positionCounts: 0, minCounts: -988, maxCounts: 988 } as AxisFrame;
@@ -68,5 +68,20 @@ describe("isAllowed", () => {
       true,
       false,
     ]);
+  });
+});
+
+describe("stoppingRange", () => {
+  const coasting = { ...motor, coast_counts: 12 } as Motor;
+  const at = (direction: AxisFrame["direction"]) =>
+    ({ ...axis, positionCounts: 100, direction }) as AxisFrame;
+
+  it("lies ahead of an axis that is driven", () => {
+    expect(stoppingRange(coasting, at("INCREASING"))).toEqual({ min: 100, max: 112 });
+    expect(stoppingRange(coasting, at("DECREASING"))).toEqual({ min: 88, max: 100 });
+  });
+
+  it("is nothing without drive", () => {
+    expect(stoppingRange(coasting, at("NONE"))).toBeNull();
   });
 });

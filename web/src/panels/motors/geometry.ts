@@ -64,3 +64,13 @@ export function previewAfterKey(motor: Motor, axis: AxisFrame, preview: number, 
 export function isAllowed(axis: AxisFrame, counts: number): boolean {
   return counts >= axis.minCounts && counts <= axis.maxCounts;
 }
+
+/** Where the axis may still go when its drive is taken away now; null while it is not driven. */
+export function stoppingRange(motor: Motor, axis: AxisFrame): Domain | null {
+  const { positionCounts } = axis;
+  if (axis.direction === "INCREASING")
+    return { min: positionCounts, max: positionCounts + motor.coast_counts };
+  if (axis.direction === "DECREASING")
+    return { min: positionCounts - motor.coast_counts, max: positionCounts };
+  return null;
+}

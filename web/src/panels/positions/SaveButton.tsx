@@ -1,5 +1,6 @@
 import { useState } from "react";
-import { api, type PositionsFile } from "../../api/client";
+import { api } from "../../api/client";
+import { download } from "../../design/download";
 import { NoticeText } from "../../design/NoticeText";
 import { type Notice, noticeOfProblem } from "../../state/notice";
 import { fileName } from "./file";
@@ -10,7 +11,8 @@ export function SaveButton() {
   const save = async (): Promise<void> => {
     const outcome = await api.positions();
     setNotice(outcome.ok ? null : noticeOfProblem(outcome.problem));
-    if (outcome.ok) download(outcome.value);
+    if (!outcome.ok) return;
+    download(fileName(outcome.value), "application/json", `${JSON.stringify(outcome.value, null, 2)}\n`);
   };
   return (
     <>
@@ -30,16 +32,4 @@ export function SaveButton() {
       </button>
     </>
   );
-}
-
-function download(file: PositionsFile): void {
-  const url = URL.createObjectURL(
-    new Blob([`${JSON.stringify(file, null, 2)}\n`], { type: "application/json" }),
-  );
-  const link = document.createElement("a");
-  link.href = url;
-  link.download = fileName(file);
-  link.click();
-  // The browser reads it after this handler has ended.
-  setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }

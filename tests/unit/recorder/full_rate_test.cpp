@@ -1,0 +1,81 @@
+#include "recorder/full_rate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <stdexcept>
+#include <vector>
+
+#include "recorded_run.hpp"
+
+namespace interlock::recorder {
+namespace {
+
+using recorder_test::KnownTick;
+using recorder_test::RecordedRun;
+using recorder_test::ScratchFolder;
+
+constexpr std::uint32_t slot = 2;
+
+class FullRate : public testing::Test {
+ protected:
+  /** So many ticks of the random world, each of which is known. */
+  void run(std::uint32_t ticks) {
+    run_.run(ticks, [this](const KnownTick& tick) { known_[tick.picture.state.tick] = tick; });
+  }
+
+  [[nodiscard]] std::vector<AxisTick> read(const AxisSpan& span) const {
+    const Recorded<Ring> ring = Ring::open(scratch_.file("ring"));
+    return ring ? full_rate(*ring, span) : throw std::runtime_error(ring.error());
+  }
+
+  ScratchFolder scratch_;
+  RecordedRun run_{scratch_.file("ring"), 7, 2};
+  std::map<std::uint32_t, KnownTick> known_;
+};
+
+TEST_F(FullRate, EachTickIsAsTheKernelKnewIt) {
+  run(1500);
+  const std::vector<AxisTick> ticks = read({slot, 1, std::nullopt});
+  ASSERT_EQ(ticks.size(), 1000U);
+  EXPECT_EQ(ticks.back().tick, 1500U);
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    ASSERT_EQ(ticks[i].tick, 501 + i);
+    const KnownTick& was = known_.at(ticks[i].tick);
+    const ilk_axis_t& axis = was.picture.state.axis[slot];
+    const ilk_command_t& command = was.picture.out.command[slot];
+    const auto drive = static_cast<std::int32_t>(command.drive);
+    EXPECT_EQ(ticks[i].begun_ns, was.begun_ns);
+    EXPECT_EQ(ticks[i].position_counts,
+              axis.card_valid != 0 ? std::optional(axis.position_counts) : std::nullopt);
+    EXPECT_EQ(ticks[i].setpoint_counts,
+              axis.state == ILK_AXIS_MOVING ? std::optional(axis.setpoint_counts) : std::nullopt);
+    EXPECT_EQ(ticks[i].drive, command.direction == ILK_DIRECTION_DECREASING ? -drive : drive);
+  }
+}
+
+TEST_F(FullRate, EndsAtTheTickThatIsAskedFor) {
+  run(1900);
+  const std::vector<AxisTick> ticks = read({slot, 1, 1200});
+  ASSERT_EQ(ticks.size(), 1000U);
+  EXPECT_EQ(ticks.front().tick, 201U);
+  EXPECT_EQ(ticks.back().tick, 1200U);
+}
+
+TEST_F(FullRate, OfARunThatIsShorterThereAreAllTicks) {
+  run(300);
+  const std::vector<AxisTick> ticks = read({slot, 10, std::nullopt});
+  ASSERT_EQ(ticks.size(), 300U);
+  EXPECT_EQ(ticks.front().tick, 1U);
+}
+
+TEST_F(FullRate, WhatWasOverwrittenIsLeftOut) {
+  run_.run(10);
+  EXPECT_EQ(read({slot, 1, 5}).size(), 5U);
+  run_.run(24'000);
+  EXPECT_TRUE(read({slot, 1, 5}).empty());
+  EXPECT_FALSE(read({slot, 1, std::nullopt}).empty());
+}
+
+}  // namespace
+}  // namespace interlock::recorder

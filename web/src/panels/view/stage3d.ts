@@ -1,0 +1,203 @@
+/** The scene on a WebGL canvas. It draws when something changed, and at no other time. */
+import {
+  AmbientLight,
+  BufferGeometry,
+  Color,
+  ConeGeometry,
+  CylinderGeometry,
+  DirectionalLight,
+  Group,
+  Line,
+  LineBasicMaterial,
+  LineDashedMaterial,
+  type Material,
+  Matrix4,
+  Mesh,
+  MeshStandardMaterial,
+  type Object3D,
+  PerspectiveCamera,
+  Quaternion,
+  Scene as Scene3d,
+  SphereGeometry,
+  Vector3,
+  WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { FIELD_OF_VIEW_DEG, type Preset, standOf } from "./cameras";
+import { type Axes, type Ball, ballAround, type Mark, type Point, type Probe, type Scene } from "./scene";
+
+/** Colours of the style sheet, as the browser computes them. */
+export interface Inks {
+  readonly ground: string;
+  readonly measured: string;
+  readonly wish: string;
+  readonly ghost: string;
+  readonly target: string;
+  readonly entry: string;
+  readonly alarm: string;
+}
+
+/** X red, Y green, Z blue in every viewer of the field; the ends have letters beside the canvas. */
+const AXIS_COLOURS = ["#c8443a", "#3d8f4f", "#3f74d1"] as const;
+const PROBE_RADIUS_MM = 1.2;
+const MARK_RADIUS_MM = 3;
+const UP = new Vector3(0, 1, 0);
+
+export class Stage3d {
+  private readonly renderer: WebGLRenderer;
+  private readonly scene = new Scene3d();
+  private readonly camera = new PerspectiveCamera(FIELD_OF_VIEW_DEG, 1, 1, 20_000);
+  private readonly controls: OrbitControls;
+  private content = new Group();
+  private ball: Ball | null = null;
+  private preset: Preset;
+  private asked = false;
+
+  /** Null where the browser has no WebGL. */
+  static on(canvas: HTMLCanvasElement, preset: Preset, inks: () => Inks): Stage3d | null {
+    const context = canvas.getContext("webgl2", { antialias: true });
+    return context === null ? null : new Stage3d(canvas, context, preset, inks);
+  }
+
+  private constructor(
+    canvas: HTMLCanvasElement,
+    context: WebGL2RenderingContext,
+    preset: Preset,
+    private readonly inks: () => Inks,
+  ) {
+    this.renderer = new WebGLRenderer({ canvas, context });
+    this.renderer.setPixelRatio(Math.min(globalThis.devicePixelRatio, 2));
+    this.preset = preset;
+    const sun = new DirectionalLight("#ffffff", 1.6);
+    sun.position.set(1, 2, 3);
+    this.scene.add(new AmbientLight("#ffffff", 1.6), sun, this.content);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.addEventListener("change", () => this.draw());
+  }
+
+  resize(width: number, height: number): void {
+    if (width === 0 || height === 0) return;
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  show(scene: Scene): void {
+    const inks = this.inks();
+    release(this.content);
+    this.scene.remove(this.content);
+    this.content = new Group();
+    this.content.add(
+      ...scene.axes.map(axesOf),
+      ...scene.probes.map((probe) => probeOf(probe, inks)),
+      ...scene.marks.map((mark) => markOf(mark, inks)),
+      ...(scene.deviation === null ? [] : [lineOf(scene.deviation, dashed(inks.alarm))]),
+    );
+    this.scene.add(this.content);
+    this.scene.background = new Color(inks.ground);
+    const first = this.ball === null;
+    this.ball = ballAround(scene);
+    if (first) this.look(this.preset);
+    else this.draw();
+  }
+
+  /** Looks at everything from there. */
+  look(preset: Preset): void {
+    this.preset = preset;
+    if (this.ball === null) return;
+    this.camera.up.set(...preset.up);
+    this.camera.position.set(...standOf(preset, this.ball, this.camera.aspect));
+    this.controls.target.set(...this.ball.centre);
+    this.controls.update();
+    this.draw();
+  }
+
+  dispose(): void {
+    release(this.content);
+    this.controls.dispose();
+    this.renderer.dispose();
+  }
+
+  /** Once for all changes before the next picture. */
+  private draw(): void {
+    if (this.asked) return;
+    this.asked = true;
+    requestAnimationFrame(() => {
+      this.asked = false;
+      this.renderer.render(this.scene, this.camera);
+    });
+  }
+}
+
+function axesOf({ pose, lengthMm }: Axes): Object3D {
+  const group = new Group();
+  AXIS_COLOURS.forEach((colour, axis) => {
+    const end: Point = [axis === 0 ? lengthMm : 0, axis === 1 ? lengthMm : 0, axis === 2 ? lengthMm : 0];
+    group.add(lineOf([[0, 0, 0], end], new LineBasicMaterial({ color: colour })));
+    const tip = new Mesh(
+      new ConeGeometry(lengthMm / 24, lengthMm / 8, 12),
+      new MeshStandardMaterial({ color: colour }),
+    );
+    tip.position.set(...end);
+    tip.quaternion.setFromUnitVectors(UP, new Vector3(...end).normalize());
+    group.add(tip);
+  });
+  const [m = [], n = [], o = [], p = []] = [0, 4, 8, 12].map((row) => pose.slice(row, row + 4));
+  group.applyMatrix4(new Matrix4().fromArray([...m, ...n, ...o, ...p]).transpose());
+  return group;
+}
+
+function probeOf({ kind, cannula, treatment, tip }: Probe, inks: Inks): Object3D {
+  const group = new Group();
+  const colour = kind === "current" ? inks.measured : kind === "reachable" ? inks.ghost : inks.wish;
+  if (kind === "desired") {
+    group.add(lineOf([cannula, tip], dashed(colour)));
+    return group;
+  }
+  const ghost = kind === "reachable" ? { transparent: true, opacity: 0.35 } : {};
+  group.add(rodOf(cannula, tip, PROBE_RADIUS_MM, new MeshStandardMaterial({ color: colour, ...ghost })));
+  group.add(ballAt(treatment, 1.8 * PROBE_RADIUS_MM, new MeshStandardMaterial({ color: colour, ...ghost })));
+  return group;
+}
+
+function markOf({ kind, at }: Mark, inks: Inks): Object3D {
+  const material = new MeshStandardMaterial({ color: kind === "target" ? inks.target : inks.entry });
+  if (kind === "target") return ballAt(at, MARK_RADIUS_MM, material);
+  const cone = new Mesh(new ConeGeometry(MARK_RADIUS_MM, 2 * MARK_RADIUS_MM, 4), material);
+  cone.position.set(...at);
+  return cone;
+}
+
+function ballAt(at: Point, radiusMm: number, material: Material): Object3D {
+  const ball = new Mesh(new SphereGeometry(radiusMm, 24, 16), material);
+  ball.position.set(...at);
+  return ball;
+}
+
+function rodOf(from: Point, to: Point, radiusMm: number, material: Material): Object3D {
+  const [start, end] = [new Vector3(...from), new Vector3(...to)];
+  const way = end.clone().sub(start);
+  const rod = new Mesh(new CylinderGeometry(radiusMm, radiusMm, Math.max(way.length(), 1e-3), 16), material);
+  rod.position.copy(start).addScaledVector(way, 0.5);
+  rod.quaternion.copy(new Quaternion().setFromUnitVectors(UP, way.normalize()));
+  return rod;
+}
+
+function dashed(colour: string): LineDashedMaterial {
+  return new LineDashedMaterial({ color: colour, dashSize: 3, gapSize: 2 });
+}
+
+function lineOf(ends: readonly [Point, Point], material: Material): Line {
+  const line = new Line(new BufferGeometry().setFromPoints(ends.map((end) => new Vector3(...end))), material);
+  return line.computeLineDistances();
+}
+
+function release(group: Group): void {
+  group.traverse((each) => {
+    if (each instanceof Mesh || each instanceof Line) {
+      each.geometry.dispose();
+      each.material.dispose();
+    }
+  });
+}
