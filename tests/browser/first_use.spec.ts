@@ -162,6 +162,7 @@ test("a jammed axis stalls, names the fault with its next step, and moves again 
   const fault = axis.row.getByRole("alert").filter({ hasText: "STALL" });
   await expect(fault).toContainText("driven without making progress");
   await expect(fault).toContainText("Look for an obstacle");
+  await expect(fault.getByRole("link", { name: "STALL" })).toHaveAttribute("href", "#/codes/fault/STALL");
   await robot.expectMode("READY");
   await axis.press("Clear");
   await axis.expectRefusal("PEDAL_DOWN");

@@ -137,3 +137,36 @@ test.describe("the prostate robot", () => {
     await expect(robot.proposal(1)).toContainText("aborted");
   });
 });
+
+test("an axis without reference looks unlike one that has it", async ({ robot }) => {
+  const unhomed = robot.axis("Probe rotation").row.getByText("UNHOMED");
+  await robot.unlockRobot();
+  await expect(unhomed).toContainText("◌");
+  await expect(unhomed).toContainText(/≤ \d+\.\d+°/);
+  await robot.axis("Probe rotation").setHome();
+  await expect(unhomed).toHaveCount(0);
+  await expect(robot.axis("Yaw").row.getByText("UNHOMED")).toBeVisible();
+});
+
+test("the largest following error stays until it is reset by hand; how far the axis coasts is shown", async ({
+  robot,
+}) => {
+  const axis = robot.axis("Probe rotation");
+  const largest = axis.row.getByRole("status", { name: "Largest following error of Probe rotation" });
+  await robot.unlockRobot();
+  await axis.setHome();
+  await axis.enable();
+  await expect(axis.row.getByText(/stops ≤ \d/)).toBeVisible();
+  await expect(largest).toHaveCount(0);
+  await robot.latchPedal();
+  await axis.propose("5");
+  await expect(robot.proposal(1)).toContainText("done", { timeout: 40_000 });
+  await expect(largest).toHaveText(/-?\d+\.\d+°/);
+  const after = await largest.textContent();
+  await expect(
+    axis.row.getByRole("status", { name: "Following error of Probe rotation", exact: true }),
+  ).toHaveText("none now");
+  await expect(largest).toHaveText(after ?? "");
+  await robot.button("Reset the largest following error of Probe rotation").click();
+  await expect(largest).toHaveCount(0);
+});
