@@ -110,6 +110,14 @@ campaign-selftest: setup ## Show that the campaign finds each seeded fault of th
 bench: build ## Measure kernel step (time, text size, stack) and control tick against their limits
 	@python verification/bench/run.py
 
+.PHONY: bench-console
+bench-console: build ## Measure load, response, memory and the app's processor time of the console: [MINUTES=10]
+	@python verification/console/run.py --minutes $(or $(MINUTES),10)
+
+.PHONY: pictures
+pictures: build ## Take the manual's pictures of every page, in both themes, into build/pictures/
+	@npm --prefix web run --silent measure -- pictures.measure.ts
+
 .PHONY: study
 study: build ## Measure steering and membrane detection on simulated insertions against their limits
 	@python verification/steering/run.py
