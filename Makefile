@@ -124,6 +124,14 @@ scenarios: build ## Kill, freeze, starve and flood the real processes, 200 times
 bench: build ## Measure step, loop, reaction, link and rate beside cyclictest: [DURATION=10] [RATE_SECONDS=2]
 	@python verification/bench/run.py --duration $(or $(DURATION),10) --rate-seconds $(or $(RATE_SECONDS),2)
 
+.PHONY: bench-console
+bench-console: build ## Measure load, response, memory and the app's processor time of the console: [MINUTES=10]
+	@python verification/console/run.py --minutes $(or $(MINUTES),10)
+
+.PHONY: pictures
+pictures: build ## Take the manual's pictures of every page, in both themes, into build/pictures/
+	@npm --prefix web run --silent measure -- pictures.measure.ts
+
 .PHONY: study
 study: build ## Measure steering and membrane detection on simulated insertions against their limits
 	@python verification/steering/run.py

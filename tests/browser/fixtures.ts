@@ -1,12 +1,13 @@
 import { test as base, expect, type Page } from "@playwright/test";
 import { ConsolePage } from "./console_page";
-import { type RobotName, Stack } from "./stack";
+import { type Clock, type RobotName, Stack } from "./stack";
 
 /** What Chromium reports on its console by design: refused requests, an app that is gone or has no kernel yet, a slow picture. */
 const expectedComplaint = /status of (401|403|409|422|429|503)|ERR_CONNECTION_|GPU stall due to ReadPixels/;
 
 interface Fixtures {
   robotName: RobotName;
+  clock: Clock;
   stack: Stack;
   /** The console before login. */
   front: ConsolePage;
@@ -19,8 +20,9 @@ interface Fixtures {
 /** Each test has a robot of its own, and fails when a page breaks a rule of its content policy or throws. */
 export const test = base.extend<Fixtures>({
   robotName: ["neuro", { option: true }],
-  stack: async ({ robotName }, use) => {
-    const stack = await Stack.start(robotName);
+  clock: ["sim", { option: true }],
+  stack: async ({ robotName, clock }, use) => {
+    const stack = await Stack.start(robotName, clock);
     await use(stack);
     await stack.end();
   },

@@ -9,6 +9,10 @@ import { programs } from "./places";
 const READY_WITHIN_MS = 30_000;
 /** The app's patience with a held pedal is 500 ms of this clock: half the speed is twice the time for a busy machine. */
 const SPEED = "0.5";
+/** In which /proc counts processor time. */
+const CLOCK_TICKS_PER_S = 100;
+
+export type Clock = "sim" | "real";
 
 export type RobotName = "neuro" | "prostate";
 
@@ -36,12 +40,13 @@ export class Stack {
   }
 
   /** Starts the robot with a fresh state and waits for its ready line. */
-  static async start(robot: RobotName): Promise<Stack> {
+  static async start(robot: RobotName, clock: Clock): Promise<Stack> {
     const state = mkdtempSync(path.join(tmpdir(), "interlock-browser-"));
     const run = spawn(
       path.join(programs, "interlock"),
       [
-        ...["run", "--robot", robot, "--clock", "sim", "--speed", SPEED],
+        ...["run", "--robot", robot, "--clock", clock],
+        ...(clock === "sim" ? ["--speed", SPEED] : []),
         ...["--port", "0", "--igtl-port", "0", "--state", state],
       ],
       { stdio: ["ignore", "pipe", "pipe"] },
@@ -52,6 +57,18 @@ export class Stack {
   /** Signals the app's process alone; kernel and simulator run on. */
   signalApp(signal: "SIGSTOP" | "SIGCONT" | "SIGKILL"): void {
     process.kill(this.appPid(), signal);
+  }
+
+  /** Processor time that the app has taken since it started. */
+  appCpuS(): number {
+    const line = readFileSync(`/proc/${this.appPid()}/stat`, "utf8");
+    // After the name in brackets: the state, ten numbers, then user and system time.
+    const [user, system] = line
+      .slice(line.lastIndexOf(")") + 2)
+      .split(" ")
+      .slice(11, 13)
+      .map(Number);
+    return ((user ?? Number.NaN) + (system ?? Number.NaN)) / CLOCK_TICKS_PER_S;
   }
 
   /** Ends all processes and removes their state. */

@@ -69,6 +69,8 @@ export interface ConsoleState {
   readonly stops: number;
   /** Whether the user arranges the panels of the robot's page. */
   readonly arranging: boolean;
+  /** Whether the walk-through of the first move is shown. */
+  readonly firstSteps: boolean;
 }
 
 export const MOST_PROPOSALS = 200;
@@ -99,6 +101,7 @@ export const initialState: ConsoleState = {
   stop: { phase: "idle" },
   stops: 0,
   arranging: false,
+  firstSteps: false,
 };
 
 export const useConsole = create<ConsoleState>(() => initialState);

@@ -9,6 +9,7 @@ import { isOpen } from "../../state/proposals";
 import { useConsole } from "../../state/store";
 import { localTime } from "../../units/time";
 import { formatCounts } from "../../units/units";
+import { FirstSteps, FirstStepsButton } from "../first/FirstSteps";
 import "./proposals.css";
 
 const MOST_SHOWN = 20;
@@ -19,7 +20,12 @@ export function ProposalsPanel() {
   const motors = useConsole((state) => state.motors);
   return (
     <Panel title="Proposals" className="proposals-panel">
-      {proposals.length === 0 && <p className="proposals-empty">No move was proposed yet.</p>}
+      <FirstSteps />
+      {proposals.length === 0 && (
+        <p className="proposals-empty">
+          No move was proposed yet. <FirstStepsButton />
+        </p>
+      )}
       <ol className="proposals">
         {proposals.slice(0, MOST_SHOWN).map((proposal) => (
           <ProposalItem

@@ -1,0 +1,83 @@
+/** Pictures of every page for the manual: build/pictures/PAGE-THEME-WIDTHxHEIGHT.png. */
+import { mkdirSync } from "node:fs";
+import path from "node:path";
+import type { Page } from "@playwright/test";
+import { expect, test } from "../../tests/browser/fixtures";
+import { root } from "../../tests/browser/places";
+
+const folder = path.join(root, "build/pictures");
+const sizes = [
+  { width: 1280, height: 800 },
+  { width: 3840, height: 2160 },
+] as const;
+const password = "correct horse battery";
+
+test.setTimeout(300_000);
+
+/** In both themes and sizes; the clock and the ages on the page are those of the run. */
+async function take(page: Page, name: string): Promise<void> {
+  mkdirSync(folder, { recursive: true });
+  for (const colorScheme of ["light", "dark"] as const) {
+    await page.emulateMedia({ colorScheme });
+    for (const size of sizes) {
+      await page.setViewportSize(size);
+      const file = `${name}-${colorScheme}-${size.width}x${size.height}.png`;
+      await page.screenshot({ path: path.join(folder, file), animations: "disabled" });
+    }
+  }
+}
+
+test("the page before login", async ({ front, page }) => {
+  await front.expectMode("LOCKED");
+  await take(page, "login");
+});
+
+test("the robot's page at work, and the sheets", async ({ robot, page }) => {
+  await robot.addUser("ann", "engineer", password);
+  await robot.unlockRobot();
+  for (const title of ["Probe rotation", "Axial feet"]) {
+    await robot.axis(title).enable();
+    await robot.axis(title).setHome();
+  }
+  await robot.axis("Probe insertion").propose("30");
+  await robot.axis("Probe insertion").expectRefusal("DISABLED");
+  await robot.axis("Axial feet").propose("12.5");
+  await robot.latchPedal();
+  await expect(robot.proposal(2)).toContainText("done");
+  await robot.axis("Probe rotation").propose("200");
+  await expect.poll(() => robot.axis("Probe rotation").counts()).toBeGreaterThan(1000);
+  await take(page, "robot");
+  await robot.stop.click();
+  for (const name of ["Codes", "Users", "Audit", "Account"] as const) {
+    await robot.open(name);
+    await expect(robot.panel(name)).toBeVisible();
+    await take(page, name.toLowerCase());
+  }
+});
+
+test("the robot's page with everything unfolded, and covered", async ({ robot, page, stack }) => {
+  await robot.panel("Bench").getByText("More faults").click();
+  await page
+    .getByRole("button", { name: /^Why not moving\?/ })
+    .first()
+    .click();
+  await robot.button("Keys").click();
+  await take(page, "robot-help");
+  await robot.button("Keys").click();
+  stack.signalApp("SIGSTOP");
+  try {
+    await expect(page.getByRole("main")).toHaveAttribute("data-level", "covered");
+    await take(page, "robot-covered");
+  } finally {
+    stack.signalApp("SIGCONT");
+  }
+});
+
+test.describe("the prostate robot", () => {
+  test.use({ robotName: "prostate" });
+
+  test("its page", async ({ robot, page }) => {
+    await robot.unlockRobot();
+    await take(page, "prostate");
+  });
+});

@@ -1,0 +1,11 @@
+import { defineConfig } from "@playwright/test";
+import base from "../../tests/browser/playwright.config";
+
+/** Measurements and pictures of the console: one browser at a time, none of them part of the tests. */
+export default defineConfig({
+  ...base,
+  testDir: ".",
+  testMatch: "*.measure.ts",
+  workers: 1,
+  reporter: [["line"]],
+});
