@@ -345,6 +345,34 @@ static uint32_t trust_after_pass(const ilk_config_t *config, const ilk_state_t *
                  (ilk_config_validate(config).error == (uint32_t)ILK_CONFIG_ERROR_NONE));
 }
 
+/** The pass goes on with the next slice. */
+/*@ requires valid: \valid(state) && state->config_slice < ILK_SLOTS - 1;
+  @ assigns  state->config_partial_crc, state->config_slice;
+  @ ensures  P14_next: state->config_partial_crc == crc && state->config_slice == \old(state->config_slice) + 1;
+  @ ensures  P15_system: \old(sound_system(state)) ==> sound_system(state);
+  @ ensures  P15_axes: \old(sound_axes(state)) ==> sound_axes(state);
+  @ ensures  P15_mode: \old(axes_fit_mode(state)) ==> axes_fit_mode(state);
+  @*/
+static void go_on(ilk_state_t *state, uint32_t crc) {
+  state->config_partial_crc = crc;
+  state->config_slice++;
+}
+
+/** The pass ends, and the next one begins. */
+/*@ requires valid: \valid(state);
+  @ assigns  state->config_partial_crc, state->config_slice, state->config_sound;
+  @ ensures  P14_pass: state->config_sound == trust && state->config_partial_crc == 0xffffffff
+  @   && state->config_slice == 0;
+  @ ensures  P15_system: \old(sound_system(state)) ==> sound_system(state);
+  @ ensures  P15_axes: \old(sound_axes(state)) ==> sound_axes(state);
+  @ ensures  P15_mode: \old(axes_fit_mode(state)) ==> axes_fit_mode(state);
+  @*/
+static void end_pass(ilk_state_t *state, uint32_t trust) {
+  state->config_sound = trust;
+  state->config_partial_crc = ILK_CRC32_START;
+  state->config_slice = 0u;
+}
+
 ilk_config_check_t ilk_config_check_slice(const ilk_config_t *config, ilk_state_t *state) {
   ilk_config_check_t check = {.damaged = false, .crc = 0u};
   uint32_t crc = state->config_partial_crc;
@@ -353,14 +381,11 @@ ilk_config_check_t ilk_config_check_slice(const ilk_config_t *config, ilk_state_
   }
   crc = ilk_crc_axis_config(crc, &config->axis[state->config_slice]);
   if (state->config_slice < ((uint32_t)ILK_SLOTS - 1u)) {
-    state->config_partial_crc = crc;
-    state->config_slice++;
+    go_on(state, crc);
   } else {
     check.crc = ilk_crc32_finish(crc);
     check.damaged = (check.crc != state->config_crc) || (config->crc != state->config_crc);
-    state->config_sound = check.damaged ? 0u : trust_after_pass(config, state);
-    state->config_partial_crc = ILK_CRC32_START;
-    state->config_slice = 0u;
+    end_pass(state, check.damaged ? 0u : trust_after_pass(config, state));
   }
   return check;
 }

@@ -73,6 +73,9 @@ typedef struct {
   @ ensures  P14_distrust: \result.damaged ==> state->config_sound == 0;
   @ ensures  P13_valid: \old(state->config_sound) == 0 && state->config_sound != 0 ==>
   @   \old(valid_config(config));
+  @ ensures  P15_system: \old(sound_system(state)) ==> sound_system(state);
+  @ ensures  P15_axes: \old(sound_axes(state)) ==> sound_axes(state);
+  @ ensures  P15_mode: \old(axes_fit_mode(state)) ==> axes_fit_mode(state);
   @*/
 ilk_config_check_t ilk_config_check_slice(const ilk_config_t *config, ilk_state_t *state);
 

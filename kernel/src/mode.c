@@ -89,6 +89,10 @@ static void enter_slot(ilk_state_t *state, uint32_t slot, ilk_mode_t mode) {
   @   progress_kept{Pre, Post}(&state->axis[slot]);
   @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
   @   marks_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P15_kept: words_kept{Pre, Post}(state);
+  @ ensures  P8_first_cause: cause_kept{Pre, Post}(state);
+  @ ensures  P10_silence: state->app_age_ticks == \old(state->app_age_ticks)
+  @   && state->holder == \old(state->holder);
   @*/
 static void enter_axes(ilk_state_t *state, ilk_mode_t mode) {
   /*@ loop invariant range: 0 <= slot <= ILK_SLOTS;
@@ -144,17 +148,16 @@ void ilk_mode_enter(ilk_state_t *state, ilk_mode_t mode) {
   enter_axes(state, mode);
 }
 
-/** LOCKED with this cause, unless LOCKED already; `causes`, a bit each, join the list of those seen. */
+/** From another mode into LOCKED. */
 /*@ requires valid: \valid(state);
   @ requires cause: ILK_CAUSE_NONE < cause < ILK_CAUSE_COUNT;
-  @ assigns  state->mode, state->cause, state->cause_tick, state->cause_value, state->causes_seen,
+  @ assigns  state->mode, state->cause, state->cause_tick, state->cause_value,
   @          state->pedal_armed, state->pedal_pressed_ticks, state->pedal_released_ticks,
   @          state->axis[0 .. ILK_SLOTS - 1];
   @ ensures  P2_stop: state->mode == ILK_MODE_LOCKED;
-  @ ensures  P8_first_cause: \old(state->mode) != ILK_MODE_LOCKED ==>
-  @   state->cause == cause && state->cause_tick == state->tick && state->cause_value == value;
-  @ ensures  P8_latch: \old(state->mode) == ILK_MODE_LOCKED ==> cause_kept{Pre, Post}(state);
-  @ ensures  P8_listed: state->causes_seen == (\old(state->causes_seen) | causes);
+  @ ensures  P8_first_cause: state->cause == cause && state->cause_tick == state->tick
+  @   && state->cause_value == value;
+  @ ensures  P8_listed: state->causes_seen == \old(state->causes_seen);
   @ ensures  P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
   @   fault_kept{Pre, Post}(&state->axis[slot]);
   @ ensures  P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
@@ -163,25 +166,32 @@ void ilk_mode_enter(ilk_state_t *state, ilk_mode_t mode) {
   @   progress_kept{Pre, Post}(&state->axis[slot]);
   @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
   @   marks_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P8_states: \old(state->mode) != ILK_MODE_LOCKED ==>
-  @   \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @ ensures  P8_states: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
   @   state->axis[slot].state == state_entering(ILK_MODE_LOCKED, \old(state->axis[slot].state));
-  @ ensures  P8_still: \old(state->mode) == ILK_MODE_LOCKED ==>
-  @   \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-  @   motion_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P9_consent: \old(state->mode) != ILK_MODE_LOCKED ==> state->pedal_armed == 0
-  @   && state->pedal_pressed_ticks == 0 && state->pedal_released_ticks == 0;
-  @ ensures  P9_still: \old(state->mode) == ILK_MODE_LOCKED ==> consent_kept{Pre, Post}(state);
-  @ ensures  P12_no_leap: \old(state->mode) != ILK_MODE_LOCKED ==> all_quiet(state);
+  @ ensures  P9_consent: state->pedal_armed == 0 && state->pedal_pressed_ticks == 0
+  @   && state->pedal_released_ticks == 0;
+  @ ensures  P12_no_leap: all_quiet(state);
+  @ ensures  P15_kept: words_kept{Pre, Post}(state);
+  @ ensures  P15_axis: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   \old(sound_axis(&state->axis[slot])) ==> sound_axis(&state->axis[slot]);
   @*/
-static void lock(ilk_state_t *state, ilk_cause_t cause, uint32_t value, uint32_t causes) {
-  if (state->mode != (uint32_t)ILK_MODE_LOCKED) {
-    state->cause = (uint32_t)cause;
-    state->cause_tick = state->tick;
-    state->cause_value = value;
-    ilk_mode_enter(state, ILK_MODE_LOCKED);
-  }
-  state->causes_seen |= causes;
+static void become_locked(ilk_state_t *state, ilk_cause_t cause, uint32_t value) {
+  state->cause = (uint32_t)cause;
+  state->cause_tick = state->tick;
+  state->cause_value = value;
+  /*@ assert motion: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+    @   motion_kept{Pre, Here}(&state->axis[slot]); */
+  /*@ assert P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+    @   fault_kept{Pre, Here}(&state->axis[slot]); */
+  /*@ assert P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+    @   place_kept{Pre, Here}(&state->axis[slot]); */
+  /*@ assert P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+    @   progress_kept{Pre, Here}(&state->axis[slot]); */
+  /*@ assert P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+    @   marks_kept{Pre, Here}(&state->axis[slot]); */
+  /*@ assert P15_axis: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+    @   \at(sound_axis(&state->axis[slot]), Pre) ==> sound_axis(&state->axis[slot]); */
+  ilk_mode_enter(state, ILK_MODE_LOCKED);
 }
 
 bool ilk_cause_is_present(const ilk_state_t *state) {
@@ -222,6 +232,7 @@ static uint32_t ticks_in_row(bool holds, uint32_t ticks, uint32_t ceiling) {
 }
 
 /*@ requires valid: \valid(state);
+  @ requires known: pedal < ILK_PEDAL_COUNT;
   @ assigns  state->pedal, state->pedal_disagree_ticks, state->pedal_released_ticks,
   @          state->pedal_pressed_ticks;
   @ ensures  P2_pedal: state->pedal == pedal;
@@ -233,6 +244,10 @@ static uint32_t ticks_in_row(bool holds, uint32_t ticks, uint32_t ceiling) {
   @ ensures  P9_press: state->pedal_pressed_ticks == (state->pedal == ILK_PEDAL_PRESSED
   @   && state->pedal_armed != 0
   @   ? \min(\old(state->pedal_pressed_ticks) + 1, debounce_ticks) : 0);
+  @ ensures  P15_system: \old(sound_system(state)) ==> sound_system(state);
+  @ ensures  P15_axes: \old(sound_axes(state)) ==> sound_axes(state);
+  @ ensures  P15_mode: \old(axes_fit_mode(state)) ==> axes_fit_mode(state);
+  @ ensures  P8_kept: mode_kept{Pre, Post}(state);
   @*/
 static void observe_pedal(ilk_state_t *state, ilk_pedal_t pedal, uint32_t debounce_ticks) {
   const bool may_arm = (state->mode == (uint32_t)ILK_MODE_READY) && (state->app_alive != 0u);
@@ -255,6 +270,10 @@ static void observe_pedal(ilk_state_t *state, ilk_pedal_t pedal, uint32_t deboun
   @   ? \min(\old(state->app_age_ticks) + 1, UINT32_MAX) : UINT32_MAX);
   @ ensures  attachment: state->link_generation == \old(in->link_generation) && state->last_sequence ==
   @   (\old(in->link_generation) == \old(state->link_generation) ? \old(state->last_sequence) : 0);
+  @ ensures  P15_system: \old(sound_system(state)) ==> sound_system(state);
+  @ ensures  P15_axes: \old(sound_axes(state)) ==> sound_axes(state);
+  @ ensures  P15_mode: \old(axes_fit_mode(state)) ==> axes_fit_mode(state);
+  @ ensures  P8_kept: mode_kept{Pre, Post}(state);
   @*/
 static void observe_app(const ilk_config_t *config, ilk_state_t *state, const ilk_inputs_t *in) {
   if (in->link_generation != state->link_generation) {
@@ -272,6 +291,10 @@ static void observe_app(const ilk_config_t *config, ilk_state_t *state, const il
   @   ? \min(\old(state->overruns_in_row) + 1, UINT32_MAX) : 0);
   @ ensures  ever: state->overruns ==
   @   (missed ? \min(\old(state->overruns) + 1, UINT32_MAX) : \old(state->overruns));
+  @ ensures  P15_system: \old(sound_system(state)) ==> sound_system(state);
+  @ ensures  P15_axes: \old(sound_axes(state)) ==> sound_axes(state);
+  @ ensures  P15_mode: \old(axes_fit_mode(state)) ==> axes_fit_mode(state);
+  @ ensures  P8_kept: mode_kept{Pre, Post}(state);
   @*/
 static void observe_deadline(ilk_state_t *state, bool missed) {
   state->overruns_in_row = ticks_in_row(missed, state->overruns_in_row, UINT32_MAX);
@@ -286,6 +309,7 @@ void ilk_observe_system(const ilk_config_t *config, ilk_state_t *state, const il
   const uint32_t debounce_ticks = config->pedal_debounce_ticks;
   const bool missed = in->deadline_missed != 0u;
   state->estop = flag_of(in->estop_loop_closed != CLOSED);
+  /*@ assert P15_axes: \at(sound_axes(state), Pre) ==> sound_axes(state); */
   observe_app(config, state, in);
   observe_pedal(state, pedal, debounce_ticks);
   observe_deadline(state, missed);
@@ -308,6 +332,13 @@ static uint32_t contacts(const ilk_inputs_t *in) {
   @   motion_kept{Pre, Post}(&state->axis[slot]);
   @ ensures  P8_latch: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
   @   fault_latched{Pre, Post}(&state->axis[slot]);
+  @ ensures  P15_kept: words_kept{Pre, Post}(state);
+  @ ensures  P15_axis: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   \old(sound_axis(&state->axis[slot])) ==> sound_axis(&state->axis[slot]);
+  @ ensures  P8_kept: state->mode == \old(state->mode) && state->causes_seen == \old(state->causes_seen)
+  @   && cause_kept{Pre, Post}(state) && consent_kept{Pre, Post}(state);
+  @ ensures  P15_mode: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   \old(fits_mode(&state->axis[slot], state->mode)) ==> fits_mode(&state->axis[slot], state->mode);
   @*/
 static void lose_references(ilk_state_t *state) {
   /*@ loop invariant range: 0 <= slot <= ILK_SLOTS;
@@ -316,6 +347,8 @@ static void lose_references(ilk_state_t *state) {
     @   motion_kept{Pre, Here}(&state->axis[any]);
     @ loop invariant P8_latch: \forall integer any; 0 <= any < ILK_SLOTS ==>
     @   fault_latched{Pre, Here}(&state->axis[any]);
+    @ loop invariant P15_axis: \forall integer any; 0 <= any < ILK_SLOTS ==>
+    @   \at(sound_axis(&state->axis[any]), Pre) ==> sound_axis(&state->axis[any]);
     @ loop assigns slot, state->axis[0 .. ILK_SLOTS - 1];
     @ loop variant ILK_SLOTS - slot;
     @*/
@@ -377,38 +410,74 @@ static causes_t causes_present(const ilk_config_t *config, const ilk_state_t *st
   return causes;
 }
 
-/*@ requires valid: \valid_read(config) && \valid(state) && \valid_read(alarms) && \valid_read(in);
-  @ requires apart: \separated(state, config) && \separated(state, alarms) && \separated(state, in);
+/** LOCKED, unless LOCKED already, when there is a cause; all causes join the list of those seen. */
+/*@ requires valid: \valid(state);
+  @ requires cause: ILK_CAUSE_NONE <= causes.first < ILK_CAUSE_COUNT;
   @ assigns  state->mode, state->cause, state->cause_tick, state->cause_value, state->causes_seen,
   @          state->pedal_armed, state->pedal_pressed_ticks, state->pedal_released_ticks,
   @          state->axis[0 .. ILK_SLOTS - 1];
-  @ ensures  P8_locked: state->mode == (\old(first_cause(config, state, alarms)) != ILK_CAUSE_NONE
-  @   ? ILK_MODE_LOCKED : \old(state->mode));
-  @ ensures  P8_first_cause: \old(first_cause(config, state, alarms)) != ILK_CAUSE_NONE
-  @   && \old(state->mode) != ILK_MODE_LOCKED ==>
-  @   state->cause == \old(first_cause(config, state, alarms)) && state->cause_tick == state->tick
-  @   && state->cause_value == \old(first_value(config, state, alarms, in));
-  @ ensures  P8_latch: \old(state->mode) == ILK_MODE_LOCKED
-  @   || \old(first_cause(config, state, alarms)) == ILK_CAUSE_NONE ==> cause_kept{Pre, Post}(state);
-  @ ensures  P8_listed: state->causes_seen == (\old(first_cause(config, state, alarms)) == ILK_CAUSE_NONE
-  @   ? \old(state->causes_seen)
-  @   : (\old(state->causes_seen) | \old(all_causes(config, state, alarms))));
+  @ ensures  P8_locked: state->mode == (causes.first != ILK_CAUSE_NONE ? ILK_MODE_LOCKED : \old(state->mode));
+  @ ensures  P8_first_cause: causes.first != ILK_CAUSE_NONE && \old(state->mode) != ILK_MODE_LOCKED ==>
+  @   state->cause == causes.first && state->cause_tick == state->tick && state->cause_value == causes.value;
+  @ ensures  P8_latch: \old(state->mode) == ILK_MODE_LOCKED || causes.first == ILK_CAUSE_NONE ==>
+  @   cause_kept{Pre, Post}(state);
+  @ ensures  P8_listed: state->causes_seen == (causes.first == ILK_CAUSE_NONE ? \old(state->causes_seen)
+  @   : (\old(state->causes_seen) | causes.all));
   @ ensures  P9_again: state->mode != \old(state->mode) ==> state->pedal_armed == 0
   @   && state->pedal_pressed_ticks == 0 && state->pedal_released_ticks == 0;
   @ ensures  P9_still: state->mode == \old(state->mode) ==> consent_kept{Pre, Post}(state);
   @ ensures  P12_no_leap: state->mode != \old(state->mode) ==> all_quiet(state);
-  @ ensures  P14_references: alarms->configuration_damaged != 0 ==>
-  @   \forall integer slot; 0 <= slot < ILK_SLOTS ==> state->axis[slot].homed == 0;
+  @ ensures  P15_kept: words_kept{Pre, Post}(state);
+  @ ensures  P15_system: \old(sound_system(state)) ==> sound_system(state);
+  @ ensures  P15_axis: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   \old(sound_axis(&state->axis[slot])) ==> sound_axis(&state->axis[slot]);
+  @ ensures  P15_mode: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   \old(fits_mode(&state->axis[slot], state->mode)) ==> fits_mode(&state->axis[slot], state->mode);
+  @ ensures  P8_still: \old(state->mode) == ILK_MODE_LOCKED || causes.first == ILK_CAUSE_NONE ==>
+  @   \forall integer slot; 0 <= slot < ILK_SLOTS ==> motion_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P14_references: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   state->axis[slot].homed == \old(state->axis[slot].homed);
   @*/
-static void lock_on_causes(const ilk_config_t *config, ilk_state_t *state, const ilk_alarms_t *alarms,
-                           const ilk_inputs_t *in) {
-  const causes_t causes = causes_present(config, state, alarms, in);
-  if (alarms->configuration_damaged) {
+static void lock(ilk_state_t *state, causes_t causes) {
+  if (causes.first != ILK_CAUSE_NONE) {
+    state->causes_seen |= causes.all;
+    if (state->mode != (uint32_t)ILK_MODE_LOCKED) {
+      become_locked(state, causes.first, causes.value);
+    }
+  }
+}
+
+/** Damage costs every reference; a cause locks. */
+/*@ requires valid: \valid(state);
+  @ requires cause: ILK_CAUSE_NONE <= causes.first < ILK_CAUSE_COUNT;
+  @ assigns  state->mode, state->cause, state->cause_tick, state->cause_value, state->causes_seen,
+  @          state->pedal_armed, state->pedal_pressed_ticks, state->pedal_released_ticks,
+  @          state->axis[0 .. ILK_SLOTS - 1];
+  @ ensures  P8_locked: state->mode == (causes.first != ILK_CAUSE_NONE ? ILK_MODE_LOCKED : \old(state->mode));
+  @ ensures  P8_first_cause: causes.first != ILK_CAUSE_NONE && \old(state->mode) != ILK_MODE_LOCKED ==>
+  @   state->cause == causes.first && state->cause_tick == state->tick && state->cause_value == causes.value;
+  @ ensures  P8_latch: \old(state->mode) == ILK_MODE_LOCKED || causes.first == ILK_CAUSE_NONE ==>
+  @   cause_kept{Pre, Post}(state);
+  @ ensures  P8_listed: state->causes_seen == (causes.first == ILK_CAUSE_NONE ? \old(state->causes_seen)
+  @   : (\old(state->causes_seen) | causes.all));
+  @ ensures  P9_again: state->mode != \old(state->mode) ==> state->pedal_armed == 0
+  @   && state->pedal_pressed_ticks == 0 && state->pedal_released_ticks == 0;
+  @ ensures  P9_still: state->mode == \old(state->mode) ==> consent_kept{Pre, Post}(state);
+  @ ensures  P12_no_leap: state->mode != \old(state->mode) ==> all_quiet(state);
+  @ ensures  P14_references: damaged ==>
+  @   \forall integer slot; 0 <= slot < ILK_SLOTS ==> state->axis[slot].homed == 0;
+  @ ensures  P15_kept: words_kept{Pre, Post}(state);
+  @ ensures  P15_system: \old(sound_system(state)) ==> sound_system(state);
+  @ ensures  P15_axis: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   \old(sound_axis(&state->axis[slot])) ==> sound_axis(&state->axis[slot]);
+  @ ensures  P15_mode: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   \old(fits_mode(&state->axis[slot], state->mode)) ==> fits_mode(&state->axis[slot], state->mode);
+  @*/
+static void lock_on(ilk_state_t *state, bool damaged, causes_t causes) {
+  if (damaged) {
     lose_references(state);
   }
-  if (causes.first != ILK_CAUSE_NONE) {
-    lock(state, causes.first, causes.value, causes.all);
-  }
+  lock(state, causes);
 }
 
 /** MOTION holds only while the pedal is pressed, the app lives and nothing new is wrong. */
@@ -432,6 +501,8 @@ static bool motion_must_end(const ilk_state_t *state, const ilk_alarms_t *alarms
   @     (state->pedal_released_ticks >= config->pedal_debounce_ticks ? 1 : \old(state->pedal_armed))
   @   && state->pedal_pressed_ticks == \old(state->pedal_pressed_ticks)
   @   && state->pedal_released_ticks == \old(state->pedal_released_ticks);
+  @ ensures  P8_first_cause: cause_kept{Pre, Post}(state);
+  @ ensures  P15_kept: words_kept{Pre, Post}(state);
   @*/
 static void arm_pedal(const ilk_config_t *config, ilk_state_t *state) {
   if (state->app_alive == 0u) {
@@ -456,9 +527,32 @@ static bool motion_may_begin(const ilk_config_t *config, const ilk_state_t *stat
          (state->pedal_pressed_ticks >= config->pedal_debounce_ticks) && !alarms->required_card_lost;
 }
 
-void ilk_change_mode(const ilk_config_t *config, ilk_state_t *state, const ilk_alarms_t *alarms,
-                     const ilk_inputs_t *in) {
-  lock_on_causes(config, state, alarms, in);
+/** Consent begins MOTION, its loss ends it. */
+/*@ requires valid: \valid_read(config) && \valid(state) && \valid_read(alarms);
+  @ requires apart: \separated(state, config) && \separated(state, alarms);
+  @ assigns  state->mode, state->pedal_armed, state->pedal_pressed_ticks, state->pedal_released_ticks,
+  @          state->axis[0 .. ILK_SLOTS - 1];
+  @ ensures  P2_stop: \old(state->mode) == ILK_MODE_MOTION ==>
+  @   (\old(must_end(state, alarms)) ? state->mode == ILK_MODE_READY : state->mode == ILK_MODE_MOTION);
+  @ ensures  P9_consent: \old(state->mode) == ILK_MODE_READY ==>
+  @   (\old(may_begin(config, state, alarms)) ? state->mode == ILK_MODE_MOTION
+  @                                           : state->mode == ILK_MODE_READY);
+  @ ensures  P8_latch: \old(state->mode) != ILK_MODE_MOTION && \old(state->mode) != ILK_MODE_READY ==>
+  @   state->mode == \old(state->mode);
+  @ ensures  P10_silence: state->mode == ILK_MODE_MOTION ==> state->app_alive != 0;
+  @ ensures  P12_no_leap: state->mode != \old(state->mode) ==> all_quiet(state);
+  @ ensures  P12_still: state->mode == \old(state->mode) ==> (\old(all_quiet(state)) ==> all_quiet(state));
+  @ ensures  P14_homed: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   state->axis[slot].homed == \old(state->axis[slot].homed);
+  @ ensures  P15_kept: words_kept{Pre, Post}(state);
+  @ ensures  P15_axis: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   \old(sound_axis(&state->axis[slot])) ==> sound_axis(&state->axis[slot]);
+  @ ensures  P15_mode: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   \old(fits_mode(&state->axis[slot], state->mode)) ==> fits_mode(&state->axis[slot], state->mode);
+  @ ensures  P8_first_cause: cause_kept{Pre, Post}(state);
+  @ ensures  P15_system: \old(sound_system(state)) ==> sound_system(state);
+  @*/
+static void follow_consent(const ilk_config_t *config, ilk_state_t *state, const ilk_alarms_t *alarms) {
   switch (state->mode) {
     case (uint32_t)ILK_MODE_MOTION:
       if (motion_must_end(state, alarms)) {
@@ -467,6 +561,8 @@ void ilk_change_mode(const ilk_config_t *config, ilk_state_t *state, const ilk_a
       break;
     case (uint32_t)ILK_MODE_READY:
       arm_pedal(config, state);
+      /*@ assert P15_axis: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+        @   \at(sound_axis(&state->axis[slot]), Pre) ==> sound_axis(&state->axis[slot]); */
       if (motion_may_begin(config, state, alarms)) {
         ilk_mode_enter(state, ILK_MODE_MOTION);
       }
@@ -475,4 +571,13 @@ void ilk_change_mode(const ilk_config_t *config, ilk_state_t *state, const ilk_a
       /* INIT and LOCKED are left by ilk_init and by RESET alone. */
       break;
   }
+}
+
+void ilk_change_mode(const ilk_config_t *config, ilk_state_t *state, const ilk_alarms_t *alarms,
+                     const ilk_inputs_t *in) {
+  const causes_t causes = causes_present(config, state, alarms, in);
+  lock_on(state, alarms->configuration_damaged, causes);
+  /*@ assert P9_consent: \at(state->mode, Pre) == state->mode ==>
+    @   (\at(may_begin(config, state, alarms), Pre) <==> may_begin(config, state, alarms)); */
+  follow_consent(config, state, alarms);
 }

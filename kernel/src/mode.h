@@ -83,6 +83,12 @@ typedef struct {
   @   progress_kept{Pre, Post}(&state->axis[slot]);
   @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
   @   marks_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P15_kept: words_kept{Pre, Post}(state);
+  @ ensures  P15_axis: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   \old(sound_axis(&state->axis[slot])) ==> sound_axis(&state->axis[slot]);
+  @ ensures  P8_first_cause: cause_kept{Pre, Post}(state);
+  @ ensures  P10_silence: state->app_age_ticks == \old(state->app_age_ticks)
+  @   && state->holder == \old(state->holder);
   @*/
 void ilk_mode_enter(ilk_state_t *state, ilk_mode_t mode);
 
@@ -128,6 +134,10 @@ bool ilk_cause_is_present(const ilk_state_t *state);
   @   ? \min(\old(state->overruns) + 1, UINT32_MAX) : \old(state->overruns));
   @ ensures  attachment: state->link_generation == \old(in->link_generation) && state->last_sequence ==
   @   (\old(in->link_generation) == \old(state->link_generation) ? \old(state->last_sequence) : 0);
+  @ ensures  P15_system: \old(sound_system(state)) ==> sound_system(state);
+  @ ensures  P15_axes: \old(sound_axes(state)) ==> sound_axes(state);
+  @ ensures  P15_mode: \old(axes_fit_mode(state)) ==> axes_fit_mode(state);
+  @ ensures  P8_kept: mode_kept{Pre, Post}(state);
   @*/
 void ilk_observe_system(const ilk_config_t *config, ilk_state_t *state, const ilk_inputs_t *in);
 
@@ -160,6 +170,10 @@ void ilk_observe_system(const ilk_config_t *config, ilk_state_t *state, const il
   @ ensures  P13_begun: state->mode == ILK_MODE_INIT ==> \old(state->mode) == ILK_MODE_INIT;
   @ ensures  P14_references: alarms->configuration_damaged != 0 ==>
   @   \forall integer slot; 0 <= slot < ILK_SLOTS ==> state->axis[slot].homed == 0;
+  @ ensures  P15_system: \old(sound_system(state)) ==> sound_system(state);
+  @ ensures  P15_axes: \old(sound_axes(state)) ==> sound_axes(state);
+  @ ensures  P15_mode: \old(axes_fit_mode(state)) ==> axes_fit_mode(state);
+  @ ensures  P13_untrusted: state->config_sound == \old(state->config_sound);
   @*/
 void ilk_change_mode(const ilk_config_t *config, ilk_state_t *state, const ilk_alarms_t *alarms,
                      const ilk_inputs_t *in);

@@ -31,12 +31,25 @@
   @   progress_kept{Pre, Post}(&state->axis[slot]);
   @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
   @   marks_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P15_kept: words_kept{Pre, Post}(state);
+  @ ensures  P15_axis: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   \old(sound_axis(&state->axis[slot])) ==> sound_axis(&state->axis[slot]);
   @*/
 static void apply_heartbeat(ilk_state_t *state, uint32_t holder) {
   state->app_age_ticks = 0u;
   if (state->holder != holder) {
     state->holder = holder;
     ilk_pedal_disarm(state);
+    /*@ assert motion: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+      @   motion_kept{Pre, Here}(&state->axis[slot]); */
+    /*@ assert P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+      @   fault_kept{Pre, Here}(&state->axis[slot]); */
+    /*@ assert P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+      @   place_kept{Pre, Here}(&state->axis[slot]); */
+    /*@ assert P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+      @   progress_kept{Pre, Here}(&state->axis[slot]); */
+    /*@ assert P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+      @   marks_kept{Pre, Here}(&state->axis[slot]); */
     if (state->mode == (uint32_t)ILK_MODE_MOTION) {
       ilk_mode_enter(state, ILK_MODE_READY);
     }
@@ -67,6 +80,9 @@ static void apply_heartbeat(ilk_state_t *state, uint32_t holder) {
   @   progress_kept{Pre, Post}(&state->axis[slot]);
   @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
   @   marks_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P15_kept: words_kept{Pre, Post}(state);
+  @ ensures  P15_axis: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   \old(sound_axis(&state->axis[slot])) ==> sound_axis(&state->axis[slot]);
   @*/
 static void apply_stop(ilk_state_t *state) {
   if (state->mode == (uint32_t)ILK_MODE_MOTION) {
@@ -94,12 +110,25 @@ static void apply_stop(ilk_state_t *state) {
   @   progress_kept{Pre, Post}(&state->axis[slot]);
   @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
   @   marks_kept{Pre, Post}(&state->axis[slot]);
+  @ ensures  P15_kept: words_kept{Pre, Post}(state);
+  @ ensures  P15_axis: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @   \old(sound_axis(&state->axis[slot])) ==> sound_axis(&state->axis[slot]);
   @*/
 static void apply_reset(ilk_state_t *state) {
   state->cause = (uint32_t)ILK_CAUSE_NONE;
   state->cause_tick = 0u;
   state->cause_value = 0u;
   state->causes_seen = 0u;
+  /*@ assert motion: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+    @   motion_kept{Pre, Here}(&state->axis[slot]); */
+  /*@ assert P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+    @   fault_kept{Pre, Here}(&state->axis[slot]); */
+  /*@ assert P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+    @   place_kept{Pre, Here}(&state->axis[slot]); */
+  /*@ assert P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+    @   progress_kept{Pre, Here}(&state->axis[slot]); */
+  /*@ assert P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+    @   marks_kept{Pre, Here}(&state->axis[slot]); */
   ilk_mode_enter(state, ILK_MODE_READY);
 }
 
@@ -269,16 +298,40 @@ void ilk_request_apply(const ilk_config_t *config, ilk_state_t *state, const ilk
   switch (request->kind) {
     case (uint32_t)ILK_REQUEST_HEARTBEAT:
       apply_heartbeat(state, request->holder);
+      /*@ assert P15_system: \at(sound_system(state), Pre) ==> sound_system(state); */
+      /*@ assert P15_axis: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+        @   \at(sound_axis(&state->axis[slot]), Pre) ==> sound_axis(&state->axis[slot]); */
+      /*@ assert P15_mode: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+        @   \at(sound_axis(&state->axis[slot]) && fits_mode(&state->axis[slot], state->mode), Pre)
+        @   ==> fits_mode(&state->axis[slot], state->mode); */
       break;
     case (uint32_t)ILK_REQUEST_STOP:
       apply_stop(state);
+      /*@ assert P15_system: \at(sound_system(state), Pre) ==> sound_system(state); */
+      /*@ assert P15_axis: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+        @   \at(sound_axis(&state->axis[slot]), Pre) ==> sound_axis(&state->axis[slot]); */
+      /*@ assert P15_mode: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+        @   \at(sound_axis(&state->axis[slot]) && fits_mode(&state->axis[slot], state->mode), Pre)
+        @   ==> fits_mode(&state->axis[slot], state->mode); */
       break;
     case (uint32_t)ILK_REQUEST_RESET:
       apply_reset(state);
+      /*@ assert P15_system: \at(sound_system(state), Pre) ==> sound_system(state); */
+      /*@ assert P15_axis: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+        @   \at(sound_axis(&state->axis[slot]), Pre) ==> sound_axis(&state->axis[slot]); */
+      /*@ assert P15_mode: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+        @   \at(sound_axis(&state->axis[slot]) && fits_mode(&state->axis[slot], state->mode), Pre)
+        @   ==> fits_mode(&state->axis[slot], state->mode); */
       break;
     default:
       if (request->axis < (uint32_t)ILK_SLOTS) {
         apply_to_slot(&config->axis[request->axis], state, request->axis, request);
+        /*@ assert P15_system: \at(sound_system(state), Pre) ==> sound_system(state); */
+        /*@ assert P15_axis: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+          @   \at(sound_axis(&state->axis[slot]), Pre) ==> sound_axis(&state->axis[slot]); */
+        /*@ assert P15_mode: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+          @   \at(sound_axis(&state->axis[slot]) && fits_mode(&state->axis[slot], state->mode), Pre)
+          @   ==> fits_mode(&state->axis[slot], state->mode); */
       }
       break;
   }

@@ -26,7 +26,7 @@ ilk_verdict_t ilk_request_judge(const ilk_config_t *config, const ilk_state_t *s
   @ requires apart: \separated(state, config) && \separated(state, request);
   @ requires known: ILK_REQUEST_HEARTBEAT <= request->kind <= ILK_REQUEST_RESTORE;
   @ requires accepted: applicable(state, request);
-  @ requires sound: names_axis(request->kind) ==> sound_axis(&state->axis[request->axis]);
+  @ requires sound: sound(state);
   @ assigns  state->app_age_ticks, state->holder, state->mode, state->cause, state->cause_tick,
   @          state->cause_value, state->causes_seen, state->pedal_armed,
   @          state->pedal_pressed_ticks, state->pedal_released_ticks,
@@ -51,7 +51,9 @@ ilk_verdict_t ilk_request_judge(const ilk_config_t *config, const ilk_state_t *s
   @ ensures  P11_others: names_axis(\old(request->kind)) ==> \forall integer slot; 0 <= slot < ILK_SLOTS
   @   && slot != \old(request->axis) ==> motion_kept{Pre, Post}(&state->axis[slot])
   @   && fault_kept{Pre, Post}(&state->axis[slot]) && place_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P15_axis: names_axis(\old(request->kind)) ==> sound_axis(&state->axis[\old(request->axis)]);
+  @ ensures  P15_system: sound_system(state);
+  @ ensures  P15_axes: sound_axes(state);
+  @ ensures  P15_mode: axes_fit_mode(state);
   @*/
 void ilk_request_apply(const ilk_config_t *config, ilk_state_t *state, const ilk_request_t *request);
 

@@ -192,12 +192,6 @@
   @ predicate all_quiet(ilk_state_t *state) =
   @   \forall integer slot; 0 <= slot < ILK_SLOTS ==> quiet(&state->axis[slot]);
   @
-  @ // P8: no axis became or ceased to be FAULTED between two points.
-  @ predicate faults_kept{Before, After}(ilk_state_t *state) =
-  @   \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-  @     (\at(state->axis[slot].state, After) == ILK_AXIS_FAULTED
-  @      <==> \at(state->axis[slot].state, Before) == ILK_AXIS_FAULTED);
-  @
   @ // P8: the fault of an axis, when and with what it came, and the reference that it may have cost.
   @ predicate fault_kept{Before, After}(ilk_axis_t *axis) =
   @   \at(axis->fault, After) == \at(axis->fault, Before)
@@ -237,6 +231,12 @@
   @   && \at(axis->driven_direction, After) == \at(axis->driven_direction, Before)
   @   && \at(axis->ticks_since_frame, After) == \at(axis->ticks_since_frame, Before);
   @
+  @ // P15: the words of the system that no change of mode touches and that the invariant speaks of.
+  @ predicate words_kept{Before, After}(ilk_state_t *state) =
+  @   \at(state->pedal, After) == \at(state->pedal, Before)
+  @   && \at(state->config_slice, After) == \at(state->config_slice, Before)
+  @   && \at(state->app_alive, After) == \at(state->app_alive, Before);
+  @
   @ // P12: what entering a mode may change.
   @ predicate motion_kept{Before, After}(ilk_axis_t *axis) =
   @   \at(axis->state, After) == \at(axis->state, Before)
@@ -266,6 +266,16 @@
   @   \at(state->cause, After) == \at(state->cause, Before)
   @   && \at(state->cause_tick, After) == \at(state->cause_tick, Before)
   @   && \at(state->cause_value, After) == \at(state->cause_value, Before);
+  @
+  @ // P8: mode, cause and trust in the configuration, which seeing alone does not change.
+  @ predicate mode_kept{Before, After}(ilk_state_t *state) =
+  @   \at(state->mode, After) == \at(state->mode, Before) && cause_kept{Before, After}(state)
+  @   && \at(state->config_sound, After) == \at(state->config_sound, Before);
+  @
+  @ // P1, P2: what the system decided before anything is driven.
+  @ predicate decision_kept{Before, After}(ilk_state_t *state) =
+  @   mode_kept{Before, After}(state) && \at(state->pedal, After) == \at(state->pedal, Before)
+  @   && \at(state->estop, After) == \at(state->estop, Before);
   @*/
 
 /* Requests. */
@@ -350,6 +360,9 @@
   @ // What is left of acceptance for carrying a request out.
   @ predicate applicable(ilk_state_t *state, ilk_request_t *request) =
   @   (request->kind == ILK_REQUEST_RESET ==> state->mode == ILK_MODE_LOCKED)
+  @   && (request->kind == ILK_REQUEST_ENABLE ==> state->mode == ILK_MODE_READY || state->mode == ILK_MODE_MOTION)
+  @   && (request->kind == ILK_REQUEST_MOVE || request->kind == ILK_REQUEST_HOME ==>
+  @       state->mode == ILK_MODE_MOTION)
   @   && (names_axis(request->kind) ==>
   @       request->axis < ILK_SLOTS && suits_axis(&state->axis[request->axis], request));
   @*/
@@ -427,28 +440,47 @@
   @   command->direction == ILK_DIRECTION_NONE && command->drive == 0 && command->amplitude == 0;
   @
   @ // P1: only through an open gate, else zero drive.
-  @ predicate passed(ilk_state_t *state, ilk_outputs_t *out, integer slot) =
-  @   out->gate[slot] == ILK_GATE_OPEN ==> may_drive(state, &state->axis[slot]);
+  @ predicate passed(ilk_state_t *state, integer slot, integer gate) =
+  @   gate == ILK_GATE_OPEN ==> may_drive(state, &state->axis[slot]);
   @
-  @ predicate stopped(ilk_outputs_t *out, integer slot) =
-  @   out->gate[slot] != ILK_GATE_OPEN ==> zero_drive(&out->command[slot]);
+  @ predicate stopped(integer gate, ilk_command_t *command) = gate != ILK_GATE_OPEN ==> zero_drive(command);
   @
   @ // P3, P4 and P7 of what leaves an open gate.
-  @ predicate off_switch(ilk_config_t *config, ilk_state_t *state, ilk_outputs_t *out, integer slot) =
-  @   out->gate[slot] == ILK_GATE_OPEN ==>
-  @     clear_of_switch(&config->axis[slot], &state->axis[slot], out->command[slot].direction);
+  @ predicate off_switch(ilk_config_t *config, ilk_state_t *state, integer slot, integer gate,
+  @                      ilk_command_t *command) =
+  @   gate == ILK_GATE_OPEN ==>
+  @     clear_of_switch(&config->axis[slot], &state->axis[slot], command->direction);
   @
-  @ predicate in_soft_range(ilk_config_t *config, ilk_state_t *state, ilk_outputs_t *out, integer slot) =
-  @   out->gate[slot] == ILK_GATE_OPEN ==>
-  @     within_soft_range(&config->axis[slot], &state->axis[slot], out->command[slot].direction);
+  @ predicate in_soft_range(ilk_config_t *config, ilk_state_t *state, integer slot, integer gate,
+  @                         ilk_command_t *command) =
+  @   gate == ILK_GATE_OPEN ==>
+  @     within_soft_range(&config->axis[slot], &state->axis[slot], command->direction);
   @
-  @ predicate in_unhomed_travel(ilk_config_t *config, ilk_state_t *state, ilk_outputs_t *out, integer slot) =
-  @   out->gate[slot] == ILK_GATE_OPEN ==>
-  @     within_unhomed_travel(&config->axis[slot], &state->axis[slot], out->command[slot].direction);
+  @ predicate in_unhomed_travel(ilk_config_t *config, ilk_state_t *state, integer slot, integer gate,
+  @                             ilk_command_t *command) =
+  @   gate == ILK_GATE_OPEN ==>
+  @     within_unhomed_travel(&config->axis[slot], &state->axis[slot], command->direction);
   @
-  @ predicate in_drive(ilk_config_t *config, ilk_state_t *state, ilk_outputs_t *out, integer slot) =
-  @   out->gate[slot] == ILK_GATE_OPEN ==>
-  @     within_drive(&config->axis[slot], &state->axis[slot], &out->command[slot]);
+  @ predicate in_drive(ilk_config_t *config, ilk_state_t *state, integer slot, integer gate,
+  @                    ilk_command_t *command) =
+  @   gate == ILK_GATE_OPEN ==> within_drive(&config->axis[slot], &state->axis[slot], command);
+  @
+  @ // All of these of one slot, and a direction that the catalog knows.
+  @ predicate gated(ilk_config_t *config, ilk_state_t *state, integer slot, integer gate,
+  @                 ilk_command_t *command) =
+  @   passed(state, slot, gate) && stopped(gate, command) && off_switch(config, state, slot, gate, command)
+  @   && in_soft_range(config, state, slot, gate, command)
+  @   && in_unhomed_travel(config, state, slot, gate, command) && in_drive(config, state, slot, gate, command)
+  @   && command->direction < ILK_DIRECTION_COUNT;
+  @
+  @ // P16: a command of zero drive is a frame that moves nothing.
+  @ predicate stills(ilk_command_t *command, uint32_t *frame) = zero_drive(command) ==> still_frame(frame);
+  @
+  @ predicate at_zero(ilk_outputs_t *out) =
+  @   \forall integer slot; 0 <= slot < ILK_SLOTS ==> zero_drive(&out->command[slot]);
+  @
+  @ predicate all_still(ilk_outputs_t *out) =
+  @   \forall integer slot; 0 <= slot < ILK_SLOTS ==> still_frame(&out->frame[slot][0]);
   @*/
 
 /* Integrity (P14). */

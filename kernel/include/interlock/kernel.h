@@ -60,6 +60,18 @@ ilk_config_verdict_t ilk_init(const ilk_config_t *config, ilk_state_t *state);
  *
  * @param count requests in `requests`; those beyond ILK_REQUESTS_PER_TICK are not looked at.
  */
+/*@ requires valid: \valid_read(config) && \valid(state) && \valid_read(in) && \valid(out)
+  @   && \valid_read(requests + (0 .. \min(count, ILK_REQUESTS_PER_TICK) - 1));
+  @ requires apart: \separated(config, state, out) && \separated(in, state, out)
+  @   && \separated(state, requests + (0 .. \min(count, ILK_REQUESTS_PER_TICK) - 1))
+  @   && \separated(out, requests + (0 .. \min(count, ILK_REQUESTS_PER_TICK) - 1));
+  @ assigns  *state, *out;
+  @ ensures  P15_invariant: sound(state);
+  @ ensures  P11_one_verdict: out->verdict_count == \min(count, ILK_REQUESTS_PER_TICK);
+  @ ensures  P2_stop: !consented(state) ==> at_zero(out) && all_still(out);
+  @ ensures  P14_contained: !\old(sealed(state) && sound(state)) ==>
+  @   state->mode == ILK_MODE_LOCKED && state->cause == ILK_CAUSE_INTEGRITY;
+  @*/
 void ilk_step(const ilk_config_t *config, ilk_state_t *state, const ilk_inputs_t *in,
               const ilk_request_t requests[], uint32_t count, ilk_outputs_t *out);
 

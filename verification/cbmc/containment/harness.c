@@ -35,13 +35,12 @@ uint32_t any_request_crc(const ilk_request_t* request) {
 static void show_rebuilt(void) {
   ilk_config_t config;
   ilk_state_t state;
-  ilk_alarms_t alarms = {.new_fault = false};
   const uint32_t damaged_seal = state.seal;
-  check_integrity(&config, &state, &alarms);
+  const ilk_config_check_t check = check_integrity(&config, &state);
   SHOW((state.mode == ILK_MODE_LOCKED) && (state.cause == ILK_CAUSE_INTEGRITY), "P14: LOCKED (INTEGRITY)");
   SHOW((state.cause_value == damaged_seal) && (state.causes_seen == (1u << ILK_CAUSE_INTEGRITY)),
        "P14: the damaged seal is told");
-  SHOW((state.config_sound == 0u) && (state.config_slice == 1u) && !alarms.configuration_damaged,
+  SHOW((state.config_sound == 0u) && (state.config_slice == 1u) && !check.damaged,
        "P13: the configuration is not trusted until a whole pass has agreed");
   SHOW((state.tick == 0u) && (state.pedal_armed == 0u) && (state.app_alive == 0u) && (state.estop == 1u),
        "P9, P10: ticks, consent, app and E-stop start anew");

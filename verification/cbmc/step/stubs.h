@@ -57,6 +57,7 @@ static struct {
   uint32_t at;
   bool rebuilt;
   bool sliced;
+  bool cleared;
   bool observed;
   bool changed;
   uint32_t unpacked;
@@ -214,9 +215,10 @@ void some_mode(const ilk_config_t* used, ilk_state_t* changed, const ilk_alarms_
 /** Changes nothing of the counters, which `verdicts` follows; of mode and axes, what requests may change. */
 void some_answers(const ilk_config_t* used, ilk_state_t* by, const ilk_request_t asked[], uint32_t count,
                   ilk_outputs_t* into) {
-  SHOW(
-      (used == &config) && (by == &state) && (asked == requests) && (count == chosen.count) && (into == &out),
-      "P11: phase 6 answers the requests of this tick by this state");
+  SHOW((used == &config) && (by == &state) && (asked == requests) &&
+           (count == ((chosen.count < ILK_REQUESTS_PER_TICK) ? chosen.count : ILK_REQUESTS_PER_TICK)) &&
+           (into == &out),
+       "P11: phase 6 answers the requests of this tick, sixteen at most, by this state");
   SHOW(seen.at == ((state.mode == ILK_MODE_INIT) ? AT_INTEGRITY : AT_MODE),
        "phase 6 comes after phase 5: a request is judged by what this tick's frames say");
   seen.at = AT_REQUESTS;
@@ -231,14 +233,16 @@ void some_answers(const ilk_config_t* used, ilk_state_t* by, const ilk_request_t
 }
 
 ilk_command_t some_wish(const ilk_axis_config_t* own, const ilk_axis_t* axis) {
-  const uint32_t slot = seen.wished;
-  SHOW((slot < ILK_SLOTS) && (slot == seen.gated) && (own == &config.axis[slot]) &&
-           (axis == &state.axis[slot]),
-       "phase 7: each axis wishes once, by its own configuration");
+  const uint32_t slot = slot_of(axis);
+  const bool for_the_gate = seen.wished < ILK_SLOTS;
+  SHOW((slot < ILK_SLOTS) && (own == &config.axis[slot]) && (axis == &state.axis[slot]),
+       "phase 7: each axis wishes by its own configuration");
   SHOW((seen.at == AT_REQUESTS) || (seen.at == AT_DRIVE), "phase 7 comes after phase 6");
+  SHOW(for_the_gate ? (slot == seen.wished) && (slot == seen.gated) : seen.gated == ILK_SLOTS,
+       "phase 7: each axis wishes once for its gate; whether it has arrived is asked after the last gate");
   GIVEN(slot < ILK_SLOTS);
   seen.at = AT_DRIVE;
-  seen.wished++;
+  seen.wished += for_the_gate ? 1u : 0u;
   return chosen.wish[slot];
 }
 
@@ -282,8 +286,14 @@ void some_frame(const ilk_axis_config_t* own, const ilk_command_t* command, uint
   seen.packed++;
 }
 
+/** Stands for `clear_unused_verdicts`. */
+void some_clearing(ilk_outputs_t* of) {
+  SHOW((of == &out) && (seen.at == AT_DRIVE), "P11: what is not used is cleared after the last answer");
+  seen.cleared = true;
+}
+
 void some_seal(ilk_state_t* sealed) {
-  SHOW((sealed == &state) && (seen.at == AT_PACK) && (seen.packed == ILK_SLOTS),
+  SHOW((sealed == &state) && (seen.at == AT_PACK) && (seen.packed == ILK_SLOTS) && seen.cleared,
        "P14: sealing is the last thing");
   seen.at = AT_SEAL;
   state.seal = chosen.seal;
