@@ -118,7 +118,7 @@ campaign-selftest: setup ## Show that the campaign finds each seeded fault of th
 
 .PHONY: scenarios
 scenarios: build ## Kill, freeze, starve and flood the real processes, 200 times: [SEED=1] [COUNT=200] [ONLY=number]
-	@python verification/scenarios/run.py --seed $(or $(SEED),1) $(if $(ONLY),--only $(ONLY),--count $(or $(COUNT),200))
+	@python verification/scenarios/run_scenarios.py --seed $(or $(SEED),1) $(if $(ONLY),--only $(ONLY),--count $(or $(COUNT),200))
 
 .PHONY: bench
 bench: build ## Measure step, loop, reaction, link and rate beside cyclictest: [DURATION=10] [RATE_SECONDS=2]

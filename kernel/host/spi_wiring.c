@@ -57,7 +57,7 @@ static bool read_line(const char *word, ilk_line_t *line) {
   return line->offset == ILK_NO_LINE && read_number(word, 0u, LINE_OFFSET_MAX, &line->offset);
 }
 
-static bool read_card(const words_t *words, ilk_spi_wiring_t *wiring) {
+static bool read_wired_card(const words_t *words, ilk_spi_wiring_t *wiring) {
   uint32_t slot = 0u;
   return words->count == 3u && read_number(words->word[1], 0u, (uint32_t)ILK_SLOTS - 1u, &slot) &&
          read_path(words->word[2], wiring->card[slot]);
@@ -104,7 +104,7 @@ static const char *take_line(const words_t *words, ilk_spi_wiring_t *wiring) {
     }
   }
   if (strcmp(key, "card") == 0) {
-    return read_card(words, wiring) ? NULL : "card SLOT DEVICE, once for each slot";
+    return read_wired_card(words, wiring) ? NULL : "card SLOT DEVICE, once for each slot";
   }
   if (strcmp(key, "gpio") == 0) {
     return words->count == 2u && read_path(words->word[1], wiring->gpio) ? NULL : "gpio DEVICE, once";

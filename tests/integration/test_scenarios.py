@@ -11,7 +11,7 @@ sys.path.append(str(Path(__file__).resolve().parents[2] / "verification/scenario
 
 import judge
 from plan import FAULTS, PROCESSES, plan
-from run import figures_of, run_scenario, verdict_of
+from run_scenarios import figures_of, run_scenario, verdict_of
 
 SEED = 20_261
 CHOSEN = sorted(random.Random(SEED).sample(range(len(FAULTS)), 5))

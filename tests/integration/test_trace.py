@@ -438,7 +438,7 @@ def test_every_function_that_is_proved_is_found_with_its_contract() -> None:
 GTEST = re.compile(r"^TEST(?:_P|_F)?\((\w+),\s*(\w+)", re.MULTILINE)
 
 
-def tests_in_the_sources() -> dict[str, list[str]]:
+def written_tests() -> dict[str, list[str]]:
     """The tests of each suite as the sources name them, without what a run adds."""
 
     def texts(pattern: str) -> list[tuple[Path, str]]:
@@ -460,7 +460,7 @@ def tests_in_the_sources() -> dict[str, list[str]]:
 
 
 def test_each_test_that_a_requirement_names_stands_in_the_sources() -> None:
-    written = tests_in_the_sources()
+    written = written_tests()
     patterns = {one for named in read_links(LINKS).tests.values() for one in named}
     missing = []
     for pattern in patterns:
@@ -475,7 +475,7 @@ def test_the_criteria_of_units_name_results_that_there_are() -> None:
     text = (ROOT / "spec/requirements/55_unit_acceptance.sdoc").read_text("utf-8")
     named = {one.partition(":")[2] for one in re.findall(r"`((?:TEST:unit|CBMC):[^`*]+)`", text)}
     proofs = {path.parent.name for path in (ROOT / "verification/cbmc").glob("*/proof.toml")}
-    suites = {f"kernel_tests.{one.partition('.')[0]}" for one in tests_in_the_sources()["unit"]}
+    suites = {f"kernel_tests.{one.partition('.')[0]}" for one in written_tests()["unit"]}
     assert len(named) > 5
     assert {one.removeprefix("unit:") for one in named} <= proofs | suites
 

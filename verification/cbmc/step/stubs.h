@@ -288,7 +288,8 @@ void some_frame(const ilk_axis_config_t* own, const ilk_command_t* command, uint
 
 /** Stands for `clear_unused_verdicts`. */
 void some_clearing(ilk_outputs_t* of) {
-  SHOW((of == &out) && (seen.at == AT_DRIVE), "P11: what is not used is cleared after the last answer");
+  SHOW((of == &out) && (seen.at == AT_PACK) && (seen.packed == ILK_SLOTS),
+       "P11: what no answer used is cleared when every frame is packed");
   seen.cleared = true;
 }
 
