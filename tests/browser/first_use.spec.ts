@@ -37,6 +37,26 @@ test("a newcomer unlocks, enables, drags, holds the pedal, arrives, and letting 
   expect(Math.abs((await axis.restingCounts()) - target)).toBeLessThanOrEqual(2);
 });
 
+test("a drag moves nothing while it lasts, even with the pedal held", async ({ robot, page }) => {
+  const axis = robot.axis("Probe rotation");
+  const asked: string[] = [];
+  await robot.unlockRobot();
+  await axis.enable();
+  await robot.latchPedal();
+  page.on("request", (request) => {
+    const { pathname } = new URL(request.url());
+    if (request.method() !== "GET" && !pathname.startsWith("/api/bench/pedal")) asked.push(pathname);
+  });
+  const before = await axis.restingCounts();
+  await axis.drag(3);
+  expect(Math.abs((await axis.circle()) - before)).toBeGreaterThan(100);
+  expect(Math.abs((await axis.restingCounts()) - before)).toBeLessThanOrEqual(1);
+  expect(asked).toEqual([]);
+  await page.mouse.up();
+  await expect.poll(() => axis.counts()).toBeGreaterThan(before + 10);
+  expect(asked).toEqual(["/api/proposals"]);
+});
+
 test("a move beyond the range is refused in words at the axis and in the list", async ({ robot }) => {
   const axis = robot.axis("Probe rotation");
   await robot.unlockRobot();
@@ -275,31 +295,33 @@ test("a renewal of the pedal that comes too late presses nothing, and the bench 
 });
 
 test("no key enables an axis, unlocks or presses the pedal", async ({ robot, page }) => {
-  const asked: string[] = [];
+  const asked = new Set<string>();
   page.on("request", (request) => {
-    if (request.method() !== "GET") asked.push(new URL(request.url()).pathname);
+    if (request.method() !== "GET") asked.add(new URL(request.url()).pathname);
   });
+  const letters = [..."abcdefghijklmnopqrstuvwxyz0123456789"];
+  const named = ["Enter", "Space", "Insert", "Delete", "Home", "End", "PageUp", "ArrowUp", "ArrowRight"];
+  const functions = Array.from({ length: 12 }, (_, index) => `F${index + 1}`);
+  const pressAll = async (): Promise<void> => {
+    // Nothing has the focus: a button that has it is pressed by Enter and Space, as everywhere.
+    await page.evaluate(() => (document.activeElement as HTMLElement | null)?.blur());
+    for (const key of [...letters, ...named, ...functions]) {
+      await page.keyboard.press(key);
+      await page.keyboard.press(`Control+${key}`);
+    }
+  };
   await robot.expectMode("LOCKED");
-  for (const key of [
-    "Enter",
-    "Space",
-    "e",
-    "h",
-    "r",
-    "u",
-    "p",
-    "F1",
-    "F2",
-    "ArrowUp",
-    "Control+o",
-    "Control+p",
-    "Escape",
-  ]) {
-    await page.keyboard.press(key);
-  }
+  await pressAll();
+  await robot.expectMode("LOCKED");
+  expect([...asked]).toEqual([]);
+  await robot.unlockRobot();
+  asked.clear();
+  await pressAll();
+  await page.keyboard.press("Escape");
   await expect(robot.stopAnswer).toHaveText("STOP accepted");
-  expect(asked).toEqual(["/api/stop"]);
-  await robot.expectMode("LOCKED");
+  expect([...asked]).toEqual(["/api/stop"]);
+  await robot.expectMode("READY");
+  await robot.axis("Yaw").expectState("DISABLED");
 });
 
 test("the picture of the README comes from a real run", async ({ robot, page }) => {

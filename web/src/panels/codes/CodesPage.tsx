@@ -78,7 +78,7 @@ function Code({ family, code }: { readonly family: Family; readonly code: Catalo
             <dd>
               {code.properties.map((property) => (
                 <a key={property} href={evidencePlace(property)} target="_blank" rel="noreferrer">
-                  {property}{" "}
+                  {property}
                 </a>
               ))}
             </dd>

@@ -105,6 +105,8 @@ describe("csvOf", () => {
         "Drive: sent (words),Since the tick before: real time (µs)",
     );
     expect(table[2]).toBe("11,0.011,11.2,,,6,1010");
+    const part = between(captureSheet(capture, motor(10)), 0, 1);
+    expect(csvOf(part).split("\n")[0]).toBe(table[0]);
     const sheet = historySheet(rows, motor(100));
     expect(sheet === null ? "" : csvOf(sheet).split("\n")[0]).toContain(
       "Position: measured (mm) least,Position: measured (mm) greatest",

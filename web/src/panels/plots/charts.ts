@@ -159,7 +159,10 @@ export function between(sheet: Sheet, fromS: number, toS: number): Sheet {
     tick: cut(sheet.tick),
     charts: sheet.charts.map((chart) => ({
       ...chart,
-      lines: chart.lines.map((line) => ({ ...line, least: cut(line.least), greatest: cut(line.greatest) })),
+      lines: chart.lines.map((line) => {
+        const least = cut(line.least);
+        return { ...line, least, greatest: line.least === line.greatest ? least : cut(line.greatest) };
+      }),
     })),
   };
 }
