@@ -47,6 +47,11 @@ test("the robot's page at work, and the sheets", async ({ robot, page }) => {
   await robot.axis("Probe rotation").propose("200");
   await expect.poll(() => robot.axis("Probe rotation").counts()).toBeGreaterThan(1000);
   await take(page, "robot");
+  for (const name of ["Plots", "3D"] as const) {
+    await robot.open(name);
+    await expect(robot.panel(name)).toBeVisible();
+    await take(page, name.toLowerCase());
+  }
   await robot.stop.click();
   for (const name of ["Codes", "Users", "Audit", "Account"] as const) {
     await robot.open(name);

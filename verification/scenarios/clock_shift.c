@@ -2,9 +2,9 @@
  * @file
  * A wall clock that a test can step, for a program that is started with this library preloaded.
  *
- * CLOCK_REALTIME is shifted by the nanoseconds in the file $INTERLOCK_CLOCK_SHIFT (one int64_t, mapped, so that
- * a step acts at once and in every thread). Time that passes, CLOCK_MONOTONIC, stays as it is: a step of the
- * wall clock does not touch it either.
+ * CLOCK_REALTIME is shifted by the nanoseconds in the file $INTERLOCK_CLOCK_SHIFT (one int64_t, mapped, so
+ * that a step acts at once and in every thread). Time that passes, CLOCK_MONOTONIC, stays as it is: a step of
+ * the wall clock does not touch it either.
  */
 #include <fcntl.h>
 #include <stdint.h>
@@ -18,22 +18,22 @@
 #define NS_PER_S 1000000000LL
 
 static const int64_t no_shift;
-static const int64_t *shift_ns = &no_shift;
+static const int64_t* shift_ns = &no_shift;
 
 __attribute__((constructor)) static void map_shift(void) {
-  const char *path = getenv("INTERLOCK_CLOCK_SHIFT");
+  const char* path = getenv("INTERLOCK_CLOCK_SHIFT");
   const int file = path == NULL ? -1 : open(path, O_RDONLY | O_CLOEXEC);
   if (file < 0) {
     return;
   }
-  const void *mapped = mmap(NULL, sizeof *shift_ns, PROT_READ, MAP_SHARED, file, 0);
+  const void* mapped = mmap(NULL, sizeof *shift_ns, PROT_READ, MAP_SHARED, file, 0);
   if (mapped != MAP_FAILED) {
     shift_ns = mapped;
   }
   (void)close(file);
 }
 
-int clock_gettime(clockid_t clock, struct timespec *now) {
+int clock_gettime(clockid_t clock, struct timespec* now) {
   const int result = (int)syscall(SYS_clock_gettime, clock, now);
   if (result == 0 && (clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE)) {
     const int64_t ns = now->tv_nsec + __atomic_load_n(shift_ns, __ATOMIC_RELAXED);
@@ -44,7 +44,7 @@ int clock_gettime(clockid_t clock, struct timespec *now) {
   return result;
 }
 
-int gettimeofday(struct timeval *restrict now, void *restrict zone) {
+int gettimeofday(struct timeval* restrict now, void* restrict zone) {
   (void)zone;
   struct timespec precise;
   const int result = clock_gettime(CLOCK_REALTIME, &precise);
@@ -53,7 +53,7 @@ int gettimeofday(struct timeval *restrict now, void *restrict zone) {
   return result;
 }
 
-time_t time(time_t *now) {
+time_t time(time_t* now) {
   struct timespec precise;
   (void)clock_gettime(CLOCK_REALTIME, &precise);
   if (now != NULL) {
