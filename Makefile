@@ -65,7 +65,7 @@ test-console: setup ## Run the console's unit tests, and compare its kernel with
 
 test-integration: build ## Run the tests on real processes
 	@verification/evidence/begin_tests.py integration
-	@pytest --numprocesses=3 --dist=loadscope --junitxml=$(reports)/integration.xml tests/integration
+	@pytest --numprocesses=3 --dist=loadscope -m "not provers" --junitxml=$(reports)/integration.xml tests/integration
 
 test-browser: build ## Run the tests that click through the console
 	@verification/evidence/begin_tests.py browser
@@ -80,14 +80,16 @@ soak: build ## Let the robot move for half an hour under OpenIGTLink clients and
 	@python verification/soak/run.py --minutes $(or $(MINUTES),30)
 
 .PHONY: selftest selftest-all
-selftest: setup ## Show that seeded faults turn tests and proofs red: a third, chosen by the commit
+selftest: build ## Show that seeded faults turn tests and proofs red: a third, chosen by the commit
 	@tests/failure/run.py
 	@$(setup) packages provers
+	@pytest -m provers tests/integration
 	@/usr/bin/python3 verification/mutation/faults.py
 
-selftest-all: setup ## Show that every seeded fault turns its test or proof red
+selftest-all: build ## Show that every seeded fault turns its test or proof red
 	@tests/failure/run.py --all
 	@$(setup) packages provers
+	@pytest -m provers tests/integration
 	@/usr/bin/python3 verification/mutation/faults.py --all
 
 .PHONY: verify

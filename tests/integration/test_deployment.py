@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from bare_kernel import BIN, DEADLINE_S, ROOT, options, stop
 
-UNITS = ROOT / "packaging/systemd"
+UNITS = ROOT / "app/packaging/systemd"
 SERVICES = sorted(UNITS.glob("*.service"))
 PROGRAMS = ("interlock", "interlock-app", "interlock-kernel", "interlock-recorder", "interlock-sim")
 MOST_EXPOSED = 20
@@ -79,10 +79,10 @@ def test_only_the_kernel_has_devices_and_real_time_and_only_the_app_a_network() 
     assert units["app"]["IPAddressAllow"] == ["localhost"]
     assert units["app"]["User"] != units["kernel"]["User"]
     assert all(unit["CapabilityBoundingSet"] == [""] for unit in units.values())
-    rules = (ROOT / "packaging/udev/60-interlock.rules").read_text()
+    rules = (ROOT / "app/packaging/udev/60-interlock.rules").read_text()
     [group] = units["kernel"]["SupplementaryGroups"]
     assert set(re.findall(r'GROUP="([^"]+)"', rules)) == {group}
-    users = (ROOT / "packaging/sysusers/interlock.conf").read_text()
+    users = (ROOT / "app/packaging/sysusers/interlock.conf").read_text()
     assert {group, *(unit["User"][0] for unit in units.values())} == set(
         re.findall(r"^[gu] (\S+)", users, re.M)
     )

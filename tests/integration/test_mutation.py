@@ -16,7 +16,6 @@ from tree import make_tree, seeded
 from verdicts import kernel_digests
 
 FILES = [f"kernel/{file}" for file in core_files(ROOT / "kernel") if "crc32_table" not in file]
-CBMC = ROOT / "build/provers/bin/cbmc"
 
 SOURCE = """\
 /* f(int a) { */
@@ -97,7 +96,7 @@ def small_function() -> tuple[Function, Mutant]:
     raise AssertionError("the core has no small comparison")
 
 
-@pytest.mark.skipif(not CBMC.is_file(), reason="the provers are not installed: make verify")
+@pytest.mark.provers
 def test_the_sound_function_is_shown_equal_to_itself_and_a_fault_is_not(tmp_path: Path) -> None:
     function, mutant = small_function()
     tree = make_tree(tmp_path / "tree")
@@ -109,6 +108,6 @@ def test_the_sound_function_is_shown_equal_to_itself_and_a_fault_is_not(tmp_path
         assert not is_same(function, tree, folder)
 
 
-@pytest.mark.skipif(not CBMC.is_file(), reason="the provers are not installed: make verify")
+@pytest.mark.provers
 def test_a_mutant_outside_of_every_function_is_never_called_equal(tmp_path: Path) -> None:
     assert shown_equal(make_tree(tmp_path / "tree"), "kernel/src/arith.h", 1) == ""
