@@ -25,8 +25,8 @@ the prover that is asked first takes its whole time before the other one is aske
 
 FIRST_SECONDS = "5"
 LAST_SECONDS = "40"
-"""What a prover gets for a goal, first when each is tried in turn, then for those that neither proved: little
-at first, as what one does not find soon the other mostly does; then much, as a busy machine takes its time."""
+"""What a prover gets for a goal, first when each is tried in turn, then for those that neither proved.
+Little at first, as what one does not find soon the other mostly does; a busy machine takes its time."""
 
 PREPROCESSOR = f"-I{ROOT / 'kernel/include'} -I{CORE} -DILK_FRAME_WORDS=32"
 PARSE = ["frama-c", "-c11", "-machdep", "gcc_x86_64", f"-cpp-extra-args={PREPROCESSOR}"]
