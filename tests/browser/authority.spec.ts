@@ -48,6 +48,41 @@ test("an administrator takes the authority over, after being asked", async ({ fr
   await expect(other.button("Take over")).toHaveCount(0);
 });
 
+test("a second engineer watches a move live, and cannot write past the holder", async ({ robot, other }) => {
+  const axis = robot.axis("Probe rotation");
+  const watched = other.axis("Probe rotation");
+  await robot.addUser("ann", "engineer", password);
+  await robot.unlockRobot();
+  await axis.enable();
+  await axis.propose("40");
+  await other.logIn("ann", password);
+  await robot.latchPedal();
+  await other.expectMode("MOTION");
+  await expect.poll(() => watched.counts()).toBeGreaterThan(10);
+  for (const name of ["Disable Probe rotation", "Enable Yaw", "Home all", "Zero all"])
+    await expect(other.button(name)).toBeDisabled();
+  await expect(watched.row.getByRole("textbox")).toBeDisabled();
+
+  const answers = await other.page.evaluate(async () => {
+    const writes: [path: string, body: object][] = [
+      ["/api/motors/probe_rotation/disable", {}],
+      ["/api/motors/yaw/enable", {}],
+      ["/api/proposals", { slot: 0, target: 1 }],
+      ["/api/jog", { slot: 0, direction: "positive" }],
+      ["/api/reset", {}],
+    ];
+    const asked = writes.map(async ([path, body]) => {
+      const response = await fetch(path, { method: "POST", body: JSON.stringify(body) });
+      return [path, response.status, (await response.json()).code];
+    });
+    return Promise.all(asked);
+  });
+  for (const answer of answers) expect(answer.slice(1)).toEqual([409, "AUTHORITY"]);
+  await expect(robot.proposal(1)).toContainText(/executing|done/);
+  await expect(robot.proposal(2)).toHaveCount(0);
+  await robot.axis("Yaw").expectState("DISABLED");
+});
+
 test("a request is withdrawn, and a released authority is free", async ({ robot, other }) => {
   await robot.addUser("ann", "engineer", password);
   await other.logIn("ann", password);

@@ -1,0 +1,127 @@
+/** Each page's main job without a pointer, and how the console looks to those who ask for less or for other colours. */
+import { expect, test } from "./fixtures";
+import { Keyboard } from "./keyboard";
+
+const password = "correct horse battery";
+
+test("keys alone log in, unlock, enable, propose, press the pedal and stop", async ({
+  front,
+  stack,
+  page,
+}) => {
+  const keyboard = new Keyboard(page);
+  const axis = front.axis("Probe rotation");
+  await keyboard.type(front.loginForm.getByLabel("Name"), "admin");
+  await keyboard.type(front.loginForm.getByLabel("Password"), stack.password);
+  await page.keyboard.press("Enter");
+  await keyboard.press(front.button("Request"));
+  await expect(front.authority).toContainText("(you)");
+  await keyboard.press(front.unlock);
+  await front.expectMode("READY");
+  await keyboard.press(front.button("Enable Probe rotation"));
+  await axis.expectState("ENABLED");
+  await keyboard.reach(axis.track);
+  for (let step = 0; step < 5; step++) await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("Enter");
+  await expect(front.proposal(1)).toContainText("approved");
+  await front.expectArmed();
+  await keyboard.press(front.latch, "Space");
+  await expect(front.proposal(1)).toContainText("executing");
+  await page.keyboard.press("Escape");
+  await expect(front.stopAnswer).toHaveText("STOP accepted");
+  await expect(front.proposal(1)).toContainText("aborted");
+});
+
+test("keys alone find a code, add a user, read the audit and change a password", async ({
+  robot,
+  stack,
+  page,
+}) => {
+  const keyboard = new Keyboard(page);
+  const open = async (name: string): Promise<void> => {
+    await keyboard.press(page.getByRole("link", { name }));
+    await expect(robot.panel(name)).toBeVisible();
+  };
+  await open("Codes");
+  await keyboard.type(page.getByRole("searchbox", { name: "Find" }), "stall");
+  await expect(page.getByRole("article", { name: "STALL" })).toBeVisible();
+  await expect(page.getByRole("article", { name: "ESTOP" })).toHaveCount(0);
+
+  await open("Users");
+  const form = page.getByRole("form", { name: "Add a user" });
+  await keyboard.type(form.getByLabel("Name"), "ann");
+  await keyboard.type(form.getByLabel("Role"), "engineer");
+  await keyboard.type(form.getByLabel("Password"), password);
+  await page.keyboard.press("Enter");
+  await expect(page.getByRole("row", { name: "User ann" })).toContainText("engineer");
+
+  await open("Audit");
+  await expect(robot.panel("Audit").getByRole("row").filter({ hasText: "ann" }).first()).toBeVisible();
+
+  await open("Account");
+  const change = page.getByRole("form", { name: "Change the password" });
+  await keyboard.type(change.getByLabel("Current password"), stack.password);
+  await keyboard.type(change.getByLabel("New password", { exact: true }), password);
+  await keyboard.type(change.getByLabel("New password again"), password);
+  await page.keyboard.press("Enter");
+  await expect(change.getByRole("status")).toHaveText("The password is changed.");
+});
+
+test("a button that was pressed by key keeps the focus while the app answers", async ({ robot, page }) => {
+  const keyboard = new Keyboard(page);
+  await robot.unlockRobot();
+  const jam = robot.button("Jam Yaw");
+  await keyboard.press(jam);
+  await expect(jam).toHaveAttribute("aria-pressed", "true");
+  await expect(jam).toBeFocused();
+  await page.keyboard.press("Enter");
+  await expect(jam).toHaveAttribute("aria-pressed", "false");
+});
+
+test("every stop of the Tab key is ringed and not hidden", async ({ robot, page }) => {
+  test.setTimeout(120_000);
+  const keyboard = new Keyboard(page);
+  await robot.unlockRobot();
+  await robot.axis("Lateral").enable();
+  for (const name of ["Robot", "Codes", "Users", "Account"] as const) {
+    await robot.open(name);
+    const stops = await keyboard.stops();
+    expect(stops.length, name).toBeGreaterThan(8);
+    expect(
+      stops.filter(({ fault }) => fault !== null),
+      name,
+    ).toEqual([]);
+  }
+});
+
+test("alarms flash as their priority has it, carry a word and a symbol, and hold still where motion is reduced", async ({
+  robot,
+  page,
+}) => {
+  const flashes = () =>
+    page.evaluate(() => document.getAnimations().map((flash) => flash.effect?.getTiming().duration));
+  await robot.panel("Bench").getByText("More faults").click();
+  await robot.panel("Bench").getByLabel("Pedal contact NO").selectOption("closed");
+  await expect(robot.pedalState).toHaveText("▽ CHANNELS DISAGREE");
+  // IEC 60601-1-8: medium priority flashes at 0.4 to 0.8 Hz, high at 1.4 to 2.8 Hz.
+  expect(await flashes()).toEqual([1600]);
+  await robot.button("Pull E-stop").click();
+  await expect(robot.estop).toHaveText("⬣ PULLED");
+  expect(await flashes()).toEqual([500, 1600]);
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  expect(await flashes()).toEqual([]);
+});
+
+test("forced colours leave a mark on what is pressed, on what lives and on the track", async ({
+  robot,
+  page,
+}) => {
+  await page.emulateMedia({ forcedColors: "active", colorScheme: "light" });
+  await robot.button("Jam Yaw").click();
+  const jam = robot.button("Jam Yaw");
+  await expect(jam).toHaveAttribute("aria-pressed", "true");
+  await expect(jam).toHaveCSS("outline-width", "2px");
+  const ground = await page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+  await expect(robot.panel("Motors").locator(".life-dot i")).not.toHaveCSS("background-color", ground);
+  await expect(robot.axis("Yaw").track.locator(".measured path").first()).not.toHaveCSS("fill", ground);
+});
