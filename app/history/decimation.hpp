@@ -21,6 +21,7 @@ namespace interlock {
 template <typename Number>
 class Extremes {
  public:
+  /** Widens them so that the value is between them. */
   void add(Number value) noexcept {
     least_ = known_ && least_ < value ? least_ : value;
     greatest_ = known_ && greatest_ > value ? greatest_ : value;

@@ -19,6 +19,7 @@ struct ForceScale {
   double newton_per_count = 1.0;
   double zero_counts = 0.0;
 
+  /** Force in newtons of a reading in counts. */
   [[nodiscard]] double force_n(std::uint32_t counts) const {
     return newton_per_count * (counts - zero_counts);
   }

@@ -39,11 +39,13 @@ extern "C" {
 #define ILK_LED_BLUE 2u
 #define ILK_LED_COUNT 3u
 
+/** A line of the GPIO chip. */
 typedef struct {
   uint32_t offset; /**< on the chip; ILK_NO_LINE: not wired */
   bool active_low;
 } ilk_line_t;
 
+/** Which devices and lines the robot's cards, contacts and lamps are on. */
 typedef struct {
   char card[ILK_SLOTS][ILK_DEVICE_PATH_BYTES]; /**< device of each slot, empty where there is no card */
   char gpio[ILK_DEVICE_PATH_BYTES];

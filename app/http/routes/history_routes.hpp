@@ -19,6 +19,7 @@ struct Past {
   std::filesystem::path black_box; /**< file of the kernel's; empty: there is none to read */
 };
 
+/** `GET /api/history` and `GET /api/capture`, and what they read: the decimated past and the black box. */
 class HistoryRoutes {
  public:
   /** Context and router must outlive it. */

@@ -31,6 +31,7 @@ bool ilk_service_notify_open(ilk_service_notify_t *notify);
 /** Sends one message, such as "READY=1", and never waits: a manager that does not read loses it. */
 void ilk_service_notify_send(const ilk_service_notify_t *notify, const char *message);
 
+/** Nothing is sent afterwards. */
 void ilk_service_notify_close(ilk_service_notify_t *notify);
 
 #ifdef __cplusplus
