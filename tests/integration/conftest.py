@@ -22,6 +22,17 @@ def short_tmp_path() -> Iterator[Path]:
         yield Path(directory)
 
 
+@pytest.fixture(scope="module")
+def robot() -> Iterator[Stack]:
+    """One robot for all tests of a file, at the speed of the wall's clock."""
+    with tempfile.TemporaryDirectory(prefix="interlock-test-") as directory:
+        started = Stack(Path(directory), "--clock", "sim", "--speed", "1")
+        try:
+            yield started
+        finally:
+            started.close()
+
+
 @pytest.fixture
 def stack(short_tmp_path: Path) -> Iterator[StackFactory]:
     """Starts whole robots: `stack(clock="sim", speed=0)`. Each is stopped when the test ends."""

@@ -1,9 +1,5 @@
 """Whatever is sent, the answer is one that spec/openapi.yaml describes, and never a failure of the app."""
 
-import tempfile
-from collections.abc import Iterator
-from pathlib import Path
-
 import pytest
 import schemathesis
 from hypothesis import HealthCheck, given, settings
@@ -42,16 +38,6 @@ OPERATIONS = [
     for operation in (result.ok() for result in SCHEMA.get_all_operations())
     if operation.definition.raw["operationId"] not in LEFT_OUT
 ]
-
-
-@pytest.fixture(scope="module")
-def robot() -> Iterator[Stack]:
-    with tempfile.TemporaryDirectory(prefix="interlock-test-") as directory:
-        started = Stack(Path(directory), "--clock", "sim", "--speed", "1")
-        try:
-            yield started
-        finally:
-            started.close()
 
 
 @pytest.mark.parametrize("operation", OPERATIONS)

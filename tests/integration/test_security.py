@@ -5,10 +5,7 @@ Rights by route: test_roles.py."""
 import concurrent.futures
 import itertools
 import re
-import tempfile
-from collections.abc import Iterator
 from html.parser import HTMLParser
-from pathlib import Path
 
 import httpx
 import pytest
@@ -35,16 +32,6 @@ WRITING = [
 # Wrong passwords that cost no wait, app/http/login_guard.cpp.
 FREE_ATTEMPTS = 3
 LONG_WAIT_S = 4
-
-
-@pytest.fixture(scope="module")
-def robot() -> Iterator[Stack]:
-    with tempfile.TemporaryDirectory(prefix="interlock-test-") as directory:
-        started = Stack(Path(directory), "--clock", "sim", "--speed", "1")
-        try:
-            yield started
-        finally:
-            started.close()
 
 
 class Page(HTMLParser):
