@@ -3,6 +3,7 @@
 import hashlib
 import json
 import threading
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
@@ -53,24 +54,25 @@ def kernel_digests(tree: Path) -> tuple[str, str]:
 
 
 class Kept:
-    """The verdicts of earlier runs."""
+    """The verdicts of earlier runs before the same rungs."""
 
-    def __init__(self, every: bool) -> None:
+    def __init__(self, asked: Sequence[str], every: bool) -> None:
         self._verdicts: dict[str, dict] = json.loads(FILE.read_text("utf-8")) if FILE.is_file() else {}
         self._rungs = {rung: digest_of_files(folders) for rung, folders in READ_BY.items()}
+        self._asked = tuple(asked)
         self._every = every
         self._lock = threading.Lock()
 
     def key(self, tree: Path, rung: str) -> str:
         """Of the mutant in the tree, as far as a rung can see it; `all` sees everything."""
         code, whole = kernel_digests(tree)
-        read = self._rungs.values() if rung == "all" else [self._rungs[rung]]
+        read = [self._rungs[each] for each in (self._asked if rung == "all" else [rung])]
         seen = code if rung in ("tests", "conformance") else whole
-        return hashlib.sha256("".join([rung, str(self._every), seen, *read]).encode()).hexdigest()
+        return hashlib.sha256("".join([rung, *self._asked, str(self._every), seen, *read]).encode()).hexdigest()
 
     def find(self, tree: Path) -> Verdict | None:
         """The verdict on the mutant in the tree, if nothing changed that it rests on."""
-        for rung in (*RUNGS, "all"):
+        for rung in (*self._asked, "all"):
             if found := self._verdicts.get(self.key(tree, rung)):
                 return Verdict(**{**found, "reasons": tuple(found["reasons"])})
         return None
