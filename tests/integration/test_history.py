@@ -3,7 +3,7 @@
 import pytest
 from conftest import StackFactory
 from interface import judge
-from motion import LATERAL, motor, propose, to_motion, wait_for_proposal
+from motion import LATERAL, motor, propose, to_motion, wait_for_proposal, wait_until
 from stack import Stack
 
 
@@ -96,6 +96,8 @@ def test_only_rows_after_a_number_are_sent_again(moved: Stack) -> None:
 
 
 def test_a_capture_has_every_tick_up_to_the_one_that_is_asked_for(moved: Stack) -> None:
+    # A quick machine is here before the kernel has run for a second.
+    wait_until("a second of ticks", lambda: whole_history(moved)[-1]["tick"] >= 1000)
     last = whole_history(moved)[-1]["tick"]
     taken = capture(moved, seconds=1, until=last)
     assert taken["tick"] == list(range(last - 999, last + 1))
