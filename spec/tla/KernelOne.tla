@@ -186,8 +186,10 @@ Accepted(tick, kinds) ==
   \E i \in 1..Len(tick.answers) :
     tick.answers[i].request.kind \in kinds /\ tick.answers[i].verdict = "ACCEPTED"
 
-(* At rest for long enough, and a frame has told of the last drive. *)
-IsSettled == seen.quiet >= k.settle_ticks /\ ~WasDriven(axis)
+(* Undriven for long enough; and if a frame has told of the last drive, what it
+   moves now is not the drive's doing. *)
+HasRested == seen.quiet >= k.settle_ticks
+IsSettled == HasRested /\ ~WasDriven(axis)
 
 (* Net progress on the way that it was driven, and not after it had settled. *)
 Progressed(in, a) == /\ a.card_valid /\ axis.card_seen /\ ~IsSettled
@@ -212,7 +214,7 @@ Witnessed(in, tick) ==
       moving   == tick.system.mode = "MOTION"
       entered  == moving /\ system.mode # "MOTION"
       farther  == Along(seen.way, now - seen.far) > 0
-      anew     == command.drive # 0 /\ (settled \/ command.direction # seen.way)
+      anew     == command.drive # 0 /\ (HasRested \/ command.direction # seen.way)
   IN  [ driven     |-> IF command.drive # 0 THEN CountUp(count, k.stall_ticks + 1) ELSE count,
         from       |-> IF anew \/ settled \/ BeginsAnew(in, tick, a) THEN now ELSE seen.from,
         changed    |-> count # 0 /\ (seen.changed \/ a.setpoint_counts # axis.setpoint_counts),
