@@ -102,6 +102,7 @@ static bool heartbeat_advanced(const ilk_axis_t *axis, const ilk_reading_t *read
 void ilk_observe_card(ilk_axis_t *axis, const ilk_reading_t *reading, bool received, uint32_t tick) {
   const bool valid =
       received && reading->intact && echo_is_current(reading, tick) && heartbeat_advanced(axis, reading);
+  axis->ticks_since_frame = (axis->card_valid != 0u) ? 1u : count_up(axis->ticks_since_frame, UINT32_MAX);
   axis->card_valid = flag_of(valid);
   if (valid) {
     axis->bad_frames = 0u;
@@ -130,6 +131,15 @@ static bool is_enabled(const ilk_axis_t *axis) {
   @*/
 static bool was_driven(const ilk_axis_t *axis) {
   return axis->driven_direction != (uint32_t)ILK_DIRECTION_NONE;
+}
+
+/** The first frame after a drive tells what the drive did, however many were missed in between. */
+/*@ requires readable: \valid_read(config) && \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  exact: \result <==> settled(config, axis);
+  @*/
+static bool has_settled(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+  return !was_driven(axis) && (axis->undriven_ticks >= config->settle_ticks);
 }
 
 /*@ requires readable: \valid_read(config) && \valid_read(axis);
@@ -185,8 +195,7 @@ static finding_t judge_reverse(const ilk_axis_config_t *config, const ilk_axis_t
 static finding_t judge_drift(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
   const int32_t drift = travel_between(config, axis->drift_mark_raw, axis->raw);
   finding_t finding = nothing_found;
-  if (is_enabled(axis) && (axis->undriven_ticks >= config->settle_ticks) &&
-      (magnitude(drift) > config->drift_counts)) {
+  if (is_enabled(axis) && has_settled(config, axis) && (magnitude(drift) > config->drift_counts)) {
     finding.fault = ILK_FAULT_DRIFT;
     finding.value = drift;
   }
@@ -266,27 +275,26 @@ static void follow(const ilk_axis_config_t *config, ilk_axis_t *axis, uint32_t r
 /** Motion counts as progress only until the axis has settled: later it is not the drive's doing. */
 /*@ requires readable: \valid_read(config) && \valid_read(axis);
   @ assigns  \nothing;
-  @ ensures  P5_stall: \result <==> axis->undriven_ticks < config->settle_ticks
+  @ ensures  P5_stall: \result <==> !settled(config, axis)
   @   && progress(config, axis, axis->stall_mark_raw, axis->stall_direction) > 0
   @   && progress(config, axis, axis->stall_mark_raw, axis->stall_direction) >= config->stall_min_counts;
   @*/
 static bool made_progress(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
   const int32_t progress = progress_from(config, axis, axis->stall_mark_raw, axis->stall_direction);
-  return (axis->undriven_ticks < config->settle_ticks) && (progress > 0) &&
-         (magnitude(progress) >= config->stall_min_counts);
+  return !has_settled(config, axis) && (progress > 0) && (magnitude(progress) >= config->stall_min_counts);
 }
 
 /** Marks that follow the axis while it does nothing wrong. */
 /*@ requires valid: \valid_read(config) && \valid(axis) && \separated(config, axis);
   @ assigns  axis->reverse_mark_raw, axis->stall_driven_ticks, axis->setpoint_changed, axis->stall_mark_raw,
-  @          axis->undriven_ticks, axis->drift_mark_raw;
+  @          axis->drift_mark_raw;
   @ ensures  P6_reverse: axis->reverse_mark_raw == axis->raw
   @   || axis->reverse_mark_raw == \old(axis->reverse_mark_raw);
-  @ ensures  P6_undriven: axis->undriven_ticks == (axis->driven_direction != ILK_DIRECTION_NONE ? 0
-  @   : \min(\old(axis->undriven_ticks) + 1, config->settle_ticks));
-  @ ensures  P6_drift: axis->drift_mark_raw == (axis->state == ILK_AXIS_DISABLED
-  @   || axis->state == ILK_AXIS_FAULTED || axis->undriven_ticks < config->settle_ticks
-  @   ? axis->raw : \old(axis->drift_mark_raw));
+  @ ensures  P6_drift: axis->state != ILK_AXIS_DISABLED && axis->state != ILK_AXIS_FAULTED && settled(config, axis)
+  @   ==> axis->drift_mark_raw == \old(axis->drift_mark_raw);
+  @ ensures  P6_idle: axis->state == ILK_AXIS_DISABLED || axis->state == ILK_AXIS_FAULTED
+  @   ==> axis->drift_mark_raw == axis->raw;
+  @ ensures  P6_driven: !settled(config, axis) ==> axis->drift_mark_raw == axis->raw;
   @ ensures  P5_stall: axis->stall_driven_ticks == 0
   @   || axis->stall_driven_ticks == \old(axis->stall_driven_ticks);
   @*/
@@ -294,11 +302,10 @@ static void advance_marks(const ilk_axis_config_t *config, ilk_axis_t *axis) {
   if (progress_from(config, axis, axis->reverse_mark_raw, axis->reverse_direction) > 0) {
     axis->reverse_mark_raw = axis->raw;
   }
-  axis->undriven_ticks = was_driven(axis) ? 0u : count_up(axis->undriven_ticks, config->settle_ticks);
   if (made_progress(config, axis)) {
     clear_stall_count(axis);
   }
-  if (!is_enabled(axis) || (axis->undriven_ticks < config->settle_ticks)) {
+  if (!is_enabled(axis) || !has_settled(config, axis)) {
     axis->drift_mark_raw = axis->raw;
   }
 }
@@ -326,10 +333,9 @@ static finding_t judge_motion(const ilk_axis_config_t *config, const ilk_axis_t 
   @ requires apart: \separated(config, axis, reading);
   @ assigns  axis->card_seen, axis->raw, axis->ticks_since_frame, axis->reverse_mark_raw, axis->drift_mark_raw,
   @          axis->stall_mark_raw, axis->homing_mark_raw, axis->delta_counts, axis->position_counts,
-  @          axis->press_travel_counts, axis->stall_driven_ticks, axis->setpoint_changed, axis->undriven_ticks,
+  @          axis->press_travel_counts, axis->stall_driven_ticks, axis->setpoint_changed,
   @          axis->driven_direction;
-  @ ensures  seen: axis->raw == \old(reading->raw) && axis->ticks_since_frame == 0
-  @   && axis->driven_direction == ILK_DIRECTION_NONE;
+  @ ensures  seen: axis->raw == \old(reading->raw) && axis->driven_direction == ILK_DIRECTION_NONE;
   @ ensures  P5_stall: \result.fault == ILK_FAULT_NONE
   @   && axis->state != ILK_AXIS_DISABLED && axis->state != ILK_AXIS_FAULTED ==>
   @     axis->stall_driven_ticks < \old(config->stall_ticks);
@@ -340,7 +346,6 @@ static finding_t observe_valid(const ilk_axis_config_t *config, ilk_axis_t *axis
   follow(config, axis, reading->raw);
   advance_marks(config, axis);
   const finding_t finding = judge_motion(config, axis);
-  axis->ticks_since_frame = 0u;
   axis->driven_direction = (uint32_t)ILK_DIRECTION_NONE;
   return finding;
 }
@@ -388,6 +393,18 @@ void ilk_observe_sensor(const ilk_config_t *config, ilk_axis_t *axis) {
   }
 }
 
+/** A drive needs a valid frame: an axis that was driven since its last one was driven in that very tick. */
+/*@ requires valid: \valid_read(config) && \valid(axis) && \separated(config, axis);
+  @ assigns  axis->undriven_ticks;
+  @ ensures  P6_undriven: axis->undriven_ticks ==
+  @   (axis->driven_direction != ILK_DIRECTION_NONE && axis->ticks_since_frame == 1 ? 0
+  @     : \min(\old(axis->undriven_ticks) + 1, config->settle_ticks));
+  @*/
+static void count_undriven(const ilk_axis_config_t *config, ilk_axis_t *axis) {
+  const bool driven_last_tick = was_driven(axis) && (axis->ticks_since_frame == 1u);
+  axis->undriven_ticks = driven_last_tick ? 0u : count_up(axis->undriven_ticks, config->settle_ticks);
+}
+
 /** Homing by what the frame said, then the fault that was found first. */
 /*@ requires valid: \valid_read(config) && \valid(axis) && \separated(config, axis);
   @ requires sound: sound_axis(axis);
@@ -424,8 +441,8 @@ bool ilk_observe_axis(const ilk_config_t *config, const ilk_axis_config_t *axis_
   const bool valid = axis->card_valid != 0u;
   const bool has_switch = axis_config->limit_side != (uint32_t)ILK_LIMIT_NONE;
   axis->switch_triggered = flag_of(has_switch && (!valid || reading->switch_triggered));
-  axis->ticks_since_frame = count_up(axis->ticks_since_frame, UINT32_MAX);
   run_lease_down(axis);
+  count_undriven(axis_config, axis);
   const finding_t seen = valid ? observe_valid(axis_config, axis, reading) : observe_missing(config, axis);
   /*@ assert P15_invariant: sound_axis(axis); */
   /*@ assert P8_latch: fault_latched{Pre, Here}(axis); */

@@ -46,7 +46,9 @@ bool ilk_card_is_lost(const ilk_config_t *config, const ilk_axis_t *axis);
 /** Phase 2: judges a card's frame and counts bad ones. */
 /*@ requires valid: \valid(axis) && \valid_read(reading) && \separated(axis, reading);
   @ assigns  axis->card_valid, axis->bad_frames, axis->heartbeat, axis->card_time_us, axis->card_status,
-  @          axis->checksum_failures;
+  @          axis->checksum_failures, axis->ticks_since_frame;
+  @ ensures  since: axis->ticks_since_frame ==
+  @   (\old(axis->card_valid) != 0 ? 1 : \min(\old(axis->ticks_since_frame) + 1, UINT32_MAX));
   @ ensures  P16_used: axis->card_valid ==
   @   (received && reading->intact && (tick < 2 || reading->tick_echo == tick - 2)
   @    && (axis->card_seen == 0 || reading->heartbeat != \old(axis->heartbeat)) ? 1 : 0);

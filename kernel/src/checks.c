@@ -39,13 +39,13 @@ static bool axis_is(const ilk_axis_t *axis, ilk_axis_state_t state) { return axi
   @*/
 static bool pedal_is_up(const ilk_state_t *state) { return state->pedal == (uint32_t)ILK_PEDAL_RELEASED; }
 
-/** Not driven in the last tick, and the counter did not change since then. */
+/** Not driven in the last tick, and the counter did not change since then, as frames of both ticks tell. */
 /*@ requires readable: \valid_read(axis);
   @ assigns  \nothing;
   @ ensures  exact: \result <==> at_rest(axis);
   @*/
 static bool is_at_rest(const ilk_axis_t *axis) {
-  return (axis->undriven_ticks > 0u) && (axis->delta_counts == 0);
+  return (axis->undriven_ticks > 0u) && (axis->ticks_since_frame == 1u) && (axis->delta_counts == 0);
 }
 
 /*@ requires readable: \valid_read(state);

@@ -18,10 +18,6 @@ void AxisWatch::judge_due(const Observation& seen, Findings& findings) const noe
   if (has_axis(rules_.card) && due_.is_due && !claimed) {
     findings.report(seen.tick, due_.property, slot_, due_.reason);
   }
-  if (drift_put_off_ && !claimed) {
-    findings.report(seen.tick, Property::kP6, slot_,
-                    "drifts unnoticed because missing frames put off the watch");
-  }
 }
 
 void AxisWatch::judge_latch(const Observation& seen, Findings& findings) noexcept {

@@ -41,27 +41,18 @@ bool AxisWatch::RestMark::is_left(std::int64_t path_before, std::int64_t path,
   return path - highest > allowed || lowest - path > allowed;
 }
 
-void AxisWatch::judge_rest_seen(std::uint32_t tick, std::int64_t path_before) noexcept {
-  const bool by_ticks = enabled_ && is_settled(tick);
-  const bool by_frames = by_ticks && is_settled_by_frames();
-  rest_by_ticks_.is_set = rest_by_ticks_.is_set && by_ticks;
-  rest_by_frames_.is_set = rest_by_frames_.is_set && by_frames;
-  if (by_frames && rest_by_frames_.is_left(path_before, path_, rules_.drift)) {
+void AxisWatch::judge_rest_seen(bool settled, std::int64_t path_before) noexcept {
+  const bool rests = enabled_ && settled;
+  rest_.is_set = rest_.is_set && rests;
+  if (rests && rest_.is_left(path_before, path_, rules_.drift)) {
     require_fault(Property::kP6, "drifts while enabled and not driven");
   }
-  if (by_ticks && rest_by_ticks_.is_left(path_before, path_, rules_.drift)) {
-    drift_put_off_ = !faulted_ && !due_.is_due;
-  }
-}
-
-void AxisWatch::count_undriven(std::uint32_t tick) noexcept {
-  const bool driven_since_valid = sense_ != 0 && tick - driven_tick_ <= tick - valid_tick_;
-  undriven_frames_ = driven_since_valid ? 0 : std::min(undriven_frames_ + 1, rules_.settle_ticks);
 }
 
 void AxisWatch::judge_motion_seen(const Observation& seen, std::int64_t moved) noexcept {
   const std::uint32_t ticks = seen.tick - valid_tick_;
-  count_undriven(seen.tick);
+  const bool of_drive = tells_of_drive(seen.tick);
+  const bool settled = is_settled(seen.tick) && !of_drive;
   if (std::abs(moved) > std::int64_t{rules_.max_delta} * ticks) {
     require_fault(Property::kP6, "jumps");
   }
@@ -69,16 +60,16 @@ void AxisWatch::judge_motion_seen(const Observation& seen, std::int64_t moved) n
     farthest_path_ = path_;
     standing_ticks_ = 0;
   }
-  if (undriven_frames_ == 0 && sense_ * (farthest_path_ - path_) > rules_.reverse) {
+  if (of_drive && sense_ * (farthest_path_ - path_) > rules_.reverse) {
     require_fault(Property::kP6, "moves against its command");
   }
-  if (!is_settled_by_frames() && sense_ * (path_ - progress_path_) >= rules_.stall_min) {
+  if (!settled && sense_ * (path_ - progress_path_) >= rules_.stall_min) {
     forget_progress();
   }
   if (is_stalled()) {
     require_fault(Property::kP5, "stalls");
   }
-  judge_rest_seen(seen.tick, path_ - moved);
+  judge_rest_seen(settled, path_ - moved);
 }
 
 void AxisWatch::follow_homing(const Observation& seen) noexcept {
@@ -117,14 +108,13 @@ bool AxisWatch::take_in(const Observation& seen, const Echo& echo) noexcept {
   if (followed_ && has_axis(rules_.card)) {
     const std::int64_t moved = rules_.counter_falls ? -std::int64_t{difference} : std::int64_t{difference};
     path_ += moved;
-    still_ = difference == 0;
+    still_ = difference == 0 && seen.tick - valid_tick_ == 1;
     judge_motion_seen(seen, moved);
     follow_homing(seen);
   } else {
     // Nothing tells what the axis did meanwhile: it is measured anew from here.
     farthest_path_ = path_;
     progress_path_ = path_;
-    count_undriven(seen.tick);
   }
   is_first_reading_ = !followed_;
   followed_ = true;
@@ -134,7 +124,6 @@ bool AxisWatch::take_in(const Observation& seen, const Echo& echo) noexcept {
 
 void AxisWatch::see(const Observation& seen, const Echo& echo, bool in_motion) noexcept {
   due_ = {};
-  drift_put_off_ = false;
   cleared_now_ = false;
   fault_is_new_ = seen.claim.axes[static_cast<std::size_t>(slot_)].mode == AxisMode::kFaulted && !faulted_;
   switch_triggered_ = true;
@@ -170,9 +159,7 @@ void AxisWatch::forget(std::uint32_t tick) noexcept {
   truth_known_ = false;
   sense_ = 0;
   driven_tick_ = tick;
-  rest_by_ticks_ = {};
-  rest_by_frames_ = {};
-  undriven_frames_ = 0;
+  rest_ = {};
   drop_motion();
   had_lease_ = false;
   forget_progress();
@@ -185,7 +172,7 @@ bool AxisWatch::faults_now(const Observation& seen) const noexcept {
 
 void AxisWatch::note_drive(const Observation& seen, bool rises) noexcept {
   const std::int32_t sense = rises ? 1 : -1;
-  if (sense != sense_ || is_settled_by_frames()) {
+  if (sense != sense_ || is_settled(seen.tick)) {
     farthest_path_ = path_;
     progress_path_ = path_;
   }

@@ -89,17 +89,18 @@ class AxisWatch {
   void mark_press(const Observation& seen) noexcept;
   bool is_fresh(const wire::Reading& reading, const Echo& echo) const noexcept;
   void judge_motion_seen(const Observation& seen, std::int64_t moved) noexcept;
-  void judge_rest_seen(std::uint32_t tick, std::int64_t path_before) noexcept;
-  void count_undriven(std::uint32_t tick) noexcept;
+  void judge_rest_seen(bool settled, std::int64_t path_before) noexcept;
   void follow_homing(const Observation& seen) noexcept;
   void require_fault(Property property, std::string_view reason) noexcept;
   bool is_settled(std::uint32_t tick) const noexcept { return tick - driven_tick_ > rules_.settle_ticks; }
-  /** The same, counted in the frames that were valid: missing ones delay it. */
-  bool is_settled_by_frames() const noexcept { return undriven_frames_ >= rules_.settle_ticks; }
   /** From which reading progress is measured depends on when it was last told; what has not got any farther
    * for so long is stalled by every reading. */
   bool is_stalled() const noexcept {
     return driven_ticks_ >= rules_.stall_ticks && standing_ticks_ >= rules_.stall_ticks;
+  }
+  /** True of the first frame after a drive: motion that it tells may be the drive's doing. */
+  bool tells_of_drive(std::uint32_t tick) const noexcept {
+    return sense_ != 0 && tick - driven_tick_ <= tick - valid_tick_;
   }
   bool was_driven_in(std::uint32_t tick) const noexcept { return sense_ != 0 && driven_tick_ == tick; }
   bool lease_is_live(std::uint32_t tick) const noexcept {
@@ -138,22 +139,19 @@ class AxisWatch {
   std::uint32_t counter_ = 0;
   std::uint32_t valid_tick_ = 0;
   bool switch_triggered_ = true;
-  bool still_ = false;            /**< the counter stands where it last stood */
+  bool still_ = false;            /**< the counter stands where it stood in the last tick */
   bool is_first_reading_ = false; /**< since start or since the card was lost */
   bool fault_is_new_ = false;     /**< claimed in this tick for the first time */
 
   std::int64_t path_ = 0;       /**< counts moved upwards, net, since start */
   std::int64_t origin_ = 0;     /**< position = path + origin */
   std::int64_t press_path_ = 0; /**< path at the newest entry to MOTION */
-  bool drift_put_off_ = false;  /**< too far from rest by ticks, not by frames */
-  RestMark rest_by_ticks_;
-  RestMark rest_by_frames_;
+  RestMark rest_;
   std::int64_t farthest_path_ = 0; /**< mark of reverse */
   std::int64_t progress_path_ = 0; /**< mark of stall */
 
   std::int32_t sense_ = 0;            /**< of the newest drive: 1 rises, -1 falls, 0 never driven */
   std::uint32_t driven_tick_ = 0;     /**< of the newest drive, or from when on none is known */
-  std::uint32_t undriven_frames_ = 0; /**< valid ones since the newest drive */
   std::uint32_t driven_ticks_ = 0;    /**< since progress */
   std::uint32_t standing_ticks_ = 0;  /**< driven ones since it got any farther */
   bool one_target_ = true;            /**< all ticks counted in driven_ticks_ had the same setpoint */

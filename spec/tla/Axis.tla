@@ -72,6 +72,7 @@ IsValid(a, frame) == frame = "GOOD" \/ (frame = "REPEATED" /\ ~a.card_seen)
 ObserveCard(c, a, frame) ==
   LET valid == IsValid(a, frame)
   IN  [a EXCEPT !.card_valid = valid,
+                !.ticks_since_frame = IF a.card_valid THEN 1 ELSE CountUp(@, c.bad_frame_limit),
                 !.bad_frames = IF valid THEN 0 ELSE CountUp(a.bad_frames, c.bad_frame_limit)]
 
 -------------------------------------------------------------------------------
@@ -92,10 +93,14 @@ Follow(a, moved) ==
 ClearStallCount(a) ==
   [a EXCEPT !.stall_driven_ticks = 0, !.setpoint_changed = FALSE, !.since_stall_mark = 0]
 
+(* The first frame after a drive tells what the drive did, however many were
+   missed in between. *)
+HasSettled(k, a) == ~WasDriven(a) /\ a.undriven_ticks >= k.settle_ticks
+
 (* Motion is progress only until the axis has settled; later it is not the
    drive's doing. *)
 MadeProgress(k, a) ==
-  /\ a.undriven_ticks < k.settle_ticks
+  /\ ~HasSettled(k, a)
   /\ Along(a.stall_direction, a.since_stall_mark) > 0
   /\ Along(a.stall_direction, a.since_stall_mark) >= k.stall_min_counts
 
@@ -103,19 +108,15 @@ AdvanceReverseMark(a) ==
   IF Along(a.reverse_direction, a.since_reverse_mark) > 0
   THEN [a EXCEPT !.since_reverse_mark = 0] ELSE a
 
-CountUndriven(k, a) ==
-  [a EXCEPT !.undriven_ticks = IF WasDriven(a) THEN 0 ELSE CountUp(@, k.settle_ticks)]
-
 AdvanceStallMark(k, a) == IF MadeProgress(k, a) THEN ClearStallCount(a) ELSE a
 
 AdvanceDriftMark(k, a) ==
-  LET settled == IsEnabled(a) /\ a.undriven_ticks >= k.settle_ticks
-  IN  [a EXCEPT !.since_drift_mark = IF settled THEN @ ELSE 0]
+  [a EXCEPT !.since_drift_mark = IF IsEnabled(a) /\ HasSettled(k, a) THEN @ ELSE 0]
 
 Jumped(k, a)   == Magnitude(a.delta_counts) > k.max_delta_counts * a.ticks_since_frame
 Reversed(k, a) == WasDriven(a) /\ -Along(a.reverse_direction, a.since_reverse_mark) > k.reverse_counts
 Drifted(k, a)  == /\ IsEnabled(a)
-                  /\ a.undriven_ticks >= k.settle_ticks
+                  /\ HasSettled(k, a)
                   /\ Magnitude(a.since_drift_mark) > k.drift_counts
 Stalled(k, a)  == IsEnabled(a) /\ a.stall_driven_ticks >= k.stall_ticks
 
@@ -175,18 +176,22 @@ RunLeaseDown(a) ==
   IN  [a EXCEPT !.lease_ticks = left,
                 !.state = IF a.state = "MOVING" /\ left = 0 THEN "ENABLED" ELSE a.state]
 
+(* A drive needs a valid frame: an axis that was driven since its last one was
+   driven in that very tick. *)
+CountUndriven(k, a) ==
+  LET driven_last_tick == WasDriven(a) /\ a.ticks_since_frame = 1
+  IN  [a EXCEPT !.undriven_ticks = IF driven_last_tick THEN 0 ELSE CountUp(@, k.settle_ticks)]
+
 (* A switch that was not read validly counts as triggered. *)
 ReadSwitch(k, a, reading) == k.limit_side # "NONE" /\ (a.card_valid => reading.switch)
 
-Awaited(c, k, a, reading) ==
-  RunLeaseDown([a EXCEPT
-    !.switch_triggered = ReadSwitch(k, a, reading),
-    !.ticks_since_frame = CountUp(a.ticks_since_frame, c.bad_frame_limit)])
+Awaited(k, a, reading) ==
+  CountUndriven(k, RunLeaseDown([a EXCEPT !.switch_triggered = ReadSwitch(k, a, reading)]))
 
 ObserveValid(k, a, reading) ==
-  LET followed == CountUndriven(k, AdvanceReverseMark(Follow(a, reading.moved)))
+  LET followed == AdvanceReverseMark(Follow(a, reading.moved))
       marked   == AdvanceDriftMark(k, AdvanceStallMark(k, followed))
-  IN  [ axis  |-> [marked EXCEPT !.ticks_since_frame = 0, !.driven_direction = "NONE"],
+  IN  [ axis  |-> [marked EXCEPT !.driven_direction = "NONE"],
         fault |-> JudgeMotion(k, marked) ]
 
 ObserveMissing(c, a) ==
@@ -195,7 +200,7 @@ ObserveMissing(c, a) ==
   ELSE [axis |-> a, fault |-> "NONE"]
 
 ObserveAxis(c, k, a, reading) ==
-  LET awaited  == Awaited(c, k, a, reading)
+  LET awaited  == Awaited(k, a, reading)
       observed == IF a.card_valid THEN ObserveValid(k, awaited, reading)
                   ELSE ObserveMissing(c, awaited)
       advanced == AdvanceHoming(k, observed.axis)
@@ -206,7 +211,9 @@ ObserveAxis(c, k, a, reading) ==
 (* Phase 6: the row of the request table, from left to right. A request has kind,
    target (MOVE: setpoint, RESTORE: position), drive and lease. *)
 PedalIsUp(s) == s.pedal = "RELEASED"
-IsAtRest(a)  == a.undriven_ticks > 0 /\ a.delta_counts = 0
+
+(* Neither driven nor moved since the last tick, which had a valid frame, too. *)
+IsAtRest(a) == a.undriven_ticks > 0 /\ a.ticks_since_frame = 1 /\ a.delta_counts = 0
 
 JudgeDisable(s, a) ==
   IF s.mode = "INIT" THEN "MODE"

@@ -63,6 +63,7 @@ Forget(s, a, raw) ==
   LET settled == a.undriven_ticks >= k.settle_ticks /\ ~WasDriven(a)
       astray  == ~a.card_seen \/ (a.state = "FAULTED" /\ ~a.homed)
   IN  [a EXCEPT !.delta_counts = 0, !.card_valid = FALSE, !.switch_triggered = FALSE,
+                !.ticks_since_frame = IF a.card_valid THEN 0 ELSE @,
                 !.since_homing_mark = IF a.homing_phase = "NONE" THEN 0 ELSE @,
                 !.homing_ticks = IF a.homing_phase = "NONE" THEN 0 ELSE @,
                 !.rest_ticks = IF a.homing_phase = "REST" THEN @ ELSE 0,
@@ -146,9 +147,10 @@ NotHeld == IF Held = "CLOSED" THEN "OPEN" ELSE "CLOSED"
    the reading from which that counts, whether its setpoint changed meanwhile, which
    way it was driven, the farthest reading on that way, the last reading at which it
    was not yet at rest, the reading where the pedal was pressed, whether it was homing
-   since, and whether anything was asked for since. *)
+   since, whether anything was asked for since, and for how many ticks it was not driven. *)
 Nothing == [driven |-> 0, from |-> 0, changed |-> FALSE, way |-> "NONE", far |-> 0, rest_at |-> 0,
-            pressed_at |-> 0, homing |-> FALSE, asked |-> FALSE]
+            pressed_at |-> 0, homing |-> FALSE, asked |-> FALSE,
+            quiet |-> k.settle_ticks]
 
 (* The search begins at power-on, and as well where MOTION has just begun with the
    axis enabled: that shortens refutations. A search from power-on alone finds the
@@ -184,11 +186,13 @@ Accepted(tick, kinds) ==
   \E i \in 1..Len(tick.answers) :
     tick.answers[i].request.kind \in kinds /\ tick.answers[i].verdict = "ACCEPTED"
 
-(* At rest for long enough. The count stands still while no frame tells of the last drive. *)
-IsSettled(a) == a.undriven_ticks >= k.settle_ticks /\ ~WasDriven(axis)
+(* Undriven for long enough; and if a frame has told of the last drive, what it
+   moves now is not the drive's doing. *)
+HasRested == seen.quiet >= k.settle_ticks
+IsSettled == HasRested /\ ~WasDriven(axis)
 
 (* Net progress on the way that it was driven, and not after it had settled. *)
-Progressed(in, a) == /\ a.card_valid /\ axis.card_seen /\ ~IsSettled(a)
+Progressed(in, a) == /\ a.card_valid /\ axis.card_seen /\ ~IsSettled
                      /\ Along(seen.way, Now(in, a) - seen.from) >= k.stall_min_counts
 
 Arrived(s, a) ==
@@ -205,12 +209,12 @@ Witnessed(in, tick) ==
   LET a        == tick.axes[X]
       command  == tick.command[X]
       now      == Now(in, a)
-      settled  == IsSettled(a)
+      settled  == IsSettled
       count    == IF Excused(in, tick, a) THEN 0 ELSE seen.driven
       moving   == tick.system.mode = "MOTION"
       entered  == moving /\ system.mode # "MOTION"
       farther  == Along(seen.way, now - seen.far) > 0
-      anew     == command.drive # 0 /\ (settled \/ command.direction # seen.way)
+      anew     == command.drive # 0 /\ (HasRested \/ command.direction # seen.way)
   IN  [ driven     |-> IF command.drive # 0 THEN CountUp(count, k.stall_ticks + 1) ELSE count,
         from       |-> IF anew \/ settled \/ BeginsAnew(in, tick, a) THEN now ELSE seen.from,
         changed    |-> count # 0 /\ (seen.changed \/ a.setpoint_counts # axis.setpoint_counts),
@@ -222,7 +226,8 @@ Witnessed(in, tick) ==
                        THEN now ELSE seen.rest_at,
         pressed_at |-> IF entered \/ ~moving \/ a.homed THEN now ELSE seen.pressed_at,
         homing     |-> moving /\ (seen.homing \/ a.state = "HOMING"),
-        asked      |-> moving /\ (seen.asked \/ Accepted(tick, {"MOVE", "HOME"})) ]
+        asked      |-> moving /\ (seen.asked \/ Accepted(tick, {"MOVE", "HOME"})),
+        quiet      |-> IF command.drive # 0 THEN 0 ELSE CountUp(seen.quiet, k.settle_ticks) ]
 
 (* What io keeps of an answer. *)
 Outcome(answer) == [request |-> answer.request, verdict |-> answer.verdict,
@@ -326,7 +331,7 @@ P6_reverse ==
 
 P6_drift ==
   [][ Input1.frame = "GOOD" /\ axis.card_seen /\ IsEnabled(axis) /\ IsEnabled(io'.observed)
-      /\ IsSettled(io'.observed)
+      /\ IsSettled
       => ~Beyond(Now(io'.in, io'.axis) - seen.rest_at, k.drift_counts) ]_vars
 
 P7_bounds ==

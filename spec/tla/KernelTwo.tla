@@ -34,6 +34,7 @@ vars == <<system, axes, seen, io>>
    are forgotten as well: this model is not about one axis' motion. *)
 Forget(s, a) ==
   [a EXCEPT !.delta_counts = 0, !.card_valid = FALSE, !.switch_triggered = FALSE,
+            !.ticks_since_frame = IF a.card_valid THEN 0 ELSE @,
             !.position_counts = 0, !.press_travel_counts = 0, !.since_homing_mark = 0,
             !.since_stall_mark = 0, !.since_reverse_mark = 0, !.since_drift_mark = 0,
             !.stall_direction = "NONE", !.reverse_direction = "NONE",

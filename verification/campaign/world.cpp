@@ -19,12 +19,6 @@ constexpr std::uint32_t kSweptBits = 16;
 constexpr std::uint64_t kSweepStart = 4999;   /**< bits from where one case begins to where the next does */
 constexpr std::uint32_t kRecoveryTicks = 300; /**< after a lie of the encoder, until nothing moves any more */
 
-/** Disagreements with the kernel that docs/reliability.md reports as open: counted, but no end of a case. */
-constexpr std::string_view kOpenFindings[] = {
-    "a position declared on the first reading of a card, rest unknown",
-    "drifts unnoticed because missing frames put off the watch",
-};
-
 constexpr std::string_view kWrongWay = "driven, but not towards its setpoint";
 
 bool is_zero_drive(const ilk_outputs_t& outputs) {
@@ -278,9 +272,8 @@ bool World::is_excused(const oracle::Finding& finding) const {
 bool World::is_open(const oracle::Finding& finding) const {
   // A damaged channel count, switch end or motor sense is believed until it is met, so P2 and P3 are kept by
   // it.
-  const bool by_damaged_words = config_damage_ticks_ > 0 && (finding.property == oracle::Property::kP2 ||
-                                                             finding.property == oracle::Property::kP3);
-  return by_damaged_words || std::ranges::find(kOpenFindings, finding.reason) != std::end(kOpenFindings);
+  return config_damage_ticks_ > 0 &&
+         (finding.property == oracle::Property::kP2 || finding.property == oracle::Property::kP3);
 }
 
 std::optional<Failure> World::judge() {

@@ -93,10 +93,14 @@
   @ predicate reversed(ilk_axis_config_t *config, ilk_axis_t *axis) = axis->driven_direction != ILK_DIRECTION_NONE
   @   && progress(config, axis, axis->reverse_mark_raw, axis->reverse_direction) < -config->reverse_counts;
   @
+  @ // P5 and P6: undriven for so long that motion is no drive's doing.
+  @ predicate settled(ilk_axis_config_t *config, ilk_axis_t *axis) =
+  @   axis->driven_direction == ILK_DIRECTION_NONE && axis->undriven_ticks >= config->settle_ticks;
+  @
   @ // P6: too far from where the undriven axis had settled.
   @ predicate drifted(ilk_axis_config_t *config, ilk_axis_t *axis) =
   @   axis->state != ILK_AXIS_DISABLED && axis->state != ILK_AXIS_FAULTED
-  @   && axis->undriven_ticks >= config->settle_ticks
+  @   && settled(config, axis)
   @   && \abs(travel(config, axis->drift_mark_raw, axis->raw)) > config->drift_counts;
   @
   @ // P5: driven for too long without progress.
@@ -317,8 +321,9 @@
   @   && drive_allowed(&config->axis[request->axis], &state->axis[request->axis], request)
   @   && setpoint_allowed(&config->axis[request->axis], &state->axis[request->axis], request->target_counts);
   @
-  @ // A valid frame counts the ticks without drive before it.
-  @ predicate at_rest(ilk_axis_t *axis) = axis->undriven_ticks > 0 && axis->delta_counts == 0;
+  @ // Neither driven nor moved since the last tick, which had a valid frame, too.
+  @ predicate at_rest(ilk_axis_t *axis) =
+  @   axis->undriven_ticks > 0 && axis->ticks_since_frame == 1 && axis->delta_counts == 0;
   @
   @ predicate declare_allowed(ilk_axis_config_t *config, ilk_state_t *state, ilk_axis_t *axis, integer position) =
   @   state->mode == ILK_MODE_READY && state->pedal == ILK_PEDAL_RELEASED && axis->state != ILK_AXIS_FAULTED

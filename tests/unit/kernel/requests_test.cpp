@@ -504,6 +504,25 @@ TEST_P(Request_SET_HOME_and_RESTORE, is_CARD_without_a_valid_frame_in_this_tick)
   Bench bench = ready_bench();
   spoil_next(bench);
   expect_refused(bench, request(), ILK_VERDICT_CARD);
+}
+
+/** Whether it moved in between one frame alone does not tell. */
+TEST_P(Request_SET_HOME_and_RESTORE, is_BUSY_until_two_frames_in_a_row_tell_that_it_rests) {
+  Bench bench = ready_bench();
+  spoil_next(bench);
+  bench.tick();
+  expect_refused(bench, request(), ILK_VERDICT_BUSY);
+  EXPECT_EQ(bench.ask(request()), ILK_VERDICT_ACCEPTED);
+}
+
+TEST_P(Request_SET_HOME_and_RESTORE, is_BUSY_on_the_first_reading_of_a_card_that_was_lost) {
+  Bench bench = ready_bench();
+  bench.spoil(axis, FrameFault::missing, bench.config().bad_frame_limit);
+  bench.ticks(bench.config().bad_frame_limit);
+  ASSERT_EQ(bench.fault(axis), ILK_FAULT_CARD_LOST);
+  const uint32_t cleared = bench.queue(clear_fault(axis));
+  EXPECT_EQ(bench.ask(request()), ILK_VERDICT_BUSY);
+  EXPECT_EQ(bench.verdict_of(cleared), ILK_VERDICT_ACCEPTED);
   EXPECT_EQ(bench.ask(request()), ILK_VERDICT_ACCEPTED);
 }
 

@@ -208,6 +208,49 @@ TEST(P6_drift, runs_again_after_settling_from_the_last_driven_tick) {
   EXPECT_EQ(bench.fault(axis), ILK_FAULT_DRIFT);
 }
 
+TEST(P6_drift, missed_frames_do_not_put_off_the_watch) {
+  Bench bench = enabled_bench();
+  ASSERT_EQ(bench.ask(move(axis, 80, 100, 1)), ILK_VERDICT_ACCEPTED);
+  const auto every_third_frame = [&bench](uint32_t rounds) {
+    for (uint32_t round = 0; round < rounds; ++round) {
+      bench.spoil(axis, FrameFault::missing, 2);
+      bench.ticks(3);
+    }
+  };
+  every_third_frame(4);
+  bench.motor[axis].creep = 1;
+  every_third_frame(6);
+  EXPECT_EQ(bench.fault(axis), ILK_FAULT_NONE);
+  every_third_frame(1);
+  EXPECT_EQ(bench.fault(axis), ILK_FAULT_DRIFT);
+  EXPECT_EQ(bench.axis(axis).fault_value, 21);
+}
+
+TEST(P6_drift, what_the_drive_did_is_none_though_the_frame_comes_after_settling) {
+  ilk_config_t config = standard_config();
+  config.axis[axis].settle_ticks = 1;
+  seal(config);
+  Bench bench(config);
+  bench.to_motion();
+  bench.enable_axis(axis);
+  ASSERT_EQ(bench.ask(move(axis, 80, 100, 1)), ILK_VERDICT_ACCEPTED);
+  bench.motor[axis].frozen = true;
+  bench.motor[axis].creep = 7;
+  bench.spoil(axis, FrameFault::missing, 2);
+  bench.ticks(3);
+  EXPECT_EQ(bench.fault(axis), ILK_FAULT_NONE);
+  bench.motor[axis].creep = 0;
+  bench.tick();
+  bench.motor[axis].travelled += 8;
+  bench.ticks(1);
+  bench.motor[axis].travelled += 8;
+  bench.ticks(1);
+  EXPECT_EQ(bench.fault(axis), ILK_FAULT_NONE);
+  bench.motor[axis].travelled += 5;
+  bench.ticks(1);
+  EXPECT_EQ(bench.fault(axis), ILK_FAULT_DRIFT) << "it is measured from where that frame found the axis";
+}
+
 TEST(P6_drift, noise_and_small_motion_are_none) {
   Bench bench = enabled_bench();
   for (int tick = 0; tick < 500; ++tick) {

@@ -53,7 +53,7 @@ static uint32_t check_declaration(const ilk_axis_config_t* limits, const ilk_sta
   CHECK(state->pedal == ILK_PEDAL_RELEASED, PEDAL_DOWN);
   CHECK(axis->state != ILK_AXIS_FAULTED, FAULTED);
   CHECK(axis->card_valid != 0u, CARD);
-  CHECK((axis->undriven_ticks > 0u) && (axis->delta_counts == 0), BUSY);
+  CHECK((axis->undriven_ticks > 0u) && (axis->ticks_since_frame == 1u) && (axis->delta_counts == 0), BUSY);
   CHECK(between(position, limits->min_counts, limits->max_counts), RANGE);
   return ILK_VERDICT_ACCEPTED;
 }

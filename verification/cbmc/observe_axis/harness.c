@@ -45,22 +45,31 @@ static void follow(const ilk_axis_config_t* config, ilk_axis_t* axis, uint32_t r
   axis->raw = raw;
 }
 
+/** An axis that was driven since its last valid frame was driven in the tick of that frame. */
+static void count_undriven(const ilk_axis_config_t* config, ilk_axis_t* axis) {
+  const bool driven_last_tick =
+      (axis->driven_direction != ILK_DIRECTION_NONE) && (axis->ticks_since_frame == 1u);
+  axis->undriven_ticks =
+      driven_last_tick ? 0u : (uint32_t)one_more(axis->undriven_ticks, config->settle_ticks);
+}
+
+/** The frame that tells of a drive tells what it did, even when others were missed before it. */
+static bool has_settled(const ilk_axis_config_t* config, const ilk_axis_t* axis) {
+  return (axis->driven_direction == ILK_DIRECTION_NONE) && (axis->undriven_ticks >= config->settle_ticks);
+}
+
 /** The farthest point in the driven direction, progress before the axis had settled, and where it settled. */
 static void move_marks(const ilk_axis_config_t* config, ilk_axis_t* axis) {
   const int64_t onward = progress(config, axis, axis->stall_mark_raw, axis->stall_direction);
   if (progress(config, axis, axis->reverse_mark_raw, axis->reverse_direction) > 0) {
     axis->reverse_mark_raw = axis->raw;
   }
-  axis->undriven_ticks = (axis->driven_direction != ILK_DIRECTION_NONE)
-                             ? 0u
-                             : (uint32_t)one_more(axis->undriven_ticks, config->settle_ticks);
-  if ((axis->undriven_ticks < config->settle_ticks) && (onward > 0) &&
-      (onward >= (int64_t)config->stall_min_counts)) {
+  if (!has_settled(config, axis) && (onward > 0) && (onward >= (int64_t)config->stall_min_counts)) {
     axis->stall_driven_ticks = 0u;
     axis->setpoint_changed = 0u;
     axis->stall_mark_raw = axis->raw;
   }
-  if (!enabled(axis) || (axis->undriven_ticks < config->settle_ticks)) {
+  if (!enabled(axis) || !has_settled(config, axis)) {
     axis->drift_mark_raw = axis->raw;
   }
 }
@@ -75,7 +84,7 @@ static finding_t judge(const ilk_axis_config_t* config, const ilk_axis_t* axis) 
     found = (finding_t){ILK_FAULT_JUMP, axis->delta_counts};
   } else if (driven && (-onward > (int64_t)config->reverse_counts)) {
     found = (finding_t){ILK_FAULT_REVERSE, held(-onward)};
-  } else if (enabled(axis) && (axis->undriven_ticks >= config->settle_ticks) &&
+  } else if (enabled(axis) && has_settled(config, axis) &&
              (distance(drift) > (int64_t)config->drift_counts)) {
     found = (finding_t){ILK_FAULT_DRIFT, drift};
   } else if (enabled(axis) && (axis->stall_driven_ticks >= config->stall_ticks)) {
@@ -152,12 +161,11 @@ static ilk_axis_t expected_after(const ilk_config_t* config, const ilk_axis_conf
       ((axis_config->limit_side != ILK_LIMIT_NONE) && (!valid || reading->switch_triggered)) ? 1u : 0u;
   axis.lease_ticks = (uint32_t)one_less(axis.lease_ticks);
   axis.state = ((axis.state == ILK_AXIS_MOVING) && (axis.lease_ticks == 0u)) ? ILK_AXIS_ENABLED : axis.state;
-  axis.ticks_since_frame = (uint32_t)one_more(axis.ticks_since_frame, UINT32_MAX);
+  count_undriven(axis_config, &axis);
   if (valid) {
     follow(axis_config, &axis, reading->raw);
     move_marks(axis_config, &axis);
     found = judge(axis_config, &axis);
-    axis.ticks_since_frame = 0u;
     axis.driven_direction = ILK_DIRECTION_NONE;
   } else if (axis.bad_frames >= config->bad_frame_limit) {
     axis.card_seen = 0u;
@@ -209,7 +217,7 @@ void harness(void) {
   SAME(switch_triggered, "P3: a switch that was not read validly counts as triggered");
   SAME(card_valid, "P1: the card's validity is not its own to change");
   SAME(card_seen, "a lost card is new when it comes back");
-  SAME(ticks_since_frame, "P6: ticks since the last valid frame");
+  SAME(ticks_since_frame, "P6: ticks since the valid frame before, none at a card's first");
   SAME(raw, "the last valid reading");
   SAME(position_counts, "P4: the position follows the counter, or is set at the switch");
   SAME(delta_counts, "P6: motion since the last valid frame");

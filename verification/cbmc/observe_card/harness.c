@@ -20,6 +20,8 @@ static ilk_axis_t expect_card(ilk_axis_t axis, const ilk_reading_t* reading, boo
   axis.checksum_failures = (received && !reading->intact)
                                ? (uint32_t)one_more(axis.checksum_failures, UINT32_MAX)
                                : axis.checksum_failures;
+  axis.ticks_since_frame =
+      (axis.card_valid != 0u) ? 1u : (uint32_t)one_more(axis.ticks_since_frame, UINT32_MAX);
   axis.card_valid = valid ? 1u : 0u;
   axis.bad_frames = valid ? 0u : (uint32_t)one_more(axis.bad_frames, UINT32_MAX);
   if (valid) {

@@ -10,6 +10,6 @@ ASSUME
     LET k      == [ settle_ticks |-> settle_ticks ]
         before == [ driven_direction |-> driven, undriven_ticks |-> undriven, state |-> state,
                     since_drift_mark |-> since ]
-        a == AdvanceDriftMark(k, CountUndriven(k, before))
-    IN PrintT(<< driven, undriven, state, since, a.since_drift_mark, a.undriven_ticks >>)
+        a == AdvanceDriftMark(k, before)
+    IN PrintT(<< driven, undriven, state, since, a.since_drift_mark >>)
 ==============================================================================

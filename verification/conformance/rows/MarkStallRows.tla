@@ -11,7 +11,7 @@ ASSUME
     LET k      == [ settle_ticks |-> settle_ticks, stall_min_counts |-> stall_min_counts ]
         before == [ driven_direction |-> steered, undriven_ticks |-> undriven, stall_direction |-> direction,
                     since_stall_mark |-> since, stall_driven_ticks |-> driven, setpoint_changed |-> changed ]
-        a == AdvanceStallMark(k, CountUndriven(k, before))
+        a == AdvanceStallMark(k, before)
     IN PrintT(<< steered, undriven, direction, since, driven, changed, a.since_stall_mark, a.stall_driven_ticks,
                  a.setpoint_changed >>)
 ==============================================================================
