@@ -27,6 +27,10 @@ constexpr std::string_view kOpenFindings[] = {
 
 constexpr std::string_view kWrongWay = "driven, but not towards its setpoint";
 
+bool is_open(const oracle::Finding& finding) {
+  return std::ranges::find(kOpenFindings, finding.reason) != std::end(kOpenFindings);
+}
+
 bool is_zero_drive(const ilk_outputs_t& outputs) {
   return std::ranges::all_of(outputs.frame,
                              [](const auto& frame) { return oracle::wire::is_zero_drive(frame); });
@@ -268,19 +272,12 @@ void World::count() {
 
 bool World::is_excused(const oracle::Finding& finding) const {
   // Until damage to the configuration is met, the specification promises P1 to P3 of what is driven, and no
-  // more.
+  // more. That the app is heard belongs to P2; the oracle names it P10.
+  const bool of_drive =
+      finding.property <= oracle::Property::kP3 || finding.property == oracle::Property::kP10;
   const bool promised = finding.property == oracle::Property::kP13 ||
-                        (finding.property <= oracle::Property::kP3 && finding.reason.starts_with("driven") &&
-                         finding.reason != kWrongWay);
+                        (of_drive && finding.reason.starts_with("driven") && finding.reason != kWrongWay);
   return config_damage_ticks_ > 0 && !promised;
-}
-
-bool World::is_open(const oracle::Finding& finding) const {
-  // A damaged channel count, switch end or motor sense is believed until it is met, so P2 and P3 are kept by
-  // it.
-  const bool by_damaged_words = config_damage_ticks_ > 0 && (finding.property == oracle::Property::kP2 ||
-                                                             finding.property == oracle::Property::kP3);
-  return by_damaged_words || std::ranges::find(kOpenFindings, finding.reason) != std::end(kOpenFindings);
 }
 
 std::optional<Failure> World::judge() {

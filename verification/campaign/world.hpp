@@ -91,7 +91,6 @@ class World {
   void show_oracle();
   void count();
   std::optional<Failure> judge();
-  bool is_open(const oracle::Finding& finding) const;
   bool is_excused(const oracle::Finding& finding) const;
 
   Case plan_;
