@@ -30,8 +30,8 @@ static void check_state(const ilk_config_t *config, ilk_state_t *state) {
   }
 }
 
-/** Phase 1: state, a slice of the configuration, and those of its words that P1 to P3 rest on. Nothing else of
-   a damaged state is looked at. */
+/** Phase 1: state, a slice of the configuration, and what P1 to P3 rest on. Nothing else of a damaged state
+   is looked at. */
 /*@ requires valid: \valid_read(config) && \valid(state) && \separated(config, state);
   @ assigns  *state;
   @ ensures  P15_system: sound_system(state);

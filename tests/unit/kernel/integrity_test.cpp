@@ -368,9 +368,8 @@ TEST(P14_containment, with_a_damaged_configuration_P1_to_P3_hold_until_it_is_fou
         bench.queue(dice.one_in(8) ? home(slot) : wish);
       }
       bench.tick();
-      const bool may_drive =
-          bench.mode() == ILK_MODE_MOTION && bench.pedal_no_closed == 1 && bench.pedal_nc_closed == 0 &&
-          bench.estop_loop_closed == 1;
+      const bool may_drive = bench.mode() == ILK_MODE_MOTION && bench.pedal_no_closed == 1 &&
+                             bench.pedal_nc_closed == 0 && bench.estop_loop_closed == 1;
       ASSERT_TRUE(may_drive || bench.wire_is_zero()) << "P2, trial " << trial;
       for (uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
         if (!bench.driven(slot)) continue;

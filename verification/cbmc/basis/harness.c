@@ -7,7 +7,8 @@
 #include "proof.h"
 
 static bool same_axis(const ilk_axis_config_t* a, const ilk_axis_config_t* b) {
-  return (a->card == b->card) && (a->limit_side == b->limit_side) && (a->motor_direction == b->motor_direction);
+  return (a->card == b->card) && (a->limit_side == b->limit_side) &&
+         (a->motor_direction == b->motor_direction);
 }
 
 void harness(void) {

@@ -1,9 +1,9 @@
 /**
  * @file
  * Whole ticks that must give zero drive: from a state that fails its check, whatever bits it holds; with a
- * configuration in which something changed of what P1 to P3 rest on, whatever else changed; and in INIT. Check, phases that judge frames, verdicts and their effects are arbitrary within what their own
- * proofs show; phases 1, 3, 5, 7 and 8 are the real ones. Configuration, inputs and requests are arbitrary
- * bits.
+ * configuration in which something changed of what P1 to P3 rest on, whatever else changed; and in INIT.
+ * Check, phases that judge frames, verdicts and their effects are arbitrary within what their own proofs
+ * show; phases 1, 3, 5, 7 and 8 are the real ones. Configuration, inputs and requests are arbitrary bits.
  */
 #include "axis.h"
 #include "frame.h"
