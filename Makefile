@@ -111,9 +111,9 @@ docs: setup ## Write the documentation site, with search and the code's call gra
 	@python docs/site/build.py
 
 .PHONY: campaign campaign-selftest
-campaign: build ## Throw faults at kernel core and plant: [SECONDS=300 | TICKS=] [SEED=1] [SCHEDULER=] [STRICT=1]
+campaign: build ## Throw faults at kernel core and plant: [SECONDS=300 | TICKS=] [SEED=1] [SCHEDULER=]
 	@python verification/campaign/run.py --seed $(or $(SEED),1) $(campaign_length) \
-	  $(if $(SCHEDULER),--scheduler $(SCHEDULER)) $(if $(STRICT),--strict)
+	  $(if $(SCHEDULER),--scheduler $(SCHEDULER))
 
 campaign-selftest: setup ## Show that the campaign finds each seeded fault of the kernel within a minute
 	@python verification/campaign/selftest.py

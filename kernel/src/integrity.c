@@ -7,10 +7,15 @@
 #include "crc32.h"
 #include "interlock/kernel.h"
 
-/** Seeded, so that cleared memory fails. */
+/** Seeded, each lane by its own, so that cleared memory fails: equal lanes would mix to zero. */
 #define SEAL_SEED 0x494c4b31u
+#define ODD_SEED 0x494c4b32u
 /** Odd, so that a product with it can be undone. */
 #define SEAL_FACTOR 0x9e3779b1u
+
+#define BYTE_MAX 0xffu
+/** No three bytes make it. */
+#define WIRING_UNKNOWN UINT32_MAX
 
 /** Mixes a word into the digest. The step can be undone, so a change of any one word changes the result;
    product and rotation together spread it over all bits, so that changes of several words do not cancel. */
@@ -43,10 +48,10 @@ static uint32_t axis_digest(const ilk_axis_t *axis) {
     @   && \valid_read(&axis->reverse_direction) && \valid_read(&axis->drift_mark_raw)
     @   && \valid_read(&axis->undriven_ticks) && \valid_read(&axis->homing_phase)
     @   && \valid_read(&axis->homing_ticks) && \valid_read(&axis->homing_mark_raw)
-    @   && \valid_read(&axis->rest_ticks);
+    @   && \valid_read(&axis->rest_ticks) && \valid_read(&axis->wiring);
     @*/
   uint32_t even = SEAL_SEED;
-  uint32_t odd = SEAL_SEED;
+  uint32_t odd = ODD_SEED;
   even = mix(even, axis->state);
   odd = mix(odd, axis->fault);
   even = mix(even, axis->fault_tick);
@@ -82,9 +87,10 @@ static uint32_t axis_digest(const ilk_axis_t *axis) {
   even = mix(even, axis->homing_ticks);
   odd = mix(odd, axis->homing_mark_raw);
   even = mix(even, axis->rest_ticks);
+  odd = mix(odd, axis->wiring);
   return mix(even, odd);
 }
-_Static_assert(sizeof(ilk_axis_t) == (35u * sizeof(uint32_t)), "every word is sealed");
+_Static_assert(sizeof(ilk_axis_t) == (36u * sizeof(uint32_t)), "every word is sealed");
 
 /*@ requires readable: \valid_read(state);
   @ assigns  \nothing;
@@ -101,11 +107,12 @@ static uint32_t system_digest(const ilk_state_t *state) {
     @   && \valid_read(&state->overruns_in_row) && \valid_read(&state->overruns)
     @   && \valid_read(&state->bus_bad_ticks) && \valid_read(&state->config_crc)
     @   && \valid_read(&state->config_slice) && \valid_read(&state->config_partial_crc)
-    @   && \valid_read(&state->config_sound) && \valid_read(&state->requests_accepted)
+    @   && \valid_read(&state->config_sound) && \valid_read(&state->pedal_channels)
+    @   && \valid_read(&state->app_timeout_ticks) && \valid_read(&state->requests_accepted)
     @   && \valid_read(&state->requests_refused);
     @*/
   uint32_t even = SEAL_SEED;
-  uint32_t odd = SEAL_SEED;
+  uint32_t odd = ODD_SEED;
   odd = mix(odd, state->tick);
   even = mix(even, state->mode);
   odd = mix(odd, state->cause);
@@ -130,11 +137,13 @@ static uint32_t system_digest(const ilk_state_t *state) {
   even = mix(even, state->config_slice);
   odd = mix(odd, state->config_partial_crc);
   even = mix(even, state->config_sound);
+  odd = mix(odd, state->pedal_channels);
+  even = mix(even, state->app_timeout_ticks);
   odd = mix(odd, state->requests_accepted);
   even = mix(even, state->requests_refused);
   return mix(even, odd);
 }
-_Static_assert(sizeof(ilk_state_t) == (((size_t)ILK_SLOTS * sizeof(ilk_axis_t)) + (27u * sizeof(uint32_t))),
+_Static_assert(sizeof(ilk_state_t) == (((size_t)ILK_SLOTS * sizeof(ilk_axis_t)) + (29u * sizeof(uint32_t))),
                "every word is sealed, or is the seal");
 
 /** Each part has a digest of its own, made in two lanes, so that a processor can work on several at once. */
@@ -302,6 +311,40 @@ static void forget_axes(ilk_state_t *state) {
   }
 }
 
+/** What direction on the wire and switch of an axis mean. Equal words of two configurations, of which one is
+   valid, say that card, switch end and motor sense are equal. */
+/*@ requires readable: \valid_read(axis);
+  @ assigns  \nothing;
+  @ ensures  P14_wiring: \result == wiring(axis);
+  @*/
+static uint32_t axis_wiring(const ilk_axis_config_t *axis) {
+  uint32_t wiring = WIRING_UNKNOWN;
+  if ((axis->card <= BYTE_MAX) && (axis->limit_side <= BYTE_MAX) && (axis->motor_direction <= BYTE_MAX)) {
+    wiring = axis->card + (axis->limit_side * 0x100u) + (axis->motor_direction * 0x10000u);
+  }
+  return wiring;
+}
+
+/*@ requires valid: \valid(state) && \valid_read(config) && \separated(state, config);
+  @ assigns  state->pedal_channels, state->app_timeout_ticks, state->axis[0 .. ILK_SLOTS - 1];
+  @ ensures  P14_basis: basis_kept(config, state);
+  @ ensures  P14_blank: \old(blank_axes(state)) ==> blank_axes(state);
+  @*/
+static void remember_basis(ilk_state_t *state, const ilk_config_t *config) {
+  state->pedal_channels = config->pedal_channels;
+  state->app_timeout_ticks = config->app_timeout_ticks;
+  /*@ loop invariant bounds: 0 <= slot <= ILK_SLOTS;
+    @ loop invariant P14_basis: \forall integer index; 0 <= index < slot ==>
+    @   state->axis[index].wiring == wiring(&config->axis[index]);
+    @ loop invariant P14_blank: \at(blank_axes(state), Pre) ==> blank_axes(state);
+    @ loop assigns slot, state->axis[0 .. ILK_SLOTS - 1];
+    @ loop variant ILK_SLOTS - slot;
+    @*/
+  for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
+    state->axis[slot].wiring = axis_wiring(&config->axis[slot]);
+  }
+}
+
 void ilk_state_rebuild(ilk_state_t *state, const ilk_config_t *config, ilk_cause_t cause, uint32_t value) {
   state->tick = 0u;
   state->mode = (uint32_t)ILK_MODE_LOCKED;
@@ -331,6 +374,7 @@ void ilk_state_rebuild(ilk_state_t *state, const ilk_config_t *config, ilk_cause
   state->requests_refused = 0u;
   state->seal = 0u;
   forget_axes(state);
+  remember_basis(state, config);
 }
 
 /** A configuration that was not trusted becomes so by a whole pass that agrees and by being valid (P13). */
@@ -388,6 +432,35 @@ ilk_config_check_t ilk_config_check_slice(const ilk_config_t *config, ilk_state_
     end_pass(state, check.damaged ? 0u : trust_after_pass(config, state));
   }
   return check;
+}
+
+/*@ requires readable: \valid_read(config) && \valid_read(state);
+  @ assigns  \nothing;
+  @ ensures  P14_basis: \result <==> basis_kept(config, state);
+  @*/
+static bool basis_is_kept(const ilk_config_t *config, const ilk_state_t *state) {
+  bool kept = (config->pedal_channels == state->pedal_channels) &&
+              (config->app_timeout_ticks == state->app_timeout_ticks);
+  /*@ loop invariant bounds: 0 <= slot <= ILK_SLOTS;
+    @ loop invariant P14_basis: kept <==> config->pedal_channels == state->pedal_channels
+    @   && config->app_timeout_ticks == state->app_timeout_ticks
+    @   && \forall integer index; 0 <= index < slot ==>
+    @        state->axis[index].wiring == wiring(&config->axis[index]);
+    @ loop assigns slot, kept;
+    @ loop variant ILK_SLOTS - slot;
+    @*/
+  for (uint32_t slot = 0u; (slot < (uint32_t)ILK_SLOTS) && kept; slot++) {
+    kept = axis_wiring(&config->axis[slot]) == state->axis[slot].wiring;
+  }
+  return kept;
+}
+
+bool ilk_config_check_basis(const ilk_config_t *config, ilk_state_t *state) {
+  const bool kept = basis_is_kept(config, state);
+  if (!kept) {
+    state->config_sound = 0u;
+  }
+  return kept;
 }
 
 /** A state that was just rebuilt waits for RESET, or for another configuration. */

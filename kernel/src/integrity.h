@@ -43,6 +43,7 @@ bool ilk_state_is_sound(const ilk_state_t *state);
   @ ensures  P2_stop: state->estop == 1 && state->app_alive == 0 && state->app_age_ticks == UINT32_MAX;
   @ ensures  P13_untrusted: state->config_sound == 0 && state->config_slice == 0
   @   && state->config_partial_crc == 0xffffffff && state->config_crc == config->crc;
+  @ ensures  P14_basis: basis_kept(config, state);
   @ ensures  counts: state->tick == 0 && state->holder == 0 && state->link_generation == 0
   @   && state->last_sequence == 0 && state->overruns_in_row == 0 && state->overruns == 0
   @   && state->bus_bad_ticks == 0 && state->requests_accepted == 0 && state->requests_refused == 0;
@@ -51,7 +52,7 @@ void ilk_state_rebuild(ilk_state_t *state, const ilk_config_t *config, ilk_cause
 
 /** What a look at the configuration found. */
 typedef struct {
-  bool damaged; /**< a pass ended with another CRC-32 than at start */
+  bool damaged; /**< a pass ended with another CRC-32 than at start, or the basis is not kept */
   uint32_t crc; /**< CRC-32 that the pass found; 0 before the end of a pass */
 } ilk_config_check_t;
 
@@ -78,5 +79,22 @@ typedef struct {
   @ ensures  P15_mode: \old(axes_fit_mode(state)) ==> axes_fit_mode(state);
   @*/
 ilk_config_check_t ilk_config_check_slice(const ilk_config_t *config, ilk_state_t *state);
+
+/**
+ * Compares the words of the configuration that P1 to P3 rest on with those of the start: pedal channels, time
+ * without app, and of each axis card, switch end and motor sense. A pass over the slices would find a change
+ * of them too late.
+ *
+ * @return false when one of them changed; the configuration is not trusted then.
+ */
+/*@ requires valid: \valid_read(config) && \valid(state) && \separated(config, state);
+  @ assigns  state->config_sound;
+  @ ensures  P14_basis: \result <==> \old(basis_kept(config, state));
+  @ ensures  P14_distrust: state->config_sound == (\result ? \old(state->config_sound) : 0);
+  @ ensures  P15_system: \old(sound_system(state)) ==> sound_system(state);
+  @ ensures  P15_axes: \old(sound_axes(state)) ==> sound_axes(state);
+  @ ensures  P15_mode: \old(axes_fit_mode(state)) ==> axes_fit_mode(state);
+  @*/
+bool ilk_config_check_basis(const ilk_config_t *config, ilk_state_t *state);
 
 #endif

@@ -14,8 +14,8 @@
 typedef struct {
   bool new_fault;             /**< an axis faulted in this tick */
   bool required_card_lost;    /**< a required card is lost */
-  bool configuration_damaged; /**< a pass over the configuration ended with another CRC */
-  uint32_t configuration_crc; /**< the CRC that it found */
+  bool configuration_damaged; /**< a pass ended with another CRC, or what P1 to P3 rest on changed */
+  uint32_t configuration_crc; /**< the CRC that the pass found; 0 within a pass */
 } ilk_alarms_t;
 
 /*@ // P8: the first cause that is there, in the order in which they are looked for; ...

@@ -21,6 +21,8 @@
   @   state->config_sound == 0 && state->config_slice == 0;
   @ ensures  P8_latch: \old(sealed(state) && sound(state)) ==>
   @   state->mode == \old(state->mode) && cause_kept{Pre, Post}(state);
+  @ ensures  P14_basis: \old(sealed(state) && sound(state)) && !\old(basis_kept(config, state)) ==>
+  @   !basis_kept(config, state);
   @*/
 static void check_state(const ilk_config_t *config, ilk_state_t *state) {
   if (!ilk_state_is_sound(state)) {
@@ -28,7 +30,8 @@ static void check_state(const ilk_config_t *config, ilk_state_t *state) {
   }
 }
 
-/** Phase 1: state and a slice of the configuration. Nothing else of a damaged state is looked at. */
+/** Phase 1: state, a slice of the configuration, and what P1 to P3 rest on. Nothing else of a damaged state
+   is looked at. */
 /*@ requires valid: \valid_read(config) && \valid(state) && \separated(config, state);
   @ assigns  *state;
   @ ensures  P15_system: sound_system(state);
@@ -39,12 +42,15 @@ static void check_state(const ilk_config_t *config, ilk_state_t *state) {
   @ ensures  P13_untrusted: !\old(sealed(state) && sound(state)) ==> state->config_sound == 0;
   @ ensures  P8_latch: \old(sealed(state) && sound(state)) ==> state->mode == \old(state->mode);
   @ ensures  P8_first_cause: \old(sealed(state) && sound(state)) ==> state->cause == \old(state->cause);
+  @ ensures  P14_basis: \old(sealed(state) && sound(state)) && \old(state->mode) != ILK_MODE_INIT
+  @   && !\old(basis_kept(config, state)) ==> \result.damaged != 0 && state->config_sound == 0;
   @*/
 static ilk_config_check_t check_integrity(const ilk_config_t *config, ilk_state_t *state) {
   ilk_config_check_t check = {.damaged = false, .crc = 0u};
   check_state(config, state);
   if (state->mode != (uint32_t)ILK_MODE_INIT) {
     check = ilk_config_check_slice(config, state);
+    check.damaged = !ilk_config_check_basis(config, state) || check.damaged;
   }
   return check;
 }
@@ -772,6 +778,8 @@ static void observe(const ilk_config_t *config, ilk_state_t *state, const ilk_in
   @ ensures  P8_latch: \old(state->mode) == ILK_MODE_LOCKED ==>
   @   state->mode == ILK_MODE_LOCKED && cause_kept{Pre, Post}(state);
   @ ensures  P13_untrusted: state->config_sound == \old(state->config_sound);
+  @ ensures  P14_damaged: check.damaged != 0 ==> state->mode == ILK_MODE_LOCKED
+  @   && (\old(state->mode) != ILK_MODE_LOCKED ==> state->cause == ILK_CAUSE_INTEGRITY);
   @*/
 static void observe_and_decide(const ilk_config_t *config, ilk_state_t *state, const ilk_inputs_t *in,
                                ilk_config_check_t check) {

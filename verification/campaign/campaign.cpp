@@ -53,7 +53,6 @@ nlohmann::json json_of(const Totals& totals) {
           {"faults_injected", totals.faults_injected},
           {"unsafe", totals.unsafe},
           {"late", totals.late},
-          {"open_findings", totals.open_findings},
           {"bit_flips", totals.bit_flips},
           {"bit_flips_unsafe", totals.bit_flips_unsafe},
           {"stops_met", totals.stops_met},

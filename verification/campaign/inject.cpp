@@ -280,7 +280,7 @@ void World::inject_memory(const Fault& fault) {
   config_damage_left_ = fault.ticks;
   totals_.config_bits.set(config_bit_);
   totals_.bit_flips++;
-  demand(kConfigPassTicks, oracle::kNoAxis, fault.kind);
+  demand(met_within(config_bit_), oracle::kNoAxis, fault.kind);
 }
 
 }  // namespace interlock::campaign

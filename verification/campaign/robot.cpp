@@ -1,6 +1,8 @@
 #include "robot.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <span>
 
 #include "interlock/kernel.h"
 
@@ -151,6 +153,20 @@ oracle::SystemRules rules_of(const ilk_config_t& config) {
 }
 
 }  // namespace
+
+std::uint32_t met_within(std::size_t config_bit) {
+  constexpr std::size_t of_system[] = {offsetof(ilk_config_t, pedal_channels),
+                                       offsetof(ilk_config_t, app_timeout_ticks)};
+  constexpr std::size_t of_axis[] = {offsetof(ilk_axis_config_t, card),
+                                     offsetof(ilk_axis_config_t, motor_direction),
+                                     offsetof(ilk_axis_config_t, limit_side)};
+  constexpr std::size_t axes_at = offsetof(ilk_config_t, axis);
+  const std::size_t word = config_bit / 32 * sizeof(std::uint32_t);
+  const bool in_axis = word >= axes_at && word < offsetof(ilk_config_t, crc);
+  const std::span<const std::size_t> at_once = in_axis ? std::span<const std::size_t>(of_axis) : of_system;
+  const std::size_t place = in_axis ? (word - axes_at) % sizeof(ilk_axis_config_t) : word;
+  return std::ranges::find(at_once, place) == at_once.end() ? kConfigPassTicks : 0;
+}
 
 Robot make_robot(plant::Random& random) {
   constexpr std::uint32_t periods[] = {500, 1000, 1000, 1000, 2000};

@@ -6,6 +6,8 @@
 #ifndef INTERLOCK_CAMPAIGN_ROBOT_HPP
 #define INTERLOCK_CAMPAIGN_ROBOT_HPP
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 
 #include "interlock/types.h"
@@ -18,6 +20,10 @@ namespace interlock::campaign {
 /** Ticks within which damage to the configuration has to be met: it is checked a slot a tick, so two passes
  * see all. */
 inline constexpr std::uint32_t kConfigPassTicks = 2 * ILK_SLOTS;
+
+/** Ticks within which a flipped bit of the configuration has to be met: none for the words that P1 to P3 rest
+ * on. */
+std::uint32_t met_within(std::size_t config_bit);
 
 struct Robot {
   ilk_config_t config;

@@ -31,7 +31,6 @@ struct Totals {
   std::uint64_t faults_injected = 0;
   std::uint64_t unsafe = 0;
   std::uint64_t late = 0;
-  std::uint64_t open_findings = 0; /**< disagreements that are known and not yet settled */
   std::uint64_t bit_flips = 0;
   std::uint64_t bit_flips_unsafe = 0;
   std::uint64_t stops_met = 0;    /**< demanded by a fault and met within their time */
@@ -91,7 +90,6 @@ class World {
   void show_oracle();
   void count();
   std::optional<Failure> judge();
-  bool is_open(const oracle::Finding& finding) const;
   bool is_excused(const oracle::Finding& finding) const;
 
   Case plan_;

@@ -515,26 +515,31 @@
   @
   @ logic integer axis_seal_odd(ilk_axis_t *axis) =
   @   mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(
-  @   mixed(0x494c4b31, axis->fault), (uint32_t)axis->fault_value), axis->switch_triggered), axis->card_seen),
+  @   mixed(mixed(0x494c4b32, axis->fault), (uint32_t)axis->fault_value), axis->switch_triggered),
+  @     axis->card_seen),
   @     axis->checksum_failures), axis->card_time_us), axis->ticks_since_frame),
   @     (uint32_t)axis->position_counts), (uint32_t)axis->setpoint_counts), axis->amplitude),
   @     axis->driven_direction), axis->stall_driven_ticks), axis->stall_direction), axis->reverse_mark_raw),
-  @     axis->drift_mark_raw), axis->homing_phase), axis->homing_mark_raw);
+  @     axis->drift_mark_raw), axis->homing_phase), axis->homing_mark_raw), axis->wiring);
   @
   @ logic integer axis_seal(ilk_axis_t *axis) = mixed(axis_seal_even(axis), axis_seal_odd(axis));
   @
   @ // ... every word of the system but the seal, ...
   @ logic integer system_seal_even(ilk_state_t *state) =
-  @   mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(0x494c4b31, state->mode),
+  @   mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(
+  @   mixed(0x494c4b31, state->mode),
   @     state->cause_tick), state->causes_seen), state->pedal_armed), state->pedal_released_ticks),
   @     state->estop), state->app_alive), state->link_generation), state->overruns_in_row),
-  @     state->bus_bad_ticks), state->config_slice), state->config_sound), state->requests_refused);
+  @     state->bus_bad_ticks), state->config_slice), state->config_sound), state->app_timeout_ticks),
+  @     state->requests_refused);
   @
   @ logic integer system_seal_odd(ilk_state_t *state) =
-  @   mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(0x494c4b31, state->tick),
+  @   mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(mixed(
+  @   mixed(0x494c4b32, state->tick),
   @     state->cause), state->cause_value), state->pedal), state->pedal_pressed_ticks),
   @     state->pedal_disagree_ticks), state->app_age_ticks), state->holder), state->last_sequence),
-  @     state->overruns), state->config_crc), state->config_partial_crc), state->requests_accepted);
+  @     state->overruns), state->config_crc), state->config_partial_crc), state->pedal_channels),
+  @     state->requests_accepted);
   @
   @ // ... then the first axes.
   @ logic integer seal_of(ilk_state_t *state, integer slots) =
@@ -542,6 +547,17 @@
   @              : mixed(seal_of(state, slots - 1), axis_seal(&state->axis[slots - 1]));
   @
   @ predicate sealed(ilk_state_t *state) = state->seal == seal_of(state, ILK_SLOTS);
+  @
+  @ // What direction on the wire and switch mean: card, switch end, motor sense, each below 2^8 or all unknown.
+  @ logic integer wiring(ilk_axis_config_t *axis) =
+  @   axis->card > 255 || axis->limit_side > 255 || axis->motor_direction > 255 ? UINT32_MAX
+  @   : axis->card + 256 * axis->limit_side + 65536 * axis->motor_direction;
+  @
+  @ // The words of the configuration that P1 to P3 rest on are those of the start.
+  @ predicate basis_kept(ilk_config_t *config, ilk_state_t *state) =
+  @   config->pedal_channels == state->pedal_channels && config->app_timeout_ticks == state->app_timeout_ticks
+  @   && \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+  @        state->axis[slot].wiring == wiring(&config->axis[slot]);
   @*/
 
 #endif

@@ -76,7 +76,7 @@ typedef enum {
   ILK_CAUSE_ESTOP = 2,     /**< The E-stop was pulled, or its loop is broken. Value: the contact as read. */
   ILK_CAUSE_BUS = 3,       /**< No card answered, or transactions failed. Value: bad ticks in a row. */
   ILK_CAUSE_PEDAL = 4,     /**< The pedal's channels disagree. Value: contacts as read, normally open in bit 0, normally closed in bit 1. */
-  ILK_CAUSE_INTEGRITY = 5, /**< Memory of the kernel was damaged. Value: the seal of the damaged state, or the CRC that was found over the configuration. */
+  ILK_CAUSE_INTEGRITY = 5, /**< Memory of the kernel was damaged. Value: the seal of the damaged state, or the CRC that was found over the configuration; 0 when one of its words that drive rests on had changed. */
   ILK_CAUSE_OVERRUN = 6,   /**< The control loop missed its deadline several times in a row. Value: misses in a row. */
 } ilk_cause_t;
 

@@ -71,6 +71,9 @@ ilk_config_verdict_t ilk_init(const ilk_config_t *config, ilk_state_t *state);
   @ ensures  P2_stop: !consented(state) ==> at_zero(out) && all_still(out);
   @ ensures  P14_contained: !\old(sealed(state) && sound(state)) ==>
   @   state->mode == ILK_MODE_LOCKED && state->cause == ILK_CAUSE_INTEGRITY;
+  @ ensures  P14_basis: \old(state->mode) != ILK_MODE_INIT && !\old(basis_kept(config, state)) ==>
+  @   state->mode == ILK_MODE_LOCKED
+  @   && (\old(state->mode) != ILK_MODE_LOCKED ==> state->cause == ILK_CAUSE_INTEGRITY);
   @*/
 void ilk_step(const ilk_config_t *config, ilk_state_t *state, const ilk_inputs_t *in,
               const ilk_request_t requests[], uint32_t count, ilk_outputs_t *out);

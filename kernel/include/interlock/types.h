@@ -116,6 +116,7 @@ typedef struct {
   uint32_t homing_ticks;       /**< ticks left until homing times out */
   uint32_t homing_mark_raw;    /**< reading at which the phase began */
   uint32_t rest_ticks;         /**< ticks without a count in the phase REST */
+  uint32_t wiring;             /**< card, switch end and motor sense at the start, packed (integrity.c) */
 } ilk_axis_t;
 
 /** What the kernel remembers. Only `ilk_init` and `ilk_step` write it. */
@@ -144,6 +145,8 @@ typedef struct {
   uint32_t config_slice;         /**< slice that the next tick checks */
   uint32_t config_partial_crc;   /**< CRC-32 over the slices before it */
   uint32_t config_sound;         /**< 0: damaged; 1: the last whole pass agreed */
+  uint32_t pedal_channels;       /**< of the configuration at the start */
+  uint32_t app_timeout_ticks;    /**< of the configuration at the start */
   uint32_t requests_accepted;    /**< since boot, saturating */
   uint32_t requests_refused;     /**< since boot, saturating */
   ilk_axis_t axis[ILK_SLOTS];    /**< by slot */

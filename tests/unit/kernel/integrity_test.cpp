@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <vector>
 
 #include "dice.hpp"
 #include "inert.hpp"
@@ -252,6 +253,97 @@ TEST(P14_containment, a_damaged_configuration_blocks_RESET_until_a_whole_pass_ag
   EXPECT_LE(waited, 2 * pass_ticks);
 }
 
+/// Every word of the configuration that P1 to P3 rest on.
+std::vector<uint32_t*> basis_of(ilk_config_t& config) {
+  std::vector<uint32_t*> words = {&config.pedal_channels, &config.app_timeout_ticks};
+  for (ilk_axis_config_t& axis : config.axis) {
+    words.insert(words.end(), {&axis.card, &axis.limit_side, &axis.motor_direction});
+  }
+  return words;
+}
+
+TEST(P14_containment, any_flipped_bit_of_what_P1_to_P3_rest_on_locks_with_zero_drive_in_that_tick) {
+  Bench bench(ten_axis_config());
+  run_busy(bench);
+  bench.watched = false;
+  Bench sound = bench;
+  sound.tick();
+  ASSERT_TRUE(sound.driven(0));
+  ASSERT_EQ(sound.mode(), ILK_MODE_MOTION);
+  const std::size_t words = basis_of(sound.damage_config()).size();
+  for (std::size_t word = 0; word < words; ++word) {
+    for (uint32_t bit = 0; bit < 32; ++bit) {
+      Bench hit = bench;
+      *basis_of(hit.damage_config())[word] ^= 1u << bit;
+      hit.tick();
+      ASSERT_NO_FATAL_FAILURE(expect_contained(hit)) << word << " " << bit;
+    }
+  }
+}
+
+TEST(P14_containment, values_beyond_the_codes_are_no_other_ones_in_what_P1_to_P3_rest_on) {
+  Bench bench(ten_axis_config());
+  run_busy(bench);
+  bench.watched = false;
+  Dice dice(146);
+  for (int trial = 0; trial < 5000; ++trial) {
+    Bench hit = bench;
+    const ilk_config_t& before = bench.config();
+    const uint32_t slot = dice.below(ILK_SLOTS);
+    ilk_axis_config_t& axis = hit.damage_config().axis[slot];
+    // What a carry from one packed word into the next would hide.
+    const uint32_t carry = 1 + dice.below(0x100);
+    axis.card += carry << 8;
+    axis.limit_side += dice.one_in(2) ? (carry << 8) - carry : 0u - carry;
+    axis.motor_direction -= dice.one_in(2) ? carry : 0;
+    ASSERT_NE(axis.card, before.axis[slot].card);
+    hit.tick();
+    ASSERT_NO_FATAL_FAILURE(expect_contained(hit)) << trial;
+  }
+}
+
+TEST(P14_containment, damage_that_passes_again_keeps_the_lock_until_RESET_after_a_whole_pass) {
+  Bench bench;
+  bench.to_motion();
+  bench.watched = false;
+  bench.damage_config().axis[slot::pwm_free].motor_direction ^= 1u;
+  bench.tick();
+  expect_contained(bench);
+  bench.damage_config().axis[slot::pwm_free].motor_direction ^= 1u;
+  bench.pedal(false);
+  EXPECT_EQ(bench.ask(reset()), ILK_VERDICT_CAUSE_PRESENT);
+  bench.ticks(2 * pass_ticks);
+  expect_contained(bench);
+  EXPECT_EQ(bench.ask(reset()), ILK_VERDICT_ACCEPTED);
+  EXPECT_EQ(bench.mode(), ILK_MODE_READY);
+}
+
+TEST(P14_containment, a_lock_of_another_cause_keeps_it_when_what_P1_to_P3_rest_on_is_damaged) {
+  Bench bench;
+  bench.to_motion();
+  bench.watched = false;
+  bench.estop_loop_closed = 0;
+  bench.tick();
+  ASSERT_EQ(bench.cause(), ILK_CAUSE_ESTOP);
+  bench.damage_config().pedal_channels = 1;
+  bench.tick();
+  EXPECT_EQ(bench.mode(), ILK_MODE_LOCKED);
+  EXPECT_EQ(bench.cause(), ILK_CAUSE_ESTOP);
+  EXPECT_NE(bench.state().causes_seen & 1u << ILK_CAUSE_INTEGRITY, 0u);
+}
+
+TEST(P13_configuration, damage_to_what_P1_to_P3_rest_on_does_not_leave_INIT) {
+  ilk_config_t config = standard_config();
+  config.axis[slot::pwm_free].coast_counts = 0;
+  seal(config);
+  Bench bench(config);
+  bench.watched = false;
+  bench.damage_config().pedal_channels = 1;
+  bench.ticks(2 * pass_ticks);
+  EXPECT_EQ(bench.mode(), ILK_MODE_INIT);
+  EXPECT_TRUE(bench.wire_is_zero());
+}
+
 TEST(P14_containment, with_a_damaged_configuration_P1_to_P3_hold_until_it_is_found) {
   constexpr uint32_t config_words = sizeof(ilk_config_t) / 4;
   Dice dice(145);
@@ -261,13 +353,14 @@ TEST(P14_containment, with_a_damaged_configuration_P1_to_P3_hold_until_it_is_fou
     for (uint32_t slot = 0; slot < slot::axes; ++slot) bench.enable_axis(slot);
     bench.watched = false;
     for (auto& motor : bench.motor) motor.switch_stuck = dice.one_in(3);
+    const ilk_config_t before = bench.config();
     auto words = std::bit_cast<std::array<uint32_t, config_words>>(bench.config());
     const uint32_t changes = 1 + dice.below(40);
     for (uint32_t change = 0; change < changes; ++change) words[dice.below(config_words)] = dice.word();
     bench.damage_config() = std::bit_cast<ilk_config_t>(words);
-    const ilk_config_t& damaged = bench.config();
     for (uint32_t tick = 0; tick < 2 * pass_ticks; ++tick) {
       bench.pedal(!dice.one_in(10));
+      if (dice.one_in(10)) bench.pedal_nc_closed ^= 1u;
       bench.estop_loop_closed = dice.one_in(15) ? 0 : 1;
       for (uint32_t slot = 0; slot < slot::axes; ++slot) {
         ilk_request_t wish = move(slot, dice.between(-2000, 2000), dice.below(2000), 1 + dice.below(20));
@@ -275,8 +368,8 @@ TEST(P14_containment, with_a_damaged_configuration_P1_to_P3_hold_until_it_is_fou
         bench.queue(dice.one_in(8) ? home(slot) : wish);
       }
       bench.tick();
-      const bool may_drive =
-          bench.mode() == ILK_MODE_MOTION && bench.pedal_no_closed == 1 && bench.estop_loop_closed == 1;
+      const bool may_drive = bench.mode() == ILK_MODE_MOTION && bench.pedal_no_closed == 1 &&
+                             bench.pedal_nc_closed == 0 && bench.estop_loop_closed == 1;
       ASSERT_TRUE(may_drive || bench.wire_is_zero()) << "P2, trial " << trial;
       for (uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
         if (!bench.driven(slot)) continue;
@@ -284,11 +377,11 @@ TEST(P14_containment, with_a_damaged_configuration_P1_to_P3_hold_until_it_is_fou
         ASSERT_TRUE(axis.card_valid == 1 && axis.fault == ILK_FAULT_NONE &&
                     (axis.state == ILK_AXIS_MOVING || axis.state == ILK_AXIS_HOMING))
             << "P1, trial " << trial;
-        const uint32_t outward = damaged.axis[slot].limit_side == ILK_LIMIT_UPPER   ? ILK_DIRECTION_INCREASING
-                                 : damaged.axis[slot].limit_side == ILK_LIMIT_LOWER ? ILK_DIRECTION_DECREASING
-                                                                                    : ILK_DIRECTION_NONE;
+        const uint32_t outward = before.axis[slot].limit_side == ILK_LIMIT_UPPER   ? ILK_DIRECTION_INCREASING
+                                 : before.axis[slot].limit_side == ILK_LIMIT_LOWER ? ILK_DIRECTION_DECREASING
+                                                                                   : ILK_DIRECTION_NONE;
         const bool at_switch = (bench.inputs().frame[slot][incoming::pairs] & incoming::switch_open_bit) == 0;
-        ASSERT_FALSE(at_switch && bench.out().command[slot].direction == outward) << "P3, trial " << trial;
+        ASSERT_FALSE(at_switch && bench.driven_direction(slot) == outward) << "P3, trial " << trial;
       }
     }
     ASSERT_EQ(bench.state().causes_seen >> ILK_CAUSE_INTEGRITY & 1u, 1u) << "trial " << trial;

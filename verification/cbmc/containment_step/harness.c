@@ -1,13 +1,13 @@
 /**
  * @file
- * Whole ticks that must give zero drive: from a state that fails its check, whatever bits it holds, and in
- * INIT. Check, phases that judge frames, verdicts and their effects are arbitrary within what their own
- * proofs show; phases 1, 3, 5, 7 and 8 are the real ones. Configuration, inputs and requests are arbitrary
- * bits.
+ * Whole ticks that must give zero drive: from a state that fails its check, whatever bits it holds; with a
+ * configuration in which something changed of what P1 to P3 rest on, whatever else changed; and in INIT.
+ * Check, phases that judge frames, verdicts and their effects are arbitrary within what their own proofs
+ * show; phases 1, 3, 5, 7 and 8 are the real ones. Configuration, inputs and requests are arbitrary bits.
  */
 #include "axis.h"
 #include "frame.h"
-#include "integrity.h"
+#include "integrity.c"
 #include "interlock/kernel.h"
 #include "proof.h"
 #include "request.h"
@@ -98,6 +98,7 @@ void some_effect(const ilk_config_t* config, ilk_state_t* state, const ilk_reque
 }
 
 static ilk_config_t config;
+static ilk_config_t before;
 static ilk_state_t state;
 static ilk_inputs_t in;
 static ilk_outputs_t out;
@@ -132,6 +133,41 @@ static void show_damaged(uint32_t count) {
   GOAL(never_unlocked, state.mode != ILK_MODE_LOCKED);
 }
 
+/** Any bits of the configuration may have changed, and of these words any. */
+static bool some_word_changed(void) {
+  bool changed = (config.pedal_channels != before.pedal_channels) ||
+                 (config.app_timeout_ticks != before.app_timeout_ticks);
+  for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
+    const ilk_axis_config_t* now = &config.axis[slot];
+    const ilk_axis_config_t* then = &before.axis[slot];
+    GIVEN((then->card < ILK_CARD_COUNT) && (then->limit_side < ILK_LIMIT_COUNT) &&
+          (then->motor_direction <= 1u)); /* proof `config_slot` */
+    changed = changed || (now->card != then->card) || (now->limit_side != then->limit_side) ||
+              (now->motor_direction != then->motor_direction);
+  }
+  return changed;
+}
+
+/** From any state that passes its check and remembers a configuration that was valid. */
+static void show_damaged_configuration(uint32_t count) {
+  const uint32_t mode_before = state.mode;
+  const uint32_t cause_before = state.cause;
+  remember_basis(&state, &before);
+  GIVEN(some_word_changed());
+  GIVEN((mode_before < ILK_MODE_COUNT) && (mode_before != ILK_MODE_INIT));
+  passes_check = true;
+  ilk_step(&config, &state, &in, requests, count, &out);
+  SHOW((state.mode == ILK_MODE_LOCKED) &&
+           (state.cause == ((mode_before == ILK_MODE_LOCKED) ? cause_before : ILK_CAUSE_INTEGRITY)),
+       "P8, P14: LOCKED in that very tick, for INTEGRITY unless locked before");
+  SHOW(((state.causes_seen >> ILK_CAUSE_INTEGRITY) & 1u) == 1u, "P8, P14: INTEGRITY is listed");
+  SHOW(state.config_sound == 0u, "P13: the configuration is not trusted");
+  show_zero_drive();
+  GOAL(goal_locked_before, cause_before == ILK_CAUSE_ESTOP);
+  GOAL(goal_last_switch_end, (mode_before == ILK_MODE_MOTION) && (config.axis[9].limit_side == 258u));
+  GOAL(never_driven_on, state.mode == ILK_MODE_MOTION);
+}
+
 static void show_init(uint32_t count) {
   passes_check = true;
   state.mode = ILK_MODE_INIT;
@@ -146,12 +182,15 @@ void harness(void) {
   uint32_t count;
   uint32_t choice;
   __CPROVER_havoc_object(&config);
+  __CPROVER_havoc_object(&before);
   __CPROVER_havoc_object(&state);
   __CPROVER_havoc_object(&in);
   __CPROVER_havoc_object(&out);
   __CPROVER_havoc_object(requests);
   if (choice == 0u) {
     show_init(count);
+  } else if (choice == 1u) {
+    show_damaged_configuration(count);
   } else {
     show_damaged(count);
   }

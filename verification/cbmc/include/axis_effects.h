@@ -67,6 +67,7 @@ static void show_same_axis(const ilk_axis_t* after, const ilk_axis_t* expected) 
            (after->delta_counts == expected->delta_counts) &&
            (after->press_travel_counts == expected->press_travel_counts),
        "P4, P7: axis: position and travel");
+  SHOW(after->wiring == expected->wiring, "P14: axis: how it is wired");
   SHOW((after->switch_triggered == expected->switch_triggered) &&
            (after->card_valid == expected->card_valid) && (after->card_seen == expected->card_seen) &&
            (after->bad_frames == expected->bad_frames) &&
@@ -104,6 +105,9 @@ static void show_same_system(const ilk_state_t* after, const ilk_state_t* expect
            (after->config_partial_crc == expected->config_partial_crc) &&
            (after->config_sound == expected->config_sound) && (after->seal == expected->seal),
        "P13, P14: tick, configuration and seal");
+  SHOW((after->pedal_channels == expected->pedal_channels) &&
+           (after->app_timeout_ticks == expected->app_timeout_ticks),
+       "P14: what P2 rests on");
   SHOW((after->requests_accepted == expected->requests_accepted) &&
            (after->requests_refused == expected->requests_refused),
        "P11: the counters of requests");

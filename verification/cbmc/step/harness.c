@@ -87,6 +87,7 @@ static void choose(void) {
   chosen = any_choice;
   chosen.sound = bit_of(flags, 0u);
   chosen.damaged = bit_of(flags, 1u);
+  chosen.basis_kept = bit_of(flags, 2u);
   chosen.rebuilt.mode = ILK_MODE_LOCKED;                                   /* proof `soundness` */
   GIVEN((chosen.mode < ILK_MODE_COUNT) && (chosen.mode != ILK_MODE_INIT)); /* proof `mode` */
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {

@@ -19,6 +19,7 @@ enum {
   AT_START,
   AT_INTEGRITY,
   AT_SLICE,
+  AT_BASIS,
   AT_FRAMES,
   AT_SYSTEM,
   AT_AXES,
@@ -33,6 +34,7 @@ enum {
 typedef struct {
   bool sound;
   bool damaged;
+  bool basis_kept;
   uint32_t found_crc;
   ilk_state_t rebuilt;
   ilk_state_t observed;
@@ -116,10 +118,17 @@ ilk_config_check_t some_slice(const ilk_config_t* looked_at, ilk_state_t* held) 
   return check;
 }
 
+bool some_basis(const ilk_config_t* looked_at, ilk_state_t* held) {
+  SHOW(seen.at == AT_SLICE, "P14: phase 1: what P1 to P3 rest on, before any of it is used");
+  SHOW((looked_at == &config) && (held == &state), "P14: of this configuration");
+  seen.at = AT_BASIS;
+  return chosen.basis_kept;
+}
+
 ilk_reading_t some_reading(const uint32_t frame[ILK_FRAME_WORDS]) {
   const uint32_t slot = seen.unpacked;
   SHOW((slot < ILK_SLOTS) && (frame == in.frame[slot]), "P16: phase 2: each slot's own frame is read once");
-  SHOW((seen.at == AT_SLICE) || (seen.at == AT_FRAMES), "phase 2 comes after phase 1");
+  SHOW((seen.at == AT_BASIS) || (seen.at == AT_FRAMES), "phase 2 comes after phase 1");
   GIVEN(slot < ILK_SLOTS);
   seen.at = AT_FRAMES;
   seen.unpacked++;
@@ -204,7 +213,8 @@ void some_mode(const ilk_config_t* used, ilk_state_t* changed, const ilk_alarms_
   SHOW((used == &config) && (changed == &state) && (inputs == &in), "phase 5 sees this tick");
   SHOW(alarms->new_fault == faulted, "a new fault of any axis is told to the mode");
   SHOW(alarms->required_card_lost == lost, "and the loss of any required card");
-  SHOW((alarms->configuration_damaged == chosen.damaged) && (alarms->configuration_crc == chosen.found_crc),
+  SHOW((alarms->configuration_damaged == (chosen.damaged || !chosen.basis_kept)) &&
+           (alarms->configuration_crc == chosen.found_crc),
        "P14: and what became of the configuration");
   seen.at = AT_MODE;
   seen.changed = true;

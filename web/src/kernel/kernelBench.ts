@@ -6,7 +6,7 @@ import { catalog } from "../generated/catalog";
 const folder = new URL("../../kernel/", import.meta.url);
 const SLOTS = 10;
 const FRAME_WORDS = 32;
-const STATE_WORDS = 377;
+const STATE_WORDS = 389;
 const CONFIG_WORDS = 301;
 const INPUT_WORDS = 7 + SLOTS * FRAME_WORDS;
 const REQUEST_WORDS = 9;
@@ -18,8 +18,8 @@ const VERDICTS_AT = GATES_AT + SLOTS + SLOTS * FRAME_WORDS + 4 + 1;
 const MODE = 1;
 const CAUSE = 2;
 const LAST_SEQUENCE = 16;
-const AXES_AT = 26;
-const AXIS_WORDS = 35;
+const AXES_AT = 28;
+const AXIS_WORDS = 36;
 
 export interface Vector {
   readonly state: Uint32Array;

@@ -7,7 +7,7 @@ import { type CodeName, entry, type Family } from "../generated/catalog";
 const MAGIC = 0x53574b49;
 const VERSION = 2;
 const SLOTS = 10;
-export const STATE_WORDS = 377;
+export const STATE_WORDS = 389;
 
 export const headerFields = [
   "magic",
