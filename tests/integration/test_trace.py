@@ -451,6 +451,11 @@ def written_tests() -> dict[str, list[str]]:
             for path, text in texts("integration/test_*.py")
             for name in re.findall(r"^def (test_\w+)", text, re.MULTILINE)
         ],
+        "console": [
+            f"{path.stem}::{name}"
+            for path in sorted((ROOT / "web/src").rglob("*.test.ts*"))
+            for name in re.findall(r"\bit\(\s*[`\"]([^`\"]+)", path.read_text("utf-8"))
+        ],
         "browser": [
             f"{path.name}::{name}"
             for path, text in texts("browser/*.spec.ts")
