@@ -19,11 +19,11 @@ constexpr std::size_t most_cookies = 4;
  */
 std::string text_of(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
 
-Response response_of(Status status, const char* content_type, const json& body) {
+Response response_of(Status status, std::string_view content_type, std::string body) {
   Response response{status, 11};
   response.set(http::field::content_type, content_type);
   response.set(http::field::cache_control, "no-store");
-  response.body() = text_of(body);
+  response.body() = std::move(body);
   return response;
 }
 
@@ -61,8 +61,11 @@ std::optional<std::string> decoded(std::string_view encoded) {
 
 }  // namespace
 
-Response json_response(const Success& success) {
-  Response response = response_of(success.status, "application/json", success.body);
+Response success_response(const Success& success) {
+  Response response =
+      success.text_type.empty()
+          ? response_of(success.status, "application/json", text_of(success.body))
+          : response_of(success.status, success.text_type, success.body.get<std::string>());
   add_headers(response, success.headers);
   return response;
 }
@@ -76,7 +79,7 @@ Response problem_response(const Problem& problem) {
   add_text(body, "field", problem.field);
   add_text(body, "expected", problem.expected);
   add_text(body, "next_step", problem.next_step);
-  Response response = response_of(problem.status, "application/problem+json", body);
+  Response response = response_of(problem.status, "application/problem+json", text_of(body));
   add_headers(response, problem.headers);
   return response;
 }

@@ -41,14 +41,15 @@ struct Problem {
 struct Success {
   Status status = Status::ok;
   nlohmann::json body = {};
-  Headers headers = {}; /**< besides those that every answer has */
+  Headers headers = {};       /**< besides those that every answer has */
+  std::string text_type = {}; /**< media type of a body that is one text and no JSON; empty: JSON */
 };
 
 /** What a route answers. */
 using Reply = tl::expected<Success, Problem>;
 
-/** Answer in JSON. */
-Response json_response(const Success& success);
+/** Answer in JSON, or in the text that the body is. */
+Response success_response(const Success& success);
 
 /** Answer in `application/problem+json`. */
 Response problem_response(const Problem& problem);

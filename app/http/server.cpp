@@ -310,7 +310,7 @@ asio::awaitable<Response> Server::respond_api(const Request& request, const std:
     }
     const Reply reply = co_await api_.router().route(request, *caller);
     log_transaction(request, *caller, reply ? reply->status : reply.error().status);
-    co_return reply ? json_response(*reply) : problem_response(reply.error());
+    co_return reply ? success_response(*reply) : problem_response(reply.error());
   } catch (const std::exception& exception) {
     thrown = exception.what();
   }

@@ -7,6 +7,7 @@
 
 #include "http/problems.hpp"
 #include "http/status_json.hpp"
+#include "metrics/metrics.hpp"
 #include "robot/catalog.hpp"
 #include "robot/compile.hpp"
 
@@ -23,6 +24,7 @@ SystemRoutes::SystemRoutes(const Context& context, Router& router) : context_(co
   router.add(verb::get, "/api/status", anybody, [this](const Call&) -> Answering { co_return status(); });
   router.add(verb::get, "/api/kernel/configuration", viewers,
              [this](const Call&) -> Answering { co_return configuration(); });
+  router.add(verb::get, "/api/metrics", anybody, [this](const Call&) -> Answering { co_return metrics(); });
   router.add(verb::post, "/api/stop", anybody, [this](const Call& call) { return stop(call); });
   router.add(verb::post, "/api/reset", holder, [this](const Call& call) {
     return context_.ask_kernel(call.caller, ILK_REQUEST_RESET, 0, "reset");
@@ -46,6 +48,12 @@ Reply SystemRoutes::configuration() const {
   using Words = std::array<std::uint32_t, sizeof(ilk_config_t) / sizeof(std::uint32_t)>;
   return Success{
       .body = {{"crc", config_hash(context_.config)}, {"words", std::bit_cast<Words>(context_.config)}}};
+}
+
+Reply SystemRoutes::metrics() const {
+  return Success{.body = metrics_text(context_.robot, context_.config, context_.view(),
+                                      context_.stream.watchers().size(), std::chrono::steady_clock::now()),
+                 .text_type = metrics_media_type};
 }
 
 Answering SystemRoutes::stop(const Call& call) const {

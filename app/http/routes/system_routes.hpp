@@ -1,6 +1,6 @@
 /**
  * @file
- * Routes of the system as a whole: status, the kernel's configuration, STOP, RESET and the stream's address.
+ * Routes of the system as a whole: status, metrics, the kernel's configuration, STOP, RESET and the stream's address.
  */
 #pragma once
 
@@ -17,6 +17,7 @@ class SystemRoutes {
  private:
   [[nodiscard]] Reply status() const;
   [[nodiscard]] Reply configuration() const;
+  [[nodiscard]] Reply metrics() const;
   [[nodiscard]] boost::asio::awaitable<Reply> stop(const Call& call) const;
 
   const Context& context_;

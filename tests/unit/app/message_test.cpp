@@ -86,7 +86,7 @@ TEST(Body, MayNotHaveAKeyTwiceInOneObject) {
 }
 
 TEST(Headers, OfAnAnswerAreSent) {
-  const Response made = json_response({Status::ok, json::object(), {{"Set-Cookie", "a=b"}}});
+  const Response made = success_response({Status::ok, json::object(), {{"Set-Cookie", "a=b"}}});
   EXPECT_EQ(made[http::field::set_cookie], "a=b");
   const Response refused =
       problem_response({.status = Status::too_many_requests, .headers = {{"Retry-After", "2"}}});

@@ -1,0 +1,31 @@
+/**
+ * @file
+ * The system as a monitoring server sees it: Prometheus' text format, version 0.0.4
+ * (https://prometheus.io/docs/instrumenting/exposition_formats/), in its base units.
+ */
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+#include "motion/mailbox.hpp"
+#include "robot/robot.hpp"
+
+namespace interlock {
+
+/** Media type of the text. */
+inline constexpr const char* metrics_media_type = "text/plain; version=0.0.4; charset=utf-8";
+
+/**
+ * Every metric of docs/deployment.md. What the kernel alone knows is left out while none is attached: a
+ * series that ends is told from one that stands still.
+ *
+ * @param consoles clients of the stream
+ * @param now      of the clock that stamped the view
+ */
+[[nodiscard]] std::string metrics_text(const Robot& robot, const ilk_config_t& config,
+                                       const ControlView& view, std::size_t consoles,
+                                       std::chrono::steady_clock::time_point now);
+
+}  // namespace interlock
