@@ -62,10 +62,9 @@ std::optional<std::string> decoded(std::string_view encoded) {
 }  // namespace
 
 Response success_response(const Success& success) {
-  Response response =
-      success.text_type.empty()
-          ? response_of(success.status, "application/json", text_of(success.body))
-          : response_of(success.status, success.text_type, success.body.get<std::string>());
+  Response response = success.text_type.empty()
+                          ? response_of(success.status, "application/json", text_of(success.body))
+                          : response_of(success.status, success.text_type, success.body.get<std::string>());
   add_headers(response, success.headers);
   return response;
 }

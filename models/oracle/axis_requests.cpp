@@ -130,8 +130,7 @@ void AxisWatch::accept_position(const Observation& seen, const Message& message,
                     "a position declared on a faulted axis or without a card");
   }
   if (is_first_reading_) {
-    findings.report(seen.tick, Property::kP11, slot_,
-                    "a position declared on the first reading of a card");
+    findings.report(seen.tick, Property::kP11, slot_, "a position declared on the first reading of a card");
   } else if (was_driven_in(seen.tick - 1)) {
     findings.report(seen.tick, Property::kP11, slot_, "a position declared in the tick in which drive ended");
   } else if (!still_) {

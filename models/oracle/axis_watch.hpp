@@ -150,11 +150,11 @@ class AxisWatch {
   std::int64_t farthest_path_ = 0; /**< mark of reverse */
   std::int64_t progress_path_ = 0; /**< mark of stall */
 
-  std::int32_t sense_ = 0;            /**< of the newest drive: 1 rises, -1 falls, 0 never driven */
-  std::uint32_t driven_tick_ = 0;     /**< of the newest drive, or from when on none is known */
-  std::uint32_t driven_ticks_ = 0;    /**< since progress */
-  std::uint32_t standing_ticks_ = 0;  /**< driven ones since it got any farther */
-  bool one_target_ = true;            /**< all ticks counted in driven_ticks_ had the same setpoint */
+  std::int32_t sense_ = 0;           /**< of the newest drive: 1 rises, -1 falls, 0 never driven */
+  std::uint32_t driven_tick_ = 0;    /**< of the newest drive, or from when on none is known */
+  std::uint32_t driven_ticks_ = 0;   /**< since progress */
+  std::uint32_t standing_ticks_ = 0; /**< driven ones since it got any farther */
+  bool one_target_ = true;           /**< all ticks counted in driven_ticks_ had the same setpoint */
   std::int32_t counted_target_ = 0;
 
   bool enabled_ = false;

@@ -1,14 +1,18 @@
 #!/usr/bin/env python3
 """Mutants of the core against unit tests, conformance, proofs and contracts: what none notices is unchecked.
 
-Usage: run.py [--count N] [--each N] [--seed TEXT] [--without-tests] [--matrix] [--list]. The seed (the commit) puts all mutants
-in an order. Of each function the first --each (5) are drawn, or all if there are fewer, then the next of all
-until there are --count (400). Mutants that do not compile, or that are the same code as one that was drawn,
-are passed over. Each is shown to the rungs, the cheapest first, until one notices it; with --matrix to all,
-with --without-tests to rungs 2 to 4 alone, of which nine of ten must be noticed.
+Usage: run.py [--count N] [--each N] [--seed TEXT] [--without-tests] [--matrix] [--list].
+
+The seed (the commit) puts all mutants in an order. Of each function the first --each (5) are drawn, or all
+if there are fewer, then the next of all until there are --count (400). Mutants that do not compile, or
+that are the same code as one that was drawn, are passed over. Each is shown to the rungs, the cheapest
+first, until one notices it; with --matrix to all, with --without-tests to rungs 2 to 4 alone, of which
+nine of ten must be noticed.
+
 What nothing notices is an equivalent only if CBMC shows that it does the same as the sound kernel (equal.py).
 
-Prints a line for each mutant, the kill matrix and the survivors; writes build/evidence/mutation.json, or mutation_without_tests.json.
+Prints a line for each mutant, the kill matrix and the survivors; writes build/evidence/mutation.json, or
+mutation_without_tests.json.
 Verdicts are kept by content in build/mutation; --list draws, and judges nothing.
 """
 

@@ -68,7 +68,9 @@ class Kept:
         code, whole = kernel_digests(tree)
         read = [self._rungs[each] for each in (self._asked if rung == "all" else [rung])]
         seen = code if rung in ("tests", "conformance") else whole
-        return hashlib.sha256("".join([rung, *self._asked, str(self._every), seen, *read]).encode()).hexdigest()
+        return hashlib.sha256(
+            "".join([rung, *self._asked, str(self._every), seen, *read]).encode()
+        ).hexdigest()
 
     def find(self, tree: Path) -> Verdict | None:
         """The verdict on the mutant in the tree, if nothing changed that it rests on."""

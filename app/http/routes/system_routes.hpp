@@ -1,6 +1,7 @@
 /**
  * @file
- * Routes of the system as a whole: status, metrics, the kernel's configuration, STOP, RESET and the stream's address.
+ * Routes of the system as a whole: status, metrics, the kernel's configuration, STOP, RESET and the stream's
+ * address.
  */
 #pragma once
 

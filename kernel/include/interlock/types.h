@@ -94,7 +94,7 @@ typedef struct {
   uint32_t heartbeat;          /**< of the last valid frame */
   uint32_t card_time_us;       /**< card's timestamp of the last valid reading, wrapping */
   uint32_t card_status;        /**< status word of the last valid frame */
-  uint32_t ticks_since_frame;  /**< ticks since the valid frame before this tick, saturating; 0 at the first one */
+  uint32_t ticks_since_frame;  /**< ticks since the valid frame before this, saturating; 0 at the first */
   uint32_t raw;                /**< counter of the last valid frame, wrapping */
   int32_t position_counts;     /**< saturating */
   int32_t delta_counts;        /**< motion seen by the last valid frame, in the sense of the position */
@@ -111,7 +111,7 @@ typedef struct {
   uint32_t reverse_mark_raw;   /**< farthest reading in `reverse_direction` */
   uint32_t reverse_direction;  /**< ilk_direction_t last driven */
   uint32_t drift_mark_raw;     /**< reading at which the axis had settled */
-  uint32_t undriven_ticks;     /**< ticks since the last driven one, with or without a frame, saturating at `settle_ticks` */
+  uint32_t undriven_ticks;     /**< ticks since the last driven one, frame or none, up to `settle_ticks` */
   uint32_t homing_phase;       /**< ilk_homing_phase_t */
   uint32_t homing_ticks;       /**< ticks left until homing times out */
   uint32_t homing_mark_raw;    /**< reading at which the phase began */

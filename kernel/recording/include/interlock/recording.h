@@ -34,8 +34,8 @@ typedef struct {
   ilk_outputs_t out;
 } ilk_picture_t;
 
-/** Words of the picture, two at a time; a whole number of 64 such pairs, the rest zero, so that the words that
- * say which of them changed are pairs, too. */
+/** Words of the picture, two at a time; a whole number of 64 such pairs, the rest zero, so that the words
+ * that say which of them changed are pairs, too. */
 #define ILK_PAIRS (((sizeof(ilk_picture_t) + 511u) / 512u) * 64u)
 #define ILK_CHANGED_WORDS (ILK_PAIRS / 32u)
 
