@@ -29,6 +29,16 @@ async function openPlots(robot: ConsolePage, page: Page, axis: string): Promise<
   await page.getByRole("combobox", { name: "Axis", exact: true }).selectOption(axis);
 }
 
+/** A capture has the second before its trigger only where the kernel has run for one. */
+async function secondOfTicks(page: Page): Promise<void> {
+  const newestTick = async (): Promise<number> => {
+    const answer = await page.request.get("/api/history?after=0");
+    const { last_tick: ticks } = (await answer.json()) as { last_tick: number[] };
+    return ticks.at(-1) ?? 0;
+  };
+  await expect.poll(newestTick, { timeout: moveTakes }).toBeGreaterThan(1000);
+}
+
 /** The rows of a file that the page made, by the names of its first line. */
 async function tableOf(download: Download): Promise<Record<string, number>[]> {
   const [head = "", ...lines] = readFileSync(await download.path(), "utf8")
@@ -44,7 +54,7 @@ test("a move is in the plots and in their table", async ({ robot, page }) => {
   await moveAndPlot(robot, page);
   for (const title of ["Position", "Error", "Velocity", "Drive"])
     await expect(chart(page, "Plots", title)).toBeVisible();
-  await expect(chart(page, "Plots", "Position")).toHaveAttribute("aria-label", /measured -\d/);
+  await expect(chart(page, "Plots", "Position")).toHaveAttribute("aria-label", /measured -[23]\./);
   await page.getByLabel("Last").selectOption("120");
   const downloaded = page.waitForEvent("download");
   await robot.panel("Plots").getByRole("button", { name: "CSV" }).click();
@@ -54,6 +64,22 @@ test("a move is in the plots and in their table", async ({ robot, page }) => {
   expect(rows.some((row) => (row["Drive: sent (words) least"] ?? 0) < 0)).toBe(true);
   const ticks = rows.map(({ tick }) => tick ?? 0);
   expect(ticks).toEqual([...ticks].sort((a, b) => a - b));
+});
+
+test("nothing is saved before the whole history is there", async ({ robot, page }) => {
+  const asked = "**/api/history*";
+  await page.route(asked, async (route) => {
+    const answer = await route.fetch();
+    await route.fulfill({ response: answer, json: { ...(await answer.json()), more: true } });
+  });
+  const answered = () => page.waitForResponse((answer) => answer.url().includes("/api/history"));
+  await openPlots(robot, page, "Yaw");
+  await answered();
+  await answered();
+  const save = robot.panel("Plots").getByRole("button", { name: "CSV" });
+  await expect(save).toBeDisabled();
+  await page.unroute(asked);
+  await expect(save).toBeEnabled();
 });
 
 test("pause and zoom hold the plots; a double click follows the robot again", async ({ robot, page }) => {
@@ -101,6 +127,7 @@ test("a trigger captures the ticks around it by itself", async ({ robot, page })
   const panel = robot.panel("Capture");
   const state = panel.getByRole("status", { name: "Capture state" });
   await expect(chart(page, "Plots", "Position")).toHaveAttribute("aria-label", /measured -?\d/);
+  await secondOfTicks(page);
   await panel.getByRole("combobox", { name: "Trigger", exact: true }).selectOption("Position");
   await panel.getByLabel("Trigger when").selectOption("below");
   await panel.getByLabel(/^Trigger level/).fill("-0.5");

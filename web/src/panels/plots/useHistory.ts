@@ -13,7 +13,10 @@ export interface History {
   readonly notice: Notice | null;
 }
 
-/** The history of all axes, for as long as the page is there and can be seen; what was missed is fetched then. */
+/**
+ * The history of all axes, for as long as the page is there and can be seen; what was missed is fetched then.
+ * Nothing is shown before the last answer of several is there: a file saved in between would end early.
+ */
 export function useHistory(): History {
   const [history, setHistory] = useState<Omit<History, "asked"> & { readonly answeredAtMs: number | null }>({
     rows: null,
@@ -29,7 +32,7 @@ export function useHistory(): History {
       if (gone) return;
       if (answer.ok) {
         rows = withAnswer(rows, answer.value);
-        setHistory({ rows, notice: null, answeredAtMs: performance.now() });
+        if (!answer.value.more) setHistory({ rows, notice: null, answeredAtMs: performance.now() });
       } else {
         const notice = noticeOfProblem(answer.problem);
         setHistory((former) => ({ ...former, notice }));
