@@ -268,10 +268,13 @@ uint32_t world_requests(world_t *world, const ilk_config_t *config, const ilk_st
 /** Any words, made to agree with each other where the kernel's own check asks for it. */
 static void any_axis(dice_t *dice, const ilk_axis_config_t *config, uint32_t mode, uint32_t tick,
                      ilk_axis_t *axis) {
+  const uint32_t wiring = axis->wiring;
   uint32_t *words = &axis->state;
   for (uint32_t word = 0u; word < (uint32_t)(sizeof(ilk_axis_t) / sizeof(uint32_t)); word++) {
     words[word] = dice_one_in(dice, 3u) ? dice_word(dice) : dice_below(dice, 60u);
   }
+  /* Another wiring than the configuration's locks at once, and nothing else of the state would matter. */
+  axis->wiring = dice_one_in(dice, 200u) ? dice_word(dice) : wiring;
   static const ilk_axis_state_t locked[2] = {ILK_AXIS_DISABLED, ILK_AXIS_FAULTED};
   static const ilk_axis_state_t ready[3] = {ILK_AXIS_DISABLED, ILK_AXIS_FAULTED, ILK_AXIS_ENABLED};
   axis->state = dice_below(dice, ILK_AXIS_COUNT);
