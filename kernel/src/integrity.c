@@ -345,6 +345,16 @@ static void remember_basis(ilk_state_t *state, const ilk_config_t *config) {
   }
 }
 
+/*@ requires valid: \valid(state) && \valid_read(config) && \separated(state, config);
+  @ assigns  state->pedal_channels, state->app_timeout_ticks, state->axis[0 .. ILK_SLOTS - 1];
+  @ ensures  P14_basis: basis_kept(config, state);
+  @ ensures  P14_blank: blank_axes(state);
+  @*/
+static void forget_axes_but_basis(ilk_state_t *state, const ilk_config_t *config) {
+  forget_axes(state);
+  remember_basis(state, config);
+}
+
 void ilk_state_rebuild(ilk_state_t *state, const ilk_config_t *config, ilk_cause_t cause, uint32_t value) {
   state->tick = 0u;
   state->mode = (uint32_t)ILK_MODE_LOCKED;
@@ -373,8 +383,10 @@ void ilk_state_rebuild(ilk_state_t *state, const ilk_config_t *config, ilk_cause
   state->requests_accepted = 0u;
   state->requests_refused = 0u;
   state->seal = 0u;
-  forget_axes(state);
-  remember_basis(state, config);
+  forget_axes_but_basis(state, config);
+  /*@ assert P15_system: sound_system(state); */
+  /*@ assert P15_axes: sound_axes(state); */
+  /*@ assert P15_mode: axes_fit_mode(state); */
 }
 
 /** A configuration that was not trusted becomes so by a whole pass that agrees and by being valid (P13). */

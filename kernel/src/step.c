@@ -30,6 +30,42 @@ static void check_state(const ilk_config_t *config, ilk_state_t *state) {
   }
 }
 
+/** A slice of the configuration, and what P1 to P3 rest on. */
+/*@ requires valid: \valid_read(config) && \valid(state) && \separated(config, state);
+  @ requires sound: sound_system(state) && sound_axes(state) && axes_fit_mode(state);
+  @ assigns  state->config_partial_crc, state->config_slice, state->config_sound;
+  @ ensures  P15_system: sound_system(state);
+  @ ensures  P15_axes: sound_axes(state);
+  @ ensures  P15_mode: axes_fit_mode(state);
+  @ ensures  P13_untrusted: \old(state->config_sound) == 0 && \old(state->config_slice) == 0 ==>
+  @   state->config_sound == 0;
+  @ ensures  P14_basis: !\old(basis_kept(config, state)) ==>
+  @   \result.damaged != 0 && state->config_sound == 0;
+  @*/
+static ilk_config_check_t check_configuration(const ilk_config_t *config, ilk_state_t *state) {
+  ilk_config_check_t check = ilk_config_check_slice(config, state);
+  /*@ assert P14_state: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+    @   state->axis[slot].wiring == \at(state->axis[slot].wiring, Pre); */
+  /*@ assert P14_card: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+    @   config->axis[slot].card == \at(config->axis[slot].card, Pre); */
+  /*@ assert P14_limit: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+    @   config->axis[slot].limit_side == \at(config->axis[slot].limit_side, Pre); */
+  /*@ assert P14_motor: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+    @   config->axis[slot].motor_direction == \at(config->axis[slot].motor_direction, Pre); */
+  /*@ assert P14_wiring: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
+    @   wiring(&config->axis[slot]) == \at(wiring(&config->axis[slot]), Pre); */
+  /*@ assert P14_words: config->pedal_channels == state->pedal_channels
+    @   ==> \at(config->pedal_channels, Pre) == \at(state->pedal_channels, Pre); */
+  /*@ assert P14_words: config->app_timeout_ticks == state->app_timeout_ticks
+    @   ==> \at(config->app_timeout_ticks, Pre) == \at(state->app_timeout_ticks, Pre); */
+  /*@ assert P14_slots: (\forall integer slot; 0 <= slot < ILK_SLOTS ==>
+    @   state->axis[slot].wiring == wiring(&config->axis[slot])) ==> (\forall integer slot; 0 <= slot < ILK_SLOTS
+    @   ==> \at(state->axis[slot].wiring, Pre) == \at(wiring(&config->axis[slot]), Pre)); */
+  /*@ assert P14_basis: basis_kept(config, state) ==> \at(basis_kept(config, state), Pre); */
+  check.damaged = !ilk_config_check_basis(config, state) || check.damaged;
+  return check;
+}
+
 /** Phase 1: state, a slice of the configuration, and what P1 to P3 rest on. Nothing else of a damaged state
    is looked at. */
 /*@ requires valid: \valid_read(config) && \valid(state) && \separated(config, state);
@@ -49,8 +85,7 @@ static ilk_config_check_t check_integrity(const ilk_config_t *config, ilk_state_
   ilk_config_check_t check = {.damaged = false, .crc = 0u};
   check_state(config, state);
   if (state->mode != (uint32_t)ILK_MODE_INIT) {
-    check = ilk_config_check_slice(config, state);
-    check.damaged = !ilk_config_check_basis(config, state) || check.damaged;
+    check = check_configuration(config, state);
   }
   return check;
 }

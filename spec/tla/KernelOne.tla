@@ -28,6 +28,9 @@ SmallAxis ==
     stall_min_counts |-> 1, reverse_counts |-> 1, drift_counts |-> 1,
     settle_ticks |-> 1, max_delta_counts |-> 1, required |-> TRUE ]
 
+(* Rest takes longer to tell: every count of ticks without drive is a state of its own. *)
+SettlingAxis == [SmallAxis EXCEPT !.settle_ticks = 2]
+
 (* For a lawful plant: it has room to coast. *)
 CoastingAxis ==
   [SmallAxis EXCEPT !.max_counts = 3, !.coast_counts = 2, !.max_drive = 1,
