@@ -869,10 +869,20 @@ void ilk_step(const ilk_config_t *config, ilk_state_t *state, const ilk_inputs_t
               const ilk_request_t requests[], uint32_t count, ilk_outputs_t *out) {
   const uint32_t taken = (count < (uint32_t)ILK_REQUESTS_PER_TICK) ? count : (uint32_t)ILK_REQUESTS_PER_TICK;
   const ilk_config_check_t check = check_integrity(config, state);
+  /*@ assert P14_basis: \at(state->mode, Pre) != ILK_MODE_INIT && !\at(basis_kept(config, state), Pre) ==>
+    @   state->mode != ILK_MODE_INIT && state->config_sound == 0
+    @   && ((state->mode == ILK_MODE_LOCKED && state->cause == ILK_CAUSE_INTEGRITY)
+    @       || (check.damaged != 0 && state->mode == \at(state->mode, Pre))); */
   if (state->mode != (uint32_t)ILK_MODE_INIT) {
     observe_and_decide(config, state, in, check);
   }
+  /*@ assert P14_basis: \at(state->mode, Pre) != ILK_MODE_INIT && !\at(basis_kept(config, state), Pre) ==>
+    @   state->mode == ILK_MODE_LOCKED && state->config_sound == 0
+    @   && (\at(state->mode, Pre) != ILK_MODE_LOCKED ==> state->cause == ILK_CAUSE_INTEGRITY); */
   answer_requests(config, state, requests, taken, out);
+  /*@ assert P14_basis: \at(state->mode, Pre) != ILK_MODE_INIT && !\at(basis_kept(config, state), Pre) ==>
+    @   state->mode == ILK_MODE_LOCKED && state->config_sound == 0
+    @   && (\at(state->mode, Pre) != ILK_MODE_LOCKED ==> state->cause == ILK_CAUSE_INTEGRITY); */
   drive_axes(config, state, out);
   publish(config, state, out);
 }
