@@ -881,7 +881,7 @@ void ilk_step(const ilk_config_t *config, ilk_state_t *state, const ilk_inputs_t
     @   && (\at(state->mode, Pre) != ILK_MODE_LOCKED ==> state->cause == ILK_CAUSE_INTEGRITY); */
   answer_requests(config, state, requests, taken, out);
   /*@ assert P14_basis: \at(state->mode, Pre) != ILK_MODE_INIT && !\at(basis_kept(config, state), Pre) ==>
-    @   state->mode == ILK_MODE_LOCKED && state->config_sound == 0
+    @   state->mode == ILK_MODE_LOCKED
     @   && (\at(state->mode, Pre) != ILK_MODE_LOCKED ==> state->cause == ILK_CAUSE_INTEGRITY); */
   drive_axes(config, state, out);
   publish(config, state, out);
