@@ -41,13 +41,13 @@ def figures_of(reports: list[phases.Report], found: int, steps: int) -> dict[str
     }
 
 
-def check_all(pool: ThreadPoolExecutor, names: list[str]) -> list[phases.Report]:
+def check_all(pool: ThreadPoolExecutor, names: list[str], failures: evidence.Failures) -> list[phases.Report]:
     """Looks at every phase and prints a line for each, and what differs."""
     reports = []
     for report in pool.map(phases.check, names):
         print(report.line(), flush=True)
         for fault in report.faults:
-            print(f"  {fault}", flush=True)
+            failures.tell(f"  {fault}")
         reports.append(report)
     return reports
 
@@ -55,13 +55,14 @@ def check_all(pool: ThreadPoolExecutor, names: list[str]) -> list[phases.Report]
 def rung(arguments: argparse.Namespace) -> int:
     """Runs the rung and writes its evidence."""
     started = time.monotonic()
+    failures = evidence.Failures("conformance")
     with ThreadPoolExecutor(int(os.environ.get("JOBS", "1"))) as pool:
         if arguments.only:
-            return 1 if any(report.faults for report in check_all(pool, arguments.only)) else 0
+            return 1 if any(report.faults for report in check_all(pool, arguments.only, failures)) else 0
         # Each a chain of its own, begun first so that the phases fill the other cores until the end.
         seeded = pool.submit(planted.check_all)
         traced = pool.submit(traces.check_all)
-        reports = check_all(pool, phases.names())
+        reports = check_all(pool, phases.names(), failures)
         found, unfound = seeded.result()
         steps, rejected = traced.result()
     if arguments.update:
@@ -70,7 +71,7 @@ def rung(arguments: argparse.Namespace) -> int:
     missed = phases.uncovered()
     faults = [*stale, *missed, *unfound, *rejected]
     for fault in faults:
-        print(fault, flush=True)
+        failures.tell(fault)
     figures = figures_of(reports, found, steps)
     print(", ".join(f"{name} {value}" for name, value in figures.items()))
     passed = not faults and figures["mismatches"] == 0

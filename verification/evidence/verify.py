@@ -185,7 +185,7 @@ def failures_of(result: Result) -> str:
 
 
 def climb(rungs: Sequence[Rung], fresh: bool, cores: int) -> list[Result]:
-    """Runs what must be run, saying of each how it ended when it does; the results have the order of the rungs."""
+    """Runs what must be run, and says of each how it ended when it does. The results are in the rungs' order."""
     results: dict[str, Result] = {}
     printing = threading.Lock()
     machine = Machine(cores, free_memory_gb())
