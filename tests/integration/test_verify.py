@@ -172,6 +172,10 @@ def test_a_failed_rung_is_never_kept(tree: Tree) -> None:
     [
         (("goals = 7", "goals = 7\n[rung.other]"), "[rung.other]: keys missing or unknown"),
         (("PASSED", "FINE"), "status 'FINE'; expected one of PASSED"),
+        (
+            ("cores = 1", 'cores = 1\nafter = ["later"]'),
+            "after 'later'; expected a rung that stands",
+        ),
         (("kernel/src/*", "kernel/nowhere/*"), "no file matches the input 'kernel/nowhere/*'"),
     ],
 )
@@ -183,6 +187,20 @@ def test_an_expectation_that_cannot_be_used_is_refused_by_name(
     assert done.returncode == 2
     assert message in done.stderr
     assert tree.runs() == 0
+
+
+def test_a_rung_waits_for_those_whose_files_it_reads(tree: Tree) -> None:
+    second = EXPECTED.replace("rung.proof", "rung.reader").replace("proof/run.py", "proof/reader.py")
+    tree.write(
+        "verification/expected.toml", EXPECTED + second.replace("cores = 1", 'cores = 1\nafter = ["proof"]')
+    )
+    tree.rung("PASSED", 7, 'time.sleep(0.5); open("build/left", "w").close()')
+    text = RUNG.format(status="PASSED", goals=7, more='open("build/left").close()')
+    tree.write("verification/proof/reader.py", text.replace('write("proof"', 'write("reader"'))
+    environment = os.environ | {"JOBS": "2"}
+    command = [sys.executable, "verification/evidence/verify.py", "--fresh"]
+    done = subprocess.run(command, cwd=tree.path, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_a_rung_that_there_is_not_is_refused_with_those_that_there_are(tree: Tree) -> None:

@@ -185,7 +185,7 @@ def failures_of(result: Result) -> str:
 
 
 def climb(rungs: Sequence[Rung], fresh: bool, cores: int) -> list[Result]:
-    """Runs what must be run, and says of each how it ended when it does. The results are in the rungs' order."""
+    """Runs what must be run, and says of each how it ended at once. The results keep the rungs' order."""
     results: dict[str, Result] = {}
     printing = threading.Lock()
     machine = Machine(cores, free_memory_gb())
@@ -195,16 +195,23 @@ def climb(rungs: Sequence[Rung], fresh: bool, cores: int) -> list[Result]:
             results[result.rung.name] = result
             print(progress(result), flush=True)
 
-    waiting = []
+    threads: dict[str, threading.Thread] = {}
+
+    def run_in_turn(rung: Rung) -> None:
+        for name in rung.after:
+            if name in threads:
+                threads[name].join()
+        note(machine.run(rung))
+
     for rung in rungs:
         kept = None if fresh else cached(rung)
         if kept:
             note(kept)
         else:
-            waiting.append(threading.Thread(target=lambda rung=rung: note(machine.run(rung))))
-    for thread in waiting:
+            threads[rung.name] = threading.Thread(target=run_in_turn, args=(rung,))
+    for thread in threads.values():
         thread.start()
-    for thread in waiting:
+    for thread in threads.values():
         thread.join()
     return [results[rung.name] for rung in rungs]
 
