@@ -4,6 +4,7 @@ import hashlib
 import re
 import time
 import tomllib
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -52,10 +53,17 @@ def names() -> list[str]:
     )
 
 
+def extended(module: Path) -> list[str]:
+    """The modules of the model that a module names as those it extends."""
+    named = re.search(r"^EXTENDS (.*)$", module.read_text("utf-8"), re.MULTILINE)
+    return [name for name in named[1].split(", ") if (TLA / f"{name}.tla").is_file()] if named else []
+
+
 def model_hash(phase: Phase, model: Path = TLA) -> str:
     """SHA-256 over the model's operators, the module that prints the rows, and the phase file."""
     digest = hashlib.sha256()
-    files = [model / "Types.tla", model / "System.tla", model / "Axis.tla"]
+    modules = ["Types", "System", "Axis", *extended(HERE / "rows" / f"{phase.rows}.tla")]
+    files = [model / f"{module}.tla" for module in dict.fromkeys(modules)]
     for path in [*files, HERE / "rows" / f"{phase.rows}.tla", HERE / "phases" / f"{phase.name}.toml"]:
         digest.update(path.read_bytes())
     return digest.hexdigest()
@@ -81,6 +89,23 @@ def build(phase: Phase, table: Table, folder: Path, kernel: Path, model: Path = 
     """Writes case.h and the rows, and compiles the native run."""
     write_case(phase, table, folder, model)
     compile_rows(folder, kernel, phase.includes)
+
+
+def are_current(phase: Phase, folder: Path) -> bool:
+    """Whether the rows in this folder are those of the model as it is, and the table's own."""
+    header, rows = folder / "case.h", folder / "rows.bin"
+    if not header.is_file() or not rows.is_file():
+        return False
+    text = header.read_text("utf-8")
+    return model_hash(phase) in text and hashlib.sha256(rows.read_bytes()).hexdigest() in text
+
+
+def print_missing(phase_names: Iterable[str]) -> None:
+    """Lets TLC print the rows of these phases where they are missing or older than the model."""
+    for name in phase_names:
+        phase, folder = load_phase(HERE / "phases" / f"{name}.toml"), OUTPUT / name
+        if not are_current(phase, folder):
+            write_case(phase, table_of(phase, folder), folder)
 
 
 def explain(table: Table, line: str) -> str:

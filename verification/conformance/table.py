@@ -123,6 +123,14 @@ class Table:
         return hashlib.sha256(self.packed()).hexdigest()
 
 
+def unpacked(phase: Phase, data: bytes) -> Table:
+    """The table of packed rows."""
+    width = len(phase.inputs)
+    words = struct.iter_unpack(f"<{width + len(phase.outputs)}i", data)
+    rows = [(row[:width], row[width:]) for row in words]
+    return Table(phase, rows, [sorted(set(column_)) for column_ in zip(*(row[0] for row in rows), strict=True)])
+
+
 class Codes(dict[str, int]):
     """The codes of the tokens that a column has shown so far."""
 
