@@ -9,7 +9,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import page
-from catalog import families
 from emit import case_header
 from table import Phase, Table, TableError, load_phase, read_rows
 from tools import HERE, ROOT, TLA, ToolError, cbmc, compile_rows, run, tlc
@@ -174,15 +173,20 @@ def check(name: str) -> Report:
 
 
 def write_manifest(reports: list[Report]) -> None:
-    """Writes what the tables are, to be committed with the model."""
+    """Writes what the tables are, to be committed with the model. Phases without a report stay as they are."""
+    told = tomllib.loads(MANIFEST.read_text("utf-8"))
+    told |= {
+        report.name: {"model": report.model, "rows": report.rows, "table": report.table} for report in reports
+    }
     lines = ["# What the model says of each phase: written by run.py --update, compared on every run."]
-    for report in sorted(reports, key=lambda each: each.name):
+    for name in sorted(told.keys() & set(names())):
+        entry = told[name]
         lines += [
             "",
-            f"[{report.name}]",
-            f'model = "{report.model}"',
-            f"rows = {report.rows}",
-            f'table = "{report.table}"',
+            f"[{name}]",
+            f'model = "{entry["model"]}"',
+            f"rows = {entry['rows']}",
+            f'table = "{entry["table"]}"',
         ]
     MANIFEST.write_text("\n".join(lines) + "\n", "utf-8")
 
@@ -200,13 +204,3 @@ def against_manifest(reports: list[Report], only: str = "") -> list[str]:
         f"manifest.toml is stale or edited by hand at {name}; run.py --update writes it anew"
         for name in different
     ]
-
-
-def uncovered() -> list[str]:
-    """Kinds of requests that no table judges or applies."""
-    kinds = families()["request"]
-    faults = []
-    for part in ("judge", "apply"):
-        told = {kind for path in (HERE / "phases").glob(f"{part}_*.toml") for kind in load_phase(path).kinds}
-        faults += [f"no table of part {part} covers the request {kind}" for kind in kinds if kind not in told]
-    return faults

@@ -128,7 +128,9 @@ def unpacked(phase: Phase, data: bytes) -> Table:
     width = len(phase.inputs)
     words = struct.iter_unpack(f"<{width + len(phase.outputs)}i", data)
     rows = [(row[:width], row[width:]) for row in words]
-    return Table(phase, rows, [sorted(set(column_)) for column_ in zip(*(row[0] for row in rows), strict=True)])
+    return Table(
+        phase, rows, [sorted(set(column_)) for column_ in zip(*(row[0] for row in rows), strict=True)]
+    )
 
 
 class Codes(dict[str, int]):

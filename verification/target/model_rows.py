@@ -67,7 +67,9 @@ def compare(machine: Machine, phase: Phase, folder: Path, flags: Sequence[str]) 
     expected = len(data) // (4 * (len(phase.inputs) + len(phase.outputs)))
     end = END.search(text)
     if end is None or int(end[1]) != expected:
-        raise TargetError(f"{machine.name} did not come to the end of the rows of {phase.name}:\n{text[-2000:]}")
+        raise TargetError(
+            f"{machine.name} did not come to the end of the rows of {phase.name}:\n{text[-2000:]}"
+        )
     differing = int(end[2])
     told = phases.differences(unpacked(phase, data), text, folder) if differing else []
     return Compared(expected, differing, tuple(f"{machine.name}: {line}" for line in told))
