@@ -63,8 +63,8 @@ def all_phases() -> list[Phase]:
 def unknown_evidence(shown_by: str) -> str:
     """What is wrong with a name of what shows an operator; empty when there is such evidence.
 
-    `cbmc NAME` is a proof of verification/cbmc, `wp FUNCTION` a function whose contract is proved, `table NAME`
-    a phase, `traces` the runs that the model accepts.
+    `cbmc NAME` is a proof of verification/cbmc, `wp FUNCTION` a function whose contract is proved,
+    `table NAME` a phase, `traces` the runs that the model accepts.
     """
     rung, _, part = shown_by.partition(" ")
     contracts = json.loads((ROOT / "verification/frama-c/expected.json").read_text("utf-8"))

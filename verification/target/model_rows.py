@@ -10,14 +10,14 @@ from pathlib import Path
 
 from build import BUILD, JOBS, ROOT, Machine, TargetError, run
 
-CONFORMANCE = ROOT / "verification/conformance"
-sys.path.append(str(CONFORMANCE))
+sys.path.append(str(ROOT / "verification/conformance"))
 
 import phases
 from planted import planted_copy
 from table import Phase, TableError, load_phase, unpacked
 from tools import ToolError
 
+CONFORMANCE = phases.HERE
 PLANTED = CONFORMANCE / "planted/kernel_lease_stops_at_one.toml"
 END = re.compile(r"^ROWS (\d+) DIFFERENCES (\d+)$", re.MULTILINE)
 
