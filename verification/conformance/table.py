@@ -47,7 +47,7 @@ class Phase:
 
     stands_in: list[str] = field(default_factory=list)
     kinds: list[str] = field(default_factory=list)
-    rows_only: str = ""
+    solver: str = ""
     parameters: dict[str, int] = field(default_factory=dict)
 
     def model_constants(self) -> dict[str, int]:

@@ -100,13 +100,14 @@ SEARCHED_AS_THEY_ARE = {"apply_axis", "gate_front", "judge_door", "judge_system"
 """Phases whose formulas MiniSat answers sooner than it simplifies them: two to twenty times."""
 
 
-def cbmc(case: Path, kernel: Path, included: Sequence[str]) -> Proof:
-    """Proves a case. Raises ToolError."""
+def cbmc(case: Path, kernel: Path, included: Sequence[str], solver: str = "") -> Proof:
+    """Proves a case, with the built-in solver or with another. Raises ToolError."""
     log = case / "cbmc.log"
     sources = kernel_sources(kernel, included)
     flags = [f"-I{case}", f"-I{kernel}/include", f"-I{kernel}/src", "-DILK_FRAME_WORDS=32", "--slice-formula"]
     flags += ["--no-standard-checks", "--unwinding-assertions", "--drop-unused-functions"]
     flags += ["--no-sat-preprocessor"] if case.name in SEARCHED_AS_THEY_ARE else []
+    flags += [f"--{solver}"] if solver else []
     command = [str(PROVERS / "bin" / "cbmc"), *flags, str(HERE / "prove.c"), *sources]
     status, text = run(command, log, ROOT, CBMC_SECONDS)
     results = list(RESULT.finditer(text))
