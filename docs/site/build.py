@@ -3,8 +3,8 @@
 
 Doxygen reads kernel and app; Sphinx makes one site with search from docs/, the HTTP reference of
 spec/openapi.yaml, the record of MISRA deviations and the items that Doxygen found. The report of
-`make report` is put beside them where it was made. Exits 1, and says why, for a public item without a word, a link that leads nowhere, or anything that
-either program warns of; 2 when it cannot run.
+`make report` is put beside them where it was made. Exits 1, and says why, for a public item without a word,
+a link that leads nowhere, or anything that either program warns of; 2 when it cannot run.
 """
 
 import re

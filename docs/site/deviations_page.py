@@ -9,8 +9,8 @@ KINDS = (
     (
         "deviation",
         "Deviations",
-        "Findings that stay, each with its reason. The core, `kernel/src` and `kernel/include`, has none. One finding"
-        " more or less than its record accepts fails the rung `misra`.",
+        "Findings that stay, each with its reason. The core, `kernel/src` and `kernel/include`, has none."
+        " One finding more or less than its record accepts fails the rung `misra`.",
         ("rule", "category", "sites", "files", "reason"),
     ),
     (
@@ -39,8 +39,8 @@ def deviations_page(text: str) -> str:
     records: Mapping[str, Sequence[Mapping[str, object]]] = tomllib.loads(text)
     parts = [
         "# Deviations from MISRA C:2012",
-        "Numbers are those of MISRA C:2012 with Amendments 1 and 2, whose texts are licensed and not repeated. How each"
-        " guideline is enforced, and which proofs stand for those that no checker decides, is in the"
+        "Numbers are those of MISRA C:2012 with Amendments 1 and 2; their texts are licensed, not repeated."
+        " How each guideline is enforced, and which proofs stand for those that no checker decides, is in the"
         " [enforcement plan](tree/verification/misra/enforcement.md); the source of this page is"
         " `verification/misra/deviations.toml`, which the rung `misra` checks on every run.",
     ]

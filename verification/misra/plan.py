@@ -36,6 +36,7 @@ RUNNERS = {
 }
 """Rungs that discharge what no checker can decide."""
 
+ROW = re.compile(r"\| (D?\d+\.\d+) \| (mandatory|required|advisory) \| ([^|]+) \| ([^|]+) \|")
 METHOD = re.compile(
     r"cppcheck|gcc -W[\w=-]+|clang-tidy [\w-]+|scan [\w-]+|proof (?P<rung>\w+)|by \d+\.\d+|build|review"
     r"|deviation|disapplied"
