@@ -24,9 +24,10 @@ web_sources = $(shell find web kernel/src kernel/include spec/openapi.yaml -name
 help: ## List the targets
 	@sed -nE 's/^([a-z-]+):.*## (.*)/\1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 18
 
+# Asked for by name it brings the provers, too; as what a build rests on it does without.
 .PHONY: setup
-setup: ## Install what is missing: Debian packages, Python environment, Node, node modules, Ruckig
-	@$(setup) packages python libraries web
+setup: ## Install what is missing: Debian packages, Python environment, Node, node modules, Ruckig, provers
+	@$(setup) packages python libraries web $(if $(filter setup,$(MAKECMDGOALS)),provers)
 
 .PHONY: generate
 generate: ## Write the tables that come from spec/catalog.toml

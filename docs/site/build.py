@@ -2,9 +2,9 @@
 """Writes the documentation site of this tree to build/docs/site. Usage: build.py
 
 Doxygen reads kernel and app; Sphinx makes one site with search from docs/, the HTTP reference of
-spec/openapi.yaml and the items that Doxygen found. The report of `make report` is put beside them where it
-was made. Exits 1, and says why, for a public item without a word, a link that leads nowhere, or anything that
-either program warns of; 2 when it cannot run.
+spec/openapi.yaml, the record of MISRA deviations and the items that Doxygen found. The report of
+`make report` is put beside them where it was made. Exits 1, and says why, for a public item without a word,
+a link that leads nowhere, or anything that either program warns of; 2 when it cannot run.
 """
 
 import re
@@ -18,6 +18,7 @@ import yaml
 sys.path.append(str(Path(__file__).resolve().parents[2] / "verification/evidence"))
 
 import code_pages
+import deviations_page
 import documented
 import evidence
 import http_page
@@ -69,6 +70,7 @@ def stage(root: Path, source: Path, found: list[code_pages.Entry]) -> None:
     (source / "decisions/index.md").write_text(
         f"# Decisions\n\n```{{toctree}}\n:maxdepth: 1\n\n{listed}\n```\n", "utf-8"
     )
+    staging.add(Path("verification/misra/enforcement.md"))
     for picture in sorted((root / "docs/images").iterdir()):
         staging.add(picture.relative_to(root))
     others = sorted(path.relative_to(source).with_suffix("") for path in source.glob("tree/**/*.md"))
@@ -76,6 +78,8 @@ def stage(root: Path, source: Path, found: list[code_pages.Entry]) -> None:
     (source / "index.md").write_text(index, "utf-8")
     document = yaml.safe_load((root / "spec/openapi.yaml").read_text("utf-8"))
     (source / "http.md").write_text(http_page.http_page(document), "utf-8")
+    records = (root / "verification/misra/deviations.toml").read_text("utf-8")
+    (source / "deviations.md").write_text(deviations_page.deviations_page(records), "utf-8")
     for name, text in code_pages.pages(found).items():
         (source / "code" / name).write_text(text, "utf-8")
 

@@ -2,6 +2,7 @@
 
 import re
 import sys
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,6 +14,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs/site"))
 import code_pages
 import documented
 import http_page
+from deviations_page import deviations_page
+from http_page import cell
 from report_copy import copy_report
 from staging import Staging
 
@@ -145,3 +148,13 @@ def test_every_file_that_doxygen_is_given_is_there() -> None:
 def test_every_document_has_a_place_on_the_site() -> None:
     index = (ROOT / "docs/site/index.md").read_text("utf-8").split()
     assert {path.stem for path in (ROOT / "docs").glob("*.md")} <= set(index)
+
+
+def test_every_recorded_deviation_is_on_the_site_with_its_reason() -> None:
+    text = (ROOT / "verification/misra/deviations.toml").read_text("utf-8")
+    page = deviations_page(text)
+    for kind, records in tomllib.loads(text).items():
+        for record in records:
+            row = next(line for line in page.splitlines() if cell(record["reason"]) in line)
+            assert row.startswith(f"| {record['rule']} |"), kind
+            assert all(file in row for file in record["files"])

@@ -21,6 +21,7 @@ import evidence
 with open("build/runs", "a") as runs:
     runs.write("x")
 print("what the tool said")
+{more}
 figures = {{"goals": {goals}}}
 sys.exit(evidence.write("proof", "{status}", {{"prover": "1.0"}}, figures, ["P1"], time.monotonic()))
 """
@@ -57,8 +58,8 @@ class Tree:
         (self.path / name).parent.mkdir(parents=True, exist_ok=True)
         (self.path / name).write_text(text, "utf-8")
 
-    def rung(self, status: str, goals: int) -> None:
-        self.write("verification/proof/run.py", RUNG.format(status=status, goals=goals))
+    def rung(self, status: str, goals: int, more: str = "") -> None:
+        self.write("verification/proof/run.py", RUNG.format(status=status, goals=goals, more=more))
 
     def verify(self, *arguments: str) -> subprocess.CompletedProcess[str]:
         command = [sys.executable, "verification/evidence/verify.py", *arguments]
@@ -103,6 +104,43 @@ def test_a_rung_that_shows_anything_else_fails_and_says_what(
     assert "what the tool said" in done.stdout
 
 
+def test_a_failure_is_shown_in_the_rungs_own_words_however_long_its_log(tree: Tree) -> None:
+    tell = 'failures = evidence.Failures("proof")\nfailures.tell("P1_gate broken\\n  tick 1: pedal RELEASED")'
+    tree.rung("FAILED", 7, f"{tell}\nprint('noise\\n' * 1000)")
+    done = tree.verify()
+    shown = done.stdout.split("--- proof: what it found wrong")[1]
+    assert "P1_gate broken\n  tick 1: pedal RELEASED\n" in shown
+    assert "noise" not in shown
+    assert (tree.path / "build/evidence/proof/failures.txt").is_file()
+
+
+def test_failures_are_shown_within_a_bound_and_never_those_of_an_earlier_run(tree: Tree) -> None:
+    many = 'evidence.Failures("proof").tell("\\n".join(f"row {row} differs" for row in range(2000)))'
+    tree.rung("FAILED", 7, many)
+    done = tree.verify()
+    assert "row 499 differs" in done.stdout
+    assert "row 500 differs" not in done.stdout
+    assert "... 1500 more lines in build/evidence/proof/failures.txt" in done.stdout
+    tree.write("verification/proof/run.py", "raise SystemExit('out of memory')\n")
+    done = tree.verify()
+    assert "differs" not in done.stdout
+    assert "out of memory" in done.stdout
+
+
+def test_the_table_stands_whole_at_the_end(tree: Tree) -> None:
+    second = EXPECTED.replace("rung.proof", "rung.second").replace("proof/run.py", "proof/second.py")
+    tree.write("verification/expected.toml", EXPECTED + second)
+    text = RUNG.format(status="FAILED", goals=6, more="")
+    tree.write("verification/proof/second.py", text.replace('write("proof"', 'write("second"'))
+    done = tree.verify()
+    table = done.stdout[done.stdout.index("rung  ") :].splitlines()
+    assert [line.split()[:2] for line in table[1:3]] == [["proof", "PASSED"], ["second", "FAILED"]]
+    assert all("goals=" in line and line.endswith("prover 1.0") for line in table[1:3])
+    assert "status FAILED, expected PASSED" in table[3]
+    assert table[-1].startswith("1 of 2 rungs as expected in ")
+    assert "what the tool said" not in "\n".join(table)
+
+
 def test_evidence_of_an_earlier_run_does_not_stand_in_for_a_rung_that_dies(tree: Tree) -> None:
     assert tree.verify().returncode == 0
     tree.write("verification/proof/run.py", "raise SystemExit(0)\n")
@@ -134,6 +172,10 @@ def test_a_failed_rung_is_never_kept(tree: Tree) -> None:
     [
         (("goals = 7", "goals = 7\n[rung.other]"), "[rung.other]: keys missing or unknown"),
         (("PASSED", "FINE"), "status 'FINE'; expected one of PASSED"),
+        (
+            ("cores = 1", 'cores = 1\nafter = ["later"]'),
+            "after 'later'; expected a rung that stands",
+        ),
         (("kernel/src/*", "kernel/nowhere/*"), "no file matches the input 'kernel/nowhere/*'"),
     ],
 )
@@ -145,6 +187,20 @@ def test_an_expectation_that_cannot_be_used_is_refused_by_name(
     assert done.returncode == 2
     assert message in done.stderr
     assert tree.runs() == 0
+
+
+def test_a_rung_waits_for_those_whose_files_it_reads(tree: Tree) -> None:
+    second = EXPECTED.replace("rung.proof", "rung.reader").replace("proof/run.py", "proof/reader.py")
+    tree.write(
+        "verification/expected.toml", EXPECTED + second.replace("cores = 1", 'cores = 1\nafter = ["proof"]')
+    )
+    tree.rung("PASSED", 7, 'time.sleep(0.5); open("build/left", "w").close()')
+    text = RUNG.format(status="PASSED", goals=7, more='open("build/left").close()')
+    tree.write("verification/proof/reader.py", text.replace('write("proof"', 'write("reader"'))
+    environment = os.environ | {"JOBS": "2"}
+    command = [sys.executable, "verification/evidence/verify.py", "--fresh"]
+    done = subprocess.run(command, cwd=tree.path, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_a_rung_that_there_is_not_is_refused_with_those_that_there_are(tree: Tree) -> None:

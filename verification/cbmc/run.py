@@ -33,28 +33,30 @@ def prove(proof: Proof, pool: ThreadPoolExecutor, logs: Path) -> tuple[Future, F
     )
 
 
-def report(proof: Proof, outcome: Outcome, logs: Path) -> None:
+def report(proof: Proof, outcome: Outcome, logs: Path, failures: evidence.Failures) -> None:
     """One line for a proof that came out as expected; what is wrong, and a counterexample, for another."""
     print(
         f"{outcome.status:8} {proof.name:20} {outcome.properties:5} properties"
         f" {outcome.covered:3}/{outcome.goals:<3} goals {outcome.seconds:7.1f} s",
         flush=True,
     )
+    if outcome.status != "PASSED":
+        failures.tell(f"{proof.name}, {outcome.status}; it shows: {proof.proves}")
     for remark in outcome.remarks:
-        print(f"    {remark}")
+        failures.tell(f"    {remark}")
     for failed in outcome.failed[:3]:
-        print(describe(proof, failed, prover.trace(proof, failed.name, logs / proof.name)))
+        failures.tell(describe(proof, failed, prover.trace(proof, failed.name, logs / proof.name)))
 
 
 def run(proofs: Sequence[Proof], logs: Path) -> list[Outcome]:
     """Runs the proofs, the longest first, on as many cores as JOBS says."""
     longest_first = sorted(proofs, key=lambda proof: proof.seconds, reverse=True)
-    outcomes = []
+    outcomes, failures = [], evidence.Failures("cbmc")
     with ThreadPoolExecutor(max_workers=int(os.environ.get("JOBS", "1"))) as pool:
         started = [(proof, *prove(proof, pool, logs)) for proof in longest_first]
         for proof, properties, goals in started:
             outcomes.append(judge(proof, properties.result(), goals.result()))
-            report(proof, outcomes[-1], logs)
+            report(proof, outcomes[-1], logs, failures)
     return outcomes
 
 

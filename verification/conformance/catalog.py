@@ -13,6 +13,8 @@ UNKNOWN_REQUEST = {"NONSENSE": 99}
 """Any kind of request that there is not."""
 CONTACT = {"OPEN": 0, "CLOSED": 1, "INVALID": 2}
 """What the model calls a contact; any word beyond 1 reads as INVALID."""
+PASS = {"NONE": 0, "AGREES": 1, "DIFFERS": 2, "INVALID": 3}
+"""What the model calls what the running check of the configuration finds in a tick."""
 FLAG = {"FALSE": 0, "TRUE": 1}
 
 
@@ -29,7 +31,8 @@ def families() -> dict[str, dict[str, int]]:
 class Kind:
     """How a column's tokens in the model relate to a word of the kernel.
 
-    `spelling` names a family of the catalog, or one of `flag` (any word but 0 is TRUE), `contact`, `number`,
+    `spelling` names a family of the catalog, or one of `flag` (any word but 0 is TRUE), `contact`, `frame`,
+    `door`, `pass` (the tables above), `number`,
     `cap:N` (unsigned; N stands for every value from N on), `clamp:LOW:HIGH` (signed; an end stands for all
     values beyond it), `within` (signed; only the model's range is looked at), `bit:N` (one bit of a word).
     """
@@ -37,7 +40,7 @@ class Kind:
     def __init__(self, spelling: str, names: dict[str, dict[str, int]]) -> None:
         self.name, _, argument = spelling.partition(":")
         self.argument = argument
-        special = {"flag": FLAG, "bit": FLAG, "contact": CONTACT, "frame": FRAME, "door": DOOR}
+        special = {"flag": FLAG, "bit": FLAG, "contact": CONTACT, "frame": FRAME, "door": DOOR, "pass": PASS}
         self.codes = special.get(self.name) or names.get(self.name) or {}
         if self.name == "request":
             self.codes = self.codes | UNKNOWN_REQUEST

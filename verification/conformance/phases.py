@@ -4,11 +4,11 @@ import hashlib
 import re
 import time
 import tomllib
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import page
-from catalog import families
 from emit import case_header
 from table import Phase, Table, TableError, load_phase, read_rows
 from tools import HERE, ROOT, TLA, ToolError, cbmc, compile_rows, run, tlc
@@ -52,10 +52,17 @@ def names() -> list[str]:
     )
 
 
+def extended(module: Path) -> list[str]:
+    """The modules of the model that a module names as those it extends."""
+    named = re.search(r"^EXTENDS (.*)$", module.read_text("utf-8"), re.MULTILINE)
+    return [name for name in named[1].split(", ") if (TLA / f"{name}.tla").is_file()] if named else []
+
+
 def model_hash(phase: Phase, model: Path = TLA) -> str:
     """SHA-256 over the model's operators, the module that prints the rows, and the phase file."""
     digest = hashlib.sha256()
-    files = [model / "Types.tla", model / "System.tla", model / "Axis.tla"]
+    modules = ["Types", "System", "Axis", *extended(HERE / "rows" / f"{phase.rows}.tla")]
+    files = [model / f"{module}.tla" for module in dict.fromkeys(modules)]
     for path in [*files, HERE / "rows" / f"{phase.rows}.tla", HERE / "phases" / f"{phase.name}.toml"]:
         digest.update(path.read_bytes())
     return digest.hexdigest()
@@ -81,6 +88,23 @@ def build(phase: Phase, table: Table, folder: Path, kernel: Path, model: Path = 
     """Writes case.h and the rows, and compiles the native run."""
     write_case(phase, table, folder, model)
     compile_rows(folder, kernel, phase.includes)
+
+
+def are_current(phase: Phase, folder: Path) -> bool:
+    """Whether the rows in this folder are those of the model as it is, and the table's own."""
+    header, rows = folder / "case.h", folder / "rows.bin"
+    if not header.is_file() or not rows.is_file():
+        return False
+    text = header.read_text("utf-8")
+    return model_hash(phase) in text and hashlib.sha256(rows.read_bytes()).hexdigest() in text
+
+
+def print_missing(phase_names: Iterable[str]) -> None:
+    """Lets TLC print the rows of these phases where they are missing or older than the model."""
+    for name in phase_names:
+        phase, folder = load_phase(HERE / "phases" / f"{name}.toml"), OUTPUT / name
+        if not are_current(phase, folder):
+            write_case(phase, table_of(phase, folder), folder)
 
 
 def explain(table: Table, line: str) -> str:
@@ -114,7 +138,7 @@ def differences(table: Table, text: str, folder: Path) -> list[str]:
 
 def prove(phase: Phase, folder: Path, kernel: Path, report: Report) -> None:
     """The proof; what failed, with the case in which it did."""
-    proof = cbmc(folder, kernel, [*phase.includes, *phase.stands_in])
+    proof = cbmc(folder, kernel, [*phase.includes, *phase.stands_in], phase.solver)
     report.proved, report.reached = len(proof.proved), proof.reached
     report.proved_rows = 0 if proof.failed else report.rows
     case = ", ".join(
@@ -140,8 +164,7 @@ def check(name: str) -> Report:
             text = page.run_rows(phase, table, folder / "rows.bin", report.model)
             report.faults += [f"in the page: {fault}" for fault in differences(table, text, folder / "page")]
             report.page_rows = report.rows
-        if not phase.rows_only:
-            prove(phase, folder, KERNEL, report)
+        prove(phase, folder, KERNEL, report)
     except (TableError, ToolError) as error:
         report.faults.append(str(error))
     report.seconds = time.monotonic() - started
@@ -149,15 +172,20 @@ def check(name: str) -> Report:
 
 
 def write_manifest(reports: list[Report]) -> None:
-    """Writes what the tables are, to be committed with the model."""
+    """Writes what the tables are, to be committed with the model. Other phases stay as they are."""
+    told = tomllib.loads(MANIFEST.read_text("utf-8"))
+    told |= {
+        report.name: {"model": report.model, "rows": report.rows, "table": report.table} for report in reports
+    }
     lines = ["# What the model says of each phase: written by run.py --update, compared on every run."]
-    for report in sorted(reports, key=lambda each: each.name):
+    for name in sorted(told.keys() & set(names())):
+        entry = told[name]
         lines += [
             "",
-            f"[{report.name}]",
-            f'model = "{report.model}"',
-            f"rows = {report.rows}",
-            f'table = "{report.table}"',
+            f"[{name}]",
+            f'model = "{entry["model"]}"',
+            f"rows = {entry['rows']}",
+            f'table = "{entry["table"]}"',
         ]
     MANIFEST.write_text("\n".join(lines) + "\n", "utf-8")
 
@@ -175,13 +203,3 @@ def against_manifest(reports: list[Report], only: str = "") -> list[str]:
         f"manifest.toml is stale or edited by hand at {name}; run.py --update writes it anew"
         for name in different
     ]
-
-
-def uncovered() -> list[str]:
-    """Kinds of requests that no table judges or applies."""
-    kinds = families()["request"]
-    faults = []
-    for part in ("judge", "apply"):
-        told = {kind for path in (HERE / "phases").glob(f"{part}_*.toml") for kind in load_phase(path).kinds}
-        faults += [f"no table of part {part} covers the request {kind}" for kind in kinds if kind not in told]
-    return faults

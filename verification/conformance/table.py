@@ -47,7 +47,7 @@ class Phase:
 
     stands_in: list[str] = field(default_factory=list)
     kinds: list[str] = field(default_factory=list)
-    rows_only: str = ""
+    solver: str = ""
     parameters: dict[str, int] = field(default_factory=dict)
 
     def model_constants(self) -> dict[str, int]:
@@ -121,6 +121,16 @@ class Table:
     def digest(self) -> str:
         """SHA-256 over the packed rows."""
         return hashlib.sha256(self.packed()).hexdigest()
+
+
+def unpacked(phase: Phase, data: bytes) -> Table:
+    """The table of packed rows."""
+    width = len(phase.inputs)
+    words = struct.iter_unpack(f"<{width + len(phase.outputs)}i", data)
+    rows = [(row[:width], row[width:]) for row in words]
+    return Table(
+        phase, rows, [sorted(set(column_)) for column_ in zip(*(row[0] for row in rows), strict=True)]
+    )
 
 
 class Codes(dict[str, int]):

@@ -100,18 +100,20 @@ SEARCHED_AS_THEY_ARE = {"apply_axis", "gate_front", "judge_door", "judge_system"
 """Phases whose formulas MiniSat answers sooner than it simplifies them: two to twenty times."""
 
 
-def cbmc(case: Path, kernel: Path, included: Sequence[str]) -> Proof:
-    """Proves a case. Raises ToolError."""
+def cbmc(case: Path, kernel: Path, included: Sequence[str], solver: str = "") -> Proof:
+    """Proves a case, with the built-in solver or with another. Raises ToolError."""
     log = case / "cbmc.log"
     sources = kernel_sources(kernel, included)
     flags = [f"-I{case}", f"-I{kernel}/include", f"-I{kernel}/src", "-DILK_FRAME_WORDS=32", "--slice-formula"]
     flags += ["--no-standard-checks", "--unwinding-assertions", "--drop-unused-functions"]
     flags += ["--no-sat-preprocessor"] if case.name in SEARCHED_AS_THEY_ARE else []
-    command = [str(PROVERS / "bin" / "cbmc"), *flags, str(HERE / "prove.c"), *sources]
-    status, text = run(command, log, ROOT, CBMC_SECONDS)
-    results = list(RESULT.finditer(text))
-    if status not in (0, 10) or not results:
-        raise ToolError(f"CBMC gave no result for {case.name} (status {status}); log {log}")
+    goals = [str(PROVERS / "bin" / "cbmc"), *flags, str(HERE / "prove.c"), *sources]
+    command = [*goals, f"--{solver}"] if solver else goals
+    # Another solver proves; that an answer occurs MiniSat finds sooner.
+    asked = [(command, log)]
+    if solver:
+        asked = [([*command, "-DWITHOUT_GOALS"], log), ([*goals, "-DGOALS_ALONE"], case / "goals.log")]
+    results = [result for one, log_of_one in asked for result in answers(one, log_of_one)]
     proof = Proof()
     for result in results:
         holds = result["answer"] == "SUCCESS"
@@ -127,6 +129,15 @@ def cbmc(case: Path, kernel: Path, included: Sequence[str]) -> Proof:
         )
         proof.case = counterexample(text, proof.failed[0])
     return proof
+
+
+def answers(command: list[str], log: Path) -> list[re.Match[str]]:
+    """What CBMC says of each assertion. Raises ToolError when it says nothing."""
+    status, text = run(command, log, ROOT, CBMC_SECONDS)
+    results = list(RESULT.finditer(text))
+    if status not in (0, 10) or not results:
+        raise ToolError(f"CBMC gave no result (status {status}); log {log}")
+    return results
 
 
 def counterexample(text: str, assertion: str) -> list[int]:

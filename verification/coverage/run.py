@@ -46,7 +46,7 @@ def main() -> int:
     try:
         measured = [measure(words) for words in FRAME_WORDS]
     except BuildError as error:
-        print(f"coverage: {error}")
+        evidence.Failures("coverage").tell(f"coverage: {error}")
         return evidence.write("coverage", "UNKNOWN", tools, {}, PROPERTIES, started)
     sources = [path for path in (ROOT / "kernel/src").glob("*.[ch]")]
     wanted = operators(sources)
@@ -63,7 +63,9 @@ def main() -> int:
         figures[f"{name}_pct"] = min(percent(*count) for count in counts)
         figures[f"{name}s" if name != "branch" else "branches"] = counts[0][1]
     figures["mcdc_conditions"] = figures.pop("mcdcs")
-    print("\n".join(faults + vacuous))
+    failures = evidence.Failures("coverage")
+    for failure in (*faults, *vacuous):
+        failures.tell(failure)
     status = "FAILED" if faults else "VACUOUS" if vacuous else "PASSED"
     return evidence.write("coverage", status, tools, figures, PROPERTIES, started)
 

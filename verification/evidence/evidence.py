@@ -22,6 +22,30 @@ def log_directory(rung: str) -> Path:
     return directory
 
 
+class Failures:
+    """What a rung found wrong, in the project's terms, kept in build/evidence/RUNG/failures.txt.
+
+    A rung's log may be long; what `make verify` shows of a rung that failed is this file. One for each run
+    of a rung: it begins empty.
+    """
+
+    def __init__(self, rung: str) -> None:
+        self.path = failures_file(rung)
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        self.path.unlink(missing_ok=True)
+
+    def tell(self, text: str) -> None:
+        """Prints a failure, of one line or several, and keeps it."""
+        print(text, flush=True)
+        with self.path.open("a", encoding="utf-8") as file:
+            file.write(text.rstrip("\n") + "\n")
+
+
+def failures_file(rung: str) -> Path:
+    """Where a rung keeps its failures; there is none when it told none."""
+    return EVIDENCE / rung / "failures.txt"
+
+
 def commit() -> str:
     """The commit that the sources are at, with `+changes` when they differ from it."""
 

@@ -11,6 +11,7 @@ from evidence import ROOT, STATUSES
 EXPECTED = ROOT / "verification" / "expected.toml"
 COMMON_INPUTS = ("verification/evidence/*.py", "verification/toolchain/*", "kernel/include/**/*")
 KEYS = {"command", "inputs", "cores", "memory_gb", "status", "figures"}
+MAY = {"after"}
 
 
 class UnusableError(Exception):
@@ -28,21 +29,29 @@ class Rung:
     memory_gb: float
     status: str
     figures: dict[str, float]
+    after: tuple[str, ...] = ()
+    """Rungs that this one waits for, as it reads what they leave. It runs without them, too, only longer."""
 
 
 def read_expected(path: Path) -> list[Rung]:
     """The rungs of the file, in its order. Raises UnusableError naming the rung and key that is wrong."""
     rungs = []
     for name, table in tomllib.loads(path.read_text("utf-8")).get("rung", {}).items():
-        if set(table) != KEYS:
-            wrong = ", ".join(sorted(set(table) ^ KEYS))
+        if set(table) - MAY != KEYS:
+            wrong = ", ".join(sorted((set(table) - MAY) ^ KEYS))
             raise UnusableError(f"{path.name}: [rung.{name}]: keys missing or unknown: {wrong}")
         if table["status"] not in STATUSES:
             known = ", ".join(STATUSES)
             raise UnusableError(
                 f"{path.name}: [rung.{name}]: status '{table['status']}'; expected one of {known}"
             )
-        rungs.append(Rung(name, **{**table, "inputs": tuple(table["inputs"])}))
+        later = sorted(set(table.get("after", ())) - {rung.name for rung in rungs})
+        if later:
+            raise UnusableError(
+                f"{path.name}: [rung.{name}]: after '{later[0]}'; expected a rung that stands before it"
+            )
+        lists = {key: tuple(value) for key, value in table.items() if isinstance(value, list)}
+        rungs.append(Rung(name, **{**table, **lists}))
     return rungs
 
 

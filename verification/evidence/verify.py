@@ -5,25 +5,37 @@ Usage: verify.py [--fresh] [RUNG...]. Without names, every rung of verification/
 inputs have not changed since it last showed what it must is not run again, unless --fresh (or FRESH=1) forces
 it. Rungs run side by side where cores (JOBS, all by default) and memory allow.
 
-What a rung prints goes to build/evidence/ID/run.log. Results: a table on standard output,
-build/evidence/summary.json for machines, build/reports/verify.xml as JUnit. Exits 1 unless every rung
-has its expected status and its exact expected figures.
+What a rung prints goes to build/evidence/ID/run.log, what it found wrong to build/evidence/ID/failures.txt.
+Results on standard output: a line for each rung as it ends; then, for each that failed, its failures in the
+project's terms; at the end the table of all rungs, whole. build/evidence/summary.json is for machines,
+build/reports/verify.xml is JUnit. Exits 1 unless every rung has its expected status and its exact expected
+figures.
 """
 
 import argparse
 import json
 import os
+import re
 import subprocess
 import sys
+import textwrap
 import threading
 import time
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import zip_longest
 from pathlib import Path
 
-from evidence import EVIDENCE, ROOT, commit, log_directory
+from evidence import EVIDENCE, ROOT, commit, failures_file, log_directory
 from ladder import EXPECTED, Rung, UnusableError, content_key, read_expected, select
+
+MOST_LINES = 500
+"""So many lines of a rung's failures are shown; the file has all of them."""
+END_OF_LOG = 60
+CONTROL = re.compile(r"[^\t\n\x20-\ud7ff\ue000-\ufffd]")
+"""What a document in XML cannot hold."""
+COUNTS_WIDTH, TOOLS_WIDTH = 66, 30
 
 
 @dataclass(frozen=True)
@@ -63,6 +75,7 @@ def faults_of(rung: Rung, evidence: dict[str, object], exit_status: int) -> tupl
 def run(rung: Rung) -> Result:
     """Runs one rung. Evidence of an earlier run is removed first, so that none can stand in for this one."""
     (EVIDENCE / f"{rung.name}.json").unlink(missing_ok=True)
+    failures_file(rung.name).unlink(missing_ok=True)
     key_file = EVIDENCE / f"{rung.name}.key"
     key_file.unlink(missing_ok=True)
     key = content_key(rung)
@@ -117,25 +130,62 @@ def free_memory_gb() -> float:
     return int(kibibytes) / 2**20
 
 
-def line(result: Result) -> str:
-    """One row of the table: rung, status, seconds, figures, tool."""
-    evidence = result.evidence
-    status = "FAILED" if result.faults else str(evidence["status"])
-    seconds = f"{evidence.get('duration_s', '-')}{' (kept)' if result.cached else ''}"
-    figures = " ".join(f"{name}={value:,}" for name, value in dict(evidence.get("figures", {})).items())
-    tool = dict(evidence.get("tool", {"name": "-", "version": ""}))
-    row = f"{result.rung.name:<12} {status:<8} {seconds:>13}  {figures}  [{tool['name']} {tool['version']}]"
+def verdict_of(result: Result) -> str:
+    return "FAILED" if result.faults else str(result.evidence["status"])
+
+
+def seconds_of(result: Result) -> str:
+    return f"{result.evidence.get('duration_s', '-')}{' (kept)' if result.cached else ''}"
+
+
+def progress(result: Result) -> str:
+    """What is said of a rung when it ends: rung, status, seconds, and what is not as expected."""
+    row = f"{result.rung.name:<12} {verdict_of(result):<8} {seconds_of(result):>13} s"
     return "\n".join([row, *(f"{'':<12} {fault}" for fault in result.faults)])
 
 
-def show_end_of_log(result: Result) -> None:
-    log = log_directory(result.rung.name) / "run.log"
-    print(f"--- the end of {log.relative_to(ROOT)}:")
-    print("\n".join(log.read_text("utf-8", "replace").splitlines()[-60:]))
+def tools_of(result: Result) -> list[str]:
+    """Each tool with its version."""
+    tool = dict(result.evidence.get("tool", {"name": "-", "version": ""}))
+    names, versions = tool["name"].split(", "), tool["version"].split(", ")
+    return [f"{name} {version}".strip() for name, version in zip_longest(names, versions, fillvalue="?")]
+
+
+def wrapped(items: Sequence[str], width: int) -> list[str]:
+    """The items in lines of at most `width` characters; an item is never divided."""
+    text = " ".join(item.replace(" ", "\xa0") for item in items)
+    lines = textwrap.wrap(text, width, break_long_words=False, break_on_hyphens=False)
+    return [line.replace("\xa0", " ") for line in lines] or ["-"]
+
+
+def table(results: Sequence[Result]) -> str:
+    """All rungs: status, seconds, counts, tools with their versions, and what is not as expected."""
+    lines = [f"{'rung':<12} {'status':<8} {'seconds':>13}  {'counts':<{COUNTS_WIDTH}}  tools"]
+    for result in results:
+        figures = dict(result.evidence.get("figures", {}))
+        counts = wrapped([f"{name}={value:,}" for name, value in figures.items()], COUNTS_WIDTH)
+        tools = wrapped([f"{tool}," for tool in tools_of(result)], TOOLS_WIDTH)
+        head = f"{result.rung.name:<12} {verdict_of(result):<8} {seconds_of(result):>13}"
+        for left, middle, right in zip_longest([head], counts, tools, fillvalue=""):
+            lines.append(f"{left:<35}  {middle:<{COUNTS_WIDTH}}  {right}".rstrip(" ,"))
+        lines += [f"{'':<12} {fault}" for fault in result.faults]
+    return "\n".join(lines)
+
+
+def failures_of(result: Result) -> str:
+    """What the rung found wrong, within a bound; the end of its log when it told nothing."""
+    told, log = failures_file(result.rung.name), log_directory(result.rung.name) / "run.log"
+    source, most = (told, MOST_LINES) if told.is_file() else (log, END_OF_LOG)
+    lines = source.read_text("utf-8", "replace").splitlines() if source.is_file() else []
+    name = source.relative_to(ROOT)
+    if source == log:
+        return "\n".join([f"--- {result.rung.name}: the end of {name}:", *lines[-most:]])
+    left_out = [f"... {len(lines) - most} more lines in {name}"] if len(lines) > most else []
+    return "\n".join([f"--- {result.rung.name}: what it found wrong ({name}):", *lines[:most], *left_out])
 
 
 def climb(rungs: Sequence[Rung], fresh: bool, cores: int) -> list[Result]:
-    """Runs what must be run, printing each row as it comes; the results have the order of the rungs."""
+    """Runs what must be run, and says of each how it ended at once. The results keep the rungs' order."""
     results: dict[str, Result] = {}
     printing = threading.Lock()
     machine = Machine(cores, free_memory_gb())
@@ -143,18 +193,25 @@ def climb(rungs: Sequence[Rung], fresh: bool, cores: int) -> list[Result]:
     def note(result: Result) -> None:
         with printing:
             results[result.rung.name] = result
-            print(line(result), flush=True)
+            print(progress(result), flush=True)
 
-    waiting = []
+    threads: dict[str, threading.Thread] = {}
+
+    def run_in_turn(rung: Rung) -> None:
+        for name in rung.after:
+            if name in threads:
+                threads[name].join()
+        note(machine.run(rung))
+
     for rung in rungs:
         kept = None if fresh else cached(rung)
         if kept:
             note(kept)
         else:
-            waiting.append(threading.Thread(target=lambda rung=rung: note(machine.run(rung))))
-    for thread in waiting:
+            threads[rung.name] = threading.Thread(target=run_in_turn, args=(rung,))
+    for thread in threads.values():
         thread.start()
-    for thread in waiting:
+    for thread in threads.values():
         thread.join()
     return [results[rung.name] for rung in rungs]
 
@@ -183,7 +240,8 @@ def write_junit(results: Sequence[Result], path: Path) -> None:
         case = ElementTree.SubElement(suite, "testcase", classname="verify", name=result.rung.name)
         case.set("time", str(result.evidence.get("duration_s", 0)))
         if result.faults:
-            ElementTree.SubElement(case, "failure", message="; ".join(result.faults))
+            failure = ElementTree.SubElement(case, "failure", message="; ".join(result.faults))
+            failure.text = CONTROL.sub("?", failures_of(result))
     path.parent.mkdir(parents=True, exist_ok=True)
     ElementTree.ElementTree(suite).write(path, encoding="utf-8", xml_declaration=True)
 
@@ -206,7 +264,8 @@ def main() -> int:
     write_junit(results, ROOT / "build" / "reports" / "verify.xml")
     failed = [result for result in results if result.faults]
     for result in failed:
-        show_end_of_log(result)
+        print(failures_of(result))
+    print("\n" + table(results))
     seconds = time.monotonic() - started
     print(f"{len(results) - len(failed)} of {len(results)} rungs as expected in {seconds:.0f} s")
     return 1 if failed else 0

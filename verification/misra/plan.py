@@ -7,6 +7,8 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from named_proofs import faults_of_named_proofs
+
 HERE = Path(__file__).resolve().parent
 
 RULES = dict(enumerate((4, 7, 2, 2, 9, 2, 4, 14, 5, 8, 9, 5, 6, 4, 7, 7, 8, 8, 2, 14, 21, 10), 1))
@@ -34,6 +36,7 @@ RUNNERS = {
 }
 """Rungs that discharge what no checker can decide."""
 
+ROW = re.compile(r"\| (D?\d+\.\d+) \| (mandatory|required|advisory) \| ([^|]+) \| ([^|]+) \|")
 METHOD = re.compile(
     r"cppcheck|gcc -W[\w=-]+|clang-tidy [\w-]+|scan [\w-]+|proof (?P<rung>\w+)|by \d+\.\d+|build|review"
     r"|deviation|disapplied"
@@ -63,11 +66,19 @@ def category(guideline: str) -> str:
 def read_plan() -> list[Row]:
     rows = []
     for line in (HERE / "enforcement.md").read_text("utf-8").splitlines():
-        match = re.fullmatch(r"\| (D?\d+\.\d+) \| (\w+) \| ([^|]+) \| ([^|]+) \|", line)
+        match = re.fullmatch(
+            r"\| (D?\d+\.\d+) \| (mandatory|required|advisory) \| ([^|]+) \| ([^|]+) \|", line
+        )
         if match:
             cells = [tuple(method.strip() for method in match[n].split(",")) for n in (3, 4)]
             rows.append(Row(match[1], match[2], *cells))
     return rows
+
+
+def _proving_rungs(row: Row) -> list[str]:
+    """The rungs that the row says to decide its guideline."""
+    matches = (METHOD.fullmatch(method) for method in (*row.core, *row.host))
+    return [match["rung"] for match in matches if match and match["rung"]]
 
 
 def _unknown_methods(row: Row, seeded: set[str]) -> list[str]:
@@ -87,7 +98,7 @@ def _unknown_methods(row: Row, seeded: set[str]) -> list[str]:
 def faults_of_plan(seeded: set[str], deviating: set[str], disapplied: set[str]) -> list[str]:
     """What is wrong with the plan, a sentence each: a guideline without a row, a category, a method that is
     not run or that no seeded violation shows to detect, a deviation that is told but not recorded, or the
-    other way round.
+    other way round, a proof that is named but does not exist, or is not named.
     """
     rows = read_plan()
     wanted = guidelines()
@@ -104,4 +115,4 @@ def faults_of_plan(seeded: set[str], deviating: set[str], disapplied: set[str]) 
             if (mark in row.host) != (row.guideline in recorded):
                 faults.append(f"{row.guideline}: enforcement.md and deviations.toml disagree on '{mark}'")
         faults += [f"{row.guideline}: {fault}" for fault in _unknown_methods(row, seeded)]
-    return faults
+    return faults + faults_of_named_proofs({row.guideline: _proving_rungs(row) for row in rows})

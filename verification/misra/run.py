@@ -102,17 +102,19 @@ def main() -> int:
         records, faults = read_records()
         findings, more = settle(find_all(), records)
     except ToolError as error:
-        print(f"misra: {error}")
+        evidence.Failures("misra").tell(f"misra: {error}")
         return evidence.write("misra", "UNKNOWN", versions(), figures, ["P15"], started)
     deviations = [record.rule for record in records if record.kind == "deviation"]
     disapplied = [record.rule for record in records if record.kind == "disapplied"]
     seen = {seed.check for seed in wanted if seed not in unseen}
     faults += more + faults_of_plan(seen, set(deviations), set(disapplied))
+    failures = evidence.Failures("misra")
     for finding in findings:
-        print(f"{finding.file}:{finding.line}: {finding.check}: {finding.text}")
+        failures.tell(f"{finding.file}:{finding.line}: {finding.check}: {finding.text}")
     for seed in unseen:
-        print(f"{seed.file}:{seed.line}: seeded violation of {seed.check} was not seen")
-    print("\n".join(faults))
+        failures.tell(f"{seed.file}:{seed.line}: seeded violation of {seed.check} was not seen")
+    for fault in faults:
+        failures.tell(fault)
     figures = {
         "findings": len(findings),
         "faults_of_records": len(faults),

@@ -92,12 +92,12 @@ def all_checks(models: Sequence[Model], variants: Sequence[WrongVariant]) -> lis
     return checks
 
 
-def report(finding: Finding) -> None:
+def report(finding: Finding, failures: evidence.Failures) -> None:
     answer, verdict = finding.answer, finding.status or "ok"
     states = f"{answer.distinct} states" if answer.distinct else "refuted"
     print(f"{verdict:7} {answer.seconds:7.1f} s  {finding.name:58} {states}", flush=True)
     if finding.fault:
-        print(finding.fault, flush=True)
+        failures.tell(f"{finding.name}: {finding.fault}")
 
 
 def figures(models: Sequence[Model], findings: Sequence[Finding]) -> dict[str, float]:
@@ -128,12 +128,13 @@ def main() -> int:
     except UnusableError as error:
         print(f"model: {error}", file=sys.stderr)
         return 2
+    failures = evidence.Failures(RUNG)
     with ThreadPoolExecutor(int(os.environ.get("JOBS", "2"))) as pool:
         pending = [pool.submit(check) for check in all_checks(models, variants)]
         findings = []
         for future in pending:
             findings.append(future.result())
-            report(findings[-1])
+            report(findings[-1], failures)
     status = status_of(findings)
     if chosen:
         print(f"{status}; of {', '.join(chosen)} alone, so no evidence is written")

@@ -7,7 +7,8 @@ notices it. With --find every part of every rung is tried instead, and what catc
 part a rung, to be written into faults.toml. With --check nothing is seeded: it names only those faults whose
 line the kernel no longer has.
 
-Prints a table of faults and rungs; writes build/evidence/faults.json.
+Prints a table of faults and rungs, the wrong variants of the model among them with what rung 1 last said of
+each ("-": the rung was asked and noticed nothing); writes build/evidence/faults.json.
 """
 
 import argparse
@@ -21,13 +22,14 @@ from pathlib import Path
 sys.path.append(str(Path(__file__).resolve().parents[1] / "evidence"))
 
 import evidence
+from model_faults import NOT_ASKED, UNNOTICED, ModelFault, model_faults
 from operators import draw
 from probes import Probe, probe_named, probes_for
 from rows import all_phases, print_missing
 from tree import ROOT, UnusableFaultError, line_of, on_trees, seeded
 
 FAULTS = Path(__file__).with_name("faults.toml")
-RUNGS = ("conformance", "cbmc", "wp")
+RUNGS = ("model", "conformance", "cbmc", "wp")
 
 
 @dataclass(frozen=True)
@@ -47,6 +49,8 @@ class Outcome:
     fault: Fault
     told: dict[str, str]
     """What each part said that caught it."""
+    asked: frozenset[str]
+    """The rungs that were asked."""
     complaint: str
     seconds: float
 
@@ -83,16 +87,18 @@ def catches(probes: Sequence[Probe], tree: Path) -> Iterator[tuple[str, str]]:
 def judge(fault: Fault, tree: Path, find: bool) -> Outcome:
     """Seeds the fault and asks the parts that must notice it, or all."""
     started = time.monotonic()
+    asked: frozenset[str] = frozenset()
     try:
         line = line_of((tree / fault.file).read_text("utf-8"), fault.before, fault.file)
         probes = list(probes_for(tree, Path(fault.file))) if find else [*map(probe_named, fault.caught_by)]
+        asked = frozenset(probe.rung for probe in probes)
         with seeded(tree, fault.file, line, fault.before, fault.after):
             told = dict(catches(probes, tree))
         missed = [] if find else [part for part in fault.caught_by if part not in told]
         complaint = f"unnoticed by {', '.join(missed)}" if missed else "" if told else "unnoticed by all"
     except UnusableFaultError as error:
         told, complaint = {}, str(error)
-    return Outcome(fault, told, complaint, time.monotonic() - started)
+    return Outcome(fault, told, asked, complaint, time.monotonic() - started)
 
 
 def show(outcome: Outcome) -> None:
@@ -119,12 +125,19 @@ def phases_named_by(faults: Sequence[Fault]) -> set[str]:
     return {probe.part for probe in probes if probe.rung == "conformance"}
 
 
-def table(outcomes: Sequence[Outcome]) -> str:
-    """Which rung caught which fault, by which of its parts."""
-    lines = [f"{'fault':<36} " + " ".join(f"{rung:<18}" for rung in RUNGS)]
-    for outcome in outcomes:
-        parts = dict(part.split(" ", 1) for part in outcome.told)
-        lines.append(f"{outcome.fault.name:<36} " + " ".join(f"{parts.get(rung, '-'):<18}" for rung in RUNGS))
+def cells(outcome: Outcome) -> dict[str, str]:
+    """For each rung the part that caught the fault, or UNNOTICED, or NOT_ASKED."""
+    parts = dict(part.split(" ", 1) for part in outcome.told)
+    return {rung: parts.get(rung, UNNOTICED) if rung in outcome.asked else NOT_ASKED for rung in RUNGS}
+
+
+def table(outcomes: Sequence[Outcome], of_model: Sequence[ModelFault]) -> str:
+    """Which rung caught which fault, by which of its parts: of the kernel, then of the model."""
+    rows = [(outcome.fault.name, cells(outcome)) for outcome in outcomes]
+    rows += [(f"model: {fault.name}", {"model": fault.told}) for fault in of_model]
+    lines = [f"{'fault':<44} " + " ".join(f"{rung:<18}" for rung in RUNGS)]
+    for name, told in rows:
+        lines.append(f"{name:<44} " + " ".join(f"{told.get(rung, NOT_ASKED):<18}" for rung in RUNGS))
     return "\n".join(line.rstrip() for line in lines)
 
 
@@ -150,9 +163,16 @@ def main() -> int:
     # Before the trees are used side by side, or two of them would write the same rows.
     print_missing(all_phases() if arguments.find else phases_named_by(chosen))
     outcomes = judge_all(chosen, arguments.find)
-    print(table(outcomes))
-    figures = {"faults": len(outcomes), "caught": sum(not outcome.complaint for outcome in outcomes)}
+    of_model = [] if arguments.names else list(model_faults())
+    print(table(outcomes, of_model))
+    figures = {
+        "faults": len(outcomes),
+        "caught": sum(not outcome.complaint for outcome in outcomes),
+        "model_faults": sum(fault.told != NOT_ASKED for fault in of_model),
+        "model_faults_caught": sum(fault.told not in (NOT_ASKED, UNNOTICED) for fault in of_model),
+    }
     passed = figures["faults"] == figures["caught"] > 0
+    passed = passed and figures["model_faults"] == figures["model_faults_caught"]
     return evidence.write("faults", "PASSED" if passed else "FAILED", {"gcc": "12"}, figures, [], started)
 
 

@@ -10,12 +10,12 @@ import hashlib
 import re
 import subprocess
 import sys
-from collections.abc import Iterable
 from pathlib import Path
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "conformance"))
 
 import phases
+from phases import print_missing
 from table import Phase, load_phase
 from tools import HERE, kernel_sources
 
@@ -28,20 +28,6 @@ def phase_named(name: str) -> Phase:
 def all_phases() -> list[str]:
     """The names of all phases of the tick."""
     return phases.names()
-
-
-def are_current(phase: Phase, folder: Path) -> bool:
-    """Whether the rows in this folder are those of the model as it is."""
-    header = folder / "case.h"
-    return (folder / "rows.bin").is_file() and phases.model_hash(phase) in header.read_text("utf-8")
-
-
-def print_missing(names: Iterable[str]) -> None:
-    """Lets TLC print the rows of these phases where they are missing or older than the model."""
-    for phase in map(phase_named, names):
-        folder = phases.OUTPUT / phase.name
-        if not are_current(phase, folder):
-            phases.write_case(phase, phases.table_of(phase, folder), folder)
 
 
 def compile_kernel(kernel: Path, folder: Path) -> list[str]:

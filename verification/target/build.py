@@ -86,7 +86,7 @@ def image(
     """Builds trace.c, vectors.c or replay.c around the core; returns the command that runs it."""
     BUILD.mkdir(parents=True, exist_ok=True)
     output = BUILD / f"{machine.name}-{name}"
-    parts = [HERE / f"{part}.c" for part in (program, "world", "counts", "platform")]
+    parts = [HERE / f"{part}.c" for part in (program, "world", "counts", "told", "platform")]
     sources = [*core, *parts, HERE / machine.platform]
     if program in ("record", "replay"):
         sources += sorted((ROOT / "kernel/recording").glob("*.c"))

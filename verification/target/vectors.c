@@ -2,11 +2,12 @@
  * @file
  * Single ticks from any state that passes the kernel's own check. Without EXPECTED, prints the digest of
  * each; with it, compares each with the table that another machine made and prints the numbers of those that
- * differ.
+ * differ. With TOLD prints all words of that one.
  */
 #include "counts.h"
 #include "digest.h"
 #include "platform.h"
+#include "told.h"
 #include "world.h"
 
 #ifndef VECTORS
@@ -37,6 +38,11 @@ static bool run_vector(const ilk_config_t *config, uint32_t number, digest_t *di
   ilk_step(config, &state, &in, requests, count, &out);
   digest_tick(digest, &state, &out);
   count_tick(counts, &state, &out);
+#ifdef TOLD
+  if (number == (uint32_t)TOLD) {
+    say_tick(&in, requests, count, &state, &out);
+  }
+#endif
   return was_sound(&state);
 }
 

@@ -8,19 +8,29 @@
 
 #define LAST (ILK_FRAME_WORDS - 1)
 
-static uint32_t sum_before_last(const uint32_t frame[ILK_FRAME_WORDS]) {
+static uint32_t plus(uint32_t a, uint32_t b) { return a + b; }
+
+static uint32_t sum_with_last(const uint32_t frame[ILK_FRAME_WORDS]) {
   uint32_t sum = 0u;
-  for (uint32_t word = 0u; word < (uint32_t)LAST; word++) {
-    sum += frame[word];
+  for (uint32_t word = 0u; word <= (uint32_t)LAST; word++) {
+    sum = plus(sum, frame[word]);
   }
   return sum;
 }
 
+/** The last word is the complement of the sum of the others exactly when all of them sum up to 0xffffffff. */
+static void show_complement(uint32_t others, uint32_t last) {
+  SHOW((last == (0xffffffffu - others)) == (plus(others, last) == 0xffffffffu),
+       "P16: the checksum is the complement of the sum of the words before it");
+}
+
 void harness(void) {
+  uint32_t others;
+  uint32_t last;
   uint32_t frame[ILK_FRAME_WORDS];
+  show_complement(others, last);
   const ilk_reading_t reading = ilk_frame_unpack(frame);
-  const uint32_t sum = sum_before_last(frame);
-  SHOW(reading.intact == ((frame[0] == 0xfefefe01u) && (frame[LAST] == (0xffffffffu - sum))),
+  SHOW(reading.intact == ((frame[0] == 0xfefefe01u) && (sum_with_last(frame) == 0xffffffffu)),
        "P16: intact exactly when start word and checksum are right");
   SHOW(reading.switch_triggered == (((frame[2] >> 19) & 1u) == 0u),
        "P3: bit 3 of the state is 0 when triggered");
