@@ -24,8 +24,9 @@ import pages
 from components import Component, bill_of_materials
 from items import Items, fingerprint
 from matrix import Row, as_csv, negative_lists, rows
+from measurements import Measurement, read_measurements
 from report import read_project, read_stated
-from results import MEASURED, Result, Source, read_results
+from results import Result, Source, read_results
 from review import write_reviewed
 from sources import Function, functions_of, read_links
 
@@ -35,6 +36,8 @@ PLANTED = ROOT / "verification/trace/planted"
 DEFECTS = sorted(PLANTED.glob("*.toml"))
 LIBC = Component("libc6", "2.36", "pkg:deb/debian/libc6@2.36")
 RUNGS = ("cbmc", "wp", "model", "conformance", "misra")
+MEASUREMENTS = read_measurements(ROOT / "verification/measurements/measurements.toml")
+CAMPAIGN = Measurement("campaign", "Faults", "make campaign", "release", ("gate.c",), {"faults": 3})
 
 
 def read_defect(path: Path) -> dict:
@@ -296,28 +299,120 @@ def test_a_result_is_no_better_than_its_rung(tree: Tree) -> None:
     assert {one.status for one in results} == {"UNKNOWN"}
 
 
-def test_a_measurement_counts_for_the_commit_that_it_was_made_from(tree: Tree) -> None:
-    def campaign(commit: str = "built", **changed: object) -> Result:
-        tree.measure("campaign", **changed)
-        source = Source(tree.path, commit, lambda _: True)
-        [result] = read_results(source, (), (), ["campaign"])
-        return result
+def campaign(
+    tree: Tree, commit: str = "built", current: bool = False, release: bool = True, **left: object
+) -> Result:
+    """What a report says of the campaign that left this."""
+    tree.measure("campaign", **left)
+    source = Source(tree.path, commit, lambda _: current)
+    [result] = read_results(source, (), (), [CAMPAIGN], release)
+    return result
 
-    result = campaign()
+
+def test_a_measurement_counts_for_its_commit_and_while_its_inputs_are_the_same(tree: Tree) -> None:
+    result = campaign(tree)
     assert (result.uid, result.status, result.fresh) == ("CAMPAIGN", "PASSED", True)
     assert (result.tool, result.bounds) == ("bench, gcc 12", "faults 3")
     assert (tree.path / result.log).is_file()
     assert result.supports == {"P1"}
-    assert not campaign("later").fresh
-    assert campaign(status="VACUOUS").status == "VACUOUS"
-    assert campaign(log="campaign").log == "build/evidence/campaign"
-    assert campaign(tool=None).status == "UNKNOWN"
+    assert not campaign(tree, "later").fresh
+    assert campaign(tree, "later", current=True).fresh
+    assert campaign(tree, status="VACUOUS").status == "VACUOUS"
+    assert campaign(tree, log="campaign").log == "build/evidence/campaign"
+    assert campaign(tree, tool=None).status == "UNKNOWN"
+    assert campaign(tree, figures={"faults": 2}).status == "UNKNOWN"
 
 
-def test_a_measurement_that_was_not_made_is_unknown(tree: Tree) -> None:
-    results = read_results(Source(tree.path, "built", lambda _: True), (), (), MEASURED)
-    assert [one.uid for one in results] == ["BENCH", "CAMPAIGN", "FAULTS", "MUTATION", "STEERING"]
-    assert {one.status for one in results} == {"UNKNOWN"}
+def test_a_long_measurement_is_awaited_where_only_a_release_demands_it(tree: Tree) -> None:
+    assert campaign(tree, "later", release=False).status == "AWAITED"
+    assert campaign(tree, tool=None, release=False).status == "AWAITED"
+    assert campaign(tree, figures={"faults": 2}, release=False).status == "AWAITED"
+    assert campaign(tree, "later", current=True, release=False).status == "PASSED"
+    assert campaign(tree, "later", status="FAILED", release=False).status == "FAILED"
+
+
+def test_what_is_awaited_is_named_and_a_release_is_red_without_it(
+    tree: Tree, clean: tuple[Items, str]
+) -> None:
+    def reported(release: bool) -> gate.Trace:
+        source = Source(tree.path, "built", lambda _: False)
+        project = read_project(source, clean, RUNGS, [LIBC], MEASUREMENTS, release)
+        return gate.trace(replace(project, reviewed=reviewed(clean[0])))
+
+    tree.measure("faults")
+    of = reported(release=False)
+    long = sorted(one.name.upper() for one in MEASUREMENTS if one.demanded == "release")
+    assert gate.findings(of) == []
+    assert gate.awaited(of)["Measurements"] == long
+    assert pages.counts(of)["measurements awaited"] == len(long)
+    assert "CAMPAIGN" in pages.write_all(of, [], "built")["index.html"]
+    assert sorted(one.uid for one in gate.findings(reported(release=True))) == long
+
+
+def test_a_requirement_that_rests_on_an_awaited_measurement_alone_is_named(
+    tree: Tree, clean: tuple[Items, str]
+) -> None:
+    tree.change(
+        "spec/requirements/20_requirements.sdoc", "VERIFICATION: Test, Proof", "VERIFICATION: Analysis, Proof"
+    )
+    with (tree.path / "spec/requirements/links.toml").open("a", encoding="utf-8") as links:
+        links.write('\n[results]\nSRS-K-001 = ["CAMPAIGN"]\n')
+    stated = tree.stated()
+    source = Source(tree.path, "built", lambda _: False)
+    of = gate.trace(read_project(source, stated, RUNGS, [LIBC], [CAMPAIGN]))
+    assert gate.awaited(of)["Requirements that rest on one of them alone"] == ["SRS-K-001"]
+    tree.measure("campaign")
+    of = gate.trace(read_project(source, stated, RUNGS, [LIBC], [CAMPAIGN]))
+    assert gate.awaited(of)["Requirements that rest on one of them alone"] == []
+
+
+def test_without_evidence_no_measurement_passes(tree: Tree) -> None:
+    results = read_results(Source(tree.path, "built", lambda _: True), (), (), MEASUREMENTS)
+    by_demand = {one.name.upper(): one.demanded for one in MEASUREMENTS}
+    assert {one.uid for one in results} == set(by_demand) >= {"BENCH", "CAMPAIGN", "FAULTS", "MUTATION"}
+    for one in results:
+        assert one.status == {"commit": "UNKNOWN", "release": "AWAITED"}[by_demand[one.uid]]
+
+
+@pytest.fixture
+def measured_tree(tmp_path: Path) -> Path:
+    """A tree with one measurement, the campaign of gate.c."""
+    for name in ("evidence", "measurements"):
+        ignored = shutil.ignore_patterns("__pycache__", "*.toml")
+        shutil.copytree(ROOT / "verification" / name, tmp_path / "verification" / name, ignore=ignored)
+    for name in ("verification/toolchain/gcc.txt", "kernel/include/a.h", "kernel/src/gate.c"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("12", "utf-8")
+    (tmp_path / "build/evidence").mkdir(parents=True)
+    (tmp_path / "verification/measurements/measurements.toml").write_text(MEASURED, "utf-8")
+    return tmp_path
+
+
+def measure(tree: Path, script: str) -> int:
+    program = tree / "verification/measurements/measure.py"
+    return subprocess.run(
+        [sys.executable, str(program), "campaign", "sh", "-c", script], cwd=tree, capture_output=True
+    ).returncode
+
+
+def test_a_measurement_is_keyed_by_its_inputs_unless_they_change_while_it_runs(measured_tree: Path) -> None:
+    key = measured_tree / "build/evidence/campaign.key"
+    assert measure(measured_tree, "echo {} > build/evidence/campaign.json; exit 3") == 3
+    first = key.read_text("utf-8")
+    assert measure(measured_tree, "echo {} > build/evidence/campaign.json; echo 13 > kernel/src/gate.c") == 0
+    assert not key.exists()
+    assert measure(measured_tree, "echo {} > build/evidence/campaign.json") == 0
+    assert key.read_text("utf-8") != first
+    assert measure(measured_tree, "true") == 0
+    assert not key.exists()
+    assert not (measured_tree / "build/evidence/campaign.json").exists()
+
+
+def test_each_measurement_names_inputs_that_there_are_and_a_target() -> None:
+    targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text("utf-8"), re.MULTILINE))
+    for one in MEASUREMENTS:
+        assert one.key()
+        assert one.target.removeprefix("make ") in targets
 
 
 def test_evidence_of_another_commit_is_fresh_while_its_inputs_are_the_same(tree: Tree) -> None:
@@ -328,6 +423,13 @@ def test_evidence_of_another_commit_is_fresh_while_its_inputs_are_the_same(tree:
     assert not results["TEST:unit:kernel_tests.P1_gate"]
 
 
+MEASURED = """[campaign]
+title = "Faults"
+target = "make campaign"
+demanded = "release"
+inputs = ["kernel/src/*"]
+least = { faults = 3 }
+"""
 RUNG = 'command = "true"\ninputs = []\ncores = 1\nmemory_gb = 1\nstatus = "PASSED"\n'
 
 
@@ -336,7 +438,7 @@ class Repository(Tree):
 
     def __init__(self, path: Path) -> None:
         super().__init__(path)
-        for name in ("trace", "evidence"):
+        for name in ("trace", "evidence", "measurements"):
             ignored = shutil.ignore_patterns("__pycache__", "planted")
             shutil.copytree(ROOT / "verification" / name, path / "verification" / name, ignore=ignored)
         rungs = "".join(f"[rung.{name}]\n{RUNG}[rung.{name}.figures]\n" for name in RUNGS)
@@ -347,8 +449,8 @@ class Repository(Tree):
         self.write(".gitignore", "/build/\n__pycache__/\n")
         self.write("CMakeLists.txt", "project(interlock VERSION 9.8.7)\n")
         self.write("verification/trace/papers.toml", PAPER)
-        for name in MEASURED:
-            self.measure(name)
+        self.write("verification/measurements/measurements.toml", MEASURED)
+        self.measure("campaign")
         # Any program that needs the C library and nothing else.
         self.write("build/release/bin/interlock", "")
         shutil.copy("/bin/true", path / "build/release/bin/interlock")

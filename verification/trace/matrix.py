@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, fields
 
 from gate import Trace
 from items import Item, fingerprint
-from results import SOUND, Result
+from results import AWAITED, SOUND, Result
 
 
 @dataclass(frozen=True)
@@ -56,8 +56,8 @@ def code_of(of: Trace, uid: str) -> list[str]:
 
 
 def status_of(results: Sequence[Result]) -> str:
-    """The worst status of several results; MISSING for none."""
-    order = ("FAILED", "VACUOUS", "UNKNOWN", "BOUNDED", "PASSED")
+    """The worst status of several results; AWAITED when all of them are, MISSING for none."""
+    order = ("FAILED", "VACUOUS", "UNKNOWN", "BOUNDED", "PASSED", AWAITED)
     return next((status for status in order if any(one.status == status for one in results)), "MISSING")
 
 
@@ -169,6 +169,8 @@ def negative_lists(of: Trace) -> dict[str, list[str]]:
             f"{one.file}:{one.name}" for one in project.functions if not project.links.requirements_of(one)
         ],
         "Results failed, unknown, vacuous or stale": [
-            one.uid for one in project.results if one.status not in SOUND or not one.fresh
+            one.uid
+            for one in project.results
+            if one.status != AWAITED and (one.status not in SOUND or not one.fresh)
         ],
     }

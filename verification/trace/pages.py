@@ -6,10 +6,10 @@ from dataclasses import fields
 from html import escape, unescape
 from pathlib import Path
 
-from gate import Finding, Trace, alike
+from gate import Finding, Trace, alike, awaited
 from items import Item
 from matrix import Row, code_of, coverage, negative_lists, rows, status_of
-from results import Result
+from results import AWAITED, Result
 
 STYLE = "style.css"
 FILTER = "filter.js"
@@ -102,6 +102,7 @@ def counts(of: Trace) -> dict[str, int]:
         "results of proof": sum(one.method == "Proof" for one in project.results),
         "results of model checking": sum(one.method == "ModelCheck" for one in project.results),
         "tests": sum(len(one.cases) for one in tests),
+        "measurements awaited": sum(one.status == AWAITED for one in project.results),
     }
 
 
@@ -125,6 +126,8 @@ def overview(of: Trace, found: Sequence[Finding], commit: str) -> str:
         folded(f"{rule} {text}: {len(uids)}", uids) for (rule, text), uids in alike(found).items()
     )
     negative = "".join(folded(f"{title}: {len(uids)}", uids) for title, uids in negative_lists(of).items())
+
+    waiting = "".join(folded(f"{title}: {len(uids)}", uids) for title, uids in awaited(of).items())
 
     def row_link(hazard: Item) -> str:
         words = f"{hazard.uid} {hazard.title}"
@@ -151,6 +154,7 @@ def overview(of: Trace, found: Sequence[Finding], commit: str) -> str:
     sections = {
         "Gate": gate,
         "Must be empty at a release": negative,
+        "Awaited: a release demands it, this report does not": waiting,
         "Coverage by hazard": covered,
         "Figures": figures,
         "Software requirements by content": contents,
