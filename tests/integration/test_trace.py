@@ -19,6 +19,7 @@ import pytest
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "verification/trace"))
 
 import exporter
+import figures
 import gate
 import pages
 from components import Component, bill_of_materials
@@ -454,7 +455,9 @@ class Repository(Tree):
         # Any program that needs the C library and nothing else.
         self.write("build/release/bin/interlock", "")
         shutil.copy("/bin/true", path / "build/release/bin/interlock")
+        self.write("README.md", f"{figures.BEGIN}\n{figures.END}\n")
         self.git("init", "-q")
+        assert self.run("trace/figures.py", "--write").returncode == 0
         assert self.run("trace/review.py", "--all").returncode == 0
         self.git("add", ".")
         self.git("-c", "user.name=a", "-c", "user.email=b", "commit", "-qm", "tree")
@@ -507,6 +510,8 @@ def test_the_report_of_a_clean_project_is_written_and_a_defect_fails_it_by_name(
     assert done.returncode == 1, done.stdout + done.stderr
     assert "G5 FAILED" in done.stdout
     assert "TEST:unit:kernel_tests.Lamps" in done.stdout
+    repository.write("README.md", "One hazard, they say.")
+    assert "README.md" in repository.run("trace/report.py", "--gate-only").stdout
 
 
 def test_a_run_of_tests_begins_without_the_report_of_the_last_one(tmp_path: Path) -> None:
@@ -537,37 +542,8 @@ def test_every_function_that_is_proved_is_found_with_its_contract() -> None:
     assert proved <= contracted
 
 
-GTEST = re.compile(r"^TEST(?:_P|_F)?\((\w+),\s*(\w+)", re.MULTILINE)
-
-
-def written_tests() -> dict[str, list[str]]:
-    """The tests of each suite as the sources name them, without what a run adds."""
-
-    def texts(pattern: str) -> list[tuple[Path, str]]:
-        return [(path, path.read_text("utf-8")) for path in sorted((ROOT / "tests").glob(pattern))]
-
-    return {
-        "unit": [".".join(names) for _, text in texts("unit/**/*.cpp") for names in GTEST.findall(text)],
-        "integration": [
-            f"tests.integration.{path.stem}::{name}"
-            for path, text in texts("integration/test_*.py")
-            for name in re.findall(r"^def (test_\w+)", text, re.MULTILINE)
-        ],
-        "console": [
-            f"{path.stem}::{name}"
-            for path in sorted((ROOT / "web/src").rglob("*.test.ts*"))
-            for name in re.findall(r"\bit\(\s*[`\"]([^`\"]+)", path.read_text("utf-8"))
-        ],
-        "browser": [
-            f"{path.name}::{name}"
-            for path, text in texts("browser/*.spec.ts")
-            for name in re.findall(r"\btest\(\s*[`\"]([^`\"]+)", text.replace("${way}", "Esc"))
-        ],
-    }
-
-
 def test_each_test_that_a_requirement_names_stands_in_the_sources() -> None:
-    written = written_tests()
+    written = figures.written_tests(ROOT)
     patterns = {one for named in read_links(LINKS).tests.values() for one in named}
     missing = []
     for pattern in patterns:
@@ -582,7 +558,7 @@ def test_the_criteria_of_units_name_results_that_there_are() -> None:
     text = (ROOT / "spec/requirements/55_unit_acceptance.sdoc").read_text("utf-8")
     named = {one.partition(":")[2] for one in re.findall(r"`((?:TEST:unit|CBMC):[^`*]+)`", text)}
     proofs = {path.parent.name for path in (ROOT / "verification/cbmc").glob("*/proof.toml")}
-    suites = {f"kernel_tests.{one.partition('.')[0]}" for one in written_tests()["unit"]}
+    suites = {f"kernel_tests.{one.partition('.')[0]}" for one in figures.written_tests(ROOT)["unit"]}
     assert len(named) > 5
     assert {one.removeprefix("unit:") for one in named} <= proofs | suites
 
@@ -604,4 +580,5 @@ def test_the_projects_own_requirements_hold_together(tmp_path: Path) -> None:
     assert [str(one) for one in stated] == []
     missing = [path for paths in links.code.values() for path in paths if not (ROOT / path).exists()]
     assert missing == []
+    assert figures.complaint(ROOT, items) == ""
     assert {*links.code, *links.tests, *links.results} <= set(items.by_uid)

@@ -112,7 +112,7 @@ def methods_of(item: Item) -> list[str]:
 
 
 def g1(of: Trace) -> Iterator[Finding]:
-    """Each hazard has a cause, and each cause, failure mode and threat a control."""
+    """Each hazard has a cause, each cause and threat a control, each failure mode what meets it."""
     items = of.project.items
     for hazard in items.of("HAZARD"):
         if not items.children(hazard.uid, "Causes"):
@@ -123,6 +123,10 @@ def g1(of: Trace) -> Iterator[Finding]:
     for cause in items.of("CAUSE", "THREAT", "FAILURE_MODE"):
         if not cause.parents_by("Causes"):
             yield Finding("G1", cause.uid, "leads to no hazard")
+    for mode in items.of("FAILURE_MODE"):
+        met = mode.parents_by("MetBy")
+        if not any(items[uid].kind in ("CONTROL", "REQUIREMENT") for uid in met if uid in items.by_uid):
+            yield Finding("G1", mode.uid, "no risk control or requirement meets it")
 
 
 def g2(of: Trace) -> Iterator[Finding]:

@@ -6,6 +6,7 @@ from dataclasses import fields
 from html import escape, unescape
 from pathlib import Path
 
+from figures import KINDS
 from gate import Finding, Trace, alike, awaited
 from items import Item
 from matrix import Row, code_of, coverage, negative_lists, rows, status_of
@@ -83,21 +84,9 @@ def table(headings: Sequence[str], lines: Sequence[Sequence[str]]) -> str:
 def counts(of: Trace) -> dict[str, int]:
     """The figures of the report."""
     project = of.project
-    kinds = {
-        "hazards": "HAZARD",
-        "causes": "CAUSE",
-        "failure modes": "FAILURE_MODE",
-        "threats": "THREAT",
-        "risk controls": "CONTROL",
-        "system requirements": "SYSREQ",
-        "software requirements": "REQUIREMENT",
-        "properties": "PROPERTY",
-        "SOUP items": "SOUP",
-        "anomalies": "ANOMALY",
-    }
     tests = [one for one in project.results if one.method == "Test"]
     return {
-        **{name: len(project.items.of(kind)) for name, kind in kinds.items()},
+        **{name: len(project.items.of(kind)) for name, kind in KINDS.items()},
         "functions of the core": len(project.functions),
         "results of proof": sum(one.method == "Proof" for one in project.results),
         "results of model checking": sum(one.method == "ModelCheck" for one in project.results),

@@ -26,6 +26,7 @@ sys.path += [str(Path(__file__).resolve().parents[1] / name) for name in ("evide
 
 import documents
 import evidence
+import figures
 import gate
 import pages
 import papers
@@ -155,6 +156,8 @@ def main() -> int:
             project = replace(project, exporter_log=project.exporter_log + printed)
         of = gate.trace(project)
         found = gate.findings(of)
+        if wrong := figures.complaint(root, project.items):
+            found.append(gate.Finding("G9", "README.md", wrong))
         if not arguments.gate_only:
             stated = papers.read_documents(output / "stated/json/index.json")
             set_of = papers.Source(of, stated, found, commit, version(root))
