@@ -22,7 +22,7 @@ import exporter
 import figures
 import gate
 import pages
-from components import Component, bill_of_materials
+from components import Component, bill_of_materials, npm_packages
 from items import Items, fingerprint
 from matrix import Row, as_csv, negative_lists, rows
 from measurements import Measurement, read_measurements
@@ -267,13 +267,53 @@ def test_the_bill_of_materials_names_what_is_shipped() -> None:
     assert [one["purl"] for one in bill["components"]] == [LIBC.purl]
 
 
+def test_the_bill_of_materials_has_what_packages_of_the_console_need(tmp_path: Path) -> None:
+    locked = {
+        "node_modules/shown": {"version": "1", "license": "MIT", "dependencies": {"drawn": "2"}},
+        "node_modules/shown/node_modules/drawn": {"version": "2", "integrity": "sha512-/w=="},
+        "node_modules/drawn": {"version": "9"},
+    }
+    (tmp_path / "web").mkdir()
+    (tmp_path / "web/package.json").write_text('{"dependencies": {"shown": "1"}}', "utf-8")
+    (tmp_path / "web/package-lock.json").write_text(json.dumps({"packages": locked}), "utf-8")
+    bill = bill_of_materials(npm_packages(tmp_path), "built")
+    shown, drawn = bill["components"]
+    assert shown["licenses"] == [{"license": {"id": "MIT"}}]
+    assert "hashes" not in shown
+    assert drawn["hashes"] == [{"alg": "SHA-512", "content": "ff"}]
+    needed = {one["ref"]: one["dependsOn"] for one in bill["dependencies"]}
+    assert needed == {
+        "interlock": ["pkg:npm/shown@1"],
+        "pkg:npm/shown@1": ["pkg:npm/drawn@2"],
+        "pkg:npm/drawn@2": [],
+    }
+
+
+def test_each_package_of_the_console_is_described_as_soup() -> None:
+    soup = (ROOT / "spec/requirements/60_soup.sdoc").read_text("utf-8")
+    described = {
+        name for line in re.findall(r"^COMPONENTS: (.*)$", soup, re.MULTILINE) for name in line.split(", ")
+    }
+    packages = {one.name: one for one in npm_packages(ROOT)}
+    assert {"react", "scheduler", "openapi-typescript-helpers"} <= set(packages) <= described
+    assert all(len(one.digest[1]) == 128 for one in packages.values())
+
+
 def test_a_row_leads_from_the_hazard_to_its_raw_results(tree: Tree, clean: tuple[Items, str]) -> None:
     of = gate.trace(tree.project(clean, reviewed(clean[0])))
     first = rows(of)[0]
     assert first.hazard == "H-01 Motion without command"
     assert first.requirement == "SRS-K-001 Output gate"
     assert first.properties == "P1"
+    assert first.design == "contract of may_drive kernel/src/gate.c:4; P1_gate spec/tla/Axis.tla:3"
     assert first.code == "kernel/src/gate.c:4 may_drive"
+    assert first.verification.split("; ") == [
+        "verification/cbmc/gate/harness.c:2",
+        "tests/unit/gate_test.cpp:3",
+        "spec/tla/Axis.tla:3",
+        "kernel/src/gate.c:4",
+    ]
+    assert "12 distinct states, 1 wrong variants refuted, constants Axes = {1}" in first.bounds.split("; ")
     assert first.results.split("; ") == [
         "CBMC:gate PASSED",
         "CONFORMANCE PASSED",
@@ -442,6 +482,7 @@ class Repository(Tree):
         for name in ("trace", "evidence", "measurements"):
             ignored = shutil.ignore_patterns("__pycache__", "planted")
             shutil.copytree(ROOT / "verification" / name, path / "verification" / name, ignore=ignored)
+        shutil.copytree(ROOT / "docs/site", path / "docs/site", ignore=ignored)
         rungs = "".join(f"[rung.{name}]\n{RUNG}[rung.{name}.figures]\n" for name in RUNGS)
         self.write("verification/expected.toml", rungs)
         self.write("verification/toolchain/libraries.txt", "")

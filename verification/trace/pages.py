@@ -165,8 +165,10 @@ def matrix_page(of: Trace, matrix: Sequence[Row]) -> str:
             return item_link(text.split(" ")[0], text)
         if name in ("item", "properties", "anomalies"):
             return "<br>".join(item_link(part) for part in parts)
-        if name == "code":
+        if name in ("code", "verification"):
             return "<br>".join(file_link(part) for part in parts)
+        if name in ("design", "bounds"):
+            return "<br>".join(escape(part) for part in parts)
         if name == "results":
             return "<br>".join(result_link(by_uid[part.rpartition(" ")[0]]) for part in parts)
         return status(text) if name == "status" else escape(text)

@@ -7,7 +7,7 @@ from pathlib import Path
 from gate import Finding, Trace, awaited
 
 COMMANDS = ("make build", "make test", "make verify", "make selftest", "make report")
-"""What leads from a fresh clone on Debian 12 to what is recorded; `awaited` names what is wanted beside."""
+"""What leads from a fresh clone on Debian 12 to what is recorded; `awaited` names what a release adds."""
 
 
 def digest(path: Path) -> str:
