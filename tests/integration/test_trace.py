@@ -386,7 +386,10 @@ def test_what_is_awaited_is_named_and_a_release_is_red_without_it(
     assert gate.findings(of) == []
     assert gate.awaited(of)["Measurements"] == long
     assert pages.counts(of)["measurements awaited"] == len(long)
-    assert "CAMPAIGN" in pages.write_all(of, [], "built")["index.html"]
+    written = pages.write_all(of, [], "built")
+    assert "CAMPAIGN" in written["index.html"]
+    broken = pages.broken_links(written, tree.path / "build/report")
+    assert not any("evidence" in link for _, link in broken)
     assert sorted(one.uid for one in gate.findings(reported(release=True))) == long
 
 

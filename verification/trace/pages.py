@@ -222,7 +222,7 @@ def results_page(of: Trace) -> str:
             "Commit": escape(result.commit or "unknown"),
             "Date": escape(result.date or "unknown"),
             "Bounds": escape(result.bounds),
-            "Raw log": file_link(result.log),
+            "Raw log": escape(result.log) if result.status == AWAITED else file_link(result.log),
             "Ran": file_link(result.place) if result.place else "",
             "Carries": ", ".join(item_link(uid) for uid in carries),
             "Did not pass": listed([escape(one) for one in result.failures]) if result.failures else "",

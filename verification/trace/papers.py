@@ -308,6 +308,7 @@ def release_facts(source: Source) -> str:
         ("components", len(facts["components"])),
         ("anomalies", len(facts["anomalies"])),
         ("findings of the gate", facts["findings"]),
+        *((f"awaited: {what.lower()}", ", ".join(uids) or "none") for what, uids in facts["awaited"].items()),
     ]
     return f"{texts(('', ''), lines)}<h2>Built and verified by</h2><pre>{escape(commands)}</pre>"
 
