@@ -15,6 +15,7 @@ campaign_length = $(if $(TICKS),--ticks $(TICKS),$(if $(filter command,$(firstwo
 setup := verification/toolchain/setup
 release := build/release
 reports := build/reports
+measure := verification/measurements/measure.py
 export PATH := $(CURDIR)/build/venv/bin:$(PATH)
 export PYTHONDONTWRITEBYTECODE := 1
 
@@ -78,20 +79,20 @@ fuzz: setup ## Throw bytes at the OpenIGTLink decoders under sanitizers: [FUZZ_S
 
 .PHONY: soak
 soak: build ## Let the robot move for half an hour under OpenIGTLink clients and reconnect storms: [MINUTES=30]
-	@python verification/soak/run.py --minutes $(or $(MINUTES),30)
+	@$(measure) soak python verification/soak/run.py --minutes $(or $(MINUTES),30)
 
 .PHONY: selftest selftest-all
 selftest: build ## Show that seeded faults turn tests and proofs red: a third, chosen by the commit
 	@tests/failure/run.py
 	@$(setup) packages provers
 	@pytest -m provers tests/integration
-	@/usr/bin/python3 verification/mutation/faults.py
+	@$(measure) faults /usr/bin/python3 verification/mutation/faults.py
 
 selftest-all: build ## Show that every seeded fault turns its test or proof red
 	@tests/failure/run.py --all
 	@$(setup) packages provers
 	@pytest -m provers tests/integration
-	@/usr/bin/python3 verification/mutation/faults.py --all
+	@$(measure) faults /usr/bin/python3 verification/mutation/faults.py --all
 
 .PHONY: verify
 verify: ## Climb the verification ladder: [FRESH=1] runs again what has not changed
@@ -101,11 +102,11 @@ verify: ## Climb the verification ladder: [FRESH=1] runs again what has not chan
 .PHONY: mutate
 mutate: build ## Draw mutants of the core and show each to tests, conformance, proofs, contracts: [SEED=] [COUNT=400]
 	@$(setup) packages provers
-	@/usr/bin/python3 verification/mutation/run.py --count $(or $(COUNT),400) $(if $(SEED),--seed $(SEED))
+	@$(measure) mutation /usr/bin/python3 verification/mutation/run.py --count $(or $(COUNT),400) $(if $(SEED),--seed $(SEED))
 
 .PHONY: report
-report: setup ## Write the trace report from the evidence of this commit, and name every line that is missing
-	@python verification/trace/report.py
+report: setup ## Write and judge the trace report: [RELEASE=1] demands the long measurements, too
+	@python verification/trace/report.py $(if $(RELEASE),--release)
 
 .PHONY: docs
 docs: setup ## Write the documentation site, with search and the code's call graphs, to build/docs/site
@@ -113,7 +114,7 @@ docs: setup ## Write the documentation site, with search and the code's call gra
 
 .PHONY: campaign campaign-selftest
 campaign: build ## Throw faults at kernel core and plant: [SECONDS=300 | TICKS=] [SEED=1] [SCHEDULER=]
-	@python verification/campaign/run.py --seed $(or $(SEED),1) $(campaign_length) \
+	@$(measure) campaign python verification/campaign/run.py --seed $(or $(SEED),1) $(campaign_length) \
 	  $(if $(SCHEDULER),--scheduler $(SCHEDULER))
 
 campaign-selftest: setup ## Show that the campaign finds each seeded fault of the kernel within a minute
@@ -121,15 +122,15 @@ campaign-selftest: setup ## Show that the campaign finds each seeded fault of th
 
 .PHONY: scenarios
 scenarios: build ## Kill, freeze, starve and flood the real processes, 200 times: [SEED=1] [COUNT=200] [ONLY=number]
-	@python verification/scenarios/run_scenarios.py --seed $(or $(SEED),1) $(if $(ONLY),--only $(ONLY),--count $(or $(COUNT),200))
+	@$(if $(ONLY),,$(measure) scenarios) python verification/scenarios/run_scenarios.py --seed $(or $(SEED),1) $(if $(ONLY),--only $(ONLY),--count $(or $(COUNT),200))
 
 .PHONY: bench
 bench: build ## Measure step, loop, reaction, link and rate beside cyclictest: [DURATION=10] [RATE_SECONDS=2]
-	@python verification/bench/run.py --duration $(or $(DURATION),10) --rate-seconds $(or $(RATE_SECONDS),2)
+	@$(measure) bench python verification/bench/run.py --duration $(or $(DURATION),10) --rate-seconds $(or $(RATE_SECONDS),2)
 
 .PHONY: bench-console
 bench-console: build ## Measure load, response, memory and the app's processor time of the console: [MINUTES=10]
-	@python verification/console/run.py --minutes $(or $(MINUTES),10)
+	@$(measure) console python verification/console/run.py --minutes $(or $(MINUTES),10)
 
 .PHONY: pictures
 pictures: build ## Take the manual's pictures of every page, in both themes, into build/pictures/
@@ -137,7 +138,7 @@ pictures: build ## Take the manual's pictures of every page, in both themes, int
 
 .PHONY: study
 study: build ## Measure steering and membrane detection on simulated insertions against their limits
-	@python verification/steering/run.py
+	@$(measure) steering python verification/steering/run.py
 
 .PHONY: install
 install: build ## Install programs, robot files and console: [PREFIX=/usr/local] [DESTDIR=]

@@ -12,8 +12,10 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "verification/trace
 
 import diagrams
 import gate
+import item_units
 import papers
 from items import Items
+from report import read_stated
 from test_trace import ROOT, Tree, reviewed
 
 CHAPTERS = ("Risk", "Requirements", "units", "methods", "results of units", "clauses", "findings", "matrix")
@@ -78,6 +80,21 @@ def test_every_chapter_of_the_set_is_one_that_there_is() -> None:
     assert told - files - set(papers.TABLES) == stated
     assert all((ROOT / name).is_file() for name in files)
     assert set(papers.TABLES) <= told
+
+
+def test_headers_of_class_C_are_units_of_the_item_that_names_their_folder(
+    tmp_path: Path,
+) -> None:
+    items, _ = read_stated(ROOT, tmp_path)
+    found = item_units.units_by_item(ROOT, items)
+    files = {uid: {one.file for one in entries} for uid, entries in found.items()}
+    assert "kernel/host/ring_reader.h" in files["IT-LINK"]
+    assert "kernel/host/loop.h" in files["IT-HOST"]
+    assert "app/control/piv_controller.hpp" in files["IT-MOTION"]
+    assert not any(one.startswith(("app/store", "app/cli")) for names in files.values() for one in names)
+    folders = {path.relative_to(ROOT).as_posix() for path in (ROOT / "app").iterdir() if path.is_dir()}
+    named = {place for item in items.of("ITEM") for place in item_units.folders_of(item.title)}
+    assert folders - named == {"app/build_info"}
 
 
 def test_a_chapter_that_there_is_not_is_refused(source: papers.Source) -> None:

@@ -19,13 +19,15 @@ import pytest
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "verification/trace"))
 
 import exporter
+import figures
 import gate
 import pages
-from components import Component, bill_of_materials
+from components import Component, bill_of_materials, npm_packages
 from items import Items, fingerprint
 from matrix import Row, as_csv, negative_lists, rows
+from measurements import Measurement, read_measurements
 from report import read_project, read_stated
-from results import MEASURED, Result, Source, read_results
+from results import Result, Source, read_results
 from review import write_reviewed
 from sources import Function, functions_of, read_links
 
@@ -35,6 +37,8 @@ PLANTED = ROOT / "verification/trace/planted"
 DEFECTS = sorted(PLANTED.glob("*.toml"))
 LIBC = Component("libc6", "2.36", "pkg:deb/debian/libc6@2.36")
 RUNGS = ("cbmc", "wp", "model", "conformance", "misra")
+MEASUREMENTS = read_measurements(ROOT / "verification/measurements/measurements.toml")
+CAMPAIGN = Measurement("campaign", "Faults", "make campaign", "release", ("gate.c",), {"faults": 3})
 
 
 def read_defect(path: Path) -> dict:
@@ -263,13 +267,53 @@ def test_the_bill_of_materials_names_what_is_shipped() -> None:
     assert [one["purl"] for one in bill["components"]] == [LIBC.purl]
 
 
+def test_the_bill_of_materials_has_what_packages_of_the_console_need(tmp_path: Path) -> None:
+    locked = {
+        "node_modules/shown": {"version": "1", "license": "MIT", "dependencies": {"drawn": "2"}},
+        "node_modules/shown/node_modules/drawn": {"version": "2", "integrity": "sha512-/w=="},
+        "node_modules/drawn": {"version": "9"},
+    }
+    (tmp_path / "web").mkdir()
+    (tmp_path / "web/package.json").write_text('{"dependencies": {"shown": "1"}}', "utf-8")
+    (tmp_path / "web/package-lock.json").write_text(json.dumps({"packages": locked}), "utf-8")
+    bill = bill_of_materials(npm_packages(tmp_path), "built")
+    shown, drawn = bill["components"]
+    assert shown["licenses"] == [{"license": {"id": "MIT"}}]
+    assert "hashes" not in shown
+    assert drawn["hashes"] == [{"alg": "SHA-512", "content": "ff"}]
+    needed = {one["ref"]: one["dependsOn"] for one in bill["dependencies"]}
+    assert needed == {
+        "interlock": ["pkg:npm/shown@1"],
+        "pkg:npm/shown@1": ["pkg:npm/drawn@2"],
+        "pkg:npm/drawn@2": [],
+    }
+
+
+def test_each_package_of_the_console_is_described_as_soup() -> None:
+    soup = (ROOT / "spec/requirements/60_soup.sdoc").read_text("utf-8")
+    described = {
+        name for line in re.findall(r"^COMPONENTS: (.*)$", soup, re.MULTILINE) for name in line.split(", ")
+    }
+    packages = {one.name: one for one in npm_packages(ROOT)}
+    assert {"react", "scheduler", "openapi-typescript-helpers"} <= set(packages) <= described
+    assert all(len(one.digest[1]) == 128 for one in packages.values())
+
+
 def test_a_row_leads_from_the_hazard_to_its_raw_results(tree: Tree, clean: tuple[Items, str]) -> None:
     of = gate.trace(tree.project(clean, reviewed(clean[0])))
     first = rows(of)[0]
     assert first.hazard == "H-01 Motion without command"
     assert first.requirement == "SRS-K-001 Output gate"
     assert first.properties == "P1"
+    assert first.design == "contract of may_drive kernel/src/gate.c:4; P1_gate spec/tla/Axis.tla:3"
     assert first.code == "kernel/src/gate.c:4 may_drive"
+    assert first.verification.split("; ") == [
+        "verification/cbmc/gate/harness.c:2",
+        "tests/unit/gate_test.cpp:3",
+        "spec/tla/Axis.tla:3",
+        "kernel/src/gate.c:4",
+    ]
+    assert "12 distinct states, 1 wrong variants refuted, constants Axes = {1}" in first.bounds.split("; ")
     assert first.results.split("; ") == [
         "CBMC:gate PASSED",
         "CONFORMANCE PASSED",
@@ -296,28 +340,123 @@ def test_a_result_is_no_better_than_its_rung(tree: Tree) -> None:
     assert {one.status for one in results} == {"UNKNOWN"}
 
 
-def test_a_measurement_counts_for_the_commit_that_it_was_made_from(tree: Tree) -> None:
-    def campaign(commit: str = "built", **changed: object) -> Result:
-        tree.measure("campaign", **changed)
-        source = Source(tree.path, commit, lambda _: True)
-        [result] = read_results(source, (), (), ["campaign"])
-        return result
+def campaign(
+    tree: Tree, commit: str = "built", current: bool = False, release: bool = True, **left: object
+) -> Result:
+    """What a report says of the campaign that left this."""
+    tree.measure("campaign", **left)
+    source = Source(tree.path, commit, lambda _: current)
+    [result] = read_results(source, (), (), [CAMPAIGN], release)
+    return result
 
-    result = campaign()
+
+def test_a_measurement_counts_for_its_commit_and_while_its_inputs_are_the_same(tree: Tree) -> None:
+    result = campaign(tree)
     assert (result.uid, result.status, result.fresh) == ("CAMPAIGN", "PASSED", True)
     assert (result.tool, result.bounds) == ("bench, gcc 12", "faults 3")
     assert (tree.path / result.log).is_file()
     assert result.supports == {"P1"}
-    assert not campaign("later").fresh
-    assert campaign(status="VACUOUS").status == "VACUOUS"
-    assert campaign(log="campaign").log == "build/evidence/campaign"
-    assert campaign(tool=None).status == "UNKNOWN"
+    assert not campaign(tree, "later").fresh
+    assert campaign(tree, "later", current=True).fresh
+    assert campaign(tree, status="VACUOUS").status == "VACUOUS"
+    assert campaign(tree, log="campaign").log == "build/evidence/campaign"
+    assert campaign(tree, tool=None).status == "UNKNOWN"
+    assert campaign(tree, figures={"faults": 2}).status == "UNKNOWN"
 
 
-def test_a_measurement_that_was_not_made_is_unknown(tree: Tree) -> None:
-    results = read_results(Source(tree.path, "built", lambda _: True), (), (), MEASURED)
-    assert [one.uid for one in results] == ["BENCH", "CAMPAIGN", "FAULTS", "MUTATION", "STEERING"]
-    assert {one.status for one in results} == {"UNKNOWN"}
+def test_a_long_measurement_is_awaited_where_only_a_release_demands_it(tree: Tree) -> None:
+    assert campaign(tree, "later", release=False).status == "AWAITED"
+    assert campaign(tree, tool=None, release=False).status == "AWAITED"
+    assert campaign(tree, figures={"faults": 2}, release=False).status == "AWAITED"
+    assert campaign(tree, "later", current=True, release=False).status == "PASSED"
+    assert campaign(tree, "later", status="FAILED", release=False).status == "FAILED"
+
+
+def test_what_is_awaited_is_named_and_a_release_is_red_without_it(
+    tree: Tree, clean: tuple[Items, str]
+) -> None:
+    def reported(release: bool) -> gate.Trace:
+        source = Source(tree.path, "built", lambda _: False)
+        project = read_project(source, clean, RUNGS, [LIBC], MEASUREMENTS, release)
+        return gate.trace(replace(project, reviewed=reviewed(clean[0])))
+
+    tree.measure("faults")
+    of = reported(release=False)
+    long = sorted(one.name.upper() for one in MEASUREMENTS if one.demanded == "release")
+    assert gate.findings(of) == []
+    assert gate.awaited(of)["Measurements"] == long
+    assert pages.counts(of)["measurements awaited"] == len(long)
+    written = pages.write_all(of, [], "built")
+    assert "CAMPAIGN" in written["index.html"]
+    broken = pages.broken_links(written, tree.path / "build/report")
+    assert not any("evidence" in link for _, link in broken)
+    assert sorted(one.uid for one in gate.findings(reported(release=True))) == long
+
+
+def test_a_requirement_that_rests_on_an_awaited_measurement_alone_is_named(
+    tree: Tree, clean: tuple[Items, str]
+) -> None:
+    tree.change(
+        "spec/requirements/20_requirements.sdoc", "VERIFICATION: Test, Proof", "VERIFICATION: Analysis, Proof"
+    )
+    with (tree.path / "spec/requirements/links.toml").open("a", encoding="utf-8") as links:
+        links.write('\n[results]\nSRS-K-001 = ["CAMPAIGN"]\n')
+    stated = tree.stated()
+    source = Source(tree.path, "built", lambda _: False)
+    of = gate.trace(read_project(source, stated, RUNGS, [LIBC], [CAMPAIGN]))
+    assert gate.awaited(of)["Requirements that rest on one of them alone"] == ["SRS-K-001"]
+    tree.measure("campaign")
+    of = gate.trace(read_project(source, stated, RUNGS, [LIBC], [CAMPAIGN]))
+    assert gate.awaited(of)["Requirements that rest on one of them alone"] == []
+
+
+def test_without_evidence_no_measurement_passes(tree: Tree) -> None:
+    results = read_results(Source(tree.path, "built", lambda _: True), (), (), MEASUREMENTS)
+    by_demand = {one.name.upper(): one.demanded for one in MEASUREMENTS}
+    assert {one.uid for one in results} == set(by_demand) >= {"BENCH", "CAMPAIGN", "FAULTS", "MUTATION"}
+    for one in results:
+        assert one.status == {"commit": "UNKNOWN", "release": "AWAITED"}[by_demand[one.uid]]
+
+
+@pytest.fixture
+def measured_tree(tmp_path: Path) -> Path:
+    """A tree with one measurement, the campaign of gate.c."""
+    for name in ("evidence", "measurements"):
+        ignored = shutil.ignore_patterns("__pycache__", "*.toml")
+        shutil.copytree(ROOT / "verification" / name, tmp_path / "verification" / name, ignore=ignored)
+    for name in ("verification/toolchain/gcc.txt", "kernel/include/a.h", "kernel/src/gate.c"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("12", "utf-8")
+    (tmp_path / "build/evidence").mkdir(parents=True)
+    (tmp_path / "verification/measurements/measurements.toml").write_text(MEASURED, "utf-8")
+    return tmp_path
+
+
+def measure(tree: Path, script: str) -> int:
+    program = tree / "verification/measurements/measure.py"
+    return subprocess.run(
+        [sys.executable, str(program), "campaign", "sh", "-c", script], cwd=tree, capture_output=True
+    ).returncode
+
+
+def test_a_measurement_is_keyed_by_its_inputs_unless_they_change_while_it_runs(measured_tree: Path) -> None:
+    key = measured_tree / "build/evidence/campaign.key"
+    assert measure(measured_tree, "echo {} > build/evidence/campaign.json; exit 3") == 3
+    first = key.read_text("utf-8")
+    assert measure(measured_tree, "echo {} > build/evidence/campaign.json; echo 13 > kernel/src/gate.c") == 0
+    assert not key.exists()
+    assert measure(measured_tree, "echo {} > build/evidence/campaign.json") == 0
+    assert key.read_text("utf-8") != first
+    assert measure(measured_tree, "true") == 0
+    assert not key.exists()
+    assert not (measured_tree / "build/evidence/campaign.json").exists()
+
+
+def test_each_measurement_names_inputs_that_there_are_and_a_target() -> None:
+    targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text("utf-8"), re.MULTILINE))
+    for one in MEASUREMENTS:
+        assert one.key()
+        assert one.target.removeprefix("make ") in targets
 
 
 def test_evidence_of_another_commit_is_fresh_while_its_inputs_are_the_same(tree: Tree) -> None:
@@ -328,6 +467,13 @@ def test_evidence_of_another_commit_is_fresh_while_its_inputs_are_the_same(tree:
     assert not results["TEST:unit:kernel_tests.P1_gate"]
 
 
+MEASURED = """[campaign]
+title = "Faults"
+target = "make campaign"
+demanded = "release"
+inputs = ["kernel/src/*"]
+least = { faults = 3 }
+"""
 RUNG = 'command = "true"\ninputs = []\ncores = 1\nmemory_gb = 1\nstatus = "PASSED"\n'
 
 
@@ -336,9 +482,10 @@ class Repository(Tree):
 
     def __init__(self, path: Path) -> None:
         super().__init__(path)
-        for name in ("trace", "evidence"):
+        for name in ("trace", "evidence", "measurements"):
             ignored = shutil.ignore_patterns("__pycache__", "planted")
             shutil.copytree(ROOT / "verification" / name, path / "verification" / name, ignore=ignored)
+        shutil.copytree(ROOT / "docs/site", path / "docs/site", ignore=ignored)
         rungs = "".join(f"[rung.{name}]\n{RUNG}[rung.{name}.figures]\n" for name in RUNGS)
         self.write("verification/expected.toml", rungs)
         self.write("verification/toolchain/libraries.txt", "")
@@ -347,12 +494,14 @@ class Repository(Tree):
         self.write(".gitignore", "/build/\n__pycache__/\n")
         self.write("CMakeLists.txt", "project(interlock VERSION 9.8.7)\n")
         self.write("verification/trace/papers.toml", PAPER)
-        for name in MEASURED:
-            self.measure(name)
+        self.write("verification/measurements/measurements.toml", MEASURED)
+        self.measure("campaign")
         # Any program that needs the C library and nothing else.
         self.write("build/release/bin/interlock", "")
         shutil.copy("/bin/true", path / "build/release/bin/interlock")
+        self.write("README.md", f"{figures.BEGIN}\n{figures.END}\n")
         self.git("init", "-q")
+        assert self.run("trace/figures.py", "--write").returncode == 0
         assert self.run("trace/review.py", "--all").returncode == 0
         self.git("add", ".")
         self.git("-c", "user.name=a", "-c", "user.email=b", "commit", "-qm", "tree")
@@ -405,6 +554,8 @@ def test_the_report_of_a_clean_project_is_written_and_a_defect_fails_it_by_name(
     assert done.returncode == 1, done.stdout + done.stderr
     assert "G5 FAILED" in done.stdout
     assert "TEST:unit:kernel_tests.Lamps" in done.stdout
+    repository.write("README.md", "One hazard, they say.")
+    assert "README.md" in repository.run("trace/report.py", "--gate-only").stdout
 
 
 def test_a_run_of_tests_begins_without_the_report_of_the_last_one(tmp_path: Path) -> None:
@@ -435,37 +586,8 @@ def test_every_function_that_is_proved_is_found_with_its_contract() -> None:
     assert proved <= contracted
 
 
-GTEST = re.compile(r"^TEST(?:_P|_F)?\((\w+),\s*(\w+)", re.MULTILINE)
-
-
-def written_tests() -> dict[str, list[str]]:
-    """The tests of each suite as the sources name them, without what a run adds."""
-
-    def texts(pattern: str) -> list[tuple[Path, str]]:
-        return [(path, path.read_text("utf-8")) for path in sorted((ROOT / "tests").glob(pattern))]
-
-    return {
-        "unit": [".".join(names) for _, text in texts("unit/**/*.cpp") for names in GTEST.findall(text)],
-        "integration": [
-            f"tests.integration.{path.stem}::{name}"
-            for path, text in texts("integration/test_*.py")
-            for name in re.findall(r"^def (test_\w+)", text, re.MULTILINE)
-        ],
-        "console": [
-            f"{path.stem}::{name}"
-            for path in sorted((ROOT / "web/src").rglob("*.test.ts*"))
-            for name in re.findall(r"\bit\(\s*[`\"]([^`\"]+)", path.read_text("utf-8"))
-        ],
-        "browser": [
-            f"{path.name}::{name}"
-            for path, text in texts("browser/*.spec.ts")
-            for name in re.findall(r"\btest\(\s*[`\"]([^`\"]+)", text.replace("${way}", "Esc"))
-        ],
-    }
-
-
 def test_each_test_that_a_requirement_names_stands_in_the_sources() -> None:
-    written = written_tests()
+    written = figures.written_tests(ROOT)
     patterns = {one for named in read_links(LINKS).tests.values() for one in named}
     missing = []
     for pattern in patterns:
@@ -480,7 +602,7 @@ def test_the_criteria_of_units_name_results_that_there_are() -> None:
     text = (ROOT / "spec/requirements/55_unit_acceptance.sdoc").read_text("utf-8")
     named = {one.partition(":")[2] for one in re.findall(r"`((?:TEST:unit|CBMC):[^`*]+)`", text)}
     proofs = {path.parent.name for path in (ROOT / "verification/cbmc").glob("*/proof.toml")}
-    suites = {f"kernel_tests.{one.partition('.')[0]}" for one in written_tests()["unit"]}
+    suites = {f"kernel_tests.{one.partition('.')[0]}" for one in figures.written_tests(ROOT)["unit"]}
     assert len(named) > 5
     assert {one.removeprefix("unit:") for one in named} <= proofs | suites
 
@@ -502,4 +624,5 @@ def test_the_projects_own_requirements_hold_together(tmp_path: Path) -> None:
     assert [str(one) for one in stated] == []
     missing = [path for paths in links.code.values() for path in paths if not (ROOT / path).exists()]
     assert missing == []
+    assert figures.complaint(ROOT, items) == ""
     assert {*links.code, *links.tests, *links.results} <= set(items.by_uid)

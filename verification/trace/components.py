@@ -1,5 +1,6 @@
 """What is shipped beside our own code, found in what was built, and its bill of materials."""
 
+import base64
 import json
 import re
 import subprocess
@@ -7,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-BUILT = re.compile(r"^([\w.-]+)==(\S+)", re.MULTILINE)
+BUILT = re.compile(r"^([\w.-]+)==(\S+)(?: --hash=sha256:([0-9a-f]{64}))?", re.MULTILINE)
 OURS = ("app/", "kernel/", "models/")
 """Folders whose object files are linked into what is shipped."""
 
@@ -19,6 +20,15 @@ class Component:
     name: str
     version: str
     purl: str
+    supplier: str = ""
+    """Who distributes it; empty where that is not known, as are the other fields."""
+    licence: str = ""
+    is_spdx: bool = False
+    """Whether the licence is named by its SPDX identifier."""
+    digest: tuple[str, str] = ("", "")
+    """Algorithm, as CycloneDX names it, and hexadecimal hash of the archive in which it came."""
+    needs: frozenset[str] = frozenset()
+    """Names of the components that it needs, shipped or not."""
 
 
 def lines_of(command: Sequence[str]) -> list[str]:
@@ -43,6 +53,28 @@ def headers(build: Path) -> set[str]:
     return found
 
 
+def debian_licence(name: str) -> str:
+    """The licence of most of a package, as its copyright file names it; empty when no machine can read it."""
+    try:
+        text = Path(f"/usr/share/doc/{name}/copyright").read_text("utf-8", "replace")
+    except OSError:
+        return ""
+    found = re.search(r"^Files: *\*.*?^License: *(\S[^\n]*)", text, re.MULTILINE | re.DOTALL)
+    return found[1] if found else ""
+
+
+def debian_digests(packages: Sequence[str]) -> dict[str, str]:
+    """SHA-256 of the archive of each NAME=VERSION of which apt's lists know it."""
+    digests, shown = {}, ""
+    for line in lines_of(["apt-cache", "show", *packages]):
+        word, _, value = line.partition(": ")
+        if word in ("Package", "Version"):
+            shown = value if word == "Package" else f"{shown}={value}"
+        elif word == "SHA256":
+            digests[shown] = value
+    return digests
+
+
 def debian_packages(paths: Iterable[str]) -> list[Component]:
     """The packages that the paths come from. /lib and /usr/lib are one directory under two names."""
     known = set(paths)
@@ -50,9 +82,71 @@ def debian_packages(paths: Iterable[str]) -> list[Component]:
     names = sorted({line.split(":")[0] for line in lines_of(["dpkg-query", "-S", *asked]) if line})
     if not names:
         return []
-    shown = lines_of(["dpkg-query", "-W", "-f", "${Package} ${Version}\n", *names])
-    pairs = sorted({tuple(line.split(" ", 1)) for line in shown})
-    return [Component(name, version, f"pkg:deb/debian/{name}@{version}") for name, version in pairs]
+    shown = lines_of(["dpkg-query", "-W", "-f", "${Package}\t${Version}\t${Depends}\n", *names])
+    packages = sorted({tuple(line.split("\t", 2)) for line in shown})
+    digests = debian_digests([f"{name}={version}" for name, version, _ in packages])
+    return [
+        Component(
+            name,
+            version,
+            f"pkg:deb/debian/{name}@{version}",
+            supplier="Debian",
+            licence=debian_licence(name),
+            digest=("SHA-256", digests.get(f"{name}={version}", "")),
+            needs=frozenset(re.findall(r"(?:^|[,|] )([a-z0-9][a-z0-9+.-]+)", depends)),
+        )
+        for name, version, depends in packages
+    ]
+
+
+def built_libraries(root: Path) -> list[Component]:
+    """What is compiled from a source archive of PyPI."""
+    pinned = (root / "verification/toolchain/libraries.txt").read_text("utf-8")
+    found = []
+    for name, version, digest in BUILT.findall(pinned):
+        licence = root / "build/libraries" / name / "LICENSE"
+        text = licence.read_text("utf-8") if licence.exists() else ""
+        of = "MIT" if text.startswith("MIT License") else ""
+        purl = f"pkg:pypi/{name}@{version}"
+        found.append(Component(name, version, purl, "PyPI", of, bool(of), ("SHA-256", digest)))
+    return found
+
+
+def resolved(name: str, wanted_by: str, locked: Mapping[str, Mapping]) -> str:
+    """The place in a lock file of the package that `wanted_by` gets: the nearest node_modules above it."""
+    place = wanted_by
+    while place and f"{place}/node_modules/{name}" not in locked:
+        place = place.rpartition("/node_modules/")[0] if "/node_modules/" in place else ""
+    return f"{place}/node_modules/{name}" if place else f"node_modules/{name}"
+
+
+def npm_packages(root: Path) -> list[Component]:
+    """The packages of the console, and all that they need, as the lock file has them."""
+    wanted = json.loads((root / "web/package.json").read_text("utf-8"))["dependencies"]
+    locked = json.loads((root / "web/package-lock.json").read_text("utf-8"))["packages"]
+    found: dict[str, Component] = {}
+    waiting = [(name, "") for name in wanted]
+    while waiting:
+        name, wanted_by = waiting.pop()
+        place = resolved(name, wanted_by, locked)
+        if place in found:
+            continue
+        entry = locked[place]
+        needs = entry.get("dependencies", {})
+        version, licence = entry["version"], entry.get("license", "")
+        algorithm, _, digest = entry.get("integrity", "").partition("-")
+        found[place] = Component(
+            name,
+            version,
+            f"pkg:npm/{name.replace('@', '%40')}@{version}",
+            supplier="npm",
+            licence=licence,
+            is_spdx=bool(licence),
+            digest=(algorithm.replace("sha", "SHA-"), base64.b64decode(digest).hex()),
+            needs=frozenset(needs),
+        )
+        waiting += [(one, place) for one in needs]
+    return list(found.values())
 
 
 def shipped(root: Path) -> list[Component]:
@@ -62,22 +156,32 @@ def shipped(root: Path) -> list[Component]:
     if not programs:
         return []
     found = debian_packages(shared_libraries(programs) | headers(build))
-    built = BUILT.findall((root / "verification/toolchain/libraries.txt").read_text("utf-8"))
-    found += [Component(name, version, f"pkg:pypi/{name}@{version}") for name, version in built]
-    wanted = json.loads((root / "web/package.json").read_text("utf-8"))["dependencies"]
-    locked = json.loads((root / "web/package-lock.json").read_text("utf-8"))["packages"]
-    for name in wanted:
-        version = locked[f"node_modules/{name}"]["version"]
-        found.append(Component(name, version, f"pkg:npm/{name.replace('@', '%40')}@{version}"))
-    return sorted(found, key=lambda one: one.name)
+    return sorted([*found, *built_libraries(root), *npm_packages(root)], key=lambda one: one.name)
+
+
+def entry_of(one: Component) -> Mapping[str, object]:
+    """A component as CycloneDX has it. What is not known is left out."""
+    entry: dict[str, object] = {"type": "library", "bom-ref": one.purl}
+    if one.supplier:
+        entry["supplier"] = {"name": one.supplier}
+    entry |= {"name": one.name, "version": one.version}
+    if one.digest[1]:
+        entry["hashes"] = [{"alg": one.digest[0], "content": one.digest[1]}]
+    if one.licence:
+        entry["licenses"] = [{"license": {"id" if one.is_spdx else "name": one.licence}}]
+    return {**entry, "purl": one.purl}
 
 
 def bill_of_materials(components: Sequence[Component], commit: str) -> Mapping[str, object]:
     """What is shipped as CycloneDX 1.6, without time or serial number, so that two runs agree."""
-    libraries = [
-        {"type": "library", "bom-ref": one.purl, "name": one.name, "version": one.version, "purl": one.purl}
-        for one in components
-    ]
-    ours = {"type": "application", "name": "interlock", "version": commit}
+    ours = {"type": "application", "bom-ref": "interlock", "name": "interlock", "version": commit}
     head = {"bomFormat": "CycloneDX", "specVersion": "1.6", "version": 1}
-    return {**head, "metadata": {"component": ours}, "components": libraries}
+    needed = {one.purl: [other.purl for other in components if other.name in one.needs] for one in components}
+    reached = {purl for purls in needed.values() for purl in purls}
+    needed["interlock"] = [one.purl for one in components if one.purl not in reached]
+    return {
+        **head,
+        "metadata": {"component": ours},
+        "components": [entry_of(one) for one in components],
+        "dependencies": [{"ref": ref, "dependsOn": on} for ref, on in sorted(needed.items())],
+    }

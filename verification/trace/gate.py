@@ -9,7 +9,7 @@ from pathlib import Path
 import fretish
 from components import Component
 from items import GENERATED, Item, Items, fingerprint
-from results import SOUND, Result
+from results import AWAITED, SOUND, Result
 from sources import Function, Links
 
 
@@ -112,7 +112,7 @@ def methods_of(item: Item) -> list[str]:
 
 
 def g1(of: Trace) -> Iterator[Finding]:
-    """Each hazard has a cause, and each cause, failure mode and threat a control."""
+    """Each hazard has a cause, each cause and threat a control, each failure mode what meets it."""
     items = of.project.items
     for hazard in items.of("HAZARD"):
         if not items.children(hazard.uid, "Causes"):
@@ -123,6 +123,10 @@ def g1(of: Trace) -> Iterator[Finding]:
     for cause in items.of("CAUSE", "THREAT", "FAILURE_MODE"):
         if not cause.parents_by("Causes"):
             yield Finding("G1", cause.uid, "leads to no hazard")
+    for mode in items.of("FAILURE_MODE"):
+        met = mode.parents_by("MetBy")
+        if not any(items[uid].kind in ("CONTROL", "REQUIREMENT") for uid in met if uid in items.by_uid):
+            yield Finding("G1", mode.uid, "no risk control or requirement meets it")
 
 
 def g2(of: Trace) -> Iterator[Finding]:
@@ -162,7 +166,7 @@ def g3(of: Trace) -> Iterator[Finding]:
 
 
 def g4(of: Trace) -> Iterator[Finding]:
-    """Each method by which a requirement is to be verified has a result."""
+    """Each method by which a requirement is to be verified has a result, or awaits one."""
     for requirement in of.project.items.of("REQUIREMENT"):
         methods = methods_of(requirement)
         have = {result.method for result in of.carried.get(requirement.uid, ()) if result.status != "UNKNOWN"}
@@ -174,9 +178,9 @@ def g4(of: Trace) -> Iterator[Finding]:
 
 
 def g5(of: Trace) -> Iterator[Finding]:
-    """No result is FAILED, UNKNOWN or VACUOUS, unless an anomaly explains it."""
+    """No result is FAILED, UNKNOWN or VACUOUS, unless an anomaly explains it; an awaited one is no result."""
     for result in of.project.results:
-        if result.status not in SOUND and not of.covers(result):
+        if result.status not in (*SOUND, AWAITED) and not of.covers(result):
             because = f": {', '.join(result.failures[:3])}" if result.failures else ""
             yield Finding("G5", result.uid, f"{result.status} ({result.bounds}){because}")
 
@@ -201,7 +205,7 @@ def g6(of: Trace) -> Iterator[Finding]:
 def g7(of: Trace) -> Iterator[Finding]:
     """Each result was made from the sources of this commit."""
     for result in of.project.results:
-        if result.status != "UNKNOWN" and not result.fresh:
+        if result.status not in ("UNKNOWN", AWAITED) and not result.fresh:
             made = result.commit[:12] or "an unknown commit"
             yield Finding("G7", result.uid, f"stale: made at {made}, and its inputs have changed since")
 
@@ -235,7 +239,7 @@ def g9(of: Trace) -> Iterator[Finding]:
                 yield Finding("G9", uid, f"no test or result matches '{pattern}'")
     for result in project.results:
         for path in (result.log, result.place):
-            if result.status != "UNKNOWN" and path and not (project.root / path).exists():
+            if result.status not in ("UNKNOWN", AWAITED) and path and not (project.root / path).exists():
                 yield Finding("G9", result.uid, f"names {path}, which there is not")
     for line in project.exporter_log.splitlines():
         if re.search(r"skipping|warning", line, re.IGNORECASE):
@@ -271,6 +275,22 @@ def g11(of: Trace) -> Iterator[Finding]:
 
 
 RULES: Sequence[Callable[[Trace], Iterator[Finding]]] = (g1, g2, g3, g4, g5, g6, g7, g8, g9, g10, g11)
+
+
+def awaited(of: Trace) -> dict[str, list[str]]:
+    """What this report does not judge because a release alone demands it: measurements, and requirements.
+
+    The requirements are those of which a method of verification has no other result.
+    """
+    results = [result.uid for result in of.project.results if result.status == AWAITED]
+    requirements = []
+    for requirement in of.project.items.of("REQUIREMENT"):
+        carried = of.carried.get(requirement.uid, ())
+        sound = {result.method for result in carried if result.status in SOUND}
+        waits = {result.method for result in carried if result.status == AWAITED} - sound
+        if waits & set(methods_of(requirement)):
+            requirements.append(requirement.uid)
+    return {"Measurements": results, "Requirements that rest on one of them alone": requirements}
 
 
 def alike(found: Sequence[Finding]) -> dict[tuple[str, str], list[str]]:

@@ -7,7 +7,8 @@ from dataclasses import asdict, dataclass, fields
 
 from gate import Trace
 from items import Item, fingerprint
-from results import SOUND, Result
+from places import Places
+from results import AWAITED, SOUND, Result
 
 
 @dataclass(frozen=True)
@@ -29,9 +30,12 @@ class Row:
     text_hash: str
     item: str
     properties: str
+    design: str
     code: str
     methods: str
+    verification: str
     results: str
+    bounds: str
     status: str
     dates: str
     commits: str
@@ -56,8 +60,8 @@ def code_of(of: Trace, uid: str) -> list[str]:
 
 
 def status_of(results: Sequence[Result]) -> str:
-    """The worst status of several results; MISSING for none."""
-    order = ("FAILED", "VACUOUS", "UNKNOWN", "BOUNDED", "PASSED")
+    """The worst status of several results; AWAITED when all of them are, MISSING for none."""
+    order = ("FAILED", "VACUOUS", "UNKNOWN", "BOUNDED", "PASSED", AWAITED)
     return next((status for status in order if any(one.status == status for one in results)), "MISSING")
 
 
@@ -82,6 +86,7 @@ def ways(of: Trace) -> Iterator[tuple[Item, Item, Item, Item, Item]]:
 def rows(of: Trace) -> list[Row]:
     """The whole matrix, in the order of the documents."""
     items = of.project.items
+    places = Places(of)
     found = []
     for hazard, cause, control, system, requirement in ways(of):
         results = sorted(of.carried.get(requirement.uid, ()), key=lambda one: one.uid)
@@ -103,9 +108,12 @@ def rows(of: Trace) -> list[Row]:
                 text_hash=fingerprint(items, requirement),
                 item="; ".join(requirement.parents_by("Allocated")),
                 properties="; ".join(one.uid for one in properties),
+                design="; ".join(places.design_of(of, requirement.uid)),
                 code="; ".join(code_of(of, requirement.uid)),
                 methods=requirement.fields["VERIFICATION"],
+                verification="; ".join(dict.fromkeys(filter(None, map(places.of_result, results)))),
                 results="; ".join(f"{one.uid} {one.status}" for one in results),
+                bounds="; ".join(dict.fromkeys(one.bounds.replace("; ", ", ") for one in results)),
                 status=status_of(results),
                 dates="; ".join(sorted({one.date[:10] for one in results if one.date})),
                 commits="; ".join(sorted({one.commit[:12] for one in results if one.commit})),
@@ -169,6 +177,8 @@ def negative_lists(of: Trace) -> dict[str, list[str]]:
             f"{one.file}:{one.name}" for one in project.functions if not project.links.requirements_of(one)
         ],
         "Results failed, unknown, vacuous or stale": [
-            one.uid for one in project.results if one.status not in SOUND or not one.fresh
+            one.uid
+            for one in project.results
+            if one.status != AWAITED and (one.status not in SOUND or not one.fresh)
         ],
     }

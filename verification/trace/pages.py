@@ -6,10 +6,11 @@ from dataclasses import fields
 from html import escape, unescape
 from pathlib import Path
 
-from gate import Finding, Trace, alike
+from figures import KINDS
+from gate import Finding, Trace, alike, awaited
 from items import Item
 from matrix import Row, code_of, coverage, negative_lists, rows, status_of
-from results import Result
+from results import AWAITED, Result
 
 STYLE = "style.css"
 FILTER = "filter.js"
@@ -83,25 +84,14 @@ def table(headings: Sequence[str], lines: Sequence[Sequence[str]]) -> str:
 def counts(of: Trace) -> dict[str, int]:
     """The figures of the report."""
     project = of.project
-    kinds = {
-        "hazards": "HAZARD",
-        "causes": "CAUSE",
-        "failure modes": "FAILURE_MODE",
-        "threats": "THREAT",
-        "risk controls": "CONTROL",
-        "system requirements": "SYSREQ",
-        "software requirements": "REQUIREMENT",
-        "properties": "PROPERTY",
-        "SOUP items": "SOUP",
-        "anomalies": "ANOMALY",
-    }
     tests = [one for one in project.results if one.method == "Test"]
     return {
-        **{name: len(project.items.of(kind)) for name, kind in kinds.items()},
+        **{name: len(project.items.of(kind)) for name, kind in KINDS.items()},
         "functions of the core": len(project.functions),
         "results of proof": sum(one.method == "Proof" for one in project.results),
         "results of model checking": sum(one.method == "ModelCheck" for one in project.results),
         "tests": sum(len(one.cases) for one in tests),
+        "measurements awaited": sum(one.status == AWAITED for one in project.results),
     }
 
 
@@ -125,6 +115,8 @@ def overview(of: Trace, found: Sequence[Finding], commit: str) -> str:
         folded(f"{rule} {text}: {len(uids)}", uids) for (rule, text), uids in alike(found).items()
     )
     negative = "".join(folded(f"{title}: {len(uids)}", uids) for title, uids in negative_lists(of).items())
+
+    waiting = "".join(folded(f"{title}: {len(uids)}", uids) for title, uids in awaited(of).items())
 
     def row_link(hazard: Item) -> str:
         words = f"{hazard.uid} {hazard.title}"
@@ -151,6 +143,7 @@ def overview(of: Trace, found: Sequence[Finding], commit: str) -> str:
     sections = {
         "Gate": gate,
         "Must be empty at a release": negative,
+        "Awaited: a release demands it, this report does not": waiting,
         "Coverage by hazard": covered,
         "Figures": figures,
         "Software requirements by content": contents,
@@ -172,8 +165,10 @@ def matrix_page(of: Trace, matrix: Sequence[Row]) -> str:
             return item_link(text.split(" ")[0], text)
         if name in ("item", "properties", "anomalies"):
             return "<br>".join(item_link(part) for part in parts)
-        if name == "code":
+        if name in ("code", "verification"):
             return "<br>".join(file_link(part) for part in parts)
+        if name in ("design", "bounds"):
+            return "<br>".join(escape(part) for part in parts)
         if name == "results":
             return "<br>".join(result_link(by_uid[part.rpartition(" ")[0]]) for part in parts)
         return status(text) if name == "status" else escape(text)
@@ -227,7 +222,7 @@ def results_page(of: Trace) -> str:
             "Commit": escape(result.commit or "unknown"),
             "Date": escape(result.date or "unknown"),
             "Bounds": escape(result.bounds),
-            "Raw log": file_link(result.log),
+            "Raw log": escape(result.log) if result.status == AWAITED else file_link(result.log),
             "Ran": file_link(result.place) if result.place else "",
             "Carries": ", ".join(item_link(uid) for uid in carries),
             "Did not pass": listed([escape(one) for one in result.failures]) if result.failures else "",

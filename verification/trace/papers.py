@@ -6,8 +6,10 @@ import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
+from itertools import groupby
 from pathlib import Path
 
+import item_units
 from diagrams import modules, processes
 from gate import Finding, Trace, alike
 from items import STRUCTURE, Item
@@ -165,6 +167,22 @@ def units(source: Source) -> str:
     return "".join(f"<h2>{escape(file)}</h2>{''.join(blocks)}" for file, blocks in by_file.items())
 
 
+def units_of_items(source: Source) -> str:
+    """Each type and function that the headers of items of class C declare, with what they say of it."""
+    project = source.trace.project
+    described = item_units.units_by_item(project.root, project.items)
+    shown = []
+    for uid, entries in described.items():
+        shown.append(f"<h2>{escape(uid)} {escape(project.items[uid].title)}</h2>")
+        for file, within in groupby(entries, key=lambda one: one.file):
+            each = list(within)
+            about = " ".join(one.brief for one in each if one.kind == "file")
+            lines = [(one.name, one.kind, one.brief) for one in each if one.kind != "file" and one.brief]
+            shown.append(f"<h3>{escape(file)}</h3><p>{escape(about)}</p>")
+            shown.append(texts(("unit", "kind", "says"), lines))
+    return "".join(shown)
+
+
 def methods(source: Source) -> str:
     """How many requirements are verified by which method."""
     counted: dict[str, int] = {}
@@ -268,10 +286,17 @@ def components(source: Source) -> str:
         for name in item.fields["COMPONENTS"].split(",")
     }
     lines = [
-        (one.name, one.version, one.purl, described.get(one.name, "none"))
+        (
+            one.name,
+            one.version,
+            one.supplier,
+            one.licence or "not known",
+            one.purl,
+            described.get(one.name, "none"),
+        )
         for one in source.trace.project.components
     ]
-    return texts(("component", "version", "package URL", "SOUP item"), lines)
+    return texts(("component", "version", "supplier", "licence", "package URL", "SOUP item"), lines)
 
 
 def release_facts(source: Source) -> str:
@@ -283,6 +308,7 @@ def release_facts(source: Source) -> str:
         ("components", len(facts["components"])),
         ("anomalies", len(facts["anomalies"])),
         ("findings of the gate", facts["findings"]),
+        *((f"awaited: {what.lower()}", ", ".join(uids) or "none") for what, uids in facts["awaited"].items()),
     ]
     return f"{texts(('', ''), lines)}<h2>Built and verified by</h2><pre>{escape(commands)}</pre>"
 
@@ -366,6 +392,7 @@ TABLES: Mapping[str, tuple[str, Callable[[Source], str]]] = {
     "processes": ("Processes and interfaces", lambda _: processes()),
     "modules": ("What includes what in the app", lambda source: modules(source.trace.project.root)),
     "units": ("Units", units),
+    "units of other items": ("Units of the other items of class C", units_of_items),
     "methods": ("Methods", methods),
     "rungs": ("The verification ladder", rungs),
     "results of units": ("Results", unit_results),

@@ -4,10 +4,10 @@ import hashlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from gate import Finding, Trace
+from gate import Finding, Trace, awaited
 
-COMMANDS = ("make build", "make test", "make verify", "make report")
-"""What leads from a fresh clone on Debian 12 to what is recorded."""
+COMMANDS = ("make build", "make test", "make verify", "make selftest", "make report")
+"""What leads from a fresh clone on Debian 12 to what is recorded; `awaited` names what a release adds."""
 
 
 def digest(path: Path) -> str:
@@ -31,4 +31,5 @@ def record(of: Trace, found: Sequence[Finding], commit: str) -> Mapping[str, obj
         "components": {one.purl: one.version for one in of.project.components},
         "anomalies": {one.uid: one.title for one in of.project.items.of("ANOMALY")},
         "findings": len(found),
+        "awaited": awaited(of),
     }

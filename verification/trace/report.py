@@ -1,5 +1,8 @@
 #!/usr/bin/env python3
-"""Writes the trace report of this commit into build/report and judges it. Usage: report.py [--gate-only]
+"""Writes the trace report of this commit into build/report and judges it.
+
+Usage: report.py [--gate-only] [--release]. Without --release the measurements that only a release demands are
+named as awaited where they are missing (verification/measurements); with it they are lines that are missing.
 
 Reads spec/requirements by StrictDoc, the functions of kernel/src, and the evidence in build/evidence and
 build/reports. Writes index.html, matrix.html, trace.html, results.html, matrix.csv, trace.json, sbom.json,
@@ -14,14 +17,16 @@ import shutil
 import sys
 import tomllib
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
-sys.path.append(str(Path(__file__).resolve().parents[1] / "evidence"))
+sys.path += [str(Path(__file__).resolve().parents[1] / name) for name in ("evidence", "measurements")]
 
 import documents
 import evidence
+import figures
 import gate
 import pages
 import papers
@@ -31,7 +36,8 @@ from exporter import RefusedError, export, stage
 from items import Items, read_items
 from ladder import UnusableError, content_key, read_expected
 from matrix import as_csv, negative_lists, rows
-from results import MEASURED, Source, read_results
+from measurements import Measurement, read_measurements
+from results import Source, read_results
 from sources import functions_of, read_links
 
 
@@ -44,16 +50,12 @@ def version(root: Path) -> str:
     return re.search(r"project\(interlock VERSION (\S+)", (root / "CMakeLists.txt").read_text("utf-8"))[1]
 
 
-def rung_keys(root: Path) -> dict[str, bool]:
-    """For each rung of the ladder, whether its evidence was made from the inputs that stand here now."""
-    current = {}
-    for rung in read_expected(root / "verification/expected.toml"):
-        try:
-            kept = (root / "build/evidence" / f"{rung.name}.key").read_text("utf-8")
-            current[rung.name] = kept == content_key(rung)
-        except (OSError, UnusableError):
-            current[rung.name] = False
-    return current
+def is_current(root: Path, name: str, key: Callable[[], str]) -> bool:
+    """Whether the evidence of a rung or measurement was made from the inputs that stand here now."""
+    try:
+        return (root / "build/evidence" / f"{name}.key").read_text("utf-8") == key()
+    except (OSError, UnusableError):
+        return False
 
 
 def read_stated(root: Path, output: Path) -> tuple[Items, str]:
@@ -69,9 +71,13 @@ def read_project(
     stated: tuple[Items, str],
     rungs: Iterable[str],
     components: Sequence[Component],
-    measurements: Iterable[str] = (),
+    measurements: Iterable[Measurement] = (),
+    release: bool = False,
 ) -> gate.Project:
-    """All that the gate looks at: what is stated, sources, evidence of `rungs` and `measurements`."""
+    """All that the gate looks at: what is stated, sources, evidence of `rungs` and `measurements`.
+
+    Of the measurements those that a release demands are demanded only when it is one.
+    """
     requirements = source.root / "spec/requirements"
     items, printed = stated
     return gate.Project(
@@ -79,7 +85,7 @@ def read_project(
         items=items,
         functions=functions_of(source.root),
         links=read_links(requirements / "links.toml"),
-        results=read_results(source, rungs, measurements=measurements),
+        results=read_results(source, rungs, measurements=measurements, release=release),
         reviewed=read_toml(requirements / "reviewed.toml"),
         clauses=read_toml(requirements / "clauses.toml"),
         components=components,
@@ -117,6 +123,7 @@ def write_pages(
         "counts": pages.counts(of),
         "rows": len(matrix),
         "negative_lists": negative_lists(of),
+        "awaited": gate.awaited(of),
         "findings": [{"rule": one.rule, "uid": one.uid, "text": one.text} for one in found],
     }
     (output / "trace.json").write_text(dump(summary), "utf-8")
@@ -130,19 +137,27 @@ def write_pages(
 def main() -> int:
     parser = argparse.ArgumentParser(description="Write and judge the trace report.")
     parser.add_argument("--gate-only", action="store_true", help="judge, and write no pages")
+    parser.add_argument("--release", action="store_true", help="demand what a release demands, too")
     arguments = parser.parse_args()
     root = evidence.ROOT
     output = root / "build/report"
     commit = evidence.commit()
     try:
-        current = rung_keys(root)
+        rungs = read_expected(root / "verification/expected.toml")
+        measurements = read_measurements(root / "verification/measurements/measurements.toml")
+        current = {one.name: is_current(root, one.name, partial(content_key, one)) for one in rungs}
+        names = list(current)
+        current |= {one.name: is_current(root, one.name, one.key) for one in measurements}
         source = Source(root, commit, current.__getitem__)
-        project = read_project(source, read_stated(root, output), current, shipped(root), MEASURED)
+        stated_now = read_stated(root, output)
+        project = read_project(source, stated_now, names, shipped(root), measurements, arguments.release)
         if not arguments.gate_only:
             printed = write_documents(gate.trace(project), output)
             project = replace(project, exporter_log=project.exporter_log + printed)
         of = gate.trace(project)
         found = gate.findings(of)
+        if wrong := figures.complaint(root, project.items):
+            found.append(gate.Finding("G9", "README.md", wrong))
         if not arguments.gate_only:
             stated = papers.read_documents(output / "stated/json/index.json")
             set_of = papers.Source(of, stated, found, commit, version(root))
@@ -155,6 +170,9 @@ def main() -> int:
         print(f"{rule} {text}: {', '.join(uids)}")
     by_rule = ", ".join(f"{rule} {count}" for rule, count in Counter(one.rule for one in found).items())
     print(", ".join(f"{count} {name}" for name, count in pages.counts(of).items()))
+    for what, uids in gate.awaited(of).items():
+        if uids:
+            print(f"awaited, demanded by a release alone: {what.lower()}: {', '.join(uids)}")
     print(f"gate: {len(found)} lines are missing or wrong ({by_rule})" if found else "gate: green")
     return 1 if found else 0
 

@@ -7,13 +7,20 @@ each of them; the rung's own status caps theirs.
 
 import json
 import re
+import sys
 import tomllib
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+sys.path.append(str(Path(__file__).resolve().parents[1] / "measurements"))
+
+from measurements import Measurement
+
 SOUND = ("PASSED", "BOUNDED")
+AWAITED = "AWAITED"
+"""The status of a measurement that a release demands, that this report does not, and that is not there."""
 PROPERTY = re.compile(r"(?<![A-Za-z0-9])(P(?:1[0-6]|[1-9])|L[12])(?=_)")
 """A property's identifier where a name begins with it: P1_gate, test_P2_P8_..., ensures P7_drive."""
 TYPES = "TypeOK"
@@ -288,48 +295,41 @@ CONVERTERS: Mapping[str, Callable[[Source, Rung], Iterator[Result]]] = {
 }
 
 
-MEASURED: Mapping[str, str] = {
-    "bench": "Times, text size and stack within their limits",
-    "campaign": "Faults at kernel core and plant, judged by the oracle",
-    "faults": "Seeded faults of the kernel turn their proofs red",
-    "mutation": "Mutants of the kernel core are found by its tests",
-    "steering": "Steering and membrane detection within their limits",
-}
-"""What other targets than `make verify` leave in build/evidence, each judged as a whole."""
+def measured(source: Source, one: Measurement, release: bool) -> Result:
+    """The result of a measurement. It is fresh when it was made from this commit or from the same inputs.
 
-
-def measured(source: Source, name: str) -> Result:
-    """The result of one of them. It is fresh when it was made from this commit."""
-    rung = read_rung(source, name)
+    One that is missing, stale or too short is AWAITED where a report does not demand it, so that it neither
+    passes nor fails.
+    """
+    rung = read_rung(source, one.name)
     if rung is None:
-        return replace(missing_rung(name), title=f"{MEASURED[name]}: no evidence")
-    log = json.loads((source.evidence / f"{name}.json").read_text("utf-8")).get("log", "")
-    log = log if log.startswith("build/") else f"build/evidence/{log or name}"
+        missing = missing_rung(one.name, f"{one.title}: no evidence", one.target)
+        return missing if release or one.demanded == "commit" else replace(missing, status=AWAITED)
+    log = json.loads((source.evidence / f"{one.name}.json").read_text("utf-8")).get("log", "")
+    log = log if log.startswith("build/") else f"build/evidence/{log or one.name}"
     bounds = figures_in_words(rung.figures)
-    fresh = source.made(rung.commit)
-    return rung.result(
-        name.upper(),
-        MEASURED[name],
-        "Analysis",
-        rung.status,
-        bounds=bounds,
-        log=log,
-        supports=rung.supports,
-        fresh=fresh,
-    )
+    status = rung.status
+    short = one.too_short(rung.figures)
+    if short and status in SOUND:
+        bounds, status = f"too short: {short}. {bounds}", "UNKNOWN"
+    unmade = bool(short) or not rung.fresh
+    if unmade and status not in ("FAILED", "VACUOUS") and not (release or one.demanded == "commit"):
+        bounds, status = f"not of these inputs, or too short; {one.target} makes it. {bounds}", AWAITED
+    result = rung.result(one.name.upper(), one.title, "Analysis", rung.status, bounds=bounds, log=log)
+    return replace(result, status=status, supports=rung.supports)
 
 
-def missing_rung(name: str) -> Result:
+def missing_rung(name: str, title: str = "", target: str = "") -> Result:
     """Stands for a rung that left no evidence, so that its absence is a line of the report."""
     return Result(
         uid=name.upper(),
-        title=f"Rung {name}: no evidence",
+        title=title or f"Rung {name}: no evidence",
         method="Analysis",
         status="UNKNOWN",
         tool="none",
         commit="",
         date="",
-        bounds="not run",
+        bounds=f"not run; {target} makes it" if target else "not run",
         log=f"build/evidence/{name}.json",
         supports=frozenset(),
         fresh=False,
@@ -387,15 +387,22 @@ def suites(source: Source, suite: str) -> Iterator[Result]:
 
 
 def read_results(
-    source: Source, rungs: Iterable[str], names: Sequence[str] = SUITES, measurements: Iterable[str] = ()
+    source: Source,
+    rungs: Iterable[str],
+    names: Sequence[str] = SUITES,
+    measurements: Iterable[Measurement] = (),
+    release: bool = False,
 ) -> list[Result]:
-    """All results, by their UIDs. A rung, suite or measurement that left nothing is UNKNOWN."""
+    """All results, by their UIDs. A rung or suite that left nothing is UNKNOWN.
+
+    So is a measurement, when `release` or every report demands it; otherwise it is AWAITED.
+    """
     found: list[Result] = []
     for name in rungs:
         rung = read_rung(source, name)
         convert = CONVERTERS.get(name, whole(f"Rung {name}"))
         found += convert(source, rung) if rung else [missing_rung(name)]
-    found += [measured(source, name) for name in measurements]
+    found += [measured(source, one, release) for one in measurements]
     for name in names:
         found += suites(source, name)
     return sorted(found, key=lambda result: result.uid)
