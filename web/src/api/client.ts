@@ -39,6 +39,7 @@ export type Capture = Schemas["Capture"];
 export type Targeting = Schemas["Targeting"];
 export type AlignmentView = Schemas["AlignmentView"];
 export type AuditRecord = Schemas["AuditRecord"];
+export type AuditCheck = Schemas["AuditCheck"];
 export type AxisAction = paths["/api/motors/{axis}/{action}"]["post"]["parameters"]["path"]["action"];
 
 /** What an error says; the part of the API's problem that people need. */
@@ -227,6 +228,9 @@ export const api = {
       }),
     ),
 
+  /** Goes over all records: a long audit takes its time. */
+  verifyAudit: (noted?: string) =>
+    act(() => slowHttp.GET("/api/audit/verify", { params: { query: noted === undefined ? {} : { noted } } })),
   bench: () => read(() => http.GET("/api/bench")),
   benchCommand: (command: string, body: Record<string, unknown>) =>
     act(() => http.POST("/api/bench/{command}", { params: { path: { command } }, body })),

@@ -737,6 +737,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/audit/verify": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Goes over the whole chain of the audit, as `interlock audit verify` does, and says whether it is sound. Records cut off at
+         *     its end show only against a hash that was noted elsewhere: `noted` must be of a record that is still there.
+         */
+        get: operations["verifyAudit"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/motors": {
         parameters: {
             query?: never;
@@ -1739,6 +1759,26 @@ export interface components {
             detail: Record<string, unknown>;
             /** @description SHA-256, 64 hex digits. */
             hash: string;
+        };
+        AuditCheck: {
+            /**
+             * Format: date-time
+             * @description When the check ended.
+             */
+            checked: string;
+            sound: boolean;
+            /** @description The last record; null when the chain is broken. Noted elsewhere, its hash lets a later check find what was cut off. */
+            head: {
+                /** @description 0 when there is no record. */
+                number: number;
+                hash: string;
+            } | null;
+            /** @description The first record that is missing, changed, moved or put in; null when the chain is sound. */
+            broken: {
+                number: number;
+                /** @description What differs. */
+                problem: string;
+            } | null;
         };
         VerdictAnswer: {
             verdict: string | null;
@@ -3089,6 +3129,33 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["AuditRecord"][];
+                };
+            };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    verifyAudit: {
+        parameters: {
+            query?: {
+                /** @description Hash that the chain must contain. */
+                noted?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Result, also when the chain is broken. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AuditCheck"];
                 };
             };
             401: components["responses"]["Login"];
