@@ -221,6 +221,8 @@ export const api = {
   alignment: () => read(() => http.GET("/api/targeting/alignment")),
   logs: (lines: number) => read(() => http.GET("/api/logs", { params: { query: { lines } } })),
   setLogLevel: (level: LogLevel) => act(() => http.PUT("/api/logs", { body: { level } })),
+  acknowledgeLogs: (sequences: number[]) =>
+    act(() => http.POST("/api/logs/acknowledge", { body: { sequences } })),
   audit: (records: number, before?: number) =>
     read(() =>
       http.GET("/api/audit", {
