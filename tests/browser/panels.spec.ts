@@ -11,6 +11,8 @@ for (const robotName of ["neuro", "prostate"] as const) {
       await expect(slots).toHaveCount(11);
       await expect(slots.nth(1)).toContainText("yes");
       await expect(slots.nth(1)).toContainText("live");
+      const lastFrame = slots.nth(1).getByRole("cell").nth(3);
+      await expect(lastFrame).toHaveText(/^\d+ ms$/);
       await expect(status).toContainText("LOCKED by BOOT");
       await robot.panel("Bench").getByText("More faults").click();
       const card = robot.panel("Bench").getByRole("group", { name: "Faults of a card" });
@@ -18,6 +20,7 @@ for (const robotName of ["neuro", "prostate"] as const) {
       await card.getByRole("button", { name: "Unplug card" }).click();
       await expect(slots.nth(1)).toContainText("✕ NO");
       await expect(slots.nth(1)).toContainText("SILENT");
+      await expect(lastFrame).toHaveText(/^\d+\.\d s$/);
       await card.getByRole("button", { name: "Unplug card" }).click();
       await expect(slots.nth(1)).not.toContainText("✕");
     });

@@ -1130,6 +1130,11 @@ export interface components {
                 heartbeat: number;
                 /** @description The heartbeat advanced with the newest frame. */
                 heartbeat_live: boolean;
+                /**
+                 * @description How long the newest valid frame lies back by the kernel's clock, 0 when it came in the newest tick; null for an
+                 *     empty slot, and when none has come since the kernel started.
+                 */
+                frame_age_ms: number | null;
                 checksum_failures: number;
             }[];
             /** @description Per phase of the tick, histogram in powers of two of nanoseconds, and the maximum. */

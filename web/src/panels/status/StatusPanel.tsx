@@ -2,6 +2,7 @@ import type { CardStatus } from "../../api/client";
 import { Panel } from "../../design/Panel";
 import { Refusal } from "../../design/Refusal";
 import { entry } from "../../generated/catalog";
+import { formatAge } from "../../state/freshness";
 import { useConsole } from "../../state/store";
 import { ModeSelector } from "./ModeSelector";
 import "./status.css";
@@ -27,6 +28,13 @@ export function StatusPanel() {
             <th scope="col">Card</th>
             <th scope="col">Detected</th>
             <th scope="col">Heartbeat</th>
+            <th
+              scope="col"
+              className="number"
+              title="How long the newest valid frame lay back when the app answered"
+            >
+              Last frame
+            </th>
             <th scope="col" className="number" title="Frames whose checksum was wrong">
               Bad sums
             </th>
@@ -86,11 +94,16 @@ function CardLine({ card }: { readonly card: CardStatus }) {
       <td className={silent ? "bad" : ""} title={`heartbeat ${card.heartbeat}`}>
         {mark(empty, card.heartbeat_live, "live", "SILENT")}
       </td>
+      <td className={`number ${lost ? "bad" : ""}`}>{empty ? "–" : frameAge(card.frame_age_ms)}</td>
       <td className={`number ${card.checksum_failures > 0 ? "warn" : ""}`}>
         {empty ? "–" : card.checksum_failures}
       </td>
     </tr>
   );
+}
+
+function frameAge(ageMs: number | null): string {
+  return ageMs === null ? "never" : formatAge(ageMs);
 }
 
 function mark(empty: boolean, good: boolean, yes: string, no: string): string {
