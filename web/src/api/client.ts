@@ -27,6 +27,7 @@ export type PositionsFile = Schemas["PositionsFile"];
 export type PositionsComparison = Schemas["PositionsComparison"];
 export type Connection = Schemas["Connection"];
 export type NavigationConnection = Schemas["NavigationConnection"];
+export type Imager = Schemas["Imager"];
 export type NavigationRole = NavigationConnection["role"];
 export type Biopsy = Schemas["Biopsy"];
 export type BiopsyNow = Schemas["BiopsyNow"];
@@ -203,6 +204,7 @@ export const api = {
   communications: () => read(() => http.GET("/api/communications")),
   disconnect: (id: number) => act(() => http.PUT("/api/communications/disconnect", { body: { id } })),
   navigationConnections: () => read(() => http.GET("/api/communications/connections")),
+  imager: () => read(() => http.GET("/api/communications/imager")),
   endNavigation: (id: number) =>
     act(() => http.DELETE("/api/communications/connections/{id}", { params: { path: { id } } })),
   setNavigationRole: (id: number, role: NavigationRole) =>

@@ -628,6 +628,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/communications/imager": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * What imagers said last by OpenIGTLink (`IMAGER_STATUS`, `TIP_POSE`), whichever program passed it on, and how long ago. It is
+         *     shown, and nothing is done by it.
+         */
+        get: operations["getImager"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/communications/connections/{id}": {
         parameters: {
             query?: never;
@@ -1691,6 +1711,31 @@ export interface components {
             age_s: number;
             /** @description By the last two. */
             rate_hz: number | null;
+        };
+        Imager: {
+            /** @description Null when none came. */
+            status: {
+                /** @description Of a STATUS, 1 being well; null when it came as a STRING. */
+                code: number | null;
+                /** @description Error name of a STATUS, else empty. */
+                name: string;
+                /** @description Cut behind 1000 bytes. */
+                text: string;
+                /** @description Address and port of the program; it may have gone since. */
+                client: string;
+                /** Format: date-time */
+                received: string;
+                age_s: number;
+            } | null;
+            /** @description Null when none came. */
+            tip: {
+                /** @description Where the imager sees the tip: 4x4, row by row, scanner RAS, mm. */
+                scanner_from_tip: number[];
+                client: string;
+                /** Format: date-time */
+                received: string;
+                age_s: number;
+            } | null;
         };
         NavigationRole: {
             /** @enum {string} */
@@ -2962,6 +3007,27 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["NavigationConnection"][];
+                };
+            };
+            401: components["responses"]["Login"];
+        };
+    };
+    getImager: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The last words, since the app started. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Imager"];
                 };
             };
             401: components["responses"]["Login"];

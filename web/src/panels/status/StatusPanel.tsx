@@ -4,6 +4,7 @@ import { Refusal } from "../../design/Refusal";
 import { entry } from "../../generated/catalog";
 import { formatAge } from "../../state/freshness";
 import { useConsole } from "../../state/store";
+import { ImagerFacts } from "./ImagerFacts";
 import { ModeSelector } from "./ModeSelector";
 import "./status.css";
 
@@ -17,6 +18,7 @@ export function StatusPanel() {
   return (
     <Panel title="Status" className="status-panel" asked={{ answeredAtMs, everyMs: STATUS_EVERY_MS }}>
       <System />
+      <ImagerFacts />
       <ModeSelector />
       {notice !== undefined && (
         <Refusal place="mode" notice={notice} dismissLabel="Dismiss the refusal of the mode" />
