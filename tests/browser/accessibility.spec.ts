@@ -68,6 +68,18 @@ test("the sheets of codes, users, audit and account", async ({ robot, page }) =>
   }
 });
 
+test("the plots and the 3D view", async ({ robot, page }) => {
+  await robot.open("Plots");
+  await expect(robot.panel("Plots").getByRole("img").first()).toHaveAttribute("aria-label", /measured -?\d/);
+  await expect(robot.panel("Loop time").getByRole("img").first()).toBeVisible();
+  await expectNoViolation(page, "Plots");
+  await robot.open("3D");
+  const view = robot.panel("3D");
+  const words = view.getByRole("status").filter({ hasText: "no WebGL" });
+  await expect(view.getByRole("img").or(words)).toBeVisible({ timeout: 40_000 });
+  await expectNoViolation(page, "3D");
+});
+
 test("the robot's page, locked, with everything unfolded and with the keys shown", async ({
   robot,
   page,

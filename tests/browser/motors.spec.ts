@@ -106,6 +106,10 @@ test("Zero all asks first, and shows the verdict of every axis", async ({ robot,
   const answer = robot.panel("Answer to Zero all");
   await expect(answer.getByRole("listitem")).toHaveCount(7);
   await expect(answer.getByRole("listitem").filter({ hasText: "Probe rotation" })).toContainText("ACCEPTED");
+  await expect(answer.getByRole("link", { name: "ACCEPTED" }).first()).toHaveAttribute(
+    "href",
+    "#/codes/verdict/ACCEPTED",
+  );
   const yaw = answer.getByRole("listitem").filter({ hasText: "Yaw" });
   await expect(yaw).toContainText("Not sent: it has a limit switch");
   await expect(robot.axis("Yaw").row.getByText("UNHOMED")).toBeVisible();

@@ -52,6 +52,28 @@ async function firstTitle(page: import("@playwright/test").Page): Promise<string
   return label?.replace("Axis ", "");
 }
 
+test("causes, modes and verdicts lead to their place in the catalog, once there is a login", async ({
+  front,
+  stack,
+  page,
+}) => {
+  await expect(page.getByRole("banner").getByText("BOOT")).toBeVisible();
+  await expect(page.getByRole("banner").getByRole("link")).toHaveCount(0);
+  await front.logIn("admin", stack.password);
+  await front.requestAuthority();
+  await expect(front.panel("Status").getByRole("link", { name: "LOCKED" })).toBeVisible();
+  await expect(front.panel("Status").getByRole("link", { name: "BOOT" })).toBeVisible();
+  await page.getByRole("banner").getByRole("link", { name: "BOOT" }).click();
+  await expect(page.getByRole("article", { name: "BOOT" })).toBeInViewport();
+  await front.open("Robot");
+  await front.axis("Lateral").propose("1");
+  const refusal = await front.axis("Lateral").expectRefusal("DISABLED");
+  await expect(refusal.getByRole("link", { name: "DISABLED" })).toHaveAttribute(
+    "href",
+    "#/codes/verdict/DISABLED",
+  );
+});
+
 test("corrupted frames are counted at their card", async ({ robot }) => {
   const slot = robot.panel("Status").getByRole("row").nth(3);
   await robot.panel("Bench").getByText("More faults").click();

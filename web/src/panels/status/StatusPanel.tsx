@@ -1,4 +1,5 @@
 import type { CardStatus } from "../../api/client";
+import { CodeLink } from "../../design/CodeLink";
 import { Panel } from "../../design/Panel";
 import { Refusal } from "../../design/Refusal";
 import { entry } from "../../generated/catalog";
@@ -61,8 +62,15 @@ function System() {
     <dl className="facts">
       <dt>System</dt>
       <dd>
-        <strong>{glance.mode}</strong>
-        {locked && ` by ${glance.cause}`}
+        <strong>
+          <CodeLink family="mode" code={glance.mode} />
+        </strong>
+        {locked && (
+          <>
+            {" by "}
+            <CodeLink family="cause" code={glance.cause} />
+          </>
+        )}
         <span className="next-step">{text.next_step}</span>
       </dd>
       <dt>E-stop</dt>
