@@ -47,6 +47,7 @@ const untouched = [
 /** Opens everything in the panels of the robot's page that can be opened. */
 async function unfoldPanels(robot: ConsolePage): Promise<void> {
   await robot.panel("Bench").getByText("More faults").click();
+  await robot.panel("Bench").getByText("Plant parameters").click();
   const whys = robot.page.getByRole("button", { name: /^Why not moving\?/ });
   await whys.first().click();
 }

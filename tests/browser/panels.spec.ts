@@ -173,6 +173,27 @@ test("a pedal contact that sticks is seen as channels that disagree", async ({ r
   await expect(bench.getByLabel("Pedal contact NO")).toHaveValue("free");
 });
 
+test("the simulated motor is read and changed at the bench, marked as simulation, and restored", async ({
+  robot,
+}) => {
+  const bench = robot.panel("Bench");
+  await bench.getByText("Plant parameters").click();
+  const motor = bench.getByRole("form", { name: "Simulated motor" });
+  const coast = motor.getByRole("status", { name: "Coast of the simulated motor" });
+  await expect(motor).toContainText("SIMULATION");
+  await motor.getByLabel("Simulated motor of").selectOption("Lateral");
+  await expect(coast).toHaveText("coasts 5 counts from full speed");
+  await motor.getByLabel("Lag, ms").fill("30");
+  await motor.getByRole("button", { name: "Set the simulated motor" }).click();
+  await expect(coast).toHaveText("coasts 30 counts from full speed · ✕ not as in the plant file");
+  await motor.getByLabel("Lag, ms").fill("0");
+  await motor.getByRole("button", { name: "Set the simulated motor" }).click();
+  await expect(bench.getByRole("alert")).toContainText("expected a number from 0.1 to 1000");
+  await expect(motor.getByLabel("Lag, ms")).toHaveValue("30");
+  await motor.getByRole("button", { name: "As in the plant file" }).click();
+  await expect(coast).toHaveText("coasts 5 counts from full speed");
+});
+
 test("each panel's dot turns red with words when the app falls silent", async ({ robot, stack }) => {
   await robot.expectMode("LOCKED");
   const titles = ["Motors", "Log", "Communication", "Bench", "Proposals", "Status"];
