@@ -127,7 +127,7 @@ TEST_F(LogRoutesTest, WhatCannotBeAcknowledgedIsRefusedAndNothingIsKept) {
   EXPECT_THAT(mixed.problem()["detail"].get<std::string>(), testing::HasSubstr("level info"));
   EXPECT_EQ(post("/api/logs/acknowledge", R"({"sequences":[999999]})").problem()["code"], "NOT_FOUND");
   const json hundred_and_one(101, 1);
-  for (const std::string body : std::vector<std::string>{
+  for (const std::string& body : std::vector<std::string>{
            R"({})", R"({"sequences":[]})", R"({"sequences":[1.5]})", R"({"sequences":[-1]})",
            R"({"sequences":"1"})", json{{"sequences", hundred_and_one}}.dump()}) {
     EXPECT_EQ(post("/api/logs/acknowledge", body).problem()["code"], "INVALID") << body;
