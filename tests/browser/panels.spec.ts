@@ -66,6 +66,7 @@ test("causes, modes and verdicts lead to their place in the catalog, once there 
   await page.getByRole("banner").getByRole("link", { name: "BOOT" }).click();
   await expect(page.getByRole("article", { name: "BOOT" })).toBeInViewport();
   await front.open("Robot");
+  await front.unlockRobot();
   await front.axis("Lateral").propose("1");
   const refusal = await front.axis("Lateral").expectRefusal("DISABLED");
   await expect(refusal.getByRole("link", { name: "DISABLED" })).toHaveAttribute(

@@ -87,7 +87,7 @@ TEST_F(AuditRoutesTest, TheCheckMissesANotedHashAndRefusesWhatIsNone) {
   const json check = verify("?noted=" + std::string(64, 'a'));
   EXPECT_EQ(check["sound"], false);
   EXPECT_EQ(check["broken"]["number"], audit().back().number + 1);
-  for (const std::string wrong : {std::string(63, 'a'), std::string(64, 'A'), std::string(64, 'g')}) {
+  for (const std::string& wrong : {std::string(63, 'a'), std::string(64, 'A'), std::string(64, 'g')}) {
     EXPECT_EQ(read_audit("/verify?noted=" + wrong).problem()["field"], "noted") << wrong;
   }
   EXPECT_EQ(get("/api/audit/verify").problem()["code"], "ROLE");
