@@ -11,7 +11,16 @@ json to_json(const LogLine& line) {
           {"time", iso_8601(line.time)},
           {"level", name_of(line.level)},
           {"text", line.text},
-          {"repeated", line.repeated}};
+          {"repeated", line.repeated},
+          {"acknowledged", line.acknowledged ? json{{"user", line.acknowledged->user},
+                                                    {"time", iso_8601(line.acknowledged->time)}}
+                                             : json()}};
+}
+
+json log_message(const LogLine& line) {
+  json message = to_json(line);
+  message["type"] = "log";
+  return message;
 }
 
 LogTail::LogTail(boost::asio::any_io_executor executor, LogRing& ring, StreamHub& stream)
@@ -33,9 +42,7 @@ void LogTail::send() {
   woken_ = false;
   for (const LogLine& line : ring_.after(sent_)) {
     sent_ = line.sequence;
-    json message = to_json(line);
-    message["type"] = "log";
-    stream_.send_text(message);
+    stream_.send_text(log_message(line));
   }
 }
 

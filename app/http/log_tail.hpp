@@ -17,6 +17,9 @@ namespace interlock::web {
 /** Schema `LogLine` of spec/openapi.yaml. */
 nlohmann::json to_json(const LogLine& line);
 
+/** The line as the stream tells it. */
+nlohmann::json log_message(const LogLine& line);
+
 /** Whoever writes a line only wakes the network thread, which reads it from the ring and sends it. */
 class LogTail {
  public:

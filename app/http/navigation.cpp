@@ -98,6 +98,10 @@ void Navigation::react(PeerId peer, const std::string& device, igtl::Reaction re
   if (!reaction.refused.empty()) {
     note_refusal(peer, device, reaction.refused);
   }
+  if (reaction.word) {
+    const auto sender = hub_.find(peer);
+    imager_.hear(*reaction.word, sender ? sender->address : "", context_.clock(), context_.steady_clock());
+  }
   for (const auto& [name, body] : reaction.replies) {
     hub_.reply(peer, name, body);
   }

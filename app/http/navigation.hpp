@@ -19,6 +19,7 @@
 #include <string>
 
 #include "http/context.hpp"
+#include "http/imager.hpp"
 #include "http/navigation_state.hpp"
 #include "http/targeting.hpp"
 #include "igtl/dialect.hpp"
@@ -68,6 +69,9 @@ class Navigation {
    * no such connection.
    */
   bool set_role(igtl::PeerId id, igtl::Role role, const Caller& caller);
+
+  /** What imagers said last. */
+  [[nodiscard]] const Imager& imager() const { return imager_; }
 
   /** The motion authority has changed: nobody acts for the former holder any more. */
   void change_authority();
@@ -140,6 +144,7 @@ class Navigation {
   Targeting targeting_;
   std::optional<std::uint32_t> targeting_revision_; /**< of `targeting_`; empty: none was read yet */
   AxisVelocities velocities_;
+  Imager imager_;
 };
 
 }  // namespace interlock::web

@@ -36,6 +36,12 @@ json lamps_json(const ilk_snapshot_t& snapshot) {
   return lamps;
 }
 
+/** How long the card's newest valid frame lies back, by the kernel's clock; null when none has come yet. */
+json frame_age_ms(const ilk_config_t& config, const ilk_state_t& state, std::uint32_t slot) {
+  const std::uint32_t missed = state.axis[slot].bad_frames;
+  return missed < state.tick ? json(missed * (config.period_us / 1000.0)) : json();
+}
+
 json cards_json(const ilk_config_t& config, const ilk_state_t& state) {
   json cards = json::array();
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
@@ -48,6 +54,7 @@ json cards_json(const ilk_config_t& config, const ilk_state_t& state) {
          {"heartbeat", axis.heartbeat},
          // A frame is valid only when its heartbeat advanced.
          {"heartbeat_live", expected && axis.card_valid != 0},
+         {"frame_age_ms", expected ? frame_age_ms(config, state, slot) : json()},
          {"checksum_failures", axis.checksum_failures}});
   }
   return cards;

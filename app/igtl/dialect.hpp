@@ -63,7 +63,8 @@ struct Reaction {
   Outgoings replies;                      /**< to be sent at once, in this order */
   std::optional<Wish> wish;               /**< to be carried out; its outcome is for `finish` */
   std::optional<std::uint32_t> ends = {}; /**< a proposal that is wanted no more */
-  std::string refused = {}; /**< why the message is refused, for the log; empty when it is not */
+  std::string refused = {};            /**< why the message is refused, for the log; empty when it is not */
+  std::optional<ImagerWord> word = {}; /**< of an imager, to be kept and shown */
 };
 
 /** Names and order of messages: what a message asks for, and how state and answers are told. */

@@ -120,7 +120,23 @@ Reading tip_pose(const Message& message) {
     return unwanted(StatusCode::configuration,
                     message.device + " is no rigid motion; expected R^T R = 1 within 0.001, determinant 1.");
   }
-  return Noted{};
+  return Noted{true, TipPose{transform->matrix}};
+}
+
+constexpr std::string_view imager_status_name = "imager_status";
+
+Reading imager_text(const Message& message) {
+  const auto* text = std::get_if<Text>(&message.body);
+  return text == nullptr ? wrong_type(message, "STRING or STATUS")
+                         : Reading(Noted{true, ImagerStatus{std::nullopt, "", text->text}});
+}
+
+/** A STATUS under any name shows that its sender lives; under that of the imager it also says how it is. */
+Noted noted_status(const Message& message, const Status& status) {
+  if (lower(message.device) != imager_status_name) {
+    return Noted{false};
+  }
+  return Noted{false, ImagerStatus{status.code, status.name, status.text}};
 }
 
 /** One name of the dialect. */
@@ -133,11 +149,7 @@ constexpr std::array<Name, 15> names{{
     {"registration", with_matrix<SetRegistration>},
     {"current_pose", with_matrix<ReportPose>},
     {"tip_pose", tip_pose},
-    {"imager_status",
-     [](const Message& message) -> Reading {
-       return std::holds_alternative<Text>(message.body) ? Reading(Noted{})
-                                                         : wrong_type(message, "STRING or STATUS");
-     }},
+    {imager_status_name, imager_text},
     {"entry_point", [](const Message& message) { return point_of(message, false); }},
     {"target_point", [](const Message& message) { return point_of(message, true); }},
     {"treatment_to_tip",
@@ -214,8 +226,12 @@ Reaction Thesis::take(const Message& message, const RobotState& state, bool /*co
     return {{{message.device, Status{why.code, 0, "UNWANTED", why.reason}}}, std::nullopt, {}, why.reason};
   }
   if (const auto* noted = std::get_if<Noted>(&*wish)) {
-    return noted->is_answered ? finish(message.device, *wish, {{StatusCode::ok, 0, "OK", "Noted."}})
-                              : Reaction{};
+    Reaction reaction;
+    if (noted->is_answered) {
+      reaction = finish(message.device, *wish, {{StatusCode::ok, 0, "OK", "Noted."}});
+    }
+    reaction.word = noted->word;
+    return reaction;
   }
   return {{}, std::move(*wish)};
 }
@@ -243,7 +259,10 @@ Reading read_wish(const Message& message) {
   if (std::holds_alternative<StopTracking>(message.body)) {
     return Track{};
   }
-  if (std::holds_alternative<Status>(message.body) || std::holds_alternative<Capability>(message.body) ||
+  if (const auto* status = std::get_if<Status>(&message.body)) {
+    return noted_status(message, *status);
+  }
+  if (std::holds_alternative<Capability>(message.body) ||
       std::holds_alternative<TrackingReply>(message.body)) {
     return Noted{false};
   }

@@ -93,9 +93,25 @@ struct Track {
   std::optional<std::int32_t> interval_ms; /**< none: stop it */
 };
 
+/** What an imager says of itself. */
+struct ImagerStatus {
+  std::optional<StatusCode> code; /**< none when it came as a text alone */
+  std::string name;               /**< error name; empty of a text */
+  std::string text;
+};
+
+/** Where an imager sees the needle's tip. It is shown, and takes no encoder's place. */
+struct TipPose {
+  Matrix scanner_from_tip;
+};
+
+/** A word of an imager, for people to see. */
+using ImagerWord = std::variant<ImagerStatus, TipPose>;
+
 /** Heard and noted, and nothing follows. */
 struct Noted {
   bool is_answered = true; /**< a STATUS is not, else two programs would answer each other for ever */
+  std::optional<ImagerWord> word = {};
 };
 
 /** Anything that a message may ask for. */

@@ -56,6 +56,8 @@ std::string_view audit_kind_name(AuditKind kind) {
       return "records_lost";
     case AuditKind::retention:
       return "retention";
+    case AuditKind::acknowledgement:
+      return "acknowledgement";
   }
   return "unknown";
 }

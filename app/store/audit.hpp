@@ -35,7 +35,8 @@ enum class AuditKind {
   bench,
   connection,
   records_lost,
-  retention
+  retention,
+  acknowledgement
 };
 
 /** The name in spec/openapi.yaml: "login_refused". */

@@ -2,21 +2,13 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
-#include <nlohmann/json.hpp>
+#include "store/audit_check.hpp"
 
 namespace interlock {
 namespace {
 
 std::optional<std::int64_t> optional_number(const SQLite::Column& column) {
   return column.isNull() ? std::nullopt : std::optional(column.getInt64());
-}
-
-/** Whether this record says that those up to the anchor were removed. */
-bool accounts_for(const AuditRecord& record, const AuditHead& anchor) {
-  const auto detail = nlohmann::json::parse(record.detail, nullptr, false);
-  return record.kind == "retention" && detail.is_object() &&
-         detail.value("removed_to", nlohmann::json()) == anchor.number &&
-         detail.value("hash", nlohmann::json()) == anchor.hash;
 }
 
 }  // namespace
@@ -39,31 +31,11 @@ AuditRecord audit_record(SQLite::Statement& row) {
 
 tl::expected<AuditHead, AuditBreak> verify_audit(SQLite::Database& database,
                                                  const std::optional<std::string>& noted) {
-  SQLite::Statement records(database, std::string("SELECT ") + audit_columns + " FROM audit ORDER BY number");
-  const AuditHead anchor = audit_anchor(database);
-  AuditChain chain(anchor);
-  bool accounted = anchor == AuditHead{};
-  bool noted_found = !noted || *noted == chain.head().hash;
-  while (records.executeStep()) {
-    const AuditRecord record = audit_record(records);
-    if (const auto followed = chain.follow(record); !followed) {
-      return tl::unexpected(followed.error());
-    }
-    accounted = accounted || accounts_for(record, anchor);
-    noted_found = noted_found || *noted == chain.head().hash;
+  constexpr std::size_t part = 1000;
+  AuditCheck check(noted);
+  while (check.go_on(database, part)) {
   }
-  if (!accounted) {
-    return tl::unexpected(
-        AuditBreak{anchor.number, "and those before it are missing: no record says that they were retired"});
-  }
-  if (!noted_found) {
-    return tl::unexpected(AuditBreak{
-        chain.head().number + 1,
-        "is missing, or an earlier one was written anew: the chain is sound up to "
-        "record " +
-            std::to_string(chain.head().number) + ", but none of its records has the hash " + *noted});
-  }
-  return chain.head();
+  return check.result();
 }
 
 }  // namespace interlock

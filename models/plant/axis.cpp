@@ -42,7 +42,8 @@ void LimitSwitch::follow(double position_counts) {
 }
 
 Axis::Axis(const ilk_axis_config_t& axis, const AxisParameters& parameters)
-    : name_(parameters.name),
+    : file_parameters_(parameters),
+      parameters_(parameters),
       motor_(axis, parameters),
       switch_(axis, parameters),
       lag_s_(seconds(parameters.lag)),
@@ -87,6 +88,13 @@ void Axis::advance(Microseconds elapsed) {
   }
   load_ = std::clamp(load_ + pushed, motor_position_ - play_, motor_position_ + play_);
   switch_.follow(load_);
+}
+
+void Axis::take(const AxisParameters& parameters) {
+  parameters_ = parameters;
+  motor_.take(parameters);
+  lag_s_ = seconds(parameters.lag);
+  play_ = parameters.backlash_counts / 2;
 }
 
 void Axis::clear_faults() {

@@ -66,10 +66,18 @@ class Axis {
   /** Swaps the motor's direction, or restores it; acts with the next `drive`. */
   void reverse(bool reversed) { motor_.reverse(reversed); }
 
+  /** Moves by these parameters from the next step on; where it stands and how fast it is stay. */
+  void take(const AxisParameters& parameters);
+
+  /** As they act now. */
+  const AxisParameters& parameters() const { return parameters_; }
+  /** As the plant started with them. */
+  const AxisParameters& file_parameters() const { return file_parameters_; }
+
   /** Ends jam, push, runaway, reversal and a stuck switch. */
   void clear_faults();
 
-  const std::string& name() const { return name_; }
+  const std::string& name() const { return parameters_.name; }
   double position_counts() const { return load_; }
   double speed_counts_per_s() const { return speed_; }
   bool is_jammed() const { return jammed_; }
@@ -83,7 +91,8 @@ class Axis {
  private:
   double push_step(double elapsed_s);
 
-  std::string name_;
+  AxisParameters file_parameters_;
+  AxisParameters parameters_;
   Motor motor_;
   LimitSwitch switch_;
   double lag_s_;

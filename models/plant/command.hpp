@@ -70,6 +70,17 @@ struct StickSwitch {
   std::optional<bool> triggered; /**< nothing frees it */
 };
 
+/** Changes parameters of the axis; in the order of `kAxisKnobs`, nothing where one stays. */
+struct ChangeParameters {
+  std::size_t slot;
+  std::array<std::optional<double>, kAxisKnobCount> value;
+};
+
+/** The axis has the parameters of the plant file again. */
+struct RestoreParameters {
+  std::size_t slot;
+};
+
 /** Presses on a force sensor. */
 struct PressSensor {
   std::size_t slot;
@@ -107,12 +118,13 @@ struct ShiftTarget {
   std::array<double, 3> by_mm; /**< in the guide frame */
 };
 
-/** Ends every fault; pedal and E-stop stay as they are, and so do commands for later ticks. */
+/** Ends every fault; pedal, E-stop and parameters stay as they are, and so do commands for later ticks. */
 struct Clear {};
 
-using Command = std::variant<PressPedal, StickPedalContact, PullEstop, JamAxis, PushAxis, JumpCounter,
-                             RunAway, ReverseMotor, StickEncoder, StickSwitch, PressSensor, SpoilFrames,
-                             ResetCard, PowerCard, FailTransactions, PressHand, ShiftTarget, Clear>;
+using Command =
+    std::variant<PressPedal, StickPedalContact, PullEstop, JamAxis, PushAxis, JumpCounter, RunAway,
+                 ReverseMotor, StickEncoder, StickSwitch, ChangeParameters, RestoreParameters, PressSensor,
+                 SpoilFrames, ResetCard, PowerCard, FailTransactions, PressHand, ShiftTarget, Clear>;
 
 }  // namespace interlock::plant::command
 

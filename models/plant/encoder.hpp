@@ -24,6 +24,12 @@ class Encoder {
   /** Freezes the counter, or lets it count on from there: what moved meanwhile is lost. */
   void stick(bool stuck, double position_counts);
 
+  /** Readings have this noise from now on. */
+  void take(const AxisParameters& parameters) {
+    noise_counts_ = parameters.noise_counts;
+    noise_chance_ = parameters.noise_chance;
+  }
+
   bool is_stuck() const { return stuck_; }
 
   /** The counter without noise. */

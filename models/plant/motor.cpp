@@ -45,6 +45,11 @@ Motor::Motor(const ilk_axis_config_t& axis, const AxisParameters& parameters)
       full_speed_(parameters.full_speed_counts_per_s),
       counts_per_revolution_(parameters.counts_per_revolution) {}
 
+void Motor::take(const AxisParameters& parameters) {
+  dead_zone_ = parameters.dead_zone_fraction * max_drive_;
+  full_speed_ = parameters.full_speed_counts_per_s;
+}
+
 double Motor::magnitude(const wire::MotorCommand& command) const {
   if (high_frequency_) {
     const double strength = std::min(1.0, command.amplitude / max_amplitude_);

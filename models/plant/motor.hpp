@@ -23,6 +23,9 @@ class Motor {
   /** Speed in counts per second, positive towards larger positions. */
   double speed(const wire::MotorCommand& command) const;
 
+  /** Has that dead zone and that speed from the next command on. */
+  void take(const AxisParameters& parameters);
+
   /** Swaps two phases of the motor, or restores them. */
   void reverse(bool reversed) { reversed_ = reversed; }
 

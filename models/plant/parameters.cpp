@@ -1,8 +1,53 @@
 #include "plant/parameters.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace interlock::plant {
+namespace {
+
+constexpr double kMicrosecondsPerMs = 1000;
+
+}  // namespace
+
+const std::array<AxisKnob, kAxisKnobCount> kAxisKnobs{{
+    {"dead_zone_fraction",
+     {0, 0.9},
+     false,
+     [](const AxisParameters& axis) { return axis.dead_zone_fraction; },
+     [](AxisParameters& axis, double value) { axis.dead_zone_fraction = value; }},
+    {"full_speed_counts_per_s",
+     {1, 1e6},
+     false,
+     [](const AxisParameters& axis) { return axis.full_speed_counts_per_s; },
+     [](AxisParameters& axis, double value) { axis.full_speed_counts_per_s = value; }},
+    {"lag_ms",
+     {0.1, 1000},
+     false,
+     [](const AxisParameters& axis) { return static_cast<double>(axis.lag.count()) / kMicrosecondsPerMs; },
+     [](AxisParameters& axis, double value) {
+       axis.lag = Microseconds(static_cast<std::uint64_t>(std::llround(value * kMicrosecondsPerMs)));
+     }},
+    {"backlash_counts",
+     {0, 1000},
+     false,
+     [](const AxisParameters& axis) { return axis.backlash_counts; },
+     [](AxisParameters& axis, double value) { axis.backlash_counts = value; }},
+    {"noise_counts",
+     {0, 100},
+     true,
+     [](const AxisParameters& axis) { return static_cast<double>(axis.noise_counts); },
+     [](AxisParameters& axis, double value) { axis.noise_counts = static_cast<std::uint32_t>(value); }},
+    {"noise_chance",
+     {0, 1},
+     false,
+     [](const AxisParameters& axis) { return axis.noise_chance; },
+     [](AxisParameters& axis, double value) { axis.noise_chance = value; }},
+}};
+
+double coast_counts(const AxisParameters& axis) {
+  return axis.full_speed_counts_per_s * static_cast<double>(axis.lag.count()) * 1e-6;
+}
 
 double position_from_switch(const ilk_axis_config_t& axis, double counts) {
   return axis.home_offset_counts + (axis.limit_side == ILK_LIMIT_UPPER ? -counts : counts);

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "interlock/types.h"
 #include "plant/scene.hpp"
@@ -36,7 +37,31 @@ struct AxisParameters {
   double end_margin_counts = 60;             /**< from the soft limits to the mechanical end stops */
   double switch_hysteresis_counts = 3;       /**< from the edge back to where the switch opens */
   Microseconds switch_bounce{2000};
+
+  bool operator==(const AxisParameters&) const = default;
 };
+
+/** The values that a number may have, both ends included. */
+struct Range {
+  double least;
+  double most;
+};
+
+/** A number of an axis that a bench may change while the plant runs: as the plant file has it, under the same
+ * name. */
+struct AxisKnob {
+  std::string_view name;
+  Range range;
+  bool whole; /**< no fractions */
+  double (*get)(const AxisParameters&);
+  void (*set)(AxisParameters&, double);
+};
+
+inline constexpr std::size_t kAxisKnobCount = 6;
+extern const std::array<AxisKnob, kAxisKnobCount> kAxisKnobs;
+
+/** How far an axis coasts from full speed after its amplifier went off. */
+double coast_counts(const AxisParameters& axis);
 
 /** The pedal's two contacts: the opening one moves first, the other follows. */
 struct PedalParameters {

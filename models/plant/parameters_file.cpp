@@ -10,14 +10,23 @@ namespace {
 
 constexpr double kFarthestStart = 1 << 30;
 
+void read_knob(Reader& reader, const toml::table& table, const AxisKnob& knob, AxisParameters& axis) {
+  double value = 0;
+  if (!reader.number(table, knob.name, knob.range, value)) {
+    return;
+  }
+  if (knob.whole && !table.get(knob.name)->is_integer()) {
+    reader.fail(*table.get(knob.name), knob.name, "expected a whole number");
+    return;
+  }
+  knob.set(axis, value);
+}
+
 void read_dynamics(Reader& reader, const toml::table& table, AxisParameters& axis) {
-  reader.number(table, "dead_zone_fraction", {0, 0.9}, axis.dead_zone_fraction);
-  reader.number(table, "full_speed_counts_per_s", {1, 1e6}, axis.full_speed_counts_per_s);
+  for (const AxisKnob& knob : kAxisKnobs) {
+    read_knob(reader, table, knob, axis);
+  }
   reader.number(table, "counts_per_revolution", {1, 1e6}, axis.counts_per_revolution);
-  reader.milliseconds(table, "lag_ms", {0.1, 1000}, axis.lag);
-  reader.number(table, "backlash_counts", {0, 1000}, axis.backlash_counts);
-  reader.integer(table, "noise_counts", {0, 100}, axis.noise_counts);
-  reader.number(table, "noise_chance", {0, 1}, axis.noise_chance);
   reader.number(table, "end_margin_counts", {0, 1e6}, axis.end_margin_counts);
   reader.number(table, "switch_hysteresis_counts", {0, 1000}, axis.switch_hysteresis_counts);
   reader.milliseconds(table, "switch_bounce_ms", {0, 100}, axis.switch_bounce);

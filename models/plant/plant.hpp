@@ -40,6 +40,12 @@ struct Station {
   Random switch_bounce;
 
   double position_counts() const { return axis ? axis->position_counts() : 0; }
+
+  /** The axis of a motor card and its encoder have these parameters from now on. */
+  void take(const AxisParameters& parameters) {
+    axis->take(parameters);
+    card.encoder()->take(parameters);
+  }
 };
 
 class Plant {
@@ -118,6 +124,8 @@ class Plant {
   void apply(const command::ReverseMotor& wish);
   void apply(const command::StickEncoder& wish);
   void apply(const command::StickSwitch& wish);
+  void apply(const command::ChangeParameters& wish);
+  void apply(const command::RestoreParameters& wish);
   void apply(const command::PressSensor& wish);
   void apply(const command::SpoilFrames& wish);
   void apply(const command::ResetCard& wish);

@@ -132,6 +132,22 @@ void Plant::apply(const command::StickSwitch& wish) {
   stations_[wish.slot]->axis->limit_switch().stick(wish.triggered);
 }
 
+void Plant::apply(const command::ChangeParameters& wish) {
+  Station& station = *stations_[wish.slot];
+  AxisParameters changed = station.axis->parameters();
+  for (std::size_t knob = 0; knob < kAxisKnobCount; ++knob) {
+    if (wish.value[knob]) {
+      kAxisKnobs[knob].set(changed, *wish.value[knob]);
+    }
+  }
+  station.take(changed);
+}
+
+void Plant::apply(const command::RestoreParameters& wish) {
+  Station& station = *stations_[wish.slot];
+  station.take(station.axis->file_parameters());
+}
+
 void Plant::apply(const command::PressSensor& wish) {
   stations_[wish.slot]->sensor->press(wish.input, wish.counts);
 }

@@ -19,11 +19,6 @@
 
 namespace interlock::plant {
 
-struct Range {
-  double least;
-  double most;
-};
-
 /** Reads the keys of one document and keeps the first fault. */
 class Reader {
  public:

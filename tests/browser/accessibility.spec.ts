@@ -47,6 +47,7 @@ const untouched = [
 /** Opens everything in the panels of the robot's page that can be opened. */
 async function unfoldPanels(robot: ConsolePage): Promise<void> {
   await robot.panel("Bench").getByText("More faults").click();
+  await robot.panel("Bench").getByText("Plant parameters").click();
   const whys = robot.page.getByRole("button", { name: /^Why not moving\?/ });
   await whys.first().click();
 }
@@ -66,6 +67,18 @@ test("the sheets of codes, users, audit and account", async ({ robot, page }) =>
     await expect(page.getByRole("main")).toBeVisible();
     await expectNoViolation(page, name);
   }
+});
+
+test("the plots and the 3D view", async ({ robot, page }) => {
+  await robot.open("Plots");
+  await expect(robot.panel("Plots").getByRole("img").first()).toHaveAttribute("aria-label", /measured -?\d/);
+  await expect(robot.panel("Loop time").getByRole("img").first()).toBeVisible();
+  await expectNoViolation(page, "Plots");
+  await robot.open("3D");
+  const view = robot.panel("3D");
+  const words = view.getByRole("status").filter({ hasText: "no WebGL" });
+  await expect(view.getByRole("img").or(words)).toBeVisible({ timeout: 40_000 });
+  await expectNoViolation(page, "3D");
 });
 
 test("the robot's page, locked, with everything unfolded and with the keys shown", async ({

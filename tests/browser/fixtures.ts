@@ -2,8 +2,9 @@ import { test as base, expect, type Page } from "@playwright/test";
 import { ConsolePage } from "./console_page";
 import { type Clock, type RobotName, Stack } from "./stack";
 
-/** What Chromium reports on its console by design: refused requests, an app that is gone or has no kernel yet, a slow picture. */
-const expectedComplaint = /status of (401|403|409|422|429|503)|ERR_CONNECTION_|GPU stall due to ReadPixels/;
+/** What Chromium reports on its console by design: refused requests, an app that is gone or has no kernel yet, a network that is cut, a slow picture. */
+const expectedComplaint =
+  /status of (401|403|409|422|429|503)|ERR_CONNECTION_|ERR_INTERNET_DISCONNECTED|GPU stall due to ReadPixels/;
 
 interface Fixtures {
   robotName: RobotName;

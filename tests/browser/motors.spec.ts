@@ -1,7 +1,21 @@
 /** Homing, and why an axis does not move. */
+import type { Axis } from "./console_page";
 import { expect, test } from "./fixtures";
 
 const homingTakes = 60_000;
+
+/** Slider, entry and jogging of an axis that is enabled: all of them given to the operator, or none. */
+async function expectSetpoints(axis: Axis, stand: "locked" | "free"): Promise<void> {
+  const locked = stand === "locked";
+  await expect(axis.track).toHaveAttribute("aria-disabled", String(locked));
+  const before = await axis.circle();
+  if (locked) {
+    await axis.track.press("ArrowRight");
+    expect(await axis.circle()).toBe(before);
+  }
+  await expect(axis.row.getByRole("textbox")).toBeEnabled({ enabled: !locked });
+  await expect(axis.row.getByRole("button", { name: /^Step/ }).first()).toBeEnabled({ enabled: !locked });
+}
 
 test("Go Home runs an axis to its switch, and its limits become known", async ({ robot }) => {
   const axis = robot.axis("Probe insertion");
@@ -10,8 +24,10 @@ test("Go Home runs an axis to its switch, and its limits become known", async ({
   await axis.enable();
   await axis.press("Go Home");
   await expect(robot.button("Homing.. Probe insertion")).toBeDisabled();
-  await axis.propose("1");
-  await axis.expectRefusal("MODE_HOME");
+  await expectSetpoints(axis, "locked");
+  await expect(robot.panel("Motors").getByRole("status").filter({ hasText: "locked" })).toContainText(
+    "The mode home drives the setpoints: wait until it has ended, or abort its proposal.",
+  );
   await robot.latchPedal();
   await axis.expectState("HOMING");
   await expect(axis.row.getByText("UNHOMED")).toHaveCount(0, { timeout: homingTakes });
@@ -19,6 +35,7 @@ test("Go Home runs an axis to its switch, and its limits become known", async ({
   await expect(axis.row.getByText("34.93 mm")).toBeVisible();
   await expect(robot.proposal(1)).toContainText("done");
   await expect(robot.button("Go Home Probe insertion")).toBeEnabled();
+  await expectSetpoints(axis, "free");
 });
 
 test("Home all goes through the steps while the pedal is held, and ends in manual mode", async ({
@@ -89,6 +106,10 @@ test("Zero all asks first, and shows the verdict of every axis", async ({ robot,
   const answer = robot.panel("Answer to Zero all");
   await expect(answer.getByRole("listitem")).toHaveCount(7);
   await expect(answer.getByRole("listitem").filter({ hasText: "Probe rotation" })).toContainText("ACCEPTED");
+  await expect(answer.getByRole("link", { name: "ACCEPTED" }).first()).toHaveAttribute(
+    "href",
+    "#/codes/verdict/ACCEPTED",
+  );
   const yaw = answer.getByRole("listitem").filter({ hasText: "Yaw" });
   await expect(yaw).toContainText("Not sent: it has a limit switch");
   await expect(robot.axis("Yaw").row.getByText("UNHOMED")).toBeVisible();

@@ -1,6 +1,9 @@
 /** Navigation programs in the console: a real socket that speaks OpenIGTLink to a whole robot. */
+import { execFileSync } from "node:child_process";
+import path from "node:path";
 import { expect, test } from "./fixtures";
 import { NavigationProgram } from "./navigation_program";
+import { programs } from "./places";
 
 test("a navigation program is shown with what it said, and disconnected", async ({ robot, stack }) => {
   const panel = robot.panel("Navigation");
@@ -39,4 +42,18 @@ test("only who holds the authority makes a program the controller", async ({ rob
   } finally {
     program.end();
   }
+});
+
+test("what an imager says stands in the status panel with its age, also once its program has gone", async ({
+  robot,
+  stack,
+}) => {
+  const imager = robot.panel("Status").getByLabel("Imager");
+  await expect(imager).toContainText("no status heard");
+  execFileSync(path.join(programs, "interlock"), [
+    ...["igtl", "send", "string", "IMAGER_STATUS", "scanning"],
+    ...["--port", String(stack.igtlPort)],
+  ]);
+  await expect(imager).toContainText(/scanning \d+\.\d s ago, from 127\.0\.0\.1:\d+/);
+  await expect(imager).toContainText("no pose heard");
 });

@@ -68,3 +68,22 @@ test("the audit names who did what, newest first, and goes back to the first rec
     expect(await numbers()).toContain(1);
   }).toPass();
 });
+
+test("the chain of the audit is checked by the app, and a noted hash that is gone is told", async ({
+  robot,
+}) => {
+  await robot.open("Audit");
+  const result = robot.panel("Check of the chain").getByRole("status", { name: "Result of the check" });
+  const check = robot.button("Check the chain");
+  await expect(result).toHaveText("Not checked yet.");
+  await check.click();
+  await expect(result).toContainText(/✓ Sound up to record \d+/);
+  const head = (await result.getByRole("code").textContent()) ?? "";
+  expect(head).toMatch(/^[0-9a-f]{64}$/);
+  await robot.panel("Check of the chain").getByLabel("Hash noted earlier").fill(head);
+  await check.click();
+  await expect(result).toContainText("with the hash noted earlier among them");
+  await robot.panel("Check of the chain").getByLabel("Hash noted earlier").fill("a".repeat(64));
+  await check.click();
+  await expect(result).toContainText(/✕ BROKEN: record \d+ is missing/);
+});

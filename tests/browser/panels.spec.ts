@@ -11,6 +11,8 @@ for (const robotName of ["neuro", "prostate"] as const) {
       await expect(slots).toHaveCount(11);
       await expect(slots.nth(1)).toContainText("yes");
       await expect(slots.nth(1)).toContainText("live");
+      const lastFrame = slots.nth(1).getByRole("cell").nth(3);
+      await expect(lastFrame).toHaveText(/^\d+ ms$/);
       await expect(status).toContainText("LOCKED by BOOT");
       await robot.panel("Bench").getByText("More faults").click();
       const card = robot.panel("Bench").getByRole("group", { name: "Faults of a card" });
@@ -18,6 +20,7 @@ for (const robotName of ["neuro", "prostate"] as const) {
       await card.getByRole("button", { name: "Unplug card" }).click();
       await expect(slots.nth(1)).toContainText("✕ NO");
       await expect(slots.nth(1)).toContainText("SILENT");
+      await expect(lastFrame).toHaveText(/^\d+\.\d s$/);
       await card.getByRole("button", { name: "Unplug card" }).click();
       await expect(slots.nth(1)).not.toContainText("✕");
     });
@@ -48,6 +51,29 @@ async function firstTitle(page: import("@playwright/test").Page): Promise<string
     .getAttribute("aria-label");
   return label?.replace("Axis ", "");
 }
+
+test("causes, modes and verdicts lead to their place in the catalog, once there is a login", async ({
+  front,
+  stack,
+  page,
+}) => {
+  await expect(page.getByRole("banner").getByText("BOOT")).toBeVisible();
+  await expect(page.getByRole("banner").getByRole("link")).toHaveCount(0);
+  await front.logIn("admin", stack.password);
+  await front.requestAuthority();
+  await expect(front.panel("Status").getByRole("link", { name: "LOCKED" })).toBeVisible();
+  await expect(front.panel("Status").getByRole("link", { name: "BOOT" })).toBeVisible();
+  await page.getByRole("banner").getByRole("link", { name: "BOOT" }).click();
+  await expect(page.getByRole("article", { name: "BOOT" })).toBeInViewport();
+  await front.open("Robot");
+  await front.unlockRobot();
+  await front.axis("Lateral").propose("1");
+  const refusal = await front.axis("Lateral").expectRefusal("DISABLED");
+  await expect(refusal.getByRole("link", { name: "DISABLED" })).toHaveAttribute(
+    "href",
+    "#/codes/verdict/DISABLED",
+  );
+});
 
 test("corrupted frames are counted at their card", async ({ robot }) => {
   const slot = robot.panel("Status").getByRole("row").nth(3);
@@ -112,6 +138,31 @@ test("the log tells what happens, from a chosen level on, and can be paused", as
   await expect(page.getByText("No line of this level yet.")).toBeVisible();
 });
 
+test("the log is searched, and who acknowledges a warning is told to everybody and audited", async ({
+  robot,
+  other,
+  stack,
+}) => {
+  await other.logIn("admin", stack.password);
+  await robot.stop.click();
+  const log = robot.panel("Log");
+  const stopLine = (page: typeof robot) =>
+    page.panel("Log").getByRole("listitem").filter({ hasText: "STOP by admin" });
+  await log.getByRole("searchbox", { name: "Search the log" }).fill("admin stop");
+  await expect(stopLine(robot)).toHaveCount(1);
+  await expect(log.getByRole("listitem")).toHaveCount(1);
+  await expect(log.getByRole("status", { name: "Lines to acknowledge" })).toHaveText("1 to acknowledge");
+  await robot.button("Acknowledge every line shown").click();
+  for (const page of [robot, other]) await expect(stopLine(page)).toContainText(/✓ admin \d/);
+  await expect(robot.button("Acknowledge every line shown")).toBeDisabled();
+  await log.getByRole("searchbox").fill("no such words");
+  await expect(log.getByText("No line has these words.")).toBeVisible();
+  await robot.open("Audit");
+  await expect(robot.panel("Audit").getByRole("row").filter({ hasText: "acknowledgement" })).toContainText(
+    "STOP by admin",
+  );
+});
+
 test("a pedal contact that sticks is seen as channels that disagree", async ({ robot }) => {
   const bench = robot.panel("Bench");
   await bench.getByText("More faults").click();
@@ -121,6 +172,27 @@ test("a pedal contact that sticks is seen as channels that disagree", async ({ r
   await robot.button("End every fault").click();
   await expect(robot.pedalState).toContainText("released");
   await expect(bench.getByLabel("Pedal contact NO")).toHaveValue("free");
+});
+
+test("the simulated motor is read and changed at the bench, marked as simulation, and restored", async ({
+  robot,
+}) => {
+  const bench = robot.panel("Bench");
+  await bench.getByText("Plant parameters").click();
+  const motor = bench.getByRole("form", { name: "Simulated motor" });
+  const coast = motor.getByRole("status", { name: "Coast of the simulated motor" });
+  await expect(motor).toContainText("SIMULATION");
+  await motor.getByLabel("Simulated motor of").selectOption("Lateral");
+  await expect(coast).toHaveText("coasts 5 counts from full speed");
+  await motor.getByLabel("Lag, ms").fill("30");
+  await motor.getByRole("button", { name: "Set the simulated motor" }).click();
+  await expect(coast).toHaveText("coasts 30 counts from full speed · ✕ not as in the plant file");
+  await motor.getByLabel("Lag, ms").fill("0");
+  await motor.getByRole("button", { name: "Set the simulated motor" }).click();
+  await expect(bench.getByRole("alert")).toContainText("expected a number from 0.1 to 1000");
+  await expect(motor.getByLabel("Lag, ms")).toHaveValue("30");
+  await motor.getByRole("button", { name: "As in the plant file" }).click();
+  await expect(coast).toHaveText("coasts 5 counts from full speed");
 });
 
 test("each panel's dot turns red with words when the app falls silent", async ({ robot, stack }) => {

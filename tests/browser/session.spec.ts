@@ -68,6 +68,26 @@ for (const [way, press] of [
   });
 }
 
+test("STOP is answered while every other request hangs", async ({ robot, page }) => {
+  const axis = robot.axis("Probe rotation");
+  await robot.unlockRobot();
+  await axis.enable();
+  await axis.propose("40");
+  await robot.latchPedal();
+  await expect(robot.proposal(1)).toContainText("executing");
+  const hanging: string[] = [];
+  const answered: string[] = [];
+  page.on("response", (response) => answered.push(new URL(response.url()).pathname));
+  await page.route(/\/api\/(?!stop$)/, (route) => void hanging.push(new URL(route.request().url()).pathname));
+  await robot.button("Jam Yaw").click();
+  await expect.poll(() => hanging).toContain("/api/bench/jam");
+  await robot.stop.click();
+  await expect(robot.stopAnswer).toHaveText("STOP accepted");
+  expect(answered).not.toContain("/api/bench/jam");
+  await expect(robot.proposal(1)).toContainText("aborted");
+  await page.unrouteAll({ behavior: "ignoreErrors" });
+});
+
 test("the data of the login page age by name when the app falls silent", async ({ front, stack }) => {
   await front.expectMode("LOCKED");
   stack.signalApp("SIGSTOP");

@@ -384,6 +384,32 @@ def test_each_connection_is_shown_and_can_be_ended(robot: Stack, navigate: Calla
     assert judge(robot.api.put(f"{CONNECTIONS}/{shown['id']}/role", json={"role": "king"})).status_code == 422
 
 
+def test_the_last_words_of_an_imager_are_kept_with_their_age_and_outlive_their_sender(
+    robot: Stack, navigate: Callable[..., Navigator]
+) -> None:
+    def imager() -> dict:
+        return judge(robot.api.get("/api/communications/imager")).raise_for_status().json()
+
+    assert imager() == {"status": None, "tip": None}
+    navigator = navigate()
+    assert navigator.ask(text("IMAGER_STATUS", "warming up")).code == OK
+    assert navigator.ask(text("IMAGER_STATUS", "scanning")).code == OK
+    assert navigator.ask(transform("TIP_POSE", REGISTRATION)).code == OK
+    mirror = [-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
+    assert navigator.ask(transform("TIP_POSE", mirror)).code == CONFIGURATION
+    [connection] = connections(robot)
+    status, tip = (imager()[key] for key in ("status", "tip"))
+    assert (status["code"], status["name"], status["text"]) == (None, "", "scanning")
+    assert tip["scanner_from_tip"] == REGISTRATION
+    for word in (status, tip):
+        assert word["client"] == connection["client"]
+        assert 0 <= word["age_s"] < DEADLINE_S
+    navigator.stop()
+    wait_until("gone", lambda: connections(robot) == [])
+    wait_until("older", lambda: imager()["status"]["age_s"] > status["age_s"])
+    assert imager()["status"]["text"] == "scanning"
+
+
 def bare(robot: Stack) -> socket.socket:
     connection = socket.create_connection(("127.0.0.1", robot.igtl_port), timeout=DEADLINE_S)
     connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)

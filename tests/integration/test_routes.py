@@ -236,6 +236,11 @@ def test_ten_slots_show_their_cards_and_a_card_that_fails(robot: Stack) -> None:
     wait_until("card lost", lambda: not robot.status()["cards"][LATERAL]["detected"])
     lost = robot.status()["cards"][LATERAL]
     assert not lost["heartbeat_live"]
+    assert lost["frame_age_ms"] > 0
+    wait_until(
+        "the last frame ages",
+        lambda: robot.status()["cards"][LATERAL]["frame_age_ms"] > lost["frame_age_ms"],
+    )
     robot.control("card_power", slot=LATERAL, on=True)
     robot.control("card_reset", slot=LATERAL)
     wait_until("card is back", lambda: robot.status()["cards"][LATERAL]["heartbeat_live"])

@@ -1,7 +1,7 @@
 /** What the console costs the network, the operator's computer and the app; see run.py for the limits. */
 import { writeFileSync } from "node:fs";
 import path from "node:path";
-import type { CDPSession } from "@playwright/test";
+import type { CDPSession, Page } from "@playwright/test";
 import { ConsolePage } from "../../tests/browser/console_page";
 import { firstLoad } from "../../tests/browser/first_load";
 import { expect, test } from "../../tests/browser/fixtures";
@@ -17,6 +17,8 @@ const SAMPLE_EVERY_S = 10;
 /** Of the run, for caches and compiled code to settle. */
 const WARM_UP_SHARE = 0.2;
 const ROUNDS = 8;
+/** Of history that the app keeps and the page takes in: until then its growth is no leak. */
+const HISTORY_S = 130;
 /** What was painted sooner than this after an interaction is counted, but not reported one by one. */
 const PROMPT_MS = 16;
 
@@ -43,7 +45,53 @@ test("time from an interaction to the next paint, with every part of the panels 
   page,
 }) => {
   await unfold(robot);
-  await page.evaluate((durationThreshold) => {
+  await watchInteractions(page);
+  for (let round = 0; round < ROUNDS; round++) await interact(robot);
+  await noteInteractions(page, "");
+});
+
+test("time from an interaction to the next paint, with every plot open", async ({ robot, page }) => {
+  await openPlots(robot);
+  await watchInteractions(page);
+  for (let round = 0; round < ROUNDS; round++) await interactWithPlots(robot);
+  await noteInteractions(page, "plots_");
+});
+
+test("memory of a page that stays open", async ({ robot, page }) => {
+  await unfold(robot);
+  await noteMemory(page, "", WARM_UP_SHARE * minutes * 60, () => interact(robot));
+});
+
+test("memory of the plots that stay open", async ({ robot, page }) => {
+  await openPlots(robot);
+  await noteMemory(page, "plots_", HISTORY_S, () => interactWithPlots(robot));
+});
+
+test("the app's processor time for four open consoles", async ({ browser, stack }) => {
+  const idle = await appShare(stack);
+  const contexts = await Promise.all(Array.from({ length: CONSOLES }, () => browser.newContext()));
+  const consoles: ConsolePage[] = [];
+  for (const context of contexts) {
+    const page = await context.newPage();
+    await page.goto(stack.url);
+    const console = new ConsolePage(page);
+    await console.logIn("admin", stack.password);
+    await expect(console.panel("Motors")).toBeVisible();
+    consoles.push(console);
+  }
+  const busy = await appShare(stack);
+  for (const console of consoles) await openPlots(console);
+  const plotting = await appShare(stack);
+  await Promise.all(contexts.map((context) => context.close()));
+  figures.app_cpu_percent_without_console = round(idle);
+  figures.app_cpu_percent_with_four = round(busy);
+  figures.app_cpu_percent_of_four = round(busy - idle);
+  figures.plots_app_cpu_percent_of_four = round(plotting - idle);
+});
+
+/** From now on the page keeps the longest time of each interaction that was not painted promptly. */
+function watchInteractions(page: Page): Promise<void> {
+  return page.evaluate((durationThreshold) => {
     const worst = new Map<number, number>();
     Object.assign(window, { worst });
     new PerformanceObserver((list) => {
@@ -53,7 +101,10 @@ test("time from an interaction to the next paint, with every part of the panels 
       }
     }).observe({ type: "event", durationThreshold } as PerformanceObserverInit);
   }, PROMPT_MS);
-  for (let round = 0; round < ROUNDS; round++) await interact(robot);
+}
+
+/** Counts in every interaction since the page was loaded: those before the watch were prompt or are not known. */
+async function noteInteractions(page: Page, prefix: string): Promise<void> {
   const [slow, count] = await page.evaluate(() => [
     [...(window as unknown as { worst: Map<number, number> }).worst.values()],
     (performance as unknown as { interactionCount: number }).interactionCount,
@@ -61,50 +112,71 @@ test("time from an interaction to the next paint, with every part of the panels 
   expect(count).toBeGreaterThan(ROUNDS);
   const prompt = Array<number>(Math.max(0, count - slow.length)).fill(PROMPT_MS);
   const all = sorted([...slow, ...prompt]);
-  figures.interactions = all.length;
-  figures.interaction_to_paint_ms_median = quantile(all, 0.5);
-  figures.interaction_to_paint_ms_p98 = quantile(all, 0.98);
-  figures.interaction_to_paint_ms_worst = quantile(all, 1);
-});
+  figures[`${prefix}interactions`] = all.length;
+  figures[`${prefix}interaction_to_paint_ms_median`] = quantile(all, 0.5);
+  figures[`${prefix}interaction_to_paint_ms_p98`] = quantile(all, 0.98);
+  figures[`${prefix}interaction_to_paint_ms_worst`] = quantile(all, 1);
+}
 
-test("memory of a page that stays open", async ({ robot, page }) => {
-  await unfold(robot);
+/** Uses the page for the minutes of the run; what grows until it is warm is not counted. */
+async function noteMemory(
+  page: Page,
+  prefix: string,
+  warmUpS: number,
+  use: () => Promise<void>,
+): Promise<void> {
   const session = await page.context().newCDPSession(page);
   await session.send("Performance.enable");
   const heaps: number[] = [];
   const elements: number[] = [];
-  const end = performance.now() + minutes * 60_000;
-  const warm = performance.now() + WARM_UP_SHARE * minutes * 60_000;
+  const warm = performance.now() + warmUpS * 1000;
+  const end = warm + (1 - WARM_UP_SHARE) * minutes * 60_000;
   while (performance.now() < end) {
-    await interact(robot);
+    await use();
     await page.waitForTimeout(SAMPLE_EVERY_S * 1000);
     if (performance.now() < warm) continue;
     await session.send("HeapProfiler.collectGarbage");
     heaps.push(await metric(session, "JSHeapUsedSize"));
     elements.push(await metric(session, "Nodes"));
   }
-  figures.memory_minutes = minutes;
-  figures.memory_heap_kib = Math.round(quantile(sorted(heaps), 0.5) / 1024);
-  figures.memory_growth_kib = Math.round(growth(heaps) / 1024);
-  figures.memory_growth_nodes = Math.round(growth(elements));
-});
+  figures[`${prefix}memory_minutes`] = minutes;
+  figures[`${prefix}memory_heap_kib`] = Math.round(quantile(sorted(heaps), 0.5) / 1024);
+  figures[`${prefix}memory_growth_kib`] = Math.round(growth(heaps) / 1024);
+  figures[`${prefix}memory_growth_nodes`] = Math.round(growth(elements));
+}
 
-test("the app's processor time for four open consoles", async ({ browser, stack }) => {
-  const idle = await appShare(stack);
-  const contexts = await Promise.all(Array.from({ length: CONSOLES }, () => browser.newContext()));
-  for (const context of contexts) {
-    const page = await context.newPage();
-    await page.goto(stack.url);
-    const console = new ConsolePage(page);
-    await console.logIn("admin", stack.password);
-    await expect(console.panel("Motors")).toBeVisible();
-  }
-  const busy = await appShare(stack);
-  await Promise.all(contexts.map((context) => context.close()));
-  figures.app_cpu_percent_without_console = round(idle);
-  figures.app_cpu_percent_with_four = round(busy);
-  figures.app_cpu_percent_of_four = round(busy - idle);
-});
+const chart = (robot: ConsolePage, title: string) =>
+  robot.panel("Plots").getByRole("figure", { name: title }).getByRole("img");
+
+/** Every plot of the page, over the longest time that it shows. */
+async function openPlots(robot: ConsolePage): Promise<void> {
+  const { page } = robot;
+  await robot.open("Plots");
+  await page.getByLabel("Last").selectOption("120");
+  for (const title of ["Position", "Error", "Velocity", "Drive"])
+    await expect(chart(robot, title)).toBeVisible();
+  await expect(robot.panel("Loop time").getByRole("img").first()).toBeVisible();
+}
+
+/** Cursor, zoom, pause, another axis, all while the plots follow the robot. */
+async function interactWithPlots(robot: ConsolePage): Promise<void> {
+  const { page } = robot;
+  const position = chart(robot, "Position");
+  await position.focus();
+  for (let step = 0; step < 10; step++) await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("+");
+  await page.keyboard.press("-");
+  await position.dblclick({ position: { x: 200, y: 40 } });
+  const pause = robot.panel("Plots").getByRole("button", { name: /Pause/ });
+  for (let press = 0; press < 2; press++) await pause.click();
+  const axis = page.getByRole("combobox", { name: "Axis", exact: true });
+  await axis.focus();
+  await page.keyboard.press("ArrowDown");
+  await expect(chart(robot, "Drive")).toBeVisible();
+  await axis.focus();
+  await page.keyboard.press("ArrowUp");
+  await page.getByLabel("Last").selectOption("120");
+}
 
 async function unfold(robot: ConsolePage): Promise<void> {
   await robot.panel("Bench").getByText("More faults").click();

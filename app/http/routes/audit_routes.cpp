@@ -1,10 +1,13 @@
 #include "http/routes/audit_routes.hpp"
 
+#include <algorithm>
 #include <limits>
+#include <memory>
 
 #include "http/fields.hpp"
 #include "http/problems.hpp"
 #include "http/query.hpp"
+#include "store/audit_check.hpp"
 
 namespace interlock::web {
 namespace {
@@ -14,12 +17,34 @@ using nlohmann::json;
 
 constexpr std::int64_t default_records = 100;
 constexpr std::int64_t most_records = 1000;
+/** Some ten milliseconds of the store's thread: whoever asks for a move in between waits no longer. */
+constexpr std::size_t records_of_part = 2000;
+
+bool is_hash(const std::string& text) {
+  return text.size() == 64 && std::ranges::all_of(text, [](char each) {
+           return (each >= '0' && each <= '9') || (each >= 'a' && each <= 'f');
+         });
+}
+
+/** Schema `AuditCheck`. */
+json check_json(const tl::expected<AuditHead, AuditBreak>& result, UtcTime now) {
+  json body{
+      {"checked", iso_8601(now)}, {"sound", result.has_value()}, {"head", nullptr}, {"broken", nullptr}};
+  if (result) {
+    body["head"] = {{"number", result->number}, {"hash", result->hash}};
+  } else {
+    body["broken"] = {{"number", result.error().number}, {"problem", result.error().problem}};
+  }
+  return body;
+}
 
 }  // namespace
 
 AuditRoutes::AuditRoutes(const Context& context, Router& router) : context_(context) {
   router.add(boost::beast::http::verb::get, "/api/audit", admins,
              [this](const Call& call) { return records(call); });
+  router.add(boost::beast::http::verb::get, "/api/audit/verify", admins,
+             [this](const Call& call) { return verify(call); });
 }
 
 Answering AuditRoutes::records(const Call& call) const {
@@ -46,6 +71,36 @@ Answering AuditRoutes::records(const Call& call) const {
     }
     return Success{.body = std::move(list)};
   });
+}
+
+Answering AuditRoutes::verify(const Call& call) const {
+  const auto query = known_query(call.request, {"noted"});
+  if (!query) {
+    co_return fail(query.error());
+  }
+  Fields fields(*query, {"noted"});
+  const auto noted = fields.text("noted");
+  if (noted && !is_hash(*noted)) {
+    fields.reject("noted", *noted, "a hash that was noted: 64 digits of 0 to 9 and a to f");
+  }
+  if (fields.problem()) {
+    co_return fail(*fields.problem());
+  }
+  // Shared: a part that nobody waits for any more may still be under way when this ends.
+  const auto check = std::make_shared<AuditCheck>(noted);
+  for (bool more = true; more;) {
+    auto next_part = [check](Store& store) {
+      return store.read([&](Transaction& transaction) -> Stored<bool> {
+        return check->go_on(transaction.database(), records_of_part);
+      });
+    };
+    const auto part = co_await context_.store.run(std::move(next_part));
+    if (!part) {
+      co_return fail(part.error());
+    }
+    more = *part;
+  }
+  co_return Success{.body = check_json(check->result(), context_.clock())};
 }
 
 }  // namespace interlock::web

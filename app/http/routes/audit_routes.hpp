@@ -1,6 +1,6 @@
 /**
  * @file
- * Route of the audit.
+ * Routes of the audit.
  */
 #pragma once
 
@@ -16,6 +16,7 @@ class AuditRoutes {
 
  private:
   [[nodiscard]] boost::asio::awaitable<Reply> records(const Call& call) const;
+  [[nodiscard]] boost::asio::awaitable<Reply> verify(const Call& call) const;
 
   const Context& context_;
 };

@@ -115,6 +115,9 @@ CommunicationRoutes::CommunicationRoutes(const Context& context, Navigation& nav
              [this](const Call& call) { return end_navigation(call); });
   router.add(verb::put, "/api/communications/connections/{id}/role", holder,
              [this](const Call& call) { return set_role(call); });
+  router.add(verb::get, "/api/communications/imager", viewers, [this](const Call&) -> Answering {
+    co_return Success{.body = navigation_.imager().to_json(context_.steady_clock())};
+  });
   router.add(verb::get, "/api/communications", viewers, [this](const Call&) { return list(); });
   router.add(verb::put, "/api/communications/disconnect", engineers,
              [this](const Call& call) { return disconnect(call); });

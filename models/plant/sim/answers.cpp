@@ -74,6 +74,14 @@ json card_status(std::size_t slot, const Card& card) {
           {"heartbeat", card.heartbeat()}};
 }
 
+json parameters_status(const AxisParameters& axis) {
+  json parameters{{"coast_counts", thousandths(coast_counts(axis))}};
+  for (const AxisKnob& knob : kAxisKnobs) {
+    parameters[std::string(knob.name)] = knob.get(axis);
+  }
+  return parameters;
+}
+
 json axis_status(std::size_t slot, const Station& station, std::uint32_t drive, Microseconds period) {
   const Axis& axis = *station.axis;
   const double counts_per_tick =
@@ -90,7 +98,9 @@ json axis_status(std::size_t slot, const Station& station, std::uint32_t drive, 
           {"counts_per_tick", thousandths(counts_per_tick)},
           {"reversed", axis.is_reversed()},
           {"encoder", name_of_state(kEncoderStates, station.card.encoder()->is_stuck())},
-          {"switch", name_of_state(kSwitchStates, axis.limit_switch().stuck())}};
+          {"switch", name_of_state(kSwitchStates, axis.limit_switch().stuck())},
+          {"parameters", parameters_status(axis.parameters())},
+          {"parameters_changed", axis.parameters() != axis.file_parameters()}};
 }
 
 json sensor_status(std::size_t slot, const ForceSensor& sensor) {

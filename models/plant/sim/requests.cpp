@@ -45,6 +45,22 @@ class Fields {
     return value->get<double>();
   }
 
+  /** Nothing when the field is not there. */
+  std::optional<double> knob(const AxisKnob& knob) {
+    const json* value = take(knob.name);
+    if (value == nullptr) {
+      return std::nullopt;
+    }
+    const bool is_number = knob.whole ? value->is_number_integer() : value->is_number();
+    if (!is_number ||
+        !(value->get<double>() >= knob.range.least && value->get<double>() <= knob.range.most)) {
+      fail(std::string(knob.name), std::string(knob.whole ? "expected a whole number" : "expected a number") +
+                                       " from " + json(knob.range.least).dump() + " to " +
+                                       json(knob.range.most).dump());
+    }
+    return value->is_number() ? value->get<double>() : 0.0;
+  }
+
   std::uint64_t tick(const char* name) { return static_cast<std::uint64_t>(integer(name, 0, kMostInteger)); }
 
   std::size_t slot() { return static_cast<std::size_t>(integer("slot", 0, ILK_SLOTS - 1)); }
@@ -94,7 +110,7 @@ class Fields {
 
   bool is(const char* name, const char* text) const { return has(name) && object_[name] == text; }
 
-  const json* take(const char* name) {
+  const json* take(std::string_view name) {
     taken_.emplace_back(name);
     const auto found = object_.find(name);
     return found == object_.end() ? nullptr : &*found;
@@ -137,6 +153,19 @@ command::SpoilFrames read_frame_fault(Fields& fields) {
   return {slot, fields.choice("fault", kFrameFaults), fields.count()};
 }
 
+command::ChangeParameters read_parameters(Fields& fields) {
+  command::ChangeParameters wish{fields.slot(), {}};
+  bool any = false;
+  for (std::size_t knob = 0; knob < kAxisKnobCount; ++knob) {
+    wish.value[knob] = fields.knob(kAxisKnobs[knob]);
+    any = any || wish.value[knob];
+  }
+  if (!any) {
+    fields.fail(std::string(kAxisKnobs[0].name), "expected this or another parameter of the README");
+  }
+  return wish;
+}
+
 RecordQuery read_range(Fields& fields) {
   const RecordQuery query{fields.tick("from"), fields.tick("to")};
   if (query.to < query.from) {
@@ -172,6 +201,8 @@ constexpr std::array kForms = {
         [](Fields& f) -> Wish { return command::StickEncoder{f.slot(), f.choice("state", kEncoderStates)}; }},
     Form{"switch",
          [](Fields& f) -> Wish { return command::StickSwitch{f.slot(), f.choice("state", kSwitchStates)}; }},
+    Form{"parameters", [](Fields& f) -> Wish { return read_parameters(f); }},
+    Form{"parameters_restore", [](Fields& f) -> Wish { return command::RestoreParameters{f.slot()}; }},
     Form{
         "force",
         [](Fields& f) -> Wish { return command::PressSensor{f.slot(), f.analog_input(), f.force_counts()}; }},

@@ -1,3 +1,5 @@
+#include <SQLiteCpp/SQLiteCpp.h>
+
 #include "http_fixture.hpp"
 
 namespace interlock::web {
@@ -12,6 +14,8 @@ class AuditRoutesTest : public HttpTest {
   }
 
   json records(const std::string& query) { return json::parse(read_audit(query).body); }
+
+  json verify(const std::string& query = "") { return json::parse(read_audit("/verify" + query).body); }
 
   void change_target(int x) {
     ASSERT_EQ(put("/api/targeting/target", json{{"target_point", {x, 0, 0}}}.dump()).status, 200u);
@@ -49,6 +53,44 @@ TEST_F(AuditRoutesTest, AWrongParameterIsNamedAndAnUnknownOneIgnored) {
     EXPECT_EQ(answered.problem()["field"], field) << query;
   }
   EXPECT_EQ(read_audit("?colour=red").status, 200u);
+}
+
+TEST_F(AuditRoutesTest, TheCheckNamesTheHeadOfASoundChain) {
+  for (int x = 1; x <= 3; ++x) {
+    change_target(x);
+  }
+  const json check = verify();
+  const AuditRecord last = audit().back();
+  EXPECT_EQ(check["sound"], true) << check;
+  EXPECT_EQ(check["head"], (json{{"number", last.number}, {"hash", last.hash}}));
+  EXPECT_TRUE(check["broken"].is_null());
+  EXPECT_EQ(check["checked"], iso_8601(now()));
+  EXPECT_EQ(verify("?noted=" + last.hash)["sound"], true);
+}
+
+TEST_F(AuditRoutesTest, TheCheckNamesTheFirstRecordThatWasForged) {
+  change_target(1);
+  change_target(2);
+  const std::int64_t number = audit().back().number - 1;
+  SQLite::Database forger((folder_.path() / "state" / "interlock.db").string(), SQLite::OPEN_READWRITE, 5000);
+  forger.exec("DROP TRIGGER audit_is_not_changed");
+  forger.exec("UPDATE audit SET actor = 'eve' WHERE number = " + std::to_string(number));
+  const json check = verify();
+  EXPECT_EQ(check["sound"], false) << check;
+  EXPECT_TRUE(check["head"].is_null());
+  EXPECT_EQ(check["broken"]["number"], number);
+  EXPECT_THAT(check["broken"]["problem"].get<std::string>(), testing::HasSubstr("was changed"));
+}
+
+TEST_F(AuditRoutesTest, TheCheckMissesANotedHashAndRefusesWhatIsNone) {
+  change_target(1);
+  const json check = verify("?noted=" + std::string(64, 'a'));
+  EXPECT_EQ(check["sound"], false);
+  EXPECT_EQ(check["broken"]["number"], audit().back().number + 1);
+  for (const std::string& wrong : {std::string(63, 'a'), std::string(64, 'A'), std::string(64, 'g')}) {
+    EXPECT_EQ(read_audit("/verify?noted=" + wrong).problem()["field"], "noted") << wrong;
+  }
+  EXPECT_EQ(get("/api/audit/verify").problem()["code"], "ROLE");
 }
 
 }  // namespace

@@ -73,6 +73,73 @@ TEST_F(LogRoutesTest, ARefusedLevelChangesNothing) {
   EXPECT_TRUE(audit("setting").empty());
 }
 
+/** The body that acknowledges the newest `count` lines. */
+std::string newest(const LogRing& ring, std::uint64_t count) {
+  json sequences = json::array();
+  for (std::uint64_t back = count; back > 0; --back) {
+    sequences.push_back(ring.last() + 1 - back);
+  }
+  return json{{"sequences", sequences}}.dump();
+}
+
+TEST_F(LogRoutesTest, AnEngineerAcknowledgesAndTheFirstStays) {
+  auto stream = open_stream();
+  ASSERT_TRUE(stream.next());
+  spdlog::warn("the disk is nearly full");
+  const std::string line = newest(log_->ring(), 1);
+  const Answered answered = post("/api/logs/acknowledge", line);
+  ASSERT_EQ(answered.status, 200u) << answered.body;
+  const json expected{{"user", "edna"}, {"time", iso_8601(now())}};
+  EXPECT_EQ(json::parse(answered.body)["lines"][0]["acknowledged"], expected);
+  EXPECT_EQ(json::parse(get("/api/logs?lines=1").body)["lines"][0]["acknowledged"], expected);
+
+  pass(std::chrono::seconds(5));
+  const std::string admin = token_of("ada");
+  const Answered again = as(admin, [&] { return post("/api/logs/acknowledge", line); });
+  EXPECT_EQ(json::parse(again.body)["lines"], json::array());
+  EXPECT_EQ(json::parse(get("/api/logs?lines=1").body)["lines"][0]["acknowledged"], expected);
+
+  const std::vector<json> kept = audit("acknowledgement");
+  ASSERT_EQ(kept.size(), 1u);
+  EXPECT_EQ(kept[0]["lines"][0]["text"], "the disk is nearly full");
+  EXPECT_EQ(kept[0]["lines"][0]["level"], "warning");
+  EXPECT_EQ(audit().back().actor, "edna");
+  json told;
+  while (told["acknowledged"].is_null()) {
+    told = stream.next_text("log");
+  }
+  EXPECT_EQ(told["text"], "the disk is nearly full");
+  EXPECT_EQ(told["acknowledged"], expected);
+}
+
+TEST_F(LogRoutesTest, SeveralLinesAreAcknowledgedAtOnce) {
+  spdlog::warn("first");
+  spdlog::error("second");
+  const json answer = json::parse(post("/api/logs/acknowledge", newest(log_->ring(), 2)).body);
+  EXPECT_EQ(texts(answer), (std::vector<std::string>{"first", "second"}));
+}
+
+TEST_F(LogRoutesTest, WhatCannotBeAcknowledgedIsRefusedAndNothingIsKept) {
+  spdlog::warn("serious");
+  spdlog::info("news");
+  const Answered mixed = post("/api/logs/acknowledge", newest(log_->ring(), 2));
+  EXPECT_EQ(mixed.status, 422u);
+  EXPECT_THAT(mixed.problem()["detail"].get<std::string>(), testing::HasSubstr("level info"));
+  EXPECT_EQ(post("/api/logs/acknowledge", R"({"sequences":[999999]})").problem()["code"], "NOT_FOUND");
+  const json hundred_and_one(101, 1);
+  for (const std::string& body : std::vector<std::string>{
+           R"({})", R"({"sequences":[]})", R"({"sequences":[1.5]})", R"({"sequences":[-1]})",
+           R"({"sequences":"1"})", json{{"sequences", hundred_and_one}}.dump()}) {
+    EXPECT_EQ(post("/api/logs/acknowledge", body).problem()["code"], "INVALID") << body;
+  }
+  log_in("vic");
+  EXPECT_EQ(post("/api/logs/acknowledge", newest(log_->ring(), 1)).problem()["code"], "ROLE");
+  for (const LogLine& line : log_->ring().newest(LogRing::capacity, LogLevel::debug)) {
+    EXPECT_FALSE(line.acknowledged) << line.text;
+  }
+  EXPECT_TRUE(audit("acknowledgement").empty());
+}
+
 TEST_F(LogRoutesTest, TheStreamTellsEachLine) {
   auto stream = open_stream();
   ASSERT_TRUE(stream.next());

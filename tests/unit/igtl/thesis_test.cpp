@@ -31,6 +31,25 @@ TEST(Thesis, PoseOfAnImagerIsReportedAndNoMore) {
   EXPECT_TRUE(std::holds_alternative<Noted>(wish_of("IMAGER_STATUS", Status{}).value()));
 }
 
+/** What the dialect gives to be kept of a message. */
+std::optional<ImagerWord> word_of(const std::string& device, Body body) {
+  return Thesis().take({device, std::move(body), 0, 1, {}}, RobotState{}, false).word;
+}
+
+TEST(Thesis, WordsOfAnImagerAreGivenToBeKept) {
+  const auto tip = word_of("TIP_POSE", Transform{shifted(1, 2, 3)});
+  EXPECT_EQ(std::get<TipPose>(tip.value()).scanner_from_tip, shifted(1, 2, 3));
+  const auto text = std::get<ImagerStatus>(word_of("IMAGER_STATUS", Text{"scanning"}).value());
+  EXPECT_FALSE(text.code);
+  EXPECT_EQ(text.text, "scanning");
+  const Status hot{StatusCode::hardware_failure, 0, "COIL", "too warm"};
+  const auto status = std::get<ImagerStatus>(word_of("imager_status", hot).value());
+  EXPECT_EQ(status.code, StatusCode::hardware_failure);
+  EXPECT_EQ(status.name + ": " + status.text, "COIL: too warm");
+  EXPECT_FALSE(word_of("KEEP_ALIVE", Status{})) << "a STATUS of another name is no word of an imager";
+  EXPECT_FALSE(word_of("TIP_POSE", Transform{Matrix{}})) << "a refused pose is not kept";
+}
+
 TEST(Thesis, ATipPoseThatIsNoRigidMotionIsRefused) {
   const Matrix mirror{-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   const Matrix shear{1, 0.01, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};

@@ -124,6 +124,68 @@ TEST(PlantAxis, BacklashIsLostWhenTheDirectionChanges) {
   EXPECT_NEAR((without_peak - without.position(kNonPwm)) - (with_peak - with.position(kNonPwm)), 10, 1e-6);
 }
 
+/** A command that changes the one parameter of that name. */
+command::ChangeParameters change(std::size_t slot, std::string_view name, double value) {
+  command::ChangeParameters wish{slot, {}};
+  for (std::size_t knob = 0; knob < kAxisKnobCount; ++knob) {
+    if (kAxisKnobs[knob].name == name) {
+      wish.value[knob] = value;
+    }
+  }
+  return wish;
+}
+
+/** How far an axis comes after its drive ended at full speed. */
+double coast(Bench& bench) {
+  bench.drive(kNonPwm, Sense::kIncreasing, kMaxDrive);
+  bench.run(500);
+  const double amplifier_off = bench.position(kNonPwm);
+  bench.stop(kNonPwm);
+  bench.run(500);
+  return bench.position(kNonPwm) - amplifier_off;
+}
+
+TEST(PlantAxis, AChangedLagChangesTheCoastAndIsRestored) {
+  Bench bench(exact_parameters());
+  const double before = coast(bench);
+  bench.schedule(change(kNonPwm, "lag_ms", 30));
+  bench.run(1);
+  const AxisParameters& now = bench.plant.station(kNonPwm)->axis->parameters();
+  EXPECT_EQ(now.lag, Microseconds{30'000});
+  EXPECT_DOUBLE_EQ(coast_counts(now), 30);
+  EXPECT_NEAR(coast(bench) - before, 25, 0.5) << "25 ms more at a count a millisecond";
+  bench.schedule(command::RestoreParameters{kNonPwm});
+  bench.run(1);
+  EXPECT_EQ(now, bench.plant.station(kNonPwm)->axis->file_parameters());
+  EXPECT_NEAR(coast(bench), before, 0.5);
+}
+
+TEST(PlantAxis, AChangedDeadZoneAndSpeedActOnTheNextDrive) {
+  Bench bench(exact_parameters());
+  const std::uint32_t half = kMaxDrive / 2;
+  bench.schedule(change(kNonPwm, "dead_zone_fraction", 0.6));
+  bench.drive(kNonPwm, Sense::kIncreasing, half);
+  const double start = bench.position(kNonPwm);
+  bench.run(300);
+  EXPECT_EQ(bench.position(kNonPwm), start);
+  bench.schedule(command::RestoreParameters{kNonPwm});
+  bench.schedule(change(kNonPwm, "full_speed_counts_per_s", 250));
+  bench.drive(kNonPwm, Sense::kIncreasing, kMaxDrive);
+  bench.run(100);
+  const double before = bench.position(kNonPwm);
+  bench.run(100);
+  EXPECT_NEAR(bench.position(kNonPwm) - before, 25, 0.01);
+}
+
+TEST(PlantAxis, ChangedNoiseIsReadAndOtherAxesKeepTheirs) {
+  Bench bench(exact_parameters());
+  bench.schedule(change(kNonPwm, "noise_counts", 7));
+  bench.schedule(change(kNonPwm, "noise_chance", 1));
+  bench.run(3);
+  EXPECT_EQ(bench.counter(kNonPwm), 7);
+  EXPECT_EQ(bench.counter(kAnalog), 0);
+}
+
 TEST(PlantAxis, EndStopsHoldTheAxisALittleBeyondItsLimits) {
   Bench bench(exact_parameters());
   bench.drive(kPwm, Sense::kIncreasing, kMaxDrive);

@@ -51,6 +51,12 @@ TEST(PlantProtocol, ReadsEveryCommandOfTheReadme) {
             2u);
   EXPECT_EQ(command_of<command::ResetCard>(R"({"command":"card_reset","slot":4})").slot, 4u);
   EXPECT_FALSE(command_of<command::PowerCard>(R"({"command":"card_power","slot":4,"on":false})").on);
+  const auto parameters = command_of<command::ChangeParameters>(
+      R"({"command":"parameters","slot":4,"lag_ms":12.5,"noise_counts":3})");
+  EXPECT_EQ(parameters.slot, 4u);
+  EXPECT_EQ(parameters.value, (std::array<std::optional<double>, kAxisKnobCount>{
+                                  std::nullopt, std::nullopt, 12.5, std::nullopt, 3.0, std::nullopt}));
+  EXPECT_EQ(command_of<command::RestoreParameters>(R"({"command":"parameters_restore","slot":4})").slot, 4u);
   const auto force = command_of<command::PressSensor>(R"({"command":"force","slot":3,"adc":2,"counts":-40})");
   EXPECT_EQ(force.input, 1u);
   EXPECT_EQ(force.counts, -40);
@@ -100,6 +106,16 @@ TEST(PlantProtocol, FaultyLineIsRefusedWithFieldAndExpectation) {
             "jam: 'slot': expected a whole number from 0 to 9");
   EXPECT_EQ(fault_of(R"({"command":"runaway","slot":0,"counts_per_tick":1e300})"),
             "runaway: 'counts_per_tick': expected a number from -1000.0 to 1000.0");
+  EXPECT_THAT(fault_of(R"({"command":"parameters","slot":0})"),
+              HasSubstr("expected this or another parameter"));
+  EXPECT_EQ(fault_of(R"({"command":"parameters","slot":0,"lag_ms":0})"),
+            "parameters: 'lag_ms': expected a number from 0.1 to 1000.0");
+  EXPECT_EQ(fault_of(R"({"command":"parameters","slot":0,"lag_ms":5,"noise_counts":1.5})"),
+            "parameters: 'noise_counts': expected a whole number from 0.0 to 100.0");
+  EXPECT_EQ(fault_of(R"({"command":"parameters","slot":0,"noise_chance":"high"})"),
+            "parameters: 'noise_chance': expected a number from 0.0 to 1.0");
+  EXPECT_THAT(fault_of(R"({"command":"parameters","slot":0,"lag_ms":5,"start_counts":1})"),
+              HasSubstr("'start_counts': unknown field"));
   EXPECT_EQ(fault_of(R"({"command":"frame","slot":0,"fault":"drop","count":0})"),
             "frame: 'count': expected a whole number from 1 to 1000000");
   EXPECT_EQ(fault_of(R"({"command":"frame","slot":0,"fault":"melt","count":1})"),
@@ -139,9 +155,27 @@ TEST(PlantProtocol, StatusShowsWhatABenchShows) {
   EXPECT_NEAR(axis["speed_counts_per_s"].get<double>(), 1000, 1);
   EXPECT_EQ(axis["drive"], 0x40000000u + kMaxDrive);
   EXPECT_EQ(status["axes"][0]["switch"], "triggered");
+  EXPECT_EQ(axis["parameters_changed"], false);
+  EXPECT_EQ(axis["parameters"]["lag_ms"], 5.0);
+  EXPECT_EQ(axis["parameters"]["coast_counts"], 5.0);
+  EXPECT_EQ(axis["parameters"].size(), kAxisKnobCount + 1);
   ASSERT_EQ(status["cards"].size(), 6u);
   EXPECT_EQ(status["cards"][5]["type"], "SENSOR");
   EXPECT_EQ(status["cards"][1]["amplifier"], true);
+}
+
+TEST(PlantProtocol, StatusTellsWhichAxisHasOtherParametersThanItsFile) {
+  Bench bench(exact_parameters());
+  const auto wish = command_of<command::ChangeParameters>(R"({"command":"parameters","slot":2,"lag_ms":8})");
+  bench.schedule(wish);
+  bench.run(1);
+  const json axes = sim::status_of(bench.plant, ILK_CLOCK_SIM)["axes"];
+  EXPECT_EQ(axes[1]["slot"], kNonPwm);
+  EXPECT_EQ(axes[1]["parameters_changed"], true);
+  EXPECT_EQ(axes[1]["parameters"]["lag_ms"], 8.0);
+  EXPECT_EQ(axes[1]["parameters"]["coast_counts"], 8.0);
+  EXPECT_EQ(axes[0]["parameters_changed"], false);
+  EXPECT_TRUE(bench.plant.refusal(command::ChangeParameters{kSensor, {}}));
 }
 
 TEST(PlantProtocol, StatusBeforeTheFirstExchangeIsWhole) {

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "store/audit_check.hpp"
 #include "store/digest.hpp"
 #include "store_fixture.hpp"
 
@@ -209,6 +210,62 @@ TEST_F(AuditTest, TruncationShowsAgainstANotedHeadOnly) {
   EXPECT_EQ(truncated.error().number, 5);
   EXPECT_THAT(truncated.error().problem, HasSubstr(noted));
 }
+
+class PartsOf : public AuditTest, public testing::WithParamInterface<std::size_t> {
+ protected:
+  /** One part; whether more are to be followed. */
+  bool go_on(AuditCheck& check) {
+    return seen(store_,
+                [&](Transaction& transaction) { return check.go_on(transaction.database(), GetParam()); });
+  }
+};
+
+TEST_P(PartsOf, AChainGiveTheAnswerOfTheWholeThoughItGrowsMeanwhile) {
+  append(6);
+  AuditCheck check;
+  ASSERT_TRUE(go_on(check) || GetParam() > 6);
+  append(1);
+  while (go_on(check)) {
+  }
+  ASSERT_TRUE(check.result());
+  EXPECT_EQ(*check.result(), *verify());
+  EXPECT_EQ(check.result()->number, 7);
+}
+
+TEST_P(PartsOf, AChainFindABreakInALaterPart) {
+  append(6);
+  AuditCheck check;
+  go_on(check);
+  execute(std::string(drop_triggers) +
+          "DELETE FROM audit WHERE number = 5; INSERT INTO audit SELECT 8, time, "
+          "tick, actor, session, kind, detail, hash FROM audit WHERE number = 6");
+  while (go_on(check)) {
+  }
+  ASSERT_FALSE(check.result());
+  EXPECT_EQ(check.result().error().number, GetParam() > 6 ? 7 : 5);
+}
+
+TEST_P(PartsOf, AChainBeginAnewWhenRecordsWereRetiredMeanwhile) {
+  append(6);
+  AuditCheck check;
+  go_on(check);
+  const AuditRecord fifth = list(1, 6).at(0);
+  commit(store_, [&](Transaction& transaction) {
+    Audit(transaction)
+        .retire({fifth.number, fifth.hash}, {.time = noon,
+                                             .tick = std::nullopt,
+                                             .actor = audit_actor::command_line,
+                                             .session = std::nullopt,
+                                             .detail = nlohmann::json::object()});
+  });
+  while (go_on(check)) {
+  }
+  ASSERT_TRUE(check.result());
+  EXPECT_EQ(*check.result(), *verify());
+  EXPECT_EQ(check.result()->number, 7);
+}
+
+INSTANTIATE_TEST_SUITE_P(Audit, PartsOf, testing::Values(1, 2, 3, 100));
 
 TEST_F(AuditTest, HeadOfAnEmptyChainIsInEveryChain) {
   append(1);

@@ -27,6 +27,7 @@ export type PositionsFile = Schemas["PositionsFile"];
 export type PositionsComparison = Schemas["PositionsComparison"];
 export type Connection = Schemas["Connection"];
 export type NavigationConnection = Schemas["NavigationConnection"];
+export type Imager = Schemas["Imager"];
 export type NavigationRole = NavigationConnection["role"];
 export type Biopsy = Schemas["Biopsy"];
 export type BiopsyNow = Schemas["BiopsyNow"];
@@ -39,6 +40,7 @@ export type Capture = Schemas["Capture"];
 export type Targeting = Schemas["Targeting"];
 export type AlignmentView = Schemas["AlignmentView"];
 export type AuditRecord = Schemas["AuditRecord"];
+export type AuditCheck = Schemas["AuditCheck"];
 export type AxisAction = paths["/api/motors/{axis}/{action}"]["post"]["parameters"]["path"]["action"];
 
 /** What an error says; the part of the API's problem that people need. */
@@ -202,6 +204,7 @@ export const api = {
   communications: () => read(() => http.GET("/api/communications")),
   disconnect: (id: number) => act(() => http.PUT("/api/communications/disconnect", { body: { id } })),
   navigationConnections: () => read(() => http.GET("/api/communications/connections")),
+  imager: () => read(() => http.GET("/api/communications/imager")),
   endNavigation: (id: number) =>
     act(() => http.DELETE("/api/communications/connections/{id}", { params: { path: { id } } })),
   setNavigationRole: (id: number, role: NavigationRole) =>
@@ -220,6 +223,8 @@ export const api = {
   alignment: () => read(() => http.GET("/api/targeting/alignment")),
   logs: (lines: number) => read(() => http.GET("/api/logs", { params: { query: { lines } } })),
   setLogLevel: (level: LogLevel) => act(() => http.PUT("/api/logs", { body: { level } })),
+  acknowledgeLogs: (sequences: number[]) =>
+    act(() => http.POST("/api/logs/acknowledge", { body: { sequences } })),
   audit: (records: number, before?: number) =>
     read(() =>
       http.GET("/api/audit", {
@@ -227,6 +232,9 @@ export const api = {
       }),
     ),
 
+  /** Goes over all records: a long audit takes its time. */
+  verifyAudit: (noted?: string) =>
+    act(() => slowHttp.GET("/api/audit/verify", { params: { query: noted === undefined ? {} : { noted } } })),
   bench: () => read(() => http.GET("/api/bench")),
   benchCommand: (command: string, body: Record<string, unknown>) =>
     act(() => http.POST("/api/bench/{command}", { params: { path: { command } }, body })),

@@ -1,6 +1,7 @@
 import type { AxisVerdict } from "../api/client";
 import type { Notice } from "../state/notice";
 import { useConsole } from "../state/store";
+import { CodeLink } from "./CodeLink";
 import { NoticeText } from "./NoticeText";
 
 interface VerdictListProps {
@@ -23,7 +24,8 @@ export function VerdictList({ title, verdicts, notice, onClose }: VerdictListPro
             <li key={slot} data-accepted={verdict === "ACCEPTED"}>
               <i aria-hidden="true">{verdict === "ACCEPTED" ? "✓" : "✕"}</i>{" "}
               <strong>{motors.find((motor) => motor.slot === slot)?.title ?? axis}</strong>{" "}
-              {verdict ?? "NO VERDICT"} {detail !== undefined && <span className="next-step">{detail}</span>}
+              {verdict === null ? "NO VERDICT" : <CodeLink family="verdict" code={verdict} />}{" "}
+              {detail !== undefined && <span className="next-step">{detail}</span>}
             </li>
           ))}
         </ul>

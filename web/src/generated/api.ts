@@ -628,6 +628,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/communications/imager": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * What imagers said last by OpenIGTLink (`IMAGER_STATUS`, `TIP_POSE`), whichever program passed it on, and how long ago. It is
+         *     shown, and nothing is done by it.
+         */
+        get: operations["getImager"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/communications/connections/{id}": {
         parameters: {
             query?: never;
@@ -674,6 +694,26 @@ export interface paths {
         /** Changes the level from which on lines are logged, until the app ends. */
         put: operations["setLogLevel"];
         post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/logs/acknowledge": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Notes that the caller has seen these lines of level warning, error or critical and looks after them. The first who
+         *     acknowledges a line stays. The app keeps it with the line until it ends; the audit keeps it with the line's text.
+         */
+        post: operations["acknowledgeLogs"];
         delete?: never;
         options?: never;
         head?: never;
@@ -729,6 +769,26 @@ export interface paths {
         };
         /** The newest records of the audit, oldest first. */
         get: operations["getAudit"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/audit/verify": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Goes over the whole chain of the audit, as `interlock audit verify` does, and says whether it is sound. Records cut off at
+         *     its end show only against a hash that was noted elsewhere: `noted` must be of a record that is still there.
+         */
+        get: operations["verifyAudit"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1090,6 +1150,11 @@ export interface components {
                 heartbeat: number;
                 /** @description The heartbeat advanced with the newest frame. */
                 heartbeat_live: boolean;
+                /**
+                 * @description How long the newest valid frame lies back by the kernel's clock, 0 when it came in the newest tick; null for an
+                 *     empty slot, and when none has come since the kernel started.
+                 */
+                frame_age_ms: number | null;
                 checksum_failures: number;
             }[];
             /** @description Per phase of the tick, histogram in powers of two of nanoseconds, and the maximum. */
@@ -1647,6 +1712,31 @@ export interface components {
             /** @description By the last two. */
             rate_hz: number | null;
         };
+        Imager: {
+            /** @description Null when none came. */
+            status: {
+                /** @description Of a STATUS, 1 being well; null when it came as a STRING. */
+                code: number | null;
+                /** @description Error name of a STATUS, else empty. */
+                name: string;
+                /** @description Cut behind 1000 bytes. */
+                text: string;
+                /** @description Address and port of the program; it may have gone since. */
+                client: string;
+                /** Format: date-time */
+                received: string;
+                age_s: number;
+            } | null;
+            /** @description Null when none came. */
+            tip: {
+                /** @description Where the imager sees the tip: 4x4, row by row, scanner RAS, mm. */
+                scanner_from_tip: number[];
+                client: string;
+                /** Format: date-time */
+                received: string;
+                age_s: number;
+            } | null;
+        };
         NavigationRole: {
             /** @enum {string} */
             role: "observer" | "controller";
@@ -1717,10 +1807,19 @@ export interface components {
             text: string;
             /** @description How often the line before it came again right after it; such a line has that as its text too. */
             repeated: number;
+            /** @description Who has seen it first, and when; null as long as nobody has. */
+            acknowledged: {
+                user: string;
+                /** Format: date-time */
+                time: string;
+            } | null;
         };
         Logs: {
             level: components["schemas"]["LogLevel"];
             lines: components["schemas"]["LogLine"][];
+        };
+        LogAcknowledgement: {
+            sequences: number[];
         };
         LogLevelChange: {
             level: components["schemas"]["LogLevel"];
@@ -1735,10 +1834,30 @@ export interface components {
             actor: string;
             session: number | null;
             /** @enum {string} */
-            kind: "start" | "login" | "login_refused" | "logout" | "session_ended" | "user" | "authority" | "proposal" | "request" | "verdict" | "stop" | "setting" | "restore" | "bench" | "connection" | "records_lost" | "retention";
+            kind: "start" | "login" | "login_refused" | "logout" | "session_ended" | "user" | "authority" | "proposal" | "request" | "verdict" | "stop" | "setting" | "restore" | "bench" | "connection" | "records_lost" | "retention" | "acknowledgement";
             detail: Record<string, unknown>;
             /** @description SHA-256, 64 hex digits. */
             hash: string;
+        };
+        AuditCheck: {
+            /**
+             * Format: date-time
+             * @description When the check ended.
+             */
+            checked: string;
+            sound: boolean;
+            /** @description The last record; null when the chain is broken. Noted elsewhere, its hash lets a later check find what was cut off. */
+            head: {
+                /** @description 0 when there is no record. */
+                number: number;
+                hash: string;
+            } | null;
+            /** @description The first record that is missing, changed, moved or put in; null when the chain is sound. */
+            broken: {
+                number: number;
+                /** @description What differs. */
+                problem: string;
+            } | null;
         };
         VerdictAnswer: {
             verdict: string | null;
@@ -2893,6 +3012,27 @@ export interface operations {
             401: components["responses"]["Login"];
         };
     };
+    getImager: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The last words, since the app started. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Imager"];
+                };
+            };
+            401: components["responses"]["Login"];
+        };
+    };
     endNavigationConnection: {
         parameters: {
             query?: never;
@@ -3007,6 +3147,36 @@ export interface operations {
             503: components["responses"]["NoStore"];
         };
     };
+    acknowledgeLogs: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["LogAcknowledgement"];
+            };
+        };
+        responses: {
+            /** @description Log with the lines that this acknowledged; without those that somebody had acknowledged before. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Logs"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            404: components["responses"]["NotFound"];
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoStore"];
+        };
+    };
     getHistory: {
         parameters: {
             query?: {
@@ -3089,6 +3259,33 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["AuditRecord"][];
+                };
+            };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    verifyAudit: {
+        parameters: {
+            query?: {
+                /** @description Hash that the chain must contain. */
+                noted?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Result, also when the chain is broken. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AuditCheck"];
                 };
             };
             401: components["responses"]["Login"];

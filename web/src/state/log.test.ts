@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { LogLevel, LogLine } from "../api/client";
-import { atLeast, levels, MOST_LINES, mergeLines } from "./log";
+import { atLeast, levels, MOST_LINES, matching, mergeLines, unanswered } from "./log";
 
 const line = (sequence: number, level: LogLevel = "info"): LogLine => ({
   sequence,
@@ -8,6 +8,7 @@ const line = (sequence: number, level: LogLevel = "info"): LogLine => ({
   time: "2026-01-01T00:00:00Z",
   text: `line ${sequence}`,
   repeated: 0,
+  acknowledged: null,
 });
 
 describe("mergeLines", () => {
@@ -31,4 +32,32 @@ describe("atLeast", () => {
       expect(atLeast(lines, level).length).toBe(count);
     },
   );
+});
+
+describe("matching", () => {
+  const lines = [
+    { ...line(1, "warning"), text: "Card 3 is silent" },
+    { ...line(2), text: "Card 3 is back" },
+    { ...line(3, "error"), acknowledged: { user: "ann", time: "2026-01-01T00:00:00Z" } },
+  ];
+  it.each([
+    ["", [1, 2, 3]],
+    ["  ", [1, 2, 3]],
+    ["card 3", [1, 2]],
+    ["SILENT card", [1]],
+    ["warning", [1]],
+    ["ann", [3]],
+    ["card 4", []],
+  ] as const)("%j finds %j", (words, found) => {
+    expect(matching(lines, words).map(({ sequence }) => sequence)).toEqual(found);
+  });
+});
+
+describe("unanswered", () => {
+  it("has the warnings and worse that nobody acknowledged, and gives up what the stream tells again", () => {
+    const lines = levels.map((level, index) => line(index, level));
+    expect(unanswered(lines).map(({ level }) => level)).toEqual(["warning", "error", "critical"]);
+    const told = { ...line(3, "error"), acknowledged: { user: "ann", time: "2026-01-01T00:00:00Z" } };
+    expect(unanswered(mergeLines(lines, [told])).map(({ level }) => level)).toEqual(["warning", "critical"]);
+  });
 });

@@ -17,3 +17,21 @@ export function atLeast(lines: readonly LogLine[], level: LogLevel): readonly Lo
   const least = levels.indexOf(level);
   return lines.filter((line) => levels.indexOf(line.level) >= least);
 }
+
+/** The lines whose text, level or acknowledging user has all of the words, in any order; all lines without a word. */
+export function matching(lines: readonly LogLine[], words: string): readonly LogLine[] {
+  const wanted = words
+    .toLowerCase()
+    .split(/\s+/)
+    .filter((word) => word !== "");
+  if (wanted.length === 0) return lines;
+  return lines.filter((line) => {
+    const said = `${line.level} ${line.text} ${line.acknowledged?.user ?? ""}`.toLowerCase();
+    return wanted.every((word) => said.includes(word));
+  });
+}
+
+/** The lines that ask for somebody's attention and that nobody has acknowledged. */
+export function unanswered(lines: readonly LogLine[]): readonly LogLine[] {
+  return atLeast(lines, "warning").filter((line) => line.acknowledged === null);
+}

@@ -8,7 +8,8 @@ export interface Notice {
   readonly nextStep: string;
 }
 
-function isVerdict(code: string): boolean {
+/** Whether the code is one of the kernel's; the app has others of its own. */
+export function isVerdict(code: string): boolean {
   return catalog.verdict.some((verdict) => verdict.name === code);
 }
 

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Authority, Role, User } from "../api/client";
-import { type Need, reasonAgainst } from "./permission";
+import { type Need, reasonAgainst, reasonOfMode } from "./permission";
 import type { Login } from "./store";
 
 const as = (role: Role): Login => ({ phase: "in", user: { name: "ann", role } as User, session: 7 });
@@ -20,20 +20,45 @@ describe("reasonAgainst", () => {
     ["admin", "engineer", true],
     ["admin", "holder", true],
     ["admin", "admin", true],
+    ["viewer", "setpoint", false],
+    ["engineer", "setpoint", true],
   ])("%s with authority, need %s: allowed %s", (role, need, allowed) => {
-    expect(reasonAgainst(as(role), held, need) === null).toBe(allowed);
+    expect(reasonAgainst(as(role), held, "manual", need) === null).toBe(allowed);
   });
 
   it("names who holds the authority and what to do", () => {
-    expect(reasonAgainst(as("engineer"), heldBy("bob"), "holder")).toBe(
+    expect(reasonAgainst(as("engineer"), heldBy("bob"), "manual", "holder")).toBe(
       "bob holds the authority: request it.",
     );
-    expect(reasonAgainst(as("engineer"), free, "holder")).toBe("Nobody holds the authority: request it.");
-    expect(reasonAgainst(as("engineer"), heldBy("ann"), "holder")).toContain("in another session");
+    expect(reasonAgainst(as("engineer"), free, "manual", "holder")).toBe(
+      "Nobody holds the authority: request it.",
+    );
+    expect(reasonAgainst(as("engineer"), heldBy("ann"), "manual", "holder")).toContain("in another session");
   });
 
   it("allows nothing before the authority is known or without login", () => {
-    expect(reasonAgainst(as("admin"), null, "holder")).not.toBeNull();
-    expect(reasonAgainst({ phase: "out", notice: null }, held, "engineer")).toBe("Log in first.");
+    expect(reasonAgainst(as("admin"), null, "manual", "holder")).not.toBeNull();
+    expect(reasonAgainst({ phase: "out", notice: null }, held, "manual", "engineer")).toBe("Log in first.");
+  });
+
+  it.each([
+    "home",
+    "coordinated",
+    "trajectory",
+    "draping",
+    "ablation",
+    "cooperative_biopsy",
+    "frequency_sweep",
+  ])("leaves no setpoint to the holder in mode %s, and says so; everything else stays allowed", (mode) => {
+    expect(reasonAgainst(as("engineer"), held, mode, "setpoint")).toContain(
+      `The mode ${mode.replaceAll("_", " ")} drives the setpoints`,
+    );
+    expect(reasonAgainst(as("engineer"), held, mode, "holder")).toBeNull();
+  });
+
+  it("names the missing authority first, and locks nothing for a mode that nobody knows", () => {
+    expect(reasonAgainst(as("engineer"), free, "home", "setpoint")).toContain("Nobody holds");
+    expect(reasonAgainst(as("engineer"), held, null, "setpoint")).toBeNull();
+    expect(reasonOfMode("manual")).toBeNull();
   });
 });

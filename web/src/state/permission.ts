@@ -2,20 +2,40 @@
 import type { Authority, Role } from "../api/client";
 import type { Login } from "./store";
 
-/** `holder`: an engineer whose session holds the motion authority. */
-export type Need = "engineer" | "admin" | "holder";
+/**
+ * `holder`: an engineer whose session holds the motion authority. `setpoint`: that engineer, while the robot's mode leaves
+ * the setpoints of single axes to the operator.
+ */
+export type Need = "engineer" | "admin" | "holder" | "setpoint";
 
 const rank: Record<Role, number> = { viewer: 0, engineer: 1, admin: 2 };
 
-/** Why the user may not do what needs `need`; null when nothing is against it. */
-export function reasonAgainst(login: Login, authority: Authority | null, need: Need): string | null {
+/** The one mode in which operators give setpoints axis by axis; in each other one an open proposal drives them. */
+const OPERATORS_MODE = "manual";
+
+/** Why the user may not do what needs `need`; null when nothing is against it. `mode`: of the robot, null when unknown. */
+export function reasonAgainst(
+  login: Login,
+  authority: Authority | null,
+  mode: string | null,
+  need: Need,
+): string | null {
   if (login.phase !== "in") return "Log in first.";
   const role = need === "admin" ? "admin" : "engineer";
   if (rank[login.user.role] < rank[role]) {
     const who = role === "admin" ? "only administrators" : "only engineers and administrators";
     return `You are logged in as ${login.user.role}: ${who} may do this.`;
   }
-  return need === "holder" ? reasonWithoutAuthority(login.user.name, authority) : null;
+  if (need === "engineer" || need === "admin") return null;
+  const reason = reasonWithoutAuthority(login.user.name, authority);
+  return need === "holder" ? reason : (reason ?? reasonOfMode(mode));
+}
+
+/** Why no setpoint may be given by hand: the mode that drives them. Null when it is the operator's, or not known. */
+export function reasonOfMode(mode: string | null): string | null {
+  if (mode === null || mode === OPERATORS_MODE) return null;
+  const words = mode.replaceAll("_", " ");
+  return `The mode ${words} drives the setpoints: wait until it has ended, or abort its proposal.`;
 }
 
 function reasonWithoutAuthority(user: string, authority: Authority | null): string | null {

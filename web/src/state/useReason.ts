@@ -3,5 +3,5 @@ import { useConsole } from "./store";
 
 /** Why the user may not do what needs `need`; null when nothing is against it. */
 export function useReason(need: Need): string | null {
-  return useConsole((state) => reasonAgainst(state.login, state.authority, need));
+  return useConsole((state) => reasonAgainst(state.login, state.authority, state.mode?.mode ?? null, need));
 }

@@ -5,6 +5,7 @@ import { Panel } from "../../design/Panel";
 import { type Notice, noticeOfProblem } from "../../state/notice";
 import { usePolled } from "../../state/usePolled";
 import { localDate } from "../../units/time";
+import { ChainCheck } from "./ChainCheck";
 import { detailText, mergeRecords } from "./records";
 import "./audit.css";
 
@@ -29,9 +30,7 @@ export function AuditPage() {
   const shown = refusal ?? notice;
   return (
     <Panel title="Audit" className="page-panel" asked={asked}>
-      <p className="page-words">
-        Each record carries the hash of the one before; <code>interlock audit verify</code> checks the chain.
-      </p>
+      <ChainCheck />
       {shown !== null && (
         <p className="panel-notice" role="alert">
           <NoticeText lead="No answer:" notice={shown} />

@@ -14,6 +14,7 @@ import { CardFaults } from "./CardFaults";
 import { ContactFaults } from "./ContactFaults";
 import { Forces } from "./Forces";
 import type { FaultsProps, SendBench } from "./faults";
+import { PlantParameters } from "./PlantParameters";
 import { usePedal } from "./usePedal";
 import "./bench.css";
 
@@ -50,6 +51,10 @@ export function BenchPanel() {
         <CommandButton need="engineer" onCommand={() => send("clear", {})}>
           End every fault
         </CommandButton>
+      </details>
+      <details className="bench-faults">
+        <summary>Plant parameters</summary>
+        <PlantParameters plant={plant} send={send} />
       </details>
       <Lamps />
     </Panel>

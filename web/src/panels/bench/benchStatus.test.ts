@@ -18,7 +18,14 @@ describe("plantStatus", () => {
       estop: { pulled: true, loop_closed: false },
       axes: [
         { slot: 0, jammed: false, reversed: true, counts_per_tick: 2, encoder: "stuck", has_switch: true },
-        { slot: 3, jammed: true, switch: "triggered", has_switch: false },
+        {
+          slot: 3,
+          jammed: true,
+          switch: "triggered",
+          has_switch: false,
+          parameters: { lag_ms: 12.5, coast_counts: 12.5 },
+          parameters_changed: true,
+        },
       ],
       cards: [
         { slot: 0, powered: true },
@@ -34,8 +41,14 @@ describe("plantStatus", () => {
       encoder: "stuck",
       switchState: "normal",
       hasSwitch: true,
+      parameters: {},
+      parametersChanged: false,
     });
     expect(status.axes[1]).toMatchObject({ slot: 3, jammed: true, switchState: "triggered" });
+    expect(status.axes[1]).toMatchObject({
+      parameters: { lag_ms: 12.5, coast_counts: 12.5 },
+      parametersChanged: true,
+    });
     expect([...status.unpowered]).toEqual([3]);
   });
 

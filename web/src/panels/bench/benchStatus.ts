@@ -8,6 +8,10 @@ export interface PlantAxis {
   readonly encoder: string;
   readonly switchState: string;
   readonly hasSwitch: boolean;
+  /** How motor, gear and encoder are simulated, by the names of the plant file. */
+  readonly parameters: Readonly<Record<string, number>>;
+  /** Whether one of them is not as in the plant file. */
+  readonly parametersChanged: boolean;
 }
 
 /** A connected input of a sensor card. */
@@ -54,6 +58,10 @@ function plantAxis(axis: Fields): PlantAxis {
     encoder: textOf(axis.encoder, "normal"),
     switchState: textOf(axis.switch, "normal"),
     hasSwitch: axis.has_switch === true,
+    parameters: Object.fromEntries(
+      Object.entries(fieldsOf(axis.parameters)).map(([name, value]) => [name, numberOf(value)]),
+    ),
+    parametersChanged: axis.parameters_changed === true,
   };
 }
 

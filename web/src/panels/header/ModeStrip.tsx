@@ -1,3 +1,5 @@
+import { Fragment } from "react";
+import { CodeLink } from "../../design/CodeLink";
 import { entry } from "../../generated/catalog";
 import type { Glance } from "../../stream/decode";
 
@@ -15,10 +17,24 @@ export function ModeStrip({ glance }: { readonly glance: Glance | null }) {
       aria-live="polite"
       title={locked ? `Seen in tick ${glance.causeTick}; value ${glance.causeValue}` : undefined}
     >
-      {locked && <strong>{text.name} </strong>}
+      {locked && (
+        <strong>
+          <CodeLink family="cause" code={text.name} />{" "}
+        </strong>
+      )}
       <span>{text.meaning} </span>
       <span className="next-step">{text.next_step}</span>
-      {locked && later.length > 0 && <span className="detail"> also seen: {later.join(", ")}</span>}
+      {locked && later.length > 0 && (
+        <span className="detail">
+          {" also seen: "}
+          {later.map((cause, index) => (
+            <Fragment key={cause}>
+              {index > 0 && ", "}
+              <CodeLink family="cause" code={cause} />
+            </Fragment>
+          ))}
+        </span>
+      )}
     </p>
   );
 }

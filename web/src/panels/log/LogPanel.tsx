@@ -3,21 +3,31 @@ import { api, type LogLevel, type LogLine } from "../../api/client";
 import { CommandButton } from "../../design/CommandButton";
 import { NoticeText } from "../../design/NoticeText";
 import { Panel } from "../../design/Panel";
-import { atLeast, levels } from "../../state/log";
+import { atLeast, levels, matching, unanswered } from "../../state/log";
 import { type Notice, noticeOfProblem } from "../../state/notice";
 import { useConsole } from "../../state/store";
 import { useReason } from "../../state/useReason";
-import { localTime } from "../../units/time";
+import { localDate, localTime } from "../../units/time";
 import "./log.css";
 
 const shapes: Record<LogLevel, string> = { debug: "·", info: "i", warning: "▲", error: "✕", critical: "⬣" };
+
+/** As many as the app takes in one request. */
+const MOST_AT_ONCE = 100;
 
 /** What the app says of itself, newest at the end. */
 export function LogPanel() {
   const lines = useConsole((state) => state.log);
   const [least, setLeast] = useState<LogLevel>("info");
   const [paused, setPaused] = useState<readonly LogLine[] | null>(null);
-  const shown = atLeast(paused ?? lines, least);
+  const [words, setWords] = useState("");
+  const [notice, setNotice] = useState<Notice | null>(null);
+  const shown = matching(atLeast(paused === null ? lines : asNow(paused, lines), least), words);
+  const open = unanswered(shown).slice(-MOST_AT_ONCE);
+  const acknowledge = async (sequences: number[]): Promise<void> => {
+    const outcome = await api.acknowledgeLogs(sequences);
+    setNotice(outcome.ok ? null : noticeOfProblem(outcome.problem));
+  };
   const newer = paused === null ? 0 : newerThan(paused, lines);
   return (
     <Panel
@@ -45,7 +55,38 @@ export function LogPanel() {
         </>
       }
     >
-      <Tail lines={shown} following={paused === null} />
+      <div className="log-tools">
+        <input
+          type="search"
+          className="text"
+          placeholder="search"
+          aria-label="Search the log"
+          autoComplete="off"
+          spellCheck={false}
+          value={words}
+          onChange={(event) => setWords(event.target.value)}
+        />
+        <output aria-label="Lines to acknowledge">{`${open.length} to acknowledge`}</output>
+        <CommandButton
+          need="engineer"
+          label="Acknowledge every line shown"
+          off={open.length === 0 ? "No warning or error is shown that waits for it." : null}
+          onCommand={() => acknowledge(open.map(({ sequence }) => sequence))}
+        >
+          Acknowledge shown
+        </CommandButton>
+        {notice !== null && (
+          <span className="tool-notice" role="alert">
+            <NoticeText lead="Refused:" notice={notice} />
+          </span>
+        )}
+      </div>
+      <Tail
+        lines={shown}
+        following={paused === null}
+        emptyWords={words.trim() === "" ? "No line of this level yet." : "No line has these words."}
+        onAcknowledge={(sequence) => acknowledge([sequence])}
+      />
     </Panel>
   );
 }
@@ -55,13 +96,21 @@ function newerThan(paused: readonly LogLine[], lines: readonly LogLine[]): numbe
   return lines.filter((line) => line.sequence > last).length;
 }
 
+/** Lines that were kept back, with what became of them since. */
+function asNow(kept: readonly LogLine[], lines: readonly LogLine[]): readonly LogLine[] {
+  const bySequence = new Map(lines.map((line) => [line.sequence, line]));
+  return kept.map((line) => bySequence.get(line.sequence) ?? line);
+}
+
 interface TailProps {
   readonly lines: readonly LogLine[];
   readonly following: boolean;
+  readonly emptyWords: string;
+  readonly onAcknowledge: (sequence: number) => Promise<void>;
 }
 
 /** Stays at the newest line while it follows. */
-function Tail({ lines, following }: TailProps) {
+function Tail({ lines, following, emptyWords, onAcknowledge }: TailProps) {
   const list = useRef<HTMLOListElement>(null);
   const last = lines.at(-1)?.sequence;
   useEffect(() => {
@@ -70,7 +119,7 @@ function Tail({ lines, following }: TailProps) {
   return (
     // biome-ignore lint/a11y/noNoninteractiveTabindex: a list that scrolls has to be reached by the keyboard.
     <ol ref={list} className="log" aria-label="Log lines" tabIndex={0}>
-      {lines.length === 0 && <li className="log-empty">No line of this level yet.</li>}
+      {lines.length === 0 && <li className="log-empty">{emptyWords}</li>}
       {lines.map((line) => (
         <li key={line.sequence} data-level={line.level}>
           <time dateTime={line.time}>{localTime(line.time)}</time>
@@ -78,9 +127,38 @@ function Tail({ lines, following }: TailProps) {
             <i aria-hidden="true">{shapes[line.level]}</i> {line.level}
           </span>
           <span>{line.text}</span>
+          <Answered line={line} onAcknowledge={onAcknowledge} />
         </li>
       ))}
     </ol>
+  );
+}
+
+interface AnsweredProps {
+  readonly line: LogLine;
+  readonly onAcknowledge: (sequence: number) => Promise<void>;
+}
+
+/** Who has acknowledged a warning or worse, or the button that does. */
+function Answered({ line, onAcknowledge }: AnsweredProps) {
+  const { sequence, acknowledged } = line;
+  if (acknowledged !== null) {
+    return (
+      <span className="answered" title={`acknowledged ${localDate(acknowledged.time)}`}>
+        ✓ {acknowledged.user} {localTime(acknowledged.time)}
+      </span>
+    );
+  }
+  if (unanswered([line]).length === 0) return null;
+  return (
+    <CommandButton
+      need="engineer"
+      className="quiet small"
+      label={`Acknowledge line ${sequence}`}
+      onCommand={() => onAcknowledge(sequence)}
+    >
+      Acknowledge
+    </CommandButton>
   );
 }
 

@@ -18,7 +18,7 @@ interface JogPadProps {
 /** Jogs an axis by a chosen increment, or for as long as a button is held; the pedal has to be held besides. */
 export function JogPad({ motor, axis }: JogPadProps) {
   const [increment, setIncrement] = useState<number>(increments[2]);
-  const reason = useReason("holder");
+  const reason = useReason("setpoint");
   const step = (sense: 1 | -1): Promise<void> => {
     const from = axis.setpointCounts ?? axis.positionCounts;
     const target_counts = from + sense * countsOf(motor, increment);
@@ -56,7 +56,7 @@ const ends: Record<JogDirection, string> = { decreasing: "smaller", increasing: 
 const holdingKeys: ReadonlySet<string> = new Set([" ", "Enter"]);
 
 function HoldToJog({ motor, direction }: { readonly motor: Motor; readonly direction: JogDirection }) {
-  const mayNot = useReason("holder") !== null;
+  const mayNot = useReason("setpoint") !== null;
   const [send] = useState(() => jogger(motor.slot, direction));
   const { down, press, letGo } = useHold(send, RENEW_EVERY_MS, mayNot);
 

@@ -1,6 +1,7 @@
 import { Panel } from "../../design/Panel";
 import { ReasonLine } from "../../design/ReasonLine";
 import { Refusal } from "../../design/Refusal";
+import { reasonOfMode } from "../../state/permission";
 import { homingPart, openHoming } from "../../state/proposals";
 import { useConsole } from "../../state/store";
 import { LoadButton } from "../positions/LoadButton";
@@ -30,6 +31,7 @@ export function MotorsPanel() {
   return (
     <Panel title="Motors" className="motors-panel" tools={tools}>
       <ReasonLine need="holder" />
+      <ModeLine />
       <LoadReport {...loading} />
       <HomeBar />
       {homing !== undefined && <HomingProgress homing={homing} />}
@@ -52,5 +54,16 @@ export function MotorsPanel() {
         setpoint: drag to preview, release to propose, hold the pedal to move
       </p>
     </Panel>
+  );
+}
+
+/** Says once, for all sliders, which mode drives the setpoints in the operator's place. */
+function ModeLine() {
+  const reason = useConsole((state) => reasonOfMode(state.mode?.mode ?? null));
+  if (reason === null) return null;
+  return (
+    <p className="reason-line" role="status">
+      Sliders, entries and jogging are locked. {reason}
+    </p>
   );
 }

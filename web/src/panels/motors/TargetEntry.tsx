@@ -15,7 +15,7 @@ export function TargetEntry({ motor, onTyped }: TargetEntryProps) {
   const [text, setText] = useState("");
   const [expected, setExpected] = useState<string | null>(null);
   const messageId = useId();
-  const reason = useReason("holder");
+  const reason = useReason("setpoint");
 
   const onType = (typed: string): void => {
     setText(typed);

@@ -29,7 +29,7 @@ interface Grip {
  * preview; releasing the drag, or Enter, proposes. The kernel judges the proposal: the track refuses nothing.
  */
 export function Track({ motor, axis, preview, onPreview: setPreview }: TrackProps) {
-  const reason = useReason("holder");
+  const reason = useReason("setpoint");
   const grip = useRef<Grip | null>(null);
   const domain = trackDomain(motor, axis);
   const wishCounts = axis.setpointCounts ?? axis.positionCounts;

@@ -8,12 +8,15 @@ export interface Preview {
   readonly sent: boolean;
 }
 
-/** The preview of one axis. STOP drops it, and so does the loss of the authority or of the data it was chosen by. */
+/**
+ * The preview of one axis. STOP drops it, and so do a mode that drives the setpoints and the loss of the authority or of the data
+ * it was chosen by.
+ */
 export function usePreview(): [Preview | null, (preview: Preview | null) => void] {
   const [preview, setPreview] = useState<Preview | null>(null);
   const stops = useConsole((state) => state.stops);
   const blind = useConsole((state) => state.freshness.level === "covered");
-  const mayNot = useReason("holder") !== null;
+  const mayNot = useReason("setpoint") !== null;
   useEffect(() => {
     if (stops > 0 || blind || mayNot) setPreview(null);
   }, [stops, blind, mayNot]);

@@ -1,8 +1,11 @@
 import type { CardStatus } from "../../api/client";
+import { CodeLink } from "../../design/CodeLink";
 import { Panel } from "../../design/Panel";
 import { Refusal } from "../../design/Refusal";
 import { entry } from "../../generated/catalog";
+import { formatAge } from "../../state/freshness";
 import { useConsole } from "../../state/store";
+import { ImagerFacts } from "./ImagerFacts";
 import { ModeSelector } from "./ModeSelector";
 import "./status.css";
 
@@ -16,6 +19,7 @@ export function StatusPanel() {
   return (
     <Panel title="Status" className="status-panel" asked={{ answeredAtMs, everyMs: STATUS_EVERY_MS }}>
       <System />
+      <ImagerFacts />
       <ModeSelector />
       {notice !== undefined && (
         <Refusal place="mode" notice={notice} dismissLabel="Dismiss the refusal of the mode" />
@@ -27,6 +31,13 @@ export function StatusPanel() {
             <th scope="col">Card</th>
             <th scope="col">Detected</th>
             <th scope="col">Heartbeat</th>
+            <th
+              scope="col"
+              className="number"
+              title="How long the newest valid frame lay back when the app answered"
+            >
+              Last frame
+            </th>
             <th scope="col" className="number" title="Frames whose checksum was wrong">
               Bad sums
             </th>
@@ -51,8 +62,15 @@ function System() {
     <dl className="facts">
       <dt>System</dt>
       <dd>
-        <strong>{glance.mode}</strong>
-        {locked && ` by ${glance.cause}`}
+        <strong>
+          <CodeLink family="mode" code={glance.mode} />
+        </strong>
+        {locked && (
+          <>
+            {" by "}
+            <CodeLink family="cause" code={glance.cause} />
+          </>
+        )}
         <span className="next-step">{text.next_step}</span>
       </dd>
       <dt>E-stop</dt>
@@ -86,11 +104,16 @@ function CardLine({ card }: { readonly card: CardStatus }) {
       <td className={silent ? "bad" : ""} title={`heartbeat ${card.heartbeat}`}>
         {mark(empty, card.heartbeat_live, "live", "SILENT")}
       </td>
+      <td className={`number ${lost ? "bad" : ""}`}>{empty ? "–" : frameAge(card.frame_age_ms)}</td>
       <td className={`number ${card.checksum_failures > 0 ? "warn" : ""}`}>
         {empty ? "–" : card.checksum_failures}
       </td>
     </tr>
   );
+}
+
+function frameAge(ageMs: number | null): string {
+  return ageMs === null ? "never" : formatAge(ageMs);
 }
 
 function mark(empty: boolean, good: boolean, yes: string, no: string): string {
