@@ -55,8 +55,9 @@ void note_targeting_change(Transaction& transaction, const AuditEntry& entry, st
   Settings(transaction).set(changes_key, changes, entry.time);
 }
 
-json targeting_history(Transaction& transaction) {
-  return {{"last_set", kept_history(transaction, last_set_key, json::value_t::object)},
+json targeting_history(Transaction& transaction, UtcTime now) {
+  return {{"now", iso_8601(now)},
+          {"last_set", kept_history(transaction, last_set_key, json::value_t::object)},
           {"changes", kept_history(transaction, changes_key, json::value_t::array)}};
 }
 

@@ -26,7 +26,8 @@ constexpr std::size_t most_targeting_changes = 50;
  */
 void note_targeting_change(Transaction& transaction, const AuditEntry& entry, std::int64_t number);
 
-/** Schema `TargetingHistory`. What cannot be read of it counts as never noted: the audit has it. */
-nlohmann::json targeting_history(Transaction& transaction);
+/** Schema `TargetingHistory`, told at `now`. What cannot be read of it counts as never noted: the audit has
+ * it. */
+nlohmann::json targeting_history(Transaction& transaction, UtcTime now);
 
 }  // namespace interlock::web

@@ -1528,14 +1528,19 @@ export interface components {
             /** @description Who held the motion authority. */
             user: string;
             /**
-             * @description As of a proposal; `console` is every change over HTTP.
+             * @description `console` is every change over HTTP.
              * @enum {string}
              */
-            source: "console" | "file" | "openigtlink";
+            source: "console" | "openigtlink";
             /** @description Address from which it came, behind the word openigtlink where it came by that. */
             client: string;
         };
         TargetingHistory: {
+            /**
+             * Format: date-time
+             * @description By the same clock as the times of the changes, so that ages can be told.
+             */
+            now: string;
             /** @description By the name of the field in Targeting, who set it last; without those that nobody ever set. */
             last_set: {
                 [key: string]: components["schemas"]["TargetingOrigin"];
