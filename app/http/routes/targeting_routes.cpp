@@ -42,9 +42,9 @@ Answering TargetingRoutes::show_alignment() const {
 }
 
 Answering TargetingRoutes::show_history() const {
-  auto find = [](Store& store) {
+  auto find = [now = context_.clock()](Store& store) {
     return store.read(
-        [](Transaction& transaction) -> Stored<json> { return targeting_history(transaction); });
+        [now](Transaction& transaction) -> Stored<json> { return targeting_history(transaction, now); });
   };
   const auto found = co_await context_.store.run(std::move(find));
   co_return found.map([](const json& history) { return Success{.body = history}; });
