@@ -1,5 +1,5 @@
 import { useState } from "react";
-import { type Alignment, type AlignmentView, api, type ProposalDraft } from "../../api/client";
+import { type Alignment, type AlignmentView, api, type Motor, type ProposalDraft } from "../../api/client";
 import { CommandButton } from "../../design/CommandButton";
 import { NoticeText } from "../../design/NoticeText";
 import { Panel } from "../../design/Panel";
@@ -8,7 +8,8 @@ import { type Notice, noticeOfProblem } from "../../state/notice";
 import { isOpen, openPath } from "../../state/proposals";
 import { useConsole } from "../../state/store";
 import type { Asked } from "../../state/usePolled";
-import { formatCounts } from "../../units/units";
+import type { AxisFrame } from "../../stream/decode";
+import { formatCounts, formatNumber } from "../../units/units";
 import { type AxisLine, axisLines, hindrances } from "./alignment";
 import { fixed } from "./numbers";
 
@@ -67,19 +68,21 @@ function Ask({ line: { motor, counts, clamped } }: { readonly line: AxisLine }) 
   return (
     <tr data-clamped={clamped}>
       <th scope="row">{motor.title}</th>
-      <td className="number">
-        {axis === undefined ? "–" : formatCounts(motor, axis.positionCounts)}
-        {axis?.homed === false && <span className="chip">unhomed</span>}
-      </td>
+      <td className="number">{axis === undefined ? "–" : nowWords(motor, axis)}</td>
       <td className="number asked">
         {formatCounts(motor, counts)}
         {clamped && <span className="chip medium">▲ clamped</span>}
       </td>
       <td className="number muted">
-        {formatCounts(motor, motor.soft_min_counts)} to {formatCounts(motor, motor.soft_max_counts)}
+        {formatNumber(motor, motor.soft_min_counts)} to {formatNumber(motor, motor.soft_max_counts)}
       </td>
     </tr>
   );
+}
+
+/** A count without reference is no position. */
+function nowWords(motor: Motor, axis: AxisFrame): string {
+  return axis.homed ? formatCounts(motor, axis.positionCounts) : "unhomed";
 }
 
 function Propose({ alignment }: { readonly alignment: Alignment | null }) {

@@ -64,7 +64,7 @@ export function ProbeDrawing({ textOf }: ProbeDrawingProps) {
           d={`M${ROBOT} ${AXIS - 2.5}H${TIP - 8}L${TIP} ${AXIS}L${TIP - 8} ${AXIS + 2.5}H${ROBOT}Z`}
         />
         <circle className="treatment" cx={TREATMENT} cy={AXIS} r={6} />
-        <text x={ENTRY} y={AXIS + 42}>
+        <text x={ENTRY + 4} y={AXIS + 26} className="begins">
           entry
         </text>
         <text x={CANNULA - 30} y={AXIS + 20}>
@@ -73,7 +73,7 @@ export function ProbeDrawing({ textOf }: ProbeDrawingProps) {
         <text x={TREATMENT + 4} y={AXIS + 20} className="begins">
           treatment
         </text>
-        <text x={TIP} y={AXIS + 38} className="ends">
+        <text x={TIP + 6} y={AXIS + 20} className="ends">
           tip
         </text>
         {spans.map((span) => (
