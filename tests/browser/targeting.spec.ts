@@ -29,7 +29,7 @@ const cell = (page: Page, row: string, column: string): Locator =>
 
 const poseOrigin = async (pose: Locator): Promise<number[]> => {
   const texts = await pose.getByRole("row").locator("td:last-child").allTextContents();
-  return texts.slice(1, 4).map(Number);
+  return texts.slice(0, 3).map(Number);
 };
 
 test.beforeEach(async ({ robot }) => {
@@ -151,8 +151,8 @@ test("the proposed alignment brings the current pose to the desired one", async 
   const current = page.getByRole("region", { name: "Current pose" });
   await expect(current.getByRole("table")).toBeVisible();
   const [x = 0, y = 0, z = 0] = await poseOrigin(current);
-  // At home the probe points along -y.
-  await put(page, "target", { entry_point: [x - 1, y + 41, z], target_point: [x - 1, y - 2, z] });
+  // At home the probe points along -y, and its entry lies D - B = 36 mm before the treatment point.
+  await put(page, "target", { entry_point: [x - 1, y + 36, z], target_point: [x - 1, y - 2, z] });
   const error = current.getByRole("status", { name: "Error of the current pose from the desired one" });
   await expect(error).toContainText(/^2\.\d\d mm/);
   await page.getByLabel("Insert the probe once it is aligned").check();

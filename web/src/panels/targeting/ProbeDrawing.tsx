@@ -14,7 +14,7 @@ const TREATMENT = 304;
 const TIP = 376;
 const AXIS = 66;
 const ABOVE = 26;
-const BELOW = 108;
+const BELOW = 116;
 
 const spans: readonly {
   readonly name: OffsetName;
