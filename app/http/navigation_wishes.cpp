@@ -82,7 +82,8 @@ asio::awaitable<Done> change(const Context& context, const Caller& caller, const
   if (!asked) {
     co_return fail({.code = "INTERNAL", .detail = "Nobody carries out such a wish."});
   }
-  const auto changed = co_await change_targeting(context, caller, asked->make, std::move(asked->body));
+  const auto changed = co_await change_targeting(context, caller, ProposalSource::openigtlink, asked->make,
+                                                 std::move(asked->body));
   co_return changed.map([&context](const Targeting& targeting) {
     igtl::Outcome outcome = well("It was stored.");
     if (const auto alignment = alignment_with(context.robot, targeting)) {
@@ -239,7 +240,8 @@ asio::awaitable<Done> set_target(const Context& context, const Caller& caller, i
     aim_at(wanted, *outcome.reachable);
   }
   json body{{"entry_point", *wanted.entry_point}, {"target_point", *wanted.target_point}};
-  const auto changed = co_await change_targeting(context, caller, with_target, std::move(body));
+  const auto changed =
+      co_await change_targeting(context, caller, ProposalSource::openigtlink, with_target, std::move(body));
   co_return changed.map([&outcome](const Targeting&) { return outcome; });
 }
 

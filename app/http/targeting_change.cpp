@@ -39,11 +39,13 @@ Problem authority_lost() {
 }  // namespace
 
 boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const Context& context,
-                                                                          Caller caller, TargetingChange make,
-                                                                          json body) {
+                                                                          Caller caller,
+                                                                          ProposalSource source,
+                                                                          TargetingChange make, json body) {
   const Authority& authority = context.authority;
   auto keep = [robot = &context.robot, make, body = std::move(body), session = caller.session,
                hold = Hold{authority.shared_number(), authority.number()},
+               origin = TargetingOrigin{source, caller.peer},
                entry = context.entry(caller, AuditKind::setting, json::object())](Store& store) {
     return store.transact([&](Transaction& transaction) -> Stored<Changed> {
       if (const auto lives = Sessions(transaction).need(session, Role::engineer, entry.time); !lives) {
@@ -55,7 +57,7 @@ boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const 
         }
         Changed after{make(before, body)};
         if (after.targeting && *after.targeting != before) {
-          set_targeting(transaction, before, *after.targeting, entry);
+          set_targeting(transaction, before, *after.targeting, origin, entry);
           after.leads_elsewhere = leads_elsewhere(before, *after.targeting);
         }
         return after;

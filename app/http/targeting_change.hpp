@@ -15,12 +15,11 @@ namespace interlock::web {
 using TargetingChange = tl::expected<Targeting, Problem> (*)(Targeting, const nlohmann::json&);
 
 /**
- * Stores and audits what the body changes, and ends every proposal that followed from other values. Nothing
- * changes when the body is wrong (its problem), when the caller has lost session (401 LOGIN) or authority
- * (409 AUTHORITY) meanwhile, or the store fails (503 STORE).
+ * Stores and audits what the body changes, with the way by which it came, and ends every proposal that
+ * followed from other values. Nothing changes when the body is wrong (its problem), when the caller has lost
+ * session (401 LOGIN) or authority (409 AUTHORITY) meanwhile, or the store fails (503 STORE).
  */
-boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const Context& context,
-                                                                          Caller caller, TargetingChange make,
-                                                                          nlohmann::json body);
+boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(
+    const Context& context, Caller caller, ProposalSource source, TargetingChange make, nlohmann::json body);
 
 }  // namespace interlock::web

@@ -1,5 +1,6 @@
 #include "http/targeting_store.hpp"
 
+#include "http/targeting_history.hpp"
 #include "store/audit.hpp"
 
 namespace interlock::web {
@@ -44,14 +45,16 @@ Stored<Targeting> find_targeting(Transaction& transaction, const Robot& robot) {
 }
 
 void set_targeting(Transaction& transaction, const Targeting& before, const Targeting& after,
-                   AuditEntry entry) {
+                   const TargetingOrigin& origin, AuditEntry entry) {
   const json old_values = to_json(before);
   const json new_values = to_json(after);
   entry.detail = {{"setting", setting_key},
+                  {"source", source_name(origin.source)},
+                  {"client", origin.client},
                   {"old", difference(old_values, new_values)},
                   {"new", difference(new_values, old_values)}};
   Settings(transaction).set(setting_key, new_values, entry.time);
-  Audit(transaction).append(entry);
+  note_targeting_change(transaction, entry, Audit(transaction).append(entry).number);
 }
 
 boost::asio::awaitable<tl::expected<Targeting, Problem>> present_targeting(const Context& context) {

@@ -13,9 +13,15 @@ namespace interlock::web {
 /** The stored values; what the robot's file says until somebody sets others. */
 Stored<Targeting> find_targeting(Transaction& transaction, const Robot& robot);
 
-/** Stores the values and records in the audit what differs. */
+/** By which way a change of the targeting came. */
+struct TargetingOrigin {
+  ProposalSource source = ProposalSource::console; /**< as of a proposal */
+  std::string client;                              /**< as `Caller::peer` */
+};
+
+/** Stores the values, records in the audit what differs, and notes it in the targeting's history. */
 void set_targeting(Transaction& transaction, const Targeting& before, const Targeting& after,
-                   AuditEntry entry);
+                   const TargetingOrigin& origin, AuditEntry entry);
 
 /** The present values, read outside of the network thread. */
 boost::asio::awaitable<tl::expected<Targeting, Problem>> present_targeting(const Context& context);

@@ -81,6 +81,34 @@ test("the plots and the 3D view", async ({ robot, page }) => {
   await expectNoViolation(page, "3D");
 });
 
+test("the page of the target, with something wrong, something newer, and what it asks", async ({
+  robot,
+  other,
+  page,
+}) => {
+  await robot.addUser("vic", "viewer", password);
+  const put = (what: string, body: object): Promise<void> =>
+    page.evaluate(
+      async ([path, text]) => {
+        await fetch(path, { method: "PUT", body: text });
+      },
+      [`/api/targeting/${what}`, JSON.stringify(body)] as const,
+    );
+  await put("target", { entry_point: [8, 250, 70], target_point: [60, 200, 60] });
+  await robot.open("Targeting");
+  await expect(robot.panel("Alignment")).toContainText("clamped");
+  const form = page.getByRole("form", { name: "Registration" });
+  await form.getByRole("textbox", { name: /^Registration A y/ }).fill("x");
+  await page.getByRole("textbox", { name: /^Entry R/ }).fill("9");
+  await put("target", { entry_point: [7, 250, 70] });
+  await expect(robot.button("Keep mine")).toBeVisible();
+  await expectNoViolation(page, "targeting");
+  await other.logIn("vic", password);
+  await other.open("Targeting");
+  await expect(other.panel("Registration")).toContainText("Read only.");
+  await expectNoViolation(other.page, "a viewer's targeting");
+});
+
 test("the robot's page, locked, with everything unfolded and with the keys shown", async ({
   robot,
   page,

@@ -149,7 +149,9 @@ export class ConsolePage {
     }).toPass();
   }
 
-  async open(page: "Robot" | "Plots" | "3D" | "Codes" | "Users" | "Audit" | "Account"): Promise<void> {
+  async open(
+    page: "Robot" | "Targeting" | "Plots" | "3D" | "Codes" | "Users" | "Audit" | "Account",
+  ): Promise<void> {
     await this.page.getByRole("link", { name: page }).click();
   }
 

@@ -31,7 +31,7 @@ for (const robotName of ["neuro", "prostate"] as const) {
         .row.getByRole("button", { name: /^Why/ })
         .click();
       await robot.panel("Bench").getByText("More faults").click();
-      for (const name of ["Robot", "Codes", "Users", "Audit", "Account"] as const) {
+      for (const name of ["Robot", "Targeting", "Codes", "Users", "Audit", "Account"] as const) {
         await robot.open(name);
         await expect(page.getByRole("main")).toBeVisible();
         const [inside, window] = await page.evaluate(() => [

@@ -13,6 +13,14 @@ test("before login only the system's state and STOP are there", async ({ front, 
   expect([answer.status(), (await answer.json()).code]).toEqual([401, "LOGIN"]);
 });
 
+test("the header tells the time of day here, with its zone", async ({ front, page }) => {
+  await front.expectMode("LOCKED");
+  const clock = page.getByRole("banner").getByRole("time");
+  await expect(clock).toHaveText(/^\d\d:\d\d:\d\d UTC$/);
+  const seen = (await clock.textContent()) ?? "";
+  await expect(clock).not.toHaveText(seen);
+});
+
 test("the keyboard alone logs in, and a reload keeps the session", async ({ front, stack, page }) => {
   await expect(front.loginForm.getByLabel("Name")).toBeFocused();
   await page.keyboard.type("admin");

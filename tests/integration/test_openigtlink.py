@@ -109,6 +109,15 @@ def test_what_the_controller_sets_is_stored_told_to_all_and_audited(
     assert (kept["entry_point"], kept["target_point"]) == ([1.5, 2, 3], [4, 5, 60])
     assert kept["robot_to_entry_offset"] == 7.25
     assert kept["reported_position"] == REGISTRATION
+    history = judge(robot.api.get("/api/targeting/history")).json()
+    assert [list(change["new"])[-1] for change in history["changes"]] == [
+        "robot_to_entry_offset",
+        "target_point",
+        "entry_point",
+        "registration",
+    ]
+    assert {change["source"] for change in history["changes"]} == {"openigtlink"}
+    assert history["last_set"]["reported_position"]["client"].startswith("openigtlink 127.0.0.1:")
     records = robot.api.get("/api/audit", params={"records": 100}).json()
     heard = [each["detail"]["name"] for each in records if each["detail"].get("action") == "message"]
     assert heard == ["REGISTRATION", "ENTRY_POINT", "TARGET_POINT", "ROBOT_TO_ENTRY", "CURRENT_POSE"]

@@ -60,6 +60,20 @@ test("the robot's page at work, and the sheets", async ({ robot, page }) => {
   }
 });
 
+test("the page of a target that is set", async ({ robot, page }) => {
+  const [entry_point, target_point] = [
+    [8, 250, 70],
+    [5, 200, 60],
+  ];
+  await page.evaluate(async (body) => {
+    await fetch("/api/targeting/target", { method: "PUT", body });
+  }, JSON.stringify({ entry_point, target_point }));
+  await robot.open("Targeting");
+  await expect(robot.panel("History").getByRole("row")).toHaveCount(2);
+  await expect(robot.panel("Alignment").getByRole("table")).toBeVisible();
+  await take(page, "targeting");
+});
+
 test("the robot's page with everything unfolded, and covered", async ({ robot, page, stack }) => {
   await robot.panel("Bench").getByText("More faults").click();
   await page

@@ -3,6 +3,7 @@
 #include "http/alignment_view.hpp"
 #include "http/problems.hpp"
 #include "http/targeting_change.hpp"
+#include "http/targeting_history.hpp"
 #include "http/targeting_store.hpp"
 
 namespace interlock::web {
@@ -18,6 +19,7 @@ TargetingRoutes::TargetingRoutes(const Context& context, Router& router) : conte
   router.add(verb::get, "/api/targeting", viewers, [this](const Call&) { return show(); });
   router.add(verb::get, "/api/targeting/alignment", viewers,
              [this](const Call&) { return show_alignment(); });
+  router.add(verb::get, "/api/targeting/history", viewers, [this](const Call&) { return show_history(); });
   add_change(router, "/api/targeting/registration", with_registration);
   add_change(router, "/api/targeting/current", with_reported_pose);
   add_change(router, "/api/targeting/target", with_target);
@@ -39,12 +41,21 @@ Answering TargetingRoutes::show_alignment() const {
   });
 }
 
+Answering TargetingRoutes::show_history() const {
+  auto find = [now = context_.clock()](Store& store) {
+    return store.read(
+        [now](Transaction& transaction) -> Stored<json> { return targeting_history(transaction, now); });
+  };
+  const auto found = co_await context_.store.run(std::move(find));
+  co_return found.map([](const json& history) { return Success{.body = history}; });
+}
+
 Answering TargetingRoutes::change(const Call& call, TargetingChange make) const {
   const auto body = parse_body(call.request);
   if (!body) {
     co_return fail(body.error());
   }
-  const auto changed = co_await change_targeting(context_, call.caller, make, *body);
+  const auto changed = co_await change_targeting(context_, call.caller, ProposalSource::console, make, *body);
   co_return changed.map([](const Targeting& targeting) { return Success{.body = to_json(targeting)}; });
 }
 

@@ -21,6 +21,7 @@ class TargetingRoutes {
   void add_change(Router& router, const char* path, TargetingChange make);
   [[nodiscard]] boost::asio::awaitable<Reply> show() const;
   [[nodiscard]] boost::asio::awaitable<Reply> show_alignment() const;
+  [[nodiscard]] boost::asio::awaitable<Reply> show_history() const;
   [[nodiscard]] boost::asio::awaitable<Reply> change(const Call& call, TargetingChange make) const;
 
   const Context& context_;

@@ -1,4 +1,5 @@
 #include "http/targeting.hpp"
+#include "http/targeting_history.hpp"
 #include "http_fixture.hpp"
 
 namespace interlock::web {
@@ -7,6 +8,11 @@ namespace {
 class TargetingRoutesTest : public HttpTest {
  protected:
   json targeting() { return json::parse(get("/api/targeting").body); }
+  json history() { return json::parse(get("/api/targeting/history").body); }
+
+  void set(const std::string& what, const json& body) {
+    ASSERT_EQ(put("/api/targeting/" + what, body.dump()).status, 200u);
+  }
 };
 
 const json quarter_turn{"0", -1, 0, 10.5, 1, 0, 0, -20, 0, 0, "1.0", 30, 0, 0, 0, 1};
@@ -50,6 +56,48 @@ TEST_F(TargetingRoutesTest, AChangeIsAuditedWithOldAndNew) {
 TEST_F(TargetingRoutesTest, WhatChangesNothingIsNoRecord) {
   EXPECT_EQ(put("/api/targeting/target", "{}").status, 200u);
   EXPECT_TRUE(audit("setting").empty());
+  EXPECT_TRUE(history()["last_set"].empty());
+  EXPECT_TRUE(history()["changes"].empty());
+}
+
+TEST_F(TargetingRoutesTest, TheHistorySaysWhatWasSetWhenByWhomAndFromWhere) {
+  set("target", {{"target_point", {1, 2, 3}}});
+  pass(std::chrono::seconds(5));
+  set("target", {{"target_point", {1, 2, 4}}, {"robot_to_entry_offset", 6}});
+  const json told = history();
+  ASSERT_EQ(told["changes"].size(), 2u);
+  const json& newest = told["changes"][0];
+  EXPECT_EQ(newest["new"], json({{"target_point", {1.0, 2.0, 4.0}}, {"robot_to_entry_offset", 6.0}}));
+  EXPECT_EQ(newest["old"]["target_point"], json({1.0, 2.0, 3.0}));
+  EXPECT_EQ(newest["user"], "edna");
+  EXPECT_EQ(newest["source"], "console");
+  EXPECT_EQ(newest["client"].get<std::string>().substr(0, 10), "127.0.0.1:");
+  EXPECT_EQ(newest["time"], iso_8601(now()));
+  pass(std::chrono::seconds(5));
+  EXPECT_EQ(history()["now"], iso_8601(now()));
+  EXPECT_EQ(newest["record"], audit().back().number);
+  EXPECT_EQ(told["last_set"]["target_point"]["record"], newest["record"]);
+  EXPECT_FALSE(told["last_set"].contains("entry_point"));
+}
+
+TEST_F(TargetingRoutesTest, APoseThatAnImagerReportsCrowdsNothingOutOfTheHistory) {
+  set("target", {{"target_point", {1, 2, 3}}});
+  set("current", {{"current_position", quarter_turn}});
+  const json told = history();
+  EXPECT_EQ(told["changes"].size(), 1u);
+  EXPECT_EQ(told["last_set"]["reported_position"]["user"], "edna");
+}
+
+TEST_F(TargetingRoutesTest, TheHistoryKeepsTheNewestChangesAndWhoSetEachFieldLast) {
+  set("target", {{"entry_point", {9, 9, 9}}});
+  for (std::size_t x = 0; x < most_targeting_changes; ++x) {
+    set("target", {{"target_point", {x, 0, 0}}});
+  }
+  const json told = history();
+  ASSERT_EQ(told["changes"].size(), most_targeting_changes);
+  EXPECT_EQ(told["changes"][0]["new"]["target_point"][0], most_targeting_changes - 1.0);
+  EXPECT_EQ(told["changes"].back()["new"]["target_point"][0], 0.0);
+  EXPECT_TRUE(told["last_set"].contains("entry_point"));
 }
 
 TEST_F(TargetingRoutesTest, WhatIsRefusedHasChangedNothing) {

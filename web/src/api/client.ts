@@ -39,6 +39,11 @@ export type Extremes = Schemas["Extremes"];
 export type Capture = Schemas["Capture"];
 export type Targeting = Schemas["Targeting"];
 export type AlignmentView = Schemas["AlignmentView"];
+export type Alignment = Schemas["Alignment"];
+export type TargetChange = Schemas["TargetChange"];
+export type RegistrationChange = Schemas["RegistrationChange"];
+export type TargetingHistory = Schemas["TargetingHistory"];
+export type TargetingOrigin = Schemas["TargetingOrigin"];
 export type AuditRecord = Schemas["AuditRecord"];
 export type AuditCheck = Schemas["AuditCheck"];
 export type AxisAction = paths["/api/motors/{axis}/{action}"]["post"]["parameters"]["path"]["action"];
@@ -221,6 +226,10 @@ export const api = {
     ),
   targeting: () => read(() => http.GET("/api/targeting")),
   alignment: () => read(() => http.GET("/api/targeting/alignment")),
+  targetingHistory: () => read(() => http.GET("/api/targeting/history")),
+  setRegistration: (change: RegistrationChange) =>
+    act(() => http.PUT("/api/targeting/registration", { body: change })),
+  setTarget: (change: TargetChange) => act(() => http.PUT("/api/targeting/target", { body: change })),
   logs: (lines: number) => read(() => http.GET("/api/logs", { params: { query: { lines } } })),
   setLogLevel: (level: LogLevel) => act(() => http.PUT("/api/logs", { body: { level } })),
   acknowledgeLogs: (sequences: number[]) =>

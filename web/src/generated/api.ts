@@ -526,6 +526,23 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/targeting/history": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Who set which value of the targeting when and from where, and what it was before. */
+        get: operations["getTargetingHistory"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/targeting/registration": {
         parameters: {
             query?: never;
@@ -1565,6 +1582,41 @@ export interface components {
             treatment_to_robot_at_home: number;
             /** @description As an imager reported it. */
             reported_position: number[] | null;
+        };
+        TargetingOrigin: {
+            /** @description Its number in the audit. */
+            record: number;
+            /** Format: date-time */
+            time: string;
+            /** @description Of the kernel; null without one. */
+            tick: number | null;
+            /** @description Who held the motion authority. */
+            user: string;
+            /**
+             * @description `console` is every change over HTTP.
+             * @enum {string}
+             */
+            source: "console" | "openigtlink";
+            /** @description Address from which it came, behind the word openigtlink where it came by that. */
+            client: string;
+        };
+        TargetingHistory: {
+            /**
+             * Format: date-time
+             * @description By the same clock as the times of the changes, so that ages can be told.
+             */
+            now: string;
+            /** @description By the name of the field in Targeting, who set it last; without those that nobody ever set. */
+            last_set: {
+                [key: string]: components["schemas"]["TargetingOrigin"];
+            };
+            /** @description The newest 50, newest first. A change of the reported pose alone is not among them. */
+            changes: (components["schemas"]["TargetingOrigin"] & {
+                /** @description Fields of Targeting that changed */
+                old: Record<string, unknown>;
+                /** @description The same fields */
+                new: Record<string, unknown>;
+            })[];
         };
         /** @description Poses are of the treatment point, in the scanner's frame (RAS), mm, 16 numbers row by row. In the place of what is not known stands a problem. */
         AlignmentView: {
@@ -2844,6 +2896,28 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["AlignmentView"];
+                };
+            };
+            401: components["responses"]["Login"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    getTargetingHistory: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description History. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TargetingHistory"];
                 };
             };
             401: components["responses"]["Login"];

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Motor, Proposal, Robot } from "../api/client";
-import { homingPart, homingSteps, isOpen, openHoming } from "./proposals";
+import { homingPart, homingSteps, isOpen, openHoming, openPath } from "./proposals";
 
 const robot = {
   home_steps: [
@@ -31,6 +31,14 @@ describe("isOpen", () => {
     ["expired", false],
   ])("%s: %s", (state, open) => {
     expect(isOpen({ ...all, state })).toBe(open);
+  });
+});
+
+describe("openPath", () => {
+  it("finds the open motion of several axes, and no other", () => {
+    const path = { ...all, id: 7, kind: "path", state: "approved" } as Proposal;
+    expect(openPath([all, { ...path, id: 8, state: "done" }, path])).toBe(path);
+    expect(openPath([all])).toBeUndefined();
   });
 });
 

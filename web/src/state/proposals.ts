@@ -18,6 +18,11 @@ export function openHoming(proposals: readonly Proposal[]): Proposal | undefined
   return proposals.find((proposal) => proposal.kind === "home" && isOpen(proposal));
 }
 
+/** The open motion of several axes, if there is one. */
+export function openPath(proposals: readonly Proposal[]): Proposal | undefined {
+  return proposals.find((proposal) => proposal.kind === "path" && isOpen(proposal));
+}
+
 export type HomingPart = "homing" | "waiting";
 
 /** What an axis has to do in the homing that is open; null when nothing. */

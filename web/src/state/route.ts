@@ -2,7 +2,7 @@
 import { useSyncExternalStore } from "react";
 import { catalog, type Family } from "../generated/catalog";
 
-export const routes = ["robot", "plots", "view", "codes", "users", "audit", "account"] as const;
+export const routes = ["robot", "targeting", "plots", "view", "codes", "users", "audit", "account"] as const;
 export type Route = (typeof routes)[number];
 
 /** A place in the catalog of codes. */

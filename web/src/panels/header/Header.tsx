@@ -6,6 +6,7 @@ import { type Freshness, formatAge } from "../../state/freshness";
 import { useConsole } from "../../state/store";
 import type { Phase } from "../../stream/connection";
 import type { Glance } from "../../stream/decode";
+import { LocalClock } from "./LocalClock";
 import { ModeStrip } from "./ModeStrip";
 import { SessionBar } from "./SessionBar";
 import { StopCorner } from "./StopCorner";
@@ -79,6 +80,7 @@ function Robot() {
         {robot ?? "no robot yet"}
         {simulatedClock && <span className="clock"> · simulated clock</span>}
       </p>
+      <LocalClock />
     </div>
   );
 }

@@ -1,0 +1,166 @@
+/** Registration, entry, target and probe, and the move that follows from them, against the real processes. */
+import type { Locator, Page } from "@playwright/test";
+import { expect, test } from "./fixtures";
+
+const entry = [8, 250, 70];
+const target = [5, 200, 60];
+
+/** As another program of the same user does it. */
+async function put(page: Page, what: "registration" | "target", body: object): Promise<void> {
+  const status = await page.evaluate(
+    async ([path, text]) => (await fetch(path, { method: "PUT", body: text })).status,
+    [`/api/targeting/${what}`, JSON.stringify(body)] as const,
+  );
+  expect(status).toBe(200);
+}
+
+/** The bodies of what the page itself sends to the targeting from now on. */
+function sentBy(page: Page): unknown[] {
+  const bodies: unknown[] = [];
+  page.on("request", (request) => {
+    if (request.method() === "PUT" && request.url().includes("/api/targeting/"))
+      bodies.push(request.postDataJSON());
+  });
+  return bodies;
+}
+
+const cell = (page: Page, row: string, column: string): Locator =>
+  page.getByRole("textbox", { name: `Registration ${row} ${column}, scanner RAS, mm` });
+
+const poseOrigin = async (pose: Locator): Promise<number[]> => {
+  const texts = await pose.getByRole("row").locator("td:last-child").allTextContents();
+  return texts.slice(0, 3).map(Number);
+};
+
+test.beforeEach(async ({ robot }) => {
+  await robot.expectMode("LOCKED");
+});
+
+test("a registration is refused in words until it is rigid, set once, and told with source and age", async ({
+  robot,
+  page,
+}) => {
+  await robot.open("Targeting");
+  const panel = robot.panel("Registration");
+  const set = panel.getByRole("button", { name: "Set registration" });
+  await expect(panel).toContainText("Nobody set it: it is the identity.");
+  await expect(set).toBeDisabled();
+  const sent = sentBy(page);
+
+  await cell(page, "R", "x").fill("zero");
+  await expect(panel.getByRole("alert")).toContainText(
+    "Row R, x: “zero” is no number; expected one such as 0.7071.",
+  );
+  await cell(page, "R", "x").fill("0");
+  await expect(panel.getByRole("alert")).toContainText("Column x: its length is 0.0000; expected 1");
+  await expect(set).toBeDisabled();
+  await cell(page, "R", "y").fill("-1");
+  await cell(page, "A", "x").fill("1");
+  await cell(page, "A", "y").fill("0");
+  await cell(page, "R", "origin").fill("10,5");
+  await cell(page, "R", "origin").press("Enter");
+  await expect(panel).toContainText(/Set \d+ s ago by admin \(console, 127\.0\.0\.1:\d+\)/);
+  await expect(set).toBeDisabled();
+  expect(sent).toEqual([{ registration: [0, -1, 0, 10.5, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] }]);
+
+  const history = robot.panel("History").getByRole("row").nth(1);
+  await expect(history).toContainText("admin");
+  await expect(history).toContainText("moved by 10.50 mm, turned by 90.00°");
+});
+
+test("what is edited is not overwritten by what arrives, and nothing is sent that did not change", async ({
+  robot,
+  page,
+}) => {
+  await put(page, "target", { entry_point: entry, target_point: target });
+  await robot.open("Targeting");
+  const registration = robot.panel("Registration");
+  const aim = robot.panel("Entry, target and probe");
+  const sent = sentBy(page);
+
+  await page.getByLabel("File of a registration").setInputFiles({
+    name: "zframe.txt",
+    mimeType: "text/plain",
+    buffer: Buffer.from("# mm\n1 0 0 5\n0 1 0 6\n0 0 1 7\n0 0 0 1\n"),
+  });
+  await expect(registration).toContainText("From zframe.txt, not sent.");
+  await expect(cell(page, "S", "origin")).toHaveValue("7");
+  const meanwhile = [1, 0, 0, -1, 0, 1, 0, -2, 0, 0, 1, -3, 0, 0, 0, 1];
+  await put(page, "registration", { registration: meanwhile });
+  await expect(registration.getByRole("alert").first()).toContainText("origin at -1.00, -2.00, -3.00");
+  await expect(cell(page, "S", "origin")).toHaveValue("7");
+  await expect(robot.button("Set registration")).toBeDisabled();
+  await robot.button("Take what arrived").click();
+  await expect(cell(page, "S", "origin")).toHaveValue("-3");
+  await expect(registration).toContainText("As received.");
+
+  await page.getByLabel("File of a registration").setInputFiles({
+    name: "film.txt",
+    mimeType: "text/plain",
+    buffer: Buffer.from("1 2 3"),
+  });
+  await expect(registration.getByRole("alert").first()).toContainText(
+    "film.txt: It has 3 numbers; expected 16",
+  );
+
+  await page.getByRole("textbox", { name: "Target S, scanner RAS, mm" }).fill("61.5");
+  await put(page, "target", { entry_point: [9, 250, 70] });
+  await expect(page.getByRole("textbox", { name: "Entry R, scanner RAS, mm" })).toHaveValue("9");
+  await expect(aim).toContainText("To be sent: Target.");
+  await robot.button("Set target").click();
+  await expect(aim).toContainText("As received.");
+  expect(sent.slice(-1)).toEqual([{ target_point: [5, 200, 61.5] }]);
+  // Two came from this test by fetch, past the forms.
+  expect(sent).toHaveLength(3);
+});
+
+test("the alignment says what it asks of each axis and why it would be refused, as it then is", async ({
+  robot,
+  page,
+}) => {
+  await put(page, "target", { entry_point: entry, target_point: target });
+  await robot.unlockRobot();
+  await robot.open("Targeting");
+  const alignment = robot.panel("Alignment");
+  const desired = robot.button("Propose desired pose");
+  const hindrances = alignment.getByRole("list", { name: "Why it would be refused now" });
+  await expect(alignment.getByRole("row")).toHaveCount(8);
+  await expect(hindrances).toContainText("DISABLED: Yaw");
+  await expect(hindrances).toContainText("NOT_HOMED");
+  await desired.click();
+  await expect(alignment.getByRole("alert")).toContainText("Refused: DISABLED");
+  await expect(robot.panel("Poses of the treatment point")).toContainText("NOT_HOMED");
+
+  await put(page, "target", { target_point: [60, 200, 60] });
+  await expect(alignment).toContainText("The desired pose would be refused, UNREACHABLE");
+  await expect(alignment.getByText("▲ clamped").first()).toBeVisible();
+  await expect(desired).toBeDisabled();
+  await expect(robot.button("Propose reachable pose")).toBeEnabled();
+});
+
+test("the proposed alignment brings the current pose to the desired one", async ({ robot, page }) => {
+  await robot.unlockRobot();
+  const motors: { title: string; has_switch: boolean }[] = await page.evaluate(async () =>
+    (await fetch("/api/motors")).json(),
+  );
+  for (const { title, has_switch } of motors) {
+    await robot.axis(title).setHome(has_switch);
+    await robot.axis(title).enable();
+  }
+  await robot.open("Targeting");
+  const current = page.getByRole("region", { name: "Current pose" });
+  await expect(current.getByRole("table")).toBeVisible();
+  const [x = 0, y = 0, z = 0] = await poseOrigin(current);
+  // At home the probe points along -y, and its entry lies D - B = 36 mm before the treatment point.
+  await put(page, "target", { entry_point: [x - 1, y + 36, z], target_point: [x - 1, y - 2, z] });
+  const error = current.getByRole("status", { name: "Error of the current pose from the desired one" });
+  await expect(error).toContainText(/^2\.\d\d mm/);
+  await page.getByLabel("Insert the probe once it is aligned").check();
+  await robot.button("Propose desired pose").click();
+  const proposed = robot.panel("Alignment").getByRole("status").filter({ hasText: "Proposal" });
+  await expect(proposed).toContainText("approved");
+  await robot.open("Robot");
+  await robot.latchPedal();
+  await robot.open("Targeting");
+  await expect(error).toContainText(/^0\.0\d mm, 0\.\d\d°/);
+});

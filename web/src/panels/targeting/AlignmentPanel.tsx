@@ -1,0 +1,183 @@
+import { useState } from "react";
+import { type Alignment, type AlignmentView, api, type Motor, type ProposalDraft } from "../../api/client";
+import { CommandButton } from "../../design/CommandButton";
+import { NoticeText } from "../../design/NoticeText";
+import { Panel } from "../../design/Panel";
+import { abort } from "../../state/commands";
+import { type Notice, noticeOfProblem } from "../../state/notice";
+import { isOpen, openPath } from "../../state/proposals";
+import { useConsole } from "../../state/store";
+import type { Asked } from "../../state/usePolled";
+import type { AxisFrame } from "../../stream/decode";
+import { formatCounts, formatNumber } from "../../units/units";
+import { type AxisLine, axisLines, hindrances } from "./alignment";
+import { fixed } from "./numbers";
+
+interface AlignmentPanelProps {
+  readonly view: AlignmentView | null;
+  readonly asked: Asked;
+}
+
+/** What entry and target ask of each axis, and the move that brings them there. */
+export function AlignmentPanel({ view, asked }: AlignmentPanelProps) {
+  const alignment = view?.alignment ?? null;
+  const problem = view?.alignment_problem ?? null;
+  return (
+    <Panel title="Alignment" className="alignment" asked={asked}>
+      {problem !== null && (
+        <p className="pose-missing">
+          <i aria-hidden="true">▲</i> <strong>{problem.code}</strong>: {problem.text}
+        </p>
+      )}
+      {alignment !== null && <Asks alignment={alignment} />}
+      <Propose alignment={alignment} />
+    </Panel>
+  );
+}
+
+function Asks({ alignment }: { readonly alignment: Alignment }) {
+  const motors = useConsole((state) => state.motors);
+  return (
+    <table className="table">
+      <caption className="visually-hidden">What the alignment asks of each axis</caption>
+      <thead>
+        <tr>
+          <th scope="col">Axis</th>
+          <th scope="col" className="number">
+            Now
+          </th>
+          <th scope="col" className="number">
+            Asked
+          </th>
+          <th scope="col" className="number">
+            Range
+          </th>
+        </tr>
+      </thead>
+      <tbody>
+        {axisLines(alignment, motors).map((line) => (
+          <Ask key={line.motor.slot} line={line} />
+        ))}
+      </tbody>
+    </table>
+  );
+}
+
+function Ask({ line: { motor, counts, clamped } }: { readonly line: AxisLine }) {
+  const axis = useConsole((state) => state.frame?.axes[motor.slot]);
+  return (
+    <tr data-clamped={clamped}>
+      <th scope="row">{motor.title}</th>
+      <td className="number">{axis === undefined ? "–" : nowWords(motor, axis)}</td>
+      <td className="number asked">
+        {formatCounts(motor, counts)}
+        {clamped && <span className="chip medium">▲ clamped</span>}
+      </td>
+      <td className="number muted">
+        {formatNumber(motor, motor.soft_min_counts)} to {formatNumber(motor, motor.soft_max_counts)}
+      </td>
+    </tr>
+  );
+}
+
+/** A count without reference is no position. */
+function nowWords(motor: Motor, axis: AxisFrame): string {
+  return axis.homed ? formatCounts(motor, axis.positionCounts) : "unhomed";
+}
+
+function Propose({ alignment }: { readonly alignment: Alignment | null }) {
+  const motors = useConsole((state) => state.motors);
+  const [insert, setInsert] = useState(false);
+  const [refusal, setRefusal] = useState<Notice | null>(null);
+  const [proposed, setProposed] = useState<number | null>(null);
+  const propose = async (pose: NonNullable<ProposalDraft["pose"]>): Promise<void> => {
+    const outcome = await api.propose({ kind: "pose", pose, insert });
+    setRefusal(outcome.ok ? null : noticeOfProblem(outcome.problem));
+    setProposed(outcome.ok ? outcome.value.id : null);
+  };
+  const clamped = alignment === null ? [] : axisLines(alignment, motors).filter((line) => line.clamped);
+  const none = alignment === null ? "There is no alignment." : null;
+  return (
+    <div className="propose">
+      {alignment !== null && <Hindrances alignment={alignment} />}
+      {alignment !== null && clamped.length > 0 && (
+        <p className="clamped">
+          <i aria-hidden="true">▲</i> The desired pose would be refused, UNREACHABLE:{" "}
+          {clamped.map(({ motor }) => motor.title).join(", ")} {clamped.length === 1 ? "ends" : "end"} before
+          it. The reachable pose is {fixed(alignment.deviation.distance_mm, 2)} mm and{" "}
+          {fixed(alignment.deviation.angle_deg, 2)}° off.
+        </p>
+      )}
+      {alignment?.cannula_length_mm != null && (
+        <p className="muted">Length of the cannula: {fixed(alignment.cannula_length_mm, 2)} mm</p>
+      )}
+      <label className="tick">
+        <input type="checkbox" checked={insert} onChange={({ target }) => setInsert(target.checked)} />
+        Insert the probe once it is aligned; else it stays out
+      </label>
+      <span className="propose-answers">
+        <CommandButton
+          need="holder"
+          className="primary"
+          off={none ?? (clamped.length > 0 ? "It is out of reach." : null)}
+          onCommand={() => propose("desired")}
+        >
+          Propose desired pose
+        </CommandButton>
+        <CommandButton
+          need="holder"
+          off={none ?? (clamped.length === 0 ? "The desired pose is within reach." : null)}
+          onCommand={() => propose("reachable")}
+        >
+          Propose reachable pose
+        </CommandButton>
+      </span>
+      {refusal !== null && (
+        <p className="refusal" role="alert">
+          <NoticeText lead="Refused:" notice={refusal} />
+        </p>
+      )}
+      <Proposed id={proposed} />
+    </div>
+  );
+}
+
+/** Why the proposal would be refused now, before anything is sent. */
+function Hindrances({ alignment }: { readonly alignment: Alignment }) {
+  const motors = useConsole((state) => state.motors);
+  const frame = useConsole((state) => state.frame);
+  const found = hindrances(axisLines(alignment, motors), (slot) => frame?.axes[slot], frame?.mode);
+  if (found.length === 0) return null;
+  return (
+    <ul className="hindrances" aria-label="Why it would be refused now">
+      {found.map(({ code, text }) => (
+        <li key={code}>
+          <i aria-hidden="true">▲</i> Would be refused now, <strong>{code}</strong>: {text}
+        </li>
+      ))}
+    </ul>
+  );
+}
+
+/** What becomes of the motion that is open, whoever proposed it; else of what was proposed here. */
+function Proposed({ id }: { readonly id: number | null }) {
+  const proposal = useConsole(
+    (state) => openPath(state.proposals) ?? state.proposals.find((each) => each.id === id),
+  );
+  if (proposal === undefined) return null;
+  return (
+    <p className="proposed" role="status">
+      Proposal {proposal.id}: <strong>{proposal.state}</strong>. {proposal.detail}{" "}
+      {isOpen(proposal) && (
+        <CommandButton
+          need="holder"
+          className="small"
+          label={`Abort proposal ${proposal.id}`}
+          onCommand={() => abort(proposal.id, proposal.slot)}
+        >
+          Abort
+        </CommandButton>
+      )}
+    </p>
+  );
+}
