@@ -31,11 +31,12 @@ async function openPlots(robot: ConsolePage, page: Page, axis: string): Promise<
 
 /** A capture has the second before its trigger only where the kernel has run for one. */
 async function secondOfTicks(page: Page): Promise<void> {
-  const newestTick = async (): Promise<number> => {
-    const answer = await page.request.get("/api/history?after=0");
-    const { last_tick: ticks } = (await answer.json()) as { last_tick: number[] };
-    return ticks.at(-1) ?? 0;
-  };
+  const newestTick = (): Promise<number> =>
+    page.evaluate(async () => {
+      const answer = await fetch("/api/history?after=0");
+      const { last_tick: ticks } = (await answer.json()) as { last_tick: number[] };
+      return ticks.at(-1) ?? 0;
+    });
   await expect.poll(newestTick, { timeout: moveTakes }).toBeGreaterThan(1000);
 }
 
@@ -67,8 +68,9 @@ test("a move is in the plots and in their table", async ({ robot, page }) => {
 });
 
 test("nothing is saved before the whole history is there", async ({ robot, page }) => {
-  const asked = "**/api/history*";
-  await page.route(asked, async (route) => {
+  let incomplete = true;
+  await page.route("**/api/history*", async (route) => {
+    if (!incomplete) return route.continue();
     const answer = await route.fetch();
     await route.fulfill({ response: answer, json: { ...(await answer.json()), more: true } });
   });
@@ -78,7 +80,7 @@ test("nothing is saved before the whole history is there", async ({ robot, page 
   await answered();
   const save = robot.panel("Plots").getByRole("button", { name: "CSV" });
   await expect(save).toBeDisabled();
-  await page.unroute(asked);
+  incomplete = false;
   await expect(save).toBeEnabled();
 });
 
