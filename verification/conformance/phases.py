@@ -48,7 +48,8 @@ class Report:
 def names() -> list[str]:
     """All phases, the longest first."""
     return sorted(
-        (path.stem for path in (HERE / "phases").glob("*.toml")), key=lambda name: name != "change_mode"
+        (path.stem for path in (HERE / "phases").glob("*.toml")),
+        key=lambda name: name not in ("change_mode", "follow"),
     )
 
 
