@@ -152,9 +152,9 @@ test("the log is searched, and who acknowledges a warning is told to everybody a
   await expect(stopLine(robot)).toHaveCount(1);
   await expect(log.getByRole("listitem")).toHaveCount(1);
   await expect(log.getByRole("status", { name: "Lines to acknowledge" })).toHaveText("1 to acknowledge");
-  await robot.button("Acknowledge every line shown").click();
+  await robot.button("Acknowledge shown warnings and errors").click();
   for (const page of [robot, other]) await expect(stopLine(page)).toContainText(/✓ admin \d/);
-  await expect(robot.button("Acknowledge every line shown")).toBeDisabled();
+  await expect(robot.button("Acknowledge shown warnings and errors")).toBeDisabled();
   await log.getByRole("searchbox").fill("no such words");
   await expect(log.getByText("No line has these words.")).toBeVisible();
   await robot.open("Audit");

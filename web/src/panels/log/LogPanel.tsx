@@ -69,7 +69,7 @@ export function LogPanel() {
         <output aria-label="Lines to acknowledge">{`${open.length} to acknowledge`}</output>
         <CommandButton
           need="engineer"
-          label="Acknowledge every line shown"
+          label="Acknowledge shown warnings and errors"
           off={open.length === 0 ? "No warning or error is shown that waits for it." : null}
           onCommand={() => acknowledge(open.map(({ sequence }) => sequence))}
         >
