@@ -118,6 +118,50 @@ TEST_P(EachDialect, AcknowledgesWithTheSameIdAndTextThenTellsThePhase) {
   EXPECT_EQ(talk.done(), Shorts{"START_UP 1"});
 }
 
+TEST_P(EachDialect, ARequestThatComesAgainUnderItsIdIsAcknowledgedAndNotCarriedOutAgain) {
+  talk.target();
+  talk.send("CMD_2", Text{"MOVE_TO_TARGET"});
+  talk.proposed(4);
+  EXPECT_EQ(talk.send("CMD_2", Text{"MOVE_TO_TARGET"}),
+            (Shorts{"ACK_2 STRING", "CURRENT_STATUS 1 MOVE_TO_TARGET"}));
+  EXPECT_FALSE(talk.reaction.wish.has_value());
+  EXPECT_FALSE(talk.reaction.ends.has_value()) << "the motion that it became goes on";
+  EXPECT_THAT(talk.reaction.refused, HasSubstr("same request"));
+  EXPECT_EQ(talk.send("TGT_1", Transform{moved(2)}),
+            (Shorts{"ACK_1 TRANSFORM", "CURRENT_STATUS 1 MOVE_TO_TARGET"}));
+  EXPECT_EQ(talk.reaction.replies[0].second, Body(Transform{moved(2)})) << "its exact echo";
+  EXPECT_FALSE(talk.reaction.wish.has_value());
+  EXPECT_EQ(talk.over(4), Shorts({"MOVE_TO_TARGET 1", "CURRENT_POSITION TRANSFORM"}));
+}
+
+TEST_P(EachDialect, AnotherRequestUnderAnIdThatWasUsedIsANewOne) {
+  talk.ask("START_UP");
+  talk.done();
+  talk.ask("CALIBRATION");
+  talk.send("CLB_1", Transform{moved(5)});
+  talk.stored();
+  talk.send("CLB_1", Transform{moved(6)});
+  EXPECT_TRUE(talk.reaction.wish.has_value());
+}
+
+TEST_P(EachDialect, WhatFailedMayBeAskedForAgainUnderTheSameId) {
+  talk.ask("START_UP");
+  talk.refused(StatusCode::not_ready);
+  talk.ask("START_UP");
+  EXPECT_TRUE(talk.reaction.wish.has_value()) << "was refused";
+  talk.proposed(4);
+  talk.over(4, StatusCode::not_ready);
+  talk.ask("START_UP");
+  EXPECT_EQ(talk.reaction.wish.has_value(), GetParam() == std::string("brp2013")) << "motion was aborted";
+}
+
+TEST_P(EachDialect, AStopThatComesAgainIsMeant) {
+  for (const char* phase : {"STOP", "STOP", "EMERGENCY", "EMERGENCY"}) {
+    talk.ask(phase);
+    EXPECT_TRUE(std::holds_alternative<Stop>(talk.reaction.wish.value())) << phase;
+  }
+}
+
 TEST_P(EachDialect, StartUpIsOverWhenTheHomingThatSomebodyApprovedIs) {
   talk.ask("START_UP");
   EXPECT_EQ(talk.proposed(4), Shorts{});
