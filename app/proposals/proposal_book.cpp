@@ -310,7 +310,8 @@ void ProposalBook::abort_all(const std::string& reason) {
 void ProposalBook::lose_author(ProposalSource source, const std::string& reason) {
   pause_reason_ = reason;
   for (Proposal& each : book_) {
-    if (each.state == ProposalState::executing || !is_open(each.state)) {
+    const bool is_told = each.detail.starts_with(reason);
+    if (each.state == ProposalState::executing || !is_open(each.state) || is_told) {
       continue;
     }
     if (is_approved(each.state)) {
