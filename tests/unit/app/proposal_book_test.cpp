@@ -155,7 +155,7 @@ TEST_F(ProposalBookTest, StopAbortsAllThatIsOpen) {
 }
 
 TEST_F(ProposalBookTest, TheLossOfAnAuthorPausesWhatIsApprovedSaysSoAndEndsWhatIsNot) {
-  (void)book_.propose_home({test::rotation, std::nullopt, "ann", ProposalSource::openigtlink}, view_);
+  (void)book_.propose_home({insertion, std::nullopt, "ann", ProposalSource::openigtlink}, view_);
   (void)propose();
   report(2, OrderPhase::executing);
   (void)propose(100, test::rotation);
