@@ -67,7 +67,11 @@ test-console: setup ## Run the console's unit tests, and compare its kernel with
 
 test-integration: build ## Run the tests on real processes
 	@verification/evidence/begin_tests.py integration
-	@pytest --numprocesses=3 --dist=loadscope -m "not provers" --junitxml=$(reports)/integration.xml tests/integration
+	@pytest --numprocesses=3 --dist=loadscope -m "not provers and not network" --junitxml=$(reports)/integration.xml tests/integration
+
+test-network: build ## Run the tests that pull a cable: they need root, for a network namespace
+	@verification/evidence/begin_tests.py network
+	@pytest -m network --junitxml=$(reports)/network.xml tests/integration
 
 test-browser: build ## Run the tests that click through the console
 	@verification/evidence/begin_tests.py browser
@@ -75,7 +79,7 @@ test-browser: build ## Run the tests that click through the console
 
 .PHONY: fuzz
 fuzz: setup ## Throw bytes at the OpenIGTLink decoders under sanitizers: [FUZZ_SECONDS=30 | FUZZ_RUNS=10000000]
-	@tests/fuzz/run $(if $(FUZZ_RUNS),runs $(FUZZ_RUNS),seconds $(FUZZ_SECONDS))
+	@tests/fuzz/run.py $(if $(FUZZ_RUNS),runs $(FUZZ_RUNS),seconds $(FUZZ_SECONDS))
 
 .PHONY: soak
 soak: build ## Let the robot move for half an hour under OpenIGTLink clients and reconnect storms: [MINUTES=30]

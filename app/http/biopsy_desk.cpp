@@ -136,6 +136,17 @@ tl::expected<void, Problem> BiopsyDesk::zero(const ControlView& view) {
   return {};
 }
 
+std::optional<double> BiopsyDesk::needle_force_n(const ControlView& view) const {
+  constexpr std::uint32_t oldest_us = 20000;
+  const bool is_fresh =
+      view.attached && view.force.age_ticks(view.snapshot.state.tick) <= oldest_us / robot_.period_us;
+  if (!needle_ || !is_fresh) {
+    return std::nullopt;
+  }
+  const auto force_n = needle_->force_n(view.force.needle);
+  return force_n ? std::optional(*force_n) : std::nullopt;
+}
+
 json BiopsyDesk::membranes_json() const {
   json membranes = json::array();
   for (std::size_t each = 0; each < membranes_.depths_mm.size(); ++each) {

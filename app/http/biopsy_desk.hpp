@@ -54,6 +54,9 @@ class BiopsyDesk {
   /** The newest readings become the zero of both forces; 409 ZEROING says what speaks against it. */
   tl::expected<void, Problem> zero(const ControlView& view);
 
+  /** Newest force against the needle, N; nothing without a sensor, or when that says nothing new. */
+  [[nodiscard]] std::optional<double> needle_force_n(const ControlView& view) const;
+
   /** `Biopsy` of spec/openapi.yaml. @param open a biopsy is open */
   [[nodiscard]] nlohmann::json to_json(const ControlView& view, bool open) const;
 

@@ -47,6 +47,10 @@ class ControlClient {
    * kernel is connected or none answered within 300 ms. */
   boost::asio::awaitable<std::optional<StopAnswer>> stop();
 
+  /** Ends MOTION, whatever else waits, and leaves every order open: it goes on when the pedal was released
+   * and is pressed again. */
+  void pause() { mailbox_.pauses.fetch_add(1, std::memory_order_release); }
+
   /**
    * Tells the kernel of a change of the motion authority, whose number `holder` is; 0: nobody has it. It is a
    * STOP, too: no order that was given before starts or goes on.

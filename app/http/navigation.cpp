@@ -72,6 +72,7 @@ void Navigation::listen_to_hub() {
       hub_.reply(peer, name, body);
     }
   };
+  hub_.is_in_motion = [this] { return is_moving(); };
   hub_.on_close = [this](const igtl::Peer& peer, const std::string& reason) { lose(peer, reason); };
 }
 
@@ -176,7 +177,8 @@ void Navigation::track(PeerId peer, const igtl::Track& wish) {
   hub_.reply(peer, "", igtl::TrackingReply{true});
 }
 
-/** A robot that moves for a program which is gone stops. */
+/** A robot whose controller is gone pauses, whatever it moves for: somebody has to look, and to press the
+ * pedal anew. What the program had asked for goes on only until another one takes its place. */
 void Navigation::lose(const igtl::Peer& peer, const std::string& reason) {
   announce("closed", peer, reason);
   sessions_.erase(peer.id);
@@ -185,13 +187,15 @@ void Navigation::lose(const igtl::Peer& peer, const std::string& reason) {
     return;
   }
   const bool moves = context_.book.may_move();
-  if (moves) {
-    (void)context_.control.stop();
-  }
+  context_.control.pause();
   spdlog::warn("the OpenIGTLink controller {} was lost: {}", peer.address, reason);
-  context_.book.abort_all("The OpenIGTLink controller was lost.");
-  json detail{
-      {"action", "controller lost"}, {"client", peer.address}, {"reason", reason}, {"stopped", moves}};
+  context_.book.lose_author(ProposalSource::openigtlink, "The OpenIGTLink controller was lost.");
+  for (const Proposal& each : context_.book.newest_first()) {
+    if (is_open(each.state) && source_of(each) == ProposalSource::openigtlink) {
+      orphans_.push_back(each.id);
+    }
+  }
+  json detail{{"action", "controller lost"}, {"client", peer.address}, {"reason", reason}, {"paused", moves}};
   context_.store.note(context_.entry(mandate_->caller, AuditKind::connection, std::move(detail)));
   mandate_.reset();
 }
@@ -222,6 +226,9 @@ bool Navigation::set_role(PeerId id, igtl::Role role, const Caller& caller) {
     return false;
   }
   if (role == igtl::Role::controller) {
+    for (const std::uint32_t orphan : std::exchange(orphans_, {})) {
+      end_motion(orphan);
+    }
     if (mandate_ && mandate_->peer != id) {
       give_role(mandate_->peer, igtl::Role::observer);
     }
@@ -263,11 +270,12 @@ void Navigation::let_first_control() {
 
 tl::expected<Caller, Problem> Navigation::mandate_of(PeerId peer) const {
   if (!mandate_ || mandate_->peer != peer || mandate_->hold != context_.authority.number()) {
-    return fail({.status = Status::conflict,
-                 .code = "AUTHORITY",
-                 .detail = "This connection is an observer.",
-                 .expected = "the role of the controller",
-                 .next_step = "Whoever holds the motion authority gives it under Communication."});
+    return fail(
+        {.status = Status::conflict,
+         .code = "AUTHORITY",
+         .detail = "This connection is an observer.",
+         .expected = "the role of the controller",
+         .next_step = "Whoever holds the motion authority gives it in the console's panel Navigation."});
   }
   return mandate_->caller;
 }
@@ -336,7 +344,9 @@ asio::awaitable<void> Navigation::tell_all() {
     const SteadyTime now = std::chrono::steady_clock::now();
     if (now >= next_telling) {
       next_telling = now + telling_period;
+      const std::uint32_t tick = context_.view().snapshot.state.tick;
       velocities_.measure(context_.robot, context_.view());
+      probe_velocity_.measure(tick, context_.robot.period_us, state().measured_cp);
       tell_messages(now);
     }
     if (now >= next_due) {
@@ -408,9 +418,11 @@ asio::awaitable<void> Navigation::refresh_targeting() {
 /** No pose is told before it is known what the probe is like. */
 igtl::RobotState Navigation::state() const {
   igtl::RobotState state = robot_state(context_, targeting_, velocities_);
+  state.measured_cv = probe_velocity_.per_s();
   if (!targeting_revision_) {
     state.measured_cp.reset();
     state.desired_cp.reset();
+    state.measured_cf.reset();
   }
   return state;
 }

@@ -17,6 +17,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "http/context.hpp"
 #include "http/imager.hpp"
@@ -138,6 +139,7 @@ class Navigation {
   NavigationOptions options_;
   igtl::Hub hub_;
   std::optional<Mandate> mandate_;
+  std::vector<std::uint32_t> orphans_; /**< proposals of controllers that were lost */
   std::deque<Task> tasks_;
   boost::asio::steady_timer news_; /**< cancelled when there is a task */
   std::map<igtl::PeerId, Session> sessions_;
@@ -145,6 +147,7 @@ class Navigation {
   std::optional<std::uint32_t> targeting_revision_; /**< of `targeting_`; empty: none was read yet */
   AxisVelocities velocities_;
   Imager imager_;
+  PoseVelocity probe_velocity_;
 };
 
 }  // namespace interlock::web

@@ -1,6 +1,8 @@
 #include "http/navigation_state.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
 
 #include "http/alignment_view.hpp"
@@ -36,7 +38,66 @@ igtl::Status health_of(const ControlView& view) {
   return {StatusCode::ok, 0, mode, "The kernel is in mode " + mode + "."};
 }
 
+/** In the words of CRTK: PAUSED while no motion is taken although there is power. */
+std::string operating_state_of(const Robot& robot, const ControlView& view) {
+  if (!view.attached || view.snapshot.state.mode == ILK_MODE_LOCKED) {
+    return "FAULT";
+  }
+  if (view.snapshot.state.mode == ILK_MODE_MOTION) {
+    return "ENABLED";
+  }
+  const bool has_power = std::ranges::any_of(robot.axes, [&](const Axis& axis) {
+    const std::uint32_t state = view.snapshot.state.axis[axis.slot].state;
+    return state != ILK_AXIS_DISABLED && state != ILK_AXIS_FAULTED;
+  });
+  return has_power ? "PAUSED" : "DISABLED";
+}
+
+/** What pushes against the needle pushes it back along the way it comes, which is the probe's third axis. */
+std::optional<igtl::Spatial> force_of(const Context& context, const std::optional<igtl::Matrix>& probe) {
+  const std::optional<double> against_n = context.biopsy.needle_force_n(context.view());
+  if (!against_n || !probe) {
+    return std::nullopt;
+  }
+  return igtl::Spatial{-*against_n * (*probe)[2], -*against_n * (*probe)[6], -*against_n * (*probe)[10]};
+}
+
+/** Axis of a rotation times its angle, rad. */
+std::array<double, 3> turn_of(const igtl::Matrix& before, const igtl::Matrix& after) {
+  const auto between = [&](std::size_t row, std::size_t column) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      sum += after[4 * row + i] * before[4 * column + i];
+    }
+    return sum;
+  };
+  const std::array<double, 3> skew{(between(2, 1) - between(1, 2)) / 2, (between(0, 2) - between(2, 0)) / 2,
+                                   (between(1, 0) - between(0, 1)) / 2};
+  const double sine = std::hypot(skew[0], skew[1], skew[2]);
+  const double angle = std::atan2(sine, (between(0, 0) + between(1, 1) + between(2, 2) - 1) / 2);
+  const double scale = sine > 0.0 ? angle / sine : 0.0;
+  return {scale * skew[0], scale * skew[1], scale * skew[2]};
+}
+
 }  // namespace
+
+void PoseVelocity::measure(std::uint32_t tick, std::uint32_t period_us,
+                           const std::optional<igtl::Matrix>& pose) {
+  const std::uint32_t ticks = tick - std::exchange(tick_, tick);
+  const std::optional<igtl::Matrix> before = std::exchange(pose_, pose);
+  velocity_.reset();
+  if (!before || !pose || ticks == 0) {
+    return;
+  }
+  const double seconds = ticks * (period_us * 1e-6);
+  const std::array<double, 3> turn = turn_of(*before, *pose);
+  velocity_ = igtl::Spatial{((*pose)[3] - (*before)[3]) / seconds,
+                            ((*pose)[7] - (*before)[7]) / seconds,
+                            ((*pose)[11] - (*before)[11]) / seconds,
+                            turn[0] / seconds,
+                            turn[1] / seconds,
+                            turn[2] / seconds};
+}
 
 void AxisVelocities::measure(const Robot& robot, const ControlView& view) {
   const std::uint32_t before_tick = std::exchange(tick_, view.snapshot.state.tick);
@@ -65,6 +126,8 @@ igtl::RobotState robot_state(const Context& context, const Targeting& targeting,
   state.health = health_of(view);
   const RobotPoses poses = robot_poses(context.robot, targeting, view);
   state.measured_cp = poses.current;
+  state.measured_cf = force_of(context, poses.current);
+  state.operating_state = operating_state_of(context.robot, view);
   state.desired_cp = poses.desired;
   state.measured_jp = positions_in(context.robot, view);
   state.measured_jv = velocities.units_per_s();

@@ -27,7 +27,7 @@ using nlohmann::json;
 using Done = tl::expected<igtl::Outcome, Problem>;
 using Sent = tl::expected<TimedTrajectory, Problem>;
 
-constexpr const char* known_modes = "manual, trajectory, draping, targeting or insertion";
+constexpr const char* known_modes = "manual, home, trajectory, draping, targeting or insertion";
 
 /** Sub-codes of a target's STATUS. */
 constexpr std::int64_t invalid_target = 1;
@@ -161,7 +161,7 @@ asio::awaitable<Done> enter_mode(const Context& context, const Caller& caller, s
                                                  .code = "MODE",
                                                  .detail = "\"" + mode + "\" cannot be had from here.",
                                                  .expected = known_modes,
-                                                 .next_step = "Homing is started in the console."});
+                                                 .next_step = "Other modes are entered in the console."});
   if (mode == "trajectory") {
     draft = trajectory_draft(context.trajectory, caller.user);
   } else if (mode == "draping") {
@@ -245,11 +245,29 @@ asio::awaitable<Done> set_target(const Context& context, const Caller& caller, i
   co_return changed.map([&outcome](const Targeting&) { return outcome; });
 }
 
+/** What comes as float32 has to be nearer to a rotation than what people type. */
+const igtl::Matrix* pose_of(const igtl::Wish& wish) {
+  if (const auto* registration = std::get_if<igtl::SetRegistration>(&wish)) {
+    return &registration->scanner_from_robot;
+  }
+  const auto* reported = std::get_if<igtl::ReportPose>(&wish);
+  return reported == nullptr ? nullptr : &reported->scanner_from_probe;
+}
+
+Problem no_rigid_motion() {
+  return {.status = Status::unprocessable_entity,
+          .code = "INVALID",
+          .detail = "The matrix is no rigid motion.",
+          .expected = "R^T R = 1 within 0.0001, determinant 1",
+          .next_step = "Make its rotation orthonormal, and send it again."};
+}
+
 /** A STATUS says which kind of refusal a target met. */
 asio::awaitable<Done> set_target_pose(const Context& context, const Caller& caller,
                                       igtl::SetTargetPose wish) {
-  if (const auto pose = rigid_pose({{"target", wish.scanner_from_target}}, "target"); !pose) {
-    igtl::Outcome outcome{status_of(pose.error())};
+  const auto pose = rigid_pose({{"target", wish.scanner_from_target}}, "target");
+  if (!pose || !igtl::is_rigid(wish.scanner_from_target)) {
+    igtl::Outcome outcome{status_of(pose ? no_rigid_motion() : pose.error())};
     outcome.status.sub_code = invalid_target;
     co_return outcome;
   }
@@ -300,6 +318,9 @@ asio::awaitable<Done> done_for(const Context& context, const Caller& caller, con
   }
   if (std::holds_alternative<igtl::CutPower>(wish)) {
     co_return co_await cut_power(context);
+  }
+  if (const igtl::Matrix* pose = pose_of(wish); pose != nullptr && !igtl::is_rigid(*pose)) {
+    co_return fail(no_rigid_motion());
   }
   co_return co_await change(context, caller, wish);
 }

@@ -85,7 +85,7 @@ tl::expected<std::vector<double>, Problem> row_of(const Robot& robot, Targeting 
                                                   const igtl::TimedPose& pose, std::size_t number) {
   if (!igtl::is_rigid(pose.scanner_from_treatment)) {
     return fail(bad_row("INVALID", number, pose_name, "it is no rigid motion",
-                        "R^T R = 1 within 0.001, determinant 1"));
+                        "R^T R = 1 within 0.0001, determinant 1"));
   }
   aim_at(targeting, pose.scanner_from_treatment);
   const auto alignment = alignment_with(robot, targeting);

@@ -2,12 +2,12 @@
  * @file
  * From a frame to a message.
  *
- * Debian's libopenigtlink unpacks TRANSFORM, STRING, POSITION, STT_TDATA and RTS_TDATA,
- * once everything was checked here that it trusts: it reads beyond bodies whose inner lengths are wrong.
- * Where no check makes it safe, the type is decoded here: POINT and TDATA, whose numbers it reads by pointers
- * to odd addresses, which some processors refuse; SENSOR, as it swaps as many numbers as the body claims to
- * have before it looks whether they are there; NDARRAY and CAPABILITY, as it
- * never frees all of what it unpacked.
+ * Debian's libopenigtlink unpacks TRANSFORM, STRING, STT_TDATA and RTS_TDATA, once everything was checked
+ * here that it trusts: it reads beyond bodies whose inner lengths are wrong. Where no check makes it safe,
+ * the type is decoded here: POINT and TDATA, whose numbers it reads by pointers to odd addresses, which some
+ * processors refuse; POSITION, of which it swaps bytes behind the end of one without a rotation; SENSOR, as
+ * it swaps as many numbers as the body claims to have before it looks whether they are there; STATUS, whose
+ * length it takes for right; NDARRAY and CAPABILITY, as it never frees all of what it unpacked.
  */
 #pragma once
 

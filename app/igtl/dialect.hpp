@@ -7,6 +7,7 @@
  */
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -19,11 +20,18 @@
 
 namespace interlock::igtl {
 
+/** x, y and z of a translation, then of a rotation, or what belongs to them. */
+using Spatial = std::array<double, 6>;
+
 /** What the robot tells of itself. */
 struct RobotState {
   Matrix scanner_from_robot = Transform{}.matrix;
   std::optional<Matrix> measured_cp; /**< treatment point by the encoders; none while it is unknown */
   std::optional<Matrix> desired_cp;  /**< treatment point at entry and target; none without these */
+  /** Velocity of the treatment point along and about the scanner's axes, mm/s and rad/s. */
+  std::optional<Spatial> measured_cv;
+  /** Force on the needle along the scanner's axes, N, then zeroes; of a robot with a sensor for it. */
+  std::optional<Spatial> measured_cf;
   std::optional<Position3> entry;
   std::optional<Position3> target;
   double treatment_to_tip_mm = 0.0;
@@ -31,6 +39,7 @@ struct RobotState {
   double cannula_to_treatment_mm = 0.0;
   double treatment_to_robot_at_home_mm = 0.0;
   std::string mode;                /**< "manual" */
+  std::string operating_state;     /**< of CRTK: DISABLED, PAUSED, ENABLED or FAULT */
   std::vector<double> measured_jp; /**< axes in the order of the robot's file, in their units */
   std::vector<double> measured_jv; /**< their velocities, units/s; empty while unknown */
   std::vector<double> desired_jp;

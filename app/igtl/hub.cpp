@@ -44,15 +44,19 @@ void set_tcp(asio::ip::tcp::socket& socket, int option, int value) {
   (void)setsockopt(socket.native_handle(), IPPROTO_TCP, option, &value, sizeof value);
 }
 
-std::optional<std::chrono::microseconds> round_trip_of(const asio::ip::tcp::socket& socket) {
+std::optional<tcp_info> info_of(const asio::ip::tcp::socket& socket) {
   tcp_info info{};
   socklen_t size = sizeof info;
   // Reading an option does not change the socket, but Asio gives the handle of a changeable one only.
   const int handle = const_cast<asio::ip::tcp::socket&>(socket).native_handle();
-  if (getsockopt(handle, IPPROTO_TCP, TCP_INFO, &info, &size) != 0 || info.tcpi_rtt == 0) {
-    return std::nullopt;
-  }
-  return std::chrono::microseconds(info.tcpi_rtt);
+  const bool is_known = getsockopt(handle, IPPROTO_TCP, TCP_INFO, &info, &size) == 0;
+  return is_known ? std::optional(info) : std::nullopt;
+}
+
+std::optional<std::chrono::microseconds> round_trip_of(const asio::ip::tcp::socket& socket) {
+  const auto info = info_of(socket);
+  return info && info->tcpi_rtt != 0 ? std::optional(std::chrono::microseconds(info->tcpi_rtt))
+                                     : std::nullopt;
 }
 
 }  // namespace
@@ -160,9 +164,12 @@ asio::awaitable<void> Hub::keep_connected(Tcp::endpoint peer, std::chrono::milli
   asio::steady_timer timer(executor);
   for (;;) {
     Tcp::socket socket(executor);
-    const auto [failed] = co_await socket.async_connect(peer, as_result);
-    if (!failed) {
-      co_await serve(std::make_shared<Session>(std::move(socket), ++last_id_));
+    if (sessions_.size() < capacity) {
+      const auto [failed] = co_await socket.async_connect(peer, as_result);
+      // Others may have come meanwhile.
+      if (!failed && sessions_.size() < capacity) {
+        co_await serve(std::make_shared<Session>(std::move(socket), ++last_id_));
+      }
     }
     timer.expires_after(pause);
     const auto [ended] = co_await timer.async_wait(as_result);
@@ -243,7 +250,7 @@ asio::awaitable<void> Hub::slow_down(SessionPointer session) {
 void Hub::take(Session& session, Frame frame) {
   const Header header = frame.header;
   session.peer.version = std::max(session.peer.version, header.version);
-  session.last_heard = Clock::now();
+  note_sign_of_life(session);
   const auto message = decode(std::move(frame));
   if (!message) {
     refuse(session, header, message.error());
@@ -262,9 +269,17 @@ void Hub::take(Session& session, Frame frame) {
   on_message(session.peer.id, *message);
 }
 
+void Hub::note_sign_of_life(Session& session) {
+  const auto now = Clock::now();
+  if (now - session.last_heard > heartbeat_gap) {
+    session.regular_since = now;
+  }
+  session.last_heard = now;
+}
+
 void Hub::refuse(Session& session, const Header& header, const FaultAt& fault) {
   ++session.peer.refused;
-  session.last_heard = Clock::now();
+  note_sign_of_life(session);
   on_refused(session.peer.id, header, fault);
 }
 
@@ -316,9 +331,39 @@ void Hub::look_after(Session& session, Clock::time_point now) const {
     close(session, std::string(fault_text(Fault::late)));
   } else if (session.write_since && now - *session.write_since > taking) {
     close(session, "the peer does not take what is sent to it");
-  } else if (controls && controller_silence_.count() != 0 && now - session.last_heard > controller_silence_) {
-    close(session, "the controller was silent for " + std::to_string(controller_silence_.count()) + " ms");
+  } else if (controls) {
+    look_after_controller(session, now);
   }
+}
+
+/** Whether its machine is there, and whether the program on it goes on. */
+void Hub::look_after_controller(Session& session, Clock::time_point now) const {
+  const bool moves = is_in_motion();
+  const bool is_configured = controller_silence_.count() != 0;
+  const auto limit = is_configured ? controller_silence_ : heartbeat_silence;
+  error_code ignored;
+  // What has come and was not read yet is no silence.
+  const bool is_silent = now - session.last_heard > limit && session.socket.available(ignored) == 0;
+  const bool is_regular = session.last_heard - session.regular_since >= heartbeat_proof;
+  if (is_silent && (is_configured || (moves && is_regular))) {
+    close(session, "the controller was silent for " + std::to_string(limit.count()) + " ms");
+  } else if (moves && unacknowledged(session, now) > acknowledgement_patience) {
+    close(session, "the controller's machine acknowledges nothing");
+  } else if (is_silent) {
+    session.regular_since = now;
+  }
+}
+
+/** How long nothing was acknowledged of what was sent. */
+Hub::Clock::duration Hub::unacknowledged(Session& session, Clock::time_point now) {
+  const auto info = info_of(session.socket);
+  if (!info || info->tcpi_unacked == 0) {
+    session.unacknowledged_since.reset();
+    return {};
+  }
+  session.unacknowledged_since = session.unacknowledged_since.value_or(now);
+  return std::min<Clock::duration>(now - *session.unacknowledged_since,
+                                   std::chrono::milliseconds(info->tcpi_last_ack_recv));
 }
 
 void Hub::close(Session& session, const std::string& reason) {
@@ -378,6 +423,7 @@ bool Hub::set_role(PeerId id, Role role) {
   }
   session->peer.role = role;
   session->last_heard = Clock::now();
+  session->regular_since = session->last_heard;
   set_patience(*session, role == Role::controller ? controller_patience : observer_patience);
   return true;
 }

@@ -47,7 +47,8 @@ struct HubOptions {
   std::string address = "127.0.0.1";
   std::uint16_t port = 18944;     /**< 0: any free one */
   std::vector<std::string> allow; /**< addresses of peers; empty: those of this machine */
-  /** Silence after which the controller counts as lost; zero: only the end of its connection does. */
+  /** Silence after which the controller counts as lost. Zero: that of one which had sent something regularly
+   * (Hub::heartbeat_gap), and only while something may move. */
   std::chrono::milliseconds controller_silence{0};
 };
 
@@ -92,6 +93,15 @@ class Hub {
   static constexpr std::chrono::milliseconds write_patience{1000};
   /** How long the loss of a controller's machine goes unnoticed while something is sent to it. */
   static constexpr std::chrono::milliseconds controller_patience{200};
+  /** While something may move: without an acknowledgement of what was sent. TCP by itself looks only when it
+   * repeats, first after 200 ms. */
+  static constexpr std::chrono::milliseconds acknowledgement_patience{150};
+  /** A controller sends regularly when no two messages were further apart... */
+  static constexpr std::chrono::milliseconds heartbeat_gap{150};
+  /** ...for this long. */
+  static constexpr std::chrono::milliseconds heartbeat_proof{2000};
+  /** Its silence by which it counts as lost. */
+  static constexpr std::chrono::milliseconds heartbeat_silence{200};
   static constexpr std::chrono::milliseconds beat_period{25};
   /** Messages of one peer in a `rate_window`; what comes beyond waits in its connection. */
   static constexpr std::size_t most_messages = 100;
@@ -122,6 +132,9 @@ class Hub {
   std::function<void(PeerId, const Header&, const FaultAt&)> on_refused = [](PeerId, const Header&,
                                                                              const FaultAt&) {};
   std::function<void(const Peer&, const std::string&)> on_close = [](const Peer&, const std::string&) {};
+
+  /** Asked whether something may move, hence whether it matters that the controller hangs. */
+  std::function<bool()> is_in_motion = [] { return false; };
 
   /** Sends in order and drops nothing. */
   void reply(PeerId to, const std::string& device, const Body& body);
@@ -162,8 +175,10 @@ class Hub {
     std::map<std::pair<std::string, std::string>, ByteVector> newest; /**< by type and name */
     std::pair<std::string, std::string> shown_last;                   /**< of `newest`: each has its turn */
     Clock::time_point last_heard = Clock::now();
-    std::optional<Clock::time_point> message_since; /**< a message has begun */
-    std::optional<Clock::time_point> write_since;   /**< something is being sent */
+    Clock::time_point regular_since = last_heard;          /**< without a long gap */
+    std::optional<Clock::time_point> unacknowledged_since; /**< something that was sent */
+    std::optional<Clock::time_point> message_since;        /**< a message has begun */
+    std::optional<Clock::time_point> write_since;          /**< something is being sent */
     Clock::time_point window_since = Clock::now();
     std::size_t in_window = 0;
     bool open = true;
@@ -179,7 +194,10 @@ class Hub {
   boost::asio::awaitable<void> slow_down(SessionPointer session);
   void take(Session& session, Frame frame);
   void refuse(Session& session, const Header& header, const FaultAt& fault);
+  static void note_sign_of_life(Session& session);
   void look_after(Session& session, Clock::time_point now) const;
+  void look_after_controller(Session& session, Clock::time_point now) const;
+  static Clock::duration unacknowledged(Session& session, Clock::time_point now);
   static void close(Session& session, const std::string& reason);
   static void set_patience(Session& session, std::chrono::milliseconds patience);
   [[nodiscard]] SessionPointer session_of(PeerId id) const;

@@ -19,7 +19,7 @@ constexpr std::size_t shortest_query = 5;
 }  // namespace
 
 bool is_rigid(const Matrix& matrix) noexcept {
-  constexpr double tolerance = 1e-3;
+  constexpr double tolerance = 1e-4;
   const auto at = [&](std::size_t row, std::size_t column) { return matrix[4 * row + column]; };
   double worst = 0.0;
   for (std::size_t one = 0; one < 3; ++one) {

@@ -153,7 +153,8 @@ struct Message {
   Metadata metadata;
 };
 
-/** Whether the matrix is a rotation and a shift: R^T R = 1 within 0.001, no mirror. */
+/** Whether the matrix is a rotation and a shift: R^T R = 1 within 0.0001, which float32 leaves room for a
+ * hundred times; no mirror. */
 bool is_rigid(const Matrix& matrix) noexcept;
 
 /** Whether a query, cut short or not, asks for that type. */

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "igtl/crtk.hpp"
+
 namespace interlock::igtl {
 namespace {
 
@@ -107,7 +109,7 @@ Reading mode_of_text(const Message& message) {
   if (mode == "stop" || mode == "emergency") {
     return Stop{};
   }
-  return SetMode{std::move(mode)};
+  return mode == "home" ? Reading(StartUp{}) : Reading(SetMode{std::move(mode)});
 }
 
 /** Heard from an imager, and noted when it can be one. */
@@ -118,7 +120,7 @@ Reading tip_pose(const Message& message) {
   }
   if (!is_rigid(transform->matrix)) {
     return unwanted(StatusCode::configuration,
-                    message.device + " is no rigid motion; expected R^T R = 1 within 0.001, determinant 1.");
+                    message.device + " is no rigid motion; expected R^T R = 1 within 0.0001, determinant 1.");
   }
   return Noted{true, TipPose{transform->matrix}};
 }
@@ -161,17 +163,10 @@ constexpr std::array<Name, 15> names{{
      [](const Message& message) { return offset_of(message, "treatment_to_robot_at_home"); }},
     {"trajectory", trajectory_of},
     {"mode", mode_of_text},
-    {"start_up", [](const Message&) -> Reading { return SetMode{"home"}; }},
+    {"start_up", [](const Message&) -> Reading { return StartUp{}; }},
     {"stop", [](const Message&) -> Reading { return Stop{}; }},
     {"emergency", [](const Message&) -> Reading { return Stop{}; }},
 }};
-
-/** Commands of CRTK that set a setpoint, with or without a namespace before them. */
-bool is_setpoint(std::string_view name) {
-  const std::string_view command =
-      name.substr(name.rfind('/') == std::string_view::npos ? 0 : name.rfind('/') + 1);
-  return command.starts_with("servo_") || command.starts_with("move_");
-}
 
 Reading named(const Message& message) {
   const std::string name = lower(message.device);
@@ -179,11 +174,8 @@ Reading named(const Message& message) {
   if (found != names.end()) {
     return found->read(message);
   }
-  if (is_setpoint(name)) {
-    return unwanted(StatusCode::access_denied,
-                    message.device +
-                        " would be a setpoint, and none is taken from the network; send entry and "
-                        "target or a trajectory, then a MODE that somebody approves.");
+  if (auto command = crtk_command(name, message)) {
+    return std::move(*command);
   }
   return unwanted(
       StatusCode::unknown_instruction,
@@ -202,16 +194,6 @@ std::string listed(const std::vector<double>& values) {
 
 Points point(const char* name, const Position3& position) {
   return {{{name, "Fiducial", {255, 0, 0, 255}, position, 0.0, ""}}};
-}
-
-/** Positions, and velocities below them once these are known. */
-Array joint_states(const RobotState& state) {
-  Array array{{1, static_cast<std::uint16_t>(state.measured_jp.size())}, state.measured_jp};
-  if (state.measured_jv.size() == state.measured_jp.size()) {
-    array.size[0] = 2;
-    array.values.insert(array.values.end(), state.measured_jv.begin(), state.measured_jv.end());
-  }
-  return array;
 }
 
 }  // namespace
@@ -243,7 +225,10 @@ Reaction Thesis::finish(const std::string& device, const Wish& /*wish*/, const O
 }
 
 Outgoings Thesis::follow(const Motion& motion, const RobotState& /*state*/) {
-  return {{"proposal", motion.status}};
+  Outgoings messages{{"proposal", motion.status}};
+  const Outgoings events = crtk_event(motion);
+  messages.insert(messages.end(), events.begin(), events.end());
+  return messages;
 }
 
 Outgoings Thesis::beat(Time /*now*/, const RobotState& state, bool has_to_hear) {
@@ -285,7 +270,6 @@ Outgoings messages_of(const RobotState& state) {
   }
   if (state.desired_cp) {
     messages.emplace_back("desired_cp", Transform{*state.desired_cp});
-    messages.emplace_back("setpoint_cp", Transform{*state.desired_cp});
   }
   if (!state.desired_jp.empty()) {
     messages.emplace_back("desired_jp", Text{listed(state.desired_jp)});
@@ -295,11 +279,12 @@ Outgoings messages_of(const RobotState& state) {
   }
   if (!state.measured_jp.empty()) {
     messages.emplace_back("measured_jp", Text{listed(state.measured_jp)});
-    messages.emplace_back("measured_js", joint_states(state));
   }
   if (!state.measured_jv.empty()) {
     messages.emplace_back("measured_jv", Text{listed(state.measured_jv)});
   }
+  const Outgoings more = crtk_messages(state);
+  messages.insert(messages.end(), more.begin(), more.end());
   return messages;
 }
 

@@ -1,12 +1,15 @@
 #include "igtl/workphases.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace interlock::igtl {
 namespace {
 
 constexpr std::size_t prefix_width = 4;
+/** Requests by which a repeated one is known. */
+constexpr std::size_t remembered = 10;
 constexpr const char* current_status_name = "CURRENT_STATUS";
 constexpr const char* current_position_name = "CURRENT_POSITION";
 constexpr const char* error_name = "ERROR";
@@ -19,6 +22,18 @@ Outgoings position_of(const RobotState& state) {
     return {};
   }
   return {{current_position_name, Transform{*state.measured_cp}}};
+}
+
+/** Whether the name is a prefix and an ID, by which its sender tells requests apart. */
+bool has_id(const std::string& device) {
+  constexpr std::array<std::string_view, 4> prefixes{"CMD_", "CLB_", "TGT_", "NPOS_"};
+  return std::ranges::any_of(prefixes, [&](std::string_view each) { return device.starts_with(each); });
+}
+
+/** What stands behind the prefix. */
+std::string id_of(const Message& message) {
+  const auto end = message.device.find('_');
+  return end == std::string::npos ? "" : message.device.substr(end + 1);
 }
 
 bool is_stop(Phase phase) { return phase == Phase::stop || phase == Phase::emergency; }
@@ -46,8 +61,19 @@ Reaction Workphases::take(const Message& message, const RobotState& state, bool 
       std::holds_alternative<TrackingReply>(message.body)) {
     return {};
   }
+  if (is_repeated(message)) {
+    return repeat(message);
+  }
+  Reaction reaction = take_request(message, state, controls);
+  if (reaction.refused.empty()) {
+    remember(message);
+  }
+  return reaction;
+}
+
+Reaction Workphases::take_request(const Message& message, const RobotState& state, bool controls) {
   const std::string prefix = message.device.substr(0, prefix_width);
-  const std::string id = message.device.substr(std::min(prefix_width, message.device.size()));
+  const std::string id = id_of(message);
   if (prefix == "CMD_") {
     return request(id, message, state, controls);
   }
@@ -55,6 +81,34 @@ Reaction Workphases::take(const Message& message, const RobotState& state, bool 
     return calibrate(id, message);
   }
   return prefix == "TGT_" ? target(id, message) : take_other(message, state);
+}
+
+/** The same name and the same content as one of the last requests that were taken. A stop is none: whoever
+ * sends it again means it. */
+bool Workphases::is_repeated(const Message& message) const {
+  const auto* text = std::get_if<Text>(&message.body);
+  const auto phase = text == nullptr ? std::nullopt : requested_phase(text->text);
+  return !(phase && is_stop(*phase)) &&
+         std::ranges::find(taken_, Outgoing(message.device, message.body)) != taken_.end();
+}
+
+/** It is acknowledged once more, and not carried out once more. */
+Reaction Workphases::repeat(const Message& message) const {
+  Reaction reaction{{{"ACK_" + id_of(message), message.body}}, std::nullopt};
+  reaction.replies.emplace_back(current_status_name, current_status(StatusCode::ok));
+  reaction.refused = "The same request came before under this ID; it is not carried out again.";
+  return reaction;
+}
+
+void Workphases::remember(const Message& message) {
+  if (!has_id(message.device)) {
+    return;
+  }
+  std::erase_if(taken_, [&](const Outgoing& each) { return each.first == message.device; });
+  taken_.emplace_back(message.device, message.body);
+  if (taken_.size() > remembered) {
+    taken_.pop_front();
+  }
 }
 
 Outgoings Workphases::take_broken(const std::string& device, const Status& fault) {
@@ -85,7 +139,7 @@ Reaction Workphases::request(const std::string& id, const Message& message, cons
     reaction.refused = controls
                            ? forbids(*wanted, state)
                            : "This connection is an observer; whoever holds the motion authority makes it "
-                             "the controller, under Communication.";
+                             "the controller in the console's panel Navigation.";
   }
   if (reaction.refused.empty()) {
     enter(*wanted, reaction);
@@ -200,6 +254,10 @@ Reaction Workphases::target(const std::string& id, const Message& message) {
 }
 
 Reaction Workphases::finish(const std::string& /*device*/, const Wish& wish, const Outcome& outcome) {
+  // What failed or was stopped may be asked for again, under whatever ID.
+  if (outcome.status.code != StatusCode::ok || std::holds_alternative<Stop>(wish)) {
+    taken_.clear();
+  }
   if (std::holds_alternative<SetRegistration>(wish)) {
     return finish_calibration(outcome);
   }
@@ -303,6 +361,9 @@ Outgoings Workphases::follow(const Motion& motion, const RobotState& state) {
     return {};
   }
   motion_.reset();
+  if (motion.status.code != StatusCode::ok) {
+    taken_.clear();
+  }
   const Aim aim = std::exchange(aim_, Aim::nothing);
   const std::string name = name_of(aim);
   expected_.erase(name);

@@ -9,6 +9,7 @@
  */
 #pragma once
 
+#include <deque>
 #include <map>
 #include <string>
 #include <string_view>
@@ -82,6 +83,10 @@ class Workphases : public Dialect {
   void drop_motion(Reaction& reaction);
 
  private:
+  Reaction take_request(const Message& message, const RobotState& state, bool controls);
+  [[nodiscard]] bool is_repeated(const Message& message) const;
+  [[nodiscard]] Reaction repeat(const Message& message) const;
+  void remember(const Message& message);
   Reaction request(const std::string& id, const Message& message, const RobotState& state, bool controls);
   void enter(Phase phase, Reaction& reaction);
   Reaction calibrate(const std::string& id, const Message& message);
@@ -91,6 +96,7 @@ class Workphases : public Dialect {
   [[nodiscard]] Status current_status(StatusCode code, std::string text = {}) const;
   [[nodiscard]] Outgoings known(const RobotState& state) const;
 
+  std::deque<Outgoing> taken_; /**< the last requests that were taken, newest last */
   Phase phase_ = Phase::undefined;
   Phase before_ = Phase::undefined; /**< the phase from which STOP or EMERGENCY came */
   bool calibrated_ = false;

@@ -54,6 +54,7 @@ void ControlLoop::run(const std::stop_token& stop) noexcept {
       case LinkWait::timeout:
         port_.begin_tick();
         obey_stop();
+        obey_pause();
         break;
       case LinkWait::closed:
         lose_link();
@@ -103,6 +104,7 @@ void ControlLoop::tick() noexcept {
   view_.received = std::chrono::steady_clock::now();
   port_.begin_tick();
   obey_stop();
+  obey_pause();
   read_events();
   send_heartbeat();
   take_commands();
@@ -124,6 +126,14 @@ void ControlLoop::obey_stop() noexcept {
                      view_.snapshot.state.tick);
   if (port_.send(request_of(ILK_REQUEST_STOP), StopOrigin{stops_seen_})) {
     stops_sent_ = stops_seen_;
+  }
+}
+
+/** The kernel leaves MOTION, and each mode sees that as it sees the pedal's release. */
+void ControlLoop::obey_pause() noexcept {
+  const std::uint32_t pauses = mailbox_.pauses.load(std::memory_order_acquire);
+  if (pauses != pauses_sent_ && port_.send(request_of(ILK_REQUEST_STOP), HeartbeatOrigin{})) {
+    pauses_sent_ = pauses;
   }
 }
 

@@ -41,6 +41,7 @@ class ControlLoop {
 
   void tick() noexcept;
   void obey_stop() noexcept;
+  void obey_pause() noexcept;
   void read_events() noexcept;
   void dispatch_verdict(const ilk_event_t& event) noexcept;
   void send_heartbeat() noexcept;
@@ -82,6 +83,7 @@ class ControlLoop {
   std::uint32_t holder_sent_ = 0;
   std::uint32_t stops_seen_ = 0;
   std::uint32_t stops_sent_ = 0;
+  std::uint32_t pauses_sent_ = 0;
   std::uint32_t events_lost_ = 0;    /**< by the link, as last seen */
   std::uint32_t events_dropped_ = 0; /**< of which the network was not told yet */
   bool heartbeat_sent_ = false;

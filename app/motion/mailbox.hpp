@@ -4,7 +4,7 @@
  *
  * Lock-free on both sides, so that no load of the network can hold up the control tick: bounded
  * single-producer single-consumer queues for what must arrive in order, a triple buffer for the newest view,
- * and a counter for STOP, which therefore never stands in a queue behind anything.
+ * and counters for STOP and pause, which therefore never stand in a queue behind anything.
  */
 #pragma once
 
@@ -88,6 +88,9 @@ struct Mailbox {
   boost::lockfree::spsc_queue<Notice, boost::lockfree::capacity<notice_capacity>> notices;
   TripleBuffer<ControlView> view;
   std::atomic<std::uint32_t> stops{0}; /**< STOPs asked for since start */
+  /** Pauses asked for since start: each ends MOTION as the release of the pedal does, so that orders stay
+   * open and go on when somebody presses it again. */
+  std::atomic<std::uint32_t> pauses{0};
   /** Number of the present motion authority; 0: nobody. Changed before the STOP that each change is. */
   std::atomic<std::uint32_t> holder{0};
   WakeSignal network_wake; /**< a notice came or an order changed */

@@ -307,6 +307,22 @@ void ProposalBook::abort_all(const std::string& reason) {
   tell_mode();
 }
 
+void ProposalBook::lose_author(ProposalSource source, const std::string& reason) {
+  pause_reason_ = reason;
+  for (Proposal& each : book_) {
+    const bool is_told = each.detail.starts_with(reason);
+    if (each.state == ProposalState::executing || !is_open(each.state) || is_told) {
+      continue;
+    }
+    if (is_approved(each.state)) {
+      become(each, each.state, reason + " " + each.detail);
+    } else if (source_of(each) == source) {
+      become(each, ProposalState::aborted, reason + " Nobody had approved it yet; propose it again.");
+    }
+  }
+  tell_mode();
+}
+
 void ProposalBook::follow(const ControlView& view) {
   for (const OrderStatus& status : view.orders) {
     follow_move(status);
@@ -348,7 +364,7 @@ void ProposalBook::follow_path(const PathStatus& status) {
   }
   std::string detail = detail_of(robot_, *proposal, status);
   const bool same = proposal->state == state;
-  if (same ? detail == proposal->detail : !may_become(proposal->state, state)) {
+  if (same ? proposal->detail.ends_with(detail) : !may_become(proposal->state, state)) {
     return;
   }
   proposal->leg = status.leg;
@@ -363,7 +379,7 @@ void ProposalBook::follow_biopsy(const BiopsyStatus& status) {
   }
   std::string detail = detail_of(robot_, status);
   const bool same = proposal->state == state;
-  if (same ? detail == proposal->detail : !may_become(proposal->state, state)) {
+  if (same ? proposal->detail.ends_with(detail) : !may_become(proposal->state, state)) {
     return;
   }
   become(*proposal, state, std::move(detail), verdict_of(status.order));
@@ -377,7 +393,7 @@ void ProposalBook::follow_sweep(const SweepStatus& status) {
   }
   std::string detail = detail_of(robot_, *proposal, status);
   const bool same = proposal->state == state;
-  if (same ? detail == proposal->detail : !may_become(proposal->state, state)) {
+  if (same ? proposal->detail.ends_with(detail) : !may_become(proposal->state, state)) {
     return;
   }
   proposal->speeds_counts_per_s.assign(status.counts_per_s.begin(),
@@ -402,7 +418,7 @@ void ProposalBook::follow_home(const HomeStatus& status) {
   }
   std::string detail = detail_of(robot_, *proposal, status);
   const bool same = proposal->state == state;
-  if (same ? detail == proposal->detail : !may_become(proposal->state, state)) {
+  if (same ? proposal->detail.ends_with(detail) : !may_become(proposal->state, state)) {
     return;
   }
   if (proposal->step_count != 0 && status.step < robot_.home_steps.size()) {
@@ -413,6 +429,12 @@ void ProposalBook::follow_home(const HomeStatus& status) {
 
 void ProposalBook::become(Proposal& proposal, ProposalState state, std::string detail,
                           std::optional<std::string> verdict) {
+  if (state == ProposalState::executing) {
+    pause_reason_.clear();
+  } else if (state == ProposalState::paused && proposal.state == ProposalState::executing &&
+             !pause_reason_.empty()) {
+    detail = pause_reason_ + " " + detail;
+  }
   proposal.state = state;
   proposal.detail = std::move(detail);
   proposal.verdict = std::move(verdict);

@@ -96,6 +96,10 @@ class ProposalBook {
   /** Ends every open proposal. The caller sees to it that the kernel stops. */
   void abort_all(const std::string& reason);
 
+  /** Whoever proposed from that source is gone. What nobody has approved yet of it ends; whatever is
+   * approved, of any source, pauses, and says so. The caller sees to it that the kernel leaves MOTION. */
+  void lose_author(ProposalSource source, const std::string& reason);
+
   /** Takes over where the control thread's orders stand. */
   void follow(const ControlView& view);
 
@@ -165,6 +169,7 @@ class ProposalBook {
   std::string_view told_mode_ = "manual";
   std::deque<Proposal> book_; /**< oldest first */
   std::vector<Lent> lent_;
+  std::string pause_reason_; /**< of the pause to come, or that lasts */
   std::uint32_t targeting_revision_ = 0;
   std::uint32_t last_id_ = 0;
 };

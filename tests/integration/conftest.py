@@ -1,5 +1,6 @@
 """Fixtures for every integration test. Programs come from $INTERLOCK_BIN, by default build/release/bin."""
 
+import json
 import signal
 import tempfile
 from collections.abc import Callable, Iterator
@@ -9,6 +10,9 @@ import pytest
 from stack import Stack
 
 StackFactory = Callable[..., Stack]
+RobotFile = Callable[..., Path]
+
+NEURO = Path(__file__).resolve().parents[2] / "models/robots/neuro.toml"
 
 
 # A worker of pytest-xdist ignores Ctrl-C, and its programs would inherit that.
@@ -69,3 +73,17 @@ def stack(short_tmp_path: Path) -> Iterator[StackFactory]:
     yield start
     for started in running:
         started.close()
+
+
+@pytest.fixture
+def robot_file(tmp_path: Path) -> RobotFile:
+    """The neuro robot's file with these keys of [openigtlink] besides the usual ones."""
+
+    def write(**keys: object) -> Path:
+        table = {"bind": "127.0.0.1", "port": 18944, "dialect": "thesis"} | keys
+        lines = [f"{key} = {json.dumps(value)}" for key, value in table.items()]
+        file = tmp_path / "neuro.toml"
+        file.write_text(NEURO.read_text() + "\n[openigtlink]\n" + "\n".join(lines) + "\n")
+        return file
+
+    return write

@@ -2,6 +2,7 @@
 
 import struct
 import time
+from abc import ABC, abstractmethod
 
 import numpy as np
 import pyigtl
@@ -86,7 +87,33 @@ class Heard(dict):
         super().__setitem__(name, message)
 
 
-class Navigator:
+class Program(ABC):
+    """A navigation program, whatever it is built on."""
+
+    version: int
+    heard: Heard
+
+    @abstractmethod
+    def send(self, message: wire.MessageBase) -> None:
+        """Sends it in the program's header version."""
+
+    @abstractmethod
+    def receive(self, name: str) -> wire.MessageBase:
+        """The newest message of that name, once there is one; each is had once."""
+
+    @abstractmethod
+    def stop(self) -> None:
+        """Ends the connection."""
+
+    def ask(self, message: wire.MessageBase) -> Status:
+        """The STATUS that answers a message."""
+        self.send(message)
+        answer = self.receive(message.device_name)
+        assert isinstance(answer, Status)
+        return answer
+
+
+class Navigator(Program):
     """A navigation program: pyigtl, with one header version."""
 
     def __init__(self, port: int, version: int = 1) -> None:
@@ -106,13 +133,6 @@ class Navigator:
         message = self.client.wait_for_message(name, timeout=DEADLINE_S)
         assert message is not None, f"no message {name}"
         return message
-
-    def ask(self, message: wire.MessageBase) -> Status:
-        """The STATUS that answers a message."""
-        self.send(message)
-        answer = self.receive(message.device_name)
-        assert isinstance(answer, Status)
-        return answer
 
     def stop(self) -> None:
         self.client.stop()

@@ -7,49 +7,26 @@ import signal
 import socket
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
-from pathlib import Path
+from collections.abc import Iterator
 
 import pyigtl
 import pytest
 from bare_kernel import BIN, DEADLINE_S
-from conftest import StackFactory
+from conftest import RobotFile, StackFactory
+from controllers import CONNECTIONS, assert_rest_and_fresh_consent, connections, make_controller
 from interface import judge
 from motion import (
-    LATERAL,
     is_driven,
     propose,
-    record,
     to_motion,
+    wait_for_proposal,
     wait_until,
 )
 from navigator import OK, Navigator, text
 from stack import Stack
 
-CONNECTIONS = "/api/communications/connections"
-NEURO = Path(__file__).resolve().parents[2] / "models/robots/neuro.toml"
 HEARTBEAT_MS = 200
-LOSS_MS = 300
-
-RobotFile = Callable[..., Path]
-
-
-@pytest.fixture
-def robot_file(tmp_path: Path) -> RobotFile:
-    """The neuro robot's file with these keys of [openigtlink] besides the usual ones."""
-
-    def write(**keys: object) -> Path:
-        table = {"bind": "127.0.0.1", "port": 18944, "dialect": "thesis"} | keys
-        lines = [f"{key} = {json.dumps(value)}" for key, value in table.items()]
-        file = tmp_path / "neuro.toml"
-        file.write_text(NEURO.read_text() + "\n[openigtlink]\n" + "\n".join(lines) + "\n")
-        return file
-
-    return write
-
-
-def connections(robot: Stack) -> list[dict]:
-    return judge(robot.api.get(CONNECTIONS)).raise_for_status().json()
+REGULAR_S = 2.5
 
 
 def igtl(robot: Stack, *arguments: str) -> subprocess.CompletedProcess:
@@ -110,38 +87,50 @@ def test_the_first_connection_controls_where_the_file_says_so(
     second.stop()
 
 
-def test_a_controller_that_freezes_stops_the_motion_within_300_ms(
-    stack: StackFactory, robot_file: RobotFile
+BEATING = """
+import select, socket, struct, sys, time
+peer = socket.create_connection(('127.0.0.1', int(sys.argv[1])))
+beat = struct.pack('>H12s20sQQQ', 1, b'GET_STATUS', b'robot_status', 0, 0, 0)
+sys.stdin.readline()
+since = last = time.monotonic()
+told = False
+while True:
+    now = time.monotonic()
+    since, last = (since if now - last < 0.1 else now), now
+    if now - since > float(sys.argv[2]) and not told:
+        print('regular', flush=True)
+        told = True
+    peer.sendall(beat)
+    readable, _, _ = select.select([peer], [], [], 0.02)
+    if readable and not peer.recv(65536):
+        sys.exit()
+"""
+
+
+@pytest.mark.parametrize("keys", [{}, {"heartbeat_ms": HEARTBEAT_MS}], ids=["regular", "heartbeat_ms"])
+def test_a_controller_that_freezes_pauses_the_motion_within_300_ms(
+    stack: StackFactory, robot_file: RobotFile, keys: dict
 ) -> None:
-    """A frozen program is what a pulled cable is to the app, but for what TCP notices by itself."""
-    robot = stack(speed=1, robot=robot_file(heartbeat_ms=HEARTBEAT_MS), igtl=True)
-    code = (
-        "import select, socket, struct, sys\n"
-        "peer = socket.create_connection(('127.0.0.1', int(sys.argv[1])))\n"
-        "beat = struct.pack('>H12s20sQQQ', 1, b'GET_STATUS', b'robot_status', 0, 0, 0)\n"
-        "while True:\n"
-        "    peer.sendall(beat)\n"
-        "    while select.select([peer], [], [], 0.02)[0]:\n"
-        "        peer.recv(65536) or sys.exit()\n"
-        "        peer.sendall(beat)\n"
-    )
-    with subprocess.Popen([sys.executable, "-c", code, str(robot.igtl_port)]) as program:
+    """Its machine lives and goes on to acknowledge, so that only its silence tells."""
+    robot = stack(speed=1, robot=robot_file(**keys), igtl=True)
+    command = [sys.executable, "-c", BEATING, str(robot.igtl_port), str(REGULAR_S)]
+    with subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1
+    ) as program:
+        assert program.stdin is not None
+        assert program.stdout is not None
         wait_until("connected", lambda: len(connections(robot)) == 1)
-        number = connections(robot)[0]["id"]
-        answer = robot.api.put(f"{CONNECTIONS}/{number}/role", json={"role": "controller"})
-        assert judge(answer).status_code == 200
+        program.stdin.write("begin\n")
+        make_controller(robot)
         to_motion(robot)
-        propose(robot, -1900)
+        assert program.stdout.readline() == "regular\n"
+        number = propose(robot, -1900)
         wait_until("driven", lambda: is_driven(robot))
         frozen_at = robot.control("status")["tick"]
         os.kill(program.pid, signal.SIGSTOP)
-        wait_until("ended", lambda: robot.api.get("/api/proposals").json()[0]["state"] == "aborted")
+        wait_for_proposal(robot, number, "paused")
         program.kill()
-    entries = record(robot, frozen_at, frozen_at + 2 * LOSS_MS)
-    driven = [entry["tick"] - frozen_at for entry in entries if entry["drive"][LATERAL]]
-    assert driven, "it had to move when its controller froze"
-    assert max(driven) < LOSS_MS
-    assert "controller was lost" in robot.api.get("/api/proposals").json()[0]["detail"]
+    assert_rest_and_fresh_consent(robot, number, frozen_at)
 
 
 def test_send_shows_the_answer_and_listen_what_the_robot_tells(stack: StackFactory) -> None:

@@ -152,6 +152,7 @@ def test_an_observer_changes_nothing_and_may_stop(robot: Stack, navigate: Callab
 
 REFUSED = [
     ("shear", transform("REGISTRATION", [1, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]), CONFIGURATION),
+    ("coarse", transform("REGISTRATION", [1, 2e-4, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]), CONFIGURATION),
     ("zeros", transform("REGISTRATION", [0] * 15 + [1]), CONFIGURATION),
     ("mirror", transform("REGISTRATION", [-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]), CONFIGURATION),
     ("far", pyigtl.PointMessage([[1e6, 0, 0]], device_name="TARGET_POINT"), CONFIGURATION),
@@ -162,7 +163,9 @@ REFUSED = [
     ("setpoint", transform("servo_cp", REGISTRATION), ACCESS_DENIED),
     ("unknown name", text("FIRE", ""), UNKNOWN_INSTRUCTION),
     ("unknown mode", text("MODE", "dance"), UNKNOWN_INSTRUCTION),
-    ("homing", text("START_UP", ""), UNKNOWN_INSTRUCTION),
+    ("homing while disabled", text("START_UP", ""), NOT_READY),
+    ("homing as a mode", text("MODE", "home"), NOT_READY),
+    ("enabling", text("arm/state_command", "enable"), ACCESS_DENIED),
     ("no trajectory", text("MODE", "trajectory"), NOT_READY),
     ("no target", text("MODE", "targeting"), NOT_READY),
     ("columns", Rows([[0, 1], [1, 1]], "TRAJECTORY"), CONFIGURATION),
@@ -180,6 +183,19 @@ def test_what_cannot_be_is_refused_with_its_reason(robot: Stack, navigate: Calla
     assert robot.api.get("/api/targeting").json() == before
     assert robot.api.get("/api/proposals").json() == []
     assert connections(robot)[0]["refused"] == len(REFUSED)
+
+
+def test_homing_becomes_a_proposal_that_somebody_has_to_approve(
+    robot: Stack, navigate: Callable[..., Navigator]
+) -> None:
+    for axis in robot.api.get("/api/motors").json():
+        act(robot, "enable", axis["slot"])
+    navigator = navigate()
+    make_controller(robot)
+    answer = navigator.ask(text("START_UP", ""))
+    assert answer.code == OK, answer.text
+    [proposed] = judge(robot.api.get("/api/proposals")).json()
+    assert (proposed["kind"], proposed["source"], proposed["state"]) == ("home", "openigtlink", "checked")
 
 
 def test_a_trajectory_becomes_a_proposal_that_somebody_has_to_approve(
@@ -339,15 +355,34 @@ def moving(robot: Stack, navigate: Callable[..., Navigator]) -> Navigator:
     return navigator
 
 
-def test_the_loss_of_the_controller_stops_what_moves(
+def newest(robot: Stack) -> dict:
+    return robot.api.get("/api/proposals").json()[0]
+
+
+def test_the_loss_of_the_controller_pauses_what_moves_until_somebody_presses_anew(
     robot: Stack, navigate: Callable[..., Navigator]
 ) -> None:
     navigator = moving(robot, navigate)
     navigator.stop()
-    wait_until("ended", lambda: robot.api.get("/api/proposals").json()[0]["state"] == "aborted")
+    wait_until("paused", lambda: newest(robot)["state"] == "paused")
     wait_for_mode(robot, "READY")
-    [proposal] = robot.api.get("/api/proposals").json()
-    assert "controller was lost" in proposal["detail"]
+    assert "controller was lost" in newest(robot)["detail"]
+    press(robot)
+    wait_until("goes on", lambda: newest(robot)["state"] == "executing")
+
+
+def test_another_controller_ends_what_the_lost_one_had_asked_for(
+    robot: Stack, navigate: Callable[..., Navigator]
+) -> None:
+    navigator = moving(robot, navigate)
+    assert navigator.ask(text("MODE", "trajectory")).code == OK
+    navigator.stop()
+    wait_until("paused", lambda: robot.api.get("/api/proposals").json()[1]["state"] == "paused")
+    assert newest(robot)["state"] == "aborted", "nobody had approved it"
+    wait_until("gone", lambda: connections(robot) == [])
+    navigate()
+    make_controller(robot)
+    assert [each["state"] for each in robot.api.get("/api/proposals").json()] == ["aborted", "aborted"]
 
 
 def test_stop_over_openigtlink_stops_what_moves(robot: Stack, navigate: Callable[..., Navigator]) -> None:

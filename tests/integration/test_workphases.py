@@ -1,84 +1,17 @@
 """The workphases of a needle placement over OpenIGTLink, from START_UP to the target, on a whole robot."""
 
-import time
 from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
-from bare_kernel import DEADLINE_S
 from conftest import StackFactory
 from interface import judge
-from motion import act, press, set_home, unlock, wait_for_mode, wait_until
-from navigator import Navigator, Query, Status, text, transform
-from pyigtl import messages as wire
+from motion import act, press, unlock, wait_for_mode, wait_until
+from navigator import Navigator, Query, text, transform
+from phases import Phases, aimed, approve, home_all, short, to_targeting
 from stack import Stack
 
 CONNECTIONS = "/api/communications/connections"
-LIMIT_S = 0.1
-CALIBRATION = [1, 0, 0, 0.125, 0, 1, 0, -0.25, 0, 0, 1, 0.5, 0, 0, 0, 1]
-ENTRY, TARGET = np.array([8.0, 250.0, 70.0]), np.array([5.0, 200.0, 60.0])
-
-
-def aimed() -> list[float]:
-    """The pose of a probe that comes from ENTRY and whose treatment point is at TARGET, in the scanner."""
-    ahead = (TARGET - ENTRY) / np.linalg.norm(TARGET - ENTRY)
-    side = np.cross([0, 0, 1], ahead)
-    side /= np.linalg.norm(side)
-    pose = np.eye(4)
-    pose[:3, 0], pose[:3, 1], pose[:3, 2] = side, np.cross(ahead, side), ahead
-    pose[:3, 3] = TARGET + np.array([0.125, -0.25, 0.5])
-    return pose.astype(np.float32).astype(float).ravel().tolist()
-
-
-def short(message: wire.MessageBase) -> str:
-    """How a message begins: "CURRENT_STATUS 1 PLANNING", "START_UP 1", "ACK_7 STRING"."""
-    if not isinstance(message, Status):
-        return f"{message.device_name} {message.message_type}"
-    name = f" {message.name}" if message.device_name == "CURRENT_STATUS" else ""
-    return f"{message.device_name} {message.code}{name}"
-
-
-class Phases(Navigator):
-    """A navigation program that knows what it heard since it last asked."""
-
-    since = 0
-
-    def messages(self) -> list[wire.MessageBase]:
-        """What was heard since then."""
-        return [message for _, message in self.heard.all[self.since :]]
-
-    def answers(self) -> list[wire.MessageBase]:
-        """The same, the stream of positions apart."""
-        return [each for each in self.messages() if each.device_name != "CURRENT_POSITION"]
-
-    def shorts(self) -> list[str]:
-        return [short(each) for each in self.answers()]
-
-    def expect(self, message: wire.MessageBase, *answers: str) -> list[wire.MessageBase]:
-        """Exactly these answers come, in this order; ACK and CURRENT_STATUS within their limit."""
-        self.since = len(self.heard.all)
-        sent = time.monotonic()
-        self.send(message)
-        self.await_answers(*answers)
-        messages = self.heard.all[self.since :]
-        for at, each in messages:
-            if each.device_name.startswith("ACK_") or each.device_name == "CURRENT_STATUS":
-                assert at - sent < LIMIT_S, f"{short(each)} after {at - sent:.3f} s"
-        return self.answers()
-
-    def await_answers(self, *answers: str) -> None:
-        deadline = time.monotonic() + DEADLINE_S
-        while len(self.shorts()) < len(answers) and time.monotonic() < deadline:
-            with self.client.lock_incoming_messages:
-                pass
-        assert self.shorts() == list(answers)
-
-    def phase(self, name: str, *status: str, number: str = "0001") -> None:
-        """Asks for a phase: the ACK bears the same ID and text, CURRENT_STATUS the phase."""
-        messages = self.expect(
-            text(f"CMD_{number}", name), f"ACK_{number} STRING", f"CURRENT_STATUS 1 {name}", *status
-        )
-        assert messages[0].string == name
 
 
 @pytest.fixture(params=["brp2013", "wpi2024"])
@@ -94,11 +27,17 @@ def robot(stack: StackFactory, dialect: str) -> Stack:
 
 
 @pytest.fixture
-def connect(robot: Stack) -> Iterator[Callable[[], Phases]]:
+def version() -> int:
+    """Of the header; a test that takes several has it as a parameter."""
+    return 1
+
+
+@pytest.fixture
+def connect(robot: Stack, version: int) -> Iterator[Callable[[], Phases]]:
     open_ones: list[Phases] = []
 
     def controller() -> Phases:
-        open_ones.append(Phases(robot.igtl_port))
+        open_ones.append(Phases(Navigator(robot.igtl_port, version)))
         wait_until("listed", lambda: len(robot.api.get(CONNECTIONS).json()) == len(open_ones))
         number = robot.api.get(CONNECTIONS).json()[-1]["id"]
         answer = robot.api.put(f"{CONNECTIONS}/{number}/role", json={"role": "controller"})
@@ -110,39 +49,7 @@ def connect(robot: Stack) -> Iterator[Callable[[], Phases]]:
         each.stop()
 
 
-def home_all(robot: Stack) -> None:
-    for axis in robot.api.get("/api/motors").json():
-        set_home(robot, axis["slot"])
-        act(robot, "enable", axis["slot"])
-
-
-def approve(robot: Stack) -> None:
-    def newest() -> dict:
-        return robot.api.get("/api/proposals").json()[0]
-
-    wait_until("proposed", lambda: robot.api.get("/api/proposals").json() != [])
-    wait_until("it waits", lambda: newest()["state"] == "checked")
-    number = newest()["id"]
-    judge(robot.api.post(f"/api/proposals/{number}/approve")).raise_for_status()
-
-
-def to_targeting(navigator: Phases, dialect: str) -> None:
-    entered = dialect == "wpi2024"
-    navigator.phase("START_UP", "START_UP 1")
-    navigator.phase("CALIBRATION", *(["CALIBRATION 1"] if entered else []))
-    [echo, *_] = navigator.expect(transform("CLB_0002", CALIBRATION), "ACK_0002 TRANSFORM", "CALIBRATION 1")
-    assert echo.matrix.ravel().tolist() == CALIBRATION
-    navigator.phase("PLANNING", *(["PLANNING 1"] if entered else []))
-    navigator.phase("TARGETING", "TARGETING 1")
-    reachable = ["REACHABLE_TARGET TRANSFORM"] if entered else []
-    pose = aimed()
-    echo, status, told, *_ = navigator.expect(
-        transform("TGT_0003", pose), "ACK_0003 TRANSFORM", "TARGET 1", "TARGET TRANSFORM", *reachable
-    )
-    assert echo.matrix.ravel().tolist() == pose
-    assert np.allclose(told.matrix[:3, 3], np.array(pose).reshape(4, 4)[:3, 3], atol=1e-3), status.text
-
-
+@pytest.mark.parametrize("version", [1, 2])
 def test_the_whole_way_to_the_target_with_every_answer_in_its_order(
     robot: Stack, connect: Callable[[], Phases], dialect: str
 ) -> None:
@@ -262,7 +169,7 @@ def test_a_target_out_of_reach_is_moved_to_what_can_be_reached(
 
 
 def test_an_observer_is_answered_and_moves_nothing_but_stops(robot: Stack) -> None:
-    observer = Phases(robot.igtl_port)
+    observer = Phases(Navigator(robot.igtl_port))
     observer.expect(text("CMD_1", "START_UP"), "ACK_1 STRING", "CURRENT_STATUS 5 UNDEFINED", "START_UP 5")
     observer.phase("STOP", "STOP 1")
     assert robot.api.get("/api/proposals").json() == []

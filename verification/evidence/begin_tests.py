@@ -29,6 +29,7 @@ def tool_of(suite: str) -> str:
     tools = {
         "unit": lambda: f"GoogleTest {debian_version('libgtest-dev')}",
         "integration": lambda: f"pytest {importlib.metadata.version('pytest')}",
+        "network": lambda: f"pytest {importlib.metadata.version('pytest')}",
         "console": lambda: f"Vitest {npm_version('vitest')}",
         "browser": lambda: f"Playwright {npm_version('playwright-core')}",
     }

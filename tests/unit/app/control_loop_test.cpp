@@ -115,6 +115,26 @@ TEST_F(ControlLoopTest, StopComesBeforeAnythingThatWaits) {
   EXPECT_EQ(answers[0].stops, 1u);
 }
 
+TEST_F(ControlLoopTest, APauseEndsMotionInTheSameTickAndTheOrderGoesOnAfterAnotherPress) {
+  command(Order{1, insertion, 1500, 0, 0});
+  snapshot_.state.mode = ILK_MODE_MOTION;
+  tick();
+  EXPECT_EQ(order().phase, OrderPhase::executing);
+  mailbox_->pauses.fetch_add(1, std::memory_order_release);
+  tick();
+  ASSERT_FALSE(requests_.empty());
+  EXPECT_EQ(requests_.front().kind, static_cast<std::uint32_t>(ILK_REQUEST_STOP));
+  kernel_.push_verdict(requests_.front(), ILK_VERDICT_ACCEPTED, snapshot_.state.tick);
+  snapshot_.state.mode = ILK_MODE_READY;
+  tick();
+  EXPECT_EQ(sent(ILK_REQUEST_STOP), nullptr) << "once";
+  EXPECT_EQ(order().phase, OrderPhase::paused);
+  snapshot_.state.mode = ILK_MODE_MOTION;
+  tick();
+  EXPECT_EQ(order().phase, OrderPhase::executing);
+  EXPECT_THAT(notices<StopAnswer>(), testing::IsEmpty()) << "it is no STOP";
+}
+
 TEST_F(ControlLoopTest, AnOrderOlderThanTheStopNeverMoves) {
   command(Order{1, insertion, 1500, 0, 0});
   stop();

@@ -1,5 +1,8 @@
 #include "http/navigation.hpp"
 
+#include <cmath>
+#include <memory>
+
 #include "http_fixture.hpp"
 #include "igtl/client.hpp"
 
@@ -19,7 +22,7 @@ class NavigationTest : public HttpTest {
       api_.navigation().start({"brp2013", false, std::nullopt});
     });
     show(test::ready_view());
-    EXPECT_TRUE(program_.connect("127.0.0.1", api_.navigation().hub().port(), soon()).has_value());
+    EXPECT_TRUE(program_->connect("127.0.0.1", api_.navigation().hub().port(), soon()).has_value());
     EXPECT_EQ(ask("WHO"), "ERROR 12") << "the connection is listed by now";
   }
 
@@ -32,13 +35,13 @@ class NavigationTest : public HttpTest {
   }
 
   void request(const std::string& phase) {
-    EXPECT_TRUE(program_.send("CMD_1", igtl::Text{phase}, soon()).has_value());
+    EXPECT_TRUE(program_->send("CMD_1", igtl::Text{phase}, soon()).has_value());
   }
 
   /** The next message, other than ACK and CURRENT_STATUS: its name and code. */
   std::string next_answer() {
     for (;;) {
-      const auto message = program_.receive(soon());
+      const auto message = program_->receive(soon());
       if (!message || !*message) {
         return "nothing";
       }
@@ -54,7 +57,7 @@ class NavigationTest : public HttpTest {
     return next_answer();
   }
 
-  igtl::Client program_;
+  std::unique_ptr<igtl::Client> program_ = std::make_unique<igtl::Client>();
 };
 
 TEST_F(NavigationTest, StopIsAskedForOnceAndAnsweredWhenTheKernelHasAccepted) {
@@ -119,6 +122,48 @@ TEST_F(NavigationTest, AConsoleIsToldOfConnectionsRolesAndTheirEnd) {
   EXPECT_EQ(told["change"], "closed");
   EXPECT_EQ(told["id"], id);
   EXPECT_NE(told["reason"].get<std::string>().find("disconnected by"), std::string::npos);
+}
+
+TEST_F(NavigationTest, TheLossOfTheControllerPausesAndIsNoStop) {
+  become_controller();
+  program_.reset();
+  while (mailbox_->pauses == 0) {
+    std::this_thread::yield();
+  }
+  EXPECT_EQ(mailbox_->stops, 0u) << "a STOP would end every order";
+}
+
+TEST(PoseVelocity, IsThatOfTranslationAndRotation) {
+  const double angle = 0.02;
+  const igtl::Matrix before{1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1, 7, 0, 0, 0, 1};
+  const igtl::Matrix after{std::cos(angle),
+                           -std::sin(angle),
+                           0,
+                           5.5,
+                           std::sin(angle),
+                           std::cos(angle),
+                           0,
+                           6,
+                           0,
+                           0,
+                           1,
+                           6,
+                           0,
+                           0,
+                           0,
+                           1};
+  PoseVelocity velocity;
+  velocity.measure(1000, 1000, before);
+  EXPECT_FALSE(velocity.per_s().has_value());
+  velocity.measure(1100, 1000, after);
+  const std::array<double, 6> expected{5, 0, -10, 0, 0, 0.2};
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_NEAR(velocity.per_s().value()[i], expected[i], 1e-9) << i;
+  }
+  velocity.measure(1100, 1000, after);
+  EXPECT_FALSE(velocity.per_s().has_value()) << "no time went by";
+  velocity.measure(1200, 1000, std::nullopt);
+  EXPECT_FALSE(velocity.per_s().has_value());
 }
 
 TEST_F(NavigationTest, TheRoleEndsWithTheAuthority) {

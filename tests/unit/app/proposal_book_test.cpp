@@ -154,6 +154,24 @@ TEST_F(ProposalBookTest, StopAbortsAllThatIsOpen) {
   EXPECT_EQ(state(3), ProposalState::aborted);
 }
 
+TEST_F(ProposalBookTest, TheLossOfAnAuthorPausesWhatIsApprovedSaysSoAndEndsWhatIsNot) {
+  (void)book_.propose_home({insertion, std::nullopt, "ann", ProposalSource::openigtlink}, view_);
+  (void)propose();
+  report(2, OrderPhase::executing);
+  (void)propose(100, test::rotation);
+  book_.lose_author(ProposalSource::openigtlink, "Gone.");
+  EXPECT_EQ(state(1), ProposalState::aborted) << "nobody had approved it";
+  EXPECT_EQ(state(2), ProposalState::executing) << "until the kernel leaves MOTION";
+  EXPECT_EQ(state(3), ProposalState::approved);
+  EXPECT_THAT(book_.find(3)->detail, testing::StartsWith("Gone. Waits for the pedal"));
+  report(2, OrderPhase::paused, OrderReason::pedal_released);
+  EXPECT_EQ(state(2), ProposalState::paused);
+  EXPECT_THAT(book_.find(2)->detail, testing::StartsWith("Gone. Motion ended; press"));
+  report(2, OrderPhase::executing);
+  report(2, OrderPhase::paused, OrderReason::pedal_released);
+  EXPECT_THAT(book_.find(2)->detail, testing::StartsWith("Motion ended")) << "that was the pedal";
+}
+
 TEST_F(ProposalBookTest, AbortCancelsTheOrder) {
   (void)propose();
   const auto aborted = book_.abort(1);

@@ -312,6 +312,109 @@ TEST_F(HubTest, AControllerThatKeepsSendingStays) {
   timer.cancel();
 }
 
+/** Sends something every 50 ms for as long as it lives. */
+class Pulse {
+ public:
+  Pulse(tcp::socket& socket, asio::io_context& network) : socket_(socket), timer_(network) { beat(); }
+
+ private:
+  void beat() {
+    asio::write(socket_, asio::buffer(message_));
+    timer_.expires_after(50ms);
+    timer_.async_wait([this](const error_code& error) {
+      if (!error) {
+        beat();
+      }
+    });
+  }
+
+  const ByteVector message_ = write_frame(1, "GET_STATUS", "", 0, {});
+  tcp::socket& socket_;
+  asio::steady_timer timer_;
+};
+
+TEST_F(HubTest, AControllerThatHadSentRegularlyIsLostWithin300MsOfItsSilenceWhileSomethingMayMove) {
+  bool moves = false;
+  hub_.is_in_motion = [&] { return moves; };
+  start();
+  auto controller = connect();
+  hub_.set_role(opened_[0], Role::controller);
+  {
+    const Pulse pulse(controller, network_);
+    ASSERT_FALSE(is_closed_within(Hub::heartbeat_proof + 300ms));
+    moves = true;
+    ASSERT_FALSE(is_closed_within(300ms)) << "it still sends";
+  }
+  const auto silent = steady_clock::now();
+  ASSERT_TRUE(is_closed_within(2s));
+  EXPECT_GE(steady_clock::now() - silent, 100ms);
+  EXPECT_LE(steady_clock::now() - silent, 300ms);
+  EXPECT_THAT(closed_.at(0), HasSubstr("silent"));
+}
+
+TEST_F(HubTest, SilenceOfARegularControllerIsNoLossAtRestNorLaterWhenSomethingMoves) {
+  bool moves = false;
+  hub_.is_in_motion = [&] { return moves; };
+  start();
+  auto controller = connect();
+  hub_.set_role(opened_[0], Role::controller);
+  {
+    const Pulse pulse(controller, network_);
+    ASSERT_FALSE(is_closed_within(Hub::heartbeat_proof + 300ms));
+  }
+  EXPECT_FALSE(is_closed_within(400ms)) << "nothing may move";
+  moves = true;
+  EXPECT_FALSE(is_closed_within(400ms)) << "it was silent before";
+}
+
+TEST_F(HubTest, AControllerThatSendsNowAndThenIsNotLostBySilence) {
+  hub_.is_in_motion = [] { return true; };
+  start();
+  auto controller = connect();
+  hub_.set_role(opened_[0], Role::controller);
+  for (int burst = 0; burst < 3; ++burst) {
+    const Pulse pulse(controller, network_);
+    ASSERT_FALSE(is_closed_within(200ms));
+  }
+  EXPECT_FALSE(is_closed_within(500ms));
+}
+
+TEST_F(HubTest, APeerThatClosesWithinAMessageIsGoneAtOnceWhateverWasToCome) {
+  start();
+  const ByteVector skipped = test::header_of("VIDEO", 60000, 0);
+  const ByteVector known = test::header_of("POINT", 136, 0);
+  std::vector<ByteVector> beginnings{skipped, known, ByteVector(hello.begin(), hello.begin() + 20)};
+  beginnings[0].resize(skipped.size() + 100);
+  beginnings[1].resize(known.size() + 100);
+  for (std::size_t i = 0; i < beginnings.size(); ++i) {
+    auto socket = connect();
+    send(socket, beginnings[i]);
+    socket.close();
+    const auto begun = steady_clock::now();
+    ASSERT_TRUE(run_until([&] { return closed_.size() == i + 1; })) << i;
+    EXPECT_LE(steady_clock::now() - begun, 500ms) << i;
+  }
+  EXPECT_TRUE(hub_.empty());
+  EXPECT_LE(network_.run_for(200ms), 40u) << "nothing goes round for the rest of a message";
+  auto next = connect();
+  send(next, hello);
+  EXPECT_TRUE(run_until([&] { return messages_.size() == 1; }));
+}
+
+TEST_F(HubTest, AProgramThatListensIsNotConnectedToBeyondTheCapacity) {
+  start();
+  tcp::acceptor listening(network_, {asio::ip::make_address("127.0.0.1"), 0});
+  std::vector<tcp::socket> peers;
+  for (std::size_t i = 0; i < Hub::capacity; ++i) {
+    peers.push_back(connect());
+  }
+  asio::co_spawn(network_, hub_.keep_connected(listening.local_endpoint(), 20ms), asio::detached);
+  EXPECT_FALSE(run_until([&] { return hub_.peers().size() > Hub::capacity; }, 200ms));
+  peers.pop_back();
+  EXPECT_TRUE(run_until([&] { return opened_.size() == Hub::capacity + 1; })) << "a place is free";
+  EXPECT_EQ(hub_.peers().size(), Hub::capacity);
+}
+
 TEST_F(HubTest, ItsEndIsNoticedAtOnce) {
   start();
   auto socket = connect();

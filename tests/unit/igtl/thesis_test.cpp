@@ -54,7 +54,8 @@ TEST(Thesis, ATipPoseThatIsNoRigidMotionIsRefused) {
   const Matrix mirror{-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   const Matrix shear{1, 0.01, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   const Matrix twice{2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1};
-  for (const Matrix& wrong : {mirror, shear, twice, Matrix{}}) {
+  const Matrix coarse{1, 0.0002, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  for (const Matrix& wrong : {mirror, shear, twice, coarse, Matrix{}}) {
     EXPECT_EQ(wish_of("TIP_POSE", Transform{wrong}).error().code, StatusCode::configuration);
   }
   const double angle = 0.3;
@@ -218,12 +219,74 @@ TEST(Thesis, AQueryIsAnsweredByNameOrByTypeAndNothingElseIsMadeUp) {
   };
   const Outgoings named = ask("TRANS", "measured_cp").replies;
   EXPECT_THAT(named, testing::ElementsAre(Outgoing("measured_cp", Transform{shifted(2, 0, 0)})));
-  EXPECT_EQ(ask("TRANSFORM", "").replies.size(), 2u) << "registration and measured_cp";
+  EXPECT_EQ(ask("TRANSFORM", "").replies.size(), 3u) << "registration and measured_cp, that as arm/, too";
   const Reaction none = ask("TRANS", "desired_cp");
   EXPECT_EQ(std::get<Status>(none.replies.at(0).second).code, StatusCode::not_found);
   EXPECT_THAT(none.refused, HasSubstr("desired_cp"));
   EXPECT_TRUE(std::holds_alternative<Capability>(ask("CAPABIL", "").replies.at(0).second));
   EXPECT_TRUE(std::holds_alternative<TrackingData>(ask("TDATA", "").replies.at(0).second));
+}
+
+TEST(Thesis, HomingIsAskedForAsInTheWorkphases) {
+  for (const auto& [name, word] :
+       {std::pair{"START_UP", ""}, {"MODE", "home"}, {"arm/state_command", "home"}}) {
+    const auto wish = wish_of(name, Text{word});
+    ASSERT_TRUE(wish.has_value()) << name;
+    EXPECT_TRUE(std::holds_alternative<StartUp>(*wish)) << name;
+    EXPECT_TRUE(needs_control(*wish));
+  }
+}
+
+TEST(Crtk, StateCommandsMoveNothingByThemselves) {
+  for (const char* name : {"state_command", "arm/state_command", "PSM1/state_command"}) {
+    EXPECT_TRUE(std::holds_alternative<Stop>(wish_of(name, Text{"pause"}).value()));
+    EXPECT_TRUE(std::holds_alternative<CutPower>(wish_of(name, Text{"disable"}).value()));
+    for (const char* refused : {"enable", "resume", "unhome"}) {
+      EXPECT_EQ(wish_of(name, Text{refused}).error().code, StatusCode::access_denied) << refused;
+    }
+    EXPECT_EQ(wish_of(name, Text{"dance"}).error().code, StatusCode::unknown_instruction);
+    EXPECT_EQ(wish_of(name, Transform{}).error().code, StatusCode::configuration);
+  }
+}
+
+TEST(Crtk, EachStateHasItsNameAndThatOfTheArm) {
+  RobotState state;
+  state.measured_cp = shifted(2, 0, 0);
+  state.desired_cp = shifted(3, 0, 0);
+  state.measured_cv = Spatial{1, 2, 3, 4, 5, 6};
+  state.measured_cf = Spatial{0, 0, -1.5, 0, 0, 0};
+  state.measured_jp = {0.25, 2};
+  state.operating_state = "PAUSED";
+  state.health = {StatusCode::ok, 0, "READY", "The kernel is in mode READY."};
+  const std::vector<std::pair<std::string, Body>> expected{
+      {"measured_cp", Transform{shifted(2, 0, 0)}},      {"setpoint_cp", Transform{shifted(3, 0, 0)}},
+      {"measured_cv", Sensor{0, 0, {1, 2, 3, 4, 5, 6}}}, {"measured_cf", Sensor{0, 0, {0, 0, -1.5, 0, 0, 0}}},
+      {"measured_js", Array{{1, 2}, {0.25, 2}}},         {"operating_state", Text{"PAUSED"}},
+      {"status", Text{"The kernel is in mode READY."}}};
+  const auto messages = messages_of(state);
+  for (const auto& [name, body] : expected) {
+    EXPECT_EQ(std::ranges::count(messages, name, &Outgoing::first), 1) << name;
+    ASSERT_NE(find(messages, "arm/" + name), nullptr) << name;
+    EXPECT_EQ(*find(messages, name), body) << name;
+    EXPECT_EQ(*find(messages, "arm/" + name), body) << name;
+  }
+  EXPECT_EQ(find(messages, "error"), nullptr);
+}
+
+TEST(Crtk, ErrorsAndWarningsAreTexts) {
+  RobotState state;
+  state.health = {StatusCode::hardware_failure, 0, "LOCKED", "The kernel is locked."};
+  const auto messages = messages_of(state);
+  EXPECT_EQ(*find(messages, "error"), Body(Text{"The kernel is locked."}));
+  EXPECT_EQ(find(messages, "status"), nullptr);
+  EXPECT_EQ(find(messages, "measured_cf"), nullptr) << "no sensor";
+  Thesis dialect;
+  const auto follow = [&](StatusCode code, const char* word) {
+    return dialect.follow({3, true, {code, 3, word, "Why."}}, {});
+  };
+  EXPECT_EQ(*find(follow(StatusCode::not_ready, "aborted"), "arm/warning"),
+            Body(Text{"Proposal 3 is aborted. Why."}));
+  EXPECT_EQ(*find(follow(StatusCode::ok, "done"), "status"), Body(Text{"Proposal 3 is done. Why."}));
 }
 
 TEST(Thesis, AWishIsAnsweredUnderItsOwnNameOnceItIsDone) {

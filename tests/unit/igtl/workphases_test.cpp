@@ -118,6 +118,60 @@ TEST_P(EachDialect, AcknowledgesWithTheSameIdAndTextThenTellsThePhase) {
   EXPECT_EQ(talk.done(), Shorts{"START_UP 1"});
 }
 
+TEST_P(EachDialect, ARequestThatComesAgainUnderItsIdIsAcknowledgedAndNotCarriedOutAgain) {
+  talk.target();
+  talk.send("CMD_2", Text{"MOVE_TO_TARGET"});
+  talk.proposed(4);
+  EXPECT_EQ(talk.send("CMD_2", Text{"MOVE_TO_TARGET"}),
+            (Shorts{"ACK_2 STRING", "CURRENT_STATUS 1 MOVE_TO_TARGET"}));
+  EXPECT_FALSE(talk.reaction.wish.has_value());
+  EXPECT_FALSE(talk.reaction.ends.has_value()) << "the motion that it became goes on";
+  EXPECT_THAT(talk.reaction.refused, HasSubstr("same request"));
+  EXPECT_EQ(talk.send("TGT_1", Transform{moved(2)}),
+            (Shorts{"ACK_1 TRANSFORM", "CURRENT_STATUS 1 MOVE_TO_TARGET"}));
+  EXPECT_EQ(talk.reaction.replies[0].second, Body(Transform{moved(2)})) << "its exact echo";
+  EXPECT_FALSE(talk.reaction.wish.has_value());
+  EXPECT_EQ(talk.over(4), Shorts({"MOVE_TO_TARGET 1", "CURRENT_POSITION TRANSFORM"}));
+}
+
+TEST_P(EachDialect, AnotherRequestUnderAnIdThatWasUsedIsANewOne) {
+  talk.ask("START_UP");
+  talk.done();
+  talk.ask("CALIBRATION");
+  talk.send("CLB_1", Transform{moved(5)});
+  talk.stored();
+  talk.send("CLB_1", Transform{moved(6)});
+  EXPECT_TRUE(talk.reaction.wish.has_value());
+}
+
+TEST_P(EachDialect, ATargetThatWasRefusedMayBeSentAgainUnderTheSameId) {
+  talk.target();
+  for (int time = 0; time < 2; ++time) {
+    talk.send("TGT_2", Transform{moved(900)});
+    ASSERT_TRUE(talk.reaction.wish.has_value()) << time;
+    talk.refused(StatusCode::unreachable);
+  }
+}
+
+TEST(Brp2013, WhatFailedMayBeAskedForAgainUnderTheSameId) {
+  Talk talk("brp2013");
+  talk.ask("START_UP");
+  talk.refused(StatusCode::not_ready);
+  talk.ask("START_UP");
+  ASSERT_TRUE(talk.reaction.wish.has_value()) << "was refused";
+  talk.proposed(4);
+  talk.over(4, StatusCode::not_ready);
+  talk.ask("START_UP");
+  EXPECT_TRUE(talk.reaction.wish.has_value()) << "its motion was aborted";
+}
+
+TEST_P(EachDialect, AStopThatComesAgainIsMeant) {
+  for (const char* phase : {"STOP", "STOP", "EMERGENCY", "EMERGENCY"}) {
+    talk.ask(phase);
+    EXPECT_TRUE(std::holds_alternative<Stop>(talk.reaction.wish.value())) << phase;
+  }
+}
+
 TEST_P(EachDialect, StartUpIsOverWhenTheHomingThatSomebodyApprovedIs) {
   talk.ask("START_UP");
   EXPECT_EQ(talk.proposed(4), Shorts{});
@@ -308,7 +362,7 @@ TEST(Brp2013, TargetingNeedsACalibration) {
   EXPECT_EQ(talk.ask("TARGETING"), (Shorts{"ACK_7 STRING", "CURRENT_STATUS 1 TARGETING", "TARGETING 13"}));
   EXPECT_EQ(talk.send("TGT_1", Transform{}), (Shorts{"ACK_1 TRANSFORM", "TARGET 13"}));
   talk.target();
-  EXPECT_EQ(talk.ask("TARGETING").back(), "TARGETING 1");
+  EXPECT_EQ(talk.send("CMD_8", Text{"TARGETING"}).back(), "TARGETING 1");
 }
 
 TEST(Brp2013, OtherNamesAreRefused) {
@@ -340,8 +394,8 @@ TEST(Wpi2024, PhasesFollowInTheirOrderAndARefusalIsAnswered) {
       talk.ask(from == "MANUAL" ? "MANUAL" : "STATUS QUO");
       const bool may = (" " + allowed + " ").find(" " + wanted + " ") != std::string::npos ||
                        wanted == "STOP" || wanted == "EMERGENCY";
-      const Shorts answer = talk.ask(wanted);
-      EXPECT_EQ(answer.at(0), "ACK_7 STRING");
+      const Shorts answer = talk.send("CMD_8", Text{wanted});
+      EXPECT_EQ(answer.at(0), "ACK_8 STRING");
       EXPECT_EQ(answer.at(1), may ? "CURRENT_STATUS 1 " + wanted : "CURRENT_STATUS 13 " + from)
           << from << " to " << wanted;
       EXPECT_EQ(answer.size() > 2 && answer.back() == wanted + " 13",

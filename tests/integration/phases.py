@@ -1,0 +1,118 @@
+"""The workphases of a needle placement, as a navigation program asks for them, and each answer's order."""
+
+import time
+
+import numpy as np
+from bare_kernel import DEADLINE_S
+from interface import judge
+from motion import act, set_home, wait_until
+from navigator import Program, Status, text, transform
+from pyigtl import messages as wire
+from stack import Stack
+
+LIMIT_S = 0.1
+CALIBRATION = [1, 0, 0, 0.125, 0, 1, 0, -0.25, 0, 0, 1, 0.5, 0, 0, 0, 1]
+ENTRY, TARGET = np.array([8.0, 250.0, 70.0]), np.array([5.0, 200.0, 60.0])
+
+
+def aimed() -> list[float]:
+    """The pose of a probe that comes from ENTRY and whose treatment point is at TARGET, in the scanner."""
+    ahead = (TARGET - ENTRY) / np.linalg.norm(TARGET - ENTRY)
+    side = np.cross([0, 0, 1], ahead)
+    side /= np.linalg.norm(side)
+    pose = np.eye(4)
+    pose[:3, 0], pose[:3, 1], pose[:3, 2] = side, np.cross(ahead, side), ahead
+    pose[:3, 3] = TARGET + np.array([0.125, -0.25, 0.5])
+    return pose.astype(np.float32).astype(float).ravel().tolist()
+
+
+def short(message: wire.MessageBase) -> str:
+    """How a message begins: "CURRENT_STATUS 1 PLANNING", "START_UP 1", "ACK_7 STRING"."""
+    if not isinstance(message, Status):
+        return f"{message.device_name} {message.message_type}"
+    name = f" {message.name}" if message.device_name == "CURRENT_STATUS" else ""
+    return f"{message.device_name} {message.code}{name}"
+
+
+class Phases:
+    """A navigation program that asks for workphases, and knows what it heard since it last asked."""
+
+    def __init__(self, program: Program) -> None:
+        self.program = program
+        self.heard = program.heard
+        self.since = 0
+
+    def ask(self, message: wire.MessageBase) -> Status:
+        return self.program.ask(message)
+
+    def stop(self) -> None:
+        self.program.stop()
+
+    def messages(self) -> list[wire.MessageBase]:
+        """What was heard since then."""
+        return [message for _, message in self.heard.all[self.since :]]
+
+    def answers(self) -> list[wire.MessageBase]:
+        """The same, the stream of positions apart."""
+        return [each for each in self.messages() if each.device_name != "CURRENT_POSITION"]
+
+    def shorts(self) -> list[str]:
+        return [short(each) for each in self.answers()]
+
+    def expect(self, message: wire.MessageBase, *answers: str) -> list[wire.MessageBase]:
+        """Exactly these answers come, in this order; ACK and CURRENT_STATUS within their limit."""
+        self.since = len(self.heard.all)
+        sent = time.monotonic()
+        self.program.send(message)
+        self.await_answers(*answers)
+        messages = self.heard.all[self.since :]
+        for at, each in messages:
+            if each.device_name.startswith("ACK_") or each.device_name == "CURRENT_STATUS":
+                assert at - sent < LIMIT_S, f"{short(each)} after {at - sent:.3f} s"
+        return self.answers()
+
+    def await_answers(self, *answers: str) -> None:
+        deadline = time.monotonic() + DEADLINE_S
+        while len(self.shorts()) < len(answers) and time.monotonic() < deadline:
+            time.sleep(0.001)
+        assert self.shorts() == list(answers)
+
+    def phase(self, name: str, *status: str, number: str = "0001") -> None:
+        """Asks for a phase: the ACK bears the same ID and text, CURRENT_STATUS the phase."""
+        messages = self.expect(
+            text(f"CMD_{number}", name), f"ACK_{number} STRING", f"CURRENT_STATUS 1 {name}", *status
+        )
+        assert messages[0].string == name
+
+
+def home_all(robot: Stack) -> None:
+    for axis in robot.api.get("/api/motors").json():
+        set_home(robot, axis["slot"])
+        act(robot, "enable", axis["slot"])
+
+
+def approve(robot: Stack) -> None:
+    def newest() -> dict:
+        return robot.api.get("/api/proposals").json()[0]
+
+    wait_until("proposed", lambda: robot.api.get("/api/proposals").json() != [])
+    wait_until("it waits", lambda: newest()["state"] == "checked")
+    number = newest()["id"]
+    judge(robot.api.post(f"/api/proposals/{number}/approve")).raise_for_status()
+
+
+def to_targeting(navigator: Phases, dialect: str) -> None:
+    entered = dialect == "wpi2024"
+    navigator.phase("START_UP", "START_UP 1")
+    navigator.phase("CALIBRATION", *(["CALIBRATION 1"] if entered else []))
+    [echo, *_] = navigator.expect(transform("CLB_0002", CALIBRATION), "ACK_0002 TRANSFORM", "CALIBRATION 1")
+    assert echo.matrix.ravel().tolist() == CALIBRATION
+    navigator.phase("PLANNING", *(["PLANNING 1"] if entered else []))
+    navigator.phase("TARGETING", "TARGETING 1")
+    reachable = ["REACHABLE_TARGET TRANSFORM"] if entered else []
+    pose = aimed()
+    echo, status, told, *_ = navigator.expect(
+        transform("TGT_0003", pose), "ACK_0003 TRANSFORM", "TARGET 1", "TARGET TRANSFORM", *reachable
+    )
+    assert echo.matrix.ravel().tolist() == pose
+    assert np.allclose(told.matrix[:3, 3], np.array(pose).reshape(4, 4)[:3, 3], atol=1e-3), status.text
