@@ -168,7 +168,7 @@ std::uint32_t met_within(std::size_t config_bit) {
   return std::ranges::find(at_once, place) == at_once.end() ? kConfigPassTicks : 0;
 }
 
-Robot make_robot(plant::Random& random) {
+Robot make_robot(plant::Random& random, bool keeps_word) {
   constexpr std::uint32_t periods[] = {500, 1000, 1000, 1000, 2000};
   Robot robot{};
   ilk_config_t& config = robot.config;
@@ -182,7 +182,7 @@ Robot make_robot(plant::Random& random) {
   config.pedal_disagree_ticks = ticks_of(between(random, 20, 50), config.period_us);
   config.bad_frame_limit = between(random, 1, 5);
   config.overrun_limit = between(random, 1, 5);
-  if (random.chance(0.12)) {
+  if (random.chance(0.12) && !keeps_word) {
     robot.far_coaster = random.below(ILK_SLOTS);
   }
   for (std::size_t slot = 0; slot < ILK_SLOTS; slot++) {

@@ -32,8 +32,12 @@ struct Robot {
   std::optional<std::size_t> far_coaster; /**< axis that coasts farther than its configuration says */
 };
 
-/** The configuration is valid by construction. */
-Robot make_robot(plant::Random& random);
+/**
+ * The configuration is valid by construction.
+ *
+ * @param keeps_word no axis coasts farther than its configuration says
+ */
+Robot make_robot(plant::Random& random, bool keeps_word = false);
 
 }  // namespace interlock::campaign
 

@@ -4,6 +4,8 @@
  */
 #include <gmock/gmock.h>
 
+#include <bitset>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -64,6 +66,65 @@ TEST(Campaign, Draws_every_kind_of_fault_alone_and_in_pairs) {
   EXPECT_TRUE(pairs);
 }
 
+TEST(Campaign, P2_cases_one_after_the_other_sweep_stops_over_each_tick_of_a_move) {
+  std::map<FaultKind, std::set<std::uint32_t>> ticks;
+  for (std::uint64_t number = 0; number < 3125; number++) {
+    if (sweeps_stops(number)) {
+      for (const Fault& fault : make_case(11, number).faults) {
+        ticks[fault.kind].insert(fault.driven_ticks);
+      }
+    }
+  }
+  EXPECT_THAT(ticks, testing::UnorderedElementsAre(testing::Key(FaultKind::kEstopPulled),
+                                                   testing::Key(FaultKind::kPedalReleased)));
+  for (const auto& [kind, swept] : ticks) {
+    EXPECT_EQ(swept.size(), kMoveTicks) << name_of(kind);
+    EXPECT_EQ(*swept.begin(), 1u) << name_of(kind);
+    EXPECT_EQ(*swept.rbegin(), kMoveTicks) << name_of(kind);
+  }
+}
+
+TEST(Campaign, P2_stops_of_a_sweep_come_at_their_ticks_and_are_met) {
+  const Case plan = make_case(11, 4);
+  const Outcome outcome = run(plan);
+  std::bitset<kMoveTicks> estop;
+  std::bitset<kMoveTicks> pedal;
+  for (const Fault& fault : plan.faults) {
+    (fault.kind == FaultKind::kEstopPulled ? estop : pedal).set(fault.driven_ticks - 1);
+  }
+  EXPECT_FALSE(outcome.failure) << outcome.failure->reason;
+  EXPECT_EQ(outcome.totals.estop_ticks, estop);
+  EXPECT_EQ(outcome.totals.pedal_ticks, pedal);
+  EXPECT_EQ(outcome.totals.stops_met, plan.faults.size());
+}
+
+TEST(Campaign, P14_cases_one_after_the_other_flip_each_bit_of_the_configuration) {
+  std::bitset<kConfigBits> bits;
+  for (std::uint64_t number = 0; number < 3010; number++) {
+    for (const Fault& fault : make_case(11, number).faults) {
+      if (fault.kind == FaultKind::kConfigBitFlips) {
+        bits.set(fault.amount);
+      }
+    }
+  }
+  EXPECT_TRUE(bits.all()) << bits.count() << " of " << kConfigBits;
+}
+
+TEST(Campaign, P14_each_planned_bit_of_the_configuration_flips_although_it_waits_for_drive) {
+  const Case plan = make_case(11, 3);
+  std::bitset<kConfigBits> bits;
+  for (const Fault& fault : plan.faults) {
+    if (fault.kind == FaultKind::kConfigBitFlips) {
+      bits.set(fault.amount);
+    }
+  }
+  const Outcome outcome = run(plan);
+  EXPECT_FALSE(outcome.failure) << outcome.failure->reason;
+  EXPECT_GT(bits.count(), 0u);
+  EXPECT_EQ(outcome.totals.config_bits, bits);
+  EXPECT_TRUE(outcome.totals.config_bits_driven.any());
+}
+
 TEST(Campaign, Case_runs_twice_to_the_same_bits) {
   Case plan = make_case(3, 1);
   plan.ticks = 5000;
@@ -97,6 +158,7 @@ TEST(Campaign, P14_flip_changes_one_bit_and_back) {
 
 TEST(CaseFile, Reads_what_it_wrote) {
   const Case plan = make_case(5, 9);
+  ASSERT_TRUE(sweeps_stops(plan.number)) << "has faults that wait for their tick of a press";
   std::stringstream text;
   write_case(text, plan);
   const auto read = read_case(text);
@@ -107,10 +169,11 @@ TEST(CaseFile, Reads_what_it_wrote) {
   ASSERT_EQ(read->faults.size(), plan.faults.size());
   EXPECT_EQ(read->faults.back().kind, plan.faults.back().kind);
   EXPECT_EQ(read->faults.back().amount, plan.faults.back().amount);
+  EXPECT_EQ(read->faults.back().driven_ticks, plan.faults.back().driven_ticks);
 }
 
 TEST(CaseFile, Names_the_line_that_it_does_not_understand) {
-  std::stringstream text("interlock campaign case 1\nseed 1\nfault 5 99 0 0 0\n");
+  std::stringstream text("interlock campaign case 2\nseed 1\nfault 5 99 0 0 0 0\n");
   const auto read = read_case(text);
   ASSERT_FALSE(read);
   EXPECT_THAT(read.error(), testing::StartsWith("line 3:"));
