@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint64_t kPlanStream = 1;
 constexpr std::uint32_t kCaseTicks = 20'000;
 constexpr std::uint32_t kQuietTicks = 400;  /**< before the first fault */
-constexpr std::uint64_t kSweepInterval = 5; /**< cases, of which one sweeps */
+constexpr std::uint64_t kCasesPerSweep = 5; /**< cases, of which one sweeps */
 constexpr std::uint64_t kStopsPerSweep = 8; /**< as many as a case has time for */
 constexpr std::uint64_t kStopStride = 1013; /**< prime to the ticks of a move: short and long presses mix */
 constexpr std::uint64_t kFlipsPerCase = 4;
@@ -118,7 +118,7 @@ void add_drawn_faults(Case& plan, plant::Random& random) {
 
 /** The next bits of the configuration, each somewhere in its share of the case. */
 void add_config_flips(Case& plan, plant::Random& random) {
-  const std::uint64_t cases_before = plan.number - plan.number / kSweepInterval;
+  const std::uint64_t cases_before = plan.number - plan.number / kCasesPerSweep;
   for (std::uint32_t flip = 0; flip < kFlipsPerCase; flip++) {
     const std::uint32_t begin = kQuietTicks + flip * kFlipInterval;
     const std::uint32_t tick = begin + random.below(kFlipInterval - kFlipPatience - kFlipTicks);
@@ -129,7 +129,7 @@ void add_config_flips(Case& plan, plant::Random& random) {
 
 /** E-stop and pedal in turn, each at the next tick of a press. */
 void add_stops(Case& plan, plant::Random& random) {
-  const std::uint64_t first = plan.number / kSweepInterval * kStopsPerSweep;
+  const std::uint64_t first = plan.number / kCasesPerSweep * kStopsPerSweep;
   for (std::uint64_t stop = first; stop < first + kStopsPerSweep; stop++) {
     const FaultKind kind = stop % 2 == 0 ? FaultKind::kEstopPulled : FaultKind::kPedalReleased;
     const auto driven_ticks = static_cast<std::uint32_t>(1 + stop / 2 * kStopStride % kMoveTicks);
@@ -141,7 +141,7 @@ void add_stops(Case& plan, plant::Random& random) {
 
 std::string_view name_of(FaultKind kind) { return kHabits[static_cast<std::size_t>(kind)].name; }
 
-bool sweeps_stops(std::uint64_t number) { return number % kSweepInterval == kSweepInterval - 1; }
+bool sweeps_stops(std::uint64_t number) { return number % kCasesPerSweep == kCasesPerSweep - 1; }
 
 Case make_case(std::uint64_t seed, std::uint64_t number) {
   plant::Random random(seed ^ (number * 0x9e3779b97f4a7c15u), kPlanStream);

@@ -9,6 +9,7 @@
 #include <bitset>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -68,6 +69,12 @@ class World {
   const Totals& totals() const { return totals_; }
   const ilk_state_t& state() const { return state_; }
   const ilk_outputs_t& outputs() const { return outputs_; }
+
+  /** What the newest tick handed to the kernel. */
+  const ilk_config_t& config() const { return config_; }
+  const ilk_inputs_t& inputs() const { return inputs_; }
+  std::span<const ilk_request_t> requests() const { return app_.requests(); }
+
   double true_position(std::size_t slot) const { return plant_.station(slot)->position_counts(); }
 
  private:
