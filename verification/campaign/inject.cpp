@@ -30,8 +30,11 @@ bool World::is_due(const Fault& fault) const {
   if (fault.driven_ticks > 0) {
     return is_driven_ && driven_ticks_ == fault.driven_ticks;
   }
-  const bool waits_for_drive = fault.kind == FaultKind::kConfigBitFlips;
-  return !waits_for_drive || is_driven_ || tick_ >= fault.tick + kFlipPatience;
+  if (fault.kind == FaultKind::kConfigBitFlips) {
+    // Not while deadlines are missed: by when that has to stop the drive may rest on the bit.
+    return overrun_ticks_ == 0 && (is_driven_ || tick_ >= fault.tick + kFlipPatience);
+  }
+  return true;
 }
 
 void World::inject_what_is_due() {
@@ -120,7 +123,9 @@ void World::inject(const Fault& fault) {
     case FaultKind::kClockOverruns:
       overrun_ticks_ = std::max(overrun_ticks_, fault.ticks);
       if (fault.ticks >= robot_.config.overrun_limit) {
-        demand(robot_.config.overrun_limit, oracle::kNoAxis, fault.kind);
+        // The limit itself may be the damaged word: then the damage stops the drive, in its own time.
+        const std::uint32_t until_met = config_damage_left_ > 0 ? met_within(config_bit_) : 0;
+        demand(std::max(robot_.config.overrun_limit, until_met), oracle::kNoAxis, fault.kind);
       }
       break;
     case FaultKind::kStateBitFlips:
@@ -316,6 +321,9 @@ void World::inject_memory(const Fault& fault) {
   flip(config_, config_bit_);
   config_damage_left_ = fault.ticks;
   totals_.config_bits.set(config_bit_);
+  if (const auto slot = slot_of_card_word(config_bit_)) {
+    card_unknown_[*slot] = true;
+  }
   if (is_driven_) {
     totals_.config_bits_driven.set(config_bit_);
   }

@@ -25,6 +25,9 @@ inline constexpr std::uint32_t kConfigPassTicks = 2 * ILK_SLOTS;
  * on. */
 std::uint32_t met_within(std::size_t config_bit);
 
+/** The slot whose kind of card that bit of the configuration belongs to. */
+std::optional<std::size_t> slot_of_card_word(std::size_t config_bit);
+
 struct Robot {
   ilk_config_t config;
   plant::Parameters plant;

@@ -20,6 +20,7 @@ constexpr std::uint64_t kSweepStart = 4999;   /**< bits from where one case begi
 constexpr std::uint32_t kRecoveryTicks = 300; /**< after a lie of the encoder, until nothing moves any more */
 
 constexpr std::string_view kWrongWay = "driven, but not towards its setpoint";
+constexpr std::string_view kDrifts = "drifts while enabled and not driven";
 
 bool is_zero_drive(const ilk_outputs_t& outputs) {
   return std::ranges::all_of(outputs.frame,
@@ -246,6 +247,7 @@ void World::count() {
   for (std::size_t slot = 0; slot < ILK_SLOTS; slot++) {
     const ilk_axis_t& axis = state_.axis[slot];
     totals_.driven_axis_ticks += outputs_.command[slot].drive != 0 ? 1 : 0;
+    card_unknown_[slot] = card_unknown_[slot] && outputs_.command[slot].drive == 0;
     totals_.homings += was_homing_[slot] && axis.homed != 0 ? 1 : 0;
     was_homing_[slot] = axis.state == ILK_AXIS_HOMING;
     if (axis.fault != fault_before_[slot]) {
@@ -272,7 +274,11 @@ bool World::is_excused(const oracle::Finding& finding) const {
       finding.property <= oracle::Property::kP3 || finding.property == oracle::Property::kP10;
   const bool promised = finding.property == oracle::Property::kP13 ||
                         (of_drive && finding.reason.starts_with("driven") && finding.reason != kWrongWay);
-  return config_damage_ticks_ > 0 && !promised;
+  // A slot whose card was damaged is none with an axis meanwhile, and its ticks without drive are not
+  // counted: the watch for drift begins so much later, until the axis is driven again.
+  const bool watch_is_late =
+      finding.reason == kDrifts && card_unknown_[static_cast<std::size_t>(finding.axis)];
+  return watch_is_late || (config_damage_ticks_ > 0 && !promised);
 }
 
 std::optional<Failure> World::judge() {

@@ -137,6 +137,7 @@ class World {
   std::array<std::uint32_t, ILK_SLOTS> broken_until_{};
   std::array<bool, ILK_SLOTS> broken_{};
   std::array<bool, ILK_SLOTS> was_homing_{};
+  std::array<bool, ILK_SLOTS> card_unknown_{}; /**< the kind of card was damaged since it was driven */
   std::array<std::uint32_t, ILK_SLOTS> fault_before_{};
   std::uint32_t mode_before_ = ILK_MODE_INIT;
   std::optional<std::string_view> unrefused_; /**< what a kernel did that had to stay in INIT */

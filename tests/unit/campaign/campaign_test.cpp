@@ -4,6 +4,7 @@
  */
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <bitset>
 #include <map>
 #include <set>
@@ -123,6 +124,47 @@ TEST(Campaign, P14_each_planned_bit_of_the_configuration_flips_although_it_waits
   EXPECT_GT(bits.count(), 0u);
   EXPECT_EQ(outcome.totals.config_bits, bits);
   EXPECT_TRUE(outcome.totals.config_bits_driven.any());
+}
+
+TEST(Campaign, P14_the_card_word_of_a_slot_is_known_by_its_bits) {
+  const std::size_t first = offsetof(ilk_config_t, axis[7].card) * 8;
+  EXPECT_EQ(slot_of_card_word(first - 1), std::nullopt);
+  EXPECT_EQ(slot_of_card_word(first), 7u);
+  EXPECT_EQ(slot_of_card_word(first + 31), 7u);
+  EXPECT_EQ(slot_of_card_word(first + 32), std::nullopt);
+}
+
+// The stop was called late although the limit of missed deadlines was the damaged word.
+TEST(Campaign, P14_a_stop_that_rests_on_a_damaged_limit_is_demanded_when_the_damage_is_met) {
+  const std::uint32_t bit = offsetof(ilk_config_t, overrun_limit) * 8 + 16;
+  // As many ticks as the configuration has slices: the damage is met at once or late.
+  for (std::uint32_t tick = 1000; tick < 1000 + ILK_SLOTS; tick++) {
+    const Fault flip{tick, FaultKind::kConfigBitFlips, 0, 30, bit, 0};
+    const Fault overruns{tick, FaultKind::kClockOverruns, 0, 6, 0, 0};
+    for (const bool flips_first : {false, true}) {
+      Case plan{11, 4, 1100, flips_first ? std::vector{flip, overruns} : std::vector{overruns, flip}};
+      ASSERT_TRUE(sweeps_stops(plan.number)) << "its foot stays down";
+      const Outcome outcome = run(plan);
+      EXPECT_FALSE(outcome.failure) << outcome.failure->reason << ", tick " << tick;
+      EXPECT_GE(outcome.totals.stops_met, 2u);
+    }
+  }
+}
+
+// Its axis 1 drifts while its kind of card is damaged, and is enabled again later.
+TEST(Campaign, P6_the_watch_for_drift_may_begin_later_after_the_kind_of_card_was_damaged) {
+  const Case plan = make_case(1, 390);
+  const auto drifts = [](const Fault& fault) {
+    return fault.kind == FaultKind::kAxisDrifts && fault.tick == 17696 && fault.slot == 1;
+  };
+  const auto damages = [](const Fault& fault) {
+    return fault.kind == FaultKind::kConfigBitFlips && fault.tick == 17698 && fault.amount == 1251;
+  };
+  ASSERT_TRUE(std::ranges::any_of(plan.faults, drifts)) << "the plan is another one: find such a case anew";
+  ASSERT_TRUE(std::ranges::any_of(plan.faults, damages)) << "the plan is another one: find such a case anew";
+  EXPECT_EQ(slot_of_card_word(1251), 1u);
+  const Outcome outcome = run(plan);
+  EXPECT_FALSE(outcome.failure) << outcome.failure->reason;
 }
 
 TEST(Campaign, Case_runs_twice_to_the_same_bits) {
