@@ -103,10 +103,16 @@ verify: ## Climb the verification ladder: [FRESH=1] runs again what has not chan
 	@$(setup) packages python provers
 	@/usr/bin/python3 verification/evidence/verify.py
 
-.PHONY: mutate
-mutate: build ## Draw mutants of the core and show each to tests, conformance, proofs, contracts: [SEED=] [COUNT=400]
+.PHONY: mutate mutate-proofs
+mutate: build ## Draw mutants of the core and show each to tests, conformance, proofs, contracts: [SEED=] [COUNT=400] [MATRIX=1]
 	@$(setup) packages provers
-	@$(measure) mutation /usr/bin/python3 verification/mutation/run.py --count $(or $(COUNT),400) $(if $(SEED),--seed $(SEED))
+	@$(measure) mutation /usr/bin/python3 verification/mutation/run.py --count $(or $(COUNT),400) \
+	  $(if $(SEED),--seed $(SEED)) $(if $(MATRIX),--matrix)
+
+mutate-proofs: build ## Show a hundred mutants to conformance, proofs and contracts alone: [SEED=] [COUNT=100] [MATRIX=1]
+	@$(setup) packages provers
+	@/usr/bin/python3 verification/mutation/run.py --without-tests --each 0 --count $(or $(COUNT),100) \
+	  $(if $(SEED),--seed $(SEED)) $(if $(MATRIX),--matrix)
 
 .PHONY: report
 report: setup ## Write and judge the trace report: [RELEASE=1] demands the long measurements, too

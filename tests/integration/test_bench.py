@@ -107,21 +107,73 @@ def test_pictures_are_drawn(tmp_path: Path) -> None:
     assert "loop time [us] less 900" in drawn[-1].read_text()
 
 
-def test_a_record_without_a_figure_that_the_ladder_names_is_refused() -> None:
+@pytest.fixture(scope="module")
+def bench_run() -> object:
     specification = importlib.util.spec_from_file_location("bench_run", BENCH / "run.py")
     assert specification is not None
     assert specification.loader is not None
-    bench_run = importlib.util.module_from_spec(specification)
-    specification.loader.exec_module(bench_run)
+    module = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(module)
+    return module
+
+
+def full_figures(bench_run: object) -> dict[str, float]:
+    """Of a full run in which nothing was above its limit."""
     schema = json.loads(bench_run.SCHEMA.read_text())
-    figures = dict.fromkeys(schema["properties"]["figures"]["required"], 1.0) | dict.fromkeys(
-        bench_run.LIMITS, 0
-    )
+    named = dict.fromkeys(schema["properties"]["figures"]["required"], 1.0)
+    edges = {"reaction_edges": bench_run.EDGES, "reaction_edges_timed": bench_run.EDGES}
+    return named | dict.fromkeys(bench_run.LIMITS, 0) | edges
+
+
+def test_a_record_without_a_figure_that_the_ladder_names_is_refused(bench_run: object) -> None:
+    figures = full_figures(bench_run)
+    schema = json.loads(bench_run.SCHEMA.read_text())
     detail = {name: {} for name in schema["properties"]["detail"]["required"]}
-    bench_run.check(bench_run.evidence(figures, 0.0, detail))
+    bench_run.check(bench_run.record_of(figures, 300, 0.0, detail))
     del figures["wake_p999_us"]
     with pytest.raises(jsonschema.ValidationError, match="wake_p999_us"):
-        bench_run.check(bench_run.evidence(figures, 0.0, detail))
+        bench_run.check(bench_run.record_of(figures, 300, 0.0, detail))
+
+
+def test_a_figure_above_its_limit_fails_the_run_and_a_short_run_is_bounded(bench_run: object) -> None:
+    figures = full_figures(bench_run)
+    assert bench_run.status_of(figures, 300) == "PASSED"
+    assert bench_run.status_of(figures, 299) == "BOUNDED"
+    assert bench_run.status_of(figures | {"reaction_edges_timed": 9_999}, 300) == "BOUNDED"
+    for name, limit in bench_run.LIMITS.items():
+        assert bench_run.status_of(figures | {name: limit}, 300) == "PASSED"
+        assert bench_run.status_of(figures | {name: limit + 1}, 10) == "FAILED"
+    assert bench_run.LIMITS["step_ns_median"] * 2 == bench_run.LIMITS["step_ns_worst_path"] == 2000
+    assert bench_run.LIMITS["reaction_ticks_most"] == 2
+
+
+def test_a_full_run_times_ten_thousand_edges_and_a_short_one_as_many_as_fit(bench_run: object) -> None:
+    assert bench_run.edges_timed(300) == bench_run.edges_timed(3600) == 10_000
+    assert bench_run.edges_timed(10) == 340
+
+
+def searched(folder: Path) -> dict:
+    command = [BIN / "worst_path", folder, "3", "30000", "1"]
+    return json.loads(subprocess.run(command, check=True, capture_output=True).stdout)
+
+
+def test_the_search_goes_uphill_and_equal_seeds_find_equal_steps(tmp_path: Path) -> None:
+    found, again = searched(tmp_path / "one")["found"], searched(tmp_path / "two")["found"]
+    assert all(each["blocks"] >= each["start_blocks"] for each in found)
+    assert max(each["blocks"] for each in found) > max(each["start_blocks"] for each in found)
+    for one, two in zip(found, again, strict=True):
+        assert Path(one["file"]).read_bytes() == Path(two["file"]).read_bytes()
+
+
+def test_a_step_that_was_found_is_played_again_and_a_broken_one_is_named(tmp_path: Path) -> None:
+    file = Path(searched(tmp_path)["found"][0]["file"])
+    subprocess.run([BIN / "step_bench", file, "3"], check=True)
+    step = json.loads(file.read_text())
+    step["state"].pop()
+    file.write_text(json.dumps(step))
+    refused = subprocess.run([BIN / "step_bench", file, "3"], capture_output=True, text=True)
+    assert refused.returncode == 2
+    assert f"{file}: state has {len(step['state'])} words, expected" in refused.stderr
 
 
 def test_P2_the_wire_carries_zero_drive_within_two_ticks_of_the_pedals_release(tmp_path: Path) -> None:

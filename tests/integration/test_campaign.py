@@ -13,6 +13,7 @@ from bare_kernel import BIN, ROOT
 CAMPAIGN = ROOT / "verification/campaign"
 TICKS = 60_000
 SAME = ("ticks", "faults_injected", "bit_flips", "configurations_refused", "digest")
+SWEPT = ("state_bits", "config_bits", "estop_ticks", "pedal_ticks")
 
 
 @pytest.fixture(scope="module")
@@ -27,14 +28,32 @@ def campaign() -> object:
 
 
 def figures(campaign: object, **others: int) -> dict[str, int]:
-    """Of a campaign in which all happened and nothing went wrong."""
+    """Of a full campaign in which all happened and nothing went wrong."""
     sound = dict.fromkeys(("unsafe", "late", "bit_flips_unsafe"), 0)
-    return sound | dict.fromkeys(campaign.HAPPENED, 1) | others
+    swept = dict.fromkeys((*campaign.SWEEPS, *campaign.SWEEPS.values()), 7)
+    return sound | swept | dict.fromkeys(campaign.HAPPENED, 1) | campaign.FULL | others
 
 
 def test_a_campaign_in_which_all_happened_and_nothing_went_wrong_passes(campaign: object) -> None:
     assert campaign.status_of(figures(campaign), failed=False) == "PASSED"
     assert campaign.status_of(figures(campaign), failed=True) == "FAILED"
+
+
+@pytest.mark.parametrize("what", ["ticks", "faults_injected"])
+def test_a_run_shorter_than_a_full_one_is_bounded(campaign: object, what: str) -> None:
+    assert campaign.FULL == {"ticks": 100_000_000, "faults_injected": 1_000_000}
+    seen = figures(campaign, **{what: campaign.FULL[what] - 1})
+    assert campaign.status_of(seen, failed=False) == "BOUNDED"
+    assert campaign.status_of(seen | {"late": 1}, failed=False) == "FAILED"
+
+
+@pytest.mark.parametrize("sweep", SWEPT)
+def test_a_full_run_that_left_out_a_part_of_a_sweep_does_not_pass(campaign: object, sweep: str) -> None:
+    name = campaign.SWEEPS[sweep]
+    seen = figures(campaign, **{name: 6})
+    assert campaign.left_out(seen) == [f"{name}: 6 of 7"]
+    assert campaign.status_of(seen, failed=False) == "VACUOUS"
+    assert campaign.status_of(figures(campaign, **{name: 0, sweep: 0}), failed=False) == "VACUOUS"
 
 
 @pytest.mark.parametrize("what", ["unsafe", "late", "bit_flips_unsafe"])
@@ -54,8 +73,8 @@ def totals(*options: str) -> dict[str, int]:
 
 
 def test_a_cluster_comes_to_the_same_totals(campaign: object, tmp_path: Path) -> None:
-    whole = totals("--cases", "3", "--failures", str(tmp_path))
-    parts = [["--seed", "5", "--first", str(job), "--stride", "3", "--cases", "1"] for job in range(3)]
+    whole = totals("--first", "2", "--cases", "3", "--failures", str(tmp_path))
+    parts = [["--seed", "5", "--first", str(number), "--cases", "1"] for number in (2, 3, 4)]
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, dashboard_address=None, host="127.0.0.1"
     ) as cluster:
@@ -68,3 +87,5 @@ def test_a_cluster_comes_to_the_same_totals(campaign: object, tmp_path: Path) ->
         key: whole[key] for key in SAME if key != "digest"
     }
     assert merged["digest"] == whole["digest"] % 2**53
+    for sweep in SWEPT:
+        assert merged[campaign.SWEEPS[sweep]] == int(whole[sweep], 16).bit_count() > 0

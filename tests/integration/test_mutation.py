@@ -1,5 +1,6 @@
 """How `make mutate` draws mutants, remembers verdicts, and shows that a mutant is no fault."""
 
+import json
 import sys
 from pathlib import Path
 
@@ -8,12 +9,13 @@ from bare_kernel import ROOT
 
 sys.path.append(str(ROOT / "verification/mutation"))
 
+import tables
 from equal import core_files, is_same, shown_equal, write_sound
 from functions import Function, callers_of, function_at, functions_in, functions_of
 from operators import Mutant, draw, mutants_of
 from rows import compile_kernel
 from tree import make_tree, seeded
-from verdicts import kernel_digests
+from verdicts import Verdict, kernel_digests
 
 FILES = [f"kernel/{file}" for file in core_files(ROOT / "kernel") if "crc32_table" not in file]
 
@@ -81,6 +83,42 @@ def test_what_did_not_change_is_not_compiled_again(tmp_path: Path) -> None:
         assert (objects / again.pop()).read_bytes() != first[Path(function.file).stem + ".o"]
     compile_kernel(tree / "kernel", objects)
     assert {path.name: path.read_bytes() for path in objects.glob("*.o")} == first
+
+
+def test_the_kill_matrix_and_the_survivors_are_left_as_files(tmp_path: Path) -> None:
+    functions = functions_of("x.c", SOURCE)
+    mutants = [Mutant("x.c", line, "relation", f"  old {line}", f"  new {line}") for line in (2, 6, 7, 8)]
+    told = {"tests": "kernel_tests: red", "conformance": "", "cbmc": "gate: red", "wp": ""}
+    verdicts = [
+        Verdict("killed", ("tests kernel_tests: red", "cbmc gate: red"), 1.0, told),
+        Verdict("killed", ("cbmc gate: red",), 1.0, told | {"tests": ""}),
+        Verdict("equivalent", ("g does the same",), 1.0, dict.fromkeys(told, "")),
+        Verdict("survived", (), 1.0, dict.fromkeys(told, "")),
+    ]
+    tables.write(tmp_path, mutants, verdicts, functions, every=True)
+    matrix = json.loads((tmp_path / "matrix.json").read_text())
+    assert matrix["rungs"]["cbmc"] == {"shown": 4, "killed": 2, "killed_alone": 1}
+    assert matrix["rungs"]["tests"] == {"shown": 4, "killed": 1, "killed_alone": 0}
+    assert matrix["functions"] == {
+        "x.f": {"tests": 1, "cbmc": 1},
+        "x.g": {"cbmc": 1, "equivalent": 1, "survived": 1},
+    }
+    [survivor] = json.loads((tmp_path / "survivors.json").read_text())
+    assert (survivor["line"], survivor["function"], survivor["after"]) == (8, "x.g", "  new 8")
+    assert "x.c:8\n    - old 8\n    + new 8" in (tmp_path / "survivors.txt").read_text()
+    assert len(json.loads((tmp_path / "mutants.json").read_text())) == 4
+    header, f, g = (tmp_path / "matrix.txt").read_text().splitlines()
+    assert header.split() == ["function", *tables.COLUMNS]
+    assert f.split() == ["x.f", "1", "0", "1", "0", "0", "0"]
+    assert g.split() == ["x.g", "0", "0", "1", "0", "1", "1"]
+
+
+def test_without_survivors_the_list_says_so(tmp_path: Path) -> None:
+    killed = Verdict("killed", ("tests kernel_tests: red",), 1.0, {"tests": "kernel_tests: red"})
+    mutant = Mutant("x.c", 2, "relation", "old", "new")
+    tables.write(tmp_path, [mutant], [killed], functions_of("x.c", SOURCE), every=False)
+    assert (tmp_path / "survivors.txt").read_text() == "none\n"
+    assert json.loads((tmp_path / "survivors.json").read_text()) == []
 
 
 def small_function() -> tuple[Function, Mutant]:

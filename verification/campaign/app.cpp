@@ -10,6 +10,8 @@ namespace {
 constexpr std::uint64_t kAppStream = 2;
 constexpr std::uint32_t kPatience = 60;       /**< ticks pressed without MOTION after which the foot lifts */
 constexpr std::uint32_t kLongestHold = 2500;  /**< ticks of a press */
+constexpr std::uint32_t kHastyHold = 40;      /**< the same of a hasty foot */
+constexpr std::uint32_t kSteadyHold = 20'000; /**< a whole case */
 constexpr std::uint32_t kActionInterval = 10; /**< ticks between two requests for an axis outside of MOTION */
 
 void count_down(std::uint32_t& ticks) {
@@ -61,8 +63,8 @@ oracle::Message message_of(const ilk_request_t& request, bool intact) {
 
 }  // namespace
 
-App::App(const ilk_config_t& config, std::uint64_t seed)
-    : config_(config), random_(seed, kAppStream), sweeps_(random_.chance(0.25)) {}
+App::App(const ilk_config_t& config, std::uint64_t seed, bool is_steady)
+    : config_(config), random_(seed, kAppStream), is_steady_(is_steady), is_hasty_(random_.chance(0.25)) {}
 
 void App::attach_anew() {
   generation_++;
@@ -90,10 +92,14 @@ ilk_request_t App::draft(ilk_request_kind_t kind, std::uint32_t slot) {
 
 void App::ask(ilk_request_kind_t kind, std::uint32_t slot) { send(draft(kind, slot)); }
 
+std::uint32_t App::choose_hold() {
+  return is_steady_ ? kSteadyHold : 1 + random_.below(is_hasty_ ? kHastyHold : kLongestHold);
+}
+
 void App::move_foot(const ilk_state_t& shown) {
   const bool in_motion = shown.mode == ILK_MODE_MOTION;
   if (in_motion && !was_in_motion_) {
-    foot_ticks_ = sweeps_ ? ++swept_ticks_ : 1 + random_.below(kLongestHold);
+    foot_ticks_ = choose_hold();
   }
   if (was_in_motion_ && !in_motion) {
     foot_ticks_ = 0;
@@ -117,7 +123,9 @@ void App::prepare_axis(std::uint32_t tick, const ilk_state_t& shown, std::uint32
     return;
   }
   if (axis.state == ILK_AXIS_FAULTED) {
-    ask(ILK_REQUEST_CLEAR_FAULT, slot);
+    if (!is_steady_) {
+      ask(ILK_REQUEST_CLEAR_FAULT, slot);
+    }
   } else if (axis.homed == 0 && random_.chance(0.02)) {
     ilk_request_t request = draft(ILK_REQUEST_RESTORE, slot);
     request.target_counts =
@@ -236,7 +244,7 @@ void App::act(std::uint32_t tick, const ilk_state_t& shown) {
         drive_axis(tick, shown, slot);
       }
     }
-    if (shown.mode == ILK_MODE_MOTION && random_.chance(0.0005)) {
+    if (shown.mode == ILK_MODE_MOTION && !is_steady_ && random_.chance(0.0005)) {
       ask(random_.coin() ? ILK_REQUEST_STOP : ILK_REQUEST_DISABLE, random_.below(ILK_SLOTS));
     }
     for (std::uint32_t lies = lying_ticks_ > 0 ? 2 : 0; lies > 0; lies--) {

@@ -22,7 +22,11 @@ class App {
   /** More than the kernel looks at in one tick. */
   static constexpr std::size_t kMostRequests = 24;
 
-  App(const ilk_config_t& config, std::uint64_t seed);
+  /**
+   * @param is_steady the foot stays down until it is lifted, nobody asks for STOP or DISABLE, and an axis that
+   *        has run into its end is left alone
+   */
+  App(const ilk_config_t& config, std::uint64_t seed, bool is_steady);
 
   /** Acts on what the kernel last showed, once a tick. */
   void act(std::uint32_t tick, const ilk_state_t& shown);
@@ -53,6 +57,7 @@ class App {
     std::uint32_t renew_tick = 0;
   };
 
+  std::uint32_t choose_hold();
   void move_foot(const ilk_state_t& shown);
   void prepare_axis(std::uint32_t tick, const ilk_state_t& shown, std::uint32_t slot);
   void drive_axis(std::uint32_t tick, const ilk_state_t& shown, std::uint32_t slot);
@@ -75,8 +80,8 @@ class App {
   std::uint32_t next_heartbeat_ = 0;
   bool foot_down_ = false;
   bool was_in_motion_ = false;
-  bool sweeps_; /**< each press is one tick longer than the one before */
-  std::uint32_t swept_ticks_ = 0;
+  bool is_steady_;
+  bool is_hasty_;                /**< each press is over after some ticks */
   std::uint32_t foot_ticks_ = 0; /**< until the foot changes its mind */
   std::uint32_t lifted_ticks_ = 0;
   std::uint32_t silent_ticks_ = 0;

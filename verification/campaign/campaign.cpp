@@ -67,7 +67,15 @@ nlohmann::json json_of(const Totals& totals) {
           {"axis_faults", totals.axis_faults},
           {"causes", totals.causes},
           {"state_bits", hex_of(totals.state_bits)},
-          {"config_bits", hex_of(totals.config_bits)}};
+          {"config_bits", hex_of(totals.config_bits)},
+          {"config_bits_driven", hex_of(totals.config_bits_driven)},
+          {"estop_ticks", hex_of(totals.estop_ticks)},
+          {"pedal_ticks", hex_of(totals.pedal_ticks)},
+          {"sizes",
+           {{"state_bits", kStateBits},
+            {"config_bits", kConfigBits},
+            {"estop_ticks", kMoveTicks},
+            {"pedal_ticks", kMoveTicks}}}};
 }
 
 std::string text_of(const Failure& failure) {

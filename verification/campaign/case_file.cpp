@@ -9,16 +9,17 @@
 namespace interlock::campaign {
 namespace {
 
-constexpr std::string_view kTitle = "interlock campaign case 1";
+constexpr std::string_view kTitle = "interlock campaign case 2";
 
 }  // namespace
 
 void write_case(std::ostream& out, const Case& plan) {
   out << kTitle << "\nseed " << plan.seed << "\nnumber " << plan.number << "\nticks " << plan.ticks
-      << "\n# tick kind slot ticks amount\n";
+      << "\n# tick kind slot ticks amount driven_ticks\n";
   for (const Fault& fault : plan.faults) {
     out << "fault " << fault.tick << ' ' << static_cast<unsigned>(fault.kind) << ' ' << fault.slot << ' '
-        << fault.ticks << ' ' << fault.amount << " # " << name_of(fault.kind) << '\n';
+        << fault.ticks << ' ' << fault.amount << ' ' << fault.driven_ticks << " # " << name_of(fault.kind)
+        << '\n';
   }
 }
 
@@ -46,9 +47,10 @@ tl::expected<Case, std::string> read_case(std::istream& in) {
     } else if (key == "fault") {
       Fault fault;
       unsigned kind = 0;
-      understood = (words >> fault.tick >> kind >> fault.slot >> fault.ticks >> fault.amount) &&
-                   kind < kFaultKinds && fault.slot < ILK_SLOTS &&
-                   (plan.faults.empty() || plan.faults.back().tick <= fault.tick);
+      understood =
+          (words >> fault.tick >> kind >> fault.slot >> fault.ticks >> fault.amount >> fault.driven_ticks) &&
+          kind < kFaultKinds && fault.slot < ILK_SLOTS &&
+          (plan.faults.empty() || plan.faults.back().tick <= fault.tick);
       fault.kind = static_cast<FaultKind>(kind);
       plan.faults.push_back(fault);
     }

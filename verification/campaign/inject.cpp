@@ -11,8 +11,6 @@ namespace {
 
 namespace command = plant::command;
 
-constexpr std::uint64_t kConfigFlipsPerCase =
-    3;                                  /**< by which the bits of a case lie apart from those of the next */
 constexpr std::uint32_t kEdgeTicks = 2; /**< from a contact or a frame to zero drive on the wire */
 
 std::int32_t signed_amount(const Fault& fault, std::uint32_t most) {
@@ -28,8 +26,50 @@ void World::demand(std::uint32_t within, std::int8_t axis, FaultKind kind) {
   clock_.demand(tick_ + within, axis, name_of(kind));
 }
 
+bool World::is_due(const Fault& fault) const {
+  if (fault.driven_ticks > 0) {
+    return is_driven_ && driven_ticks_ == fault.driven_ticks;
+  }
+  if (fault.kind == FaultKind::kConfigBitFlips) {
+    // Not while deadlines are missed: by when that has to stop the drive may rest on the bit.
+    return overrun_ticks_ == 0 && (is_driven_ || tick_ >= fault.tick + kFlipPatience);
+  }
+  return true;
+}
+
+void World::inject_what_is_due() {
+  while (next_fault_ < plan_.faults.size() && plan_.faults[next_fault_].tick <= tick_) {
+    const Fault& fault = plan_.faults[next_fault_++];
+    if (is_due(fault)) {
+      inject(fault);
+    } else {
+      waiting_.push_back(fault);
+    }
+  }
+  for (std::size_t n = 0; n < waiting_.size();) {
+    if (is_due(waiting_[n])) {
+      inject(waiting_[n]);
+      waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(n));
+    } else {
+      n++;
+    }
+  }
+}
+
+void World::note_swept_tick(FaultKind kind) {
+  if (!is_driven_ || driven_ticks_ == 0 || driven_ticks_ > kMoveTicks) {
+    return;
+  }
+  if (kind == FaultKind::kEstopPulled) {
+    totals_.estop_ticks.set(driven_ticks_ - 1);
+  } else if (kind == FaultKind::kPedalReleased) {
+    totals_.pedal_ticks.set(driven_ticks_ - 1);
+  }
+}
+
 void World::inject(const Fault& fault) {
   totals_.faults_injected++;
+  note_swept_tick(fault.kind);
   totals_.faults_by_kind[static_cast<std::size_t>(fault.kind)]++;
   switch (fault.kind) {
     case FaultKind::kPedalReleased:
@@ -83,7 +123,9 @@ void World::inject(const Fault& fault) {
     case FaultKind::kClockOverruns:
       overrun_ticks_ = std::max(overrun_ticks_, fault.ticks);
       if (fault.ticks >= robot_.config.overrun_limit) {
-        demand(robot_.config.overrun_limit, oracle::kNoAxis, fault.kind);
+        // The limit itself may be the damaged word: then the damage stops the drive, in its own time.
+        const std::uint32_t until_met = config_damage_left_ > 0 ? met_within(config_bit_) : 0;
+        demand(std::max(robot_.config.overrun_limit, until_met), oracle::kNoAxis, fault.kind);
       }
       break;
     case FaultKind::kStateBitFlips:
@@ -275,10 +317,16 @@ void World::inject_memory(const Fault& fault) {
   if (config_damage_left_ > 0) {
     return;
   }
-  config_bit_ = (plan_.number * kConfigFlipsPerCase + config_flips_++) % kConfigBits;
+  config_bit_ = fault.amount % kConfigBits;
   flip(config_, config_bit_);
   config_damage_left_ = fault.ticks;
   totals_.config_bits.set(config_bit_);
+  if (const auto slot = slot_of_card_word(config_bit_)) {
+    card_unknown_[*slot] = true;
+  }
+  if (is_driven_) {
+    totals_.config_bits_driven.set(config_bit_);
+  }
   totals_.bit_flips++;
   demand(met_within(config_bit_), oracle::kNoAxis, fault.kind);
 }

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 
-#include "interlock/types.h"
 #include "plant/random.hpp"
 
 namespace interlock::campaign {
@@ -11,7 +11,17 @@ namespace {
 
 constexpr std::uint64_t kPlanStream = 1;
 constexpr std::uint32_t kCaseTicks = 20'000;
-constexpr std::uint32_t kQuietTicks = 400; /**< before the first fault */
+constexpr std::uint32_t kQuietTicks = 400;  /**< before the first fault */
+constexpr std::uint64_t kCasesPerSweep = 5; /**< cases, of which one sweeps */
+constexpr std::uint64_t kStopsPerSweep = 8; /**< as many as a case has time for */
+constexpr std::uint64_t kStopStride = 1013; /**< prime to the ticks of a move: short and long presses mix */
+constexpr std::uint64_t kFlipsPerCase = 4;
+constexpr std::uint32_t kFlipInterval = (kCaseTicks - kQuietTicks) / kFlipsPerCase;
+constexpr std::uint32_t kFlipTicks = 30; /**< until the bit is right again */
+constexpr std::uint32_t kLongestStop = 60;
+
+static_assert(std::gcd(kStopStride, std::uint64_t{kMoveTicks}) == 1, "the sweep comes to every tick");
+static_assert(kFlipPatience + kFlipTicks < kFlipInterval, "one flip is over before the next");
 
 /** How often a kind is drawn, and how long it lasts. */
 struct Habit {
@@ -23,6 +33,7 @@ struct Habit {
 };
 
 // What is over in a tick or two is drawn often, what takes a recovery seldom: else nothing would ever move.
+// Bits of the configuration are not drawn: they come in their order.
 constexpr std::array<Habit, kFaultKinds> kHabits{{
     {FaultKind::kPedalReleased, "pedal released", 60, 1, 40},
     {FaultKind::kPedalBounces, "pedal bounces", 20, 2, 30},
@@ -57,7 +68,7 @@ constexpr std::array<Habit, kFaultKinds> kHabits{{
     {FaultKind::kOtherHolder, "other holder", 8, 1, 1},
     {FaultKind::kClockOverruns, "clock overruns", 20, 1, 6},
     {FaultKind::kStateBitFlips, "bit of the state flips", 10, 1, 1},
-    {FaultKind::kConfigBitFlips, "bit of the configuration flips", 12, 30, 30},
+    {FaultKind::kConfigBitFlips, "bit of the configuration flips", 0, kFlipTicks, kFlipTicks},
 }};
 
 constexpr bool habits_are_in_order() {
@@ -85,17 +96,15 @@ Fault draw(plant::Random& random, std::uint32_t tick) {
     left -= habit->weight;
     habit++;
   }
-  return {tick, habit->kind, random.below(ILK_SLOTS),
-          habit->shortest + random.below(habit->longest - habit->shortest + 1), random.below(0xFFFFFFFF)};
+  return {tick,
+          habit->kind,
+          random.below(ILK_SLOTS),
+          habit->shortest + random.below(habit->longest - habit->shortest + 1),
+          random.below(0xFFFFFFFF),
+          0};
 }
 
-}  // namespace
-
-std::string_view name_of(FaultKind kind) { return kHabits[static_cast<std::size_t>(kind)].name; }
-
-Case make_case(std::uint64_t seed, std::uint64_t number) {
-  plant::Random random(seed ^ (number * 0x9e3779b97f4a7c15u), kPlanStream);
-  Case plan{seed, number, kCaseTicks, {}};
+void add_drawn_faults(Case& plan, plant::Random& random) {
   std::uint32_t tick = kQuietTicks;
   while (tick < kCaseTicks) {
     plan.faults.push_back(draw(random, tick));
@@ -104,6 +113,44 @@ Case make_case(std::uint64_t seed, std::uint64_t number) {
     }
     // Bursts, with pauses in which the robot gets into motion again.
     tick += random.chance(0.8) ? 1 + random.below(90) : 100 + random.below(400);
+  }
+}
+
+/** The next bits of the configuration, each somewhere in its share of the case. */
+void add_config_flips(Case& plan, plant::Random& random) {
+  const std::uint64_t cases_before = plan.number - plan.number / kCasesPerSweep;
+  for (std::uint32_t flip = 0; flip < kFlipsPerCase; flip++) {
+    const std::uint32_t begin = kQuietTicks + flip * kFlipInterval;
+    const std::uint32_t tick = begin + random.below(kFlipInterval - kFlipPatience - kFlipTicks);
+    const auto bit = static_cast<std::uint32_t>((cases_before * kFlipsPerCase + flip) % kConfigBits);
+    plan.faults.push_back({tick, FaultKind::kConfigBitFlips, 0, kFlipTicks, bit, 0});
+  }
+}
+
+/** E-stop and pedal in turn, each at the next tick of a press. */
+void add_stops(Case& plan, plant::Random& random) {
+  const std::uint64_t first = plan.number / kCasesPerSweep * kStopsPerSweep;
+  for (std::uint64_t stop = first; stop < first + kStopsPerSweep; stop++) {
+    const FaultKind kind = stop % 2 == 0 ? FaultKind::kEstopPulled : FaultKind::kPedalReleased;
+    const auto driven_ticks = static_cast<std::uint32_t>(1 + stop / 2 * kStopStride % kMoveTicks);
+    plan.faults.push_back({kQuietTicks, kind, 0, 1 + random.below(kLongestStop), 0, driven_ticks});
+  }
+}
+
+}  // namespace
+
+std::string_view name_of(FaultKind kind) { return kHabits[static_cast<std::size_t>(kind)].name; }
+
+bool sweeps_stops(std::uint64_t number) { return number % kCasesPerSweep == kCasesPerSweep - 1; }
+
+Case make_case(std::uint64_t seed, std::uint64_t number) {
+  plant::Random random(seed ^ (number * 0x9e3779b97f4a7c15u), kPlanStream);
+  Case plan{seed, number, kCaseTicks, {}};
+  if (sweeps_stops(number)) {
+    add_stops(plan, random);
+  } else {
+    add_drawn_faults(plan, random);
+    add_config_flips(plan, random);
   }
   std::ranges::stable_sort(plan.faults, {}, &Fault::tick);
   return plan;

@@ -168,7 +168,18 @@ std::uint32_t met_within(std::size_t config_bit) {
   return std::ranges::find(at_once, place) == at_once.end() ? kConfigPassTicks : 0;
 }
 
-Robot make_robot(plant::Random& random) {
+std::optional<std::size_t> slot_of_card_word(std::size_t config_bit) {
+  const std::size_t word = config_bit / 32 * sizeof(std::uint32_t);
+  for (std::size_t slot = 0; slot < ILK_SLOTS; slot++) {
+    const std::size_t axis_at = offsetof(ilk_config_t, axis) + slot * sizeof(ilk_axis_config_t);
+    if (word == axis_at + offsetof(ilk_axis_config_t, card)) {
+      return slot;
+    }
+  }
+  return std::nullopt;
+}
+
+Robot make_robot(plant::Random& random, bool keeps_word) {
   constexpr std::uint32_t periods[] = {500, 1000, 1000, 1000, 2000};
   Robot robot{};
   ilk_config_t& config = robot.config;
@@ -182,7 +193,7 @@ Robot make_robot(plant::Random& random) {
   config.pedal_disagree_ticks = ticks_of(between(random, 20, 50), config.period_us);
   config.bad_frame_limit = between(random, 1, 5);
   config.overrun_limit = between(random, 1, 5);
-  if (random.chance(0.12)) {
+  if (random.chance(0.12) && !keeps_word) {
     robot.far_coaster = random.below(ILK_SLOTS);
   }
   for (std::size_t slot = 0; slot < ILK_SLOTS; slot++) {

@@ -25,6 +25,9 @@ inline constexpr std::uint32_t kConfigPassTicks = 2 * ILK_SLOTS;
  * on. */
 std::uint32_t met_within(std::size_t config_bit);
 
+/** The slot whose kind of card that bit of the configuration belongs to. */
+std::optional<std::size_t> slot_of_card_word(std::size_t config_bit);
+
 struct Robot {
   ilk_config_t config;
   plant::Parameters plant;
@@ -32,8 +35,12 @@ struct Robot {
   std::optional<std::size_t> far_coaster; /**< axis that coasts farther than its configuration says */
 };
 
-/** The configuration is valid by construction. */
-Robot make_robot(plant::Random& random);
+/**
+ * The configuration is valid by construction.
+ *
+ * @param keeps_word no axis coasts farther than its configuration says
+ */
+Robot make_robot(plant::Random& random, bool keeps_word = false);
 
 }  // namespace interlock::campaign
 

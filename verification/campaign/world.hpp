@@ -9,6 +9,7 @@
 #include <bitset>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -21,9 +22,6 @@
 #include "robot.hpp"
 
 namespace interlock::campaign {
-
-inline constexpr std::size_t kStateBits = sizeof(ilk_state_t) * 8;
-inline constexpr std::size_t kConfigBits = sizeof(ilk_config_t) * 8;
 
 /** What a campaign counts. Sums of cases do not depend on the order in which they ran. */
 struct Totals {
@@ -46,6 +44,9 @@ struct Totals {
   std::array<std::uint64_t, ILK_CAUSE_COUNT> causes{};
   std::bitset<kStateBits> state_bits;
   std::bitset<kConfigBits> config_bits;
+  std::bitset<kConfigBits> config_bits_driven; /**< flipped while an axis was driven */
+  std::bitset<kMoveTicks> estop_ticks;         /**< driven ticks of a press after which E-stop was pulled */
+  std::bitset<kMoveTicks> pedal_ticks;         /**< the same of a pedal that was released */
 
   void add(const Totals& other);
 };
@@ -68,9 +69,18 @@ class World {
   const Totals& totals() const { return totals_; }
   const ilk_state_t& state() const { return state_; }
   const ilk_outputs_t& outputs() const { return outputs_; }
+
+  /** What the newest tick handed to the kernel. */
+  const ilk_config_t& config() const { return config_; }
+  const ilk_inputs_t& inputs() const { return inputs_; }
+  std::span<const ilk_request_t> requests() const { return app_.requests(); }
+
   double true_position(std::size_t slot) const { return plant_.station(slot)->position_counts(); }
 
  private:
+  void inject_what_is_due();
+  bool is_due(const Fault& fault) const;
+  void note_swept_tick(FaultKind kind);
   void inject(const Fault& fault);
   void inject_pedal(const Fault& fault);
   bool another_holds_the_pedal() const;
@@ -109,6 +119,9 @@ class World {
 
   std::uint32_t tick_ = 0;
   std::size_t next_fault_ = 0;
+  std::vector<Fault> waiting_;     /**< their tick is over, but not that of the press */
+  std::uint32_t driven_ticks_ = 0; /**< since MOTION was entered */
+  bool is_driven_ = false;
   bool foot_was_down_ = false;
   std::uint32_t shown_generation_ = 0;
   std::uint32_t pedal_held_until_ = 0;
@@ -121,10 +134,10 @@ class World {
   std::size_t config_bit_ = 0;
   std::optional<std::size_t> state_bit_;
   std::size_t sweep_bit_;
-  std::uint32_t config_flips_ = 0;
   std::array<std::uint32_t, ILK_SLOTS> broken_until_{};
   std::array<bool, ILK_SLOTS> broken_{};
   std::array<bool, ILK_SLOTS> was_homing_{};
+  std::array<bool, ILK_SLOTS> card_unknown_{}; /**< the kind of card was damaged since it was driven */
   std::array<std::uint32_t, ILK_SLOTS> fault_before_{};
   std::uint32_t mode_before_ = ILK_MODE_INIT;
   std::optional<std::string_view> unrefused_; /**< what a kernel did that had to stay in INIT */

@@ -11,8 +11,9 @@ nine of ten must be noticed.
 
 What nothing notices is an equivalent only if CBMC shows that it does the same as the sound kernel (equal.py).
 
-Prints a line for each mutant, the kill matrix and the survivors; writes build/evidence/mutation.json, or
-mutation_without_tests.json.
+Prints a line for each mutant, the kill matrix and the survivors; writes build/evidence/mutation.json and,
+in build/evidence/mutation, mutants, kill matrix and survivors (tables.py); without the tests all of that as
+mutation_without_tests.
 Verdicts are kept by content in build/mutation; --list draws, and judges nothing.
 """
 
@@ -28,6 +29,7 @@ from pathlib import Path
 sys.path.append(str(Path(__file__).resolve().parents[1] / "evidence"))
 
 import evidence
+import tables
 from equal import shown_equal
 from functions import Function, function_at, functions_in
 from operators import Mutant, draw, mutants_of
@@ -173,34 +175,9 @@ def judge_all(mutants: Sequence[Mutant], asked: Sequence[str], every: bool) -> l
     return on_trees("mutant-tree", list(mutants), one)
 
 
-def matrix(mutants: Sequence[Mutant], verdicts: Sequence[Verdict], functions: Sequence[Function]) -> str:
-    """Kills by function and rung, and what was left."""
-    columns = (*RUNGS, "equivalent", "survived")
-    table: dict[str, Counter[str]] = {}
-    for mutant, verdict in zip(mutants, verdicts, strict=True):
-        function = function_at(functions, mutant.file, mutant.line)
-        row = table.setdefault(f"{Path(mutant.file).stem}.{function.name if function else ''}", Counter())
-        row.update([verdict.fate] if verdict.fate != "killed" else {r.split()[0] for r in verdict.reasons})
-    lines = [f"{'function':<44}" + "".join(f"{column:>12}" for column in columns)]
-    lines += [
-        f"{name:<44}" + "".join(f"{row[column]:>12}" for column in columns)
-        for name, row in sorted(table.items())
-    ]
-    return "\n".join(lines)
-
-
-def print_survivors(mutants: Sequence[Mutant], verdicts: Sequence[Verdict]) -> None:
-    for mutant, verdict in zip(mutants, verdicts, strict=True):
-        if verdict.fate == "survived":
-            print(f"survived: {mutant.name}, {mutant.file}:{mutant.line}")
-            print(f"    - {mutant.before.strip()}\n    + {mutant.after.strip()}")
-
-
 def figures_of(verdicts: Sequence[Verdict], least: int, functions: int) -> dict[str, float]:
     fates = Counter(verdict.fate for verdict in verdicts)
-    by_rung = Counter(
-        rung for v in verdicts for rung in {reason.split()[0] for reason in v.reasons if v.fate == "killed"}
-    )
+    by_rung = tables.by_rung(verdicts)
     return {
         "mutants": len(verdicts),
         "killed": fates["killed"],
@@ -208,7 +185,7 @@ def figures_of(verdicts: Sequence[Verdict], least: int, functions: int) -> dict[
         "survived": fates["survived"],
         "functions": functions,
         "least_of_a_function": least,
-        **{f"killed_by_{rung}": by_rung[rung] for rung in RUNGS},
+        **{f"killed_by_{rung}": by_rung[rung]["killed"] for rung in RUNGS},
         "processor_s_of_first_judging": round(sum(verdict.seconds for verdict in verdicts), 1),
     }
 
@@ -246,14 +223,16 @@ def main() -> int:
         raise SystemExit(f"mutation: the sound kernel is noticed, too: {'; '.join(complaints)}")
     asked = RUNGS[1:] if arguments.without_tests else RUNGS
     verdicts = judge_all(mutants, asked, arguments.matrix)
-    print(matrix(mutants, verdicts, functions))
-    print_survivors(mutants, verdicts)
+    name = "mutation_without_tests" if arguments.without_tests else "mutation"
+    log = evidence.log_directory(name)
+    tables.write(log, mutants, verdicts, functions, arguments.matrix)
+    print((log / "matrix.txt").read_text("utf-8"))
+    print(f"survivors: {(log / 'survivors.txt').read_text('utf-8')}")
     figures = figures_of(verdicts, least, len(functions))
     print(", ".join(f"{name} {value}" for name, value in figures.items()))
     # Survivors are listed, not excused: the target is none, and without the unit tests one of ten.
     allowed = figures["killed"] / 9 if arguments.without_tests else 0
     sound = figures["mutants"] >= arguments.count and figures["killed"] > 0 and figures["survived"] <= allowed
-    name = "mutation_without_tests" if arguments.without_tests else "mutation"
     tools = {"gcc": "12", "seed": arguments.seed}
     return evidence.write(name, "PASSED" if sound else "FAILED", tools, figures, [], started)
 

@@ -27,7 +27,11 @@ FAULTS = (
     "link_damage",
     "restart_in_order",
 )
-"""Each kind in turn, so that as many scenarios as there are kinds have them all."""
+TURN = (*FAULTS, "restart_in_order", "restart_in_order")
+"""What a turn of scenarios has, in an order drawn for it: every kind once, and what has orders to go through
+three times, so that eight turns have each of the 24 orders."""
+
+ORDERS = tuple(itertools.permutations(PROCESSES))
 
 AS_SERVICES = frozenset({"kill_kernel", "kill_simulator", "restart_in_order"})
 """Those in which the others live on without what `interlock run` would stop them for."""
@@ -53,7 +57,7 @@ class Plan:
     """How the stop is demanded of a robot that goes on: pedal, estop or request."""
     clock_step_s: int
     end_order: tuple[str, ...]
-    """In which the processes are killed, by `restart_in_order`."""
+    """In which the processes are killed, by `restart_in_order`; both orders are the next of the seed's."""
     start_order: tuple[str, ...]
     gaps_s: tuple[float, ...]
     """Before each of those kills and starts."""
@@ -61,22 +65,33 @@ class Plan:
     """Seed of what the fault itself draws: bytes, places, lengths."""
 
 
+def kinds_within(seed: int, count: int) -> int:
+    """How many kinds of fault the first scenarios of a seed have."""
+    return len({plan(seed, number).fault for number in range(count)})
+
+
+def order_of(seed: int, what: str, restart: int) -> tuple[str, ...]:
+    """The order of that restart, counted from 0: in 24 of them each order comes once."""
+    turn, place = divmod(restart, len(ORDERS))
+    return random.Random(f"{seed}/{what} {turn}").sample(ORDERS, len(ORDERS))[place]
+
+
 def plan(seed: int, number: int) -> Plan:
-    """The scenario of that number. Its kind follows from its place in the seed's shuffle of all kinds."""
-    turn, place = divmod(number, len(FAULTS))
-    order = random.Random(f"{seed}/turn {turn}").sample(FAULTS, len(FAULTS))
+    """The scenario of that number. Its kind follows from its place in the seed's shuffle of a turn."""
+    turn, place = divmod(number, len(TURN))
+    kinds = random.Random(f"{seed}/turn {turn}").sample(TURN, len(TURN))
+    restart = turn * TURN.count("restart_in_order") + kinds[:place].count("restart_in_order")
     dice = random.Random(f"{seed}/{number}")
-    orders = list(itertools.permutations(PROCESSES))
     return Plan(
         seed=seed,
         number=number,
-        fault=order[place],
+        fault=kinds[place],
         instant_s=dice.uniform(0, LONGEST_MOVE_S),
         lasts_s=dice.uniform(*FAULT_S),
         stop=dice.choice(("pedal", "estop", "request")),
         clock_step_s=dice.choice(CLOCK_STEPS_S),
-        end_order=dice.choice(orders),
-        start_order=dice.choice(orders),
+        end_order=order_of(seed, "end", restart),
+        start_order=order_of(seed, "start", restart),
         gaps_s=tuple(dice.uniform(0, LONGEST_GAP_S) for _ in range(2 * len(PROCESSES))),
         noise=dice.getrandbits(32),
     )

@@ -13,8 +13,12 @@ import sys
 import time
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-EVIDENCE = ROOT / "build/evidence"
+sys.path.append(str(Path(__file__).resolve().parents[1] / "evidence"))
+
+import evidence
+
+ROOT = evidence.ROOT
+EVIDENCE = evidence.EVIDENCE
 REPORTED_SEEDS = (101, 300)
 
 # Published for the real system: 3.56 mm RMS (Wartenberg 2018).
@@ -68,9 +72,7 @@ def main() -> int:
     study = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
     measured = figures(study)
     failures = broken(measured, study)
-    commit = subprocess.run(
-        ["git", "-C", str(ROOT), "rev-parse", "HEAD"], check=True, capture_output=True, text=True
-    ).stdout.strip()
+    commit = evidence.commit()
     record = {
         "id": "steering",
         "status": "FAILED" if failures else "PASSED",

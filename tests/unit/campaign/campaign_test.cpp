@@ -4,6 +4,9 @@
  */
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <bitset>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -64,6 +67,106 @@ TEST(Campaign, Draws_every_kind_of_fault_alone_and_in_pairs) {
   EXPECT_TRUE(pairs);
 }
 
+TEST(Campaign, P2_cases_one_after_the_other_sweep_stops_over_each_tick_of_a_move) {
+  std::map<FaultKind, std::set<std::uint32_t>> ticks;
+  for (std::uint64_t number = 0; number < 3125; number++) {
+    if (sweeps_stops(number)) {
+      for (const Fault& fault : make_case(11, number).faults) {
+        ticks[fault.kind].insert(fault.driven_ticks);
+      }
+    }
+  }
+  EXPECT_THAT(ticks, testing::UnorderedElementsAre(testing::Key(FaultKind::kEstopPulled),
+                                                   testing::Key(FaultKind::kPedalReleased)));
+  for (const auto& [kind, swept] : ticks) {
+    EXPECT_EQ(swept.size(), kMoveTicks) << name_of(kind);
+    EXPECT_EQ(*swept.begin(), 1u) << name_of(kind);
+    EXPECT_EQ(*swept.rbegin(), kMoveTicks) << name_of(kind);
+  }
+}
+
+TEST(Campaign, P2_stops_of_a_sweep_come_at_their_ticks_and_are_met) {
+  const Case plan = make_case(11, 4);
+  const Outcome outcome = run(plan);
+  std::bitset<kMoveTicks> estop;
+  std::bitset<kMoveTicks> pedal;
+  for (const Fault& fault : plan.faults) {
+    (fault.kind == FaultKind::kEstopPulled ? estop : pedal).set(fault.driven_ticks - 1);
+  }
+  EXPECT_FALSE(outcome.failure) << outcome.failure->reason;
+  EXPECT_EQ(outcome.totals.estop_ticks, estop);
+  EXPECT_EQ(outcome.totals.pedal_ticks, pedal);
+  EXPECT_EQ(outcome.totals.stops_met, plan.faults.size());
+}
+
+TEST(Campaign, P14_cases_one_after_the_other_flip_each_bit_of_the_configuration) {
+  std::bitset<kConfigBits> bits;
+  for (std::uint64_t number = 0; number < 3010; number++) {
+    for (const Fault& fault : make_case(11, number).faults) {
+      if (fault.kind == FaultKind::kConfigBitFlips) {
+        bits.set(fault.amount);
+      }
+    }
+  }
+  EXPECT_TRUE(bits.all()) << bits.count() << " of " << kConfigBits;
+}
+
+TEST(Campaign, P14_each_planned_bit_of_the_configuration_flips_although_it_waits_for_drive) {
+  const Case plan = make_case(11, 3);
+  std::bitset<kConfigBits> bits;
+  for (const Fault& fault : plan.faults) {
+    if (fault.kind == FaultKind::kConfigBitFlips) {
+      bits.set(fault.amount);
+    }
+  }
+  const Outcome outcome = run(plan);
+  EXPECT_FALSE(outcome.failure) << outcome.failure->reason;
+  EXPECT_GT(bits.count(), 0u);
+  EXPECT_EQ(outcome.totals.config_bits, bits);
+  EXPECT_TRUE(outcome.totals.config_bits_driven.any());
+}
+
+TEST(Campaign, P14_the_card_word_of_a_slot_is_known_by_its_bits) {
+  const std::size_t first = offsetof(ilk_config_t, axis[7].card) * 8;
+  EXPECT_EQ(slot_of_card_word(first - 1), std::nullopt);
+  EXPECT_EQ(slot_of_card_word(first), 7u);
+  EXPECT_EQ(slot_of_card_word(first + 31), 7u);
+  EXPECT_EQ(slot_of_card_word(first + 32), std::nullopt);
+}
+
+// The stop was called late although the limit of missed deadlines was the damaged word.
+TEST(Campaign, P14_a_stop_that_rests_on_a_damaged_limit_is_demanded_when_the_damage_is_met) {
+  const std::uint32_t bit = offsetof(ilk_config_t, overrun_limit) * 8 + 16;
+  // As many ticks as the configuration has slices: the damage is met at once or late.
+  for (std::uint32_t tick = 1000; tick < 1000 + ILK_SLOTS; tick++) {
+    const Fault flip{tick, FaultKind::kConfigBitFlips, 0, 30, bit, 0};
+    const Fault overruns{tick, FaultKind::kClockOverruns, 0, 6, 0, 0};
+    for (const bool flips_first : {false, true}) {
+      Case plan{11, 4, 1100, flips_first ? std::vector{flip, overruns} : std::vector{overruns, flip}};
+      ASSERT_TRUE(sweeps_stops(plan.number)) << "its foot stays down";
+      const Outcome outcome = run(plan);
+      EXPECT_FALSE(outcome.failure) << outcome.failure->reason << ", tick " << tick;
+      EXPECT_GE(outcome.totals.stops_met, 2u);
+    }
+  }
+}
+
+// Its axis 1 drifts while its kind of card is damaged, and is enabled again later.
+TEST(Campaign, P6_the_watch_for_drift_may_begin_later_after_the_kind_of_card_was_damaged) {
+  const Case plan = make_case(1, 390);
+  const auto drifts = [](const Fault& fault) {
+    return fault.kind == FaultKind::kAxisDrifts && fault.tick == 17696 && fault.slot == 1;
+  };
+  const auto damages = [](const Fault& fault) {
+    return fault.kind == FaultKind::kConfigBitFlips && fault.tick == 17698 && fault.amount == 1251;
+  };
+  ASSERT_TRUE(std::ranges::any_of(plan.faults, drifts)) << "the plan is another one: find such a case anew";
+  ASSERT_TRUE(std::ranges::any_of(plan.faults, damages)) << "the plan is another one: find such a case anew";
+  EXPECT_EQ(slot_of_card_word(1251), 1u);
+  const Outcome outcome = run(plan);
+  EXPECT_FALSE(outcome.failure) << outcome.failure->reason;
+}
+
 TEST(Campaign, Case_runs_twice_to_the_same_bits) {
   Case plan = make_case(3, 1);
   plan.ticks = 5000;
@@ -97,6 +200,7 @@ TEST(Campaign, P14_flip_changes_one_bit_and_back) {
 
 TEST(CaseFile, Reads_what_it_wrote) {
   const Case plan = make_case(5, 9);
+  ASSERT_TRUE(sweeps_stops(plan.number)) << "has faults that wait for their tick of a press";
   std::stringstream text;
   write_case(text, plan);
   const auto read = read_case(text);
@@ -107,10 +211,11 @@ TEST(CaseFile, Reads_what_it_wrote) {
   ASSERT_EQ(read->faults.size(), plan.faults.size());
   EXPECT_EQ(read->faults.back().kind, plan.faults.back().kind);
   EXPECT_EQ(read->faults.back().amount, plan.faults.back().amount);
+  EXPECT_EQ(read->faults.back().driven_ticks, plan.faults.back().driven_ticks);
 }
 
 TEST(CaseFile, Names_the_line_that_it_does_not_understand) {
-  std::stringstream text("interlock campaign case 1\nseed 1\nfault 5 99 0 0 0\n");
+  std::stringstream text("interlock campaign case 2\nseed 1\nfault 5 99 0 0 0 0\n");
   const auto read = read_case(text);
   ASSERT_FALSE(read);
   EXPECT_THAT(read.error(), testing::StartsWith("line 3:"));
