@@ -111,6 +111,12 @@ def clean(tmp_path_factory: pytest.TempPathFactory) -> tuple[Items, str]:
     return Tree(tmp_path_factory.mktemp("clean")).stated()
 
 
+@pytest.fixture(scope="module")
+def stated_here(tmp_path_factory: pytest.TempPathFactory) -> tuple[Items, str]:
+    """What the project's own requirements state."""
+    return read_stated(ROOT, tmp_path_factory.mktemp("stated"))
+
+
 @pytest.fixture
 def tree(tmp_path: Path) -> Tree:
     return Tree(tmp_path)
@@ -250,9 +256,12 @@ def test_rows_chosen_by_seed_open_from_the_hazard_to_the_raw_log(
             assert (output / unescape(log)).resolve().exists(), log
 
 
-def test_twenty_rows_of_the_real_matrix_open_from_the_hazard_to_the_code(tmp_path: Path) -> None:
+@pytest.mark.timeout(300)
+def test_twenty_rows_of_the_real_matrix_open_from_the_hazard_to_the_code(
+    stated_here: tuple[Items, str],
+) -> None:
     source = Source(ROOT, "built", lambda _: False)
-    of = gate.trace(read_project(source, read_stated(ROOT, tmp_path / "build/report"), (), ()))
+    of = gate.trace(read_project(source, stated_here, (), ()))
     written = pages.write_all(of, [], "built")
     found = rows(of)
     assert len(found) > 500
@@ -388,7 +397,9 @@ def test_what_is_awaited_is_named_and_a_release_is_red_without_it(
     assert pages.counts(of)["measurements awaited"] == len(long)
     written = pages.write_all(of, [], "built")
     assert "CAMPAIGN" in written["index.html"]
-    broken = pages.broken_links(written, tree.path / "build/report")
+    output = tree.path / "build/report"
+    output.mkdir(parents=True)
+    broken = pages.broken_links(written, output)
     assert not any("evidence" in link for _, link in broken)
     assert sorted(one.uid for one in gate.findings(reported(release=True))) == long
 
@@ -615,8 +626,9 @@ def test_every_cause_makes_a_control_action_unsafe() -> None:
     assert set(re.findall(r"CA-\d+", table)) == set(stated)
 
 
-def test_the_projects_own_requirements_hold_together(tmp_path: Path) -> None:
-    items, printed = read_stated(ROOT, tmp_path)
+@pytest.mark.timeout(300)
+def test_the_projects_own_requirements_hold_together(stated_here: tuple[Items, str]) -> None:
+    items, printed = stated_here
     links = read_links(LINKS)
     project = gate.Project(ROOT, items, functions_of(ROOT), links, [], {}, {}, [], printed)
     of = gate.Trace(project)
