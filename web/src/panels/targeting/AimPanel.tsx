@@ -88,7 +88,7 @@ export function AimPanel({ targeting, history, asked, onSet }: AimPanelProps) {
                 {...field}
               />
             ))}
-            <SetBy history={history} field={name} otherwise="Not set yet." />
+            <SetBy history={history} field={name} isSet={targeting[name] !== null} unset="Not set yet." />
           </fieldset>
         ))}
         <ProbeDrawing textOf={(name) => aim[name].text[0] ?? ""} />

@@ -15,7 +15,7 @@ export function HistoryPanel({ history, asked }: HistoryPanelProps) {
   return (
     <Panel title="History" className="targeting-history" asked={asked} tools={<FrameLabel />}>
       {history !== null && history.changes.length === 0 && (
-        <p className="history-empty">Nobody has set anything yet.</p>
+        <p className="history-empty">No change was noted yet.</p>
       )}
       {history !== null && history.changes.length > 0 && (
         <table className="table">

@@ -23,15 +23,15 @@ export function PosesPanel({ view, reported, history, asked }: PosesPanelProps) 
     <Panel title="Poses of the treatment point" className="poses" asked={asked} tools={<FrameLabel />}>
       <div className="pose-row">
         <Pose name="Current" from="by the encoders" pose={current} otherwise={currentWords}>
+          {view?.current_deviation != null && (
+            <ErrorLine name="current" from="desired" deviation={view.current_deviation} />
+          )}
           {current !== null && alignment !== null && (
-            <>
-              <ErrorLine name="current" from="desired" deviation={deviationOf(current, alignment.desired)} />
-              <ErrorLine
-                name="current"
-                from="reachable"
-                deviation={deviationOf(current, alignment.reachable)}
-              />
-            </>
+            <ErrorLine
+              name="current"
+              from="reachable"
+              deviation={deviationOf(current, alignment.reachable)}
+            />
           )}
         </Pose>
         <Pose
@@ -56,9 +56,7 @@ export function PosesPanel({ view, reported, history, asked }: PosesPanelProps) 
           pose={reported}
           otherwise="No imager reported a pose."
         >
-          {reported !== null && (
-            <SetBy history={history} field="reported_position" otherwise="Set before this was noted." />
-          )}
+          {reported !== null && <SetBy history={history} field="reported_position" unset="" isSet />}
           {reported !== null && current !== null && (
             <ErrorLine name="reported" from="current" deviation={deviationOf(reported, current)} />
           )}

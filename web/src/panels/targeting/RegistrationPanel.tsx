@@ -17,7 +17,7 @@ import { useReason } from "../../state/useReason";
 import { type Draft, draftOf, hasNews, isEdited, kept, received, taken, withText, withValues } from "./draft";
 import { list } from "./numbers";
 import { FRAME, FrameLabel, News, Problems, SendBar, SetBy } from "./parts";
-import { columnNames, originOf, rowNames } from "./pose";
+import { columnNames, isIdentity, originOf, rowNames } from "./pose";
 import { MOST_CHARACTERS, readPose } from "./poseFile";
 import {
   IGNORES_AT,
@@ -91,7 +91,12 @@ export function RegistrationPanel({ targeting, history, asked, onSet }: Registra
         noValidate
         onSubmit={(event) => void onSubmit(event)}
       >
-        <SetBy history={history} field="registration" otherwise="Nobody set it: it is the identity." />
+        <SetBy
+          history={history}
+          field="registration"
+          isSet={!isIdentity(targeting.registration)}
+          unset="Nobody set it: it is the identity."
+        />
         <Matrix
           draft={draft}
           readOnly={reason !== null}

@@ -25,7 +25,7 @@ export interface Hindrance {
   readonly text: string;
 }
 
-/** Why a proposal of these axes would be refused now, whatever the target; in the order in which the app looks. */
+/** Why a proposal of these axes would be refused now, whatever the target. The app names the first. */
 export function hindrances(
   lines: readonly AxisLine[],
   axisAt: (slot: number) => Pick<AxisFrame, "state" | "homed"> | undefined,

@@ -14,15 +14,17 @@ interface SetByProps {
   readonly history: TargetingHistory | null;
   /** Name of the value in the interface. */
   readonly field: string;
-  /** What there is until somebody sets it. */
-  readonly otherwise: string;
+  /** Whether there is a value: one that an older release set has nobody noted. */
+  readonly isSet: boolean;
+  /** What to say while there is none. */
+  readonly unset: string;
 }
 
 /** Who set a value, from where, and how long ago. */
-export function SetBy({ history, field, otherwise }: SetByProps) {
+export function SetBy({ history, field, isSet, unset }: SetByProps) {
   if (history === null) return <p className="set-by">Who set it is not known yet.</p>;
   const origin = history.last_set[field];
-  if (origin === undefined) return <p className="set-by">{otherwise}</p>;
+  if (origin === undefined) return <p className="set-by">{isSet ? "Set before that was noted." : unset}</p>;
   return (
     <p className="set-by" title={`${localTime(origin.time)}; record ${origin.record} of the audit`}>
       Set {ageWords(origin.time, history.now)} by <strong>{origin.user}</strong> ({sourceWords(origin)})
