@@ -41,6 +41,7 @@ json to_json(const CheckResult& result) {
 
 json to_json(const AxisProfile& profile) {
   return {{"slot", profile.slot},
+          {"homed", profile.homed},
           {"lowest_setpoint_counts", profile.allowed.lowest_counts},
           {"highest_setpoint_counts", profile.allowed.highest_counts},
           {"soft_min_counts", profile.soft_limits.min_counts},

@@ -35,6 +35,7 @@ constexpr std::string_view basis_name(ProfileBasis basis) noexcept {
 /** One axis of a profile: positions in counts, velocities in counts/s. */
 struct AxisProfile {
   std::uint32_t slot = 0;
+  bool homed = false;                 /**< soft limits say nothing of one that is not */
   SetpointRange allowed;              /**< in which the kernel takes setpoints of it */
   SoftLimits soft_limits;             /**< beyond which it is not driven once homed */
   std::optional<double> top_velocity; /**< that planned motion keeps to; nothing: no time is planned */

@@ -9,7 +9,7 @@ namespace interlock {
 namespace {
 
 /** Any number, the same each time. */
-constexpr std::uint64_t seed = 1;
+constexpr std::uint64_t reach_seed = 1;
 
 using Cell = Eigen::Vector3i;
 
@@ -70,7 +70,7 @@ KinematicsResult<Reach> reach_of(const Robot& robot, const RobotKinematics& kine
     lowest.push_back(std::min(ends[0], ends[1]));
     highest.push_back(std::max(ends[0], ends[1]));
   }
-  return kinematics.reached_points(lowest, highest, draws, seed).map([&](const ReachedPoints& points) {
+  return kinematics.reached_points(lowest, highest, draws, reach_seed).map([&](const ReachedPoints& points) {
     Reach reach{0.0, {}, 0, draws, points.refused};
     if (!points.zframe_mm.empty()) {
       const double longest = points.bounds.sizes().maxCoeff();

@@ -149,8 +149,10 @@ export class ConsolePage {
     }).toPass();
   }
 
-  async open(page: "Robot" | "Plots" | "3D" | "Codes" | "Users" | "Audit" | "Account"): Promise<void> {
-    await this.page.getByRole("link", { name: page }).click();
+  async open(
+    page: "Robot" | "Proposals" | "Plots" | "3D" | "Codes" | "Users" | "Audit" | "Account",
+  ): Promise<void> {
+    await this.page.getByRole("link", { name: page, exact: page === "Proposals" }).click();
   }
 
   /** By the Users page; ends on the Robot page. */

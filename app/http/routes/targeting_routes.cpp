@@ -62,7 +62,7 @@ Answering TargetingRoutes::show_alignment() const {
 }
 
 /** The same for as long as the probe is: computed once for it. */
-Answering TargetingRoutes::show_reach() const {
+Answering TargetingRoutes::show_reach() {
   const auto targeting = co_await present_targeting(context_);
   if (!targeting) {
     co_return fail(targeting.error());

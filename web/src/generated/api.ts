@@ -1104,6 +1104,8 @@ export interface components {
             /** @description What, where. */
             detail: string;
             field?: string;
+            /** @description Of the text that was sent, where one line is wrong. */
+            line?: number;
             expected?: string;
             next_step?: string;
         };
@@ -1355,6 +1357,8 @@ export interface components {
         };
         AxisProfile: {
             slot: number;
+            /** @description When it was checked; soft limits say nothing of an axis that is not. */
+            homed: boolean;
             /** @description Between both ends the kernel took setpoints when it was checked. */
             lowest_setpoint_counts: number;
             highest_setpoint_counts: number;

@@ -8,7 +8,8 @@ export interface Notice {
   readonly nextStep: string;
 }
 
-function isVerdict(code: string): boolean {
+/** Whether the catalog has a verdict of that name. */
+export function isVerdict(code: string): boolean {
   return catalog.verdict.some((verdict) => verdict.name === code);
 }
 
