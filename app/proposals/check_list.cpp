@@ -5,13 +5,13 @@
 namespace interlock {
 namespace {
 
-struct Words {
+struct CheckText {
   std::string_view name;
   std::string_view words;
 };
 
 /** In the order of `CheckName`. */
-constexpr std::array<Words, 16> words{{
+constexpr std::array<CheckText, 16> texts{{
     {"other_motion", "No homing and no motion of another mode is open."},
     {"targeting", "Registration, probe and target are still those from which it followed."},
     {"configuration", "The kernel runs the configuration of this robot's file."},
@@ -31,12 +31,12 @@ constexpr std::array<Words, 16> words{{
     {"skin", "The tip is at the skin or in front of it."},
     {"depth", "The insertion reaches the depth of the target."},
 }};
-static_assert(words.size() == static_cast<std::size_t>(CheckName::depth) + 1);
+static_assert(texts.size() == static_cast<std::size_t>(CheckName::depth) + 1);
 
 }  // namespace
 
-std::string_view check_name(CheckName name) noexcept { return words[static_cast<std::size_t>(name)].name; }
+std::string_view check_name(CheckName name) noexcept { return texts[static_cast<std::size_t>(name)].name; }
 
-std::string_view check_words(CheckName name) noexcept { return words[static_cast<std::size_t>(name)].words; }
+std::string_view check_words(CheckName name) noexcept { return texts[static_cast<std::size_t>(name)].words; }
 
 }  // namespace interlock
