@@ -91,7 +91,8 @@ TEST_F(ProfileTest, ATrajectoryIsApproachedAndFollowedToItsLastRow) {
   EXPECT_NEAR(found.axes[0].positions.back(), -0.2 * yaw.counts_per_unit, 1.0);
   EXPECT_NEAR(found.axes[0].lowest, std::min<double>(-0.7 * yaw.counts_per_unit, found.axes[0].positions[0]),
               1.0);
-  EXPECT_NEAR(found.times_s.back(), proposal.duration_s, 1e-6);
+  // The check plans to the nearest count of the first row, the walk to the row itself.
+  EXPECT_NEAR(found.times_s.back(), proposal.duration_s, 1e-3);
 }
 
 TEST_F(ProfileTest, AMoveOfOneAxisHasTheDriveOfItsLawOverTheWay) {

@@ -111,17 +111,17 @@ TEST(RobotBodyTest, JointsThatGeometryForbidsHaveNoBody) {
 TEST(ReachTest, EveryCellOfTheShellHoldsAPlaceThatTheRobotReaches) {
   for (const Robot* robot : {&neuro(), &prostate()}) {
     const RobotKinematics kinematics = kinematics_of(*robot);
-    const Reach reach = *reach_of(*robot, kinematics, 20'000);
+    const Reach reach = *reach_of(*robot, kinematics, 4'000);
     AxisPositions lowest;
     AxisPositions highest;
     for (const Axis& axis : robot->axes) {
       lowest.push_back(axis.to_unit(axis.lowest_setpoint_counts()));
       highest.push_back(axis.to_unit(axis.highest_setpoint_counts()));
     }
-    const ReachedPoints points = *kinematics.reached_points(lowest, highest, 20'000, 1);
+    const ReachedPoints points = *kinematics.reached_points(lowest, highest, 4'000, 1);
     EXPECT_GT(reach.shell_mm.size(), 100u) << robot->name;
     EXPECT_LE(reach.shell_mm.size(), reach.cells);
-    EXPECT_EQ(points.zframe_mm.size() + points.refused, 20'000u);
+    EXPECT_EQ(points.zframe_mm.size() + points.refused, 4'000u);
     for (const Vector3d& centre : reach.shell_mm) {
       const auto inside = [&](const Vector3d& point) {
         return ((point - centre).array().abs() <= reach.cell_mm / 2 + 1e-9).all();
