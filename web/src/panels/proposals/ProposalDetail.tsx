@@ -27,7 +27,9 @@ export function ProposalDetail({ proposal }: { readonly proposal: Proposal }) {
   return (
     <Panel title={`Proposal ${proposal.id}`} className="proposal-detail" tools={tools}>
       <p className="detail-wish">
-        <Wish proposal={proposal} motor={motor} />
+        <span>
+          <Wish proposal={proposal} motor={motor} />
+        </span>
         <StateChip state={proposal.state} />
       </p>
       <Facts proposal={proposal} plan={plan} />
@@ -78,7 +80,7 @@ function Facts({ proposal, plan }: FactsProps) {
       <Fact name="Outcome">{proposal.detail}</Fact>
       {verdict != null && (
         <Fact name="Verdict">
-          <Code code={verdict} /> {isVerdict(verdict) && entry("verdict", verdict).next_step}
+          <Code code={verdict} /> {nextStepOf(verdict, proposal.detail)}
         </Fact>
       )}
     </dl>
@@ -92,6 +94,12 @@ function Fact({ name, children }: { readonly name: string; readonly children: Re
       <dd>{children}</dd>
     </div>
   );
+}
+
+/** What to do next; nothing where the outcome says it already. */
+function nextStepOf(verdict: string, outcome: string): string {
+  const nextStep = isVerdict(verdict) ? entry("verdict", verdict).next_step : "";
+  return outcome.includes(nextStep) ? "" : nextStep;
 }
 
 /** Verdicts lead to their page; codes of the app alone have none. */

@@ -66,8 +66,10 @@ function ProposalItem({
       </span>
       <WaitingMove proposal={proposal} motor={motor} />
       <span className="proposal-foot">
-        {proposal.author} · {sourceWord(proposal)} ·{" "}
-        <time dateTime={proposal.created}>{localTime(proposal.created)}</time>
+        <span className="proposal-from">
+          {proposal.author} · {sourceWord(proposal)} ·{" "}
+          <time dateTime={proposal.created}>{localTime(proposal.created)}</time>
+        </span>
         <span className="proposal-commands">
           <a
             className="button quiet"

@@ -33,26 +33,25 @@ export default function ViewPage() {
 function ViewPanel() {
   const targeting = usePolled(api.targeting, TARGETING_EVERY_MS);
   const alignment = usePolled(api.alignment, ALIGNMENT_EVERY_MS);
+  const aim = useSame(targeting.value);
+  const poses = useSame(alignment.value);
   const [preset, setPreset] = useState<Preset | undefined>(presets[0]);
   const [robot, setRobot] = useState(true);
   const [reachWanted, setReachWanted] = useState(false);
   const proposals = useConsole((state) => state.proposals);
   const shown = ghostOf(proposals, useProposalPlace());
   const { plan, notice: planNotice } = usePlan(shown);
-  const { reach, notice: reachNotice } = useReach(reachWanted, targeting.value);
+  const { reach, notice: reachNotice } = useReach(reachWanted, aim);
   const scene = useMemo(
     () =>
-      targeting.value === null || alignment.value === null
+      aim === null || poses === null
         ? null
-        : sceneOf(targeting.value, alignment.value, { robot, plan: shown === undefined ? null : plan }),
-    [targeting.value, alignment.value, robot, plan, shown],
+        : sceneOf(aim, poses, { robot, plan: shown === undefined ? null : plan }),
+    [aim, poses, robot, plan, shown],
   );
-  const registration = targeting.value?.registration;
-  const placeKey = registration?.join();
-  // biome-ignore lint/correctness/useExhaustiveDependencies: the registration is polled; a new list of the same numbers is no other place
   const cells = useMemo(
-    () => (reach === null || registration === undefined ? null : cellsOf(reach, registration)),
-    [reach, placeKey],
+    () => (reach === null || aim === null ? null : cellsOf(reach, aim.registration)),
+    [reach, aim],
   );
   const notice = alignment.notice ?? targeting.notice ?? planNotice ?? reachNotice;
   const tools = (
@@ -78,6 +77,13 @@ function ViewPanel() {
       {scene !== null && <Legend scene={scene} cells={cells} />}
     </Panel>
   );
+}
+
+/** The value that was there before, for as long as what is polled says the same: nothing is drawn anew for that. */
+function useSame<Value>(value: Value): Value {
+  const kept = useRef(value);
+  if (JSON.stringify(kept.current) !== JSON.stringify(value)) kept.current = value;
+  return kept.current;
 }
 
 /** The proposal that was asked for, else the newest that is open. */
@@ -235,7 +241,7 @@ function Legend({ scene, cells }: LegendProps) {
             {wayOf(scene.ghost).toFixed(1)} mm
           </li>
         )}
-        {cells !== null && <li>⸬ {wordsOfCells(cells)} mm</li>}
+        {cells !== null && <li data-ink="reach">▪ {wordsOfCells(cells)} mm</li>}
         <li data-ink="entry">◆ entry</li>
         <li data-ink="target">● target</li>
         <li>axes: x red, y green, z blue; large: scanner (RAS) and zFrame</li>

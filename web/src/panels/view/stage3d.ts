@@ -234,9 +234,9 @@ function cloudOf({ cellMm, centres }: Cells, colour: string): Object3D {
   const geometry = new BufferGeometry().setFromPoints(centres.map((centre) => new Vector3(...centre)));
   const material = new PointsMaterial({
     color: colour,
-    size: cellMm * 0.35,
+    size: cellMm * 0.6,
     transparent: true,
-    opacity: 0.3,
+    opacity: 0.5,
     depthWrite: false,
   });
   return new Points(geometry, material);
