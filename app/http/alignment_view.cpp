@@ -10,10 +10,6 @@ namespace {
 
 using nlohmann::json;
 
-/** A value, or the problem in its place. */
-template <typename Value>
-using Known = tl::expected<Value, json>;
-
 tl::unexpected<json> unknown(const char* code, const std::string& text) {
   return tl::unexpected(json{{"code", code}, {"text", text}});
 }
@@ -22,27 +18,16 @@ json problem_of(const KinematicsError& error) { return to_json(error); }
 
 Eigen::Vector3d vector(const Point& point) { return Eigen::Vector3d(point.data()); }
 
+}  // namespace
+
 ProbeOffsets probe_of(const Targeting& targeting) {
   return {targeting.treatment_to_tip_mm, targeting.robot_to_entry_mm, targeting.cannula_to_treatment_mm,
           targeting.treatment_to_robot_at_home_mm};
 }
 
-/** What all of it is computed with. */
-struct Setup {
-  RobotKinematics kinematics;
-  Registration registration;
-};
+namespace {
 
-Known<Setup> setup_of(const Robot& robot, const Targeting& targeting) {
-  return RobotKinematics::create(robot, probe_of(targeting))
-      .and_then([&](const RobotKinematics& kinematics) {
-        return Registration::create(targeting.registration, targeting.ignore_registration_rotation)
-            .map([&](const Registration& registration) { return Setup{kinematics, registration}; });
-      })
-      .map_error(problem_of);
-}
-
-Known<Alignment> alignment_of(const Robot& robot, const Targeting& targeting, const Setup& setup) {
+Known<Alignment> alignment_of(const Robot& robot, const Targeting& targeting, const PoseSetup& setup) {
   if (!targeting.entry_point || !targeting.target_point) {
     return unknown("NO_TARGET", "Entry and target are not both set.");
   }
@@ -54,22 +39,10 @@ Known<AxisPositions> positions_of(const Robot& robot, const ControlView& view) {
   if (!view.attached) {
     return unknown("NO_KERNEL", "The app is not connected to the kernel.");
   }
-  AxisPositions positions;
-  std::string missing;
-  for (const Axis& axis : robot.axes) {
-    const ilk_axis_t& state = view.snapshot.state.axis[axis.slot];
-    positions.push_back(axis.to_unit(state.position_counts));
-    if (state.homed == 0 && !axis.role.empty()) {
-      missing += (missing.empty() ? "" : ", ") + axis.title;
-    }
-  }
-  if (!missing.empty()) {
-    return unknown("NOT_HOMED", "Where the robot is, is not known before these are homed: " + missing + ".");
-  }
-  return positions;
+  return known_positions(robot, view.snapshot.state);
 }
 
-Known<interlock::Pose> current_of(const Robot& robot, const ControlView& view, const Setup& setup) {
+Known<interlock::Pose> current_of(const Robot& robot, const ControlView& view, const PoseSetup& setup) {
   return positions_of(robot, view).and_then([&](const AxisPositions& positions) {
     return setup.kinematics.zframe_from_treatment(positions)
         .map([&](const interlock::Pose& pose) { return setup.registration.scanner_from_zframe() * pose; })
@@ -79,16 +52,60 @@ Known<interlock::Pose> current_of(const Robot& robot, const ControlView& view, c
 
 }  // namespace
 
+Known<PoseSetup> pose_setup(const Robot& robot, const Targeting& targeting) {
+  return RobotKinematics::create(robot, probe_of(targeting))
+      .and_then([&](const RobotKinematics& kinematics) {
+        return Registration::create(targeting.registration, targeting.ignore_registration_rotation)
+            .map([&](const Registration& registration) { return PoseSetup{kinematics, registration}; });
+      })
+      .map_error(problem_of);
+}
+
+Known<AxisPositions> known_positions(const Robot& robot, const ilk_state_t& state) {
+  AxisPositions positions;
+  std::string missing;
+  for (const Axis& axis : robot.axes) {
+    const ilk_axis_t& found = state.axis[axis.slot];
+    positions.push_back(axis.to_unit(found.position_counts));
+    if (found.homed == 0 && !axis.role.empty()) {
+      missing += (missing.empty() ? "" : ", ") + axis.title;
+    }
+  }
+  if (!missing.empty()) {
+    return unknown("NOT_HOMED", "Where the robot is, is not known before these are homed: " + missing + ".");
+  }
+  return positions;
+}
+
+Known<json> body_view(const PoseSetup& setup, const AxisPositions& positions) {
+  const auto listed = [&](const Eigen::Vector3d& zframe_mm) -> json {
+    const Eigen::Vector3d point = setup.registration.scanner_from_zframe() * zframe_mm;
+    return {point.x(), point.y(), point.z()};
+  };
+  return setup.kinematics.zframe_body(positions)
+      .map([&](const RobotBody& body) {
+        json parts = json::array();
+        for (const BodyPart& part : body) {
+          parts.push_back({{"name", part.name}, {"from", listed(part.from_mm)}, {"to", listed(part.to_mm)}});
+        }
+        return parts;
+      })
+      .map_error(problem_of);
+}
+
 json alignment_view(const Robot& robot, const Targeting& targeting, const ControlView& view) {
-  const Known<Setup> setup = setup_of(robot, targeting);
+  const Known<PoseSetup> setup = pose_setup(robot, targeting);
   const auto alignment =
-      setup.and_then([&](const Setup& with) { return alignment_of(robot, targeting, with); });
-  const auto current = setup.and_then([&](const Setup& with) { return current_of(robot, view, with); });
-  json answer{{"alignment", nullptr},
-              {"alignment_problem", nullptr},
-              {"current", nullptr},
-              {"current_problem", nullptr},
-              {"current_deviation", nullptr}};
+      setup.and_then([&](const PoseSetup& with) { return alignment_of(robot, targeting, with); });
+  const auto current = setup.and_then([&](const PoseSetup& with) { return current_of(robot, view, with); });
+  const auto body = setup.and_then([&](const PoseSetup& with) {
+    return positions_of(robot, view).and_then([&](const AxisPositions& positions) {
+      return body_view(with, positions);
+    });
+  });
+  json answer{
+      {"alignment", nullptr},       {"alignment_problem", nullptr},          {"current", nullptr},
+      {"current_problem", nullptr}, {"current_body", body.value_or(json())}, {"current_deviation", nullptr}};
   if (alignment) {
     answer["alignment"] = to_json(robot, *alignment);
   } else {
@@ -107,7 +124,7 @@ json alignment_view(const Robot& robot, const Targeting& targeting, const Contro
 
 RobotPoses robot_poses(const Robot& robot, const Targeting& targeting, const ControlView& view) {
   RobotPoses poses;
-  const Known<Setup> setup = setup_of(robot, targeting);
+  const Known<PoseSetup> setup = pose_setup(robot, targeting);
   if (!setup) {
     return poses;
   }
@@ -123,8 +140,8 @@ RobotPoses robot_poses(const Robot& robot, const Targeting& targeting, const Con
 
 tl::expected<NeedleTarget, Problem> needle_target(const Robot& robot, const Targeting& targeting,
                                                   const ControlView& view) {
-  return setup_of(robot, targeting)
-      .and_then([&](const Setup& with) -> Known<NeedleTarget> {
+  return pose_setup(robot, targeting)
+      .and_then([&](const PoseSetup& with) -> Known<NeedleTarget> {
         if (!targeting.target_point) {
           return unknown("NO_TARGET", "The target is not set.");
         }
@@ -153,8 +170,8 @@ bool is_out_of_reach(const Alignment& alignment) {
 }
 
 tl::expected<Alignment, Problem> alignment_with(const Robot& robot, const Targeting& targeting) {
-  return setup_of(robot, targeting)
-      .and_then([&](const Setup& with) { return alignment_of(robot, targeting, with); })
+  return pose_setup(robot, targeting)
+      .and_then([&](const PoseSetup& with) { return alignment_of(robot, targeting, with); })
       .map_error([](const json& problem) {
         return Problem{.status = Status::conflict,
                        .code = problem.at("code"),

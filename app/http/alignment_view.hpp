@@ -1,7 +1,7 @@
 /**
  * @file
- * What the targeting asks of the robot and where the robot is: schema `AlignmentView` of
- * spec/openapi.yaml.
+ * What the targeting asks of the robot, where the robot is and what it looks like there: schema
+ * `AlignmentView` of spec/openapi.yaml.
  */
 #pragma once
 
@@ -15,6 +15,29 @@
 #include "targeting/alignment.hpp"
 
 namespace interlock::web {
+
+/** A value, or the problem in its place: schema `TargetingProblem`. */
+template <typename Value>
+using Known = tl::expected<Value, nlohmann::json>;
+
+/** What poses are computed with. */
+struct PoseSetup {
+  RobotKinematics kinematics;
+  Registration registration;
+};
+
+/** The probe of the targeting. */
+ProbeOffsets probe_of(const Targeting& targeting);
+
+/** With the probe and the registration of the targeting. */
+Known<PoseSetup> pose_setup(const Robot& robot, const Targeting& targeting);
+
+/** Positions of all axes by their encoders; NOT_HOMED unless each that plays a role in the kinematics is
+ * homed. */
+Known<AxisPositions> known_positions(const Robot& robot, const ilk_state_t& state);
+
+/** What the robot looks like there: a list of schema `BodyPart`, in the scanner's frame (RAS), mm. */
+Known<nlohmann::json> body_view(const PoseSetup& setup, const AxisPositions& positions);
 
 /**
  * The alignment with entry and target, and the current pose of the treatment point by the encoders; of each,

@@ -76,6 +76,9 @@ Response problem_response(const Problem& problem) {
             {"code", problem.code},
             {"detail", problem.detail}};
   add_text(body, "field", problem.field);
+  if (problem.line != 0) {
+    body["line"] = problem.line;
+  }
   add_text(body, "expected", problem.expected);
   add_text(body, "next_step", problem.next_step);
   Response response = response_of(problem.status, "application/problem+json", text_of(body));

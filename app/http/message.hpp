@@ -6,6 +6,7 @@
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/beast/http.hpp>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -32,6 +33,7 @@ struct Problem {
   std::string code = {};      /**< verdict name or a code of the interface */
   std::string detail = {};    /**< what, where */
   std::string field = {};     /**< the field of the body that is wrong */
+  std::uint32_t line = 0;     /**< of a text, from 1; 0: none, or all of it */
   std::string expected = {};  /**< what belongs there instead */
   std::string next_step = {}; /**< what to do about it */
   Headers headers = {};       /**< besides those that every answer has */

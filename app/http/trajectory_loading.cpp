@@ -19,6 +19,7 @@ Problem unreadable(const TrajectoryError& error) {
           .code = std::string(code_name(error.code)),
           .detail = error.message(),
           .field = error.column,
+          .line = static_cast<std::uint32_t>(error.line),
           .expected = error.expected,
           .next_step = "Nothing was loaded. Mend the trajectory, and load it again."};
 }

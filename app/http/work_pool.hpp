@@ -1,6 +1,7 @@
 /**
  * @file
- * Threads for what takes long: hashing a password (a tenth of a second and 64 MiB), reading a trajectory.
+ * Threads for what takes long: hashing a password (a tenth of a second and 64 MiB), reading a trajectory,
+ * planning what people want to see.
  * Neither the network nor the store waits for them.
  */
 #pragma once
@@ -62,7 +63,7 @@ class WorkPool {
   static Problem full() {
     return {.status = Status::service_unavailable,
             .code = "OVERLOADED",
-            .detail = "Too many passwords and trajectories wait to be looked at.",
+            .detail = "Too many passwords, trajectories and plans wait to be looked at.",
             .next_step = "Try again in a moment.",
             .headers = {{"Retry-After", "1"}}};
   }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "motion/drive_law.hpp"
 #include "motion/setpoint_range.hpp"
 
 namespace interlock {
@@ -51,9 +50,13 @@ void AxisMove::hold(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wish
 }
 
 std::uint32_t AxisMove::wanted_drive(const ilk_axis_t& axis) const noexcept {
-  const std::uint32_t bound = drive_bound(plan_.rules, axis);
-  const std::uint32_t ceiling = max_drive_ == 0 ? bound : std::min(bound, max_drive_);
-  return drive_law(plan_.rules, plan_.min_drive, ceiling).at(distance(axis.position_counts, target_counts_));
+  return law_of(plan_, axis, max_drive_).at(distance(axis.position_counts, target_counts_));
+}
+
+DriveLaw AxisMove::law_of(const AxisPlan& plan, const ilk_axis_t& axis, std::uint32_t max_drive) noexcept {
+  const std::uint32_t bound = drive_bound(plan.rules, axis);
+  const std::uint32_t ceiling = max_drive == 0 ? bound : std::min(bound, max_drive);
+  return drive_law(plan.rules, plan.min_drive, ceiling);
 }
 
 }  // namespace interlock

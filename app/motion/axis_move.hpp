@@ -10,6 +10,7 @@
 
 #include "interlock/link.h"
 #include "motion/axis_plan.hpp"
+#include "motion/drive_law.hpp"
 #include "motion/move_lease.hpp"
 #include "motion/rest_watch.hpp"
 #include "motion/wish.hpp"
@@ -24,6 +25,9 @@ class AxisMove {
     arrived, /**< at rest within the deadband */
     blocked  /**< a limit held the axis back for too long; the snapshot's gate says which */
   };
+
+  /** How such a move is driven, by its distance from the target. `max_drive` 0: the axis' own bound. */
+  static DriveLaw law_of(const AxisPlan& plan, const ilk_axis_t& axis, std::uint32_t max_drive) noexcept;
 
   AxisMove() = default;
   AxisMove(std::uint32_t slot, const AxisPlan& plan, std::uint32_t lease_ticks) noexcept

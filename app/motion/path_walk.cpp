@@ -79,8 +79,10 @@ void PathWalk::advance(double time_s) noexcept {
   }
 }
 
-bool PathWalk::at_end() const noexcept {
-  return stage_s_ >= (stage_ == Stage::trajectory ? pace_.duration_s() : planner_.duration_s());
+bool PathWalk::at_end() const noexcept { return left_s() <= 0.0; }
+
+double PathWalk::left_s() const noexcept {
+  return (stage_ == Stage::trajectory ? pace_.duration_s() : planner_.duration_s()) - stage_s_;
 }
 
 bool PathWalk::go_on() noexcept {

@@ -54,6 +54,9 @@ class PathWalk {
   /** Whether the approach, or the trajectory, has come to its end; the axes may lag behind. */
   [[nodiscard]] bool at_end() const noexcept;
 
+  /** Time until the approach, or the trajectory, comes to its end; 0 or less from there on. */
+  [[nodiscard]] double left_s() const noexcept;
+
   /** The axes have arrived at the end. Goes on to the trajectory after its approach; false: the leg is done.
    */
   [[nodiscard]] bool go_on() noexcept;

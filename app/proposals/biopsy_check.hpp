@@ -17,7 +17,7 @@ namespace interlock {
  * when the tip is past the skin already, so that nobody knows where it is, and RANGE when the insertion does
  * not reach the target's depth.
  */
-tl::expected<void, Refusal> check_biopsy(const Robot& robot, const ilk_config_t& config,
-                                         const ControlView& view, const BiopsyDraft& draft);
+void check_biopsy(const Robot& robot, const ilk_config_t& config, const ControlView& view,
+                  const BiopsyDraft& draft, CheckList& checks);
 
 }  // namespace interlock

@@ -98,6 +98,26 @@ bool goes_to_switch(const Robot& robot, const HomePlan& plan, std::uint32_t slot
   });
 }
 
+tl::expected<void, Refusal> check_able(const Robot& robot, const ControlView& view, const HomePlan& plan) {
+  for (const std::uint32_t slot : plan.slots) {
+    if (auto able = check_axis(*robot.at_slot(slot), view); !able) {
+      return able;
+    }
+  }
+  return {};
+}
+
+tl::expected<void, Refusal> check_switches(const Robot& robot, const HomePlan& plan) {
+  for (const std::uint32_t slot : plan.slots) {
+    const Axis& axis = *robot.at_slot(slot);
+    if (goes_to_switch(robot, plan, slot) && axis.limit == ILK_LIMIT_NONE) {
+      return tl::make_unexpected(
+          verdict_refusal(ILK_VERDICT_NO_SWITCH, axis.name, "an axis with a limit switch"));
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 tl::expected<HomePlan, Refusal> plan_home(const Robot& robot, const HomeDraft& draft) {
@@ -118,26 +138,16 @@ tl::expected<HomePlan, Refusal> plan_home(const Robot& robot, const HomeDraft& d
   return plan_of_steps(robot, 0, robot.home_steps.size());
 }
 
-tl::expected<void, Refusal> check_home(const Robot& robot, const ilk_config_t& config,
-                                       const ControlView& view, const HomePlan& plan) {
-  if (auto system = check_system(config, view); !system) {
-    return system;
-  }
-  for (const std::uint32_t slot : plan.slots) {
-    const Axis& axis = *robot.at_slot(slot);
-    if (auto able = check_axis(axis, view); !able) {
-      return able;
-    }
-    if (goes_to_switch(robot, plan, slot) && axis.limit == ILK_LIMIT_NONE) {
-      return tl::make_unexpected(
-          verdict_refusal(ILK_VERDICT_NO_SWITCH, axis.name, "an axis with a limit switch"));
-    }
-  }
-  if (auto homed = check_moves(robot, view, plan); !homed) {
-    return homed;
-  }
-  const std::vector<HomeStep> steps = steps_of(robot, plan);
-  return check_separation(robot, view, steps);
+void check_home(const Robot& robot, const ilk_config_t& config, const ControlView& view, const HomePlan& plan,
+                CheckList& checks) {
+  check_system(config, view, checks);
+  checks.make(CheckName::axes, [&] { return check_able(robot, view, plan); });
+  checks.make(CheckName::switches, [&] { return check_switches(robot, plan); });
+  checks.make(CheckName::home_order, [&] { return check_moves(robot, view, plan); });
+  checks.make(CheckName::separation, [&] {
+    const std::vector<HomeStep> steps = steps_of(robot, plan);
+    return check_separation(robot, view, steps);
+  });
 }
 
 }  // namespace interlock

@@ -26,11 +26,11 @@ struct HomePlan {
 tl::expected<HomePlan, Refusal> plan_home(const Robot& robot, const HomeDraft& draft);
 
 /**
- * Judges a plan against the newest view: CONFIG_MISMATCH, MODE, then for each axis FAULTED, DISABLED and
- * NO_SWITCH, then NOT_HOMED where a step goes to a position and no earlier step homes the axis, and last
+ * Judges a plan against the newest view: CONFIG_MISMATCH, MODE, then for each axis FAULTED and DISABLED,
+ * then NO_SWITCH, then NOT_HOMED where a step goes to a position and no earlier step homes the axis, and last
  * SEPARATION (separation.hpp).
  */
-tl::expected<void, Refusal> check_home(const Robot& robot, const ilk_config_t& config,
-                                       const ControlView& view, const HomePlan& plan);
+void check_home(const Robot& robot, const ilk_config_t& config, const ControlView& view, const HomePlan& plan,
+                CheckList& checks);
 
 }  // namespace interlock

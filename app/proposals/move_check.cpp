@@ -18,6 +18,32 @@ std::string current(catalog::Family family, std::uint32_t number, const char* wh
   return std::string(what) + " is " + catalog::name(family, number);
 }
 
+tl::expected<void, Refusal> check_mode(const ControlView& view) {
+  const std::uint32_t mode = view.snapshot.state.mode;
+  if (mode != ILK_MODE_READY && mode != ILK_MODE_MOTION) {
+    return refused(ILK_VERDICT_MODE, current(catalog::Family::mode, mode, "mode"), "READY or MOTION");
+  }
+  return {};
+}
+
+tl::expected<void, Refusal> check_drive(const Axis& axis, std::uint32_t bound, const MoveDraft& draft) {
+  if (draft.drive.value_or(0) > bound) {
+    return refused(ILK_VERDICT_DRIVE, axis.name + " drive " + std::to_string(*draft.drive),
+                   "a drive from 1 to " + std::to_string(bound));
+  }
+  return {};
+}
+
+tl::expected<void, Refusal> check_target(const Axis& axis, const SetpointRange& range,
+                                         std::int32_t target_counts) {
+  if (!range.contains(target_counts)) {
+    return refused(ILK_VERDICT_RANGE, axis.name + " " + counts_and_unit(axis, target_counts),
+                   "a target from " + counts_and_unit(axis, range.lowest_counts) + " to " +
+                       counts_and_unit(axis, range.highest_counts));
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string counts_and_unit(const Axis& axis, std::int32_t counts) {
@@ -46,16 +72,9 @@ tl::expected<void, Refusal> check_configuration(const ilk_config_t& config, cons
   return {};
 }
 
-tl::expected<void, Refusal> check_system(const ilk_config_t& config, const ControlView& view) {
-  if (const auto same = check_configuration(config, view); !same) {
-    return same;
-  }
-  const ilk_snapshot_t& snapshot = view.snapshot;
-  if (snapshot.state.mode != ILK_MODE_READY && snapshot.state.mode != ILK_MODE_MOTION) {
-    return refused(ILK_VERDICT_MODE, current(catalog::Family::mode, snapshot.state.mode, "mode"),
-                   "READY or MOTION");
-  }
-  return {};
+void check_system(const ilk_config_t& config, const ControlView& view, CheckList& checks) {
+  checks.make(CheckName::configuration, [&] { return check_configuration(config, view); });
+  checks.make(CheckName::mode, [&] { return check_mode(view); });
 }
 
 tl::expected<void, Refusal> check_axis(const Axis& axis, const ControlView& view) {
@@ -73,31 +92,25 @@ tl::expected<void, Refusal> check_axis(const Axis& axis, const ControlView& view
   }
 }
 
-tl::expected<void, Refusal> check_move(const Axis& axis, const ilk_config_t& config, const ControlView& view,
-                                       const MoveDraft& draft) {
+tl::expected<void, Refusal> check_free_axis(const Axis& axis, const ControlView& view) {
+  return check_axis(axis, view).and_then([&]() -> tl::expected<void, Refusal> {
+    if (view.snapshot.state.axis[axis.slot].state == ILK_AXIS_HOMING) {
+      return refused(ILK_VERDICT_BUSY, axis.name, "an axis that is not homing");
+    }
+    return {};
+  });
+}
+
+void check_move(const Axis& axis, const ilk_config_t& config, const ControlView& view, const MoveDraft& draft,
+                CheckList& checks) {
   const ilk_axis_t& state = view.snapshot.state.axis[axis.slot];
   const ilk_axis_config_t& rules = config.axis[axis.slot];
-  if (auto system = check_system(config, view); !system) {
-    return system;
-  }
-  if (auto able = check_axis(axis, view); !able) {
-    return able;
-  }
-  if (state.state == ILK_AXIS_HOMING) {
-    return refused(ILK_VERDICT_BUSY, axis.name, "an axis that is not homing");
-  }
-  const std::uint32_t bound = drive_bound(rules, state);
-  if (draft.drive.value_or(0) > bound) {
-    return refused(ILK_VERDICT_DRIVE, axis.name + " drive " + std::to_string(*draft.drive),
-                   "a drive from 1 to " + std::to_string(bound));
-  }
-  const SetpointRange range = setpoint_range(rules, state, view.snapshot.state.mode);
-  if (!range.contains(draft.target_counts)) {
-    return refused(ILK_VERDICT_RANGE, axis.name + " " + counts_and_unit(axis, draft.target_counts),
-                   "a target from " + counts_and_unit(axis, range.lowest_counts) + " to " +
-                       counts_and_unit(axis, range.highest_counts));
-  }
-  return {};
+  check_system(config, view, checks);
+  checks.make(CheckName::axes, [&] { return check_free_axis(axis, view); });
+  checks.make(CheckName::drive, [&] { return check_drive(axis, drive_bound(rules, state), draft); });
+  checks.make(CheckName::range, [&] {
+    return check_target(axis, setpoint_range(rules, state, view.snapshot.state.mode), draft.target_counts);
+  });
 }
 
 }  // namespace interlock

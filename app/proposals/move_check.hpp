@@ -9,38 +9,33 @@
 #include <tl/expected.hpp>
 
 #include "motion/mailbox.hpp"
+#include "proposals/check_list.hpp"
 #include "proposals/proposal.hpp"
 #include "robot/robot.hpp"
 
 namespace interlock {
-
-/** Why a wish is not granted, and what to do about it. */
-struct Refusal {
-  std::string code;   /**< verdict of the catalog, or a code of spec/openapi.yaml */
-  std::string detail; /**< what, where */
-  std::string expected;
-  std::string next_step;
-
-  bool operator==(const Refusal&) const = default;
-};
 
 /**
  * Judges a draft against the newest view, in the kernel's order of checks.
  *
  * @param axis the axis that the draft names
  * @param config the configuration of the app's robot file; a kernel that runs another one moves nothing
+ * @param checks makes the checks, after those that it has made before
  */
-tl::expected<void, Refusal> check_move(const Axis& axis, const ilk_config_t& config, const ControlView& view,
-                                       const MoveDraft& draft);
+void check_move(const Axis& axis, const ilk_config_t& config, const ControlView& view, const MoveDraft& draft,
+                CheckList& checks);
 
 /** Whether the kernel runs the app's configuration: CONFIG_MISMATCH. */
 tl::expected<void, Refusal> check_configuration(const ilk_config_t& config, const ControlView& view);
 
 /** Whether the kernel runs the app's configuration and takes motion at all: CONFIG_MISMATCH, MODE. */
-tl::expected<void, Refusal> check_system(const ilk_config_t& config, const ControlView& view);
+void check_system(const ilk_config_t& config, const ControlView& view, CheckList& checks);
 
 /** Whether the axis may be moved by anybody: FAULTED, DISABLED. An axis that is homing may. */
 tl::expected<void, Refusal> check_axis(const Axis& axis, const ControlView& view);
+
+/** Whether the axis may be moved to a position: as `check_axis`, and BUSY while it is homing. */
+tl::expected<void, Refusal> check_free_axis(const Axis& axis, const ControlView& view);
 
 /** "12 counts (0.254 mm)" */
 std::string counts_and_unit(const Axis& axis, std::int32_t counts);

@@ -65,6 +65,13 @@ MoveLeg approach_of(const Robot& robot, const TimedTrajectory& trajectory, doubl
   return approach;
 }
 
+/** The move with which a leg begins: all of it, or the way to where its trajectory begins. */
+MoveLeg first_move(const Robot& robot, const PathLeg& leg) {
+  const auto* timed = std::get_if<TimedLeg>(&leg);
+  return timed == nullptr ? std::get<MoveLeg>(leg)
+                          : approach_of(robot, timed->trajectory, timed->trajectory.begin_s());
+}
+
 void arrive(Positions& positions, const MoveLeg& leg) {
   for (const AxisCounts& target : leg.targets) {
     positions[target.slot] = target.counts;
@@ -74,82 +81,129 @@ void arrive(Positions& positions, const MoveLeg& leg) {
 /** Looks at leg after leg; knows where the axes are then. */
 class PathCheck {
  public:
-  PathCheck(const Robot& robot, const ControlView& view) : robot_(robot) {
+  PathCheck(const Robot& robot, const ControlView& view, const PathProgram& program)
+      : robot_(robot), program_(program) {
     for (const Axis& axis : robot.axes) {
-      positions_[axis.slot] = view.snapshot.state.axis[axis.slot].position_counts;
+      start_[axis.slot] = view.snapshot.state.axis[axis.slot].position_counts;
     }
   }
 
-  Checked operator()(const MoveLeg& leg) {
-    return check_range(robot_, leg)
-        .and_then([&] { return duration_of(robot_, leg, positions_); })
-        .and_then([&](double duration_s) {
-          arrive(positions_, leg);
-          duration_s_ += duration_s;
-          return check_separation(robot_, positions_);
-        });
-  }
-
-  Checked operator()(const TimedLeg& leg) {
-    const TimedTrajectory& trajectory = leg.trajectory;
-    return (*this)(approach_of(robot_, trajectory, trajectory.begin_s())).and_then([&] {
-      const auto stays = check_separation(robot_, positions_, trajectory);
-      arrive(positions_, approach_of(robot_, trajectory, trajectory.end_s()));
-      duration_s_ += pace_along(trajectory, trajectory.begin_s(), [this](std::uint32_t slot) {
-                       return limits_of(*robot_.at_slot(slot));
-                     }).duration_s();
-      return stays;
+  [[nodiscard]] Checked ranges() const {
+    return each_leg([&](const MoveLeg& move, const TimedTrajectory*, const Positions&) {
+      return check_range(robot_, move);
     });
   }
 
-  [[nodiscard]] PathPreview preview(std::uint32_t mask) const {
+  [[nodiscard]] Checked separation() const {
+    return each_leg([&](const MoveLeg& move, const TimedTrajectory* trajectory, Positions positions) {
+      arrive(positions, move);
+      return check_separation(robot_, positions).and_then([&] {
+        return trajectory == nullptr ? Checked() : check_separation(robot_, positions, *trajectory);
+      });
+    });
+  }
+
+  /** Sums up the duration besides. */
+  [[nodiscard]] Checked rates() {
+    return each_leg([&](const MoveLeg& move, const TimedTrajectory* trajectory, const Positions& positions) {
+      return duration_of(robot_, move, positions).map([&](double duration_s) {
+        duration_s_ += duration_s + (trajectory == nullptr ? 0.0 : paced_s(*trajectory));
+      });
+    });
+  }
+
+  /** Once the checks have passed. */
+  [[nodiscard]] PathPreview preview() const {
     PathPreview preview{{}, duration_s_};
+    const Positions end = end_of_legs();
     for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
-      if (((mask >> slot) & 1u) != 0) {
-        preview.ends.push_back({slot, positions_[slot]});
+      if (((program_.mask() >> slot) & 1u) != 0) {
+        preview.ends.push_back({slot, end[slot]});
       }
     }
     return preview;
   }
 
  private:
+  /** Until one leg fails: `look(move, trajectory or null, positions at its start)`. */
+  template <typename Look>
+  [[nodiscard]] Checked each_leg(const Look& look) const {
+    Positions positions = start_;
+    for (const PathLeg& leg : program_.legs) {
+      const auto* timed = std::get_if<TimedLeg>(&leg);
+      const Checked checked =
+          look(first_move(robot_, leg), timed == nullptr ? nullptr : &timed->trajectory, positions);
+      if (!checked) {
+        return checked;
+      }
+      follow(positions, leg);
+    }
+    return {};
+  }
+
+  [[nodiscard]] Positions end_of_legs() const {
+    Positions positions = start_;
+    for (const PathLeg& leg : program_.legs) {
+      follow(positions, leg);
+    }
+    return positions;
+  }
+
+  void follow(Positions& positions, const PathLeg& leg) const {
+    arrive(positions, first_move(robot_, leg));
+    if (const auto* timed = std::get_if<TimedLeg>(&leg)) {
+      arrive(positions, approach_of(robot_, timed->trajectory, timed->trajectory.end_s()));
+    }
+  }
+
+  [[nodiscard]] double paced_s(const TimedTrajectory& trajectory) const {
+    return pace_along(trajectory, trajectory.begin_s(),
+                      [this](std::uint32_t slot) { return limits_of(*robot_.at_slot(slot)); })
+        .duration_s();
+  }
+
   const Robot& robot_;
-  Positions positions_{};
+  const PathProgram& program_;
+  Positions start_{};
   double duration_s_ = 0.0;
 };
 
 }  // namespace
 
-Checked check_axes(const Robot& robot, const ControlView& view, std::uint32_t mask) {
-  for (const Axis& axis : robot.axes) {
-    if (((mask >> axis.slot) & 1u) == 0) {
-      continue;
+void check_axes(const Robot& robot, const ControlView& view, std::uint32_t mask, CheckList& checks) {
+  const auto of_each = [&](const auto& check) {
+    Checked checked;
+    for (const Axis& axis : robot.axes) {
+      if (checked && ((mask >> axis.slot) & 1u) != 0) {
+        checked = check(axis);
+      }
     }
-    const ilk_axis_t& state = view.snapshot.state.axis[axis.slot];
-    if (auto able = check_axis(axis, view); !able) {
-      return able;
-    }
-    if (state.state == ILK_AXIS_HOMING) {
-      return tl::make_unexpected(verdict_refusal(ILK_VERDICT_BUSY, axis.name, "an axis that is not homing"));
-    }
-    if (state.homed == 0) {
-      return tl::make_unexpected(Refusal{"NOT_HOMED",
-                                         axis.name + " is not homed, so it cannot go to a position.",
-                                         "homed axes", "Home " + axis.name + " first."});
-    }
-  }
-  return {};
+    return checked;
+  };
+  checks.make(CheckName::axes,
+              [&] { return of_each([&](const Axis& axis) { return check_free_axis(axis, view); }); });
+  checks.make(CheckName::homed, [&] {
+    return of_each([&](const Axis& axis) -> Checked {
+      if (view.snapshot.state.axis[axis.slot].homed == 0) {
+        return tl::make_unexpected(Refusal{"NOT_HOMED",
+                                           axis.name + " is not homed, so it cannot go to a position.",
+                                           "homed axes", "Home " + axis.name + " first."});
+      }
+      return {};
+    });
+  });
 }
 
 tl::expected<PathPreview, Refusal> check_path(const Robot& robot, const ilk_config_t& config,
-                                              const ControlView& view, const PathProgram& program) {
-  const std::uint32_t mask = program.mask();
-  auto checked = check_system(config, view).and_then([&] { return check_axes(robot, view, mask); });
-  PathCheck check(robot, view);
-  for (const PathLeg& leg : program.legs) {
-    checked = checked.and_then([&] { return std::visit(check, leg); });
-  }
-  return checked.map([&] { return check.preview(mask); });
+                                              const ControlView& view, const PathProgram& program,
+                                              CheckList& checks) {
+  PathCheck check(robot, view, program);
+  check_system(config, view, checks);
+  check_axes(robot, view, program.mask(), checks);
+  checks.make(CheckName::range, [&] { return check.ranges(); });
+  checks.make(CheckName::separation, [&] { return check.separation(); });
+  checks.make(CheckName::rates, [&] { return check.rates(); });
+  return checks.outcome().map([&] { return check.preview(); });
 }
 
 }  // namespace interlock

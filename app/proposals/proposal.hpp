@@ -17,10 +17,12 @@
 #include <string_view>
 #include <vector>
 
+#include "interlock/link.h"
 #include "kinematics/pose.hpp"
 #include "motion/biopsy_run.hpp"
 #include "motion/order.hpp"
 #include "motion/path_program.hpp"
+#include "proposals/check_list.hpp"
 #include "robot/modes.hpp"
 #include "time/utc_time.hpp"
 
@@ -143,7 +145,10 @@ struct Proposal {
   std::uint32_t created_tick = 0; /**< kernel tick */
   std::optional<UtcTime> ended;
   std::optional<std::string> verdict; /**< that refused or ended it */
-  std::string detail;                 /**< why it is in this state, for people */
+  std::vector<CheckResult> checks;    /**< as last made, in their order */
+  /** The kernel as it was when the checks were last made; null before. Plans begin there. */
+  std::shared_ptr<const ilk_snapshot_t> checked_against;
+  std::string detail; /**< why it is in this state, for people */
 };
 
 /** Of registration, probe and target from which the proposal followed; nothing: from none. */

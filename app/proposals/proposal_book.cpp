@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "proposals/biopsy_check.hpp"
-#include "proposals/home_plan.hpp"
 #include "proposals/order_words.hpp"
 #include "proposals/sweep_check.hpp"
 
@@ -45,21 +44,11 @@ tl::expected<Proposal, Refusal> ProposalBook::propose(const MoveDraft& move, con
   drafted.author = move.author;
   drafted.target = axis->to_unit(move.target_counts);
   Proposal& proposal = draft(std::move(drafted), {move.slot}, view);
-  if (const Proposal* home = open_home()) {
-    return tl::make_unexpected(refuse(
-        proposal, Refusal{"MODE_HOME", "Proposal " + std::to_string(home->id) + " is homing the robot.",
-                          "no open proposal of homing", "Wait until it has ended, or abort it."}));
-  }
-  if (const Proposal* open = open_mode()) {
-    return tl::make_unexpected(refuse(
-        proposal, Refusal{"MODE_PATH",
-                          "Proposal " + std::to_string(open->id) + " moves " +
-                              (open->slots.size() == 1 ? open->axis : std::string("several axes")) + ".",
-                          "no open proposal of another mode", "Wait until it has ended, or abort it."}));
-  }
-  const auto checked = check_move(*axis, config_, view, move);
-  if (!checked) {
-    return tl::make_unexpected(refuse(proposal, checked.error()));
+  CheckList checks;
+  checks.make(CheckName::other_motion, [&] { return check_alone(); });
+  check_move(*axis, config_, view, move, checks);
+  if (const auto checked = take_checks(proposal, checks, view); !checked) {
+    return tl::make_unexpected(checked.error());
   }
   become(proposal, ProposalState::checked, "Inside the range that the kernel allows now.");
   return approve(proposal, Order{proposal.id, move.slot, move.target_counts, move.drive.value_or(0), 0});
@@ -78,12 +67,11 @@ tl::expected<Proposal, Refusal> ProposalBook::propose_home(const HomeDraft& home
   drafted.step_count = plan->step_count;
   drafted.step = plan->step_count == 0 ? "" : robot_.home_steps[plan->first_step].name;
   Proposal& proposal = draft(std::move(drafted), plan->slots, view);
-  const auto checked = check_home(robot_, config_, view, *plan);
-  if (!checked) {
-    return tl::make_unexpected(refuse(proposal, checked.error()));
+  if (const auto checked = check_home_of(proposal, *plan, view); !checked) {
+    return tl::make_unexpected(checked.error());
   }
   if (approves(home.source)) {
-    return approve_home(proposal, view);
+    return approve_home(proposal, *plan);
   }
   become(proposal, ProposalState::checked, "Every axis may be homed. Waits for somebody to approve it.");
   return proposal;
@@ -95,9 +83,6 @@ tl::expected<Proposal, Refusal> ProposalBook::propose_path(const PathDraft& path
   drafted.path = path;
   drafted.author = path.author;
   Proposal& proposal = draft(std::move(drafted), slots_of(robot_, path.program->mask()), view);
-  if (const auto current = check_current(proposal); !current) {
-    return tl::make_unexpected(current.error());
-  }
   if (const auto checked = check(proposal, view); !checked) {
     return tl::make_unexpected(checked.error());
   }
@@ -118,8 +103,10 @@ tl::expected<Proposal, Refusal> ProposalBook::propose_sweep(const SweepDraft& sw
   drafted.sweep = sweep;
   drafted.author = sweep.author;
   Proposal& proposal = draft(std::move(drafted), {sweep.slot}, view);
-  if (const auto checked = check_sweep(robot_, config_, view, sweep); !checked) {
-    return tl::make_unexpected(refuse(proposal, checked.error()));
+  CheckList checks;
+  check_sweep(robot_, config_, view, sweep, checks);
+  if (const auto checked = take_checks(proposal, checks, view); !checked) {
+    return tl::make_unexpected(checked.error());
   }
   become(proposal, ProposalState::checked, "Inside the band of the axis.");
   return approve(proposal, SweepOrder{proposal.id, sweep.slot, sweep.steps, 0});
@@ -134,11 +121,13 @@ tl::expected<Proposal, Refusal> ProposalBook::propose_biopsy(const BiopsyDraft& 
   const std::vector<std::uint32_t> slots{robot_.with_role("insertion")->slot,
                                          robot_.with_role("rotation")->slot};
   Proposal& proposal = draft(std::move(drafted), slots, view);
-  if (const auto current = check_current(proposal); !current) {
-    return tl::make_unexpected(current.error());
+  CheckList checks;
+  if (biopsy.targeting_revision) {
+    checks.make(CheckName::targeting, [&] { return check_current(proposal); });
   }
-  if (const auto checked = check_biopsy(robot_, config_, view, biopsy); !checked) {
-    return tl::make_unexpected(refuse(proposal, checked.error()));
+  check_biopsy(robot_, config_, view, biopsy, checks);
+  if (const auto checked = take_checks(proposal, checks, view); !checked) {
+    return tl::make_unexpected(checked.error());
   }
   become(proposal, ProposalState::checked, "The needle is at the skin, and the hand's force is heard.");
   lent_.push_back({proposal.id, ProposalKind::biopsy, biopsy.run});
@@ -151,38 +140,94 @@ bool ProposalBook::show_image(const NeedleImage& image) {
 }
 
 /** Refuses what followed from targeting that has changed since. */
-tl::expected<void, Refusal> ProposalBook::check_current(Proposal& proposal) {
+tl::expected<void, Refusal> ProposalBook::check_current(const Proposal& proposal) const {
   const auto revision = interlock::targeting_revision(proposal);
   if (revision && *revision != targeting_revision_) {
-    return tl::make_unexpected(refuse(
-        proposal, Refusal{"STALE", "Registration, probe or target changed meanwhile.",
-                          "the present registration, probe and target", "Look at them, and propose again."}));
+    return tl::make_unexpected(Refusal{"STALE", "Registration, probe or target changed meanwhile.",
+                                       "the present registration, probe and target",
+                                       "Look at them, and propose again."});
   }
   return {};
+}
+
+/** Refuses a move of one axis beside what moves the robot as a whole. */
+tl::expected<void, Refusal> ProposalBook::check_alone() const {
+  if (const Proposal* home = open_home()) {
+    return tl::make_unexpected(
+        Refusal{"MODE_HOME", "Proposal " + std::to_string(home->id) + " is homing the robot.",
+                "no open proposal of homing", "Wait until it has ended, or abort it."});
+  }
+  if (const Proposal* open = open_mode()) {
+    return tl::make_unexpected(
+        Refusal{"MODE_PATH",
+                "Proposal " + std::to_string(open->id) + " moves " +
+                    (open->slots.size() == 1 ? open->axis : std::string("several axes")) + ".",
+                "no open proposal of another mode", "Wait until it has ended, or abort it."});
+  }
+  return {};
+}
+
+/** Keeps what the checks found and against what; refuses the proposal when one failed. */
+tl::expected<void, Refusal> ProposalBook::take_checks(Proposal& proposal, const CheckList& checks,
+                                                      const ControlView& view) {
+  proposal.checks = checks.results();
+  proposal.checked_against = std::make_shared<const ilk_snapshot_t>(view.snapshot);
+  return checks.outcome().map_error([&](const Refusal& refusal) { return refuse(proposal, refusal); });
 }
 
 /** Checks a path from where the axes are now. */
 tl::expected<void, Refusal> ProposalBook::check(Proposal& proposal, const ControlView& view) {
-  const auto preview = check_path(robot_, config_, view, *proposal.path.program);
-  if (!preview) {
-    return tl::make_unexpected(refuse(proposal, preview.error()));
+  CheckList checks;
+  if (proposal.path.targeting_revision) {
+    checks.make(CheckName::targeting, [&] { return check_current(proposal); });
   }
-  proposal.ends = preview->ends;
-  proposal.duration_s = preview->duration_s;
-  return {};
+  const auto preview = check_path(robot_, config_, view, *proposal.path.program, checks);
+  if (preview) {
+    proposal.ends = preview->ends;
+    proposal.duration_s = preview->duration_s;
+  }
+  return take_checks(proposal, checks, view);
 }
 
-tl::expected<Proposal, Refusal> ProposalBook::approve(std::uint32_t id, const ControlView& view) {
+tl::expected<void, Refusal> ProposalBook::check_home_of(Proposal& proposal, const HomePlan& plan,
+                                                        const ControlView& view) {
+  CheckList checks;
+  check_home(robot_, config_, view, plan, checks);
+  return take_checks(proposal, checks, view);
+}
+
+/** The proposal that waits for approval under that number. */
+tl::expected<Proposal*, Refusal> ProposalBook::waiting(std::uint32_t id) {
   Proposal* proposal = find_mutable(id);
   if (proposal == nullptr || proposal->state != ProposalState::checked) {
     const std::string state = proposal == nullptr ? "unknown" : std::string(state_name(proposal->state));
     return tl::make_unexpected(Refusal{"NOT_WAITING", "Proposal " + std::to_string(id) + " is " + state + ".",
                                        "a proposal that is checked", "Propose it again."});
   }
-  if (proposal->kind == ProposalKind::home) {
-    return approve_home(*proposal, view);
+  return proposal;
+}
+
+tl::expected<Proposal, Refusal> ProposalBook::approve(std::uint32_t id, const ControlView& view) {
+  const auto found = waiting(id);
+  if (!found) {
+    return tl::make_unexpected(found.error());
   }
-  return check(*proposal, view).and_then([&] { return approve_path(*proposal); });
+  Proposal& proposal = **found;
+  if (proposal.kind != ProposalKind::home) {
+    return check(proposal, view).and_then([&] { return approve_path(proposal); });
+  }
+  const auto plan = plan_home(robot_, proposal.home);
+  if (!plan) {
+    return tl::make_unexpected(refuse(proposal, plan.error()));
+  }
+  return check_home_of(proposal, *plan, view).and_then([&] { return approve_home(proposal, *plan); });
+}
+
+tl::expected<Proposal, Refusal> ProposalBook::reject(std::uint32_t id, const std::string& by) {
+  return waiting(id).map([&](Proposal* proposal) {
+    become(*proposal, ProposalState::aborted, "Rejected by " + by + " before it was approved.");
+    return *proposal;
+  });
 }
 
 /** Whether such proposals need no click. */
@@ -190,17 +235,9 @@ bool ProposalBook::approves(ProposalSource source) const {
   return source == ProposalSource::console || robot_.auto_approve;
 }
 
-tl::expected<Proposal, Refusal> ProposalBook::approve_home(Proposal& proposal, const ControlView& view) {
-  const auto plan = plan_home(robot_, proposal.home);
-  if (!plan) {
-    return tl::make_unexpected(refuse(proposal, plan.error()));
-  }
-  if (const auto checked = check_home(robot_, config_, view, *plan); !checked) {
-    return tl::make_unexpected(refuse(proposal, checked.error()));
-  }
+tl::expected<Proposal, Refusal> ProposalBook::approve_home(Proposal& proposal, const HomePlan& plan) {
   become(proposal, ProposalState::checked, "Every axis may be homed now.");
-  return approve(proposal,
-                 HomeOrder{proposal.id, plan->first_step, plan->step_count, plan->slots.front(), 0});
+  return approve(proposal, HomeOrder{proposal.id, plan.first_step, plan.step_count, plan.slots.front(), 0});
 }
 
 tl::expected<Proposal, Refusal> ProposalBook::approve_path(Proposal& proposal) {

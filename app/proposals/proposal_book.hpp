@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "motion/mailbox.hpp"
+#include "proposals/home_plan.hpp"
 #include "proposals/move_check.hpp"
 #include "proposals/path_check.hpp"
 #include "proposals/proposal.hpp"
@@ -84,6 +85,10 @@ class ProposalBook {
   /** Checks a proposal that waits for it anew, and approves it: NOT_WAITING when none of that number does. */
   tl::expected<Proposal, Refusal> approve(std::uint32_t id, const ControlView& view);
 
+  /** Ends a proposal that waits for approval, as `by` wants none of it: NOT_WAITING when none of that number
+   * waits. */
+  tl::expected<Proposal, Refusal> reject(std::uint32_t id, const std::string& by);
+
   /** Counts the changes of registration, probe and target. */
   [[nodiscard]] std::uint32_t targeting_revision() const { return targeting_revision_; }
 
@@ -140,10 +145,16 @@ class ProposalBook {
   };
 
   tl::expected<Proposal, Refusal> approve(Proposal& proposal, const Command& order);
-  tl::expected<void, Refusal> check_current(Proposal& proposal);
+  [[nodiscard]] tl::expected<void, Refusal> check_current(const Proposal& proposal) const;
+  [[nodiscard]] tl::expected<void, Refusal> check_alone() const;
   tl::expected<void, Refusal> check(Proposal& proposal, const ControlView& view);
+  tl::expected<void, Refusal> check_home_of(Proposal& proposal, const HomePlan& plan,
+                                            const ControlView& view);
+  tl::expected<void, Refusal> take_checks(Proposal& proposal, const CheckList& checks,
+                                          const ControlView& view);
+  tl::expected<Proposal*, Refusal> waiting(std::uint32_t id);
   tl::expected<Proposal, Refusal> approve_path(Proposal& proposal);
-  tl::expected<Proposal, Refusal> approve_home(Proposal& proposal, const ControlView& view);
+  tl::expected<Proposal, Refusal> approve_home(Proposal& proposal, const HomePlan& plan);
   [[nodiscard]] bool approves(ProposalSource source) const;
   void forget_one();
   void replace_open(const Proposal& by);

@@ -62,27 +62,27 @@ std::optional<FrequencySteps> whole_band(const Axis& axis, std::uint32_t period_
   return frequency_steps(band->highest_hz, band->lowest_hz, published_sweep_step_hz, dwell_ticks);
 }
 
-tl::expected<void, Refusal> check_sweep(const Robot& robot, const ilk_config_t& config,
-                                        const ControlView& view, const SweepDraft& draft) {
+void check_sweep(const Robot& robot, const ilk_config_t& config, const ControlView& view,
+                 const SweepDraft& draft, CheckList& checks) {
   const Axis& axis = *robot.at_slot(draft.slot);
-  return check_system(config, view)
-      .and_then([&] { return check_axes(robot, view, 1u << draft.slot); })
-      .and_then([&]() -> tl::expected<void, Refusal> {
-        const WordBand band = words_of(axis);
-        const std::uint32_t first = draft.steps.word(0);
-        const std::uint32_t last = draft.steps.word(draft.steps.count - 1);
-        const auto [fastest, slowest] = std::minmax(first, last);
-        if (fastest >= band.fastest && slowest <= band.slowest) {
-          return {};
-        }
-        return tl::make_unexpected(verdict_refusal(
-            ILK_VERDICT_DRIVE,
-            axis.name + " " + hz_words(frequency_map::hz_of(fastest), frequency_map::hz_of(slowest)),
-            "frequencies from " +
-                hz_words(frequency_map::hz_of(band.fastest), frequency_map::hz_of(band.slowest)) +
-                ", the axis' allowed band; the published sweep from " +
-                hz_words(published_sweep.lowest_hz, published_sweep.highest_hz) + " leaves it"));
-      });
+  check_system(config, view, checks);
+  check_axes(robot, view, 1u << draft.slot, checks);
+  checks.make(CheckName::band, [&]() -> tl::expected<void, Refusal> {
+    const WordBand band = words_of(axis);
+    const std::uint32_t first = draft.steps.word(0);
+    const std::uint32_t last = draft.steps.word(draft.steps.count - 1);
+    const auto [fastest, slowest] = std::minmax(first, last);
+    if (fastest >= band.fastest && slowest <= band.slowest) {
+      return {};
+    }
+    return tl::make_unexpected(verdict_refusal(
+        ILK_VERDICT_DRIVE,
+        axis.name + " " + hz_words(frequency_map::hz_of(fastest), frequency_map::hz_of(slowest)),
+        "frequencies from " +
+            hz_words(frequency_map::hz_of(band.fastest), frequency_map::hz_of(band.slowest)) +
+            ", the axis' allowed band; the published sweep from " +
+            hz_words(published_sweep.lowest_hz, published_sweep.highest_hz) + " leaves it"));
+  });
 }
 
 }  // namespace interlock

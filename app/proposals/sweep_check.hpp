@@ -44,7 +44,7 @@ std::optional<FrequencySteps> whole_band(const Axis& axis, std::uint32_t period_
  * Judges a sweep against the newest view: CONFIG_MISMATCH, MODE, FAULTED, DISABLED, BUSY while homing,
  * NOT_HOMED, then DRIVE for frequencies outside of the band, which it names.
  */
-tl::expected<void, Refusal> check_sweep(const Robot& robot, const ilk_config_t& config,
-                                        const ControlView& view, const SweepDraft& draft);
+void check_sweep(const Robot& robot, const ilk_config_t& config, const ControlView& view,
+                 const SweepDraft& draft, CheckList& checks);
 
 }  // namespace interlock

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <type_traits>
 
+#include "kinematics/workspace.hpp"
+
 namespace interlock {
 namespace {
 
@@ -36,6 +38,21 @@ AxisPositions positions_of(const Family& family, const typename Family::Joints& 
   return positions;
 }
 
+template <typename Family>
+KinematicsResult<ReachedPoints> points_of(const Family& family, std::span<const double> lowest,
+                                          std::span<const double> highest, std::size_t count,
+                                          std::uint64_t seed, const Eigen::Vector3d& zframe) {
+  const JointRange<typename Family::Joints> range{joints_of(family, lowest), joints_of(family, highest)};
+  return sample_workspace(family.kinematics, range, count, seed).map([&](const auto& workspace) {
+    ReachedPoints points{{}, workspace.refused, workspace.bounds};
+    points.bounds.translate(-zframe);
+    for (const auto& sample : workspace.samples) {
+      points.zframe_mm.emplace_back(sample.position_mm - zframe);
+    }
+    return points;
+  });
+}
+
 }  // namespace
 
 KinematicsResult<RobotKinematics> RobotKinematics::create(const Robot& robot) {
@@ -46,14 +63,14 @@ KinematicsResult<RobotKinematics> RobotKinematics::create(const Robot& robot, co
   const std::size_t count = robot.axes.size();
   if (const auto* const geometry = std::get_if<NeuroRcm>(&robot.kinematics)) {
     return NeuroKinematics::create(*geometry, probe).map([&](const NeuroKinematics& kinematics) {
-      return RobotKinematics(Neuro{kinematics, axes_of(robot, neuro_joint_fields)}, probe, count);
+      return RobotKinematics(Neuro{kinematics, *geometry, axes_of(robot, neuro_joint_fields)}, probe, count);
     });
   }
   const auto& geometry = std::get<ProstateTrapezoids>(robot.kinematics);
   const Eigen::Vector3d base_to_zframe(geometry.base_to_zframe_mm.data());
   return ProstateKinematics::create(geometry).map([&](const ProstateKinematics& kinematics) {
-    return RobotKinematics(Prostate{kinematics, base_to_zframe, axes_of(robot, prostate_joint_fields)}, probe,
-                           count);
+    return RobotKinematics(
+        Prostate{kinematics, geometry, base_to_zframe, axes_of(robot, prostate_joint_fields)}, probe, count);
   });
 }
 
@@ -66,6 +83,31 @@ KinematicsResult<Pose> RobotKinematics::zframe_from_treatment(std::span<const do
     pose.pretranslate(-prostate.base_to_zframe);
     return pose;
   });
+}
+
+KinematicsResult<RobotBody> RobotKinematics::zframe_body(std::span<const double> positions) const {
+  if (const auto* const neuro = std::get_if<Neuro>(&family_)) {
+    return body_of(neuro->kinematics, neuro->geometry, probe_, joints_of(*neuro, positions));
+  }
+  const auto& prostate = std::get<Prostate>(family_);
+  return body_of(prostate.kinematics, prostate.geometry, joints_of(prostate, positions))
+      .map([&](RobotBody body) {
+        for (BodyPart& part : body) {
+          part.from_mm -= prostate.base_to_zframe;
+          part.to_mm -= prostate.base_to_zframe;
+        }
+        return body;
+      });
+}
+
+KinematicsResult<ReachedPoints> RobotKinematics::reached_points(std::span<const double> lowest,
+                                                                std::span<const double> highest,
+                                                                std::size_t count, std::uint64_t seed) const {
+  if (const auto* const neuro = std::get_if<Neuro>(&family_)) {
+    return points_of(*neuro, lowest, highest, count, seed, Eigen::Vector3d::Zero());
+  }
+  const auto& prostate = std::get<Prostate>(family_);
+  return points_of(prostate, lowest, highest, count, seed, prostate.base_to_zframe);
 }
 
 KinematicsResult<AxisPositions> RobotKinematics::positions_for(const Eigen::Vector3d& entry,

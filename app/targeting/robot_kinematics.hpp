@@ -7,8 +7,10 @@
  */
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <variant>
 #include <vector>
@@ -16,12 +18,20 @@
 #include "kinematics/neuro_kinematics.hpp"
 #include "kinematics/prostate_kinematics.hpp"
 #include "robot/robot.hpp"
+#include "targeting/robot_body.hpp"
 
 namespace interlock {
 
 /** Position of every axis in its unit (mm, rad), in the order of the robot's axes; 0 for one that plays no
  * role in the kinematics. */
 using AxisPositions = std::vector<double>;
+
+/** Where random positions put the treatment point. */
+struct ReachedPoints {
+  std::vector<Eigen::Vector3d> zframe_mm;
+  std::size_t refused = 0; /**< positions that geometry does not allow */
+  Eigen::AlignedBox3d bounds;
+};
 
 /** The kinematics of a robot, of whatever family. */
 class RobotKinematics {
@@ -36,6 +46,15 @@ class RobotKinematics {
   /** Pose of the treatment point. Needs one position for each axis of the robot. */
   [[nodiscard]] KinematicsResult<Pose> zframe_from_treatment(std::span<const double> positions) const;
 
+  /** What the robot looks like, in the zFrame. Needs one position for each axis of the robot. */
+  [[nodiscard]] KinematicsResult<RobotBody> zframe_body(std::span<const double> positions) const;
+
+  /** Of `count` random positions, each between its ends (kinematics/workspace.hpp); those of axes without a
+   * role play no part. */
+  [[nodiscard]] KinematicsResult<ReachedPoints> reached_points(std::span<const double> lowest,
+                                                               std::span<const double> highest,
+                                                               std::size_t count, std::uint64_t seed) const;
+
   /** Positions that put the treatment point at `target`, coming straight from `entry` (mm, zFrame), with the
    * probe turned by `rotation_rad`. Soft limits play no part. */
   [[nodiscard]] KinematicsResult<AxisPositions> positions_for(const Eigen::Vector3d& entry,
@@ -47,6 +66,7 @@ class RobotKinematics {
     using Joints = NeuroJoints;
     static constexpr const auto& fields = neuro_joint_fields;
     NeuroKinematics kinematics;
+    NeuroRcm geometry;
     std::array<std::size_t, neuro_joint_fields.size()> axis_of_joint;
   };
 
@@ -54,6 +74,7 @@ class RobotKinematics {
     using Joints = ProstateJoints;
     static constexpr const auto& fields = prostate_joint_fields;
     ProstateKinematics kinematics;
+    ProstateTrapezoids geometry;
     Eigen::Vector3d base_to_zframe;
     std::array<std::size_t, prostate_joint_fields.size()> axis_of_joint;
   };

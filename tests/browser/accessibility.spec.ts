@@ -138,6 +138,10 @@ test("proposals, refusals and a stalled axis", async ({ robot, page }) => {
   await robot.axis("Lateral").propose("1");
   await robot.axis("Lateral").expectRefusal("DISABLED");
   await expectNoViolation(page, "refused", untouched);
+  await page.getByRole("link", { name: "Details of proposal 1" }).click();
+  await expect(robot.panel("Proposal 1").getByRole("region", { name: "Profile" })).toBeVisible();
+  await expectNoViolation(page, "a proposal as a whole");
+  await robot.open("Robot");
   await page.getByRole("button", { name: "Jam Probe rotation" }).click();
   await axis.propose("40");
   await robot.latchPedal();

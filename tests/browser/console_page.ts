@@ -150,9 +150,9 @@ export class ConsolePage {
   }
 
   async open(
-    page: "Robot" | "Targeting" | "Plots" | "3D" | "Codes" | "Users" | "Audit" | "Account",
+    page: "Robot" | "Targeting" | "Proposals" | "Plots" | "3D" | "Codes" | "Users" | "Audit" | "Account",
   ): Promise<void> {
-    await this.page.getByRole("link", { name: page }).click();
+    await this.page.getByRole("link", { name: page, exact: page === "Proposals" }).click();
   }
 
   /** By the Users page; ends on the Robot page. */

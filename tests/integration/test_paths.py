@@ -96,7 +96,7 @@ def test_bad_trajectories_are_refused_whole_with_row_column_and_reason_and_nothi
         problem = refused.json()
         assert (refused.status_code, problem["code"]) == (422, bad.code), (name, problem)
         assert problem["detail"].startswith(bad.place), (name, problem)
-        assert problem.get("field") == bad.column, (name, problem)
+        assert (problem.get("line"), problem.get("field")) == (bad.line, bad.column), (name, problem)
         assert robot.api.get("/api/trajectory").json()["rows"] == 0, name
         mode = robot.api.put("/api/mode", json={"mode": "trajectory"})
         assert (mode.status_code, mode.json()["code"]) == (409, "EMPTY"), name

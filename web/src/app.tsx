@@ -9,8 +9,9 @@ import { UsersPage } from "./panels/users/UsersPage";
 import { useRoute } from "./state/route";
 import { useConsole } from "./state/store";
 
-/** Loaded with the first look at each: drawing takes more code than all the rest. */
+/** Loaded with the first look at them: drawing takes more code than all the rest. */
 const PlotsPage = lazy(() => import("./panels/plots/PlotsPage"));
+const ProposalsPage = lazy(() => import("./panels/proposals/ProposalsPage"));
 const ViewPage = lazy(() => import("./panels/view/ViewPage"));
 const TargetingPage = lazy(() => import("./panels/targeting/TargetingPage"));
 
@@ -29,6 +30,7 @@ function Page() {
   const user = useConsole((state) => (state.login.phase === "in" ? state.login.user : null));
   const admin = user?.role === "admin";
   if (route === "targeting") return <Loaded of={TargetingPage} />;
+  if (route === "proposals") return <Loaded of={ProposalsPage} />;
   if (route === "plots") return <Loaded of={PlotsPage} />;
   if (route === "view") return <Loaded of={ViewPage} />;
   if (route === "codes") return <Sheet of={CodesPage} />;

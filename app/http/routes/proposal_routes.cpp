@@ -7,8 +7,10 @@
 #include "http/fields.hpp"
 #include "http/path_drafts.hpp"
 #include "http/problems.hpp"
+#include "http/proposal_plan.hpp"
 #include "http/proposing.hpp"
 #include "http/sweep_draft.hpp"
+#include "http/targeting_store.hpp"
 #include "proposals/proposal_json.hpp"
 
 namespace interlock::web {
@@ -157,8 +159,11 @@ ProposalRoutes::ProposalRoutes(const Context& context, Router& router) : context
   router.add(verb::post, "/api/proposals", holder, [this](const Call& call) { return propose(call); });
   router.add(verb::get, "/api/proposals/{id}", viewers,
              [this](const Call& call) -> Answering { co_return show(call); });
+  router.add(verb::get, "/api/proposals/{id}/plan", viewers, [this](const Call& call) { return plan(call); });
   router.add(verb::post, "/api/proposals/{id}/approve", holder,
              [this](const Call& call) { return approve(call); });
+  router.add(verb::post, "/api/proposals/{id}/reject", holder,
+             [this](const Call& call) { return reject(call); });
   router.add(verb::post, "/api/proposals/{id}/abort", holder,
              [this](const Call& call) -> Answering { co_return abort(call); });
 }
@@ -246,6 +251,40 @@ Answering ProposalRoutes::approve(const Call& call) const {
   co_return context_.book.approve(id, context_.view())
       .map([](const Proposal& approved) { return Success{Status::ok, to_json(approved)}; })
       .map_error(refused);
+}
+
+Answering ProposalRoutes::reject(const Call& call) const {
+  const auto shown = show(call);
+  if (!shown) {
+    co_return shown;
+  }
+  const std::uint32_t id = *number_in(call.parameters[0]);
+  json asked{{"rejected", id}};
+  const auto announced = co_await context_.announce(call.caller, AuditKind::proposal, std::move(asked));
+  if (!announced) {
+    co_return fail(announced.error());
+  }
+  co_return context_.book.reject(id, call.caller.user)
+      .map([](const Proposal& rejected) { return Success{Status::ok, to_json(rejected)}; })
+      .map_error(refused);
+}
+
+Answering ProposalRoutes::plan(const Call& call) const {
+  const auto shown = show(call);
+  if (!shown) {
+    co_return shown;
+  }
+  const Proposal proposal = *context_.book.find(*number_in(call.parameters[0]));
+  const auto targeting = co_await present_targeting(context_);
+  if (!targeting) {
+    co_return fail(targeting.error());
+  }
+  auto work = [proposal, targeting = *targeting, robot = &context_.robot, config = &context_.config] {
+    return proposal_plan(*robot, *config, targeting, proposal);
+  };
+  co_return (co_await context_.work.run(std::move(work))).map([](json body) {
+    return Success{.body = std::move(body)};
+  });
 }
 
 Reply ProposalRoutes::show(const Call& call) const {

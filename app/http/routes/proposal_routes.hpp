@@ -20,7 +20,9 @@ class ProposalRoutes {
   [[nodiscard]] boost::asio::awaitable<tl::expected<Draft, Problem>> draft_of(const Call& call) const;
   [[nodiscard]] boost::asio::awaitable<Reply> propose(const Call& call) const;
   [[nodiscard]] boost::asio::awaitable<Reply> approve(const Call& call) const;
+  [[nodiscard]] boost::asio::awaitable<Reply> reject(const Call& call) const;
   [[nodiscard]] Reply show(const Call& call) const;
+  [[nodiscard]] boost::asio::awaitable<Reply> plan(const Call& call) const;
   [[nodiscard]] Reply abort(const Call& call) const;
 
   const Context& context_;

@@ -1,10 +1,14 @@
 #include "http/routes/targeting_routes.hpp"
 
+#include <cmath>
+
 #include "http/alignment_view.hpp"
 #include "http/problems.hpp"
 #include "http/targeting_change.hpp"
 #include "http/targeting_history.hpp"
 #include "http/targeting_store.hpp"
+#include "targeting/reach.hpp"
+#include "targeting/targeting_json.hpp"
 
 namespace interlock::web {
 namespace {
@@ -13,6 +17,23 @@ using Answering = boost::asio::awaitable<Reply>;
 using boost::beast::http::verb;
 using nlohmann::json;
 
+/** Half a second of a small computer; twice as many fill few more cells. */
+constexpr std::size_t reach_draws = 200'000;
+
+/** Schema `Reach`. */
+json reach_json(const KinematicsResult<Reach>& found) {
+  if (!found) {
+    return {{"cell_mm", 0.0}, {"centres", json::array()}, {"problem", to_json(found.error())}};
+  }
+  constexpr double per_mm = 100.0;
+  const auto rounded = [](double mm) { return std::round(mm * per_mm) / per_mm; };
+  json centres = json::array();
+  for (const Eigen::Vector3d& centre : found->shell_mm) {
+    centres.push_back({rounded(centre.x()), rounded(centre.y()), rounded(centre.z())});
+  }
+  return {{"cell_mm", found->cell_mm}, {"centres", std::move(centres)}, {"problem", nullptr}};
+}
+
 }  // namespace
 
 TargetingRoutes::TargetingRoutes(const Context& context, Router& router) : context_(context) {
@@ -20,6 +41,7 @@ TargetingRoutes::TargetingRoutes(const Context& context, Router& router) : conte
   router.add(verb::get, "/api/targeting/alignment", viewers,
              [this](const Call&) { return show_alignment(); });
   router.add(verb::get, "/api/targeting/history", viewers, [this](const Call&) { return show_history(); });
+  router.add(verb::get, "/api/targeting/reach", viewers, [this](const Call&) { return show_reach(); });
   add_change(router, "/api/targeting/registration", with_registration);
   add_change(router, "/api/targeting/current", with_reported_pose);
   add_change(router, "/api/targeting/target", with_target);
@@ -48,6 +70,28 @@ Answering TargetingRoutes::show_history() const {
   };
   const auto found = co_await context_.store.run(std::move(find));
   co_return found.map([](const json& history) { return Success{.body = history}; });
+}
+
+/** The same for as long as the probe is: computed once for it. */
+Answering TargetingRoutes::show_reach() {
+  const auto targeting = co_await present_targeting(context_);
+  if (!targeting) {
+    co_return fail(targeting.error());
+  }
+  const ProbeOffsets probe = probe_of(*targeting);
+  if (!reach_ || reach_->probe != probe) {
+    auto work = [probe, robot = &context_.robot] {
+      return RobotKinematics::create(*robot, probe).and_then([&](const RobotKinematics& kinematics) {
+        return reach_of(*robot, kinematics, reach_draws);
+      });
+    };
+    auto found = co_await context_.work.run(std::move(work));
+    if (!found) {
+      co_return fail(found.error());
+    }
+    reach_ = KnownReach{probe, reach_json(*found)};
+  }
+  co_return Success{.body = reach_->body};
 }
 
 Answering TargetingRoutes::change(const Call& call, TargetingChange make) const {

@@ -5,10 +5,13 @@
 #pragma once
 
 #include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
 
 #include "http/context.hpp"
 #include "http/router.hpp"
 #include "http/targeting_change.hpp"
+#include "robot/kinematics.hpp"
 
 namespace interlock::web {
 
@@ -22,9 +25,17 @@ class TargetingRoutes {
   [[nodiscard]] boost::asio::awaitable<Reply> show() const;
   [[nodiscard]] boost::asio::awaitable<Reply> show_alignment() const;
   [[nodiscard]] boost::asio::awaitable<Reply> show_history() const;
+  [[nodiscard]] boost::asio::awaitable<Reply> show_reach();
   [[nodiscard]] boost::asio::awaitable<Reply> change(const Call& call, TargetingChange make) const;
 
+  /** Where the robot gets to with a probe: schema `Reach`. */
+  struct KnownReach {
+    ProbeOffsets probe;
+    nlohmann::json body;
+  };
+
   const Context& context_;
+  std::optional<KnownReach> reach_; /**< the newest that was asked for */
 };
 
 }  // namespace interlock::web

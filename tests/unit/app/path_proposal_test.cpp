@@ -231,7 +231,8 @@ TEST(PathSeparation, LinkedSlidersMayNotPartTooFarAtAnyTargetOrRow) {
                                                       : 375000;
   }
   const auto code = [&](const PathProgram& program) {
-    const auto checked = check_path(prostate(), config, view, program);
+    CheckList checks;
+    const auto checked = check_path(prostate(), config, view, program, checks);
     return checked ? std::string("passes") : checked.error().code;
   };
   const std::uint32_t left = prostate().find("front_left")->slot;

@@ -26,6 +26,13 @@ std::string code_of(const tl::expected<void, Refusal>& checked) {
   return checked ? "allowed" : checked.error().code;
 }
 
+tl::expected<void, Refusal> checked(const Robot& robot, const ilk_config_t& config, const ControlView& view,
+                                    const SweepDraft& draft) {
+  CheckList checks;
+  check_sweep(robot, config, view, draft, checks);
+  return checks.outcome();
+}
+
 class SweepProposalTest : public testing::Test {
  protected:
   void expect_refused(const SweepDraft& draft, const std::string& code) {
@@ -80,12 +87,12 @@ TEST_F(SweepProposalTest, ASweepWithinTheBandIsApprovedAndOrdered) {
 TEST_F(SweepProposalTest, BothEndsOfTheBandAreAllowedAndAWordBeyondIsNot) {
   const FrequencyBand band = *frequency_band(*prostate().at_slot(turned_axis));
   const SweepDraft whole = draft_of(band.highest_hz, band.lowest_hz, band.highest_hz - band.lowest_hz);
-  EXPECT_TRUE(check_sweep(prostate(), config_, view_, whole));
+  EXPECT_TRUE(checked(prostate(), config_, view_, whole));
   SweepDraft beyond = whole;
   ++beyond.steps.first_word;
-  EXPECT_EQ(code_of(check_sweep(prostate(), config_, view_, beyond)), "DRIVE");
+  EXPECT_EQ(code_of(checked(prostate(), config_, view_, beyond)), "DRIVE");
   beyond.steps.first_word -= 2;
-  EXPECT_EQ(code_of(check_sweep(prostate(), config_, view_, beyond)), "DRIVE") << "faster than allowed";
+  EXPECT_EQ(code_of(checked(prostate(), config_, view_, beyond)), "DRIVE") << "faster than allowed";
 }
 
 TEST_F(SweepProposalTest, ThePublishedRangeIsRefusedAndBothRangesAreNamed) {
@@ -161,7 +168,7 @@ TEST(SweepDrafts, TheWholeBandIsSweptInPublishedSteps) {
   EXPECT_EQ(draft->steps.step_words, -1000000);
   EXPECT_EQ(draft->steps.count, 49u);
   EXPECT_EQ(draft->steps.dwell_ticks, 1000u);
-  EXPECT_TRUE(check_sweep(prostate(), test::config_of(prostate()), test::ready_view(prostate()), *draft));
+  EXPECT_TRUE(checked(prostate(), test::config_of(prostate()), test::ready_view(prostate()), *draft));
 }
 
 }  // namespace

@@ -9,6 +9,12 @@ export type Proposal = Schemas["Proposal"];
 export type JogStart = Schemas["JogStart"];
 export type JogDirection = JogStart["direction"];
 export type ProposalDraft = Schemas["ProposalDraft"];
+export type ProposalPlan = Schemas["ProposalPlan"];
+export type ProposalGhost = Schemas["ProposalGhost"];
+export type AxisProfile = Schemas["AxisProfile"];
+export type LoadedTrajectory = Schemas["LoadedTrajectory"];
+export type BodyPart = Schemas["BodyPart"];
+export type Reach = Schemas["Reach"];
 export type Status = Schemas["Status"];
 export type CardStatus = Status["cards"][number];
 export type VerdictAnswer = Schemas["VerdictAnswer"];
@@ -49,7 +55,10 @@ export type AuditCheck = Schemas["AuditCheck"];
 export type AxisAction = paths["/api/motors/{axis}/{action}"]["post"]["parameters"]["path"]["action"];
 
 /** What an error says; the part of the API's problem that people need. */
-export type Problem = Pick<Schemas["Problem"], "code" | "detail" | "expected" | "next_step" | "field"> & {
+export type Problem = Pick<
+  Schemas["Problem"],
+  "code" | "detail" | "expected" | "next_step" | "field" | "line"
+> & {
   /** Seconds to wait before another attempt makes sense. */
   readonly retryAfterS?: number;
 };
@@ -190,7 +199,20 @@ export const api = {
   beginJog: (start: JogStart) => act(() => http.POST("/api/jog", { body: start })),
   renewJog: (id: number) => act(() => http.PUT("/api/jog/{id}", { params: { path: { id } } })),
   approve: (id: number) => act(() => http.POST("/api/proposals/{id}/approve", { params: { path: { id } } })),
+  reject: (id: number) => act(() => http.POST("/api/proposals/{id}/reject", { params: { path: { id } } })),
+  proposalPlan: (id: number) =>
+    read(() => slowHttp.GET("/api/proposals/{id}/plan", { params: { path: { id } } })),
   abort: (id: number) => act(() => http.POST("/api/proposals/{id}/abort", { params: { path: { id } } })),
+  trajectory: () => read(() => http.GET("/api/trajectory")),
+  loadTrajectory: (text: string) =>
+    act(() =>
+      slowHttp.PUT("/api/trajectory", {
+        body: text,
+        bodySerializer: (body) => body,
+        headers: { "Content-Type": "text/csv" },
+      }),
+    ),
+  unloadTrajectory: () => act(() => http.DELETE("/api/trajectory")),
   reset: () => act(() => http.POST("/api/reset")),
 
   positions: () => read(() => http.GET("/api/positions")),
@@ -230,6 +252,8 @@ export const api = {
   setRegistration: (change: RegistrationChange) =>
     act(() => http.PUT("/api/targeting/registration", { body: change })),
   setTarget: (change: TargetChange) => act(() => http.PUT("/api/targeting/target", { body: change })),
+  /** Computed anew for each probe. */
+  reach: () => read(() => slowHttp.GET("/api/targeting/reach")),
   logs: (lines: number) => read(() => http.GET("/api/logs", { params: { query: { lines } } })),
   setLogLevel: (level: LogLevel) => act(() => http.PUT("/api/logs", { body: { level } })),
   acknowledgeLogs: (sequences: number[]) =>

@@ -543,6 +543,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/targeting/reach": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Where the treatment point gets to with the present probe: the outer cells of the space that 200000 random setpoints,
+         *     within what the kernel accepts of homed axes, reach by the kinematics. A place that only few setpoints reach may be missing.
+         */
+        get: operations["getReach"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/targeting/registration": {
         parameters: {
             query?: never;
@@ -967,6 +987,47 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/proposals/{id}/plan": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["parameters"]["ProposalId"];
+            };
+            cookie?: never;
+        };
+        /**
+         * What there is to look at before a proposal is approved: its checks, how each axis will go beside its limits, and where that
+         *     leads in the scanner. Planned by the code that carries it out, from where the axes were when it was last checked.
+         */
+        get: operations["getProposalPlan"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/proposals/{id}/reject": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["parameters"]["ProposalId"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Ends a proposal that is `checked`, which nobody wants. 409 NOT_WAITING when it does not wait for approval. */
+        post: operations["rejectProposal"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/proposals/{id}/approve": {
         parameters: {
             query?: never;
@@ -1120,6 +1181,8 @@ export interface components {
             /** @description What, where. */
             detail: string;
             field?: string;
+            /** @description Of the text that was sent, where one line is wrong. */
+            line?: number;
             expected?: string;
             next_step?: string;
         };
@@ -1336,6 +1399,91 @@ export interface components {
             verdict?: string | null;
             /** @description Why it is in this state, for people. */
             detail: string;
+        };
+        ProposalPlan: {
+            id: number;
+            /** @description Kernel tick of the state that it was last checked against and planned from; null unless it was. */
+            checked_tick: number | null;
+            /** @description In the order in which they were made. */
+            checks: components["schemas"]["ProposalCheck"][];
+            profile: components["schemas"]["ProposalProfile"];
+            ghost: components["schemas"]["ProposalGhost"] | null;
+            /** @description Why there is no ghost; NO_PLAN when nothing is planned. */
+            ghost_problem: components["schemas"]["TargetingProblem"] | null;
+        };
+        ProposalCheck: {
+            /** @enum {string} */
+            name: "other_motion" | "targeting" | "configuration" | "mode" | "axes" | "homed" | "drive" | "range" | "separation" | "rates" | "switches" | "home_order" | "band" | "force" | "skin" | "depth";
+            /** @description What holds when it passes. */
+            words: string;
+            /**
+             * @description not_reached: one before it failed.
+             * @enum {string}
+             */
+            outcome: "passed" | "failed" | "not_reached";
+            /** @description With which it failed. */
+            code: string | null;
+        };
+        /** @description Samples of all axes that move. Lists of all axes and `times_s` are equally long, at most 302. */
+        ProposalProfile: {
+            /**
+             * @description time: a path, at `times_s`. way: a move of one axis, evenly from start to target, as no time is planned. none: see `why`.
+             * @enum {string}
+             */
+            basis: "none" | "time" | "way";
+            /** @description Why there are no samples. */
+            why: string | null;
+            /** @description By time only. */
+            times_s: number[];
+            axes: components["schemas"]["AxisProfile"][];
+        };
+        AxisProfile: {
+            slot: number;
+            /** @description When it was checked; soft limits say nothing of an axis that is not. */
+            homed: boolean;
+            /** @description Between both ends the kernel took setpoints when it was checked. */
+            lowest_setpoint_counts: number;
+            highest_setpoint_counts: number;
+            soft_min_counts: number;
+            soft_max_counts: number;
+            /** @description That a planned motion keeps to; null when no time is planned. */
+            velocity_limit_counts_per_s: number | null;
+            /** @description Largest drive of the axis. */
+            drive_limit: number;
+            /** @description Of the whole motion, between the samples as well. */
+            lowest_counts: number;
+            highest_counts: number;
+            /** @description Speed, as lowest_counts; 0 by way. */
+            fastest_counts_per_s: number;
+            positions_counts: number[];
+            /** @description By time only. */
+            velocities_counts_per_s: number[];
+            /** @description By way only. */
+            drives: number[];
+        };
+        /** @description Where the profile leads, in the scanner's frame (RAS), mm, with the present registration and probe; axes that it does not move stand where they were when it was checked. */
+        ProposalGhost: {
+            /** @description Pose of the treatment point at the end, row by row. */
+            treatment: number[];
+            tip: number[];
+            /** @description Of the tip at each sample. */
+            tip_path: number[][];
+            /** @description At the end. */
+            body: components["schemas"]["BodyPart"][];
+        };
+        /** @description A straight part of the robot between two points, as long as its kinematics say. Thickness is no part of the model. */
+        BodyPart: {
+            /** @enum {string} */
+            name: "rail" | "slider" | "link" | "plate" | "lateral" | "arm" | "guide" | "carrier" | "probe";
+            from: number[];
+            to: number[];
+        };
+        Reach: {
+            /** @description Side of a cell. */
+            cell_mm: number;
+            /** @description Of the outer cells, in the zFrame, mm: they move with the registration. */
+            centres: number[][];
+            problem: components["schemas"]["TargetingProblem"] | null;
         };
         /** @enum {string} */
         Role: "viewer" | "engineer" | "admin";
@@ -1625,6 +1773,8 @@ export interface components {
             /** @description By the encoders; null unless every axis of the kinematics is homed. */
             current: number[] | null;
             current_problem: components["schemas"]["TargetingProblem"] | null;
+            /** @description What the robot looks like there, in the scanner's frame; null where the current pose is. */
+            current_body: components["schemas"]["BodyPart"][] | null;
             /** @description Of the current pose from the desired one. */
             current_deviation: components["schemas"]["Deviation"] | null;
         };
@@ -2924,6 +3074,28 @@ export interface operations {
             503: components["responses"]["NoStore"];
         };
     };
+    getReach: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Cells, or a problem in their place. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Reach"];
+                };
+            };
+            401: components["responses"]["Login"];
+            503: components["responses"]["NoStore"];
+        };
+    };
     setRegistration: {
         parameters: {
             query?: never;
@@ -3590,6 +3762,58 @@ export interface operations {
             };
             401: components["responses"]["Login"];
             404: components["responses"]["NotFound"];
+        };
+    };
+    getProposalPlan: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["parameters"]["ProposalId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Plan. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ProposalPlan"];
+                };
+            };
+            401: components["responses"]["Login"];
+            404: components["responses"]["NotFound"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    rejectProposal: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["parameters"]["ProposalId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Aborted; `detail` says who rejected it. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Proposal"];
+                };
+            };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            404: components["responses"]["NotFound"];
+            409: components["responses"]["Refused"];
+            503: components["responses"]["NoStore"];
         };
     };
     approveProposal: {

@@ -87,6 +87,11 @@ export async function approve(id: number): Promise<void> {
   tell("robot", await api.approve(id));
 }
 
+/** Ends a proposal that waits for approval, which nobody wants; a refusal is shown where the robot's are. */
+export async function reject(id: number): Promise<void> {
+  tell("robot", await api.reject(id));
+}
+
 /** Changes the robot's mode; a refusal is shown at the selector. */
 export async function setMode(mode: string): Promise<void> {
   const outcome = await api.setMode(mode);

@@ -8,7 +8,7 @@ export interface Notice {
   readonly nextStep: string;
 }
 
-/** Whether the code is one of the kernel's; the app has others of its own. */
+/** Whether the catalog has a verdict of that name. */
 export function isVerdict(code: string): boolean {
   return catalog.verdict.some((verdict) => verdict.name === code);
 }

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { codeHash, codeOf, routeOf } from "./route";
+import { codeHash, codeOf, proposalHash, proposalOf, routeOf } from "./route";
 
 describe("routeOf", () => {
   it.each([
@@ -12,6 +12,12 @@ describe("routeOf", () => {
     ["#/account", "account"],
     ["#/nowhere", "robot"],
     ["#/users/7", "robot"],
+    ["#/proposals", "proposals"],
+    ["#/proposals/7", "proposals"],
+    ["#/view/7", "view"],
+    ["#/proposals/x", "robot"],
+    ["#/proposals/7/8", "robot"],
+    ["#/plots/7", "robot"],
     ["#/codes", "codes"],
     ["#/codes/verdict/RANGE", "codes"],
   ])("%j is the page %s", (hash, route) => {
@@ -28,6 +34,20 @@ describe("codeOf", () => {
     "finds none in %j",
     (hash) => {
       expect(codeOf(hash)).toBeNull();
+    },
+  );
+});
+
+describe("proposalOf", () => {
+  it("finds the proposal that a link leads to, on either page", () => {
+    expect(proposalOf(proposalHash("proposals", 12))).toBe(12);
+    expect(proposalOf(proposalHash("view", 3))).toBe(3);
+  });
+
+  it.each(["#/proposals", "#/proposals/0", "#/proposals/-1", "#/proposals/1e3", "#/users/7"])(
+    "finds none in %j",
+    (hash) => {
+      expect(proposalOf(hash)).toBeNull();
     },
   );
 });

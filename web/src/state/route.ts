@@ -2,7 +2,17 @@
 import { useSyncExternalStore } from "react";
 import { catalog, type Family } from "../generated/catalog";
 
-export const routes = ["robot", "targeting", "plots", "view", "codes", "users", "audit", "account"] as const;
+export const routes = [
+  "robot",
+  "targeting",
+  "proposals",
+  "plots",
+  "view",
+  "codes",
+  "users",
+  "audit",
+  "account",
+] as const;
 export type Route = (typeof routes)[number];
 
 /** A place in the catalog of codes. */
@@ -11,11 +21,27 @@ export interface CodePlace {
   readonly code: string;
 }
 
-/** The page that a hash names; the robot for every other. Only the codes have places within. */
+/** Pages on which one proposal can be looked at. */
+type ProposalRoute = "proposals" | "view";
+
+/** The page that a hash names; the robot for every other. Codes and proposals alone have places within. */
 export function routeOf(hash: string): Route {
   const [name, ...place] = segments(hash);
   const named = routes.find((route) => route === name);
-  return named === undefined || (place.length > 0 && named !== "codes") ? "robot" : named;
+  if (named === undefined) return "robot";
+  return place.length === 0 || named === "codes" || proposalOf(hash) !== null ? named : "robot";
+}
+
+/** The number of the proposal that a hash leads to; null when it names none. */
+export function proposalOf(hash: string): number | null {
+  const [page, id, ...rest] = segments(hash);
+  const named = page === "proposals" || page === "view";
+  return named && rest.length === 0 && id !== undefined && /^[1-9]\d{0,9}$/.test(id) ? Number(id) : null;
+}
+
+/** The hash that leads to a proposal. */
+export function proposalHash(page: ProposalRoute, id: number): string {
+  return `#/${page}/${id}`;
 }
 
 /** The code that a hash leads to; null when it names none. */
@@ -54,4 +80,9 @@ export function useRoute(): Route {
 export function useCodePlace(): CodePlace | null {
   const hash = useHash();
   return codeOf(hash);
+}
+
+/** The proposal that the page is about; null when it is about none in particular. */
+export function useProposalPlace(): number | null {
+  return proposalOf(useHash());
 }

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
-import type { AlignmentView, Targeting } from "../../api/client";
+import type { AlignmentView, ProposalPlan, Targeting } from "../../api/client";
 import { presets, standOf } from "./cameras";
-import { along, ballAround, distance, sceneOf, wordsOf } from "./scene";
+import { along, ballAround, cellsOf, distance, sceneOf, wayOf, wordsOf, wordsOfCells } from "./scene";
 
 /** At (10, 20, 30), its z along x of the scanner. */
 const pose = [0, 0, 1, 10, 0, 1, 0, 20, -1, 0, 0, 30, 0, 0, 0, 1];
@@ -20,6 +20,7 @@ const nothing: AlignmentView = {
   alignment_problem: { code: "NO_TARGET", text: "Entry and target are not both set." },
   current: null,
   current_problem: { code: "NOT_HOMED", text: "Home the yaw." },
+  current_body: null,
   current_deviation: null,
 };
 
@@ -66,6 +67,60 @@ describe("sceneOf", () => {
       [0, 0, 0],
     ]);
     expect(scene.missing).toEqual([]);
+  });
+});
+
+describe("the ghost of a proposal", () => {
+  const body = [{ name: "link" as const, from: [0, 0, 0], to: [0, 60, 0] }];
+  const plan = {
+    id: 12,
+    ghost: {
+      treatment: pose,
+      tip: [15, 20, 30],
+      tip_path: [
+        [15, 20, 0],
+        [15, 20, 20],
+        [15, 20, 30],
+      ],
+      body,
+    },
+    ghost_problem: null,
+  } as unknown as ProposalPlan;
+
+  it("is the robot and the tip at its end, and the way there", () => {
+    const scene = sceneOf(targeting, nothing, { robot: true, plan });
+    expect(scene.bodies.map(({ kind }) => kind)).toEqual(["ghost"]);
+    expect(scene.ghost && wayOf(scene.ghost)).toBe(30);
+    expect(wordsOf(scene)).toContain("ghost of proposal 12: tip to 15.0, 20.0, 30.0 by a way of 30.0 mm");
+    expect(distance([0, 60, 0], ballAround(scene).centre)).toBeLessThan(ballAround(scene).radiusMm);
+  });
+
+  it("stands beside the robot, which can be left out", () => {
+    const known = { ...nothing, current: pose, current_problem: null, current_body: body };
+    const kinds = (robot: boolean): string[] =>
+      sceneOf(targeting, known, { robot, plan }).bodies.map(({ kind }) => kind);
+    expect(kinds(true)).toEqual(["current", "ghost"]);
+    expect(kinds(false)).toEqual(["ghost"]);
+  });
+
+  it("says why there is none", () => {
+    const unplanned = { id: 3, ghost: null, ghost_problem: { code: "NO_PLAN", text: "Homing." } };
+    const scene = sceneOf(targeting, nothing, { robot: true, plan: unplanned as unknown as ProposalPlan });
+    expect(scene.ghost).toBeNull();
+    expect(scene.missing).toContain("Ghost of proposal 3: NO_PLAN: Homing.");
+  });
+});
+
+describe("the workspace", () => {
+  it("moves with the registration, and says how far it goes", () => {
+    const reach = { cell_mm: 10, centres: [[0, 0, 0] as number[], [0, 0, 20]], problem: null };
+    const cells = cellsOf(reach, pose);
+    expect(cells?.centres).toEqual([
+      [10, 20, 30],
+      [30, 20, 30],
+    ]);
+    expect(cells && wordsOfCells(cells)).toBe("workspace: x 5 to 35, y 15 to 25, z 25 to 35");
+    expect(cellsOf({ ...reach, centres: [] }, pose)).toBeNull();
   });
 });
 

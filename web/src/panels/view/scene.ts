@@ -2,7 +2,7 @@
  * What the 3D view shows, in the scanner's frame (RAS), mm: poses and points that the app knows, and nothing else. A pose
  * is a homogeneous matrix, row by row.
  */
-import type { AlignmentView, Targeting } from "../../api/client";
+import type { AlignmentView, BodyPart, ProposalPlan, Reach, Targeting } from "../../api/client";
 
 export type Point = readonly [x: number, y: number, z: number];
 
@@ -28,7 +28,28 @@ export interface Mark {
   readonly at: Point;
 }
 
+/** A straight part of the robot, as long as its kinematics say. */
+export interface Part {
+  readonly name: BodyPart["name"];
+  readonly from: Point;
+  readonly to: Point;
+}
+
+export interface Body {
+  readonly kind: "current" | "ghost";
+  readonly parts: readonly Part[];
+}
+
+/** Where a proposal leads: its tip at the end, and the way there. */
+export interface Ghost {
+  readonly id: number;
+  readonly tip: Point;
+  readonly path: readonly Point[];
+}
+
 export interface Scene {
+  readonly bodies: readonly Body[];
+  readonly ghost: Ghost | null;
   readonly axes: readonly Axes[];
   readonly probes: readonly Probe[];
   readonly marks: readonly Mark[];
@@ -42,8 +63,22 @@ const IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 const FRAME_MM = 40;
 const TOOL_MM = 18;
 
-export function sceneOf(targeting: Targeting, view: AlignmentView): Scene {
+/** What is looked at besides the targeting. */
+export interface Wanted {
+  /** Whether the robot itself is drawn. */
+  readonly robot: boolean;
+  readonly plan: ProposalPlan | null;
+}
+
+const NOTHING_MORE: Wanted = { robot: false, plan: null };
+
+export function sceneOf(
+  targeting: Targeting,
+  view: AlignmentView,
+  { robot, plan }: Wanted = NOTHING_MORE,
+): Scene {
   const { alignment, current } = view;
+  const ghost = plan?.ghost ?? null;
   const probe = (name: string, kind: Probe["kind"], pose: readonly number[]): Probe => ({
     name,
     kind,
@@ -58,6 +93,14 @@ export function sceneOf(targeting: Targeting, view: AlignmentView): Scene {
   }
   if (current !== null) probes.push(probe("current", "current", current));
   return {
+    bodies: [
+      ...(robot && view.current_body !== null ? [bodyOf("current", view.current_body)] : []),
+      ...(ghost === null ? [] : [bodyOf("ghost", ghost.body)]),
+    ],
+    ghost:
+      plan === null || ghost === null
+        ? null
+        : { id: plan.id, tip: pointAt(ghost.tip), path: ghost.tip_path.map(pointAt) },
     axes: [
       { name: "scanner (RAS)", pose: IDENTITY, lengthMm: FRAME_MM },
       { name: "zFrame", pose: targeting.registration, lengthMm: FRAME_MM },
@@ -67,10 +110,68 @@ export function sceneOf(targeting: Targeting, view: AlignmentView): Scene {
     marks: [...markOf("entry", targeting.entry_point), ...markOf("target", targeting.target_point)],
     deviation:
       current === null || alignment === null ? null : [along(current, 0), along(alignment.desired, 0)],
-    missing: [view.current_problem, view.alignment_problem].flatMap((problem) =>
-      problem === null ? [] : [`${problem.code}: ${problem.text}`],
-    ),
+    missing: [
+      ...[view.current_problem, view.alignment_problem].flatMap((problem) =>
+        problem === null ? [] : [`${problem.code}: ${problem.text}`],
+      ),
+      ...(plan?.ghost_problem == null
+        ? []
+        : [`Ghost of proposal ${plan.id}: ${plan.ghost_problem.code}: ${plan.ghost_problem.text}`]),
+    ],
   };
+}
+
+function bodyOf(kind: Body["kind"], parts: readonly BodyPart[]): Body {
+  return {
+    kind,
+    parts: parts.map(({ name, from, to }) => ({ name, from: pointAt(from), to: pointAt(to) })),
+  };
+}
+
+function pointAt([x = 0, y = 0, z = 0]: readonly number[]): Point {
+  return [x, y, z];
+}
+
+/** The outer cells of the space that the robot reaches, where they are in the scanner. */
+export interface Cells {
+  readonly cellMm: number;
+  readonly centres: readonly Point[];
+}
+
+/** They come in the zFrame; null where there are none. */
+export function cellsOf(reach: Reach, registration: readonly number[]): Cells | null {
+  if (reach.centres.length === 0) return null;
+  return {
+    cellMm: reach.cell_mm,
+    centres: reach.centres.map((centre) => placed(registration, pointAt(centre))),
+  };
+}
+
+/** A point of the pose's frame. */
+function placed(pose: readonly number[], [x, y, z]: Point): Point {
+  const at = (row: number): number =>
+    (pose[4 * row] ?? 0) * x +
+    (pose[4 * row + 1] ?? 0) * y +
+    (pose[4 * row + 2] ?? 0) * z +
+    (pose[4 * row + 3] ?? 0);
+  return [at(0), at(1), at(2)];
+}
+
+/** What cells say to whoever does not see them. */
+export function wordsOfCells({ cellMm, centres }: Cells): string {
+  const [x, y, z] = ([0, 1, 2] as const).map((axis) => {
+    const { low, high } = endsOf(centres.map((centre) => centre[axis]));
+    return `${(low - cellMm / 2).toFixed(0)} to ${(high + cellMm / 2).toFixed(0)}`;
+  });
+  return `workspace: x ${x}, y ${y}, z ${z}`;
+}
+
+/** Without a call of as many arguments as there are values. */
+function endsOf(values: readonly number[]): { low: number; high: number } {
+  return values.reduce(
+    ({ low, high }, value) => ({ low: Math.min(low, value), high: Math.max(high, value) }),
+    { low: Number.POSITIVE_INFINITY, high: Number.NEGATIVE_INFINITY },
+  );
 }
 
 function markOf(kind: Mark["kind"], point: readonly number[] | null): Mark[] {
@@ -96,19 +197,21 @@ export interface Ball {
 const LEAST_RADIUS_MM = 30;
 
 /** A ball around everything that is there. */
-export function ballAround(scene: Scene): Ball {
+export function ballAround(scene: Scene, cells: Cells | null = null): Ball {
   const points: Point[] = [
+    ...(cells?.centres ?? []),
+    ...scene.bodies.flatMap(({ parts }) => parts.flatMap(({ from, to }) => [from, to])),
+    ...(scene.ghost?.path ?? []),
     ...scene.axes.map(({ pose }) => along(pose, 0)),
     ...scene.probes.flatMap(({ cannula, tip }) => [cannula, tip]),
     ...scene.marks.map(({ at }) => at),
   ];
   const ends = ([0, 1, 2] as const).map((axis) => {
-    const values = points.map((point) => point[axis]);
-    return { low: Math.min(...values), high: Math.max(...values) };
+    return endsOf(points.map((point) => point[axis]));
   });
   const [x, y, z] = ends.map(({ low, high }) => (low + high) / 2);
   const centre: Point = [x ?? 0, y ?? 0, z ?? 0];
-  const farthest = Math.max(...points.map((point) => distance(point, centre)));
+  const farthest = endsOf(points.map((point) => distance(point, centre))).high;
   return { centre, radiusMm: Math.max(LEAST_RADIUS_MM, farthest + FRAME_MM / 2) };
 }
 
@@ -121,5 +224,17 @@ export function wordsOf(scene: Scene): string {
   const text = (point: Point): string => point.map((value) => value.toFixed(1)).join(", ");
   const probes = scene.probes.map(({ name, treatment }) => `${name} treatment point ${text(treatment)}`);
   const marks = scene.marks.map(({ name, at }) => `${name} ${text(at)}`);
-  return [...probes, ...marks].join("; ") || "frames alone";
+  const { ghost } = scene;
+  const led =
+    ghost === null
+      ? []
+      : [
+          `ghost of proposal ${ghost.id}: tip to ${text(ghost.tip)} by a way of ${wayOf(ghost).toFixed(1)} mm`,
+        ];
+  return [...probes, ...marks, ...led].join("; ") || "frames alone";
+}
+
+/** How far the tip goes. */
+export function wayOf({ path }: Ghost): number {
+  return path.reduce((way, point, index) => way + distance(point, path[index - 1] ?? point), 0);
 }

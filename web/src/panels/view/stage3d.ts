@@ -1,6 +1,7 @@
 /** The scene on a WebGL canvas. It draws when something changed, and at no other time. */
 import {
   AmbientLight,
+  BoxGeometry,
   BufferGeometry,
   Color,
   ConeGeometry,
@@ -16,6 +17,8 @@ import {
   MeshStandardMaterial,
   type Object3D,
   PerspectiveCamera,
+  Points,
+  PointsMaterial,
   Quaternion,
   Scene as Scene3d,
   SphereGeometry,
@@ -24,7 +27,19 @@ import {
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { FIELD_OF_VIEW_DEG, type Preset, standOf } from "./cameras";
-import { type Axes, type Ball, ballAround, type Mark, type Point, type Probe, type Scene } from "./scene";
+import {
+  type Axes,
+  type Ball,
+  type Body,
+  ballAround,
+  type Cells,
+  type Ghost,
+  type Mark,
+  type Part,
+  type Point,
+  type Probe,
+  type Scene,
+} from "./scene";
 
 /** Colours of the style sheet, as the browser computes them. */
 export interface Inks {
@@ -35,12 +50,28 @@ export interface Inks {
   readonly target: string;
   readonly entry: string;
   readonly alarm: string;
+  readonly robot: string;
+  readonly reach: string;
 }
 
 /** X red, Y green, Z blue in every viewer of the field; the ends have letters beside the canvas. */
 const AXIS_COLOURS = ["#c8443a", "#3d8f4f", "#3f74d1"] as const;
 const PROBE_RADIUS_MM = 1.2;
 const MARK_RADIUS_MM = 3;
+/** Thickness is no part of the model: what a part is, is seen by it. */
+const PART_WIDTH_MM: Record<Part["name"], number> = {
+  rail: 6,
+  slider: 14,
+  link: 5,
+  plate: 8,
+  lateral: 6,
+  arm: 5,
+  guide: 7,
+  carrier: 6,
+  probe: 2 * PROBE_RADIUS_MM,
+};
+const BOXES: ReadonlySet<Part["name"]> = new Set(["rail", "slider", "plate"]);
+const GHOST = { transparent: true, opacity: 0.35, depthWrite: false };
 const UP = new Vector3(0, 1, 0);
 
 export class Stage3d {
@@ -49,6 +80,9 @@ export class Stage3d {
   private readonly camera = new PerspectiveCamera(FIELD_OF_VIEW_DEG, 1, 1, 20_000);
   private readonly controls: OrbitControls;
   private content = new Group();
+  private reach = new Group();
+  private cells: Cells | null = null;
+  private newest: Scene | null = null;
   private ball: Ball | null = null;
   private preset: Preset;
   private asked = false;
@@ -70,7 +104,7 @@ export class Stage3d {
     this.preset = preset;
     const sun = new DirectionalLight("#ffffff", 1.6);
     sun.position.set(1, 2, 3);
-    this.scene.add(new AmbientLight("#ffffff", 1.6), sun, this.content);
+    this.scene.add(new AmbientLight("#ffffff", 1.6), sun, this.content, this.reach);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener("change", () => this.draw());
   }
@@ -90,6 +124,8 @@ export class Stage3d {
     this.content = new Group();
     this.content.add(
       ...scene.axes.map(axesOf),
+      ...scene.bodies.map((body) => bodyOf(body, inks)),
+      ...(scene.ghost === null ? [] : [ghostOf(scene.ghost, inks)]),
       ...scene.probes.map((probe) => probeOf(probe, inks)),
       ...scene.marks.map((mark) => markOf(mark, inks)),
       ...(scene.deviation === null ? [] : [lineOf(scene.deviation, dashed(inks.alarm))]),
@@ -97,9 +133,20 @@ export class Stage3d {
     this.scene.add(this.content);
     this.scene.background = new Color(inks.ground);
     const first = this.ball === null;
-    this.ball = ballAround(scene);
+    this.newest = scene;
+    this.ball = ballAround(scene, this.cells);
     if (first) this.look(this.preset);
     else this.draw();
+  }
+
+  /** Cells are many and change with the probe alone: they are kept from scene to scene. */
+  showReach(cells: Cells | null): void {
+    release(this.reach);
+    this.reach.clear();
+    this.cells = cells;
+    if (cells !== null) this.reach.add(cloudOf(cells, this.inks().reach));
+    if (this.newest !== null) this.ball = ballAround(this.newest, cells);
+    this.draw();
   }
 
   /** Looks at everything from there. */
@@ -115,6 +162,7 @@ export class Stage3d {
 
   dispose(): void {
     release(this.content);
+    release(this.reach);
     this.controls.dispose();
     this.renderer.dispose();
   }
@@ -161,6 +209,39 @@ function probeOf({ kind, cannula, treatment, tip }: Probe, inks: Inks): Object3D
   return group;
 }
 
+function bodyOf({ kind, parts }: Body, inks: Inks): Object3D {
+  const group = new Group();
+  const look = kind === "ghost" ? { color: inks.ghost, ...GHOST } : { color: inks.robot };
+  for (const { name, from, to } of parts) {
+    // The current probe is drawn as such, in its own colour.
+    if (name === "probe" && kind === "current") continue;
+    const width = PART_WIDTH_MM[name];
+    const material = new MeshStandardMaterial(look);
+    group.add(BOXES.has(name) ? beamOf(from, to, width, material) : rodOf(from, to, width / 2, material));
+  }
+  return group;
+}
+
+function ghostOf({ path, tip }: Ghost, inks: Inks): Object3D {
+  const group = new Group();
+  const way = new BufferGeometry().setFromPoints(path.map((point) => new Vector3(...point)));
+  group.add(new Line(way, new LineBasicMaterial({ color: inks.ghost })));
+  group.add(ballAt(tip, 1.5 * PROBE_RADIUS_MM, new MeshStandardMaterial({ color: inks.ghost })));
+  return group;
+}
+
+function cloudOf({ cellMm, centres }: Cells, colour: string): Object3D {
+  const geometry = new BufferGeometry().setFromPoints(centres.map((centre) => new Vector3(...centre)));
+  const material = new PointsMaterial({
+    color: colour,
+    size: cellMm * 0.6,
+    transparent: true,
+    opacity: 0.5,
+    depthWrite: false,
+  });
+  return new Points(geometry, material);
+}
+
 function markOf({ kind, at }: Mark, inks: Inks): Object3D {
   const material = new MeshStandardMaterial({ color: kind === "target" ? inks.target : inks.entry });
   if (kind === "target") return ballAt(at, MARK_RADIUS_MM, material);
@@ -176,12 +257,21 @@ function ballAt(at: Point, radiusMm: number, material: Material): Object3D {
 }
 
 function rodOf(from: Point, to: Point, radiusMm: number, material: Material): Object3D {
+  return between(from, to, (mm) => new Mesh(new CylinderGeometry(radiusMm, radiusMm, mm, 16), material));
+}
+
+function beamOf(from: Point, to: Point, widthMm: number, material: Material): Object3D {
+  return between(from, to, (mm) => new Mesh(new BoxGeometry(widthMm, mm, widthMm), material));
+}
+
+/** What is made along y, from one point to another. */
+function between(from: Point, to: Point, make: (mm: number) => Mesh): Object3D {
   const [start, end] = [new Vector3(...from), new Vector3(...to)];
   const way = end.clone().sub(start);
-  const rod = new Mesh(new CylinderGeometry(radiusMm, radiusMm, Math.max(way.length(), 1e-3), 16), material);
-  rod.position.copy(start).addScaledVector(way, 0.5);
-  rod.quaternion.copy(new Quaternion().setFromUnitVectors(UP, way.normalize()));
-  return rod;
+  const solid = make(Math.max(way.length(), 1e-3));
+  solid.position.copy(start).addScaledVector(way, 0.5);
+  solid.quaternion.copy(new Quaternion().setFromUnitVectors(UP, way.normalize()));
+  return solid;
 }
 
 function dashed(colour: string): LineDashedMaterial {
@@ -195,7 +285,7 @@ function lineOf(ends: readonly [Point, Point], material: Material): Line {
 
 function release(group: Group): void {
   group.traverse((each) => {
-    if (each instanceof Mesh || each instanceof Line) {
+    if (each instanceof Mesh || each instanceof Line || each instanceof Points) {
       each.geometry.dispose();
       each.material.dispose();
     }

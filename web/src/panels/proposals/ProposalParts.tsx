@@ -1,0 +1,124 @@
+import type { Motor, Proposal } from "../../api/client";
+import { CommandButton } from "../../design/CommandButton";
+import { MoveForetelling } from "../../kernel/MoveForetelling";
+import { abort, approve, reject } from "../../state/commands";
+import { isOpen } from "../../state/proposals";
+import { useConsole } from "../../state/store";
+import { formatCounts } from "../../units/units";
+
+type State = Proposal["state"];
+
+const looks: Record<State, { readonly shape: string; readonly tone: string }> = {
+  drafted: { shape: "·", tone: "" },
+  checked: { shape: "?", tone: "wish" },
+  approved: { shape: "◷", tone: "wish" },
+  executing: { shape: "▶", tone: "wish" },
+  paused: { shape: "‖", tone: "wish" },
+  done: { shape: "✓", tone: "calm" },
+  refused: { shape: "✕", tone: "medium" },
+  aborted: { shape: "■", tone: "" },
+  expired: { shape: "◌", tone: "" },
+};
+
+/** Where it stands, by word and shape. */
+export function StateChip({ state }: { readonly state: State }) {
+  const look = looks[state];
+  return (
+    <span className={`chip ${look.tone}`}>
+      <i aria-hidden="true">{look.shape}</i>
+      {state}
+    </span>
+  );
+}
+
+const sources: Record<Proposal["source"], string> = {
+  console: "console",
+  file: "file",
+  openigtlink: "OpenIGTLink",
+};
+
+/** Where it came from, as people write it. */
+export function sourceWord(proposal: Proposal): string {
+  return sources[proposal.source];
+}
+
+/** What the holder of the authority can do about it now. */
+export function ProposalCommands({ proposal }: { readonly proposal: Proposal }) {
+  const { id, slot, state } = proposal;
+  if (!isOpen(proposal)) return null;
+  if (state !== "checked") {
+    return (
+      <CommandButton
+        need="holder"
+        className="quiet"
+        label={`Abort proposal ${id}`}
+        onCommand={() => abort(id, slot)}
+      >
+        Abort
+      </CommandButton>
+    );
+  }
+  return (
+    <>
+      <CommandButton need="holder" label={`Approve proposal ${id}`} onCommand={() => approve(id)}>
+        Approve
+      </CommandButton>
+      <CommandButton need="holder" label={`Reject proposal ${id}`} onCommand={() => reject(id)}>
+        Reject
+      </CommandButton>
+    </>
+  );
+}
+
+const waiting: ReadonlySet<State> = new Set(["checked", "approved", "paused"]);
+
+/** What the kernel would say to a move that waits, for the approval or the pedal. */
+export function WaitingMove({ proposal, motor }: WishProps) {
+  const axis = useConsole((state) => (motor === undefined ? undefined : state.frame?.axes[motor.slot]));
+  const { kind, state, target_counts } = proposal;
+  if (kind !== "move" || !waiting.has(state) || target_counts == null) return null;
+  if (motor === undefined || axis === undefined) return null;
+  return <MoveForetelling motor={motor} axis={axis} targetCounts={target_counts} />;
+}
+
+function capital(word: string): string {
+  return word.charAt(0).toUpperCase() + word.slice(1);
+}
+
+interface WishProps {
+  readonly proposal: Proposal;
+  readonly motor: Motor | undefined;
+}
+
+export function Wish({ proposal, motor }: WishProps) {
+  const name = motor?.title ?? proposal.axis;
+  if (proposal.kind === "home") {
+    return (
+      <>
+        Home <strong>{name ?? `${proposal.axes.length} axes`}</strong>
+      </>
+    );
+  }
+  if (proposal.kind === "path") {
+    return (
+      <>
+        <strong>{capital(proposal.mode ?? "path")}</strong>: {proposal.axes.join(", ")}
+        {proposal.duration_s !== undefined && ` in ${proposal.duration_s.toFixed(1)} s`}
+      </>
+    );
+  }
+  if (proposal.kind === "sweep" || proposal.kind === "biopsy") {
+    return (
+      <>
+        <strong>{proposal.kind === "sweep" ? "Frequency sweep" : "Cooperative biopsy"}</strong>:{" "}
+        {proposal.axes.join(", ")}
+      </>
+    );
+  }
+  const counts = proposal.target_counts ?? 0;
+  return (
+    <>
+      <strong>{name}</strong> to {motor === undefined ? `${counts} counts` : formatCounts(motor, counts)}
+    </>
+  );
+}
