@@ -16,8 +16,8 @@ using testing::Each;
 using testing::Ge;
 using testing::Le;
 
-constexpr std::uint32_t head_axis = 7;
-constexpr std::uint32_t lateral_axis = 4;
+constexpr std::uint32_t head_slot = 7;
+constexpr std::uint32_t lateral_slot = 4;
 
 class ProfileTest : public testing::Test {
  protected:
@@ -47,7 +47,7 @@ class ProfileTest : public testing::Test {
 
 TEST_F(ProfileTest, APathBeginsWhereTheAxesWereEndsAtItsTargetsAndKeepsToTheRates) {
   const std::int32_t yaw_from = axis(test::yaw).position_counts;
-  const Proposal proposal = path_of({MoveLeg{{{test::yaw, -300}, {head_axis, -1000}}, 0.0, 0.0}});
+  const Proposal proposal = path_of({MoveLeg{{{test::yaw, -300}, {head_slot, -1000}}, 0.0, 0.0}});
   axis(test::yaw).position_counts = 0;  // what comes later changes nothing
   const Profile found = profile(proposal);
   ASSERT_EQ(found.basis, ProfileBasis::time) << found.why;
@@ -96,18 +96,18 @@ TEST_F(ProfileTest, ATrajectoryIsApproachedAndFollowedToItsLastRow) {
 }
 
 TEST_F(ProfileTest, AMoveOfOneAxisHasTheDriveOfItsLawOverTheWay) {
-  const std::int32_t from = axis(lateral_axis).position_counts;
-  const Proposal proposal = move_to(lateral_axis, from + 400, 20'000);
+  const std::int32_t from = axis(lateral_slot).position_counts;
+  const Proposal proposal = move_to(lateral_slot, from + 400, 20'000);
   const Profile found = profile(proposal);
   ASSERT_EQ(found.basis, ProfileBasis::way) << found.why;
-  const AxisProfile& lateral = found.axes.front();
-  EXPECT_EQ(lateral.positions.front(), from);
-  EXPECT_EQ(lateral.positions.back(), from + 400);
-  EXPECT_EQ(lateral.drives.back(), 0u);
-  EXPECT_THAT(lateral.drives, Each(Le(20'000u)));
+  const AxisProfile& moved = found.axes.front();
+  EXPECT_EQ(moved.positions.front(), from);
+  EXPECT_EQ(moved.positions.back(), from + 400);
+  EXPECT_EQ(moved.drives.back(), 0u);
+  EXPECT_THAT(moved.drives, Each(Le(20'000u)));
   const RobotPlan plan(neuro(), neuro_config());
-  const DriveLaw law = AxisMove::law_of(plan.axis[lateral_axis], axis(lateral_axis), 20'000);
-  EXPECT_EQ(lateral.drives.front(), law.at(400));
+  const DriveLaw law = AxisMove::law_of(plan.axis[lateral_slot], axis(lateral_slot), 20'000);
+  EXPECT_EQ(moved.drives.front(), law.at(400));
   EXPECT_TRUE(found.times_s.empty());
 }
 
@@ -145,10 +145,10 @@ class CheckListTest : public ProfileTest {
 
 TEST_F(CheckListTest, TheCheckThatFailsIsNamedThoseBeforePassedAndThoseAfterAreNotReached) {
   EXPECT_EQ(
-      words(move_to(lateral_axis, 5000)),
+      words(move_to(lateral_slot, 5000)),
       "other_motion:passed configuration:passed mode:passed axes:passed drive:passed range:failed=RANGE ");
-  axis(lateral_axis).state = ILK_AXIS_FAULTED;
-  EXPECT_EQ(words(move_to(lateral_axis, -500)),
+  axis(lateral_slot).state = ILK_AXIS_FAULTED;
+  EXPECT_EQ(words(move_to(lateral_slot, -500)),
             "other_motion:passed configuration:passed mode:passed axes:failed=FAULTED drive:not_reached "
             "range:not_reached ");
 }
@@ -179,7 +179,7 @@ TEST_F(CheckListTest, ARejectedProposalIsEndedByNameAndCannotBeApproved) {
   EXPECT_EQ(rejected->detail, "Rejected by ann before it was approved.");
   EXPECT_EQ(book_.approve(proposal.id, view_).error().code, "NOT_WAITING");
   EXPECT_EQ(book_.reject(proposal.id, "ann").error().code, "NOT_WAITING");
-  const Proposal approved = move_to(lateral_axis, -500);
+  const Proposal approved = move_to(lateral_slot, -500);
   EXPECT_EQ(book_.reject(approved.id, "ann").error().code, "NOT_WAITING") << "what is approved is aborted";
 }
 
