@@ -33,8 +33,7 @@ bool AuditCheck::go_on(SQLite::Database& database, std::size_t count) {
   }
   // Whatever stands before the anchor is looked at, too: nothing may.
   const bool first_part = chain_.head() == *anchor_;
-  const std::int64_t from =
-      first_part ? std::numeric_limits<std::int64_t>::min() : chain_.head().number + 1;
+  const std::int64_t from = first_part ? std::numeric_limits<std::int64_t>::min() : chain_.head().number + 1;
   SQLite::Statement records(database, std::string("SELECT ") + audit_columns +
                                           " FROM audit WHERE number >= ?1 ORDER BY number LIMIT ?2");
   records.bind(1, from);

@@ -10,8 +10,8 @@ from conftest import RobotFile, StackFactory
 from controllers import connections, make_controller
 from library_navigator import Library, Tracking
 from motion import act, press, unlock, wait_for_mode, wait_until
+from navigation_phases import ENTRY, TARGET, Phases, aimed, approve, home_all, short, to_targeting
 from navigator import OK, Poses, Query, Rows, Status, text, transform
-from phases import ENTRY, TARGET, Phases, aimed, approve, home_all, short, to_targeting
 from stack import Stack
 
 REGISTRATION = [0, -1, 0, 12.5, 1, 0, 0, -3, 0, 0, 1, 40, 0, 0, 0, 1]

@@ -1,4 +1,4 @@
-"""What people look at before they approve a proposal, on real processes: checks, profile and ghost; rejection."""
+"""What people look at before they approve a proposal, on real processes: checks, profile, ghost, reject."""
 
 import math
 

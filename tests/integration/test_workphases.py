@@ -7,8 +7,8 @@ import pytest
 from conftest import StackFactory
 from interface import judge
 from motion import act, press, unlock, wait_for_mode, wait_until
+from navigation_phases import Phases, aimed, approve, home_all, short, to_targeting
 from navigator import Navigator, Query, text, transform
-from phases import Phases, aimed, approve, home_all, short, to_targeting
 from stack import Stack
 
 CONNECTIONS = "/api/communications/connections"

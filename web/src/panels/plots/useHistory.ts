@@ -27,8 +27,12 @@ export function useHistory(): History {
     let rows: Rows | null = null;
     let timer: ReturnType<typeof setTimeout> | undefined;
     let gone = false;
+    let asking = false;
     const ask = async (): Promise<void> => {
+      if (asking) return;
+      asking = true;
       const answer = await api.history(rows?.newest ?? 0);
+      asking = false;
       if (gone) return;
       if (answer.ok) {
         rows = withAnswer(rows, answer.value);
@@ -39,10 +43,10 @@ export function useHistory(): History {
       }
       const atOnce = answer.ok && answer.value.more;
       if (!document.hidden) timer = setTimeout(() => void ask(), atOnce ? 0 : EVERY_MS);
-      else timer = undefined;
     };
     const onVisibility = (): void => {
-      if (!document.hidden && timer === undefined) void ask();
+      clearTimeout(timer);
+      if (!document.hidden) void ask();
     };
     document.addEventListener("visibilitychange", onVisibility);
     void ask();

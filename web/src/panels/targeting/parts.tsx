@@ -62,13 +62,17 @@ export function News({ arrived, onTake, onKeep }: NewsProps) {
 /** What is wrong with what was written, one sentence each. */
 export function Problems({ id, problems }: { readonly id: string; readonly problems: readonly string[] }) {
   return (
-    <ul id={id} className="problems" role="alert">
-      {problems.map((problem) => (
-        <li key={problem}>
-          <i aria-hidden="true">✕</i> {problem}
-        </li>
-      ))}
-    </ul>
+    <div id={id} role="alert">
+      {problems.length > 0 && (
+        <ul className="problems">
+          {problems.map((problem) => (
+            <li key={problem}>
+              <i aria-hidden="true">✕</i> {problem}
+            </li>
+          ))}
+        </ul>
+      )}
+    </div>
   );
 }
 
