@@ -28,6 +28,8 @@ def recording(recorded: RecordedKernelFactory) -> Path:
     kernel.app.ask("ENABLE", axis=0)
     kernel.lock_by_estop()
     kernel.app.run(20)
+    # A kernel that ends takes its black box along; a recorder that is late would find nothing.
+    wait_for("the recorder has begun", lambda: any(kernel.recordings.glob("*")))
     kernel.kernel.terminate()
     kernel.kernel.wait()
     # Named for the lock, or as continuous: the recorder may come to see both at once.

@@ -41,3 +41,13 @@ def test_a_suite_in_which_no_test_ran_fails(tmp_path: Path) -> None:
         code, lines = summarise(tmp_path, {"unit": PASSED, "browser": cases})
         assert (code, lines[-1]) == (1, "1 passed, 1 failed")
         assert "browser: no test ran" in lines
+
+
+def test_a_failed_test_is_named_with_the_first_lines_of_what_it_said(tmp_path: Path) -> None:
+    said = "\n".join(["", "expected 1", f"received 2 {'x' * 999}", *(f"line {n}" for n in range(99))])
+    case = f'<testcase name="adds up"><failure message="no">{said}</failure></testcase>'
+    _, lines = summarise(tmp_path, {"unit": PASSED + case})
+    assert lines[:2] == ["unit: FAILED adds up", "    expected 1"]
+    assert lines[2].startswith("    received 2 x")
+    assert max(map(len, lines)) < 200
+    assert len(lines) < 30
