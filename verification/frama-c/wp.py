@@ -10,6 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import scripts
+
 ROOT = Path(__file__).resolve().parents[2]
 CORE = ROOT / "kernel/src"
 
@@ -23,15 +25,14 @@ CVC4_FIRST = frozenset({"mode.c", "request.c", "step.c"})
 """Files whose functions change all axes. Z3 combines every three addresses of a goal, and these have many;
 the prover that is asked first takes its whole time before the other one is asked."""
 
-FIRST_SECONDS = "5"
-LAST_SECONDS = "40"
+FIRST_SECONDS, LAST_SECONDS = "5", "40"
 """What a prover gets for a goal, first when each is tried in turn, then for those that neither proved.
 Little at first, as what one does not find soon the other mostly does; a busy machine takes its time."""
 
 PREPROCESSOR = f"-I{ROOT / 'kernel/include'} -I{CORE} -DILK_FRAME_WORDS=32"
 PARSE = ["frama-c", "-c11", "-machdep", "gcc_x86_64", f"-cpp-extra-args={PREPROCESSOR}"]
 PROVE = ["-warn-signed-downcast", "-wp-rte", "-wp-model", "Typed", "-wp-par", "1"]
-PROVE += ["-wp", "-wp-timeout", FIRST_SECONDS]
+PROVE += ["-wp", "-wp-timeout", FIRST_SECONDS, "-wp-session", str(scripts.SESSION), "-wp-time-extra", "20"]
 PROVE_REST = ["-then", "-wp", "-wp-timeout", LAST_SECONDS]
 SMOKE_TEST = ["-then", "-wp", "-wp-smoke-tests", "-wp-prover=-cvc4"]
 SMOKE_TEST += ["-wp-par", "4", "-wp-steps", "300000", "-wp-smoke-timeout", "20"]
@@ -79,7 +80,7 @@ class Report:
     uncontracted: list[str] = field(default_factory=list)
     clauses: set[str] = field(default_factory=set)
     seconds: float = 0.0
-    log: Path = Path()
+    log: str = ""
 
 
 def functions_of(unit: str) -> Functions:
@@ -99,6 +100,11 @@ def functions_of(unit: str) -> Functions:
     return Functions(tuple(name for name, _ in defined), frozenset(called))
 
 
+def provers_in_turn(unit: str) -> tuple[str, str]:
+    """The provers of a goal without a script, in the order in which they are asked."""
+    return ("cvc4", "z3") if unit in CVC4_FIRST else ("z3", "cvc4")
+
+
 def prove(unit: str, functions: Sequence[str], directory: Path, cache: Path | None) -> Report:
     """Proves the contracts of `functions`, which `unit` defines. Raw output goes to `directory`.
 
@@ -106,7 +112,7 @@ def prove(unit: str, functions: Sequence[str], directory: Path, cache: Path | No
     """
     stem = directory / unit
     overflow = [] if unit in WRAPPING else ["-warn-unsigned-overflow"]
-    provers = ["-wp-prover", "cvc4,z3" if unit in CVC4_FIRST else "z3,cvc4"]
+    provers = ["-wp-prover", f"script,{','.join(provers_in_turn(unit))}"]
     caching = ["-wp-cache", "update", "-wp-cache-dir", str(cache)] if cache else ["-wp-cache", "none"]
     chosen = ["-wp-fct", ",".join(functions)]
     command = [
@@ -118,10 +124,11 @@ def prove(unit: str, functions: Sequence[str], directory: Path, cache: Path | No
     # Frama-C tells the folders of places as seen from $PWD, wherever it runs.
     environment = {**os.environ, "WHY3CONFIG": str(directory / "why3.conf"), "PWD": str(ROOT)}
     outcome = subprocess.run(command, capture_output=True, text=True, env=environment, cwd=ROOT, check=False)
-    report = Report(seconds=time.monotonic() - started, log=Path(f"{stem}.log"))
-    report.log.write_text(outcome.stdout + outcome.stderr, "utf-8")
+    report = Report(seconds=time.monotonic() - started, log=outcome.stdout)
+    log_file = Path(f"{stem}.log")
+    log_file.write_text(outcome.stdout + outcome.stderr, "utf-8")
     if outcome.returncode != 0:
-        raise SystemExit(f"{unit}: Frama-C gave up; see {report.log}\n{outcome.stdout[-2000:]}")
+        raise SystemExit(f"{unit}: Frama-C gave up; see {log_file}\n{outcome.stdout[-2000:]}")
     count_goals(report, json.loads(Path(f"{stem}.json").read_text("utf-8")), functions)
     find_unproved(report, Path(f"{stem}.csv"), functions)
     return report
