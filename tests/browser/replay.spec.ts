@@ -19,6 +19,7 @@ test("a recording plays in the console to its last tick, and nobody can take the
     await shown.logIn("admin", replay.password);
     await expect(page.getByText("REPLAY OF A RECORDING: NOTHING MOVES")).toBeVisible();
     await expect(page.getByText("Authority: none, as a recording plays")).toBeVisible();
+    await expect(shown.panel("Motors")).toContainText("A recording plays: there is nothing to move.");
     await expect(shown.estop).toHaveText("⬣ PULLED");
     await expect(shown.mode).toContainText("LOCKED");
     await expect(page.getByRole("region", { name: "Bench" })).toHaveCount(0);
