@@ -59,6 +59,7 @@ struct Options {
   std::string log_level = "info";
   std::optional<std::uint16_t> igtl_port; /**< in place of the robot file's */
   std::string igtl_dialect;               /**< in place of the robot file's, unless empty */
+  bool replay = false;                    /**< a recording comes over the link */
 };
 
 /** The robot and the configuration that the kernel was started with. */
@@ -91,6 +92,8 @@ void describe(CLI::App& cli, Options& options) {
   cli.add_option("--igtl-dialect", options.igtl_dialect,
                  "dialect of OpenIGTLink, in place of the robot file's: thesis, brp2013 or wpi2024")
       ->check(CLI::IsMember({"thesis", "brp2013", "wpi2024"}));
+  cli.add_flag("--replay", options.replay,
+               "a recording comes over the link: send nothing, and let nobody take the motion authority");
   cli.add_option("--log-level", options.log_level, "debug, info, warning, error or critical")
       ->check(CLI::IsMember({"debug", "info", "warning", "error", "critical"}))
       ->capture_default_str();
@@ -181,10 +184,11 @@ Stored<void> let_somebody_in(Store& store) {
       });
 }
 
-/** Listens for navigation programs when the robot's file or the command line says so. */
+/** Listens for navigation programs when the robot's file or the command line says so; they ask for motion, so
+ * not in a replay. */
 tl::expected<void, std::string> listen_for_navigation(const Options& options, const Robot& robot,
                                                       web::Navigation& navigation) {
-  if (!robot.openigtlink && !options.igtl_port) {
+  if (options.replay || (!robot.openigtlink && !options.igtl_port)) {
     return {};
   }
   const OpenIgtLink link = robot.openigtlink.value_or(OpenIgtLink{});
@@ -251,7 +255,8 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
                             [&](const std::exception_ptr&) { network.stop(); });
     }
   });
-  ControlLoop control(options.link_socket, plan, *mailbox, &history);
+  ControlLoop control(options.link_socket, plan, *mailbox, &history,
+                      options.replay ? LinkUse::replay : LinkUse::control);
   const std::jthread control_thread([&](const std::stop_token& stop) { control.run(stop); });
   boost::asio::co_spawn(executor, api.listen(), boost::asio::detached);
   boost::asio::co_spawn(executor, api.beat(), boost::asio::detached);

@@ -33,7 +33,7 @@ tl::unexpected<Failure> lost(const IgtlOptions& options, const std::string& reas
                                          "and --port");
 }
 
-Result<void> open(Client& client, const IgtlOptions& options) {
+Result<void> connect(Client& client, const IgtlOptions& options) {
   const auto connected = client.connect(options.host, options.port, Clock::now() + connect_patience);
   return connected ? Result<void>() : lost(options, connected.error());
 }
@@ -77,7 +77,7 @@ Result<void> send(const IgtlOptions& options, std::ostream& output) {
     return tl::unexpected(body.error());
   }
   Client client;
-  if (const auto opened = open(client, options); !opened) {
+  if (const auto opened = connect(client, options); !opened) {
     return opened;
   }
   const auto deadline = in_seconds(options.seconds > 0.0 ? options.seconds : usual_send_seconds);
@@ -108,7 +108,7 @@ Result<void> send(const IgtlOptions& options, std::ostream& output) {
 
 Result<void> listen(const IgtlOptions& options, std::ostream& output) {
   Client client;
-  if (const auto opened = open(client, options); !opened) {
+  if (const auto opened = connect(client, options); !opened) {
     return opened;
   }
   const auto deadline = options.seconds > 0.0 ? in_seconds(options.seconds) : Clock::time_point::max();
@@ -178,7 +178,7 @@ Result<void> drive(Client& client, const IgtlOptions& options, const std::string
 
 Result<void> drive_all(const IgtlOptions& options, std::ostream& output) {
   Client client;
-  if (const auto opened = open(client, options); !opened) {
+  if (const auto opened = connect(client, options); !opened) {
     return opened;
   }
   for (const std::string& phase : options.phases) {

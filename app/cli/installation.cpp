@@ -27,6 +27,19 @@ Result<fs::path> Installation::robot(const std::string& robot) const {
   return model("robots", robot);
 }
 
+std::vector<fs::path> Installation::robots() const {
+  std::vector<fs::path> files;
+  for (const fs::path& root : roots_) {
+    std::error_code none;
+    for (const fs::directory_entry& entry : fs::directory_iterator(root / "models/robots", none)) {
+      if (entry.path().extension() == ".toml") {
+        files.push_back(entry.path());
+      }
+    }
+  }
+  return files;
+}
+
 Result<fs::path> Installation::plant(const std::string& robot_name) const {
   return model("plant", robot_name);
 }

@@ -30,6 +30,9 @@ class Installation {
    * that name. */
   [[nodiscard]] Result<std::filesystem::path> robot(const std::string& robot) const;
 
+  /** The files of all robots. */
+  [[nodiscard]] std::vector<std::filesystem::path> robots() const;
+
   /** Parameters of the simulated hardware of the robot of that name. */
   [[nodiscard]] Result<std::filesystem::path> plant(const std::string& robot_name) const;
 

@@ -129,6 +129,19 @@ void add_replay(CLI::App& cli, ReplayOptions& options) {
   command->add_flag(
       "--model", options.model,
       "Ask the TLA+ model, too, whether it accepts the run; in the source tree, with its provers");
+  CLI::Option* const console = command->add_flag(
+      "--console", options.console, "Show it in the console, at the pace at which it was recorded");
+  command
+      ->add_option("--robot", options.show.robot,
+                   "Robot's name or file; default: the one whose configuration ran")
+      ->needs(console);
+  command->add_option("--port", options.show.port, "Port of the console; 0: any free one")
+      ->needs(console)
+      ->capture_default_str();
+  command->add_option("--speed", options.show.speed, "Multiple of the recorded pace")
+      ->needs(console)
+      ->check(CLI::Range(0.01, 100.0))
+      ->capture_default_str();
 }
 
 void add_status(CLI::App& cli, StatusOptions& options) {

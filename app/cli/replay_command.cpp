@@ -197,10 +197,14 @@ Result<void> replay(const ReplayOptions& options, std::ostream& output) {
       return drawn;
     }
   }
-  if (Result<void> same = judge(report, *recording, output); !same || !options.model) {
-    return same;
+  Result<void> good = judge(report, *recording, output);
+  if (good && options.model) {
+    good = ask_model(options.file, output);
   }
-  return ask_model(options.file, output);
+  if (good && options.console) {
+    good = show_in_console(options.show, options.file, recording->header.run.config, output);
+  }
+  return good;
 }
 
 }  // namespace interlock::cli

@@ -1,49 +1,25 @@
 #include "cli/run_command.hpp"
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
 #include <sched.h>
-#include <sys/socket.h>
 
-#include <cerrno>
 #include <chrono>
-#include <system_error>
 #include <utility>
 #include <vector>
 
+#include "cli/announcement.hpp"
 #include "cli/black_box_place.hpp"
+#include "cli/free_port.hpp"
 #include "cli/instance_lock.hpp"
 #include "cli/model_commands.hpp"
 #include "cli/runtime_directory.hpp"
 #include "cli/state_directory.hpp"
 #include "cli/supervisor.hpp"
-#include "cli/unique_fd.hpp"
 #include "robot/compile.hpp"
 
 namespace interlock::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-/** The port if it can be listened on, a free one for 0. It is free again afterwards, for the app. */
-Result<std::uint16_t> free_port(std::uint16_t port) {
-  const UniqueFd listener(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  const int reuse = 1;
-  setsockopt(listener.get(), SOL_SOCKET, SO_REUSEADDR, &reuse, sizeof reuse);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  address.sin_port = htons(port);
-  socklen_t size = sizeof address;
-  if (bind(listener.get(), reinterpret_cast<const sockaddr*>(&address), size) != 0 ||
-      listen(listener.get(), 1) != 0 ||
-      getsockname(listener.get(), reinterpret_cast<sockaddr*>(&address), &size) != 0) {
-    return failed(ExitCode::precondition, "port " + std::to_string(port) + " of 127.0.0.1 cannot be used: " +
-                                              std::generic_category().message(errno) +
-                                              "; stop what listens there, or choose another --port");
-  }
-  return ntohs(address.sin_port);
-}
 
 /** The kernel's core must be there, and leave another one for the rest. */
 Result<void> check_core(const RunOptions& options) {
@@ -156,20 +132,6 @@ Result<std::vector<Supervised>> programs_of(const RunOptions& options, const Ins
   return programs;
 }
 
-void announce(const CompiledRobot& compiled, const Places& places, const std::string& first_login,
-              std::ostream& output) {
-  const std::string line(60, '=');
-  output << '\n'
-         << line << "\n  " << compiled.robot.title << ", simulated (configuration "
-         << config_hash(compiled.config) << ")\n\n  "
-         << (places.web ? "Open " + url_of(places)
-                        : "HTTP API at " + url_of(places) + "; the console is not built")
-         << (first_login.empty() ? ""
-                                 : "\n\n  First login, shown only now (user, password):\n  " + first_login)
-         << "\n\n  Ctrl-C stops everything.\n"
-         << line << "\n\nready " << url_of(places) << std::endl;
-}
-
 Result<Places> places_of(const RunOptions& options, const Installation& installation,
                          const fs::path& robot_file, const std::string& robot_name) {
   const Result<fs::path> plant =
@@ -211,7 +173,11 @@ Result<void> supervise(const RunOptions& options, const Installation& installati
     return tl::unexpected(programs.error());
   }
   Supervisor supervisor(std::move(*programs), signals, output);
-  return supervisor.run([&] { announce(compiled, places, supervisor.take_first_login(), output); });
+  return supervisor.run([&] {
+    announce({compiled.robot.title + ", simulated (configuration " + config_hash(compiled.config) + ')',
+              url_of(places), places.web.has_value(), supervisor.take_first_login()},
+             output);
+  });
 }
 
 }  // namespace

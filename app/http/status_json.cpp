@@ -130,6 +130,7 @@ json status_json(const Robot& robot, const ilk_config_t& config, const ControlVi
           {"simulated", snapshot.simulated != 0},
           {"degraded", snapshot.degraded != 0},
           {"clock", snapshot.clock == ILK_CLOCK_SIM ? "sim" : "real"},
+          {"replay", view.replay},
           {"connected", view.attached},
           {"mode", catalog::name(Family::mode, state.mode)},
           {"cause", catalog::name(Family::cause, state.cause)},

@@ -53,7 +53,7 @@ void put_header(Words& words, const ControlView& view, std::chrono::steady_clock
   words.put(snapshot.overruns);
   words.put(view.attached ? age_us(view, now) : 0u);
   words.put(bit(snapshot.simulated != 0, 0) | bit(snapshot.degraded != 0, 1) |
-            bit(snapshot.clock == ILK_CLOCK_SIM, 2));
+            bit(snapshot.clock == ILK_CLOCK_SIM, 2) | bit(view.replay, 3));
   words.put(snapshot.config_crc);
   std::uint32_t lamps = 0;
   for (unsigned lamp = 0; lamp < ILK_LAMP_COUNT; ++lamp) {

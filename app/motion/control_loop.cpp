@@ -31,14 +31,18 @@ ilk_request_t request_of(std::uint32_t kind, std::uint32_t slot = 0) noexcept {
 }  // namespace
 
 ControlLoop::ControlLoop(std::string link_socket, const RobotPlan& plan, Mailbox& mailbox,
-                         TickObserver* observer)
+                         TickObserver* observer, LinkUse use)
     : link_(std::move(link_socket)),
       conductor_(plan),
       mailbox_(mailbox),
       observer_(observer),
-      back_off_(shortest_back_off) {}
+      use_(use),
+      back_off_(shortest_back_off) {
+  view_.replay = use == LinkUse::replay;
+}
 
 void ControlLoop::run(const std::stop_token& stop) noexcept {
+  publish();
   while (!stop.stop_requested()) {
     rounds_.fetch_add(1, std::memory_order_relaxed);
     if (!link_.attached()) {
@@ -52,17 +56,17 @@ void ControlLoop::run(const std::stop_token& stop) noexcept {
         }
         break;
       case LinkWait::timeout:
-        port_.begin_tick();
-        obey_stop();
-        obey_pause();
+        miss_tick();
         break;
       case LinkWait::closed:
         lose_link();
         break;
     }
   }
-  port_.begin_tick();
-  (void)port_.send(request_of(ILK_REQUEST_STOP), HeartbeatOrigin{});
+  if (use_ == LinkUse::control) {
+    port_.begin_tick();
+    (void)port_.send(request_of(ILK_REQUEST_STOP), HeartbeatOrigin{});
+  }
 }
 
 void ControlLoop::attach_or_back_off(const std::stop_token& stop) noexcept {
@@ -102,6 +106,19 @@ void ControlLoop::lose_link() noexcept {
 void ControlLoop::tick() noexcept {
   view_.attached = true;
   view_.received = std::chrono::steady_clock::now();
+  if (use_ == LinkUse::control) {
+    control();
+  } else {
+    watch();
+  }
+  publish();
+  if (observer_ != nullptr) {
+    observer_->see(view_);
+  }
+  link_.publish_seen(view_.snapshot.state.tick);
+}
+
+void ControlLoop::control() noexcept {
   port_.begin_tick();
   obey_stop();
   obey_pause();
@@ -109,11 +126,23 @@ void ControlLoop::tick() noexcept {
   send_heartbeat();
   take_commands();
   send_wishes();
-  publish();
-  if (observer_ != nullptr) {
-    observer_->see(view_);
+}
+
+/** Whoever asks for something is told that it was not sent. */
+void ControlLoop::watch() noexcept {
+  read_events();
+  refuse_commands();
+}
+
+/** No tick came within the time of many: a STOP waits for none. */
+void ControlLoop::miss_tick() noexcept {
+  if (use_ == LinkUse::replay) {
+    refuse_commands();
+    return;
   }
-  link_.publish_seen(view_.snapshot.state.tick);
+  port_.begin_tick();
+  obey_stop();
+  obey_pause();
 }
 
 void ControlLoop::obey_stop() noexcept {

@@ -23,13 +23,20 @@
 
 namespace interlock {
 
+/** What the link is for. */
+enum class LinkUse {
+  control,
+  replay, /**< a recording comes over it: nothing is sent, not even a sign of life */
+};
+
 class ControlLoop {
  public:
   /** @param observer shown each tick; it must outlive the loop */
   ControlLoop(std::string link_socket, const RobotPlan& plan, Mailbox& mailbox,
-              TickObserver* observer = nullptr);
+              TickObserver* observer = nullptr, LinkUse use = LinkUse::control);
 
-  /** Serves until stopped, attaching again and again. On leaving it asks the kernel to end MOTION. */
+  /** Serves until stopped, attaching again and again. On leaving it asks the kernel to end MOTION, unless it
+   * only watches. */
   void run(const std::stop_token& stop) noexcept;
 
   /** How often the loop has gone round, with a kernel or without one; wraps. For any thread. */
@@ -40,6 +47,9 @@ class ControlLoop {
   void lose_link() noexcept;
 
   void tick() noexcept;
+  void control() noexcept;
+  void watch() noexcept;
+  void miss_tick() noexcept;
   void obey_stop() noexcept;
   void obey_pause() noexcept;
   void read_events() noexcept;
@@ -71,6 +81,7 @@ class ControlLoop {
   Conductor conductor_;
   Mailbox& mailbox_;
   TickObserver* observer_;
+  LinkUse use_;
   ControlView view_;
   OrderTable published_orders_{};
   HomeStatus published_home_;

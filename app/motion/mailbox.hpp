@@ -67,6 +67,7 @@ using Notice = std::variant<ilk_event_t, Answer, StopAnswer, EventsLost>;
 /** What the control thread sees, whole. */
 struct ControlView {
   bool attached = false; /**< to a kernel that has published a snapshot */
+  bool replay = false;   /**< a recording is shown, of which nothing can be asked */
   std::uint32_t generation = 0;
   std::chrono::steady_clock::time_point received; /**< when the snapshot was read */
   ilk_snapshot_t snapshot{};

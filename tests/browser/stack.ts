@@ -1,5 +1,5 @@
 /** A robot of one's own: `interlock run` with its three processes on the simulated clock. */
-import { type ChildProcess, spawn } from "node:child_process";
+import { type ChildProcess, execFileSync, spawn } from "node:child_process";
 import { mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import path from "node:path";
@@ -9,8 +9,12 @@ import { programs } from "./places";
 const READY_WITHIN_MS = 30_000;
 /** The app's patience with a held pedal is 500 ms of this clock: half the speed is twice the time for a busy machine. */
 const SPEED = "0.5";
+/** Of a recording, whose moments nobody waits for. */
+const REPLAY_SPEED = "20";
 /** In which /proc counts processor time. */
 const CLOCK_TICKS_PER_S = 100;
+
+const interlock = path.join(programs, "interlock");
 
 export type Clock = "sim" | "real";
 
@@ -20,7 +24,7 @@ interface Ready {
   readonly url: string;
   /** Of the user `admin`, said once at the first start. */
   readonly password: string;
-  /** Where navigation programs are served. */
+  /** Where navigation programs are served; 0 where none are. */
   readonly igtlPort: number;
 }
 
@@ -43,7 +47,7 @@ export class Stack {
   static async start(robot: RobotName, clock: Clock): Promise<Stack> {
     const state = mkdtempSync(path.join(tmpdir(), "interlock-browser-"));
     const run = spawn(
-      path.join(programs, "interlock"),
+      interlock,
       [
         ...["run", "--robot", robot, "--clock", clock],
         ...(clock === "sim" ? ["--speed", SPEED] : []),
@@ -51,6 +55,17 @@ export class Stack {
       ],
       { stdio: ["ignore", "pipe", "pipe"] },
     );
+    return new Stack(run, state, await readiness(run));
+  }
+
+  /** Shows the last minute of this robot in a console of its own. */
+  async replay(): Promise<Stack> {
+    const state = mkdtempSync(path.join(tmpdir(), "interlock-replay-"));
+    const recording = path.join(state, "last-minute.ilkr");
+    execFileSync(interlock, ["record", "--state", this.state, "--output", recording]);
+    const run = spawn(interlock, ["replay", recording, "--console", "--port", "0", "--speed", REPLAY_SPEED], {
+      stdio: ["ignore", "pipe", "pipe"],
+    });
     return new Stack(run, state, await readiness(run));
   }
 
@@ -128,8 +143,7 @@ function readiness(run: ChildProcess): Promise<Ready> {
         clearTimeout(timer);
         run.removeAllListeners("exit");
         if (password === undefined) giveUp("said no first login");
-        else if (igtlPort === undefined) giveUp("said no port of OpenIGTLink");
-        else resolve({ url, password, igtlPort: Number(igtlPort) });
+        else resolve({ url, password, igtlPort: Number(igtlPort ?? 0) });
       });
     }
   });

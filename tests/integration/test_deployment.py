@@ -13,7 +13,14 @@ from bare_kernel import BIN, DEADLINE_S, ROOT, options, stop
 
 UNITS = ROOT / "app/packaging/systemd"
 SERVICES = sorted(UNITS.glob("*.service"))
-PROGRAMS = ("interlock", "interlock-app", "interlock-kernel", "interlock-recorder", "interlock-sim")
+PROGRAMS = (
+    "interlock",
+    "interlock-app",
+    "interlock-kernel",
+    "interlock-player",
+    "interlock-recorder",
+    "interlock-sim",
+)
 MOST_EXPOSED = 20
 """Of 100, as systemd-analyze counts what a service could still reach."""
 WATCHDOG_US = 400_000

@@ -47,6 +47,16 @@ Success AuthorityRoutes::shown(const Call& call, Status status) const {
   return {status, context_.authority.shown_to(call.caller.session)};
 }
 
+tl::expected<void, Problem> AuthorityRoutes::need_robot() const {
+  if (context_.view().replay) {
+    return fail({.status = Status::conflict,
+                 .code = "REPLAY",
+                 .detail = "A recording plays: there is no robot to move.",
+                 .next_step = "Start the robot with `interlock run` to move it."});
+  }
+  return {};
+}
+
 boost::asio::awaitable<tl::expected<void, Problem>> AuthorityRoutes::announce(const Call& call,
                                                                               const char* action) const {
   json detail{{"action", action}};
@@ -55,6 +65,9 @@ boost::asio::awaitable<tl::expected<void, Problem>> AuthorityRoutes::announce(co
 
 Answering AuthorityRoutes::request(const Call& call) const {
   Authority& authority = context_.authority;
+  if (const auto robot = need_robot(); !robot) {
+    co_return fail(robot.error());
+  }
   if (authority.held_by(call.caller.session)) {
     co_return shown(call);
   }
@@ -99,6 +112,9 @@ Answering AuthorityRoutes::hand_over(const Call& call) const {
 }
 
 Answering AuthorityRoutes::take_over(const Call& call) const {
+  if (const auto robot = need_robot(); !robot) {
+    co_return fail(robot.error());
+  }
   if (const auto announced = co_await announce(call, "take over"); !announced) {
     co_return fail(announced.error());
   }

@@ -20,6 +20,8 @@ class AuthorityRoutes {
   [[nodiscard]] boost::asio::awaitable<Reply> hand_over(const Call& call) const;
   [[nodiscard]] boost::asio::awaitable<Reply> take_over(const Call& call) const;
   [[nodiscard]] Success shown(const Call& call, Status status = Status::ok) const;
+  /** 409 REPLAY where nothing could move. */
+  [[nodiscard]] tl::expected<void, Problem> need_robot() const;
   [[nodiscard]] boost::asio::awaitable<tl::expected<void, Problem>> announce(const Call& call,
                                                                              const char* action) const;
 

@@ -20,7 +20,9 @@ namespace interlock::test {
 
 class ControlLoopTest : public testing::Test {
  protected:
-  ControlLoopTest() : snapshot_(ready_view().snapshot) {
+  explicit ControlLoopTest(LinkUse use = LinkUse::control)
+      : loop_(kernel_.socket(), RobotPlan(neuro(), neuro_config()), *mailbox_, nullptr, use),
+        snapshot_(ready_view().snapshot) {
     thread_ = std::jthread([this](const std::stop_token& stop) { loop_.run(stop); });
     kernel_.accept();
   }
@@ -79,7 +81,7 @@ class ControlLoopTest : public testing::Test {
 
   KernelSide kernel_;
   std::unique_ptr<Mailbox> mailbox_ = std::make_unique<Mailbox>();
-  ControlLoop loop_{kernel_.socket(), RobotPlan(neuro(), neuro_config()), *mailbox_};
+  ControlLoop loop_;
   ilk_snapshot_t snapshot_;
   std::vector<ilk_request_t> requests_;
   std::jthread thread_;

@@ -391,5 +391,43 @@ TEST_F(ControlLoopTest, AsksTheKernelToEndMotionWhenItEnds) {
   EXPECT_EQ(request->kind, static_cast<std::uint32_t>(ILK_REQUEST_STOP));
 }
 
+class ReplayTest : public ControlLoopTest {
+ protected:
+  ReplayTest() : ControlLoopTest(LinkUse::replay) {}
+};
+
+TEST_F(ReplayTest, SendsNothingAndTellsWhoeverAsks) {
+  mailbox_->holder = 7;
+  stop();
+  command(ask(7, ILK_REQUEST_ENABLE));
+  command(Order{1, insertion, 1500, 0, 0});
+  for (int ticks = 0; ticks < 100; ++ticks) {
+    tick();
+    ASSERT_TRUE(requests_.empty());
+  }
+  EXPECT_TRUE(mailbox_->view.newest().replay);
+  EXPECT_EQ(mailbox_->view.newest().snapshot.state.tick, snapshot_.state.tick);
+  EXPECT_EQ(order().reason, OrderReason::link_lost);
+  bool asked = false;
+  bool stopped = false;
+  mailbox_->notices.consume_all([&](const Notice& notice) {
+    const auto* answer = std::get_if<Answer>(&notice);
+    const auto* stop_answer = std::get_if<StopAnswer>(&notice);
+    asked |= answer != nullptr && answer->ticket == 7 && !answer->verdict;
+    stopped |= stop_answer != nullptr && !stop_answer->verdict;
+  });
+  EXPECT_TRUE(asked);
+  EXPECT_TRUE(stopped);
+}
+
+TEST_F(ReplayTest, BringsWhatHappenedThen) {
+  tick();
+  kernel_.push_event({0, ILK_EVENT_MODE, 5, {ILK_MODE_READY, ILK_MODE_LOCKED, ILK_CAUSE_ESTOP, 0}});
+  tick();
+  const auto events = notices<ilk_event_t>();
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].tick, 5u);
+}
+
 }  // namespace
 }  // namespace interlock

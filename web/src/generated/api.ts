@@ -1172,8 +1172,8 @@ export interface components {
             status: number;
             /**
              * @description Verdict name, or NOT_FOUND, METHOD_NOT_ALLOWED, MALFORMED, INVALID, TOO_LARGE, HOST, ORIGIN, UPGRADE_REQUIRED,
-             *     LOGIN, CREDENTIALS, BACK_OFF, ROLE, AUTHORITY, EXISTS, LAST_ADMIN, STORE, STOPPED, MODE_HOME, MODE_PATH, NOT_HOMED, SEPARATION, HAS_SWITCH,
-             *     POSITIONS_ROBOT, POSITIONS_CONFIG, POSITIONS_VERSION,
+             *     LOGIN, CREDENTIALS, BACK_OFF, ROLE, AUTHORITY, REPLAY, EXISTS, LAST_ADMIN, STORE, STOPPED, MODE_HOME, MODE_PATH, NOT_HOMED, SEPARATION,
+             *     HAS_SWITCH, POSITIONS_ROBOT, POSITIONS_CONFIG, POSITIONS_VERSION,
              *     NO_KERNEL, NO_BENCH, NO_BLACK_BOX, PEDAL_LAPSED, JOG_LAPSED, CONFIG_MISMATCH, ENDED, OVERLOADED, INTERNAL; of paths NO_PATH, UNREACHABLE, STALE,
              *     EMPTY, NO_TARGETS, NOT_WAITING; of a trajectory or a pose a code of `interlock trajectory check` or of `interlock kinematics`.
              */
@@ -1195,6 +1195,8 @@ export interface components {
             degraded: boolean;
             /** @enum {string} */
             clock: "real" | "sim";
+            /** @description A recording plays: nothing moves, and nothing can be asked of the robot. */
+            replay: boolean;
             /** @description The app is attached to a kernel. */
             connected: boolean;
             /** @description Catalog family mode; INIT when not connected. */
@@ -2112,6 +2114,15 @@ export interface components {
                 "application/problem+json": components["schemas"]["Problem"];
             };
         };
+        /** @description A recording plays, so there is nothing to move; `code` is REPLAY. */
+        Replay: {
+            headers: {
+                [name: string]: unknown;
+            };
+            content: {
+                "application/problem+json": components["schemas"]["Problem"];
+            };
+        };
         /** @description Refused; `code` is the verdict, AUTHORITY, or a code of the operation. */
         Refused: {
             headers: {
@@ -2505,6 +2516,7 @@ export interface operations {
             };
             401: components["responses"]["Login"];
             403: components["responses"]["Role"];
+            409: components["responses"]["Replay"];
             503: components["responses"]["NoStore"];
         };
     };
@@ -2582,6 +2594,7 @@ export interface operations {
             };
             401: components["responses"]["Login"];
             403: components["responses"]["Role"];
+            409: components["responses"]["Replay"];
             503: components["responses"]["NoStore"];
         };
     };

@@ -18,5 +18,6 @@ export function glanceOf(status: Status): Glance {
     simulated: status.simulated,
     degraded: status.degraded,
     simulatedClock: status.clock === "sim",
+    replay: status.replay,
   };
 }

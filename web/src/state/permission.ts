@@ -8,6 +8,8 @@ import type { Login } from "./store";
  */
 export type Need = "engineer" | "admin" | "holder" | "setpoint";
 
+export const needsAuthority = (need: Need): boolean => need === "holder" || need === "setpoint";
+
 const rank: Record<Role, number> = { viewer: 0, engineer: 1, admin: 2 };
 
 /** The one mode in which operators give setpoints axis by axis; in each other one an open proposal drives them. */
@@ -26,10 +28,13 @@ export function reasonAgainst(
     const who = role === "admin" ? "only administrators" : "only engineers and administrators";
     return `You are logged in as ${login.user.role}: ${who} may do this.`;
   }
-  if (need === "engineer" || need === "admin") return null;
+  if (!needsAuthority(need)) return null;
   const reason = reasonWithoutAuthority(login.user.name, authority);
   return need === "holder" ? reason : (reason ?? reasonOfMode(mode));
 }
+
+/** Why whoever needs the authority may do nothing while a recording plays. */
+export const REASON_OF_REPLAY = "A recording plays: there is nothing to move.";
 
 /** Why no setpoint may be given by hand: the mode that drives them. Null when it is the operator's, or not known. */
 export function reasonOfMode(mode: string | null): string | null {

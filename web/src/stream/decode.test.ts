@@ -69,8 +69,14 @@ describe("decodeFrame", () => {
   });
 
   it("reads flags, age and configuration CRC", () => {
-    const frame = decodeFrame(message({ flags: 0b101, age_us: 2500, config_crc: 0xabc }));
-    expect(frame).toMatchObject({ simulated: true, degraded: false, simulatedClock: true, ageMs: 2.5 });
+    const frame = decodeFrame(message({ flags: 0b1101, age_us: 2500, config_crc: 0xabc }));
+    expect(frame).toMatchObject({
+      simulated: true,
+      degraded: false,
+      simulatedClock: true,
+      replay: true,
+      ageMs: 2.5,
+    });
     expect(frame.configCrc).toBe("00000abc");
   });
 

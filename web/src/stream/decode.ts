@@ -101,6 +101,8 @@ export interface Glance {
   readonly simulated: boolean;
   readonly degraded: boolean;
   readonly simulatedClock: boolean;
+  /** A recording plays: nothing moves, and nothing can be asked of the robot. */
+  readonly replay: boolean;
 }
 
 export interface Frame extends Glance {
@@ -155,6 +157,7 @@ export function decodeFrame(message: ArrayBuffer): Frame {
     simulated: hasBit(header.flags, 0),
     degraded: hasBit(header.flags, 1),
     simulatedClock: hasBit(header.flags, 2),
+    replay: hasBit(header.flags, 3),
     configCrc: header.config_crc.toString(16).padStart(8, "0"),
     lamps: [0, 8, 16, 24].map((shift) => nameOf("colour", (header.lamps >>> shift) & 0xff)),
     axes: Array.from({ length: SLOTS }, (_, slot) => decodeAxis(view, slot)),

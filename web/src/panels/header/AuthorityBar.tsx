@@ -10,6 +10,10 @@ import { localTime } from "../../units/time";
 export function AuthorityBar() {
   const authority = useConsole((state) => state.authority);
   const login = useConsole((state) => state.login);
+  const replay = useConsole((state) => state.glance?.replay ?? false);
+  if (replay) {
+    return <div className="authority">Authority: none, as a recording plays</div>;
+  }
   if (authority === null || login.phase !== "in") {
     return <div className="authority">Authority: unknown</div>;
   }

@@ -61,9 +61,11 @@ export function Header() {
 function Banners() {
   const simulated = useConsole((state) => state.glance?.simulated ?? false);
   const degraded = useConsole((state) => state.glance?.degraded ?? false);
-  if (!simulated && !degraded) return null;
+  const replay = useConsole((state) => state.glance?.replay ?? false);
+  if (!simulated && !degraded && !replay) return null;
   return (
     <div className="banners">
+      {replay && <strong className="banner replay">REPLAY OF A RECORDING: NOTHING MOVES</strong>}
       {simulated && <strong className="banner simulated">SIMULATED HARDWARE</strong>}
       {degraded && <strong className="banner degraded">DEGRADED: no real-time rights</strong>}
     </div>

@@ -43,8 +43,12 @@ export function RobotPage({ user }: { readonly user: string }) {
   const arranging = useConsole((state) => state.arranging);
   const takesBiopsies = useConsole((state) => state.robot?.modes.includes("cooperative_biopsy") ?? false);
   const simulated = useConsole((state) => state.frame?.simulated ?? false);
+  const replay = useConsole((state) => state.frame?.replay ?? false);
   const [layout, setLayout] = useState(() => chosenLayout(localStorage, user));
-  const exists: Partial<Record<PanelName, boolean>> = { bench: simulated, biopsy: takesBiopsies };
+  const exists: Partial<Record<PanelName, boolean>> = {
+    bench: simulated && !replay,
+    biopsy: takesBiopsies,
+  };
   const shown = [...layout.main, ...layout.side].filter((name) => exists[name] ?? true);
 
   const change = (next: Layout): void => {
