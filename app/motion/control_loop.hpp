@@ -29,6 +29,7 @@ enum class LinkUse {
   replay, /**< a recording comes over it: nothing is sent, not even a sign of life */
 };
 
+/** The thread between link and network. Everything but `rounds` belongs to it. */
 class ControlLoop {
  public:
   /** @param observer shown each tick; it must outlive the loop */
