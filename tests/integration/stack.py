@@ -57,6 +57,18 @@ class Output:
         return "\n".join(self.lines)
 
 
+def start_interlock(runtime: Path, *arguments: str | Path) -> subprocess.Popen:
+    """`interlock` with its runtime directory; errors come with its output."""
+    return subprocess.Popen(
+        [str(part) for part in (BIN / "interlock", *arguments)],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        env={**os.environ, "XDG_RUNTIME_DIR": str(runtime)},
+    )
+
+
 class Stack:
     """One running robot. `control` commands the plant, `api` speaks HTTP to the app as an administrator who
     holds the motion authority."""
@@ -66,15 +78,7 @@ class Stack:
         self.runtime = directory / "run"
         self.sockets = directory / "sockets"
         self.runtime.mkdir(parents=True, exist_ok=True)
-        command = [BIN / "interlock", "run", "--port", "0", "--state", self.state, *arguments]
-        self.run = subprocess.Popen(
-            [str(part) for part in command],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            env={**os.environ, "XDG_RUNTIME_DIR": str(self.runtime)},
-        )
+        self.run = start_interlock(self.runtime, "run", "--port", "0", "--state", self.state, *arguments)
         self.output = Output(self.run)
         self._connections = contextlib.ExitStack()
         try:

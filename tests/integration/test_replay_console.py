@@ -1,14 +1,12 @@
 """`interlock replay --console`: what was recorded is seen again, and nothing can be asked of it."""
 
-import os
-import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
 import httpx
 import pytest
-from bare_kernel import BIN, DEADLINE_S, stop
-from stack import Output
+from bare_kernel import DEADLINE_S, stop
+from stack import Output, start_interlock
 from test_recorder import RecordedKernelFactory, interlock, recorded, replayed_ticks, unlock, wait_for
 
 __all__ = ["recorded"]
@@ -29,16 +27,8 @@ class Replay:
     """A recording in the console, with its first user logged in."""
 
     def __init__(self, recording: Path, runtime: Path) -> None:
-        self.runtime = runtime
-        command = [BIN / "interlock", "replay", recording, "--console", "--port", "0", "--speed", "100"]
-        self.process = subprocess.Popen(
-            [str(part) for part in command],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            env={**os.environ, "XDG_RUNTIME_DIR": str(runtime)},
-        )
+        arguments = ["replay", recording, "--console", "--port", "0", "--speed", "100"]
+        self.process = start_interlock(runtime, *arguments)
         self.output = Output(self.process)
         self.api = httpx.Client(base_url=self.output.wait_for(r"^ready (http\S+)")[1], timeout=DEADLINE_S)
         password = self.output.wait_for(r"^first login: admin (\S+)$")[1]
