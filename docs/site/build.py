@@ -2,9 +2,10 @@
 """Writes the documentation site of this tree to build/docs/site. Usage: build.py
 
 Doxygen reads kernel and app; Sphinx makes one site with search from docs/, the HTTP reference of
-spec/openapi.yaml, the record of MISRA deviations and the items that Doxygen found. The report of
-`make report` is put beside them where it was made. Exits 1, and says why, for a public item without a word,
-a link that leads nowhere, or anything that either program warns of; 2 when it cannot run.
+spec/openapi.yaml, the record of MISRA deviations and the items that Doxygen found. The pictures of
+`make pictures` and the report of `make report` are put beside them where they were made. Exits 1, and
+says why, for a public item without a word, a link that leads nowhere, a picture without a caption, or
+anything that either program warns of; 2 when it cannot run.
 """
 
 import re
@@ -22,6 +23,7 @@ import deviations_page
 import documented
 import evidence
 import http_page
+import pictures_page
 from report_copy import copy_report
 from staging import Staging
 
@@ -78,10 +80,24 @@ def stage(root: Path, source: Path, found: list[code_pages.Entry]) -> None:
     (source / "index.md").write_text(index, "utf-8")
     document = yaml.safe_load((root / "spec/openapi.yaml").read_text("utf-8"))
     (source / "http.md").write_text(http_page.http_page(document), "utf-8")
+    stage_pictures(root / "build/pictures", source)
     records = (root / "verification/misra/deviations.toml").read_text("utf-8")
     (source / "deviations.md").write_text(deviations_page.deviations_page(records), "utf-8")
     for name, text in code_pages.pages(found).items():
         (source / "code" / name).write_text(text, "utf-8")
+
+
+def stage_pictures(taken: Path, source: Path) -> None:
+    """Puts the pictures of the console beside their page. Raises FailedError for one without a caption."""
+    files = sorted(taken.glob("*.png"))
+    (source / "pictures").mkdir()
+    for file in files:
+        shutil.copyfile(file, source / "pictures" / file.name)
+    try:
+        page = pictures_page.pictures_page([file.name for file in files])
+    except pictures_page.PictureError as error:
+        raise FailedError(str(error)) from error
+    (source / "pictures.md").write_text(page, "utf-8")
 
 
 def without_inline(text: str) -> str:

@@ -16,6 +16,7 @@ import documented
 import http_page
 from deviations_page import deviations_page
 from http_page import cell
+from pictures_page import CAPTIONS, PictureError, pictures_page
 from report_copy import copy_report
 from staging import Staging
 
@@ -158,3 +159,15 @@ def test_every_recorded_deviation_is_on_the_site_with_its_reason() -> None:
             row = next(line for line in page.splitlines() if cell(record["reason"]) in line)
             assert row.startswith(f"| {record['rule']} |"), kind
             assert all(file in row for file in record["files"])
+
+
+def test_each_picture_of_the_console_stands_on_its_page_and_none_is_left_out() -> None:
+    kinds = ("light-1280x800", "dark-1280x800", "light-3840x2160", "dark-3840x2160")
+    files = [f"{page}-{kind}.png" for page in CAPTIONS for kind in kinds]
+    page = pictures_page(files)
+    assert [file for file in files if f"(pictures/{file})" not in page] == []
+    assert "without them" in pictures_page([])
+    with pytest.raises(PictureError, match="new-light"):
+        pictures_page([*files, "new-light-1280x800.png"])
+    with pytest.raises(PictureError, match="login: no picture dark-1280x800"):
+        pictures_page([file for file in files if file != "login-dark-1280x800.png"])

@@ -369,6 +369,12 @@ def lists_of_negatives(source: Source) -> str:
     )
 
 
+def counted(results: str) -> str:
+    """How many results a row of the matrix lists."""
+    number = results.count("; ") + bool(results)
+    return f"{number} result{'' if number == 1 else 's'}"
+
+
 def matrix_table(source: Source) -> str:
     lines = [
         (
@@ -378,7 +384,7 @@ def matrix_table(source: Source) -> str:
             escape(row.system_requirement),
             f"{escape(row.requirement)}<br><small>{escape(row.text_hash)}</small>",
             f"<small>{escape(row.code)}</small>",
-            f"{status(row.status)}<br><small>{row.results.count('; ') + bool(row.results)} results</small>",
+            f"{status(row.status)}<br><small>{counted(row.results)}</small>",
             escape(row.anomalies),
         )
         for row in rows(source.trace)
