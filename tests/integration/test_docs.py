@@ -171,3 +171,43 @@ def test_each_picture_of_the_console_stands_on_its_page_and_none_is_left_out() -
         pictures_page([*files, "new-light-1280x800.png"])
     with pytest.raises(PictureError, match="login: no picture dark-1280x800"):
         pictures_page([file for file in files if file != "login-dark-1280x800.png"])
+
+
+def igtl_source(name: str) -> str:
+    return (ROOT / f"app/igtl/{name}.cpp").read_text("utf-8")
+
+
+IGTL_NAMES = {
+    "thesis": r'\{"([a-z_]+)",',
+    "crtk": r'"([a-z_]+)"',
+    "workphases": r'_name = "([A-Z_]+)"',
+    "wpi2024": r'"([A-Z_]{4,})"',
+}
+"""How each dialect's source writes the names that it takes and sends."""
+
+
+@pytest.mark.parametrize("dialect", IGTL_NAMES)
+def test_the_openigtlink_reference_has_every_name_of_the_dialects_source(dialect: str) -> None:
+    told = set(re.findall(r"\w+", (ROOT / "docs/openigtlink.md").read_text("utf-8").lower()))
+    names = set(re.findall(IGTL_NAMES[dialect], igtl_source(dialect)))
+    assert len(names) > 3
+    assert sorted(name for name in names if name.lower() not in told) == []
+
+
+@pytest.mark.parametrize("dialect", ["thesis", "workphases"])
+def test_the_openigtlink_reference_has_every_error_name_of_an_answer(dialect: str) -> None:
+    text = (ROOT / "docs/openigtlink.md").read_text("utf-8")
+    given = re.findall(r"Status\{.*?;", igtl_source(dialect), re.DOTALL)
+    names = {name for status in given for name in re.findall(r'"([A-Z]+)"', status)}
+    assert names
+    assert sorted(name for name in names if not re.search(rf"^\|.*\b{name}\b", text, re.MULTILINE)) == []
+
+
+def test_the_openigtlink_reference_names_nothing_that_the_thesis_dialect_does_not_know() -> None:
+    text = (ROOT / "docs/openigtlink.md").read_text("utf-8")
+    tables = text.partition("## Messages to the robot: thesis")[2].partition("Answers use header version")[0]
+    rows = [line.split("|")[1] for line in tables.splitlines() if line.startswith("| ")]
+    named = {name for row in rows for name in re.findall(r"\b[A-Za-z]+_[A-Za-z_]+\b", row)}
+    sources = (igtl_source("thesis") + igtl_source("crtk")).lower()
+    assert len(named) > 20
+    assert sorted(name for name in named if f'"{name.lower()}"' not in sources) == []
