@@ -50,6 +50,8 @@ test("the robot's page at work, and the sheets", async ({ robot, page }) => {
   for (const name of ["Plots", "3D"] as const) {
     await robot.open(name);
     await expect(robot.panel(name)).toBeVisible();
+    if (name === "Plots")
+      await page.getByRole("combobox", { name: "Axis", exact: true }).selectOption("Probe rotation");
     await take(page, name.toLowerCase());
   }
   await robot.stop.click();

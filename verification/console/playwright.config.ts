@@ -7,5 +7,7 @@ export default defineConfig({
   testDir: ".",
   testMatch: "*.measure.ts",
   workers: 1,
+  // A test of these lasts many minutes, and without a limit one action that never ends would take them all.
+  use: { ...base.use, actionTimeout: 30_000 },
   reporter: [["line"]],
 });
