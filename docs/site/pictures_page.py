@@ -5,17 +5,17 @@ from collections.abc import Sequence
 
 CAPTIONS = {
     "login": "Before anybody logs in: what the robot does, and STOP",
-    "robot": "The robot's page while an axis moves and another waits; one proposal refused, with its reason",
+    "robot": "The robot's page while an axis moves; one proposal done, one refused with its reason",
     "robot-help": "Everything unfolded: why an axis does not move, more faults, and the keys",
     "robot-covered": "The app went silent: what it said last is covered after a second",
     "prostate": "The prostate robot",
     "targeting": "Registration, entry and target, and what they ask of each axis",
     "plots": "Position, error, velocity and drive of an axis over time, and the times of the loop",
     "3d": "The robot in its workspace",
-    "codes": "Verdicts, gates, faults and causes, with what to do next",
+    "codes": "The codes",
     "users": "Users and their roles",
-    "audit": "The audit trail and the check of its chain",
-    "account": "Password and sessions",
+    "audit": "The audit trail",
+    "account": "The account",
 }
 """What each picture shows, in the order of the page."""
 NAME = re.compile(r"(?P<page>.+)-(?P<theme>light|dark)-(?P<width>\d+)x(?P<height>\d+)\.png")
