@@ -10,6 +10,7 @@ from bare_kernel import ROOT
 sys.path.append(str(ROOT / "verification/mutation"))
 
 import tables
+from compiled import is_sound_program
 from equal import core_files, is_same, shown_equal, write_sound
 from functions import Function, callers_of, function_at, functions_in, functions_of
 from operators import Mutant, draw, mutants_of
@@ -144,6 +145,28 @@ def test_the_sound_function_is_shown_equal_to_itself_and_a_fault_is_not(tmp_path
     assert is_same(function, tree, folder)
     with seeded(tree, mutant.file, mutant.line, mutant.before, mutant.after):
         assert not is_same(function, tree, folder)
+
+
+def test_a_spelling_of_the_sound_program_is_the_sound_program_and_a_fault_is_not(tmp_path: Path) -> None:
+    tree = make_tree(tmp_path / "tree")
+    file = "kernel/src/step.c"
+    lines = (tree / file).read_text("utf-8").splitlines()
+    loop = "for (uint32_t index = 0u; index < count; index++) {"
+    line = [line.strip() for line in lines].index(loop) + 1
+    with seeded(tree, file, line, "index < count", "index != count"):
+        assert is_sound_program(tree, file)
+    with seeded(tree, file, line, "index < count", "index <= count"):
+        assert not is_sound_program(tree, file)
+    with seeded(tree, file, line, "index < count", "no_such_name"):
+        assert not is_sound_program(tree, file)
+
+
+def test_a_fault_in_a_header_is_seen_in_the_files_that_take_it_in(tmp_path: Path) -> None:
+    mutant = next(each for each in draw(mutants_of(ROOT, FILES), 4000, "header") if each.file.endswith(".h"))
+    tree = make_tree(tmp_path / "tree")
+    assert is_sound_program(tree, mutant.file)
+    with seeded(tree, mutant.file, mutant.line, mutant.before, mutant.after):
+        assert not is_sound_program(tree, mutant.file)
 
 
 @pytest.mark.provers

@@ -9,7 +9,8 @@ that are the same code as one that was drawn, are passed over. Each is shown to 
 first, until one notices it; with --matrix to all, with --without-tests to rungs 2 to 4 alone, of which
 nine of ten must be noticed.
 
-What nothing notices is an equivalent only if CBMC shows that it does the same as the sound kernel (equal.py).
+What nothing notices is an equivalent only if CBMC shows that it does the same as the sound kernel (equal.py),
+or a compiler makes the same instructions of it (compiled.py).
 
 Prints a line for each mutant, the kill matrix and the survivors; writes build/evidence/mutation.json and,
 in build/evidence/mutation, mutants, kill matrix and survivors (tables.py); without the tests all of that as
@@ -18,8 +19,6 @@ Verdicts are kept by content in build/mutation; --list draws, and judges nothing
 """
 
 import argparse
-import hashlib
-import subprocess
 import sys
 import time
 from collections import Counter
@@ -30,6 +29,7 @@ sys.path.append(str(Path(__file__).resolve().parents[1] / "evidence"))
 
 import evidence
 import tables
+from compiled import Compiler, is_sound_program
 from equal import shown_equal
 from functions import Function, function_at, functions_in
 from operators import Mutant, draw, mutants_of
@@ -40,42 +40,12 @@ from verdicts import RUNGS, Kept, Verdict
 
 RUN = ("tests", "conformance")
 """Rungs that run the kernel; the others prove, and take longer."""
-FLAGS = ("-std=c11", "-O2", "-w", "-ffreestanding", "-S", "-Ikernel/include", "-Ikernel/src", "-o", "-")
 
 
 def core_files() -> list[str]:
     """The files of the core that hold decisions; the CRC's table is data, proved entry by entry."""
     files = sorted(path for path in (ROOT / "kernel/src").iterdir() if path.name != "crc32_table.c")
     return [str(path.relative_to(ROOT)) for path in files]
-
-
-class Compiler:
-    """What the compiler makes of the core's files, each text of them once."""
-
-    def __init__(self, tree: Path) -> None:
-        self._tree = tree
-        self._sound = {path.name: self._compile(path) for path in self._sources()}
-
-    def _sources(self) -> list[Path]:
-        return sorted((self._tree / "kernel/src").glob("*.c"))
-
-    def _compile(self, source: Path) -> str:
-        """A hash of the assembly; empty when there is none."""
-        command = ["gcc", *FLAGS, str(source.relative_to(self._tree))]
-        done = subprocess.run(command, cwd=self._tree, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
-        return hashlib.sha256(done.stdout).hexdigest() if done.returncode == 0 else ""
-
-    def code(self, file: str) -> str:
-        """A hash over the core with that file as it is now in the tree; empty when it does not compile."""
-        made = dict(self._sound)
-        for path in self._sources():
-            if path.name == Path(file).name or file.endswith(".h"):
-                made[path.name] = self._compile(path)
-        return "" if "" in made.values() else hashlib.sha256(repr(sorted(made.items())).encode()).hexdigest()
-
-    @property
-    def sound(self) -> str:
-        return hashlib.sha256(repr(sorted(self._sound.items())).encode()).hexdigest()
 
 
 class Drawing:
@@ -136,6 +106,13 @@ def ask(tree: Path, probes: Iterable[Probe], every: bool) -> dict[str, str]:
     return told
 
 
+def why_equal(tree: Path, mutant: Mutant) -> str:
+    """Why the mutant in the tree, of which no proof complains, is no fault; empty when that is not known."""
+    if is_sound_program(tree, mutant.file):
+        return "clang: the same instructions as the sound kernel"
+    return shown_equal(tree, mutant.file, mutant.line)
+
+
 def judge(tree: Path, mutant: Mutant, kept: Kept, asked: Sequence[str], every: bool) -> Verdict:
     """What becomes of one mutant before the rungs that are asked."""
     started = time.monotonic()
@@ -151,7 +128,7 @@ def judge(tree: Path, mutant: Mutant, kept: Kept, asked: Sequence[str], every: b
         reasons = tuple(f"{rung} {said}" for rung, said in told.items() if said)
         fate = "killed"
         if not reasons:
-            equal = equal or shown_equal(tree, mutant.file, mutant.line)
+            equal = equal or why_equal(tree, mutant)
             fate, reasons = ("equivalent", (equal,)) if equal else ("survived", ())
         verdict = Verdict(fate, reasons, round(time.monotonic() - started, 1), told)
         kept.keep(tree, verdict)
