@@ -35,6 +35,15 @@ igtl::Motion motion_of(const Proposal& proposal) {
            std::string(state_name(proposal.state)), proposal.detail}};
 }
 
+bool asks_for_motion(const igtl::Wish& wish) {
+  return std::holds_alternative<igtl::SetMode>(wish) || std::holds_alternative<igtl::StartUp>(wish) ||
+         std::holds_alternative<igtl::MoveToTarget>(wish) || std::holds_alternative<igtl::RetractProbe>(wish);
+}
+
+igtl::Status stopped_before() {
+  return {StatusCode::not_ready, 0, "STOPPED", "A stop came before its turn; ask for it again."};
+}
+
 }  // namespace
 
 Navigation::Navigation(const Context& context)
@@ -121,7 +130,7 @@ void Navigation::enqueue(PeerId peer, const std::string& device, igtl::Wish wish
   } else if (tasks_.size() >= backlog) {
     finish(peer, device, wish, {{StatusCode::busy, 0, "BUSY", "Too much waits to be done; send it again."}});
   } else {
-    tasks_.push_back({peer, device, std::move(wish)});
+    tasks_.push_back({peer, device, std::move(wish), context_.control.stops()});
     news_.cancel();
   }
 }
@@ -280,6 +289,11 @@ tl::expected<Caller, Problem> Navigation::mandate_of(PeerId peer) const {
   return mandate_->caller;
 }
 
+/** Whether somebody asked for a stop after it had asked for motion. */
+bool Navigation::is_overtaken(const Task& task) const {
+  return asks_for_motion(task.wish) && context_.control.stops() != task.stops;
+}
+
 asio::awaitable<void> Navigation::work() {
   for (;;) {
     if (tasks_.empty()) {
@@ -292,8 +306,14 @@ asio::awaitable<void> Navigation::work() {
     igtl::Outcome outcome;
     if (const auto caller = mandate_of(task.peer); !caller) {
       outcome.status = status_of(caller.error());
+    } else if (is_overtaken(task)) {
+      outcome.status = stopped_before();
     } else {
       outcome = co_await carry_out(context_, *caller, task.device, task.wish);
+    }
+    if (outcome.proposal && is_overtaken(task)) {
+      end_motion(*outcome.proposal);
+      outcome = {stopped_before()};
     }
     co_await refresh_targeting();
     finish(task.peer, task.device, task.wish, outcome);

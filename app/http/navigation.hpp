@@ -93,6 +93,7 @@ class Navigation {
     igtl::PeerId peer = 0;
     std::string device;
     igtl::Wish wish;
+    std::uint32_t stops = 0; /**< STOPs that came before it */
   };
 
   /** How a peer is talked to, what it was told, and wants to be told. */
@@ -133,6 +134,7 @@ class Navigation {
   void tell_what_is_due(SteadyTime now);
   void tell_tracking(SteadyTime now);
   [[nodiscard]] bool is_moving() const;
+  [[nodiscard]] bool is_overtaken(const Task& task) const;
   [[nodiscard]] igtl::RobotState state() const;
 
   const Context& context_;

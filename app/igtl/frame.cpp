@@ -116,10 +116,10 @@ void FrameReader::skip(Bytes& input) {
 Arrival FrameReader::begin_body() {
   auto header = read_header(held_);
   if (!header) {
-    return Broken{header.error()};
+    return Broken{header.error(), {}};
   }
   if (header->body_size > ceiling_of(header->type, header->version)) {
-    return Broken{Fault::too_large};
+    return Broken{Fault::too_large, std::move(*header)};
   }
   const bool unsuitable = header->version == 1 && !is_size_of(header->type, header->body_size);
   if (unsuitable || !is_known_type(header->type)) {

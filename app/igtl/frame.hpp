@@ -37,6 +37,7 @@ struct Refused {
 /** Nobody knows where the next message begins: the connection is to be closed. */
 struct Broken {
   Fault fault;
+  Header header; /**< as far as it could be read */
 };
 
 /** What came of the bytes: nothing yet, or one thing. */

@@ -217,8 +217,9 @@ asio::awaitable<void> Hub::read(SessionPointer session) {
       } else if (auto* refused = std::get_if<Refused>(&arrival)) {
         refuse(*session, refused->header, refused->fault);
       } else if (auto* broken = std::get_if<Broken>(&arrival)) {
-        refuse(*session, {}, broken->fault);
-        close(*session, std::string(fault_text(broken->fault)));
+        refuse(*session, broken->header, broken->fault);
+        co_await part(session, std::string(fault_text(broken->fault)));
+        co_return;
       }
       const bool completed = !std::holds_alternative<std::monostate>(arrival);
       if (completed) {
@@ -230,6 +231,21 @@ asio::awaitable<void> Hub::read(SessionPointer session) {
       session->message_since.reset();
     } else if (!session->message_since) {
       session->message_since = Clock::now();
+    }
+  }
+}
+
+/** Lets the last answer out. What still comes is read and dropped: TCP would else take the answer back. */
+asio::awaitable<void> Hub::part(SessionPointer session, std::string reason) {
+  session->reason = std::move(reason);
+  session->message_since.reset();
+  session->parting_since = Clock::now();
+  session->news.cancel();
+  std::vector<std::uint8_t> dropped(chunk_bytes);
+  while (session->open) {
+    const auto [error, count] = co_await session->socket.async_read_some(asio::buffer(dropped), as_result);
+    if (error) {
+      co_return;
     }
   }
 }
@@ -279,6 +295,7 @@ void Hub::note_sign_of_life(Session& session) {
 
 void Hub::refuse(Session& session, const Header& header, const FaultAt& fault) {
   ++session.peer.refused;
+  session.peer.version = std::max(session.peer.version, header.version);
   note_sign_of_life(session);
   on_refused(session.peer.id, header, fault);
 }
@@ -289,6 +306,10 @@ asio::awaitable<void> Hub::write(SessionPointer session) {
     if (!session->replies.empty()) {
       bytes = std::move(session->replies.front());
       session->replies.pop_front();
+    } else if (session->parting_since) {
+      error_code gone;
+      session->socket.shutdown(Tcp::socket::shutdown_send, gone);
+      co_return;
     } else if (!session->newest.empty()) {
       auto next = session->newest.upper_bound(session->shown_last);
       next = next == session->newest.end() ? session->newest.begin() : next;
@@ -327,7 +348,9 @@ asio::awaitable<void> Hub::beat() {
 void Hub::look_after(Session& session, Clock::time_point now) const {
   const bool controls = session.peer.role == Role::controller;
   const auto taking = controls ? controller_patience : write_patience;
-  if (session.message_since && now - *session.message_since > message_patience) {
+  if (session.parting_since && now - *session.parting_since > parting_patience) {
+    close(session, session.reason);
+  } else if (session.message_since && now - *session.message_since > message_patience) {
     close(session, std::string(fault_text(Fault::late)));
   } else if (session.write_since && now - *session.write_since > taking) {
     close(session, "the peer does not take what is sent to it");

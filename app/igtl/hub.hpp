@@ -91,6 +91,8 @@ class Hub {
   static constexpr std::chrono::milliseconds message_patience{1000};
   /** With a peer that does not take what is sent to it. */
   static constexpr std::chrono::milliseconds write_patience{1000};
+  /** With a peer whose framing broke, to take the last answer. */
+  static constexpr std::chrono::milliseconds parting_patience{100};
   /** How long the loss of a controller's machine goes unnoticed while something is sent to it. */
   static constexpr std::chrono::milliseconds controller_patience{200};
   /** While something may move: without an acknowledgement of what was sent. TCP by itself looks only when it
@@ -179,6 +181,7 @@ class Hub {
     std::optional<Clock::time_point> unacknowledged_since; /**< something that was sent */
     std::optional<Clock::time_point> message_since;        /**< a message has begun */
     std::optional<Clock::time_point> write_since;          /**< something is being sent */
+    std::optional<Clock::time_point> parting_since;        /**< nothing that comes is heard any more */
     Clock::time_point window_since = Clock::now();
     std::size_t in_window = 0;
     bool open = true;
@@ -190,6 +193,7 @@ class Hub {
   void admit(Tcp::socket socket);
   boost::asio::awaitable<void> serve(SessionPointer session);
   boost::asio::awaitable<void> read(SessionPointer session);
+  static boost::asio::awaitable<void> part(SessionPointer session, std::string reason);
   static boost::asio::awaitable<void> write(SessionPointer session);
   boost::asio::awaitable<void> slow_down(SessionPointer session);
   void take(Session& session, Frame frame);

@@ -13,7 +13,8 @@ const figuresFile = process.env.CONSOLE_FIGURES ?? path.join(reports, "console_f
 
 const CONSOLES = 4;
 const CPU_S = 30;
-const SAMPLE_EVERY_S = 10;
+const PAUSE_S = 10;
+const SAMPLE_EVERY_S = 30;
 /** Of the run, for caches and compiled code to settle. */
 const WARM_UP_SHARE = 0.2;
 const ROUNDS = 8;
@@ -118,7 +119,10 @@ async function noteInteractions(page: Page, prefix: string): Promise<void> {
   figures[`${prefix}interaction_to_paint_ms_worst`] = quantile(all, 1);
 }
 
-/** Uses the page for the minutes of the run; what grows until it is warm is not counted. */
+/**
+ * Uses the page for the minutes of the run; what grows until it is warm is not counted. Growth is that of what the page's
+ * own program keeps. The whole heap has compiled code and, in a browser that is watched, a record of each request besides.
+ */
 async function noteMemory(
   page: Page,
   prefix: string,
@@ -127,22 +131,58 @@ async function noteMemory(
 ): Promise<void> {
   const session = await page.context().newCDPSession(page);
   await session.send("Performance.enable");
+  const kept: number[] = [];
   const heaps: number[] = [];
   const elements: number[] = [];
   const warm = performance.now() + warmUpS * 1000;
   const end = warm + (1 - WARM_UP_SHARE) * minutes * 60_000;
+  let next = warm;
   while (performance.now() < end) {
     await use();
-    await page.waitForTimeout(SAMPLE_EVERY_S * 1000);
-    if (performance.now() < warm) continue;
-    await session.send("HeapProfiler.collectGarbage");
+    await page.waitForTimeout(PAUSE_S * 1000);
+    if (performance.now() < next) continue;
+    next += SAMPLE_EVERY_S * 1000;
+    kept.push(await keptByPage(session));
     heaps.push(await metric(session, "JSHeapUsedSize"));
     elements.push(await metric(session, "Nodes"));
   }
   figures[`${prefix}memory_minutes`] = minutes;
   figures[`${prefix}memory_heap_kib`] = Math.round(quantile(sorted(heaps), 0.5) / 1024);
-  figures[`${prefix}memory_growth_kib`] = Math.round(growth(heaps) / 1024);
+  figures[`${prefix}memory_heap_growth_kib`] = Math.round(growth(heaps) / 1024);
+  figures[`${prefix}memory_kept_kib`] = Math.round(quantile(sorted(kept), 0.5) / 1024);
+  figures[`${prefix}memory_growth_kib`] = Math.round(growth(kept) / 1024);
   figures[`${prefix}memory_growth_nodes`] = Math.round(growth(elements));
+}
+
+/** What Chromium tells of its heap: a row of numbers for each object. */
+interface HeapSnapshot {
+  readonly snapshot: {
+    readonly meta: {
+      readonly node_fields: readonly string[];
+      readonly node_types: readonly [readonly string[]];
+    };
+  };
+  readonly nodes: readonly number[];
+}
+
+/** Of a snapshot's kinds: what is there because the page's program holds on to it. */
+const OWN_KINDS = ["object", "closure", "array", "string", "concatenated string", "sliced string", "regexp"];
+
+/** Bytes of the objects, functions and texts that are left when everything unused has been collected. */
+async function keptByPage(session: CDPSession): Promise<number> {
+  const chunks: string[] = [];
+  const take = ({ chunk }: { chunk: string }) => chunks.push(chunk);
+  session.on("HeapProfiler.addHeapSnapshotChunk", take);
+  await session.send("HeapProfiler.takeHeapSnapshot", { reportProgress: false });
+  session.off("HeapProfiler.addHeapSnapshotChunk", take);
+  const { snapshot, nodes } = JSON.parse(chunks.join("")) as HeapSnapshot;
+  const { node_fields: fields, node_types: kinds } = snapshot.meta;
+  const [kindAt, sizeAt] = [fields.indexOf("type"), fields.indexOf("self_size")];
+  const own = new Set(OWN_KINDS.map((kind) => kinds[0].indexOf(kind)));
+  let bytes = 0;
+  for (let at = 0; at < nodes.length; at += fields.length)
+    if (own.has(nodes[at + kindAt] ?? -1)) bytes += nodes[at + sizeAt] ?? 0;
+  return bytes;
 }
 
 const chart = (robot: ConsolePage, title: string) =>

@@ -222,6 +222,40 @@ TEST_F(HubTest, APeerThatBreaksTheFramingIsClosedAndOthersStay) {
   EXPECT_TRUE(run_until([&] { return messages_.size() == 1; }));
 }
 
+TEST_F(HubTest, ThePeerThatBreaksTheFramingIsToldWhyThoughItSendsOn) {
+  start();
+  hub_.on_refused = [this](PeerId peer, const Header& header, const FaultAt& fault) {
+    hub_.reply(peer, header.device, Status{status_of(fault), 0, "FORMAT", header.type});
+  };
+  auto socket = connect();
+  using test::operator+;
+  send(socket, test::header_of("VIDEO", 0xFFFFFFFFu, 0) + ByteVector(100'000, 0xA5));
+  FrameReader reader;
+  const Message told = receive(socket, reader);
+  EXPECT_EQ(std::get<Status>(told.body).text, "VIDEO");
+  EXPECT_TRUE(is_closed_within(3s));
+}
+
+TEST_F(HubTest, APeerThatBreaksTheFramingAndStaysIsClosedAfterTheAnswer) {
+  start();
+  auto socket = connect();
+  send(socket, test::header_of("VIDEO", 0xFFFFFFFFu, 0));
+  const auto begun = steady_clock::now();
+  ASSERT_TRUE(is_closed_within(3s));
+  EXPECT_GE(steady_clock::now() - begun, Hub::parting_patience);
+  EXPECT_THAT(closed_[0], HasSubstr(std::string(fault_text(Fault::too_large))));
+}
+
+TEST_F(HubTest, ARefusedMessageShowsTheVersionOfItsPeerToo) {
+  start();
+  auto socket = connect();
+  send(socket, write_frame(2, "VIDEO", "camera", 0, ByteVector(9)));
+  ASSERT_TRUE(run_until([&] { return !refused_.empty(); }));
+  hub_.reply(opened_[0], "mode", Text{"one"});
+  FrameReader reader;
+  EXPECT_EQ(receive(socket, reader).version, 2);
+}
+
 TEST_F(HubTest, WhatIsRefusedIsCountedAndTheNextMessageRead) {
   start();
   auto socket = connect();
