@@ -38,6 +38,18 @@ async function expectNoViolation(page: Page, state: string, leftOut: readonly st
   expect.soft(await violations(axe().withRules(colourRules)), `${state}, dark`).toEqual([]);
 }
 
+/** The contents of panels, by their titles, that show their colours. */
+function coloured(page: Page): Promise<string[]> {
+  return page.locator("main .panel > :not(.panel-head)").evaluateAll((contents) => {
+    const isGrey = (element: Element | null): boolean =>
+      element !== null &&
+      (getComputedStyle(element).filter === "grayscale(1)" || isGrey(element.parentElement));
+    return contents
+      .filter((content) => !isGrey(content))
+      .map((content) => content.closest(".panel")?.getAttribute("aria-label") ?? content.className);
+  });
+}
+
 /** Panels that look the same whatever the axes do, and the rows of axes with which nothing is done. */
 const untouched = [
   ...["Log", "Communication", "Navigation", "Status"].map((title) => `[aria-label="${title}"].panel`),
@@ -194,6 +206,12 @@ for (const [level, ageMs] of [
     await expect(page.getByRole("main")).toHaveAttribute("data-level", level);
     await expect(robot.axis("Lateral").row).toBeAttached();
     await expectNoViolation(page, level);
+    for (const name of ["Targeting", "Proposals", "Plots", "3D"] as const) {
+      await robot.open(name);
+      await expect(page.getByRole("main")).toHaveAttribute("data-level", level);
+      await expect(page.getByRole("main").locator(".panel").first()).toBeAttached();
+      expect(await coloured(page), `what is not greyed on ${name}`).toEqual([]);
+    }
   });
 }
 

@@ -147,6 +147,8 @@ test("the E-stop locks with its cause until it is released and unlocked, and not
   await page.getByRole("button", { name: "Pull E-stop" }).click();
   await robot.expectMode("LOCKED");
   await expect(robot.estop).toContainText("PULLED");
+  const signs = page.getByRole("banner").locator(".alarm-sign");
+  await expect(signs.and(page.locator('[data-priority="high"]'))).toHaveCount(2);
   await expect(
     page.getByRole("banner").getByText("The E-stop was pulled, or its loop is broken."),
   ).toBeVisible();
@@ -161,6 +163,7 @@ test("the E-stop locks with its cause until it is released and unlocked, and not
   await page.getByRole("button", { name: "Release E-stop" }).click();
   await expect(robot.estop).toContainText("released");
   await robot.unlockRobot();
+  await expect(signs.and(page.locator("[data-priority]"))).toHaveCount(0);
   await robot.latchPedal();
   await axis.expectState("DISABLED");
   expect(Math.abs((await axis.restingCounts()) - stoppedAt)).toBeLessThanOrEqual(1);

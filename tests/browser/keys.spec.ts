@@ -25,3 +25,14 @@ test("? shows what the keys do, and is a letter where somebody types", async ({ 
   await expect(robot.stopAnswer).toHaveText("STOP accepted");
   await expect(help).toHaveCount(0);
 });
+
+test("? leads to the first steps from every page, whatever was proposed before", async ({ robot, page }) => {
+  await robot.unlockRobot();
+  await robot.axis("Lateral").enable();
+  await robot.axis("Lateral").propose("-1");
+  await robot.open("Codes");
+  await page.keyboard.press("?");
+  await robot.button("Show the first steps").click();
+  await expect(robot.panel("What the keys do")).toHaveCount(0);
+  await expect(robot.panel("First steps")).toBeVisible();
+});

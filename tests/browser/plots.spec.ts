@@ -193,7 +193,7 @@ test("plots of an app that is silent are greyed, then covered", async ({ robot, 
   stack.signalApp("SIGSTOP");
   try {
     await expect(page.getByRole("heading", { name: /No data for/ })).toBeVisible();
-    await expect(page.getByRole("main")).toHaveAttribute("inert", "");
+    await expect(page.locator("main > .panels")).toHaveAttribute("inert", "");
   } finally {
     stack.signalApp("SIGCONT");
   }

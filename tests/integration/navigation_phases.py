@@ -53,8 +53,13 @@ class Phases:
         return [message for _, message in self.heard.all[self.since :]]
 
     def answers(self) -> list[wire.MessageBase]:
-        """The same, the stream of positions apart."""
-        return [each for each in self.messages() if each.device_name != "CURRENT_POSITION"]
+        """The same, the stream of positions apart, and what is repeated while a motion is approved."""
+        told: list[wire.MessageBase] = []
+        for each in self.messages():
+            repeats = each.device_name == "CURRENT_STATUS" and short(each) in map(short, told)
+            if each.device_name != "CURRENT_POSITION" and not repeats:
+                told.append(each)
+        return told
 
     def shorts(self) -> list[str]:
         return [short(each) for each in self.answers()]

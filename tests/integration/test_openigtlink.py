@@ -355,6 +355,35 @@ def moving(robot: Stack, navigate: Callable[..., Navigator]) -> Navigator:
     return navigator
 
 
+@pytest.mark.parametrize("mode", ["targeting", "insertion", "draping"])
+def test_a_mode_becomes_a_proposal_that_moves_once_it_is_approved(
+    robot: Stack, navigate: Callable[..., Navigator], mode: str
+) -> None:
+    home_all(robot)
+    navigator = navigate()
+    make_controller(robot)
+    for name, point in {"ENTRY_POINT": ENTRY, "TARGET_POINT": TARGET}.items():
+        assert navigator.ask(pyigtl.PointMessage([point], device_name=name)).code == OK
+    answer = navigator.ask(text("MODE", mode))
+    assert answer.code == OK, answer.text
+    [proposal] = robot.api.get("/api/proposals").json()
+    assert (proposal["source"], proposal["state"]) == ("openigtlink", "checked")
+    robot.api.post(f"/api/proposals/{proposal['id']}/approve").raise_for_status()
+    press(robot)
+    wait_until("it moves", lambda: newest(robot)["state"] == "executing")
+    assert robot.api.get("/api/mode").json()["mode"] != "manual"
+
+
+def test_a_stop_overtakes_a_mode_that_waits_for_its_turn(robot: Stack) -> None:
+    home_all(robot)
+    with socket.create_connection(("127.0.0.1", robot.igtl_port)) as program:
+        wait_until("listed", lambda: len(connections(robot)) == 1)
+        make_controller(robot)
+        program.sendall(text("MODE", "draping").pack() + text("STOP", "").pack())
+        wait_until("refused", lambda: connections(robot)[0]["refused"] == 1)
+    assert [each for each in robot.api.get("/api/proposals").json() if each["state"] != "aborted"] == []
+
+
 def newest(robot: Stack) -> dict:
     return robot.api.get("/api/proposals").json()[0]
 

@@ -193,3 +193,72 @@ def test_the_phase_can_be_asked_for_and_a_disconnect_forgets_it(
 def test_a_phase_out_of_order_is_answered(robot: Stack, connect: Callable[[], Phases]) -> None:
     navigator = connect()
     navigator.expect(text("CMD_1", "PLANNING"), "ACK_1 STRING", "CURRENT_STATUS 13 UNDEFINED", "PLANNING 13")
+
+
+@pytest.mark.parametrize("dialect", ["wpi2024"], indirect=True)
+def test_a_needle_is_followed_to_the_target_and_retracted(
+    robot: Stack, connect: Callable[[], Phases], dialect: str
+) -> None:
+    home_all(robot)
+    navigator = connect()
+    to_targeting(navigator, dialect)
+    navigator.expect(text("CURRENT_POSITION", ""), "IS_IN_TARGETING_POS STRING", "HAS_REACHED_TARGET STRING")
+    assert [each.string for each in navigator.answers()] == ["1", "0"]
+    navigator.expect(text("RETRACT_NEEDLE", ""), "ACK_RETRACT_NEEDLE 13")
+    navigator.phase("MOVE_TO_TARGET")
+    run(robot)
+    navigator.await_answers("ACK_0001 STRING", "CURRENT_STATUS 1 MOVE_TO_TARGET", "MOVE_TO_TARGET 1")
+    navigator.expect(transform("NPOS_0004", aimed()), "ACK_0004 TRANSFORM", "MOVE_TO_TARGET 1")
+    navigator.expect(text("CURRENT_POSITION", ""), "IS_IN_TARGETING_POS STRING", "HAS_REACHED_TARGET STRING")
+    assert [each.string for each in navigator.answers()] == ["0", "1"]
+    navigator.expect(text("RETRACT_NEEDLE", ""), "ACK_RETRACT_NEEDLE 1")
+    run(robot)
+    navigator.await_answers("ACK_RETRACT_NEEDLE 1", "RETRACT_NEEDLE 1")
+    navigator.expect(text("CURRENT_POSITION", ""), "IS_IN_TARGETING_POS STRING", "HAS_REACHED_TARGET STRING")
+    assert [each.string for each in navigator.answers()] == ["1", "0"]
+
+
+def run(robot: Stack) -> None:
+    """Approves the newest proposal and holds the pedal until it is done."""
+    approve(robot)
+    press(robot)
+    wait_until("done", lambda: robot.api.get("/api/proposals").json()[0]["state"] == "done")
+
+
+@pytest.mark.parametrize("dialect", ["wpi2024"], indirect=True)
+def test_a_target_that_moves_during_the_motion_asks_for_approval_anew(
+    robot: Stack, connect: Callable[[], Phases], dialect: str
+) -> None:
+    home_all(robot)
+    navigator = connect()
+    to_targeting(navigator, dialect)
+    navigator.phase("MOVE_TO_TARGET")
+    approve(robot)
+    press(robot)
+    wait_until("it moves", lambda: robot.api.get("/api/proposals").json()[0]["state"] == "executing")
+    beside = aimed()
+    beside[11] += 2
+    navigator.expect(
+        transform("TGT_0005", beside),
+        *("ACK_0005 TRANSFORM", "TARGET 1", "TARGET TRANSFORM", "REACHABLE_TARGET TRANSFORM"),
+    )
+    wait_until("proposed anew", lambda: len(robot.api.get("/api/proposals").json()) == 2)
+    newest, before = robot.api.get("/api/proposals").json()
+    assert (newest["state"], before["state"]) == ("checked", "aborted")
+
+
+@pytest.mark.parametrize("dialect", ["wpi2024"], indirect=True)
+def test_words_of_the_robots_program_are_answered(
+    robot: Stack, connect: Callable[[], Phases], dialect: str
+) -> None:
+    home_all(robot)
+    navigator = connect()
+    navigator.expect(text("NEEDLE_LENGTH", "150"), "ACK_NEEDLE_LENGTH 13")
+    navigator.phase("START_UP", "START_UP 1")
+    [echo] = navigator.expect(text("NEEDLE_LENGTH", "150"), "ACK_NEEDLE_LENGTH STRING")
+    assert echo.string == "150"
+    navigator.expect(text("NEEDLE_LENGTH", "long"), "ACK_NEEDLE_LENGTH 10")
+    navigator.expect(text("CURV_METHOD", "bidirectional"), "ACK_CURV_METHOD 12")
+    navigator.expect(text("ALPHA", "0.5"), "ACK_ALPHA 12")
+    navigator.expect(text("HELLO", "robot"), "ACK_HELLO 0")
+    assert robot.api.get("/api/proposals").json() == []

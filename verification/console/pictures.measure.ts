@@ -54,6 +54,9 @@ test("the robot's page at work, and the sheets", async ({ robot, page }) => {
       await page.getByRole("combobox", { name: "Axis", exact: true }).selectOption("Probe rotation");
     await take(page, name.toLowerCase());
   }
+  await robot.open("Proposals");
+  await expect(robot.panel("All proposals")).toBeVisible();
+  await take(page, "proposals");
   await robot.stop.click();
   for (const name of ["Codes", "Users", "Audit", "Account"] as const) {
     await robot.open(name);

@@ -41,7 +41,13 @@ function rows(
 describe("withRows", () => {
   it("keeps the error that was farthest from zero, and where", () => {
     const marks = withRows(noMarks, rows(1, [null, [-4, 9], [-12, 3], [-2, 2]]));
-    expect(marks.bySlot[3]).toEqual({ largestCounts: -12, atTick: 99, sinceTick: 33, nowCounts: 2 });
+    expect(marks.bySlot[3]).toEqual({
+      largestCounts: -12,
+      atTick: 99,
+      sinceTick: 33,
+      unwatchedTicks: 0,
+      nowCounts: 2,
+    });
   });
 
   it("goes on with the rows after, and says when nothing is followed", () => {
@@ -54,9 +60,14 @@ describe("withRows", () => {
     expect(withRows(noMarks, rows(1, [[0, 0]])).bySlot[3]?.largestCounts).toBe(0);
   });
 
-  it("begins anew after rows that nobody saw, and with another kernel or app", () => {
+  it("keeps its mark over rows that nobody saw, and tells how many ticks that were", () => {
     const before = withRows(noMarks, rows(1, [[-4, 9]]));
-    expect(withRows(before, rows(9, [[0, 1]])).bySlot[3]).toMatchObject({ largestCounts: 1, sinceTick: 297 });
+    const after = withRows(before, rows(9, [[0, 1]])).bySlot[3];
+    expect(after).toMatchObject({ largestCounts: 9, sinceTick: 33, unwatchedTicks: 7 * 33 });
+  });
+
+  it("begins anew with another kernel or app", () => {
+    const before = withRows(noMarks, rows(1, [[-4, 9]]));
     expect(withRows(before, rows(2, [[0, 1]], { run: [2] })).bySlot[3]?.largestCounts).toBe(1);
     expect(withRows(before, rows(2, [[0, 1]], { app_begun_s: 8 })).bySlot[3]?.largestCounts).toBe(1);
   });
@@ -65,7 +76,13 @@ describe("withRows", () => {
 describe("withReset", () => {
   it("forgets the mark of that axis only up to now", () => {
     const reset = withReset(withRows(noMarks, rows(1, [[-4, 9]])), 3);
-    expect(reset.bySlot[3]).toEqual({ largestCounts: null, atTick: 33, sinceTick: 33, nowCounts: 9 });
+    expect(reset.bySlot[3]).toEqual({
+      largestCounts: null,
+      atTick: 33,
+      sinceTick: 33,
+      unwatchedTicks: 0,
+      nowCounts: 9,
+    });
     expect(withRows(reset, rows(2, [[-1, 2]])).bySlot[3]).toMatchObject({ largestCounts: 2, sinceTick: 33 });
   });
 

@@ -1,3 +1,5 @@
+import { AlarmSign } from "../../design/AlarmSign";
+import { alarmOfFreshness } from "../../state/alarms";
 import { type Freshness, formatAge } from "../../state/freshness";
 import { useConsole } from "../../state/store";
 import "./cover.css";
@@ -10,7 +12,9 @@ export function Cover() {
   return (
     <div className="cover">
       <div className="cover-text">
-        <h2>{title(freshness)}</h2>
+        <h2>
+          <AlarmSign priority={alarmOfFreshness(freshness)}>▲</AlarmSign> {title(freshness)}
+        </h2>
         <div role="alert">
           <p>{advice(freshness, frameError)}</p>
           <p>STOP and Esc are still sent. If anything moves, release the pedal or pull the E-stop.</p>

@@ -2,10 +2,15 @@ import { useConsole } from "../../state/store";
 import { nextStep, steps } from "./steps";
 import "./first.css";
 
-/** Opens the walk-through, which stays until it is closed. */
-export function FirstStepsButton() {
+/** Opens the walk-through on the robot's page, where it stays until it is closed. */
+export function FirstStepsButton({ onOpen }: { readonly onOpen?: () => void }) {
+  const open = (): void => {
+    useConsole.setState({ firstSteps: true });
+    location.hash = "#/robot";
+    onOpen?.();
+  };
   return (
-    <button type="button" className="button small" onClick={() => useConsole.setState({ firstSteps: true })}>
+    <button type="button" className="button small" onClick={open}>
       Show the first steps
     </button>
   );

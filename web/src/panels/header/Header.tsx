@@ -1,6 +1,8 @@
+import { AlarmSign } from "../../design/AlarmSign";
 import { CommandButton } from "../../design/CommandButton";
 import { NoticeText } from "../../design/NoticeText";
 import { entry } from "../../generated/catalog";
+import { alarmOfMode } from "../../state/alarms";
 import { unlock } from "../../state/commands";
 import { type Freshness, formatAge } from "../../state/freshness";
 import { useConsole } from "../../state/store";
@@ -91,11 +93,12 @@ const modeShape: Record<string, string> = { INIT: "○", LOCKED: "■", READY: "
 
 function Mode({ glance }: { readonly glance: Glance | null }) {
   const mode = glance?.mode ?? "UNKNOWN";
+  const alarm = alarmOfMode(mode, glance?.cause ?? "NONE");
   return (
-    <div className="cell mode" data-mode={mode} data-cause={glance?.cause}>
+    <div className="cell mode" data-mode={mode} data-alarm={alarm ?? undefined}>
       <span className="label">Mode</span>
       <output className="value" aria-label="Mode">
-        <i aria-hidden="true">{modeShape[mode] ?? "?"}</i> {mode}
+        <AlarmSign priority={alarm}>{modeShape[mode] ?? "?"}</AlarmSign> {mode}
       </output>
     </div>
   );
@@ -103,11 +106,12 @@ function Mode({ glance }: { readonly glance: Glance | null }) {
 
 function Estop({ glance }: { readonly glance: Glance | null }) {
   const value = glance === null ? "unknown" : glance.estop ? "PULLED" : "released";
+  const alarm = glance?.estop ? "high" : null;
   return (
-    <div className={`cell ${glance?.estop ? "alarm-high" : ""}`}>
+    <div className="cell" data-alarm={alarm ?? undefined}>
       <span className="label">E-stop</span>
       <output className="value" aria-label="E-stop">
-        <i aria-hidden="true">{glance?.estop ? "⬣" : "⬡"}</i> {value}
+        <AlarmSign priority={alarm}>{glance?.estop ? "⬣" : "⬡"}</AlarmSign> {value}
       </output>
     </div>
   );
@@ -116,9 +120,10 @@ function Estop({ glance }: { readonly glance: Glance | null }) {
 function Pedal({ glance }: { readonly glance: Glance | null }) {
   const pressed = glance?.pedal === "PRESSED";
   const disagree = glance !== null && !pressed && glance.pedal !== "RELEASED";
+  const alarm = disagree ? "medium" : null;
   const value = glance === null ? "unknown" : disagree ? "CHANNELS DISAGREE" : glance.pedal.toLowerCase();
   return (
-    <div className={`cell ${disagree ? "alarm-medium" : ""} ${pressed ? "wish" : ""}`}>
+    <div className={`cell ${pressed ? "wish" : ""}`} data-alarm={alarm ?? undefined}>
       <span className="label">
         Pedal
         {glance !== null && (
@@ -130,7 +135,7 @@ function Pedal({ glance }: { readonly glance: Glance | null }) {
         aria-label="Pedal"
         title={glance === null ? "" : entry("pedal", glance.pedal).meaning}
       >
-        <i aria-hidden="true">{pressed ? "▼" : "▽"}</i> {value}
+        <AlarmSign priority={alarm}>{pressed ? "▼" : "▽"}</AlarmSign> {value}
       </output>
     </div>
   );

@@ -1,5 +1,6 @@
 import type { MouseEvent, PointerEvent } from "react";
 import { useEffect } from "react";
+import { AlarmSign } from "../../design/AlarmSign";
 import { stop } from "../../state/commands";
 import { type StopReport, useConsole } from "../../state/store";
 
@@ -60,7 +61,7 @@ function StopAnswer({ report }: { readonly report: StopReport }) {
     case "unanswered":
       return (
         <p className="stop-answer failed" role="alert">
-          NO ANSWER: use the E-stop
+          <AlarmSign priority="high">▲</AlarmSign> NO ANSWER: use the E-stop
         </p>
       );
   }

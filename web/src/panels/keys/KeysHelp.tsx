@@ -1,10 +1,13 @@
 import { useEffect, useState } from "react";
+import { useConsole } from "../../state/store";
+import { FirstStepsButton } from "../first/FirstSteps";
 import { isTyping, keys } from "./keys";
 import "./keys.css";
 
 /** A button, and the key `?`, that show what the keys do. Not modal: STOP stays within reach. */
 export function KeysHelp() {
   const [open, setOpen] = useState(false);
+  const loggedIn = useConsole((state) => state.login.phase === "in");
   useEffect(() => {
     const onKey = (event: KeyboardEvent): void => {
       if (event.key === "Escape") setOpen(false);
@@ -41,6 +44,11 @@ export function KeysHelp() {
             </tbody>
           </table>
           <p>No key enables an axis, unlocks the system or presses the pedal.</p>
+          {loggedIn && (
+            <p>
+              New here? <FirstStepsButton onOpen={() => setOpen(false)} />
+            </p>
+          )}
           <button type="button" className="button" onClick={() => setOpen(false)}>
             Close
           </button>

@@ -1,5 +1,6 @@
 import { useCallback, useState } from "react";
 import type { Motor } from "../../api/client";
+import { AlarmSign } from "../../design/AlarmSign";
 import { CodeLink } from "../../design/CodeLink";
 import { CommandButton } from "../../design/CommandButton";
 import { Refusal } from "../../design/Refusal";
@@ -176,7 +177,7 @@ function FaultWords({ motor, fault }: { readonly motor: Motor; readonly fault: F
     <div className="fault-words" role="alert">
       <p title={fault.evidence}>
         <strong>
-          ▲ <CodeLink family="fault" code={fault.name} />
+          <AlarmSign priority="medium">▲</AlarmSign> <CodeLink family="fault" code={fault.name} />
         </strong>{" "}
         {fault.meaning} <em>Likely: {fault.cause}</em> <span className="next-step">{fault.nextStep}</span>
       </p>

@@ -20,6 +20,7 @@ export function ErrorLine({ motor }: { readonly motor: Motor }) {
       >
         {formatCounts(motor, mark.largestCounts)}
       </output>
+      {mark.unwatchedTicks > 0 && <span> · not watched for {mark.unwatchedTicks} ticks</span>}
       <button
         type="button"
         className="button small"

@@ -1,7 +1,7 @@
 import { useState } from "react";
 import type { Motor } from "../../api/client";
 import { useConsole } from "../../state/store";
-import { Cover } from "../cover/Cover";
+import { LivePage } from "../cover/LivePage";
 import { AxisPlots } from "./AxisPlots";
 import { CapturePanel } from "./CapturePanel";
 import { LoopTimePanel } from "./LoopTimePanel";
@@ -10,33 +10,29 @@ import { useHistory } from "./useHistory";
 
 /** What has been: the axes over time, single ticks around an event, and how long the kernel's loop takes. */
 export default function PlotsPage() {
-  const level = useConsole((state) => state.freshness.level);
   const motors = useConsole((state) => state.motors);
   const history = useHistory();
   const [slot, setSlot] = useState<number | null>(null);
   const motor = motors.find((each) => each.slot === slot) ?? motors[0];
   return (
-    <div className="stage">
-      <main className="panels plots-page" data-level={level} inert={level === "covered"}>
-        {motor !== undefined && (
-          <>
-            <div className="main-column">
-              <AxisPlots
-                key={motor.slot}
-                motor={motor}
-                history={history}
-                chooser={<AxisChooser motors={motors} chosen={motor} onChoose={setSlot} />}
-              />
-            </div>
-            <div className="side">
-              <CapturePanel key={motor.slot} motor={motor} rows={history.rows} />
-              <LoopTimePanel periodUs={history.rows?.periodUs} />
-            </div>
-          </>
-        )}
-      </main>
-      <Cover />
-    </div>
+    <LivePage className="plots-page">
+      {motor !== undefined && (
+        <>
+          <div className="main-column">
+            <AxisPlots
+              key={motor.slot}
+              motor={motor}
+              history={history}
+              chooser={<AxisChooser motors={motors} chosen={motor} onChoose={setSlot} />}
+            />
+          </div>
+          <div className="side">
+            <CapturePanel key={motor.slot} motor={motor} rows={history.rows} />
+            <LoopTimePanel periodUs={history.rows?.periodUs} />
+          </div>
+        </>
+      )}
+    </LivePage>
   );
 }
 

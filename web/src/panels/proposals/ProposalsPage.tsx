@@ -5,7 +5,7 @@ import { isOpen } from "../../state/proposals";
 import { proposalHash, useProposalPlace } from "../../state/route";
 import { useConsole } from "../../state/store";
 import { localTime } from "../../units/time";
-import { Cover } from "../cover/Cover";
+import { LivePage } from "../cover/LivePage";
 import { ProposalDetail } from "./ProposalDetail";
 import { StateChip, sourceWord, Wish } from "./ProposalParts";
 import { TrajectoryPanel } from "./TrajectoryPanel";
@@ -14,33 +14,25 @@ import "./detail.css";
 
 /** Every proposal that the app keeps, one of them as a whole, and the way to propose what a file says. */
 export default function ProposalsPage() {
-  const level = useConsole((state) => state.freshness.level);
   const proposals = useConsole((state) => state.proposals);
   const notice = useConsole((state) => state.notices.robot);
   const asked = useProposalPlace();
   const shown = shownOf(proposals, asked);
   return (
-    <div className="stage">
-      <main className="panels proposals-page" data-level={level} inert={level === "covered"}>
-        <div className="main-column">
-          {notice !== undefined && (
-            <p className="panel-notice page-notice" role="alert">
-              <NoticeText lead="Refused:" notice={notice} />
-            </p>
-          )}
-          {shown === undefined ? (
-            <Nothing asked={asked} />
-          ) : (
-            <ProposalDetail key={shown.id} proposal={shown} />
-          )}
-        </div>
-        <div className="side">
-          <AllProposals proposals={proposals} shown={shown?.id} />
-          <TrajectoryPanel />
-        </div>
-      </main>
-      <Cover />
-    </div>
+    <LivePage className="proposals-page">
+      <div className="main-column">
+        {notice !== undefined && (
+          <p className="panel-notice page-notice" role="alert">
+            <NoticeText lead="Refused:" notice={notice} />
+          </p>
+        )}
+        {shown === undefined ? <Nothing asked={asked} /> : <ProposalDetail key={shown.id} proposal={shown} />}
+      </div>
+      <div className="side">
+        <AllProposals proposals={proposals} shown={shown?.id} />
+        <TrajectoryPanel />
+      </div>
+    </LivePage>
   );
 }
 

@@ -1,4 +1,5 @@
 import type { Motor, Proposal } from "../../api/client";
+import { NoticeText } from "../../design/NoticeText";
 import { Panel } from "../../design/Panel";
 import { entry } from "../../generated/catalog";
 import { noticeOfProposal } from "../../state/notice";
@@ -53,13 +54,7 @@ function ProposalItem({
         <StateChip state={proposal.state} />
       </span>
       <span className="proposal-words">
-        {refusal === null ? (
-          proposal.detail
-        ) : (
-          <>
-            {refusal.code}: {refusal.meaning} <span className="next-step">{refusal.nextStep}</span>
-          </>
-        )}
+        {refusal === null ? proposal.detail : <NoticeText lead="" notice={refusal} />}
         {refusal === null && proposal.verdict != null && proposal.verdict !== "ACCEPTED" && (
           <span className="next-step">{entry("verdict", proposal.verdict).next_step}</span>
         )}

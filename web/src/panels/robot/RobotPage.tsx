@@ -16,7 +16,7 @@ import { useConsole } from "../../state/store";
 import { BenchPanel } from "../bench/BenchPanel";
 import { BiopsyPanel } from "../biopsy/BiopsyPanel";
 import { CommunicationPanel } from "../communication/CommunicationPanel";
-import { Cover } from "../cover/Cover";
+import { LivePage } from "../cover/LivePage";
 import { LogPanel } from "../log/LogPanel";
 import { MotorsPanel } from "../motors/MotorsPanel";
 import { NavigationPanel } from "../navigation/NavigationPanel";
@@ -39,7 +39,6 @@ const moves: readonly Move[] = ["up", "down", "across"];
 
 /** The panels, where the user wants them. */
 export function RobotPage({ user }: { readonly user: string }) {
-  const level = useConsole((state) => state.freshness.level);
   const arranging = useConsole((state) => state.arranging);
   const takesBiopsies = useConsole((state) => state.robot?.modes.includes("cooperative_biopsy") ?? false);
   const simulated = useConsole((state) => state.frame?.simulated ?? false);
@@ -77,12 +76,9 @@ export function RobotPage({ user }: { readonly user: string }) {
     );
   };
   return (
-    <main className="stage" data-level={level}>
-      <div className="panels" inert={level === "covered"}>
-        <div className="main-column">{layout.main.filter((name) => shown.includes(name)).map(place)}</div>
-        <div className="side">{layout.side.filter((name) => shown.includes(name)).map(place)}</div>
-      </div>
-      <Cover />
-    </main>
+    <LivePage>
+      <div className="main-column">{layout.main.filter((name) => shown.includes(name)).map(place)}</div>
+      <div className="side">{layout.side.filter((name) => shown.includes(name)).map(place)}</div>
+    </LivePage>
   );
 }

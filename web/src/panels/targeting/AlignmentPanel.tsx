@@ -1,10 +1,11 @@
 import { useState } from "react";
 import { type Alignment, type AlignmentView, api, type Motor, type ProposalDraft } from "../../api/client";
+import { CodeLink } from "../../design/CodeLink";
 import { CommandButton } from "../../design/CommandButton";
 import { NoticeText } from "../../design/NoticeText";
 import { Panel } from "../../design/Panel";
 import { abort } from "../../state/commands";
-import { type Notice, noticeOfProblem } from "../../state/notice";
+import { isVerdict, type Notice, noticeOfProblem } from "../../state/notice";
 import { isOpen, openPath } from "../../state/proposals";
 import { useConsole } from "../../state/store";
 import type { Asked } from "../../state/usePolled";
@@ -152,7 +153,8 @@ function Hindrances({ alignment }: { readonly alignment: Alignment }) {
     <ul className="hindrances" aria-label="Why it would be refused now">
       {found.map(({ code, text }) => (
         <li key={code}>
-          <i aria-hidden="true">▲</i> Would be refused now, <strong>{code}</strong>: {text}
+          <i aria-hidden="true">▲</i> Would be refused now,{" "}
+          <strong>{isVerdict(code) ? <CodeLink family="verdict" code={code} /> : code}</strong>: {text}
         </li>
       ))}
     </ul>

@@ -1,8 +1,7 @@
 import { api } from "../../api/client";
 import { NoticeText } from "../../design/NoticeText";
-import { useConsole } from "../../state/store";
 import { usePolled } from "../../state/usePolled";
-import { Cover } from "../cover/Cover";
+import { LivePage } from "../cover/LivePage";
 import { AimPanel } from "./AimPanel";
 import { AlignmentPanel } from "./AlignmentPanel";
 import { HistoryPanel } from "./HistoryPanel";
@@ -16,14 +15,10 @@ const HISTORY_EVERY_MS = 1000;
 
 /** Where the robot is in the scanner, where it is to go, what that asks of it, and who said so. */
 export default function TargetingPage() {
-  const level = useConsole((state) => state.freshness.level);
   return (
-    <main className="stage" data-level={level}>
-      <div className="panels targeting-page" inert={level === "covered"}>
-        <Panels />
-      </div>
-      <Cover />
-    </main>
+    <LivePage className="targeting-page">
+      <Panels />
+    </LivePage>
   );
 }
 

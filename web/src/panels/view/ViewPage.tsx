@@ -7,7 +7,7 @@ import { isOpen } from "../../state/proposals";
 import { proposalHash, useProposalPlace } from "../../state/route";
 import { useConsole } from "../../state/store";
 import { usePolled } from "../../state/usePolled";
-import { Cover } from "../cover/Cover";
+import { LivePage } from "../cover/LivePage";
 import { usePlan } from "../proposals/usePlan";
 import { type Preset, presets } from "./cameras";
 import { type Cells, cellsOf, distance, type Scene, sceneOf, wayOf, wordsOf, wordsOfCells } from "./scene";
@@ -19,14 +19,10 @@ const TARGETING_EVERY_MS = 1000;
 
 /** Robot frame, probe, entry and target where they are in the scanner. */
 export default function ViewPage() {
-  const level = useConsole((state) => state.freshness.level);
   return (
-    <div className="stage">
-      <main className="panels view-page" data-level={level} inert={level === "covered"}>
-        <ViewPanel />
-      </main>
-      <Cover />
-    </div>
+    <LivePage className="view-page">
+      <ViewPanel />
+    </LivePage>
   );
 }
 

@@ -3,6 +3,7 @@ import {
   AmbientLight,
   BoxGeometry,
   BufferGeometry,
+  CanvasTexture,
   Color,
   ConeGeometry,
   CylinderGeometry,
@@ -22,6 +23,8 @@ import {
   Quaternion,
   Scene as Scene3d,
   SphereGeometry,
+  Sprite,
+  SpriteMaterial,
   Vector3,
   WebGLRenderer,
 } from "three";
@@ -54,8 +57,10 @@ export interface Inks {
   readonly reach: string;
 }
 
-/** X red, Y green, Z blue in every viewer of the field; the ends have letters beside the canvas. */
+/** X red, Y green, Z blue in every viewer of the field; who does not tell the colours apart reads the letters. */
 const AXIS_COLOURS = ["#c8443a", "#3d8f4f", "#3f74d1"] as const;
+const AXIS_LETTERS = ["x", "y", "z"] as const;
+const LETTER_PX = 64;
 const PROBE_RADIUS_MM = 1.2;
 const MARK_RADIUS_MM = 3;
 /** Thickness is no part of the model: what a part is, is seen by it. */
@@ -189,11 +194,40 @@ function axesOf({ pose, lengthMm }: Axes): Object3D {
     );
     tip.position.set(...end);
     tip.quaternion.setFromUnitVectors(UP, new Vector3(...end).normalize());
-    group.add(tip);
+    group.add(tip, letterAt(axis, new Vector3(...end).multiplyScalar(1.16), lengthMm / 5));
   });
   const [m = [], n = [], o = [], p = []] = [0, 4, 8, 12].map((row) => pose.slice(row, row + 4));
   group.applyMatrix4(new Matrix4().fromArray([...m, ...n, ...o, ...p]).transpose());
   return group;
+}
+
+/** The letter of an axis, which faces whoever looks. */
+function letterAt(axis: number, at: Vector3, sizeMm: number): Object3D {
+  const letter = new Sprite(new SpriteMaterial({ map: letterOf(axis), depthTest: false }));
+  letter.position.copy(at);
+  letter.scale.setScalar(sizeMm);
+  return letter;
+}
+
+const letters = new Map<number, CanvasTexture>();
+
+/** Drawn once: the scene is made anew with each pose. */
+function letterOf(axis: number): CanvasTexture {
+  const known = letters.get(axis);
+  if (known !== undefined) return known;
+  const canvas = document.createElement("canvas");
+  canvas.width = canvas.height = LETTER_PX;
+  const brush = canvas.getContext("2d");
+  if (brush !== null) {
+    brush.font = `bold ${LETTER_PX}px sans-serif`;
+    brush.textAlign = "center";
+    brush.textBaseline = "middle";
+    brush.fillStyle = AXIS_COLOURS[axis] ?? "";
+    brush.fillText(AXIS_LETTERS[axis] ?? "", LETTER_PX / 2, LETTER_PX / 2);
+  }
+  const drawn = new CanvasTexture(canvas);
+  letters.set(axis, drawn);
+  return drawn;
 }
 
 function probeOf({ kind, cannula, treatment, tip }: Probe, inks: Inks): Object3D {
@@ -288,6 +322,6 @@ function release(group: Group): void {
     if (each instanceof Mesh || each instanceof Line || each instanceof Points) {
       each.geometry.dispose();
       each.material.dispose();
-    }
+    } else if (each instanceof Sprite) each.material.dispose();
   });
 }
