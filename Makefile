@@ -128,7 +128,7 @@ campaign: build ## Throw faults at kernel core and plant: [SECONDS=300 | TICKS=]
 	  $(if $(SCHEDULER),--scheduler $(SCHEDULER))
 
 campaign-selftest: setup ## Show that the campaign finds each seeded fault of the kernel within a minute
-	@python verification/campaign/selftest.py
+	@$(measure) campaign_selftest python verification/campaign/selftest.py
 
 .PHONY: scenarios
 scenarios: build ## Kill, freeze, starve and flood the real processes, 200 times: [SEED=1] [COUNT=200] [ONLY=number]

@@ -114,6 +114,8 @@ void add_record(CLI::App& cli, RecordOptions& options) {
   command->add_option("--robot", options.place.robot, "Name of a robot, or its file")->capture_default_str();
   command->add_option("--state", options.place.state,
                       "State directory; default $XDG_STATE_HOME/interlock/ROBOT");
+  command->add_option("--black-box", options.black_box,
+                      "Black box of a kernel that runs as a service, such as /dev/shm/interlock.ring");
   command->add_option("--seconds", options.seconds, "Time that is wanted of it")
       ->check(CLI::Range(1, 3600))
       ->capture_default_str();

@@ -11,21 +11,41 @@ namespace interlock::cli {
 
 namespace fs = std::filesystem;
 
-Result<void> record(const RecordOptions& options, const Installation& installation, std::ostream& output) {
-  const Result<fs::path> state = state_of(options.place, installation);
-  if (!state) {
-    return tl::unexpected(state.error());
+namespace {
+
+struct Place {
+  fs::path black_box;
+  fs::path recordings; /**< folder */
+};
+
+/** Of `interlock run`, unless another black box was named. */
+Result<Place> place_of(const RecordOptions& options, const Installation& installation) {
+  if (!options.black_box.empty()) {
+    return Place{options.black_box, fs::path()};
   }
-  const recorder::Recorded<recorder::Ring> ring = recorder::Ring::open(black_box_file(*state));
+  return state_of(options.place, installation).map([](const fs::path& state) {
+    return Place{black_box_file(state), recordings_folder(state)};
+  });
+}
+
+}  // namespace
+
+Result<void> record(const RecordOptions& options, const Installation& installation, std::ostream& output) {
+  const Result<Place> place = place_of(options, installation);
+  if (!place) {
+    return tl::unexpected(place.error());
+  }
+  const recorder::Recorded<recorder::Ring> ring = recorder::Ring::open(place->black_box);
   if (!ring) {
-    return failed(
-        ExitCode::precondition,
-        ring.error() + "; start the robot with `interlock run`, or choose another --robot or --state");
+    return failed(ExitCode::precondition,
+                  ring.error() +
+                      "; start the robot with `interlock run`, choose another --robot or --state, or be the "
+                      "user of the kernel whose --black-box it is");
   }
   const std::uint32_t tick = ring->opening_tick(ring->head()).value_or(0);
   const fs::path file =
       options.file.empty()
-          ? recordings_folder(*state) / recorder::recording_name(ring->run(), ILK_RECORDED_ON_DEMAND, tick)
+          ? place->recordings / recorder::recording_name(ring->run(), ILK_RECORDED_ON_DEMAND, tick)
           : options.file;
   std::error_code error;
   fs::create_directories(fs::absolute(file).parent_path(), error);

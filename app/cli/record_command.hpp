@@ -15,7 +15,8 @@ namespace interlock::cli {
 
 struct RecordOptions {
   StorePlace place;
-  std::filesystem::path file; /**< empty: a new one among the robot's recordings */
+  std::filesystem::path black_box; /**< empty: that of `interlock run` with this robot and state */
+  std::filesystem::path file; /**< empty: a new one among the robot's recordings, or here with `black_box` */
   std::uint32_t seconds = 60; /**< of kernel time */
 };
 

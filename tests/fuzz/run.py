@@ -53,7 +53,7 @@ def run(fuzzer: str, limit: str, log: Path) -> Result:
     program = build(fuzzer)
     found = OUT / "found" / fuzzer
     found.mkdir(parents=True, exist_ok=True)
-    command = [str(program), limit, "-max_len=8192", "-seed=1", "-timeout=5", "-print_final_stats=1"]
+    command = [str(program), limit, "-max_len=2048", "-seed=1", "-timeout=5", "-print_final_stats=1"]
     command += [f"-artifact_prefix={OUT}/{fuzzer}-", str(found), str(ROOT / "tests/fuzz/corpus" / fuzzer)]
     begun = time.monotonic()
     with log.open("w") as output:

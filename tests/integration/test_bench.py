@@ -122,7 +122,7 @@ def full_figures(bench_run: object) -> dict[str, float]:
     schema = json.loads(bench_run.SCHEMA.read_text())
     named = dict.fromkeys(schema["properties"]["figures"]["required"], 1.0)
     edges = {"reaction_edges": bench_run.EDGES, "reaction_edges_timed": bench_run.EDGES}
-    return named | dict.fromkeys(bench_run.LIMITS, 0) | edges
+    return named | dict.fromkeys(bench_run.LIMITS, 0) | edges | {"rate_seconds": bench_run.RATE_S}
 
 
 def test_a_record_without_a_figure_that_the_ladder_names_is_refused(bench_run: object) -> None:
@@ -140,6 +140,7 @@ def test_a_figure_above_its_limit_fails_the_run_and_a_short_run_is_bounded(bench
     assert bench_run.status_of(figures, 300) == "PASSED"
     assert bench_run.status_of(figures, 299) == "BOUNDED"
     assert bench_run.status_of(figures | {"reaction_edges_timed": 9_999}, 300) == "BOUNDED"
+    assert bench_run.status_of(figures | {"rate_seconds": 59}, 300) == "BOUNDED"
     for name, limit in bench_run.LIMITS.items():
         assert bench_run.status_of(figures | {name: limit}, 300) == "PASSED"
         assert bench_run.status_of(figures | {name: limit + 1}, 10) == "FAILED"

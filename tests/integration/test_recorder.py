@@ -216,6 +216,21 @@ def test_on_demand_with_table_and_plot(stack: StackFactory, short_tmp_path: Path
     assert interlock("record", "--state", robot.state, "-o", file).returncode == 3
 
 
+def test_a_black_box_of_a_service_is_written_out_by_its_name(
+    recorded: RecordedKernelFactory, short_tmp_path: Path
+) -> None:
+    kernel = recorded()
+    kernel.app.run(300)
+    file = short_tmp_path / "now.ilkr"
+    done = interlock("record", "--black-box", kernel.ring, "-o", file)
+    assert done.returncode == 0, done.stderr
+    _, last = replayed_ticks(file)
+    assert last >= 300
+    missing = interlock("record", "--black-box", short_tmp_path / "no.ring", "-o", short_tmp_path / "x.ilkr")
+    assert missing.returncode == 3
+    assert "no.ring" in missing.stderr
+
+
 def test_killed_run_is_rescued_by_the_next_one(short_tmp_path: Path) -> None:
     arguments = ["--robot", "neuro", "--clock", "real", "--seed", "1"]
     killed = Stack(short_tmp_path, *arguments)

@@ -11,6 +11,7 @@ namespace {
 
 namespace command = plant::command;
 
+constexpr std::uint32_t kPairTicks = 4; /**< in which two faults that begin are a pair */
 constexpr std::uint32_t kEdgeTicks = 2; /**< from a contact or a frame to zero drive on the wire */
 
 std::int32_t signed_amount(const Fault& fault, std::uint32_t most) {
@@ -67,9 +68,24 @@ void World::note_swept_tick(FaultKind kind) {
   }
 }
 
+/** Bits of the configuration come in their order and not by chance: they are no part of a pair. */
+void World::note_pairs(FaultKind kind) {
+  if (kind == FaultKind::kConfigBitFlips) {
+    return;
+  }
+  std::erase_if(newest_faults_, [this](const auto& each) { return tick_ - each.first >= kPairTicks; });
+  for (const auto& [tick, other] : newest_faults_) {
+    const auto lower = static_cast<std::size_t>(std::min(kind, other));
+    const auto higher = static_cast<std::size_t>(std::max(kind, other));
+    totals_.kind_pairs.set(lower * kFaultKinds + higher);
+  }
+  newest_faults_.emplace_back(tick_, kind);
+}
+
 void World::inject(const Fault& fault) {
   totals_.faults_injected++;
   note_swept_tick(fault.kind);
+  note_pairs(fault.kind);
   totals_.faults_by_kind[static_cast<std::size_t>(fault.kind)]++;
   switch (fault.kind) {
     case FaultKind::kPedalReleased:

@@ -52,6 +52,8 @@ enum class FaultKind : std::uint8_t {
 };
 
 inline constexpr std::size_t kFaultKinds = static_cast<std::size_t>(FaultKind::kConfigBitFlips) + 1;
+/** Pairs of kinds that are drawn, a kind with itself among them. Bits of the configuration are not drawn. */
+inline constexpr std::size_t kKindPairs = (kFaultKinds - 1) * kFaultKinds / 2;
 
 inline constexpr std::size_t kStateBits = sizeof(ilk_state_t) * 8;
 inline constexpr std::size_t kConfigBits = sizeof(ilk_config_t) * 8;

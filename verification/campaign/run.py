@@ -54,18 +54,20 @@ SWEEPS = {
     "pedal_ticks": "pedal_ticks_swept",
 }
 """What a full run comes to all of: a set of bits in the program's totals, and the figure that counts it."""
+COUNTED = {"config_bits_driven": "config_bits_flipped_driven", "kind_pairs": "kind_pairs_seen"}
+"""Sets of which chance decides how much of them a run comes to."""
 SUPPORTS = (*(f"P{number}" for number in range(1, 15)), "P16")
 
 
 def merge(parts: list[dict]) -> dict[str, float]:
     """Totals of all processes; what each sweep came to at least once, and what there is to come to."""
     figures: dict[str, float] = {key: sum(part[key] for part in parts) for key in SUMMED}
-    for key, name in (*SWEEPS.items(), ("config_bits_driven", "config_bits_flipped_driven")):
+    for key, name in (*SWEEPS.items(), *COUNTED.items()):
         seen = 0
         for part in parts:
             seen |= int(part[key], 16)
         figures[name] = seen.bit_count()
-    for key in SWEEPS:
+    for key in (*SWEEPS, "kind_pairs"):
         figures[key] = parts[0]["sizes"][key]
     processor_s = sum(part["processor_s"] for part in parts)
     figures["processor_s"] = round(processor_s, 1)

@@ -34,18 +34,22 @@ Outcome run(const Case& plan) {
   return outcome;
 }
 
-Case shrink(const Case& plan, const Failure& failure) {
+Case shrink(const Case& plan, const Failure& failure, const std::function<Outcome(const Case&)>& run_case) {
   Case best = plan;
   end_at(best, failure.tick);
   std::uint32_t runs_left = kMostRuns;
-  for (std::size_t size = std::max<std::size_t>(best.faults.size() / 2, 1); size > 0; size /= 2) {
+  bool removed = false;
+  for (std::size_t size = std::max<std::size_t>(best.faults.size() / 2, 1); size > 0;
+       size = size == 1 && removed ? 1 : size / 2) {
+    removed = false;
     for (std::size_t first = 0; first < best.faults.size() && runs_left > 0; runs_left--) {
       Case less = without(best, first, std::min(size, best.faults.size() - first));
-      const Outcome outcome = run(less);
+      const Outcome outcome = run_case(less);
       if (outcome.failure && outcome.failure->property == failure.property &&
           outcome.failure->reason == failure.reason) {
         end_at(less, outcome.failure->tick);
         best = std::move(less);
+        removed = true;
       } else {
         first += size;
       }

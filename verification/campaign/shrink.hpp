@@ -5,6 +5,7 @@
 #ifndef INTERLOCK_CAMPAIGN_SHRINK_HPP
 #define INTERLOCK_CAMPAIGN_SHRINK_HPP
 
+#include <functional>
 #include <optional>
 
 #include "plan.hpp"
@@ -19,10 +20,11 @@ struct Outcome {
 
 Outcome run(const Case& plan);
 
-/** The same failure, for the same reason, with as few faults and ticks as removing them shows; nothing is
- * added.
+/** The same failure, for the same reason, in a case from which no fault can be taken away any more, unless
+ * 300 runs of `run_case` were not enough for that. Nothing is added.
  */
-Case shrink(const Case& plan, const Failure& failure);
+Case shrink(const Case& plan, const Failure& failure,
+            const std::function<Outcome(const Case&)>& run_case = run);
 
 }  // namespace interlock::campaign
 

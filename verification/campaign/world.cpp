@@ -81,6 +81,7 @@ void Totals::add(const Totals& other) {
   std::ranges::transform(faults_by_kind, other.faults_by_kind, faults_by_kind.begin(), std::plus{});
   std::ranges::transform(axis_faults, other.axis_faults, axis_faults.begin(), std::plus{});
   std::ranges::transform(causes, other.causes, causes.begin(), std::plus{});
+  kind_pairs |= other.kind_pairs;
   state_bits |= other.state_bits;
   config_bits |= other.config_bits;
   config_bits_driven |= other.config_bits_driven;

@@ -42,6 +42,8 @@ struct Totals {
   std::array<std::uint64_t, kFaultKinds> faults_by_kind{};
   std::array<std::uint64_t, ILK_FAULT_COUNT> axis_faults{};
   std::array<std::uint64_t, ILK_CAUSE_COUNT> causes{};
+  std::bitset<kFaultKinds * kFaultKinds>
+      kind_pairs; /**< that began within a few ticks, the lower kind first */
   std::bitset<kStateBits> state_bits;
   std::bitset<kConfigBits> config_bits;
   std::bitset<kConfigBits> config_bits_driven; /**< flipped while an axis was driven */
@@ -82,6 +84,7 @@ class World {
   bool is_due(const Fault& fault) const;
   void note_swept_tick(FaultKind kind);
   void inject(const Fault& fault);
+  void note_pairs(FaultKind kind);
   void inject_pedal(const Fault& fault);
   bool another_holds_the_pedal() const;
   void inject_card(const Fault& fault);
@@ -119,8 +122,9 @@ class World {
 
   std::uint32_t tick_ = 0;
   std::size_t next_fault_ = 0;
-  std::vector<Fault> waiting_;     /**< their tick is over, but not that of the press */
-  std::uint32_t driven_ticks_ = 0; /**< since MOTION was entered */
+  std::vector<Fault> waiting_; /**< their tick is over, but not that of the press */
+  std::vector<std::pair<std::uint32_t, FaultKind>> newest_faults_; /**< the last few ticks' */
+  std::uint32_t driven_ticks_ = 0;                                 /**< since MOTION was entered */
   bool is_driven_ = false;
   bool foot_was_down_ = false;
   std::uint32_t shown_generation_ = 0;

@@ -67,6 +67,68 @@ TEST(Campaign, Draws_every_kind_of_fault_alone_and_in_pairs) {
   EXPECT_TRUE(pairs);
 }
 
+TEST(Campaign, Counts_the_pairs_of_kinds_that_it_came_to) {
+  Case plan;
+  plan.seed = 7;
+  plan.ticks = 500;
+  plan.faults = {{400, FaultKind::kCardDeaf, 1, 2, 0, 0},
+                 {402, FaultKind::kAppFloods, 0, 2, 0, 0},
+                 {406, FaultKind::kEncoderJumps, 2, 1, 3, 0}};
+  const Totals totals = run(plan).totals;
+  EXPECT_EQ(totals.kind_pairs.count(), 1u);
+  const auto pair = static_cast<std::size_t>(FaultKind::kCardDeaf) * kFaultKinds +
+                    static_cast<std::size_t>(FaultKind::kAppFloods);
+  EXPECT_TRUE(totals.kind_pairs.test(pair));
+}
+
+/** A case that fails as soon as two kinds were there, the second of them after the first. */
+Outcome fails_by_two(const Case& plan) {
+  Outcome outcome;
+  bool deaf = false;
+  for (const Fault& fault : plan.faults) {
+    deaf = deaf || fault.kind == FaultKind::kCardDeaf;
+    if (deaf && fault.kind == FaultKind::kAppFloods) {
+      outcome.failure = Failure{fault.tick + 3, 1, 2, "driven"};
+      return outcome;
+    }
+  }
+  return outcome;
+}
+
+TEST(Campaign, Shrinks_a_failing_case_to_the_faults_that_it_needs) {
+  Case plan = make_case(7, 1);
+  plan.faults.push_back({plan.ticks - 20, FaultKind::kCardDeaf, 1, 2, 0, 0});
+  plan.faults.push_back({plan.ticks - 10, FaultKind::kAppFloods, 0, 2, 0, 0});
+  const Outcome before = fails_by_two(plan);
+  ASSERT_TRUE(before.failure);
+  int runs = 0;
+  const Case small = shrink(plan, *before.failure, [&](const Case& each) {
+    runs++;
+    return fails_by_two(each);
+  });
+  ASSERT_EQ(small.faults.size(), 2u);
+  EXPECT_EQ(small.faults[0].kind, FaultKind::kCardDeaf);
+  EXPECT_EQ(small.faults[1].kind, FaultKind::kAppFloods);
+  EXPECT_EQ(small.ticks, small.faults[1].tick + 4);
+  EXPECT_LE(runs, 300);
+  std::stringstream text;
+  write_case(text, small);
+  const auto again = read_case(text);
+  ASSERT_TRUE(again) << again.error();
+  EXPECT_TRUE(fails_by_two(*again).failure);
+}
+
+TEST(Campaign, Shrinking_takes_a_failure_of_another_kind_for_none) {
+  Case plan = make_case(7, 1);
+  const Failure late{plan.ticks - 1, 0, 2, "late"};
+  const Case same = shrink(plan, late, [](const Case& each) {
+    Outcome outcome;
+    outcome.failure = Failure{each.ticks - 1, 3, 2, "driven"};
+    return outcome;
+  });
+  EXPECT_EQ(same.faults.size(), plan.faults.size());
+}
+
 TEST(Campaign, P2_cases_one_after_the_other_sweep_stops_over_each_tick_of_a_move) {
   std::map<FaultKind, std::set<std::uint32_t>> ticks;
   for (std::uint64_t number = 0; number < 3125; number++) {
