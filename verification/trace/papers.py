@@ -375,22 +375,62 @@ def counted(results: str) -> str:
     return f"{number} result{'' if number == 1 else 's'}"
 
 
-def matrix_table(source: Source) -> str:
-    lines = [
-        (
-            f"{escape(row.hazard)}<br><small>{escape(row.severity)}</small>",
-            escape(row.cause),
-            escape(row.control),
-            escape(row.system_requirement),
-            f"{escape(row.requirement)}<br><small>{escape(row.text_hash)}</small>",
-            f"<small>{escape(row.code)}</small>",
-            f"{status(row.status)}<br><small>{counted(row.results)}</small>",
-            escape(row.anomalies),
+def matrix_ways(source: Source) -> str:
+    """Each hazard with its harm and risk, and under it a line for each way from a cause to a requirement."""
+    parts = []
+    for _, ways in groupby(rows(source.trace), key=lambda row: row.hazard):
+        found = list(ways)
+        hazard = found[0]
+        facts = (
+            ("harm", hazard.harm),
+            ("severity", hazard.severity),
+            ("situation", hazard.situation),
+            ("initial risk", hazard.initial_risk),
+            ("residual risk", hazard.residual),
         )
-        for row in rows(source.trace)
-    ]
-    head = ("hazard", "cause", "control", "system requirement", "requirement", "code", "status", "anomalies")
-    return table(head, lines, "matrix")
+        lines = [
+            (
+                f"{escape(row.cause)}<br><small>{escape(row.cause_item)}, {escape(row.cause_kind)}</small>",
+                f"{escape(row.control)}<br><small>{escape(row.control_kind)}</small>",
+                escape(row.system_requirement),
+                f"{escape(row.requirement)}<br><small>{escape(row.text_hash)}</small>",
+                escape(row.item),
+                f"{status(row.status)}<br><small>{counted(row.results)}</small>",
+                escape(row.anomalies),
+            )
+            for row in found
+        ]
+        head = ("cause", "control", "system requirement", "requirement, hash of its text", "item", "status")
+        parts.append(f"<h2>{escape(hazard.hazard)}</h2>{facts_of(facts)}")
+        parts.append(table((*head, "anomalies"), lines, "matrix"))
+    return "".join(parts)
+
+
+def matrix_requirements(source: Source) -> str:
+    """Each requirement of the matrix once, with everything that its ways have in common."""
+    once = {row.requirement: row for row in rows(source.trace)}
+    blocks = []
+    for requirement, row in sorted(once.items()):
+        facts = (
+            ("properties", row.properties),
+            ("design", row.design),
+            ("code", row.code),
+            ("methods", row.methods),
+            ("verification", row.verification),
+            ("results", row.results),
+            ("bounds", row.bounds),
+            ("tools", row.tools),
+            ("dates", row.dates),
+            ("commits", row.commits),
+        )
+        blocks.append(f'<div class="unit"><h3>{escape(requirement)}</h3>{facts_of(facts)}</div>')
+    return "".join(blocks)
+
+
+def facts_of(facts: Sequence[tuple[str, str]]) -> str:
+    """Names and values, those without a value left out."""
+    lines = [f"<tr><th>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in facts if value]
+    return f'<table class="fields facts">{"".join(lines)}</table>'
 
 
 TABLES: Mapping[str, tuple[str, Callable[[Source], str]]] = {
@@ -413,7 +453,8 @@ TABLES: Mapping[str, tuple[str, Callable[[Source], str]]] = {
     "findings": ("Findings of the gate", findings),
     "clauses": ("Clauses", clauses),
     "negative lists": ("What must be empty at a release", lists_of_negatives),
-    "matrix": ("Matrix", matrix_table),
+    "matrix": ("Matrix", matrix_ways),
+    "matrix requirements": ("What each requirement of the matrix rests on", matrix_requirements),
 }
 """Chapters that are made, by their name in papers.toml: title and maker."""
 
