@@ -5,6 +5,7 @@ import schemathesis
 from hypothesis import HealthCheck, given, settings
 from interface import spec
 from schemathesis.checks import load_all_checks
+from schemathesis.generation import GenerationMode
 from schemathesis.specs.openapi.checks import (
     content_type_conformance,
     response_schema_conformance,
@@ -40,8 +41,24 @@ OPERATIONS = [
 ]
 
 
+def takes_anything(operation: schemathesis.APIOperation) -> bool:
+    """Whether there is something in it that can be wrong; in a path any text is right, or the path of nothing."""
+    return bool(list(operation.body) or list(operation.query))
+
+
 @pytest.mark.parametrize("operation", OPERATIONS)
 def test_every_answer_is_described(robot: Stack, operation: schemathesis.APIOperation) -> None:
+    ask_at_random(robot, operation, GenerationMode.POSITIVE)
+
+
+@pytest.mark.parametrize("operation", [each for each in OPERATIONS if takes_anything(each.values[0])])
+def test_every_answer_to_what_does_not_fit_is_described(
+    robot: Stack, operation: schemathesis.APIOperation
+) -> None:
+    ask_at_random(robot, operation, GenerationMode.NEGATIVE)
+
+
+def ask_at_random(robot: Stack, operation: schemathesis.APIOperation, mode: GenerationMode) -> None:
     cookie = "; ".join(f"{name}={value}" for name, value in robot.api.cookies.items())
 
     @settings(
@@ -51,7 +68,7 @@ def test_every_answer_is_described(robot: Stack, operation: schemathesis.APIOper
         database=None,
         suppress_health_check=list(HealthCheck),
     )
-    @given(case=operation.as_strategy())
+    @given(case=operation.as_strategy(mode))
     def ask(case: schemathesis.Case) -> None:
         response = case.call(base_url=robot.url, headers={"Cookie": cookie})
         assert response.status_code < 500, response.text
