@@ -42,7 +42,7 @@ OPERATIONS = [
 
 
 def takes_anything(operation: schemathesis.APIOperation) -> bool:
-    """Whether there is something in it that can be wrong; in a path any text is right, or the path of nothing."""
+    """Whether there is something in it that can be wrong; in a path any text is right or nothing."""
     return bool(list(operation.body) or list(operation.query))
 
 
