@@ -7,7 +7,9 @@ const LARGEST_FIRST_LOAD_BYTES = 400_000;
 
 test("the first load is light, and asks nothing of any other computer", async ({ page, stack }) => {
   const { files, compressedBytes, foreign } = await firstLoad(page, stack);
-  expect(files.filter((file) => file.endsWith(".js"))).not.toEqual([]);
+  const scripts = files.filter((file) => file.endsWith(".js"));
+  expect(scripts.some((file) => file.startsWith("/assets/index-"))).toBe(true);
+  expect(scripts.filter((file) => /\/(View|Plots|Proposals|Targeting)Page-/.test(file))).toEqual([]);
   expect(files.filter((file) => file.endsWith(".wasm"))).toHaveLength(1);
   expect(foreign).toEqual([]);
   expect(compressedBytes).toBeLessThanOrEqual(LARGEST_FIRST_LOAD_BYTES);

@@ -4,9 +4,6 @@ import { expect, type Page } from "@playwright/test";
 import { ConsolePage } from "./console_page";
 import type { Stack } from "./stack";
 
-/** Parts that are loaded when they are first shown. */
-const later = /three|scene|3d/i;
-
 export interface FirstLoad {
   readonly files: readonly string[];
   readonly bytes: number;
@@ -29,7 +26,7 @@ export async function firstLoad(page: Page, stack: Stack): Promise<FirstLoad> {
   });
   page.on("response", (response) => {
     const { pathname } = new URL(response.url());
-    if (!pathname.startsWith("/api/") && !later.test(pathname)) fetched.set(pathname, response.body());
+    if (!pathname.startsWith("/api/")) fetched.set(pathname, response.body());
   });
   const kernel = page.waitForEvent("response", (response) => response.url().endsWith(".wasm"));
   await page.goto(stack.url);
