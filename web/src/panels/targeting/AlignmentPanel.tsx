@@ -4,6 +4,7 @@ import { CodeLink } from "../../design/CodeLink";
 import { CommandButton } from "../../design/CommandButton";
 import { NoticeText } from "../../design/NoticeText";
 import { Panel } from "../../design/Panel";
+import { useKernel } from "../../kernel/useKernel";
 import { abort } from "../../state/commands";
 import { isVerdict, type Notice, noticeOfProblem } from "../../state/notice";
 import { isOpen, openPath } from "../../state/proposals";
@@ -143,11 +144,15 @@ function Propose({ alignment }: { readonly alignment: Alignment | null }) {
   );
 }
 
-/** Why the proposal would be refused now, before anything is sent. */
+/** Why the proposal would be refused now, by the kernel in the page, before anything is sent. */
 function Hindrances({ alignment }: { readonly alignment: Alignment }) {
   const motors = useConsole((state) => state.motors);
   const frame = useConsole((state) => state.frame);
-  const found = hindrances(axisLines(alignment, motors), (slot) => frame?.axes[slot], frame?.mode);
+  const lines = axisLines(alignment, motors);
+  const verdicts = useKernel((kernel) =>
+    lines.map(({ motor, counts }) => kernel.foreseeMove(motor.slot, counts).verdict),
+  );
+  const found = hindrances(lines, verdicts, (slot) => frame?.axes[slot]?.homed ?? false);
   if (found.length === 0) return null;
   return (
     <ul className="hindrances" aria-label="Why it would be refused now">

@@ -23,24 +23,24 @@ describe("axisLines", () => {
 });
 
 describe("hindrances", () => {
-  const ready = { state: "ENABLED", homed: true } as const;
-
-  it("are none when every axis is enabled and homed", () => {
-    expect(hindrances(lines, () => ready, "READY")).toEqual([]);
+  it("are none when the kernel would accept every axis and all are homed", () => {
+    expect(hindrances(lines, ["ACCEPTED", "ACCEPTED"], () => true)).toEqual([]);
   });
 
-  it("name the lock and the axes, of those that take part alone", () => {
-    const states = [
-      { state: "DISABLED", homed: true } as const,
-      ready,
-      { state: "FAULTED", homed: false } as const,
-    ];
-    const axisAt = (slot: number) => (slot === 0 ? states[0] : slot === 2 ? states[2] : undefined);
-    expect(hindrances(lines, axisAt, "LOCKED").map(({ code, text }) => `${code}: ${text}`)).toEqual([
-      "MODE: the system is locked. Unlock it.",
-      "FAULTED: Lateral. Clear the fault.",
-      "DISABLED: Yaw. Enable.",
+  it("name what the kernel would answer, with the axes and the next step, and who is not homed", () => {
+    const found = hindrances(lines, ["DISABLED", "DISABLED"], (slot) => slot === 0);
+    expect(found.map(({ code, text }) => `${code}: ${text}`)).toEqual([
+      "DISABLED: Yaw, Lateral. Enable the axis.",
       "NOT_HOMED: Lateral. Home.",
     ]);
+  });
+
+  it("tell axes apart that the kernel would answer otherwise", () => {
+    const found = hindrances(lines, ["RANGE", "FAULTED"], () => true);
+    expect(found.map(({ code }) => code)).toEqual(["RANGE", "FAULTED"]);
+  });
+
+  it("say nothing in the name of a kernel that cannot be asked", () => {
+    expect(hindrances(lines, null, () => true)).toEqual([]);
   });
 });

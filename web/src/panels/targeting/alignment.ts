@@ -1,6 +1,6 @@
 /** What an alignment asks of each axis, and what stands against it now. */
 import type { Alignment, Motor } from "../../api/client";
-import type { AxisFrame, Glance } from "../../stream/decode";
+import { type CodeName, entry } from "../../generated/catalog";
 
 export interface AxisLine {
   readonly motor: Motor;
@@ -25,29 +25,26 @@ export interface Hindrance {
   readonly text: string;
 }
 
-/** Why a proposal of these axes would be refused now, whatever the target. The app names the first. */
+/**
+ * Why a proposal of these axes would be refused now. `verdicts`: the kernel's on a move of each to its setpoint, null when
+ * it cannot be asked. That an axis has to be homed is a rule of the app.
+ */
 export function hindrances(
   lines: readonly AxisLine[],
-  axisAt: (slot: number) => Pick<AxisFrame, "state" | "homed"> | undefined,
-  mode: Glance["mode"] | undefined,
+  verdicts: readonly CodeName<"verdict">[] | null,
+  isHomed: (slot: number) => boolean,
 ): Hindrance[] {
-  const which = (is: (axis: Pick<AxisFrame, "state" | "homed">) => boolean): string =>
-    lines
-      .filter(({ motor }) => {
-        const axis = axisAt(motor.slot);
-        return axis !== undefined && is(axis);
-      })
-      .map(({ motor }) => motor.title)
-      .join(", ");
-  const faulted = which(({ state }) => state === "FAULTED");
-  const homing = which(({ state }) => state === "HOMING");
-  const disabled = which(({ state }) => state === "DISABLED");
-  const unhomed = which(({ homed }) => !homed);
-  return [
-    ...(mode === "LOCKED" ? [{ code: "MODE", text: "the system is locked. Unlock it." }] : []),
-    ...(faulted === "" ? [] : [{ code: "FAULTED", text: `${faulted}. Clear the fault.` }]),
-    ...(homing === "" ? [] : [{ code: "BUSY", text: `homing: ${homing}. Wait, or abort it.` }]),
-    ...(disabled === "" ? [] : [{ code: "DISABLED", text: `${disabled}. Enable.` }]),
-    ...(unhomed === "" ? [] : [{ code: "NOT_HOMED", text: `${unhomed}. Home.` }]),
-  ];
+  const titlesOf = new Map<CodeName<"verdict">, string[]>();
+  lines.forEach(({ motor }, index) => {
+    const verdict = verdicts?.[index] ?? "ACCEPTED";
+    if (verdict !== "ACCEPTED") titlesOf.set(verdict, [...(titlesOf.get(verdict) ?? []), motor.title]);
+  });
+  const refused = [...titlesOf].map(([code, titles]) => ({
+    code,
+    text: `${titles.join(", ")}. ${entry("verdict", code).next_step}`,
+  }));
+  const unhomed = lines.filter(({ motor }) => !isHomed(motor.slot)).map(({ motor }) => motor.title);
+  return unhomed.length === 0
+    ? refused
+    : [...refused, { code: "NOT_HOMED", text: `${unhomed.join(", ")}. Home.` }];
 }
