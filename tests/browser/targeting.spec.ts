@@ -114,6 +114,23 @@ test("what is edited is not overwritten by what arrives, and nothing is sent tha
   expect(sent).toHaveLength(3);
 });
 
+test("poses that are not told any more are greyed though the stream lives", async ({ robot, page }) => {
+  await robot.unlockRobot();
+  await robot.open("Targeting");
+  const poses = robot.panel("Poses of the treatment point");
+  await expect(poses.getByText("live", { exact: true })).toBeVisible();
+  await expect(poses).not.toHaveAttribute("data-late");
+  // The app goes on, and never answers this question again.
+  await page.route("**/api/targeting/alignment", () => undefined);
+  await expect(poses).toHaveAttribute("data-late", "true");
+  await expect(poses.getByText(/stale · \d/)).toBeVisible();
+  const filters = await poses
+    .locator(":scope > :not(.panel-head)")
+    .evaluateAll((parts) => parts.map((part) => getComputedStyle(part).filter));
+  expect(new Set(filters)).toEqual(new Set(["grayscale(1)"]));
+  await expect(page.getByRole("main")).toHaveAttribute("data-level", "live");
+});
+
 test("the alignment says what it asks of each axis and why it would be refused, as it then is", async ({
   robot,
   page,

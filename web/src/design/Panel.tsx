@@ -18,8 +18,13 @@ interface PanelProps {
 /** A titled part of the page with the dot in its corner that tells whether its data live. */
 export function Panel({ title, className, asked, tools, children }: PanelProps) {
   const folded = useContext(PlaceContext)?.folded ?? false;
+  const late = useConsole((state) => asked !== undefined && askedAge(state.nowMs, asked) !== null);
   return (
-    <section className={`panel ${className ?? ""} ${folded ? "folded" : ""}`} aria-label={title}>
+    <section
+      className={`panel ${className ?? ""} ${folded ? "folded" : ""}`}
+      aria-label={title}
+      data-late={late || undefined}
+    >
       <header className="panel-head">
         <h2>{title}</h2>
         {tools !== undefined && !folded && <div className="panel-tools">{tools}</div>}
@@ -46,7 +51,7 @@ function streamAge({ freshness }: ConsoleState): string | null {
 }
 
 /** An answer may take a moment before its absence is news. */
-const ANSWER_MAY_TAKE_MS = 1500;
+const ANSWER_MAY_TAKE_MS = 1000;
 
 function askedAge(nowMs: number, { answeredAtMs, everyMs }: Asked): string | null {
   if (answeredAtMs === null) return "none";
