@@ -423,7 +423,8 @@ def matrix_requirements(source: Source) -> str:
             ("dates", row.dates),
             ("commits", row.commits),
         )
-        blocks.append(f'<div class="unit"><h3>{escape(requirement)}</h3>{facts_of(facts)}</div>')
+        place = f"rests-{requirement.split()[0]}"
+        blocks.append(f'<div class="unit"><h3 id="{place}">{escape(requirement)}</h3>{facts_of(facts)}</div>')
     return "".join(blocks)
 
 
