@@ -206,7 +206,7 @@ for (const [level, ageMs] of [
     await expect(page.getByRole("main")).toHaveAttribute("data-level", level);
     await expect(robot.axis("Lateral").row).toBeAttached();
     await expectNoViolation(page, level);
-    for (const name of ["Targeting", "Proposals", "Plots", "3D"] as const) {
+    for (const name of ["Robot", "Targeting", "Proposals", "Plots", "3D"] as const) {
       await robot.open(name);
       await expect(page.getByRole("main")).toHaveAttribute("data-level", level);
       await expect(page.getByRole("main").locator(".panel").first()).toBeAttached();

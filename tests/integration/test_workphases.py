@@ -69,9 +69,8 @@ def test_the_whole_way_to_the_target_with_every_answer_in_its_order(
     assert np.linalg.norm(reached - np.array(aimed()).reshape(4, 4)[:3, 3]) < 0.5
 
 
-def test_stop_and_emergency_act_while_it_moves(
-    robot: Stack, connect: Callable[[], Phases], dialect: str
-) -> None:
+def moving_to_target(robot: Stack, connect: Callable[[], Phases], dialect: str) -> Phases:
+    """A controller for which the robot moves to its target."""
     home_all(robot)
     navigator = connect()
     to_targeting(navigator, dialect)
@@ -79,6 +78,13 @@ def test_stop_and_emergency_act_while_it_moves(
     approve(robot)
     press(robot)
     wait_until("it moves", lambda: robot.api.get("/api/proposals").json()[0]["state"] == "executing")
+    return navigator
+
+
+def test_stop_and_emergency_act_while_it_moves(
+    robot: Stack, connect: Callable[[], Phases], dialect: str
+) -> None:
+    navigator = moving_to_target(robot, connect, dialect)
     navigator.phase("STOP", "STOP 1")
     assert robot.api.get("/api/proposals").json()[0]["state"] == "aborted"
     wait_for_mode(robot, "READY")
@@ -202,20 +208,23 @@ def test_a_needle_is_followed_to_the_target_and_retracted(
     home_all(robot)
     navigator = connect()
     to_targeting(navigator, dialect)
-    navigator.expect(text("CURRENT_POSITION", ""), "IS_IN_TARGETING_POS STRING", "HAS_REACHED_TARGET STRING")
-    assert [each.string for each in navigator.answers()] == ["1", "0"]
+    assert is_out_and_there(navigator) == ["1", "0"]
     navigator.expect(text("RETRACT_NEEDLE", ""), "ACK_RETRACT_NEEDLE 13")
     navigator.phase("MOVE_TO_TARGET")
     run(robot)
     navigator.await_answers("ACK_0001 STRING", "CURRENT_STATUS 1 MOVE_TO_TARGET", "MOVE_TO_TARGET 1")
     navigator.expect(transform("NPOS_0004", aimed()), "ACK_0004 TRANSFORM", "MOVE_TO_TARGET 1")
-    navigator.expect(text("CURRENT_POSITION", ""), "IS_IN_TARGETING_POS STRING", "HAS_REACHED_TARGET STRING")
-    assert [each.string for each in navigator.answers()] == ["0", "1"]
+    assert is_out_and_there(navigator) == ["0", "1"]
     navigator.expect(text("RETRACT_NEEDLE", ""), "ACK_RETRACT_NEEDLE 1")
     run(robot)
     navigator.await_answers("ACK_RETRACT_NEEDLE 1", "RETRACT_NEEDLE 1")
+    assert is_out_and_there(navigator) == ["1", "0"]
+
+
+def is_out_and_there(navigator: Phases) -> list[str]:
+    """Whether the needle is out, and whether it has reached the target."""
     navigator.expect(text("CURRENT_POSITION", ""), "IS_IN_TARGETING_POS STRING", "HAS_REACHED_TARGET STRING")
-    assert [each.string for each in navigator.answers()] == ["1", "0"]
+    return [each.string for each in navigator.answers()]
 
 
 def run(robot: Stack) -> None:
@@ -229,13 +238,7 @@ def run(robot: Stack) -> None:
 def test_a_target_that_moves_during_the_motion_asks_for_approval_anew(
     robot: Stack, connect: Callable[[], Phases], dialect: str
 ) -> None:
-    home_all(robot)
-    navigator = connect()
-    to_targeting(navigator, dialect)
-    navigator.phase("MOVE_TO_TARGET")
-    approve(robot)
-    press(robot)
-    wait_until("it moves", lambda: robot.api.get("/api/proposals").json()[0]["state"] == "executing")
+    navigator = moving_to_target(robot, connect, dialect)
     beside = aimed()
     beside[11] += 2
     navigator.expect(

@@ -14,7 +14,7 @@ from diagrams import modules, processes
 from gate import Finding, Trace, alike
 from items import STRUCTURE, Item
 from markdown_it import MarkdownIt
-from matrix import code_of, coverage, negative_lists, rows, status_of
+from matrix import Row, code_of, coverage, negative_lists, rows, status_of
 from release import record
 from results import Result
 from weasyprint import HTML
@@ -378,16 +378,8 @@ def counted(results: str) -> str:
 def matrix_ways(source: Source) -> str:
     """Each hazard with its harm and risk, and under it a line for each way from a cause to a requirement."""
     parts = []
-    for _, ways in groupby(rows(source.trace), key=lambda row: row.hazard):
+    for hazard, ways in groupby(rows(source.trace), key=lambda row: row.hazard):
         found = list(ways)
-        hazard = found[0]
-        facts = (
-            ("harm", hazard.harm),
-            ("severity", hazard.severity),
-            ("situation", hazard.situation),
-            ("initial risk", hazard.initial_risk),
-            ("residual risk", hazard.residual),
-        )
         lines = [
             (
                 f"{escape(row.cause)}<br><small>{escape(row.cause_item)}, {escape(row.cause_kind)}</small>",
@@ -401,7 +393,7 @@ def matrix_ways(source: Source) -> str:
             for row in found
         ]
         head = ("cause", "control", "system requirement", "requirement, hash of its text", "item", "status")
-        parts.append(f"<h2>{escape(hazard.hazard)}</h2>{facts_of(facts)}")
+        parts.append(f"<h2>{escape(hazard)}</h2>{facts_of(found[0], HAZARD_FACTS)}")
         parts.append(table((*head, "anomalies"), lines, "matrix"))
     return "".join(parts)
 
@@ -411,27 +403,26 @@ def matrix_requirements(source: Source) -> str:
     once = {row.requirement: row for row in rows(source.trace)}
     blocks = []
     for requirement, row in sorted(once.items()):
-        facts = (
-            ("properties", row.properties),
-            ("design", row.design),
-            ("code", row.code),
-            ("methods", row.methods),
-            ("verification", row.verification),
-            ("results", row.results),
-            ("bounds", row.bounds),
-            ("tools", row.tools),
-            ("dates", row.dates),
-            ("commits", row.commits),
-        )
-        place = f"rests-{requirement.split()[0]}"
-        blocks.append(f'<div class="unit"><h3 id="{place}">{escape(requirement)}</h3>{facts_of(facts)}</div>')
+        head = f'<h3 id="rests-{requirement.split()[0]}">{escape(requirement)}</h3>'
+        blocks.append(f'<div class="unit">{head}{facts_of(row, REQUIREMENT_FACTS)}</div>')
     return "".join(blocks)
 
 
-def facts_of(facts: Sequence[tuple[str, str]]) -> str:
-    """Names and values, those without a value left out."""
-    lines = [f"<tr><th>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in facts if value]
+def facts_of(row: Row, names: Sequence[str]) -> str:
+    """Columns of a row one below the other, those without a value left out."""
+    lines = [
+        f"<tr><th>{escape(name.replace('_', ' '))}</th><td>{escape(value)}</td></tr>"
+        for name in names
+        if (value := getattr(row, name))
+    ]
     return f'<table class="fields facts">{"".join(lines)}</table>'
+
+
+HAZARD_FACTS = ("harm", "severity", "situation", "initial_risk", "residual")
+REQUIREMENT_FACTS = (
+    *("properties", "design", "code", "methods", "verification"),
+    *("results", "bounds", "tools", "dates", "commits"),
+)
 
 
 TABLES: Mapping[str, tuple[str, Callable[[Source], str]]] = {
