@@ -20,14 +20,21 @@ import subprocess
 import sys
 import time
 import xml.etree.ElementTree as ElementTree
-from collections.abc import Iterator
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 KEYS = {"target", "test", "expect", "why"}
-COPIED = ("CMakeLists.txt", "CMakePresets.json", "pyproject.toml", "app", "docs", "kernel", "models", "spec")
-COPIED += ("tests", "verification", "web/src")
+IN_COPY = Path(__file__).with_name("in_copy.sh")
+NO_COMMAND = {
+    101: "no copy of the tree: an overlay needs root or user namespaces",
+    102: "the patch no longer applies; renew it",
+    103: "does not build",
+}
+"""What in_copy.sh says when it did not come to its command."""
 TIMEOUT_S = 900
 
 
@@ -94,70 +101,39 @@ def check(root: Path, paths: list[Path]) -> int:
     return wrong
 
 
-class Tree:
-    """A copy of the source tree under `work` in which faults are seeded, built and tested."""
+def run_in_copy(
+    root: Path, patch: Path | None, target: str, command: Sequence[str]
+) -> subprocess.CompletedProcess[str]:
+    """Runs a command in a copy of the tree under `root`, its build included; what changes there does not last.
 
-    def __init__(self, source: Path, work: Path) -> None:
-        self.source = source
-        self.path = work / "tree"
-        self.build = work / "build"
-        self.restore()
+    The patch is seeded before, and the CMake target built; without a name each is left out. Raises
+    UnusableError when it does not come to the command, or the command to no end.
+    """
+    user = [] if os.geteuid() == 0 else ["--user", "--map-root-user"]
+    try:
+        done = subprocess.run(
+            ["unshare", "--mount", *user, IN_COPY, root, patch or "", target, *command],
+            env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            errors="replace",
+            timeout=TIMEOUT_S,
+            check=False,
+        )
+    except subprocess.TimeoutExpired as error:
+        raise UnusableError(f"no end within {TIMEOUT_S} s: {' '.join(command)}") from error
+    if done.returncode in NO_COMMAND:
+        raise UnusableError(f"{NO_COMMAND[done.returncode]}: {tail(done.stdout + done.stderr)}")
+    return done
 
-    def command(self, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
-        # Without the ceiling git would find the enclosing repository and skip a patch for ignored files.
-        environment = os.environ | {
-            "GIT_CEILING_DIRECTORIES": str(self.path.parent),
-            "PYTHONDONTWRITEBYTECODE": "1",
-        }
-        try:
-            return subprocess.run(
-                arguments,
-                cwd=self.path,
-                env=environment,
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.STDOUT,
-                text=True,
-                errors="replace",
-                timeout=TIMEOUT_S,
-            )
-        except subprocess.TimeoutExpired as error:
-            raise UnusableError(f"no end within {TIMEOUT_S} s: {' '.join(map(str, arguments))}") from error
 
-    def restore(self) -> None:
-        """Makes the copy equal to the source, writing only what differs: builds stay incremental."""
-        options = ("-z", "--cached", "--others", "--exclude-standard", "--", *COPIED)
-        listed = git(self.source, "ls-files", *options).split("\0")
-        wanted = {name for name in listed if name and (self.source / name).is_file()}
-        for file in self.path.rglob("*"):
-            if file.is_file() and str(file.relative_to(self.path)) not in wanted:
-                file.unlink()
-        for name in wanted:
-            source, copy = self.source / name, self.path / name
-            if not copy.is_file() or copy.read_bytes() != source.read_bytes():
-                copy.parent.mkdir(parents=True, exist_ok=True)
-                copy.write_bytes(source.read_bytes())
-                copy.chmod(source.stat().st_mode)
-
-    def apply(self, fault: Fault) -> None:
-        done = self.command("git", "apply", fault.path.resolve())
-        if done.returncode:
-            raise UnusableError(f"the patch no longer applies; renew it: {done.stdout.strip()}")
-
-    def run(self, fault: Fault) -> subprocess.CompletedProcess[str]:
-        """Builds what the fault's test needs and runs it."""
-        if fault.target == "pytest":
-            return self.command(sys.executable, "-m", "pytest", "-q", fault.test)
-        if not (self.build / "build.ninja").is_file():
-            ruckig = f"-DINTERLOCK_RUCKIG={self.source / 'build/libraries/ruckig'}"
-            self.must("cmake", "--preset", "release", "-B", self.build, ruckig)
-        self.must("ninja", "-C", self.build, fault.target)
-        return self.command(self.build / "bin" / fault.target, f"--gtest_filter={fault.test}")
-
-    def must(self, *arguments: str | Path) -> None:
-        done = self.command(*arguments)
-        if done.returncode:
-            raise UnusableError("does not build: " + "\n".join(done.stdout.splitlines()[-15:]))
+def run_test(root: Path, fault: Fault, patch: Path | None) -> subprocess.CompletedProcess[str]:
+    """Runs the test that the fault names, with the patch or without one."""
+    if fault.target == "pytest":
+        return run_in_copy(root, patch, "", [sys.executable, "-m", "pytest", "-q", fault.test])
+    program = f"build/release/bin/{fault.target}"
+    return run_in_copy(root, patch, fault.target, [program, f"--gtest_filter={fault.test}"])
 
 
 def passes(done: subprocess.CompletedProcess[str]) -> bool:
@@ -169,47 +145,37 @@ def tail(text: str) -> str:
     return "\n".join(text.splitlines()[-15:])
 
 
-def check_healthy(tree: Tree, fault: Fault) -> None:
-    """Raises UnusableError unless the fault's test passes on the unpatched tree."""
-    healthy = tree.run(fault)
-    if not passes(healthy):
-        raise UnusableError(f"the test does not pass without the patch:\n{tail(healthy.stdout)}")
-
-
-def complaint(tree: Tree, fault: Fault) -> str:
-    """What is wrong with the fault's detection; empty when it was noticed as expected."""
-    tree.restore()
-    tree.apply(fault)
-    seeded = tree.run(fault)
+def complaint(root: Path, path: Path) -> tuple[str, str]:
+    """The test that a fault names, and what is wrong with its detection: nothing when noticed as expected."""
+    test = ""
+    try:
+        fault = read_fault(path)
+        test = fault.test
+        healthy = run_test(root, fault, None)
+        if not passes(healthy):
+            return test, f"the test does not pass without the patch:\n{tail(healthy.stdout)}"
+        seeded = run_test(root, fault, path)
+    except UnusableError as error:
+        return test, str(error)
     if seeded.returncode == 0:
-        return f"unnoticed: {fault.test} passes although {fault.why}"
-    if not re.search(fault.expect, seeded.stdout):
-        return f"noticed for another reason; no match of /{fault.expect}/ in:\n{tail(seeded.stdout)}"
-    return ""
+        return test, f"unnoticed: {test} passes although {fault.why}"
+    said = seeded.stdout + seeded.stderr
+    if not re.search(fault.expect, said):
+        return test, f"noticed for another reason; no match of /{fault.expect}/ in:\n{tail(said)}"
+    return test, ""
 
 
-def judge(tree: Tree, paths: list[Path]) -> Iterator[tuple[Path, str, str, float]]:
-    """Yields for each patch the test that it names, the complaint and the seconds taken.
-
-    All tests run on the unpatched tree first: one build then serves them all.
-    """
-    faults: dict[Path, Fault] = {}
-    complaints: dict[Path, str] = {}
-    for path in paths:
-        try:
-            faults[path] = read_fault(path)
-            check_healthy(tree, faults[path])
-        except UnusableError as error:
-            complaints[path] = str(error)
-    for path in paths:
-        start = time.monotonic()
-        if path not in complaints:
-            try:
-                complaints[path] = complaint(tree, faults[path])
-            except UnusableError as error:
-                complaints[path] = str(error)
-        test = faults[path].test if path in faults else ""
-        yield path, test, complaints[path], time.monotonic() - start
+def judge(root: Path, path: Path) -> ElementTree.Element:
+    """The fault as a test case, which is printed: failed unless the fault was noticed as expected."""
+    start = time.monotonic()
+    test, wrong = complaint(root, path)
+    seconds = time.monotonic() - start
+    case = ElementTree.Element("testcase", classname="selftest", name=path.stem, time=f"{seconds:.3f}")
+    if wrong:
+        ElementTree.SubElement(case, "failure", message=wrong.splitlines()[0]).text = wrong
+    state = "FAILED " if wrong else "noticed"
+    print(f"{state}  {path.stem:<32} {seconds:6.1f} s  {wrong or test}", flush=True)
+    return case
 
 
 def main() -> int:
@@ -240,19 +206,11 @@ def main() -> int:
         print("selftest: no fault was seeded; expected patches in tests/failure/", file=sys.stderr)
         return 1
 
-    tree = Tree(root, root / "build/selftest")
-    suite = ElementTree.Element("testsuite", name="selftest", tests=str(len(chosen)))
-    failures = 0
-    for path, test, result, seconds in judge(tree, chosen):
-        attributes = {"classname": "selftest", "name": path.stem, "time": f"{seconds:.3f}"}
-        case = ElementTree.SubElement(suite, "testcase", attributes)
-        if result:
-            failures += 1
-            ElementTree.SubElement(case, "failure", message=result.splitlines()[0]).text = result
-        state = "FAILED " if result else "noticed"
-        print(f"{state}  {path.stem:<32} {seconds:6.1f} s  {result or test}", flush=True)
-    tree.restore()
-    suite.set("failures", str(failures))
+    with ThreadPoolExecutor(os.cpu_count()) as workers:
+        cases = list(workers.map(partial(judge, root), chosen))
+    failures = sum(len(case) for case in cases)
+    suite = ElementTree.Element("testsuite", name="selftest", tests=str(len(cases)), failures=str(failures))
+    suite.extend(cases)
     report = root / "build/reports/selftest.xml"
     report.parent.mkdir(parents=True, exist_ok=True)
     ElementTree.ElementTree(suite).write(report, encoding="utf-8", xml_declaration=True)

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 """Shows that the campaign finds a kernel whose rule for a property is missing, one seeded fault at a time.
 
-Uses the patches of tests/failure that change the kernel (P1 to P13), in a copy of the tree. A fault counts as
-found when the campaign reports something unsafe or late within the seconds given; a healthy kernel must not.
+Uses the patches of tests/failure that change the kernel (P1 to P13), each in a copy of the tree. A fault
+counts as found when the campaign reports something unsafe or late within the seconds given; a healthy kernel
+must not.
 Prints a table and writes build/evidence/campaign_selftest.json.
 """
 
 import argparse
 import json
-import subprocess
 import sys
 import tempfile
 import time
@@ -42,15 +42,10 @@ def chosen(names: list[str]) -> list[Path]:
     return sorted((path for path in paths if not names or path.stem in names), key=property_of)
 
 
-def campaign(tree: failure.Tree, seconds: float, work: Path) -> dict:
-    """The totals of a campaign of that many processor seconds on the tree as it stands."""
-    if not (tree.build / "build.ninja").is_file():
-        ruckig = f"-DINTERLOCK_RUCKIG={ROOT / 'build/libraries/ruckig'}"
-        tree.must("cmake", "--preset", "release", "-B", tree.build, ruckig)
-    tree.must("ninja", "-j2", "-C", tree.build, "kernel_campaign")
-    program = tree.build / "bin/kernel_campaign"
-    command = [program, "--seed", str(SEED), "--seconds", str(seconds), "--failures", work]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+def campaign(patch: Path | None, seconds: float, work: Path) -> dict:
+    """The totals of a campaign of that many processor seconds, with the patch or on the tree as it is."""
+    command = ["build/release/bin/kernel_campaign", "--seed", str(SEED), "--seconds", str(seconds)]
+    done = failure.run_in_copy(ROOT, patch, "kernel_campaign", [*command, "--failures", str(work)])
     if done.returncode not in (0, 1):
         raise failure.UnusableError(f"the campaign did not run: {done.stderr.strip()}")
     return json.loads(done.stdout)
@@ -63,18 +58,15 @@ def main() -> int:
     arguments = parser.parse_args()
     started = time.monotonic()
     faults, seconds = chosen(arguments.names), []
-    tree = failure.Tree(ROOT, ROOT / "build/campaign-selftest")
     with tempfile.TemporaryDirectory() as folder:
         work = Path(folder)
-        healthy = campaign(tree, min(arguments.seconds, 20), work)
+        healthy = campaign(None, min(arguments.seconds, 20), work)
         if "first_failure" in healthy:
             print(f"the healthy kernel fails: {healthy['first_failure']['text']}")
             return 1
         print(f"{'seeded fault':42} {'found after':>22}   by")
         for path in faults:
-            tree.restore()
-            tree.apply(failure.Fault(path, "", "", "", ""))
-            totals = campaign(tree, arguments.seconds, work)
+            totals = campaign(path, arguments.seconds, work)
             found = totals.get("first_failure")
             if found:
                 seconds.append(found["seconds"])
@@ -82,7 +74,6 @@ def main() -> int:
                 print(f"{path.stem:42} {after:>22}   {found['text'].partition(': ')[2]}", flush=True)
             else:
                 print(f"{path.stem:42} {'NOT FOUND':>22}   in {arguments.seconds:.0f} s", flush=True)
-    tree.restore()
     print(f"campaign selftest: {len(faults) - len(seconds)} not found")
     figures = {
         "faults": len(faults),
