@@ -104,7 +104,7 @@ def check(root: Path, paths: list[Path]) -> int:
 def run_in_copy(
     root: Path, patch: Path | None, target: str, command: Sequence[str]
 ) -> subprocess.CompletedProcess[str]:
-    """Runs a command in a copy of the tree under `root`, its build included; what changes there does not last.
+    """Runs a command in a copy of the tree under `root`, build included; what changes there does not last.
 
     The patch is seeded before, and the CMake target built; without a name each is left out. Raises
     UnusableError when it does not come to the command, or the command to no end.
