@@ -115,6 +115,7 @@ bool AxisWatch::take_in(const Observation& seen, const Echo& echo) noexcept {
     // Nothing tells what the axis did meanwhile: it is measured anew from here.
     farthest_path_ = path_;
     progress_path_ = path_;
+    rest_ = {};
   }
   is_first_reading_ = !followed_;
   followed_ = true;

@@ -20,6 +20,7 @@ constexpr std::uint64_t kSweepStart = 4999;   /**< bits from where one case begi
 constexpr std::uint32_t kRecoveryTicks = 300; /**< after a lie of the encoder, until nothing moves any more */
 
 constexpr std::string_view kWrongWay = "driven, but not towards its setpoint";
+constexpr std::string_view kCardLost = "its card is lost";
 constexpr std::string_view kDrifts = "drifts while enabled and not driven";
 
 bool is_zero_drive(const ilk_outputs_t& outputs) {
@@ -268,6 +269,17 @@ void World::count() {
   }
 }
 
+/** A slot whose kind of card was damaged is none with an axis meanwhile: nothing is counted there. So the
+ * watch for drift begins later, until the axis is driven again, and missing frames count from the end of the
+ * damage. */
+bool World::counts_late(const oracle::Finding& finding) const {
+  if (finding.reason == kDrifts) {
+    return card_unknown_[static_cast<std::size_t>(finding.axis)];
+  }
+  return finding.reason == kCardLost &&
+         tick_ + 1 < card_known_from_[static_cast<std::size_t>(finding.axis)] + config_.bad_frame_limit;
+}
+
 bool World::is_excused(const oracle::Finding& finding) const {
   // Until damage to the configuration is met, the specification promises P1 to P3 of what is driven, and no
   // more. That the app is heard belongs to P2; the oracle names it P10.
@@ -275,11 +287,7 @@ bool World::is_excused(const oracle::Finding& finding) const {
       finding.property <= oracle::Property::kP3 || finding.property == oracle::Property::kP10;
   const bool promised = finding.property == oracle::Property::kP13 ||
                         (of_drive && finding.reason.starts_with("driven") && finding.reason != kWrongWay);
-  // A slot whose card was damaged is none with an axis meanwhile, and its ticks without drive are not
-  // counted: the watch for drift begins so much later, until the axis is driven again.
-  const bool watch_is_late =
-      finding.reason == kDrifts && card_unknown_[static_cast<std::size_t>(finding.axis)];
-  return watch_is_late || (config_damage_ticks_ > 0 && !promised);
+  return counts_late(finding) || (config_damage_ticks_ > 0 && !promised);
 }
 
 std::optional<Failure> World::judge() {
@@ -310,6 +318,9 @@ std::optional<Failure> World::step() {
     if (config_damage_left_-- == 1) {
       flip(config_, config_bit_);
       config_damage_ticks_ = 0;
+      if (const auto slot = slot_of_card_word(config_bit_)) {
+        card_known_from_[*slot] = tick_;
+      }
     }
   }
   app_.act(tick_, state_);

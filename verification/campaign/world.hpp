@@ -103,6 +103,7 @@ class World {
   void show_oracle();
   void count();
   std::optional<Failure> judge();
+  bool counts_late(const oracle::Finding& finding) const;
   bool is_excused(const oracle::Finding& finding) const;
 
   Case plan_;
@@ -142,6 +143,7 @@ class World {
   std::array<bool, ILK_SLOTS> broken_{};
   std::array<bool, ILK_SLOTS> was_homing_{};
   std::array<bool, ILK_SLOTS> card_unknown_{}; /**< the kind of card was damaged since it was driven */
+  std::array<std::uint32_t, ILK_SLOTS> card_known_from_{}; /**< tick in which damage to its kind ended */
   std::array<std::uint32_t, ILK_SLOTS> fault_before_{};
   std::uint32_t mode_before_ = ILK_MODE_INIT;
   std::optional<std::string_view> unrefused_; /**< what a kernel did that had to stay in INIT */

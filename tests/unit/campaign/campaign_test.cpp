@@ -229,6 +229,22 @@ TEST(Campaign, P6_the_watch_for_drift_may_begin_later_after_the_kind_of_card_was
   EXPECT_FALSE(outcome.failure) << outcome.failure->reason;
 }
 
+// The kernel counts missing frames from when it knows the slot's card again; the system is locked by then.
+TEST(Campaign, P1_a_lost_card_is_counted_from_the_end_of_the_damage_to_its_kind) {
+  const std::uint32_t bit = offsetof(ilk_config_t, axis[7].card) * 8 + 8;
+  const Fault repeats{1435, FaultKind::kFrameRepeated, 8, 3, 2119786350, 0};
+  const Fault flips{1735, FaultKind::kConfigBitFlips, 0, 30, bit, 0};
+  const auto lost_from = [&](std::uint32_t tick, std::uint32_t ticks) {
+    const Fault drops{tick, FaultKind::kFrameDropped, 7, ticks, 1531504549, 0};
+    return run(Case{1, 2132, 1800, {repeats, flips, drops}});
+  };
+  for (const std::uint32_t tick : {1740u, 1762u, 1763u, 1764u, 1765u}) {
+    const Outcome outcome = lost_from(tick, 40);
+    EXPECT_FALSE(outcome.failure) << outcome.failure->reason << ", tick " << tick;
+    EXPECT_GT(outcome.totals.axis_faults[ILK_FAULT_CARD_LOST], 0u) << "tick " << tick;
+  }
+}
+
 TEST(Campaign, Case_runs_twice_to_the_same_bits) {
   Case plan = make_case(3, 1);
   plan.ticks = 5000;

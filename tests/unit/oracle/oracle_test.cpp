@@ -54,6 +54,30 @@ void claim_fault(Stage& stage, std::uint32_t code) {
   stage.claim.axes[0].homed = false;
 }
 
+/** Takes the frames of axis 0 away until its card is lost, which the system claims or not. */
+void lose_card(Stage& stage, bool claimed = true) {
+  for (int tick = 0; tick < 3; tick++) {
+    if (tick == 2 && claimed) {
+      claim_fault(stage, 4);
+    }
+    stage.prepare();
+    stage.seen.received[0] = false;
+    stage.seal_all();
+    stage.play();
+  }
+}
+
+/** Acknowledges the fault of axis 0 and enables it, in one tick. */
+void enable_again(Stage& stage) {
+  stage.claim.axes[0].mode = AxisMode::kEnabled;
+  stage.claim.axes[0].fault = 0;
+  stage.prepare();
+  stage.say(Order::kClearFault);
+  stage.say(Order::kEnable);
+  stage.seal_all();
+  stage.play();
+}
+
 const Case kCases[] = {
     {"P1_lease_ran_out", Property::kP1,
      [](Stage& stage, bool seeded) {
@@ -92,15 +116,7 @@ const Case kCases[] = {
     {"P1_lost_card_unnoticed", Property::kP1,
      [](Stage& stage, bool seeded) {
        stage.come_to_ready();
-       for (int tick = 0; tick < 3; tick++) {
-         if (tick == 2 && !seeded) {
-           claim_fault(stage, 4);
-         }
-         stage.prepare();
-         stage.seen.received[0] = false;
-         stage.seal_all();
-         stage.play();
-       }
+       lose_card(stage, !seeded);
      }},
     {"P2_pedal_released", Property::kP2,
      [](Stage& stage, bool seeded) {
@@ -241,6 +257,17 @@ const Case kCases[] = {
      [](Stage& stage, bool seeded) {
        stage.come_to_ready();
        stage.run(10);
+       run_moving(stage, seeded ? 16 : 15);
+     }},
+    // The axis may have been moved by hand: its drift is measured from where the card found it again.
+    {"P6_drift_after_a_lost_card", Property::kP6,
+     [](Stage& stage, bool seeded) {
+       stage.come_to_ready();
+       stage.run(10);
+       run_moving(stage, 10);
+       lose_card(stage);
+       enable_again(stage);
+       stage.run(1);
        run_moving(stage, seeded ? 16 : 15);
      }},
     {"P7_drive_above_its_bound", Property::kP7,
