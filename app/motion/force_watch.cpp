@@ -3,13 +3,8 @@
 namespace interlock {
 namespace {
 
-/** First of the two words with analog inputs, two to a word, the odd one in the upper half. */
-constexpr std::uint32_t analog_word = 7;
-
-std::uint32_t analog(const ilk_snapshot_t& snapshot, std::uint32_t slot, std::uint32_t adc) noexcept {
-  const std::uint32_t word = snapshot.inputs.frame[slot][analog_word + (adc - 1) / 2];
-  return adc % 2 == 1 ? word >> 16 : word & 0xFFFFu;
-}
+/** First of the words of a frame with analog inputs. */
+constexpr std::size_t analog_word = 7;
 
 }  // namespace
 
@@ -21,8 +16,9 @@ void ForceWatch::look(const ilk_snapshot_t& snapshot) noexcept {
   }
   card_time_us_ = card.card_time_us;
   readings_.tick = snapshot.state.tick;
-  readings_.hand = analog(snapshot, inputs_.slot, inputs_.hand_adc);
-  readings_.needle = analog(snapshot, inputs_.slot, inputs_.needle_adc);
+  const std::span<const std::uint32_t, 2> words(&snapshot.inputs.frame[inputs_.slot][analog_word], 2);
+  readings_.hand = analog_reading(words, inputs_.hand_adc);
+  readings_.needle = analog_reading(words, inputs_.needle_adc);
   readings_.last_hand[next_] = readings_.hand;
   readings_.last_needle[next_] = readings_.needle;
   next_ = (next_ + 1) % ForceReadings::kept;

@@ -26,6 +26,13 @@ struct ForceInputs {
   bool operator==(const ForceInputs&) const = default;
 };
 
+/** Reading of the analog input `adc`, 1 to 4, in the two words of a frame that have them (spec/frames.md):
+ * two to a word, the odd one in the upper half. */
+constexpr std::uint32_t analog_reading(std::span<const std::uint32_t, 2> words, std::uint32_t adc) noexcept {
+  const std::uint32_t word = words[(adc - 1) / 2];
+  return adc % 2 == 1 ? word >> 16 : word & 0xFFFFu;
+}
+
 /** In counts of the converter. */
 struct ForceReadings {
   /** For zeroing: the newest ones, in no order. */

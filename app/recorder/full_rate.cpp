@@ -7,12 +7,28 @@
 namespace interlock::recorder {
 namespace {
 
-AxisTick axis_of(const ilk_recorded_tick_t& tick, std::uint32_t slot) {
-  const ilk_axis_t& axis = tick.now.picture.state.axis[slot];
-  const ilk_command_t& command = tick.now.picture.out.command[slot];
+/** First of the words of a frame with analog inputs. */
+constexpr std::size_t analog_word = 7;
+
+std::optional<AnalogWords> analog_of(const ilk_picture_t& picture, std::optional<std::uint32_t> sensor) {
+  if (!sensor || picture.state.axis[*sensor].card_valid == 0) {
+    return std::nullopt;
+  }
+  const auto& frame = picture.inputs.frame[*sensor];
+  return AnalogWords{frame[analog_word], frame[analog_word + 1]};
+}
+
+AxisTick axis_of(const ilk_recorded_tick_t& tick, const AxisSpan& span) {
+  const ilk_picture_t& picture = tick.now.picture;
+  const ilk_axis_t& axis = picture.state.axis[span.slot];
+  const ilk_command_t& command = picture.out.command[span.slot];
   const auto drive = static_cast<std::int32_t>(command.drive);
-  AxisTick found{tick.now.picture.state.tick, tick.begun_ns, std::nullopt, std::nullopt,
-                 command.direction == ILK_DIRECTION_DECREASING ? -drive : drive};
+  AxisTick found;
+  found.tick = picture.state.tick;
+  found.begun_ns = tick.begun_ns;
+  found.card_time_us = axis.card_time_us;
+  found.drive = command.direction == ILK_DIRECTION_DECREASING ? -drive : drive;
+  found.analog = analog_of(picture, span.sensor);
   if (axis.card_valid != 0) {
     found.position_counts = axis.position_counts;
   }
@@ -57,7 +73,7 @@ std::vector<AxisTick> full_rate(const Ring& ring, const AxisSpan& span) {
         return found;
       }
       if (static_cast<std::uint32_t>(before_last) < ticks) {
-        found.push_back(axis_of(*tick, span.slot));
+        found.push_back(axis_of(*tick, span));
       }
     }
   }

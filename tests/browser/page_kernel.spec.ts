@@ -61,6 +61,36 @@ test("while the system is locked, the foretold refusal names the cause and its n
   await expect(axis.foretelling).toContainText("then press Unlock");
 });
 
+test("a button says beforehand why the kernel would refuse it, and it does", async ({ robot, page }) => {
+  const axis = robot.axis("Lateral");
+  const enable = axis.row.getByRole("button", { name: "Enable Lateral" });
+  await expect(enable).toHaveAccessibleDescription(
+    /^The kernel would refuse it, MODE: The system is LOCKED by BOOT\. .*press Unlock/,
+  );
+  await expect(robot.unlock).not.toHaveAttribute("data-foretold");
+  await robot.button("Pull E-stop").click();
+  await expect(robot.unlock).toHaveAttribute("data-foretold", "refused");
+  await expect(robot.unlock).toHaveAccessibleDescription(/^The kernel would refuse it, CAUSE_PRESENT/);
+  await robot.unlock.click();
+  await expect(page.getByRole("alert").filter({ hasText: "Unlock refused: CAUSE_PRESENT" })).toBeVisible();
+
+  await robot.button("Release E-stop").click();
+  await robot.unlockRobot();
+  await expect(enable).not.toHaveAttribute("data-foretold");
+  const home = axis.row.getByRole("button", { name: "Go Home Lateral" });
+  await expect(home).toHaveAccessibleDescription(/^The kernel would refuse it, DISABLED/);
+  await axis.enable();
+  await expect(home).not.toHaveAttribute("data-foretold");
+});
+
+test("what waits for the pedal is foretold of homing, too", async ({ robot }) => {
+  const axis = robot.axis("Lateral");
+  await robot.unlockRobot();
+  await axis.enable();
+  await axis.press("Go Home");
+  await expect(robot.proposal(1)).toContainText("ACCEPTED would be accepted once the pedal is pressed.");
+});
+
 test("Why not moving? follows the newest proposal from the blocking gate to the drive", async ({ robot }) => {
   const why = robot.panel("Why not moving?");
   const gates = why.getByRole("list", { name: "Gates of Probe rotation" });

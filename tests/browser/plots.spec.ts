@@ -124,6 +124,21 @@ test("a capture has every single tick", async ({ robot, page }) => {
   expect((rows.at(-1)?.tick ?? 0) - (rows[0]?.tick ?? 0)).toBe(999);
 });
 
+test.describe("of a robot with a needle", () => {
+  test.use({ robotName: "prostate" });
+
+  test("both forces are in the plots, in a capture and in its table", async ({ robot, page }) => {
+    await robot.open("Plots");
+    await expect(chart(page, "Plots", "Force")).toHaveAttribute("aria-label", /hand -?\d\S* .*needle -?\d/);
+    await robot.button("Capture now").click();
+    await expect(chart(page, "Capture", "Force")).toHaveAttribute("aria-label", /hand .*needle /);
+    const downloaded = page.waitForEvent("download");
+    await robot.button("CSV of the capture").click();
+    const rows = await tableOf(await downloaded);
+    expect(rows.every((row) => Math.abs(row["Force: needle (N)"] ?? Number.NaN) < 1)).toBe(true);
+  });
+});
+
 test("a trigger captures the ticks around it by itself", async ({ robot, page }) => {
   await openPlots(robot, page, "Yaw");
   const panel = robot.panel("Capture");

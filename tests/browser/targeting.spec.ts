@@ -178,6 +178,7 @@ test("the proposed alignment brings the current pose to the desired one", async 
   const proposed = robot.panel("Alignment").getByRole("status").filter({ hasText: "Proposal" });
   await expect(proposed).toContainText("approved");
   await robot.open("Robot");
+  await expect(robot.proposal(1)).toContainText("All axes: ACCEPTED would be accepted once the pedal");
   await robot.latchPedal();
   // Whoever leaves the page lifts the foot.
   await expect(robot.proposal(1)).toContainText("done", { timeout: 40_000 });

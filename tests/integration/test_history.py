@@ -40,10 +40,14 @@ def whole_history(robot: Stack) -> list[dict]:
     return rows
 
 
-def capture(robot: Stack, **parameters: int) -> dict:
-    answer = judge(robot.api.get("/api/capture", params={"slot": LATERAL, **parameters}))
+def capture_of(robot: Stack, slot: int, **parameters: int) -> dict:
+    answer = judge(robot.api.get("/api/capture", params={"slot": slot, **parameters}))
     assert answer.status_code == 200, answer.text
     return answer.json()
+
+
+def capture(robot: Stack, **parameters: int) -> dict:
+    return capture_of(robot, LATERAL, **parameters)
 
 
 def extremes_of(values: list[int | None]) -> tuple[int | None, int | None]:
@@ -103,6 +107,38 @@ def test_a_capture_has_every_tick_up_to_the_one_that_is_asked_for(moved: Stack) 
     assert taken["tick"] == list(range(last - 999, last + 1))
     assert taken["begun_us"][0] == 0
     assert taken["begun_us"] == sorted(taken["begun_us"])
+
+
+def test_a_capture_has_the_velocity_that_the_positions_show(moved: Stack) -> None:
+    taken = capture(moved, seconds=10)
+    assert taken["forces"] is None, "this robot has no needle"
+    velocity = taken["velocity_counts_per_s"]
+    assert velocity[0] is None, "one reading is no velocity"
+    assert min(value for value in velocity if value is not None) < -10
+    position = taken["position_counts"]
+    period_s = taken["period_us"] * 1e-6
+    window = round(0.02 / period_s)
+    steady = [
+        (velocity[row], (position[row] - position[row - window]) / (window * period_s))
+        for row in range(2 * window, len(position))
+        if taken["tick"][row] - taken["tick"][row - 2 * window] == 2 * window
+        and None not in position[row - 2 * window : row + 1]
+    ]
+    # A line through the readings and the difference of its ends agree but for the quantisation.
+    assert all(slope == pytest.approx(mean, abs=120) for slope, mean in steady)
+    assert len(steady) > window
+
+
+def test_a_capture_of_a_robot_with_a_needle_has_both_forces(stack: StackFactory) -> None:
+    robot = stack(robot="prostate", speed=1)
+    axes = judge(robot.api.get("/api/motors")).json()
+    wait_until("a tick in the black box", lambda: capture_of(robot, axes[0]["slot"])["tick"])
+    taken = capture_of(robot, axes[0]["slot"])
+    for force in ("hand_n", "needle_n"):
+        known = [value for value in taken["forces"][force] if value is not None]
+        assert len(taken["forces"][force]) == len(taken["tick"])
+        assert known, "the sensor card was read"
+        assert all(abs(value) < 1 for value in known), "nobody touches the needle"
 
 
 def test_a_wrong_parameter_is_named(stack: StackFactory) -> None:

@@ -56,14 +56,17 @@ static ilk_request_t request_after(const ilk_state_t* before, ilk_request_kind_t
   return request;
 }
 
-/** The app's MOVE: it asks for no more than the axis may. */
-static ilk_request_t move_after(const ilk_state_t* before, uint32_t slot, int32_t target_counts) {
+/** The app's request: of a MOVE it asks for no more than the axis may. `slot` is that of an axis. */
+static ilk_request_t wish_after(const ilk_state_t* before, ilk_request_kind_t kind, uint32_t slot,
+                                int32_t target_counts) {
   const ilk_axis_config_t* rules = &configuration.axis[slot];
-  ilk_request_t request = request_after(before, ILK_REQUEST_MOVE, slot);
+  ilk_request_t request = request_after(before, kind, slot);
   request.target_counts = target_counts;
-  request.drive = (before->axis[slot].homed != 0u) ? rules->max_drive : rules->unhomed_max_drive;
-  request.amplitude = rules->max_amplitude;
-  request.lease_ticks = 1u;
+  if (kind == ILK_REQUEST_MOVE) {
+    request.drive = (before->axis[slot].homed != 0u) ? rules->max_drive : rules->unhomed_max_drive;
+    request.amplitude = rules->max_amplitude;
+    request.lease_ticks = 1u;
+  }
   request.crc = ilk_request_crc(&request);
   return request;
 }
@@ -132,14 +135,15 @@ static void press_pedal(ilk_state_t* now, ilk_outputs_t* out) {
 }
 
 /**
- * What the kernel would say to a MOVE of the axis once the pedal is held, if nothing else changes until then.
+ * What the kernel would say to a MOVE or a HOME of the axis once the pedal is held, if nothing else changes
+ * until then.
  *
  * The kernel itself runs ahead on a copy of the state: cards answer as they did, the app stays alive, the
  * E-stop stays as it is.
  *
  * @return bits 0 to 7 the verdict, 8 to 15 the gate in that tick, 16 to 23 the mode in which it was judged
  */
-EXPORT("foresee_move") uint32_t page_foresee_move(uint32_t slot, int32_t target_counts) {
+EXPORT("foresee") uint32_t page_foresee(uint32_t kind, uint32_t slot, int32_t target_counts) {
   static ilk_state_t ahead;
   static ilk_outputs_t out;
   if ((slot >= (uint32_t)ILK_SLOTS) || !has_axis(&configuration.axis[slot])) {
@@ -147,18 +151,16 @@ EXPORT("foresee_move") uint32_t page_foresee_move(uint32_t slot, int32_t target_
   }
   ahead = state;
   press_pedal(&ahead, &out);
-  const ilk_request_t move = move_after(&ahead, slot, target_counts);
-  tick_with(&ahead, true, &move, &out);
+  const ilk_request_t wish = wish_after(&ahead, (ilk_request_kind_t)kind, slot, target_counts);
+  tick_with(&ahead, true, &wish, &out);
   return out.verdict[1].verdict | (out.gate[slot] << 8u) | (ahead.mode << 16u);
 }
 
 /** What the kernel says to a request in the state that was written: its verdict. */
 EXPORT("judge") uint32_t page_judge(uint32_t kind, uint32_t slot, int32_t target_counts) {
-  ilk_request_t request = request_after(&state, (ilk_request_kind_t)kind, slot);
-  if ((kind == (uint32_t)ILK_REQUEST_MOVE) && (slot < (uint32_t)ILK_SLOTS)) {
-    request = move_after(&state, slot, target_counts);
-  }
-  request.target_counts = target_counts;
+  const bool known = slot < (uint32_t)ILK_SLOTS;
+  ilk_request_t request = wish_after(&state, (ilk_request_kind_t)kind, known ? slot : 0u, target_counts);
+  request.axis = slot;
   request.crc = ilk_request_crc(&request);
   return (uint32_t)ilk_request_judge(&configuration, &state, &request);
 }

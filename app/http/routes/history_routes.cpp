@@ -2,10 +2,10 @@
 
 #include <limits>
 
-#include "history/capture.hpp"
 #include "http/fields.hpp"
 #include "http/problems.hpp"
 #include "http/query.hpp"
+#include "motion/axis_plan.hpp"
 
 namespace interlock::web {
 namespace {
@@ -36,7 +36,9 @@ tl::expected<CaptureSpan, Problem> span_of(const json& query, const Robot& robot
   if (fields.problem()) {
     return fail(*fields.problem());
   }
-  CaptureSpan span{static_cast<std::uint32_t>(*slot), static_cast<std::uint32_t>(seconds), std::nullopt};
+  CaptureSpan span;
+  span.slot = static_cast<std::uint32_t>(*slot);
+  span.seconds = static_cast<std::uint32_t>(seconds);
   if (until) {
     span.until = static_cast<std::uint32_t>(*until);
   }
@@ -90,14 +92,22 @@ Reply HistoryRoutes::history(const Call& call) const {
   });
 }
 
+void HistoryRoutes::add_rules(CaptureSpan& span) const {
+  const RobotPlan plan(context_.robot, context_.config);
+  span.velocity = plan.axis[span.slot].control.velocity;
+  if (const auto scales = force_scales(); scales && plan.needle) {
+    span.forces = CapturedForces{plan.needle->force, *scales};
+  }
+}
+
 Answering HistoryRoutes::capture(const Call& call) const {
-  const auto span =
-      known_query(call.request, {"slot", "seconds", "until"}).and_then([this](const json& query) {
-        return span_of(query, context_.robot);
-      });
+  auto span = known_query(call.request, {"slot", "seconds", "until"}).and_then([this](const json& query) {
+    return span_of(query, context_.robot);
+  });
   if (!span) {
     co_return fail(span.error());
   }
+  add_rules(*span);
   if (past_.black_box.empty()) {
     co_return fail(no_black_box("the app was not told where it is"));
   }

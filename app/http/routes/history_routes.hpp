@@ -6,6 +6,7 @@
 
 #include <filesystem>
 
+#include "history/capture.hpp"
 #include "history/history.hpp"
 #include "history/history_feed.hpp"
 #include "http/context.hpp"
@@ -31,6 +32,9 @@ class HistoryRoutes {
  private:
   [[nodiscard]] Reply history(const Call& call) const;
   [[nodiscard]] boost::asio::awaitable<Reply> capture(const Call& call) const;
+
+  /** Gives the span what velocity and forces are found by. */
+  void add_rules(CaptureSpan& span) const;
 
   [[nodiscard]] std::optional<ForceScales> force_scales() const;
 

@@ -8,6 +8,8 @@ interface CommandButtonProps {
   readonly label?: string;
   /** Why it would do nothing now; null or absent when it would. */
   readonly off?: string | null | undefined;
+  /** Why it would be refused now; null or absent when it would not, or nobody knows. */
+  readonly warning?: string | null;
   readonly pressed?: boolean;
   readonly className?: string;
   readonly onCommand: () => Promise<void> | void;
@@ -36,7 +38,8 @@ export function CommandButton(props: CommandButtonProps) {
       className={`button ${props.className ?? ""}`}
       disabled={reason !== null}
       aria-disabled={waiting}
-      title={reason ?? undefined}
+      data-foretold={reason === null && props.warning != null ? "refused" : undefined}
+      title={reason ?? props.warning ?? undefined}
       aria-label={props.label}
       aria-pressed={props.pressed}
       onClick={() => void onClick()}

@@ -2000,8 +2000,15 @@ export interface components {
             position_counts: (number | null)[];
             /** @description While the axis is MOVING, else null. */
             setpoint_counts: (number | null)[];
+            /** @description Slope of the last 20 ms by the card's clock; null until its readings cover half of that. */
+            velocity_counts_per_s: (number | null)[];
             /** @description Card words that left the kernel's gate; negative: decreasing. */
             drive: number[];
+            /** @description Of a robot with a needle, by the zeroes of now; null without a valid frame of the sensor card. */
+            forces: {
+                hand_n: (number | null)[];
+                needle_n: (number | null)[];
+            } | null;
         };
         LogLine: {
             sequence: number;

@@ -1,38 +1,64 @@
 import type { Motor } from "../api/client";
 import { CodeLink } from "../design/CodeLink";
 import { useConsole } from "../state/store";
-import type { AxisFrame } from "../stream/decode";
-import { foretell } from "./foretell";
+import { type Foretelling, foretell } from "./foretell";
+import type { AxisWish } from "./pageKernel";
 import { useKernel } from "./useKernel";
 import "./foretelling.css";
 
-interface MoveForetellingProps {
+interface WishOfAxis {
   readonly motor: Motor;
-  readonly axis: AxisFrame;
-  readonly targetCounts: number;
+  readonly wish: AxisWish;
 }
 
 const shapes = { moves: "✓", held: "▲", refused: "✕" } as const;
 
-/** What the kernel would say to a move that was not sent yet; nothing of it leaves the page. */
-export function MoveForetelling({ motor, axis, targetCounts }: MoveForetellingProps) {
+/**
+ * What the kernel would say to wishes that were not sent yet; nothing of it leaves the page. Of several axes those are named
+ * that would not move.
+ */
+export function WishForetelling({ wishes }: { readonly wishes: readonly WishOfAxis[] }) {
   const frame = useConsole((state) => state.frame);
-  const foresight = useKernel((kernel) => kernel.foreseeMove(motor.slot, targetCounts));
-  if (frame === null || foresight === null) {
+  const foresights = useKernel((kernel) => wishes.map(({ motor, wish }) => kernel.foresee(motor.slot, wish)));
+  if (wishes.length === 0) return null;
+  if (frame === null || foresights === null) {
     return (
       <p className="foretelling" data-outcome="unknown" role="status">
         What the kernel would say cannot be told on this page.
       </p>
     );
   }
-  const told = foretell(frame, motor, axis, targetCounts, foresight);
+  const told = wishes.flatMap(({ motor, wish }, index) => {
+    const axis = frame.axes[motor.slot];
+    const foresight = foresights[index];
+    if (axis === undefined || foresight === undefined) return [];
+    return [{ motor, telling: foretell(frame, motor, axis, wish, foresight) }];
+  });
+  const hindered = told.filter(({ telling }) => telling.outcome !== "moves");
+  const shown = hindered.length > 0 ? hindered : told.slice(0, 1);
+  return shown.map(({ motor, telling }) => (
+    <Line
+      key={motor.slot}
+      telling={telling}
+      of={wishes.length === 1 ? null : hindered.length > 0 ? motor.title : "All axes"}
+    />
+  ));
+}
+
+interface LineProps {
+  readonly telling: Foretelling;
+  /** Whom it concerns, where that is not plain. */
+  readonly of: string | null;
+}
+
+function Line({ telling: { outcome, family, code, text, nextStep }, of }: LineProps) {
   return (
-    <p className="foretelling" data-outcome={told.outcome} role="status">
-      <i aria-hidden="true">{shapes[told.outcome]}</i>{" "}
+    <p className="foretelling" data-outcome={outcome} role="status">
+      <i aria-hidden="true">{shapes[outcome]}</i> {of !== null && `${of}: `}
       <strong>
-        <CodeLink family={told.family} code={told.code} />
+        <CodeLink family={family} code={code} />
       </strong>{" "}
-      {told.text} {told.nextStep !== "" && <span className="next-step">{told.nextStep}</span>}
+      {text} {nextStep !== "" && <span className="next-step">{nextStep}</span>}
     </p>
   );
 }

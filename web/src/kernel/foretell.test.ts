@@ -1,15 +1,16 @@
 import { describe, expect, it } from "vitest";
 import type { Motor } from "../api/client";
-import { catalog } from "../generated/catalog";
+import { catalog, entry } from "../generated/catalog";
 import type { AxisFrame, Frame } from "../stream/decode";
-import { foretell } from "./foretell";
-import type { Foresight } from "./pageKernel";
+import { foretell, foretellRefusal } from "./foretell";
+import type { AxisWish, Foresight } from "./pageKernel";
 
 const motor = { name: "lateral", unit: "mm", counts_per_unit: 100 } as Motor;
 const frame = { mode: "READY", cause: "NONE" } as Frame;
 const axis = { minCounts: -4947, maxCounts: 0 } as AxisFrame;
-const told = (foresight: Partial<Foresight>, shown: Partial<Frame> = {}) =>
-  foretell({ ...frame, ...shown }, motor, axis, 1240, {
+const move: AxisWish = { kind: "MOVE", targetCounts: 1240 };
+const told = (foresight: Partial<Foresight>, shown: Partial<Frame> = {}, wish: AxisWish = move) =>
+  foretell({ ...frame, ...shown }, motor, axis, wish, {
     ...{ verdict: "ACCEPTED", gate: "OPEN", mode: "MOTION" },
     ...foresight,
   });
@@ -59,5 +60,33 @@ describe("foretell", () => {
     });
     expect(told({}, { mode: "MOTION" }).text).toContain("move at once");
     expect(told({ gate: "SETPOINT" }).text).toContain("stands there already");
+  });
+
+  it("tells of homing, which has no target", () => {
+    const home: AxisWish = { kind: "HOME" };
+    expect(told({}, { mode: "MOTION" }, home).text).toContain("home at once");
+    expect(told({ verdict: "NO_SWITCH" }, {}, home)).toMatchObject({ outcome: "refused", code: "NO_SWITCH" });
+  });
+});
+
+describe("foretellRefusal", () => {
+  it("says nothing of what would be accepted, or when the kernel cannot be asked", () => {
+    expect(foretellRefusal(frame, "ACCEPTED")).toBeNull();
+    expect(foretellRefusal(frame, null)).toBeNull();
+    expect(foretellRefusal(null, "MODE")).toBeNull();
+  });
+
+  it("gives verdict, meaning and next step", () => {
+    const { meaning, next_step } = entry("verdict", "CAUSE_PRESENT");
+    expect(foretellRefusal(frame, "CAUSE_PRESENT")).toBe(
+      `The kernel would refuse it, CAUSE_PRESENT: ${meaning} ${next_step}`,
+    );
+  });
+
+  it("says by what the system is locked, and what to do about that", () => {
+    const locked = { ...frame, mode: "LOCKED", cause: "ESTOP" } as Frame;
+    expect(foretellRefusal(locked, "MODE")).toBe(
+      `The kernel would refuse it, MODE: The system is LOCKED by ESTOP. ${entry("cause", "ESTOP").next_step}`,
+    );
   });
 });

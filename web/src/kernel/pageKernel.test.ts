@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { catalog } from "../generated/catalog";
 import { bytesOf, instantiate, KernelBench, nativeVectors } from "./kernelBench";
-import { PageKernel } from "./pageKernel";
+import { type AxisWish, PageKernel } from "./pageKernel";
 
 const VECTORS = 10_000;
 const GATES_AT = 30;
@@ -92,7 +92,8 @@ describe("the kernel in WebAssembly", () => {
   });
 });
 
-describe("foreseeMove", () => {
+describe("foresee", () => {
+  const move = (targetCounts: number): AxisWish => ({ kind: "MOVE", targetCounts });
   const targets = [
     -1001,
     -991,
@@ -118,7 +119,7 @@ describe("foreseeMove", () => {
     const said = targets.map((target) => {
       const bench = new KernelBench(config);
       bench.ready(1, homed);
-      const foreseen = looking(bench).foreseeMove(1, target);
+      const foreseen = looking(bench).foresee(1, move(target));
       bench.press();
       const verdict = bench.move(1, target);
       expect(foreseen, `target ${target}`).toEqual({ verdict, gate: bench.gate(1), mode: "MOTION" });
@@ -136,8 +137,8 @@ describe("foreseeMove", () => {
       bench.move(1, 80);
     }
     const kernel = looking(bench);
-    expect(kernel.foreseeMove(1, 90).verdict).toBe("ACCEPTED");
-    expect(kernel.foreseeMove(1, 91).verdict).toBe("RANGE");
+    expect(kernel.foresee(1, move(90)).verdict).toBe("ACCEPTED");
+    expect(kernel.foresee(1, move(91)).verdict).toBe("RANGE");
     expect([bench.move(1, 90), bench.move(1, 91)]).toEqual(["ACCEPTED", "RANGE"]);
   });
 
@@ -146,8 +147,8 @@ describe("foreseeMove", () => {
     bench.atSwitch.add(2);
     bench.ready(2, true);
     const kernel = looking(bench);
-    expect(kernel.foreseeMove(2, 500)).toEqual({ verdict: "ACCEPTED", gate: "HARD_LIMIT", mode: "MOTION" });
-    expect(kernel.foreseeMove(2, -500)).toEqual({ verdict: "ACCEPTED", gate: "OPEN", mode: "MOTION" });
+    expect(kernel.foresee(2, move(500))).toEqual({ verdict: "ACCEPTED", gate: "HARD_LIMIT", mode: "MOTION" });
+    expect(kernel.foresee(2, move(-500))).toEqual({ verdict: "ACCEPTED", gate: "OPEN", mode: "MOTION" });
     bench.press();
     expect([bench.move(2, 500), bench.gate(2)]).toEqual(["ACCEPTED", "HARD_LIMIT"]);
   });
@@ -158,15 +159,15 @@ describe("foreseeMove", () => {
     bench.press();
     bench.tick({ kind: "STOP" });
     expect([bench.mode, bench.pressed]).toEqual(["READY", true]);
-    expect(looking(bench).foreseeMove(1, 10)).toMatchObject({ verdict: "ACCEPTED", mode: "MOTION" });
-    expect(looking(bench).foreseeMove(3, 10)).toMatchObject({ verdict: "DISABLED", mode: "MOTION" });
+    expect(looking(bench).foresee(1, move(10))).toMatchObject({ verdict: "ACCEPTED", mode: "MOTION" });
+    expect(looking(bench).foresee(3, move(10))).toMatchObject({ verdict: "DISABLED", mode: "MOTION" });
   });
 
   it("sees no way out of LOCKED", () => {
     const bench = new KernelBench(config);
     bench.ticks(5);
     expect([bench.mode, bench.cause]).toEqual(["LOCKED", "BOOT"]);
-    expect(looking(bench).foreseeMove(1, 10)).toMatchObject({ verdict: "MODE", mode: "LOCKED" });
+    expect(looking(bench).foresee(1, move(10))).toMatchObject({ verdict: "MODE", mode: "LOCKED" });
   });
 
   it("sees that the loss of a required card keeps MOTION from beginning", () => {
@@ -174,7 +175,7 @@ describe("foreseeMove", () => {
     bench.ready(1, true);
     bench.silent.add(8);
     bench.ticks(10);
-    expect(looking(bench).foreseeMove(1, 10)).toMatchObject({ verdict: "MODE", mode: "READY" });
+    expect(looking(bench).foresee(1, move(10))).toMatchObject({ verdict: "MODE", mode: "READY" });
     bench.press();
     expect([bench.mode, bench.move(1, 10)]).toEqual(["READY", "MODE"]);
   });
@@ -183,7 +184,34 @@ describe("foreseeMove", () => {
     const bench = new KernelBench(config);
     bench.ticks(5);
     for (const slot of [8, 9, 10, 4294967295])
-      expect(looking(bench).foreseeMove(slot, 0).verdict).toBe("AXIS");
+      expect(looking(bench).foresee(slot, move(0)).verdict).toBe("AXIS");
+  });
+});
+
+describe("foresee homing", () => {
+  const home: AxisWish = { kind: "HOME" };
+
+  it.each([1, 2, 3])("says before the pedal is pressed what the kernel says to HOME of axis %i", (slot) => {
+    const bench = new KernelBench(config);
+    bench.ready(2, false);
+    const foreseen = looking(bench).foresee(slot, home);
+    bench.press();
+    const [verdict] = bench.tick({ kind: "HOME", slot });
+    expect(foreseen).toEqual({ verdict, gate: bench.gate(slot), mode: "MOTION" });
+  });
+
+  it("has seen axes with and without a switch, enabled and not", () => {
+    const bench = new KernelBench(config);
+    bench.ready(2, false);
+    bench.tick({ kind: "ENABLE", slot: 1 });
+    const verdicts = [1, 2, 3].map((slot) => looking(bench).foresee(slot, home).verdict);
+    expect(verdicts).toEqual(["NO_SWITCH", "ACCEPTED", "DISABLED"]);
+  });
+
+  it("sees no way out of LOCKED", () => {
+    const bench = new KernelBench(config);
+    bench.ticks(5);
+    expect(looking(bench).foresee(2, home)).toMatchObject({ verdict: "MODE", mode: "LOCKED" });
   });
 });
 

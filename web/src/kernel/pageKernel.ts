@@ -14,15 +14,18 @@ interface Exports extends WebAssembly.Exports {
   readonly state_bytes: () => number;
   readonly state_is_sound: () => number;
   readonly judge: (kind: number, slot: number, targetCounts: number) => number;
-  readonly foresee_move: (slot: number, targetCounts: number) => number;
+  readonly foresee: (kind: number, slot: number, targetCounts: number) => number;
   readonly gate: (slot: number) => number;
   readonly walk_gates: (slot: number, hasTarget: number, targetCounts: number) => number;
 }
 
-/** The kernel's answer to a move once the pedal is held, if nothing else changes until then. */
+/** What an axis is wanted to do while the pedal is held. */
+export type AxisWish = { readonly kind: "MOVE"; readonly targetCounts: number } | { readonly kind: "HOME" };
+
+/** The kernel's answer to a wish once the pedal is held, if nothing else changes until then. */
 export interface Foresight {
   readonly verdict: CodeName<"verdict">;
-  /** In the tick in which it was judged; what would keep an accepted move from its drive. */
+  /** In the tick in which it was judged; what would keep what was accepted from its drive. */
   readonly gate: CodeName<"gate">;
   /** In which it was judged: MOTION unless the press of the pedal would not lead there. */
   readonly mode: CodeName<"mode">;
@@ -53,8 +56,9 @@ export class PageKernel {
     );
   }
 
-  foreseeMove(slot: number, targetCounts: number): Foresight {
-    const answer = this.calls.foresee_move(slot, targetCounts);
+  foresee(slot: number, wish: AxisWish): Foresight {
+    const target = wish.kind === "MOVE" ? wish.targetCounts : 0;
+    const answer = this.calls.foresee(entry("request", wish.kind).number, slot, target);
     return {
       verdict: nameOf("verdict", answer & 0xff),
       gate: nameOf("gate", (answer >>> 8) & 0xff),

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Motor, Proposal, Robot } from "../api/client";
-import { homingPart, homingSteps, isOpen, openHoming, openPath } from "./proposals";
+import { homingPart, homingSteps, isOpen, nextWishes, openHoming, openPath } from "./proposals";
 
 const robot = {
   home_steps: [
@@ -83,5 +83,45 @@ describe("homingSteps", () => {
     const one = { ...all, axes: ["yaw", "pitch"] };
     expect(homingSteps(one, robot).map(({ name }) => name)).toEqual(["turn"]);
     expect(homingSteps({ ...all, step: null, axes: ["yaw"] }, robot)).toEqual([]);
+  });
+});
+
+describe("nextWishes", () => {
+  const motors = ["insertion", "yaw", "pitch", "head"].map((name, slot) => ({ name, slot }) as Motor);
+  const told = (proposal: Partial<Proposal>) =>
+    nextWishes({ ...all, slot: null, target_counts: null, ...proposal } as Proposal, motors, robot).map(
+      ({ motor: { name }, wish }) => [name, wish],
+    );
+
+  it("is the move of one axis", () => {
+    expect(told({ kind: "move", slot: 1, target_counts: -30 })).toEqual([
+      ["yaw", { kind: "MOVE", targetCounts: -30 }],
+    ]);
+  });
+
+  it("is where the axes of a path come to rest, in the order of the motors", () => {
+    const ends = [
+      { slot: 3, target_counts: 4 },
+      { slot: 0, target_counts: 0 },
+    ];
+    expect(told({ kind: "path", ends })).toEqual([
+      ["insertion", { kind: "MOVE", targetCounts: 0 }],
+      ["head", { kind: "MOVE", targetCounts: 4 }],
+    ]);
+    expect(told({ kind: "path" })).toEqual([]);
+  });
+
+  it("is the homing that a step begins with, not that of the steps after it", () => {
+    expect(told({ step: "turn" })).toEqual([
+      ["yaw", { kind: "HOME" }],
+      ["pitch", { kind: "HOME" }],
+    ]);
+    expect(told({ step: null, axes: ["pitch"] })).toEqual([["pitch", { kind: "HOME" }]]);
+  });
+
+  it("is nothing of a step that moves axes, nor of what decides as it goes", () => {
+    expect(told({ step: "rest" })).toEqual([]);
+    expect(told({ kind: "sweep" })).toEqual([]);
+    expect(told({ kind: "biopsy" })).toEqual([]);
   });
 });

@@ -1,5 +1,6 @@
 /** What can be told of a proposal without its panel. */
 import type { Motor, Proposal, Robot } from "../api/client";
+import type { AxisWish } from "../kernel/pageKernel";
 
 const openStates: ReadonlySet<Proposal["state"]> = new Set([
   "drafted",
@@ -53,4 +54,32 @@ export function homingSteps(homing: Proposal, robot: Robot): readonly StepLine[]
     taken: step.axes.every((axis) => homing.axes.includes(axis)),
   }));
   return steps.filter((step) => step.taken).map(({ name, title, place }) => ({ name, title, place }));
+}
+
+/**
+ * What a proposal will ask the kernel for, axis by axis: its move, where the axes of its path come to rest, or the homing
+ * that its step begins with. Nothing of a sweep or a biopsy, which decide as they go.
+ */
+export function nextWishes(
+  proposal: Proposal,
+  motors: readonly Motor[],
+  robot: Robot | null,
+): { readonly motor: Motor; readonly wish: AxisWish }[] {
+  const wishes = wishesOf(proposal, motors, robot);
+  return motors.flatMap((motor) => {
+    const wish = wishes.get(motor.slot);
+    return wish === undefined ? [] : [{ motor, wish }];
+  });
+}
+
+function wishesOf(proposal: Proposal, motors: readonly Motor[], robot: Robot | null): Map<number, AxisWish> {
+  const { kind, slot, target_counts, ends = [] } = proposal;
+  if (kind === "move" && slot !== null && target_counts !== null)
+    return new Map([[slot, { kind: "MOVE", targetCounts: target_counts }]]);
+  if (kind === "path")
+    return new Map(ends.map((end) => [end.slot, { kind: "MOVE", targetCounts: end.target_counts }]));
+  const step = robot?.home_steps.find(({ name }) => name === proposal.step);
+  if (kind !== "home" || (step !== undefined && step.kind !== "home")) return new Map();
+  const homing = motors.filter((motor) => homingPart(proposal, robot, motor) === "homing");
+  return new Map(homing.map((motor) => [motor.slot, { kind: "HOME" }]));
 }

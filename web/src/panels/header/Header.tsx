@@ -1,7 +1,7 @@
 import { AlarmSign } from "../../design/AlarmSign";
-import { CommandButton } from "../../design/CommandButton";
 import { NoticeText } from "../../design/NoticeText";
 import { entry } from "../../generated/catalog";
+import { KernelButton } from "../../kernel/KernelButton";
 import { alarmOfMode } from "../../state/alarms";
 import { unlock } from "../../state/commands";
 import { type Freshness, formatAge } from "../../state/freshness";
@@ -30,14 +30,15 @@ export function Header() {
         <div className="status-data">
           <Mode glance={known} />
           {loggedIn && (
-            <CommandButton
+            <KernelButton
+              request="RESET"
               need="holder"
               className="unlock"
               off={known?.mode === "LOCKED" ? null : "The system is not locked."}
               onCommand={unlock}
             >
               Unlock
-            </CommandButton>
+            </KernelButton>
           )}
           <Estop glance={known} />
           <Pedal glance={known} />

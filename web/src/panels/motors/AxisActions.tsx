@@ -1,7 +1,11 @@
 import type { Motor } from "../../api/client";
 import { CommandButton } from "../../design/CommandButton";
+import { foretellRefusal } from "../../kernel/foretell";
+import { KernelButton } from "../../kernel/KernelButton";
+import { useKernel } from "../../kernel/useKernel";
 import { act, propose } from "../../state/commands";
 import type { HomingPart } from "../../state/proposals";
+import { useConsole } from "../../state/store";
 import type { AxisFrame } from "../../stream/decode";
 
 interface AxisActionsProps {
@@ -14,18 +18,21 @@ interface AxisActionsProps {
 
 export function AxisActions({ motor, axis, homing, onOverride }: AxisActionsProps) {
   const { slot, title, has_switch } = motor;
+  const homeRefusal = useHomeRefusal(slot);
   const disabled = axis.state === "DISABLED";
   const faulted = axis.state === "FAULTED";
   return (
     <div className="axis-actions">
-      <CommandButton
+      <KernelButton
+        request="ENABLE"
+        slot={slot}
         need="holder"
         label={`Enable ${title}`}
         off={disabled ? null : faulted ? "Clear the fault first." : "The axis is enabled."}
         onCommand={() => act(slot, "enable")}
       >
         Enable
-      </CommandButton>
+      </KernelButton>
       <CommandButton
         need="holder"
         label={`Disable ${title}`}
@@ -39,19 +46,29 @@ export function AxisActions({ motor, axis, homing, onOverride }: AxisActionsProp
         label={`${homing === null ? "Go Home" : homingWords[homing]} ${title}`}
         className={homing === "homing" ? "homing" : ""}
         off={whyNotHome(motor, homing)}
+        warning={homeRefusal}
         onCommand={() => propose({ kind: "home", slot })}
       >
         {homing === null ? "Go Home" : homingWords[homing]}
       </CommandButton>
-      <CommandButton
+      <KernelButton
+        request="SET_HOME"
+        slot={slot}
         need="holder"
         label={`Set Home ${title}`}
         onCommand={() => (has_switch ? onOverride() : act(slot, "set-home"))}
       >
         Set Home
-      </CommandButton>
+      </KernelButton>
     </div>
   );
+}
+
+/** Why the kernel would refuse to home the axis once the pedal is held; null when it would not. */
+function useHomeRefusal(slot: number): string | null {
+  const frame = useConsole((state) => state.frame);
+  const foresight = useKernel((kernel) => kernel.foresee(slot, { kind: "HOME" }));
+  return foretellRefusal(frame, foresight?.verdict ?? null);
 }
 
 const homingWords: Record<HomingPart, string> = { homing: "Homing..", waiting: "Waits" };

@@ -2,10 +2,10 @@ import { useCallback, useState } from "react";
 import type { Motor } from "../../api/client";
 import { AlarmSign } from "../../design/AlarmSign";
 import { CodeLink } from "../../design/CodeLink";
-import { CommandButton } from "../../design/CommandButton";
 import { Refusal } from "../../design/Refusal";
 import { entry } from "../../generated/catalog";
-import { MoveForetelling } from "../../kernel/MoveForetelling";
+import { KernelButton } from "../../kernel/KernelButton";
+import { WishForetelling } from "../../kernel/WishForetelling";
 import { act } from "../../state/commands";
 import type { HomingPart } from "../../state/proposals";
 import { useConsole } from "../../state/store";
@@ -67,7 +67,9 @@ export function AxisRow({ motor, homing }: AxisRowProps) {
       <AxisActions motor={motor} axis={axis} homing={homing} onOverride={() => setOverriding(true)} />
       <div className="axis-words">
         {overriding && <OverrideSwitch motor={motor} onClose={leaveSwitch} />}
-        {wished !== null && <MoveForetelling motor={motor} axis={axis} targetCounts={wished} />}
+        {wished !== null && (
+          <WishForetelling wishes={[{ motor, wish: { kind: "MOVE", targetCounts: wished } }]} />
+        )}
         {fault === null ? (
           <DriveWords motor={motor} axis={axis} />
         ) : (
@@ -181,13 +183,15 @@ function FaultWords({ motor, fault }: { readonly motor: Motor; readonly fault: F
         </strong>{" "}
         {fault.meaning} <em>Likely: {fault.cause}</em> <span className="next-step">{fault.nextStep}</span>
       </p>
-      <CommandButton
+      <KernelButton
+        request="CLEAR_FAULT"
+        slot={motor.slot}
         need="holder"
         label={`Clear ${motor.title}`}
         onCommand={() => act(motor.slot, "clear-fault")}
       >
         Clear
-      </CommandButton>
+      </KernelButton>
     </div>
   );
 }

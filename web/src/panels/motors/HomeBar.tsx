@@ -1,8 +1,11 @@
 import { useState } from "react";
-import { type AxisVerdict, api } from "../../api/client";
+import { type AxisVerdict, api, type Motor } from "../../api/client";
 import { CommandButton } from "../../design/CommandButton";
 import { Confirm } from "../../design/Confirm";
 import { VerdictList } from "../../design/VerdictList";
+import { foretellRefusal } from "../../kernel/foretell";
+import { useKernel } from "../../kernel/useKernel";
+import "../../kernel/foretelling.css";
 import { propose } from "../../state/commands";
 import { type Notice, noticeOfProblem } from "../../state/notice";
 import { openHoming } from "../../state/proposals";
@@ -72,8 +75,8 @@ function ZeroAll({ off }: { readonly off: string | null }) {
             true. An axis with a switch is left alone: home it.
           </p>
           <ul>
-            {motors.map(({ slot, title }) => (
-              <li key={slot}>{title}</li>
+            {motors.map((motor) => (
+              <ZeroLine key={motor.slot} motor={motor} />
             ))}
           </ul>
         </Confirm>
@@ -85,5 +88,19 @@ function ZeroAll({ off }: { readonly off: string | null }) {
         <VerdictList title="Zero all" verdicts={[]} notice={zero.notice} onClose={close} />
       )}
     </>
+  );
+}
+
+function ZeroLine({ motor: { slot, title } }: { readonly motor: Motor }) {
+  const frame = useConsole((state) => state.frame);
+  const refusal = foretellRefusal(
+    frame,
+    useKernel((kernel) => kernel.judge("SET_HOME", slot)),
+  );
+  return (
+    <li>
+      {title}
+      {refusal !== null && <span className="foretelling" data-outcome="refused">{` ✕ ${refusal}`}</span>}
+    </li>
   );
 }

@@ -34,7 +34,9 @@ const capture: Capture = {
   begun_us: [0, 1010, 3000],
   position_counts: [100, null, 120],
   setpoint_counts: [110, 112, null],
+  velocity_counts_per_s: [null, null, 50],
   drive: [5, 6, 7],
+  forces: null,
 };
 
 /** Without what floating point adds. */
@@ -85,6 +87,23 @@ describe("captureSheet", () => {
   });
 });
 
+describe("captureSheet of velocity and force", () => {
+  it("has the velocity in the operator's unit, and no force where there is no needle", () => {
+    const sheet = captureSheet(capture, motor(10));
+    expect(chart("Velocity", sheet)?.lines[0]?.least).toEqual([null, null, 5]);
+    expect(chart("Force", sheet)).toBeUndefined();
+  });
+
+  it("has both forces of a robot with a needle", () => {
+    const forces = { hand_n: [1, 2, 3], needle_n: [null, 0.5, 0.6] };
+    const lines = chart("Force", captureSheet({ ...capture, forces }, motor(10)))?.lines ?? [];
+    expect(lines.map(({ label, least }) => [label, least])).toEqual([
+      ["hand", [1, 2, 3]],
+      ["needle", [null, 0.5, 0.6]],
+    ]);
+  });
+});
+
 describe("between", () => {
   it("cuts every column at both times, which count", () => {
     const part = between(captureSheet(capture, motor(10)), 0.011, 0.013);
@@ -102,9 +121,9 @@ describe("csvOf", () => {
     const table = csvOf(captureSheet(capture, motor(10))).split("\n");
     expect(table[0]).toBe(
       "tick,time (s),Position: setpoint (mm),Position: measured (mm),Error: setpoint less measured (mm)," +
-        "Drive: sent (words),Since the tick before: real time (µs)",
+        "Velocity: of 20 ms (mm/s),Drive: sent (words),Since the tick before: real time (µs)",
     );
-    expect(table[2]).toBe("11,0.011,11.2,,,6,1010");
+    expect(table[2]).toBe("11,0.011,11.2,,,,6,1010");
     const part = between(captureSheet(capture, motor(10)), 0, 1);
     expect(csvOf(part).split("\n")[0]).toBe(table[0]);
     const sheet = historySheet(rows, motor(100));

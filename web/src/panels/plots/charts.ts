@@ -98,7 +98,12 @@ export function captureSheet(capture: Capture, motor: Motor): Sheet {
         ...lengths("Error", unit, perCount),
         lines: [single("setpoint less measured", "measured", differences(setpoint, position))],
       },
+      {
+        ...speeds(unit, perCount),
+        lines: [single("of 20 ms", "measured", times(capture.velocity_counts_per_s))],
+      },
       { ...drives, lines: [single("sent", "measured", capture.drive)] },
+      ...forceCharts(capture.forces, single),
       {
         title: "Since the tick before",
         unit: "µs",
@@ -108,6 +113,20 @@ export function captureSheet(capture: Capture, motor: Motor): Sheet {
       },
     ],
   };
+}
+
+/** Force of a robot with a needle; no chart of another one. */
+function forceCharts(
+  captured: Capture["forces"],
+  single: (label: string, ink: Ink, column: Column) => Line,
+): Chart[] {
+  if (captured === null) return [];
+  return [
+    {
+      ...forces,
+      lines: [single("hand", "wish", captured.hand_n), single("needle", "measured", captured.needle_n)],
+    },
+  ];
 }
 
 function lengths(title: string, unit: string, perCount: number): Omit<Chart, "lines"> {

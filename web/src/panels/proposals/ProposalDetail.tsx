@@ -8,7 +8,7 @@ import { proposalHash } from "../../state/route";
 import { useConsole } from "../../state/store";
 import { localDate, localTime } from "../../units/time";
 import { ProfilePlots } from "./ProfilePlots";
-import { ProposalCommands, StateChip, sourceWord, WaitingMove, Wish } from "./ProposalParts";
+import { ProposalCommands, StateChip, sourceWord, WaitingWish, Wish } from "./ProposalParts";
 import { progressOf } from "./progress";
 import { usePlan } from "./usePlan";
 
@@ -33,7 +33,7 @@ export function ProposalDetail({ proposal }: { readonly proposal: Proposal }) {
         <StateChip state={proposal.state} />
       </p>
       <Facts proposal={proposal} plan={plan} />
-      <WaitingMove proposal={proposal} motor={motor} />
+      <WaitingWish proposal={proposal} />
       <ProgressLine proposal={proposal} motor={motor} plan={plan} />
       {notice !== null && (
         <p className="panel-notice" role="alert">

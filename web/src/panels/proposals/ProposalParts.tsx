@@ -1,8 +1,8 @@
 import type { Motor, Proposal } from "../../api/client";
 import { CommandButton } from "../../design/CommandButton";
-import { MoveForetelling } from "../../kernel/MoveForetelling";
+import { WishForetelling } from "../../kernel/WishForetelling";
 import { abort, approve, reject } from "../../state/commands";
-import { isOpen } from "../../state/proposals";
+import { isOpen, nextWishes } from "../../state/proposals";
 import { useConsole } from "../../state/store";
 import { formatCounts } from "../../units/units";
 
@@ -72,13 +72,11 @@ export function ProposalCommands({ proposal }: { readonly proposal: Proposal }) 
 
 const waiting: ReadonlySet<State> = new Set(["checked", "approved", "paused"]);
 
-/** What the kernel would say to a move that waits, for the approval or the pedal. */
-export function WaitingMove({ proposal, motor }: WishProps) {
-  const axis = useConsole((state) => (motor === undefined ? undefined : state.frame?.axes[motor.slot]));
-  const { kind, state, target_counts } = proposal;
-  if (kind !== "move" || !waiting.has(state) || target_counts == null) return null;
-  if (motor === undefined || axis === undefined) return null;
-  return <MoveForetelling motor={motor} axis={axis} targetCounts={target_counts} />;
+/** What the kernel would say to what waits, for the approval or the pedal. */
+export function WaitingWish({ proposal }: { readonly proposal: Proposal }) {
+  const motors = useConsole((state) => state.motors);
+  const robot = useConsole((state) => state.robot);
+  return waiting.has(proposal.state) && <WishForetelling wishes={nextWishes(proposal, motors, robot)} />;
 }
 
 function capital(word: string): string {

@@ -7,7 +7,7 @@ import { proposalHash } from "../../state/route";
 import { useConsole } from "../../state/store";
 import { localTime } from "../../units/time";
 import { FirstSteps, FirstStepsButton } from "../first/FirstSteps";
-import { ProposalCommands, StateChip, sourceWord, WaitingMove, Wish } from "./ProposalParts";
+import { ProposalCommands, StateChip, sourceWord, WaitingWish, Wish } from "./ProposalParts";
 import "./proposals.css";
 
 const MOST_SHOWN = 20;
@@ -59,7 +59,7 @@ function ProposalItem({
           <span className="next-step">{entry("verdict", proposal.verdict).next_step}</span>
         )}
       </span>
-      <WaitingMove proposal={proposal} motor={motor} />
+      <WaitingWish proposal={proposal} />
       <span className="proposal-foot">
         <span className="proposal-from">
           {proposal.author} · {sourceWord(proposal)} ·{" "}

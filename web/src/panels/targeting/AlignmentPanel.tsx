@@ -150,7 +150,9 @@ function Hindrances({ alignment }: { readonly alignment: Alignment }) {
   const frame = useConsole((state) => state.frame);
   const lines = axisLines(alignment, motors);
   const verdicts = useKernel((kernel) =>
-    lines.map(({ motor, counts }) => kernel.foreseeMove(motor.slot, counts).verdict),
+    lines.map(
+      ({ motor, counts }) => kernel.foresee(motor.slot, { kind: "MOVE", targetCounts: counts }).verdict,
+    ),
   );
   const found = hindrances(lines, verdicts, (slot) => frame?.axes[slot]?.homed ?? false);
   if (found.length === 0) return null;

@@ -1,0 +1,20 @@
+import type { ComponentProps } from "react";
+import { CommandButton } from "../design/CommandButton";
+import type { CodeName } from "../generated/catalog";
+import { useConsole } from "../state/store";
+import { foretellRefusal } from "./foretell";
+import { useKernel } from "./useKernel";
+
+interface KernelButtonProps extends Omit<ComponentProps<typeof CommandButton>, "warning"> {
+  /** What pressing it asks the kernel for, at once. */
+  readonly request: Exclude<CodeName<"request">, "MOVE" | "HOME">;
+  /** Of the axis; absent when it concerns the system. */
+  readonly slot?: number;
+}
+
+/** A command for the kernel: says beforehand when the kernel would refuse it now. It can be pressed all the same. */
+export function KernelButton({ request, slot, ...command }: KernelButtonProps) {
+  const frame = useConsole((state) => state.frame);
+  const verdict = useKernel((kernel) => kernel.judge(request, slot ?? 0));
+  return <CommandButton {...command} warning={foretellRefusal(frame, verdict)} />;
+}
