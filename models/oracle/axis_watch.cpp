@@ -93,7 +93,8 @@ void AxisWatch::mark_press(const Observation& seen) noexcept {
 
 bool AxisWatch::take_in(const Observation& seen, const Echo& echo) noexcept {
   const auto slot = static_cast<std::size_t>(slot_);
-  if (seen.transaction_failed || !seen.received[slot] || !wire::is_intact(seen.from_card[slot])) {
+  arrived_ = !seen.transaction_failed && seen.received[slot] && wire::is_intact(seen.from_card[slot]);
+  if (!arrived_) {
     return false;
   }
   const wire::Reading reading = wire::read(seen.from_card[slot]);
@@ -150,8 +151,9 @@ void AxisWatch::see(const Observation& seen, const Echo& echo, bool in_motion) n
 
 void AxisWatch::forget(std::uint32_t tick) noexcept {
   due_ = {};
-  bad_frames_ = valid_ ? 0 : 1;
-  heard_ = false;
+  // To one who knows nothing the frame of this tick is the card's first, were it an old one.
+  bad_frames_ = arrived_ ? 0 : 1;
+  heard_ = arrived_;
   followed_ = valid_;
   faulted_ = false;
   fault_code_ = 0;

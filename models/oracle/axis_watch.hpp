@@ -132,6 +132,7 @@ class AxisWatch {
   std::int8_t slot_;
 
   bool valid_ = false;
+  bool arrived_ = false;  /**< a whole frame came, be it an old one */
   bool heard_ = false;    /**< a valid frame, since start or since the card was lost */
   bool followed_ = false; /**< a valid frame, ever */
   std::uint32_t bad_frames_ = 0;

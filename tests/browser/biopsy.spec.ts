@@ -26,3 +26,36 @@ test("forces are shown and zeroed, membranes set and reset", async ({ robot }) =
   await panel.getByRole("button", { name: "Propose biopsy" }).click();
   await expect(panel.getByRole("alert")).toContainText("Refused: DISABLED");
 });
+
+test("a hand pushes the needle through its first membrane, and letting the pedal go holds it", async ({
+  robot,
+}) => {
+  test.setTimeout(240_000);
+  const [rotation, insertion] = [robot.axis("Needle rotation"), robot.axis("Needle insertion")];
+  await robot.unlockRobot();
+  await rotation.setHome();
+  for (const axis of [rotation, insertion]) await axis.enable();
+  await insertion.press("Go Home");
+  await robot.latchPedal();
+  await expect(robot.proposal(1)).toContainText("done", { timeout: 60_000 });
+  const panel = robot.panel("Biopsy");
+  await panel.getByRole("button", { name: "Zero forces" }).click();
+  await panel.getByLabel("Target x, y, z, mm").fill("3, -2, 70");
+  await panel.getByRole("button", { name: "Propose biopsy" }).click();
+  await expect(robot.proposal(2)).toContainText("executing");
+  await expect(robot.panel("Motors")).toContainText("The mode cooperative biopsy drives the setpoints");
+
+  await robot.panel("Bench").getByText("More faults").click();
+  const hand = robot.panel("Bench").getByRole("group", { name: /^Sensor .*, input 2$/ });
+  await hand.getByRole("spinbutton").fill("565");
+  await hand.getByRole("button", { name: "Press" }).click();
+  const membranes = panel.getByRole("list", { name: "Membranes" }).getByRole("listitem");
+  await expect(membranes.first()).toHaveText(/^25 mm: passed, found at 2[3-7]\.\d mm$/, { timeout: 120_000 });
+
+  await robot.latch.click();
+  await expect(robot.proposal(2)).toContainText("paused");
+  const held = await insertion.restingCounts();
+  expect(await insertion.restingCounts()).toBe(held);
+  await robot.button("Abort proposal 2").click();
+  await expect(robot.proposal(2)).toContainText("aborted");
+});

@@ -67,6 +67,58 @@ test("keys alone find a code, add a user, read the audit and change a password",
   await expect(change.getByRole("status")).toHaveText("The password is changed.");
 });
 
+test("keys alone set a target, capture ticks, reject a proposal and turn the picture", async ({
+  robot,
+  page,
+}) => {
+  const keyboard = new Keyboard(page);
+  const axis = robot.axis("Probe rotation");
+  await robot.unlockRobot();
+  await axis.setHome();
+  await axis.enable();
+  const open = async (name: string, panel: string): Promise<void> => {
+    await keyboard.press(page.getByRole("link", { name, exact: true }));
+    await expect(robot.panel(panel)).toBeVisible();
+  };
+  await open("Targeting", "Entry, target and probe");
+  for (const [of, text] of [
+    ["Entry R", "8"],
+    ["Entry A", "250"],
+    ["Entry S", "70"],
+    ["Target R", "5"],
+    ["Target A", "200"],
+    ["Target S", "60"],
+  ] as const) {
+    await keyboard.reach(page.getByRole("textbox", { name: `${of}, scanner RAS, mm` }));
+    await page.keyboard.press("Control+A");
+    await page.keyboard.type(text);
+  }
+  await keyboard.press(robot.button("Set target"));
+  await expect(robot.panel("Entry, target and probe")).toContainText("As received.");
+
+  await open("Plots", "Capture");
+  await keyboard.press(robot.button("Capture now"));
+  await expect(page.getByRole("status", { name: "Capture state" })).toContainText("ticks,");
+
+  await open("Proposals", "Trajectory file");
+  const rows = Buffer.from("time [s],probe_rotation [rad]\n0,0.05\n1,0.2\n2,0.1\n");
+  // The browser's own dialog for files is not of the page.
+  await robot
+    .panel("Trajectory file")
+    .getByLabel("Trajectory file")
+    .setInputFiles({ name: "wave.csv", mimeType: "text/csv", buffer: rows });
+  await keyboard.press(robot.button("Propose it"));
+  await keyboard.press(robot.button("Reject proposal 1"));
+  await expect(robot.panel("Proposal 1")).toContainText("Rejected by admin");
+
+  await keyboard.press(page.getByRole("link", { name: "Show in 3D" }));
+  const picture = robot.panel("3D").getByRole("img", { name: /^3D: .*target 5\.0, 200\.0, 60\.0/ });
+  await expect(picture).toBeVisible({ timeout: 40_000 });
+  const before = await picture.screenshot();
+  await keyboard.press(robot.button("Coronal, from the front"));
+  await expect.poll(async () => before.equals(await picture.screenshot())).toBe(false);
+});
+
 test("a button that was pressed by key keeps the focus while the app answers", async ({ robot, page }) => {
   const keyboard = new Keyboard(page);
   await robot.unlockRobot();
@@ -83,8 +135,18 @@ test("every stop of the Tab key is ringed and not hidden", async ({ robot, page 
   const keyboard = new Keyboard(page);
   await robot.unlockRobot();
   await robot.axis("Lateral").enable();
-  for (const name of ["Robot", "Codes", "Users", "Account"] as const) {
+  for (const [name, panel] of [
+    ["Robot", "Motors"],
+    ["Targeting", "Registration"],
+    ["Proposals", "Trajectory file"],
+    ["Plots", "Capture"],
+    ["3D", "3D"],
+    ["Codes", "Codes"],
+    ["Users", "Users"],
+    ["Account", "Account"],
+  ] as const) {
     await robot.open(name);
+    await expect(robot.panel(panel)).toBeVisible();
     const stops = await keyboard.stops();
     expect(stops.length, name).toBeGreaterThan(8);
     expect(

@@ -35,3 +35,25 @@ test("panels are moved and folded by keys, and come back so for that user alone"
   await other.logIn("ann", password);
   await expect.poll(() => titles(other.page)).toEqual(before);
 });
+
+test.describe("under fingers", () => {
+  test.use({ hasTouch: true, isMobile: true, viewport: { width: 1280, height: 800 } });
+
+  test("everything that is pressed is 44 px high, and no page scrolls sideways", async ({ robot, page }) => {
+    await robot.panel("Bench").getByText("More faults").click();
+    for (const name of ["Robot", "Targeting", "Proposals", "Plots", "3D", "Codes", "Users"] as const) {
+      await robot.open(name);
+      await expect(page.locator("main .panel").first()).toBeVisible();
+      const low = await page
+        .locator("button:visible, select:visible")
+        .evaluateAll((controls) =>
+          controls
+            .filter((control) => control.getBoundingClientRect().height < 44)
+            .map((control) => control.getAttribute("aria-label") ?? control.textContent),
+        );
+      expect(low, name).toEqual([]);
+      const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+      expect(wide, name).toBeLessThanOrEqual(1280);
+    }
+  });
+});

@@ -245,6 +245,19 @@ TEST(Campaign, P1_a_lost_card_is_counted_from_the_end_of_the_damage_to_its_kind)
   }
 }
 
+// To a kernel that forgot everything the frame of that tick is the card's first, though it repeats the one
+// before.
+TEST(Campaign, P1_a_kernel_whose_memory_was_damaged_counts_missing_frames_from_the_next_tick) {
+  const Fault deaf{15461, FaultKind::kCardDeaf, 4, 6, 985674123, 0};
+  const Fault flips{15464, FaultKind::kStateBitFlips, 8, 1, 3758842769, 0};
+  for (const std::uint32_t ticks : {1u, 5u, 20u}) {
+    const Fault drops{15465, FaultKind::kFrameDropped, 4, ticks, 3613572726, 0};
+    const Outcome outcome = run(Case{1, 5292, 15500, {deaf, flips, drops}});
+    EXPECT_FALSE(outcome.failure) << outcome.failure->reason << ", frames dropped " << ticks;
+    EXPECT_GT(outcome.totals.axis_faults[ILK_FAULT_CARD_LOST], 0u);
+  }
+}
+
 TEST(Campaign, Case_runs_twice_to_the_same_bits) {
   Case plan = make_case(3, 1);
   plan.ticks = 5000;
