@@ -138,6 +138,10 @@ scenarios: build ## Kill, freeze, starve and flood the real processes, 200 times
 bench: build ## Measure step, loop, reaction, link and rate beside cyclictest: [DURATION=10] [RATE_SECONDS=2]
 	@$(measure) bench python verification/bench/run.py --duration $(or $(DURATION),10) --rate-seconds $(or $(RATE_SECONDS),2)
 
+.PHONY: bench-watch
+bench-watch: build ## Watch the loop of one set-up for an hour beside cyclictest: [DURATION=3600] [SETUP=shipped_loaded]
+	@python verification/bench/watch.py --duration $(or $(DURATION),3600) --setup $(or $(SETUP),shipped_loaded)
+
 .PHONY: bench-console
 bench-console: build ## Measure load, response, memory and the app's processor time of the console: [MINUTES=10]
 	@$(measure) console python verification/console/run.py --minutes $(or $(MINUTES),10)

@@ -16,6 +16,7 @@ sys.path.append(str(Path(__file__).resolve().parents[2] / "verification/bench"))
 import pictures
 import rates
 import wakeups
+import watch
 
 ROOT = Path(__file__).resolve().parents[2]
 BENCH = ROOT / "verification/bench"
@@ -105,6 +106,24 @@ def test_pictures_are_drawn(tmp_path: Path) -> None:
     assert [each.name[:2] for each in drawn] == ["18", "19", "20", "21", "22", "23"]
     assert all("<polyline" in each.read_text() for each in drawn)
     assert "loop time [us] less 900" in drawn[-1].read_text()
+
+
+def test_an_hour_of_one_set_up_leaves_a_record_of_its_schema_a_table_and_pictures(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    notes = notes_of([10.0] * 999 + [1500.0])
+    beside = wakeups.of_counts(np.bincount([5] * 998 + [8] * 2))
+    shares = dict.fromkeys(wakeups.SHARES, 2.0)
+    seen = {"seconds": 1, "loops": {"main": wakeups.of_notes(notes, 1000)}, "cyclictest": beside}
+    seen |= {"wake_to_cyclictest": shares, "load": {}, "notes": {"main": notes}}
+    monkeypatch.setattr(wakeups, "measure", lambda *_: dict(seen))
+    monkeypatch.setattr(watch, "FOLDER", tmp_path)
+    arrangement = watch.BY_NAME["shipped_idle"]
+    told = watch.watch(arrangement, 1, BIN)
+    jsonschema.validate(watch.record_of(arrangement, told), json.loads(watch.SCHEMA.read_text("utf-8")))
+    assert "missed deadlines 1, held up 0" in watch.table(told)
+    drawn = sorted(path.stem for path in (tmp_path / "pictures").glob("*.svg"))
+    assert drawn == ["shipped_idle-histogram", "shipped_idle-profile", "shipped_idle-rare"]
 
 
 @pytest.fixture(scope="module")

@@ -5,6 +5,7 @@ import subprocess
 from pathlib import Path
 
 import numpy as np
+from wakeups import Arrangement
 
 COLUMNS = 700
 """As many as can be told apart; each shows its lowest and its highest value, so that no outlier is lost."""
@@ -88,6 +89,19 @@ def all_pictures(notes: dict[str, dict[str, np.ndarray]], period_us: float) -> d
             COLOURS["shipped"],
             period_us,
             max(count // 200, 1),
+        ),
+    }
+
+
+def of_loop(notes: np.ndarray, arrangement: Arrangement, title: str, period_us: float) -> dict[str, dict]:
+    """The loop times of one set-up: over time, and how often each occurred, all and the rare ones."""
+    colour = COLOURS[arrangement.setup]
+    rare = max(len(notes) // 200, 1)
+    return {
+        f"{arrangement.name}-profile": profile(notes, f"Loop time: {title}", colour),
+        f"{arrangement.name}-histogram": histogram(notes, f"Loop times: {title}", colour, period_us),
+        f"{arrangement.name}-rare": histogram(
+            notes, f"Loop times, rare ones: {title}", colour, period_us, rare
         ),
     }
 
