@@ -63,7 +63,9 @@ void AxisWatch::judge_motion_seen(const Observation& seen, std::int64_t moved) n
   if (of_drive && sense_ * (farthest_path_ - path_) > rules_.reverse) {
     require_fault(Property::kP6, "moves against its command");
   }
-  if (!settled && sense_ * (path_ - progress_path_) >= rules_.stall_min) {
+  // By a damaged deadband the axis may have arrived: its stall is counted from the end of the damage.
+  if (seen.configuration_damage_ticks > 0 ||
+      (!settled && sense_ * (path_ - progress_path_) >= rules_.stall_min)) {
     forget_progress();
   }
   if (is_stalled()) {
@@ -161,7 +163,7 @@ void AxisWatch::forget(std::uint32_t tick) noexcept {
   homed_ = false;
   truth_known_ = false;
   sense_ = 0;
-  driven_tick_ = tick;
+  driven_tick_ = tick_of_no_drive(tick);
   rest_ = {};
   drop_motion();
   had_lease_ = false;

@@ -92,6 +92,9 @@ class AxisWatch {
   void judge_rest_seen(bool settled, std::int64_t path_before) noexcept;
   void follow_homing(const Observation& seen) noexcept;
   void require_fault(Property property, std::string_view reason) noexcept;
+  /** The drive that would explain the state of one who knows of none from this tick on: this first tick
+   * counts as one without drive, while after a drive it is the second one. */
+  static constexpr std::uint32_t tick_of_no_drive(std::uint32_t first) noexcept { return first - 2; }
   bool is_settled(std::uint32_t tick) const noexcept { return tick - driven_tick_ > rules_.settle_ticks; }
   /** From which reading progress is measured depends on when it was last told; what has not got any farther
    * for so long is stalled by every reading. */
@@ -151,11 +154,11 @@ class AxisWatch {
   std::int64_t farthest_path_ = 0; /**< mark of reverse */
   std::int64_t progress_path_ = 0; /**< mark of stall */
 
-  std::int32_t sense_ = 0;           /**< of the newest drive: 1 rises, -1 falls, 0 never driven */
-  std::uint32_t driven_tick_ = 0;    /**< of the newest drive, or from when on none is known */
-  std::uint32_t driven_ticks_ = 0;   /**< since progress */
-  std::uint32_t standing_ticks_ = 0; /**< driven ones since it got any farther */
-  bool one_target_ = true;           /**< all ticks counted in driven_ticks_ had the same setpoint */
+  std::int32_t sense_ = 0; /**< of the newest drive: 1 rises, -1 falls, 0 never driven */
+  std::uint32_t driven_tick_ = tick_of_no_drive(0); /**< of the newest drive */
+  std::uint32_t driven_ticks_ = 0;                  /**< since progress */
+  std::uint32_t standing_ticks_ = 0;                /**< driven ones since it got any farther */
+  bool one_target_ = true; /**< all ticks counted in driven_ticks_ had the same setpoint */
   std::int32_t counted_target_ = 0;
 
   bool enabled_ = false;

@@ -258,6 +258,33 @@ TEST(Campaign, P1_a_kernel_whose_memory_was_damaged_counts_missing_frames_from_t
   }
 }
 
+/** Whether the case plans that bit of the configuration to flip. */
+bool plans_flip(const Case& plan, std::uint32_t tick, std::uint64_t bit) {
+  return std::ranges::any_of(plan.faults, [&](const Fault& fault) {
+    return fault.kind == FaultKind::kConfigBitFlips && fault.tick == tick && fault.amount == bit;
+  });
+}
+
+// A damaged deadband says that the axis has arrived, which clears its stall count; it stalls later.
+TEST(Campaign, P5_a_stall_is_counted_from_the_end_of_the_damage_to_its_axis) {
+  const Case plan = make_case(1, 8556);
+  const std::uint32_t bit = offsetof(ilk_config_t, axis[8].deadband_counts) * 8 + 21;
+  ASSERT_TRUE(plans_flip(plan, 5516, bit)) << "the plan is another one: find such a case anew";
+  const Outcome outcome = run(plan);
+  EXPECT_FALSE(outcome.failure) << outcome.failure->reason;
+}
+
+// The kernel's first tick after it forgot everything is one without drive, and its axis still coasts a count.
+TEST(Campaign, P6_a_kernel_whose_memory_was_damaged_watches_for_drift_two_ticks_earlier_than_after_a_drive) {
+  const Case plan = make_case(1, 7543);
+  const auto damages = [](const Fault& fault) {
+    return fault.kind == FaultKind::kStateBitFlips && fault.tick == 19617;
+  };
+  ASSERT_TRUE(std::ranges::any_of(plan.faults, damages)) << "the plan is another one: find such a case anew";
+  const Outcome outcome = run(plan);
+  EXPECT_FALSE(outcome.failure) << outcome.failure->reason;
+}
+
 TEST(Campaign, Case_runs_twice_to_the_same_bits) {
   Case plan = make_case(3, 1);
   plan.ticks = 5000;
