@@ -57,15 +57,6 @@ const untouched = [
   ...["Yaw", "Pitch", "Axial head", "Axial feet"].map((title) => `[aria-label="Axis ${title}"]`),
 ];
 
-/** The pages that show the robot, each with a panel by which it is known to be there. */
-const livePages = [
-  ["Robot", "Motors"],
-  ["Targeting", "Registration"],
-  ["Proposals", "Proposal"],
-  ["Plots", "Plots"],
-  ["3D", "3D"],
-] as const;
-
 /** Opens everything in the panels of the robot's page that can be opened. */
 async function unfoldPanels(robot: ConsolePage): Promise<void> {
   await robot.panel("Bench").getByText("More faults").click();
@@ -216,9 +207,8 @@ for (const [level, ageMs] of [
     await expect(page.getByRole("main")).toHaveAttribute("data-level", level);
     await expect(robot.axis("Lateral").row).toBeAttached();
     await expectNoViolation(page, level);
-    for (const [name, panel] of livePages) {
+    for (const name of ["Robot", "Targeting", "Proposals", "Plots", "3D"] as const) {
       await robot.open(name);
-      await expect(page.locator(`[aria-label="${panel}"].panel`)).toBeAttached();
       await expect(page.getByRole("main")).toHaveAttribute("data-level", level);
       expect(await coloured(page), `what is not greyed on ${name}`).toEqual([]);
     }

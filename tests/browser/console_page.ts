@@ -92,6 +92,21 @@ export class Axis {
   }
 }
 
+/** Of each page a panel that no other one has, and that it always has. */
+export const knownBy = {
+  Robot: "Motors",
+  Targeting: "Registration",
+  Proposals: "All proposals",
+  Plots: "Capture",
+  "3D": "3D",
+  Codes: "Codes",
+  Users: "Users",
+  Audit: "Audit",
+  Account: "Account",
+} as const;
+
+export type PageName = keyof typeof knownBy;
+
 export class ConsolePage {
   readonly mode: Locator;
   readonly estop: Locator;
@@ -149,10 +164,10 @@ export class ConsolePage {
     }).toPass();
   }
 
-  async open(
-    page: "Robot" | "Targeting" | "Proposals" | "Plots" | "3D" | "Codes" | "Users" | "Audit" | "Account",
-  ): Promise<void> {
+  /** Ends when the page is there: until its code is loaded the one before stays. */
+  async open(page: PageName): Promise<void> {
     await this.page.getByRole("link", { name: page, exact: page === "Proposals" }).click();
+    await expect(this.page.locator(`[aria-label="${knownBy[page]}"].panel`)).toBeAttached();
   }
 
   /** By the Users page; ends on the Robot page. */
