@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-import random
 import re
 import shutil
 import subprocess
@@ -10,8 +9,6 @@ import sys
 import tomllib
 from dataclasses import replace
 from fnmatch import fnmatchcase
-from html import escape, unescape
-from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -22,9 +19,10 @@ import exporter
 import figures
 import gate
 import pages
+import walk
 from components import Component, bill_of_materials, npm_packages
 from items import Items, fingerprint
-from matrix import Row, as_csv, negative_lists, rows
+from matrix import as_csv, negative_lists, rows
 from measurements import Measurement, read_measurements
 from report import read_project, read_stated
 from results import Result, Source, read_results
@@ -215,59 +213,41 @@ def test_every_link_of_the_pages_leads_to_something(tree: Tree, clean: tuple[Ite
     assert ("trace.html", "trace.html#CA-01") in pages.broken_links(written, output)
 
 
-def opened(place: str, written: dict[str, str], output: Path) -> str:
-    """What stands where a link of our pages leads: the text from its anchor on, or the file."""
-    name, _, anchor = unescape(place).partition("#")
-    if name not in written:
-        return (output / name).read_text("utf-8", "replace")
-    assert f'id="{escape(anchor)}"' in written[name], place
-    return written[name].partition(f'id="{escape(anchor)}"')[2].partition("</article>")[0]
-
-
-def open_row(row: Row, written: dict[str, str], output: Path, root: Path) -> None:
-    """Goes from the hazard by cause, control and requirements to the lines of the code, and back."""
-    steps = (row.hazard, row.cause, row.control, row.system_requirement, row.requirement)
-    uids = [step.split(" ")[0] for step in steps]
-    for above, below in pairwise(uids):
-        assert f'href="trace.html#{below}"' in opened(f"trace.html#{above}", written, output)
-        assert f'href="trace.html#{above}"' in opened(f"trace.html#{below}", written, output)
-    requirement = opened(f"trace.html#{uids[-1]}", written, output)
-    for code in filter(None, row.code.split("; ")):
-        file, line, name = re.fullmatch(r"([^: ]+)(?::(\d+) (\w+))?", code).groups()
-        assert f'href="../../{file}"' in requirement
-        assert (root / file).exists()
-        assert not line or name in (root / file).read_text("utf-8").splitlines()[int(line) - 1]
-
-
-def test_rows_chosen_by_seed_open_from_the_hazard_to_the_raw_log(
+def test_rows_chosen_by_seed_open_from_the_hazard_to_the_raw_log_and_one_that_is_broken_does_not(
     tree: Tree, clean: tuple[Items, str]
 ) -> None:
     of = gate.trace(tree.project(clean, reviewed(clean[0])))
-    written = pages.write_all(of, [], "built")
     output = tree.path / "build/report"
-    for row in random.Random(62304).choices(rows(of), k=20):
-        open_row(row, written, output, tree.path)
-        for result in row.results.split("; "):
-            uid, status = result.split(" ")
-            page = opened(f"results.html#{uid}", written, output)
-            assert status in page
-            assert f'href="trace.html#{row.requirement.split(" ")[0]}"' in page
-            [log] = re.findall(r'<dt>Raw log<dd><a href="([^"]+)"', page)
-            assert (output / unescape(log)).resolve().exists(), log
+    written = walk.Pages(pages.write_all(of, [], "built"), output, tree.path)
+    matrix = rows(of)
+    assert [walk.complaints(row, written) for row in walk.drawn(matrix, "seed")] == [[]] * len(matrix)
+
+    row = matrix[0]
+    (tree.path / "build/evidence/cbmc/gate/proof.json").unlink()
+    assert walk.complaints(row, written) == ["the raw log of CBMC:gate is not there"]
+    tree.change("kernel/src/gate.c", "may_drive(", "might_drive(")
+    assert "may_drive does not begin at kernel/src/gate.c:4" in walk.complaints(row, written)
+    cause = walk.uid_of(row.cause)
+    torn = written.written["trace.html"].replace(f'href="trace.html#{cause}"', 'href="trace.html"')
+    without_cause = replace(written, written={**written.written, "trace.html": torn})
+    assert f"H-01 does not lead to {cause}" in walk.complaints(row, without_cause)
 
 
 @pytest.mark.timeout(300)
 def test_twenty_rows_of_the_real_matrix_open_from_the_hazard_to_the_code(
     stated_here: tuple[Items, str],
 ) -> None:
+    """`make report` opens as many with their results, when these are there."""
     source = Source(ROOT, "built", lambda _: False)
     of = gate.trace(read_project(source, stated_here, (), ()))
-    written = pages.write_all(of, [], "built")
+    written = walk.Pages(pages.write_all(of, [], "built"), ROOT / "build/report", ROOT)
     found = rows(of)
     assert len(found) > 500
-    for row in random.Random(62304).sample(found, k=20):
+    chosen = walk.drawn(found, "62304")
+    assert len(chosen) == 20
+    for row in chosen:
         assert row.code or row.methods == "Analysis"
-        open_row(row, written, ROOT / "build/report", ROOT)
+        assert [*walk.wrong_steps(row, written), *walk.wrong_code(row, written)] == []
 
 
 def test_the_bill_of_materials_names_what_is_shipped() -> None:

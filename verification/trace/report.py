@@ -31,11 +31,12 @@ import gate
 import pages
 import papers
 import release
+import walk
 from components import Component, bill_of_materials, shipped
 from exporter import RefusedError, export, stage
 from items import Items, read_items
 from ladder import UnusableError, content_key, read_expected
-from matrix import as_csv, negative_lists, rows
+from matrix import Row, as_csv, negative_lists, rows
 from measurements import Measurement, read_measurements
 from results import Source, read_results
 from sources import functions_of, read_links
@@ -111,7 +112,7 @@ def write_pages(
 ) -> list[gate.Finding]:
     """Writes our own pages, the matrix as CSV, figures, findings and bill of materials as JSON.
 
-    Returns a finding for each link of the pages that leads nowhere.
+    Returns a finding for each link of the pages that leads nowhere, and for each drawn row that ends.
     """
     written = pages.write_all(of, found, commit)
     for name, text in written.items():
@@ -131,7 +132,21 @@ def write_pages(
     (output / "sbom.json").write_text(dump(materials), "utf-8")
     (output / "release.json").write_text(dump(release.record(of, found, commit)), "utf-8")
     broken = sorted(pages.broken_links(written, output))
-    return [gate.Finding("G9", page, f"its link {link} leads nowhere") for page, link in broken]
+    return [
+        *(gate.Finding("G9", page, f"its link {link} leads nowhere") for page, link in broken),
+        *walked(matrix, walk.Pages(written, output, of.project.root), commit),
+    ]
+
+
+def walked(matrix: Sequence[Row], written: walk.Pages, commit: str) -> list[gate.Finding]:
+    """A finding for whatever ends the way through the rows that the commit draws."""
+    chosen = walk.drawn(matrix, commit)
+    print(f"{len(chosen)} of {len(matrix)} rows of the matrix opened, drawn by {commit}")
+    return [
+        gate.Finding("G9", walk.uid_of(row.requirement), f"its row does not open from {row.hazard}: {wrong}")
+        for row in chosen
+        for wrong in walk.complaints(row, written)
+    ]
 
 
 def main() -> int:
