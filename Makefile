@@ -53,9 +53,9 @@ build: setup $(release)/build.ninja build/stamps/console ## Build everything (th
 run: build ## Start simulated robot, kernel, app and console: [ROBOT=neuro|prostate] [PORT=8080]
 	@exec $(release)/bin/interlock run --robot $(ROBOT) --port $(PORT)
 
-.PHONY: test test-unit test-console test-integration test-browser
-test: build ## Run the unit, integration and browser tests; reports in build/reports/
-	@$(MAKE) --keep-going test-unit test-console test-integration test-browser
+.PHONY: test test-unit test-console test-integration test-network test-browser
+test: build ## Run the unit, integration, network (as root) and browser tests; reports in build/reports/
+	@$(MAKE) --keep-going test-unit test-console test-integration test-network test-browser
 
 test-unit: build ## Run the GoogleTest programs
 	@verification/evidence/begin_tests.py unit

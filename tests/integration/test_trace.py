@@ -25,7 +25,7 @@ from items import Items, fingerprint
 from matrix import as_csv, negative_lists, rows
 from measurements import Measurement, read_measurements
 from report import read_project, read_stated
-from results import Result, Source, read_results
+from results import SUITES, Result, Source, read_results
 from review import write_reviewed
 from sources import Function, functions_of, read_links
 
@@ -316,7 +316,7 @@ def test_a_row_leads_from_the_hazard_to_its_raw_results(tree: Tree, clean: tuple
 def test_without_evidence_every_result_is_unknown(tree: Tree) -> None:
     shutil.rmtree(tree.path / "build")
     results = read_results(Source(tree.path, "built", lambda _: True), RUNGS)
-    assert len(results) == len(RUNGS) + 4
+    assert len(results) == len(RUNGS) + len(SUITES)
     assert {one.status for one in results} == {"UNKNOWN"}
 
 

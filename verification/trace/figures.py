@@ -41,13 +41,18 @@ def written_tests(root: Path) -> dict[str, list[str]]:
     def texts(pattern: str) -> list[tuple[Path, str]]:
         return [(path, path.read_text("utf-8")) for path in sorted((root / "tests").glob(pattern))]
 
-    return {
-        "unit": [".".join(names) for _, text in texts("unit/**/*.cpp") for names in GTEST.findall(text)],
-        "integration": [
+    def of_pytest(network: bool) -> list[str]:
+        return [
             f"tests.integration.{path.stem}::{name}"
             for path, text in texts("integration/test_*.py")
+            if ("pytestmark = pytest.mark.network" in text) == network
             for name in re.findall(r"^def (test_\w+)", text, re.MULTILINE)
-        ],
+        ]
+
+    return {
+        "unit": [".".join(names) for _, text in texts("unit/**/*.cpp") for names in GTEST.findall(text)],
+        "integration": of_pytest(network=False),
+        "network": of_pytest(network=True),
         "console": [
             f"{path.stem}::{name}"
             for path in sorted((root / "web/src").rglob("*.test.ts*"))

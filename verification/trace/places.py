@@ -71,8 +71,8 @@ class Places:
         if suite == "unit":
             last = re.split(r"[./]", name)
             return next((self.unit_suites[one] for one in reversed(last) if one in self.unit_suites), "")
-        folder = {"integration": "", "console": "web/", "browser": "tests/browser/"}[suite]
-        path = f"{name.replace('.', '/')}.py" if suite == "integration" else folder + name
+        folder = {"console": "web/", "browser": "tests/browser/"}.get(suite)
+        path = f"{name.replace('.', '/')}.py" if folder is None else folder + name
         return f"{path}:1" if (self.root / path).is_file() else ""
 
     def design_of(self, of: Trace, requirement: str) -> list[str]:

@@ -27,7 +27,7 @@ TYPES = "TypeOK"
 """The invariant of each model that says what its variables range over; no requirement rests on it."""
 GTEST_GROUP = re.compile(r"(?:\w+\.(?=[\w/]+\.\w))?[\w/]+(?=\.)")
 """Program, where CTest has it in the name, and suite; a parameter after the test's name may hold anything."""
-SUITES = ("unit", "integration", "console", "browser")
+SUITES = ("unit", "integration", "network", "console", "browser")
 
 
 @dataclass(frozen=True)
