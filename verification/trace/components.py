@@ -79,11 +79,16 @@ def debian_packages(paths: Iterable[str]) -> list[Component]:
     """The packages that the paths come from. /lib and /usr/lib are one directory under two names."""
     known = set(paths)
     asked = sorted(known | {f"/usr{path}" for path in known} | {path.removeprefix("/usr") for path in known})
-    names = sorted({line.split(":")[0] for line in lines_of(["dpkg-query", "-S", *asked]) if line})
+    return debian_components({line.split(":")[0] for line in lines_of(["dpkg-query", "-S", *asked]) if line})
+
+
+def debian_components(named: Iterable[str]) -> list[Component]:
+    """The packages of these names that are installed."""
+    names = sorted(named)
     if not names:
         return []
     shown = lines_of(["dpkg-query", "-W", "-f", "${Package}\t${Version}\t${Depends}\n", *names])
-    packages = sorted({tuple(line.split("\t", 2)) for line in shown})
+    packages = sorted({tuple(line.split("\t", 2)) for line in shown if line.split("\t")[1]})
     digests = debian_digests([f"{name}={version}" for name, version, _ in packages])
     return [
         Component(
@@ -120,6 +125,22 @@ def resolved(name: str, wanted_by: str, locked: Mapping[str, Mapping]) -> str:
     return f"{place}/node_modules/{name}" if place else f"node_modules/{name}"
 
 
+def npm_component(name: str, entry: Mapping) -> Component:
+    """A package as the lock file has it."""
+    version, licence = entry["version"], entry.get("license", "")
+    algorithm, _, digest = entry.get("integrity", "").partition("-")
+    return Component(
+        name,
+        version,
+        f"pkg:npm/{name.replace('@', '%40')}@{version}",
+        supplier="npm",
+        licence=licence,
+        is_spdx=bool(licence),
+        digest=(algorithm.replace("sha", "SHA-"), base64.b64decode(digest).hex()),
+        needs=frozenset(entry.get("dependencies", {})),
+    )
+
+
 def npm_packages(root: Path) -> list[Component]:
     """The packages of the console, and all that they need, as the lock file has them."""
     wanted = json.loads((root / "web/package.json").read_text("utf-8"))["dependencies"]
@@ -133,18 +154,7 @@ def npm_packages(root: Path) -> list[Component]:
             continue
         entry = locked[place]
         needs = entry.get("dependencies", {})
-        version, licence = entry["version"], entry.get("license", "")
-        algorithm, _, digest = entry.get("integrity", "").partition("-")
-        found[place] = Component(
-            name,
-            version,
-            f"pkg:npm/{name.replace('@', '%40')}@{version}",
-            supplier="npm",
-            licence=licence,
-            is_spdx=bool(licence),
-            digest=(algorithm.replace("sha", "SHA-"), base64.b64decode(digest).hex()),
-            needs=frozenset(needs),
-        )
+        found[place] = npm_component(name, entry)
         waiting += [(one, place) for one in needs]
     return list(found.values())
 
@@ -172,13 +182,15 @@ def entry_of(one: Component) -> Mapping[str, object]:
     return {**entry, "purl": one.purl}
 
 
-def bill_of_materials(components: Sequence[Component], commit: str) -> Mapping[str, object]:
-    """What is shipped as CycloneDX 1.6, without time or serial number, so that two runs agree."""
-    ours = {"type": "application", "bom-ref": "interlock", "name": "interlock", "version": commit}
+def bill_of_materials(
+    components: Sequence[Component], commit: str, name: str = "interlock"
+) -> Mapping[str, object]:
+    """What `name` consists of as CycloneDX 1.6, without time or serial number, so that two runs agree."""
+    ours = {"type": "application", "bom-ref": name, "name": name, "version": commit}
     head = {"bomFormat": "CycloneDX", "specVersion": "1.6", "version": 1}
     needed = {one.purl: [other.purl for other in components if other.name in one.needs] for one in components}
     reached = {purl for purls in needed.values() for purl in purls}
-    needed["interlock"] = [one.purl for one in components if one.purl not in reached]
+    needed[name] = [one.purl for one in components if one.purl not in reached]
     return {
         **head,
         "metadata": {"component": ours},

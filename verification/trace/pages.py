@@ -25,6 +25,7 @@ MENU = {
     "Documents": "strictdoc/html/index.html",
     "CSV": "matrix.csv",
     "SBOM": "sbom.json",
+    "Tools": "sbom-tools.json",
     "Release": "release.json",
 }
 CONTENTS = (

@@ -6,8 +6,8 @@ named as awaited where they are missing (verification/measurements); with it the
 
 Reads spec/requirements by StrictDoc, the functions of kernel/src, and the evidence in build/evidence and
 build/reports. Writes index.html, matrix.html, trace.html, results.html, matrix.csv, trace.json, sbom.json,
-release.json, StrictDoc's own pages, and the papers as HTML and PDF. Prints every line that is missing or
-wrong; exits 1 when there is one, 2 when there is no report.
+sbom-tools.json, release.json, StrictDoc's own pages, and the papers as HTML and PDF. Prints every line that
+is missing or wrong; exits 1 when there is one, 2 when there is no report.
 """
 
 import argparse
@@ -40,6 +40,7 @@ from matrix import Row, as_csv, negative_lists, rows
 from measurements import Measurement, read_measurements
 from results import Source, read_results
 from sources import functions_of, read_links
+from tool_components import tools
 
 
 def read_toml(path: Path) -> dict:
@@ -108,9 +109,15 @@ def dump(document: object) -> str:
 
 
 def write_pages(
-    of: gate.Trace, found: Sequence[gate.Finding], output: Path, commit: str
+    of: gate.Trace,
+    found: Sequence[gate.Finding],
+    output: Path,
+    commit: str,
+    used: Sequence[Component] = (),
 ) -> list[gate.Finding]:
-    """Writes our own pages, the matrix as CSV, figures, findings and bill of materials as JSON.
+    """Writes our own pages, the matrix as CSV, figures, findings and both bills of materials as JSON.
+
+    `used` is what builds and verifies.
 
     Returns a finding for each link of the pages that leads nowhere, and for each drawn row that ends.
     """
@@ -130,6 +137,8 @@ def write_pages(
     (output / "trace.json").write_text(dump(summary), "utf-8")
     materials = bill_of_materials(of.project.components, commit)
     (output / "sbom.json").write_text(dump(materials), "utf-8")
+    beside = bill_of_materials(used, commit, "interlock-tools")
+    (output / "sbom-tools.json").write_text(dump(beside), "utf-8")
     (output / "release.json").write_text(dump(release.record(of, found, commit)), "utf-8")
     broken = sorted(pages.broken_links(written, output))
     return [
@@ -177,7 +186,7 @@ def main() -> int:
             stated = papers.read_documents(output / "stated/json/index.json")
             set_of = papers.Source(of, stated, found, commit, version(root))
             papers.write_papers(set_of, output / "papers", papers.read_papers())
-            found += write_pages(of, found, output, commit)
+            found += write_pages(of, found, output, commit, tools(root))
     except (RefusedError, UnusableError, ValueError, OSError) as error:
         print(f"report: {error}", file=sys.stderr)
         return 2
