@@ -13,6 +13,8 @@ from results import AWAITED
 
 ROWS = 20
 CODE = re.compile(r"([^: ]+)(?::(\d+) (\w+))?")
+LEFT_NOTHING = (AWAITED, "UNKNOWN")
+"""Of these there is no log; other rules of the gate say so."""
 RAW_LOG = re.compile(r'<dt>Raw log<dd><a href="([^"]+)"')
 
 
@@ -69,7 +71,8 @@ def wrong_results(row: Row, pages: Pages) -> Iterator[str]:
         if status not in page or f'href="trace.html#{steps(row)[-1]}"' not in page:
             yield f"{uid} does not say {status}, or does not lead back"
         logs = [unescape(log) for log in RAW_LOG.findall(page)]
-        if status != AWAITED and not (logs and all((pages.output / log).resolve().exists() for log in logs)):
+        there = [(pages.output / log).resolve().exists() for log in logs]
+        if status not in LEFT_NOTHING and not (there and all(there)):
             yield f"the raw log of {uid} is not there"
 
 
