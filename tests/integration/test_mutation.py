@@ -10,7 +10,7 @@ from bare_kernel import ROOT
 sys.path.append(str(ROOT / "verification/mutation"))
 
 import tables
-from compiled import is_sound_program
+from compiled import TRAPPING_CLANG, is_sound_program
 from equal import core_files, is_same, shown_equal, write_sound
 from functions import Function, callers_of, function_at, functions_in, functions_of
 from operators import Mutant, draw, mutants_of
@@ -159,6 +159,23 @@ def test_a_spelling_of_the_sound_program_is_the_sound_program_and_a_fault_is_not
         assert not is_sound_program(tree, file)
     with seeded(tree, file, line, "index < count", "no_such_name"):
         assert not is_sound_program(tree, file)
+
+
+def test_what_traps_for_undefined_behaviour_is_no_spelling_of_what_does_not(tmp_path: Path) -> None:
+    tree = make_tree(tmp_path / "tree")
+    file = "kernel/src/integrity.c"
+    before = "axis->state == (uint32_t)ILK_AXIS_FAULTED;"
+    lines = (tree / file).read_text("utf-8").splitlines()
+    [line] = [number for number, text in enumerate(lines, 1) if text.endswith(before)]
+    with seeded(tree, file, line, "==", ">="):
+        assert is_sound_program(tree, file, TRAPPING_CLANG)
+    with seeded(tree, file, line, "==", "!="):
+        assert not is_sound_program(tree, file, TRAPPING_CLANG)
+    # A sum that overflows is undefined: to clang it never does, unless it has to trap.
+    overflowing = "= ((int32_t)axis->fault_tick + 1 > (int32_t)axis->fault_tick) && axis"
+    with seeded(tree, file, line, "= axis", overflowing):
+        assert is_sound_program(tree, file)
+        assert not is_sound_program(tree, file, TRAPPING_CLANG)
 
 
 def test_a_fault_in_a_header_is_seen_in_the_files_that_take_it_in(tmp_path: Path) -> None:

@@ -10,6 +10,8 @@ FLAGS = ("-std=c11", "-O2", "-w", "-ffreestanding", "-S", "-Ikernel/include", "-
 GCC = ("gcc", *FLAGS)
 CLANG = ("clang-19", "--target=x86_64-linux-gnu", *FLAGS)
 """Brings more loops and conditions into one form than gcc does."""
+TRAPPING_CLANG = (*CLANG, "-fsanitize=undefined", "-fsanitize-trap=undefined")
+"""Undefined behaviour ends in an instruction of its own, so that it is no freedom of the compiler."""
 
 
 def sources(tree: Path) -> list[Path]:
@@ -23,16 +25,16 @@ def assembly(compiler: tuple[str, ...], tree: Path, source: Path) -> bytes:
     return done.stdout if done.returncode == 0 else b""
 
 
-def is_sound_program(tree: Path, file: str) -> bool:
-    """Whether clang makes the same instructions of the tree as of the sound kernel, which differ in one file.
+def is_sound_program(tree: Path, file: str, compiler: tuple[str, ...] = CLANG) -> bool:
+    """Whether a compiler makes the instructions of the sound kernel of the tree, which differs in one file.
 
-    A compiler keeps what a program does, so programs that become one are equivalent, unless their behaviour
-    is undefined: ask only when CBMC has found nothing of that. Method: Papadakis et al., Trivial Compiler
-    Equivalence, ICSE 2015.
+    It keeps what a program does, so programs that become one are equivalent, unless their behaviour is
+    undefined: ask CLANG only when CBMC has found nothing of that; of TRAPPING_CLANG both trap alike. Method:
+    Papadakis et al., Trivial Compiler Equivalence, ICSE 2015.
     """
     changed = [tree / file] if file.endswith(".c") else sources(tree)
     pairs = [
-        (assembly(CLANG, tree, source), assembly(CLANG, ROOT, ROOT / source.relative_to(tree)))
+        (assembly(compiler, tree, source), assembly(compiler, ROOT, ROOT / source.relative_to(tree)))
         for source in changed
     ]
     return all(ours and ours == sound for ours, sound in pairs)
