@@ -153,7 +153,7 @@ def complaint(root: Path, path: Path) -> tuple[str, str]:
         test = fault.test
         healthy = run_test(root, fault, None)
         if not passes(healthy):
-            return test, f"the test does not pass without the patch:\n{tail(healthy.stdout)}"
+            return test, f"the test does not pass without the patch:\n{tail(healthy.stdout + healthy.stderr)}"
         seeded = run_test(root, fault, path)
     except UnusableError as error:
         return test, str(error)

@@ -113,7 +113,7 @@ def write_pages(
     found: Sequence[gate.Finding],
     output: Path,
     commit: str,
-    used: Sequence[Component] = (),
+    used: Sequence[Component],
 ) -> list[gate.Finding]:
     """Writes our own pages, the matrix as CSV, figures, findings and both bills of materials as JSON.
 

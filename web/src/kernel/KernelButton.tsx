@@ -1,9 +1,7 @@
 import type { ComponentProps } from "react";
 import { CommandButton } from "../design/CommandButton";
 import type { CodeName } from "../generated/catalog";
-import { useConsole } from "../state/store";
-import { foretellRefusal } from "./foretell";
-import { useKernel } from "./useKernel";
+import { useRefusal } from "./useRefusal";
 
 interface KernelButtonProps extends Omit<ComponentProps<typeof CommandButton>, "warning"> {
   /** What pressing it asks the kernel for, at once. */
@@ -14,7 +12,6 @@ interface KernelButtonProps extends Omit<ComponentProps<typeof CommandButton>, "
 
 /** A command for the kernel: says beforehand when the kernel would refuse it now. It can be pressed all the same. */
 export function KernelButton({ request, slot, ...command }: KernelButtonProps) {
-  const frame = useConsole((state) => state.frame);
-  const verdict = useKernel((kernel) => kernel.judge(request, slot ?? 0));
-  return <CommandButton {...command} warning={foretellRefusal(frame, verdict)} />;
+  const refusal = useRefusal((kernel) => kernel.judge(request, slot ?? 0));
+  return <CommandButton {...command} warning={refusal} />;
 }

@@ -1,11 +1,9 @@
 import type { Motor } from "../../api/client";
 import { CommandButton } from "../../design/CommandButton";
-import { foretellRefusal } from "../../kernel/foretell";
 import { KernelButton } from "../../kernel/KernelButton";
-import { useKernel } from "../../kernel/useKernel";
+import { useRefusal } from "../../kernel/useRefusal";
 import { act, propose } from "../../state/commands";
 import type { HomingPart } from "../../state/proposals";
-import { useConsole } from "../../state/store";
 import type { AxisFrame } from "../../stream/decode";
 
 interface AxisActionsProps {
@@ -18,7 +16,7 @@ interface AxisActionsProps {
 
 export function AxisActions({ motor, axis, homing, onOverride }: AxisActionsProps) {
   const { slot, title, has_switch } = motor;
-  const homeRefusal = useHomeRefusal(slot);
+  const homeRefusal = useRefusal((kernel) => kernel.foresee(slot, { kind: "HOME" }).verdict);
   const disabled = axis.state === "DISABLED";
   const faulted = axis.state === "FAULTED";
   return (
@@ -62,13 +60,6 @@ export function AxisActions({ motor, axis, homing, onOverride }: AxisActionsProp
       </KernelButton>
     </div>
   );
-}
-
-/** Why the kernel would refuse to home the axis once the pedal is held; null when it would not. */
-function useHomeRefusal(slot: number): string | null {
-  const frame = useConsole((state) => state.frame);
-  const foresight = useKernel((kernel) => kernel.foresee(slot, { kind: "HOME" }));
-  return foretellRefusal(frame, foresight?.verdict ?? null);
 }
 
 const homingWords: Record<HomingPart, string> = { homing: "Homing..", waiting: "Waits" };

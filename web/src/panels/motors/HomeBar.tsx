@@ -3,8 +3,7 @@ import { type AxisVerdict, api, type Motor } from "../../api/client";
 import { CommandButton } from "../../design/CommandButton";
 import { Confirm } from "../../design/Confirm";
 import { VerdictList } from "../../design/VerdictList";
-import { foretellRefusal } from "../../kernel/foretell";
-import { useKernel } from "../../kernel/useKernel";
+import { useRefusal } from "../../kernel/useRefusal";
 import "../../kernel/foretelling.css";
 import { propose } from "../../state/commands";
 import { type Notice, noticeOfProblem } from "../../state/notice";
@@ -92,11 +91,7 @@ function ZeroAll({ off }: { readonly off: string | null }) {
 }
 
 function ZeroLine({ motor: { slot, title } }: { readonly motor: Motor }) {
-  const frame = useConsole((state) => state.frame);
-  const refusal = foretellRefusal(
-    frame,
-    useKernel((kernel) => kernel.judge("SET_HOME", slot)),
-  );
+  const refusal = useRefusal((kernel) => kernel.judge("SET_HOME", slot));
   return (
     <li>
       {title}
