@@ -54,6 +54,6 @@ def test_a_script_convinces_nobody_of_a_goal_that_is_false(tmp_path: Path) -> No
     sound = "(drive < faster) ? drive : faster"
     line = 1 + next(number for number, text in enumerate(source) if sound in text)
     with seeded(tree, "kernel/src/frame.c", line, source[line - 1], source[line - 1].replace("<", ">")):
-        caught = contract_probe("frame.c").catch(tree)
+        caught = contract_probe("frame.c", "frequency_word").catch(tree)
     assert caught.startswith("NOT PROVED frame.c")
     assert "frequency_word" in caught

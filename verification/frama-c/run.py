@@ -6,9 +6,10 @@ function are compared with expected.json, exactly; places that a smoke test show
 in dead.toml, each with its reason. Without arguments the functions of expected.json are proved and the
 evidence is written. It counts, and the output names, the other functions, of which nothing is claimed, and
 contracts of such functions that the proved files take for granted. With the names of files only these are
-proved, and no evidence is written; nor with `--cached`, which takes as proved what an earlier such run
-proved. `--all` tries the other functions of the files, too; `--accept` then writes expected.json anew, with
-the functions of which all is proved, and the scripts of goals that the first prover does not find soon.
+proved, with `--function` only that function of them, and no evidence is written; nor with `--cached`, which
+takes as proved what an earlier such run proved. `--all` tries the other functions of the files, too;
+`--accept` then writes expected.json anew, with the functions of which all is proved, and the scripts of goals
+that the first prover does not find soon.
 """
 
 import argparse
@@ -119,11 +120,11 @@ def judge(unit: str, report: Report, expected: Expected, allowed: set[tuple[str,
     goals, proved = sum(c.goals for c in counts), sum(c.qed + c.smt for c in counts)
     smoke = sum(c.smoke for c in counts)
     dead = [place for place in report.dead if line_of(place) not in allowed]
+    wanted = expected.get(unit, {})
     differing = [
         function
-        for function in report.counts.keys() | expected.get(unit, {}).keys()
-        if function not in report.counts
-        or asdict(report.counts[function]) != expected.get(unit, {}).get(function)
+        for function in report.counts.keys() | wanted.keys()
+        if function not in report.counts or asdict(report.counts[function]) != wanted.get(function)
     ]
     print(
         f"{unit:14} {len(counts):3} functions {proved:5}/{goals:<5} goals {smoke:4} smoke tests"
@@ -137,7 +138,7 @@ def judge(unit: str, report: Report, expected: Expected, allowed: set[tuple[str,
     for function in report.uncontracted:
         print(f"    NO CONTRACT {unit} {function}: say what it assigns and ensures")
     for function in sorted(differing):
-        was, now = expected.get(unit, {}).get(function), report.counts.get(function)
+        was, now = wanted.get(function), report.counts.get(function)
         print(f"    GOALS DIFFER {unit} {function}: expected {was}, got {now and asdict(now)}")
     return {
         "functions": len(counts),
@@ -239,11 +240,28 @@ def choose(units: Mapping[str, Unit], names: Sequence[str], expected: Expected) 
     return {name: [f for f in units[name].own if f in expected.get(name, {})] for name in names}
 
 
+def only(function: str, chosen: Mapping[str, Sequence[str]]) -> dict[str, list[str]]:
+    """The one function, in the file that holds it. Exits when none of the chosen files does."""
+    found = {name: [function] for name, functions in chosen.items() if function in functions}
+    if not found:
+        raise SystemExit(f"no contract of '{function}' is expected to be proved in {', '.join(chosen)}")
+    return found
+
+
+def narrowed(expected: Expected, chosen: Mapping[str, Sequence[str]]) -> Expected:
+    """What is expected of the chosen functions alone."""
+    return {
+        name: {function: expected[name][function] for function in functions}
+        for name, functions in chosen.items()
+    }
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument(
         "units", nargs="*", help="files of kernel/src to prove; those of expected.json when none"
     )
+    parser.add_argument("--function", help="prove this one function of the named files")
     parser.add_argument("--all", action="store_true", help="try the functions that are not expected, too")
     parser.add_argument("--cached", action="store_true", help="reuse goals proved before; write no evidence")
     parser.add_argument("--accept", action="store_true", help="write expected.json and the scripts anew")
@@ -258,6 +276,8 @@ def main() -> int:
         chosen = {name: list(units[name].own) for name in chosen}
     elif not all(chosen.values()):
         raise SystemExit("a file of which nothing is expected to be proved: use --all")
+    if arguments.function:
+        chosen = only(arguments.function, chosen)
     cache = ROOT / "build/wp-cache" if arguments.cached else None
     if cache:
         cache.mkdir(parents=True, exist_ok=True)
@@ -265,12 +285,14 @@ def main() -> int:
     if arguments.accept:
         accept(reports)
         expected = read_expected()
-    total = judge_all(reports, expected, whole=not arguments.units)
+    whole = not (arguments.units or arguments.function)
+    judged = narrowed(expected, chosen) if arguments.function else expected
+    total = judge_all(reports, judged, whole)
     wrong = total.pop("wrong")
     total |= reach(units, chosen, expected)
     status = "FAILED" if wrong else ("VACUOUS" if total["smoke_failed"] else "PASSED")
     print(f"{status}: {total}")
-    if arguments.units or arguments.all or cache:
+    if not whole or arguments.all or cache:
         return 0 if status == "PASSED" else 1
     return evidence.write("wp", status, tools(), total, properties(list(reports.values())), started)
 

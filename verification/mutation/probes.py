@@ -11,7 +11,7 @@ import re
 import subprocess
 import sys
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -43,9 +43,13 @@ class Probe:
         return found.group().strip() if found else ""
 
 
-def contract_probe(file: str) -> Probe:
-    """The contracts of one file of kernel/src."""
-    command = (sys.executable, "verification/frama-c/run.py", file)
+def contract_probe(file: str, function: str = "") -> Probe:
+    """The contracts of one file of kernel/src, or of one function of it.
+
+    To WP a function is what its contract says, so a changed body can only break the proof of its own.
+    """
+    one = ("--function", function) if function else ()
+    command = (sys.executable, "verification/frama-c/run.py", *one, file)
     return Probe("wp", file, command, re.compile(r"^ +(NOT PROVED|OUT OF REACH) .*$", re.MULTILINE))
 
 
@@ -92,15 +96,23 @@ def proofs_about(tree: Path, file: Path) -> Iterator[str]:
     return (name for _, name in sorted(proofs))
 
 
-def probes_of_mutants(tree: Path, file: Path) -> Iterator[Probe]:
-    """The unit tests, which cost least, then all that `probes_for` gives."""
+def contracts_of(tree: Path, file: Path) -> Mapping[str, object]:
+    """The functions of a file of kernel/src whose contracts are proved of the sound one."""
+    return json.loads((tree / "verification/frama-c/expected.json").read_text("utf-8")).get(file.name, {})
+
+
+def probes_of_mutants(tree: Path, file: Path, function: str) -> Iterator[Probe]:
+    """All that can see a change of the body of this function, the cheapest first."""
     yield test_probe("kernel_tests")
-    yield from probes_for(tree, file)
+    yield row_probe("all")
+    if function in contracts_of(tree, file):
+        yield contract_probe(file.name, function)
+    yield from map(proof_probe, proofs_about(tree, file))
 
 
 def probes_for(tree: Path, file: Path) -> Iterator[Probe]:
-    """All that can see this file of kernel/src; contracts only where they are proved of the sound file."""
+    """All that can see this file of kernel/src, but the unit tests."""
     yield row_probe("all")
     yield from map(proof_probe, proofs_about(tree, file))
-    if file.name in json.loads((tree / "verification/frama-c/expected.json").read_text("utf-8")):
+    if contracts_of(tree, file):
         yield contract_probe(file.name)

@@ -106,11 +106,11 @@ def ask(tree: Path, probes: Iterable[Probe], every: bool) -> dict[str, str]:
     return told
 
 
-def soon_shown_equal(tree: Path, mutant: Mutant) -> str:
-    """Why the mutant in the tree is no fault, if that is told within a minute; empty when it is not."""
+def compiled_alike(tree: Path, mutant: Mutant) -> str:
+    """Why the mutant in the tree is no fault, if a compiler tells; empty when it does not."""
     if is_sound_program(tree, mutant.file, TRAPPING_CLANG):
         return "clang: the same instructions as the sound kernel, traps for undefined behaviour included"
-    return shown_equal(tree, mutant.file, mutant.line, levels=1)
+    return ""
 
 
 def why_equal(tree: Path, mutant: Mutant) -> str:
@@ -120,16 +120,20 @@ def why_equal(tree: Path, mutant: Mutant) -> str:
     return shown_equal(tree, mutant.file, mutant.line)
 
 
-def judge(tree: Path, mutant: Mutant, kept: Kept, asked: Sequence[str], every: bool) -> Verdict:
-    """What becomes of one mutant before the rungs that are asked."""
+def judge(
+    tree: Path, mutant: Mutant, function: str, kept: Kept, asked: Sequence[str], every: bool
+) -> Verdict:
+    """What becomes of one mutant of a function before the rungs that are asked."""
     started = time.monotonic()
     with seeded(tree, mutant.file, mutant.line, mutant.before, mutant.after):
         if known := kept.find(tree):
             return known
-        probes = [probe for probe in probes_of_mutants(tree, Path(mutant.file)) if probe.rung in asked]
-        told = ask(tree, [probe for probe in probes if probe.rung in RUN], every)
-        # What does the same needs no proof to be asked.
-        equal = "" if any(told.values()) else soon_shown_equal(tree, mutant)
+        probes = [p for p in probes_of_mutants(tree, Path(mutant.file), function) if p.rung in asked]
+        # What does the same needs neither test nor proof to be asked.
+        equal = compiled_alike(tree, mutant)
+        told = {} if equal else ask(tree, [probe for probe in probes if probe.rung in RUN], every)
+        if not equal and not any(told.values()):
+            equal = shown_equal(tree, mutant.file, mutant.line, levels=1)
         if not equal and (every or not any(told.values())):
             told |= ask(tree, [probe for probe in probes if probe.rung not in RUN], every)
         reasons = tuple(f"{rung} {said}" for rung, said in told.items() if said)
@@ -147,12 +151,15 @@ def show(mutant: Mutant, verdict: Verdict) -> None:
     print(f"{verdict.fate:<10} {mutant.name:<40} {verdict.seconds:6.1f} s{reasons}", flush=True)
 
 
-def judge_all(mutants: Sequence[Mutant], asked: Sequence[str], every: bool) -> list[Verdict]:
+def judge_all(
+    mutants: Sequence[Mutant], functions: Sequence[Function], asked: Sequence[str], every: bool
+) -> list[Verdict]:
     """Judges the mutants, printing each as it is done."""
     kept = Kept(asked, every)
 
     def one(tree: Path, mutant: Mutant) -> Verdict:
-        verdict = judge(tree, mutant, kept, asked, every)
+        function = function_at(functions, mutant.file, mutant.line)
+        verdict = judge(tree, mutant, function.name if function else "", kept, asked, every)
         show(mutant, verdict)
         return verdict
 
@@ -206,7 +213,7 @@ def main() -> int:
     if complaints := complaints_of_sound(make_tree(ROOT / "build/mutation/sound")):
         raise SystemExit(f"mutation: the sound kernel is noticed, too: {'; '.join(complaints)}")
     asked = RUNGS[1:] if arguments.without_tests else RUNGS
-    verdicts = judge_all(mutants, asked, arguments.matrix)
+    verdicts = judge_all(mutants, functions, asked, arguments.matrix)
     name = "mutation_without_tests" if arguments.without_tests else "mutation"
     log = evidence.log_directory(name)
     tables.write(log, mutants, verdicts, functions, arguments.matrix)

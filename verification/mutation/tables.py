@@ -73,8 +73,8 @@ def write(
 ) -> None:
     """Writes mutants.json, matrix.json, matrix.txt, survivors.json and survivors.txt.
 
-    `every` says that each mutant was shown to every rung; otherwise a rung saw what those before it had let
-    pass, and `killed_alone` says no more than `killed`.
+    `every` says that each mutant that may be a fault was shown to every rung; otherwise a rung saw what those
+    before it had let pass, and `killed_alone` says no more than `killed`.
     """
     records = [
         asdict(mutant) | {"name": mutant.name, "function": name_at(functions, mutant)} | asdict(verdict)

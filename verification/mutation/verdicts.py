@@ -12,7 +12,7 @@ from tree import ROOT
 
 FILE = ROOT / "build/mutation/verdicts.json"
 RUNGS = ("tests", "conformance", "cbmc", "wp")
-"""In the order in which they are asked: the cheapest first."""
+"""In the order of the tables."""
 READ_BY = {
     "tests": ("tests/unit/kernel",),
     "conformance": ("verification/conformance", "spec/tla"),
