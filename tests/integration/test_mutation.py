@@ -11,7 +11,7 @@ sys.path.append(str(ROOT / "verification/mutation"))
 
 import tables
 from compiled import TRAPPING_CLANG, is_sound_program
-from equal import core_files, is_same, shown_equal, write_sound
+from equal import argument, bounds, core_files, is_same, shown_equal, write_sound
 from functions import Function, callers_of, function_at, functions_in, functions_of
 from operators import Mutant, draw, mutants_of
 from rows import compile_kernel
@@ -135,15 +135,77 @@ def small_function() -> tuple[Function, Mutant]:
     raise AssertionError("the core has no small comparison")
 
 
+def tree_to_compare(folder: Path) -> tuple[Path, Path]:
+    """A tree to seed, and a folder with the sound kernel to stand beside it."""
+    (folder / "equal").mkdir()
+    write_sound(ROOT / "kernel", folder / "equal")
+    return make_tree(folder / "tree"), folder / "equal"
+
+
+def line_with(path: Path, wanted: str) -> int:
+    """The number of the one line that has the text."""
+    [line] = [n for n, text in enumerate(path.read_text("utf-8").splitlines(), 1) if wanted in text]
+    return line
+
+
 @pytest.mark.provers
 def test_the_sound_function_is_shown_equal_to_itself_and_a_fault_is_not(tmp_path: Path) -> None:
     function, mutant = small_function()
-    tree = make_tree(tmp_path / "tree")
-    folder = tmp_path / "equal"
-    folder.mkdir()
-    write_sound(ROOT / "kernel", folder)
+    tree, folder = tree_to_compare(tmp_path)
     assert is_same(function, tree, folder)
     with seeded(tree, mutant.file, mutant.line, mutant.before, mutant.after):
+        assert not is_same(function, tree, folder)
+
+
+BOUNDED = """\
+/*@ requires given: out->count <= LIMIT;
+  @ requires known: LOWEST < b < HIGHEST;
+  @ requires either: b == FIRST || b == SECOND;
+  @ requires other: stranger < LIMIT;
+  @ requires last: b < LIMIT;
+  @ ensures  small: b < LIMIT;
+  @*/
+static bool f(const out_t *out, uint32_t b) { return b > out->count; }
+
+/*@ requires last: b < LIMIT; */
+bool g(uint32_t b) { return b > 1u; }
+
+/*@ requires last: b < LIMIT; */
+enum { LIMIT = 2 };
+static bool h(uint32_t b) { return b > 1u; }
+"""
+
+
+def test_of_a_contract_only_bounds_that_callers_keep_are_taken() -> None:
+    f, g, h = (
+        bounds(each, [made for n, text in enumerate(each.parameters) if (made := argument(n, text))], BOUNDED)
+        for each in functions_of("x.c", BOUNDED)
+    )
+    assert f == ["(int64_t)a0.count <= (int64_t)LIMIT", "(int64_t)a1 < (int64_t)LIMIT"]
+    assert (g, h) == ([], [])
+
+
+@pytest.mark.provers
+def test_products_of_equal_numbers_are_seen_to_be_equal(tmp_path: Path) -> None:
+    file, largest = "kernel/src/arith.h", "product > (uint64_t)UINT32_MAX"
+    [function] = [each for each in functions_in(ROOT, [file]) if each.name == "multiply_saturating"]
+    tree, folder = tree_to_compare(tmp_path)
+    line = line_with(tree / file, largest)
+    with seeded(tree, file, line, largest, largest.replace(">", ">=")):
+        assert is_same(function, tree, folder)
+    with seeded(tree, file, line, largest, largest.replace(">", "<")):
+        assert not is_same(function, tree, folder)
+
+
+@pytest.mark.provers
+def test_what_differs_only_where_no_caller_goes_is_the_same(tmp_path: Path) -> None:
+    file, seen = "kernel/src/mode.c", "pedal == ILK_PEDAL_DISAGREE"
+    [function] = [each for each in functions_in(ROOT, [file]) if each.name == "observe_pedal"]
+    tree, folder = tree_to_compare(tmp_path)
+    line = line_with(tree / file, f"ticks_in_row({seen},")
+    with seeded(tree, file, line, seen, seen.replace("==", ">=")):
+        assert is_same(function, tree, folder)
+    with seeded(tree, file, line, seen, seen.replace("==", "<=")):
         assert not is_same(function, tree, folder)
 
 

@@ -3,8 +3,9 @@
 The sound kernel stands beside the changed one in one program, every name of it with a prefix. Both run on
 the same arguments and memory, whatever these hold, and must leave the same results and memory. That is asked
 of the changed function first; where it differs, of all functions that call it, and of those that call these:
-what a caller overwrites or never reads is no fault. Contracts are not assumed, so what is shown holds without
-them.
+what a caller overwrites or never reads is no fault. What contracts promise is not assumed. Of what they
+require of the callers of a static function, bounds of its arguments are: WP shows of the sound kernel that
+every call keeps them, so they hold in the first call in which the mutant could differ.
 """
 
 import re
@@ -18,8 +19,10 @@ from tree import ROOT
 
 SOUND = "sound_"
 LEVELS = 3
-SECONDS = 240
-UNWIND = 66
+SOLVERS = ((("--smt2", "--z3"), 30), ((), 180))
+"""Options of CBMC, and seconds for each: Z3 sees that products are equal, MiniSat knows more of memory."""
+UNWINDS = (18, 66)
+"""Turns of a loop, tried in turn: of those over axes or requests, then of those over the words of frames."""
 ELEMENTS = 16
 """Of an array whose length a parameter does not tell: as many as there can be requests in a tick."""
 FLAGS = ("-DILK_FRAME_WORDS=32", "--no-standard-checks", "--unwinding-assertions", "--drop-unused-functions")
@@ -32,12 +35,19 @@ PARAMETER = re.compile(
     r"^(?P<const>const )?(?P<type>\w+) (?P<pointer>\*(?:const )?)?(?P<name>\w+)(?P<array>\[(?P<size>\w*)\])?$"
 )
 
+CONTRACT = re.compile(r"/\*@(?:[^*]|\*(?!/))*\*/\n$")
+BOUND = re.compile(
+    r"@ +requires +\w+: (?P<name>\w+)(?P<member>->\w+)? (?P<relation><=?|==) (?P<limit>[A-Z]\w+);$", re.M
+)
+"""A clause that means in C what it means in ACSL: a value beside an enumerator or a constant."""
+
 
 @dataclass(frozen=True)
 class Argument:
     """One parameter, as the harness makes it."""
 
     number: int
+    name: str
     type: str
     kind: str
     """`value`, `read` for what is pointed to and not written, `written`."""
@@ -88,9 +98,32 @@ def argument(number: int, parameter: str) -> Argument | None:
     if found is None:
         return None
     if not found["pointer"] and not found["array"]:
-        return Argument(number, found["type"], "value", "")
+        return Argument(number, found["name"], found["type"], "value", "")
     size = (found["size"] or str(ELEMENTS)) if found["array"] else ""
-    return Argument(number, found["type"], "read" if found["const"] else "written", size)
+    return Argument(number, found["name"], found["type"], "read" if found["const"] else "written", size)
+
+
+def bounds(function: Function, arguments: Sequence[Argument], source: str) -> list[str]:
+    """What every caller of a static function keeps: its bounds, as conditions on the harness' arguments.
+
+    `source` is the text of its file.
+    """
+    above = "".join(source.splitlines(keepends=True)[: function.first_line - 1])
+    contract = CONTRACT.search(above)
+    if contract is None or not function.is_static:
+        return []
+    numbers = {each.name: each.number for each in arguments}
+    return [
+        condition(numbers[found["name"]], found)
+        for found in BOUND.finditer(contract.group())
+        if found["name"] in numbers
+    ]
+
+
+def condition(number: int, bound: re.Match[str]) -> str:
+    """The bound in C, of the argument of that number; wide, as integers of ACSL do not convert."""
+    member = (bound["member"] or "").replace("->", ".")
+    return f"(int64_t)a{number}{member} {bound['relation']} (int64_t){bound['limit']}"
 
 
 def same(first: str, second: str) -> str:
@@ -100,14 +133,15 @@ def same(first: str, second: str) -> str:
     return f'  {{ {assumed}\n    __CPROVER_assert({one} == {other}, "same"); }}\n'
 
 
-def harness(function: Function, arguments: Sequence[Argument], local: set[str]) -> str:
-    """A program that runs the function and its sound twin side by side."""
+def harness(function: Function, arguments: Sequence[Argument], kept: Sequence[str], local: set[str]) -> str:
+    """A program that runs the function and its sound twin side by side, on what keeps the conditions."""
 
     def sound(name: str) -> str:
         return SOUND + name if name in local else name
 
     name = Path(function.file).name
     made, theirs, ours, checks = [], [], [], []
+    assumed = "".join(f"  __CPROVER_assume({each});\n" for each in kept)
     for each in arguments:
         size = f"[{each.size}]" if each.size else ""
         address = "" if each.size or each.kind == "value" else "&"
@@ -129,7 +163,7 @@ def harness(function: Function, arguments: Sequence[Argument], local: set[str]) 
         checks.append('  __CPROVER_assert(r == s, "same");\n' if is_scalar(base) else same("r", "s"))
     return (
         f'#include <string.h>\n#include "{SOUND}public.h"\n#include "{name}"\n#include "{SOUND}{name}"\n'
-        "int main(void) {\n" + "\n".join(made) + "\n" + calls + "".join(checks) + "  return 0;\n}\n"
+        "int main(void) {\n" + "\n".join(made) + "\n" + assumed + calls + "".join(checks) + "  return 0;\n}\n"
     )
 
 
@@ -142,7 +176,9 @@ def is_same(function: Function, tree: Path, folder: Path) -> bool:
     arguments = [argument(*each) for each in enumerate(function.parameters) if each[1] != "void"]
     if any(each is None for each in arguments):
         return False
-    text = harness(function, [each for each in arguments if each], names_of(ROOT / "kernel"))
+    made = [each for each in arguments if each]
+    kept = bounds(function, made, (ROOT / function.file).read_text("utf-8"))
+    text = harness(function, made, kept, names_of(ROOT / "kernel"))
     source = folder / f"same_{function.name}.c"
     source.write_text(text, "utf-8")
     taken_in = Path(function.file).name
@@ -152,14 +188,25 @@ def is_same(function: Function, tree: Path, folder: Path) -> bool:
         for path in (*sorted((tree / "kernel/src").glob("*.c")), *sorted(folder.glob(f"{SOUND}*.c")))
         if path.name.removeprefix(SOUND) in needed - {taken_in}
     ]
-    command = [str(ROOT / "build/provers/bin/cbmc"), *FLAGS, "--unwind", str(UNWIND), "--function", "main"]
-    command += [f"-I{folder}", f"-I{tree}/kernel/include", f"-I{tree}/kernel/src", str(source), *others]
-    try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=SECONDS)
-    except subprocess.TimeoutExpired:
-        return False
-    (folder / f"same_{function.name}.log").write_text(done.stdout + done.stderr, "utf-8")
-    return "VERIFICATION SUCCESSFUL" in done.stdout and '"same"' in text
+    command = [str(ROOT / "build/provers/bin/cbmc"), *FLAGS, "--function", "main", f"-I{folder}"]
+    command += [f"-I{tree}/kernel/include", f"-I{tree}/kernel/src", str(source), *others]
+    for turns in UNWINDS:
+        told = answer([*command, "--unwind", str(turns)])
+        (folder / f"same_{function.name}.log").write_text(told, "utf-8")
+        if not re.search(r"unwinding assertion.*: FAILURE$", told, re.MULTILINE):
+            break
+    return "VERIFICATION SUCCESSFUL" in told and '"same"' in text
+
+
+def answer(command: Sequence[str]) -> str:
+    """All that CBMC says with the first solver that comes to an end in its time; empty when none does."""
+    for options, seconds in SOLVERS:
+        try:
+            done = subprocess.run([*command, *options], capture_output=True, text=True, timeout=seconds)
+        except subprocess.TimeoutExpired:
+            continue
+        return done.stdout + done.stderr
+    return ""
 
 
 def shown_equal(tree: Path, file: str, line: int, levels: int = LEVELS) -> str:

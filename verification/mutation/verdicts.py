@@ -18,8 +18,9 @@ READ_BY = {
     "conformance": ("verification/conformance", "spec/tla"),
     "cbmc": ("verification/cbmc",),
     "wp": ("verification/frama-c",),
+    "all": ("verification/mutation",),
 }
-"""What a rung reads besides the kernel."""
+"""What a rung reads besides the kernel; what shows that a mutant is no fault, where none complained."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,7 @@ class Kept:
     def key(self, tree: Path, rung: str) -> str:
         """Of the mutant in the tree, as far as a rung can see it; `all` sees everything."""
         code, whole = kernel_digests(tree)
-        read = [self._rungs[each] for each in (self._asked if rung == "all" else [rung])]
+        read = [self._rungs[each] for each in ((*self._asked, "all") if rung == "all" else [rung])]
         seen = code if rung in ("tests", "conformance") else whole
         return hashlib.sha256(
             "".join([rung, *self._asked, str(self._every), seen, *read]).encode()
