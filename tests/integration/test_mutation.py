@@ -10,6 +10,7 @@ from bare_kernel import ROOT
 sys.path.append(str(ROOT / "verification/mutation"))
 
 import tables
+from bounded import output_of
 from compiled import TRAPPING_CLANG, is_sound_program
 from equal import argument, bounds, core_files, is_same, shown_equal, write_sound
 from functions import Function, callers_of, function_at, functions_in, functions_of
@@ -57,6 +58,15 @@ def test_the_seed_alone_decides_what_is_drawn() -> None:
     assert first == again
     assert len(set(first)) == 400
     assert len(set(first) & set(other)) < 100
+
+
+def test_what_a_program_started_dies_with_it_when_its_time_is_over(tmp_path: Path) -> None:
+    child = tmp_path / "child"
+    script = f"sleep 600 & echo $! > {child}; wait"
+    assert output_of(["sh", "-c", script], seconds=2) is None
+    state = Path(f"/proc/{child.read_text().strip()}/stat")
+    assert not state.exists() or state.read_text().rsplit(")", 1)[1].split()[0] in "ZX"
+    assert output_of(["sh", "-c", "echo said; echo so >&2"], seconds=60) == "said\n"
 
 
 def test_a_verdict_outlives_a_comment_but_not_a_change_of_code(tmp_path: Path) -> None:

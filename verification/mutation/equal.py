@@ -9,11 +9,11 @@ every call keeps them, so they hold in the first call in which the mutant could 
 """
 
 import re
-import subprocess
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from bounded import output_of
 from functions import COMMENT, Function, callers_of, files_reached, functions_in
 from tree import ROOT
 
@@ -200,13 +200,8 @@ def is_same(function: Function, tree: Path, folder: Path) -> bool:
 
 def answer(command: Sequence[str]) -> str:
     """All that CBMC says with the first solver that comes to an end in its time; empty when none does."""
-    for options, seconds in SOLVERS:
-        try:
-            done = subprocess.run([*command, *options], capture_output=True, text=True, timeout=seconds)
-        except subprocess.TimeoutExpired:
-            continue
-        return done.stdout + done.stderr
-    return ""
+    told = (output_of([*command, *options], seconds) for options, seconds in SOLVERS)
+    return next(filter(None, told), "")
 
 
 def shown_equal(tree: Path, file: str, line: int, levels: int = LEVELS) -> str:

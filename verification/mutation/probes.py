@@ -8,12 +8,13 @@ catches nothing.
 
 import json
 import re
-import subprocess
 import sys
 import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+
+from bounded import output_of
 
 HERE = Path(__file__).resolve().parent
 TIMEOUT_S = 900
@@ -28,18 +29,7 @@ class Probe:
 
     def catch(self, tree: Path) -> str:
         """The first line that tells what the fault broke in this tree; empty when nothing did."""
-        try:
-            done = subprocess.run(
-                self.command,
-                cwd=tree,
-                capture_output=True,
-                text=True,
-                timeout=TIMEOUT_S,
-                stdin=subprocess.DEVNULL,
-            )
-        except subprocess.TimeoutExpired:
-            return ""
-        found = self.catches.search(done.stdout)
+        found = self.catches.search(output_of(self.command, TIMEOUT_S, cwd=tree) or "")
         return found.group().strip() if found else ""
 
 
