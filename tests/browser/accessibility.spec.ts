@@ -221,8 +221,7 @@ test.describe("the prostate robot", () => {
   test("its page while it homes", async ({ robot, page }) => {
     await robot.unlockRobot();
     await unfoldPanels(robot);
-    const rows = page.getByRole("listitem", { name: /^Axis / });
-    for (const row of await rows.all()) await row.getByRole("button", { name: /^Enable/ }).click();
+    await robot.enableAll();
     await robot.button("Home all").click();
     await expect(robot.panel("Homing progress")).toBeVisible();
     await expectNoViolation(page, "homing");

@@ -217,6 +217,14 @@ export class ConsolePage {
     await this.expectMode("READY");
   }
 
+  /** Enables every axis; what asks for all of them is told no until the last one is. */
+  async enableAll(): Promise<void> {
+    for (const row of await this.page.getByRole("listitem", { name: /^Axis / }).all()) {
+      await row.getByRole("button", { name: /^Enable/ }).click();
+      await expect(row.getByText("ENABLED", { exact: true })).toBeVisible();
+    }
+  }
+
   /** Presses the simulated pedal with the pointer and keeps it down. */
   async holdPedal(): Promise<void> {
     await this.expectArmed();

@@ -137,14 +137,7 @@ test.describe("the prostate robot", () => {
     await robot.unlockRobot();
     const steps = page.getByRole("group", { name: "Home", exact: true });
     await expect(steps.getByRole("button", { name: /^Home step/ })).toHaveCount(7);
-    const axes = await page.getByRole("listitem", { name: /^Axis / }).count();
-    for (let index = 0; index < axes; index++) {
-      await page
-        .getByRole("listitem", { name: /^Axis / })
-        .nth(index)
-        .getByRole("button", { name: /^Enable/ })
-        .click();
-    }
+    await robot.enableAll();
     await robot.button("Home all").click();
     const progress = robot.panel("Homing progress");
     await expect(progress.getByRole("listitem").first()).toHaveAttribute("aria-current", "step");

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import pytest
 from conftest import RobotFile, StackFactory
-from controllers import assert_rest_and_fresh_consent, connections, make_controller
+from controllers import assert_rest_and_fresh_consent, connections, make_controller, ticks_around
 from motion import is_driven, proposal, propose, to_motion, wait_for_proposal, wait_until
 
 pytestmark = pytest.mark.network
@@ -84,11 +84,10 @@ def test_a_pulled_cable_pauses_the_motion_within_300_ms_and_every_program_behind
         to_motion(robot)
         number = propose(robot, -1900)
         wait_until("driven", lambda: is_driven(robot))
-        cable.pull()
-        pulled_at = robot.control("status")["tick"]
+        pulled_between = ticks_around(robot, cable.pull)
         assert proposal(robot, number)["state"] == "executing", "not noticed before it was pulled"
         wait_for_proposal(robot, number, "paused")
-        assert_rest_and_fresh_consent(robot, number, pulled_at)
+        assert_rest_and_fresh_consent(robot, number, pulled_between)
         wait_until("both dropped", lambda: connections(robot) == [])
     finally:
         for program in programs:
