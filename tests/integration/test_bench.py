@@ -58,7 +58,7 @@ def test_a_tick_that_the_simulated_bus_held_up_is_no_wakeup() -> None:
 
 def test_wakeups_of_cyclictest_are_counted_beyond_its_histogram_too() -> None:
     report = {"thread": {"0": {"histogram": {"5": 990, "7": 8}, "cycles": 1000}}}
-    seen = wakeups.of_counts(wakeups.histogram_of(report))
+    seen = wakeups.of_counts(wakeups.histogram_of(report), 1000)
     assert seen == {
         "wakeups": 1000,
         "median_us": 5,
@@ -66,6 +66,7 @@ def test_wakeups_of_cyclictest_are_counted_beyond_its_histogram_too() -> None:
         "p999_us": wakeups.MOST_LATE_US,
         "p9999_us": wakeups.MOST_LATE_US,
         "max_us": wakeups.MOST_LATE_US,
+        "missed_deadlines": 2,
     }
 
 
@@ -112,7 +113,7 @@ def test_an_hour_of_one_set_up_leaves_a_record_of_its_schema_a_table_and_picture
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     notes = notes_of([10.0] * 999 + [1500.0])
-    beside = wakeups.of_counts(np.bincount([5] * 998 + [8] * 2))
+    beside = wakeups.of_counts(np.bincount([5] * 998 + [8] * 2), 1000)
     shares = dict.fromkeys(wakeups.SHARES, 2.0)
     seen = {"seconds": 1, "loops": {"main": wakeups.of_notes(notes, 1000)}, "cyclictest": beside}
     seen |= {"wake_to_cyclictest": shares, "load": {}, "notes": {"main": notes}}

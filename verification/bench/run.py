@@ -160,6 +160,7 @@ def wakeup_figures(seen: dict[str, dict]) -> dict[str, float]:
             f"loop_us_{key}_{name}": main["loop"][f"{key}_us"] for key in ("p001", "median", "p999", "max")
         }
         figures |= {f"{key}_{name}": main[key] for key in ("missed_deadlines", "held_up")}
+        figures[f"cyclictest_missed_deadlines_{name}"] = each["cyclictest"]["missed_deadlines"]
     # The names that the ladder states.
     figures["wake_p999_us"] = figures["wake_us_p999_shipped_loaded"]
     figures["cyclictest_p999_us"] = figures["cyclictest_us_p999_shipped_loaded"]
@@ -300,6 +301,7 @@ def main() -> int:
         "step_ns_median_64_words": quietest(timed[64])["moving"]["median_ns"],
         "step_instructions_median": counted["moving"],
         "step_instructions_worst_path": max(counted.values()),
+        "clock_ns": statistics.median(each["clock_ns"] for each in timed[32]),
         "reference_ns": statistics.median(each["reference_ns"] for each in timed[32]),
         **size.measure(ROOT / "build/bench"),
     }

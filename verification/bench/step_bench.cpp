@@ -49,6 +49,18 @@ uint64_t reference_ns() {
   return static_cast<uint64_t>(std::chrono::nanoseconds(spent).count()) / 100;
 }
 
+/// What a reading of the clock adds to each time, in ns: the median of empty measurements.
+int64_t clock_ns() {
+  constexpr std::size_t readings = 10'001;
+  std::vector<int64_t> times(readings);
+  for (int64_t& spent : times) {
+    const auto start = std::chrono::steady_clock::now();
+    spent = std::chrono::nanoseconds(std::chrono::steady_clock::now() - start).count();
+  }
+  std::sort(times.begin(), times.end());
+  return times[readings / 2];
+}
+
 /// Plays the tape; returns the time of each measured step in nanoseconds, the clock's own cost included.
 std::vector<int64_t> play(const Scenario& scenario) {
   ilk_state_t state{};
@@ -135,6 +147,7 @@ int main(int argc, char** argv) {
   nlohmann::json result;
   result["frame_words"] = ILK_FRAME_WORDS;
   result["reference_ns"] = reference_ns();
+  result["clock_ns"] = clock_ns();
   for (const std::string_view name : kScenarios) {
     result["scenarios"][std::string(name)] = summary(play(make_scenario(name, kMeasuredTicks)));
   }

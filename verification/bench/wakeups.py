@@ -105,8 +105,8 @@ def histogram_of(report: dict) -> np.ndarray:
     return counts
 
 
-def of_counts(counts: np.ndarray) -> dict[str, float]:
-    """Median and tail of wake-ups that were counted by whole microseconds."""
+def of_counts(counts: np.ndarray, period_us: int) -> dict[str, float]:
+    """Median and tail of wake-ups that were counted by whole microseconds, and deadlines missed in sleep."""
     reached = np.cumsum(counts)
     return {
         "wakeups": int(reached[-1]),
@@ -114,6 +114,7 @@ def of_counts(counts: np.ndarray) -> dict[str, float]:
             f"{name}_us": int(np.searchsorted(reached, share * reached[-1])) for name, share in SHARES.items()
         },
         "max_us": int(np.flatnonzero(counts)[-1]),
+        "missed_deadlines": int(counts[period_us + 1 :].sum()),
     }
 
 
@@ -260,7 +261,7 @@ def measure(arrangement: Arrangement, seconds: int, binaries: Path, log: Path) -
         }
     periods = {"main": PERIOD_US, "bus": BUS_PERIOD_US}
     figures = {loop: of_notes(each, periods[loop]) for loop, each in notes.items()}
-    cyclictest = of_counts(counts)
+    cyclictest = of_counts(counts, PERIOD_US)
     ratios = {
         name: round(figures["main"]["wake"][f"{name}_us"] / max(cyclictest[f"{name}_us"], 1), 2)
         for name in SHARES
