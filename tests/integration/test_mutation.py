@@ -99,9 +99,9 @@ def test_what_did_not_change_is_not_compiled_again(tmp_path: Path) -> None:
 def test_the_kill_matrix_and_the_survivors_are_left_as_files(tmp_path: Path) -> None:
     functions = functions_of("x.c", SOURCE)
     mutants = [Mutant("x.c", line, "relation", f"  old {line}", f"  new {line}") for line in (2, 6, 7, 8)]
-    told = {"tests": "kernel_tests: red", "conformance": "", "cbmc": "gate: red", "wp": ""}
+    told = {"tests": "short: red", "conformance": "", "cbmc": "gate: red", "wp": ""}
     verdicts = [
-        Verdict("killed", ("tests kernel_tests: red", "cbmc gate: red"), 1.0, told),
+        Verdict("killed", ("tests short: red", "cbmc gate: red"), 1.0, told),
         Verdict("killed", ("cbmc gate: red",), 1.0, told | {"tests": ""}),
         Verdict("equivalent", ("g does the same",), 1.0, dict.fromkeys(told, "")),
         Verdict("survived", (), 1.0, dict.fromkeys(told, "")),
@@ -125,7 +125,7 @@ def test_the_kill_matrix_and_the_survivors_are_left_as_files(tmp_path: Path) -> 
 
 
 def test_without_survivors_the_list_says_so(tmp_path: Path) -> None:
-    killed = Verdict("killed", ("tests kernel_tests: red",), 1.0, {"tests": "kernel_tests: red"})
+    killed = Verdict("killed", ("tests short: red",), 1.0, {"tests": "short: red"})
     mutant = Mutant("x.c", 2, "relation", "old", "new")
     tables.write(tmp_path, [mutant], [killed], functions_of("x.c", SOURCE), every=False)
     assert (tmp_path / "survivors.txt").read_text() == "none\n"

@@ -2,8 +2,9 @@
 
 The operators are those of Offutt et al., "An experimental determination of sufficient mutant operators"
 (1996), as far as C without pointer arithmetic knows them: relation (each for each other), logical connector,
-negation, arithmetic, constant, statement deletion; and for this kernel the exchange of an enumerator for its
-neighbour, a condition turned round, and nothing in place of a result or an assigned value.
+negation, arithmetic, bitwise, shift, constant, statement deletion; and for this kernel the exchange of an
+enumerator for its neighbour, a condition turned round, and nothing in place of a result, an assigned value or
+one that begins a member.
 """
 
 import hashlib
@@ -20,7 +21,9 @@ RELATIONS = {each: tuple(other for other in RELATION if other != each) for each 
 TOKENS = {
     "relation": (re.compile(r"(?<= )(<=|>=|==|!=|<|>)(?= )"), RELATIONS),
     "connector": (re.compile(r"&&|\|\|"), {"&&": ("||",), "||": ("&&",)}),
-    "arithmetic": (re.compile(r"(?<= )[-+](?= )"), {"+": ("-",), "-": ("+",)}),
+    "arithmetic": (re.compile(r"(?<= )[-+*](?= )"), {"+": ("-",), "-": ("+",), "*": ("+",)}),
+    "bitwise": (re.compile(r"(?<= )[&|^](?= )"), {"&": ("|",), "|": ("&",), "^": ("|",)}),
+    "shift": (re.compile(r"<<|>>"), {"<<": (">>",), ">>": ("<<",)}),
     "increment": (re.compile(r"\+\+"), {"++": ("--",)}),
     "constant": (re.compile(r"\b[01]u\b"), {"0u": ("1u",), "1u": ("0u", "2u")}),
     "negation": (re.compile(r"!(?=\w)"), {"!": ("",)}),
@@ -29,6 +32,8 @@ TOKENS = {
 CONDITION = re.compile(r"\b(if|while) \((?P<condition>.*)\) \{$")
 RETURNED = re.compile(r"\breturn (?P<value>[^;]+);")
 ASSIGNED = re.compile(r"^\s+(?:const \w+ )?\S+ = (?P<value>[^;{]+);$")
+MEMBER = re.compile(r"(?<![\w\])])\.\w+ = (?P<value>[^,;{}()]+)[,}]")
+NUMBER = re.compile(r"(?<![\w.])(?:[2-9]|[1-9]\d+)(?=u?\b(?!\.))")
 ENUMERATOR = re.compile(r"\bILK_[A-Z]+(?:_[A-Z]+)*\b")
 DELETABLE = re.compile(
     r"^\s+(?!return|static|const|bool|u?int\d+_t|ilk_\w+_t |finding_t|case|default|break)\S.*;$"
@@ -93,6 +98,10 @@ def changes(line: str, next_of: dict[str, str]) -> Iterator[tuple[str, str]]:
         if found := pattern.search(line):
             new = f"!({found[group]})" if operator == "condition" else "0"
             yield operator, line[: found.start(group)] + new + line[found.end(group) :]
+    for found in MEMBER.finditer(line):
+        yield "member", line[: found.start("value")] + "0" + line[found.end("value") :]
+    for found in NUMBER.finditer(line):
+        yield "constant", line[: found.start()] + str(int(found.group()) + 1) + line[found.end() :]
     if found := EMPTIED.search(line):
         yield "deletion", line[: found.start("body")] + ";" + line[found.end("body") :]
     if DELETABLE.match(line) and line.count("(") == line.count(")"):

@@ -60,8 +60,8 @@ def row_probe(phase: str) -> Probe:
 
 
 def test_probe(part: str) -> Probe:
-    """The kernel's unit tests, all of them."""
-    command = (sys.executable, str(HERE / "unit_tests.py"), ".")
+    """The kernel's unit tests, the `short` or the `long` ones."""
+    command = (sys.executable, str(HERE / "unit_tests.py"), ".", part)
     return Probe("tests", part, command, re.compile(r"^FAILED.*$", re.MULTILINE))
 
 
@@ -93,10 +93,11 @@ def contracts_of(tree: Path, file: Path) -> Mapping[str, object]:
 
 def probes_of_mutants(tree: Path, file: Path, function: str) -> Iterator[Probe]:
     """All that can see a change of the body of this function, the cheapest first."""
-    yield test_probe("kernel_tests")
+    yield test_probe("short")
     yield row_probe("all")
     if function in contracts_of(tree, file):
         yield contract_probe(file.name, function)
+    yield test_probe("long")
     yield from map(proof_probe, proofs_about(tree, file))
 
 

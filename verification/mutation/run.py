@@ -38,8 +38,8 @@ from rows import all_phases, print_missing
 from tree import ROOT, make_tree, on_trees, seeded
 from verdicts import RUNGS, Kept, Verdict
 
-RUN = ("tests", "conformance")
-"""Rungs that run the kernel; the others prove, and take longer."""
+SOON = ("tests", "conformance", "wp")
+"""Rungs that answer within a minute; all proofs about a file take longer."""
 
 
 def core_files() -> list[str]:
@@ -131,11 +131,11 @@ def judge(
         probes = [p for p in probes_of_mutants(tree, Path(mutant.file), function) if p.rung in asked]
         # What does the same needs neither test nor proof to be asked.
         equal = compiled_alike(tree, mutant)
-        told = {} if equal else ask(tree, [probe for probe in probes if probe.rung in RUN], every)
+        told = {} if equal else ask(tree, [probe for probe in probes if probe.rung in SOON], every)
         if not equal and not any(told.values()):
             equal = shown_equal(tree, mutant.file, mutant.line, levels=1)
         if not equal and (every or not any(told.values())):
-            told |= ask(tree, [probe for probe in probes if probe.rung not in RUN], every)
+            told |= ask(tree, [probe for probe in probes if probe.rung not in SOON], every)
         reasons = tuple(f"{rung} {said}" for rung, said in told.items() if said)
         fate = "killed"
         if not reasons:
@@ -183,7 +183,8 @@ def figures_of(verdicts: Sequence[Verdict], least: int, functions: int) -> dict[
 
 def complaints_of_sound(tree: Path) -> list[str]:
     """What the cheap rungs say of the kernel as it is; a rung that complains of that kills nothing."""
-    return [said for probe in (test_probe("kernel_tests"), row_probe("all")) if (said := probe.catch(tree))]
+    probes = (test_probe("short"), test_probe("long"), row_probe("all"))
+    return [said for probe in probes if (said := probe.catch(tree))]
 
 
 def main() -> int:
