@@ -4,9 +4,9 @@
 tick. cyclictest has the executive's priority and period, and wakes up half a period after it, so that
 neither finds the core taken by the other. Both are judged over the same seconds.
 
-The simulated bus is a process without real-time rights, and answers when the machine lets it. A tick that is
-still waiting for it at the next deadline does not wake up: such ticks count as `held_up`, and their times are
-in the loop times alone.
+Cards answer in their own time, however busy the machine: the simulator that stands for them has a priority
+above the loop's and another core. A tick that still waits for it at the next deadline does not wake up: such
+ticks count as `held_up`, and their times are in the loop times alone.
 
 `before` is the arrangement that the thesis began with (loop_bench.cpp); there the app runs SCHED_RR, too.
 """
@@ -34,6 +34,7 @@ from mover import BROKEN, Mover, connect, give_role, make_ready
 from websockets.exceptions import ConnectionClosed
 
 PRIORITY = 80
+CARDS_PRIORITY = 90
 PERIOD_US = 1000
 BUS_PERIOD_US = 700
 SETTLE_S = 2.0
@@ -146,19 +147,24 @@ def within(notes: np.ndarray, begun_ns: int, ended_ns: int) -> np.ndarray:
     return notes[(notes["begun_ns"] >= begun_ns) & (notes["begun_ns"] < ended_ns)]
 
 
+def start(path: Path, command: str) -> None:
+    """A program at that path which becomes the command, with its own arguments after it."""
+    path.write_text(f'#!/bin/sh\nexec {command} "$@"\n', "utf-8")
+    path.chmod(0o755)
+
+
 def programs(binaries: Path, folder: Path, setup: str) -> None:
     """A folder of programs for `interlock run`: with the noted kernel, and the app as the set-up has it."""
     folder.mkdir()
     # Looked for beside the file that runs: a link would lead back to the kernel that is shipped.
     shutil.copy(binaries / "interlock", folder / "interlock")
-    for name in ("interlock-sim", "interlock-recorder", "interlock-app"):
-        (folder / name).symlink_to(binaries / name)
-    (folder / "interlock-kernel").symlink_to(binaries / "loop_bench")
-    if setup == "before":
-        app = folder / "interlock-app"
-        app.unlink()
-        app.write_text(f'#!/bin/sh\nexec chrt --rr {PRIORITY} {binaries / "interlock-app"} "$@"\n', "utf-8")
-        app.chmod(0o755)
+    others = ",".join(map(str, sorted(os.sched_getaffinity(0) - {core()}))) or str(core())
+    cards = f"taskset --cpu-list {others} chrt --fifo {CARDS_PRIORITY}"
+    start(folder / "interlock-sim", f"{cards} {binaries / 'interlock-sim'}")
+    as_thesis = f"chrt --rr {PRIORITY} " if setup == "before" else ""
+    start(folder / "interlock-app", f"{as_thesis}{binaries / 'interlock-app'}")
+    start(folder / "interlock-recorder", str(binaries / "interlock-recorder"))
+    start(folder / "interlock-kernel", str(binaries / "loop_bench"))
 
 
 class Listener(threading.Thread):
