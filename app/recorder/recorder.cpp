@@ -8,10 +8,6 @@ namespace interlock::recorder {
 namespace {
 
 namespace fs = std::filesystem;
-using namespace std::chrono_literals;
-
-/** After the disk refused: a full one does not get free sooner by asking at every step. */
-constexpr auto pause_after_failure = 10s;
 
 constexpr std::uint32_t mode_of(std::uint32_t alarm) { return alarm & 0xFU; }
 constexpr std::uint32_t mode_and_cause_of(std::uint32_t alarm) { return alarm & 0xFFU; }
@@ -34,14 +30,14 @@ void Recorder::step() {
   while (const std::optional<TickHead> head = ring_.next(place_)) {
     take_in(*head);
   }
-  if (terms_.continuous && !active_ && newest_) {
-    const std::uint32_t first = ring_.oldest();
-    begin(ILK_RECORDED_CONTINUOUSLY, ring_.opening_tick(first).value_or(newest_->tick), first);
+  if (!active_ && newest_) {
+    begin_recording();
   }
   append_complete_blocks();
 }
 
-void Recorder::finish() {
+bool Recorder::finish() {
+  retry_at_ = {};
   step();
   if (newest_ && !ring_.closed() && !ring_.writer_lives()) {
     event(ILK_RECORDED_ON_END, newest_->tick);
@@ -49,6 +45,7 @@ void Recorder::finish() {
   if (active_) {
     end_recording();
   }
+  return !active_ && !event_ && (!terms_.continuous || may_write());
 }
 
 void Recorder::take_in(const TickHead& head) {
@@ -65,22 +62,34 @@ void Recorder::take_in(const TickHead& head) {
 }
 
 void Recorder::event(ilk_recorded_why_t why, std::uint32_t tick) {
-  if (active_ && !active_->last_tick) {
+  const std::uint64_t after_us = std::uint64_t{terms_.after_s} * 1'000'000;
+  const std::uint32_t last_tick = tick + static_cast<std::uint32_t>(after_us / ring_.run().config.period_us);
+  if (active_) {
+    active_->last_tick = active_->last_tick ? std::optional(last_tick) : std::nullopt;
     return;
   }
-  if (!active_) {
-    begin(why, tick, ring_.block_before(tick, terms_.before_s));
-  }
-  if (active_) {
-    const std::uint64_t after_us = std::uint64_t{terms_.after_s} * 1'000'000;
-    active_->last_tick = tick + static_cast<std::uint32_t>(after_us / ring_.run().config.period_us);
+  event_ = event_ ? Event{event_->why, event_->tick, last_tick} : Event{why, tick, last_tick};
+  begin_recording();
+}
+
+/** Of the event that waits for it, or of all. */
+void Recorder::begin_recording() {
+  if (event_) {
+    begin(event_->why, event_->tick, ring_.block_before(event_->tick, terms_.before_s));
+    if (active_) {
+      active_->last_tick = event_->last_tick;
+      event_.reset();
+    }
+  } else if (terms_.continuous) {
+    const std::uint32_t first = ring_.oldest();
+    begin(ILK_RECORDED_CONTINUOUSLY, ring_.opening_tick(first).value_or(newest_->tick), first);
   }
 }
 
-bool Recorder::may_begin() const { return std::chrono::steady_clock::now() >= retry_at_; }
+bool Recorder::may_write() const { return std::chrono::steady_clock::now() >= retry_at_; }
 
 void Recorder::begin(ilk_recorded_why_t why, std::uint32_t tick, std::uint32_t first_block) {
-  if (!may_begin()) {
+  if (!may_write()) {
     return;
   }
   Active recording{folder_.file(ring_.run(), why, tick), std::nullopt, first_block, std::nullopt};
@@ -101,29 +110,32 @@ void Recorder::begin(ilk_recorded_why_t why, std::uint32_t tick, std::uint32_t f
 
 void Recorder::append_complete_blocks() {
   const std::uint32_t head = ring_.head();
-  while (active_ && active_->next_block < head) {
-    append(active_->next_block);
-    if (active_ && !active_->last_tick && active_->writer->bytes() >= terms_.part_bytes) {
+  while (active_ && active_->next_block < head && append(active_->next_block)) {
+    if (!active_->last_tick && active_->writer->bytes() >= terms_.part_bytes) {
       go_on_in_a_new_part();
     }
   }
 }
 
-void Recorder::append(std::uint32_t number) {
-  active_->next_block = number + 1;
-  if (!active_->writer) {
-    return;
+/** False when the disk does not take the block: it is asked for it again. */
+bool Recorder::append(std::uint32_t number) {
+  if (active_->writer && !may_write()) {
+    return false;
   }
-  const std::optional<BlockCopy> block = ring_.copy(number);
-  if (!block) {
+  const std::optional<BlockCopy> block = active_->writer ? ring_.copy(number) : std::nullopt;
+  if (block) {
+    if (const Recorded<void> appended = active_->writer->append(*block); !appended) {
+      fail(appended.error());
+      return false;
+    }
+  }
+  active_->next_block = number + 1;
+  if (active_->writer && !block) {
     active_->next_block = std::max(number + 1, ring_.oldest());
     tell_("the disk is too slow: lost blocks " + std::to_string(number) + " to " +
           std::to_string(active_->next_block - 1));
-    return;
   }
-  if (const Recorded<void> appended = active_->writer->append(*block); !appended) {
-    fail(appended.error());
-  }
+  return true;
 }
 
 void Recorder::go_on_in_a_new_part() {
@@ -132,12 +144,10 @@ void Recorder::go_on_in_a_new_part() {
   begin(ILK_RECORDED_CONTINUOUSLY, ring_.opening_tick(next).value_or(newest_->tick), next);
 }
 
+/** It goes on when the disk does not take all of it. */
 void Recorder::end_recording() {
   append_complete_blocks();
-  if (active_ && active_->next_block == ring_.head()) {
-    append(active_->next_block);
-  }
-  if (active_) {
+  if (active_ && active_->next_block == ring_.head() && append(active_->next_block)) {
     complete();
   }
 }
@@ -155,25 +165,26 @@ void Recorder::complete() {
 void Recorder::fail(const std::string& reason) {
   tell_("cannot record: " + reason);
   retry_at_ = std::chrono::steady_clock::now() + pause_after_failure;
-  active_.reset();
 }
 
 Recorded<std::uint32_t> record_now(const Ring& ring, const fs::path& file, const RecordingSubject& subject,
-                                   std::uint32_t seconds) {
-  Recorded<RecordingWriter> writer = RecordingWriter::create(file, ring.run(), subject);
+                                   std::uint32_t first_block) {
+  Recorded<RecordingWriter> writer = RecordingWriter::create(part_of(file), ring.run(), subject);
   if (!writer) {
     return tl::unexpected(writer.error());
   }
   const std::uint32_t last = ring.head();
   std::uint32_t blocks = 0;
-  for (std::uint32_t number = ring.block_before(subject.tick, seconds); number <= last; ++number) {
+  for (std::uint32_t number = first_block; number <= last; ++number) {
     const std::optional<BlockCopy> block = ring.copy(number);
     if (const Recorded<void> appended = block ? writer->append(*block) : Recorded<void>(); !appended) {
       return tl::unexpected(appended.error());
     }
     blocks += block ? 1 : 0;
   }
-  return blocks;
+  std::error_code error;
+  fs::rename(part_of(file), file, error);
+  return error ? Recorded<std::uint32_t>(tl::unexpected(file.string() + ": " + error.message())) : blocks;
 }
 
 }  // namespace interlock::recorder

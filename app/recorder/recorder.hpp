@@ -18,6 +18,9 @@
 
 namespace interlock::recorder {
 
+/** After the disk refused: a full one does not get free sooner by asking at every step. */
+constexpr std::chrono::seconds pause_after_failure{10};
+
 /** What is recorded, and how much of it. */
 struct RecorderTerms {
   bool continuous = false;
@@ -37,7 +40,7 @@ using Tell = std::function<void(const std::string&)>;
  * meanwhile.
  *
  * Starting again on the same ring comes to the same recordings; those that are complete already stay as they
- * are.
+ * are. What the disk refuses is tried again, from where it was refused, for as long as the ring holds it.
  */
 class Recorder {
  public:
@@ -46,10 +49,20 @@ class Recorder {
   /** Takes in what has come since the last call. */
   void step();
 
-  /** Writes out all there is; after the kernel's end, or when the recorder itself is to end. */
-  void finish();
+  /**
+   * Writes out all there is; after the kernel's end, or when the recorder itself is to end. False when the
+   * disk did not take all that is to be kept: the ring alone holds it.
+   */
+  [[nodiscard]] bool finish();
 
  private:
+  /** What is to be kept, until a recording of it is begun. */
+  struct Event {
+    ilk_recorded_why_t why;
+    std::uint32_t tick;
+    std::uint32_t last_tick;
+  };
+
   /** A recording that is being written; without a writer, one that is complete already. */
   struct Active {
     std::filesystem::path file;
@@ -60,14 +73,15 @@ class Recorder {
 
   void take_in(const TickHead& head);
   void event(ilk_recorded_why_t why, std::uint32_t tick);
+  void begin_recording();
   void begin(ilk_recorded_why_t why, std::uint32_t tick, std::uint32_t first_block);
   void append_complete_blocks();
-  void append(std::uint32_t number);
+  [[nodiscard]] bool append(std::uint32_t number);
   void go_on_in_a_new_part();
   void end_recording();
   void complete();
   void fail(const std::string& reason);
-  [[nodiscard]] bool may_begin() const;
+  [[nodiscard]] bool may_write() const;
 
   const Ring& ring_;
   const RecordingFolder& folder_;
@@ -75,12 +89,13 @@ class Recorder {
   Tell tell_;
   RingPlace place_;
   std::optional<TickHead> newest_;
+  std::optional<Event> event_;
   std::optional<Active> active_;
   std::chrono::steady_clock::time_point retry_at_; /**< after the disk refused */
 };
 
-/** Writes the newest `seconds` of kernel time into a new file; returns how many blocks. */
+/** Writes a ring from that block on into a new file; returns how many blocks. */
 Recorded<std::uint32_t> record_now(const Ring& ring, const std::filesystem::path& file,
-                                   const RecordingSubject& subject, std::uint32_t seconds);
+                                   const RecordingSubject& subject, std::uint32_t first_block);
 
 }  // namespace interlock::recorder

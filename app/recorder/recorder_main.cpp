@@ -17,6 +17,7 @@
 
 #include "build_info/build_info.hpp"
 #include "recorder/recorder.hpp"
+#include "recorder/rescue.hpp"
 
 namespace interlock::recorder {
 namespace {
@@ -57,29 +58,9 @@ std::optional<Ring> live_ring(const fs::path& file) {
   return ring && ring->writer_lives() ? std::optional<Ring>(std::move(*ring)) : std::nullopt;
 }
 
-/** What an earlier run left in memory, its kernel and its recorder being dead. */
-void rescue(const Options& options, const RecordingFolder& folder, const std::string& build) {
-  std::error_code ignored;
-  if (!fs::exists(options.ring, ignored)) {
-    return;
-  }
-  const Recorded<Ring> ring = Ring::open(options.ring);
-  if (ring && ring->writer_lives()) {
-    return;
-  }
-  if (ring && ring->head() != 0) {
-    const std::uint32_t tick = ring->opening_tick(ring->head()).value_or(0);
-    const fs::path file = folder.file(ring->run(), ILK_RECORDED_ON_RESCUE, tick);
-    const Recorded<std::uint32_t> blocks =
-        record_now(*ring, file, {ILK_RECORDED_ON_RESCUE, tick, build}, RecorderTerms{}.before_s);
-    say(blocks ? "rescued " + file.string() : "cannot record: " + blocks.error());
-  }
-  fs::remove(options.ring, ignored);
-}
-
 /** Follows one kernel; true when the recorder was asked to end before the kernel did. */
-bool follow(const Ring& ring, const Options& options, const RecordingFolder& folder,
-            const RecorderTerms& terms, const FileHandle& signals) {
+bool follow(const Ring& ring, const RecordingFolder& folder, const RecorderTerms& terms,
+            const FileHandle& signals, Rescue& rescue) {
   Recorder recorder(ring, folder, terms, say);
   bool asked = false;
   bool lives = true;
@@ -87,11 +68,14 @@ bool follow(const Ring& ring, const Options& options, const RecordingFolder& fol
     asked = end_is_asked(signals);
     lives = ring.writer_lives();
     recorder.step();
+    rescue.step();
   }
-  recorder.finish();
   if (!lives) {
-    std::error_code ignored;
-    fs::remove(options.ring, ignored);
+    rescue.set_aside();
+  }
+  const bool kept = recorder.finish();
+  if (!lives) {
+    rescue.settle(kept);
   }
   return asked;
 }
@@ -106,15 +90,17 @@ int record(const Options& options) {
   RecorderTerms terms;
   terms.continuous = options.continuous;
   terms.build = std::string(version()) + ' ' + std::string(commit());
-  rescue(options, *folder, terms.build);
+  Rescue rescue(options.ring, *folder, terms, say);
+  rescue.begin();
   const std::optional<Ring> going_on = live_ring(options.ring);
   folder->finish_parts(going_on ? &going_on->run() : nullptr);
   say("ready recordings=" + folder->path().string());
   while (!end_is_asked(signals)) {
     const std::optional<Ring> ring = live_ring(options.ring);
-    if (ring && follow(*ring, options, *folder, terms, signals)) {
+    if (ring && follow(*ring, *folder, terms, signals, rescue)) {
       break;
     }
+    rescue.step();
   }
   return 0;
 }

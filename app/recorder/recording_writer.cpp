@@ -1,6 +1,7 @@
 #include "recorder/recording_writer.hpp"
 
 #include <fcntl.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstddef>
@@ -62,7 +63,7 @@ Recorded<void> RecordingWriter::write(const void* bytes, std::size_t count) {
   const auto* from = static_cast<const std::byte*>(bytes);
   std::size_t left = count;
   while (left > 0) {
-    const ssize_t written = ::write(file_.get(), from, left);
+    const ssize_t written = pwrite(file_.get(), from, left, static_cast<off_t>(bytes_ + count - left));
     if (written < 0 && errno == EINTR) {
       continue;
     }

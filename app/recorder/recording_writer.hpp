@@ -29,7 +29,7 @@ class RecordingWriter {
   static Recorded<RecordingWriter> create(const std::filesystem::path& file, const ilk_run_description_t& run,
                                           const RecordingSubject& subject);
 
-  /** Appends a block; it is on the disk when this returns. */
+  /** Appends a block; it is on the disk when this returns. After a failure the same place is written anew. */
   Recorded<void> append(const BlockCopy& block);
 
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }

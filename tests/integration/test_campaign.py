@@ -30,7 +30,8 @@ def campaign() -> object:
 def figures(campaign: object, **others: int) -> dict[str, int]:
     """Of a full campaign in which all happened and nothing went wrong."""
     sound = dict.fromkeys(("unsafe", "late", "bit_flips_unsafe"), 0)
-    swept = dict.fromkeys((*campaign.SWEEPS, *campaign.SWEEPS.values()), 7)
+    whole = campaign.SWEEPS | campaign.KINDS
+    swept = dict.fromkeys((*whole, *whole.values()), 7)
     return sound | swept | dict.fromkeys(campaign.HAPPENED, 1) | campaign.FULL | others
 
 
@@ -45,6 +46,16 @@ def test_a_run_shorter_than_a_full_one_is_bounded(campaign: object, what: str) -
     seen = figures(campaign, **{what: campaign.FULL[what] - 1})
     assert campaign.status_of(seen, failed=False) == "BOUNDED"
     assert campaign.status_of(seen | {"late": 1}, failed=False) == "FAILED"
+
+
+@pytest.mark.parametrize("kind", ["axis_faults", "causes"])
+def test_a_full_run_in_which_the_kernel_never_found_a_fault_does_not_pass(
+    campaign: object, kind: str
+) -> None:
+    name = campaign.KINDS[kind]
+    seen = figures(campaign, **{name: 6})
+    assert campaign.left_out(seen) == [f"{name}: 6 of 7"]
+    assert campaign.status_of(seen, failed=False) == "VACUOUS"
 
 
 @pytest.mark.parametrize("sweep", SWEPT)

@@ -250,6 +250,24 @@ def test_killed_run_is_rescued_by_the_next_one(short_tmp_path: Path) -> None:
         again.close()
 
 
+def test_last_ticks_that_the_disk_refused_are_written_out_later(recorded: RecordedKernelFactory) -> None:
+    kernel = recorded(clock="real")
+    kernel.app.run(300)
+    away = kernel.folder / "away"
+    kernel.recordings.rename(away)
+    kernel.kernel.kill()
+    kernel.kernel.wait()
+    unsaved = Path(f"{kernel.ring}.unsaved")
+    wait_for("the ring is set aside", unsaved.exists)
+    kernel.recorder.kill()
+    kernel.recorder.wait()
+    away.rename(kernel.recordings)
+    kernel.recorder = kernel.start_recorder()
+    _, last = replayed_ticks(kernel.wait_for_file("rescue"))
+    assert last >= kernel.app.snapshot().state.tick
+    wait_for("the ring is gone", lambda: not unsaved.exists())
+
+
 def test_fault_of_an_axis_is_recorded_by_interlock_run(stack: StackFactory) -> None:
     robot = stack()
     robot.control("jump", slot=0, counts=5000)

@@ -147,7 +147,7 @@ def within(notes: np.ndarray, begun_ns: int, ended_ns: int) -> np.ndarray:
     return notes[(notes["begun_ns"] >= begun_ns) & (notes["begun_ns"] < ended_ns)]
 
 
-def start(path: Path, command: str) -> None:
+def write_program(path: Path, command: str) -> None:
     """A program at that path which becomes the command, with its own arguments after it."""
     path.write_text(f'#!/bin/sh\nexec {command} "$@"\n', "utf-8")
     path.chmod(0o755)
@@ -160,11 +160,11 @@ def programs(binaries: Path, folder: Path, setup: str) -> None:
     shutil.copy(binaries / "interlock", folder / "interlock")
     others = ",".join(map(str, sorted(os.sched_getaffinity(0) - {core()}))) or str(core())
     cards = f"taskset --cpu-list {others} chrt --fifo {CARDS_PRIORITY}"
-    start(folder / "interlock-sim", f"{cards} {binaries / 'interlock-sim'}")
+    write_program(folder / "interlock-sim", f"{cards} {binaries / 'interlock-sim'}")
     as_thesis = f"chrt --rr {PRIORITY} " if setup == "before" else ""
-    start(folder / "interlock-app", f"{as_thesis}{binaries / 'interlock-app'}")
-    start(folder / "interlock-recorder", str(binaries / "interlock-recorder"))
-    start(folder / "interlock-kernel", str(binaries / "loop_bench"))
+    write_program(folder / "interlock-app", f"{as_thesis}{binaries / 'interlock-app'}")
+    write_program(folder / "interlock-recorder", str(binaries / "interlock-recorder"))
+    write_program(folder / "interlock-kernel", str(binaries / "loop_bench"))
 
 
 class Listener(threading.Thread):

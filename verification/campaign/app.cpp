@@ -63,8 +63,8 @@ oracle::Message message_of(const ilk_request_t& request, bool intact) {
 
 }  // namespace
 
-App::App(const ilk_config_t& config, std::uint64_t seed, bool is_steady)
-    : config_(config), random_(seed, kAppStream), is_steady_(is_steady), is_hasty_(random_.chance(0.25)) {}
+App::App(const ilk_config_t& config, std::uint64_t seed, Manner manner)
+    : config_(config), random_(seed, kAppStream), manner_(manner), is_hasty_(random_.chance(0.25)) {}
 
 void App::attach_anew() {
   generation_++;
@@ -93,7 +93,7 @@ ilk_request_t App::draft(ilk_request_kind_t kind, std::uint32_t slot) {
 void App::ask(ilk_request_kind_t kind, std::uint32_t slot) { send(draft(kind, slot)); }
 
 std::uint32_t App::choose_hold() {
-  return is_steady_ ? kSteadyHold : 1 + random_.below(is_hasty_ ? kHastyHold : kLongestHold);
+  return manner_ != Manner::kUsual ? kSteadyHold : 1 + random_.below(is_hasty_ ? kHastyHold : kLongestHold);
 }
 
 void App::move_foot(const ilk_state_t& shown) {
@@ -122,17 +122,18 @@ void App::prepare_axis(std::uint32_t tick, const ilk_state_t& shown, std::uint32
   if ((tick + slot) % kActionInterval != 0) {
     return;
   }
+  const bool is_unplaced = axis.homed == 0 && manner_ != Manner::kHoming;
   if (axis.state == ILK_AXIS_FAULTED) {
-    if (!is_steady_) {
+    if (manner_ != Manner::kSteady) {
       ask(ILK_REQUEST_CLEAR_FAULT, slot);
     }
-  } else if (axis.homed == 0 && random_.chance(0.02)) {
+  } else if (is_unplaced && random_.chance(0.02)) {
     ilk_request_t request = draft(ILK_REQUEST_RESTORE, slot);
     request.target_counts =
         bounds.min_counts + static_cast<std::int32_t>(random_.below(
                                 static_cast<std::uint32_t>(bounds.max_counts - bounds.min_counts)));
     send(request);
-  } else if (axis.homed == 0 && random_.chance(bounds.limit_side == ILK_LIMIT_NONE ? 0.7 : 0.3)) {
+  } else if (is_unplaced && random_.chance(bounds.limit_side == ILK_LIMIT_NONE ? 0.7 : 0.3)) {
     ask(ILK_REQUEST_SET_HOME, slot);
   } else if (axis.state == ILK_AXIS_DISABLED) {
     ask(ILK_REQUEST_ENABLE, slot);
@@ -222,8 +223,12 @@ void App::act(std::uint32_t tick, const ilk_state_t& shown) {
   if (enters) {
     for (std::uint32_t slot = 0; slot < ILK_SLOTS; slot++) {
       const bool has_switch = config_.axis[slot].limit_side != ILK_LIMIT_NONE;
-      intents_[slot] = {random_.chance(0.8),
-                        has_switch && random_.chance(shown.axis[slot].homed != 0 ? 0.02 : 0.6)};
+      if (manner_ == Manner::kHoming) {
+        intents_[slot] = {has_switch, has_switch && (shown.axis[slot].homed == 0 || random_.coin())};
+      } else {
+        intents_[slot] = {random_.chance(0.8),
+                          has_switch && random_.chance(shown.axis[slot].homed != 0 ? 0.02 : 0.6)};
+      }
       intents_[slot].renew_tick = tick + random_.below(20);
       choose_target(shown, slot);
     }
@@ -244,7 +249,7 @@ void App::act(std::uint32_t tick, const ilk_state_t& shown) {
         drive_axis(tick, shown, slot);
       }
     }
-    if (shown.mode == ILK_MODE_MOTION && !is_steady_ && random_.chance(0.0005)) {
+    if (shown.mode == ILK_MODE_MOTION && manner_ == Manner::kUsual && random_.chance(0.0005)) {
       ask(random_.coin() ? ILK_REQUEST_STOP : ILK_REQUEST_DISABLE, random_.below(ILK_SLOTS));
     }
     for (std::uint32_t lies = lying_ticks_ > 0 ? 2 : 0; lies > 0; lies--) {

@@ -17,16 +17,20 @@
 
 namespace interlock::campaign {
 
+/** How the people before the kernel behave in a case. */
+enum class Manner : std::uint8_t {
+  kUsual,
+  kSteady, /**< the foot stays down until it is lifted, nobody asks for STOP or DISABLE, and an axis that has
+                run into its end is left alone */
+  kHoming, /**< the foot stays down as well, and nothing moves but axes that are homed, again and again */
+};
+
 class App {
  public:
   /** More than the kernel looks at in one tick. */
   static constexpr std::size_t kMostRequests = 24;
 
-  /**
-   * @param is_steady the foot stays down until it is lifted, nobody asks for STOP or DISABLE, and an axis that
-   *        has run into its end is left alone
-   */
-  App(const ilk_config_t& config, std::uint64_t seed, bool is_steady);
+  App(const ilk_config_t& config, std::uint64_t seed, Manner manner);
 
   /** Acts on what the kernel last showed, once a tick. */
   void act(std::uint32_t tick, const ilk_state_t& shown);
@@ -80,7 +84,7 @@ class App {
   std::uint32_t next_heartbeat_ = 0;
   bool foot_down_ = false;
   bool was_in_motion_ = false;
-  bool is_steady_;
+  Manner manner_;
   bool is_hasty_;                /**< each press is over after some ticks */
   std::uint32_t foot_ticks_ = 0; /**< until the foot changes its mind */
   std::uint32_t lifted_ticks_ = 0;

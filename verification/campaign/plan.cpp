@@ -11,14 +11,18 @@ namespace {
 
 constexpr std::uint64_t kPlanStream = 1;
 constexpr std::uint32_t kCaseTicks = 20'000;
-constexpr std::uint32_t kQuietTicks = 400;  /**< before the first fault */
-constexpr std::uint64_t kCasesPerSweep = 5; /**< cases, of which one sweeps */
-constexpr std::uint64_t kStopsPerSweep = 8; /**< as many as a case has time for */
-constexpr std::uint64_t kStopStride = 1013; /**< prime to the ticks of a move: short and long presses mix */
+constexpr std::uint32_t kQuietTicks = 400;   /**< before the first fault */
+constexpr std::uint64_t kCasesPerSteady = 5; /**< cases, of which one has a foot that stays down */
+constexpr std::uint64_t kStopsPerSweep = 8;  /**< as many as a case has time for */
+constexpr std::uint64_t kStopStride = 1013;  /**< prime to the ticks of a move: short and long presses mix */
 constexpr std::uint64_t kFlipsPerCase = 4;
 constexpr std::uint32_t kFlipInterval = (kCaseTicks - kQuietTicks) / kFlipsPerCase;
 constexpr std::uint32_t kFlipTicks = 30; /**< until the bit is right again */
 constexpr std::uint32_t kLongestStop = 60;
+constexpr std::uint64_t kSteadyCasesPerHoming = 3; /**< of those in which the foot stays down */
+constexpr std::uint32_t kHomingFaults = 3;
+constexpr std::uint32_t kJamTicks = 20; /**< shorter than any axis takes to be seen stalled */
+constexpr std::uint32_t kFreeTicks = 5;
 
 static_assert(std::gcd(kStopStride, std::uint64_t{kMoveTicks}) == 1, "the sweep comes to every tick");
 static_assert(kFlipPatience + kFlipTicks < kFlipInterval, "one flip is over before the next");
@@ -89,6 +93,9 @@ std::uint32_t total_weight() {
   return total;
 }
 
+/** Nothing but its own faults happens in such a case: it sweeps or homes. */
+bool is_steady(std::uint64_t number) { return number % kCasesPerSteady == kCasesPerSteady - 1; }
+
 Fault draw(plant::Random& random, std::uint32_t tick) {
   std::uint32_t left = random.below(total_weight());
   const Habit* habit = kHabits.data();
@@ -118,7 +125,7 @@ void add_drawn_faults(Case& plan, plant::Random& random) {
 
 /** The next bits of the configuration, each somewhere in its share of the case. */
 void add_config_flips(Case& plan, plant::Random& random) {
-  const std::uint64_t cases_before = plan.number - plan.number / kCasesPerSweep;
+  const std::uint64_t cases_before = plan.number - plan.number / kCasesPerSteady;
   for (std::uint32_t flip = 0; flip < kFlipsPerCase; flip++) {
     const std::uint32_t begin = kQuietTicks + flip * kFlipInterval;
     const std::uint32_t tick = begin + random.below(kFlipInterval - kFlipPatience - kFlipTicks);
@@ -127,9 +134,33 @@ void add_config_flips(Case& plan, plant::Random& random) {
   }
 }
 
+/** An axis that sticks and slips: it gets on, but far too slowly. */
+void add_stick_slip(Case& plan, std::uint32_t first, std::uint32_t slot) {
+  for (std::uint32_t tick = first; tick < kCaseTicks; tick += kJamTicks + kFreeTicks) {
+    plan.faults.push_back({tick, FaultKind::kAxisJammed, slot, kJamTicks, 0, 0});
+  }
+}
+
+/** One thing that homings may meet, on some axes, for as long as the case lasts. */
+void add_homing_faults(Case& plan, plant::Random& random) {
+  constexpr FaultKind kinds[] = {FaultKind::kSwitchStuckOpen, FaultKind::kSwitchStuckClosed,
+                                 FaultKind::kAxisJammed};
+  const FaultKind kind = kinds[random.below(std::size(kinds))];
+  for (std::uint32_t n = random.below(kHomingFaults) + 1; n > 0; n--) {
+    const std::uint32_t slot = random.below(ILK_SLOTS);
+    if (kind == FaultKind::kAxisJammed) {
+      add_stick_slip(plan, kQuietTicks, slot);
+    } else {
+      const std::uint32_t tick = random.below(kCaseTicks / 4);
+      plan.faults.push_back({tick, kind, slot, kCaseTicks - tick, random.below(0xFFFFFFFF), 0});
+    }
+  }
+}
+
 /** E-stop and pedal in turn, each at the next tick of a press. */
 void add_stops(Case& plan, plant::Random& random) {
-  const std::uint64_t first = plan.number / kCasesPerSweep * kStopsPerSweep;
+  const std::uint64_t steady_before = plan.number / kCasesPerSteady;
+  const std::uint64_t first = (steady_before - steady_before / kSteadyCasesPerHoming) * kStopsPerSweep;
   for (std::uint64_t stop = first; stop < first + kStopsPerSweep; stop++) {
     const FaultKind kind = stop % 2 == 0 ? FaultKind::kEstopPulled : FaultKind::kPedalReleased;
     const auto driven_ticks = static_cast<std::uint32_t>(1 + stop / 2 * kStopStride % kMoveTicks);
@@ -141,13 +172,19 @@ void add_stops(Case& plan, plant::Random& random) {
 
 std::string_view name_of(FaultKind kind) { return kHabits[static_cast<std::size_t>(kind)].name; }
 
-bool sweeps_stops(std::uint64_t number) { return number % kCasesPerSweep == kCasesPerSweep - 1; }
+bool homes_patiently(std::uint64_t number) {
+  return is_steady(number) && number / kCasesPerSteady % kSteadyCasesPerHoming == kSteadyCasesPerHoming - 1;
+}
+
+bool sweeps_stops(std::uint64_t number) { return is_steady(number) && !homes_patiently(number); }
 
 Case make_case(std::uint64_t seed, std::uint64_t number) {
   plant::Random random(seed ^ (number * 0x9e3779b97f4a7c15u), kPlanStream);
   Case plan{seed, number, kCaseTicks, {}};
   if (sweeps_stops(number)) {
     add_stops(plan, random);
+  } else if (homes_patiently(number)) {
+    add_homing_faults(plan, random);
   } else {
     add_drawn_faults(plan, random);
     add_config_flips(plan, random);

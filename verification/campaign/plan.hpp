@@ -92,8 +92,14 @@ struct Case {
 bool sweeps_stops(std::uint64_t number);
 
 /**
- * The case of that number: one that sweeps, or one with faults alone and in pairs, in which the bits of the
- * configuration flip one after the other from case to case.
+ * Whether all axes of the case of that number are homed again and again by a patient foot, while a switch or
+ * the axis itself fails for as long as the case lasts: in no other is a homing given up.
+ */
+bool homes_patiently(std::uint64_t number);
+
+/**
+ * The case of that number: one that sweeps, one that homes, or one with faults alone and in pairs, in which
+ * the bits of the configuration flip one after the other from case to case.
  */
 Case make_case(std::uint64_t seed, std::uint64_t number);
 

@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::uint32_t kMicrosecondsPerSecond = 1'000'000;
 constexpr std::uint32_t kMaxSettleMs = 40;
+constexpr double kPushed = 0.2; /**< share of axes that a hand has pushed away from their switch */
 constexpr double kRevolutionsPerSecondAtFullDrive = 397.785 / 60;
 
 /** What the plant and the configuration of an axis have to agree on. */
@@ -207,6 +208,18 @@ Robot make_robot(plant::Random& random, bool keeps_word) {
   config.crc = ilk_config_crc(&config);
   robot.rules = rules_of(config);
   return robot;
+}
+
+void push_to_far_ends(Robot& robot, plant::Random& random) {
+  for (std::size_t slot = 0; slot < ILK_SLOTS; slot++) {
+    const ilk_axis_config_t& axis = robot.config.axis[slot];
+    plant::AxisParameters& parameters = robot.plant.axis[slot];
+    if (axis.limit_side != ILK_LIMIT_NONE && random.chance(kPushed)) {
+      const double beyond = parameters.end_margin_counts / 2;
+      parameters.start_counts =
+          axis.limit_side == ILK_LIMIT_LOWER ? axis.max_counts + beyond : axis.min_counts - beyond;
+    }
+  }
 }
 
 }  // namespace interlock::campaign

@@ -42,6 +42,9 @@ struct Robot {
  */
 Robot make_robot(plant::Random& random, bool keeps_word = false);
 
+/** Lets some axes begin beyond the soft limit that is farthest from their switch: the longest ways home. */
+void push_to_far_ends(Robot& robot, plant::Random& random);
+
 }  // namespace interlock::campaign
 
 #endif

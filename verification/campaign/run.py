@@ -4,7 +4,8 @@
 Each process runs every N-th case, so the same number of cases gives the same totals however many run at once.
 PASSED needs: nothing unsafe, nothing late, no flipped bit unmet; motion, homings and stops happened; and
 the run was a full one: 100 million ticks and a million faults, each bit of state and configuration flipped,
-E-stop and pedal at each tick of a move. A shorter run is BOUNDED by its figures.
+E-stop and pedal at each tick of a move, and each fault of an axis and cause of a lock found by the kernel.
+A shorter run is BOUNDED by its figures.
 """
 
 import argparse
@@ -54,6 +55,8 @@ SWEEPS = {
     "pedal_ticks": "pedal_ticks_swept",
 }
 """What a full run comes to all of: a set of bits in the program's totals, and the figure that counts it."""
+KINDS = {"axis_faults": "axis_faults_seen", "causes": "lock_causes_seen"}
+"""What the kernel can find wrong: how often it found each, by its number in the catalogue, from 1 on."""
 COUNTED = {"config_bits_driven": "config_bits_flipped_driven", "kind_pairs": "kind_pairs_seen"}
 """Sets of which chance decides how much of them a run comes to."""
 SUPPORTS = (*(f"P{number}" for number in range(1, 15)), "P16")
@@ -67,6 +70,10 @@ def merge(parts: list[dict]) -> dict[str, float]:
         for part in parts:
             seen |= int(part[key], 16)
         figures[name] = seen.bit_count()
+    for key, name in KINDS.items():
+        found = [sum(counts) for counts in zip(*(part[key] for part in parts), strict=True)][1:]
+        figures[key] = len(found)
+        figures[name] = sum(count > 0 for count in found)
     for key in (*SWEEPS, "kind_pairs"):
         figures[key] = parts[0]["sizes"][key]
     processor_s = sum(part["processor_s"] for part in parts)
@@ -104,10 +111,10 @@ def print_table(figures: dict[str, float], parts: list[dict]) -> None:
 
 
 def left_out(figures: dict[str, float]) -> list[str]:
-    """What the sweeps have not come to, each as a sentence."""
+    """What the sweeps have not come to and the kernel has not found, each as a sentence."""
     return [
         f"{name}: {figures[name]:,.0f} of {figures[key]:,.0f}"
-        for key, name in SWEEPS.items()
+        for key, name in (SWEEPS | KINDS).items()
         if figures[name] != figures[key] or not figures[key]
     ]
 

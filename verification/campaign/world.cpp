@@ -13,11 +13,31 @@ namespace {
 
 constexpr std::uint64_t kRobotStream = 3;
 constexpr std::uint64_t kRefusalStream = 4;
+constexpr std::uint32_t kLongestPeriodUs = 2000;
 constexpr std::uint64_t kCaseFactor = 0x9e3779b97f4a7c15u;
 constexpr std::uint32_t kSweepInterval = 64; /**< ticks from one sweep of flipped bits to the next */
 constexpr std::uint32_t kSweptBits = 16;
 constexpr std::uint64_t kSweepStart = 4999;   /**< bits from where one case begins to where the next does */
 constexpr std::uint32_t kRecoveryTicks = 300; /**< after a lie of the encoder, until nothing moves any more */
+
+Manner manner_of(std::uint64_t number) {
+  if (sweeps_stops(number)) {
+    return Manner::kSteady;
+  }
+  return homes_patiently(number) ? Manner::kHoming : Manner::kUsual;
+}
+
+/** Whoever homes has a robot of the longest period, of which a case lasts longer than a homing may. */
+Robot robot_of(std::uint64_t number, plant::Random& random) {
+  Robot robot = make_robot(random, manner_of(number) != Manner::kUsual);
+  if (homes_patiently(number)) {
+    while (robot.config.period_us != kLongestPeriodUs) {
+      robot = make_robot(random, true);
+    }
+    push_to_far_ends(robot, random);
+  }
+  return robot;
+}
 
 constexpr std::string_view kWrongWay = "driven, but not towards its setpoint";
 constexpr std::string_view kCardLost = "its card is lost";
@@ -93,9 +113,9 @@ void Totals::add(const Totals& other) {
 World::World(const Case& plan)
     : plan_(plan),
       random_(plan.seed ^ (plan.number * kCaseFactor), kRobotStream),
-      robot_(make_robot(random_, sweeps_stops(plan.number))),
+      robot_(robot_of(plan.number, random_)),
       config_(robot_.config),
-      app_(robot_.config, plan.seed ^ (plan.number * kCaseFactor), sweeps_stops(plan.number)),
+      app_(robot_.config, plan.seed ^ (plan.number * kCaseFactor), manner_of(plan.number)),
       plant_(robot_.config, robot_.plant, plan.seed ^ (plan.number * kCaseFactor)),
       oracle_(robot_.rules),
       sweep_bit_(plan.number * kSweepStart % kStateBits) {

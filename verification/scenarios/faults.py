@@ -2,7 +2,6 @@
 
 import contextlib
 import ctypes
-import errno
 import os
 import random
 import re
@@ -11,7 +10,8 @@ import signal
 import socket
 import subprocess
 import threading
-from collections.abc import Callable, Iterator
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 from bare_kernel import BIN, DEADLINE_S
@@ -32,6 +32,17 @@ Fault = Callable[[Supervised, Plan, Path], contextlib.AbstractContextManager[Non
 def is_root() -> bool:
     """Of the machine, not only of a namespace."""
     return Path("/proc/self/uid_map").read_text().split() == ["0", "0", "4294967295"] and os.geteuid() == 0
+
+
+class FaultError(Exception):
+    """The fault did not come about, so that nothing is learnt from surviving it."""
+
+
+def expect_all(done: Counter, kinds: Iterable[str], what: str) -> None:
+    """Raises FaultError for a kind that was not done even once."""
+    for kind in kinds:
+        if not done[kind]:
+            raise FaultError(f"no {what}: {kind}")
 
 
 def run(*command: str | Path) -> None:
@@ -197,6 +208,7 @@ def flood(pour: Callable[[random.Random, threading.Event], None], plan: Plan) ->
 @contextlib.contextmanager
 def stream_flood(robot: Supervised, plan: Plan, folder: Path) -> Iterator[None]:
     """Consoles that open the stream and write into it without reading, ask much, or talk nonsense."""
+    sent = Counter()
 
     def pour(dice: random.Random, ended: threading.Event) -> None:
         while not ended.is_set():
@@ -212,6 +224,7 @@ def stream_flood(robot: Supervised, plan: Plan, folder: Path) -> Iterator[None]:
                 if ended.is_set():
                     return
                 stream.send(dice.randbytes(dice.randint(1, 1 << 14)))
+                sent["stream"] += 1
 
     def write_nonsense(dice: random.Random, ended: threading.Event) -> None:
         with socket.create_connection(("127.0.0.1", robot.port), DEADLINE_S) as connection:
@@ -220,16 +233,19 @@ def stream_flood(robot: Supervised, plan: Plan, folder: Path) -> Iterator[None]:
                 if ended.wait(0.001):
                     return
                 connection.send(b"GET /api/status HTTP/1.1\r\nHost: x\r\n\r\n" * dice.randint(1, 50))
+                sent["HTTP"] += 1
 
     with flood(pour, plan):
         yield
+    expect_all(sent, ("stream", "HTTP"), "message of the flood was sent")
 
 
 @contextlib.contextmanager
 def navigation_flood(robot: Supervised, plan: Plan, folder: Path) -> Iterator[None]:
     """OpenIGTLink programs that send as fast as they can, poses as well as noise, and do not read."""
-    pose = (Path(__file__).resolve().parents[2] / "tests/fuzz/corpus").rglob("*")
-    seeds = [file.read_bytes() for file in sorted(pose) if file.is_file()] or [bytes(58)]
+    corpus = (Path(__file__).resolve().parents[2] / "tests/fuzz/corpus").rglob("*")
+    seeds = [file.read_bytes() for file in sorted(corpus) if file.is_file()]
+    sent = Counter()
 
     def pour(dice: random.Random, ended: threading.Event) -> None:
         while not ended.is_set():
@@ -242,46 +258,61 @@ def navigation_flood(robot: Supervised, plan: Plan, folder: Path) -> Iterator[No
                     if ended.wait(0.001):
                         return
                     connection.send(dice.choice([dice.choice(seeds), dice.randbytes(dice.randint(1, 4096))]))
+                    sent["OpenIGTLink"] += 1
 
     with flood(pour, plan):
         yield
+    expect_all(sent, ["OpenIGTLink"], "message of the flood was sent")
 
 
 # --- the link's memory ---
 
 
-def shared_regions(pid: int) -> list[tuple[int, int]]:
-    """Address and length of what that process shares with the other side of the link."""
+REGION_WRITERS = ("kernel", "app")
+COUNTS_BYTES = 32
+"""At the head of a region: what it is, and how far either side has written and read."""
+
+
+def own_region(pid: int, process: str) -> tuple[int, int] | None:
+    """Address and length of the region that this process alone may write; nothing while it has none."""
     maps = Path(f"/proc/{pid}/maps").read_text()
-    found = re.findall(r"^([0-9a-f]+)-([0-9a-f]+) \S+ \S+ \S+ \d+ +/memfd:", maps, re.MULTILINE)
-    return [(int(first, 16), int(end, 16) - int(first, 16)) for first, end in found]
+    mapping = rf"^([0-9a-f]+)-([0-9a-f]+) rw-s \S+ \S+ \d+ +/memfd:interlock-{process}-region"
+    found = re.search(mapping, maps, re.MULTILINE)
+    return found and (int(found[1], 16), int(found[2], 16) - int(found[1], 16))
 
 
 @contextlib.contextmanager
 def link_damage(robot: Supervised, plan: Plan, folder: Path) -> Iterator[None]:
-    """Random bytes at random places of both regions, each from the side that may write there."""
+    """Random bytes in both regions, or among their counts alone, each from the side that may write there."""
     ended = threading.Event()
+    spoilt = Counter()
+    dice = random.Random(plan.noise)
+    only_counts = dice.random() < 0.5
 
-    def spoil() -> None:
-        dice = random.Random(plan.noise)
-        pid = robot.pid("kernel")
-        with Path(f"/proc/{pid}/mem").open("r+b", buffering=0) as memory:
-            while not ended.wait(0.0005):
-                address, length = dice.choice(shared_regions(pid))
-                memory.seek(address + dice.randrange(length - 8))
-                try:
-                    memory.write(dice.randbytes(dice.randint(1, 8)))
-                except OSError as error:
-                    if error.errno not in (errno.EIO, errno.EFAULT):
-                        raise
+    def spoil(process: str) -> None:
+        pid = robot.pid(process)
+        # A link that is found damaged is given up, its memory with it: then there is a new one.
+        if region := own_region(pid, process):
+            address, length = region
+            with (
+                contextlib.suppress(OSError),
+                Path(f"/proc/{pid}/mem").open("r+b", buffering=0) as memory,
+            ):
+                memory.seek(address + dice.randrange((COUNTS_BYTES if only_counts else length) - 8))
+                spoilt[process] += memory.write(dice.randbytes(dice.randint(1, 8)))
 
-    spoiler = threading.Thread(target=spoil, daemon=True)
+    def spoil_all() -> None:
+        while not ended.wait(0.0005):
+            spoil(dice.choice(REGION_WRITERS))
+
+    spoiler = threading.Thread(target=spoil_all, daemon=True)
     spoiler.start()
     try:
         yield
     finally:
         ended.set()
         spoiler.join(DEADLINE_S)
+    expect_all(spoilt, REGION_WRITERS, "byte was spoilt in the region")
 
 
 FAULTS: dict[str, Fault] = {

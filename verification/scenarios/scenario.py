@@ -266,7 +266,7 @@ class Scenario:
         run = self.folder / "run"
         sockets = [path for path in run.rglob("*") if path.is_socket()]
         self.findings += [f"socket left: {path.relative_to(run)}" for path in sockets]
-        self.findings += [f"black box left: {path.name}" for path in Path("/dev/shm").glob("*.ring")]
+        self.findings += [f"black box left: {path.name}" for path in Path("/dev/shm").glob("*.ring*")]
 
     def look_at_audit(self) -> None:
         state = self.folder / "state"
@@ -323,7 +323,7 @@ def outcome(seed: int, number: int, folder: Path) -> dict:
     if not skipped:
         try:
             scenario.run()
-        except (*BROKEN, subprocess.SubprocessError) as error:
+        except (*BROKEN, faults.FaultError, subprocess.SubprocessError) as error:
             scenario.findings.append(f"{type(error).__name__}: {error}")
     return {
         "number": number,

@@ -131,7 +131,7 @@ TEST(Campaign, Shrinking_takes_a_failure_of_another_kind_for_none) {
 
 TEST(Campaign, P2_cases_one_after_the_other_sweep_stops_over_each_tick_of_a_move) {
   std::map<FaultKind, std::set<std::uint32_t>> ticks;
-  for (std::uint64_t number = 0; number < 3125; number++) {
+  for (std::uint64_t number = 0; number < 4690; number++) {
     if (sweeps_stops(number)) {
       for (const Fault& fault : make_case(11, number).faults) {
         ticks[fault.kind].insert(fault.driven_ticks);
@@ -194,6 +194,23 @@ TEST(Campaign, P14_the_card_word_of_a_slot_is_known_by_its_bits) {
   EXPECT_EQ(slot_of_card_word(first), 7u);
   EXPECT_EQ(slot_of_card_word(first + 31), 7u);
   EXPECT_EQ(slot_of_card_word(first + 32), std::nullopt);
+}
+
+constexpr std::uint64_t kHomingCases = 40;
+
+TEST(Campaign, P8_homings_are_given_up_for_their_travel_and_for_their_time) {
+  Totals totals;
+  std::uint64_t homings = 0;
+  for (std::uint64_t number = 14; number < 14 + 15 * kHomingCases; number += 15) {
+    ASSERT_TRUE(homes_patiently(number));
+    const Outcome outcome = run(make_case(1, number));
+    EXPECT_FALSE(outcome.failure) << number << ": " << outcome.failure->reason;
+    totals.add(outcome.totals);
+    homings += outcome.totals.homings;
+  }
+  EXPECT_GT(totals.axis_faults[ILK_FAULT_HOMING_TRAVEL], 0u);
+  EXPECT_GT(totals.axis_faults[ILK_FAULT_HOMING_TIMEOUT], 0u);
+  EXPECT_GT(homings, 0u);
 }
 
 // The stop was called late although the limit of missed deadlines was the damaged word.

@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <cstdio>
 #include <fstream>
 #include <memory>
@@ -75,7 +77,7 @@ class RecorderTest : public ::testing::Test {
 TEST_F(RecorderTest, CalmRunLeavesNoRecording) {
   calm(2000);
   run_.close();
-  recorder_->finish();
+  EXPECT_TRUE(recorder_->finish());
   EXPECT_THAT(files(), IsEmpty());
 }
 
@@ -122,7 +124,7 @@ TEST_F(RecorderTest, KilledKernelsLastTicksAreKept) {
   run_.calm(7);
   const std::uint32_t last = run_.state().tick;
   run_.die();
-  recorder_->finish();
+  EXPECT_TRUE(recorder_->finish());
   EXPECT_THAT(files(), ElementsAre("end-" + std::to_string(last) + ".ilkr"));
   const ilk_replay_report_t report = replayed(file(ILK_RECORDED_ON_END, last));
   EXPECT_TRUE(ilk_replay_is_identical(&report));
@@ -156,7 +158,7 @@ TEST_F(RecorderTest, ContinuousRecordingLosesNoTickFromPartToPart) {
   run_.press_estop();
   calm(1000);
   run_.close();
-  recorder_->finish();
+  EXPECT_TRUE(recorder_->finish());
   std::uint64_t ticks = 0;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_->path())) {
     EXPECT_EQ(entry.path().extension(), ".ilkr");
@@ -182,7 +184,8 @@ TEST_F(RecorderTest, WholeBlocksOfAContinuousRecordingAreInTheFileAtOnce) {
 TEST_F(RecorderTest, DemandKeepsTheNewestSeconds) {
   calm(3000);
   const Recorded<std::uint32_t> blocks =
-      record_now(*ring_, scratch_.file("now.ilkr"), {ILK_RECORDED_ON_DEMAND, run_.state().tick, "test"}, 1);
+      record_now(*ring_, scratch_.file("now.ilkr"), {ILK_RECORDED_ON_DEMAND, run_.state().tick, "test"},
+                 ring_->block_before(run_.state().tick, 1));
   ASSERT_TRUE(blocks);
   const ilk_replay_report_t report = replayed(scratch_.file("now.ilkr"));
   EXPECT_TRUE(ilk_replay_is_identical(&report));
@@ -223,6 +226,67 @@ TEST_F(RecorderTest, FullDiskIsToldAndTheKernelIsNotAsked) {
   run_.press_estop();
   calm(100);
   EXPECT_THAT(told, ElementsAre(::testing::HasSubstr("cannot record")));
+}
+
+TEST_F(RecorderTest, EventThatTheDiskRefusedIsRecordedOnceItTakesIt) {
+  calm(1500);
+  fs::rename(folder_->path(), scratch_.file("away"));
+  run_.press_estop();
+  const std::uint32_t locked = run_.state().tick;
+  calm(1200);
+  EXPECT_FALSE(recorder_->finish());
+  fs::rename(scratch_.file("away"), folder_->path());
+  EXPECT_TRUE(recorder_->finish());
+  EXPECT_THAT(files(), ElementsAre("lock-" + std::to_string(locked) + ".ilkr"));
+  const ilk_replay_report_t report = replayed(file(ILK_RECORDED_ON_LOCK, locked));
+  EXPECT_TRUE(ilk_replay_is_identical(&report));
+  EXPECT_LE(report.replay.first_tick, locked - 1000);
+  EXPECT_EQ(report.replay.last_tick, run_.state().tick);
+}
+
+TEST_F(RecorderTest, LastTicksOfADeadKernelThatTheDiskRefusesAreNotTakenForKept) {
+  calm(100);
+  fs::remove_all(folder_->path());
+  run_.die();
+  EXPECT_FALSE(recorder_->finish());
+}
+
+/** The disk takes no file beyond this size; at the limit a block is written in part. */
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(std::uintmax_t bytes) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, SIG_DFL);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(RecorderTest, RecordingThatTheDiskInterruptedGoesOnWithTheSameBlock) {
+  calm(1500);
+  run_.press_estop();
+  const std::uint32_t locked = run_.state().tick;
+  calm(20);
+  {
+    const FileSizeLimit full(fs::file_size(part_of(file(ILK_RECORDED_ON_LOCK, locked))) + 1000);
+    calm(800);
+    EXPECT_FALSE(recorder_->finish());
+  }
+  EXPECT_TRUE(recorder_->finish());
+  const ilk_replay_report_t report = replayed(file(ILK_RECORDED_ON_LOCK, locked));
+  EXPECT_TRUE(ilk_replay_is_identical(&report));
+  EXPECT_EQ(report.replay.gaps, 0U);
+  EXPECT_LE(report.replay.first_tick, locked - 1000);
+  EXPECT_EQ(report.replay.last_tick, run_.state().tick);
 }
 
 }  // namespace
