@@ -26,8 +26,7 @@ void Rescue::begin() {
   }
   const Recorded<Ring> ring = Ring::open(ring_);
   if (!ring) {
-    fs::rename(ring_, unreadable_of(ring_), ignored);
-    tell_("cannot read " + ring.error() + "; kept in memory as " + unreadable_of(ring_).string());
+    keep_unreadable(ring_);
   } else if (!ring->writer_lives()) {
     const std::uint32_t tick = ring->opening_tick(ring->head()).value_or(0);
     set_aside();
@@ -63,12 +62,19 @@ void Rescue::step() {
   }
   const Recorded<Ring> ring = Ring::open(unsaved_of(ring_));
   if (!ring) {
-    fs::rename(unsaved_of(ring_), unreadable_of(ring_), ignored);
-    tell_("cannot read " + ring.error() + "; kept in memory as " + unreadable_of(ring_).string());
+    keep_unreadable(unsaved_of(ring_));
   } else if (write_out(*ring, ring->oldest())) {
     fs::remove(unsaved_of(ring_), ignored);
   } else {
     retry_at_ = std::chrono::steady_clock::now() + pause_after_failure;
+  }
+}
+
+void Rescue::keep_unreadable(const fs::path& ring) {
+  if (Ring::left_by_another_release(ring)) {
+    std::error_code ignored;
+    fs::rename(ring, unreadable_of(ring_), ignored);
+    tell_("a kernel of another release left a black box; kept in memory as " + unreadable_of(ring_).string());
   }
 }
 

@@ -42,6 +42,7 @@ class Rescue {
 
  private:
   [[nodiscard]] bool write_out(const Ring& ring, std::uint32_t first_block);
+  void keep_unreadable(const std::filesystem::path& ring);
 
   std::filesystem::path ring_;
   const RecordingFolder& folder_;

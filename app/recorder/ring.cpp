@@ -39,6 +39,19 @@ bool is_of_this_release(const ilk_run_description_t& run) {
 }  // namespace
 
 Recorded<Ring> Ring::open(const std::filesystem::path& path) {
+  Recorded<Ring> ring = map(path);
+  if (ring && !is_of_this_release(ring->run())) {
+    return tl::unexpected("black box " + path.string() + ": written by a kernel of another release");
+  }
+  return ring;
+}
+
+bool Ring::left_by_another_release(const std::filesystem::path& path) {
+  const Recorded<Ring> ring = map(path);
+  return ring && !is_of_this_release(ring->run()) && !ring->writer_lives();
+}
+
+Recorded<Ring> Ring::map(const std::filesystem::path& path) {
   const std::string name = "black box " + path.string();
   FileHandle file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
   struct stat status{};
@@ -56,9 +69,6 @@ Recorded<Ring> Ring::open(const std::filesystem::path& path) {
   Ring ring(std::move(file), static_cast<const ilk_ring_header_t*>(address), bytes);
   if (!is_ring(*ring.header_, bytes)) {
     return tl::unexpected(name + ": not complete");
-  }
-  if (!is_of_this_release(ring.run())) {
-    return tl::unexpected(name + ": written by a kernel of another release");
   }
   return ring;
 }

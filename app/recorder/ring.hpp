@@ -40,6 +40,9 @@ class Ring {
   /** Maps the ring of a file. A ring that is just being made is no ring yet. */
   static Recorded<Ring> open(const std::filesystem::path& file);
 
+  /** Whether the file is the ring of a dead kernel whose layout this release does not know. */
+  static bool left_by_another_release(const std::filesystem::path& file);
+
   Ring(Ring&& other) noexcept;
   Ring& operator=(Ring&&) = delete;
   ~Ring();
@@ -76,6 +79,7 @@ class Ring {
   Ring(FileHandle file, const ilk_ring_header_t* header, std::size_t bytes)
       : file_(std::move(file)), header_(header), bytes_(bytes) {}
 
+  static Recorded<Ring> map(const std::filesystem::path& file);
   [[nodiscard]] const ilk_block_header_t* block(std::uint32_t number) const;
   [[nodiscard]] std::optional<std::uint32_t> used(std::uint32_t number) const;
   [[nodiscard]] bool still_holds(std::uint32_t number) const;

@@ -223,6 +223,20 @@ def test_the_link_is_its_users_alone_unless_it_is_shared_with_the_group(simulato
         (simulator / "notify").unlink()
 
 
+def test_the_black_box_is_the_kernels_user_alone_who_is_not_the_apps(simulator: Path) -> None:
+    box = simulator / "box.ring"
+    manager = Manager(simulator)
+    kernel = manager.start(*kernel_of(simulator, "--black-box", str(box), "--black-box-seconds", "1"))
+    assert manager.hear() == "READY=1"
+    assert box.stat().st_mode & 0o777 == 0o600
+    assert stop(kernel) == 0
+    manager.socket.close()
+    units = {unit.stem.removeprefix("interlock-"): settings(unit) for unit in SERVICES}
+    assert "--black-box /dev/shm/" in units["kernel"]["ExecStart"][0]
+    assert units["recorder"]["User"] == units["kernel"]["User"] != units["app"]["User"]
+    assert "black-box" not in units["app"]["ExecStart"][0]
+
+
 def test_a_kernel_whose_cards_are_not_there_names_what_is_missing(simulator: Path) -> None:
     wiring = simulator / "wiring"
     wiring.write_text("speed_hz 20000000\ncard 0 /dev/spidev99.0\n")

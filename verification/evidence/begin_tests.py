@@ -2,7 +2,7 @@
 """Notes what a run of tests is made from, before it starts. Usage: begin_tests.py SUITE
 
 Removes build/reports/SUITE.xml, so that no earlier report can stand in for this run, and writes
-SUITE.run.json beside it: commit, date and tool, which a JUnit report does not tell.
+SUITE.run.json beside it: commit, date, tool and machine, which a JUnit report does not tell.
 """
 
 import importlib.metadata
@@ -11,7 +11,7 @@ import subprocess
 import sys
 from datetime import UTC, datetime
 
-from evidence import ROOT, commit
+from evidence import ROOT, commit, machine
 
 
 def debian_version(package: str) -> str:
@@ -45,6 +45,7 @@ def main() -> int:
         "commit": commit(),
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
         "tool": tool_of(suite),
+        "machine": machine(),
     }
     (reports / f"{suite}.run.json").write_text(json.dumps(run, indent=2) + "\n", "utf-8")
     return 0

@@ -1,6 +1,8 @@
 """What a rung of the verification ladder leaves in build/evidence/: one JSON file and its raw logs."""
 
 import json
+import os
+import platform
 import subprocess
 import time
 from collections.abc import Mapping, Sequence
@@ -46,6 +48,12 @@ def failures_file(rung: str) -> Path:
     return EVIDENCE / rung / "failures.txt"
 
 
+def machine() -> str:
+    """What a run was made on, in words: operating system, architecture and cores; no name of it."""
+    system = platform.freedesktop_os_release()["PRETTY_NAME"]
+    return f"{system}, Linux {platform.release()} {platform.machine()}, {os.cpu_count()} cores"
+
+
 def commit() -> str:
     """The commit that the sources are at, with `+changes` when they differ from it."""
 
@@ -78,6 +86,7 @@ def write(
         "tool": {"name": ", ".join(tools), "version": ", ".join(tools.values())},
         "commit": commit(),
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
+        "machine": machine(),
         "duration_s": round(time.monotonic() - started, 1),
         "figures": dict(figures),
         "supports": list(supports),

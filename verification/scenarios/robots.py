@@ -13,7 +13,7 @@ from pathlib import Path
 
 import httpx
 from bare_kernel import BIN, DEADLINE_S, ROOT, options
-from motion import LATERAL, press, propose
+from motion import LATERAL, propose
 from plan import PROCESSES
 from stack import PROGRAMS, Stack
 
@@ -22,6 +22,7 @@ BROKEN = (AssertionError, OSError, httpx.HTTPError, json.JSONDecodeError)
 
 BLACK_BOX_S = 5
 ENDS_COUNTS = (-900, -100)
+LONGEST_PRESS_S = 2.0
 START_PAUSE_S = 0.05
 JUST_NOW_TICKS = 10
 PROGRAM_OF = PROGRAMS | {"recorder": "interlock-recorder"}
@@ -247,13 +248,24 @@ def make_ready(robot: Stack) -> bool:
     return status["mode"] == "READY" and motor["homed"] and motor["state"] == "ENABLED"
 
 
+def press_when_ready(robot: Stack) -> bool:
+    """Whether a press led to MOTION. On a busy machine a fault or a lock may come in between."""
+    robot.control("pedal", pressed=False)
+    eventually("ready", lambda: make_ready(robot) and robot.status()["pedal_armed"])
+    robot.control("pedal", pressed=True)
+    deadline = time.monotonic() + LONGEST_PRESS_S
+    while time.monotonic() < deadline:
+        if robot.status()["mode"] == "MOTION":
+            return True
+    return False
+
+
 def bring_up(robot: Stack) -> None:
     """From whatever state to MOTION with the axis enabled, as an operator does it."""
     robot.control("pedal", pressed=False)
     robot.control("estop", pulled=False)
     eventually("logged in, with the authority", lambda: hold_authority(robot))
-    eventually("ready", lambda: make_ready(robot))
-    press(robot)
+    eventually("in MOTION", lambda: press_when_ready(robot))
 
 
 def wait_until_driven(robot: Stack, mover: Mover) -> None:

@@ -129,12 +129,37 @@ def g1(of: Trace) -> Iterator[Finding]:
             yield Finding("G1", mode.uid, "no risk control or requirement meets it")
 
 
+def carried_out(items: Items, control: Item, system: Item) -> list[Item]:
+    """The software requirements by which a system requirement carries out a risk control."""
+    return [
+        requirement
+        for requirement in items.children(system.uid, "Refines")
+        if control.uid in requirement.parents_by("CarriesOut")
+    ]
+
+
 def g2(of: Trace) -> Iterator[Finding]:
-    """Each risk control has a system requirement, each of these a software requirement."""
+    """Each risk control has a system requirement, each of these software requirements that carry it out."""
     items = of.project.items
     for control in items.of("CONTROL"):
-        if not items.children(control.uid, "Implements"):
+        systems = items.children(control.uid, "Implements")
+        if not systems:
             yield Finding("G2", control.uid, "no system requirement carries it out")
+        for system in systems:
+            if not carried_out(items, control, system):
+                yield Finding("G2", control.uid, f"no software requirement of {system.uid} carries it out")
+    for requirement in items.of("REQUIREMENT"):
+        asked = {
+            control
+            for system in requirement.parents_by("Refines")
+            if system in items.by_uid
+            for control in items[system].parents_by("Implements")
+        }
+        for control in requirement.parents_by("CarriesOut"):
+            if control not in asked:
+                yield Finding(
+                    "G2", requirement.uid, f"carries out {control}, but refines nothing that asks for it"
+                )
     for requirement in items.of("SYSREQ"):
         if not items.children(requirement.uid, "Refines"):
             yield Finding("G2", requirement.uid, "no software requirement refines it")
@@ -246,12 +271,17 @@ def g9(of: Trace) -> Iterator[Finding]:
             yield Finding("G9", "StrictDoc", line.strip())
 
 
+PLATFORM = "platform:"
+"""Before the name of a SOUP component that belongs to the computer on which Interlock is installed."""
+
+
 def g10(of: Trace) -> Iterator[Finding]:
-    """Each component that is shipped is a SOUP item, and each SOUP item is shipped."""
+    """Each component that is shipped is a SOUP item, and each SOUP item is shipped or of the platform."""
     described = {
         name.strip(): item.uid
         for item in of.project.items.of("SOUP")
         for name in item.fields["COMPONENTS"].split(",")
+        if not name.strip().startswith(PLATFORM)
     }
     if not of.project.components:
         yield Finding("G10", "SBOM", "what is shipped is not known: build the release first")

@@ -1,11 +1,15 @@
-"""The trace matrix: one row for each way from a hazard by cause and control to a software requirement."""
+"""The trace matrix: one row for each way from a hazard by cause and control to a software requirement.
+
+A software requirement names the risk controls that it carries out: that it refines a system requirement which
+does, beside others, would not be enough. One that carries out none has no row; the overview names it.
+"""
 
 import csv
 import io
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, fields
 
-from gate import Trace
+from gate import Trace, carried_out
 from items import Item, fingerprint
 from places import Places
 from results import AWAITED, SOUND, Result
@@ -79,8 +83,13 @@ def ways(of: Trace) -> Iterator[tuple[Item, Item, Item, Item, Item]]:
         for cause in items.children(hazard.uid, "Causes"):
             for control in items.children(cause.uid, "Mitigates"):
                 for system in items.children(control.uid, "Implements"):
-                    for requirement in items.children(system.uid, "Refines"):
+                    for requirement in carried_out(items, control, system):
                         yield hazard, cause, control, system, requirement
+
+
+def without_control(of: Trace) -> list[str]:
+    """The software requirements that carry out no risk control: what the robot does besides being safe."""
+    return [one.uid for one in of.project.items.of("REQUIREMENT") if not one.parents_by("CarriesOut")]
 
 
 def rows(of: Trace) -> list[Row]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from figures import KINDS
 from gate import Finding, Trace, alike, awaited
 from items import Item
-from matrix import Row, code_of, coverage, negative_lists, rows, status_of
+from matrix import Row, code_of, coverage, negative_lists, rows, status_of, without_control
 from results import AWAITED, Result
 
 STYLE = "style.css"
@@ -117,6 +117,8 @@ def overview(of: Trace, found: Sequence[Finding], commit: str) -> str:
     )
     negative = "".join(folded(f"{title}: {len(uids)}", uids) for title, uids in negative_lists(of).items())
 
+    besides = without_control(of)
+    negative += folded(f"Requirements that carry out no risk control (allowed): {len(besides)}", besides)
     waiting = "".join(folded(f"{title}: {len(uids)}", uids) for title, uids in awaited(of).items())
 
     def row_link(hazard: Item) -> str:
@@ -222,6 +224,7 @@ def results_page(of: Trace) -> str:
             "Tool": escape(result.tool),
             "Commit": escape(result.commit or "unknown"),
             "Date": escape(result.date or "unknown"),
+            "Machine": escape(result.machine),
             "Bounds": escape(result.bounds),
             "Raw log": escape(result.log) if result.status == AWAITED else file_link(result.log),
             "Ran": file_link(result.place) if result.place else "",

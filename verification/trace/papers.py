@@ -209,8 +209,9 @@ def rungs(source: Source) -> str:
 
 
 def made(result: Result) -> str:
-    """When and from which commit a result was made."""
-    return f"{result.date[:16] or 'no date'}, {result.commit[:12] or 'no commit'}"
+    """When, from which commit and on what machine a result was made."""
+    where = f", {result.machine}" if result.machine else ""
+    return f"{result.date[:16] or 'no date'}, {result.commit[:12] or 'no commit'}{where}"
 
 
 def results_where(source: Source, chosen: Callable[[Result], bool]) -> str:
@@ -232,17 +233,22 @@ def results_where(source: Source, chosen: Callable[[Result], bool]) -> str:
     return head + table(("result", "status", "bounds", "tool, date, commit", "raw log"), lines, "wide")
 
 
+INTEGRATION = ("TEST:integration:", "TEST-INTEGRATION", "TEST:network:", "TEST-NETWORK", "SCENARIOS")
+"""Results of real processes with each other, by how their UIDs begin."""
+SYSTEM = ("TEST:browser:", "TEST-BROWSER", "SOAK", "BENCH", "CONSOLE", "STEERING")
+"""Results of the whole, through its outer interfaces."""
+
+
 def unit_results(source: Source) -> str:
-    suites = ("TEST:integration:", "TEST:browser:", "TEST-INTEGRATION", "TEST-BROWSER")
-    return results_where(source, lambda one: not one.uid.startswith(suites))
+    return results_where(source, lambda one: not one.uid.startswith((*INTEGRATION, *SYSTEM)))
 
 
 def integration_results(source: Source) -> str:
-    return results_where(source, lambda one: one.uid.startswith(("TEST:integration:", "TEST-INTEGRATION")))
+    return results_where(source, lambda one: one.uid.startswith(INTEGRATION))
 
 
 def system_results(source: Source) -> str:
-    return results_where(source, lambda one: one.uid.startswith(("TEST:browser:", "TEST-BROWSER")))
+    return results_where(source, lambda one: one.uid.startswith(SYSTEM))
 
 
 def requirements(source: Source) -> str:
@@ -349,9 +355,10 @@ def clauses(source: Source) -> str:
     def state(entry: Mapping) -> str:
         if "outside" in entry:
             return f"not ours: {entry['outside']}"
+        shown = ", ".join(entry.get("shown_by", ()))
         if "missing" in entry:
-            return f"missing: {entry['missing']}"
-        return ", ".join(entry["shown_by"])
+            return f"{shown + '; ' if shown else ''}missing: {entry['missing']}"
+        return shown
 
     lines = [
         (clause, entry["title"], entry["class"], entry.get("edition_2", "not known"), state(entry))

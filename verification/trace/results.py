@@ -54,6 +54,8 @@ class Result:
     """False when what it was made from has changed since."""
     function: str = ""
     """For a contract: FILE:NAME of the function that keeps it."""
+    machine: str = ""
+    """Operating system, architecture and cores, where the evidence tells them."""
     cases: tuple[str, ...] = ()
     """For tests: the names of all that ran."""
     failures: tuple[str, ...] = ()
@@ -88,6 +90,7 @@ class Rung:
     tool: str
     commit: str
     date: str
+    machine: str
     figures: Mapping[str, float]
     supports: frozenset[str]
     fresh: bool
@@ -98,7 +101,13 @@ class Rung:
     def result(self, uid: str, title: str, method: str, status: str, **more: object) -> Result:
         """A result of this rung. It is no better than the rung as a whole."""
         capped = status if self.status in SOUND else self.status
-        common = {"tool": self.tool, "commit": self.commit, "date": self.date, "fresh": self.fresh}
+        common = {
+            "tool": self.tool,
+            "commit": self.commit,
+            "date": self.date,
+            "machine": self.machine,
+            "fresh": self.fresh,
+        }
         defaults = {"bounds": "", "log": f"{self.logs}/run.log", "supports": frozenset()}
         return Result(uid=uid, title=title, method=method, status=capped, **{**common, **defaults, **more})
 
@@ -123,6 +132,7 @@ def read_rung(source: Source, name: str) -> Rung | None:
             tool=named_tools(document["tool"]["name"], document["tool"]["version"]),
             commit=document["commit"],
             date=document["date"],
+            machine=document.get("machine", ""),
             figures=document["figures"],
             supports=frozenset(document["supports"]),
             fresh=source.made(document["commit"]) or source.is_current(name),
@@ -377,6 +387,7 @@ def suites(source: Source, suite: str) -> Iterator[Result]:
             tool=run["tool"],
             commit=run["commit"],
             date=run["date"],
+            machine=run.get("machine", ""),
             bounds=f"{len(tests) - len(failures)} of {len(tests)} tests passed",
             log=f"build/reports/{suite}.xml",
             supports=frozenset(one for name, _ in tests for one in PROPERTY.findall(f"{name}_")),

@@ -81,6 +81,30 @@ TEST_F(PathProposalTest, AConsolesPathIsCheckedApprovedAndOrdered) {
   EXPECT_EQ(book_.app_mode(), "manual");
 }
 
+TEST_F(PathProposalTest, AFilesPathIsApprovedWithoutAClickOnlyWhereTheRobotFileSaysSo) {
+  const auto waits = book_.propose_path(file_draft(), view_);
+  ASSERT_TRUE(waits) << waits.error().detail;
+  EXPECT_EQ(waits->state, ProposalState::checked);
+  EXPECT_THAT(sent_, testing::IsEmpty());
+
+  Robot trainer = neuro();
+  trainer.auto_approve = true;
+  ProposalBook book{trainer, neuro_config(),
+                    [this](const Command& command) {
+                      sent_.push_back(command);
+                      return true;
+                    },
+                    [this] { return now_; }};
+  axis(test::yaw).state = ILK_AXIS_DISABLED;
+  EXPECT_FALSE(book.propose_path(file_draft(), view_)) << "its checks still have to pass";
+  EXPECT_THAT(sent_, testing::IsEmpty());
+  axis(test::yaw).state = ILK_AXIS_ENABLED;
+  const auto approved = book.propose_path(file_draft(), view_);
+  ASSERT_TRUE(approved) << approved.error().detail;
+  EXPECT_EQ(approved->state, ProposalState::approved);
+  EXPECT_THAT(sent_, testing::SizeIs(1));
+}
+
 TEST_F(PathProposalTest, AProgramLivesUntilTheControlThreadNoLongerReadsIt) {
   std::weak_ptr<const PathProgram> watched;
   {

@@ -154,6 +154,20 @@ TEST_F(ProposalBookTest, StopAbortsAllThatIsOpen) {
   EXPECT_EQ(state(3), ProposalState::aborted);
 }
 
+TEST_F(ProposalBookTest, ALockByAnyCauseDiscardsWhatWaitsForApproval) {
+  ControlView locked = view_;
+  locked.snapshot.state.mode = ILK_MODE_LOCKED;
+  for (std::uint32_t cause = ILK_CAUSE_BOOT; cause < ILK_CAUSE_COUNT; ++cause) {
+    const auto waits =
+        book_.propose_home({insertion, std::nullopt, "ann", ProposalSource::openigtlink}, view_);
+    ASSERT_TRUE(waits) << waits.error().detail;
+    ASSERT_EQ(waits->state, ProposalState::checked);
+    locked.snapshot.state.cause = cause;
+    book_.follow(locked);
+    EXPECT_EQ(state(waits->id), ProposalState::aborted) << cause;
+  }
+}
+
 TEST_F(ProposalBookTest, TheLossOfAnAuthorPausesWhatIsApprovedSaysSoAndEndsWhatIsNot) {
   (void)book_.propose_home({insertion, std::nullopt, "ann", ProposalSource::openigtlink}, view_);
   (void)propose();

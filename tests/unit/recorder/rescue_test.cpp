@@ -105,6 +105,15 @@ TEST_F(RescueTest, DiskIsNotAskedAtEveryStep) {
   EXPECT_TRUE(recordings().empty());
 }
 
+// A recorder that began beside a kernel took the ring away that the kernel was making.
+TEST_F(RescueTest, RingThatAKernelIsJustMakingIsLeftAlone) {
+  std::fstream(ring_file_, std::ios::in | std::ios::out | std::ios::binary).put('\0');
+  rescue().begin();
+  EXPECT_TRUE(told_.empty());
+  EXPECT_TRUE(fs::exists(ring_file_));
+  EXPECT_FALSE(fs::exists(unreadable_of(ring_file_)));
+}
+
 TEST_F(RescueTest, RingOfAnotherReleaseIsLeftToAPerson) {
   constexpr std::streamoff layout =
       offsetof(ilk_ring_header_t, run) + offsetof(ilk_run_description_t, layout_hash);
