@@ -90,13 +90,13 @@ class Rung:
     tool: str
     commit: str
     date: str
-    machine: str
     figures: Mapping[str, float]
     supports: frozenset[str]
     fresh: bool
     logs: str
     text: str = field(repr=False)
     """What the rung printed."""
+    machine: str = ""
 
     def result(self, uid: str, title: str, method: str, status: str, **more: object) -> Result:
         """A result of this rung. It is no better than the rung as a whole."""
