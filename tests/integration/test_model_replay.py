@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from bare_kernel import BIN, ROOT
-from test_recorder import RecordedKernelFactory, interlock, recorded, unlock, wait_for
+from test_recorder import RecordedKernel, RecordedKernelFactory, interlock, recorded, unlock, wait_for
 
 __all__ = ["recorded"]
 
@@ -18,6 +18,10 @@ import traces
 from recorded import told
 
 TICKS = 300
+YAW, PITCH, LATERAL = 0, 2, 4
+"""Slots of the NeuroRobot."""
+MOTION = 3
+"""ilk_mode_t"""
 
 
 @pytest.fixture
@@ -27,6 +31,33 @@ def recording(recorded: RecordedKernelFactory) -> Path:
     unlock(kernel)
     kernel.app.ask("ENABLE", axis=0)
     kernel.lock_by_estop()
+    return ended(kernel)
+
+
+@pytest.fixture
+def moving(recorded: RecordedKernelFactory) -> Path:
+    """One axis moves and another homes until the pedal is released; then a third one jumps."""
+    kernel = recorded("--continuous")
+    unlock(kernel)
+    assert kernel.app.ask("SET_HOME", axis=LATERAL) == "ACCEPTED"
+    for axis in (LATERAL, YAW, PITCH):
+        assert kernel.app.ask("ENABLE", axis=axis) == "ACCEPTED"
+    kernel.app.run(30)
+    kernel.plant("pedal", pressed=True)
+    wait_for("MOTION", lambda: kernel.app.run(5).state.mode == MOTION)
+    assert kernel.app.ask("HOME", axis=YAW) == "ACCEPTED"
+    move = {"axis": LATERAL, "target_counts": -200, "drive": 20_000, "lease_ticks": 100}
+    assert kernel.app.ask("MOVE", **move) == "ACCEPTED"
+    kernel.app.run(60)
+    kernel.plant("pedal", pressed=False)
+    kernel.app.run(10)
+    kernel.plant("jump", slot=PITCH, counts=5000)
+    kernel.app.run(10)
+    return ended(kernel)
+
+
+def ended(kernel: RecordedKernel) -> Path:
+    """The recording of a kernel that goes on for some ticks and ends."""
     kernel.app.run(20)
     # A kernel that ends takes its black box along; a recorder that is late would find nothing.
     wait_for("the recorder has begun", lambda: any(kernel.recordings.glob("*")))
@@ -62,6 +93,13 @@ def test_the_model_accepts_a_recorded_run_and_rejects_a_doctored_one(recording: 
     lines[first + 19] = re.sub(r'"LOCKED","BOOT"', '"READY","NONE"', lines[first + 19], count=1)
     data.write_text("\n".join(lines))
     assert traces.judge_in(part.folder)[1] == 20
+
+
+@pytest.mark.provers
+def test_the_model_accepts_a_move_a_homing_and_a_fault(moving: Path) -> None:
+    done = interlock("replay", moving, "--model")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert re.search(r"identical\nthe model accepts all \d+ ticks\n$", done.stdout)
 
 
 @pytest.mark.provers
