@@ -92,7 +92,9 @@ def test_headers_of_class_C_are_units_of_the_item_that_names_their_folder(
     assert "kernel/host/loop.h" in files["IT-HOST"]
     assert "app/control/piv_controller.hpp" in files["IT-MOTION"]
     assert "app/store/audit.hpp" in files["IT-STORE"]
-    assert not any(one.startswith(("app/recorder", "app/replay")) for names in files.values() for one in names)
+    assert not any(
+        one.startswith(("app/recorder", "app/replay")) for names in files.values() for one in names
+    )
     folders = {path.relative_to(ROOT).as_posix() for path in (ROOT / "app").iterdir() if path.is_dir()}
     named = {place for item in items.of("ITEM") for place in item_units.folders_of(item.title)}
     assert folders - named == {"app/build_info"}

@@ -331,6 +331,7 @@ def test_a_row_leads_from_the_hazard_to_its_raw_results(tree: Tree, clean: tuple
         "WP:gate.c:may_drive PASSED",
     ]
     assert first.status == "BOUNDED"
+    assert first.tests == "kernel_tests.P1_gate.needs_the_pedal"
 
 
 def test_without_evidence_every_result_is_unknown(tree: Tree) -> None:

@@ -12,7 +12,7 @@ from dataclasses import asdict, dataclass, fields
 from gate import Trace, carried_out
 from items import Item, fingerprint
 from places import Places
-from results import AWAITED, SOUND, Result
+from results import AWAITED, PROPERTY, SOUND, Result
 
 
 @dataclass(frozen=True)
@@ -38,6 +38,7 @@ class Row:
     code: str
     methods: str
     verification: str
+    tests: str
     results: str
     bounds: str
     status: str
@@ -61,6 +62,20 @@ def code_of(of: Trace, uid: str) -> list[str]:
         if uid in project.links.requirements_of(one)
     ]
     return functions or list(project.links.code.get(uid, ()))
+
+
+def tests_of(of: Trace, uid: str) -> list[str]:
+    """The test cases about a requirement: those of its links, and those named for a property of it."""
+    patterns = of.project.links.tests.get(uid, ())
+    linked = {case for pattern in patterns for case in of.matched.get(pattern, ())}
+    properties = {one.uid for one in of.project.items.children(uid, "Formalises")}
+    named = {
+        case
+        for result in of.carried.get(uid, ())
+        for case in result.cases
+        if properties & set(PROPERTY.findall(f"{case}_"))
+    }
+    return sorted(linked | named)
 
 
 def status_of(results: Sequence[Result]) -> str:
@@ -121,6 +136,7 @@ def rows(of: Trace) -> list[Row]:
                 code="; ".join(code_of(of, requirement.uid)),
                 methods=requirement.fields["VERIFICATION"],
                 verification="; ".join(dict.fromkeys(filter(None, map(places.of_result, results)))),
+                tests="; ".join(tests_of(of, requirement.uid)),
                 results="; ".join(f"{one.uid} {one.status}" for one in results),
                 bounds="; ".join(dict.fromkeys(one.bounds.replace("; ", ", ") for one in results)),
                 status=status_of(results),

@@ -9,7 +9,7 @@ from pathlib import Path
 from figures import KINDS
 from gate import Finding, Trace, alike, awaited
 from items import Item
-from matrix import Row, code_of, coverage, negative_lists, rows, status_of, without_control
+from matrix import Row, code_of, coverage, negative_lists, rows, status_of, tests_of, without_control
 from results import AWAITED, Result
 
 STYLE = "style.css"
@@ -170,6 +170,8 @@ def matrix_page(of: Trace, matrix: Sequence[Row]) -> str:
             return "<br>".join(item_link(part) for part in parts)
         if name in ("code", "verification"):
             return "<br>".join(file_link(part) for part in parts)
+        if name == "tests":
+            return f"{len(parts)} by name" if parts else ""
         if name in ("design", "bounds"):
             return "<br>".join(escape(part) for part in parts)
         if name == "results":
@@ -203,6 +205,8 @@ def items_page(of: Trace) -> str:
         carried = sorted(of.carried.get(item.uid, ()), key=lambda one: one.uid)
         parts = {"Up": up, "Down": down, "Code": [file_link(one) for one in code_of(of, item.uid)]}
         parts["Results"] = [result_link(one) for one in carried]
+        if item.kind == "REQUIREMENT":
+            parts["Tests"] = [escape(case) for case in tests_of(of, item.uid)]
         links = "".join(f"<h4>{name}</h4>{listed(lines)}" for name, lines in parts.items() if lines)
         word = status(status_of(carried)) if item.kind in ("REQUIREMENT", "PROPERTY") else ""
         head = f"<h3>{escape(item.uid)} {escape(item.title)} <span class=kind>{item.kind}</span> {word}</h3>"
