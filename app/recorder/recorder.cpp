@@ -39,10 +39,12 @@ void Recorder::step() {
 bool Recorder::finish() {
   retry_at_ = {};
   step();
-  if (newest_ && !ring_.closed() && !ring_.writer_lives()) {
+  const bool lives = ring_.writer_lives();
+  if (newest_ && !ring_.closed() && !lives) {
     event(ILK_RECORDED_ON_END, newest_->tick);
   }
-  if (active_) {
+  // One whose time is not over is left unfinished while the kernel lives: whoever comes next writes it anew.
+  if (active_ && (!lives || !active_->last_tick || is_over())) {
     end_recording();
   }
   return !active_ && !event_ && (!terms_.continuous || may_write());
@@ -56,16 +58,19 @@ void Recorder::take_in(const TickHead& head) {
   if (happened) {
     event(*happened, head.tick);
   }
-  if (active_ && active_->last_tick && static_cast<std::int32_t>(head.tick - *active_->last_tick) >= 0) {
+  if (active_ && is_over()) {
     end_recording();
   }
 }
 
 void Recorder::event(ilk_recorded_why_t why, std::uint32_t tick) {
+  if (terms_.continuous) {
+    return;
+  }
   const std::uint64_t after_us = std::uint64_t{terms_.after_s} * 1'000'000;
   const std::uint32_t last_tick = tick + static_cast<std::uint32_t>(after_us / ring_.run().config.period_us);
   if (active_) {
-    active_->last_tick = active_->last_tick ? std::optional(last_tick) : std::nullopt;
+    active_->last_tick = last_tick;
     return;
   }
   event_ = event_ ? Event{event_->why, event_->tick, last_tick} : Event{why, tick, last_tick};
@@ -81,73 +86,114 @@ void Recorder::begin_recording() {
       event_.reset();
     }
   } else if (terms_.continuous) {
-    const std::uint32_t first = ring_.oldest();
+    const std::uint32_t first = std::max(ring_.oldest(), continuous_next_);
     begin(ILK_RECORDED_CONTINUOUSLY, ring_.opening_tick(first).value_or(newest_->tick), first);
   }
 }
 
 bool Recorder::may_write() const { return std::chrono::steady_clock::now() >= retry_at_; }
 
+/** The ticks that a recording of an event holds are there. */
+bool Recorder::is_over() const {
+  return active_->last_tick && static_cast<std::int32_t>(newest_->tick - *active_->last_tick) >= 0;
+}
+
 void Recorder::begin(ilk_recorded_why_t why, std::uint32_t tick, std::uint32_t first_block) {
   if (!may_write()) {
     return;
   }
-  Active recording{folder_.file(ring_.run(), why, tick), std::nullopt, first_block, std::nullopt};
+  Active recording{why,         tick,        folder_.file(ring_.run(), why, tick), std::nullopt, first_block,
+                   first_block, std::nullopt};
   std::error_code ignored;
-  if (why == ILK_RECORDED_CONTINUOUSLY || !fs::exists(recording.file, ignored)) {
-    folder_.make_room();
-    Recorded<RecordingWriter> writer =
-        RecordingWriter::create(part_of(recording.file), ring_.run(), {why, tick, terms_.build});
-    if (!writer) {
-      fail(writer.error());
-      return;
-    }
-    recording.writer.emplace(std::move(*writer));
-    tell_("recording " + recording.file.string());
+  if (why != ILK_RECORDED_CONTINUOUSLY && fs::exists(recording.file, ignored)) {
+    active_.emplace(std::move(recording));
+    return;
   }
-  active_.emplace(std::move(recording));
+  const bool ring_came_round = first_block > 1 && first_block == ring_.oldest();
+  if (ring_came_round && fs::exists(part_of(recording.file), ignored)) {
+    // Another recorder began it, with more than the ring still holds.
+    fs::rename(part_of(recording.file), recording.file, ignored);
+    recording.file = folder_.file(ring_.run(), why, ring_.opening_tick(first_block).value_or(tick));
+  }
+  folder_.make_room();
+  if (create(recording)) {
+    tell_("recording " + recording.file.string());
+    active_.emplace(std::move(recording));
+  }
+}
+
+bool Recorder::create(Active& recording) {
+  Recorded<RecordingWriter> writer = RecordingWriter::create(part_of(recording.file), ring_.run(),
+                                                             {recording.why, recording.tick, terms_.build});
+  if (!writer) {
+    fail(writer.error());
+    return false;
+  }
+  recording.writer.emplace(std::move(*writer));
+  return true;
+}
+
+/** After the disk refused, the file may be gone by the time it takes blocks again, or belong to another disk.
+ */
+bool Recorder::resume() {
+  if (active_->refused && !active_->writer->reopen()) {
+    if (!create(*active_)) {
+      return false;
+    }
+    active_->next_block = std::max(active_->first_block, ring_.oldest());
+  }
+  active_->refused = false;
+  return true;
 }
 
 void Recorder::append_complete_blocks() {
   const std::uint32_t head = ring_.head();
-  while (active_ && active_->next_block < head && append(active_->next_block)) {
+  while (active_ && active_->next_block < head && append_next()) {
     if (!active_->last_tick && active_->writer->bytes() >= terms_.part_bytes) {
-      go_on_in_a_new_part();
+      complete();
+      if (!active_) {
+        begin_recording();
+      }
     }
   }
 }
 
 /** False when the disk does not take the block: it is asked for it again. */
-bool Recorder::append(std::uint32_t number) {
-  if (active_->writer && !may_write()) {
+bool Recorder::append_next() {
+  if (!active_->writer) {
+    ++active_->next_block;
+    return true;
+  }
+  if (!may_write() || !resume()) {
     return false;
   }
-  const std::optional<BlockCopy> block = active_->writer ? ring_.copy(number) : std::nullopt;
-  if (block) {
-    if (const Recorded<void> appended = active_->writer->append(*block); !appended) {
-      fail(appended.error());
-      return false;
-    }
-  }
-  active_->next_block = number + 1;
-  if (active_->writer && !block) {
+  const std::uint32_t number = active_->next_block;
+  const std::optional<BlockCopy> block = ring_.copy(number);
+  if (!block) {
     active_->next_block = std::max(number + 1, ring_.oldest());
     tell_("the disk is too slow: lost blocks " + std::to_string(number) + " to " +
           std::to_string(active_->next_block - 1));
+    return true;
   }
+  if (const Recorded<void> appended = active_->writer->append(*block); !appended) {
+    active_->refused = true;
+    fail(appended.error());
+    return false;
+  }
+  ++active_->next_block;
   return true;
-}
-
-void Recorder::go_on_in_a_new_part() {
-  const std::uint32_t next = active_->next_block;
-  complete();
-  begin(ILK_RECORDED_CONTINUOUSLY, ring_.opening_tick(next).value_or(newest_->tick), next);
 }
 
 /** It goes on when the disk does not take all of it. */
 void Recorder::end_recording() {
   append_complete_blocks();
-  if (active_ && active_->next_block == ring_.head() && append(active_->next_block)) {
+  if (active_ && active_->next_block <= ring_.head() && !append_next()) {
+    return;
+  }
+  if (active_ && active_->writer && !(may_write() && resume() && active_->next_block > ring_.head())) {
+    return;
+  }
+  if (active_) {
     complete();
   }
 }
@@ -156,8 +202,15 @@ void Recorder::complete() {
   if (active_->writer) {
     std::error_code error;
     fs::rename(part_of(active_->file), active_->file, error);
-    tell_(error ? part_of(active_->file).string() + ": " + error.message()
-                : active_->file.string() + " is complete");
+    if (error) {
+      active_->refused = true;
+      fail(active_->file.string() + ": " + error.message());
+      return;
+    }
+    tell_(active_->file.string() + " is complete");
+  }
+  if (terms_.continuous) {
+    continuous_next_ = active_->next_block;
   }
   active_.reset();
 }
@@ -169,7 +222,7 @@ void Recorder::fail(const std::string& reason) {
 
 Recorded<std::uint32_t> record_now(const Ring& ring, const fs::path& file, const RecordingSubject& subject,
                                    std::uint32_t first_block) {
-  Recorded<RecordingWriter> writer = RecordingWriter::create(part_of(file), ring.run(), subject);
+  Recorded<RecordingWriter> writer = RecordingWriter::create(file, ring.run(), subject);
   if (!writer) {
     return tl::unexpected(writer.error());
   }
@@ -178,13 +231,13 @@ Recorded<std::uint32_t> record_now(const Ring& ring, const fs::path& file, const
   for (std::uint32_t number = first_block; number <= last; ++number) {
     const std::optional<BlockCopy> block = ring.copy(number);
     if (const Recorded<void> appended = block ? writer->append(*block) : Recorded<void>(); !appended) {
+      std::error_code ignored;
+      fs::remove(file, ignored);
       return tl::unexpected(appended.error());
     }
     blocks += block ? 1 : 0;
   }
-  std::error_code error;
-  fs::rename(part_of(file), file, error);
-  return error ? Recorded<std::uint32_t>(tl::unexpected(file.string() + ": " + error.message())) : blocks;
+  return blocks;
 }
 
 }  // namespace interlock::recorder

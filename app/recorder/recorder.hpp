@@ -65,20 +65,26 @@ class Recorder {
 
   /** A recording that is being written; without a writer, one that is complete already. */
   struct Active {
+    ilk_recorded_why_t why;
+    std::uint32_t tick;
     std::filesystem::path file;
     std::optional<RecordingWriter> writer;
+    std::uint32_t first_block;
     std::uint32_t next_block;
     std::optional<std::uint32_t> last_tick; /**< nothing: goes on */
+    bool refused = false;                   /**< by the disk, when it was asked last */
   };
 
   void take_in(const TickHead& head);
   void event(ilk_recorded_why_t why, std::uint32_t tick);
   void begin_recording();
   void begin(ilk_recorded_why_t why, std::uint32_t tick, std::uint32_t first_block);
+  [[nodiscard]] bool create(Active& recording);
+  [[nodiscard]] bool resume();
   void append_complete_blocks();
-  [[nodiscard]] bool append(std::uint32_t number);
-  void go_on_in_a_new_part();
+  [[nodiscard]] bool append_next();
   void end_recording();
+  [[nodiscard]] bool is_over() const;
   void complete();
   void fail(const std::string& reason);
   [[nodiscard]] bool may_write() const;
@@ -91,6 +97,7 @@ class Recorder {
   std::optional<TickHead> newest_;
   std::optional<Event> event_;
   std::optional<Active> active_;
+  std::uint32_t continuous_next_ = 0;              /**< first block that no continuous recording has */
   std::chrono::steady_clock::time_point retry_at_; /**< after the disk refused */
 };
 

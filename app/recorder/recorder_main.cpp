@@ -59,8 +59,8 @@ std::optional<Ring> live_ring(const fs::path& file) {
 }
 
 /** Follows one kernel; true when the recorder was asked to end before the kernel did. */
-bool follow(const Ring& ring, const RecordingFolder& folder, const RecorderTerms& terms,
-            const FileHandle& signals, Rescue& rescue) {
+bool follow(Ring ring, const RecordingFolder& folder, const RecorderTerms& terms, const FileHandle& signals,
+            Rescue& rescue) {
   Recorder recorder(ring, folder, terms, say);
   bool asked = false;
   bool lives = true;
@@ -68,14 +68,16 @@ bool follow(const Ring& ring, const RecordingFolder& folder, const RecorderTerms
     asked = end_is_asked(signals);
     lives = ring.writer_lives();
     recorder.step();
+    rescue.look(&ring);
     rescue.step();
   }
-  if (!lives) {
-    rescue.set_aside();
-  }
-  const bool kept = recorder.finish();
-  if (!lives) {
-    rescue.settle(kept);
+  if (recorder.finish()) {
+    if (!lives) {
+      rescue.let_go(ring);
+    }
+  } else if (!lives) {
+    say("not all of this kernel's black box is on the disk; it stays in memory until the disk takes it");
+    rescue.take(std::move(ring));
   }
   return asked;
 }
@@ -90,17 +92,23 @@ int record(const Options& options) {
   RecorderTerms terms;
   terms.continuous = options.continuous;
   terms.build = std::string(version()) + ' ' + std::string(commit());
-  Rescue rescue(options.ring, *folder, terms, say);
-  rescue.begin();
-  const std::optional<Ring> going_on = live_ring(options.ring);
+  std::optional<Ring> going_on = live_ring(options.ring);
   folder->finish_parts(going_on ? &going_on->run() : nullptr);
+  going_on.reset();
+  // Before a kernel is started: it leaves what stands there a name, but of two rings only one.
+  Rescue rescue(options.ring, *folder, terms.build, say);
+  rescue.look();
   say("ready recordings=" + folder->path().string());
   while (!end_is_asked(signals)) {
-    const std::optional<Ring> ring = live_ring(options.ring);
-    if (ring && follow(*ring, *folder, terms, signals, rescue)) {
+    std::optional<Ring> ring = live_ring(options.ring);
+    if (ring && follow(std::move(*ring), *folder, terms, signals, rescue)) {
       break;
     }
+    rescue.look();
     rescue.step();
+  }
+  if (!rescue.is_done()) {
+    say("what a dead kernel left is still in memory; the next start goes on with it");
   }
   return 0;
 }

@@ -1,6 +1,7 @@
 #include "recorder/recording_writer.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -44,14 +45,26 @@ Recorded<RecordingWriter> RecordingWriter::create(const std::filesystem::path& p
   }
   RecordingWriter writer(std::move(file), path.string());
   const ilk_recording_header_t header = header_of(run, subject);
-  if (Recorded<void> written = writer.write(&header, sizeof header); !written) {
+  const FileHandle folder(open(path.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  Recorded<void> written = writer.write(&header, sizeof header);
+  if (written && (!folder || fsync(folder.get()) != 0)) {
+    written = failed_with(path.parent_path().string(), errno);
+  }
+  if (!written) {
+    unlink(path.c_str());
     return tl::unexpected(written.error());
   }
-  const FileHandle folder(open(path.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (!folder || fsync(folder.get()) != 0) {
-    return failed_with(path.parent_path().string(), errno);
-  }
   return writer;
+}
+
+bool RecordingWriter::reopen() {
+  FileHandle file(open(name_.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW));
+  struct stat there{};
+  if (!file || fstat(file.get(), &there) != 0 || static_cast<std::uint64_t>(there.st_size) < bytes_) {
+    return false;
+  }
+  file_ = std::move(file);
+  return true;
 }
 
 Recorded<void> RecordingWriter::append(const BlockCopy& block) {
@@ -60,6 +73,17 @@ Recorded<void> RecordingWriter::append(const BlockCopy& block) {
 }
 
 Recorded<void> RecordingWriter::write(const void* bytes, std::size_t count) {
+  Recorded<void> written = write_at_end(bytes, count);
+  if (written) {
+    bytes_ += count;
+  } else if (ftruncate(file_.get(), static_cast<off_t>(bytes_)) != 0) {
+    // Half a block at the end is told as torn; it is no reason to fail otherwise than by what failed.
+    return written;
+  }
+  return written;
+}
+
+Recorded<void> RecordingWriter::write_at_end(const void* bytes, std::size_t count) {
   const auto* from = static_cast<const std::byte*>(bytes);
   std::size_t left = count;
   while (left > 0) {
@@ -73,11 +97,7 @@ Recorded<void> RecordingWriter::write(const void* bytes, std::size_t count) {
     from += written;
     left -= static_cast<std::size_t>(written);
   }
-  if (fdatasync(file_.get()) != 0) {
-    return failed_with(name_, errno);
-  }
-  bytes_ += count;
-  return {};
+  return fdatasync(file_.get()) == 0 ? Recorded<void>() : failed_with(name_, errno);
 }
 
 }  // namespace interlock::recorder

@@ -29,8 +29,11 @@ class RecordingWriter {
   static Recorded<RecordingWriter> create(const std::filesystem::path& file, const ilk_run_description_t& run,
                                           const RecordingSubject& subject);
 
-  /** Appends a block; it is on the disk when this returns. After a failure the same place is written anew. */
+  /** Appends a block; it is on the disk when this returns. After a failure nothing of it is in the file. */
   Recorded<void> append(const BlockCopy& block);
+
+  /** Takes the file up again after a failure; false when it is not there as it was left. */
+  [[nodiscard]] bool reopen();
 
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
 
@@ -38,6 +41,7 @@ class RecordingWriter {
   RecordingWriter(FileHandle file, std::string name) : file_(std::move(file)), name_(std::move(name)) {}
 
   Recorded<void> write(const void* bytes, std::size_t count);
+  [[nodiscard]] Recorded<void> write_at_end(const void* bytes, std::size_t count);
 
   FileHandle file_;
   std::string name_;

@@ -1,91 +1,135 @@
 #include "recorder/rescue.hpp"
 
+#include <algorithm>
+#include <array>
 #include <system_error>
 #include <utility>
-
-#include "recorder/ring.hpp"
 
 namespace interlock::recorder {
 namespace {
 
 namespace fs = std::filesystem;
 
+/** Between two looks at the ring of a living kernel no more is written, so that it is never left alone for
+ * long. */
+constexpr std::uint32_t blocks_a_step = 8;
+
+std::array<fs::path, 2> names_of(const fs::path& ring) {
+  return {fs::path(ring.string() + ILK_RING_BEFORE), ring};
+}
+
 }  // namespace
 
-fs::path unsaved_of(const fs::path& ring) { return ring.string() + ".unsaved"; }
-fs::path unreadable_of(const fs::path& ring) { return ring.string() + ".unreadable"; }
+Rescue::Rescue(fs::path ring, const RecordingFolder& folder, std::string build, Tell tell)
+    : ring_(std::move(ring)), folder_(folder), build_(std::move(build)), tell_(std::move(tell)) {}
 
-Rescue::Rescue(fs::path ring, const RecordingFolder& folder, RecorderTerms terms, Tell tell)
-    : ring_(std::move(ring)), folder_(folder), terms_(std::move(terms)), tell_(std::move(tell)) {}
+void Rescue::look(const Ring* followed) {
+  for (const fs::path& file : names_of(ring_)) {
+    look_at(file, followed);
+  }
+}
 
-void Rescue::begin() {
-  step();
+void Rescue::look_at(const fs::path& file, const Ring* followed) {
+  const auto is_this = [&](const Ring& ring) { return ring.is_file(file); };
   std::error_code ignored;
-  if (!fs::exists(ring_, ignored)) {
+  if (!fs::exists(file, ignored) || (followed != nullptr && is_this(*followed)) ||
+      std::ranges::any_of(jobs_, is_this, &Job::ring)) {
     return;
   }
-  const Recorded<Ring> ring = Ring::open(ring_);
+  Recorded<Ring> ring = Ring::open(file);
   if (!ring) {
-    keep_unreadable(ring_);
+    if (Ring::left_by_another_release(file) && told_.insert(file).second) {
+      tell_(ring.error() + ", which died; it stays in memory until that release, or a person, takes it");
+    }
   } else if (!ring->writer_lives()) {
-    const std::uint32_t tick = ring->opening_tick(ring->head()).value_or(0);
-    set_aside();
-    settle(ring->head() == 0 || write_out(*ring, ring->block_before(tick, terms_.before_s)));
+    take(std::move(*ring));
   }
 }
 
-void Rescue::set_aside() {
-  std::error_code error;
-  aside_ = !fs::exists(unsaved_of(ring_), error);
-  if (aside_) {
-    fs::rename(ring_, unsaved_of(ring_), error);
-  }
-}
-
-void Rescue::settle(bool kept) {
-  const fs::path file = aside_ ? unsaved_of(ring_) : ring_;
-  if (kept) {
-    std::error_code ignored;
-    fs::remove(file, ignored);
+void Rescue::take(Ring ring) {
+  if (ring.head() == 0) {
+    let_go(ring);
     return;
   }
-  retry_at_ = std::chrono::steady_clock::now() + pause_after_failure;
-  tell_("the black box is kept in memory as " + file.string() +
-        (aside_ ? " until the disk takes it"
-                : " until a kernel starts: an earlier one still waits for the disk"));
+  const std::uint32_t tick = ring.opening_tick(ring.head()).value_or(0);
+  fs::path file = folder_.file(ring.run(), ILK_RECORDED_ON_RESCUE, tick);
+  jobs_.push_back({std::move(ring), std::move(file), std::nullopt, 0});
 }
 
 void Rescue::step() {
-  std::error_code ignored;
-  if (std::chrono::steady_clock::now() < retry_at_ || !fs::exists(unsaved_of(ring_), ignored)) {
+  if (jobs_.empty() || std::chrono::steady_clock::now() < retry_at_) {
     return;
   }
-  const Recorded<Ring> ring = Ring::open(unsaved_of(ring_));
-  if (!ring) {
-    keep_unreadable(unsaved_of(ring_));
-  } else if (write_out(*ring, ring->oldest())) {
-    fs::remove(unsaved_of(ring_), ignored);
-  } else {
-    retry_at_ = std::chrono::steady_clock::now() + pause_after_failure;
+  Job& job = jobs_.front();
+  if (const Recorded<void> written = begin(job).and_then([&] { return write_some(job); }); !written) {
+    fail(job, written.error());
+  } else if (!job.writer) {
+    tell_("rescued " + job.file.string());
+    let_go(job.ring);
+    jobs_.pop_front();
   }
 }
 
-void Rescue::keep_unreadable(const fs::path& ring) {
-  if (Ring::left_by_another_release(ring)) {
-    std::error_code ignored;
-    fs::rename(ring, unreadable_of(ring_), ignored);
-    tell_("a kernel of another release left a black box; kept in memory as " + unreadable_of(ring_).string());
+/** Begins the file, if it has not begun, and all of the ring has room on the disk. */
+Recorded<void> Rescue::begin(Job& job) {
+  if (job.writer) {
+    return {};
   }
-}
-
-bool Rescue::write_out(const Ring& ring, std::uint32_t first_block) {
-  const std::uint32_t tick = ring.opening_tick(ring.head()).value_or(0);
-  const fs::path file = folder_.file(ring.run(), ILK_RECORDED_ON_RESCUE, tick);
   folder_.make_room();
-  const Recorded<std::uint32_t> blocks =
-      record_now(ring, file, {ILK_RECORDED_ON_RESCUE, tick, terms_.build}, first_block);
-  tell_(blocks ? "rescued " + file.string() : "cannot record: " + blocks.error());
-  return blocks.has_value();
+  const std::uint32_t first = job.ring.oldest();
+  const std::uintmax_t needed = std::uintmax_t{job.ring.head() - first + 1} * ILK_BLOCK_BYTES;
+  std::error_code error;
+  const fs::space_info space = fs::space(folder_.path(), error);
+  if (!error && space.available < needed) {
+    return tl::unexpected(job.file.string() + ": needs " + std::to_string(needed >> 20) + " MiB, of which " +
+                          std::to_string(space.available >> 20) + " are free");
+  }
+  const std::uint32_t tick = job.ring.opening_tick(job.ring.head()).value_or(0);
+  Recorded<RecordingWriter> writer =
+      RecordingWriter::create(part_of(job.file), job.ring.run(), {ILK_RECORDED_ON_RESCUE, tick, build_});
+  return writer.map([&](RecordingWriter& made) {
+    job.writer.emplace(std::move(made));
+    job.next_block = first;
+  });
+}
+
+/** The writer is gone once all is written. */
+Recorded<void> Rescue::write_some(Job& job) {
+  const std::uint32_t last = job.ring.head();
+  for (std::uint32_t n = 0; n < blocks_a_step && job.next_block <= last; ++n, ++job.next_block) {
+    if (const std::optional<BlockCopy> block = job.ring.copy(job.next_block)) {
+      if (Recorded<void> appended = job.writer->append(*block); !appended) {
+        return appended;
+      }
+    }
+  }
+  if (job.next_block > last) {
+    std::error_code error;
+    fs::rename(part_of(job.file), job.file, error);
+    if (error) {
+      return tl::unexpected(job.file.string() + ": " + error.message());
+    }
+    job.writer.reset();
+  }
+  return {};
+}
+
+/** Half of a ring would only take the room of what else is to be recorded. */
+void Rescue::fail(Job& job, const std::string& reason) {
+  std::error_code ignored;
+  job.writer.reset();
+  fs::remove(part_of(job.file), ignored);
+  tell_("cannot record what a dead kernel left, and keep it in memory: " + reason);
+  retry_at_ = std::chrono::steady_clock::now() + pause_after_failure;
+}
+
+void Rescue::let_go(const Ring& ring) const {
+  for (const fs::path& file : names_of(ring_)) {
+    std::error_code ignored;
+    if (ring.is_file(file)) {
+      fs::remove(file, ignored);
+    }
+  }
 }
 
 }  // namespace interlock::recorder

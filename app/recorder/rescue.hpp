@@ -1,54 +1,68 @@
 /**
  * @file
- * What a dead kernel left in memory: written out, now or when the disk takes it.
+ * What dead kernels left in memory: written out whole, now or when the disk takes it.
  */
 #pragma once
 
 #include <chrono>
+#include <cstdint>
+#include <deque>
 #include <filesystem>
+#include <optional>
+#include <set>
 #include <string>
 
 #include "recorder/recorder.hpp"
 #include "recorder/recording_folder.hpp"
+#include "recorder/recording_writer.hpp"
+#include "recorder/ring.hpp"
 
 namespace interlock::recorder {
 
-/** Beside the ring's file: a ring that the disk refused. The next kernel takes the ring's own name. */
-std::filesystem::path unsaved_of(const std::filesystem::path& ring);
-
-/** Beside the ring's file: a ring that this release cannot read, left to a person. */
-std::filesystem::path unreadable_of(const std::filesystem::path& ring);
-
 /**
- * Keeps the rings of dead kernels until they are on the disk. A ring is set aside first, so that the next
- * kernel does not take its place, and tried again while the disk refuses it. One can wait at a time.
+ * Keeps the rings of dead kernels until they are on the disk. The ring of the last kernel stands under its
+ * own name; a kernel that starts leaves the ring of the one before under a second name (black_box.h).
+ * Whatever stands there is known by its file and not by its name, so that a ring of a kernel that lives is
+ * never taken.
  */
 class Rescue {
  public:
   /** `ring` is where kernels make theirs. */
-  Rescue(std::filesystem::path ring, const RecordingFolder& folder, RecorderTerms terms, Tell tell);
+  Rescue(std::filesystem::path ring, const RecordingFolder& folder, std::string build, Tell tell);
 
-  /** Takes over what an earlier run left, its kernel and its recorder being dead. */
-  void begin();
+  /** Looks for rings of dead kernels; `followed` is one that somebody else keeps. */
+  void look(const Ring* followed = nullptr);
 
-  /** Sets the ring of a kernel that died aside, unless an earlier one still waits there. */
-  void set_aside();
+  /** Takes over a ring of which not all that is to be kept is on the disk. */
+  void take(Ring ring);
 
-  /** Lets the ring that was set aside go when all of it that is to be kept is on the disk. */
-  void settle(bool kept);
-
-  /** Writes out what was set aside, if the disk may be asked again. */
+  /** Writes the next blocks, if the disk may be asked. */
   void step();
 
+  /** Removes the file of a ring that is on the disk, under whichever name it stands. */
+  void let_go(const Ring& ring) const;
+
+  [[nodiscard]] bool is_done() const { return jobs_.empty(); }
+
  private:
-  [[nodiscard]] bool write_out(const Ring& ring, std::uint32_t first_block);
-  void keep_unreadable(const std::filesystem::path& ring);
+  struct Job {
+    Ring ring;
+    std::filesystem::path file;
+    std::optional<RecordingWriter> writer;
+    std::uint32_t next_block;
+  };
+
+  void look_at(const std::filesystem::path& file, const Ring* followed);
+  [[nodiscard]] Recorded<void> begin(Job& job);
+  [[nodiscard]] Recorded<void> write_some(Job& job);
+  void fail(Job& job, const std::string& reason);
 
   std::filesystem::path ring_;
   const RecordingFolder& folder_;
-  RecorderTerms terms_;
+  std::string build_;
   Tell tell_;
-  bool aside_ = false; /**< the newest dead kernel's ring, not an earlier one */
+  std::deque<Job> jobs_;
+  std::set<std::filesystem::path> told_; /**< names at which another release's ring was told */
   std::chrono::steady_clock::time_point retry_at_;
 };
 

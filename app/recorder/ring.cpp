@@ -76,6 +76,13 @@ Recorded<Ring> Ring::map(const std::filesystem::path& path) {
 Ring::Ring(Ring&& other) noexcept
     : file_(std::move(other.file_)), header_(std::exchange(other.header_, nullptr)), bytes_(other.bytes_) {}
 
+Ring& Ring::operator=(Ring&& other) noexcept {
+  std::swap(file_, other.file_);
+  std::swap(header_, other.header_);
+  std::swap(bytes_, other.bytes_);
+  return *this;
+}
+
 Ring::~Ring() {
   if (header_ != nullptr) {
     munmap(const_cast<ilk_ring_header_t*>(header_), bytes_);
@@ -90,6 +97,13 @@ std::uint32_t Ring::oldest() const {
 }
 
 bool Ring::closed() const { return acquired(header_->closed) != 0; }
+
+bool Ring::is_file(const std::filesystem::path& path) const {
+  struct stat own{};
+  struct stat there{};
+  return fstat(file_.get(), &own) == 0 && lstat(path.c_str(), &there) == 0 && own.st_dev == there.st_dev &&
+         own.st_ino == there.st_ino;
+}
 
 bool Ring::writer_lives() const {
   if (flock(file_.get(), LOCK_SH | LOCK_NB) != 0) {

@@ -44,7 +44,7 @@ class Ring {
   static bool left_by_another_release(const std::filesystem::path& file);
 
   Ring(Ring&& other) noexcept;
-  Ring& operator=(Ring&&) = delete;
+  Ring& operator=(Ring&& other) noexcept;
   ~Ring();
 
   [[nodiscard]] const ilk_run_description_t& run() const { return header_->run; }
@@ -57,6 +57,9 @@ class Ring {
 
   /** The kernel said that it ended in order. */
   [[nodiscard]] bool closed() const;
+
+  /** The ring's file stands at this path, and not another one by now. */
+  [[nodiscard]] bool is_file(const std::filesystem::path& path) const;
 
   /** The process that writes is there. */
   [[nodiscard]] bool writer_lives() const;

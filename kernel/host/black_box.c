@@ -2,6 +2,8 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/mman.h>
@@ -63,11 +65,21 @@ static int map_ring(ilk_black_box_t *box) {
   return 0;
 }
 
+/** Whatever the kernel before left keeps a name, until its recorder has it on the disk; one can wait. */
+static void make_way(const char *path) {
+  char before[PATH_MAX];
+  const int length = snprintf(before, sizeof before, "%s%s", path, ILK_RING_BEFORE);
+  if ((length > 0) && ((size_t)length < sizeof before)) {
+    (void)link(path, before);
+  }
+  (void)unlink(path);
+}
+
 bool ilk_black_box_create(ilk_black_box_t *box, const char *path, const ilk_black_box_terms_t *terms,
                           ilk_error_t *error) {
   const uint32_t blocks = blocks_for(terms->config->period_us, terms->seconds);
   *box = (ilk_black_box_t){.bytes = ILK_RING_HEADER_BYTES + ((size_t)blocks * ILK_BLOCK_BYTES)};
-  (void)unlink(path);
+  make_way(path);
   box->descriptor = open(path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, S_IRUSR | S_IWUSR);
   if (box->descriptor < 0) {
     return ilk_fail(error, "black box '%s' cannot be made: %s", path, strerror(errno));
@@ -77,9 +89,9 @@ bool ilk_black_box_create(ilk_black_box_t *box, const char *path, const ilk_blac
     (void)unlink(path);
     (void)close(box->descriptor);
     return ilk_fail(error,
-                    "black box '%s' of %u s needs %zu MiB of shared memory: %s; make room, or record fewer "
-                    "seconds",
-                    path, terms->seconds, box->bytes >> 20, strerror(reason));
+                    "black box '%s' of %u s needs %zu MiB of shared memory, beside '%s%s' if that is there: "
+                    "%s; make room, or record fewer seconds",
+                    path, terms->seconds, box->bytes >> 20, path, ILK_RING_BEFORE, strerror(reason));
   }
   describe(box->ring, terms, blocks);
   __atomic_store_n(&box->ring->magic, ILK_RING_MAGIC, __ATOMIC_RELEASE);

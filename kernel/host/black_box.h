@@ -41,7 +41,8 @@ typedef struct {
 } ilk_black_box_terms_t;
 
 /**
- * Makes the ring in a new file, which takes the place of an old one, with all its memory.
+ * Makes the ring in a new file, which takes the place of an old one, with all its memory. The old one keeps a
+ * second name, PATH with ILK_RING_BEFORE, unless an earlier one has that already.
  *
  * The file should lie in memory (/dev/shm): a disk could make the loop wait.
  */

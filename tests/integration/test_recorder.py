@@ -243,6 +243,7 @@ def test_killed_run_is_rescued_by_the_next_one(short_tmp_path: Path) -> None:
     killed.close()
     again = Stack(short_tmp_path, *arguments)
     try:
+        wait_for("rescued", lambda: any((again.state / "recordings").glob("*-rescue-*.ilkr")))
         (rescued,) = (again.state / "recordings").glob("*-rescue-*.ilkr")
         _, last = replayed_ticks(rescued)
         assert last >= seen
@@ -257,15 +258,14 @@ def test_last_ticks_that_the_disk_refused_are_written_out_later(recorded: Record
     kernel.recordings.rename(away)
     kernel.kernel.kill()
     kernel.kernel.wait()
-    unsaved = Path(f"{kernel.ring}.unsaved")
-    wait_for("the ring is set aside", unsaved.exists)
+    assert kernel.ring.exists()
     kernel.recorder.kill()
     kernel.recorder.wait()
     away.rename(kernel.recordings)
     kernel.recorder = kernel.start_recorder()
     _, last = replayed_ticks(kernel.wait_for_file("rescue"))
     assert last >= kernel.app.snapshot().state.tick
-    wait_for("the ring is gone", lambda: not unsaved.exists())
+    wait_for("the ring is gone", lambda: not kernel.ring.exists())
 
 
 def test_fault_of_an_axis_is_recorded_by_interlock_run(stack: StackFactory) -> None:

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <fstream>
@@ -228,29 +229,6 @@ TEST_F(RecorderTest, FullDiskIsToldAndTheKernelIsNotAsked) {
   EXPECT_THAT(told, ElementsAre(::testing::HasSubstr("cannot record")));
 }
 
-TEST_F(RecorderTest, EventThatTheDiskRefusedIsRecordedOnceItTakesIt) {
-  calm(1500);
-  fs::rename(folder_->path(), scratch_.file("away"));
-  run_.press_estop();
-  const std::uint32_t locked = run_.state().tick;
-  calm(1200);
-  EXPECT_FALSE(recorder_->finish());
-  fs::rename(scratch_.file("away"), folder_->path());
-  EXPECT_TRUE(recorder_->finish());
-  EXPECT_THAT(files(), ElementsAre("lock-" + std::to_string(locked) + ".ilkr"));
-  const ilk_replay_report_t report = replayed(file(ILK_RECORDED_ON_LOCK, locked));
-  EXPECT_TRUE(ilk_replay_is_identical(&report));
-  EXPECT_LE(report.replay.first_tick, locked - 1000);
-  EXPECT_EQ(report.replay.last_tick, run_.state().tick);
-}
-
-TEST_F(RecorderTest, LastTicksOfADeadKernelThatTheDiskRefusesAreNotTakenForKept) {
-  calm(100);
-  fs::remove_all(folder_->path());
-  run_.die();
-  EXPECT_FALSE(recorder_->finish());
-}
-
 /** The disk takes no file beyond this size; at the limit a block is written in part. */
 class FileSizeLimit {
  public:
@@ -271,6 +249,107 @@ class FileSizeLimit {
   rlimit before_{};
 };
 
+TEST_F(RecorderTest, EventThatTheDiskRefusedIsRecordedOnceItTakesIt) {
+  calm(1500);
+  fs::rename(folder_->path(), scratch_.file("away"));
+  run_.press_estop();
+  const std::uint32_t locked = run_.state().tick;
+  calm(1200);
+  EXPECT_FALSE(recorder_->finish());
+  fs::rename(scratch_.file("away"), folder_->path());
+  EXPECT_TRUE(recorder_->finish());
+  EXPECT_THAT(files(), ElementsAre("lock-" + std::to_string(locked) + ".ilkr"));
+  const ilk_replay_report_t report = replayed(file(ILK_RECORDED_ON_LOCK, locked));
+  EXPECT_TRUE(ilk_replay_is_identical(&report));
+  EXPECT_LE(report.replay.first_tick, locked - 1000);
+  EXPECT_EQ(report.replay.last_tick, run_.state().tick);
+}
+
+TEST_F(RecorderTest, EventWhoseTimeIsNotOverIsLeftUnfinishedForTheNextRecorder) {
+  calm(200);
+  run_.press_estop();
+  const std::uint32_t locked = run_.state().tick;
+  calm(300);
+  EXPECT_FALSE(recorder_->finish()) << "asked to end beside a living kernel";
+  EXPECT_THAT(files(), ElementsAre("lock-" + std::to_string(locked) + ".ilkr.part"));
+  recorder_.emplace(*ring_, *folder_, terms_, [](const std::string&) {});
+  calm(1200);
+  EXPECT_THAT(files(), ElementsAre("lock-" + std::to_string(locked) + ".ilkr"));
+  EXPECT_GE(replayed(file(ILK_RECORDED_ON_LOCK, locked)).replay.last_tick, locked + 1000);
+}
+
+TEST_F(RecorderTest, UnfinishedRecordingThatHoldsMoreThanTheRingIsKept) {
+  calm(1500);
+  run_.press_estop();
+  const std::uint32_t locked = run_.state().tick;
+  calm(300);
+  recorder_.reset();
+  while (*ring_->opening_tick(ring_->oldest()) < locked - 500) {
+    run_.calm(20);
+  }
+  recorder_.emplace(*ring_, *folder_, terms_, [](const std::string&) {});
+  recorder_->step();
+  run_.calm(20);
+  recorder_->step();
+  ASSERT_EQ(files().size(), 2U);
+  const ilk_replay_report_t unfinished = replayed(file(ILK_RECORDED_ON_LOCK, locked));
+  EXPECT_LE(unfinished.replay.first_tick, locked - 1000);
+  std::uint32_t last = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_->path())) {
+    EXPECT_EQ(entry.path().extension(), ".ilkr");
+    last = std::max(last, replayed(entry.path()).replay.last_tick);
+  }
+  EXPECT_GE(last, locked + 1000);
+}
+
+TEST_F(RecorderTest, RecordingWhoseFileIsRemovedWhileTheDiskIsFullIsWrittenAnew) {
+  calm(1500);
+  run_.press_estop();
+  const std::uint32_t locked = run_.state().tick;
+  calm(20);
+  const fs::path part = part_of(file(ILK_RECORDED_ON_LOCK, locked));
+  {
+    const FileSizeLimit full(fs::file_size(part) + 1000);
+    calm(800);
+    EXPECT_FALSE(recorder_->finish());
+    fs::remove(part);
+  }
+  calm(600);
+  EXPECT_TRUE(recorder_->finish());
+  const ilk_replay_report_t report = replayed(file(ILK_RECORDED_ON_LOCK, locked));
+  EXPECT_TRUE(ilk_replay_is_identical(&report));
+  EXPECT_LE(report.replay.first_tick, locked - 1000);
+  EXPECT_EQ(report.replay.last_tick, run_.state().tick);
+}
+
+TEST_F(RecorderTest, ContinuousRecordingThatTheDiskRefusedGoesOnWithTheBlockThatItRefused) {
+  terms_.continuous = true;
+  terms_.part_bytes = 600'000;
+  recorder_.emplace(*ring_, *folder_, terms_, [](const std::string&) {});
+  calm(1500);
+  fs::rename(folder_->path(), scratch_.file("away"));
+  calm(1500);
+  run_.press_estop();
+  calm(100);
+  EXPECT_FALSE(recorder_->finish());
+  fs::rename(scratch_.file("away"), folder_->path());
+  run_.close();
+  EXPECT_TRUE(recorder_->finish());
+  std::uint64_t ticks = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_->path())) {
+    EXPECT_EQ(entry.path().extension(), ".ilkr");
+    ticks += replayed(entry.path()).replay.ticks;
+  }
+  EXPECT_EQ(ticks, run_.state().tick);
+}
+
+TEST_F(RecorderTest, LastTicksOfADeadKernelThatTheDiskRefusesAreNotTakenForKept) {
+  calm(100);
+  fs::remove_all(folder_->path());
+  run_.die();
+  EXPECT_FALSE(recorder_->finish());
+}
+
 TEST_F(RecorderTest, RecordingThatTheDiskInterruptedGoesOnWithTheSameBlock) {
   calm(1500);
   run_.press_estop();
@@ -281,6 +360,7 @@ TEST_F(RecorderTest, RecordingThatTheDiskInterruptedGoesOnWithTheSameBlock) {
     calm(800);
     EXPECT_FALSE(recorder_->finish());
   }
+  calm(400);
   EXPECT_TRUE(recorder_->finish());
   const ilk_replay_report_t report = replayed(file(ILK_RECORDED_ON_LOCK, locked));
   EXPECT_TRUE(ilk_replay_is_identical(&report));

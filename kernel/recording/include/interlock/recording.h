@@ -112,6 +112,9 @@ typedef struct {
 
 #define ILK_RING_HEADER_BYTES 4096u
 
+/** After the name of a ring: the ring of the kernel before, until a recorder has it on the disk. */
+#define ILK_RING_BEFORE ".before"
+
 #ifndef __cplusplus
 _Static_assert(sizeof(ilk_picture_pairs_t) == ILK_PAIRS * sizeof(uint64_t), "pairs cover the picture");
 _Static_assert(sizeof(ilk_tick_record_t) % sizeof(uint64_t) == 0u, "changed pairs are aligned");

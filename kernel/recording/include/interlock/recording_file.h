@@ -23,7 +23,7 @@ typedef enum {
   ILK_RECORDED_ON_FAULT = 2, /**< an axis faulted */
   ILK_RECORDED_ON_DEMAND = 3,
   ILK_RECORDED_ON_END = 4,   /**< the kernel ended out of order */
-  ILK_RECORDED_ON_RESCUE = 5 /**< found in memory by the next start */
+  ILK_RECORDED_ON_RESCUE = 5 /**< found in memory: the kernel is dead, and not all was on the disk */
 } ilk_recorded_why_t;
 
 #define ILK_RECORDED_WHYS 6u
