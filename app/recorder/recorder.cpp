@@ -109,16 +109,24 @@ void Recorder::begin(ilk_recorded_why_t why, std::uint32_t tick, std::uint32_t f
     active_.emplace(std::move(recording));
     return;
   }
-  const bool ring_came_round = first_block > 1 && first_block == ring_.oldest();
-  if (ring_came_round && fs::exists(part_of(recording.file), ignored)) {
-    // Another recorder began it, with more than the ring still holds.
-    fs::rename(part_of(recording.file), recording.file, ignored);
-    recording.file = folder_.file(ring_.run(), why, ring_.opening_tick(first_block).value_or(tick));
-  }
+  set_aside(recording);
   folder_.make_room();
   if (create(recording)) {
     tell_("recording " + recording.file.string());
     active_.emplace(std::move(recording));
+  }
+}
+
+/** What is there under the name already was begun by another recorder: it goes once there is as much anew. */
+void Recorder::set_aside(Active& recording) const {
+  std::error_code error;
+  for (const fs::path& there : {part_of(recording.file), recording.file}) {
+    if (fs::exists(there, error)) {
+      const fs::path cut = folder_.cut_of(recording.file);
+      fs::rename(there, cut, error);
+      const bool ring_holds_all = recording.first_block > ring_.oldest() || recording.first_block <= 1;
+      recording.cut = !error && ring_holds_all ? std::optional(cut) : std::nullopt;
+    }
   }
 }
 
@@ -141,6 +149,7 @@ bool Recorder::resume() {
       return false;
     }
     active_->next_block = std::max(active_->first_block, ring_.oldest());
+    active_->cut.reset();
   }
   active_->refused = false;
   return true;
@@ -170,6 +179,7 @@ bool Recorder::append_next() {
   const std::uint32_t number = active_->next_block;
   const std::optional<BlockCopy> block = ring_.copy(number);
   if (!block) {
+    active_->cut.reset();
     active_->next_block = std::max(number + 1, ring_.oldest());
     tell_("the disk is too slow: lost blocks " + std::to_string(number) + " to " +
           std::to_string(active_->next_block - 1));
@@ -184,16 +194,14 @@ bool Recorder::append_next() {
   return true;
 }
 
-/** It goes on when the disk does not take all of it. */
+/** It goes on when the disk does not take all of it. The block that is being written is taken as far as it
+ * is. */
 void Recorder::end_recording() {
+  const std::uint32_t head = ring_.head();
   append_complete_blocks();
-  if (active_ && active_->next_block <= ring_.head() && !append_next()) {
-    return;
+  while (active_ && active_->next_block <= head && append_next()) {
   }
-  if (active_ && active_->writer && !(may_write() && resume() && active_->next_block > ring_.head())) {
-    return;
-  }
-  if (active_) {
+  if (active_ && active_->next_block > head && (!active_->writer || (may_write() && resume()))) {
     complete();
   }
 }
@@ -203,11 +211,18 @@ void Recorder::complete() {
     std::error_code error;
     fs::rename(part_of(active_->file), active_->file, error);
     if (error) {
+      // The newest block may have been copied while it was being written: it is asked for again.
       active_->refused = true;
+      if (active_->writer->take_back_last()) {
+        --active_->next_block;
+      }
       fail(active_->file.string() + ": " + error.message());
       return;
     }
     tell_(active_->file.string() + " is complete");
+    if (active_->cut) {
+      fs::remove(*active_->cut, error);
+    }
   }
   if (terms_.continuous) {
     continuous_next_ = active_->next_block;

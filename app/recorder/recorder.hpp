@@ -73,12 +73,15 @@ class Recorder {
     std::uint32_t next_block;
     std::optional<std::uint32_t> last_tick; /**< nothing: goes on */
     bool refused = false;                   /**< by the disk, when it was asked last */
+    std::optional<std::filesystem::path> cut =
+        std::nullopt; /**< what a recorder before had of it, until this has all of that */
   };
 
   void take_in(const TickHead& head);
   void event(ilk_recorded_why_t why, std::uint32_t tick);
   void begin_recording();
   void begin(ilk_recorded_why_t why, std::uint32_t tick, std::uint32_t first_block);
+  void set_aside(Active& recording) const;
   [[nodiscard]] bool create(Active& recording);
   [[nodiscard]] bool resume();
   void append_complete_blocks();

@@ -83,6 +83,8 @@ bool follow(Ring ring, const RecordingFolder& folder, const RecorderTerms& terms
 }
 
 int record(const Options& options) {
+  // A limit of file sizes is a disk that refuses, and no reason to end.
+  std::signal(SIGXFSZ, SIG_IGN);
   const FileHandle signals = end_signals();
   const Recorded<RecordingFolder> folder = RecordingFolder::open(options.folder, options.keep_mib << 20);
   if (!folder) {

@@ -30,10 +30,20 @@ struct Kept {
   fs::path file;
 };
 
+/** As far as the disk tells; going on with an iterator would throw where it does not. */
+std::vector<fs::directory_entry> entries_of(const fs::path& folder) {
+  std::vector<fs::directory_entry> found;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    found.push_back(*entry);
+  }
+  return found;
+}
+
 std::vector<Kept> finished_in(const fs::path& folder) {
   std::vector<Kept> found;
   std::error_code ignored;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+  for (const fs::directory_entry& entry : entries_of(folder)) {
     if (entry.path().extension() == finished_ending && entry.is_regular_file(ignored)) {
       found.push_back({entry.last_write_time(ignored), entry.file_size(ignored), entry.path()});
     }
@@ -61,7 +71,7 @@ fs::path RecordingFolder::file(const ilk_run_description_t& run, ilk_recorded_wh
 void RecordingFolder::finish_parts(const ilk_run_description_t* going_on) const {
   const std::string kept = going_on == nullptr ? "" : compact_time(joined(going_on->begun_utc_ms)) + '-';
   std::error_code ignored;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder_, ignored)) {
+  for (const fs::directory_entry& entry : entries_of(folder_)) {
     fs::path finished = entry.path();
     finished.replace_extension();
     const bool is_kept = going_on != nullptr && entry.path().filename().string().starts_with(kept);
@@ -70,6 +80,15 @@ void RecordingFolder::finish_parts(const ilk_run_description_t* going_on) const 
       fs::rename(entry.path(), finished, ignored);
     }
   }
+}
+
+fs::path RecordingFolder::cut_of(const fs::path& file) {
+  std::error_code ignored;
+  fs::path cut;
+  for (int n = 1; cut.empty() || fs::exists(cut, ignored); ++n) {
+    cut = file.parent_path() / (file.stem().string() + "-cut-" + std::to_string(n) + finished_ending);
+  }
+  return cut;
 }
 
 void RecordingFolder::make_room() const {

@@ -27,6 +27,9 @@ class RecordingFolder {
    * the run that is still going on, if one is. */
   void finish_parts(const ilk_run_description_t* going_on) const;
 
+  /** A free name for what was cut off of a recording: NAME-cut-N.ilkr. */
+  [[nodiscard]] static std::filesystem::path cut_of(const std::filesystem::path& file);
+
   /** Removes the oldest finished recordings until those left are within the limit. */
   void make_room() const;
 

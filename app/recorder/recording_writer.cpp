@@ -64,12 +64,19 @@ bool RecordingWriter::reopen() {
     return false;
   }
   file_ = std::move(file);
-  return true;
+  return ftruncate(file_.get(), static_cast<off_t>(bytes_)) == 0;
+}
+
+bool RecordingWriter::take_back_last() {
+  const bool is_there = last_bytes_ > 0;
+  bytes_ -= std::exchange(last_bytes_, 0);
+  return is_there;
 }
 
 Recorded<void> RecordingWriter::append(const BlockCopy& block) {
   const std::vector<std::uint32_t> words = encoded(block);
-  return write(words.data(), words.size() * sizeof words.front());
+  const std::uint64_t before = bytes_;
+  return write(words.data(), words.size() * sizeof words.front()).map([&] { last_bytes_ = bytes_ - before; });
 }
 
 Recorded<void> RecordingWriter::write(const void* bytes, std::size_t count) {

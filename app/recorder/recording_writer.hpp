@@ -32,6 +32,9 @@ class RecordingWriter {
   /** Appends a block; it is on the disk when this returns. After a failure nothing of it is in the file. */
   Recorded<void> append(const BlockCopy& block);
 
+  /** Takes back the block that was appended last; false when that was done, or none was. */
+  bool take_back_last();
+
   /** Takes the file up again after a failure; false when it is not there as it was left. */
   [[nodiscard]] bool reopen();
 
@@ -46,6 +49,7 @@ class RecordingWriter {
   FileHandle file_;
   std::string name_;
   std::uint64_t bytes_ = 0;
+  std::uint64_t last_bytes_ = 0; /**< of the block that was appended last */
 };
 
 }  // namespace interlock::recorder

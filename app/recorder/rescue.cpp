@@ -70,12 +70,15 @@ void Rescue::step() {
   }
 }
 
-/** Begins the file, if it has not begun, and all of the ring has room on the disk. */
+/** Begins the file, if it has not begun, and all of the ring has room on the disk. One that is there is half
+ * of it. */
 Recorded<void> Rescue::begin(Job& job) {
   if (job.writer) {
     return {};
   }
   folder_.make_room();
+  std::error_code none;
+  fs::remove(job.file, none);
   const std::uint32_t first = job.ring.oldest();
   const std::uintmax_t needed = std::uintmax_t{job.ring.head() - first + 1} * ILK_BLOCK_BYTES;
   std::error_code error;
@@ -114,21 +117,29 @@ Recorded<void> Rescue::write_some(Job& job) {
   return {};
 }
 
-/** Half of a ring would only take the room of what else is to be recorded. */
+/** Half of a ring would only take the room of what else is to be recorded. The next one may be smaller. */
 void Rescue::fail(Job& job, const std::string& reason) {
   std::error_code ignored;
   job.writer.reset();
   fs::remove(part_of(job.file), ignored);
   tell_("cannot record what a dead kernel left, and keep it in memory: " + reason);
   retry_at_ = std::chrono::steady_clock::now() + pause_after_failure;
+  std::ranges::rotate(jobs_, jobs_.begin() + 1);
 }
 
 void Rescue::let_go(const Ring& ring) const {
+  const fs::path gone = ring_.string() + ".gone";
   for (const fs::path& file : names_of(ring_)) {
-    std::error_code ignored;
-    if (ring.is_file(file)) {
-      fs::remove(file, ignored);
+    std::error_code error;
+    if (!ring.is_file(file)) {
+      continue;
     }
+    // A kernel may take the name between the look and the removal: then it gets it back.
+    fs::rename(file, gone, error);
+    if (!error && !ring.is_file(gone)) {
+      fs::create_hard_link(gone, file, error);
+    }
+    fs::remove(gone, error);
   }
 }
 

@@ -2,8 +2,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <limits.h>
-#include <stdio.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/mman.h>
@@ -12,6 +10,7 @@
 #include "clock.h"
 
 #define US_PER_S 1000000u
+#define NAME_BYTES 4096u
 #define SPARE_BLOCKS 2u
 #define WORDS_A_PAIR (sizeof(uint64_t) / sizeof(uint32_t))
 #define HEAD_PAIRS (sizeof(ilk_tick_record_t) / sizeof(uint64_t))
@@ -65,36 +64,73 @@ static int map_ring(ilk_black_box_t *box) {
   return 0;
 }
 
-/** Whatever the kernel before left keeps a name, until its recorder has it on the disk; one can wait. */
-static void make_way(const char *path) {
-  char before[PATH_MAX];
-  const int length = snprintf(before, sizeof before, "%s%s", path, ILK_RING_BEFORE);
-  if ((length > 0) && ((size_t)length < sizeof before)) {
-    (void)link(path, before);
+static bool name_beside(char name[NAME_BYTES], const char *path, const char *ending) {
+  const size_t length = strlen(path);
+  const size_t more = strlen(ending) + 1u;
+  const bool fits = (length + more) <= NAME_BYTES;
+  if (fits) {
+    (void)memcpy(name, path, length);
+    (void)memcpy(&name[length], ending, more);
   }
-  (void)unlink(path);
+  return fits;
+}
+
+static bool is_of_a_living_kernel(const char *path) {
+  const int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+  const bool held = (descriptor >= 0) && (flock(descriptor, LOCK_SH | LOCK_NB) != 0);
+  if (descriptor >= 0) {
+    (void)close(descriptor);
+  }
+  return held;
+}
+
+/** Makes the ring under another name; 0 or the reason. */
+static int make_ring(ilk_black_box_t *box, const char *making) {
+  (void)unlink(making);
+  box->descriptor = open(making, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, S_IRUSR | S_IWUSR);
+  if (box->descriptor < 0) {
+    return errno;
+  }
+  const int reason = map_ring(box);
+  if (reason != 0) {
+    (void)unlink(making);
+    (void)close(box->descriptor);
+  }
+  return reason;
 }
 
 bool ilk_black_box_create(ilk_black_box_t *box, const char *path, const ilk_black_box_terms_t *terms,
                           ilk_error_t *error) {
+  char making[NAME_BYTES];
+  char before[NAME_BYTES];
   const uint32_t blocks = blocks_for(terms->config->period_us, terms->seconds);
   *box = (ilk_black_box_t){.bytes = ILK_RING_HEADER_BYTES + ((size_t)blocks * ILK_BLOCK_BYTES)};
-  make_way(path);
-  box->descriptor = open(path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, S_IRUSR | S_IWUSR);
-  if (box->descriptor < 0) {
-    return ilk_fail(error, "black box '%s' cannot be made: %s", path, strerror(errno));
+  if (!name_beside(making, path, ILK_RING_MAKING) || !name_beside(before, path, ILK_RING_BEFORE)) {
+    return ilk_fail(error, "black box '%s': the name is too long", path);
   }
-  const int reason = map_ring(box);
+  if (is_of_a_living_kernel(path)) {
+    return ilk_fail(error, "black box '%s' is that of a kernel that runs; stop it, or choose another file",
+                    path);
+  }
+  const int reason = make_ring(box, making);
   if (reason != 0) {
-    (void)unlink(path);
-    (void)close(box->descriptor);
-    return ilk_fail(error,
-                    "black box '%s' of %u s needs %zu MiB of shared memory, beside '%s%s' if that is there: "
-                    "%s; make room, or record fewer seconds",
-                    path, terms->seconds, box->bytes >> 20, path, ILK_RING_BEFORE, strerror(reason));
+    return ilk_fail(
+        error,
+        "black box '%s' of %u s needs %zu MiB of shared memory, beside '%s' if that is there: %s; "
+        "make room, or record fewer seconds",
+        path, terms->seconds, box->bytes >> 20, before, strerror(reason));
   }
   describe(box->ring, terms, blocks);
   __atomic_store_n(&box->ring->magic, ILK_RING_MAGIC, __ATOMIC_RELEASE);
+  // What the kernel before left keeps a name until a recorder has it on the disk; one can wait.
+  (void)link(path, before);
+  (void)unlink(path);
+  const bool named = link(making, path) == 0;
+  (void)unlink(making);
+  if (!named) {
+    (void)close(box->descriptor);
+    return ilk_fail(error, "black box '%s' cannot be made: %s", path, strerror(errno));
+  }
   return true;
 }
 

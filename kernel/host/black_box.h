@@ -41,8 +41,9 @@ typedef struct {
 } ilk_black_box_terms_t;
 
 /**
- * Makes the ring in a new file, which takes the place of an old one, with all its memory. The old one keeps a
- * second name, PATH with ILK_RING_BEFORE, unless an earlier one has that already.
+ * Makes the ring in a new file, with all its memory, which takes the place of an old one once it is whole.
+ * The old one keeps a second name, PATH with ILK_RING_BEFORE, unless an earlier one has that already. That of
+ * a kernel that lives is refused.
  *
  * The file should lie in memory (/dev/shm): a disk could make the loop wait.
  */

@@ -292,14 +292,26 @@ TEST_F(RecorderTest, UnfinishedRecordingThatHoldsMoreThanTheRingIsKept) {
   run_.calm(20);
   recorder_->step();
   ASSERT_EQ(files().size(), 2U);
-  const ilk_replay_report_t unfinished = replayed(file(ILK_RECORDED_ON_LOCK, locked));
-  EXPECT_LE(unfinished.replay.first_tick, locked - 1000);
-  std::uint32_t last = 0;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder_->path())) {
-    EXPECT_EQ(entry.path().extension(), ".ilkr");
-    last = std::max(last, replayed(entry.path()).replay.last_tick);
-  }
-  EXPECT_GE(last, locked + 1000);
+  const fs::path whole = file(ILK_RECORDED_ON_LOCK, locked);
+  const ilk_replay_report_t cut = replayed(whole.parent_path() / (whole.stem().string() + "-cut-1.ilkr"));
+  EXPECT_LE(cut.replay.first_tick, locked - 1000);
+  EXPECT_GE(replayed(whole).replay.last_tick, locked + 1000);
+}
+
+// The newest block was copied while it was being written, and stood for the whole one.
+TEST_F(RecorderTest, RecordingThatCannotGetItsNameYetHasNoHole) {
+  calm(1500);
+  run_.press_estop();
+  const std::uint32_t locked = run_.state().tick;
+  calm(500);
+  fs::rename(folder_->path(), scratch_.file("away"));
+  calm(1500);
+  fs::rename(scratch_.file("away"), folder_->path());
+  EXPECT_TRUE(recorder_->finish());
+  const ilk_replay_report_t report = replayed(file(ILK_RECORDED_ON_LOCK, locked));
+  EXPECT_TRUE(ilk_replay_is_identical(&report));
+  EXPECT_EQ(report.replay.gaps, 0U);
+  EXPECT_GE(report.replay.last_tick, locked + 1000);
 }
 
 TEST_F(RecorderTest, RecordingWhoseFileIsRemovedWhileTheDiskIsFullIsWrittenAnew) {

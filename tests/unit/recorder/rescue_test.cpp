@@ -95,6 +95,21 @@ TEST_F(RescueTest, RingOfALivingKernelIsNeverTakenUnderAnyName) {
   EXPECT_TRUE(fs::exists(before_));
 }
 
+TEST_F(RescueTest, KernelRefusesTheRingOfOneThatLives) {
+  RecordedRun living(ring_file_, 1, 4);
+  living.calm(20);
+  const ilk_config_t config{.period_us = 1000};
+  const ilk_black_box_terms_t terms{&config, ILK_CLOCK_SIM, true, 1};
+  const auto second = std::make_unique<ilk_black_box_t>();
+  ilk_error_t error{};
+  EXPECT_FALSE(ilk_black_box_create(second.get(), ring_file_.c_str(), &terms, &error));
+  EXPECT_THAT(error.text, HasSubstr("a kernel that runs"));
+  living.calm(20);
+  const Recorded<Ring> ring = Ring::open(ring_file_);
+  ASSERT_TRUE(ring) << ring.error();
+  EXPECT_TRUE(ring->writer_lives());
+}
+
 TEST_F(RescueTest, KernelThatStartsLeavesTheRingBeforeAName) {
   RecordedRun living(ring_file_, 1, 4);
   living.calm(20);

@@ -115,6 +115,9 @@ typedef struct {
 /** After the name of a ring: the ring of the kernel before, until a recorder has it on the disk. */
 #define ILK_RING_BEFORE ".before"
 
+/** After the name of a ring that a kernel is making: what stands under the name itself is always whole. */
+#define ILK_RING_MAKING ".making"
+
 #ifndef __cplusplus
 _Static_assert(sizeof(ilk_picture_pairs_t) == ILK_PAIRS * sizeof(uint64_t), "pairs cover the picture");
 _Static_assert(sizeof(ilk_tick_record_t) % sizeof(uint64_t) == 0u, "changed pairs are aligned");
