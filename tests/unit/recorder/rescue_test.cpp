@@ -98,7 +98,8 @@ TEST_F(RescueTest, RingOfALivingKernelIsNeverTakenUnderAnyName) {
 TEST_F(RescueTest, KernelRefusesTheRingOfOneThatLives) {
   RecordedRun living(ring_file_, 1, 4);
   living.calm(20);
-  const ilk_config_t config{.period_us = 1000};
+  ilk_config_t config{};
+  config.period_us = 1000;
   const ilk_black_box_terms_t terms{&config, ILK_CLOCK_SIM, true, 1};
   const auto second = std::make_unique<ilk_black_box_t>();
   ilk_error_t error{};
