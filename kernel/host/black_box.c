@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/mman.h>
@@ -124,10 +125,7 @@ bool ilk_black_box_create(ilk_black_box_t *box, const char *path, const ilk_blac
   __atomic_store_n(&box->ring->magic, ILK_RING_MAGIC, __ATOMIC_RELEASE);
   // What the kernel before left keeps a name until a recorder has it on the disk; one can wait.
   (void)link(path, before);
-  (void)unlink(path);
-  const bool named = link(making, path) == 0;
-  (void)unlink(making);
-  if (!named) {
+  if (rename(making, path) != 0) {
     (void)close(box->descriptor);
     return ilk_fail(error, "black box '%s' cannot be made: %s", path, strerror(errno));
   }
