@@ -154,8 +154,12 @@ def test_killed_recorder_loses_nothing(recorded: RecordedKernelFactory) -> None:
     assert not kernel.files("lock")
     kernel.app.run(2000)
     kernel.recorder = kernel.start_recorder()
-    file = kernel.wait_for_file("lock")
-    assert file.name.endswith(f"-lock-{locked}.ilkr")
+    whole = f"-lock-{locked}.ilkr"
+    wait_for(
+        "the recording, and nothing else",
+        lambda: [file.name.endswith(whole) for file in kernel.files("lock")] == [True],
+    )
+    [file] = kernel.files("lock")
     first, last = replayed_ticks(file)
     assert first <= locked
     assert locked + 2000 <= last
