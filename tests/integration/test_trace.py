@@ -15,6 +15,7 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "verification/trace"))
 
+import documents
 import exporter
 import figures
 import gate
@@ -149,8 +150,8 @@ def test_a_planted_defect_turns_the_gate_red_by_its_rule(
 ) -> None:
     defect = read_defect(path)
     tree.plant(defect)
-    documents = any(change["file"].endswith(".sdoc") for change in defect.get("change", []))
-    items, printed = tree.stated() if documents else clean
+    stated_anew = any(change["file"].endswith(".sdoc") for change in defect.get("change", []))
+    items, printed = tree.stated() if stated_anew else clean
     # A changed text is suspect by itself; only the defects of G8 are about that.
     changed = any(one.startswith("G8") for one in defect["finds"])
     reviews = reviewed(clean[0] if changed else items)
@@ -372,6 +373,16 @@ def test_a_measurement_counts_for_its_commit_and_while_its_inputs_are_the_same(t
     assert campaign(tree, log="campaign").log == "build/evidence/campaign"
     assert campaign(tree, tool=None).status == "UNKNOWN"
     assert campaign(tree, figures={"faults": 2}).status == "UNKNOWN"
+
+
+# StrictDoc refuses an item that says nothing: a measurement that was broken off ended the report.
+def test_a_measurement_without_figures_is_told_as_such(tree: Tree, clean: tuple[Items, str]) -> None:
+    tree.measure("campaign", status="FAILED", figures={})
+    source = Source(tree.path, "built", lambda _: False)
+    project = read_project(source, clean, RUNGS, [LIBC], [replace(CAMPAIGN, least={})])
+    told = documents.results(gate.trace(project))
+    assert "UID: CAMPAIGN" in told
+    assert "STATEMENT: no figures" in told
 
 
 def test_a_long_measurement_is_awaited_where_only_a_release_demands_it(tree: Tree) -> None:

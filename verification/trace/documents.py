@@ -77,7 +77,7 @@ def results(of: Trace) -> str:
             ("COMMIT", result.commit or "unknown"),
             ("DATE", result.date or "unknown"),
             ("LOG", result.log),
-            ("STATEMENT", result.bounds),
+            ("STATEMENT", result.bounds or "no figures"),
         ]
         function = result.function.rpartition(":")[2]
         place = [source_file(result.place, function)] if (of.project.root / result.place).is_file() else []
