@@ -17,6 +17,13 @@ describe("mergeLines", () => {
     expect(merged.map(({ sequence }) => sequence)).toEqual([1, 2, 3, 4]);
   });
 
+  // An answer that was asked for before came after the stream had told who acknowledged, and took it back.
+  it("keeps an acknowledgement that an older answer does not know", () => {
+    const told = { ...line(1, "warning"), acknowledged: { user: "admin", time: "2026-01-01T00:00:01Z" } };
+    expect(mergeLines([told], [line(1, "warning")])).toEqual([told]);
+    expect(mergeLines([line(1, "warning")], [told])).toEqual([told]);
+  });
+
   it("keeps the newest lines when there are too many", () => {
     const many = Array.from({ length: MOST_LINES + 3 }, (_, index) => line(index));
     const merged = mergeLines(many, []);

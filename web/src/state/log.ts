@@ -6,9 +6,17 @@ export const MOST_LINES = 500;
 /** By rising weight. */
 export const levels: readonly LogLevel[] = ["debug", "info", "warning", "error", "critical"];
 
-/** Both lists by rising sequence, each line once; the newest stay. */
+/**
+ * Both lists by rising sequence, each line once; the newest stay. Nobody takes an acknowledgement back, so a line
+ * that has one is newer than the same line without, whichever came last.
+ */
 export function mergeLines(known: readonly LogLine[], more: readonly LogLine[]): readonly LogLine[] {
-  const bySequence = new Map([...known, ...more].map((line) => [line.sequence, line]));
+  const bySequence = new Map(known.map((line) => [line.sequence, line]));
+  for (const line of more) {
+    if (line.acknowledged !== null || !bySequence.get(line.sequence)?.acknowledged) {
+      bySequence.set(line.sequence, line);
+    }
+  }
   return [...bySequence.values()].sort((a, b) => a.sequence - b.sequence).slice(-MOST_LINES);
 }
 
