@@ -55,7 +55,7 @@ Result<void> record(const RecordOptions& options, const Installation& installati
   const recorder::RecordingSubject subject{ILK_RECORDED_ON_DEMAND, tick,
                                            std::string(version()) + ' ' + std::string(commit())};
   const recorder::Recorded<std::uint32_t> blocks =
-      recorder::record_now(*ring, fs::absolute(file), subject, ring->block_before(tick, options.seconds));
+      recorder::record_now(*ring, fs::absolute(file), subject, options.seconds);
   if (!blocks) {
     return failed(ExitCode::precondition, blocks.error());
   }

@@ -102,8 +102,11 @@ void Recorder::begin(ilk_recorded_why_t why, std::uint32_t tick, std::uint32_t f
   if (!may_write()) {
     return;
   }
-  Active recording{why,         tick,        folder_.file(ring_.run(), why, tick), std::nullopt, first_block,
-                   first_block, std::nullopt};
+  Active recording{.why = why,
+                   .tick = tick,
+                   .file = folder_.file(ring_.run(), why, tick),
+                   .first_block = first_block,
+                   .next_block = first_block};
   std::error_code ignored;
   if (why != ILK_RECORDED_CONTINUOUSLY && fs::exists(recording.file, ignored)) {
     active_.emplace(std::move(recording));
@@ -122,7 +125,7 @@ void Recorder::set_aside(Active& recording) const {
   std::error_code error;
   for (const fs::path& there : {part_of(recording.file), recording.file}) {
     if (fs::exists(there, error)) {
-      const fs::path cut = folder_.cut_of(recording.file);
+      const fs::path cut = cut_of(recording.file);
       fs::rename(there, cut, error);
       const bool ring_holds_all = recording.first_block > ring_.oldest() || recording.first_block <= 1;
       recording.cut = !error && ring_holds_all ? std::optional(cut) : std::nullopt;
@@ -236,14 +239,14 @@ void Recorder::fail(const std::string& reason) {
 }
 
 Recorded<std::uint32_t> record_now(const Ring& ring, const fs::path& file, const RecordingSubject& subject,
-                                   std::uint32_t first_block) {
+                                   std::uint32_t seconds) {
   Recorded<RecordingWriter> writer = RecordingWriter::create(file, ring.run(), subject);
   if (!writer) {
     return tl::unexpected(writer.error());
   }
   const std::uint32_t last = ring.head();
   std::uint32_t blocks = 0;
-  for (std::uint32_t number = first_block; number <= last; ++number) {
+  for (std::uint32_t number = ring.block_before(subject.tick, seconds); number <= last; ++number) {
     const std::optional<BlockCopy> block = ring.copy(number);
     if (const Recorded<void> appended = block ? writer->append(*block) : Recorded<void>(); !appended) {
       std::error_code ignored;

@@ -68,13 +68,15 @@ class Recorder {
     ilk_recorded_why_t why;
     std::uint32_t tick;
     std::filesystem::path file;
-    std::optional<RecordingWriter> writer;
+    std::optional<RecordingWriter> writer = std::nullopt;
     std::uint32_t first_block;
     std::uint32_t next_block;
-    std::optional<std::uint32_t> last_tick; /**< nothing: goes on */
-    bool refused = false;                   /**< by the disk, when it was asked last */
-    std::optional<std::filesystem::path> cut =
-        std::nullopt; /**< what a recorder before had of it, until this has all of that */
+    /** Nothing: goes on. */
+    std::optional<std::uint32_t> last_tick = std::nullopt;
+    /** By the disk, when it was asked last. */
+    bool refused = false;
+    /** What a recorder before had of it, until this has all of that. */
+    std::optional<std::filesystem::path> cut = std::nullopt;
   };
 
   void take_in(const TickHead& head);
@@ -104,8 +106,8 @@ class Recorder {
   std::chrono::steady_clock::time_point retry_at_; /**< after the disk refused */
 };
 
-/** Writes a ring from that block on into a new file; returns how many blocks. */
+/** Writes the newest `seconds` of kernel time into a new file; returns how many blocks. */
 Recorded<std::uint32_t> record_now(const Ring& ring, const std::filesystem::path& file,
-                                   const RecordingSubject& subject, std::uint32_t first_block);
+                                   const RecordingSubject& subject, std::uint32_t seconds);
 
 }  // namespace interlock::recorder

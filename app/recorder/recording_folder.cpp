@@ -82,15 +82,6 @@ void RecordingFolder::finish_parts(const ilk_run_description_t* going_on) const 
   }
 }
 
-fs::path RecordingFolder::cut_of(const fs::path& file) {
-  std::error_code ignored;
-  fs::path cut;
-  for (int n = 1; cut.empty() || fs::exists(cut, ignored); ++n) {
-    cut = file.parent_path() / (file.stem().string() + "-cut-" + std::to_string(n) + finished_ending);
-  }
-  return cut;
-}
-
 void RecordingFolder::make_room() const {
   const std::vector<Kept> kept = finished_in(folder_);
   std::uintmax_t bytes = 0;
@@ -113,6 +104,15 @@ std::string recording_name(const ilk_run_description_t& run, ilk_recorded_why_t 
 }
 
 fs::path part_of(const fs::path& file) { return file.string() + part_ending; }
+
+fs::path cut_of(const fs::path& file) {
+  std::error_code ignored;
+  fs::path cut;
+  for (int n = 1; cut.empty() || fs::exists(cut, ignored); ++n) {
+    cut = file.parent_path() / (file.stem().string() + "-cut-" + std::to_string(n) + finished_ending);
+  }
+  return cut;
+}
 
 std::string why_name(std::uint32_t why) {
   constexpr std::array names{"continuous", "lock", "fault", "demand", "end", "rescue"};

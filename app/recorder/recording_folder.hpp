@@ -27,9 +27,6 @@ class RecordingFolder {
    * the run that is still going on, if one is. */
   void finish_parts(const ilk_run_description_t* going_on) const;
 
-  /** A free name for what was cut off of a recording: NAME-cut-N.ilkr. */
-  [[nodiscard]] static std::filesystem::path cut_of(const std::filesystem::path& file);
-
   /** Removes the oldest finished recordings until those left are within the limit. */
   void make_room() const;
 
@@ -48,6 +45,9 @@ std::string recording_name(const ilk_run_description_t& run, ilk_recorded_why_t 
 
 /** The file while it is being written. */
 std::filesystem::path part_of(const std::filesystem::path& file);
+
+/** A free name for what was cut off of a recording: NAME-cut-N.ilkr. */
+std::filesystem::path cut_of(const std::filesystem::path& file);
 
 /** "lock", "fault" ...: as in the names of files. */
 std::string why_name(std::uint32_t why);

@@ -124,7 +124,8 @@ void Rescue::fail(Job& job, const std::string& reason) {
   fs::remove(part_of(job.file), ignored);
   tell_("cannot record what a dead kernel left, and keep it in memory: " + reason);
   retry_at_ = std::chrono::steady_clock::now() + pause_after_failure;
-  std::ranges::rotate(jobs_, jobs_.begin() + 1);
+  jobs_.push_back(std::move(job));
+  jobs_.pop_front();
 }
 
 void Rescue::let_go(const Ring& ring) const {

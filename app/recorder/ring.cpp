@@ -76,13 +76,6 @@ Recorded<Ring> Ring::map(const std::filesystem::path& path) {
 Ring::Ring(Ring&& other) noexcept
     : file_(std::move(other.file_)), header_(std::exchange(other.header_, nullptr)), bytes_(other.bytes_) {}
 
-Ring& Ring::operator=(Ring&& other) noexcept {
-  std::swap(file_, other.file_);
-  std::swap(header_, other.header_);
-  std::swap(bytes_, other.bytes_);
-  return *this;
-}
-
 Ring::~Ring() {
   if (header_ != nullptr) {
     munmap(const_cast<ilk_ring_header_t*>(header_), bytes_);

@@ -44,7 +44,7 @@ class Ring {
   static bool left_by_another_release(const std::filesystem::path& file);
 
   Ring(Ring&& other) noexcept;
-  Ring& operator=(Ring&& other) noexcept;
+  Ring& operator=(Ring&&) = delete;
   ~Ring();
 
   [[nodiscard]] const ilk_run_description_t& run() const { return header_->run; }

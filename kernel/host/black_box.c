@@ -85,21 +85,6 @@ static bool is_of_a_living_kernel(const char *path) {
   return held;
 }
 
-/** Makes the ring under another name; 0 or the reason. */
-static int make_ring(ilk_black_box_t *box, const char *making) {
-  (void)unlink(making);
-  box->descriptor = open(making, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, S_IRUSR | S_IWUSR);
-  if (box->descriptor < 0) {
-    return errno;
-  }
-  const int reason = map_ring(box);
-  if (reason != 0) {
-    (void)unlink(making);
-    (void)close(box->descriptor);
-  }
-  return reason;
-}
-
 bool ilk_black_box_create(ilk_black_box_t *box, const char *path, const ilk_black_box_terms_t *terms,
                           ilk_error_t *error) {
   char making[NAME_BYTES];
@@ -113,8 +98,15 @@ bool ilk_black_box_create(ilk_black_box_t *box, const char *path, const ilk_blac
     return ilk_fail(error, "black box '%s' is that of a kernel that runs; stop it, or choose another file",
                     path);
   }
-  const int reason = make_ring(box, making);
+  (void)unlink(making);
+  box->descriptor = open(making, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, S_IRUSR | S_IWUSR);
+  if (box->descriptor < 0) {
+    return ilk_fail(error, "black box '%s' cannot be made: %s", path, strerror(errno));
+  }
+  const int reason = map_ring(box);
   if (reason != 0) {
+    (void)unlink(making);
+    (void)close(box->descriptor);
     return ilk_fail(
         error,
         "black box '%s' of %u s needs %zu MiB of shared memory, beside '%s' if that is there: %s; "
@@ -126,8 +118,10 @@ bool ilk_black_box_create(ilk_black_box_t *box, const char *path, const ilk_blac
   // What the kernel before left keeps a name until a recorder has it on the disk; one can wait.
   (void)link(path, before);
   if (rename(making, path) != 0) {
+    const int refused = errno;
+    (void)unlink(making);
     (void)close(box->descriptor);
-    return ilk_fail(error, "black box '%s' cannot be made: %s", path, strerror(errno));
+    return ilk_fail(error, "black box '%s' cannot be made: %s", path, strerror(refused));
   }
   return true;
 }

@@ -3,6 +3,8 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <cstdio>
+#include <memory>
 #include <numeric>
 #include <span>
 #include <stdexcept>
@@ -26,6 +28,17 @@ void create_box(ilk_black_box_t& box, const std::filesystem::path& ring, const i
   if (!ilk_black_box_create(&box, ring.c_str(), &terms, &error)) {
     throw std::runtime_error(error.text);
   }
+}
+
+ilk_replay_report_t replayed(const std::filesystem::path& path) {
+  const std::unique_ptr<FILE, int (*)(FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+  const auto recording = std::make_unique<ilk_recording_t>();
+  if (!file || ilk_recording_begin(recording.get(), file.get()) != ILK_HEADER_GOOD) {
+    throw std::runtime_error(path.string() + " is no recording");
+  }
+  ilk_replay_report_t report{};
+  ilk_replay_recording(recording.get(), &report, nullptr, nullptr);
+  return report;
 }
 
 RecordedRun::RecordedRun(const std::filesystem::path& ring, std::uint32_t seed, std::uint32_t seconds) {

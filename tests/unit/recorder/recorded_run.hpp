@@ -9,6 +9,7 @@
 
 #include "black_box.h"
 #include "interlock/kernel.h"
+#include "interlock/replay.h"
 
 extern "C" {
 #include "world.h"
@@ -86,5 +87,8 @@ class RecordedRun {
 /// Fails the test with the reason.
 void create_box(ilk_black_box_t& box, const std::filesystem::path& ring, const ilk_config_t& config,
                 std::uint32_t seconds);
+
+/// What a replay of the whole recording comes to; throws for a file that is none.
+ilk_replay_report_t replayed(const std::filesystem::path& path);
 
 }  // namespace interlock::recorder_test

@@ -6,14 +6,11 @@
 
 #include <algorithm>
 #include <csignal>
-#include <cstdio>
 #include <fstream>
-#include <memory>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "interlock/replay.h"
 #include "recorded_run.hpp"
 
 namespace interlock::recorder {
@@ -21,19 +18,11 @@ namespace {
 
 namespace fs = std::filesystem;
 using recorder_test::RecordedRun;
+using recorder_test::replayed;
 using recorder_test::ScratchFolder;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::UnorderedElementsAre;
-
-ilk_replay_report_t replayed(const fs::path& path) {
-  const std::unique_ptr<FILE, int (*)(FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
-  const auto recording = std::make_unique<ilk_recording_t>();
-  ilk_replay_report_t report{};
-  EXPECT_EQ(ilk_recording_begin(recording.get(), file.get()), ILK_HEADER_GOOD) << path;
-  ilk_replay_recording(recording.get(), &report, nullptr, nullptr);
-  return report;
-}
 
 /** A kernel that is calm until the test makes something happen, and its recorder: 1 s before, 0 s after. */
 class RecorderTest : public ::testing::Test {
@@ -185,8 +174,7 @@ TEST_F(RecorderTest, WholeBlocksOfAContinuousRecordingAreInTheFileAtOnce) {
 TEST_F(RecorderTest, DemandKeepsTheNewestSeconds) {
   calm(3000);
   const Recorded<std::uint32_t> blocks =
-      record_now(*ring_, scratch_.file("now.ilkr"), {ILK_RECORDED_ON_DEMAND, run_.state().tick, "test"},
-                 ring_->block_before(run_.state().tick, 1));
+      record_now(*ring_, scratch_.file("now.ilkr"), {ILK_RECORDED_ON_DEMAND, run_.state().tick, "test"}, 1);
   ASSERT_TRUE(blocks);
   const ilk_replay_report_t report = replayed(scratch_.file("now.ilkr"));
   EXPECT_TRUE(ilk_replay_is_identical(&report));

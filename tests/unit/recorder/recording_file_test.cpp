@@ -53,7 +53,7 @@ class RecordingFile : public ::testing::Test {
     run.run(700);
     const Recorded<Ring> ring = Ring::open(scratch_.file("ring"));
     ASSERT_TRUE(ring);
-    ASSERT_TRUE(record_now(*ring, path_, {ILK_RECORDED_ON_DEMAND, 700, "test"}, ring->oldest()));
+    ASSERT_TRUE(record_now(*ring, path_, {ILK_RECORDED_ON_DEMAND, 700, "test"}, 60));
     std::ifstream file(path_, std::ios::binary);
     bytes_.assign(std::istreambuf_iterator<char>(file), {});
     whole_ = read(path_);

@@ -4,13 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "interlock/replay.h"
 #include "recorded_run.hpp"
 
 namespace interlock::recorder {
@@ -65,11 +63,7 @@ class RescueTest : public ::testing::Test {
 };
 
 std::uint32_t last_tick_of(const fs::path& path) {
-  const std::unique_ptr<FILE, int (*)(FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
-  const auto recording = std::make_unique<ilk_recording_t>();
-  ilk_replay_report_t report{};
-  EXPECT_EQ(ilk_recording_begin(recording.get(), file.get()), ILK_HEADER_GOOD) << path;
-  ilk_replay_recording(recording.get(), &report, nullptr, nullptr);
+  const ilk_replay_report_t report = recorder_test::replayed(path);
   EXPECT_TRUE(ilk_replay_is_identical(&report));
   return report.replay.last_tick;
 }
