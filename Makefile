@@ -114,9 +114,13 @@ mutate-proofs: build ## Show a hundred mutants to conformance, proofs and contra
 	@/usr/bin/python3 verification/mutation/run.py --without-tests --each 0 --count $(or $(COUNT),100) \
 	  $(if $(SEED),--seed $(SEED)) $(if $(MATRIX),--matrix)
 
-.PHONY: report
+.PHONY: report keep-evidence
 report: setup ## Write and judge the trace report: [RELEASE=1] demands the long measurements, too
+	@python verification/measurements/archive.py restore
 	@python verification/trace/report.py $(if $(RELEASE),--release)
+
+keep-evidence: setup ## Keep the evidence of the long measurements with the sources, for other clones to report on
+	@python verification/measurements/archive.py keep
 
 .PHONY: docs
 docs: setup ## Write the documentation site, with search and the code's call graphs, to build/docs/site

@@ -441,47 +441,6 @@ def test_without_evidence_no_measurement_passes(tree: Tree) -> None:
         assert one.status == {"commit": "UNKNOWN", "release": "AWAITED"}[by_demand[one.uid]]
 
 
-@pytest.fixture
-def measured_tree(tmp_path: Path) -> Path:
-    """A tree with one measurement, the campaign of gate.c."""
-    for name in ("evidence", "measurements"):
-        ignored = shutil.ignore_patterns("__pycache__", "*.toml")
-        shutil.copytree(ROOT / "verification" / name, tmp_path / "verification" / name, ignore=ignored)
-    for name in ("verification/toolchain/gcc.txt", "kernel/include/a.h", "kernel/src/gate.c"):
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text("12", "utf-8")
-    (tmp_path / "build/evidence").mkdir(parents=True)
-    (tmp_path / "verification/measurements/measurements.toml").write_text(MEASURED, "utf-8")
-    return tmp_path
-
-
-def measure(tree: Path, script: str) -> int:
-    program = tree / "verification/measurements/measure.py"
-    return subprocess.run(
-        [sys.executable, str(program), "campaign", "sh", "-c", script], cwd=tree, capture_output=True
-    ).returncode
-
-
-def test_a_measurement_is_keyed_by_its_inputs_unless_they_change_while_it_runs(measured_tree: Path) -> None:
-    key = measured_tree / "build/evidence/campaign.key"
-    assert measure(measured_tree, "echo {} > build/evidence/campaign.json; exit 3") == 3
-    first = key.read_text("utf-8")
-    assert measure(measured_tree, "echo {} > build/evidence/campaign.json; echo 13 > kernel/src/gate.c") == 0
-    assert not key.exists()
-    assert measure(measured_tree, "echo {} > build/evidence/campaign.json") == 0
-    assert key.read_text("utf-8") != first
-    assert measure(measured_tree, "true") == 0
-    assert not key.exists()
-    assert not (measured_tree / "build/evidence/campaign.json").exists()
-
-
-def test_each_measurement_names_inputs_that_there_are_and_a_target() -> None:
-    targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text("utf-8"), re.MULTILINE))
-    for one in MEASUREMENTS:
-        assert one.key()
-        assert one.target.removeprefix("make ") in targets
-
-
 def test_evidence_of_another_commit_is_fresh_while_its_inputs_are_the_same(tree: Tree) -> None:
     source = Source(tree.path, "later", lambda rung: rung == "misra")
     results = {one.uid: one.fresh for one in read_results(source, RUNGS)}
