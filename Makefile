@@ -77,9 +77,13 @@ test-browser: build ## Run the tests that click through the console
 	@verification/evidence/begin_tests.py browser
 	@npm --prefix web run --silent test:browser
 
+.PHONY: test-sanitizers
+test-sanitizers: setup ## Run the unit tests under the address and undefined-behaviour sanitizers
+	@$(measure) sanitizers python verification/sanitizers/run.py
+
 .PHONY: fuzz
 fuzz: setup ## Throw bytes at the OpenIGTLink decoders under sanitizers: [FUZZ_SECONDS=30 | FUZZ_RUNS=10000000]
-	@tests/fuzz/run.py $(if $(FUZZ_RUNS),runs $(FUZZ_RUNS),seconds $(FUZZ_SECONDS))
+	@$(measure) fuzz tests/fuzz/run.py $(if $(FUZZ_RUNS),runs $(FUZZ_RUNS),seconds $(FUZZ_SECONDS))
 
 .PHONY: soak
 soak: build ## Let the robot move for half an hour under OpenIGTLink clients and reconnect storms: [MINUTES=30]

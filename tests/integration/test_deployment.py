@@ -65,6 +65,28 @@ def test_a_unit_is_sound_and_its_program_takes_its_options(unit: Path, short_tmp
     assert [word for word in wanted if not re.search(rf"{word}\b", told)] == []
 
 
+def calls(program: Path) -> set[str]:
+    """Names of the shared functions that a program uses, without their versions."""
+    listed = run("readelf", "--wide", "--dyn-syms", program).stdout
+    return set(re.findall(r" UND (\w+)", listed))
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_a_shipped_program_ends_at_a_smashed_stack_and_keeps_its_addresses_read_only(name: str) -> None:
+    program = BIN / name
+    header = run("readelf", "--wide", "--file-header", "--program-headers", "--dynamic", program).stdout
+    assert re.search(r"Type: +DYN \(Position-Independent Executable", header)
+    assert re.search(r"GNU_STACK .* RW +0x", header)
+    assert "GNU_RELRO" in header
+    assert re.search(r"FLAGS.*BIND_NOW", header)
+    assert "__stack_chk_fail" in calls(program)
+
+
+@pytest.mark.parametrize("name", sorted({*PROGRAMS} - {"interlock-kernel"}))
+def test_a_shipped_program_ends_at_an_index_past_the_end(name: str) -> None:
+    assert "_ZSt21__glibcxx_assert_failPKciS0_S0_" in calls(BIN / name)
+
+
 @pytest.mark.parametrize("unit", SERVICES, ids=lambda unit: unit.stem)
 def test_a_service_can_reach_little_of_the_system(unit: Path) -> None:
     judged = run("systemd-analyze", "security", "--offline=yes", f"--threshold={MOST_EXPOSED}", unit)
