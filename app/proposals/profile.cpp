@@ -176,7 +176,7 @@ Profile profile_of_move(const Robot& robot, const ilk_config_t& config, const Pr
   Profile profile;
   profile.basis = ProfileBasis::way;
   AxisProfile axis = frame_of(config, robot, start, slot);
-  const auto samples = static_cast<std::int64_t>(std::min<std::uint64_t>(std::abs(way), way_intervals));
+  const auto samples = std::min<std::int64_t>(std::abs(way), way_intervals);
   for (std::int64_t sample = 0; sample <= samples; ++sample) {
     const std::int64_t passed = samples == 0 ? 0 : way * sample / samples;
     const auto position = static_cast<double>(from + passed);

@@ -5,7 +5,6 @@
 
 #define LANES 4u
 #define ODD_FACTOR 0x9e3779b97f4a7c15u /* 2^64 divided by the golden ratio */
-#define STATE_PAIRS (sizeof(ilk_state_t) / sizeof(uint64_t))
 
 /** Mixing by an odd factor is one-to-one in either argument, so a difference cannot get lost on its way. */
 static uint64_t mixed(uint64_t running, uint64_t next) { return (running ^ next) * ODD_FACTOR; }
@@ -14,10 +13,10 @@ static uint64_t mixed(uint64_t running, uint64_t next) { return (running ^ next)
 uint64_t ilk_state_hash(const ilk_state_t *state) {
   const unsigned char *bytes = (const unsigned char *)state;
   uint64_t lane[LANES] = {1u, 2u, 3u, 4u};
-  size_t pair = 0u;
-  for (; pair + LANES <= STATE_PAIRS; pair += LANES) {
-    uint64_t next[LANES];
-    (void)memcpy(next, &bytes[pair * sizeof(uint64_t)], sizeof next);
+  uint64_t next[LANES];
+  size_t place = 0u;
+  for (; place + sizeof next <= sizeof *state; place += sizeof next) {
+    (void)memcpy(next, &bytes[place], sizeof next);
     for (size_t i = 0u; i < LANES; ++i) {
       lane[i] = mixed(lane[i], next[i]);
     }
@@ -26,7 +25,7 @@ uint64_t ilk_state_hash(const ilk_state_t *state) {
   for (size_t i = 0u; i < LANES; ++i) {
     hash = mixed(hash, lane[i]);
   }
-  for (size_t place = pair * sizeof(uint64_t); place < sizeof *state; place += sizeof(uint32_t)) {
+  for (; place < sizeof *state; place += sizeof(uint32_t)) {
     uint32_t word = 0u;
     (void)memcpy(&word, &bytes[place], sizeof word);
     hash = mixed(hash, word);
