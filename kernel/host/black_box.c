@@ -85,6 +85,11 @@ static bool is_of_a_living_kernel(const char *path) {
   return held;
 }
 
+/** What the kernel before left keeps a name until a recorder has it on the disk; one can wait. */
+static bool keeps_what_was_left(const char *path, const char *before) {
+  return (link(path, before) == 0) || (errno == ENOENT) || (errno == EEXIST);
+}
+
 bool ilk_black_box_create(ilk_black_box_t *box, const char *path, const ilk_black_box_terms_t *terms,
                           ilk_error_t *error) {
   char making[NAME_BYTES];
@@ -115,9 +120,7 @@ bool ilk_black_box_create(ilk_black_box_t *box, const char *path, const ilk_blac
   }
   describe(box->ring, terms, blocks);
   __atomic_store_n(&box->ring->magic, ILK_RING_MAGIC, __ATOMIC_RELEASE);
-  // What the kernel before left keeps a name until a recorder has it on the disk; one can wait.
-  (void)link(path, before);
-  if (rename(making, path) != 0) {
+  if (!keeps_what_was_left(path, before) || (rename(making, path) != 0)) {
     const int refused = errno;
     (void)unlink(making);
     (void)close(box->descriptor);
