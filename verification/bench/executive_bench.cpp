@@ -319,16 +319,18 @@ struct Task {
 /// The foot is down and the axis on its way. A press that leads to nothing is tried anew: the machine may
 /// have kept the app from its heartbeat, which ends motion until the foot has left.
 void get_moving(Mover& mover, PlantBus& bus) {
-  std::optional<std::uint32_t> pressed_for;
+  bool is_pressed = false;
+  std::uint32_t pressed_ticks = 0;
   for (std::uint32_t driven = 0; driven < kDrivenTicks;) {
     mover.follow();
     driven = mover.is_driven() ? driven + 1 : 0;
-    if (pressed_for && ++*pressed_for > kPressTicks) {
+    if (is_pressed && ++pressed_ticks > kPressTicks) {
       bus.lift();
-      pressed_for.reset();
-    } else if (!pressed_for && mover.may_press()) {
+      is_pressed = false;
+    } else if (!is_pressed && mover.may_press()) {
       bus.press();
-      pressed_for = 0;
+      is_pressed = true;
+      pressed_ticks = 0;
     }
   }
 }
