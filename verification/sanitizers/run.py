@@ -23,7 +23,9 @@ BUILD = ROOT / "build" / PRESET
 def build(log: Path) -> None:
     """Raises SystemExit with the end of the log when it does not build."""
     with log.open("w") as output:
-        done = subprocess.run(["cmake", "--preset", PRESET], cwd=ROOT, stdout=output, stderr=output, check=False)
+        done = subprocess.run(
+            ["cmake", "--preset", PRESET], cwd=ROOT, stdout=output, stderr=output, check=False
+        )
     if done.returncode or subprocess.run(["ninja", "-C", str(BUILD)], cwd=ROOT, check=False).returncode:
         raise SystemExit(f"sanitizers: no build; see {log.relative_to(ROOT)} and the lines above")
 
