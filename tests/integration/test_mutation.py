@@ -17,7 +17,7 @@ from functions import Function, callers_of, function_at, functions_in, functions
 from operators import Mutant, draw, mutants_of
 from rows import compile_kernel
 from tree import make_tree, seeded
-from verdicts import Verdict, kernel_digests
+from verdicts import Kept, Verdict, kernel_digests
 
 FILES = [f"kernel/{file}" for file in core_files(ROOT / "kernel") if "crc32_table" not in file]
 
@@ -50,6 +50,16 @@ def test_every_function_of_the_core_has_mutants() -> None:
     assert len(functions) > 100
     mutated = {function_at(functions, mutant.file, mutant.line) for mutant in mutants_of(ROOT, FILES)}
     assert {function.name for function in functions if function not in mutated} == set()
+
+
+@pytest.mark.parametrize(("fate", "is_known"), [("killed", True), ("equivalent", True), ("survived", False)])
+def test_verdicts_are_kept_but_a_survivor_is_judged_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fate: str, is_known: bool
+) -> None:
+    monkeypatch.setattr("verdicts.FILE", tmp_path / "verdicts.json")
+    verdict = Verdict(fate, () if fate == "survived" else ("tests short: FAILED P1",), 0.1)
+    Kept(["tests"], every=False).keep(ROOT, verdict)
+    assert Kept(["tests"], every=False).find(ROOT) == (verdict if is_known else None)
 
 
 def test_the_seed_alone_decides_what_is_drawn() -> None:

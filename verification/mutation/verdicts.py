@@ -1,4 +1,4 @@
-"""What became of mutants, kept by content: one is judged anew only when something it rests on changed."""
+"""What became of mutants, kept by content until something that it rests on changes."""
 
 import hashlib
 import json
@@ -81,7 +81,12 @@ class Kept:
         return None
 
     def keep(self, tree: Path, verdict: Verdict) -> None:
-        """A kill rests on the rung that killed, everything else on all of them."""
+        """A kill rests on the rung that killed, an equivalence on all of them.
+
+        That a mutant survived rests on the time that provers had, too, so it is judged again.
+        """
+        if verdict.fate == "survived":
+            return
         rung = verdict.reasons[0].split()[0] if verdict.fate == "killed" and not self._every else "all"
         with self._lock:
             self._verdicts[self.key(tree, rung)] = asdict(verdict)
