@@ -20,6 +20,7 @@ TEST(Modes, valid_configuration_boots_to_LOCKED_BOOT) {
   Bench bench;
   EXPECT_EQ(bench.mode(), ILK_MODE_LOCKED);
   EXPECT_EQ(bench.cause(), ILK_CAUSE_BOOT);
+  EXPECT_EQ(bench.state().cause_value, 0u);
   bench.ticks(100);
   EXPECT_EQ(bench.mode(), ILK_MODE_LOCKED);
   EXPECT_EQ(bench.cause(), ILK_CAUSE_BOOT);
