@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs the unit tests under the address and undefined-behaviour sanitizers.
 
-Builds the preset `sanitizers`, each file by itself, then runs all its tests. Whatever a sanitizer finds ends
+Builds the preset `sanitizers`, several files at once as the release does, then runs all its tests. Whatever a sanitizer finds ends
 the test in which it does. Writes build/evidence/sanitizers.json: PASSED says that all tests ran and none
 failed; FAILED is the rest, and the tests are named.
 """
