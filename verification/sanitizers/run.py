@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Runs the unit tests under the address and undefined-behaviour sanitizers.
 
-Builds the preset `sanitizers`, several files at once as the release does, then runs all its tests. Whatever a sanitizer finds ends
-the test in which it does. Writes build/evidence/sanitizers.json: PASSED says that all tests ran and none
-failed; FAILED is the rest, and the tests are named.
+Builds the preset `sanitizers`, several files at once as the release does, then runs all its tests. Whatever a
+sanitizer finds ends the test in which it does. Writes build/evidence/sanitizers.json: PASSED says that all
+tests ran and none failed; FAILED is the rest, and the tests are named.
 """
 
 import subprocess
@@ -23,10 +23,9 @@ BUILD = ROOT / "build" / PRESET
 
 def build(log: Path) -> None:
     """Raises SystemExit with the end of the log when it does not build."""
+    configure = ["cmake", "--preset", PRESET, "-DCMAKE_UNITY_BUILD=ON"]
     with log.open("w") as output:
-        done = subprocess.run(
-            ["cmake", "--preset", PRESET], cwd=ROOT, stdout=output, stderr=output, check=False
-        )
+        done = subprocess.run(configure, cwd=ROOT, stdout=output, stderr=output, check=False)
     if done.returncode or subprocess.run(["ninja", "-C", str(BUILD)], cwd=ROOT, check=False).returncode:
         raise SystemExit(f"sanitizers: no build; see {log.relative_to(ROOT)} and the lines above")
 
