@@ -235,7 +235,7 @@ TEST_F(BiopsyModeTest, TheHandPushesNoDeeperThanItsTarget) {
     deepest_mm = std::max(deepest_mm, loop_.state().axis[needle_push].setpoint_counts / counts_per_mm);
   }
   EXPECT_EQ(order().phase, OrderPhase::done);
-  const Eigen::Map<const Eigen::Vector3d> target_mm(truth().target_mm.data());
+  const Eigen::Vector3d target_mm(truth().target_mm.data());
   EXPECT_GT(deepest_mm, target_mm.z() - 2.5);
   EXPECT_LT(deepest_mm, biopsy().entry_mm + target_mm.norm());
 }

@@ -63,7 +63,7 @@ TEST_F(DecimationTest, KeepsAPeakOfOneTick) {
   tick();
   axis(insertion).position_counts -= 700;
   const std::int32_t rest = axis(insertion).position_counts;
-  const auto& position = rest_of_bucket().axis[insertion].position_counts;
+  const auto position = rest_of_bucket().axis[insertion].position_counts;
   EXPECT_EQ(position.least(), rest);
   EXPECT_EQ(position.greatest(), rest + 700);
 }
@@ -88,7 +88,7 @@ TEST_F(DecimationTest, TellsHowManyTicksWereSeen) {
 
 TEST_F(DecimationTest, HasASetpointAndAnErrorOnlyWhileMoving) {
   tick();
-  const auto& resting = rest_of_bucket().axis[yaw];
+  const auto resting = rest_of_bucket().axis[yaw];
   EXPECT_FALSE(resting.setpoint_counts.known());
   EXPECT_FALSE(resting.error_counts.known());
   axis(yaw).state = ILK_AXIS_MOVING;
@@ -98,7 +98,7 @@ TEST_F(DecimationTest, HasASetpointAndAnErrorOnlyWhileMoving) {
   axis(yaw).position_counts = 150;
   tick();
   axis(yaw).state = ILK_AXIS_ENABLED;
-  const auto& moved = rest_of_bucket().axis[yaw];
+  const auto moved = rest_of_bucket().axis[yaw];
   EXPECT_EQ(moved.setpoint_counts.least(), 140);
   EXPECT_EQ(moved.setpoint_counts.greatest(), 140);
   EXPECT_EQ(moved.error_counts.least(), -10);
@@ -126,7 +126,7 @@ TEST_F(DecimationTest, TheDriveHasTheSenseOfItsDirection) {
   view_.snapshot.command[yaw] = {ILK_DIRECTION_DECREASING, 30, 0};
   tick();
   view_.snapshot.command[yaw] = {ILK_DIRECTION_INCREASING, 12, 0};
-  const auto& drive = rest_of_bucket().axis[yaw].drive;
+  const auto drive = rest_of_bucket().axis[yaw].drive;
   EXPECT_EQ(drive.least(), -30);
   EXPECT_EQ(drive.greatest(), 12);
 }
