@@ -585,9 +585,16 @@ def test_the_criteria_of_units_name_results_that_there_are() -> None:
     text = (ROOT / "spec/requirements/55_unit_acceptance.sdoc").read_text("utf-8")
     named = {one.partition(":")[2] for one in re.findall(r"`((?:TEST:unit|CBMC):[^`*]+)`", text)}
     proofs = {path.parent.name for path in (ROOT / "verification/cbmc").glob("*/proof.toml")}
-    suites = {f"kernel_tests.{one.partition('.')[0]}" for one in figures.written_tests(ROOT)["unit"]}
+    suites = {one.partition(".")[0] for one in figures.written_tests(ROOT)["unit"]}
+    suites |= {f"kernel_tests.{suite}" for suite in suites}
     assert len(named) > 5
     assert {one.removeprefix("unit:") for one in named} <= proofs | suites
+    measured = {one.name.upper() for one in MEASUREMENTS}
+    assert (
+        {"BENCH", "SANITIZERS", "SOAK"}
+        <= set(re.findall(r"`([A-Z]+)`", text)) - {"MISRA"}
+        <= (measured | {"CONFORMANCE", "COVERAGE", "TARGET"})
+    )
 
 
 def test_every_cause_makes_a_control_action_unsafe() -> None:
