@@ -59,6 +59,15 @@ def set_home(stack: Stack, axis: int | str = LATERAL) -> None:
     )
 
 
+def home_all(stack: Stack) -> None:
+    """Declares every axis at home, enables it and waits until the console shows it, as poses then do."""
+    slots = [axis["slot"] for axis in stack.api.get("/api/motors").json()]
+    for slot in slots:
+        set_home(stack, slot)
+        act(stack, "enable", slot)
+    wait_until("homed", lambda: all(motor(stack, slot)["homed"] for slot in slots))
+
+
 def to_motion(stack: Stack, slot: int = LATERAL) -> None:
     """Unlocks, references the axis where it stands, enables it and presses the pedal."""
     unlock(stack)

@@ -5,7 +5,7 @@ import time
 import numpy as np
 from bare_kernel import DEADLINE_S
 from interface import judge
-from motion import act, set_home, wait_until
+from motion import wait_until
 from navigator import Program, Status, text, transform
 from pyigtl import messages as wire
 from stack import Stack
@@ -88,12 +88,6 @@ class Phases:
             text(f"CMD_{number}", name), f"ACK_{number} STRING", f"CURRENT_STATUS 1 {name}", *status
         )
         assert messages[0].string == name
-
-
-def home_all(robot: Stack) -> None:
-    for axis in robot.api.get("/api/motors").json():
-        set_home(robot, axis["slot"])
-        act(robot, "enable", axis["slot"])
 
 
 def approve(robot: Stack) -> None:

@@ -9,8 +9,8 @@ import pytest
 from conftest import RobotFile, StackFactory
 from controllers import connections, make_controller
 from library_navigator import Library, Tracking
-from motion import act, press, unlock, wait_for_mode, wait_until
-from navigation_phases import ENTRY, TARGET, Phases, aimed, approve, home_all, short, to_targeting
+from motion import act, home_all, press, unlock, wait_for_mode, wait_until
+from navigation_phases import ENTRY, TARGET, Phases, aimed, approve, short, to_targeting
 from navigator import OK, Poses, Query, Rows, Status, text, transform
 from stack import Stack
 

@@ -151,6 +151,13 @@ def test_only_sound_evidence_of_a_commit_and_of_full_length_is_kept(measured: Me
     assert not measured.kept.exists()
 
 
+def test_evidence_without_a_log_is_not_kept(measured: Measured) -> None:
+    measured.campaign()
+    measured.log.unlink()
+    assert "its log, build/evidence/campaign, holds nothing" in measured.archive("keep")
+    assert not measured.kept.exists()
+
+
 def test_keeping_twice_leaves_the_same_bytes(measured: Measured) -> None:
     measured.campaign()
     measured.archive("keep")

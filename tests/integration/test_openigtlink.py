@@ -16,7 +16,7 @@ import pytest
 from bare_kernel import DEADLINE_S
 from conftest import StackFactory
 from interface import judge
-from motion import LATERAL, act, motor, press, propose, set_home, unlock, wait_for_mode, wait_until
+from motion import LATERAL, act, home_all, motor, press, propose, unlock, wait_for_mode, wait_until
 from navigator import OK, Navigator, Poses, Query, Rows, text, transform
 from stack import Stack
 
@@ -58,12 +58,6 @@ def make_controller(robot: Stack, place: int = -1) -> int:
     answer = robot.api.put(f"{CONNECTIONS}/{number}/role", json={"role": "controller"})
     assert judge(answer).status_code == 200, answer.text
     return number
-
-
-def home_all(robot: Stack) -> None:
-    for axis in robot.api.get("/api/motors").json():
-        set_home(robot, axis["slot"])
-        act(robot, "enable", axis["slot"])
 
 
 def within_reach(axis: dict) -> float:

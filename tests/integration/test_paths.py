@@ -3,7 +3,7 @@
 import pytest
 from bad_trajectories import BAD_TRAJECTORIES
 from conftest import StackFactory
-from motion import act, motor, press, proposal, set_home, unlock, wait_for_proposal, wait_until
+from motion import home_all, motor, press, proposal, unlock, wait_for_proposal, wait_until
 from stack import Stack
 
 YAW, ROTATION, PITCH, INSERTION, LATERAL, FEET, HEAD = 0, 1, 2, 3, 4, 6, 7
@@ -14,9 +14,7 @@ def ready(stack: StackFactory, **options: int) -> Stack:
     """Every axis referenced where it stands and enabled."""
     robot = stack(**options)
     unlock(robot)
-    for axis in AXES:
-        set_home(robot, axis)
-        act(robot, "enable", axis)
+    home_all(robot)
     return robot
 
 

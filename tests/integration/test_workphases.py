@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from conftest import StackFactory
 from interface import judge
-from motion import act, press, unlock, wait_for_mode, wait_until
-from navigation_phases import Phases, aimed, approve, home_all, short, to_targeting
+from motion import act, home_all, press, unlock, wait_for_mode, wait_until
+from navigation_phases import Phases, aimed, approve, short, to_targeting
 from navigator import Navigator, Query, text, transform
 from stack import Stack
 

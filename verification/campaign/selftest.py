@@ -4,7 +4,7 @@
 Uses the patches of tests/failure that change the kernel (P1 to P13), each in a copy of the tree. A fault
 counts as found when the campaign reports something unsafe or late within the seconds given; a healthy kernel
 must not.
-Prints a table and writes build/evidence/campaign_selftest.json.
+Prints a table and writes build/evidence/campaign_selftest.json, beside it the totals of each campaign.
 """
 
 import argparse
@@ -57,7 +57,7 @@ def main() -> int:
     parser.add_argument("--seconds", type=float, default=60, help="of processor time for each fault")
     arguments = parser.parse_args()
     started = time.monotonic()
-    faults, seconds = chosen(arguments.names), []
+    faults, outcomes = chosen(arguments.names), {}
     with tempfile.TemporaryDirectory() as folder:
         work = Path(folder)
         healthy = campaign(None, min(arguments.seconds, 20), work)
@@ -66,15 +66,17 @@ def main() -> int:
             return 1
         print(f"{'seeded fault':42} {'found after':>22}   by")
         for path in faults:
-            totals = campaign(path, arguments.seconds, work)
+            outcomes[path.stem] = totals = campaign(path, arguments.seconds, work)
             found = totals.get("first_failure")
             if found:
-                seconds.append(found["seconds"])
                 after = f"{totals['ticks']:,} ticks {found['seconds']:.1f} s"
                 print(f"{path.stem:42} {after:>22}   {found['text'].partition(': ')[2]}", flush=True)
             else:
                 print(f"{path.stem:42} {'NOT FOUND':>22}   in {arguments.seconds:.0f} s", flush=True)
+    seconds = [each["first_failure"]["seconds"] for each in outcomes.values() if "first_failure" in each]
     print(f"campaign selftest: {len(faults) - len(seconds)} not found")
+    log = evidence.log_directory("campaign_selftest") / "outcomes.json"
+    log.write_text(json.dumps({"healthy": healthy, **outcomes}, indent=1) + "\n", "utf-8")
     figures = {
         "faults": len(faults),
         "found": len(seconds),

@@ -36,6 +36,8 @@ def why_not(one: Measurement) -> str:
         return f"its status is {document['status']}"
     if document["commit"].endswith("+changes"):
         return "it was made with changes beside its commit, so nobody could make it again"
+    if not logs(document):
+        return f"its log, build/evidence/{document['log']}, holds nothing"
     return one.too_short(document["figures"])
 
 
