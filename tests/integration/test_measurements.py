@@ -158,6 +158,16 @@ def test_evidence_without_a_log_is_not_kept(measured: Measured) -> None:
     assert not measured.kept.exists()
 
 
+def test_kept_evidence_names_nothing_outside_of_its_tree(measured: Measured) -> None:
+    measured.campaign()
+    found = json.loads(measured.evidence.read_text("utf-8"))
+    found["case"] = f"{measured.path}/build/evidence/1.json"
+    measured.evidence.write_text(json.dumps(found), "utf-8")
+    measured.archive("keep")
+    kept = json.loads((measured.kept / "campaign.json").read_text("utf-8"))
+    assert kept["case"] == "build/evidence/1.json"
+
+
 def test_keeping_twice_leaves_the_same_bytes(measured: Measured) -> None:
     measured.campaign()
     measured.archive("keep")

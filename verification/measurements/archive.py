@@ -2,9 +2,10 @@
 """Keeps the evidence of the long measurements with the sources. Usage: archive.py keep|restore
 
 `keep` takes what a release demands from build/evidence to verification/measurements/kept, when it is sound,
-holds for the inputs that stand here and was made of a commit without changes: NAME.json and its key as they
-are, the raw logs as NAME.zip. `restore` puts back what was kept of these inputs, unless build/evidence has
-some of its own. Both say what they did with which measurement, and exit 2 when something cannot be read.
+holds for the inputs that stand here and was made of a commit without changes: NAME.json, in which paths
+become relative to the tree that it was made in, its key as it is, and the raw logs as NAME.zip. `restore`
+puts back what was kept of these inputs, unless build/evidence has some of its own. Both say what they did
+with which measurement, and exit 2 when something cannot be read.
 """
 
 import json
@@ -15,7 +16,7 @@ from pathlib import Path
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "evidence"))
 
-from evidence import EVIDENCE, SOUND
+from evidence import EVIDENCE, ROOT, SOUND
 from measurements import Measurement, UnusableError, read_measurements
 
 KEPT = Path(__file__).with_name("kept")
@@ -64,7 +65,7 @@ def keep(one: Measurement) -> str:
     # Without a key before, and with it at the end: what is broken off on the way holds for nothing.
     key = KEPT / f"{one.name}.key"
     key.unlink(missing_ok=True)
-    text = (EVIDENCE / f"{one.name}.json").read_text("utf-8")
+    text = (EVIDENCE / f"{one.name}.json").read_text("utf-8").replace(f"{ROOT}/", "")
     pack(logs(json.loads(text)), KEPT / f"{one.name}.zip")
     (KEPT / f"{one.name}.json").write_text(text, "utf-8")
     key.write_text(one.key(), "utf-8")
