@@ -111,6 +111,14 @@ def methods_of(item: Item) -> list[str]:
     return [method for method in item.fields.get("VERIFICATION", "").split(", ") if method]
 
 
+def rests_on_information(items: Items, cause: Item) -> bool:
+    """Whether people are only told of what could injure gravely (criterion 2 of the risk management plan)."""
+    controls = items.children(cause.uid, "Mitigates")
+    hazards = [items[uid] for uid in cause.parents_by("Causes") if uid in items.by_uid]
+    grave = any(hazard.fields["SEVERITY"] in ("S4", "S5") for hazard in hazards)
+    return grave and {control.fields["KIND"] for control in controls} == {"InformationForSafety"}
+
+
 def g1(of: Trace) -> Iterator[Finding]:
     """Each hazard has a cause, each cause and threat a control, each failure mode what meets it."""
     items = of.project.items
@@ -120,6 +128,8 @@ def g1(of: Trace) -> Iterator[Finding]:
     for cause in items.of("CAUSE", "THREAT"):
         if not items.children(cause.uid, "Mitigates"):
             yield Finding("G1", cause.uid, "no risk control mitigates it")
+        if rests_on_information(items, cause):
+            yield Finding("G1", cause.uid, "leads to S4 or S5 and is met by information for safety alone")
     for cause in items.of("CAUSE", "THREAT", "FAILURE_MODE"):
         if not cause.parents_by("Causes"):
             yield Finding("G1", cause.uid, "leads to no hazard")
