@@ -111,6 +111,10 @@ def methods_of(item: Item) -> list[str]:
     return [method for method in item.fields.get("VERIFICATION", "").split(", ") if method]
 
 
+FAILURES = ("FAILURE_MODE", "SOUP")
+"""Kinds of items that fail: functions and interfaces of our own, and what is used of others'."""
+
+
 def rests_on_information(items: Items, cause: Item) -> bool:
     """Whether people are only told of what could injure gravely (criterion 2 of the risk management plan)."""
     controls = items.children(cause.uid, "Mitigates")
@@ -120,7 +124,7 @@ def rests_on_information(items: Items, cause: Item) -> bool:
 
 
 def g1(of: Trace) -> Iterator[Finding]:
-    """Each hazard has a cause, each cause and threat a control, each failure mode what meets it."""
+    """Each hazard has a cause, each cause and threat a control, each failure what meets it."""
     items = of.project.items
     for hazard in items.of("HAZARD"):
         if not items.children(hazard.uid, "Causes"):
@@ -130,13 +134,13 @@ def g1(of: Trace) -> Iterator[Finding]:
             yield Finding("G1", cause.uid, "no risk control mitigates it")
         if rests_on_information(items, cause):
             yield Finding("G1", cause.uid, "leads to S4 or S5 and is met by information for safety alone")
-    for cause in items.of("CAUSE", "THREAT", "FAILURE_MODE"):
+    for cause in items.of("CAUSE", "THREAT", *FAILURES):
         if not cause.parents_by("Causes"):
             yield Finding("G1", cause.uid, "leads to no hazard")
-    for mode in items.of("FAILURE_MODE"):
-        met = mode.parents_by("MetBy")
+    for failure in items.of(*FAILURES):
+        met = failure.parents_by("MetBy")
         if not any(items[uid].kind in ("CONTROL", "REQUIREMENT") for uid in met if uid in items.by_uid):
-            yield Finding("G1", mode.uid, "no risk control or requirement meets it")
+            yield Finding("G1", failure.uid, "no risk control or requirement meets it")
 
 
 def carried_out(items: Items, control: Item, system: Item) -> list[Item]:

@@ -9,7 +9,7 @@ import io
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, fields
 
-from gate import Trace, carried_out
+from gate import FAILURES, Trace, carried_out
 from items import Item, fingerprint
 from places import Places
 from results import AWAITED, PROPERTY, SOUND, Result
@@ -165,6 +165,9 @@ class Coverage:
 
     hazard: Item
     causes: int
+    """Causes and threats."""
+    failures: int
+    """Failure modes and SOUP items that could lead to it."""
     controls: int
     requirements: int
     sound: int
@@ -178,9 +181,17 @@ def coverage(of: Trace) -> list[Coverage]:
         way = [one for one in ways(of) if one[0] is hazard]
         requirements = {one[4].uid for one in way}
         sound = [uid for uid in requirements if status_of(of.carried.get(uid, ())) in SOUND]
-        causes = of.project.items.children(hazard.uid, "Causes")
+        leading = of.project.items.children(hazard.uid, "Causes")
+        failures = sum(one.kind in FAILURES for one in leading)
         found.append(
-            Coverage(hazard, len(causes), len({one[2].uid for one in way}), len(requirements), len(sound))
+            Coverage(
+                hazard=hazard,
+                causes=len(leading) - failures,
+                failures=failures,
+                controls=len({one[2].uid for one in way}),
+                requirements=len(requirements),
+                sound=len(sound),
+            )
         )
     return found
 

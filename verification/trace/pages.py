@@ -126,12 +126,21 @@ def overview(of: Trace, found: Sequence[Finding], commit: str) -> str:
         return f'<a href="matrix.html?q={escape(hazard.uid)}">{escape(words)}</a>'
 
     covered = table(
-        ("hazard", "severity", "causes", "controls", "requirements", "with sound results only"),
+        (
+            "hazard",
+            "severity",
+            "causes, threats",
+            "failures",
+            "controls",
+            "requirements",
+            "with sound results only",
+        ),
         [
             (
                 row_link(one.hazard),
                 one.hazard.fields["SEVERITY"],
                 str(one.causes),
+                str(one.failures),
                 str(one.controls),
                 str(one.requirements),
                 str(one.sound),

@@ -274,6 +274,7 @@ def hazard_coverage(source: Source) -> str:
             one.hazard.title,
             one.hazard.fields["SEVERITY"],
             one.causes,
+            one.failures,
             one.controls,
             one.requirements,
             one.sound,
@@ -281,7 +282,17 @@ def hazard_coverage(source: Source) -> str:
         for one in coverage(source.trace)
     ]
     return texts(
-        ("hazard", "title", "severity", "causes", "controls", "requirements", "with sound results"), lines
+        (
+            "hazard",
+            "title",
+            "severity",
+            "causes, threats",
+            "failures",
+            "controls",
+            "requirements",
+            "with sound results",
+        ),
+        lines,
     )
 
 
