@@ -183,6 +183,8 @@ BOUNDED = """\
   @ requires either: b == FIRST || b == SECOND;
   @ requires other: stranger < LIMIT;
   @ requires last: b < LIMIT;
+  @ requires decided: is_odd(out->count) ==> b < ODD;
+  @ requires open: is_even(out->count) ==> b < EVEN;
   @ ensures  small: b < LIMIT;
   @*/
 static bool f(const out_t *out, uint32_t b) { return b > out->count; }
@@ -193,15 +195,25 @@ bool g(uint32_t b) { return b > 1u; }
 /*@ requires last: b < LIMIT; */
 enum { LIMIT = 2 };
 static bool h(uint32_t b) { return b > 1u; }
+
+/*@ ensures exact: \\result <==> is_odd(n);
+  @*/
+static bool is_odd(uint32_t n) { return (n & 1u) == 1u; }
+
+static bool is_even(uint32_t n) { return (n & 1u) == 0u; }
 """
 
 
 def test_of_a_contract_only_bounds_that_callers_keep_are_taken() -> None:
-    f, g, h = (
+    f, g, h, *_ = (
         bounds(each, [made for n, text in enumerate(each.parameters) if (made := argument(n, text))], BOUNDED)
         for each in functions_of("x.c", BOUNDED)
     )
-    assert f == ["(int64_t)a0.count <= (int64_t)LIMIT", "(int64_t)a1 < (int64_t)LIMIT"]
+    assert f == [
+        "(int64_t)a0.count <= (int64_t)LIMIT",
+        "(int64_t)a1 < (int64_t)LIMIT",
+        "!sound_is_odd(a0.count) || (int64_t)a1 < (int64_t)ODD",
+    ]
     assert (g, h) == ([], [])
 
 
@@ -214,6 +226,20 @@ def test_products_of_equal_numbers_are_seen_to_be_equal(tmp_path: Path) -> None:
     with seeded(tree, file, line, largest, largest.replace(">", ">=")):
         assert is_same(function, tree, folder)
     with seeded(tree, file, line, largest, largest.replace(">", "<")):
+        assert not is_same(function, tree, folder)
+
+
+@pytest.mark.provers
+def test_a_bound_under_a_predicate_shows_that_a_slot_which_nobody_reads_does_not_matter(
+    tmp_path: Path,
+) -> None:
+    file, unread = "kernel/src/checks.c", "? request->axis : 0u"
+    [function] = [each for each in functions_in(ROOT, [file]) if each.name == "check_row"]
+    tree, folder = tree_to_compare(tmp_path)
+    line = line_with(tree / file, unread)
+    with seeded(tree, file, line, unread, "? request->axis : 1u"):
+        assert is_same(function, tree, folder)
+    with seeded(tree, file, line, unread, "? request->axis ^ 1u : 0u"):
         assert not is_same(function, tree, folder)
 
 

@@ -9,7 +9,7 @@ every call keeps them, so they hold in the first call in which the mutant could 
 """
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -37,9 +37,14 @@ PARAMETER = re.compile(
 
 CONTRACT = re.compile(r"/\*@(?:[^*]|\*(?!/))*\*/\n$")
 BOUND = re.compile(
-    r"@ +requires +\w+: (?P<name>\w+)(?P<member>->\w+)? (?P<relation><=?|==) (?P<limit>[A-Z]\w+);$", re.M
+    r"@ +requires +\w+: (?:(?P<predicate>\w+)\((?P<of>\w+)(?P<of_member>->\w+)?\) ==> )?"
+    r"(?P<name>\w+)(?P<member>->\w+)? (?P<relation><=?|==) (?P<limit>[A-Z]\w+);$",
+    re.M,
 )
-"""A clause that means in C what it means in ACSL: a value beside an enumerator or a constant."""
+"""A clause that means in C what it means in ACSL: a value beside an enumerator or a constant.
+
+Where it holds only under a predicate, a function of that name must say by its contract that it decides it.
+"""
 
 
 @dataclass(frozen=True)
@@ -114,16 +119,30 @@ def bounds(function: Function, arguments: Sequence[Argument], source: str) -> li
         return []
     numbers = {each.name: each.number for each in arguments}
     return [
-        condition(numbers[found["name"]], found)
+        condition(numbers, found)
         for found in BOUND.finditer(contract.group())
-        if found["name"] in numbers
+        if found["name"] in numbers and is_decided(numbers, found, source)
     ]
 
 
-def condition(number: int, bound: re.Match[str]) -> str:
-    """The bound in C, of the argument of that number; wide, as integers of ACSL do not convert."""
-    member = (bound["member"] or "").replace("->", ".")
-    return f"(int64_t)a{number}{member} {bound['relation']} (int64_t){bound['limit']}"
+def is_decided(numbers: Mapping[str, int], bound: re.Match[str], source: str) -> bool:
+    """Whether C can say where the bound holds: everywhere, or where a function of the file decides it."""
+    predicate = bound["predicate"]
+    return predicate is None or (
+        bound["of"] in numbers and f"ensures exact: \\result <==> {predicate}(" in source
+    )
+
+
+def condition(numbers: Mapping[str, int], bound: re.Match[str]) -> str:
+    """The bound in C, of arguments by their numbers; wide, as integers of ACSL do not convert."""
+
+    def value(name: str, member: str | None) -> str:
+        return f"a{numbers[name]}{(member or '').replace('->', '.')}"
+
+    within = f"(int64_t){value(bound['name'], bound['member'])} {bound['relation']} (int64_t){bound['limit']}"
+    if bound["predicate"] is None:
+        return within
+    return f"!{SOUND}{bound['predicate']}({value(bound['of'], bound['of_member'])}) || {within}"
 
 
 def same(first: str, second: str) -> str:
