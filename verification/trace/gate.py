@@ -8,7 +8,7 @@ from pathlib import Path
 
 import fretish
 from components import Component
-from items import GENERATED, Item, Items, fingerprint
+from items import Item, Items, fingerprint
 from results import AWAITED, SOUND, Result
 from sources import Function, Links
 
@@ -250,15 +250,15 @@ def g7(of: Trace) -> Iterator[Finding]:
 
 
 def g8(of: Trace) -> Iterator[Finding]:
-    """Each item says what it said when it and its parents were last reviewed."""
+    """Each item, and the prose of each document, says what it and its parents said at the last review."""
     items = of.project.items
-    known = {item.uid for item in items if item.kind not in GENERATED}
+    known = items.to_review()
     for uid in sorted(known):
         if uid not in of.project.reviewed:
             yield Finding("G8", uid, "was never reviewed")
-        elif of.project.reviewed[uid] != fingerprint(items, items[uid]):
+        elif of.project.reviewed[uid] != fingerprint(items, known[uid]):
             yield Finding("G8", uid, "suspect: it or one of its parents changed since its review")
-    for uid in sorted(set(of.project.reviewed) - known):
+    for uid in sorted(set(of.project.reviewed) - set(known)):
         yield Finding("G8", uid, "was reviewed, but there is no such item")
 
 

@@ -37,9 +37,10 @@ class Item:
 
 
 class Items:
-    """All items by UID, in the order of the documents, with their children."""
+    """All items by UID, in the order of the documents, with their children, and the prose beside them."""
 
-    def __init__(self, items: Iterable[Item]) -> None:
+    def __init__(self, items: Iterable[Item], prose: Iterable[Item] = ()) -> None:
+        self.prose = tuple(prose)
         self.by_uid: dict[str, Item] = {}
         for item in items:
             if item.uid in self.by_uid:
@@ -61,6 +62,10 @@ class Items:
     def of(self, *kinds: str) -> list[Item]:
         """The items of these kinds."""
         return [item for item in self if item.kind in kinds]
+
+    def to_review(self) -> dict[str, Item]:
+        """What somebody has to have read, by UID: items that nobody generates, and prose of documents."""
+        return {one.uid: one for one in (*self, *self.prose) if one.kind not in GENERATED}
 
     def children(self, uid: str, *roles: str) -> list[Item]:
         """The items that name `uid` as parent, in one of these roles where roles are given."""
@@ -86,7 +91,22 @@ def read_items(export: Path) -> Items:
             yield from nodes(node, document)
 
     documents = json.loads(export.read_text("utf-8"))["DOCUMENTS"]
-    return Items(item for document in documents for item in nodes(document, document["TITLE"]))
+    items = [item for document in documents for item in nodes(document, document["TITLE"])]
+    prose = [prose_of(document) for document in documents if "UID" in document]
+    return Items(items, [one for one in prose if one.statement])
+
+
+def prose_of(document: Mapping) -> Item:
+    """The text of a document that stands in no item (method, plans, tables), under the document's UID."""
+
+    def texts(parent: Mapping) -> Iterator[str]:
+        for node in parent.get("NODES", []):
+            if node["_NODE_TYPE"] in STRUCTURE:
+                yield (node.get("STATEMENT") or node.get("TITLE", "")).strip()
+            yield from texts(node)
+
+    fields = {"TITLE": document["TITLE"], "STATEMENT": "\n\n".join(texts(document))}
+    return Item(document["UID"], "PROSE", document["TITLE"], fields, ())
 
 
 def fingerprint(items: Items, item: Item) -> str:

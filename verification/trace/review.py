@@ -2,8 +2,9 @@
 """Notes that items were reviewed as they stand now. Usage: review.py UID... | --all
 
 Writes the fingerprint of each item, over its text and that of its parents, into
-spec/requirements/reviewed.toml; the gate calls an item suspect once its fingerprint is another one. Run it
-after reading the item, its parents and its links, and commit what it writes under the reviewer's name.
+spec/requirements/reviewed.toml; the gate calls an item suspect once its fingerprint is another one. The UID
+of a document stands for its prose, which is in no item. Run it after reading the item, its parents and its
+links, and commit what it writes under the reviewer's name.
 """
 
 import argparse
@@ -12,7 +13,7 @@ import tomllib
 from pathlib import Path
 
 from exporter import RefusedError, export, stage
-from items import GENERATED, Items, fingerprint, read_items
+from items import Items, fingerprint, read_items
 
 ROOT = Path(__file__).resolve().parents[2]
 HEAD = "# The fingerprint of each item at its last review. Written by verification/trace/review.py.\n\n"
@@ -22,9 +23,8 @@ def write_reviewed(items: Items, path: Path, chosen: set[str]) -> None:
     """Notes the chosen items; items that are no more are dropped."""
     before = tomllib.loads(path.read_text("utf-8")) if path.exists() else {}
     after = {
-        item.uid: fingerprint(items, item) if item.uid in chosen else before.get(item.uid)
-        for item in items
-        if item.kind not in GENERATED
+        uid: fingerprint(items, item) if uid in chosen else before.get(uid)
+        for uid, item in items.to_review().items()
     }
     lines = "".join(f'"{uid}" = "{after[uid]}"\n' for uid in sorted(after) if after[uid])
     path.write_text(HEAD + lines, "utf-8")
@@ -44,10 +44,11 @@ def main() -> int:
         print(f"review: {error}", file=sys.stderr)
         return 2
     items = read_items(output / "stated/json/index.json")
-    unknown = sorted(set(arguments.uids) - set(items.by_uid))
+    known = set(items.to_review())
+    unknown = sorted(set(arguments.uids) - known)
     if unknown:
         parser.error(f"no item {unknown[0]}")
-    chosen = set(items.by_uid) if arguments.all else set(arguments.uids)
+    chosen = known if arguments.all else set(arguments.uids)
     write_reviewed(items, requirements / "reviewed.toml", chosen)
     print(f"{len(chosen)} items reviewed")
     return 0
