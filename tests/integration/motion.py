@@ -61,11 +61,14 @@ def set_home(stack: Stack, axis: int | str = LATERAL) -> None:
 
 def home_all(stack: Stack) -> None:
     """Declares every axis at home, enables it and waits until the console shows it, as poses then do."""
-    slots = [axis["slot"] for axis in stack.api.get("/api/motors").json()]
-    for slot in slots:
-        set_home(stack, slot)
-        act(stack, "enable", slot)
-    wait_until("homed", lambda: all(motor(stack, slot)["homed"] for slot in slots))
+
+    def motors() -> list[dict]:
+        return stack.api.get("/api/motors").raise_for_status().json()
+
+    for axis in motors():
+        set_home(stack, axis["slot"])
+        act(stack, "enable", axis["slot"])
+    wait_until("homed", lambda: all(axis["homed"] for axis in motors()))
 
 
 def to_motion(stack: Stack, slot: int = LATERAL) -> None:
