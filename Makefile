@@ -15,7 +15,7 @@ campaign_length = $(if $(TICKS),--ticks $(TICKS),$(if $(filter command,$(firstwo
 setup := verification/toolchain/setup
 release := build/release
 reports := build/reports
-measure := verification/measurements/measure.py
+measure := verification/evidence/measure.py
 export PATH := $(CURDIR)/build/venv/bin:$(PATH)
 export PYTHONDONTWRITEBYTECODE := 1
 
@@ -90,22 +90,22 @@ soak: build ## Let the robot move for half an hour under OpenIGTLink clients and
 	@$(measure) soak python verification/soak/run.py --minutes $(or $(MINUTES),30)
 
 .PHONY: selftest selftest-all
-selftest: build ## Show that seeded faults turn tests and proofs red: a third, chosen by the commit
+selftest: build ## Show that seeded faults turn proofs red, and tests: of these a third, chosen by the commit
 	@tests/failure/run.py
 	@$(setup) packages provers
 	@pytest -m provers tests/integration
-	@$(measure) faults /usr/bin/python3 verification/mutation/faults.py
+	@verification/evidence/verify.py --report faults faults
 
 selftest-all: build ## Show that every seeded fault turns its test or proof red
 	@tests/failure/run.py --all
 	@$(setup) packages provers
 	@pytest -m provers tests/integration
-	@$(measure) faults /usr/bin/python3 verification/mutation/faults.py --all
+	@verification/evidence/verify.py --fresh --report faults faults
 
 .PHONY: verify
-verify: ## Climb the verification ladder: [FRESH=1] runs again what has not changed
+verify: ## Climb the verification ladder where inputs changed, and one rung drawn by the commit: [FRESH=1] all
 	@$(setup) packages python provers
-	@/usr/bin/python3 verification/evidence/verify.py
+	@verification/evidence/verify.py
 
 .PHONY: mutate mutate-proofs
 mutate: build ## Draw mutants of the core and show each to tests, conformance, proofs, contracts: [SEED=] [COUNT=400] [MATRIX=1]
@@ -120,11 +120,11 @@ mutate-proofs: build ## Show a hundred mutants to conformance, proofs and contra
 
 .PHONY: report keep-evidence
 report: setup ## Write and judge the trace report: [RELEASE=1] demands the long measurements, too
-	@python verification/measurements/archive.py restore
+	@python verification/evidence/keep.py restore
 	@python verification/trace/report.py $(if $(RELEASE),--release)
 
-keep-evidence: setup ## Keep the evidence of the long measurements with the sources, for other clones to report on
-	@python verification/measurements/archive.py keep
+keep-evidence: setup ## Keep evidence with the sources: other clones use it while its inputs are the same
+	@python verification/evidence/keep.py keep
 
 .PHONY: docs
 docs: setup ## Write the documentation site, with search and the code's call graphs, to build/docs/site

@@ -22,9 +22,9 @@ import gate
 import pages
 import walk
 from components import Component, bill_of_materials, npm_packages
+from expected import Check, read_checks
 from items import Items, fingerprint
 from matrix import as_csv, negative_lists, rows
-from measurements import Measurement, read_measurements
 from report import read_project, read_stated
 from results import SUITES, Result, Source, read_results
 from review import write_reviewed
@@ -36,9 +36,9 @@ LINKS = ROOT / "spec/requirements/links.toml"
 PLANTED = ROOT / "verification/trace/planted"
 DEFECTS = sorted(PLANTED.glob("*.toml"))
 LIBC = Component("libc6", "2.36", "pkg:deb/debian/libc6@2.36")
-RUNGS = ("cbmc", "wp", "model", "conformance", "misra")
-MEASUREMENTS = read_measurements(ROOT / "verification/measurements/measurements.toml")
-CAMPAIGN = Measurement("campaign", "Faults", "make campaign", "release", ("gate.c",), {"faults": 3})
+RUNGS = [Check(name, "A rung", "make verify", ()) for name in ("cbmc", "wp", "model", "conformance", "misra")]
+MEASUREMENTS = [check for check in read_checks() if check.target != "make verify"]
+CAMPAIGN = Check("campaign", "Faults", "make campaign", ("gate.c",), demanded="release", least={"faults": 3})
 
 
 def read_defect(path: Path) -> dict:
@@ -344,7 +344,7 @@ def test_without_evidence_every_result_is_unknown(tree: Tree) -> None:
 
 def test_a_result_is_no_better_than_its_rung(tree: Tree) -> None:
     for rung in RUNGS:
-        path = tree.path / f"build/evidence/{rung}.json"
+        path = tree.path / f"build/evidence/{rung.name}.json"
         document = json.loads(path.read_text("utf-8"))
         path.write_text(json.dumps(document | {"status": "UNKNOWN"}), "utf-8")
     results = read_results(Source(tree.path, "built", lambda _: True), RUNGS, ())
@@ -357,7 +357,7 @@ def campaign(
     """What a report says of the campaign that left this."""
     tree.measure("campaign", **left)
     source = Source(tree.path, commit, lambda _: current)
-    [result] = read_results(source, (), (), [CAMPAIGN], release)
+    [result] = read_results(source, [CAMPAIGN], (), release)
     return result
 
 
@@ -379,7 +379,7 @@ def test_a_measurement_counts_for_its_commit_and_while_its_inputs_are_the_same(t
 def test_a_measurement_without_figures_is_told_as_such(tree: Tree, clean: tuple[Items, str]) -> None:
     tree.measure("campaign", status="FAILED", figures={})
     source = Source(tree.path, "built", lambda _: False)
-    project = read_project(source, clean, RUNGS, [LIBC], [replace(CAMPAIGN, least={})])
+    project = read_project(source, clean, [*RUNGS, replace(CAMPAIGN, least={})], [LIBC])
     told = documents.results(gate.trace(project))
     assert "UID: CAMPAIGN" in told
     assert "STATEMENT: no figures" in told
@@ -398,7 +398,7 @@ def test_what_is_awaited_is_named_and_a_release_is_red_without_it(
 ) -> None:
     def reported(release: bool) -> gate.Trace:
         source = Source(tree.path, "built", lambda _: False)
-        project = read_project(source, clean, RUNGS, [LIBC], MEASUREMENTS, release)
+        project = read_project(source, clean, [*RUNGS, *MEASUREMENTS], [LIBC], release)
         return gate.trace(replace(project, reviewed=reviewed(clean[0])))
 
     tree.measure("faults")
@@ -426,15 +426,15 @@ def test_a_requirement_that_rests_on_an_awaited_measurement_alone_is_named(
         links.write('\n[results]\nSRS-K-001 = ["CAMPAIGN"]\n')
     stated = tree.stated()
     source = Source(tree.path, "built", lambda _: False)
-    of = gate.trace(read_project(source, stated, RUNGS, [LIBC], [CAMPAIGN]))
+    of = gate.trace(read_project(source, stated, [*RUNGS, CAMPAIGN], [LIBC]))
     assert gate.awaited(of)["Requirements that rest on one of them alone"] == ["SRS-K-001"]
     tree.measure("campaign")
-    of = gate.trace(read_project(source, stated, RUNGS, [LIBC], [CAMPAIGN]))
+    of = gate.trace(read_project(source, stated, [*RUNGS, CAMPAIGN], [LIBC]))
     assert gate.awaited(of)["Requirements that rest on one of them alone"] == []
 
 
 def test_without_evidence_no_measurement_passes(tree: Tree) -> None:
-    results = read_results(Source(tree.path, "built", lambda _: True), (), (), MEASUREMENTS)
+    results = read_results(Source(tree.path, "built", lambda _: True), MEASUREMENTS, ())
     by_demand = {one.name.upper(): one.demanded for one in MEASUREMENTS}
     assert {one.uid for one in results} == set(by_demand) >= {"BENCH", "CAMPAIGN", "FAULTS", "MUTATION"}
     for one in results:
@@ -456,7 +456,7 @@ demanded = "release"
 inputs = ["kernel/src/*"]
 least = { faults = 3 }
 """
-RUNG = 'command = "true"\ninputs = []\ncores = 1\nmemory_gb = 1\nstatus = "PASSED"\n'
+RUNG = 'title = "A rung"\ntarget = "make verify"\ncommand = "true"\ninputs = []\n'
 
 
 class Repository(Tree):
@@ -464,12 +464,12 @@ class Repository(Tree):
 
     def __init__(self, path: Path) -> None:
         super().__init__(path)
-        for name in ("trace", "evidence", "measurements"):
-            ignored = shutil.ignore_patterns("__pycache__", "planted")
+        for name in ("trace", "evidence"):
+            ignored = shutil.ignore_patterns("__pycache__", "planted", "kept")
             shutil.copytree(ROOT / "verification" / name, path / "verification" / name, ignore=ignored)
         shutil.copytree(ROOT / "docs/site", path / "docs/site", ignore=ignored)
-        rungs = "".join(f"[rung.{name}]\n{RUNG}[rung.{name}.figures]\n" for name in RUNGS)
-        self.write("verification/expected.toml", rungs)
+        rungs = "".join(f"[{rung.name}]\n{RUNG}" for rung in RUNGS)
+        self.write("verification/expected.toml", rungs + MEASURED)
         for name in ("libraries", "packages", "prover-packages", "requirements", "cbmc", "tlc"):
             self.write(f"verification/toolchain/{name}.txt", "")
         self.write("web/package.json", '{"dependencies": {}}')
@@ -477,7 +477,6 @@ class Repository(Tree):
         self.write(".gitignore", "/build/\n__pycache__/\n")
         self.write("CMakeLists.txt", "project(interlock VERSION 9.8.7)\n")
         self.write("verification/trace/papers.toml", PAPER)
-        self.write("verification/measurements/measurements.toml", MEASURED)
         self.measure("campaign")
         # Any program that needs the C library and nothing else.
         self.write("build/release/bin/interlock", "")

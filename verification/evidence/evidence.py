@@ -1,8 +1,9 @@
-"""What a rung of the verification ladder leaves in build/evidence/: one JSON file and its raw logs."""
+"""What a check, as a rung of the ladder, leaves in build/evidence/: one JSON file and its raw logs."""
 
 import json
 import os
 import platform
+import resource
 import subprocess
 import time
 from collections.abc import Mapping, Sequence
@@ -54,8 +55,19 @@ def machine() -> str:
     return f"{system}, Linux {platform.release()} {platform.machine()}, {os.cpu_count()} cores"
 
 
+def processor_s() -> float:
+    """Processor time of this program and of all that it ran: what load beside it hardly changes."""
+    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(one.ru_utime + one.ru_stime for one in used)
+
+
 def commit() -> str:
-    """The commit that the sources are at, with `+changes` when they differ from it."""
+    """The commit that the sources are at, with `+changes` when they differ from it.
+
+    A check that runs in a copy of its inputs is given the commit of their tree as SOURCE_COMMIT.
+    """
+    if given := os.environ.get("SOURCE_COMMIT"):
+        return given
 
     def git(*arguments: str) -> str:
         done = subprocess.run(["git", *arguments], cwd=ROOT, check=True, capture_output=True, text=True)
@@ -88,6 +100,7 @@ def write(
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
         "machine": machine(),
         "duration_s": round(time.monotonic() - started, 1),
+        "processor_s": round(processor_s(), 1),
         "figures": dict(figures),
         "supports": list(supports),
         "log": str(log_directory(rung).relative_to(EVIDENCE)),

@@ -107,7 +107,7 @@ def faults_of_rules(said: Mapping[str, Sequence[str]]) -> Iterator[str]:
 
     `said` gives the rungs that each guideline says to be proved by.
     """
-    expected = tomllib.loads((ROOT / "verification/expected.toml").read_text("utf-8"))["rung"]
+    expected = tomllib.loads((ROOT / "verification/expected.toml").read_text("utf-8"))
     # A rung's table may leave out figures that the machine decides; those have their limits in the rung.
     figures = {rung: {**expected[rung]["figures"], "stack_bytes": None} for rung in FIGURES}
     told = {(row.guideline, row.rung) for row in rule_rows()}

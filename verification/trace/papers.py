@@ -11,6 +11,7 @@ from pathlib import Path
 
 import item_units
 from diagrams import modules, processes
+from expected import read_checks
 from gate import Finding, Trace, alike
 from items import STRUCTURE, Item
 from markdown_it import MarkdownIt
@@ -194,16 +195,15 @@ def methods(source: Source) -> str:
 
 def rungs(source: Source) -> str:
     """The rungs of the ladder with the exact figures that decide them."""
-    path = source.trace.project.root / "verification/expected.toml"
-    expected = tomllib.loads(path.read_text("utf-8"))["rung"]
     lines = [
         (
-            name,
-            one["command"],
-            one["status"],
-            ", ".join(f"{key} {value}" for key, value in one["figures"].items()),
+            one.name,
+            one.command,
+            one.status,
+            ", ".join(f"{name} {value}" for name, value in one.figures.items()),
         )
-        for name, one in expected.items()
+        for one in read_checks(source.trace.project.root / "verification/expected.toml")
+        if one.target == "make verify"
     ]
     return texts(("rung", "run by", "must come to", "exact figures"), lines)
 

@@ -2,7 +2,7 @@
 """Writes the trace report of this commit into build/report and judges it.
 
 Usage: report.py [--gate-only] [--release]. Without --release the measurements that only a release demands are
-named as awaited where they are missing (verification/measurements); with it they are lines that are missing.
+named as awaited where they are missing; with it they are lines that are missing.
 
 Reads spec/requirements by StrictDoc, the functions of kernel/src, and the evidence in build/evidence and
 build/reports. Writes index.html, matrix.html, trace.html, results.html, matrix.csv, trace.json, sbom.json,
@@ -17,12 +17,11 @@ import shutil
 import sys
 import tomllib
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
-sys.path += [str(Path(__file__).resolve().parents[1] / name) for name in ("evidence", "measurements")]
+sys.path.append(str(Path(__file__).resolve().parents[1] / "evidence"))
 
 import documents
 import evidence
@@ -33,11 +32,10 @@ import papers
 import release
 import walk
 from components import Component, bill_of_materials, shipped
+from expected import Check, UnusableError, read_checks
 from exporter import RefusedError, export, stage
 from items import Items, read_items
-from ladder import UnusableError, content_key, read_expected
 from matrix import Row, as_csv, negative_lists, rows
-from measurements import Measurement, read_measurements
 from results import Source, read_results
 from sources import functions_of, read_links
 from tool_components import tools
@@ -52,14 +50,6 @@ def version(root: Path) -> str:
     return re.search(r"project\(interlock VERSION (\S+)", (root / "CMakeLists.txt").read_text("utf-8"))[1]
 
 
-def is_current(root: Path, name: str, key: Callable[[], str]) -> bool:
-    """Whether the evidence of a rung or measurement was made from the inputs that stand here now."""
-    try:
-        return (root / "build/evidence" / f"{name}.key").read_text("utf-8") == key()
-    except (OSError, UnusableError):
-        return False
-
-
 def read_stated(root: Path, output: Path) -> tuple[Items, str]:
     """What spec/requirements says, and what StrictDoc printed. Raises RefusedError when it takes it not."""
     requirements = root / "spec/requirements"
@@ -71,14 +61,13 @@ def read_stated(root: Path, output: Path) -> tuple[Items, str]:
 def read_project(
     source: Source,
     stated: tuple[Items, str],
-    rungs: Iterable[str],
+    checks: Iterable[Check],
     components: Sequence[Component],
-    measurements: Iterable[Measurement] = (),
     release: bool = False,
 ) -> gate.Project:
-    """All that the gate looks at: what is stated, sources, evidence of `rungs` and `measurements`.
+    """All that the gate looks at: what is stated, sources, evidence of `checks`.
 
-    Of the measurements those that a release demands are demanded only when it is one.
+    Those that a release demands are demanded only when it is one.
     """
     requirements = source.root / "spec/requirements"
     items, printed = stated
@@ -87,7 +76,7 @@ def read_project(
         items=items,
         functions=functions_of(source.root),
         links=read_links(requirements / "links.toml"),
-        results=read_results(source, rungs, measurements=measurements, release=release),
+        results=read_results(source, checks, release=release),
         reviewed=read_toml(requirements / "reviewed.toml"),
         clauses=read_toml(requirements / "clauses.toml"),
         components=components,
@@ -167,14 +156,11 @@ def main() -> int:
     output = root / "build/report"
     commit = evidence.commit()
     try:
-        rungs = read_expected(root / "verification/expected.toml")
-        measurements = read_measurements(root / "verification/measurements/measurements.toml")
-        current = {one.name: is_current(root, one.name, partial(content_key, one)) for one in rungs}
-        names = list(current)
-        current |= {one.name: is_current(root, one.name, one.key) for one in measurements}
+        checks = read_checks()
+        current = {check.name: check.holds() for check in checks}
         source = Source(root, commit, current.__getitem__)
         stated_now = read_stated(root, output)
-        project = read_project(source, stated_now, names, shipped(root), measurements, arguments.release)
+        project = read_project(source, stated_now, checks, shipped(root), arguments.release)
         if not arguments.gate_only:
             printed = write_documents(gate.trace(project), output)
             project = replace(project, exporter_log=project.exporter_log + printed)

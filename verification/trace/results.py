@@ -14,13 +14,13 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-sys.path.append(str(Path(__file__).resolve().parents[1] / "measurements"))
+sys.path.append(str(Path(__file__).resolve().parents[1] / "evidence"))
 
-from measurements import Measurement
+from evidence import SOUND
+from expected import Check
 
-SOUND = ("PASSED", "BOUNDED")
 AWAITED = "AWAITED"
-"""The status of a measurement that a release demands, that this report does not, and that is not there."""
+"""The status of a check that a release demands, that this report does not, and that is not there."""
 PROPERTY = re.compile(r"(?<![A-Za-z0-9])(P(?:1[0-6]|[1-9])|L[12])(?=_)")
 """A property's identifier where a name begins with it: P1_gate, test_P2_P8_..., ensures P7_drive."""
 TYPES = "TypeOK"
@@ -70,7 +70,7 @@ class Source:
     commit: str
     """The commit for which the report is made, with `+changes` where the tree differs from it."""
     is_current: Callable[[str], bool]
-    """Whether a rung's inputs are those from which its evidence was made."""
+    """Whether a check's inputs are those from which its evidence was made."""
 
     def made(self, commit: str) -> bool:
         """Whether what names `commit` was made from it. Two trees with changes of their own may differ."""
@@ -278,42 +278,24 @@ def conformance(source: Source, rung: Rung) -> Iterator[Result]:
         )
 
 
-def whole(title: str) -> Callable[[Source, Rung], Iterator[Result]]:
-    """A converter for a rung that judges one thing."""
-
-    def convert(_: Source, rung: Rung) -> Iterator[Result]:
-        yield rung.result(
-            rung.name.upper(),
-            title,
-            "Analysis",
-            rung.status,
-            bounds=figures_in_words(rung.figures),
-            supports=rung.supports,
-        )
-
-    return convert
-
-
 CONVERTERS: Mapping[str, Callable[[Source, Rung], Iterator[Result]]] = {
     "cbmc": cbmc,
     "wp": contracts,
     "model": model,
     "conformance": conformance,
-    "misra": whole("MISRA C:2012, gcc -fanalyzer and clang-tidy on the kernel"),
-    "coverage": whole("Statement, branch and MC/DC coverage of the core by its unit tests"),
-    "target": whole("The same bits on x86-64, Cortex-A9 and Cortex-M4"),
 }
+"""What turns the evidence of a check that judges several things into results; others give one result each."""
 
 
-def measured(source: Source, one: Measurement, release: bool) -> Result:
-    """The result of a measurement. It is fresh when it was made from this commit or from the same inputs.
+def whole(source: Source, one: Check, release: bool) -> Result:
+    """The result of a check that judges one thing. It is fresh when made from this commit or the same inputs.
 
     One that is missing, stale or too short is AWAITED where a report does not demand it, so that it neither
     passes nor fails.
     """
     rung = read_rung(source, one.name)
     if rung is None:
-        missing = missing_rung(one.name, f"{one.title}: no evidence", one.target)
+        missing = missing_result(one.name, f"{one.title}: no evidence", one.target)
         return missing if release or one.demanded == "commit" else replace(missing, status=AWAITED)
     log = json.loads((source.evidence / f"{one.name}.json").read_text("utf-8")).get("log", "")
     log = log if log.startswith("build/") else f"build/evidence/{log or one.name}"
@@ -329,17 +311,17 @@ def measured(source: Source, one: Measurement, release: bool) -> Result:
     return replace(result, status=status, supports=rung.supports)
 
 
-def missing_rung(name: str, title: str = "", target: str = "") -> Result:
-    """Stands for a rung that left no evidence, so that its absence is a line of the report."""
+def missing_result(name: str, title: str, target: str) -> Result:
+    """Stands for a check or suite that left nothing, so that its absence is a line of the report."""
     return Result(
         uid=name.upper(),
-        title=title or f"Rung {name}: no evidence",
+        title=title,
         method="Analysis",
         status="UNKNOWN",
         tool="none",
         commit="",
         date="",
-        bounds=f"not run; {target} makes it" if target else "not run",
+        bounds=f"not run; {target} makes it",
         log=f"build/evidence/{name}.json",
         supports=frozenset(),
         fresh=False,
@@ -370,7 +352,11 @@ def suites(source: Source, suite: str) -> Iterator[Result]:
     except (OSError, json.JSONDecodeError):
         run = {"commit": "", "date": "", "tool": "unknown"}
     if not cases:
-        yield replace(missing_rung(f"test-{suite}"), method="Test", log=f"build/reports/{suite}.xml")
+        yield replace(
+            missing_result(f"test-{suite}", f"Suite {suite}: no report", "make test"),
+            method="Test",
+            log=f"build/reports/{suite}.xml",
+        )
     groups: dict[str, list[tuple[str, bool]]] = {}
     for case in cases:
         group, name = test_group(suite, case)
@@ -398,22 +384,19 @@ def suites(source: Source, suite: str) -> Iterator[Result]:
 
 
 def read_results(
-    source: Source,
-    rungs: Iterable[str],
-    names: Sequence[str] = SUITES,
-    measurements: Iterable[Measurement] = (),
-    release: bool = False,
+    source: Source, checks: Iterable[Check], names: Sequence[str] = SUITES, release: bool = False
 ) -> list[Result]:
-    """All results, by their UIDs. A rung or suite that left nothing is UNKNOWN.
+    """All results, by their UIDs. A check or suite that left nothing is UNKNOWN.
 
-    So is a measurement, when `release` or every report demands it; otherwise it is AWAITED.
+    A check that a release alone demands, in a report that is of none, is AWAITED instead.
     """
     found: list[Result] = []
-    for name in rungs:
-        rung = read_rung(source, name)
-        convert = CONVERTERS.get(name, whole(f"Rung {name}"))
-        found += convert(source, rung) if rung else [missing_rung(name)]
-    found += [measured(source, one, release) for one in measurements]
+    for check in checks:
+        rung = read_rung(source, check.name)
+        if rung and check.name in CONVERTERS:
+            found += CONVERTERS[check.name](source, rung)
+        else:
+            found.append(whole(source, check, release))
     for name in names:
         found += suites(source, name)
     return sorted(found, key=lambda result: result.uid)
