@@ -125,6 +125,7 @@ report: setup ## Write and judge the trace report: [RELEASE=1] demands the long 
 
 keep-evidence: setup ## Keep evidence with the sources: other clones use it while its inputs are the same
 	@python verification/evidence/keep.py keep
+	@cp $(release)/clean-units verification/evidence/kept/
 
 .PHONY: docs
 docs: setup ## Write the documentation site, with search and the code's call graphs, to build/docs/site
