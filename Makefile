@@ -4,6 +4,7 @@ SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := build
 MAKEFLAGS += --no-print-directory
+.NOTPARALLEL:
 
 ROBOT ?= neuro
 PORT ?= 8080
@@ -25,142 +26,152 @@ web_sources = $(shell find web kernel/src kernel/include spec/openapi.yaml -name
 help: ## List the targets
 	@sed -nE 's/^([a-z-]+):.*## (.*)/\1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 18
 
-# Asked for by name it brings the provers, too; as what a build rests on it does without.
 .PHONY: setup
-setup: ## Install what is missing: Debian packages, Python environment, Node, node modules, Ruckig, provers
-	@$(setup) packages python libraries web $(if $(filter setup,$(MAKECMDGOALS)),provers)
+setup: ## Install everything that any target needs; each target installs what it needs by itself
+	@$(setup) lint docs bench provers
+
+# setup-SET installs what the set needs (verification/toolchain/setup).
+setup-%: FORCE
+	@$(setup) $*
+.PHONY: FORCE
+FORCE:
 
 .PHONY: generate
 generate: ## Write the tables that come from spec/catalog.toml
 	@/usr/bin/python3 spec/generate_catalog.py
 
-$(release)/build.ninja: CMakePresets.json | setup
-	@echo "build: configuring"
+$(release)/build.ninja: CMakePresets.json | setup-run
 	@mkdir -p $(release)
-	@cmake --preset release >$(release)/configure.log 2>&1 || { cat $(release)/configure.log; exit 1; }
+	@cmake --preset release -DINTERLOCK_TESTS=OFF >$(release)/configure.log 2>&1 || { cat $(release)/configure.log; exit 1; }
 
-build/stamps/console: $(web_sources) | setup
+# The same build with tests, benches and studies: what was compiled already is kept.
+$(release)/tests.configured: CMakePresets.json | setup-test $(release)/build.ninja
+	@cmake --preset release -DINTERLOCK_TESTS=ON >$(release)/configure.log 2>&1 || { cat $(release)/configure.log; exit 1; }
+	@touch $@
+
+build/stamps/console: $(web_sources) | setup-run
 	@echo "build: console"
 	@npm --prefix web run --silent build -- --logLevel warn
+	@mkdir -p $(@D)
 	@touch $@
 
 # What ninja says about steps that are always run is no news; the rest is the progress of the build.
-.PHONY: build
-build: setup $(release)/build.ninja build/stamps/console ## Build everything (the default)
-	@ninja -C $(release) | sed -uE '/: Entering directory|Re-checking globbed|Reading the commit|no work to do/d'
+ninja = ninja -C $(release) $(1) | sed -uE '/: Entering directory|Re-checking globbed|Reading the commit|no work to do/d'
+
+.PHONY: build build-tests
+build: setup-run $(release)/build.ninja build/stamps/console ## Build what `make run` starts (the default)
+	@$(call ninja,programs)
+
+build-tests: setup-test $(release)/tests.configured build/stamps/console
+	@$(call ninja,all)
 
 .PHONY: run
 run: build ## Start simulated robot, kernel, app and console: [ROBOT=neuro|prostate] [PORT=8080]
 	@exec $(release)/bin/interlock run --robot $(ROBOT) --port $(PORT)
 
 .PHONY: test test-unit test-console test-integration test-network test-browser
-test: build ## Run the unit, integration, network (as root) and browser tests; reports in build/reports/
+test: build-tests ## Run the unit, integration, network (as root) and browser tests; reports in build/reports/
 	@$(MAKE) --keep-going test-unit test-console test-integration test-network test-browser
 
-test-unit: build ## Run the GoogleTest programs
+test-unit: build-tests ## Run the GoogleTest programs
 	@verification/evidence/begin_tests.py unit
 	@ctest --preset release --progress --no-tests=error --output-junit $(CURDIR)/$(reports)/unit.xml
 
-test-console: setup ## Run the console's unit tests, and compare its kernel with the native one
+test-console: setup-test ## Run the console's unit tests, and compare its kernel with the native one
 	@verification/evidence/begin_tests.py console
 	@npm --prefix web run --silent test -- --reporter=default --reporter=junit --outputFile=../$(reports)/console.xml
 
-test-integration: build ## Run the tests on real processes
+test-integration: build-tests ## Run the tests on real processes
 	@verification/evidence/begin_tests.py integration
 	@pytest --numprocesses=3 --dist=loadscope -m "not provers and not network" --junitxml=$(reports)/integration.xml tests/integration
 
-test-network: build ## Run the tests that pull a cable: they need root, for a network namespace
+test-network: build-tests ## Run the tests that pull a cable: they need root, for a network namespace
 	@verification/evidence/begin_tests.py network
 	@pytest -m network --junitxml=$(reports)/network.xml tests/integration
 
-test-browser: build ## Run the tests that click through the console
+test-browser: build-tests ## Run the tests that click through the console
 	@verification/evidence/begin_tests.py browser
 	@npm --prefix web run --silent test:browser
 
 .PHONY: test-sanitizers
-test-sanitizers: setup ## Run the unit tests under the address and undefined-behaviour sanitizers
+test-sanitizers: setup-bench ## Run the unit tests under the address and undefined-behaviour sanitizers
 	@$(measure) sanitizers python verification/sanitizers/run.py
 
 .PHONY: fuzz
-fuzz: setup ## Throw bytes at the OpenIGTLink decoders under sanitizers: [FUZZ_SECONDS=30 | FUZZ_RUNS=10000000]
+fuzz: setup-bench ## Throw bytes at the OpenIGTLink decoders under sanitizers: [FUZZ_SECONDS=30 | FUZZ_RUNS=10000000]
 	@$(measure) fuzz tests/fuzz/run.py $(if $(FUZZ_RUNS),runs $(FUZZ_RUNS),seconds $(FUZZ_SECONDS))
 
 .PHONY: soak
-soak: build ## Let the robot move for half an hour under OpenIGTLink clients and reconnect storms: [MINUTES=30]
+soak: build-tests ## Let the robot move for half an hour under OpenIGTLink clients and reconnect storms: [MINUTES=30]
 	@$(measure) soak python verification/soak/run.py --minutes $(or $(MINUTES),30)
 
 .PHONY: selftest selftest-all
-selftest: build ## Show that seeded faults turn proofs red, and tests: of these a third, chosen by the commit
+selftest: setup-provers build-tests ## Show that seeded faults turn proofs red, and tests: of these a third, chosen by the commit
 	@tests/failure/run.py
-	@$(setup) packages provers
 	@pytest -m provers tests/integration
 	@verification/evidence/verify.py --report faults faults
 
-selftest-all: build ## Show that every seeded fault turns its test or proof red
+selftest-all: setup-provers build-tests ## Show that every seeded fault turns its test or proof red
 	@tests/failure/run.py --all
-	@$(setup) packages provers
 	@pytest -m provers tests/integration
 	@verification/evidence/verify.py --fresh --report faults faults
 
 .PHONY: verify
-verify: ## Climb the verification ladder where inputs changed, and one rung drawn by the commit: [FRESH=1] all
-	@$(setup) packages python provers
+verify: setup-provers ## Climb the verification ladder where inputs changed, and one rung drawn by the commit: [FRESH=1] all
 	@verification/evidence/verify.py
 
 .PHONY: mutate mutate-proofs
-mutate: build ## Draw mutants of the core and show each to tests, conformance, proofs, contracts: [SEED=] [COUNT=400] [MATRIX=1]
-	@$(setup) packages provers
+mutate: setup-provers build-tests ## Draw mutants of the core and show each to tests, conformance, proofs, contracts: [SEED=] [COUNT=400] [MATRIX=1]
 	@$(measure) mutation /usr/bin/python3 verification/mutation/run.py --count $(or $(COUNT),400) \
 	  $(if $(SEED),--seed $(SEED)) $(if $(MATRIX),--matrix)
 
-mutate-proofs: build ## Show a hundred mutants to conformance, proofs and contracts alone: [SEED=] [COUNT=100] [MATRIX=1]
-	@$(setup) packages provers
+mutate-proofs: setup-provers build-tests ## Show a hundred mutants to conformance, proofs and contracts alone: [SEED=] [COUNT=100] [MATRIX=1]
 	@/usr/bin/python3 verification/mutation/run.py --without-tests --each 0 --count $(or $(COUNT),100) \
 	  $(if $(SEED),--seed $(SEED)) $(if $(MATRIX),--matrix)
 
 .PHONY: report keep-evidence
-report: setup ## Write and judge the trace report: [RELEASE=1] demands the long measurements, too
+report: setup-docs ## Write and judge the trace report: [RELEASE=1] demands the long measurements, too
 	@python verification/evidence/keep.py restore
 	@python verification/trace/report.py $(if $(RELEASE),--release)
 
-keep-evidence: setup ## Keep evidence with the sources: other clones use it while its inputs are the same
+keep-evidence: setup-docs ## Keep evidence with the sources: other clones use it while its inputs are the same
 	@python verification/evidence/keep.py keep
 	@cp $(release)/clean-units verification/evidence/kept/
 
 .PHONY: docs
-docs: setup ## Write the documentation site, with search and the code's call graphs, to build/docs/site
+docs: setup-docs ## Write the documentation site, with search and the code's call graphs, to build/docs/site
 	@python docs/site/build.py
 
 .PHONY: campaign campaign-selftest
-campaign: build ## Throw faults at kernel core and plant: [SECONDS=300 | TICKS=] [SEED=1] [SCHEDULER=]
+campaign: build-tests ## Throw faults at kernel core and plant: [SECONDS=300 | TICKS=] [SEED=1] [SCHEDULER=]
 	@$(measure) campaign python verification/campaign/run.py --seed $(or $(SEED),1) $(campaign_length) \
 	  $(if $(SCHEDULER),--scheduler $(SCHEDULER))
 
-campaign-selftest: build ## Show that the campaign finds each seeded fault of the kernel within a minute
+campaign-selftest: build-tests ## Show that the campaign finds each seeded fault of the kernel within a minute
 	@$(measure) campaign_selftest python verification/campaign/selftest.py
 
 .PHONY: scenarios
-scenarios: build ## Kill, freeze, starve and flood the real processes, 200 times: [SEED=1] [COUNT=200] [ONLY=number]
+scenarios: build-tests ## Kill, freeze, starve and flood the real processes, 200 times: [SEED=1] [COUNT=200] [ONLY=number]
 	@$(if $(ONLY),,$(measure) scenarios) python verification/scenarios/run_scenarios.py --seed $(or $(SEED),1) $(if $(ONLY),--only $(ONLY),--count $(or $(COUNT),200))
 
 .PHONY: bench
-bench: build ## Measure step, loop, reaction, link and rate beside cyclictest: [DURATION=10] [RATE_SECONDS=2]
+bench: setup-bench build-tests ## Measure step, loop, reaction, link and rate beside cyclictest: [DURATION=10] [RATE_SECONDS=2]
 	@$(measure) bench python verification/bench/run.py --duration $(or $(DURATION),10) --rate-seconds $(or $(RATE_SECONDS),2)
 
 .PHONY: bench-watch
-bench-watch: build ## Watch the loop of one set-up for an hour beside cyclictest: [DURATION=3600] [SETUP=shipped_loaded]
+bench-watch: setup-bench build-tests ## Watch the loop of one set-up for an hour beside cyclictest: [DURATION=3600] [SETUP=shipped_loaded]
 	@python verification/bench/watch.py --duration $(or $(DURATION),3600) --setup $(or $(SETUP),shipped_loaded)
 
 .PHONY: bench-console
-bench-console: build ## Measure load, response, memory and the app's processor time of the console: [MINUTES=10]
+bench-console: build-tests ## Measure load, response, memory and the app's processor time of the console: [MINUTES=10]
 	@$(measure) console python verification/console/run.py --minutes $(or $(MINUTES),10)
 
 .PHONY: pictures
-pictures: build ## Take the manual's pictures of every page, in both themes, into build/pictures/
+pictures: build-tests ## Take the manual's pictures of every page, in both themes, into build/pictures/
 	@npm --prefix web run --silent measure -- pictures.measure.ts
 
 .PHONY: study
-study: build ## Measure steering and membrane detection on simulated insertions against their limits
+study: build-tests ## Measure steering and membrane detection on simulated insertions against their limits
 	@$(measure) steering python verification/steering/run.py
 
 .PHONY: install
@@ -168,15 +179,15 @@ install: build ## Install programs, robot files and console: [PREFIX=/usr/local]
 	@cmake --install $(release) --prefix $(PREFIX) >/dev/null
 
 .PHONY: package
-package: build ## Make the Debian package, in build/release/package/
+package: setup-test build ## Make the Debian package, in build/release/package/
 	@cd $(release) && cpack --config CPackConfig.cmake >package.log || { cat package.log; exit 1; }
 	@ls $(release)/package/*.deb
 
 .PHONY: lint format
-lint: build ## Check style, naming, generated files and leftovers
+lint: setup-lint build-tests ## Check style, naming, generated files and leftovers
 	@verification/toolchain/lint
 
-format: setup ## Rewrite C, C++ and Python in the project's style
+format: setup-lint ## Rewrite C, C++ and Python in the project's style
 	@git ls-files -co --exclude-standard '*.c' '*.h' '*.cpp' '*.hpp' \
 	  | xargs grep -sL 'Generated from spec/catalog.toml' | xargs clang-format-19 -i
 	@ruff check --quiet --fix

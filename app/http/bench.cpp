@@ -22,7 +22,7 @@ Problem pedal_lapsed() {
           .next_step = "Press it again."};
 }
 
-Problem problem_of(const BenchError& error) {
+Problem bench_problem(const BenchError& error) {
   if (error.kind == BenchError::Kind::refused) {
     return {.status = Status::unprocessable_entity, .code = "INVALID", .detail = error.detail};
   }
@@ -61,7 +61,7 @@ boost::asio::awaitable<Reply> Bench::command(std::string name, json fields, cons
   fields["command"] = std::move(name);
   const BenchReply reply = co_await client_->command(std::move(fields));
   if (!reply) {
-    co_return fail(problem_of(reply.error()));
+    co_return fail(bench_problem(reply.error()));
   }
   co_return Success{Status::ok, *reply};
 }

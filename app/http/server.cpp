@@ -42,7 +42,7 @@ void add_security_headers(Response& response) {
   response.set("Cross-Origin-Resource-Policy", "same-origin");
 }
 
-Problem problem_of(const beast::error_code& error) {
+Problem unreadable_request(const beast::error_code& error) {
   if (error == http::error::body_limit) {
     return {.status = Status::payload_too_large,
             .code = "TOO_LARGE",
@@ -345,7 +345,7 @@ asio::awaitable<void> Server::refuse(Connection& connection, const beast::error_
   if (!is_protocol_error(error)) {
     co_return;
   }
-  co_await answer(connection, problem_response(problem_of(error)), false, false);
+  co_await answer(connection, problem_response(unreadable_request(error)), false, false);
   beast::error_code ended;
   connection.stream.socket().shutdown(tcp::socket::shutdown_send, ended);
   connection.stream.expires_after(drain_timeout);

@@ -68,7 +68,7 @@ class StoreGateway {
     if (!wait->result) {
       co_return tl::make_unexpected(too_late(wait->order));
     }
-    co_return std::move(*wait->result).map_error(problem_of);
+    co_return std::move(*wait->result).map_error([](const StoreError& error) { return problem_of(error); });
   }
 
   /** Writes a record soon, and those that are noted at about the same time with it. Nobody waits for it. */

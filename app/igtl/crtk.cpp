@@ -5,14 +5,8 @@
 namespace interlock::igtl {
 namespace {
 
-using Reading = tl::expected<Wish, Unwanted>;
-
 constexpr const char* arm = "arm/";
 constexpr std::string_view measured_cp = "measured_cp";
-
-tl::unexpected<Unwanted> unwanted(StatusCode code, std::string reason) {
-  return tl::unexpected(Unwanted{code, std::move(reason)});
-}
 
 /** Positions, and velocities below them once these are known. */
 Array joint_states(const RobotState& state) {

@@ -11,12 +11,6 @@
 namespace interlock::igtl {
 namespace {
 
-using Reading = tl::expected<Wish, Unwanted>;
-
-tl::unexpected<Unwanted> unwanted(StatusCode code, std::string reason) {
-  return tl::unexpected(Unwanted{code, std::move(reason)});
-}
-
 tl::unexpected<Unwanted> wrong_type(const Message& message, const char* expected) {
   return unwanted(StatusCode::configuration,
                   message.device + " came as " + type_of(message.body) + "; expected " + expected + ".");

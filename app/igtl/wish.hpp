@@ -11,6 +11,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tl/expected.hpp>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -123,5 +125,12 @@ struct Unwanted {
   StatusCode code = StatusCode::unknown_error;
   std::string reason;
 };
+
+/** What a message asks for, or why it is refused. */
+using Reading = tl::expected<Wish, Unwanted>;
+
+inline tl::unexpected<Unwanted> unwanted(StatusCode code, std::string reason) {
+  return tl::unexpected(Unwanted{code, std::move(reason)});
+}
 
 }  // namespace interlock::igtl
