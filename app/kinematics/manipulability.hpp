@@ -26,7 +26,7 @@ struct Manipulability {
 /** A Jacobian whose entries have no unit any more. */
 using ScaledJacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 7>;
 
-/** Of a scaled Jacobian. */
+/** Of a scaled Jacobian; all zero when an entry is not finite. */
 Manipulability manipulability_of(const ScaledJacobian& scaled) noexcept;
 
 /** Of a Jacobian with columns as `fields`; the characteristic length lies between 0.001 and 10 000 mm. */
