@@ -21,9 +21,10 @@ typedef struct {
   /**
    * One transaction with all cards: sends frames and lamps of `out`, fills in `in`.
    *
-   * Bounded in time, allocates nothing. When it fails, `transaction_done` and `frames_received` are 0 and
-   * the contacts keep what was last read of them: no card is valid in such a tick, so nothing is driven,
-   * and the kernel locks for the bus instead of a contact that nobody opened.
+   * Bounded in time, allocates nothing; with the simulated clock alone it waits for its plant. When it fails,
+   * `transaction_done` and `frames_received` are 0 and the contacts keep what was last read of them: no card
+   * is valid in such a tick, so nothing is driven, and the kernel locks for the bus instead of a contact that
+   * nobody opened.
    *
    * @param tick for the record of the other side.
    * @return false when there is no other side to wait for, so that the loop must pace itself.

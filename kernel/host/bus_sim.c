@@ -21,9 +21,13 @@
  * enough for a plant that a busy machine keeps from running: its lateness is shown as overruns.
  */
 #define REAL_PATIENCE_NS (200u * (uint64_t)NS_PER_MS)
-/** Simulated clock: only a plant that is dead or stopped takes so long. */
-#define SIM_PATIENCE_NS (2000u * (uint64_t)NS_PER_MS)
+/** Simulated clock: a late plant is a late host, so that only the end of the connection ends the wait. */
+#define SIM_PATIENCE_NS UINT64_MAX
+/** Longest sleep between looks at the connection and the stop flag. */
+#define LOOK_INTERVAL_NS (50u * (uint64_t)NS_PER_MS)
 #define RECONNECT_INTERVAL_MS 50
+#define GREETING_PATIENCE_S 20
+#define REGREETING_PATIENCE_S 2
 
 static bool check_hello(const ilk_sim_hello_t *ours, const ilk_sim_hello_t *theirs, ilk_error_t *error) {
   if (theirs->magic != ours->magic || theirs->version != ours->version) {
@@ -41,8 +45,8 @@ static bool check_hello(const ilk_sim_hello_t *ours, const ilk_sim_hello_t *thei
   return true;
 }
 
-static bool greet(int descriptor, const ilk_sim_hello_t *hello, ilk_error_t *error) {
-  const struct timeval patience = {.tv_sec = 2};
+static bool greet(int descriptor, const ilk_sim_hello_t *hello, time_t patience_s, ilk_error_t *error) {
+  const struct timeval patience = {.tv_sec = patience_s};
   ilk_sim_hello_t answer;
   (void)setsockopt(descriptor, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
   if (send(descriptor, hello, sizeof *hello, MSG_NOSIGNAL) != (ssize_t)sizeof *hello) {
@@ -65,7 +69,7 @@ static bool greet(int descriptor, const ilk_sim_hello_t *hello, ilk_error_t *err
 }
 
 /** Returns a connected descriptor, or -1 with the reason. */
-static int connect_plant(const ilk_bus_sim_t *sim, ilk_error_t *error) {
+static int connect_plant(const ilk_bus_sim_t *sim, time_t patience_s, ilk_error_t *error) {
   const int descriptor = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
   if (descriptor < 0) {
     (void)ilk_fail(error, "cannot create the bus socket: %s", strerror(errno));
@@ -74,7 +78,7 @@ static int connect_plant(const ilk_bus_sim_t *sim, ilk_error_t *error) {
   if (connect(descriptor, (const struct sockaddr *)&sim->address, sizeof sim->address) != 0) {
     (void)ilk_fail(error, "cannot connect to the plant at '%s': %s; start interlock-sim first",
                    sim->address.sun_path, strerror(errno));
-  } else if (greet(descriptor, &sim->hello, error)) {
+  } else if (greet(descriptor, &sim->hello, patience_s, error)) {
     return descriptor;
   } else {
     /* `greet` has given the reason. */
@@ -97,14 +101,14 @@ static void swap_in(ilk_bus_sim_t *sim, int connected) {
 
 static bool reconnect(ilk_bus_sim_t *sim) {
   ilk_error_t error;
-  int connected = connect_plant(sim, &error);
+  int connected = connect_plant(sim, REGREETING_PATIENCE_S, &error);
   (void)fprintf(stderr, "bus: the plant went away%s%s\n", connected < 0 ? ": " : "",
                 connected < 0 ? error.text : "");
   while (connected < 0) {
     if (stop_within(sim, RECONNECT_INTERVAL_MS)) {
       return false;
     }
-    connected = connect_plant(sim, &error);
+    connected = connect_plant(sim, REGREETING_PATIENCE_S, &error);
   }
   swap_in(sim, connected);
   (void)fprintf(stderr, "bus: connected to the plant again\n");
@@ -123,20 +127,21 @@ static void *watch(void *argument) {
   }
 }
 
-bool ilk_bus_sim_open(ilk_bus_sim_t *sim, const char *path, ilk_clock_t clock, uint32_t period_us,
-                      uint32_t config_crc, ilk_error_t *error) {
+bool ilk_bus_sim_open(ilk_bus_sim_t *sim, const char *path, ilk_clock_t clock, const ilk_config_t *config,
+                      const volatile sig_atomic_t *stopped, ilk_error_t *error) {
   *sim = (ilk_bus_sim_t){.patience_ns = clock == ILK_CLOCK_REAL ? REAL_PATIENCE_NS : SIM_PATIENCE_NS,
-                         .period_ns = (uint64_t)period_us * 1000u,
+                         .period_ns = (uint64_t)config->period_us * 1000u,
+                         .stopped = stopped,
                          .hello = {.magic = ILK_SIM_MAGIC,
                                    .version = ILK_SIM_VERSION,
                                    .frame_words = ILK_FRAME_WORDS,
-                                   .period_us = period_us,
+                                   .period_us = config->period_us,
                                    .clock = clock,
-                                   .config_crc = config_crc}};
+                                   .config_crc = config->crc}};
   if (!ilk_unix_address(path, &sim->address, error)) {
     return false;
   }
-  sim->descriptor = connect_plant(sim, error);
+  sim->descriptor = connect_plant(sim, GREETING_PATIENCE_S, error);
   if (sim->descriptor < 0) {
     return false;
   }
@@ -158,21 +163,35 @@ void ilk_bus_sim_close(ilk_bus_sim_t *sim) {
   (void)close(sim->descriptor);
 }
 
+static bool has_new_connection(const ilk_bus_sim_t *sim) {
+  return sim->loop_connection != __atomic_load_n(&sim->connections, __ATOMIC_ACQUIRE);
+}
+
 static void note_new_connection(ilk_bus_sim_t *sim) {
-  const uint32_t connections = __atomic_load_n(&sim->connections, __ATOMIC_ACQUIRE);
-  if (sim->loop_connection != connections) {
-    sim->loop_connection = connections;
+  if (has_new_connection(sim)) {
+    sim->loop_connection = __atomic_load_n(&sim->connections, __ATOMIC_ACQUIRE);
     sim->awaiting_reply = false;
   }
+}
+
+/** Whether there is something to receive, or the end of the connection to see, within `patience_ns`. */
+static bool becomes_readable(const ilk_bus_sim_t *sim, uint64_t patience_ns) {
+  const struct timespec look = ilk_timespec(patience_ns < LOOK_INTERVAL_NS ? patience_ns : LOOK_INTERVAL_NS);
+  const uint64_t begun_ns = ilk_now_ns();
+  do {
+    struct pollfd wanted = {.fd = sim->descriptor, .events = POLLIN};
+    if (ppoll(&wanted, 1, &look, NULL) > 0) {
+      return true;
+    }
+  } while (*sim->stopped == 0 && !has_new_connection(sim) && ilk_now_ns() - begun_ns < patience_ns);
+  return false;
 }
 
 typedef enum { REPLY_NONE, REPLY_RECEIVED, REPLY_LOST } reply_result_t;
 
 static reply_result_t receive_reply(ilk_bus_sim_t *sim, uint64_t patience_ns) {
-  struct pollfd wanted = {.fd = sim->descriptor, .events = POLLIN};
-  const struct timespec patience = ilk_timespec(patience_ns);
-  if (ppoll(&wanted, 1, &patience, NULL) <= 0) {
-    return REPLY_NONE;
+  if (!becomes_readable(sim, patience_ns)) {
+    return has_new_connection(sim) ? REPLY_LOST : REPLY_NONE;
   }
   const ssize_t received = recv(sim->descriptor, &sim->reply, sizeof sim->reply, MSG_DONTWAIT | MSG_TRUNC);
   if (received <= 0) {

@@ -31,10 +31,12 @@ void ilk_ticker_init(ilk_ticker_t *ticker, ilk_clock_t clock, uint32_t period_us
   }
 }
 
-uint64_t ilk_ticker_next(ilk_ticker_t *ticker, bool bus_alive, uint64_t now_ns) {
+uint64_t ilk_ticker_next(ilk_ticker_t *ticker, bool in_step, uint64_t now_ns) {
   const uint64_t slowest = ticker->pace_ns > ticker->period_ns ? ticker->pace_ns : ticker->period_ns;
-  ticker->deadline_ns += bus_alive ? ticker->pace_ns : slowest;
+  ticker->deadline_ns += in_step ? ticker->pace_ns : slowest;
+  ticker->waited_ns = 0u;
   if (ticker->clock == ILK_CLOCK_SIM && ticker->deadline_ns < now_ns) {
+    ticker->waited_ns = ticker->pace_ns != 0u ? now_ns - ticker->deadline_ns : 0u;
     ticker->deadline_ns = now_ns;
   }
   return ticker->deadline_ns;

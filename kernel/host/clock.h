@@ -4,7 +4,8 @@
  *
  * Real clock: absolute deadlines one period apart. A tick that begins more than a period late keeps the
  * phase: the periods that passed are skipped and counted as one overrun.
- * Simulated clock: paced at a multiple of real time, or not at all; being late means nothing.
+ * Simulated clock: paced at a multiple of real time, or as fast as possible. Simulated time waits for a late
+ * host and makes up for nothing afterwards.
  */
 #ifndef INTERLOCK_HOST_CLOCK_H
 #define INTERLOCK_HOST_CLOCK_H
@@ -23,6 +24,7 @@ typedef struct {
   uint64_t period_ns;   /**< of the control loop */
   uint64_t pace_ns;     /**< wall time between ticks; 0: none */
   uint64_t deadline_ns; /**< at which the newest tick was due, CLOCK_MONOTONIC */
+  uint64_t waited_ns;   /**< by which a paced simulated clock put off that deadline, since it had passed */
 } ilk_ticker_t;
 
 /** CLOCK_MONOTONIC in nanoseconds. */
@@ -41,9 +43,9 @@ void ilk_ticker_init(ilk_ticker_t *ticker, ilk_clock_t clock, uint32_t period_us
 /**
  * The deadline of the next tick.
  *
- * @param bus_alive false keeps a simulated clock at real pace at most: there is no plant to wait for.
+ * @param in_step false keeps a simulated clock at real pace at most: plant or app are not waited for.
  */
-uint64_t ilk_ticker_next(ilk_ticker_t *ticker, bool bus_alive, uint64_t now_ns);
+uint64_t ilk_ticker_next(ilk_ticker_t *ticker, bool in_step, uint64_t now_ns);
 
 /**
  * Notes that the tick began.

@@ -6,6 +6,7 @@
 #include "interlock/kernel.h"
 #include "ring_reader.h"
 
+/** Ends the wait for an app that is frozen; long enough for one that a busy host keeps from running. */
 #define APP_PATIENCE_MS 2000u
 
 void ilk_loop_init(ilk_loop_t *loop, const ilk_config_t *config, const ilk_run_terms_t *terms, ilk_bus_t bus,
@@ -24,6 +25,10 @@ void ilk_loop_init(ilk_loop_t *loop, const ilk_config_t *config, const ilk_run_t
   (void)ilk_init(config, &loop->shown.state);
   ilk_publisher_init(&loop->publisher, &loop->shown.state);
   ilk_ticker_init(&loop->ticker, terms->clock, config->period_us, terms->speed, ilk_now_ns());
+  if (terms->clock == ILK_CLOCK_SIM) {
+    const uint64_t pace_ns = loop->ticker.pace_ns;
+    loop->shown.pace_ns = pace_ns > UINT32_MAX ? UINT32_MAX : (uint32_t)pace_ns;
+  }
 }
 
 void ilk_loop_record(ilk_loop_t *loop, ilk_black_box_t *black_box) {
@@ -47,12 +52,18 @@ static void note_lateness(ilk_loop_t *loop, uint64_t late_ns) {
   }
 }
 
+/** Nothing that moves is ever kept waiting for an app: neither hardware nor the real clock. */
+static bool app_keeps_up(ilk_loop_t *loop) {
+  return !loop->bus.simulated || loop->ticker.clock == ILK_CLOCK_REAL ||
+         ilk_pacing_wait(&loop->pacing, loop->attachment, loop->shown.state.tick, APP_PATIENCE_MS,
+                         loop->stop);
+}
+
 static void wait_for_tick(ilk_loop_t *loop) {
-  if (loop->ticker.clock == ILK_CLOCK_SIM) {
-    ilk_pacing_wait(&loop->pacing, loop->attachment, loop->shown.state.tick, APP_PATIENCE_MS, loop->stop);
-  }
+  const bool in_step = app_keeps_up(loop) && loop->bus_alive;
   const uint64_t now_ns = ilk_now_ns();
-  const uint64_t deadline_ns = ilk_ticker_next(&loop->ticker, loop->bus_alive, now_ns);
+  const uint64_t deadline_ns = ilk_ticker_next(&loop->ticker, in_step, now_ns);
+  ilk_lateness_add(&loop->lateness, &loop->shown.lateness, loop->ticker.waited_ns, now_ns);
   if (deadline_ns > now_ns) {
     ilk_sleep_until(deadline_ns);
   }

@@ -14,6 +14,7 @@
 #include "bus.h"
 #include "clock.h"
 #include "interlock/link.h"
+#include "lateness.h"
 #include "link_mailbox.h"
 #include "pacing.h"
 #include "publisher.h"
@@ -31,6 +32,7 @@ typedef struct {
 
   ilk_ticker_t ticker;
   ilk_pacing_t pacing;
+  ilk_lateness_watch_t lateness;
   uint32_t beats; /**< ticks begun, atomic, for whoever watches the loop; wraps */
   bool bus_alive;
   uint64_t bus_ns;              /**< time of the newest transaction */

@@ -71,8 +71,9 @@ static void report_start(const ilk_options_t *options, const ilk_realtime_t *rea
     (void)printf("  %-20s real%s\n", "clock",
                  permit == ILK_RUN_DEGRADED ? ", degraded: overruns are shown, not latched" : "");
   } else {
-    (void)printf("  %-20s simulated, speed %g%s\n", "clock", options->speed,
-                 options->speed > 0.0 ? "" : " (as fast as possible)");
+    (void)printf("  %-20s simulated, ", "clock");
+    (void)(options->paced ? printf("paced at %g times real time\n", options->speed)
+                          : printf("as fast as possible\n"));
   }
   (void)printf("  %-20s %s:%s, frames of %d words\n", "bus", options->bus == ILK_BUS_SPI ? "spi" : "sim",
                options->bus_path, ILK_FRAME_WORDS);
@@ -101,7 +102,7 @@ static int run_loop(const ilk_options_t *options) {
   }
   report_start(options, &realtime, permit);
   const ilk_run_terms_t terms = {.clock = options->clock,
-                                 .speed = options->speed,
+                                 .speed = options->paced ? options->speed : 0.0,
                                  .degraded = permit == ILK_RUN_DEGRADED,
                                  .granted = realtime.granted};
   ilk_loop_init(&loop, &config, &terms, bus, &server.mailbox, &stop_requested);
@@ -133,7 +134,7 @@ static int run_recorded(const ilk_options_t *options) {
 
 static bool open_simulated(const ilk_options_t *options, ilk_error_t *error) {
   const bool opened =
-      ilk_bus_sim_open(&sim_bus, options->bus_path, options->clock, config.period_us, config.crc, error);
+      ilk_bus_sim_open(&sim_bus, options->bus_path, options->clock, &config, &stop_requested, error);
   bus = ilk_bus_sim_driver(&sim_bus);
   return opened;
 }

@@ -3,19 +3,19 @@
 #include <ctype.h>
 #include <errno.h>
 #include <getopt.h>
-#include <math.h>
 #include <sched.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define DEFAULT_PRIORITY 80
-#define MAX_SPEED 1000.0
+#define LEAST_SPEED 0.001
+#define MOST_SPEED 1000.0
 #define DEFAULT_BLACK_BOX_SECONDS 60
 #define MAX_BLACK_BOX_SECONDS 3600
 
 const char *const ilk_options_help =
     "usage: interlock-kernel --config FILE.ilkc --bus sim:SOCKET|spi:FILE --link SOCKET\n"
-    "                        [--link-shared] [--clock real|sim] [--speed X] [--core N] [--priority N]\n"
+    "                        [--link-shared] [--clock real|paced|sim] [--speed X] [--core N] [--priority N]\n"
     "                        [--black-box FILE] [--black-box-seconds N]\n"
     "\n"
     "  --config FILE    compiled robot configuration (interlock model compile)\n"
@@ -23,8 +23,10 @@ const char *const ilk_options_help =
     "  --bus spi:FILE   card bus: the devices that the wiring names (docs/deployment.md)\n"
     "  --link PATH      socket to serve the app on\n"
     "  --link-shared    for the members of the kernel's group, too; else for its user alone\n"
-    "  --clock CLOCK    real: wall clock (default); sim: time passes with the simulator alone\n"
-    "  --speed X        simulated clock: multiple of real time, 0 to 1000 (default 1); 0: unpaced\n"
+    "  --clock CLOCK    real: wall-clock deadlines (default)\n"
+    "                   paced: simulated time, which follows the wall clock and waits for a late host\n"
+    "                   sim: simulated time, as fast as simulator and app allow\n"
+    "  --speed X        paced clock: multiple of real time, 0.001 to 1000 (default 1)\n"
     "  --core N         run the loop on that core (default: any)\n"
     "  --priority N     SCHED_FIFO priority of the loop, 1 to 99 (default 80)\n"
     "  --black-box FILE record each tick in that file, which should lie in memory (/dev/shm)\n"
@@ -48,20 +50,17 @@ static bool parse_speed(const char *text, double *speed) {
   char *end = NULL;
   errno = 0;
   const double number = strtod(text, &end);
-  if (errno != 0 || end == text || *end != '\0' || !isfinite(number) || number < 0.0 || number > MAX_SPEED) {
+  if (errno != 0 || end == text || *end != '\0' || !(number >= LEAST_SPEED && number <= MOST_SPEED)) {
     return false;
   }
   *speed = number;
   return true;
 }
 
-static bool parse_clock(const char *text, ilk_clock_t *clock) {
-  if (strcmp(text, "real") == 0) {
-    *clock = ILK_CLOCK_REAL;
-    return true;
-  }
-  *clock = ILK_CLOCK_SIM;
-  return strcmp(text, "sim") == 0;
+static bool parse_clock(const char *text, ilk_options_t *options) {
+  options->clock = strcmp(text, "real") == 0 ? ILK_CLOCK_REAL : ILK_CLOCK_SIM;
+  options->paced = strcmp(text, "paced") == 0;
+  return options->clock == ILK_CLOCK_REAL || options->paced || strcmp(text, "sim") == 0;
 }
 
 static bool parse_bus(const char *text, ilk_options_t *options) {
@@ -102,9 +101,9 @@ static const char *take_option(int option, const char *value, ilk_options_t *opt
       options->link_shared = true;
       return NULL;
     case OPTION_CLOCK:
-      return parse_clock(value, &options->clock) ? NULL : "real or sim";
+      return parse_clock(value, options) ? NULL : "real, paced or sim";
     case OPTION_SPEED:
-      return parse_speed(value, &options->speed) ? NULL : "a number from 0 to 1000";
+      return parse_speed(value, &options->speed) ? NULL : "a number from 0.001 to 1000";
     case OPTION_CORE:
       return parse_whole_number(value, 0, CPU_SETSIZE - 1, &options->core) ? NULL : "the number of a core";
     case OPTION_PRIORITY:
@@ -129,8 +128,8 @@ static bool check_together(const ilk_options_t *options, bool speed_given, ilk_e
   if (missing != NULL) {
     return ilk_fail(error, "%s is missing; see --help", missing);
   }
-  if (speed_given && options->clock == ILK_CLOCK_REAL) {
-    return ilk_fail(error, "--speed applies to the simulated clock only; add --clock sim or leave it out");
+  if (speed_given && !options->paced) {
+    return ilk_fail(error, "--speed applies to the paced clock only; add --clock paced or leave it out");
   }
   return true;
 }

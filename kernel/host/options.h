@@ -25,7 +25,8 @@ typedef struct {
   const char *black_box_path; /**< NULL: nothing is recorded */
   int black_box_seconds;
   ilk_clock_t clock;
-  double speed; /**< of the simulated clock, 0: as fast as possible */
+  bool paced;   /**< the simulated clock follows the wall's */
+  double speed; /**< of the paced clock */
   int core;     /**< -1: any */
   int priority; /**< SCHED_FIFO, 1 to 99 */
 } ilk_options_t;

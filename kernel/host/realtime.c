@@ -59,14 +59,14 @@ static bool take_priority(int priority) {
 
 void ilk_realtime_acquire(ilk_realtime_t *realtime, ilk_clock_t clock, int core, int priority) {
   *realtime = (ilk_realtime_t){0};
+  if (core >= 0) {
+    note(realtime, ILK_RT_PINNED, pin(core));
+  }
   if (clock == ILK_CLOCK_SIM) {
     return;
   }
   note(realtime, ILK_RT_TIMER, prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL) == 0);
   note(realtime, ILK_RT_MLOCK, lock_memory());
-  if (core >= 0) {
-    note(realtime, ILK_RT_PINNED, pin(core));
-  }
   note(realtime, ILK_RT_FIFO, take_priority(priority));
 }
 

@@ -62,6 +62,13 @@ typedef struct {
   uint32_t max_ns[ILK_PHASE_COUNT];                   /**< largest seen, saturating */
 } ilk_timing_t;
 
+/** How long simulated time waited for the host: all of it since the start, no tick is made up for later. */
+typedef struct {
+  uint32_t second_us; /**< in the newest second of wall time that is over, saturating */
+  uint32_t worst_us;  /**< longest wait, saturating */
+  uint32_t total_ms;  /**< since the start, saturating */
+} ilk_lateness_t;
+
 /** What the kernel shows of itself, whole, once a tick. */
 typedef struct {
   uint32_t clock;            /**< ilk_clock_t of sim_bus.h */
@@ -73,6 +80,8 @@ typedef struct {
   uint32_t requests_dropped; /**< records skipped because the ring was overrun, saturating */
   uint32_t overruns;         /**< ticks that began more than a period late (real clock), saturating; counted
                                   also when degraded, while `state.overruns` counts those that can lock */
+  uint32_t pace_ns;          /**< simulated clock: wall time from tick to tick; 0: as fast as possible */
+  ilk_lateness_t lateness;   /**< of the host; 0 unless the simulated clock has a pace */
   ilk_state_t state;         /**< all of it, sealed */
   ilk_inputs_t inputs;       /**< of this tick */
   ilk_command_t command[ILK_SLOTS]; /**< what goes to each card */
@@ -117,8 +126,9 @@ typedef struct {
   uint32_t request_head; /**< requests written, wrapping */
   uint32_t seen_tick;    /**< newest tick whose snapshot the app has handled; paces the simulated clock.
                               Wake its futex after writing: a kernel that waits for it then goes on at
-                              once, else within a millisecond. An app that leaves it unchanged for 2 s of
-                              wall time is no longer waited for until it changes */
+                              once, else within a millisecond. An app that keeps the kernel waiting for
+                              2 s of wall time is no longer waited for until it has caught up; meanwhile
+                              simulated time passes no faster than the wall's. The real clock never waits */
   ilk_request_t request[ILK_LINK_REQUESTS]; /**< ring, by count */
 } ilk_link_app_region_t;
 

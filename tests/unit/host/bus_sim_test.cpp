@@ -20,10 +20,11 @@ namespace {
 
 using interlock::host_test::Descriptor;
 using interlock::host_test::eventually;
+using interlock::host_test::one_axis_config;
 using interlock::host_test::TemporaryDirectory;
 using ::testing::HasSubstr;
 
-enum class Manner { kAnswer, kFail, kSilent, kWrongTick, kShort };
+enum class Manner { kAnswer, kFail, kSilent, kLate, kWrongTick, kShort };
 
 /// The far end of the bus: answers hellos and exchanges in the manner that the test chooses.
 class Peer {
@@ -78,6 +79,9 @@ class Peer {
     }
     exchanges += 1;
     last_tick = exchange.tick;
+    while (manner == Manner::kLate) {
+      std::this_thread::yield();
+    }
     ilk_sim_reply_t reply{};
     reply.magic = manner == Manner::kFail ? ILK_SIM_FAILED : ILK_SIM_MAGIC;
     reply.tick = exchange.tick + (manner == Manner::kWrongTick ? 1 : 0);
@@ -100,12 +104,12 @@ class SimulatedBus : public ::testing::Test {
  protected:
   void open(ilk_clock_t clock = ILK_CLOCK_SIM) {
     ilk_error_t error{};
-    ASSERT_TRUE(ilk_bus_sim_open(&sim, path.c_str(), clock, 1000, 0xC0FFEE, &error)) << error.text;
+    ASSERT_TRUE(ilk_bus_sim_open(&sim, path.c_str(), clock, &config, &stopped, &error)) << error.text;
     bus = ilk_bus_sim_driver(&sim);
   }
   std::string refusal() {
     ilk_error_t error{};
-    EXPECT_FALSE(ilk_bus_sim_open(&sim, path.c_str(), ILK_CLOCK_SIM, 1000, 0, &error));
+    EXPECT_FALSE(ilk_bus_sim_open(&sim, path.c_str(), ILK_CLOCK_SIM, &config, &stopped, &error));
     return error.text;
   }
   bool transact() { return bus.transact(bus.driver, ++tick, &out, &in); }
@@ -116,6 +120,8 @@ class SimulatedBus : public ::testing::Test {
 
   TemporaryDirectory directory;
   std::string path = directory.file("bus");
+  ilk_config_t config = one_axis_config();
+  volatile sig_atomic_t stopped = 0;
   ilk_bus_sim_t sim{};
   ilk_bus_t bus{};
   ilk_outputs_t out{};
@@ -163,6 +169,49 @@ TEST_F(SimulatedBus, SilentPlantGetsNoSecondExchange) {
     EXPECT_EQ(in.transaction_done, 0u);
   }
   EXPECT_TRUE(eventually([&] { return peer.exchanges == 1; }));
+  ilk_bus_sim_close(&sim);
+}
+
+TEST_F(SimulatedBus, SimulatedTimeWaitsForALatePlant) {
+  Peer peer(path);
+  open();
+  peer.manner = Manner::kLate;
+  std::thread plant([&] {
+    ASSERT_TRUE(eventually([&] { return peer.exchanges == 1; }));
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    peer.manner = Manner::kAnswer;
+  });
+  EXPECT_TRUE(succeeds());
+  plant.join();
+  EXPECT_EQ(peer.exchanges, 1u);
+  ilk_bus_sim_close(&sim);
+}
+
+TEST_F(SimulatedBus, StopEndsTheWaitForALatePlant) {
+  Peer peer(path);
+  open();
+  peer.manner = Manner::kSilent;
+  std::thread user([&] {
+    EXPECT_TRUE(eventually([&] { return peer.exchanges == 1; }));
+    stopped = 1;
+  });
+  EXPECT_FALSE(succeeds());
+  user.join();
+  ilk_bus_sim_close(&sim);
+}
+
+TEST_F(SimulatedBus, PlantThatDiesDuringTheWaitIsLostAtOnceAndItsSuccessorServes) {
+  std::optional<Peer> peer(std::in_place, path);
+  open();
+  peer->manner = Manner::kSilent;
+  std::thread plant([&] {
+    EXPECT_TRUE(eventually([&] { return peer->exchanges == 1; }));
+    peer.emplace(path);
+  });
+  EXPECT_FALSE(transact());
+  EXPECT_EQ(in.transaction_done, 0u);
+  plant.join();
+  EXPECT_TRUE(eventually([&] { return succeeds(); }));
   ilk_bus_sim_close(&sim);
 }
 

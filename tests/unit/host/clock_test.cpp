@@ -51,18 +51,37 @@ TEST(SimulatedClock, IsNeverLateAndNeverHurriesToCatchUp) {
   ilk_ticker_t clock = ticker(ILK_CLOCK_SIM);
   const uint64_t much_later = kStart + 50 * kPeriod;
   EXPECT_EQ(ilk_ticker_next(&clock, true, much_later), much_later);
+  EXPECT_EQ(clock.waited_ns, 49 * kPeriod);
   EXPECT_EQ(ilk_ticker_begin(&clock, much_later + 9 * kPeriod), 0u);
   EXPECT_EQ(ilk_ticker_next(&clock, true, much_later), much_later + kPeriod);
+  EXPECT_EQ(clock.waited_ns, 0u);
 }
 
-TEST(SimulatedClock, SpeedZeroNeverWaitsWhileThePlantAnswers) {
+TEST(SimulatedClock, WaitsOfThePacedClockAddUpToWhatItLagsBehindTheWall) {
+  ilk_ticker_t clock = ticker(ILK_CLOCK_SIM);
+  uint64_t now = kStart;
+  uint64_t waited = 0;
+  for (uint64_t n = 0; n < 100; ++n) {
+    now = ilk_ticker_next(&clock, true, now) + n % 7 * kPeriod / 2;
+    waited += clock.waited_ns;
+  }
+  EXPECT_EQ(clock.deadline_ns, kStart + 100 * kPeriod + waited);
+}
+
+TEST(SimulatedClock, WithoutAPaceNothingIsLate) {
+  ilk_ticker_t clock = ticker(ILK_CLOCK_SIM, 0.0);
+  (void)ilk_ticker_next(&clock, true, kStart + 50 * kPeriod);
+  EXPECT_EQ(clock.waited_ns, 0u);
+}
+
+TEST(SimulatedClock, SpeedZeroNeverWaitsWhilePlantAndAppKeepUp) {
   ilk_ticker_t clock = ticker(ILK_CLOCK_SIM, 0.0);
   for (uint64_t n = 0; n < 10; ++n) {
     EXPECT_EQ(ilk_ticker_next(&clock, true, kStart + n), kStart + n);
   }
 }
 
-TEST(SimulatedClock, WithoutPlantNoFasterThanRealTime) {
+TEST(SimulatedClock, OutOfStepWithPlantOrAppNoFasterThanRealTime) {
   ilk_ticker_t unpaced = ticker(ILK_CLOCK_SIM, 0.0);
   EXPECT_EQ(ilk_ticker_next(&unpaced, false, kStart), kStart + kPeriod);
   ilk_ticker_t slow = ticker(ILK_CLOCK_SIM, 0.5);

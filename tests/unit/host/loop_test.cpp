@@ -162,6 +162,40 @@ TEST_F(Loop, NothingIsReadFromAnAppThatHasGone) {
   EXPECT_EQ(loop.shown.state.tick, 2u);
 }
 
+TEST_F(Loop, OnlySimulatedTimeOnASimulatedBusWaitsForAnAppThatConsumesNothing) {
+  struct Row {
+    ilk_clock_t clock;
+    bool simulated;
+    bool waits;
+  };
+  for (const auto& [clock, simulated, waits] :
+       {Row{ILK_CLOCK_REAL, true, false}, Row{ILK_CLOCK_REAL, false, false}, Row{ILK_CLOCK_SIM, false, false},
+        Row{ILK_CLOCK_SIM, true, true}}) {
+    ilk_link_regions_destroy(&attachment.regions);
+    start({clock, 0.0, false, 0});
+    loop.bus.simulated = simulated;
+    attach(1);
+    for (uint32_t n = 0; n < 3 * ILK_LINK_TICKS_AHEAD; ++n) {
+      ilk_loop_tick(&loop);
+    }
+    EXPECT_EQ(published().state.tick, 3 * ILK_LINK_TICKS_AHEAD);
+    EXPECT_EQ(loop.pacing.gave_up, waits) << clock << simulated;
+  }
+}
+
+TEST_F(Loop, PaceAndLatenessOfTheHostAreShown) {
+  start({ILK_CLOCK_SIM, 2.0, false, 0});
+  attach(1);
+  loop.ticker.deadline_ns -= 5'000'000'000;
+  ilk_loop_tick(&loop);
+  const ilk_snapshot_t late = published();
+  EXPECT_EQ(late.pace_ns, 500'000u);
+  EXPECT_GE(late.lateness.total_ms, 4999u);
+  EXPECT_GE(late.lateness.worst_us, 4'999'000u);
+  EXPECT_EQ(late.overruns, 0u);
+  EXPECT_EQ(late.inputs.deadline_missed, 0u);
+}
+
 TEST_F(Loop, StopEndsItWithoutAnotherTick) {
   stop = 1;
   ilk_loop_tick(&loop);

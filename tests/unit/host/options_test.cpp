@@ -71,12 +71,22 @@ TEST(Options, BlackBoxHoldsAMinuteUnlessToldOtherwise) {
 }
 
 TEST(Options, EveryOptionIsTaken) {
-  const Parsed parsed = parse(complete({"--clock=sim", "--speed", "2.5", "--core", "1", "--priority", "42"}));
+  const Parsed parsed =
+      parse(complete({"--clock=paced", "--speed", "2.5", "--core", "1", "--priority", "42"}));
   ASSERT_EQ(parsed.result, ILK_OPTIONS_RUN) << parsed.error;
   EXPECT_EQ(parsed.options.clock, ILK_CLOCK_SIM);
+  EXPECT_TRUE(parsed.options.paced);
   EXPECT_EQ(parsed.options.speed, 2.5);
   EXPECT_EQ(parsed.options.core, 1);
   EXPECT_EQ(parsed.options.priority, 42);
+}
+
+TEST(Options, SimulatedTimeIsPacedOrAsFastAsPossible) {
+  EXPECT_EQ(parse(complete({"--clock=paced"})).options.speed, 1.0);
+  const Parsed fast = parse(complete({"--clock=sim"}));
+  ASSERT_EQ(fast.result, ILK_OPTIONS_RUN) << fast.error;
+  EXPECT_EQ(fast.options.clock, ILK_CLOCK_SIM);
+  EXPECT_FALSE(fast.options.paced);
 }
 
 TEST(Options, HelpIsNoError) { EXPECT_EQ(parse({"--help"}).result, ILK_OPTIONS_HELP); }
@@ -92,13 +102,14 @@ TEST(Options, BadValuesAreNamedWithWhatWasExpected) {
     std::string option, value, expected;
   };
   const std::vector<Row> bad{
-      {"--clock", "wall", "real or sim"},
+      {"--clock", "wall", "real, paced or sim"},
       {"--bus", "spi:", "sim:SOCKET or spi:FILE"},
       {"--bus", "sim:", "sim:SOCKET or spi:FILE"},
-      {"--speed", "-1", "a number from 0 to 1000"},
-      {"--speed", "nan", "a number from 0 to 1000"},
-      {"--speed", "1x", "a number from 0 to 1000"},
-      {"--speed", "1001", "a number from 0 to 1000"},
+      {"--speed", "0", "a number from 0.001 to 1000"},
+      {"--speed", "-1", "a number from 0.001 to 1000"},
+      {"--speed", "nan", "a number from 0.001 to 1000"},
+      {"--speed", "1x", "a number from 0.001 to 1000"},
+      {"--speed", "1001", "a number from 0.001 to 1000"},
       {"--core", "-1", "the number of a core"},
       {"--core", "99999999999999999999", "the number of a core"},
       {"--priority", "0", "a number from 1 to 99"},
@@ -124,8 +135,10 @@ TEST(Options, UnknownOptionsStrayWordsAndMissingValuesAreNamed) {
 }
 
 TEST(Options, SpeedWithTheWallClockIsRefused) {
-  EXPECT_THAT(parse(complete({"--speed", "2"})).error,
-              HasSubstr("--speed applies to the simulated clock only"));
+  for (const char* clock : {"real", "sim"}) {
+    EXPECT_THAT(parse(complete({"--clock", clock, "--speed", "2"})).error,
+                HasSubstr("--speed applies to the paced clock only"));
+  }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "realtime.h"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 
 namespace {
 
@@ -25,12 +26,14 @@ TEST(RunPermit, SimulatorOnTheWallClockRunsDegradedWithoutTheMeasures) {
   EXPECT_EQ(ilk_realtime_permit(ILK_CLOCK_REAL, true, kAll, kAll), ILK_RUN);
 }
 
-TEST(RunPermit, SimulatedClockNeedsNoMeasureAndAsksForNone) {
+TEST(RunPermit, SimulatedClockNeedsNoMeasureAndAsksForNoneButItsCore) {
   EXPECT_EQ(ilk_realtime_permit(ILK_CLOCK_SIM, true, 0, 0), ILK_RUN);
   ilk_realtime_t realtime{};
-  ilk_realtime_acquire(&realtime, ILK_CLOCK_SIM, 0, 80);
+  ilk_realtime_acquire(&realtime, ILK_CLOCK_SIM, -1, 80);
   EXPECT_EQ(realtime.asked, 0u);
   EXPECT_EQ(realtime.granted, 0u);
+  ilk_realtime_acquire(&realtime, ILK_CLOCK_SIM, CPU_SETSIZE - 1, 80);
+  EXPECT_EQ(realtime.asked, 1u << ILK_RT_PINNED);
 }
 
 TEST(RunPermit, EveryMeasureHasAName) {
