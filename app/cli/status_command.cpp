@@ -46,6 +46,14 @@ std::string hardware_of(const json& status) {
   return text + (status.at("degraded").get<bool>() ? ", degraded: no real-time rights" : "");
 }
 
+std::string host_of(const json& late) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(1) << "late by " << late.at("now_ms").get<double>()
+       << " ms now, by " << late.at("worst_ms").get<double>() << " ms at worst, by "
+       << late.at("total_ms").get<std::uint64_t>() << " ms in all";
+  return text.str();
+}
+
 std::string age_of(const json& status) {
   std::ostringstream text;
   text << std::fixed << std::setprecision(1) << status.at("age_ms").get<double>() << " ms at tick "
@@ -76,6 +84,9 @@ std::string table_of(const json& status) {
   table.row("Pedal",
             text_of(status, "pedal") + (status.at("pedal_armed").get<bool>() ? ", armed" : ", not armed"));
   table.row("Data", age_of(status));
+  if (const json& late = status.at("host_late"); !late.is_null()) {
+    table.row("Host", host_of(late));
+  }
   for (const json& card : status.at("cards")) {
     table.row("Card", card_text(card));
   }

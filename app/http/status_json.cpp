@@ -68,6 +68,25 @@ json timing_json(const ilk_timing_t& timing) {
   return phases;
 }
 
+const char* clock_name(const ilk_snapshot_t& snapshot) {
+  if (snapshot.clock == ILK_CLOCK_REAL) {
+    return "real";
+  }
+  return snapshot.pace_ns != 0 ? "paced" : "sim";
+}
+
+/** How late the host is; null unless simulated time waits for it. */
+json host_late_json(const ilk_snapshot_t& snapshot, double age_ms) {
+  constexpr double second_ms = 1000.0;
+  if (snapshot.clock == ILK_CLOCK_REAL || snapshot.pace_ns == 0) {
+    return nullptr;
+  }
+  const ilk_lateness_t& late = snapshot.lateness;
+  return {{"now_ms", age_ms < second_ms ? late.second_us / 1000.0 : age_ms},
+          {"worst_ms", late.worst_us / 1000.0},
+          {"total_ms", late.total_ms}};
+}
+
 json verdict_event(const ilk_event_t& event) {
   return {{"kind", "verdict"},
           {"sequence", event.value[0]},
@@ -129,7 +148,8 @@ json status_json(const Robot& robot, const ilk_config_t& config, const ControlVi
           {"robot", robot.name},
           {"simulated", snapshot.simulated != 0},
           {"degraded", snapshot.degraded != 0},
-          {"clock", snapshot.clock == ILK_CLOCK_SIM ? "sim" : "real"},
+          {"clock", clock_name(snapshot)},
+          {"host_late", host_late_json(snapshot, age.count())},
           {"replay", view.replay},
           {"connected", view.attached},
           {"mode", catalog::name(Family::mode, state.mode)},

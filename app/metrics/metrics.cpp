@@ -88,6 +88,12 @@ void add_loop(Families& families, const ilk_snapshot_t& snapshot) {
   families.begin(MetricType::Counter, "interlock_overruns_total",
                  "Ticks that began more than a period late.");
   families.add(snapshot.overruns);
+  families.begin(MetricType::Counter, "interlock_host_late_seconds_total",
+                 "Time that the paced clock waited for a late host.");
+  families.add(snapshot.lateness.total_ms * 1e-3);
+  families.begin(MetricType::Gauge, "interlock_host_late_worst_seconds",
+                 "Longest that the paced clock waited for a late host.");
+  families.add(snapshot.lateness.worst_us * 1e-6);
   families.begin(MetricType::Counter, "interlock_requests_dropped_total",
                  "Requests of the app that were lost because their ring was overrun.");
   families.add(snapshot.requests_dropped);

@@ -19,6 +19,7 @@ json locked_status() {
       {"simulated", true},
       {"degraded", true},
       {"clock", "real"},
+      {"host_late", nullptr},
       {"connected", true},
       {"mode", "LOCKED"},
       {"cause", "BOOT"},
@@ -46,6 +47,15 @@ TEST(StatusTable, says_what_hardware_clock_and_configuration_it_is) {
   EXPECT_THAT(table, HasSubstr("simulated hardware, real clock, degraded"));
   EXPECT_THAT(table, HasSubstr("neuro, configuration 869e140a"));
   EXPECT_THAT(table, HasSubstr("0.3 ms at tick 1234"));
+}
+
+TEST(StatusTable, says_how_late_the_host_is_when_simulated_time_waits_for_it) {
+  json status = locked_status();
+  EXPECT_THAT(status_table(status.dump()).value(), Not(HasSubstr("Host ")));
+  status["clock"] = "paced";
+  status["host_late"] = {{"now_ms", 34.25}, {"worst_ms", 5012.6}, {"total_ms", 7001}};
+  EXPECT_THAT(status_table(status.dump()).value(),
+              HasSubstr("Host        late by 34.2 ms now, by 5012.6 ms at worst, by 7001 ms in all"));
 }
 
 TEST(StatusTable, names_a_card_that_is_not_there) {

@@ -28,6 +28,7 @@ TEST(Metrics, TellModeAgeAndLoop) {
   ControlView view = test::ready_view();
   view.snapshot.state.tick = 1234;
   view.snapshot.overruns = 2;
+  view.snapshot.lateness = {.second_us = 0, .worst_us = 250'000, .total_ms = 1500};
   view.snapshot.period_us = 1000;
   view.snapshot.timing.max_ns[ILK_PHASE_BUS] = 250000;
   const std::string text = text_of(view);
@@ -36,6 +37,8 @@ TEST(Metrics, TellModeAgeAndLoop) {
   EXPECT_THAT(text, HasSubstr("\ninterlock_snapshot_age_seconds 0.04\n"));
   EXPECT_THAT(text, HasSubstr("# TYPE interlock_ticks_total counter\ninterlock_ticks_total 1234\n"));
   EXPECT_THAT(text, HasSubstr("\ninterlock_overruns_total 2\n"));
+  EXPECT_THAT(text, HasSubstr("\ninterlock_host_late_seconds_total 1.5\n"));
+  EXPECT_THAT(text, HasSubstr("\ninterlock_host_late_worst_seconds 0.25\n"));
   EXPECT_THAT(text, HasSubstr("\ninterlock_period_seconds 0.001\n"));
   EXPECT_THAT(text, HasSubstr("\ninterlock_phase_max_seconds{phase=\"bus\"} 0.00025\n"));
 }

@@ -1193,8 +1193,21 @@ export interface components {
             simulated: boolean;
             /** @description Real clock without real-time rights. */
             degraded: boolean;
-            /** @enum {string} */
-            clock: "real" | "sim";
+            /**
+             * @description real: deadlines of the wall clock. paced: simulated time that follows the wall clock and waits for a late host. sim:
+             *     simulated time, as fast as simulator and app allow.
+             * @enum {string}
+             */
+            clock: "real" | "paced" | "sim";
+            /** @description How long simulated time waited for a late host; null unless the clock is paced. */
+            host_late: {
+                /** @description In the newest full second; the age of the newest tick when that is more than a second. */
+                now_ms: number;
+                /** @description The longest wait since the kernel's start. */
+                worst_ms: number;
+                /** @description All waits since the kernel's start. */
+                total_ms: number;
+            } | null;
             /** @description A recording plays: nothing moves, and nothing can be asked of the robot. */
             replay: boolean;
             /** @description The app is attached to a kernel. */

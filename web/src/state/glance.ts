@@ -17,7 +17,7 @@ export function glanceOf(status: Status): Glance {
     ageMs: status.age_ms,
     simulated: status.simulated,
     degraded: status.degraded,
-    simulatedClock: status.clock === "sim",
+    simulatedClock: status.clock !== "real",
     replay: status.replay,
   };
 }

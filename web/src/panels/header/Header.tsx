@@ -5,6 +5,7 @@ import { KernelButton } from "../../kernel/KernelButton";
 import { alarmOfMode } from "../../state/alarms";
 import { unlock } from "../../state/commands";
 import { type Freshness, formatAge } from "../../state/freshness";
+import { hostLateHelp, hostLateWords } from "../../state/hostLate";
 import { useConsole } from "../../state/store";
 import type { Phase } from "../../stream/connection";
 import type { Glance } from "../../stream/decode";
@@ -77,13 +78,20 @@ function Banners() {
 
 function Robot() {
   const robot = useConsole((state) => state.status?.robot);
-  const simulatedClock = useConsole((state) => state.glance?.simulatedClock ?? false);
+  const clock = useConsole((state) => state.status?.clock);
+  const late = useConsole((state) => state.status?.host_late ?? null);
   return (
     <div className="robot">
       <h1>Interlock</h1>
       <p>
         {robot ?? "no robot yet"}
-        {simulatedClock && <span className="clock"> · simulated clock</span>}
+        {clock === "sim" && <span className="clock"> · simulated clock</span>}
+        {late !== null && (
+          <span className="clock" title={hostLateHelp(late)}>
+            {" "}
+            · {hostLateWords(late)}
+          </span>
+        )}
       </p>
       <LocalClock />
     </div>
