@@ -82,17 +82,21 @@ void add_run(CLI::App& cli, RunOptions& options) {
       ->add_option("--igtl-dialect", options.igtl_dialect,
                    "Dialect of OpenIGTLink, in place of the robot file's: thesis, brp2013 or wpi2024")
       ->check(CLI::IsMember({"thesis", "brp2013", "wpi2024"}));
-  const std::map<std::string, ClockChoice> clocks{{"real", ClockChoice::real}, {"sim", ClockChoice::sim}};
+  const std::map<std::string, ClockChoice> clocks{{"paced", ClockChoice::paced}, {"sim", ClockChoice::sim}};
   CLI::Option* const clock =
       command
-          ->add_option("--clock", options.clock, "real: paced by the wall clock; sim: counts simulated time")
-          ->transform(CLI::CheckedTransformer(clocks).description("{real,sim}"))
-          ->default_str("real");
-  command
-      ->add_option("--speed", options.speed,
-                   "Simulated clock as a multiple of real time; 0: as fast as possible")
-      ->check(CLI::Range(0.0, 1000.0))
-      ->needs(clock);
+          ->add_option("--clock", options.clock,
+                       "Simulated time. paced: follows the wall clock and waits when this machine is late; "
+                       "sim: as fast as possible")
+          ->transform(CLI::CheckedTransformer(clocks).description("{paced,sim}"))
+          ->default_str("paced");
+  CLI::Option* const realtime = command->add_flag_callback(
+      "--realtime", [&options] { options.clock = ClockChoice::real; },
+      "Wall-clock deadlines in place of simulated time, for benchmarks: a late machine is a fault");
+  realtime->excludes(clock);
+  command->add_option("--speed", options.speed, "Paced clock as a multiple of real time; default 1")
+      ->check(CLI::Range(0.001, 1000.0))
+      ->excludes(realtime);
   command->add_option("--seed", options.seed, "Seed of the simulated hardware");
   command->add_option("--core", options.core, "Core that the kernel has for itself; default: none");
   command->add_option("--state", options.state, "State directory; default $XDG_STATE_HOME/interlock/ROBOT");
@@ -261,8 +265,8 @@ Result<void> execute(const CLI::App& cli, const CommandLine& line) {
     return show_version(line.version_robot, std::cout);
   }
   if (cli.got_subcommand("run")) {
-    if (line.run.speed && line.run.clock == ClockChoice::real) {
-      return failed(ExitCode::usage, "--speed has no meaning with the real clock; use --clock sim");
+    if (line.run.speed && line.run.clock == ClockChoice::sim) {
+      return failed(ExitCode::usage, "--speed applies to the paced clock; leave it or --clock sim out");
     }
     return run(line.run, Installation::current(), std::cout);
   }

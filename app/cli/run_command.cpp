@@ -74,12 +74,23 @@ Program recorder(const RunOptions& options, const Places& places) {
   return program;
 }
 
+const char* clock_name(ClockChoice clock) {
+  switch (clock) {
+    case ClockChoice::real:
+      return "real";
+    case ClockChoice::sim:
+      return "sim";
+    default:
+      return "paced";
+  }
+}
+
 Program kernel(const RunOptions& options, const Places& places, const RuntimeDirectory& directory) {
-  Program program{"kernel",
-                  "interlock-kernel",
-                  {"--config", directory.config(), "--bus", "sim:" + directory.bus().string(), "--link",
-                   directory.link(), "--clock", options.clock == ClockChoice::real ? "real" : "sim",
-                   "--black-box", black_box_file(places.state)}};
+  Program program{
+      "kernel",
+      "interlock-kernel",
+      {"--config", directory.config(), "--bus", "sim:" + directory.bus().string(), "--link", directory.link(),
+       "--clock", clock_name(options.clock), "--black-box", black_box_file(places.state)}};
   if (options.black_box_s) {
     program.arguments.insert(program.arguments.end(),
                              {"--black-box-seconds", std::to_string(*options.black_box_s)});

@@ -15,8 +15,12 @@
 
 namespace interlock::cli {
 
-/** Clock of the simulated robot's kernel; see design.md, "Clocks". */
-enum class ClockChoice { real, sim };
+/** Clock of the simulated robot's kernel. */
+enum class ClockChoice {
+  real,  /**< deadlines of the wall clock */
+  paced, /**< simulated time that follows the wall clock and waits for a late host */
+  sim    /**< simulated time, as fast as simulator and app allow */
+};
 
 /** What `interlock run` was asked for. */
 struct RunOptions {
@@ -24,8 +28,8 @@ struct RunOptions {
   std::uint16_t port = 8080;              /**< 0: one that is free */
   std::optional<std::uint16_t> igtl_port; /**< for OpenIGTLink, in place of the robot file's */
   std::string igtl_dialect;               /**< in place of the robot file's, unless empty */
-  ClockChoice clock = ClockChoice::real;
-  std::optional<double> speed;       /**< simulated clock: multiple of real time, 0 as fast as possible */
+  ClockChoice clock = ClockChoice::paced;
+  std::optional<double> speed;       /**< paced clock: multiple of real time; default 1 */
   std::optional<std::uint32_t> seed; /**< of the simulated hardware */
   std::optional<std::uint32_t> core; /**< the kernel's alone; the other processes keep off it */
   std::filesystem::path state;       /**< empty: the robot's directory under $XDG_STATE_HOME/interlock */

@@ -21,7 +21,7 @@ interface Fixtures {
 /** Each test has a robot of its own, and fails when a page breaks a rule of its content policy or throws. */
 export const test = base.extend<Fixtures>({
   robotName: ["neuro", { option: true }],
-  clock: ["sim", { option: true }],
+  clock: ["slow", { option: true }],
   stack: async ({ robotName, clock }, use) => {
     const stack = await Stack.start(robotName, clock);
     await use(stack);

@@ -1,4 +1,4 @@
-/** A robot of one's own: `interlock run` with its three processes on the simulated clock. */
+/** A robot of one's own: `interlock run` with its three processes on the paced clock. */
 import { type ChildProcess, execFileSync, spawn } from "node:child_process";
 import { mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -16,7 +16,7 @@ const CLOCK_TICKS_PER_S = 100;
 
 const interlock = path.join(programs, "interlock");
 
-export type Clock = "sim" | "real";
+export type Clock = "slow" | "realtime";
 
 export type RobotName = "neuro" | "prostate";
 
@@ -49,8 +49,8 @@ export class Stack {
     const run = spawn(
       interlock,
       [
-        ...["run", "--robot", robot, "--clock", clock],
-        ...(clock === "sim" ? ["--speed", SPEED] : []),
+        ...["run", "--robot", robot],
+        ...(clock === "slow" ? ["--speed", SPEED] : ["--realtime"]),
         ...["--port", "0", "--igtl-port", "0", "--state", state],
       ],
       { stdio: ["ignore", "pipe", "pipe"] },

@@ -77,8 +77,6 @@ class BareKernel:
         sim_options = options(plant=plant, robot=config, bus=bus, control=control, seed=1)
         self.sim = start([BIN / "interlock-sim", *sim_options])
         kernel_options = options(config=config, bus=f"sim:{bus}", link=self.link_path, clock=clock)
-        if clock == "sim":
-            kernel_options += options(speed=0)
         self.kernel = start([BIN / "interlock-kernel", *kernel_options])
         self.plant = PlantControl(directory / "control.sock")
 

@@ -28,9 +28,9 @@ def short_tmp_path() -> Iterator[Path]:
 
 @pytest.fixture(scope="module")
 def robot() -> Iterator[Stack]:
-    """One robot for all tests of a file, at the speed of the wall's clock."""
+    """One robot for all tests of a file, as `interlock run` starts it."""
     with tempfile.TemporaryDirectory(prefix="interlock-test-") as directory:
-        started = Stack(Path(directory), "--clock", "sim", "--speed", "1")
+        started = Stack(Path(directory))
         try:
             yield started
         finally:
@@ -39,12 +39,15 @@ def robot() -> Iterator[Stack]:
 
 @pytest.fixture
 def stack(short_tmp_path: Path) -> Iterator[StackFactory]:
-    """Starts whole robots: `stack(clock="sim", speed=0)`. Each is stopped when the test ends."""
+    """Starts whole robots: `stack()` as fast as possible, `stack(speed=1)` paced, `stack(realtime=True)`.
+
+    Each is stopped when the test ends.
+    """
     running: list[Stack] = []
 
     def start(
-        clock: str = "sim",
         speed: float = 0,
+        realtime: bool = False,
         robot: str | Path = "neuro",
         seed: int = 1,
         igtl: bool = False,
@@ -54,15 +57,15 @@ def stack(short_tmp_path: Path) -> Iterator[StackFactory]:
         arguments = [
             "--robot",
             robot,
-            "--clock",
-            clock,
             "--seed",
             str(seed),
             "--sockets",
             directory / "sockets",
         ]
-        if clock == "sim":
-            arguments += ["--speed", str(speed)]
+        if realtime:
+            arguments += ["--realtime"]
+        else:
+            arguments += ["--speed", str(speed)] if speed else ["--clock", "sim"]
         if igtl:
             arguments += ["--igtl-port", "0", "--igtl-dialect", dialect]
         started = Stack(directory, *arguments)

@@ -19,10 +19,10 @@ def open_stream(stack: Stack, origin: str | None = None) -> ClientConnection:
     )
 
 
-def wait_until(what: str, condition: Callable[[], bool]) -> None:
-    deadline = time.monotonic() + DEADLINE_S
+def wait_until(what: str, condition: Callable[[], bool], limit_s: float = DEADLINE_S) -> None:
+    deadline = time.monotonic() + limit_s
     while not condition():
-        assert time.monotonic() < deadline, f"not within {DEADLINE_S} s: {what}"
+        assert time.monotonic() < deadline, f"not within {limit_s} s: {what}"
 
 
 def wait_for_mode(stack: Stack, mode: str) -> None:
@@ -89,8 +89,8 @@ def proposal(stack: Stack, number: int) -> dict:
     return stack.api.get(f"/api/proposals/{number}").raise_for_status().json()
 
 
-def wait_for_proposal(stack: Stack, number: int, state: str) -> None:
-    wait_until(f"proposal {state}", lambda: proposal(stack, number)["state"] == state)
+def wait_for_proposal(stack: Stack, number: int, state: str, limit_s: float = DEADLINE_S) -> None:
+    wait_until(f"proposal {state}", lambda: proposal(stack, number)["state"] == state, limit_s)
 
 
 def is_driven(stack: Stack, slot: int = LATERAL) -> bool:

@@ -269,7 +269,7 @@ def test_the_bench_passes_commands_on_and_names_its_refusals(robot: Stack) -> No
 
 
 def test_a_kernel_that_hangs_is_named_and_no_late_request_reaches_it(stack: StackFactory) -> None:
-    robot = stack(clock="real")
+    robot = stack(realtime=True)
     wait_until("app alive", lambda: robot.status()["app_alive"])
     robot.signal("kernel", signal.SIGSTOP)
     problem(robot.api.post("/api/reset"), 503, "NO_KERNEL")
@@ -282,7 +282,7 @@ def test_a_kernel_that_hangs_is_named_and_no_late_request_reaches_it(stack: Stac
 
 
 def test_a_simulator_that_hangs_is_named(stack: StackFactory) -> None:
-    robot = stack(clock="real")
+    robot = stack(realtime=True)
     robot.signal("simulator", signal.SIGSTOP)
     problem(robot.api.get("/api/bench"), 503, "NO_BENCH")
     robot.signal("simulator", signal.SIGCONT)

@@ -26,7 +26,7 @@ HARMLESS_DEVICES = {"/dev/null", "/dev/urandom", "/dev/random"}
 
 @pytest.fixture
 def robot(stack: StackFactory) -> Stack:
-    return stack(clock="real")
+    return stack(realtime=True)
 
 
 def unix_sockets() -> dict[int, tuple[str, int]]:

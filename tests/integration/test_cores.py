@@ -22,7 +22,7 @@ def cores_of(status: Path) -> set[int]:
 
 def test_no_thread_of_app_or_simulator_runs_on_the_kernels_core(short_tmp_path: Path) -> None:
     core = max(os.sched_getaffinity(0))
-    started = Stack(short_tmp_path, "--clock", "real", "--core", str(core))
+    started = Stack(short_tmp_path, "--realtime", "--core", str(core))
     try:
         assert cores_of(Path(f"/proc/{started.pid('kernel')}/status")) == {core}
         for name in ("app", "simulator"):

@@ -16,7 +16,7 @@ CARD_WATCHDOG_TICKS = 5
 
 
 def moving(stack: StackFactory) -> Stack:
-    robot = stack(clock="real")
+    robot = stack(realtime=True)
     to_motion(robot)
     propose(robot, -900)
     wait_until("driven", lambda: is_driven(robot))

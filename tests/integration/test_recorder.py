@@ -55,7 +55,6 @@ class RecordedKernel:
         self.recorder = self.start_recorder(*recorder)
         kernel: list[str | Path] = [*options(config=config, bus=f"sim:{bus}", link=link, clock=clock)]
         kernel += ["--black-box", self.ring, "--black-box-seconds", "10"]
-        kernel += options(speed=0) if clock == "sim" else []
         self.kernel = start([BIN / "interlock-kernel", *kernel])
         self.plant = PlantControl(control)
         self.link = link
@@ -236,7 +235,7 @@ def test_a_black_box_of_a_service_is_written_out_by_its_name(
 
 
 def test_killed_run_is_rescued_by_the_next_one(short_tmp_path: Path) -> None:
-    arguments = ["--robot", "neuro", "--clock", "real", "--seed", "1"]
+    arguments = ["--robot", "neuro", "--realtime", "--seed", "1"]
     killed = Stack(short_tmp_path, *arguments)
     processes = [killed.pid(name) for name in ("kernel", "simulator", "app")]
     with watched(*processes) as descriptors:

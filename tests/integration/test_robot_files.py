@@ -213,8 +213,6 @@ def trainer(short_tmp_path: Path) -> Iterator[Stack]:
         FILES / "trainer.plant.toml",
         "--clock",
         "sim",
-        "--speed",
-        "0",
     ]
     with contextlib.closing(
         Stack(short_tmp_path, *arguments, "--sockets", short_tmp_path / "sockets")

@@ -75,7 +75,7 @@ class Callers:
 @pytest.fixture(scope="module")
 def callers() -> Iterator[Callers]:
     with tempfile.TemporaryDirectory(prefix="interlock-test-") as directory:
-        robot = Stack(Path(directory), "--clock", "sim", "--speed", "1")
+        robot = Stack(Path(directory))
         try:
             yield Callers(robot)
         finally:

@@ -21,9 +21,7 @@ AXES = {
 
 
 def start(robot: str, directory: Path) -> Stack:
-    started = Stack(
-        directory, "--robot", robot, "--clock", "sim", "--speed", "20", "--sockets", directory / "sockets"
-    )
+    started = Stack(directory, "--robot", robot, "--speed", "20", "--sockets", directory / "sockets")
     started.connect_control()
     return started
 

@@ -112,7 +112,7 @@ def measure(binaries: Path) -> dict[str, dict[str, float]]:
     for dialect in DIALECTS:
         with tempfile.TemporaryDirectory(prefix="interlock-bench-") as folder:
             command = [str(binaries / "interlock"), "run", "--robot", "neuro", "--port", "0"]
-            command += ["--clock", "sim", "--speed", "1", "--state", f"{folder}/state"]
+            command += ["--state", f"{folder}/state"]
             command += ["--sockets", f"{folder}/sockets", "--igtl-port", "0", "--igtl-dialect", dialect]
             with started(command, r"OpenIGTLink 127\.0\.0\.1:(\d+)$", "^ready") as port:
                 result[dialect] = summary(times_us(port, dialect))

@@ -249,7 +249,7 @@ def measure(arrangement: Arrangement, seconds: int, binaries: Path, log: Path) -
         }
         stack.BIN = folder / "bin"
         own_core = ["--core", str(core())] if arrangement.setup == "shipped" else []
-        options = ["--clock", "real", "--sockets", folder / "sockets", "--igtl-port", "0", *own_core]
+        options = ["--realtime", "--sockets", folder / "sockets", "--igtl-port", "0", *own_core]
         robot = stack.Stack(folder, "--robot", "neuro", *options)
         try:
             done: dict[str, int] = {}

@@ -28,7 +28,7 @@ interface InteractionTiming extends PerformanceEntry {
   readonly interactionId: number;
 }
 
-test.use({ clock: "real" });
+test.use({ clock: "realtime" });
 test.setTimeout((minutes + 15) * 60_000);
 
 const figures: Record<string, number> = {};

@@ -52,13 +52,13 @@ def child_named(parent: int, program: str) -> int:
 
 
 class Supervised(Stack):
-    """As a person starts it: sockets in a private directory, and OpenIGTLink."""
+    """With the deadlines of the wall clock: sockets in a private directory, and OpenIGTLink."""
 
     def __init__(self, folder: Path) -> None:
         super().__init__(
             folder,
-            *options(robot="neuro", clock="real", seed=1),
-            *("--black-box-seconds", str(BLACK_BOX_S), "--igtl-port", "0"),
+            *options(robot="neuro", seed=1),
+            *("--realtime", "--black-box-seconds", str(BLACK_BOX_S), "--igtl-port", "0"),
         )
         self.sockets = next(self.runtime.glob("interlock-*"))
         self.connect_control()

@@ -93,7 +93,7 @@ def moving_robot() -> Iterator[tuple[Stack, Mover]]:
     with tempfile.TemporaryDirectory(prefix="interlock-soak-") as folder:
         sockets = Path(folder) / "sockets"
         robot = Stack(
-            Path(folder), "--robot", "neuro", "--clock", "real", "--sockets", sockets, "--igtl-port", "0"
+            Path(folder), "--robot", "neuro", "--realtime", "--sockets", sockets, "--igtl-port", "0"
         )
         try:
             robot.connect_control()
