@@ -148,8 +148,9 @@ def test_an_app_with_a_twentieth_of_a_core_is_waited_for(
 ) -> None:
     robot = stack(speed=speed)
     with starve(robot.pid("app")):
-        number = moving(robot, NEAR)
-        act(robot, "enable", slot=LATERAL)
+        to_motion(robot)
+        number = propose(robot, NEAR)
+        act(robot, "enable")
         wait_for_proposal(robot, number, "done", STARVED_S)
         assert robot.status()["mode"] == "MOTION"
         robot.control("pedal", pressed=False)
