@@ -147,8 +147,8 @@ def test_an_app_with_a_twentieth_of_a_core_is_waited_for(
     stack: StackFactory, speed: float, starve: Starve
 ) -> None:
     robot = stack(speed=speed)
+    to_motion(robot)
     with starve(robot.pid("app")):
-        to_motion(robot)
         number = propose(robot, NEAR)
         act(robot, "enable")
         wait_for_proposal(robot, number, "done", STARVED_S)
