@@ -105,16 +105,11 @@ fuzz: setup-bench ## Throw bytes at the OpenIGTLink decoders under sanitizers: [
 soak: build-tests ## Let the robot move for half an hour under OpenIGTLink clients and reconnect storms: [MINUTES=30]
 	@$(measure) soak python verification/soak/run.py --minutes $(or $(MINUTES),30)
 
-.PHONY: selftest selftest-all
-selftest: setup-provers build-tests ## Show that seeded faults turn proofs red, and tests: of these a third, chosen by the commit
+.PHONY: selftest
+selftest: setup-provers build-tests ## Show that seeded faults turn tests and proofs red, where something changed: [FRESH=1] all
 	@tests/failure/run.py
 	@pytest -m provers tests/integration
 	@verification/evidence/verify.py --report faults faults
-
-selftest-all: setup-provers build-tests ## Show that every seeded fault turns its test or proof red
-	@tests/failure/run.py --all
-	@pytest -m provers tests/integration
-	@verification/evidence/verify.py --fresh --report faults faults
 
 .PHONY: verify
 verify: setup-provers ## Climb the verification ladder where inputs changed, and one rung drawn by the commit: [FRESH=1] all
@@ -136,7 +131,7 @@ report: setup-docs ## Write and judge the trace report: [RELEASE=1] demands the 
 
 keep-evidence: setup-docs ## Keep evidence with the sources: other clones use it while its inputs are the same
 	@python verification/evidence/keep.py keep
-	@cp $(release)/clean-units verification/evidence/kept/
+	@cp $(release)/clean-units $(release)/noticed-faults verification/evidence/kept/
 
 .PHONY: docs
 docs: setup-docs ## Write the documentation site, with search and the code's call graphs, to build/docs/site

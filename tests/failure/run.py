@@ -10,9 +10,15 @@ A fault is a file tests/failure/NAME.patch. Before the diff it says, one `# key:
 
 A fault counts as noticed when the test passes without the patch, and with it still builds, fails, and
 says what `expect` wants. Everything else, a patch that no longer applies included, is a failure.
+
+A fault that was noticed is not seeded again while its patch, the sources of its test program and the compiler
+are the same: verification/evidence/kept/noticed-faults has their keys, build/release/noticed-faults those of
+all that were noticed here. Of the other faults a third is seeded, chosen by the commit, and one of those that
+are kept; with --all or FRESH=1 all are.
 """
 
 import argparse
+import contextlib
 import hashlib
 import os
 import re
@@ -20,13 +26,18 @@ import subprocess
 import sys
 import time
 import xml.etree.ElementTree as ElementTree
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
+sys.path.append(str(Path(__file__).resolve().parents[2] / "verification/toolchain"))
+
+from built import Build, keys_in, output_of
+
 ROOT = Path(__file__).resolve().parents[2]
+KEPT = "verification/evidence/kept/noticed-faults"
 KEYS = {"target", "test", "expect", "why"}
 IN_COPY = Path(__file__).with_name("in_copy.sh")
 NO_COMMAND = {
@@ -75,9 +86,26 @@ def choose(paths: list[Path], seed: str) -> list[Path]:
     return sorted(ranked[: -(-len(paths) // 3)])
 
 
-def git(directory: Path, *arguments: str) -> str:
-    command = ["git", *arguments]
-    return subprocess.run(command, cwd=directory, check=True, capture_output=True, text=True).stdout
+def keys_of(root: Path, paths: Sequence[Path]) -> dict[Path, str]:
+    """What decides whether each fault is noticed; left out where no build says it."""
+    build, compiler = Build(root / "build/release", root), output_of("g++", "--version", cwd=root)
+    keys = {}
+    for path in paths if (build.folder / "build.ninja").is_file() else ():
+        with contextlib.suppress(UnusableError):
+            keys[path] = build.program_key(read_fault(path).target, compiler, path.read_text("utf-8"))
+    return {path: key for path, key in keys.items() if key}
+
+
+def choose_changed(paths: list[Path], keys: Mapping[Path, str], known: set[str], seed: str) -> list[Path]:
+    """A third of the faults that are not known to be noticed, and one of those that are."""
+    old = [path for path in paths if keys.get(path) in known]
+    changed = [path for path in paths if path not in old]
+    again = sorted(old, key=lambda path: hashlib.sha256(f"{seed} {path.stem}".encode()).digest())[:1]
+    chosen = choose(changed, seed)
+    print(
+        f"selftest: {len(chosen)} of {len(changed)} seeded faults, {len(again)} of {len(old)} noticed before"
+    )
+    return sorted([*chosen, *again])
 
 
 def check_applies(root: Path, fault: Fault) -> None:
@@ -191,17 +219,18 @@ def main() -> int:
     paths = sorted((root / "tests/failure").glob("*.patch"))
     if arguments.check:
         return check(root, paths)
+    keys, here = keys_of(root, paths), root / "build/release/noticed-faults"
+    known = keys_in(root / KEPT) | keys_in(here)
     if arguments.names:
         unknown = set(arguments.names) - {path.stem for path in paths}
         if unknown:
             parser.error(f"no fault tests/failure/{', '.join(sorted(unknown))}.patch")
         chosen = [path for path in paths if path.stem in arguments.names]
-    elif arguments.all:
+    elif arguments.all or os.environ.get("FRESH") == "1":
         chosen = paths
     else:
-        seed = arguments.seed or git(root, "rev-parse", "HEAD").strip()
-        chosen = choose(paths, seed)
-        print(f"selftest: {len(chosen)} of {len(paths)} seeded faults, chosen by seed {seed}")
+        seed = arguments.seed or output_of("git", "rev-parse", "HEAD", cwd=root).strip()
+        chosen = choose_changed(paths, keys, known, seed)
     if not chosen:
         print("selftest: no fault was seeded; expected patches in tests/failure/", file=sys.stderr)
         return 1
@@ -209,6 +238,15 @@ def main() -> int:
     with ThreadPoolExecutor(os.cpu_count()) as workers:
         cases = list(workers.map(partial(judge, root), chosen))
     failures = sum(len(case) for case in cases)
+    noticed = {case.get("name") for case in cases if not len(case)}
+    seeded = {path.stem for path in chosen}
+    lines = [
+        f"{key} {path.stem}\n"
+        for path, key in keys.items()
+        if path.stem in noticed or (key in known and path.stem not in seeded)
+    ]
+    if lines:
+        here.write_text("".join(sorted(lines)), "utf-8")
     suite = ElementTree.Element("testsuite", name="selftest", tests=str(len(cases)), failures=str(failures))
     suite.extend(cases)
     report = root / "build/reports/selftest.xml"

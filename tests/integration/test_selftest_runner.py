@@ -116,3 +116,13 @@ def test_the_seed_chooses_a_third_and_over_time_every_fault() -> None:
     assert choose(faults, "one") == choose(faults, "one")
     assert len(choose(faults, "one")) == 3
     assert set(faults) == {fault for seed in range(12) for fault in choose(faults, str(seed))}
+
+
+def test_of_the_faults_that_were_noticed_before_one_is_seeded_again() -> None:
+    choose = runpy.run_path(str(RUNNER))["choose_changed"]
+    faults = [Path(f"fault-{number}.patch") for number in range(9)]
+    keys = {fault: f"key of {fault}" for fault in faults[:6]}
+    known = set(keys.values()) - {keys[faults[0]]}
+    chosen = {seed: choose(faults, keys, known, str(seed)) for seed in range(40)}
+    assert {(len(set(one) & set(faults[1:6])), len(one)) for one in chosen.values()} == {(1, 3)}
+    assert {fault for one in chosen.values() for fault in one} == set(faults)

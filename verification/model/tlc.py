@@ -2,6 +2,7 @@
 
 import re
 import shutil
+import signal
 import subprocess
 import time
 from dataclasses import dataclass
@@ -71,23 +72,26 @@ def prepare(directory: Path) -> None:
         shutil.copy(module, directory)
 
 
-def check(directory: Path, module: str, configuration: str, timeout_s: int) -> Answer:
+def check(directory: Path, module: str, configuration: str, limit_s: int) -> Answer:
     """Runs TLC on a module in `directory` with a configuration given as text.
 
-    The log stays there as tlc.log. A run that exceeds `timeout_s` has the status TIMED_OUT.
+    The log stays there as tlc.log. A run that takes more than `limit_s` of processor time has the status
+    TIMED_OUT.
     """
     (directory / "check.cfg").write_text(configuration, "utf-8")
-    command = [*tlc_command(directory, stack_mb=16), "-cleanup", "-metadir", str(directory / "states")]
+    command = [
+        "prlimit",
+        f"--cpu={limit_s}:{limit_s + 5}",
+        *tlc_command(directory, stack_mb=16),
+        "-cleanup",
+        "-metadir",
+        str(directory / "states"),
+    ]
     command += ["-config", "check.cfg", module]
     began = time.monotonic()
     with (directory / "tlc.log").open("w", encoding="utf-8") as log:
-        try:
-            done = subprocess.run(
-                command, cwd=directory, stdout=log, stderr=subprocess.STDOUT, timeout=timeout_s, check=False
-            )
-            status = done.returncode
-        except subprocess.TimeoutExpired:
-            status = TIMED_OUT
+        done = subprocess.run(command, cwd=directory, stdout=log, stderr=subprocess.STDOUT, check=False)
+    status = TIMED_OUT if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL) else done.returncode
     shutil.rmtree(directory / "states", ignore_errors=True)
     text = (directory / "tlc.log").read_text("utf-8", "replace")
     return Answer(status, text, time.monotonic() - began)
