@@ -470,7 +470,7 @@ class Repository(Tree):
         shutil.copytree(ROOT / "docs/site", path / "docs/site", ignore=ignored)
         rungs = "".join(f"[{rung.name}]\n{RUNG}" for rung in RUNGS)
         self.write("verification/expected.toml", rungs + MEASURED)
-        for name in ("libraries", "packages", "prover-packages", "requirements", "cbmc", "tlc"):
+        for name in ("libraries", "packages", "requirements", "cbmc", "tlc"):
             self.write(f"verification/toolchain/{name}.txt", "")
         self.write("web/package.json", '{"dependencies": {}}')
         self.write("web/package-lock.json", '{"packages": {}}')

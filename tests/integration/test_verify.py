@@ -204,6 +204,14 @@ def test_a_rung_runs_again_only_when_an_input_or_tool_changed_or_fresh_asks(tree
     assert tree.runs() == 4
 
 
+def test_a_rung_whose_tool_is_missing_fails_without_a_run_and_names_the_tool(tree: Tree) -> None:
+    (tree.path / "build/provers/bin/prover").unlink()
+    done = tree.verify()
+    assert done.returncode == 1
+    assert "this machine has no prover" in done.stdout
+    assert tree.runs() == 0
+
+
 def test_a_changed_expectation_is_held_against_the_rung_itself(tree: Tree) -> None:
     tree.verify()
     tree.write("verification/expected.toml", EXPECTED.replace("goals = 7", "goals = 8"))

@@ -49,6 +49,10 @@ class Check:
     memory_gb: float = 1
     after: tuple[str, ...] = ()
 
+    def missing_tools(self) -> list[str]:
+        """The tools that this machine lacks, after set-up those that its release of Debian does not have."""
+        return [tool for tool in self.tools if not version(tool)]
+
     def files(self) -> list[Path]:
         """The files that decide the result, of those that git does not ignore.
 

@@ -224,8 +224,14 @@ def climb(checks: Sequence[Check], again: Check | None, fresh: bool, cores: int)
 
     for check in checks:
         found = None if fresh or check == again else kept(check)
+        missing = check.missing_tools()
         if found:
             note(found)
+        elif missing:
+            fault = (
+                f"cannot run: this machine has no {', '.join(missing)}, and set-up knows none for its Debian"
+            )
+            note(Result(check, {}, (fault,)))
         else:
             threads[check.name] = threading.Thread(target=run_in_turn, args=(check,))
     for thread in threads.values():

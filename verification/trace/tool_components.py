@@ -24,9 +24,7 @@ def pinned(root: Path, file: str, pattern: str) -> list[tuple[str, ...]]:
 
 def tools(root: Path) -> list[Component]:
     """Each tool, by its name: as pinned, or as installed where Debian's is taken as it is."""
-    names = {
-        name for file in ("packages.txt", "prover-packages.txt") for name in pinned(root, file, r"^\S+$")
-    }
+    names = set(pinned(root, "packages.txt", r"^[a-z]+ (\S+)"))
     python = [
         Component(name, version, f"pkg:pypi/{name.lower()}@{version}", supplier="PyPI")
         for name, version in pinned(root, "requirements.txt", r"^([\w.-]+)==(\S+)")
