@@ -153,6 +153,10 @@ scenarios: build-tests ## Kill, freeze, starve and flood the real processes, 200
 bench: setup-bench build-tests ## Measure step, loop, reaction, link and rate beside cyclictest: [DURATION=10] [RATE_SECONDS=2]
 	@$(measure) bench python verification/bench/run.py --duration $(or $(DURATION),10) --rate-seconds $(or $(RATE_SECONDS),2)
 
+.PHONY: bench-start
+bench-start: setup-test ## Measure `make run` in bare roots of Debian 12 and 13 (as root, with mmdebstrap): [DEBIAN="12 13"]
+	@python tests/machine/bench_start.py $(DEBIAN)
+
 .PHONY: bench-watch
 bench-watch: setup-bench build-tests ## Watch the loop of one set-up for an hour beside cyclictest: [DURATION=3600] [SETUP=shipped_loaded]
 	@python verification/bench/watch.py --duration $(or $(DURATION),3600) --setup $(or $(SETUP),shipped_loaded)
