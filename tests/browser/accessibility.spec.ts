@@ -90,7 +90,7 @@ test("the plots and the 3D view", async ({ robot, page }) => {
   await robot.open("3D");
   const view = robot.panel("3D");
   const words = view.getByRole("status").filter({ hasText: "no WebGL" });
-  await expect(view.getByRole("img").or(words)).toBeVisible({ timeout: 40_000 });
+  await expect(view.getByRole("img").or(words)).toBeVisible();
   await expectNoViolation(page, "3D");
 });
 
@@ -157,7 +157,7 @@ test("proposals, refusals and a stalled axis", async ({ robot, page }) => {
   await robot.open("Robot");
   await page.getByRole("button", { name: "Jam Probe rotation" }).click();
   await axis.propose("40");
-  await robot.latchPedal();
+  await robot.pressPedal();
   await expect(axis.row.getByRole("alert").filter({ hasText: "STALL" })).toBeVisible();
   await expectNoViolation(page, "stalled", untouched);
 });

@@ -1,6 +1,8 @@
 /** One session moves the robot; everybody sees which. */
 import { expect, test } from "./fixtures";
 
+test.use({ clock: "slow" });
+
 const password = "correct horse battery";
 
 test("the authority is handed over to whoever asks, and that ends the motion", async ({ robot, other }) => {
@@ -9,7 +11,7 @@ test("the authority is handed over to whoever asks, and that ends the motion", a
   await robot.unlockRobot();
   await axis.enable();
   await axis.propose("40");
-  await robot.latchPedal();
+  await robot.pressPedal();
 
   await other.logIn("ann", password);
   await expect(other.authority).toHaveText("admin");
@@ -56,7 +58,7 @@ test("a second engineer watches a move live, and cannot write past the holder", 
   await axis.enable();
   await axis.propose("40");
   await other.logIn("ann", password);
-  await robot.latchPedal();
+  await robot.pressPedal();
   await other.expectMode("MOTION");
   await expect.poll(() => watched.counts()).toBeGreaterThan(10);
   for (const name of ["Disable Probe rotation", "Enable Yaw", "Home all", "Zero all"])

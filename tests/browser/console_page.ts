@@ -1,5 +1,15 @@
 /** The console as an operator meets it: by roles and names, never by the page's inner structure. */
 import { expect, type Locator, type Page } from "@playwright/test";
+import type { Stack } from "./stack";
+
+/** For so long an axis rests that is said to: more than a controller takes from an approval to its first drive. */
+const REST_TICKS = 150;
+
+interface Motor {
+  readonly title: string;
+  readonly slot: number;
+  readonly position_counts: number;
+}
 
 export class Axis {
   readonly row: Locator;
@@ -10,6 +20,7 @@ export class Axis {
   constructor(
     private readonly page: Page,
     private readonly title: string,
+    private readonly stack: Stack,
   ) {
     this.row = page.getByRole("listitem", { name: `Axis ${title}`, exact: true });
     this.foretelling = this.row.getByRole("status").filter({ hasText: /would|cannot be told/ });
@@ -75,20 +86,19 @@ export class Axis {
     return refusal;
   }
 
-  /** Waits until the position no longer changes, and gives it. */
+  /** Waits until the axis rests and the page shows where, and gives it: up to one count that the encoder trembles by. */
   async restingCounts(): Promise<number> {
-    let last = Number.NaN;
-    await expect
-      .poll(
-        async () => {
-          const before = last;
-          last = await this.counts();
-          return Math.abs(last - before) <= 1;
-        },
-        { intervals: [300] },
-      )
-      .toBe(true);
-    return last;
+    const motor = async (): Promise<Motor> => {
+      const answer = await this.page.request.get(new URL("/api/motors", this.stack.url).href);
+      const motors = (await answer.json()) as Motor[];
+      const found = motors.find(({ title }) => title === this.title);
+      if (found === undefined) throw new Error(`no axis ${this.title}`);
+      return found;
+    };
+    await this.stack.rest((await motor()).slot, REST_TICKS);
+    const { position_counts: counts } = await motor();
+    await expect.poll(async () => Math.abs((await this.counts()) - counts)).toBeLessThanOrEqual(1);
+    return counts;
   }
 }
 
@@ -119,7 +129,10 @@ export class ConsolePage {
   readonly authority: Locator;
   readonly loginForm: Locator;
 
-  constructor(readonly page: Page) {
+  constructor(
+    readonly page: Page,
+    private readonly stack: Stack,
+  ) {
     this.mode = page.getByRole("status", { name: "Mode", exact: true });
     this.estop = page.getByRole("status", { name: "E-stop", exact: true });
     this.pedalState = page.getByRole("status", { name: "Pedal", exact: true });
@@ -156,12 +169,15 @@ export class ConsolePage {
     await expect(this.authority).toContainText("(you)");
   }
 
-  /** Presses the theme's button until it is that one. */
+  /** Presses the theme's button, each time once it shows the theme before, until it is that one. */
   async chooseTheme(theme: "light" | "dark"): Promise<void> {
-    await expect(async () => {
-      await this.page.getByRole("button", { name: /^Theme:/ }).click();
-      await expect(this.button(`Theme: ${theme}`)).toBeVisible({ timeout: 200 });
-    }).toPass();
+    const switching = this.page.getByRole("button", { name: /^Theme:/ });
+    for (;;) {
+      const shown = (await switching.getAttribute("aria-label")) ?? "";
+      if (shown === `Theme: ${theme}`) return;
+      await switching.click();
+      await expect(switching).not.toHaveAttribute("aria-label", shown);
+    }
   }
 
   /** Ends when the page is there: until its code is loaded the one before stays. */
@@ -184,7 +200,7 @@ export class ConsolePage {
 
   /**
    * Moves axes of a robot that just started by hand, by counts a title: homing from close to the switch is homing, and
-   * takes less of the slow clock. An axis that is enabled before it rests would drift.
+   * takes less time. An axis that is enabled before it rests would drift.
    */
   async pushByHand(slotAndCountsOf: Record<string, [slot: number, counts: number]>): Promise<void> {
     for (const [slot, counts] of Object.values(slotAndCountsOf)) {
@@ -200,7 +216,7 @@ export class ConsolePage {
   }
 
   axis(title: string): Axis {
-    return new Axis(this.page, title);
+    return new Axis(this.page, title, this.stack);
   }
 
   proposal(id: number): Locator {
@@ -225,7 +241,19 @@ export class ConsolePage {
     }
   }
 
-  /** Presses the simulated pedal with the pointer and keeps it down. */
+  /** Steps on the pedal of the simulated hardware itself. MOTION may have ended again before the page shows it. */
+  async pressPedal(): Promise<void> {
+    await this.expectArmed();
+    await this.stack.plant("pedal", { pressed: true });
+    await expect(this.pedalState).toContainText("pressed");
+  }
+
+  async releasePedal(): Promise<void> {
+    await this.stack.plant("pedal", { pressed: false });
+    await expect(this.pedalState).toContainText("released");
+  }
+
+  /** Presses the page's pedal with the pointer and keeps it down: for as long as the page renews it. */
   async holdPedal(): Promise<void> {
     await this.expectArmed();
     await this.pedal.hover();
@@ -238,7 +266,7 @@ export class ConsolePage {
     await this.expectMode("READY");
   }
 
-  /** Presses the simulated pedal and keeps the pointer free. */
+  /** Presses the page's pedal and keeps the pointer free. */
   async latchPedal(): Promise<void> {
     await this.expectArmed();
     await this.latch.click();

@@ -30,7 +30,7 @@ export async function firstLoad(page: Page, stack: Stack): Promise<FirstLoad> {
   });
   const kernel = page.waitForEvent("response", (response) => response.url().endsWith(".wasm"));
   await page.goto(stack.url);
-  const console = new ConsolePage(page);
+  const console = new ConsolePage(page, stack);
   await console.logIn("admin", stack.password);
   await expect(console.panel("Motors")).toBeVisible();
   await expect(console.mode).toContainText("LOCKED");

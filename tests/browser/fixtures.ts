@@ -21,7 +21,7 @@ interface Fixtures {
 /** Each test has a robot of its own, and fails when a page breaks a rule of its content policy or throws. */
 export const test = base.extend<Fixtures>({
   robotName: ["neuro", { option: true }],
-  clock: ["slow", { option: true }],
+  clock: ["paced", { option: true }],
   stack: async ({ robotName, clock }, use) => {
     const stack = await Stack.start(robotName, clock);
     await use(stack);
@@ -54,7 +54,7 @@ async function openConsole(
     if (serious && !expectedComplaint.test(message.text())) complaints.push(message.text());
   });
   await page.goto(stack.url);
-  await use(new ConsolePage(page));
+  await use(new ConsolePage(page, stack));
   expect(complaints).toEqual([]);
 }
 

@@ -6,6 +6,8 @@ import { expect, test } from "./fixtures";
 
 const title = "Probe rotation";
 
+test.use({ clock: "slow" });
+
 const larger = (page: Page) =>
   page.getByRole("button", { name: `Hold to jog ${title} towards larger positions`, exact: true });
 
@@ -19,7 +21,7 @@ const ROW_TICKS = 33;
 async function holdJog(robot: ConsolePage, page: Page): Promise<void> {
   await robot.unlockRobot();
   await robot.axis(title).enable();
-  await robot.latchPedal();
+  await robot.pressPedal();
   await larger(page).hover();
   await page.mouse.down();
 }
@@ -130,7 +132,7 @@ test("a key that is held jogs, and who does not hold the authority cannot", asyn
   const axis = robot.axis(title);
   await robot.unlockRobot();
   await axis.enable();
-  await robot.latchPedal();
+  await robot.pressPedal();
   await larger(page).focus();
   await page.keyboard.down("Space");
   await expect.poll(() => axis.counts()).toBeGreaterThan(10);

@@ -23,7 +23,7 @@ test("a target beyond the range is said to be refused before it is sent, in the 
   await axis.expectRefusal("RANGE");
   await axis.propose("-3");
   await expect(robot.proposal(2)).toContainText("would be accepted once the pedal is pressed");
-  await robot.latchPedal();
+  await robot.pressPedal();
   await expect(robot.proposal(2)).toContainText("done");
 });
 
@@ -104,7 +104,7 @@ test("Why not moving? follows the newest proposal from the blocking gate to the 
   await expect(gate("PEDAL")).toContainText("closed too");
   await expect(gate("LEASE")).toContainText("follows");
   for (const name of ["ESTOP", "ENABLE", "SETPOINT", "DRIVE"]) await expect(gate(name)).toContainText("open");
-  await robot.latchPedal();
+  await robot.pressPedal();
   await expect(why).toContainText("Probe rotation is driven.");
   await robot.stop.click();
   await expect(why).not.toContainText("is driven");

@@ -29,7 +29,7 @@ test("a trajectory waits in the list for approval, runs while the pedal is held,
   await robot.button("Approve proposal 1").click();
   await expect(proposal).toContainText("approved");
   await expect(robot.button("Approve proposal 1")).toHaveCount(0);
-  await robot.holdPedal();
+  await robot.pressPedal();
   await expect(proposal).toContainText("done");
-  await robot.letPedalGo();
+  await robot.releasePedal();
 });

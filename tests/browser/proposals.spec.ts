@@ -86,5 +86,5 @@ test("the ghost of a proposal and the workspace are told without WebGL, too", as
   const words = robot.panel("3D").getByRole("status").filter({ hasText: "no WebGL" });
   await expect(words).toContainText(/ghost of proposal 1: tip to .* by a way of 20\.0 mm/);
   await robot.button("Workspace").click();
-  await expect(words).toContainText(/workspace: x .* to .*, y .* to/, { timeout: 15_000 });
+  await expect(words).toContainText(/workspace: x .* to .*, y .* to/);
 });

@@ -15,7 +15,7 @@ test("a recording plays in the console to its last tick, and nobody can take the
   const replay = await stack.replay();
   try {
     await page.goto(replay.url);
-    const shown = new ConsolePage(page);
+    const shown = new ConsolePage(page, replay);
     await shown.logIn("admin", replay.password);
     await expect(page.getByText("REPLAY OF A RECORDING: NOTHING MOVES")).toBeVisible();
     await expect(page.getByText("Authority: none, as a recording plays")).toBeVisible();

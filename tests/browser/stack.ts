@@ -1,14 +1,13 @@
 /** A robot of one's own: `interlock run` with its three processes on the paced clock. */
 import { type ChildProcess, execFileSync, spawn } from "node:child_process";
 import { mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
+import { connect, type Socket } from "node:net";
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { createInterface } from "node:readline";
 import { programs } from "./places";
 
-const READY_WITHIN_MS = 30_000;
-/** The app's patience with a held pedal is 500 ms of this clock: half the speed is twice the time for a busy machine. */
-const SPEED = "0.5";
+const READY_WITHIN_MS = 300_000;
 /** Of a recording, whose moments nobody waits for. */
 const REPLAY_SPEED = "20";
 /** In which /proc counts processor time. */
@@ -16,7 +15,13 @@ const CLOCK_TICKS_PER_S = 100;
 
 const interlock = path.join(programs, "interlock");
 
-export type Clock = "slow" | "realtime";
+/**
+ * `slow` is a tenth of the pace, for tests in which a page keeps up with the robot: it renews a pedal or a jog that would
+ * lapse by this clock, or does something while an axis moves.
+ */
+export type Clock = "paced" | "slow" | "realtime";
+
+const clockOptions = { paced: [], slow: ["--speed", "0.1"], realtime: ["--realtime"] } as const;
 
 export type RobotName = "neuro" | "prostate";
 
@@ -28,10 +33,25 @@ interface Ready {
   readonly igtlPort: number;
 }
 
+/** What the simulated hardware says of an axis, in its answer to `status`. */
+interface PlantAxis {
+  readonly slot: number;
+  readonly position_counts: number;
+}
+
+interface PlantAnswer {
+  readonly ok: boolean;
+  readonly error?: string;
+  readonly tick: number;
+  readonly axes?: readonly PlantAxis[];
+}
+
 export class Stack {
   readonly url: string;
   readonly password: string;
   readonly igtlPort: number;
+  private socket?: Socket;
+  private answers?: AsyncIterator<string>;
 
   private constructor(
     private readonly run: ChildProcess,
@@ -50,8 +70,8 @@ export class Stack {
       interlock,
       [
         ...["run", "--robot", robot],
-        ...(clock === "slow" ? ["--speed", SPEED] : ["--realtime"]),
-        ...["--port", "0", "--igtl-port", "0", "--state", state],
+        ...clockOptions[clock],
+        ...["--port", "0", "--igtl-port", "0", "--state", state, "--sockets", path.join(state, "sockets")],
       ],
       { stdio: ["ignore", "pipe", "pipe"] },
     );
@@ -67,6 +87,25 @@ export class Stack {
       stdio: ["ignore", "pipe", "pipe"],
     });
     return new Stack(run, state, await readiness(run));
+  }
+
+  /** A command to the simulated hardware itself (models/plant/README.md). What it holds, no page that is slow lets go. */
+  async plant(command: string, fields: object = {}): Promise<PlantAnswer> {
+    this.socket ??= connect(path.join(this.state, "sockets", "control.sock"));
+    this.answers ??= createInterface({ input: this.socket })[Symbol.asyncIterator]();
+    this.socket.write(`${JSON.stringify({ command, ...fields })}\n`);
+    const { value } = await this.answers.next();
+    const answer = JSON.parse(value) as PlantAnswer;
+    if (!answer.ok) throw new Error(`${command}: ${answer.error}`);
+    return answer;
+  }
+
+  /** Waits until the axis of that slot has stood still for so many ticks. */
+  async rest(slot: number, ticks: number): Promise<void> {
+    let since = await this.plant("status");
+    const place = (answer: PlantAnswer) => answer.axes?.find((axis) => axis.slot === slot)?.position_counts;
+    for (let now = since; now.tick < since.tick + ticks; now = await this.plant("status"))
+      if (place(now) !== place(since)) since = now;
   }
 
   /** Signals the app's process alone; kernel and simulator run on. */
@@ -88,6 +127,7 @@ export class Stack {
 
   /** Ends all processes and removes their state. */
   async end(): Promise<void> {
+    this.socket?.destroy();
     if (this.run.exitCode === null) {
       const ended = new Promise((resolve) => this.run.once("exit", resolve));
       this.run.kill("SIGINT");

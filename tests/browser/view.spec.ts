@@ -18,7 +18,7 @@ test("shows the target, and says what it does not show", async ({ robot, page })
   const picture = panel.getByRole("img", {
     name: /^3D: .*desired treatment point .*target 5\.0, 200\.0, 60\.0/,
   });
-  await expect(picture).toBeVisible({ timeout: 40_000 });
+  await expect(picture).toBeVisible();
   await expect(panel).toContainText("▲ Not shown. NOT_HOMED");
   let before = await picture.screenshot();
   for (const title of [

@@ -75,7 +75,7 @@ test("the app's processor time for four open consoles", async ({ browser, stack 
   for (const context of contexts) {
     const page = await context.newPage();
     await page.goto(stack.url);
-    const console = new ConsolePage(page);
+    const console = new ConsolePage(page, stack);
     await console.logIn("admin", stack.password);
     await expect(console.panel("Motors")).toBeVisible();
     consoles.push(console);

@@ -42,7 +42,7 @@ test("the robot's page at work, and the sheets", async ({ robot, page }) => {
   await robot.axis("Probe insertion").propose("30");
   await robot.axis("Probe insertion").expectRefusal("DISABLED");
   await robot.axis("Axial feet").propose("12.5");
-  await robot.latchPedal();
+  await robot.pressPedal();
   await expect(robot.proposal(2)).toContainText("done");
   await robot.axis("Probe rotation").propose("200");
   await expect.poll(() => robot.axis("Probe rotation").counts()).toBeGreaterThan(1000);
