@@ -61,10 +61,13 @@ std::optional<std::chrono::microseconds> round_trip_of(const asio::ip::tcp::sock
 
 }  // namespace
 
-Hub::Session::Session(Tcp::socket connected, PeerId id)
+Hub::Session::Session(Tcp::socket connected, PeerId id, Clock::time_point now)
     : socket(std::move(connected)),
       news(socket.get_executor(), Clock::time_point::max()),
-      pause(socket.get_executor()) {
+      pause(socket.get_executor()),
+      last_heard(now),
+      regular_since(now),
+      window_since(now) {
   error_code unknown;
   peer.id = id;
   peer.address = (std::ostringstream() << socket.remote_endpoint(unknown)).str();
@@ -155,7 +158,8 @@ void Hub::admit(Tcp::socket socket) {
                  is_welcome(from.address()) ? "too many are connected" : "it is not on the list of peers");
     return;
   }
-  asio::co_spawn(acceptor_.get_executor(), serve(std::make_shared<Session>(std::move(socket), ++last_id_)),
+  asio::co_spawn(acceptor_.get_executor(),
+                 serve(std::make_shared<Session>(std::move(socket), ++last_id_, read_clock())),
                  asio::detached);
 }
 
@@ -168,7 +172,7 @@ asio::awaitable<void> Hub::keep_connected(Tcp::endpoint peer, std::chrono::milli
       const auto [failed] = co_await socket.async_connect(peer, as_result);
       // Others may have come meanwhile.
       if (!failed && sessions_.size() < capacity) {
-        co_await serve(std::make_shared<Session>(std::move(socket), ++last_id_));
+        co_await serve(std::make_shared<Session>(std::move(socket), ++last_id_, read_clock()));
       }
     }
     timer.expires_after(pause);
@@ -230,7 +234,7 @@ asio::awaitable<void> Hub::read(SessionPointer session) {
     if (!session->reader.is_within_message()) {
       session->message_since.reset();
     } else if (!session->message_since) {
-      session->message_since = Clock::now();
+      session->message_since = read_clock();
     }
   }
 }
@@ -239,7 +243,7 @@ asio::awaitable<void> Hub::read(SessionPointer session) {
 asio::awaitable<void> Hub::part(SessionPointer session, std::string reason) {
   session->reason = std::move(reason);
   session->message_since.reset();
-  session->parting_since = Clock::now();
+  session->parting_since = read_clock();
   session->news.cancel();
   std::vector<std::uint8_t> dropped(chunk_bytes);
   while (session->open) {
@@ -252,13 +256,13 @@ asio::awaitable<void> Hub::part(SessionPointer session, std::string reason) {
 
 /** Who sends too much is read later; TCP tells it. */
 asio::awaitable<void> Hub::slow_down(SessionPointer session) {
-  const auto now = Clock::now();
-  if (now - session->window_since >= rate_window) {
-    session->window_since = now;
+  const auto time = read_clock();
+  if (time - session->window_since >= rate_window) {
+    session->window_since = time;
     session->in_window = 0;
   }
   if (++session->in_window > most_messages) {
-    session->pause.expires_at(session->window_since + rate_window);
+    session->pause.expires_after(session->window_since + rate_window - time);
     co_await session->pause.async_wait(as_result);
   }
 }
@@ -286,11 +290,11 @@ void Hub::take(Session& session, Frame frame) {
 }
 
 void Hub::note_sign_of_life(Session& session) {
-  const auto now = Clock::now();
-  if (now - session.last_heard > heartbeat_gap) {
-    session.regular_since = now;
+  const auto time = read_clock();
+  if (time - session.last_heard > heartbeat_gap) {
+    session.regular_since = time;
   }
-  session.last_heard = now;
+  session.last_heard = time;
 }
 
 void Hub::refuse(Session& session, const Header& header, const FaultAt& fault) {
@@ -320,7 +324,7 @@ asio::awaitable<void> Hub::write(SessionPointer session) {
       co_await session->news.async_wait(as_result);
       continue;
     }
-    session->write_since = Clock::now();
+    session->write_since = read_clock();
     const auto [error, count] = co_await asio::async_write(session->socket, asio::buffer(bytes), as_result);
     session->write_since.reset();
     if (error) {
@@ -340,7 +344,7 @@ asio::awaitable<void> Hub::beat() {
       co_return;
     }
     for (const SessionPointer& session : sessions_) {
-      look_after(*session, Clock::now());
+      look_after(*session, read_clock());
     }
   }
 }
@@ -445,7 +449,7 @@ bool Hub::set_role(PeerId id, Role role) {
     return false;
   }
   session->peer.role = role;
-  session->last_heard = Clock::now();
+  session->last_heard = read_clock();
   session->regular_since = session->last_heard;
   set_patience(*session, role == Role::controller ? controller_patience : observer_patience);
   return true;

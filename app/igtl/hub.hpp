@@ -135,6 +135,9 @@ class Hub {
                                                                              const FaultAt&) {};
   std::function<void(const Peer&, const std::string&)> on_close = [](const Peer&, const std::string&) {};
 
+  /** What patience is measured by; another one in tests, whose machine may be late. */
+  std::function<std::chrono::steady_clock::time_point()> read_clock = std::chrono::steady_clock::now;
+
   /** Asked whether something may move, hence whether it matters that the controller hangs. */
   std::function<bool()> is_in_motion = [] { return false; };
 
@@ -166,7 +169,7 @@ class Hub {
   using Tcp = boost::asio::ip::tcp;
 
   struct Session {
-    Session(Tcp::socket connected, PeerId id);
+    Session(Tcp::socket connected, PeerId id, Clock::time_point now);
 
     Tcp::socket socket;
     boost::asio::steady_timer news; /**< cancelled when there is something to send, or to end */
@@ -176,13 +179,13 @@ class Hub {
     std::deque<ByteVector> replies;
     std::map<std::pair<std::string, std::string>, ByteVector> newest; /**< by type and name */
     std::pair<std::string, std::string> shown_last;                   /**< of `newest`: each has its turn */
-    Clock::time_point last_heard = Clock::now();
-    Clock::time_point regular_since = last_heard;          /**< without a long gap */
+    Clock::time_point last_heard;
+    Clock::time_point regular_since;                       /**< without a long gap */
     std::optional<Clock::time_point> unacknowledged_since; /**< something that was sent */
     std::optional<Clock::time_point> message_since;        /**< a message has begun */
     std::optional<Clock::time_point> write_since;          /**< something is being sent */
     std::optional<Clock::time_point> parting_since;        /**< nothing that comes is heard any more */
-    Clock::time_point window_since = Clock::now();
+    Clock::time_point window_since;
     std::size_t in_window = 0;
     bool open = true;
     std::string reason = "the peer closed the connection"; /**< why it is not */
@@ -193,12 +196,12 @@ class Hub {
   void admit(Tcp::socket socket);
   boost::asio::awaitable<void> serve(SessionPointer session);
   boost::asio::awaitable<void> read(SessionPointer session);
-  static boost::asio::awaitable<void> part(SessionPointer session, std::string reason);
-  static boost::asio::awaitable<void> write(SessionPointer session);
+  boost::asio::awaitable<void> part(SessionPointer session, std::string reason);
+  boost::asio::awaitable<void> write(SessionPointer session);
   boost::asio::awaitable<void> slow_down(SessionPointer session);
   void take(Session& session, Frame frame);
   void refuse(Session& session, const Header& header, const FaultAt& fault);
-  static void note_sign_of_life(Session& session);
+  void note_sign_of_life(Session& session);
   void look_after(Session& session, Clock::time_point now) const;
   void look_after_controller(Session& session, Clock::time_point now) const;
   static Clock::duration unacknowledged(Session& session, Clock::time_point now);
