@@ -11,12 +11,11 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from link_client import LinkClient
+from link_client import DEADLINE_S, LinkClient
 from link_layout import name_of
 
 ROOT = Path(__file__).resolve().parents[2]
 BIN = Path(os.environ.get("INTERLOCK_BIN", ROOT / "build/release/bin"))
-DEADLINE_S = 20.0
 
 
 class PlantControl:

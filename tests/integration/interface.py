@@ -16,7 +16,7 @@ COMMON = {400, 401, 403, 404, 405, 413, 431, 500, 503}
 
 @cache
 def spec() -> dict:
-    return yaml.safe_load(SPEC.read_text())
+    return yaml.load(SPEC.read_text(), Loader=yaml.CSafeLoader)
 
 
 def paths() -> dict[str, dict]:

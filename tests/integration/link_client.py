@@ -22,7 +22,8 @@ Event = STRUCTURES["ilk_event_t"]
 RING = CONSTANTS["ILK_LINK_REQUESTS"]
 EVENTS = CONSTANTS["ILK_LINK_EVENTS"]
 TICKS_AHEAD = CONSTANTS["ILK_LINK_TICKS_AHEAD"]
-DEADLINE_S = 20.0
+DEADLINE_S = 300.0
+"""Ends a run that hangs. What is waited for is an event, on a machine however busy."""
 WORD = 2**32
 
 

@@ -1,7 +1,6 @@
 """A navigation program: pyigtl, with what it lacks."""
 
 import struct
-import time
 from abc import ABC, abstractmethod
 
 import numpy as np
@@ -80,10 +79,10 @@ class Heard(dict):
 
     def __init__(self) -> None:
         super().__init__()
-        self.all: list[tuple[float, wire.MessageBase]] = []
+        self.all: list[wire.MessageBase] = []
 
     def __setitem__(self, name: str, message: wire.MessageBase) -> None:
-        self.all.append((time.monotonic(), message))
+        self.all.append(message)
         super().__setitem__(name, message)
 
 

@@ -8,10 +8,9 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
-from bare_kernel import BIN
+from bare_kernel import BIN, DEADLINE_S
 from test_run import DONE, PRECONDITION, USAGE
 
-DEMO_DEADLINE_S = 120
 MECHANICAL_ERROR_MM = 0.1
 TABLES = "--targeting-only"
 DEADBAND_COUNTS = 1
@@ -24,7 +23,7 @@ PRINTED = {  # desired and actual of the first trial, as the thesis prints them
 
 def demo(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
     command = [str(part) for part in (BIN / "interlock", "demo", *arguments)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=DEMO_DEADLINE_S)
+    return subprocess.run(command, capture_output=True, text=True, timeout=DEADLINE_S)
 
 
 @pytest.mark.parametrize("arguments", [("neuro",), ("neuro", TABLES), ("prostate", TABLES)])

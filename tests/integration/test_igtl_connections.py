@@ -175,7 +175,6 @@ def test_phase_shows_each_answer_with_its_time(stack: StackFactory) -> None:
     assert stop.returncode == 0, stop.stderr
     lines = stop.stdout.splitlines()
     assert [line.split(" ms  ")[1].split()[0] for line in lines] == ["ACK_7", "CURRENT_STATUS", "STOP"]
-    assert all(float(line.split()[0]) < 1000 for line in lines)
     unknown = igtl(robot, "phase", "NO_SUCH_PHASE", "--id", "8")
     assert (unknown.returncode, "There is no phase" in unknown.stderr) == (1, True)
     refused = igtl(robot, "phase", "START_UP", "--json")

@@ -81,14 +81,14 @@ def test_the_phases_of_a_placement_one_after_the_other(meet: Meeting, dialect: s
     navigator.phase("MANUAL", "MANUAL 1", number="0007")
     assert all(axis["state"] == "DISABLED" for axis in robot.api.get("/api/motors").json())
     assert navigator.ask(Query("STATUS", "CURRENT_STATUS")).name == "MANUAL"
-    assert {each.header_version for _, each in navigator.heard.all[-5:]} == {program.version}
+    assert {each.header_version for each in navigator.heard.all[-5:]} == {program.version}
 
 
 def reach(robot: Stack, navigator: Phases) -> None:
     wait_until("there", lambda: newest(robot)["state"] == "done")
     navigator.await_answers("ACK_0004 STRING", "CURRENT_STATUS 1 MOVE_TO_TARGET", "MOVE_TO_TARGET 1")
-    wait_until("last one", lambda: short(navigator.heard.all[-1][1]) == "CURRENT_POSITION TRANSFORM")
-    reached = navigator.heard.all[-1][1].matrix[:3, 3]
+    wait_until("last one", lambda: short(navigator.heard.all[-1]) == "CURRENT_POSITION TRANSFORM")
+    reached = navigator.heard.all[-1].matrix[:3, 3]
     assert np.linalg.norm(reached - np.array(aimed()).reshape(4, 4)[:3, 3]) < 0.5
 
 

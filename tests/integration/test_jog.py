@@ -9,8 +9,8 @@ from stack import Stack
 
 @pytest.fixture
 def robot(stack: StackFactory) -> Stack:
-    # A lease of 200 ms of this clock is two seconds for whoever renews it.
-    started = stack(speed=0.1)
+    # A lease of 200 ms of this clock is four seconds for whoever renews it.
+    started = stack(speed=0.05)
     to_motion(started)
     return started
 
@@ -31,7 +31,7 @@ def test_a_jog_goes_on_while_it_is_renewed_and_ends_when_it_is_aborted(robot: St
     start, number = position(robot), begin(robot)
 
     def has_moved() -> bool:
-        assert judge(robot.api.put(f"/api/jog/{number}")).status_code == 200
+        assert judge(robot.api.put(f"/api/jog/{number}")).status_code == 200, str(proposal(robot, number))
         return position(robot) < start - 20
 
     wait_until("the axis has jogged", has_moved)

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 from bare_kernel import BIN, ROOT
-from test_recorder import RecordedKernel, RecordedKernelFactory, interlock, recorded, unlock, wait_for
+from motion import wait_until
+from test_recorder import RecordedKernel, RecordedKernelFactory, interlock, recorded, unlock
 
 __all__ = ["recorded"]
 
@@ -44,7 +45,7 @@ def moving(recorded: RecordedKernelFactory) -> Path:
         assert kernel.app.ask("ENABLE", axis=axis) == "ACCEPTED"
     kernel.app.run(30)
     kernel.plant("pedal", pressed=True)
-    wait_for("MOTION", lambda: kernel.app.run(5).state.mode == MOTION)
+    wait_until("MOTION", lambda: kernel.app.run(5).state.mode == MOTION)
     assert kernel.app.ask("HOME", axis=YAW) == "ACCEPTED"
     move = {"axis": LATERAL, "target_counts": -200, "drive": 20_000, "lease_ticks": 100}
     assert kernel.app.ask("MOVE", **move) == "ACCEPTED"
@@ -60,11 +61,11 @@ def ended(kernel: RecordedKernel) -> Path:
     """The recording of a kernel that goes on for some ticks and ends."""
     kernel.app.run(20)
     # A kernel that ends takes its black box along; a recorder that is late would find nothing.
-    wait_for("the recorder has begun", lambda: any(kernel.recordings.glob("*")))
+    wait_until("the recorder has begun", lambda: any(kernel.recordings.glob("*")))
     kernel.kernel.terminate()
     kernel.kernel.wait()
     # Named for the lock, or as continuous: the recorder may come to see both at once.
-    wait_for("a recording", lambda: any(kernel.recordings.glob("*.ilkr")))
+    wait_until("a recording", lambda: any(kernel.recordings.glob("*.ilkr")))
     [file] = kernel.recordings.glob("*.ilkr")
     return file
 

@@ -103,7 +103,7 @@ def test_the_reach_holds_where_the_robot_stands(stack: StackFactory) -> None:
     number = propose(robot, kind="coordinated", targets={"lateral": -25.0, "head": -40.0, "feet": -20.0})
     press(robot)
     wait_for_proposal(robot, number, "done")
-    reach = robot.api.get("/api/targeting/reach", timeout=30).json()
+    reach = robot.api.get("/api/targeting/reach").json()
     assert reach["problem"] is None
     # No registration is set: zFrame and scanner are the same.
     x, y, z = robot.api.get("/api/targeting/alignment").json()["current"][3::4][:3]

@@ -4,7 +4,6 @@ import os
 import re
 import signal
 import subprocess
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -12,6 +11,7 @@ import pytest
 from bare_kernel import BIN, DEADLINE_S, ROOT, PlantControl, options, start, stop
 from conftest import StackFactory
 from link_client import LinkClient
+from motion import wait_until
 from stack import Stack, has_ended, watched
 
 INTERLOCK = BIN / "interlock"
@@ -19,7 +19,7 @@ INTERLOCK = BIN / "interlock"
 
 def interlock(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
     command = [str(INTERLOCK), *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120)
+    return subprocess.run(command, capture_output=True, text=True, timeout=DEADLINE_S)
 
 
 def replayed_ticks(file: Path) -> tuple[int, int]:
@@ -30,12 +30,6 @@ def replayed_ticks(file: Path) -> tuple[int, int]:
     span = re.search(r"ticks \((\d+) to (\d+)\)", done.stdout)
     assert span is not None, done.stdout
     return int(span[1]), int(span[2])
-
-
-def wait_for(what: str, holds: Callable[[], bool]) -> None:
-    deadline = time.monotonic() + DEADLINE_S
-    while not holds():
-        assert time.monotonic() < deadline, f"waited for: {what}"
 
 
 class RecordedKernel:
@@ -72,13 +66,13 @@ class RecordedKernel:
         return sorted(self.recordings.glob(f"*-{kind}-*.ilkr"))
 
     def wait_for_file(self, kind: str) -> Path:
-        wait_for(f"a {kind} recording", lambda: bool(self.files(kind)))
+        wait_until(f"a {kind} recording", lambda: bool(self.files(kind)))
         return self.files(kind)[0]
 
     def lock_by_estop(self) -> int:
         """Pulls the E-stop; returns the kernel's counter after the tick that locked."""
         self.plant("estop", pulled=True)
-        wait_for("locked by the E-stop", lambda: self.app.run(5).state.estop == 1)
+        wait_until("locked by the E-stop", lambda: self.app.run(5).state.estop == 1)
         return self.app.snapshot().state.cause_tick + 1
 
     def close(self) -> None:
@@ -128,7 +122,7 @@ def test_killed_kernel_leaves_its_last_tick(recorded: RecordedKernelFactory) -> 
     kernel.kernel.wait()
     _, last = replayed_ticks(kernel.wait_for_file("end"))
     assert last >= kernel.app.snapshot().state.tick
-    wait_for("the ring is gone", lambda: not kernel.ring.exists())
+    wait_until("the ring is gone", lambda: not kernel.ring.exists())
 
 
 def test_killed_app_does_not_end_the_recording(recorded: RecordedKernelFactory) -> None:
@@ -154,7 +148,7 @@ def test_killed_recorder_loses_nothing(recorded: RecordedKernelFactory) -> None:
     kernel.app.run(2000)
     kernel.recorder = kernel.start_recorder()
     whole = f"-lock-{locked}.ilkr"
-    wait_for(
+    wait_until(
         "the recording, and nothing else",
         lambda: [file.name.endswith(whole) for file in kernel.files("lock")] == [True],
     )
@@ -167,7 +161,7 @@ def test_killed_recorder_loses_nothing(recorded: RecordedKernelFactory) -> None:
 def test_cut_off_recording_ends_with_its_last_whole_block(recorded: RecordedKernelFactory) -> None:
     kernel = recorded("--continuous")
     seen = kernel.app.run(3000).state.tick
-    wait_for("blocks", lambda: any(file.stat().st_size > 600_000 for file in kernel.recordings.iterdir()))
+    wait_until("blocks", lambda: any(file.stat().st_size > 600_000 for file in kernel.recordings.iterdir()))
     kernel.recorder.kill()
     kernel.recorder.wait()
     (part,) = kernel.recordings.glob("*.part")
@@ -246,7 +240,7 @@ def test_killed_run_is_rescued_by_the_next_one(short_tmp_path: Path) -> None:
     killed.close()
     again = Stack(short_tmp_path, *arguments)
     try:
-        wait_for("rescued", lambda: any((again.state / "recordings").glob("*-rescue-*.ilkr")))
+        wait_until("rescued", lambda: any((again.state / "recordings").glob("*-rescue-*.ilkr")))
         (rescued,) = (again.state / "recordings").glob("*-rescue-*.ilkr")
         _, last = replayed_ticks(rescued)
         assert last >= seen
@@ -268,7 +262,7 @@ def test_last_ticks_that_the_disk_refused_are_written_out_later(recorded: Record
     kernel.recorder = kernel.start_recorder()
     _, last = replayed_ticks(kernel.wait_for_file("rescue"))
     assert last >= kernel.app.snapshot().state.tick
-    wait_for("the ring is gone", lambda: not kernel.ring.exists())
+    wait_until("the ring is gone", lambda: not kernel.ring.exists())
 
 
 def test_fault_of_an_axis_is_recorded_by_interlock_run(stack: StackFactory) -> None:

@@ -6,8 +6,9 @@ from pathlib import Path
 import httpx
 import pytest
 from bare_kernel import DEADLINE_S, stop
+from motion import wait_until
 from stack import Output, start_interlock
-from test_recorder import RecordedKernelFactory, interlock, recorded, replayed_ticks, unlock, wait_for
+from test_recorder import RecordedKernelFactory, interlock, recorded, replayed_ticks, unlock
 
 __all__ = ["recorded"]
 
@@ -51,7 +52,7 @@ def replay(recording: Path, short_tmp_path: Path) -> Iterator[Replay]:
 
 def test_the_console_sees_the_recorded_run_to_its_last_tick(replay: Replay, recording: Path) -> None:
     _, last = replayed_ticks(recording)
-    wait_for("the last tick", lambda: replay.status()["tick"] == last)
+    wait_until("the last tick", lambda: replay.status()["tick"] == last)
     shown = replay.status()
     assert (shown["replay"], shown["connected"], shown["simulated"]) == (True, True, True)
     assert (shown["mode"], shown["cause"], shown["estop"]) == ("LOCKED", "ESTOP", True)

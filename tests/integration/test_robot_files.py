@@ -11,7 +11,7 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from bare_kernel import BIN, ROOT
+from bare_kernel import BIN, DEADLINE_S, ROOT
 from conftest import StackFactory
 from motion import act, motor, press, propose, to_motion, unlock, wait_for_mode, wait_for_proposal, wait_until
 from stack import Stack
@@ -57,7 +57,7 @@ def model(command: str, folder: Path, *arguments: str) -> subprocess.CompletedPr
         cwd=folder,
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=DEADLINE_S,
     )
 
 

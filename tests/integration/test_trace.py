@@ -243,7 +243,6 @@ def test_rows_chosen_by_seed_open_from_the_hazard_to_the_raw_log_and_one_that_is
     assert f"H-01 does not lead to {cause}" in walk.complaints(row, without_cause)
 
 
-@pytest.mark.timeout(300)
 def test_twenty_rows_of_the_real_matrix_open_from_the_hazard_to_the_code(
     stated_here: tuple[Items, str],
 ) -> None:
@@ -506,7 +505,6 @@ class Repository(Tree):
         return subprocess.run(command, cwd=self.path, capture_output=True, text=True)
 
 
-@pytest.mark.timeout(300)
 def test_the_report_of_a_clean_project_is_written_and_a_defect_fails_it_by_name(tmp_path: Path) -> None:
     repository = Repository(tmp_path)
     done = repository.run("trace/report.py")
@@ -604,7 +602,6 @@ def test_every_cause_makes_a_control_action_unsafe() -> None:
     assert set(re.findall(r"CA-\d+", table)) == set(stated)
 
 
-@pytest.mark.timeout(300)
 def test_the_projects_own_requirements_hold_together(stated_here: tuple[Items, str]) -> None:
     items, printed = stated_here
     links = read_links(LINKS)

@@ -64,8 +64,8 @@ def test_the_whole_way_to_the_target_with_every_answer_in_its_order(
     wait_until("streamed", lambda: "CURRENT_POSITION TRANSFORM" in map(short, navigator.messages()))
     wait_until("there", lambda: robot.api.get("/api/proposals").json()[0]["state"] == "done")
     navigator.await_answers("ACK_0001 STRING", "CURRENT_STATUS 1 MOVE_TO_TARGET", "MOVE_TO_TARGET 1")
-    wait_until("last one", lambda: short(navigator.heard.all[-1][1]) == "CURRENT_POSITION TRANSFORM")
-    reached = navigator.heard.all[-1][1].matrix[:3, 3]
+    wait_until("last one", lambda: short(navigator.heard.all[-1]) == "CURRENT_POSITION TRANSFORM")
+    reached = navigator.heard.all[-1].matrix[:3, 3]
     assert np.linalg.norm(reached - np.array(aimed()).reshape(4, 4)[:3, 3]) < 0.5
 
 
