@@ -70,28 +70,27 @@ run: build ## Start simulated robot, kernel, app and console: [ROBOT=neuro|prost
 	@exec $(release)/bin/interlock run --robot $(ROBOT) --port $(PORT)
 
 .PHONY: test test-unit test-console test-integration test-network test-browser
-test: build-tests ## Run the unit, integration, network (as root) and browser tests; reports in build/reports/
-	@$(MAKE) --keep-going test-unit test-console test-integration test-network test-browser
+test: build-tests ## Run the unit, console, integration, network (as root) and browser tests; reports in build/reports/
+	@tests/run unit console integration network browser
 
 test-unit: build-tests ## Run the GoogleTest programs
-	@verification/evidence/begin_tests.py unit
-	@ctest --preset release --progress --no-tests=error --output-junit $(CURDIR)/$(reports)/unit.xml
+	@tests/run unit
 
 test-console: setup-test ## Run the console's unit tests, and compare its kernel with the native one
-	@verification/evidence/begin_tests.py console
-	@npm --prefix web run --silent test -- --reporter=default --reporter=junit --outputFile=../$(reports)/console.xml
+	@tests/run console
 
 test-integration: build-tests ## Run the tests on real processes
-	@verification/evidence/begin_tests.py integration
-	@pytest --numprocesses=3 --dist=loadscope -m "not provers and not network" --junitxml=$(reports)/integration.xml tests/integration
+	@tests/run integration
 
 test-network: build-tests ## Run the tests that pull a cable: they need root, for a network namespace
-	@verification/evidence/begin_tests.py network
-	@pytest -m network --junitxml=$(reports)/network.xml tests/integration
+	@tests/run network
 
 test-browser: build-tests ## Run the tests that click through the console
-	@verification/evidence/begin_tests.py browser
-	@npm --prefix web run --silent test:browser
+	@tests/run browser
+
+.PHONY: test-loaded
+test-loaded: setup-bench build-tests ## Run tests, then scenarios, three times in a row beside a load: [RUNS=3] [WHAT="test scenarios"]
+	@tests/loaded $(or $(RUNS),3) $(or $(WHAT),test scenarios)
 
 .PHONY: test-sanitizers
 test-sanitizers: setup-bench ## Run the unit tests under the address and undefined-behaviour sanitizers

@@ -15,5 +15,7 @@ export default defineConfig({
   test: {
     environment: "node",
     include: ["src/**/*.test.ts"],
+    // Only ends a run that hangs.
+    testTimeout: 300_000,
   },
 });
