@@ -51,12 +51,7 @@ std::vector<json> StoreFixture::audit(const std::string& kind) {
   return details;
 }
 
-HttpTest::HttpTest(std::chrono::milliseconds patience_with_store)
-    : HttpTest(test::neuro(), test::neuro_config(), patience_with_store) {}
-
-HttpTest::HttpTest(const Robot& robot, const ilk_config_t& config,
-                   std::chrono::milliseconds patience_with_store)
-    : robot_(robot), config_(config), patience_with_store_(patience_with_store) {
+HttpTest::HttpTest(const Robot& robot, const ilk_config_t& config) : robot_(robot), config_(config) {
   std::ofstream(web_.path() / "index.html") << "<title>console</title>";
   add_user("ada", Role::admin);
   add_user("edna", Role::engineer);

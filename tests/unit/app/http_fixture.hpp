@@ -82,11 +82,10 @@ class StoreFixture : public testing::Test {
 /** `edna`, an engineer, is logged in and holds the authority, unless a test says otherwise. */
 class HttpTest : public StoreFixture {
  protected:
-  explicit HttpTest(std::chrono::milliseconds patience_with_store = StoreGateway::usual_patience);
+  HttpTest() : HttpTest(test::neuro(), test::neuro_config()) {}
 
   /** Of another robot than the NeuroRobot. Both must outlive the test. */
-  HttpTest(const Robot& robot, const ilk_config_t& config,
-           std::chrono::milliseconds patience_with_store = StoreGateway::usual_patience);
+  HttpTest(const Robot& robot, const ilk_config_t& config);
 
   ~HttpTest() override;
 
@@ -155,14 +154,13 @@ class HttpTest : public StoreFixture {
 
   const Robot& robot_;
   const ilk_config_t& config_;
-  std::chrono::milliseconds patience_with_store_;
   test::TemporaryFolder web_;
   std::string token_;
   asio::io_context network_{1};
   asio::io_context client_{1};
   std::unique_ptr<Log> log_ = Log::start({}, LogLevel::info).value();
   std::unique_ptr<Mailbox> mailbox_ = std::make_unique<Mailbox>();
-  StoreGateway gateway_{network_.get_executor(), store_, patience_with_store_};
+  StoreGateway gateway_{network_.get_executor(), store_, std::chrono::minutes(10)};
   Api api_{network_.get_executor(),
            robot_,
            config_,

@@ -26,7 +26,7 @@ class NavigationTest : public HttpTest {
     EXPECT_EQ(ask("WHO"), "ERROR 12") << "the connection is listed by now";
   }
 
-  static igtl::Client::Deadline soon() { return std::chrono::steady_clock::now() + std::chrono::seconds(5); }
+  static igtl::Client::Deadline soon() { return std::chrono::steady_clock::now() + std::chrono::minutes(5); }
 
   void become_controller() {
     const json listed = json::parse(get("/api/communications/connections").body);

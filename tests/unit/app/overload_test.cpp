@@ -12,7 +12,6 @@ using testing::HasSubstr;
 /** The store's thread can be kept busy for as long as a test needs it. */
 class OverloadTest : public HttpTest {
  protected:
-  OverloadTest() : HttpTest(std::chrono::minutes(10)) {}
   ~OverloadTest() override { release_store(); }
 
   void hold_store() {

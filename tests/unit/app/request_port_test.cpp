@@ -13,7 +13,7 @@ class RequestPortTest : public testing::Test {
  protected:
   RequestPortTest() {
     std::future<void> accepted = std::async(std::launch::async, [this] { kernel_.accept(); });
-    EXPECT_TRUE(link_.attach(std::chrono::seconds(5)));
+    EXPECT_TRUE(link_.attach(std::chrono::minutes(5)));
     accepted.get();
     port_.begin_tick();
   }

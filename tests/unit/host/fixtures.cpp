@@ -136,7 +136,7 @@ App::~App() {
 }
 
 bool eventually(const std::function<bool()>& attempt) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(5);
   while (!attempt()) {
     if (std::chrono::steady_clock::now() > end) {
       return false;
