@@ -14,8 +14,6 @@ const password = "correct horse battery";
 /** Of the data's age, in microseconds, in the stream's binary message. */
 const AGE_OFFSET = 4 * headerFields.indexOf("age_us");
 
-test.describe.configure({ timeout: 300_000 });
-
 /** Each place that breaks a rule, with what is wrong there. */
 async function violations(axe: AxeBuilder): Promise<string[]> {
   const { violations: found } = await axe.analyze();

@@ -51,7 +51,7 @@ test("a hand pushes the needle through its first membrane, and letting the pedal
   const membranes = panel.getByRole("list", { name: "Membranes" }).getByRole("listitem");
   await expect(membranes.first()).toHaveText(/^25 mm: passed, found at 2[3-7]\.\d mm$/);
 
-  await robot.latch.click();
+  await robot.releasePedal();
   await expect(robot.proposal(2)).toContainText("paused");
   const held = await insertion.restingCounts();
   expect(await insertion.restingCounts()).toBe(held);
