@@ -54,15 +54,17 @@ def test_every_target_of_the_thesis_is_reached_within_a_tenth_of_a_millimetre(
 
 
 def test_a_scan_that_shows_the_target_missed_leads_there_once_more() -> None:
-    trials = json.loads(demo("neuro", "--json", "--random-targets", "0", "--tolerance", "0.05").stdout)[
-        "trials"
-    ]
+    trials = json.loads(
+        demo("neuro", TABLES, "--json", "--random-targets", "0", "--tolerance", "0.05").stdout
+    )["trials"]
     again = [trial for trial in trials if trial["insertions"] > 1]
     assert again
     for trial in again:
         assert math.hypot(*trial["first_error_mm"]) > 0.05
         assert trial["insertions"] == 3 or math.hypot(*trial["error_mm"]) <= 0.05
-    once = json.loads(demo("neuro", "--json", "--random-targets", "0", "--tolerance", "1").stdout)["trials"]
+    once = json.loads(demo("neuro", TABLES, "--json", "--random-targets", "0", "--tolerance", "1").stdout)[
+        "trials"
+    ]
     assert {trial["insertions"] for trial in once} == {1}
 
 
@@ -74,7 +76,7 @@ def test_injected_mechanical_errors_are_distributed_as_the_thesis_errors(robot: 
     assert shown == answer["distributions"]["last_scan"]
     assert (shown["insertions"], printed["insertions"]) == (210, 7)
     assert shown["mean_mm"] == pytest.approx(printed["mean_mm"], rel=0.25)
-    without = json.loads(demo(robot, "--json", "--random-targets", "0").stdout)
+    without = json.loads(demo(robot, TABLES, "--json", "--random-targets", "0").stdout)
     assert without["injected_error"] == {"mean_mm": [0, 0, 0], "deviation_mm": [0, 0, 0]}
 
 
@@ -175,7 +177,7 @@ def test_a_folder_that_cannot_be_made_is_named() -> None:
 
 
 def test_the_same_seed_gives_the_same_demonstration_and_another_one_another(tmp_path: Path) -> None:
-    arguments = ("neuro", "--json", "--random-targets", "10", "--seed")
+    arguments = ("neuro", TABLES, "--json", "--random-targets", "10", "--seed")
     first, again, other = (demo(*arguments, seed).stdout for seed in ("1", "1", "2"))
     assert first == again
     assert first != other
