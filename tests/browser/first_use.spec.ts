@@ -210,53 +210,57 @@ test("a jammed axis stalls, names the fault with its next step, and moves again 
   await expect.poll(() => axis.counts()).toBeGreaterThan(10);
 });
 
-test("data of a silent app are greyed, then covered, and STOP says that it was not heard", async ({
-  robot,
-  stack,
-  page,
-}) => {
-  await robot.unlockRobot();
-  const panels = page.getByRole("main");
-  await expect(panels).toHaveAttribute("data-level", "live");
-  // What is shown in each painted frame, until the panels are covered.
-  const shown = page.evaluate(
-    () =>
-      new Promise<{ level: string; age: string; header: string }[]>((resolve) => {
-        const seen: { level: string; age: string; header: string }[] = [];
-        const look = (): void => {
-          const level = document.querySelector("main")?.dataset.level ?? "";
-          const header = document.querySelector("header")?.dataset.level ?? "";
-          const age = document.querySelector(".connection dd:last-of-type")?.textContent ?? "";
-          seen.push({ level, age, header });
-          if (level === "covered") resolve(seen);
-          else requestAnimationFrame(look);
-        };
-        look();
-      }),
-  );
-  stack.signalApp("SIGSTOP");
-  try {
-    const frames = await shown;
-    for (const { level, age, header } of frames) {
-      const ageMs = age.endsWith(" ms") ? Number.parseInt(age, 10) : 1000 * Number.parseFloat(age);
-      // An age that is shown as a bound was rounded to it from either side.
-      if (ageMs === 250 || ageMs === 1000) continue;
-      expect(level, `at an age of ${age}`).toBe(ageMs < 250 ? "live" : ageMs < 1000 ? "grey" : "covered");
-      expect(header).toBe(level);
+test.describe("as impatient as it is", () => {
+  test.use({ patience: 1 });
+
+  test("data of a silent app are greyed, then covered, and STOP says that it was not heard", async ({
+    robot,
+    stack,
+    page,
+  }) => {
+    await robot.unlockRobot();
+    const panels = page.getByRole("main");
+    await expect(panels).toHaveAttribute("data-level", "live");
+    // What is shown in each painted frame, until the panels are covered.
+    const shown = page.evaluate(
+      () =>
+        new Promise<{ level: string; age: string; header: string }[]>((resolve) => {
+          const seen: { level: string; age: string; header: string }[] = [];
+          const look = (): void => {
+            const level = document.querySelector("main")?.dataset.level ?? "";
+            const header = document.querySelector("header")?.dataset.level ?? "";
+            const age = document.querySelector(".connection dd:last-of-type")?.textContent ?? "";
+            seen.push({ level, age, header });
+            if (level === "covered") resolve(seen);
+            else requestAnimationFrame(look);
+          };
+          look();
+        }),
+    );
+    stack.signalApp("SIGSTOP");
+    try {
+      const frames = await shown;
+      for (const { level, age, header } of frames) {
+        const ageMs = age.endsWith(" ms") ? Number.parseInt(age, 10) : 1000 * Number.parseFloat(age);
+        // An age that is shown as a bound was rounded to it from either side.
+        if (ageMs === 250 || ageMs === 1000) continue;
+        expect(level, `at an age of ${age}`).toBe(ageMs < 250 ? "live" : ageMs < 1000 ? "grey" : "covered");
+        expect(header).toBe(level);
+      }
+      const order = frames.map(({ level }) => level).filter((level, at, all) => level !== all[at - 1]);
+      // A page that was not painted while they were grey goes from live to covered at once.
+      expect(order.slice(order.lastIndexOf("live")).join()).toMatch(/^live(,grey)?,covered$/);
+      await expect(page.getByRole("heading", { name: /No data for/ })).toBeVisible();
+      await robot.expectMode("UNKNOWN");
+      await expect(robot.unlock).toBeDisabled();
+      await page.keyboard.press("Escape");
+      await expect(page.getByRole("alert").filter({ hasText: "use the E-stop" })).toBeVisible();
+    } finally {
+      stack.signalApp("SIGCONT");
     }
-    const order = frames.map(({ level }) => level).filter((level, at, all) => level !== all[at - 1]);
-    // A page that was not painted while they were grey goes from live to covered at once.
-    expect(order.slice(order.lastIndexOf("live")).join()).toMatch(/^live(,grey)?,covered$/);
-    await expect(page.getByRole("heading", { name: /No data for/ })).toBeVisible();
-    await robot.expectMode("UNKNOWN");
-    await expect(robot.unlock).toBeDisabled();
-    await page.keyboard.press("Escape");
-    await expect(page.getByRole("alert").filter({ hasText: "use the E-stop" })).toBeVisible();
-  } finally {
-    stack.signalApp("SIGCONT");
-  }
-  await expect(panels).toHaveAttribute("data-level", "live");
-  await robot.expectMode("READY");
+    await expect(panels).toHaveAttribute("data-level", "live");
+    await robot.expectMode("READY");
+  });
 });
 
 test("the console comes back by itself when the app was killed and started again", async ({

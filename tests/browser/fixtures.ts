@@ -9,6 +9,8 @@ const expectedComplaint =
 interface Fixtures {
   robotName: RobotName;
   clock: Clock;
+  /** By so much more a page is patient with the app than it is by itself, so that no slow machine makes it give up. */
+  patience: number;
   stack: Stack;
   /** The console before login. */
   front: ConsolePage;
@@ -22,22 +24,23 @@ interface Fixtures {
 export const test = base.extend<Fixtures>({
   robotName: ["neuro", { option: true }],
   clock: ["paced", { option: true }],
+  patience: [20, { option: true }],
   stack: async ({ robotName, clock }, use) => {
     const stack = await Stack.start(robotName, clock);
     await use(stack);
     await stack.end();
   },
-  front: async ({ page, stack }, use) => {
-    await openConsole(page, stack, use);
+  front: async ({ page, stack, patience }, use) => {
+    await openConsole(page, stack, patience, use);
   },
   robot: async ({ front, stack }, use) => {
     await front.logIn("admin", stack.password);
     await front.requestAuthority();
     await use(front);
   },
-  other: async ({ browser, stack }, use) => {
+  other: async ({ browser, stack, patience }, use) => {
     const context = await browser.newContext();
-    await openConsole(await context.newPage(), stack, use);
+    await openConsole(await context.newPage(), stack, patience, use);
     await context.close();
   },
 });
@@ -45,6 +48,7 @@ export const test = base.extend<Fixtures>({
 async function openConsole(
   page: Page,
   stack: Stack,
+  patience: number,
   use: (opened: ConsolePage) => Promise<void>,
 ): Promise<void> {
   const complaints: string[] = [];
@@ -53,6 +57,10 @@ async function openConsole(
     const serious = message.type() === "error" || message.type() === "warning";
     if (serious && !expectedComplaint.test(message.text())) complaints.push(message.text());
   });
+  await page.addInitScript((factor) => {
+    const timeout = AbortSignal.timeout.bind(AbortSignal);
+    AbortSignal.timeout = (ms) => timeout(factor * ms);
+  }, patience);
   await page.goto(stack.url);
   await use(new ConsolePage(page, stack));
   expect(complaints).toEqual([]);
