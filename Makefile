@@ -96,6 +96,10 @@ test-loaded: setup-bench build-tests ## Run tests, then scenarios, three times i
 test-sanitizers: setup-bench ## Run the unit tests under the address and undefined-behaviour sanitizers
 	@$(measure) sanitizers python verification/sanitizers/run.py
 
+.PHONY: test-reproducible
+test-reproducible: setup-test ## Build twice in different folders, and compare every byte that is shipped
+	@tests/machine/reproducible
+
 .PHONY: fuzz
 fuzz: setup-bench ## Throw bytes at the OpenIGTLink decoders under sanitizers: [FUZZ_SECONDS=30 | FUZZ_RUNS=10000000]
 	@$(measure) fuzz tests/fuzz/run.py $(if $(FUZZ_RUNS),runs $(FUZZ_RUNS),seconds $(FUZZ_SECONDS))
@@ -178,7 +182,7 @@ install: build ## Install programs, robot files and console: [PREFIX=/usr/local]
 
 .PHONY: package
 package: setup-test build ## Make the Debian package, in build/release/package/
-	@cd $(release) && cpack --config CPackConfig.cmake >package.log || { cat package.log; exit 1; }
+	@cd $(release) && SOURCE_DATE_EPOCH=$$(git log -1 --format=%ct) cpack --config CPackConfig.cmake >package.log || { cat package.log; exit 1; }
 	@ls $(release)/package/*.deb
 
 .PHONY: lint format

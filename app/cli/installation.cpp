@@ -8,7 +8,8 @@ namespace fs = std::filesystem;
 
 Installation Installation::current() {
   const fs::path programs = fs::read_symlink("/proc/self/exe").parent_path();
-  return {programs, {programs.parent_path() / "share/interlock", INTERLOCK_SOURCE_DIR}};
+  fs::path installed = programs.parent_path() / "share/interlock";
+  return {programs, fs::exists(installed) ? installed : programs.parent_path().parent_path().parent_path()};
 }
 
 Result<fs::path> Installation::program(const std::string& name) const {
@@ -29,12 +30,10 @@ Result<fs::path> Installation::robot(const std::string& robot) const {
 
 std::vector<fs::path> Installation::robots() const {
   std::vector<fs::path> files;
-  for (const fs::path& root : roots_) {
-    std::error_code none;
-    for (const fs::directory_entry& entry : fs::directory_iterator(root / "models/robots", none)) {
-      if (entry.path().extension() == ".toml") {
-        files.push_back(entry.path());
-      }
+  std::error_code none;
+  for (const fs::directory_entry& entry : fs::directory_iterator(data_ / "models/robots", none)) {
+    if (entry.path().extension() == ".toml") {
+      files.push_back(entry.path());
     }
   }
   return files;
@@ -45,35 +44,25 @@ Result<fs::path> Installation::plant(const std::string& robot_name) const {
 }
 
 Result<fs::path> Installation::model(const std::string& kind, const std::string& name) const {
-  std::string looked;
-  for (const fs::path& root : roots_) {
-    fs::path file = root / "models" / kind / (name + ".toml");
-    if (fs::exists(file)) {
-      return file;
-    }
-    looked += (looked.empty() ? "" : " and ") + file.string();
+  fs::path file = data_ / "models" / kind / (name + ".toml");
+  if (!fs::exists(file)) {
+    return failed(ExitCode::precondition,
+                  "there is no " + kind + " file for \"" + name + "\"; looked for " + file.string());
   }
-  return failed(ExitCode::precondition,
-                "there is no " + kind + " file for \"" + name + "\"; looked for " + looked);
+  return file;
 }
 
-std::optional<fs::path> Installation::web() const {
-  for (const fs::path& root : roots_) {
-    for (const char* const folder : {"web", "web/dist"}) {
-      if (fs::exists(root / folder / "assets")) {
-        return root / folder;
-      }
-    }
-  }
-  return std::nullopt;
-}
+std::optional<fs::path> Installation::web() const { return folder_with("assets", {"web", "web/dist"}); }
 
 std::optional<fs::path> Installation::documents() const {
-  for (const fs::path& root : roots_) {
-    for (const char* const folder : {"documents", "build/docs/site"}) {
-      if (fs::exists(root / folder / "index.html")) {
-        return root / folder;
-      }
+  return folder_with("index.html", {"documents", "build/docs/site"});
+}
+
+std::optional<fs::path> Installation::folder_with(const std::string& file,
+                                                  std::array<const char*, 2> folders) const {
+  for (const char* const folder : folders) {
+    if (fs::exists(data_ / folder / file)) {
+      return data_ / folder;
     }
   }
   return std::nullopt;

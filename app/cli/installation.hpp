@@ -5,6 +5,7 @@
  */
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -16,12 +17,15 @@ namespace interlock::cli {
 
 class Installation {
  public:
-  /** Looks for programs in `programs`, and for everything else in the roots, first to last. */
-  Installation(std::filesystem::path programs, std::vector<std::filesystem::path> roots)
-      : programs_(std::move(programs)), roots_(std::move(roots)) {}
+  /** Looks for programs in `programs`, and for everything else in `data`. */
+  Installation(std::filesystem::path programs, std::filesystem::path data)
+      : programs_(std::move(programs)), data_(std::move(data)) {}
 
-  /** The installation that this very program belongs to, then the source tree it was built from. */
+  /** What this very program belongs to: an installation (PREFIX/bin) or a source tree (build/PRESET/bin). */
   static Installation current();
+
+  /** Where everything but the programs is: share/interlock of an installation, or the top of a source tree. */
+  [[nodiscard]] const std::filesystem::path& data() const { return data_; }
 
   /** An executable program of Interlock. */
   [[nodiscard]] Result<std::filesystem::path> program(const std::string& name) const;
@@ -44,9 +48,11 @@ class Installation {
 
  private:
   [[nodiscard]] Result<std::filesystem::path> model(const std::string& kind, const std::string& name) const;
+  [[nodiscard]] std::optional<std::filesystem::path> folder_with(const std::string& file,
+                                                                 std::array<const char*, 2> folders) const;
 
   std::filesystem::path programs_;
-  std::vector<std::filesystem::path> roots_;
+  std::filesystem::path data_;
 };
 
 }  // namespace interlock::cli

@@ -135,8 +135,9 @@ std::optional<int> exit_code_of(std::array<std::string, 3> words) {
 
 /** What the model says of a recording that is identical; its checker writes to standard output itself. */
 Result<void> ask_model(const fs::path& file, std::ostream& output) {
-  const fs::path checker = fs::path(INTERLOCK_SOURCE_DIR) / "verification/conformance/recorded.py";
-  const Result<fs::path> teller = Installation::current().program("model_trace");
+  const Installation here = Installation::current();
+  const fs::path checker = here.data() / "verification/conformance/recorded.py";
+  const Result<fs::path> teller = here.program("model_trace");
   if (!teller || !fs::exists(checker)) {
     return failed(
         ExitCode::precondition,

@@ -84,6 +84,11 @@ def test_a_shipped_program_ends_at_a_smashed_stack_or_buffer_and_keeps_its_table
     assert {name for name in calls(program) if re.fullmatch(r"__\w+_chk", name)}
 
 
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_a_shipped_program_does_not_name_the_folder_in_which_it_was_built(name: str) -> None:
+    assert os.fsencode(ROOT) not in (BIN / name).read_bytes()
+
+
 @pytest.mark.parametrize("name", sorted({*PROGRAMS} - {"interlock-kernel"}))
 def test_a_shipped_program_ends_at_an_index_past_the_end(name: str) -> None:
     assert "_ZSt21__glibcxx_assert_failPKciS0_S0_" in calls(BIN / name)
@@ -139,9 +144,15 @@ def test_the_package_brings_programs_that_run_and_what_they_need(tmp_path: Path)
         "lib/udev/rules.d/60-interlock.rules",
         "lib/sysusers.d/interlock.conf",
         "share/doc/interlock/copyright",
+        *(f"share/man/man1/{name}.1.gz" for name in PROGRAMS),
         "share/interlock/web/index.html",
     ):
         assert (usr / file).is_file(), file
+    notices = (usr / "share/doc/interlock/copyright").read_text()
+    for name in ("three", "uplot", "react-dom", "@fontsource-variable/inter", "ruckig", "libspdlog-dev"):
+        assert re.search(rf"^{name}\b", notices, re.MULTILINE), name
+    checked = run("lintian", "--allow-root", "--fail-on", "error,warning", package)
+    assert (checked.returncode, checked.stdout) == (0, "")
     control = tmp_path / "control"
     assert run("dpkg-deb", "-e", package, control).returncode == 0
     for script in ("postinst", "prerm"):
