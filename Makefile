@@ -82,7 +82,7 @@ test-console: setup-test ## Run the console's unit tests, and compare its kernel
 test-integration: build-tests ## Run the tests on real processes
 	@tests/run integration
 
-test-network: build-tests ## Run the tests that pull a cable: they need root, for a network namespace
+test-network: build-tests ## Run the tests that need root: they pull a cable in a network namespace, and act as another user
 	@tests/run network
 
 test-browser: build-tests ## Run the tests that click through the console

@@ -75,7 +75,8 @@ void describe(CLI::App& cli, Options& options) {
       ->required();
   cli.add_option("--link", options.link_socket, "the kernel's link socket")->required();
   cli.add_option("--bench", options.bench_socket, "control socket of the simulated hardware");
-  cli.add_option("--black-box", options.black_box, "file of the kernel's black box, to show single ticks");
+  cli.add_option("--black-box", options.black_box,
+                 "socket on which the kernel hands out its black box, to show single ticks");
   cli.add_option("--listen", options.listen.address, "loopback address to serve on")->capture_default_str();
   cli.add_option("--port", options.listen.port, "port to serve on; 0: any free one")
       ->check(CLI::Range(0, 65535))

@@ -51,7 +51,7 @@ cpu_set_t cores_of(const Program& program) {
 
 /** Runs in the child between fork and exec, so only async-signal-safe calls are allowed. Does not return. */
 [[noreturn]] void become(char* const arguments[], const cpu_set_t& cores, int output, int null_input,
-                         pid_t parent) {
+                         pid_t parent, int signal_at_parents_end) {
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -61,7 +61,7 @@ cpu_set_t cores_of(const Program& program) {
   dup2(null_input, STDIN_FILENO);
   dup2(output, STDOUT_FILENO);
   dup2(output, STDERR_FILENO);
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  prctl(PR_SET_PDEATHSIG, signal_at_parents_end);
   if (getppid() != parent) {
     _exit(1);  // The parent died before the line above could tie this process to it.
   }
@@ -99,7 +99,8 @@ Result<ChildProcess> ChildProcess::start(const Program& program) {
   const pid_t parent = getpid();
   const pid_t pid = fork();
   if (pid == 0) {
-    become(arguments.data(), cores, writer.get(), null_input.get(), parent);
+    become(arguments.data(), cores, writer.get(), null_input.get(), parent,
+           program.outlives_parent ? SIGTERM : SIGKILL);
   }
   if (pid < 0) {
     return failed(ExitCode::process_ended, program.name + " cannot be started: " + last_error());

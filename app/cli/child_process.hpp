@@ -22,14 +22,15 @@ struct Program {
   std::filesystem::path file;
   std::vector<std::string> arguments;
   std::optional<std::uint32_t> kept_off_core =
-      std::nullopt; /**< a core on which none of its threads may run */
+      std::nullopt;             /**< a core on which none of its threads may run */
+  bool outlives_parent = false; /**< is asked to end, not killed, when its parent dies */
 };
 
 /** How a child ended, in words: "exit code 2", "killed by signal 9 (Killed)". */
 std::string describe_end(int wait_status);
 
 /**
- * A running child. It dies when its parent dies, has a process group of its own, so that Ctrl-C reaches only
+ * A running child. It ends when its parent dies, has a process group of its own, so that Ctrl-C reaches only
  * the parent, and writes standard output and standard error into one pipe.
  */
 class ChildProcess {

@@ -2,6 +2,8 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <array>
 #include <cerrno>
@@ -19,7 +21,8 @@ namespace fs = std::filesystem;
 struct Holder {
   std::string process;
   std::string url;
-  std::string runtime_directory;
+  std::string runtime_directory; /**< a private one; else empty */
+  std::string black_box;         /**< socket */
 };
 
 Holder read_holder(int file) {
@@ -30,10 +33,12 @@ Holder read_holder(int file) {
   std::getline(lines, holder.process);
   std::getline(lines, holder.url);
   std::getline(lines, holder.runtime_directory);
+  std::getline(lines, holder.black_box);
   return holder;
 }
 
-/** An instance that was killed could not remove its private directory. */
+/** An instance that was killed could not remove its private directory. What somebody else wrote is not
+ * followed. */
 void remove_leftovers(const Holder& holder) {
   const fs::path directory = holder.runtime_directory;
   if (directory.is_absolute() && directory.filename().string().starts_with("interlock-")) {
@@ -56,17 +61,28 @@ Result<InstanceLock> InstanceLock::take(const fs::path& directory) {
   }
   const bool taken = flock(file.get(), LOCK_EX | LOCK_NB) == 0;
   const Holder holder = read_holder(file.get());
+  struct stat status{};
+  const bool is_own = fstat(file.get(), &status) == 0 && status.st_uid == geteuid();
+  if (!taken && !is_own) {
+    return failed(ExitCode::precondition, path.string() +
+                                              " belongs to another user, who keeps it locked; remove it, or "
+                                              "choose another --state");
+  }
   if (!taken) {
     return failed(ExitCode::precondition, "another instance uses the state directory " + directory.string() +
                                               ": process " + holder.process + ", " + holder.url +
                                               "; stop it, or choose another --state and --port");
   }
-  remove_leftovers(holder);
+  if (is_own) {
+    remove_leftovers(holder);
+  }
   return InstanceLock(std::move(file));
 }
 
-void InstanceLock::describe(const std::string& url, const fs::path& runtime_directory) const {
-  const std::string text = std::to_string(getpid()) + '\n' + url + '\n' + runtime_directory.string() + '\n';
+void InstanceLock::describe(const std::string& url, const fs::path& runtime_directory,
+                            const fs::path& black_box) const {
+  const std::string text = std::to_string(getpid()) + '\n' + url + '\n' + runtime_directory.string() + '\n' +
+                           black_box.string() + '\n';
   // The lock holds with or without its description; without it, a second instance cannot name the first.
   [[maybe_unused]] const bool described =
       ftruncate(file_.get(), 0) == 0 &&
@@ -77,6 +93,12 @@ InstanceLock::~InstanceLock() {
   if (file_) {
     [[maybe_unused]] const int emptied = ftruncate(file_.get(), 0);
   }
+}
+
+std::optional<fs::path> running_black_box(const fs::path& directory) {
+  const UniqueFd file(open((directory / "lock").c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
+  const std::string black_box = file ? read_holder(file.get()).black_box : "";
+  return black_box.empty() ? std::nullopt : std::optional<fs::path>(black_box);
 }
 
 }  // namespace interlock::cli

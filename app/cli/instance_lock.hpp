@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "cli/exit_code.hpp"
@@ -25,8 +26,9 @@ class InstanceLock {
    * it. */
   static Result<InstanceLock> take(const std::filesystem::path& directory);
 
-  /** Writes down who holds the directory. */
-  void describe(const std::string& url, const std::filesystem::path& runtime_directory) const;
+  /** Writes down who holds the directory, and where its kernel hands out its black box. */
+  void describe(const std::string& url, const std::filesystem::path& runtime_directory,
+                const std::filesystem::path& black_box) const;
 
   InstanceLock(InstanceLock&&) = default;
   InstanceLock& operator=(InstanceLock&&) = default;
@@ -39,5 +41,9 @@ class InstanceLock {
 
   UniqueFd file_;
 };
+
+/** Socket of the black box of the instance that runs with this state directory, or was killed; nothing when
+ * none does. */
+std::optional<std::filesystem::path> running_black_box(const std::filesystem::path& directory);
 
 }  // namespace interlock::cli

@@ -108,18 +108,18 @@ void add_run(CLI::App& cli, RunOptions& options) {
                     "Record all of the run; without it, the minute around each lock and fault is");
   command
       ->add_option("--black-box-seconds", options.black_box_s,
-                   "Time that the black box in memory holds at least; default 60")
+                   "Time that the black box in memory holds; default 60")
       ->check(CLI::Range(1, 3600));
 }
 
 void add_record(CLI::App& cli, RecordOptions& options) {
   CLI::App* const command =
-      cli.add_subcommand("record", "Write out what the black box of a running or killed kernel holds");
+      cli.add_subcommand("record", "Write out what the black box of a running kernel holds");
   command->add_option("--robot", options.place.robot, "Name of a robot, or its file")->capture_default_str();
   command->add_option("--state", options.place.state,
                       "State directory; default $XDG_STATE_HOME/interlock/ROBOT");
   command->add_option("--black-box", options.black_box,
-                      "Black box of a kernel that runs as a service, such as /dev/shm/interlock.ring");
+                      "Socket of a kernel that runs as a service, /run/interlock/black-box");
   command->add_option("--seconds", options.seconds, "Time that is wanted of it")
       ->check(CLI::Range(1, 3600))
       ->capture_default_str();

@@ -1,10 +1,11 @@
 #include "cli/record_command.hpp"
 
+#include <optional>
 #include <string>
 #include <system_error>
 
 #include "build_info/build_info.hpp"
-#include "cli/black_box_place.hpp"
+#include "cli/instance_lock.hpp"
 #include "recorder/recorder.hpp"
 
 namespace interlock::cli {
@@ -12,6 +13,10 @@ namespace interlock::cli {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr const char* next_step =
+    "; start the robot with `interlock run`, choose another --robot or --state, or be the user of the kernel "
+    "whose --black-box it is";
 
 struct Place {
   fs::path black_box;
@@ -23,24 +28,28 @@ Result<Place> place_of(const RecordOptions& options, const Installation& install
   if (!options.black_box.empty()) {
     return Place{options.black_box, fs::path()};
   }
-  return state_of(options.place, installation).map([](const fs::path& state) {
-    return Place{black_box_file(state), recordings_folder(state)};
+  return state_of(options.place, installation).and_then([](const fs::path& state) -> Result<Place> {
+    const std::optional<fs::path> black_box = running_black_box(state);
+    if (!black_box) {
+      return failed(ExitCode::precondition,
+                    "no robot runs with the state directory " + state.string() + next_step);
+    }
+    return Place{*black_box, recordings_folder(state)};
   });
 }
 
 }  // namespace
+
+fs::path recordings_folder(const fs::path& state) { return state / "recordings"; }
 
 Result<void> record(const RecordOptions& options, const Installation& installation, std::ostream& output) {
   const Result<Place> place = place_of(options, installation);
   if (!place) {
     return tl::unexpected(place.error());
   }
-  const recorder::Recorded<recorder::Ring> ring = recorder::Ring::open(place->black_box);
+  const recorder::Recorded<recorder::Ring> ring = recorder::Ring::connect(place->black_box);
   if (!ring) {
-    return failed(ExitCode::precondition,
-                  ring.error() +
-                      "; start the robot with `interlock run`, choose another --robot or --state, or be the "
-                      "user of the kernel whose --black-box it is");
+    return failed(ExitCode::precondition, ring.error() + next_step);
   }
   const std::uint32_t tick = ring->opening_tick(ring->head()).value_or(0);
   const fs::path file =

@@ -72,11 +72,16 @@ std::string value(const ilk_word_name_t& name, std::uint32_t word) {
 }
 
 std::string difference_line(const ilk_difference_t& difference) {
+  std::string line = "tick " + std::to_string(difference.tick) + ": the kernel comes to other " +
+                     (difference.outputs ? "outputs" : "words of its state");
+  if (difference.words == 0) {
+    return line + (difference.outputs ? ", from the same state" : "; no later recorded state shows which");
+  }
   const ilk_word_name_t name = ilk_word_name(ilk_picture_fields(), difference.offset);
-  return "tick " + std::to_string(difference.tick) + ": " + name.text + ", bit " +
+  return line + "; after tick " + std::to_string(difference.seen_tick) + ": " + name.text + ", bit " +
          std::to_string(difference.bit) + ": recorded " + value(name, difference.recorded) + ", replayed " +
          value(name, difference.replayed) + " (" + std::to_string(difference.words) +
-         (difference.words == 1 ? " word differs" : " words differ") + " in this tick)";
+         (difference.words == 1 ? " word differs there)" : " words differ there)");
 }
 
 std::string place(const ilk_recording_t& recording) {

@@ -47,12 +47,12 @@ ReplayCsv::ReplayCsv(const ReplayedRobot& robot, std::ostream& output) : robot_(
 }
 
 void ReplayCsv::add(const ilk_recorded_tick_t& tick) {
-  const ilk_state_t& state = tick.now.picture.state;
-  const ilk_outputs_t& out = tick.now.picture.out;
+  const ilk_state_t& state = tick.picture.state;
+  const ilk_outputs_t& out = tick.picture.out;
   output_ << state.tick << ',' << tick.begun_ns << ',' << catalog::name(Family::mode, state.mode) << ','
           << catalog::name(Family::cause, state.cause) << ',' << catalog::name(Family::pedal, state.pedal)
           << ',' << state.estop << ',' << state.app_alive << ',' << state.holder << ',' << tick.request_count
-          << ',' << state.requests_accepted << ',' << state.requests_refused << ',' << tick.state_hash;
+          << ',' << state.requests_accepted << ',' << state.requests_refused << ',' << tick.state_digest;
   for (const std::uint32_t slot : robot_.slots()) {
     const ilk_axis_t& axis = state.axis[slot];
     output_ << ',' << catalog::name(Family::axis_state, axis.state) << ','
@@ -75,7 +75,7 @@ ReplayPlot::ReplayPlot(const ReplayedRobot& robot, std::string title) : robot_(r
 }
 
 void ReplayPlot::add(const ilk_recorded_tick_t& tick) {
-  const ilk_state_t& state = tick.now.picture.state;
+  const ilk_state_t& state = tick.picture.state;
   const std::uint64_t first = first_ns_.value_or(tick.begun_ns);
   first_ns_ = first;
   const double time_s = static_cast<double>(tick.begun_ns - first) / ns_per_s;
@@ -91,7 +91,7 @@ void ReplayPlot::add(const ilk_recorded_tick_t& tick) {
     panel->series[1].values.push_back(has_setpoint(axis) ? std::optional<double>(axis.setpoint_counts)
                                                          : std::nullopt);
     ++panel;
-    panel->series[0].values.emplace_back(signed_drive(tick.now.picture.out.command[slot]));
+    panel->series[0].values.emplace_back(signed_drive(tick.picture.out.command[slot]));
     ++panel;
   }
   panel->series[0].values.emplace_back(state.mode);

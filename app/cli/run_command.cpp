@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "cli/announcement.hpp"
-#include "cli/black_box_place.hpp"
 #include "cli/free_port.hpp"
 #include "cli/instance_lock.hpp"
 #include "cli/model_commands.hpp"
+#include "cli/record_command.hpp"
 #include "cli/runtime_directory.hpp"
 #include "cli/state_directory.hpp"
 #include "cli/supervisor.hpp"
@@ -63,10 +63,11 @@ Program simulator(const RunOptions& options, const Places& places, const Runtime
   return program;
 }
 
-Program recorder(const RunOptions& options, const Places& places) {
+Program recorder(const RunOptions& options, const Places& places, const RuntimeDirectory& directory) {
   Program program{"recorder",
                   "interlock-recorder",
-                  {"--black-box", black_box_file(places.state), "--folder", recordings_folder(places.state)}};
+                  {"--black-box", directory.black_box(), "--folder", recordings_folder(places.state)}};
+  program.outlives_parent = true;
   if (options.record) {
     program.arguments.emplace_back("--continuous");
   }
@@ -85,12 +86,12 @@ const char* clock_name(ClockChoice clock) {
   }
 }
 
-Program kernel(const RunOptions& options, const Places& places, const RuntimeDirectory& directory) {
+Program kernel(const RunOptions& options, const RuntimeDirectory& directory) {
   Program program{
       "kernel",
       "interlock-kernel",
       {"--config", directory.config(), "--bus", "sim:" + directory.bus().string(), "--link", directory.link(),
-       "--clock", clock_name(options.clock), "--black-box", black_box_file(places.state)}};
+       "--clock", clock_name(options.clock), "--black-box", directory.black_box()}};
   if (options.black_box_s) {
     program.arguments.insert(program.arguments.end(),
                              {"--black-box-seconds", std::to_string(*options.black_box_s)});
@@ -109,7 +110,7 @@ Program app(const RunOptions& options, const Places& places, const RuntimeDirect
                   "interlock-app",
                   {"--robot", places.robot_file, "--config", directory.config(), "--link", directory.link(),
                    "--bench", directory.control(), "--port", std::to_string(places.port), "--state",
-                   places.state, "--black-box", black_box_file(places.state)}};
+                   places.state, "--black-box", directory.black_box()}};
   if (places.web) {
     program.arguments.insert(program.arguments.end(), {"--web", *places.web});
   }
@@ -128,10 +129,10 @@ Program app(const RunOptions& options, const Places& places, const RuntimeDirect
 
 Result<std::vector<Supervised>> programs_of(const RunOptions& options, const Installation& installation,
                                             const Places& places, const RuntimeDirectory& directory) {
-  // The recorder before the kernel: it rescues what an earlier run left, and is stopped after the last tick.
+  // The recorder before the kernel: it is stopped after the last tick.
   std::vector<Supervised> programs{{simulator(options, places, directory), false},
-                                   {recorder(options, places), true, longest_recording_end},
-                                   {kernel(options, places, directory), false},
+                                   {recorder(options, places, directory), true, longest_recording_end},
+                                   {kernel(options, directory), false},
                                    {app(options, places, directory), true}};
   for (Supervised& supervised : programs) {
     Result<fs::path> file = installation.program(supervised.program.file);
@@ -175,7 +176,7 @@ Result<void> supervise(const RunOptions& options, const Installation& installati
   if (!directory) {
     return tl::unexpected(directory.error());
   }
-  lock.describe(url_of(places), directory->is_private() ? directory->path() : "");
+  lock.describe(url_of(places), directory->is_private() ? directory->path() : "", directory->black_box());
   if (Result<void> saved = save_config(compiled.config, directory->config()); !saved) {
     return saved;
   }

@@ -37,8 +37,8 @@ Result<RuntimeDirectory> RuntimeDirectory::make_private(const std::string& robot
   }
   RuntimeDirectory directory(pattern, robot_name);
   directory.removes_ = Removes::everything;
-  if (!fits_socket_address(directory.control())) {
-    return tl::unexpected(too_long(directory.control()));
+  if (!fits_socket_address(directory.black_box())) {
+    return tl::unexpected(too_long(directory.black_box()));
   }
   return directory;
 }
@@ -51,8 +51,8 @@ Result<RuntimeDirectory> RuntimeDirectory::use(const fs::path& directory, const 
                                               error.message() + "; choose another directory with --sockets");
   }
   RuntimeDirectory given(fs::absolute(directory), robot_name);
-  if (!fits_socket_address(given.control())) {
-    return tl::unexpected(too_long(given.control()));
+  if (!fits_socket_address(given.black_box())) {
+    return tl::unexpected(too_long(given.black_box()));
   }
   for (const fs::path& file : given.own_files()) {
     if (fs::symlink_status(file, error).type() != fs::file_type::not_found) {

@@ -19,7 +19,7 @@ std::optional<AnalogWords> analog_of(const ilk_picture_t& picture, std::optional
 }
 
 AxisTick axis_of(const ilk_recorded_tick_t& tick, const AxisSpan& span) {
-  const ilk_picture_t& picture = tick.now.picture;
+  const ilk_picture_t& picture = tick.picture;
   const ilk_axis_t& axis = picture.state.axis[span.slot];
   const ilk_command_t& command = picture.out.command[span.slot];
   const auto drive = static_cast<std::int32_t>(command.drive);
@@ -63,12 +63,12 @@ std::vector<AxisTick> full_rate(const Ring& ring, const AxisSpan& span) {
   for (std::uint32_t number = ring.block_before(*last, span.seconds); number <= newest; ++number) {
     const std::optional<BlockCopy> block = ring.copy(number);
     ilk_block_cursor_t cursor{};
-    if (!block || !ilk_block_begin(&cursor, block->payload.data(),
+    if (!block || !ilk_block_begin(&cursor, &ring.run().config, block->payload.data(),
                                    static_cast<std::uint32_t>(block->payload.size()), tick.get())) {
       continue;
     }
     while (ilk_block_next(&cursor, tick.get()) == ILK_TICK_READ) {
-      const auto before_last = static_cast<std::int32_t>(*last - tick->now.picture.state.tick);
+      const auto before_last = static_cast<std::int32_t>(*last - tick->picture.state.tick);
       if (before_last < 0) {
         return found;
       }

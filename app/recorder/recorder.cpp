@@ -1,6 +1,7 @@
 #include "recorder/recorder.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <system_error>
 #include <utility>
 
@@ -24,7 +25,11 @@ std::optional<ilk_recorded_why_t> event_between(std::uint32_t before, std::uint3
 }  // namespace
 
 Recorder::Recorder(const Ring& ring, const RecordingFolder& folder, RecorderTerms terms, Tell tell)
-    : ring_(ring), folder_(folder), terms_(std::move(terms)), tell_(std::move(tell)) {}
+    : ring_(ring),
+      folder_(folder),
+      terms_(std::move(terms)),
+      tell_(std::move(tell)),
+      held_s_(ring.seconds()) {}
 
 void Recorder::step() {
   while (const std::optional<TickHead> head = ring_.next(place_)) {
@@ -34,6 +39,17 @@ void Recorder::step() {
     begin_recording();
   }
   append_complete_blocks();
+  report_shortage();
+}
+
+/** Each whole second that the ring holds less than it was made for. */
+void Recorder::report_shortage() {
+  const double held_s = std::floor(ring_.fewest_seconds().value_or(held_s_));
+  if (held_s < held_s_) {
+    held_s_ = held_s;
+    tell_("the black box holds " + std::to_string(static_cast<int>(held_s)) + " s, not " +
+          std::to_string(ring_.seconds()) + ": more changes in each tick than it has room for");
+  }
 }
 
 bool Recorder::finish() {

@@ -79,6 +79,7 @@ class Recorder {
     std::optional<std::filesystem::path> cut = std::nullopt;
   };
 
+  void report_shortage();
   void take_in(const TickHead& head);
   void event(ilk_recorded_why_t why, std::uint32_t tick);
   void begin_recording();
@@ -102,6 +103,7 @@ class Recorder {
   std::optional<TickHead> newest_;
   std::optional<Event> event_;
   std::optional<Active> active_;
+  double held_s_;                                  /**< that the ring holds, as reported */
   std::uint32_t continuous_next_ = 0;              /**< first block that no continuous recording has */
   std::chrono::steady_clock::time_point retry_at_; /**< after the disk refused */
 };

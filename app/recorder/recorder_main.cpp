@@ -5,30 +5,36 @@
  */
 #include <poll.h>
 #include <sys/signalfd.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <array>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "build_info/build_info.hpp"
 #include "recorder/recorder.hpp"
-#include "recorder/rescue.hpp"
 
 namespace interlock::recorder {
 namespace {
 
 namespace fs = std::filesystem;
 
-/** Between two looks at the ring; a block takes a tenth of a second or more to fill. */
+/** Between two looks at the black box; a block takes a tenth of a second or more to fill. */
 constexpr int look_interval_ms = 20;
 
+/** For a disk that refuses the last ticks of a dead kernel, once this process was asked to end. */
+constexpr std::chrono::seconds longest_end{20};
+
 struct Options {
-  fs::path ring;
+  fs::path socket;
   fs::path folder;
   bool continuous = false;
   std::uint64_t keep_mib = 4096;
@@ -46,45 +52,108 @@ FileHandle end_signals() {
   return FileHandle(signalfd(-1, &signals, SFD_CLOEXEC));
 }
 
-/** Waits for the next look; true when it is time to end. */
+/** Waits for the next look; true when a signal asked to end. */
 bool end_is_asked(const FileHandle& signals) {
   pollfd waiting{signals.get(), POLLIN, 0};
-  return poll(&waiting, 1, look_interval_ms) > 0;
+  signalfd_siginfo signal{};
+  return poll(&waiting, 1, look_interval_ms) > 0 && read(signals.get(), &signal, sizeof signal) > 0;
 }
 
-/** The ring of a kernel that lives; nothing while there is none. */
-std::optional<Ring> live_ring(const fs::path& file) {
-  Recorded<Ring> ring = Ring::open(file);
-  return ring && ring->writer_lives() ? std::optional<Ring>(std::move(*ring)) : std::nullopt;
-}
+/** The kernel that is followed, or one that died before all of it was on the disk. */
+struct Followed {
+  Followed(Ring black_box, const RecordingFolder& folder, const RecorderTerms& terms)
+      : ring(std::move(black_box)), recorder(ring, folder, terms, say) {}
 
-/** Follows one kernel; true when the recorder was asked to end before the kernel did. */
-bool follow(Ring ring, const RecordingFolder& folder, const RecorderTerms& terms, const FileHandle& signals,
-            Rescue& rescue) {
-  Recorder recorder(ring, folder, terms, say);
-  bool asked = false;
-  bool lives = true;
-  while (lives && !asked) {
-    asked = end_is_asked(signals);
-    lives = ring.writer_lives();
-    recorder.step();
-    rescue.look(&ring);
-    rescue.step();
-  }
-  if (recorder.finish()) {
-    if (!lives) {
-      rescue.let_go(ring);
+  Ring ring;
+  Recorder recorder;
+};
+
+/** Follows one kernel after the other, and keeps the black boxes of dead ones until the disk takes them. */
+class Service {
+ public:
+  Service(fs::path socket, const RecordingFolder& folder, RecorderTerms terms)
+      : socket_(std::move(socket)), folder_(folder), terms_(std::move(terms)) {}
+
+  /** The kernel that lives is followed from now on. */
+  bool attach() {
+    Recorded<Ring> ring = Ring::connect(socket_);
+    if (ring) {
+      followed_ = std::make_unique<Followed>(std::move(*ring), folder_, terms_);
     }
-  } else if (!lives) {
-    say("not all of this kernel's black box is on the disk; it stays in memory until the disk takes it");
-    rescue.take(std::move(ring));
+    return ring.has_value();
   }
-  return asked;
-}
+
+  [[nodiscard]] const ilk_run_description_t* run() const {
+    return followed_ ? &followed_->ring.run() : nullptr;
+  }
+
+  /** Looks at the kernel that is followed, or, with `attaches`, for one that is to be. */
+  void step(bool attaches) {
+    if (followed_ || (attaches && attach())) {
+      const bool lives = followed_->ring.writer_lives();
+      followed_->recorder.step();
+      if (!lives) {
+        finish_dead(std::move(followed_));
+      }
+    }
+    if (!dead_.empty() && std::chrono::steady_clock::now() >= retry_at_) {
+      retry();
+    }
+  }
+
+  /** Asks the disk at once. */
+  void hurry() { retry_at_ = {}; }
+
+  /** What a dead kernel left is on the disk. */
+  [[nodiscard]] bool is_done() const { return dead_.empty(); }
+
+  /** Writes out what there is; the ticks of a living kernel are left to the next recorder. */
+  void end() {
+    if (followed_) {
+      static_cast<void>(followed_->recorder.finish());
+    }
+    if (!is_done()) {
+      say("the last ticks of " + std::to_string(dead_.size()) +
+          " dead kernels are lost: the disk refused them");
+    }
+  }
+
+ private:
+  /** So many are kept: the first and the last of those that die while the disk is full. */
+  static constexpr std::size_t most_dead = 4;
+
+  void finish_dead(std::unique_ptr<Followed> dead) {
+    if (dead->recorder.finish()) {
+      return;
+    }
+    say("not all of this kernel's black box is on the disk; this recorder holds it until the disk takes it");
+    if (dead_.size() == most_dead) {
+      dead_.pop_back();
+      say("the black box of a kernel before it is lost");
+    }
+    dead_.push_back(std::move(dead));
+    retry_at_ = std::chrono::steady_clock::now() + pause_after_failure;
+  }
+
+  void retry() {
+    std::erase_if(dead_, [](const auto& dead) { return dead->recorder.finish(); });
+    retry_at_ = std::chrono::steady_clock::now() + pause_after_failure;
+  }
+
+  fs::path socket_;
+  const RecordingFolder& folder_;
+  RecorderTerms terms_;
+  std::unique_ptr<Followed> followed_;
+  std::vector<std::unique_ptr<Followed>> dead_;
+  std::chrono::steady_clock::time_point retry_at_;
+};
 
 int record(const Options& options) {
-  // A limit of file sizes is a disk that refuses, and no reason to end.
+  // A limit of file sizes is a disk that refuses, and whoever reads the output may die first: no reasons to
+  // end.
   std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
+  const pid_t parent = getppid();
   const FileHandle signals = end_signals();
   const Recorded<RecordingFolder> folder = RecordingFolder::open(options.folder, options.keep_mib << 20);
   if (!folder) {
@@ -94,31 +163,32 @@ int record(const Options& options) {
   RecorderTerms terms;
   terms.continuous = options.continuous;
   terms.build = std::string(version()) + ' ' + std::string(commit());
-  std::optional<Ring> going_on = live_ring(options.ring);
-  folder->finish_parts(going_on ? &going_on->run() : nullptr);
-  going_on.reset();
-  // Before a kernel is started: it leaves what stands there a name, but of two rings only one.
-  Rescue rescue(options.ring, *folder, terms.build, say);
-  rescue.look();
+  Service service(options.socket, *folder, std::move(terms));
+  service.attach();
+  folder->finish_parts(service.run());
   say("ready recordings=" + folder->path().string());
-  while (!end_is_asked(signals)) {
-    std::optional<Ring> ring = live_ring(options.ring);
-    if (ring && follow(std::move(*ring), *folder, terms, signals, rescue)) {
-      break;
+  std::optional<std::chrono::steady_clock::time_point> until;
+  const auto goes_on = [&] {
+    // Whoever started kernel and recorder died, and the kernel is about to: its last tick counts, too.
+    const bool awaits_kernels_end = getppid() != parent && service.run() != nullptr;
+    return !until || awaits_kernels_end || (!service.is_done() && std::chrono::steady_clock::now() < *until);
+  };
+  while (goes_on()) {
+    if (end_is_asked(signals)) {
+      until = std::chrono::steady_clock::now() + longest_end;
+      service.hurry();
     }
-    rescue.look();
-    rescue.step();
+    service.step(!until);
   }
-  if (!rescue.is_done()) {
-    say("what a dead kernel left is still in memory; the next start goes on with it");
-  }
+  service.end();
   return 0;
 }
 
 int main(int argc, char** argv) {
   Options options;
   CLI::App cli("Keeps what the kernel's black box holds", "interlock-recorder");
-  cli.add_option("--black-box", options.ring, "File of the kernel's black box")->required();
+  cli.add_option("--black-box", options.socket, "Socket on which the kernel hands out its black box")
+      ->required();
   cli.add_option("--folder", options.folder, "Where the recordings go")->required();
   cli.add_flag("--continuous", options.continuous, "Record everything, not only the time around events");
   cli.add_option("--keep-mib", options.keep_mib,

@@ -1,12 +1,17 @@
 #include "recorder/recording_folder.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <system_error>
 #include <utility>
 #include <vector>
 
+#include "recorder/file_handle.hpp"
 #include "time/utc_time.hpp"
 
 namespace interlock::recorder {
@@ -52,6 +57,12 @@ std::vector<Kept> finished_in(const fs::path& folder) {
   return found;
 }
 
+/** By the recorder of a run that ended, which has not written out all of it yet. */
+bool is_being_written(const fs::path& part) {
+  const FileHandle file(::open(part.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
+  return file && flock(file.get(), LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+}
+
 }  // namespace
 
 Recorded<RecordingFolder> RecordingFolder::open(fs::path folder, std::uint64_t keep_bytes) {
@@ -76,7 +87,7 @@ void RecordingFolder::finish_parts(const ilk_run_description_t* going_on) const 
     finished.replace_extension();
     const bool is_kept = going_on != nullptr && entry.path().filename().string().starts_with(kept);
     if (entry.path().extension() == part_ending && finished.extension() == finished_ending && !is_kept &&
-        !fs::exists(finished, ignored)) {
+        !fs::exists(finished, ignored) && !is_being_written(entry.path())) {
       fs::rename(entry.path(), finished, ignored);
     }
   }
@@ -115,7 +126,7 @@ fs::path cut_of(const fs::path& file) {
 }
 
 std::string why_name(std::uint32_t why) {
-  constexpr std::array names{"continuous", "lock", "fault", "demand", "end", "rescue"};
+  constexpr std::array names{"continuous", "lock", "fault", "demand", "end"};
   static_assert(names.size() == ILK_RECORDED_WHYS);
   return why < names.size() ? names[why] : "unknown";
 }

@@ -24,7 +24,7 @@ class RecordingFolder {
                                            std::uint32_t tick) const;
 
   /** Recordings that were cut off become finished ones, which end earlier but can be read: all but those of
-   * the run that is still going on, if one is. */
+   * the run that is still going on, if one is, and those that another recorder is still writing. */
   void finish_parts(const ilk_run_description_t* going_on) const;
 
   /** Removes the oldest finished recordings until those left are within the limit. */

@@ -1,6 +1,7 @@
 #include "recorder/recording_writer.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -33,6 +34,10 @@ std::vector<std::uint32_t> encoded(const BlockCopy& block) {
   return words;
 }
 
+/** For as long as the file is open: a recorder that begins leaves it alone (RecordingFolder::finish_parts).
+ */
+void hold(const FileHandle& file) { static_cast<void>(flock(file.get(), LOCK_EX | LOCK_NB)); }
+
 }  // namespace
 
 Recorded<RecordingWriter> RecordingWriter::create(const std::filesystem::path& path,
@@ -43,6 +48,7 @@ Recorded<RecordingWriter> RecordingWriter::create(const std::filesystem::path& p
   if (!file) {
     return failed_with(path.string(), errno);
   }
+  hold(file);
   RecordingWriter writer(std::move(file), path.string());
   const ilk_recording_header_t header = header_of(run, subject);
   const FileHandle folder(open(path.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
@@ -64,6 +70,7 @@ bool RecordingWriter::reopen() {
     return false;
   }
   file_ = std::move(file);
+  hold(file_);
   return ftruncate(file_.get(), static_cast<off_t>(bytes_)) == 0;
 }
 

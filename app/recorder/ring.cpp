@@ -1,13 +1,18 @@
 #include "recorder/ring.hpp"
 
 #include <fcntl.h>
-#include <sys/file.h>
+#include <poll.h>
 #include <sys/mman.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/time.h>
+#include <sys/un.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstddef>
+#include <cstring>
 #include <utility>
 
 namespace interlock::recorder {
@@ -24,7 +29,12 @@ const std::uint32_t* payload_of(const ilk_block_header_t* block) {
 /** Words before a field of the record of a tick. */
 constexpr std::uint32_t tick_word = offsetof(ilk_tick_record_t, tick) / sizeof(std::uint32_t);
 constexpr std::uint32_t alarm_word = offsetof(ilk_tick_record_t, alarm) / sizeof(std::uint32_t);
-constexpr std::uint32_t state_tick_word = offsetof(ilk_picture_t, state.tick) / sizeof(std::uint32_t);
+constexpr std::uint32_t state_tick_word = offsetof(ilk_state_t, tick) / sizeof(std::uint32_t);
+
+/** A kernel answers at once, unless it was stopped by a signal. */
+constexpr timeval longest_answer{0, 500'000};
+
+constexpr int fixed_and_read_only = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_FUTURE_WRITE;
 
 bool is_ring(const ilk_ring_header_t& header, std::size_t bytes) {
   return acquired(header.magic) == ILK_RING_MAGIC &&
@@ -36,45 +46,90 @@ bool is_of_this_release(const ilk_run_description_t& run) {
          run.layout_hash == ilk_recording_layout_hash();
 }
 
+/** Descriptors that came with a message. */
+using Received = std::array<FileHandle, 2>;
+
+FileHandle connected(const std::filesystem::path& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  FileHandle socket(::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0));
+  setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &longest_answer, sizeof longest_answer);
+  setsockopt(socket.get(), SOL_SOCKET, SO_RCVTIMEO, &longest_answer, sizeof longest_answer);
+  if (path.native().size() >= sizeof address.sun_path) {
+    errno = ENAMETOOLONG;
+    return {};
+  }
+  std::ranges::copy(path.native(), address.sun_path);
+  return socket && ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0
+             ? std::move(socket)
+             : FileHandle();
+}
+
+/** Both descriptors, or none. */
+Received received(int socket) {
+  std::uint32_t magic = 0;
+  iovec body{&magic, sizeof magic};
+  alignas(cmsghdr) std::array<char, CMSG_SPACE(2 * sizeof(int))> control{};
+  msghdr message{};
+  message.msg_iov = &body;
+  message.msg_iovlen = 1;
+  message.msg_control = control.data();
+  message.msg_controllen = control.size();
+  const ssize_t length = recvmsg(socket, &message, MSG_CMSG_CLOEXEC);
+  const cmsghdr* const header = length < 0 ? nullptr : CMSG_FIRSTHDR(&message);
+  if (header == nullptr || header->cmsg_type != SCM_RIGHTS) {
+    return {};
+  }
+  std::array<int, 2> numbers{-1, -1};
+  std::memcpy(numbers.data(), CMSG_DATA(header), std::min(header->cmsg_len - CMSG_LEN(0), sizeof numbers));
+  return {FileHandle(numbers[0]), FileHandle(numbers[1])};
+}
+
 }  // namespace
 
-Recorded<Ring> Ring::open(const std::filesystem::path& path) {
-  Recorded<Ring> ring = map(path);
-  if (ring && !is_of_this_release(ring->run())) {
-    return tl::unexpected("black box " + path.string() + ": written by a kernel of another release");
-  }
-  return ring;
-}
-
-bool Ring::left_by_another_release(const std::filesystem::path& path) {
-  const Recorded<Ring> ring = map(path);
-  return ring && !is_of_this_release(ring->run()) && !ring->writer_lives();
-}
-
-Recorded<Ring> Ring::map(const std::filesystem::path& path) {
+Recorded<Ring> Ring::connect(const std::filesystem::path& path) {
   const std::string name = "black box " + path.string();
-  FileHandle file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
-  struct stat status{};
-  if (!file || fstat(file.get(), &status) != 0) {
+  const FileHandle socket = connected(path);
+  if (!socket) {
     return failed_with(name, errno);
+  }
+  Received both = received(socket.get());
+  if (!both[0] || !both[1]) {
+    return tl::unexpected(name + ": the kernel does not hand it out; it may be stopped");
+  }
+  return map(std::move(both[0]), std::move(both[1])).map_error([&](const std::string& reason) {
+    return name + ": " + reason;
+  });
+}
+
+Recorded<Ring> Ring::map(FileHandle memory, FileHandle life) {
+  struct stat status{};
+  if (fstat(memory.get(), &status) != 0) {
+    return failed_with("its memory", errno);
   }
   const auto bytes = static_cast<std::size_t>(status.st_size);
-  if (status.st_uid != geteuid() || bytes < ILK_RING_HEADER_BYTES) {
-    return tl::unexpected(name + ": not one of this user's kernels");
+  // Whoever could shrink it could end its readers.
+  const int seals = fcntl(memory.get(), F_GET_SEALS);
+  if (status.st_uid != geteuid() || bytes < ILK_RING_HEADER_BYTES || seals < 0 ||
+      (seals & fixed_and_read_only) != fixed_and_read_only) {
+    return tl::unexpected(std::string("not of one of this user's kernels"));
   }
-  void* const address = mmap(nullptr, bytes, PROT_READ, MAP_SHARED, file.get(), 0);
+  void* const address = mmap(nullptr, bytes, PROT_READ, MAP_SHARED, memory.get(), 0);
   if (address == MAP_FAILED) {
-    return failed_with(name, errno);
+    return failed_with("its memory", errno);
   }
-  Ring ring(std::move(file), static_cast<const ilk_ring_header_t*>(address), bytes);
+  Ring ring(std::move(life), static_cast<const ilk_ring_header_t*>(address), bytes);
   if (!is_ring(*ring.header_, bytes)) {
-    return tl::unexpected(name + ": not complete");
+    return tl::unexpected(std::string("not complete"));
+  }
+  if (!is_of_this_release(ring.run())) {
+    return tl::unexpected(std::string("written by a kernel of another release"));
   }
   return ring;
 }
 
 Ring::Ring(Ring&& other) noexcept
-    : file_(std::move(other.file_)), header_(std::exchange(other.header_, nullptr)), bytes_(other.bytes_) {}
+    : life_(std::move(other.life_)), header_(std::exchange(other.header_, nullptr)), bytes_(other.bytes_) {}
 
 Ring::~Ring() {
   if (header_ != nullptr) {
@@ -91,19 +146,14 @@ std::uint32_t Ring::oldest() const {
 
 bool Ring::closed() const { return acquired(header_->closed) != 0; }
 
-bool Ring::is_file(const std::filesystem::path& path) const {
-  struct stat own{};
-  struct stat there{};
-  return fstat(file_.get(), &own) == 0 && lstat(path.c_str(), &there) == 0 && own.st_dev == there.st_dev &&
-         own.st_ino == there.st_ino;
+bool Ring::writer_lives() const {
+  pollfd end{life_.get(), 0, 0};
+  return poll(&end, 1, 0) == 0;
 }
 
-bool Ring::writer_lives() const {
-  if (flock(file_.get(), LOCK_SH | LOCK_NB) != 0) {
-    return true;
-  }
-  flock(file_.get(), LOCK_UN);
-  return false;
+std::optional<double> Ring::fewest_seconds() const {
+  const std::uint32_t ticks = relaxed(header_->fewest_ticks);
+  return ticks == 0 ? std::nullopt : std::optional(ticks * (run().config.period_us / 1e6));
 }
 
 const ilk_block_header_t* Ring::block(std::uint32_t number) const {

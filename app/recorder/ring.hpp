@@ -22,7 +22,7 @@ struct BlockCopy {
   std::vector<std::uint32_t> payload;
 };
 
-/** Where a record of a tick stands. */
+/** Where the record of a tick stands. */
 struct RingPlace {
   std::uint32_t block = 0; /**< number; 0: before the first */
   std::uint32_t word = 0;  /**< of the payload */
@@ -34,14 +34,14 @@ struct TickHead {
   std::uint32_t alarm = 0; /**< `ilk_alarm_of` */
 };
 
-/** Reads only; what the kernel has overwritten meanwhile is told as gone, never mixed. */
+/** Reads only; what the kernel has overwritten meanwhile is reported as gone, never mixed. */
 class Ring {
  public:
-  /** Maps the ring of a file. A ring that is just being made is no ring yet. */
-  static Recorded<Ring> open(const std::filesystem::path& file);
+  /** Gets the black box from the kernel that listens on this socket. */
+  static Recorded<Ring> connect(const std::filesystem::path& socket);
 
-  /** Whether the file is the ring of a dead kernel whose layout this release does not know. */
-  static bool left_by_another_release(const std::filesystem::path& file);
+  /** Maps the memory; `life` hangs up when the kernel ends. */
+  static Recorded<Ring> map(FileHandle memory, FileHandle life);
 
   Ring(Ring&& other) noexcept;
   Ring& operator=(Ring&&) = delete;
@@ -58,8 +58,10 @@ class Ring {
   /** The kernel said that it ended in order. */
   [[nodiscard]] bool closed() const;
 
-  /** The ring's file stands at this path, and not another one by now. */
-  [[nodiscard]] bool is_file(const std::filesystem::path& path) const;
+  /** Seconds of kernel time that it was made for, and the fewest that it ever held since it is full; nothing
+   * before. */
+  [[nodiscard]] std::uint32_t seconds() const { return header_->seconds; }
+  [[nodiscard]] std::optional<double> fewest_seconds() const;
 
   /** The process that writes is there. */
   [[nodiscard]] bool writer_lives() const;
@@ -79,15 +81,14 @@ class Ring {
   [[nodiscard]] std::optional<TickHead> next(RingPlace& place) const;
 
  private:
-  Ring(FileHandle file, const ilk_ring_header_t* header, std::size_t bytes)
-      : file_(std::move(file)), header_(header), bytes_(bytes) {}
+  Ring(FileHandle life, const ilk_ring_header_t* header, std::size_t bytes)
+      : life_(std::move(life)), header_(header), bytes_(bytes) {}
 
-  static Recorded<Ring> map(const std::filesystem::path& file);
   [[nodiscard]] const ilk_block_header_t* block(std::uint32_t number) const;
   [[nodiscard]] std::optional<std::uint32_t> used(std::uint32_t number) const;
   [[nodiscard]] bool still_holds(std::uint32_t number) const;
 
-  FileHandle file_;
+  FileHandle life_;
   const ilk_ring_header_t* header_; /**< of the mapping */
   std::size_t bytes_;
 };

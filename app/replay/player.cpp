@@ -32,7 +32,7 @@ void Player::show(const ilk_recorded_tick_t& tick) {
   if (stop_ != 0) {
     return;
   }
-  const ilk_picture_t& picture = tick.now.picture;
+  const ilk_picture_t& picture = tick.picture;
   if (!begun_) {
     begin(picture.state);
   }

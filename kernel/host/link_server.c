@@ -9,6 +9,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "link_socket.h"
 #include "service_thread.h"
 
 #define COLLECT_INTERVAL_MS 20
@@ -55,21 +56,7 @@ static bool send_hello(int client, const ilk_attachment_t *attachment) {
                             .kernel_region_bytes = (uint32_t)sizeof(ilk_link_kernel_region_t),
                             .app_region_bytes = (uint32_t)sizeof(ilk_link_app_region_t)};
   const int descriptors[2] = {attachment->regions.kernel_descriptor, attachment->regions.app_descriptor};
-  union {
-    char bytes[CMSG_SPACE(sizeof descriptors)];
-    struct cmsghdr aligned;
-  } control = {0};
-  struct iovec body = {.iov_base = &hello, .iov_len = sizeof hello};
-  struct msghdr message = {.msg_iov = &body,
-                           .msg_iovlen = 1,
-                           .msg_control = control.bytes,
-                           .msg_controllen = sizeof control.bytes};
-  struct cmsghdr *header = CMSG_FIRSTHDR(&message);
-  header->cmsg_level = SOL_SOCKET;
-  header->cmsg_type = SCM_RIGHTS;
-  header->cmsg_len = CMSG_LEN(sizeof descriptors);
-  (void)memcpy(CMSG_DATA(header), descriptors, sizeof descriptors);
-  return sendmsg(client, &message, MSG_NOSIGNAL) == (ssize_t)sizeof hello;
+  return ilk_link_send(client, &hello, sizeof hello, descriptors);
 }
 
 static void attach(ilk_link_server_t *server, int client) {

@@ -1,10 +1,11 @@
 /**
  * @file
- * The listening socket of the link, and the rule that there is one kernel per path.
+ * A listening socket of the kernel, and the rule that there is one kernel per path.
  */
 #ifndef INTERLOCK_HOST_LINK_SOCKET_H
 #define INTERLOCK_HOST_LINK_SOCKET_H
 
+#include <stddef.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 
@@ -40,6 +41,9 @@ ilk_listen_result_t ilk_link_listen(ilk_link_socket_t *link, const char *path, i
 
 /** Lets the members of this process' group connect, too; at first only its user may. */
 bool ilk_link_share(const ilk_link_socket_t *link, ilk_error_t *error);
+
+/** Sends a message with two descriptors; false when the other side does not take it at once. */
+bool ilk_link_send(int client, const void *message, size_t bytes, const int descriptors[2]);
 
 /** Stops listening and removes the socket's file. */
 void ilk_link_unlisten(ilk_link_socket_t *link);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "black_box.h"
+#include "black_box_door.h"
 #include "bus_sim.h"
 #include "bus_spi.h"
 #include "config_file.h"
@@ -31,6 +32,7 @@ static ilk_bus_spi_t spi_bus;
 static ilk_bus_t bus;
 static ilk_link_server_t server;
 static ilk_black_box_t black_box;
+static ilk_black_box_door_t black_box_door;
 static ilk_loop_t loop;
 static ilk_watchdog_t watchdog;
 
@@ -80,7 +82,7 @@ static void report_start(const ilk_options_t *options, const ilk_realtime_t *rea
   (void)printf("  %-20s %s, CRC-32 0x%08x\n", "configuration", options->config_path, config.crc);
   report_measures(realtime);
   if (options->black_box_path != NULL) {
-    (void)printf("  %-20s %s, %zu MiB for %d s or more\n", "black box", options->black_box_path,
+    (void)printf("  %-20s %s, %zu MiB for %d s\n", "black box", options->black_box_path,
                  black_box.bytes >> 20, options->black_box_seconds);
   }
   (void)printf("ready link=%s\n", options->link_path);
@@ -114,7 +116,8 @@ static int run_loop(const ilk_options_t *options) {
   return EXIT_ENDED;
 }
 
-/** Runs the loop with its black box, whose memory is taken first: it counts among what is to be locked. */
+/** Runs the loop with its black box. Its memory counts among what is to be locked, and its thread inherits no
+ * real-time right, so both begin first. */
 static int run_recorded(const ilk_options_t *options) {
   ilk_error_t error;
   if (options->black_box_path == NULL) {
@@ -124,10 +127,16 @@ static int run_recorded(const ilk_options_t *options) {
                                        .clock = options->clock,
                                        .simulated = bus.simulated,
                                        .seconds = (uint32_t)options->black_box_seconds};
-  if (!ilk_black_box_create(&black_box, options->black_box_path, &terms, &error)) {
+  if (!ilk_black_box_create(&black_box, &terms, &error)) {
     return report_failure(&error, EXIT_REFUSED);
   }
+  const ilk_listen_result_t listening =
+      ilk_black_box_door_open(&black_box_door, options->black_box_path, &black_box, &error);
+  if (listening != ILK_LISTEN_OK) {
+    return report_failure(&error, listening == ILK_LISTEN_TAKEN ? EXIT_TAKEN : EXIT_REFUSED);
+  }
   const int code = run_loop(options);
+  ilk_black_box_door_close(&black_box_door);
   ilk_black_box_close(&black_box);
   return code;
 }

@@ -16,7 +16,7 @@
 const char *const ilk_options_help =
     "usage: interlock-kernel --config FILE.ilkc --bus sim:SOCKET|spi:FILE --link SOCKET\n"
     "                        [--link-shared] [--clock real|paced|sim] [--speed X] [--core N] [--priority N]\n"
-    "                        [--black-box FILE] [--black-box-seconds N]\n"
+    "                        [--black-box SOCKET] [--black-box-seconds N]\n"
     "\n"
     "  --config FILE    compiled robot configuration (interlock model compile)\n"
     "  --bus sim:PATH   card bus: the simulator that listens on that socket\n"
@@ -29,9 +29,9 @@ const char *const ilk_options_help =
     "  --speed X        paced clock: multiple of real time, 0.001 to 1000 (default 1)\n"
     "  --core N         run the loop on that core (default: any)\n"
     "  --priority N     SCHED_FIFO priority of the loop, 1 to 99 (default 80)\n"
-    "  --black-box FILE record each tick in that file, which should lie in memory (/dev/shm)\n"
+    "  --black-box PATH record each tick in memory, and hand it out on that socket\n"
     "  --black-box-seconds N\n"
-    "                   time that it holds at least, 1 to 3600 (default 60)\n"
+    "                   time that it holds, 1 to 3600 (default 60)\n"
     "\n"
     "exit codes: 0 ended by signal, 1 system failure, 2 refused to start, 3 link already served\n";
 
@@ -110,7 +110,7 @@ static const char *take_option(int option, const char *value, ilk_options_t *opt
       return parse_whole_number(value, 1, 99, &options->priority) ? NULL : "a number from 1 to 99";
     case OPTION_BLACK_BOX:
       options->black_box_path = value;
-      return *value != '\0' ? NULL : "a file";
+      return *value != '\0' ? NULL : "the path of a socket";
     case OPTION_BLACK_BOX_SECONDS:
       return parse_whole_number(value, 1, MAX_BLACK_BOX_SECONDS, &options->black_box_seconds)
                  ? NULL

@@ -2,61 +2,89 @@
 
 #include <string.h>
 
-#define RECORD_HEAD_WORDS ((uint32_t)(sizeof(ilk_tick_record_t) / sizeof(uint32_t)))
-#define REQUEST_WORDS ((uint32_t)(sizeof(ilk_request_t) / sizeof(uint32_t)))
+#include "interlock/kernel.h"
+
+#define GROUP_WORDS 32u
 
 static uint64_t joined(const uint32_t words[2]) { return words[0] | ((uint64_t)words[1] << 32); }
 
-bool ilk_block_begin(ilk_block_cursor_t *cursor, const uint32_t *payload, uint32_t used,
-                     ilk_recorded_tick_t *tick) {
+bool ilk_block_begin(ilk_block_cursor_t *cursor, const ilk_config_t *config, const uint32_t *payload,
+                     uint32_t used, ilk_recorded_tick_t *tick) {
   *tick = (ilk_recorded_tick_t){0};
-  *cursor = (ilk_block_cursor_t){.payload = payload, .used = used};
+  *cursor = (ilk_block_cursor_t){.config = config, .payload = payload, .used = used};
   if (used < ILK_OPENING_WORDS) {
     return false;
   }
-  (void)memcpy(tick->now.pair, payload, sizeof tick->now);
-  tick->alarm = ilk_alarm_of(&tick->now.picture.state);
-  tick->state_hash = ilk_state_hash(&tick->now.picture.state);
+  ilk_state_t *state = &tick->picture.state;
+  (void)memcpy(state, payload, sizeof *state);
+  tick->tick = state->tick;
+  tick->alarm = ilk_alarm_of(state);
+  tick->state_digest = ilk_state_digest(state);
   cursor->place = (uint32_t)ILK_OPENING_WORDS;
   return true;
-}
-
-static uint32_t changed_pairs(const ilk_tick_record_t *head) {
-  uint32_t count = 0u;
-  for (uint32_t word = 0u; word < ILK_CHANGED_WORDS; ++word) {
-    count += (uint32_t)__builtin_popcount(head->changed[word]);
-  }
-  return count;
-}
-
-/** Words of a record with this head: the changed pairs, the requests, made even. */
-static uint32_t words_of(const ilk_tick_record_t *head) {
-  const uint32_t words =
-      RECORD_HEAD_WORDS + (2u * changed_pairs(head)) + (head->request_count * REQUEST_WORDS);
-  return words + (words & 1u);
 }
 
 /** The head of the next record, when all of it lies within the block. */
 static bool read_head(const ilk_block_cursor_t *cursor, ilk_tick_record_t *head) {
   const uint32_t left = cursor->used - cursor->place;
-  if (left < RECORD_HEAD_WORDS) {
+  if (left < ILK_RECORD_HEAD_WORDS) {
     return false;
   }
   (void)memcpy(head, &cursor->payload[cursor->place], sizeof *head);
-  return head->request_count <= (uint32_t)ILK_REQUESTS_PER_TICK && head->words <= left &&
-         head->words == words_of(head);
+  return head->request_count <= (uint32_t)ILK_REQUESTS_PER_TICK && head->words >= ILK_RECORD_HEAD_WORDS &&
+         head->words <= left;
 }
 
-/** Returns the place behind the last changed pair. */
-static const uint32_t *take_changes(ilk_picture_pairs_t *picture, const ilk_tick_record_t *head,
-                                    const uint32_t *from) {
-  for (uint32_t pair = 0u; pair < ILK_PAIRS; ++pair) {
-    if (((head->changed[pair / 32u] >> (pair % 32u)) & 1u) != 0u) {
-      (void)memcpy(&picture->pair[pair], from, sizeof(uint64_t));
-      from += 2;
-    }
+/** The words of a group that were not expected; returns how many, or more than are left. */
+static uint32_t read_group(uint32_t given[], const uint32_t from[], uint32_t left, uint32_t missed) {
+  uint32_t taken = 0u;
+  for (uint32_t rest = missed; (rest != 0u) && (taken < left); rest &= rest - 1u) {
+    given[__builtin_ctz(rest)] = from[taken];
+    taken += 1u;
   }
-  return from;
+  return taken;
+}
+
+/** Puts what the record says in the place of what was expected. False when it is not as long as its head
+ * says. */
+static bool read_given(uint32_t given[], uint32_t count, const ilk_tick_record_t *head,
+                       const uint32_t record[]) {
+  const uint32_t groups = (uint32_t)__builtin_popcount(head->groups);
+  if (head->words < (ILK_RECORD_HEAD_WORDS + groups)) {
+    return false;
+  }
+  const uint32_t *missed = &record[ILK_RECORD_HEAD_WORDS];
+  uint32_t place = (uint32_t)ILK_RECORD_HEAD_WORDS + groups;
+  for (uint32_t rest = head->groups; rest != 0u; rest &= rest - 1u) {
+    const uint32_t first = (uint32_t)__builtin_ctz(rest) * GROUP_WORDS;
+    const uint32_t last = first + (GROUP_WORDS - 1u) - (uint32_t)__builtin_clz(*missed | 1u);
+    const uint32_t needed = (uint32_t)__builtin_popcount(*missed);
+    if ((last >= count) || (needed > (head->words - place))) {
+      return false;
+    }
+    place += read_group(&given[first], &record[place], needed, *missed);
+    missed += 1;
+  }
+  return place == head->words;
+}
+
+/** What the record of the next tick gave to the kernel; what follows is expected from it. */
+static bool take_given(ilk_block_cursor_t *cursor, const ilk_tick_record_t *head, ilk_recorded_tick_t *tick) {
+  uint32_t given[ILK_GIVEN_WORDS];
+  uint32_t missed[ILK_GIVEN_WORDS];
+  ilk_expectation_t *expected = &cursor->expected;
+  const uint32_t count = ilk_given_words(head->request_count);
+  for (uint32_t i = 0u; i < count; ++i) {
+    given[i] = expected->newest[i] + expected->step[i];
+  }
+  if (!read_given(given, count, head, &cursor->payload[cursor->place])) {
+    return false;
+  }
+  ilk_expectation_follow(expected, given, count, missed);
+  ilk_given_to_inputs(given, &tick->picture.inputs);
+  (void)memset(tick->request, 0, sizeof tick->request);
+  (void)memcpy(tick->request, &given[ILK_INPUT_WORDS], head->request_count * sizeof(ilk_request_t));
+  return true;
 }
 
 ilk_tick_result_t ilk_block_next(ilk_block_cursor_t *cursor, ilk_recorded_tick_t *tick) {
@@ -64,19 +92,22 @@ ilk_tick_result_t ilk_block_next(ilk_block_cursor_t *cursor, ilk_recorded_tick_t
   if (cursor->place == cursor->used) {
     return ILK_TICK_NONE;
   }
-  if (!read_head(cursor, &head)) {
+  if (!read_head(cursor, &head) || !take_given(cursor, &head, tick)) {
     return ILK_TICK_DAMAGED;
   }
-  const uint32_t *from = take_changes(&tick->now, &head, &cursor->payload[cursor->place + RECORD_HEAD_WORDS]);
-  (void)memset(tick->request, 0, sizeof tick->request);
-  (void)memcpy(tick->request, from, head.request_count * sizeof(ilk_request_t));
+  ilk_picture_t *picture = &tick->picture;
+  ilk_step(cursor->config, &picture->state, &picture->inputs, tick->request, head.request_count,
+           &picture->out);
   tick->request_count = head.request_count;
+  tick->tick = head.tick;
   tick->alarm = head.alarm;
   tick->begun_ns = joined(head.begun_ns);
-  tick->state_hash = joined(head.state_hash);
+  tick->state_digest = joined(head.state_digest);
   cursor->place += head.words;
-  const ilk_state_t *state = &tick->now.picture.state;
-  const bool agrees = head.tick == state->tick && head.alarm == ilk_alarm_of(state) &&
-                      tick->state_hash == ilk_state_hash(state);
-  return agrees ? ILK_TICK_READ : ILK_TICK_DAMAGED;
+  const ilk_state_t *state = &picture->state;
+  if (head.tick != state->tick || head.alarm != ilk_alarm_of(state) ||
+      tick->state_digest != ilk_state_digest(state)) {
+    return ILK_TICK_STATE_DIFFERS;
+  }
+  return head.out_digest == ilk_out_digest(&picture->out) ? ILK_TICK_READ : ILK_TICK_OUTPUTS_DIFFER;
 }

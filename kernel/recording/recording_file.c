@@ -66,7 +66,7 @@ static bool header_is_sound(const ilk_block_header_t *header) {
 
 /** A payload whose end was never written ends with zeros, and so does the file. */
 static ilk_file_result_t judge_payload(ilk_recording_t *recording, const ilk_block_header_t *header) {
-  const uint32_t *payload = ilk_recording_payload(recording);
+  const uint32_t *payload = recording->payload;
   const uint32_t trailer = payload[header->used];
   if (trailer == ILK_BLOCK_TRAILER(header->number) &&
       ilk_recording_crc(payload, header->used) == header->payload_crc) {
@@ -96,7 +96,7 @@ ilk_file_result_t ilk_recording_next(ilk_recording_t *recording) {
   }
   recording->number = header.number;
   const size_t words = (size_t)header.used + 1u;
-  if (fread(recording->payload_pairs, sizeof(uint32_t), words, recording->file) != words) {
+  if (fread(recording->payload, sizeof(uint32_t), words, recording->file) != words) {
     return ILK_FILE_TORN;
   }
   return judge_payload(recording, &header);

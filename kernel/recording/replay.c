@@ -3,23 +3,22 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "interlock/kernel.h"
-
 void ilk_replay_begin(ilk_replay_t *replay, const ilk_config_t *config) {
   *replay = (ilk_replay_t){.config = config};
 }
 
-/** Adds the words of one part of the picture that differ; the first of all is kept. */
-static void compare(ilk_difference_t *difference, uint32_t part_offset, const void *recorded,
-                    const void *replayed, uint32_t bytes) {
-  for (uint32_t place = 0u; place < bytes; place += (uint32_t)sizeof(uint32_t)) {
+/** Counts the words of a recorded state that differ, and keeps the first. */
+static void compare_state(ilk_difference_t *difference, const ilk_state_t *recorded,
+                          const ilk_state_t *replayed) {
+  difference->seen_tick = recorded->tick;
+  for (uint32_t place = 0u; place < sizeof *recorded; place += (uint32_t)sizeof(uint32_t)) {
     uint32_t was = 0u;
     uint32_t is = 0u;
     (void)memcpy(&was, (const unsigned char *)recorded + place, sizeof was);
     (void)memcpy(&is, (const unsigned char *)replayed + place, sizeof is);
     if (was != is) {
       if (difference->words == 0u) {
-        difference->offset = part_offset + place;
+        difference->offset = (uint32_t)offsetof(ilk_picture_t, state) + place;
         difference->bit = (uint32_t)__builtin_ctz(was ^ is);
         difference->recorded = was;
         difference->replayed = is;
@@ -29,24 +28,8 @@ static void compare(ilk_difference_t *difference, uint32_t part_offset, const vo
   }
 }
 
-static void compare_state(ilk_difference_t *difference, const ilk_state_t *recorded,
-                          const ilk_state_t *replayed) {
-  *difference = (ilk_difference_t){.tick = recorded->tick};
-  compare(difference, (uint32_t)offsetof(ilk_picture_t, state), recorded, replayed,
-          (uint32_t)sizeof *recorded);
-}
-
-/** Steps the kernel as the record says, and compares what comes out. */
-static void replay_tick(ilk_replay_t *replay, const ilk_recorded_tick_t *tick, ilk_difference_t *difference) {
-  const ilk_picture_t *picture = &tick->now.picture;
-  ilk_outputs_t out;
-  ilk_step(replay->config, &replay->state, &picture->inputs, tick->request, tick->request_count, &out);
-  compare_state(difference, &picture->state, &replay->state);
-  compare(difference, (uint32_t)offsetof(ilk_picture_t, out), &picture->out, &out, (uint32_t)sizeof out);
-}
-
 static void count_tick(ilk_replay_t *replay, const ilk_recorded_tick_t *tick) {
-  const uint32_t number = tick->now.picture.state.tick;
+  const uint32_t number = tick->picture.state.tick;
   replay->first_tick = replay->ticks == 0u ? number : replay->first_tick;
   replay->last_tick = number;
   replay->ticks += 1u;
@@ -62,31 +45,60 @@ static void enter_block(ilk_replay_t *replay, uint32_t number, const ilk_state_t
   replay->next_block = number + 1u;
 }
 
+/** Goes on after a difference: the state to which the block leads shows where it is. */
+static ilk_replay_result_t replay_ticks(ilk_replay_t *replay, ilk_block_cursor_t *cursor,
+                                        ilk_recorded_tick_t *tick, ilk_difference_t *difference,
+                                        ilk_tick_visitor_t visitor, void *context) {
+  ilk_replay_result_t result = ILK_REPLAY_IDENTICAL;
+  for (;;) {
+    const ilk_tick_result_t read = ilk_block_next(cursor, tick);
+    if (read == ILK_TICK_NONE) {
+      return result;
+    }
+    if (read == ILK_TICK_DAMAGED) {
+      return result == ILK_REPLAY_DIFFERS ? result : ILK_REPLAY_UNREADABLE;
+    }
+    if (read != ILK_TICK_READ && result == ILK_REPLAY_IDENTICAL) {
+      *difference = (ilk_difference_t){.tick = tick->tick, .outputs = read == ILK_TICK_OUTPUTS_DIFFER};
+      result = ILK_REPLAY_DIFFERS;
+    }
+    replay->state = tick->picture.state;
+    if (result == ILK_REPLAY_IDENTICAL) {
+      count_tick(replay, tick);
+      if (visitor != NULL) {
+        visitor(context, tick);
+      }
+    }
+  }
+}
+
 ilk_replay_result_t ilk_replay_block(ilk_replay_t *replay, uint32_t number, const uint32_t *payload,
                                      uint32_t used, ilk_difference_t *difference, ilk_tick_visitor_t visitor,
                                      void *context) {
   ilk_block_cursor_t cursor;
   ilk_recorded_tick_t tick;
-  if (!ilk_block_begin(&cursor, payload, used, &tick)) {
+  if (!ilk_block_begin(&cursor, replay->config, payload, used, &tick)) {
     return ILK_REPLAY_UNREADABLE;
   }
-  enter_block(replay, number, &tick.now.picture.state);
-  compare_state(difference, &tick.now.picture.state, &replay->state);
-  while (difference->words == 0u) {
-    const ilk_tick_result_t read = ilk_block_next(&cursor, &tick);
-    if (read != ILK_TICK_READ) {
-      replay->blocks += 1u;
-      return read == ILK_TICK_NONE ? ILK_REPLAY_IDENTICAL : ILK_REPLAY_UNREADABLE;
-    }
-    replay_tick(replay, &tick, difference);
-    if (difference->words == 0u) {
-      count_tick(replay, &tick);
-      if (visitor != NULL) {
-        visitor(context, &tick);
-      }
-    }
+  const ilk_state_t *opening = &tick.picture.state;
+  enter_block(replay, number, opening);
+  *difference = (ilk_difference_t){.tick = opening->tick};
+  compare_state(difference, opening, &replay->state);
+  if (difference->words > 0u) {
+    return ILK_REPLAY_DIFFERS;
   }
-  return ILK_REPLAY_DIFFERS;
+  const ilk_replay_result_t result = replay_ticks(replay, &cursor, &tick, difference, visitor, context);
+  replay->blocks += 1u;
+  return result;
+}
+
+void ilk_replay_name(const ilk_replay_t *replay, uint32_t number, const uint32_t *payload, uint32_t used,
+                     ilk_difference_t *difference) {
+  ilk_block_cursor_t cursor;
+  ilk_recorded_tick_t opening;
+  if ((replay->next_block == number) && ilk_block_begin(&cursor, replay->config, payload, used, &opening)) {
+    compare_state(difference, &opening.picture.state, &replay->state);
+  }
 }
 
 void ilk_replay_recording(ilk_recording_t *recording, ilk_replay_report_t *report, ilk_tick_visitor_t visitor,
@@ -96,9 +108,14 @@ void ilk_replay_recording(ilk_recording_t *recording, ilk_replay_report_t *repor
   while (report->result == ILK_REPLAY_IDENTICAL && report->end == ILK_FILE_BLOCK) {
     report->end = ilk_recording_next(recording);
     if (report->end == ILK_FILE_BLOCK) {
-      report->result = ilk_replay_block(&report->replay, recording->number, ilk_recording_payload(recording),
+      report->result = ilk_replay_block(&report->replay, recording->number, recording->payload,
                                         recording->used, &report->difference, visitor, context);
     }
+  }
+  if (report->result == ILK_REPLAY_DIFFERS && report->difference.words == 0u &&
+      ilk_recording_next(recording) == ILK_FILE_BLOCK) {
+    ilk_replay_name(&report->replay, recording->number, recording->payload, recording->used,
+                    &report->difference);
   }
 }
 

@@ -14,7 +14,12 @@ from pathlib import Path
 import httpx
 from bare_kernel import BIN, DEADLINE_S, PlantControl
 
-PROGRAMS = {"simulator": "interlock-sim", "kernel": "interlock-kernel", "app": "interlock-app"}
+PROGRAMS = {
+    "simulator": "interlock-sim",
+    "recorder": "interlock-recorder",
+    "kernel": "interlock-kernel",
+    "app": "interlock-app",
+}
 
 
 class Output:
@@ -134,7 +139,7 @@ class Stack:
         return int(self.output.wait_for(r"OpenIGTLink 127\.0\.0\.1:(\d+)$")[1])
 
     def pid(self, name: str) -> int:
-        """Process of the simulator, the kernel or the app."""
+        """Process of the simulator, the recorder, the kernel or the app."""
         for child in Path(f"/proc/{self.run.pid}/task/{self.run.pid}/children").read_text().split():
             if Path(f"/proc/{child}/cmdline").read_bytes().split(b"\0")[0].endswith(PROGRAMS[name].encode()):
                 return int(child)

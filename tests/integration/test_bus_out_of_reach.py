@@ -100,8 +100,8 @@ def test_no_descriptor_of_the_app_is_a_device_of_cards_or_of_the_kernels_memory(
     opened = descriptors(robot.pid("app"))
     devices = {each for each in opened if each.startswith("/dev/")}
     assert devices <= HARMLESS_DEVICES
-    assert not [each for each in opened if CARD_DEVICE.match(each) or each.endswith(".ring")]
-    assert [each for each in descriptors(robot.pid("kernel")) if each.endswith(".ring")]
+    assert not [each for each in opened if CARD_DEVICE.match(each) or "black-box" in each]
+    assert [each for each in descriptors(robot.pid("kernel")) if "memfd:interlock-black-box" in each]
     memories = [each for each in opened if each.startswith("/memfd:")]
     assert len(memories) <= 2, "kernel to app and app to kernel; the bus has none"
 
@@ -114,8 +114,8 @@ def test_the_app_maps_of_the_kernel_only_what_the_link_gives_and_the_snapshot_un
     assert sorted(rights for rights, _ in shared) == ["r--s", "rw-s"]
     others = [file for _, file in app if not file.startswith("/memfd:")]
     assert all(file.startswith(str(robot.state)) for file in others), others
-    assert [file for _, file in kernel if file.endswith(".ring")]
-    assert not [file for _, file in app if file.endswith(".ring") or file.startswith("/dev/")]
+    assert [file for _, file in kernel if "memfd:interlock-black-box" in file]
+    assert not [file for _, file in app if "black-box" in file or file.startswith("/dev/")]
 
 
 def test_the_app_gives_up_every_capability_even_when_root_starts_it(robot: Stack) -> None:

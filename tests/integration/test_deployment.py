@@ -258,7 +258,7 @@ def test_the_link_is_its_users_alone_unless_it_is_shared_with_the_group(simulato
 
 
 def test_the_black_box_is_the_kernels_user_alone_who_is_not_the_apps(simulator: Path) -> None:
-    box = simulator / "box.ring"
+    box = simulator / "black-box"
     manager = Manager(simulator)
     kernel = manager.start(*kernel_of(simulator, "--black-box", str(box), "--black-box-seconds", "1"))
     assert manager.hear() == "READY=1"
@@ -266,7 +266,7 @@ def test_the_black_box_is_the_kernels_user_alone_who_is_not_the_apps(simulator: 
     assert stop(kernel) == 0
     manager.socket.close()
     units = {unit.stem.removeprefix("interlock-"): settings(unit) for unit in SERVICES}
-    assert "--black-box /dev/shm/" in units["kernel"]["ExecStart"][0]
+    assert "--black-box /run/interlock/" in units["kernel"]["ExecStart"][0]
     assert units["recorder"]["User"] == units["kernel"]["User"] != units["app"]["User"]
     assert "black-box" not in units["app"]["ExecStart"][0]
 

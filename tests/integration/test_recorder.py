@@ -1,5 +1,6 @@
 """The black box with real processes: what each kill leaves, and what a replay says of it."""
 
+import contextlib
 import os
 import re
 import signal
@@ -32,12 +33,33 @@ def replayed_ticks(file: Path) -> tuple[int, int]:
     return int(span[1]), int(span[2])
 
 
+def black_box_of(pid: int) -> str:
+    """The kernel's memory, by its inode."""
+    (inode,) = set(re.findall(r"(\d+) +/memfd:interlock-black-box", Path(f"/proc/{pid}/maps").read_text()))
+    return inode
+
+
+def holders(black_box: str) -> list[int]:
+    """Processes that keep that memory, mapped or as a descriptor."""
+    found = []
+    for process in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            mapped = re.search(rf"{black_box} +/memfd:interlock-black-box", (process / "maps").read_text())
+            opened = [
+                fd
+                for fd in (process / "fd").iterdir()
+                if "memfd:interlock-black-box" in str(fd.readlink()) and fd.stat().st_ino == int(black_box)
+            ]
+            found += [int(process.name)] if mapped or opened else []
+    return found
+
+
 class RecordedKernel:
     """Plant, recorder and kernel as real processes, with a short black box; the test is the app."""
 
     def __init__(self, folder: Path, *recorder: str, clock: str = "sim") -> None:
         self.folder = folder
-        self.ring = Path(f"/dev/shm/interlock-test-{os.getpid()}-{folder.name}.ring")
+        self.black_box = folder / "black-box"
         self.recordings = folder / "recordings"
         config = folder / "neuro.ilkc"
         robot = ROOT / "models/robots/neuro.toml"
@@ -48,7 +70,7 @@ class RecordedKernel:
         self.sim = start([BIN / "interlock-sim", *simulator])
         self.recorder = self.start_recorder(*recorder)
         kernel: list[str | Path] = [*options(config=config, bus=f"sim:{bus}", link=link, clock=clock)]
-        kernel += ["--black-box", self.ring, "--black-box-seconds", "10"]
+        kernel += ["--black-box", self.black_box, "--black-box-seconds", "10"]
         self.kernel = start([BIN / "interlock-kernel", *kernel])
         self.plant = PlantControl(control)
         self.link = link
@@ -58,7 +80,7 @@ class RecordedKernel:
         return LinkClient(self.link)
 
     def start_recorder(self, *arguments: str) -> subprocess.Popen:
-        files = ["--black-box", self.ring, "--folder", self.recordings]
+        files = ["--black-box", self.black_box, "--folder", self.recordings]
         return start([BIN / "interlock-recorder", *files, *arguments])
 
     def files(self, kind: str) -> list[Path]:
@@ -80,7 +102,6 @@ class RecordedKernel:
         self.plant.close()
         for process in (self.kernel, self.recorder, self.sim):
             stop(process)
-        self.ring.unlink(missing_ok=True)
 
 
 RecordedKernelFactory = Callable[..., RecordedKernel]
@@ -118,11 +139,13 @@ def test_lock_leaves_a_recording_that_replays_identical(recorded: RecordedKernel
 def test_killed_kernel_leaves_its_last_tick(recorded: RecordedKernelFactory) -> None:
     kernel = recorded(clock="real")
     kernel.app.run(300)
+    black_box = black_box_of(kernel.kernel.pid)
+    wait_until("both hold it", lambda: len(holders(black_box)) == 2)
     kernel.kernel.kill()
     kernel.kernel.wait()
     _, last = replayed_ticks(kernel.wait_for_file("end"))
     assert last >= kernel.app.snapshot().state.tick
-    wait_until("the ring is gone", lambda: not kernel.ring.exists())
+    wait_until("the memory is gone", lambda: not holders(black_box))
 
 
 def test_killed_app_does_not_end_the_recording(recorded: RecordedKernelFactory) -> None:
@@ -161,7 +184,7 @@ def test_killed_recorder_loses_nothing(recorded: RecordedKernelFactory) -> None:
 def test_cut_off_recording_ends_with_its_last_whole_block(recorded: RecordedKernelFactory) -> None:
     kernel = recorded("--continuous")
     seen = kernel.app.run(3000).state.tick
-    wait_until("blocks", lambda: any(file.stat().st_size > 600_000 for file in kernel.recordings.iterdir()))
+    wait_until("blocks", lambda: any(file.stat().st_size > 150_000 for file in kernel.recordings.iterdir()))
     kernel.recorder.kill()
     kernel.recorder.wait()
     (part,) = kernel.recordings.glob("*.part")
@@ -213,56 +236,123 @@ def test_on_demand_with_table_and_plot(stack: StackFactory, short_tmp_path: Path
     assert interlock("record", "--state", robot.state, "-o", file).returncode == 3
 
 
-def test_a_black_box_of_a_service_is_written_out_by_its_name(
+def test_a_black_box_of_a_service_is_written_out_by_its_socket(
     recorded: RecordedKernelFactory, short_tmp_path: Path
 ) -> None:
     kernel = recorded()
     kernel.app.run(300)
     file = short_tmp_path / "now.ilkr"
-    done = interlock("record", "--black-box", kernel.ring, "-o", file)
+    done = interlock("record", "--black-box", kernel.black_box, "-o", file)
     assert done.returncode == 0, done.stderr
     _, last = replayed_ticks(file)
     assert last >= 300
-    missing = interlock("record", "--black-box", short_tmp_path / "no.ring", "-o", short_tmp_path / "x.ilkr")
+    missing = interlock("record", "--black-box", short_tmp_path / "no-box", "-o", short_tmp_path / "x.ilkr")
     assert missing.returncode == 3
-    assert "no.ring" in missing.stderr
+    assert "no-box" in missing.stderr
 
 
-def test_killed_run_is_rescued_by_the_next_one(short_tmp_path: Path) -> None:
+def test_a_stopped_kernel_is_no_reason_to_wait(recorded: RecordedKernelFactory, short_tmp_path: Path) -> None:
+    kernel = recorded(clock="real")
+    kernel.kernel.send_signal(signal.SIGSTOP)
+    done = interlock("record", "--black-box", kernel.black_box, "-o", short_tmp_path / "now.ilkr")
+    kernel.kernel.send_signal(signal.SIGCONT)
+    assert done.returncode == 3
+    assert "it may be stopped" in done.stderr
+
+
+def test_killed_run_leaves_its_last_tick_and_no_memory(short_tmp_path: Path) -> None:
+    """The recorder outlives the others, writes out what it holds, and ends; the next run begins meanwhile."""
     arguments = ["--robot", "neuro", "--realtime", "--seed", "1"]
     killed = Stack(short_tmp_path, *arguments)
-    processes = [killed.pid(name) for name in ("kernel", "simulator", "app")]
+    black_box = black_box_of(killed.pid("kernel"))
+    wait_until("the recorder holds it", lambda: len(holders(black_box)) == 2)
+    processes = [killed.pid(name) for name in ("kernel", "simulator", "app", "recorder")]
     with watched(*processes) as descriptors:
         seen = killed.status()["tick"]
         killed.run.send_signal(signal.SIGKILL)
         killed.wait()
+        again = Stack(short_tmp_path, *arguments)
+        try:
+            assert all(has_ended(descriptor) for descriptor in descriptors)
+        finally:
+            again.close()
+    killed.close()
+    (end,) = (killed.state / "recordings").glob("*-end-*.ilkr")
+    _, last = replayed_ticks(end)
+    assert last >= seen
+    assert holders(black_box) == []
+    assert not list((killed.state / "recordings").glob("*.part"))
+
+
+def test_nothing_is_left_when_all_processes_are_killed_at_once(short_tmp_path: Path) -> None:
+    killed = Stack(short_tmp_path, "--robot", "neuro", "--realtime", "--seed", "1")
+    black_box = black_box_of(killed.pid("kernel"))
+    processes = [killed.pid(name) for name in ("recorder", "kernel", "simulator", "app")]
+    with watched(*processes) as descriptors:
+        for pid in (killed.run.pid, *processes):
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGKILL)
+        killed.wait()
         assert all(has_ended(descriptor) for descriptor in descriptors)
     killed.close()
-    again = Stack(short_tmp_path, *arguments)
-    try:
-        wait_until("rescued", lambda: any((again.state / "recordings").glob("*-rescue-*.ilkr")))
-        (rescued,) = (again.state / "recordings").glob("*-rescue-*.ilkr")
-        _, last = replayed_ticks(rescued)
-        assert last >= seen
-    finally:
-        again.close()
+    assert holders(black_box) == []
 
 
-def test_last_ticks_that_the_disk_refused_are_written_out_later(recorded: RecordedKernelFactory) -> None:
+def test_no_process_keeps_anything_in_a_folder_that_others_can_write_to(stack: StackFactory) -> None:
+    """But in the private folder of its sockets: the memory that they share has no name."""
+    robot = stack(realtime=True)
+    own = str(robot.state.parent)
+    for name in ("simulator", "kernel", "recorder", "app"):
+        process = Path(f"/proc/{robot.pid(name)}")
+        mapped = re.findall(r" (/\S+)$", (process / "maps").read_text(), re.MULTILINE)
+        opened = [str(fd.readlink()) for fd in (process / "fd").iterdir()]
+        common = [each for each in (*mapped, *opened) if each.startswith(("/dev/shm/", "/tmp/", "/var/tmp/"))]
+        assert [each for each in common if not each.startswith((own, str(BIN.parent)))] == [], name
+
+
+def test_a_start_that_fails_leaves_no_memory(short_tmp_path: Path) -> None:
+    """The link is taken; so is the socket of the black box."""
+    config = short_tmp_path / "neuro.ilkc"
+    assert interlock("model", "compile", ROOT / "models/robots/neuro.toml", "-o", config).returncode == 0
+    before = shared_memory()
+    for taken in ("link", "black-box"):
+        (short_tmp_path / taken).mkdir()
+        given = options(config=config, bus=f"sim:{short_tmp_path / 'bus'}", link=short_tmp_path / "link")
+        failed = subprocess.run(
+            [BIN / "interlock-kernel", *given, "--black-box", short_tmp_path / "black-box"],
+            capture_output=True,
+            text=True,
+            timeout=DEADLINE_S,
+        )
+        assert failed.returncode == 2, failed.stderr
+        (short_tmp_path / taken).rmdir()
+    assert shared_memory() <= before
+
+
+def shared_memory() -> set[str]:
+    """Files of this user's kernels in the machine's shared memory."""
+    return {file.name for file in Path("/dev/shm").iterdir() if "black" in file.name}
+
+
+def test_last_ticks_that_the_disk_refused_are_written_when_it_takes_them(
+    recorded: RecordedKernelFactory,
+) -> None:
     kernel = recorded(clock="real")
     kernel.app.run(300)
+    black_box = black_box_of(kernel.kernel.pid)
     away = kernel.folder / "away"
     kernel.recordings.rename(away)
     kernel.kernel.kill()
     kernel.kernel.wait()
-    assert kernel.ring.exists()
-    kernel.recorder.kill()
-    kernel.recorder.wait()
+    assert kernel.recorder.stdout is not None
+    while "holds it until the disk takes it" not in kernel.recorder.stdout.readline():
+        assert kernel.recorder.poll() is None
+    assert holders(black_box) == [kernel.recorder.pid]
     away.rename(kernel.recordings)
-    kernel.recorder = kernel.start_recorder()
-    _, last = replayed_ticks(kernel.wait_for_file("rescue"))
+    assert stop(kernel.recorder) == 0
+    (end,) = kernel.files("end")
+    _, last = replayed_ticks(end)
     assert last >= kernel.app.snapshot().state.tick
-    wait_until("the ring is gone", lambda: not kernel.ring.exists())
 
 
 def test_fault_of_an_axis_is_recorded_by_interlock_run(stack: StackFactory) -> None:

@@ -238,7 +238,7 @@ int run(std::string_view setup) {
                                     .simulated = true,
                                     .seconds = static_cast<std::uint32_t>(process.options.black_box_seconds)};
   if (process.options.black_box_path != nullptr &&
-      !ilk_black_box_create(&process.black_box, process.options.black_box_path, &terms, &error)) {
+      !ilk_black_box_create(&process.black_box, &terms, &error)) {
     return fail(error.text);
   }
   const int code = setup == "shipped" ? run_shipped() : run_before();

@@ -320,6 +320,7 @@ def main() -> int:
         "black_box": json.loads(run([str(arguments.bin / "black_box_bench")])),
     }
     figures |= {f"black_box_ns_{key}": detail["black_box"][f"{key}_ns"] for key in ("median", "p99")}
+    figures["black_box_bytes_campaign"] = detail["black_box"]["campaign_bytes_a_tick_most"]
     figures["campaign_ticks_per_s"] = round(campaign_speed(arguments.bin))
     figures |= live(arguments.bin, arguments.duration, arguments.rate_seconds, detail)
     record = record_of(figures, arguments.duration, started, detail)

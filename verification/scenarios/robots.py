@@ -20,7 +20,6 @@ from stack import PROGRAMS, Stack
 BROKEN = (AssertionError, OSError, httpx.HTTPError, json.JSONDecodeError)
 """What a robot that does not answer, or answers otherwise than it should, raises."""
 
-BLACK_BOX_S = 5
 ENDS_COUNTS = (-900, -100)
 LONGEST_PRESS_S = 2.0
 START_PAUSE_S = 0.05
@@ -58,7 +57,7 @@ class Supervised(Stack):
         super().__init__(
             folder,
             *options(robot="neuro", seed=1),
-            *("--realtime", "--black-box-seconds", str(BLACK_BOX_S), "--igtl-port", "0"),
+            *("--realtime", "--igtl-port", "0"),
         )
         self.sockets = next(self.runtime.glob("interlock-*"))
         self.connect_control()
@@ -97,7 +96,7 @@ class Services(Stack):
         with socket.create_server(("127.0.0.1", 0)) as listener:
             port = listener.getsockname()[1]
         self.url = f"http://127.0.0.1:{port}/"
-        box = ["--black-box", "/dev/shm/services.ring"]
+        box = ["--black-box", str(folder / "black-box")]
         plant = ROOT / "models/plant/neuro.toml"
         given = {
             "simulator": options(plant=plant, robot=config, bus=bus, control=control, seed=1),
@@ -105,7 +104,6 @@ class Services(Stack):
             "kernel": [
                 *options(config=config, bus=f"sim:{bus}", link=link),
                 *box,
-                *("--black-box-seconds", str(BLACK_BOX_S)),
             ],
             "app": options(robot=robot, config=config, link=link, bench=control, port=port, state=self.state),
         }

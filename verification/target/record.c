@@ -4,8 +4,6 @@
  * recording.
  */
 #include <stdio.h>
-#include <string.h>
-#include <unistd.h>
 
 #include "black_box.h"
 #include "interlock/recording_file.h"
@@ -34,7 +32,7 @@ static void write_header(FILE *file) {
 
 static void write_block(FILE *file, const ilk_block_t *block, uint32_t number) {
   const uint32_t used = block->header.used;
-  const uint32_t *payload = (const uint32_t *)block->payload;
+  const uint32_t *payload = block->payload;
   const ilk_block_header_t header = ilk_recording_block_header(number, payload, used);
   const uint32_t trailer = ILK_BLOCK_TRAILER(number);
   (void)fwrite(&header, sizeof header, 1u, file);
@@ -57,7 +55,7 @@ uint32_t run_image(void) {
   world_begin(&world, RECORDED_SEED);
   (void)ilk_init(&config, &state);
   FILE *file = fopen(RECORDING, "wb");
-  if (file == NULL || !ilk_black_box_create(&box, RECORDING ".ring", &terms, &error)) {
+  if (file == NULL || !ilk_black_box_create(&box, &terms, &error)) {
     say("the recording cannot be made\n");
     return 1u;
   }
@@ -73,6 +71,5 @@ uint32_t run_image(void) {
   }
   write_block(file, box.block, box.ring->head);
   ilk_black_box_close(&box);
-  (void)unlink(RECORDING ".ring");
   return fclose(file) == 0 ? 0u : 1u;
 }

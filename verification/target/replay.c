@@ -15,16 +15,21 @@ static counts_t counts;
 
 static void count(void *context, const ilk_recorded_tick_t *tick) {
   (void)context;
-  count_tick(&counts, &tick->now.picture.state, &tick->now.picture.out);
+  count_tick(&counts, &tick->picture.state, &tick->picture.out);
 }
 
 static void say_difference(const ilk_difference_t *difference) {
   say("differs tick ");
   say_number(difference->tick);
-  say(" ");
-  say(ilk_word_name(ilk_picture_fields(), difference->offset).text);
-  say(" bit ");
-  say_number(difference->bit);
+  say(difference->outputs ? " outputs" : " state");
+  if (difference->words > 0u) {
+    say(", at tick ");
+    say_number(difference->seen_tick);
+    say(" ");
+    say(ilk_word_name(ilk_picture_fields(), difference->offset).text);
+    say(" bit ");
+    say_number(difference->bit);
+  }
   say("\n");
 }
 

@@ -17,7 +17,7 @@ namespace interlock::web {
 /** What is known of former ticks. */
 struct Past {
   HistoryFeed* feed = nullptr;     /**< must outlive what is given it; null: nothing is decimated */
-  std::filesystem::path black_box; /**< file of the kernel's; empty: there is none to read */
+  std::filesystem::path black_box; /**< socket of the kernel's; empty: there is none to read */
 };
 
 /** `GET /api/history` and `GET /api/capture`, and what they read: the decimated past and the black box. */

@@ -19,13 +19,25 @@ class InstanceLockTest : public test::ScratchFolder {
 TEST_F(InstanceLockTest, a_second_instance_is_refused_and_told_who_holds_the_directory) {
   const auto first = InstanceLock::take(folder_ / "state");
   ASSERT_TRUE(first);
-  first->describe("http://127.0.0.1:8081/", "/run/interlock-neuro-abc");
+  first->describe("http://127.0.0.1:8081/", "/run/interlock-neuro-abc", "/run/interlock-neuro-abc/box");
   const auto second = InstanceLock::take(folder_ / "state");
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().code, ExitCode::precondition);
   EXPECT_THAT(second.error().text, HasSubstr((folder_ / "state").string()));
   EXPECT_THAT(second.error().text, HasSubstr("process " + std::to_string(getpid())));
   EXPECT_THAT(second.error().text, HasSubstr("http://127.0.0.1:8081/"));
+}
+
+TEST_F(InstanceLockTest, the_black_box_of_an_instance_is_known_while_it_runs) {
+  EXPECT_FALSE(running_black_box(folder_));
+  {
+    const auto lock = InstanceLock::take(folder_);
+    ASSERT_TRUE(lock);
+    EXPECT_FALSE(running_black_box(folder_));
+    lock->describe("http://127.0.0.1:8081/", "", "/run/interlock-neuro-abc/box");
+    EXPECT_EQ(running_black_box(folder_), "/run/interlock-neuro-abc/box");
+  }
+  EXPECT_FALSE(running_black_box(folder_));
 }
 
 TEST_F(InstanceLockTest, the_directory_is_free_when_its_holder_is_gone) {
@@ -39,7 +51,7 @@ TEST_F(InstanceLockTest, an_orderly_end_leaves_an_empty_lock_file) {
   {
     const auto lock = InstanceLock::take(folder_);
     ASSERT_TRUE(lock);
-    lock->describe("http://127.0.0.1:8081/", "/run/interlock-neuro-abc");
+    lock->describe("http://127.0.0.1:8081/", "/run/interlock-neuro-abc", "/run/interlock-neuro-abc/box");
   }
   EXPECT_EQ(std::filesystem::file_size(folder_ / "lock"), 0u);
 }

@@ -71,11 +71,10 @@ TEST_F(Loop, TickIsOneTransactionOneStepOneSnapshot) {
 }
 
 TEST_F(Loop, BlackBoxGetsEachTickWithItsRequests) {
-  const interlock::host_test::TemporaryDirectory directory;
   auto box = std::make_unique<ilk_black_box_t>();
   const ilk_black_box_terms_t terms{&config, ILK_CLOCK_SIM, true, 1};
   ilk_error_t error{};
-  ASSERT_TRUE(ilk_black_box_create(box.get(), directory.file("ring").c_str(), &terms, &error)) << error.text;
+  ASSERT_TRUE(ilk_black_box_create(box.get(), &terms, &error)) << error.text;
   ilk_loop_record(&loop, box.get());
   attach(1);
   ilk_request_t request{};
@@ -91,15 +90,14 @@ TEST_F(Loop, BlackBoxGetsEachTickWithItsRequests) {
   attachment.regions.app = app;
   ilk_block_cursor_t cursor{};
   auto tick = std::make_unique<ilk_recorded_tick_t>();
-  ASSERT_TRUE(ilk_block_begin(&cursor, reinterpret_cast<const uint32_t*>(box->block->payload),
-                              box->block->header.used, tick.get()));
+  ASSERT_TRUE(ilk_block_begin(&cursor, &config, box->block->payload, box->block->header.used, tick.get()));
   ASSERT_EQ(ilk_block_next(&cursor, tick.get()), ILK_TICK_READ);
   EXPECT_EQ(tick->request_count, 0u);
   ASSERT_EQ(ilk_block_next(&cursor, tick.get()), ILK_TICK_READ);
   ASSERT_EQ(tick->request_count, 1u);
   EXPECT_EQ(std::memcmp(&tick->request[0], &request, sizeof request), 0);
-  EXPECT_EQ(std::memcmp(&tick->now.picture.state, &loop.shown.state, sizeof loop.shown.state), 0);
-  EXPECT_EQ(std::memcmp(&tick->now.picture.out, &loop.out, sizeof loop.out), 0);
+  EXPECT_EQ(std::memcmp(&tick->picture.state, &loop.shown.state, sizeof loop.shown.state), 0);
+  EXPECT_EQ(std::memcmp(&tick->picture.out, &loop.out, sizeof loop.out), 0);
   EXPECT_EQ(ilk_block_next(&cursor, tick.get()), ILK_TICK_NONE);
   ilk_black_box_close(box.get());
 }

@@ -60,9 +60,9 @@ TEST(Options, TheBusIsTheSimulatorOrWiredCards) {
 }
 
 TEST(Options, BlackBoxHoldsAMinuteUnlessToldOtherwise) {
-  const Parsed parsed = parse(complete({"--black-box", "/dev/shm/box"}));
+  const Parsed parsed = parse(complete({"--black-box", "/run/x/box"}));
   ASSERT_EQ(parsed.result, ILK_OPTIONS_RUN) << parsed.error;
-  EXPECT_STREQ(parsed.options.black_box_path, "/dev/shm/box");
+  EXPECT_STREQ(parsed.options.black_box_path, "/run/x/box");
   EXPECT_EQ(parsed.options.black_box_seconds, 60);
   EXPECT_EQ(parse(complete({"--black-box-seconds", "5"})).options.black_box_seconds, 5);
   const Parsed none = parse(complete({"--black-box-seconds", "0"}));

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <map>
-#include <stdexcept>
 #include <vector>
 
 #include "recorded_run.hpp"
@@ -13,7 +12,6 @@ namespace {
 
 using recorder_test::KnownTick;
 using recorder_test::RecordedRun;
-using recorder_test::ScratchFolder;
 
 constexpr std::uint32_t slot = 2;
 
@@ -25,12 +23,10 @@ class FullRate : public testing::Test {
   }
 
   [[nodiscard]] std::vector<AxisTick> read(const AxisSpan& span) const {
-    const Recorded<Ring> ring = Ring::open(scratch_.file("ring"));
-    return ring ? full_rate(*ring, span) : throw std::runtime_error(ring.error());
+    return full_rate(run_.ring(), span);
   }
 
-  ScratchFolder scratch_;
-  RecordedRun run_{scratch_.file("ring"), 7, 2};
+  RecordedRun run_{7, 2};
   std::map<std::uint32_t, KnownTick> known_;
 };
 

@@ -42,19 +42,28 @@ TEST(RecordedFields, IntegersAreKnownAsSuch) {
   EXPECT_FALSE(integer(offsetof(ilk_picture_t, state.axis[1].raw)));
 }
 
-TEST(StateHash, AnyFlippedBitOfTheStateShows) {
-  ilk_config_t config{};
-  ilk_state_t state{};
-  world_config(&config);
-  ilk_init(&config, &state);
-  const std::uint64_t hash = ilk_state_hash(&state);
-  auto* const bytes = reinterpret_cast<unsigned char*>(&state);
-  for (std::size_t bit = 0; bit < sizeof state * 8; ++bit) {
+template <typename Words, typename Digest>
+void expect_each_bit_to_show(Words& words, Digest digest_of) {
+  const auto digest = digest_of(&words);
+  auto* const bytes = reinterpret_cast<unsigned char*>(&words);
+  for (std::size_t bit = 0; bit < sizeof words * 8; ++bit) {
     bytes[bit / 8] ^= static_cast<unsigned char>(1U << (bit % 8));
-    EXPECT_NE(ilk_state_hash(&state), hash) << "bit " << bit;
+    EXPECT_NE(digest_of(&words), digest) << "bit " << bit;
     bytes[bit / 8] ^= static_cast<unsigned char>(1U << (bit % 8));
   }
-  EXPECT_EQ(ilk_state_hash(&state), hash);
+  EXPECT_EQ(digest_of(&words), digest);
+}
+
+TEST(Digest, AnyFlippedBitOfStateOrOutputsShows) {
+  ilk_config_t config{};
+  ilk_state_t state{};
+  ilk_inputs_t in{};
+  ilk_outputs_t out{};
+  world_config(&config);
+  ilk_init(&config, &state);
+  ilk_step(&config, &state, &in, nullptr, 0, &out);
+  expect_each_bit_to_show(state, ilk_state_digest);
+  expect_each_bit_to_show(out, ilk_out_digest);
 }
 
 }  // namespace

@@ -21,13 +21,18 @@ ScratchFolder::ScratchFolder() {
 
 ScratchFolder::~ScratchFolder() { std::filesystem::remove_all(path_); }
 
-void create_box(ilk_black_box_t& box, const std::filesystem::path& ring, const ilk_config_t& config,
-                std::uint32_t seconds) {
+void create_box(ilk_black_box_t& box, const ilk_config_t& config, std::uint32_t seconds) {
   const ilk_black_box_terms_t terms{&config, ILK_CLOCK_SIM, true, seconds};
   ilk_error_t error{};
-  if (!ilk_black_box_create(&box, ring.c_str(), &terms, &error)) {
+  if (!ilk_black_box_create(&box, &terms, &error)) {
     throw std::runtime_error(error.text);
   }
+}
+
+recorder::Ring ring_of(const ilk_black_box_t& box) {
+  recorder::Recorded<recorder::Ring> ring =
+      recorder::Ring::map(recorder::FileHandle(dup(box.memory)), recorder::FileHandle(dup(box.life[0])));
+  return ring ? std::move(*ring) : throw std::runtime_error(ring.error());
 }
 
 ilk_replay_report_t replayed(const std::filesystem::path& path) {
@@ -41,11 +46,11 @@ ilk_replay_report_t replayed(const std::filesystem::path& path) {
   return report;
 }
 
-RecordedRun::RecordedRun(const std::filesystem::path& ring, std::uint32_t seed, std::uint32_t seconds) {
+RecordedRun::RecordedRun(std::uint32_t seed, std::uint32_t seconds) {
   world_config(&config_);
   world_begin(&world_, seed);
   ilk_init(&config_, &state_);
-  create_box(box_, ring, config_, seconds);
+  create_box(box_, config_, seconds);
   ilk_black_box_begin(&box_, &state_);
 }
 
@@ -63,7 +68,9 @@ void RecordedRun::close() {
 void RecordedRun::die() {
   munmap(box_.blocks, box_.bytes - ILK_RING_HEADER_BYTES);
   munmap(box_.ring, ILK_RING_HEADER_BYTES);
-  ::close(box_.descriptor);
+  for (const int descriptor : {box_.memory, box_.life[0], box_.life[1]}) {
+    ::close(descriptor);
+  }
   open_ = false;
 }
 

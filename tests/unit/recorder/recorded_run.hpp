@@ -10,6 +10,7 @@
 #include "black_box.h"
 #include "interlock/kernel.h"
 #include "interlock/replay.h"
+#include "recorder/ring.hpp"
 
 extern "C" {
 #include "world.h"
@@ -39,10 +40,16 @@ struct KnownTick {
   std::uint64_t begun_ns;
 };
 
+/// Fails the test with the reason.
+void create_box(ilk_black_box_t& box, const ilk_config_t& config, std::uint32_t seconds);
+
+/// As a reader sees the black box of a kernel in the same process.
+recorder::Ring ring_of(const ilk_black_box_t& box);
+
 /// Of the random world's robot at 1 kHz, in the world of that seed.
 class RecordedRun {
  public:
-  explicit RecordedRun(const std::filesystem::path& ring, std::uint32_t seed = 1, std::uint32_t seconds = 2);
+  explicit RecordedRun(std::uint32_t seed = 1, std::uint32_t seconds = 2);
   ~RecordedRun();
   RecordedRun(const RecordedRun&) = delete;
   RecordedRun& operator=(const RecordedRun&) = delete;
@@ -62,7 +69,10 @@ class RecordedRun {
   /// A calm tick in which this axis jumps: a fault.
   void make_jump(std::uint32_t axis);
 
-  /// The kernel's end: in order, or as a kill leaves it, its lock gone and nothing said.
+  /// What a reader gets of the black box.
+  [[nodiscard]] recorder::Ring ring() const { return ring_of(box_); }
+
+  /// The kernel's end: in order, or as a kill leaves it, nothing said.
   void close();
   void die();
 
@@ -83,10 +93,6 @@ class RecordedRun {
   std::uint32_t counter_[ILK_SLOTS]{};
   bool open_ = true;
 };
-
-/// Fails the test with the reason.
-void create_box(ilk_black_box_t& box, const std::filesystem::path& ring, const ilk_config_t& config,
-                std::uint32_t seconds);
 
 /// What a replay of the whole recording comes to; throws for a file that is none.
 ilk_replay_report_t replayed(const std::filesystem::path& path);

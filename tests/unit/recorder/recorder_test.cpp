@@ -28,7 +28,7 @@ using ::testing::UnorderedElementsAre;
 class RecorderTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    recorder_.emplace(*ring_, *folder_, terms_, [](const std::string&) {});
+    recorder_.emplace(ring_, *folder_, terms_, [](const std::string&) {});
     run_.calm(50);
     run_.ask(ILK_REQUEST_RESET);
     ASSERT_EQ(run_.state().mode, ILK_MODE_READY);
@@ -53,12 +53,12 @@ class RecorderTest : public ::testing::Test {
   }
 
   [[nodiscard]] fs::path file(ilk_recorded_why_t why, std::uint32_t tick) const {
-    return folder_->file(ring_->run(), why, tick);
+    return folder_->file(ring_.run(), why, tick);
   }
 
   ScratchFolder scratch_;
-  RecordedRun run_{scratch_.file("ring"), 1, 4};
-  Recorded<Ring> ring_ = Ring::open(scratch_.file("ring"));
+  RecordedRun run_{1, 4};
+  Ring ring_ = run_.ring();
   Recorded<RecordingFolder> folder_ = RecordingFolder::open(scratch_.file("recordings"), 1ULL << 30);
   RecorderTerms terms_{.before_s = 1, .after_s = 1, .build = "test"};
   std::optional<Recorder> recorder_;
@@ -131,7 +131,7 @@ TEST_F(RecorderTest, KilledRecorderStartedAgainComesToTheSameRecordings) {
   const std::uint32_t second = run_.state().tick;
   calm(300);
   const auto written = fs::last_write_time(file(ILK_RECORDED_ON_LOCK, first));
-  recorder_.emplace(*ring_, *folder_, terms_, [](const std::string&) {});
+  recorder_.emplace(ring_, *folder_, terms_, [](const std::string&) {});
   calm(1200);
   EXPECT_THAT(files(), UnorderedElementsAre("lock-" + std::to_string(first) + ".ilkr",
                                             "lock-" + std::to_string(second) + ".ilkr"));
@@ -142,8 +142,8 @@ TEST_F(RecorderTest, KilledRecorderStartedAgainComesToTheSameRecordings) {
 
 TEST_F(RecorderTest, ContinuousRecordingLosesNoTickFromPartToPart) {
   terms_.continuous = true;
-  terms_.part_bytes = 600'000;
-  recorder_.emplace(*ring_, *folder_, terms_, [](const std::string&) {});
+  terms_.part_bytes = 40'000;
+  recorder_.emplace(ring_, *folder_, terms_, [](const std::string&) {});
   calm(3000);
   run_.press_estop();
   calm(1000);
@@ -163,18 +163,18 @@ TEST_F(RecorderTest, ContinuousRecordingLosesNoTickFromPartToPart) {
 
 TEST_F(RecorderTest, WholeBlocksOfAContinuousRecordingAreInTheFileAtOnce) {
   terms_.continuous = true;
-  recorder_.emplace(*ring_, *folder_, terms_, [](const std::string&) {});
+  recorder_.emplace(ring_, *folder_, terms_, [](const std::string&) {});
   calm(3000);
   ASSERT_EQ(files().size(), 1U);
   const ilk_replay_report_t report = replayed(part_of(file(ILK_RECORDED_CONTINUOUSLY, 0)));
   EXPECT_TRUE(ilk_replay_is_identical(&report));
-  EXPECT_EQ(report.replay.last_tick, *ring_->opening_tick(ring_->head()));
+  EXPECT_EQ(report.replay.last_tick, *ring_.opening_tick(ring_.head()));
 }
 
 TEST_F(RecorderTest, DemandKeepsTheNewestSeconds) {
   calm(3000);
   const Recorded<std::uint32_t> blocks =
-      record_now(*ring_, scratch_.file("now.ilkr"), {ILK_RECORDED_ON_DEMAND, run_.state().tick, "test"}, 1);
+      record_now(ring_, scratch_.file("now.ilkr"), {ILK_RECORDED_ON_DEMAND, run_.state().tick, "test"}, 1);
   ASSERT_TRUE(blocks);
   const ilk_replay_report_t report = replayed(scratch_.file("now.ilkr"));
   EXPECT_TRUE(ilk_replay_is_identical(&report));
@@ -201,9 +201,13 @@ TEST_F(RecorderTest, CutOffRecordingOfAnEarlierRunIsKept) {
   run_.press_estop();
   const std::uint32_t locked = run_.state().tick;
   calm(100);
-  folder_->finish_parts(&ring_->run());
+  folder_->finish_parts(&ring_.run());
   const std::string going_on = "lock-" + std::to_string(locked) + ".ilkr";
   EXPECT_THAT(files(), UnorderedElementsAre("lock-7.ilkr", going_on + ".part"));
+  folder_->finish_parts(nullptr);
+  EXPECT_THAT(files(), UnorderedElementsAre("lock-7.ilkr", going_on + ".part"))
+      << "it is still being written";
+  recorder_.reset();
   folder_->finish_parts(nullptr);
   EXPECT_THAT(files(), UnorderedElementsAre("lock-7.ilkr", going_on));
 }
@@ -211,7 +215,7 @@ TEST_F(RecorderTest, CutOffRecordingOfAnEarlierRunIsKept) {
 TEST_F(RecorderTest, FullDiskIsToldAndTheKernelIsNotAsked) {
   std::vector<std::string> told;
   fs::remove_all(folder_->path());
-  recorder_.emplace(*ring_, *folder_, terms_, [&](const std::string& line) { told.push_back(line); });
+  recorder_.emplace(ring_, *folder_, terms_, [&](const std::string& line) { told.push_back(line); });
   run_.press_estop();
   calm(100);
   EXPECT_THAT(told, ElementsAre(::testing::HasSubstr("cannot record")));
@@ -260,7 +264,7 @@ TEST_F(RecorderTest, EventWhoseTimeIsNotOverIsLeftUnfinishedForTheNextRecorder) 
   calm(300);
   EXPECT_FALSE(recorder_->finish()) << "asked to end beside a living kernel";
   EXPECT_THAT(files(), ElementsAre("lock-" + std::to_string(locked) + ".ilkr.part"));
-  recorder_.emplace(*ring_, *folder_, terms_, [](const std::string&) {});
+  recorder_.emplace(ring_, *folder_, terms_, [](const std::string&) {});
   calm(1200);
   EXPECT_THAT(files(), ElementsAre("lock-" + std::to_string(locked) + ".ilkr"));
   EXPECT_GE(replayed(file(ILK_RECORDED_ON_LOCK, locked)).replay.last_tick, locked + 1000);
@@ -272,10 +276,10 @@ TEST_F(RecorderTest, UnfinishedRecordingThatHoldsMoreThanTheRingIsKept) {
   const std::uint32_t locked = run_.state().tick;
   calm(300);
   recorder_.reset();
-  while (*ring_->opening_tick(ring_->oldest()) < locked - 500) {
+  while (*ring_.opening_tick(ring_.oldest()) < locked - 500) {
     run_.calm(20);
   }
-  recorder_.emplace(*ring_, *folder_, terms_, [](const std::string&) {});
+  recorder_.emplace(ring_, *folder_, terms_, [](const std::string&) {});
   recorder_->step();
   run_.calm(20);
   recorder_->step();
@@ -310,7 +314,7 @@ TEST_F(RecorderTest, RecordingWhoseFileIsRemovedWhileTheDiskIsFullIsWrittenAnew)
   const fs::path part = part_of(file(ILK_RECORDED_ON_LOCK, locked));
   {
     const FileSizeLimit full(fs::file_size(part) + 1000);
-    calm(800);
+    calm(1200);
     EXPECT_FALSE(recorder_->finish());
     fs::remove(part);
   }
@@ -324,8 +328,8 @@ TEST_F(RecorderTest, RecordingWhoseFileIsRemovedWhileTheDiskIsFullIsWrittenAnew)
 
 TEST_F(RecorderTest, ContinuousRecordingThatTheDiskRefusedGoesOnWithTheBlockThatItRefused) {
   terms_.continuous = true;
-  terms_.part_bytes = 600'000;
-  recorder_.emplace(*ring_, *folder_, terms_, [](const std::string&) {});
+  terms_.part_bytes = 40'000;
+  recorder_.emplace(ring_, *folder_, terms_, [](const std::string&) {});
   calm(1500);
   fs::rename(folder_->path(), scratch_.file("away"));
   calm(1500);
@@ -357,7 +361,7 @@ TEST_F(RecorderTest, RecordingThatTheDiskInterruptedGoesOnWithTheSameBlock) {
   calm(20);
   {
     const FileSizeLimit full(fs::file_size(part_of(file(ILK_RECORDED_ON_LOCK, locked))) + 1000);
-    calm(800);
+    calm(1200);
     EXPECT_FALSE(recorder_->finish());
   }
   calm(400);

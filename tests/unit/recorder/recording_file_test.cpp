@@ -49,11 +49,9 @@ Reading read(const std::filesystem::path& path) {
 class RecordingFile : public ::testing::Test {
  protected:
   void SetUp() override {
-    RecordedRun run(scratch_.file("ring"), 11);
-    run.run(700);
-    const Recorded<Ring> ring = Ring::open(scratch_.file("ring"));
-    ASSERT_TRUE(ring);
-    ASSERT_TRUE(record_now(*ring, path_, {ILK_RECORDED_ON_DEMAND, 700, "test"}, 60));
+    RecordedRun run(11);
+    run.run(1800);
+    ASSERT_TRUE(record_now(run.ring(), path_, {ILK_RECORDED_ON_DEMAND, 1800, "test"}, 60));
     std::ifstream file(path_, std::ios::binary);
     bytes_.assign(std::istreambuf_iterator<char>(file), {});
     whole_ = read(path_);

@@ -98,7 +98,7 @@ class Teller {
     if (!file_) {
       begin_part(before);
     }
-    const ilk_picture_t& now = tick.now.picture;
+    const ilk_picture_t& now = tick.picture;
     told_tick_t told{};
     told.attached = now.inputs.link_generation != before.link_generation;
     told.config_pass = before.config_slice == ILK_SLOTS - 1u ? "AGREES" : "NONE";
@@ -146,14 +146,15 @@ class Teller {
 void tell_block(const ilk_recording_t& recording, bool continues, Teller& teller) {
   const auto tick = std::make_unique<ilk_recorded_tick_t>();
   ilk_block_cursor_t cursor{};
-  if (!ilk_block_begin(&cursor, ilk_recording_payload(&recording), recording.used, tick.get())) {
+  if (!ilk_block_begin(&cursor, &recording.header.run.config, recording.payload, recording.used,
+                       tick.get())) {
     give_up("a block has no opening");
   }
   if (!continues) {
     teller.begin_anew();
   }
   for (;;) {
-    const ilk_state_t before = tick->now.picture.state;
+    const ilk_state_t before = tick->picture.state;
     switch (ilk_block_next(&cursor, tick.get())) {
       case ILK_TICK_READ:
         teller.tell(*tick, before);
@@ -161,7 +162,7 @@ void tell_block(const ilk_recording_t& recording, bool continues, Teller& teller
       case ILK_TICK_NONE:
         return;
       default:
-        give_up("a record is damaged; replay the recording first");
+        give_up("a record is damaged, or this kernel differs; replay the recording first");
     }
   }
 }

@@ -1,13 +1,15 @@
 /**
  * @file
- * The black box: what of each tick is recorded, in memory and in files.
+ * The black box: what is recorded of each tick, in memory and in files.
  *
- * A *ring* is shared memory that the kernel process writes and others only read: a header, then blocks of
- * equal size, reused oldest first. A *recording* is a file: a header, then blocks of any length.
+ * The kernel is deterministic. A recording therefore holds what the kernel was *given* in each tick, its
+ * inputs and requests, and a digest of what it made of them. Whoever reads it runs the kernel core again.
  *
- * A block stands by itself. It opens with everything of the tick before its first one, so that reading, and
- * replaying, can begin at any block. Each tick follows as one record: its requests, and those pairs of words
- * that changed since the tick before.
+ * The black box is shared memory that the kernel process writes and others only read: a header, then blocks
+ * of equal size, the oldest reused first. A *recording* is a file: a header, then blocks of any length.
+ *
+ * A block stands by itself. It opens with the state before its first tick, so that reading, and replaying,
+ * can begin at any block. Each tick follows as one record: those words that are not what was expected.
  *
  * All words are little-endian, 32 bits; offsets and sizes of all structures are in
  * `ilk_recording_layout_hash`.
@@ -20,71 +22,66 @@
 
 #include "interlock/types.h"
 
-#define ILK_RECORDING_VERSION 1u
+#define ILK_RECORDING_VERSION 2u
 #define ILK_RING_MAGIC 0x474e4952u  /* "RING" */
 #define ILK_BLOCK_MAGIC 0x4b434c42u /* "BLCK" */
 
-/** A block of the ring, its header included. */
-#define ILK_BLOCK_BYTES (256u * 1024u)
+/** A block of the black box, its header included. */
+#define ILK_BLOCK_BYTES (64u * 1024u)
 
-/** Everything that is recorded of one tick but its requests. */
+/** Everything of one tick but its requests: inputs as recorded, state and outputs as the kernel core makes
+ * them of it. */
 typedef struct {
   ilk_state_t state; /**< after the tick */
   ilk_inputs_t inputs;
   ilk_outputs_t out;
 } ilk_picture_t;
 
-/** Words of the picture, two at a time; a whole number of 64 such pairs, the rest zero, so that the words
- * that say which of them changed are pairs, too. */
-#define ILK_PAIRS (((sizeof(ilk_picture_t) + 511u) / 512u) * 64u)
-#define ILK_CHANGED_WORDS (ILK_PAIRS / 32u)
+/** Words that the kernel is given in one tick: the inputs, then the requests. */
+#define ILK_INPUT_WORDS (sizeof(ilk_inputs_t) / sizeof(uint32_t))
+#define ILK_REQUEST_WORDS (sizeof(ilk_request_t) / sizeof(uint32_t))
+#define ILK_GIVEN_WORDS (ILK_INPUT_WORDS + ((size_t)ILK_REQUESTS_PER_TICK * ILK_REQUEST_WORDS))
 
-/** A picture, by field and as the pairs that are compared. */
-typedef union {
-  ilk_picture_t picture;
-  uint64_t pair[ILK_PAIRS];
-} ilk_picture_pairs_t;
+/** Groups of 32 given words. */
+#define ILK_GIVEN_GROUPS ((ILK_GIVEN_WORDS + 31u) / 32u)
 
-/** Heads the record of a tick. The changed pairs follow, then the requests, then a word if it needs one to be
- * even. */
+/** Heads the record of a tick. For each group that `groups` names, a word follows that says which of its
+ * words were not expected; then those words. */
 typedef struct {
-  uint32_t words;                      /**< of the whole record, even */
-  uint32_t tick;                       /**< `state.tick` after the tick */
-  uint32_t alarm;                      /**< `ilk_alarm_of` the state after the tick */
-  uint32_t request_count;              /**< at most ILK_REQUESTS_PER_TICK */
-  uint32_t state_hash[2];              /**< `ilk_state_hash` of the state after the tick, low word first */
-  uint32_t begun_ns[2];                /**< CLOCK_MONOTONIC at which the tick began, low word first */
-  uint32_t changed[ILK_CHANGED_WORDS]; /**< bit n of word m: pair 32 m + n changed */
+  uint32_t words;           /**< of the whole record */
+  uint32_t tick;            /**< `state.tick` after the tick */
+  uint32_t alarm;           /**< `ilk_alarm_of` the state after the tick */
+  uint32_t request_count;   /**< at most ILK_REQUESTS_PER_TICK */
+  uint32_t state_digest[2]; /**< `ilk_state_digest` of the state after the tick, low word first */
+  uint32_t out_digest;      /**< `ilk_out_digest` of the outputs */
+  uint32_t begun_ns[2];     /**< CLOCK_MONOTONIC at which the tick began, low word first */
+  uint32_t groups;          /**< bit n: a word of group n was not expected */
 } ilk_tick_record_t;
 
-/** Longest record of a tick, in words. */
-#define ILK_RECORD_WORDS_MAX                                   \
-  ((sizeof(ilk_tick_record_t) + sizeof(ilk_picture_pairs_t) +  \
-    ((size_t)ILK_REQUESTS_PER_TICK * sizeof(ilk_request_t))) / \
-   sizeof(uint32_t))
+#define ILK_RECORD_HEAD_WORDS (sizeof(ilk_tick_record_t) / sizeof(uint32_t))
 
-/** Heads a block. In the ring the checksums are zero. */
+/** Longest record of a tick, in words. */
+#define ILK_RECORD_WORDS_MAX (ILK_RECORD_HEAD_WORDS + ILK_GIVEN_GROUPS + ILK_GIVEN_WORDS)
+
+/** Heads a block. In memory the checksums are zero. */
 typedef struct {
   uint32_t magic;
-  uint32_t number; /**< 1 for the first block of a kernel's run; in the ring 0 while it is being reused */
-  uint32_t used;   /**< words after this header: the opening picture, then records */
+  uint32_t number;      /**< 1 for the first block of a kernel's run; in memory 0 while it is being reused */
+  uint32_t used;        /**< words after this header: the opening state, then records */
   uint32_t payload_crc; /**< CRC-32 of those words */
   uint32_t reserved;    /**< 0 */
   uint32_t header_crc;  /**< CRC-32 of the words above */
 } ilk_block_header_t;
 
-/** A block of the ring. */
-typedef struct {
-  ilk_block_header_t header;
-  uint64_t payload[(ILK_BLOCK_BYTES - sizeof(ilk_block_header_t)) / sizeof(uint64_t)];
-} ilk_block_t;
-
 /** Words of the longest payload, and of the shortest. */
 #define ILK_PAYLOAD_WORDS_MAX ((ILK_BLOCK_BYTES - sizeof(ilk_block_header_t)) / sizeof(uint32_t))
-#define ILK_OPENING_WORDS (sizeof(ilk_picture_pairs_t) / sizeof(uint32_t))
+#define ILK_OPENING_WORDS (sizeof(ilk_state_t) / sizeof(uint32_t))
 
-/** Ticks that fit into a block however much changes; its writer needs a pair beyond the last. */
-#define ILK_BLOCK_TICKS_MIN ((ILK_PAYLOAD_WORDS_MAX - ILK_OPENING_WORDS - 2u) / ILK_RECORD_WORDS_MAX)
+/** A block in memory. */
+typedef struct {
+  ilk_block_header_t header;
+  uint32_t payload[ILK_PAYLOAD_WORDS_MAX];
+} ilk_block_t;
 
 /** What describes one run of a kernel. */
 typedef struct {
@@ -98,32 +95,24 @@ typedef struct {
   ilk_config_t config;
 } ilk_run_description_t;
 
-/**
- * Begins a ring; the blocks begin at ILK_RING_HEADER_BYTES. The kernel holds the file's lock (`flock`) for as
- * long as it lives.
- */
+/** Begins the black box; the blocks begin at ILK_RING_HEADER_BYTES. */
 typedef struct {
-  uint32_t magic;  /**< written last */
-  uint32_t blocks; /**< block n is at place n modulo this */
-  uint32_t closed; /**< 1: the kernel ended in order */
-  uint32_t head;   /**< number of the block that is being written, 0 before the first */
+  uint32_t magic;        /**< written last */
+  uint32_t blocks;       /**< block n is at place n modulo this */
+  uint32_t closed;       /**< 1: the kernel ended in order */
+  uint32_t head;         /**< number of the block that is being written, 0 before the first */
+  uint32_t seconds;      /**< that it was made for */
+  uint32_t fewest_ticks; /**< that it ever held since all blocks were in use; 0 before */
   ilk_run_description_t run;
 } ilk_ring_header_t;
 
 #define ILK_RING_HEADER_BYTES 4096u
 
-/** After the name of a ring: the ring of the kernel before, until a recorder has it on the disk. */
-#define ILK_RING_BEFORE ".before"
-
-/** After the name of a ring that a kernel is making: what stands under the name itself is always whole. */
-#define ILK_RING_MAKING ".making"
-
 #ifndef __cplusplus
-_Static_assert(sizeof(ilk_picture_pairs_t) == ILK_PAIRS * sizeof(uint64_t), "pairs cover the picture");
-_Static_assert(sizeof(ilk_tick_record_t) % sizeof(uint64_t) == 0u, "changed pairs are aligned");
-_Static_assert(sizeof(ilk_block_header_t) % sizeof(uint64_t) == 0u, "a block's payload is aligned");
+_Static_assert(ILK_GIVEN_GROUPS <= 32u, "a word has a bit for each group");
 _Static_assert(sizeof(ilk_block_t) == ILK_BLOCK_BYTES, "blocks leave no gap");
-_Static_assert(sizeof(ilk_ring_header_t) <= ILK_RING_HEADER_BYTES, "the ring's header fits");
+_Static_assert(ILK_OPENING_WORDS + ILK_RECORD_WORDS_MAX <= ILK_PAYLOAD_WORDS_MAX, "a block holds a tick");
+_Static_assert(sizeof(ilk_ring_header_t) <= ILK_RING_HEADER_BYTES, "the header fits");
 #endif
 
 #ifdef __cplusplus
@@ -134,7 +123,10 @@ extern "C" {
  * Digest of every word of the state. Two states that differ in one or two neighbouring words never share it;
  * others do by a chance of 2^-64. Not the kernel's own seal: what it says must not depend on the kernel.
  */
-uint64_t ilk_state_hash(const ilk_state_t *state);
+uint64_t ilk_state_digest(const ilk_state_t *state);
+
+/** Digest of every word of the outputs; different ones share it by a chance of 2^-32. */
+uint32_t ilk_out_digest(const ilk_outputs_t *out);
 
 /** Mode in bits 3..0, cause in bits 7..4; bit 8 + n is set while the axis of slot n is FAULTED. */
 uint32_t ilk_alarm_of(const ilk_state_t *state);

@@ -22,11 +22,10 @@ typedef enum {
   ILK_RECORDED_ON_LOCK = 1,  /**< the kernel locked */
   ILK_RECORDED_ON_FAULT = 2, /**< an axis faulted */
   ILK_RECORDED_ON_DEMAND = 3,
-  ILK_RECORDED_ON_END = 4,   /**< the kernel ended out of order */
-  ILK_RECORDED_ON_RESCUE = 5 /**< found in memory: the kernel is dead, and not all was on the disk */
+  ILK_RECORDED_ON_END = 4 /**< the kernel ended out of order */
 } ilk_recorded_why_t;
 
-#define ILK_RECORDED_WHYS 6u
+#define ILK_RECORDED_WHYS 5u
 #define ILK_BUILD_TEXT_BYTES 64u
 
 /** Begins a recording. */
@@ -69,10 +68,10 @@ typedef enum {
 typedef struct {
   FILE *file; /**< borrowed */
   ilk_recording_header_t header;
-  uint64_t offset; /**< of the newest block in the file, bytes */
-  uint32_t number; /**< of the newest block, 0 when its header is not sound */
-  uint32_t used;   /**< words in `payload` */
-  uint64_t payload_pairs[(ILK_PAYLOAD_WORDS_MAX + 2u) / 2u]; /**< payload and trailer */
+  uint64_t offset;                              /**< of the newest block in the file, bytes */
+  uint32_t number;                              /**< of the newest block, 0 when its header is not sound */
+  uint32_t used;                                /**< words in `payload` */
+  uint32_t payload[ILK_PAYLOAD_WORDS_MAX + 1u]; /**< of the newest block, and its trailer */
 } ilk_recording_t;
 
 /** Begins to read; `file` stands at its beginning and outlives the recording. */
@@ -80,11 +79,6 @@ ilk_header_result_t ilk_recording_begin(ilk_recording_t *recording, FILE *file);
 
 /** Reads the next block. After another answer than BLOCK there is no more to read. */
 ilk_file_result_t ilk_recording_next(ilk_recording_t *recording);
-
-/** The payload of the newest block. */
-static inline const uint32_t *ilk_recording_payload(const ilk_recording_t *recording) {
-  return (const uint32_t *)recording->payload_pairs;
-}
 
 #ifdef __cplusplus
 }

@@ -1,6 +1,6 @@
 /**
  * @file
- * Runs the kernel core again on what was recorded, and finds the first bit that comes out differently.
+ * Runs the kernel core again on what was recorded, and finds the first tick that comes out differently.
  */
 #ifndef INTERLOCK_REPLAY_H
 #define INTERLOCK_REPLAY_H
@@ -16,14 +16,20 @@
 extern "C" {
 #endif
 
-/** One word that differs. */
+/**
+ * How a replay differs. The digests of a tick say that its state or its outputs are others; which words of
+ * the state, the next recorded state says: that before the first tick of the next block.
+ */
 typedef struct {
-  uint32_t tick;   /**< the kernel's, after the step */
-  uint32_t offset; /**< in `ilk_picture_t`, bytes; `ilk_picture_fields` names it */
-  uint32_t bit;    /**< lowest bit that differs */
+  uint32_t tick;      /**< the first that differs: the kernel's counter after it */
+  bool outputs;       /**< the outputs of that tick differ, its state does not */
+  uint32_t words;     /**< of the next recorded state that differ; 0 when it is the same, or there is none */
+  uint32_t seen_tick; /**< counter of that state */
+  uint32_t
+      offset;   /**< of the first of these words in `ilk_picture_t`, bytes; `ilk_picture_fields` names it */
+  uint32_t bit; /**< lowest bit that differs */
   uint32_t recorded;
   uint32_t replayed;
-  uint32_t words; /**< that differ in this tick, state and outputs together */
 } ilk_difference_t;
 
 /** A replay, from one recorded block to the next. */
@@ -57,12 +63,16 @@ typedef void (*ilk_tick_visitor_t)(void *context, const ilk_recorded_tick_t *tic
  *
  * In a block that continues the one before, the opening is compared, too: between two ticks nothing changes.
  *
- * @param difference set when the result is DIFFERS.
+ * @param difference set when the result is DIFFERS; `ilk_replay_name` adds the words.
  * @param visitor may be NULL.
  */
 ilk_replay_result_t ilk_replay_block(ilk_replay_t *replay, uint32_t number, const uint32_t *payload,
                                      uint32_t used, ilk_difference_t *difference, ilk_tick_visitor_t visitor,
                                      void *context);
+
+/** After a block that differs: adds to the difference what the opening of the next block shows of it. */
+void ilk_replay_name(const ilk_replay_t *replay, uint32_t number, const uint32_t *payload, uint32_t used,
+                     ilk_difference_t *difference);
 
 /** What came of a whole recording. */
 typedef struct {
