@@ -36,6 +36,7 @@ sys.path.append(str(Path(__file__).resolve().parents[1] / "evidence"))
 import evidence
 import igtl_reply
 import jsonschema
+import memory
 import pictures
 import rates
 import size
@@ -72,6 +73,7 @@ LIMITS = {
     "control_tick_ns_p999_neuro": 50_000,
     "control_tick_ns_p999_prostate": 50_000,
     **{f"igtl_reply_us_p99_{dialect}": 100_000 for dialect in igtl_reply.DIALECTS},
+    "memory_kib": 120 * 1024,
     **size.LIMITS,
 }
 
@@ -321,6 +323,8 @@ def main() -> int:
     }
     figures |= {f"black_box_ns_{key}": detail["black_box"][f"{key}_ns"] for key in ("median", "p99")}
     figures["black_box_bytes_campaign"] = detail["black_box"]["campaign_bytes_a_tick_most"]
+    detail["memory_kib"] = memory.measure(arguments.bin)
+    figures["memory_kib"] = sum(detail["memory_kib"].values())
     figures["campaign_ticks_per_s"] = round(campaign_speed(arguments.bin))
     figures |= live(arguments.bin, arguments.duration, arguments.rate_seconds, detail)
     record = record_of(figures, arguments.duration, started, detail)
