@@ -228,8 +228,8 @@ int run(std::string_view setup) {
   ilk_error_t error;
   if (!ilk_config_load(process.options.config_path, &process.config, &error) ||
       ilk_link_listen(&process.link, process.options.link_path, &error) != ILK_LISTEN_OK ||
-      !ilk_bus_sim_open(&process.bus, process.options.bus_path, ILK_CLOCK_REAL, process.config.period_us,
-                        process.config.crc, &error) ||
+      !ilk_bus_sim_open(&process.bus, process.options.bus_path, ILK_CLOCK_REAL, &process.config,
+                        &stop_requested, &error) ||
       !ilk_link_server_start(&process.server, process.link.descriptor, &error)) {
     return fail(error.text);
   }
