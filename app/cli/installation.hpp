@@ -24,7 +24,8 @@ class Installation {
   /** What this very program belongs to: an installation (PREFIX/bin) or a source tree (build/PRESET/bin). */
   static Installation current();
 
-  /** Where everything but the programs is: share/interlock of an installation, or the top of a source tree. */
+  /** Where everything but the programs is: share/interlock of an installation, or the top of a source tree.
+   */
   [[nodiscard]] const std::filesystem::path& data() const { return data_; }
 
   /** An executable program of Interlock. */

@@ -8,8 +8,8 @@ namespace interlock {
 Manipulability manipulability_of(const ScaledJacobian& scaled) noexcept {
   using Square = Eigen::Matrix<double, 6, 6>;
   using Tall = Eigen::Matrix<double, 7, 6>;
-  // A row of zeros and an orthogonal factor change no singular value; a square matrix needs no preconditioner, whose
-  // templates take longer to compile than all the rest of the folder.
+  // A row of zeros and an orthogonal factor change no singular value; a square matrix needs no
+  // preconditioner, whose templates take longer to compile than all the rest of the folder.
   Tall transposed = Tall::Zero();
   transposed.topRows(scaled.cols()) = scaled.transpose();
   const Eigen::HouseholderQR<Tall> factors(transposed);

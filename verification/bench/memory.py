@@ -1,6 +1,6 @@
 """Memory of each process of a robot that runs: its own, and its share of what it shares with others (PSS).
 
-The thesis' board has 512 MB in all. Resident memory would count a library, or the black box, once for each process.
+The thesis' board has 512 MB in all. Resident memory would count a library, or the black box, in each process.
 """
 
 import json
