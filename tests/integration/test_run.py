@@ -20,8 +20,9 @@ def interlock(*arguments: str | Path) -> subprocess.CompletedProcess:
     return subprocess.run(command, capture_output=True, text=True, timeout=DEADLINE_S)
 
 
-def pids(stack: Stack) -> list[int]:
-    return [stack.pid(name) for name in PROGRAMS]
+def pids(stack: Stack, *names: str) -> list[int]:
+    """Of the programs of these names, of all without names."""
+    return [stack.pid(name) for name in names or PROGRAMS]
 
 
 def is_free(port: int) -> bool:
@@ -80,13 +81,13 @@ def test_given_socket_directory_is_left_empty(stack: StackFactory) -> None:
 
 def test_killed_app_is_restarted_and_serves_while_the_kernel_runs_on(stack: StackFactory) -> None:
     running = stack()
-    simulator, kernel, app = pids(running)
+    app, others = running.pid("app"), pids(running, "simulator", "recorder", "kernel")
     before = running.status()["tick"]
     running.signal("app", signal.SIGKILL)
     running.output.wait_for(r"app ended: killed by signal 9 .*restarting it \(1 of 5")
     running.output.wait_for(r"^ready ", count=2)
     assert running.pid("app") != app
-    assert (running.pid("simulator"), running.pid("kernel")) == (simulator, kernel)
+    assert pids(running, "simulator", "recorder", "kernel") == others
     assert running.status_when(lambda status: status["connected"])["tick"] > before
 
 
