@@ -81,7 +81,7 @@ bool ilk_black_box_create(ilk_black_box_t *box, const ilk_black_box_terms_t *ter
 }
 
 static uint32_t opening_tick(const ilk_block_t *block) {
-  return block->payload[offsetof(ilk_state_t, tick) / sizeof(uint32_t)];
+  return block->payload[(size_t)offsetof(ilk_state_t, tick) / sizeof(uint32_t)];
 }
 
 /** When a block is about to be reused: how many ticks there are without it, and without the one that comes
@@ -123,7 +123,10 @@ static uint32_t put_group(uint32_t to[], uint32_t *place, const uint32_t given[]
   for (uint32_t first = 0u; first < GROUP_WORDS; first += QUARTER_WORDS) {
     if ((missed[first] | missed[first + 1u] | missed[first + 2u] | missed[first + 3u]) != 0u) {
       for (uint32_t i = first; i < (first + QUARTER_WORDS); ++i) {
-        const uint32_t is_missed = (missed[i] != 0u) ? 1u : 0u;
+        uint32_t is_missed = 0u;
+        if (missed[i] != 0u) {
+          is_missed = 1u;
+        }
         to[*place] = given[i];
         *place += is_missed;
         bits |= is_missed << i;
@@ -165,7 +168,7 @@ void ilk_black_box_note(ilk_black_box_t *box, uint64_t begun_ns, const ilk_state
   ilk_given_from_inputs(given, inputs);
   (void)memcpy(&given[ILK_INPUT_WORDS], requests, count * sizeof(ilk_request_t));
   ilk_expectation_follow(&box->expected, given, words, missed);
-  const size_t rest = (GROUP_WORDS - 1u) & (0u - words); /* of its last group */
+  const uint32_t rest = (GROUP_WORDS - 1u) & (0u - words); /* of its last group */
   (void)memset(&given[words], 0, rest * sizeof given[0]);
   (void)memset(&missed[words], 0, rest * sizeof missed[0]);
   split(head.state_digest, ilk_state_digest(state));

@@ -10,7 +10,7 @@
 
 #include "service_thread.h"
 
-static void *serve(void *argument) {
+static void *serve_readers(void *argument) {
   const ilk_black_box_door_t *door = argument;
   const uint32_t magic = ILK_RING_MAGIC;
   struct pollfd events[2] = {{.fd = door->stop, .events = POLLIN},
@@ -28,12 +28,12 @@ static void *serve(void *argument) {
   }
 }
 
-static bool start(ilk_black_box_door_t *door, ilk_error_t *error) {
+static bool start_serving(ilk_black_box_door_t *door, ilk_error_t *error) {
   door->stop = eventfd(0, EFD_CLOEXEC);
   if (door->stop < 0) {
     return ilk_fail(error, "cannot create the stop event of the black box's door: %s", strerror(errno));
   }
-  if (!ilk_service_thread_start(&door->thread, serve, door, error)) {
+  if (!ilk_service_thread_start(&door->thread, serve_readers, door, error)) {
     (void)close(door->stop);
     return false;
   }
@@ -44,7 +44,7 @@ ilk_listen_result_t ilk_black_box_door_open(ilk_black_box_door_t *door, const ch
                                             const ilk_black_box_t *box, ilk_error_t *error) {
   *door = (ilk_black_box_door_t){.descriptors = {box->memory, box->life[0]}};
   ilk_listen_result_t result = ilk_link_listen(&door->socket, path, error);
-  if (result == ILK_LISTEN_OK && !start(door, error)) {
+  if (result == ILK_LISTEN_OK && !start_serving(door, error)) {
     ilk_link_unlisten(&door->socket);
     result = ILK_LISTEN_FAILED;
   }

@@ -32,7 +32,6 @@ static ilk_bus_spi_t spi_bus;
 static ilk_bus_t bus;
 static ilk_link_server_t server;
 static ilk_black_box_t black_box;
-static ilk_black_box_door_t black_box_door;
 static ilk_loop_t loop;
 static ilk_watchdog_t watchdog;
 
@@ -120,6 +119,7 @@ static int run_loop(const ilk_options_t *options) {
  * real-time right, so both begin first. */
 static int run_recorded(const ilk_options_t *options) {
   ilk_error_t error;
+  ilk_black_box_door_t black_box_door;
   if (options->black_box_path == NULL) {
     return run_loop(options);
   }

@@ -15,7 +15,8 @@ bool ilk_pacing_may_go_on(uint32_t tick, uint32_t seen_tick) {
 
 /** Beyond what it had seen when it was given up: an old or absurd `seen_tick` holds the kernel only once. */
 static bool is_back(const ilk_pacing_t *pacing, uint32_t seen_tick) {
-  return (int32_t)(seen_tick - pacing->given_up_at) >= 0;
+  const uint32_t ahead = seen_tick - pacing->given_up_at;
+  return ahead <= (uint32_t)INT32_MAX;
 }
 
 bool ilk_pacing_wait(ilk_pacing_t *pacing, const ilk_attachment_t *attachment, uint32_t tick,
