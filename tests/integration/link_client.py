@@ -58,6 +58,7 @@ class LinkClient:
         self.events_read = 0
         self.verdicts: dict[int, str] = {}
         self.verdict_counts: Counter[str] = Counter()
+        self.verdicts_of: Counter[int] = Counter()
         self.app.seen_tick = self.snapshot().state.tick
 
     def close(self) -> None:
@@ -137,5 +138,6 @@ class LinkClient:
                     verdict = name_of("ILK_VERDICT", event.value[3])
                     self.verdicts[event.value[0]] = verdict
                     self.verdict_counts[verdict] += 1
+                    self.verdicts_of[event.value[0]] += 1
         self.events_read = head
         return events
