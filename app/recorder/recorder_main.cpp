@@ -48,6 +48,7 @@ FileHandle end_signals() {
   sigemptyset(&signals);
   sigaddset(&signals, SIGTERM);
   sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGHUP);
   sigprocmask(SIG_BLOCK, &signals, nullptr);
   return FileHandle(signalfd(-1, &signals, SFD_CLOEXEC));
 }

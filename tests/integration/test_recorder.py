@@ -187,7 +187,7 @@ def test_cut_off_recording_ends_with_its_last_whole_block(recorded: RecordedKern
     wait_until("blocks", lambda: any(file.stat().st_size > 150_000 for file in kernel.recordings.iterdir()))
     kernel.recorder.kill()
     kernel.recorder.wait()
-    seen = kernel.app.run(1).state.tick
+    seen = kernel.app.snapshot().state.tick
     (part,) = kernel.recordings.glob("*.part")
     first, last = replayed_ticks(part)
     assert first == 1
@@ -283,6 +283,24 @@ def test_killed_run_leaves_its_last_tick_and_no_memory(short_tmp_path: Path) -> 
     assert last >= seen
     assert holders(black_box) == []
     assert not list((killed.state / "recordings").glob("*.part"))
+
+
+# The system continues a stopped process whose parent died, and sends it SIGHUP before.
+def test_a_stopped_recorder_of_a_killed_run_leaves_the_last_tick_too(short_tmp_path: Path) -> None:
+    killed = Stack(short_tmp_path, "--robot", "neuro", "--realtime", "--seed", "1")
+    black_box = black_box_of(killed.pid("kernel"))
+    wait_until("the recorder holds it", lambda: len(holders(black_box)) == 2)
+    with watched(killed.pid("recorder")) as [recorder]:
+        seen = killed.status()["tick"]
+        killed.signal("recorder", signal.SIGSTOP)
+        killed.run.send_signal(signal.SIGKILL)
+        killed.wait()
+        assert has_ended(recorder)
+    killed.close()
+    (end,) = (killed.state / "recordings").glob("*-end-*.ilkr")
+    _, last = replayed_ticks(end)
+    assert last >= seen
+    assert holders(black_box) == []
 
 
 def test_nothing_is_left_when_all_processes_are_killed_at_once(short_tmp_path: Path) -> None:
