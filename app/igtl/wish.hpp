@@ -129,6 +129,7 @@ struct Unwanted {
 /** What a message asks for, or why it is refused. */
 using Reading = tl::expected<Wish, Unwanted>;
 
+/** Refuses a message: the status that its sender gets, and the reason in words. */
 inline tl::unexpected<Unwanted> unwanted(StatusCode code, std::string reason) {
   return tl::unexpected(Unwanted{code, std::move(reason)});
 }

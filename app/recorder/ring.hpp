@@ -58,9 +58,10 @@ class Ring {
   /** The kernel said that it ended in order. */
   [[nodiscard]] bool closed() const;
 
-  /** Seconds of kernel time that it was made for, and the fewest that it ever held since it is full; nothing
-   * before. */
+  /** Seconds of kernel time that it was made for. */
   [[nodiscard]] std::uint32_t seconds() const { return header_->seconds; }
+
+  /** The fewest seconds of kernel time that it ever held since it is full; nothing before. */
   [[nodiscard]] std::optional<double> fewest_seconds() const;
 
   /** The process that writes is there. */
