@@ -135,7 +135,7 @@ class Hub {
                                                                              const FaultAt&) {};
   std::function<void(const Peer&, const std::string&)> on_close = [](const Peer&, const std::string&) {};
 
-  /** What patience is measured by; another one in tests, whose machine may be late. */
+  /** The clock of the timeouts; tests set their own, because their machine may be late. */
   std::function<std::chrono::steady_clock::time_point()> read_clock = std::chrono::steady_clock::now;
 
   /** Asked whether something may move, hence whether it matters that the controller hangs. */

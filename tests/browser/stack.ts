@@ -33,7 +33,7 @@ interface Ready {
   readonly igtlPort: number;
 }
 
-/** What the simulated hardware says of an axis, in its answer to `status`. */
+/** The state of an axis in the answer of the simulated hardware to `status`. */
 interface PlantAxis {
   readonly slot: number;
   readonly position_counts: number;

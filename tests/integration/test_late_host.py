@@ -128,12 +128,12 @@ def test_P10_an_app_that_is_frozen_for_5_s_loses_its_motion_and_nothing_else(
     app = robot.pid("app")
     with frozen(app):
         stopped = robot.control("status")["tick"]
-        # Two seconds of patience, and then at real pace: five in all.
+        # The kernel waits two seconds, and then goes on at real pace: five in all.
         entries = record(robot, stopped, stopped + 3000)
     limit = stopped + TICKS_AHEAD + APP_TIMEOUT_TICKS + WIRE_TICKS
     assert not [entry["tick"] for entry in entries if entry["tick"] > limit and any(entry["drive"])]
-    heard = robot.control("status")["tick"]
-    wait_until("app heard", lambda: robot.status()["app_alive"] and robot.status()["tick"] > heard)
+    received = robot.control("status")["tick"]
+    wait_until("app received", lambda: robot.status()["app_alive"] and robot.status()["tick"] > received)
     assert robot.status()["mode"] == "READY"
     assert robot.pid("app") == app
     assert_no_fault(robot)
