@@ -17,7 +17,7 @@ from expected import KEPT, Check, UnusableError, read_checks
 
 MOST_BYTES = 512 * 1024
 """So much the packed logs of a check may have: the history of the sources has every version of them."""
-TEXTS = (".log", ".json", ".txt", ".csv", ".cfg", ".tla", "")
+TEXTS = (".log", ".json", ".txt", ".csv")
 MOST_OF_A_FILE = 2 * 2**20
 """A longer log is one of a solver at work. It stays where it was made."""
 
