@@ -119,7 +119,7 @@ class BareRoot:
                 os.killpg(process.pid, signal.SIGINT)
         if not ready:
             raise SystemExit(f"bare_root: {' '.join(words)}: ended without the line 'ready ...'")
-        spent = finish(process, begin, words, allowed=(0, 2, 130))
+        spent = finish(process, begin, words, allowed=(0, 2, 130, -signal.SIGINT))
         return Spent(round(ready - begin, 1), spent.processor_s), lines
 
     def _mount(self) -> None:
