@@ -88,7 +88,7 @@ std::size_t ceiling_of_process() {
 }
 
 bool is_protocol_error(const beast::error_code& error) {
-  static const auto& category = beast::error_code(http::error::bad_method).category();
+  static const beast::error_code of_the_protocol = http::error::bad_method;
   return error.category() == category && error != http::error::end_of_stream &&
          error != http::error::partial_message;
 }
