@@ -136,7 +136,8 @@ class BareRoot:
             (self.root / "dev" / name).chmod(0o666)
         for name, target in {"fd": "fd", "stdin": "fd/0", "stdout": "fd/1", "stderr": "fd/2"}.items():
             (self.root / "dev" / name).symlink_to(f"/proc/self/{target}")
-        self._mount_one("dev/pts", ["-t", "devpts", "devpts"])
+        (self.root / "dev/ptmx").symlink_to("pts/ptmx")
+        self._mount_one("dev/pts", ["-t", "devpts", "-o", "newinstance,ptmxmode=0666", "devpts"])
         self._mount_one("dev/shm", ["-t", "tmpfs", "tmpfs"])
         for place in ("var/cache/apt/archives", "var/lib/apt/lists", "root"):
             kept = self.folder / f"downloads-{self.release}" / place
