@@ -1,0 +1,142 @@
+#include "gate.h"
+
+#include <stdbool.h>
+
+#include "arith.h"
+#include "axis.h"
+#include "config.h"
+#include "homing.h"
+
+#define AMPLITUDE_MAX 255u
+
+/** The kernel, not the app, picks the direction: towards the setpoint, none within the deadband. */
+static uint32_t direction_to_setpoint(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+  const int64_t distance = (int64_t)axis->setpoint_counts - (int64_t)axis->position_counts;
+  const int64_t deadband = (int64_t)config->deadband_counts;
+  uint32_t direction = (uint32_t)ILK_DIRECTION_NONE;
+  if (distance > deadband) {
+    direction = (uint32_t)ILK_DIRECTION_INCREASING;
+  } else if (distance < -deadband) {
+    direction = (uint32_t)ILK_DIRECTION_DECREASING;
+  } else {
+    direction = (uint32_t)ILK_DIRECTION_NONE;
+  }
+  return direction;
+}
+
+ilk_command_t ilk_wanted_command(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+  ilk_command_t wanted = {.direction = (uint32_t)ILK_DIRECTION_NONE, .drive = 0u, .amplitude = 0u};
+  switch (axis->state) {
+    case (uint32_t)ILK_AXIS_MOVING:
+      wanted.direction = direction_to_setpoint(config, axis);
+      wanted.drive = axis->drive;
+      wanted.amplitude = axis->amplitude;
+      break;
+    case (uint32_t)ILK_AXIS_HOMING:
+      wanted = ilk_homing_command(config, axis);
+      break;
+    default:
+      /* An axis in any other state wants nothing. */
+      break;
+  }
+  return wanted;
+}
+
+static bool is_held(const ilk_axis_t *axis) {
+  return ((axis->state == (uint32_t)ILK_AXIS_MOVING) && (axis->lease_ticks != 0u)) ||
+         (axis->state == (uint32_t)ILK_AXIS_HOMING);
+}
+
+static bool is_out_of_motion(const ilk_axis_t *axis) {
+  return (axis->state == (uint32_t)ILK_AXIS_DISABLED) || (axis->state >= (uint32_t)ILK_AXIS_FAULTED);
+}
+
+/** True when the wish is no motion at all. */
+static bool asks_for_nothing(const ilk_command_t *wanted) {
+  const bool directed = (wanted->direction == (uint32_t)ILK_DIRECTION_INCREASING) ||
+                        (wanted->direction == (uint32_t)ILK_DIRECTION_DECREASING);
+  return !directed || (wanted->drive == 0u);
+}
+
+/** P3: towards a triggered switch. */
+static bool presses_on_switch(const ilk_axis_config_t *config, const ilk_axis_t *axis, uint32_t direction) {
+  return (axis->switch_triggered != 0u) && (direction == ilk_towards_switch(config));
+}
+
+ilk_reach_t ilk_reach(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+  const int64_t coast = (int64_t)config->coast_counts;
+  const int64_t home = (int64_t)config->home_offset_counts;
+  const int64_t margin = (int64_t)config->switch_hysteresis_counts + (int64_t)config->home_tolerance_counts;
+  ilk_reach_t reach = {.low = (int64_t)config->min_counts + coast, .high = (int64_t)config->max_counts - coast};
+  if (axis->homed == (uint32_t)ILK_HOMED_BY_SWITCH) {
+    if ((config->limit_side == (uint32_t)ILK_LIMIT_LOWER) && (reach.low < (home + margin))) {
+      reach.low = home + margin;
+    }
+    if ((config->limit_side == (uint32_t)ILK_LIMIT_UPPER) && (reach.high > (home - margin))) {
+      reach.high = home - margin;
+    }
+  }
+  return reach;
+}
+
+/** P4: outward, where coasting would cross the soft limit. */
+static bool leaves_soft_range(const ilk_axis_config_t *config, const ilk_axis_t *axis, uint32_t direction) {
+  const ilk_reach_t reach = ilk_reach(config, axis);
+  const int64_t position = (int64_t)axis->position_counts;
+  const bool outward = ((position >= reach.high) && (direction == (uint32_t)ILK_DIRECTION_INCREASING)) ||
+                       ((position <= reach.low) && (direction == (uint32_t)ILK_DIRECTION_DECREASING));
+  return outward && (axis->homed != (uint32_t)ILK_HOMED_NOT);
+}
+
+uint32_t ilk_unhomed_travel_left(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+  return left_of(config->unhomed_travel_counts, sum_saturating(axis->unhomed_travel_counts, config->coast_counts));
+}
+
+/** P7: the budget of this press is used up, coast kept back. */
+static bool exceeds_travel(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+  const uint32_t left = (axis->state == (uint32_t)ILK_AXIS_HOMING) ? ilk_homing_travel_left(config, axis)
+                                                                   : ilk_unhomed_travel_left(config, axis);
+  return (axis->homed == (uint32_t)ILK_HOMED_NOT) && (left == 0u);
+}
+
+/** P7: more than the axis may, or more than its card's words can carry. */
+static bool exceeds_drive(const ilk_axis_config_t *config, const ilk_axis_t *axis,
+                          const ilk_command_t *wanted) {
+  const uint32_t bound =
+      (axis->homed != (uint32_t)ILK_HOMED_NOT) ? config->max_drive : config->unhomed_max_drive;
+  return (wanted->drive > bound) || (wanted->drive > ilk_card_max_drive(config->card)) ||
+         (wanted->amplitude > config->max_amplitude) || (wanted->amplitude > AMPLITUDE_MAX);
+}
+
+ilk_gate_t ilk_output_gate(const ilk_axis_config_t *config, const ilk_system_t *system, const ilk_axis_t *axis,
+                           const ilk_command_t *wanted) {
+  ilk_gate_t gate = ILK_GATE_MODE;
+  if (system->mode != (uint32_t)ILK_MODE_MOTION) {
+    gate = ILK_GATE_MODE;
+  } else if (system->pedal != (uint32_t)ILK_PEDAL_PRESSED) {
+    gate = ILK_GATE_PEDAL;
+  } else if (system->estop != 0u) {
+    gate = ILK_GATE_ESTOP;
+  } else if (axis->card_valid == 0u) {
+    gate = ILK_GATE_CARD;
+  } else if (is_out_of_motion(axis)) {
+    gate = ILK_GATE_ENABLE;
+  } else if (ilk_axis_has_stalled(config, axis)) {
+    gate = ILK_GATE_STALL;
+  } else if (!is_held(axis)) {
+    gate = ILK_GATE_LEASE;
+  } else if (asks_for_nothing(wanted)) {
+    gate = ILK_GATE_SETPOINT;
+  } else if (presses_on_switch(config, axis, wanted->direction)) {
+    gate = ILK_GATE_HARD_LIMIT;
+  } else if (leaves_soft_range(config, axis, wanted->direction)) {
+    gate = ILK_GATE_SOFT_LIMIT;
+  } else if (exceeds_travel(config, axis)) {
+    gate = ILK_GATE_UNHOMED_TRAVEL;
+  } else if (exceeds_drive(config, axis, wanted)) {
+    gate = ILK_GATE_DRIVE;
+  } else {
+    gate = ILK_GATE_OPEN;
+  }
+  return gate;
+}

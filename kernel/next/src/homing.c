@@ -1,0 +1,164 @@
+#include "homing.h"
+
+#include <stdbool.h>
+
+#include "arith.h"
+#include "axis.h"
+
+uint32_t ilk_towards_switch(const ilk_axis_config_t *config) {
+  uint32_t direction = (uint32_t)ILK_DIRECTION_NONE;
+  if (config->limit_side == (uint32_t)ILK_LIMIT_UPPER) {
+    direction = (uint32_t)ILK_DIRECTION_INCREASING;
+  } else if (config->limit_side == (uint32_t)ILK_LIMIT_LOWER) {
+    direction = (uint32_t)ILK_DIRECTION_DECREASING;
+  } else {
+    direction = (uint32_t)ILK_DIRECTION_NONE;
+  }
+  return direction;
+}
+
+static uint32_t away_from_switch(const ilk_axis_config_t *config) {
+  return opposite_of(ilk_towards_switch(config));
+}
+
+uint32_t ilk_homing_travel_left(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+  return left_of(config->home_travel_counts, sum_saturating(axis->homing_travel_counts, config->coast_counts));
+}
+
+static void enter_phase(ilk_axis_t *axis, ilk_homing_phase_t phase, uint32_t mark_raw) {
+  axis->homing_phase = (uint32_t)phase;
+  axis->homing_mark_raw = mark_raw;
+}
+
+/** The run of readings begins anew, so that no edge counts that was seen before. */
+void ilk_homing_begin(ilk_axis_t *axis) {
+  ilk_axis_drop_motion(axis);
+  axis->state = (uint32_t)ILK_AXIS_HOMING;
+  axis->homed = (uint32_t)ILK_HOMED_NOT;
+  axis->path_is_homing = 1u;
+  axis->switch_run_ticks = 0u;
+  enter_phase(axis, ILK_HOMING_LOOK, axis->raw);
+}
+
+ilk_command_t ilk_homing_command(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+  ilk_command_t wanted = {
+      .direction = (uint32_t)ILK_DIRECTION_NONE, .drive = config->home_drive, .amplitude = config->home_amplitude};
+  switch (axis->homing_phase) {
+    case (uint32_t)ILK_HOMING_LEAVE:
+    case (uint32_t)ILK_HOMING_BACK_OFF:
+      wanted.direction = away_from_switch(config);
+      break;
+    case (uint32_t)ILK_HOMING_SEEK:
+      wanted.direction = ilk_towards_switch(config);
+      break;
+    case (uint32_t)ILK_HOMING_APPROACH:
+      wanted.direction = ilk_towards_switch(config);
+      wanted.drive = config->home_slow_drive;
+      break;
+    default:
+      /* LOOK and REST wait. */
+      break;
+  }
+  return wanted;
+}
+
+/** Far enough from the mark that a bounce or a look at the wrong edge is behind it. */
+static bool is_clear(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+  const int32_t away = along(away_from_switch(config), travel_between(config, axis->homing_mark_raw, axis->raw));
+  return (away > 0) && (magnitude(away) >= config->home_clear_counts);
+}
+
+/** The reference is the second edge, if the first agrees. */
+static ilk_homing_result_t conclude(const ilk_axis_config_t *config, ilk_axis_t *axis) {
+  const uint32_t edge_raw = axis->homing_mark_raw;
+  const int32_t disagreement = travel_between(config, axis->first_edge_raw, edge_raw);
+  ilk_homing_result_t result = {.fault = ILK_FAULT_NONE, .value = disagreement};
+  if (magnitude(disagreement) > config->home_tolerance_counts) {
+    result.fault = ILK_FAULT_SWITCH;
+  } else {
+    axis->home_difference_counts =
+        (axis->home_known != 0u) ? travel_between(config, axis->home_raw, edge_raw) : 0;
+    axis->home_raw = edge_raw;
+    axis->home_known = 1u;
+    axis->position_counts =
+        add_saturating(travel_between(config, edge_raw, axis->raw), config->home_offset_counts);
+    axis->homed = (uint32_t)ILK_HOMED_BY_SWITCH;
+    ilk_axis_drop_motion(axis);
+  }
+  return result;
+}
+
+/** What a valid frame means for the phase. */
+static ilk_homing_result_t follow_switch(const ilk_common_config_t *common, const ilk_axis_config_t *config,
+                                         ilk_axis_t *axis) {
+  const bool triggered = ilk_switch_is_steady(common, axis, true);
+  const bool open = ilk_switch_is_steady(common, axis, false);
+  ilk_homing_result_t result = {.fault = ILK_FAULT_NONE, .value = 0};
+  switch (axis->homing_phase) {
+    case (uint32_t)ILK_HOMING_LOOK:
+      if (triggered) {
+        enter_phase(axis, ILK_HOMING_LEAVE, axis->raw);
+      } else if (open) {
+        enter_phase(axis, ILK_HOMING_SEEK, axis->raw);
+      } else {
+        /* Not steady yet. */
+      }
+      break;
+    case (uint32_t)ILK_HOMING_LEAVE:
+      if (open && is_clear(config, axis)) {
+        enter_phase(axis, ILK_HOMING_SEEK, axis->raw);
+      }
+      break;
+    case (uint32_t)ILK_HOMING_SEEK:
+      if (triggered) {
+        axis->first_edge_raw = axis->switch_run_raw;
+        enter_phase(axis, ILK_HOMING_BACK_OFF, axis->switch_run_raw);
+      }
+      break;
+    case (uint32_t)ILK_HOMING_BACK_OFF:
+      if (open && is_clear(config, axis)) {
+        enter_phase(axis, ILK_HOMING_APPROACH, axis->raw);
+      }
+      break;
+    case (uint32_t)ILK_HOMING_APPROACH:
+      if (triggered) {
+        enter_phase(axis, ILK_HOMING_REST, axis->switch_run_raw);
+      }
+      break;
+    default: /* REST */
+      if (!ilk_axis_is_at_rest(config, axis)) {
+        /* It coasts. */
+      } else if (triggered) {
+        result = conclude(config, axis);
+      } else if (open) {
+        enter_phase(axis, ILK_HOMING_APPROACH, axis->raw);
+      } else {
+        /* Not steady yet. */
+      }
+      break;
+  }
+  return result;
+}
+
+ilk_homing_result_t ilk_homing_advance(const ilk_common_config_t *common, const ilk_axis_config_t *config,
+                                       ilk_axis_t *axis) {
+  ilk_homing_result_t result = {.fault = ILK_FAULT_NONE, .value = 0};
+  if (axis->state == (uint32_t)ILK_AXIS_HOMING) {
+    axis->homing_ticks = count_up(axis->homing_ticks, UINT32_MAX);
+    if (axis->card_valid != 0u) {
+      result = follow_switch(common, config, axis);
+    }
+  }
+  if ((axis->state == (uint32_t)ILK_AXIS_HOMING) && (result.fault == ILK_FAULT_NONE)) {
+    if (ilk_homing_travel_left(config, axis) == 0u) {
+      result.fault = ILK_FAULT_HOMING_TRAVEL;
+      result.value = signed_of(axis->homing_travel_counts & (uint32_t)INT32_MAX);
+    } else if (axis->homing_ticks >= config->home_timeout_ticks) {
+      result.fault = ILK_FAULT_HOMING_TIMEOUT;
+      result.value = signed_of(axis->homing_phase);
+    } else {
+      result.fault = ILK_FAULT_NONE;
+    }
+  }
+  return result;
+}

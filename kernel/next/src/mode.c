@@ -1,0 +1,241 @@
+#include "mode.h"
+
+#include "arith.h"
+#include "axis.h"
+
+#define CLOSED 1u
+#define OPEN 0u
+/** Odd, so that no two ticks give the same product. */
+#define CONSENT_FACTOR 0x9e3779b1u
+
+bool ilk_power_is_on(const ilk_system_t *system) {
+  return (system->mode == (uint32_t)ILK_MODE_READY) || (system->mode == (uint32_t)ILK_MODE_MOTION);
+}
+
+void ilk_pedal_disarm(ilk_system_t *system) {
+  system->pedal_armed = 0u;
+  system->pedal_pressed_ticks = 0u;
+  system->pedal_released_ticks = 0u;
+}
+
+/** Another one in each of 2^32 ticks and never 0: that of tick `boot_nonce` would be, and has that of tick 0, in which
+   no press can complete. */
+static uint32_t consent_of(uint32_t boot_nonce, uint32_t tick) {
+  const uint32_t mixed = (tick == boot_nonce) ? boot_nonce : (tick ^ boot_nonce);
+  return mixed * CONSENT_FACTOR;
+}
+
+void ilk_mode_enter(ilk_mode_t mode, uint32_t boot_nonce, ilk_state_t *state) {
+  state->system.mode = (uint32_t)mode;
+  state->system.consent = (mode == ILK_MODE_MOTION) ? consent_of(boot_nonce, state->system.tick) : 0u;
+  ilk_pedal_disarm(&state->system);
+  for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
+    ilk_axis_drop_motion(&state->axis[slot]);
+    if (mode == ILK_MODE_LOCKED) {
+      ilk_axis_disable(&state->axis[slot]);
+    }
+    if (mode == ILK_MODE_MOTION) {
+      ilk_axis_begin_press(&state->axis[slot]);
+    }
+  }
+}
+
+/* --- Phase 3 --------------------------------------------------------------------------------------------- */
+
+/** Any reading that is neither clearly pressed nor clearly released is a disagreement. */
+static ilk_pedal_t pedal_reading(const ilk_common_config_t *common, const ilk_inputs_t *in) {
+  const bool single = common->pedal_channels == 1u;
+  const bool nc_says_pressed = single || (in->pedal_nc_closed == OPEN);
+  const bool nc_says_released = single || (in->pedal_nc_closed == CLOSED);
+  ilk_pedal_t pedal = ILK_PEDAL_DISAGREE;
+  if ((in->pedal_no_closed == CLOSED) && nc_says_pressed) {
+    pedal = ILK_PEDAL_PRESSED;
+  } else if ((in->pedal_no_closed == OPEN) && nc_says_released) {
+    pedal = ILK_PEDAL_RELEASED;
+  } else {
+    pedal = ILK_PEDAL_DISAGREE;
+  }
+  return pedal;
+}
+
+/** How long a condition has held, when so far it had for `ticks`. */
+static uint32_t ticks_in_row(bool holds, uint32_t ticks, uint32_t ceiling) {
+  return holds ? count_up(ticks, ceiling) : 0u;
+}
+
+static void observe_app(const ilk_common_config_t *common, const ilk_inputs_t *in, ilk_system_t *system) {
+  if (in->link_generation != system->link_generation) {
+    system->link_generation = in->link_generation;
+    system->last_sequence = 0u;
+    system->app_age_ticks = UINT32_MAX;
+  }
+  system->app_age_ticks = count_up(system->app_age_ticks, UINT32_MAX);
+  system->app_alive = flag_of(system->app_age_ticks < common->app_timeout_ticks);
+}
+
+/** A release arms only when seen whole in READY with the app alive; without the app no consent lasts. */
+static void observe_pedal(const ilk_common_config_t *common, const ilk_inputs_t *in, ilk_system_t *system) {
+  const ilk_pedal_t pedal = pedal_reading(common, in);
+  const uint32_t debounce = common->pedal_debounce_ticks;
+  const bool may_arm = (system->mode == (uint32_t)ILK_MODE_READY) && (system->app_alive != 0u);
+  if (!may_arm) {
+    ilk_pedal_disarm(system);
+  }
+  system->pedal = (uint32_t)pedal;
+  system->pedal_disagree_ticks =
+      ticks_in_row(pedal == ILK_PEDAL_DISAGREE, system->pedal_disagree_ticks, UINT32_MAX);
+  system->pedal_released_ticks =
+      ticks_in_row((pedal == ILK_PEDAL_RELEASED) && may_arm, system->pedal_released_ticks, debounce);
+  system->pedal_pressed_ticks =
+      ticks_in_row((pedal == ILK_PEDAL_PRESSED) && (system->pedal_armed != 0u), system->pedal_pressed_ticks, debounce);
+  if (may_arm && (system->pedal_released_ticks >= debounce)) {
+    system->pedal_armed = 1u;
+  }
+}
+
+void ilk_system_observe(const ilk_common_config_t *common, const ilk_inputs_t *in, ilk_system_t *system) {
+  const bool missed = in->deadlines_missed != 0u;
+  system->estop = flag_of(in->estop_loop_closed != CLOSED);
+  observe_app(common, in, system);
+  observe_pedal(common, in, system);
+  system->overruns_in_row = ticks_in_row(missed, system->overruns_in_row, UINT32_MAX);
+  if (missed) {
+    system->overruns = count_up(system->overruns, UINT32_MAX);
+  }
+}
+
+/* --- Phase 5 --------------------------------------------------------------------------------------------- */
+
+/** What locks in a tick: the first cause with its value, or NONE, and all causes that are there, a bit each. */
+typedef struct {
+  ilk_cause_t first;
+  uint32_t value;
+  uint32_t all;
+} causes_t;
+
+static void add_cause(causes_t *causes, bool present, ilk_cause_t cause, uint32_t value) {
+  if (present) {
+    if (causes->first == ILK_CAUSE_NONE) {
+      causes->first = cause;
+      causes->value = value;
+    }
+    causes->all |= 1u << (uint32_t)cause;
+  }
+}
+
+/** The slot of the first axis that is run away, or ILK_SLOTS. */
+static uint32_t runaway_slot(const ilk_state_t *state) {
+  uint32_t slot = 0u;
+  while ((slot < (uint32_t)ILK_SLOTS) && (state->axis[slot].runaway == 0u)) {
+    slot++;
+  }
+  return slot;
+}
+
+bool ilk_cause_is_present(const ilk_state_t *state) {
+  const ilk_system_t *system = &state->system;
+  return (system->estop != 0u) || (system->bus_bad_ticks != 0u) || (system->overruns_in_row != 0u) ||
+         (system->config_sound == 0u) || (system->app_alive == 0u) ||
+         (runaway_slot(state) < (uint32_t)ILK_SLOTS);
+}
+
+/** The contacts as read: normally open in bit 0, normally closed in bit 1. */
+static uint32_t contacts(const ilk_inputs_t *in) {
+  return ((in->pedal_no_closed == OPEN) ? 0u : 1u) + ((in->pedal_nc_closed == OPEN) ? 0u : 2u);
+}
+
+static causes_t causes_present(const ilk_common_config_t *common, const ilk_inputs_t *in,
+                               const ilk_alarms_t *alarms, const ilk_state_t *state) {
+  const ilk_system_t *system = &state->system;
+  const uint32_t runaway = runaway_slot(state);
+  causes_t causes = {.first = ILK_CAUSE_NONE, .value = 0u, .all = 0u};
+  add_cause(&causes, alarms->configuration_damaged, ILK_CAUSE_INTEGRITY, alarms->configuration_crc);
+  add_cause(&causes, system->estop != 0u, ILK_CAUSE_ESTOP, in->estop_loop_closed);
+  add_cause(&causes, system->bus_bad_ticks >= common->bad_frame_limit, ILK_CAUSE_BUS, system->bus_bad_ticks);
+  add_cause(&causes, system->pedal_disagree_ticks > common->pedal_disagree_ticks, ILK_CAUSE_PEDAL, contacts(in));
+  add_cause(&causes, system->overruns_in_row >= common->overrun_limit, ILK_CAUSE_OVERRUN, system->overruns_in_row);
+  add_cause(&causes, runaway < (uint32_t)ILK_SLOTS, ILK_CAUSE_RUNAWAY, runaway);
+  return causes;
+}
+
+/** LOCKED, unless LOCKED already, when there is a cause; all causes join the list of those seen. */
+static void lock(const causes_t *causes, ilk_state_t *state) {
+  if (causes->first != ILK_CAUSE_NONE) {
+    state->system.causes_seen |= causes->all;
+    if (state->system.mode != (uint32_t)ILK_MODE_LOCKED) {
+      state->system.cause = (uint32_t)causes->first;
+      state->system.cause_tick = state->system.tick;
+      state->system.cause_value = causes->value;
+      ilk_mode_enter(ILK_MODE_LOCKED, 0u, state);
+    }
+  }
+}
+
+/** A damaged configuration may have counted the wrong way until it was found. */
+static void lose_references(ilk_state_t *state) {
+  for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
+    state->axis[slot].homed = (uint32_t)ILK_HOMED_NOT;
+  }
+}
+
+/** MOTION holds only while the pedal is pressed, the app lives and nothing new is wrong. */
+static bool motion_must_end(const ilk_system_t *system, const ilk_alarms_t *alarms) {
+  return (system->pedal != (uint32_t)ILK_PEDAL_PRESSED) || (system->app_alive == 0u) || alarms->new_fault ||
+         alarms->required_card_lost;
+}
+
+/** An axis that nobody enabled moves: by hand, or by itself. */
+static bool disabled_axis_moves(const ilk_config_t *config, const ilk_state_t *state) {
+  bool moves = false;
+  for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
+    if (has_axis(&config->axis[slot]) && (state->axis[slot].state == (uint32_t)ILK_AXIS_DISABLED)) {
+      moves = moves || ilk_axis_has_moved(&config->axis[slot], &state->axis[slot]);
+    }
+  }
+  return moves;
+}
+
+/** What MOTION asks for when the press completes, an armed pedal and the app alive apart. */
+static bool motion_may_begin(const ilk_config_t *config, const ilk_alarms_t *alarms, const ilk_state_t *state) {
+  return (state->system.powered_ticks >= config->common.power_up_ticks) && !alarms->required_card_lost &&
+         !disabled_axis_moves(config, state);
+}
+
+static bool press_completes(const ilk_common_config_t *common, const ilk_system_t *system) {
+  return (system->pedal_armed != 0u) && (system->pedal == (uint32_t)ILK_PEDAL_PRESSED) &&
+         (system->pedal_pressed_ticks >= common->pedal_debounce_ticks);
+}
+
+/** Consent begins MOTION or is used up, its loss ends it. */
+static void follow_consent(const ilk_config_t *config, const ilk_inputs_t *in, const ilk_alarms_t *alarms,
+                           ilk_state_t *state) {
+  switch (state->system.mode) {
+    case (uint32_t)ILK_MODE_MOTION:
+      if (motion_must_end(&state->system, alarms)) {
+        ilk_mode_enter(ILK_MODE_READY, 0u, state);
+      }
+      break;
+    case (uint32_t)ILK_MODE_READY:
+      if (!press_completes(&config->common, &state->system)) {
+        /* Nobody asks for MOTION. */
+      } else if (motion_may_begin(config, alarms, state)) {
+        ilk_mode_enter(ILK_MODE_MOTION, in->boot_nonce, state);
+      } else {
+        ilk_pedal_disarm(&state->system);
+      }
+      break;
+    default:
+      /* INIT and LOCKED are left by ilk_init and by RESET alone. */
+      break;
+  }
+}
+
+void ilk_mode_decide(const ilk_config_t *config, const ilk_inputs_t *in, const ilk_alarms_t *alarms,
+                     ilk_state_t *state) {
+  const causes_t causes = causes_present(&config->common, in, alarms, state);
+  if (alarms->configuration_damaged) {
+    lose_references(state);
+  }
+  lock(&causes, state);
+  follow_consent(config, in, alarms, state);
+}
