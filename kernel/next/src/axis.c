@@ -13,7 +13,8 @@ static bool echo_is_current(const ilk_system_t *system, const ilk_reading_t *rea
          (reading->tick_echo == (system->tick - ILK_LATENCY_TICKS));
 }
 
-void ilk_card_observe(const ilk_system_t *system, const ilk_reading_t *reading, bool received, ilk_axis_t *axis) {
+void ilk_card_observe(const ilk_system_t *system, const ilk_reading_t *reading, bool received,
+                      ilk_axis_t *axis) {
   const bool valid = received && reading->intact && echo_is_current(system, reading);
   axis->periods = (axis->card_valid != 0u) ? 0u : axis->periods;
   axis->card_valid = flag_of(valid);
@@ -23,7 +24,8 @@ void ilk_card_observe(const ilk_system_t *system, const ilk_reading_t *reading, 
   }
 }
 
-/* --- Stillness ------------------------------------------------------------------------------------------- */
+/* --- Stillness -------------------------------------------------------------------------------------------
+ */
 
 static void begin_stillness(ilk_stillness_t *still, uint32_t raw) {
   still->origin_raw = raw;
@@ -54,7 +56,8 @@ bool ilk_axis_has_moved(const ilk_axis_config_t *config, const ilk_axis_t *axis)
   return axis->calm.ticks < config->rest_ticks;
 }
 
-/* --- Orders ---------------------------------------------------------------------------------------------- */
+/* --- Orders ----------------------------------------------------------------------------------------------
+ */
 
 void ilk_axis_drop_motion(ilk_axis_t *axis) {
   if ((axis->state == (uint32_t)ILK_AXIS_MOVING) || (axis->state == (uint32_t)ILK_AXIS_HOMING)) {
@@ -91,7 +94,8 @@ void ilk_axis_enable(ilk_axis_t *axis) {
   }
 }
 
-/* --- Stall ----------------------------------------------------------------------------------------------- */
+/* --- Stall -----------------------------------------------------------------------------------------------
+ */
 
 static uint64_t effort_of(const ilk_axis_t *axis) {
   return ((uint64_t)axis->effort_high << 32u) | axis->effort_low;
@@ -164,7 +168,8 @@ void ilk_axis_note_drive(const ilk_command_t *command, ilk_axis_t *axis) {
   axis->rest.ticks = 0u;
 }
 
-/* --- Faults ---------------------------------------------------------------------------------------------- */
+/* --- Faults ----------------------------------------------------------------------------------------------
+ */
 
 /** A fault that is about to be raised, or NONE. */
 typedef struct {
@@ -208,7 +213,8 @@ void ilk_axis_clear_fault(ilk_axis_t *axis) {
   axis->fault_value = 0;
 }
 
-/* --- Observation ----------------------------------------------------------------------------------------- */
+/* --- Observation -----------------------------------------------------------------------------------------
+ */
 
 /** What the counter says no longer belongs to what it said before: every mark begins here. */
 static void begin_anew(ilk_axis_t *axis) {
@@ -222,7 +228,8 @@ static void begin_anew(ilk_axis_t *axis) {
   axis->home_known = 0u;
 }
 
-/** A card that was reset counts from elsewhere. Not asked of the first frame after start or after a lost card. */
+/** A card that was reset counts from elsewhere. Not asked of the first frame after start or after a lost
+ * card. */
 static finding_t judge_card(const ilk_reading_t *reading, const ilk_axis_t *axis) {
   const uint32_t ahead = reading->heartbeat - axis->heartbeat;
   const bool told = ((reading->card_status & ~axis->card_status) & ILK_STATUS_WAS_RESET) != 0u;
@@ -283,7 +290,8 @@ bool ilk_switch_is_steady(const ilk_common_config_t *common, const ilk_axis_t *a
 static finding_t judge_switch(const ilk_common_config_t *common, const ilk_axis_config_t *config,
                               ilk_axis_t *axis) {
   const int64_t from_home = (int64_t)axis->position_counts - (int64_t)config->home_offset_counts;
-  const int64_t outside = (ilk_towards_switch(config) == (uint32_t)ILK_DIRECTION_INCREASING) ? from_home : -from_home;
+  const int64_t outside =
+      (ilk_towards_switch(config) == (uint32_t)ILK_DIRECTION_INCREASING) ? from_home : -from_home;
   const int64_t slack = (int64_t)config->home_tolerance_counts + (int64_t)config->coast_counts;
   const bool contradicts = (axis->switch_reading != 0u)
                                ? (outside < -(slack + (int64_t)config->switch_hysteresis_counts))
@@ -400,8 +408,8 @@ bool ilk_axis_observe(const ilk_common_config_t *common, const ilk_axis_config_t
   axis->periods = sum_saturating(axis->periods, periods);
   axis->switch_triggered = flag_of(has_switch(config) && (!valid || reading->switch_triggered));
   run_lease_down(axis);
-  finding_t finding = valid ? observe_frame(common, config, system, reading, axis)
-                            : observe_nothing(common, config, axis);
+  finding_t finding =
+      valid ? observe_frame(common, config, system, reading, axis) : observe_nothing(common, config, axis);
   const ilk_homing_result_t homing = ilk_homing_advance(common, config, axis);
   finding = first_of(finding, found_if(homing.fault != ILK_FAULT_NONE, homing.fault, homing.value));
   bool faulted = false;

@@ -11,7 +11,8 @@
 #include "interlock/types.h"
 
 /** Phase 2: whether the frame of this tick is valid; bad ones in a row are counted. */
-void ilk_card_observe(const ilk_system_t *system, const ilk_reading_t *reading, bool received, ilk_axis_t *axis);
+void ilk_card_observe(const ilk_system_t *system, const ilk_reading_t *reading, bool received,
+                      ilk_axis_t *axis);
 
 /** True when its last `bad_frame_limit` frames were bad. */
 bool ilk_card_is_lost(const ilk_common_config_t *common, const ilk_axis_t *axis);

@@ -20,7 +20,7 @@ _Static_assert((ILK_FRAME_WORDS == 32) || (ILK_FRAME_WORDS == 64), "frames have 
 /** Sum of all words; the checksum makes it FRAME_SUM. */
 static uint32_t sum_of(const uint32_t frame[ILK_FRAME_WORDS]) {
   uint32_t sum = 0u;
-    for (uint32_t word = 0u; word < (uint32_t)ILK_FRAME_WORDS; word++) {
+  for (uint32_t word = 0u; word < (uint32_t)ILK_FRAME_WORDS; word++) {
     sum += frame[word];
   }
   return sum;
@@ -47,7 +47,7 @@ static uint32_t frequency_word(uint32_t drive) {
       0u,     54u,    189u,   331u,   614u,   1095u,  2020u,   3222u,   3773u,   6383u,   11445u,  15308u,
       20955u, 27358u, 36039u, 45548u, 58997u, 78710u, 105850u, 141386u, 188106u, 247388u, 317394u, 397785u};
   uint32_t point = 1u;
-    while ((point < (SPEED_POINTS - 1u)) && (speed_map[point] < drive)) {
+  while ((point < (SPEED_POINTS - 1u)) && (speed_map[point] < drive)) {
     point++;
   }
   const uint32_t slower = speed_map[point - 1u];
@@ -116,7 +116,7 @@ void ilk_frame_pack(const ilk_axis_config_t *config, const ilk_command_t *comman
   if (!is_zero_drive(command)) {
     words = drive_words(config, command);
   }
-    for (uint32_t word = 0u; word < (uint32_t)ILK_FRAME_WORDS; word++) {
+  for (uint32_t word = 0u; word < (uint32_t)ILK_FRAME_WORDS; word++) {
     frame[word] = 0u;
   }
   frame[0] = START_WORD;

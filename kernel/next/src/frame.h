@@ -24,7 +24,6 @@ typedef struct {
   uint32_t card_status;
 } ilk_reading_t;
 
-
 /** Reads an incoming frame. */
 ilk_reading_t ilk_frame_unpack(const uint32_t frame[ILK_FRAME_WORDS]);
 

@@ -9,35 +9,18 @@
 
 #define AMPLITUDE_MAX 255u
 
-/** The kernel, not the app, picks the direction: towards the setpoint, none within the deadband. */
-static uint32_t direction_to_setpoint(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
-  const int64_t distance = (int64_t)axis->setpoint_counts - (int64_t)axis->position_counts;
-  const int64_t deadband = (int64_t)config->deadband_counts;
-  uint32_t direction = (uint32_t)ILK_DIRECTION_NONE;
-  if (distance > deadband) {
-    direction = (uint32_t)ILK_DIRECTION_INCREASING;
-  } else if (distance < -deadband) {
-    direction = (uint32_t)ILK_DIRECTION_DECREASING;
-  } else {
-    direction = (uint32_t)ILK_DIRECTION_NONE;
-  }
-  return direction;
-}
-
 ilk_command_t ilk_wanted_command(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
-  ilk_command_t wanted = {.direction = (uint32_t)ILK_DIRECTION_NONE, .drive = 0u, .amplitude = 0u};
-  switch (axis->state) {
-    case (uint32_t)ILK_AXIS_MOVING:
-      wanted.direction = direction_to_setpoint(config, axis);
-      wanted.drive = axis->drive;
-      wanted.amplitude = axis->amplitude;
-      break;
-    case (uint32_t)ILK_AXIS_HOMING:
-      wanted = ilk_homing_command(config, axis);
-      break;
-    default:
-      /* An axis in any other state wants nothing. */
-      break;
+  const int64_t distance = (int64_t)axis->setpoint_counts - (int64_t)axis->position_counts;
+  ilk_command_t wanted = {
+      .direction = (uint32_t)ILK_DIRECTION_NONE, .drive = axis->drive, .amplitude = axis->amplitude};
+  if (axis->state == (uint32_t)ILK_AXIS_HOMING) {
+    wanted = ilk_homing_command(config, axis);
+  } else if (distance > (int64_t)config->deadband_counts) {
+    wanted.direction = (uint32_t)ILK_DIRECTION_INCREASING;
+  } else if (distance < -(int64_t)config->deadband_counts) {
+    wanted.direction = (uint32_t)ILK_DIRECTION_DECREASING;
+  } else {
+    wanted.direction = (uint32_t)ILK_DIRECTION_NONE;
   }
   return wanted;
 }
@@ -67,7 +50,8 @@ ilk_reach_t ilk_reach(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
   const int64_t coast = (int64_t)config->coast_counts;
   const int64_t home = (int64_t)config->home_offset_counts;
   const int64_t margin = (int64_t)config->switch_hysteresis_counts + (int64_t)config->home_tolerance_counts;
-  ilk_reach_t reach = {.low = (int64_t)config->min_counts + coast, .high = (int64_t)config->max_counts - coast};
+  ilk_reach_t reach = {.low = (int64_t)config->min_counts + coast,
+                       .high = (int64_t)config->max_counts - coast};
   if (axis->homed == (uint32_t)ILK_HOMED_BY_SWITCH) {
     if ((config->limit_side == (uint32_t)ILK_LIMIT_LOWER) && (reach.low < (home + margin))) {
       reach.low = home + margin;
@@ -82,14 +66,15 @@ ilk_reach_t ilk_reach(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
 /** P4: outward, where coasting would cross the soft limit. */
 static bool leaves_soft_range(const ilk_axis_config_t *config, const ilk_axis_t *axis, uint32_t direction) {
   const ilk_reach_t reach = ilk_reach(config, axis);
-  const int64_t position = (int64_t)axis->position_counts;
-  const bool outward = ((position >= reach.high) && (direction == (uint32_t)ILK_DIRECTION_INCREASING)) ||
-                       ((position <= reach.low) && (direction == (uint32_t)ILK_DIRECTION_DECREASING));
-  return outward && (axis->homed != (uint32_t)ILK_HOMED_NOT);
+  const bool at_end = (direction == (uint32_t)ILK_DIRECTION_INCREASING)
+                          ? ((int64_t)axis->position_counts >= reach.high)
+                          : ((int64_t)axis->position_counts <= reach.low);
+  return at_end && (axis->homed != (uint32_t)ILK_HOMED_NOT);
 }
 
 uint32_t ilk_unhomed_travel_left(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
-  return left_of(config->unhomed_travel_counts, sum_saturating(axis->unhomed_travel_counts, config->coast_counts));
+  return left_of(config->unhomed_travel_counts,
+                 sum_saturating(axis->unhomed_travel_counts, config->coast_counts));
 }
 
 /** P7: the budget of this press is used up, coast kept back. */
@@ -99,17 +84,20 @@ static bool exceeds_travel(const ilk_axis_config_t *config, const ilk_axis_t *ax
   return (axis->homed == (uint32_t)ILK_HOMED_NOT) && (left == 0u);
 }
 
+uint32_t ilk_drive_bound(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+  return (axis->homed != (uint32_t)ILK_HOMED_NOT) ? config->max_drive : config->unhomed_max_drive;
+}
+
 /** P7: more than the axis may, or more than its card's words can carry. */
 static bool exceeds_drive(const ilk_axis_config_t *config, const ilk_axis_t *axis,
                           const ilk_command_t *wanted) {
-  const uint32_t bound =
-      (axis->homed != (uint32_t)ILK_HOMED_NOT) ? config->max_drive : config->unhomed_max_drive;
-  return (wanted->drive > bound) || (wanted->drive > ilk_card_max_drive(config->card)) ||
-         (wanted->amplitude > config->max_amplitude) || (wanted->amplitude > AMPLITUDE_MAX);
+  return (wanted->drive > ilk_drive_bound(config, axis)) ||
+         (wanted->drive > ilk_card_max_drive(config->card)) || (wanted->amplitude > config->max_amplitude) ||
+         (wanted->amplitude > AMPLITUDE_MAX);
 }
 
-ilk_gate_t ilk_output_gate(const ilk_axis_config_t *config, const ilk_system_t *system, const ilk_axis_t *axis,
-                           const ilk_command_t *wanted) {
+ilk_gate_t ilk_output_gate(const ilk_axis_config_t *config, const ilk_system_t *system,
+                           const ilk_axis_t *axis, const ilk_command_t *wanted) {
   ilk_gate_t gate = ILK_GATE_MODE;
   if (system->mode != (uint32_t)ILK_MODE_MOTION) {
     gate = ILK_GATE_MODE;

@@ -1,20 +1,13 @@
 #include "homing.h"
 
-#include <stdbool.h>
-
 #include "arith.h"
 #include "axis.h"
 
 uint32_t ilk_towards_switch(const ilk_axis_config_t *config) {
-  uint32_t direction = (uint32_t)ILK_DIRECTION_NONE;
-  if (config->limit_side == (uint32_t)ILK_LIMIT_UPPER) {
-    direction = (uint32_t)ILK_DIRECTION_INCREASING;
-  } else if (config->limit_side == (uint32_t)ILK_LIMIT_LOWER) {
-    direction = (uint32_t)ILK_DIRECTION_DECREASING;
-  } else {
-    direction = (uint32_t)ILK_DIRECTION_NONE;
-  }
-  return direction;
+  static const uint32_t direction_to[ILK_LIMIT_COUNT] = {
+      (uint32_t)ILK_DIRECTION_NONE, (uint32_t)ILK_DIRECTION_DECREASING, (uint32_t)ILK_DIRECTION_INCREASING};
+  return (config->limit_side < ILK_LIMIT_COUNT) ? direction_to[config->limit_side]
+                                                : (uint32_t)ILK_DIRECTION_NONE;
 }
 
 static uint32_t away_from_switch(const ilk_axis_config_t *config) {
@@ -22,7 +15,12 @@ static uint32_t away_from_switch(const ilk_axis_config_t *config) {
 }
 
 uint32_t ilk_homing_travel_left(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
-  return left_of(config->home_travel_counts, sum_saturating(axis->homing_travel_counts, config->coast_counts));
+  return left_of(config->home_travel_counts,
+                 sum_saturating(axis->homing_travel_counts, config->coast_counts));
+}
+
+bool ilk_homing_has_budget(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+  return (ilk_homing_travel_left(config, axis) != 0u) && (axis->homing_ticks < config->home_timeout_ticks);
 }
 
 static void enter_phase(ilk_axis_t *axis, ilk_homing_phase_t phase, uint32_t mark_raw) {
@@ -41,8 +39,9 @@ void ilk_homing_begin(ilk_axis_t *axis) {
 }
 
 ilk_command_t ilk_homing_command(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
-  ilk_command_t wanted = {
-      .direction = (uint32_t)ILK_DIRECTION_NONE, .drive = config->home_drive, .amplitude = config->home_amplitude};
+  ilk_command_t wanted = {.direction = (uint32_t)ILK_DIRECTION_NONE,
+                          .drive = config->home_drive,
+                          .amplitude = config->home_amplitude};
   switch (axis->homing_phase) {
     case (uint32_t)ILK_HOMING_LEAVE:
     case (uint32_t)ILK_HOMING_BACK_OFF:
@@ -64,7 +63,8 @@ ilk_command_t ilk_homing_command(const ilk_axis_config_t *config, const ilk_axis
 
 /** Far enough from the mark that a bounce or a look at the wrong edge is behind it. */
 static bool is_clear(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
-  const int32_t away = along(away_from_switch(config), travel_between(config, axis->homing_mark_raw, axis->raw));
+  const int32_t away =
+      along(away_from_switch(config), travel_between(config, axis->homing_mark_raw, axis->raw));
   return (away > 0) && (magnitude(away) >= config->home_clear_counts);
 }
 
@@ -93,49 +93,27 @@ static ilk_homing_result_t follow_switch(const ilk_common_config_t *common, cons
                                          ilk_axis_t *axis) {
   const bool triggered = ilk_switch_is_steady(common, axis, true);
   const bool open = ilk_switch_is_steady(common, axis, false);
+  const bool left = open && is_clear(config, axis);
+  const bool rests = ilk_axis_is_at_rest(config, axis);
+  const uint32_t phase = axis->homing_phase;
   ilk_homing_result_t result = {.fault = ILK_FAULT_NONE, .value = 0};
-  switch (axis->homing_phase) {
-    case (uint32_t)ILK_HOMING_LOOK:
-      if (triggered) {
-        enter_phase(axis, ILK_HOMING_LEAVE, axis->raw);
-      } else if (open) {
-        enter_phase(axis, ILK_HOMING_SEEK, axis->raw);
-      } else {
-        /* Not steady yet. */
-      }
-      break;
-    case (uint32_t)ILK_HOMING_LEAVE:
-      if (open && is_clear(config, axis)) {
-        enter_phase(axis, ILK_HOMING_SEEK, axis->raw);
-      }
-      break;
-    case (uint32_t)ILK_HOMING_SEEK:
-      if (triggered) {
-        axis->first_edge_raw = axis->switch_run_raw;
-        enter_phase(axis, ILK_HOMING_BACK_OFF, axis->switch_run_raw);
-      }
-      break;
-    case (uint32_t)ILK_HOMING_BACK_OFF:
-      if (open && is_clear(config, axis)) {
-        enter_phase(axis, ILK_HOMING_APPROACH, axis->raw);
-      }
-      break;
-    case (uint32_t)ILK_HOMING_APPROACH:
-      if (triggered) {
-        enter_phase(axis, ILK_HOMING_REST, axis->switch_run_raw);
-      }
-      break;
-    default: /* REST */
-      if (!ilk_axis_is_at_rest(config, axis)) {
-        /* It coasts. */
-      } else if (triggered) {
-        result = conclude(config, axis);
-      } else if (open) {
-        enter_phase(axis, ILK_HOMING_APPROACH, axis->raw);
-      } else {
-        /* Not steady yet. */
-      }
-      break;
+  if ((phase == (uint32_t)ILK_HOMING_LOOK) && triggered) {
+    enter_phase(axis, ILK_HOMING_LEAVE, axis->raw);
+  } else if (((phase == (uint32_t)ILK_HOMING_LOOK) && open) ||
+             ((phase == (uint32_t)ILK_HOMING_LEAVE) && left)) {
+    enter_phase(axis, ILK_HOMING_SEEK, axis->raw);
+  } else if ((phase == (uint32_t)ILK_HOMING_SEEK) && triggered) {
+    axis->first_edge_raw = axis->switch_run_raw;
+    enter_phase(axis, ILK_HOMING_BACK_OFF, axis->switch_run_raw);
+  } else if (((phase == (uint32_t)ILK_HOMING_BACK_OFF) && left) ||
+             ((phase == (uint32_t)ILK_HOMING_REST) && rests && open)) {
+    enter_phase(axis, ILK_HOMING_APPROACH, axis->raw);
+  } else if ((phase == (uint32_t)ILK_HOMING_APPROACH) && triggered) {
+    enter_phase(axis, ILK_HOMING_REST, axis->switch_run_raw);
+  } else if ((phase == (uint32_t)ILK_HOMING_REST) && rests && triggered) {
+    result = conclude(config, axis);
+  } else {
+    /* The phase goes on. */
   }
   return result;
 }
@@ -149,16 +127,12 @@ ilk_homing_result_t ilk_homing_advance(const ilk_common_config_t *common, const 
       result = follow_switch(common, config, axis);
     }
   }
-  if ((axis->state == (uint32_t)ILK_AXIS_HOMING) && (result.fault == ILK_FAULT_NONE)) {
-    if (ilk_homing_travel_left(config, axis) == 0u) {
-      result.fault = ILK_FAULT_HOMING_TRAVEL;
-      result.value = signed_of(axis->homing_travel_counts & (uint32_t)INT32_MAX);
-    } else if (axis->homing_ticks >= config->home_timeout_ticks) {
-      result.fault = ILK_FAULT_HOMING_TIMEOUT;
-      result.value = signed_of(axis->homing_phase);
-    } else {
-      result.fault = ILK_FAULT_NONE;
-    }
+  if ((axis->state == (uint32_t)ILK_AXIS_HOMING) && (result.fault == ILK_FAULT_NONE) &&
+      !ilk_homing_has_budget(config, axis)) {
+    const bool travelled = ilk_homing_travel_left(config, axis) == 0u;
+    result.fault = travelled ? ILK_FAULT_HOMING_TRAVEL : ILK_FAULT_HOMING_TIMEOUT;
+    result.value =
+        signed_of(travelled ? (axis->homing_travel_counts & (uint32_t)INT32_MAX) : axis->homing_phase);
   }
   return result;
 }

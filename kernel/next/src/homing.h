@@ -5,6 +5,8 @@
 #ifndef ILK_HOMING_H
 #define ILK_HOMING_H
 
+#include <stdbool.h>
+
 #include "interlock/types.h"
 
 /** A fault that ends homing, or NONE. */
@@ -25,6 +27,9 @@ ilk_homing_result_t ilk_homing_advance(const ilk_common_config_t *common, const 
 
 /** What homing wants in its phase. */
 ilk_command_t ilk_homing_command(const ilk_axis_config_t *config, const ilk_axis_t *axis);
+
+/** Travel and time of this press are not used up (HOME: BUDGET). */
+bool ilk_homing_has_budget(const ilk_axis_config_t *config, const ilk_axis_t *axis);
 
 /** What is left of the travel of this press, coast kept back; 0 when nothing is. */
 uint32_t ilk_homing_travel_left(const ilk_axis_config_t *config, const ilk_axis_t *axis);

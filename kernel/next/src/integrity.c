@@ -19,8 +19,8 @@
 
 _Static_assert((sizeof(ilk_system_t) % sizeof(uint32_t)) == 0u, "the system part is words");
 _Static_assert((sizeof(ilk_axis_t) % sizeof(uint32_t)) == 0u, "the part of an axis is words");
-_Static_assert(sizeof(ilk_state_t) == (sizeof(ilk_system_t) + ((size_t)ILK_SLOTS * sizeof(ilk_axis_t)) +
-                                       sizeof(uint32_t)),
+_Static_assert(sizeof(ilk_state_t) ==
+                   (sizeof(ilk_system_t) + ((size_t)ILK_SLOTS * sizeof(ilk_axis_t)) + sizeof(uint32_t)),
                "every word is sealed, or is the seal");
 
 /** Mixes a word into the digest. The step can be undone, so a change of any one word changes the result;
@@ -45,7 +45,8 @@ static uint32_t digest_of(const unsigned char bytes[], uint32_t words) {
 }
 
 static uint32_t state_digest(const ilk_state_t *state) {
-  uint32_t digest = digest_of((const unsigned char *)&state->system, (uint32_t)(sizeof(ilk_system_t) / sizeof(uint32_t)));
+  uint32_t digest =
+      digest_of((const unsigned char *)&state->system, (uint32_t)(sizeof(ilk_system_t) / sizeof(uint32_t)));
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
     digest = mix(digest, digest_of((const unsigned char *)&state->axis[slot],
                                    (uint32_t)(sizeof(ilk_axis_t) / sizeof(uint32_t))));
@@ -66,7 +67,8 @@ static uint32_t wiring_of(const ilk_axis_config_t *axis) {
 }
 
 /** A state that owes nothing to the one before: LOCKED, positions unknown, every axis with this fault. */
-static void begin_state(const ilk_config_t *config, ilk_cause_t cause, ilk_fault_t fault, ilk_state_t *state) {
+static void begin_state(const ilk_config_t *config, ilk_cause_t cause, ilk_fault_t fault,
+                        ilk_state_t *state) {
   static const ilk_state_t nothing_known = {0};
   const uint32_t seal = state->seal;
   *state = nothing_known;
@@ -106,7 +108,8 @@ ilk_config_verdict_t ilk_init(const ilk_config_t *config, ilk_state_t *state) {
 
 /** A configuration that was not trusted becomes so by a whole pass that agrees and by being valid (P13). */
 static bool is_trusted_after_pass(const ilk_config_t *config, const ilk_system_t *system) {
-  return (system->config_sound != 0u) || (ilk_config_validate(config).error == (uint32_t)ILK_CONFIG_ERROR_NONE);
+  return (system->config_sound != 0u) ||
+         (ilk_config_validate(config).error == (uint32_t)ILK_CONFIG_ERROR_NONE);
 }
 
 /** Adds the next slice of the configuration to the running CRC-32, and judges at the end of a pass. */
@@ -130,7 +133,8 @@ static void check_slice(const ilk_config_t *config, ilk_system_t *system, ilk_al
   }
 }
 
-/** Words of the configuration that P1 to P3 rest on. A pass over the slices would find a change of them too late. */
+/** Words of the configuration that P1 to P3 rest on. A pass over the slices would find a change of them too
+ * late. */
 static bool basis_is_kept(const ilk_config_t *config, const ilk_state_t *state) {
   bool kept = (config->common.pedal_channels == state->system.pedal_channels) &&
               (config->common.app_timeout_ticks == state->system.app_timeout_ticks);

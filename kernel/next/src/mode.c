@@ -18,8 +18,8 @@ void ilk_pedal_disarm(ilk_system_t *system) {
   system->pedal_released_ticks = 0u;
 }
 
-/** Another one in each of 2^32 ticks and never 0: that of tick `boot_nonce` would be, and has that of tick 0, in which
-   no press can complete. */
+/** Another one in each of 2^32 ticks and never 0: that of tick `boot_nonce` would be, and has that of tick 0,
+   in which no press can complete. */
 static uint32_t consent_of(uint32_t boot_nonce, uint32_t tick) {
   const uint32_t mixed = (tick == boot_nonce) ? boot_nonce : (tick ^ boot_nonce);
   return mixed * CONSENT_FACTOR;
@@ -40,7 +40,16 @@ void ilk_mode_enter(ilk_mode_t mode, uint32_t boot_nonce, ilk_state_t *state) {
   }
 }
 
-/* --- Phase 3 --------------------------------------------------------------------------------------------- */
+void ilk_mode_unlock(ilk_state_t *state) {
+  state->system.cause = (uint32_t)ILK_CAUSE_NONE;
+  state->system.cause_tick = 0u;
+  state->system.cause_value = 0u;
+  state->system.causes_seen = 0u;
+  ilk_mode_enter(ILK_MODE_READY, 0u, state);
+}
+
+/* --- Phase 3 ---------------------------------------------------------------------------------------------
+ */
 
 /** Any reading that is neither clearly pressed nor clearly released is a disagreement. */
 static ilk_pedal_t pedal_reading(const ilk_common_config_t *common, const ilk_inputs_t *in) {
@@ -86,8 +95,8 @@ static void observe_pedal(const ilk_common_config_t *common, const ilk_inputs_t 
       ticks_in_row(pedal == ILK_PEDAL_DISAGREE, system->pedal_disagree_ticks, UINT32_MAX);
   system->pedal_released_ticks =
       ticks_in_row((pedal == ILK_PEDAL_RELEASED) && may_arm, system->pedal_released_ticks, debounce);
-  system->pedal_pressed_ticks =
-      ticks_in_row((pedal == ILK_PEDAL_PRESSED) && (system->pedal_armed != 0u), system->pedal_pressed_ticks, debounce);
+  system->pedal_pressed_ticks = ticks_in_row((pedal == ILK_PEDAL_PRESSED) && (system->pedal_armed != 0u),
+                                             system->pedal_pressed_ticks, debounce);
   if (may_arm && (system->pedal_released_ticks >= debounce)) {
     system->pedal_armed = 1u;
   }
@@ -104,9 +113,11 @@ void ilk_system_observe(const ilk_common_config_t *common, const ilk_inputs_t *i
   }
 }
 
-/* --- Phase 5 --------------------------------------------------------------------------------------------- */
+/* --- Phase 5 ---------------------------------------------------------------------------------------------
+ */
 
-/** What locks in a tick: the first cause with its value, or NONE, and all causes that are there, a bit each. */
+/** What locks in a tick: the first cause with its value, or NONE, and all causes that are there, a bit each.
+ */
 typedef struct {
   ilk_cause_t first;
   uint32_t value;
@@ -152,8 +163,10 @@ static causes_t causes_present(const ilk_common_config_t *common, const ilk_inpu
   add_cause(&causes, alarms->configuration_damaged, ILK_CAUSE_INTEGRITY, alarms->configuration_crc);
   add_cause(&causes, system->estop != 0u, ILK_CAUSE_ESTOP, in->estop_loop_closed);
   add_cause(&causes, system->bus_bad_ticks >= common->bad_frame_limit, ILK_CAUSE_BUS, system->bus_bad_ticks);
-  add_cause(&causes, system->pedal_disagree_ticks > common->pedal_disagree_ticks, ILK_CAUSE_PEDAL, contacts(in));
-  add_cause(&causes, system->overruns_in_row >= common->overrun_limit, ILK_CAUSE_OVERRUN, system->overruns_in_row);
+  add_cause(&causes, system->pedal_disagree_ticks > common->pedal_disagree_ticks, ILK_CAUSE_PEDAL,
+            contacts(in));
+  add_cause(&causes, system->overruns_in_row >= common->overrun_limit, ILK_CAUSE_OVERRUN,
+            system->overruns_in_row);
   add_cause(&causes, runaway < (uint32_t)ILK_SLOTS, ILK_CAUSE_RUNAWAY, runaway);
   return causes;
 }
@@ -196,7 +209,8 @@ static bool disabled_axis_moves(const ilk_config_t *config, const ilk_state_t *s
 }
 
 /** What MOTION asks for when the press completes, an armed pedal and the app alive apart. */
-static bool motion_may_begin(const ilk_config_t *config, const ilk_alarms_t *alarms, const ilk_state_t *state) {
+static bool motion_may_begin(const ilk_config_t *config, const ilk_alarms_t *alarms,
+                             const ilk_state_t *state) {
   return (state->system.powered_ticks >= config->common.power_up_ticks) && !alarms->required_card_lost &&
          !disabled_axis_moves(config, state);
 }

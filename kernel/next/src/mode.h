@@ -27,6 +27,9 @@ void ilk_mode_decide(const ilk_config_t *config, const ilk_inputs_t *in, const i
 /** Enters `mode` and drops what does not survive the change. */
 void ilk_mode_enter(ilk_mode_t mode, uint32_t boot_nonce, ilk_state_t *state);
 
+/** RESET was accepted: READY, and no cause is remembered. */
+void ilk_mode_unlock(ilk_state_t *state);
+
 /** Takes back the consent that the pedal gave: it must be released and pressed anew. */
 void ilk_pedal_disarm(ilk_system_t *system);
 

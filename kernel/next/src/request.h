@@ -8,6 +8,7 @@
 #include "interlock/types.h"
 
 /** Phase 6: judges one request and carries it out when it is accepted. */
-ilk_verdict_record_t ilk_request_take(const ilk_config_t *config, const ilk_request_t *request, ilk_state_t *state);
+ilk_verdict_record_t ilk_request_take(const ilk_config_t *config, const ilk_request_t *request,
+                                      ilk_state_t *state);
 
 #endif

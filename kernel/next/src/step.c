@@ -58,7 +58,8 @@ static void answer_requests(const ilk_config_t *config, const ilk_request_t requ
 
 /** Phase 7: what each axis wants goes through the output gate, or is zero drive; its marks follow. */
 static void drive_axes(const ilk_config_t *config, ilk_state_t *state, ilk_outputs_t *out) {
-  static const ilk_command_t zero_drive = {.direction = (uint32_t)ILK_DIRECTION_NONE, .drive = 0u, .amplitude = 0u};
+  static const ilk_command_t zero_drive = {
+      .direction = (uint32_t)ILK_DIRECTION_NONE, .drive = 0u, .amplitude = 0u};
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
     const ilk_axis_config_t *axis_config = &config->axis[slot];
     ilk_axis_t *axis = &state->axis[slot];
@@ -110,14 +111,16 @@ static void write_outputs(const ilk_config_t *config, const ilk_state_t *state, 
   }
   out->power = flag_of(power);
   out->lamp[ILK_LAMP_PEDAL] = (uint32_t)pedal_colour(&state->system);
-  out->lamp[ILK_LAMP_NETWORK] = (uint32_t)((state->system.app_alive != 0u) ? ILK_COLOUR_GREEN : ILK_COLOUR_RED);
+  out->lamp[ILK_LAMP_NETWORK] =
+      (uint32_t)((state->system.app_alive != 0u) ? ILK_COLOUR_GREEN : ILK_COLOUR_RED);
   out->lamp[ILK_LAMP_CONTROLLER] = (uint32_t)(power ? ILK_COLOUR_GREEN : ILK_COLOUR_RED);
   out->lamp[ILK_LAMP_STALL] = (uint32_t)stall_colour(state);
 }
 
 /** Phase 8: what the next tick counts from. */
 static void close_tick(const ilk_common_config_t *common, ilk_system_t *system) {
-  system->powered_ticks = ilk_power_is_on(system) ? count_up(system->powered_ticks, common->power_up_ticks) : 0u;
+  system->powered_ticks =
+      ilk_power_is_on(system) ? count_up(system->powered_ticks, common->power_up_ticks) : 0u;
   system->frames_sent = count_up(system->frames_sent, ILK_LATENCY_TICKS);
   system->tick++;
 }
