@@ -93,7 +93,7 @@ void describe(const ilk_recording_header_t& header, std::ostream& output) {
   const UtcTime begun{std::chrono::milliseconds(recorder::joined(header.run.begun_utc_ms))};
   output << "recorded: " << recorder::why_name(header.why) << ", tick " << header.tick << "; run of "
          << iso_8601(begun) << (header.run.simulated != 0 ? ", simulated" : ", hardware") << ", period "
-         << header.run.config.period_us << " us, configuration " << config_hash(header.run.config) << ", by "
+         << header.run.config.common.period_us << " us, configuration " << config_hash(header.run.config) << ", by "
          << std::string(header.build, strnlen(header.build, sizeof header.build)) << '\n';
 }
 

@@ -39,7 +39,7 @@ json lamps_json(const ilk_snapshot_t& snapshot) {
 /** How long the card's newest valid frame lies back, by the kernel's clock; null when none has come yet. */
 json frame_age_ms(const ilk_config_t& config, const ilk_state_t& state, std::uint32_t slot) {
   const std::uint32_t missed = state.axis[slot].bad_frames;
-  return missed < state.tick ? json(missed * (config.period_us / 1000.0)) : json();
+  return missed < state.system.tick ? json(missed * (config.common.period_us / 1000.0)) : json();
 }
 
 json cards_json(const ilk_config_t& config, const ilk_state_t& state) {
@@ -50,7 +50,7 @@ json cards_json(const ilk_config_t& config, const ilk_state_t& state) {
     cards.push_back(
         {{"slot", slot},
          {"card", catalog::name(Family::card, config.axis[slot].card)},
-         {"detected", expected && axis.card_seen != 0 && axis.bad_frames < config.bad_frame_limit},
+         {"detected", expected && axis.card_seen != 0 && axis.bad_frames < config.common.bad_frame_limit},
          {"heartbeat", axis.heartbeat},
          // A frame is valid only when its heartbeat advanced.
          {"heartbeat_live", expected && axis.card_valid != 0},
@@ -152,17 +152,17 @@ json status_json(const Robot& robot, const ilk_config_t& config, const ControlVi
           {"host_late", host_late_json(snapshot, age.count())},
           {"replay", view.replay},
           {"connected", view.attached},
-          {"mode", catalog::name(Family::mode, state.mode)},
-          {"cause", catalog::name(Family::cause, state.cause)},
-          {"cause_tick", state.cause_tick},
-          {"cause_value", state.cause_value},
-          {"causes_seen", causes_json(state.causes_seen)},
-          {"tick", state.tick},
-          {"estop", state.estop != 0},
-          {"pedal", catalog::name(Family::pedal, state.pedal)},
-          {"pedal_armed", state.pedal_armed != 0},
-          {"app_alive", state.app_alive != 0},
-          {"holder", state.holder},
+          {"mode", catalog::name(Family::mode, state.system.mode)},
+          {"cause", catalog::name(Family::cause, state.system.cause)},
+          {"cause_tick", state.system.cause_tick},
+          {"cause_value", state.system.cause_value},
+          {"causes_seen", causes_json(state.system.causes_seen)},
+          {"tick", state.system.tick},
+          {"estop", state.system.estop != 0},
+          {"pedal", catalog::name(Family::pedal, state.system.pedal)},
+          {"pedal_armed", state.system.pedal_armed != 0},
+          {"app_alive", state.system.app_alive != 0},
+          {"holder", state.system.holder},
           {"app_mode", app_mode},
           {"overruns", snapshot.overruns},
           {"config_crc", config_hash(config)},
@@ -176,7 +176,7 @@ json motor_json(const Axis& axis, const ilk_config_t& config, const ControlView&
                 const ProposalBook& book) {
   const ilk_axis_config_t& rules = config.axis[axis.slot];
   const ilk_axis_t& state = view.snapshot.state.axis[axis.slot];
-  const SetpointRange range = setpoint_range(rules, state, view.snapshot.state.mode);
+  const SetpointRange range = setpoint_range(rules, state, view.snapshot.state.system.mode);
   json motor{{"slot", axis.slot},
              {"name", axis.name},
              {"title", axis.title},

@@ -39,17 +39,17 @@ void put_header(Words& words, const ControlView& view, std::chrono::steady_clock
   words.put(stream_magic);
   words.put(stream_version);
   words.put(bit(view.attached, 0));
-  words.put(state.tick);
-  words.put(state.mode);
-  words.put(state.cause);
-  words.put(state.cause_tick);
-  words.put(state.cause_value);
-  words.put(state.causes_seen);
-  words.put(state.pedal);
-  words.put(state.pedal_armed);
-  words.put(state.estop);
-  words.put(state.app_alive);
-  words.put(state.holder);
+  words.put(state.system.tick);
+  words.put(state.system.mode);
+  words.put(state.system.cause);
+  words.put(state.system.cause_tick);
+  words.put(state.system.cause_value);
+  words.put(state.system.causes_seen);
+  words.put(state.system.pedal);
+  words.put(state.system.pedal_armed);
+  words.put(state.system.estop);
+  words.put(state.system.app_alive);
+  words.put(state.system.holder);
   words.put(snapshot.overruns);
   words.put(view.attached ? age_us(view, now) : 0u);
   words.put(bit(snapshot.simulated != 0, 0) | bit(snapshot.degraded != 0, 1) |
@@ -67,7 +67,7 @@ void put_slot(Words& words, const ControlView& view, const ilk_axis_config_t& ru
               std::size_t slot) {
   const ilk_axis_t& axis = view.snapshot.state.axis[slot];
   const bool motor = view.attached && drives_motor(rules.card);
-  const SetpointRange range = motor ? setpoint_range(rules, axis, view.snapshot.state.mode) : SetpointRange{};
+  const SetpointRange range = motor ? setpoint_range(rules, axis, view.snapshot.state.system.mode) : SetpointRange{};
   words.put(axis.state);
   words.put(axis.fault);
   words.put(axis.fault_tick);

@@ -15,7 +15,7 @@ void ForceWatch::look(const ilk_snapshot_t& snapshot) noexcept {
     return;
   }
   card_time_us_ = card.card_time_us;
-  readings_.tick = snapshot.state.tick;
+  readings_.tick = snapshot.state.system.tick;
   const std::span<const std::uint32_t, 2> words(&snapshot.inputs.frame[inputs_.slot][analog_word], 2);
   readings_.hand = analog_reading(words, inputs_.hand_adc);
   readings_.needle = analog_reading(words, inputs_.needle_adc);

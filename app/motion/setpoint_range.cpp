@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "interlock/kernel.h"
+
 namespace interlock {
 std::int32_t saturated(std::int64_t counts) noexcept {
   return static_cast<std::int32_t>(std::clamp<std::int64_t>(counts, std::numeric_limits<std::int32_t>::min(),
@@ -11,18 +13,17 @@ std::int32_t saturated(std::int64_t counts) noexcept {
 
 SetpointRange setpoint_range(const ilk_axis_config_t& rules, const ilk_axis_t& axis,
                              std::uint32_t mode) noexcept {
-  const std::int64_t coast = rules.coast_counts;
-  if (axis.homed != 0) {
-    return {saturated(rules.min_counts + coast), saturated(rules.max_counts - coast)};
+  if (axis.homed != ILK_HOMED_NOT) {
+    const ilk_reach_t reach = ilk_reach(&rules, &axis);
+    return {saturated(reach.low), saturated(reach.high)};
   }
-  const std::int64_t travelled = mode == ILK_MODE_MOTION ? axis.press_travel_counts : 0;
-  const std::int64_t pressed_at = axis.position_counts - travelled;
-  const std::int64_t reach = rules.unhomed_travel_counts - coast;
-  return {saturated(pressed_at - reach), saturated(pressed_at + reach)};
+  const std::int64_t left = mode == ILK_MODE_MOTION ? ilk_unhomed_travel_left(&rules, &axis)
+                                                    : rules.unhomed_travel_counts - rules.coast_counts;
+  return {saturated(axis.position_counts - left), saturated(axis.position_counts + left)};
 }
 
 std::uint32_t drive_bound(const ilk_axis_config_t& rules, const ilk_axis_t& axis) noexcept {
-  return axis.homed != 0 ? rules.max_drive : rules.unhomed_max_drive;
+  return ilk_drive_bound(&rules, &axis);
 }
 
 }  // namespace interlock

@@ -24,7 +24,7 @@ AxisTick axis_of(const ilk_recorded_tick_t& tick, const AxisSpan& span) {
   const ilk_command_t& command = picture.out.command[span.slot];
   const auto drive = static_cast<std::int32_t>(command.drive);
   AxisTick found;
-  found.tick = picture.state.tick;
+  found.tick = picture.state.system.tick;
   found.begun_ns = tick.begun_ns;
   found.card_time_us = axis.card_time_us;
   found.drive = command.direction == ILK_DIRECTION_DECREASING ? -drive : drive;
@@ -56,7 +56,7 @@ std::vector<AxisTick> full_rate(const Ring& ring, const AxisSpan& span) {
     return {};
   }
   const auto ticks =
-      static_cast<std::uint32_t>(std::uint64_t{span.seconds} * 1'000'000 / ring.run().config.period_us);
+      static_cast<std::uint32_t>(std::uint64_t{span.seconds} * 1'000'000 / ring.run().config.common.period_us);
   std::vector<AxisTick> found;
   const auto tick = std::make_unique<ilk_recorded_tick_t>();
   const std::uint32_t newest = ring.head();
@@ -68,7 +68,7 @@ std::vector<AxisTick> full_rate(const Ring& ring, const AxisSpan& span) {
       continue;
     }
     while (ilk_block_next(&cursor, tick.get()) == ILK_TICK_READ) {
-      const auto before_last = static_cast<std::int32_t>(*last - tick->picture.state.tick);
+      const auto before_last = static_cast<std::int32_t>(*last - tick->picture.state.system.tick);
       if (before_last < 0) {
         return found;
       }

@@ -153,7 +153,7 @@ bool Ring::writer_lives() const {
 
 std::optional<double> Ring::fewest_seconds() const {
   const std::uint32_t ticks = relaxed(header_->fewest_ticks);
-  return ticks == 0 ? std::nullopt : std::optional(ticks * (run().config.period_us / 1e6));
+  return ticks == 0 ? std::nullopt : std::optional(ticks * (run().config.common.period_us / 1e6));
 }
 
 const ilk_block_header_t* Ring::block(std::uint32_t number) const {
@@ -197,7 +197,7 @@ std::optional<std::uint32_t> Ring::opening_tick(std::uint32_t number) const {
 }
 
 std::uint32_t Ring::block_before(std::uint32_t tick, std::uint32_t seconds) const {
-  const auto ticks = static_cast<std::int32_t>(std::uint64_t{seconds} * 1'000'000 / run().config.period_us);
+  const auto ticks = static_cast<std::int32_t>(std::uint64_t{seconds} * 1'000'000 / run().config.common.period_us);
   const std::uint32_t first = oldest();
   std::uint32_t number = head();
   while (number > first) {

@@ -28,7 +28,8 @@ RigResult<void> StepRig::make_ready() {
   if (const std::uint32_t error = ilk_init(&config_, &state_).error; error != ILK_CONFIG_ERROR_NONE) {
     return tl::unexpected(at("the kernel refuses the robot: ", catalog::Family::config_error, error));
   }
-  const std::uint32_t settle_ticks = time_to_settle_ms * 1000 / config_.period_us;
+  const std::uint32_t settle_ticks = time_to_settle_ms * 1000 / config_.common.period_us +
+                                     std::max(config_.common.power_up_ticks, config_.axis[slot_].rest_ticks);
   const bool has_switch = config_.axis[slot_].limit_side != ILK_LIMIT_NONE;
   const auto step = [&](ilk_request_kind_t kind) {
     ask(kind);
@@ -60,7 +61,8 @@ void StepRig::move(std::int32_t target_counts, std::uint32_t drive) {
   request.target_counts = target_counts;
   request.drive = drive;
   request.amplitude = config_.axis[slot_].max_amplitude;
-  request.lease_ticks = config_.lease_max_ticks;
+  request.lease_ticks = config_.common.lease_max_ticks;
+  request.consent = state_.system.consent;
   put(request);
 }
 
@@ -69,7 +71,7 @@ RigResult<void> StepRig::tick() {
   heartbeat.kind = ILK_REQUEST_HEARTBEAT;
   heartbeat.holder = holder;
   put(heartbeat);
-  const ilk_inputs_t inputs = plant::exchange(plant_, outputs_, state_.tick);
+  const ilk_inputs_t inputs = plant::exchange(plant_, outputs_, state_.system.tick);
   ilk_step(&config_, &state_, &inputs, requests_.data(), static_cast<std::uint32_t>(requests_.size()),
            &outputs_);
   requests_.clear();
@@ -100,6 +102,7 @@ void StepRig::ask(ilk_request_kind_t kind) {
   ilk_request_t request{};
   request.kind = kind;
   request.axis = slot_;
+  request.consent = state_.system.consent;
   put(request);
 }
 

@@ -40,7 +40,7 @@ class StepRig {
   RigResult<void> tick();
 
   [[nodiscard]] const ilk_axis_t& axis() const { return state_.axis[slot_]; }
-  [[nodiscard]] std::uint32_t tick_count() const { return state_.tick; }
+  [[nodiscard]] std::uint32_t tick_count() const { return state_.system.tick; }
 
   /** What the kernel drives the axis with now. */
   [[nodiscard]] std::uint32_t drive() const { return outputs_.command[slot_].drive; }

@@ -43,7 +43,7 @@ uint64_t ilk_state_digest(const ilk_state_t *state) { return digest_of(state, si
 uint32_t ilk_out_digest(const ilk_outputs_t *out) { return (uint32_t)(digest_of(out, sizeof *out) >> 32); }
 
 uint32_t ilk_alarm_of(const ilk_state_t *state) {
-  uint32_t alarm = (state->mode & 0xfu) | ((state->cause & 0xfu) << 4);
+  uint32_t alarm = (state->system.mode & 0xfu) | ((state->system.cause & 0xfu) << 4);
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; ++slot) {
     if (state->axis[slot].state == (uint32_t)ILK_AXIS_FAULTED) {
       alarm |= 0x100u << slot;

@@ -8,13 +8,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "interlock/acsl.h"
 #include "interlock/types.h"
 
 /** `value + 1`, stopping at `ceiling`; a value beyond the ceiling comes back to it. */
-/*@ assigns \nothing;
-  @ ensures exact: \result == \min(value + 1, ceiling);
-  @*/
 static inline uint32_t count_up(uint32_t value, uint32_t ceiling) {
   uint32_t next = ceiling;
   if (value < ceiling) {
@@ -24,9 +20,6 @@ static inline uint32_t count_up(uint32_t value, uint32_t ceiling) {
 }
 
 /** `value - 1`, stopping at zero. */
-/*@ assigns \nothing;
-  @ ensures exact: \result == \max(value - 1, 0);
-  @*/
 static inline uint32_t count_down(uint32_t value) {
   uint32_t next = 0u;
   if (value > 0u) {
@@ -36,9 +29,6 @@ static inline uint32_t count_down(uint32_t value) {
 }
 
 /** A truth as the word that stands for it: 1 or 0. */
-/*@ assigns \nothing;
-  @ ensures exact: \result == (truth ? 1 : 0);
-  @*/
 static inline uint32_t flag_of(bool truth) {
   uint32_t flag = 0u;
   if (truth) {
@@ -48,9 +38,6 @@ static inline uint32_t flag_of(bool truth) {
 }
 
 /** Sum, stopping at the ends of `int32_t`. */
-/*@ assigns \nothing;
-  @ ensures exact: \result == clamped(a + b);
-  @*/
 static inline int32_t add_saturating(int32_t a, int32_t b) {
   const int64_t sum = (int64_t)a + (int64_t)b;
   int32_t result = (int32_t)0;
@@ -64,43 +51,35 @@ static inline int32_t add_saturating(int32_t a, int32_t b) {
   return result;
 }
 
+/** Sum, stopping at the largest `uint32_t`. */
+static inline uint32_t sum_saturating(uint32_t a, uint32_t b) {
+  return (a > (UINT32_MAX - b)) ? UINT32_MAX : (a + b);
+}
+
+/** What is left of `whole` when `used` is gone, stopping at zero. */
+static inline uint32_t left_of(uint32_t whole, uint32_t used) { return (whole > used) ? (whole - used) : 0u; }
+
 /** The opposite, stopping at the largest `int32_t`. */
-/*@ assigns \nothing;
-  @ ensures exact: \result == clamped(-value);
-  @*/
 static inline int32_t negate_saturating(int32_t value) { return (value == INT32_MIN) ? INT32_MAX : -value; }
 
 /** Product, stopping at the largest `uint32_t`. */
-/*@ assigns \nothing;
-  @ ensures exact: \result == \min(a * b, UINT32_MAX);
-  @*/
 static inline uint32_t multiply_saturating(uint32_t a, uint32_t b) {
   const uint64_t product = (uint64_t)a * (uint64_t)b;
   return (product > (uint64_t)UINT32_MAX) ? UINT32_MAX : (uint32_t)product;
 }
 
 /** Distance from zero, defined for every value. */
-/*@ assigns \nothing;
-  @ ensures exact: \result == \abs(value);
-  @*/
 static inline uint32_t magnitude(int32_t value) {
   return (value < 0) ? (0u - (uint32_t)value) : (uint32_t)value;
 }
 
 /** The two's complement value of a word, without implementation-defined conversion. */
-/*@ assigns \nothing;
-  @ ensures exact: \result == wrapped(word);
-  @*/
 static inline int32_t signed_of(uint32_t word) {
   const uint32_t complement = UINT32_MAX - word;
   return (word <= (uint32_t)INT32_MAX) ? (int32_t)word : (-(int32_t)complement - 1);
 }
 
 /** Motion from one counter reading to another, modulo 2^32, in the sense of the position. */
-/*@ requires readable: \valid_read(config);
-  @ assigns  \nothing;
-  @ ensures  exact: \result == travel(config, from_raw, to_raw);
-  @*/
 static inline int32_t travel_between(const ilk_axis_config_t *config, uint32_t from_raw, uint32_t to_raw) {
   uint32_t difference = to_raw - from_raw;
   if (config->direction_correction != 0u) {
@@ -110,9 +89,6 @@ static inline int32_t travel_between(const ilk_axis_config_t *config, uint32_t f
 }
 
 /** `travel` counted positive along `direction`; zero for no direction. */
-/*@ assigns \nothing;
-  @ ensures exact: \result == advance(direction, travel);
-  @*/
 static inline int32_t along(uint32_t direction, int32_t travel) {
   int32_t result = 0;
   if (direction == (uint32_t)ILK_DIRECTION_INCREASING) {
@@ -125,21 +101,28 @@ static inline int32_t along(uint32_t direction, int32_t travel) {
   return result;
 }
 
+/** The other way; none for none. */
+static inline uint32_t opposite_of(uint32_t direction) {
+  static const uint32_t other[ILK_DIRECTION_COUNT] = {
+      (uint32_t)ILK_DIRECTION_NONE, (uint32_t)ILK_DIRECTION_DECREASING, (uint32_t)ILK_DIRECTION_INCREASING};
+  return (direction < ILK_DIRECTION_COUNT) ? other[direction] : (uint32_t)ILK_DIRECTION_NONE;
+}
+
+/** True for 1 to `most`. */
+static inline bool count_of(uint32_t value, uint32_t most) { return (value != 0u) && (value <= most); }
+
+/** True for an axis that has a switch. */
+static inline bool has_switch(const ilk_axis_config_t *config) {
+  return config->limit_side != (uint32_t)ILK_LIMIT_NONE;
+}
+
 /** True for a slot that holds a motor card. */
-/*@ requires readable: \valid_read(config);
-  @ assigns  \nothing;
-  @ ensures  exact: \result <==> carries_axis(config);
-  @*/
 static inline bool has_axis(const ilk_axis_config_t *config) {
   return (config->card == (uint32_t)ILK_CARD_PWM) || (config->card == (uint32_t)ILK_CARD_NON_PWM) ||
          (config->card == (uint32_t)ILK_CARD_ANALOG) || (config->card == (uint32_t)ILK_CARD_HIGH_FREQUENCY);
 }
 
 /** True for a slot that holds any card. */
-/*@ requires readable: \valid_read(config);
-  @ assigns  \nothing;
-  @ ensures  exact: \result <==> carries_card(config);
-  @*/
 static inline bool has_card(const ilk_axis_config_t *config) {
   return has_axis(config) || (config->card == (uint32_t)ILK_CARD_SENSOR);
 }

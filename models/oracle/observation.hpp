@@ -82,7 +82,7 @@ struct Observation {
   Contact pedal_normally_open = Contact::kOpen;
   Contact pedal_normally_closed = Contact::kClosed;
   Contact estop_loop = Contact::kClosed;
-  bool deadline_missed = false;
+  bool deadlines_missed = false;
   bool app_attached = false; /**< anew, in this tick: sequence numbers restart */
   std::span<const Message> messages;
   std::uint32_t answers = 0; /**< verdicts that the kernel gave */

@@ -22,13 +22,13 @@ void SystemWatch::see(const Observation& seen, bool any_card_valid) noexcept {
   released_ = seen.pedal_normally_open == Contact::kOpen &&
               (one_channel || seen.pedal_normally_closed == Contact::kClosed);
   estop_ = seen.estop_loop != Contact::kClosed;
-  deadline_missed_ = seen.deadline_missed;
+  deadline_missed_ = seen.deadlines_missed;
   if (seen.app_attached) {
     heard_app_ = false;
   }
   app_alive_ = heard_app_ && seen.tick - heartbeat_tick_ < rules_.app_timeout_ticks;
   count(disagree_ticks_, !pressed_ && !released_);
-  count(overruns_, seen.deadline_missed);
+  count(overruns_, seen.deadlines_missed);
   count(bad_bus_ticks_, seen.transaction_failed || !any_card_valid);
   count(pressed_ticks_, pressed_);
   if (before_ == Mode::kReady && app_alive_ && released_) {

@@ -26,7 +26,7 @@
 /** First word of both regions and of the hello. */
 #define ILK_LINK_MAGIC 0x4c4b4c49u /* "ILKL" */
 /** Of the format; another one is refused. */
-#define ILK_LINK_VERSION 1u
+#define ILK_LINK_VERSION 2u
 
 /** Requests in flight. A power of two; four ticks' worth. */
 #define ILK_LINK_REQUESTS 64u
@@ -86,6 +86,7 @@ typedef struct {
   ilk_inputs_t inputs;       /**< of this tick */
   ilk_command_t command[ILK_SLOTS]; /**< what goes to each card */
   uint32_t gate[ILK_SLOTS];         /**< ilk_gate_t: the first that blocks each axis */
+  uint32_t power;                   /**< 1: the amplifiers have power */
   uint32_t lamp[ILK_LAMP_COUNT];    /**< ilk_colour_t of each lamp */
   ilk_timing_t timing;              /**< how long each part of a tick took */
 } ilk_snapshot_t;

@@ -52,19 +52,53 @@ static int64_t along(uint32_t direction, int32_t counts) {
   return (direction == ILK_DIRECTION_DECREASING) ? -(int64_t)counts : 0;
 }
 
+/** A tick passes. */
+static void still_age(ilk_still_t *still) {
+  still->same = plus(still->same, 1u);
+  still->ticks = plus(still->ticks, (still->ticks > 0u) ? 1u : 0u);
+  still->low_age = plus(still->low_age, 1u);
+  still->high_age = plus(still->high_age, 1u);
+  still->apart_age = plus(still->apart_age, 1u);
+}
+
+/** The run ends: nothing is known. */
+static void still_end(ilk_still_t *still) {
+  still->ticks = 0u;
+  still->same = 0u;
+  still->apart_age = UINT32_MAX;
+}
+
+/** A reading of this tick. `ticks` is then a length of time for which no two readings were farther apart than `bound`;
+    `apart_age` the age of the older of two readings that were. */
 static void still_add(ilk_still_t *still, const ilk_axis_config_t *config, uint32_t raw, uint32_t bound) {
   const int32_t at = judge_counts(config, raw, still->origin);
-  const int32_t low = (at < still->low) ? at : still->low;
-  const int32_t high = (at > still->high) ? at : still->high;
-  if (still->ticks > 0u && (int64_t)high - low <= (int64_t)bound) {
-    still->low = low;
-    still->high = high;
-    still->ticks = plus(still->ticks, 1u);
-  } else {
+  if (raw != still->newest) {
+    still->newest = raw;
+    still->same = 0u;
+  }
+  if (still->ticks > 1u && (int64_t)at - still->low > (int64_t)bound) {
+    still->apart_age = (still->low_age < still->apart_age) ? still->low_age : still->apart_age;
+    still->ticks = 0u;
+  } else if (still->ticks > 1u && (int64_t)still->high - at > (int64_t)bound) {
+    still->apart_age = (still->high_age < still->apart_age) ? still->high_age : still->apart_age;
+    still->ticks = 0u;
+  }
+  if (still->ticks <= 1u) {
     still->origin = raw;
     still->low = 0;
     still->high = 0;
+    still->low_age = 0u;
+    still->high_age = 0u;
     still->ticks = 1u;
+  } else if (at <= still->low) {
+    still->low = at;
+    still->low_age = 0u;
+    if (at >= still->high) {
+      still->high_age = 0u;
+    }
+  } else if (at >= still->high) {
+    still->high = at;
+    still->high_age = 0u;
   }
 }
 
@@ -91,6 +125,11 @@ void ghost_init(ilk_ghost_t *ghost) {
   const ilk_ghost_t zero = {0};
   *ghost = zero;
   ghost->app_age = UINT32_MAX;
+  for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
+    still_end(&ghost->slot[slot].rest);
+    still_end(&ghost->slot[slot].calm);
+    ghost->slot[slot].since_disable = UINT32_MAX;
+  }
   ghost->mode = ILK_MODE_LOCKED;
 }
 
@@ -137,7 +176,7 @@ static void observe_frame(ilk_ghost_t *ghost, ilk_ghost_slot_t *g, const ilk_tic
     const uint32_t ahead = frame[9] - g->heartbeat;
     const bool flag = (frame[12] & STATUS_RESET) != 0u && (g->status & STATUS_RESET) == 0u;
     g->reset = flag || ahead == 0u || ahead > plus(1u, g->periods);
-    g->maybe_reset = g->reset || ahead > g->ticks;
+    g->maybe_reset = g->reset || ahead > plus(1u, g->ticks);
     g->jump = (uint64_t)size_of(wrapped(raw, g->raw)) > (uint64_t)config->max_delta_counts * g->periods;
   }
   g->bad_run = 0u;
@@ -166,22 +205,45 @@ static void keep_frame(ilk_ghost_slot_t *g, const uint32_t *frame) {
 }
 
 static void observe_rest(ilk_ghost_slot_t *g, const ilk_axis_config_t *config, uint32_t raw) {
+  still_age(&g->rest);
+  still_age(&g->calm);
+  g->quiet = plus(g->quiet, 1u);
   if (g->driven || !g->valid) {
+    still_end(&g->rest);
+    g->quiet = g->valid ? 1u : 0u;
+  }
+  if (g->jump || g->maybe_reset || g->first) { /* earlier readings may mean another place: undecided for rest_ticks */
     g->rest.ticks = 0u;
+    g->rest.same = 0u;
+    g->calm.ticks = 0u;
   }
   if (g->valid) {
     still_add(&g->rest, config, raw, config->noise_counts);
-    if (g->calm.ticks == 0u) {
-      still_add(&g->calm, config, raw, config->drift_counts);
-      g->calm.ticks = UINT32_MAX / 2u;
-    } else {
-      still_add(&g->calm, config, raw, config->drift_counts);
-    }
+    still_add(&g->calm, config, raw, config->drift_counts);
   }
   g->since_disable = plus(g->since_disable, 1u);
-  if (g->since_disable > g->rest.ticks) {
-    g->since_disable = g->rest.ticks;
-  }
+}
+
+/** Not at rest for sure: driven, an invalid frame, or two readings too far apart in the last rest_ticks. */
+static bool moves(const ilk_ghost_slot_t *g, const ilk_axis_config_t *config) {
+  return g->quiet < config->rest_ticks || g->rest.apart_age < config->rest_ticks;
+}
+
+/** At rest for sure: the very same reading. What lies between this and `moves` needs every reading of the last rest_ticks
+    to decide, and a kernel that counts runs of readings decides it later than the text. */
+static bool rests(const ilk_ghost_slot_t *g, const ilk_axis_config_t *config) {
+  return g->rest.same > config->rest_ticks && g->quiet > config->rest_ticks;
+}
+
+/** Whether rest may be counted from before this tick is undecided (DISABLE, LOCKED, SET_HOME, RESTORE): count anew. */
+static void rest_anew(ilk_ghost_slot_t *g) {
+  g->rest.origin = g->raw;
+  g->rest.low = 0;
+  g->rest.high = 0;
+  g->rest.low_age = 0u;
+  g->rest.high_age = 0u;
+  g->rest.ticks = (g->rest.ticks > 0u) ? 1u : 0u;
+  g->rest.same = 0u;
 }
 
 /** Reverse, drift and the mark of a FAULTED axis. */
@@ -191,6 +253,7 @@ static void observe_motion(ilk_ghost_slot_t *g, const ilk_axis_config_t *config,
   g->drifted = false;
   g->reversed = false;
   g->runaway = false;
+  g->maybe_runaway = false;
   g->distance = 0;
   if (!g->valid) {
     return;
@@ -207,13 +270,21 @@ static void observe_motion(ilk_ghost_slot_t *g, const ilk_axis_config_t *config,
   if (state == ILK_AXIS_FAULTED) {
     if (!g->fault_known || g->first || g->jump || g->maybe_reset) {
       g->fault_mark = raw;
-      g->fault_known = true;
-    } else if (size_of(judge_counts(config, raw, g->fault_mark)) > config->drift_counts) {
-      g->runaway = true;
-      g->distance = judge_counts(config, raw, g->fault_mark);
-    }
-    if (g->rest.ticks >= config->rest_ticks) {
+      g->fault_before = (g->first || g->jump || g->maybe_reset) ? raw : g->fault_before;
+      g->fault_known = !g->first && !g->jump && !g->maybe_reset; /* taken again at the first valid frame after it */
+    } else if (!moves(g, config)) {
       g->fault_mark = raw;
+      g->fault_before = rests(g, config) ? raw : g->fault_before;
+    }
+    if (size_of(judge_counts(config, raw, g->fault_mark)) > config->drift_counts ||
+        size_of(judge_counts(config, raw, g->fault_before)) > config->drift_counts) {
+      g->distance = judge_counts(config, raw, g->fault_mark);
+      g->runaway = size_of(judge_counts(config, raw, g->fault_mark)) > config->drift_counts &&
+                   size_of(judge_counts(config, raw, g->fault_before)) > config->drift_counts;
+      g->maybe_runaway = true;
+    }
+    if (rests(g, config)) {
+      g->maybe_runaway = false;
     }
     g->drift_known = false;
   } else if (state == ILK_AXIS_DISABLED && tick->before->mode != ILK_MODE_MOTION) {
@@ -230,7 +301,7 @@ static void observe_motion(ilk_ghost_slot_t *g, const ilk_axis_config_t *config,
 
 static void observe_progress(ilk_ghost_slot_t *g, const ilk_axis_config_t *config, uint32_t raw) {
   if (g->valid && g->stall_direction != ILK_DIRECTION_NONE) {
-    if (g->jump || g->maybe_reset) {
+    if (g->jump || g->maybe_reset || g->first) {
       g->stall_mark = raw;
       g->effort_mark = raw;
     } else if (along(g->stall_direction, judge_counts(config, raw, g->stall_mark)) >= (int64_t)config->stall_min_counts) {
@@ -298,6 +369,7 @@ static void observe_homing(ilk_ghost_slot_t *g, const ilk_axis_config_t *config,
       if (steady && triggered) {
         g->stage = STAGE_EDGE;
         g->e1 = g->home_run_raw;
+        g->e1_later = g->e1;
         g->home_open = false;
       }
       break;
@@ -309,7 +381,7 @@ static void observe_homing(ilk_ghost_slot_t *g, const ilk_axis_config_t *config,
           g->slow = true;
         }
       } else if (steady && g->home_open) {
-        g->e1 = g->home_run_raw; /* the contact closed again before the axis was clear: a later e1 */
+        g->e1_later = g->home_run_raw; /* the contact closed again before the axis was clear: a later e1 */
         g->home_open = false;
       }
       break;
@@ -379,6 +451,10 @@ static void observe_system(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   if (in->link_generation != ghost->link_generation) {
     ghost->link_generation = in->link_generation;
     ghost->last_sequence = 0u;
+    if (ghost->tick > 0u) { /* another app: silent until its first HEARTBEAT */
+      ghost->app_age = UINT32_MAX;
+      ghost->app_alive = false;
+    }
   }
   if (!ghost->app_alive || tick->before->mode != ILK_MODE_READY) {
     ghost->armed = false;
@@ -397,6 +473,8 @@ void ghost_observe(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   ghost->runaway = false;
   ghost->new_fault = false;
   ghost->drift_of_disabled = false;
+  ghost->calm_unsure = false;
+  ghost->runaway_unsure = false;
   observe_system(ghost, tick);
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
     const ilk_axis_config_t *config = &tick->config->axis[slot];
@@ -430,7 +508,9 @@ void ghost_observe(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
       ghost->runaway = ghost->runaway || g->runaway;
       ghost->new_fault = ghost->new_fault || (before->state != ILK_AXIS_FAULTED && after->state == ILK_AXIS_FAULTED);
       ghost->drift_of_disabled = ghost->drift_of_disabled ||
-                                 (before->state == ILK_AXIS_DISABLED && g->calm.ticks < config->rest_ticks);
+                                 (before->state == ILK_AXIS_DISABLED && after->state != ILK_AXIS_FAULTED && g->calm.apart_age < config->rest_ticks);
+      ghost->calm_unsure = ghost->calm_unsure || (before->state == ILK_AXIS_DISABLED && g->calm.ticks <= config->rest_ticks);
+      ghost->runaway_unsure = ghost->runaway_unsure || g->maybe_runaway;
     }
     keep_frame(g, frame);
   }
@@ -445,7 +525,7 @@ static void drop_orders(ilk_ghost_t *ghost) {
     ilk_ghost_slot_t *g = &ghost->slot[slot];
     g->lease = 0u;
     g->order_consent = 0u;
-    g->stage = STAGE_NONE;
+    g->stage = g->just_homed ? g->stage : (uint32_t)STAGE_NONE;
     if (g->state == ILK_AXIS_MOVING || g->state == ILK_AXIS_HOMING) {
       g->state = ILK_AXIS_ENABLED;
     }
@@ -470,6 +550,15 @@ static void leave_motion(ilk_ghost_t *ghost) {
 static void decide_mode(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   const ilk_common_config_t *c = &tick->config->common;
   const uint32_t mode = tick->before->mode;
+  const bool armed = ghost->armed;
+  if (mode != ILK_MODE_LOCKED && mode != ILK_MODE_INIT && !ghost->estop && !ghost->bus_lost && !ghost->runaway && !ghost->runaway_unsure) {
+    const bool locked = tick->after->mode == ILK_MODE_LOCKED;
+    if (ghost->missed_in_row >= c->overrun_limit && ghost->missed_ticks < c->overrun_limit) {
+      ghost->choice[locked ? 0 : 1] = plus(ghost->choice[locked ? 0 : 1], 1u);
+    } else if (ghost->disagree_ticks == c->pedal_disagree_ticks && ghost->missed_ticks == 0u) {
+      ghost->choice[locked ? 2 : 3] = plus(ghost->choice[locked ? 2 : 3], 1u);
+    }
+  }
   ghost->entered = false;
   ghost->mode_sure = true;
   ghost->mode = mode;
@@ -484,13 +573,15 @@ static void decide_mode(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
       g->lease = 0u;
       g->order_consent = 0u;
       g->stage = STAGE_NONE;
-      g->fault_known = g->valid;
+      g->fault_known = g->valid && !g->jump && !g->maybe_reset;
       g->fault_mark = g->raw;
+      g->fault_before = g->raw;
     } else if (g->just_homed) {
       g->state = ILK_AXIS_ENABLED;
     }
-    if (after->homed == ILK_HOMED_NOT) {
-      g->homed = ILK_HOMED_NOT; /* dropped in phase 4, or by a HOME that is still to come */
+    if (after->homed == ILK_HOMED_NOT &&
+        (g->state == ILK_AXIS_FAULTED || g->jump || g->maybe_reset || g->lost || g->implausible > 0u)) {
+      g->homed = ILK_HOMED_NOT; /* dropped in phase 4 */
     }
   }
   if (mode == ILK_MODE_INIT) {
@@ -499,8 +590,10 @@ static void decide_mode(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   if (ghost->estop || ghost->bus_lost || ghost->disagree_ticks > c->pedal_disagree_ticks ||
       ghost->missed_ticks >= c->overrun_limit || ghost->runaway) {
     ghost->mode = ILK_MODE_LOCKED;
-  } else if (ghost->missed_in_row >= c->overrun_limit || ghost->disagree_ticks == c->pedal_disagree_ticks) {
-    ghost->mode_sure = false;
+  } else if (tick->after->mode == ILK_MODE_LOCKED && mode != ILK_MODE_LOCKED &&
+             (ghost->missed_in_row >= c->overrun_limit || ghost->disagree_ticks == c->pedal_disagree_ticks ||
+              ghost->runaway_unsure)) {
+    ghost->mode = ILK_MODE_LOCKED; /* near a bound that the text leaves open */
   } else if (mode == ILK_MODE_MOTION) {
     if (ghost->pedal != ILK_PEDAL_PRESSED || !ghost->app_alive || ghost->new_fault || ghost->required_lost) {
       leave_motion(ghost);
@@ -508,24 +601,18 @@ static void decide_mode(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   } else if (mode == ILK_MODE_READY && ghost->pressed_ticks == c->pedal_debounce_ticks) {
     const bool good = ghost->app_alive && !ghost->required_lost && !ghost->drift_of_disabled &&
                       ghost->powered_ticks >= c->power_up_ticks;
-    if (ghost->armed && good) {
+    if (ghost->armed && good && ghost->calm_unsure) {
+      ghost->mode_sure = false;
+    } else if (ghost->armed && good) {
       ghost->mode = ILK_MODE_MOTION;
       ghost->entered = true;
-    } else if (ghost->armed_weakly && ghost->app_alive && !ghost->required_lost) {
-      ghost->mode_sure = false; /* armed by a release that began earlier, or power or a hand near its bound */
     }
     disarm(ghost);
   }
-  if (!ghost->mode_sure && tick->after->mode != ghost->mode) {
-    if (tick->after->mode == ILK_MODE_MOTION) {
-      ghost->mode = ILK_MODE_MOTION;
-      ghost->entered = true;
-      ghost->weak_entries = plus(ghost->weak_entries, 1u);
-    } else if (tick->after->mode == ILK_MODE_LOCKED) {
-      ghost->mode = ILK_MODE_LOCKED;
-    } else {
-      ghost->mode = tick->after->mode;
-    }
+  if (!ghost->mode_sure && tick->after->mode == ILK_MODE_MOTION) {
+    ghost->mode = ILK_MODE_MOTION;
+    ghost->entered = true;
+    ghost->weak_entries = plus(ghost->weak_entries, armed ? 0u : 1u);
   }
   if (ghost->entered) {
     for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
@@ -544,6 +631,7 @@ static void decide_mode(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
       if (ghost->slot[slot].state != ILK_AXIS_FAULTED) {
         ghost->slot[slot].state = ILK_AXIS_DISABLED;
       }
+      rest_anew(&ghost->slot[slot]);
     }
   }
 }
@@ -553,6 +641,8 @@ typedef struct {
   uint32_t verdict;
   uint32_t other;
 } ilk_demand_t;
+
+#define ANY ILK_VERDICT_COUNT /* the judge cannot tell */
 
 static ilk_demand_t demand(uint32_t verdict) {
   const ilk_demand_t d = {verdict, verdict};
@@ -599,7 +689,7 @@ static ilk_demand_t demand_of_motion(const ilk_ghost_t *ghost, const ilk_tick_t 
   if (ghost->mode != ILK_MODE_MOTION) {
     return demand(ILK_VERDICT_MODE);
   }
-  if (r->consent != consent) {
+  if (r->consent != consent || consent == 0u) { /* 0: the press began and ended in this tick; nobody saw its number */
     return demand(ILK_VERDICT_CONSENT);
   }
   if (g->state == ILK_AXIS_FAULTED) {
@@ -632,8 +722,14 @@ static ilk_demand_t demand_of_motion(const ilk_ghost_t *ghost, const ilk_tick_t 
       (g->homed == ILK_HOMED_NOT && r->drive > config->unhomed_max_drive)) {
     return demand(ILK_VERDICT_DRIVE);
   }
-  return in_range(g, config, &tick->after->axis[r->axis], r->target_counts) ? demand(ILK_VERDICT_ACCEPTED)
-                                                                             : demand(ILK_VERDICT_RANGE);
+  if (in_range(g, config, &tick->after->axis[r->axis], r->target_counts)) {
+    return demand(ILK_VERDICT_ACCEPTED);
+  }
+  if (g->triggered && (size_of(saturate((int64_t)r->target_counts - tick->after->axis[r->axis].position)) <= config->deadband_counts ||
+                       g->run < tick->config->common.switch_debounce_ticks)) {
+    return either(ILK_VERDICT_RANGE, ILK_VERDICT_ACCEPTED); /* towards a triggered switch, but no drive follows */
+  }
+  return demand(ILK_VERDICT_RANGE);
 }
 
 static ilk_demand_t demand_of_place(const ilk_ghost_t *ghost, const ilk_tick_t *tick, const ilk_request_t *r) {
@@ -651,8 +747,11 @@ static ilk_demand_t demand_of_place(const ilk_ghost_t *ghost, const ilk_tick_t *
   if (!g->valid) {
     return demand(ILK_VERDICT_CARD);
   }
-  if (g->rest.ticks < config->rest_ticks) {
+  if (moves(g, config)) {
     return demand(ILK_VERDICT_BUSY);
+  }
+  if (!rests(g, config)) {
+    return demand(ANY);
   }
   if (r->kind == ILK_REQUEST_RESTORE && (r->target_counts < config->min_counts || r->target_counts > config->max_counts)) {
     return demand(ILK_VERDICT_RANGE);
@@ -667,7 +766,7 @@ static bool runaway_present(const ilk_ghost_t *ghost, const ilk_tick_t *tick, bo
     const ilk_ghost_slot_t *g = &ghost->slot[slot];
     present = present || g->runaway;
     if (has_motor(&tick->config->axis[slot]) && g->state == ILK_AXIS_FAULTED &&
-        g->rest.ticks < tick->config->axis[slot].rest_ticks && !g->lost) {
+        !rests(g, &tick->config->axis[slot]) && !g->lost) {
       *unsure = true;
     }
   }
@@ -711,17 +810,20 @@ static ilk_demand_t demand_of_row(const ilk_ghost_t *ghost, const ilk_tick_t *ti
       if (!g->valid) {
         return demand(ILK_VERDICT_CARD);
       }
-      if (g->rest.ticks < config->rest_ticks || ghost->powered_ticks < tick->config->common.power_up_ticks ||
+      if (moves(g, config) || ghost->powered_ticks < tick->config->common.power_up_ticks ||
           g->since_disable < config->rest_ticks) {
         return demand(ILK_VERDICT_BUSY);
       }
-      return demand(ILK_VERDICT_ACCEPTED);
+      return rests(g, config) ? demand(ILK_VERDICT_ACCEPTED) : either(ILK_VERDICT_ACCEPTED, ILK_VERDICT_BUSY);
     case ILK_REQUEST_CLEAR_FAULT:
       if (g->state != ILK_AXIS_FAULTED) {
         return demand(ILK_VERDICT_NO_FAULT);
       }
-      if (!g->valid || tick->before->axis[r->axis].state != ILK_AXIS_FAULTED || g->rest.ticks < config->rest_ticks) {
+      if (!g->valid || tick->before->axis[r->axis].state != ILK_AXIS_FAULTED || moves(g, config)) {
         return demand(ILK_VERDICT_CAUSE_PRESENT);
+      }
+      if (!rests(g, config)) {
+        return demand(ANY);
       }
       return demand((ghost->pedal != ILK_PEDAL_RELEASED) ? ILK_VERDICT_PEDAL_DOWN : ILK_VERDICT_ACCEPTED);
     case ILK_REQUEST_MOVE:
@@ -780,9 +882,10 @@ static void accept(ilk_ghost_t *ghost, const ilk_tick_t *tick, const ilk_request
         g->state = ILK_AXIS_DISABLED;
       }
       g->since_disable = 0u;
+      rest_anew(g);
       g->lease = 0u;
       g->order_consent = 0u;
-      g->stage = STAGE_NONE;
+      g->stage = g->just_homed ? g->stage : (uint32_t)STAGE_NONE;
       if (ghost->mode != ILK_MODE_MOTION) {
         g->drift_mark = g->raw;
       }
@@ -800,7 +903,7 @@ static void accept(ilk_ghost_t *ghost, const ilk_tick_t *tick, const ilk_request
       g->state = ILK_AXIS_DISABLED;
       g->drift_mark = g->raw;
       g->drift_known = true;
-      g->since_disable = g->rest.ticks;
+      g->since_disable = UINT32_MAX;
       if (tick->before->axis[r->axis].fault == ILK_FAULT_STALL) {
         g->stall_ticks = 0u;
         g->effort = 0u;
@@ -829,12 +932,15 @@ static void accept(ilk_ghost_t *ghost, const ilk_tick_t *tick, const ilk_request
       break;
     case ILK_REQUEST_SET_HOME:
       g->set_home = true;
+      rest_anew(g);
       g->homed = ILK_HOMED_BY_HAND;
       g->position = 0;
       g->position_known = true;
       break;
     case ILK_REQUEST_RESTORE:
       g->restored = true;
+      rest_anew(g);
+      g->homed = ILK_HOMED_NOT;
       g->position = r->target_counts;
       g->position_known = true;
       break;
@@ -858,7 +964,7 @@ void ghost_requests(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
     if (d.verdict == ILK_VERDICT_ACCEPTED) {
       d = demand_of_row(ghost, tick, r);
     }
-    if (given != d.verdict && given != d.other && ghost->order_error == 0u) {
+    if (d.verdict != ANY && given != d.verdict && given != d.other && ghost->order_error == 0u) {
       ghost->order_error = i + 1u;
       ghost->expected = d.verdict;
     }
@@ -884,7 +990,8 @@ static void settle_slot(ilk_ghost_t *ghost, ilk_ghost_slot_t *g, const ilk_axis_
   g->driven = is_driven(tick, slot);
   if (g->driven) {
     g->direction = command->direction;
-    g->rest.ticks = 0u;
+    still_end(&g->rest);
+    g->quiet = 0u;
     g->drift_mark = g->raw;
     g->drift_known = true;
     if (command->direction != g->reverse_direction) {
@@ -1173,8 +1280,9 @@ ilk_judgement_t judge_P8(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   return HOLDS;
 }
 
-/** P9. Less than the sentence: a release that began before READY counts once it has lasted the debounce time in READY at
-    least one tick (`armed_weakly`); the stricter reading is part of judge_mode. */
+/** P9. The release that arms counts from the last event that disarms: all of its debounce time lies in READY with the app
+    alive. Less than the sentence: whether a DISABLED axis moved is not judged in the first rest_ticks after a new or reset
+    card, nor when it took more than two of its readings to move that far. */
 ilk_judgement_t judge_P9(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   const ilk_common_config_t *c = &tick->config->common;
   const uint32_t consent = tick->after->consent;
@@ -1302,7 +1410,9 @@ ilk_judgement_t judge_P17(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
       return broken("P17: homed although its card is lost", slot, after->homed, 0);
     }
     if (after->homed == ILK_HOMED_BY_SWITCH && before->homed != ILK_HOMED_BY_SWITCH) {
-      const int64_t apart = judge_counts(config, g->e2, g->e1);
+      const int64_t first = judge_counts(config, g->e2, g->e1);
+      const int64_t later = judge_counts(config, g->e2, g->e1_later);
+      const int64_t apart = ((first < 0 ? -first : first) < (later < 0 ? -later : later)) ? first : later;
       const int64_t newest = (int64_t)judge_counts(config, g->raw, g->e2) + config->home_offset_counts;
       const int64_t older = (int64_t)judge_counts(config, g->raw, g->e2_before) + config->home_offset_counts;
       if (!g->just_homed || g->stage != STAGE_SLOW_EDGE) {
@@ -1315,7 +1425,7 @@ ilk_judgement_t judge_P17(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
         return broken("P17: homed and the switch is not triggered for the debounce time", slot, g->home_run,
                       tick->config->common.switch_debounce_ticks);
       }
-      if (g->rest.ticks < config->rest_ticks) {
+      if (moves(g, config)) {
         return broken("P17: homed and not at rest", slot, g->rest.ticks, config->rest_ticks);
       }
       if ((apart < 0 ? -apart : apart) > (int64_t)config->home_tolerance_counts) {
@@ -1413,7 +1523,7 @@ ilk_judgement_t judge_mode(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
     const bool there = (cause == ILK_CAUSE_ESTOP && ghost->estop) || (cause == ILK_CAUSE_BUS && ghost->bus_lost) ||
                        (cause == ILK_CAUSE_PEDAL && ghost->disagree_ticks >= c->pedal_disagree_ticks) ||
                        (cause == ILK_CAUSE_OVERRUN && ghost->missed_in_row >= c->overrun_limit) ||
-                       (cause == ILK_CAUSE_RUNAWAY && ghost->runaway);
+                       (cause == ILK_CAUSE_RUNAWAY && (ghost->runaway || ghost->runaway_unsure));
     if (!there) {
       return broken("mode: LOCKED by a cause that is not there", ILK_SLOTS, cause, 0);
     }
@@ -1433,7 +1543,8 @@ ilk_judgement_t judge_mode(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
 ilk_judgement_t judge_rows(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   if (ghost->order_error != 0u) {
     const ilk_request_t *r = &tick->requests[ghost->order_error - 1u];
-    return broken("rows: not the verdict of the table (slot = kind + 100 * axis)", r->kind + 100u * (r->axis < 100u ? r->axis : 99u),
+    static const char *const names[] = {"rows: ?", "rows: HEARTBEAT", "rows: STOP", "rows: RESET", "rows: DISABLE", "rows: ENABLE", "rows: CLEAR_FAULT", "rows: MOVE", "rows: HOME", "rows: SET_HOME", "rows: RESTORE"};
+    return broken(names[r->kind <= ILK_REQUEST_RESTORE ? r->kind : 0u], r->axis,
                   tick->out->verdict[ghost->order_error - 1u].verdict, ghost->expected);
   }
   return HOLDS;
@@ -1463,7 +1574,7 @@ ilk_judgement_t judge_states(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
     }
     if (before->homed != ILK_HOMED_NOT && after->homed == ILK_HOMED_NOT && !g->jump && !g->maybe_reset && !g->lost &&
         !(after->state == ILK_AXIS_FAULTED && after->fault != ILK_FAULT_DRIFT && new_fault) && g->stage != STAGE_BEGUN &&
-        !g->stalled && g->implausible == 0u && !ghost->consent_error) {
+        !g->stalled && g->implausible == 0u && !ghost->consent_error && !g->restored) {
       bool home = false; /* a HOME in this tick that STOP or DISABLE ended again */
       for (uint32_t i = 0u; i < tick->out->verdict_count && i < tick->count && i < ILK_REQUESTS_PER_TICK; i++) {
         home = home || (tick->requests[i].kind == ILK_REQUEST_HOME && tick->requests[i].axis == slot &&

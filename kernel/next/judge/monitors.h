@@ -54,6 +54,11 @@ typedef struct {
   int32_t low;
   int32_t high;
   uint32_t ticks;
+  uint32_t low_age;
+  uint32_t high_age;
+  uint32_t apart_age; /**< ticks since the older of two readings that were too far apart */
+  uint32_t newest;
+  uint32_t same;      /**< ticks since the reading last changed */
 } ilk_still_t;
 
 /** Stages of a homing as P17 lists them. */
@@ -87,12 +92,15 @@ typedef struct {
   uint32_t run_raw;    /**< counter at the first of them */
   /* rest and drift */
   ilk_still_t rest;    /**< undriven, valid, within noise */
-  uint32_t since_disable; /**< ticks of rest since the last DISABLE */
+  uint32_t quiet;      /**< ticks in a row that were undriven and had a valid frame */
+  uint32_t since_disable; /**< ticks since the last DISABLE */
   ilk_still_t calm;    /**< valid, within drift_counts */
   bool drift_known;
   uint32_t drift_mark;
   bool fault_known;
   uint32_t fault_mark;
+  uint32_t fault_before; /**< the mark by the stricter reading: of the tick of the fault, jump or reset itself */
+  bool maybe_runaway;  /**< beyond drift_counts of one of the two marks */
   bool runaway;        /**< seen in this tick: FAULTED and beyond drift_counts of its mark */
   bool drifted;        /**< seen in this tick, to be judged */
   bool reversed;       /**< seen in this tick, to be judged */
@@ -131,6 +139,7 @@ typedef struct {
   uint32_t home_run;   /**< valid readings in a row since HOME that say the same */
   uint32_t home_run_raw;
   uint32_t e1;
+  uint32_t e1_later;   /**< a later candidate, when the contact closed again during the back-off */
   uint32_t e2;         /**< of the newest slow approach */
   uint32_t e2_before;  /**< of the one before it, or e2 */
   bool slow;           /**< no drive above `home_slow_drive` since the axis was clear */
@@ -170,12 +179,16 @@ typedef struct {
   uint32_t mode;           /**< as it should be, phase by phase */
   bool mode_sure;          /**< the text decides the mode */
   bool entered;            /**< MOTION was entered in this tick */
+  bool runaway_unsure;
+  bool calm_unsure;        /**< of a DISABLED axis too little was seen to tell */
   bool drift_of_disabled;  /**< a DISABLED axis moved in the last rest_ticks */
   uint32_t last_consent;   /**< of the press before */
   bool reset_accepted;
   bool stop_accepted;
   bool holder_changed;
   uint32_t weak_entries;   /**< how often MOTION began though only weakly armed */
+  uint32_t choice[4];      /**< what the kernel does where the text is open: locks by periods missed, or does not; locks when
+                                the channels disagree for just pedal_disagree_ticks, or does not */
   uint32_t order_error;    /**< 1 + index of the first request whose verdict contradicts the text */
   uint32_t expected;       /**< verdict that the text demands of it */
   bool consent_error;      /**< a MOVE or HOME was accepted with a number that is not that of this press */
