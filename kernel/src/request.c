@@ -38,7 +38,8 @@ static bool setpoint_is_within(const ilk_config_t *config, const ilk_axis_config
   const bool reachable = (axis->homed != (uint32_t)ILK_HOMED_NOT)
                              ? (((int64_t)setpoint >= reach.low) && ((int64_t)setpoint <= reach.high))
                              : ((distance >= -left) && (distance <= left));
-  return reachable && !(towards && ilk_switch_is_steady(&config->common, axis, true));
+  const bool behind = towards && ilk_switch_is_steady(&config->common, axis, true);
+  return reachable && !behind;
 }
 
 /** What MOVE and HOME ask alike. */
