@@ -50,9 +50,9 @@ Rule axis_rule(std::string name, ilk_config_error_t error, uint32_t slot, Field 
 
 Edit with_period(uint32_t period_us, uint32_t ilk_config_t::* field, uint32_t ticks) {
   return [=](ilk_config_t& config) {
-    config.period_us = period_us;
-    config.app_timeout_ticks = config.lease_max_ticks = 10;
-    config.pedal_debounce_ticks = config.pedal_disagree_ticks = 5;
+    config.common.period_us = period_us;
+    config.common.app_timeout_ticks = config.common.lease_max_ticks = 10;
+    config.common.pedal_debounce_ticks = config.common.pedal_disagree_ticks = 5;
     for (auto& axis : config.axis) {
       axis.home_timeout_ticks = axis.home_timeout_ticks == 0 ? 0 : 100000;
     }
@@ -208,12 +208,12 @@ std::vector<Rule> axis_rules() {
                     738),
       {"home_timeout_at_another_period", ILK_CONFIG_ERROR_HOME_TIMEOUT, s,
        [](ilk_config_t& config) {
-         config.period_us = 500;
+         config.common.period_us = 500;
          for (auto& axis : config.axis) axis.home_timeout_ticks *= 2;
          config.axis[s].home_timeout_ticks = 4420;
        },
        [](ilk_config_t& config) {
-         config.period_us = 500;
+         config.common.period_us = 500;
          for (auto& axis : config.axis) axis.home_timeout_ticks *= 2;
          config.axis[s].home_timeout_ticks = 4419;
        }},
@@ -236,8 +236,8 @@ std::vector<Rule> axis_rules() {
       unsigned_rule("drift_large", ILK_CONFIG_ERROR_DRIFT, f, &A::drift_counts, 200, 201),
       {"backlash_wraps_nothing", ILK_CONFIG_ERROR_REVERSE, f, [](ilk_config_t&) {},
        [](ilk_config_t& config) { config.axis[f].backlash_counts = 0xFFFFFFFFu; }},
-      unsigned_rule("settle_zero", ILK_CONFIG_ERROR_SETTLE, f, &A::settle_ticks, 1, 0),
-      unsigned_rule("settle_long", ILK_CONFIG_ERROR_SETTLE, f, &A::settle_ticks, 1000, 1001),
+      unsigned_rule("settle_zero", ILK_CONFIG_ERROR_SETTLE, f, &A::rest_ticks, 1, 0),
+      unsigned_rule("settle_long", ILK_CONFIG_ERROR_SETTLE, f, &A::rest_ticks, 1000, 1001),
       unsigned_rule("max_delta_zero", ILK_CONFIG_ERROR_MAX_DELTA, f, &A::max_delta_counts, 1, 0),
       unsigned_rule("max_delta_large", ILK_CONFIG_ERROR_MAX_DELTA, f, &A::max_delta_counts, 1000, 1001),
   };
@@ -285,7 +285,7 @@ TEST(P13_configuration, any_wrong_bit_is_found) {
     const auto wrong = std::bit_cast<ilk_config_t>(words);
     ilk_state_t state;
     ASSERT_NE(ilk_init(&wrong, &state).error, uint32_t{ILK_CONFIG_ERROR_NONE}) << bit;
-    ASSERT_EQ(state.mode, uint32_t{ILK_MODE_INIT});
+    ASSERT_EQ(state.system.mode, uint32_t{ILK_MODE_INIT});
   }
 }
 
@@ -301,7 +301,7 @@ TEST(P13_configuration, random_bits_never_leave_INIT) {
     ilk_state_t state;
     const ilk_config_verdict_t verdict = ilk_init(&config, &state);
     ASSERT_EQ(verdict.error, ilk_config_validate(&config).error);
-    ASSERT_EQ(state.mode == ILK_MODE_INIT, verdict.error != ILK_CONFIG_ERROR_NONE);
+    ASSERT_EQ(state.system.mode == ILK_MODE_INIT, verdict.error != ILK_CONFIG_ERROR_NONE);
   }
 }
 

@@ -59,7 +59,7 @@ TEST(Determinism, every_output_word_is_written_and_none_read) {
 
 TEST(Determinism, every_output_word_is_written_in_INIT) {
   ilk_config_t config = standard_config();
-  config.version = 0;
+  config.common.version = 0;
   ilk_state_t first;
   ilk_init(&config, &first);
   ilk_state_t second = first;

@@ -63,11 +63,11 @@ TEST_P(Homing, references_the_axis_at_the_edge_of_its_switch) {
   EXPECT_FALSE(bench.driven(slot));
   EXPECT_EQ(phase(bench, slot), ILK_HOMING_REST);
   EXPECT_EQ(bench.position(slot), config.home_offset_counts);
-  EXPECT_EQ(bench.axis(slot).homed, 0u) << "not before the counter rests";
+  EXPECT_FALSE(bench.homed(slot)) << "not before the counter rests";
 
   tick_while_homing(bench, 100, slot);
   EXPECT_EQ(bench.axis_state(slot), ILK_AXIS_ENABLED);
-  EXPECT_EQ(bench.axis(slot).homed, 1u);
+  EXPECT_TRUE(bench.homed(slot));
   EXPECT_EQ(bench.position(slot), config.home_offset_counts + way * 6);
   EXPECT_EQ(bench.fault(slot), ILK_FAULT_NONE);
   EXPECT_EQ(phase(bench, slot), ILK_HOMING_NONE);
@@ -89,7 +89,7 @@ TEST_P(Homing, backs_off_first_when_it_starts_on_the_switch) {
   EXPECT_EQ(phase(bench, slot), ILK_HOMING_REST);
   EXPECT_EQ(bench.position(slot), config.home_offset_counts);
   tick_while_homing(bench, 100, slot);
-  EXPECT_EQ(bench.axis(slot).homed, 1u);
+  EXPECT_TRUE(bench.homed(slot));
 }
 
 TEST(Homing_rest, needs_the_counter_unchanged_for_its_ticks) {
@@ -97,12 +97,12 @@ TEST(Homing_rest, needs_the_counter_unchanged_for_its_ticks) {
   bench.ticks(10);
   ASSERT_EQ(phase(bench), ILK_HOMING_REST);
   bench.ticks(rest_ticks - 2);
-  EXPECT_EQ(bench.axis(axis).homed, 0u);
+  EXPECT_FALSE(bench.homed(axis));
   bench.motor[axis].travelled += 1;
   bench.ticks(rest_ticks - 1);
-  EXPECT_EQ(bench.axis(axis).homed, 0u);
+  EXPECT_FALSE(bench.homed(axis));
   bench.ticks(2);
-  EXPECT_EQ(bench.axis(axis).homed, 1u);
+  EXPECT_TRUE(bench.homed(axis));
 }
 
 TEST(Homing_rest, a_bad_frame_is_no_rest) {
@@ -113,7 +113,7 @@ TEST(Homing_rest, a_bad_frame_is_no_rest) {
     bench.spoil(axis, FrameFault::missing, 2);
     bench.ticks(3);
     if (round < 6) {
-      EXPECT_EQ(bench.axis(axis).homed, 0u) << round;
+      EXPECT_FALSE(bench.homed(axis)) << round;
     }
   }
 }
@@ -129,7 +129,7 @@ TEST(Homing_rest, does_not_end_while_the_counter_is_noisy) {
   }
   EXPECT_EQ(bench.fault(axis), ILK_FAULT_HOMING_TIMEOUT);
   EXPECT_EQ(bench.axis(axis).fault_value, ILK_HOMING_REST);
-  EXPECT_EQ(bench.axis(axis).homed, 0u);
+  EXPECT_FALSE(bench.homed(axis));
 }
 
 TEST(Homing_bounds, seeking_beyond_its_travel_faults) {
@@ -140,7 +140,7 @@ TEST(Homing_bounds, seeking_beyond_its_travel_faults) {
   bench.tick();
   EXPECT_EQ(bench.fault(axis), ILK_FAULT_HOMING_TRAVEL);
   EXPECT_EQ(std::abs(bench.axis(axis).fault_value), 2101);
-  EXPECT_EQ(bench.axis(axis).homed, 0u);
+  EXPECT_FALSE(bench.homed(axis));
   EXPECT_EQ(bench.mode(), ILK_MODE_READY);
   EXPECT_TRUE(bench.wire_is_zero());
 }
@@ -167,7 +167,7 @@ TEST(Homing_bounds, taking_longer_than_its_time_faults) {
   EXPECT_EQ(bench.fault(axis), ILK_FAULT_HOMING_TIMEOUT);
   EXPECT_EQ(bench.axis(axis).fault_value, ILK_HOMING_SEEK);
   EXPECT_NEAR(ticks, timeout_ticks, 1);
-  EXPECT_EQ(bench.axis(axis).homed, 0u);
+  EXPECT_FALSE(bench.homed(axis));
 }
 
 TEST(Homing_bounds, are_not_those_of_an_unhomed_move) {
@@ -175,7 +175,7 @@ TEST(Homing_bounds, are_not_those_of_an_unhomed_move) {
   bench.ticks(400);
   EXPECT_TRUE(bench.driven(axis));
   bench.ticks(150);
-  EXPECT_EQ(bench.axis(axis).homed, 1u);
+  EXPECT_TRUE(bench.homed(axis));
 }
 
 TEST(P7_bounds, homing_drives_at_most_at_the_unhomed_bound) {
@@ -208,7 +208,7 @@ TEST(Homing_disturbed, a_single_bad_frame_is_not_taken_for_the_switch) {
     bench.tick();
     EXPECT_TRUE(bench.driven(axis));
     tick_while_homing(bench, 100);
-    EXPECT_EQ(bench.axis(axis).homed, 1u);
+    EXPECT_TRUE(bench.homed(axis));
     EXPECT_EQ(bench.motor[axis].travelled, -40);
     EXPECT_EQ(bench.position(axis), offset);
   }
@@ -221,7 +221,7 @@ TEST(Homing_disturbed, a_bad_frame_in_the_tick_of_HOME_does_not_reference_the_ax
   ASSERT_EQ(bench.ask(home(axis)), ILK_VERDICT_ACCEPTED);
   EXPECT_FALSE(bench.driven(axis));
   tick_while_homing(bench, 200);
-  EXPECT_EQ(bench.axis(axis).homed, 1u);
+  EXPECT_TRUE(bench.homed(axis));
   EXPECT_EQ(bench.position(axis), offset);
   EXPECT_EQ(bench.motor[axis].travelled, -40);
 }
@@ -232,7 +232,7 @@ TEST(Homing_disturbed, a_switch_triggered_from_the_start_is_not_the_edge) {
   bench.ask(home(axis));
   bench.ticks(50);
   EXPECT_NE(bench.position(axis), offset);
-  EXPECT_EQ(bench.axis(axis).homed, 0u);
+  EXPECT_FALSE(bench.homed(axis));
 }
 
 TEST(Homing_disturbed, pedal_release_ends_it_and_the_next_press_does_not_resume) {
@@ -240,15 +240,15 @@ TEST(Homing_disturbed, pedal_release_ends_it_and_the_next_press_does_not_resume)
   bench.ticks(20);
   bench.release();
   EXPECT_EQ(bench.axis_state(axis), ILK_AXIS_ENABLED);
-  EXPECT_EQ(bench.axis(axis).homed, 0u);
+  EXPECT_FALSE(bench.homed(axis));
   EXPECT_EQ(phase(bench), ILK_HOMING_NONE);
   bench.press();
   bench.ticks(60);
   EXPECT_TRUE(bench.wire_is_zero());
-  EXPECT_EQ(bench.axis(axis).homed, 0u);
+  EXPECT_FALSE(bench.homed(axis));
   ASSERT_EQ(bench.ask(home(axis)), ILK_VERDICT_ACCEPTED);
   tick_while_homing(bench, 200);
-  EXPECT_EQ(bench.axis(axis).homed, 1u);
+  EXPECT_TRUE(bench.homed(axis));
   EXPECT_EQ(bench.position(axis), offset);
 }
 
@@ -258,7 +258,7 @@ TEST(Homing_disturbed, a_release_during_rest_leaves_the_axis_not_homed) {
   ASSERT_EQ(phase(bench), ILK_HOMING_REST);
   bench.release();
   bench.ticks(100);
-  EXPECT_EQ(bench.axis(axis).homed, 0u);
+  EXPECT_FALSE(bench.homed(axis));
   EXPECT_EQ(bench.fault(axis), ILK_FAULT_NONE) << "setting the reference is not motion";
 }
 
@@ -268,7 +268,7 @@ TEST(Homing_disturbed, a_jammed_axis_stalls) {
   const uint32_t ticks = tick_while_homing(bench, 200);
   EXPECT_EQ(bench.fault(axis), ILK_FAULT_STALL);
   EXPECT_EQ(ticks, 50u);
-  EXPECT_EQ(bench.axis(axis).homed, 0u);
+  EXPECT_FALSE(bench.homed(axis));
 }
 
 TEST(Homing_disturbed, a_motor_wired_the_wrong_way_faults) {
@@ -291,7 +291,7 @@ TEST(Homing_group, one_failure_ends_homing_of_all) {
   bench.tick();
   EXPECT_EQ(bench.fault(slot::non_pwm_upper), ILK_FAULT_STALL);
   EXPECT_EQ(bench.axis_state(axis), ILK_AXIS_ENABLED);
-  EXPECT_EQ(bench.axis(axis).homed, 0u);
+  EXPECT_FALSE(bench.homed(axis));
   EXPECT_EQ(phase(bench), ILK_HOMING_NONE);
   EXPECT_TRUE(bench.wire_is_zero());
 }
@@ -329,7 +329,7 @@ TEST(Homing_result, ends_a_running_move) {
   EXPECT_EQ(bench.driven_direction(axis), ILK_DIRECTION_DECREASING);
   EXPECT_EQ(bench.out().command[axis].drive, 50u);
   tick_while_homing(bench, 200);
-  EXPECT_EQ(bench.axis(axis).homed, 1u);
+  EXPECT_TRUE(bench.homed(axis));
   bench.ticks(30);
   EXPECT_FALSE(bench.driven(axis)) << "the move from before is not resumed";
 }

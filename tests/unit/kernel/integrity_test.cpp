@@ -149,7 +149,7 @@ TEST(P14_containment, after_damage_the_state_is_rebuilt_as_after_boot) {
   expect_contained(bench);
   for (uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     EXPECT_EQ(bench.axis_state(slot), ILK_AXIS_DISABLED);
-    EXPECT_EQ(bench.axis(slot).homed, 0u);
+    EXPECT_FALSE(bench.homed(slot));
   }
   bench.ticks(100);
   expect_contained(bench);
@@ -176,7 +176,7 @@ TEST(P14_containment, damage_in_INIT_does_not_let_an_invalid_configuration_out) 
   Bench bench(config);
   bench.watched = false;
   bench.ticks(5);
-  bench.damage_state().mode = ILK_MODE_READY;
+  bench.damage_state().system.mode = ILK_MODE_READY;
   bench.ticks(30);
   bench.ask(reset());
   for (uint32_t slot = 0; slot < slot::axes; ++slot) bench.ask(enable(slot));
@@ -222,7 +222,7 @@ TEST(P14_containment, damage_to_the_configuration_loses_every_reference) {
   bench.keep_moving(slot::pwm_free, 500, 2 * pass_ticks);
   expect_contained(bench);
   ASSERT_NE(bench.position(slot::pwm_free), bench.motor[slot::pwm_free].travelled) << "counted the wrong way";
-  EXPECT_EQ(bench.axis(slot::pwm_free).homed, 0u);
+  EXPECT_FALSE(bench.homed(slot::pwm_free));
 }
 
 TEST(P14_containment, damage_to_the_configuration_is_reported_with_the_crc_that_was_found) {
@@ -232,7 +232,7 @@ TEST(P14_containment, damage_to_the_configuration_is_reported_with_the_crc_that_
   bench.damage_config().axis[slot::pwm_free].max_drive ^= 1u << 20;
   bench.ticks(2 * pass_ticks);
   expect_contained(bench);
-  EXPECT_EQ(bench.state().cause_value, ilk_config_crc(&bench.config()));
+  EXPECT_EQ(bench.state().system.cause_value, ilk_config_crc(&bench.config()));
 }
 
 TEST(P14_containment, a_damaged_configuration_blocks_RESET_until_a_whole_pass_agreed) {
@@ -255,7 +255,7 @@ TEST(P14_containment, a_damaged_configuration_blocks_RESET_until_a_whole_pass_ag
 
 /// Every word of the configuration that P1 to P3 rest on.
 std::vector<uint32_t*> basis_of(ilk_config_t& config) {
-  std::vector<uint32_t*> words = {&config.pedal_channels, &config.app_timeout_ticks};
+  std::vector<uint32_t*> words = {&config.common.pedal_channels, &config.common.app_timeout_ticks};
   for (ilk_axis_config_t& axis : config.axis) {
     words.insert(words.end(), {&axis.card, &axis.limit_side, &axis.motor_direction});
   }
@@ -325,11 +325,11 @@ TEST(P14_containment, a_lock_of_another_cause_keeps_it_when_what_P1_to_P3_rest_o
   bench.estop_loop_closed = 0;
   bench.tick();
   ASSERT_EQ(bench.cause(), ILK_CAUSE_ESTOP);
-  bench.damage_config().pedal_channels = 1;
+  bench.damage_config().common.pedal_channels = 1;
   bench.tick();
   EXPECT_EQ(bench.mode(), ILK_MODE_LOCKED);
   EXPECT_EQ(bench.cause(), ILK_CAUSE_ESTOP);
-  EXPECT_NE(bench.state().causes_seen & 1u << ILK_CAUSE_INTEGRITY, 0u);
+  EXPECT_NE(bench.state().system.causes_seen & 1u << ILK_CAUSE_INTEGRITY, 0u);
 }
 
 TEST(P13_configuration, damage_to_what_P1_to_P3_rest_on_does_not_leave_INIT) {
@@ -338,7 +338,7 @@ TEST(P13_configuration, damage_to_what_P1_to_P3_rest_on_does_not_leave_INIT) {
   seal(config);
   Bench bench(config);
   bench.watched = false;
-  bench.damage_config().pedal_channels = 1;
+  bench.damage_config().common.pedal_channels = 1;
   bench.ticks(2 * pass_ticks);
   EXPECT_EQ(bench.mode(), ILK_MODE_INIT);
   EXPECT_TRUE(bench.wire_is_zero());
@@ -384,7 +384,7 @@ TEST(P14_containment, with_a_damaged_configuration_P1_to_P3_hold_until_it_is_fou
         ASSERT_FALSE(at_switch && bench.driven_direction(slot) == outward) << "P3, trial " << trial;
       }
     }
-    ASSERT_EQ(bench.state().causes_seen >> ILK_CAUSE_INTEGRITY & 1u, 1u) << "trial " << trial;
+    ASSERT_EQ(bench.state().system.causes_seen >> ILK_CAUSE_INTEGRITY & 1u, 1u) << "trial " << trial;
   }
 }
 

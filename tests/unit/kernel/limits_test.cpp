@@ -208,7 +208,7 @@ TEST(P4_soft_limit, RESTORE_cannot_move_the_range_of_a_homed_axis) {
   bench.push(slot::pwm_free, 900);
   bench.tick();
   ASSERT_EQ(bench.ask(restore(slot::pwm_free, -900)), ILK_VERDICT_ACCEPTED);
-  EXPECT_EQ(bench.axis(slot::pwm_free).homed, 0u);
+  EXPECT_FALSE(bench.homed(slot::pwm_free));
   bench.enable_axis(slot::pwm_free);
   bench.press();
   EXPECT_EQ(bench.ask(move(slot::pwm_free, 900)), ILK_VERDICT_RANGE);

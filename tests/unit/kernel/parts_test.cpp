@@ -26,8 +26,8 @@ struct OpenGate {
   ilk_command_t wanted{ILK_DIRECTION_INCREASING, 100, 0};
 
   OpenGate() {
-    state.mode = ILK_MODE_MOTION;
-    state.pedal = ILK_PEDAL_PRESSED;
+    state.system.mode = ILK_MODE_MOTION;
+    state.system.pedal = ILK_PEDAL_PRESSED;
     axis.state = ILK_AXIS_MOVING;
     axis.card_valid = 1;
     axis.homed = 1;
@@ -42,14 +42,14 @@ TEST(P1_gate, is_open_when_nothing_blocks) { EXPECT_EQ(OpenGate().verdict(), ILK
 TEST(P1_gate, a_pedal_that_is_not_pressed_blocks_even_in_MOTION) {
   for (const uint32_t pedal : {uint32_t{ILK_PEDAL_RELEASED}, uint32_t{ILK_PEDAL_DISAGREE}, ILK_PEDAL_COUNT}) {
     OpenGate gate;
-    gate.state.pedal = pedal;
+    gate.state.system.pedal = pedal;
     EXPECT_EQ(gate.verdict(), ILK_GATE_PEDAL) << pedal;
   }
 }
 
 TEST(P1_gate, an_active_E_stop_blocks_even_in_MOTION) {
   OpenGate gate;
-  gate.state.estop = 1;
+  gate.state.system.estop = 1;
   EXPECT_EQ(gate.verdict(), ILK_GATE_ESTOP);
 }
 
@@ -155,12 +155,12 @@ using State = ilk_state_t;
 using Axis = ilk_axis_t;
 
 const Contradiction contradictions[] = {
-    {"unknown_mode", ILK_MODE_READY, [](State& state, Axis&) { state.mode = ILK_MODE_COUNT; }},
-    {"unknown_cause", ILK_MODE_LOCKED, [](State& state, Axis&) { state.cause = ILK_CAUSE_COUNT; }},
-    {"cause_in_READY", ILK_MODE_READY, [](State& state, Axis&) { state.cause = ILK_CAUSE_ESTOP; }},
-    {"LOCKED_without_a_cause", ILK_MODE_LOCKED, [](State& state, Axis&) { state.cause = ILK_CAUSE_NONE; }},
-    {"unknown_pedal", ILK_MODE_READY, [](State& state, Axis&) { state.pedal = ILK_PEDAL_COUNT; }},
-    {"no_such_slice", ILK_MODE_READY, [](State& state, Axis&) { state.config_slice = ILK_SLOTS; }},
+    {"unknown_mode", ILK_MODE_READY, [](State& state, Axis&) { state.system.mode = ILK_MODE_COUNT; }},
+    {"unknown_cause", ILK_MODE_LOCKED, [](State& state, Axis&) { state.system.cause = ILK_CAUSE_COUNT; }},
+    {"cause_in_READY", ILK_MODE_READY, [](State& state, Axis&) { state.system.cause = ILK_CAUSE_ESTOP; }},
+    {"LOCKED_without_a_cause", ILK_MODE_LOCKED, [](State& state, Axis&) { state.system.cause = ILK_CAUSE_NONE; }},
+    {"unknown_pedal", ILK_MODE_READY, [](State& state, Axis&) { state.system.pedal = ILK_PEDAL_COUNT; }},
+    {"no_such_slice", ILK_MODE_READY, [](State& state, Axis&) { state.system.config_slice = ILK_SLOTS; }},
     {"unknown_axis_state", ILK_MODE_MOTION, [](State&, Axis& axis) { axis.state = ILK_AXIS_COUNT; }},
     {"unknown_fault", ILK_MODE_MOTION, [](State&, Axis& axis) { axis.fault = ILK_FAULT_COUNT; }},
     {"unknown_driven_direction", ILK_MODE_MOTION,

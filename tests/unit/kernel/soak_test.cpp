@@ -50,7 +50,7 @@ void calm(Bench& bench) {
   bench.pedal(bench.pedal_no_closed == 1);
   bench.estop_loop_closed = 1;
   bench.transaction_done = 1;
-  bench.deadline_missed = 0;
+  bench.deadlines_missed = 0;
   bench.app_alive = true;
   for (Motor& motor : bench.motor) {
     motor.frozen = false;
@@ -98,7 +98,7 @@ void disturb(Bench& bench, Dice& dice) {
       bench.holder = 1 + dice.below(2);
       break;
     default:
-      bench.deadline_missed = 1;
+      bench.deadlines_missed = 1;
       break;
   }
 }
@@ -207,7 +207,7 @@ TEST(P15_total, counters_saturate_over_a_long_idle_time) {
   Bench bench;
   bench.app_alive = false;
   bench.transaction_done = 0;
-  bench.deadline_missed = 1;
+  bench.deadlines_missed = 1;
   bench.pedal_no_closed = 2;
   bench.ticks(70000);
   EXPECT_EQ(bench.mode(), ILK_MODE_LOCKED);

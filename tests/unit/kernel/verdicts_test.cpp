@@ -50,7 +50,7 @@ TEST(P11_inert_refusal, any_wrong_bit_of_a_request_is_CHECKSUM) {
     trial.tick();
     ASSERT_EQ(trial.out().verdict[0].verdict, uint32_t{ILK_VERDICT_CHECKSUM}) << bit;
     ASSERT_TRUE(trial.wire_is_zero());
-    ASSERT_EQ(trial.state().last_sequence, bench.state().last_sequence);
+    ASSERT_EQ(trial.state().system.last_sequence, bench.state().system.last_sequence);
   }
   bench.queue_record(right);
   bench.tick();
@@ -67,7 +67,7 @@ TEST(P11_inert_refusal, a_wrong_CRC_changes_nothing) {
   bench.tick();
   EXPECT_EQ(bench.out().verdict[0].verdict, uint32_t{ILK_VERDICT_CHECKSUM});
   EXPECT_EQ(state_without_counters(bench), state_without_counters(undisturbed));
-  EXPECT_EQ(bench.state().requests_refused, undisturbed.state().requests_refused + 1);
+  EXPECT_EQ(bench.state().system.requests_refused, undisturbed.state().system.requests_refused + 1);
 }
 
 TEST(Sequence, must_be_newer_by_one_to_half_the_range) {
@@ -75,7 +75,7 @@ TEST(Sequence, must_be_newer_by_one_to_half_the_range) {
     Bench bench = quiet_bench_in_motion();
     bench.app_alive = false;
     ilk_request_t request = stop();
-    request.sequence = bench.state().last_sequence + distance;
+    request.sequence = bench.state().system.last_sequence + distance;
     bench.queue_record(with_crc(request));
     bench.tick();
     return static_cast<ilk_verdict_t>(bench.out().verdict[0].verdict);
@@ -113,7 +113,7 @@ TEST(Sequence, wraps) {
   EXPECT_EQ(bench.ask(stop()), ILK_VERDICT_ACCEPTED);
   EXPECT_EQ(bench.ask(stop()), ILK_VERDICT_ACCEPTED);
   EXPECT_EQ(bench.ask(stop()), ILK_VERDICT_ACCEPTED);
-  EXPECT_EQ(bench.state().last_sequence, 1u);
+  EXPECT_EQ(bench.state().system.last_sequence, 1u);
 }
 
 TEST(Sequence, a_repeated_record_is_refused_and_does_not_reopen_older_numbers) {
@@ -135,7 +135,7 @@ TEST(Sequence, a_repeated_record_is_refused_and_does_not_reopen_older_numbers) {
   EXPECT_EQ(bench.out().verdict[1].verdict, uint32_t{ILK_VERDICT_SEQUENCE});
   EXPECT_EQ(bench.out().verdict[2].verdict, uint32_t{ILK_VERDICT_SEQUENCE});
   EXPECT_EQ(bench.out().verdict[3].verdict, uint32_t{ILK_VERDICT_SEQUENCE});
-  EXPECT_EQ(bench.state().last_sequence, newest.sequence);
+  EXPECT_EQ(bench.state().system.last_sequence, newest.sequence);
 }
 
 TEST(Sequence, a_refused_request_uses_up_its_number) {
@@ -144,7 +144,7 @@ TEST(Sequence, a_refused_request_uses_up_its_number) {
   bench.app_alive = false;
   const ilk_verdict_t verdict = bench.ask(reset());
   ASSERT_EQ(verdict, ILK_VERDICT_MODE);
-  EXPECT_EQ(bench.state().last_sequence, bench.last_sequence);
+  EXPECT_EQ(bench.state().system.last_sequence, bench.last_sequence);
 }
 
 TEST(Sequence, restarts_with_a_new_attachment) {
@@ -153,7 +153,7 @@ TEST(Sequence, restarts_with_a_new_attachment) {
   bench.link_generation = 7;
   bench.last_sequence = 0;
   EXPECT_EQ(bench.ask(enable(slot::pwm_free)), ILK_VERDICT_ACCEPTED);
-  EXPECT_EQ(bench.state().link_generation, 7u);
+  EXPECT_EQ(bench.state().system.link_generation, 7u);
 }
 
 TEST(Common_checks, unknown_kinds_are_UNKNOWN) {
@@ -195,7 +195,7 @@ TEST(P11_inert_refusal, at_most_sixteen_requests_are_judged_in_a_tick) {
   for (int more = 0; more < 20; ++more) bench.queue(stop());
   bench.tick();
   EXPECT_EQ(bench.out().verdict_count, uint32_t{ILK_REQUESTS_PER_TICK});
-  EXPECT_EQ(bench.state().last_sequence, bench.last_sequence - 4);
+  EXPECT_EQ(bench.state().system.last_sequence, bench.last_sequence - 4);
 }
 
 TEST(P11_inert_refusal, verdicts_come_in_order_and_name_their_request) {
@@ -207,8 +207,8 @@ TEST(P11_inert_refusal, verdicts_come_in_order_and_name_their_request) {
   const std::vector<ilk_verdict_t> verdicts = {ILK_VERDICT_ACCEPTED, ILK_VERDICT_MODE, ILK_VERDICT_MODE,
                                                ILK_VERDICT_AXIS, ILK_VERDICT_ACCEPTED};
   const uint32_t first = bench.last_sequence + 1;
-  const uint32_t accepted = bench.state().requests_accepted;
-  const uint32_t refused = bench.state().requests_refused;
+  const uint32_t accepted = bench.state().system.requests_accepted;
+  const uint32_t refused = bench.state().system.requests_refused;
   for (const ilk_request_t& request : requests) bench.queue(request);
   bench.tick();
   ASSERT_EQ(bench.out().verdict_count, requests.size());
@@ -220,8 +220,8 @@ TEST(P11_inert_refusal, verdicts_come_in_order_and_name_their_request) {
     EXPECT_EQ(record.axis, requests[index].axis);
     EXPECT_EQ(record.tick, bench.now());
   }
-  EXPECT_EQ(bench.state().requests_accepted, accepted + 2);
-  EXPECT_EQ(bench.state().requests_refused, refused + 3);
+  EXPECT_EQ(bench.state().system.requests_accepted, accepted + 2);
+  EXPECT_EQ(bench.state().system.requests_refused, refused + 3);
 }
 
 TEST(P11_inert_refusal, the_request_crc_is_the_standard_one) {
