@@ -39,9 +39,7 @@ TEST(Determinism, the_same_run_gives_the_same_bits) {
 }
 
 TEST(Determinism, every_output_word_is_written_and_none_read) {
-  Bench bench(ten_axis_config());
-  bench.to_motion();
-  bench.enable_axis(0);
+  Bench bench = motion_bench(0, ten_axis_config());
   bench.queue(move(0, 50));
   for (const bool sound : {true, false}) {
     const ilk_config_t config = bench.config();

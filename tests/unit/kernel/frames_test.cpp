@@ -10,13 +10,6 @@
 namespace interlock::kernel_test {
 namespace {
 
-/// Homed and enabled in MOTION, ready to move by `drive` either way.
-Bench moving_bench(uint32_t slot, const ilk_config_t& config = standard_config()) {
-  Bench bench(config);
-  bench.to_motion_homed(slot);
-  return bench;
-}
-
 std::span<const uint32_t> wire_after_move(Bench& bench, uint32_t slot, int32_t target, uint32_t drive,
                                           uint32_t amplitude = 0) {
   ilk_request_t request = move(slot, target, drive);
@@ -45,7 +38,7 @@ TEST(P16_frames, carry_start_word_tick_and_checksum_to_every_card) {
 }
 
 TEST(P16_frames, PWM) {
-  Bench bench = moving_bench(slot::pwm_lower);
+  Bench bench = homed_bench(slot::pwm_lower);
   auto frame = wire_after_move(bench, slot::pwm_lower, 500, 777);
   EXPECT_EQ(frame[3], 0x80000000u + 777);
   EXPECT_EQ(frame[14], 1u);
@@ -56,13 +49,13 @@ TEST(P16_frames, PWM) {
 }
 
 TEST(P16_frames, PWM_with_inverted_motor) {
-  Bench bench = moving_bench(slot::corrected_upper);
+  Bench bench = homed_bench(slot::corrected_upper);
   EXPECT_EQ(wire_after_move(bench, slot::corrected_upper, 500, 777)[3], 777u);
   EXPECT_EQ(wire_after_move(bench, slot::corrected_upper, -500, 777)[3], 0x80000000u + 777);
 }
 
 TEST(P16_frames, NON_PWM) {
-  Bench bench = moving_bench(slot::non_pwm_upper);
+  Bench bench = homed_bench(slot::non_pwm_upper);
   auto frame = wire_after_move(bench, slot::non_pwm_upper, 500, 777);
   EXPECT_EQ(frame[3], 0xC0000000u + 777);
   EXPECT_EQ(frame[14], 1u);
@@ -71,13 +64,13 @@ TEST(P16_frames, NON_PWM) {
 }
 
 TEST(P16_frames, NON_PWM_with_inverted_motor) {
-  Bench bench = moving_bench(slot::non_pwm_inverted);
+  Bench bench = homed_bench(slot::non_pwm_inverted);
   EXPECT_EQ(wire_after_move(bench, slot::non_pwm_inverted, 500, 777)[3], 0x40000000u + 777);
   EXPECT_EQ(wire_after_move(bench, slot::non_pwm_inverted, -500, 777)[3], 0xC0000000u + 777);
 }
 
 TEST(P16_frames, ANALOG) {
-  Bench bench = moving_bench(slot::analog_upper);
+  Bench bench = homed_bench(slot::analog_upper);
   auto frame = wire_after_move(bench, slot::analog_upper, 500, 777);
   EXPECT_EQ(frame[6], 0x80000000u + 777);
   EXPECT_EQ(frame[14], 1u);
@@ -97,7 +90,7 @@ TEST(P16_frames, the_largest_drive_of_each_card_is_carried_whole) {
     ilk_config_t config = standard_config();
     config.axis[slot].max_drive = drive;
     seal(config);
-    Bench bench = moving_bench(slot, config);
+    Bench bench = homed_bench(slot, 0, config);
     const uint32_t up = wire_after_move(bench, slot, 500, drive)[word];
     const uint32_t down = wire_after_move(bench, slot, -500, drive)[word];
     EXPECT_EQ(up - drive, word == 3 && slot == slot::non_pwm_upper ? 0xC0000000u : 0x80000000u);
@@ -113,7 +106,7 @@ ilk_config_t fast_wave_config() {
 }
 
 TEST(P16_frames, HIGH_FREQUENCY) {
-  Bench bench = moving_bench(slot::high_frequency, fast_wave_config());
+  Bench bench = homed_bench(slot::high_frequency, 0, fast_wave_config());
   auto frame = wire_after_move(bench, slot::high_frequency, 500, 54, 200);
   EXPECT_EQ(frame[2], 0x01000000u + 200);
   EXPECT_EQ(frame[4], 0x00000000u + 200);
@@ -130,14 +123,14 @@ TEST(P16_frames, HIGH_FREQUENCY_with_inverted_motor) {
   ilk_config_t config = standard_config();
   config.axis[slot::high_frequency].motor_direction = 0;
   seal(config);
-  Bench bench = moving_bench(slot::high_frequency, config);
+  Bench bench = homed_bench(slot::high_frequency, 0, config);
   auto frame = wire_after_move(bench, slot::high_frequency, 500, 54, 7);
   EXPECT_EQ(frame[2], 7u);
   EXPECT_EQ(frame[4], 0x01000007u);
 }
 
 TEST(P16_frames, HIGH_FREQUENCY_without_amplitude_is_still_a_drive) {
-  Bench bench = moving_bench(slot::high_frequency);
+  Bench bench = homed_bench(slot::high_frequency);
   EXPECT_NE(wire_after_move(bench, slot::high_frequency, 500, 54, 0)[3], 0u);
   EXPECT_EQ(bench.gate(slot::high_frequency), ILK_GATE_OPEN);
 }
@@ -147,7 +140,7 @@ TEST(P16_frames, HIGH_FREQUENCY_drive_is_interpolated_towards_the_slower_side) {
     uint32_t drive;
     uint32_t word;
   };
-  Bench bench = moving_bench(slot::high_frequency, fast_wave_config());
+  Bench bench = homed_bench(slot::high_frequency, 0, fast_wave_config());
   bench.motor[slot::high_frequency].speed = 0;
   for (const auto& [drive, word] : {Point{1, 1196537212u}, Point{27, 1194580842u}, Point{53, 1192624473u},
                                     Point{54, 1192549228u}, Point{100, 1191164721u}, Point{189, 1188486000u},
@@ -157,7 +150,7 @@ TEST(P16_frames, HIGH_FREQUENCY_drive_is_interpolated_towards_the_slower_side) {
 }
 
 TEST(P16_frames, HIGH_FREQUENCY_more_drive_is_never_a_slower_word) {
-  Bench bench = moving_bench(slot::high_frequency, fast_wave_config());
+  Bench bench = homed_bench(slot::high_frequency, 0, fast_wave_config());
   uint32_t slower = 1196612456u;
   for (uint32_t drive = 1; drive <= 397785; drive += drive < 12000 ? 61 : 997) {
     const int32_t target = bench.position(slot::high_frequency) > 0 ? -500 : 500;
@@ -169,7 +162,7 @@ TEST(P16_frames, HIGH_FREQUENCY_more_drive_is_never_a_slower_word) {
 }
 
 TEST(P16_frames, a_sensor_card_and_an_empty_slot_get_no_signal) {
-  Bench bench = moving_bench(slot::pwm_lower);
+  Bench bench = homed_bench(slot::pwm_lower);
   wire_after_move(bench, slot::pwm_lower, 500, 100);
   EXPECT_TRUE(drive_words_zero(bench.out().frame[slot::sensor]));
   EXPECT_TRUE(drive_words_zero(bench.out().frame[slot::empty]));

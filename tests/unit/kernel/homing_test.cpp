@@ -241,6 +241,21 @@ TEST(P17_edge, is_no_reference_before_the_axis_rests) {
   EXPECT_TRUE(bench.homed(axis));
 }
 
+TEST(P17_edge, that_lies_farther_from_rest_than_coast_and_tolerance_is_none) {
+  for (const int32_t way : {1, -1}) {
+    for (const int32_t beyond : {18, 19}) {
+      Bench bench = homing_bench();
+      to_phase(bench, ILK_HOMING_REST);
+      bench.motor[axis].switch_stuck = true;
+      bench.push(axis, way * beyond);
+      finish(bench);
+      EXPECT_EQ(bench.homed(axis), beyond == 18);
+      EXPECT_EQ(bench.fault(axis), beyond == 18 ? ILK_FAULT_NONE : ILK_FAULT_SWITCH);
+      if (beyond == 19) EXPECT_EQ(bench.axis(axis).fault_value, way * beyond);
+    }
+  }
+}
+
 TEST(P17_edge, that_was_seen_before_HOME_does_not_count) {
   Bench bench = motion_bench(axis);
   bench.motor[axis].switch_stuck = true;

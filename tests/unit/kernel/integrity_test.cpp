@@ -23,7 +23,7 @@ void run_busy(Bench& bench) {
   bench.to_ready();
   for (const uint32_t slot : {0u, 1u, 5u}) bench.reference(slot);
   bench.motor[6].travelled += 100;
-  bench.tick();
+  bench.rest();
   for (uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     if (slot != 6) bench.enable_axis(slot);
   }
@@ -117,10 +117,11 @@ TEST(P14_containment, swapped_and_copied_words_lock) {
 
 TEST(P14_containment, a_replaced_state_locks) {
   Dice dice(14);
+  Bench sound = ready_bench();
+  sound.press();
   for (int trial = 0; trial < 2000; ++trial) {
-    Bench bench;
+    Bench bench = sound;
     bench.watched = false;
-    bench.to_motion();
     StateWords words;
     switch (trial) {
       case 0:
@@ -139,22 +140,43 @@ TEST(P14_containment, a_replaced_state_locks) {
   }
 }
 
-TEST(P14_containment, after_damage_the_state_is_rebuilt_as_after_boot) {
-  Bench bench;
-  bench.to_motion_homed(slot::pwm_free, 30);
+TEST(P14_containment, after_damage_nothing_is_known_and_every_axis_is_FAULTED_by_INTEGRITY) {
+  Bench bench = homed_bench(slot::pwm_free, 30);
+  const uint32_t consent = bench.system().consent;
   bench.watched = false;
   bench.keep_moving(slot::pwm_free, 500, 3);
   bench.damage_state().axis[slot::pwm_free].drive ^= 4u;
   bench.tick();
   expect_contained(bench);
+  EXPECT_FALSE(bench.powered());
+  EXPECT_EQ(bench.system().causes_seen, 1u << ILK_CAUSE_INTEGRITY);
+  EXPECT_EQ(bench.system().cause_tick, bench.now());
   for (uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
-    EXPECT_EQ(bench.axis_state(slot), ILK_AXIS_DISABLED);
+    EXPECT_EQ(bench.axis_state(slot), slot < slot::axes ? ILK_AXIS_FAULTED : ILK_AXIS_DISABLED);
+    EXPECT_EQ(bench.fault(slot), slot < slot::axes ? ILK_FAULT_INTEGRITY : ILK_FAULT_NONE);
     EXPECT_FALSE(bench.homed(slot));
   }
   bench.ticks(100);
   expect_contained(bench);
+  bench.boot_nonce += 1;
   bench.to_ready();
-  EXPECT_EQ(bench.mode(), ILK_MODE_READY);
+  EXPECT_EQ(bench.ask(enable(slot::pwm_free)), ILK_VERDICT_FAULTED);
+  EXPECT_EQ(bench.ask(clear_fault(slot::pwm_free)), ILK_VERDICT_ACCEPTED);
+  bench.enable_axis(slot::pwm_free);
+  bench.press();
+  EXPECT_NE(bench.system().consent, consent);
+  EXPECT_EQ(bench.ask(move(slot::pwm_free, 50)), ILK_VERDICT_ACCEPTED);
+}
+
+TEST(P14_containment, damage_gives_a_cause_of_its_own_even_while_LOCKED_by_another) {
+  Bench bench = ready_bench();
+  bench.watched = false;
+  bench.estop_loop_closed = 0;
+  bench.tick();
+  bench.damage_state().axis[slot::pwm_free].position_counts ^= 4;
+  bench.tick();
+  EXPECT_EQ(bench.cause(), ILK_CAUSE_INTEGRITY);
+  EXPECT_EQ(bench.system().causes_seen, 1u << ILK_CAUSE_INTEGRITY | 1u << ILK_CAUSE_ESTOP);
 }
 
 TEST(P14_containment, a_lock_by_damage_is_left_only_by_RESET_with_the_pedal_up) {
@@ -194,9 +216,10 @@ TEST(P14_containment, damage_to_the_configuration_locks_within_two_passes) {
   constexpr uint32_t config_words = sizeof(ilk_config_t) / 4;
   Dice dice(144);
   uint32_t slowest = 0;
+  Bench sound = ready_bench();
+  sound.press();
   for (uint32_t word = 0; word < config_words; ++word) {
-    Bench bench;
-    bench.to_motion();
+    Bench bench = sound;
     bench.watched = false;
     bench.ticks(dice.below(pass_ticks));
     auto words = std::bit_cast<std::array<uint32_t, config_words>>(bench.config());
@@ -232,7 +255,7 @@ TEST(P14_containment, damage_to_the_configuration_is_reported_with_the_crc_that_
   bench.damage_config().axis[slot::pwm_free].max_drive ^= 1u << 20;
   bench.ticks(2 * pass_ticks);
   expect_contained(bench);
-  EXPECT_EQ(bench.state().system.cause_value, ilk_config_crc(&bench.config()));
+  EXPECT_EQ(bench.system().cause_value, ilk_config_crc(&bench.config()));
 }
 
 TEST(P14_containment, a_damaged_configuration_blocks_RESET_until_a_whole_pass_agreed) {
@@ -329,7 +352,7 @@ TEST(P14_containment, a_lock_of_another_cause_keeps_it_when_what_P1_to_P3_rest_o
   bench.tick();
   EXPECT_EQ(bench.mode(), ILK_MODE_LOCKED);
   EXPECT_EQ(bench.cause(), ILK_CAUSE_ESTOP);
-  EXPECT_NE(bench.state().system.causes_seen & 1u << ILK_CAUSE_INTEGRITY, 0u);
+  EXPECT_NE(bench.system().causes_seen & 1u << ILK_CAUSE_INTEGRITY, 0u);
 }
 
 TEST(P13_configuration, damage_to_what_P1_to_P3_rest_on_does_not_leave_INIT) {
@@ -347,10 +370,11 @@ TEST(P13_configuration, damage_to_what_P1_to_P3_rest_on_does_not_leave_INIT) {
 TEST(P14_containment, with_a_damaged_configuration_P1_to_P3_hold_until_it_is_found) {
   constexpr uint32_t config_words = sizeof(ilk_config_t) / 4;
   Dice dice(145);
+  Bench enabled = ready_bench();
+  for (uint32_t slot = 0; slot < slot::axes; ++slot) enabled.enable_axis(slot);
+  enabled.press();
   for (int trial = 0; trial < 400; ++trial) {
-    Bench bench;
-    bench.to_motion();
-    for (uint32_t slot = 0; slot < slot::axes; ++slot) bench.enable_axis(slot);
+    Bench bench = enabled;
     bench.watched = false;
     for (auto& motor : bench.motor) motor.switch_stuck = dice.one_in(3);
     const ilk_config_t before = bench.config();
@@ -384,7 +408,7 @@ TEST(P14_containment, with_a_damaged_configuration_P1_to_P3_hold_until_it_is_fou
         ASSERT_FALSE(at_switch && bench.driven_direction(slot) == outward) << "P3, trial " << trial;
       }
     }
-    ASSERT_EQ(bench.state().system.causes_seen >> ILK_CAUSE_INTEGRITY & 1u, 1u) << "trial " << trial;
+    ASSERT_EQ(bench.system().causes_seen >> ILK_CAUSE_INTEGRITY & 1u, 1u) << "trial " << trial;
   }
 }
 

@@ -211,7 +211,7 @@ TEST(Modes, a_cause_counts_in_a_row_only) {
   Bench bench = ready_bench();
   for (int round = 0; round < 5; ++round) {
     bench.transaction_done = 0;
-    bench.deadlines_missed = 7;
+    bench.deadlines_missed = 1;
     bench.ticks(2);
     bench.transaction_done = 1;
     bench.deadlines_missed = 0;
@@ -222,6 +222,18 @@ TEST(Modes, a_cause_counts_in_a_row_only) {
   }
   EXPECT_EQ(bench.mode(), ILK_MODE_READY);
   EXPECT_EQ(bench.system().overruns, 10u);
+}
+
+TEST(Modes, each_missed_deadline_counts_against_the_limit) {
+  for (const uint32_t missed : {1u, 2u, 3u, 0xFFFFFFFFu}) {
+    Bench bench = ready_bench();
+    bench.deadlines_missed = missed;
+    bench.tick();
+    EXPECT_EQ(bench.mode(), missed < 3 ? ILK_MODE_READY : ILK_MODE_LOCKED);
+    bench.tick();
+    EXPECT_EQ(bench.mode(), missed < 2 ? ILK_MODE_READY : ILK_MODE_LOCKED);
+    EXPECT_EQ(bench.system().overruns, missed < 4 ? 2 * missed : 0xFFFFFFFFu);
+  }
 }
 
 TEST(Modes, one_valid_frame_from_any_card_keeps_the_bus) {

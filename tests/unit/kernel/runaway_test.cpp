@@ -114,8 +114,13 @@ TEST(P6_reverse, a_change_of_direction_starts_a_new_mark_and_coast_after_it_is_t
   EXPECT_EQ(bench.fault(axis), ILK_FAULT_NONE);
 }
 
-TEST(P6_reverse, while_blind_is_judged_by_the_direction_driven_then_and_a_change_of_wish_excuses_nothing) {
-  for (const int32_t creep : {-7, 7}) {
+TEST(P6_reverse, and_drift_while_blind_are_judged_by_the_first_frame_after_and_a_change_of_wish_excuses_nothing) {
+  struct Case {
+    int32_t creep;
+    ilk_fault_t fault;
+  };
+  for (const auto& [creep, fault] : {Case{-7, ILK_FAULT_REVERSE}, Case{-6, ILK_FAULT_NONE}, Case{6, ILK_FAULT_NONE},
+                                     Case{7, ILK_FAULT_DRIFT}}) {
     Bench bench = motion_bench(axis);
     bench.ask(move(axis, 80));
     bench.motor[axis].frozen = true;
@@ -123,7 +128,7 @@ TEST(P6_reverse, while_blind_is_judged_by_the_direction_driven_then_and_a_change
     bench.spoil(axis, FrameFault::missing, 2);
     bench.queue(move(axis, -80));
     bench.ticks(3);
-    EXPECT_EQ(bench.fault(axis), creep < 0 ? ILK_FAULT_REVERSE : ILK_FAULT_NONE);
+    EXPECT_EQ(bench.fault(axis), fault) << creep;
   }
 }
 
