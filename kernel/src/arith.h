@@ -103,9 +103,15 @@ static inline int32_t along(uint32_t direction, int32_t travel) {
 
 /** The other way; none for none. */
 static inline uint32_t opposite_of(uint32_t direction) {
-  static const uint32_t other[ILK_DIRECTION_COUNT] = {
-      (uint32_t)ILK_DIRECTION_NONE, (uint32_t)ILK_DIRECTION_DECREASING, (uint32_t)ILK_DIRECTION_INCREASING};
-  return (direction < ILK_DIRECTION_COUNT) ? other[direction] : (uint32_t)ILK_DIRECTION_NONE;
+  uint32_t other = (uint32_t)ILK_DIRECTION_NONE;
+  if (direction == (uint32_t)ILK_DIRECTION_INCREASING) {
+    other = (uint32_t)ILK_DIRECTION_DECREASING;
+  } else if (direction == (uint32_t)ILK_DIRECTION_DECREASING) {
+    other = (uint32_t)ILK_DIRECTION_INCREASING;
+  } else {
+    other = (uint32_t)ILK_DIRECTION_NONE;
+  }
+  return other;
 }
 
 /** True for 1 to `most`. */

@@ -2,6 +2,7 @@
 // rules that already hold. Each must hold alone, because memory may be damaged between the two.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <functional>
 
 #include "bench.hpp"
@@ -126,7 +127,8 @@ TEST(P1_gate, each_condition_blocks_by_itself_whatever_the_others_say) {
     EXPECT_EQ(ilk_output_gate(&open.config, &open.system, &open.axis, &open.wanted), block.gate)
         << "block " << &block - blocks;
   }
-  for (const uint32_t card : {uint32_t{ILK_CARD_NONE}, uint32_t{ILK_CARD_SENSOR}, ILK_CARD_COUNT, UINT32_MAX}) {
+  for (const uint32_t card :
+       {uint32_t{ILK_CARD_NONE}, uint32_t{ILK_CARD_SENSOR}, ILK_CARD_COUNT, UINT32_MAX}) {
     OpenGate open;
     open.config.card = card;
     EXPECT_EQ(ilk_output_gate(&open.config, &open.system, &open.axis, &open.wanted), ILK_GATE_DRIVE) << card;
@@ -140,7 +142,22 @@ TEST(P3_hard_limit_part, an_unknown_side_lies_in_no_direction) {
     config.limit_side = side;
     EXPECT_EQ(ilk_towards_switch(&config), uint32_t{ILK_DIRECTION_NONE});
   }
-  EXPECT_EQ(opposite_of(ILK_DIRECTION_COUNT), uint32_t{ILK_DIRECTION_NONE});
+}
+
+TEST(P17_reference_part, an_axis_without_a_switch_has_no_way_to_it_and_none_away) {
+  ilk_axis_t axis{};
+  for (const auto& [side, towards, away] :
+       {std::array{uint32_t{ILK_LIMIT_NONE}, uint32_t{ILK_DIRECTION_NONE}, uint32_t{ILK_DIRECTION_NONE}},
+        std::array{uint32_t{ILK_LIMIT_LOWER}, uint32_t{ILK_DIRECTION_DECREASING},
+                   uint32_t{ILK_DIRECTION_INCREASING}},
+        std::array{uint32_t{ILK_LIMIT_UPPER}, uint32_t{ILK_DIRECTION_INCREASING},
+                   uint32_t{ILK_DIRECTION_DECREASING}}}) {
+    const ilk_axis_config_t config = switched_axis(ILK_CARD_PWM, static_cast<ilk_limit_side_t>(side));
+    axis.homing_phase = ILK_HOMING_SEEK;
+    EXPECT_EQ(ilk_homing_command(&config, &axis).direction, towards);
+    axis.homing_phase = ILK_HOMING_BACK_OFF;
+    EXPECT_EQ(ilk_homing_command(&config, &axis).direction, away);
+  }
 }
 
 bool packed_to_zero_drive(uint32_t card, const ilk_command_t& command) {
@@ -157,7 +174,8 @@ TEST(P16_frames, a_command_without_direction_or_drive_and_a_card_without_a_motor
     EXPECT_TRUE(packed_to_zero_drive(card, {ILK_DIRECTION_INCREASING, 0, 200}));
     EXPECT_TRUE(packed_to_zero_drive(card, {ILK_DIRECTION_NONE, 1, 200}));
   }
-  for (const uint32_t card : {uint32_t{ILK_CARD_NONE}, uint32_t{ILK_CARD_SENSOR}, ILK_CARD_COUNT, UINT32_MAX}) {
+  for (const uint32_t card :
+       {uint32_t{ILK_CARD_NONE}, uint32_t{ILK_CARD_SENSOR}, ILK_CARD_COUNT, UINT32_MAX}) {
     EXPECT_TRUE(packed_to_zero_drive(card, {ILK_DIRECTION_INCREASING, 1, 1})) << card;
   }
 }
@@ -212,7 +230,6 @@ TEST(P15_total, arithmetic_stops_at_its_ends) {
   EXPECT_EQ(count_up(9, 7), 7u) << "a value beyond the ceiling comes back to it";
   EXPECT_EQ(count_down(0), 0u);
   EXPECT_EQ(left_of(3, 4), 0u);
-  EXPECT_EQ(along(ILK_DIRECTION_COUNT, 5), 0);
 }
 
 TEST(P14_containment, a_slice_beyond_the_last_begins_the_pass_anew) {
