@@ -273,7 +273,8 @@ void Bench::enable_axis(uint32_t slot) {
 }
 
 void Bench::reference(uint32_t slot) {
-  require(ask(set_home(slot)) == ILK_VERDICT_ACCEPTED && axis(slot).homed == ILK_HOMED_BY_HAND, "a homed axis");
+  require(ask(set_home(slot)) == ILK_VERDICT_ACCEPTED && axis(slot).homed == ILK_HOMED_BY_HAND,
+          "a homed axis");
 }
 
 void Bench::push(uint32_t slot, int32_t counts) {

@@ -31,10 +31,10 @@ enum class FrameFault {
 struct Motor {
   int64_t travelled = 0;
   uint32_t raw_at_start = 5000;
-  int32_t speed = 1;  ///< counts per driven tick
-  int32_t coast = 0;  ///< counts from the last driven tick until rest
-  int32_t creep = 0;      ///< counts per tick, whatever the drive says
-  int32_t dither = 0;     ///< counts that every second reading is off
+  int32_t speed = 1;   ///< counts per driven tick
+  int32_t coast = 0;   ///< counts from the last driven tick until rest
+  int32_t creep = 0;   ///< counts per tick, whatever the drive says
+  int32_t dither = 0;  ///< counts that every second reading is off
   bool frozen = false;
   bool reversed = false;
   std::optional<int32_t> switch_at;  ///< the switch is triggered at and beyond this place
@@ -59,7 +59,8 @@ struct Card {
   uint32_t fault_ticks = 0;
 };
 
-// Requests; Bench::queue adds sequence number, CRC and, to MOVE and HOME without one, the number of this press.
+// Requests; Bench::queue adds sequence number, CRC and, to MOVE and HOME without one, the number of this
+// press.
 ilk_request_t heartbeat(uint32_t holder);
 ilk_request_t stop();
 ilk_request_t reset();
@@ -118,7 +119,9 @@ class Bench {
   uint32_t last_sequence = 0;
 
   // What can be seen.
-  ilk_verdict_t verdict(uint32_t index) const { return static_cast<ilk_verdict_t>(out_.verdict[index].verdict); }
+  ilk_verdict_t verdict(uint32_t index) const {
+    return static_cast<ilk_verdict_t>(out_.verdict[index].verdict);
+  }
   const ilk_system_t& system() const { return state_.system; }
   bool homed(uint32_t slot) const { return axis(slot).homed != ILK_HOMED_NOT; }
   bool powered() const { return out_.power == 1; }

@@ -1,4 +1,5 @@
-// Cards: what makes a frame valid, what a lost card and a reset card do to their axis, and how they come back.
+// Cards: what makes a frame valid, what a lost card and a reset card do to their axis, and how they come
+// back.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,8 +14,8 @@ constexpr uint32_t axis = slot::pwm_lower;
 class Bad_frame : public testing::TestWithParam<FrameFault> {};
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Bad_frame,
-                         testing::Values(FrameFault::wrong_checksum, FrameFault::wrong_start, FrameFault::missing,
-                                         FrameFault::repeated, FrameFault::stale_echo));
+                         testing::Values(FrameFault::wrong_checksum, FrameFault::wrong_start,
+                                         FrameFault::missing, FrameFault::repeated, FrameFault::stale_echo));
 
 TEST_P(Bad_frame, is_never_used_and_leaves_its_axis_undriven_in_that_tick) {
   Bench bench = homed_bench(axis);

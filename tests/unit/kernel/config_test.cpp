@@ -46,8 +46,12 @@ Rule common(std::string name, uint32_t error, uint32_t C::* field, uint32_t insi
 template <typename Field>
 Rule axis(std::string name, uint32_t error, uint32_t slot, Field A::* field, Field inside, Field outside,
           uint32_t error_inside = ILK_CONFIG_ERROR_NONE) {
-  return {std::move(name), error, slot, [=](ilk_config_t& config) { config.axis[slot].*field = inside; },
-          [=](ilk_config_t& config) { config.axis[slot].*field = outside; }, error_inside};
+  return {std::move(name),
+          error,
+          slot,
+          [=](ilk_config_t& config) { config.axis[slot].*field = inside; },
+          [=](ilk_config_t& config) { config.axis[slot].*field = outside; },
+          error_inside};
 }
 
 Edit both(const Edit& first, const Edit& second) {
@@ -105,8 +109,10 @@ std::vector<Rule> common_rules() {
   std::vector<Rule> rules = {
       common("version_old", ILK_CONFIG_ERROR_VERSION, &C::version, 2, 1),
       common("version_new", ILK_CONFIG_ERROR_VERSION, &C::version, 2, 3),
-      common("size_long", ILK_CONFIG_ERROR_SIZE, &C::size_bytes, sizeof(ilk_config_t), sizeof(ilk_config_t) + 4),
-      common("size_short", ILK_CONFIG_ERROR_SIZE, &C::size_bytes, sizeof(ilk_config_t), sizeof(ilk_config_t) - 4),
+      common("size_long", ILK_CONFIG_ERROR_SIZE, &C::size_bytes, sizeof(ilk_config_t),
+             sizeof(ilk_config_t) + 4),
+      common("size_short", ILK_CONFIG_ERROR_SIZE, &C::size_bytes, sizeof(ilk_config_t),
+             sizeof(ilk_config_t) - 4),
       common("channels_none", ILK_CONFIG_ERROR_PEDAL_CHANNELS, &C::pedal_channels, 1, 0),
       common("channels_three", ILK_CONFIG_ERROR_PEDAL_CHANNELS, &C::pedal_channels, 2, 3),
       common("app_timeout_short", ILK_CONFIG_ERROR_APP_TIMEOUT, &C::app_timeout_ticks, 2, 1),
@@ -121,7 +127,8 @@ std::vector<Rule> common_rules() {
                 [](ilk_config_t& config) {
                   for (A& each : config.axis) each.rest_ticks *= 2;
                 }),
-           common("switch_debounce_long", ILK_CONFIG_ERROR_SWITCH_DEBOUNCE, &C::switch_debounce_ticks, 20, 21)),
+           common("switch_debounce_long", ILK_CONFIG_ERROR_SWITCH_DEBOUNCE, &C::switch_debounce_ticks, 20,
+                  21)),
       common("bad_frames_zero", ILK_CONFIG_ERROR_BAD_FRAMES, &C::bad_frame_limit, 1, 0),
       common("bad_frames_many", ILK_CONFIG_ERROR_BAD_FRAMES, &C::bad_frame_limit, 5, 6),
       common("overruns_zero", ILK_CONFIG_ERROR_OVERRUNS, &C::overrun_limit, 1, 0),
@@ -145,8 +152,8 @@ std::vector<Rule> common_rules() {
     longest("disagree", ILK_CONFIG_ERROR_PEDAL_DISAGREE, &C::pedal_disagree_ticks, 50000);
     longest("power_up", ILK_CONFIG_ERROR_POWER_UP, &C::power_up_ticks, 5000000);
     const auto longest_of_axis = [&](const char* name, uint32_t error, uint32_t A::* field, uint32_t us) {
-      rules.push_back(
-          when(at_period(period), axis(name + at, error, slot::pwm_free, field, us / period, us / period + 1)));
+      rules.push_back(when(at_period(period),
+                           axis(name + at, error, slot::pwm_free, field, us / period, us / period + 1)));
     };
     longest_of_axis("stall", ILK_CONFIG_ERROR_STALL, &A::stall_ticks, 500000);
     longest_of_axis("effort", ILK_CONFIG_ERROR_STALL_EFFORT, &A::stall_effort_ticks, 200000);
@@ -198,7 +205,8 @@ std::vector<Rule> axis_rules() {
             ILK_CONFIG_ERROR_UNHOMED_TRAVEL),
       field("coast_huge", ILK_CONFIG_ERROR_COAST, f, &A::coast_counts, 10, huge),
       field("noise", ILK_CONFIG_ERROR_NOISE, f, &A::noise_counts, 200, 201, ILK_CONFIG_ERROR_MAX_DELTA),
-      field("backlash", ILK_CONFIG_ERROR_NOISE, f, &A::backlash_counts, 200, 201, ILK_CONFIG_ERROR_STALL_EFFORT),
+      field("backlash", ILK_CONFIG_ERROR_NOISE, f, &A::backlash_counts, 200, 201,
+            ILK_CONFIG_ERROR_STALL_EFFORT),
       field("backlash_huge", ILK_CONFIG_ERROR_NOISE, f, &A::backlash_counts, 1, huge),
       field("deadband_zero", ILK_CONFIG_ERROR_DEADBAND, f, &A::deadband_counts, 1, 0),
       field("deadband_half_of_range", ILK_CONFIG_ERROR_DEADBAND, f, &A::deadband_counts, 999, 1000),
@@ -210,7 +218,8 @@ std::vector<Rule> axis_rules() {
       field("max_drive_analog", ILK_CONFIG_ERROR_MAX_DRIVE, slot::analog_upper, &A::max_drive, 0x7FFFFFFFu,
             0x80000000u),
       field("max_drive_high_frequency", ILK_CONFIG_ERROR_MAX_DRIVE, h, &A::max_drive, 397785, 397786),
-      field("unhomed_drive_in_the_dead_zone", ILK_CONFIG_ERROR_UNHOMED_DRIVE, f, &A::unhomed_max_drive, 11, 10),
+      field("unhomed_drive_in_the_dead_zone", ILK_CONFIG_ERROR_UNHOMED_DRIVE, f, &A::unhomed_max_drive, 11,
+            10),
       field("dead_zone_huge", ILK_CONFIG_ERROR_UNHOMED_DRIVE, f, &A::dead_zone_drive, 99, huge),
       field("unhomed_drive_large", ILK_CONFIG_ERROR_UNHOMED_DRIVE, f, &A::unhomed_max_drive, 100, 101),
       field("amplitude_zero", ILK_CONFIG_ERROR_AMPLITUDE, h, &A::max_amplitude, 80, 0),
@@ -224,7 +233,8 @@ std::vector<Rule> axis_rules() {
             config.axis[h].max_amplitude = 200;
           },
           field("home_amplitude_without_a_switch", ILK_CONFIG_ERROR_AMPLITUDE, h, &A::home_amplitude, 0, 1)),
-      field("full_speed_zero", ILK_CONFIG_ERROR_SPEED, f, &A::full_speed_counts_per_s, 1, 0, ILK_CONFIG_ERROR_STALL),
+      field("full_speed_zero", ILK_CONFIG_ERROR_SPEED, f, &A::full_speed_counts_per_s, 1, 0,
+            ILK_CONFIG_ERROR_STALL),
       field("full_speed_high", ILK_CONFIG_ERROR_SPEED, f, &A::full_speed_counts_per_s, 100000000, 100000001,
             ILK_CONFIG_ERROR_MAX_DELTA),
       field("home_speed_above_full", ILK_CONFIG_ERROR_SPEED, s, &A::home_speed_counts_per_s, 5000, 5001,
@@ -246,14 +256,18 @@ std::vector<Rule> axis_rules() {
             &A::home_tolerance_counts, 7, 6),
       field("tolerance_large", ILK_CONFIG_ERROR_HOME_TOLERANCE, s, &A::home_tolerance_counts, 200, 201,
             ILK_CONFIG_ERROR_HOME_CLEAR),
-      field("clear_of_tolerance_hysteresis_and_coast", ILK_CONFIG_ERROR_HOME_CLEAR, s, &A::home_clear_counts, 21, 20),
+      field("clear_of_tolerance_hysteresis_and_coast", ILK_CONFIG_ERROR_HOME_CLEAR, s, &A::home_clear_counts,
+            21, 20),
       when(both(set(s, &A::stall_min_counts, 25), set(s, &A::stall_ticks, 100)),
-           field("clear_of_stall_backlash_and_noise", ILK_CONFIG_ERROR_HOME_CLEAR, s, &A::home_clear_counts, 28, 27)),
+           field("clear_of_stall_backlash_and_noise", ILK_CONFIG_ERROR_HOME_CLEAR, s, &A::home_clear_counts,
+                 28, 27)),
       field("clear_large", ILK_CONFIG_ERROR_HOME_CLEAR, s, &A::home_clear_counts, 200, 201,
             ILK_CONFIG_ERROR_HOME_TRAVEL),
-      field("home_travel_of_the_whole_way", ILK_CONFIG_ERROR_HOME_TRAVEL, s, &A::home_travel_counts, 2243, 2242),
+      field("home_travel_of_the_whole_way", ILK_CONFIG_ERROR_HOME_TRAVEL, s, &A::home_travel_counts, 2243,
+            2242),
       field("home_travel_long", ILK_CONFIG_ERROR_HOME_TRAVEL, s, &A::home_travel_counts, 8000, 8001),
-      field("home_timeout_of_the_whole_way", ILK_CONFIG_ERROR_HOME_TIMEOUT, s, &A::home_timeout_ticks, 2521, 2520),
+      field("home_timeout_of_the_whole_way", ILK_CONFIG_ERROR_HOME_TIMEOUT, s, &A::home_timeout_ticks, 2521,
+            2520),
       field("home_timeout_long", ILK_CONFIG_ERROR_HOME_TIMEOUT, s, &A::home_timeout_ticks, 600000, 600001),
       field("home_timeout_huge", ILK_CONFIG_ERROR_HOME_TIMEOUT, s, &A::home_timeout_ticks, 3000, huge),
       when(with_common(&C::switch_debounce_ticks, 2),
@@ -263,10 +277,10 @@ std::vector<Rule> axis_rules() {
       field("stall_of_the_latency", ILK_CONFIG_ERROR_STALL, f, &A::stall_ticks, 3, 2),
       field("stall_progress_of_noise", ILK_CONFIG_ERROR_STALL, f, &A::stall_min_counts, 2, 1),
       field("stall_progress_large", ILK_CONFIG_ERROR_STALL, f, &A::stall_min_counts, 200, 201),
-      field("stall_ends_before_progress_at_the_slowest_drive", ILK_CONFIG_ERROR_STALL, s, &A::stall_min_counts, 23,
-            24),
-      when(set(f, &A::stall_min_counts, 14),
-           field("stall_ends_before_progress_without_a_switch", ILK_CONFIG_ERROR_STALL, f, &A::stall_ticks, 4, 3)),
+      field("stall_ends_before_progress_at_the_slowest_drive", ILK_CONFIG_ERROR_STALL, s,
+            &A::stall_min_counts, 23, 24),
+      when(set(f, &A::stall_min_counts, 14), field("stall_ends_before_progress_without_a_switch",
+                                                   ILK_CONFIG_ERROR_STALL, f, &A::stall_ticks, 4, 3)),
       field("effort_of_five_times_coast", ILK_CONFIG_ERROR_STALL_EFFORT, f, &A::stall_effort_ticks, 11, 10),
       when(set(f, &A::stall_effort_ticks, 0),
            field("effort_of_an_axis_that_is_fast_enough", ILK_CONFIG_ERROR_STALL_EFFORT, f,

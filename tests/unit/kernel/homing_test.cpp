@@ -1,4 +1,5 @@
-// Homing at two edges of the switch; what bounds it and what ends it; whether the switch is believed afterwards.
+// Homing at two edges of the switch; what bounds it and what ends it; whether the switch is believed
+// afterwards.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -50,7 +51,8 @@ Phases finish(Bench& bench, uint32_t slot = axis, uint32_t limit = 4000) {
 }
 
 void to_phase(Bench& bench, ilk_homing_phase_t wanted, uint32_t slot = axis) {
-  for (uint32_t tick = 0; tick < 4000 && phase(bench, slot) != wanted && is_homing(bench, slot); ++tick) bench.tick();
+  for (uint32_t tick = 0; tick < 4000 && phase(bench, slot) != wanted && is_homing(bench, slot); ++tick)
+    bench.tick();
   ASSERT_EQ(phase(bench, slot), wanted);
 }
 
@@ -111,8 +113,9 @@ TEST_P(P17_reference, is_found_from_on_the_switch_too) {
   Bench bench = ready_bench();
   const int32_t way = towards(bench, slot);
   bench = homing_bench(slot, -way * 15);
-  EXPECT_EQ(finish(bench, slot), (Phases{ILK_HOMING_LOOK, ILK_HOMING_LEAVE, ILK_HOMING_SEEK, ILK_HOMING_BACK_OFF,
-                                         ILK_HOMING_APPROACH, ILK_HOMING_REST, ILK_HOMING_NONE}));
+  EXPECT_EQ(finish(bench, slot),
+            (Phases{ILK_HOMING_LOOK, ILK_HOMING_LEAVE, ILK_HOMING_SEEK, ILK_HOMING_BACK_OFF,
+                    ILK_HOMING_APPROACH, ILK_HOMING_REST, ILK_HOMING_NONE}));
   EXPECT_TRUE(bench.homed(slot));
   EXPECT_EQ(bench.position(slot), bench.config().axis[slot].home_offset_counts);
   EXPECT_EQ(bench.motor[slot].travelled, -way * 15);
@@ -447,7 +450,8 @@ TEST(Homing, of_all_axes_together_opens_the_full_range) {
   bench.press();
   for (uint32_t slot = 0; slot < slot::axes; ++slot) bench.queue(home(slot));
   bench.ticks(400);
-  for (uint32_t slot = 0; slot < slot::axes; ++slot) EXPECT_EQ(bench.homed(slot), slot != slot::pwm_free) << slot;
+  for (uint32_t slot = 0; slot < slot::axes; ++slot)
+    EXPECT_EQ(bench.homed(slot), slot != slot::pwm_free) << slot;
   EXPECT_EQ(bench.ask(move(axis, 900, 1000)), ILK_VERDICT_ACCEPTED);
   EXPECT_TRUE(bench.driven(axis));
 }

@@ -125,7 +125,8 @@ TEST(P4_soft_limit, beyond_a_limit_drive_is_allowed_inward_only) {
 }
 
 TEST(P4_soft_limit, on_the_side_of_the_switch_lies_where_the_switch_is_sure_to_be_open) {
-  for (const uint32_t slot : {slot::pwm_lower, slot::non_pwm_upper, slot::corrected_lower, slot::corrected_upper}) {
+  for (const uint32_t slot :
+       {slot::pwm_lower, slot::non_pwm_upper, slot::corrected_lower, slot::corrected_upper}) {
     Bench bench = switch_homed_bench(slot);
     bench.keep_moving(slot, outward(bench, slot, 900), 120, 1000);
     EXPECT_EQ(bench.ask(move(slot, outward(bench, slot, 970))), ILK_VERDICT_ACCEPTED);
@@ -222,7 +223,8 @@ TEST(P7_bounds, unhomed_travel_is_the_path_of_the_press_there_and_back) {
   EXPECT_EQ(bench.ask(move(axis, here)), ILK_VERDICT_RANGE) << "the way back is travel, too";
 }
 
-TEST(P7_bounds, unhomed_travel_with_a_coasting_motor_ends_within_its_bound_and_is_renewed_by_the_press_alone) {
+TEST(P7_bounds,
+     unhomed_travel_with_a_coasting_motor_ends_within_its_bound_and_is_renewed_by_the_press_alone) {
   for (const int32_t side : {1, -1}) {
     Bench bench;
     bench.motor[axis].speed = 3;

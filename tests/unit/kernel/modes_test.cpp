@@ -103,9 +103,11 @@ const Cause causes[] = {
      [](Bench& bench) {
        for (Card& card : bench.card) card.fault_ticks = 0;
      }},
-    {"pedal_both_closed", ILK_CAUSE_PEDAL, 9, 3, [](Bench& bench) { bench.pedal_no_closed = bench.pedal_nc_closed = 1; },
+    {"pedal_both_closed", ILK_CAUSE_PEDAL, 9, 3,
+     [](Bench& bench) { bench.pedal_no_closed = bench.pedal_nc_closed = 1; },
      [](Bench& bench) { bench.pedal(false); }, ILK_VERDICT_PEDAL_DOWN},
-    {"pedal_both_open", ILK_CAUSE_PEDAL, 9, 0, [](Bench& bench) { bench.pedal_no_closed = bench.pedal_nc_closed = 0; },
+    {"pedal_both_open", ILK_CAUSE_PEDAL, 9, 0,
+     [](Bench& bench) { bench.pedal_no_closed = bench.pedal_nc_closed = 0; },
      [](Bench& bench) { bench.pedal(false); }, ILK_VERDICT_PEDAL_DOWN},
     {"overrun", ILK_CAUSE_OVERRUN, 3, 3, [](Bench& bench) { bench.deadlines_missed = 1; },
      [](Bench& bench) { bench.deadlines_missed = 0; }},
@@ -146,7 +148,8 @@ TEST_P(P8_latch, a_cause_locks_MOTION) {
   EXPECT_NE(bench.mode(), ILK_MODE_LOCKED);
   bench.keep_moving(axis, 50, 1);
   expect_locked(bench);
-  EXPECT_EQ(bench.axis_state(axis), bench.fault(axis) == ILK_FAULT_NONE ? ILK_AXIS_DISABLED : ILK_AXIS_FAULTED);
+  EXPECT_EQ(bench.axis_state(axis),
+            bench.fault(axis) == ILK_FAULT_NONE ? ILK_AXIS_DISABLED : ILK_AXIS_FAULTED);
 }
 
 TEST_P(P8_latch, is_left_by_RESET_alone_and_only_when_the_cause_is_gone) {
@@ -191,7 +194,8 @@ TEST(P8_latch_first, of_two_causes_in_one_tick_the_earlier_in_the_list_is_kept) 
   bench.estop_loop_closed = 0;
   bench.tick();
   EXPECT_EQ(bench.cause(), ILK_CAUSE_ESTOP);
-  EXPECT_EQ(bench.system().causes_seen, 1u << ILK_CAUSE_ESTOP | 1u << ILK_CAUSE_OVERRUN | 1u << ILK_CAUSE_BUS);
+  EXPECT_EQ(bench.system().causes_seen,
+            1u << ILK_CAUSE_ESTOP | 1u << ILK_CAUSE_OVERRUN | 1u << ILK_CAUSE_BUS);
 }
 
 TEST(P8_latch_first, no_request_but_RESET_leaves_LOCKED) {

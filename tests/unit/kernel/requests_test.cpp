@@ -117,8 +117,8 @@ const Row rows[] = {
     {"RESET_estop", after(locked_bench, estop), reset(), ILK_VERDICT_CAUSE_PRESENT},
     {"RESET_one_bad_bus_tick", after(locked_bench, [](Bench& bench) { bench.transaction_done = 0; }), reset(),
      ILK_VERDICT_CAUSE_PRESENT},
-    {"RESET_one_missed_deadline", after(locked_bench, [](Bench& bench) { bench.deadlines_missed = 1; }), reset(),
-     ILK_VERDICT_CAUSE_PRESENT},
+    {"RESET_one_missed_deadline", after(locked_bench, [](Bench& bench) { bench.deadlines_missed = 1; }),
+     reset(), ILK_VERDICT_CAUSE_PRESENT},
     {"RESET_app_silent",
      after(locked_bench,
            [](Bench& bench) {
@@ -141,10 +141,12 @@ const Row rows[] = {
     {"CLEAR_FAULT_in_INIT", init_bench, clear_fault(axis), ILK_VERDICT_MODE},
     {"CLEAR_FAULT_of_a_sound_axis", after(ready, all_wrong), clear_fault(axis), ILK_VERDICT_NO_FAULT},
     {"CLEAR_FAULT_of_a_homing_axis", homing, clear_fault(axis), ILK_VERDICT_NO_FAULT},
-    {"CLEAR_FAULT_without_a_frame", after(faulted_motion, spoil_next), clear_fault(axis), ILK_VERDICT_CAUSE_PRESENT},
+    {"CLEAR_FAULT_without_a_frame", after(faulted_motion, spoil_next), clear_fault(axis),
+     ILK_VERDICT_CAUSE_PRESENT},
     {"CLEAR_FAULT_in_motion", after(faulted_motion, nudge), clear_fault(axis), ILK_VERDICT_CAUSE_PRESENT},
     {"CLEAR_FAULT_with_the_pedal", faulted_motion, clear_fault(axis), ILK_VERDICT_PEDAL_DOWN},
-    {"CLEAR_FAULT_pedal_disagrees", after(faulted, pedal_disagrees), clear_fault(axis), ILK_VERDICT_PEDAL_DOWN},
+    {"CLEAR_FAULT_pedal_disagrees", after(faulted, pedal_disagrees), clear_fault(axis),
+     ILK_VERDICT_PEDAL_DOWN},
 
     {"MOVE_in_INIT", init_bench, worst_move, ILK_VERDICT_MODE},
     {"MOVE_in_LOCKED", locked_bench, worst_move, ILK_VERDICT_MODE},
@@ -161,11 +163,13 @@ const Row rows[] = {
     {"MOVE_drive_above_its_bound", homed_motion, move(axis, 5000, 1001), ILK_VERDICT_DRIVE},
     {"MOVE_drive_huge", homed_motion, move(axis, 5000, UINT32_MAX), ILK_VERDICT_DRIVE},
     {"MOVE_amplitude_above_its_bound", wave_bench, wave(201), ILK_VERDICT_DRIVE},
-    {"MOVE_amplitude_of_a_plain_card", motion, [] {
+    {"MOVE_amplitude_of_a_plain_card", motion,
+     [] {
        ilk_request_t request = move(axis, 50);
        request.amplitude = 1;
        return request;
-     }(), ILK_VERDICT_DRIVE},
+     }(),
+     ILK_VERDICT_DRIVE},
     {"MOVE_unhomed_too_far_up", motion, move(axis, 91), ILK_VERDICT_RANGE},
     {"MOVE_unhomed_too_far_down", motion, move(axis, -91), ILK_VERDICT_RANGE},
     {"MOVE_unhomed_farthest_up", motion, move(axis, INT32_MAX), ILK_VERDICT_RANGE},

@@ -14,7 +14,8 @@ constexpr uint32_t rest_ticks = 10;
 
 class P6_runaway : public testing::TestWithParam<uint32_t> {};
 
-INSTANTIATE_TEST_SUITE_P(Every_axis, P6_runaway, testing::Range(0u, slot::axes), testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(Every_axis, P6_runaway, testing::Range(0u, slot::axes),
+                         testing::PrintToStringParamName());
 
 TEST_P(P6_runaway, reverse_motion_beyond_its_limit_faults_when_it_is_seen) {
   const uint32_t slot = GetParam();
@@ -114,13 +115,14 @@ TEST(P6_reverse, a_change_of_direction_starts_a_new_mark_and_coast_after_it_is_t
   EXPECT_EQ(bench.fault(axis), ILK_FAULT_NONE);
 }
 
-TEST(P6_reverse, and_drift_while_blind_are_judged_by_the_first_frame_after_and_a_change_of_wish_excuses_nothing) {
+TEST(P6_reverse,
+     and_drift_while_blind_are_judged_by_the_first_frame_after_and_a_change_of_wish_excuses_nothing) {
   struct Case {
     int32_t creep;
     ilk_fault_t fault;
   };
-  for (const auto& [creep, fault] : {Case{-7, ILK_FAULT_REVERSE}, Case{-6, ILK_FAULT_NONE}, Case{6, ILK_FAULT_NONE},
-                                     Case{7, ILK_FAULT_DRIFT}}) {
+  for (const auto& [creep, fault] : {Case{-7, ILK_FAULT_REVERSE}, Case{-6, ILK_FAULT_NONE},
+                                     Case{6, ILK_FAULT_NONE}, Case{7, ILK_FAULT_DRIFT}}) {
     Bench bench = motion_bench(axis);
     bench.ask(move(axis, 80));
     bench.motor[axis].frozen = true;
@@ -267,7 +269,8 @@ TEST(P6_runaway_lock, RESET_is_refused_until_the_axis_rests_and_its_mark_is_then
   ASSERT_EQ(bench.cause(), ILK_CAUSE_RUNAWAY);
   bench.ticks(40);
   bench.motor[axis].creep = 0;
-  for (uint32_t still = 1; still < rest_ticks - 1; ++still) EXPECT_EQ(bench.ask(reset()), ILK_VERDICT_CAUSE_PRESENT);
+  for (uint32_t still = 1; still < rest_ticks - 1; ++still)
+    EXPECT_EQ(bench.ask(reset()), ILK_VERDICT_CAUSE_PRESENT);
   EXPECT_EQ(bench.ask(reset()), ILK_VERDICT_ACCEPTED);
   bench.push(axis, 20);
   EXPECT_EQ(bench.mode(), ILK_MODE_READY);
@@ -353,11 +356,13 @@ TEST(Rest, ends_with_drive_and_with_a_frame_that_is_not_valid) {
   bench.ask(move(axis, 50, 100, 1));
   ASSERT_TRUE(bench.driven(axis));
   bench.pedal(false);
-  for (uint32_t still = 1; still < rest_ticks; ++still) EXPECT_EQ(bench.ask(set_home(axis)), ILK_VERDICT_BUSY);
+  for (uint32_t still = 1; still < rest_ticks; ++still)
+    EXPECT_EQ(bench.ask(set_home(axis)), ILK_VERDICT_BUSY);
   EXPECT_EQ(bench.ask(set_home(axis)), ILK_VERDICT_ACCEPTED);
   bench.spoil(axis, FrameFault::missing, 1);
   bench.tick();
-  for (uint32_t still = 1; still < rest_ticks; ++still) EXPECT_EQ(bench.ask(set_home(axis)), ILK_VERDICT_BUSY);
+  for (uint32_t still = 1; still < rest_ticks; ++still)
+    EXPECT_EQ(bench.ask(set_home(axis)), ILK_VERDICT_BUSY);
   EXPECT_EQ(bench.ask(set_home(axis)), ILK_VERDICT_ACCEPTED);
 }
 
@@ -492,6 +497,18 @@ TEST(P15_total, a_position_saturates_instead_of_wrapping) {
     EXPECT_EQ(bench.position(axis), way > 0 ? INT32_MAX : INT32_MIN);
     EXPECT_EQ(bench.fault(axis), ILK_FAULT_NONE);
   }
+}
+
+TEST(P15_total, half_the_counter_from_a_mark_has_an_opposite_too) {
+  Bench bench = motion_bench(axis, wide_config());
+  bench.motor[axis].frozen = true;
+  bench.ask(move(axis, -50));
+  ASSERT_EQ(bench.driven_direction(axis), ILK_DIRECTION_DECREASING);
+  for (int stride = 0; stride < 2; ++stride) {
+    bench.motor[axis].travelled += int64_t{1} << 30;
+    bench.tick();
+  }
+  EXPECT_EQ(bench.fault(axis), ILK_FAULT_REVERSE);
 }
 
 TEST(P15_total, the_reach_of_a_blind_axis_saturates_instead_of_wrapping) {

@@ -52,7 +52,8 @@ TEST(P7_sequence, DISABLE_ENABLE_HOME_do_not_renew_the_bounds_of_homing) {
       bench.tick();
       homing_ticks += bench.axis_state(switched) == ILK_AXIS_HOMING ? 1 : 0;
     }
-    EXPECT_EQ(bench.fault(switched), wait == 0 ? ILK_FAULT_NONE : ILK_FAULT_HOMING_TRAVEL) << "no rest, no ENABLE";
+    EXPECT_EQ(bench.fault(switched), wait == 0 ? ILK_FAULT_NONE : ILK_FAULT_HOMING_TRAVEL)
+        << "no rest, no ENABLE";
     EXPECT_LE(std::abs(bench.motor[switched].travelled), 2400);
     EXPECT_LE(homing_ticks, 3000u);
   }
@@ -94,8 +95,10 @@ TEST(P17_sequence, an_opening_bounce_at_the_start_is_not_taken_for_the_edge) {
     Bench bench = motion_bench(switched);
     bench.motor[switched].switch_at = 10;
     bench.ask(home(switched));
-    while (bench.motor[switched].travelled <= 10 && bench.axis_state(switched) == ILK_AXIS_HOMING) bench.tick();
-    for (uint32_t sample = 0; sample < 4; ++sample) bench.tick_with_switch(switched, ((pattern + 3) >> sample & 1u) != 0);
+    while (bench.motor[switched].travelled <= 10 && bench.axis_state(switched) == ILK_AXIS_HOMING)
+      bench.tick();
+    for (uint32_t sample = 0; sample < 4; ++sample)
+      bench.tick_with_switch(switched, ((pattern + 3) >> sample & 1u) != 0);
     ticks_until_homed(bench);
     EXPECT_TRUE(bench.homed(switched));
     EXPECT_EQ(bench.position(switched) + 980, bench.motor[switched].travelled - 10) << pattern;

@@ -165,7 +165,8 @@ TEST(P5_stall, a_change_of_direction_moves_the_marks_and_keeps_the_sums) {
   bench.motor[axis].travelled += 5;
   bench.keep_moving(axis, -80, 1);
   bench.motor[axis].travelled -= 5;
-  EXPECT_EQ(driven_until_fault(bench, -80), stall_ticks - 32) << "back to where the mark was set is no progress";
+  EXPECT_EQ(driven_until_fault(bench, -80), stall_ticks - 32)
+      << "back to where the mark was set is no progress";
 }
 
 TEST(P5_stall, a_jump_and_a_reset_card_are_no_progress) {

@@ -81,12 +81,14 @@ void SafetyWatch::observe_verdicts(std::span<const ilk_request_t> requests, cons
     if (out.verdict[index].verdict != ILK_VERDICT_ACCEPTED) continue;
     const ilk_request_t& request = requests[index];
     if (request.kind == ILK_REQUEST_HEARTBEAT) silent_ticks_ = 0;
-    if (request.kind == ILK_REQUEST_STOP || (request.kind == ILK_REQUEST_HEARTBEAT && request.holder != holder_)) {
+    if (request.kind == ILK_REQUEST_STOP ||
+        (request.kind == ILK_REQUEST_HEARTBEAT && request.holder != holder_)) {
       armed_ = false;
       released_in_ready_ = 0;
     }
     if (request.kind == ILK_REQUEST_HEARTBEAT) holder_ = request.holder;
-    if (request.kind == ILK_REQUEST_MOVE || request.kind == ILK_REQUEST_HOME) consents_.insert(request.consent);
+    if (request.kind == ILK_REQUEST_MOVE || request.kind == ILK_REQUEST_HOME)
+      consents_.insert(request.consent);
     if (request.kind == ILK_REQUEST_RESET) reset_accepted_ = true;
     if (request.axis >= ILK_SLOTS) continue;
     if (request.kind == ILK_REQUEST_CLEAR_FAULT) cleared_ |= 1u << request.axis;
@@ -122,13 +124,15 @@ std::string SafetyWatch::judge_modes(const ilk_state_t& state, const ilk_outputs
   const bool relocked = state.system.cause == ILK_CAUSE_INTEGRITY;
   if (mode_ == ILK_MODE_LOCKED) {
     if (state.system.mode != ILK_MODE_LOCKED && !reset_accepted_) return "P8: LOCKED was left without RESET";
-    if (state.system.mode == ILK_MODE_LOCKED && state.system.cause != cause_ && !relocked && !reset_accepted_) {
+    if (state.system.mode == ILK_MODE_LOCKED && state.system.cause != cause_ && !relocked &&
+        !reset_accepted_) {
       return "P8: the first cause was overwritten";
     }
   }
   const bool on = state.system.mode == ILK_MODE_READY || state.system.mode == ILK_MODE_MOTION;
   if ((out.power == 1) != on) return "P1: power is not that of the mode";
-  if ((state.system.mode == ILK_MODE_MOTION) != (state.system.consent != 0)) return "P12: consent outside of MOTION";
+  if ((state.system.mode == ILK_MODE_MOTION) != (state.system.consent != 0))
+    return "P12: consent outside of MOTION";
   if (state.system.mode == ILK_MODE_MOTION && mode_ != ILK_MODE_MOTION) {
     if (mode_ != ILK_MODE_READY) return "P9: MOTION was entered from another mode than READY";
     if (!armed_) return "P9: MOTION was entered without a release seen in READY";
@@ -193,7 +197,8 @@ std::string SafetyWatch::judge_drive(uint32_t slot, const ilk_inputs_t& in, cons
     return "P4: drive outward at a soft limit";
   }
   if (drive > config.max_drive) return "P7: drive above its bound";
-  if (axis.homed == ILK_HOMED_NOT && drive > config.unhomed_max_drive) return "P7: drive above the unhomed bound";
+  if (axis.homed == ILK_HOMED_NOT && drive > config.unhomed_max_drive)
+    return "P7: drive above the unhomed bound";
   return {};
 }
 
