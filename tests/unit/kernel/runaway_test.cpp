@@ -101,6 +101,7 @@ TEST(P6_reverse, is_measured_from_the_farthest_reading) {
   EXPECT_EQ(bench.fault(axis), ILK_FAULT_NONE);
   bench.keep_moving(axis, 80, 1);
   EXPECT_EQ(bench.fault(axis), ILK_FAULT_REVERSE);
+  EXPECT_FALSE(bench.homed(axis));
 }
 
 TEST(P6_reverse, a_change_of_direction_starts_a_new_mark_and_coast_after_it_is_tolerated) {
