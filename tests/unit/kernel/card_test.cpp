@@ -168,17 +168,6 @@ TEST(Card_reset, the_first_frame_after_start_and_after_a_lost_card_is_not_compar
   EXPECT_FALSE(bench.homed(axis));
 }
 
-TEST(Card_reset, ends_MOTION_and_drops_the_reference_though_the_counter_restarts_nearby) {
-  Bench bench;
-  bench.motor[axis].raw_at_start = 3;
-  bench.to_motion_homed(axis);
-  bench.motor[axis].travelled -= 3;
-  bench.card[axis].heartbeat = 0;
-  bench.tick();
-  EXPECT_EQ(bench.fault(axis), ILK_FAULT_CARD_RESET);
-  EXPECT_EQ(bench.mode(), ILK_MODE_READY);
-}
-
 // --- Freshness
 
 TEST(Frames_in, the_tick_echo_is_not_judged_until_two_frames_were_sent) {

@@ -172,14 +172,6 @@ TEST(P17_edge, may_bounce_on_closing_and_on_opening) {
   }
 }
 
-TEST(P17_edge, of_a_counter_that_dithers_by_its_noise_is_found) {
-  Bench bench = homing_bench();
-  bench.motor[axis].dither = 1;
-  finish(bench);
-  EXPECT_TRUE(bench.homed(axis));
-  EXPECT_NEAR(bench.position(axis), offset, 2);
-}
-
 TEST(P17_edge, must_agree_with_the_first_within_the_tolerance) {
   for (const int32_t apart : {8, 9, -8, -9}) {
     Bench bench = homing_bench();

@@ -472,6 +472,17 @@ TEST(P10_silence, a_HEARTBEAT_just_in_time_keeps_MOTION_and_nothing_else_counts_
   EXPECT_EQ(bench.system().app_alive, 0u);
 }
 
+TEST(P10_silence, the_app_is_silent_at_boot_whatever_attachment_it_has) {
+  for (const uint32_t generation : {0u, 1u}) {
+    Bench bench;
+    bench.link_generation = generation;
+    bench.app_alive = false;
+    bench.tick();
+    EXPECT_EQ(bench.system().app_alive, 0u);
+    EXPECT_EQ(bench.ask(reset()), ILK_VERDICT_CAUSE_PRESENT);
+  }
+}
+
 // --- What a lock leaves
 
 TEST(Locking, disables_every_axis_but_the_faulted_drops_its_orders_and_keeps_homed) {

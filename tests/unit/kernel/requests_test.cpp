@@ -309,6 +309,7 @@ TEST(Request_CLEAR_FAULT, leaves_DISABLED_in_READY_and_in_LOCKED) {
     EXPECT_EQ(bench.axis_state(axis), ILK_AXIS_DISABLED);
     EXPECT_EQ(bench.fault(axis), ILK_FAULT_NONE);
     EXPECT_EQ(bench.axis(axis).fault_tick, 0u);
+    EXPECT_EQ(bench.axis(axis).fault_value, 0);
     EXPECT_FALSE(bench.homed(axis));
   }
 }

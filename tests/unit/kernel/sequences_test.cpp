@@ -175,6 +175,7 @@ TEST(P17_sequence, a_counter_that_dithers_by_its_noise_can_be_homed) {
     bench.ask(home(switched));
     ticks_until_homed(bench);
     EXPECT_TRUE(bench.homed(switched));
+    EXPECT_LE(std::abs(bench.position(switched) + 980), 2);
     EXPECT_EQ(bench.fault(switched), ILK_FAULT_NONE);
   }
 }
