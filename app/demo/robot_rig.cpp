@@ -266,7 +266,7 @@ void RobotRig::tick() {
   settle_verdicts();
   const Wishes wishes = conductor_.tick(snapshot());
   for (const Wish& wish : wishes.all()) {
-    sent_.push_back({put(request_of(wish)), wish.origin});
+    sent_.push_back({put(request_of(wish, state_.system.consent)), wish.origin});
   }
   note();
 }

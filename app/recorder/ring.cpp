@@ -29,7 +29,7 @@ const std::uint32_t* payload_of(const ilk_block_header_t* block) {
 /** Words before a field of the record of a tick. */
 constexpr std::uint32_t tick_word = offsetof(ilk_tick_record_t, tick) / sizeof(std::uint32_t);
 constexpr std::uint32_t alarm_word = offsetof(ilk_tick_record_t, alarm) / sizeof(std::uint32_t);
-constexpr std::uint32_t state_tick_word = offsetof(ilk_state_t, tick) / sizeof(std::uint32_t);
+constexpr std::uint32_t state_tick_word = offsetof(ilk_state_t, system.tick) / sizeof(std::uint32_t);
 
 /** A kernel answers at once, unless it was stopped by a signal. */
 constexpr timeval longest_answer{0, 500'000};

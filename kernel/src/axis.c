@@ -39,7 +39,7 @@ static void follow_stillness(ilk_stillness_t *still, uint32_t raw, uint32_t span
   const int32_t here = signed_of(raw - still->origin_raw);
   const int32_t below = (here < still->below) ? here : still->below;
   const int32_t above = (here > still->above) ? here : still->above;
-  if (((int64_t)above - (int64_t)below) > (int64_t)span_counts) {
+  if ((still->ticks == 0u) || (((int64_t)above - (int64_t)below) > (int64_t)span_counts)) {
     begin_stillness(still, raw);
   } else {
     still->below = below;
@@ -318,8 +318,11 @@ static finding_t judge_reverse(const ilk_axis_config_t *config, ilk_axis_t *axis
   return found_if(reversed, ILK_FAULT_REVERSE, negate_saturating(advance));
 }
 
-/** A DISABLED axis may be moved by hand, but in MOTION nothing but drive moves any. */
-static finding_t judge_drift(const ilk_axis_config_t *config, const ilk_system_t *system, ilk_axis_t *axis) {
+/** A DISABLED axis may be moved by hand, but in MOTION nothing but drive moves any. A drive needs a valid
+   frame: an axis that was driven since its last one was driven in that very tick. */
+static finding_t judge_drift(const ilk_axis_config_t *config, const ilk_system_t *system, uint32_t periods,
+                             ilk_axis_t *axis) {
+  const bool driven_last_tick = was_driven(axis) && (axis->periods == periods);
   const int32_t drift = travel_between(config, axis->drift_mark_raw, axis->raw);
   const bool by_hand =
       (axis->state == (uint32_t)ILK_AXIS_DISABLED) && (system->mode != (uint32_t)ILK_MODE_MOTION);
@@ -327,7 +330,7 @@ static finding_t judge_drift(const ilk_axis_config_t *config, const ilk_system_t
   if (by_hand) {
     axis->drift_mark_raw = axis->raw;
   }
-  return found_if(!by_hand && !faulted && !was_driven(axis) && (magnitude(drift) > config->drift_counts),
+  return found_if(!by_hand && !faulted && !driven_last_tick && (magnitude(drift) > config->drift_counts),
                   ILK_FAULT_DRIFT, drift);
 }
 
@@ -338,7 +341,8 @@ static finding_t judge_stall(const ilk_axis_config_t *config, const ilk_axis_t *
 
 /** What a valid frame says. */
 static finding_t observe_frame(const ilk_common_config_t *common, const ilk_axis_config_t *config,
-                               const ilk_system_t *system, const ilk_reading_t *reading, ilk_axis_t *axis) {
+                               const ilk_system_t *system, const ilk_reading_t *reading, uint32_t periods,
+                               ilk_axis_t *axis) {
   const bool first = axis->card_seen == 0u;
   finding_t finding = found_if(false, ILK_FAULT_NONE, 0);
   if (!first) {
@@ -357,7 +361,7 @@ static finding_t observe_frame(const ilk_common_config_t *common, const ilk_axis
   follow_path(config, system, axis);
   follow_progress(config, axis);
   finding = first_of(finding, judge_reverse(config, axis));
-  finding = first_of(finding, judge_drift(config, system, axis));
+  finding = first_of(finding, judge_drift(config, system, periods, axis));
   axis->driven_direction = (uint32_t)ILK_DIRECTION_NONE;
   finding = first_of(finding, judge_stall(config, axis));
   if (has_switch(config)) {
@@ -408,8 +412,8 @@ bool ilk_axis_observe(const ilk_common_config_t *common, const ilk_axis_config_t
   axis->periods = sum_saturating(axis->periods, periods);
   axis->switch_triggered = flag_of(has_switch(config) && (!valid || reading->switch_triggered));
   run_lease_down(axis);
-  finding_t finding =
-      valid ? observe_frame(common, config, system, reading, axis) : observe_nothing(common, config, axis);
+  finding_t finding = valid ? observe_frame(common, config, system, reading, periods, axis)
+                            : observe_nothing(common, config, axis);
   const ilk_homing_result_t homing = ilk_homing_advance(common, config, axis);
   finding = first_of(finding, found_if(homing.fault != ILK_FAULT_NONE, homing.fault, homing.value));
   bool faulted = false;

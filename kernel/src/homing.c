@@ -68,20 +68,24 @@ static bool is_clear(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
   return (away > 0) && (magnitude(away) >= config->home_clear_counts);
 }
 
-/** The reference is the second edge, if the first agrees. */
+/** The reference is the second edge, if the first agrees and the axis rests no farther from it than it can
+ * coast. */
 static ilk_homing_result_t conclude(const ilk_axis_config_t *config, ilk_axis_t *axis) {
   const uint32_t edge_raw = axis->homing_mark_raw;
   const int32_t disagreement = travel_between(config, axis->first_edge_raw, edge_raw);
+  const int32_t beyond = travel_between(config, edge_raw, axis->raw);
   ilk_homing_result_t result = {.fault = ILK_FAULT_NONE, .value = disagreement};
   if (magnitude(disagreement) > config->home_tolerance_counts) {
     result.fault = ILK_FAULT_SWITCH;
+  } else if (magnitude(beyond) > sum_saturating(config->coast_counts, config->home_tolerance_counts)) {
+    result.fault = ILK_FAULT_SWITCH;
+    result.value = beyond;
   } else {
     axis->home_difference_counts =
         (axis->home_known != 0u) ? travel_between(config, axis->home_raw, edge_raw) : 0;
     axis->home_raw = edge_raw;
     axis->home_known = 1u;
-    axis->position_counts =
-        add_saturating(travel_between(config, edge_raw, axis->raw), config->home_offset_counts);
+    axis->position_counts = add_saturating(beyond, config->home_offset_counts);
     axis->homed = (uint32_t)ILK_HOMED_BY_SWITCH;
     ilk_axis_drop_motion(axis);
   }

@@ -103,14 +103,12 @@ static void observe_pedal(const ilk_common_config_t *common, const ilk_inputs_t 
 }
 
 void ilk_system_observe(const ilk_common_config_t *common, const ilk_inputs_t *in, ilk_system_t *system) {
-  const bool missed = in->deadlines_missed != 0u;
   system->estop = flag_of(in->estop_loop_closed != CLOSED);
   observe_app(common, in, system);
   observe_pedal(common, in, system);
-  system->overruns_in_row = ticks_in_row(missed, system->overruns_in_row, UINT32_MAX);
-  if (missed) {
-    system->overruns = count_up(system->overruns, UINT32_MAX);
-  }
+  system->overruns = sum_saturating(system->overruns, in->deadlines_missed);
+  system->overruns_in_row =
+      (in->deadlines_missed != 0u) ? sum_saturating(system->overruns_in_row, in->deadlines_missed) : 0u;
 }
 
 /* --- Phase 5 ---------------------------------------------------------------------------------------------

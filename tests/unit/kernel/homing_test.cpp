@@ -148,7 +148,9 @@ TEST(P17_edge, counts_after_the_debounce_time_and_lies_at_the_first_of_those_rea
       EXPECT_FALSE(bench.driven(axis) && phase(bench) == ILK_HOMING_SEEK) << "one is enough to stop";
     }
     EXPECT_EQ(phase(bench), samples == 3 ? ILK_HOMING_BACK_OFF : ILK_HOMING_SEEK);
-    if (samples == 3) EXPECT_EQ(bench.axis(axis).first_edge_raw, bench.motor[axis].raw_at_start - 11);
+    if (samples == 3) {
+      EXPECT_EQ(bench.axis(axis).first_edge_raw, bench.motor[axis].raw_at_start - 11);
+    }
   }
 }
 
@@ -181,8 +183,12 @@ TEST(P17_edge, must_agree_with_the_first_within_the_tolerance) {
     const bool agrees = std::abs(apart) == 8;
     EXPECT_EQ(bench.homed(axis), agrees) << apart;
     EXPECT_EQ(bench.fault(axis), agrees ? ILK_FAULT_NONE : ILK_FAULT_SWITCH);
-    if (agrees) EXPECT_EQ(bench.position(axis), offset) << "the second one counts";
-    if (!agrees) EXPECT_EQ(bench.axis(axis).fault_value, apart);
+    if (agrees) {
+      EXPECT_EQ(bench.position(axis), offset) << "the second one counts";
+    }
+    if (!agrees) {
+      EXPECT_EQ(bench.axis(axis).fault_value, apart);
+    }
   }
 }
 
@@ -246,7 +252,9 @@ TEST(P17_edge, that_lies_farther_from_rest_than_coast_and_tolerance_is_none) {
       finish(bench);
       EXPECT_EQ(bench.homed(axis), beyond == 18);
       EXPECT_EQ(bench.fault(axis), beyond == 18 ? ILK_FAULT_NONE : ILK_FAULT_SWITCH);
-      if (beyond == 19) EXPECT_EQ(bench.axis(axis).fault_value, way * beyond);
+      if (beyond == 19) {
+        EXPECT_EQ(bench.axis(axis).fault_value, way * beyond);
+      }
     }
   }
 }
@@ -502,7 +510,9 @@ TEST_P(Switch_plausibility, is_judged_against_the_home_after_the_debounce_time) 
     bench.tick();
     EXPECT_EQ(bench.fault(slot), plausible ? ILK_FAULT_NONE : ILK_FAULT_SWITCH) << inside;
     EXPECT_EQ(bench.homed(slot), plausible);
-    if (!plausible) EXPECT_EQ(bench.axis(slot).fault_value, -towards(bench, slot) * inside);
+    if (!plausible) {
+      EXPECT_EQ(bench.axis(slot).fault_value, -towards(bench, slot) * inside);
+    }
   }
 }
 

@@ -308,6 +308,14 @@ TEST(P7_bounds, a_homed_axis_spends_no_travel_and_motion_outside_of_MOTION_is_no
   EXPECT_EQ(bench.axis(axis).unhomed_travel_counts, 0u);
 }
 
+TEST(P7_bounds, what_a_homed_axis_travelled_is_not_charged_to_its_homing) {
+  Bench bench = homed_bench(switched);
+  bench.keep_moving(switched, 300, 200, 1000);
+  bench.ask(home(switched));
+  bench.ticks(3);
+  EXPECT_EQ(bench.axis(switched).homing_travel_counts, 0u);
+}
+
 TEST(P7_bounds, drive_never_exceeds_its_bound_whatever_was_accepted_before) {
   Bench bench = homed_bench(axis);
   bench.watched = false;

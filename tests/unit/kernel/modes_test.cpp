@@ -49,6 +49,7 @@ TEST(P13_configuration, an_invalid_one_never_leaves_INIT) {
   bench.ticks(50);
   EXPECT_EQ(bench.mode(), ILK_MODE_INIT);
   EXPECT_EQ(bench.cause(), ILK_CAUSE_NONE);
+  EXPECT_EQ(bench.system().causes_seen, 0u);
   EXPECT_FALSE(bench.powered());
   EXPECT_TRUE(bench.wire_is_zero());
 }

@@ -296,14 +296,16 @@ TEST(P6_runaway_lock, ends_with_a_lost_card_and_not_with_single_bad_frames) {
   EXPECT_EQ(bench.cause(), ILK_CAUSE_RUNAWAY);
 }
 
-TEST(P6_runaway_lock, a_jump_and_a_reset_card_move_the_mark_of_a_faulted_axis) {
+TEST(P6_runaway_lock, a_jump_or_a_reset_card_of_a_faulted_axis_is_no_new_fault_and_moves_every_mark) {
   for (const bool reset_card : {false, true}) {
     Bench bench = faulted_bench(axis);
+    bench.press();
     bench.motor[axis].travelled += 500;
     if (reset_card) bench.card[axis].heartbeat = 5;
     bench.ticks(2);
-    EXPECT_EQ(bench.mode(), ILK_MODE_READY);
+    EXPECT_EQ(bench.mode(), ILK_MODE_MOTION);
     EXPECT_EQ(bench.fault(axis), ILK_FAULT_JUMP);
+    EXPECT_EQ(bench.axis(axis).unhomed_travel_counts, 0u);
   }
 }
 

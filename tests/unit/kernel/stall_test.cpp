@@ -207,6 +207,16 @@ TEST(P5_stall, arrival_because_the_setpoint_was_moved_to_the_axis_does_not_clear
   EXPECT_EQ(driven_until_fault(bench, 80), 1u);
 }
 
+TEST(P5_stall, arrival_without_a_live_lease_clears_nothing) {
+  Bench bench = jammed_homed_bench(coarse_config());
+  bench.keep_moving(axis, 5, 14, 1000);
+  bench.ask(move(axis, 5, 1000, 1));
+  bench.motor[axis].travelled += 4;
+  bench.tick();
+  EXPECT_EQ(bench.gate(axis), ILK_GATE_LEASE);
+  EXPECT_EQ(driven_until_fault(bench, 500), stall_ticks - 15);
+}
+
 TEST(P5_stall, an_encoder_that_froze_after_an_advance_cannot_arrive_for_ever) {
   Bench bench = jammed_homed_bench(coarse_config());
   bench.motor[axis].travelled += 3;
@@ -232,7 +242,9 @@ void PrintTo(const Pretext& pretext, std::ostream* stream) { *stream << pretext.
 void back_to_motion(Bench& bench) {
   bench.pedal(false);
   bench.rest();
-  if (bench.fault(axis) != ILK_FAULT_NONE) EXPECT_EQ(bench.ask(clear_fault(axis)), ILK_VERDICT_ACCEPTED);
+  if (bench.fault(axis) != ILK_FAULT_NONE) {
+    EXPECT_EQ(bench.ask(clear_fault(axis)), ILK_VERDICT_ACCEPTED);
+  }
   bench.enable_axis(axis);
   bench.press();
 }

@@ -195,6 +195,7 @@ static void keep_frame(ilk_ghost_slot_t *g, const uint32_t *frame) {
     g->run = 1u;
     g->run_raw = frame[3];
   }
+  g->driven_since_valid = false;
   g->triggered = triggered;
   g->seen = true;
   g->heartbeat = frame[9];
@@ -270,18 +271,29 @@ static void observe_motion(ilk_ghost_slot_t *g, const ilk_axis_config_t *config,
   if (state == ILK_AXIS_FAULTED) {
     if (!g->fault_known || g->first || g->jump || g->maybe_reset) {
       g->fault_mark = raw;
-      g->fault_before = (g->first || g->jump || g->maybe_reset) ? raw : g->fault_before;
+      if (g->first || g->jump || g->maybe_reset) {
+        g->fault_before = raw;
+        g->fault_low = 0;
+        g->fault_high = 0;
+      }
       g->fault_known = !g->first && !g->jump && !g->maybe_reset; /* taken again at the first valid frame after it */
     } else if (!moves(g, config)) {
       g->fault_mark = raw;
-      g->fault_before = rests(g, config) ? raw : g->fault_before;
+      if (rests(g, config)) {
+        g->fault_before = raw;
+        g->fault_low = 0;
+        g->fault_high = 0;
+      }
     }
-    if (size_of(judge_counts(config, raw, g->fault_mark)) > config->drift_counts ||
-        size_of(judge_counts(config, raw, g->fault_before)) > config->drift_counts) {
+    {
+      const int32_t at = judge_counts(config, raw, g->fault_before);
+      g->fault_low = (at < g->fault_low) ? at : g->fault_low;
+      g->fault_high = (at > g->fault_high) ? at : g->fault_high;
       g->distance = judge_counts(config, raw, g->fault_mark);
-      g->runaway = size_of(judge_counts(config, raw, g->fault_mark)) > config->drift_counts &&
-                   size_of(judge_counts(config, raw, g->fault_before)) > config->drift_counts;
-      g->maybe_runaway = true;
+      g->runaway = size_of(g->distance) > config->drift_counts && size_of(at) > config->drift_counts;
+      /* a mark that was taken anew anywhere between */
+      g->maybe_runaway = g->runaway || (int64_t)at - g->fault_low > (int64_t)config->drift_counts ||
+                         (int64_t)g->fault_high - at > (int64_t)config->drift_counts;
     }
     if (rests(g, config)) {
       g->maybe_runaway = false;
@@ -293,7 +305,7 @@ static void observe_motion(ilk_ghost_slot_t *g, const ilk_axis_config_t *config,
   } else if (!g->drift_known || g->first || g->jump || g->maybe_reset) {
     g->drift_mark = raw;
     g->drift_known = true;
-  } else if (!g->driven && size_of(judge_counts(config, raw, g->drift_mark)) > config->drift_counts) {
+  } else if (!g->driven_since_valid && size_of(judge_counts(config, raw, g->drift_mark)) > config->drift_counts) {
     g->drifted = true;
     g->distance = judge_counts(config, raw, g->drift_mark);
   }
@@ -576,6 +588,8 @@ static void decide_mode(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
       g->fault_known = g->valid && !g->jump && !g->maybe_reset;
       g->fault_mark = g->raw;
       g->fault_before = g->raw;
+      g->fault_low = 0;
+      g->fault_high = 0;
     } else if (g->just_homed) {
       g->state = ILK_AXIS_ENABLED;
     }
@@ -664,7 +678,7 @@ static bool in_range(const ilk_ghost_slot_t *g, const ilk_axis_config_t *config,
   }
   if (g->homed == ILK_HOMED_NOT) {
     const int64_t way = (target > after->position) ? (int64_t)target - after->position : (int64_t)after->position - target;
-    return way <= (int64_t)config->unhomed_travel_counts - g->move_travel - coast;
+    return way == 0 || way <= (int64_t)config->unhomed_travel_counts - g->move_travel - coast;
   }
   {
     const int64_t margin = (int64_t)config->switch_hysteresis_counts + config->home_tolerance_counts;
@@ -698,8 +712,9 @@ static ilk_demand_t demand_of_motion(const ilk_ghost_t *ghost, const ilk_tick_t 
   if (g->state == ILK_AXIS_DISABLED) {
     return demand(ILK_VERDICT_DISABLED);
   }
-  if (g->state == ILK_AXIS_HOMING) {
-    return demand(ILK_VERDICT_BUSY);
+  if (g->state == ILK_AXIS_HOMING) { /* unless it homed in this very tick, which a second HOME hides */
+    return (g->stage == STAGE_SLOW_EDGE && r->kind == ILK_REQUEST_HOME) ? either(ILK_VERDICT_BUSY, ILK_VERDICT_ACCEPTED)
+                                                                       : demand(ILK_VERDICT_BUSY);
   }
   if (r->kind == ILK_REQUEST_HOME) {
     if (config->limit_side == ILK_LIMIT_NONE) {
@@ -923,6 +938,7 @@ static void accept(ilk_ghost_t *ghost, const ilk_tick_t *tick, const ilk_request
       ghost->consent_error = ghost->consent_error || r->consent != consent || consent == 0u;
       g->lease = 0u;
       g->order_consent = r->consent;
+      g->position_known = g->position_known && g->state != ILK_AXIS_HOMING;
       g->state = ILK_AXIS_HOMING;
       g->homed = ILK_HOMED_NOT;
       g->path_homing = true;
@@ -989,6 +1005,7 @@ static void settle_slot(ilk_ghost_t *ghost, ilk_ghost_slot_t *g, const ilk_axis_
   const ilk_axis_view_t *after = &tick->after->axis[slot];
   g->driven = is_driven(tick, slot);
   if (g->driven) {
+    g->driven_since_valid = true;
     g->direction = command->direction;
     still_end(&g->rest);
     g->quiet = 0u;
@@ -1182,7 +1199,7 @@ ilk_judgement_t judge_P5(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   return HOLDS;
 }
 
-/** P6. Less than the sentence: reverse motion is judged in the tick after a driven one only, drift after an undriven one;
+/** P6. Less than the sentence: reverse motion is judged in the tick after a driven one only, drift when undriven since the last valid frame;
     the first frame after start or after a lost card, and one that may be a reset card's, is not judged. */
 ilk_judgement_t judge_P6(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {

@@ -100,12 +100,15 @@ typedef struct {
   bool fault_known;
   uint32_t fault_mark;
   uint32_t fault_before; /**< the mark by the stricter reading: of the tick of the fault, jump or reset itself */
-  bool maybe_runaway;  /**< beyond drift_counts of one of the two marks */
+  int32_t fault_low;   /**< lowest and highest reading since it was taken, from there */
+  int32_t fault_high;
+  bool maybe_runaway;  /**< beyond drift_counts of some reading since: a mark may have been taken there */
   bool runaway;        /**< seen in this tick: FAULTED and beyond drift_counts of its mark */
   bool drifted;        /**< seen in this tick, to be judged */
   bool reversed;       /**< seen in this tick, to be judged */
   int32_t distance;    /**< counts that the rule of this tick measured */
   bool driven;         /**< in the last tick */
+  bool driven_since_valid; /**< since the last valid frame */
   uint32_t direction;  /**< commanded in the last driven tick */
   uint32_t reverse_direction;
   uint32_t reverse_mark;

@@ -163,13 +163,13 @@ static int32_t place_near(uint32_t i) {
   rng_t *r = &env.r;
   if (env.mood.frozen && rng_one_in(r, 2u)) {
     const int32_t step = (int32_t)(a->deadband_counts - 1u + rng_below(r, 4u));
-    return rng_one_in(r, 3u) ? at : rng_one_in(r, 4u) ? at - step : at + step;
+    return rng_one_in(r, 3u) ? at : (int32_t)((uint32_t)at + (uint32_t)(rng_one_in(r, 4u) ? -step : step));
   }
   switch (rng_below(r, 6u)) {
     case 0:
       return a->min_counts + (int32_t)rng_below(r, (uint32_t)(a->max_counts - a->min_counts) + 1u);
     case 1:
-      return at + (int32_t)rng_below(r, 2u * a->coast_counts + 1u) - (int32_t)a->coast_counts;
+      return (int32_t)((uint32_t)at + rng_below(r, 2u * a->coast_counts + 1u) - a->coast_counts);
     case 2:
       return a->min_counts + (int32_t)a->coast_counts + (int32_t)rng_below(r, 3u) - 1;
     case 3:
@@ -177,7 +177,7 @@ static int32_t place_near(uint32_t i) {
     case 4:
       return (int32_t)rng_next(r);
     default:
-      return at + (int32_t)rng_below(r, 2u * a->unhomed_travel_counts + 1u) - (int32_t)a->unhomed_travel_counts;
+      return (int32_t)((uint32_t)at + rng_below(r, 2u * a->unhomed_travel_counts + 1u) - a->unhomed_travel_counts);
   }
 }
 
