@@ -112,6 +112,19 @@ TEST_P(P9_disarm, an_armed_pedal_must_be_released_again) {
   }
 }
 
+TEST(P9_consent, a_pedal_that_stays_up_is_armed_anew_after_the_debounce_time_from_STOP_or_a_new_holder) {
+  for (const uint32_t holder : {1u, 2u}) {
+    for (const uint32_t released : {debounce - 1, debounce}) {
+      Bench bench = ready_bench();
+      bench.holder = holder;
+      EXPECT_EQ(bench.ask(holder == 1 ? stop() : disable(axis)), ILK_VERDICT_ACCEPTED);
+      bench.ticks(released);
+      hold(bench, 50);
+      EXPECT_EQ(bench.mode(), released == debounce ? ILK_MODE_MOTION : ILK_MODE_READY);
+    }
+  }
+}
+
 TEST(P9_consent, a_release_without_the_app_does_not_arm_when_it_comes_back) {
   Bench bench = ready_bench();
   bench.app_alive = false;
