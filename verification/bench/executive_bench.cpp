@@ -36,7 +36,7 @@
 #include "link_server.h"
 #include "link_socket.h"
 #include "loop.h"
-#include "oracle/wire.hpp"
+#include "monitors.h"
 #include "plant/exchange.hpp"
 #include "plant/parameters_file.hpp"
 #include "plant/plant.hpp"
@@ -118,10 +118,10 @@ class PlantBus {
   void exchange(std::uint32_t tick, const ilk_outputs_t& out, ilk_inputs_t& in) {
     const std::uint64_t now_ns = ilk_now_ns();
     const std::uint32_t generation = in.link_generation;
-    const std::uint32_t missed = in.deadline_missed;
+    const std::uint32_t missed = in.deadlines_missed;
     in = interlock::plant::exchange(plant_, out, tick);
     in.link_generation = generation;
-    in.deadline_missed = missed;
+    in.deadlines_missed = missed;
     const std::uint64_t release_ns = release_at_ns_;
     const bool down = pressed_ && now_ns < release_ns;
     in.pedal_no_closed = down ? 1 : 0;
@@ -132,8 +132,8 @@ class PlantBus {
   }
 
   void follow_release(std::uint64_t now_ns, std::uint64_t release_ns, const ilk_outputs_t& out) {
-    const bool driven = std::ranges::any_of(
-        out.frame, [](const auto& frame) { return !interlock::oracle::wire::is_zero_drive(frame); });
+    const bool driven =
+        std::ranges::any_of(out.frame, [](const auto& frame) { return !judge_is_zero_drive(frame); });
     if (driven) {
       open_ticks_++;
       return;

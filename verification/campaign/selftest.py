@@ -23,7 +23,7 @@ import run as failure  # noqa: E402
 
 SEED = 1
 LAST_PROPERTY = 13
-AXIS = re.compile(r", axis \d+(?=:)")
+VALUES = re.compile(r"; (axis \d+, )?found -?\d+, bound -?\d+")
 
 
 # One of two places that keep a rule: without it the other still does, so no output differs. The patch beside
@@ -71,10 +71,10 @@ def campaign(patch: Path | None, seconds: float, work: Path) -> dict:
 
 
 def is_shown_again(totals: dict) -> bool:
-    """Whether the shrunk case of a campaign fails as the campaign did, be it on another tick and axis."""
+    """Whether the shrunk case of a campaign fails as the campaign did, be it on another tick, axis and value."""
 
     def what(text: str) -> str:
-        return AXIS.sub("", text.partition(": ")[2])
+        return VALUES.sub("", text.partition(": ")[2])
 
     return what(totals["replayed"]).startswith(f"{what(totals['first_failure']['text'])} (of ")
 

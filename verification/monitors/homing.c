@@ -120,7 +120,7 @@ static uint32_t run(bool pressed, const ilk_request_t *extra) {
   }
   plant_move(&plant, &config.axis[0], &out.command[0], out.power == 1u, &r);
   ilk_step(&config, &state, &in, list, t.count, &out);
-  rig_view(&state, &after);
+  judge_view(&state, &after);
   ghost_observe(&ghost, &t);
   ghost_requests(&ghost, &t);
   for (uint32_t k = 0u; k < JUDGE_COUNT; k++) {
@@ -149,7 +149,7 @@ static void begin(int64_t start, uint32_t bounce, uint32_t noise_one_in, uint32_
   plant.glitch_one_in = glitch_one_in;
   (void)ilk_init(&config, &state);
   ghost_init(&ghost);
-  rig_view(&state, &before);
+  judge_view(&state, &before);
   for (uint32_t i = 0u; i < 40u; i++) {
     (void)run(false, NULL);
   }

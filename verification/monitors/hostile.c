@@ -571,7 +571,7 @@ static ilk_judgement_t twin_without_refused(const ilk_state_t *start) {
   other = *start;
   memset(&result, 0x5A, sizeof result);
   ilk_step(&config, &other, &in, kept, n, &result);
-  rig_view(&other, &view);
+  judge_view(&other, &view);
   for (uint32_t i = 0u; i < n; i++) {
     if (result.verdict[i].verdict == ILK_VERDICT_SEQUENCE) {
       return j; /* a refused request had used up numbers: one of the counters */
@@ -630,7 +630,7 @@ static bool run_tick(uint64_t episode, uint32_t tick, bool show) {
   start = state;
   memset(&out, 0xA5, sizeof out);
   ilk_step(&config, &state, &in, queue, queued, &out);
-  rig_view(&state, &after);
+  judge_view(&state, &after);
   ghost_observe(&ghost, &t);
   ghost_requests(&ghost, &t);
   for (uint32_t k = 0u; k < JUDGE_COUNT; k++) {
@@ -764,7 +764,7 @@ static void start_episode(uint64_t episode) {
   }
   (void)ilk_init(&config, &state);
   ghost_init(&ghost);
-  rig_view(&state, &before);
+  judge_view(&state, &before);
 }
 
 static void print_totals(double seconds) {

@@ -109,14 +109,25 @@ static ilk_judgement_t broken(const char *clause, uint32_t slot, int64_t found, 
   return j;
 }
 
-/** A card's outgoing frame is at zero drive: words 2, 3, 4, 5, 6 and 14. */
-static bool frame_is_zero(const uint32_t *frame) {
+bool judge_is_zero_drive(const uint32_t *frame) {
   return (frame[2] | frame[3] | frame[4] | frame[5] | frame[6] | frame[14]) == 0u;
 }
 
 static bool is_driven(const ilk_tick_t *tick, uint32_t slot) {
-  return !frame_is_zero(tick->out->frame[slot]) || tick->out->command[slot].drive != 0u ||
+  return !judge_is_zero_drive(tick->out->frame[slot]) || tick->out->command[slot].drive != 0u ||
          tick->out->command[slot].direction != ILK_DIRECTION_NONE;
+}
+
+void judge_view(const ilk_state_t *s, ilk_view_t *v) {
+  v->mode = s->system.mode;
+  v->cause = s->system.cause;
+  v->consent = s->system.consent;
+  for (uint32_t i = 0u; i < ILK_SLOTS; i++) {
+    v->axis[i].state = s->axis[i].state;
+    v->axis[i].fault = s->axis[i].fault;
+    v->axis[i].homed = s->axis[i].homed;
+    v->axis[i].position = s->axis[i].position_counts;
+  }
 }
 
 /* ------------------------------------------------------------------ what the inputs say */

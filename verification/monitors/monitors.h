@@ -20,6 +20,10 @@
 
 #include "interlock/kernel.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /** What the kernel publishes of one axis after a tick. */
 typedef struct {
   uint32_t state;
@@ -242,5 +246,15 @@ extern const char *const ilk_judge_names[JUDGE_COUNT];
 
 /** True motion `to - from` in the sense of the position, modulo 2^32. */
 int32_t judge_counts(const ilk_axis_config_t *config, uint32_t to, uint32_t from);
+
+/** A card's outgoing frame is at zero drive: words 2, 3, 4, 5, 6 and 14. */
+bool judge_is_zero_drive(const uint32_t *frame);
+
+/** What the snapshot publishes of a state. */
+void judge_view(const ilk_state_t *state, ilk_view_t *view);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

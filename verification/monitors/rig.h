@@ -1,6 +1,6 @@
 /**
  * @file
- * Valid configurations, signed requests and the published view: what hostile.c and homing.c share.
+ * Valid configurations: what hostile.c and homing.c share.
  */
 #ifndef JUDGE_RIG_H
 #define JUDGE_RIG_H
@@ -136,19 +136,6 @@ static inline void rig_random_config(rng_t *r, ilk_config_t *c) {
     rig_random_axis(r, m, &c->axis[i]);
   }
   c->crc = ilk_config_crc(c);
-}
-
-static inline void rig_view(const ilk_state_t *s, ilk_view_t *v) {
-  memset(v, 0, sizeof *v);
-  v->mode = s->system.mode;
-  v->cause = s->system.cause;
-  v->consent = s->system.consent;
-  for (uint32_t i = 0u; i < ILK_SLOTS; i++) {
-    v->axis[i].state = s->axis[i].state;
-    v->axis[i].fault = s->axis[i].fault;
-    v->axis[i].homed = s->axis[i].homed;
-    v->axis[i].position = s->axis[i].position_counts;
-  }
 }
 
 #endif

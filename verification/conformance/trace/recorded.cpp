@@ -4,26 +4,25 @@
 /// a part begins with the state that the one before ended with, and a gap in the recording begins a new one.
 /// Prints the first tick of each part, a line each.
 ///
-/// What a frame is to the model comes from spec/frames.md by way of the oracle's reader, not the kernel's.
+/// What a frame is to the model is read here by spec/frames.md, not by the kernel.
 
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <vector>
 
 #include "interlock/kernel.h"
 #include "interlock/recorded_block.h"
 #include "interlock/recording_file.h"
-#include "oracle/wire.hpp"
 #include "told.h"
 
 namespace {
 
 namespace fs = std::filesystem;
-namespace wire = interlock::oracle::wire;
 
 struct Closer {
   void operator()(FILE* file) const { std::fclose(file); }
@@ -35,8 +34,29 @@ using File = std::unique_ptr<FILE, Closer>;
   std::exit(EXIT_FAILURE);
 }
 
+constexpr std::uint32_t kStartWord = 0xFEFEFE01u;
+constexpr std::uint32_t kSwitchOpen = 0x00080000u;
+
+using Frame = std::uint32_t[ILK_FRAME_WORDS];
+
+/// Start word and checksum are right.
+bool is_intact(const Frame& frame) {
+  const std::uint32_t sum = std::accumulate(frame, frame + ILK_FRAME_WORDS - 1, 0u);
+  return frame[0] == kStartWord && frame[ILK_FRAME_WORDS - 1] == ~sum;
+}
+
+/// What a motor card tells, of an intact frame.
+struct Reading {
+  std::uint32_t counter;
+  std::uint32_t heartbeat;
+  std::uint32_t tick_echo;
+  bool switch_triggered;
+};
+
+Reading read(const Frame& frame) { return {frame[3], frame[9], frame[11], (frame[2] & kSwitchOpen) == 0}; }
+
 /// Whether the card answered to the frame that it was sent two ticks ago; not judged before there is one.
-bool is_timely(const wire::Reading& reading, std::uint32_t tick) {
+bool is_timely(const Reading& reading, std::uint32_t tick) {
   return tick < 2 || reading.tick_echo == tick - 2;
 }
 
@@ -46,10 +66,10 @@ const char* frame_kind(const ilk_inputs_t& in, std::uint32_t slot, const ilk_sta
   if (!came) {
     return "MISSING";
   }
-  if (!wire::is_intact(in.frame[slot])) {
+  if (!is_intact(in.frame[slot])) {
     return "CORRUPT";
   }
-  const wire::Reading reading = wire::read(in.frame[slot]);
+  const Reading reading = read(in.frame[slot]);
   if (!is_timely(reading, before.tick)) {
     return "LATE";
   }
@@ -58,7 +78,7 @@ const char* frame_kind(const ilk_inputs_t& in, std::uint32_t slot, const ilk_sta
 
 told_reading_t reading_of(const ilk_config_t& config, const ilk_inputs_t& in, std::uint32_t slot,
                           const ilk_state_t& before) {
-  const wire::Reading reading = wire::read(in.frame[slot]);
+  const Reading reading = read(in.frame[slot]);
   told_reading_t told{frame_kind(in, slot, before), 0, reading.switch_triggered};
   if (std::string_view(told.frame) == "GOOD" && before.axis[slot].card_seen != 0) {
     const auto rise = static_cast<std::int32_t>(reading.counter - before.axis[slot].raw);

@@ -2,30 +2,34 @@
  * @file
  * Times each stop: from the fault that demands it to zero drive on the wire.
  *
- * It knows nothing of the oracle's reckoning: whoever causes a fault states by when the drive has to be zero.
+ * It knows nothing of the monitors' reckoning: whoever causes a fault states by when the drive has to be zero.
  */
-#ifndef INTERLOCK_ORACLE_STOP_CLOCK_HPP
-#define INTERLOCK_ORACLE_STOP_CLOCK_HPP
+#ifndef INTERLOCK_CAMPAIGN_STOP_CLOCK_HPP
+#define INTERLOCK_CAMPAIGN_STOP_CLOCK_HPP
 
 #include <array>
 #include <cstdint>
-#include <span>
+#include <string_view>
 
-#include "oracle/finding.hpp"
-#include "oracle/rules.hpp"
-#include "oracle/wire.hpp"
+#include "interlock/types.h"
 
-namespace interlock::oracle {
+namespace interlock::campaign {
+
+/** Slot of what concerns no single axis. */
+inline constexpr int kNoAxis = -1;
+
+/** True when no outgoing frame drives anything. */
+bool is_zero_drive(const ilk_outputs_t& outputs) noexcept;
 
 /** Collects demands and reports those that were not met in time. Holds 64 at a time. */
 class StopClock {
  public:
   /** Demands zero drive on every card, or on one axis, at some tick up to the deadline; false when there is
    * no room. */
-  bool demand(std::uint32_t deadline, std::int8_t axis, std::string_view reason) noexcept;
+  bool demand(std::uint32_t deadline, int axis, std::string_view reason) noexcept;
 
   /** Takes in what was sent in this tick; returns how many demands passed their deadline unmet. */
-  std::uint32_t step(std::uint32_t tick, std::span<const wire::FrameView> to_card) noexcept;
+  std::uint32_t step(std::uint32_t tick, const ilk_outputs_t& sent) noexcept;
 
   /** Reason of the newest late stop; empty when none was. */
   std::string_view latest() const noexcept { return latest_; }
@@ -37,7 +41,7 @@ class StopClock {
   struct Demand {
     bool open = false;
     std::uint32_t deadline = 0;
-    std::int8_t axis = kNoAxis;
+    int axis = kNoAxis;
     std::string_view reason;
   };
 
@@ -47,6 +51,6 @@ class StopClock {
   std::string_view latest_;
 };
 
-}  // namespace interlock::oracle
+}  // namespace interlock::campaign
 
 #endif

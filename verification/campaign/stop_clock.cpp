@@ -1,9 +1,11 @@
-#include "oracle/stop_clock.hpp"
+#include "stop_clock.hpp"
 
 #include <algorithm>
 #include <limits>
 
-namespace interlock::oracle {
+#include "monitors.h"
+
+namespace interlock::campaign {
 namespace {
 
 bool is_past(std::uint32_t tick, std::uint32_t deadline) {
@@ -12,7 +14,11 @@ bool is_past(std::uint32_t tick, std::uint32_t deadline) {
 
 }  // namespace
 
-bool StopClock::demand(std::uint32_t deadline, std::int8_t axis, std::string_view reason) noexcept {
+bool is_zero_drive(const ilk_outputs_t& outputs) noexcept {
+  return std::ranges::all_of(outputs.frame, [](const auto& frame) { return judge_is_zero_drive(frame); });
+}
+
+bool StopClock::demand(std::uint32_t deadline, int axis, std::string_view reason) noexcept {
   const auto free = std::ranges::find(demands_, false, &Demand::open);
   if (free == demands_.end()) {
     return false;
@@ -22,7 +28,7 @@ bool StopClock::demand(std::uint32_t deadline, std::int8_t axis, std::string_vie
   return true;
 }
 
-std::uint32_t StopClock::step(std::uint32_t tick, std::span<const wire::FrameView> to_card) noexcept {
+std::uint32_t StopClock::step(std::uint32_t tick, const ilk_outputs_t& sent) noexcept {
   if (open_ == 0) {
     return 0;
   }
@@ -32,8 +38,8 @@ std::uint32_t StopClock::step(std::uint32_t tick, std::span<const wire::FrameVie
       continue;
     }
     const bool is_zero = demand.axis == kNoAxis
-                             ? std::ranges::all_of(to_card, wire::is_zero_drive)
-                             : wire::is_zero_drive(to_card[static_cast<std::size_t>(demand.axis)]);
+                             ? is_zero_drive(sent)
+                             : judge_is_zero_drive(sent.frame[static_cast<std::size_t>(demand.axis)]);
     if (is_zero) {
       met_++;
     } else if (is_past(tick, demand.deadline)) {
@@ -48,4 +54,4 @@ std::uint32_t StopClock::step(std::uint32_t tick, std::span<const wire::FrameVie
   return late;
 }
 
-}  // namespace interlock::oracle
+}  // namespace interlock::campaign
