@@ -260,10 +260,11 @@ std::optional<Failure> World::judge() {
   const bool config_damaged = config_damage_ticks_ > 0;
   const std::span<const ilk_request_t> requests = app_.requests();
   const auto count = static_cast<std::uint32_t>(requests.size());
-  const ilk_tick_t seen{&robot_.config, true,      &inputs_,  requests.data(),
-                        count,          &outputs_, &before_, &after_};
+  // The ghost follows what the kernel counts by; what is promised is judged by what the robot is.
+  ilk_tick_t seen{&config_, true, &inputs_, requests.data(), count, &outputs_, &before_, &after_};
   ghost_observe(&ghost_, &seen);
   ghost_requests(&ghost_, &seen);
+  seen.config = &robot_.config;
   std::optional<Failure> first = judge_memory();
   const std::span<const ilk_judge_t> judges =
       config_damaged ? std::span<const ilk_judge_t>(kAlwaysPromised) : ilk_judges;
