@@ -126,7 +126,7 @@ void App::drive_axis(std::uint32_t tick, const ilk_state_t& shown, std::uint32_t
       (axis.state != ILK_AXIS_ENABLED && axis.state != ILK_AXIS_MOVING)) {
     return;
   }
-  if (intent.homes) {
+  if (intent.homes || (manner_ == Manner::kHoming && random_.chance(0.01))) {
     intent.homes = false;
     choose_target(shown, slot);
     ask(ILK_REQUEST_HOME, slot);

@@ -532,7 +532,8 @@ void ghost_observe(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
       ghost->new_fault = ghost->new_fault || (before->state != ILK_AXIS_FAULTED && after->state == ILK_AXIS_FAULTED);
       ghost->drift_of_disabled = ghost->drift_of_disabled ||
                                  (before->state == ILK_AXIS_DISABLED && after->state != ILK_AXIS_FAULTED && g->calm.apart_age < config->rest_ticks);
-      ghost->calm_unsure = ghost->calm_unsure || (before->state == ILK_AXIS_DISABLED && g->calm.ticks <= config->rest_ticks);
+      ghost->calm_unsure = ghost->calm_unsure || (before->state == ILK_AXIS_DISABLED &&
+                                                  (g->calm.ticks <= config->rest_ticks || g->quiet <= config->rest_ticks));
       ghost->runaway_unsure = ghost->runaway_unsure || g->maybe_runaway;
     }
     keep_frame(g, frame);
@@ -1310,7 +1311,7 @@ ilk_judgement_t judge_P8(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
 
 /** P9. The release that arms counts from the last event that disarms: all of its debounce time lies in READY with the app
     alive. Less than the sentence: whether a DISABLED axis moved is not judged in the first rest_ticks after a new or reset
-    card, nor when it took more than two of its readings to move that far. */
+    card or an invalid frame, nor when it took more than two of its readings to move that far. */
 ilk_judgement_t judge_P9(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   const ilk_common_config_t *c = &tick->config->common;
   const uint32_t consent = tick->after->consent;

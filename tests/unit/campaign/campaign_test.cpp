@@ -163,7 +163,7 @@ TEST(Campaign, P2_stops_of_a_sweep_come_at_their_ticks_and_are_met) {
 
 TEST(Campaign, P14_cases_one_after_the_other_flip_each_bit_of_the_configuration) {
   std::bitset<kConfigBits> bits;
-  for (std::uint64_t number = 0; number < 3010; number++) {
+  for (std::uint64_t number = 0; number < kConfigBits / 3; number++) {
     for (const Fault& fault : make_case(11, number).faults) {
       if (fault.kind == FaultKind::kConfigBitFlips) {
         bits.set(fault.amount);
@@ -213,7 +213,7 @@ TEST(Campaign, P14_a_stop_that_rests_on_a_damaged_limit_is_demanded_when_the_dam
     const Fault flip{tick, FaultKind::kConfigBitFlips, 0, 30, bit, 0};
     const Fault overruns{tick, FaultKind::kClockOverruns, 0, 6, 0, 0};
     for (const bool flips_first : {false, true}) {
-      Case plan{11, 4, 1100, flips_first ? std::vector{flip, overruns} : std::vector{overruns, flip}};
+      Case plan{1, 4, 1100, flips_first ? std::vector{flip, overruns} : std::vector{overruns, flip}};
       ASSERT_TRUE(sweeps_stops(plan.number)) << "its foot stays down";
       const Outcome outcome = run(plan);
       EXPECT_FALSE(outcome.failure) << outcome.failure->clause << ", tick " << tick;
