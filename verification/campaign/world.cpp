@@ -119,8 +119,7 @@ void World::forget() {
 }
 
 void World::act(const plant::command::Command& command, std::uint32_t after) {
-  // The plant refuses what the robot does not have, a switch for instance: then there is no such fault.
-  static_cast<void>(plant_.schedule(command, plant_.ticks() + after));
+  commands_.emplace_back(tick_ + after, command);
 }
 
 void World::break_promise(std::size_t slot, std::uint32_t ticks) {
@@ -148,6 +147,12 @@ void World::exchange() {
   if (misses) {
     plant_.advance(plant_.period());
   }
+  std::erase_if(commands_, [this](const auto& each) {
+    const bool due = each.first == tick_;
+    // The plant refuses what the robot does not have, a switch for instance: then there is no such fault.
+    static_cast<void>(due && plant_.schedule(each.second));
+    return due;
+  });
   inputs_ = plant::exchange(plant_, outputs_, tick_);
   inputs_.link_generation = app_.generation();
   inputs_.boot_nonce = starts_;

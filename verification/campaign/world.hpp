@@ -124,6 +124,7 @@ class World {
 
   std::uint32_t tick_ = 0;
   std::size_t next_fault_ = 0;
+  std::vector<std::pair<std::uint32_t, plant::command::Command>> commands_; /**< to the plant, by tick */
   std::vector<Fault> waiting_; /**< their tick is over, but not that of the press */
   std::vector<std::pair<std::uint32_t, FaultKind>> newest_faults_; /**< the last few ticks' */
   std::uint32_t driven_ticks_ = 0;                                 /**< since MOTION was entered */

@@ -992,7 +992,9 @@ void ghost_requests(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
     if (d.verdict == ILK_VERDICT_ACCEPTED) {
       d = demand_of_row(ghost, tick, r);
     }
-    if (d.verdict != ANY && given != d.verdict && given != d.other && ghost->order_error == 0u) {
+    /* a press that may have begun and ended in this tick: nobody can tell in which mode the requests were judged */
+    const bool told = ghost->mode_sure || tick->after->mode == ILK_MODE_MOTION;
+    if (told && d.verdict != ANY && given != d.verdict && given != d.other && ghost->order_error == 0u) {
       ghost->order_error = i + 1u;
       ghost->expected = d.verdict;
     }
