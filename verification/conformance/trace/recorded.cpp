@@ -70,7 +70,7 @@ const char* frame_kind(const ilk_inputs_t& in, std::uint32_t slot, const ilk_sta
     return "CORRUPT";
   }
   const Reading reading = read(in.frame[slot]);
-  if (!is_timely(reading, before.tick)) {
+  if (!is_timely(reading, before.system.tick)) {
     return "LATE";
   }
   return axis.card_seen != 0 && reading.heartbeat == axis.heartbeat ? "REPEATED" : "GOOD";
@@ -120,12 +120,12 @@ class Teller {
     }
     const ilk_picture_t& now = tick.picture;
     told_tick_t told{};
-    told.attached = now.inputs.link_generation != before.link_generation;
-    told.config_pass = before.config_slice == ILK_SLOTS - 1u ? "AGREES" : "NONE";
+    told.attached = now.inputs.link_generation != before.system.link_generation;
+    told.config_pass = before.system.config_slice == ILK_SLOTS - 1u ? "AGREES" : "NONE";
     for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
       told.reading[slot] = reading_of(config_, now.inputs, slot, before);
     }
-    const std::vector<const char*> said = doors(tick, told.attached ? 0 : before.last_sequence);
+    const std::vector<const char*> said = doors(tick, told.attached ? 0 : before.system.last_sequence);
     told_tick(file_.get(), &config_, &told, &now.inputs, tick.request, said.data(), tick.request_count,
               &now.state, &now.out, in_part_ == 0);
     if (++in_part_ == ticks_) {
@@ -150,9 +150,9 @@ class Teller {
     if (!file_) {
       give_up(folder.string() + " cannot be written");
     }
-    told_begin(file_.get(), &config_, &before, before.tick == 0);
+    told_begin(file_.get(), &config_, &before, before.system.tick == 0);
     in_part_ = 0;
-    std::cout << before.tick + 1 << '\n';
+    std::cout << before.system.tick + 1 << '\n';
   }
 
   const ilk_config_t& config_;
