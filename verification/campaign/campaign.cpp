@@ -82,8 +82,8 @@ nlohmann::json json_of(const Totals& totals) {
 
 std::string text_of(const Failure& failure) {
   const std::string axis = failure.axis == kNoAxis ? "" : "axis " + std::to_string(failure.axis) + ", ";
-  return "tick " + std::to_string(failure.tick) + ": " + std::string(failure.clause) + "; " + axis + "found " +
-         std::to_string(failure.found) + ", bound " + std::to_string(failure.bound);
+  return "tick " + std::to_string(failure.tick) + ": " + std::string(failure.clause) + "; " + axis +
+         "found " + std::to_string(failure.found) + ", bound " + std::to_string(failure.bound);
 }
 
 void report(const Choices& choices, const Case& plan, const Failure& failure) {
@@ -109,8 +109,8 @@ void print_trace(const Case& plan, const Failure& failure, std::uint32_t ticks) 
     if (failure.tick - tick < ticks) {
       std::cout << "tick " << tick << " mode " << state.system.mode << " cause " << state.system.cause
                 << " pedal " << state.system.pedal << " armed " << state.system.pedal_armed << " | axis "
-                << slot << " state " << axis.state << " fault " << axis.fault << " homed " << axis.homed << " valid "
-                << axis.card_valid << " switch " << axis.switch_triggered << " position "
+                << slot << " state " << axis.state << " fault " << axis.fault << " homed " << axis.homed
+                << " valid " << axis.card_valid << " switch " << axis.switch_triggered << " position "
                 << axis.position_counts << " setpoint " << axis.setpoint_counts << " lease "
                 << axis.lease_ticks << " phase " << axis.homing_phase << " stall count "
                 << axis.stall_driven_ticks << " effort " << axis.effort_low << " travel "

@@ -1,7 +1,7 @@
 /**
  * @file
- * A robot for one case: ten axes of all card types with seeded numbers, as the kernel's configuration and as the
- * plant's parameters.
+ * A robot for one case: ten axes of all card types with seeded numbers, as the kernel's configuration and
+ * as the plant's parameters.
  */
 #ifndef INTERLOCK_CAMPAIGN_ROBOT_HPP
 #define INTERLOCK_CAMPAIGN_ROBOT_HPP

@@ -2,7 +2,8 @@
  * @file
  * Times each stop: from the fault that demands it to zero drive on the wire.
  *
- * It knows nothing of the monitors' reckoning: whoever causes a fault states by when the drive has to be zero.
+ * It knows nothing of the monitors' reckoning: whoever causes a fault states by when the drive has to
+ * be zero.
  */
 #ifndef INTERLOCK_CAMPAIGN_STOP_CLOCK_HPP
 #define INTERLOCK_CAMPAIGN_STOP_CLOCK_HPP

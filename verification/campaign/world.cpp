@@ -239,8 +239,8 @@ std::optional<Failure> World::judge_memory() const {
   return std::nullopt;
 }
 
-/** The second half of P4: of axes that do what their configuration says. One that homed at the limit stands there, noise
- * and backlash apart. */
+/** The second half of P4: of axes that do what their configuration says. One that homed at the limit stands
+ * there, noise and backlash apart. */
 std::optional<Failure> World::judge_range() {
   for (std::size_t slot = 0; slot < ILK_SLOTS; slot++) {
     const ilk_axis_config_t& axis = robot_.config.axis[slot];
