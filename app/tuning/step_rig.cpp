@@ -59,7 +59,7 @@ void StepRig::move(std::int32_t target_counts, std::uint32_t drive) {
   request.kind = ILK_REQUEST_MOVE;
   request.axis = slot_;
   request.target_counts = target_counts;
-  request.drive = drive;
+  request.drive = std::max(drive, 1U);  // the smallest that the kernel accepts; it moves nothing
   request.amplitude = config_.axis[slot_].max_amplitude;
   request.lease_ticks = config_.common.lease_max_ticks;
   request.consent = state_.system.consent;
