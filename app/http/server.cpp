@@ -88,8 +88,8 @@ std::size_t ceiling_of_process() {
 }
 
 bool is_protocol_error(const beast::error_code& error) {
-  static const auto& category = beast::error_code(http::error::bad_method).category();
-  return error.category() == category && error != http::error::end_of_stream &&
+  static const beast::error_code of_the_protocol = http::error::bad_method;
+  return error.category() == of_the_protocol.category() && error != http::error::end_of_stream &&
          error != http::error::partial_message;
 }
 

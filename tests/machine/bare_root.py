@@ -17,6 +17,7 @@ import re
 import shutil
 import signal
 import socket
+import stat
 import subprocess
 import sys
 import time
@@ -29,6 +30,8 @@ SUITES = {"12": "bookworm", "13": "trixie"}
 FOLDER = Path("/var/tmp/interlock-bare")
 NAMESPACES = ["unshare", "--mount", "--pid", "--fork", "--kill-child", "--mount-proc"]
 INSIDE = "INTERLOCK_BARE_ROOT"
+DEVICES = {"null": 3, "zero": 5, "full": 7, "random": 8, "urandom": 9}
+"""The devices of a root, by minor number. Its own nodes: the machine's cannot be deleted through it."""
 SOURCES = re.compile(r"proxy$|^PIP_(INDEX|CERT|TRUSTED|DEFAULT)|_CERT$|_CERTS$|^npm_config_", re.IGNORECASE)
 """Variables that say how package sources are reached."""
 
@@ -80,7 +83,7 @@ class BareRoot:
         return self
 
     def __exit__(self, *_: object) -> None:
-        subprocess.run(["umount", "--recursive", str(self.root)], check=False)
+        subprocess.run(["umount", "--recursive", "--lazy", str(self.root)], check=False)
         self._delete()
         self._lock.close()
 
@@ -119,7 +122,7 @@ class BareRoot:
                 os.killpg(process.pid, signal.SIGINT)
         if not ready:
             raise SystemExit(f"bare_root: {' '.join(words)}: ended without the line 'ready ...'")
-        spent = finish(process, begin, words, allowed=(0, 2, 130))
+        spent = finish(process, begin, words, allowed=(0, 2, 130, -signal.SIGINT))
         return Spent(round(ready - begin, 1), spent.processor_s), lines
 
     def _mount(self) -> None:
@@ -127,7 +130,14 @@ class BareRoot:
         subprocess.run(["mount", "--bind", str(self.root), str(self.root)], check=True)
         self._mount_one("proc", ["-t", "proc", "proc"])
         self._mount_one("sys", ["--rbind", "-o", "ro", "/sys"])
-        self._mount_one("dev", ["--rbind", "/dev"])
+        self._mount_one("dev", ["-t", "tmpfs", "tmpfs"])
+        for name, minor in DEVICES.items():
+            os.mknod(self.root / "dev" / name, 0o666 | stat.S_IFCHR, os.makedev(1, minor))
+            (self.root / "dev" / name).chmod(0o666)
+        for name, target in {"fd": "fd", "stdin": "fd/0", "stdout": "fd/1", "stderr": "fd/2"}.items():
+            (self.root / "dev" / name).symlink_to(f"/proc/self/{target}")
+        (self.root / "dev/ptmx").symlink_to("pts/ptmx")
+        self._mount_one("dev/pts", ["-t", "devpts", "-o", "newinstance,ptmxmode=0666", "devpts"])
         self._mount_one("dev/shm", ["-t", "tmpfs", "tmpfs"])
         for place in ("var/cache/apt/archives", "var/lib/apt/lists", "root"):
             kept = self.folder / f"downloads-{self.release}" / place
@@ -151,9 +161,12 @@ class BareRoot:
         (self.root / "etc/apt/apt.conf.d/90machine").write_text("\n".join([*access, ""]))
 
     def _delete(self) -> None:
-        if os.path.ismount(self.root):
-            raise SystemExit(f"bare_root: {self.root} is a mount; unmount it first")
-        shutil.rmtree(self.root, ignore_errors=True)
+        """Deletes the root, and nothing that is mounted in it."""
+        mounted = [line.split()[4] for line in Path("/proc/self/mountinfo").read_text().splitlines()]
+        inside = [place for place in mounted if Path(place).is_relative_to(self.root)]
+        if inside:
+            raise SystemExit(f"bare_root: {inside[0]} is mounted; unmount it first")
+        subprocess.run(["rm", "-rf", "--one-file-system", str(self.root)], check=True)
 
 
 def finish(

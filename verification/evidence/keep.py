@@ -15,21 +15,15 @@ from pathlib import Path
 from evidence import EVIDENCE
 from expected import KEPT, Check, UnusableError, read_checks
 
-MOST_BYTES = 512 * 1024
+MOST_BYTES = 2**20
 """So much the packed logs of a check may have: the history of the sources has every version of them."""
-TEXTS = (".log", ".json", ".txt", ".csv", ".cfg", ".tla", "")
-MOST_OF_A_FILE = 2 * 2**20
-"""A longer log is one of a solver at work. It stays where it was made."""
+TEXTS = (".log", ".json", ".txt", ".csv")
 
 
 def logs(document: dict) -> list[Path]:
     """The logs of a check: the file or folder that its evidence names, with the texts in it."""
     named = EVIDENCE / document["log"].removeprefix("build/evidence/")
-    return sorted(
-        path
-        for path in (named, *named.rglob("*"))
-        if path.is_file() and path.suffix in TEXTS and path.stat().st_size <= MOST_OF_A_FILE
-    )
+    return sorted(path for path in (named, *named.rglob("*")) if path.is_file() and path.suffix in TEXTS)
 
 
 def pack(files: Sequence[Path], packed: Path) -> None:

@@ -222,7 +222,10 @@ def model(source: Source, rung: Rung) -> Iterator[Result]:
         match[2]: match
         for match in re.finditer(r"^(\w+)\s+[\d.]+ s\s+(\w+) +(\d+) states", rung.text, re.MULTILINE)
     }
-    refuted = re.findall(r"^ok +[\d.]+ s +\w+: wrong variant (\w+) +refuted", rung.text, re.MULTILINE)
+    # A liveness property is refuted with or without all states, as TLC's clock has it look.
+    refuted = re.findall(
+        r"^ok +[\d.]+ s +\w+: wrong variant (\w+) +(?:refuted|\d+ states)$", rung.text, re.MULTILINE
+    )
     models = tomllib.loads((source.root / "verification/model/models.toml").read_text("utf-8"))["model"]
     for one in models:
         name = one["name"]
