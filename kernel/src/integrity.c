@@ -15,6 +15,7 @@
 
 _Static_assert(sizeof(ilk_state_t) == (4u * (WORDS(ilk_system_t) + (ILK_SLOTS * WORDS(ilk_axis_t)) + 1u)),
                "all is words, and every word is sealed or is the seal");
+_Static_assert((WORDS(ilk_state_t) % 2u) == 0u, "an odd number of words is sealed");
 
 /** Mixes a word into the digest. The step can be undone, so a change of any one word changes the result;
    product and rotation together spread it over all bits, so that changes of several words do not cancel. */
@@ -23,7 +24,7 @@ static uint32_t mix(uint32_t digest, uint32_t word) {
   return ((mixed << 13) | (mixed >> 19)) * SEAL_FACTOR;
 }
 
-/** Of one part, in two lanes, so that a processor can work on both at once. */
+/** Of an odd number of words, in two lanes, so that a processor can work on both at once. */
 static uint32_t digest_of(const unsigned char bytes[], uint32_t words) {
   uint32_t even = SEAL_SEED;
   uint32_t odd = ODD_SEED;
@@ -31,10 +32,7 @@ static uint32_t digest_of(const unsigned char bytes[], uint32_t words) {
     even = mix(even, word_at(&bytes[4u * word]));
     odd = mix(odd, word_at(&bytes[4u * (word + 1u)]));
   }
-  if ((words % 2u) != 0u) {
-    even = mix(even, word_at(&bytes[4u * (words - 1u)]));
-  }
-  return mix(even, odd);
+  return mix(mix(even, word_at(&bytes[4u * (words - 1u)])), odd);
 }
 
 static uint32_t state_digest(const ilk_state_t *state) {

@@ -20,8 +20,8 @@ static bool setpoint_is_within(const ilk_common_config_t *common, const ilk_axis
   const ilk_reach_t reach = (axis->homed != (uint32_t)ILK_HOMED_NOT) ? ilk_reach(config, axis) : unhomed;
   const bool towards = (((int64_t)setpoint > here) && (config->limit_side == (uint32_t)ILK_LIMIT_UPPER)) ||
                        (((int64_t)setpoint < here) && (config->limit_side == (uint32_t)ILK_LIMIT_LOWER));
-  return ((int64_t)setpoint >= reach.low) && ((int64_t)setpoint <= reach.high) &&
-         !(towards && ilk_switch_is_steady(common, axis, true));
+  const bool behind = towards && ilk_switch_is_steady(common, axis, true);
+  return ((int64_t)setpoint >= reach.low) && ((int64_t)setpoint <= reach.high) && !behind;
 }
 
 /** What MOVE and HOME need alike. */
