@@ -88,8 +88,8 @@ void describe(const ilk_recording_header_t& header, std::ostream& output) {
   const UtcTime begun{std::chrono::milliseconds(recorder::joined(header.run.begun_utc_ms))};
   output << "recorded: " << recorder::why_name(header.why) << ", tick " << header.tick << "; run of "
          << iso_8601(begun) << (header.run.simulated != 0 ? ", simulated" : ", hardware") << ", period "
-         << header.run.config.common.period_us << " us, configuration " << config_hash(header.run.config) << ", by "
-         << std::string(header.build, strnlen(header.build, sizeof header.build)) << '\n';
+         << header.run.config.common.period_us << " us, configuration " << config_hash(header.run.config)
+         << ", by " << std::string(header.build, strnlen(header.build, sizeof header.build)) << '\n';
 }
 
 void describe(const ilk_replay_t& replayed, std::ostream& output) {

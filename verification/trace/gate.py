@@ -179,6 +179,7 @@ def g2(of: Trace) -> Iterator[Finding]:
 def g3(of: Trace) -> Iterator[Finding]:
     """Each requirement has a parent, an item, code, one *shall*, and no FRETish that breaks its grammar."""
     project = of.project
+    fulfilled = {uid for one in project.functions for uid in project.links.requirements_of(one)}
     for requirement in project.items.of("REQUIREMENT"):
         if not requirement.parents_by("Refines"):
             yield Finding("G3", requirement.uid, "refines no system requirement")
