@@ -138,7 +138,7 @@ def test_nothing_that_the_app_does_to_its_region_costs_the_loop_a_page_fault(ker
             lambda: fcntl.fcntl(client.app_fd, fcntl.F_ADD_SEALS, fcntl.F_SEAL_WRITE),
             lambda: map_reopened(client.app_fd, ctypes.sizeof(AppRegion)),
         ):
-            with pytest.raises(OSError, match="not permitted|Permission denied"):
+            with pytest.raises(OSError, match=r"not permitted|Permission denied"):
                 refused()
         fcntl.flock(client.app_fd, fcntl.LOCK_EX)
         for _ in range(60):
