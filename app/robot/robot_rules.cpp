@@ -46,7 +46,8 @@ constexpr std::array rules{
     Rule{ILK_CONFIG_ERROR_LIMIT_SIDE, "limit", "none, lower or upper"},
     Rule{ILK_CONFIG_ERROR_SOFT_LIMITS, "soft_limits", "min_counts below max_counts, both within +-2^30"},
     Rule{ILK_CONFIG_ERROR_HOME_OFFSET, "home_offset_counts",
-         "a position from soft_limits.min_counts to max_counts"},
+         "a position from soft_limits.min_counts to max_counts; from a switch, farther from the other limit "
+         "than homing.tolerance_counts, homing.hysteresis_counts, coast and deadband together"},
     Rule{ILK_CONFIG_ERROR_COAST, "mechanics.coast_counts",
          "what the axis travels in two ticks at mechanics.full_speed_counts_per_s at least, and less than "
          "half of the range"},

@@ -54,6 +54,7 @@ class LinkClient:
         self.kernel_map = mmap.mmap(self.kernel_fd, self.hello.kernel_region_bytes, prot=mmap.PROT_READ)
         self.app_map = mmap.mmap(self.app_fd, self.hello.app_region_bytes)
         self.app = AppRegion.from_buffer(self.app_map)
+        self.socket.send(CONSTANTS["ILK_LINK_MAGIC"].to_bytes(4, "little"))
         self.sequence = 0
         self.events_read = 0
         self.verdicts: dict[int, str] = {}

@@ -99,7 +99,7 @@ void* map(int descriptor, size_t bytes, int protection) {
 
 }  // namespace
 
-std::unique_ptr<App> App::attach(const std::string& link) {
+std::unique_ptr<App> App::attach(const std::string& link, uint32_t word) {
   std::optional<Descriptor> connected = connect_to(link);
   if (!connected) {
     return nullptr;
@@ -128,7 +128,7 @@ std::unique_ptr<App> App::attach(const std::string& link) {
       map(descriptors[0], sizeof(ilk_link_kernel_region_t), PROT_READ));
   app->app = static_cast<ilk_link_app_region_t*>(
       map(descriptors[1], sizeof(ilk_link_app_region_t), PROT_READ | PROT_WRITE));
-  return app;
+  return send(app->socket.get(), &word, sizeof word, MSG_NOSIGNAL) == sizeof word ? std::move(app) : nullptr;
 }
 
 App::~App() {

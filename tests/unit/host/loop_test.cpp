@@ -37,6 +37,7 @@ class Loop : public ::testing::Test {
   void attach(uint32_t generation) {
     ilk_error_t error{};
     ASSERT_TRUE(ilk_link_regions_create(&attachment.regions, generation, &error)) << error.text;
+    ASSERT_TRUE(ilk_link_regions_settle(&attachment.regions));
     attachment.generation = generation;
     attachment.open = 1;
     mailbox.offered = &attachment;
