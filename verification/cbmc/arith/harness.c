@@ -11,7 +11,9 @@ static int64_t held(int64_t value) {
 }
 
 /** The nearest value that a `uint32_t` can hold. */
-static int64_t held_unsigned(int64_t value) { return (value > UINT32_MAX) ? UINT32_MAX : (value < 0) ? 0 : value; }
+static int64_t held_unsigned(int64_t value) {
+  return (value > UINT32_MAX) ? UINT32_MAX : (value < 0) ? 0 : value;
+}
 
 /** The value of `value` modulo 2^32 that an `int32_t` can hold. */
 static int64_t wrapped(int64_t value) {
