@@ -1,5 +1,6 @@
 #include "world.h"
 
+#include "frame.h"
 #include "integrity.h"
 
 #define START_WORD 0xfefefe01u
@@ -29,14 +30,17 @@ static void set_up_axis(ilk_axis_config_t *axis, ilk_card_t card, ilk_limit_side
   axis->backlash_counts = 1u;
   axis->noise_counts = 1u;
   axis->deadband_counts = 2u;
+  axis->dead_zone_drive = 10u;
   axis->max_drive = 1000u;
   axis->unhomed_max_drive = 100u;
   axis->unhomed_travel_counts = 100u;
+  axis->full_speed_counts_per_s = 3000u;
   axis->stall_ticks = 50u;
+  axis->stall_effort_ticks = 20u;
   axis->stall_min_counts = 2u;
   axis->reverse_counts = 20u;
   axis->drift_counts = 20u;
-  axis->settle_ticks = 10u;
+  axis->rest_ticks = 6u;
   axis->max_delta_counts = 8u;
   if (card == ILK_CARD_HIGH_FREQUENCY) {
     axis->max_amplitude = 200u;
@@ -45,27 +49,32 @@ static void set_up_axis(ilk_axis_config_t *axis, ilk_card_t card, ilk_limit_side
   if (side != ILK_LIMIT_NONE) {
     axis->home_offset_counts = (side == ILK_LIMIT_LOWER) ? -980 : 980;
     axis->home_drive = 50u;
-    axis->home_travel_counts = 2100u;
-    axis->home_backoff_counts = 100u;
+    axis->home_slow_drive = 20u;
+    axis->home_travel_counts = 2500u;
     axis->home_timeout_ticks = 3000u;
-    axis->home_rest_ticks = 5u;
+    axis->home_clear_counts = 30u;
+    axis->home_tolerance_counts = 10u;
+    axis->switch_hysteresis_counts = 2u;
     axis->home_speed_counts_per_s = 1000u;
+    axis->home_slow_speed_counts_per_s = 1000u;
   }
 }
 
 void world_config(ilk_config_t *config) {
   static const ilk_config_t blank = {0};
   *config = blank;
-  config->version = ILK_CONFIG_VERSION;
-  config->size_bytes = (uint32_t)sizeof(ilk_config_t);
-  config->period_us = 1000u;
-  config->pedal_channels = 2u;
-  config->app_timeout_ticks = 30u;
-  config->lease_max_ticks = 20u;
-  config->pedal_debounce_ticks = 5u;
-  config->pedal_disagree_ticks = 8u;
-  config->bad_frame_limit = 3u;
-  config->overrun_limit = 3u;
+  config->common.version = ILK_CONFIG_VERSION;
+  config->common.size_bytes = (uint32_t)sizeof(ilk_config_t);
+  config->common.period_us = 1000u;
+  config->common.pedal_channels = 2u;
+  config->common.app_timeout_ticks = 30u;
+  config->common.lease_max_ticks = 20u;
+  config->common.pedal_debounce_ticks = 5u;
+  config->common.pedal_disagree_ticks = 8u;
+  config->common.power_up_ticks = 10u;
+  config->common.switch_debounce_ticks = 3u;
+  config->common.bad_frame_limit = 3u;
+  config->common.overrun_limit = 3u;
   set_up_axis(&config->axis[0], ILK_CARD_PWM, ILK_LIMIT_LOWER);
   set_up_axis(&config->axis[1], ILK_CARD_PWM, ILK_LIMIT_NONE);
   set_up_axis(&config->axis[2], ILK_CARD_NON_PWM, ILK_LIMIT_UPPER);
@@ -137,7 +146,7 @@ static void write_frame(world_t *world, const ilk_axis_config_t *axis, uint32_t 
   frame[9] = world->heartbeat;
   frame[10] = tick * 1000u;
   frame[11] = tick - 2u;
-  frame[12] = slot;
+  frame[12] = dice_one_in(&world->dice, 20000u) ? ILK_STATUS_WAS_RESET : 0u;
   write_checksum(frame);
   if (dice_one_in(&world->dice, 3000u)) {
     frame[dice_below(&world->dice, (uint32_t)ILK_FRAME_WORDS)] ^= 1u << dice_below(&world->dice, 32u);
@@ -175,11 +184,12 @@ void world_inputs(world_t *world, const ilk_config_t *config, const ilk_state_t 
                   const ilk_outputs_t *out, ilk_inputs_t *in) {
   world->heartbeat++;
   in->link_generation = 1u;
+  in->boot_nonce = 7u;
   if (dice_one_in(&world->dice, 3000u)) {
     world->late_ticks = dice_below(&world->dice, 5u);
   }
-  in->deadline_missed = (world->late_ticks != 0u) ? 1u : 0u;
-  world->late_ticks -= in->deadline_missed;
+  in->deadlines_missed = (world->late_ticks != 0u) ? 1u : 0u;
+  world->late_ticks -= in->deadlines_missed;
   in->transaction_done = dice_one_in(&world->dice, 2000u) ? 0u : 1u;
   if (dice_one_in(&world->dice, 1000u)) {
     world->deaf_ticks = dice_below(&world->dice, 6u);
@@ -191,7 +201,7 @@ void world_inputs(world_t *world, const ilk_config_t *config, const ilk_state_t 
   }
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
     follow_command(world, slot, &out->command[slot]);
-    write_frame(world, &config->axis[slot], slot, state->tick, in->frame[slot]);
+    write_frame(world, &config->axis[slot], slot, state->system.tick, in->frame[slot]);
   }
   move_hand(world, in);
   work_estop(world, in);
@@ -202,7 +212,7 @@ static uint32_t sensible_kind(dice_t *dice, const ilk_state_t *state, const ilk_
   uint32_t kind = (uint32_t)ILK_REQUEST_MOVE;
   if (axis->state == (uint32_t)ILK_AXIS_FAULTED) {
     kind = (uint32_t)ILK_REQUEST_CLEAR_FAULT;
-  } else if (state->mode == (uint32_t)ILK_MODE_READY) {
+  } else if (state->system.mode == (uint32_t)ILK_MODE_READY) {
     static const ilk_request_kind_t kinds[4] = {ILK_REQUEST_ENABLE, ILK_REQUEST_ENABLE, ILK_REQUEST_SET_HOME,
                                                 ILK_REQUEST_RESTORE};
     kind = (uint32_t)kinds[dice_below(dice, 4u)];
@@ -227,8 +237,9 @@ static void fill_request(world_t *world, const ilk_config_t *config, const ilk_s
   request->drive = dice_below(dice, 2u) * dice_below(dice, axis->max_drive + 20u) + dice_below(dice, 100u);
   request->amplitude = dice_below(dice, axis->max_amplitude + 1u);
   request->lease_ticks = dice_below(dice, 22u);
+  request->consent = state->system.consent + (dice_one_in(dice, 200u) ? 1u : 0u);
   request->holder = 1u + (dice_one_in(dice, 200u) ? 1u : 0u);
-  if (state->mode == (uint32_t)ILK_MODE_LOCKED) {
+  if (state->system.mode == (uint32_t)ILK_MODE_LOCKED) {
     request->kind = (uint32_t)ILK_REQUEST_RESET;
   }
   if (dice_one_in(dice, 100u)) {
@@ -265,7 +276,7 @@ uint32_t world_requests(world_t *world, const ilk_config_t *config, const ilk_st
   return count;
 }
 
-/** Any words, made to agree with each other where the kernel's own check asks for it. */
+/** Any words, made small where only small ones lead anywhere. */
 static void any_axis(dice_t *dice, const ilk_axis_config_t *config, uint32_t mode, uint32_t tick,
                      ilk_axis_t *axis) {
   const uint32_t wiring = axis->wiring;
@@ -289,48 +300,67 @@ static void any_axis(dice_t *dice, const ilk_axis_config_t *config, uint32_t mod
       (axis->state == (uint32_t)ILK_AXIS_FAULTED) ? (1u + dice_below(dice, ILK_FAULT_COUNT - 1u)) : 0u;
   axis->lease_ticks = (axis->state == (uint32_t)ILK_AXIS_MOVING) ? (1u + dice_below(dice, 20u)) : 0u;
   axis->homing_phase = homing ? (1u + dice_below(dice, ILK_HOMING_COUNT - 1u)) : 0u;
-  axis->homed = homing ? 0u : dice_below(dice, 2u);
+  axis->homed = homing ? 0u : dice_below(dice, ILK_HOMED_COUNT);
+  axis->runaway = dice_one_in(dice, 200u) ? 1u : 0u;
   axis->driven_direction = dice_below(dice, ILK_DIRECTION_COUNT);
   axis->stall_direction = dice_below(dice, ILK_DIRECTION_COUNT);
   axis->reverse_direction = dice_below(dice, ILK_DIRECTION_COUNT);
   axis->bad_frames = dice_below(dice, 4u);
   axis->card_seen = dice_below(dice, 2u);
   axis->heartbeat = tick;
+  axis->card_status = 0u;
+  axis->periods = dice_below(dice, 3u);
   axis->position_counts = (int32_t)dice_below(dice, 2200u) - 1100;
   axis->setpoint_counts = (int32_t)dice_below(dice, 2000u) - 1000;
   axis->raw = 5000u + dice_below(dice, 12u);
-  axis->ticks_since_frame = dice_below(dice, 3u);
   axis->stall_driven_ticks = dice_below(dice, config->stall_ticks + 2u);
+  axis->effort_high = 0u;
+  axis->effort_low = dice_below(dice, (config->stall_effort_ticks + 2u) * (config->max_drive + 1u));
   axis->stall_mark_raw = axis->raw - dice_below(dice, 12u);
+  axis->effort_mark_raw = axis->raw - dice_below(dice, 3u);
   axis->reverse_mark_raw = axis->raw - dice_below(dice, 12u);
   axis->drift_mark_raw = axis->raw - dice_below(dice, 12u);
-  axis->undriven_ticks = dice_below(dice, config->settle_ticks + 1u);
-  axis->press_travel_counts = (int32_t)dice_below(dice, 240u) - 120;
+  axis->path_raw = axis->raw - dice_below(dice, 12u);
+  axis->home_raw = axis->raw - dice_below(dice, 120u);
   axis->homing_mark_raw = axis->raw - dice_below(dice, 120u);
+  axis->first_edge_raw = axis->homing_mark_raw - dice_below(dice, 12u);
+  axis->unhomed_travel_counts = dice_below(dice, config->unhomed_travel_counts + 1u);
+  axis->homing_travel_counts = dice_below(dice, config->home_travel_counts + 1u);
+  axis->homing_ticks = dice_below(dice, config->home_timeout_ticks + 1u);
+  axis->switch_reading = dice_below(dice, 2u);
+  axis->switch_run_ticks = dice_below(dice, 4u);
+  axis->rest.origin_raw = axis->raw;
+  axis->rest.ticks = dice_below(dice, config->rest_ticks + 1u);
+  axis->calm.origin_raw = axis->raw;
+  axis->calm.ticks = dice_below(dice, config->rest_ticks + 1u);
   axis->drive = dice_below(dice, config->unhomed_max_drive + 20u);
   axis->amplitude = dice_below(dice, config->max_amplitude + 2u);
 }
 
 void world_any_state(dice_t *dice, const ilk_config_t *config, ilk_state_t *state) {
   (void)ilk_init(config, state);
-  state->tick = 100u + dice_below(dice, 100000u);
-  state->mode = dice_one_in(dice, 2u) ? (uint32_t)ILK_MODE_MOTION : (1u + dice_below(dice, 3u));
-  const bool locked = state->mode == (uint32_t)ILK_MODE_LOCKED;
-  state->cause = locked ? (1u + dice_below(dice, ILK_CAUSE_COUNT - 1u)) : (uint32_t)ILK_CAUSE_NONE;
-  state->pedal = dice_below(dice, ILK_PEDAL_COUNT);
-  state->pedal_armed = dice_below(dice, 2u);
-  state->pedal_pressed_ticks = dice_below(dice, 6u);
-  state->pedal_released_ticks = dice_below(dice, 6u);
-  state->pedal_disagree_ticks = dice_below(dice, 10u);
-  state->app_age_ticks = dice_below(dice, 32u);
-  state->overruns_in_row = dice_below(dice, 4u);
-  state->bus_bad_ticks = dice_below(dice, 4u);
-  state->config_slice = dice_below(dice, (uint32_t)ILK_SLOTS);
-  state->config_partial_crc = dice_word(dice);
-  state->link_generation = 1u;
-  state->holder = dice_below(dice, 3u);
+  ilk_system_t *system = &state->system;
+  system->tick = 100u + dice_below(dice, 100000u);
+  system->frames_sent = 2u;
+  system->mode = dice_one_in(dice, 2u) ? (uint32_t)ILK_MODE_MOTION : (1u + dice_below(dice, 3u));
+  const bool locked = system->mode == (uint32_t)ILK_MODE_LOCKED;
+  system->cause = locked ? (1u + dice_below(dice, ILK_CAUSE_COUNT - 1u)) : (uint32_t)ILK_CAUSE_NONE;
+  system->consent = dice_word(dice);
+  system->powered_ticks = dice_below(dice, config->common.power_up_ticks + 1u);
+  system->pedal = dice_below(dice, ILK_PEDAL_COUNT);
+  system->pedal_armed = dice_below(dice, 2u);
+  system->pedal_pressed_ticks = dice_below(dice, 6u);
+  system->pedal_released_ticks = dice_below(dice, 6u);
+  system->pedal_disagree_ticks = dice_below(dice, 10u);
+  system->app_age_ticks = dice_below(dice, 32u);
+  system->overruns_in_row = dice_below(dice, 4u);
+  system->bus_bad_ticks = dice_below(dice, 4u);
+  system->config_slice = dice_below(dice, (uint32_t)ILK_SLOTS);
+  system->config_partial_crc = dice_word(dice);
+  system->link_generation = 1u;
+  system->holder = dice_below(dice, 3u);
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
-    any_axis(dice, &config->axis[slot], state->mode, state->tick, &state->axis[slot]);
+    any_axis(dice, &config->axis[slot], system->mode, system->tick, &state->axis[slot]);
   }
   ilk_state_seal(state);
 }
