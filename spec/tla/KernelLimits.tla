@@ -12,15 +12,13 @@ SoftAxis ==
   [WideAxis EXCEPT !.limit_side = "LOWER", !.min_counts = -1, !.max_counts = 5, !.coast_counts = 2,
                    !.home_offset_counts = -1, !.max_drive = 1]
 
-SoftBody == [Free EXCEPT !.low = -2, !.high = 6, !.closes = 0, !.opens = 1]
+SoftBody == [Free EXCEPT !.low = -2, !.high = 7, !.closes = -2, !.opens = -1]
 
 BudgetAxis ==
-  [SoftAxis EXCEPT !.unhomed_travel_counts = 4, !.home_travel_counts = 4, !.switch_debounce_ticks = 1,
+  [SoftAxis EXCEPT !.max_drive = 2, !.unhomed_travel_counts = 4, !.home_travel_counts = 4, !.switch_debounce_ticks = 1,
                    !.home_clear_counts = 1]
 
 BudgetBody == [Free EXCEPT !.low = -5, !.high = 5, !.closes = -1, !.opens = -1]
-
-Raws == {plant.at, plant.at + 1}
 
 Events ==
   {[m |-> m, reading |-> Reading(plant.at + m + n, switch)] :
@@ -29,13 +27,15 @@ Events ==
 
 There == MoveTo(IF Unhomed THEN axis.position_counts + 1 ELSE 3, 1, 1)
 Here  == MoveTo(IF Unhomed THEN axis.position_counts - 1 ELSE 1, 1, 1)
+Fast  == [There EXCEPT !.drive = k.max_drive]
+Old   == [Here EXCEPT !.consent = 2]
 Off   == <<Ask("DISABLE"), Ask("ENABLE")>>
 
 Wishes ==
   CASE system.mode = "LOCKED" -> {<<Ask("RESET")>>}
     [] system.mode = "READY"  -> {<<Ask("CLEAR_FAULT"), Ask("ENABLE")>>}
-    [] Unhomed -> {<<>>, <<There>>, <<Here>>, <<Ask("HOME")>>, Off \o <<There>>, Off \o <<Ask("HOME")>>}
-    [] OTHER -> {<<>>, <<There>>, <<Here>>, <<MoveTo(k.max_counts, 1, 1)>>, Off \o <<Here>>}
+    [] Unhomed -> {<<>>, <<Fast>>, <<There>>, <<Here>>, <<Ask("HOME")>>, Off \o <<There>>, Off \o <<Ask("HOME")>>}
+    [] OTHER -> {<<>>, <<There>>, <<Here>>, <<MoveTo(k.max_counts, 1, 1), Old>>, Off \o <<Here>>}
 
 (* The travel of this press by MOVE and by HOME, the point that follows the counter, and
    to which of the two its path belongs. *)
@@ -64,9 +64,8 @@ EndTick == system.mode = "MOTION" /\ Met("EndTick") /\
     Step([Input(pedal, Reading(plant.at + m, plant.at <= body.closes), <<>>) EXCEPT !.estop_loop = estop], m)
 
 Init ==
-  /\ BeginIn(After(PowerOn, IntoMotion(2, (IF Unhomed THEN <<>> ELSE <<[Ask("SET_HOME") EXCEPT !.axis = X]>>)
-                                          \o <<Ask("ENABLE")>>)), 2)
-  /\ seen = [Nothing EXCEPT !.point = IF Unhomed THEN 2 ELSE 0]
+  /\ BeginIn(After(PowerOn, IntoMotion(2, (IF Unhomed THEN <<>> ELSE <<Ask("SET_HOME")>>) \o <<Ask("ENABLE")>>)), 0)
+  /\ seen = Nothing
 
 Next == AnyTick \/ EndTick
 Spec == Init /\ [][Next]_vars
@@ -94,6 +93,7 @@ About ==
   [][ /\ About1
       /\ io'.gate = "SOFT_LIMIT" => Met("P4_soft_limit")
       /\ IsHomed(io'.axis) /\ io'.axis.position_counts = k.max_counts - 1 => Met("P4_soft_range")
-      /\ io'.command.drive = k.max_drive => Met("P7_bounds")
+      /\ Driven /\ Unhomed => Met("P7_bounds")
+      /\ (\E i \in 1..Len(io'.answers) : io'.answers[i].verdict = "CONSENT") => Met("P12_no_leap")
       /\ seen'.move = k.unhomed_travel_counts - 1 => Met("P7_travel") ]_vars
 ===============================================================================

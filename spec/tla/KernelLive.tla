@@ -26,7 +26,7 @@ MayMove == system.mode = "MOTION" /\ system.app_age_ticks = 0 /\ IsEnabled(axis)
 Decide ==
   /\ aim = "NONE"
   /\ \/ aim' = "RECOVER" /\ goal' = 0
-     \/ MayMove /\ aim' = "MOVE" /\ goal' \in {1, 2}
+     \/ MayMove /\ aim' = "MOVE" /\ goal' \in {1, 3}
   /\ UNCHANGED <<vars, clock>>
 
 TimeGoesOn == aim # "NONE" /\ clock' = ~clock
@@ -57,7 +57,8 @@ Pedal == IF axis.state \in {"FAULTED", "DISABLED"} THEN "OPEN" ELSE Held
 Recover ==
   /\ aim = "RECOVER" /\ TimeGoesOn
   /\ Met("Recover")
-  /\ Step(Input(Pedal, Reading(plant.at, plant.at <= body.closes), <<Beat, Remedy>>), 0)
+  /\ \E n \in {0, 1} :
+       Step(Input(Pedal, Reading(plant.at + n, plant.at <= body.closes), <<Beat, Remedy>>), 0)
   /\ UNCHANGED <<aim, goal>>
 
 Recovered == system.mode = "MOTION" /\ IsEnabled(axis)

@@ -245,6 +245,12 @@ P11_inert_refusal ==
       /\ \A i \in 1..Len(io'.answers) :
            io'.answers[i].verdict # "ACCEPTED" => io'.answers[i].inert ]_vars
 
+(* Only what carries the number of this press moves anything. *)
+P12_no_leap ==
+  [][ \A i \in 1..Len(io'.answers) :
+        /\ io'.answers[i].request.kind \in {"MOVE", "HOME"}
+        /\ io'.answers[i].verdict = "ACCEPTED" => io'.answers[i].request.consent = 1 ]_vars
+
 TypeOK ==
   /\ axis.state \in AxisStates
   /\ axis.fault \in Faults

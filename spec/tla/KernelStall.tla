@@ -67,8 +67,13 @@ Next == AnyTick \/ ReleaseTick \/ ResetTick
 Spec == Init /\ [][Next]_vars
 
 -------------------------------------------------------------------------------
+(* A sum has reached its bound, and this tick's reading is no progress for it. *)
+BoundMet == \/ seen.driven >= k.stall_ticks /\ ~(Whole /\ ~Renewed)
+        \/ seen.effort >= k.stall_effort_ticks * k.max_drive /\ ~((Whole \/ Some) /\ ~Renewed)
+
 P5_stall ==
-  [][ /\ seen'.driven <= k.stall_ticks
+  [][ /\ BoundMet => io'.observed.state = "FAULTED"
+      /\ seen'.driven <= k.stall_ticks
       /\ seen'.effort < (k.stall_effort_ticks + 1) * k.max_drive
       /\ Driven => io'.axis.state # "FAULTED" ]_vars
 
