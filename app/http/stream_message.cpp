@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "interlock/sim_bus.h"
+#include "link/card_frame.hpp"
 #include "motion/axis_plan.hpp"
 #include "motion/setpoint_range.hpp"
 
@@ -63,17 +64,19 @@ void put_header(Words& words, const ControlView& view, std::chrono::steady_clock
   words.put(static_cast<std::uint32_t>(ILK_SLOTS));
 }
 
-void put_slot(Words& words, const ControlView& view, const ilk_axis_config_t& rules, const OpenTarget& target,
+void put_slot(Words& words, const ControlView& view, const ilk_config_t& config, const OpenTarget& target,
               std::size_t slot) {
+  const ilk_axis_config_t& rules = config.axis[slot];
   const ilk_axis_t& axis = view.snapshot.state.axis[slot];
   const bool motor = view.attached && drives_motor(rules.card);
-  const SetpointRange range = motor ? setpoint_range(rules, axis, view.snapshot.state.system.mode) : SetpointRange{};
+  const SetpointRange range =
+      motor ? setpoint_range(rules, axis, view.snapshot.state.system.mode) : SetpointRange{};
   words.put(axis.state);
   words.put(axis.fault);
   words.put(axis.fault_tick);
   words.put(axis.fault_value);
   words.put(bit(axis.homed != 0, 0) | bit(axis.switch_triggered != 0, 1) | bit(axis.card_valid != 0, 2) |
-            bit(axis.card_seen != 0, 3) | bit(target.open, 4));
+            bit(card_frame::detected(config, view.snapshot.state, slot), 3) | bit(target.open, 4));
   words.put(view.snapshot.gate[slot]);
   words.put(axis.position_counts);
   words.put(target.open ? target.target_counts : 0);
@@ -81,7 +84,7 @@ void put_slot(Words& words, const ControlView& view, const ilk_axis_config_t& ru
   words.put(view.snapshot.command[slot].drive);
   words.put(axis.lease_ticks);
   words.put(axis.checksum_failures);
-  words.put(axis.heartbeat);
+  words.put(card_frame::heartbeat(view.snapshot, slot));
   words.put(range.lowest_counts);
   words.put(range.highest_counts);
 }
@@ -113,7 +116,7 @@ StreamMessage encode_state(const ControlView& view, const ilk_config_t& config, 
   Words words(message);
   put_header(words, shown, now);
   for (std::size_t slot = 0; slot < ILK_SLOTS; ++slot) {
-    put_slot(words, shown, config.axis[slot], view.attached ? targets[slot] : OpenTarget{}, slot);
+    put_slot(words, shown, config, view.attached ? targets[slot] : OpenTarget{}, slot);
   }
   put_state(words, shown.snapshot.state);
   return message;

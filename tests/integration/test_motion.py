@@ -6,7 +6,7 @@ import pytest
 from conftest import StackFactory
 from motion import (
     LATERAL,
-    act,
+    enable,
     is_driven,
     motor,
     press,
@@ -94,7 +94,7 @@ def test_P2_P8_an_estop_stops_within_two_ticks_and_stays_locked_until_reset(stac
         assert (status["mode"], status["cause"]) == ("LOCKED", "ESTOP")
         robot.control("estop", pulled=False)
         unlock(robot)
-        act(robot, "enable")
+        enable(robot)
         press(robot)
 
 
@@ -111,7 +111,7 @@ def test_P12_after_an_estop_nothing_moves_by_reset_or_by_pressing_again(stack: S
     assert robot.status()["mode"] == "LOCKED"
     assert proposal(robot, number)["state"] == "aborted"
     unlock(robot)
-    act(robot, "enable")
+    enable(robot)
     press(robot)
     pressed = robot.control("status")["tick"]
     entries = record(robot, stopped + 5, pressed + 500)

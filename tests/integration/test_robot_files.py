@@ -13,7 +13,17 @@ import jsonschema
 import pytest
 from bare_kernel import BIN, DEADLINE_S, ROOT
 from conftest import StackFactory
-from motion import act, motor, press, propose, to_motion, unlock, wait_for_mode, wait_for_proposal, wait_until
+from motion import (
+    enable,
+    motor,
+    press,
+    propose,
+    to_motion,
+    unlock,
+    wait_for_mode,
+    wait_for_proposal,
+    wait_until,
+)
 from stack import Stack
 from test_run import DONE, REFUSED, interlock
 
@@ -235,7 +245,7 @@ def test_robot_of_the_integrators_guide_homes_as_a_whole_and_moves(stack: StackF
     assert desk.status()["robot"] == "desk"
     unlock(desk)
     for slot in DESK_SLOTS:
-        act(desk, "enable", slot)
+        enable(desk, slot)
     number = desk.api.post("/api/proposals", json={"kind": "home"}).raise_for_status().json()["id"]
     press(desk)
     wait_for_proposal(desk, number, "done")
