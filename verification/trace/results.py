@@ -21,7 +21,7 @@ from expected import Check
 
 AWAITED = "AWAITED"
 """The status of a check that a release demands, that this report does not, and that is not there."""
-PROPERTY = re.compile(r"(?<![A-Za-z0-9])(P(?:1[0-6]|[1-9])|L[12])(?=_)")
+PROPERTY = re.compile(r"(?<![A-Za-z0-9])(P(?:1[0-8]|[1-9])|L[12])(?=_)")
 """A property's identifier where a name begins with it: P1_gate, test_P2_P8_..., ensures P7_drive."""
 TYPES = "TypeOK"
 """The invariant of each model that says what its variables range over; no requirement rests on it."""
