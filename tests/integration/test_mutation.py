@@ -178,13 +178,13 @@ def test_the_sound_function_is_shown_equal_to_itself_and_a_fault_is_not(tmp_path
 
 @pytest.mark.provers
 def test_products_of_equal_numbers_are_seen_to_be_equal(tmp_path: Path) -> None:
-    file, largest = "kernel/src/arith.h", "product > (uint64_t)UINT32_MAX"
-    [function] = [each for each in functions_in(ROOT, [file]) if each.name == "multiply_saturating"]
+    file, least = "kernel/src/config.c", "(ticks >= lowest) && (((uint64_t)ticks * period_us)"
+    [function] = [each for each in functions_in(ROOT, [file]) if each.name == "lasts"]
     tree, folder = tree_to_compare(tmp_path)
-    line = line_with(tree / file, largest)
-    with seeded(tree, file, line, largest, largest.replace(">", ">=")):
+    line = line_with(tree / file, least)
+    with seeded(tree, file, line, "(ticks >= lowest)", "!(ticks < lowest)"):
         assert is_same(function, tree, folder)
-    with seeded(tree, file, line, largest, largest.replace(">", "<")):
+    with seeded(tree, file, line, "(ticks >= lowest)", "(ticks > lowest)"):
         assert not is_same(function, tree, folder)
 
 
