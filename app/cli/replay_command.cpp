@@ -1,9 +1,5 @@
 #include "cli/replay_command.hpp"
 
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -13,7 +9,6 @@
 #include <optional>
 #include <string>
 
-#include "cli/installation.hpp"
 #include "cli/replay_table.hpp"
 #include "cli/write_file.hpp"
 #include "interlock/replay.h"
@@ -93,8 +88,8 @@ void describe(const ilk_recording_header_t& header, std::ostream& output) {
   const UtcTime begun{std::chrono::milliseconds(recorder::joined(header.run.begun_utc_ms))};
   output << "recorded: " << recorder::why_name(header.why) << ", tick " << header.tick << "; run of "
          << iso_8601(begun) << (header.run.simulated != 0 ? ", simulated" : ", hardware") << ", period "
-         << header.run.config.common.period_us << " us, configuration " << config_hash(header.run.config) << ", by "
-         << std::string(header.build, strnlen(header.build, sizeof header.build)) << '\n';
+         << header.run.config.common.period_us << " us, configuration " << config_hash(header.run.config)
+         << ", by " << std::string(header.build, strnlen(header.build, sizeof header.build)) << '\n';
 }
 
 void describe(const ilk_replay_t& replayed, std::ostream& output) {
@@ -124,38 +119,6 @@ Result<void> judge(const ilk_replay_report_t& report, const ilk_recording_t& rec
   }
   output << "identical\n";
   return {};
-}
-
-/** Runs a program with this one's standard output; its exit code, or nothing when it did not come to one. */
-std::optional<int> exit_code_of(std::array<std::string, 3> words) {
-  const std::array<char*, 4> arguments{words[0].data(), words[1].data(), words[2].data(), nullptr};
-  pid_t child = 0;
-  int status = 0;
-  if (posix_spawn(&child, arguments[0], nullptr, nullptr, arguments.data(), environ) != 0 ||
-      waitpid(child, &status, 0) != child || !WIFEXITED(status)) {
-    return std::nullopt;
-  }
-  return WEXITSTATUS(status);
-}
-
-/** What the model says of a recording that is identical; its checker writes to standard output itself. */
-Result<void> ask_model(const fs::path& file, std::ostream& output) {
-  const Installation here = Installation::current();
-  const fs::path checker = here.data() / "verification/conformance/recorded.py";
-  const Result<fs::path> teller = here.program("model_trace");
-  if (!teller || !fs::exists(checker)) {
-    return failed(
-        ExitCode::precondition,
-        "the model is checked in the source tree only: build all of it there, and run its interlock");
-  }
-  output.flush();
-  const std::optional<int> code = exit_code_of({checker.string(), teller->string(), file.string()});
-  if (code == 0) {
-    return {};
-  }
-  return code == 1 ? failed(ExitCode::refused, "the model does not accept what the kernel did")
-                   : failed(ExitCode::precondition,
-                            "the model's checker came to no end; `make verify` installs what it needs");
 }
 
 Result<Tables> tables_for(const ReplayOptions& options, const ilk_recording_header_t& header) {
@@ -204,9 +167,6 @@ Result<void> replay(const ReplayOptions& options, std::ostream& output) {
     }
   }
   Result<void> good = judge(report, *recording, output);
-  if (good && options.model) {
-    good = ask_model(options.file, output);
-  }
   if (good && options.console) {
     good = show_in_console(options.show, options.file, recording->header.run.config, output);
   }

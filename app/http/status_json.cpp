@@ -5,6 +5,7 @@
 
 #include "build_info/build_info.hpp"
 #include "interlock/sim_bus.h"
+#include "link/card_frame.hpp"
 #include "motion/axis_plan.hpp"
 #include "motion/setpoint_range.hpp"
 #include "robot/catalog.hpp"
@@ -42,20 +43,20 @@ json frame_age_ms(const ilk_config_t& config, const ilk_state_t& state, std::uin
   return missed < state.system.tick ? json(missed * (config.common.period_us / 1000.0)) : json();
 }
 
-json cards_json(const ilk_config_t& config, const ilk_state_t& state) {
+json cards_json(const ilk_config_t& config, const ilk_snapshot_t& snapshot) {
+  const ilk_state_t& state = snapshot.state;
   json cards = json::array();
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     const ilk_axis_t& axis = state.axis[slot];
     const bool expected = config.axis[slot].card != ILK_CARD_NONE;
-    cards.push_back(
-        {{"slot", slot},
-         {"card", catalog::name(Family::card, config.axis[slot].card)},
-         {"detected", expected && axis.card_seen != 0 && axis.bad_frames < config.common.bad_frame_limit},
-         {"heartbeat", axis.heartbeat},
-         // A frame is valid only when its heartbeat advanced.
-         {"heartbeat_live", expected && axis.card_valid != 0},
-         {"frame_age_ms", expected ? frame_age_ms(config, state, slot) : json()},
-         {"checksum_failures", axis.checksum_failures}});
+    cards.push_back({{"slot", slot},
+                     {"card", catalog::name(Family::card, config.axis[slot].card)},
+                     {"detected", card_frame::detected(config, state, slot)},
+                     {"heartbeat", card_frame::heartbeat(snapshot, slot)},
+                     // A frame that is repeated or late is not valid.
+                     {"heartbeat_live", expected && axis.card_valid != 0},
+                     {"frame_age_ms", expected ? frame_age_ms(config, state, slot) : json()},
+                     {"checksum_failures", axis.checksum_failures}});
   }
   return cards;
 }
@@ -181,7 +182,7 @@ json status_json(const Robot& robot, const ilk_config_t& config, const ControlVi
           {"config_crc", config_hash(config)},
           {"age_ms", age.count()},
           {"lamps", lamps_json(snapshot)},
-          {"cards", cards_json(config, state)},
+          {"cards", cards_json(config, snapshot)},
           {"timing", timing_json(snapshot.timing)}};
 }
 

@@ -5,6 +5,7 @@
 
 #include "http/status_json.hpp"
 #include "interlock/sim_bus.h"
+#include "link/card_frame.hpp"
 #include "motion/axis_plan.hpp"
 #include "motion/setpoint_range.hpp"
 
@@ -66,8 +67,9 @@ void put_header(Words& words, const ControlView& view, const ilk_config_t& confi
   words.put(static_cast<std::uint32_t>(ILK_SLOTS));
 }
 
-void put_slot(Words& words, const ControlView& view, const ilk_axis_config_t& rules, const OpenTarget& target,
+void put_slot(Words& words, const ControlView& view, const ilk_config_t& config, const OpenTarget& target,
               std::size_t slot) {
+  const ilk_axis_config_t& rules = config.axis[slot];
   const ilk_axis_t& axis = view.snapshot.state.axis[slot];
   const bool motor = view.attached && drives_motor(rules.card);
   const SetpointRange range =
@@ -77,7 +79,8 @@ void put_slot(Words& words, const ControlView& view, const ilk_axis_config_t& ru
   words.put(axis.fault_tick);
   words.put(axis.fault_value);
   words.put(bit(axis.homed != 0, 0) | bit(axis.switch_triggered != 0, 1) | bit(axis.card_valid != 0, 2) |
-            bit(axis.card_seen != 0, 3) | bit(target.open, 4) | bit(axis.homed == ILK_HOMED_BY_HAND, 5));
+            bit(card_frame::detected(config, view.snapshot.state, slot), 3) | bit(target.open, 4) |
+            bit(axis.homed == ILK_HOMED_BY_HAND, 5));
   words.put(view.snapshot.gate[slot]);
   words.put(axis.position_counts);
   words.put(target.open ? target.target_counts : 0);
@@ -85,7 +88,7 @@ void put_slot(Words& words, const ControlView& view, const ilk_axis_config_t& ru
   words.put(view.snapshot.command[slot].drive);
   words.put(axis.lease_ticks);
   words.put(axis.checksum_failures);
-  words.put(axis.heartbeat);
+  words.put(card_frame::heartbeat(view.snapshot, slot));
   words.put(range.lowest_counts);
   words.put(range.highest_counts);
   words.put(axis.home_difference_counts);
@@ -118,7 +121,7 @@ StreamMessage encode_state(const ControlView& view, const ilk_config_t& config, 
   Words words(message);
   put_header(words, shown, config, now);
   for (std::size_t slot = 0; slot < ILK_SLOTS; ++slot) {
-    put_slot(words, shown, config.axis[slot], view.attached ? targets[slot] : OpenTarget{}, slot);
+    put_slot(words, shown, config, view.attached ? targets[slot] : OpenTarget{}, slot);
   }
   put_state(words, shown.snapshot.state);
   return message;

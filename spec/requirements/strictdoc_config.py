@@ -18,6 +18,5 @@ def create_config() -> ProjectConfig:
             "kernel/src/*.h",
             "spec/tla/*.tla",
             "verification/cbmc/**/harness.c",
-            "verification/conformance/phases/*.toml",
         ],
     )

@@ -1,6 +1,6 @@
 #include "world.h"
 
-#include "integrity.h"
+#include "parts.h"
 
 #define START_WORD 0xfefefe01u
 #define SWITCH_OPEN_BIT 0x00080000u

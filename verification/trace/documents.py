@@ -79,8 +79,7 @@ def results(of: Trace) -> str:
             ("LOG", result.log),
             ("STATEMENT", result.bounds or "no figures"),
         ]
-        function = result.function.rpartition(":")[2]
-        place = [source_file(result.place, function)] if (of.project.root / result.place).is_file() else []
+        place = [source_file(result.place)] if (of.project.root / result.place).is_file() else []
         return node("RESULT", fields, [*(parent(uid, "Verifies") for uid in supported), *place])
 
     head = HEAD.format(title="Verification results", uid="DOC-RESULTS")

@@ -54,9 +54,6 @@ class Places:
     def of_result(self, result: Result) -> str:
         """Where what a result comes from stands: function, property, harness or first test of its group."""
         kind, _, rest = result.uid.partition(":")
-        if result.function in self.functions:
-            function = self.functions[result.function]
-            return f"{function.file}:{function.line}"
         if kind == "TLC":
             return self.definition(Path(result.place).stem, rest.rpartition(":")[2]) or result.place
         if kind == "CBMC":

@@ -10,12 +10,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "arith.h"
-#include "frame.h"
-#include "gate.h"
-#include "integrity.h"
 #include "interlock/kernel.h"
-#include "request.h"
+#include "parts.h"
 
 #define EXPORT(name) __attribute__((export_name(name)))
 

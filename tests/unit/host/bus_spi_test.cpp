@@ -399,7 +399,7 @@ TEST_F(BusSpi, LinesThatAreTakenAreNamedByTheirChip) {
 class SpiWiring : public ::testing::Test {
  protected:
   SpiWiring() {
-    config.pedal_channels = 2;
+    config.common.pedal_channels = 2;
     config.axis[0].card = ILK_CARD_PWM;
     config.axis[2].card = ILK_CARD_SENSOR;
   }
@@ -483,7 +483,7 @@ TEST_F(SpiWiring, WhatIsMissingIsNamed) {
     EXPECT_FALSE(load(without(line))) << line;
     EXPECT_THAT(error.text, HasSubstr("expected gpio, estop, pedal_no and a pedal_nc")) << line;
   }
-  config.pedal_channels = 1;
+  config.common.pedal_channels = 1;
   EXPECT_FALSE(load(sound));
   EXPECT_THAT(error.text, HasSubstr("no pedal_nc: the pedal has 1 channels"));
   EXPECT_TRUE(load(without("pedal_nc\t27 low\n"))) << error.text;
