@@ -64,6 +64,11 @@ static inline int32_t along(uint32_t direction, int32_t travel) {
   return (direction == (uint32_t)ILK_DIRECTION_NONE) ? 0 : directed;
 }
 
+/** What a budget keeps back: the coast, and noise, by which the point that is followed may lag. */
+static inline uint32_t coast_as_read(const ilk_axis_config_t *config) {
+  return sum_saturating(config->coast_counts, config->noise_counts);
+}
+
 /** True for 1 to `most`. */
 static inline bool count_of(uint32_t value, uint32_t most) { return (value != 0u) && (value <= most); }
 

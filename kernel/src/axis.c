@@ -221,10 +221,12 @@ static ilk_finding_t judge_card(const ilk_reading_t *reading, const ilk_axis_t *
 }
 
 /** Place, and what the card says of itself. The first frame after start or after a lost card is compared with
-   nothing; what a reset or a jump leads to has nothing to do with what was before. */
+   nothing; what a reset or a jump leads to has nothing to do with what was before. A FAULTED axis that jumps
+   before it has come to rest is run away: its mark follows each jump, so that nothing else would tell. */
 static ilk_finding_t follow_card(const ilk_axis_config_t *config, const ilk_reading_t *reading,
                                  ilk_axis_t *axis) {
   const bool first = axis->card_seen == 0u;
+  const bool coasts = (axis->state == (uint32_t)ILK_AXIS_FAULTED) && !ilk_axis_is_at_rest(config, axis);
   const uint64_t farthest = (uint64_t)config->max_delta_counts * axis->periods;
   const int32_t delta = first ? 0 : travel_between(config, axis->raw, reading->raw);
   const ilk_finding_t jump = found_if(magnitude(delta) > farthest, ILK_FAULT_JUMP, delta);
@@ -238,6 +240,7 @@ static ilk_finding_t follow_card(const ilk_axis_config_t *config, const ilk_read
   axis->card_status = reading->card_status;
   axis->card_seen = 1u;
   if (first || (finding.fault != ILK_FAULT_NONE)) {
+    axis->runaway = flag_of((axis->runaway != 0u) || (coasts && !first));
     begin_anew(axis);
   }
   return finding;

@@ -94,10 +94,9 @@ static ilk_config_error_t drive_error(const ilk_axis_config_t *axis, uint32_t us
   const uint32_t full = axis->full_speed_counts_per_s;
   const uint64_t fastest = travel_in(full, 1u, us) + axis->noise_counts;
   const uint32_t range = range_of(axis);
-  const uint32_t most_drive = ilk_card_max_drive(axis->card);
   const uint32_t unhomed_drive = axis->unhomed_max_drive;
   ilk_config_error_t error = ILK_CONFIG_ERROR_NONE;
-  need(&error, within(axis->max_drive, 1u, most_drive), ILK_CONFIG_ERROR_MAX_DRIVE);
+  need(&error, within(axis->max_drive, 1u, ilk_card_max_drive(axis->card)), ILK_CONFIG_ERROR_MAX_DRIVE);
   need(&error, within(unhomed_drive, dead_zone + 1u, axis->max_drive / 10u), ILK_CONFIG_ERROR_UNHOMED_DRIVE);
   need(&error, within(axis->max_amplitude, flag_of(waves), waves ? ILK_AMPLITUDE_MAX : 0u),
        ILK_CONFIG_ERROR_AMPLITUDE);
@@ -105,7 +104,8 @@ static ilk_config_error_t drive_error(const ilk_axis_config_t *axis, uint32_t us
   need(&error, within(full, 1u, SPEED_MAX), ILK_CONFIG_ERROR_SPEED);
   need(&error, within(axis->max_delta_counts, fastest, range / 2u), ILK_CONFIG_ERROR_MAX_DELTA);
   need(&error, coast >= travel_in(full, ILK_LATENCY_TICKS, us), ILK_CONFIG_ERROR_COAST);
-  need(&error, within(axis->unhomed_travel_counts, coast + 1u, range / 10u), ILK_CONFIG_ERROR_UNHOMED_TRAVEL);
+  need(&error, within(axis->unhomed_travel_counts, coast + axis->noise_counts + 1u, range / 10u),
+       ILK_CONFIG_ERROR_UNHOMED_TRAVEL);
   return error;
 }
 
@@ -125,7 +125,6 @@ static ilk_config_error_t watch_error(const ilk_axis_config_t *axis, const ilk_c
   const uint64_t lost = axis->backlash_counts + noise;
   const uint64_t innocent = axis->coast_counts + lost;
   const uint32_t us = common->period_us;
-  const uint32_t debounce = common->switch_debounce_ticks;
   const uint64_t slowest =
       has_switch(axis) ? axis->home_slow_speed_counts_per_s : axis->full_speed_counts_per_s;
   const uint64_t progress = (axis->stall_min_counts + lost) * US_PER_S;
@@ -137,7 +136,7 @@ static ilk_config_error_t watch_error(const ilk_axis_config_t *axis, const ilk_c
   need(&error, within(axis->reverse_counts, innocent, tenth), ILK_CONFIG_ERROR_REVERSE);
   need(&error, within(axis->drift_counts, innocent, tenth), ILK_CONFIG_ERROR_DRIFT);
   need(&error, lasts(axis->rest_ticks, us, ILK_LATENCY_TICKS + 1u, 1000u), ILK_CONFIG_ERROR_REST);
-  need(&error, axis->rest_ticks >= debounce, ILK_CONFIG_ERROR_REST);
+  need(&error, axis->rest_ticks >= common->switch_debounce_ticks, ILK_CONFIG_ERROR_REST);
   return error;
 }
 
@@ -186,7 +185,7 @@ static ilk_config_error_t homing_error(const ilk_axis_config_t *axis, const ilk_
   need(&error, open_side > (edges + axis->deadband_counts), ILK_CONFIG_ERROR_HOME_OFFSET);
   need(&error, within(clear, edges + 1u, range / 10u), ILK_CONFIG_ERROR_HOME_CLEAR);
   need(&error, clear > (axis->stall_min_counts + axis->backlash_counts + noise), ILK_CONFIG_ERROR_HOME_CLEAR);
-  need(&error, within(axis->home_travel_counts, way_of_homing(axis) + coast + 1u, 4u * range),
+  need(&error, within(axis->home_travel_counts, way_of_homing(axis) + coast + noise + 1u, 4u * range),
        ILK_CONFIG_ERROR_HOME_TRAVEL);
   need(&error, lasts(axis->home_timeout_ticks, us, 1u, HOMING_MAX_MS), ILK_CONFIG_ERROR_HOME_TIMEOUT);
   if (error == ILK_CONFIG_ERROR_NONE) {

@@ -53,8 +53,7 @@ static bool leaves_soft_range(const ilk_axis_config_t *config, const ilk_axis_t 
 }
 
 uint32_t ilk_unhomed_travel_left(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
-  return left_of(config->unhomed_travel_counts,
-                 sum_saturating(axis->unhomed_travel_counts, config->coast_counts));
+  return left_of(left_of(config->unhomed_travel_counts, axis->unhomed_travel_counts), coast_as_read(config));
 }
 
 /** P7: the budget of this press is used up, coast kept back. */

@@ -7,8 +7,7 @@ static uint32_t away_from_switch(const ilk_axis_config_t *config) {
 }
 
 uint32_t ilk_homing_travel_left(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
-  return left_of(config->home_travel_counts,
-                 sum_saturating(axis->homing_travel_counts, config->coast_counts));
+  return left_of(left_of(config->home_travel_counts, axis->homing_travel_counts), coast_as_read(config));
 }
 
 bool ilk_homing_has_budget(const ilk_axis_config_t *config, const ilk_axis_t *axis) {

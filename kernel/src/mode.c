@@ -16,7 +16,7 @@ void ilk_pedal_disarm(ilk_system_t *system) {
 }
 
 /** Another one in each of 2^32 ticks and never 0: that of tick `boot_nonce` would be, and has that of tick 0,
-   in which no press can complete. */
+   in which no MOTION begins. */
 static uint32_t consent_of(uint32_t boot_nonce, uint32_t tick) {
   const uint32_t mixed = (tick == boot_nonce) ? boot_nonce : (tick ^ boot_nonce);
   return mixed * CONSENT_FACTOR;
@@ -168,7 +168,8 @@ static bool press_completes(const ilk_common_config_t *common, const ilk_system_
 static void follow_consent(const ilk_config_t *config, const ilk_inputs_t *in, const ilk_alarms_t *alarms,
                            ilk_state_t *state) {
   const bool asked = press_completes(&config->common, &state->system);
-  const bool begins = asked && (state->system.powered_ticks >= config->common.power_up_ticks) &&
+  const bool begins = asked && (state->system.tick != 0u) &&
+                      (state->system.powered_ticks >= config->common.power_up_ticks) &&
                       !alarms->required_card_lost && !disabled_axis_moves(config, state);
   const bool ends =
       (state->system.mode == (uint32_t)ILK_MODE_MOTION) && motion_must_end(&state->system, alarms);

@@ -174,13 +174,14 @@ static ilk_verdict_t take(const ilk_config_t *config, const ilk_request_t *reque
 ilk_verdict_record_t ilk_request_take(const ilk_config_t *config, const ilk_request_t *request,
                                       ilk_state_t *state) {
   ilk_system_t *system = &state->system;
+  const uint32_t verdict = (uint32_t)take(config, request, state);
   const ilk_verdict_record_t record = {.tick = system->tick,
                                        .sequence = request->sequence,
                                        .kind = request->kind,
                                        .axis = request->axis,
-                                       .verdict = (uint32_t)take(config, request, state)};
-  const bool accepted = record.verdict == (uint32_t)ILK_VERDICT_ACCEPTED;
-  uint32_t *counter = accepted ? &system->requests_accepted : &system->requests_refused;
+                                       .verdict = verdict};
+  uint32_t *counter =
+      (verdict == (uint32_t)ILK_VERDICT_ACCEPTED) ? &system->requests_accepted : &system->requests_refused;
   *counter = count_up(*counter, UINT32_MAX);
   return record;
 }

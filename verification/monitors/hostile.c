@@ -3,7 +3,8 @@
  * A hostile environment for the compiled kernel, with every monitor as its judge.
  *
  *   hostile SECONDS SEED                run episodes; exit 1 when a monitor is violated
- *   hostile replay EPISODE [FROM TO]    run one episode again (its seed as printed), with a trace of those ticks
+ *   hostile replay EPISODE [FROM TO]    run one episode again (its seed as printed), with a trace of those
+ * ticks
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -27,15 +28,17 @@ static ilk_request_t queue[QUEUE];
 static uint32_t queued;
 
 static struct {
-  uint64_t verdict[ILK_VERDICT_COUNT], fault[ILK_FAULT_COUNT], cause[ILK_CAUSE_COUNT], mode[4][4], gate[ILK_GATE_COUNT];
-  uint64_t homings, homes_wrong, arrivals, moves_reached, driven, requests, flips, flips_met, twins, weak, ticks, episodes;
+  uint64_t verdict[ILK_VERDICT_COUNT], fault[ILK_FAULT_COUNT], cause[ILK_CAUSE_COUNT], mode[4][4],
+      gate[ILK_GATE_COUNT];
+  uint64_t homings, homes_wrong, arrivals, moves_reached, driven, requests, flips, flips_met, twins, weak,
+      ticks, episodes;
   uint64_t valid_configs, rejected_configs;
   uint64_t choice[4];
   int64_t worst_home;
 } total;
 
 static struct {
-  const char *clause;
+  const char* clause;
   uint64_t count, episode;
   uint32_t tick, slot;
   int64_t found, bound;
@@ -61,8 +64,8 @@ static bool note(ilk_judgement_t j, uint64_t episode, uint32_t tick) {
     clauses[i].slot = j.slot;
     clauses[i].found = j.found;
     clauses[i].bound = j.bound;
-    printf("VIOLATION %s: slot %u found %lld bound %lld, episode %llu tick %u\n", j.clause, j.slot, (long long)j.found,
-           (long long)j.bound, (unsigned long long)episode, tick);
+    printf("VIOLATION %s: slot %u found %lld bound %lld, episode %llu tick %u\n", j.clause, j.slot,
+           (long long)j.found, (long long)j.bound, (unsigned long long)episode, tick);
     fflush(stdout);
   }
   clauses[i].count++;
@@ -73,8 +76,8 @@ static bool note(ilk_judgement_t j, uint64_t episode, uint32_t tick) {
 
 /** How unkind this episode is. */
 typedef struct {
-  uint32_t frames;   /* one trouble of a frame in so many ticks and slots; 0: none */
-  uint32_t plant;    /* one trouble of an axis in so many */
+  uint32_t frames; /* one trouble of a frame in so many ticks and slots; 0: none */
+  uint32_t plant;  /* one trouble of an axis in so many */
   uint32_t pedal;
   uint32_t system;   /* E-stop, missed deadlines, bus */
   uint32_t requests; /* one hostile burst in so many ticks */
@@ -105,14 +108,14 @@ static struct {
   uint32_t beat;
 } env;
 
-static uint32_t shade(rng_t *r, uint32_t often) {
+static uint32_t shade(rng_t* r, uint32_t often) {
   const uint32_t k = rng_below(r, 4u);
   return (k == 0u) ? 0u : (k == 1u) ? often : (k == 2u) ? often * 10u : often * 100u;
 }
 
 static void choose_mood(void) {
-  rng_t *r = &env.r;
-  mood_t *m = &env.mood;
+  rng_t* r = &env.r;
+  mood_t* m = &env.mood;
   m->frames = shade(r, 20u);
   m->plant = shade(r, 200u);
   m->pedal = shade(r, 100u);
@@ -124,7 +127,7 @@ static void choose_mood(void) {
   m->endless = rng_one_in(r, 6u);
   m->sluggish = rng_one_in(r, 8u);
   if (rng_one_in(r, 3u)) { /* friendly, but for one kind of trouble */
-    uint32_t *const kinds[6] = {&m->frames, &m->plant, &m->pedal, &m->system, &m->requests, &m->app};
+    uint32_t* const kinds[6] = {&m->frames, &m->plant, &m->pedal, &m->system, &m->requests, &m->app};
     const uint32_t keep = rng_below(r, 6u);
     for (uint32_t k = 0u; k < 6u; k++) {
       *kinds[k] = (k == keep) ? *kinds[k] : 0u;
@@ -143,8 +146,8 @@ static void choose_mood(void) {
 
 static bool motor(uint32_t i) { return config.axis[i].card >= 1u && config.axis[i].card <= 4u; }
 
-static ilk_request_t *add(uint32_t kind, uint32_t axis) {
-  ilk_request_t *q = &queue[queued < QUEUE ? queued : QUEUE - 1u];
+static ilk_request_t* add(uint32_t kind, uint32_t axis) {
+  ilk_request_t* q = &queue[queued < QUEUE ? queued : QUEUE - 1u];
   if (queued < QUEUE) {
     queued++;
   }
@@ -158,9 +161,9 @@ static ilk_request_t *add(uint32_t kind, uint32_t axis) {
 }
 
 static int32_t place_near(uint32_t i) {
-  const ilk_axis_config_t *a = &config.axis[i];
+  const ilk_axis_config_t* a = &config.axis[i];
   const int32_t at = before.axis[i].position;
-  rng_t *r = &env.r;
+  rng_t* r = &env.r;
   if (env.mood.frozen && rng_one_in(r, 2u)) {
     const int32_t step = (int32_t)(a->deadband_counts - 1u + rng_below(r, 4u));
     return rng_one_in(r, 3u) ? at : (int32_t)((uint32_t)at + (uint32_t)(rng_one_in(r, 4u) ? -step : step));
@@ -177,17 +180,21 @@ static int32_t place_near(uint32_t i) {
     case 4:
       return (int32_t)rng_next(r);
     default:
-      return (int32_t)((uint32_t)at + rng_below(r, 2u * a->unhomed_travel_counts + 1u) - a->unhomed_travel_counts);
+      return (int32_t)((uint32_t)at + rng_below(r, 2u * a->unhomed_travel_counts + 1u) -
+                       a->unhomed_travel_counts);
   }
 }
 
 static void add_move(uint32_t i, bool wild) {
-  const ilk_axis_config_t *a = &config.axis[i];
-  rng_t *r = &env.r;
-  ilk_request_t *q = add(ILK_REQUEST_MOVE, i);
+  const ilk_axis_config_t* a = &config.axis[i];
+  rng_t* r = &env.r;
+  ilk_request_t* q = add(ILK_REQUEST_MOVE, i);
   const uint32_t top = before.axis[i].homed != ILK_HOMED_NOT ? a->max_drive : a->unhomed_max_drive;
   q->target_counts = wild ? place_near(i) : env.goal[i];
-  q->drive = wild && rng_one_in(r, 8u) ? (uint32_t)rng_next(r) : wild ? rng_range(r, 1u, top) : env.goal_drive[i] < top ? env.goal_drive[i] : top;
+  q->drive = wild && rng_one_in(r, 8u) ? (uint32_t)rng_next(r)
+             : wild                    ? rng_range(r, 1u, top)
+             : env.goal_drive[i] < top ? env.goal_drive[i]
+                                       : top;
   q->amplitude = a->max_amplitude ? rng_range(r, 1u, a->max_amplitude) : 0u;
   if (wild && rng_one_in(r, 12u)) {
     q->amplitude = rng_below(r, 300u);
@@ -199,7 +206,7 @@ static void add_move(uint32_t i, bool wild) {
 }
 
 static void add_any(uint32_t kind, uint32_t axis) {
-  ilk_request_t *q;
+  ilk_request_t* q;
   if (kind == ILK_REQUEST_MOVE && axis < ILK_SLOTS && motor(axis)) {
     add_move(axis, true);
     return;
@@ -219,10 +226,10 @@ static void add_any(uint32_t kind, uint32_t axis) {
 
 static void hostile_burst(void) {
   static const uint32_t tune[][6] = {
-      {5, 4, 5, 8, 0, 0}, {4, 5, 7, 0, 0, 0}, {8, 4, 5, 7, 0, 0}, {8, 4, 5, 8, 0, 0}, {7, 8, 4, 5, 7, 0},
-      {2, 3, 5, 7, 0, 0}, {6, 5, 7, 0, 0, 0}, {6, 4, 5, 8, 7, 0}, {3, 2, 5, 0, 0, 0}, {9, 10, 5, 7, 0, 0},
+      {5, 4, 5, 8, 0, 0},  {4, 5, 7, 0, 0, 0}, {8, 4, 5, 7, 0, 0}, {8, 4, 5, 8, 0, 0}, {7, 8, 4, 5, 7, 0},
+      {2, 3, 5, 7, 0, 0},  {6, 5, 7, 0, 0, 0}, {6, 4, 5, 8, 7, 0}, {3, 2, 5, 0, 0, 0}, {9, 10, 5, 7, 0, 0},
       {2, 9, 10, 0, 0, 0}, {7, 7, 4, 7, 5, 7}, {1, 3, 5, 8, 0, 0}, {8, 2, 8, 0, 0, 0}, {2, 2, 2, 1, 0, 0}};
-  rng_t *r = &env.r;
+  rng_t* r = &env.r;
   const uint32_t axis = rng_below(r, ILK_SLOTS);
   if (rng_one_in(r, 2u)) {
     const uint32_t k = rng_below(r, (uint32_t)(sizeof tune / sizeof tune[0]));
@@ -246,13 +253,13 @@ static void hostile_burst(void) {
 
 /** What a reasonable app asks for. */
 static void cooperate(void) {
-  rng_t *r = &env.r;
+  rng_t* r = &env.r;
   if (before.mode == ILK_MODE_LOCKED && !env.pressed && rng_one_in(r, 4u)) {
     (void)add(ILK_REQUEST_RESET, 0u);
   }
   for (uint32_t i = 0u; i < ILK_SLOTS; i++) {
-    const ilk_axis_config_t *a = &config.axis[i];
-    const ilk_axis_view_t *v = &before.axis[i];
+    const ilk_axis_config_t* a = &config.axis[i];
+    const ilk_axis_view_t* v = &before.axis[i];
     if (!motor(i)) {
       continue;
     }
@@ -262,7 +269,8 @@ static void cooperate(void) {
     if (v->state == ILK_AXIS_DISABLED && before.mode >= ILK_MODE_READY && rng_one_in(r, 5u)) {
       (void)add(ILK_REQUEST_ENABLE, i);
     }
-    if (before.mode == ILK_MODE_READY && v->homed == ILK_HOMED_NOT && a->limit_side == ILK_LIMIT_NONE && rng_one_in(r, 10u)) {
+    if (before.mode == ILK_MODE_READY && v->homed == ILK_HOMED_NOT && a->limit_side == ILK_LIMIT_NONE &&
+        rng_one_in(r, 10u)) {
       (void)add(ILK_REQUEST_SET_HOME, i);
     }
     if (before.mode != ILK_MODE_MOTION || v->state == ILK_AXIS_HOMING || v->state == ILK_AXIS_DISABLED ||
@@ -279,7 +287,8 @@ static void cooperate(void) {
       env.goal_left[i] = rng_range(r, 50u, 1500u);
       env.goal[i] = (v->homed != ILK_HOMED_NOT && !rng_one_in(r, 4u))
                         ? a->min_counts + (int32_t)a->coast_counts + (int32_t)a->home_clear_counts +
-                              (int32_t)rng_below(r, (uint32_t)(a->max_counts - a->min_counts) - 2u * (a->coast_counts + a->home_clear_counts))
+                              (int32_t)rng_below(r, (uint32_t)(a->max_counts - a->min_counts) -
+                                                        2u * (a->coast_counts + a->home_clear_counts))
                         : place_near(i);
       env.goal_drive[i] = rng_one_in(r, 2u) ? a->max_drive : rng_range(r, 1u, a->max_drive);
     }
@@ -289,7 +298,7 @@ static void cooperate(void) {
 }
 
 static void choose_requests(void) {
-  rng_t *r = &env.r;
+  rng_t* r = &env.r;
   const uint32_t every = config.common.app_timeout_ticks / 2u;
   /* requests that were not taken are offered again */
   if (queued > ILK_REQUESTS_PER_TICK) {
@@ -335,7 +344,7 @@ static void choose_requests(void) {
 }
 
 static void choose_contacts(void) {
-  rng_t *r = &env.r;
+  rng_t* r = &env.r;
   if (env.press_left == 0u) {
     const uint32_t settle = config.common.power_up_ticks + config.common.pedal_debounce_ticks + 80u;
     if (env.pressed) {
@@ -343,7 +352,9 @@ static void choose_contacts(void) {
       env.press_left = rng_one_in(r, 4u) ? rng_range(r, 1u, settle) : rng_range(r, settle, 2u * settle);
     } else {
       env.pressed = true;
-      env.press_left = rng_one_in(r, env.mood.endless ? 10u : 3u) ? rng_range(r, 1u, 200u) : rng_range(r, 1000u, env.mood.endless ? 60000u : 12000u);
+      env.press_left = rng_one_in(r, env.mood.endless ? 10u : 3u)
+                           ? rng_range(r, 1u, 200u)
+                           : rng_range(r, 1000u, env.mood.endless ? 60000u : 12000u);
     }
   } else {
     env.press_left--;
@@ -418,8 +429,8 @@ static void choose_contacts(void) {
 }
 
 static void trouble_axis(uint32_t i) {
-  rng_t *r = &env.r;
-  plant_t *p = &plant[i];
+  rng_t* r = &env.r;
+  plant_t* p = &plant[i];
   switch (rng_below(r, 10u)) {
     case 0:
       p->stuck_left = rng_range(r, 1u, 2u * config.axis[i].stall_ticks);
@@ -439,7 +450,9 @@ static void trouble_axis(uint32_t i) {
       p->runaway_needs_power = false;
       break;
     case 5: /* the card restarts */
-      p->raw_zero = (uint32_t)rng_below(r, 20u) - 10u - (config.axis[i].direction_correction == 1u ? 0u - (uint32_t)plant_counts(p) : (uint32_t)plant_counts(p));
+      p->raw_zero = (uint32_t)rng_below(r, 20u) - 10u -
+                    (config.axis[i].direction_correction == 1u ? 0u - (uint32_t)plant_counts(p)
+                                                               : (uint32_t)plant_counts(p));
       if (rng_one_in(r, 4u)) {
         p->raw_zero += (uint32_t)rng_below(r, 5u);
       }
@@ -449,7 +462,8 @@ static void trouble_axis(uint32_t i) {
       }
       break;
     case 6: /* the counter slips */
-      p->raw_zero += rng_below(r, 2u * config.axis[i].max_delta_counts + 2u) - config.axis[i].max_delta_counts;
+      p->raw_zero +=
+          rng_below(r, 2u * config.axis[i].max_delta_counts + 2u) - config.axis[i].max_delta_counts;
       break;
     case 7: /* the heartbeat stays, or leaps */
       p->heartbeat += rng_one_in(r, 2u) ? 0xFFFFFFFFu : rng_range(r, 1u, 3u);
@@ -464,12 +478,12 @@ static void trouble_axis(uint32_t i) {
 }
 
 static void exchange(void) {
-  rng_t *r = &env.r;
+  rng_t* r = &env.r;
   const uint32_t rounds = 1u + (in.deadlines_missed < 5u ? in.deadlines_missed : 5u);
   in.frames_received = 0u;
   for (uint32_t i = 0u; i < ILK_SLOTS; i++) {
-    plant_t *p = &plant[i];
-    uint32_t *frame = in.frame[i];
+    plant_t* p = &plant[i];
+    uint32_t* frame = in.frame[i];
     bool heard = true;
     if (config.axis[i].card == ILK_CARD_NONE) {
       continue;
@@ -511,7 +525,9 @@ static void exchange(void) {
             plant_seal(frame);
             break;
           default: /* counter glitch of one frame */
-            frame[3] += rng_one_in(r, 3u) ? (uint32_t)rng_next(r) : rng_below(r, 2u * config.axis[i].coast_counts + 1u) - config.axis[i].coast_counts;
+            frame[3] += rng_one_in(r, 3u) ? (uint32_t)rng_next(r)
+                                          : rng_below(r, 2u * config.axis[i].coast_counts + 1u) -
+                                                config.axis[i].coast_counts;
             plant_seal(frame);
             break;
         }
@@ -531,28 +547,36 @@ static void exchange(void) {
 /* ------------------------------------------------------------------ a tick */
 
 static void trace(uint32_t tick) {
-  printf("t %u mode %u->%u cause %u consent %08x pedal %u/%u estop %u late %u done %u power %u age %u armed %d/%d", tick, before.mode,
-         after.mode, after.cause, after.consent, in.pedal_no_closed, in.pedal_nc_closed, in.estop_loop_closed, in.deadlines_missed,
-         in.transaction_done, out.power, ghost.app_age, ghost.armed, ghost.armed_weakly);
+  printf(
+      "t %u mode %u->%u cause %u consent %08x pedal %u/%u estop %u late %u done %u power %u age %u armed "
+      "%d/%d",
+      tick, before.mode, after.mode, after.cause, after.consent, in.pedal_no_closed, in.pedal_nc_closed,
+      in.estop_loop_closed, in.deadlines_missed, in.transaction_done, out.power, ghost.app_age, ghost.armed,
+      ghost.armed_weakly);
   for (uint32_t i = 0u; i < ILK_SLOTS; i++) {
-    const ilk_ghost_slot_t *g = &ghost.slot[i];
+    const ilk_ghost_slot_t* g = &ghost.slot[i];
     if (motor(i)) {
-      printf("\n    [%u] st %u fault %u homed %u pos %d true %d raw %08x %s%s%s%s hb %u trig %d x%u cmd %u:%u gate %u lease %u sp %d rest %u stall %u/%llu trav %u/%u stage %u", i,
-             after.axis[i].state, after.axis[i].fault, after.axis[i].homed, after.axis[i].position, plant_counts(&plant[i]), g->raw,
-             g->valid ? "V" : "-", g->jump ? "J" : "", g->reset ? "R" : (g->maybe_reset ? "r" : ""), g->lost ? "L" : "", g->heartbeat, g->triggered, g->run,
-             out.command[i].direction, out.command[i].drive, out.gate[i], g->lease, g->setpoint, g->rest.ticks, g->stall_ticks,
-             (unsigned long long)g->effort, g->move_travel, g->homing_travel, g->stage);
+      printf(
+          "\n    [%u] st %u fault %u homed %u pos %d true %d raw %08x %s%s%s%s hb %u trig %d x%u cmd %u:%u "
+          "gate %u lease %u sp %d rest %u stall %u/%llu trav %u/%u stage %u",
+          i, after.axis[i].state, after.axis[i].fault, after.axis[i].homed, after.axis[i].position,
+          plant_counts(&plant[i]), g->raw, g->valid ? "V" : "-", g->jump ? "J" : "",
+          g->reset ? "R" : (g->maybe_reset ? "r" : ""), g->lost ? "L" : "", g->heartbeat, g->triggered,
+          g->run, out.command[i].direction, out.command[i].drive, out.gate[i], g->lease, g->setpoint,
+          g->rest.ticks, g->stall_ticks, (unsigned long long)g->effort, g->move_travel, g->homing_travel,
+          g->stage);
     }
   }
   for (uint32_t i = 0u; i < out.verdict_count && i < 16u; i++) {
-    printf("\n    req kind %u axis %u target %d drive %u lease %u consent %08x holder %u -> %u", queue[i].kind, queue[i].axis,
-           queue[i].target_counts, queue[i].drive, queue[i].lease_ticks, queue[i].consent, queue[i].holder, out.verdict[i].verdict);
+    printf("\n    req kind %u axis %u target %d drive %u lease %u consent %08x holder %u -> %u",
+           queue[i].kind, queue[i].axis, queue[i].target_counts, queue[i].drive, queue[i].lease_ticks,
+           queue[i].consent, queue[i].holder, out.verdict[i].verdict);
   }
   printf("\n");
 }
 
 /** P11: the accepted requests alone give the same outputs and the same published state. */
-static ilk_judgement_t twin_without_refused(const ilk_state_t *start) {
+static ilk_judgement_t twin_without_refused(const ilk_state_t* start) {
   static ilk_state_t other;
   static ilk_outputs_t result;
   static ilk_request_t kept[ILK_REQUESTS_PER_TICK];
@@ -579,13 +603,15 @@ static ilk_judgement_t twin_without_refused(const ilk_state_t *start) {
   }
   if (memcmp(&view, &after, sizeof view) != 0) {
     j.clause = "P11: a refused request changed the published state";
-  } else if (memcmp(result.command, out.command, sizeof out.command) != 0 || memcmp(result.frame, out.frame, sizeof out.frame) != 0 ||
-             memcmp(result.gate, out.gate, sizeof out.gate) != 0 || memcmp(result.lamp, out.lamp, sizeof out.lamp) != 0 ||
-             result.power != out.power) {
+  } else if (memcmp(result.command, out.command, sizeof out.command) != 0 ||
+             memcmp(result.frame, out.frame, sizeof out.frame) != 0 ||
+             memcmp(result.gate, out.gate, sizeof out.gate) != 0 ||
+             memcmp(result.lamp, out.lamp, sizeof out.lamp) != 0 || result.power != out.power) {
     j.clause = "P11: a refused request changed an output";
   }
   for (uint32_t i = 0u; i < n && j.clause == NULL; i++) {
-    if (result.verdict[i].verdict != ILK_VERDICT_ACCEPTED && result.verdict[i].verdict != ILK_VERDICT_SEQUENCE) {
+    if (result.verdict[i].verdict != ILK_VERDICT_ACCEPTED &&
+        result.verdict[i].verdict != ILK_VERDICT_SEQUENCE) {
       j.clause = "P11: a refused request changed a later verdict";
     }
   }
@@ -593,21 +619,24 @@ static ilk_judgement_t twin_without_refused(const ilk_state_t *start) {
 }
 
 /** P14 in part: one flipped bit of the state gives zero drive and LOCKED, or the same outputs. */
-static ilk_judgement_t twin_with_flip(const ilk_state_t *start) {
+static ilk_judgement_t twin_with_flip(const ilk_state_t* start) {
   static ilk_state_t other;
   static ilk_outputs_t result;
   ilk_judgement_t j = {NULL, 0u, 0, 0};
   const uint32_t word = rng_below(&env.r, (uint32_t)(sizeof other / 4u));
   bool driven = false;
   other = *start;
-  ((uint32_t *)(void *)&other)[word] ^= 1u << rng_below(&env.r, 32u);
+  ((uint32_t*)(void*)&other)[word] ^= 1u << rng_below(&env.r, 32u);
   memset(&result, 0x5A, sizeof result);
   ilk_step(&config, &other, &in, queue, queued, &result);
   total.flips++;
   for (uint32_t i = 0u; i < ILK_SLOTS; i++) {
-    driven = driven || result.command[i].drive != 0u || (result.frame[i][2] | result.frame[i][3] | result.frame[i][4] | result.frame[i][5] | result.frame[i][6] | result.frame[i][14]) != 0u;
+    driven = driven || result.command[i].drive != 0u ||
+             (result.frame[i][2] | result.frame[i][3] | result.frame[i][4] | result.frame[i][5] |
+              result.frame[i][6] | result.frame[i][14]) != 0u;
   }
-  if (other.system.mode == ILK_MODE_LOCKED && other.system.cause == ILK_CAUSE_INTEGRITY && !driven && result.power == 0u) {
+  if (other.system.mode == ILK_MODE_LOCKED && other.system.cause == ILK_CAUSE_INTEGRITY && !driven &&
+      result.power == 0u) {
     total.flips_met++;
   } else if (memcmp(&result, &out, sizeof out) != 0) {
     j.clause = "P14: a flipped bit of the state changed an output and was not met";
@@ -651,18 +680,20 @@ static bool run_tick(uint64_t episode, uint32_t tick, bool show) {
     total.verdict[out.verdict[i].verdict < ILK_VERDICT_COUNT ? out.verdict[i].verdict : 0u]++;
   }
   for (uint32_t i = 0u; i < ILK_SLOTS; i++) {
-    const ilk_ghost_slot_t *g = &ghost.slot[i];
+    const ilk_ghost_slot_t* g = &ghost.slot[i];
     if (!motor(i)) {
       continue;
     }
-    if (before.axis[i].state != ILK_AXIS_FAULTED && after.axis[i].state == ILK_AXIS_FAULTED && after.axis[i].fault < ILK_FAULT_COUNT) {
+    if (before.axis[i].state != ILK_AXIS_FAULTED && after.axis[i].state == ILK_AXIS_FAULTED &&
+        after.axis[i].fault < ILK_FAULT_COUNT) {
       total.fault[after.axis[i].fault]++;
     }
     total.gate[out.gate[i] < ILK_GATE_COUNT ? out.gate[i] : 0u]++;
     if (out.command[i].drive != 0u) {
       total.driven++;
       was_driven[i] = true;
-    } else if (g->lease > 0u && after.mode == ILK_MODE_MOTION && after.axis[i].state != ILK_AXIS_HOMING && was_driven[i]) {
+    } else if (g->lease > 0u && after.mode == ILK_MODE_MOTION && after.axis[i].state != ILK_AXIS_HOMING &&
+               was_driven[i]) {
       const int64_t off = (int64_t)g->setpoint - after.axis[i].position;
       if (off <= (int64_t)config.axis[i].deadband_counts && -off <= (int64_t)config.axis[i].deadband_counts) {
         total.arrivals++;
@@ -676,8 +707,8 @@ static bool run_tick(uint64_t episode, uint32_t tick, bool show) {
       total.worst_home = size > total.worst_home ? size : total.worst_home;
       if (size > (int64_t)config.axis[i].home_tolerance_counts + config.axis[i].noise_counts + 1) {
         total.homes_wrong++;
-        printf("note: homed %lld off, tolerance %u, episode %llu tick %u slot %u\n", (long long)off, config.axis[i].home_tolerance_counts,
-               (unsigned long long)episode, tick, i);
+        printf("note: homed %lld off, tolerance %u, episode %llu tick %u slot %u\n", (long long)off,
+               config.axis[i].home_tolerance_counts, (unsigned long long)episode, tick, i);
       }
     }
   }
@@ -694,7 +725,7 @@ static bool run_tick(uint64_t episode, uint32_t tick, bool show) {
 
 /** The smallest homing budgets that validation accepts, by halving. */
 static void shrink_budget(uint32_t i) {
-  uint32_t *const field[2] = {&config.axis[i].home_travel_counts, &config.axis[i].home_timeout_ticks};
+  uint32_t* const field[2] = {&config.axis[i].home_travel_counts, &config.axis[i].home_timeout_ticks};
   if (!motor(i) || config.axis[i].limit_side == ILK_LIMIT_NONE) {
     return;
   }
@@ -748,13 +779,15 @@ static void start_episode(uint64_t episode) {
       if (env.mood.endless) {
         plant[i].stop_low -= (int64_t)1000000 * Q;
         plant[i].stop_high += (int64_t)1000000 * Q;
-        plant[i].edge = config.axis[i].limit_side == ILK_LIMIT_LOWER ? plant[i].stop_low * 2 : plant[i].stop_high * 2;
+        plant[i].edge =
+            config.axis[i].limit_side == ILK_LIMIT_LOWER ? plant[i].stop_low * 2 : plant[i].stop_high * 2;
         plant[i].closed = false;
       }
       if (env.mood.sluggish) {
         plant[i].full = plant[i].full / (int64_t)rng_range(&env.r, 2u, 6u) + 1;
       }
-      plant[i].raw_zero = rng_one_in(&env.r, 3u) ? (uint32_t)rng_below(&env.r, 2000u) - 1000u : plant[i].raw_zero;
+      plant[i].raw_zero =
+          rng_one_in(&env.r, 3u) ? (uint32_t)rng_below(&env.r, 2000u) - 1000u : plant[i].raw_zero;
       if (env.mood.contacts) {
         plant[i].bounce_ticks = 3u;
         plant[i].noise_one_in = 10u;
@@ -768,22 +801,37 @@ static void start_episode(uint64_t episode) {
 }
 
 static void print_totals(double seconds) {
-  static const char *const verdicts[] = {"ACCEPTED", "CHECKSUM", "SEQUENCE", "UNKNOWN", "AXIS", "MODE", "PEDAL_DOWN", "CAUSE_PRESENT", "FAULTED", "CARD", "NO_FAULT", "DISABLED", "BUSY", "LEASE", "DRIVE", "RANGE", "NO_SWITCH", "CONSENT", "BUDGET"};
-  static const char *const faults[] = {"NONE", "STALL", "REVERSE", "DRIFT", "JUMP", "CARD", "HOMING_TRAVEL", "HOMING_TIMEOUT", "CARD_RESET", "SWITCH", "INTEGRITY"};
-  static const char *const causes[] = {"NONE", "BOOT", "ESTOP", "BUS", "PEDAL", "INTEGRITY", "OVERRUN", "RUNAWAY"};
-  static const char *const modes[] = {"INIT", "LOCKED", "READY", "MOTION"};
-  static const char *const gates[] = {"OPEN", "MODE", "PEDAL", "ESTOP", "CARD", "ENABLE", "LEASE", "SETPOINT", "HARD_LIMIT", "SOFT_LIMIT", "UNHOMED_TRAVEL", "DRIVE", "STALL"};
-  printf("slots %u, %llu ticks in %.1f s: %.0f ticks/s, %llu episodes, configurations refused by validation %llu\n", (unsigned)ILK_SLOTS,
-         (unsigned long long)total.ticks, seconds, (double)total.ticks / seconds, (unsigned long long)total.episodes,
-         (unsigned long long)total.rejected_configs);
-  printf("homings %llu (farther off than tolerance + noise: %llu, worst %lld), arrivals %llu, driven axis ticks %llu, twins %llu, bit flips %llu (met %llu)\n",
-         (unsigned long long)total.homings, (unsigned long long)total.homes_wrong, (long long)total.worst_home,
-         (unsigned long long)total.arrivals, (unsigned long long)total.driven, (unsigned long long)total.twins,
-         (unsigned long long)total.flips, (unsigned long long)total.flips_met);
-  printf("entries to MOTION armed by a release that began before READY: %llu; overrun_limit reached by periods, not ticks: locked %llu, not %llu; "
-         "disagreement of just the limit: locked %llu, not %llu\nverdicts:",
-         (unsigned long long)total.weak, (unsigned long long)total.choice[0], (unsigned long long)total.choice[1],
-         (unsigned long long)total.choice[2], (unsigned long long)total.choice[3]);
+  static const char* const verdicts[] = {"ACCEPTED", "CHECKSUM",   "SEQUENCE",      "UNKNOWN", "AXIS",
+                                         "MODE",     "PEDAL_DOWN", "CAUSE_PRESENT", "FAULTED", "CARD",
+                                         "NO_FAULT", "DISABLED",   "BUSY",          "LEASE",   "DRIVE",
+                                         "RANGE",    "NO_SWITCH",  "CONSENT",       "BUDGET"};
+  static const char* const faults[] = {"NONE",       "STALL",  "REVERSE",       "DRIFT",
+                                       "JUMP",       "CARD",   "HOMING_TRAVEL", "HOMING_TIMEOUT",
+                                       "CARD_RESET", "SWITCH", "INTEGRITY"};
+  static const char* const causes[] = {"NONE",  "BOOT",      "ESTOP",   "BUS",
+                                       "PEDAL", "INTEGRITY", "OVERRUN", "RUNAWAY"};
+  static const char* const modes[] = {"INIT", "LOCKED", "READY", "MOTION"};
+  static const char* const gates[] = {"OPEN",           "MODE",  "PEDAL",    "ESTOP",      "CARD",
+                                      "ENABLE",         "LEASE", "SETPOINT", "HARD_LIMIT", "SOFT_LIMIT",
+                                      "UNHOMED_TRAVEL", "DRIVE", "STALL"};
+  printf(
+      "slots %u, %llu ticks in %.1f s: %.0f ticks/s, %llu episodes, configurations refused by validation "
+      "%llu\n",
+      (unsigned)ILK_SLOTS, (unsigned long long)total.ticks, seconds, (double)total.ticks / seconds,
+      (unsigned long long)total.episodes, (unsigned long long)total.rejected_configs);
+  printf(
+      "homings %llu (farther off than tolerance + noise: %llu, worst %lld), arrivals %llu, driven axis ticks "
+      "%llu, twins %llu, bit flips %llu (met %llu)\n",
+      (unsigned long long)total.homings, (unsigned long long)total.homes_wrong, (long long)total.worst_home,
+      (unsigned long long)total.arrivals, (unsigned long long)total.driven, (unsigned long long)total.twins,
+      (unsigned long long)total.flips, (unsigned long long)total.flips_met);
+  printf(
+      "entries to MOTION armed by a release that began before READY: %llu; overrun_limit reached by periods, "
+      "not ticks: locked %llu, not %llu; "
+      "disagreement of just the limit: locked %llu, not %llu\nverdicts:",
+      (unsigned long long)total.weak, (unsigned long long)total.choice[0],
+      (unsigned long long)total.choice[1], (unsigned long long)total.choice[2],
+      (unsigned long long)total.choice[3]);
   for (uint32_t i = 0u; i < ILK_VERDICT_COUNT; i++) {
     printf(" %s %llu", verdicts[i], (unsigned long long)total.verdict[i]);
   }
@@ -809,9 +857,10 @@ static void print_totals(double seconds) {
   }
   printf("\n");
   for (uint32_t i = 0u; i < clause_count; i++) {
-    printf("VIOLATED %llu times: %s; first: slot %u found %lld bound %lld, episode %llu tick %u\n", (unsigned long long)clauses[i].count,
-           clauses[i].clause, clauses[i].slot, (long long)clauses[i].found, (long long)clauses[i].bound,
-           (unsigned long long)clauses[i].episode, clauses[i].tick);
+    printf("VIOLATED %llu times: %s; first: slot %u found %lld bound %lld, episode %llu tick %u\n",
+           (unsigned long long)clauses[i].count, clauses[i].clause, clauses[i].slot,
+           (long long)clauses[i].found, (long long)clauses[i].bound, (unsigned long long)clauses[i].episode,
+           clauses[i].tick);
   }
 }
 
@@ -821,19 +870,56 @@ static double now(void) {
   return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
 }
 
-int main(int argc, char **argv) {
+int main(int argc, char** argv) {
   if (argc >= 3 && strcmp(argv[1], "replay") == 0) {
     const uint64_t episode = strtoull(argv[2], NULL, 10);
     const uint32_t from = argc > 4 ? (uint32_t)strtoul(argv[3], NULL, 10) : 1u;
     const uint32_t to = argc > 4 ? (uint32_t)strtoul(argv[4], NULL, 10) : 0u;
     start_episode(episode);
-    printf("common: period %u channels %u timeout %u lease %u debounce %u disagree %u power %u switch %u bad %u overrun %u\n", config.common.period_us,
-           config.common.pedal_channels, config.common.app_timeout_ticks, config.common.lease_max_ticks, config.common.pedal_debounce_ticks,
-           config.common.pedal_disagree_ticks, config.common.power_up_ticks, config.common.switch_debounce_ticks, config.common.bad_frame_limit,
-           config.common.overrun_limit);
+    printf(
+        "common: period %u channels %u timeout %u lease %u debounce %u disagree %u power %u switch %u bad %u "
+        "overrun %u\n",
+        config.common.period_us, config.common.pedal_channels, config.common.app_timeout_ticks,
+        config.common.lease_max_ticks, config.common.pedal_debounce_ticks, config.common.pedal_disagree_ticks,
+        config.common.power_up_ticks, config.common.switch_debounce_ticks, config.common.bad_frame_limit,
+        config.common.overrun_limit);
     for (uint32_t i = 0u; i < ILK_SLOTS; i++) {
-      const uint32_t *w = (const uint32_t *)(const void *)&config.axis[i];
-      static const char *const names[] = {"card", "required", "motor_direction", "direction_correction", "limit_side", "min", "max", "home_offset", "coast", "backlash", "noise", "deadband", "dead_zone", "max_drive", "unhomed_max_drive", "max_amplitude", "unhomed_travel", "home_drive", "home_slow_drive", "home_amplitude", "home_travel", "home_timeout", "clear", "tolerance", "hysteresis", "full_speed", "home_speed", "slow_speed", "stall_ticks", "stall_effort", "stall_min", "reverse", "drift", "rest", "max_delta"};
+      const uint32_t* w = (const uint32_t*)(const void*)&config.axis[i];
+      static const char* const names[] = {"card",
+                                          "required",
+                                          "motor_direction",
+                                          "direction_correction",
+                                          "limit_side",
+                                          "min",
+                                          "max",
+                                          "home_offset",
+                                          "coast",
+                                          "backlash",
+                                          "noise",
+                                          "deadband",
+                                          "dead_zone",
+                                          "max_drive",
+                                          "unhomed_max_drive",
+                                          "max_amplitude",
+                                          "unhomed_travel",
+                                          "home_drive",
+                                          "home_slow_drive",
+                                          "home_amplitude",
+                                          "home_travel",
+                                          "home_timeout",
+                                          "clear",
+                                          "tolerance",
+                                          "hysteresis",
+                                          "full_speed",
+                                          "home_speed",
+                                          "slow_speed",
+                                          "stall_ticks",
+                                          "stall_effort",
+                                          "stall_min",
+                                          "reverse",
+                                          "drift",
+                                          "rest",
+                                          "max_delta"};
       printf("axis %u:", i);
       for (uint32_t k = 0u; k < sizeof config.axis[i] / 4u; k++) {
         printf(" %s %d", names[k], (int32_t)w[k]);

@@ -309,6 +309,28 @@ TEST(P6_runaway_lock, a_jump_or_a_reset_card_of_a_faulted_axis_is_no_new_fault_a
   }
 }
 
+TEST(P6_runaway_lock, a_faulted_axis_that_jumps_again_before_it_rests_is_run_away_however_fast_it_is) {
+  for (const bool reset_card : {false, true}) {
+    Bench bench = motion_bench(axis);
+    bench.release();
+    bench.motor[axis].travelled += 500;
+    bench.tick();
+    EXPECT_EQ(bench.fault(axis), ILK_FAULT_JUMP);
+    EXPECT_EQ(bench.mode(), ILK_MODE_READY) << "one jump alone may be a counter that slipped";
+    if (reset_card) {
+      bench.card[axis].heartbeat = 5;
+    } else {
+      bench.motor[axis].travelled += 500;
+    }
+    bench.tick();
+    EXPECT_EQ(bench.cause(), ILK_CAUSE_RUNAWAY);
+    EXPECT_FALSE(bench.powered());
+    EXPECT_EQ(bench.ask(reset()), ILK_VERDICT_CAUSE_PRESENT);
+    bench.rest();
+    EXPECT_EQ(bench.ask(reset()), ILK_VERDICT_ACCEPTED);
+  }
+}
+
 TEST(P6_runaway_lock, the_mark_is_the_reading_of_the_fault_and_a_coast_of_drift_counts_is_none) {
   for (const int32_t extra : {0, 1}) {
     Bench bench = motion_bench(axis);
