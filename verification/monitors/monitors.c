@@ -1699,18 +1699,24 @@ ilk_judgement_t judge_config(const ilk_config_t* config) {
   if (c->lease_max_ticks < 1u || c->lease_max_ticks * ms > 150000u) {
     return broken("config: lease_max_ticks", ILK_SLOTS, c->lease_max_ticks, 0);
   }
-  if (c->pedal_debounce_ticks * ms > 50000u || c->pedal_disagree_ticks * ms > 50000u) {
+  if (ms < 125u || ms > 2000u || c->pedal_channels < 1u || c->pedal_channels > 2u) {
+    return broken("config: period or pedal channels", ILK_SLOTS, (int64_t)ms, c->pedal_channels);
+  }
+  if (c->pedal_debounce_ticks < 1u || c->pedal_debounce_ticks * ms > 50000u ||
+      c->pedal_disagree_ticks < 1u || c->pedal_disagree_ticks * ms > 50000u) {
     return broken("config: pedal times", ILK_SLOTS, c->pedal_debounce_ticks, c->pedal_disagree_ticks);
   }
   if (c->bad_frame_limit < 1u || c->bad_frame_limit > 5u || c->overrun_limit < 1u || c->overrun_limit > 10u) {
     return broken("config: bad frames or overruns", ILK_SLOTS, c->bad_frame_limit, c->overrun_limit);
   }
-  if (c->switch_debounce_ticks * ms > 20000u) {
+  if (c->switch_debounce_ticks < 2u || c->switch_debounce_ticks * ms > 20000u) { /* one reading is no edge */
     return broken("config: switch debounce", ILK_SLOTS, c->switch_debounce_ticks, 0);
   }
   for (uint32_t i = 0u; i < ILK_SLOTS; i++) {
     const ilk_axis_config_t* a = &config->axis[i];
     const uint64_t noise = a->noise_counts;
+    const uint64_t coast = a->coast_counts;
+    const uint64_t range = (uint64_t)((int64_t)a->max_counts - a->min_counts);
     /* millionths of a count a tick */
     const uint64_t full = (uint64_t)a->full_speed_counts_per_s * ms;
     const uint64_t home = (uint64_t)a->home_speed_counts_per_s * ms;
@@ -1720,7 +1726,19 @@ ilk_judgement_t judge_config(const ilk_config_t* config) {
       continue;
     }
     motor = true;
-    if (a->stall_ticks * ms > 500000u || a->stall_effort_ticks * ms > 200000u) {
+    if (a->min_counts >= a->max_counts || 2u * coast >= range || a->home_offset_counts < a->min_counts ||
+        a->home_offset_counts > a->max_counts) {
+      return broken("config: soft limits, coast or home offset", i, a->min_counts, a->max_counts);
+    }
+    if (a->unhomed_max_drive <= a->dead_zone_drive || a->unhomed_max_drive > a->max_drive ||
+        a->max_amplitude > ((a->card == ILK_CARD_HIGH_FREQUENCY) ? 255u : 0u)) {
+      return broken("config: drives or amplitude", i, a->unhomed_max_drive, a->dead_zone_drive);
+    }
+    if (a->unhomed_travel_counts <= coast + noise) {
+      return broken("config: unhomed travel that allows none", i, a->unhomed_travel_counts, (int64_t)coast);
+    }
+    if (a->stall_ticks <= ILK_LATENCY_TICKS || a->stall_ticks * ms > 500000u ||
+        a->stall_effort_ticks * ms > 200000u) {
       return broken("config: stall times", i, a->stall_ticks, a->stall_effort_ticks);
     }
     if (full > (uint64_t)a->max_delta_counts * one) {
@@ -1745,7 +1763,13 @@ ilk_judgement_t judge_config(const ilk_config_t* config) {
     }
     if (a->limit_side != ILK_LIMIT_NONE) {
       const uint64_t clear = a->home_clear_counts;
-      const uint64_t range = (uint64_t)((int64_t)a->max_counts - a->min_counts);
+      const bool lower = a->limit_side == ILK_LIMIT_LOWER;
+      const uint64_t inside = (uint64_t)(lower ? (int64_t)a->max_counts - a->home_offset_counts
+                                               : (int64_t)a->home_offset_counts - a->min_counts);
+      /* from the far stop to the second edge; from the near one, off the switch first */
+      const uint64_t far_way = inside + 2u * clear;
+      const uint64_t near_way = range - inside + a->switch_hysteresis_counts + 4u * clear;
+      const uint64_t way = far_way > near_way ? far_way : near_way;
       if (clear <= (uint64_t)a->home_tolerance_counts + a->switch_hysteresis_counts + a->coast_counts ||
           clear <= (uint64_t)a->stall_min_counts + a->backlash_counts + noise) {
         return broken("config: home_clear_counts", i, (int64_t)clear, 0);
@@ -1757,11 +1781,21 @@ ilk_judgement_t judge_config(const ilk_config_t* config) {
       if (a->stall_ticks * slow < one * ((uint64_t)a->stall_min_counts + a->backlash_counts + noise)) {
         return broken("config: stall_ticks at the slow speed", i, a->stall_ticks, (int64_t)slow);
       }
-      if (a->home_slow_drive <= a->dead_zone_drive || a->home_drive > a->unhomed_max_drive) {
+      if (inside <= (uint64_t)a->home_tolerance_counts + a->switch_hysteresis_counts + coast + a->deadband_counts) {
+        return broken("config: no room on the open side of the switch", i, (int64_t)inside, a->home_offset_counts);
+      }
+      if (a->home_slow_drive <= a->dead_zone_drive || a->home_drive > a->unhomed_max_drive ||
+          a->home_slow_drive > a->home_drive || slow == 0u || slow > home || home > full ||
+          a->home_amplitude > a->max_amplitude) {
         return broken("config: homing drives", i, a->home_slow_drive, a->home_drive);
       }
-      if (a->home_travel_counts < range) {
-        return broken("config: home_travel_counts below the range", i, a->home_travel_counts, (int64_t)range);
+      if (a->home_travel_counts <= way + coast + noise) {
+        return broken("config: home_travel_counts below the way of homing", i, a->home_travel_counts,
+                      (int64_t)way);
+      }
+      if (a->home_timeout_ticks * home < one * (way - clear)) {
+        return broken("config: home_timeout_ticks below the time of homing", i, a->home_timeout_ticks,
+                      (int64_t)way);
       }
     }
   }
