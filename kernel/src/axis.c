@@ -43,10 +43,6 @@ bool ilk_axis_is_at_rest(const ilk_axis_config_t *config, const ilk_axis_t *axis
   return (axis->card_valid != 0u) && (axis->rest.ticks >= config->rest_ticks);
 }
 
-bool ilk_axis_has_moved(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
-  return axis->calm.ticks < config->rest_ticks;
-}
-
 /* --- Orders ------------------------------------------------------------------------------------ */
 
 void ilk_axis_drop_motion(ilk_axis_t *axis) {

@@ -14,9 +14,6 @@ ilk_command_t ilk_wanted_command(const ilk_axis_config_t *config, const ilk_axis
   return (axis->state == (uint32_t)ILK_AXIS_HOMING) ? ilk_homing_command(config, axis) : wanted;
 }
 
-/** ENABLED, MOVING or HOMING. */
-static bool is_enabled(const ilk_axis_t *axis) { return count_of(axis->state, (uint32_t)ILK_AXIS_HOMING); }
-
 static bool is_held(const ilk_axis_t *axis) {
   return (axis->state == (uint32_t)ILK_AXIS_HOMING) ||
          ((axis->state == (uint32_t)ILK_AXIS_MOVING) && (axis->lease_ticks != 0u));

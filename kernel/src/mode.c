@@ -143,13 +143,14 @@ static bool motion_must_end(const ilk_system_t *system, const ilk_alarms_t *alar
          alarms->required_card_lost;
 }
 
-/** An axis that nobody enabled moves: by hand, or by itself. */
+/** An axis that nobody enabled moved by more than `drift_counts` in the last `rest_ticks` ticks, by hand or
+   by itself, or was not read for so long. */
 static bool disabled_axis_moves(const ilk_config_t *config, const ilk_state_t *state) {
   bool moves = false;
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
-    moves =
-        moves || (has_axis(&config->axis[slot]) && (state->axis[slot].state == (uint32_t)ILK_AXIS_DISABLED) &&
-                  ilk_axis_has_moved(&config->axis[slot], &state->axis[slot]));
+    const bool disabled = state->axis[slot].state == (uint32_t)ILK_AXIS_DISABLED;
+    const bool moved = state->axis[slot].calm.ticks < config->axis[slot].rest_ticks;
+    moves = moves || (has_axis(&config->axis[slot]) && disabled && moved);
   }
   return moves;
 }

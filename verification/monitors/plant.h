@@ -21,9 +21,7 @@ static inline uint64_t rng_next(rng_t* r) { /* splitmix64 */
   return z ^ (z >> 31);
 }
 /** 0 to n - 1 */
-static inline uint32_t rng_below(rng_t* r, uint32_t n) {
-  return (uint32_t)(((rng_next(r) >> 32) * n) >> 32);
-}
+static inline uint32_t rng_below(rng_t* r, uint32_t n) { return (uint32_t)(((rng_next(r) >> 32) * n) >> 32); }
 static inline uint32_t rng_range(rng_t* r, uint32_t low, uint32_t high) {
   return high <= low ? low : low + rng_below(r, high - low + 1u);
 }
