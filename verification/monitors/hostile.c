@@ -564,6 +564,10 @@ static void exchange(void) {
     if (env.mood.fumbling && ghost.slot[i].seeks && ghost.slot[i].edges.firsts == 1u && rng_one_in(r, 200u)) {
       p->raw_zero += rng_below(r, 2u * config.axis[i].max_delta_counts + 1u) - config.axis[i].max_delta_counts;
     }
+    if (env.mood.fumbling && ghost.slot[i].seeks && ghost.slot[i].edges.seconds > 0u && i % 2u == 0u &&
+        rng_one_in(r, 3u)) { /* before it rests at the edge */
+      p->raw_zero += config.axis[i].max_delta_counts;
+    }
     if (env.mood.frozen) { /* frozen, but for a while now and then */
       p->stuck_left = (ghost.tick / 2048u) % 3u == 0u ? p->stuck_left : 2u;
     }

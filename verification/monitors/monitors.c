@@ -1134,6 +1134,14 @@ ilk_judgement_t judge_P1(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
       return broken("P1: more drive than the MOVE asked for", slot, tick->out->command[slot].drive,
                     g->order_drive);
     }
+    if (state == ILK_AXIS_MOVING) {
+      const int64_t way = (int64_t)g->setpoint - tick->after->axis[slot].position;
+      const bool up = tick->out->command[slot].direction == ILK_DIRECTION_INCREASING;
+      if ((up ? way : -way) <= (int64_t)tick->config->axis[slot].deadband_counts) {
+        return broken("P1: drive within the deadband or away from the setpoint", slot, way,
+                      tick->config->axis[slot].deadband_counts);
+      }
+    }
   }
   return HOLDS;
 }
