@@ -2,9 +2,9 @@
  * @file
  * A hostile environment for the compiled kernel, with every monitor as its judge.
  *
- *   hostile SECONDS SEED                run episodes for so much processor time; exit 1 when a monitor is violated
- *   hostile replay EPISODE [FROM TO]    run one episode again (its seed as printed), with a trace of those
- * ticks
+ *   hostile SECONDS SEED                run episodes for so much processor time; exit 1 when a monitor is
+ * violated hostile replay EPISODE [FROM TO]    run one episode again (its seed as printed), with a trace of
+ * those ticks
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -129,8 +129,7 @@ static void choose_mood(void) {
   m->requests = shade(r, 3u);
   m->app = shade(r, 300u);
   m->contacts = !rng_one_in(r, 4u);
-  bool* const aims[6] = {&m->frozen,   &m->endless, &m->wandering,
-                         &m->fumbling, &m->waiting, &m->homing};
+  bool* const aims[6] = {&m->frozen, &m->endless, &m->wandering, &m->fumbling, &m->waiting, &m->homing};
   const uint32_t aim = rng_below(r, 12u);
   m->sluggish = rng_one_in(r, 8u);
   if (aim < 6u) {
@@ -266,7 +265,8 @@ static void hostile_burst(void) {
   }
 }
 
-/** DISABLE in the middle: while an axis uses its budgets, most of all when less than a coast of one is left. */
+/** DISABLE in the middle: while an axis uses its budgets, most of all when less than a coast of one is left.
+ */
 static bool interrupts(uint32_t i) {
   const ilk_axis_config_t* a = &config.axis[i];
   const ilk_ghost_slot_t* g = &ghost.slot[i];
@@ -293,7 +293,8 @@ static void cooperate(void) {
     if (v->state == ILK_AXIS_FAULTED && !env.pressed && rng_one_in(r, 5u)) {
       (void)add(ILK_REQUEST_CLEAR_FAULT, i);
     }
-    if (v->state == ILK_AXIS_DISABLED && before.mode >= ILK_MODE_READY && !env.left_alone[i] && rng_one_in(r, 5u)) {
+    if (v->state == ILK_AXIS_DISABLED && before.mode >= ILK_MODE_READY && !env.left_alone[i] &&
+        rng_one_in(r, 5u)) {
       (void)add(ILK_REQUEST_ENABLE, i);
     }
     if (before.mode == ILK_MODE_READY && v->homed == ILK_HOMED_NOT && a->limit_side == ILK_LIMIT_NONE &&
@@ -308,7 +309,8 @@ static void cooperate(void) {
       continue;
     }
     if (a->limit_side != ILK_LIMIT_NONE && !env.mood.wandering &&
-        (v->homed == ILK_HOMED_NOT || ((env.mood.fumbling || env.mood.homing) && rng_one_in(r, 100u))) && !rng_one_in(r, 10u)) {
+        (v->homed == ILK_HOMED_NOT || ((env.mood.fumbling || env.mood.homing) && rng_one_in(r, 100u))) &&
+        !rng_one_in(r, 10u)) {
       if (rng_one_in(r, 3u)) {
         (void)add(ILK_REQUEST_HOME, i);
       }
@@ -555,14 +557,15 @@ static void exchange(void) {
     if (env.mood.plant != 0u && motor(i) && rng_one_in(r, env.mood.plant)) {
       trouble_axis(i);
     }
-    if (env.left_alone[i] && ghost.armed &&
-        before.mode == ILK_MODE_READY && rng_one_in(r, 2u * config.common.power_up_ticks + 20u)) {
+    if (env.left_alone[i] && ghost.armed && before.mode == ILK_MODE_READY &&
+        rng_one_in(r, 2u * config.common.power_up_ticks + 20u)) {
       p->runaway = rng_one_in(r, 2u) ? p->full : -p->full;
       p->runaway_left = rng_range(r, 1u, 2u * config.axis[i].rest_ticks);
       p->runaway_needs_power = false;
     }
     if (env.mood.fumbling && ghost.slot[i].seeks && ghost.slot[i].edges.firsts == 1u && rng_one_in(r, 200u)) {
-      p->raw_zero += rng_below(r, 2u * config.axis[i].max_delta_counts + 1u) - config.axis[i].max_delta_counts;
+      p->raw_zero +=
+          rng_below(r, 2u * config.axis[i].max_delta_counts + 1u) - config.axis[i].max_delta_counts;
     }
     if (env.mood.fumbling && ghost.slot[i].seeks && ghost.slot[i].edges.seconds > 0u && i % 2u == 0u &&
         rng_one_in(r, 3u)) { /* before it rests at the edge */
@@ -645,11 +648,10 @@ static void trace(uint32_t tick) {
           "\n    [%u] st %u fault %u homed %u pos %d true %d raw %08x %s%s%s%s hb %u trig %d x%u cmd %u:%u "
           "gate %u lease %u sp %d rest %u stall %u/%llu trav %u/%u edges %u",
           i, after.axis[i].state, after.axis[i].fault, after.axis[i].homed, after.axis[i].position,
-          plant_counts(&plant[i]), g->raw, g->valid ? "V" : "-", g->jump ? "J" : "",
-          g->reset ? "R" : "", g->lost ? "L" : "", g->heartbeat, g->triggered,
-          g->run, out.command[i].direction, out.command[i].drive, out.gate[i], g->lease, g->setpoint,
-          g->rest.ticks, g->stall_ticks, (unsigned long long)g->effort, g->move_travel, g->homing_travel,
-          g->edges.seconds);
+          plant_counts(&plant[i]), g->raw, g->valid ? "V" : "-", g->jump ? "J" : "", g->reset ? "R" : "",
+          g->lost ? "L" : "", g->heartbeat, g->triggered, g->run, out.command[i].direction,
+          out.command[i].drive, out.gate[i], g->lease, g->setpoint, g->rest.ticks, g->stall_ticks,
+          (unsigned long long)g->effort, g->move_travel, g->homing_travel, g->edges.seconds);
     }
   }
   for (uint32_t i = 0u; i < out.verdict_count && i < 16u; i++) {
@@ -736,8 +738,8 @@ static struct {
   uint32_t left; /* ticks */
   uint32_t slot;
   bool homes;
-  bool met;        /* the wrong reading was given */
-  bool slips;      /* it stays wrong */
+  bool met;   /* the wrong reading was given */
+  bool slips; /* it stays wrong */
   uint32_t what;
   uint32_t edges;  /* of the contact, until it comes */
   uint32_t wait;   /* ticks after them */
@@ -761,7 +763,8 @@ static void begin_shadow(void) {
     shadow.homes = true;
     shadow.left = config.axis[slot].home_timeout_ticks;
     shadow.edges = rng_below(r, 6u);
-    shadow.wait = rng_one_in(r, 2u) ? rng_below(r, config.common.switch_debounce_ticks + 3u) : rng_below(r, 400u);
+    shadow.wait =
+        rng_one_in(r, 2u) ? rng_below(r, config.common.switch_debounce_ticks + 3u) : rng_below(r, 400u);
     shadow.what = rng_below(r, 4u);
   } else if (ILK_SLOTS > 1u && rng_one_in(r, 2000u)) {
     shadow.homes = false;
@@ -991,7 +994,8 @@ static void shrink_budget(uint32_t i) {
   }
 }
 
-/** One number as far to one side as validation lets it: what is accepted there must still satisfy the text. */
+/** One number as far to one side as validation lets it: what is accepted there must still satisfy the text.
+ */
 static void judge_boundary(uint64_t episode) {
   static ilk_config_t edge;
   const uint32_t of_common = (uint32_t)(sizeof edge.common / 4u);
@@ -1004,7 +1008,8 @@ static void judge_boundary(uint64_t episode) {
   const bool is_signed = word >= (uint32_t*)(void*)&edge.axis[slot].min_counts &&
                          word <= (uint32_t*)(void*)&edge.axis[slot].home_offset_counts;
   int64_t good = is_signed ? (int64_t)(int32_t)*word : (int64_t)*word;
-  int64_t bad = rng_one_in(&env.r, 2u) ? (is_signed ? INT32_MIN : 0) : (is_signed ? INT32_MAX : (int64_t)UINT32_MAX);
+  int64_t bad =
+      rng_one_in(&env.r, 2u) ? (is_signed ? INT32_MIN : 0) : (is_signed ? INT32_MAX : (int64_t)UINT32_MAX);
   if (!common && !motor(slot)) {
     return;
   }
@@ -1039,7 +1044,9 @@ static void start_episode(uint64_t episode) {
     judge_boundary(episode);
   }
   choose_mood();
-  if (env.mood.waiting || (is_patient() && !env.mood.homing && rng_one_in(&env.r, 2u))) { /* budgets as small as validation allows are met sooner */
+  if (env.mood.waiting ||
+      (is_patient() && !env.mood.homing &&
+       rng_one_in(&env.r, 2u))) { /* budgets as small as validation allows are met sooner */
     for (uint32_t i = 0u; i < ILK_SLOTS; i++) {
       shrink_budget(i);
     }
@@ -1108,9 +1115,9 @@ static void print_totals(double seconds) {
       "%llu, twins %llu, bit flips %llu (met %llu)\n",
       (unsigned long long)total.shadow_ticks, (unsigned long long)total.shadow_homings,
       (unsigned long long)total.boundaries, (unsigned long long)total.homings,
-      (unsigned long long)total.homes_wrong, (long long)total.worst_home,
-      (unsigned long long)total.arrivals, (unsigned long long)total.driven, (unsigned long long)total.twins,
-      (unsigned long long)total.flips, (unsigned long long)total.flips_met);
+      (unsigned long long)total.homes_wrong, (long long)total.worst_home, (unsigned long long)total.arrivals,
+      (unsigned long long)total.driven, (unsigned long long)total.twins, (unsigned long long)total.flips,
+      (unsigned long long)total.flips_met);
   printf(
       "entries to MOTION armed by a release that began before READY: %llu; overrun_limit reached by periods, "
       "not ticks: locked %llu, not %llu; "
@@ -1151,9 +1158,7 @@ static void print_totals(double seconds) {
 }
 
 /** Seconds of processor time. */
-static double now(void) {
-  return (double)clock() / CLOCKS_PER_SEC;
-}
+static double now(void) { return (double)clock() / CLOCKS_PER_SEC; }
 
 int main(int argc, char** argv) {
   if (argc >= 3 && strcmp(argv[1], "replay") == 0) {

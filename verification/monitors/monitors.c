@@ -596,8 +596,7 @@ static void decide_mode(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
     } else if (g->just_homed) {
       g->state = ILK_AXIS_ENABLED;
     }
-    if (after->homed == ILK_HOMED_NOT &&
-        (g->state == ILK_AXIS_FAULTED || g->jump || g->reset || g->lost)) {
+    if (after->homed == ILK_HOMED_NOT && (g->state == ILK_AXIS_FAULTED || g->jump || g->reset || g->lost)) {
       g->homed = ILK_HOMED_NOT; /* dropped in phase 4 */
     }
   }
@@ -1243,8 +1242,8 @@ ilk_judgement_t judge_P5(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   return HOLDS;
 }
 
-/** P6. Less than the sentence: reverse motion is demanded in the tick after a driven one only; the first frame
-   after start or after a lost card is compared with nothing. */
+/** P6. Less than the sentence: reverse motion is demanded in the tick after a driven one only; the first
+   frame after start or after a lost card is compared with nothing. */
 ilk_judgement_t judge_P6(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
     const ilk_ghost_slot_t* g = &ghost->slot[slot];
@@ -1655,8 +1654,7 @@ ilk_judgement_t judge_states(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
     }
     if (before->homed != ILK_HOMED_NOT && after->homed == ILK_HOMED_NOT && !g->jump && !g->reset &&
         !g->lost && !(after->state == ILK_AXIS_FAULTED && after->fault != ILK_FAULT_DRIFT && new_fault) &&
-        !g->stalled && g->implausible == 0u && !ghost->consent_error &&
-        !g->restored) {
+        !g->stalled && g->implausible == 0u && !ghost->consent_error && !g->restored) {
       bool home = false; /* a HOME in this tick that STOP or DISABLE ended again */
       for (uint32_t i = 0u; i < tick->out->verdict_count && i < tick->count && i < ILK_REQUESTS_PER_TICK;
            i++) {
@@ -1710,8 +1708,8 @@ ilk_judgement_t judge_config(const ilk_config_t* config) {
   if (ms < 125u || ms > 2000u || c->pedal_channels < 1u || c->pedal_channels > 2u) {
     return broken("config: period or pedal channels", ILK_SLOTS, (int64_t)ms, c->pedal_channels);
   }
-  if (c->pedal_debounce_ticks < 1u || c->pedal_debounce_ticks * ms > 50000u ||
-      c->pedal_disagree_ticks < 1u || c->pedal_disagree_ticks * ms > 50000u) {
+  if (c->pedal_debounce_ticks < 1u || c->pedal_debounce_ticks * ms > 50000u || c->pedal_disagree_ticks < 1u ||
+      c->pedal_disagree_ticks * ms > 50000u) {
     return broken("config: pedal times", ILK_SLOTS, c->pedal_debounce_ticks, c->pedal_disagree_ticks);
   }
   if (c->bad_frame_limit < 1u || c->bad_frame_limit > 5u || c->overrun_limit < 1u || c->overrun_limit > 10u) {
@@ -1789,8 +1787,10 @@ ilk_judgement_t judge_config(const ilk_config_t* config) {
       if (a->stall_ticks * slow < one * ((uint64_t)a->stall_min_counts + a->backlash_counts + noise)) {
         return broken("config: stall_ticks at the slow speed", i, a->stall_ticks, (int64_t)slow);
       }
-      if (inside <= (uint64_t)a->home_tolerance_counts + a->switch_hysteresis_counts + coast + a->deadband_counts) {
-        return broken("config: no room on the open side of the switch", i, (int64_t)inside, a->home_offset_counts);
+      if (inside <=
+          (uint64_t)a->home_tolerance_counts + a->switch_hysteresis_counts + coast + a->deadband_counts) {
+        return broken("config: no room on the open side of the switch", i, (int64_t)inside,
+                      a->home_offset_counts);
       }
       if (a->home_slow_drive <= a->dead_zone_drive || a->home_drive > a->unhomed_max_drive ||
           a->home_slow_drive > a->home_drive || slow == 0u || slow > home || home > full ||

@@ -61,15 +61,15 @@ typedef struct {
   uint32_t low_age;
   uint32_t high_age;
   uint32_t apart_age; /**< ticks since the older of two readings that were too far apart */
-  uint32_t steady; /**< ticks since the run began or became wider */
+  uint32_t steady;    /**< ticks since the run began or became wider */
 } ilk_still_t;
 
 #define ILK_JUDGE_EDGES 4u
 
 /** Edges of the switch since HOME that the order of P17 allows, newest first; older ones are forgotten. */
 typedef struct {
-  uint32_t first[ILK_JUDGE_EDGES];  /**< each as e1 */
-  bool slow[ILK_JUDGE_EDGES];       /**< the axis was clear of it, and not driven above `home_slow_drive` since */
+  uint32_t first[ILK_JUDGE_EDGES]; /**< each as e1 */
+  bool slow[ILK_JUDGE_EDGES]; /**< the axis was clear of it, and not driven above `home_slow_drive` since */
   uint32_t second[ILK_JUDGE_EDGES]; /**< each as e2: an e1 within the tolerance came before it */
   uint32_t firsts;
   uint32_t seconds;
@@ -114,10 +114,10 @@ typedef struct {
                     rest */
   bool drifted;  /**< seen in this tick, to be judged */
   bool reversed; /**< seen in this tick, to be judged */
-  bool maybe_reversed;     /**< the same, but frames were lost since the drive */
-  int32_t distance;        /**< counts that the rule of this tick measured */
-  bool driven;             /**< in the last tick */
-  uint32_t direction;      /**< commanded in the last driven tick */
+  bool maybe_reversed; /**< the same, but frames were lost since the drive */
+  int32_t distance;    /**< counts that the rule of this tick measured */
+  bool driven;         /**< in the last tick */
+  uint32_t direction;  /**< commanded in the last driven tick */
   uint32_t reverse_direction;
   uint32_t reverse_mark;
   /* stall */
@@ -146,12 +146,12 @@ typedef struct {
   bool restored;  /**< RESTORE accepted in this tick */
   int32_t restored_to;
   /* reference */
-  bool seeks;             /**< HOME was accepted, and nothing ended it */
-  uint32_t home_run;      /**< valid readings in a row since HOME that say the same */
-  uint32_t home_run_raw;  /**< counter at the first of them */
-  bool home_open;         /**< open for the debounce time since the last edge */
+  bool seeks;            /**< HOME was accepted, and nothing ended it */
+  uint32_t home_run;     /**< valid readings in a row since HOME that say the same */
+  uint32_t home_run_raw; /**< counter at the first of them */
+  bool home_open;        /**< open for the debounce time since the last edge */
   ilk_edges_t edges;
-  uint32_t reference;     /**< counter at the edge where it homed */
+  uint32_t reference; /**< counter at the edge where it homed */
   bool just_homed;
   bool position_known;
   int32_t position;     /**< as it should be published */

@@ -21,9 +21,7 @@ static inline uint64_t rng_next(rng_t* r) { /* splitmix64 */
   return z ^ (z >> 31);
 }
 /** 0 to n - 1 */
-static inline uint32_t rng_below(rng_t* r, uint32_t n) {
-  return (uint32_t)(((rng_next(r) >> 32) * n) >> 32);
-}
+static inline uint32_t rng_below(rng_t* r, uint32_t n) { return (uint32_t)(((rng_next(r) >> 32) * n) >> 32); }
 static inline uint32_t rng_range(rng_t* r, uint32_t low, uint32_t high) {
   return high <= low ? low : low + rng_below(r, high - low + 1u);
 }
@@ -49,11 +47,11 @@ typedef struct {
   uint32_t glitch_one_in;
   uint32_t wobble; /* counts by which a reading in motion may be off */
   /* trouble */
-  uint32_t stuck_left; /* the encoder shows the same */
+  uint32_t stuck_left;   /* the encoder shows the same */
   uint32_t contact_left; /* the contact shows `contact_stuck` */
   bool contact_stuck;
-  uint32_t jam_left;   /* the axis does not move */
-  int64_t runaway;     /* speed it takes by itself */
+  uint32_t jam_left; /* the axis does not move */
+  int64_t runaway;   /* speed it takes by itself */
   uint32_t runaway_left;
   bool runaway_needs_power;
   /* the card */
