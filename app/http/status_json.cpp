@@ -69,6 +69,13 @@ json timing_json(const ilk_timing_t& timing) {
   return phases;
 }
 
+const char* power_name(const ilk_config_t& config, const ilk_snapshot_t& snapshot) {
+  if (snapshot.power == 0) {
+    return "off";
+  }
+  return power_is_up(config, snapshot) ? "on" : "coming_up";
+}
+
 const char* clock_name(const ilk_snapshot_t& snapshot) {
   if (snapshot.clock == ILK_CLOCK_REAL) {
     return "real";
@@ -136,6 +143,10 @@ json event_body(const ilk_event_t& event) {
 
 }  // namespace
 
+bool power_is_up(const ilk_config_t& config, const ilk_snapshot_t& snapshot) {
+  return snapshot.power != 0 && snapshot.state.system.powered_ticks >= config.common.power_up_ticks;
+}
+
 json status_json(const Robot& robot, const ilk_config_t& config, const ControlView& view,
                  std::string_view app_mode, std::chrono::steady_clock::time_point now) {
   static const ControlView nothing{};
@@ -162,6 +173,8 @@ json status_json(const Robot& robot, const ilk_config_t& config, const ControlVi
           {"estop", state.system.estop != 0},
           {"pedal", catalog::name(Family::pedal, state.system.pedal)},
           {"pedal_armed", state.system.pedal_armed != 0},
+          {"power", power_name(config, snapshot)},
+          {"consent", state.system.consent},
           {"app_alive", state.system.app_alive != 0},
           {"holder", state.system.holder},
           {"app_mode", app_mode},
@@ -198,6 +211,8 @@ json motor_json(const Axis& axis, const ilk_config_t& config, const ControlView&
              {"coast_counts", rules.coast_counts},
              {"unhomed_travel_counts", rules.unhomed_travel_counts},
              {"homed", state.homed != 0},
+             {"homed_by", catalog::name(Family::homed, state.homed)},
+             {"home_difference_counts", state.home_difference_counts},
              {"homing", book.homes(axis.slot)},
              {"has_switch", rules.limit_side != ILK_LIMIT_NONE},
              {"switch", state.switch_triggered != 0},
