@@ -111,6 +111,7 @@ static struct {
   uint32_t goal_drive[ILK_SLOTS];
   uint32_t card_left[ILK_SLOTS]; /* the card is silent */
   uint32_t beat;
+  bool left_alone[ILK_SLOTS]; /* nobody enables it */
 } env;
 
 static uint32_t shade(rng_t* r, uint32_t often) {
@@ -121,8 +122,8 @@ static uint32_t shade(rng_t* r, uint32_t often) {
 static void choose_mood(void) {
   rng_t* r = &env.r;
   mood_t* m = &env.mood;
-  m->frames = shade(r, 20u);
-  m->plant = shade(r, 200u);
+  m->frames = shade(r, 10u * (ILK_SLOTS + 1u));
+  m->plant = shade(r, 100u * (ILK_SLOTS + 1u));
   m->pedal = shade(r, 100u);
   m->system = shade(r, 300u);
   m->requests = shade(r, 3u);
@@ -205,7 +206,7 @@ static void add_move(uint32_t i, bool wild) {
   const uint32_t top = before.axis[i].homed != ILK_HOMED_NOT ? a->max_drive : a->unhomed_max_drive;
   q->target_counts = wild ? place_near(i) : env.goal[i];
   q->drive = wild && rng_one_in(r, 8u) ? (uint32_t)rng_next(r)
-             : wild                    ? rng_range(r, 1u, top)
+             : wild                    ? rng_range(r, 1u, rng_one_in(r, 4u) ? a->max_drive : top)
              : env.goal_drive[i] < top ? env.goal_drive[i]
                                        : top;
   q->amplitude = a->max_amplitude ? rng_range(r, 1u, a->max_amplitude) : 0u;
@@ -292,7 +293,8 @@ static void cooperate(void) {
     if (v->state == ILK_AXIS_FAULTED && !env.pressed && rng_one_in(r, 5u)) {
       (void)add(ILK_REQUEST_CLEAR_FAULT, i);
     }
-    if (v->state == ILK_AXIS_DISABLED && before.mode >= ILK_MODE_READY && rng_one_in(r, 5u)) {
+    if (v->state == ILK_AXIS_DISABLED && before.mode >= ILK_MODE_READY && !env.left_alone[i] &&
+        rng_one_in(r, 5u)) {
       (void)add(ILK_REQUEST_ENABLE, i);
     }
     if (before.mode == ILK_MODE_READY && v->homed == ILK_HOMED_NOT && a->limit_side == ILK_LIMIT_NONE &&
@@ -402,6 +404,9 @@ static void choose_contacts(void) {
   if (before.mode == ILK_MODE_LOCKED && env.pressed && rng_one_in(r, 20u)) {
     env.press_left = 0u;
   }
+  if (ghost.reset_accepted && rng_one_in(r, 2u)) {
+    env.press_left = rng_below(r, config.common.pedal_debounce_ticks);
+  }
   if (before.mode == ILK_MODE_READY && env.pressed && rng_one_in(r, 60u)) {
     env.press_left = 0u;
   }
@@ -471,14 +476,21 @@ static void choose_contacts(void) {
 static void trouble_axis(uint32_t i) {
   rng_t* r = &env.r;
   plant_t* p = &plant[i];
-  switch (rng_below(r, 10u)) {
+  switch (rng_below(r, 11u)) {
     case 0:
       p->stuck_left = rng_range(r, 1u, 2u * config.axis[i].stall_ticks);
       break;
     case 1:
       p->jam_left = rng_range(r, 1u, 2u * config.axis[i].stall_ticks);
       break;
-    case 2:
+    case 2: /* the wrong way */
+      if (out.command[i].drive != 0u) {
+        p->runaway = (int64_t)rng_below(r, (uint32_t)p->full + 1u);
+        p->runaway = out.command[i].direction == ILK_DIRECTION_INCREASING ? -p->runaway : p->runaway;
+        p->runaway_left = rng_range(r, 1u, 80u);
+        p->runaway_needs_power = false;
+      }
+      break;
     case 3:
       p->runaway = (int64_t)(rng_below(r, 2u) ? 1 : -1) * (int64_t)rng_below(r, (uint32_t)p->full + 1u);
       p->runaway_left = rng_range(r, 1u, 80u);
@@ -511,6 +523,10 @@ static void trouble_axis(uint32_t i) {
     case 8:
       p->status &= ~8u;
       break;
+    case 9:
+      p->contact_left = rng_range(r, 1u, 4u * config.common.switch_debounce_ticks);
+      p->contact_stuck = rng_one_in(r, 2u);
+      break;
     default:
       env.card_left[i] = rng_range(r, 1u, config.common.bad_frame_limit + 2u);
       break;
@@ -540,6 +556,20 @@ static void exchange(void) {
     }
     if (env.mood.plant != 0u && motor(i) && rng_one_in(r, env.mood.plant)) {
       trouble_axis(i);
+    }
+    if (env.left_alone[i] && ghost.armed && before.mode == ILK_MODE_READY &&
+        rng_one_in(r, 2u * config.common.power_up_ticks + 20u)) {
+      p->runaway = rng_one_in(r, 2u) ? p->full : -p->full;
+      p->runaway_left = rng_range(r, 1u, 2u * config.axis[i].rest_ticks);
+      p->runaway_needs_power = false;
+    }
+    if (env.mood.fumbling && ghost.slot[i].seeks && ghost.slot[i].edges.firsts == 1u && rng_one_in(r, 200u)) {
+      p->raw_zero +=
+          rng_below(r, 2u * config.axis[i].max_delta_counts + 1u) - config.axis[i].max_delta_counts;
+    }
+    if (env.mood.fumbling && ghost.slot[i].seeks && ghost.slot[i].edges.seconds > 0u && i % 2u == 0u &&
+        rng_one_in(r, 3u)) { /* before it rests at the edge */
+      p->raw_zero += config.axis[i].max_delta_counts;
     }
     if (env.mood.frozen) { /* frozen, but for a while now and then */
       p->stuck_left = (ghost.tick / 2048u) % 3u == 0u ? p->stuck_left : 2u;
@@ -1025,6 +1055,9 @@ static void start_episode(uint64_t episode) {
   memset(&out, 0, sizeof out);
   queued = 0u;
   shadow.left = 0u;
+  for (uint32_t i = 0u; i < ILK_SLOTS; i++) {
+    env.left_alone[i] = rng_one_in(&env.r, 8u);
+  }
   env.holder = 1u;
   env.press_left = config.common.power_up_ticks + 100u;
   in.link_generation = rng_below(&env.r, 2u);

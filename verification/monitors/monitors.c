@@ -54,7 +54,7 @@ static int64_t along(uint32_t direction, int32_t counts) {
 
 /** A tick passes. */
 static void still_age(ilk_still_t* still) {
-  still->same = plus(still->same, 1u);
+  still->steady = plus(still->steady, 1u);
   still->ticks = plus(still->ticks, (still->ticks > 0u) ? 1u : 0u);
   still->low_age = plus(still->low_age, 1u);
   still->high_age = plus(still->high_age, 1u);
@@ -64,7 +64,7 @@ static void still_age(ilk_still_t* still) {
 /** The run ends: nothing is known. */
 static void still_end(ilk_still_t* still) {
   still->ticks = 0u;
-  still->same = 0u;
+  still->steady = 0u;
   still->apart_age = UINT32_MAX;
 }
 
@@ -72,10 +72,6 @@ static void still_end(ilk_still_t* still) {
    `bound`; `apart_age` the age of the older of two readings that were. */
 static void still_add(ilk_still_t* still, const ilk_axis_config_t* config, uint32_t raw, uint32_t bound) {
   const int32_t at = judge_counts(config, raw, still->origin);
-  if (raw != still->newest) {
-    still->newest = raw;
-    still->same = 0u;
-  }
   if (still->ticks > 1u && (int64_t)at - still->low > (int64_t)bound) {
     still->apart_age = (still->low_age < still->apart_age) ? still->low_age : still->apart_age;
     still->ticks = 0u;
@@ -90,13 +86,16 @@ static void still_add(ilk_still_t* still, const ilk_axis_config_t* config, uint3
     still->low_age = 0u;
     still->high_age = 0u;
     still->ticks = 1u;
+    still->steady = 0u;
   } else if (at <= still->low) {
+    still->steady = (at < still->low) ? 0u : still->steady;
     still->low = at;
     still->low_age = 0u;
     if (at >= still->high) {
       still->high_age = 0u;
     }
   } else if (at >= still->high) {
+    still->steady = (at > still->high) ? 0u : still->steady;
     still->high = at;
     still->high_age = 0u;
   }
@@ -221,7 +220,7 @@ static void observe_rest(ilk_ghost_slot_t* g, const ilk_axis_config_t* config, u
   if (g->jump || g->reset ||
       g->first) { /* earlier readings may mean another place: undecided for rest_ticks */
     g->rest.ticks = 0u;
-    g->rest.same = 0u;
+    g->rest.steady = 0u;
     g->calm.ticks = 0u;
   }
   if (g->valid) {
@@ -236,10 +235,11 @@ static bool moves(const ilk_ghost_slot_t* g, const ilk_axis_config_t* config) {
   return g->quiet < config->rest_ticks || g->rest.apart_age < config->rest_ticks;
 }
 
-/** At rest for sure: the very same reading. What lies between this and `moves` needs every reading of the
-   last rest_ticks to decide, and a kernel that counts runs of readings decides it later than the text. */
+/** At rest for sure. A kernel that counts runs of readings decides rest later than the text, but not once all
+   of the last rest_ticks readings lie where others of the run lay before: its run, which may have begun
+   earlier, would have ended at one of those. */
 static bool rests(const ilk_ghost_slot_t* g, const ilk_axis_config_t* config) {
-  return g->rest.same > config->rest_ticks && g->quiet > config->rest_ticks;
+  return g->rest.steady > config->rest_ticks && g->quiet > config->rest_ticks;
 }
 
 /** Whether rest may be counted from before this tick is undecided (DISABLE, LOCKED, SET_HOME, RESTORE): count
@@ -251,7 +251,7 @@ static void rest_anew(ilk_ghost_slot_t* g) {
   g->rest.low_age = 0u;
   g->rest.high_age = 0u;
   g->rest.ticks = (g->rest.ticks > 0u) ? 1u : 0u;
-  g->rest.same = 0u;
+  g->rest.steady = 0u;
 }
 
 /** The mark of a FAULTED axis is here. */
@@ -1127,6 +1127,14 @@ ilk_judgement_t judge_P1(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
     if (state != ILK_AXIS_HOMING && tick->out->command[slot].drive > g->order_drive) {
       return broken("P1: more drive than the MOVE asked for", slot, tick->out->command[slot].drive,
                     g->order_drive);
+    }
+    if (state == ILK_AXIS_MOVING) {
+      const int64_t way = (int64_t)g->setpoint - tick->after->axis[slot].position;
+      const bool up = tick->out->command[slot].direction == ILK_DIRECTION_INCREASING;
+      if ((up ? way : -way) <= (int64_t)tick->config->axis[slot].deadband_counts) {
+        return broken("P1: drive within the deadband or away from the setpoint", slot, way,
+                      tick->config->axis[slot].deadband_counts);
+      }
     }
   }
   return HOLDS;

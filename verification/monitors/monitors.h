@@ -61,8 +61,7 @@ typedef struct {
   uint32_t low_age;
   uint32_t high_age;
   uint32_t apart_age; /**< ticks since the older of two readings that were too far apart */
-  uint32_t newest;
-  uint32_t same; /**< ticks since the reading last changed */
+  uint32_t steady;    /**< ticks since the run began or became wider */
 } ilk_still_t;
 
 #define ILK_JUDGE_EDGES 4u

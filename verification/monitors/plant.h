@@ -47,9 +47,11 @@ typedef struct {
   uint32_t glitch_one_in;
   uint32_t wobble; /* counts by which a reading in motion may be off */
   /* trouble */
-  uint32_t stuck_left; /* the encoder shows the same */
-  uint32_t jam_left;   /* the axis does not move */
-  int64_t runaway;     /* speed it takes by itself */
+  uint32_t stuck_left;   /* the encoder shows the same */
+  uint32_t contact_left; /* the contact shows `contact_stuck` */
+  bool contact_stuck;
+  uint32_t jam_left; /* the axis does not move */
+  int64_t runaway;   /* speed it takes by itself */
   uint32_t runaway_left;
   bool runaway_needs_power;
   /* the card */
@@ -93,6 +95,10 @@ static inline void plant_send(plant_t* p, const ilk_axis_config_t* c, rng_t* r, 
     contact = rng_one_in(r, 2u) ? contact : !contact;
   } else if (p->glitch_one_in != 0u && rng_one_in(r, p->glitch_one_in)) {
     contact = !contact;
+  }
+  if (p->contact_left > 0u) {
+    p->contact_left--;
+    contact = p->contact_stuck;
   }
   for (uint32_t i = 0u; i < ILK_FRAME_WORDS; i++) {
     frame[i] = 0u;
