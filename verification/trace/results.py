@@ -1,7 +1,7 @@
 """Results of proofs and tests, converted from build/evidence and the JUnit reports in build/reports.
 
 Nothing here is written by hand: a status comes from what a tool left behind, or the result is UNKNOWN. Each
-rung of the ladder that judges several things (harnesses, properties) gives a result for
+rung of the ladder that judges several things (claims, harnesses, properties) gives a result for
 each of them; the rung's own status caps theirs.
 """
 
@@ -181,6 +181,24 @@ def cbmc(source: Source, rung: Rung) -> Iterator[Result]:
             )
 
 
+def tick(source: Source, rung: Rung) -> Iterator[Result]:
+    """A result for each claim: a monitor, over whole ticks."""
+    line = re.compile(r"^(PASSED|UNKNOWN|FAILED|VACUOUS)\s+(P\d+)\b", re.MULTILINE)
+    said = {match[2]: match[1] for match in line.finditer(rung.text)}
+    claims = tomllib.loads((source.root / "verification/tick/claims.toml").read_text("utf-8"))
+    for name, claim in claims.items():
+        exempt = f"; exempt: {claim['exempt']}" if claim["exempt"] else ""
+        yield rung.result(
+            f"TICK:{name}",
+            claim["shown"],
+            "Proof",
+            said.get(name, "UNKNOWN"),
+            bounds=f"{claim['bound']}{exempt}",
+            supports=frozenset({name}),
+            place="verification/tick/harness.c",
+        )
+
+
 def model(source: Source, rung: Rung) -> Iterator[Result]:
     """A result for each property of each model, and whether a wrong variant of it was refuted."""
     said = {
@@ -216,6 +234,7 @@ def model(source: Source, rung: Rung) -> Iterator[Result]:
 
 
 CONVERTERS: Mapping[str, Callable[[Source, Rung], Iterator[Result]]] = {
+    "tick": tick,
     "cbmc": cbmc,
     "model": model,
 }
