@@ -77,7 +77,7 @@ void set_homing_budget(plant::Random& random, ilk_axis_config_t& axis, const ilk
   const std::uint32_t back_and_forth = 2 * (axis.home_clear_counts + axis.switch_hysteresis_counts +
                                             2 * axis.coast_counts + axis.noise_counts);
   const std::uint32_t way = range + 2 * axis.coast_counts + 2 * back_and_forth;
-  axis.home_travel_counts = way + axis.coast_counts + between(random, 1, range / 4);
+  axis.home_travel_counts = way + axis.coast_counts + axis.noise_counts + between(random, 1, range / 4);
   const std::uint64_t waiting_us = std::uint64_t{4 * axis.rest_ticks + 12 * common.switch_debounce_ticks} *
                                    common.period_us;
   const std::uint64_t time_us = time_for(way, axis.home_speed_counts_per_s) +

@@ -21,7 +21,9 @@ static inline uint64_t rng_next(rng_t* r) { /* splitmix64 */
   return z ^ (z >> 31);
 }
 /** 0 to n - 1 */
-static inline uint32_t rng_below(rng_t* r, uint32_t n) { return n == 0u ? 0u : (uint32_t)(rng_next(r) % n); }
+static inline uint32_t rng_below(rng_t* r, uint32_t n) {
+  return (uint32_t)(((rng_next(r) >> 32) * n) >> 32);
+}
 static inline uint32_t rng_range(rng_t* r, uint32_t low, uint32_t high) {
   return high <= low ? low : low + rng_below(r, high - low + 1u);
 }
@@ -45,6 +47,7 @@ typedef struct {
   uint32_t bounce_left, bounce_ticks;
   uint32_t noise_one_in; /* a reading of n is off by one */
   uint32_t glitch_one_in;
+  uint32_t wobble; /* counts by which a reading in motion may be off */
   /* trouble */
   uint32_t stuck_left; /* the encoder shows the same */
   uint32_t jam_left;   /* the axis does not move */
@@ -79,6 +82,9 @@ static inline void plant_send(plant_t* p, const ilk_axis_config_t* c, rng_t* r, 
   bool contact = p->closed;
   if (p->noise_one_in != 0u && rng_one_in(r, p->noise_one_in)) {
     at += 1;
+  }
+  if (p->wobble != 0u && p->v != 0 && rng_one_in(r, 3u)) {
+    at += (int32_t)p->wobble;
   }
   if (p->stuck_left > 0u) {
     at = p->shown;
