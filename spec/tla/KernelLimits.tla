@@ -64,7 +64,7 @@ EndTick == system.mode = "MOTION" /\ Met("EndTick") /\
     Step([Input(pedal, Reading(plant.at + m, plant.at <= body.closes), <<>>) EXCEPT !.estop_loop = estop], m)
 
 Init ==
-  /\ BeginIn(After(PowerOn, IntoMotion(2, (IF Unhomed THEN <<>> ELSE <<Ask("SET_HOME")>>) \o <<Ask("ENABLE")>>)), 0)
+  /\ BeginIn(After(PowerOn, IntoMotion(0, (IF Unhomed THEN <<>> ELSE <<Ask("SET_HOME")>>) \o <<Ask("ENABLE")>>)), 0)
   /\ seen = Nothing
 
 Next == AnyTick \/ EndTick
