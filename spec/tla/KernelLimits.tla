@@ -72,6 +72,7 @@ Next == AnyTick \/ EndTick
 Spec == Init /\ [][Next]_vars
 
 -------------------------------------------------------------------------------
+(* Properties, as in kernel.md. *)
 P4_soft_limit ==
   [][ Driven /\ IsHomed(io'.axis) =>
         /\ io'.command.direction = "INCREASING"
@@ -90,6 +91,7 @@ P7_bounds ==
 P7_travel ==
   [][ seen'.move <= k.unhomed_travel_counts /\ seen'.home <= k.home_travel_counts ]_vars
 
+(* What the properties are about does happen: each says so. *)
 About ==
   [][ /\ About1
       /\ Driven /\ IsHomed(io'.axis) /\ io'.command.direction = "INCREASING"

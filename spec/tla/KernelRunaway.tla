@@ -97,7 +97,7 @@ P6_runaway ==
   [][ /\ Loose => system'.mode = "LOCKED" /\ ~Accepted({"RESET"})
       /\ Accepted({"CLEAR_FAULT"}) => Rests ]_vars
 
-(* A lost frame is no valid one: nothing is compared with it, and nothing is driven on it. *)
+(* What the properties are about does happen: each says so. *)
 About ==
   [][ /\ About1
       /\ NewFault("JUMP") => Met("P6_jump")

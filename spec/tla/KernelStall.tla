@@ -78,6 +78,7 @@ P5_stall ==
       /\ seen'.effort < (k.stall_effort_ticks + 1) * k.max_drive
       /\ Driven => io'.axis.state # "FAULTED" ]_vars
 
+(* What the properties are about does happen: each says so. *)
 About ==
   [][ /\ About1
       /\ NewFault("STALL") => Met("P5_stall") ]_vars
