@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <stdexcept>
 
 #include "interlock/kernel.h"
 
@@ -101,10 +102,13 @@ class Recorder {
       if (tick >= kWarmUpTicks / 2) {
         work(*this);
       }
-      ilk_outputs_t out{};
       ilk_step(&config_, &state_, &current_.inputs, current_.requests.data(),
-               static_cast<uint32_t>(current_.requests.size()), &out);
+               static_cast<uint32_t>(current_.requests.size()), &out_);
       tape.push_back(current_);
+    }
+    const auto is_driven = [](uint32_t gate) { return gate == ILK_GATE_OPEN; };
+    if (to_motion_ && !std::all_of(std::begin(out_.gate), std::end(out_.gate), is_driven)) {
+      throw std::logic_error("a scenario in motion does not drive every axis");
     }
     return tape;
   }
@@ -172,6 +176,7 @@ class Recorder {
   const ilk_config_t config_;
   const bool to_motion_;
   ilk_state_t state_{};
+  ilk_outputs_t out_{};
   Tick current_;
   uint32_t sequence_ = 0;
   uint32_t raw_ = 0;

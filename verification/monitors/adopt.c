@@ -8,22 +8,6 @@ static bool is_homing(const ilk_axis_t* axis, ilk_homing_phase_t phase) {
   return axis->state == ILK_AXIS_HOMING && axis->homing_phase == (uint32_t)phase;
 }
 
-/** Nothing is known of readings before this one: neither moves nor rests for sure. */
-static void adopt_stillness(ilk_still_t* still, uint32_t raw) {
-  still->newest = raw;
-  still->apart_age = UINT32_MAX;
-}
-
-/** The mark is the kernel's, or where the axis stands: it may be taken anew there. */
-static void adopt_fault_mark(ilk_ghost_slot_t* g, const ilk_axis_config_t* config, const ilk_axis_t* axis) {
-  const int32_t at = judge_counts(config, axis->raw, axis->drift_mark_raw);
-  g->fault_mark = axis->drift_mark_raw;
-  g->mark_low = (at < 0) ? at : 0;
-  g->mark_high = (at > 0) ? at : 0;
-  g->fault_low = g->mark_low;
-  g->fault_high = g->mark_high;
-}
-
 /** The edges that the phase of a homing implies. An edge that may have been seen is one. */
 static void adopt_homing(ilk_ghost_slot_t* g, const ilk_axis_config_t* config, uint32_t debounce,
                          const ilk_axis_t* axis) {
@@ -60,13 +44,16 @@ static void adopt_slot(ilk_ghost_slot_t* g, const ilk_config_t* config, const il
   g->triggered = axis->switch_reading != 0u;
   g->run = axis->switch_run_ticks;
   g->run_raw = axis->switch_run_raw;
-  adopt_stillness(&g->rest, axis->raw);
-  adopt_stillness(&g->calm, axis->raw);
+  g->rest.apart_age = UINT32_MAX; /* neither moves nor rests for sure */
+  g->calm.apart_age = UINT32_MAX;
   g->quiet = UINT32_MAX;
   g->since_disable = UINT32_MAX;
   g->drift_known = axis->state != ILK_AXIS_FAULTED;
   g->drift_mark = axis->drift_mark_raw;
-  adopt_fault_mark(g, &config->axis[slot], axis);
+  g->fault_mark = axis->drift_mark_raw;
+  g->delta = axis->delta_counts;
+  g->ran = axis->runaway != 0u;
+  g->maybe_ran = g->ran;
   g->driven = axis->card_valid != 0u && axis->driven_direction != ILK_DIRECTION_NONE;
   g->direction = axis->driven_direction;
   g->reverse_direction = axis->reverse_direction;

@@ -54,7 +54,7 @@ static int64_t along(uint32_t direction, int32_t counts) {
 
 /** A tick passes. */
 static void still_age(ilk_still_t* still) {
-  still->same = plus(still->same, 1u);
+  still->steady = plus(still->steady, 1u);
   still->ticks = plus(still->ticks, (still->ticks > 0u) ? 1u : 0u);
   still->low_age = plus(still->low_age, 1u);
   still->high_age = plus(still->high_age, 1u);
@@ -64,7 +64,7 @@ static void still_age(ilk_still_t* still) {
 /** The run ends: nothing is known. */
 static void still_end(ilk_still_t* still) {
   still->ticks = 0u;
-  still->same = 0u;
+  still->steady = 0u;
   still->apart_age = UINT32_MAX;
 }
 
@@ -72,10 +72,6 @@ static void still_end(ilk_still_t* still) {
    `bound`; `apart_age` the age of the older of two readings that were. */
 static void still_add(ilk_still_t* still, const ilk_axis_config_t* config, uint32_t raw, uint32_t bound) {
   const int32_t at = judge_counts(config, raw, still->origin);
-  if (raw != still->newest) {
-    still->newest = raw;
-    still->same = 0u;
-  }
   if (still->ticks > 1u && (int64_t)at - still->low > (int64_t)bound) {
     still->apart_age = (still->low_age < still->apart_age) ? still->low_age : still->apart_age;
     still->ticks = 0u;
@@ -90,13 +86,16 @@ static void still_add(ilk_still_t* still, const ilk_axis_config_t* config, uint3
     still->low_age = 0u;
     still->high_age = 0u;
     still->ticks = 1u;
+    still->steady = 0u;
   } else if (at <= still->low) {
+    still->steady = (at < still->low) ? 0u : still->steady;
     still->low = at;
     still->low_age = 0u;
     if (at >= still->high) {
       still->high_age = 0u;
     }
   } else if (at >= still->high) {
+    still->steady = (at > still->high) ? 0u : still->steady;
     still->high = at;
     still->high_age = 0u;
   }
@@ -190,7 +189,7 @@ static void observe_frame(ilk_ghost_t* ghost, ilk_ghost_slot_t* g, const ilk_tic
 }
 
 /** After everything that compares with the last reading. */
-static void keep_frame(ilk_ghost_slot_t* g, const uint32_t* frame) {
+static void keep_frame(ilk_ghost_slot_t* g, const ilk_axis_config_t* config, const uint32_t* frame) {
   const bool triggered = (frame[2] & SWITCH_OPEN_BIT) == 0u;
   if (!g->valid) {
     return;
@@ -202,6 +201,7 @@ static void keep_frame(ilk_ghost_slot_t* g, const uint32_t* frame) {
     g->run_raw = frame[3];
   }
   g->triggered = triggered;
+  g->delta = g->first ? 0 : judge_counts(config, frame[3], g->raw);
   g->seen = true;
   g->heartbeat = frame[9];
   g->status = frame[12];
@@ -220,7 +220,7 @@ static void observe_rest(ilk_ghost_slot_t* g, const ilk_axis_config_t* config, u
   if (g->jump || g->reset ||
       g->first) { /* earlier readings may mean another place: undecided for rest_ticks */
     g->rest.ticks = 0u;
-    g->rest.same = 0u;
+    g->rest.steady = 0u;
     g->calm.ticks = 0u;
   }
   if (g->valid) {
@@ -235,10 +235,11 @@ static bool moves(const ilk_ghost_slot_t* g, const ilk_axis_config_t* config) {
   return g->quiet < config->rest_ticks || g->rest.apart_age < config->rest_ticks;
 }
 
-/** At rest for sure: the very same reading. What lies between this and `moves` needs every reading of the
-   last rest_ticks to decide, and a kernel that counts runs of readings decides it later than the text. */
+/** At rest for sure. A kernel that counts runs of readings decides rest later than the text, but not once all
+   of the last rest_ticks readings lie where others of the run lay before: its run, which may have begun
+   earlier, would have ended at one of those. */
 static bool rests(const ilk_ghost_slot_t* g, const ilk_axis_config_t* config) {
-  return g->rest.same > config->rest_ticks && g->quiet > config->rest_ticks;
+  return g->rest.steady > config->rest_ticks && g->quiet > config->rest_ticks;
 }
 
 /** Whether rest may be counted from before this tick is undecided (DISABLE, LOCKED, SET_HOME, RESTORE): count
@@ -250,7 +251,7 @@ static void rest_anew(ilk_ghost_slot_t* g) {
   g->rest.low_age = 0u;
   g->rest.high_age = 0u;
   g->rest.ticks = (g->rest.ticks > 0u) ? 1u : 0u;
-  g->rest.same = 0u;
+  g->rest.steady = 0u;
 }
 
 /** The mark of a FAULTED axis is here. */
@@ -258,8 +259,6 @@ static void mark_fault(ilk_ghost_slot_t* g, uint32_t raw) {
   g->fault_mark = raw;
   g->mark_low = 0;
   g->mark_high = 0;
-  g->fault_low = 0;
-  g->fault_high = 0;
 }
 
 /** Reverse, drift and the mark of a FAULTED axis. */
@@ -273,6 +272,8 @@ static void observe_motion(ilk_ghost_slot_t* g, const ilk_axis_config_t* config,
   g->maybe_runaway = false;
   g->distance = 0;
   if (!g->valid) {
+    g->ran = g->ran && !g->lost;
+    g->maybe_ran = g->maybe_ran && !g->lost;
     return;
   }
   if (!g->first && !g->jump && !g->reset) {
@@ -287,31 +288,29 @@ static void observe_motion(ilk_ghost_slot_t* g, const ilk_axis_config_t* config,
   }
   if (state == ILK_AXIS_FAULTED) {
     const bool anew = g->first || g->jump || g->reset;
-    if (anew || rests(g, config)) {
+    const int32_t delta = judge_counts(config, raw, g->raw);
+    const bool went_on = anew && !g->first && ((delta > 0 && g->delta > 0) || (delta < 0 && g->delta < 0));
+    if (anew) {
       mark_fault(g, raw);
     }
+    if (g->ran && !g->resting && !moves(g, config)) {
+      mark_fault(g, raw);
+      g->resting = true;
+    }
     const int32_t at = judge_counts(config, raw, g->fault_mark);
-    if (!g->fault_known || !moves(g, config)) { /* taken again at the first valid frame after a jump, too */
+    if (g->maybe_ran && !moves(g, config)) { /* at rest, perhaps: its mark is perhaps here */
       g->mark_low = (at < g->mark_low) ? at : g->mark_low;
       g->mark_high = (at > g->mark_high) ? at : g->mark_high;
     }
-    g->fault_known = !anew;
-    g->fault_low = (at < g->fault_low) ? at : g->fault_low;
-    g->fault_high = (at > g->fault_high) ? at : g->fault_high;
     g->distance = saturate((at > g->mark_high)  ? (int64_t)at - g->mark_high
                            : (at < g->mark_low) ? (int64_t)at - g->mark_low
                                                 : 0);
-    g->runaway = size_of(g->distance) > config->drift_counts;
-    /* a mark that was taken anew anywhere between */
-    g->maybe_runaway = g->runaway || (int64_t)at - g->fault_low > (int64_t)config->drift_counts ||
-                       (int64_t)g->fault_high - at > (int64_t)config->drift_counts;
-    if (rests(g, config)) {
-      g->maybe_runaway = false;
-    }
-    if (!g->first && (g->jump || g->reset)) {
-      g->runaway = g->runaway || g->moved_before;
-      g->maybe_runaway = g->maybe_runaway || g->runaway || !g->rested_before;
-    }
+    g->runaway = size_of(g->distance) > config->drift_counts || went_on;
+    g->maybe_runaway = g->runaway || (int64_t)at - g->mark_low > (int64_t)config->drift_counts ||
+                       (int64_t)g->mark_high - at > (int64_t)config->drift_counts;
+    g->ran = (g->ran && !rests(g, config)) || g->runaway;
+    g->maybe_ran = (g->maybe_ran && !rests(g, config)) || g->maybe_runaway;
+    g->resting = g->resting && g->ran && !g->runaway;
     g->drift_known = false;
   } else if (state == ILK_AXIS_DISABLED && tick->before->mode != ILK_MODE_MOTION) {
     g->drift_mark = raw;
@@ -496,8 +495,6 @@ void ghost_observe(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
     if (config->card == ILK_CARD_NONE) {
       continue;
     }
-    g->moved_before = moves(g, config);
-    g->rested_before = rests(g, config);
     observe_frame(ghost, g, tick, slot);
     ghost->bus_ok_now = ghost->bus_ok_now || g->valid;
     ghost->required_lost = ghost->required_lost || (config->required == 1u && g->lost);
@@ -529,7 +526,7 @@ void ghost_observe(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
                                  (g->calm.ticks <= config->rest_ticks || g->quiet <= config->rest_ticks));
       ghost->runaway_unsure = ghost->runaway_unsure || g->maybe_runaway;
     }
-    keep_frame(g, frame);
+    keep_frame(g, config, frame);
   }
   ghost->bus_bad_ticks = ghost->bus_ok_now ? 0u : plus(ghost->bus_bad_ticks, 1u);
   ghost->bus_lost = ghost->bus_bad_ticks >= tick->config->common.bad_frame_limit;
@@ -591,13 +588,13 @@ static void decide_mode(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
       g->lease = 0u;
       g->order_consent = 0u;
       g->seeks = false;
-      g->fault_known = g->valid && !g->jump && !g->reset;
+      g->ran = false;
+      g->maybe_ran = false;
       mark_fault(g, g->raw);
     } else if (g->just_homed) {
       g->state = ILK_AXIS_ENABLED;
     }
-    if (after->homed == ILK_HOMED_NOT &&
-        (g->state == ILK_AXIS_FAULTED || g->jump || g->reset || g->lost)) {
+    if (after->homed == ILK_HOMED_NOT && (g->state == ILK_AXIS_FAULTED || g->jump || g->reset || g->lost)) {
       g->homed = ILK_HOMED_NOT; /* dropped in phase 4 */
     }
   }
@@ -788,15 +785,12 @@ static ilk_demand_t demand_of_place(const ilk_ghost_t* ghost, const ilk_tick_t* 
 }
 
 /** A FAULTED axis that is known to lie at rest where its mark is is no cause. */
-static bool runaway_present(const ilk_ghost_t* ghost, const ilk_tick_t* tick, bool* unsure) {
+static bool runaway_present(const ilk_ghost_t* ghost, bool* unsure) {
   bool present = false;
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
     const ilk_ghost_slot_t* g = &ghost->slot[slot];
     present = present || g->runaway;
-    if (has_motor(&tick->config->axis[slot]) && g->state == ILK_AXIS_FAULTED &&
-        !rests(g, &tick->config->axis[slot]) && !g->lost) {
-      *unsure = true;
-    }
+    *unsure = *unsure || (g->state == ILK_AXIS_FAULTED && g->maybe_ran);
   }
   return present;
 }
@@ -816,7 +810,7 @@ static ilk_demand_t demand_of_row(const ilk_ghost_t* ghost, const ilk_tick_t* ti
       if (ghost->pedal != ILK_PEDAL_RELEASED) {
         return demand(ILK_VERDICT_PEDAL_DOWN);
       }
-      if (ghost->estop || ghost->bus_lost || !ghost->app_alive || runaway_present(ghost, tick, &unsure) ||
+      if (ghost->estop || ghost->bus_lost || !ghost->app_alive || runaway_present(ghost, &unsure) ||
           ghost->missed_ticks >= tick->config->common.overrun_limit) {
         return demand(ILK_VERDICT_CAUSE_PRESENT);
       }
@@ -1134,6 +1128,14 @@ ilk_judgement_t judge_P1(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
       return broken("P1: more drive than the MOVE asked for", slot, tick->out->command[slot].drive,
                     g->order_drive);
     }
+    if (state == ILK_AXIS_MOVING) {
+      const int64_t way = (int64_t)g->setpoint - tick->after->axis[slot].position;
+      const bool up = tick->out->command[slot].direction == ILK_DIRECTION_INCREASING;
+      if ((up ? way : -way) <= (int64_t)tick->config->axis[slot].deadband_counts) {
+        return broken("P1: drive within the deadband or away from the setpoint", slot, way,
+                      tick->config->axis[slot].deadband_counts);
+      }
+    }
   }
   return HOLDS;
 }
@@ -1235,8 +1237,8 @@ ilk_judgement_t judge_P5(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   return HOLDS;
 }
 
-/** P6. Less than the sentence: reverse motion is demanded in the tick after a driven one only; the first frame
-   after start or after a lost card is compared with nothing. */
+/** P6. Less than the sentence: reverse motion is demanded in the tick after a driven one only; the first
+   frame after start or after a lost card is compared with nothing. */
 ilk_judgement_t judge_P6(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
     const ilk_ghost_slot_t* g = &ghost->slot[slot];
@@ -1647,8 +1649,7 @@ ilk_judgement_t judge_states(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
     }
     if (before->homed != ILK_HOMED_NOT && after->homed == ILK_HOMED_NOT && !g->jump && !g->reset &&
         !g->lost && !(after->state == ILK_AXIS_FAULTED && after->fault != ILK_FAULT_DRIFT && new_fault) &&
-        !g->stalled && g->implausible == 0u && !ghost->consent_error &&
-        !g->restored) {
+        !g->stalled && g->implausible == 0u && !ghost->consent_error && !g->restored) {
       bool home = false; /* a HOME in this tick that STOP or DISABLE ended again */
       for (uint32_t i = 0u; i < tick->out->verdict_count && i < tick->count && i < ILK_REQUESTS_PER_TICK;
            i++) {
@@ -1699,18 +1700,24 @@ ilk_judgement_t judge_config(const ilk_config_t* config) {
   if (c->lease_max_ticks < 1u || c->lease_max_ticks * ms > 150000u) {
     return broken("config: lease_max_ticks", ILK_SLOTS, c->lease_max_ticks, 0);
   }
-  if (c->pedal_debounce_ticks * ms > 50000u || c->pedal_disagree_ticks * ms > 50000u) {
+  if (ms < 125u || ms > 2000u || c->pedal_channels < 1u || c->pedal_channels > 2u) {
+    return broken("config: period or pedal channels", ILK_SLOTS, (int64_t)ms, c->pedal_channels);
+  }
+  if (c->pedal_debounce_ticks < 1u || c->pedal_debounce_ticks * ms > 50000u || c->pedal_disagree_ticks < 1u ||
+      c->pedal_disagree_ticks * ms > 50000u) {
     return broken("config: pedal times", ILK_SLOTS, c->pedal_debounce_ticks, c->pedal_disagree_ticks);
   }
   if (c->bad_frame_limit < 1u || c->bad_frame_limit > 5u || c->overrun_limit < 1u || c->overrun_limit > 10u) {
     return broken("config: bad frames or overruns", ILK_SLOTS, c->bad_frame_limit, c->overrun_limit);
   }
-  if (c->switch_debounce_ticks * ms > 20000u) {
+  if (c->switch_debounce_ticks < 2u || c->switch_debounce_ticks * ms > 20000u) { /* one reading is no edge */
     return broken("config: switch debounce", ILK_SLOTS, c->switch_debounce_ticks, 0);
   }
   for (uint32_t i = 0u; i < ILK_SLOTS; i++) {
     const ilk_axis_config_t* a = &config->axis[i];
     const uint64_t noise = a->noise_counts;
+    const uint64_t coast = a->coast_counts;
+    const uint64_t range = (uint64_t)((int64_t)a->max_counts - a->min_counts);
     /* millionths of a count a tick */
     const uint64_t full = (uint64_t)a->full_speed_counts_per_s * ms;
     const uint64_t home = (uint64_t)a->home_speed_counts_per_s * ms;
@@ -1720,7 +1727,19 @@ ilk_judgement_t judge_config(const ilk_config_t* config) {
       continue;
     }
     motor = true;
-    if (a->stall_ticks * ms > 500000u || a->stall_effort_ticks * ms > 200000u) {
+    if (a->min_counts >= a->max_counts || 2u * coast >= range || a->home_offset_counts < a->min_counts ||
+        a->home_offset_counts > a->max_counts) {
+      return broken("config: soft limits, coast or home offset", i, a->min_counts, a->max_counts);
+    }
+    if (a->unhomed_max_drive <= a->dead_zone_drive || a->unhomed_max_drive > a->max_drive ||
+        a->max_amplitude > ((a->card == ILK_CARD_HIGH_FREQUENCY) ? 255u : 0u)) {
+      return broken("config: drives or amplitude", i, a->unhomed_max_drive, a->dead_zone_drive);
+    }
+    if (a->unhomed_travel_counts <= coast + noise) {
+      return broken("config: unhomed travel that allows none", i, a->unhomed_travel_counts, (int64_t)coast);
+    }
+    if (a->stall_ticks <= ILK_LATENCY_TICKS || a->stall_ticks * ms > 500000u ||
+        a->stall_effort_ticks * ms > 200000u) {
       return broken("config: stall times", i, a->stall_ticks, a->stall_effort_ticks);
     }
     if (full > (uint64_t)a->max_delta_counts * one) {
@@ -1745,7 +1764,13 @@ ilk_judgement_t judge_config(const ilk_config_t* config) {
     }
     if (a->limit_side != ILK_LIMIT_NONE) {
       const uint64_t clear = a->home_clear_counts;
-      const uint64_t range = (uint64_t)((int64_t)a->max_counts - a->min_counts);
+      const bool lower = a->limit_side == ILK_LIMIT_LOWER;
+      const uint64_t inside = (uint64_t)(lower ? (int64_t)a->max_counts - a->home_offset_counts
+                                               : (int64_t)a->home_offset_counts - a->min_counts);
+      /* from the far stop to the second edge; from the near one, off the switch first */
+      const uint64_t far_way = inside + 2u * clear;
+      const uint64_t near_way = range - inside + a->switch_hysteresis_counts + 4u * clear;
+      const uint64_t way = far_way > near_way ? far_way : near_way;
       if (clear <= (uint64_t)a->home_tolerance_counts + a->switch_hysteresis_counts + a->coast_counts ||
           clear <= (uint64_t)a->stall_min_counts + a->backlash_counts + noise) {
         return broken("config: home_clear_counts", i, (int64_t)clear, 0);
@@ -1757,11 +1782,23 @@ ilk_judgement_t judge_config(const ilk_config_t* config) {
       if (a->stall_ticks * slow < one * ((uint64_t)a->stall_min_counts + a->backlash_counts + noise)) {
         return broken("config: stall_ticks at the slow speed", i, a->stall_ticks, (int64_t)slow);
       }
-      if (a->home_slow_drive <= a->dead_zone_drive || a->home_drive > a->unhomed_max_drive) {
+      if (inside <=
+          (uint64_t)a->home_tolerance_counts + a->switch_hysteresis_counts + coast + a->deadband_counts) {
+        return broken("config: no room on the open side of the switch", i, (int64_t)inside,
+                      a->home_offset_counts);
+      }
+      if (a->home_slow_drive <= a->dead_zone_drive || a->home_drive > a->unhomed_max_drive ||
+          a->home_slow_drive > a->home_drive || slow == 0u || slow > home || home > full ||
+          a->home_amplitude > a->max_amplitude) {
         return broken("config: homing drives", i, a->home_slow_drive, a->home_drive);
       }
-      if (a->home_travel_counts < range) {
-        return broken("config: home_travel_counts below the range", i, a->home_travel_counts, (int64_t)range);
+      if (a->home_travel_counts <= way + coast + noise) {
+        return broken("config: home_travel_counts below the way of homing", i, a->home_travel_counts,
+                      (int64_t)way);
+      }
+      if (a->home_timeout_ticks * home < one * (way - clear)) {
+        return broken("config: home_timeout_ticks below the time of homing", i, a->home_timeout_ticks,
+                      (int64_t)way);
       }
     }
   }

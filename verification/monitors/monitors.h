@@ -61,16 +61,15 @@ typedef struct {
   uint32_t low_age;
   uint32_t high_age;
   uint32_t apart_age; /**< ticks since the older of two readings that were too far apart */
-  uint32_t newest;
-  uint32_t same; /**< ticks since the reading last changed */
+  uint32_t steady;    /**< ticks since the run began or became wider */
 } ilk_still_t;
 
 #define ILK_JUDGE_EDGES 4u
 
 /** Edges of the switch since HOME that the order of P17 allows, newest first; older ones are forgotten. */
 typedef struct {
-  uint32_t first[ILK_JUDGE_EDGES];  /**< each as e1 */
-  bool slow[ILK_JUDGE_EDGES];       /**< the axis was clear of it, and not driven above `home_slow_drive` since */
+  uint32_t first[ILK_JUDGE_EDGES]; /**< each as e1 */
+  bool slow[ILK_JUDGE_EDGES]; /**< the axis was clear of it, and not driven above `home_slow_drive` since */
   uint32_t second[ILK_JUDGE_EDGES]; /**< each as e2: an e1 within the tolerance came before it */
   uint32_t firsts;
   uint32_t seconds;
@@ -100,25 +99,23 @@ typedef struct {
   ilk_still_t calm;       /**< valid, within drift_counts */
   bool drift_known;
   uint32_t drift_mark;
-  bool fault_known;
-  uint32_t
-      fault_mark; /**< reading of the fault, of the last jump, reset or first frame, or at sure rest since */
-  int32_t mark_low; /**< between these, from there, the mark lies: it is taken anew where the axis may be at
-                       rest */
+  uint32_t fault_mark; /**< reading of the fault, of the last jump, reset or first frame, or where a runaway
+                          rested */
+  int32_t
+      mark_low; /**< between these, from there, the mark lies: where a runaway came to rest is known so far */
   int32_t mark_high;
-  int32_t fault_low; /**< lowest and highest reading since it was taken, from there */
-  int32_t fault_high;
-  bool maybe_runaway; /**< beyond drift_counts of some reading since: a mark may have been taken there */
-  bool moved_before;  /**< at the tick before it was not at rest for sure */
-  bool rested_before; /**< at the tick before it was at rest for sure */
-  bool runaway;  /**< seen in this tick: FAULTED and beyond drift_counts of its mark, or jumped while not at
-                    rest */
-  bool drifted;  /**< seen in this tick, to be judged */
-  bool reversed; /**< seen in this tick, to be judged */
-  bool maybe_reversed;     /**< the same, but frames were lost since the drive */
-  int32_t distance;        /**< counts that the rule of this tick measured */
-  bool driven;             /**< in the last tick */
-  uint32_t direction;      /**< commanded in the last driven tick */
+  int32_t delta;  /**< motion that the last valid frame showed */
+  bool ran;       /**< a runaway, and not at rest for sure since */
+  bool resting;   /**< and perhaps at rest since: the mark is a reading from then on */
+  bool maybe_ran; /**< beyond drift_counts of a place where the mark may be, and not at rest for sure since */
+  bool maybe_runaway;  /**< seen in this tick: beyond drift_counts of a place where the mark may be */
+  bool runaway;        /**< seen in this tick: FAULTED and beyond drift_counts of its mark, or jumped on */
+  bool drifted;        /**< seen in this tick, to be judged */
+  bool reversed;       /**< seen in this tick, to be judged */
+  bool maybe_reversed; /**< the same, but frames were lost since the drive */
+  int32_t distance;    /**< counts that the rule of this tick measured */
+  bool driven;         /**< in the last tick */
+  uint32_t direction;  /**< commanded in the last driven tick */
   uint32_t reverse_direction;
   uint32_t reverse_mark;
   /* stall */
@@ -147,12 +144,12 @@ typedef struct {
   bool restored;  /**< RESTORE accepted in this tick */
   int32_t restored_to;
   /* reference */
-  bool seeks;             /**< HOME was accepted, and nothing ended it */
-  uint32_t home_run;      /**< valid readings in a row since HOME that say the same */
-  uint32_t home_run_raw;  /**< counter at the first of them */
-  bool home_open;         /**< open for the debounce time since the last edge */
+  bool seeks;            /**< HOME was accepted, and nothing ended it */
+  uint32_t home_run;     /**< valid readings in a row since HOME that say the same */
+  uint32_t home_run_raw; /**< counter at the first of them */
+  bool home_open;        /**< open for the debounce time since the last edge */
   ilk_edges_t edges;
-  uint32_t reference;     /**< counter at the edge where it homed */
+  uint32_t reference; /**< counter at the edge where it homed */
   bool just_homed;
   bool position_known;
   int32_t position;     /**< as it should be published */
@@ -215,8 +212,8 @@ typedef struct {
 /** Before the first tick of a kernel. */
 void ghost_init(ilk_ghost_t* ghost);
 /**
- * In the middle of a run: what the state between two ticks tells, and of the rest nothing. A verdict that what
- * came before decides passes, whichever it is, until the ghost has seen as much itself.
+ * In the middle of a run: what the state between two ticks tells, and of the rest nothing. A verdict that
+ * what came before decides passes, whichever it is, until the ghost has seen as much itself.
  */
 void ghost_adopt(ilk_ghost_t* ghost, const ilk_config_t* config, const ilk_state_t* state);
 void ghost_observe(ilk_ghost_t* ghost, const ilk_tick_t* tick);

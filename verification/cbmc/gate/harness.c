@@ -71,8 +71,8 @@ static void show_open(const ilk_axis_config_t* config, const ilk_system_t* syste
   SHOW(wish->drive <= (homed ? config->max_drive : config->unhomed_max_drive), "P7: within the axis' bound");
   SHOW((wish->drive <= largest_drive_of(config->card)) && (wish->amplitude <= 255u),
        "P7, P16: within what the card's words carry");
-  SHOW(IMPLIES(!homed, (used + config->coast_counts) < budget),
-       "P7: the budget of the press, coast kept back");
+  SHOW(IMPLIES(!homed, (used + config->coast_counts + config->noise_counts) < budget),
+       "P7: the budget of the press, coast and noise kept back");
   SHOW(axis->stall_driven_ticks < config->stall_ticks, "P5: not longer than may be without progress");
   SHOW(IMPLIES((config->stall_effort_ticks != 0u) && (config->max_drive != 0u),
                effort < ((uint64_t)config->stall_effort_ticks * config->max_drive)),

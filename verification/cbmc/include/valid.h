@@ -86,7 +86,7 @@ static bool valid_drives(const ilk_axis_config_t* axis, uint32_t us) {
          ((way_in(1u, us, full) + axis->noise_counts) <= axis->max_delta_counts) &&
          ((2 * (int64_t)axis->max_delta_counts) <= range_counts(axis)) &&
          (axis->coast_counts >= way_in(ILK_LATENCY_TICKS, us, full)) &&
-         (axis->unhomed_travel_counts > axis->coast_counts) &&
+         (axis->unhomed_travel_counts > ((int64_t)axis->coast_counts + axis->noise_counts)) &&
          at_most_a_tenth(axis->unhomed_travel_counts, range_counts(axis));
 }
 
@@ -130,7 +130,7 @@ static bool valid_homing(const ilk_axis_config_t* axis, const ilk_common_config_
          (opens > (margin + coast + axis->deadband_counts)) && (clear > (margin + coast)) &&
          (clear > ((int64_t)axis->stall_min_counts + axis->backlash_counts + axis->noise_counts)) &&
          at_most_a_tenth(clear, range) &&
-         (axis->home_travel_counts > (way_home(axis) + (uint64_t)axis->coast_counts)) &&
+         (axis->home_travel_counts > (way_home(axis) + (uint64_t)axis->coast_counts + axis->noise_counts)) &&
          ((int64_t)axis->home_travel_counts <= (4 * range)) && (axis->home_timeout_ticks > 0u) &&
          at_most_ms(axis->home_timeout_ticks, common->period_us, 600000u);
 }
