@@ -209,7 +209,13 @@ typedef struct {
   int64_t bound;
 } ilk_judgement_t;
 
+/** Before the first tick of a kernel. */
 void ghost_init(ilk_ghost_t* ghost);
+/**
+ * In the middle of a run: what the state between two ticks tells, and of the rest nothing. A verdict that
+ * what came before decides passes, whichever it is, until the ghost has seen as much itself.
+ */
+void ghost_adopt(ilk_ghost_t* ghost, const ilk_config_t* config, const ilk_state_t* state);
 void ghost_observe(ilk_ghost_t* ghost, const ilk_tick_t* tick);
 void ghost_requests(ilk_ghost_t* ghost, const ilk_tick_t* tick);
 void ghost_settle(ilk_ghost_t* ghost, const ilk_tick_t* tick);
