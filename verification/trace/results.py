@@ -1,7 +1,7 @@
 """Results of proofs and tests, converted from build/evidence and the JUnit reports in build/reports.
 
 Nothing here is written by hand: a status comes from what a tool left behind, or the result is UNKNOWN. Each
-rung of the ladder that judges several things (harnesses, properties) gives a result for
+rung of the ladder that judges several things (claims, harnesses, properties) gives a result for
 each of them; the rung's own status caps theirs.
 """
 
@@ -181,6 +181,32 @@ def cbmc(source: Source, rung: Rung) -> Iterator[Result]:
             )
 
 
+def tick(source: Source, rung: Rung) -> Iterator[Result]:
+    """A result for each property that a step claims over whole ticks, from the lines of those steps."""
+    line = re.compile(r"^(\S+)\s+\{.*'failed': (\d+).*'unknown': (\d+).*\}", re.MULTILINE)
+    said = {match[1]: (int(match[2]), int(match[3])) for match in line.finditer(rung.text)}
+    for path in (source.root / "verification/tick").glob("tick.toml"):
+        table = tomllib.loads(path.read_text("utf-8"))
+        for name, stated in table["properties"].items():
+            steps = [one for one, step in table["steps"].items() if name in step.get("claims", ())]
+            told = [said.get(step, (0, 1)) for step in steps]
+            if not steps:
+                continue
+            yield rung.result(
+                f"TICK:{name}",
+                stated["shown"],
+                "Proof",
+                "FAILED"
+                if any(one[0] for one in told)
+                else "UNKNOWN"
+                if any(one[1] for one in told)
+                else "PASSED",
+                bounds=f"{stated['bound']}; by {', '.join(steps)}",
+                supports=frozenset({name}),
+                place="verification/tick/harness.c",
+            )
+
+
 def model(source: Source, rung: Rung) -> Iterator[Result]:
     """A result for each property of each model, and whether a wrong variant of it was refuted."""
     said = {
@@ -216,6 +242,7 @@ def model(source: Source, rung: Rung) -> Iterator[Result]:
 
 
 CONVERTERS: Mapping[str, Callable[[Source, Rung], Iterator[Result]]] = {
+    "tick": tick,
     "cbmc": cbmc,
     "model": model,
 }

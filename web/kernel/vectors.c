@@ -9,8 +9,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "gate.h"
 #include "interlock/kernel.h"
+#include "parts.h"
 #include "world.h"
 
 static void put(const void* words, size_t bytes) {

@@ -187,7 +187,7 @@ TEST_F(ManualModeTest, ARefusalOfTheKernelEndsTheOrderWithItsVerdict) {
   EXPECT_EQ(status().phase, OrderPhase::refused);
   EXPECT_EQ(status().code, static_cast<std::uint32_t>(ILK_VERDICT_RANGE));
   EXPECT_EQ(status().tick, 1234u);
-  EXPECT_EQ(tick().at(0).drive, 0u) << "an earlier lease may still drive the axis";
+  EXPECT_EQ(tick().at(0).lease_ticks, 1u) << "an earlier lease may still drive the axis";
   EXPECT_THAT(tick(), testing::IsEmpty());
 }
 
@@ -214,7 +214,7 @@ TEST_F(ManualModeTest, CancellingGivesBackTheLease) {
   mode_.end(1, OrderReason::cancelled, snapshot_.state.system.tick);
   const auto wishes = tick();
   ASSERT_EQ(wishes.size(), 1u);
-  EXPECT_EQ(wishes[0].drive, 0u);
+  EXPECT_EQ(wishes[0].drive, 1u);
   EXPECT_EQ(wishes[0].lease_ticks, 1u);
   EXPECT_THAT(tick(), testing::IsEmpty());
 }
@@ -226,7 +226,8 @@ TEST_F(ManualModeTest, CancellingGivesBackALeaseThatNoSnapshotShowsYet) {
   mode_.end(1, OrderReason::cancelled, snapshot_.state.system.tick);
   const auto wishes = tick();
   ASSERT_EQ(wishes.size(), 1u);
-  EXPECT_EQ(wishes[0].drive, 0u);
+  EXPECT_EQ(wishes[0].drive, 1u);
+  EXPECT_EQ(wishes[0].lease_ticks, 1u);
   EXPECT_THAT(tick(), testing::IsEmpty());
 }
 
@@ -239,7 +240,8 @@ TEST_F(ManualModeTest, CancellingGivesBackTheLeaseWhoseRenewalWasNotSent) {
   mode_.end(1, OrderReason::cancelled, snapshot_.state.system.tick);
   const auto wishes = tick();
   ASSERT_EQ(wishes.size(), 1u);
-  EXPECT_EQ(wishes[0].drive, 0u);
+  EXPECT_EQ(wishes[0].drive, 1u);
+  EXPECT_EQ(wishes[0].lease_ticks, 1u);
 }
 
 TEST_F(ManualModeTest, CancellingGivesBackTheLeaseOfTheOrderThatItReplaced) {
@@ -251,7 +253,8 @@ TEST_F(ManualModeTest, CancellingGivesBackTheLeaseOfTheOrderThatItReplaced) {
   mode_.end(2, OrderReason::cancelled, snapshot_.state.system.tick);
   const auto wishes = tick();
   ASSERT_EQ(wishes.size(), 1u);
-  EXPECT_EQ(wishes[0].drive, 0u);
+  EXPECT_EQ(wishes[0].drive, 1u);
+  EXPECT_EQ(wishes[0].lease_ticks, 1u);
 }
 
 TEST_F(ManualModeTest, NothingIsGivenBackWhereNothingWasSent) {

@@ -213,6 +213,32 @@ TEST_F(Loop, DeadlineCountsAsMissedOnlyBeyondAPeriodAndForTheExecutiveAlone) {
   EXPECT_TRUE(ilk_loop_is_missed(&loop, 1'000'001));
 }
 
+TEST_F(Loop, MissedPeriodsAreToldToTheKernel) {
+  start({ILK_CLOCK_REAL, 1.0, false, 0xF});
+  loop.bus.simulated = false;
+  ilk_loop_tick(&loop);
+  const uint64_t begun_ns = ilk_now_ns();
+  while (ilk_now_ns() < begun_ns + 20 * loop.ticker.period_ns) {
+  }
+  ilk_loop_tick(&loop);
+  EXPECT_GE(loop.shown.inputs.deadlines_missed, 18u);
+  EXPECT_GE(loop.shown.state.system.overruns_in_row, loop.shown.inputs.deadlines_missed);
+}
+
+TEST_F(Loop, EachStartHasANonceOfItsOwn) {
+  const uint32_t first = loop.shown.inputs.boot_nonce;
+  ilk_loop_tick(&loop);
+  EXPECT_EQ(loop.shown.inputs.boot_nonce, first) << "the same for one start";
+  start({ILK_CLOCK_SIM, 0.0, false, 0});
+  const uint32_t second = loop.shown.inputs.boot_nonce;
+  EXPECT_NE(second, first);
+  ilk_loop_tick(&loop);
+  loop.shown.state.seal ^= 1u;
+  ilk_loop_tick(&loop);
+  ilk_loop_tick(&loop);
+  EXPECT_NE(loop.shown.inputs.boot_nonce, second) << "after damage it began anew";
+}
+
 TEST_F(Loop, DegradedRunLatchesNoMissedDeadline) {
   start({ILK_CLOCK_REAL, 1.0, true, 0});
   EXPECT_FALSE(ilk_loop_is_missed(&loop, UINT64_MAX));
