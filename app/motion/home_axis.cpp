@@ -63,7 +63,11 @@ void HomeAxis::start_slice(const ilk_snapshot_t& snapshot) noexcept {
   const std::int64_t allowed_end = std::clamp<std::int64_t>(end, range.lowest_counts, range.highest_counts);
   ilk_axis_t as_unhomed = axis;
   as_unhomed.homed = 0;
-  const SetpointRange press = setpoint_range(plan_.rules, as_unhomed, snapshot.state.system.mode);
+  SetpointRange press = setpoint_range(plan_.rules, as_unhomed, snapshot.state.system.mode);
+  // The kernel's measure of the travel may lie by the noise beside the reading here, and beside the one of
+  // each renewal.
+  press.lowest_counts += static_cast<std::int32_t>(2 * plan_.rules.noise_counts);
+  press.highest_counts -= static_cast<std::int32_t>(2 * plan_.rules.noise_counts);
   // Homing in the same press may have carried the axis farther than a slice: then it waits here for the next
   // one.
   const std::int64_t target =
@@ -125,7 +129,8 @@ HomeProgress HomeAxis::watch_nudge(const ilk_snapshot_t& snapshot) noexcept {
     rest_.restart(axis.position_counts, snapshot.state.system.tick);
   }
   if (stopping_) {
-    const bool rests = rest_.rests(axis.position_counts, plan_.rules.noise_counts, snapshot.state.system.tick);
+    const bool rests =
+        rest_.rests(axis.position_counts, plan_.rules.noise_counts, snapshot.state.system.tick);
     return rests ? HomeProgress::arrived : HomeProgress::going;
   }
   switch (move_.watch(snapshot)) {
