@@ -63,11 +63,7 @@ void HomeAxis::start_slice(const ilk_snapshot_t& snapshot) noexcept {
   const std::int64_t allowed_end = std::clamp<std::int64_t>(end, range.lowest_counts, range.highest_counts);
   ilk_axis_t as_unhomed = axis;
   as_unhomed.homed = 0;
-  SetpointRange press = setpoint_range(plan_.rules, as_unhomed, snapshot.state.system.mode);
-  // The kernel's measure of the travel may lie by the noise beside the reading here, and beside the one of
-  // each renewal.
-  press.lowest_counts += static_cast<std::int32_t>(2 * plan_.rules.noise_counts);
-  press.highest_counts -= static_cast<std::int32_t>(2 * plan_.rules.noise_counts);
+  const SetpointRange press = setpoint_range(plan_.rules, as_unhomed, snapshot.state.system.mode);
   // Homing in the same press may have carried the axis farther than a slice: then it waits here for the next
   // one.
   const std::int64_t target =
