@@ -54,7 +54,7 @@ static int64_t along(uint32_t direction, int32_t counts) {
 
 /** A tick passes. */
 static void still_age(ilk_still_t* still) {
-  still->same = plus(still->same, 1u);
+  still->steady = plus(still->steady, 1u);
   still->ticks = plus(still->ticks, (still->ticks > 0u) ? 1u : 0u);
   still->low_age = plus(still->low_age, 1u);
   still->high_age = plus(still->high_age, 1u);
@@ -64,7 +64,7 @@ static void still_age(ilk_still_t* still) {
 /** The run ends: nothing is known. */
 static void still_end(ilk_still_t* still) {
   still->ticks = 0u;
-  still->same = 0u;
+  still->steady = 0u;
   still->apart_age = UINT32_MAX;
 }
 
@@ -72,10 +72,6 @@ static void still_end(ilk_still_t* still) {
    `bound`; `apart_age` the age of the older of two readings that were. */
 static void still_add(ilk_still_t* still, const ilk_axis_config_t* config, uint32_t raw, uint32_t bound) {
   const int32_t at = judge_counts(config, raw, still->origin);
-  if (raw != still->newest) {
-    still->newest = raw;
-    still->same = 0u;
-  }
   if (still->ticks > 1u && (int64_t)at - still->low > (int64_t)bound) {
     still->apart_age = (still->low_age < still->apart_age) ? still->low_age : still->apart_age;
     still->ticks = 0u;
@@ -90,13 +86,16 @@ static void still_add(ilk_still_t* still, const ilk_axis_config_t* config, uint3
     still->low_age = 0u;
     still->high_age = 0u;
     still->ticks = 1u;
+    still->steady = 0u;
   } else if (at <= still->low) {
+    still->steady = (at < still->low) ? 0u : still->steady;
     still->low = at;
     still->low_age = 0u;
     if (at >= still->high) {
       still->high_age = 0u;
     }
   } else if (at >= still->high) {
+    still->steady = (at > still->high) ? 0u : still->steady;
     still->high = at;
     still->high_age = 0u;
   }
@@ -169,25 +168,20 @@ static void observe_frame(ilk_ghost_t* ghost, ilk_ghost_slot_t* g, const ilk_tic
   const uint32_t raw = frame[3];
 
   g->periods = plus(plus(g->periods, 1u), tick->in->deadlines_missed);
-  g->ticks = plus(g->ticks, 1u);
   g->valid = frame_is_valid(ghost, tick->in, slot);
   g->first = false;
   g->jump = false;
   g->reset = false;
-  g->maybe_reset = false;
   if (!g->valid) {
     g->bad_run = plus(g->bad_run, 1u);
     g->lost = g->bad_run >= tick->config->common.bad_frame_limit;
     return;
   }
   g->first = !g->seen || g->lost;
-  if (g->first) {
-    g->maybe_reset = (frame[12] & STATUS_RESET) != 0u;
-  } else {
+  if (!g->first) {
     const uint32_t ahead = frame[9] - g->heartbeat;
     const bool flag = (frame[12] & STATUS_RESET) != 0u && (g->status & STATUS_RESET) == 0u;
     g->reset = flag || ahead == 0u || ahead > plus(1u, g->periods);
-    g->maybe_reset = g->reset || ahead > plus(1u, g->ticks);
     g->jump = (uint64_t)size_of(wrapped(raw, g->raw)) > (uint64_t)config->max_delta_counts * g->periods;
   }
   g->bad_run = 0u;
@@ -195,7 +189,7 @@ static void observe_frame(ilk_ghost_t* ghost, ilk_ghost_slot_t* g, const ilk_tic
 }
 
 /** After everything that compares with the last reading. */
-static void keep_frame(ilk_ghost_slot_t* g, const uint32_t* frame) {
+static void keep_frame(ilk_ghost_slot_t* g, const ilk_axis_config_t* config, const uint32_t* frame) {
   const bool triggered = (frame[2] & SWITCH_OPEN_BIT) == 0u;
   if (!g->valid) {
     return;
@@ -206,14 +200,13 @@ static void keep_frame(ilk_ghost_slot_t* g, const uint32_t* frame) {
     g->run = 1u;
     g->run_raw = frame[3];
   }
-  g->driven_since_valid = false;
   g->triggered = triggered;
+  g->delta = g->first ? 0 : judge_counts(config, frame[3], g->raw);
   g->seen = true;
   g->heartbeat = frame[9];
   g->status = frame[12];
   g->raw = frame[3];
   g->periods = 0u;
-  g->ticks = 0u;
 }
 
 static void observe_rest(ilk_ghost_slot_t* g, const ilk_axis_config_t* config, uint32_t raw) {
@@ -224,10 +217,10 @@ static void observe_rest(ilk_ghost_slot_t* g, const ilk_axis_config_t* config, u
     still_end(&g->rest);
     g->quiet = g->valid ? 1u : 0u;
   }
-  if (g->jump || g->maybe_reset ||
+  if (g->jump || g->reset ||
       g->first) { /* earlier readings may mean another place: undecided for rest_ticks */
     g->rest.ticks = 0u;
-    g->rest.same = 0u;
+    g->rest.steady = 0u;
     g->calm.ticks = 0u;
   }
   if (g->valid) {
@@ -242,10 +235,11 @@ static bool moves(const ilk_ghost_slot_t* g, const ilk_axis_config_t* config) {
   return g->quiet < config->rest_ticks || g->rest.apart_age < config->rest_ticks;
 }
 
-/** At rest for sure: the very same reading. What lies between this and `moves` needs every reading of the
-   last rest_ticks to decide, and a kernel that counts runs of readings decides it later than the text. */
+/** At rest for sure. A kernel that counts runs of readings decides rest later than the text, but not once all
+   of the last rest_ticks readings lie where others of the run lay before: its run, which may have begun
+   earlier, would have ended at one of those. */
 static bool rests(const ilk_ghost_slot_t* g, const ilk_axis_config_t* config) {
-  return g->rest.same > config->rest_ticks && g->quiet > config->rest_ticks;
+  return g->rest.steady > config->rest_ticks && g->quiet > config->rest_ticks;
 }
 
 /** Whether rest may be counted from before this tick is undecided (DISABLE, LOCKED, SET_HOME, RESTORE): count
@@ -257,7 +251,7 @@ static void rest_anew(ilk_ghost_slot_t* g) {
   g->rest.low_age = 0u;
   g->rest.high_age = 0u;
   g->rest.ticks = (g->rest.ticks > 0u) ? 1u : 0u;
-  g->rest.same = 0u;
+  g->rest.steady = 0u;
 }
 
 /** The mark of a FAULTED axis is here. */
@@ -265,8 +259,6 @@ static void mark_fault(ilk_ghost_slot_t* g, uint32_t raw) {
   g->fault_mark = raw;
   g->mark_low = 0;
   g->mark_high = 0;
-  g->fault_low = 0;
-  g->fault_high = 0;
 }
 
 /** Reverse, drift and the mark of a FAULTED axis. */
@@ -275,57 +267,58 @@ static void observe_motion(ilk_ghost_slot_t* g, const ilk_axis_config_t* config,
   const uint32_t state = tick->before->axis[slot].state;
   g->drifted = false;
   g->reversed = false;
+  g->maybe_reversed = false;
   g->runaway = false;
   g->maybe_runaway = false;
   g->distance = 0;
   if (!g->valid) {
+    g->ran = g->ran && !g->lost;
+    g->maybe_ran = g->maybe_ran && !g->lost;
     return;
   }
-  if (g->driven && !g->first && !g->jump && !g->maybe_reset) {
+  if (!g->first && !g->jump && !g->reset) {
     const int64_t forward = along(g->reverse_direction, judge_counts(config, raw, g->reverse_mark));
     if (forward > 0) {
       g->reverse_mark = raw;
     } else if (-forward > (int64_t)config->reverse_counts) {
-      g->reversed = true;
+      g->reversed = g->driven;
+      g->maybe_reversed = true;
       g->distance = saturate(-forward);
     }
   }
   if (state == ILK_AXIS_FAULTED) {
-    const bool anew = g->first || g->jump || g->maybe_reset;
-    if (anew || rests(g, config)) {
+    const bool anew = g->first || g->jump || g->reset;
+    const int32_t delta = judge_counts(config, raw, g->raw);
+    const bool went_on = anew && !g->first && ((delta > 0 && g->delta > 0) || (delta < 0 && g->delta < 0));
+    if (anew) {
       mark_fault(g, raw);
     }
+    if (g->ran && !g->resting && !moves(g, config)) {
+      mark_fault(g, raw);
+      g->resting = true;
+    }
     const int32_t at = judge_counts(config, raw, g->fault_mark);
-    if (!g->fault_known || !moves(g, config)) { /* taken again at the first valid frame after a jump, too */
+    if (g->maybe_ran && !moves(g, config)) { /* at rest, perhaps: its mark is perhaps here */
       g->mark_low = (at < g->mark_low) ? at : g->mark_low;
       g->mark_high = (at > g->mark_high) ? at : g->mark_high;
     }
-    g->fault_known = !anew;
-    g->fault_low = (at < g->fault_low) ? at : g->fault_low;
-    g->fault_high = (at > g->fault_high) ? at : g->fault_high;
     g->distance = saturate((at > g->mark_high)  ? (int64_t)at - g->mark_high
                            : (at < g->mark_low) ? (int64_t)at - g->mark_low
                                                 : 0);
-    g->runaway = size_of(g->distance) > config->drift_counts;
-    /* a mark that was taken anew anywhere between */
-    g->maybe_runaway = g->runaway || (int64_t)at - g->fault_low > (int64_t)config->drift_counts ||
-                       (int64_t)g->fault_high - at > (int64_t)config->drift_counts;
-    if (rests(g, config)) {
-      g->maybe_runaway = false;
-    }
-    if (!g->first && (g->jump || g->maybe_reset)) {
-      g->runaway = g->runaway || (g->moved_before && (g->jump || g->reset));
-      g->maybe_runaway = g->maybe_runaway || g->runaway || !g->rested_before;
-    }
+    g->runaway = size_of(g->distance) > config->drift_counts || went_on;
+    g->maybe_runaway = g->runaway || (int64_t)at - g->mark_low > (int64_t)config->drift_counts ||
+                       (int64_t)g->mark_high - at > (int64_t)config->drift_counts;
+    g->ran = (g->ran && !rests(g, config)) || g->runaway;
+    g->maybe_ran = (g->maybe_ran && !rests(g, config)) || g->maybe_runaway;
+    g->resting = g->resting && g->ran && !g->runaway;
     g->drift_known = false;
   } else if (state == ILK_AXIS_DISABLED && tick->before->mode != ILK_MODE_MOTION) {
     g->drift_mark = raw;
     g->drift_known = true;
-  } else if (!g->drift_known || g->first || g->jump || g->maybe_reset) {
+  } else if (!g->drift_known || g->first || g->jump || g->reset) {
     g->drift_mark = raw;
     g->drift_known = true;
-  } else if (!g->driven_since_valid &&
-             size_of(judge_counts(config, raw, g->drift_mark)) > config->drift_counts) {
+  } else if (!g->driven && size_of(judge_counts(config, raw, g->drift_mark)) > config->drift_counts) {
     g->drifted = true;
     g->distance = judge_counts(config, raw, g->drift_mark);
   }
@@ -333,7 +326,7 @@ static void observe_motion(ilk_ghost_slot_t* g, const ilk_axis_config_t* config,
 
 static void observe_progress(ilk_ghost_slot_t* g, const ilk_axis_config_t* config, uint32_t raw) {
   if (g->valid && g->stall_direction != ILK_DIRECTION_NONE) {
-    if (g->jump || g->maybe_reset || g->first) {
+    if (g->jump || g->reset || g->first) {
       g->stall_mark = raw;
       g->effort_mark = raw;
     } else if (along(g->stall_direction, judge_counts(config, raw, g->stall_mark)) >=
@@ -361,7 +354,7 @@ static void observe_path(ilk_ghost_slot_t* g, const ilk_axis_config_t* config, c
   if (!g->valid) {
     return;
   }
-  if (!counted || !g->path_known || g->first || g->jump || g->maybe_reset) {
+  if (!counted || !g->path_known || g->first || g->jump || g->reset) {
     g->path = raw;
     g->path_known = true;
     return;
@@ -377,14 +370,33 @@ static void observe_path(ilk_ghost_slot_t* g, const ilk_axis_config_t* config, c
   }
 }
 
-/** P17: how far the inputs since HOME have come. */
+/** An edge: with each e1 that it follows as the text lists it, it may be e2; and it may be e1. */
+static void add_edge(ilk_edges_t* edges, const ilk_axis_config_t* config, uint32_t raw) {
+  bool is_second = false;
+  for (uint32_t i = 0u; i < edges->firsts; i++) {
+    is_second = is_second || (edges->slow[i] && size_of(judge_counts(config, raw, edges->first[i])) <=
+                                                    config->home_tolerance_counts);
+  }
+  for (uint32_t i = ILK_JUDGE_EDGES - 1u; i > 0u; i--) {
+    edges->first[i] = edges->first[i - 1u];
+    edges->slow[i] = edges->slow[i - 1u];
+    edges->second[i] = is_second ? edges->second[i - 1u] : edges->second[i];
+  }
+  edges->first[0] = raw;
+  edges->slow[0] = false;
+  edges->firsts = (edges->firsts < ILK_JUDGE_EDGES) ? edges->firsts + 1u : ILK_JUDGE_EDGES;
+  if (is_second) {
+    edges->second[0] = raw;
+    edges->seconds = (edges->seconds < ILK_JUDGE_EDGES) ? edges->seconds + 1u : ILK_JUDGE_EDGES;
+  }
+}
+
+/** P17: what the inputs since HOME show. */
 static void observe_homing(ilk_ghost_slot_t* g, const ilk_axis_config_t* config, uint32_t debounce,
                            const uint32_t* frame) {
   const bool triggered = (frame[2] & SWITCH_OPEN_BIT) == 0u;
   const uint32_t raw = frame[3];
-  bool steady;
-  int64_t away;
-  if (!g->valid || g->stage == STAGE_NONE) {
+  if (!g->valid || !g->seeks) {
     return;
   }
   if (g->home_run > 0u && triggered == g->triggered) {
@@ -393,55 +405,18 @@ static void observe_homing(ilk_ghost_slot_t* g, const ilk_axis_config_t* config,
     g->home_run = 1u;
     g->home_run_raw = raw;
   }
-  steady = g->home_run >= debounce;
-  away = -along(towards_switch(config), judge_counts(config, raw, g->e1));
-  switch (g->stage) {
-    case STAGE_BEGUN:
-      if (steady && !triggered) {
-        g->stage = STAGE_OPEN;
-      }
-      break;
-    case STAGE_OPEN:
-      if (steady && triggered) {
-        g->stage = STAGE_EDGE;
-        g->e1 = g->home_run_raw;
-        g->e1_later = g->e1;
-        g->home_open = false;
-      }
-      break;
-    case STAGE_EDGE:
-      if (steady && !triggered) {
-        g->home_open = true;
-        if (away >= (int64_t)config->home_clear_counts) {
-          g->stage = STAGE_CLEAR;
-          g->slow = true;
-        }
-      } else if (steady && g->home_open) {
-        g->e1_later = g->home_run_raw; /* the contact closed again before the axis was clear: a later e1 */
-        g->home_open = false;
-      }
-      break;
-    case STAGE_CLEAR:
-      if (steady && !triggered && away >= (int64_t)config->home_clear_counts) {
-        g->slow = true;
-      } else if (steady && triggered) {
-        g->stage = STAGE_SLOW_EDGE;
-        g->e2 = g->home_run_raw;
-        g->e2_before = g->e2;
-        g->home_open = false;
-      }
-      break;
-    case STAGE_SLOW_EDGE:
-      if (steady && !triggered) {
-        g->home_open = true;
-      } else if (steady && g->home_open) {
-        g->e2_before = g->e2;
-        g->e2 = g->home_run_raw;
-        g->home_open = false;
-      }
-      break;
-    default:
-      break;
+  if (g->home_run < debounce) {
+    return;
+  }
+  if (triggered && g->home_open) {
+    g->home_open = false;
+    add_edge(&g->edges, config, g->home_run_raw);
+  } else if (!triggered) {
+    g->home_open = true;
+    for (uint32_t i = 0u; i < g->edges.firsts; i++) {
+      const int64_t away = -along(towards_switch(config), judge_counts(config, raw, g->edges.first[i]));
+      g->edges.slow[i] = g->edges.slow[i] || away >= (int64_t)config->home_clear_counts;
+    }
   }
 }
 
@@ -453,11 +428,11 @@ static void observe_plausibility(ilk_ghost_slot_t* g, const ilk_axis_config_t* c
   if (!g->valid) {
     return;
   }
-  if (tick->before->axis[slot].homed != ILK_HOMED_BY_SWITCH || g->jump || g->maybe_reset || g->first) {
+  if (tick->before->axis[slot].homed != ILK_HOMED_BY_SWITCH || g->jump || g->reset || g->first) {
     g->implausible = 0u;
     return;
   }
-  open_side = -along(towards_switch(config), judge_counts(config, frame[3], g->e2));
+  open_side = -along(towards_switch(config), judge_counts(config, frame[3], g->reference));
   if ((triggered && open_side > slack + config->switch_hysteresis_counts) ||
       (!triggered && -open_side > slack)) {
     g->implausible = plus(g->implausible, 1u);
@@ -488,10 +463,8 @@ static void observe_system(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   if (in->link_generation != ghost->link_generation) {
     ghost->link_generation = in->link_generation;
     ghost->last_sequence = 0u;
-    if (ghost->tick > 0u) { /* another app: silent until its first HEARTBEAT */
-      ghost->app_age = UINT32_MAX;
-      ghost->app_alive = false;
-    }
+    ghost->app_age = UINT32_MAX; /* another app: silent until its first HEARTBEAT */
+    ghost->app_alive = false;
   }
   if (!ghost->app_alive || tick->before->mode != ILK_MODE_READY) {
     ghost->armed = false;
@@ -522,8 +495,6 @@ void ghost_observe(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
     if (config->card == ILK_CARD_NONE) {
       continue;
     }
-    g->moved_before = moves(g, config);
-    g->rested_before = rests(g, config);
     observe_frame(ghost, g, tick, slot);
     ghost->bus_ok_now = ghost->bus_ok_now || g->valid;
     ghost->required_lost = ghost->required_lost || (config->required == 1u && g->lost);
@@ -534,7 +505,7 @@ void ghost_observe(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
       observe_path(g, config, tick, slot, frame[3]);
       observe_plausibility(g, config, tick, slot, frame);
       observe_homing(g, config, tick->config->common.switch_debounce_ticks, frame);
-      if (g->valid && g->position_known && !g->first && !g->jump && !g->maybe_reset) {
+      if (g->valid && g->position_known && !g->first && !g->jump && !g->reset) {
         g->position = saturate((int64_t)g->position + judge_counts(config, frame[3], g->raw));
       } else if (g->valid) {
         g->position_known = false;
@@ -555,7 +526,7 @@ void ghost_observe(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
                                  (g->calm.ticks <= config->rest_ticks || g->quiet <= config->rest_ticks));
       ghost->runaway_unsure = ghost->runaway_unsure || g->maybe_runaway;
     }
-    keep_frame(g, frame);
+    keep_frame(g, config, frame);
   }
   ghost->bus_bad_ticks = ghost->bus_ok_now ? 0u : plus(ghost->bus_bad_ticks, 1u);
   ghost->bus_lost = ghost->bus_bad_ticks >= tick->config->common.bad_frame_limit;
@@ -568,7 +539,7 @@ static void drop_orders(ilk_ghost_t* ghost) {
     ilk_ghost_slot_t* g = &ghost->slot[slot];
     g->lease = 0u;
     g->order_consent = 0u;
-    g->stage = g->just_homed ? g->stage : (uint32_t)STAGE_NONE;
+    g->seeks = g->seeks && g->just_homed;
     if (g->state == ILK_AXIS_MOVING || g->state == ILK_AXIS_HOMING) {
       g->state = ILK_AXIS_ENABLED;
     }
@@ -616,14 +587,14 @@ static void decide_mode(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
       g->state = ILK_AXIS_FAULTED;
       g->lease = 0u;
       g->order_consent = 0u;
-      g->stage = STAGE_NONE;
-      g->fault_known = g->valid && !g->jump && !g->maybe_reset;
+      g->seeks = false;
+      g->ran = false;
+      g->maybe_ran = false;
       mark_fault(g, g->raw);
     } else if (g->just_homed) {
       g->state = ILK_AXIS_ENABLED;
     }
-    if (after->homed == ILK_HOMED_NOT &&
-        (g->state == ILK_AXIS_FAULTED || g->jump || g->maybe_reset || g->lost)) {
+    if (after->homed == ILK_HOMED_NOT && (g->state == ILK_AXIS_FAULTED || g->jump || g->reset || g->lost)) {
       g->homed = ILK_HOMED_NOT; /* dropped in phase 4 */
     }
   }
@@ -746,7 +717,7 @@ static ilk_demand_t demand_of_motion(const ilk_ghost_t* ghost, const ilk_tick_t*
     return demand(ILK_VERDICT_DISABLED);
   }
   if (g->state == ILK_AXIS_HOMING) { /* unless it homed in this very tick, which a second HOME hides */
-    return (g->stage == STAGE_SLOW_EDGE && r->kind == ILK_REQUEST_HOME)
+    return (g->edges.seconds > 0u && r->kind == ILK_REQUEST_HOME)
                ? either(ILK_VERDICT_BUSY, ILK_VERDICT_ACCEPTED)
                : demand(ILK_VERDICT_BUSY);
   }
@@ -814,15 +785,12 @@ static ilk_demand_t demand_of_place(const ilk_ghost_t* ghost, const ilk_tick_t* 
 }
 
 /** A FAULTED axis that is known to lie at rest where its mark is is no cause. */
-static bool runaway_present(const ilk_ghost_t* ghost, const ilk_tick_t* tick, bool* unsure) {
+static bool runaway_present(const ilk_ghost_t* ghost, bool* unsure) {
   bool present = false;
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
     const ilk_ghost_slot_t* g = &ghost->slot[slot];
     present = present || g->runaway;
-    if (has_motor(&tick->config->axis[slot]) && g->state == ILK_AXIS_FAULTED &&
-        !rests(g, &tick->config->axis[slot]) && !g->lost) {
-      *unsure = true;
-    }
+    *unsure = *unsure || (g->state == ILK_AXIS_FAULTED && g->maybe_ran);
   }
   return present;
 }
@@ -842,7 +810,7 @@ static ilk_demand_t demand_of_row(const ilk_ghost_t* ghost, const ilk_tick_t* ti
       if (ghost->pedal != ILK_PEDAL_RELEASED) {
         return demand(ILK_VERDICT_PEDAL_DOWN);
       }
-      if (ghost->estop || ghost->bus_lost || !ghost->app_alive || runaway_present(ghost, tick, &unsure) ||
+      if (ghost->estop || ghost->bus_lost || !ghost->app_alive || runaway_present(ghost, &unsure) ||
           ghost->missed_ticks >= tick->config->common.overrun_limit) {
         return demand(ILK_VERDICT_CAUSE_PRESENT);
       }
@@ -939,7 +907,7 @@ static void accept(ilk_ghost_t* ghost, const ilk_tick_t* tick, const ilk_request
       rest_anew(g);
       g->lease = 0u;
       g->order_consent = 0u;
-      g->stage = g->just_homed ? g->stage : (uint32_t)STAGE_NONE;
+      g->seeks = g->seeks && g->just_homed;
       if (ghost->mode != ILK_MODE_MOTION) {
         g->drift_mark = g->raw;
       }
@@ -981,9 +949,11 @@ static void accept(ilk_ghost_t* ghost, const ilk_tick_t* tick, const ilk_request
       g->state = ILK_AXIS_HOMING;
       g->homed = ILK_HOMED_NOT;
       g->path_homing = true;
-      g->stage = STAGE_BEGUN;
-      g->home_run = g->valid ? 1u : 0u;
-      g->home_run_raw = g->raw;
+      g->seeks = true;
+      g->home_open = false;
+      g->edges.firsts = 0u;
+      g->edges.seconds = 0u;
+      g->home_run = 0u;
       break;
     case ILK_REQUEST_SET_HOME:
       g->set_home = true;
@@ -1041,13 +1011,24 @@ void ghost_requests(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
 
 /* ------------------------------------------------------------------ what the drive of this tick means */
 
+/** The edge that the published position implies; false when none does. */
+static bool reference_of(const ilk_ghost_slot_t* g, const ilk_axis_config_t* config, int32_t position,
+                         uint32_t* reference) {
+  bool found = false;
+  for (uint32_t i = 0u; i < g->edges.seconds && !found; i++) {
+    const int64_t beyond = judge_counts(config, g->raw, g->edges.second[i]);
+    found = saturate(beyond + config->home_offset_counts) == position;
+    *reference = g->edges.second[i];
+  }
+  return found;
+}
+
 static void settle_slot(ilk_ghost_t* ghost, ilk_ghost_slot_t* g, const ilk_axis_config_t* config,
                         const ilk_tick_t* tick, uint32_t slot) {
   const ilk_command_t* command = &tick->out->command[slot];
   const ilk_axis_view_t* after = &tick->after->axis[slot];
   g->driven = is_driven(tick, slot);
   if (g->driven) {
-    g->driven_since_valid = true;
     g->direction = command->direction;
     still_end(&g->rest);
     g->quiet = 0u;
@@ -1064,7 +1045,9 @@ static void settle_slot(ilk_ghost_t* ghost, ilk_ghost_slot_t* g, const ilk_axis_
     }
     g->stall_ticks = plus(g->stall_ticks, 1u);
     g->effort = plus64(g->effort, command->drive);
-    g->slow = g->slow && command->drive <= config->home_slow_drive;
+    for (uint32_t i = 0u; i < g->edges.firsts; i++) {
+      g->edges.slow[i] = g->edges.slow[i] && command->drive <= config->home_slow_drive;
+    }
     if (after->state != ILK_AXIS_HOMING) {
       g->path_homing = false;
     }
@@ -1083,12 +1066,9 @@ static void settle_slot(ilk_ghost_t* ghost, ilk_ghost_slot_t* g, const ilk_axis_
     g->homing_ticks = plus(g->homing_ticks, 1u);
   }
   if (g->just_homed) {
-    g->stage = STAGE_NONE;
+    (void)reference_of(g, config, after->position, &g->reference); /* P17 has judged it */
+    g->seeks = false;
     g->position_known = false;
-    /* the reference that the published position implies, which P17 has judged */
-    g->e2 = (judge_counts(config, g->raw, g->e2) + (int64_t)config->home_offset_counts == after->position)
-                ? g->e2
-                : g->e2_before;
   }
   if (!g->position_known && g->seen) {
     g->position = after->position;
@@ -1147,6 +1127,14 @@ ilk_judgement_t judge_P1(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
     if (state != ILK_AXIS_HOMING && tick->out->command[slot].drive > g->order_drive) {
       return broken("P1: more drive than the MOVE asked for", slot, tick->out->command[slot].drive,
                     g->order_drive);
+    }
+    if (state == ILK_AXIS_MOVING) {
+      const int64_t way = (int64_t)g->setpoint - tick->after->axis[slot].position;
+      const bool up = tick->out->command[slot].direction == ILK_DIRECTION_INCREASING;
+      if ((up ? way : -way) <= (int64_t)tick->config->axis[slot].deadband_counts) {
+        return broken("P1: drive within the deadband or away from the setpoint", slot, way,
+                      tick->config->axis[slot].deadband_counts);
+      }
     }
   }
   return HOLDS;
@@ -1249,9 +1237,8 @@ ilk_judgement_t judge_P5(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   return HOLDS;
 }
 
-/** P6. Less than the sentence: reverse motion is judged in the tick after a driven one only, drift when
-   undriven since the last valid frame; the first frame after start or after a lost card, and one that may be
-   a reset card's, is not judged. */
+/** P6. Less than the sentence: reverse motion is demanded in the tick after a driven one only; the first
+   frame after start or after a lost card is compared with nothing. */
 ilk_judgement_t judge_P6(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
     const ilk_ghost_slot_t* g = &ghost->slot[slot];
@@ -1263,16 +1250,18 @@ ilk_judgement_t judge_P6(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
     }
     if (before->state != ILK_AXIS_FAULTED && judged && (g->jump || g->reversed || g->drifted)) {
       const uint32_t first = g->jump ? ILK_FAULT_JUMP : (g->reversed ? ILK_FAULT_REVERSE : ILK_FAULT_DRIFT);
+      const bool other = g->reset || (!g->jump && g->maybe_reversed && after->fault == ILK_FAULT_REVERSE);
       if (after->state != ILK_AXIS_FAULTED) {
         return broken("P6: moved beyond its limit and is not faulted", slot, g->distance, first);
       }
-      if (after->fault != first && !(g->maybe_reset && after->fault == ILK_FAULT_CARD_RESET)) {
+      if (after->fault != first && !other) {
         return broken("P6: the code is not the first of those that apply", slot, after->fault, first);
       }
     }
     if (before->state != ILK_AXIS_FAULTED && after->state == ILK_AXIS_FAULTED &&
-        ((after->fault == ILK_FAULT_DRIFT && !g->drifted) || (after->fault == ILK_FAULT_JUMP && !g->jump))) {
-      return broken("P6: DRIFT or JUMP without such motion", slot, after->fault, g->distance);
+        ((after->fault == ILK_FAULT_DRIFT && !g->drifted) || (after->fault == ILK_FAULT_JUMP && !g->jump) ||
+         (after->fault == ILK_FAULT_REVERSE && !g->maybe_reversed))) {
+      return broken("P6: REVERSE, DRIFT or JUMP without such motion", slot, after->fault, g->distance);
     }
     if (g->runaway && (tick->after->mode != ILK_MODE_LOCKED || tick->out->power != 0u)) {
       return broken("P6: a faulted axis goes on moving and power is not taken away", slot, g->distance,
@@ -1490,16 +1479,9 @@ ilk_judgement_t judge_P17(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
       return broken("P17: homed although its card is lost", slot, after->homed, 0);
     }
     if (after->homed == ILK_HOMED_BY_SWITCH && before->homed != ILK_HOMED_BY_SWITCH) {
-      const int64_t first = judge_counts(config, g->e2, g->e1);
-      const int64_t later = judge_counts(config, g->e2, g->e1_later);
-      const int64_t apart = ((first < 0 ? -first : first) < (later < 0 ? -later : later)) ? first : later;
-      const int64_t newest = (int64_t)judge_counts(config, g->raw, g->e2) + config->home_offset_counts;
-      const int64_t older = (int64_t)judge_counts(config, g->raw, g->e2_before) + config->home_offset_counts;
-      if (!g->just_homed || g->stage != STAGE_SLOW_EDGE) {
-        return broken("P17: homed without the sequence of edges", slot, g->stage, STAGE_SLOW_EDGE);
-      }
-      if (!g->slow) {
-        return broken("P17: the second approach was not slow", slot, 0, config->home_slow_drive);
+      uint32_t reference = g->raw;
+      if (!g->just_homed || !g->seeks || g->edges.seconds == 0u) {
+        return broken("P17: homed without the sequence of edges", slot, g->edges.firsts, g->edges.seconds);
       }
       if (!g->valid || !g->triggered || g->home_run < tick->config->common.switch_debounce_ticks) {
         return broken("P17: homed and the switch is not triggered for the debounce time", slot, g->home_run,
@@ -1508,12 +1490,14 @@ ilk_judgement_t judge_P17(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
       if (moves(g, config)) {
         return broken("P17: homed and not at rest", slot, g->rest.ticks, config->rest_ticks);
       }
-      if ((apart < 0 ? -apart : apart) > (int64_t)config->home_tolerance_counts) {
-        return broken("P17: the edges differ by more than the tolerance", slot, apart,
-                      config->home_tolerance_counts);
+      if (!reference_of(g, config, after->position, &reference)) {
+        return broken("P17: position is not raw - e2 + home offset", slot, after->position,
+                      (int64_t)judge_counts(config, g->raw, reference) + config->home_offset_counts);
       }
-      if (after->position != newest && after->position != older) {
-        return broken("P17: position is not raw - e2 + home offset", slot, after->position, newest);
+      if (size_of(judge_counts(config, g->raw, reference)) >
+          plus(config->coast_counts, config->home_tolerance_counts)) {
+        return broken("P17: homed farther from the edge than coast and tolerance", slot,
+                      judge_counts(config, g->raw, reference), config->coast_counts);
       }
     } else if (g->position_known && g->seen && after->position != g->position) {
       return broken("P17: the position does not follow the counter", slot, after->position, g->position);
@@ -1663,10 +1647,9 @@ ilk_judgement_t judge_states(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
     if (new_fault && after->fault != ILK_FAULT_DRIFT && after->homed != ILK_HOMED_NOT) {
       return broken("states: the fault does not drop homed", slot, after->fault, after->homed);
     }
-    if (before->homed != ILK_HOMED_NOT && after->homed == ILK_HOMED_NOT && !g->jump && !g->maybe_reset &&
+    if (before->homed != ILK_HOMED_NOT && after->homed == ILK_HOMED_NOT && !g->jump && !g->reset &&
         !g->lost && !(after->state == ILK_AXIS_FAULTED && after->fault != ILK_FAULT_DRIFT && new_fault) &&
-        g->stage != STAGE_BEGUN && !g->stalled && g->implausible == 0u && !ghost->consent_error &&
-        !g->restored) {
+        !g->stalled && g->implausible == 0u && !ghost->consent_error && !g->restored) {
       bool home = false; /* a HOME in this tick that STOP or DISABLE ended again */
       for (uint32_t i = 0u; i < tick->out->verdict_count && i < tick->count && i < ILK_REQUESTS_PER_TICK;
            i++) {
@@ -1685,7 +1668,7 @@ ilk_judgement_t judge_states(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
       return broken("states: a reset card and no fault CARD_RESET", slot, after->state, after->fault);
     }
     if (new_fault && ((after->fault == ILK_FAULT_CARD && !g->lost) ||
-                      (after->fault == ILK_FAULT_CARD_RESET && !g->maybe_reset))) {
+                      (after->fault == ILK_FAULT_CARD_RESET && !g->reset))) {
       return broken("states: CARD or CARD_RESET without its reason", slot, after->fault, g->bad_run);
     }
     if (new_fault && before->state != ILK_AXIS_HOMING &&
@@ -1717,18 +1700,24 @@ ilk_judgement_t judge_config(const ilk_config_t* config) {
   if (c->lease_max_ticks < 1u || c->lease_max_ticks * ms > 150000u) {
     return broken("config: lease_max_ticks", ILK_SLOTS, c->lease_max_ticks, 0);
   }
-  if (c->pedal_debounce_ticks * ms > 50000u || c->pedal_disagree_ticks * ms > 50000u) {
+  if (ms < 125u || ms > 2000u || c->pedal_channels < 1u || c->pedal_channels > 2u) {
+    return broken("config: period or pedal channels", ILK_SLOTS, (int64_t)ms, c->pedal_channels);
+  }
+  if (c->pedal_debounce_ticks < 1u || c->pedal_debounce_ticks * ms > 50000u || c->pedal_disagree_ticks < 1u ||
+      c->pedal_disagree_ticks * ms > 50000u) {
     return broken("config: pedal times", ILK_SLOTS, c->pedal_debounce_ticks, c->pedal_disagree_ticks);
   }
   if (c->bad_frame_limit < 1u || c->bad_frame_limit > 5u || c->overrun_limit < 1u || c->overrun_limit > 10u) {
     return broken("config: bad frames or overruns", ILK_SLOTS, c->bad_frame_limit, c->overrun_limit);
   }
-  if (c->switch_debounce_ticks * ms > 20000u) {
+  if (c->switch_debounce_ticks < 2u || c->switch_debounce_ticks * ms > 20000u) { /* one reading is no edge */
     return broken("config: switch debounce", ILK_SLOTS, c->switch_debounce_ticks, 0);
   }
   for (uint32_t i = 0u; i < ILK_SLOTS; i++) {
     const ilk_axis_config_t* a = &config->axis[i];
     const uint64_t noise = a->noise_counts;
+    const uint64_t coast = a->coast_counts;
+    const uint64_t range = (uint64_t)((int64_t)a->max_counts - a->min_counts);
     /* millionths of a count a tick */
     const uint64_t full = (uint64_t)a->full_speed_counts_per_s * ms;
     const uint64_t home = (uint64_t)a->home_speed_counts_per_s * ms;
@@ -1738,7 +1727,19 @@ ilk_judgement_t judge_config(const ilk_config_t* config) {
       continue;
     }
     motor = true;
-    if (a->stall_ticks * ms > 500000u || a->stall_effort_ticks * ms > 200000u) {
+    if (a->min_counts >= a->max_counts || 2u * coast >= range || a->home_offset_counts < a->min_counts ||
+        a->home_offset_counts > a->max_counts) {
+      return broken("config: soft limits, coast or home offset", i, a->min_counts, a->max_counts);
+    }
+    if (a->unhomed_max_drive <= a->dead_zone_drive || a->unhomed_max_drive > a->max_drive ||
+        a->max_amplitude > ((a->card == ILK_CARD_HIGH_FREQUENCY) ? 255u : 0u)) {
+      return broken("config: drives or amplitude", i, a->unhomed_max_drive, a->dead_zone_drive);
+    }
+    if (a->unhomed_travel_counts <= coast + noise) {
+      return broken("config: unhomed travel that allows none", i, a->unhomed_travel_counts, (int64_t)coast);
+    }
+    if (a->stall_ticks <= ILK_LATENCY_TICKS || a->stall_ticks * ms > 500000u ||
+        a->stall_effort_ticks * ms > 200000u) {
       return broken("config: stall times", i, a->stall_ticks, a->stall_effort_ticks);
     }
     if (full > (uint64_t)a->max_delta_counts * one) {
@@ -1763,7 +1764,13 @@ ilk_judgement_t judge_config(const ilk_config_t* config) {
     }
     if (a->limit_side != ILK_LIMIT_NONE) {
       const uint64_t clear = a->home_clear_counts;
-      const uint64_t range = (uint64_t)((int64_t)a->max_counts - a->min_counts);
+      const bool lower = a->limit_side == ILK_LIMIT_LOWER;
+      const uint64_t inside = (uint64_t)(lower ? (int64_t)a->max_counts - a->home_offset_counts
+                                               : (int64_t)a->home_offset_counts - a->min_counts);
+      /* from the far stop to the second edge; from the near one, off the switch first */
+      const uint64_t far_way = inside + 2u * clear;
+      const uint64_t near_way = range - inside + a->switch_hysteresis_counts + 4u * clear;
+      const uint64_t way = far_way > near_way ? far_way : near_way;
       if (clear <= (uint64_t)a->home_tolerance_counts + a->switch_hysteresis_counts + a->coast_counts ||
           clear <= (uint64_t)a->stall_min_counts + a->backlash_counts + noise) {
         return broken("config: home_clear_counts", i, (int64_t)clear, 0);
@@ -1775,11 +1782,23 @@ ilk_judgement_t judge_config(const ilk_config_t* config) {
       if (a->stall_ticks * slow < one * ((uint64_t)a->stall_min_counts + a->backlash_counts + noise)) {
         return broken("config: stall_ticks at the slow speed", i, a->stall_ticks, (int64_t)slow);
       }
-      if (a->home_slow_drive <= a->dead_zone_drive || a->home_drive > a->unhomed_max_drive) {
+      if (inside <=
+          (uint64_t)a->home_tolerance_counts + a->switch_hysteresis_counts + coast + a->deadband_counts) {
+        return broken("config: no room on the open side of the switch", i, (int64_t)inside,
+                      a->home_offset_counts);
+      }
+      if (a->home_slow_drive <= a->dead_zone_drive || a->home_drive > a->unhomed_max_drive ||
+          a->home_slow_drive > a->home_drive || slow == 0u || slow > home || home > full ||
+          a->home_amplitude > a->max_amplitude) {
         return broken("config: homing drives", i, a->home_slow_drive, a->home_drive);
       }
-      if (a->home_travel_counts < range) {
-        return broken("config: home_travel_counts below the range", i, a->home_travel_counts, (int64_t)range);
+      if (a->home_travel_counts <= way + coast + noise) {
+        return broken("config: home_travel_counts below the way of homing", i, a->home_travel_counts,
+                      (int64_t)way);
+      }
+      if (a->home_timeout_ticks * home < one * (way - clear)) {
+        return broken("config: home_timeout_ticks below the time of homing", i, a->home_timeout_ticks,
+                      (int64_t)way);
       }
     }
   }

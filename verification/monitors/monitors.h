@@ -61,19 +61,19 @@ typedef struct {
   uint32_t low_age;
   uint32_t high_age;
   uint32_t apart_age; /**< ticks since the older of two readings that were too far apart */
-  uint32_t newest;
-  uint32_t same; /**< ticks since the reading last changed */
+  uint32_t steady;    /**< ticks since the run began or became wider */
 } ilk_still_t;
 
-/** Stages of a homing as P17 lists them. */
-typedef enum {
-  STAGE_NONE,      /**< no HOME accepted */
-  STAGE_BEGUN,     /**< HOME accepted */
-  STAGE_OPEN,      /**< open for the debounce time */
-  STAGE_EDGE,      /**< e1 taken */
-  STAGE_CLEAR,     /**< open again and clear of e1 */
-  STAGE_SLOW_EDGE, /**< e2 taken */
-} ilk_stage_t;
+#define ILK_JUDGE_EDGES 4u
+
+/** Edges of the switch since HOME that the order of P17 allows, newest first; older ones are forgotten. */
+typedef struct {
+  uint32_t first[ILK_JUDGE_EDGES]; /**< each as e1 */
+  bool slow[ILK_JUDGE_EDGES]; /**< the axis was clear of it, and not driven above `home_slow_drive` since */
+  uint32_t second[ILK_JUDGE_EDGES]; /**< each as e2: an e1 within the tolerance came before it */
+  uint32_t firsts;
+  uint32_t seconds;
+} ilk_edges_t;
 
 /** What the judge remembers of one slot. */
 typedef struct {
@@ -82,7 +82,6 @@ typedef struct {
   bool first;         /**< it is the first after start or after a lost card */
   bool jump;          /**< it lies farther from the last reading than the axis can move */
   bool reset;         /**< it says for sure that the card was reset */
-  bool maybe_reset;   /**< its heartbeat is ahead by one more than the strict reading of the rule allows */
   bool seen;          /**< a last valid frame exists */
   bool lost;          /**< the card is lost */
   uint32_t bad_run;   /**< bad frames in a row */
@@ -90,7 +89,6 @@ typedef struct {
   uint32_t status;    /**< of the last valid frame */
   uint32_t raw;       /**< counter of the last valid frame */
   uint32_t periods;   /**< loop periods since it */
-  uint32_t ticks;     /**< ticks since it */
   bool triggered;     /**< its switch reading */
   uint32_t run;       /**< valid readings in a row that say so */
   uint32_t run_raw;   /**< counter at the first of them */
@@ -101,25 +99,23 @@ typedef struct {
   ilk_still_t calm;       /**< valid, within drift_counts */
   bool drift_known;
   uint32_t drift_mark;
-  bool fault_known;
-  uint32_t
-      fault_mark; /**< reading of the fault, of the last jump, reset or first frame, or at sure rest since */
-  int32_t mark_low; /**< between these, from there, the mark lies: it is taken anew where the axis may be at
-                       rest */
+  uint32_t fault_mark; /**< reading of the fault, of the last jump, reset or first frame, or where a runaway
+                          rested */
+  int32_t
+      mark_low; /**< between these, from there, the mark lies: where a runaway came to rest is known so far */
   int32_t mark_high;
-  int32_t fault_low; /**< lowest and highest reading since it was taken, from there */
-  int32_t fault_high;
-  bool maybe_runaway; /**< beyond drift_counts of some reading since: a mark may have been taken there */
-  bool moved_before;  /**< at the tick before it was not at rest for sure */
-  bool rested_before; /**< at the tick before it was at rest for sure */
-  bool runaway;  /**< seen in this tick: FAULTED and beyond drift_counts of its mark, or jumped while not at
-                    rest */
-  bool drifted;  /**< seen in this tick, to be judged */
-  bool reversed; /**< seen in this tick, to be judged */
-  int32_t distance;        /**< counts that the rule of this tick measured */
-  bool driven;             /**< in the last tick */
-  bool driven_since_valid; /**< since the last valid frame */
-  uint32_t direction;      /**< commanded in the last driven tick */
+  int32_t delta;  /**< motion that the last valid frame showed */
+  bool ran;       /**< a runaway, and not at rest for sure since */
+  bool resting;   /**< and perhaps at rest since: the mark is a reading from then on */
+  bool maybe_ran; /**< beyond drift_counts of a place where the mark may be, and not at rest for sure since */
+  bool maybe_runaway;  /**< seen in this tick: beyond drift_counts of a place where the mark may be */
+  bool runaway;        /**< seen in this tick: FAULTED and beyond drift_counts of its mark, or jumped on */
+  bool drifted;        /**< seen in this tick, to be judged */
+  bool reversed;       /**< seen in this tick, to be judged */
+  bool maybe_reversed; /**< the same, but frames were lost since the drive */
+  int32_t distance;    /**< counts that the rule of this tick measured */
+  bool driven;         /**< in the last tick */
+  uint32_t direction;  /**< commanded in the last driven tick */
   uint32_t reverse_direction;
   uint32_t reverse_mark;
   /* stall */
@@ -148,15 +144,12 @@ typedef struct {
   bool restored;  /**< RESTORE accepted in this tick */
   int32_t restored_to;
   /* reference */
-  uint32_t stage;
-  uint32_t home_run; /**< valid readings in a row since HOME that say the same */
-  uint32_t home_run_raw;
-  uint32_t e1;
-  uint32_t e1_later;  /**< a later candidate, when the contact closed again during the back-off */
-  uint32_t e2;        /**< of the newest slow approach */
-  uint32_t e2_before; /**< of the one before it, or e2 */
-  bool slow;          /**< no drive above `home_slow_drive` since the axis was clear */
-  bool home_open;     /**< open for the debounce time since e2 */
+  bool seeks;            /**< HOME was accepted, and nothing ended it */
+  uint32_t home_run;     /**< valid readings in a row since HOME that say the same */
+  uint32_t home_run_raw; /**< counter at the first of them */
+  bool home_open;        /**< open for the debounce time since the last edge */
+  ilk_edges_t edges;
+  uint32_t reference; /**< counter at the edge where it homed */
   bool just_homed;
   bool position_known;
   int32_t position;     /**< as it should be published */
@@ -216,7 +209,13 @@ typedef struct {
   int64_t bound;
 } ilk_judgement_t;
 
+/** Before the first tick of a kernel. */
 void ghost_init(ilk_ghost_t* ghost);
+/**
+ * In the middle of a run: what the state between two ticks tells, and of the rest nothing. A verdict that
+ * what came before decides passes, whichever it is, until the ghost has seen as much itself.
+ */
+void ghost_adopt(ilk_ghost_t* ghost, const ilk_config_t* config, const ilk_state_t* state);
 void ghost_observe(ilk_ghost_t* ghost, const ilk_tick_t* tick);
 void ghost_requests(ilk_ghost_t* ghost, const ilk_tick_t* tick);
 void ghost_settle(ilk_ghost_t* ghost, const ilk_tick_t* tick);

@@ -21,7 +21,7 @@ static inline uint64_t rng_next(rng_t* r) { /* splitmix64 */
   return z ^ (z >> 31);
 }
 /** 0 to n - 1 */
-static inline uint32_t rng_below(rng_t* r, uint32_t n) { return n == 0u ? 0u : (uint32_t)(rng_next(r) % n); }
+static inline uint32_t rng_below(rng_t* r, uint32_t n) { return (uint32_t)(((rng_next(r) >> 32) * n) >> 32); }
 static inline uint32_t rng_range(rng_t* r, uint32_t low, uint32_t high) {
   return high <= low ? low : low + rng_below(r, high - low + 1u);
 }
@@ -45,10 +45,13 @@ typedef struct {
   uint32_t bounce_left, bounce_ticks;
   uint32_t noise_one_in; /* a reading of n is off by one */
   uint32_t glitch_one_in;
+  uint32_t wobble; /* counts by which a reading in motion may be off */
   /* trouble */
-  uint32_t stuck_left; /* the encoder shows the same */
-  uint32_t jam_left;   /* the axis does not move */
-  int64_t runaway;     /* speed it takes by itself */
+  uint32_t stuck_left;   /* the encoder shows the same */
+  uint32_t contact_left; /* the contact shows `contact_stuck` */
+  bool contact_stuck;
+  uint32_t jam_left; /* the axis does not move */
+  int64_t runaway;   /* speed it takes by itself */
   uint32_t runaway_left;
   bool runaway_needs_power;
   /* the card */
@@ -80,6 +83,9 @@ static inline void plant_send(plant_t* p, const ilk_axis_config_t* c, rng_t* r, 
   if (p->noise_one_in != 0u && rng_one_in(r, p->noise_one_in)) {
     at += 1;
   }
+  if (p->wobble != 0u && p->v != 0 && rng_one_in(r, 3u)) {
+    at += (int32_t)p->wobble;
+  }
   if (p->stuck_left > 0u) {
     at = p->shown;
   }
@@ -89,6 +95,10 @@ static inline void plant_send(plant_t* p, const ilk_axis_config_t* c, rng_t* r, 
     contact = rng_one_in(r, 2u) ? contact : !contact;
   } else if (p->glitch_one_in != 0u && rng_one_in(r, p->glitch_one_in)) {
     contact = !contact;
+  }
+  if (p->contact_left > 0u) {
+    p->contact_left--;
+    contact = p->contact_stuck;
   }
   for (uint32_t i = 0u; i < ILK_FRAME_WORDS; i++) {
     frame[i] = 0u;
