@@ -125,7 +125,8 @@ HomeProgress HomeAxis::watch_nudge(const ilk_snapshot_t& snapshot) noexcept {
     rest_.restart(axis.position_counts, snapshot.state.system.tick);
   }
   if (stopping_) {
-    const bool rests = rest_.rests(axis.position_counts, plan_.rules.noise_counts, snapshot.state.system.tick);
+    const bool rests =
+        rest_.rests(axis.position_counts, plan_.rules.noise_counts, snapshot.state.system.tick);
     return rests ? HomeProgress::arrived : HomeProgress::going;
   }
   switch (move_.watch(snapshot)) {
