@@ -112,6 +112,8 @@ static struct {
   uint32_t card_left[ILK_SLOTS]; /* the card is silent */
   uint32_t beat;
   bool left_alone[ILK_SLOTS]; /* nobody enables it */
+  bool fumbled[ILK_SLOTS];    /* its homing is interrupted and begun again */
+  bool slips;                 /* and its counter slips meanwhile */
 } env;
 
 static uint32_t shade(rng_t* r, uint32_t often) {
@@ -271,11 +273,34 @@ static bool interrupts(uint32_t i) {
   const ilk_axis_config_t* a = &config.axis[i];
   const ilk_ghost_slot_t* g = &ghost.slot[i];
   const uint32_t state = before.axis[i].state;
-  if (env.mood.fumbling && state == ILK_AXIS_HOMING) {
+  if (env.fumbled[i] && state == ILK_AXIS_HOMING) {
     const uint64_t nearly = (uint64_t)g->homing_travel + 2u * (uint64_t)a->coast_counts + a->noise_counts;
     return rng_one_in(&env.r, nearly >= a->home_travel_counts ? 4u : 400u);
   }
   return env.mood.wandering && state == ILK_AXIS_MOVING && rng_one_in(&env.r, 60u);
+}
+
+/** The drive of the last tick met a bound of stall. */
+static bool meets_stall(uint32_t i) {
+  const ilk_ghost_slot_t* g = &ghost.slot[i];
+  const uint64_t most = (uint64_t)config.axis[i].stall_effort_ticks * config.axis[i].max_drive;
+  return g->stall_ticks >= config.axis[i].stall_ticks || (most != 0u && g->effort >= most);
+}
+
+/** A fault comes in this tick, perhaps at rest. */
+static bool fault_is_due(uint32_t i) {
+  const ilk_ghost_slot_t* g = &ghost.slot[i];
+  return before.axis[i].state != ILK_AXIS_FAULTED &&
+         (meets_stall(i) || g->implausible > 0u ||
+          (before.axis[i].state == ILK_AXIS_HOMING &&
+           g->homing_ticks + 1u >= config.axis[i].home_timeout_ticks));
+}
+
+/** It moves, and its switch will close in a few ticks. */
+static bool nears_switch(uint32_t i) {
+  const plant_t* p = &plant[i];
+  const int64_t way = p->edge - p->x;
+  return !p->closed && ((p->v > 0 && way > 0 && way < 3 * p->v) || (p->v < 0 && way < 0 && way > 3 * p->v));
 }
 
 /** What a reasonable app asks for. */
@@ -290,7 +315,8 @@ static void cooperate(void) {
     if (!motor(i)) {
       continue;
     }
-    if (v->state == ILK_AXIS_FAULTED && !env.pressed && rng_one_in(r, 5u)) {
+    if ((v->state == ILK_AXIS_FAULTED && !env.pressed && rng_one_in(r, 5u)) ||
+        (fault_is_due(i) && rng_one_in(r, 2u))) {
       (void)add(ILK_REQUEST_CLEAR_FAULT, i);
     }
     if (v->state == ILK_AXIS_DISABLED && before.mode >= ILK_MODE_READY && !env.left_alone[i] &&
@@ -308,15 +334,19 @@ static void cooperate(void) {
         v->state == ILK_AXIS_FAULTED) {
       continue;
     }
+    if (a->limit_side != ILK_LIMIT_NONE && nears_switch(i) && rng_one_in(r, 3u)) {
+      (void)add(ILK_REQUEST_HOME, i);
+      continue;
+    }
     if (a->limit_side != ILK_LIMIT_NONE && !env.mood.wandering &&
-        (v->homed == ILK_HOMED_NOT || ((env.mood.fumbling || env.mood.homing) && rng_one_in(r, 100u))) &&
+        (v->homed == ILK_HOMED_NOT || ((env.fumbled[i] || env.mood.homing) && rng_one_in(r, 100u))) &&
         !rng_one_in(r, 10u)) {
       if (rng_one_in(r, 3u)) {
         (void)add(ILK_REQUEST_HOME, i);
       }
       continue;
     }
-    if (env.mood.wandering && v->homed == ILK_HOMED_NOT) { /* as far as is left */
+    if (v->homed == ILK_HOMED_NOT && (env.mood.wandering || rng_one_in(r, 4u))) { /* as far as is left */
       const int64_t left = (int64_t)a->unhomed_travel_counts - ghost.slot[i].move_travel -
                            (int64_t)(a->coast_counts + a->noise_counts);
       if (ghost.slot[i].lease == 0u && left >= 0 && rng_one_in(r, 4u)) {
@@ -533,13 +563,6 @@ static void trouble_axis(uint32_t i) {
   }
 }
 
-/** The drive of the last tick met a bound of stall. */
-static bool meets_stall(uint32_t i) {
-  const ilk_ghost_slot_t* g = &ghost.slot[i];
-  const uint64_t most = (uint64_t)config.axis[i].stall_effort_ticks * config.axis[i].max_drive;
-  return g->stall_ticks >= config.axis[i].stall_ticks || (most != 0u && g->effort >= most);
-}
-
 static void exchange(void) {
   rng_t* r = &env.r;
   const uint32_t rounds = 1u + (in.deadlines_missed < 5u ? in.deadlines_missed : 5u);
@@ -563,12 +586,13 @@ static void exchange(void) {
       p->runaway_left = rng_range(r, 1u, 2u * config.axis[i].rest_ticks);
       p->runaway_needs_power = false;
     }
-    if (env.mood.fumbling && ghost.slot[i].seeks && ghost.slot[i].edges.firsts == 1u && rng_one_in(r, 200u)) {
+    if (env.slips && env.fumbled[i] && ghost.slot[i].seeks && ghost.slot[i].edges.firsts == 1u &&
+        rng_one_in(r, 200u)) {
       p->raw_zero +=
           rng_below(r, 2u * config.axis[i].max_delta_counts + 1u) - config.axis[i].max_delta_counts;
     }
-    if (env.mood.fumbling && ghost.slot[i].seeks && ghost.slot[i].edges.seconds > 0u && i % 2u == 0u &&
-        rng_one_in(r, 3u)) { /* before it rests at the edge */
+    if (env.slips && env.fumbled[i] && ghost.slot[i].seeks && ghost.slot[i].edges.seconds > 0u &&
+        i % 2u == 0u && rng_one_in(r, 3u)) { /* before it rests at the edge */
       p->raw_zero += config.axis[i].max_delta_counts;
     }
     if (env.mood.frozen) { /* frozen, but for a while now and then */
@@ -759,7 +783,8 @@ static void begin_shadow(void) {
   if (!motor(slot)) {
     return;
   }
-  if (calm && after.axis[slot].state == ILK_AXIS_HOMING && plant[slot].glitch_one_in == 0u) {
+  if (calm && after.axis[slot].state == ILK_AXIS_HOMING && plant[slot].glitch_one_in == 0u &&
+      !(env.slips && env.fumbled[slot])) {
     shadow.homes = true;
     shadow.left = config.axis[slot].home_timeout_ticks;
     shadow.edges = rng_below(r, 6u);
@@ -1055,8 +1080,10 @@ static void start_episode(uint64_t episode) {
   memset(&out, 0, sizeof out);
   queued = 0u;
   shadow.left = 0u;
+  env.slips = rng_one_in(&env.r, 2u);
   for (uint32_t i = 0u; i < ILK_SLOTS; i++) {
     env.left_alone[i] = rng_one_in(&env.r, 8u);
+    env.fumbled[i] = env.mood.fumbling && rng_one_in(&env.r, (ILK_SLOTS + 2u) / 3u);
   }
   env.holder = 1u;
   env.press_left = config.common.power_up_ticks + 100u;
