@@ -563,6 +563,19 @@ static void trouble_axis(uint32_t i) {
   }
 }
 
+/** Before it rests at the edge its counter slips as far inward as drift is tolerated. */
+static void slip_inward(uint32_t i) {
+  const ilk_axis_config_t* a = &config.axis[i];
+  const ilk_ghost_slot_t* g = &ghost.slot[i];
+  const bool lower = a->limit_side == ILK_LIMIT_LOWER;
+  const int32_t drifted = judge_counts(a, g->raw, g->drift_mark);
+  const int64_t left = (int64_t)a->drift_counts - (lower ? -(int64_t)drifted : drifted);
+  const uint32_t counts = left < a->max_delta_counts ? (uint32_t)left : a->max_delta_counts;
+  if (!g->driven && left > 0 && plant[i].v == 0) {
+    plant[i].raw_zero += lower == (a->direction_correction == 1u) ? counts : 0u - counts;
+  }
+}
+
 static void exchange(void) {
   rng_t* r = &env.r;
   const uint32_t rounds = 1u + (in.deadlines_missed < 5u ? in.deadlines_missed : 5u);
@@ -591,9 +604,8 @@ static void exchange(void) {
       p->raw_zero +=
           rng_below(r, 2u * config.axis[i].max_delta_counts + 1u) - config.axis[i].max_delta_counts;
     }
-    if (env.slips && env.fumbled[i] && ghost.slot[i].seeks && ghost.slot[i].edges.seconds > 0u &&
-        i % 2u == 0u && rng_one_in(r, 3u)) { /* before it rests at the edge */
-      p->raw_zero += config.axis[i].max_delta_counts;
+    if (env.slips && env.fumbled[i] && ghost.slot[i].seeks && ghost.slot[i].edges.seconds > 0u) {
+      slip_inward(i);
     }
     if (env.mood.frozen) { /* frozen, but for a while now and then */
       p->stuck_left = (ghost.tick / 2048u) % 3u == 0u ? p->stuck_left : 2u;

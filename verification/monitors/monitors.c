@@ -590,7 +590,7 @@ static void decide_mode(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
       g->state = ILK_AXIS_FAULTED;
       g->lease = 0u;
       g->order_consent = 0u;
-      g->seeks = false;
+      g->seeks = g->seeks && g->just_homed;
       g->fault_known = g->valid && !g->jump && !g->reset;
       mark_fault(g, g->raw);
     } else if (g->just_homed) {
