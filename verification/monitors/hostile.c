@@ -788,15 +788,19 @@ static struct {
   rng_t r;
 } shadow;
 
+/** Nothing is wrong with the readings of the axis. */
+static bool is_calm(uint32_t i) {
+  const mood_t* m = &env.mood;
+  return m->frames == 0u && m->plant == 0u && !m->frozen && !m->waiting && !(env.slips && env.fumbled[i]);
+}
+
 static void begin_shadow(void) {
   rng_t* r = &env.r;
   const uint32_t slot = rng_below(r, ILK_SLOTS);
-  const bool calm = env.mood.frames == 0u && env.mood.plant == 0u && !env.mood.frozen && !env.mood.waiting;
   if (!motor(slot)) {
     return;
   }
-  if (calm && after.axis[slot].state == ILK_AXIS_HOMING && plant[slot].glitch_one_in == 0u &&
-      !(env.slips && env.fumbled[slot])) {
+  if (is_calm(slot) && after.axis[slot].state == ILK_AXIS_HOMING && plant[slot].glitch_one_in == 0u) {
     shadow.homes = true;
     shadow.left = config.axis[slot].home_timeout_ticks;
     shadow.edges = rng_below(r, 6u);
@@ -991,8 +995,11 @@ static bool run_tick(uint64_t episode, uint32_t tick, bool show) {
       total.worst_home = size > total.worst_home ? size : total.worst_home;
       if (size > (int64_t)config.axis[i].home_tolerance_counts + config.axis[i].noise_counts + 1) {
         total.homes_wrong++;
-        printf("note: homed %lld off, tolerance %u, episode %llu tick %u slot %u\n", (long long)off,
-               config.axis[i].home_tolerance_counts, (unsigned long long)episode, tick, i);
+        if (is_calm(i) && env.mood.system == 0u) {
+          const ilk_judgement_t j = {"P17: home is not where the switch closes", i, off,
+                                     config.axis[i].home_tolerance_counts};
+          bad = note(j, episode, tick) || bad;
+        }
       }
     }
   }
