@@ -8,7 +8,9 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
+#include "cli/replay_judge.hpp"
 #include "cli/replay_table.hpp"
 #include "cli/write_file.hpp"
 #include "interlock/replay.h"
@@ -26,16 +28,20 @@ struct FileCloser {
 };
 using File = std::unique_ptr<FILE, FileCloser>;
 
-/** The tables that were asked for, filled tick by tick. */
+/** What was asked for of each tick. */
 struct Tables {
   ReplayedRobot robot;
+  std::optional<ReplayJudge> judge;
   std::ofstream csv_file;
   std::optional<ReplayCsv> csv;
   std::optional<ReplayPlot> plot;
 };
 
-void add_tick(void* context, const ilk_recorded_tick_t* tick) {
+void add_tick(void* context, const ilk_state_t* before, const ilk_recorded_tick_t* tick) {
   auto& tables = *static_cast<Tables*>(context);
+  if (tables.judge) {
+    tables.judge->add(*before, *tick);
+  }
   if (tables.csv) {
     tables.csv->add(*tick);
   }
@@ -102,8 +108,8 @@ void describe(const ilk_replay_t& replayed, std::ostream& output) {
 }
 
 /** What the replay came to; the tables hold what was identical. */
-Result<void> judge(const ilk_replay_report_t& report, const ilk_recording_t& recording,
-                   std::ostream& output) {
+Result<void> compare(const ilk_replay_report_t& report, const ilk_recording_t& recording,
+                     std::ostream& output) {
   if (report.end == ILK_FILE_TORN) {
     output << "note: " << place(recording) << " was cut off while it was written; what is before it counts\n";
   }
@@ -121,8 +127,20 @@ Result<void> judge(const ilk_replay_report_t& report, const ilk_recording_t& rec
   return {};
 }
 
+/** What the monitors say of the ticks that came out the same; `good` says how far these go. */
+Result<void> judge(const ReplayJudge& judge, Result<void> good, std::ostream& output) {
+  if (!judge.violation()) {
+    output << ReplayJudge::monitors << " monitors accept " << judge.ticks() << " ticks\n";
+    return good;
+  }
+  return failed(ExitCode::refused, describe(*judge.violation()) + (good ? "" : "; " + good.error().text));
+}
+
 Result<Tables> tables_for(const ReplayOptions& options, const ilk_recording_header_t& header) {
-  Tables tables{ReplayedRobot(header.run.config), {}, std::nullopt, std::nullopt};
+  Tables tables{ReplayedRobot(header.run.config), std::nullopt, {}, std::nullopt, std::nullopt};
+  if (options.judge) {
+    tables.judge.emplace(header.run.config);
+  }
   if (!options.csv.empty()) {
     tables.csv_file.open(options.csv, std::ios::trunc);
   }
@@ -166,7 +184,10 @@ Result<void> replay(const ReplayOptions& options, std::ostream& output) {
       return drawn;
     }
   }
-  Result<void> good = judge(report, *recording, output);
+  Result<void> good = compare(report, *recording, output);
+  if (tables->judge) {
+    good = judge(*tables->judge, std::move(good), output);
+  }
   if (good && options.console) {
     good = show_in_console(options.show, options.file, recording->header.run.config, output);
   }

@@ -43,10 +43,6 @@ bool ilk_axis_is_at_rest(const ilk_axis_config_t *config, const ilk_axis_t *axis
   return (axis->card_valid != 0u) && (axis->rest.ticks >= config->rest_ticks);
 }
 
-bool ilk_axis_has_moved(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
-  return axis->calm.ticks < config->rest_ticks;
-}
-
 /* --- Orders ------------------------------------------------------------------------------------ */
 
 void ilk_axis_drop_motion(ilk_axis_t *axis) {
@@ -135,8 +131,11 @@ static void follow_progress(const ilk_axis_config_t *config, ilk_axis_t *axis) {
 }
 
 void ilk_axis_note_arrival(const ilk_axis_config_t *config, ilk_axis_t *axis) {
+  const bool ahead = is_beyond(config, axis, axis->effort_mark_raw, 0u);
+  const uint32_t effort_mark_raw = ahead ? axis->raw : axis->effort_mark_raw;
   if (is_beyond(config, axis, axis->stall_mark_raw, config->noise_counts)) {
     clear_stall(axis);
+    axis->effort_mark_raw = effort_mark_raw;
   }
 }
 
@@ -222,13 +221,14 @@ static ilk_finding_t judge_card(const ilk_reading_t *reading, const ilk_axis_t *
 
 /** Place, and what the card says of itself. The first frame after start or after a lost card is compared with
    nothing; what a reset or a jump leads to has nothing to do with what was before. A FAULTED axis that jumps
-   before it has come to rest is run away: its mark follows each jump, so that nothing else would tell. */
+   on, the way it went in the frame before, is run away: its mark follows each jump, so that nothing else
+   would tell. */
 static ilk_finding_t follow_card(const ilk_axis_config_t *config, const ilk_reading_t *reading,
                                  ilk_axis_t *axis) {
   const bool first = axis->card_seen == 0u;
-  const bool coasts = (axis->state == (uint32_t)ILK_AXIS_FAULTED) && !ilk_axis_is_at_rest(config, axis);
   const uint64_t farthest = (uint64_t)config->max_delta_counts * axis->periods;
   const int32_t delta = first ? 0 : travel_between(config, axis->raw, reading->raw);
+  const bool goes_on = ((delta > 0) && (axis->delta_counts > 0)) || ((delta < 0) && (axis->delta_counts < 0));
   const ilk_finding_t jump = found_if(magnitude(delta) > farthest, ILK_FAULT_JUMP, delta);
   const ilk_finding_t nothing = found_if(false, ILK_FAULT_NONE, 0);
   const ilk_finding_t finding = first ? nothing : first_of(judge_card(reading, axis), jump);
@@ -240,7 +240,8 @@ static ilk_finding_t follow_card(const ilk_axis_config_t *config, const ilk_read
   axis->card_status = reading->card_status;
   axis->card_seen = 1u;
   if (first || (finding.fault != ILK_FAULT_NONE)) {
-    axis->runaway = flag_of((axis->runaway != 0u) || (coasts && !first));
+    axis->runaway =
+        flag_of((axis->runaway != 0u) || (goes_on && (axis->state == (uint32_t)ILK_AXIS_FAULTED)));
     begin_anew(axis);
   }
   return finding;
@@ -350,13 +351,14 @@ static ilk_finding_t observe_nothing(const ilk_common_config_t *common, const il
                   judge_stall(config, axis));
 }
 
-/** A faulted axis is not driven; one that moves all the same is run away until it rests. */
+/** A faulted axis is not driven; one that moves all the same, however slowly, is run away until it rests. */
 static void watch_faulted(const ilk_axis_config_t *config, ilk_axis_t *axis) {
   const uint32_t distance = magnitude(travel_between(config, axis->drift_mark_raw, axis->raw));
   const bool rests = ilk_axis_is_at_rest(config, axis);
   if ((axis->state == (uint32_t)ILK_AXIS_FAULTED) && (axis->card_valid != 0u)) {
-    axis->drift_mark_raw = rests ? axis->raw : axis->drift_mark_raw;
-    axis->runaway = flag_of(!rests && ((axis->runaway != 0u) || (distance > config->drift_counts)));
+    const bool over = rests && (axis->runaway != 0u);
+    axis->drift_mark_raw = over ? axis->raw : axis->drift_mark_raw;
+    axis->runaway = flag_of(!over && ((axis->runaway != 0u) || (distance > config->drift_counts)));
   }
 }
 

@@ -14,9 +14,6 @@ ilk_command_t ilk_wanted_command(const ilk_axis_config_t *config, const ilk_axis
   return (axis->state == (uint32_t)ILK_AXIS_HOMING) ? ilk_homing_command(config, axis) : wanted;
 }
 
-/** ENABLED, MOVING or HOMING. */
-static bool is_enabled(const ilk_axis_t *axis) { return count_of(axis->state, (uint32_t)ILK_AXIS_HOMING); }
-
 static bool is_held(const ilk_axis_t *axis) {
   return (axis->state == (uint32_t)ILK_AXIS_HOMING) ||
          ((axis->state == (uint32_t)ILK_AXIS_MOVING) && (axis->lease_ticks != 0u));
@@ -87,7 +84,7 @@ ilk_gate_t ilk_output_gate(const ilk_axis_config_t *config, const ilk_system_t *
   gate = then(gate, system->pedal == (uint32_t)ILK_PEDAL_PRESSED, ILK_GATE_PEDAL);
   gate = then(gate, system->estop == 0u, ILK_GATE_ESTOP);
   gate = then(gate, axis->card_valid != 0u, ILK_GATE_CARD);
-  gate = then(gate, is_enabled(axis), ILK_GATE_ENABLE);
+  gate = then(gate, count_of(axis->state, (uint32_t)ILK_AXIS_HOMING), ILK_GATE_ENABLE);
   gate = then(gate, is_held(axis), ILK_GATE_LEASE);
   gate = then(gate, moves, ILK_GATE_SETPOINT);
   gate = then(gate, !presses_on_switch(config, axis, direction), ILK_GATE_HARD_LIMIT);

@@ -122,19 +122,16 @@ static void lock_if(bool present, ilk_cause_t cause, uint32_t value, ilk_state_t
   }
 }
 
-/** The contacts as read: normally open in bit 0, normally closed in bit 1. */
-static uint32_t contacts(const ilk_inputs_t *in) {
-  return flag_of(in->pedal_no_closed != OPEN) + (2u * flag_of(in->pedal_nc_closed != OPEN));
-}
-
 static void follow_causes(const ilk_common_config_t *common, const ilk_inputs_t *in,
                           const ilk_alarms_t *alarms, ilk_state_t *state) {
   const ilk_system_t *system = &state->system;
   const uint32_t runaway = runaway_slot(state);
+  const uint32_t contacts =
+      flag_of(in->pedal_no_closed != OPEN) + (2u * flag_of(in->pedal_nc_closed != OPEN));
   lock_if(alarms->configuration_damaged, ILK_CAUSE_INTEGRITY, alarms->configuration_crc, state);
   lock_if(system->estop != 0u, ILK_CAUSE_ESTOP, in->estop_loop_closed, state);
   lock_if(system->bus_bad_ticks >= common->bad_frame_limit, ILK_CAUSE_BUS, system->bus_bad_ticks, state);
-  lock_if(system->pedal_disagree_ticks > common->pedal_disagree_ticks, ILK_CAUSE_PEDAL, contacts(in), state);
+  lock_if(system->pedal_disagree_ticks > common->pedal_disagree_ticks, ILK_CAUSE_PEDAL, contacts, state);
   lock_if(system->overruns_in_row >= common->overrun_limit, ILK_CAUSE_OVERRUN, system->overruns_in_row,
           state);
   lock_if(runaway < (uint32_t)ILK_SLOTS, ILK_CAUSE_RUNAWAY, runaway, state);
@@ -146,13 +143,14 @@ static bool motion_must_end(const ilk_system_t *system, const ilk_alarms_t *alar
          alarms->required_card_lost;
 }
 
-/** An axis that nobody enabled moves: by hand, or by itself. */
+/** An axis that nobody enabled moved by more than `drift_counts` in the last `rest_ticks` ticks, by hand or
+   by itself, or was not read for so long. */
 static bool disabled_axis_moves(const ilk_config_t *config, const ilk_state_t *state) {
   bool moves = false;
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
-    moves =
-        moves || (has_axis(&config->axis[slot]) && (state->axis[slot].state == (uint32_t)ILK_AXIS_DISABLED) &&
-                  ilk_axis_has_moved(&config->axis[slot], &state->axis[slot]));
+    const bool disabled = state->axis[slot].state == (uint32_t)ILK_AXIS_DISABLED;
+    const bool moved = state->axis[slot].calm.ticks < config->axis[slot].rest_ticks;
+    moves = moves || (has_axis(&config->axis[slot]) && disabled && moved);
   }
   return moves;
 }

@@ -84,9 +84,6 @@ bool ilk_axis_observe(const ilk_common_config_t *common, const ilk_axis_config_t
 /** In the last `rest_ticks` ticks undriven, read validly, and still within `noise_counts`. */
 bool ilk_axis_is_at_rest(const ilk_axis_config_t *config, const ilk_axis_t *axis);
 
-/** Moved by more than `drift_counts` in the last `rest_ticks` ticks, or not read for so long. */
-bool ilk_axis_has_moved(const ilk_axis_config_t *config, const ilk_axis_t *axis);
-
 /** Driven as long, or with as much drive, as is allowed without progress. */
 bool ilk_axis_has_stalled(const ilk_axis_config_t *config, const ilk_axis_t *axis);
 

@@ -358,7 +358,7 @@ LeavesSoftRange(k, a, direction) ==
   /\ \/ direction = "INCREASING" /\ a.position_counts >= SoftReach(k, a).high
      \/ direction = "DECREASING" /\ a.position_counts <= SoftReach(k, a).low
 
-(* "Towards" the range from beyond a limit is inward. *)
+(* Whichever way: a path, not a place, is what is left of. *)
 ExceedsTravel(k, a) ==
   /\ ~IsHomed(a)
   /\ IF a.state = "HOMING" THEN ~HomingTravelLeft(k, a)

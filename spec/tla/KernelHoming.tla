@@ -97,6 +97,7 @@ P17_reference ==
 (* HOME takes the reference; nothing but HOME gives it here. *)
 P17_not_before == [][ axis'.state = "HOMING" => axis'.homed = "NO" ]_vars
 
+(* What the properties are about does happen: each says so. *)
 About ==
   [][ /\ About1
       /\ ByHome => Met("P17_reference")

@@ -60,17 +60,19 @@ AnyTick == Met("AnyTick") /\ \E event \in Events, wishes \in Wishes :
   Step(Input(Held, event.reading, <<Beat>> \o wishes), event.m)
 
 EndTick == system.mode = "MOTION" /\ Met("EndTick") /\
-  \E pedal \in {"OPEN", "CLOSED"}, estop \in {"OPEN", "CLOSED"}, m \in {m \in LawfulMoves : Inside(m)} :
-    Step([Input(pedal, Reading(plant.at + m, plant.at <= body.closes), <<>>) EXCEPT !.estop_loop = estop], m)
+  \E pedal \in {"OPEN", "CLOSED"}, estop \in {"OPEN", "CLOSED"}, said \in {<<>>, <<There>>},
+     m \in {m \in LawfulMoves : Inside(m)} :
+    Step([Input(pedal, Reading(plant.at + m, plant.at <= body.closes), said) EXCEPT !.estop_loop = estop], m)
 
 Init ==
-  /\ BeginIn(After(PowerOn, IntoMotion(2, (IF Unhomed THEN <<>> ELSE <<Ask("SET_HOME")>>) \o <<Ask("ENABLE")>>)), 0)
+  /\ BeginIn(After(PowerOn, IntoMotion(0, (IF Unhomed THEN <<>> ELSE <<Ask("SET_HOME")>>) \o <<Ask("ENABLE")>>)), 0)
   /\ seen = Nothing
 
 Next == AnyTick \/ EndTick
 Spec == Init /\ [][Next]_vars
 
 -------------------------------------------------------------------------------
+(* Properties, as in kernel.md. *)
 P4_soft_limit ==
   [][ Driven /\ IsHomed(io'.axis) =>
         /\ io'.command.direction = "INCREASING"
@@ -89,9 +91,11 @@ P7_bounds ==
 P7_travel ==
   [][ seen'.move <= k.unhomed_travel_counts /\ seen'.home <= k.home_travel_counts ]_vars
 
+(* What the properties are about does happen: each says so. *)
 About ==
   [][ /\ About1
-      /\ io'.gate = "SOFT_LIMIT" => Met("P4_soft_limit")
+      /\ Driven /\ IsHomed(io'.axis) /\ io'.command.direction = "INCREASING"
+         /\ io'.axis.position_counts + 1 = k.max_counts - k.coast_counts => Met("P4_soft_limit")
       /\ IsHomed(io'.axis) /\ io'.axis.position_counts = k.max_counts - 1 => Met("P4_soft_range")
       /\ Driven /\ Unhomed => Met("P7_bounds")
       /\ (\E i \in 1..Len(io'.answers) : io'.answers[i].verdict = "CONSENT") => Met("P12_no_leap")

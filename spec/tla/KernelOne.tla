@@ -248,8 +248,8 @@ P11_inert_refusal ==
 (* Only what carries the number of this press moves anything. *)
 P12_no_leap ==
   [][ \A i \in 1..Len(io'.answers) :
-        /\ io'.answers[i].request.kind \in {"MOVE", "HOME"}
-        /\ io'.answers[i].verdict = "ACCEPTED" => io'.answers[i].request.consent = 1 ]_vars
+        io'.answers[i].request.kind \in {"MOVE", "HOME"} /\ io'.answers[i].verdict = "ACCEPTED"
+        => io'.answers[i].request.consent = 1 ]_vars
 
 TypeOK ==
   /\ axis.state \in AxisStates

@@ -44,6 +44,7 @@ Resting ==
 Rests     == Read1.valid /\ Resting.ticks >= k.rest_ticks
 ByHand    == axis.state = "DISABLED" /\ system.mode # "MOTION"
 Away      == Plain /\ ~seen.driven /\ Magnitude(Read1.raw - seen.from) > k.drift_counts
+NewlyFaulted == axis.state # "FAULTED" /\ axis'.state = "FAULTED"
 IsLost    == ~io'.axis.card_seen
 Loose     == axis.state = "FAULTED" /\ ~Rests /\ ~IsLost /\ (seen.loose \/ Away)
 
@@ -56,7 +57,7 @@ Witnessed ==
         driven |-> Driven,
         far    |-> IF turned \/ farther \/ Anew THEN now
                    ELSE IF idle THEN 0 ELSE seen.far,
-        from   |-> IF \/ Driven \/ Anew \/ NewFault(axis'.fault)
+        from   |-> IF \/ Driven \/ Anew \/ NewlyFaulted
                       \/ (Accepted({"ENABLE"}) /\ io'.observed.state # "ENABLED")
                       \/ (ByHand /\ Read1.valid) \/ (axis.state = "FAULTED" /\ Rests)
                    THEN now ELSE seen.from,
@@ -96,7 +97,7 @@ P6_runaway ==
   [][ /\ Loose => system'.mode = "LOCKED" /\ ~Accepted({"RESET"})
       /\ Accepted({"CLEAR_FAULT"}) => Rests ]_vars
 
-(* A lost frame is no valid one: nothing is compared with it, and nothing is driven on it. *)
+(* What the properties are about does happen: each says so. *)
 About ==
   [][ /\ About1
       /\ NewFault("JUMP") => Met("P6_jump")

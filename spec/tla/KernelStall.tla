@@ -6,7 +6,7 @@ EXTENDS KernelOne
 StallAxis ==
   [WideAxis EXCEPT !.stall_ticks = 3, !.stall_effort_ticks = 2, !.stall_min_counts = 2]
 
-StallBody == [Free EXCEPT !.low = 0, !.high = 3]
+StallBody == [Free EXCEPT !.low = 0, !.high = 2]
 
 (* What happens to the reading. *)
 Moves    == {m \in (IF system.mode = "MOTION" THEN {-1, 0, 1} ELSE {0}) : Inside(m)}
@@ -68,8 +68,9 @@ Spec == Init /\ [][Next]_vars
 
 -------------------------------------------------------------------------------
 (* A sum has reached its bound, and this tick's reading is no progress for it. *)
-BoundMet == \/ seen.driven >= k.stall_ticks /\ ~(Whole /\ ~Renewed)
-        \/ seen.effort >= k.stall_effort_ticks * k.max_drive /\ ~((Whole \/ Some) /\ ~Renewed)
+BoundMet ==
+  \/ (seen.driven >= k.stall_ticks /\ ~(Whole /\ ~Renewed))
+  \/ (seen.effort >= k.stall_effort_ticks * k.max_drive /\ ~((Whole \/ Some) /\ ~Renewed))
 
 P5_stall ==
   [][ /\ BoundMet => io'.observed.state = "FAULTED"
@@ -77,6 +78,7 @@ P5_stall ==
       /\ seen'.effort < (k.stall_effort_ticks + 1) * k.max_drive
       /\ Driven => io'.axis.state # "FAULTED" ]_vars
 
+(* What the properties are about does happen: each says so. *)
 About ==
   [][ /\ About1
       /\ NewFault("STALL") => Met("P5_stall") ]_vars

@@ -14,7 +14,7 @@ CONSTANTS c,        \* the configuration, see SmallSystem
 
 SmallSystem ==
   [ pedal_channels |-> 2, app_timeout_ticks |-> 2, lease_max_ticks |-> 2,
-    power_up_ticks |-> 2, pedal_debounce_ticks |-> 2, pedal_disagree_ticks |-> 1,
+    power_up_ticks |-> 1, pedal_debounce_ticks |-> 2, pedal_disagree_ticks |-> 1,
     bad_frame_limit |-> 2, overrun_limit |-> 1 ]
 
 VARIABLES
@@ -73,8 +73,9 @@ Brief == {<<>>, <<Heartbeat(First), Request("RESET", "INTACT")>>}
 Saying(inputs, spoken) == {[in EXCEPT !.requests = said] : said \in spoken, in \in inputs}
 
 Alone == {{name} : name \in Departures}
-Pairs == {{"estop_loop", name} : name \in Departures} \union {{"new_fault", name} : name \in Departures}
-         \union {{"runaway", "any_valid"}, {"new_attachment", "pedal_nc"}, {"missed", "state_damaged"}}
+Pairs ==
+  {{"estop_loop", "new_fault"}, {"runaway", "any_valid"}, {"new_attachment", "pedal_nc"},
+   {"missed", "state_damaged"}, {"required_card_lost", "restless"}, {"new_fault", "config_damaged"}}
 
 -------------------------------------------------------------------------------
 (* The memory of the configuration and the pass over it, slice by slice. Damage

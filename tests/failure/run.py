@@ -3,7 +3,8 @@
 
 A fault is a file tests/failure/NAME.patch. Before the diff it says, one `# key: value` a line,
 
-  target  what to build and run: the CMake target of a GoogleTest program, or `pytest`
+  target  what to build and run: the CMake target of a GoogleTest program, or `pytest`, after which may stand
+          the CMake target that its test needs, such as `pytest programs`
   test    the test that must fail: a --gtest_filter, or a pytest node id
   expect  a regular expression that the failing output must contain
   why     which promise the fault breaks
@@ -95,7 +96,9 @@ def keys_of(root: Path, paths: Sequence[Path]) -> dict[Path, str]:
     keys = {}
     for path in paths if (build.folder / "build.ninja").is_file() else ():
         with contextlib.suppress(UnusableError):
-            keys[path] = build.program_key(read_fault(path).target, compiler, path.read_text("utf-8"))
+            keys[path] = build.program_key(
+                read_fault(path).target.split()[-1], compiler, path.read_text("utf-8")
+            )
     return {path: key for path, key in keys.items() if key}
 
 
@@ -161,8 +164,9 @@ def run_in_copy(
 
 def run_test(root: Path, fault: Fault, patch: Path | None) -> subprocess.CompletedProcess[str]:
     """Runs the test that the fault names, with the patch or without one."""
-    if fault.target == "pytest":
-        return run_in_copy(root, patch, "", [sys.executable, "-m", "pytest", "-q", fault.test])
+    runner, _, needed = fault.target.partition(" ")
+    if runner == "pytest":
+        return run_in_copy(root, patch, needed, [sys.executable, "-m", "pytest", "-q", fault.test])
     program = f"build/release/bin/{fault.target}"
     return run_in_copy(root, patch, fault.target, [program, f"--gtest_filter={fault.test}"])
 

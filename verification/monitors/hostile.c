@@ -22,6 +22,7 @@ static ilk_state_t state;
 static ilk_inputs_t in;
 static ilk_outputs_t out;
 static ilk_ghost_t ghost;
+static ilk_ghost_t adopted; /* a second one, which begins in the middle */
 static ilk_view_t before, after;
 static plant_t plant[ILK_SLOTS];
 static ilk_request_t queue[QUEUE];
@@ -31,7 +32,7 @@ static struct {
   uint64_t verdict[ILK_VERDICT_COUNT], fault[ILK_FAULT_COUNT], cause[ILK_CAUSE_COUNT], mode[4][4],
       gate[ILK_GATE_COUNT];
   uint64_t homings, homes_wrong, arrivals, moves_reached, driven, requests, flips, flips_met, twins, weak,
-      ticks, episodes, shadow_ticks, shadow_homings;
+      ticks, episodes, shadow_ticks, shadow_homings, adoptions;
   uint64_t valid_configs, rejected_configs, boundaries;
   uint64_t choice[4];
   int64_t worst_home;
@@ -926,6 +927,42 @@ static ilk_judgement_t run_shadow(void) {
   return j;
 }
 
+/** When the second ghost is adopted from the state anew: after few ticks or many, or for the rest of an
+ * episode. */
+static struct {
+  rng_t r;
+  uint32_t left; /* ticks */
+} adoption;
+
+static void adopt_now_and_then(void) {
+  if (adoption.left == 0u) {
+    const uint32_t least =
+        rng_one_in(&adoption.r, 16u) ? TICKS_PER_EPISODE : 1u << rng_below(&adoption.r, 13u);
+    adoption.left = least + rng_below(&adoption.r, least);
+    ghost_adopt(&adopted, &config, &state);
+    total.adoptions++;
+  }
+  adoption.left--;
+}
+
+/** What the second ghost says where the first is content. */
+static bool judge_adopted(const ilk_tick_t* t, bool bad, uint64_t episode, uint32_t tick) {
+  static char clause[JUDGE_COUNT][128]; /* of each judge the first */
+  bool worse = false;
+  ghost_observe(&adopted, t);
+  ghost_requests(&adopted, t);
+  for (uint32_t k = 0u; k < JUDGE_COUNT && !bad; k++) {
+    ilk_judgement_t j = ilk_judges[k](&adopted, t);
+    if (j.clause != NULL) {
+      (void)snprintf(clause[k], sizeof clause[k], "adopted ghost: %s", j.clause);
+      j.clause = clause[k];
+    }
+    worse = note(j, episode, tick) || worse;
+  }
+  ghost_settle(&adopted, t);
+  return worse;
+}
+
 static bool run_tick(uint64_t episode, uint32_t tick, bool show) {
   static ilk_state_t start;
   ilk_tick_t t = {&config, true, &in, queue, 0u, &out, &before, &after};
@@ -941,6 +978,7 @@ static bool run_tick(uint64_t episode, uint32_t tick, bool show) {
     start = state;
   }
   memset(&out, 0xA5, sizeof out);
+  adopt_now_and_then();
   ilk_step(&config, &state, &in, queue, queued, &out);
   judge_view(&state, &after);
   ghost_observe(&ghost, &t);
@@ -948,6 +986,7 @@ static bool run_tick(uint64_t episode, uint32_t tick, bool show) {
   for (uint32_t k = 0u; k < JUDGE_COUNT; k++) {
     bad = note(ilk_judges[k](&ghost, &t), episode, tick) || bad;
   }
+  bad = judge_adopted(&t, bad, episode, tick) || bad;
   if (twins) {
     bad = note(twin_without_refused(&start), episode, tick) || bad;
     bad = note(twin_with_flip(&start), episode, tick) || bad;
@@ -1133,6 +1172,8 @@ static void start_episode(uint64_t episode) {
   }
   (void)ilk_init(&config, &state);
   ghost_init(&ghost);
+  adoption.r.s = ~episode;
+  adoption.left = 0u;
   judge_view(&state, &before);
 }
 
@@ -1158,12 +1199,12 @@ static void print_totals(double seconds) {
   printf(
       "second runs %llu ticks, %llu homings with a wrong reading; %llu changed configurations accepted\n"
       "homings %llu (farther off than tolerance + noise: %llu, worst %lld), arrivals %llu, driven axis ticks "
-      "%llu, twins %llu, bit flips %llu (met %llu)\n",
+      "%llu, adoptions %llu, twins %llu, bit flips %llu (met %llu)\n",
       (unsigned long long)total.shadow_ticks, (unsigned long long)total.shadow_homings,
       (unsigned long long)total.boundaries, (unsigned long long)total.homings,
       (unsigned long long)total.homes_wrong, (long long)total.worst_home, (unsigned long long)total.arrivals,
-      (unsigned long long)total.driven, (unsigned long long)total.twins, (unsigned long long)total.flips,
-      (unsigned long long)total.flips_met);
+      (unsigned long long)total.driven, (unsigned long long)total.adoptions, (unsigned long long)total.twins,
+      (unsigned long long)total.flips, (unsigned long long)total.flips_met);
   printf(
       "entries to MOTION armed by a release that began before READY: %llu; overrun_limit reached by periods, "
       "not ticks: locked %llu, not %llu; "

@@ -189,7 +189,7 @@ static void observe_frame(ilk_ghost_t* ghost, ilk_ghost_slot_t* g, const ilk_tic
 }
 
 /** After everything that compares with the last reading. */
-static void keep_frame(ilk_ghost_slot_t* g, const uint32_t* frame) {
+static void keep_frame(ilk_ghost_slot_t* g, const ilk_axis_config_t* config, const uint32_t* frame) {
   const bool triggered = (frame[2] & SWITCH_OPEN_BIT) == 0u;
   if (!g->valid) {
     return;
@@ -201,6 +201,7 @@ static void keep_frame(ilk_ghost_slot_t* g, const uint32_t* frame) {
     g->run_raw = frame[3];
   }
   g->triggered = triggered;
+  g->delta = g->first ? 0 : judge_counts(config, frame[3], g->raw);
   g->seen = true;
   g->heartbeat = frame[9];
   g->status = frame[12];
@@ -258,8 +259,6 @@ static void mark_fault(ilk_ghost_slot_t* g, uint32_t raw) {
   g->fault_mark = raw;
   g->mark_low = 0;
   g->mark_high = 0;
-  g->fault_low = 0;
-  g->fault_high = 0;
 }
 
 /** Reverse, drift and the mark of a FAULTED axis. */
@@ -273,6 +272,8 @@ static void observe_motion(ilk_ghost_slot_t* g, const ilk_axis_config_t* config,
   g->maybe_runaway = false;
   g->distance = 0;
   if (!g->valid) {
+    g->ran = g->ran && !g->lost;
+    g->maybe_ran = g->maybe_ran && !g->lost;
     return;
   }
   if (!g->first && !g->jump && !g->reset) {
@@ -287,31 +288,29 @@ static void observe_motion(ilk_ghost_slot_t* g, const ilk_axis_config_t* config,
   }
   if (state == ILK_AXIS_FAULTED) {
     const bool anew = g->first || g->jump || g->reset;
-    if (anew || rests(g, config)) {
+    const int32_t delta = judge_counts(config, raw, g->raw);
+    const bool went_on = anew && !g->first && ((delta > 0 && g->delta > 0) || (delta < 0 && g->delta < 0));
+    if (anew) {
       mark_fault(g, raw);
     }
+    if (g->ran && !g->resting && !moves(g, config)) {
+      mark_fault(g, raw);
+      g->resting = true;
+    }
     const int32_t at = judge_counts(config, raw, g->fault_mark);
-    if (!g->fault_known || !moves(g, config)) { /* taken again at the first valid frame after a jump, too */
+    if (g->maybe_ran && !moves(g, config)) { /* at rest, perhaps: its mark is perhaps here */
       g->mark_low = (at < g->mark_low) ? at : g->mark_low;
       g->mark_high = (at > g->mark_high) ? at : g->mark_high;
     }
-    g->fault_known = !anew;
-    g->fault_low = (at < g->fault_low) ? at : g->fault_low;
-    g->fault_high = (at > g->fault_high) ? at : g->fault_high;
     g->distance = saturate((at > g->mark_high)  ? (int64_t)at - g->mark_high
                            : (at < g->mark_low) ? (int64_t)at - g->mark_low
                                                 : 0);
-    g->runaway = size_of(g->distance) > config->drift_counts;
-    /* a mark that was taken anew anywhere between */
-    g->maybe_runaway = g->runaway || (int64_t)at - g->fault_low > (int64_t)config->drift_counts ||
-                       (int64_t)g->fault_high - at > (int64_t)config->drift_counts;
-    if (rests(g, config)) {
-      g->maybe_runaway = false;
-    }
-    if (!g->first && (g->jump || g->reset)) {
-      g->runaway = g->runaway || g->moved_before;
-      g->maybe_runaway = g->maybe_runaway || g->runaway || !g->rested_before;
-    }
+    g->runaway = size_of(g->distance) > config->drift_counts || went_on;
+    g->maybe_runaway = g->runaway || (int64_t)at - g->mark_low > (int64_t)config->drift_counts ||
+                       (int64_t)g->mark_high - at > (int64_t)config->drift_counts;
+    g->ran = (g->ran && !rests(g, config)) || g->runaway;
+    g->maybe_ran = (g->maybe_ran && !rests(g, config)) || g->maybe_runaway;
+    g->resting = g->resting && g->ran && !g->runaway;
     g->drift_known = false;
   } else if (state == ILK_AXIS_DISABLED && tick->before->mode != ILK_MODE_MOTION) {
     g->drift_mark = raw;
@@ -496,8 +495,6 @@ void ghost_observe(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
     if (config->card == ILK_CARD_NONE) {
       continue;
     }
-    g->moved_before = moves(g, config);
-    g->rested_before = rests(g, config);
     observe_frame(ghost, g, tick, slot);
     ghost->bus_ok_now = ghost->bus_ok_now || g->valid;
     ghost->required_lost = ghost->required_lost || (config->required == 1u && g->lost);
@@ -529,7 +526,7 @@ void ghost_observe(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
                                  (g->calm.ticks <= config->rest_ticks || g->quiet <= config->rest_ticks));
       ghost->runaway_unsure = ghost->runaway_unsure || g->maybe_runaway;
     }
-    keep_frame(g, frame);
+    keep_frame(g, config, frame);
   }
   ghost->bus_bad_ticks = ghost->bus_ok_now ? 0u : plus(ghost->bus_bad_ticks, 1u);
   ghost->bus_lost = ghost->bus_bad_ticks >= tick->config->common.bad_frame_limit;
@@ -591,7 +588,8 @@ static void decide_mode(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
       g->lease = 0u;
       g->order_consent = 0u;
       g->seeks = g->seeks && g->just_homed;
-      g->fault_known = g->valid && !g->jump && !g->reset;
+      g->ran = false;
+      g->maybe_ran = false;
       mark_fault(g, g->raw);
     } else if (g->just_homed) {
       g->state = ILK_AXIS_ENABLED;
@@ -781,15 +779,12 @@ static ilk_demand_t demand_of_place(const ilk_ghost_t* ghost, const ilk_tick_t* 
 }
 
 /** A FAULTED axis that is known to lie at rest where its mark is is no cause. */
-static bool runaway_present(const ilk_ghost_t* ghost, const ilk_tick_t* tick, bool* unsure) {
+static bool runaway_present(const ilk_ghost_t* ghost, bool* unsure) {
   bool present = false;
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
     const ilk_ghost_slot_t* g = &ghost->slot[slot];
     present = present || g->runaway;
-    if (has_motor(&tick->config->axis[slot]) && g->state == ILK_AXIS_FAULTED &&
-        !rests(g, &tick->config->axis[slot]) && !g->lost) {
-      *unsure = true;
-    }
+    *unsure = *unsure || (g->state == ILK_AXIS_FAULTED && g->maybe_ran);
   }
   return present;
 }
@@ -809,7 +804,7 @@ static ilk_demand_t demand_of_row(const ilk_ghost_t* ghost, const ilk_tick_t* ti
       if (ghost->pedal != ILK_PEDAL_RELEASED) {
         return demand(ILK_VERDICT_PEDAL_DOWN);
       }
-      if (ghost->estop || ghost->bus_lost || !ghost->app_alive || runaway_present(ghost, tick, &unsure) ||
+      if (ghost->estop || ghost->bus_lost || !ghost->app_alive || runaway_present(ghost, &unsure) ||
           ghost->missed_ticks >= tick->config->common.overrun_limit) {
         return demand(ILK_VERDICT_CAUSE_PRESENT);
       }

@@ -99,21 +99,19 @@ typedef struct {
   ilk_still_t calm;       /**< valid, within drift_counts */
   bool drift_known;
   uint32_t drift_mark;
-  bool fault_known;
-  uint32_t
-      fault_mark; /**< reading of the fault, of the last jump, reset or first frame, or at sure rest since */
-  int32_t mark_low; /**< between these, from there, the mark lies: it is taken anew where the axis may be at
-                       rest */
+  uint32_t fault_mark; /**< reading of the fault, of the last jump, reset or first frame, or where a runaway
+                          rested */
+  int32_t
+      mark_low; /**< between these, from there, the mark lies: where a runaway came to rest is known so far */
   int32_t mark_high;
-  int32_t fault_low; /**< lowest and highest reading since it was taken, from there */
-  int32_t fault_high;
-  bool maybe_runaway; /**< beyond drift_counts of some reading since: a mark may have been taken there */
-  bool moved_before;  /**< at the tick before it was not at rest for sure */
-  bool rested_before; /**< at the tick before it was at rest for sure */
-  bool runaway;  /**< seen in this tick: FAULTED and beyond drift_counts of its mark, or jumped while not at
-                    rest */
-  bool drifted;  /**< seen in this tick, to be judged */
-  bool reversed; /**< seen in this tick, to be judged */
+  int32_t delta;  /**< motion that the last valid frame showed */
+  bool ran;       /**< a runaway, and not at rest for sure since */
+  bool resting;   /**< and perhaps at rest since: the mark is a reading from then on */
+  bool maybe_ran; /**< beyond drift_counts of a place where the mark may be, and not at rest for sure since */
+  bool maybe_runaway;  /**< seen in this tick: beyond drift_counts of a place where the mark may be */
+  bool runaway;        /**< seen in this tick: FAULTED and beyond drift_counts of its mark, or jumped on */
+  bool drifted;        /**< seen in this tick, to be judged */
+  bool reversed;       /**< seen in this tick, to be judged */
   bool maybe_reversed; /**< the same, but frames were lost since the drive */
   int32_t distance;    /**< counts that the rule of this tick measured */
   bool driven;         /**< in the last tick */
@@ -211,7 +209,13 @@ typedef struct {
   int64_t bound;
 } ilk_judgement_t;
 
+/** Before the first tick of a kernel. */
 void ghost_init(ilk_ghost_t* ghost);
+/**
+ * In the middle of a run: what the state between two ticks tells, and of the rest nothing. A verdict that
+ * what came before decides passes, whichever it is, until the ghost has seen as much itself.
+ */
+void ghost_adopt(ilk_ghost_t* ghost, const ilk_config_t* config, const ilk_state_t* state);
 void ghost_observe(ilk_ghost_t* ghost, const ilk_tick_t* tick);
 void ghost_requests(ilk_ghost_t* ghost, const ilk_tick_t* tick);
 void ghost_settle(ilk_ghost_t* ghost, const ilk_tick_t* tick);

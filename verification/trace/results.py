@@ -182,21 +182,29 @@ def cbmc(source: Source, rung: Rung) -> Iterator[Result]:
 
 
 def tick(source: Source, rung: Rung) -> Iterator[Result]:
-    """A result for each claim: a monitor, over whole ticks."""
-    line = re.compile(r"^(PASSED|UNKNOWN|FAILED|VACUOUS)\s+(P\d+)\b", re.MULTILINE)
-    said = {match[2]: match[1] for match in line.finditer(rung.text)}
-    claims = tomllib.loads((source.root / "verification/tick/claims.toml").read_text("utf-8"))
-    for name, claim in claims.items():
-        exempt = f"; exempt: {claim['exempt']}" if claim["exempt"] else ""
-        yield rung.result(
-            f"TICK:{name}",
-            claim["shown"],
-            "Proof",
-            said.get(name, "UNKNOWN"),
-            bounds=f"{claim['bound']}{exempt}",
-            supports=frozenset({name}),
-            place="verification/tick/harness.c",
-        )
+    """A result for each property that a step claims over whole ticks, from the lines of those steps."""
+    line = re.compile(r"^(\S+)\s+\{.*'failed': (\d+).*'unknown': (\d+).*\}", re.MULTILINE)
+    said = {match[1]: (int(match[2]), int(match[3])) for match in line.finditer(rung.text)}
+    for path in (source.root / "verification/tick").glob("tick.toml"):
+        table = tomllib.loads(path.read_text("utf-8"))
+        for name, stated in table["properties"].items():
+            steps = [one for one, step in table["steps"].items() if name in step.get("claims", ())]
+            told = [said.get(step, (0, 1)) for step in steps]
+            if not steps:
+                continue
+            yield rung.result(
+                f"TICK:{name}",
+                stated["shown"],
+                "Proof",
+                "FAILED"
+                if any(one[0] for one in told)
+                else "UNKNOWN"
+                if any(one[1] for one in told)
+                else "PASSED",
+                bounds=f"{stated['bound']}; by {', '.join(steps)}",
+                supports=frozenset({name}),
+                place="verification/tick/harness.c",
+            )
 
 
 def model(source: Source, rung: Rung) -> Iterator[Result]:
