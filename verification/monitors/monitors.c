@@ -587,7 +587,7 @@ static void decide_mode(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
       g->state = ILK_AXIS_FAULTED;
       g->lease = 0u;
       g->order_consent = 0u;
-      g->seeks = false;
+      g->seeks = g->seeks && g->just_homed;
       g->ran = false;
       g->maybe_ran = false;
       mark_fault(g, g->raw);
@@ -725,16 +725,10 @@ static ilk_demand_t demand_of_motion(const ilk_ghost_t* ghost, const ilk_tick_t*
     if (config->limit_side == ILK_LIMIT_NONE) {
       return demand(ILK_VERDICT_NO_SWITCH);
     }
-    if (g->homing_travel == 0u && g->homing_ticks == 0u) {
-      return demand(ILK_VERDICT_ACCEPTED);
-    }
-    if (g->homing_travel >= config->home_travel_counts || g->homing_ticks >= config->home_timeout_ticks) {
-      return demand(ILK_VERDICT_BUDGET);
-    }
-    return ((uint64_t)g->homing_travel + config->coast_counts + config->noise_counts >=
-            config->home_travel_counts)
-               ? either(ILK_VERDICT_ACCEPTED, ILK_VERDICT_BUDGET)
-               : demand(ILK_VERDICT_ACCEPTED);
+    const uint64_t used = (uint64_t)g->homing_travel + config->coast_counts + config->noise_counts;
+    return demand((used >= config->home_travel_counts || g->homing_ticks >= config->home_timeout_ticks)
+                      ? ILK_VERDICT_BUDGET
+                      : ILK_VERDICT_ACCEPTED);
   }
   if (r->lease_ticks == 0u || r->lease_ticks > tick->config->common.lease_max_ticks) {
     return demand(ILK_VERDICT_LEASE);
