@@ -539,7 +539,7 @@ static void trace(uint32_t tick) {
     if (motor(i)) {
       printf("\n    [%u] st %u fault %u homed %u pos %d true %d raw %08x %s%s%s%s hb %u trig %d x%u cmd %u:%u gate %u lease %u sp %d rest %u stall %u/%llu trav %u/%u stage %u", i,
              after.axis[i].state, after.axis[i].fault, after.axis[i].homed, after.axis[i].position, plant_counts(&plant[i]), g->raw,
-             g->valid ? "V" : "-", g->jump ? "J" : "", g->reset ? "R" : (g->maybe_reset ? "r" : ""), g->lost ? "L" : "", g->heartbeat, g->triggered, g->run,
+             g->valid ? "V" : "-", g->jump ? "J" : "", g->reset ? "R" : "", g->lost ? "L" : "", g->heartbeat, g->triggered, g->run,
              out.command[i].direction, out.command[i].drive, out.gate[i], g->lease, g->setpoint, g->rest.ticks, g->stall_ticks,
              (unsigned long long)g->effort, g->move_travel, g->homing_travel, g->stage);
     }

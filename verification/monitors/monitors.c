@@ -163,32 +163,32 @@ static bool frame_is_valid(const ilk_ghost_t *ghost, const ilk_inputs_t *in, uin
   return ghost->frames_sent < 2u || frame[11] == ghost->tick - 2u;
 }
 
+/** Counts that an axis can travel in so many loop periods. */
+static uint64_t farthest(const ilk_axis_config_t *config, uint32_t periods) {
+  return (uint64_t)config->max_delta_counts * periods;
+}
+
 static void observe_frame(ilk_ghost_t *ghost, ilk_ghost_slot_t *g, const ilk_tick_t *tick, uint32_t slot) {
   const ilk_axis_config_t *config = &tick->config->axis[slot];
   const uint32_t *frame = tick->in->frame[slot];
   const uint32_t raw = frame[3];
 
   g->periods = plus(plus(g->periods, 1u), tick->in->deadlines_missed);
-  g->ticks = plus(g->ticks, 1u);
   g->valid = frame_is_valid(ghost, tick->in, slot);
   g->first = false;
   g->jump = false;
   g->reset = false;
-  g->maybe_reset = false;
   if (!g->valid) {
     g->bad_run = plus(g->bad_run, 1u);
     g->lost = g->bad_run >= tick->config->common.bad_frame_limit;
     return;
   }
   g->first = !g->seen || g->lost;
-  if (g->first) {
-    g->maybe_reset = (frame[12] & STATUS_RESET) != 0u;
-  } else {
+  if (!g->first) {
     const uint32_t ahead = frame[9] - g->heartbeat;
     const bool flag = (frame[12] & STATUS_RESET) != 0u && (g->status & STATUS_RESET) == 0u;
     g->reset = flag || ahead == 0u || ahead > plus(1u, g->periods);
-    g->maybe_reset = g->reset || ahead > plus(1u, g->ticks);
-    g->jump = (uint64_t)size_of(wrapped(raw, g->raw)) > (uint64_t)config->max_delta_counts * g->periods;
+    g->jump = size_of(wrapped(raw, g->raw)) > farthest(config, g->periods);
   }
   g->bad_run = 0u;
   g->lost = false;
@@ -206,14 +206,12 @@ static void keep_frame(ilk_ghost_slot_t *g, const uint32_t *frame) {
     g->run = 1u;
     g->run_raw = frame[3];
   }
-  g->driven_since_valid = false;
   g->triggered = triggered;
   g->seen = true;
   g->heartbeat = frame[9];
   g->status = frame[12];
   g->raw = frame[3];
   g->periods = 0u;
-  g->ticks = 0u;
 }
 
 static void observe_rest(ilk_ghost_slot_t *g, const ilk_axis_config_t *config, uint32_t raw) {
@@ -224,7 +222,7 @@ static void observe_rest(ilk_ghost_slot_t *g, const ilk_axis_config_t *config, u
     still_end(&g->rest);
     g->quiet = g->valid ? 1u : 0u;
   }
-  if (g->jump || g->maybe_reset || g->first) { /* earlier readings may mean another place: undecided for rest_ticks */
+  if (g->jump || g->reset || g->first) { /* earlier readings may mean another place: undecided for rest_ticks */
     g->rest.ticks = 0u;
     g->rest.same = 0u;
     g->calm.ticks = 0u;
@@ -270,24 +268,24 @@ static void observe_motion(ilk_ghost_slot_t *g, const ilk_axis_config_t *config,
   if (!g->valid) {
     return;
   }
-  if (g->driven && !g->first && !g->jump && !g->maybe_reset) {
+  if (!g->first && !g->jump && !g->reset) {
     const int64_t forward = along(g->reverse_direction, judge_counts(config, raw, g->reverse_mark));
     if (forward > 0) {
       g->reverse_mark = raw;
-    } else if (-forward > (int64_t)config->reverse_counts) {
+    } else if (g->driven && -forward > (int64_t)config->reverse_counts) {
       g->reversed = true;
       g->distance = saturate(-forward);
     }
   }
   if (state == ILK_AXIS_FAULTED) {
-    if (!g->fault_known || g->first || g->jump || g->maybe_reset) {
+    if (!g->fault_known || g->first || g->jump || g->reset) {
       g->fault_mark = raw;
-      if (g->first || g->jump || g->maybe_reset) {
+      if (g->first || g->jump || g->reset) {
         g->fault_before = raw;
         g->fault_low = 0;
         g->fault_high = 0;
       }
-      g->fault_known = !g->first && !g->jump && !g->maybe_reset; /* taken again at the first valid frame after it */
+      g->fault_known = !g->first && !g->jump && !g->reset; /* taken again at the first valid frame after it */
     } else if (!moves(g, config)) {
       g->fault_mark = raw;
       if (rests(g, config)) {
@@ -313,10 +311,10 @@ static void observe_motion(ilk_ghost_slot_t *g, const ilk_axis_config_t *config,
   } else if (state == ILK_AXIS_DISABLED && tick->before->mode != ILK_MODE_MOTION) {
     g->drift_mark = raw;
     g->drift_known = true;
-  } else if (!g->drift_known || g->first || g->jump || g->maybe_reset) {
+  } else if (!g->drift_known || g->first || g->jump || g->reset) {
     g->drift_mark = raw;
     g->drift_known = true;
-  } else if (!g->driven_since_valid && size_of(judge_counts(config, raw, g->drift_mark)) > config->drift_counts) {
+  } else if (!g->driven && size_of(judge_counts(config, raw, g->drift_mark)) > config->drift_counts) {
     g->drifted = true;
     g->distance = judge_counts(config, raw, g->drift_mark);
   }
@@ -324,7 +322,7 @@ static void observe_motion(ilk_ghost_slot_t *g, const ilk_axis_config_t *config,
 
 static void observe_progress(ilk_ghost_slot_t *g, const ilk_axis_config_t *config, uint32_t raw) {
   if (g->valid && g->stall_direction != ILK_DIRECTION_NONE) {
-    if (g->jump || g->maybe_reset || g->first) {
+    if (g->jump || g->reset || g->first) {
       g->stall_mark = raw;
       g->effort_mark = raw;
     } else if (along(g->stall_direction, judge_counts(config, raw, g->stall_mark)) >= (int64_t)config->stall_min_counts) {
@@ -349,7 +347,7 @@ static void observe_path(ilk_ghost_slot_t *g, const ilk_axis_config_t *config, c
   if (!g->valid) {
     return;
   }
-  if (!counted || !g->path_known || g->first || g->jump || g->maybe_reset) {
+  if (!counted || !g->path_known || g->first || g->jump || g->reset) {
     g->path = raw;
     g->path_known = true;
     return;
@@ -440,7 +438,7 @@ static void observe_plausibility(ilk_ghost_slot_t *g, const ilk_axis_config_t *c
   if (!g->valid) {
     return;
   }
-  if (tick->before->axis[slot].homed != ILK_HOMED_BY_SWITCH || g->jump || g->maybe_reset || g->first) {
+  if (tick->before->axis[slot].homed != ILK_HOMED_BY_SWITCH || g->jump || g->reset || g->first) {
     g->implausible = 0u;
     return;
   }
@@ -474,10 +472,8 @@ static void observe_system(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   if (in->link_generation != ghost->link_generation) {
     ghost->link_generation = in->link_generation;
     ghost->last_sequence = 0u;
-    if (ghost->tick > 0u) { /* another app: silent until its first HEARTBEAT */
-      ghost->app_age = UINT32_MAX;
-      ghost->app_alive = false;
-    }
+    ghost->app_age = UINT32_MAX; /* another app: silent until its first HEARTBEAT */
+    ghost->app_alive = false;
   }
   if (!ghost->app_alive || tick->before->mode != ILK_MODE_READY) {
     ghost->armed = false;
@@ -518,7 +514,7 @@ void ghost_observe(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
       observe_path(g, config, tick, slot, frame[3]);
       observe_plausibility(g, config, tick, slot, frame);
       observe_homing(g, config, tick->config->common.switch_debounce_ticks, frame);
-      if (g->valid && g->position_known && !g->first && !g->jump && !g->maybe_reset) {
+      if (g->valid && g->position_known && !g->first && !g->jump && !g->reset) {
         g->position = saturate((int64_t)g->position + judge_counts(config, frame[3], g->raw));
       } else if (g->valid) {
         g->position_known = false;
@@ -597,7 +593,7 @@ static void decide_mode(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
       g->lease = 0u;
       g->order_consent = 0u;
       g->stage = STAGE_NONE;
-      g->fault_known = g->valid && !g->jump && !g->maybe_reset;
+      g->fault_known = g->valid && !g->jump && !g->reset;
       g->fault_mark = g->raw;
       g->fault_before = g->raw;
       g->fault_low = 0;
@@ -606,7 +602,7 @@ static void decide_mode(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
       g->state = ILK_AXIS_ENABLED;
     }
     if (after->homed == ILK_HOMED_NOT &&
-        (g->state == ILK_AXIS_FAULTED || g->jump || g->maybe_reset || g->lost || g->implausible > 0u)) {
+        (g->state == ILK_AXIS_FAULTED || g->jump || g->reset || g->lost || g->implausible > 0u)) {
       g->homed = ILK_HOMED_NOT; /* dropped in phase 4 */
     }
   }
@@ -883,6 +879,11 @@ static uint32_t verdict_before_row(ilk_ghost_t *ghost, const ilk_tick_t *tick, c
   return ILK_VERDICT_ACCEPTED;
 }
 
+/** A press that began in this tick and was ended by a later request of it: its number was never published. */
+static bool press_is_unseen(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
+  return (ghost->entered || !ghost->mode_sure) && tick->after->mode != ILK_MODE_MOTION;
+}
+
 static void accept(ilk_ghost_t *ghost, const ilk_tick_t *tick, const ilk_request_t *r) {
   ilk_ghost_slot_t *g = &ghost->slot[(r->axis < ILK_SLOTS) ? r->axis : 0u];
   const uint32_t consent = ghost->entered ? tick->after->consent : tick->before->consent;
@@ -913,9 +914,6 @@ static void accept(ilk_ghost_t *ghost, const ilk_tick_t *tick, const ilk_request
       g->lease = 0u;
       g->order_consent = 0u;
       g->stage = g->just_homed ? g->stage : (uint32_t)STAGE_NONE;
-      if (ghost->mode != ILK_MODE_MOTION) {
-        g->drift_mark = g->raw;
-      }
       break;
     case ILK_REQUEST_ENABLE:
       if (g->state == ILK_AXIS_DISABLED) {
@@ -939,7 +937,8 @@ static void accept(ilk_ghost_t *ghost, const ilk_tick_t *tick, const ilk_request
       }
       break;
     case ILK_REQUEST_MOVE:
-      ghost->consent_error = ghost->consent_error || r->consent != consent || consent == 0u;
+      ghost->consent_error =
+          ghost->consent_error || (!press_is_unseen(ghost, tick) && (r->consent != consent || consent == 0u));
       g->lease = r->lease_ticks;
       g->setpoint = r->target_counts;
       g->order_drive = r->drive;
@@ -947,7 +946,8 @@ static void accept(ilk_ghost_t *ghost, const ilk_tick_t *tick, const ilk_request
       g->state = ILK_AXIS_MOVING;
       break;
     case ILK_REQUEST_HOME:
-      ghost->consent_error = ghost->consent_error || r->consent != consent || consent == 0u;
+      ghost->consent_error =
+          ghost->consent_error || (!press_is_unseen(ghost, tick) && (r->consent != consent || consent == 0u));
       g->lease = 0u;
       g->order_consent = r->consent;
       g->position_known = g->position_known && g->state != ILK_AXIS_HOMING;
@@ -977,38 +977,50 @@ static void accept(ilk_ghost_t *ghost, const ilk_tick_t *tick, const ilk_request
   }
 }
 
-void ghost_requests(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
-  const uint32_t taken = (tick->count < ILK_REQUESTS_PER_TICK) ? tick->count : ILK_REQUESTS_PER_TICK;
+static void before_requests(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   ghost->reset_accepted = false;
   ghost->stop_accepted = false;
   ghost->holder_changed = false;
   ghost->order_error = 0u;
   ghost->consent_error = false;
   decide_mode(ghost, tick);
-  for (uint32_t i = 0u; i < taken && i < tick->out->verdict_count; i++) {
-    const ilk_request_t *r = &tick->requests[i];
-    const uint32_t given = tick->out->verdict[i].verdict;
-    ilk_demand_t d = demand(verdict_before_row(ghost, tick, r));
-    if (d.verdict == ILK_VERDICT_ACCEPTED) {
-      d = demand_of_row(ghost, tick, r);
-    }
-    /* a press that may have begun and ended in this tick: nobody can tell in which mode the requests were judged */
-    const bool told = ghost->mode_sure || tick->after->mode == ILK_MODE_MOTION;
-    if (told && d.verdict != ANY && given != d.verdict && given != d.other && ghost->order_error == 0u) {
-      ghost->order_error = i + 1u;
-      ghost->expected = d.verdict;
-    }
-    if (given == ILK_VERDICT_ACCEPTED && r->kind <= ILK_REQUEST_RESTORE &&
-        (r->axis < ILK_SLOTS || r->kind < ILK_REQUEST_DISABLE)) {
-      accept(ghost, tick, r);
-    }
+}
+
+static void follow_request(ilk_ghost_t *ghost, const ilk_tick_t *tick, uint32_t i) {
+  const ilk_request_t *r = &tick->requests[i];
+  const uint32_t given = tick->out->verdict[i].verdict;
+  ilk_demand_t d = demand(verdict_before_row(ghost, tick, r));
+  if (d.verdict == ILK_VERDICT_ACCEPTED) {
+    d = demand_of_row(ghost, tick, r);
   }
+  /* a press that may have begun and ended in this tick: nobody can tell in which mode the requests were judged */
+  const bool told = ghost->mode_sure || tick->after->mode == ILK_MODE_MOTION;
+  if (told && d.verdict != ANY && given != d.verdict && given != d.other && ghost->order_error == 0u) {
+    ghost->order_error = i + 1u;
+    ghost->expected = d.verdict;
+  }
+  if (given == ILK_VERDICT_ACCEPTED && r->kind <= ILK_REQUEST_RESTORE &&
+      (r->axis < ILK_SLOTS || r->kind < ILK_REQUEST_DISABLE)) {
+    accept(ghost, tick, r);
+  }
+}
+
+static void after_requests(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   if (tick->after->mode == ILK_MODE_READY && tick->before->mode != ILK_MODE_READY) {
     disarm(ghost);
   }
   if (tick->after->mode != ILK_MODE_MOTION) {
     drop_orders(ghost);
   }
+}
+
+void ghost_requests(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
+  const uint32_t taken = (tick->count < ILK_REQUESTS_PER_TICK) ? tick->count : ILK_REQUESTS_PER_TICK;
+  before_requests(ghost, tick);
+  for (uint32_t i = 0u; i < taken && i < tick->out->verdict_count; i++) {
+    follow_request(ghost, tick, i);
+  }
+  after_requests(ghost, tick);
 }
 
 /* ------------------------------------------------------------------ what the drive of this tick means */
@@ -1019,7 +1031,6 @@ static void settle_slot(ilk_ghost_t *ghost, ilk_ghost_slot_t *g, const ilk_axis_
   const ilk_axis_view_t *after = &tick->after->axis[slot];
   g->driven = is_driven(tick, slot);
   if (g->driven) {
-    g->driven_since_valid = true;
     g->direction = command->direction;
     still_end(&g->rest);
     g->quiet = 0u;
@@ -1229,7 +1240,7 @@ ilk_judgement_t judge_P6(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
       if (after->state != ILK_AXIS_FAULTED) {
         return broken("P6: moved beyond its limit and is not faulted", slot, g->distance, first);
       }
-      if (after->fault != first && !(g->maybe_reset && after->fault == ILK_FAULT_CARD_RESET)) {
+      if (after->fault != first && !(g->reset && after->fault == ILK_FAULT_CARD_RESET)) {
         return broken("P6: the code is not the first of those that apply", slot, after->fault, first);
       }
     }
@@ -1603,7 +1614,7 @@ ilk_judgement_t judge_states(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
     if (new_fault && after->fault != ILK_FAULT_DRIFT && after->homed != ILK_HOMED_NOT) {
       return broken("states: the fault does not drop homed", slot, after->fault, after->homed);
     }
-    if (before->homed != ILK_HOMED_NOT && after->homed == ILK_HOMED_NOT && !g->jump && !g->maybe_reset && !g->lost &&
+    if (before->homed != ILK_HOMED_NOT && after->homed == ILK_HOMED_NOT && !g->jump && !g->reset && !g->lost &&
         !(after->state == ILK_AXIS_FAULTED && after->fault != ILK_FAULT_DRIFT && new_fault) && g->stage != STAGE_BEGUN &&
         !g->stalled && g->implausible == 0u && !ghost->consent_error && !g->restored) {
       bool home = false; /* a HOME in this tick that STOP or DISABLE ended again */
@@ -1621,7 +1632,7 @@ ilk_judgement_t judge_states(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
     if (before->state != ILK_AXIS_FAULTED && g->reset && (!new_fault || after->fault != ILK_FAULT_CARD_RESET)) {
       return broken("states: a reset card and no fault CARD_RESET", slot, after->state, after->fault);
     }
-    if (new_fault && ((after->fault == ILK_FAULT_CARD && !g->lost) || (after->fault == ILK_FAULT_CARD_RESET && !g->maybe_reset))) {
+    if (new_fault && ((after->fault == ILK_FAULT_CARD && !g->lost) || (after->fault == ILK_FAULT_CARD_RESET && !g->reset))) {
       return broken("states: CARD or CARD_RESET without its reason", slot, after->fault, g->bad_run);
     }
     if (new_fault && before->state != ILK_AXIS_HOMING &&

@@ -81,8 +81,7 @@ typedef struct {
   bool valid;          /**< this tick's frame is valid */
   bool first;          /**< it is the first after start or after a lost card */
   bool jump;           /**< it lies farther from the last reading than the axis can move */
-  bool reset;          /**< it says for sure that the card was reset */
-  bool maybe_reset;    /**< its heartbeat is ahead by one more than the strict reading of the rule allows */
+  bool reset;          /**< it says that the card was reset */
   bool seen;           /**< a last valid frame exists */
   bool lost;           /**< the card is lost */
   uint32_t bad_run;    /**< bad frames in a row */
@@ -90,7 +89,6 @@ typedef struct {
   uint32_t status;     /**< of the last valid frame */
   uint32_t raw;        /**< counter of the last valid frame */
   uint32_t periods;    /**< loop periods since it */
-  uint32_t ticks;      /**< ticks since it */
   bool triggered;      /**< its switch reading */
   uint32_t run;        /**< valid readings in a row that say so */
   uint32_t run_raw;    /**< counter at the first of them */
@@ -112,7 +110,6 @@ typedef struct {
   bool reversed;       /**< seen in this tick, to be judged */
   int32_t distance;    /**< counts that the rule of this tick measured */
   bool driven;         /**< in the last tick */
-  bool driven_since_valid; /**< since the last valid frame */
   uint32_t direction;  /**< commanded in the last driven tick */
   uint32_t reverse_direction;
   uint32_t reverse_mark;
