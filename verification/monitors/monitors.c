@@ -610,19 +610,19 @@ static void decide_mode(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
     return;
   }
   if (ghost->estop || ghost->bus_lost || ghost->disagree_ticks > c->pedal_disagree_ticks ||
-      ghost->missed_ticks >= c->overrun_limit || ghost->runaway) {
+      ghost->missed_ticks >= c->overrun_limit) {
     ghost->mode = ILK_MODE_LOCKED;
   } else if (tick->after->mode == ILK_MODE_LOCKED && mode != ILK_MODE_LOCKED &&
              (ghost->missed_in_row >= c->overrun_limit || ghost->disagree_ticks == c->pedal_disagree_ticks ||
               ghost->runaway_unsure)) {
-    ghost->mode = ILK_MODE_LOCKED; /* near a bound that the text leaves open */
+    ghost->mode = ILK_MODE_LOCKED; /* by RUNAWAY, which P6 demands, or near a bound that the text leaves open */
   } else if (mode == ILK_MODE_MOTION) {
     if (ghost->pedal != ILK_PEDAL_PRESSED || !ghost->app_alive || ghost->new_fault || ghost->required_lost) {
       leave_motion(ghost);
     }
   } else if (mode == ILK_MODE_READY && ghost->pressed_ticks == c->pedal_debounce_ticks) {
-    const bool good = ghost->app_alive && !ghost->required_lost && !ghost->drift_of_disabled &&
-                      ghost->powered_ticks >= c->power_up_ticks;
+    const bool good = ghost->app_alive && !ghost->required_lost && ghost->powered_ticks >= c->power_up_ticks &&
+                      (!ghost->drift_of_disabled || tick->after->mode == ILK_MODE_MOTION); /* which P9 forbids */
     if (ghost->armed && good && ghost->calm_unsure) {
       ghost->mode_sure = false;
     } else if (ghost->armed && good) {

@@ -12,12 +12,16 @@ ilk_inputs_t in;
 ilk_outputs_t out;
 ilk_request_t requests[1];
 
-ilk_config_t some_config(void);
-ilk_state_t some_state(void);
-ilk_inputs_t some_inputs(void);
-ilk_outputs_t some_outputs(void);
-ilk_request_t some_request(void);
-uint32_t some_word(void);
+ilk_config_t nondet_config(void);
+ilk_state_t nondet_state(void);
+ilk_inputs_t nondet_inputs(void);
+ilk_request_t nondet_request(void);
+uint32_t nondet_word(void);
+ilk_verdict_record_t nondet_verdict(void);
+ilk_config_verdict_t nondet_validity(void);
+
+static ilk_request_t many[ILK_REQUESTS_PER_TICK];
+static ilk_verdict_record_t answers[ILK_REQUESTS_PER_TICK];
 
 /* --- Stand-ins for functions with a proof of their own ------------------------------------------------------ */
 
@@ -60,9 +64,15 @@ uint64_t stand_in_farthest(const ilk_axis_config_t *c, uint32_t periods) {
   return __CPROVER_uninterpreted_product(c->max_delta_counts, periods);
 }
 
+/** Whether a configuration is valid is the business of no step: config_is_valid says what follows from it. */
+ilk_config_verdict_t stand_in_validate(const ilk_config_t *c) {
+  (void)c;
+  return nondet_validity();
+}
+
 uint32_t stand_in_frequency(uint32_t drive) {
   (void)drive;
-  return some_word();
+  return nondet_word();
 }
 
 /* --- The cut ------------------------------------------------------------------------------------------------ */
@@ -71,7 +81,7 @@ static ilk_state_t end;
 
 /** What the snapshot will say after this tick: that of any state that requests can lead to. */
 static void some_future(void) {
-  end = some_state();
+  end = nondet_state();
   __CPROVER_assume(may_follow(&state, &end));
   see_after(&end);
 }
@@ -91,7 +101,7 @@ void cut_after_observation(const ilk_config_t *c, const ilk_request_t r[], uint3
 void cut_before_drive(const ilk_config_t *c, const ilk_request_t r[], uint32_t count, ilk_state_t *s,
                       ilk_outputs_t *o) {
   (void)c, (void)r, (void)count, (void)s, (void)o;
-  state = some_state();
+  state = nondet_state();
   some_memory();
   see_after(&state);
   relate(false, true, GIVEN);
@@ -100,17 +110,17 @@ void cut_before_drive(const ilk_config_t *c, const ilk_request_t r[], uint32_t c
 /* --- The three steps ---------------------------------------------------------------------------------------- */
 
 static void tick_begins(void) {
-  config = some_config();
-  in = some_inputs();
+  config = nondet_config();
+  in = nondet_inputs();
   __CPROVER_assume(config_is_valid());
-  state = some_state();
+  state = nondet_state();
   some_memory();
   see_before();
 }
 
 /** Init leads to R. */
 void initially(void) {
-  config = some_config();
+  config = nondet_config();
   __CPROVER_assume(config_is_valid());
   __CPROVER_assume(ilk_init(&config, &state).error == ILK_CONFIG_ERROR_NONE);
   first_memory();
@@ -125,29 +135,67 @@ void observation(void) {
 }
 
 #ifndef NAMED
-#define NAMED ILK_SLOTS
+#define NAMED 0
 #endif
 
-/** Any request; those that name a slot of the robot, slot by slot, which a solver finds easier than an index. */
+/** Any request that names this slot: one of the robot, the one behind the last, or the largest number. */
 void one_request(void) {
   tick_begins();
   begin_judging();
-  state = some_state();
+  state = nondet_state();
   some_future();
   relate(false, true, GIVEN);
   const ilk_state_t was = state;
-  requests[0] = some_request();
-#if NAMED < ILK_SLOTS
+  requests[0] = nondet_request();
   requests[0].axis = NAMED;
-#else
-  __CPROVER_assume(requests[0].axis >= ILK_SLOTS);
-#endif
   out.verdict[0] = ilk_request_take(&config, &requests[0], &state);
   out.verdict_count = 1u;
   __CPROVER_assert(may_follow(&was, &state), "what may follow");
   __CPROVER_assume(may_follow(&state, &end));
   judge_request();
   relate(true, true, SHOWN);
+}
+
+/** In any state, whether it satisfies M or not. */
+void refusal(void) {
+  config = nondet_config();
+  state = nondet_state();
+  requests[0] = nondet_request();
+  requests[0].axis = NAMED;
+  const ilk_state_t was = state;
+  const ilk_verdict_record_t record = ilk_request_take(&config, &requests[0], &state);
+  __CPROVER_assert((was.system.mode != ILK_MODE_INIT) || (record.verdict != ILK_VERDICT_ACCEPTED),
+                   "P13: nothing is accepted in INIT");
+  __CPROVER_assert((record.verdict == ILK_VERDICT_ACCEPTED) || is_inert(&was, &state),
+                   "P11: a refused request changes nothing but counters");
+}
+
+static uint32_t answered_count;
+
+/** Answers anything; the requests come in order, each once. */
+ilk_verdict_record_t stand_in_take(const ilk_config_t *c, const ilk_request_t *request, ilk_state_t *s) {
+  const uint32_t index = (uint32_t)(request - many);
+  __CPROVER_assert((c == &config) && (s == &state) && (index == answered_count), "in order, each once");
+  answers[index] = nondet_verdict();
+  answered_count++;
+  return answers[index];
+}
+
+/** Phase 6 takes requests one by one: what the induction over them rests on. */
+void all_requests(void) {
+  const uint32_t count = nondet_word();
+  const uint32_t taken = (count < ILK_REQUESTS_PER_TICK) ? count : ILK_REQUESTS_PER_TICK;
+  answered_count = 0u;
+  answer_requests(&config, many, count, &state, &out);
+  __CPROVER_assert((answered_count == taken) && (out.verdict_count == taken), "P11: one verdict for each taken");
+  for (uint32_t i = 0u; i < ILK_REQUESTS_PER_TICK; i++) {
+    __CPROVER_assert((i >= taken) || ((out.verdict[i].verdict == answers[i].verdict) &&
+                                      (out.verdict[i].sequence == answers[i].sequence) &&
+                                      (out.verdict[i].tick == answers[i].tick) &&
+                                      (out.verdict[i].kind == answers[i].kind) &&
+                                      (out.verdict[i].axis == answers[i].axis)),
+                     "P11: in the order of the requests");
+  }
 }
 
 void drive(void) {
@@ -161,16 +209,23 @@ void drive(void) {
 
 /** may_follow is reflexive and transitive. */
 void following(void) {
-  const ilk_state_t one = some_state();
-  const ilk_state_t two = some_state();
-  const ilk_state_t three = some_state();
+  const ilk_state_t one = nondet_state();
+  const ilk_state_t two = nondet_state();
+  const ilk_state_t three = nondet_state();
   __CPROVER_assert(may_follow(&one, &one), "reflexive");
   __CPROVER_assert(!may_follow(&one, &two) || !may_follow(&two, &three) || may_follow(&one, &three), "transitive");
 }
 
+/** What the other steps take for granted of a configuration follows from its validation. */
+void validity(void) {
+  config = nondet_config();
+  __CPROVER_assume(ilk_config_validate(&config).error == (uint32_t)ILK_CONFIG_ERROR_NONE);
+  __CPROVER_assert(config_is_valid(), "P13: what a valid configuration guarantees");
+}
+
 /** The stand-in for a frame's reading, and the judge's checksum, are what the kernel reads. */
 void reading(void) {
-  in = some_inputs();
+  in = nondet_inputs();
   const ilk_reading_t real = ilk_frame_unpack(in.frame[0]);
   const ilk_reading_t told = stand_in_unpack(in.frame[0]);
   __CPROVER_assume(stand_in_checksum(in.frame[0]) == right_checksum(in.frame[0]));
@@ -179,4 +234,21 @@ void reading(void) {
                        (real.heartbeat == told.heartbeat) && (real.card_time_us == told.card_time_us) &&
                        (real.tick_echo == told.tick_echo) && (real.card_status == told.card_status),
                    "words");
+}
+
+/** Without a valid configuration (P13): INIT from the start, in every tick, whatever is asked. */
+void no_configuration(void) {
+  config = nondet_config();
+  const uint32_t error = ilk_init(&config, &state).error;
+  __CPROVER_assert(state.system.mode == ((error == ILK_CONFIG_ERROR_NONE) ? ILK_MODE_LOCKED : ILK_MODE_INIT),
+                   "P13: INIT is left by a valid configuration alone");
+  state = nondet_state();
+  in = nondet_inputs();
+  __CPROVER_assume((state.system.mode == ILK_MODE_INIT) && ilk_state_is_sealed(&state));
+  ilk_step(&config, &state, &in, requests, 0u, &out);
+  __CPROVER_assert((state.system.mode == ILK_MODE_INIT) && ilk_state_is_sealed(&state), "P13: INIT stays INIT");
+  __CPROVER_assert(out.power == 0u, "P2: no power in INIT");
+  for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
+    __CPROVER_assert((out.command[slot].drive == 0u) && is_still(out.frame[slot]), "P1: no drive in INIT");
+  }
 }

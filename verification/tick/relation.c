@@ -4,6 +4,7 @@
  */
 #include "monitors.c"
 
+#include "integrity.h"
 #include "tick.h"
 
 static ilk_ghost_t ghost;
@@ -11,10 +12,10 @@ static ilk_view_t before;
 static ilk_view_t after;
 static ilk_tick_t tick;
 
-ilk_ghost_t some_ghost(void);
-bool some_truth(void);
+ilk_ghost_t nondet_ghost(void);
+bool nondet_truth(void);
+uint32_t nondet_count(void);
 
-#define HOLDS_IF(condition, consequence) (!(condition) || (consequence))
 #define RELATED(claim)                         \
   do {                                         \
     const bool related = (claim);              \
@@ -27,53 +28,16 @@ bool some_truth(void);
 
 /* --- The configuration -------------------------------------------------------------------------------------- */
 
-static bool axis_is_valid(const ilk_axis_config_t *a, const ilk_common_config_t *c) {
-  const uint32_t range = (uint32_t)a->max_counts - (uint32_t)a->min_counts;
-  const uint64_t margin = (uint64_t)a->coast_counts + a->backlash_counts + a->noise_counts;
-  const bool geometry = a->min_counts < a->max_counts && a->min_counts >= -1073741824 && a->max_counts <= 1073741824 &&
-                        a->home_offset_counts >= a->min_counts && a->home_offset_counts <= a->max_counts &&
-                        a->coast_counts > 0u && a->coast_counts < range && a->noise_counts <= range / 8u &&
-                        a->deadband_counts > 0u && a->deadband_counts < range;
-  const bool drive = a->max_drive > 0u && a->max_drive <= 0x7FFFFFFFu && a->unhomed_max_drive > 0u &&
-                     a->unhomed_max_drive <= a->max_drive && a->max_amplitude <= 255u &&
-                     a->home_drive <= a->unhomed_max_drive && a->home_slow_drive <= a->home_drive &&
-                     a->home_amplitude <= a->max_amplitude && a->max_delta_counts <= range / 2u &&
-                     a->max_delta_counts > a->noise_counts;
-  const bool watch = a->stall_ticks > 2u && a->stall_ticks <= 4000u && a->stall_effort_ticks <= 1600u &&
-                     a->stall_min_counts > a->noise_counts && a->stall_min_counts <= range / 8u &&
-                     a->reverse_counts >= margin && a->reverse_counts <= range / 8u && a->drift_counts >= margin &&
-                     a->drift_counts <= range / 8u && a->rest_ticks > 2u && a->rest_ticks <= 8000u &&
-                     a->rest_ticks >= c->switch_debounce_ticks;
-  const bool homing = (a->limit_side == ILK_LIMIT_NONE)
-                          ? a->home_drive == 0u && a->home_travel_counts == 0u && a->home_timeout_ticks == 0u &&
-                                a->home_tolerance_counts == 0u && a->switch_hysteresis_counts == 0u
-                          : a->home_slow_drive > 0u && a->home_timeout_ticks > 0u &&
-                                a->home_timeout_ticks <= 4800000u && a->home_travel_counts > a->coast_counts &&
-                                a->home_tolerance_counts <= range / 8u && a->switch_hysteresis_counts <= range / 8u &&
-                                a->home_tolerance_counts >= 2u * a->noise_counts &&
-                                a->home_clear_counts <= range / 8u &&
-                                a->home_clear_counts > a->home_tolerance_counts + a->switch_hysteresis_counts + a->coast_counts;
-  return a->required <= 1u && a->motor_direction <= 1u && a->direction_correction <= 1u &&
-         a->limit_side <= ILK_LIMIT_UPPER && geometry && drive && watch && homing;
-}
-
-static bool slot_is_bare(const ilk_axis_config_t *a) {
-  return (a->card == ILK_CARD_NONE || a->card == ILK_CARD_SENSOR) && a->required <= 1u && a->limit_side == 0u &&
-         a->motor_direction == 0u && a->direction_correction == 0u && (a->card == ILK_CARD_SENSOR || a->required == 0u);
-}
-
+/** What the proofs take from ilk_config_validate. The step `validity` shows that it follows. */
 bool config_is_valid(void) {
   const ilk_common_config_t *c = &config.common;
-  bool valid = c->pedal_channels >= 1u && c->pedal_channels <= 2u && c->app_timeout_ticks > 1u &&
-               c->app_timeout_ticks <= 1200u && c->lease_max_ticks > 1u && c->lease_max_ticks <= 1200u &&
-               c->pedal_debounce_ticks > 0u && c->pedal_debounce_ticks <= 400u && c->pedal_disagree_ticks > 0u &&
-               c->pedal_disagree_ticks <= 400u && c->power_up_ticks > 0u && c->power_up_ticks <= 40000u &&
-               c->switch_debounce_ticks > 1u && c->switch_debounce_ticks <= 160u && c->bad_frame_limit >= 1u &&
-               c->bad_frame_limit <= 5u && c->overrun_limit >= 1u && c->overrun_limit <= 10u &&
-               config.crc == ilk_config_crc(&config);
+  bool valid = c->pedal_channels >= 1u && c->pedal_channels <= 2u && c->pedal_debounce_ticks > 0u &&
+               c->bad_frame_limit > 0u && c->overrun_limit > 0u && config.crc == ilk_config_crc(&config);
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
     const ilk_axis_config_t *a = &config.axis[slot];
-    valid = valid && (has_motor(a) ? axis_is_valid(a, c) : slot_is_bare(a));
+    valid = valid && a->card < ILK_CARD_COUNT && a->required <= 1u && a->motor_direction <= 1u &&
+            a->direction_correction <= 1u && a->limit_side < ILK_LIMIT_COUNT &&
+            a->unhomed_max_drive <= a->max_drive;
   }
   return valid;
 }
@@ -152,7 +116,7 @@ static void relate_mode(bool shown, bool middle) {
     RELATED(HOLDS_IF(motion && before.mode == ILK_MODE_MOTION, s->consent == before.consent));
     RELATED(HOLDS_IF(motion, before.mode >= ILK_MODE_READY));
     RELATED(HOLDS_IF(s->estop != 0u || s->bus_bad_ticks >= config.common.bad_frame_limit, s->mode == ILK_MODE_LOCKED));
-    RELATED(HOLDS_IF(motion, s->app_alive != 0u));
+    RELATED(HOLDS_IF(motion, s->app_alive != 0u && s->pedal == ILK_PEDAL_PRESSED));
     for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
       RELATED(HOLDS_IF(!has_motor(&config.axis[slot]), before.axis[slot].state == ILK_AXIS_DISABLED));
     }
@@ -245,6 +209,21 @@ static void relate_stillness(bool shown, const ilk_axis_config_t *c, const ilk_s
   }
 }
 
+/** The kernel knows rest only where the judge does not see motion. */
+static void relate_rest(bool shown) {
+  for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
+    const ilk_axis_config_t *c = &config.axis[slot];
+    const ilk_ghost_slot_t *g = &ghost.slot[slot];
+    const ilk_stillness_t *s = &state.axis[slot].rest;
+    if (has_motor(c)) {
+      const int32_t last = wrapped(g->raw, s->origin_raw);
+      relate_stillness(shown, c, &g->rest, s, c->noise_counts);
+      RELATED(g->quiet >= s->ticks);
+      RELATED(HOLDS_IF(s->ticks > 0u, g->valid && last >= s->below && last <= s->above));
+    }
+  }
+}
+
 /** MOTION begins only when no axis that is DISABLED has moved. */
 static void relate_calm(bool shown, bool middle) {
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
@@ -268,10 +247,58 @@ static void relate_number(bool shown, bool middle) {
   }
 }
 
-/** A FAULTED axis that goes on moving locks. */
-static void relate_runaway(bool shown, bool middle) {
+/** Where the number of the press before comes from. `in.boot_nonce` stays the same, `tick` does not come round. */
+static uint32_t last_press;
+
+static uint32_t number_of(uint32_t at) {
+  return ((at == in.boot_nonce) ? in.boot_nonce : (at ^ in.boot_nonce)) * 0x9e3779b1u;
+}
+
+static void relate_origin(bool shown, bool middle) {
+  const ilk_system_t *s = &state.system;
+  const bool motion = s->mode == ILK_MODE_MOTION;
+  if (!shown) {
+    __CPROVER_assume(s->tick < UINT32_MAX);
+  }
+  RELATED(HOLDS_IF(s->tick == 0u, s->mode == ILK_MODE_LOCKED));
+  RELATED(HOLDS_IF(s->tick == 0u, middle ? s->app_alive == 0u : s->app_age_ticks == UINT32_MAX));
+  RELATED(ghost.last_consent == 0u || (last_press > 0u && last_press < s->tick && ghost.last_consent == number_of(last_press)));
   if (middle) {
-    RELATED(HOLDS_IF(ghost.runaway, state.system.mode == ILK_MODE_LOCKED));
+    RELATED(HOLDS_IF(motion && before.mode != ILK_MODE_MOTION, s->consent == number_of(s->tick)));
+    RELATED(HOLDS_IF(before.mode == ILK_MODE_MOTION, ghost.last_consent == before.consent));
+  } else {
+    RELATED(HOLDS_IF(motion, ghost.last_consent == s->consent));
+  }
+}
+
+/** A FAULTED axis that goes on moving locks, and is known to be the reason. */
+static void relate_runaway(bool shown, bool middle) {
+  bool known = false;
+  for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
+    known = known || state.axis[slot].runaway != 0u;
+  }
+  if (middle) {
+    RELATED(HOLDS_IF(ghost.runaway, state.system.mode == ILK_MODE_LOCKED && known));
+  }
+}
+
+static void relate_stall(bool shown, bool middle) {
+  for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
+    const ilk_ghost_slot_t *g = &ghost.slot[slot];
+    const ilk_axis_t *a = &state.axis[slot];
+    const bool directed = a->stall_direction != ILK_DIRECTION_NONE;
+    const bool was_well = before.axis[slot].state != ILK_AXIS_FAULTED;
+    if (!has_motor(&config.axis[slot])) {
+      continue;
+    }
+    RELATED(g->stall_direction == a->stall_direction && a->stall_direction <= ILK_DIRECTION_DECREASING);
+    RELATED(HOLDS_IF(directed, g->stall_mark == a->stall_mark_raw && g->effort_mark == a->effort_mark_raw));
+    RELATED(g->stall_ticks == a->stall_driven_ticks);
+    RELATED(g->effort == (((uint64_t)a->effort_high << 32) | a->effort_low));
+    if (middle) {
+      RELATED(HOLDS_IF(g->stalled && was_well, a->state == ILK_AXIS_FAULTED && a->fault_tick == state.system.tick));
+      RELATED(HOLDS_IF(was_well && a->state == ILK_AXIS_FAULTED && a->fault == ILK_FAULT_STALL, g->stalled));
+    }
   }
 }
 
@@ -300,6 +327,15 @@ void relate(bool shown, bool middle, unsigned parts) {
   }
   if ((parts & NUMBER) != 0u) {
     relate_number(shown, middle);
+  }
+  if ((parts & ORIGIN) != 0u) {
+    relate_origin(shown, middle);
+  }
+  if ((parts & STALL) != 0u) {
+    relate_stall(shown, middle);
+  }
+  if ((parts & REST) != 0u) {
+    relate_rest(shown);
   }
   if ((parts & RUNAWAY) != 0u) {
     relate_runaway(shown, middle);
@@ -336,6 +372,23 @@ bool may_follow(const ilk_state_t *from, const ilk_state_t *to) {
          HOLDS_IF(t->mode != ILK_MODE_MOTION, t->consent == ((s->mode == ILK_MODE_MOTION) ? 0u : s->consent));
 }
 
+/** The same words, the seal and what a refusal may count apart. */
+bool is_inert(const ilk_state_t *from, const ilk_state_t *to) {
+  const uint32_t *a = (const uint32_t *)from;
+  const uint32_t *b = (const uint32_t *)to;
+  const uint32_t number = offsetof(ilk_state_t, system.last_sequence) / sizeof(uint32_t);
+  const uint32_t refused = offsetof(ilk_state_t, system.requests_refused) / sizeof(uint32_t);
+  uint32_t differ = 0u;
+  for (uint32_t word = 0u; word < offsetof(ilk_state_t, seal) / sizeof(uint32_t); word++) {
+    if (word != number && word != refused) {
+      differ |= a[word] ^ b[word];
+    }
+  }
+  return differ == 0u;
+}
+
+bool is_still(const uint32_t *frame) { return judge_is_zero_drive(frame); }
+
 static bool checksums[ILK_SLOTS];
 
 bool stand_in_checksum(const uint32_t *frame) {
@@ -351,9 +404,10 @@ bool right_checksum(const uint32_t *frame) { return checksum_is_right(frame); }
 /* --- The judge ----------------------------------------------------------------------------------------------- */
 
 void some_memory(void) {
-  ghost = some_ghost();
+  ghost = nondet_ghost();
+  last_press = nondet_count();
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
-    checksums[slot] = some_truth();
+    checksums[slot] = nondet_truth();
   }
 }
 
@@ -380,21 +434,21 @@ void begin_judging(void) {
   tick = now;
 }
 
+/** What must be possible, so that no claim holds for want of a case. */
+#ifdef ILK_COVER
+#define GOAL(condition) __CPROVER_cover(condition)
+#else
+#define GOAL(condition) ((void)0)
+#endif
+
 void judge_inputs(void) {
   ghost_observe(&ghost, &tick);
   before_requests(&ghost, &tick);
-}
-
-void judge_request(void) {
-  tick.count = 1u;
-  ghost.order_error = 0u; /* P11 asks for the first request whose verdict is wrong: let it be this one */
-  follow_request(&ghost, &tick, 0u);
-#ifdef CLAIM_P11
-  {
-    const ilk_judgement_t told = judge_P11(&ghost, &tick);
-    __CPROVER_assert(told.clause == NULL, "P11");
-  }
-#endif
+  GOAL(before.mode == ILK_MODE_READY && after.mode == ILK_MODE_MOTION);
+  GOAL(before.mode == ILK_MODE_MOTION && after.mode == ILK_MODE_MOTION && state.axis[0].state == ILK_AXIS_HOMING);
+  GOAL(before.mode == ILK_MODE_MOTION && after.mode == ILK_MODE_READY && !ghost.app_alive);
+  GOAL(before.axis[0].state == ILK_AXIS_MOVING && after.axis[0].state == ILK_AXIS_FAULTED);
+  GOAL(before.mode == ILK_MODE_READY && after.mode == ILK_MODE_LOCKED && after.cause == ILK_CAUSE_BUS);
 }
 
 #define CLAIM(id)                                            \
@@ -403,8 +457,42 @@ void judge_request(void) {
     __CPROVER_assert(told.clause == NULL, #id);              \
   } while (false)
 
-void judge_drive(void) {
-  after_requests(&ghost, &tick);
+void judge_request(void) {
+  const bool accepted = out.verdict[0].verdict == ILK_VERDICT_ACCEPTED;
+  (void)accepted;
+  GOAL(accepted && requests[0].kind == ILK_REQUEST_RESET);
+  GOAL(accepted && requests[0].kind == ILK_REQUEST_MOVE && after.axis[0].state == ILK_AXIS_MOVING);
+  GOAL(accepted && requests[0].kind == ILK_REQUEST_HOME && after.axis[0].state == ILK_AXIS_HOMING);
+  GOAL(accepted && requests[0].kind == ILK_REQUEST_CLEAR_FAULT);
+  GOAL(accepted && requests[0].kind == ILK_REQUEST_STOP && before.mode == ILK_MODE_MOTION);
+  GOAL(out.verdict[0].verdict == ILK_VERDICT_CONSENT);
+  tick.count = 1u;
+  ghost.order_error = 0u; /* P11 asks for the first request whose verdict is wrong: let it be this one */
+  follow_request(&ghost, &tick, 0u);
   CLAIMS
+}
+
+void judge_drive(void) {
+  const bool driven = is_driven(&tick, 0u);
+  (void)driven;
+  after_requests(&ghost, &tick);
+  GOAL(driven && after.axis[0].state == ILK_AXIS_MOVING && after.axis[0].homed != ILK_HOMED_NOT);
+  GOAL(driven && after.axis[0].state == ILK_AXIS_HOMING);
+  GOAL(driven && after.axis[0].state == ILK_AXIS_MOVING && after.axis[0].homed == ILK_HOMED_NOT);
+  GOAL(ghost.estop && before.mode == ILK_MODE_MOTION);
+  GOAL(ghost.bus_lost && before.mode == ILK_MODE_MOTION);
+  GOAL(!ghost.app_alive && before.mode == ILK_MODE_MOTION);
+  GOAL(out.gate[0] == ILK_GATE_HARD_LIMIT);
+  GOAL(out.gate[0] == ILK_GATE_SOFT_LIMIT);
+  GOAL(out.gate[0] == ILK_GATE_UNHOMED_TRAVEL && after.axis[0].state == ILK_AXIS_MOVING);
+  GOAL(out.gate[0] == ILK_GATE_UNHOMED_TRAVEL && after.axis[0].state == ILK_AXIS_HOMING);
+  GOAL(before.mode == ILK_MODE_LOCKED && after.mode == ILK_MODE_READY);
+  GOAL(before.mode == ILK_MODE_LOCKED && after.mode == ILK_MODE_LOCKED);
+  GOAL(before.axis[0].state == ILK_AXIS_FAULTED && after.axis[0].state == ILK_AXIS_DISABLED);
+  GOAL(before.mode == ILK_MODE_READY && after.mode == ILK_MODE_MOTION && driven);
+  CLAIMS
+  if (after.mode == ILK_MODE_MOTION && before.mode != ILK_MODE_MOTION) {
+    last_press = ghost.tick;
+  }
   ghost_settle(&ghost, &tick);
 }

@@ -29,7 +29,10 @@
 #define STALL 0x200u   /**< marks and sums of progress */
 #define PLACE 0x400u   /**< position and reference */
 #define NUMBER 0x800u  /**< MOTION has a number */
-#define RUNAWAY 0x1000u
+#define ORIGIN 0x1000u  /**< where that number comes from */
+#define RUNAWAY 0x2000u /**< a FAULTED axis that moves locks */
+
+#define HOLDS_IF(condition, consequence) (!(condition) || (consequence))
 
 extern ilk_config_t config;
 extern ilk_state_t state;
@@ -45,6 +48,12 @@ void relate(bool shown, bool middle, unsigned parts);
 
 /** What any number of requests can make of a state, as far as the snapshot tells: reflexive and transitive. */
 bool may_follow(const ilk_state_t *from, const ilk_state_t *to);
+
+/** Nothing but counters has changed. */
+bool is_inert(const ilk_state_t *from, const ilk_state_t *to);
+
+/** Zero drive on the wire. */
+bool is_still(const uint32_t *frame);
 
 /** Whether the checksum of a frame of `in` is right: arbitrary, but the same whoever asks. */
 bool stand_in_checksum(const uint32_t *frame);
