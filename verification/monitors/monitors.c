@@ -621,9 +621,8 @@ static void decide_mode(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
       leave_motion(ghost);
     }
   } else if (mode == ILK_MODE_READY && ghost->pressed_ticks == c->pedal_debounce_ticks) {
-    const bool good = ghost->app_alive && !ghost->required_lost && ghost->powered_ticks >= c->power_up_ticks &&
-                      (!ghost->drift_of_disabled || tick->after->mode == ILK_MODE_MOTION); /* which P9 forbids */
-    if (ghost->armed && good && ghost->calm_unsure) {
+    const bool good = ghost->app_alive && !ghost->required_lost && ghost->powered_ticks >= c->power_up_ticks;
+    if (ghost->armed && good && (ghost->calm_unsure || ghost->drift_of_disabled)) { /* the latter P9 judges */
       ghost->mode_sure = false;
     } else if (ghost->armed && good) {
       ghost->mode = ILK_MODE_MOTION;
