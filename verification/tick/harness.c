@@ -3,7 +3,6 @@
  * The tick of the kernel, as shipped, cut before its requests. See tick.h.
  */
 #include "step.c"
-
 #include "tick.h"
 
 ilk_config_t config;
@@ -23,7 +22,8 @@ ilk_config_verdict_t nondet_validity(void);
 static ilk_request_t many[ILK_REQUESTS_PER_TICK];
 static ilk_verdict_record_t answers[ILK_REQUESTS_PER_TICK];
 
-/* --- Stand-ins for functions with a proof of their own ------------------------------------------------------ */
+/* --- Stand-ins for functions with a proof of their own
+ * ------------------------------------------------------ */
 
 /** The digest of words is a function of them; no other property of it is needed. */
 uint32_t stand_in_digest(const unsigned char bytes[], uint32_t words) {
@@ -40,7 +40,8 @@ uint32_t stand_in_crc(uint32_t crc, const unsigned char bytes[], uint32_t words)
   return 1u;
 }
 
-/** What a frame says, and for each frame whether its checksum is right. The step `reading` shows it of both sides. */
+/** What a frame says, and for each frame whether its checksum is right. The step `reading` shows it of both
+ * sides. */
 ilk_reading_t stand_in_unpack(const uint32_t frame[ILK_FRAME_WORDS]) {
   const ilk_reading_t reading = {.intact = (frame[0] == 0xFEFEFE01u) && stand_in_checksum(frame),
                                  .switch_triggered = (frame[2] & 0x00080000u) == 0u,
@@ -60,12 +61,12 @@ uint32_t stand_in_multiply(uint32_t a, uint32_t b) {
   return (product > UINT32_MAX) ? UINT32_MAX : (uint32_t)product;
 }
 
-uint64_t stand_in_farthest(const ilk_axis_config_t *c, uint32_t periods) {
+uint64_t stand_in_farthest(const ilk_axis_config_t* c, uint32_t periods) {
   return __CPROVER_uninterpreted_product(c->max_delta_counts, periods);
 }
 
 /** Whether a configuration is valid is the business of no step: config_is_valid says what follows from it. */
-ilk_config_verdict_t stand_in_validate(const ilk_config_t *c) {
+ilk_config_verdict_t stand_in_validate(const ilk_config_t* c) {
   (void)c;
   return nondet_validity();
 }
@@ -75,7 +76,8 @@ uint32_t stand_in_frequency(uint32_t drive) {
   return nondet_word();
 }
 
-/* --- The cut ------------------------------------------------------------------------------------------------ */
+/* --- The cut
+ * ------------------------------------------------------------------------------------------------ */
 
 static ilk_state_t end;
 
@@ -87,8 +89,8 @@ static void some_future(void) {
 }
 
 /** Phases 1 to 5 have led to M; the rest of this tick is the business of B and C. */
-void cut_after_observation(const ilk_config_t *c, const ilk_request_t r[], uint32_t count, ilk_state_t *s,
-                           ilk_outputs_t *o) {
+void cut_after_observation(const ilk_config_t* c, const ilk_request_t r[], uint32_t count, ilk_state_t* s,
+                           ilk_outputs_t* o) {
   (void)c, (void)r, (void)count, (void)s, (void)o;
   some_future();
   judge_inputs();
@@ -98,8 +100,8 @@ void cut_after_observation(const ilk_config_t *c, const ilk_request_t r[], uint3
 }
 
 /** Any state that satisfies M, whatever came before; all requests are answered. */
-void cut_before_drive(const ilk_config_t *c, const ilk_request_t r[], uint32_t count, ilk_state_t *s,
-                      ilk_outputs_t *o) {
+void cut_before_drive(const ilk_config_t* c, const ilk_request_t r[], uint32_t count, ilk_state_t* s,
+                      ilk_outputs_t* o) {
   (void)c, (void)r, (void)count, (void)s, (void)o;
   state = nondet_state();
   some_memory();
@@ -107,7 +109,8 @@ void cut_before_drive(const ilk_config_t *c, const ilk_request_t r[], uint32_t c
   relate(false, true, GIVEN);
 }
 
-/* --- The three steps ---------------------------------------------------------------------------------------- */
+/* --- The three steps
+ * ---------------------------------------------------------------------------------------- */
 
 static void tick_begins(void) {
   config = nondet_config();
@@ -173,7 +176,7 @@ void refusal(void) {
 static uint32_t answered_count;
 
 /** Answers anything; the requests come in order, each once. */
-ilk_verdict_record_t stand_in_take(const ilk_config_t *c, const ilk_request_t *request, ilk_state_t *s) {
+ilk_verdict_record_t stand_in_take(const ilk_config_t* c, const ilk_request_t* request, ilk_state_t* s) {
   const uint32_t index = (uint32_t)(request - many);
   __CPROVER_assert((c == &config) && (s == &state) && (index == answered_count), "in order, each once");
   answers[index] = nondet_verdict();
@@ -187,14 +190,15 @@ void all_requests(void) {
   const uint32_t taken = (count < ILK_REQUESTS_PER_TICK) ? count : ILK_REQUESTS_PER_TICK;
   answered_count = 0u;
   answer_requests(&config, many, count, &state, &out);
-  __CPROVER_assert((answered_count == taken) && (out.verdict_count == taken), "P11: one verdict for each taken");
+  __CPROVER_assert((answered_count == taken) && (out.verdict_count == taken),
+                   "P11: one verdict for each taken");
   for (uint32_t i = 0u; i < ILK_REQUESTS_PER_TICK; i++) {
-    __CPROVER_assert((i >= taken) || ((out.verdict[i].verdict == answers[i].verdict) &&
-                                      (out.verdict[i].sequence == answers[i].sequence) &&
-                                      (out.verdict[i].tick == answers[i].tick) &&
-                                      (out.verdict[i].kind == answers[i].kind) &&
-                                      (out.verdict[i].axis == answers[i].axis)),
-                     "P11: in the order of the requests");
+    __CPROVER_assert(
+        (i >= taken) ||
+            ((out.verdict[i].verdict == answers[i].verdict) &&
+             (out.verdict[i].sequence == answers[i].sequence) && (out.verdict[i].tick == answers[i].tick) &&
+             (out.verdict[i].kind == answers[i].kind) && (out.verdict[i].axis == answers[i].axis)),
+        "P11: in the order of the requests");
   }
 }
 
@@ -213,7 +217,8 @@ void following(void) {
   const ilk_state_t two = nondet_state();
   const ilk_state_t three = nondet_state();
   __CPROVER_assert(may_follow(&one, &one), "reflexive");
-  __CPROVER_assert(!may_follow(&one, &two) || !may_follow(&two, &three) || may_follow(&one, &three), "transitive");
+  __CPROVER_assert(!may_follow(&one, &two) || !may_follow(&two, &three) || may_follow(&one, &three),
+                   "transitive");
 }
 
 /** What the other steps take for granted of a configuration follows from its validation. */
@@ -246,7 +251,8 @@ void no_configuration(void) {
   in = nondet_inputs();
   __CPROVER_assume((state.system.mode == ILK_MODE_INIT) && ilk_state_is_sealed(&state));
   ilk_step(&config, &state, &in, requests, 0u, &out);
-  __CPROVER_assert((state.system.mode == ILK_MODE_INIT) && ilk_state_is_sealed(&state), "P13: INIT stays INIT");
+  __CPROVER_assert((state.system.mode == ILK_MODE_INIT) && ilk_state_is_sealed(&state),
+                   "P13: INIT stays INIT");
   __CPROVER_assert(out.power == 0u, "P2: no power in INIT");
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
     __CPROVER_assert((out.command[slot].drive == 0u) && is_still(out.frame[slot]), "P1: no drive in INIT");
