@@ -42,6 +42,7 @@ void Player::show(const ilk_recorded_tick_t& tick) {
   shown_.overruns = picture.state.system.overruns;
   std::ranges::copy(picture.out.command, std::begin(shown_.command));
   std::ranges::copy(picture.out.gate, std::begin(shown_.gate));
+  shown_.power = picture.out.power;
   std::ranges::copy(picture.out.lamp, std::begin(shown_.lamp));
   out_ = picture.out;
   publish();

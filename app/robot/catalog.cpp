@@ -182,7 +182,7 @@ constexpr std::array<Entry, 42> kConfigError{
     Entry{15, "EMPTY_SLOT", "A slot without a motor card has a field that is not zero, `card` and `required` apart; an empty slot is required.", "", "", "", Names{}},
     Entry{16, "LIMIT_SIDE", "`limit_side` is not NONE, LOWER or UPPER.", "", "", "", Names{}},
     Entry{17, "SOFT_LIMITS", "`min_counts` is not below `max_counts`, or a limit is beyond 2^30 counts.", "", "", "", Names{}},
-    Entry{18, "HOME_OFFSET", "`home_offset_counts` is outside the soft limits.", "", "", "", Names{}},
+    Entry{18, "HOME_OFFSET", "`home_offset_counts` is outside the soft limits, or leaves no room between where the switch is sure to be open and the coast before the other limit.", "", "", "", Names{}},
     Entry{19, "COAST", "`coast_counts` is zero, shorter than full speed in the latency of the loop, or min + coast is not below max - coast.", "", "", "", Names{}},
     Entry{20, "DEADBAND", "`deadband_counts` is zero or at least half of the range.", "", "", "", Names{}},
     Entry{21, "MAX_DRIVE", "`max_drive` is zero or more than the card's word can carry.", "", "", "", Names{}},

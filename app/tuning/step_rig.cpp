@@ -54,14 +54,19 @@ RigResult<void> StepRig::make_ready() {
   return run(settle_ticks);
 }
 
+/** A MOVE without drive is refused: the lease of the one before ends by one of a single tick. */
 void StepRig::move(std::int32_t target_counts, std::uint32_t drive) {
+  if (drive == 0 && !may_drive_) {
+    return;
+  }
+  may_drive_ = drive != 0;
   ilk_request_t request{};
   request.kind = ILK_REQUEST_MOVE;
   request.axis = slot_;
   request.target_counts = target_counts;
-  request.drive = std::max(drive, 1U);  // the smallest that the kernel accepts; it moves nothing
-  request.amplitude = config_.axis[slot_].max_amplitude;
-  request.lease_ticks = config_.common.lease_max_ticks;
+  request.drive = std::max(drive, 1U);
+  request.amplitude = may_drive_ ? config_.axis[slot_].max_amplitude : 0;
+  request.lease_ticks = may_drive_ ? config_.common.lease_max_ticks : 1;
   request.consent = state_.system.consent;
   put(request);
 }

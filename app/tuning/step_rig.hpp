@@ -66,6 +66,7 @@ class StepRig {
   ilk_outputs_t outputs_{};
   std::vector<ilk_request_t> requests_;
   std::uint32_t sequence_ = 0;
+  bool may_drive_ = false; /**< the newest MOVE asked for drive */
 };
 
 }  // namespace interlock

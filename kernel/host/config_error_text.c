@@ -21,7 +21,7 @@ ilk_config_error_text_t ilk_config_error_text(uint32_t error) {
     [ILK_CONFIG_ERROR_EMPTY_SLOT] = {"EMPTY_SLOT", "A slot without a motor card has a field that is not zero, `card` and `required` apart; an empty slot is required."},
     [ILK_CONFIG_ERROR_LIMIT_SIDE] = {"LIMIT_SIDE", "`limit_side` is not NONE, LOWER or UPPER."},
     [ILK_CONFIG_ERROR_SOFT_LIMITS] = {"SOFT_LIMITS", "`min_counts` is not below `max_counts`, or a limit is beyond 2^30 counts."},
-    [ILK_CONFIG_ERROR_HOME_OFFSET] = {"HOME_OFFSET", "`home_offset_counts` is outside the soft limits."},
+    [ILK_CONFIG_ERROR_HOME_OFFSET] = {"HOME_OFFSET", "`home_offset_counts` is outside the soft limits, or leaves no room between where the switch is sure to be open and the coast before the other limit."},
     [ILK_CONFIG_ERROR_COAST] = {"COAST", "`coast_counts` is zero, shorter than full speed in the latency of the loop, or min + coast is not below max - coast."},
     [ILK_CONFIG_ERROR_DEADBAND] = {"DEADBAND", "`deadband_counts` is zero or at least half of the range."},
     [ILK_CONFIG_ERROR_MAX_DRIVE] = {"MAX_DRIVE", "`max_drive` is zero or more than the card's word can carry."},

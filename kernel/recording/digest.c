@@ -1,6 +1,6 @@
 #include <string.h>
 
-#include "crc32.h"
+#include "parts.h"
 #include "interlock/recording.h"
 
 #define ODD_FACTOR 0x9e3779b97f4a7c15u /* 2^64 divided by the golden ratio */
@@ -57,5 +57,5 @@ uint32_t ilk_recording_crc(const uint32_t words[], uint32_t count) {
   for (uint32_t i = 0u; i < count; ++i) {
     crc = ilk_crc32_word(crc, words[i]);
   }
-  return ilk_crc32_finish(crc);
+  return crc ^ ILK_CRC32_START;
 }

@@ -62,13 +62,13 @@ static ilk_replay_result_t replay_ticks(ilk_replay_t *replay, ilk_block_cursor_t
       *difference = (ilk_difference_t){.tick = tick->tick, .outputs = read == ILK_TICK_OUTPUTS_DIFFER};
       result = ILK_REPLAY_DIFFERS;
     }
-    replay->state = tick->picture.state;
     if (result == ILK_REPLAY_IDENTICAL) {
       count_tick(replay, tick);
       if (visitor != NULL) {
-        visitor(context, tick);
+        visitor(context, &replay->state, tick);
       }
     }
+    replay->state = tick->picture.state;
   }
 }
 

@@ -1,37 +1,28 @@
-#include "axis.h"
-
-#include "arith.h"
-#include "homing.h"
+#include "parts.h"
 
 bool ilk_card_is_lost(const ilk_common_config_t *common, const ilk_axis_t *axis) {
   return axis->bad_frames >= common->bad_frame_limit;
 }
 
-/** Built after the card heard the frame of the transaction before; not judged until two were sent. */
-static bool echo_is_current(const ilk_system_t *system, const ilk_reading_t *reading) {
-  return (system->frames_sent < ILK_LATENCY_TICKS) ||
-         (reading->tick_echo == (system->tick - ILK_LATENCY_TICKS));
-}
-
 void ilk_card_observe(const ilk_system_t *system, const ilk_reading_t *reading, bool received,
                       ilk_axis_t *axis) {
-  const bool valid = received && reading->intact && echo_is_current(system, reading);
+  /* Built after the card heard the frame of the transaction before; not judged until two were sent. */
+  const bool current =
+      (system->frames_sent < ILK_LATENCY_TICKS) || (reading->tick_echo == (system->tick - ILK_LATENCY_TICKS));
+  const bool valid = received && reading->intact && current;
   axis->periods = (axis->card_valid != 0u) ? 0u : axis->periods;
   axis->card_valid = flag_of(valid);
-  axis->bad_frames = valid ? 0u : count_up(axis->bad_frames, UINT32_MAX);
+  axis->bad_frames = ticks_in_row(!valid, axis->bad_frames, UINT32_MAX);
   if (received && !reading->intact) {
     axis->checksum_failures = count_up(axis->checksum_failures, UINT32_MAX);
   }
 }
 
-/* --- Stillness -------------------------------------------------------------------------------------------
- */
+/* --- Stillness --------------------------------------------------------------------------------- */
 
 static void begin_stillness(ilk_stillness_t *still, uint32_t raw) {
-  still->origin_raw = raw;
-  still->below = 0;
-  still->above = 0;
-  still->ticks = 0u;
+  const ilk_stillness_t begun = {.origin_raw = raw, .below = 0, .above = 0, .ticks = 0u};
+  *still = begun;
 }
 
 /** One more reading; one that lies too far from another begins anew. */
@@ -52,12 +43,7 @@ bool ilk_axis_is_at_rest(const ilk_axis_config_t *config, const ilk_axis_t *axis
   return (axis->card_valid != 0u) && (axis->rest.ticks >= config->rest_ticks);
 }
 
-bool ilk_axis_has_moved(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
-  return axis->calm.ticks < config->rest_ticks;
-}
-
-/* --- Orders ----------------------------------------------------------------------------------------------
- */
+/* --- Orders ------------------------------------------------------------------------------------ */
 
 void ilk_axis_drop_motion(ilk_axis_t *axis) {
   if ((axis->state == (uint32_t)ILK_AXIS_MOVING) || (axis->state == (uint32_t)ILK_AXIS_HOMING)) {
@@ -79,7 +65,6 @@ void ilk_axis_disable(ilk_axis_t *axis) {
 }
 
 void ilk_axis_begin_press(ilk_axis_t *axis) {
-  axis->path_raw = axis->raw;
   axis->path_is_homing = 0u;
   axis->unhomed_travel_counts = 0u;
   axis->homing_travel_counts = 0u;
@@ -94,8 +79,7 @@ void ilk_axis_enable(ilk_axis_t *axis) {
   }
 }
 
-/* --- Stall -----------------------------------------------------------------------------------------------
- */
+/* --- Stall ------------------------------------------------------------------------------------- */
 
 static uint64_t effort_of(const ilk_axis_t *axis) {
   return ((uint64_t)axis->effort_high << 32u) | axis->effort_low;
@@ -128,12 +112,17 @@ static int32_t advance_from(const ilk_axis_config_t *config, const ilk_axis_t *a
   return along(direction, travel_between(config, mark_raw, axis->raw));
 }
 
+/** True when the axis has come more than `counts` from the mark, the way in which progress counts. */
+static bool is_beyond(const ilk_axis_config_t *config, const ilk_axis_t *axis, uint32_t mark_raw,
+                      uint32_t counts) {
+  const int32_t advance = advance_from(config, axis, mark_raw, axis->stall_direction);
+  return (advance > 0) && (magnitude(advance) > counts);
+}
+
 static void follow_progress(const ilk_axis_config_t *config, ilk_axis_t *axis) {
-  const int32_t since_mark = advance_from(config, axis, axis->stall_mark_raw, axis->stall_direction);
-  const int32_t since_effort = advance_from(config, axis, axis->effort_mark_raw, axis->stall_direction);
-  if ((since_mark > 0) && (magnitude(since_mark) >= config->stall_min_counts)) {
+  if (is_beyond(config, axis, axis->stall_mark_raw, left_of(config->stall_min_counts, 1u))) {
     clear_stall(axis);
-  } else if ((since_effort > 0) && (magnitude(since_effort) > config->noise_counts)) {
+  } else if (is_beyond(config, axis, axis->effort_mark_raw, config->noise_counts)) {
     axis->effort_mark_raw = axis->raw;
     set_effort(axis, 0u);
   } else {
@@ -142,9 +131,11 @@ static void follow_progress(const ilk_axis_config_t *config, ilk_axis_t *axis) {
 }
 
 void ilk_axis_note_arrival(const ilk_axis_config_t *config, ilk_axis_t *axis) {
-  const int32_t advance = advance_from(config, axis, axis->stall_mark_raw, axis->stall_direction);
-  if ((advance > 0) && (magnitude(advance) > config->noise_counts)) {
+  const bool ahead = is_beyond(config, axis, axis->effort_mark_raw, 0u);
+  const uint32_t effort_mark_raw = ahead ? axis->raw : axis->effort_mark_raw;
+  if (is_beyond(config, axis, axis->stall_mark_raw, config->noise_counts)) {
     clear_stall(axis);
+    axis->effort_mark_raw = effort_mark_raw;
   }
 }
 
@@ -168,27 +159,20 @@ void ilk_axis_note_drive(const ilk_command_t *command, ilk_axis_t *axis) {
   axis->rest.ticks = 0u;
 }
 
-/* --- Faults ----------------------------------------------------------------------------------------------
- */
+/* --- Faults ------------------------------------------------------------------------------------ */
 
-/** A fault that is about to be raised, or NONE. */
-typedef struct {
-  ilk_fault_t fault;
-  int32_t value;
-} finding_t;
-
-static finding_t found_if(bool present, ilk_fault_t fault, int32_t value) {
-  const finding_t finding = {.fault = present ? fault : ILK_FAULT_NONE, .value = value};
+static ilk_finding_t found_if(bool present, ilk_fault_t fault, int32_t value) {
+  const ilk_finding_t finding = {.fault = present ? fault : ILK_FAULT_NONE, .value = value};
   return finding;
 }
 
-static finding_t first_of(finding_t earlier, finding_t later) {
+static ilk_finding_t first_of(ilk_finding_t earlier, ilk_finding_t later) {
   return (earlier.fault != ILK_FAULT_NONE) ? earlier : later;
 }
 
 /** The first fault is kept until CLEAR_FAULT; true when this one is it. */
-static bool raise_fault(const ilk_system_t *system, finding_t finding, ilk_axis_t *axis) {
-  const bool is_new = axis->state != (uint32_t)ILK_AXIS_FAULTED;
+static bool raise_fault(const ilk_system_t *system, ilk_finding_t finding, ilk_axis_t *axis) {
+  const bool is_new = (finding.fault != ILK_FAULT_NONE) && (axis->state != (uint32_t)ILK_AXIS_FAULTED);
   if (is_new) {
     ilk_axis_drop_motion(axis);
     axis->state = (uint32_t)ILK_AXIS_FAULTED;
@@ -197,7 +181,7 @@ static bool raise_fault(const ilk_system_t *system, finding_t finding, ilk_axis_
     axis->fault_value = finding.value;
     axis->drift_mark_raw = axis->raw;
   }
-  if (finding.fault != ILK_FAULT_DRIFT) {
+  if ((finding.fault != ILK_FAULT_NONE) && (finding.fault != ILK_FAULT_DRIFT)) {
     axis->homed = (uint32_t)ILK_HOMED_NOT;
   }
   return is_new;
@@ -213,8 +197,7 @@ void ilk_axis_clear_fault(ilk_axis_t *axis) {
   axis->fault_value = 0;
 }
 
-/* --- Observation -----------------------------------------------------------------------------------------
- */
+/* --- Observation ------------------------------------------------------------------------------- */
 
 /** What the counter says no longer belongs to what it said before: every mark begins here. */
 static void begin_anew(ilk_axis_t *axis) {
@@ -228,46 +211,51 @@ static void begin_anew(ilk_axis_t *axis) {
   axis->home_known = 0u;
 }
 
-/** A card that was reset counts from elsewhere. Not asked of the first frame after start or after a lost
- * card. */
-static finding_t judge_card(const ilk_reading_t *reading, const ilk_axis_t *axis) {
+/** A card that was reset counts from elsewhere. */
+static ilk_finding_t judge_card(const ilk_reading_t *reading, const ilk_axis_t *axis) {
   const uint32_t ahead = reading->heartbeat - axis->heartbeat;
   const bool told = ((reading->card_status & ~axis->card_status) & ILK_STATUS_WAS_RESET) != 0u;
   const bool counted = (ahead == 0u) || ((ahead - 1u) > axis->periods);
   return found_if(told || counted, ILK_FAULT_CARD_RESET, signed_of(ahead));
 }
 
-static finding_t judge_jump(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
-  const uint32_t farthest = multiply_saturating(config->max_delta_counts, axis->periods);
-  return found_if(magnitude(axis->delta_counts) > farthest, ILK_FAULT_JUMP, axis->delta_counts);
-}
-
-/** Place, and what the card says of itself. */
-static void follow_card(const ilk_axis_config_t *config, const ilk_reading_t *reading, ilk_axis_t *axis) {
-  axis->delta_counts = (axis->card_seen != 0u) ? travel_between(config, axis->raw, reading->raw) : 0;
-  axis->position_counts = add_saturating(axis->position_counts, axis->delta_counts);
+/** Place, and what the card says of itself. The first frame after start or after a lost card is compared with
+   nothing; what a reset or a jump leads to has nothing to do with what was before. A FAULTED axis that jumps
+   on, the way it went in the frame before, is run away: its mark follows each jump, so that nothing else
+   would tell. */
+static ilk_finding_t follow_card(const ilk_axis_config_t *config, const ilk_reading_t *reading,
+                                 ilk_axis_t *axis) {
+  const bool first = axis->card_seen == 0u;
+  const uint64_t farthest = (uint64_t)config->max_delta_counts * axis->periods;
+  const int32_t delta = first ? 0 : travel_between(config, axis->raw, reading->raw);
+  const bool goes_on = ((delta > 0) && (axis->delta_counts > 0)) || ((delta < 0) && (axis->delta_counts < 0));
+  const ilk_finding_t jump = found_if(magnitude(delta) > farthest, ILK_FAULT_JUMP, delta);
+  const ilk_finding_t nothing = found_if(false, ILK_FAULT_NONE, 0);
+  const ilk_finding_t finding = first ? nothing : first_of(judge_card(reading, axis), jump);
+  axis->delta_counts = delta;
+  axis->position_counts = add_saturating(axis->position_counts, delta);
   axis->raw = reading->raw;
   axis->heartbeat = reading->heartbeat;
   axis->card_time_us = reading->card_time_us;
   axis->card_status = reading->card_status;
+  axis->card_seen = 1u;
+  if (first || (finding.fault != ILK_FAULT_NONE)) {
+    axis->runaway =
+        flag_of((axis->runaway != 0u) || (goes_on && (axis->state == (uint32_t)ILK_AXIS_FAULTED)));
+    begin_anew(axis);
+  }
+  return finding;
 }
 
-/** The travel of this press that its budgets bound. */
+/** The travel of this press that its budgets bound; outside of them the point stays with the counter. */
 static void follow_path(const ilk_axis_config_t *config, const ilk_system_t *system, ilk_axis_t *axis) {
+  const bool counts = (system->mode == (uint32_t)ILK_MODE_MOTION) && (axis->homed == (uint32_t)ILK_HOMED_NOT);
   const uint32_t distance = magnitude(travel_between(config, axis->path_raw, axis->raw));
-  if (axis->homed != (uint32_t)ILK_HOMED_NOT) {
+  if (!counts || (distance > config->noise_counts)) {
+    uint32_t *travel =
+        (axis->path_is_homing != 0u) ? &axis->homing_travel_counts : &axis->unhomed_travel_counts;
+    *travel = sum_saturating(*travel, counts ? distance : 0u);
     axis->path_raw = axis->raw;
-  } else if (distance > config->noise_counts) {
-    axis->path_raw = axis->raw;
-    if (system->mode != (uint32_t)ILK_MODE_MOTION) {
-      /* Moved by hand, or coasting after the press. */
-    } else if (axis->path_is_homing != 0u) {
-      axis->homing_travel_counts = sum_saturating(axis->homing_travel_counts, distance);
-    } else {
-      axis->unhomed_travel_counts = sum_saturating(axis->unhomed_travel_counts, distance);
-    }
-  } else {
-    /* Noise. */
   }
 }
 
@@ -287,31 +275,24 @@ bool ilk_switch_is_steady(const ilk_common_config_t *common, const ilk_axis_t *a
 }
 
 /** The switch of an axis that homed at it, against the place where it homed. */
-static finding_t judge_switch(const ilk_common_config_t *common, const ilk_axis_config_t *config,
-                              ilk_axis_t *axis) {
+static ilk_finding_t judge_switch(const ilk_common_config_t *common, const ilk_axis_config_t *config,
+                                  ilk_axis_t *axis) {
   const int64_t from_home = (int64_t)axis->position_counts - (int64_t)config->home_offset_counts;
-  const int64_t outside =
-      (ilk_towards_switch(config) == (uint32_t)ILK_DIRECTION_INCREASING) ? from_home : -from_home;
+  const int64_t outside = (config->limit_side == (uint32_t)ILK_LIMIT_UPPER) ? from_home : -from_home;
   const int64_t slack = (int64_t)config->home_tolerance_counts + (int64_t)config->coast_counts;
   const bool contradicts = (axis->switch_reading != 0u)
                                ? (outside < -(slack + (int64_t)config->switch_hysteresis_counts))
                                : (outside > slack);
-  if ((axis->homed == (uint32_t)ILK_HOMED_BY_SWITCH) && contradicts) {
-    axis->implausible_ticks = count_up(axis->implausible_ticks, common->switch_debounce_ticks);
-  } else {
-    axis->implausible_ticks = 0u;
-  }
+  axis->implausible_ticks = ticks_in_row(contradicts && (axis->homed == (uint32_t)ILK_HOMED_BY_SWITCH),
+                                         axis->implausible_ticks, common->switch_debounce_ticks);
   return found_if(axis->implausible_ticks >= common->switch_debounce_ticks, ILK_FAULT_SWITCH,
                   add_saturating(axis->position_counts, negate_saturating(config->home_offset_counts)));
 }
 
-static bool was_driven(const ilk_axis_t *axis) {
-  return axis->driven_direction != (uint32_t)ILK_DIRECTION_NONE;
-}
-
-static finding_t judge_reverse(const ilk_axis_config_t *config, ilk_axis_t *axis) {
+static ilk_finding_t judge_reverse(const ilk_axis_config_t *config, ilk_axis_t *axis) {
   const int32_t advance = advance_from(config, axis, axis->reverse_mark_raw, axis->reverse_direction);
-  const bool reversed = was_driven(axis) && (advance < 0) && (magnitude(advance) > config->reverse_counts);
+  const bool reversed = (axis->driven_direction != (uint32_t)ILK_DIRECTION_NONE) && (advance < 0) &&
+                        (magnitude(advance) > config->reverse_counts);
   if (advance > 0) {
     axis->reverse_mark_raw = axis->raw;
   }
@@ -320,42 +301,28 @@ static finding_t judge_reverse(const ilk_axis_config_t *config, ilk_axis_t *axis
 
 /** A DISABLED axis may be moved by hand, but in MOTION nothing but drive moves any. A drive needs a valid
    frame: an axis that was driven since its last one was driven in that very tick. */
-static finding_t judge_drift(const ilk_axis_config_t *config, const ilk_system_t *system, uint32_t periods,
-                             ilk_axis_t *axis) {
-  const bool driven_last_tick = was_driven(axis) && (axis->periods == periods);
+static ilk_finding_t judge_drift(const ilk_axis_config_t *config, const ilk_system_t *system,
+                                 uint32_t periods, ilk_axis_t *axis) {
+  const bool driven_last_tick =
+      (axis->driven_direction != (uint32_t)ILK_DIRECTION_NONE) && (axis->periods == periods);
   const int32_t drift = travel_between(config, axis->drift_mark_raw, axis->raw);
   const bool by_hand =
       (axis->state == (uint32_t)ILK_AXIS_DISABLED) && (system->mode != (uint32_t)ILK_MODE_MOTION);
-  const bool faulted = axis->state == (uint32_t)ILK_AXIS_FAULTED;
-  if (by_hand) {
-    axis->drift_mark_raw = axis->raw;
-  }
-  return found_if(!by_hand && !faulted && !driven_last_tick && (magnitude(drift) > config->drift_counts),
-                  ILK_FAULT_DRIFT, drift);
+  const bool judged = !by_hand && !driven_last_tick && (axis->state != (uint32_t)ILK_AXIS_FAULTED);
+  axis->drift_mark_raw = by_hand ? axis->raw : axis->drift_mark_raw;
+  return found_if(judged && (magnitude(drift) > config->drift_counts), ILK_FAULT_DRIFT, drift);
 }
 
-static finding_t judge_stall(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+static ilk_finding_t judge_stall(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
   return found_if(ilk_axis_has_stalled(config, axis), ILK_FAULT_STALL,
                   advance_from(config, axis, axis->stall_mark_raw, axis->stall_direction));
 }
 
 /** What a valid frame says. */
-static finding_t observe_frame(const ilk_common_config_t *common, const ilk_axis_config_t *config,
-                               const ilk_system_t *system, const ilk_reading_t *reading, uint32_t periods,
-                               ilk_axis_t *axis) {
-  const bool first = axis->card_seen == 0u;
-  finding_t finding = found_if(false, ILK_FAULT_NONE, 0);
-  if (!first) {
-    finding = judge_card(reading, axis);
-  }
-  follow_card(config, reading, axis);
-  if (!first) {
-    finding = first_of(finding, judge_jump(config, axis));
-  }
-  if (first || (finding.fault != ILK_FAULT_NONE)) {
-    begin_anew(axis);
-  }
-  axis->card_seen = 1u;
+static ilk_finding_t observe_frame(const ilk_common_config_t *common, const ilk_axis_config_t *config,
+                                   const ilk_system_t *system, const ilk_reading_t *reading, uint32_t periods,
+                                   ilk_axis_t *axis) {
+  ilk_finding_t finding = follow_card(config, reading, axis);
   follow_stillness(&axis->rest, axis->raw, config->noise_counts, config->rest_ticks);
   follow_stillness(&axis->calm, axis->raw, config->drift_counts, config->rest_ticks);
   follow_path(config, system, axis);
@@ -372,8 +339,8 @@ static finding_t observe_frame(const ilk_common_config_t *common, const ilk_axis
 }
 
 /** What a missing frame says. */
-static finding_t observe_nothing(const ilk_common_config_t *common, const ilk_axis_config_t *config,
-                                 ilk_axis_t *axis) {
+static ilk_finding_t observe_nothing(const ilk_common_config_t *common, const ilk_axis_config_t *config,
+                                     ilk_axis_t *axis) {
   const bool lost = ilk_card_is_lost(common, axis);
   axis->rest.ticks = 0u;
   if (lost) {
@@ -384,22 +351,19 @@ static finding_t observe_nothing(const ilk_common_config_t *common, const ilk_ax
                   judge_stall(config, axis));
 }
 
-/** A faulted axis is not driven; one that moves all the same is run away until it rests. */
+/** A faulted axis is not driven; one that moves all the same, however slowly, is run away until it rests. */
 static void watch_faulted(const ilk_axis_config_t *config, ilk_axis_t *axis) {
+  const uint32_t distance = magnitude(travel_between(config, axis->drift_mark_raw, axis->raw));
+  const bool rests = ilk_axis_is_at_rest(config, axis);
   if ((axis->state == (uint32_t)ILK_AXIS_FAULTED) && (axis->card_valid != 0u)) {
-    if (ilk_axis_is_at_rest(config, axis)) {
-      axis->drift_mark_raw = axis->raw;
-      axis->runaway = 0u;
-    } else if (magnitude(travel_between(config, axis->drift_mark_raw, axis->raw)) > config->drift_counts) {
-      axis->runaway = 1u;
-    } else {
-      /* It coasts. */
-    }
+    const bool over = rests && (axis->runaway != 0u);
+    axis->drift_mark_raw = over ? axis->raw : axis->drift_mark_raw;
+    axis->runaway = flag_of(!over && ((axis->runaway != 0u) || (distance > config->drift_counts)));
   }
 }
 
 static void run_lease_down(ilk_axis_t *axis) {
-  axis->lease_ticks = count_down(axis->lease_ticks);
+  axis->lease_ticks = left_of(axis->lease_ticks, 1u);
   if ((axis->state == (uint32_t)ILK_AXIS_MOVING) && (axis->lease_ticks == 0u)) {
     ilk_axis_drop_motion(axis);
   }
@@ -412,14 +376,10 @@ bool ilk_axis_observe(const ilk_common_config_t *common, const ilk_axis_config_t
   axis->periods = sum_saturating(axis->periods, periods);
   axis->switch_triggered = flag_of(has_switch(config) && (!valid || reading->switch_triggered));
   run_lease_down(axis);
-  finding_t finding = valid ? observe_frame(common, config, system, reading, periods, axis)
-                            : observe_nothing(common, config, axis);
-  const ilk_homing_result_t homing = ilk_homing_advance(common, config, axis);
-  finding = first_of(finding, found_if(homing.fault != ILK_FAULT_NONE, homing.fault, homing.value));
-  bool faulted = false;
-  if (finding.fault != ILK_FAULT_NONE) {
-    faulted = raise_fault(system, finding, axis);
-  }
+  ilk_finding_t finding = valid ? observe_frame(common, config, system, reading, periods, axis)
+                                : observe_nothing(common, config, axis);
+  finding = first_of(finding, ilk_homing_advance(common, config, axis));
+  const bool faulted = raise_fault(system, finding, axis);
   watch_faulted(config, axis);
   return faulted;
 }

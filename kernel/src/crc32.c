@@ -1,6 +1,4 @@
-#include "crc32.h"
-
-#include "interlock/kernel.h"
+#include "parts.h"
 
 uint32_t ilk_crc32_words(uint32_t crc, const unsigned char bytes[], uint32_t words) {
   uint32_t next = crc;
@@ -10,14 +8,15 @@ uint32_t ilk_crc32_words(uint32_t crc, const unsigned char bytes[], uint32_t wor
   return next;
 }
 
-uint32_t ilk_crc32_finish(uint32_t crc) { return crc ^ 0xffffffffu; }
+/** Of all words before the last, which holds it. */
+static uint32_t crc_before_last(const unsigned char bytes[], uint32_t size_bytes) {
+  return ilk_crc32_words(ILK_CRC32_START, bytes, (size_bytes / 4u) - 1u) ^ ILK_CRC32_START;
+}
 
 uint32_t ilk_request_crc(const ilk_request_t *request) {
-  const uint32_t words = (uint32_t)(sizeof(*request) / sizeof(uint32_t)) - 1u;
-  return ilk_crc32_finish(ilk_crc32_words(ILK_CRC32_START, (const unsigned char *)request, words));
+  return crc_before_last((const unsigned char *)request, (uint32_t)sizeof(*request));
 }
 
 uint32_t ilk_config_crc(const ilk_config_t *config) {
-  const uint32_t words = (uint32_t)(sizeof(*config) / sizeof(uint32_t)) - 1u;
-  return ilk_crc32_finish(ilk_crc32_words(ILK_CRC32_START, (const unsigned char *)config, words));
+  return crc_before_last((const unsigned char *)config, (uint32_t)sizeof(*config));
 }

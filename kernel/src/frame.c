@@ -1,6 +1,4 @@
-#include "frame.h"
-
-#include "arith.h"
+#include "parts.h"
 
 _Static_assert((ILK_FRAME_WORDS == 32) || (ILK_FRAME_WORDS == 64), "frames have 32 or 64 words");
 
@@ -60,73 +58,46 @@ static uint32_t frequency_word(uint32_t drive) {
   return FREQUENCY_OF_REST - ((point - 1u) * FREQUENCY_STEP) - (uint32_t)descent;
 }
 
-/** The published `actualDirection`: 1 for decreasing positions when the motor follows the axis. */
-static bool motor_decreases(const ilk_axis_config_t *config, uint32_t direction) {
-  const bool decreasing = direction == (uint32_t)ILK_DIRECTION_DECREASING;
-  return (config->motor_direction != 0u) ? decreasing : !decreasing;
-}
-
-/** The words of an outgoing frame that make a motor move. */
-typedef struct {
-  uint32_t wave1;
-  uint32_t frequency1;
-  uint32_t wave2;
-  uint32_t frequency2;
-  uint32_t analog;
-  uint32_t amplifier;
-} drive_words_t;
-
-static drive_words_t drive_words(const ilk_axis_config_t *config, const ilk_command_t *command) {
-  const bool decreases = motor_decreases(config, command->direction);
-  drive_words_t words = {0};
+/** The words of an outgoing frame that make a motor move: waves and frequencies 2 to 5, analog 6,
+ * amplifier 14. */
+static void pack_drive(const ilk_axis_config_t *config, const ilk_command_t *command,
+                       uint32_t frame[ILK_FRAME_WORDS]) {
+  /* The published `actualDirection`: decreasing positions when the motor follows the axis. */
+  const bool decreases =
+      (command->direction == (uint32_t)ILK_DIRECTION_DECREASING) == (config->motor_direction != 0u);
+  frame[14] = 1u;
   switch (config->card) {
     case (uint32_t)ILK_CARD_PWM:
-      words.frequency1 = (decreases ? 0u : PWM_REVERSED) | command->drive;
-      words.amplifier = 1u;
+      frame[3] = (decreases ? 0u : PWM_REVERSED) | command->drive;
       break;
     case (uint32_t)ILK_CARD_NON_PWM:
-      words.frequency1 = (decreases ? NON_PWM_FORWARD : NON_PWM_REVERSED) | command->drive;
-      words.amplifier = 1u;
+      frame[3] = (decreases ? NON_PWM_FORWARD : NON_PWM_REVERSED) | command->drive;
       break;
     case (uint32_t)ILK_CARD_ANALOG:
-      words.analog = (decreases ? 0u : PWM_REVERSED) | command->drive;
-      words.amplifier = 1u;
+      frame[6] = (decreases ? 0u : PWM_REVERSED) | command->drive;
       break;
     case (uint32_t)ILK_CARD_HIGH_FREQUENCY:
-      words.wave1 = (decreases ? 0u : WAVE_REVERSED) | command->amplitude;
-      words.wave2 = (decreases ? WAVE_REVERSED : 0u) | command->amplitude;
-      words.frequency1 = frequency_word(command->drive);
-      words.frequency2 = words.frequency1;
-      words.amplifier = 1u;
+      frame[2] = (decreases ? 0u : WAVE_REVERSED) | command->amplitude;
+      frame[4] = (decreases ? WAVE_REVERSED : 0u) | command->amplitude;
+      frame[3] = frequency_word(command->drive);
+      frame[5] = frame[3];
       break;
     default:
-      /* No motor: zero drive. */
+      frame[14] = 0u; /* No motor. */
       break;
   }
-  return words;
-}
-
-static bool is_zero_drive(const ilk_command_t *command) {
-  return (command->direction == (uint32_t)ILK_DIRECTION_NONE) || (command->drive == 0u);
 }
 
 void ilk_frame_pack(const ilk_axis_config_t *config, const ilk_command_t *command, uint32_t tick,
                     uint32_t frame[ILK_FRAME_WORDS]) {
-  drive_words_t words = {0};
-  if (!is_zero_drive(command)) {
-    words = drive_words(config, command);
-  }
   for (uint32_t word = 0u; word < (uint32_t)ILK_FRAME_WORDS; word++) {
     frame[word] = 0u;
   }
+  if ((command->direction != (uint32_t)ILK_DIRECTION_NONE) && (command->drive != 0u)) {
+    pack_drive(config, command, frame);
+  }
   frame[0] = START_WORD;
-  frame[2] = words.wave1;
-  frame[3] = words.frequency1;
-  frame[4] = words.wave2;
-  frame[5] = words.frequency2;
-  frame[6] = words.analog;
   frame[13] = tick;
-  frame[14] = words.amplifier;
-  frame[CHECKSUM_WORD] = FRAME_SUM - (START_WORD + words.wave1 + words.frequency1 + words.wave2 +
-                                      words.frequency2 + words.analog + tick + words.amplifier);
+  frame[CHECKSUM_WORD] =
+      FRAME_SUM - (START_WORD + frame[2] + frame[3] + frame[4] + frame[5] + frame[6] + tick + frame[14]);
 }

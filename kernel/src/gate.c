@@ -1,65 +1,41 @@
-#include "gate.h"
-
-#include <stdbool.h>
-
-#include "arith.h"
-#include "axis.h"
-#include "config.h"
-#include "homing.h"
-#include "interlock/kernel.h"
-
-#define AMPLITUDE_MAX 255u
+#include "parts.h"
 
 ilk_command_t ilk_wanted_command(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
   const int64_t distance = (int64_t)axis->setpoint_counts - (int64_t)axis->position_counts;
+  const int64_t deadband = (int64_t)config->deadband_counts;
   ilk_command_t wanted = {
       .direction = (uint32_t)ILK_DIRECTION_NONE, .drive = axis->drive, .amplitude = axis->amplitude};
-  if (axis->state == (uint32_t)ILK_AXIS_HOMING) {
-    wanted = ilk_homing_command(config, axis);
-  } else if (distance > (int64_t)config->deadband_counts) {
+  if (distance > deadband) {
     wanted.direction = (uint32_t)ILK_DIRECTION_INCREASING;
-  } else if (distance < -(int64_t)config->deadband_counts) {
-    wanted.direction = (uint32_t)ILK_DIRECTION_DECREASING;
-  } else {
-    wanted.direction = (uint32_t)ILK_DIRECTION_NONE;
   }
-  return wanted;
+  if (distance < -deadband) {
+    wanted.direction = (uint32_t)ILK_DIRECTION_DECREASING;
+  }
+  return (axis->state == (uint32_t)ILK_AXIS_HOMING) ? ilk_homing_command(config, axis) : wanted;
 }
 
 static bool is_held(const ilk_axis_t *axis) {
-  return ((axis->state == (uint32_t)ILK_AXIS_MOVING) && (axis->lease_ticks != 0u)) ||
-         (axis->state == (uint32_t)ILK_AXIS_HOMING);
-}
-
-static bool is_out_of_motion(const ilk_axis_t *axis) {
-  return (axis->state == (uint32_t)ILK_AXIS_DISABLED) || (axis->state >= (uint32_t)ILK_AXIS_FAULTED);
-}
-
-/** True when the wish is no motion at all. */
-static bool asks_for_nothing(const ilk_command_t *wanted) {
-  const bool directed = (wanted->direction == (uint32_t)ILK_DIRECTION_INCREASING) ||
-                        (wanted->direction == (uint32_t)ILK_DIRECTION_DECREASING);
-  return !directed || (wanted->drive == 0u);
+  return (axis->state == (uint32_t)ILK_AXIS_HOMING) ||
+         ((axis->state == (uint32_t)ILK_AXIS_MOVING) && (axis->lease_ticks != 0u));
 }
 
 /** P3: towards a triggered switch. */
 static bool presses_on_switch(const ilk_axis_config_t *config, const ilk_axis_t *axis, uint32_t direction) {
-  return (axis->switch_triggered != 0u) && (direction == ilk_towards_switch(config));
+  return (axis->switch_triggered != 0u) && (direction == towards_switch(config));
 }
 
 ilk_reach_t ilk_reach(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
-  const int64_t coast = (int64_t)config->coast_counts;
-  const int64_t home = (int64_t)config->home_offset_counts;
   const int64_t margin = (int64_t)config->switch_hysteresis_counts + (int64_t)config->home_tolerance_counts;
-  ilk_reach_t reach = {.low = (int64_t)config->min_counts + coast,
-                       .high = (int64_t)config->max_counts - coast};
-  if (axis->homed == (uint32_t)ILK_HOMED_BY_SWITCH) {
-    if ((config->limit_side == (uint32_t)ILK_LIMIT_LOWER) && (reach.low < (home + margin))) {
-      reach.low = home + margin;
-    }
-    if ((config->limit_side == (uint32_t)ILK_LIMIT_UPPER) && (reach.high > (home - margin))) {
-      reach.high = home - margin;
-    }
+  const int64_t opens_above = (int64_t)config->home_offset_counts + margin;
+  const int64_t opens_below = (int64_t)config->home_offset_counts - margin;
+  const bool by_switch = axis->homed == (uint32_t)ILK_HOMED_BY_SWITCH;
+  ilk_reach_t reach = {.low = (int64_t)config->min_counts + (int64_t)config->coast_counts,
+                       .high = (int64_t)config->max_counts - (int64_t)config->coast_counts};
+  if (by_switch && (config->limit_side == (uint32_t)ILK_LIMIT_LOWER) && (reach.low < opens_above)) {
+    reach.low = opens_above;
+  }
+  if (by_switch && (config->limit_side == (uint32_t)ILK_LIMIT_UPPER) && (reach.high > opens_below)) {
+    reach.high = opens_below;
   }
   return reach;
 }
@@ -74,8 +50,7 @@ static bool leaves_soft_range(const ilk_axis_config_t *config, const ilk_axis_t 
 }
 
 uint32_t ilk_unhomed_travel_left(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
-  return left_of(config->unhomed_travel_counts,
-                 sum_saturating(axis->unhomed_travel_counts, config->coast_counts));
+  return left_of(left_of(config->unhomed_travel_counts, axis->unhomed_travel_counts), coast_as_read(config));
 }
 
 /** P7: the budget of this press is used up, coast kept back. */
@@ -89,43 +64,32 @@ uint32_t ilk_drive_bound(const ilk_axis_config_t *config, const ilk_axis_t *axis
   return (axis->homed != (uint32_t)ILK_HOMED_NOT) ? config->max_drive : config->unhomed_max_drive;
 }
 
-/** P7: more than the axis may, or more than its card's words can carry. */
-static bool exceeds_drive(const ilk_axis_config_t *config, const ilk_axis_t *axis,
-                          const ilk_command_t *wanted) {
-  return (wanted->drive > ilk_drive_bound(config, axis)) ||
-         (wanted->drive > ilk_card_max_drive(config->card)) || (wanted->amplitude > config->max_amplitude) ||
-         (wanted->amplitude > AMPLITUDE_MAX);
+/** P7: no more than the axis may, nor than its card's words can carry. */
+static bool drive_fits(const ilk_axis_config_t *config, const ilk_axis_t *axis, const ilk_command_t *wanted) {
+  return (wanted->drive <= ilk_drive_bound(config, axis)) &&
+         (wanted->drive <= ilk_card_max_drive(config->card)) &&
+         (wanted->amplitude <= config->max_amplitude) && (wanted->amplitude <= ILK_AMPLITUDE_MAX);
+}
+
+/** The first gate that is shut is the answer. */
+static ilk_gate_t then(ilk_gate_t gate, bool open, ilk_gate_t shut) {
+  return ((gate == ILK_GATE_OPEN) && !open) ? shut : gate;
 }
 
 ilk_gate_t ilk_output_gate(const ilk_axis_config_t *config, const ilk_system_t *system,
                            const ilk_axis_t *axis, const ilk_command_t *wanted) {
-  ilk_gate_t gate = ILK_GATE_MODE;
-  if (system->mode != (uint32_t)ILK_MODE_MOTION) {
-    gate = ILK_GATE_MODE;
-  } else if (system->pedal != (uint32_t)ILK_PEDAL_PRESSED) {
-    gate = ILK_GATE_PEDAL;
-  } else if (system->estop != 0u) {
-    gate = ILK_GATE_ESTOP;
-  } else if (axis->card_valid == 0u) {
-    gate = ILK_GATE_CARD;
-  } else if (is_out_of_motion(axis)) {
-    gate = ILK_GATE_ENABLE;
-  } else if (!is_held(axis)) {
-    gate = ILK_GATE_LEASE;
-  } else if (asks_for_nothing(wanted)) {
-    gate = ILK_GATE_SETPOINT;
-  } else if (presses_on_switch(config, axis, wanted->direction)) {
-    gate = ILK_GATE_HARD_LIMIT;
-  } else if (leaves_soft_range(config, axis, wanted->direction)) {
-    gate = ILK_GATE_SOFT_LIMIT;
-  } else if (exceeds_travel(config, axis)) {
-    gate = ILK_GATE_UNHOMED_TRAVEL;
-  } else if (exceeds_drive(config, axis, wanted)) {
-    gate = ILK_GATE_DRIVE;
-  } else if (ilk_axis_has_stalled(config, axis)) {
-    gate = ILK_GATE_STALL;
-  } else {
-    gate = ILK_GATE_OPEN;
-  }
-  return gate;
+  const uint32_t direction = wanted->direction;
+  const bool moves = count_of(direction, (uint32_t)ILK_DIRECTION_DECREASING) && (wanted->drive != 0u);
+  ilk_gate_t gate = then(ILK_GATE_OPEN, system->mode == (uint32_t)ILK_MODE_MOTION, ILK_GATE_MODE);
+  gate = then(gate, system->pedal == (uint32_t)ILK_PEDAL_PRESSED, ILK_GATE_PEDAL);
+  gate = then(gate, system->estop == 0u, ILK_GATE_ESTOP);
+  gate = then(gate, axis->card_valid != 0u, ILK_GATE_CARD);
+  gate = then(gate, count_of(axis->state, (uint32_t)ILK_AXIS_HOMING), ILK_GATE_ENABLE);
+  gate = then(gate, is_held(axis), ILK_GATE_LEASE);
+  gate = then(gate, moves, ILK_GATE_SETPOINT);
+  gate = then(gate, !presses_on_switch(config, axis, direction), ILK_GATE_HARD_LIMIT);
+  gate = then(gate, !leaves_soft_range(config, axis, direction), ILK_GATE_SOFT_LIMIT);
+  gate = then(gate, !exceeds_travel(config, axis), ILK_GATE_UNHOMED_TRAVEL);
+  gate = then(gate, drive_fits(config, axis, wanted), ILK_GATE_DRIVE);
+  return then(gate, !ilk_axis_has_stalled(config, axis), ILK_GATE_STALL);
 }

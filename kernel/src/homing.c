@@ -1,22 +1,13 @@
-#include "homing.h"
+#include "parts.h"
 
-#include "arith.h"
-#include "axis.h"
-
-uint32_t ilk_towards_switch(const ilk_axis_config_t *config) {
-  static const uint32_t direction_to[ILK_LIMIT_COUNT] = {
-      (uint32_t)ILK_DIRECTION_NONE, (uint32_t)ILK_DIRECTION_DECREASING, (uint32_t)ILK_DIRECTION_INCREASING};
-  return (config->limit_side < ILK_LIMIT_COUNT) ? direction_to[config->limit_side]
-                                                : (uint32_t)ILK_DIRECTION_NONE;
-}
-
+/** The other of the two directions, 1 and 2; NONE without a switch. */
 static uint32_t away_from_switch(const ilk_axis_config_t *config) {
-  return opposite_of(ilk_towards_switch(config));
+  const uint32_t towards = towards_switch(config);
+  return (towards != (uint32_t)ILK_DIRECTION_NONE) ? (ILK_DIRECTION_COUNT - towards) : towards;
 }
 
 uint32_t ilk_homing_travel_left(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
-  return left_of(config->home_travel_counts,
-                 sum_saturating(axis->homing_travel_counts, config->coast_counts));
+  return left_of(left_of(config->home_travel_counts, axis->homing_travel_counts), coast_as_read(config));
 }
 
 bool ilk_homing_has_budget(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
@@ -38,26 +29,16 @@ void ilk_homing_begin(ilk_axis_t *axis) {
   enter_phase(axis, ILK_HOMING_LOOK, axis->raw);
 }
 
+/** LOOK and REST wait. */
 ilk_command_t ilk_homing_command(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
-  ilk_command_t wanted = {.direction = (uint32_t)ILK_DIRECTION_NONE,
-                          .drive = config->home_drive,
-                          .amplitude = config->home_amplitude};
-  switch (axis->homing_phase) {
-    case (uint32_t)ILK_HOMING_LEAVE:
-    case (uint32_t)ILK_HOMING_BACK_OFF:
-      wanted.direction = away_from_switch(config);
-      break;
-    case (uint32_t)ILK_HOMING_SEEK:
-      wanted.direction = ilk_towards_switch(config);
-      break;
-    case (uint32_t)ILK_HOMING_APPROACH:
-      wanted.direction = ilk_towards_switch(config);
-      wanted.drive = config->home_slow_drive;
-      break;
-    default:
-      /* LOOK and REST wait. */
-      break;
-  }
+  const uint32_t phase = axis->homing_phase;
+  const bool slow = phase == (uint32_t)ILK_HOMING_APPROACH;
+  const bool in = slow || (phase == (uint32_t)ILK_HOMING_SEEK);
+  const bool out = (phase == (uint32_t)ILK_HOMING_LEAVE) || (phase == (uint32_t)ILK_HOMING_BACK_OFF);
+  const uint32_t inward = in ? towards_switch(config) : (uint32_t)ILK_DIRECTION_NONE;
+  const ilk_command_t wanted = {.direction = out ? away_from_switch(config) : inward,
+                                .drive = slow ? config->home_slow_drive : config->home_drive,
+                                .amplitude = config->home_amplitude};
   return wanted;
 }
 
@@ -70,17 +51,15 @@ static bool is_clear(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
 
 /** The reference is the second edge, if the first agrees and the axis rests no farther from it than it can
  * coast. */
-static ilk_homing_result_t conclude(const ilk_axis_config_t *config, ilk_axis_t *axis) {
+static ilk_finding_t conclude(const ilk_axis_config_t *config, ilk_axis_t *axis) {
   const uint32_t edge_raw = axis->homing_mark_raw;
   const int32_t disagreement = travel_between(config, axis->first_edge_raw, edge_raw);
   const int32_t beyond = travel_between(config, edge_raw, axis->raw);
-  ilk_homing_result_t result = {.fault = ILK_FAULT_NONE, .value = disagreement};
-  if (magnitude(disagreement) > config->home_tolerance_counts) {
-    result.fault = ILK_FAULT_SWITCH;
-  } else if (magnitude(beyond) > sum_saturating(config->coast_counts, config->home_tolerance_counts)) {
-    result.fault = ILK_FAULT_SWITCH;
-    result.value = beyond;
-  } else {
+  const bool agree = magnitude(disagreement) <= config->home_tolerance_counts;
+  const bool near = magnitude(beyond) <= sum_saturating(config->coast_counts, config->home_tolerance_counts);
+  ilk_finding_t finding = {.fault = ILK_FAULT_SWITCH, .value = agree ? beyond : disagreement};
+  if (agree && near) {
+    finding.fault = ILK_FAULT_NONE;
     axis->home_difference_counts =
         (axis->home_known != 0u) ? travel_between(config, axis->home_raw, edge_raw) : 0;
     axis->home_raw = edge_raw;
@@ -89,18 +68,18 @@ static ilk_homing_result_t conclude(const ilk_axis_config_t *config, ilk_axis_t 
     axis->homed = (uint32_t)ILK_HOMED_BY_SWITCH;
     ilk_axis_drop_motion(axis);
   }
-  return result;
+  return finding;
 }
 
 /** What a valid frame means for the phase. */
-static ilk_homing_result_t follow_switch(const ilk_common_config_t *common, const ilk_axis_config_t *config,
-                                         ilk_axis_t *axis) {
+static ilk_finding_t follow_phase(const ilk_common_config_t *common, const ilk_axis_config_t *config,
+                                  ilk_axis_t *axis) {
   const bool triggered = ilk_switch_is_steady(common, axis, true);
   const bool open = ilk_switch_is_steady(common, axis, false);
   const bool left = open && is_clear(config, axis);
   const bool rests = ilk_axis_is_at_rest(config, axis);
   const uint32_t phase = axis->homing_phase;
-  ilk_homing_result_t result = {.fault = ILK_FAULT_NONE, .value = 0};
+  ilk_finding_t finding = {.fault = ILK_FAULT_NONE, .value = 0};
   if ((phase == (uint32_t)ILK_HOMING_LOOK) && triggered) {
     enter_phase(axis, ILK_HOMING_LEAVE, axis->raw);
   } else if (((phase == (uint32_t)ILK_HOMING_LOOK) && open) ||
@@ -115,28 +94,28 @@ static ilk_homing_result_t follow_switch(const ilk_common_config_t *common, cons
   } else if ((phase == (uint32_t)ILK_HOMING_APPROACH) && triggered) {
     enter_phase(axis, ILK_HOMING_REST, axis->switch_run_raw);
   } else if ((phase == (uint32_t)ILK_HOMING_REST) && rests && triggered) {
-    result = conclude(config, axis);
+    finding = conclude(config, axis);
   } else {
     /* The phase goes on. */
   }
-  return result;
+  return finding;
 }
 
-ilk_homing_result_t ilk_homing_advance(const ilk_common_config_t *common, const ilk_axis_config_t *config,
-                                       ilk_axis_t *axis) {
-  ilk_homing_result_t result = {.fault = ILK_FAULT_NONE, .value = 0};
+ilk_finding_t ilk_homing_advance(const ilk_common_config_t *common, const ilk_axis_config_t *config,
+                                 ilk_axis_t *axis) {
+  ilk_finding_t finding = {.fault = ILK_FAULT_NONE, .value = 0};
   if (axis->state == (uint32_t)ILK_AXIS_HOMING) {
     axis->homing_ticks = count_up(axis->homing_ticks, UINT32_MAX);
     if (axis->card_valid != 0u) {
-      result = follow_switch(common, config, axis);
+      finding = follow_phase(common, config, axis);
     }
   }
-  if ((axis->state == (uint32_t)ILK_AXIS_HOMING) && (result.fault == ILK_FAULT_NONE) &&
+  if ((axis->state == (uint32_t)ILK_AXIS_HOMING) && (finding.fault == ILK_FAULT_NONE) &&
       !ilk_homing_has_budget(config, axis)) {
     const bool travelled = ilk_homing_travel_left(config, axis) == 0u;
-    result.fault = travelled ? ILK_FAULT_HOMING_TRAVEL : ILK_FAULT_HOMING_TIMEOUT;
-    result.value =
+    finding.fault = travelled ? ILK_FAULT_HOMING_TRAVEL : ILK_FAULT_HOMING_TIMEOUT;
+    finding.value =
         signed_of(travelled ? (axis->homing_travel_counts & (uint32_t)INT32_MAX) : axis->homing_phase);
   }
-  return result;
+  return finding;
 }

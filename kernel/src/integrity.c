@@ -1,10 +1,4 @@
-#include "integrity.h"
-
-#include <stddef.h>
-
-#include "arith.h"
-#include "crc32.h"
-#include "interlock/kernel.h"
+#include "parts.h"
 
 /** Seeded, each lane by its own, so that cleared memory fails: equal lanes would mix to zero. */
 #define SEAL_SEED 0x494c4b31u
@@ -16,11 +10,12 @@
 /** No three bytes make it. */
 #define WIRING_UNKNOWN UINT32_MAX
 
-_Static_assert((sizeof(ilk_system_t) % sizeof(uint32_t)) == 0u, "the system part is words");
-_Static_assert((sizeof(ilk_axis_t) % sizeof(uint32_t)) == 0u, "the part of an axis is words");
-_Static_assert(sizeof(ilk_state_t) ==
-                   (sizeof(ilk_system_t) + ((size_t)ILK_SLOTS * sizeof(ilk_axis_t)) + sizeof(uint32_t)),
-               "every word is sealed, or is the seal");
+/** Words of a structure. */
+#define WORDS(type) ((uint32_t)(sizeof(type) / 4u))
+
+_Static_assert(sizeof(ilk_state_t) == (4u * (WORDS(ilk_system_t) + (ILK_SLOTS * WORDS(ilk_axis_t)) + 1u)),
+               "all is words, and every word is sealed or is the seal");
+_Static_assert((WORDS(ilk_state_t) % 2u) == 0u, "an odd number of words is sealed");
 
 /** Mixes a word into the digest. The step can be undone, so a change of any one word changes the result;
    product and rotation together spread it over all bits, so that changes of several words do not cancel. */
@@ -29,7 +24,7 @@ static uint32_t mix(uint32_t digest, uint32_t word) {
   return ((mixed << 13) | (mixed >> 19)) * SEAL_FACTOR;
 }
 
-/** Of one part, in two lanes, so that a processor can work on both at once. */
+/** Of an odd number of words, in two lanes, so that a processor can work on both at once. */
 static uint32_t digest_of(const unsigned char bytes[], uint32_t words) {
   uint32_t even = SEAL_SEED;
   uint32_t odd = ODD_SEED;
@@ -37,20 +32,11 @@ static uint32_t digest_of(const unsigned char bytes[], uint32_t words) {
     even = mix(even, word_at(&bytes[4u * word]));
     odd = mix(odd, word_at(&bytes[4u * (word + 1u)]));
   }
-  if ((words % 2u) != 0u) {
-    even = mix(even, word_at(&bytes[4u * (words - 1u)]));
-  }
-  return mix(even, odd);
+  return mix(mix(even, word_at(&bytes[4u * (words - 1u)])), odd);
 }
 
 static uint32_t state_digest(const ilk_state_t *state) {
-  uint32_t digest =
-      digest_of((const unsigned char *)&state->system, (uint32_t)(sizeof(ilk_system_t) / sizeof(uint32_t)));
-  for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
-    digest = mix(digest, digest_of((const unsigned char *)&state->axis[slot],
-                                   (uint32_t)(sizeof(ilk_axis_t) / sizeof(uint32_t))));
-  }
-  return digest;
+  return digest_of((const unsigned char *)state, WORDS(ilk_state_t) - 1u);
 }
 
 bool ilk_state_is_sealed(const ilk_state_t *state) { return state->seal == state_digest(state); }
@@ -60,76 +46,65 @@ void ilk_state_seal(ilk_state_t *state) { state->seal = state_digest(state); }
 /** What direction on the wire and switch of an axis mean. Equal words of two configurations, of which one is
    valid, say that card, switch end and motor sense are equal. */
 static uint32_t wiring_of(const ilk_axis_config_t *axis) {
-  uint32_t wiring = WIRING_UNKNOWN;
-  if ((axis->card <= BYTE_MAX) && (axis->limit_side <= BYTE_MAX) && (axis->motor_direction <= BYTE_MAX)) {
-    wiring = axis->card + (axis->limit_side * 0x100u) + (axis->motor_direction * 0x10000u);
-  }
-  return wiring;
+  const bool fits =
+      (axis->card <= BYTE_MAX) && (axis->limit_side <= BYTE_MAX) && (axis->motor_direction <= BYTE_MAX);
+  return fits ? (axis->card + (axis->limit_side * 0x100u) + (axis->motor_direction * 0x10000u))
+              : WIRING_UNKNOWN;
 }
 
-/** A state that owes nothing to the one before: LOCKED, positions unknown, every axis with this fault. */
-static void begin_state(const ilk_config_t *config, ilk_cause_t cause, ilk_fault_t fault,
-                        ilk_state_t *state) {
+/** A state that owes nothing to the one before: LOCKED for a cause, INIT without one; positions unknown. */
+static void begin_state(const ilk_config_t *config, ilk_cause_t cause, ilk_state_t *state) {
   static const ilk_state_t nothing_known = {0};
   const uint32_t seal = state->seal;
   *state = nothing_known;
-  state->system.mode = (uint32_t)ILK_MODE_LOCKED;
+  state->system.mode = (uint32_t)((cause != ILK_CAUSE_NONE) ? ILK_MODE_LOCKED : ILK_MODE_INIT);
   state->system.cause = (uint32_t)cause;
   state->system.cause_value = (cause == ILK_CAUSE_INTEGRITY) ? seal : 0u;
-  state->system.causes_seen = 1u << (uint32_t)cause;
+  state->system.causes_seen = (cause != ILK_CAUSE_NONE) ? (1u << (uint32_t)cause) : 0u;
   state->system.pedal = (uint32_t)ILK_PEDAL_DISAGREE;
   state->system.estop = 1u;
   state->system.app_age_ticks = UINT32_MAX;
   state->system.config_crc = config->crc;
-  state->system.config_partial_crc = ILK_CRC32_START;
+  state->system.config_sound = flag_of(cause == ILK_CAUSE_BOOT);
   state->system.pedal_channels = config->common.pedal_channels;
   state->system.app_timeout_ticks = config->common.app_timeout_ticks;
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
     state->axis[slot].wiring = wiring_of(&config->axis[slot]);
-    if (has_axis(&config->axis[slot]) && (fault != ILK_FAULT_NONE)) {
+    if (has_axis(&config->axis[slot]) && (cause == ILK_CAUSE_INTEGRITY)) {
       state->axis[slot].state = (uint32_t)ILK_AXIS_FAULTED;
-      state->axis[slot].fault = (uint32_t)fault;
+      state->axis[slot].fault = (uint32_t)ILK_FAULT_INTEGRITY;
     }
   }
 }
 
-ilk_config_verdict_t ilk_init(const ilk_config_t *config, ilk_state_t *state) {
-  const ilk_config_verdict_t verdict = ilk_config_validate(config);
-  begin_state(config, ILK_CAUSE_BOOT, ILK_FAULT_NONE, state);
-  if (verdict.error == (uint32_t)ILK_CONFIG_ERROR_NONE) {
-    state->system.config_sound = 1u;
-  } else {
-    state->system.mode = (uint32_t)ILK_MODE_INIT;
-    state->system.cause = (uint32_t)ILK_CAUSE_NONE;
-    state->system.causes_seen = 0u;
-  }
-  ilk_state_seal(state);
-  return verdict;
+static bool is_valid(const ilk_config_t *config) {
+  return ilk_config_validate(config).error == (uint32_t)ILK_CONFIG_ERROR_NONE;
 }
 
-/** A configuration that was not trusted becomes so by a whole pass that agrees and by being valid (P13). */
-static bool is_trusted_after_pass(const ilk_config_t *config, const ilk_system_t *system) {
-  return (system->config_sound != 0u) ||
-         (ilk_config_validate(config).error == (uint32_t)ILK_CONFIG_ERROR_NONE);
+ilk_config_verdict_t ilk_init(const ilk_config_t *config, ilk_state_t *state) {
+  begin_state(config, is_valid(config) ? ILK_CAUSE_BOOT : ILK_CAUSE_NONE, state);
+  ilk_state_seal(state);
+  return ilk_config_validate(config);
 }
 
 /** Adds the next slice of the configuration to the running CRC-32, and judges at the end of a pass. */
 static void check_slice(const ilk_config_t *config, ilk_system_t *system, ilk_alarms_t *alarms) {
   const uint32_t slice = (system->config_slice < (uint32_t)ILK_SLOTS) ? system->config_slice : 0u;
-  uint32_t crc = system->config_partial_crc;
-  if (slice == 0u) {
-    crc = ilk_crc32_words(ILK_CRC32_START, (const unsigned char *)&config->common,
-                          (uint32_t)(sizeof(ilk_common_config_t) / sizeof(uint32_t)));
-  }
-  crc = ilk_crc32_words(crc, (const unsigned char *)&config->axis[slice],
-                        (uint32_t)(sizeof(ilk_axis_config_t) / sizeof(uint32_t)));
+  const uint32_t so_far = (slice != 0u)
+                              ? system->config_partial_crc
+                              : ilk_crc32_words(ILK_CRC32_START, (const unsigned char *)&config->common,
+                                                WORDS(ilk_common_config_t));
+  const uint32_t crc =
+      ilk_crc32_words(so_far, (const unsigned char *)&config->axis[slice], WORDS(ilk_axis_config_t));
   system->config_partial_crc = crc;
   system->config_slice = slice + 1u;
   if (system->config_slice == (uint32_t)ILK_SLOTS) {
-    alarms->configuration_crc = ilk_crc32_finish(crc);
+    alarms->configuration_crc = crc ^ ILK_CRC32_START;
     alarms->configuration_damaged =
         (alarms->configuration_crc != system->config_crc) || (config->crc != system->config_crc);
-    system->config_sound = flag_of(!alarms->configuration_damaged && is_trusted_after_pass(config, system));
+    /* What was not trusted becomes so by a whole pass that agrees and by being valid (P13). */
+    system->config_sound =
+        flag_of(!alarms->configuration_damaged && ((system->config_sound != 0u) || is_valid(config)));
     system->config_slice = 0u;
   }
 }
@@ -148,7 +123,7 @@ static bool basis_is_kept(const ilk_config_t *config, const ilk_state_t *state) 
 ilk_alarms_t ilk_integrity_check(const ilk_config_t *config, ilk_state_t *state) {
   ilk_alarms_t alarms = {.new_fault = false};
   if (!ilk_state_is_sealed(state)) {
-    begin_state(config, ILK_CAUSE_INTEGRITY, ILK_FAULT_INTEGRITY, state);
+    begin_state(config, ILK_CAUSE_INTEGRITY, state);
   }
   if (state->system.mode != (uint32_t)ILK_MODE_INIT) {
     check_slice(config, &state->system, &alarms);

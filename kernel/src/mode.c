@@ -1,7 +1,4 @@
-#include "mode.h"
-
-#include "arith.h"
-#include "axis.h"
+#include "parts.h"
 
 #define CLOSED 1u
 #define OPEN 0u
@@ -19,7 +16,7 @@ void ilk_pedal_disarm(ilk_system_t *system) {
 }
 
 /** Another one in each of 2^32 ticks and never 0: that of tick `boot_nonce` would be, and has that of tick 0,
-   in which no press can complete. */
+   in which no MOTION begins. */
 static uint32_t consent_of(uint32_t boot_nonce, uint32_t tick) {
   const uint32_t mixed = (tick == boot_nonce) ? boot_nonce : (tick ^ boot_nonce);
   return mixed * CONSENT_FACTOR;
@@ -28,6 +25,10 @@ static uint32_t consent_of(uint32_t boot_nonce, uint32_t tick) {
 void ilk_mode_enter(ilk_mode_t mode, uint32_t boot_nonce, ilk_state_t *state) {
   state->system.mode = (uint32_t)mode;
   state->system.consent = (mode == ILK_MODE_MOTION) ? consent_of(boot_nonce, state->system.tick) : 0u;
+  state->system.cause = (uint32_t)ILK_CAUSE_NONE;
+  state->system.cause_tick = 0u;
+  state->system.cause_value = 0u;
+  state->system.causes_seen = 0u;
   ilk_pedal_disarm(&state->system);
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
     ilk_axis_drop_motion(&state->axis[slot]);
@@ -40,36 +41,15 @@ void ilk_mode_enter(ilk_mode_t mode, uint32_t boot_nonce, ilk_state_t *state) {
   }
 }
 
-void ilk_mode_unlock(ilk_state_t *state) {
-  state->system.cause = (uint32_t)ILK_CAUSE_NONE;
-  state->system.cause_tick = 0u;
-  state->system.cause_value = 0u;
-  state->system.causes_seen = 0u;
-  ilk_mode_enter(ILK_MODE_READY, 0u, state);
-}
-
-/* --- Phase 3 ---------------------------------------------------------------------------------------------
- */
+/* --- Phase 3 ----------------------------------------------------------------------------------- */
 
 /** Any reading that is neither clearly pressed nor clearly released is a disagreement. */
 static ilk_pedal_t pedal_reading(const ilk_common_config_t *common, const ilk_inputs_t *in) {
   const bool single = common->pedal_channels == 1u;
-  const bool nc_says_pressed = single || (in->pedal_nc_closed == OPEN);
-  const bool nc_says_released = single || (in->pedal_nc_closed == CLOSED);
-  ilk_pedal_t pedal = ILK_PEDAL_DISAGREE;
-  if ((in->pedal_no_closed == CLOSED) && nc_says_pressed) {
-    pedal = ILK_PEDAL_PRESSED;
-  } else if ((in->pedal_no_closed == OPEN) && nc_says_released) {
-    pedal = ILK_PEDAL_RELEASED;
-  } else {
-    pedal = ILK_PEDAL_DISAGREE;
-  }
-  return pedal;
-}
-
-/** How long a condition has held, when so far it had for `ticks`. */
-static uint32_t ticks_in_row(bool holds, uint32_t ticks, uint32_t ceiling) {
-  return holds ? count_up(ticks, ceiling) : 0u;
+  const bool pressed = (in->pedal_no_closed == CLOSED) && (single || (in->pedal_nc_closed == OPEN));
+  const bool released = (in->pedal_no_closed == OPEN) && (single || (in->pedal_nc_closed == CLOSED));
+  const ilk_pedal_t unpressed = released ? ILK_PEDAL_RELEASED : ILK_PEDAL_DISAGREE;
+  return pressed ? ILK_PEDAL_PRESSED : unpressed;
 }
 
 static void observe_app(const ilk_common_config_t *common, const ilk_inputs_t *in, ilk_system_t *system) {
@@ -87,50 +67,31 @@ static void observe_pedal(const ilk_common_config_t *common, const ilk_inputs_t 
   const ilk_pedal_t pedal = pedal_reading(common, in);
   const uint32_t debounce = common->pedal_debounce_ticks;
   const bool may_arm = (system->mode == (uint32_t)ILK_MODE_READY) && (system->app_alive != 0u);
+  const bool released = may_arm && (pedal == ILK_PEDAL_RELEASED);
   if (!may_arm) {
     ilk_pedal_disarm(system);
   }
   system->pedal = (uint32_t)pedal;
   system->pedal_disagree_ticks =
       ticks_in_row(pedal == ILK_PEDAL_DISAGREE, system->pedal_disagree_ticks, UINT32_MAX);
-  system->pedal_released_ticks =
-      ticks_in_row((pedal == ILK_PEDAL_RELEASED) && may_arm, system->pedal_released_ticks, debounce);
+  system->pedal_released_ticks = ticks_in_row(released, system->pedal_released_ticks, debounce);
   system->pedal_pressed_ticks = ticks_in_row((pedal == ILK_PEDAL_PRESSED) && (system->pedal_armed != 0u),
                                              system->pedal_pressed_ticks, debounce);
-  if (may_arm && (system->pedal_released_ticks >= debounce)) {
+  if (released && (system->pedal_released_ticks >= debounce)) {
     system->pedal_armed = 1u;
   }
 }
 
 void ilk_system_observe(const ilk_common_config_t *common, const ilk_inputs_t *in, ilk_system_t *system) {
+  const uint32_t missed = in->deadlines_missed;
   system->estop = flag_of(in->estop_loop_closed != CLOSED);
   observe_app(common, in, system);
   observe_pedal(common, in, system);
-  system->overruns = sum_saturating(system->overruns, in->deadlines_missed);
-  system->overruns_in_row =
-      (in->deadlines_missed != 0u) ? sum_saturating(system->overruns_in_row, in->deadlines_missed) : 0u;
+  system->overruns = sum_saturating(system->overruns, missed);
+  system->overruns_in_row = (missed != 0u) ? sum_saturating(system->overruns_in_row, missed) : 0u;
 }
 
-/* --- Phase 5 ---------------------------------------------------------------------------------------------
- */
-
-/** What locks in a tick: the first cause with its value, or NONE, and all causes that are there, a bit each.
- */
-typedef struct {
-  ilk_cause_t first;
-  uint32_t value;
-  uint32_t all;
-} causes_t;
-
-static void add_cause(causes_t *causes, bool present, ilk_cause_t cause, uint32_t value) {
-  if (present) {
-    if (causes->first == ILK_CAUSE_NONE) {
-      causes->first = cause;
-      causes->value = value;
-    }
-    causes->all |= 1u << (uint32_t)cause;
-  }
-}
+/* --- Phase 5 ----------------------------------------------------------------------------------- */
 
 /** The slot of the first axis that is run away, or ILK_SLOTS. */
 static uint32_t runaway_slot(const ilk_state_t *state) {
@@ -148,45 +109,32 @@ bool ilk_cause_is_present(const ilk_state_t *state) {
          (runaway_slot(state) < (uint32_t)ILK_SLOTS);
 }
 
-/** The contacts as read: normally open in bit 0, normally closed in bit 1. */
-static uint32_t contacts(const ilk_inputs_t *in) {
-  return ((in->pedal_no_closed == OPEN) ? 0u : 1u) + ((in->pedal_nc_closed == OPEN) ? 0u : 2u);
+/** Every cause joins the list of those seen since RESET; the first one locks. */
+static void lock_if(bool present, ilk_cause_t cause, uint32_t value, ilk_state_t *state) {
+  if (present) {
+    if (state->system.mode != (uint32_t)ILK_MODE_LOCKED) {
+      ilk_mode_enter(ILK_MODE_LOCKED, 0u, state);
+      state->system.cause = (uint32_t)cause;
+      state->system.cause_tick = state->system.tick;
+      state->system.cause_value = value;
+    }
+    state->system.causes_seen |= 1u << (uint32_t)cause;
+  }
 }
 
-static causes_t causes_present(const ilk_common_config_t *common, const ilk_inputs_t *in,
-                               const ilk_alarms_t *alarms, const ilk_state_t *state) {
+static void follow_causes(const ilk_common_config_t *common, const ilk_inputs_t *in,
+                          const ilk_alarms_t *alarms, ilk_state_t *state) {
   const ilk_system_t *system = &state->system;
   const uint32_t runaway = runaway_slot(state);
-  causes_t causes = {.first = ILK_CAUSE_NONE, .value = 0u, .all = 0u};
-  add_cause(&causes, alarms->configuration_damaged, ILK_CAUSE_INTEGRITY, alarms->configuration_crc);
-  add_cause(&causes, system->estop != 0u, ILK_CAUSE_ESTOP, in->estop_loop_closed);
-  add_cause(&causes, system->bus_bad_ticks >= common->bad_frame_limit, ILK_CAUSE_BUS, system->bus_bad_ticks);
-  add_cause(&causes, system->pedal_disagree_ticks > common->pedal_disagree_ticks, ILK_CAUSE_PEDAL,
-            contacts(in));
-  add_cause(&causes, system->overruns_in_row >= common->overrun_limit, ILK_CAUSE_OVERRUN,
-            system->overruns_in_row);
-  add_cause(&causes, runaway < (uint32_t)ILK_SLOTS, ILK_CAUSE_RUNAWAY, runaway);
-  return causes;
-}
-
-/** LOCKED, unless LOCKED already, when there is a cause; all causes join the list of those seen. */
-static void lock(const causes_t *causes, ilk_state_t *state) {
-  if (causes->first != ILK_CAUSE_NONE) {
-    state->system.causes_seen |= causes->all;
-    if (state->system.mode != (uint32_t)ILK_MODE_LOCKED) {
-      state->system.cause = (uint32_t)causes->first;
-      state->system.cause_tick = state->system.tick;
-      state->system.cause_value = causes->value;
-      ilk_mode_enter(ILK_MODE_LOCKED, 0u, state);
-    }
-  }
-}
-
-/** A damaged configuration may have counted the wrong way until it was found. */
-static void lose_references(ilk_state_t *state) {
-  for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
-    state->axis[slot].homed = (uint32_t)ILK_HOMED_NOT;
-  }
+  const uint32_t contacts =
+      flag_of(in->pedal_no_closed != OPEN) + (2u * flag_of(in->pedal_nc_closed != OPEN));
+  lock_if(alarms->configuration_damaged, ILK_CAUSE_INTEGRITY, alarms->configuration_crc, state);
+  lock_if(system->estop != 0u, ILK_CAUSE_ESTOP, in->estop_loop_closed, state);
+  lock_if(system->bus_bad_ticks >= common->bad_frame_limit, ILK_CAUSE_BUS, system->bus_bad_ticks, state);
+  lock_if(system->pedal_disagree_ticks > common->pedal_disagree_ticks, ILK_CAUSE_PEDAL, contacts, state);
+  lock_if(system->overruns_in_row >= common->overrun_limit, ILK_CAUSE_OVERRUN, system->overruns_in_row,
+          state);
+  lock_if(runaway < (uint32_t)ILK_SLOTS, ILK_CAUSE_RUNAWAY, runaway, state);
 }
 
 /** MOTION holds only while the pedal is pressed, the app lives and nothing new is wrong. */
@@ -195,59 +143,51 @@ static bool motion_must_end(const ilk_system_t *system, const ilk_alarms_t *alar
          alarms->required_card_lost;
 }
 
-/** An axis that nobody enabled moves: by hand, or by itself. */
+/** An axis that nobody enabled moved by more than `drift_counts` in the last `rest_ticks` ticks, by hand or
+   by itself, or was not read for so long. */
 static bool disabled_axis_moves(const ilk_config_t *config, const ilk_state_t *state) {
   bool moves = false;
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
-    if (has_axis(&config->axis[slot]) && (state->axis[slot].state == (uint32_t)ILK_AXIS_DISABLED)) {
-      moves = moves || ilk_axis_has_moved(&config->axis[slot], &state->axis[slot]);
-    }
+    const bool disabled = state->axis[slot].state == (uint32_t)ILK_AXIS_DISABLED;
+    const bool moved = state->axis[slot].calm.ticks < config->axis[slot].rest_ticks;
+    moves = moves || (has_axis(&config->axis[slot]) && disabled && moved);
   }
   return moves;
 }
 
-/** What MOTION asks for when the press completes, an armed pedal and the app alive apart. */
-static bool motion_may_begin(const ilk_config_t *config, const ilk_alarms_t *alarms,
-                             const ilk_state_t *state) {
-  return (state->system.powered_ticks >= config->common.power_up_ticks) && !alarms->required_card_lost &&
-         !disabled_axis_moves(config, state);
-}
-
 static bool press_completes(const ilk_common_config_t *common, const ilk_system_t *system) {
-  return (system->pedal_armed != 0u) && (system->pedal == (uint32_t)ILK_PEDAL_PRESSED) &&
+  return (system->mode == (uint32_t)ILK_MODE_READY) && (system->pedal_armed != 0u) &&
+         (system->pedal == (uint32_t)ILK_PEDAL_PRESSED) &&
          (system->pedal_pressed_ticks >= common->pedal_debounce_ticks);
 }
 
-/** Consent begins MOTION or is used up, its loss ends it. */
+/** Consent begins MOTION or is used up, its loss ends it. INIT and LOCKED are left by ilk_init and RESET
+ * alone. */
 static void follow_consent(const ilk_config_t *config, const ilk_inputs_t *in, const ilk_alarms_t *alarms,
                            ilk_state_t *state) {
-  switch (state->system.mode) {
-    case (uint32_t)ILK_MODE_MOTION:
-      if (motion_must_end(&state->system, alarms)) {
-        ilk_mode_enter(ILK_MODE_READY, 0u, state);
-      }
-      break;
-    case (uint32_t)ILK_MODE_READY:
-      if (!press_completes(&config->common, &state->system)) {
-        /* Nobody asks for MOTION. */
-      } else if (motion_may_begin(config, alarms, state)) {
-        ilk_mode_enter(ILK_MODE_MOTION, in->boot_nonce, state);
-      } else {
-        ilk_pedal_disarm(&state->system);
-      }
-      break;
-    default:
-      /* INIT and LOCKED are left by ilk_init and by RESET alone. */
-      break;
+  const bool asked = press_completes(&config->common, &state->system);
+  const bool begins = asked && (state->system.tick != 0u) &&
+                      (state->system.powered_ticks >= config->common.power_up_ticks) &&
+                      !alarms->required_card_lost && !disabled_axis_moves(config, state);
+  const bool ends =
+      (state->system.mode == (uint32_t)ILK_MODE_MOTION) && motion_must_end(&state->system, alarms);
+  if (begins) {
+    ilk_mode_enter(ILK_MODE_MOTION, in->boot_nonce, state);
+  }
+  if (ends) {
+    ilk_mode_enter(ILK_MODE_READY, 0u, state);
+  }
+  if (asked && !begins) {
+    ilk_pedal_disarm(&state->system);
   }
 }
 
 void ilk_mode_decide(const ilk_config_t *config, const ilk_inputs_t *in, const ilk_alarms_t *alarms,
                      ilk_state_t *state) {
-  const causes_t causes = causes_present(&config->common, in, alarms, state);
-  if (alarms->configuration_damaged) {
-    lose_references(state);
+  for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
+    /* A damaged configuration may have counted the wrong way until it was found. */
+    state->axis[slot].homed = alarms->configuration_damaged ? ILK_HOMED_NOT : state->axis[slot].homed;
   }
-  lock(&causes, state);
+  follow_causes(&config->common, in, alarms, state);
   follow_consent(config, in, alarms, state);
 }

@@ -1,17 +1,8 @@
-#include "request.h"
+#include "parts.h"
 
-#include <stdbool.h>
-
-#include "arith.h"
-#include "axis.h"
-#include "gate.h"
-#include "homing.h"
-#include "interlock/kernel.h"
-#include "mode.h"
-
-/** The first check that fails is the verdict. */
-static ilk_verdict_t then(ilk_verdict_t verdict, bool holds, ilk_verdict_t otherwise) {
-  return ((verdict == ILK_VERDICT_ACCEPTED) && !holds) ? otherwise : verdict;
+/** The first need that is not met is the verdict. */
+static void need(ilk_verdict_t *verdict, bool met, ilk_verdict_t otherwise) {
+  *verdict = ((*verdict == ILK_VERDICT_ACCEPTED) && !met) ? otherwise : *verdict;
 }
 
 static bool mode_is(const ilk_system_t *system, ilk_mode_t mode) { return system->mode == (uint32_t)mode; }
@@ -20,95 +11,79 @@ static bool axis_is(const ilk_axis_t *axis, ilk_axis_state_t state) { return axi
 
 static bool pedal_is_up(const ilk_system_t *system) { return system->pedal == (uint32_t)ILK_PEDAL_RELEASED; }
 
-static bool drive_is_within(const ilk_axis_config_t *config, const ilk_axis_t *axis,
-                            const ilk_request_t *request) {
-  return (request->drive != 0u) && (request->drive <= ilk_drive_bound(config, axis)) &&
-         (request->amplitude <= config->max_amplitude);
-}
-
-/** Of an axis that is homed by its soft limits, else by what is left of its travel; never behind a steady
- * switch. */
-static bool setpoint_is_within(const ilk_config_t *config, const ilk_axis_config_t *axis_config,
+/** Of a homed axis by its soft limits, else by what is left of its travel; never behind a steady switch. */
+static bool setpoint_is_within(const ilk_common_config_t *common, const ilk_axis_config_t *config,
                                const ilk_axis_t *axis, int32_t setpoint) {
-  const int64_t distance = (int64_t)setpoint - (int64_t)axis->position_counts;
-  const int64_t left = (int64_t)ilk_unhomed_travel_left(axis_config, axis);
-  const ilk_reach_t reach = ilk_reach(axis_config, axis);
-  const bool towards = ((distance > 0) && (axis_config->limit_side == (uint32_t)ILK_LIMIT_UPPER)) ||
-                       ((distance < 0) && (axis_config->limit_side == (uint32_t)ILK_LIMIT_LOWER));
-  const bool reachable = (axis->homed != (uint32_t)ILK_HOMED_NOT)
-                             ? (((int64_t)setpoint >= reach.low) && ((int64_t)setpoint <= reach.high))
-                             : ((distance >= -left) && (distance <= left));
-  const bool behind = towards && ilk_switch_is_steady(&config->common, axis, true);
-  return reachable && !behind;
+  const int64_t here = (int64_t)axis->position_counts;
+  const int64_t left = (int64_t)ilk_unhomed_travel_left(config, axis);
+  const ilk_reach_t unhomed = {.low = here - left, .high = here + left};
+  const ilk_reach_t reach = (axis->homed != (uint32_t)ILK_HOMED_NOT) ? ilk_reach(config, axis) : unhomed;
+  const bool towards = (((int64_t)setpoint > here) && (config->limit_side == (uint32_t)ILK_LIMIT_UPPER)) ||
+                       (((int64_t)setpoint < here) && (config->limit_side == (uint32_t)ILK_LIMIT_LOWER));
+  const bool behind = towards && ilk_switch_is_steady(common, axis, true);
+  return ((int64_t)setpoint >= reach.low) && ((int64_t)setpoint <= reach.high) && !behind;
 }
 
-/** What MOVE and HOME ask alike. */
-static ilk_verdict_t check_may_move(const ilk_system_t *system, const ilk_axis_t *axis, uint32_t consent) {
-  ilk_verdict_t verdict = then(ILK_VERDICT_ACCEPTED, mode_is(system, ILK_MODE_MOTION), ILK_VERDICT_MODE);
-  verdict = then(verdict, consent == system->consent, ILK_VERDICT_CONSENT);
-  verdict = then(verdict, !axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_FAULTED);
-  verdict = then(verdict, !axis_is(axis, ILK_AXIS_DISABLED), ILK_VERDICT_DISABLED);
-  return then(verdict, !axis_is(axis, ILK_AXIS_HOMING), ILK_VERDICT_BUSY);
+/** What MOVE and HOME need alike. */
+static void need_enabled(ilk_verdict_t *verdict, const ilk_system_t *system, const ilk_axis_t *axis,
+                         uint32_t consent) {
+  need(verdict, mode_is(system, ILK_MODE_MOTION), ILK_VERDICT_MODE);
+  need(verdict, consent == system->consent, ILK_VERDICT_CONSENT);
+  need(verdict, !axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_FAULTED);
+  need(verdict, !axis_is(axis, ILK_AXIS_DISABLED), ILK_VERDICT_DISABLED);
+  need(verdict, !axis_is(axis, ILK_AXIS_HOMING), ILK_VERDICT_BUSY);
 }
 
-/** What SET_HOME and RESTORE ask alike: they say where a resting axis stands. */
-static ilk_verdict_t check_may_declare(const ilk_system_t *system, const ilk_axis_t *axis, bool at_rest) {
-  ilk_verdict_t verdict = then(ILK_VERDICT_ACCEPTED, mode_is(system, ILK_MODE_READY), ILK_VERDICT_MODE);
-  verdict = then(verdict, pedal_is_up(system), ILK_VERDICT_PEDAL_DOWN);
-  verdict = then(verdict, !axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_FAULTED);
-  verdict = then(verdict, axis->card_valid != 0u, ILK_VERDICT_CARD);
-  return then(verdict, at_rest, ILK_VERDICT_BUSY);
-}
-
-/** The rows of the table that name an axis, INIT apart. */
-static ilk_verdict_t check_axis(const ilk_config_t *config, const ilk_axis_config_t *axis_config,
-                                const ilk_system_t *system, const ilk_axis_t *axis,
-                                const ilk_request_t *request) {
-  const bool at_rest = ilk_axis_is_at_rest(axis_config, axis);
-  const bool powered = system->powered_ticks >= config->common.power_up_ticks;
-  const bool card = axis->card_valid != 0u;
+/** The rows of the table that name an axis. */
+static ilk_verdict_t judge(const ilk_common_config_t *common, const ilk_axis_config_t *config,
+                           const ilk_system_t *system, const ilk_axis_t *axis, const ilk_request_t *request) {
+  const bool at_rest = ilk_axis_is_at_rest(config, axis);
+  const bool may_enable = (system->powered_ticks >= common->power_up_ticks) && at_rest;
+  const bool sets_home = request->kind == (uint32_t)ILK_REQUEST_SET_HOME;
+  const bool target_is_inside =
+      (request->target_counts >= config->min_counts) && (request->target_counts <= config->max_counts);
   ilk_verdict_t verdict = ILK_VERDICT_ACCEPTED;
   switch (request->kind) {
     case (uint32_t)ILK_REQUEST_DISABLE:
-      verdict = then(verdict, !axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_FAULTED);
+      need(&verdict, !axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_FAULTED);
       break;
     case (uint32_t)ILK_REQUEST_ENABLE:
-      verdict = then(verdict, ilk_power_is_on(system), ILK_VERDICT_MODE);
-      verdict = then(verdict, !axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_FAULTED);
-      verdict = then(verdict, card, ILK_VERDICT_CARD);
-      verdict = then(verdict, (powered && at_rest) || !axis_is(axis, ILK_AXIS_DISABLED), ILK_VERDICT_BUSY);
+      need(&verdict, ilk_power_is_on(system), ILK_VERDICT_MODE);
+      need(&verdict, !axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_FAULTED);
+      need(&verdict, axis->card_valid != 0u, ILK_VERDICT_CARD);
+      need(&verdict, may_enable || !axis_is(axis, ILK_AXIS_DISABLED), ILK_VERDICT_BUSY);
       break;
     case (uint32_t)ILK_REQUEST_CLEAR_FAULT:
-      verdict = then(verdict, axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_NO_FAULT);
-      verdict = then(verdict, at_rest && (axis->fault_tick != system->tick), ILK_VERDICT_CAUSE_PRESENT);
-      verdict = then(verdict, pedal_is_up(system), ILK_VERDICT_PEDAL_DOWN);
+      need(&verdict, axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_NO_FAULT);
+      need(&verdict, at_rest && (axis->fault_tick != system->tick), ILK_VERDICT_CAUSE_PRESENT);
+      need(&verdict, pedal_is_up(system), ILK_VERDICT_PEDAL_DOWN);
       break;
     case (uint32_t)ILK_REQUEST_MOVE:
-      verdict = check_may_move(system, axis, request->consent);
-      verdict =
-          then(verdict, count_of(request->lease_ticks, config->common.lease_max_ticks), ILK_VERDICT_LEASE);
-      verdict = then(verdict, drive_is_within(axis_config, axis, request), ILK_VERDICT_DRIVE);
-      verdict = then(verdict, setpoint_is_within(config, axis_config, axis, request->target_counts),
-                     ILK_VERDICT_RANGE);
+      need_enabled(&verdict, system, axis, request->consent);
+      need(&verdict, count_of(request->lease_ticks, common->lease_max_ticks), ILK_VERDICT_LEASE);
+      need(&verdict, count_of(request->drive, ilk_drive_bound(config, axis)), ILK_VERDICT_DRIVE);
+      need(&verdict, request->amplitude <= config->max_amplitude, ILK_VERDICT_DRIVE);
+      need(&verdict, setpoint_is_within(common, config, axis, request->target_counts), ILK_VERDICT_RANGE);
       break;
     case (uint32_t)ILK_REQUEST_HOME:
-      verdict = check_may_move(system, axis, request->consent);
-      verdict = then(verdict, has_switch(axis_config), ILK_VERDICT_NO_SWITCH);
-      verdict = then(verdict, ilk_homing_has_budget(axis_config, axis), ILK_VERDICT_BUDGET);
+      need_enabled(&verdict, system, axis, request->consent);
+      need(&verdict, has_switch(config), ILK_VERDICT_NO_SWITCH);
+      need(&verdict, ilk_homing_has_budget(config, axis), ILK_VERDICT_BUDGET);
       break;
-    case (uint32_t)ILK_REQUEST_RESTORE:
-      verdict = check_may_declare(system, axis, at_rest);
-      verdict = then(verdict, request->target_counts >= axis_config->min_counts, ILK_VERDICT_RANGE);
-      verdict = then(verdict, request->target_counts <= axis_config->max_counts, ILK_VERDICT_RANGE);
-      break;
-    default: /* SET_HOME */
-      verdict = check_may_declare(system, axis, at_rest);
+    default: /* SET_HOME and RESTORE: they say where a resting axis stands. */
+      need(&verdict, mode_is(system, ILK_MODE_READY), ILK_VERDICT_MODE);
+      need(&verdict, pedal_is_up(system), ILK_VERDICT_PEDAL_DOWN);
+      need(&verdict, !axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_FAULTED);
+      need(&verdict, axis->card_valid != 0u, ILK_VERDICT_CARD);
+      need(&verdict, at_rest, ILK_VERDICT_BUSY);
+      need(&verdict, sets_home || target_is_inside, ILK_VERDICT_RANGE);
       break;
   }
   return verdict;
 }
 
 static void carry_out(const ilk_request_t *request, ilk_axis_t *axis) {
+  const bool sets_home = request->kind == (uint32_t)ILK_REQUEST_SET_HOME;
   switch (request->kind) {
     case (uint32_t)ILK_REQUEST_DISABLE:
       ilk_axis_disable(axis);
@@ -129,28 +104,19 @@ static void carry_out(const ilk_request_t *request, ilk_axis_t *axis) {
     case (uint32_t)ILK_REQUEST_HOME:
       ilk_homing_begin(axis);
       break;
-    case (uint32_t)ILK_REQUEST_RESTORE:
-      axis->position_counts = request->target_counts;
-      axis->homed = (uint32_t)ILK_HOMED_NOT;
-      break;
-    default: /* SET_HOME */
-      axis->position_counts = 0;
-      axis->homed = (uint32_t)ILK_HOMED_BY_HAND;
+    default: /* SET_HOME, RESTORE */
+      axis->position_counts = sets_home ? 0 : request->target_counts;
+      axis->homed = (uint32_t)(sets_home ? ILK_HOMED_BY_HAND : ILK_HOMED_NOT);
       break;
   }
 }
 
 static ilk_verdict_t take_axis(const ilk_config_t *config, const ilk_request_t *request, ilk_state_t *state) {
-  ilk_verdict_t verdict = ILK_VERDICT_AXIS;
-  if ((request->axis < (uint32_t)ILK_SLOTS) && has_axis(&config->axis[request->axis])) {
-    ilk_axis_t *axis = &state->axis[request->axis];
-    verdict = then(ILK_VERDICT_ACCEPTED, !mode_is(&state->system, ILK_MODE_INIT), ILK_VERDICT_MODE);
-    if (verdict == ILK_VERDICT_ACCEPTED) {
-      verdict = check_axis(config, &config->axis[request->axis], &state->system, axis, request);
-    }
-    if (verdict == ILK_VERDICT_ACCEPTED) {
-      carry_out(request, axis);
-    }
+  const uint32_t slot = request->axis;
+  const ilk_verdict_t verdict =
+      judge(&config->common, &config->axis[slot], &state->system, &state->axis[slot], request);
+  if (verdict == ILK_VERDICT_ACCEPTED) {
+    carry_out(request, &state->axis[slot]);
   }
   return verdict;
 }
@@ -165,66 +131,57 @@ static void end_motion(ilk_state_t *state) {
 /** Requests to the robot as a whole. A new holder finds no consent and no motion. */
 static ilk_verdict_t take_system(const ilk_request_t *request, ilk_state_t *state) {
   ilk_system_t *system = &state->system;
-  ilk_verdict_t verdict = then(ILK_VERDICT_ACCEPTED, !mode_is(system, ILK_MODE_INIT), ILK_VERDICT_MODE);
+  ilk_verdict_t verdict = ILK_VERDICT_ACCEPTED;
   if (request->kind == (uint32_t)ILK_REQUEST_RESET) {
-    verdict = then(verdict, mode_is(system, ILK_MODE_LOCKED), ILK_VERDICT_MODE);
-    verdict = then(verdict, pedal_is_up(system), ILK_VERDICT_PEDAL_DOWN);
-    verdict = then(verdict, !ilk_cause_is_present(state), ILK_VERDICT_CAUSE_PRESENT);
-  }
-  if (verdict == ILK_VERDICT_ACCEPTED) {
-    if (request->kind == (uint32_t)ILK_REQUEST_RESET) {
-      ilk_mode_unlock(state);
-    } else if (request->kind == (uint32_t)ILK_REQUEST_STOP) {
+    need(&verdict, mode_is(system, ILK_MODE_LOCKED), ILK_VERDICT_MODE);
+    need(&verdict, pedal_is_up(system), ILK_VERDICT_PEDAL_DOWN);
+    need(&verdict, !ilk_cause_is_present(state), ILK_VERDICT_CAUSE_PRESENT);
+    if (verdict == ILK_VERDICT_ACCEPTED) {
+      ilk_mode_enter(ILK_MODE_READY, 0u, state);
+    }
+  } else if (request->kind == (uint32_t)ILK_REQUEST_STOP) {
+    end_motion(state);
+  } else { /* HEARTBEAT */
+    system->app_age_ticks = 0u;
+    if (system->holder != request->holder) {
+      system->holder = request->holder;
       end_motion(state);
-    } else { /* HEARTBEAT */
-      system->app_age_ticks = 0u;
-      if (system->holder != request->holder) {
-        system->holder = request->holder;
-        end_motion(state);
-      }
     }
   }
   return verdict;
 }
 
-/** Newer by less than half of the number space; gaps are allowed, repeats and returns are not. */
-static bool is_newer(uint32_t sequence, uint32_t last) {
-  return count_of(sequence - last, (uint32_t)INT32_MAX);
-}
-
 /** A request that is intact and in order uses its number up, whatever the verdict. */
 static ilk_verdict_t take(const ilk_config_t *config, const ilk_request_t *request, ilk_state_t *state) {
-  ilk_verdict_t verdict = ILK_VERDICT_UNKNOWN;
-  if (request->crc != ilk_request_crc(request)) {
-    verdict = ILK_VERDICT_CHECKSUM;
-  } else if (!is_newer(request->sequence, state->system.last_sequence)) {
-    verdict = ILK_VERDICT_SEQUENCE;
-  } else {
+  const uint32_t ahead = request->sequence - state->system.last_sequence;
+  const bool of_system = request->kind <= (uint32_t)ILK_REQUEST_RESET;
+  const bool of_axis = (request->axis < (uint32_t)ILK_SLOTS) && has_axis(&config->axis[request->axis]);
+  ilk_verdict_t verdict = ILK_VERDICT_ACCEPTED;
+  need(&verdict, request->crc == ilk_request_crc(request), ILK_VERDICT_CHECKSUM);
+  need(&verdict, count_of(ahead, (uint32_t)INT32_MAX), ILK_VERDICT_SEQUENCE);
+  if (verdict == ILK_VERDICT_ACCEPTED) {
     state->system.last_sequence = request->sequence;
-    if ((request->kind >= (uint32_t)ILK_REQUEST_HEARTBEAT) &&
-        (request->kind <= (uint32_t)ILK_REQUEST_RESET)) {
-      verdict = take_system(request, state);
-    } else if ((request->kind >= (uint32_t)ILK_REQUEST_DISABLE) &&
-               (request->kind <= (uint32_t)ILK_REQUEST_RESTORE)) {
-      verdict = take_axis(config, request, state);
-    } else {
-      verdict = ILK_VERDICT_UNKNOWN;
-    }
+  }
+  need(&verdict, count_of(request->kind, (uint32_t)ILK_REQUEST_RESTORE), ILK_VERDICT_UNKNOWN);
+  need(&verdict, of_system || of_axis, ILK_VERDICT_AXIS);
+  need(&verdict, !mode_is(&state->system, ILK_MODE_INIT), ILK_VERDICT_MODE);
+  if (verdict == ILK_VERDICT_ACCEPTED) {
+    verdict = of_system ? take_system(request, state) : take_axis(config, request, state);
   }
   return verdict;
 }
 
 ilk_verdict_record_t ilk_request_take(const ilk_config_t *config, const ilk_request_t *request,
                                       ilk_state_t *state) {
-  const ilk_verdict_record_t record = {.tick = state->system.tick,
+  ilk_system_t *system = &state->system;
+  const uint32_t verdict = (uint32_t)take(config, request, state);
+  const ilk_verdict_record_t record = {.tick = system->tick,
                                        .sequence = request->sequence,
                                        .kind = request->kind,
                                        .axis = request->axis,
-                                       .verdict = (uint32_t)take(config, request, state)};
-  if (record.verdict == (uint32_t)ILK_VERDICT_ACCEPTED) {
-    state->system.requests_accepted = count_up(state->system.requests_accepted, UINT32_MAX);
-  } else {
-    state->system.requests_refused = count_up(state->system.requests_refused, UINT32_MAX);
-  }
+                                       .verdict = verdict};
+  uint32_t *counter =
+      (verdict == (uint32_t)ILK_VERDICT_ACCEPTED) ? &system->requests_accepted : &system->requests_refused;
+  *counter = count_up(*counter, UINT32_MAX);
   return record;
 }

@@ -1,31 +1,18 @@
-#include <stdbool.h>
-
-#include "arith.h"
-#include "axis.h"
-#include "frame.h"
-#include "gate.h"
-#include "integrity.h"
-#include "interlock/kernel.h"
-#include "mode.h"
-#include "request.h"
-
-/** True when the card of this slot answered in this tick. */
-static bool answered(const ilk_inputs_t *in, uint32_t slot) {
-  return (in->transaction_done == 1u) && (((in->frames_received >> slot) & 1u) != 0u);
-}
+#include "parts.h"
 
 /** Phase 2: checksum and freshness of each card's frame, and whether the bus says anything at all. */
 static void read_frames(const ilk_config_t *config, const ilk_inputs_t *in, ilk_reading_t readings[ILK_SLOTS],
                         ilk_state_t *state) {
   bool any_valid = false;
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
+    const bool answered = (in->transaction_done == 1u) && (((in->frames_received >> slot) & 1u) != 0u);
     readings[slot] = ilk_frame_unpack(in->frame[slot]);
     if (has_card(&config->axis[slot])) {
-      ilk_card_observe(&state->system, &readings[slot], answered(in, slot), &state->axis[slot]);
+      ilk_card_observe(&state->system, &readings[slot], answered, &state->axis[slot]);
       any_valid = any_valid || (state->axis[slot].card_valid != 0u);
     }
   }
-  state->system.bus_bad_ticks = any_valid ? 0u : count_up(state->system.bus_bad_ticks, UINT32_MAX);
+  state->system.bus_bad_ticks = ticks_in_row(!any_valid, state->system.bus_bad_ticks, UINT32_MAX);
 }
 
 /** Phase 4: each axis, judged by what this tick's frames say. */
@@ -69,38 +56,29 @@ static void drive_axes(const ilk_config_t *config, ilk_state_t *state, ilk_outpu
     out->command[slot] = (gate == ILK_GATE_OPEN) ? wanted : zero_drive;
     if (gate == ILK_GATE_OPEN) {
       ilk_axis_note_drive(&wanted, axis);
-    } else if ((gate == ILK_GATE_SETPOINT) && (axis->state == (uint32_t)ILK_AXIS_MOVING)) {
+    }
+    if ((gate == ILK_GATE_SETPOINT) && (axis->state == (uint32_t)ILK_AXIS_MOVING)) {
       ilk_axis_note_arrival(axis_config, axis);
-    } else {
-      /* Undriven: what was counted stays. */
     }
   }
 }
 
 static ilk_colour_t pedal_colour(const ilk_system_t *system) {
-  ilk_colour_t colour = ILK_COLOUR_OFF;
-  if (system->estop != 0u) {
-    colour = ILK_COLOUR_RED;
-  } else if (system->mode == (uint32_t)ILK_MODE_MOTION) {
-    colour = ILK_COLOUR_GREEN;
-  } else {
-    colour = ILK_COLOUR_OFF;
-  }
-  return colour;
+  const bool motion = system->mode == (uint32_t)ILK_MODE_MOTION;
+  const ilk_colour_t released = motion ? ILK_COLOUR_GREEN : ILK_COLOUR_OFF;
+  return (system->estop != 0u) ? ILK_COLOUR_RED : released;
 }
 
-static ilk_colour_t stall_colour(const ilk_state_t *state) {
-  ilk_colour_t colour = ILK_COLOUR_OFF;
+/** PURPLE for a stall, AMBER for any other fault. */
+static ilk_colour_t fault_colour(const ilk_state_t *state) {
+  bool stall = false;
+  bool other = false;
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
-    if (state->axis[slot].fault == (uint32_t)ILK_FAULT_STALL) {
-      colour = ILK_COLOUR_PURPLE;
-    } else if ((state->axis[slot].fault != (uint32_t)ILK_FAULT_NONE) && (colour == ILK_COLOUR_OFF)) {
-      colour = ILK_COLOUR_AMBER;
-    } else {
-      /* A fault seen earlier keeps its colour. */
-    }
+    stall = stall || (state->axis[slot].fault == (uint32_t)ILK_FAULT_STALL);
+    other = other || (state->axis[slot].fault != (uint32_t)ILK_FAULT_NONE);
   }
-  return colour;
+  const ilk_colour_t not_stall = other ? ILK_COLOUR_AMBER : ILK_COLOUR_OFF;
+  return stall ? ILK_COLOUR_PURPLE : not_stall;
 }
 
 /** Phase 8: frames, power and lamps. */
@@ -114,13 +92,13 @@ static void write_outputs(const ilk_config_t *config, const ilk_state_t *state, 
   out->lamp[ILK_LAMP_NETWORK] =
       (uint32_t)((state->system.app_alive != 0u) ? ILK_COLOUR_GREEN : ILK_COLOUR_RED);
   out->lamp[ILK_LAMP_CONTROLLER] = (uint32_t)(power ? ILK_COLOUR_GREEN : ILK_COLOUR_RED);
-  out->lamp[ILK_LAMP_STALL] = (uint32_t)stall_colour(state);
+  out->lamp[ILK_LAMP_STALL] = (uint32_t)fault_colour(state);
 }
 
 /** Phase 8: what the next tick counts from. */
 static void close_tick(const ilk_common_config_t *common, ilk_system_t *system) {
   system->powered_ticks =
-      ilk_power_is_on(system) ? count_up(system->powered_ticks, common->power_up_ticks) : 0u;
+      ticks_in_row(ilk_power_is_on(system), system->powered_ticks, common->power_up_ticks);
   system->frames_sent = count_up(system->frames_sent, ILK_LATENCY_TICKS);
   system->tick++;
 }

@@ -23,6 +23,7 @@ test.describe("with the pedal of the page", () => {
     await expect(front.authority).toContainText("(you)");
     await keyboard.press(front.unlock);
     await front.expectMode("READY");
+    await expect(axis.button("Enable")).not.toHaveAttribute("data-foretold");
     await keyboard.press(front.button("Enable Probe rotation"));
     await axis.expectState("ENABLED");
     await keyboard.reach(axis.track);

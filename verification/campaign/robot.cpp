@@ -14,8 +14,8 @@ constexpr std::uint32_t kNoise = 1;
 constexpr std::uint32_t kBacklash = 1;
 constexpr double kNoiseChance = 0.1;
 constexpr plant::Microseconds kBounce{3000};
-constexpr double kPushed = 0.2;     /**< share of axes that a hand has pushed away from their switch */
-constexpr double kAtSwitch = 0.5;   /**< share of axes that start near their switch */
+constexpr double kPushed = 0.2;   /**< share of axes that a hand has pushed away from their switch */
+constexpr double kAtSwitch = 0.5; /**< share of axes that start near their switch */
 constexpr double kRevolutionsPerSecondAtFullDrive = 397.785 / 60;
 
 /** What the plant and the configuration of an axis have to agree on. */
@@ -68,8 +68,8 @@ void set_homing_margins(plant::Random& random, ilk_axis_config_t& axis, const il
   axis.switch_hysteresis_counts = between(random, 3, 5);
   axis.home_tolerance_counts =
       travel(axis.full_speed_counts_per_s / 10, debounce_us + kBounce.count()) + 2 * kNoise + 1;
-  axis.home_clear_counts = axis.home_tolerance_counts + axis.switch_hysteresis_counts + axis.coast_counts +
-                           between(random, 1, 20);
+  axis.home_clear_counts =
+      axis.home_tolerance_counts + axis.switch_hysteresis_counts + axis.coast_counts + between(random, 1, 20);
 }
 
 void set_homing_budget(plant::Random& random, ilk_axis_config_t& axis, const ilk_common_config_t& common,
@@ -77,17 +77,17 @@ void set_homing_budget(plant::Random& random, ilk_axis_config_t& axis, const ilk
   const std::uint32_t back_and_forth = 2 * (axis.home_clear_counts + axis.switch_hysteresis_counts +
                                             2 * axis.coast_counts + axis.noise_counts);
   const std::uint32_t way = range + 2 * axis.coast_counts + 2 * back_and_forth;
-  axis.home_travel_counts = way + axis.coast_counts + between(random, 1, range / 4);
-  const std::uint64_t waiting_us = std::uint64_t{4 * axis.rest_ticks + 12 * common.switch_debounce_ticks} *
-                                   common.period_us;
+  axis.home_travel_counts = way + axis.coast_counts + axis.noise_counts + between(random, 1, range / 4);
+  const std::uint64_t waiting_us =
+      std::uint64_t{4 * axis.rest_ticks + 12 * common.switch_debounce_ticks} * common.period_us;
   const std::uint64_t time_us = time_for(way, axis.home_speed_counts_per_s) +
                                 time_for(back_and_forth, axis.home_slow_speed_counts_per_s) + waiting_us;
   axis.home_timeout_ticks = static_cast<std::uint32_t>(time_us * 11 / 10 / common.period_us) + 2;
 }
 
 void set_watches(plant::Random& random, ilk_axis_config_t& axis, std::uint32_t period_us) {
-  const std::uint32_t slowest = axis.limit_side == ILK_LIMIT_NONE ? axis.full_speed_counts_per_s
-                                                                  : axis.home_slow_speed_counts_per_s;
+  const std::uint32_t slowest =
+      axis.limit_side == ILK_LIMIT_NONE ? axis.full_speed_counts_per_s : axis.home_slow_speed_counts_per_s;
   axis.stall_min_counts = kNoise + 2;
   const auto least_ms =
       static_cast<std::uint32_t>(time_for(axis.stall_min_counts + kBacklash + kNoise, slowest) / 1000 + 40);

@@ -4,7 +4,8 @@
  *
  *   homing [STARTS [SEED]]     200 starts a configuration by default; exit 1 on a wrong home or a violation
  *
- * A home is right when the position after it is within one count, noise and the slow travel of one tick of the truth.
+ * A home is right when the position after it is within one count, noise and the slow travel of one tick of
+ * the truth.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,10 +25,11 @@ static uint32_t sequence;
 static uint32_t tick_number;
 static uint64_t violations;
 
-/** Four valid configurations: a slow and a fast axis, switch at either end, with and without noise and hysteresis. */
+/** Four valid configurations: a slow and a fast axis, switch at either end, with and without noise and
+ * hysteresis. */
 static bool make_config(uint32_t which) {
-  ilk_common_config_t *m = &config.common;
-  ilk_axis_config_t *a = &config.axis[0];
+  ilk_common_config_t* m = &config.common;
+  ilk_axis_config_t* a = &config.axis[0];
   memset(&config, 0, sizeof config);
   m->version = ILK_CONFIG_VERSION;
   m->size_bytes = (uint32_t)sizeof config;
@@ -41,7 +43,10 @@ static bool make_config(uint32_t which) {
   m->switch_debounce_ticks = 5u;
   m->bad_frame_limit = 3u;
   m->overrun_limit = 3u;
-  a->card = which == 0u ? ILK_CARD_PWM : which == 1u ? ILK_CARD_ANALOG : which == 2u ? ILK_CARD_NON_PWM : ILK_CARD_HIGH_FREQUENCY;
+  a->card = which == 0u   ? ILK_CARD_PWM
+            : which == 1u ? ILK_CARD_ANALOG
+            : which == 2u ? ILK_CARD_NON_PWM
+                          : ILK_CARD_HIGH_FREQUENCY;
   a->motor_direction = which & 1u;
   a->direction_correction = (which >> 1) & 1u;
   a->limit_side = (which == 0u || which == 3u) ? ILK_LIMIT_LOWER : ILK_LIMIT_UPPER;
@@ -96,7 +101,7 @@ static ilk_request_t make(uint32_t kind) {
 }
 
 /** One tick with at most one request beside the heartbeat. */
-static uint32_t run(bool pressed, const ilk_request_t *extra) {
+static uint32_t run(bool pressed, const ilk_request_t* extra) {
   ilk_request_t list[2];
   ilk_tick_t t = {&config, true, &in, list, 0u, &out, &before, &after};
   list[0] = make(ILK_REQUEST_HEARTBEAT);
@@ -126,7 +131,8 @@ static uint32_t run(bool pressed, const ilk_request_t *extra) {
   for (uint32_t k = 0u; k < JUDGE_COUNT; k++) {
     const ilk_judgement_t j = ilk_judges[k](&ghost, &t);
     if (j.clause != NULL && violations++ < 20u) {
-      printf("VIOLATION %s found %lld bound %lld tick %u\n", j.clause, (long long)j.found, (long long)j.bound, tick_number);
+      printf("VIOLATION %s found %lld bound %lld tick %u\n", j.clause, (long long)j.found, (long long)j.bound,
+             tick_number);
     }
   }
   ghost_settle(&ghost, &t);
@@ -165,13 +171,14 @@ static void begin(int64_t start, uint32_t bounce, uint32_t noise_one_in, uint32_
   }
 }
 
-int main(int argc, char **argv) {
+int main(int argc, char** argv) {
   const uint32_t starts = argc > 1 ? (uint32_t)strtoul(argv[1], NULL, 10) : 200u;
   uint64_t wrong = 0u, stuck = 0u;
   r.s = argc > 2 ? strtoull(argv[2], NULL, 10) : 1u;
   for (uint32_t which = 0u; which < 4u; which++) {
-    const ilk_axis_config_t *a = &config.axis[0];
-    uint64_t homed = 0u, faulted[ILK_FAULT_COUNT] = {0}, refused = 0u, reached = 0u, moves = 0u, stopped = 0u, late = 0u;
+    const ilk_axis_config_t* a = &config.axis[0];
+    uint64_t homed = 0u, faulted[ILK_FAULT_COUNT] = {0}, refused = 0u, reached = 0u, moves = 0u, stopped = 0u,
+             late = 0u;
     int64_t worst = 0, longest = 0;
     if (!make_config(which)) {
       const ilk_config_verdict_t v = ilk_config_validate(&config);
@@ -235,8 +242,10 @@ int main(int argc, char **argv) {
       off = off < 0 ? -off : off;
       worst = off > worst ? off : worst;
       /* one count, noise, and what the slow approach travels in one tick and in the bounce */
-      if (off > 1 + (int64_t)a->noise_counts + 1 + (int64_t)(a->home_slow_speed_counts_per_s * config.common.period_us / 1000000u) * 4 +
-                    (int64_t)(a->home_slow_speed_counts_per_s * config.common.period_us % 1000000u * 4u / 1000000u)) {
+      if (off > 1 + (int64_t)a->noise_counts + 1 +
+                    (int64_t)(a->home_slow_speed_counts_per_s * config.common.period_us / 1000000u) * 4 +
+                    (int64_t)(a->home_slow_speed_counts_per_s * config.common.period_us % 1000000u * 4u /
+                              1000000u)) {
         wrong++;
         printf("WRONG HOME configuration %u start %u: %lld off\n", which, i, (long long)off);
       }
@@ -244,7 +253,8 @@ int main(int argc, char **argv) {
       plant.glitch_one_in = 0u;
       for (uint32_t n = 0u; n < 3u; n++) {
         const int32_t room = (int32_t)a->coast_counts + (int32_t)a->home_clear_counts;
-        const int32_t goal = a->min_counts + room + (int32_t)rng_below(&r, (uint32_t)(a->max_counts - a->min_counts - 2 * room));
+        const int32_t goal = a->min_counts + room +
+                             (int32_t)rng_below(&r, (uint32_t)(a->max_counts - a->min_counts - 2 * room));
         const uint32_t drive = rng_range(&r, a->home_slow_drive, a->max_drive);
         int32_t in_band = 0, k = 0;
         moves++;
@@ -274,18 +284,22 @@ int main(int argc, char **argv) {
         }
       }
     }
-    printf("configuration %u: homed %llu of %u, worst %lld counts off, longest %lld ticks; refused %llu; faults:", which,
-           (unsigned long long)homed, starts, (long long)worst, (long long)longest, (unsigned long long)refused);
+    printf(
+        "configuration %u: homed %llu of %u, worst %lld counts off, longest %lld ticks; refused %llu; "
+        "faults:",
+        which, (unsigned long long)homed, starts, (long long)worst, (long long)longest,
+        (unsigned long long)refused);
     for (uint32_t f = 1u; f < ILK_FAULT_COUNT; f++) {
       if (faulted[f] != 0u) {
         printf(" %u: %llu", f, (unsigned long long)faulted[f]);
       }
     }
-    printf("; L1: %llu moves, %llu reached and stayed, %llu ended by a fault, %llu not reached\n", (unsigned long long)moves,
-           (unsigned long long)reached, (unsigned long long)stopped, (unsigned long long)late);
+    printf("; L1: %llu moves, %llu reached and stayed, %llu ended by a fault, %llu not reached\n",
+           (unsigned long long)moves, (unsigned long long)reached, (unsigned long long)stopped,
+           (unsigned long long)late);
     wrong += late;
   }
-  printf("wrong homes or moves %llu, homings without end %llu, violations %llu\n", (unsigned long long)wrong, (unsigned long long)stuck,
-         (unsigned long long)violations);
+  printf("wrong homes or moves %llu, homings without end %llu, violations %llu\n", (unsigned long long)wrong,
+         (unsigned long long)stuck, (unsigned long long)violations);
   return (wrong == 0u && stuck == 0u && violations == 0u) ? 0 : 1;
 }

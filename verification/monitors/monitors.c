@@ -31,13 +31,13 @@ static int32_t saturate(int64_t v) {
   return (v < INT32_MIN) ? INT32_MIN : (int32_t)v;
 }
 
-int32_t judge_counts(const ilk_axis_config_t *config, uint32_t to, uint32_t from) {
+int32_t judge_counts(const ilk_axis_config_t* config, uint32_t to, uint32_t from) {
   return (config->direction_correction == 1u) ? wrapped(from, to) : wrapped(to, from);
 }
 
-static bool has_motor(const ilk_axis_config_t *config) { return config->card >= 1u && config->card <= 4u; }
+static bool has_motor(const ilk_axis_config_t* config) { return config->card >= 1u && config->card <= 4u; }
 
-static uint32_t towards_switch(const ilk_axis_config_t *config) {
+static uint32_t towards_switch(const ilk_axis_config_t* config) {
   if (config->limit_side == ILK_LIMIT_LOWER) {
     return ILK_DIRECTION_DECREASING;
   }
@@ -53,8 +53,8 @@ static int64_t along(uint32_t direction, int32_t counts) {
 }
 
 /** A tick passes. */
-static void still_age(ilk_still_t *still) {
-  still->same = plus(still->same, 1u);
+static void still_age(ilk_still_t* still) {
+  still->steady = plus(still->steady, 1u);
   still->ticks = plus(still->ticks, (still->ticks > 0u) ? 1u : 0u);
   still->low_age = plus(still->low_age, 1u);
   still->high_age = plus(still->high_age, 1u);
@@ -62,20 +62,16 @@ static void still_age(ilk_still_t *still) {
 }
 
 /** The run ends: nothing is known. */
-static void still_end(ilk_still_t *still) {
+static void still_end(ilk_still_t* still) {
   still->ticks = 0u;
-  still->same = 0u;
+  still->steady = 0u;
   still->apart_age = UINT32_MAX;
 }
 
-/** A reading of this tick. `ticks` is then a length of time for which no two readings were farther apart than `bound`;
-    `apart_age` the age of the older of two readings that were. */
-static void still_add(ilk_still_t *still, const ilk_axis_config_t *config, uint32_t raw, uint32_t bound) {
+/** A reading of this tick. `ticks` is then a length of time for which no two readings were farther apart than
+   `bound`; `apart_age` the age of the older of two readings that were. */
+static void still_add(ilk_still_t* still, const ilk_axis_config_t* config, uint32_t raw, uint32_t bound) {
   const int32_t at = judge_counts(config, raw, still->origin);
-  if (raw != still->newest) {
-    still->newest = raw;
-    still->same = 0u;
-  }
   if (still->ticks > 1u && (int64_t)at - still->low > (int64_t)bound) {
     still->apart_age = (still->low_age < still->apart_age) ? still->low_age : still->apart_age;
     still->ticks = 0u;
@@ -90,13 +86,16 @@ static void still_add(ilk_still_t *still, const ilk_axis_config_t *config, uint3
     still->low_age = 0u;
     still->high_age = 0u;
     still->ticks = 1u;
+    still->steady = 0u;
   } else if (at <= still->low) {
+    still->steady = (at < still->low) ? 0u : still->steady;
     still->low = at;
     still->low_age = 0u;
     if (at >= still->high) {
       still->high_age = 0u;
     }
   } else if (at >= still->high) {
+    still->steady = (at > still->high) ? 0u : still->steady;
     still->high = at;
     still->high_age = 0u;
   }
@@ -104,21 +103,21 @@ static void still_add(ilk_still_t *still, const ilk_axis_config_t *config, uint3
 
 static const ilk_judgement_t HOLDS = {NULL, 0u, 0, 0};
 
-static ilk_judgement_t broken(const char *clause, uint32_t slot, int64_t found, int64_t bound) {
+static ilk_judgement_t broken(const char* clause, uint32_t slot, int64_t found, int64_t bound) {
   const ilk_judgement_t j = {clause, slot, found, bound};
   return j;
 }
 
-bool judge_is_zero_drive(const uint32_t *frame) {
+bool judge_is_zero_drive(const uint32_t* frame) {
   return (frame[2] | frame[3] | frame[4] | frame[5] | frame[6] | frame[14]) == 0u;
 }
 
-static bool is_driven(const ilk_tick_t *tick, uint32_t slot) {
+static bool is_driven(const ilk_tick_t* tick, uint32_t slot) {
   return !judge_is_zero_drive(tick->out->frame[slot]) || tick->out->command[slot].drive != 0u ||
          tick->out->command[slot].direction != ILK_DIRECTION_NONE;
 }
 
-void judge_view(const ilk_state_t *s, ilk_view_t *v) {
+void judge_view(const ilk_state_t* s, ilk_view_t* v) {
   v->mode = s->system.mode;
   v->cause = s->system.cause;
   v->consent = s->system.consent;
@@ -132,7 +131,7 @@ void judge_view(const ilk_state_t *s, ilk_view_t *v) {
 
 /* ------------------------------------------------------------------ what the inputs say */
 
-void ghost_init(ilk_ghost_t *ghost) {
+void ghost_init(ilk_ghost_t* ghost) {
   const ilk_ghost_t zero = {0};
   *ghost = zero;
   ghost->app_age = UINT32_MAX;
@@ -144,7 +143,7 @@ void ghost_init(ilk_ghost_t *ghost) {
   ghost->mode = ILK_MODE_LOCKED;
 }
 
-static bool checksum_is_right(const uint32_t *frame) {
+static bool checksum_is_right(const uint32_t* frame) {
   uint32_t sum = 0u;
   for (uint32_t i = 0u; i < ILK_FRAME_WORDS - 1u; i++) {
     sum += frame[i];
@@ -152,8 +151,8 @@ static bool checksum_is_right(const uint32_t *frame) {
   return frame[ILK_FRAME_WORDS - 1u] == 0xFFFFFFFFu - sum;
 }
 
-static bool frame_is_valid(const ilk_ghost_t *ghost, const ilk_inputs_t *in, uint32_t slot) {
-  const uint32_t *frame = in->frame[slot];
+static bool frame_is_valid(const ilk_ghost_t* ghost, const ilk_inputs_t* in, uint32_t slot) {
+  const uint32_t* frame = in->frame[slot];
   if (in->transaction_done != 1u || ((in->frames_received >> slot) & 1u) == 0u) {
     return false;
   }
@@ -163,14 +162,9 @@ static bool frame_is_valid(const ilk_ghost_t *ghost, const ilk_inputs_t *in, uin
   return ghost->frames_sent < 2u || frame[11] == ghost->tick - 2u;
 }
 
-/** Counts that an axis can travel in so many loop periods. */
-static uint64_t farthest(const ilk_axis_config_t *config, uint32_t periods) {
-  return (uint64_t)config->max_delta_counts * periods;
-}
-
-static void observe_frame(ilk_ghost_t *ghost, ilk_ghost_slot_t *g, const ilk_tick_t *tick, uint32_t slot) {
-  const ilk_axis_config_t *config = &tick->config->axis[slot];
-  const uint32_t *frame = tick->in->frame[slot];
+static void observe_frame(ilk_ghost_t* ghost, ilk_ghost_slot_t* g, const ilk_tick_t* tick, uint32_t slot) {
+  const ilk_axis_config_t* config = &tick->config->axis[slot];
+  const uint32_t* frame = tick->in->frame[slot];
   const uint32_t raw = frame[3];
 
   g->periods = plus(plus(g->periods, 1u), tick->in->deadlines_missed);
@@ -188,14 +182,14 @@ static void observe_frame(ilk_ghost_t *ghost, ilk_ghost_slot_t *g, const ilk_tic
     const uint32_t ahead = frame[9] - g->heartbeat;
     const bool flag = (frame[12] & STATUS_RESET) != 0u && (g->status & STATUS_RESET) == 0u;
     g->reset = flag || ahead == 0u || ahead > plus(1u, g->periods);
-    g->jump = size_of(wrapped(raw, g->raw)) > farthest(config, g->periods);
+    g->jump = (uint64_t)size_of(wrapped(raw, g->raw)) > (uint64_t)config->max_delta_counts * g->periods;
   }
   g->bad_run = 0u;
   g->lost = false;
 }
 
 /** After everything that compares with the last reading. */
-static void keep_frame(ilk_ghost_slot_t *g, const uint32_t *frame) {
+static void keep_frame(ilk_ghost_slot_t* g, const ilk_axis_config_t* config, const uint32_t* frame) {
   const bool triggered = (frame[2] & SWITCH_OPEN_BIT) == 0u;
   if (!g->valid) {
     return;
@@ -207,6 +201,7 @@ static void keep_frame(ilk_ghost_slot_t *g, const uint32_t *frame) {
     g->run_raw = frame[3];
   }
   g->triggered = triggered;
+  g->delta = g->first ? 0 : judge_counts(config, frame[3], g->raw);
   g->seen = true;
   g->heartbeat = frame[9];
   g->status = frame[12];
@@ -214,7 +209,7 @@ static void keep_frame(ilk_ghost_slot_t *g, const uint32_t *frame) {
   g->periods = 0u;
 }
 
-static void observe_rest(ilk_ghost_slot_t *g, const ilk_axis_config_t *config, uint32_t raw) {
+static void observe_rest(ilk_ghost_slot_t* g, const ilk_axis_config_t* config, uint32_t raw) {
   still_age(&g->rest);
   still_age(&g->calm);
   g->quiet = plus(g->quiet, 1u);
@@ -222,9 +217,10 @@ static void observe_rest(ilk_ghost_slot_t *g, const ilk_axis_config_t *config, u
     still_end(&g->rest);
     g->quiet = g->valid ? 1u : 0u;
   }
-  if (g->jump || g->reset || g->first) { /* earlier readings may mean another place: undecided for rest_ticks */
+  if (g->jump || g->reset ||
+      g->first) { /* earlier readings may mean another place: undecided for rest_ticks */
     g->rest.ticks = 0u;
-    g->rest.same = 0u;
+    g->rest.steady = 0u;
     g->calm.ticks = 0u;
   }
   if (g->valid) {
@@ -235,78 +231,86 @@ static void observe_rest(ilk_ghost_slot_t *g, const ilk_axis_config_t *config, u
 }
 
 /** Not at rest for sure: driven, an invalid frame, or two readings too far apart in the last rest_ticks. */
-static bool moves(const ilk_ghost_slot_t *g, const ilk_axis_config_t *config) {
+static bool moves(const ilk_ghost_slot_t* g, const ilk_axis_config_t* config) {
   return g->quiet < config->rest_ticks || g->rest.apart_age < config->rest_ticks;
 }
 
-/** At rest for sure: the very same reading. What lies between this and `moves` needs every reading of the last rest_ticks
-    to decide, and a kernel that counts runs of readings decides it later than the text. */
-static bool rests(const ilk_ghost_slot_t *g, const ilk_axis_config_t *config) {
-  return g->rest.same > config->rest_ticks && g->quiet > config->rest_ticks;
+/** At rest for sure. A kernel that counts runs of readings decides rest later than the text, but not once all
+   of the last rest_ticks readings lie where others of the run lay before: its run, which may have begun
+   earlier, would have ended at one of those. */
+static bool rests(const ilk_ghost_slot_t* g, const ilk_axis_config_t* config) {
+  return g->rest.steady > config->rest_ticks && g->quiet > config->rest_ticks;
 }
 
-/** Whether rest may be counted from before this tick is undecided (DISABLE, LOCKED, SET_HOME, RESTORE): count anew. */
-static void rest_anew(ilk_ghost_slot_t *g) {
+/** Whether rest may be counted from before this tick is undecided (DISABLE, LOCKED, SET_HOME, RESTORE): count
+ * anew. */
+static void rest_anew(ilk_ghost_slot_t* g) {
   g->rest.origin = g->raw;
   g->rest.low = 0;
   g->rest.high = 0;
   g->rest.low_age = 0u;
   g->rest.high_age = 0u;
   g->rest.ticks = (g->rest.ticks > 0u) ? 1u : 0u;
-  g->rest.same = 0u;
+  g->rest.steady = 0u;
+}
+
+/** The mark of a FAULTED axis is here. */
+static void mark_fault(ilk_ghost_slot_t* g, uint32_t raw) {
+  g->fault_mark = raw;
+  g->mark_low = 0;
+  g->mark_high = 0;
 }
 
 /** Reverse, drift and the mark of a FAULTED axis. */
-static void observe_motion(ilk_ghost_slot_t *g, const ilk_axis_config_t *config, const ilk_tick_t *tick, uint32_t slot,
-                           uint32_t raw) {
+static void observe_motion(ilk_ghost_slot_t* g, const ilk_axis_config_t* config, const ilk_tick_t* tick,
+                           uint32_t slot, uint32_t raw) {
   const uint32_t state = tick->before->axis[slot].state;
   g->drifted = false;
   g->reversed = false;
+  g->maybe_reversed = false;
   g->runaway = false;
   g->maybe_runaway = false;
   g->distance = 0;
   if (!g->valid) {
+    g->ran = g->ran && !g->lost;
+    g->maybe_ran = g->maybe_ran && !g->lost;
     return;
   }
   if (!g->first && !g->jump && !g->reset) {
     const int64_t forward = along(g->reverse_direction, judge_counts(config, raw, g->reverse_mark));
     if (forward > 0) {
       g->reverse_mark = raw;
-    } else if (g->driven && -forward > (int64_t)config->reverse_counts) {
-      g->reversed = true;
+    } else if (-forward > (int64_t)config->reverse_counts) {
+      g->reversed = g->driven;
+      g->maybe_reversed = true;
       g->distance = saturate(-forward);
     }
   }
   if (state == ILK_AXIS_FAULTED) {
-    if (!g->fault_known || g->first || g->jump || g->reset) {
-      g->fault_mark = raw;
-      if (g->first || g->jump || g->reset) {
-        g->fault_before = raw;
-        g->fault_low = 0;
-        g->fault_high = 0;
-      }
-      g->fault_known = !g->first && !g->jump && !g->reset; /* taken again at the first valid frame after it */
-    } else if (!moves(g, config)) {
-      g->fault_mark = raw;
-      if (rests(g, config)) {
-        g->fault_before = raw;
-        g->fault_low = 0;
-        g->fault_high = 0;
-      }
+    const bool anew = g->first || g->jump || g->reset;
+    const int32_t delta = judge_counts(config, raw, g->raw);
+    const bool went_on = anew && !g->first && ((delta > 0 && g->delta > 0) || (delta < 0 && g->delta < 0));
+    if (anew) {
+      mark_fault(g, raw);
     }
-    {
-      const int32_t at = judge_counts(config, raw, g->fault_before);
-      g->fault_low = (at < g->fault_low) ? at : g->fault_low;
-      g->fault_high = (at > g->fault_high) ? at : g->fault_high;
-      g->distance = judge_counts(config, raw, g->fault_mark);
-      g->runaway = size_of(g->distance) > config->drift_counts && size_of(at) > config->drift_counts;
-      /* a mark that was taken anew anywhere between */
-      g->maybe_runaway = g->runaway || (int64_t)at - g->fault_low > (int64_t)config->drift_counts ||
-                         (int64_t)g->fault_high - at > (int64_t)config->drift_counts;
+    if (g->ran && !g->resting && !moves(g, config)) {
+      mark_fault(g, raw);
+      g->resting = true;
     }
-    if (rests(g, config)) {
-      g->maybe_runaway = false;
+    const int32_t at = judge_counts(config, raw, g->fault_mark);
+    if (g->maybe_ran && !moves(g, config)) { /* at rest, perhaps: its mark is perhaps here */
+      g->mark_low = (at < g->mark_low) ? at : g->mark_low;
+      g->mark_high = (at > g->mark_high) ? at : g->mark_high;
     }
+    g->distance = saturate((at > g->mark_high)  ? (int64_t)at - g->mark_high
+                           : (at < g->mark_low) ? (int64_t)at - g->mark_low
+                                                : 0);
+    g->runaway = size_of(g->distance) > config->drift_counts || went_on;
+    g->maybe_runaway = g->runaway || (int64_t)at - g->mark_low > (int64_t)config->drift_counts ||
+                       (int64_t)g->mark_high - at > (int64_t)config->drift_counts;
+    g->ran = (g->ran && !rests(g, config)) || g->runaway;
+    g->maybe_ran = (g->maybe_ran && !rests(g, config)) || g->maybe_runaway;
+    g->resting = g->resting && g->ran && !g->runaway;
     g->drift_known = false;
   } else if (state == ILK_AXIS_DISABLED && tick->before->mode != ILK_MODE_MOTION) {
     g->drift_mark = raw;
@@ -320,17 +324,19 @@ static void observe_motion(ilk_ghost_slot_t *g, const ilk_axis_config_t *config,
   }
 }
 
-static void observe_progress(ilk_ghost_slot_t *g, const ilk_axis_config_t *config, uint32_t raw) {
+static void observe_progress(ilk_ghost_slot_t* g, const ilk_axis_config_t* config, uint32_t raw) {
   if (g->valid && g->stall_direction != ILK_DIRECTION_NONE) {
     if (g->jump || g->reset || g->first) {
       g->stall_mark = raw;
       g->effort_mark = raw;
-    } else if (along(g->stall_direction, judge_counts(config, raw, g->stall_mark)) >= (int64_t)config->stall_min_counts) {
+    } else if (along(g->stall_direction, judge_counts(config, raw, g->stall_mark)) >=
+               (int64_t)config->stall_min_counts) {
       g->stall_mark = raw;
       g->effort_mark = raw;
       g->stall_ticks = 0u;
       g->effort = 0u;
-    } else if (along(g->stall_direction, judge_counts(config, raw, g->effort_mark)) > (int64_t)config->noise_counts) {
+    } else if (along(g->stall_direction, judge_counts(config, raw, g->effort_mark)) >
+               (int64_t)config->noise_counts) {
       g->effort_mark = raw;
       g->effort = 0u;
     }
@@ -340,9 +346,10 @@ static void observe_progress(ilk_ghost_slot_t *g, const ilk_axis_config_t *confi
                 g->effort >= (uint64_t)config->stall_effort_ticks * config->max_drive);
 }
 
-static void observe_path(ilk_ghost_slot_t *g, const ilk_axis_config_t *config, const ilk_tick_t *tick, uint32_t slot,
-                         uint32_t raw) {
-  const bool counted = tick->before->mode == ILK_MODE_MOTION && tick->before->axis[slot].homed == ILK_HOMED_NOT;
+static void observe_path(ilk_ghost_slot_t* g, const ilk_axis_config_t* config, const ilk_tick_t* tick,
+                         uint32_t slot, uint32_t raw) {
+  const bool counted =
+      tick->before->mode == ILK_MODE_MOTION && tick->before->axis[slot].homed == ILK_HOMED_NOT;
   uint32_t way;
   if (!g->valid) {
     return;
@@ -363,13 +370,33 @@ static void observe_path(ilk_ghost_slot_t *g, const ilk_axis_config_t *config, c
   }
 }
 
-/** P17: how far the inputs since HOME have come. */
-static void observe_homing(ilk_ghost_slot_t *g, const ilk_axis_config_t *config, uint32_t debounce, const uint32_t *frame) {
+/** An edge: with each e1 that it follows as the text lists it, it may be e2; and it may be e1. */
+static void add_edge(ilk_edges_t* edges, const ilk_axis_config_t* config, uint32_t raw) {
+  bool is_second = false;
+  for (uint32_t i = 0u; i < edges->firsts; i++) {
+    is_second = is_second || (edges->slow[i] && size_of(judge_counts(config, raw, edges->first[i])) <=
+                                                    config->home_tolerance_counts);
+  }
+  for (uint32_t i = ILK_JUDGE_EDGES - 1u; i > 0u; i--) {
+    edges->first[i] = edges->first[i - 1u];
+    edges->slow[i] = edges->slow[i - 1u];
+    edges->second[i] = is_second ? edges->second[i - 1u] : edges->second[i];
+  }
+  edges->first[0] = raw;
+  edges->slow[0] = false;
+  edges->firsts = (edges->firsts < ILK_JUDGE_EDGES) ? edges->firsts + 1u : ILK_JUDGE_EDGES;
+  if (is_second) {
+    edges->second[0] = raw;
+    edges->seconds = (edges->seconds < ILK_JUDGE_EDGES) ? edges->seconds + 1u : ILK_JUDGE_EDGES;
+  }
+}
+
+/** P17: what the inputs since HOME show. */
+static void observe_homing(ilk_ghost_slot_t* g, const ilk_axis_config_t* config, uint32_t debounce,
+                           const uint32_t* frame) {
   const bool triggered = (frame[2] & SWITCH_OPEN_BIT) == 0u;
   const uint32_t raw = frame[3];
-  bool steady;
-  int64_t away;
-  if (!g->valid || g->stage == STAGE_NONE) {
+  if (!g->valid || !g->seeks) {
     return;
   }
   if (g->home_run > 0u && triggered == g->triggered) {
@@ -378,60 +405,23 @@ static void observe_homing(ilk_ghost_slot_t *g, const ilk_axis_config_t *config,
     g->home_run = 1u;
     g->home_run_raw = raw;
   }
-  steady = g->home_run >= debounce;
-  away = -along(towards_switch(config), judge_counts(config, raw, g->e1));
-  switch (g->stage) {
-    case STAGE_BEGUN:
-      if (steady && !triggered) {
-        g->stage = STAGE_OPEN;
-      }
-      break;
-    case STAGE_OPEN:
-      if (steady && triggered) {
-        g->stage = STAGE_EDGE;
-        g->e1 = g->home_run_raw;
-        g->e1_later = g->e1;
-        g->home_open = false;
-      }
-      break;
-    case STAGE_EDGE:
-      if (steady && !triggered) {
-        g->home_open = true;
-        if (away >= (int64_t)config->home_clear_counts) {
-          g->stage = STAGE_CLEAR;
-          g->slow = true;
-        }
-      } else if (steady && g->home_open) {
-        g->e1_later = g->home_run_raw; /* the contact closed again before the axis was clear: a later e1 */
-        g->home_open = false;
-      }
-      break;
-    case STAGE_CLEAR:
-      if (steady && !triggered && away >= (int64_t)config->home_clear_counts) {
-        g->slow = true;
-      } else if (steady && triggered) {
-        g->stage = STAGE_SLOW_EDGE;
-        g->e2 = g->home_run_raw;
-        g->e2_before = g->e2;
-        g->home_open = false;
-      }
-      break;
-    case STAGE_SLOW_EDGE:
-      if (steady && !triggered) {
-        g->home_open = true;
-      } else if (steady && g->home_open) {
-        g->e2_before = g->e2;
-        g->e2 = g->home_run_raw;
-        g->home_open = false;
-      }
-      break;
-    default:
-      break;
+  if (g->home_run < debounce) {
+    return;
+  }
+  if (triggered && g->home_open) {
+    g->home_open = false;
+    add_edge(&g->edges, config, g->home_run_raw);
+  } else if (!triggered) {
+    g->home_open = true;
+    for (uint32_t i = 0u; i < g->edges.firsts; i++) {
+      const int64_t away = -along(towards_switch(config), judge_counts(config, raw, g->edges.first[i]));
+      g->edges.slow[i] = g->edges.slow[i] || away >= (int64_t)config->home_clear_counts;
+    }
   }
 }
 
-static void observe_plausibility(ilk_ghost_slot_t *g, const ilk_axis_config_t *config, const ilk_tick_t *tick, uint32_t slot,
-                                 const uint32_t *frame) {
+static void observe_plausibility(ilk_ghost_slot_t* g, const ilk_axis_config_t* config, const ilk_tick_t* tick,
+                                 uint32_t slot, const uint32_t* frame) {
   const bool triggered = (frame[2] & SWITCH_OPEN_BIT) == 0u;
   const int64_t slack = (int64_t)config->home_tolerance_counts + config->coast_counts;
   int64_t open_side;
@@ -442,17 +432,18 @@ static void observe_plausibility(ilk_ghost_slot_t *g, const ilk_axis_config_t *c
     g->implausible = 0u;
     return;
   }
-  open_side = -along(towards_switch(config), judge_counts(config, frame[3], g->e2));
-  if ((triggered && open_side > slack + config->switch_hysteresis_counts) || (!triggered && -open_side > slack)) {
+  open_side = -along(towards_switch(config), judge_counts(config, frame[3], g->reference));
+  if ((triggered && open_side > slack + config->switch_hysteresis_counts) ||
+      (!triggered && -open_side > slack)) {
     g->implausible = plus(g->implausible, 1u);
   } else {
     g->implausible = 0u;
   }
 }
 
-static void observe_system(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
-  const ilk_common_config_t *c = &tick->config->common;
-  const ilk_inputs_t *in = tick->in;
+static void observe_system(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
+  const ilk_common_config_t* c = &tick->config->common;
+  const ilk_inputs_t* in = tick->in;
   const bool two = c->pedal_channels == 2u;
   if (in->pedal_no_closed == 1u && (!two || in->pedal_nc_closed == 0u)) {
     ghost->pedal = ILK_PEDAL_PRESSED;
@@ -486,7 +477,7 @@ static void observe_system(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   }
 }
 
-void ghost_observe(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
+void ghost_observe(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   ghost->bus_ok_now = false;
   ghost->required_lost = false;
   ghost->runaway = false;
@@ -496,11 +487,11 @@ void ghost_observe(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   ghost->runaway_unsure = false;
   observe_system(ghost, tick);
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
-    const ilk_axis_config_t *config = &tick->config->axis[slot];
-    ilk_ghost_slot_t *g = &ghost->slot[slot];
-    const uint32_t *frame = tick->in->frame[slot];
-    const ilk_axis_view_t *before = &tick->before->axis[slot];
-    const ilk_axis_view_t *after = &tick->after->axis[slot];
+    const ilk_axis_config_t* config = &tick->config->axis[slot];
+    ilk_ghost_slot_t* g = &ghost->slot[slot];
+    const uint32_t* frame = tick->in->frame[slot];
+    const ilk_axis_view_t* before = &tick->before->axis[slot];
+    const ilk_axis_view_t* after = &tick->after->axis[slot];
     if (config->card == ILK_CARD_NONE) {
       continue;
     }
@@ -525,14 +516,17 @@ void ghost_observe(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
       g->restored = false;
       g->just_homed = before->state == ILK_AXIS_HOMING && after->homed == ILK_HOMED_BY_SWITCH;
       ghost->runaway = ghost->runaway || g->runaway;
-      ghost->new_fault = ghost->new_fault || (before->state != ILK_AXIS_FAULTED && after->state == ILK_AXIS_FAULTED);
+      ghost->new_fault =
+          ghost->new_fault || (before->state != ILK_AXIS_FAULTED && after->state == ILK_AXIS_FAULTED);
       ghost->drift_of_disabled = ghost->drift_of_disabled ||
-                                 (before->state == ILK_AXIS_DISABLED && after->state != ILK_AXIS_FAULTED && g->calm.apart_age < config->rest_ticks);
-      ghost->calm_unsure = ghost->calm_unsure || (before->state == ILK_AXIS_DISABLED &&
-                                                  (g->calm.ticks <= config->rest_ticks || g->quiet <= config->rest_ticks));
+                                 (before->state == ILK_AXIS_DISABLED && after->state != ILK_AXIS_FAULTED &&
+                                  g->calm.apart_age < config->rest_ticks);
+      ghost->calm_unsure =
+          ghost->calm_unsure || (before->state == ILK_AXIS_DISABLED &&
+                                 (g->calm.ticks <= config->rest_ticks || g->quiet <= config->rest_ticks));
       ghost->runaway_unsure = ghost->runaway_unsure || g->maybe_runaway;
     }
-    keep_frame(g, frame);
+    keep_frame(g, config, frame);
   }
   ghost->bus_bad_ticks = ghost->bus_ok_now ? 0u : plus(ghost->bus_bad_ticks, 1u);
   ghost->bus_lost = ghost->bus_bad_ticks >= tick->config->common.bad_frame_limit;
@@ -540,25 +534,25 @@ void ghost_observe(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
 
 /* ------------------------------------------------------------------ what the requests change */
 
-static void drop_orders(ilk_ghost_t *ghost) {
+static void drop_orders(ilk_ghost_t* ghost) {
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
-    ilk_ghost_slot_t *g = &ghost->slot[slot];
+    ilk_ghost_slot_t* g = &ghost->slot[slot];
     g->lease = 0u;
     g->order_consent = 0u;
-    g->stage = g->just_homed ? g->stage : (uint32_t)STAGE_NONE;
+    g->seeks = g->seeks && g->just_homed;
     if (g->state == ILK_AXIS_MOVING || g->state == ILK_AXIS_HOMING) {
       g->state = ILK_AXIS_ENABLED;
     }
   }
 }
 
-static void disarm(ilk_ghost_t *ghost) {
+static void disarm(ilk_ghost_t* ghost) {
   ghost->armed = false;
   ghost->armed_weakly = false;
   ghost->armed_ticks = 0u;
 }
 
-static void leave_motion(ilk_ghost_t *ghost) {
+static void leave_motion(ilk_ghost_t* ghost) {
   if (ghost->mode == ILK_MODE_MOTION) {
     ghost->mode = ILK_MODE_READY;
     drop_orders(ghost);
@@ -567,11 +561,12 @@ static void leave_motion(ilk_ghost_t *ghost) {
 }
 
 /** Phases 4 and 5: states by what was published, the mode by the table. */
-static void decide_mode(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
-  const ilk_common_config_t *c = &tick->config->common;
+static void decide_mode(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
+  const ilk_common_config_t* c = &tick->config->common;
   const uint32_t mode = tick->before->mode;
   const bool armed = ghost->armed;
-  if (mode != ILK_MODE_LOCKED && mode != ILK_MODE_INIT && !ghost->estop && !ghost->bus_lost && !ghost->runaway && !ghost->runaway_unsure) {
+  if (mode != ILK_MODE_LOCKED && mode != ILK_MODE_INIT && !ghost->estop && !ghost->bus_lost &&
+      !ghost->runaway && !ghost->runaway_unsure) {
     const bool locked = tick->after->mode == ILK_MODE_LOCKED;
     if (ghost->missed_in_row >= c->overrun_limit && ghost->missed_ticks < c->overrun_limit) {
       ghost->choice[locked ? 0 : 1] = plus(ghost->choice[locked ? 0 : 1], 1u);
@@ -583,26 +578,23 @@ static void decide_mode(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   ghost->mode_sure = true;
   ghost->mode = mode;
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
-    ilk_ghost_slot_t *g = &ghost->slot[slot];
-    const ilk_axis_view_t *before = &tick->before->axis[slot];
-    const ilk_axis_view_t *after = &tick->after->axis[slot];
+    ilk_ghost_slot_t* g = &ghost->slot[slot];
+    const ilk_axis_view_t* before = &tick->before->axis[slot];
+    const ilk_axis_view_t* after = &tick->after->axis[slot];
     g->state = before->state;
     g->homed = g->just_homed ? (uint32_t)ILK_HOMED_BY_SWITCH : before->homed;
     if (before->state != ILK_AXIS_FAULTED && after->state == ILK_AXIS_FAULTED) {
       g->state = ILK_AXIS_FAULTED;
       g->lease = 0u;
       g->order_consent = 0u;
-      g->stage = STAGE_NONE;
-      g->fault_known = g->valid && !g->jump && !g->reset;
-      g->fault_mark = g->raw;
-      g->fault_before = g->raw;
-      g->fault_low = 0;
-      g->fault_high = 0;
+      g->seeks = false;
+      g->ran = false;
+      g->maybe_ran = false;
+      mark_fault(g, g->raw);
     } else if (g->just_homed) {
       g->state = ILK_AXIS_ENABLED;
     }
-    if (after->homed == ILK_HOMED_NOT &&
-        (g->state == ILK_AXIS_FAULTED || g->jump || g->reset || g->lost || g->implausible > 0u)) {
+    if (after->homed == ILK_HOMED_NOT && (g->state == ILK_AXIS_FAULTED || g->jump || g->reset || g->lost)) {
       g->homed = ILK_HOMED_NOT; /* dropped in phase 4 */
     }
   }
@@ -615,14 +607,16 @@ static void decide_mode(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   } else if (tick->after->mode == ILK_MODE_LOCKED && mode != ILK_MODE_LOCKED &&
              (ghost->missed_in_row >= c->overrun_limit || ghost->disagree_ticks == c->pedal_disagree_ticks ||
               ghost->runaway_unsure)) {
-    ghost->mode = ILK_MODE_LOCKED; /* by RUNAWAY, which P6 demands, or near a bound that the text leaves open */
+    ghost->mode = ILK_MODE_LOCKED; /* near a bound that the text leaves open */
   } else if (mode == ILK_MODE_MOTION) {
     if (ghost->pedal != ILK_PEDAL_PRESSED || !ghost->app_alive || ghost->new_fault || ghost->required_lost) {
       leave_motion(ghost);
     }
   } else if (mode == ILK_MODE_READY && ghost->pressed_ticks == c->pedal_debounce_ticks) {
-    const bool good = ghost->app_alive && !ghost->required_lost && ghost->powered_ticks >= c->power_up_ticks;
-    if (ghost->armed && good && (ghost->calm_unsure || ghost->drift_of_disabled)) { /* the latter P9 judges */
+    const bool good = ghost->tick != 0u && ghost->app_alive && !ghost->required_lost &&
+                      ghost->powered_ticks >= c->power_up_ticks;
+    if (ghost->armed && good &&
+        (ghost->calm_unsure || ghost->drift_of_disabled)) { /* the latter P9 judges */
       ghost->mode_sure = false;
     } else if (ghost->armed && good) {
       ghost->mode = ILK_MODE_MOTION;
@@ -637,7 +631,7 @@ static void decide_mode(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   }
   if (ghost->entered) {
     for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
-      ilk_ghost_slot_t *g = &ghost->slot[slot];
+      ilk_ghost_slot_t* g = &ghost->slot[slot];
       g->move_travel = 0u;
       g->homing_travel = 0u;
       g->homing_ticks = 0u;
@@ -676,16 +670,18 @@ static ilk_demand_t either(uint32_t verdict, uint32_t other) {
 }
 
 /** RANGE of a MOVE. */
-static bool in_range(const ilk_ghost_slot_t *g, const ilk_axis_config_t *config, const ilk_axis_view_t *after,
+static bool in_range(const ilk_ghost_slot_t* g, const ilk_axis_config_t* config, const ilk_axis_view_t* after,
                      int32_t target) {
   const int64_t coast = config->coast_counts;
+  const int64_t kept_back = coast + config->noise_counts;
   const int64_t to_switch = along(towards_switch(config), saturate((int64_t)target - after->position));
   if (config->limit_side != ILK_LIMIT_NONE && g->triggered && to_switch > 0) {
     return false;
   }
   if (g->homed == ILK_HOMED_NOT) {
-    const int64_t way = (target > after->position) ? (int64_t)target - after->position : (int64_t)after->position - target;
-    return way == 0 || way <= (int64_t)config->unhomed_travel_counts - g->move_travel - coast;
+    const int64_t way =
+        (target > after->position) ? (int64_t)target - after->position : (int64_t)after->position - target;
+    return way == 0 || way <= (int64_t)config->unhomed_travel_counts - g->move_travel - kept_back;
   }
   {
     const int64_t margin = (int64_t)config->switch_hysteresis_counts + config->home_tolerance_counts;
@@ -703,14 +699,16 @@ static bool in_range(const ilk_ghost_slot_t *g, const ilk_axis_config_t *config,
   }
 }
 
-static ilk_demand_t demand_of_motion(const ilk_ghost_t *ghost, const ilk_tick_t *tick, const ilk_request_t *r) {
-  const ilk_axis_config_t *config = &tick->config->axis[r->axis];
-  const ilk_ghost_slot_t *g = &ghost->slot[r->axis];
+static ilk_demand_t demand_of_motion(const ilk_ghost_t* ghost, const ilk_tick_t* tick,
+                                     const ilk_request_t* r) {
+  const ilk_axis_config_t* config = &tick->config->axis[r->axis];
+  const ilk_ghost_slot_t* g = &ghost->slot[r->axis];
   const uint32_t consent = ghost->entered ? tick->after->consent : tick->before->consent;
   if (ghost->mode != ILK_MODE_MOTION) {
     return demand(ILK_VERDICT_MODE);
   }
-  if (r->consent != consent || consent == 0u) { /* 0: the press began and ended in this tick; nobody saw its number */
+  if (r->consent != consent ||
+      consent == 0u) { /* 0: the press began and ended in this tick; nobody saw its number */
     return demand(ILK_VERDICT_CONSENT);
   }
   if (g->state == ILK_AXIS_FAULTED) {
@@ -720,8 +718,9 @@ static ilk_demand_t demand_of_motion(const ilk_ghost_t *ghost, const ilk_tick_t 
     return demand(ILK_VERDICT_DISABLED);
   }
   if (g->state == ILK_AXIS_HOMING) { /* unless it homed in this very tick, which a second HOME hides */
-    return (g->stage == STAGE_SLOW_EDGE && r->kind == ILK_REQUEST_HOME) ? either(ILK_VERDICT_BUSY, ILK_VERDICT_ACCEPTED)
-                                                                       : demand(ILK_VERDICT_BUSY);
+    return (g->edges.seconds > 0u && r->kind == ILK_REQUEST_HOME)
+               ? either(ILK_VERDICT_BUSY, ILK_VERDICT_ACCEPTED)
+               : demand(ILK_VERDICT_BUSY);
   }
   if (r->kind == ILK_REQUEST_HOME) {
     if (config->limit_side == ILK_LIMIT_NONE) {
@@ -733,7 +732,8 @@ static ilk_demand_t demand_of_motion(const ilk_ghost_t *ghost, const ilk_tick_t 
     if (g->homing_travel >= config->home_travel_counts || g->homing_ticks >= config->home_timeout_ticks) {
       return demand(ILK_VERDICT_BUDGET);
     }
-    return (g->homing_travel + config->coast_counts >= config->home_travel_counts)
+    return ((uint64_t)g->homing_travel + config->coast_counts + config->noise_counts >=
+            config->home_travel_counts)
                ? either(ILK_VERDICT_ACCEPTED, ILK_VERDICT_BUDGET)
                : demand(ILK_VERDICT_ACCEPTED);
   }
@@ -747,16 +747,19 @@ static ilk_demand_t demand_of_motion(const ilk_ghost_t *ghost, const ilk_tick_t 
   if (in_range(g, config, &tick->after->axis[r->axis], r->target_counts)) {
     return demand(ILK_VERDICT_ACCEPTED);
   }
-  if (g->triggered && (size_of(saturate((int64_t)r->target_counts - tick->after->axis[r->axis].position)) <= config->deadband_counts ||
+  if (g->triggered && (size_of(saturate((int64_t)r->target_counts - tick->after->axis[r->axis].position)) <=
+                           config->deadband_counts ||
                        g->run < tick->config->common.switch_debounce_ticks)) {
-    return either(ILK_VERDICT_RANGE, ILK_VERDICT_ACCEPTED); /* towards a triggered switch, but no drive follows */
+    return either(ILK_VERDICT_RANGE,
+                  ILK_VERDICT_ACCEPTED); /* towards a triggered switch, but no drive follows */
   }
   return demand(ILK_VERDICT_RANGE);
 }
 
-static ilk_demand_t demand_of_place(const ilk_ghost_t *ghost, const ilk_tick_t *tick, const ilk_request_t *r) {
-  const ilk_axis_config_t *config = &tick->config->axis[r->axis];
-  const ilk_ghost_slot_t *g = &ghost->slot[r->axis];
+static ilk_demand_t demand_of_place(const ilk_ghost_t* ghost, const ilk_tick_t* tick,
+                                    const ilk_request_t* r) {
+  const ilk_axis_config_t* config = &tick->config->axis[r->axis];
+  const ilk_ghost_slot_t* g = &ghost->slot[r->axis];
   if (ghost->mode != ILK_MODE_READY) {
     return demand(ILK_VERDICT_MODE);
   }
@@ -775,29 +778,27 @@ static ilk_demand_t demand_of_place(const ilk_ghost_t *ghost, const ilk_tick_t *
   if (!rests(g, config)) {
     return demand(ANY);
   }
-  if (r->kind == ILK_REQUEST_RESTORE && (r->target_counts < config->min_counts || r->target_counts > config->max_counts)) {
+  if (r->kind == ILK_REQUEST_RESTORE &&
+      (r->target_counts < config->min_counts || r->target_counts > config->max_counts)) {
     return demand(ILK_VERDICT_RANGE);
   }
   return demand(ILK_VERDICT_ACCEPTED);
 }
 
 /** A FAULTED axis that is known to lie at rest where its mark is is no cause. */
-static bool runaway_present(const ilk_ghost_t *ghost, const ilk_tick_t *tick, bool *unsure) {
+static bool runaway_present(const ilk_ghost_t* ghost, bool* unsure) {
   bool present = false;
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
-    const ilk_ghost_slot_t *g = &ghost->slot[slot];
+    const ilk_ghost_slot_t* g = &ghost->slot[slot];
     present = present || g->runaway;
-    if (has_motor(&tick->config->axis[slot]) && g->state == ILK_AXIS_FAULTED &&
-        !rests(g, &tick->config->axis[slot]) && !g->lost) {
-      *unsure = true;
-    }
+    *unsure = *unsure || (g->state == ILK_AXIS_FAULTED && g->maybe_ran);
   }
   return present;
 }
 
-static ilk_demand_t demand_of_row(const ilk_ghost_t *ghost, const ilk_tick_t *tick, const ilk_request_t *r) {
-  const ilk_ghost_slot_t *g = &ghost->slot[(r->axis < ILK_SLOTS) ? r->axis : 0u];
-  const ilk_axis_config_t *config = &tick->config->axis[(r->axis < ILK_SLOTS) ? r->axis : 0u];
+static ilk_demand_t demand_of_row(const ilk_ghost_t* ghost, const ilk_tick_t* tick, const ilk_request_t* r) {
+  const ilk_ghost_slot_t* g = &ghost->slot[(r->axis < ILK_SLOTS) ? r->axis : 0u];
+  const ilk_axis_config_t* config = &tick->config->axis[(r->axis < ILK_SLOTS) ? r->axis : 0u];
   bool unsure = false;
   if (ghost->mode == ILK_MODE_INIT) {
     return demand(ILK_VERDICT_MODE);
@@ -810,7 +811,7 @@ static ilk_demand_t demand_of_row(const ilk_ghost_t *ghost, const ilk_tick_t *ti
       if (ghost->pedal != ILK_PEDAL_RELEASED) {
         return demand(ILK_VERDICT_PEDAL_DOWN);
       }
-      if (ghost->estop || ghost->bus_lost || !ghost->app_alive || runaway_present(ghost, tick, &unsure) ||
+      if (ghost->estop || ghost->bus_lost || !ghost->app_alive || runaway_present(ghost, &unsure) ||
           ghost->missed_ticks >= tick->config->common.overrun_limit) {
         return demand(ILK_VERDICT_CAUSE_PRESENT);
       }
@@ -860,7 +861,7 @@ static ilk_demand_t demand_of_row(const ilk_ghost_t *ghost, const ilk_tick_t *ti
 }
 
 /** CHECKSUM, SEQUENCE, UNKNOWN, AXIS, in this order; ACCEPTED when the row decides. */
-static uint32_t verdict_before_row(ilk_ghost_t *ghost, const ilk_tick_t *tick, const ilk_request_t *r) {
+static uint32_t verdict_before_row(ilk_ghost_t* ghost, const ilk_tick_t* tick, const ilk_request_t* r) {
   const uint32_t ahead = r->sequence - ghost->last_sequence;
   if (ilk_request_crc(r) != r->crc) {
     return ILK_VERDICT_CHECKSUM;
@@ -879,12 +880,12 @@ static uint32_t verdict_before_row(ilk_ghost_t *ghost, const ilk_tick_t *tick, c
 }
 
 /** A press that began in this tick and was ended by a later request of it: its number was never published. */
-static bool press_is_unseen(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
+static bool press_is_unseen(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   return (ghost->entered || !ghost->mode_sure) && tick->after->mode != ILK_MODE_MOTION;
 }
 
-static void accept(ilk_ghost_t *ghost, const ilk_tick_t *tick, const ilk_request_t *r) {
-  ilk_ghost_slot_t *g = &ghost->slot[(r->axis < ILK_SLOTS) ? r->axis : 0u];
+static void accept(ilk_ghost_t* ghost, const ilk_tick_t* tick, const ilk_request_t* r) {
+  ilk_ghost_slot_t* g = &ghost->slot[(r->axis < ILK_SLOTS) ? r->axis : 0u];
   const uint32_t consent = ghost->entered ? tick->after->consent : tick->before->consent;
   switch (r->kind) {
     case ILK_REQUEST_HEARTBEAT:
@@ -912,7 +913,10 @@ static void accept(ilk_ghost_t *ghost, const ilk_tick_t *tick, const ilk_request
       rest_anew(g);
       g->lease = 0u;
       g->order_consent = 0u;
-      g->stage = g->just_homed ? g->stage : (uint32_t)STAGE_NONE;
+      g->seeks = g->seeks && g->just_homed;
+      if (ghost->mode != ILK_MODE_MOTION) {
+        g->drift_mark = g->raw;
+      }
       break;
     case ILK_REQUEST_ENABLE:
       if (g->state == ILK_AXIS_DISABLED) {
@@ -953,9 +957,11 @@ static void accept(ilk_ghost_t *ghost, const ilk_tick_t *tick, const ilk_request
       g->state = ILK_AXIS_HOMING;
       g->homed = ILK_HOMED_NOT;
       g->path_homing = true;
-      g->stage = STAGE_BEGUN;
-      g->home_run = g->valid ? 1u : 0u;
-      g->home_run_raw = g->raw;
+      g->seeks = true;
+      g->home_open = false;
+      g->edges.firsts = 0u;
+      g->edges.seconds = 0u;
+      g->home_run = 0u;
       break;
     case ILK_REQUEST_SET_HOME:
       g->set_home = true;
@@ -976,7 +982,7 @@ static void accept(ilk_ghost_t *ghost, const ilk_tick_t *tick, const ilk_request
   }
 }
 
-static void before_requests(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
+static void before_requests(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   ghost->reset_accepted = false;
   ghost->stop_accepted = false;
   ghost->holder_changed = false;
@@ -985,14 +991,15 @@ static void before_requests(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   decide_mode(ghost, tick);
 }
 
-static void follow_request(ilk_ghost_t *ghost, const ilk_tick_t *tick, uint32_t i) {
-  const ilk_request_t *r = &tick->requests[i];
+static void follow_request(ilk_ghost_t* ghost, const ilk_tick_t* tick, uint32_t i) {
+  const ilk_request_t* r = &tick->requests[i];
   const uint32_t given = tick->out->verdict[i].verdict;
   ilk_demand_t d = demand(verdict_before_row(ghost, tick, r));
   if (d.verdict == ILK_VERDICT_ACCEPTED) {
     d = demand_of_row(ghost, tick, r);
   }
-  /* a press that may have begun and ended in this tick: nobody can tell in which mode the requests were judged */
+  /* a press that may have begun and ended in this tick: nobody can tell in which mode the requests were
+   * judged */
   const bool told = ghost->mode_sure || tick->after->mode == ILK_MODE_MOTION;
   if (told && d.verdict != ANY && given != d.verdict && given != d.other && ghost->order_error == 0u) {
     ghost->order_error = i + 1u;
@@ -1004,7 +1011,7 @@ static void follow_request(ilk_ghost_t *ghost, const ilk_tick_t *tick, uint32_t 
   }
 }
 
-static void after_requests(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
+static void after_requests(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   if (tick->after->mode == ILK_MODE_READY && tick->before->mode != ILK_MODE_READY) {
     disarm(ghost);
   }
@@ -1013,7 +1020,7 @@ static void after_requests(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   }
 }
 
-void ghost_requests(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
+void ghost_requests(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   const uint32_t taken = (tick->count < ILK_REQUESTS_PER_TICK) ? tick->count : ILK_REQUESTS_PER_TICK;
   before_requests(ghost, tick);
   for (uint32_t i = 0u; i < taken && i < tick->out->verdict_count; i++) {
@@ -1024,10 +1031,22 @@ void ghost_requests(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
 
 /* ------------------------------------------------------------------ what the drive of this tick means */
 
-static void settle_slot(ilk_ghost_t *ghost, ilk_ghost_slot_t *g, const ilk_axis_config_t *config, const ilk_tick_t *tick,
-                        uint32_t slot) {
-  const ilk_command_t *command = &tick->out->command[slot];
-  const ilk_axis_view_t *after = &tick->after->axis[slot];
+/** The edge that the published position implies; false when none does. */
+static bool reference_of(const ilk_ghost_slot_t* g, const ilk_axis_config_t* config, int32_t position,
+                         uint32_t* reference) {
+  bool found = false;
+  for (uint32_t i = 0u; i < g->edges.seconds && !found; i++) {
+    const int64_t beyond = judge_counts(config, g->raw, g->edges.second[i]);
+    found = saturate(beyond + config->home_offset_counts) == position;
+    *reference = g->edges.second[i];
+  }
+  return found;
+}
+
+static void settle_slot(ilk_ghost_t* ghost, ilk_ghost_slot_t* g, const ilk_axis_config_t* config,
+                        const ilk_tick_t* tick, uint32_t slot) {
+  const ilk_command_t* command = &tick->out->command[slot];
+  const ilk_axis_view_t* after = &tick->after->axis[slot];
   g->driven = is_driven(tick, slot);
   if (g->driven) {
     g->direction = command->direction;
@@ -1046,13 +1065,16 @@ static void settle_slot(ilk_ghost_t *ghost, ilk_ghost_slot_t *g, const ilk_axis_
     }
     g->stall_ticks = plus(g->stall_ticks, 1u);
     g->effort = plus64(g->effort, command->drive);
-    g->slow = g->slow && command->drive <= config->home_slow_drive;
+    for (uint32_t i = 0u; i < g->edges.firsts; i++) {
+      g->edges.slow[i] = g->edges.slow[i] && command->drive <= config->home_slow_drive;
+    }
     if (after->state != ILK_AXIS_HOMING) {
       g->path_homing = false;
     }
   } else if (g->valid && ghost->mode == ILK_MODE_MOTION && g->lease > 0u &&
              size_of(saturate((int64_t)g->setpoint - after->position)) <= config->deadband_counts &&
-             along(g->stall_direction, judge_counts(config, g->raw, g->stall_mark)) > (int64_t)config->noise_counts) {
+             along(g->stall_direction, judge_counts(config, g->raw, g->stall_mark)) >
+                 (int64_t)config->noise_counts) {
     g->stall_ticks = 0u;
     g->effort = 0u;
     g->stall_mark = g->raw;
@@ -1064,10 +1086,9 @@ static void settle_slot(ilk_ghost_t *ghost, ilk_ghost_slot_t *g, const ilk_axis_
     g->homing_ticks = plus(g->homing_ticks, 1u);
   }
   if (g->just_homed) {
-    g->stage = STAGE_NONE;
+    (void)reference_of(g, config, after->position, &g->reference); /* P17 has judged it */
+    g->seeks = false;
     g->position_known = false;
-    /* the reference that the published position implies, which P17 has judged */
-    g->e2 = (judge_counts(config, g->raw, g->e2) + (int64_t)config->home_offset_counts == after->position) ? g->e2 : g->e2_before;
   }
   if (!g->position_known && g->seen) {
     g->position = after->position;
@@ -1075,7 +1096,7 @@ static void settle_slot(ilk_ghost_t *ghost, ilk_ghost_slot_t *g, const ilk_axis_
   }
 }
 
-void ghost_settle(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
+void ghost_settle(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
     if (has_motor(&tick->config->axis[slot])) {
       settle_slot(ghost, &ghost->slot[slot], &tick->config->axis[slot], tick, slot);
@@ -1092,9 +1113,9 @@ void ghost_settle(ilk_ghost_t *ghost, const ilk_tick_t *tick) {
 /* ------------------------------------------------------------------ the monitors */
 
 /** P1: non-zero drive, on the wire or as a command, implies every condition now. */
-ilk_judgement_t judge_P1(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
+ilk_judgement_t judge_P1(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
-    const ilk_ghost_slot_t *g = &ghost->slot[slot];
+    const ilk_ghost_slot_t* g = &ghost->slot[slot];
     const uint32_t state = tick->after->axis[slot].state;
     if (!is_driven(tick, slot)) {
       continue;
@@ -1124,16 +1145,25 @@ ilk_judgement_t judge_P1(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
       return broken("P1: drive without a live lease or homing", slot, g->lease, 1);
     }
     if (state != ILK_AXIS_HOMING && tick->out->command[slot].drive > g->order_drive) {
-      return broken("P1: more drive than the MOVE asked for", slot, tick->out->command[slot].drive, g->order_drive);
+      return broken("P1: more drive than the MOVE asked for", slot, tick->out->command[slot].drive,
+                    g->order_drive);
+    }
+    if (state == ILK_AXIS_MOVING) {
+      const int64_t way = (int64_t)g->setpoint - tick->after->axis[slot].position;
+      const bool up = tick->out->command[slot].direction == ILK_DIRECTION_INCREASING;
+      if ((up ? way : -way) <= (int64_t)tick->config->axis[slot].deadband_counts) {
+        return broken("P1: drive within the deadband or away from the setpoint", slot, way,
+                      tick->config->axis[slot].deadband_counts);
+      }
     }
   }
   return HOLDS;
 }
 
 /** P2: zero drive on every card in each of the listed situations; power only in READY and MOTION. */
-ilk_judgement_t judge_P2(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
-  const bool must = ghost->pedal != ILK_PEDAL_PRESSED || ghost->estop || tick->after->mode != ILK_MODE_MOTION ||
-                    ghost->bus_lost || !ghost->app_alive;
+ilk_judgement_t judge_P2(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
+  const bool must = ghost->pedal != ILK_PEDAL_PRESSED || ghost->estop ||
+                    tick->after->mode != ILK_MODE_MOTION || ghost->bus_lost || !ghost->app_alive;
   const bool power = tick->after->mode == ILK_MODE_READY || tick->after->mode == ILK_MODE_MOTION;
   if (tick->out->power != (power ? 1u : 0u)) {
     return broken("P2: power is on in READY and MOTION only", ILK_SLOTS, tick->out->power, power);
@@ -1150,10 +1180,10 @@ ilk_judgement_t judge_P2(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
 }
 
 /** P3: no drive towards a switch that reads triggered, or that was not read validly. */
-ilk_judgement_t judge_P3(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
+ilk_judgement_t judge_P3(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
-    const ilk_axis_config_t *config = &tick->config->axis[slot];
-    const ilk_ghost_slot_t *g = &ghost->slot[slot];
+    const ilk_axis_config_t* config = &tick->config->axis[slot];
+    const ilk_ghost_slot_t* g = &ghost->slot[slot];
     if (has_motor(config) && config->limit_side != ILK_LIMIT_NONE && is_driven(tick, slot) &&
         (!g->valid || g->triggered) && tick->out->command[slot].direction == towards_switch(config)) {
       return broken("P3: drive towards a triggered switch", slot, tick->out->command[slot].drive, 0);
@@ -1162,12 +1192,13 @@ ilk_judgement_t judge_P3(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   return HOLDS;
 }
 
-/** P4, first half. Less than the sentence: the bound is judged by the published position, drive exactly on it is allowed. */
-ilk_judgement_t judge_P4(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
+/** P4, first half. Less than the sentence: the bound is judged by the published position, drive exactly on it
+ * is allowed. */
+ilk_judgement_t judge_P4(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   (void)ghost;
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
-    const ilk_axis_config_t *config = &tick->config->axis[slot];
-    const ilk_axis_view_t *axis = &tick->after->axis[slot];
+    const ilk_axis_config_t* config = &tick->config->axis[slot];
+    const ilk_axis_view_t* axis = &tick->after->axis[slot];
     const int64_t margin = (int64_t)config->home_offset_counts;
     const int64_t opens = (int64_t)config->switch_hysteresis_counts + config->home_tolerance_counts;
     int64_t low = (int64_t)config->min_counts + config->coast_counts;
@@ -1178,7 +1209,8 @@ ilk_judgement_t judge_P4(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
     if (axis->homed == ILK_HOMED_BY_SWITCH && config->limit_side == ILK_LIMIT_LOWER && margin + opens > low) {
       low = margin + opens;
     }
-    if (axis->homed == ILK_HOMED_BY_SWITCH && config->limit_side == ILK_LIMIT_UPPER && margin - opens < high) {
+    if (axis->homed == ILK_HOMED_BY_SWITCH && config->limit_side == ILK_LIMIT_UPPER &&
+        margin - opens < high) {
       high = margin - opens;
     }
     if (tick->out->command[slot].direction == ILK_DIRECTION_DECREASING && axis->position < low) {
@@ -1192,28 +1224,30 @@ ilk_judgement_t judge_P4(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
 }
 
 /** P5. Drive is counted with the drive of this tick, which ghost_settle adds afterwards. */
-ilk_judgement_t judge_P5(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
+ilk_judgement_t judge_P5(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
-    const ilk_axis_config_t *config = &tick->config->axis[slot];
-    const ilk_ghost_slot_t *g = &ghost->slot[slot];
-    const ilk_axis_view_t *before = &tick->before->axis[slot];
-    const ilk_axis_view_t *after = &tick->after->axis[slot];
+    const ilk_axis_config_t* config = &tick->config->axis[slot];
+    const ilk_ghost_slot_t* g = &ghost->slot[slot];
+    const ilk_axis_view_t* before = &tick->before->axis[slot];
+    const ilk_axis_view_t* after = &tick->after->axis[slot];
     const uint64_t bound = (uint64_t)config->stall_effort_ticks * config->max_drive;
     if (!has_motor(config)) {
       continue;
     }
     if (is_driven(tick, slot)) {
       if (g->stall_ticks >= config->stall_ticks) {
-        return broken("P5: driven for more than stall_ticks without progress", slot, (int64_t)g->stall_ticks + 1,
-                      config->stall_ticks);
+        return broken("P5: driven for more than stall_ticks without progress", slot,
+                      (int64_t)g->stall_ticks + 1, config->stall_ticks);
       }
-      if (config->stall_effort_ticks > 0u && plus64(g->effort, tick->out->command[slot].drive) >= bound + config->max_drive) {
+      if (config->stall_effort_ticks > 0u &&
+          plus64(g->effort, tick->out->command[slot].drive) >= bound + config->max_drive) {
         return broken("P5: driven with stall_effort_ticks + 1 of full drive without progress", slot,
                       (int64_t)g->effort, (int64_t)bound);
       }
     }
     if (g->stalled && before->state != ILK_AXIS_FAULTED && after->state != ILK_AXIS_FAULTED) {
-      return broken("P5: a bound is reached and the axis is not faulted", slot, g->stall_ticks, (int64_t)g->effort);
+      return broken("P5: a bound is reached and the axis is not faulted", slot, g->stall_ticks,
+                    (int64_t)g->effort);
     }
     if (!g->stalled && before->state != ILK_AXIS_FAULTED && after->state == ILK_AXIS_FAULTED &&
         after->fault == ILK_FAULT_STALL) {
@@ -1223,29 +1257,31 @@ ilk_judgement_t judge_P5(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   return HOLDS;
 }
 
-/** P6. Less than the sentence: reverse motion is judged in the tick after a driven one only, drift when undriven since the last valid frame;
-    the first frame after start or after a lost card, and one that may be a reset card's, is not judged. */
-ilk_judgement_t judge_P6(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
+/** P6. Less than the sentence: reverse motion is demanded in the tick after a driven one only; the first
+   frame after start or after a lost card is compared with nothing. */
+ilk_judgement_t judge_P6(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
-    const ilk_ghost_slot_t *g = &ghost->slot[slot];
-    const ilk_axis_view_t *before = &tick->before->axis[slot];
-    const ilk_axis_view_t *after = &tick->after->axis[slot];
+    const ilk_ghost_slot_t* g = &ghost->slot[slot];
+    const ilk_axis_view_t* before = &tick->before->axis[slot];
+    const ilk_axis_view_t* after = &tick->after->axis[slot];
     const bool judged = before->state != ILK_AXIS_DISABLED || tick->before->mode == ILK_MODE_MOTION;
     if (!has_motor(&tick->config->axis[slot])) {
       continue;
     }
     if (before->state != ILK_AXIS_FAULTED && judged && (g->jump || g->reversed || g->drifted)) {
       const uint32_t first = g->jump ? ILK_FAULT_JUMP : (g->reversed ? ILK_FAULT_REVERSE : ILK_FAULT_DRIFT);
+      const bool other = g->reset || (!g->jump && g->maybe_reversed && after->fault == ILK_FAULT_REVERSE);
       if (after->state != ILK_AXIS_FAULTED) {
         return broken("P6: moved beyond its limit and is not faulted", slot, g->distance, first);
       }
-      if (after->fault != first && !(g->reset && after->fault == ILK_FAULT_CARD_RESET)) {
+      if (after->fault != first && !other) {
         return broken("P6: the code is not the first of those that apply", slot, after->fault, first);
       }
     }
     if (before->state != ILK_AXIS_FAULTED && after->state == ILK_AXIS_FAULTED &&
-        ((after->fault == ILK_FAULT_DRIFT && !g->drifted) || (after->fault == ILK_FAULT_JUMP && !g->jump))) {
-      return broken("P6: DRIFT or JUMP without such motion", slot, after->fault, g->distance);
+        ((after->fault == ILK_FAULT_DRIFT && !g->drifted) || (after->fault == ILK_FAULT_JUMP && !g->jump) ||
+         (after->fault == ILK_FAULT_REVERSE && !g->maybe_reversed))) {
+      return broken("P6: REVERSE, DRIFT or JUMP without such motion", slot, after->fault, g->distance);
     }
     if (g->runaway && (tick->after->mode != ILK_MODE_LOCKED || tick->out->power != 0u)) {
       return broken("P6: a faulted axis goes on moving and power is not taken away", slot, g->distance,
@@ -1255,16 +1291,19 @@ ilk_judgement_t judge_P6(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   return HOLDS;
 }
 
-/** P7. The second half is judged where it is decided: no drive once the path travelled and coast exceed the budget. */
-ilk_judgement_t judge_P7(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
+/** P7. The second half is judged where it is decided: no drive once the path travelled and coast exceed the
+ * budget. */
+ilk_judgement_t judge_P7(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
-    const ilk_axis_config_t *config = &tick->config->axis[slot];
-    const ilk_ghost_slot_t *g = &ghost->slot[slot];
-    const ilk_command_t *command = &tick->out->command[slot];
-    const ilk_axis_view_t *after = &tick->after->axis[slot];
+    const ilk_axis_config_t* config = &tick->config->axis[slot];
+    const ilk_ghost_slot_t* g = &ghost->slot[slot];
+    const ilk_command_t* command = &tick->out->command[slot];
+    const ilk_axis_view_t* after = &tick->after->axis[slot];
     if (!has_motor(config)) {
       continue;
     }
+    const uint64_t kept_back =
+        (uint64_t)config->coast_counts + config->noise_counts; /* the path may lag by the noise */
     if (command->drive > config->max_drive) {
       return broken("P7: drive above max_drive", slot, command->drive, config->max_drive);
     }
@@ -1275,27 +1314,27 @@ ilk_judgement_t judge_P7(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
       if (command->drive > config->unhomed_max_drive) {
         return broken("P7: drive above unhomed_max_drive", slot, command->drive, config->unhomed_max_drive);
       }
-      if (after->state != ILK_AXIS_HOMING &&
-          (uint64_t)g->move_travel + config->coast_counts > config->unhomed_travel_counts) {
+      if (after->state != ILK_AXIS_HOMING && g->move_travel + kept_back > config->unhomed_travel_counts) {
         return broken("P7: MOVE drives beyond the unhomed travel of this press", slot, g->move_travel,
-                      (int64_t)config->unhomed_travel_counts - config->coast_counts);
+                      (int64_t)config->unhomed_travel_counts - (int64_t)kept_back);
       }
-      if (after->state == ILK_AXIS_HOMING && (uint64_t)g->homing_travel + config->coast_counts > config->home_travel_counts) {
+      if (after->state == ILK_AXIS_HOMING && g->homing_travel + kept_back > config->home_travel_counts) {
         return broken("P7: homing drives beyond its travel of this press", slot, g->homing_travel,
-                      (int64_t)config->home_travel_counts - config->coast_counts);
+                      (int64_t)config->home_travel_counts - (int64_t)kept_back);
       }
     }
     if (after->state == ILK_AXIS_HOMING && g->homing_ticks > config->home_timeout_ticks) {
-      return broken("P7: homing lasts longer than its time of this press", slot, g->homing_ticks, config->home_timeout_ticks);
+      return broken("P7: homing lasts longer than its time of this press", slot, g->homing_ticks,
+                    config->home_timeout_ticks);
     }
   }
   return HOLDS;
 }
 
 /** P8. */
-ilk_judgement_t judge_P8(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
-  const ilk_view_t *before = tick->before;
-  const ilk_view_t *after = tick->after;
+ilk_judgement_t judge_P8(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
+  const ilk_view_t* before = tick->before;
+  const ilk_view_t* after = tick->after;
   if (after->cause == ILK_CAUSE_INTEGRITY) {
     return HOLDS;
   }
@@ -1311,21 +1350,24 @@ ilk_judgement_t judge_P8(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
     if (before->axis[slot].state == ILK_AXIS_FAULTED && !ghost->slot[slot].cleared) {
       if (after->axis[slot].state != ILK_AXIS_FAULTED) {
-        return broken("P8: a fault ended without CLEAR_FAULT", slot, after->axis[slot].state, ILK_AXIS_FAULTED);
+        return broken("P8: a fault ended without CLEAR_FAULT", slot, after->axis[slot].state,
+                      ILK_AXIS_FAULTED);
       }
       if (after->axis[slot].fault != before->axis[slot].fault) {
-        return broken("P8: the first fault was overwritten", slot, after->axis[slot].fault, before->axis[slot].fault);
+        return broken("P8: the first fault was overwritten", slot, after->axis[slot].fault,
+                      before->axis[slot].fault);
       }
     }
   }
   return HOLDS;
 }
 
-/** P9. The release that arms counts from the last event that disarms: all of its debounce time lies in READY with the app
-    alive. Less than the sentence: whether a DISABLED axis moved is not judged in the first rest_ticks after a new or reset
-    card or an invalid frame, nor when it took more than two of its readings to move that far. */
-ilk_judgement_t judge_P9(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
-  const ilk_common_config_t *c = &tick->config->common;
+/** P9. The release that arms counts from the last event that disarms: all of its debounce time lies in READY
+   with the app alive. Less than the sentence: whether a DISABLED axis moved is not judged in the first
+   rest_ticks after a new or reset card or an invalid frame, nor when it took more than two of its readings to
+   move that far. */
+ilk_judgement_t judge_P9(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
+  const ilk_common_config_t* c = &tick->config->common;
   const uint32_t consent = tick->after->consent;
   if (tick->after->mode != ILK_MODE_MOTION) {
     return (consent == 0u) ? HOLDS : broken("P9: consent outside of MOTION", ILK_SLOTS, consent, 0);
@@ -1334,9 +1376,9 @@ ilk_judgement_t judge_P9(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
     return broken("P9: MOTION without a consent number", ILK_SLOTS, 0, 1);
   }
   if (tick->before->mode == ILK_MODE_MOTION) {
-    return (consent == tick->before->consent)
-               ? HOLDS
-               : broken("P9: the consent number changed within a press", ILK_SLOTS, consent, tick->before->consent);
+    return (consent == tick->before->consent) ? HOLDS
+                                              : broken("P9: the consent number changed within a press",
+                                                       ILK_SLOTS, consent, tick->before->consent);
   }
   if (tick->before->mode != ILK_MODE_READY) {
     return broken("P9: MOTION not entered from READY", ILK_SLOTS, tick->before->mode, ILK_MODE_READY);
@@ -1352,16 +1394,18 @@ ilk_judgement_t judge_P9(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
     return broken("P9: MOTION without an armed pedal, the app, a required card, power or rest", ILK_SLOTS,
                   ghost->powered_ticks, c->power_up_ticks);
   }
-  if (!ghost->app_alive || ghost->required_lost || ghost->drift_of_disabled || ghost->powered_ticks < c->power_up_ticks) {
-    return broken("P9: MOTION although app, card, power or a DISABLED axis forbids it", ILK_SLOTS,
-                  (ghost->app_alive ? 0 : 1) + (ghost->required_lost ? 2 : 0) + (ghost->drift_of_disabled ? 4 : 0),
-                  ghost->powered_ticks);
+  if (!ghost->app_alive || ghost->required_lost || ghost->drift_of_disabled ||
+      ghost->powered_ticks < c->power_up_ticks) {
+    return broken(
+        "P9: MOTION although app, card, power or a DISABLED axis forbids it", ILK_SLOTS,
+        (ghost->app_alive ? 0 : 1) + (ghost->required_lost ? 2 : 0) + (ghost->drift_of_disabled ? 4 : 0),
+        ghost->powered_ticks);
   }
   return HOLDS;
 }
 
 /** P10. */
-ilk_judgement_t judge_P10(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
+ilk_judgement_t judge_P10(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   if (ghost->app_alive) {
     return HOLDS;
   }
@@ -1376,23 +1420,24 @@ ilk_judgement_t judge_P10(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
   return HOLDS;
 }
 
-/** P11: one verdict a taken request, in order, with its tick, sequence, kind and axis. That a refused request changes
-    nothing takes two runs: the driver compares them. */
-ilk_judgement_t judge_P11(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
+/** P11: one verdict a taken request, in order, with its tick, sequence, kind and axis. That a refused request
+   changes nothing takes two runs: the driver compares them. */
+ilk_judgement_t judge_P11(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   const uint32_t taken = (tick->count < ILK_REQUESTS_PER_TICK) ? tick->count : ILK_REQUESTS_PER_TICK;
   if (tick->out->verdict_count != taken) {
     return broken("P11: not one verdict for each request taken", ILK_SLOTS, tick->out->verdict_count, taken);
   }
   for (uint32_t i = 0u; i < taken; i++) {
-    const ilk_verdict_record_t *v = &tick->out->verdict[i];
-    const ilk_request_t *r = &tick->requests[i];
+    const ilk_verdict_record_t* v = &tick->out->verdict[i];
+    const ilk_request_t* r = &tick->requests[i];
     if (v->sequence != r->sequence || v->kind != r->kind || v->axis != r->axis || v->tick != ghost->tick) {
       return broken("P11: the verdict names another request", i, v->sequence, r->sequence);
     }
     if (v->verdict >= ILK_VERDICT_COUNT) {
       return broken("P11: not a verdict", i, v->verdict, ILK_VERDICT_COUNT);
     }
-    if (ghost->order_error == i + 1u && (ghost->expected <= ILK_VERDICT_AXIS || v->verdict <= ILK_VERDICT_AXIS) &&
+    if (ghost->order_error == i + 1u &&
+        (ghost->expected <= ILK_VERDICT_AXIS || v->verdict <= ILK_VERDICT_AXIS) &&
         (ghost->expected != ILK_VERDICT_ACCEPTED || v->verdict != ILK_VERDICT_ACCEPTED) &&
         ((ghost->expected >= ILK_VERDICT_CHECKSUM && ghost->expected <= ILK_VERDICT_AXIS) ||
          (v->verdict >= ILK_VERDICT_CHECKSUM && v->verdict <= ILK_VERDICT_AXIS))) {
@@ -1403,24 +1448,27 @@ ilk_judgement_t judge_P11(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
 }
 
 /** P12. */
-ilk_judgement_t judge_P12(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
+ilk_judgement_t judge_P12(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   if (ghost->consent_error) {
-    return broken("P12: a MOVE or HOME of another press was accepted", ILK_SLOTS, tick->before->consent, tick->after->consent);
+    return broken("P12: a MOVE or HOME of another press was accepted", ILK_SLOTS, tick->before->consent,
+                  tick->after->consent);
   }
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
-    const ilk_ghost_slot_t *g = &ghost->slot[slot];
+    const ilk_ghost_slot_t* g = &ghost->slot[slot];
     if (is_driven(tick, slot) && (g->order_consent == 0u || g->order_consent != tick->after->consent)) {
-      return broken("P12: drive without a MOVE or HOME of this press", slot, g->order_consent, tick->after->consent);
+      return broken("P12: drive without a MOVE or HOME of this press", slot, g->order_consent,
+                    tick->after->consent);
     }
   }
   return HOLDS;
 }
 
 /** P13. That the configuration does not change is the driver's to keep: it is const. */
-ilk_judgement_t judge_P13(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
+ilk_judgement_t judge_P13(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   (void)ghost;
   if (!tick->config_valid && tick->after->mode != ILK_MODE_INIT) {
-    return broken("P13: INIT was left with an invalid configuration", ILK_SLOTS, tick->after->mode, ILK_MODE_INIT);
+    return broken("P13: INIT was left with an invalid configuration", ILK_SLOTS, tick->after->mode,
+                  ILK_MODE_INIT);
   }
   if (tick->config_valid && tick->after->mode == ILK_MODE_INIT) {
     return broken("P13: INIT with a valid configuration", ILK_SLOTS, tick->after->mode, ILK_MODE_LOCKED);
@@ -1429,12 +1477,12 @@ ilk_judgement_t judge_P13(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
 }
 
 /** P17, but its last sentence for single wrong readings, which takes two runs. */
-ilk_judgement_t judge_P17(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
+ilk_judgement_t judge_P17(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
-    const ilk_axis_config_t *config = &tick->config->axis[slot];
-    const ilk_ghost_slot_t *g = &ghost->slot[slot];
-    const ilk_axis_view_t *before = &tick->before->axis[slot];
-    const ilk_axis_view_t *after = &tick->after->axis[slot];
+    const ilk_axis_config_t* config = &tick->config->axis[slot];
+    const ilk_ghost_slot_t* g = &ghost->slot[slot];
+    const ilk_axis_view_t* before = &tick->before->axis[slot];
+    const ilk_axis_view_t* after = &tick->after->axis[slot];
     if (!has_motor(config)) {
       continue;
     }
@@ -1451,16 +1499,9 @@ ilk_judgement_t judge_P17(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
       return broken("P17: homed although its card is lost", slot, after->homed, 0);
     }
     if (after->homed == ILK_HOMED_BY_SWITCH && before->homed != ILK_HOMED_BY_SWITCH) {
-      const int64_t first = judge_counts(config, g->e2, g->e1);
-      const int64_t later = judge_counts(config, g->e2, g->e1_later);
-      const int64_t apart = ((first < 0 ? -first : first) < (later < 0 ? -later : later)) ? first : later;
-      const int64_t newest = (int64_t)judge_counts(config, g->raw, g->e2) + config->home_offset_counts;
-      const int64_t older = (int64_t)judge_counts(config, g->raw, g->e2_before) + config->home_offset_counts;
-      if (!g->just_homed || g->stage != STAGE_SLOW_EDGE) {
-        return broken("P17: homed without the sequence of edges", slot, g->stage, STAGE_SLOW_EDGE);
-      }
-      if (!g->slow) {
-        return broken("P17: the second approach was not slow", slot, 0, config->home_slow_drive);
+      uint32_t reference = g->raw;
+      if (!g->just_homed || !g->seeks || g->edges.seconds == 0u) {
+        return broken("P17: homed without the sequence of edges", slot, g->edges.firsts, g->edges.seconds);
       }
       if (!g->valid || !g->triggered || g->home_run < tick->config->common.switch_debounce_ticks) {
         return broken("P17: homed and the switch is not triggered for the debounce time", slot, g->home_run,
@@ -1469,11 +1510,14 @@ ilk_judgement_t judge_P17(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
       if (moves(g, config)) {
         return broken("P17: homed and not at rest", slot, g->rest.ticks, config->rest_ticks);
       }
-      if ((apart < 0 ? -apart : apart) > (int64_t)config->home_tolerance_counts) {
-        return broken("P17: the edges differ by more than the tolerance", slot, apart, config->home_tolerance_counts);
+      if (!reference_of(g, config, after->position, &reference)) {
+        return broken("P17: position is not raw - e2 + home offset", slot, after->position,
+                      (int64_t)judge_counts(config, g->raw, reference) + config->home_offset_counts);
       }
-      if (after->position != newest && after->position != older) {
-        return broken("P17: position is not raw - e2 + home offset", slot, after->position, newest);
+      if (size_of(judge_counts(config, g->raw, reference)) >
+          plus(config->coast_counts, config->home_tolerance_counts)) {
+        return broken("P17: homed farther from the edge than coast and tolerance", slot,
+                      judge_counts(config, g->raw, reference), config->coast_counts);
       }
     } else if (g->position_known && g->seen && after->position != g->position) {
       return broken("P17: the position does not follow the counter", slot, after->position, g->position);
@@ -1485,8 +1529,9 @@ ilk_judgement_t judge_P17(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
 /* ------------------------------------------------------------------ beyond the properties */
 
 static uint32_t frequency_word(uint32_t drive) {
-  static const uint32_t speed[24] = {0,     54,    189,   331,   614,   1095,  2020,   3222,   3773,   6383,   11445,  15308,
-                                     20955, 27358, 36039, 45548, 58997, 78710, 105850, 141386, 188106, 247388, 317394, 397785};
+  static const uint32_t speed[24] = {0,     54,    189,    331,    614,    1095,   2020,   3222,
+                                     3773,  6383,  11445,  15308,  20955,  27358,  36039,  45548,
+                                     58997, 78710, 105850, 141386, 188106, 247388, 317394, 397785};
   uint32_t i = 0u;
   if (drive >= speed[23]) {
     return 1196612456u - 4063228u * 23u;
@@ -1496,17 +1541,18 @@ static uint32_t frequency_word(uint32_t drive) {
   }
   {
     const uint64_t span = (uint64_t)speed[i + 1u] - speed[i];
-    const uint64_t lower = 4063228u * ((uint64_t)drive - speed[i]) / span; /* rounded down: the word is rounded up */
+    const uint64_t lower =
+        4063228u * ((uint64_t)drive - speed[i]) / span; /* rounded down: the word is rounded up */
     return 1196612456u - 4063228u * i - (uint32_t)lower;
   }
 }
 
 /** P16, one half: the frames say what the commands say. */
-ilk_judgement_t judge_wire(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
+ilk_judgement_t judge_wire(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
-    const ilk_axis_config_t *config = &tick->config->axis[slot];
-    const ilk_command_t *command = &tick->out->command[slot];
-    const uint32_t *frame = tick->out->frame[slot];
+    const ilk_axis_config_t* config = &tick->config->axis[slot];
+    const ilk_command_t* command = &tick->out->command[slot];
+    const uint32_t* frame = tick->out->frame[slot];
     uint32_t want[ILK_FRAME_WORDS] = {0};
     uint32_t sum = 0u;
     if (config->card == ILK_CARD_NONE || !tick->config_valid) {
@@ -1554,14 +1600,15 @@ ilk_judgement_t judge_wire(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
 }
 
 /** The table of modes. */
-ilk_judgement_t judge_mode(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
-  const ilk_common_config_t *c = &tick->config->common;
+ilk_judgement_t judge_mode(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
+  const ilk_common_config_t* c = &tick->config->common;
   const uint32_t cause = tick->after->cause;
   if (ghost->mode != tick->after->mode) {
     return broken("mode: not the mode of the table", tick->before->mode, tick->after->mode, ghost->mode);
   }
   if (tick->after->mode == ILK_MODE_LOCKED && tick->before->mode != ILK_MODE_LOCKED) {
-    const bool there = (cause == ILK_CAUSE_ESTOP && ghost->estop) || (cause == ILK_CAUSE_BUS && ghost->bus_lost) ||
+    const bool there = (cause == ILK_CAUSE_ESTOP && ghost->estop) ||
+                       (cause == ILK_CAUSE_BUS && ghost->bus_lost) ||
                        (cause == ILK_CAUSE_PEDAL && ghost->disagree_ticks >= c->pedal_disagree_ticks) ||
                        (cause == ILK_CAUSE_OVERRUN && ghost->missed_in_row >= c->overrun_limit) ||
                        (cause == ILK_CAUSE_RUNAWAY && (ghost->runaway || ghost->runaway_unsure));
@@ -1581,43 +1628,51 @@ ilk_judgement_t judge_mode(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
 }
 
 /** The table of requests: the verdict is the first check that fails. */
-ilk_judgement_t judge_rows(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
+ilk_judgement_t judge_rows(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   if (ghost->order_error != 0u) {
-    const ilk_request_t *r = &tick->requests[ghost->order_error - 1u];
-    static const char *const names[] = {"rows: ?", "rows: HEARTBEAT", "rows: STOP", "rows: RESET", "rows: DISABLE", "rows: ENABLE", "rows: CLEAR_FAULT", "rows: MOVE", "rows: HOME", "rows: SET_HOME", "rows: RESTORE"};
+    const ilk_request_t* r = &tick->requests[ghost->order_error - 1u];
+    static const char* const names[] = {"rows: ?",           "rows: HEARTBEAT", "rows: STOP",
+                                        "rows: RESET",       "rows: DISABLE",   "rows: ENABLE",
+                                        "rows: CLEAR_FAULT", "rows: MOVE",      "rows: HOME",
+                                        "rows: SET_HOME",    "rows: RESTORE"};
     return broken(names[r->kind <= ILK_REQUEST_RESTORE ? r->kind : 0u], r->axis,
                   tick->out->verdict[ghost->order_error - 1u].verdict, ghost->expected);
   }
   return HOLDS;
 }
 
-static uint32_t class_of(uint32_t state) { return (state == ILK_AXIS_MOVING) ? (uint32_t)ILK_AXIS_ENABLED : state; }
+static uint32_t class_of(uint32_t state) {
+  return (state == ILK_AXIS_MOVING) ? (uint32_t)ILK_AXIS_ENABLED : state;
+}
 
 /** States, what drops `homed`, lost and reset cards, switch plausibility. */
-ilk_judgement_t judge_states(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
+ilk_judgement_t judge_states(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
-    const ilk_axis_config_t *config = &tick->config->axis[slot];
-    const ilk_ghost_slot_t *g = &ghost->slot[slot];
-    const ilk_axis_view_t *before = &tick->before->axis[slot];
-    const ilk_axis_view_t *after = &tick->after->axis[slot];
+    const ilk_axis_config_t* config = &tick->config->axis[slot];
+    const ilk_ghost_slot_t* g = &ghost->slot[slot];
+    const ilk_axis_view_t* before = &tick->before->axis[slot];
+    const ilk_axis_view_t* after = &tick->after->axis[slot];
     const bool new_fault = before->state != ILK_AXIS_FAULTED && after->state == ILK_AXIS_FAULTED;
     if (!has_motor(config)) {
       continue;
     }
     if (class_of(after->state) != class_of(g->state)) {
-      return broken("states: not the state that faults, mode and requests give", slot, after->state, g->state);
+      return broken("states: not the state that faults, mode and requests give", slot, after->state,
+                    g->state);
     }
-    if (after->state == ILK_AXIS_FAULTED && (after->fault == ILK_FAULT_NONE || after->fault >= ILK_FAULT_COUNT)) {
+    if (after->state == ILK_AXIS_FAULTED &&
+        (after->fault == ILK_FAULT_NONE || after->fault >= ILK_FAULT_COUNT)) {
       return broken("states: FAULTED without a code", slot, after->fault, 0);
     }
     if (new_fault && after->fault != ILK_FAULT_DRIFT && after->homed != ILK_HOMED_NOT) {
       return broken("states: the fault does not drop homed", slot, after->fault, after->homed);
     }
-    if (before->homed != ILK_HOMED_NOT && after->homed == ILK_HOMED_NOT && !g->jump && !g->reset && !g->lost &&
-        !(after->state == ILK_AXIS_FAULTED && after->fault != ILK_FAULT_DRIFT && new_fault) && g->stage != STAGE_BEGUN &&
+    if (before->homed != ILK_HOMED_NOT && after->homed == ILK_HOMED_NOT && !g->jump && !g->reset &&
+        !g->lost && !(after->state == ILK_AXIS_FAULTED && after->fault != ILK_FAULT_DRIFT && new_fault) &&
         !g->stalled && g->implausible == 0u && !ghost->consent_error && !g->restored) {
       bool home = false; /* a HOME in this tick that STOP or DISABLE ended again */
-      for (uint32_t i = 0u; i < tick->out->verdict_count && i < tick->count && i < ILK_REQUESTS_PER_TICK; i++) {
+      for (uint32_t i = 0u; i < tick->out->verdict_count && i < tick->count && i < ILK_REQUESTS_PER_TICK;
+           i++) {
         home = home || (tick->requests[i].kind == ILK_REQUEST_HOME && tick->requests[i].axis == slot &&
                         tick->out->verdict[i].verdict == ILK_VERDICT_ACCEPTED);
       }
@@ -1628,10 +1683,12 @@ ilk_judgement_t judge_states(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
     if (before->state != ILK_AXIS_FAULTED && g->lost && (!new_fault || after->fault != ILK_FAULT_CARD)) {
       return broken("states: a lost card and no fault CARD", slot, after->state, after->fault);
     }
-    if (before->state != ILK_AXIS_FAULTED && g->reset && (!new_fault || after->fault != ILK_FAULT_CARD_RESET)) {
+    if (before->state != ILK_AXIS_FAULTED && g->reset &&
+        (!new_fault || after->fault != ILK_FAULT_CARD_RESET)) {
       return broken("states: a reset card and no fault CARD_RESET", slot, after->state, after->fault);
     }
-    if (new_fault && ((after->fault == ILK_FAULT_CARD && !g->lost) || (after->fault == ILK_FAULT_CARD_RESET && !g->reset))) {
+    if (new_fault && ((after->fault == ILK_FAULT_CARD && !g->lost) ||
+                      (after->fault == ILK_FAULT_CARD_RESET && !g->reset))) {
       return broken("states: CARD or CARD_RESET without its reason", slot, after->fault, g->bad_run);
     }
     if (new_fault && before->state != ILK_AXIS_HOMING &&
@@ -1640,18 +1697,21 @@ ilk_judgement_t judge_states(const ilk_ghost_t *ghost, const ilk_tick_t *tick) {
       return broken("states: SWITCH or HOMING fault without its reason", slot, after->fault, g->implausible);
     }
     if (g->implausible >= tick->config->common.switch_debounce_ticks && after->homed == ILK_HOMED_BY_SWITCH) {
-      return broken("states: the switch contradicts the position and the axis is homed", slot, after->position, g->implausible);
+      return broken("states: the switch contradicts the position and the axis is homed", slot,
+                    after->position, g->implausible);
     }
-    if (after->state == ILK_AXIS_HOMING && before->state != ILK_AXIS_HOMING && after->homed != ILK_HOMED_NOT) {
+    if (after->state == ILK_AXIS_HOMING && before->state != ILK_AXIS_HOMING &&
+        after->homed != ILK_HOMED_NOT) {
       return broken("states: homed while HOMING", slot, after->homed, 0);
     }
   }
   return HOLDS;
 }
 
-/** Rules of the text in numbers, as far as it gives them; speed is rounded up where it must not be exceeded. */
-ilk_judgement_t judge_config(const ilk_config_t *config) {
-  const ilk_common_config_t *c = &config->common;
+/** Rules of the text in numbers, as far as it gives them; speed is rounded up where it must not be exceeded.
+ */
+ilk_judgement_t judge_config(const ilk_config_t* config) {
+  const ilk_common_config_t* c = &config->common;
   const uint64_t ms = c->period_us;
   bool motor = false;
   if (c->app_timeout_ticks < 2u || c->app_timeout_ticks * ms > 150000u) {
@@ -1660,18 +1720,24 @@ ilk_judgement_t judge_config(const ilk_config_t *config) {
   if (c->lease_max_ticks < 1u || c->lease_max_ticks * ms > 150000u) {
     return broken("config: lease_max_ticks", ILK_SLOTS, c->lease_max_ticks, 0);
   }
-  if (c->pedal_debounce_ticks * ms > 50000u || c->pedal_disagree_ticks * ms > 50000u) {
+  if (ms < 125u || ms > 2000u || c->pedal_channels < 1u || c->pedal_channels > 2u) {
+    return broken("config: period or pedal channels", ILK_SLOTS, (int64_t)ms, c->pedal_channels);
+  }
+  if (c->pedal_debounce_ticks < 1u || c->pedal_debounce_ticks * ms > 50000u || c->pedal_disagree_ticks < 1u ||
+      c->pedal_disagree_ticks * ms > 50000u) {
     return broken("config: pedal times", ILK_SLOTS, c->pedal_debounce_ticks, c->pedal_disagree_ticks);
   }
   if (c->bad_frame_limit < 1u || c->bad_frame_limit > 5u || c->overrun_limit < 1u || c->overrun_limit > 10u) {
     return broken("config: bad frames or overruns", ILK_SLOTS, c->bad_frame_limit, c->overrun_limit);
   }
-  if (c->switch_debounce_ticks * ms > 20000u) {
+  if (c->switch_debounce_ticks < 2u || c->switch_debounce_ticks * ms > 20000u) { /* one reading is no edge */
     return broken("config: switch debounce", ILK_SLOTS, c->switch_debounce_ticks, 0);
   }
   for (uint32_t i = 0u; i < ILK_SLOTS; i++) {
-    const ilk_axis_config_t *a = &config->axis[i];
+    const ilk_axis_config_t* a = &config->axis[i];
     const uint64_t noise = a->noise_counts;
+    const uint64_t coast = a->coast_counts;
+    const uint64_t range = (uint64_t)((int64_t)a->max_counts - a->min_counts);
     /* millionths of a count a tick */
     const uint64_t full = (uint64_t)a->full_speed_counts_per_s * ms;
     const uint64_t home = (uint64_t)a->home_speed_counts_per_s * ms;
@@ -1681,20 +1747,35 @@ ilk_judgement_t judge_config(const ilk_config_t *config) {
       continue;
     }
     motor = true;
-    if (a->stall_ticks * ms > 500000u || a->stall_effort_ticks * ms > 200000u) {
+    if (a->min_counts >= a->max_counts || 2u * coast >= range || a->home_offset_counts < a->min_counts ||
+        a->home_offset_counts > a->max_counts) {
+      return broken("config: soft limits, coast or home offset", i, a->min_counts, a->max_counts);
+    }
+    if (a->unhomed_max_drive <= a->dead_zone_drive || a->unhomed_max_drive > a->max_drive ||
+        a->max_amplitude > ((a->card == ILK_CARD_HIGH_FREQUENCY) ? 255u : 0u)) {
+      return broken("config: drives or amplitude", i, a->unhomed_max_drive, a->dead_zone_drive);
+    }
+    if (a->unhomed_travel_counts <= coast + noise) {
+      return broken("config: unhomed travel that allows none", i, a->unhomed_travel_counts, (int64_t)coast);
+    }
+    if (a->stall_ticks <= ILK_LATENCY_TICKS || a->stall_ticks * ms > 500000u ||
+        a->stall_effort_ticks * ms > 200000u) {
       return broken("config: stall times", i, a->stall_ticks, a->stall_effort_ticks);
     }
     if (full > (uint64_t)a->max_delta_counts * one) {
       return broken("config: full speed beyond max_delta_counts", i, (int64_t)full, a->max_delta_counts);
     }
     if ((uint64_t)a->coast_counts * one < full * ILK_LATENCY_TICKS) {
-      return broken("config: coast shorter than the latency at full speed", i, a->coast_counts, (int64_t)full);
+      return broken("config: coast shorter than the latency at full speed", i, a->coast_counts,
+                    (int64_t)full);
     }
     if (a->stall_effort_ticks > 0u &&
-        a->stall_effort_ticks * full < one * (5u * (uint64_t)a->coast_counts + a->backlash_counts + noise + 1u)) {
+        a->stall_effort_ticks * full <
+            one * (5u * (uint64_t)a->coast_counts + a->backlash_counts + noise + 1u)) {
       return broken("config: stall effort too short", i, a->stall_effort_ticks, (int64_t)full);
     }
-    if (a->stall_effort_ticks == 0u && (200000u / ms) * full >= one * (5u * (uint64_t)a->coast_counts + a->backlash_counts + noise + 1u)) {
+    if (a->stall_effort_ticks == 0u &&
+        (200000u / ms) * full >= one * (5u * (uint64_t)a->coast_counts + a->backlash_counts + noise + 1u)) {
       return broken("config: no effort bound on an axis fast enough", i, 0, (int64_t)full);
     }
     if ((uint64_t)a->drift_counts < (uint64_t)a->coast_counts + a->backlash_counts + noise ||
@@ -1703,30 +1784,50 @@ ilk_judgement_t judge_config(const ilk_config_t *config) {
     }
     if (a->limit_side != ILK_LIMIT_NONE) {
       const uint64_t clear = a->home_clear_counts;
-      const uint64_t range = (uint64_t)((int64_t)a->max_counts - a->min_counts);
+      const bool lower = a->limit_side == ILK_LIMIT_LOWER;
+      const uint64_t inside = (uint64_t)(lower ? (int64_t)a->max_counts - a->home_offset_counts
+                                               : (int64_t)a->home_offset_counts - a->min_counts);
+      /* from the far stop to the second edge; from the near one, off the switch first */
+      const uint64_t far_way = inside + 2u * clear;
+      const uint64_t near_way = range - inside + a->switch_hysteresis_counts + 4u * clear;
+      const uint64_t way = far_way > near_way ? far_way : near_way;
       if (clear <= (uint64_t)a->home_tolerance_counts + a->switch_hysteresis_counts + a->coast_counts ||
           clear <= (uint64_t)a->stall_min_counts + a->backlash_counts + noise) {
         return broken("config: home_clear_counts", i, (int64_t)clear, 0);
       }
-      if ((uint64_t)a->home_tolerance_counts * one < home * (c->switch_debounce_ticks + 2u) + 2u * noise * one) {
+      if ((uint64_t)a->home_tolerance_counts * one <
+          home * (c->switch_debounce_ticks + 2u) + 2u * noise * one) {
         return broken("config: home_tolerance_counts", i, a->home_tolerance_counts, (int64_t)home);
       }
       if (a->stall_ticks * slow < one * ((uint64_t)a->stall_min_counts + a->backlash_counts + noise)) {
         return broken("config: stall_ticks at the slow speed", i, a->stall_ticks, (int64_t)slow);
       }
-      if (a->home_slow_drive <= a->dead_zone_drive || a->home_drive > a->unhomed_max_drive) {
+      if (inside <=
+          (uint64_t)a->home_tolerance_counts + a->switch_hysteresis_counts + coast + a->deadband_counts) {
+        return broken("config: no room on the open side of the switch", i, (int64_t)inside,
+                      a->home_offset_counts);
+      }
+      if (a->home_slow_drive <= a->dead_zone_drive || a->home_drive > a->unhomed_max_drive ||
+          a->home_slow_drive > a->home_drive || slow == 0u || slow > home || home > full ||
+          a->home_amplitude > a->max_amplitude) {
         return broken("config: homing drives", i, a->home_slow_drive, a->home_drive);
       }
-      if (a->home_travel_counts < range) {
-        return broken("config: home_travel_counts below the range", i, a->home_travel_counts, (int64_t)range);
+      if (a->home_travel_counts <= way + coast + noise) {
+        return broken("config: home_travel_counts below the way of homing", i, a->home_travel_counts,
+                      (int64_t)way);
+      }
+      if (a->home_timeout_ticks * home < one * (way - clear)) {
+        return broken("config: home_timeout_ticks below the time of homing", i, a->home_timeout_ticks,
+                      (int64_t)way);
       }
     }
   }
   return motor ? HOLDS : broken("config: no motor", ILK_SLOTS, 0, 1);
 }
 
-const ilk_judge_t ilk_judges[JUDGE_COUNT] = {judge_P1, judge_P2,  judge_P3,  judge_P4,  judge_P5,  judge_P6,
-                                             judge_P7, judge_P8,  judge_P9,  judge_P10, judge_P11, judge_P12,
-                                             judge_P13, judge_P17, judge_wire, judge_mode, judge_rows, judge_states};
-const char *const ilk_judge_names[JUDGE_COUNT] = {"P1", "P2",  "P3",  "P4",  "P5",  "P6",   "P7",   "P8",   "P9",
-                                                  "P10", "P11", "P12", "P13", "P17", "wire", "mode", "rows", "states"};
+const ilk_judge_t ilk_judges[JUDGE_COUNT] = {
+    judge_P1,  judge_P2,  judge_P3,  judge_P4,  judge_P5,  judge_P6,   judge_P7,   judge_P8,   judge_P9,
+    judge_P10, judge_P11, judge_P12, judge_P13, judge_P17, judge_wire, judge_mode, judge_rows, judge_states};
+const char* const ilk_judge_names[JUDGE_COUNT] = {"P1",  "P2",  "P3",   "P4",   "P5",   "P6",
+                                                  "P7",  "P8",  "P9",   "P10",  "P11",  "P12",
+                                                  "P13", "P17", "wire", "mode", "rows", "states"};

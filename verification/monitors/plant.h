@@ -14,58 +14,61 @@ typedef struct {
   uint64_t s;
 } rng_t;
 
-static inline uint64_t rng_next(rng_t *r) { /* splitmix64 */
+static inline uint64_t rng_next(rng_t* r) { /* splitmix64 */
   uint64_t z = (r->s += 0x9E3779B97F4A7C15u);
   z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
   z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
   return z ^ (z >> 31);
 }
 /** 0 to n - 1 */
-static inline uint32_t rng_below(rng_t *r, uint32_t n) { return n == 0u ? 0u : (uint32_t)(rng_next(r) % n); }
-static inline uint32_t rng_range(rng_t *r, uint32_t low, uint32_t high) {
+static inline uint32_t rng_below(rng_t* r, uint32_t n) { return (uint32_t)(((rng_next(r) >> 32) * n) >> 32); }
+static inline uint32_t rng_range(rng_t* r, uint32_t low, uint32_t high) {
   return high <= low ? low : low + rng_below(r, high - low + 1u);
 }
 /** true once in n */
-static inline bool rng_one_in(rng_t *r, uint32_t n) { return n != 0u && rng_below(r, n) == 0u; }
+static inline bool rng_one_in(rng_t* r, uint32_t n) { return n != 0u && rng_below(r, n) == 0u; }
 
 #define Q 1024
 
 typedef struct {
   /* the axis */
-  int64_t x;       /* true place in the sense of the position, homed truth: the switch closes at home_offset */
-  int64_t v;       /* a tick */
-  int64_t accel;   /* change of v a tick */
-  int64_t full;    /* speed at max_drive */
+  int64_t x;     /* true place in the sense of the position, homed truth: the switch closes at home_offset */
+  int64_t v;     /* a tick */
+  int64_t accel; /* change of v a tick */
+  int64_t full;  /* speed at max_drive */
   int64_t backlash;
-  int64_t slack;   /* motor travel not yet passed on */
+  int64_t slack; /* motor travel not yet passed on */
   int64_t stop_low, stop_high;
-  int64_t edge;    /* closes here */
+  int64_t edge; /* closes here */
   int64_t hysteresis;
-  bool closed;     /* contact without bounce */
+  bool closed; /* contact without bounce */
   uint32_t bounce_left, bounce_ticks;
   uint32_t noise_one_in; /* a reading of n is off by one */
   uint32_t glitch_one_in;
+  uint32_t wobble; /* counts by which a reading in motion may be off */
   /* trouble */
-  uint32_t stuck_left;      /* the encoder shows the same */
-  uint32_t jam_left;        /* the axis does not move */
-  int64_t runaway;          /* speed it takes by itself */
+  uint32_t stuck_left;   /* the encoder shows the same */
+  uint32_t contact_left; /* the contact shows `contact_stuck` */
+  bool contact_stuck;
+  uint32_t jam_left; /* the axis does not move */
+  int64_t runaway;   /* speed it takes by itself */
   uint32_t runaway_left;
   bool runaway_needs_power;
   /* the card */
-  uint32_t raw_zero;  /* counter at x = 0 */
+  uint32_t raw_zero; /* counter at x = 0 */
   uint32_t heartbeat;
   uint32_t status;
   uint32_t echo;
-  int32_t shown;      /* last reading, while stuck */
+  int32_t shown; /* last reading, while stuck */
   uint32_t last_frame[ILK_FRAME_WORDS];
   bool has_last;
 } plant_t;
 
-static inline int32_t plant_counts(const plant_t *p) {
+static inline int32_t plant_counts(const plant_t* p) {
   return (int32_t)(p->x >= 0 ? p->x / Q : -((-p->x + Q - 1) / Q));
 }
 
-static inline void plant_seal(uint32_t *frame) {
+static inline void plant_seal(uint32_t* frame) {
   uint32_t sum = 0u;
   for (uint32_t i = 0u; i < ILK_FRAME_WORDS - 1u; i++) {
     sum += frame[i];
@@ -74,11 +77,14 @@ static inline void plant_seal(uint32_t *frame) {
 }
 
 /** What the card latched, as it sends it in this transaction. */
-static inline void plant_send(plant_t *p, const ilk_axis_config_t *c, rng_t *r, uint32_t *frame) {
+static inline void plant_send(plant_t* p, const ilk_axis_config_t* c, rng_t* r, uint32_t* frame) {
   int32_t at = plant_counts(p);
   bool contact = p->closed;
   if (p->noise_one_in != 0u && rng_one_in(r, p->noise_one_in)) {
     at += 1;
+  }
+  if (p->wobble != 0u && p->v != 0 && rng_one_in(r, 3u)) {
+    at += (int32_t)p->wobble;
   }
   if (p->stuck_left > 0u) {
     at = p->shown;
@@ -89,6 +95,10 @@ static inline void plant_send(plant_t *p, const ilk_axis_config_t *c, rng_t *r, 
     contact = rng_one_in(r, 2u) ? contact : !contact;
   } else if (p->glitch_one_in != 0u && rng_one_in(r, p->glitch_one_in)) {
     contact = !contact;
+  }
+  if (p->contact_left > 0u) {
+    p->contact_left--;
+    contact = p->contact_stuck;
   }
   for (uint32_t i = 0u; i < ILK_FRAME_WORDS; i++) {
     frame[i] = 0u;
@@ -104,7 +114,8 @@ static inline void plant_send(plant_t *p, const ilk_axis_config_t *c, rng_t *r, 
 }
 
 /** Direction and drive by the words on the wire; drive of a high-frequency card comes from the command. */
-static inline void plant_move(plant_t *p, const ilk_axis_config_t *c, const ilk_command_t *command, bool power, rng_t *r) {
+static inline void plant_move(plant_t* p, const ilk_axis_config_t* c, const ilk_command_t* command,
+                              bool power, rng_t* r) {
   int64_t wanted = 0;
   int64_t step;
   bool closed;
@@ -180,7 +191,8 @@ static inline void plant_move(plant_t *p, const ilk_axis_config_t *c, const ilk_
 }
 
 /** A plant that keeps what the configuration promises. `accel` brings it to rest within the coast. */
-static inline void plant_init(plant_t *p, const ilk_common_config_t *common, const ilk_axis_config_t *c, rng_t *r) {
+static inline void plant_init(plant_t* p, const ilk_common_config_t* common, const ilk_axis_config_t* c,
+                              rng_t* r) {
   const plant_t zero = {0};
   int64_t margin;
   *p = zero;
@@ -200,7 +212,8 @@ static inline void plant_init(plant_t *p, const ilk_common_config_t *common, con
   p->raw_zero = (uint32_t)rng_next(r);
   p->heartbeat = (uint32_t)rng_next(r);
   p->x = p->stop_low + (int64_t)(rng_next(r) % (uint64_t)(p->stop_high - p->stop_low + 1));
-  p->closed = (c->limit_side == ILK_LIMIT_LOWER && p->x <= p->edge) || (c->limit_side == ILK_LIMIT_UPPER && p->x >= p->edge);
+  p->closed = (c->limit_side == ILK_LIMIT_LOWER && p->x <= p->edge) ||
+              (c->limit_side == ILK_LIMIT_UPPER && p->x >= p->edge);
 }
 
 #endif

@@ -12,8 +12,9 @@
 
 static inline uint32_t cap_ticks(uint32_t us, uint32_t period) { return us / period; }
 
-/** A random axis; constants are as often small as large. Not always valid: the caller asks `ilk_config_validate`. */
-static inline void rig_random_axis(rng_t *r, const ilk_common_config_t *m, ilk_axis_config_t *a) {
+/** A random axis; constants are as often small as large. Not always valid: the caller asks
+ * `ilk_config_validate`. */
+static inline void rig_random_axis(rng_t* r, const ilk_common_config_t* m, ilk_axis_config_t* a) {
   static const uint32_t largest[5] = {0u, 0x7FFFFFFFu, 0x3FFFFFFFu, 0x7FFFFFFFu, 397785u};
   const bool small = rng_one_in(r, 2u);
   const uint32_t period = m->period_us;
@@ -39,14 +40,16 @@ static inline void rig_random_axis(rng_t *r, const ilk_common_config_t *m, ilk_a
   a->full_speed_counts_per_s = (uint32_t)((uint64_t)v * 1000000u / period);
   a->noise_counts = rng_one_in(r, 3u) ? 0u : rng_range(r, 1u, 2u);
   a->backlash_counts = rng_below(r, 3u);
-  a->coast_counts = 3u * v + a->noise_counts + 2u + (rng_one_in(r, 2u) ? rng_below(r, 4u) : rng_below(r, 2u * v));
+  a->coast_counts =
+      3u * v + a->noise_counts + 2u + (rng_one_in(r, 2u) ? rng_below(r, 4u) : rng_below(r, 2u * v));
   a->stall_min_counts = a->noise_counts + 1u + rng_below(r, small ? 3u : 20u);
   a->drift_counts = a->coast_counts + a->backlash_counts + a->noise_counts + rng_below(r, 5u);
   a->reverse_counts = a->coast_counts + a->backlash_counts + a->noise_counts + rng_below(r, 5u);
   a->rest_ticks = m->switch_debounce_ticks + 2u + rng_below(r, small ? 10u : 60u);
   a->max_delta_counts = v + a->noise_counts + 1u + rng_below(r, v + 2u);
   a->unhomed_travel_counts = a->coast_counts + 1u + rng_below(r, 3u * a->coast_counts);
-  a->stall_effort_ticks = (5u * a->coast_counts + a->backlash_counts + a->noise_counts + 1u + v - 1u) / v + 1u + rng_below(r, 10u);
+  a->stall_effort_ticks = (5u * a->coast_counts + a->backlash_counts + a->noise_counts + 1u + v - 1u) / v +
+                          1u + rng_below(r, 10u);
   if (a->stall_effort_ticks > cap_ticks(200000u, period)) {
     a->stall_effort_ticks = 0u;
   }
@@ -70,7 +73,8 @@ static inline void rig_random_axis(rng_t *r, const ilk_common_config_t *m, ilk_a
     a->home_speed_counts_per_s = home_q ? home_q : 1u;
     a->home_slow_speed_counts_per_s = slow_q ? slow_q : 1u;
     a->switch_hysteresis_counts = rng_below(r, 5u);
-    a->home_tolerance_counts = (uint32_t)((uint64_t)a->home_speed_counts_per_s * period * (m->switch_debounce_ticks + 2u) / 1000000u) +
+    a->home_tolerance_counts = (uint32_t)((uint64_t)a->home_speed_counts_per_s * period *
+                                          (m->switch_debounce_ticks + 2u) / 1000000u) +
                                1u + 2u * a->noise_counts + rng_below(r, 3u);
     need = a->home_tolerance_counts + a->switch_hysteresis_counts + a->coast_counts;
     if (a->stall_min_counts + a->backlash_counts + a->noise_counts > need) {
@@ -80,9 +84,12 @@ static inline void rig_random_axis(rng_t *r, const ilk_common_config_t *m, ilk_a
     if (a->home_clear_counts > biggest) {
       biggest = a->home_clear_counts;
     }
-    need = (uint32_t)(((uint64_t)(a->stall_min_counts + a->backlash_counts + a->noise_counts + 1u) * 1000000u) /
-                      ((uint64_t)a->home_slow_speed_counts_per_s * period)) + 8u;
-    a->stall_ticks = rng_one_in(r, 2u) ? rng_range(r, need, cap_ticks(500000u, period)) : need + rng_below(r, 10u);
+    need =
+        (uint32_t)(((uint64_t)(a->stall_min_counts + a->backlash_counts + a->noise_counts + 1u) * 1000000u) /
+                   ((uint64_t)a->home_slow_speed_counts_per_s * period)) +
+        8u;
+    a->stall_ticks =
+        rng_one_in(r, 2u) ? rng_range(r, need, cap_ticks(500000u, period)) : need + rng_below(r, 10u);
   }
   range = 10u * biggest + rng_below(r, small ? 200u : 3000u);
   a->min_counts = (int32_t)rng_below(r, 2000u) - 1500;
@@ -102,25 +109,32 @@ static inline void rig_random_axis(rng_t *r, const ilk_common_config_t *m, ilk_a
     }
   }
   if (a->limit_side != ILK_LIMIT_NONE) {
-    a->home_travel_counts = rng_one_in(r, 2u) ? 2u * range : rng_range(r, range + 6u * a->home_clear_counts, 3u * range);
+    a->home_travel_counts =
+        rng_one_in(r, 2u) ? 2u * range : rng_range(r, range + 6u * a->home_clear_counts, 3u * range);
     a->home_timeout_ticks = (uint32_t)((uint64_t)a->home_travel_counts * 1000000u * 3u /
-                                       ((uint64_t)a->home_slow_speed_counts_per_s * period)) + 40u * a->rest_ticks;
+                                       ((uint64_t)a->home_slow_speed_counts_per_s * period)) +
+                            40u * a->rest_ticks;
   }
 }
 
-static inline void rig_random_config(rng_t *r, ilk_config_t *c) {
-  ilk_common_config_t *m = &c->common;
+static inline void rig_random_config(rng_t* r, ilk_config_t* c) {
+  ilk_common_config_t* m = &c->common;
   memset(c, 0, sizeof *c);
   m->version = ILK_CONFIG_VERSION;
   m->size_bytes = (uint32_t)sizeof *c;
   m->period_us = rng_one_in(r, 2u) ? 1000u : rng_range(r, 125u, 2000u);
   m->pedal_channels = rng_range(r, 1u, 2u);
-  m->app_timeout_ticks = rng_one_in(r, 2u) ? rng_range(r, 2u, 10u) : rng_range(r, 2u, cap_ticks(150000u, m->period_us));
-  m->lease_max_ticks = rng_one_in(r, 2u) ? rng_range(r, 1u, 10u) : rng_range(r, 1u, cap_ticks(150000u, m->period_us));
-  m->pedal_debounce_ticks = rng_one_in(r, 2u) ? rng_range(r, 1u, 4u) : rng_range(r, 1u, cap_ticks(50000u, m->period_us));
-  m->pedal_disagree_ticks = rng_one_in(r, 2u) ? rng_range(r, 1u, 4u) : rng_range(r, 1u, cap_ticks(50000u, m->period_us));
+  m->app_timeout_ticks =
+      rng_one_in(r, 2u) ? rng_range(r, 2u, 10u) : rng_range(r, 2u, cap_ticks(150000u, m->period_us));
+  m->lease_max_ticks =
+      rng_one_in(r, 2u) ? rng_range(r, 1u, 10u) : rng_range(r, 1u, cap_ticks(150000u, m->period_us));
+  m->pedal_debounce_ticks =
+      rng_one_in(r, 2u) ? rng_range(r, 1u, 4u) : rng_range(r, 1u, cap_ticks(50000u, m->period_us));
+  m->pedal_disagree_ticks =
+      rng_one_in(r, 2u) ? rng_range(r, 1u, 4u) : rng_range(r, 1u, cap_ticks(50000u, m->period_us));
   m->power_up_ticks = rng_one_in(r, 2u) ? rng_range(r, 1u, 5u) : rng_range(r, 1u, 100u);
-  m->switch_debounce_ticks = rng_range(r, 2u, cap_ticks(20000u, m->period_us) < 6u ? cap_ticks(20000u, m->period_us) : 6u);
+  m->switch_debounce_ticks =
+      rng_range(r, 2u, cap_ticks(20000u, m->period_us) < 6u ? cap_ticks(20000u, m->period_us) : 6u);
   m->bad_frame_limit = rng_range(r, 1u, 5u);
   m->overrun_limit = rng_range(r, 1u, 10u);
   for (uint32_t i = 0u; i < ILK_SLOTS; i++) {

@@ -53,18 +53,6 @@ ilk_reading_t stand_in_unpack(const uint32_t frame[ILK_FRAME_WORDS]) {
   return reading;
 }
 
-/** A product is a function of its factors. */
-uint64_t __CPROVER_uninterpreted_product(uint32_t a, uint32_t b);
-
-uint32_t stand_in_multiply(uint32_t a, uint32_t b) {
-  const uint64_t product = __CPROVER_uninterpreted_product(a, b);
-  return (product > UINT32_MAX) ? UINT32_MAX : (uint32_t)product;
-}
-
-uint64_t stand_in_farthest(const ilk_axis_config_t* c, uint32_t periods) {
-  return __CPROVER_uninterpreted_product(c->max_delta_counts, periods);
-}
-
 /** Whether a configuration is valid is the business of no step: config_is_valid says what follows from it. */
 ilk_config_verdict_t stand_in_validate(const ilk_config_t* c) {
   (void)c;

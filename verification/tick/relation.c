@@ -2,9 +2,11 @@
  * @file
  * R and M: what the judge remembers, and the kernel's own counters and marks. See tick.h.
  */
-#include "integrity.h"
 #include "monitors.c"
+
 #include "tick.h"
+
+bool ilk_state_is_sealed(const ilk_state_t* state); /* parts.h, whose names the monitors have, too */
 
 static ilk_ghost_t ghost;
 static ilk_view_t before;

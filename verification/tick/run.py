@@ -31,8 +31,6 @@ STAND_INS = {
     "ilk_crc32_words": "stand_in_crc",
     "frequency_word": "stand_in_frequency",
     "ilk_config_validate": "stand_in_validate",
-    "multiply_saturating": "stand_in_multiply",
-    "farthest": "stand_in_farthest",
     "ilk_frame_unpack": "stand_in_unpack",
     "checksum_is_right": "stand_in_checksum",
 }

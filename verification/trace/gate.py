@@ -76,21 +76,18 @@ def selected(pattern: str, results: Sequence[Result]) -> list[tuple[Result, str]
 
 
 def trace(project: Project) -> Trace:
-    """Which results speak of which requirement: by property, by function, by test."""
+    """Which results speak of which requirement: by property, by test."""
     carried: dict[str, dict[str, Result]] = {}
     matched: dict[str, list[str]] = {}
 
     def carry(uid: str, result: Result) -> None:
         carried.setdefault(uid, {})[result.uid] = result
 
-    fulfilled = {f"{one.file}:{one.name}": project.links.requirements_of(one) for one in project.functions}
     for result in project.results:
         for name in result.supports & set(project.items.by_uid):
             carry(name, result)
             for requirement in project.items[name].parents_by("Formalises"):
                 carry(requirement, result)
-        for requirement in fulfilled.get(result.function, ()):
-            carry(requirement, result)
     for requirement, patterns in project.links.tests.items():
         for pattern in patterns:
             found = selected(pattern, project.results)

@@ -10,12 +10,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "arith.h"
-#include "frame.h"
-#include "gate.h"
-#include "integrity.h"
 #include "interlock/kernel.h"
-#include "request.h"
+#include "parts.h"
 
 #define EXPORT(name) __attribute__((export_name(name)))
 
@@ -128,11 +124,14 @@ static void tick_with(ilk_state_t* now, bool pressed, const ilk_request_t* wish,
   ilk_step(&configuration, now, &in, requests, count, out);
 }
 
-/** Lets the operator release the pedal if that is needed, then press it, until MOTION begins or cannot. */
+/** Lets the operator release the pedal if that is needed, wait until power is up, then press it, until MOTION
+ * begins or cannot. */
 static void press_pedal(ilk_state_t* now, ilk_outputs_t* out) {
-  const uint32_t most = (2u * configuration.common.pedal_debounce_ticks) + PEDAL_TICKS_BESIDES;
+  const ilk_common_config_t* common = &configuration.common;
+  const uint32_t most = common->power_up_ticks + (2u * common->pedal_debounce_ticks) + PEDAL_TICKS_BESIDES;
   for (uint32_t tick = 0u; (tick < most) && (now->system.mode == (uint32_t)ILK_MODE_READY); tick++) {
-    tick_with(now, now->system.pedal_armed != 0u, NULL, out);
+    const bool powered = now->system.powered_ticks >= common->power_up_ticks;
+    tick_with(now, powered && (now->system.pedal_armed != 0u), NULL, out);
   }
 }
 

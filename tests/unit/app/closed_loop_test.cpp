@@ -22,7 +22,7 @@ TEST_P(ManualModeOnThePlant, EveryAxisArrivesWithinItsDeadbandAndRests) {
     SCOPED_TRACE(axis.name);
     ClosedLoop loop(random(), GetParam());
     loop.make_ready(axis.slot);
-    ASSERT_EQ(loop.state().mode, static_cast<std::uint32_t>(ILK_MODE_MOTION));
+    ASSERT_EQ(loop.state().system.mode, static_cast<std::uint32_t>(ILK_MODE_MOTION));
     std::uniform_int_distribution<std::int32_t> anywhere(axis.lowest_setpoint_counts(),
                                                          axis.highest_setpoint_counts());
     for (std::uint32_t proposal = 1; proposal <= 5; ++proposal) {
@@ -35,7 +35,7 @@ TEST_P(ManualModeOnThePlant, EveryAxisArrivesWithinItsDeadbandAndRests) {
       loop.run(100);
       EXPECT_EQ(loop.outputs().command[axis.slot].drive, 0u);
     }
-    EXPECT_EQ(loop.state().requests_refused, 0u);
+    EXPECT_EQ(loop.state().system.requests_refused, 0u);
   }
 }
 
@@ -52,7 +52,7 @@ TEST_P(ManualModeOnThePlant, AnAxisThatIsNotHomedArrivesWithinItsUnhomedBounds) 
     ASSERT_LE(loop.outputs().command[axis.slot].drive, rules.unhomed_max_drive);
   }
   EXPECT_EQ(loop.order(axis.slot).phase, OrderPhase::done);
-  EXPECT_EQ(loop.state().requests_refused, 0u);
+  EXPECT_EQ(loop.state().system.requests_refused, 0u);
 }
 
 TEST_P(ManualModeOnThePlant, ReleasePausesAndTheNextPressGoesOn) {
@@ -98,7 +98,7 @@ TEST_P(ManualModeOnThePlant, SevenAxesAtOnceStayWithinTheRequestsOfATick) {
     EXPECT_EQ(loop.order(axis.slot).phase, OrderPhase::done) << axis.name;
   }
   EXPECT_LE(loop.most_requests_in_a_tick(), static_cast<std::uint32_t>(ILK_REQUESTS_PER_TICK));
-  EXPECT_EQ(loop.state().requests_refused, 0u);
+  EXPECT_EQ(loop.state().system.requests_refused, 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Latency, ManualModeOnThePlant, testing::Values(0u, 2u, ILK_LINK_TICKS_AHEAD));

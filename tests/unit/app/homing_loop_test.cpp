@@ -222,7 +222,7 @@ TEST_P(HomingOnThePlant, CancellingStopsTheKernelsHoming) {
   ASSERT_TRUE(homing(loop, yaw));
   loop.cancel(1);
   loop.run(2 + GetParam());
-  EXPECT_EQ(loop.state().mode, static_cast<std::uint32_t>(ILK_MODE_READY));
+  EXPECT_EQ(loop.state().system.mode, static_cast<std::uint32_t>(ILK_MODE_READY));
   expect_nothing_driven(loop);
 }
 

@@ -236,7 +236,7 @@ TEST_P(PathModeOnThePlant, APlanThatFailsInMotionStopsTheAxesWithinTheirCoast) {
     // What it goes until the MOVE is taken back, and then its coast.
     const double latency_s = 0.001 * (2 + GetParam());
     const double farthest =
-        latency_s * axis.motion->full_speed_counts_per_s + axis.mechanics.coast_counts + 1;
+        latency_s * axis.mechanics.full_speed_counts_per_s + axis.mechanics.coast_counts + 1;
     EXPECT_LE(std::abs(loop.true_position(target.slot) - before[target.slot]), farthest) << axis.name;
   }
   EXPECT_EQ(loop.refusals(), 0u);
@@ -320,7 +320,7 @@ TEST(PathMode, ATickAllocatesNothing) {
   const PathProgram program =
       program_of({MoveLeg{neuro_targets, 0.0, 0.0}, MoveLeg{{{head, -100}}, 0.0, 0.0}});
   ilk_snapshot_t snapshot{};
-  snapshot.state.mode = ILK_MODE_MOTION;
+  snapshot.state.system.mode = ILK_MODE_MOTION;
   for (const AxisCounts& target : neuro_targets) {
     snapshot.state.axis[target.slot].state = ILK_AXIS_ENABLED;
     snapshot.state.axis[target.slot].homed = 1;
@@ -328,7 +328,7 @@ TEST(PathMode, ATickAllocatesNothing) {
   test::count_allocations_of(pthread_self());
   mode.take({1, &program, 0}, 0);
   for (std::uint32_t tick = 1; tick < 30; ++tick) {
-    snapshot.state.tick = tick;
+    snapshot.state.system.tick = tick;
     Wishes wishes;
     mode.tick(snapshot, wishes);
   }

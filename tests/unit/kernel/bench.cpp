@@ -5,7 +5,7 @@
 #include <string>
 
 extern "C" {
-#include "integrity.h"
+#include "parts.h"
 }
 
 namespace interlock::kernel_test {

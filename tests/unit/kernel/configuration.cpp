@@ -27,7 +27,7 @@ ilk_axis_config_t plain_axis(ilk_card_t card) {
   axis.dead_zone_drive = 10;
   axis.max_drive = 1000;
   axis.unhomed_max_drive = 100;
-  axis.unhomed_travel_counts = 100;
+  axis.unhomed_travel_counts = 101;
   axis.full_speed_counts_per_s = 5000;
   axis.stall_ticks = 50;
   axis.stall_effort_ticks = 20;
@@ -45,7 +45,7 @@ ilk_axis_config_t switched_axis(ilk_card_t card, ilk_limit_side_t side) {
   axis.home_offset_counts = side == ILK_LIMIT_LOWER ? -980 : 980;
   axis.home_drive = 50;
   axis.home_slow_drive = 20;
-  axis.home_travel_counts = 2400;
+  axis.home_travel_counts = 2401;
   axis.home_timeout_ticks = 3000;
   axis.home_clear_counts = 30;
   axis.home_tolerance_counts = 8;

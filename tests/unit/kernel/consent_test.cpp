@@ -222,6 +222,20 @@ TEST(P12_no_leap, another_start_gives_another_number_at_the_same_tick) {
   EXPECT_EQ(numbers.size(), 4u);
 }
 
+TEST(P12_no_leap, no_MOTION_begins_in_tick_0_whose_number_another_tick_has) {
+  for (const uint32_t early : {0u, 1u}) {
+    Bench bench = ready_bench();
+    bench.damage_state().system.tick = 0u - debounce + 1u - early;
+    bench.damage_state().system.frames_sent = 0;
+    bench.reseal();
+    hold(bench, debounce);
+    EXPECT_EQ(bench.mode(), early == 0 ? ILK_MODE_READY : ILK_MODE_MOTION);
+    EXPECT_EQ(bench.now(), 0u - early);
+    hold(bench, 2 * debounce);
+    EXPECT_EQ(bench.mode(), early == 0 ? ILK_MODE_READY : ILK_MODE_MOTION) << "the next try needs a release";
+  }
+}
+
 TEST(P12_no_leap, no_number_is_zero_and_none_comes_twice_even_where_nonce_and_tick_are_equal) {
   Bench first = ready_bench();
   first.press();

@@ -309,6 +309,51 @@ TEST(P6_runaway_lock, a_jump_or_a_reset_card_of_a_faulted_axis_is_no_new_fault_a
   }
 }
 
+TEST(P6_runaway_lock, a_faulted_axis_that_jumps_on_is_run_away_however_fast_it_is) {
+  for (const int32_t way : {1, -1}) {
+    for (const bool reset_card : {false, true}) {
+      Bench bench = motion_bench(axis);
+      bench.release();
+      bench.motor[axis].travelled += way * 500;
+      bench.tick();
+      EXPECT_EQ(bench.fault(axis), ILK_FAULT_JUMP);
+      EXPECT_EQ(bench.mode(), ILK_MODE_READY) << "one jump alone may be a counter that slipped";
+      bench.motor[axis].travelled += way * (reset_card ? 1 : 500);
+      if (reset_card) bench.card[axis].heartbeat = 5;
+      bench.tick();
+      EXPECT_EQ(bench.cause(), ILK_CAUSE_RUNAWAY);
+      EXPECT_FALSE(bench.powered());
+      EXPECT_EQ(bench.ask(reset()), ILK_VERDICT_CAUSE_PRESENT);
+      bench.rest();
+      EXPECT_EQ(bench.ask(reset()), ILK_VERDICT_ACCEPTED);
+    }
+  }
+}
+
+TEST(P6_runaway_lock, a_wrong_reading_that_is_taken_back_is_a_jump_and_no_runaway) {
+  for (const int32_t way : {1, -1}) {
+    Bench bench = motion_bench(axis);
+    bench.motor[axis].travelled += way * 500;
+    bench.tick();
+    bench.motor[axis].travelled -= way * 500;
+    bench.ticks(50);
+    EXPECT_EQ(bench.fault(axis), ILK_FAULT_JUMP);
+    EXPECT_EQ(bench.mode(), ILK_MODE_READY);
+  }
+}
+
+TEST(P6_runaway_lock, a_faulted_axis_that_creeps_within_the_noise_of_its_rest_is_found_by_how_far_it_came) {
+  Bench bench = faulted_bench(axis);
+  for (int32_t counts = 0; counts < 20; ++counts) {
+    bench.motor[axis].travelled += 1;
+    bench.ticks(12);
+    ASSERT_EQ(bench.mode(), ILK_MODE_READY) << counts;
+  }
+  bench.motor[axis].travelled += 1;
+  bench.tick();
+  EXPECT_EQ(bench.cause(), ILK_CAUSE_RUNAWAY);
+}
+
 TEST(P6_runaway_lock, the_mark_is_the_reading_of_the_fault_and_a_coast_of_drift_counts_is_none) {
   for (const int32_t extra : {0, 1}) {
     Bench bench = motion_bench(axis);

@@ -107,7 +107,7 @@ TEST(P17_sequence, an_opening_bounce_at_the_start_is_not_taken_for_the_edge) {
 
 TEST(P17_sequence, the_first_homing_succeeds_from_either_stop_with_the_least_budget_that_is_valid) {
   ilk_config_t config = standard_config();
-  config.axis[switched].home_travel_counts = 2243;
+  config.axis[switched].home_travel_counts = 2244;
   config.axis[switched].home_timeout_ticks = 2521;
   seal(config);
   for (const int32_t switch_at : {30, -1990}) {

@@ -199,6 +199,33 @@ TEST(P5_stall, arrival_after_an_advance_of_more_than_noise_clears_both) {
   }
 }
 
+TEST(P5_stall, arrival_behind_what_was_reached_makes_no_new_ground_of_it) {
+  ilk_config_t config = standard_config();
+  config.axis[axis].noise_counts = 0;
+  config.axis[axis].stall_min_counts = 20;
+  config.axis[axis].stall_ticks = 400;
+  config.axis[axis].deadband_counts = 5;
+  seal(config);
+  Bench bench = homed_bench(axis, 0, config);
+  const int64_t begun = bench.motor[axis].travelled;
+  bench.motor[axis].speed = 0;
+  const auto stand = [&](int32_t counts, int32_t target, uint32_t ticks) {
+    bench.motor[axis].travelled = begun + counts;
+    bench.keep_moving(axis, target, ticks, 1000);
+  };
+  for (const int32_t counts : {0, 7, 14, 20, 28, 35}) stand(counts, 500, 1);
+  stand(28, 500, 1);
+  stand(25, 25, 2);
+  EXPECT_EQ(bench.axis(axis).stall_driven_ticks, 0u) << "arrived, beyond the stall mark";
+  uint32_t ticks = 0;
+  for (int32_t counts = 26; bench.fault(axis) == ILK_FAULT_NONE && counts < 34; ++counts) {
+    stand(counts, 500, 15);
+    ticks += 15;
+  }
+  EXPECT_EQ(bench.fault(axis), ILK_FAULT_STALL);
+  EXPECT_LE(ticks, 30u) << "20 ticks of full drive";
+}
+
 TEST(P5_stall, arrival_because_the_setpoint_was_moved_to_the_axis_does_not_clear) {
   Bench bench = jammed_bench();
   bench.keep_moving(axis, 80, stall_ticks - 1);

@@ -124,7 +124,7 @@ export const catalog = {
     {"number": 15, "name": "EMPTY_SLOT", "meaning": "A slot without a motor card has a field that is not zero, `card` and `required` apart; an empty slot is required.", "cause": "", "next_step": "", "clears": "", "properties": []},
     {"number": 16, "name": "LIMIT_SIDE", "meaning": "`limit_side` is not NONE, LOWER or UPPER.", "cause": "", "next_step": "", "clears": "", "properties": []},
     {"number": 17, "name": "SOFT_LIMITS", "meaning": "`min_counts` is not below `max_counts`, or a limit is beyond 2^30 counts.", "cause": "", "next_step": "", "clears": "", "properties": []},
-    {"number": 18, "name": "HOME_OFFSET", "meaning": "`home_offset_counts` is outside the soft limits.", "cause": "", "next_step": "", "clears": "", "properties": []},
+    {"number": 18, "name": "HOME_OFFSET", "meaning": "`home_offset_counts` is outside the soft limits, or leaves no room between where the switch is sure to be open and the coast before the other limit.", "cause": "", "next_step": "", "clears": "", "properties": []},
     {"number": 19, "name": "COAST", "meaning": "`coast_counts` is zero, shorter than full speed in the latency of the loop, or min + coast is not below max - coast.", "cause": "", "next_step": "", "clears": "", "properties": []},
     {"number": 20, "name": "DEADBAND", "meaning": "`deadband_counts` is zero or at least half of the range.", "cause": "", "next_step": "", "clears": "", "properties": []},
     {"number": 21, "name": "MAX_DRIVE", "meaning": "`max_drive` is zero or more than the card's word can carry.", "cause": "", "next_step": "", "clears": "", "properties": []},

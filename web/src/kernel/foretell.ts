@@ -66,7 +66,7 @@ function refusalWords(
   }
   if (verdict === "MODE" && mode === "LOCKED") return `would be refused: LOCKED by ${frame.cause}.`;
   if (verdict === "MODE" && mode === "READY")
-    return "would not be sent: the pedal does not start MOTION now, as a required card is lost.";
+    return "would not be sent: the pedal does not start MOTION while a required card is lost or an axis that is not enabled moves.";
   return `would be refused: ${entry("verdict", verdict).meaning}`;
 }
 
