@@ -53,10 +53,12 @@ ilk_reading_t stand_in_unpack(const uint32_t frame[ILK_FRAME_WORDS]) {
   return reading;
 }
 
-/** Whether a configuration is valid is the business of no step: config_is_valid says what follows from it. */
+static ilk_config_verdict_t validation;
+
+/** What validation says of the configuration: anything, but the same whenever it is asked. */
 ilk_config_verdict_t stand_in_validate(const ilk_config_t* c) {
   (void)c;
-  return nondet_validity();
+  return validation;
 }
 
 uint32_t stand_in_frequency(uint32_t drive) {
@@ -102,6 +104,7 @@ void cut_before_drive(const ilk_config_t* c, const ilk_request_t r[], uint32_t c
 
 static void tick_begins(void) {
   config = nondet_config();
+  validation = nondet_validity();
   in = nondet_inputs();
   __CPROVER_assume(config_is_valid());
   state = nondet_state();
@@ -112,6 +115,7 @@ static void tick_begins(void) {
 /** Init leads to R. */
 void initially(void) {
   config = nondet_config();
+  validation = nondet_validity();
   __CPROVER_assume(config_is_valid());
   __CPROVER_assume(ilk_init(&config, &state).error == ILK_CONFIG_ERROR_NONE);
   first_memory();
@@ -150,6 +154,7 @@ void one_request(void) {
 /** In any state, whether it satisfies M or not. */
 void refusal(void) {
   config = nondet_config();
+  validation = nondet_validity();
   state = nondet_state();
   requests[0] = nondet_request();
   requests[0].axis = NAMED;
@@ -212,6 +217,7 @@ void following(void) {
 /** What the other steps take for granted of a configuration follows from its validation. */
 void validity(void) {
   config = nondet_config();
+  validation = nondet_validity();
   __CPROVER_assume(ilk_config_validate(&config).error == (uint32_t)ILK_CONFIG_ERROR_NONE);
   __CPROVER_assert(config_is_valid(), "P13: what a valid configuration guarantees");
 }
@@ -232,6 +238,7 @@ void reading(void) {
 /** Without a valid configuration (P13): INIT from the start, in every tick, whatever is asked. */
 void no_configuration(void) {
   config = nondet_config();
+  validation = nondet_validity();
   const uint32_t error = ilk_init(&config, &state).error;
   __CPROVER_assert(state.system.mode == ((error == ILK_CONFIG_ERROR_NONE) ? ILK_MODE_LOCKED : ILK_MODE_INIT),
                    "P13: INIT is left by a valid configuration alone");

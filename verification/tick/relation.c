@@ -3,7 +3,6 @@
  * R and M: what the judge remembers, and the kernel's own counters and marks. See tick.h.
  */
 #include "monitors.c"
-
 #include "tick.h"
 
 bool ilk_state_is_sealed(const ilk_state_t* state); /* parts.h, whose names the monitors have, too */
@@ -253,15 +252,10 @@ static void relate_calm(bool shown, bool middle) {
   }
 }
 
-/** MOTION has a number that is not 0. `tick` does not come round: no press completes in tick 0. */
+/** MOTION has a number that is not 0. */
 static void relate_number(bool shown, bool middle) {
   const ilk_system_t* s = &state.system;
-  if (!shown) {
-    __CPROVER_assume(s->tick < UINT32_MAX);
-  }
   RELATED(HOLDS_IF(s->mode == ILK_MODE_MOTION, s->consent != 0u));
-  RELATED(HOLDS_IF(s->tick == 0u, s->mode == ILK_MODE_LOCKED));
-  RELATED(HOLDS_IF(s->tick == 0u, middle ? s->app_alive == 0u : s->app_age_ticks == UINT32_MAX));
   if (middle) {
     RELATED(HOLDS_IF(before.mode == ILK_MODE_MOTION, before.consent != 0u));
   }
