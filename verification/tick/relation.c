@@ -72,6 +72,7 @@ static void relate_frames(bool shown, bool middle) {
       RELATED(HOLDS_IF(g->valid, g->seen && g->periods == 0u) &&
               HOLDS_IF(!g->valid, g->periods == s->periods));
       RELATED(g->raw == s->raw && g->heartbeat == s->heartbeat && g->status == s->card_status);
+      RELATED(g->edges.firsts <= ILK_JUDGE_EDGES && g->edges.seconds <= ILK_JUDGE_EDGES);
       if (middle && config.axis[slot].limit_side != ILK_LIMIT_NONE) {
         RELATED(s->switch_triggered == ((!g->valid || g->triggered) ? 1u : 0u));
       }

@@ -53,6 +53,7 @@ class Step:
     shown: list[str] = field(default_factory=list)
     claims: list[str] = field(default_factory=list)
     goals: int = 0
+    unwind: int = 34
     named: int | None = None
 
 
@@ -121,7 +122,7 @@ def program(step: Step, kind: str, logs: Path) -> Path:
 def entries(step: Step, kind: str, logs: Path) -> list[dict]:
     """What the prover says of each claim, or of each goal."""
     made = program(step, kind, logs)
-    options = ["--no-standard-checks", "--slice-formula", "--unwind", "150", *prover.JSON]
+    options = ["--no-standard-checks", "--slice-formula", "--unwind", str(step.unwind), *prover.JSON]
     options += ["--cover", "cover"] if kind == "cover" else ["--unwinding-assertions"]
     told = prover.messages(prover.call("cbmc", [*options, str(made)], logs / f"{kind}.json", SECONDS))
     return prover.entries(told, "goals" if kind == "cover" else "result")
