@@ -30,6 +30,18 @@ static void adopt_homing(ilk_ghost_slot_t* g, const ilk_axis_config_t* config, u
   }
 }
 
+/** The run of readings goes on; how old its ends are is not known. */
+static void adopt_calm(ilk_still_t* calm, const ilk_axis_config_t* config, const ilk_stillness_t* still) {
+  const bool turned = config->direction_correction == 1u;
+  calm->origin = still->origin_raw;
+  calm->low = turned ? -still->above : still->below;
+  calm->high = turned ? -still->below : still->above;
+  calm->low_age = UINT32_MAX;
+  calm->high_age = UINT32_MAX;
+  calm->ticks = still->ticks;
+  calm->apart_age = UINT32_MAX;
+}
+
 static void adopt_slot(ilk_ghost_slot_t* g, const ilk_config_t* config, const ilk_state_t* state,
                        uint32_t slot) {
   const ilk_axis_t* axis = &state->axis[slot];
@@ -45,7 +57,7 @@ static void adopt_slot(ilk_ghost_slot_t* g, const ilk_config_t* config, const il
   g->run = axis->switch_run_ticks;
   g->run_raw = axis->switch_run_raw;
   g->rest.apart_age = UINT32_MAX; /* neither moves nor rests for sure */
-  g->calm.apart_age = UINT32_MAX;
+  adopt_calm(&g->calm, &config->axis[slot], &axis->calm);
   g->quiet = UINT32_MAX;
   g->since_disable = UINT32_MAX;
   g->drift_known = axis->state != ILK_AXIS_FAULTED;
