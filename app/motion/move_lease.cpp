@@ -9,7 +9,8 @@ constexpr std::uint32_t renewals_per_lease = 3;
 /** A change of the wanted drive below this fraction of the last one waits for the renewal. */
 constexpr std::uint32_t drive_step_fraction = 16;
 
-/** A lease ends by one of a single tick, and a MOVE without drive is refused. */
+/** A lease ends by one of a single tick, and a MOVE without drive is refused; this one moves no axis, for it
+ * is within every dead zone and has no amplitude. */
 constexpr std::uint32_t smallest_drive = 1;
 
 }  // namespace
@@ -47,8 +48,8 @@ void MoveLease::let_go(std::uint32_t proposal, const ilk_snapshot_t& snapshot, W
 
 void MoveLease::send(std::uint32_t proposal, const Sent& sent, std::uint32_t lease_ticks,
                      Wishes& wishes) noexcept {
-  wishes.add(
-      {{ILK_REQUEST_MOVE, slot_, proposal}, sent.target_counts, sent.drive, max_amplitude_, lease_ticks});
+  const std::uint32_t amplitude = sent.may_drive ? max_amplitude_ : 0;
+  wishes.add({{ILK_REQUEST_MOVE, slot_, proposal}, sent.target_counts, sent.drive, amplitude, lease_ticks});
   before_ = sent_;
   sent_ = sent;
   due_at_once_ = false;

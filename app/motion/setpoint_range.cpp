@@ -17,8 +17,11 @@ SetpointRange setpoint_range(const ilk_axis_config_t& rules, const ilk_axis_t& a
     const ilk_reach_t reach = ilk_reach(&rules, &axis);
     return {saturated(reach.low), saturated(reach.high)};
   }
-  const std::int64_t left = mode == ILK_MODE_MOTION ? ilk_unhomed_travel_left(&rules, &axis)
-                                                    : rules.unhomed_travel_counts - rules.coast_counts;
+  ilk_axis_t in_press = axis;
+  if (mode != ILK_MODE_MOTION) {  // the next press begins with its whole budget
+    in_press.unhomed_travel_counts = 0;
+  }
+  const std::int64_t left = ilk_unhomed_travel_left(&rules, &in_press);
   return {saturated(axis.position_counts - left), saturated(axis.position_counts + left)};
 }
 

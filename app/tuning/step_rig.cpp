@@ -65,7 +65,7 @@ void StepRig::move(std::int32_t target_counts, std::uint32_t drive) {
   request.axis = slot_;
   request.target_counts = target_counts;
   request.drive = std::max(drive, 1U);
-  request.amplitude = config_.axis[slot_].max_amplitude;
+  request.amplitude = may_drive_ ? config_.axis[slot_].max_amplitude : 0;
   request.lease_ticks = may_drive_ ? config_.common.lease_max_ticks : 1;
   request.consent = state_.system.consent;
   put(request);

@@ -52,7 +52,11 @@ class SweepModeTest : public testing::TestWithParam<std::uint32_t> {
     }
   }
 
-  [[nodiscard]] std::uint32_t drive() const { return loop_.outputs().command[needle_turn].drive; }
+  /** That moves the axis: a lease ends by a MOVE without amplitude. */
+  [[nodiscard]] std::uint32_t drive() const {
+    const ilk_command_t& command = loop_.outputs().command[needle_turn];
+    return command.amplitude == 0 ? 0 : command.drive;
+  }
 
   ClosedLoop loop_;
 };

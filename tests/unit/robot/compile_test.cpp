@@ -142,7 +142,7 @@ TEST_P(KernelRule, is_named_with_its_text_at_its_line_and_key) {
 INSTANTIATE_TEST_SUITE_P(
     Each, KernelRule,
     testing::Values(
-        RuleBroken{"PERIOD", "period_us = 1000", "period_us = 5000", "period_us", "period_us"},
+        RuleBroken{"PERIOD", "period_us = 1000", "period_us = 100", "period_us", "period_us"},
         RuleBroken{"PEDAL_CHANNELS", "channels = 2", "channels = 3", "channels = 3", "pedal.channels"},
         RuleBroken{"PEDAL_DEBOUNCE", "debounce_ms = 10", "debounce_ms = 51", "debounce_ms",
                    "pedal.debounce_ms"},
@@ -195,7 +195,7 @@ INSTANTIATE_TEST_SUITE_P(
                    "axis.yaw.stall.effort_ms"},
         RuleBroken{"NOISE", "noise_counts = 1", "noise_counts = 124", "noise_counts = 124",
                    "axis.yaw.mechanics.noise_counts"},
-        RuleBroken{"REST", "rest_ms = 50", "rest_ms = 1001", "rest_ms = 1001", "axis.yaw.mechanics.rest_ms"},
+        RuleBroken{"REST", "rest_ms = 50", "rest_ms = 2", "rest_ms = 2", "axis.yaw.mechanics.rest_ms"},
         RuleBroken{"MAX_DELTA", "max_delta_counts = 8", "max_delta_counts = 0", "max_delta_counts = 0",
                    "axis.yaw.mechanics.max_delta_counts"}),
     [](const auto& broken) { return std::string(broken.param.rule); });
