@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Shows that the campaign and the hostile driver notice each rule of the kernel that is taken out.
 
-Usage: selftest.py [NAME ...]; all rules of verification/mutation/rules.toml when none is named. Each kernel is compiled from
-the sources with the rule's edits and linked with what `make build-tests` built. A rule counts as noticed when the driver
-that it names reports its clause within the seconds given; the healthy kernel must not fail.
+Usage: selftest.py [NAME ...]; all rules of verification/mutation/rules.toml when none is named. Each kernel
+is compiled from the sources with the rule's edits and linked with what `make build-tests` built. A rule counts
+as noticed when the driver that it names reports its clause within the seconds given; the healthy kernel must
+not fail.
 Prints a line a rule and writes build/evidence/campaign_selftest.json.
 """
 
@@ -21,7 +22,8 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "verification/evidence"))
 import evidence  # noqa: E402
 
-KERNEL, MONITORS, BUILT = ROOT / "kernel", ROOT / "verification/monitors", ROOT / "build/release"
+KERNEL, MONITORS, BUILT = ROOT / "kernel", ROOT / "kernel/monitors", ROOT / "build/release"
+HOSTILE = ROOT / "verification/monitors/hostile.c"
 COMPILE = ["gcc", "-std=c11", "-O2", "-ffreestanding", f"-I{KERNEL}/include"]
 SLOTS_OF_HOSTILE = 2
 SEED = 1
@@ -33,7 +35,7 @@ def read_rules(names: list[str]) -> list[dict]:
 
 
 def edited(rule: dict | None, folder: Path) -> Path:
-    """The sources of the kernel with the rule's edits. Raises ValueError when a text does not stand there once."""
+    """The sources with the rule's edits. Raises ValueError when a text does not stand there once."""
     sources = folder / "src"
     shutil.copytree(KERNEL / "src", sources)
     for name, before, after in rule["edits"] if rule else ():
@@ -45,8 +47,8 @@ def edited(rule: dict | None, folder: Path) -> Path:
 
 
 def build_hostile(sources: Path, program: Path) -> None:
-    files = [*sources.glob("*.c"), *(MONITORS / name for name in ("hostile.c", "monitors.c", "adopt.c"))]
-    options = [f"-DILK_SLOTS={SLOTS_OF_HOSTILE}", f"-I{sources}", f"-I{MONITORS}"]
+    files = [*sources.glob("*.c"), HOSTILE, MONITORS / "monitors.c", MONITORS / "adopt.c"]
+    options = [f"-DILK_SLOTS={SLOTS_OF_HOSTILE}", f"-I{sources}", f"-I{MONITORS}", f"-I{HOSTILE.parent}"]
     subprocess.run(
         ["gcc", "-std=c11", "-O2", f"-I{KERNEL}/include", *options, *files, "-o", program], check=True
     )
@@ -61,10 +63,10 @@ def build_campaign(sources: Path, program: Path) -> None:
     [main] = BUILT.glob("verification/campaign/CMakeFiles/kernel_campaign.dir/**/*.o")
     libraries = [
         BUILT / "verification/campaign/libinterlock_campaign.a",
-        BUILT / "verification/monitors/libinterlock_monitors.a",
+        BUILT / "kernel/monitors/libinterlock_monitors.a",
         BUILT / "models/plant/libinterlock_plant.a",
     ]
-    subprocess.run(["g++", main, *libraries, *objects, "-o", program], check=True)
+    subprocess.run(["g++", main, *libraries, *objects, "-ltomlplusplus", "-o", program], check=True)
 
 
 def finding(driver: str, rule: dict | None, seconds: float, clause: str = "") -> tuple[str, float]:
@@ -117,7 +119,8 @@ def main() -> int:
         )
     sick = {driver: text for driver, text in healthy.items() if text}
     print(
-        f"campaign selftest: {len(unnoticed)} of {len(rules)} rules not noticed; healthy kernel: {sick or 'no finding'}"
+        f"campaign selftest: {len(unnoticed)} of {len(rules)} rules not noticed; "
+        f"healthy kernel: {sick or 'no finding'}"
     )
     log = evidence.log_directory("campaign_selftest") / "outcomes.json"
     log.write_text(json.dumps({"healthy": healthy, **outcomes}, indent=1) + "\n", "utf-8")
