@@ -2,7 +2,7 @@
 """Shows that the campaign and the hostile driver notice each rule of the kernel that is taken out.
 
 Usage: selftest.py [NAME ...]; all rules of verification/mutation/rules.toml when none is named. Each kernel
-is compiled from the sources with the rule's edits and linked with what `make build-tests` built. A rule counts
+is compiled from the sources with the rule's edits and linked with what `make build-tests` built. It counts
 as noticed when the driver that it names reports its clause within the seconds given; the healthy kernel must
 not fail.
 Prints a line a rule and writes build/evidence/campaign_selftest.json.

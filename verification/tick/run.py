@@ -94,7 +94,7 @@ def program(step: Step, kind: str, logs: Path) -> Path:
     defines += ["-DILK_COVER"] if kind == "cover" else []
     files = [str((HERE / name).relative_to(prover.ROOT)) for name in ("harness.c", "relation.c")]
     files += [f"kernel/src/{name}" for name in SOURCES]
-    folders = ["kernel/include", "kernel/src", "verification/monitors", "verification/tick"]
+    folders = ["kernel/include", "kernel/src", "kernel/monitors", "verification/tick"]
     includes = [part for folder in folders for part in ("-I", folder)]
     compile_ = ["-std=c11", *defines, *includes, "--function", step.entry, "-o", str(linked), *files]
     prover.call("goto-cc", compile_, logs / f"{kind}.compile.log", prover.COMPILE_SECONDS)
