@@ -21,7 +21,9 @@ SetpointRange setpoint_range(const ilk_axis_config_t& rules, const ilk_axis_t& a
   if (mode != ILK_MODE_MOTION) {  // the next press begins with its whole budget
     in_press.unhomed_travel_counts = 0;
   }
-  const std::int64_t left = ilk_unhomed_travel_left(&rules, &in_press);
+  // The kernel's measure of the travel may lie by the noise beside the reading of now, and of each renewal.
+  const std::int64_t left = std::max<std::int64_t>(
+      0, std::int64_t{ilk_unhomed_travel_left(&rules, &in_press)} - 2 * std::int64_t{rules.noise_counts});
   return {saturated(axis.position_counts - left), saturated(axis.position_counts + left)};
 }
 

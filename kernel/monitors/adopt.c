@@ -8,18 +8,6 @@ static bool is_homing(const ilk_axis_t* axis, ilk_homing_phase_t phase) {
   return axis->state == ILK_AXIS_HOMING && axis->homing_phase == (uint32_t)phase;
 }
 
-/** A run of readings that goes on: how old its lowest and highest are, the state does not tell. */
-static void adopt_run(ilk_still_t* still, const ilk_axis_config_t* config, const ilk_stillness_t* run) {
-  const bool corrected = config->direction_correction == 1u;
-  still->origin = run->origin_raw;
-  still->low = corrected ? -run->above : run->below;
-  still->high = corrected ? -run->below : run->above;
-  still->ticks = run->ticks;
-  still->low_age = UINT32_MAX;
-  still->high_age = UINT32_MAX;
-  still->apart_age = UINT32_MAX;
-}
-
 /** The edges that the phase of a homing implies. An edge that may have been seen is one. */
 static void adopt_homing(ilk_ghost_slot_t* g, const ilk_axis_config_t* config, uint32_t debounce,
                          const ilk_axis_t* axis) {
@@ -42,6 +30,18 @@ static void adopt_homing(ilk_ghost_slot_t* g, const ilk_axis_config_t* config, u
   }
 }
 
+/** The run of readings goes on; how old its ends are is not known. */
+static void adopt_calm(ilk_still_t* calm, const ilk_axis_config_t* config, const ilk_stillness_t* still) {
+  const bool turned = config->direction_correction == 1u;
+  calm->origin = still->origin_raw;
+  calm->low = turned ? -still->above : still->below;
+  calm->high = turned ? -still->below : still->above;
+  calm->low_age = UINT32_MAX;
+  calm->high_age = UINT32_MAX;
+  calm->ticks = still->ticks;
+  calm->apart_age = UINT32_MAX;
+}
+
 static void adopt_slot(ilk_ghost_slot_t* g, const ilk_config_t* config, const ilk_state_t* state,
                        uint32_t slot) {
   const ilk_axis_t* axis = &state->axis[slot];
@@ -56,8 +56,8 @@ static void adopt_slot(ilk_ghost_slot_t* g, const ilk_config_t* config, const il
   g->triggered = axis->switch_reading != 0u;
   g->run = axis->switch_run_ticks;
   g->run_raw = axis->switch_run_raw;
-  adopt_run(&g->rest, &config->axis[slot], &axis->rest); /* not steady: neither moves nor rests for sure */
-  adopt_run(&g->calm, &config->axis[slot], &axis->calm);
+  g->rest.apart_age = UINT32_MAX; /* neither moves nor rests for sure */
+  adopt_calm(&g->calm, &config->axis[slot], &axis->calm);
   g->quiet = UINT32_MAX;
   g->since_disable = UINT32_MAX;
   g->drift_known = axis->state != ILK_AXIS_FAULTED;

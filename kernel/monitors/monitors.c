@@ -587,7 +587,7 @@ static void decide_mode(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
       g->state = ILK_AXIS_FAULTED;
       g->lease = 0u;
       g->order_consent = 0u;
-      g->seeks = false;
+      g->seeks = g->seeks && g->just_homed;
       g->ran = false;
       g->maybe_ran = false;
       mark_fault(g, g->raw);
@@ -602,7 +602,7 @@ static void decide_mode(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
     return;
   }
   if (ghost->estop || ghost->bus_lost || ghost->disagree_ticks > c->pedal_disagree_ticks ||
-      ghost->missed_ticks >= c->overrun_limit || ghost->runaway) {
+      ghost->missed_ticks >= c->overrun_limit) {
     ghost->mode = ILK_MODE_LOCKED;
   } else if (tick->after->mode == ILK_MODE_LOCKED && mode != ILK_MODE_LOCKED &&
              (ghost->missed_in_row >= c->overrun_limit || ghost->disagree_ticks == c->pedal_disagree_ticks ||
@@ -614,8 +614,9 @@ static void decide_mode(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
     }
   } else if (mode == ILK_MODE_READY && ghost->pressed_ticks == c->pedal_debounce_ticks) {
     const bool good = ghost->tick != 0u && ghost->app_alive && !ghost->required_lost &&
-                      !ghost->drift_of_disabled && ghost->powered_ticks >= c->power_up_ticks;
-    if (ghost->armed && good && ghost->calm_unsure) {
+                      ghost->powered_ticks >= c->power_up_ticks;
+    if (ghost->armed && good &&
+        (ghost->calm_unsure || ghost->drift_of_disabled)) { /* the latter P9 judges */
       ghost->mode_sure = false;
     } else if (ghost->armed && good) {
       ghost->mode = ILK_MODE_MOTION;
@@ -725,16 +726,10 @@ static ilk_demand_t demand_of_motion(const ilk_ghost_t* ghost, const ilk_tick_t*
     if (config->limit_side == ILK_LIMIT_NONE) {
       return demand(ILK_VERDICT_NO_SWITCH);
     }
-    if (g->homing_travel == 0u && g->homing_ticks == 0u) {
-      return demand(ILK_VERDICT_ACCEPTED);
-    }
-    if (g->homing_travel >= config->home_travel_counts || g->homing_ticks >= config->home_timeout_ticks) {
-      return demand(ILK_VERDICT_BUDGET);
-    }
-    return ((uint64_t)g->homing_travel + config->coast_counts + config->noise_counts >=
-            config->home_travel_counts)
-               ? either(ILK_VERDICT_ACCEPTED, ILK_VERDICT_BUDGET)
-               : demand(ILK_VERDICT_ACCEPTED);
+    const uint64_t used = (uint64_t)g->homing_travel + config->coast_counts + config->noise_counts;
+    return demand((used >= config->home_travel_counts || g->homing_ticks >= config->home_timeout_ticks)
+                      ? ILK_VERDICT_BUDGET
+                      : ILK_VERDICT_ACCEPTED);
   }
   if (r->lease_ticks == 0u || r->lease_ticks > tick->config->common.lease_max_ticks) {
     return demand(ILK_VERDICT_LEASE);
@@ -878,6 +873,11 @@ static uint32_t verdict_before_row(ilk_ghost_t* ghost, const ilk_tick_t* tick, c
   return ILK_VERDICT_ACCEPTED;
 }
 
+/** A press that began in this tick and was ended by a later request of it: its number was never published. */
+static bool press_is_unseen(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
+  return (ghost->entered || !ghost->mode_sure) && tick->after->mode != ILK_MODE_MOTION;
+}
+
 static void accept(ilk_ghost_t* ghost, const ilk_tick_t* tick, const ilk_request_t* r) {
   ilk_ghost_slot_t* g = &ghost->slot[(r->axis < ILK_SLOTS) ? r->axis : 0u];
   const uint32_t consent = ghost->entered ? tick->after->consent : tick->before->consent;
@@ -934,7 +934,8 @@ static void accept(ilk_ghost_t* ghost, const ilk_tick_t* tick, const ilk_request
       }
       break;
     case ILK_REQUEST_MOVE:
-      ghost->consent_error = ghost->consent_error || r->consent != consent || consent == 0u;
+      ghost->consent_error =
+          ghost->consent_error || (!press_is_unseen(ghost, tick) && (r->consent != consent || consent == 0u));
       g->lease = r->lease_ticks;
       g->setpoint = r->target_counts;
       g->order_drive = r->drive;
@@ -942,7 +943,8 @@ static void accept(ilk_ghost_t* ghost, const ilk_tick_t* tick, const ilk_request
       g->state = ILK_AXIS_MOVING;
       break;
     case ILK_REQUEST_HOME:
-      ghost->consent_error = ghost->consent_error || r->consent != consent || consent == 0u;
+      ghost->consent_error =
+          ghost->consent_error || (!press_is_unseen(ghost, tick) && (r->consent != consent || consent == 0u));
       g->lease = 0u;
       g->order_consent = r->consent;
       g->position_known = g->position_known && g->state != ILK_AXIS_HOMING;
@@ -974,39 +976,51 @@ static void accept(ilk_ghost_t* ghost, const ilk_tick_t* tick, const ilk_request
   }
 }
 
-void ghost_requests(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
-  const uint32_t taken = (tick->count < ILK_REQUESTS_PER_TICK) ? tick->count : ILK_REQUESTS_PER_TICK;
+static void before_requests(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   ghost->reset_accepted = false;
   ghost->stop_accepted = false;
   ghost->holder_changed = false;
   ghost->order_error = 0u;
   ghost->consent_error = false;
   decide_mode(ghost, tick);
-  for (uint32_t i = 0u; i < taken && i < tick->out->verdict_count; i++) {
-    const ilk_request_t* r = &tick->requests[i];
-    const uint32_t given = tick->out->verdict[i].verdict;
-    ilk_demand_t d = demand(verdict_before_row(ghost, tick, r));
-    if (d.verdict == ILK_VERDICT_ACCEPTED) {
-      d = demand_of_row(ghost, tick, r);
-    }
-    /* a press that may have begun and ended in this tick: nobody can tell in which mode the requests were
-     * judged */
-    const bool told = ghost->mode_sure || tick->after->mode == ILK_MODE_MOTION;
-    if (told && d.verdict != ANY && given != d.verdict && given != d.other && ghost->order_error == 0u) {
-      ghost->order_error = i + 1u;
-      ghost->expected = d.verdict;
-    }
-    if (given == ILK_VERDICT_ACCEPTED && r->kind <= ILK_REQUEST_RESTORE &&
-        (r->axis < ILK_SLOTS || r->kind < ILK_REQUEST_DISABLE)) {
-      accept(ghost, tick, r);
-    }
+}
+
+static void follow_request(ilk_ghost_t* ghost, const ilk_tick_t* tick, uint32_t i) {
+  const ilk_request_t* r = &tick->requests[i];
+  const uint32_t given = tick->out->verdict[i].verdict;
+  ilk_demand_t d = demand(verdict_before_row(ghost, tick, r));
+  if (d.verdict == ILK_VERDICT_ACCEPTED) {
+    d = demand_of_row(ghost, tick, r);
   }
+  /* a press that may have begun and ended in this tick: nobody can tell in which mode the requests were
+   * judged */
+  const bool told = ghost->mode_sure || tick->after->mode == ILK_MODE_MOTION;
+  if (told && d.verdict != ANY && given != d.verdict && given != d.other && ghost->order_error == 0u) {
+    ghost->order_error = i + 1u;
+    ghost->expected = d.verdict;
+  }
+  if (given == ILK_VERDICT_ACCEPTED && r->kind <= ILK_REQUEST_RESTORE &&
+      (r->axis < ILK_SLOTS || r->kind < ILK_REQUEST_DISABLE)) {
+    accept(ghost, tick, r);
+  }
+}
+
+static void after_requests(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   if (tick->after->mode == ILK_MODE_READY && tick->before->mode != ILK_MODE_READY) {
     disarm(ghost);
   }
   if (tick->after->mode != ILK_MODE_MOTION) {
     drop_orders(ghost);
   }
+}
+
+void ghost_requests(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
+  const uint32_t taken = (tick->count < ILK_REQUESTS_PER_TICK) ? tick->count : ILK_REQUESTS_PER_TICK;
+  before_requests(ghost, tick);
+  for (uint32_t i = 0u; i < taken && i < tick->out->verdict_count; i++) {
+    follow_request(ghost, tick, i);
+  }
+  after_requests(ghost, tick);
 }
 
 /* ------------------------------------------------------------------ what the drive of this tick means */

@@ -147,7 +147,9 @@ def small_function() -> tuple[Function, Mutant]:
     for mutant in draw(mutants_of(ROOT, FILES), 4000, "small"):
         function = function_at(functions, mutant.file, mutant.line)
         if mutant.operator == "relation" and function is not None and function.file.endswith(".c"):
-            plain = all(part.split()[0] in ("uint32_t", "uint64_t", "int32_t") for part in function.parameters)
+            plain = all(
+                part.split()[0] in ("uint32_t", "uint64_t", "int32_t") for part in function.parameters
+            )
             # Two multipliers side by side are more than a SAT solver compares in a test.
             if plain and function.returns == "bool" and "*" not in function.body:
                 return function, mutant

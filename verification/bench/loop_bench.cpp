@@ -136,7 +136,7 @@ class RelayedBus {
     const ilk_inputs_t before = *in;
     *in = relayed.in_;
     in->link_generation = before.link_generation;
-    in->deadline_missed = before.deadline_missed;
+    in->deadlines_missed = before.deadlines_missed;
     return relayed.alive_;
   }
 

@@ -43,7 +43,8 @@ static inline void rig_random_axis(rng_t* r, const ilk_common_config_t* m, ilk_a
   a->coast_counts =
       3u * v + a->noise_counts + 2u + (rng_one_in(r, 2u) ? rng_below(r, 4u) : rng_below(r, 2u * v));
   a->stall_min_counts = a->noise_counts + 1u + rng_below(r, small ? 3u : 20u);
-  a->drift_counts = a->coast_counts + a->backlash_counts + a->noise_counts + rng_below(r, 5u);
+  a->drift_counts = a->coast_counts + a->backlash_counts + a->noise_counts +
+                    rng_below(r, rng_one_in(r, 4u) ? a->coast_counts : 5u);
   a->reverse_counts = a->coast_counts + a->backlash_counts + a->noise_counts + rng_below(r, 5u);
   a->rest_ticks = m->switch_debounce_ticks + 2u + rng_below(r, small ? 10u : 60u);
   a->max_delta_counts = v + a->noise_counts + 1u + rng_below(r, v + 2u);

@@ -228,7 +228,7 @@ static uint32_t sensible_kind(dice_t *dice, const ilk_state_t *state, const ilk_
     kind = (uint32_t)kinds[dice_below(dice, 4u)];
   } else if (axis->state == (uint32_t)ILK_AXIS_DISABLED) {
     kind = (uint32_t)ILK_REQUEST_ENABLE;
-  } else if (dice_one_in(dice, (axis->homed == (uint32_t)ILK_HOMED_NOT) ? 10u : 400u)) {
+  } else if (dice_one_in(dice, (axis->homed == (uint32_t)ILK_HOMED_NOT) ? 5u : 400u)) {
     kind = (uint32_t)ILK_REQUEST_HOME;
   } else {
     kind = (uint32_t)ILK_REQUEST_MOVE;
@@ -324,7 +324,7 @@ static void any_axis(dice_t *dice, const ilk_axis_config_t *config, uint32_t tic
   axis->path_raw = axis->raw - dice_below(dice, 6u);
   axis->path_is_homing = dice_below(dice, 2u);
   axis->unhomed_travel_counts = dice_below(dice, 120u);
-  axis->homing_travel_counts = dice_below(dice, 2420u);
+  axis->homing_travel_counts = dice_one_in(dice, 2u) ? 2400u : dice_below(dice, 2420u);
   axis->homing_ticks = dice_below(dice, 3010u);
   axis->homing_mark_raw = axis->raw - dice_below(dice, 60u);
   axis->first_edge_raw = axis->homing_mark_raw + dice_below(dice, 10u);

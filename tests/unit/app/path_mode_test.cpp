@@ -112,7 +112,8 @@ TEST_P(PathModeOnThePlant, AJammedAxisStopsAllOthersAtOnce) {
     loop.tick();
   }
   EXPECT_EQ(loop.path().order.phase, OrderPhase::aborted);
-  EXPECT_EQ(loop.path().order.reason, OrderReason::off_path);
+  EXPECT_EQ(loop.path().order.reason, OrderReason::axis_faulted);
+  EXPECT_EQ(loop.path().order.code, static_cast<std::uint32_t>(ILK_FAULT_STALL));
   EXPECT_EQ(loop.path().slot, head);
   loop.run(2 + GetParam());
   for (const AxisCounts& target : neuro_targets) {

@@ -16,13 +16,16 @@ constexpr std::uint32_t slot = test::insertion;
 
 const ilk_axis_config_t& rules() { return neuro_config().axis[slot]; }
 
-/** The range is right when the kernel accepts its ends and refuses what lies one count beyond. */
+/** The range is right when the kernel accepts its ends and refuses what lies one count beyond, or beyond the
+ * noise that an axis that is not homed keeps off. */
 void expect_kernel_agrees(ClosedLoop& loop) {
+  const bool homed = loop.state().axis[slot].homed != 0;
+  const std::int32_t beyond = 1 + (homed ? 0 : 2 * static_cast<std::int32_t>(rules().noise_counts));
   const SetpointRange range = setpoint_range(rules(), loop.state().axis[slot], loop.state().system.mode);
   EXPECT_EQ(loop.verdict_of_move(slot, range.lowest_counts, 1), ILK_VERDICT_ACCEPTED);
   EXPECT_EQ(loop.verdict_of_move(slot, range.highest_counts, 1), ILK_VERDICT_ACCEPTED);
-  EXPECT_EQ(loop.verdict_of_move(slot, range.lowest_counts - 1, 1), ILK_VERDICT_RANGE);
-  EXPECT_EQ(loop.verdict_of_move(slot, range.highest_counts + 1, 1), ILK_VERDICT_RANGE);
+  EXPECT_EQ(loop.verdict_of_move(slot, range.lowest_counts - beyond, 1), ILK_VERDICT_RANGE);
+  EXPECT_EQ(loop.verdict_of_move(slot, range.highest_counts + beyond, 1), ILK_VERDICT_RANGE);
 }
 
 void expect_kernel_agrees_on_drive(ClosedLoop& loop) {
