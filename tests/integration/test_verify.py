@@ -393,10 +393,10 @@ def test_a_run_that_is_too_short_is_not_kept(tree: Tree) -> None:
 
 
 def test_logs_that_are_too_large_are_not_kept(tree: Tree) -> None:
-    tree.rung("PASSED", 7, "import random; print(random.Random(1).randbytes(700_000).hex())")
+    tree.rung("PASSED", 7, "import random; print(random.Random(1).randbytes(1_400_000).hex())")
     tree.commit()
     tree.verify()
-    assert "at most 512 KiB" in tree.keep()
+    assert "at most 1024 KiB" in tree.keep()
 
 
 def test_kept_evidence_names_nothing_outside_of_its_tree(tree: Tree) -> None:
