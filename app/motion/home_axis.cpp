@@ -23,6 +23,7 @@ void HomeAxis::begin(HomeStepKind kind, std::int32_t counts) noexcept {
   judged_ = false;
   marked_ = false;
   stopping_ = false;
+  refused_ = false;
 }
 
 void HomeAxis::start(const ilk_snapshot_t& snapshot) noexcept {
@@ -129,6 +130,9 @@ HomeProgress HomeAxis::watch_nudge(const ilk_snapshot_t& snapshot) noexcept {
         rest_.rests(axis.position_counts, plan_.rules.noise_counts, snapshot.state.system.tick);
     return rests ? HomeProgress::arrived : HomeProgress::going;
   }
+  if (refused_ && shows(snapshot, refused_tick_)) {
+    return HomeProgress::blocked;
+  }
   switch (move_.watch(snapshot)) {
     case AxisMove::Progress::arrived:
       return last_slice_ ? HomeProgress::arrived : HomeProgress::slice_used;
@@ -140,9 +144,13 @@ HomeProgress HomeAxis::watch_nudge(const ilk_snapshot_t& snapshot) noexcept {
   return HomeProgress::going;
 }
 
+bool HomeAxis::leads_to_switch() const noexcept {
+  return kind_ == HomeStepKind::nudge &&
+         plan_.rules.limit_side == (counts_ > 0 ? ILK_LIMIT_UPPER : ILK_LIMIT_LOWER);
+}
+
 bool HomeAxis::at_switch(const ilk_axis_t& axis) const noexcept {
-  const std::uint32_t ahead = counts_ > 0 ? ILK_LIMIT_UPPER : ILK_LIMIT_LOWER;
-  return plan_.rules.limit_side == ahead && axis.card_valid != 0 && axis.switch_triggered != 0;
+  return leads_to_switch() && axis.card_valid != 0 && axis.switch_triggered != 0;
 }
 
 HomeProgress HomeAxis::watch_move(const ilk_snapshot_t& snapshot) noexcept {
@@ -183,6 +191,12 @@ void HomeAxis::on_unsent(const Wish& wish) noexcept {
   } else {
     move_.on_unsent();
   }
+}
+
+bool HomeAxis::on_range_verdict(std::uint32_t tick) noexcept {
+  refused_ = leads_to_switch();
+  refused_tick_ = tick;
+  return refused_;
 }
 
 void HomeAxis::on_home_verdict(std::uint32_t verdict, std::uint32_t tick) noexcept {

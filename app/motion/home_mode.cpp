@@ -280,6 +280,10 @@ void HomeMode::on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::
   if (origin.kind == ILK_REQUEST_HOME) {
     axes_[origin.slot].on_home_verdict(verdict, tick);
   }
+  if (origin.kind == ILK_REQUEST_MOVE && verdict == ILK_VERDICT_RANGE &&
+      axes_[origin.slot].on_range_verdict(tick)) {
+    return;
+  }
   // MODE says only that the pedal was released between the snapshot and the request; the next snapshot
   // pauses.
   if (verdict != ILK_VERDICT_ACCEPTED && verdict != ILK_VERDICT_MODE && origin.kind != ILK_REQUEST_STOP) {

@@ -194,7 +194,7 @@ constexpr std::array<Entry, 42> kConfigError{
     Entry{27, "HOME_CLEAR", "`home_clear_counts` does not cover tolerance, hysteresis and coast, or the progress that a stall asks for, or is more than a tenth of the range; not zero on an axis without a switch.", "", "", "", Names{}},
     Entry{28, "REST", "`rest_ticks` is not above the latency of the loop, shorter than the debounce of the switch, or more than 1000 ms.", "", "", "", Names{}},
     Entry{29, "HOME_TIMEOUT", "`home_timeout_ticks` does not cover the way of homing at its speeds, or is more than ten minutes; not zero on an axis without a switch.", "", "", "", Names{}},
-    Entry{30, "STALL", "`stall_ticks` is not above the loop's latency, more than 500 ms, or ends before `stall_min_counts`, backlash and noise are travelled at the slowest drive; or these are not above `noise_counts`.", "", "", "", Names{}},
+    Entry{30, "STALL", "`stall_ticks` is more than 500 ms, or ends before `stall_min_counts`, backlash and noise are travelled at the slowest drive with the latency of the loop, or at full speed after a reversal; or these are not above `noise_counts`.", "", "", "", Names{}},
     Entry{31, "REVERSE", "`reverse_counts` does not cover coast, backlash and noise, or is more than a tenth of the range.", "", "", "", Names{}},
     Entry{32, "DRIFT", "`drift_counts` does not cover coast, backlash and noise, or is more than a tenth of the range.", "", "", "", Names{}},
     Entry{33, "STALL_EFFORT", "`stall_effort_ticks` is more than 200 ms, or too short for five times the coast, backlash and noise at full speed; or zero on an axis that is fast enough for it.", "", "", "", Names{}},

@@ -85,8 +85,9 @@ constexpr std::array rules{
     Rule{ILK_CONFIG_ERROR_REST, "mechanics.rest_ms",
          "more than two ticks, loop.switch_debounce_ms at least, 1000 ms at most"},
     Rule{ILK_CONFIG_ERROR_STALL, "stall",
-         "driven_ms of more than two ticks, at most 500 ms, in which the slowest drive makes more than "
-         "min_counts; min_counts above mechanics.noise_counts, at most a tenth of the range"},
+         "driven_ms of at most 500 ms, in which the slowest drive makes min_counts, backlash and noise three "
+         "ticks before its end, and full speed five times the coast beside them; min_counts above "
+         "mechanics.noise_counts, at most a tenth of the range"},
     Rule{ILK_CONFIG_ERROR_STALL_EFFORT, "stall.effort_ms",
          "time for five times the coast, backlash and noise at full speed, at most 200 ms; left out when the "
          "axis is too slow for that"},

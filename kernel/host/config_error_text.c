@@ -33,7 +33,7 @@ ilk_config_error_text_t ilk_config_error_text(uint32_t error) {
     [ILK_CONFIG_ERROR_HOME_CLEAR] = {"HOME_CLEAR", "`home_clear_counts` does not cover tolerance, hysteresis and coast, or the progress that a stall asks for, or is more than a tenth of the range; not zero on an axis without a switch."},
     [ILK_CONFIG_ERROR_REST] = {"REST", "`rest_ticks` is not above the latency of the loop, shorter than the debounce of the switch, or more than 1000 ms."},
     [ILK_CONFIG_ERROR_HOME_TIMEOUT] = {"HOME_TIMEOUT", "`home_timeout_ticks` does not cover the way of homing at its speeds, or is more than ten minutes; not zero on an axis without a switch."},
-    [ILK_CONFIG_ERROR_STALL] = {"STALL", "`stall_ticks` is not above the loop's latency, more than 500 ms, or ends before `stall_min_counts`, backlash and noise are travelled at the slowest drive; or these are not above `noise_counts`."},
+    [ILK_CONFIG_ERROR_STALL] = {"STALL", "`stall_ticks` is more than 500 ms, or ends before `stall_min_counts`, backlash and noise are travelled at the slowest drive with the latency of the loop, or at full speed after a reversal; or these are not above `noise_counts`."},
     [ILK_CONFIG_ERROR_REVERSE] = {"REVERSE", "`reverse_counts` does not cover coast, backlash and noise, or is more than a tenth of the range."},
     [ILK_CONFIG_ERROR_DRIFT] = {"DRIFT", "`drift_counts` does not cover coast, backlash and noise, or is more than a tenth of the range."},
     [ILK_CONFIG_ERROR_STALL_EFFORT] = {"STALL_EFFORT", "`stall_effort_ticks` is more than 200 ms, or too short for five times the coast, backlash and noise at full speed; or zero on an axis that is fast enough for it."},

@@ -21,8 +21,7 @@ void ilk_card_observe(const ilk_system_t *system, const ilk_reading_t *reading, 
 /* --- Stillness --------------------------------------------------------------------------------- */
 
 static void begin_stillness(ilk_stillness_t *still, uint32_t raw) {
-  const ilk_stillness_t begun = {.origin_raw = raw, .below = 0, .above = 0, .ticks = 0u};
-  *still = begun;
+  *still = (ilk_stillness_t){.origin_raw = raw, .below = 0, .above = 0, .ticks = 0u};
 }
 
 /** One more reading; one that lies too far from another begins anew. */
@@ -162,8 +161,7 @@ void ilk_axis_note_drive(const ilk_command_t *command, ilk_axis_t *axis) {
 /* --- Faults ------------------------------------------------------------------------------------ */
 
 static ilk_finding_t found_if(bool present, ilk_fault_t fault, int32_t value) {
-  const ilk_finding_t finding = {.fault = present ? fault : ILK_FAULT_NONE, .value = value};
-  return finding;
+  return (ilk_finding_t){.fault = present ? fault : ILK_FAULT_NONE, .value = value};
 }
 
 static ilk_finding_t first_of(ilk_finding_t earlier, ilk_finding_t later) {

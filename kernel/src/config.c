@@ -69,8 +69,6 @@ static uint32_t range_of(const ilk_axis_config_t *axis) {
 static ilk_config_error_t geometry_error(const ilk_axis_config_t *axis) {
   const bool ordered = (axis->min_counts < axis->max_counts) && (axis->min_counts >= -SOFT_LIMIT_MAX) &&
                        (axis->max_counts <= SOFT_LIMIT_MAX);
-  const bool home_inside =
-      (axis->home_offset_counts >= axis->min_counts) && (axis->home_offset_counts <= axis->max_counts);
   const uint32_t range = range_of(axis);
   const uint64_t twice_coast = 2u * (uint64_t)axis->coast_counts;
   const uint64_t twice_deadband = 2u * (uint64_t)axis->deadband_counts;
@@ -79,7 +77,8 @@ static ilk_config_error_t geometry_error(const ilk_axis_config_t *axis) {
   need(&error, axis->direction_correction <= 1u, ILK_CONFIG_ERROR_FLAG);
   need(&error, axis->limit_side < ILK_LIMIT_COUNT, ILK_CONFIG_ERROR_LIMIT_SIDE);
   need(&error, ordered, ILK_CONFIG_ERROR_SOFT_LIMITS);
-  need(&error, home_inside, ILK_CONFIG_ERROR_HOME_OFFSET);
+  need(&error, axis->home_offset_counts >= axis->min_counts, ILK_CONFIG_ERROR_HOME_OFFSET);
+  need(&error, axis->home_offset_counts <= axis->max_counts, ILK_CONFIG_ERROR_HOME_OFFSET);
   need(&error, (twice_coast != 0u) && (twice_coast < range), ILK_CONFIG_ERROR_COAST);
   need(&error, axis->noise_counts <= (range / 10u), ILK_CONFIG_ERROR_NOISE);
   need(&error, axis->backlash_counts <= (range / 10u), ILK_CONFIG_ERROR_NOISE);
@@ -109,11 +108,16 @@ static ilk_config_error_t drive_error(const ilk_axis_config_t *axis, uint32_t us
   return error;
 }
 
+/** Longest way of driven ticks until a reversal at full speed makes `counts` of progress, in micro-counts. */
+static uint64_t way_of_reversal(const ilk_axis_config_t *axis, uint32_t counts) {
+  const uint64_t lost = (uint64_t)axis->backlash_counts + axis->noise_counts;
+  return ((5u * (uint64_t)axis->coast_counts) + lost + counts) * US_PER_S;
+}
+
 /** An axis that is fast enough has both bounds; a slower one has none for effort, and says so. */
 static bool effort_fits(const ilk_axis_config_t *axis, uint32_t us) {
   const uint64_t speed = (uint64_t)us * axis->full_speed_counts_per_s;
-  const uint64_t lost = (uint64_t)axis->backlash_counts + axis->noise_counts;
-  const uint64_t least = ((5u * (uint64_t)axis->coast_counts) + lost + 1u) * US_PER_S;
+  const uint64_t least = way_of_reversal(axis, 1u);
   const uint64_t longest = ((uint64_t)EFFORT_MAX_MS * US_PER_MS) / us;
   const uint64_t ticks = axis->stall_effort_ticks;
   return (ticks == 0u) ? ((longest * speed) < least) : ((ticks <= longest) && ((ticks * speed) >= least));
@@ -125,13 +129,16 @@ static ilk_config_error_t watch_error(const ilk_axis_config_t *axis, const ilk_c
   const uint64_t lost = axis->backlash_counts + noise;
   const uint64_t innocent = axis->coast_counts + lost;
   const uint32_t us = common->period_us;
-  const uint64_t slowest =
-      has_switch(axis) ? axis->home_slow_speed_counts_per_s : axis->full_speed_counts_per_s;
-  const uint64_t progress = (axis->stall_min_counts + lost) * US_PER_S;
+  const uint32_t unseen = ILK_LATENCY_TICKS + 1u; /* ticks until a reading shows what drive does */
+  const uint32_t stall_min = axis->stall_min_counts;
+  const uint64_t full = (uint64_t)us * axis->full_speed_counts_per_s;
+  const uint64_t slowest = has_switch(axis) ? ((uint64_t)us * axis->home_slow_speed_counts_per_s) : full;
+  const uint64_t progress = (stall_min + lost) * US_PER_S;
   ilk_config_error_t error = ILK_CONFIG_ERROR_NONE;
-  need(&error, within(axis->stall_min_counts, noise + 1u, tenth), ILK_CONFIG_ERROR_STALL);
-  need(&error, lasts(axis->stall_ticks, us, ILK_LATENCY_TICKS + 1u, 500u), ILK_CONFIG_ERROR_STALL);
-  need(&error, (axis->stall_ticks * slowest * us) >= progress, ILK_CONFIG_ERROR_STALL);
+  need(&error, within(stall_min, noise + 1u, tenth), ILK_CONFIG_ERROR_STALL);
+  need(&error, lasts(axis->stall_ticks, us, unseen + 1u, 500u), ILK_CONFIG_ERROR_STALL);
+  need(&error, (left_of(axis->stall_ticks, unseen) * slowest) >= progress, ILK_CONFIG_ERROR_STALL);
+  need(&error, (axis->stall_ticks * full) >= way_of_reversal(axis, stall_min), ILK_CONFIG_ERROR_STALL);
   need(&error, effort_fits(axis, us), ILK_CONFIG_ERROR_STALL_EFFORT);
   need(&error, within(axis->reverse_counts, innocent, tenth), ILK_CONFIG_ERROR_REVERSE);
   need(&error, within(axis->drift_counts, innocent, tenth), ILK_CONFIG_ERROR_DRIFT);
@@ -173,11 +180,11 @@ static ilk_config_error_t homing_error(const ilk_axis_config_t *axis, const ilk_
   const uint64_t open_side =
       lower ? ((uint32_t)axis->max_counts - home) : (home - (uint32_t)axis->min_counts);
   const uint64_t debounce = (uint64_t)common->switch_debounce_ticks + 2u;
-  const uint64_t apart = travel_in(axis->home_speed_counts_per_s, debounce, us) + (2u * noise);
-  const bool in_order = within(axis->home_slow_speed_counts_per_s, 1u, axis->home_speed_counts_per_s) &&
-                        (axis->home_speed_counts_per_s <= axis->full_speed_counts_per_s);
+  const uint32_t home_speed = axis->home_speed_counts_per_s;
+  const uint64_t apart = travel_in(home_speed, debounce, us) + (2u * noise);
   ilk_config_error_t error = ILK_CONFIG_ERROR_NONE;
-  need(&error, in_order, ILK_CONFIG_ERROR_SPEED);
+  need(&error, within(axis->home_slow_speed_counts_per_s, 1u, home_speed), ILK_CONFIG_ERROR_SPEED);
+  need(&error, home_speed <= axis->full_speed_counts_per_s, ILK_CONFIG_ERROR_SPEED);
   need(&error, within(axis->home_drive, awake, axis->unhomed_max_drive), ILK_CONFIG_ERROR_HOME_DRIVE);
   need(&error, within(axis->home_slow_drive, awake, axis->home_drive), ILK_CONFIG_ERROR_HOME_SLOW);
   need(&error, axis->switch_hysteresis_counts <= (range / 10u), ILK_CONFIG_ERROR_HYSTERESIS);

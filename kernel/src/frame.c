@@ -25,7 +25,7 @@ static uint32_t sum_of(const uint32_t frame[ILK_FRAME_WORDS]) {
 }
 
 ilk_reading_t ilk_frame_unpack(const uint32_t frame[ILK_FRAME_WORDS]) {
-  const ilk_reading_t reading = {
+  return (ilk_reading_t){
       .intact = (frame[0] == START_WORD) && (sum_of(frame) == FRAME_SUM),
       .switch_triggered = (frame[2] & SWITCH_OPEN_BIT) == 0u,
       .raw = frame[3],
@@ -34,7 +34,6 @@ ilk_reading_t ilk_frame_unpack(const uint32_t frame[ILK_FRAME_WORDS]) {
       .tick_echo = frame[11],
       .card_status = frame[12],
   };
-  return reading;
 }
 
 /** Frequency word of a high-frequency card for a drive in thousandths of a revolution per minute. */

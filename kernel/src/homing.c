@@ -36,10 +36,9 @@ ilk_command_t ilk_homing_command(const ilk_axis_config_t *config, const ilk_axis
   const bool in = slow || (phase == (uint32_t)ILK_HOMING_SEEK);
   const bool out = (phase == (uint32_t)ILK_HOMING_LEAVE) || (phase == (uint32_t)ILK_HOMING_BACK_OFF);
   const uint32_t inward = in ? towards_switch(config) : (uint32_t)ILK_DIRECTION_NONE;
-  const ilk_command_t wanted = {.direction = out ? away_from_switch(config) : inward,
-                                .drive = slow ? config->home_slow_drive : config->home_drive,
-                                .amplitude = config->home_amplitude};
-  return wanted;
+  return (ilk_command_t){.direction = out ? away_from_switch(config) : inward,
+                         .drive = slow ? config->home_slow_drive : config->home_drive,
+                         .amplitude = config->home_amplitude};
 }
 
 /** Far enough from the mark that a bounce or a look at the wrong edge is behind it. */

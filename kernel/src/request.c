@@ -40,8 +40,6 @@ static ilk_verdict_t judge(const ilk_common_config_t *common, const ilk_axis_con
   const bool at_rest = ilk_axis_is_at_rest(config, axis);
   const bool may_enable = (system->powered_ticks >= common->power_up_ticks) && at_rest;
   const bool sets_home = request->kind == (uint32_t)ILK_REQUEST_SET_HOME;
-  const bool target_is_inside =
-      (request->target_counts >= config->min_counts) && (request->target_counts <= config->max_counts);
   ilk_verdict_t verdict = ILK_VERDICT_ACCEPTED;
   switch (request->kind) {
     case (uint32_t)ILK_REQUEST_DISABLE:
@@ -76,7 +74,8 @@ static ilk_verdict_t judge(const ilk_common_config_t *common, const ilk_axis_con
       need(&verdict, !axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_FAULTED);
       need(&verdict, axis->card_valid != 0u, ILK_VERDICT_CARD);
       need(&verdict, at_rest, ILK_VERDICT_BUSY);
-      need(&verdict, sets_home || target_is_inside, ILK_VERDICT_RANGE);
+      need(&verdict, sets_home || (request->target_counts >= config->min_counts), ILK_VERDICT_RANGE);
+      need(&verdict, sets_home || (request->target_counts <= config->max_counts), ILK_VERDICT_RANGE);
       break;
   }
   return verdict;

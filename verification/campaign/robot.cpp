@@ -91,7 +91,12 @@ void set_watches(plant::Random& random, ilk_axis_config_t& axis, std::uint32_t p
   axis.stall_min_counts = kNoise + 2;
   const auto least_ms =
       static_cast<std::uint32_t>(time_for(axis.stall_min_counts + kBacklash + kNoise, slowest) / 1000 + 40);
-  axis.stall_ticks = ticks_of(between(random, least_ms, 500), period_us);
+  const auto reversal_ms =
+      static_cast<std::uint32_t>(time_for(5 * axis.coast_counts + kBacklash + kNoise + axis.stall_min_counts,
+                                          axis.full_speed_counts_per_s) /
+                                     1000 +
+                                 3);
+  axis.stall_ticks = ticks_of(between(random, std::max(least_ms, reversal_ms), 500), period_us);
   const std::uint64_t effort_us =
       time_for(5 * axis.coast_counts + kBacklash + kNoise + 1, axis.full_speed_counts_per_s);
   axis.stall_effort_ticks = static_cast<std::uint32_t>(effort_us / period_us) + between(random, 1, 20);

@@ -1250,6 +1250,15 @@ static void print_totals(double seconds) {
   }
 }
 
+/** Whether a clause with this text was violated. */
+static bool was_violated(const char* text) {
+  bool violated = false;
+  for (uint32_t i = 0u; i < clause_count; i++) {
+    violated = violated || strstr(clauses[i].clause, text) != NULL;
+  }
+  return violated;
+}
+
 /** Seconds of processor time. */
 static double now(void) { return (double)clock() / CLOCKS_PER_SEC; }
 
@@ -1317,14 +1326,14 @@ int main(int argc, char** argv) {
     return 0;
   }
   if (argc < 3) {
-    fprintf(stderr, "hostile SECONDS SEED | hostile replay EPISODE [FROM TO]\n");
+    fprintf(stderr, "hostile SECONDS SEED [CLAUSE] | hostile replay EPISODE [FROM TO]\n");
     return 2;
   }
   {
     const double end = now() + strtod(argv[1], NULL);
     const double begin = now();
     rng_t seeds = {strtoull(argv[2], NULL, 10)};
-    while (now() < end) {
+    while (now() < end && !(argc > 3 && was_violated(argv[3]))) {
       const uint64_t episode = rng_next(&seeds) >> 16;
       start_episode(episode);
       total.episodes++;

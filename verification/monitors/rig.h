@@ -92,6 +92,11 @@ static inline void rig_random_axis(rng_t* r, const ilk_common_config_t* m, ilk_a
     a->stall_ticks =
         rng_one_in(r, 2u) ? rng_range(r, need, cap_ticks(500000u, period)) : need + rng_below(r, 10u);
   }
+  need =
+      (5u * a->coast_counts + a->backlash_counts + a->noise_counts + a->stall_min_counts + v - 1u) / v + 1u;
+  if (a->stall_ticks < need) {
+    a->stall_ticks = need + rng_below(r, 10u);
+  }
   range = 10u * biggest + rng_below(r, small ? 200u : 3000u);
   a->min_counts = (int32_t)rng_below(r, 2000u) - 1500;
   a->max_counts = a->min_counts + (int32_t)range;

@@ -16,7 +16,7 @@ RUNGS = ("tests", "cbmc", "tick")
 READ_BY = {
     "tests": ("tests/unit/kernel",),
     "cbmc": ("verification/cbmc",),
-    "tick": ("verification/tick", "verification/monitors"),
+    "tick": ("verification/tick", "kernel/monitors"),
     "all": ("verification/mutation",),
 }
 """What a rung reads besides the kernel; what shows that a mutant is no fault, where none complained."""

@@ -43,7 +43,7 @@ REAL = {
 """Functions that a step takes as they are, because it is about them."""
 PRODUCTS = {
     "kernel/src/axis.c": ["(uint64_t)config->max_delta_counts * axis->periods"],
-    "verification/monitors/monitors.c": ["(uint64_t)config->max_delta_counts * g->periods"],
+    "kernel/monitors/monitors.c": ["(uint64_t)config->max_delta_counts * g->periods"],
 }
 """What kernel and judge multiply alike. The prover need not compare multipliers: it takes each product for
 the same unknown function of its factors. A claim that holds of every function holds of the product."""
@@ -128,7 +128,7 @@ def program(step: Step, kind: str, logs: Path) -> Path:
     files = [str((HERE / name).relative_to(prover.ROOT)) for name in ("harness.c", "relation.c")]
     copied = with_products(logs)
     files += [copied.get(f"kernel/src/{name}", f"kernel/src/{name}") for name in SOURCES]
-    folders = [str(logs), "kernel/include", "kernel/src", "verification/monitors", "verification/tick"]
+    folders = [str(logs), "kernel/include", "kernel/src", "kernel/monitors", "verification/tick"]
     includes = [part for folder in folders for part in ("-I", folder)]
     compile_ = ["-std=c11", *defines, *includes, "--function", step.entry, "-o", str(linked), *files]
     prover.call("goto-cc", compile_, logs / f"{kind}.compile.log", prover.COMPILE_SECONDS)

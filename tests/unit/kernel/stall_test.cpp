@@ -79,9 +79,10 @@ TEST(P5_stall, an_axis_without_a_bound_of_effort_is_judged_by_time_alone) {
   ilk_config_t config = standard_config();
   config.axis[axis].full_speed_counts_per_s = 200;
   config.axis[axis].stall_effort_ticks = 0;
+  config.axis[axis].stall_ticks = 400;
   seal(config);
   Bench bench = jammed_homed_bench(config);
-  EXPECT_EQ(driven_until_fault(bench, 500, 1000), stall_ticks);
+  EXPECT_EQ(driven_until_fault(bench, 500, 1000), 400u);
 }
 
 TEST(P5_stall, effort_adds_up_over_different_drives) {

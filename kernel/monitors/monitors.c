@@ -615,8 +615,7 @@ static void decide_mode(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   } else if (mode == ILK_MODE_READY && ghost->pressed_ticks == c->pedal_debounce_ticks) {
     const bool good = ghost->tick != 0u && ghost->app_alive && !ghost->required_lost &&
                       ghost->powered_ticks >= c->power_up_ticks;
-    if (ghost->armed && good &&
-        (ghost->calm_unsure || ghost->drift_of_disabled)) { /* the latter P9 judges */
+    if (ghost->armed && good && (ghost->calm_unsure || ghost->drift_of_disabled)) { /* the latter P9 judges */
       ghost->mode_sure = false;
     } else if (ghost->armed && good) {
       ghost->mode = ILK_MODE_MOTION;
@@ -809,6 +808,9 @@ static ilk_demand_t demand_of_row(const ilk_ghost_t* ghost, const ilk_tick_t* ti
           ghost->missed_ticks >= tick->config->common.overrun_limit) {
         return demand(ILK_VERDICT_CAUSE_PRESENT);
       }
+      /* after damage the configuration is trusted again when a whole pass over it agreed */
+      unsure =
+          unsure || tick->before->cause == ILK_CAUSE_INTEGRITY || tick->after->cause == ILK_CAUSE_INTEGRITY;
       return (unsure || !ghost->bus_ok_now || ghost->missed_in_row > 0u)
                  ? either(ILK_VERDICT_ACCEPTED, ILK_VERDICT_CAUSE_PRESENT)
                  : demand(ILK_VERDICT_ACCEPTED);
