@@ -66,6 +66,15 @@ uint32_t stand_in_frequency(uint32_t drive) {
   return nondet_word();
 }
 
+/** The number of a press is a function of nonce and tick. The step `numbers` shows what else is taken of it.
+ */
+uint32_t stand_in_consent(uint32_t boot_nonce, uint32_t tick) {
+  const uint32_t number = number_of(boot_nonce, tick);
+  __CPROVER_assume(tick == 0u || number != 0u);
+  __CPROVER_assume(tick == 0u || !is_number_of_another(boot_nonce, tick, number));
+  return number;
+}
+
 /* --- The cut
  * ------------------------------------------------------------------------------------------------ */
 
@@ -110,6 +119,7 @@ static void tick_begins(void) {
   state = nondet_state();
   some_memory();
   see_before();
+  __CPROVER_assume(may_be_this_tick());
 }
 
 /** Init leads to R. */
@@ -220,6 +230,21 @@ void validity(void) {
   validation = nondet_validity();
   __CPROVER_assume(ilk_config_validate(&config).error == (uint32_t)ILK_CONFIG_ERROR_NONE);
   __CPROVER_assert(config_is_valid(), "P13: what a valid configuration guarantees");
+}
+
+/** Two presses of one start have two numbers, neither of them 0. */
+void numbers(void) {
+  const uint32_t nonce = nondet_word();
+  const ilk_state_t one = nondet_state();
+  ilk_state_t first = one;
+  ilk_state_t second = one;
+  second.system.tick = nondet_word();
+  ilk_mode_enter(ILK_MODE_MOTION, nonce, &first);
+  ilk_mode_enter(ILK_MODE_MOTION, nonce, &second);
+  __CPROVER_assume(first.system.tick != 0u && second.system.tick != 0u);
+  __CPROVER_assert(first.system.consent != 0u, "P9: no number is 0");
+  __CPROVER_assert(first.system.tick == second.system.tick || first.system.consent != second.system.consent,
+                   "P9: no number is that of another press");
 }
 
 /** The stand-in for a frame's reading, and the judge's checksum, are what the kernel reads. */

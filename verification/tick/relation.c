@@ -14,6 +14,7 @@ static ilk_tick_t tick;
 
 ilk_ghost_t nondet_ghost(void);
 bool nondet_truth(void);
+uint32_t nondet_word(void);
 
 #define RELATED(claim)                   \
   do {                                   \
@@ -37,7 +38,10 @@ bool config_is_valid(void) {
     const ilk_axis_config_t* a = &config.axis[slot];
     valid = valid && a->card < ILK_CARD_COUNT && a->required <= 1u && a->motor_direction <= 1u &&
             a->direction_correction <= 1u && a->limit_side < ILK_LIMIT_COUNT &&
-            a->unhomed_max_drive <= a->max_drive;
+            a->unhomed_max_drive <= a->max_drive &&
+            HOLDS_IF(has_motor(a), a->noise_counts < (1u << 28) && a->drift_counts < (1u << 28) &&
+                                       a->stall_min_counts > 0u && a->stall_min_counts < (1u << 31) &&
+                                       a->deadband_counts < (1u << 30) && a->max_drive > 0u);
   }
   return valid;
 }
@@ -253,12 +257,36 @@ static void relate_calm(bool shown, bool middle) {
   }
 }
 
-/** MOTION has a number that is not 0. */
+static uint32_t nonce;      /**< of this start */
+static uint32_t press_tick; /**< in which the last press began */
+
+uint32_t __CPROVER_uninterpreted_number(uint32_t boot_nonce, uint32_t at);
+uint32_t number_of(uint32_t boot_nonce, uint32_t at) {
+  return __CPROVER_uninterpreted_number(boot_nonce, at);
+}
+
+bool is_number_of_another(uint32_t boot_nonce, uint32_t at, uint32_t number) {
+  return press_tick != 0u && at != press_tick && number == number_of(boot_nonce, press_tick);
+}
+
+/** The nonce is that of this start, and the last press began less than 2^32 ticks ago. */
+bool may_be_this_tick(void) { return in.boot_nonce == nonce && state.system.tick != press_tick; }
+
+/** MOTION has a number that is not 0, and not that of the press before. */
 static void relate_number(bool shown, bool middle) {
   const ilk_system_t* s = &state.system;
-  RELATED(HOLDS_IF(s->mode == ILK_MODE_MOTION, s->consent != 0u));
+  const bool motion = s->mode == ILK_MODE_MOTION;
+  RELATED(HOLDS_IF(motion, s->consent != 0u));
+  RELATED(HOLDS_IF(ghost.last_consent != 0u,
+                   press_tick != 0u && ghost.last_consent == number_of(nonce, press_tick)));
   if (middle) {
-    RELATED(HOLDS_IF(before.mode == ILK_MODE_MOTION, before.consent != 0u));
+    RELATED(HOLDS_IF(before.mode == ILK_MODE_MOTION,
+                     before.consent != 0u && before.consent == ghost.last_consent));
+    RELATED(HOLDS_IF(motion && before.mode != ILK_MODE_MOTION, s->tick != 0u &&
+                                                                   s->consent == number_of(nonce, s->tick) &&
+                                                                   s->consent != ghost.last_consent));
+  } else {
+    RELATED(HOLDS_IF(motion, s->consent == ghost.last_consent));
   }
 }
 
@@ -287,6 +315,8 @@ static void relate_stall(bool shown, bool middle) {
     RELATED(g->stall_ticks == a->stall_driven_ticks);
     RELATED(g->effort == (((uint64_t)a->effort_high << 32) | a->effort_low));
     if (middle) {
+      RELATED(HOLDS_IF(was_well && a->state == ILK_AXIS_FAULTED, a->fault_tick == state.system.tick));
+      RELATED(HOLDS_IF(!was_well && a->state == ILK_AXIS_FAULTED, a->fault == before.axis[slot].fault));
       RELATED(HOLDS_IF(g->stalled && was_well,
                        a->state == ILK_AXIS_FAULTED && a->fault_tick == state.system.tick));
       RELATED(HOLDS_IF(was_well && a->state == ILK_AXIS_FAULTED && a->fault == ILK_FAULT_STALL, g->stalled));
@@ -396,12 +426,18 @@ bool right_checksum(const uint32_t* frame) { return checksum_is_right(frame); }
 
 void some_memory(void) {
   ghost = nondet_ghost();
+  nonce = nondet_word();
+  press_tick = nondet_word();
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
     checksums[slot] = nondet_truth();
   }
 }
 
-void first_memory(void) { ghost_init(&ghost); }
+void first_memory(void) {
+  ghost_init(&ghost);
+  nonce = nondet_word();
+  press_tick = 0u;
+}
 
 void see_before(void) { judge_view(&state, &before); }
 
@@ -483,5 +519,8 @@ void judge_drive(void) {
   GOAL(before.axis[0].state == ILK_AXIS_FAULTED && after.axis[0].state == ILK_AXIS_DISABLED);
   GOAL(before.mode == ILK_MODE_READY && after.mode == ILK_MODE_MOTION && driven);
   CLAIMS
+  if (after.mode == ILK_MODE_MOTION && before.mode != ILK_MODE_MOTION) {
+    press_tick = ghost.tick;
+  }
   ghost_settle(&ghost, &tick);
 }

@@ -33,10 +33,24 @@ STAND_INS = {
     "ilk_config_validate": "stand_in_validate",
     "ilk_frame_unpack": "stand_in_unpack",
     "checksum_is_right": "stand_in_checksum",
+    "consent_of": "stand_in_consent",
 }
-REAL = {"reading": ["ilk_frame_unpack", "checksum_is_right"], "validity": ["ilk_config_validate"]}
+REAL = {
+    "reading": ["ilk_frame_unpack", "checksum_is_right"],
+    "validity": ["ilk_config_validate"],
+    "numbers": ["consent_of"],
+}
 """Functions that a step takes as they are, because it is about them."""
+PRODUCTS = {
+    "kernel/src/axis.c": ["(uint64_t)config->max_delta_counts * axis->periods"],
+    "kernel/monitors/monitors.c": ["(uint64_t)config->max_delta_counts * g->periods"],
+}
+"""What kernel and judge multiply alike. The prover need not compare multipliers: it takes each product for
+the same unknown function of its factors. A claim that holds of every function holds of the product."""
 CUTS = {"observation": "cut_after_observation", "drive": "cut_before_drive"}
+DOCUMENT = prover.ROOT / "docs" / "verification.md"
+BEGIN, END = "<!-- claims of the whole tick -->", "<!-- end of the claims -->"
+"""The marks between which the document shows the claims."""
 SECONDS = 600
 """Processor time after which a step is given up."""
 
@@ -55,6 +69,7 @@ class Step:
     goals: int = 0
     unwind: int = 34
     named: int | None = None
+    solver: str = ""
 
 
 def load() -> tuple[list[Step], dict]:
@@ -82,6 +97,24 @@ def gaps(steps: list[Step]) -> Iterator[str]:
             shown_before |= set(step.shown)
 
 
+def with_products(logs: Path) -> dict[str, str]:
+    """Copies of the files with products as functions. Raises ValueError when a product is not there once."""
+    made = {}
+    for name, products in PRODUCTS.items():
+        text = (prover.ROOT / name).read_text("utf-8")
+        for product in products:
+            if text.count(product) != 1:
+                raise ValueError(f"{name} does not say once: {product}")
+            text = text.replace(product, f"__CPROVER_uninterpreted_product({product.replace(' * ', ', ')})")
+        copy = logs / Path(name).name
+        copy.write_text(
+            f"#include <stdint.h>\nuint64_t __CPROVER_uninterpreted_product(uint64_t, uint64_t);\n{text}",
+            "utf-8",
+        )
+        made[name] = str(copy)
+    return made
+
+
 def program(step: Step, kind: str, logs: Path) -> Path:
     """The goto program of a step. Raises ValueError with the tool's words."""
     logs.mkdir(parents=True, exist_ok=True)
@@ -93,8 +126,9 @@ def program(step: Step, kind: str, logs: Path) -> Path:
     defines += [] if step.named is None else [f"-DNAMED={step.named}"]
     defines += ["-DILK_COVER"] if kind == "cover" else []
     files = [str((HERE / name).relative_to(prover.ROOT)) for name in ("harness.c", "relation.c")]
-    files += [f"kernel/src/{name}" for name in SOURCES]
-    folders = ["kernel/include", "kernel/src", "kernel/monitors", "verification/tick"]
+    copied = with_products(logs)
+    files += [copied.get(f"kernel/src/{name}", f"kernel/src/{name}") for name in SOURCES]
+    folders = [str(logs), "kernel/include", "kernel/src", "kernel/monitors", "verification/tick"]
     includes = [part for folder in folders for part in ("-I", folder)]
     compile_ = ["-std=c11", *defines, *includes, "--function", step.entry, "-o", str(linked), *files]
     prover.call("goto-cc", compile_, logs / f"{kind}.compile.log", prover.COMPILE_SECONDS)
@@ -123,6 +157,7 @@ def entries(step: Step, kind: str, logs: Path) -> list[dict]:
     """What the prover says of each claim, or of each goal."""
     made = program(step, kind, logs)
     options = ["--no-standard-checks", "--slice-formula", "--unwind", str(step.unwind), *prover.JSON]
+    options += [f"--{step.solver}"] if step.solver else []
     options += ["--cover", "cover"] if kind == "cover" else ["--unwinding-assertions"]
     told = prover.messages(prover.call("cbmc", [*options, str(made)], logs / f"{kind}.json", SECONDS))
     return prover.entries(told, "goals" if kind == "cover" else "result")
@@ -153,12 +188,31 @@ def prove(step: Step, logs: Path, failures: evidence.Failures) -> dict[str, int]
     return count
 
 
+def table(properties: dict) -> str:
+    """The claims as docs/verification.md shows them."""
+    rows = ["| property | stated | shown | bound | exempt |", "|---|---|---|---|---|"]
+    keys = ("stated", "shown", "bound", "exempt")
+    for name, entry in properties.items():
+        rows.append(f"| {name} | {' | '.join(entry.get(key, '') for key in keys)} |")
+    return "\n".join(["Generated from `verification/tick/tick.toml`.", "", *rows])
+
+
+def with_table(document: str, properties: dict) -> str:
+    """The document with the claims of today between its marks."""
+    head, rest = document.split(BEGIN)
+    return f"{head}{BEGIN}\n{table(properties)}\n{END}{rest.split(END)[1]}"
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("names", nargs="*", help="steps to run; all when none is named")
-    names = parser.parse_args().names
+    parser.add_argument("--table", action="store_true", help="write the claims into docs/verification.md")
+    names = (arguments := parser.parse_args()).names
     started = time.monotonic()
     steps, properties = load()
+    if arguments.table:
+        DOCUMENT.write_text(with_table(DOCUMENT.read_text("utf-8"), properties), "utf-8")
+        return 0
     if unknown_names := set(names) - {step.name for step in steps}:
         parser.error(f"no such step: {', '.join(sorted(unknown_names))}")
     if found := list(gaps(steps)):

@@ -59,6 +59,14 @@ bool is_still(const uint32_t* frame);
 bool stand_in_checksum(const uint32_t* frame);
 bool right_checksum(const uint32_t* frame);
 
+/** The number of the press that begins in this tick, and whether it is that of the press before, in another
+ * tick. */
+uint32_t number_of(uint32_t boot_nonce, uint32_t tick);
+bool is_number_of_another(uint32_t boot_nonce, uint32_t tick, uint32_t number);
+
+/** What the proofs take for granted of each tick. */
+bool may_be_this_tick(void);
+
 /** The snapshots of this tick. */
 void see_before(void);
 void see_after(const ilk_state_t* end);
