@@ -64,6 +64,7 @@ void ilk_axis_disable(ilk_axis_t *axis) {
 }
 
 void ilk_axis_begin_press(ilk_axis_t *axis) {
+  axis->path_raw = axis->raw;
   axis->path_is_homing = 0u;
   axis->unhomed_travel_counts = 0u;
   axis->homing_travel_counts = 0u;

@@ -4,7 +4,6 @@
 #define SPEED_MAX 100000000u      /* counts per second: products of the checks below fit in 64 bits */
 #define US_PER_MS 1000u
 #define US_PER_S 1000000u
-#define EFFORT_MAX_MS 200u
 #define HOMING_MAX_MS 600000u /* ten minutes */
 
 uint32_t ilk_card_max_drive(uint32_t card) {
@@ -118,7 +117,7 @@ static uint64_t way_of_reversal(const ilk_axis_config_t *axis, uint32_t counts) 
 static bool effort_fits(const ilk_axis_config_t *axis, uint32_t us) {
   const uint64_t speed = (uint64_t)us * axis->full_speed_counts_per_s;
   const uint64_t least = way_of_reversal(axis, 1u);
-  const uint64_t longest = ((uint64_t)EFFORT_MAX_MS * US_PER_MS) / us;
+  const uint64_t longest = ((uint64_t)200u * US_PER_MS) / us;
   const uint64_t ticks = axis->stall_effort_ticks;
   return (ticks == 0u) ? ((longest * speed) < least) : ((ticks <= longest) && ((ticks * speed) >= least));
 }

@@ -252,6 +252,25 @@ TEST(P7_bounds,
   }
 }
 
+TEST(P7_bounds, a_press_counts_travel_from_its_last_reading_even_when_no_frame_came_since_the_press_before) {
+  ilk_config_t config = standard_config();
+  config.common.pedal_debounce_ticks = 1;
+  config.common.bad_frame_limit = 5;
+  seal(config);
+  Bench bench = motion_bench(axis, config);
+  bench.motor[axis].travelled += 1;
+  bench.tick();
+  bench.spoil(axis, FrameFault::missing, 3);
+  bench.pedal(false);
+  bench.ticks(2);
+  bench.pedal(true);
+  bench.tick();
+  ASSERT_EQ(bench.mode(), ILK_MODE_MOTION);
+  bench.motor[axis].travelled += 1;
+  bench.tick();
+  EXPECT_EQ(bench.axis(axis).unhomed_travel_counts, 0u) << "a count, which is noise";
+}
+
 TEST(P7_bounds, unhomed_travel_ends_drive_by_the_gate_itself) {
   Bench bench = motion_bench(axis);
   bench.motor[axis].speed = 4;
