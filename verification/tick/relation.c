@@ -272,16 +272,23 @@ bool is_number_of_another(uint32_t boot_nonce, uint32_t at, uint32_t number) {
 /** The nonce is that of this start, and the last press began less than 2^32 ticks ago. */
 bool may_be_this_tick(void) { return in.boot_nonce == nonce && state.system.tick != press_tick; }
 
-/** MOTION has a number that is not 0, and not that of the press before. */
+/** MOTION has a number that is not 0. */
 static void relate_number(bool shown, bool middle) {
   const ilk_system_t* s = &state.system;
-  const bool motion = s->mode == ILK_MODE_MOTION;
-  RELATED(HOLDS_IF(motion, s->consent != 0u));
-  RELATED(HOLDS_IF(ghost.last_consent != 0u,
-                   press_tick != 0u && ghost.last_consent == number_of(nonce, press_tick)));
+  RELATED(HOLDS_IF(s->mode == ILK_MODE_MOTION, s->consent != 0u));
   if (middle) {
-    RELATED(HOLDS_IF(before.mode == ILK_MODE_MOTION,
-                     before.consent != 0u && before.consent == ghost.last_consent));
+    RELATED(HOLDS_IF(before.mode == ILK_MODE_MOTION, before.consent != 0u));
+  }
+}
+
+/** The number of a press is not that of the press before. */
+static void relate_press(bool shown, bool middle) {
+  const ilk_system_t* s = &state.system;
+  const bool motion = s->mode == ILK_MODE_MOTION;
+  const bool was_known = ghost.last_consent != 0u;
+  RELATED(HOLDS_IF(was_known, press_tick != 0u && ghost.last_consent == number_of(nonce, press_tick)));
+  if (middle) {
+    RELATED(HOLDS_IF(before.mode == ILK_MODE_MOTION, before.consent == ghost.last_consent));
     RELATED(HOLDS_IF(motion && before.mode != ILK_MODE_MOTION, s->tick != 0u &&
                                                                    s->consent == number_of(nonce, s->tick) &&
                                                                    s->consent != ghost.last_consent));
@@ -349,6 +356,9 @@ void relate(bool shown, bool middle, unsigned parts) {
   }
   if ((parts & NUMBER) != 0u) {
     relate_number(shown, middle);
+  }
+  if ((parts & PRESS) != 0u) {
+    relate_press(shown, middle);
   }
   if ((parts & STALL) != 0u) {
     relate_stall(shown, middle);

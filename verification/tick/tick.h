@@ -29,6 +29,7 @@
 #define STALL 0x200u    /**< marks and sums of progress */
 #define PLACE 0x400u    /**< position and reference */
 #define NUMBER 0x800u   /**< MOTION has a number */
+#define PRESS 0x1000u   /**< whose number is not that of the press before */
 #define RUNAWAY 0x2000u /**< a FAULTED axis that moves locks */
 
 #define HOLDS_IF(condition, consequence) (!(condition) || (consequence))
@@ -64,7 +65,7 @@ bool right_checksum(const uint32_t* frame);
 uint32_t number_of(uint32_t boot_nonce, uint32_t tick);
 bool is_number_of_another(uint32_t boot_nonce, uint32_t tick, uint32_t number);
 
-/** What the proofs take for granted of each tick. */
+/** What the steps that take PRESS for granted assume of each tick besides, and no others. */
 bool may_be_this_tick(void);
 
 /** The snapshots of this tick. */
