@@ -7,8 +7,6 @@
 #define SEAL_FACTOR 0x9e3779b1u
 
 #define BYTE_MAX 0xffu
-/** No three bytes make it. */
-#define WIRING_UNKNOWN UINT32_MAX
 
 /** Words of a structure. */
 #define WORDS(type) ((uint32_t)(sizeof(type) / 4u))
@@ -43,13 +41,15 @@ bool ilk_state_is_sealed(const ilk_state_t *state) { return state->seal == state
 
 void ilk_state_seal(ilk_state_t *state) { state->seal = state_digest(state); }
 
-/** What direction on the wire and switch of an axis mean. Equal words of two configurations, of which one is
-   valid, say that card, switch end and motor sense are equal. */
+/** What direction on the wire and switch of an axis mean: card, switch end and motor sense, a byte each. */
 static uint32_t wiring_of(const ilk_axis_config_t *axis) {
-  const bool fits =
-      (axis->card <= BYTE_MAX) && (axis->limit_side <= BYTE_MAX) && (axis->motor_direction <= BYTE_MAX);
-  return fits ? (axis->card + (axis->limit_side * 0x100u) + (axis->motor_direction * 0x10000u))
-              : WIRING_UNKNOWN;
+  return axis->card | (axis->limit_side << 8) | (axis->motor_direction << 16);
+}
+
+/** Exactly, so that what no byte holds is wired in no way. */
+static bool is_wired(const ilk_axis_config_t *axis, uint32_t wiring) {
+  return (axis->card == (wiring & BYTE_MAX)) && (axis->limit_side == ((wiring >> 8) & BYTE_MAX)) &&
+         (axis->motor_direction == (wiring >> 16));
 }
 
 /** A state that owes nothing to the one before: LOCKED for a cause, INIT without one; positions unknown. */
@@ -115,7 +115,7 @@ static bool basis_is_kept(const ilk_config_t *config, const ilk_state_t *state) 
   bool kept = (config->common.pedal_channels == state->system.pedal_channels) &&
               (config->common.app_timeout_ticks == state->system.app_timeout_ticks);
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
-    kept = kept && (wiring_of(&config->axis[slot]) == state->axis[slot].wiring);
+    kept = kept && is_wired(&config->axis[slot], state->axis[slot].wiring);
   }
   return kept;
 }

@@ -23,9 +23,11 @@ Wishes ==
   IF axis.state = "HOMING" THEN {<<>>, <<Ask("DISABLE"), Ask("ENABLE"), Ask("HOME")>>}
   ELSE {<<Ask("ENABLE"), Ask("HOME")>>}
 
-(* What the inputs have shown since HOME: how much of the order, a run of readings of the
-   switch with the counter at its first, the two edges, and a run at rest. *)
-Nothing == [shown |-> 0, triggered |-> FALSE, ticks |-> 0, raw |-> 0, e1 |-> 0, e2 |-> 0,
+(* What the inputs have shown since HOME: a run of readings of the switch with the counter
+   at its first; whether it was open since the last edge; the edges that may be e1, and
+   whether it was open and clear of each, and driven slowly since; those that may then be
+   e2; and a run at rest. *)
+Nothing == [open |-> FALSE, triggered |-> FALSE, ticks |-> 0, raw |-> 0, firsts |-> {}, seconds |-> {},
             driven |-> FALSE, rest |-> RunAt(0)]
 
 Counted ==
@@ -40,24 +42,26 @@ Counted ==
 Closed(w) == w.triggered /\ w.ticks = k.switch_debounce_ticks
 Open(w)   == ~w.triggered /\ w.ticks = k.switch_debounce_ticks
 Rests(w)  == Read1.valid /\ w.rest.ticks >= k.rest_ticks
-Clear(w)  == Along(AwayFromSwitch(k), Read1.raw - w.e1) >= k.home_clear_counts
+Clear(e)  == Along(AwayFromSwitch(k), Read1.raw - e.at) >= k.home_clear_counts
+Agree(w)  == \E e \in w.firsts : e.clear /\ Magnitude(w.raw - e.at) <= k.home_tolerance_counts
 
 Shown(w) ==
   CASE ~Read1.valid -> w
-    [] w.shown = 0 /\ Open(w)              -> [w EXCEPT !.shown = 1]
-    [] w.shown = 1 /\ Closed(w)            -> [w EXCEPT !.shown = 2, !.e1 = w.raw]
-    [] w.shown = 2 /\ Open(w) /\ Clear(w)  -> [w EXCEPT !.shown = 3]
-    [] w.shown = 3 /\ Closed(w)            -> [w EXCEPT !.shown = 4, !.e2 = w.raw]
-    [] w.shown = 4 /\ Rests(w) /\ Open(w)  -> [w EXCEPT !.shown = 3, !.e2 = 0]
+    [] Open(w) -> [w EXCEPT !.open = TRUE, !.firsts = {[e EXCEPT !.clear = @ \/ Clear(e)] : e \in @}]
+    [] Closed(w) /\ w.open ->
+         [w EXCEPT !.open = FALSE, !.firsts = @ \union {[at |-> w.raw, clear |-> FALSE]},
+                   !.seconds = IF Agree(w) THEN @ \union {w.raw} ELSE @]
     [] OTHER -> w
 
-(* Too fast since it was open and clear: that approach counts for nothing. *)
+(* Too fast: whatever approach this is, it is not the slow one. *)
 Witnessed ==
   LET w    == Shown(Counted)
-      fast == w.shown >= 3 /\ io'.command.drive > k.home_slow_drive
+      fast == io'.command.drive > k.home_slow_drive
   IN  IF axis'.state # "HOMING" \/ Accepted({"HOME"}) THEN Nothing
-      ELSE [w EXCEPT !.driven = Driven, !.shown = IF fast THEN 0 ELSE @,
-                     !.raw = IF w.triggered /\ w.shown \in {1, 3} THEN @ ELSE 0,
+      ELSE [w EXCEPT !.driven = Driven,
+                     !.firsts = IF fast THEN {[e EXCEPT !.clear = FALSE] : e \in @} ELSE @,
+                     !.seconds = IF fast THEN {} ELSE @,
+                     !.raw = IF w.triggered /\ w.open THEN @ ELSE 0,
                      !.rest = IF Driven THEN RunAt(0) ELSE @]
 
 Step(in, m) == Tock(in, m) /\ seen' = Witnessed
@@ -90,9 +94,9 @@ ByHome == axis.homed # "SWITCH" /\ io'.observed.homed = "SWITCH"
 P17_reference ==
   [][ ByHome =>
         LET w == Shown(Counted) IN
-        /\ w.shown = 4 /\ Rests(w) /\ Closed(w)
-        /\ Magnitude(w.e2 - w.e1) <= k.home_tolerance_counts
-        /\ io'.observed.position_counts = Read1.raw - w.e2 + k.home_offset_counts ]_vars
+        /\ Rests(w) /\ Closed(w)
+        /\ \E e2 \in w.seconds :
+             io'.observed.position_counts = Read1.raw - e2 + k.home_offset_counts ]_vars
 
 (* HOME takes the reference; nothing but HOME gives it here. *)
 P17_not_before == [][ axis'.state = "HOMING" => axis'.homed = "NO" ]_vars

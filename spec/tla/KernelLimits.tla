@@ -43,7 +43,8 @@ Nothing == [by |-> "MOVE", move |-> 0, home |-> 0, point |-> 0]
 
 Witnessed ==
   LET now    == io'.axis.raw
-      path   == IF Magnitude(now - seen.point) > k.noise_counts THEN Magnitude(now - seen.point) ELSE 0
+      far    == Magnitude(now - seen.point)
+      path   == IF far > k.noise_counts /\ ~IsHomed(axis) THEN far ELSE 0
       begun  == io'.system.mode = "MOTION" /\ system.mode # "MOTION"
       home   == Accepted({"HOME"})
       move   == Driven /\ io'.axis.state = "MOVING"
@@ -52,7 +53,7 @@ Witnessed ==
       ELSE [ by    |-> IF move THEN "MOVE" ELSE IF home THEN "HOME" ELSE seen.by,
              move  |-> seen.move + (IF seen.by = "MOVE" THEN path ELSE 0),
              home  |-> seen.home + (IF seen.by = "HOME" THEN path ELSE 0),
-             point |-> IF path = 0 THEN seen.point ELSE now ]
+             point |-> IF path # 0 \/ (IsHomed(axis) /\ Read1.valid) THEN now ELSE seen.point ]
 
 Step(in, m) == Tock(in, m) /\ seen' = Witnessed
 

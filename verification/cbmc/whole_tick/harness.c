@@ -152,7 +152,7 @@ static bool basis_changed(void) {
     const ilk_axis_config_t* axis = &config.axis[slot];
     const uint32_t wiring = state.axis[slot].wiring;
     same = same && (axis->card == (wiring & 0xffu)) && (axis->limit_side == ((wiring >> 8) & 0xffu)) &&
-           (axis->motor_direction == (wiring >> 16)) && (wiring != 0xffffffffu);
+           (axis->motor_direction == (wiring >> 16));
   }
   return !same;
 }
