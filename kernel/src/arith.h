@@ -12,7 +12,7 @@
 
 /** `value + 1`, stopping at `ceiling`; a value beyond the ceiling comes back to it. */
 static inline uint32_t count_up(uint32_t value, uint32_t ceiling) {
-  return (value < ceiling) ? (value + 1u) : ceiling;
+  return (value >= ceiling) ? ceiling : (value + 1u);
 }
 
 /** How long a condition has held, when so far it had for `ticks`. */
@@ -36,7 +36,9 @@ static inline uint32_t sum_saturating(uint32_t a, uint32_t b) {
 }
 
 /** What is left of `whole` when `used` is gone, stopping at zero. */
-static inline uint32_t left_of(uint32_t whole, uint32_t used) { return (whole > used) ? (whole - used) : 0u; }
+static inline uint32_t left_of(uint32_t whole, uint32_t used) {
+  return (whole <= used) ? 0u : (whole - used);
+}
 
 /** The opposite, stopping at the largest `int32_t`. */
 static inline int32_t negate_saturating(int32_t value) { return (value == INT32_MIN) ? INT32_MAX : -value; }
@@ -54,7 +56,8 @@ static inline int32_t signed_of(uint32_t word) {
 
 /** Motion from one counter reading to another, modulo 2^32, in the sense of the position. */
 static inline int32_t travel_between(const ilk_axis_config_t *config, uint32_t from_raw, uint32_t to_raw) {
-  return signed_of((config->direction_correction != 0u) ? (from_raw - to_raw) : (to_raw - from_raw));
+  const uint32_t forth = to_raw - from_raw;
+  return signed_of((config->direction_correction == 0u) ? forth : (from_raw - to_raw));
 }
 
 /** `travel` counted positive along `direction`; zero for no direction. */

@@ -239,8 +239,7 @@ static ilk_finding_t follow_card(const ilk_axis_config_t *config, const ilk_read
   axis->card_status = reading->card_status;
   axis->card_seen = 1u;
   if (first || (finding.fault != ILK_FAULT_NONE)) {
-    axis->runaway =
-        flag_of((axis->runaway != 0u) || (goes_on && (axis->state == (uint32_t)ILK_AXIS_FAULTED)));
+    axis->runaway |= flag_of(goes_on && (axis->state == (uint32_t)ILK_AXIS_FAULTED));
     begin_anew(axis);
   }
   return finding;
@@ -251,9 +250,8 @@ static void follow_path(const ilk_axis_config_t *config, const ilk_system_t *sys
   const bool counts = (system->mode == (uint32_t)ILK_MODE_MOTION) && (axis->homed == (uint32_t)ILK_HOMED_NOT);
   const uint32_t distance = magnitude(travel_between(config, axis->path_raw, axis->raw));
   if (!counts || (distance > config->noise_counts)) {
-    uint32_t *travel =
-        (axis->path_is_homing != 0u) ? &axis->homing_travel_counts : &axis->unhomed_travel_counts;
-    *travel = sum_saturating(*travel, counts ? distance : 0u);
+    uint32_t *sum = (axis->path_is_homing != 0u) ? &axis->homing_travel_counts : &axis->unhomed_travel_counts;
+    *sum = sum_saturating(*sum, counts ? distance : 0u);
     axis->path_raw = axis->raw;
   }
 }

@@ -107,19 +107,18 @@ static ilk_config_error_t drive_error(const ilk_axis_config_t *axis, uint32_t us
   return error;
 }
 
-/** Longest way of driven ticks until a reversal at full speed makes `counts` of progress, in micro-counts. */
-static uint64_t way_of_reversal(const ilk_axis_config_t *axis, uint32_t counts) {
-  const uint64_t lost = (uint64_t)axis->backlash_counts + axis->noise_counts;
-  return ((5u * (uint64_t)axis->coast_counts) + lost + counts) * US_PER_S;
+/** Longest way of driven ticks until a reversal at full speed makes `way` of progress, in micro-counts. */
+static uint64_t way_of_reversal(const ilk_axis_config_t *axis, uint32_t way) {
+  return ((5u * (uint64_t)axis->coast_counts) + axis->backlash_counts + axis->noise_counts + way) * US_PER_S;
 }
 
 /** An axis that is fast enough has both bounds; a slower one has none for effort, and says so. */
 static bool effort_fits(const ilk_axis_config_t *axis, uint32_t us) {
   const uint64_t speed = (uint64_t)us * axis->full_speed_counts_per_s;
-  const uint64_t least = way_of_reversal(axis, 1u);
   const uint64_t longest = ((uint64_t)200u * US_PER_MS) / us;
   const uint64_t ticks = axis->stall_effort_ticks;
-  return (ticks == 0u) ? ((longest * speed) < least) : ((ticks <= longest) && ((ticks * speed) >= least));
+  const uint64_t judged = (ticks == 0u) ? longest : ticks;
+  return (ticks <= longest) && (((judged * speed) < way_of_reversal(axis, 1u)) == (ticks == 0u));
 }
 
 static ilk_config_error_t watch_error(const ilk_axis_config_t *axis, const ilk_common_config_t *common) {
@@ -132,12 +131,13 @@ static ilk_config_error_t watch_error(const ilk_axis_config_t *axis, const ilk_c
   const uint32_t stall_min = axis->stall_min_counts;
   const uint64_t full = (uint64_t)us * axis->full_speed_counts_per_s;
   const uint64_t slowest = has_switch(axis) ? ((uint64_t)us * axis->home_slow_speed_counts_per_s) : full;
-  const uint64_t progress = (stall_min + lost) * US_PER_S;
   ilk_config_error_t error = ILK_CONFIG_ERROR_NONE;
   need(&error, within(stall_min, noise + 1u, tenth), ILK_CONFIG_ERROR_STALL);
-  need(&error, lasts(axis->stall_ticks, us, unseen + 1u, 500u), ILK_CONFIG_ERROR_STALL);
-  need(&error, (left_of(axis->stall_ticks, unseen) * slowest) >= progress, ILK_CONFIG_ERROR_STALL);
-  need(&error, (axis->stall_ticks * full) >= way_of_reversal(axis, stall_min), ILK_CONFIG_ERROR_STALL);
+  need(&error,
+       lasts(axis->stall_ticks, us, unseen + 1u, 500u) &&
+           ((left_of(axis->stall_ticks, unseen) * slowest) >= ((stall_min + lost) * US_PER_S)) &&
+           ((axis->stall_ticks * full) >= way_of_reversal(axis, stall_min)),
+       ILK_CONFIG_ERROR_STALL);
   need(&error, effort_fits(axis, us), ILK_CONFIG_ERROR_STALL_EFFORT);
   need(&error, within(axis->reverse_counts, innocent, tenth), ILK_CONFIG_ERROR_REVERSE);
   need(&error, within(axis->drift_counts, innocent, tenth), ILK_CONFIG_ERROR_DRIFT);
@@ -168,7 +168,7 @@ static uint64_t time_of_homing(const ilk_axis_config_t *axis, const ilk_common_c
 
 static ilk_config_error_t homing_error(const ilk_axis_config_t *axis, const ilk_common_config_t *common) {
   const uint32_t us = common->period_us;
-  const uint64_t range = range_of(axis);
+  const uint32_t range = range_of(axis);
   const uint64_t coast = axis->coast_counts;
   const uint64_t noise = axis->noise_counts;
   const uint64_t awake = (uint64_t)axis->dead_zone_drive + 1u;
@@ -176,22 +176,22 @@ static ilk_config_error_t homing_error(const ilk_axis_config_t *axis, const ilk_
   const uint64_t edges = (uint64_t)axis->home_tolerance_counts + axis->switch_hysteresis_counts + coast;
   const bool lower = axis->limit_side == (uint32_t)ILK_LIMIT_LOWER;
   const uint32_t home = (uint32_t)axis->home_offset_counts;
-  const uint64_t open_side =
+  const uint32_t open_side =
       lower ? ((uint32_t)axis->max_counts - home) : (home - (uint32_t)axis->min_counts);
-  const uint64_t debounce = (uint64_t)common->switch_debounce_ticks + 2u;
   const uint32_t home_speed = axis->home_speed_counts_per_s;
-  const uint64_t apart = travel_in(home_speed, debounce, us) + (2u * noise);
+  const uint64_t gap = travel_in(home_speed, (uint64_t)common->switch_debounce_ticks + 2u, us) + (2u * noise);
   ilk_config_error_t error = ILK_CONFIG_ERROR_NONE;
   need(&error, within(axis->home_slow_speed_counts_per_s, 1u, home_speed), ILK_CONFIG_ERROR_SPEED);
   need(&error, home_speed <= axis->full_speed_counts_per_s, ILK_CONFIG_ERROR_SPEED);
   need(&error, within(axis->home_drive, awake, axis->unhomed_max_drive), ILK_CONFIG_ERROR_HOME_DRIVE);
   need(&error, within(axis->home_slow_drive, awake, axis->home_drive), ILK_CONFIG_ERROR_HOME_SLOW);
   need(&error, axis->switch_hysteresis_counts <= (range / 10u), ILK_CONFIG_ERROR_HYSTERESIS);
-  need(&error, within(axis->home_tolerance_counts, apart, range / 10u), ILK_CONFIG_ERROR_HOME_TOLERANCE);
+  need(&error, within(axis->home_tolerance_counts, gap, range / 10u), ILK_CONFIG_ERROR_HOME_TOLERANCE);
   need(&error, open_side > (edges + axis->deadband_counts), ILK_CONFIG_ERROR_HOME_OFFSET);
   need(&error, within(clear, edges + 1u, range / 10u), ILK_CONFIG_ERROR_HOME_CLEAR);
-  need(&error, clear > (axis->stall_min_counts + axis->backlash_counts + noise), ILK_CONFIG_ERROR_HOME_CLEAR);
-  need(&error, within(axis->home_travel_counts, way_of_homing(axis) + coast + noise + 1u, 4u * range),
+  need(&error, clear > (noise + axis->stall_min_counts + axis->backlash_counts), ILK_CONFIG_ERROR_HOME_CLEAR);
+  need(&error,
+       within(axis->home_travel_counts, way_of_homing(axis) + coast + noise + 1u, 4u * (uint64_t)range),
        ILK_CONFIG_ERROR_HOME_TRAVEL);
   need(&error, lasts(axis->home_timeout_ticks, us, 1u, HOMING_MAX_MS), ILK_CONFIG_ERROR_HOME_TIMEOUT);
   if (error == ILK_CONFIG_ERROR_NONE) {
@@ -229,7 +229,7 @@ static ilk_config_error_t axis_error(const ilk_axis_config_t *axis, const ilk_co
 
 /** A slot without a motor carries nothing but its card and, for a sensor, `required`. */
 static bool is_bare(const ilk_axis_config_t *axis) {
-  const unsigned char *bytes = (const unsigned char *)axis;
+  const uint8_t *bytes = (const uint8_t *)axis;
   uint32_t bits = has_card(axis) ? 0u : axis->required;
   for (uint32_t index = 2u * (uint32_t)sizeof(uint32_t); index < (uint32_t)sizeof(*axis); index++) {
     bits |= bytes[index];

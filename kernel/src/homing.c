@@ -3,7 +3,7 @@
 /** The other of the two directions, 1 and 2; NONE without a switch. */
 static uint32_t away_from_switch(const ilk_axis_config_t *config) {
   const uint32_t towards = towards_switch(config);
-  return (towards != (uint32_t)ILK_DIRECTION_NONE) ? (ILK_DIRECTION_COUNT - towards) : towards;
+  return (towards == (uint32_t)ILK_DIRECTION_NONE) ? towards : (ILK_DIRECTION_COUNT - towards);
 }
 
 uint32_t ilk_homing_travel_left(const ilk_axis_config_t *config, const ilk_axis_t *axis) {

@@ -8,12 +8,9 @@
 
 #define BYTE_MAX 0xffu
 
-/** Words of a structure. */
-#define WORDS(type) ((uint32_t)(sizeof(type) / 4u))
-
-_Static_assert(sizeof(ilk_state_t) == (4u * (WORDS(ilk_system_t) + (ILK_SLOTS * WORDS(ilk_axis_t)) + 1u)),
+_Static_assert(sizeof(ilk_state_t) == (sizeof(ilk_system_t) + sizeof(ilk_axis_t[ILK_SLOTS]) + 4u),
                "all is words, and every word is sealed or is the seal");
-_Static_assert((WORDS(ilk_state_t) % 2u) == 0u, "an odd number of words is sealed");
+_Static_assert((sizeof(ilk_state_t) % 8u) == 0u, "an odd number of words is sealed");
 
 /** Mixes a word into the digest. The step can be undone, so a change of any one word changes the result;
    product and rotation together spread it over all bits, so that changes of several words do not cancel. */
@@ -23,7 +20,7 @@ static uint32_t mix(uint32_t digest, uint32_t word) {
 }
 
 /** Of an odd number of words, in two lanes, so that a processor can work on both at once. */
-static uint32_t digest_of(const unsigned char bytes[], uint32_t words) {
+static uint32_t digest_of(const uint8_t bytes[], uint32_t words) {
   uint32_t even = SEAL_SEED;
   uint32_t odd = ODD_SEED;
   for (uint32_t word = 0u; (word + 1u) < words; word += 2u) {
@@ -34,7 +31,7 @@ static uint32_t digest_of(const unsigned char bytes[], uint32_t words) {
 }
 
 static uint32_t state_digest(const ilk_state_t *state) {
-  return digest_of((const unsigned char *)state, WORDS(ilk_state_t) - 1u);
+  return digest_of((const uint8_t *)state, (uint32_t)(sizeof(*state) / 4u) - 1u);
 }
 
 bool ilk_state_is_sealed(const ilk_state_t *state) { return state->seal == state_digest(state); }
@@ -90,12 +87,11 @@ ilk_config_verdict_t ilk_init(const ilk_config_t *config, ilk_state_t *state) {
 /** Adds the next slice of the configuration to the running CRC-32, and judges at the end of a pass. */
 static void check_slice(const ilk_config_t *config, ilk_system_t *system, ilk_alarms_t *alarms) {
   const uint32_t slice = (system->config_slice < (uint32_t)ILK_SLOTS) ? system->config_slice : 0u;
-  const uint32_t so_far = (slice != 0u)
-                              ? system->config_partial_crc
-                              : ilk_crc32_words(ILK_CRC32_START, (const unsigned char *)&config->common,
-                                                WORDS(ilk_common_config_t));
-  const uint32_t crc =
-      ilk_crc32_words(so_far, (const unsigned char *)&config->axis[slice], WORDS(ilk_axis_config_t));
+  const uint32_t so_far = (slice != 0u) ? system->config_partial_crc
+                                        : ilk_crc32_words(ILK_CRC32_START, (const uint8_t *)&config->common,
+                                                          (uint32_t)(sizeof(config->common) / 4u));
+  const uint32_t crc = ilk_crc32_words(so_far, (const uint8_t *)&config->axis[slice],
+                                       (uint32_t)(sizeof(config->axis[slice]) / 4u));
   system->config_partial_crc = crc;
   system->config_slice = slice + 1u;
   if (system->config_slice == (uint32_t)ILK_SLOTS) {

@@ -186,7 +186,8 @@ void ilk_mode_decide(const ilk_config_t *config, const ilk_inputs_t *in, const i
                      ilk_state_t *state) {
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
     /* A damaged configuration may have counted the wrong way until it was found. */
-    state->axis[slot].homed = alarms->configuration_damaged ? ILK_HOMED_NOT : state->axis[slot].homed;
+    ilk_axis_t *axis = &state->axis[slot];
+    axis->homed = alarms->configuration_damaged ? (uint32_t)ILK_HOMED_NOT : axis->homed;
   }
   follow_causes(&config->common, in, alarms, state);
   follow_consent(config, in, alarms, state);

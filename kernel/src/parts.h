@@ -24,7 +24,7 @@ uint32_t ilk_card_max_drive(uint32_t card);
 extern const uint32_t ilk_crc32_table[4][256];
 
 /** The word at these four bytes, as the machines that this runs on store it: lowest byte first. */
-static inline uint32_t word_at(const unsigned char bytes[4]) {
+static inline uint32_t word_at(const uint8_t bytes[4]) {
   return (uint32_t)bytes[0] | ((uint32_t)bytes[1] << 8u) | ((uint32_t)bytes[2] << 16u) |
          ((uint32_t)bytes[3] << 24u);
 }
@@ -37,7 +37,7 @@ static inline uint32_t ilk_crc32_word(uint32_t crc, uint32_t word) {
 }
 
 /** The running CRC after `words` more words. Start with ILK_CRC32_START; what is stored is XORed with it. */
-uint32_t ilk_crc32_words(uint32_t crc, const unsigned char bytes[], uint32_t words);
+uint32_t ilk_crc32_words(uint32_t crc, const uint8_t bytes[], uint32_t words);
 
 /* --- frame.c: card frames, spec/frames.md (P16) ------------------------------------------------ */
 

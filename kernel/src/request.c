@@ -1,7 +1,7 @@
 #include "parts.h"
 
 /** The first need that is not met is the verdict. */
-static void need(ilk_verdict_t *verdict, bool met, ilk_verdict_t otherwise) {
+static void must(ilk_verdict_t *verdict, bool met, ilk_verdict_t otherwise) {
   *verdict = ((*verdict == ILK_VERDICT_ACCEPTED) && !met) ? otherwise : *verdict;
 }
 
@@ -27,11 +27,11 @@ static bool setpoint_is_within(const ilk_common_config_t *common, const ilk_axis
 /** What MOVE and HOME need alike. */
 static void need_enabled(ilk_verdict_t *verdict, const ilk_system_t *system, const ilk_axis_t *axis,
                          uint32_t consent) {
-  need(verdict, mode_is(system, ILK_MODE_MOTION), ILK_VERDICT_MODE);
-  need(verdict, consent == system->consent, ILK_VERDICT_CONSENT);
-  need(verdict, !axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_FAULTED);
-  need(verdict, !axis_is(axis, ILK_AXIS_DISABLED), ILK_VERDICT_DISABLED);
-  need(verdict, !axis_is(axis, ILK_AXIS_HOMING), ILK_VERDICT_BUSY);
+  must(verdict, mode_is(system, ILK_MODE_MOTION), ILK_VERDICT_MODE);
+  must(verdict, consent == system->consent, ILK_VERDICT_CONSENT);
+  must(verdict, !axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_FAULTED);
+  must(verdict, !axis_is(axis, ILK_AXIS_DISABLED), ILK_VERDICT_DISABLED);
+  must(verdict, !axis_is(axis, ILK_AXIS_HOMING), ILK_VERDICT_BUSY);
 }
 
 /** The rows of the table that name an axis. */
@@ -43,39 +43,39 @@ static ilk_verdict_t judge(const ilk_common_config_t *common, const ilk_axis_con
   ilk_verdict_t verdict = ILK_VERDICT_ACCEPTED;
   switch (request->kind) {
     case (uint32_t)ILK_REQUEST_DISABLE:
-      need(&verdict, !axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_FAULTED);
+      must(&verdict, !axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_FAULTED);
       break;
     case (uint32_t)ILK_REQUEST_ENABLE:
-      need(&verdict, ilk_power_is_on(system), ILK_VERDICT_MODE);
-      need(&verdict, !axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_FAULTED);
-      need(&verdict, axis->card_valid != 0u, ILK_VERDICT_CARD);
-      need(&verdict, may_enable || !axis_is(axis, ILK_AXIS_DISABLED), ILK_VERDICT_BUSY);
+      must(&verdict, ilk_power_is_on(system), ILK_VERDICT_MODE);
+      must(&verdict, !axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_FAULTED);
+      must(&verdict, axis->card_valid != 0u, ILK_VERDICT_CARD);
+      must(&verdict, may_enable || !axis_is(axis, ILK_AXIS_DISABLED), ILK_VERDICT_BUSY);
       break;
     case (uint32_t)ILK_REQUEST_CLEAR_FAULT:
-      need(&verdict, axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_NO_FAULT);
-      need(&verdict, at_rest && (axis->fault_tick != system->tick), ILK_VERDICT_CAUSE_PRESENT);
-      need(&verdict, pedal_is_up(system), ILK_VERDICT_PEDAL_DOWN);
+      must(&verdict, axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_NO_FAULT);
+      must(&verdict, at_rest && (axis->fault_tick != system->tick), ILK_VERDICT_CAUSE_PRESENT);
+      must(&verdict, pedal_is_up(system), ILK_VERDICT_PEDAL_DOWN);
       break;
     case (uint32_t)ILK_REQUEST_MOVE:
       need_enabled(&verdict, system, axis, request->consent);
-      need(&verdict, count_of(request->lease_ticks, common->lease_max_ticks), ILK_VERDICT_LEASE);
-      need(&verdict, count_of(request->drive, ilk_drive_bound(config, axis)), ILK_VERDICT_DRIVE);
-      need(&verdict, request->amplitude <= config->max_amplitude, ILK_VERDICT_DRIVE);
-      need(&verdict, setpoint_is_within(common, config, axis, request->target_counts), ILK_VERDICT_RANGE);
+      must(&verdict, count_of(request->lease_ticks, common->lease_max_ticks), ILK_VERDICT_LEASE);
+      must(&verdict, count_of(request->drive, ilk_drive_bound(config, axis)), ILK_VERDICT_DRIVE);
+      must(&verdict, request->amplitude <= config->max_amplitude, ILK_VERDICT_DRIVE);
+      must(&verdict, setpoint_is_within(common, config, axis, request->target_counts), ILK_VERDICT_RANGE);
       break;
     case (uint32_t)ILK_REQUEST_HOME:
       need_enabled(&verdict, system, axis, request->consent);
-      need(&verdict, has_switch(config), ILK_VERDICT_NO_SWITCH);
-      need(&verdict, ilk_homing_has_budget(config, axis), ILK_VERDICT_BUDGET);
+      must(&verdict, has_switch(config), ILK_VERDICT_NO_SWITCH);
+      must(&verdict, ilk_homing_has_budget(config, axis), ILK_VERDICT_BUDGET);
       break;
     default: /* SET_HOME and RESTORE: they say where a resting axis stands. */
-      need(&verdict, mode_is(system, ILK_MODE_READY), ILK_VERDICT_MODE);
-      need(&verdict, pedal_is_up(system), ILK_VERDICT_PEDAL_DOWN);
-      need(&verdict, !axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_FAULTED);
-      need(&verdict, axis->card_valid != 0u, ILK_VERDICT_CARD);
-      need(&verdict, at_rest, ILK_VERDICT_BUSY);
-      need(&verdict, sets_home || (request->target_counts >= config->min_counts), ILK_VERDICT_RANGE);
-      need(&verdict, sets_home || (request->target_counts <= config->max_counts), ILK_VERDICT_RANGE);
+      must(&verdict, mode_is(system, ILK_MODE_READY), ILK_VERDICT_MODE);
+      must(&verdict, pedal_is_up(system), ILK_VERDICT_PEDAL_DOWN);
+      must(&verdict, !axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_FAULTED);
+      must(&verdict, axis->card_valid != 0u, ILK_VERDICT_CARD);
+      must(&verdict, at_rest, ILK_VERDICT_BUSY);
+      must(&verdict, sets_home || (request->target_counts >= config->min_counts), ILK_VERDICT_RANGE);
+      must(&verdict, sets_home || (request->target_counts <= config->max_counts), ILK_VERDICT_RANGE);
       break;
   }
   return verdict;
@@ -132,9 +132,9 @@ static ilk_verdict_t take_system(const ilk_request_t *request, ilk_state_t *stat
   ilk_system_t *system = &state->system;
   ilk_verdict_t verdict = ILK_VERDICT_ACCEPTED;
   if (request->kind == (uint32_t)ILK_REQUEST_RESET) {
-    need(&verdict, mode_is(system, ILK_MODE_LOCKED), ILK_VERDICT_MODE);
-    need(&verdict, pedal_is_up(system), ILK_VERDICT_PEDAL_DOWN);
-    need(&verdict, !ilk_cause_is_present(state), ILK_VERDICT_CAUSE_PRESENT);
+    must(&verdict, mode_is(system, ILK_MODE_LOCKED), ILK_VERDICT_MODE);
+    must(&verdict, pedal_is_up(system), ILK_VERDICT_PEDAL_DOWN);
+    must(&verdict, !ilk_cause_is_present(state), ILK_VERDICT_CAUSE_PRESENT);
     if (verdict == ILK_VERDICT_ACCEPTED) {
       ilk_mode_enter(ILK_MODE_READY, 0u, state);
     }
@@ -156,14 +156,14 @@ static ilk_verdict_t take(const ilk_config_t *config, const ilk_request_t *reque
   const bool of_system = request->kind <= (uint32_t)ILK_REQUEST_RESET;
   const bool of_axis = (request->axis < (uint32_t)ILK_SLOTS) && has_axis(&config->axis[request->axis]);
   ilk_verdict_t verdict = ILK_VERDICT_ACCEPTED;
-  need(&verdict, request->crc == ilk_request_crc(request), ILK_VERDICT_CHECKSUM);
-  need(&verdict, count_of(ahead, (uint32_t)INT32_MAX), ILK_VERDICT_SEQUENCE);
+  must(&verdict, request->crc == ilk_request_crc(request), ILK_VERDICT_CHECKSUM);
+  must(&verdict, count_of(ahead, (uint32_t)INT32_MAX), ILK_VERDICT_SEQUENCE);
   if (verdict == ILK_VERDICT_ACCEPTED) {
     state->system.last_sequence = request->sequence;
   }
-  need(&verdict, count_of(request->kind, (uint32_t)ILK_REQUEST_RESTORE), ILK_VERDICT_UNKNOWN);
-  need(&verdict, of_system || of_axis, ILK_VERDICT_AXIS);
-  need(&verdict, !mode_is(&state->system, ILK_MODE_INIT), ILK_VERDICT_MODE);
+  must(&verdict, count_of(request->kind, (uint32_t)ILK_REQUEST_RESTORE), ILK_VERDICT_UNKNOWN);
+  must(&verdict, of_system || of_axis, ILK_VERDICT_AXIS);
+  must(&verdict, !mode_is(&state->system, ILK_MODE_INIT), ILK_VERDICT_MODE);
   if (verdict == ILK_VERDICT_ACCEPTED) {
     verdict = of_system ? take_system(request, state) : take_axis(config, request, state);
   }

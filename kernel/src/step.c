@@ -105,9 +105,9 @@ static void close_tick(const ilk_common_config_t *common, ilk_system_t *system) 
 
 void ilk_step(const ilk_config_t *config, ilk_state_t *state, const ilk_inputs_t *in,
               const ilk_request_t requests[], uint32_t count, ilk_outputs_t *out) {
-  ilk_reading_t readings[ILK_SLOTS];
   ilk_alarms_t alarms = ilk_integrity_check(config, state);
   if (state->system.mode != (uint32_t)ILK_MODE_INIT) {
+    ilk_reading_t readings[ILK_SLOTS];
     read_frames(config, in, readings, state);
     ilk_system_observe(&config->common, in, &state->system);
     observe_axes(config, in, readings, state, &alarms);

@@ -11,9 +11,12 @@ HomingAxis ==
 (* The switch closes at 0. *)
 HomingBody == [low |-> -1, high |-> 3, closes |-> 0, opens |-> 0]
 
+(* Driven, a count that way or none; when the slow approach has just ended, it may coast. *)
+Coasts == axis.homing_phase = "APPROACH_SLOWLY" /\ axis.switch_triggered
+
 Moves ==
   {m \in (IF axis.driven_direction # "NONE" THEN {0, Sense(axis.driven_direction)}
-          ELSE IF axis.homing_phase = "REST" THEN {-1, 0, 1} ELSE {0}) : Inside(m)}
+          ELSE IF Coasts THEN {-1, 0} ELSE {0}) : Inside(m)}
 
 Events ==
   {[m |-> m, reading |-> Reading(plant.at + m, switch)] : m \in Moves, switch \in BOOLEAN}

@@ -15,7 +15,7 @@ SoftAxis ==
 SoftBody == [Free EXCEPT !.low = -2, !.high = 7, !.closes = -2, !.opens = -1]
 
 BudgetAxis ==
-  [SoftAxis EXCEPT !.max_drive = 2, !.unhomed_travel_counts = 4, !.home_travel_counts = 4, !.switch_debounce_ticks = 1,
+  [SoftAxis EXCEPT !.max_drive = 2, !.unhomed_travel_counts = 4, !.home_travel_counts = 5, !.switch_debounce_ticks = 1,
                    !.home_clear_counts = 1]
 
 BudgetBody == [Free EXCEPT !.low = -5, !.high = 5, !.closes = -1, !.opens = -1]
@@ -34,6 +34,7 @@ Off   == <<Ask("DISABLE"), Ask("ENABLE")>>
 Wishes ==
   CASE system.mode = "LOCKED" -> {<<Ask("RESET")>>}
     [] system.mode = "READY"  -> {<<Ask("CLEAR_FAULT"), Ask("ENABLE")>>}
+    [] Unhomed /\ axis.state = "DISABLED" -> {<<>>} \union {<<Ask("ENABLE"), wish>> : wish \in {There, Here, Ask("HOME")}}
     [] Unhomed -> {<<>>, <<Fast>>, <<There>>, <<Here>>, <<Ask("HOME")>>, Off \o <<There>>, Off \o <<Ask("HOME")>>}
     [] OTHER -> {<<>>, <<There>>, <<Here>>, <<MoveTo(k.max_counts, 1, 1), Old>>, Off \o <<Here>>}
 

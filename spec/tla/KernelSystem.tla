@@ -14,7 +14,7 @@ CONSTANTS c,        \* the configuration, see SmallSystem
 
 SmallSystem ==
   [ pedal_channels |-> 2, app_timeout_ticks |-> 2, lease_max_ticks |-> 2,
-    power_up_ticks |-> 1, pedal_debounce_ticks |-> 2, pedal_disagree_ticks |-> 1,
+    power_up_ticks |-> 5, pedal_debounce_ticks |-> 2, pedal_disagree_ticks |-> 1,
     bad_frame_limit |-> 2, overrun_limit |-> 1 ]
 
 VARIABLES

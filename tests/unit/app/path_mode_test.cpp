@@ -121,6 +121,30 @@ TEST_P(PathModeOnThePlant, AJammedAxisStopsAllOthersAtOnce) {
   }
 }
 
+TEST_P(PathModeOnThePlant, AnAxisTooSlowForItsPathStopsAllOthersAtOnce) {
+  ClosedLoop loop(13, GetParam());
+  loop.make_all_ready();
+  const PathProgram program = move_of(neuro_targets);
+  (void)loop.carry_out({1, &program, 0}, 1000);
+  plant::command::ChangeParameters slow{head, {}};
+  for (std::size_t knob = 0; knob < plant::kAxisKnobCount; ++knob) {
+    if (plant::kAxisKnobs[knob].name == "full_speed_counts_per_s") {
+      slow.value[knob] = 0.2 * neuro().at_slot(head)->mechanics.full_speed_counts_per_s;
+    }
+  }
+  loop.happen(slow);
+  for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.path().order.phase); ++i) {
+    loop.tick();
+  }
+  EXPECT_EQ(loop.path().order.phase, OrderPhase::aborted);
+  EXPECT_EQ(loop.path().order.reason, OrderReason::off_path);
+  EXPECT_EQ(loop.path().slot, head);
+  loop.run(2 + GetParam());
+  for (const AxisCounts& target : neuro_targets) {
+    EXPECT_EQ(loop.outputs().command[target.slot].drive, 0u);
+  }
+}
+
 TEST_P(PathModeOnThePlant, ATrajectoryIsFollowedInTimeFromWhereItBegins) {
   ClosedLoop loop(17, GetParam());
   loop.make_all_ready();

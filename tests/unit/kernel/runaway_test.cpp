@@ -330,6 +330,21 @@ TEST(P6_runaway_lock, a_faulted_axis_that_jumps_on_is_run_away_however_fast_it_i
   }
 }
 
+TEST(P6_runaway_lock, an_axis_run_away_that_jumps_back_is_still_run_away) {
+  for (const int32_t way : {1, -1}) {
+    Bench bench = motion_bench(axis);
+    bench.release();
+    for (const int32_t counts : {500, 500, -500}) {
+      bench.motor[axis].travelled += way * counts;
+      bench.tick();
+    }
+    EXPECT_EQ(bench.cause(), ILK_CAUSE_RUNAWAY);
+    EXPECT_EQ(bench.ask(reset()), ILK_VERDICT_CAUSE_PRESENT);
+    bench.rest();
+    EXPECT_EQ(bench.ask(reset()), ILK_VERDICT_ACCEPTED);
+  }
+}
+
 TEST(P6_runaway_lock, a_wrong_reading_that_is_taken_back_is_a_jump_and_no_runaway) {
   for (const int32_t way : {1, -1}) {
     Bench bench = motion_bench(axis);

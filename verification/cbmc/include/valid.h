@@ -17,7 +17,7 @@ static bool between(int64_t value, int64_t lowest, int64_t highest) {
   return (value >= lowest) && (value <= highest);
 }
 
-static bool at_most_a_tenth(int64_t counts, int64_t whole) { return (10 * counts) <= whole; }
+static bool at_most_a_tenth(int64_t counts, uint32_t whole) { return counts <= (int64_t)(whole / 10u); }
 
 static bool at_most_ms(uint32_t ticks, uint32_t period_us, uint32_t longest_ms) {
   return ((uint64_t)ticks * period_us) <= ((uint64_t)longest_ms * 1000u);
@@ -44,8 +44,9 @@ static bool is_motor_card(uint32_t card) {
   return (card >= ILK_CARD_PWM) && (card <= ILK_CARD_HIGH_FREQUENCY);
 }
 
-static int64_t range_counts(const ilk_axis_config_t* axis) {
-  return (int64_t)axis->max_counts - (int64_t)axis->min_counts;
+/** Of limits that are in order. */
+static uint32_t range_counts(const ilk_axis_config_t* axis) {
+  return (uint32_t)axis->max_counts - (uint32_t)axis->min_counts;
 }
 
 /** The system's words, without version, size and CRC. */
@@ -62,11 +63,11 @@ static bool valid_common(const ilk_common_config_t* common) {
 }
 
 static bool valid_geometry(const ilk_axis_config_t* axis) {
-  const int64_t range = range_counts(axis);
+  const uint32_t range = range_counts(axis);
   const int64_t farthest = (int64_t)1 << 30;
   return (axis->required <= 1u) && (axis->motor_direction <= 1u) && (axis->direction_correction <= 1u) &&
-         (axis->limit_side < ILK_LIMIT_COUNT) && (range > 0) && (axis->min_counts >= -farthest) &&
-         (axis->max_counts <= farthest) &&
+         (axis->limit_side < ILK_LIMIT_COUNT) && (axis->min_counts < axis->max_counts) &&
+         (axis->min_counts >= -farthest) && (axis->max_counts <= farthest) &&
          between(axis->home_offset_counts, axis->min_counts, axis->max_counts) && (axis->coast_counts > 0u) &&
          ((2 * (int64_t)axis->coast_counts) < range) && at_most_a_tenth(axis->noise_counts, range) &&
          at_most_a_tenth(axis->backlash_counts, range) && (axis->deadband_counts > 0u) &&
@@ -110,7 +111,7 @@ static bool homing_ends_in_time(const ilk_axis_config_t* axis, const ilk_common_
 
 /** Of an axis with a switch, time apart. */
 static bool valid_homing(const ilk_axis_config_t* axis, const ilk_common_config_t* common) {
-  const int64_t range = range_counts(axis);
+  const uint32_t range = range_counts(axis);
   const int64_t coast = axis->coast_counts;
   const int64_t clear = axis->home_clear_counts;
   const int64_t margin = (int64_t)axis->home_tolerance_counts + axis->switch_hysteresis_counts;
@@ -130,8 +131,9 @@ static bool valid_homing(const ilk_axis_config_t* axis, const ilk_common_config_
          (opens > (margin + coast + axis->deadband_counts)) && (clear > (margin + coast)) &&
          (clear > ((int64_t)axis->stall_min_counts + axis->backlash_counts + axis->noise_counts)) &&
          at_most_a_tenth(clear, range) &&
-         (axis->home_travel_counts > (way_home(axis) + (uint64_t)axis->coast_counts + axis->noise_counts)) &&
-         ((int64_t)axis->home_travel_counts <= (4 * range)) && (axis->home_timeout_ticks > 0u) &&
+         (axis->home_travel_counts >=
+          (way_home(axis) + (uint64_t)axis->coast_counts + axis->noise_counts + 1u)) &&
+         (axis->home_travel_counts <= (4u * (uint64_t)range)) && (axis->home_timeout_ticks > 0u) &&
          at_most_ms(axis->home_timeout_ticks, common->period_us, 600000u);
 }
 
@@ -143,35 +145,43 @@ static bool without_homing(const ilk_axis_config_t* axis) {
          (axis->home_slow_speed_counts_per_s == 0u);
 }
 
-/** Drive of that many ticks suffices for five coasts, backlash and noise. */
-static bool effort_suffices(const ilk_axis_config_t* axis, uint64_t ticks, uint32_t us) {
+/** Counts that full speed must come to before a reversal shows `counts` of progress: five coasts, backlash
+   and noise. */
+static bool reversal_shows(const ilk_axis_config_t* axis, uint64_t ticks, uint32_t us, uint32_t counts) {
   const uint64_t least =
-      (5u * (uint64_t)axis->coast_counts) + axis->backlash_counts + axis->noise_counts + 1u;
+      (5u * (uint64_t)axis->coast_counts) + axis->backlash_counts + axis->noise_counts + counts;
   return (ticks * ((uint64_t)us * axis->full_speed_counts_per_s)) >= (least * SECOND_US);
 }
 
 /** A bound of at most 200 ms; none on an axis for which 200 ms are not enough. */
 static bool valid_effort(const ilk_axis_config_t* axis, uint32_t us) {
-  const uint64_t longest = 200000u / us;
-  return (axis->stall_effort_ticks == 0u)
-             ? !effort_suffices(axis, longest, us)
-             : ((axis->stall_effort_ticks <= longest) && effort_suffices(axis, axis->stall_effort_ticks, us));
+  const uint64_t longest = (uint64_t)200000u / us;
+  const bool none = axis->stall_effort_ticks == 0u;
+  const uint64_t ticks = none ? longest : axis->stall_effort_ticks;
+  return (axis->stall_effort_ticks <= longest) && (none != reversal_shows(axis, ticks, us, 1u));
 }
 
-/** In the time of a stall an axis that moves at its slowest makes progress. */
+/** Ticks in which a reading shows drive: the loop's latency, and one more, pass before the first. */
+static uint32_t shown_of(uint32_t ticks) {
+  return (ticks <= (ILK_LATENCY_TICKS + 1u)) ? 0u : (ticks - (ILK_LATENCY_TICKS + 1u));
+}
+
+/** In the time of a stall, from the first reading that shows drive, an axis at its slowest makes progress. */
 static bool stall_suffices(const ilk_axis_config_t* axis, uint32_t us) {
-  const uint64_t slowest = (axis->limit_side == ILK_LIMIT_NONE) ? axis->full_speed_counts_per_s
-                                                                : axis->home_slow_speed_counts_per_s;
+  const uint64_t slowest = (axis->limit_side == ILK_LIMIT_NONE)
+                               ? ((uint64_t)us * axis->full_speed_counts_per_s)
+                               : ((uint64_t)us * axis->home_slow_speed_counts_per_s);
   const uint64_t progress = axis->stall_min_counts + (axis->backlash_counts + (uint64_t)axis->noise_counts);
-  return (axis->stall_ticks * slowest * us) >= (progress * SECOND_US);
+  return ((shown_of(axis->stall_ticks) * slowest) >= (progress * SECOND_US)) &&
+         reversal_shows(axis, axis->stall_ticks, us, axis->stall_min_counts);
 }
 
 static bool valid_watch(const ilk_axis_config_t* axis, const ilk_common_config_t* common) {
-  const int64_t range = range_counts(axis);
+  const uint32_t range = range_counts(axis);
   const uint32_t us = common->period_us;
   const int64_t innocent = (int64_t)axis->coast_counts + axis->backlash_counts + axis->noise_counts;
   return (axis->stall_min_counts > axis->noise_counts) && at_most_a_tenth(axis->stall_min_counts, range) &&
-         (axis->stall_ticks > ILK_LATENCY_TICKS) && at_most_ms(axis->stall_ticks, us, 500u) &&
+         (axis->stall_ticks > (ILK_LATENCY_TICKS + 1u)) && at_most_ms(axis->stall_ticks, us, 500u) &&
          stall_suffices(axis, us) && valid_effort(axis, us) && (axis->reverse_counts >= innocent) &&
          at_most_a_tenth(axis->reverse_counts, range) && (axis->drift_counts >= innocent) &&
          at_most_a_tenth(axis->drift_counts, range) && (axis->rest_ticks > ILK_LATENCY_TICKS) &&
