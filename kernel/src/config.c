@@ -60,9 +60,10 @@ static ilk_config_error_t common_error(const ilk_config_t *config) {
   return error;
 }
 
-/** Distance between the soft limits; they are in order. */
+/** Distance between the soft limits; zero when they are not in order. */
 static uint32_t range_of(const ilk_axis_config_t *axis) {
-  return (uint32_t)axis->max_counts - (uint32_t)axis->min_counts;
+  const int64_t range = (int64_t)axis->max_counts - axis->min_counts;
+  return (range > 0) ? (uint32_t)range : 0u;
 }
 
 static ilk_config_error_t geometry_error(const ilk_axis_config_t *axis) {
@@ -175,9 +176,8 @@ static ilk_config_error_t homing_error(const ilk_axis_config_t *axis, const ilk_
   const uint64_t clear = axis->home_clear_counts;
   const uint64_t edges = (uint64_t)axis->home_tolerance_counts + axis->switch_hysteresis_counts + coast;
   const bool lower = axis->limit_side == (uint32_t)ILK_LIMIT_LOWER;
-  const uint32_t home = (uint32_t)axis->home_offset_counts;
-  const uint32_t open_side =
-      lower ? ((uint32_t)axis->max_counts - home) : (home - (uint32_t)axis->min_counts);
+  const int64_t home = axis->home_offset_counts;
+  const int64_t open_side = lower ? (axis->max_counts - home) : (home - axis->min_counts);
   const uint32_t home_speed = axis->home_speed_counts_per_s;
   const uint64_t gap = travel_in(home_speed, (uint64_t)common->switch_debounce_ticks + 2u, us) + (2u * noise);
   ilk_config_error_t error = ILK_CONFIG_ERROR_NONE;
@@ -187,7 +187,7 @@ static ilk_config_error_t homing_error(const ilk_axis_config_t *axis, const ilk_
   need(&error, within(axis->home_slow_drive, awake, axis->home_drive), ILK_CONFIG_ERROR_HOME_SLOW);
   need(&error, axis->switch_hysteresis_counts <= (range / 10u), ILK_CONFIG_ERROR_HYSTERESIS);
   need(&error, within(axis->home_tolerance_counts, gap, range / 10u), ILK_CONFIG_ERROR_HOME_TOLERANCE);
-  need(&error, open_side > (edges + axis->deadband_counts), ILK_CONFIG_ERROR_HOME_OFFSET);
+  need(&error, open_side > (int64_t)(edges + axis->deadband_counts), ILK_CONFIG_ERROR_HOME_OFFSET);
   need(&error, within(clear, edges + 1u, range / 10u), ILK_CONFIG_ERROR_HOME_CLEAR);
   need(&error, clear > (noise + axis->stall_min_counts + axis->backlash_counts), ILK_CONFIG_ERROR_HOME_CLEAR);
   need(&error,

@@ -51,7 +51,7 @@ test("keys alone find a code, add a user, read the audit and change a password",
   };
   await open("Codes");
   await keyboard.type(page.getByRole("searchbox", { name: "Find" }), "stall");
-  await expect(page.getByRole("article", { name: "STALL" })).toBeVisible();
+  await expect(robot.panel("Faults").getByRole("article", { name: "STALL" })).toBeVisible();
   await expect(page.getByRole("article", { name: "ESTOP" })).toHaveCount(0);
 
   await open("Users");

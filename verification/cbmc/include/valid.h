@@ -44,9 +44,10 @@ static bool is_motor_card(uint32_t card) {
   return (card >= ILK_CARD_PWM) && (card <= ILK_CARD_HIGH_FREQUENCY);
 }
 
-/** Of limits that are in order. */
+/** From one soft limit to the other; zero, too, of limits that are not in order. */
 static uint32_t range_counts(const ilk_axis_config_t* axis) {
-  return (uint32_t)axis->max_counts - (uint32_t)axis->min_counts;
+  const int64_t range = (int64_t)axis->max_counts - axis->min_counts;
+  return (range > 0) ? (uint32_t)range : 0u;
 }
 
 /** The system's words, without version, size and CRC. */
