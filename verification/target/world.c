@@ -310,7 +310,9 @@ static void any_axis(dice_t *dice, const ilk_axis_config_t *config, uint32_t tic
   axis->heartbeat = tick;
   axis->periods = dice_below(dice, 3u);
   axis->position_counts = (int32_t)dice_below(dice, 2200u) - 1100;
-  axis->setpoint_counts = (int32_t)dice_below(dice, 2000u) - 1000;
+  axis->setpoint_counts = dice_one_in(dice, 2u)
+                              ? (axis->position_counts + (int32_t)dice_below(dice, 100u) - 50)
+                              : ((int32_t)dice_below(dice, 2000u) - 1000);
   axis->raw = 5000u + dice_below(dice, 12u);
   axis->rest = (ilk_stillness_t){.origin_raw = axis->raw, .ticks = dice_below(dice, config->rest_ticks + 1u)};
   axis->calm = axis->rest;

@@ -40,7 +40,8 @@ export function foretell(
       nextStep: obstacle.next_step,
     };
   }
-  const arrived = gate === "SETPOINT";
+  // HOME reads its switch before it drives.
+  const arrived = gate === "SETPOINT" && wish.kind === "MOVE";
   return {
     ...{ outcome: "moves", code: "ACCEPTED", family: "verdict" },
     text: arrived
