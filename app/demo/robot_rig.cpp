@@ -186,7 +186,8 @@ void RobotRig::note() {
   if (record_.axes.empty() || (state_.system.tick - record_tick_) % ticks_of(record_period_s) != 0) {
     return;
   }
-  record_.times_s.push_back((state_.system.tick - record_tick_) * static_cast<double>(config_.common.period_us) * 1e-6);
+  record_.times_s.push_back((state_.system.tick - record_tick_) *
+                            static_cast<double>(config_.common.period_us) * 1e-6);
   for (std::size_t place = 0; place < robot_.axes.size(); ++place) {
     const std::uint32_t slot = robot_.axes[place].slot;
     record_.axes[place].push_back({state_.axis[slot].position_counts,
@@ -211,7 +212,9 @@ AxisPositions RobotRig::true_positions() const {
   return positions;
 }
 
-double RobotRig::time_s() const { return state_.system.tick * static_cast<double>(config_.common.period_us) * 1e-6; }
+double RobotRig::time_s() const {
+  return state_.system.tick * static_cast<double>(config_.common.period_us) * 1e-6;
+}
 
 std::uint32_t RobotRig::ticks_of(double seconds) const {
   return static_cast<std::uint32_t>(seconds * 1e6 / config_.common.period_us);

@@ -109,8 +109,9 @@ struct RobotPlan {
     }
     for (const Axis& each : robot.axes) {
       const MotionRates rates = each.motion.value_or(MotionRates{});
-      axis[each.slot] = AxisPlan{config.axis[each.slot], each.drive.min, each.counts_per_unit, rates,
-                                 control_rules(each, config.common.period_us, each.mechanics.full_speed_counts_per_s)};
+      axis[each.slot] =
+          AxisPlan{config.axis[each.slot], each.drive.min, each.counts_per_unit, rates,
+                   control_rules(each, config.common.period_us, each.mechanics.full_speed_counts_per_s)};
     }
   }
 

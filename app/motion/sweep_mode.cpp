@@ -129,8 +129,8 @@ void SweepMode::end_step(std::uint32_t tick) noexcept {
 }
 
 std::int32_t SweepMode::target_counts(const ilk_snapshot_t& snapshot) const noexcept {
-  const SetpointRange range =
-      setpoint_range(plan_.axis[sweep_.slot].rules, snapshot.state.axis[sweep_.slot], snapshot.state.system.mode);
+  const SetpointRange range = setpoint_range(plan_.axis[sweep_.slot].rules, snapshot.state.axis[sweep_.slot],
+                                             snapshot.state.system.mode);
   return upwards_ ? range.highest_counts : range.lowest_counts;
 }
 

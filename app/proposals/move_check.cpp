@@ -109,7 +109,8 @@ void check_move(const Axis& axis, const ilk_config_t& config, const ControlView&
   checks.make(CheckName::axes, [&] { return check_free_axis(axis, view); });
   checks.make(CheckName::drive, [&] { return check_drive(axis, drive_bound(rules, state), draft); });
   checks.make(CheckName::range, [&] {
-    return check_target(axis, setpoint_range(rules, state, view.snapshot.state.system.mode), draft.target_counts);
+    return check_target(axis, setpoint_range(rules, state, view.snapshot.state.system.mode),
+                        draft.target_counts);
   });
 }
 

@@ -197,7 +197,8 @@ std::optional<std::uint32_t> Ring::opening_tick(std::uint32_t number) const {
 }
 
 std::uint32_t Ring::block_before(std::uint32_t tick, std::uint32_t seconds) const {
-  const auto ticks = static_cast<std::int32_t>(std::uint64_t{seconds} * 1'000'000 / run().config.common.period_us);
+  const auto ticks =
+      static_cast<std::int32_t>(std::uint64_t{seconds} * 1'000'000 / run().config.common.period_us);
   const std::uint32_t first = oldest();
   std::uint32_t number = head();
   while (number > first) {

@@ -50,10 +50,10 @@ static void put_verdicts(ilk_publisher_t *publisher, uint32_t tick, const ilk_ou
 
 static void put_mode_change(ilk_publisher_t *publisher, const ilk_state_t *state) {
   if (state->system.mode != publisher->mode) {
-    put_event(publisher,
-              &(ilk_event_t){.kind = ILK_EVENT_MODE,
-                             .tick = state->system.tick,
-                             .value = {publisher->mode, state->system.mode, state->system.cause, state->system.cause_value}});
+    put_event(publisher, &(ilk_event_t){.kind = ILK_EVENT_MODE,
+                                        .tick = state->system.tick,
+                                        .value = {publisher->mode, state->system.mode, state->system.cause,
+                                                  state->system.cause_value}});
     publisher->mode = state->system.mode;
   }
 }

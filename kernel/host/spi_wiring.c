@@ -207,9 +207,10 @@ static bool check(const char *path, const ilk_config_t *config, const ilk_spi_wi
   if (wiring->gpio[0] == '\0' || wiring->contact[ILK_CONTACT_PEDAL_NO].offset == ILK_NO_LINE ||
       wiring->contact[ILK_CONTACT_ESTOP].offset == ILK_NO_LINE || wiring->power.offset == ILK_NO_LINE ||
       (wiring->contact[ILK_CONTACT_PEDAL_NC].offset != ILK_NO_LINE) != two_channels) {
-    return ilk_fail(error,
-                    "wiring '%s': expected gpio, estop, power, pedal_no and %s pedal_nc: the pedal has %u channels",
-                    path, two_channels ? "a" : "no", config->common.pedal_channels);
+    return ilk_fail(
+        error,
+        "wiring '%s': expected gpio, estop, power, pedal_no and %s pedal_nc: the pedal has %u channels", path,
+        two_channels ? "a" : "no", config->common.pedal_channels);
   }
   if (wiring->speed_hz == 0u) {
     return ilk_fail(error, "wiring '%s': speed_hz is missing", path);

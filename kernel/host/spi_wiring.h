@@ -1,6 +1,7 @@
 /**
  * @file
- * How the cards, the pedal, the E-stop, the amplifiers' supply and the lamps of one machine are wired to the processor.
+ * How the cards, the pedal, the E-stop, the amplifiers' supply and the lamps of one machine are wired to the
+ * processor.
  *
  * A text file, one thing a line; `#` begins a comment:
  *

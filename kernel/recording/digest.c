@@ -1,7 +1,7 @@
 #include <string.h>
 
-#include "parts.h"
 #include "interlock/recording.h"
+#include "parts.h"
 
 #define ODD_FACTOR 0x9e3779b97f4a7c15u /* 2^64 divided by the golden ratio */
 

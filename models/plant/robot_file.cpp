@@ -92,8 +92,8 @@ tl::expected<ilk_config_t, std::string> load_robot(const std::filesystem::path& 
   const ilk_config_t config = from_little_endian(bytes);
   if (config.common.version != ILK_CONFIG_VERSION || config.common.size_bytes != sizeof(ilk_config_t)) {
     return refuse("has version " + std::to_string(config.common.version) + " and size " +
-                  std::to_string(config.common.size_bytes) + ", expected " + std::to_string(ILK_CONFIG_VERSION) +
-                  " and " + std::to_string(sizeof(ilk_config_t)));
+                  std::to_string(config.common.size_bytes) + ", expected " +
+                  std::to_string(ILK_CONFIG_VERSION) + " and " + std::to_string(sizeof(ilk_config_t)));
   }
   if (config.crc != crc_of(bytes)) {
     return refuse("is damaged: its CRC does not match");

@@ -187,8 +187,7 @@ void App::act(std::uint32_t tick, const ilk_state_t& shown) {
       if (manner_ == Manner::kHoming) {
         intents_[slot] = {has_switch, has_switch && (!is_homed || random_.coin())};
       } else {
-        intents_[slot] = {random_.chance(0.8),
-                          has_switch && random_.chance(is_homed ? 0.02 : 0.6)};
+        intents_[slot] = {random_.chance(0.8), has_switch && random_.chance(is_homed ? 0.02 : 0.6)};
       }
       intents_[slot].renew_tick = tick + random_.below(20);
       choose_target(shown, slot);

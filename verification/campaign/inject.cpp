@@ -238,8 +238,8 @@ void World::inject_card(const Fault& fault) {
       demand(kEdgeTicks, kNoAxis, fault.kind);
       return;
   }
-  demand(fault.kind == FaultKind::kCardDeaf ? 2 * kEdgeTicks : kEdgeTicks,
-         static_cast<int>(fault.slot), fault.kind);
+  demand(fault.kind == FaultKind::kCardDeaf ? 2 * kEdgeTicks : kEdgeTicks, static_cast<int>(fault.slot),
+         fault.kind);
 }
 
 void World::inject_axis(const Fault& fault) {

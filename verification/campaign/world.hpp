@@ -144,7 +144,7 @@ class World {
   std::size_t sweep_bit_;
   std::array<std::uint32_t, ILK_SLOTS> broken_until_{};
   std::array<bool, ILK_SLOTS> broken_{};
-  std::array<bool, ILK_SLOTS> inside_{}; /**< homed and within the soft range, since then */
+  std::array<bool, ILK_SLOTS> inside_{};      /**< homed and within the soft range, since then */
   std::optional<std::string_view> unrefused_; /**< what a kernel did that had to stay in INIT */
   Totals totals_;
 };

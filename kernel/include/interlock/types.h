@@ -16,8 +16,8 @@
 
 #include "interlock/catalog.h"
 
-/** Card slots of a robot. A slot carries at most one axis, so an axis is named by its slot. Ten as shipped; whole
-   ticks are proved with one and with two. */
+/** Card slots of a robot. A slot carries at most one axis, so an axis is named by its slot. Ten as shipped;
+   whole ticks are proved with one and with two. */
 #ifndef ILK_SLOTS
 #define ILK_SLOTS 10
 #endif
@@ -38,15 +38,15 @@
 
 /** One axis (or sensor card) of the robot, by slot. Ranges: `ilk_config_validate`. */
 typedef struct {
-  uint32_t card;                  /**< ilk_card_t; NONE leaves the slot empty */
-  uint32_t required;              /**< 1: losing this card ends MOTION and blocks it */
-  uint32_t motor_direction;       /**< 1: the card's direction bit follows the axis, 0: it is inverted */
-  uint32_t direction_correction;  /**< 1: position decreases while the raw counter increases */
-  uint32_t limit_side;            /**< ilk_limit_side_t: the end at which the switch sits */
-  int32_t min_counts;             /**< lower soft limit */
-  int32_t max_counts;             /**< upper soft limit */
-  int32_t home_offset_counts;     /**< position at the edge of the switch */
-  uint32_t coast_counts;          /**< farthest travel from the reading on which drive was last allowed until rest */
+  uint32_t card;                 /**< ilk_card_t; NONE leaves the slot empty */
+  uint32_t required;             /**< 1: losing this card ends MOTION and blocks it */
+  uint32_t motor_direction;      /**< 1: the card's direction bit follows the axis, 0: it is inverted */
+  uint32_t direction_correction; /**< 1: position decreases while the raw counter increases */
+  uint32_t limit_side;           /**< ilk_limit_side_t: the end at which the switch sits */
+  int32_t min_counts;            /**< lower soft limit */
+  int32_t max_counts;            /**< upper soft limit */
+  int32_t home_offset_counts;    /**< position at the edge of the switch */
+  uint32_t coast_counts; /**< farthest travel from the reading on which drive was last allowed until rest */
   uint32_t backlash_counts;       /**< lost motion when the direction changes */
   uint32_t noise_counts;          /**< peak-to-peak noise of the counter at rest */
   uint32_t deadband_counts;       /**< no drive this near to the setpoint */
@@ -62,9 +62,9 @@ typedef struct {
   uint32_t home_timeout_ticks;    /**< longest homing in one press of the pedal */
   uint32_t home_clear_counts;     /**< every back-off ends at least this far from where the switch changed */
   uint32_t home_tolerance_counts; /**< the two edges of homing agree within this */
-  uint32_t switch_hysteresis_counts; /**< the switch opens this far from where it closes, at most */
-  uint32_t full_speed_counts_per_s;  /**< highest speed at `max_drive` */
-  uint32_t home_speed_counts_per_s;  /**< slowest speed at `home_drive` */
+  uint32_t switch_hysteresis_counts;     /**< the switch opens this far from where it closes, at most */
+  uint32_t full_speed_counts_per_s;      /**< highest speed at `max_drive` */
+  uint32_t home_speed_counts_per_s;      /**< slowest speed at `home_drive` */
   uint32_t home_slow_speed_counts_per_s; /**< slowest speed at `home_slow_drive` */
   uint32_t stall_ticks;                  /**< driven ticks without progress that are a stall */
   uint32_t stall_effort_ticks; /**< ticks of full drive without progress that are a stall; 0: not judged */
@@ -108,41 +108,41 @@ typedef struct {
 
 /** What the kernel remembers of one axis. */
 typedef struct {
-  uint32_t state;             /**< ilk_axis_state_t */
-  uint32_t fault;             /**< ilk_fault_t; the first one since CLEAR_FAULT */
-  uint32_t fault_tick;        /**< tick of that fault */
-  int32_t fault_value;        /**< what was measured, in the unit of the rule that was broken */
-  uint32_t homed;             /**< ilk_homed_t */
-  uint32_t runaway;           /**< 1: moved although faulted, and not at rest since */
-  uint32_t card_valid;        /**< 1: this tick's frame was valid */
-  uint32_t card_seen;         /**< 1: `raw` holds a reading, and nothing since says that it is worth nothing */
-  uint32_t bad_frames;        /**< bad frames in a row, saturating */
-  uint32_t checksum_failures; /**< since boot, saturating */
-  uint32_t heartbeat;         /**< of the last valid frame */
-  uint32_t card_time_us;      /**< card's timestamp of the last valid reading, wrapping */
-  uint32_t card_status;       /**< status word of the last valid frame */
-  uint32_t periods;           /**< loop periods since the valid frame before this one, saturating */
-  uint32_t raw;               /**< counter of the last valid frame, wrapping */
-  int32_t position_counts;    /**< saturating */
-  int32_t delta_counts;       /**< motion seen by the last valid frame, in the sense of the position */
-  uint32_t switch_triggered;  /**< 1: at the switch, or the switch was not read validly */
-  uint32_t switch_reading;    /**< 1: the last valid reading was triggered */
-  uint32_t switch_run_ticks;  /**< valid readings in a row that say so, saturating at the debounce time */
-  uint32_t switch_run_raw;    /**< counter at the first of them */
-  uint32_t implausible_ticks; /**< valid readings in a row in which the switch contradicts the position */
-  int32_t setpoint_counts;    /**< of the last accepted MOVE */
-  uint32_t drive;             /**< of the last accepted MOVE */
-  uint32_t amplitude;         /**< of the last accepted MOVE */
-  uint32_t lease_ticks;       /**< ticks for which the MOVE still holds */
-  uint32_t driven_direction;  /**< ilk_direction_t driven since the last valid frame */
-  ilk_stillness_t rest;       /**< undriven, valid, within `noise_counts` */
-  ilk_stillness_t calm;       /**< within `drift_counts` */
-  uint32_t drift_mark_raw;    /**< reading from which motion without drive counts */
-  uint32_t reverse_direction; /**< ilk_direction_t last driven */
-  uint32_t reverse_mark_raw;  /**< farthest reading in it */
-  uint32_t stall_direction;   /**< ilk_direction_t in which progress counts */
-  uint32_t stall_mark_raw;    /**< reading from which progress of `stall_min_counts` counts */
-  uint32_t effort_mark_raw;   /**< reading from which progress beyond noise counts */
+  uint32_t state;      /**< ilk_axis_state_t */
+  uint32_t fault;      /**< ilk_fault_t; the first one since CLEAR_FAULT */
+  uint32_t fault_tick; /**< tick of that fault */
+  int32_t fault_value; /**< what was measured, in the unit of the rule that was broken */
+  uint32_t homed;      /**< ilk_homed_t */
+  uint32_t runaway;    /**< 1: moved although faulted, and not at rest since */
+  uint32_t card_valid; /**< 1: this tick's frame was valid */
+  uint32_t card_seen;  /**< 1: `raw` holds a reading, and nothing since says that it is worth nothing */
+  uint32_t bad_frames; /**< bad frames in a row, saturating */
+  uint32_t checksum_failures;  /**< since boot, saturating */
+  uint32_t heartbeat;          /**< of the last valid frame */
+  uint32_t card_time_us;       /**< card's timestamp of the last valid reading, wrapping */
+  uint32_t card_status;        /**< status word of the last valid frame */
+  uint32_t periods;            /**< loop periods since the valid frame before this one, saturating */
+  uint32_t raw;                /**< counter of the last valid frame, wrapping */
+  int32_t position_counts;     /**< saturating */
+  int32_t delta_counts;        /**< motion seen by the last valid frame, in the sense of the position */
+  uint32_t switch_triggered;   /**< 1: at the switch, or the switch was not read validly */
+  uint32_t switch_reading;     /**< 1: the last valid reading was triggered */
+  uint32_t switch_run_ticks;   /**< valid readings in a row that say so, saturating at the debounce time */
+  uint32_t switch_run_raw;     /**< counter at the first of them */
+  uint32_t implausible_ticks;  /**< valid readings in a row in which the switch contradicts the position */
+  int32_t setpoint_counts;     /**< of the last accepted MOVE */
+  uint32_t drive;              /**< of the last accepted MOVE */
+  uint32_t amplitude;          /**< of the last accepted MOVE */
+  uint32_t lease_ticks;        /**< ticks for which the MOVE still holds */
+  uint32_t driven_direction;   /**< ilk_direction_t driven since the last valid frame */
+  ilk_stillness_t rest;        /**< undriven, valid, within `noise_counts` */
+  ilk_stillness_t calm;        /**< within `drift_counts` */
+  uint32_t drift_mark_raw;     /**< reading from which motion without drive counts */
+  uint32_t reverse_direction;  /**< ilk_direction_t last driven */
+  uint32_t reverse_mark_raw;   /**< farthest reading in it */
+  uint32_t stall_direction;    /**< ilk_direction_t in which progress counts */
+  uint32_t stall_mark_raw;     /**< reading from which progress of `stall_min_counts` counts */
+  uint32_t effort_mark_raw;    /**< reading from which progress beyond noise counts */
   uint32_t stall_driven_ticks; /**< driven ticks without the first, saturating */
   uint32_t effort_low;         /**< drive summed over driven ticks without the second, 64 bits, saturating */
   uint32_t effort_high;
@@ -204,9 +204,10 @@ typedef struct {
 
 /** What the executive saw in this tick. Contacts: 1 closed, 0 open; any other value counts as unsafe. */
 typedef struct {
-  uint32_t link_generation;   /**< attachment of the app; a new value restarts the sequence numbers */
-  uint32_t boot_nonce;        /**< drawn anew at every start and after an integrity failure */
-  uint32_t deadlines_missed;  /**< 0: on time; otherwise so many periods passed without a tick before this one */
+  uint32_t link_generation; /**< attachment of the app; a new value restarts the sequence numbers */
+  uint32_t boot_nonce;      /**< drawn anew at every start and after an integrity failure */
+  uint32_t
+      deadlines_missed; /**< 0: on time; otherwise so many periods passed without a tick before this one */
   uint32_t transaction_done;  /**< 1: the bus transaction of this tick completed */
   uint32_t frames_received;   /**< bit n: slot n answered in this tick */
   uint32_t pedal_no_closed;   /**< normally open contact: closed means pressed */

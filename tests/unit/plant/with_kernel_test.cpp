@@ -104,7 +104,8 @@ class Pair {
     while (state.axis[slot].state == ILK_AXIS_HOMING) {
       step();
     }
-    ASSERT_EQ(state.axis[slot].homed, ILK_HOMED_BY_SWITCH) << "slot " << slot << ", fault " << state.axis[slot].fault;
+    ASSERT_EQ(state.axis[slot].homed, ILK_HOMED_BY_SWITCH)
+        << "slot " << slot << ", fault " << state.axis[slot].fault;
   }
 
   double true_position(std::size_t slot) const { return plant.station(slot)->position_counts(); }

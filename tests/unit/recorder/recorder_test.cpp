@@ -173,8 +173,8 @@ TEST_F(RecorderTest, WholeBlocksOfAContinuousRecordingAreInTheFileAtOnce) {
 
 TEST_F(RecorderTest, DemandKeepsTheNewestSeconds) {
   calm(3000);
-  const Recorded<std::uint32_t> blocks =
-      record_now(ring_, scratch_.file("now.ilkr"), {ILK_RECORDED_ON_DEMAND, run_.state().system.tick, "test"}, 1);
+  const Recorded<std::uint32_t> blocks = record_now(
+      ring_, scratch_.file("now.ilkr"), {ILK_RECORDED_ON_DEMAND, run_.state().system.tick, "test"}, 1);
   ASSERT_TRUE(blocks);
   const ilk_replay_report_t report = replayed(scratch_.file("now.ilkr"));
   EXPECT_TRUE(ilk_replay_is_identical(&report));

@@ -135,9 +135,7 @@ function Pedal({ glance }: { readonly glance: Glance | null }) {
     <div className={`cell ${pressed ? "wish" : ""}`} data-alarm={alarm ?? undefined}>
       <span className="label">
         Pedal
-        {glance !== null && (
-          <span title={armedHelp(glance)}> · {armedWords(glance)}</span>
-        )}
+        {glance !== null && <span title={armedHelp(glance)}> · {armedWords(glance)}</span>}
       </span>
       <output
         className="value"
