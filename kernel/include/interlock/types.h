@@ -16,8 +16,8 @@
 
 #include "interlock/catalog.h"
 
-/** Card slots of a robot. A slot carries at most one axis, so an axis is named by its slot. Ten as shipped;
-   whole ticks are proved with one and with two. */
+/** Card slots of a robot. A slot carries at most one axis, so an axis is named by its slot.
+   Ten as shipped; whole ticks are proved with one and with two. */
 #ifndef ILK_SLOTS
 #define ILK_SLOTS 10
 #endif
@@ -46,7 +46,7 @@ typedef struct {
   int32_t min_counts;            /**< lower soft limit */
   int32_t max_counts;            /**< upper soft limit */
   int32_t home_offset_counts;    /**< position at the edge of the switch */
-  uint32_t coast_counts; /**< farthest travel from the reading on which drive was last allowed until rest */
+  uint32_t coast_counts; /**< farthest travel until rest, from the reading on which drive was last allowed */
   uint32_t backlash_counts;       /**< lost motion when the direction changes */
   uint32_t noise_counts;          /**< peak-to-peak noise of the counter at rest */
   uint32_t deadband_counts;       /**< no drive this near to the setpoint */
@@ -108,15 +108,15 @@ typedef struct {
 
 /** What the kernel remembers of one axis. */
 typedef struct {
-  uint32_t state;      /**< ilk_axis_state_t */
-  uint32_t fault;      /**< ilk_fault_t; the first one since CLEAR_FAULT */
-  uint32_t fault_tick; /**< tick of that fault */
-  int32_t fault_value; /**< what was measured, in the unit of the rule that was broken */
-  uint32_t homed;      /**< ilk_homed_t */
-  uint32_t runaway;    /**< 1: moved although faulted, and not at rest since */
-  uint32_t card_valid; /**< 1: this tick's frame was valid */
-  uint32_t card_seen;  /**< 1: `raw` holds a reading, and nothing since says that it is worth nothing */
-  uint32_t bad_frames; /**< bad frames in a row, saturating */
+  uint32_t state;              /**< ilk_axis_state_t */
+  uint32_t fault;              /**< ilk_fault_t; the first one since CLEAR_FAULT */
+  uint32_t fault_tick;         /**< tick of that fault */
+  int32_t fault_value;         /**< what was measured, in the unit of the rule that was broken */
+  uint32_t homed;              /**< ilk_homed_t */
+  uint32_t runaway;            /**< 1: moved although faulted, and not at rest since */
+  uint32_t card_valid;         /**< 1: this tick's frame was valid */
+  uint32_t card_seen;          /**< 1: `raw` holds a reading, and nothing since says that it is worthless */
+  uint32_t bad_frames;         /**< bad frames in a row, saturating */
   uint32_t checksum_failures;  /**< since boot, saturating */
   uint32_t heartbeat;          /**< of the last valid frame */
   uint32_t card_time_us;       /**< card's timestamp of the last valid reading, wrapping */
@@ -204,10 +204,9 @@ typedef struct {
 
 /** What the executive saw in this tick. Contacts: 1 closed, 0 open; any other value counts as unsafe. */
 typedef struct {
-  uint32_t link_generation; /**< attachment of the app; a new value restarts the sequence numbers */
-  uint32_t boot_nonce;      /**< drawn anew at every start and after an integrity failure */
-  uint32_t
-      deadlines_missed; /**< 0: on time; otherwise so many periods passed without a tick before this one */
+  uint32_t link_generation;   /**< attachment of the app; a new value restarts the sequence numbers */
+  uint32_t boot_nonce;        /**< drawn anew at every start and after an integrity failure */
+  uint32_t deadlines_missed;  /**< 0: on time; otherwise so many periods passed without a tick before this */
   uint32_t transaction_done;  /**< 1: the bus transaction of this tick completed */
   uint32_t frames_received;   /**< bit n: slot n answered in this tick */
   uint32_t pedal_no_closed;   /**< normally open contact: closed means pressed */

@@ -71,7 +71,7 @@ static void show_check_value(void) {
   uint32_t crc = ILK_CRC32_START;
   crc = ilk_crc32_word(crc, 0x34333231u);
   crc = ilk_crc32_word(crc, 0x38373635u);
-  SHOW(ilk_crc32_finish(crc) == 0x9ae0daafu, "CRC: that of the text 12345678 is the published one");
+  SHOW((crc ^ ILK_CRC32_START) == 0x9ae0daafu, "CRC: that of the text 12345678 is the published one");
 }
 
 void harness(void) {
