@@ -88,15 +88,14 @@ static ilk_config_error_t geometry_error(const ilk_axis_config_t *axis) {
 
 static ilk_config_error_t drive_error(const ilk_axis_config_t *axis, uint32_t us) {
   const bool waves = axis->card == (uint32_t)ILK_CARD_HIGH_FREQUENCY;
-  const uint64_t dead_zone = axis->dead_zone_drive;
+  const uint64_t awake = (uint64_t)axis->dead_zone_drive + 1u;
   const uint64_t coast = axis->coast_counts;
   const uint32_t full = axis->full_speed_counts_per_s;
   const uint64_t fastest = travel_in(full, 1u, us) + axis->noise_counts;
   const uint32_t range = range_of(axis);
-  const uint32_t unhomed_drive = axis->unhomed_max_drive;
   ilk_config_error_t error = ILK_CONFIG_ERROR_NONE;
   need(&error, within(axis->max_drive, 1u, ilk_card_max_drive(axis->card)), ILK_CONFIG_ERROR_MAX_DRIVE);
-  need(&error, within(unhomed_drive, dead_zone + 1u, axis->max_drive / 10u), ILK_CONFIG_ERROR_UNHOMED_DRIVE);
+  need(&error, within(axis->unhomed_max_drive, awake, axis->max_drive / 10u), ILK_CONFIG_ERROR_UNHOMED_DRIVE);
   need(&error, within(axis->max_amplitude, flag_of(waves), waves ? ILK_AMPLITUDE_MAX : 0u),
        ILK_CONFIG_ERROR_AMPLITUDE);
   need(&error, axis->home_amplitude <= axis->max_amplitude, ILK_CONFIG_ERROR_AMPLITUDE);
@@ -178,6 +177,7 @@ static ilk_config_error_t homing_error(const ilk_axis_config_t *axis, const ilk_
   const bool lower = axis->limit_side == (uint32_t)ILK_LIMIT_LOWER;
   const int64_t home = axis->home_offset_counts;
   const int64_t open_side = lower ? (axis->max_counts - home) : (home - axis->min_counts);
+  const uint64_t room = edges + axis->deadband_counts;
   const uint32_t home_speed = axis->home_speed_counts_per_s;
   const uint64_t gap = travel_in(home_speed, (uint64_t)common->switch_debounce_ticks + 2u, us) + (2u * noise);
   ilk_config_error_t error = ILK_CONFIG_ERROR_NONE;
@@ -187,7 +187,7 @@ static ilk_config_error_t homing_error(const ilk_axis_config_t *axis, const ilk_
   need(&error, within(axis->home_slow_drive, awake, axis->home_drive), ILK_CONFIG_ERROR_HOME_SLOW);
   need(&error, axis->switch_hysteresis_counts <= (range / 10u), ILK_CONFIG_ERROR_HYSTERESIS);
   need(&error, within(axis->home_tolerance_counts, gap, range / 10u), ILK_CONFIG_ERROR_HOME_TOLERANCE);
-  need(&error, open_side > (int64_t)(edges + axis->deadband_counts), ILK_CONFIG_ERROR_HOME_OFFSET);
+  need(&error, open_side > (int64_t)room, ILK_CONFIG_ERROR_HOME_OFFSET);
   need(&error, within(clear, edges + 1u, range / 10u), ILK_CONFIG_ERROR_HOME_CLEAR);
   need(&error, clear > (noise + axis->stall_min_counts + axis->backlash_counts), ILK_CONFIG_ERROR_HOME_CLEAR);
   need(&error,
