@@ -1,3 +1,8 @@
+/**
+ * @file
+ * What the app reads of a card's frame by itself: the kernel keeps it of cards with an axis alone
+ * (spec/frames.md).
+ */
 #pragma once
 
 #include <cstddef>
@@ -5,8 +10,6 @@
 
 #include "interlock/link.h"
 
-/** What the app reads of a card's frame by itself: the kernel keeps it of cards with an axis alone
- * (spec/frames.md). */
 namespace interlock::card_frame {
 
 /** First of the words with analog inputs. */

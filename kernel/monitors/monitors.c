@@ -615,7 +615,8 @@ static void decide_mode(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   } else if (mode == ILK_MODE_READY && ghost->pressed_ticks == c->pedal_debounce_ticks) {
     const bool good = ghost->tick != 0u && ghost->app_alive && !ghost->required_lost &&
                       ghost->powered_ticks >= c->power_up_ticks;
-    if (ghost->armed && good && (ghost->calm_unsure || ghost->drift_of_disabled)) { /* the latter P9 judges */
+    if (ghost->armed && good &&
+        (ghost->calm_unsure || ghost->drift_of_disabled)) { /* judge_mode judges the latter */
       ghost->mode_sure = false;
     } else if (ghost->armed && good) {
       ghost->mode = ILK_MODE_MOTION;
@@ -1359,9 +1360,7 @@ ilk_judgement_t judge_P8(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
 }
 
 /** P9. The release that arms counts from the last event that disarms: all of its debounce time lies in READY
-   with the app alive. Less than the sentence: whether a DISABLED axis moved is not judged in the first
-   rest_ticks after a new or reset card or an invalid frame, nor when it took more than two of its readings to
-   move that far. */
+   with the app alive. */
 ilk_judgement_t judge_P9(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   const ilk_common_config_t* c = &tick->config->common;
   const uint32_t consent = tick->after->consent;
@@ -1390,12 +1389,9 @@ ilk_judgement_t judge_P9(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
     return broken("P9: MOTION without an armed pedal, the app, a required card, power or rest", ILK_SLOTS,
                   ghost->powered_ticks, c->power_up_ticks);
   }
-  if (!ghost->app_alive || ghost->required_lost || ghost->drift_of_disabled ||
-      ghost->powered_ticks < c->power_up_ticks) {
-    return broken(
-        "P9: MOTION although app, card, power or a DISABLED axis forbids it", ILK_SLOTS,
-        (ghost->app_alive ? 0 : 1) + (ghost->required_lost ? 2 : 0) + (ghost->drift_of_disabled ? 4 : 0),
-        ghost->powered_ticks);
+  if (!ghost->app_alive || ghost->required_lost || ghost->powered_ticks < c->power_up_ticks) {
+    return broken("P9: MOTION although app, card or power forbids it", ILK_SLOTS,
+                  (ghost->app_alive ? 0 : 1) + (ghost->required_lost ? 2 : 0), ghost->powered_ticks);
   }
   return HOLDS;
 }
@@ -1595,12 +1591,18 @@ ilk_judgement_t judge_wire(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   return HOLDS;
 }
 
-/** The table of modes. */
+/** The table of modes. Less than its text: whether a DISABLED axis moved is not judged in the first
+   rest_ticks after a new or reset card or an invalid frame, nor when it took more than two of its readings to
+   move that far. */
 ilk_judgement_t judge_mode(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   const ilk_common_config_t* c = &tick->config->common;
   const uint32_t cause = tick->after->cause;
   if (ghost->mode != tick->after->mode) {
     return broken("mode: not the mode of the table", tick->before->mode, tick->after->mode, ghost->mode);
+  }
+  if (tick->after->mode == ILK_MODE_MOTION && tick->before->mode != ILK_MODE_MOTION &&
+      ghost->drift_of_disabled) {
+    return broken("mode: MOTION although a DISABLED axis moved", ILK_SLOTS, 1, 0);
   }
   if (tick->after->mode == ILK_MODE_LOCKED && tick->before->mode != ILK_MODE_LOCKED) {
     const bool there = (cause == ILK_CAUSE_ESTOP && ghost->estop) ||

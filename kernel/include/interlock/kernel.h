@@ -33,8 +33,8 @@ ilk_config_verdict_t ilk_init(const ilk_config_t *config, ilk_state_t *state);
 
 /** Positions from which outward drive is allowed no more, and beyond which no setpoint is accepted. */
 typedef struct {
-  int64_t low;
-  int64_t high;
+  int64_t low;  /**< in counts */
+  int64_t high; /**< in counts */
 } ilk_reach_t;
 
 /** Of an axis that is homed: soft limits less coast, and where its switch is sure to be open. */

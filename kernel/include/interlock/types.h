@@ -93,7 +93,7 @@ typedef struct {
 
 /** The whole configuration. It never changes after `ilk_init`; its CRC-32 is checked slice by slice. */
 typedef struct {
-  ilk_common_config_t common;
+  ilk_common_config_t common;        /**< of all axes */
   ilk_axis_config_t axis[ILK_SLOTS]; /**< by slot */
   uint32_t crc;                      /**< `ilk_config_crc` of the words above */
 } ilk_config_t;
@@ -145,9 +145,9 @@ typedef struct {
   uint32_t effort_mark_raw;    /**< reading from which progress beyond noise counts */
   uint32_t stall_driven_ticks; /**< driven ticks without the first, saturating */
   uint32_t effort_low;         /**< drive summed over driven ticks without the second, 64 bits, saturating */
-  uint32_t effort_high;
-  uint32_t path_raw;              /**< follows the counter when it is more than noise away */
-  uint32_t path_is_homing;        /**< 1: what it travels is homing's */
+  uint32_t effort_high;        /**< upper half of that sum */
+  uint32_t path_raw;           /**< follows the counter when it is more than noise away */
+  uint32_t path_is_homing;     /**< 1: what it travels is homing's */
   uint32_t unhomed_travel_counts; /**< its path in this press while not homed, homing apart, saturating */
   uint32_t homing_travel_counts;  /**< its path in this press while homing, saturating */
   uint32_t homing_ticks;          /**< ticks of homing in this press, saturating */
@@ -197,7 +197,7 @@ typedef struct {
 
 /** What the kernel remembers. Only `ilk_init` and `ilk_step` write it. */
 typedef struct {
-  ilk_system_t system;
+  ilk_system_t system;        /**< of all axes */
   ilk_axis_t axis[ILK_SLOTS]; /**< by slot */
   uint32_t seal;              /**< digest of all words above */
 } ilk_state_t;
