@@ -193,6 +193,27 @@ def test_an_anomaly_covers_the_result_that_it_names_and_no_other(
     assert found(tree.project(stated, reviewed(stated[0]))) == ["G5 TEST:unit:kernel_tests.Lamps"]
 
 
+def test_a_method_that_an_anomaly_owes_is_awaited_until_a_release_or_its_result(tree: Tree) -> None:
+    def owing(method: str) -> str:
+        return (
+            f"\n[ANOMALY]\nUID: AN-01\nTITLE: Owed\nCOVERS: SRS-K-002:{method}\nSTATEMENT: It lacks.\n"
+            "EVALUATION: Harmless.\nRELATIONS:\n- TYPE: Parent\n  VALUE: SRS-K-002\n  ROLE: Affects\n"
+        )
+
+    tree.plant(read_defect(PLANTED / "G4_method_without_result.toml"))
+    path = tree.path / "spec/requirements/20_requirements.sdoc"
+    without = path.read_text("utf-8")
+    path.write_text(without + owing("Proof"), "utf-8")
+    stated = tree.stated()
+    project = tree.project(stated, reviewed(stated[0]))
+    assert found(project) == []
+    assert gate.awaited(gate.trace(project))["Verification that an anomaly owes"] == ["SRS-K-002 by Proof"]
+    assert found(replace(project, release=True)) == ["G4 SRS-K-002"]
+    path.write_text(without.replace("Test, Proof", "Test") + owing("Test"), "utf-8")
+    stated = tree.stated()
+    assert found(tree.project(stated, reviewed(stated[0]))) == ["G4 SRS-K-002"]
+
+
 def test_csv_and_pages_of_the_same_evidence_are_the_same_bytes(tree: Tree, clean: tuple[Items, str]) -> None:
     def written() -> tuple[str, dict[str, str]]:
         of = gate.trace(tree.project(clean, reviewed(clean[0])))
