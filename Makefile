@@ -119,11 +119,11 @@ verify: setup-provers ## Climb the verification ladder where inputs changed, and
 	@verification/evidence/verify.py
 
 .PHONY: mutate mutate-proofs
-mutate: setup-provers build-tests ## Draw mutants of the core and show each to tests, conformance, proofs, contracts: [SEED=] [COUNT=400] [MATRIX=1]
+mutate: setup-provers build-tests ## Draw mutants of the core and show each to tests and proofs: [SEED=] [COUNT=400] [MATRIX=1]
 	@$(measure) mutation /usr/bin/python3 verification/mutation/run.py --count $(or $(COUNT),400) \
 	  $(if $(SEED),--seed $(SEED)) $(if $(MATRIX),--matrix)
 
-mutate-proofs: setup-provers build-tests ## Show a hundred mutants to conformance, proofs and contracts alone: [SEED=] [COUNT=100] [MATRIX=1]
+mutate-proofs: setup-provers build-tests ## Show a hundred mutants to the proofs alone: [SEED=] [COUNT=100] [MATRIX=1]
 	@/usr/bin/python3 verification/mutation/run.py --without-tests --each 0 --count $(or $(COUNT),100) \
 	  $(if $(SEED),--seed $(SEED)) $(if $(MATRIX),--matrix)
 

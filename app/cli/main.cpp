@@ -132,9 +132,8 @@ void add_replay(CLI::App& cli, ReplayOptions& options) {
   command->add_option("FILE", options.file, "Recording")->required();
   command->add_option("--csv", options.csv, "File for a table, a row a tick");
   command->add_option("--plot", options.plot, "File for a plot of positions, drives and mode, as SVG");
-  command->add_flag(
-      "--model", options.model,
-      "Ask the TLA+ model, too, whether it accepts the run; in the source tree, with its provers");
+  command->add_flag("--judge", options.judge,
+                    "Have every monitor of the kernel's properties judge each tick; a broken one is refused");
   CLI::Option* const console = command->add_flag(
       "--console", options.console, "Show it in the console, at the pace at which it was recorded");
   command

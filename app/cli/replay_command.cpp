@@ -1,9 +1,5 @@
 #include "cli/replay_command.hpp"
 
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -12,8 +8,9 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
-#include "cli/installation.hpp"
+#include "cli/replay_judge.hpp"
 #include "cli/replay_table.hpp"
 #include "cli/write_file.hpp"
 #include "interlock/replay.h"
@@ -31,16 +28,20 @@ struct FileCloser {
 };
 using File = std::unique_ptr<FILE, FileCloser>;
 
-/** The tables that were asked for, filled tick by tick. */
+/** What was asked for of each tick. */
 struct Tables {
   ReplayedRobot robot;
+  std::optional<ReplayJudge> judge;
   std::ofstream csv_file;
   std::optional<ReplayCsv> csv;
   std::optional<ReplayPlot> plot;
 };
 
-void add_tick(void* context, const ilk_recorded_tick_t* tick) {
+void add_tick(void* context, const ilk_state_t* before, const ilk_recorded_tick_t* tick) {
   auto& tables = *static_cast<Tables*>(context);
+  if (tables.judge) {
+    tables.judge->add(*before, *tick);
+  }
   if (tables.csv) {
     tables.csv->add(*tick);
   }
@@ -93,8 +94,8 @@ void describe(const ilk_recording_header_t& header, std::ostream& output) {
   const UtcTime begun{std::chrono::milliseconds(recorder::joined(header.run.begun_utc_ms))};
   output << "recorded: " << recorder::why_name(header.why) << ", tick " << header.tick << "; run of "
          << iso_8601(begun) << (header.run.simulated != 0 ? ", simulated" : ", hardware") << ", period "
-         << header.run.config.period_us << " us, configuration " << config_hash(header.run.config) << ", by "
-         << std::string(header.build, strnlen(header.build, sizeof header.build)) << '\n';
+         << header.run.config.common.period_us << " us, configuration " << config_hash(header.run.config)
+         << ", by " << std::string(header.build, strnlen(header.build, sizeof header.build)) << '\n';
 }
 
 void describe(const ilk_replay_t& replayed, std::ostream& output) {
@@ -107,8 +108,8 @@ void describe(const ilk_replay_t& replayed, std::ostream& output) {
 }
 
 /** What the replay came to; the tables hold what was identical. */
-Result<void> judge(const ilk_replay_report_t& report, const ilk_recording_t& recording,
-                   std::ostream& output) {
+Result<void> compare(const ilk_replay_report_t& report, const ilk_recording_t& recording,
+                     std::ostream& output) {
   if (report.end == ILK_FILE_TORN) {
     output << "note: " << place(recording) << " was cut off while it was written; what is before it counts\n";
   }
@@ -126,40 +127,20 @@ Result<void> judge(const ilk_replay_report_t& report, const ilk_recording_t& rec
   return {};
 }
 
-/** Runs a program with this one's standard output; its exit code, or nothing when it did not come to one. */
-std::optional<int> exit_code_of(std::array<std::string, 3> words) {
-  const std::array<char*, 4> arguments{words[0].data(), words[1].data(), words[2].data(), nullptr};
-  pid_t child = 0;
-  int status = 0;
-  if (posix_spawn(&child, arguments[0], nullptr, nullptr, arguments.data(), environ) != 0 ||
-      waitpid(child, &status, 0) != child || !WIFEXITED(status)) {
-    return std::nullopt;
+/** What the monitors say of the ticks that came out the same; `good` says how far these go. */
+Result<void> judge(const ReplayJudge& judge, Result<void> good, std::ostream& output) {
+  if (!judge.violation()) {
+    output << ReplayJudge::monitors << " monitors accept " << judge.ticks() << " ticks\n";
+    return good;
   }
-  return WEXITSTATUS(status);
-}
-
-/** What the model says of a recording that is identical; its checker writes to standard output itself. */
-Result<void> ask_model(const fs::path& file, std::ostream& output) {
-  const Installation here = Installation::current();
-  const fs::path checker = here.data() / "verification/conformance/recorded.py";
-  const Result<fs::path> teller = here.program("model_trace");
-  if (!teller || !fs::exists(checker)) {
-    return failed(
-        ExitCode::precondition,
-        "the model is checked in the source tree only: build all of it there, and run its interlock");
-  }
-  output.flush();
-  const std::optional<int> code = exit_code_of({checker.string(), teller->string(), file.string()});
-  if (code == 0) {
-    return {};
-  }
-  return code == 1 ? failed(ExitCode::refused, "the model does not accept what the kernel did")
-                   : failed(ExitCode::precondition,
-                            "the model's checker came to no end; `make verify` installs what it needs");
+  return failed(ExitCode::refused, describe(*judge.violation()) + (good ? "" : "; " + good.error().text));
 }
 
 Result<Tables> tables_for(const ReplayOptions& options, const ilk_recording_header_t& header) {
-  Tables tables{ReplayedRobot(header.run.config), {}, std::nullopt, std::nullopt};
+  Tables tables{ReplayedRobot(header.run.config), std::nullopt, {}, std::nullopt, std::nullopt};
+  if (options.judge) {
+    tables.judge.emplace(header.run.config);
+  }
   if (!options.csv.empty()) {
     tables.csv_file.open(options.csv, std::ios::trunc);
   }
@@ -203,9 +184,9 @@ Result<void> replay(const ReplayOptions& options, std::ostream& output) {
       return drawn;
     }
   }
-  Result<void> good = judge(report, *recording, output);
-  if (good && options.model) {
-    good = ask_model(options.file, output);
+  Result<void> good = compare(report, *recording, output);
+  if (tables->judge) {
+    good = judge(*tables->judge, std::move(good), output);
   }
   if (good && options.console) {
     good = show_in_console(options.show, options.file, recording->header.run.config, output);

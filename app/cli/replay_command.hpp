@@ -16,17 +16,18 @@ struct ReplayOptions {
   std::filesystem::path file;
   std::filesystem::path csv;  /**< a row a tick; empty: none */
   std::filesystem::path plot; /**< positions, drives and mode as SVG; empty: none */
-  bool model = false;         /**< ask the TLA+ model whether it accepts the run, too */
+  bool judge = false;         /**< have the monitors judge each tick */
   bool console = false;       /**< show it in the console, until a signal */
   ReplayShow show;            /**< how */
 };
 
 /**
- * Says "identical", or names the first bit that comes out differently; then, if asked, what the model says,
- * and shows in the console what is identical.
+ * Says "identical", or names the first bit that comes out differently; if asked, names the first tick that
+ * breaks a property, or says by how many monitors how many ticks were judged; then, if asked, shows in the
+ * console what is identical.
  *
- * @return REFUSED for a difference, a tick that the model rejects, a damaged file, or one of another release;
- * PRECONDITION when a file cannot be read or written, or the model's checker is not there.
+ * @return REFUSED for a difference, a broken property, a damaged file, or one of another release; PRECONDITION when a file cannot
+ * be read or written.
  */
 Result<void> replay(const ReplayOptions& options, std::ostream& output);
 

@@ -49,10 +49,13 @@ ReplayCsv::ReplayCsv(const ReplayedRobot& robot, std::ostream& output) : robot_(
 void ReplayCsv::add(const ilk_recorded_tick_t& tick) {
   const ilk_state_t& state = tick.picture.state;
   const ilk_outputs_t& out = tick.picture.out;
-  output_ << state.tick << ',' << tick.begun_ns << ',' << catalog::name(Family::mode, state.mode) << ','
-          << catalog::name(Family::cause, state.cause) << ',' << catalog::name(Family::pedal, state.pedal)
-          << ',' << state.estop << ',' << state.app_alive << ',' << state.holder << ',' << tick.request_count
-          << ',' << state.requests_accepted << ',' << state.requests_refused << ',' << tick.state_digest;
+  output_ << state.system.tick << ',' << tick.begun_ns << ','
+          << catalog::name(Family::mode, state.system.mode) << ','
+          << catalog::name(Family::cause, state.system.cause) << ','
+          << catalog::name(Family::pedal, state.system.pedal) << ',' << state.system.estop << ','
+          << state.system.app_alive << ',' << state.system.holder << ',' << tick.request_count << ','
+          << state.system.requests_accepted << ',' << state.system.requests_refused << ','
+          << tick.state_digest;
   for (const std::uint32_t slot : robot_.slots()) {
     const ilk_axis_t& axis = state.axis[slot];
     output_ << ',' << catalog::name(Family::axis_state, axis.state) << ','
@@ -94,7 +97,7 @@ void ReplayPlot::add(const ilk_recorded_tick_t& tick) {
     panel->series[0].values.emplace_back(signed_drive(tick.picture.out.command[slot]));
     ++panel;
   }
-  panel->series[0].values.emplace_back(state.mode);
+  panel->series[0].values.emplace_back(state.system.mode);
 }
 
 }  // namespace interlock::cli

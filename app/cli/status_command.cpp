@@ -61,6 +61,11 @@ std::string age_of(const json& status) {
   return text.str();
 }
 
+std::string power_of(const json& status) {
+  const std::string power = text_of(status, "power");
+  return power == "coming_up" ? "coming up" : power;
+}
+
 std::string card_text(const json& card) {
   return "slot " + std::to_string(card.at("slot").get<int>()) + ' ' + text_of(card, "card") +
          (card.at("detected").get<bool>() ? ", detected" : ", NOT DETECTED") + ", " +
@@ -83,6 +88,7 @@ std::string table_of(const json& status) {
   table.row("E-stop", status.at("estop").get<bool>() ? "ACTIVE" : "clear");
   table.row("Pedal",
             text_of(status, "pedal") + (status.at("pedal_armed").get<bool>() ? ", armed" : ", not armed"));
+  table.row("Power", power_of(status));
   table.row("Data", age_of(status));
   if (const json& late = status.at("host_late"); !late.is_null()) {
     table.row("Host", host_of(late));

@@ -64,10 +64,10 @@ DemoResult<void> RobotRig::start() {
 /** Presses again as often as a step asks for it. */
 DemoResult<void> RobotRig::home() {
   const auto steps = static_cast<std::uint32_t>(robot_.home_steps.size());
-  conductor_.take(HomeOrder{++proposal_, 0, steps, 0, 0}, state_.tick);
+  conductor_.take(HomeOrder{++proposal_, 0, steps, 0, 0}, state_.system.tick);
   set_pedal(true);
-  const std::uint32_t begun = state_.tick;
-  while (is_open(conductor_.home().order.phase) && state_.tick - begun < ticks_of(patience_s)) {
+  const std::uint32_t begun = state_.system.tick;
+  while (is_open(conductor_.home().order.phase) && state_.system.tick - begun < ticks_of(patience_s)) {
     tick();
     if (conductor_.home().order.reason == OrderReason::press_again) {
       set_pedal(false);
@@ -82,14 +82,14 @@ DemoResult<void> RobotRig::home() {
 
 DemoResult<void> RobotRig::carry_out(const PathProgram& program) {
   begin_record();
-  conductor_.take(PathOrder{++proposal_, &program, 0}, state_.tick);
+  conductor_.take(PathOrder{++proposal_, &program, 0}, state_.system.tick);
   set_pedal(true);
-  const std::uint32_t begun = state_.tick;
-  while (is_open(conductor_.path().order.phase) && state_.tick - begun < ticks_of(patience_s)) {
+  const std::uint32_t begun = state_.system.tick;
+  while (is_open(conductor_.path().order.phase) && state_.system.tick - begun < ticks_of(patience_s)) {
     tick();
   }
   const PathStatus status = conductor_.path();
-  conductor_.end(proposal_, OrderReason::cancelled, state_.tick);
+  conductor_.end(proposal_, OrderReason::cancelled, state_.system.tick);
   set_pedal(false);
   return status.order.phase == OrderPhase::done ? DemoResult<void>()
                                                 : failed(ended(robot_, status.slot, status.order));
@@ -104,20 +104,20 @@ DemoResult<NeedleInsertion> RobotRig::take_biopsy(const Eigen::Vector3d& target_
   scene.target_mm = {target_mm.x(), target_mm.y(), target_mm.z()};
   scene.entry_mm = robot_.biopsy->entry_mm;
   plant_.surround(std::make_unique<needle::Scene>(scene, tissue_seed));
-  const std::uint32_t scene_tick = state_.tick;
+  const std::uint32_t scene_tick = state_.system.tick;
   run(ticks_of(settle_s));
   DemoResult<BiopsyRun> prepared = begin_biopsy(target_mm);
   if (!prepared) {
     return failed(prepared.error());
   }
   begin_record();
-  conductor_.take(BiopsyOrder{++proposal_, &*prepared, 0}, state_.tick);
+  conductor_.take(BiopsyOrder{++proposal_, &*prepared, 0}, state_.system.tick);
   set_pedal(true);
   press_hand(hand_n);
   follow_biopsy(prepared->start_tick, scene_tick);
   press_hand(0.0);
   const BiopsyStatus status = conductor_.biopsy().status();
-  conductor_.end(proposal_, OrderReason::cancelled, state_.tick);
+  conductor_.end(proposal_, OrderReason::cancelled, state_.system.tick);
   set_pedal(false);
   if (status.order.phase != OrderPhase::done) {
     return failed(ended(robot_, status.slot, status.order) + " " + std::string(status.quantity));
@@ -145,12 +145,12 @@ DemoResult<BiopsyRun> RobotRig::begin_biopsy(const Eigen::Vector3d& target_mm) {
     const Axis& axis = *robot_.with_role(role);
     return axis.to_unit(state_.axis[axis.slot].position_counts);
   };
-  const BiopsyStart start{state_.tick, position("insertion"), position("rotation"), target_mm,
+  const BiopsyStart start{state_.system.tick, position("insertion"), position("rotation"), target_mm,
                           biopsy.membranes_mm};
   return zeroed(biopsy.hand, force.recent_hand())
       .and_then([&](const ForceCalibration& hand) {
         return zeroed(biopsy.needle, force.recent_needle()).and_then([&](const ForceCalibration& needle) {
-          return make_biopsy_run(biopsy, config_.period_us * 1e-6, start, hand, needle);
+          return make_biopsy_run(biopsy, config_.common.period_us * 1e-6, start, hand, needle);
         });
       })
       .map_error([](const KinematicsError& error) { return error.message(); });
@@ -158,10 +158,10 @@ DemoResult<BiopsyRun> RobotRig::begin_biopsy(const Eigen::Vector3d& target_mm) {
 
 /** Until it ends. Hands on each image that was exposed since its start. */
 void RobotRig::follow_biopsy(std::uint32_t start_tick, std::uint32_t scene_tick) {
-  const double started_s = (start_tick - scene_tick) * static_cast<double>(config_.period_us) * 1e-6;
-  const std::uint32_t begun = state_.tick;
+  const double started_s = (start_tick - scene_tick) * static_cast<double>(config_.common.period_us) * 1e-6;
+  const std::uint32_t begun = state_.system.tick;
   double shown_s = started_s;
-  while (conductor_.biopsy().is_open() && state_.tick - begun < ticks_of(patience_s)) {
+  while (conductor_.biopsy().is_open() && state_.system.tick - begun < ticks_of(patience_s)) {
     tick();
     const auto& image = plant_.surroundings()->newest_image();
     if (image && image->time_s > shown_s) {
@@ -179,14 +179,15 @@ void RobotRig::press_hand(double newtons) {
 
 void RobotRig::begin_record() {
   record_ = {{}, std::vector<std::vector<AxisSample>>(robot_.axes.size())};
-  record_tick_ = state_.tick;
+  record_tick_ = state_.system.tick;
 }
 
 void RobotRig::note() {
-  if (record_.axes.empty() || (state_.tick - record_tick_) % ticks_of(record_period_s) != 0) {
+  if (record_.axes.empty() || (state_.system.tick - record_tick_) % ticks_of(record_period_s) != 0) {
     return;
   }
-  record_.times_s.push_back((state_.tick - record_tick_) * static_cast<double>(config_.period_us) * 1e-6);
+  record_.times_s.push_back((state_.system.tick - record_tick_) *
+                            static_cast<double>(config_.common.period_us) * 1e-6);
   for (std::size_t place = 0; place < robot_.axes.size(); ++place) {
     const std::uint32_t slot = robot_.axes[place].slot;
     record_.axes[place].push_back({state_.axis[slot].position_counts,
@@ -211,10 +212,12 @@ AxisPositions RobotRig::true_positions() const {
   return positions;
 }
 
-double RobotRig::time_s() const { return state_.tick * static_cast<double>(config_.period_us) * 1e-6; }
+double RobotRig::time_s() const {
+  return state_.system.tick * static_cast<double>(config_.common.period_us) * 1e-6;
+}
 
 std::uint32_t RobotRig::ticks_of(double seconds) const {
-  return static_cast<std::uint32_t>(seconds * 1e6 / config_.period_us);
+  return static_cast<std::uint32_t>(seconds * 1e6 / config_.common.period_us);
 }
 
 void RobotRig::run(std::uint32_t ticks) {
@@ -259,14 +262,14 @@ void RobotRig::tick() {
   heartbeat.kind = ILK_REQUEST_HEARTBEAT;
   heartbeat.holder = holder;
   put(heartbeat);
-  inputs_ = plant::exchange(plant_, outputs_, state_.tick);
+  inputs_ = plant::exchange(plant_, outputs_, state_.system.tick);
   ilk_step(&config_, &state_, &inputs_, requests_.data(), static_cast<std::uint32_t>(requests_.size()),
            &outputs_);
   requests_.clear();
   settle_verdicts();
   const Wishes wishes = conductor_.tick(snapshot());
   for (const Wish& wish : wishes.all()) {
-    sent_.push_back({put(request_of(wish)), wish.origin});
+    sent_.push_back({put(request_of(wish, state_.system.consent)), wish.origin});
   }
   note();
 }
@@ -286,7 +289,7 @@ ilk_snapshot_t RobotRig::snapshot() const {
   ilk_snapshot_t snapshot{};
   snapshot.clock = ILK_CLOCK_SIM;
   snapshot.simulated = 1;
-  snapshot.period_us = config_.period_us;
+  snapshot.period_us = config_.common.period_us;
   snapshot.config_crc = config_.crc;
   snapshot.state = state_;
   snapshot.inputs = inputs_;

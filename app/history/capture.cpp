@@ -74,7 +74,7 @@ json capture_json(const CaptureSpan& span, std::uint32_t period_us, const std::v
 tl::expected<json, std::string> capture(const std::filesystem::path& black_box, const CaptureSpan& span) {
   return recorder::Ring::connect(black_box).map([&](const recorder::Ring& ring) {
     const auto sensor = span.forces ? std::optional(span.forces->inputs.slot) : std::nullopt;
-    return capture_json(span, ring.run().config.period_us,
+    return capture_json(span, ring.run().config.common.period_us,
                         recorder::full_rate(ring, {span.slot, span.seconds, span.until, sensor}));
   });
 }

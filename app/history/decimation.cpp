@@ -37,7 +37,7 @@ bool Decimation::begins_anew(std::uint32_t generation, std::uint32_t tick) const
 
 std::optional<TickBucket> Decimation::take(std::uint32_t generation, const ilk_snapshot_t& snapshot,
                                            const ForceReadings& force) noexcept {
-  const std::uint32_t tick = snapshot.state.tick;
+  const std::uint32_t tick = snapshot.state.system.tick;
   const bool anew = begins_anew(generation, tick);
   std::optional<TickBucket> complete;
   if (anew || tick / length_ != bucket_.last_tick / length_) {

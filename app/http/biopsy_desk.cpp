@@ -74,7 +74,7 @@ tl::expected<BiopsyDraft, Problem> BiopsyDesk::draft(const std::array<double, 3>
     const Axis& axis = *robot_.with_role(role);
     return axis.to_unit(view.snapshot.state.axis[axis.slot].position_counts);
   };
-  const BiopsyStart start{view.snapshot.state.tick,
+  const BiopsyStart start{view.snapshot.state.system.tick,
                           position("insertion"),
                           position("rotation"),
                           {target_mm[0], target_mm[1], target_mm[2]},
@@ -139,7 +139,7 @@ tl::expected<void, Problem> BiopsyDesk::zero(const ControlView& view) {
 std::optional<double> BiopsyDesk::needle_force_n(const ControlView& view) const {
   constexpr std::uint32_t oldest_us = 20000;
   const bool is_fresh =
-      view.attached && view.force.age_ticks(view.snapshot.state.tick) <= oldest_us / robot_.period_us;
+      view.attached && view.force.age_ticks(view.snapshot.state.system.tick) <= oldest_us / robot_.period_us;
   if (!needle_ || !is_fresh) {
     return std::nullopt;
   }
@@ -163,7 +163,7 @@ json BiopsyDesk::membranes_json() const {
 
 json BiopsyDesk::to_json(const ControlView& view, bool open) const {
   const bool known = view.attached && view.force.count != 0;
-  const double ticks = view.force.age_ticks(view.snapshot.state.tick);
+  const double ticks = view.force.age_ticks(view.snapshot.state.system.tick);
   return {{"open", open},
           {"hand", force_json(hand_, view.force.hand, known)},
           {"needle", force_json(needle_, view.force.needle, known)},

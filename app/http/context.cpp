@@ -60,7 +60,7 @@ AuditEntry Context::entry(const Caller& caller, AuditKind kind, nlohmann::json d
                    .detail = std::move(detail)};
   // Not the newest view: whoever changes a proposal is in the middle of reading this one.
   if (const ControlView& now = control.current(); now.attached) {
-    entry.tick = now.snapshot.state.tick;
+    entry.tick = now.snapshot.state.system.tick;
   }
   if (caller.session != 0) {
     entry.session = caller.session;

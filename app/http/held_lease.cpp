@@ -7,7 +7,7 @@ namespace interlock::web {
 void HeldLease::hold(const ControlView& view, TimePoint now) {
   held_ = true;
   renewed_ = now;
-  renewed_tick_ = view.snapshot.state.tick;
+  renewed_tick_ = view.snapshot.state.system.tick;
 }
 
 bool HeldLease::overdue(const ControlView& view, TimePoint now) const {
@@ -17,7 +17,7 @@ bool HeldLease::overdue(const ControlView& view, TimePoint now) const {
   if (!view.attached || view.snapshot.clock != ILK_CLOCK_SIM) {
     return now - renewed_ >= patience_;
   }
-  const std::uint64_t ticks = view.snapshot.state.tick - renewed_tick_;
+  const std::uint64_t ticks = view.snapshot.state.system.tick - renewed_tick_;
   return ticks * view.snapshot.period_us >=
          static_cast<std::uint64_t>(std::chrono::microseconds(patience_).count());
 }

@@ -364,7 +364,7 @@ asio::awaitable<void> Navigation::tell_all() {
     const SteadyTime now = std::chrono::steady_clock::now();
     if (now >= next_telling) {
       next_telling = now + telling_period;
-      const std::uint32_t tick = context_.view().snapshot.state.tick;
+      const std::uint32_t tick = context_.view().snapshot.state.system.tick;
       velocities_.measure(context_.robot, context_.view());
       probe_velocity_.measure(tick, context_.robot.period_us, state().measured_cp);
       tell_messages(now);

@@ -31,8 +31,8 @@ igtl::Status health_of(const ControlView& view) {
   if (!view.attached) {
     return {StatusCode::not_ready, 0, "NO_KERNEL", "No kernel is connected."};
   }
-  const std::string mode = catalog::name(catalog::Family::mode, view.snapshot.state.mode);
-  if (view.snapshot.state.mode == ILK_MODE_LOCKED) {
+  const std::string mode = catalog::name(catalog::Family::mode, view.snapshot.state.system.mode);
+  if (view.snapshot.state.system.mode == ILK_MODE_LOCKED) {
     return {StatusCode::hardware_failure, 0, mode, "The kernel is locked; the console says why."};
   }
   return {StatusCode::ok, 0, mode, "The kernel is in mode " + mode + "."};
@@ -40,10 +40,10 @@ igtl::Status health_of(const ControlView& view) {
 
 /** In the words of CRTK: PAUSED while no motion is taken although there is power. */
 std::string operating_state_of(const Robot& robot, const ControlView& view) {
-  if (!view.attached || view.snapshot.state.mode == ILK_MODE_LOCKED) {
+  if (!view.attached || view.snapshot.state.system.mode == ILK_MODE_LOCKED) {
     return "FAULT";
   }
-  if (view.snapshot.state.mode == ILK_MODE_MOTION) {
+  if (view.snapshot.state.system.mode == ILK_MODE_MOTION) {
     return "ENABLED";
   }
   const bool has_power = std::ranges::any_of(robot.axes, [&](const Axis& axis) {
@@ -100,7 +100,7 @@ void PoseVelocity::measure(std::uint32_t tick, std::uint32_t period_us,
 }
 
 void AxisVelocities::measure(const Robot& robot, const ControlView& view) {
-  const std::uint32_t before_tick = std::exchange(tick_, view.snapshot.state.tick);
+  const std::uint32_t before_tick = std::exchange(tick_, view.snapshot.state.system.tick);
   const std::vector<double> before = std::exchange(positions_, positions_in(robot, view));
   const double seconds = static_cast<double>(tick_ - before_tick) * robot.period_us * 1e-6;
   velocities_.clear();

@@ -128,7 +128,7 @@ json proposal_plan(const Robot& robot, const ilk_config_t& config, const Targeti
   }
   const auto& start = proposal.checked_against;
   return {{"id", proposal.id},
-          {"checked_tick", start == nullptr ? json() : json(start->state.tick)},
+          {"checked_tick", start == nullptr ? json() : json(start->state.system.tick)},
           {"checks", std::move(checks)},
           {"profile", to_json(profile)},
           {"ghost", ghost.value_or(json())},

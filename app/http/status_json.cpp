@@ -5,6 +5,7 @@
 
 #include "build_info/build_info.hpp"
 #include "interlock/sim_bus.h"
+#include "link/card_frame.hpp"
 #include "motion/axis_plan.hpp"
 #include "motion/setpoint_range.hpp"
 #include "robot/catalog.hpp"
@@ -39,23 +40,23 @@ json lamps_json(const ilk_snapshot_t& snapshot) {
 /** How long the card's newest valid frame lies back, by the kernel's clock; null when none has come yet. */
 json frame_age_ms(const ilk_config_t& config, const ilk_state_t& state, std::uint32_t slot) {
   const std::uint32_t missed = state.axis[slot].bad_frames;
-  return missed < state.tick ? json(missed * (config.period_us / 1000.0)) : json();
+  return missed < state.system.tick ? json(missed * (config.common.period_us / 1000.0)) : json();
 }
 
-json cards_json(const ilk_config_t& config, const ilk_state_t& state) {
+json cards_json(const ilk_config_t& config, const ilk_snapshot_t& snapshot) {
+  const ilk_state_t& state = snapshot.state;
   json cards = json::array();
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     const ilk_axis_t& axis = state.axis[slot];
     const bool expected = config.axis[slot].card != ILK_CARD_NONE;
-    cards.push_back(
-        {{"slot", slot},
-         {"card", catalog::name(Family::card, config.axis[slot].card)},
-         {"detected", expected && axis.card_seen != 0 && axis.bad_frames < config.bad_frame_limit},
-         {"heartbeat", axis.heartbeat},
-         // A frame is valid only when its heartbeat advanced.
-         {"heartbeat_live", expected && axis.card_valid != 0},
-         {"frame_age_ms", expected ? frame_age_ms(config, state, slot) : json()},
-         {"checksum_failures", axis.checksum_failures}});
+    cards.push_back({{"slot", slot},
+                     {"card", catalog::name(Family::card, config.axis[slot].card)},
+                     {"detected", card_frame::detected(config, state, slot)},
+                     {"heartbeat", card_frame::heartbeat(snapshot, slot)},
+                     // A frame that is repeated or late is not valid.
+                     {"heartbeat_live", expected && axis.card_valid != 0},
+                     {"frame_age_ms", expected ? frame_age_ms(config, state, slot) : json()},
+                     {"checksum_failures", axis.checksum_failures}});
   }
   return cards;
 }
@@ -66,6 +67,13 @@ json timing_json(const ilk_timing_t& timing) {
     phases[phase_names[phase]] = {{"max_ns", timing.max_ns[phase]}, {"buckets", timing.bucket[phase]}};
   }
   return phases;
+}
+
+const char* power_name(const ilk_config_t& config, const ilk_snapshot_t& snapshot) {
+  if (snapshot.power == 0) {
+    return "off";
+  }
+  return power_is_up(config, snapshot) ? "on" : "coming_up";
 }
 
 const char* clock_name(const ilk_snapshot_t& snapshot) {
@@ -135,6 +143,10 @@ json event_body(const ilk_event_t& event) {
 
 }  // namespace
 
+bool power_is_up(const ilk_config_t& config, const ilk_snapshot_t& snapshot) {
+  return snapshot.power != 0 && snapshot.state.system.powered_ticks >= config.common.power_up_ticks;
+}
+
 json status_json(const Robot& robot, const ilk_config_t& config, const ControlView& view,
                  std::string_view app_mode, std::chrono::steady_clock::time_point now) {
   static const ControlView nothing{};
@@ -152,23 +164,25 @@ json status_json(const Robot& robot, const ilk_config_t& config, const ControlVi
           {"host_late", host_late_json(snapshot, age.count())},
           {"replay", view.replay},
           {"connected", view.attached},
-          {"mode", catalog::name(Family::mode, state.mode)},
-          {"cause", catalog::name(Family::cause, state.cause)},
-          {"cause_tick", state.cause_tick},
-          {"cause_value", state.cause_value},
-          {"causes_seen", causes_json(state.causes_seen)},
-          {"tick", state.tick},
-          {"estop", state.estop != 0},
-          {"pedal", catalog::name(Family::pedal, state.pedal)},
-          {"pedal_armed", state.pedal_armed != 0},
-          {"app_alive", state.app_alive != 0},
-          {"holder", state.holder},
+          {"mode", catalog::name(Family::mode, state.system.mode)},
+          {"cause", catalog::name(Family::cause, state.system.cause)},
+          {"cause_tick", state.system.cause_tick},
+          {"cause_value", state.system.cause_value},
+          {"causes_seen", causes_json(state.system.causes_seen)},
+          {"tick", state.system.tick},
+          {"estop", state.system.estop != 0},
+          {"pedal", catalog::name(Family::pedal, state.system.pedal)},
+          {"pedal_armed", state.system.pedal_armed != 0},
+          {"power", power_name(config, snapshot)},
+          {"consent", state.system.consent},
+          {"app_alive", state.system.app_alive != 0},
+          {"holder", state.system.holder},
           {"app_mode", app_mode},
           {"overruns", snapshot.overruns},
           {"config_crc", config_hash(config)},
           {"age_ms", age.count()},
           {"lamps", lamps_json(snapshot)},
-          {"cards", cards_json(config, state)},
+          {"cards", cards_json(config, snapshot)},
           {"timing", timing_json(snapshot.timing)}};
 }
 
@@ -176,7 +190,7 @@ json motor_json(const Axis& axis, const ilk_config_t& config, const ControlView&
                 const ProposalBook& book) {
   const ilk_axis_config_t& rules = config.axis[axis.slot];
   const ilk_axis_t& state = view.snapshot.state.axis[axis.slot];
-  const SetpointRange range = setpoint_range(rules, state, view.snapshot.state.mode);
+  const SetpointRange range = setpoint_range(rules, state, view.snapshot.state.system.mode);
   json motor{{"slot", axis.slot},
              {"name", axis.name},
              {"title", axis.title},
@@ -197,6 +211,8 @@ json motor_json(const Axis& axis, const ilk_config_t& config, const ControlView&
              {"coast_counts", rules.coast_counts},
              {"unhomed_travel_counts", rules.unhomed_travel_counts},
              {"homed", state.homed != 0},
+             {"homed_by", catalog::name(Family::homed, state.homed)},
+             {"home_difference_counts", state.home_difference_counts},
              {"homing", book.homes(axis.slot)},
              {"has_switch", rules.limit_side != ILK_LIMIT_NONE},
              {"switch", state.switch_triggered != 0},

@@ -14,6 +14,9 @@
 
 namespace interlock::web {
 
+/** Power is on, and has been for long enough that the amplifiers obey. */
+bool power_is_up(const ilk_config_t& config, const ilk_snapshot_t& snapshot);
+
 /** Schema `Status`. */
 nlohmann::json status_json(const Robot& robot, const ilk_config_t& config, const ControlView& view,
                            std::string_view app_mode, std::chrono::steady_clock::time_point now);

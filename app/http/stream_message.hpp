@@ -15,9 +15,9 @@
 namespace interlock::web {
 
 constexpr std::uint32_t stream_magic = 0x53574b49;
-constexpr std::uint32_t stream_version = 2;
+constexpr std::uint32_t stream_version = 3;
 constexpr std::size_t stream_header_words = 20;
-constexpr std::size_t stream_slot_words = 15;
+constexpr std::size_t stream_slot_words = 16;
 constexpr std::size_t stream_state_words = sizeof(ilk_state_t) / 4;
 constexpr std::size_t stream_bytes =
     4 * (stream_header_words + ILK_SLOTS * stream_slot_words + stream_state_words);

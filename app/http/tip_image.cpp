@@ -38,7 +38,7 @@ tl::expected<void, Problem> show_tip_image(const Context& context, const TipImag
     }
     guide_from_image = open->biopsy.scanner_from_guide->inverse();
   }
-  const std::uint32_t ticks = view.snapshot.state.tick - open->biopsy.start_tick;
+  const std::uint32_t ticks = view.snapshot.state.system.tick - open->biopsy.start_tick;
   NeedleImage seen;
   seen.time_s = ticks * (context.robot.period_us * 1e-6) - image.age_ms * 1e-3;
   seen.tip_mm = guide_from_image * image.tip_mm;

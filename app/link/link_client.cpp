@@ -161,6 +161,10 @@ tl::expected<void, LinkError> LinkClient::attach(std::chrono::milliseconds hello
                                                 std::to_string(sizeof received.hello) + " bytes with 2");
   }
   auto adopted = adopt(received.hello, std::move(received.regions[0]), std::move(received.regions[1]));
+  constexpr std::uint32_t mapped = ILK_LINK_MAGIC;
+  if (adopted && ::send(socket->get(), &mapped, sizeof mapped, MSG_NOSIGNAL) != sizeof mapped) {
+    adopted = failure(LinkError::Kind::unreachable, "link socket \"" + path_ + "\": " + system_reason(errno));
+  }
   if (adopted) {
     socket_ = std::move(*socket);
   } else {

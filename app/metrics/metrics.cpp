@@ -65,18 +65,18 @@ class Families {
 void add_system(Families& families, const ilk_snapshot_t& snapshot) {
   const ilk_state_t& state = snapshot.state;
   families.begin(MetricType::Gauge, "interlock_mode", "1 for the system's mode, 0 for every other.");
-  families.add_state(catalog::Family::mode, "mode", state.mode);
+  families.add_state(catalog::Family::mode, "mode", state.system.mode);
   families.begin(MetricType::Gauge, "interlock_lock_cause",
                  "1 for each cause to lock that was seen since the last reset.");
   for (const catalog::Entry& cause : catalog::entries(catalog::Family::cause)) {
-    families.add((state.causes_seen >> cause.number) & 1u, {{"cause", std::string(cause.name)}});
+    families.add((state.system.causes_seen >> cause.number) & 1u, {{"cause", std::string(cause.name)}});
   }
   families.begin(MetricType::Gauge, "interlock_pedal", "1 for what the pedal's channels say together.");
-  families.add_state(catalog::Family::pedal, "pedal", state.pedal);
+  families.add_state(catalog::Family::pedal, "pedal", state.system.pedal);
   families.begin(MetricType::Gauge, "interlock_estop", "1 while the emergency stop is pressed.");
-  families.add(state.estop != 0 ? 1.0 : 0.0);
+  families.add(state.system.estop != 0 ? 1.0 : 0.0);
   families.begin(MetricType::Gauge, "interlock_app_alive", "1 while the kernel counts the app as alive.");
-  families.add(state.app_alive != 0 ? 1.0 : 0.0);
+  families.add(state.system.app_alive != 0 ? 1.0 : 0.0);
   families.begin(MetricType::Gauge, "interlock_degraded",
                  "1 when the real clock runs without the real-time measures that it needs.");
   families.add(snapshot.degraded != 0 ? 1.0 : 0.0);
@@ -84,7 +84,7 @@ void add_system(Families& families, const ilk_snapshot_t& snapshot) {
 
 void add_loop(Families& families, const ilk_snapshot_t& snapshot) {
   families.begin(MetricType::Counter, "interlock_ticks_total", "Ticks of the control loop.");
-  families.add(snapshot.state.tick);
+  families.add(snapshot.state.system.tick);
   families.begin(MetricType::Counter, "interlock_overruns_total",
                  "Ticks that began more than a period late.");
   families.add(snapshot.overruns);

@@ -21,13 +21,13 @@ void AxisMove::aim(std::int32_t target_counts, std::uint32_t max_drive) noexcept
 }
 
 void AxisMove::start(const ilk_snapshot_t& snapshot) noexcept {
-  rest_.restart(snapshot.state.axis[slot_].position_counts, snapshot.state.tick);
-  unblocked_tick_ = snapshot.state.tick;
+  rest_.restart(snapshot.state.axis[slot_].position_counts, snapshot.state.system.tick);
+  unblocked_tick_ = snapshot.state.system.tick;
   lease_.renew_at_once();
 }
 
 AxisMove::Progress AxisMove::watch(const ilk_snapshot_t& snapshot) noexcept {
-  const std::uint32_t now = snapshot.state.tick;
+  const std::uint32_t now = snapshot.state.system.tick;
   const std::int32_t position = snapshot.state.axis[slot_].position_counts;
   if (distance(position, target_counts_) > plan_.rules.deadband_counts) {
     rest_.restart(position, now);
@@ -39,13 +39,13 @@ AxisMove::Progress AxisMove::watch(const ilk_snapshot_t& snapshot) noexcept {
 
 bool AxisMove::held_back(const ilk_snapshot_t& snapshot) noexcept {
   if (!is_limit(snapshot.gate[slot_])) {
-    unblocked_tick_ = snapshot.state.tick;
+    unblocked_tick_ = snapshot.state.system.tick;
   }
-  return snapshot.state.tick - unblocked_tick_ >= held_back_ticks;
+  return snapshot.state.system.tick - unblocked_tick_ >= held_back_ticks;
 }
 
 void AxisMove::hold(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
-  lease_.hold(proposal, snapshot.state.tick, target_counts_, wanted_drive(snapshot.state.axis[slot_]),
+  lease_.hold(proposal, snapshot.state.system.tick, target_counts_, wanted_drive(snapshot.state.axis[slot_]),
               wishes);
 }
 

@@ -97,8 +97,8 @@ struct RobotPlan {
   std::optional<NeedlePlan> needle;
 
   RobotPlan(const Robot& robot, const ilk_config_t& config)
-      : period_us(config.period_us),
-        lease_max_ticks(config.lease_max_ticks),
+      : period_us(config.common.period_us),
+        lease_max_ticks(config.common.lease_max_ticks),
         home_steps(robot.home_steps.begin(), robot.home_steps.end()) {
     const Axis* insertion = robot.with_role("insertion");
     const Axis* rotation = robot.with_role("rotation");
@@ -109,8 +109,9 @@ struct RobotPlan {
     }
     for (const Axis& each : robot.axes) {
       const MotionRates rates = each.motion.value_or(MotionRates{});
-      axis[each.slot] = AxisPlan{config.axis[each.slot], each.drive.min, each.counts_per_unit, rates,
-                                 control_rules(each, config.period_us, rates.full_speed_counts_per_s)};
+      axis[each.slot] =
+          AxisPlan{config.axis[each.slot], each.drive.min, each.counts_per_unit, rates,
+                   control_rules(each, config.common.period_us, each.mechanics.full_speed_counts_per_s)};
     }
   }
 

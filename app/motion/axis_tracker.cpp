@@ -29,7 +29,7 @@ AxisTracker::AxisTracker(std::uint32_t slot, const AxisPlan& plan, std::uint32_t
 }
 
 void AxisTracker::start(const ilk_snapshot_t& snapshot) noexcept {
-  rest_.restart(snapshot.state.axis[slot_].position_counts, snapshot.state.tick);
+  rest_.restart(snapshot.state.axis[slot_].position_counts, snapshot.state.system.tick);
   lease_.renew_at_once();
 }
 
@@ -47,28 +47,28 @@ bool AxisTracker::off_path(const ilk_snapshot_t& snapshot, const PathPoint& poin
 bool AxisTracker::arrived(const ilk_snapshot_t& snapshot, const PathPoint& point) noexcept {
   const std::int32_t position = snapshot.state.axis[slot_].position_counts;
   if (distance(position, rounded(point.now.position_counts)) > plan_.rules.deadband_counts) {
-    rest_.restart(position, snapshot.state.tick);
+    rest_.restart(position, snapshot.state.system.tick);
     return false;
   }
-  return rest_.rests(position, plan_.rules.noise_counts, snapshot.state.tick);
+  return rest_.rests(position, plan_.rules.noise_counts, snapshot.state.system.tick);
 }
 
 void AxisTracker::hold(std::uint32_t proposal, const ilk_snapshot_t& snapshot, const PathPoint& point,
                        Wishes& wishes) noexcept {
   const ilk_axis_t& axis = snapshot.state.axis[slot_];
   // An axis that has just homed stands nearer to its limit than any setpoint may be.
-  const SetpointRange range = setpoint_range(plan_.rules, axis, snapshot.state.mode);
+  const SetpointRange range = setpoint_range(plan_.rules, axis, snapshot.state.system.mode);
   const std::int32_t target = std::clamp(aim(point), range.lowest_counts, range.highest_counts);
   std::uint32_t drive = 0;
   if (controller_) {
-    drive = controller_->update(axis, snapshot.state.tick, point.now, target).drive;
+    drive = controller_->update(axis, snapshot.state.system.tick, point.now, target).drive;
   }
-  lease_.hold(proposal, snapshot.state.tick, target, drive, wishes);
+  lease_.hold(proposal, snapshot.state.system.tick, target, drive, wishes);
 }
 
 void AxisTracker::let_go(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
   if (controller_) {
-    controller_->observe(snapshot.state.axis[slot_], snapshot.state.tick);
+    controller_->observe(snapshot.state.axis[slot_], snapshot.state.system.tick);
   }
   lease_.let_go(proposal, snapshot, wishes);
 }

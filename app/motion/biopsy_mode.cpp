@@ -142,12 +142,12 @@ std::optional<Setpoint> BiopsyMode::setpoint(std::uint32_t slot) const noexcept 
 void BiopsyMode::begin(const ilk_snapshot_t& snapshot) noexcept {
   insertion_.start(snapshot, needle_->insertion_slot);
   rotation_.start(snapshot, needle_->rotation_slot);
-  seen_tick_ = snapshot.state.tick;
+  seen_tick_ = snapshot.state.system.tick;
   cue_mm_ = 0.0;
 }
 
 void BiopsyMode::go_on(const ilk_snapshot_t& snapshot) noexcept {
-  const std::uint32_t tick = snapshot.state.tick;
+  const std::uint32_t tick = snapshot.state.system.tick;
   const std::uint32_t ticks = std::min(tick - seen_tick_, most_missed_ticks);
   const double time_s = ticks * period_s_;
   seen_tick_ = tick;
@@ -173,7 +173,7 @@ void BiopsyMode::go_on(const ilk_snapshot_t& snapshot) noexcept {
 }
 
 bool BiopsyMode::plan_steering(const ilk_snapshot_t& snapshot) noexcept {
-  const std::uint32_t tick = snapshot.state.tick;
+  const std::uint32_t tick = snapshot.state.system.tick;
   if (tick - steered_tick_ < steering_ticks_) {
     return true;
   }
@@ -203,7 +203,7 @@ bool BiopsyMode::push(const ilk_snapshot_t& snapshot, double time_s) noexcept {
     return cooperative_speed(run_->hand_law, force_n, true, left_mm);
   });
   if (!wanted) {
-    return fails(wanted.error(), snapshot.state.tick);
+    return fails(wanted.error(), snapshot.state.system.tick);
   }
   const double before_mm = insertion_.position;
   insertion_.go(*wanted, time_s);
@@ -212,7 +212,7 @@ bool BiopsyMode::push(const ilk_snapshot_t& snapshot, double time_s) noexcept {
 }
 
 bool BiopsyMode::listen(const ilk_snapshot_t& snapshot, std::uint32_t ticks) noexcept {
-  const std::uint32_t tick = snapshot.state.tick;
+  const std::uint32_t tick = snapshot.state.system.tick;
   now_.depth_mm = depth_mm(snapshot);
   now_.speed_mm_s = insertion_.speed;
   const auto force_n = run_->needle.force_n(force_.readings().needle);

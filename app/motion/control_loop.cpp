@@ -95,7 +95,7 @@ void ControlLoop::attach_or_back_off(const std::stop_token& stop) noexcept {
 
 void ControlLoop::lose_link() noexcept {
   spdlog::warn("the kernel closed the link, generation {}", link_.generation());
-  conductor_.end_all(OrderReason::link_lost, view_.snapshot.state.tick);
+  conductor_.end_all(OrderReason::link_lost, view_.snapshot.state.system.tick);
   port_.forget_all([this](const RequestOrigin& origin) { answer_lost(origin); });
   link_.detach();
   view_.attached = false;
@@ -115,7 +115,7 @@ void ControlLoop::tick() noexcept {
   if (observer_ != nullptr) {
     observer_->see(view_);
   }
-  link_.publish_seen(view_.snapshot.state.tick);
+  link_.publish_seen(view_.snapshot.state.system.tick);
 }
 
 void ControlLoop::control() noexcept {
@@ -152,7 +152,7 @@ void ControlLoop::obey_stop() noexcept {
   }
   const bool holder_changed = mailbox_.holder.load(std::memory_order_relaxed) != holder_sent_;
   conductor_.end_all(holder_changed ? OrderReason::authority_changed : OrderReason::stopped,
-                     view_.snapshot.state.tick);
+                     view_.snapshot.state.system.tick);
   if (port_.send(request_of(ILK_REQUEST_STOP), StopOrigin{stops_seen_})) {
     stops_sent_ = stops_seen_;
   }
@@ -214,17 +214,17 @@ void ControlLoop::dispatch_verdict(const ilk_event_t& event) noexcept {
 void ControlLoop::lose_verdict(const RequestOrigin& origin) noexcept {
   const auto* ask = std::get_if<AskOrigin>(&origin);
   if (ask != nullptr && end_by(ask->kind)) {
-    conductor_.end_axis(ask->slot, OrderReason::verdict_lost, view_.snapshot.state.tick);
+    conductor_.end_axis(ask->slot, OrderReason::verdict_lost, view_.snapshot.state.system.tick);
   }
   answer_lost(origin);
 }
 
 void ControlLoop::send_heartbeat() noexcept {
-  const std::uint32_t now = view_.snapshot.state.tick;
+  const std::uint32_t now = view_.snapshot.state.system.tick;
   const std::uint32_t holder = mailbox_.holder.load(std::memory_order_acquire);
   const bool due =
       !heartbeat_sent_ || holder != holder_sent_ || now - heartbeat_tick_ >= heartbeat_period_ticks;
-  if (!due || view_.snapshot.state.mode == ILK_MODE_INIT) {
+  if (!due || view_.snapshot.state.system.mode == ILK_MODE_INIT) {
     return;
   }
   ilk_request_t request = request_of(ILK_REQUEST_HEARTBEAT);
@@ -248,7 +248,7 @@ void ControlLoop::take_commands() noexcept {
 
 template <typename AnyOrder>
 bool ControlLoop::take(const AnyOrder& order) noexcept {
-  const std::uint32_t now = view_.snapshot.state.tick;
+  const std::uint32_t now = view_.snapshot.state.system.tick;
   const std::int32_t newer = newer_than_stop(order.stops);
   if (newer > 0) {
     return false;
@@ -266,7 +266,7 @@ bool ControlLoop::take(const SeenImage& seen) noexcept {
 }
 
 bool ControlLoop::take(const Cancel& cancel) noexcept {
-  conductor_.end(cancel.proposal, OrderReason::cancelled, view_.snapshot.state.tick);
+  conductor_.end(cancel.proposal, OrderReason::cancelled, view_.snapshot.state.system.tick);
   return true;
 }
 
@@ -294,7 +294,7 @@ bool ControlLoop::take(const Ask& ask) noexcept {
 void ControlLoop::send_wishes() noexcept {
   const Wishes wishes = conductor_.tick(view_.snapshot);
   for (const Wish& wish : wishes.all()) {
-    if (!port_.send(request_of(wish), wish.origin)) {
+    if (!port_.send(request_of(wish, view_.snapshot.state.system.consent), wish.origin)) {
       conductor_.on_unsent(wish);
     }
   }
@@ -339,7 +339,7 @@ void ControlLoop::refuse_commands() noexcept {
 
 template <typename AnyOrder>
 void ControlLoop::refuse(const AnyOrder& order) noexcept {
-  const std::uint32_t tick = view_.snapshot.state.tick;
+  const std::uint32_t tick = view_.snapshot.state.system.tick;
   conductor_.take(order, tick);
   conductor_.end(order.proposal, OrderReason::link_lost, tick);
 }
@@ -360,7 +360,7 @@ void ControlLoop::answer_lost(const RequestOrigin& origin) noexcept {
   } else if (const auto* asked_stop = std::get_if<StopOrigin>(&origin)) {
     notify(StopAnswer{asked_stop->stops, std::nullopt, 0});
   } else if (const auto* wish = std::get_if<WishOrigin>(&origin)) {
-    conductor_.on_verdict_lost(*wish, view_.snapshot.state.tick);
+    conductor_.on_verdict_lost(*wish, view_.snapshot.state.system.tick);
   }
 }
 

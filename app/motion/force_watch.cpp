@@ -1,22 +1,19 @@
 #include "motion/force_watch.hpp"
 
+#include "link/card_frame.hpp"
+
 namespace interlock {
-namespace {
-
-/** First of the words of a frame with analog inputs. */
-constexpr std::size_t analog_word = 7;
-
-}  // namespace
 
 void ForceWatch::look(const ilk_snapshot_t& snapshot) noexcept {
-  const ilk_axis_t& card = snapshot.state.axis[inputs_.slot];
-  const bool clock_went_on = readings_.count == 0 || card.card_time_us != card_time_us_;
-  if (card.card_valid == 0 || !clock_went_on) {
+  const auto& frame = snapshot.inputs.frame[inputs_.slot];
+  const std::uint32_t time_us = frame[card_frame::time_word];
+  const bool clock_went_on = readings_.count == 0 || time_us != card_time_us_;
+  if (snapshot.state.axis[inputs_.slot].card_valid == 0 || !clock_went_on) {
     return;
   }
-  card_time_us_ = card.card_time_us;
-  readings_.tick = snapshot.state.tick;
-  const std::span<const std::uint32_t, 2> words(&snapshot.inputs.frame[inputs_.slot][analog_word], 2);
+  card_time_us_ = time_us;
+  readings_.tick = snapshot.state.system.tick;
+  const std::span<const std::uint32_t, 2> words(&frame[card_frame::analog_word], 2);
   readings_.hand = analog_reading(words, inputs_.hand_adc);
   readings_.needle = analog_reading(words, inputs_.needle_adc);
   readings_.last_hand[next_] = readings_.hand;

@@ -46,11 +46,11 @@ void HeldOrder::finish(OrderReason reason, std::uint32_t tick) noexcept {
 }
 
 HeldOrder::Work HeldOrder::judge(const ilk_snapshot_t& snapshot) noexcept {
-  const std::uint32_t now = snapshot.state.tick;
+  const std::uint32_t now = snapshot.state.system.tick;
   if (!is_open() || meets_obstacle(snapshot)) {
     return Work::none;
   }
-  const bool held = snapshot.state.mode == ILK_MODE_MOTION;
+  const bool held = snapshot.state.system.mode == ILK_MODE_MOTION;
   if (executes()) {
     if (held) {
       return Work::go_on;
@@ -67,7 +67,7 @@ HeldOrder::Work HeldOrder::judge(const ilk_snapshot_t& snapshot) noexcept {
 }
 
 bool HeldOrder::meets_obstacle(const ilk_snapshot_t& snapshot) noexcept {
-  const std::uint32_t now = snapshot.state.tick;
+  const std::uint32_t now = snapshot.state.system.tick;
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     if (!moves(slot)) {
       continue;

@@ -9,7 +9,7 @@ namespace {
 
 /** Whether the snapshot shows what the kernel decided in that tick: its tick counts the steps done. */
 bool shows(const ilk_snapshot_t& snapshot, std::uint32_t decided_tick) noexcept {
-  return static_cast<std::int32_t>(snapshot.state.tick - decided_tick) > 0;
+  return static_cast<std::int32_t>(snapshot.state.system.tick - decided_tick) > 0;
 }
 
 }  // namespace
@@ -23,6 +23,7 @@ void HomeAxis::begin(HomeStepKind kind, std::int32_t counts) noexcept {
   judged_ = false;
   marked_ = false;
   stopping_ = false;
+  refused_ = false;
 }
 
 void HomeAxis::start(const ilk_snapshot_t& snapshot) noexcept {
@@ -59,11 +60,11 @@ void HomeAxis::start_slice(const ilk_snapshot_t& snapshot) noexcept {
   }
   const std::int64_t position = axis.position_counts;
   const std::int64_t end = position + counts_ - travelled_counts(axis);
-  const SetpointRange range = setpoint_range(plan_.rules, axis, snapshot.state.mode);
+  const SetpointRange range = setpoint_range(plan_.rules, axis, snapshot.state.system.mode);
   const std::int64_t allowed_end = std::clamp<std::int64_t>(end, range.lowest_counts, range.highest_counts);
   ilk_axis_t as_unhomed = axis;
   as_unhomed.homed = 0;
-  const SetpointRange press = setpoint_range(plan_.rules, as_unhomed, snapshot.state.mode);
+  const SetpointRange press = setpoint_range(plan_.rules, as_unhomed, snapshot.state.system.mode);
   // Homing in the same press may have carried the axis farther than a slice: then it waits here for the next
   // one.
   const std::int64_t target =
@@ -122,11 +123,15 @@ HomeProgress HomeAxis::watch_nudge(const ilk_snapshot_t& snapshot) noexcept {
   const ilk_axis_t& axis = snapshot.state.axis[slot_];
   if (!stopping_ && at_switch(axis)) {
     stopping_ = true;
-    rest_.restart(axis.position_counts, snapshot.state.tick);
+    rest_.restart(axis.position_counts, snapshot.state.system.tick);
   }
   if (stopping_) {
-    const bool rests = rest_.rests(axis.position_counts, plan_.rules.noise_counts, snapshot.state.tick);
+    const bool rests =
+        rest_.rests(axis.position_counts, plan_.rules.noise_counts, snapshot.state.system.tick);
     return rests ? HomeProgress::arrived : HomeProgress::going;
+  }
+  if (refused_ && shows(snapshot, refused_tick_)) {
+    return HomeProgress::blocked;
   }
   switch (move_.watch(snapshot)) {
     case AxisMove::Progress::arrived:
@@ -139,9 +144,13 @@ HomeProgress HomeAxis::watch_nudge(const ilk_snapshot_t& snapshot) noexcept {
   return HomeProgress::going;
 }
 
+bool HomeAxis::leads_to_switch() const noexcept {
+  return kind_ == HomeStepKind::nudge &&
+         plan_.rules.limit_side == (counts_ > 0 ? ILK_LIMIT_UPPER : ILK_LIMIT_LOWER);
+}
+
 bool HomeAxis::at_switch(const ilk_axis_t& axis) const noexcept {
-  const std::uint32_t ahead = counts_ > 0 ? ILK_LIMIT_UPPER : ILK_LIMIT_LOWER;
-  return plan_.rules.limit_side == ahead && axis.card_valid != 0 && axis.switch_triggered != 0;
+  return leads_to_switch() && axis.card_valid != 0 && axis.switch_triggered != 0;
 }
 
 HomeProgress HomeAxis::watch_move(const ilk_snapshot_t& snapshot) noexcept {
@@ -182,6 +191,12 @@ void HomeAxis::on_unsent(const Wish& wish) noexcept {
   } else {
     move_.on_unsent();
   }
+}
+
+bool HomeAxis::on_range_verdict(std::uint32_t tick) noexcept {
+  refused_ = leads_to_switch();
+  refused_tick_ = tick;
+  return refused_;
 }
 
 void HomeAxis::on_home_verdict(std::uint32_t verdict, std::uint32_t tick) noexcept {

@@ -60,6 +60,9 @@ class HomeAxis {
   /** The kernel judged the HOME of this step. */
   void on_home_verdict(std::uint32_t verdict, std::uint32_t tick) noexcept;
 
+  /** Whether RANGE may say that a nudge has met its switch, which a snapshot of that tick decides. */
+  bool on_range_verdict(std::uint32_t tick) noexcept;
+
   /** Whether the kernel may be homing the axis for this step. */
   [[nodiscard]] bool may_be_homing() const noexcept {
     return asked_ || (accepted_ && progress_ == HomeProgress::going);
@@ -76,6 +79,7 @@ class HomeAxis {
   HomeProgress watch_move(const ilk_snapshot_t& snapshot) noexcept;
   void start_slice(const ilk_snapshot_t& snapshot) noexcept;
   [[nodiscard]] std::int64_t travelled_counts(const ilk_axis_t& axis) const noexcept;
+  [[nodiscard]] bool leads_to_switch() const noexcept;
   [[nodiscard]] bool at_switch(const ilk_axis_t& axis) const noexcept;
 
   std::uint32_t slot_ = 0;
@@ -94,6 +98,8 @@ class HomeAxis {
   std::uint32_t mark_raw_ = 0; /**< reading from which its distance is measured */
   bool last_slice_ = false;    /**< this press reaches the end of the nudge */
   bool stopping_ = false;      /**< the switch was met */
+  bool refused_ = false;       /**< a renewal was refused by RANGE at `refused_tick_` */
+  std::uint32_t refused_tick_ = 0;
   RestWatch rest_;
 };
 

@@ -122,10 +122,10 @@ void HomeMode::tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
 
 /** Asks for STOP until MOTION has ended; until then no order begins. */
 void HomeMode::settle_stop(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
-  stop_owed_ = stop_owed_ && snapshot.state.mode == ILK_MODE_MOTION;
-  if (stop_owed_ && (!stop_sent_ || snapshot.state.tick - stop_tick_ >= stop_again_ticks)) {
+  stop_owed_ = stop_owed_ && snapshot.state.system.mode == ILK_MODE_MOTION;
+  if (stop_owed_ && (!stop_sent_ || snapshot.state.system.tick - stop_tick_ >= stop_again_ticks)) {
     stop_sent_ = true;
-    stop_tick_ = snapshot.state.tick;
+    stop_tick_ = snapshot.state.system.tick;
     wishes.add(Wish{{ILK_REQUEST_STOP, 0, status_.order.proposal}, 0, 0, 0, 0});
   }
 }
@@ -134,7 +134,7 @@ void HomeMode::judge(const ilk_snapshot_t& snapshot) noexcept {
   if (meets_obstacle(snapshot)) {
     return;
   }
-  if (snapshot.state.mode == ILK_MODE_MOTION && !stop_owed_) {
+  if (snapshot.state.system.mode == ILK_MODE_MOTION && !stop_owed_) {
     go_on(snapshot);
   } else {
     wait(snapshot);
@@ -151,7 +151,7 @@ bool HomeMode::meets_obstacle(const ilk_snapshot_t& snapshot) noexcept {
       continue;
     }
     if (const auto obstacle = obstacle_of(snapshot, slot)) {
-      fail(obstacle->reason, obstacle->code, slot, snapshot.state.tick);
+      fail(obstacle->reason, obstacle->code, slot, snapshot.state.system.tick);
       return true;
     }
   }
@@ -167,7 +167,7 @@ bool HomeMode::expire_when_late(std::uint32_t tick) noexcept {
 }
 
 void HomeMode::wait(const ilk_snapshot_t& snapshot) noexcept {
-  slices_used_ = slices_used_ && snapshot.state.mode == ILK_MODE_MOTION;
+  slices_used_ = slices_used_ && snapshot.state.system.mode == ILK_MODE_MOTION;
   for (HomeAxis& axis : axes_) {
     axis.drop();
   }
@@ -176,13 +176,13 @@ void HomeMode::wait(const ilk_snapshot_t& snapshot) noexcept {
     pause(OrderReason::pedal_released, snapshot);
   }
   if (!was_executing) {
-    (void)expire_when_late(snapshot.state.tick);
+    (void)expire_when_late(snapshot.state.system.tick);
   }
 }
 
 void HomeMode::pause(OrderReason reason, const ilk_snapshot_t& snapshot) noexcept {
   if (status_.order.phase == OrderPhase::executing) {
-    idle_since_ = snapshot.state.tick;
+    idle_since_ = snapshot.state.system.tick;
   }
   status_.left_counts = 0;
   for (const AxisCounts& each : step().axes()) {
@@ -192,21 +192,21 @@ void HomeMode::pause(OrderReason reason, const ilk_snapshot_t& snapshot) noexcep
       status_.slot = each.slot;
     }
   }
-  set_phase(OrderPhase::paused, reason, 0, snapshot.state.tick);
+  set_phase(OrderPhase::paused, reason, 0, snapshot.state.system.tick);
 }
 
 void HomeMode::go_on(const ilk_snapshot_t& snapshot) noexcept {
   if (status_.order.phase == OrderPhase::executing) {
     follow_step(snapshot);
-  } else if (!expire_when_late(snapshot.state.tick) && !slices_used_) {
+  } else if (!expire_when_late(snapshot.state.system.tick) && !slices_used_) {
     status_.left_counts = 0;
-    set_phase(OrderPhase::executing, OrderReason::none, 0, snapshot.state.tick);
+    set_phase(OrderPhase::executing, OrderReason::none, 0, snapshot.state.system.tick);
     start_axes(snapshot);
   }
 }
 
 void HomeMode::follow_step(const ilk_snapshot_t& snapshot) noexcept {
-  const std::uint32_t now = snapshot.state.tick;
+  const std::uint32_t now = snapshot.state.system.tick;
   std::size_t arrived = 0;
   std::size_t used = 0;
   for (const AxisCounts& each : step().axes()) {
@@ -239,7 +239,7 @@ void HomeMode::follow_step(const ilk_snapshot_t& snapshot) noexcept {
 void HomeMode::end_step(const ilk_snapshot_t& snapshot) noexcept {
   ++steps_done_;
   if (steps_done_ >= order_.step_count) {
-    set_phase(OrderPhase::done, OrderReason::arrived, 0, snapshot.state.tick);
+    set_phase(OrderPhase::done, OrderReason::arrived, 0, snapshot.state.system.tick);
     return;
   }
   begin_step();
@@ -279,6 +279,10 @@ void HomeMode::on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::
   }
   if (origin.kind == ILK_REQUEST_HOME) {
     axes_[origin.slot].on_home_verdict(verdict, tick);
+  }
+  if (origin.kind == ILK_REQUEST_MOVE && verdict == ILK_VERDICT_RANGE &&
+      axes_[origin.slot].on_range_verdict(tick)) {
+    return;
   }
   // MODE says only that the pedal was released between the snapshot and the request; the next snapshot
   // pauses.

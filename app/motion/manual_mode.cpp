@@ -65,12 +65,12 @@ void ManualMode::tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
 }
 
 void ManualMode::judge(std::uint32_t slot, const ilk_snapshot_t& snapshot) noexcept {
-  const std::uint32_t now = snapshot.state.tick;
+  const std::uint32_t now = snapshot.state.system.tick;
   if (const auto obstacle = obstacle_of(snapshot, slot)) {
     set_phase(slot, OrderPhase::aborted, obstacle->reason, obstacle->code, now);
   } else if (snapshot.state.axis[slot].state == ILK_AXIS_HOMING) {
     set_phase(slot, OrderPhase::aborted, OrderReason::axis_homing, 0, now);
-  } else if (snapshot.state.mode == ILK_MODE_MOTION) {
+  } else if (snapshot.state.system.mode == ILK_MODE_MOTION) {
     follow(slot, snapshot);
   } else {
     pause_or_expire(slot, snapshot);
@@ -82,7 +82,7 @@ bool ManualMode::waited_too_long(std::uint32_t slot, std::uint32_t tick) const n
 }
 
 void ManualMode::pause_or_expire(std::uint32_t slot, const ilk_snapshot_t& snapshot) noexcept {
-  const std::uint32_t now = snapshot.state.tick;
+  const std::uint32_t now = snapshot.state.system.tick;
   if (orders_[slot].phase == OrderPhase::executing) {
     set_phase(slot, OrderPhase::paused, OrderReason::pedal_released, 0, now);
     jobs_[slot].idle_since = now;
@@ -92,7 +92,7 @@ void ManualMode::pause_or_expire(std::uint32_t slot, const ilk_snapshot_t& snaps
 }
 
 void ManualMode::follow(std::uint32_t slot, const ilk_snapshot_t& snapshot) noexcept {
-  const std::uint32_t now = snapshot.state.tick;
+  const std::uint32_t now = snapshot.state.system.tick;
   Job& job = jobs_[slot];
   if (orders_[slot].phase != OrderPhase::executing) {
     if (waited_too_long(slot, now)) {

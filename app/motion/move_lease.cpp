@@ -9,10 +9,20 @@ constexpr std::uint32_t renewals_per_lease = 3;
 /** A change of the wanted drive below this fraction of the last one waits for the renewal. */
 constexpr std::uint32_t drive_step_fraction = 16;
 
+/** A lease ends by one of a single tick, and a MOVE without drive is refused; this one moves no axis, for it
+ * is within every dead zone and has no amplitude. */
+constexpr std::uint32_t smallest_drive = 1;
+
 }  // namespace
 
 void MoveLease::hold(std::uint32_t proposal, std::uint32_t tick, std::int32_t target_counts,
                      std::uint32_t drive, Wishes& wishes) noexcept {
+  if (drive == 0) {
+    if (sent_.may_drive) {
+      send(proposal, {false, tick, target_counts, smallest_drive}, 1, wishes);
+    }
+    return;
+  }
   const std::uint32_t change = std::max(drive, sent_.drive) - std::min(drive, sent_.drive);
   const bool due = due_at_once_ || !sent_.may_drive || tick - sent_.tick >= lease_ticks_ / renewals_per_lease;
   if (due || target_counts != sent_.target_counts || change > sent_.drive / drive_step_fraction) {
@@ -26,8 +36,8 @@ void MoveLease::let_go(std::uint32_t proposal, const ilk_snapshot_t& snapshot, W
   }
   const std::uint32_t state = snapshot.state.axis[slot_].state;
   const bool may_move = state == ILK_AXIS_MOVING || state == ILK_AXIS_ENABLED;
-  const Sent nothing{false, snapshot.state.tick, sent_.target_counts, 0};
-  if (snapshot.state.mode == ILK_MODE_MOTION && may_move) {
+  const Sent nothing{false, snapshot.state.system.tick, sent_.target_counts, smallest_drive};
+  if (snapshot.state.system.mode == ILK_MODE_MOTION && may_move) {
     send(proposal, nothing, 1, wishes);
   } else {
     before_ = sent_;
@@ -38,8 +48,8 @@ void MoveLease::let_go(std::uint32_t proposal, const ilk_snapshot_t& snapshot, W
 
 void MoveLease::send(std::uint32_t proposal, const Sent& sent, std::uint32_t lease_ticks,
                      Wishes& wishes) noexcept {
-  wishes.add(
-      {{ILK_REQUEST_MOVE, slot_, proposal}, sent.target_counts, sent.drive, max_amplitude_, lease_ticks});
+  const std::uint32_t amplitude = sent.may_drive ? max_amplitude_ : 0;
+  wishes.add({{ILK_REQUEST_MOVE, slot_, proposal}, sent.target_counts, sent.drive, amplitude, lease_ticks});
   before_ = sent_;
   sent_ = sent;
   due_at_once_ = false;

@@ -4,8 +4,8 @@ namespace interlock {
 
 std::optional<Obstacle> obstacle_of(const ilk_snapshot_t& snapshot, std::uint32_t slot) noexcept {
   const ilk_axis_t& axis = snapshot.state.axis[slot];
-  if (snapshot.state.mode != ILK_MODE_READY && snapshot.state.mode != ILK_MODE_MOTION) {
-    return Obstacle{OrderReason::locked, snapshot.state.cause, slot};
+  if (snapshot.state.system.mode != ILK_MODE_READY && snapshot.state.system.mode != ILK_MODE_MOTION) {
+    return Obstacle{OrderReason::locked, snapshot.state.system.cause, slot};
   }
   switch (axis.state) {
     case ILK_AXIS_ENABLED:

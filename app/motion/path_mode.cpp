@@ -73,7 +73,7 @@ std::optional<Setpoint> PathMode::setpoint(std::uint32_t slot) const noexcept {
 
 /** Begins the leg, or goes on with it after a pause. */
 void PathMode::begin(const ilk_snapshot_t& snapshot) noexcept {
-  const std::uint32_t now = snapshot.state.tick;
+  const std::uint32_t now = snapshot.state.system.tick;
   std::array<double, ILK_SLOTS> velocities{};
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     velocities[slot] = trackers_[slot].velocity_counts_per_s();
@@ -92,7 +92,7 @@ void PathMode::begin(const ilk_snapshot_t& snapshot) noexcept {
 }
 
 void PathMode::follow(const ilk_snapshot_t& snapshot) noexcept {
-  const std::uint32_t now = snapshot.state.tick;
+  const std::uint32_t now = snapshot.state.system.tick;
   const bool was_at_end = walk_.at_end();
   walk_.advance((now - seen_tick_) * period_s_);
   seen_tick_ = now;
@@ -110,7 +110,7 @@ void PathMode::follow(const ilk_snapshot_t& snapshot) noexcept {
 bool PathMode::strays(const ilk_snapshot_t& snapshot) noexcept {
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     if (moves(slot) && trackers_[slot].off_path(snapshot, points_[slot])) {
-      order_.fail(OrderReason::off_path, 0, slot, snapshot.state.tick);
+      order_.fail(OrderReason::off_path, 0, slot, snapshot.state.system.tick);
       return true;
     }
   }
@@ -119,7 +119,7 @@ bool PathMode::strays(const ilk_snapshot_t& snapshot) noexcept {
 
 /** At the end of the path: all axes come to rest, and rest for as long as the leg says. */
 void PathMode::settle(const ilk_snapshot_t& snapshot) noexcept {
-  const std::uint32_t now = snapshot.state.tick;
+  const std::uint32_t now = snapshot.state.system.tick;
   std::uint32_t late = ILK_SLOTS;
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     if (moves(slot) && !trackers_[slot].arrived(snapshot, points_[slot])) {
@@ -144,7 +144,7 @@ void PathMode::settle(const ilk_snapshot_t& snapshot) noexcept {
 }
 
 void PathMode::end_leg(const ilk_snapshot_t& snapshot) noexcept {
-  const std::uint32_t now = snapshot.state.tick;
+  const std::uint32_t now = snapshot.state.system.tick;
   resting_ = false;
   end_tick_ = now;
   if (walk_.go_on()) {

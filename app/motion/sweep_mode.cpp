@@ -65,7 +65,7 @@ void SweepMode::tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     if (drives && slot == sweep_.slot) {
       const std::uint32_t drive = frequency_map::drive_at(sweep_.steps.word(status_.step));
-      leases_[slot].hold(sweep_.proposal, snapshot.state.tick, target_counts(snapshot), drive, wishes);
+      leases_[slot].hold(sweep_.proposal, snapshot.state.system.tick, target_counts(snapshot), drive, wishes);
     } else {
       leases_[slot].let_go(sweep_.proposal, snapshot, wishes);
     }
@@ -74,14 +74,14 @@ void SweepMode::tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
 
 /** From the start, or where the pedal was released: the way that the axis went is not ended by a pause. */
 void SweepMode::begin(const ilk_snapshot_t& snapshot) noexcept {
-  seen_tick_ = snapshot.state.tick;
+  seen_tick_ = snapshot.state.system.tick;
   seen_counts_ = snapshot.state.axis[sweep_.slot].position_counts;
   steady_ticks_ = 0;
   leases_[sweep_.slot].renew_at_once();
 }
 
 void SweepMode::go_on(const ilk_snapshot_t& snapshot) noexcept {
-  const std::uint32_t now = snapshot.state.tick;
+  const std::uint32_t now = snapshot.state.system.tick;
   const ilk_axis_t& axis = snapshot.state.axis[sweep_.slot];
   const ilk_axis_config_t& rules = plan_.axis[sweep_.slot].rules;
   if (turning_) {
@@ -129,8 +129,8 @@ void SweepMode::end_step(std::uint32_t tick) noexcept {
 }
 
 std::int32_t SweepMode::target_counts(const ilk_snapshot_t& snapshot) const noexcept {
-  const SetpointRange range =
-      setpoint_range(plan_.axis[sweep_.slot].rules, snapshot.state.axis[sweep_.slot], snapshot.state.mode);
+  const SetpointRange range = setpoint_range(plan_.axis[sweep_.slot].rules, snapshot.state.axis[sweep_.slot],
+                                             snapshot.state.system.mode);
   return upwards_ ? range.highest_counts : range.lowest_counts;
 }
 

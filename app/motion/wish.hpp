@@ -31,8 +31,8 @@ struct Wish {
   std::uint32_t lease_ticks = 0;
 };
 
-/** The request to send for a wish. */
-inline ilk_request_t request_of(const Wish& wish) noexcept {
+/** The request to send for a wish, with the number of the press of the pedal that its mode saw. */
+inline ilk_request_t request_of(const Wish& wish, std::uint32_t consent) noexcept {
   ilk_request_t request{};
   request.kind = wish.origin.kind;
   request.axis = wish.origin.slot;
@@ -40,6 +40,7 @@ inline ilk_request_t request_of(const Wish& wish) noexcept {
   request.drive = wish.drive;
   request.amplitude = wish.amplitude;
   request.lease_ticks = wish.lease_ticks;
+  request.consent = consent;
   return request;
 }
 

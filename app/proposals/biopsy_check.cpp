@@ -24,7 +24,7 @@ void check_biopsy(const Robot& robot, const ilk_config_t& config, const ControlV
   check_system(config, view, checks);
   check_axes(robot, view, (1u << insertion.slot) | (1u << rotation.slot), checks);
   checks.make(CheckName::force, [&]() -> Checked {
-    if (view.force.age_ticks(state.tick) > oldest_force_us / robot.period_us) {
+    if (view.force.age_ticks(state.system.tick) > oldest_force_us / robot.period_us) {
       return refused({"FORCE_STALE", "The force sensor tells nothing new.", "a force of the last 20 ms",
                       "Look at the card of the force sensor."});
     }

@@ -19,7 +19,7 @@ std::string current(catalog::Family family, std::uint32_t number, const char* wh
 }
 
 tl::expected<void, Refusal> check_mode(const ControlView& view) {
-  const std::uint32_t mode = view.snapshot.state.mode;
+  const std::uint32_t mode = view.snapshot.state.system.mode;
   if (mode != ILK_MODE_READY && mode != ILK_MODE_MOTION) {
     return refused(ILK_VERDICT_MODE, current(catalog::Family::mode, mode, "mode"), "READY or MOTION");
   }
@@ -109,7 +109,8 @@ void check_move(const Axis& axis, const ilk_config_t& config, const ControlView&
   checks.make(CheckName::axes, [&] { return check_free_axis(axis, view); });
   checks.make(CheckName::drive, [&] { return check_drive(axis, drive_bound(rules, state), draft); });
   checks.make(CheckName::range, [&] {
-    return check_target(axis, setpoint_range(rules, state, view.snapshot.state.mode), draft.target_counts);
+    return check_target(axis, setpoint_range(rules, state, view.snapshot.state.system.mode),
+                        draft.target_counts);
   });
 }
 

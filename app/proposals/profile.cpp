@@ -28,7 +28,7 @@ AxisProfile frame_of(const ilk_config_t& config, const Robot& robot, const ilk_s
   AxisProfile axis;
   axis.slot = slot;
   axis.homed = state.axis[slot].homed != 0;
-  axis.allowed = setpoint_range(rules, state.axis[slot], state.mode);
+  axis.allowed = setpoint_range(rules, state.axis[slot], state.system.mode);
   axis.soft_limits = robot.at_slot(slot)->soft_limits;
   axis.most_drive = drive_bound(rules, state.axis[slot]);
   axis.lowest = std::numeric_limits<double>::infinity();

@@ -288,7 +288,7 @@ Proposal& ProposalBook::draft(Proposal proposal, const std::vector<std::uint32_t
   }
   proposal.axis = slots.size() == 1 ? proposal.axes.front() : "";
   proposal.created = clock_();
-  proposal.created_tick = view.snapshot.state.tick;
+  proposal.created_tick = view.snapshot.state.system.tick;
   proposal.detail = "Drafted.";
   book_.push_back(std::move(proposal));
   listener_(book_.back());
@@ -383,7 +383,7 @@ void ProposalBook::take_back(const ControlView& view) {
 /** What waits for approval is discarded by a lock, as all that was approved is, and does not wait for ever.
  */
 void ProposalBook::discard_waiting(const ControlView& view) {
-  const bool locked = view.attached && view.snapshot.state.mode == ILK_MODE_LOCKED;
+  const bool locked = view.attached && view.snapshot.state.system.mode == ILK_MODE_LOCKED;
   for (Proposal& each : book_) {
     if (each.state == ProposalState::checked && locked) {
       become(each, ProposalState::aborted, "The kernel locked before it was approved; propose it again.");

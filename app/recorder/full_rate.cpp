@@ -3,19 +3,17 @@
 #include <memory>
 
 #include "interlock/recorded_block.h"
+#include "link/card_frame.hpp"
 
 namespace interlock::recorder {
 namespace {
-
-/** First of the words of a frame with analog inputs. */
-constexpr std::size_t analog_word = 7;
 
 std::optional<AnalogWords> analog_of(const ilk_picture_t& picture, std::optional<std::uint32_t> sensor) {
   if (!sensor || picture.state.axis[*sensor].card_valid == 0) {
     return std::nullopt;
   }
   const auto& frame = picture.inputs.frame[*sensor];
-  return AnalogWords{frame[analog_word], frame[analog_word + 1]};
+  return AnalogWords{frame[card_frame::analog_word], frame[card_frame::analog_word + 1]};
 }
 
 AxisTick axis_of(const ilk_recorded_tick_t& tick, const AxisSpan& span) {
@@ -24,7 +22,7 @@ AxisTick axis_of(const ilk_recorded_tick_t& tick, const AxisSpan& span) {
   const ilk_command_t& command = picture.out.command[span.slot];
   const auto drive = static_cast<std::int32_t>(command.drive);
   AxisTick found;
-  found.tick = picture.state.tick;
+  found.tick = picture.state.system.tick;
   found.begun_ns = tick.begun_ns;
   found.card_time_us = axis.card_time_us;
   found.drive = command.direction == ILK_DIRECTION_DECREASING ? -drive : drive;
@@ -55,8 +53,8 @@ std::vector<AxisTick> full_rate(const Ring& ring, const AxisSpan& span) {
   if (!last || ring.head() == 0) {
     return {};
   }
-  const auto ticks =
-      static_cast<std::uint32_t>(std::uint64_t{span.seconds} * 1'000'000 / ring.run().config.period_us);
+  const auto ticks = static_cast<std::uint32_t>(std::uint64_t{span.seconds} * 1'000'000 /
+                                                ring.run().config.common.period_us);
   std::vector<AxisTick> found;
   const auto tick = std::make_unique<ilk_recorded_tick_t>();
   const std::uint32_t newest = ring.head();
@@ -68,7 +66,7 @@ std::vector<AxisTick> full_rate(const Ring& ring, const AxisSpan& span) {
       continue;
     }
     while (ilk_block_next(&cursor, tick.get()) == ILK_TICK_READ) {
-      const auto before_last = static_cast<std::int32_t>(*last - tick->picture.state.tick);
+      const auto before_last = static_cast<std::int32_t>(*last - tick->picture.state.system.tick);
       if (before_last < 0) {
         return found;
       }

@@ -84,7 +84,8 @@ void Recorder::event(ilk_recorded_why_t why, std::uint32_t tick) {
     return;
   }
   const std::uint64_t after_us = std::uint64_t{terms_.after_s} * 1'000'000;
-  const std::uint32_t last_tick = tick + static_cast<std::uint32_t>(after_us / ring_.run().config.period_us);
+  const std::uint32_t last_tick =
+      tick + static_cast<std::uint32_t>(after_us / ring_.run().config.common.period_us);
   if (active_) {
     active_->last_tick = last_tick;
     return;

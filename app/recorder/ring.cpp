@@ -29,7 +29,7 @@ const std::uint32_t* payload_of(const ilk_block_header_t* block) {
 /** Words before a field of the record of a tick. */
 constexpr std::uint32_t tick_word = offsetof(ilk_tick_record_t, tick) / sizeof(std::uint32_t);
 constexpr std::uint32_t alarm_word = offsetof(ilk_tick_record_t, alarm) / sizeof(std::uint32_t);
-constexpr std::uint32_t state_tick_word = offsetof(ilk_state_t, tick) / sizeof(std::uint32_t);
+constexpr std::uint32_t state_tick_word = offsetof(ilk_state_t, system.tick) / sizeof(std::uint32_t);
 
 /** A kernel answers at once, unless it was stopped by a signal. */
 constexpr timeval longest_answer{0, 500'000};
@@ -153,7 +153,7 @@ bool Ring::writer_lives() const {
 
 std::optional<double> Ring::fewest_seconds() const {
   const std::uint32_t ticks = relaxed(header_->fewest_ticks);
-  return ticks == 0 ? std::nullopt : std::optional(ticks * (run().config.period_us / 1e6));
+  return ticks == 0 ? std::nullopt : std::optional(ticks * (run().config.common.period_us / 1e6));
 }
 
 const ilk_block_header_t* Ring::block(std::uint32_t number) const {
@@ -197,7 +197,8 @@ std::optional<std::uint32_t> Ring::opening_tick(std::uint32_t number) const {
 }
 
 std::uint32_t Ring::block_before(std::uint32_t tick, std::uint32_t seconds) const {
-  const auto ticks = static_cast<std::int32_t>(std::uint64_t{seconds} * 1'000'000 / run().config.period_us);
+  const auto ticks =
+      static_cast<std::int32_t>(std::uint64_t{seconds} * 1'000'000 / run().config.common.period_us);
   const std::uint32_t first = oldest();
   std::uint32_t number = head();
   while (number > first) {

@@ -46,7 +46,9 @@ int complain(const std::string& what, int code) {
   return code;
 }
 
-void show_tick(void* player, const ilk_recorded_tick_t* tick) { static_cast<Player*>(player)->show(*tick); }
+void show_tick(void* player, const ilk_state_t* /*before*/, const ilk_recorded_tick_t* tick) {
+  static_cast<Player*>(player)->show(*tick);
+}
 
 /** Shows everything, then the last tick until it is stopped. */
 int play(ilk_recording_t& recording, Player& player) {

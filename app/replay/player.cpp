@@ -17,7 +17,7 @@ Player::Player(const ilk_run_description_t& run, double speed, ilk_link_mailbox_
     : mailbox_(mailbox), stop_(stop), speed_(speed) {
   shown_.clock = run.clock;
   shown_.simulated = run.simulated;
-  shown_.period_us = run.config.period_us;
+  shown_.period_us = run.config.common.period_us;
   shown_.config_crc = run.config.crc;
 }
 
@@ -39,9 +39,10 @@ void Player::show(const ilk_recorded_tick_t& tick) {
   ilk_sleep_until(ilk_ticker_next(&ticker_, true, ilk_now_ns()));
   shown_.state = picture.state;
   shown_.inputs = picture.inputs;
-  shown_.overruns = picture.state.overruns;
+  shown_.overruns = picture.state.system.overruns;
   std::ranges::copy(picture.out.command, std::begin(shown_.command));
   std::ranges::copy(picture.out.gate, std::begin(shown_.gate));
+  shown_.power = picture.out.power;
   std::ranges::copy(picture.out.lamp, std::begin(shown_.lamp));
   out_ = picture.out;
   publish();

@@ -28,6 +28,7 @@ enum class Family : std::uint8_t {
   limit_side, /**< The end of the axis at which its switch sits. */
   direction, /**< Sense of motion, as the position counts. */
   homing_phase, /**< Phases of homing. */
+  homed, /**< How the position of an axis came to be known. */
   pedal, /**< What the pedal's channels say together. */
   lamp, /**< Lamps of the front panel. */
   colour, /**< Colours of a lamp. */

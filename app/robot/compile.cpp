@@ -15,6 +15,8 @@ namespace {
 constexpr std::size_t config_words = sizeof(ilk_config_t) / sizeof(std::uint32_t);
 using ConfigWords = std::array<std::uint32_t, config_words>;
 
+}  // namespace
+
 ilk_axis_config_t compile_axis(const Axis& axis) {
   const Homing homing = axis.homing.value_or(Homing{});
   ilk_axis_config_t out{};
@@ -30,6 +32,7 @@ ilk_axis_config_t compile_axis(const Axis& axis) {
   out.backlash_counts = axis.mechanics.backlash_counts;
   out.noise_counts = axis.mechanics.noise_counts;
   out.deadband_counts = axis.deadband_counts;
+  out.dead_zone_drive = axis.drive.dead_zone;
   out.max_drive = axis.drive.max;
   out.unhomed_max_drive = axis.drive.unhomed_max;
   out.max_amplitude = axis.drive.max_amplitude;
@@ -37,33 +40,38 @@ ilk_axis_config_t compile_axis(const Axis& axis) {
   out.home_drive = homing.drive;
   out.home_amplitude = homing.amplitude;
   out.home_travel_counts = homing.travel_counts;
-  out.home_backoff_counts = homing.backoff_counts;
+  out.home_slow_drive = homing.slow_drive;
+  out.home_clear_counts = homing.clear_counts;
+  out.home_tolerance_counts = homing.tolerance_counts;
+  out.switch_hysteresis_counts = homing.hysteresis_counts;
   out.home_timeout_ticks = homing.timeout_ticks;
-  out.home_rest_ticks = homing.rest_ticks;
+  out.home_slow_speed_counts_per_s = homing.slow_speed_counts_per_s;
   out.home_speed_counts_per_s = homing.speed_counts_per_s;
   out.stall_ticks = axis.stall.driven_ticks;
+  out.stall_effort_ticks = axis.stall.effort_ticks;
   out.stall_min_counts = axis.stall.min_counts;
   out.reverse_counts = axis.runaway.reverse_counts;
   out.drift_counts = axis.runaway.drift_counts;
-  out.settle_ticks = axis.mechanics.settle_ticks;
+  out.rest_ticks = axis.mechanics.rest_ticks;
+  out.full_speed_counts_per_s = axis.mechanics.full_speed_counts_per_s;
   out.max_delta_counts = axis.mechanics.max_delta_counts;
   return out;
 }
 
-}  // namespace
-
 tl::expected<ilk_config_t, RobotError> compile(const Robot& robot) {
   ilk_config_t config{};
-  config.version = ILK_CONFIG_VERSION;
-  config.size_bytes = sizeof(ilk_config_t);
-  config.period_us = robot.period_us;
-  config.pedal_channels = robot.pedal.channels;
-  config.app_timeout_ticks = robot.loop.app_timeout_ticks;
-  config.lease_max_ticks = robot.loop.lease_max_ticks;
-  config.pedal_debounce_ticks = robot.pedal.debounce_ticks;
-  config.pedal_disagree_ticks = robot.pedal.disagree_ticks;
-  config.bad_frame_limit = robot.loop.bad_frame_limit;
-  config.overrun_limit = robot.loop.overrun_limit;
+  config.common.version = ILK_CONFIG_VERSION;
+  config.common.size_bytes = sizeof(ilk_config_t);
+  config.common.period_us = robot.period_us;
+  config.common.pedal_channels = robot.pedal.channels;
+  config.common.app_timeout_ticks = robot.loop.app_timeout_ticks;
+  config.common.lease_max_ticks = robot.loop.lease_max_ticks;
+  config.common.pedal_debounce_ticks = robot.pedal.debounce_ticks;
+  config.common.pedal_disagree_ticks = robot.pedal.disagree_ticks;
+  config.common.power_up_ticks = robot.loop.power_up_ticks;
+  config.common.switch_debounce_ticks = robot.loop.switch_debounce_ticks;
+  config.common.bad_frame_limit = robot.loop.bad_frame_limit;
+  config.common.overrun_limit = robot.loop.overrun_limit;
   if (auto error = card_out_of_place(robot)) {
     return tl::unexpected(std::move(*error));
   }

@@ -28,6 +28,9 @@ using ConfigBytes = std::array<std::uint8_t, sizeof(ilk_config_t)>;
  */
 tl::expected<ilk_config_t, RobotError> compile(const Robot& robot);
 
+/** What the kernel is told of one axis. */
+ilk_axis_config_t compile_axis(const Axis& axis);
+
 /** The configuration as it stands in a file. */
 ConfigBytes encode(const ilk_config_t& config);
 

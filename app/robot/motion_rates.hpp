@@ -17,7 +17,6 @@ struct RateLimits {
 
 /** How an axis may move together with others, along a path in time. */
 struct MotionRates {
-  double full_speed_counts_per_s = 0.0; /**< of the unloaded axis at `drive.max` */
   double velocity_counts_per_s =
       0.0; /**< largest planned speed, below full speed: the rest is for catching up */
   double acceleration_counts_per_s2 = 0.0;

@@ -39,6 +39,7 @@ DriveBounds read_drive(TableReader table, bool has_amplitude) {
   DriveBounds drive;
   drive.max = table.integer<std::uint32_t>("max");
   drive.min = static_cast<std::uint32_t>(table.integer_between("min", 0, drive.max));
+  drive.dead_zone = static_cast<std::uint32_t>(table.integer_between("dead_zone", 0, drive.max));
   drive.unhomed_max = table.integer<std::uint32_t>("unhomed_max");
   if (has_amplitude) {
     drive.max_amplitude = table.integer<std::uint32_t>("max_amplitude");
@@ -70,7 +71,8 @@ Mechanics read_mechanics(TableReader table, std::uint32_t period_us) {
   mechanics.backlash_counts = table.integer<std::uint32_t>("backlash_counts");
   mechanics.noise_counts = table.integer<std::uint32_t>("noise_counts");
   mechanics.max_delta_counts = table.integer<std::uint32_t>("max_delta_counts");
-  mechanics.settle_ticks = table.ticks("settle_ms", period_us);
+  mechanics.rest_ticks = table.ticks("rest_ms", period_us);
+  mechanics.full_speed_counts_per_s = table.integer<std::uint32_t>("full_speed_counts_per_s");
   table.refuse_unknown_keys();
   return mechanics;
 }
@@ -78,6 +80,7 @@ Mechanics read_mechanics(TableReader table, std::uint32_t period_us) {
 StallRule read_stall(TableReader table, std::uint32_t period_us) {
   StallRule stall;
   stall.driven_ticks = table.ticks("driven_ms", period_us);
+  stall.effort_ticks = table.has("effort_ms") ? table.ticks("effort_ms", period_us) : 0;
   stall.min_counts = table.integer<std::uint32_t>("min_counts");
   table.refuse_unknown_keys();
   return stall;
@@ -97,11 +100,14 @@ Homing read_homing(TableReader table, std::uint32_t period_us, bool has_amplitud
   if (has_amplitude) {
     homing.amplitude = table.integer<std::uint32_t>("amplitude");
   }
+  homing.slow_drive = table.integer<std::uint32_t>("slow_drive");
   homing.speed_counts_per_s = table.integer<std::uint32_t>("speed_counts_per_s");
+  homing.slow_speed_counts_per_s = table.integer<std::uint32_t>("slow_speed_counts_per_s");
   homing.travel_counts = table.integer<std::uint32_t>("travel_counts");
-  homing.backoff_counts = table.integer<std::uint32_t>("backoff_counts");
+  homing.clear_counts = table.integer<std::uint32_t>("clear_counts");
+  homing.tolerance_counts = table.integer<std::uint32_t>("tolerance_counts");
+  homing.hysteresis_counts = table.integer<std::uint32_t>("hysteresis_counts");
   homing.timeout_ticks = table.ticks("timeout_ms", period_us);
-  homing.rest_ticks = table.ticks("rest_ms", period_us);
   table.refuse_unknown_keys();
   return homing;
 }
@@ -136,16 +142,15 @@ double read_rate(TableReader& table, std::string_view key) {
   return rate;
 }
 
-MotionRates read_motion(TableReader table) {
+MotionRates read_motion(TableReader table, const Mechanics& mechanics) {
   MotionRates motion;
-  motion.full_speed_counts_per_s = read_rate(table, "full_speed_counts_per_s");
   motion.velocity_counts_per_s = read_rate(table, "velocity_counts_per_s");
   motion.acceleration_counts_per_s2 = read_rate(table, "acceleration_counts_per_s2");
   motion.jerk_counts_per_s3 = read_rate(table, "jerk_counts_per_s3");
   motion.following_error_counts = table.integer<std::uint32_t>("following_error_counts");
-  if (motion.velocity_counts_per_s > motion.full_speed_counts_per_s) {
+  if (motion.velocity_counts_per_s > mechanics.full_speed_counts_per_s) {
     table.refuse("velocity_counts_per_s", "the axis cannot go that fast",
-                 "full_speed_counts_per_s at most, better less");
+                 "mechanics.full_speed_counts_per_s at most, better less");
   }
   table.refuse_unknown_keys();
   return motion;
@@ -181,7 +186,7 @@ Axis read_axis(TableReader table, const Robot& robot) {
   axis.runaway = read_runaway(table.table("runaway"));
   axis.homing = read_optional_homing(table, axis, robot.period_us);
   if (table.has("motion")) {
-    axis.motion = read_motion(table.table("motion"));
+    axis.motion = read_motion(table.table("motion"), axis.mechanics);
   }
   table.refuse_unknown_keys();
   return axis;

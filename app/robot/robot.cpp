@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "interlock/kernel.h"
+#include "robot/compile.hpp"
+
 namespace interlock {
 namespace {
 
@@ -18,6 +21,14 @@ template <typename Part, typename Value, typename Member>
 const Part* find_in(const std::vector<Part>& parts, const Value& value, Member Part::* member) {
   const auto found = std::ranges::find(parts, value, member);
   return found == parts.end() ? nullptr : &*found;
+}
+
+/** As the kernel computes it for the axis, homed at its switch if it has one. */
+ilk_reach_t reach_of(const Axis& axis) {
+  const ilk_axis_config_t rules = compile_axis(axis);
+  ilk_axis_t homed{};
+  homed.homed = axis.limit == ILK_LIMIT_NONE ? ILK_HOMED_BY_HAND : ILK_HOMED_BY_SWITCH;
+  return ilk_reach(&rules, &homed);
 }
 
 }  // namespace
@@ -56,13 +67,17 @@ std::optional<std::int32_t> Axis::to_counts(double position) const {
   return static_cast<std::int32_t>(counts);
 }
 
-std::int32_t Axis::lowest_setpoint_counts() const {
-  return saturated(std::int64_t{soft_limits.min_counts} + mechanics.coast_counts);
+KeyPlace Origin::place_of(std::string_view key) const {
+  if (const auto found = keys.find(key); found != keys.end()) {
+    return found->second;
+  }
+  const std::size_t dot = key.rfind('.');
+  return dot == std::string_view::npos ? KeyPlace{} : KeyPlace{place_of(key.substr(0, dot)).line};
 }
 
-std::int32_t Axis::highest_setpoint_counts() const {
-  return saturated(std::int64_t{soft_limits.max_counts} - mechanics.coast_counts);
-}
+std::int32_t Axis::lowest_setpoint_counts() const { return saturated(reach_of(*this).low); }
+
+std::int32_t Axis::highest_setpoint_counts() const { return saturated(reach_of(*this).high); }
 
 bool Axis::accepts_setpoint(std::int32_t counts) const {
   return lowest_setpoint_counts() <= counts && counts <= highest_setpoint_counts();

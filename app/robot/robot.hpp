@@ -45,7 +45,8 @@ struct SoftLimits {
 /** Bounds of the drive. */
 struct DriveBounds {
   std::uint32_t max = 0;
-  std::uint32_t min = 0; /**< smallest drive that a controller asks for while it moves the axis */
+  std::uint32_t min = 0;       /**< smallest drive that a controller asks for while it moves the axis */
+  std::uint32_t dead_zone = 0; /**< largest drive that does not move the axis */
   std::uint32_t unhomed_max = 0;
   std::uint32_t max_amplitude = 0; /**< wave amplitude; 0 unless the card is high-frequency */
 
@@ -65,10 +66,11 @@ struct Gains {
 struct Mechanics {
   std::uint32_t coast_counts =
       0; /**< farthest travel from the reading on which drive was last allowed until rest */
-  std::uint32_t backlash_counts = 0;  /**< lost motion when the direction changes */
-  std::uint32_t noise_counts = 0;     /**< peak-to-peak noise of the counter at rest */
-  std::uint32_t max_delta_counts = 0; /**< largest possible motion in one tick */
-  std::uint32_t settle_ticks = 0;     /**< ticks from the last driven one until rest */
+  std::uint32_t backlash_counts = 0;         /**< lost motion when the direction changes */
+  std::uint32_t noise_counts = 0;            /**< peak-to-peak noise of the counter at rest */
+  std::uint32_t max_delta_counts = 0;        /**< largest possible motion in one tick */
+  std::uint32_t rest_ticks = 0;              /**< ticks without motion that are rest */
+  std::uint32_t full_speed_counts_per_s = 0; /**< highest speed, of the unloaded axis at `drive.max` */
 
   bool operator==(const Mechanics&) const = default;
 };
@@ -76,12 +78,15 @@ struct Mechanics {
 /** Homing at the switch; only axes with a switch have it. */
 struct Homing {
   std::uint32_t drive = 0;
-  std::uint32_t amplitude = 0;          /**< wave amplitude; 0 unless the card is high-frequency */
-  std::uint32_t speed_counts_per_s = 0; /**< slowest speed at `drive` */
-  std::uint32_t travel_counts = 0;      /**< farthest travel towards the switch */
-  std::uint32_t backoff_counts = 0; /**< farthest travel away from a switch that was triggered at the start */
-  std::uint32_t timeout_ticks = 0;  /**< longest homing, back-off and rest included */
-  std::uint32_t rest_ticks = 0;     /**< ticks without a count that mean rest */
+  std::uint32_t amplitude = 0;               /**< wave amplitude; 0 unless the card is high-frequency */
+  std::uint32_t slow_drive = 0;              /**< of the second approach to the switch */
+  std::uint32_t speed_counts_per_s = 0;      /**< slowest speed at `drive` */
+  std::uint32_t slow_speed_counts_per_s = 0; /**< slowest speed at `slow_drive` */
+  std::uint32_t travel_counts = 0;           /**< farthest travel of homing in one press of the pedal */
+  std::uint32_t timeout_ticks = 0;           /**< longest homing in one press of the pedal */
+  std::uint32_t clear_counts = 0; /**< every back-off ends at least this far from where the switch changed */
+  std::uint32_t tolerance_counts = 0;  /**< the two edges of homing agree within this */
+  std::uint32_t hysteresis_counts = 0; /**< the switch opens this far from where it closes, at most */
 
   bool operator==(const Homing&) const = default;
 };
@@ -89,7 +94,8 @@ struct Homing {
 /** When a driven axis counts as stalled. */
 struct StallRule {
   std::uint32_t driven_ticks = 0;
-  std::uint32_t min_counts = 0; /**< progress that clears the count */
+  std::uint32_t effort_ticks = 0; /**< ticks of full drive without progress; 0: the axis is too slow for it */
+  std::uint32_t min_counts = 0;   /**< progress that clears the driven ticks */
 
   bool operator==(const StallRule&) const = default;
 };
@@ -97,7 +103,7 @@ struct StallRule {
 /** Motion that nobody asked for. */
 struct RunawayRule {
   std::uint32_t reverse_counts = 0; /**< tolerated against the command */
-  std::uint32_t drift_counts = 0;   /**< tolerated while enabled but not driven */
+  std::uint32_t drift_counts = 0;   /**< tolerated while not driven */
 
   bool operator==(const RunawayRule&) const = default;
 };
@@ -135,10 +141,10 @@ struct Axis {
   /** Nearest count to a position in the axis' unit; empty when it is not finite or beyond 32 bits. */
   [[nodiscard]] std::optional<std::int32_t> to_counts(double position) const;
 
-  /** Lowest setpoint that the kernel accepts from a homed axis: the soft limit and the coasting distance. */
+  /** Lowest setpoint that the kernel accepts from the axis, homed at its switch if it has one. */
   [[nodiscard]] std::int32_t lowest_setpoint_counts() const;
 
-  /** Highest setpoint that the kernel accepts from a homed axis. */
+  /** Highest setpoint that the kernel accepts from the axis, homed at its switch if it has one. */
   [[nodiscard]] std::int32_t highest_setpoint_counts() const;
 
   /** Whether the kernel accepts that setpoint from the homed axis. */
@@ -158,10 +164,12 @@ struct Pedal {
 
 /** Limits of the control loop, its bus and the app that speaks to it. */
 struct LoopLimits {
-  std::uint32_t app_timeout_ticks = 0; /**< silence of the app that ends MOTION */
-  std::uint32_t lease_max_ticks = 0;   /**< longest lease of a move */
-  std::uint32_t bad_frame_limit = 0;   /**< bad frames in a row that lose a card, or the bus */
-  std::uint32_t overrun_limit = 0;     /**< missed deadlines in a row that lock */
+  std::uint32_t app_timeout_ticks = 0;     /**< silence of the app that ends MOTION */
+  std::uint32_t lease_max_ticks = 0;       /**< longest lease of a move */
+  std::uint32_t power_up_ticks = 0;        /**< from power on until the amplifiers obey */
+  std::uint32_t switch_debounce_ticks = 0; /**< valid readings in a row that make an edge of a switch count */
+  std::uint32_t bad_frame_limit = 0;       /**< bad frames in a row that lose a card, or the bus */
+  std::uint32_t overrun_limit = 0;         /**< missed deadlines in a row that lock */
 
   bool operator==(const LoopLimits&) const = default;
 };
@@ -204,10 +212,21 @@ struct OpenIgtLink {
   bool operator==(const OpenIgtLink&) const = default;
 };
 
+/** Where a key stands, and what is given there, as people read it: "7 is given". */
+struct KeyPlace {
+  std::uint32_t line = 0;
+  std::string given = "nothing is given";
+
+  bool operator==(const KeyPlace&) const = default;
+};
+
 /** Where the robot was written down, so that later findings can name the place. */
 struct Origin {
   std::string file;
-  std::map<std::string, std::uint32_t, std::less<>> line_of_key; /**< by dotted path: "axis.yaw.drive.max" */
+  std::map<std::string, KeyPlace, std::less<>> keys; /**< by dotted path: "axis.yaw.drive.max" */
+
+  /** Of a key that was left out, the line of its table. */
+  [[nodiscard]] KeyPlace place_of(std::string_view key) const;
 
   bool operator==(const Origin&) const = default;
 };

@@ -32,6 +32,8 @@ LoopLimits read_loop(TableReader table, std::uint32_t period_us) {
   LoopLimits loop;
   loop.app_timeout_ticks = table.ticks("app_timeout_ms", period_us);
   loop.lease_max_ticks = table.ticks("lease_max_ms", period_us);
+  loop.power_up_ticks = table.ticks("power_up_ms", period_us);
+  loop.switch_debounce_ticks = table.ticks("switch_debounce_ms", period_us);
   loop.bad_frame_limit = table.integer<std::uint32_t>("bad_frame_limit");
   loop.overrun_limit = table.integer<std::uint32_t>("overrun_limit");
   table.refuse_unknown_keys();

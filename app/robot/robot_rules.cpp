@@ -15,14 +15,27 @@ struct Rule {
   ilk_config_error_t error;
   std::string_view key;
   std::string_view expected;
+  bool (*breaks)(const Axis& axis) = nullptr; /**< tells places of one rule apart; the last has none */
 };
+
+bool homes_at_no_speed(const Axis& axis) {
+  return axis.homing && (axis.homing->slow_speed_counts_per_s == 0 ||
+                         axis.homing->slow_speed_counts_per_s > axis.homing->speed_counts_per_s);
+}
+
+bool has_much_backlash(const Axis& axis) {
+  const std::int64_t range = std::int64_t{axis.soft_limits.max_counts} - axis.soft_limits.min_counts;
+  return axis.mechanics.backlash_counts > range / 10;
+}
 
 /** Rules that a robot can break; all others are kept by how it is read and compiled. */
 constexpr std::array rules{
     Rule{ILK_CONFIG_ERROR_PERIOD, "period_us", "125 to 2000 us"},
     Rule{ILK_CONFIG_ERROR_PEDAL_CHANNELS, "pedal.channels", "1 or 2"},
-    Rule{ILK_CONFIG_ERROR_APP_TIMEOUT, "loop.app_timeout_ms", "1 to 150 ms"},
-    Rule{ILK_CONFIG_ERROR_LEASE, "loop.lease_max_ms", "1 to 150 ms"},
+    Rule{ILK_CONFIG_ERROR_APP_TIMEOUT, "loop.app_timeout_ms", "two ticks to 150 ms"},
+    Rule{ILK_CONFIG_ERROR_LEASE, "loop.lease_max_ms", "two ticks to 150 ms"},
+    Rule{ILK_CONFIG_ERROR_POWER_UP, "loop.power_up_ms", "1 to 5000 ms"},
+    Rule{ILK_CONFIG_ERROR_SWITCH_DEBOUNCE, "loop.switch_debounce_ms", "two ticks to 20 ms"},
     Rule{ILK_CONFIG_ERROR_PEDAL_DEBOUNCE, "pedal.debounce_ms", "1 to 50 ms"},
     Rule{ILK_CONFIG_ERROR_PEDAL_DISAGREE, "pedal.disagree_ms", "1 to 50 ms"},
     Rule{ILK_CONFIG_ERROR_BAD_FRAMES, "loop.bad_frame_limit", "1 to 5"},
@@ -33,37 +46,62 @@ constexpr std::array rules{
     Rule{ILK_CONFIG_ERROR_LIMIT_SIDE, "limit", "none, lower or upper"},
     Rule{ILK_CONFIG_ERROR_SOFT_LIMITS, "soft_limits", "min_counts below max_counts, both within +-2^30"},
     Rule{ILK_CONFIG_ERROR_HOME_OFFSET, "home_offset_counts",
-         "a position from soft_limits.min_counts to max_counts"},
-    Rule{ILK_CONFIG_ERROR_COAST, "mechanics.coast_counts", "at least 1, and less than half of the range"},
+         "a position from soft_limits.min_counts to max_counts; from a switch, farther from the other limit "
+         "than homing.tolerance_counts, homing.hysteresis_counts, coast and deadband together"},
+    Rule{ILK_CONFIG_ERROR_COAST, "mechanics.coast_counts",
+         "what the axis travels in two ticks at mechanics.full_speed_counts_per_s at least, and less than "
+         "half of the range"},
+    Rule{ILK_CONFIG_ERROR_NOISE, "mechanics.backlash_counts", "a tenth of the range at most",
+         has_much_backlash},
+    Rule{ILK_CONFIG_ERROR_NOISE, "mechanics.noise_counts", "a tenth of the range at most"},
     Rule{ILK_CONFIG_ERROR_DEADBAND, "deadband_counts", "at least 1, and less than half of the range"},
     Rule{ILK_CONFIG_ERROR_MAX_DRIVE, "drive.max",
          "1 to the largest drive of the card: 2147483647 (pwm, analog-input), 1073741823 (non-pwm), 397785 "
          "(high-frequency)"},
-    Rule{ILK_CONFIG_ERROR_UNHOMED_DRIVE, "drive.unhomed_max", "1 to a tenth of drive.max"},
+    Rule{ILK_CONFIG_ERROR_UNHOMED_DRIVE, "drive.unhomed_max",
+         "more than drive.dead_zone, at most a tenth of drive.max"},
     Rule{ILK_CONFIG_ERROR_AMPLITUDE, "drive.max_amplitude", "1 to 255, and not less than homing.amplitude"},
     Rule{ILK_CONFIG_ERROR_UNHOMED_TRAVEL, "unhomed_travel_counts",
          "more than mechanics.coast_counts, at most a tenth of the range"},
-    Rule{ILK_CONFIG_ERROR_HOME_DRIVE, "homing.drive", "1 to drive.unhomed_max"},
+    Rule{ILK_CONFIG_ERROR_SPEED, "homing.slow_speed_counts_per_s", "1 to homing.speed_counts_per_s",
+         homes_at_no_speed},
+    Rule{ILK_CONFIG_ERROR_SPEED, "mechanics.full_speed_counts_per_s",
+         "homing.speed_counts_per_s to 100000000, and not 0"},
+    Rule{ILK_CONFIG_ERROR_HOME_DRIVE, "homing.drive", "more than drive.dead_zone, at most drive.unhomed_max"},
+    Rule{ILK_CONFIG_ERROR_HOME_SLOW, "homing.slow_drive", "more than drive.dead_zone, at most homing.drive"},
     Rule{ILK_CONFIG_ERROR_HOME_TRAVEL, "homing.travel_counts",
-         "the range and mechanics.coast_counts at least, twice the range at most"},
-    Rule{ILK_CONFIG_ERROR_HOME_BACKOFF, "homing.backoff_counts", "1 to a tenth of the range"},
-    Rule{ILK_CONFIG_ERROR_HOME_REST, "homing.rest_ms", "1 ms to homing.timeout_ms"},
+         "the range, and twice a back-off and the way back, with coast, at least; four times the range at "
+         "most"},
+    Rule{ILK_CONFIG_ERROR_HOME_CLEAR, "homing.clear_counts",
+         "more than the sum of homing.tolerance_counts, homing.hysteresis_counts and mechanics.coast_counts, "
+         "more than that of stall.min_counts, backlash and noise, and at most a tenth of the range"},
+    Rule{ILK_CONFIG_ERROR_HOME_TOLERANCE, "homing.tolerance_counts",
+         "what homing travels in loop.switch_debounce_ms and two ticks, and twice the noise, at least; a "
+         "tenth of the range at most"},
+    Rule{ILK_CONFIG_ERROR_HYSTERESIS, "homing.hysteresis_counts", "a tenth of the range at most"},
     Rule{ILK_CONFIG_ERROR_HOME_TIMEOUT, "homing.timeout_ms",
-         "time for back-off, travel and rest at homing.speed_counts_per_s, at most 600000 ms"},
+         "time for the way of homing at homing.speed_counts_per_s, for the second approach at "
+         "homing.slow_speed_counts_per_s and for rest, at most 600000 ms"},
+    Rule{ILK_CONFIG_ERROR_REST, "mechanics.rest_ms",
+         "more than two ticks, loop.switch_debounce_ms at least, 1000 ms at most"},
     Rule{ILK_CONFIG_ERROR_STALL, "stall",
-         "driven_ms from 1 to 500; min_counts above mechanics.noise_counts, at most a tenth of the range"},
+         "driven_ms of at most 500 ms, in which the slowest drive makes min_counts, backlash and noise three "
+         "ticks before its end, and full speed five times the coast beside them; min_counts above "
+         "mechanics.noise_counts, at most a tenth of the range"},
+    Rule{ILK_CONFIG_ERROR_STALL_EFFORT, "stall.effort_ms",
+         "time for five times the coast, backlash and noise at full speed, at most 200 ms; left out when the "
+         "axis is too slow for that"},
     Rule{ILK_CONFIG_ERROR_REVERSE, "runaway.reverse_counts",
          "the sum of coast, backlash and noise at least, a tenth of the range at most"},
     Rule{ILK_CONFIG_ERROR_DRIFT, "runaway.drift_counts",
          "the sum of coast, backlash and noise at least, a tenth of the range at most"},
-    Rule{ILK_CONFIG_ERROR_SETTLE, "mechanics.settle_ms", "1 to 1000 ms"},
-    Rule{ILK_CONFIG_ERROR_MAX_DELTA, "mechanics.max_delta_counts", "1 to half of the range"},
+    Rule{ILK_CONFIG_ERROR_MAX_DELTA, "mechanics.max_delta_counts",
+         "what the axis travels in a tick at full speed and the noise at least, half of the range at most"},
 };
 
 RobotError error_at(const Origin& origin, std::string key, std::string problem, std::string expected) {
-  const auto line = origin.line_of_key.find(key);
-  return {origin.file, line == origin.line_of_key.end() ? 0 : line->second, std::move(key),
-          std::move(problem), std::move(expected)};
+  const std::uint32_t line = origin.place_of(key).line;
+  return {origin.file, line, std::move(key), std::move(problem), std::move(expected)};
 }
 
 RobotError travel_refused(const Robot& robot, const std::string& path, const AxisCounts& travel,
@@ -90,12 +128,14 @@ std::optional<RobotError> setpoint_out_of_range(const Robot& robot, const std::s
 
 RobotError kernel_rule_broken(const Robot& robot, ilk_config_verdict_t verdict) {
   const catalog::Entry& entry = catalog::entry(catalog::Family::config_error, verdict.error);
-  const auto found = std::ranges::find(rules, verdict.error, &Rule::error);
-  const Rule rule = found == rules.end() ? Rule{} : *found;
   const Axis* const axis = robot.at_slot(verdict.slot);
-  const std::string table = axis ? "axis." + axis->name + '.' : "";
+  const auto found = std::ranges::find_if(rules, [&](const Rule& rule) {
+    return rule.error == verdict.error && (rule.breaks == nullptr || (axis != nullptr && rule.breaks(*axis)));
+  });
+  const Rule rule = found == rules.end() ? Rule{} : *found;
+  const std::string key = (axis ? "axis." + axis->name + '.' : "") + std::string(rule.key);
   const std::string_view meaning = entry.meaning.substr(0, entry.meaning.find_last_not_of('.') + 1);
-  return error_at(robot.origin, table + std::string(rule.key), std::string(meaning),
+  return error_at(robot.origin, key, robot.origin.place_of(key).given + ": " + std::string(meaning),
                   std::string(rule.expected) + " (the kernel's rule " + std::string(entry.name) + ')');
 }
 

@@ -20,7 +20,7 @@ std::string shortest(double number) {
 }
 
 std::string described(const toml::node& node) {
-  if (node.is_table()) {
+  if (node.is_table() && !node.as_table()->is_inline()) {
     return "a table is given";
   }
   if (node.is_array()) {
@@ -60,7 +60,7 @@ const toml::node* TableReader::take(std::string_view key, const std::string& exp
     log_.refuse(line_of(table_), path_of(key), "the key is missing", expected);
     return nullptr;
   }
-  log_.origin.line_of_key[path_of(key)] = line_of(*node);
+  log_.origin.keys[path_of(key)] = {line_of(*node), described(*node)};
   return node;
 }
 

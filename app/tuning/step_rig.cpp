@@ -28,7 +28,8 @@ RigResult<void> StepRig::make_ready() {
   if (const std::uint32_t error = ilk_init(&config_, &state_).error; error != ILK_CONFIG_ERROR_NONE) {
     return tl::unexpected(at("the kernel refuses the robot: ", catalog::Family::config_error, error));
   }
-  const std::uint32_t settle_ticks = time_to_settle_ms * 1000 / config_.period_us;
+  const std::uint32_t settle_ticks = time_to_settle_ms * 1000 / config_.common.period_us +
+                                     std::max(config_.common.power_up_ticks, config_.axis[slot_].rest_ticks);
   const bool has_switch = config_.axis[slot_].limit_side != ILK_LIMIT_NONE;
   const auto step = [&](ilk_request_kind_t kind) {
     ask(kind);
@@ -53,14 +54,20 @@ RigResult<void> StepRig::make_ready() {
   return run(settle_ticks);
 }
 
+/** A MOVE without drive is refused: the lease of the one before ends by one of a single tick. */
 void StepRig::move(std::int32_t target_counts, std::uint32_t drive) {
+  if (drive == 0 && !may_drive_) {
+    return;
+  }
+  may_drive_ = drive != 0;
   ilk_request_t request{};
   request.kind = ILK_REQUEST_MOVE;
   request.axis = slot_;
   request.target_counts = target_counts;
-  request.drive = drive;
-  request.amplitude = config_.axis[slot_].max_amplitude;
-  request.lease_ticks = config_.lease_max_ticks;
+  request.drive = std::max(drive, 1U);
+  request.amplitude = may_drive_ ? config_.axis[slot_].max_amplitude : 0;
+  request.lease_ticks = may_drive_ ? config_.common.lease_max_ticks : 1;
+  request.consent = state_.system.consent;
   put(request);
 }
 
@@ -69,7 +76,7 @@ RigResult<void> StepRig::tick() {
   heartbeat.kind = ILK_REQUEST_HEARTBEAT;
   heartbeat.holder = holder;
   put(heartbeat);
-  const ilk_inputs_t inputs = plant::exchange(plant_, outputs_, state_.tick);
+  const ilk_inputs_t inputs = plant::exchange(plant_, outputs_, state_.system.tick);
   ilk_step(&config_, &state_, &inputs, requests_.data(), static_cast<std::uint32_t>(requests_.size()),
            &outputs_);
   requests_.clear();
@@ -100,6 +107,7 @@ void StepRig::ask(ilk_request_kind_t kind) {
   ilk_request_t request{};
   request.kind = kind;
   request.axis = slot_;
+  request.consent = state_.system.consent;
   put(request);
 }
 

@@ -40,7 +40,7 @@ class StepRig {
   RigResult<void> tick();
 
   [[nodiscard]] const ilk_axis_t& axis() const { return state_.axis[slot_]; }
-  [[nodiscard]] std::uint32_t tick_count() const { return state_.tick; }
+  [[nodiscard]] std::uint32_t tick_count() const { return state_.system.tick; }
 
   /** What the kernel drives the axis with now. */
   [[nodiscard]] std::uint32_t drive() const { return outputs_.command[slot_].drive; }
@@ -66,6 +66,7 @@ class StepRig {
   ilk_outputs_t outputs_{};
   std::vector<ilk_request_t> requests_;
   std::uint32_t sequence_ = 0;
+  bool may_drive_ = false; /**< the newest MOVE asked for drive */
 };
 
 }  // namespace interlock

@@ -130,11 +130,11 @@ RigResult<StepRun> run_step(const Robot& robot, const ilk_config_t& config,
     return tl::unexpected(ready.error() + ", before the move");
   }
   const std::int32_t from_counts = rig.axis().position_counts;
-  RigResult<Plan> move = plan(*axis, config.period_us, options, full_speed, from_counts);
+  RigResult<Plan> move = plan(*axis, config.common.period_us, options, full_speed, from_counts);
   if (!move) {
     return tl::unexpected(move.error());
   }
-  const double period_s = config.period_us * 1e-6;
+  const double period_s = config.common.period_us * 1e-6;
   if (const auto observed = observe(rig, *move, static_cast<std::size_t>(observed_s / period_s)); !observed) {
     return tl::unexpected(observed.error());
   }

@@ -68,7 +68,7 @@ static int take_memory(ilk_black_box_t *box) {
 }
 
 bool ilk_black_box_create(ilk_black_box_t *box, const ilk_black_box_terms_t *terms, ilk_error_t *error) {
-  const uint32_t blocks = blocks_for(terms->config->period_us, terms->seconds);
+  const uint32_t blocks = blocks_for(terms->config->common.period_us, terms->seconds);
   *box = (ilk_black_box_t){.bytes = ILK_RING_HEADER_BYTES + ((size_t)blocks * ILK_BLOCK_BYTES)};
   const int reason = take_memory(box);
   if (reason != 0) {
@@ -81,7 +81,7 @@ bool ilk_black_box_create(ilk_black_box_t *box, const ilk_black_box_terms_t *ter
 }
 
 static uint32_t opening_tick(const ilk_block_t *block) {
-  return block->payload[(size_t)offsetof(ilk_state_t, tick) / sizeof(uint32_t)];
+  return block->payload[(size_t)offsetof(ilk_state_t, system.tick) / sizeof(uint32_t)];
 }
 
 /** When a block is about to be reused: how many ticks there are without it, and without the one that comes
@@ -100,7 +100,7 @@ static void count_held(const ilk_black_box_t *box, uint32_t next, uint32_t tick)
 static void open_block(ilk_black_box_t *box, const ilk_state_t *state) {
   ilk_ring_header_t *ring = box->ring;
   const uint32_t number = ring->head + 1u;
-  count_held(box, number, state->tick);
+  count_held(box, number, state->system.tick);
   box->block = &box->blocks[number % ring->blocks];
   ilk_block_header_t *header = &box->block->header;
   __atomic_store_n(&header->number, 0u, __ATOMIC_RELAXED);
@@ -161,7 +161,7 @@ void ilk_black_box_note(ilk_black_box_t *box, uint64_t begun_ns, const ilk_state
   uint32_t given[WHOLE_GROUPS];
   uint32_t missed[WHOLE_GROUPS];
   const uint32_t words = ilk_given_words(count);
-  ilk_tick_record_t head = {.tick = state->tick,
+  ilk_tick_record_t head = {.tick = state->system.tick,
                             .alarm = ilk_alarm_of(state),
                             .request_count = count,
                             .out_digest = ilk_out_digest(out)};

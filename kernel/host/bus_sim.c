@@ -130,12 +130,12 @@ static void *watch(void *argument) {
 bool ilk_bus_sim_open(ilk_bus_sim_t *sim, const char *path, ilk_clock_t clock, const ilk_config_t *config,
                       const volatile sig_atomic_t *stopped, ilk_error_t *error) {
   *sim = (ilk_bus_sim_t){.patience_ns = clock == ILK_CLOCK_REAL ? REAL_PATIENCE_NS : SIM_PATIENCE_NS,
-                         .period_ns = (uint64_t)config->period_us * 1000u,
+                         .period_ns = (uint64_t)config->common.period_us * 1000u,
                          .stopped = stopped,
                          .hello = {.magic = ILK_SIM_MAGIC,
                                    .version = ILK_SIM_VERSION,
                                    .frame_words = ILK_FRAME_WORDS,
-                                   .period_us = config->period_us,
+                                   .period_us = config->common.period_us,
                                    .clock = clock,
                                    .config_crc = config->crc}};
   if (!ilk_unix_address(path, &sim->address, error)) {
@@ -204,6 +204,7 @@ static reply_result_t receive_reply(ilk_bus_sim_t *sim, uint64_t patience_ns) {
 static reply_result_t exchange(ilk_bus_sim_t *sim, uint32_t tick, const ilk_outputs_t *out) {
   sim->exchange.magic = ILK_SIM_MAGIC;
   sim->exchange.tick = tick;
+  sim->exchange.power = out->power;
   (void)memcpy(sim->exchange.lamp, out->lamp, sizeof out->lamp);
   (void)memcpy(sim->exchange.frame, out->frame, sizeof out->frame);
   if (send(sim->descriptor, &sim->exchange, sizeof sim->exchange, MSG_DONTWAIT | MSG_NOSIGNAL) !=

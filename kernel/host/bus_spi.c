@@ -91,6 +91,17 @@ static bool request_contacts(ilk_bus_spi_t *spi, int chip, const ilk_spi_wiring_
   return spi->contacts >= 0;
 }
 
+/** Off at first, and once the kernel is gone: the contactor needs its level to stay. */
+static bool request_power(ilk_bus_spi_t *spi, int chip, const ilk_spi_wiring_t *wiring, ilk_error_t *error) {
+  struct gpio_v2_line_request request = {.num_lines = 1u, .config = {.flags = GPIO_V2_LINE_FLAG_OUTPUT}};
+  request.offsets[0] = wiring->power.offset;
+  if (wiring->power.active_low) {
+    request.config.flags |= GPIO_V2_LINE_FLAG_ACTIVE_LOW;
+  }
+  spi->power = request_lines(chip, wiring->gpio, &request, error);
+  return spi->power >= 0;
+}
+
 /** All dark at first. */
 static bool request_lamps(ilk_bus_spi_t *spi, int chip, const ilk_spi_wiring_t *wiring, ilk_error_t *error) {
   struct gpio_v2_line_request request = {.config = {.flags = GPIO_V2_LINE_FLAG_OUTPUT}};
@@ -117,7 +128,8 @@ static bool open_lines(ilk_bus_spi_t *spi, const ilk_spi_wiring_t *wiring, ilk_e
   if (chip < 0) {
     return false;
   }
-  const bool opened = request_contacts(spi, chip, wiring, error) && request_lamps(spi, chip, wiring, error);
+  const bool opened = request_contacts(spi, chip, wiring, error) && request_power(spi, chip, wiring, error) &&
+                      request_lamps(spi, chip, wiring, error);
   (void)close(chip);
   return opened;
 }
@@ -125,6 +137,7 @@ static bool open_lines(ilk_bus_spi_t *spi, const ilk_spi_wiring_t *wiring, ilk_e
 bool ilk_bus_spi_open(ilk_bus_spi_t *spi, const ilk_spi_wiring_t *wiring, ilk_error_t *error) {
   *spi = (ilk_bus_spi_t){.contacts = NO_DEVICE,
                          .lamps = NO_DEVICE,
+                         .power = NO_DEVICE,
                          .speed_hz = wiring->speed_hz,
                          .two_channels = wiring->contact[ILK_CONTACT_PEDAL_NC].offset != ILK_NO_LINE};
   for (size_t slot = 0; slot < (size_t)ILK_SLOTS; ++slot) {
@@ -149,6 +162,7 @@ void ilk_bus_spi_close(ilk_bus_spi_t *spi) {
     close_one(&spi->card[slot]);
   }
   close_one(&spi->contacts);
+  close_one(&spi->power);
   close_one(&spi->lamps);
 }
 
@@ -251,15 +265,22 @@ static void show_lamps(ilk_bus_spi_t *spi, const ilk_outputs_t *out) {
   }
 }
 
+/** Set in each tick, so that a line that was disturbed comes back. Without it the bus is as good as lost. */
+static bool switch_power(const ilk_bus_spi_t *spi, const ilk_outputs_t *out) {
+  struct gpio_v2_line_values values = {.bits = out->power == 1u ? 1u : 0u, .mask = 1u};
+  return ioctl(spi->power, GPIO_V2_LINE_SET_VALUES_IOCTL, &values) >= 0;
+}
+
 /** There is always another side to wait for: the clock. */
 static bool transact_cards(void *driver, uint32_t tick, const ilk_outputs_t *out, ilk_inputs_t *in) {
   ilk_bus_spi_t *spi = driver;
   (void)tick;
   const uint32_t received = exchange_all(spi, out, in);
+  const bool switched = switch_power(spi, out);
   show_lamps(spi, out);
   in->transaction_done = 0u;
   in->frames_received = 0u;
-  if (read_contacts(spi, in) && received != 0u) {
+  if (read_contacts(spi, in) && switched && received != 0u) {
     in->transaction_done = 1u;
     in->frames_received = received;
   }

@@ -26,6 +26,7 @@ extern "C" {
 typedef struct {
   int card[ILK_SLOTS]; /**< descriptor of each slot, -1 where there is no card */
   int contacts;        /**< descriptor of the input lines */
+  int power;           /**< descriptor of the line of the amplifiers' supply */
   int lamps;           /**< descriptor of the output lines, -1 when none is wired */
   uint32_t speed_hz;
   bool two_channels;

@@ -43,15 +43,11 @@ static bool create_kernel_region(ilk_link_regions_t *regions, uint32_t generatio
 }
 
 static bool create_app_region(ilk_link_regions_t *regions) {
-  const size_t bytes = sizeof *regions->app;
   const uint32_t magic = ILK_LINK_MAGIC;
-  regions->app_descriptor = create_region("interlock-app-region", bytes);
-  if (regions->app_descriptor < 0 ||
-      pwrite(regions->app_descriptor, &magic, sizeof magic, 0) != (ssize_t)sizeof magic) {
-    return false;
-  }
-  regions->app = map_region(regions->app_descriptor, bytes, PROT_READ);
-  return regions->app != NULL && fcntl(regions->app_descriptor, F_ADD_SEALS, FIXED_SIZE | F_SEAL_SEAL) == 0;
+  regions->app_descriptor = create_region("interlock-app-region", sizeof *regions->app);
+  return regions->app_descriptor >= 0 &&
+         pwrite(regions->app_descriptor, &magic, sizeof magic, 0) == (ssize_t)sizeof magic &&
+         fcntl(regions->app_descriptor, F_ADD_SEALS, FIXED_SIZE) == 0;
 }
 
 bool ilk_link_regions_create(ilk_link_regions_t *regions, uint32_t generation, ilk_error_t *error) {
@@ -74,6 +70,14 @@ static void close_descriptor(int *descriptor) {
 void ilk_link_regions_close(ilk_link_regions_t *regions) {
   close_descriptor(&regions->kernel_descriptor);
   close_descriptor(&regions->app_descriptor);
+}
+
+bool ilk_link_regions_settle(ilk_link_regions_t *regions) {
+  if (fcntl(regions->app_descriptor, F_ADD_SEALS, F_SEAL_FUTURE_WRITE | F_SEAL_SEAL) == 0) {
+    regions->app = map_region(regions->app_descriptor, sizeof *regions->app, PROT_READ);
+  }
+  ilk_link_regions_close(regions);
+  return regions->app != NULL;
 }
 
 /** `munmap` wants a pointer to writable memory even for a mapping that can only be read. */

@@ -70,21 +70,42 @@ static void attach(ilk_link_server_t *server, int client) {
     (void)close(client);
     return;
   }
-  ilk_link_regions_close(&attachment->regions);
   server->client = client;
   server->attached = attachment;
-  offer(server, attachment);
 }
 
+static bool is_settled(const ilk_attachment_t *attachment) { return attachment->regions.app != NULL; }
+
+/** The loop holds what was offered to it; what was not is destroyed here. */
 static void detach(ilk_link_server_t *server) {
   (void)close(server->client);
   server->client = -1;
-  __atomic_store_n(&server->attached->open, 0u, __ATOMIC_RELEASE);
+  if (is_settled(server->attached)) {
+    __atomic_store_n(&server->attached->open, 0u, __ATOMIC_RELEASE);
+  } else {
+    destroy_attachment(server, server->attached);
+  }
   server->attached = NULL;
 }
 
-/** The app sends nothing, so anything to read is the end of the attachment or a breach of the contract. */
-static bool client_is_done(const ilk_link_server_t *server) {
+static bool says_mapped(int client) {
+  uint32_t word = 0;
+  return recv(client, &word, sizeof word, MSG_DONTWAIT) == (ssize_t)sizeof word && word == ILK_LINK_MAGIC;
+}
+
+/** The app says once that it mapped its region; all else is the end of the attachment or a breach of the
+ * contract. */
+static void hear_client(ilk_link_server_t *server) {
+  ilk_attachment_t *attachment = server->attached;
+  if (!is_settled(attachment) && says_mapped(server->client) &&
+      ilk_link_regions_settle(&attachment->regions)) {
+    offer(server, attachment);
+  } else {
+    detach(server);
+  }
+}
+
+static bool client_was_heard(const ilk_link_server_t *server) {
   struct pollfd wanted = {.fd = server->client, .events = POLLIN | POLLRDHUP};
   return server->client >= 0 && poll(&wanted, 1, 0) != 0;
 }
@@ -94,8 +115,8 @@ static void accept_app(ilk_link_server_t *server) {
   if (client < 0) {
     return;
   }
-  if (client_is_done(server)) {
-    detach(server);
+  while (client_was_heard(server)) {
+    hear_client(server);
   }
   if (server->client >= 0) {
     (void)close(client);
@@ -119,7 +140,7 @@ static void *serve(void *argument) {
       return NULL;
     }
     if (events[1].revents != 0) {
-      detach(server);
+      hear_client(server);
     }
     collect_retired(server);
     if (events[2].revents != 0) {

@@ -1,6 +1,7 @@
 #include "loop.h"
 
 #include <string.h>
+#include <sys/random.h>
 
 #include "histogram.h"
 #include "interlock/kernel.h"
@@ -8,6 +9,15 @@
 
 /** Ends the wait for an app that is frozen; long enough for one that a busy host keeps from running. */
 #define APP_PATIENCE_MS 2000u
+
+/** Another number at each start: no order from an earlier one can carry a consent of this. */
+static uint32_t draw_nonce(void) {
+  uint32_t nonce = 0u;
+  if (getrandom(&nonce, sizeof nonce, GRND_NONBLOCK) != (ssize_t)sizeof nonce) {
+    nonce = (uint32_t)ilk_now_ns();
+  }
+  return nonce;
+}
 
 void ilk_loop_init(ilk_loop_t *loop, const ilk_config_t *config, const ilk_run_terms_t *terms, ilk_bus_t bus,
                    ilk_link_mailbox_t *mailbox, const volatile sig_atomic_t *stop) {
@@ -20,11 +30,12 @@ void ilk_loop_init(ilk_loop_t *loop, const ilk_config_t *config, const ilk_run_t
                                  .simulated = bus.simulated ? 1u : 0u,
                                  .degraded = terms->degraded ? 1u : 0u,
                                  .granted = terms->granted,
-                                 .period_us = config->period_us,
-                                 .config_crc = config->crc}};
+                                 .period_us = config->common.period_us,
+                                 .config_crc = config->crc,
+                                 .inputs = {.boot_nonce = draw_nonce()}}};
   (void)ilk_init(config, &loop->shown.state);
   ilk_publisher_init(&loop->publisher, &loop->shown.state);
-  ilk_ticker_init(&loop->ticker, terms->clock, config->period_us, terms->speed, ilk_now_ns());
+  ilk_ticker_init(&loop->ticker, terms->clock, config->common.period_us, terms->speed, ilk_now_ns());
   if (terms->clock == ILK_CLOCK_SIM) {
     const uint64_t pace_ns = loop->ticker.pace_ns;
     loop->shown.pace_ns = pace_ns > UINT32_MAX ? UINT32_MAX : (uint32_t)pace_ns;
@@ -43,7 +54,8 @@ bool ilk_loop_is_missed(const ilk_loop_t *loop, uint64_t late_ns) {
 
 static void note_lateness(ilk_loop_t *loop, uint64_t late_ns) {
   ilk_snapshot_t *shown = &loop->shown;
-  shown->inputs.deadline_missed = ilk_loop_is_missed(loop, late_ns) ? 1u : 0u;
+  const uint64_t missed = ilk_loop_is_missed(loop, late_ns) ? late_ns / loop->ticker.period_ns : 0u;
+  shown->inputs.deadlines_missed = missed > UINT32_MAX ? UINT32_MAX : (uint32_t)missed;
   if (late_ns > loop->ticker.period_ns && shown->overruns < UINT32_MAX) {
     shown->overruns += 1u;
   }
@@ -55,7 +67,7 @@ static void note_lateness(ilk_loop_t *loop, uint64_t late_ns) {
 /** Nothing that moves is ever kept waiting for an app: neither hardware nor the real clock. */
 static bool app_keeps_up(ilk_loop_t *loop) {
   return !loop->bus.simulated || loop->ticker.clock == ILK_CLOCK_REAL ||
-         ilk_pacing_wait(&loop->pacing, loop->attachment, loop->shown.state.tick, APP_PATIENCE_MS,
+         ilk_pacing_wait(&loop->pacing, loop->attachment, loop->shown.state.system.tick, APP_PATIENCE_MS,
                          loop->stop);
 }
 
@@ -95,7 +107,11 @@ static uint32_t read_requests(ilk_loop_t *loop) {
 static uint32_t step(ilk_loop_t *loop) {
   ilk_snapshot_t *shown = &loop->shown;
   const uint32_t count = read_requests(loop);
+  const uint32_t tick = shown->state.system.tick;
   ilk_step(loop->config, &shown->state, &shown->inputs, loop->request, count, &loop->out);
+  if (shown->state.system.tick != tick + 1u) {
+    loop->rebuilt = true;
+  }
   return count;
 }
 
@@ -103,6 +119,7 @@ static void publish_tick(ilk_loop_t *loop) {
   ilk_snapshot_t *shown = &loop->shown;
   (void)memcpy(shown->command, loop->out.command, sizeof shown->command);
   (void)memcpy(shown->gate, loop->out.gate, sizeof shown->gate);
+  shown->power = loop->out.power;
   (void)memcpy(shown->lamp, loop->out.lamp, sizeof shown->lamp);
   ilk_publisher_publish(&loop->publisher, shown, &loop->out, loop->request_tail);
 }
@@ -115,11 +132,15 @@ void ilk_loop_tick(ilk_loop_t *loop) {
   }
   (void)__atomic_add_fetch(&loop->beats, 1u, __ATOMIC_RELAXED);
   const uint64_t begun_ns = ilk_now_ns();
+  if (loop->rebuilt) {
+    loop->rebuilt = false;
+    loop->shown.inputs.boot_nonce = draw_nonce();
+  }
   note_lateness(loop, ilk_ticker_begin(&loop->ticker, begun_ns));
   serve_newest_attachment(loop);
 
   loop->bus_alive =
-      loop->bus.transact(loop->bus.driver, loop->shown.state.tick, &loop->out, &loop->shown.inputs);
+      loop->bus.transact(loop->bus.driver, loop->shown.state.system.tick, &loop->out, &loop->shown.inputs);
   const uint64_t transacted_ns = ilk_now_ns();
   loop->bus_ns = transacted_ns - begun_ns;
   ilk_timing_add(timing, ILK_PHASE_BUS, loop->bus_ns);

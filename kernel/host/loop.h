@@ -35,6 +35,7 @@ typedef struct {
   ilk_lateness_watch_t lateness;
   uint32_t beats; /**< ticks begun, atomic, for whoever watches the loop; wraps */
   bool bus_alive;
+  bool rebuilt;                 /**< a damaged state was put aside: the next tick begins with another nonce */
   uint64_t bus_ns;              /**< time of the newest transaction */
   ilk_attachment_t *attachment; /**< being served, or NULL */
   uint32_t request_tail;        /**< of that attachment */

@@ -67,7 +67,7 @@ static void report_measures(const ilk_realtime_t *realtime) {
 static void report_start(const ilk_options_t *options, const ilk_realtime_t *realtime,
                          ilk_run_permit_t permit) {
   (void)printf("interlock-kernel\n");
-  (void)printf("  %-20s %u us\n", "period", config.period_us);
+  (void)printf("  %-20s %u us\n", "period", config.common.period_us);
   if (options->clock == ILK_CLOCK_REAL) {
     (void)printf("  %-20s real%s\n", "clock",
                  permit == ILK_RUN_DEGRADED ? ", degraded: overruns are shown, not latched" : "");

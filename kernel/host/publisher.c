@@ -12,7 +12,7 @@ static void note_axis(ilk_axis_told_t *told, const ilk_axis_t *axis) {
 }
 
 void ilk_publisher_init(ilk_publisher_t *publisher, const ilk_state_t *state) {
-  *publisher = (ilk_publisher_t){.region = NULL, .mode = state->mode};
+  *publisher = (ilk_publisher_t){.region = NULL, .mode = state->system.mode};
   for (uint32_t slot = 0; slot < (uint32_t)ILK_SLOTS; ++slot) {
     note_axis(&publisher->axis[slot], &state->axis[slot]);
   }
@@ -49,12 +49,12 @@ static void put_verdicts(ilk_publisher_t *publisher, uint32_t tick, const ilk_ou
 }
 
 static void put_mode_change(ilk_publisher_t *publisher, const ilk_state_t *state) {
-  if (state->mode != publisher->mode) {
-    put_event(publisher,
-              &(ilk_event_t){.kind = ILK_EVENT_MODE,
-                             .tick = state->tick,
-                             .value = {publisher->mode, state->mode, state->cause, state->cause_value}});
-    publisher->mode = state->mode;
+  if (state->system.mode != publisher->mode) {
+    put_event(publisher, &(ilk_event_t){.kind = ILK_EVENT_MODE,
+                                        .tick = state->system.tick,
+                                        .value = {publisher->mode, state->system.mode, state->system.cause,
+                                                  state->system.cause_value}});
+    publisher->mode = state->system.mode;
   }
 }
 
@@ -88,10 +88,10 @@ static void put_snapshot(ilk_publisher_t *publisher, const ilk_snapshot_t *snaps
 void ilk_publisher_publish(ilk_publisher_t *publisher, const ilk_snapshot_t *snapshot,
                            const ilk_outputs_t *out, uint32_t request_tail) {
   const ilk_state_t *state = &snapshot->state;
-  put_verdicts(publisher, state->tick, out);
+  put_verdicts(publisher, state->system.tick, out);
   put_mode_change(publisher, state);
   for (uint32_t slot = 0; slot < (uint32_t)ILK_SLOTS; ++slot) {
-    put_axis_changes(publisher, state->tick, slot, &state->axis[slot]);
+    put_axis_changes(publisher, state->system.tick, slot, &state->axis[slot]);
   }
   if (publisher->region != NULL) {
     __atomic_store_n(&publisher->region->request_tail, request_tail, __ATOMIC_RELEASE);

@@ -63,10 +63,11 @@ static bool read_wired_card(const words_t *words, ilk_spi_wiring_t *wiring) {
          read_path(words->word[2], wiring->card[slot]);
 }
 
-static bool read_contact(const words_t *words, ilk_line_t *contact) {
-  contact->active_low = words->count == 3u;
+/** A contact, or the line of the power. */
+static bool read_level(const words_t *words, ilk_line_t *line) {
+  line->active_low = words->count == 3u;
   return (words->count == 2u || (words->count == 3u && strcmp(words->word[2], "low") == 0)) &&
-         read_line(words->word[1], contact);
+         read_line(words->word[1], line);
 }
 
 static bool read_lamp(const words_t *words, ilk_spi_wiring_t *wiring) {
@@ -100,7 +101,7 @@ static const char *take_line(const words_t *words, ilk_spi_wiring_t *wiring) {
   const char *key = words->word[0];
   for (size_t contact = 0; contact < ILK_CONTACT_COUNT; ++contact) {
     if (strcmp(key, contacts[contact]) == 0) {
-      return read_contact(words, &wiring->contact[contact]) ? NULL : "LINE [low], once";
+      return read_level(words, &wiring->contact[contact]) ? NULL : "LINE [low], once";
     }
   }
   if (strcmp(key, "card") == 0) {
@@ -108,6 +109,9 @@ static const char *take_line(const words_t *words, ilk_spi_wiring_t *wiring) {
   }
   if (strcmp(key, "gpio") == 0) {
     return words->count == 2u && read_path(words->word[1], wiring->gpio) ? NULL : "gpio DEVICE, once";
+  }
+  if (strcmp(key, "power") == 0) {
+    return read_level(words, &wiring->power) ? NULL : "power LINE [low], once";
   }
   if (strcmp(key, "lamp") == 0) {
     return read_lamp(words, wiring) ? NULL
@@ -118,7 +122,7 @@ static const char *take_line(const words_t *words, ilk_spi_wiring_t *wiring) {
                ? NULL
                : "speed_hz 100000 to 50000000";
   }
-  return "speed_hz, card, gpio, pedal_no, pedal_nc, estop or lamp";
+  return "speed_hz, card, gpio, pedal_no, pedal_nc, estop, power or lamp";
 }
 
 /** Takes the text line by line; it is cut up on the way. */
@@ -166,21 +170,28 @@ static bool read_text(const char *path, char text[TEXT_BYTES], ilk_error_t *erro
   return true;
 }
 
+/** Notes a line that is wired. False when something else has it. */
+static bool take_use(uint8_t used[LINE_OFFSET_MAX + 1u], const ilk_line_t *line) {
+  const bool free = line->offset == ILK_NO_LINE || used[line->offset] == 0u;
+  if (line->offset != ILK_NO_LINE) {
+    used[line->offset] = 1u;
+  }
+  return free;
+}
+
 /** Two uses of one line would let a lamp move a contact. */
 static bool is_shared(const ilk_spi_wiring_t *wiring) {
   uint8_t used[LINE_OFFSET_MAX + 1u] = {0};
-  bool shared = false;
-  for (size_t place = 0; place < ILK_CONTACT_COUNT + ((size_t)ILK_LAMP_COUNT * ILK_LED_COUNT); ++place) {
-    const size_t light = place - ILK_CONTACT_COUNT;
-    const ilk_line_t *line = place < ILK_CONTACT_COUNT
-                                 ? &wiring->contact[place]
-                                 : &wiring->lamp[light / ILK_LED_COUNT][light % ILK_LED_COUNT];
-    if (line->offset != ILK_NO_LINE) {
-      shared = shared || used[line->offset] != 0u;
-      used[line->offset] = 1u;
+  bool alone = take_use(used, &wiring->power);
+  for (size_t contact = 0; contact < ILK_CONTACT_COUNT; ++contact) {
+    alone = take_use(used, &wiring->contact[contact]) && alone;
+  }
+  for (size_t lamp = 0; lamp < (size_t)ILK_LAMP_COUNT; ++lamp) {
+    for (size_t led = 0; led < ILK_LED_COUNT; ++led) {
+      alone = take_use(used, &wiring->lamp[lamp][led]) && alone;
     }
   }
-  return shared;
+  return !alone;
 }
 
 static bool check(const char *path, const ilk_config_t *config, const ilk_spi_wiring_t *wiring,
@@ -192,13 +203,14 @@ static bool check(const char *path, const ilk_config_t *config, const ilk_spi_wi
                       slot, configured ? "a card" : "no card");
     }
   }
-  const bool two_channels = config->pedal_channels == 2u;
+  const bool two_channels = config->common.pedal_channels == 2u;
   if (wiring->gpio[0] == '\0' || wiring->contact[ILK_CONTACT_PEDAL_NO].offset == ILK_NO_LINE ||
-      wiring->contact[ILK_CONTACT_ESTOP].offset == ILK_NO_LINE ||
+      wiring->contact[ILK_CONTACT_ESTOP].offset == ILK_NO_LINE || wiring->power.offset == ILK_NO_LINE ||
       (wiring->contact[ILK_CONTACT_PEDAL_NC].offset != ILK_NO_LINE) != two_channels) {
-    return ilk_fail(error,
-                    "wiring '%s': expected gpio, estop, pedal_no and %s pedal_nc: the pedal has %u channels",
-                    path, two_channels ? "a" : "no", config->pedal_channels);
+    return ilk_fail(
+        error,
+        "wiring '%s': expected gpio, estop, power, pedal_no and %s pedal_nc: the pedal has %u channels", path,
+        two_channels ? "a" : "no", config->common.pedal_channels);
   }
   if (wiring->speed_hz == 0u) {
     return ilk_fail(error, "wiring '%s': speed_hz is missing", path);
@@ -208,7 +220,7 @@ static bool check(const char *path, const ilk_config_t *config, const ilk_spi_wi
 
 bool ilk_spi_wiring_load(const char *path, const ilk_config_t *config, ilk_spi_wiring_t *wiring,
                          ilk_error_t *error) {
-  *wiring = (ilk_spi_wiring_t){0};
+  *wiring = (ilk_spi_wiring_t){.power = {.offset = ILK_NO_LINE}};
   for (size_t contact = 0; contact < ILK_CONTACT_COUNT; ++contact) {
     wiring->contact[contact].offset = ILK_NO_LINE;
   }

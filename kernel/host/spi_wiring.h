@@ -1,6 +1,7 @@
 /**
  * @file
- * How the cards, the pedal, the E-stop and the lamps of one machine are wired to the processor.
+ * How the cards, the pedal, the E-stop, the amplifiers' supply and the lamps of one machine are wired to the
+ * processor.
  *
  * A text file, one thing a line; `#` begins a comment:
  *
@@ -10,6 +11,7 @@
  *     pedal_no 17 low                contact by line; `low`: closed pulls the line low
  *     pedal_nc 27 low                where the pedal has two channels
  *     estop 22 low                   the loop, closed when all is clear
+ *     power 24                       line that switches the amplifiers' supply on; `low`: pulling it low does
  *     lamp controller 5 6 13         red, green and blue of a lamp: pedal, network, controller, stall
  */
 #ifndef INTERLOCK_HOST_SPI_WIRING_H
@@ -51,12 +53,13 @@ typedef struct {
   char gpio[ILK_DEVICE_PATH_BYTES];
   uint32_t speed_hz;
   ilk_line_t contact[ILK_CONTACT_COUNT];
+  ilk_line_t power;
   ilk_line_t lamp[ILK_LAMP_COUNT][ILK_LED_COUNT];
 } ilk_spi_wiring_t;
 
 /**
- * Reads the file and holds it against the configuration: exactly its cards, E-stop and pedal channels are
- * wired.
+ * Reads the file and holds it against the configuration: exactly its cards, E-stop, pedal channels and
+ * power are wired.
  *
  * @return false with the file, the line and what was expected.
  */

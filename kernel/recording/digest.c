@@ -1,7 +1,7 @@
 #include <string.h>
 
-#include "crc32.h"
 #include "interlock/recording.h"
+#include "parts.h"
 
 #define ODD_FACTOR 0x9e3779b97f4a7c15u /* 2^64 divided by the golden ratio */
 
@@ -43,7 +43,7 @@ uint64_t ilk_state_digest(const ilk_state_t *state) { return digest_of(state, si
 uint32_t ilk_out_digest(const ilk_outputs_t *out) { return (uint32_t)(digest_of(out, sizeof *out) >> 32); }
 
 uint32_t ilk_alarm_of(const ilk_state_t *state) {
-  uint32_t alarm = (state->mode & 0xfu) | ((state->cause & 0xfu) << 4);
+  uint32_t alarm = (state->system.mode & 0xfu) | ((state->system.cause & 0xfu) << 4);
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; ++slot) {
     if (state->axis[slot].state == (uint32_t)ILK_AXIS_FAULTED) {
       alarm |= 0x100u << slot;
@@ -57,5 +57,5 @@ uint32_t ilk_recording_crc(const uint32_t words[], uint32_t count) {
   for (uint32_t i = 0u; i < count; ++i) {
     crc = ilk_crc32_word(crc, words[i]);
   }
-  return ilk_crc32_finish(crc);
+  return crc ^ ILK_CRC32_START;
 }

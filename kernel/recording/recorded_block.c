@@ -17,7 +17,7 @@ bool ilk_block_begin(ilk_block_cursor_t *cursor, const ilk_config_t *config, con
   }
   ilk_state_t *state = &tick->picture.state;
   (void)memcpy(state, payload, sizeof *state);
-  tick->tick = state->tick;
+  tick->tick = state->system.tick;
   tick->alarm = ilk_alarm_of(state);
   tick->state_digest = ilk_state_digest(state);
   cursor->place = (uint32_t)ILK_OPENING_WORDS;
@@ -105,7 +105,7 @@ ilk_tick_result_t ilk_block_next(ilk_block_cursor_t *cursor, ilk_recorded_tick_t
   tick->state_digest = joined(head.state_digest);
   cursor->place += head.words;
   const ilk_state_t *state = &picture->state;
-  if (head.tick != state->tick || head.alarm != ilk_alarm_of(state) ||
+  if (head.tick != state->system.tick || head.alarm != ilk_alarm_of(state) ||
       tick->state_digest != ilk_state_digest(state)) {
     return ILK_TICK_STATE_DIFFERS;
   }

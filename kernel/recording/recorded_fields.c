@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "crc32.h"
+#include "parts.h"
 #include "recorded_field_tables.h"
 
 const ilk_field_table_t *ilk_picture_fields(void) { return &table_of_ilk_picture_t; }
@@ -89,5 +89,5 @@ uint32_t ilk_recording_layout_hash(void) {
   crc = crc_of_table(crc, ilk_request_fields());
   crc = crc_of_table(crc, ilk_config_fields());
   crc = ilk_crc32_word(crc, (uint32_t)sizeof(ilk_tick_record_t));
-  return ilk_crc32_finish(crc);
+  return crc ^ ILK_CRC32_START;
 }

@@ -10,7 +10,7 @@ void ilk_replay_begin(ilk_replay_t *replay, const ilk_config_t *config) {
 /** Counts the words of a recorded state that differ, and keeps the first. */
 static void compare_state(ilk_difference_t *difference, const ilk_state_t *recorded,
                           const ilk_state_t *replayed) {
-  difference->seen_tick = recorded->tick;
+  difference->seen_tick = recorded->system.tick;
   for (uint32_t place = 0u; place < sizeof *recorded; place += (uint32_t)sizeof(uint32_t)) {
     uint32_t was = 0u;
     uint32_t is = 0u;
@@ -29,7 +29,7 @@ static void compare_state(ilk_difference_t *difference, const ilk_state_t *recor
 }
 
 static void count_tick(ilk_replay_t *replay, const ilk_recorded_tick_t *tick) {
-  const uint32_t number = tick->picture.state.tick;
+  const uint32_t number = tick->picture.state.system.tick;
   replay->first_tick = replay->ticks == 0u ? number : replay->first_tick;
   replay->last_tick = number;
   replay->ticks += 1u;
@@ -62,13 +62,13 @@ static ilk_replay_result_t replay_ticks(ilk_replay_t *replay, ilk_block_cursor_t
       *difference = (ilk_difference_t){.tick = tick->tick, .outputs = read == ILK_TICK_OUTPUTS_DIFFER};
       result = ILK_REPLAY_DIFFERS;
     }
-    replay->state = tick->picture.state;
     if (result == ILK_REPLAY_IDENTICAL) {
       count_tick(replay, tick);
       if (visitor != NULL) {
-        visitor(context, tick);
+        visitor(context, &replay->state, tick);
       }
     }
+    replay->state = tick->picture.state;
   }
 }
 
@@ -82,7 +82,7 @@ ilk_replay_result_t ilk_replay_block(ilk_replay_t *replay, uint32_t number, cons
   }
   const ilk_state_t *opening = &tick.picture.state;
   enter_block(replay, number, opening);
-  *difference = (ilk_difference_t){.tick = opening->tick};
+  *difference = (ilk_difference_t){.tick = opening->system.tick};
   compare_state(difference, opening, &replay->state);
   if (difference->words > 0u) {
     return ILK_REPLAY_DIFFERS;

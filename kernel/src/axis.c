@@ -1,15 +1,48 @@
-#include "axis.h"
+#include "parts.h"
 
-#include "arith.h"
-#include "homing.h"
+bool ilk_card_is_lost(const ilk_common_config_t *common, const ilk_axis_t *axis) {
+  return axis->bad_frames >= common->bad_frame_limit;
+}
 
-/** A fault that is about to be raised, or NONE. */
-typedef struct {
-  ilk_fault_t fault;
-  int32_t value;
-} finding_t;
+void ilk_card_observe(const ilk_system_t *system, const ilk_reading_t *reading, bool received,
+                      ilk_axis_t *axis) {
+  /* Built after the card heard the frame of the transaction before; not judged until two were sent. */
+  const bool current =
+      (system->frames_sent < ILK_LATENCY_TICKS) || (reading->tick_echo == (system->tick - ILK_LATENCY_TICKS));
+  const bool valid = received && reading->intact && current;
+  axis->periods = (axis->card_valid != 0u) ? 0u : axis->periods;
+  axis->card_valid = flag_of(valid);
+  axis->bad_frames = ticks_in_row(!valid, axis->bad_frames, UINT32_MAX);
+  if (received && !reading->intact) {
+    axis->checksum_failures = count_up(axis->checksum_failures, UINT32_MAX);
+  }
+}
 
-static const finding_t nothing_found = {.fault = ILK_FAULT_NONE, .value = 0};
+/* --- Stillness --------------------------------------------------------------------------------- */
+
+static void begin_stillness(ilk_stillness_t *still, uint32_t raw) {
+  *still = (ilk_stillness_t){.origin_raw = raw, .below = 0, .above = 0, .ticks = 0u};
+}
+
+/** One more reading; one that lies too far from another begins anew. */
+static void follow_stillness(ilk_stillness_t *still, uint32_t raw, uint32_t span_counts, uint32_t longest) {
+  const int32_t here = signed_of(raw - still->origin_raw);
+  const int32_t below = (here < still->below) ? here : still->below;
+  const int32_t above = (here > still->above) ? here : still->above;
+  if ((still->ticks == 0u) || (((int64_t)above - (int64_t)below) > (int64_t)span_counts)) {
+    begin_stillness(still, raw);
+  } else {
+    still->below = below;
+    still->above = above;
+  }
+  still->ticks = count_up(still->ticks, longest);
+}
+
+bool ilk_axis_is_at_rest(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+  return (axis->card_valid != 0u) && (axis->rest.ticks >= config->rest_ticks);
+}
+
+/* --- Orders ------------------------------------------------------------------------------------ */
 
 void ilk_axis_drop_motion(ilk_axis_t *axis) {
   if ((axis->state == (uint32_t)ILK_AXIS_MOVING) || (axis->state == (uint32_t)ILK_AXIS_HOMING)) {
@@ -20,451 +53,330 @@ void ilk_axis_drop_motion(ilk_axis_t *axis) {
   axis->amplitude = 0u;
   axis->lease_ticks = 0u;
   axis->homing_phase = (uint32_t)ILK_HOMING_NONE;
-  if (axis->stall_driven_ticks != 0u) {
-    axis->setpoint_changed = 1u;
-  }
 }
 
 void ilk_axis_disable(ilk_axis_t *axis) {
   ilk_axis_drop_motion(axis);
   if (axis->state != (uint32_t)ILK_AXIS_FAULTED) {
     axis->state = (uint32_t)ILK_AXIS_DISABLED;
+    begin_stillness(&axis->rest, axis->raw);
   }
 }
 
-/** Faults after which the counter no longer tells where the axis is. */
-/*@ assigns \nothing;
-  @ ensures exact: \result <==> fault == ILK_FAULT_JUMP || fault == ILK_FAULT_CARD_LOST
-  @   || fault == ILK_FAULT_HOMING_TRAVEL || fault == ILK_FAULT_HOMING_TIMEOUT;
-  @*/
-static bool loses_reference(ilk_fault_t fault) {
-  return (fault == ILK_FAULT_JUMP) || (fault == ILK_FAULT_CARD_LOST) || (fault == ILK_FAULT_HOMING_TRAVEL) ||
-         (fault == ILK_FAULT_HOMING_TIMEOUT);
+void ilk_axis_begin_press(ilk_axis_t *axis) {
+  axis->path_raw = axis->raw;
+  axis->path_is_homing = 0u;
+  axis->unhomed_travel_counts = 0u;
+  axis->homing_travel_counts = 0u;
+  axis->homing_ticks = 0u;
 }
 
-/**
- * Faults the axis. The first fault is kept until CLEAR_FAULT.
- *
- * @return true when the fault is new.
- */
-/*@ requires valid: \valid(axis);
-  @ requires fault: ILK_FAULT_NONE < fault < ILK_FAULT_COUNT;
-  @ assigns  axis->state, axis->setpoint_counts, axis->drive, axis->amplitude, axis->lease_ticks,
-  @          axis->homing_phase, axis->setpoint_changed, axis->fault, axis->fault_tick, axis->fault_value,
-  @          axis->homed;
-  @ ensures  P6_faulted: axis->state == ILK_AXIS_FAULTED;
-  @ ensures  new: \result <==> \old(axis->state) != ILK_AXIS_FAULTED;
-  @ ensures  P8_first_fault: \old(axis->state) != ILK_AXIS_FAULTED ==> quiet(axis)
-  @   && axis->fault == fault && axis->fault_tick == tick && axis->fault_value == value;
-  @ ensures  P8_latch: \old(axis->state) == ILK_AXIS_FAULTED ==> axis->fault == \old(axis->fault)
-  @   && axis->fault_tick == \old(axis->fault_tick) && axis->fault_value == \old(axis->fault_value)
-  @   && axis->lease_ticks == \old(axis->lease_ticks) && axis->homing_phase == \old(axis->homing_phase);
-  @ ensures  reference: axis->homed ==
-  @   (fault == ILK_FAULT_STALL || fault == ILK_FAULT_REVERSE || fault == ILK_FAULT_DRIFT
-  @     ? \old(axis->homed) : 0);
-  @*/
-static bool raise_fault(ilk_axis_t *axis, ilk_fault_t fault, int32_t value, uint32_t tick) {
-  const bool is_new = axis->state != (uint32_t)ILK_AXIS_FAULTED;
+void ilk_axis_enable(ilk_axis_t *axis) {
+  if (axis->state == (uint32_t)ILK_AXIS_DISABLED) {
+    axis->state = (uint32_t)ILK_AXIS_ENABLED;
+    axis->drift_mark_raw = axis->raw;
+    axis->reverse_direction = (uint32_t)ILK_DIRECTION_NONE;
+  }
+}
+
+/* --- Stall ------------------------------------------------------------------------------------- */
+
+static uint64_t effort_of(const ilk_axis_t *axis) {
+  return ((uint64_t)axis->effort_high << 32u) | axis->effort_low;
+}
+
+static void set_effort(ilk_axis_t *axis, uint64_t effort) {
+  axis->effort_low = (uint32_t)(effort & UINT32_MAX);
+  axis->effort_high = (uint32_t)(effort >> 32u);
+}
+
+bool ilk_axis_has_stalled(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+  const uint64_t most = (uint64_t)config->stall_effort_ticks * config->max_drive;
+  return (axis->stall_driven_ticks >= config->stall_ticks) || ((most != 0u) && (effort_of(axis) >= most));
+}
+
+static void mark_progress(ilk_axis_t *axis) {
+  axis->stall_mark_raw = axis->raw;
+  axis->effort_mark_raw = axis->raw;
+}
+
+static void clear_stall(ilk_axis_t *axis) {
+  mark_progress(axis);
+  axis->stall_driven_ticks = 0u;
+  set_effort(axis, 0u);
+}
+
+/** How far the axis has come in `direction` since the reading `mark_raw`. */
+static int32_t advance_from(const ilk_axis_config_t *config, const ilk_axis_t *axis, uint32_t mark_raw,
+                            uint32_t direction) {
+  return along(direction, travel_between(config, mark_raw, axis->raw));
+}
+
+/** True when the axis has come more than `counts` from the mark, the way in which progress counts. */
+static bool is_beyond(const ilk_axis_config_t *config, const ilk_axis_t *axis, uint32_t mark_raw,
+                      uint32_t counts) {
+  const int32_t advance = advance_from(config, axis, mark_raw, axis->stall_direction);
+  return (advance > 0) && (magnitude(advance) > counts);
+}
+
+static void follow_progress(const ilk_axis_config_t *config, ilk_axis_t *axis) {
+  if (is_beyond(config, axis, axis->stall_mark_raw, left_of(config->stall_min_counts, 1u))) {
+    clear_stall(axis);
+  } else if (is_beyond(config, axis, axis->effort_mark_raw, config->noise_counts)) {
+    axis->effort_mark_raw = axis->raw;
+    set_effort(axis, 0u);
+  } else {
+    /* No progress. */
+  }
+}
+
+void ilk_axis_note_arrival(const ilk_axis_config_t *config, ilk_axis_t *axis) {
+  const bool ahead = is_beyond(config, axis, axis->effort_mark_raw, 0u);
+  const uint32_t effort_mark_raw = ahead ? axis->raw : axis->effort_mark_raw;
+  if (is_beyond(config, axis, axis->stall_mark_raw, config->noise_counts)) {
+    clear_stall(axis);
+    axis->effort_mark_raw = effort_mark_raw;
+  }
+}
+
+void ilk_axis_note_drive(const ilk_command_t *command, ilk_axis_t *axis) {
+  const uint64_t effort = effort_of(axis);
+  if (axis->stall_direction != command->direction) {
+    axis->stall_direction = command->direction;
+    mark_progress(axis);
+  }
+  if (axis->reverse_direction != command->direction) {
+    axis->reverse_direction = command->direction;
+    axis->reverse_mark_raw = axis->raw;
+  }
+  if (axis->state == (uint32_t)ILK_AXIS_MOVING) {
+    axis->path_is_homing = 0u;
+  }
+  axis->stall_driven_ticks = count_up(axis->stall_driven_ticks, UINT32_MAX);
+  set_effort(axis, (effort > (UINT64_MAX - command->drive)) ? UINT64_MAX : (effort + command->drive));
+  axis->drift_mark_raw = axis->raw;
+  axis->driven_direction = command->direction;
+  axis->rest.ticks = 0u;
+}
+
+/* --- Faults ------------------------------------------------------------------------------------ */
+
+static ilk_finding_t found_if(bool present, ilk_fault_t fault, int32_t value) {
+  return (ilk_finding_t){.fault = present ? fault : ILK_FAULT_NONE, .value = value};
+}
+
+static ilk_finding_t first_of(ilk_finding_t earlier, ilk_finding_t later) {
+  return (earlier.fault != ILK_FAULT_NONE) ? earlier : later;
+}
+
+/** The first fault is kept until CLEAR_FAULT; true when this one is it. */
+static bool raise_fault(const ilk_system_t *system, ilk_finding_t finding, ilk_axis_t *axis) {
+  const bool is_new = (finding.fault != ILK_FAULT_NONE) && (axis->state != (uint32_t)ILK_AXIS_FAULTED);
   if (is_new) {
     ilk_axis_drop_motion(axis);
     axis->state = (uint32_t)ILK_AXIS_FAULTED;
-    axis->fault = (uint32_t)fault;
-    axis->fault_tick = tick;
-    axis->fault_value = value;
+    axis->fault = (uint32_t)finding.fault;
+    axis->fault_tick = system->tick;
+    axis->fault_value = finding.value;
+    axis->drift_mark_raw = axis->raw;
   }
-  if (loses_reference(fault)) {
-    axis->homed = 0u;
+  if ((finding.fault != ILK_FAULT_NONE) && (finding.fault != ILK_FAULT_DRIFT)) {
+    axis->homed = (uint32_t)ILK_HOMED_NOT;
   }
   return is_new;
 }
 
-bool ilk_card_is_lost(const ilk_config_t *config, const ilk_axis_t *axis) {
-  return axis->bad_frames >= config->bad_frame_limit;
-}
-
-/** Built after the card heard the frame of the transaction before; not judged until one was sent. */
-/*@ requires readable: \valid_read(reading);
-  @ assigns  \nothing;
-  @ ensures  exact: \result <==> tick < 2 || reading->tick_echo == tick - 2;
-  @*/
-static bool echo_is_current(const ilk_reading_t *reading, uint32_t tick) {
-  return (tick < 2u) || (reading->tick_echo == (tick - 2u));
-}
-
-/*@ requires readable: \valid_read(axis) && \valid_read(reading);
-  @ assigns  \nothing;
-  @ ensures  exact: \result <==> axis->card_seen == 0 || reading->heartbeat != axis->heartbeat;
-  @*/
-static bool heartbeat_advanced(const ilk_axis_t *axis, const ilk_reading_t *reading) {
-  return (axis->card_seen == 0u) || (reading->heartbeat != axis->heartbeat);
-}
-
-void ilk_observe_card(ilk_axis_t *axis, const ilk_reading_t *reading, bool received, uint32_t tick) {
-  const bool valid =
-      received && reading->intact && echo_is_current(reading, tick) && heartbeat_advanced(axis, reading);
-  axis->ticks_since_frame = (axis->card_valid != 0u) ? 1u : count_up(axis->ticks_since_frame, UINT32_MAX);
-  axis->card_valid = flag_of(valid);
-  if (valid) {
-    axis->bad_frames = 0u;
-    axis->heartbeat = reading->heartbeat;
-    axis->card_time_us = reading->card_time_us;
-    axis->card_status = reading->card_status;
-  } else {
-    axis->bad_frames = count_up(axis->bad_frames, UINT32_MAX);
+void ilk_axis_clear_fault(ilk_axis_t *axis) {
+  if (axis->fault == (uint32_t)ILK_FAULT_STALL) {
+    clear_stall(axis);
   }
-  if (received && !reading->intact) {
-    axis->checksum_failures = count_up(axis->checksum_failures, UINT32_MAX);
-  }
+  axis->state = (uint32_t)ILK_AXIS_DISABLED;
+  axis->fault = (uint32_t)ILK_FAULT_NONE;
+  axis->fault_tick = 0u;
+  axis->fault_value = 0;
 }
 
-/*@ requires readable: \valid_read(axis);
-  @ assigns  \nothing;
-  @ ensures  exact: \result <==> axis->state != ILK_AXIS_DISABLED && axis->state != ILK_AXIS_FAULTED;
-  @*/
-static bool is_enabled(const ilk_axis_t *axis) {
-  return (axis->state != (uint32_t)ILK_AXIS_DISABLED) && (axis->state != (uint32_t)ILK_AXIS_FAULTED);
+/* --- Observation ------------------------------------------------------------------------------- */
+
+/** What the counter says no longer belongs to what it said before: every mark begins here. */
+static void begin_anew(ilk_axis_t *axis) {
+  begin_stillness(&axis->rest, axis->raw);
+  begin_stillness(&axis->calm, axis->raw);
+  mark_progress(axis);
+  axis->reverse_direction = (uint32_t)ILK_DIRECTION_NONE;
+  axis->drift_mark_raw = axis->raw;
+  axis->path_raw = axis->raw;
+  axis->switch_run_ticks = 0u;
+  axis->home_known = 0u;
 }
 
-/*@ requires readable: \valid_read(axis);
-  @ assigns  \nothing;
-  @ ensures  exact: \result <==> axis->driven_direction != ILK_DIRECTION_NONE;
-  @*/
-static bool was_driven(const ilk_axis_t *axis) {
-  return axis->driven_direction != (uint32_t)ILK_DIRECTION_NONE;
+/** A card that was reset counts from elsewhere. */
+static ilk_finding_t judge_card(const ilk_reading_t *reading, const ilk_axis_t *axis) {
+  const uint32_t ahead = reading->heartbeat - axis->heartbeat;
+  const bool told = ((reading->card_status & ~axis->card_status) & ILK_STATUS_WAS_RESET) != 0u;
+  const bool counted = (ahead == 0u) || ((ahead - 1u) > axis->periods);
+  return found_if(told || counted, ILK_FAULT_CARD_RESET, signed_of(ahead));
 }
 
-/** The first frame after a drive tells what the drive did, however many were missed in between. */
-/*@ requires readable: \valid_read(config) && \valid_read(axis);
-  @ assigns  \nothing;
-  @ ensures  exact: \result <==> settled(config, axis);
-  @*/
-static bool has_settled(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
-  return !was_driven(axis) && (axis->undriven_ticks >= config->settle_ticks);
-}
-
-/*@ requires readable: \valid_read(config) && \valid_read(axis);
-  @ assigns  \nothing;
-  @ ensures  P6_jump: \result.fault == ILK_FAULT_JUMP <==> jumped(config, axis);
-  @ ensures  only: \result.fault == ILK_FAULT_JUMP || \result.fault == ILK_FAULT_NONE;
-  @ ensures  value: \result.fault == ILK_FAULT_JUMP ==> \result.value == axis->delta_counts;
-  @*/
-static finding_t judge_jump(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
-  const uint32_t farthest = multiply_saturating(config->max_delta_counts, axis->ticks_since_frame);
-  finding_t finding = nothing_found;
-  if (magnitude(axis->delta_counts) > farthest) {
-    finding.fault = ILK_FAULT_JUMP;
-    finding.value = axis->delta_counts;
+/** Place, and what the card says of itself. The first frame after start or after a lost card is compared with
+   nothing; what a reset or a jump leads to has nothing to do with what was before. A FAULTED axis that jumps
+   on, the way it went in the frame before, is run away: its mark follows each jump, so that nothing else
+   would tell. */
+static ilk_finding_t follow_card(const ilk_axis_config_t *config, const ilk_reading_t *reading,
+                                 ilk_axis_t *axis) {
+  const bool first = axis->card_seen == 0u;
+  const uint64_t farthest = (uint64_t)config->max_delta_counts * axis->periods;
+  const int32_t delta = first ? 0 : travel_between(config, axis->raw, reading->raw);
+  const bool goes_on = ((delta > 0) && (axis->delta_counts > 0)) || ((delta < 0) && (axis->delta_counts < 0));
+  const ilk_finding_t jump = found_if(magnitude(delta) > farthest, ILK_FAULT_JUMP, delta);
+  const ilk_finding_t nothing = found_if(false, ILK_FAULT_NONE, 0);
+  const ilk_finding_t finding = first ? nothing : first_of(judge_card(reading, axis), jump);
+  axis->delta_counts = delta;
+  axis->position_counts = add_saturating(axis->position_counts, delta);
+  axis->raw = reading->raw;
+  axis->heartbeat = reading->heartbeat;
+  axis->card_time_us = reading->card_time_us;
+  axis->card_status = reading->card_status;
+  axis->card_seen = 1u;
+  if (first || (finding.fault != ILK_FAULT_NONE)) {
+    axis->runaway |= flag_of(goes_on && (axis->state == (uint32_t)ILK_AXIS_FAULTED));
+    begin_anew(axis);
   }
   return finding;
 }
 
-/** How far the axis has come along `direction` since the reading `mark`. */
-/*@ requires readable: \valid_read(config) && \valid_read(axis);
-  @ assigns  \nothing;
-  @ ensures  exact: \result == progress(config, axis, mark_raw, direction);
-  @*/
-static int32_t progress_from(const ilk_axis_config_t *config, const ilk_axis_t *axis, uint32_t mark_raw,
-                             uint32_t direction) {
-  return along(direction, travel_between(config, mark_raw, axis->raw));
-}
-
-/*@ requires readable: \valid_read(config) && \valid_read(axis);
-  @ assigns  \nothing;
-  @ ensures  P6_reverse: \result.fault == ILK_FAULT_REVERSE <==> reversed(config, axis);
-  @ ensures  only: \result.fault == ILK_FAULT_REVERSE || \result.fault == ILK_FAULT_NONE;
-  @ ensures  value: \result.fault == ILK_FAULT_REVERSE ==> \result.value ==
-  @   clamped(-progress(config, axis, axis->reverse_mark_raw, axis->reverse_direction));
-  @*/
-static finding_t judge_reverse(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
-  const int32_t progress = progress_from(config, axis, axis->reverse_mark_raw, axis->reverse_direction);
-  finding_t finding = nothing_found;
-  if (was_driven(axis) && (progress < 0) && (magnitude(progress) > config->reverse_counts)) {
-    finding.fault = ILK_FAULT_REVERSE;
-    finding.value = negate_saturating(progress);
+/** The travel of this press that its budgets bound; outside of them the point stays with the counter. */
+static void follow_path(const ilk_axis_config_t *config, const ilk_system_t *system, ilk_axis_t *axis) {
+  const bool counts = (system->mode == (uint32_t)ILK_MODE_MOTION) && (axis->homed == (uint32_t)ILK_HOMED_NOT);
+  const uint32_t distance = magnitude(travel_between(config, axis->path_raw, axis->raw));
+  if (!counts || (distance > config->noise_counts)) {
+    uint32_t *sum = (axis->path_is_homing != 0u) ? &axis->homing_travel_counts : &axis->unhomed_travel_counts;
+    *sum = sum_saturating(*sum, counts ? distance : 0u);
+    axis->path_raw = axis->raw;
   }
-  return finding;
 }
 
-/*@ requires readable: \valid_read(config) && \valid_read(axis);
-  @ assigns  \nothing;
-  @ ensures  P6_drift: \result.fault == ILK_FAULT_DRIFT <==> drifted(config, axis);
-  @ ensures  only: \result.fault == ILK_FAULT_DRIFT || \result.fault == ILK_FAULT_NONE;
-  @ ensures  value: \result.fault == ILK_FAULT_DRIFT ==>
-  @   \result.value == travel(config, axis->drift_mark_raw, axis->raw);
-  @*/
-static finding_t judge_drift(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+static void follow_switch(const ilk_common_config_t *common, const ilk_reading_t *reading, ilk_axis_t *axis) {
+  const uint32_t triggered = flag_of(reading->switch_triggered);
+  if ((axis->switch_run_ticks == 0u) || (axis->switch_reading != triggered)) {
+    axis->switch_reading = triggered;
+    axis->switch_run_ticks = 0u;
+    axis->switch_run_raw = axis->raw;
+  }
+  axis->switch_run_ticks = count_up(axis->switch_run_ticks, common->switch_debounce_ticks);
+}
+
+bool ilk_switch_is_steady(const ilk_common_config_t *common, const ilk_axis_t *axis, bool triggered) {
+  return (axis->switch_run_ticks >= common->switch_debounce_ticks) &&
+         (axis->switch_reading == flag_of(triggered));
+}
+
+/** The switch of an axis that homed at it, against the place where it homed. */
+static ilk_finding_t judge_switch(const ilk_common_config_t *common, const ilk_axis_config_t *config,
+                                  ilk_axis_t *axis) {
+  const int64_t from_home = (int64_t)axis->position_counts - (int64_t)config->home_offset_counts;
+  const int64_t outside = (config->limit_side == (uint32_t)ILK_LIMIT_UPPER) ? from_home : -from_home;
+  const int64_t slack = (int64_t)config->home_tolerance_counts + (int64_t)config->coast_counts;
+  const bool contradicts = (axis->switch_reading != 0u)
+                               ? (outside < -(slack + (int64_t)config->switch_hysteresis_counts))
+                               : (outside > slack);
+  axis->implausible_ticks = ticks_in_row(contradicts && (axis->homed == (uint32_t)ILK_HOMED_BY_SWITCH),
+                                         axis->implausible_ticks, common->switch_debounce_ticks);
+  return found_if(axis->implausible_ticks >= common->switch_debounce_ticks, ILK_FAULT_SWITCH,
+                  add_saturating(axis->position_counts, negate_saturating(config->home_offset_counts)));
+}
+
+static ilk_finding_t judge_reverse(const ilk_axis_config_t *config, ilk_axis_t *axis) {
+  const int32_t advance = advance_from(config, axis, axis->reverse_mark_raw, axis->reverse_direction);
+  const bool reversed = (axis->driven_direction != (uint32_t)ILK_DIRECTION_NONE) && (advance < 0) &&
+                        (magnitude(advance) > config->reverse_counts);
+  if (advance > 0) {
+    axis->reverse_mark_raw = axis->raw;
+  }
+  return found_if(reversed, ILK_FAULT_REVERSE, negate_saturating(advance));
+}
+
+/** A DISABLED axis may be moved by hand, but in MOTION nothing but drive moves any. A drive needs a valid
+   frame: an axis that was driven since its last one was driven in that very tick. */
+static ilk_finding_t judge_drift(const ilk_axis_config_t *config, const ilk_system_t *system,
+                                 uint32_t periods, ilk_axis_t *axis) {
+  const bool driven_last_tick =
+      (axis->driven_direction != (uint32_t)ILK_DIRECTION_NONE) && (axis->periods == periods);
   const int32_t drift = travel_between(config, axis->drift_mark_raw, axis->raw);
-  finding_t finding = nothing_found;
-  if (is_enabled(axis) && has_settled(config, axis) && (magnitude(drift) > config->drift_counts)) {
-    finding.fault = ILK_FAULT_DRIFT;
-    finding.value = drift;
-  }
-  return finding;
+  const bool by_hand =
+      (axis->state == (uint32_t)ILK_AXIS_DISABLED) && (system->mode != (uint32_t)ILK_MODE_MOTION);
+  const bool judged = !by_hand && !driven_last_tick && (axis->state != (uint32_t)ILK_AXIS_FAULTED);
+  axis->drift_mark_raw = by_hand ? axis->raw : axis->drift_mark_raw;
+  return found_if(judged && (magnitude(drift) > config->drift_counts), ILK_FAULT_DRIFT, drift);
 }
 
-/*@ requires readable: \valid_read(config) && \valid_read(axis);
-  @ assigns  \nothing;
-  @ ensures  P5_stall: \result.fault == ILK_FAULT_STALL <==> stalled(config, axis);
-  @ ensures  only: \result.fault == ILK_FAULT_STALL || \result.fault == ILK_FAULT_NONE;
-  @ ensures  value: \result.fault == ILK_FAULT_STALL ==> \result.value ==
-  @   progress(config, axis, axis->stall_mark_raw, axis->stall_direction);
-  @*/
-static finding_t judge_stall(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
-  finding_t finding = nothing_found;
-  if (is_enabled(axis) && (axis->stall_driven_ticks >= config->stall_ticks)) {
-    finding.fault = ILK_FAULT_STALL;
-    finding.value = progress_from(config, axis, axis->stall_mark_raw, axis->stall_direction);
-  }
-  return finding;
+static ilk_finding_t judge_stall(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+  return found_if(ilk_axis_has_stalled(config, axis), ILK_FAULT_STALL,
+                  advance_from(config, axis, axis->stall_mark_raw, axis->stall_direction));
 }
 
-/*@ assigns \nothing;
-  @ ensures exact: earlier.fault != ILK_FAULT_NONE
-  @   ? \result.fault == earlier.fault && \result.value == earlier.value
-  @   : \result.fault == later.fault && \result.value == later.value;
-  @*/
-static finding_t first_of(finding_t earlier, finding_t later) {
-  return (earlier.fault != ILK_FAULT_NONE) ? earlier : later;
-}
-
-/*@ requires valid: \valid(axis);
-  @ assigns  axis->stall_driven_ticks, axis->setpoint_changed, axis->stall_mark_raw;
-  @ ensures  P5_stall: axis->stall_driven_ticks == 0 && axis->setpoint_changed == 0
-  @   && axis->stall_mark_raw == axis->raw;
-  @*/
-static void clear_stall_count(ilk_axis_t *axis) {
-  axis->stall_driven_ticks = 0u;
-  axis->setpoint_changed = 0u;
-  axis->stall_mark_raw = axis->raw;
-}
-
-/** Moves position and marks to a new reading. */
-/*@ requires valid: \valid_read(config) && \valid(axis) && \separated(config, axis);
-  @ assigns  axis->card_seen, axis->raw, axis->ticks_since_frame, axis->reverse_mark_raw, axis->drift_mark_raw,
-  @          axis->stall_mark_raw, axis->homing_mark_raw, axis->delta_counts, axis->position_counts,
-  @          axis->press_travel_counts;
-  @ ensures  raw: axis->raw == raw && (\old(axis->card_seen) == 0 ? axis->card_seen == 1
-  @   : axis->card_seen == \old(axis->card_seen));
-  @ ensures  delta: axis->delta_counts == (\old(axis->card_seen) == 0 ? 0 : travel(config, \old(axis->raw), raw));
-  @ ensures  position: axis->position_counts == clamped(\old(axis->position_counts) + axis->delta_counts);
-  @ ensures  P7_travel: axis->press_travel_counts == clamped(\old(axis->press_travel_counts) + axis->delta_counts);
-  @ ensures  new_card: \old(axis->card_seen) == 0 ==> axis->ticks_since_frame == 0
-  @   && axis->reverse_mark_raw == raw && axis->drift_mark_raw == raw && axis->stall_mark_raw == raw
-  @   && axis->homing_mark_raw == raw;
-  @ ensures  P6_marks: \old(axis->card_seen) != 0 ==> axis->reverse_mark_raw == \old(axis->reverse_mark_raw)
-  @   && axis->drift_mark_raw == \old(axis->drift_mark_raw) && axis->stall_mark_raw == \old(axis->stall_mark_raw)
-  @   && axis->homing_mark_raw == \old(axis->homing_mark_raw)
-  @   && axis->ticks_since_frame == \old(axis->ticks_since_frame);
-  @*/
-static void follow(const ilk_axis_config_t *config, ilk_axis_t *axis, uint32_t raw) {
-  if (axis->card_seen == 0u) {
-    axis->card_seen = 1u;
-    axis->raw = raw;
-    axis->ticks_since_frame = 0u;
-    axis->reverse_mark_raw = raw;
-    axis->drift_mark_raw = raw;
-    axis->stall_mark_raw = raw;
-    axis->homing_mark_raw = raw;
-  }
-  axis->delta_counts = travel_between(config, axis->raw, raw);
-  axis->position_counts = add_saturating(axis->position_counts, axis->delta_counts);
-  axis->press_travel_counts = add_saturating(axis->press_travel_counts, axis->delta_counts);
-  axis->raw = raw;
-}
-
-/** Motion counts as progress only until the axis has settled: later it is not the drive's doing. */
-/*@ requires readable: \valid_read(config) && \valid_read(axis);
-  @ assigns  \nothing;
-  @ ensures  P5_stall: \result <==> !settled(config, axis)
-  @   && progress(config, axis, axis->stall_mark_raw, axis->stall_direction) > 0
-  @   && progress(config, axis, axis->stall_mark_raw, axis->stall_direction) >= config->stall_min_counts;
-  @*/
-static bool made_progress(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
-  const int32_t progress = progress_from(config, axis, axis->stall_mark_raw, axis->stall_direction);
-  return !has_settled(config, axis) && (progress > 0) && (magnitude(progress) >= config->stall_min_counts);
-}
-
-/** Marks that follow the axis while it does nothing wrong. */
-/*@ requires valid: \valid_read(config) && \valid(axis) && \separated(config, axis);
-  @ assigns  axis->reverse_mark_raw, axis->stall_driven_ticks, axis->setpoint_changed, axis->stall_mark_raw,
-  @          axis->drift_mark_raw;
-  @ ensures  P6_reverse: axis->reverse_mark_raw == axis->raw
-  @   || axis->reverse_mark_raw == \old(axis->reverse_mark_raw);
-  @ ensures  P6_drift: axis->state != ILK_AXIS_DISABLED && axis->state != ILK_AXIS_FAULTED && settled(config, axis)
-  @   ==> axis->drift_mark_raw == \old(axis->drift_mark_raw);
-  @ ensures  P6_idle: axis->state == ILK_AXIS_DISABLED || axis->state == ILK_AXIS_FAULTED
-  @   ==> axis->drift_mark_raw == axis->raw;
-  @ ensures  P6_driven: !settled(config, axis) ==> axis->drift_mark_raw == axis->raw;
-  @ ensures  P5_stall: axis->stall_driven_ticks == 0
-  @   || axis->stall_driven_ticks == \old(axis->stall_driven_ticks);
-  @*/
-static void advance_marks(const ilk_axis_config_t *config, ilk_axis_t *axis) {
-  if (progress_from(config, axis, axis->reverse_mark_raw, axis->reverse_direction) > 0) {
-    axis->reverse_mark_raw = axis->raw;
-  }
-  if (made_progress(config, axis)) {
-    clear_stall_count(axis);
-  }
-  if (!is_enabled(axis) || !has_settled(config, axis)) {
-    axis->drift_mark_raw = axis->raw;
-  }
-}
-
-/*@ requires readable: \valid_read(config) && \valid_read(axis);
-  @ assigns  \nothing;
-  @ ensures  P6_jump: jumped(config, axis) <==> \result.fault == ILK_FAULT_JUMP;
-  @ ensures  P6_reverse: reversed(config, axis) ==> \result.fault != ILK_FAULT_NONE;
-  @ ensures  P6_drift: drifted(config, axis) ==> \result.fault != ILK_FAULT_NONE;
-  @ ensures  P5_stall: stalled(config, axis) ==> \result.fault != ILK_FAULT_NONE;
-  @ ensures  founded: \result.fault == ILK_FAULT_NONE || \result.fault == ILK_FAULT_JUMP
-  @   || (\result.fault == ILK_FAULT_REVERSE && reversed(config, axis))
-  @   || (\result.fault == ILK_FAULT_DRIFT && drifted(config, axis))
-  @   || (\result.fault == ILK_FAULT_STALL && stalled(config, axis));
-  @*/
-static finding_t judge_motion(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
-  finding_t finding = judge_jump(config, axis);
+/** What a valid frame says. */
+static ilk_finding_t observe_frame(const ilk_common_config_t *common, const ilk_axis_config_t *config,
+                                   const ilk_system_t *system, const ilk_reading_t *reading, uint32_t periods,
+                                   ilk_axis_t *axis) {
+  ilk_finding_t finding = follow_card(config, reading, axis);
+  follow_stillness(&axis->rest, axis->raw, config->noise_counts, config->rest_ticks);
+  follow_stillness(&axis->calm, axis->raw, config->drift_counts, config->rest_ticks);
+  follow_path(config, system, axis);
+  follow_progress(config, axis);
   finding = first_of(finding, judge_reverse(config, axis));
-  finding = first_of(finding, judge_drift(config, axis));
-  finding = first_of(finding, judge_stall(config, axis));
-  return finding;
-}
-
-/*@ requires valid: \valid_read(config) && \valid(axis) && \valid_read(reading);
-  @ requires apart: \separated(config, axis, reading);
-  @ assigns  axis->card_seen, axis->raw, axis->ticks_since_frame, axis->reverse_mark_raw, axis->drift_mark_raw,
-  @          axis->stall_mark_raw, axis->homing_mark_raw, axis->delta_counts, axis->position_counts,
-  @          axis->press_travel_counts, axis->stall_driven_ticks, axis->setpoint_changed,
-  @          axis->driven_direction;
-  @ ensures  seen: axis->raw == \old(reading->raw) && axis->driven_direction == ILK_DIRECTION_NONE;
-  @ ensures  P5_stall: \result.fault == ILK_FAULT_NONE
-  @   && axis->state != ILK_AXIS_DISABLED && axis->state != ILK_AXIS_FAULTED ==>
-  @     axis->stall_driven_ticks < \old(config->stall_ticks);
-  @ ensures  known: 0 <= \result.fault <= ILK_FAULT_JUMP;
-  @*/
-static finding_t observe_valid(const ilk_axis_config_t *config, ilk_axis_t *axis,
-                               const ilk_reading_t *reading) {
-  follow(config, axis, reading->raw);
-  advance_marks(config, axis);
-  const finding_t finding = judge_motion(config, axis);
+  finding = first_of(finding, judge_drift(config, system, periods, axis));
   axis->driven_direction = (uint32_t)ILK_DIRECTION_NONE;
-  return finding;
-}
-
-/*@ requires valid: \valid_read(config) && \valid(axis) && \separated(config, axis);
-  @ assigns  axis->card_seen;
-  @ ensures  lost: axis->bad_frames >= config->bad_frame_limit ==>
-  @   \result.fault == ILK_FAULT_CARD_LOST && axis->card_seen == 0;
-  @ ensures  kept: axis->bad_frames < config->bad_frame_limit ==>
-  @   \result.fault == ILK_FAULT_NONE && axis->card_seen == \old(axis->card_seen);
-  @*/
-static finding_t observe_missing(const ilk_config_t *config, ilk_axis_t *axis) {
-  finding_t finding = nothing_found;
-  if (ilk_card_is_lost(config, axis)) {
-    axis->card_seen = 0u;
-    finding.fault = ILK_FAULT_CARD_LOST;
-    const uint32_t missed = axis->bad_frames & (uint32_t)INT32_MAX;
-    finding.value = (int32_t)missed;
+  finding = first_of(finding, judge_stall(config, axis));
+  if (has_switch(config)) {
+    follow_switch(common, reading, axis);
+    finding = first_of(finding, judge_switch(common, config, axis));
   }
   return finding;
 }
 
-/*@ requires valid: \valid(axis);
-  @ requires sound: sound_axis(axis);
-  @ assigns  axis->lease_ticks, axis->state;
-  @ ensures  P15_invariant: sound_axis(axis);
-  @ ensures  lease: axis->lease_ticks == \max(\old(axis->lease_ticks) - 1, 0);
-  @ ensures  P1_lease: axis->state == (\old(axis->state) == ILK_AXIS_MOVING && axis->lease_ticks == 0
-  @   ? ILK_AXIS_ENABLED : \old(axis->state));
-  @*/
+/** What a missing frame says. */
+static ilk_finding_t observe_nothing(const ilk_common_config_t *common, const ilk_axis_config_t *config,
+                                     ilk_axis_t *axis) {
+  const bool lost = ilk_card_is_lost(common, axis);
+  axis->rest.ticks = 0u;
+  if (lost) {
+    axis->card_seen = 0u;
+    axis->runaway = 0u;
+  }
+  return first_of(found_if(lost, ILK_FAULT_CARD, signed_of(axis->bad_frames & (uint32_t)INT32_MAX)),
+                  judge_stall(config, axis));
+}
+
+/** A faulted axis is not driven; one that moves all the same, however slowly, is run away until it rests. */
+static void watch_faulted(const ilk_axis_config_t *config, ilk_axis_t *axis) {
+  const uint32_t distance = magnitude(travel_between(config, axis->drift_mark_raw, axis->raw));
+  const bool rests = ilk_axis_is_at_rest(config, axis);
+  if ((axis->state == (uint32_t)ILK_AXIS_FAULTED) && (axis->card_valid != 0u)) {
+    const bool over = rests && (axis->runaway != 0u);
+    axis->drift_mark_raw = over ? axis->raw : axis->drift_mark_raw;
+    axis->runaway = flag_of(!over && ((axis->runaway != 0u) || (distance > config->drift_counts)));
+  }
+}
+
 static void run_lease_down(ilk_axis_t *axis) {
-  axis->lease_ticks = count_down(axis->lease_ticks);
+  axis->lease_ticks = left_of(axis->lease_ticks, 1u);
   if ((axis->state == (uint32_t)ILK_AXIS_MOVING) && (axis->lease_ticks == 0u)) {
-    axis->state = (uint32_t)ILK_AXIS_ENABLED;
+    ilk_axis_drop_motion(axis);
   }
 }
 
-void ilk_observe_sensor(const ilk_config_t *config, ilk_axis_t *axis) {
-  if (axis->card_valid != 0u) {
-    axis->card_seen = 1u;
-  } else if (ilk_card_is_lost(config, axis)) {
-    axis->card_seen = 0u;
-  } else {
-    /* A few bad frames do not make a card a new one. */
-  }
-}
-
-/** A drive needs a valid frame: an axis that was driven since its last one was driven in that very tick. */
-/*@ requires valid: \valid_read(config) && \valid(axis) && \separated(config, axis);
-  @ assigns  axis->undriven_ticks;
-  @ ensures  P6_undriven: axis->undriven_ticks ==
-  @   (axis->driven_direction != ILK_DIRECTION_NONE && axis->ticks_since_frame == 1 ? 0
-  @     : \min(\old(axis->undriven_ticks) + 1, config->settle_ticks));
-  @*/
-static void count_undriven(const ilk_axis_config_t *config, ilk_axis_t *axis) {
-  const bool driven_last_tick = was_driven(axis) && (axis->ticks_since_frame == 1u);
-  axis->undriven_ticks = driven_last_tick ? 0u : count_up(axis->undriven_ticks, config->settle_ticks);
-}
-
-/** Homing by what the frame said, then the fault that was found first. */
-/*@ requires valid: \valid_read(config) && \valid(axis) && \separated(config, axis);
-  @ requires sound: sound_axis(axis);
-  @ requires known: seen.fault < ILK_FAULT_COUNT;
-  @ assigns  axis->state, axis->setpoint_counts, axis->drive, axis->amplitude, axis->lease_ticks,
-  @          axis->homing_phase, axis->setpoint_changed, axis->fault, axis->fault_tick, axis->fault_value,
-  @          axis->homed, axis->position_counts, axis->homing_ticks, axis->homing_mark_raw, axis->rest_ticks;
-  @ ensures  P15_invariant: sound_axis(axis);
-  @ ensures  P6_faulted: seen.fault != ILK_FAULT_NONE ==> axis->state == ILK_AXIS_FAULTED;
-  @ ensures  P6_reference: seen.fault == ILK_FAULT_CARD_LOST || seen.fault == ILK_FAULT_JUMP ==> axis->homed == 0;
-  @ ensures  new: \result <==> \old(axis->state) != ILK_AXIS_FAULTED && axis->state == ILK_AXIS_FAULTED;
-  @ ensures  P8_first_fault: \result && seen.fault != ILK_FAULT_NONE ==>
-  @   axis->fault == seen.fault && axis->fault_tick == tick && axis->fault_value == seen.value;
-  @ ensures  P8_latch: fault_latched{Pre, Post}(axis);
-  @ ensures  mode: axis->state == \old(axis->state) || axis->state == ILK_AXIS_FAULTED
-  @   || (\old(axis->state) == ILK_AXIS_HOMING && axis->state == ILK_AXIS_ENABLED);
-  @*/
-static bool conclude(const ilk_axis_config_t *config, ilk_axis_t *axis, finding_t seen, uint32_t tick) {
-  const ilk_homing_result_t homing = ilk_homing_advance(config, axis);
-  finding_t finding = seen;
-  if (homing.fault != ILK_FAULT_NONE) {
-    const finding_t homing_finding = {.fault = homing.fault, .value = homing.value};
-    finding = first_of(seen, homing_finding);
-  }
-  bool faulted = false;
-  if (finding.fault != ILK_FAULT_NONE) {
-    faulted = raise_fault(axis, finding.fault, finding.value, tick);
-  }
-  return faulted;
-}
-
-bool ilk_observe_axis(const ilk_config_t *config, const ilk_axis_config_t *axis_config, ilk_axis_t *axis,
-                      const ilk_reading_t *reading, uint32_t tick) {
+bool ilk_axis_observe(const ilk_common_config_t *common, const ilk_axis_config_t *config,
+                      const ilk_system_t *system, const ilk_reading_t *reading, uint32_t periods,
+                      ilk_axis_t *axis) {
   const bool valid = axis->card_valid != 0u;
-  const bool has_switch = axis_config->limit_side != (uint32_t)ILK_LIMIT_NONE;
-  axis->switch_triggered = flag_of(has_switch && (!valid || reading->switch_triggered));
+  axis->periods = sum_saturating(axis->periods, periods);
+  axis->switch_triggered = flag_of(has_switch(config) && (!valid || reading->switch_triggered));
   run_lease_down(axis);
-  count_undriven(axis_config, axis);
-  const finding_t seen = valid ? observe_valid(axis_config, axis, reading) : observe_missing(config, axis);
-  /*@ assert P15_invariant: sound_axis(axis); */
-  /*@ assert P8_latch: fault_latched{Pre, Here}(axis); */
-  return conclude(axis_config, axis, seen, tick);
-}
-
-void ilk_axis_note_drive(const ilk_axis_config_t *config, ilk_axis_t *axis, uint32_t direction) {
-  const bool rested = axis->undriven_ticks >= config->settle_ticks;
-  if (rested || (axis->reverse_direction != direction)) {
-    axis->reverse_direction = direction;
-    axis->reverse_mark_raw = axis->raw;
-  }
-  if (rested || (axis->stall_direction != direction)) {
-    axis->stall_direction = direction;
-    axis->stall_mark_raw = axis->raw;
-  }
-  axis->stall_driven_ticks = count_up(axis->stall_driven_ticks, UINT32_MAX);
-  axis->driven_direction = direction;
-}
-
-void ilk_axis_note_arrival(ilk_axis_t *axis) {
-  if (axis->setpoint_changed == 0u) {
-    clear_stall_count(axis);
-  }
+  ilk_finding_t finding = valid ? observe_frame(common, config, system, reading, periods, axis)
+                                : observe_nothing(common, config, axis);
+  finding = first_of(finding, ilk_homing_advance(common, config, axis));
+  const bool faulted = raise_fault(system, finding, axis);
+  watch_faulted(config, axis);
+  return faulted;
 }

@@ -1,23 +1,22 @@
-#include "crc32.h"
+#include "parts.h"
 
-#include "interlock/kernel.h"
+uint32_t ilk_crc32_words(uint32_t crc, const uint8_t bytes[], uint32_t words) {
+  uint32_t next = crc;
+  for (uint32_t word = 0u; word < words; word++) {
+    next = ilk_crc32_word(next, word_at(&bytes[4u * word]));
+  }
+  return next;
+}
 
-uint32_t ilk_crc32_finish(uint32_t crc) { return crc ^ 0xffffffffu; }
+/** Of all words before the last, which holds it. */
+static uint32_t crc_before_last(const uint8_t bytes[], uint32_t size_bytes) {
+  return ilk_crc32_words(ILK_CRC32_START, bytes, (size_bytes / 4u) - 1u) ^ ILK_CRC32_START;
+}
 
-/*@ ensures exact: \result == (0xffffffff ^
-  @   crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(crc_step(
-  @     ILK_CRC32_START, request->sequence), request->kind), request->axis), (uint32_t)request->target_counts),
-  @     request->drive), request->amplitude), request->lease_ticks), request->holder));
-  @*/
 uint32_t ilk_request_crc(const ilk_request_t *request) {
-  uint32_t crc = ILK_CRC32_START;
-  crc = ilk_crc32_word(crc, request->sequence);
-  crc = ilk_crc32_word(crc, request->kind);
-  crc = ilk_crc32_word(crc, request->axis);
-  crc = ilk_crc32_word(crc, (uint32_t)request->target_counts);
-  crc = ilk_crc32_word(crc, request->drive);
-  crc = ilk_crc32_word(crc, request->amplitude);
-  crc = ilk_crc32_word(crc, request->lease_ticks);
-  crc = ilk_crc32_word(crc, request->holder);
-  return ilk_crc32_finish(crc);
+  return crc_before_last((const uint8_t *)request, (uint32_t)sizeof(*request));
+}
+
+uint32_t ilk_config_crc(const ilk_config_t *config) {
+  return crc_before_last((const uint8_t *)config, (uint32_t)sizeof(*config));
 }

@@ -1,6 +1,6 @@
 /* CRC-32 of IEEE 802.3 (reflected polynomial 0xEDB88320) for one word at a time: table n holds the remainder
    of each byte followed by n zero bytes. tests/unit/kernel recomputes it bit by bit. */
-#include "crc32.h"
+#include "parts.h"
 
 /* clang-format off */
 const uint32_t ilk_crc32_table[4][256] = {

@@ -1,6 +1,4 @@
-#include "frame.h"
-
-#include "arith.h"
+#include "parts.h"
 
 _Static_assert((ILK_FRAME_WORDS == 32) || (ILK_FRAME_WORDS == 64), "frames have 32 or 64 words");
 
@@ -18,17 +16,8 @@ _Static_assert((ILK_FRAME_WORDS == 32) || (ILK_FRAME_WORDS == 64), "frames have 
 #define SPEED_POINTS 24u
 
 /** Sum of all words; the checksum makes it FRAME_SUM. */
-/*@ requires readable: \valid_read(frame + (0 .. ILK_FRAME_WORDS - 1));
-  @ assigns  \nothing;
-  @ ensures  exact: \result == frame_sum(frame, ILK_FRAME_WORDS);
-  @*/
 static uint32_t sum_of(const uint32_t frame[ILK_FRAME_WORDS]) {
   uint32_t sum = 0u;
-  /*@ loop invariant bounds: 0 <= word <= ILK_FRAME_WORDS;
-    @ loop invariant sum: sum == frame_sum(frame, word);
-    @ loop assigns word, sum;
-    @ loop variant ILK_FRAME_WORDS - word;
-    @*/
   for (uint32_t word = 0u; word < (uint32_t)ILK_FRAME_WORDS; word++) {
     sum += frame[word];
   }
@@ -36,7 +25,7 @@ static uint32_t sum_of(const uint32_t frame[ILK_FRAME_WORDS]) {
 }
 
 ilk_reading_t ilk_frame_unpack(const uint32_t frame[ILK_FRAME_WORDS]) {
-  const ilk_reading_t reading = {
+  return (ilk_reading_t){
       .intact = (frame[0] == START_WORD) && (sum_of(frame) == FRAME_SUM),
       .switch_triggered = (frame[2] & SWITCH_OPEN_BIT) == 0u,
       .raw = frame[3],
@@ -45,13 +34,9 @@ ilk_reading_t ilk_frame_unpack(const uint32_t frame[ILK_FRAME_WORDS]) {
       .tick_echo = frame[11],
       .card_status = frame[12],
   };
-  return reading;
 }
 
 /** Frequency word of a high-frequency card for a drive in thousandths of a revolution per minute. */
-/*@ assigns \nothing;
-  @ ensures P16_speed: \result == map_word(drive);
-  @*/
 static uint32_t frequency_word(uint32_t drive) {
   /* Speed at each point of the published map, the faster of both directions, in thousandths of a revolution
      per minute: kinematics of the published high-frequency motor, spec/frames.md. */
@@ -59,141 +44,59 @@ static uint32_t frequency_word(uint32_t drive) {
       0u,     54u,    189u,   331u,   614u,   1095u,  2020u,   3222u,   3773u,   6383u,   11445u,  15308u,
       20955u, 27358u, 36039u, 45548u, 58997u, 78710u, 105850u, 141386u, 188106u, 247388u, 317394u, 397785u};
   uint32_t point = 1u;
-  /*@ loop invariant bounds: 1 <= point < SPEED_POINTS;
-    @ loop invariant slower: point == 1 || speed_map[point - 1] < drive;
-    @ loop assigns point;
-    @ loop variant SPEED_POINTS - point;
-    @*/
   while ((point < (SPEED_POINTS - 1u)) && (speed_map[point] < drive)) {
     point++;
   }
-  //@ assert point: point == map_point(drive);
   const uint32_t slower = speed_map[point - 1u];
   const uint32_t faster = speed_map[point];
   const uint32_t reached = (drive < faster) ? drive : faster;
   const uint64_t above = (uint64_t)reached - slower;
   const uint64_t width = (uint64_t)faster - slower;
-  //@ assert part: 0 <= above <= width;
   /* Rounding the descent down rounds the word up, to the slower side. */
   const uint64_t descent = (above * FREQUENCY_STEP) / width;
-  //@ assert divided: descent * width <= above * FREQUENCY_STEP;
-  //@ assert one_step: descent <= FREQUENCY_STEP;
   return FREQUENCY_OF_REST - ((point - 1u) * FREQUENCY_STEP) - (uint32_t)descent;
 }
 
-/** The published `actualDirection`: 1 for decreasing positions when the motor follows the axis. */
-/*@ requires readable: \valid_read(config);
-  @ assigns  \nothing;
-  @ ensures  exact: \result <==> motor_decreases(config, direction);
-  @*/
-static bool motor_decreases(const ilk_axis_config_t *config, uint32_t direction) {
-  const bool decreasing = direction == (uint32_t)ILK_DIRECTION_DECREASING;
-  return (config->motor_direction != 0u) ? decreasing : !decreasing;
-}
-
-/** The words of an outgoing frame that make a motor move. */
-typedef struct {
-  uint32_t wave1;
-  uint32_t frequency1;
-  uint32_t wave2;
-  uint32_t frequency2;
-  uint32_t analog;
-  uint32_t amplifier;
-} drive_words_t;
-
-/*@ requires readable: \valid_read(config) && \valid_read(command);
-  @ assigns  \nothing;
-  @ ensures  P16_waves: \result.wave1 == wave1_word(config, command)
-  @   && \result.wave2 == wave2_word(config, command);
-  @ ensures  P16_frequencies: \result.frequency1 == frequency1_word(config, command)
-  @   && \result.frequency2 == frequency2_word(config, command);
-  @ ensures  P16_analog: \result.analog == analog_word(config, command);
-  @ ensures  P16_amplifier: carries_axis(config) ? \result.amplifier == 1 : \result.amplifier == 0;
-  @*/
-static drive_words_t drive_words(const ilk_axis_config_t *config, const ilk_command_t *command) {
-  const bool decreases = motor_decreases(config, command->direction);
-  drive_words_t words = {0};
+/** The words of an outgoing frame that make a motor move: waves and frequencies 2 to 5, analog 6,
+ * amplifier 14. */
+static void pack_drive(const ilk_axis_config_t *config, const ilk_command_t *command,
+                       uint32_t frame[ILK_FRAME_WORDS]) {
+  /* The published `actualDirection`: decreasing positions when the motor follows the axis. */
+  const bool decreases =
+      (command->direction == (uint32_t)ILK_DIRECTION_DECREASING) == (config->motor_direction != 0u);
+  frame[14] = 1u;
   switch (config->card) {
     case (uint32_t)ILK_CARD_PWM:
-      words.frequency1 = (decreases ? 0u : PWM_REVERSED) | command->drive;
-      words.amplifier = 1u;
+      frame[3] = (decreases ? 0u : PWM_REVERSED) | command->drive;
       break;
     case (uint32_t)ILK_CARD_NON_PWM:
-      words.frequency1 = (decreases ? NON_PWM_FORWARD : NON_PWM_REVERSED) | command->drive;
-      words.amplifier = 1u;
+      frame[3] = (decreases ? NON_PWM_FORWARD : NON_PWM_REVERSED) | command->drive;
       break;
     case (uint32_t)ILK_CARD_ANALOG:
-      words.analog = (decreases ? 0u : PWM_REVERSED) | command->drive;
-      words.amplifier = 1u;
+      frame[6] = (decreases ? 0u : PWM_REVERSED) | command->drive;
       break;
     case (uint32_t)ILK_CARD_HIGH_FREQUENCY:
-      words.wave1 = (decreases ? 0u : WAVE_REVERSED) | command->amplitude;
-      words.wave2 = (decreases ? WAVE_REVERSED : 0u) | command->amplitude;
-      words.frequency1 = frequency_word(command->drive);
-      words.frequency2 = words.frequency1;
-      words.amplifier = 1u;
+      frame[2] = (decreases ? 0u : WAVE_REVERSED) | command->amplitude;
+      frame[4] = (decreases ? WAVE_REVERSED : 0u) | command->amplitude;
+      frame[3] = frequency_word(command->drive);
+      frame[5] = frame[3];
       break;
     default:
-      /* No motor: zero drive. */
+      frame[14] = 0u; /* No motor. */
       break;
   }
-  return words;
-}
-
-/*@ requires readable: \valid_read(command);
-  @ assigns  \nothing;
-  @ ensures  exact: \result <==> rests(command);
-  @*/
-static bool is_zero_drive(const ilk_command_t *command) {
-  return (command->direction == (uint32_t)ILK_DIRECTION_NONE) || (command->drive == 0u);
 }
 
 void ilk_frame_pack(const ilk_axis_config_t *config, const ilk_command_t *command, uint32_t tick,
                     uint32_t frame[ILK_FRAME_WORDS]) {
-  drive_words_t words = {0};
-  if (!is_zero_drive(command)) {
-    words = drive_words(config, command);
-  }
-  /*@ loop invariant bounds: 0 <= word <= ILK_FRAME_WORDS;
-    @ loop invariant zero: \forall integer done; 0 <= done < word ==> frame[done] == 0;
-    @ loop assigns word, frame[0 .. ILK_FRAME_WORDS - 1];
-    @ loop variant ILK_FRAME_WORDS - word;
-    @*/
   for (uint32_t word = 0u; word < (uint32_t)ILK_FRAME_WORDS; word++) {
     frame[word] = 0u;
   }
+  if ((command->direction != (uint32_t)ILK_DIRECTION_NONE) && (command->drive != 0u)) {
+    pack_drive(config, command, frame);
+  }
   frame[0] = START_WORD;
-  frame[2] = words.wave1;
-  frame[3] = words.frequency1;
-  frame[4] = words.wave2;
-  frame[5] = words.frequency2;
-  frame[6] = words.analog;
   frame[13] = tick;
-  frame[14] = words.amplifier;
-  frame[CHECKSUM_WORD] = FRAME_SUM - (START_WORD + words.wave1 + words.frequency1 + words.wave2 +
-                                      words.frequency2 + words.analog + tick + words.amplifier);
-  /*@ assert unnamed: frame[1] == 0
-    @   && (\forall integer word; 7 <= word < 13 || 15 <= word < CHECKSUM_WORD ==> frame[word] == 0); */
-  //@ assert sum_0: frame_sum(frame, 1) == START_WORD;
-  //@ assert sum_1: frame_sum(frame, 2) == START_WORD;
-  //@ assert sum_2: frame_sum(frame, 3) == (uint32_t)(START_WORD + words.wave1);
-  //@ assert sum_3: frame_sum(frame, 4) == (uint32_t)(frame_sum(frame, 3) + words.frequency1);
-  //@ assert sum_4: frame_sum(frame, 5) == (uint32_t)(frame_sum(frame, 4) + words.wave2);
-  //@ assert sum_5: frame_sum(frame, 6) == (uint32_t)(frame_sum(frame, 5) + words.frequency2);
-  //@ assert sum_6: frame_sum(frame, 7) == (uint32_t)(frame_sum(frame, 6) + words.analog);
-  /*@ ghost
-    /@ loop invariant gap: 7 <= done <= 13 && frame_sum(frame, done) == frame_sum(frame, 7);
-       loop assigns done;
-       loop variant 13 - done; @/
-    for (uint32_t done = 7u; done < 13u; done++) {}
-    @*/
-  //@ assert sum_13: frame_sum(frame, 14) == (uint32_t)(frame_sum(frame, 7) + tick);
-  //@ assert sum_14: frame_sum(frame, 15) == (uint32_t)(frame_sum(frame, 14) + words.amplifier);
-  /*@ ghost
-    /@ loop invariant gap: 15 <= done <= CHECKSUM_WORD && frame_sum(frame, done) == frame_sum(frame, 15);
-       loop assigns done;
-       loop variant CHECKSUM_WORD - done; @/
-    for (uint32_t done = 15u; done < CHECKSUM_WORD; done++) {}
-    @*/
-  //@ assert checksum: frame[CHECKSUM_WORD] == FRAME_SUM - frame_sum(frame, CHECKSUM_WORD);
+  frame[CHECKSUM_WORD] =
+      FRAME_SUM - (START_WORD + frame[2] + frame[3] + frame[4] + frame[5] + frame[6] + tick + frame[14]);
 }

@@ -1,157 +1,120 @@
-#include "homing.h"
+#include "parts.h"
 
-#include <stdbool.h>
-
-#include "arith.h"
-
-/*@ requires valid: \valid(axis);
-  @ assigns  axis->homing_phase, axis->homing_mark_raw, axis->rest_ticks;
-  @ ensures  phase: axis->homing_phase == phase && axis->homing_mark_raw == axis->raw && axis->rest_ticks == 0;
-  @*/
-static void enter_phase(ilk_axis_t *axis, ilk_homing_phase_t phase) {
-  axis->homing_phase = (uint32_t)phase;
-  axis->homing_mark_raw = axis->raw;
-  axis->rest_ticks = 0u;
-}
-
-void ilk_homing_begin(const ilk_axis_config_t *config, ilk_axis_t *axis) {
-  axis->state = (uint32_t)ILK_AXIS_HOMING;
-  axis->homed = 0u;
-  axis->lease_ticks = 0u;
-  axis->homing_ticks = config->home_timeout_ticks;
-  enter_phase(axis, (axis->switch_triggered != 0u) ? ILK_HOMING_BACK_OFF : ILK_HOMING_SEEK);
-}
-
-/*@ requires readable: \valid_read(config);
-  @ assigns  \nothing;
-  @ ensures  exact: \result ==
-  @   (config->limit_side == ILK_LIMIT_UPPER ? ILK_DIRECTION_INCREASING : ILK_DIRECTION_DECREASING);
-  @*/
-static uint32_t towards_switch(const ilk_axis_config_t *config) {
-  return (config->limit_side == (uint32_t)ILK_LIMIT_UPPER) ? (uint32_t)ILK_DIRECTION_INCREASING
-                                                           : (uint32_t)ILK_DIRECTION_DECREASING;
-}
-
-/*@ requires readable: \valid_read(config);
-  @ assigns  \nothing;
-  @ ensures  exact: \result ==
-  @   (config->limit_side == ILK_LIMIT_UPPER ? ILK_DIRECTION_DECREASING : ILK_DIRECTION_INCREASING);
-  @*/
+/** The other of the two directions, 1 and 2; NONE without a switch. */
 static uint32_t away_from_switch(const ilk_axis_config_t *config) {
-  return (config->limit_side == (uint32_t)ILK_LIMIT_UPPER) ? (uint32_t)ILK_DIRECTION_DECREASING
-                                                           : (uint32_t)ILK_DIRECTION_INCREASING;
+  const uint32_t towards = towards_switch(config);
+  return (towards == (uint32_t)ILK_DIRECTION_NONE) ? towards : (ILK_DIRECTION_COUNT - towards);
 }
 
-uint32_t ilk_homing_direction(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
-  uint32_t direction = (uint32_t)ILK_DIRECTION_NONE;
-  switch (axis->homing_phase) {
-    case (uint32_t)ILK_HOMING_BACK_OFF:
-      direction = away_from_switch(config);
-      break;
-    case (uint32_t)ILK_HOMING_SEEK:
-      direction = towards_switch(config);
-      break;
-    default:
-      direction = (uint32_t)ILK_DIRECTION_NONE;
-      break;
+uint32_t ilk_homing_travel_left(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+  return left_of(left_of(config->home_travel_counts, axis->homing_travel_counts), coast_as_read(config));
+}
+
+bool ilk_homing_has_budget(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+  return (ilk_homing_travel_left(config, axis) != 0u) && (axis->homing_ticks < config->home_timeout_ticks);
+}
+
+static void enter_phase(ilk_axis_t *axis, ilk_homing_phase_t phase, uint32_t mark_raw) {
+  axis->homing_phase = (uint32_t)phase;
+  axis->homing_mark_raw = mark_raw;
+}
+
+/** The run of readings begins anew, so that no edge counts that was seen before. */
+void ilk_homing_begin(ilk_axis_t *axis) {
+  ilk_axis_drop_motion(axis);
+  axis->state = (uint32_t)ILK_AXIS_HOMING;
+  axis->homed = (uint32_t)ILK_HOMED_NOT;
+  axis->path_is_homing = 1u;
+  axis->switch_run_ticks = 0u;
+  enter_phase(axis, ILK_HOMING_LOOK, axis->raw);
+}
+
+/** LOOK and REST wait. */
+ilk_command_t ilk_homing_command(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+  const uint32_t phase = axis->homing_phase;
+  const bool slow = phase == (uint32_t)ILK_HOMING_APPROACH;
+  const bool in = slow || (phase == (uint32_t)ILK_HOMING_SEEK);
+  const bool out = (phase == (uint32_t)ILK_HOMING_LEAVE) || (phase == (uint32_t)ILK_HOMING_BACK_OFF);
+  const uint32_t inward = in ? towards_switch(config) : (uint32_t)ILK_DIRECTION_NONE;
+  return (ilk_command_t){.direction = out ? away_from_switch(config) : inward,
+                         .drive = slow ? config->home_slow_drive : config->home_drive,
+                         .amplitude = config->home_amplitude};
+}
+
+/** Far enough from the mark that a bounce or a look at the wrong edge is behind it. */
+static bool is_clear(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
+  const int32_t away =
+      along(away_from_switch(config), travel_between(config, axis->homing_mark_raw, axis->raw));
+  return (away > 0) && (magnitude(away) >= config->home_clear_counts);
+}
+
+/** The reference is the second edge, if the first agrees and the axis rests no farther from it than it can
+ * coast. */
+static ilk_finding_t conclude(const ilk_axis_config_t *config, ilk_axis_t *axis) {
+  const uint32_t edge_raw = axis->homing_mark_raw;
+  const int32_t disagreement = travel_between(config, axis->first_edge_raw, edge_raw);
+  const int32_t beyond = travel_between(config, edge_raw, axis->raw);
+  const bool agree = magnitude(disagreement) <= config->home_tolerance_counts;
+  const bool near = magnitude(beyond) <= sum_saturating(config->coast_counts, config->home_tolerance_counts);
+  ilk_finding_t finding = {.fault = ILK_FAULT_SWITCH, .value = agree ? beyond : disagreement};
+  if (agree && near) {
+    finding.fault = ILK_FAULT_NONE;
+    axis->home_difference_counts =
+        (axis->home_known != 0u) ? travel_between(config, axis->home_raw, edge_raw) : 0;
+    axis->home_raw = edge_raw;
+    axis->home_known = 1u;
+    axis->position_counts = add_saturating(beyond, config->home_offset_counts);
+    axis->homed = (uint32_t)ILK_HOMED_BY_SWITCH;
+    ilk_axis_drop_motion(axis);
   }
-  return direction;
+  return finding;
 }
 
-/*@ requires valid: \valid_read(config) && \valid(axis) && \separated(config, axis);
-  @ assigns  axis->rest_ticks, axis->homing_phase, axis->homing_mark_raw, axis->state, axis->homed;
-  @ behavior rested:
-  @   assumes \let rest = axis->delta_counts == 0 ? axis->rest_ticks + 1 : 0; rest >= config->home_rest_ticks;
-  @   ensures homed: axis->homed == 1 && axis->state == ILK_AXIS_ENABLED;
-  @   ensures done: axis->homing_phase == ILK_HOMING_NONE && axis->rest_ticks == 0
-  @     && axis->homing_mark_raw == axis->raw;
-  @ behavior waits:
-  @   assumes \let rest = axis->delta_counts == 0 ? axis->rest_ticks + 1 : 0; rest < config->home_rest_ticks;
-  @   assigns axis->rest_ticks;
-  @   ensures rest: axis->rest_ticks == (axis->delta_counts == 0 ? \old(axis->rest_ticks) + 1 : 0);
-  @   ensures same: axis->state == \old(axis->state) && axis->homed == \old(axis->homed)
-  @     && axis->homing_phase == \old(axis->homing_phase)
-  @     && axis->homing_mark_raw == \old(axis->homing_mark_raw);
-  @ complete behaviors;
-  @ disjoint behaviors;
-  @*/
-static void wait_for_rest(const ilk_axis_config_t *config, ilk_axis_t *axis) {
-  axis->rest_ticks = (axis->delta_counts == 0) ? count_up(axis->rest_ticks, config->home_rest_ticks) : 0u;
-  if (axis->rest_ticks >= config->home_rest_ticks) {
-    enter_phase(axis, ILK_HOMING_NONE);
-    axis->state = (uint32_t)ILK_AXIS_ENABLED;
-    axis->homed = 1u;
+/** What a valid frame means for the phase. */
+static ilk_finding_t follow_phase(const ilk_common_config_t *common, const ilk_axis_config_t *config,
+                                  ilk_axis_t *axis) {
+  const bool triggered = ilk_switch_is_steady(common, axis, true);
+  const bool open = ilk_switch_is_steady(common, axis, false);
+  const bool left = open && is_clear(config, axis);
+  const bool rests = ilk_axis_is_at_rest(config, axis);
+  const uint32_t phase = axis->homing_phase;
+  ilk_finding_t finding = {.fault = ILK_FAULT_NONE, .value = 0};
+  if ((phase == (uint32_t)ILK_HOMING_LOOK) && triggered) {
+    enter_phase(axis, ILK_HOMING_LEAVE, axis->raw);
+  } else if (((phase == (uint32_t)ILK_HOMING_LOOK) && open) ||
+             ((phase == (uint32_t)ILK_HOMING_LEAVE) && left)) {
+    enter_phase(axis, ILK_HOMING_SEEK, axis->raw);
+  } else if ((phase == (uint32_t)ILK_HOMING_SEEK) && triggered) {
+    axis->first_edge_raw = axis->switch_run_raw;
+    enter_phase(axis, ILK_HOMING_BACK_OFF, axis->switch_run_raw);
+  } else if (((phase == (uint32_t)ILK_HOMING_BACK_OFF) && left) ||
+             ((phase == (uint32_t)ILK_HOMING_REST) && rests && open)) {
+    enter_phase(axis, ILK_HOMING_APPROACH, axis->raw);
+  } else if ((phase == (uint32_t)ILK_HOMING_APPROACH) && triggered) {
+    enter_phase(axis, ILK_HOMING_REST, axis->switch_run_raw);
+  } else if ((phase == (uint32_t)ILK_HOMING_REST) && rests && triggered) {
+    finding = conclude(config, axis);
+  } else {
+    /* The phase goes on. */
   }
+  return finding;
 }
 
-/** A switch that was not read validly makes no edge: only valid frames get here. */
-/*@ requires valid: \valid_read(config) && \valid(axis) && \separated(config, axis);
-  @ requires homing: axis->state == ILK_AXIS_HOMING && axis->homing_phase < ILK_HOMING_COUNT
-  @   && axis->homing_phase != ILK_HOMING_NONE;
-  @ assigns  axis->state, axis->homed, axis->position_counts, axis->homing_phase, axis->homing_mark_raw,
-  @          axis->rest_ticks;
-  @ ensures  opened: \old(axis->homing_phase) == ILK_HOMING_BACK_OFF ==> axis->state == ILK_AXIS_HOMING
-  @   && axis->homing_phase == (axis->switch_triggered == 0 ? ILK_HOMING_SEEK : ILK_HOMING_BACK_OFF);
-  @ ensures  closed: \old(axis->homing_phase) == ILK_HOMING_SEEK ==> axis->state == ILK_AXIS_HOMING
-  @   && axis->homing_phase == (axis->switch_triggered != 0 ? ILK_HOMING_REST : ILK_HOMING_SEEK);
-  @ ensures  reference: axis->position_counts ==
-  @   (\old(axis->homing_phase) == ILK_HOMING_SEEK && axis->switch_triggered != 0
-  @     ? config->home_offset_counts : \old(axis->position_counts));
-  @ ensures  rests: \old(axis->homing_phase) == ILK_HOMING_REST ==>
-  @   (axis->state == ILK_AXIS_HOMING && axis->homing_phase == ILK_HOMING_REST)
-  @   || (axis->state == ILK_AXIS_ENABLED && axis->homing_phase == ILK_HOMING_NONE);
-  @ ensures  homed_at_rest: axis->homed == (axis->state == ILK_AXIS_ENABLED ? 1 : \old(axis->homed));
-  @ ensures  mark: axis->homing_mark_raw ==
-  @   (axis->homing_phase != \old(axis->homing_phase) ? axis->raw : \old(axis->homing_mark_raw));
-  @*/
-static void look_for_edge(const ilk_axis_config_t *config, ilk_axis_t *axis) {
-  const bool triggered = axis->switch_triggered != 0u;
-  switch (axis->homing_phase) {
-    case (uint32_t)ILK_HOMING_BACK_OFF:
-      if (!triggered) {
-        enter_phase(axis, ILK_HOMING_SEEK);
-      }
-      break;
-    case (uint32_t)ILK_HOMING_SEEK:
-      if (triggered) {
-        axis->position_counts = config->home_offset_counts;
-        enter_phase(axis, ILK_HOMING_REST);
-      }
-      break;
-    default: /* REST */
-      wait_for_rest(config, axis);
-      break;
-  }
-}
-
-/*@ requires readable: \valid_read(config) && \valid_read(axis);
-  @ assigns  \nothing;
-  @ ensures  exact: \result == homing_bound(config, axis);
-  @*/
-static uint32_t travel_bound(const ilk_axis_config_t *config, const ilk_axis_t *axis) {
-  return (axis->homing_phase == (uint32_t)ILK_HOMING_BACK_OFF) ? config->home_backoff_counts
-                                                               : config->home_travel_counts;
-}
-
-ilk_homing_result_t ilk_homing_advance(const ilk_axis_config_t *config, ilk_axis_t *axis) {
-  ilk_homing_result_t result = {.fault = ILK_FAULT_NONE, .value = 0};
+ilk_finding_t ilk_homing_advance(const ilk_common_config_t *common, const ilk_axis_config_t *config,
+                                 ilk_axis_t *axis) {
+  ilk_finding_t finding = {.fault = ILK_FAULT_NONE, .value = 0};
   if (axis->state == (uint32_t)ILK_AXIS_HOMING) {
-    axis->homing_ticks = count_down(axis->homing_ticks);
+    axis->homing_ticks = count_up(axis->homing_ticks, UINT32_MAX);
     if (axis->card_valid != 0u) {
-      look_for_edge(config, axis);
+      finding = follow_phase(common, config, axis);
     }
   }
-  if (axis->state == (uint32_t)ILK_AXIS_HOMING) {
-    const int32_t travel = travel_between(config, axis->homing_mark_raw, axis->raw);
-    if (magnitude(travel) > travel_bound(config, axis)) {
-      result.fault = ILK_FAULT_HOMING_TRAVEL;
-      result.value = travel;
-    } else if (axis->homing_ticks == 0u) {
-      result.fault = ILK_FAULT_HOMING_TIMEOUT;
-      result.value = (int32_t)axis->homing_phase;
-    } else {
-      result.fault = ILK_FAULT_NONE;
-    }
+  if ((axis->state == (uint32_t)ILK_AXIS_HOMING) && (finding.fault == ILK_FAULT_NONE) &&
+      !ilk_homing_has_budget(config, axis)) {
+    const bool travelled = ilk_homing_travel_left(config, axis) == 0u;
+    finding.fault = travelled ? ILK_FAULT_HOMING_TRAVEL : ILK_FAULT_HOMING_TIMEOUT;
+    finding.value =
+        signed_of(travelled ? (axis->homing_travel_counts & (uint32_t)INT32_MAX) : axis->homing_phase);
   }
-  return result;
+  return finding;
 }

@@ -1,338 +1,186 @@
-#include "request.h"
+#include "parts.h"
 
-#include "arith.h"
-#include "axis.h"
-#include "homing.h"
-#include "mode.h"
+/** The first need that is not met is the verdict. */
+static void must(ilk_verdict_t *verdict, bool met, ilk_verdict_t otherwise) {
+  *verdict = ((*verdict == ILK_VERDICT_ACCEPTED) && !met) ? otherwise : *verdict;
+}
 
-/** A new holder finds no consent and no motion. */
-/*@ requires valid: \valid(state);
-  @ assigns  state->app_age_ticks, state->holder, state->mode, state->pedal_armed, state->pedal_pressed_ticks,
-  @          state->pedal_released_ticks, state->axis[0 .. ILK_SLOTS - 1];
-  @ ensures  P8_first_cause: cause_kept{Pre, Post}(state) && state->causes_seen == \old(state->causes_seen);
-  @ ensures  P10_silence: state->app_age_ticks == 0;
-  @ ensures  holder: state->holder == holder;
-  @ ensures  P9_consent: \old(state->holder) != holder ==>
-  @   state->mode != ILK_MODE_MOTION && state->pedal_armed == 0
-  @   && state->pedal_pressed_ticks == 0 && state->pedal_released_ticks == 0;
-  @ ensures  P9_still: \old(state->holder) == holder ==> consent_kept{Pre, Post}(state);
-  @ ensures  P8_latch: state->mode == (\old(state->holder) != holder && \old(state->mode) == ILK_MODE_MOTION
-  @   ? ILK_MODE_READY : \old(state->mode));
-  @ ensures  P12_no_leap: state->mode != \old(state->mode) ==> all_quiet(state);
-  @ ensures  P8_still: state->mode == \old(state->mode) ==> \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-  @   motion_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P8_states: state->mode != \old(state->mode) ==> \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-  @   state->axis[slot].state == state_entering(ILK_MODE_READY, \old(state->axis[slot].state));
-  @ ensures  P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-  @   fault_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-  @   place_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-  @   progress_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-  @   marks_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P15_kept: words_kept{Pre, Post}(state);
-  @ ensures  P15_axis: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-  @   \old(sound_axis(&state->axis[slot])) ==> sound_axis(&state->axis[slot]);
-  @*/
-static void apply_heartbeat(ilk_state_t *state, uint32_t holder) {
-  state->app_age_ticks = 0u;
-  if (state->holder != holder) {
-    state->holder = holder;
-    ilk_pedal_disarm(state);
-    /*@ assert motion: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-      @   motion_kept{Pre, Here}(&state->axis[slot]); */
-    /*@ assert P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-      @   fault_kept{Pre, Here}(&state->axis[slot]); */
-    /*@ assert P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-      @   place_kept{Pre, Here}(&state->axis[slot]); */
-    /*@ assert P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-      @   progress_kept{Pre, Here}(&state->axis[slot]); */
-    /*@ assert P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-      @   marks_kept{Pre, Here}(&state->axis[slot]); */
-    if (state->mode == (uint32_t)ILK_MODE_MOTION) {
-      ilk_mode_enter(state, ILK_MODE_READY);
-    }
+static bool mode_is(const ilk_system_t *system, ilk_mode_t mode) { return system->mode == (uint32_t)mode; }
+
+static bool axis_is(const ilk_axis_t *axis, ilk_axis_state_t state) { return axis->state == (uint32_t)state; }
+
+static bool pedal_is_up(const ilk_system_t *system) { return system->pedal == (uint32_t)ILK_PEDAL_RELEASED; }
+
+/** Of a homed axis by its soft limits, else by what is left of its travel; never behind a steady switch. */
+static bool setpoint_is_within(const ilk_common_config_t *common, const ilk_axis_config_t *config,
+                               const ilk_axis_t *axis, int32_t setpoint) {
+  const int64_t here = (int64_t)axis->position_counts;
+  const int64_t left = (int64_t)ilk_unhomed_travel_left(config, axis);
+  const ilk_reach_t unhomed = {.low = here - left, .high = here + left};
+  const ilk_reach_t reach = (axis->homed != (uint32_t)ILK_HOMED_NOT) ? ilk_reach(config, axis) : unhomed;
+  const bool towards = (((int64_t)setpoint > here) && (config->limit_side == (uint32_t)ILK_LIMIT_UPPER)) ||
+                       (((int64_t)setpoint < here) && (config->limit_side == (uint32_t)ILK_LIMIT_LOWER));
+  const bool behind = towards && ilk_switch_is_steady(common, axis, true);
+  return ((int64_t)setpoint >= reach.low) && ((int64_t)setpoint <= reach.high) && !behind;
+}
+
+/** What MOVE and HOME need alike. */
+static void need_enabled(ilk_verdict_t *verdict, const ilk_system_t *system, const ilk_axis_t *axis,
+                         uint32_t consent) {
+  must(verdict, mode_is(system, ILK_MODE_MOTION), ILK_VERDICT_MODE);
+  must(verdict, consent == system->consent, ILK_VERDICT_CONSENT);
+  must(verdict, !axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_FAULTED);
+  must(verdict, !axis_is(axis, ILK_AXIS_DISABLED), ILK_VERDICT_DISABLED);
+  must(verdict, !axis_is(axis, ILK_AXIS_HOMING), ILK_VERDICT_BUSY);
+}
+
+/** The rows of the table that name an axis. */
+static ilk_verdict_t judge(const ilk_common_config_t *common, const ilk_axis_config_t *config,
+                           const ilk_system_t *system, const ilk_axis_t *axis, const ilk_request_t *request) {
+  const bool at_rest = ilk_axis_is_at_rest(config, axis);
+  const bool may_enable = (system->powered_ticks >= common->power_up_ticks) && at_rest;
+  const bool sets_home = request->kind == (uint32_t)ILK_REQUEST_SET_HOME;
+  ilk_verdict_t verdict = ILK_VERDICT_ACCEPTED;
+  switch (request->kind) {
+    case (uint32_t)ILK_REQUEST_DISABLE:
+      must(&verdict, !axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_FAULTED);
+      break;
+    case (uint32_t)ILK_REQUEST_ENABLE:
+      must(&verdict, ilk_power_is_on(system), ILK_VERDICT_MODE);
+      must(&verdict, !axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_FAULTED);
+      must(&verdict, axis->card_valid != 0u, ILK_VERDICT_CARD);
+      must(&verdict, may_enable || !axis_is(axis, ILK_AXIS_DISABLED), ILK_VERDICT_BUSY);
+      break;
+    case (uint32_t)ILK_REQUEST_CLEAR_FAULT:
+      must(&verdict, axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_NO_FAULT);
+      must(&verdict, at_rest && (axis->fault_tick != system->tick), ILK_VERDICT_CAUSE_PRESENT);
+      must(&verdict, pedal_is_up(system), ILK_VERDICT_PEDAL_DOWN);
+      break;
+    case (uint32_t)ILK_REQUEST_MOVE:
+      need_enabled(&verdict, system, axis, request->consent);
+      must(&verdict, count_of(request->lease_ticks, common->lease_max_ticks), ILK_VERDICT_LEASE);
+      must(&verdict, count_of(request->drive, ilk_drive_bound(config, axis)), ILK_VERDICT_DRIVE);
+      must(&verdict, request->amplitude <= config->max_amplitude, ILK_VERDICT_DRIVE);
+      must(&verdict, setpoint_is_within(common, config, axis, request->target_counts), ILK_VERDICT_RANGE);
+      break;
+    case (uint32_t)ILK_REQUEST_HOME:
+      need_enabled(&verdict, system, axis, request->consent);
+      must(&verdict, has_switch(config), ILK_VERDICT_NO_SWITCH);
+      must(&verdict, ilk_homing_has_budget(config, axis), ILK_VERDICT_BUDGET);
+      break;
+    default: /* SET_HOME and RESTORE: they say where a resting axis stands. */
+      must(&verdict, mode_is(system, ILK_MODE_READY), ILK_VERDICT_MODE);
+      must(&verdict, pedal_is_up(system), ILK_VERDICT_PEDAL_DOWN);
+      must(&verdict, !axis_is(axis, ILK_AXIS_FAULTED), ILK_VERDICT_FAULTED);
+      must(&verdict, axis->card_valid != 0u, ILK_VERDICT_CARD);
+      must(&verdict, at_rest, ILK_VERDICT_BUSY);
+      must(&verdict, sets_home || (request->target_counts >= config->min_counts), ILK_VERDICT_RANGE);
+      must(&verdict, sets_home || (request->target_counts <= config->max_counts), ILK_VERDICT_RANGE);
+      break;
   }
+  return verdict;
 }
 
-/*@ requires valid: \valid(state);
-  @ assigns  state->mode, state->pedal_armed, state->pedal_pressed_ticks,
-  @          state->pedal_released_ticks, state->axis[0 .. ILK_SLOTS - 1];
-  @ ensures  P8_first_cause: cause_kept{Pre, Post}(state) && state->causes_seen == \old(state->causes_seen);
-  @ ensures  P2_stop: state->mode == (\old(state->mode) == ILK_MODE_MOTION ? ILK_MODE_READY
-  @   : \old(state->mode));
-  @ ensures  P9_consent: \old(state->mode) == ILK_MODE_MOTION ==> state->pedal_armed == 0
-  @   && state->pedal_pressed_ticks == 0 && state->pedal_released_ticks == 0;
-  @ ensures  P9_still: \old(state->mode) != ILK_MODE_MOTION ==> consent_kept{Pre, Post}(state);
-  @ ensures  P12_no_leap: \old(state->mode) == ILK_MODE_MOTION ==> all_quiet(state);
-  @ ensures  P8_still: \old(state->mode) != ILK_MODE_MOTION ==>
-  @   \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-  @   motion_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P8_states: \old(state->mode) == ILK_MODE_MOTION ==>
-  @   \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-  @   state->axis[slot].state == state_entering(ILK_MODE_READY, \old(state->axis[slot].state));
-  @ ensures  P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-  @   fault_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-  @   place_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-  @   progress_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-  @   marks_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P15_kept: words_kept{Pre, Post}(state);
-  @ ensures  P15_axis: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-  @   \old(sound_axis(&state->axis[slot])) ==> sound_axis(&state->axis[slot]);
-  @*/
-static void apply_stop(ilk_state_t *state) {
-  if (state->mode == (uint32_t)ILK_MODE_MOTION) {
-    ilk_mode_enter(state, ILK_MODE_READY);
-  }
-}
-
-/*@ requires valid: \valid(state);
-  @ assigns  state->cause, state->cause_tick, state->cause_value, state->causes_seen, state->mode,
-  @          state->pedal_armed, state->pedal_pressed_ticks,
-  @          state->pedal_released_ticks, state->axis[0 .. ILK_SLOTS - 1];
-  @ ensures  P8_latch: state->mode == ILK_MODE_READY && state->cause == ILK_CAUSE_NONE
-  @   && state->cause_tick == 0
-  @   && state->cause_value == 0 && state->causes_seen == 0;
-  @ ensures  P9_consent: state->pedal_armed == 0 && state->pedal_pressed_ticks == 0
-  @   && state->pedal_released_ticks == 0;
-  @ ensures  P12_no_leap: all_quiet(state);
-  @ ensures  P8_states: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-  @   state->axis[slot].state == state_entering(ILK_MODE_READY, \old(state->axis[slot].state));
-  @ ensures  P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-  @   fault_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-  @   place_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-  @   progress_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-  @   marks_kept{Pre, Post}(&state->axis[slot]);
-  @ ensures  P15_kept: words_kept{Pre, Post}(state);
-  @ ensures  P15_axis: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-  @   \old(sound_axis(&state->axis[slot])) ==> sound_axis(&state->axis[slot]);
-  @*/
-static void apply_reset(ilk_state_t *state) {
-  state->cause = (uint32_t)ILK_CAUSE_NONE;
-  state->cause_tick = 0u;
-  state->cause_value = 0u;
-  state->causes_seen = 0u;
-  /*@ assert motion: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-    @   motion_kept{Pre, Here}(&state->axis[slot]); */
-  /*@ assert P8_faults: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-    @   fault_kept{Pre, Here}(&state->axis[slot]); */
-  /*@ assert P4_place: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-    @   place_kept{Pre, Here}(&state->axis[slot]); */
-  /*@ assert P5_progress: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-    @   progress_kept{Pre, Here}(&state->axis[slot]); */
-  /*@ assert P6_marks: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-    @   marks_kept{Pre, Here}(&state->axis[slot]); */
-  ilk_mode_enter(state, ILK_MODE_READY);
-}
-
-/*@ requires valid: \valid(axis);
-  @ assigns  axis->state;
-  @ ensures  exact: axis->state == (\old(axis->state) == ILK_AXIS_DISABLED ? ILK_AXIS_ENABLED
-  @   : \old(axis->state));
-  @*/
-static void apply_enable(ilk_axis_t *axis) {
-  if (axis->state == (uint32_t)ILK_AXIS_DISABLED) {
-    axis->state = (uint32_t)ILK_AXIS_ENABLED;
-  }
-}
-
-/** The stall count starts anew only after a stall: no other fault excuses an axis that makes no progress. */
-/*@ requires valid: \valid(axis);
-  @ assigns  axis->state, axis->fault, axis->fault_tick, axis->fault_value, axis->stall_driven_ticks,
-  @          axis->setpoint_changed;
-  @ ensures  P8_latch: axis->state == ILK_AXIS_DISABLED && axis->fault == ILK_FAULT_NONE
-  @   && axis->fault_tick == 0
-  @   && axis->fault_value == 0;
-  @ ensures  P5_stall: axis->stall_driven_ticks ==
-  @   (\old(axis->fault) == ILK_FAULT_STALL ? 0 : \old(axis->stall_driven_ticks));
-  @ ensures  P5_setpoint: axis->setpoint_changed ==
-  @   (\old(axis->fault) == ILK_FAULT_STALL ? 0 : \old(axis->setpoint_changed));
-  @*/
-static void apply_clear_fault(ilk_axis_t *axis) {
-  if (axis->fault == (uint32_t)ILK_FAULT_STALL) {
-    axis->stall_driven_ticks = 0u;
-    axis->setpoint_changed = 0u;
-  }
-  axis->state = (uint32_t)ILK_AXIS_DISABLED;
-  axis->fault = (uint32_t)ILK_FAULT_NONE;
-  axis->fault_tick = 0u;
-  axis->fault_value = 0;
-}
-
-/*@ requires valid: \valid(axis) && \valid_read(request) && \separated(axis, request);
-  @ assigns  axis->state, axis->setpoint_counts, axis->drive, axis->amplitude, axis->lease_ticks,
-  @          axis->setpoint_changed;
-  @ ensures  move: axis->state == ILK_AXIS_MOVING && axis->setpoint_counts == \old(request->target_counts);
-  @ ensures  P7_drive: axis->drive == \old(request->drive) && axis->amplitude == \old(request->amplitude);
-  @ ensures  P1_lease: axis->lease_ticks == \old(request->lease_ticks);
-  @ ensures  P5_stall: axis->setpoint_changed ==
-  @   (\old(axis->setpoint_counts) != \old(request->target_counts) && \old(axis->stall_driven_ticks) != 0
-  @     ? 1 : \old(axis->setpoint_changed));
-  @*/
-static void apply_move(ilk_axis_t *axis, const ilk_request_t *request) {
-  if ((axis->setpoint_counts != request->target_counts) && (axis->stall_driven_ticks != 0u)) {
-    axis->setpoint_changed = 1u;
-  }
-  axis->state = (uint32_t)ILK_AXIS_MOVING;
-  axis->setpoint_counts = request->target_counts;
-  axis->drive = request->drive;
-  axis->amplitude = request->amplitude;
-  axis->lease_ticks = request->lease_ticks;
-}
-
-/*@ requires valid: \valid_read(config) && \valid(axis) && \valid_read(request);
-  @ requires apart: \separated(axis, config) && \separated(axis, request);
-  @ requires accepted: suits_axis(axis, request);
-  @ requires sound: sound_axis(axis);
-  @ assigns  *axis;
-  @ ensures  P15_invariant: sound_axis(axis);
-  @ ensures  P8_latch: \old(request->kind) != ILK_REQUEST_CLEAR_FAULT ==> axis->fault == \old(axis->fault)
-  @   && axis->fault_tick == \old(axis->fault_tick) && axis->fault_value == \old(axis->fault_value);
-  @ ensures  P8_states: axis->state == state_requested(\old(request->kind), \old(axis->state));
-  @ ensures  P8_cleared: \old(request->kind) == ILK_REQUEST_CLEAR_FAULT ==> axis->fault == ILK_FAULT_NONE;
-  @ ensures  P12_disabled: \old(request->kind) == ILK_REQUEST_DISABLE ==> quiet(axis);
-  @ ensures  P7_drive: \old(request->kind) == ILK_REQUEST_MOVE ==>
-  @   axis->setpoint_counts == \old(request->target_counts) && axis->drive == \old(request->drive)
-  @   && axis->amplitude == \old(request->amplitude) && axis->lease_ticks == \old(request->lease_ticks);
-  @ ensures  P7_homing: \old(request->kind) == ILK_REQUEST_HOME ==>
-  @   axis->homed == 0 && axis->lease_ticks == 0;
-  @ ensures  P4_position: axis->position_counts == (\old(request->kind) == ILK_REQUEST_SET_HOME ? 0
-  @   : \old(request->kind) == ILK_REQUEST_RESTORE ? \old(request->target_counts)
-  @   : \old(axis->position_counts));
-  @ ensures  P4_homed: axis->homed == (\old(request->kind) == ILK_REQUEST_SET_HOME ? 1
-  @   : \old(request->kind) == ILK_REQUEST_RESTORE || \old(request->kind) == ILK_REQUEST_HOME ? 0
-  @   : \old(axis->homed));
-  @ ensures  P5_stall: axis->stall_driven_ticks == (\old(request->kind) == ILK_REQUEST_CLEAR_FAULT
-  @   && \old(axis->fault) == ILK_FAULT_STALL ? 0 : \old(axis->stall_driven_ticks));
-  @*/
-static void apply_to_axis(const ilk_axis_config_t *config, ilk_axis_t *axis, const ilk_request_t *request) {
+static void carry_out(const ilk_request_t *request, ilk_axis_t *axis) {
+  const bool sets_home = request->kind == (uint32_t)ILK_REQUEST_SET_HOME;
   switch (request->kind) {
     case (uint32_t)ILK_REQUEST_DISABLE:
       ilk_axis_disable(axis);
       break;
     case (uint32_t)ILK_REQUEST_ENABLE:
-      apply_enable(axis);
+      ilk_axis_enable(axis);
       break;
     case (uint32_t)ILK_REQUEST_CLEAR_FAULT:
-      apply_clear_fault(axis);
+      ilk_axis_clear_fault(axis);
       break;
     case (uint32_t)ILK_REQUEST_MOVE:
-      apply_move(axis, request);
+      axis->state = (uint32_t)ILK_AXIS_MOVING;
+      axis->setpoint_counts = request->target_counts;
+      axis->drive = request->drive;
+      axis->amplitude = request->amplitude;
+      axis->lease_ticks = request->lease_ticks;
       break;
     case (uint32_t)ILK_REQUEST_HOME:
-      ilk_homing_begin(config, axis);
+      ilk_homing_begin(axis);
       break;
-    case (uint32_t)ILK_REQUEST_SET_HOME:
-      axis->position_counts = 0;
-      axis->homed = 1u;
-      break;
-    case (uint32_t)ILK_REQUEST_RESTORE:
-      axis->position_counts = request->target_counts;
-      axis->homed = 0u;
-      break;
-    default:
-      /* Every request that names an axis is above. */
+    default: /* SET_HOME, RESTORE */
+      axis->position_counts = sets_home ? 0 : request->target_counts;
+      axis->homed = (uint32_t)(sets_home ? ILK_HOMED_BY_HAND : ILK_HOMED_NOT);
       break;
   }
 }
 
-/** The axis of one slot, and no other. */
-/*@ requires valid: \valid_read(config) && \valid(state) && \valid_read(request) && slot < ILK_SLOTS;
-  @ requires apart: \separated(state, config) && \separated(state, request);
-  @ requires accepted: suits_axis(&state->axis[slot], request);
-  @ requires sound: sound_axis(&state->axis[slot]);
-  @ assigns  state->axis[0 .. ILK_SLOTS - 1];
-  @ ensures  P15_invariant: sound_axis(&state->axis[slot]);
-  @ ensures  P8_states: state->axis[slot].state ==
-  @   state_requested(\old(request->kind), \old(state->axis[slot].state));
-  @ ensures  P8_latch: \old(request->kind) != ILK_REQUEST_CLEAR_FAULT ==>
-  @   state->axis[slot].fault == \old(state->axis[slot].fault)
-  @   && state->axis[slot].fault_tick == \old(state->axis[slot].fault_tick)
-  @   && state->axis[slot].fault_value == \old(state->axis[slot].fault_value);
-  @ ensures  P7_drive: \old(request->kind) == ILK_REQUEST_MOVE ==>
-  @   state->axis[slot].setpoint_counts == \old(request->target_counts)
-  @   && state->axis[slot].drive == \old(request->drive)
-  @   && state->axis[slot].amplitude == \old(request->amplitude)
-  @   && state->axis[slot].lease_ticks == \old(request->lease_ticks);
-  @ ensures  P4_homed: state->axis[slot].homed == (\old(request->kind) == ILK_REQUEST_SET_HOME ? 1
-  @   : \old(request->kind) == ILK_REQUEST_RESTORE || \old(request->kind) == ILK_REQUEST_HOME ? 0
-  @                                               : \old(state->axis[slot].homed));
-  @ ensures  P4_position: state->axis[slot].position_counts ==
-  @   (\old(request->kind) == ILK_REQUEST_SET_HOME  ? 0
-  @   : \old(request->kind) == ILK_REQUEST_RESTORE ? \old(request->target_counts)
-  @                                               : \old(state->axis[slot].position_counts));
-  @ ensures  motion_below: \forall integer other; 0 <= other < slot ==>
-  @   motion_kept{Pre, Post}(&state->axis[other]);
-  @ ensures  P8_faults_below: \forall integer other; 0 <= other < slot ==>
-  @   fault_kept{Pre, Post}(&state->axis[other]);
-  @ ensures  P4_place_below: \forall integer other; 0 <= other < slot ==>
-  @   place_kept{Pre, Post}(&state->axis[other]);
-  @ ensures  P5_progress_below: \forall integer other; 0 <= other < slot ==>
-  @   progress_kept{Pre, Post}(&state->axis[other]);
-  @ ensures  P6_marks_below: \forall integer other; 0 <= other < slot ==>
-  @   marks_kept{Pre, Post}(&state->axis[other]);
-  @ ensures  motion_above: \forall integer other; slot < other < ILK_SLOTS ==>
-  @   motion_kept{Pre, Post}(&state->axis[other]);
-  @ ensures  P8_faults_above: \forall integer other; slot < other < ILK_SLOTS ==>
-  @   fault_kept{Pre, Post}(&state->axis[other]);
-  @ ensures  P4_place_above: \forall integer other; slot < other < ILK_SLOTS ==>
-  @   place_kept{Pre, Post}(&state->axis[other]);
-  @ ensures  P5_progress_above: \forall integer other; slot < other < ILK_SLOTS ==>
-  @   progress_kept{Pre, Post}(&state->axis[other]);
-  @ ensures  P6_marks_above: \forall integer other; slot < other < ILK_SLOTS ==>
-  @   marks_kept{Pre, Post}(&state->axis[other]);
-  @*/
-static void apply_to_slot(const ilk_axis_config_t *config, ilk_state_t *state, uint32_t slot,
-                          const ilk_request_t *request) {
-  apply_to_axis(config, &state->axis[slot], request);
+static ilk_verdict_t take_axis(const ilk_config_t *config, const ilk_request_t *request, ilk_state_t *state) {
+  const uint32_t slot = request->axis;
+  const ilk_verdict_t verdict =
+      judge(&config->common, &config->axis[slot], &state->system, &state->axis[slot], request);
+  if (verdict == ILK_VERDICT_ACCEPTED) {
+    carry_out(request, &state->axis[slot]);
+  }
+  return verdict;
 }
 
-void ilk_request_apply(const ilk_config_t *config, ilk_state_t *state, const ilk_request_t *request) {
-  switch (request->kind) {
-    case (uint32_t)ILK_REQUEST_HEARTBEAT:
-      apply_heartbeat(state, request->holder);
-      /*@ assert P15_system: \at(sound_system(state), Pre) ==> sound_system(state); */
-      /*@ assert P15_axis: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-        @   \at(sound_axis(&state->axis[slot]), Pre) ==> sound_axis(&state->axis[slot]); */
-      /*@ assert P15_mode: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-        @   \at(sound_axis(&state->axis[slot]) && fits_mode(&state->axis[slot], state->mode), Pre)
-        @   ==> fits_mode(&state->axis[slot], state->mode); */
-      break;
-    case (uint32_t)ILK_REQUEST_STOP:
-      apply_stop(state);
-      /*@ assert P15_system: \at(sound_system(state), Pre) ==> sound_system(state); */
-      /*@ assert P15_axis: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-        @   \at(sound_axis(&state->axis[slot]), Pre) ==> sound_axis(&state->axis[slot]); */
-      /*@ assert P15_mode: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-        @   \at(sound_axis(&state->axis[slot]) && fits_mode(&state->axis[slot], state->mode), Pre)
-        @   ==> fits_mode(&state->axis[slot], state->mode); */
-      break;
-    case (uint32_t)ILK_REQUEST_RESET:
-      apply_reset(state);
-      /*@ assert P15_system: \at(sound_system(state), Pre) ==> sound_system(state); */
-      /*@ assert P15_axis: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-        @   \at(sound_axis(&state->axis[slot]), Pre) ==> sound_axis(&state->axis[slot]); */
-      /*@ assert P15_mode: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-        @   \at(sound_axis(&state->axis[slot]) && fits_mode(&state->axis[slot], state->mode), Pre)
-        @   ==> fits_mode(&state->axis[slot], state->mode); */
-      break;
-    default:
-      if (request->axis < (uint32_t)ILK_SLOTS) {
-        apply_to_slot(&config->axis[request->axis], state, request->axis, request);
-        /*@ assert P15_system: \at(sound_system(state), Pre) ==> sound_system(state); */
-        /*@ assert P15_axis: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-          @   \at(sound_axis(&state->axis[slot]), Pre) ==> sound_axis(&state->axis[slot]); */
-        /*@ assert P15_mode: \forall integer slot; 0 <= slot < ILK_SLOTS ==>
-          @   \at(sound_axis(&state->axis[slot]) && fits_mode(&state->axis[slot], state->mode), Pre)
-          @   ==> fits_mode(&state->axis[slot], state->mode); */
-      }
-      break;
+static void end_motion(ilk_state_t *state) {
+  if (mode_is(&state->system, ILK_MODE_MOTION)) {
+    ilk_mode_enter(ILK_MODE_READY, 0u, state);
   }
+  ilk_pedal_disarm(&state->system);
+}
+
+/** Requests to the robot as a whole. A new holder finds no consent and no motion. */
+static ilk_verdict_t take_system(const ilk_request_t *request, ilk_state_t *state) {
+  ilk_system_t *system = &state->system;
+  ilk_verdict_t verdict = ILK_VERDICT_ACCEPTED;
+  if (request->kind == (uint32_t)ILK_REQUEST_RESET) {
+    must(&verdict, mode_is(system, ILK_MODE_LOCKED), ILK_VERDICT_MODE);
+    must(&verdict, pedal_is_up(system), ILK_VERDICT_PEDAL_DOWN);
+    must(&verdict, !ilk_cause_is_present(state), ILK_VERDICT_CAUSE_PRESENT);
+    if (verdict == ILK_VERDICT_ACCEPTED) {
+      ilk_mode_enter(ILK_MODE_READY, 0u, state);
+    }
+  } else if (request->kind == (uint32_t)ILK_REQUEST_STOP) {
+    end_motion(state);
+  } else { /* HEARTBEAT */
+    system->app_age_ticks = 0u;
+    if (system->holder != request->holder) {
+      system->holder = request->holder;
+      end_motion(state);
+    }
+  }
+  return verdict;
+}
+
+/** A request that is intact and in order uses its number up, whatever the verdict. */
+static ilk_verdict_t take(const ilk_config_t *config, const ilk_request_t *request, ilk_state_t *state) {
+  const uint32_t ahead = request->sequence - state->system.last_sequence;
+  const bool of_system = request->kind <= (uint32_t)ILK_REQUEST_RESET;
+  const bool of_axis = (request->axis < (uint32_t)ILK_SLOTS) && has_axis(&config->axis[request->axis]);
+  ilk_verdict_t verdict = ILK_VERDICT_ACCEPTED;
+  must(&verdict, request->crc == ilk_request_crc(request), ILK_VERDICT_CHECKSUM);
+  must(&verdict, count_of(ahead, (uint32_t)INT32_MAX), ILK_VERDICT_SEQUENCE);
+  if (verdict == ILK_VERDICT_ACCEPTED) {
+    state->system.last_sequence = request->sequence;
+  }
+  must(&verdict, count_of(request->kind, (uint32_t)ILK_REQUEST_RESTORE), ILK_VERDICT_UNKNOWN);
+  must(&verdict, of_system || of_axis, ILK_VERDICT_AXIS);
+  must(&verdict, !mode_is(&state->system, ILK_MODE_INIT), ILK_VERDICT_MODE);
+  if (verdict == ILK_VERDICT_ACCEPTED) {
+    verdict = of_system ? take_system(request, state) : take_axis(config, request, state);
+  }
+  return verdict;
+}
+
+ilk_verdict_record_t ilk_request_take(const ilk_config_t *config, const ilk_request_t *request,
+                                      ilk_state_t *state) {
+  ilk_system_t *system = &state->system;
+  const uint32_t verdict = (uint32_t)take(config, request, state);
+  const ilk_verdict_record_t record = {.tick = system->tick,
+                                       .sequence = request->sequence,
+                                       .kind = request->kind,
+                                       .axis = request->axis,
+                                       .verdict = verdict};
+  uint32_t *counter =
+      (verdict == (uint32_t)ILK_VERDICT_ACCEPTED) ? &system->requests_accepted : &system->requests_refused;
+  *counter = count_up(*counter, UINT32_MAX);
+  return record;
 }

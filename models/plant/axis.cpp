@@ -73,11 +73,12 @@ void Axis::advance(Microseconds elapsed) {
     speed_ = 0;
     return;
   }
-  if (runaway_speed_) {
+  const double target_speed = supplied_ ? target_speed_ : 0.0;
+  if (runaway_speed_ && supplied_) {
     speed_ = *runaway_speed_;
   } else {
-    speed_ = (speed_ * lag_s_ + target_speed_ * elapsed_s) / (lag_s_ + elapsed_s);
-    if (target_speed_ == 0 && std::abs(speed_) < kRestSpeedCountsPerS) {
+    speed_ = (speed_ * lag_s_ + target_speed * elapsed_s) / (lag_s_ + elapsed_s);
+    if (target_speed == 0 && std::abs(speed_) < kRestSpeedCountsPerS) {
       speed_ = 0;
     }
   }

@@ -51,6 +51,9 @@ class Axis {
   /** What the card's amplifier does from now on. */
   void drive(const wire::MotorCommand& command) { target_speed_ = motor_.speed(command); }
 
+  /** Gives the amplifier power, or takes it: without it no drive and no runaway moves the axis. */
+  void supply(bool on) { supplied_ = on; }
+
   /** Lets time pass. */
   void advance(Microseconds elapsed);
 
@@ -60,7 +63,7 @@ class Axis {
   /** Moves the axis by hand, at an even pace; added to a push that is still under way. */
   void push(double counts, Microseconds duration);
 
-  /** Moves the axis whatever its drive says; no speed ends it. */
+  /** The amplifier drives the axis whatever it is told, while it has power; no speed ends it. */
   void run_away(std::optional<double> counts_per_s) { runaway_speed_ = counts_per_s; }
 
   /** Swaps the motor's direction, or restores it; acts with the next `drive`. */
@@ -103,6 +106,7 @@ class Axis {
   double load_;
   double speed_ = 0;
   double target_speed_ = 0;
+  bool supplied_ = false;
   double push_left_ = 0;
   double push_speed_ = 0;
   std::optional<double> runaway_speed_;

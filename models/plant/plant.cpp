@@ -31,7 +31,7 @@ std::optional<Station> make_station(const ilk_axis_config_t& axis, const Paramet
 }  // namespace
 
 Plant::Plant(const ilk_config_t& robot, const Parameters& parameters, std::uint64_t seed)
-    : period_(robot.period_us),
+    : period_(robot.common.period_us),
       pedal_(parameters.pedal),
       estop_loop_(true, parameters.estop.bounce),
       contact_bounce_(seed, kContactStream) {
@@ -57,6 +57,7 @@ ilk_sim_reply_t Plant::exchange(const ilk_sim_exchange_t& exchange) noexcept {
       transact(slot, exchange, reply);
     }
   }
+  power_ = exchange.power == 1;
   std::copy(std::begin(exchange.lamp), std::end(exchange.lamp), lamps_.begin());
   note_amplifiers();
   record_exchange(exchange, inputs);
@@ -177,6 +178,7 @@ void Plant::step(Microseconds elapsed) {
       continue;
     }
     if (station->axis) {
+      station->axis->supply(power_);
       station->axis->drive(station->card.command());
       station->axis->advance(elapsed);
     }

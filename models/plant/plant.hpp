@@ -93,6 +93,9 @@ class Plant {
   const Pedal& pedal() const { return pedal_; }
   bool estop_pulled() const { return !estop_loop_.closed(); }
 
+  /** Whether the kernel gives the amplifiers power, as last commanded. */
+  bool power() const { return power_; }
+
   /** ilk_colour_t by ilk_lamp_t, as last commanded. */
   const std::array<std::uint32_t, ILK_LAMP_COUNT>& lamps() const { return lamps_; }
 
@@ -142,6 +145,7 @@ class Plant {
   Contact estop_loop_;
   Random contact_bounce_;
   std::array<std::uint32_t, ILK_LAMP_COUNT> lamps_{};
+  bool power_ = false;
   std::uint32_t failing_transactions_ = 0;
   Schedule schedule_;
   std::unique_ptr<Surroundings> surroundings_;

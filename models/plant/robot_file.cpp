@@ -62,8 +62,8 @@ std::optional<std::string> fault_of_axis(const ilk_axis_config_t& axis) {
 }
 
 std::optional<std::string> fault_of(const ilk_config_t& config) {
-  if (config.period_us < 125 || config.period_us > 2000) {
-    return "period " + std::to_string(config.period_us) + " us, expected 125 to 2000";
+  if (config.common.period_us < 125 || config.common.period_us > 2000) {
+    return "period " + std::to_string(config.common.period_us) + " us, expected 125 to 2000";
   }
   for (std::size_t slot = 0; slot < ILK_SLOTS; ++slot) {
     if (const auto fault = fault_of_axis(config.axis[slot])) {
@@ -90,10 +90,10 @@ tl::expected<ilk_config_t, std::string> load_robot(const std::filesystem::path& 
     return refuse("is no configuration of " + std::to_string(bytes.size()) + " bytes");
   }
   const ilk_config_t config = from_little_endian(bytes);
-  if (config.version != ILK_CONFIG_VERSION || config.size_bytes != sizeof(ilk_config_t)) {
-    return refuse("has version " + std::to_string(config.version) + " and size " +
-                  std::to_string(config.size_bytes) + ", expected " + std::to_string(ILK_CONFIG_VERSION) +
-                  " and " + std::to_string(sizeof(ilk_config_t)));
+  if (config.common.version != ILK_CONFIG_VERSION || config.common.size_bytes != sizeof(ilk_config_t)) {
+    return refuse("has version " + std::to_string(config.common.version) + " and size " +
+                  std::to_string(config.common.size_bytes) + ", expected " +
+                  std::to_string(ILK_CONFIG_VERSION) + " and " + std::to_string(sizeof(ilk_config_t)));
   }
   if (config.crc != crc_of(bytes)) {
     return refuse("is damaged: its CRC does not match");

@@ -2,309 +2,331 @@
 (* One axis: what its card says, what it did and what that means, what requests do
    to it, what it wants, and the output gate. Operators only: `c` is the system's
    configuration, `k` the axis', `s` the system's record, `a` the axis' record.
+   Homing is a module of its own.
 
-   Fields of `a` are those of ilk_axis_t, with these changes. Only differences of
-   raw counts matter, so that a mark (stall_mark_raw and so on) is kept as the
-   travel since it, in the sense of the position: since_stall_mark is the travel
-   from stall_mark_raw to raw. `fault_now` stands for fault_tick = tick; it is
-   FALSE between ticks. Not modelled: amplitude, which is bounded like drive but
-   never decides anything else, fault_value, heartbeat, card_time_us, card_status
-   and totals since boot.
+   Fields of `a` are named as those of ilk_axis_t where both have them; raw counts are
+   in the sense of the position. `fault_now` and `disabled_now` say that it happened
+   in this very tick; they are FALSE between ticks. Not modelled: amplitude, which is
+   bounded like drive and decides nothing else, values of faults, and totals.
 
    `k` has limit_side, min_counts, max_counts, home_offset_counts, coast_counts,
-   deadband_counts, max_drive, unhomed_max_drive, unhomed_travel_counts,
-   home_drive, home_travel_counts, home_backoff_counts, home_timeout_ticks,
-   home_rest_ticks, stall_ticks, stall_min_counts, reverse_counts, drift_counts,
-   settle_ticks, max_delta_counts, required.
+   deadband_counts, noise_counts, max_drive, unhomed_max_drive, unhomed_travel_counts,
+   home_drive, home_slow_drive, home_travel_counts, home_clear_counts,
+   home_tolerance_counts, home_timeout_ticks, switch_hysteresis_counts,
+   switch_debounce_ticks, rest_ticks, stall_ticks, stall_effort_ticks, stall_min_counts,
+   reverse_counts, drift_counts, max_delta_counts, required.
 
-   A `reading` has frame (Frames), moved (travel of the counter since the last
-   valid frame, in the sense of the position) and switch (TRUE: triggered). *)
+   A `reading` has valid (of its frame), raw, switch (TRUE: triggered) and reset (the
+   card says, or its heartbeat shows, that it began anew). *)
 EXTENDS Types
 
 BlankAxis ==
-  [ state |-> "DISABLED", fault |-> "NONE", fault_now |-> FALSE, homed |-> FALSE,
-    switch_triggered |-> FALSE, card_valid |-> FALSE, card_seen |-> FALSE,
-    bad_frames |-> 0, ticks_since_frame |-> 0, position_counts |-> 0,
-    delta_counts |-> 0, setpoint_counts |-> 0, drive |-> 0, lease_ticks |-> 0,
-    driven_direction |-> "NONE", press_travel_counts |-> 0,
-    stall_driven_ticks |-> 0, since_stall_mark |-> 0, stall_direction |-> "NONE",
-    setpoint_changed |-> FALSE, since_reverse_mark |-> 0,
-    reverse_direction |-> "NONE", since_drift_mark |-> 0, undriven_ticks |-> 0,
-    homing_phase |-> "NONE", homing_ticks |-> 0, since_homing_mark |-> 0,
-    rest_ticks |-> 0 ]
+  [ state |-> "DISABLED", fault |-> "NONE", fault_now |-> FALSE, disabled_now |-> FALSE,
+    homed |-> "NO", card_valid |-> FALSE, card_seen |-> FALSE, bad_frames |-> 0,
+    ticks_since_frame |-> 0, raw |-> 0, position_counts |-> 0,
+    switch_triggered |-> FALSE, switch_ticks |-> 0, switch_raw |-> 0, switch_now |-> FALSE,
+    setpoint_counts |-> 0, drive |-> 0, lease_ticks |-> 0, driven_direction |-> "NONE",
+    rest |-> RunAt(0), hand |-> RunAt(0),
+    stall_ticks |-> 0, stall_effort |-> 0, stall_direction |-> "NONE",
+    stall_mark |-> 0, effort_mark |-> 0,
+    reverse_direction |-> "NONE", reverse_mark |-> 0, drift_mark |-> 0, runaway |-> FALSE,
+    travel_mark |-> 0, travel_by |-> "MOVE", move_travel |-> 0, home_travel |-> 0,
+    homing_phase |-> "NONE", homing_ticks |-> 0, homing_mark |-> 0,
+    first_edge |-> 0, second_edge |-> 0 ]
 
-IsEnabled(a)   == a.state \notin {"DISABLED", "FAULTED"}
-WasDriven(a)   == a.driven_direction # "NONE"
+IsEnabled(a)     == a.state \notin {"DISABLED", "FAULTED"}
+IsHomed(a)       == a.homed # "NO"
+WasDriven(a)     == a.driven_direction # "NONE"
 CardIsLost(c, a) == a.bad_frames >= c.bad_frame_limit
 
+TowardsSwitch(k)  == IF k.limit_side = "UPPER" THEN "INCREASING" ELSE "DECREASING"
+AwayFromSwitch(k) == IF k.limit_side = "UPPER" THEN "DECREASING" ELSE "INCREASING"
+
+(* The switch has read one way for the debounce time. *)
+ReadsTriggered(k, a) == a.switch_triggered /\ a.switch_ticks >= k.switch_debounce_ticks
+ReadsOpen(k, a)      == ~a.switch_triggered /\ a.switch_ticks >= k.switch_debounce_ticks
+
+(* Undriven, with valid frames, and no two readings farther from each other than noise. *)
+IsAtRest(k, a) == a.card_valid /\ a.rest.ticks >= k.rest_ticks
+
 -------------------------------------------------------------------------------
-(* What ends motion, and faults. *)
+(* What ends motion, and faults. An axis that is not enabled has no direction. *)
 DropMotion(a) ==
-  [a EXCEPT !.state = IF a.state \in {"MOVING", "HOMING"} THEN "ENABLED" ELSE a.state,
-            !.setpoint_counts = 0, !.drive = 0, !.lease_ticks = 0,
-            !.homing_phase = "NONE",
-            !.setpoint_changed = a.setpoint_changed \/ a.stall_driven_ticks # 0]
+  [a EXCEPT !.state = IF @ \in {"MOVING", "HOMING"} THEN "ENABLED" ELSE @,
+            !.setpoint_counts = 0, !.drive = 0, !.lease_ticks = 0, !.homing_phase = "NONE"]
 
 Disabled(a) ==
-  LET dropped == DropMotion(a)
-  IN  IF a.state = "FAULTED" THEN dropped ELSE [dropped EXCEPT !.state = "DISABLED"]
+  IF a.state = "FAULTED" THEN DropMotion(a)
+  ELSE [DropMotion(a) EXCEPT !.state = "DISABLED", !.disabled_now = TRUE,
+                             !.reverse_direction = "NONE"]
 
-(* After these the counter no longer tells where the axis is. *)
-LosesReference(fault) == fault \in {"JUMP", "CARD_LOST", "HOMING_TRAVEL", "HOMING_TIMEOUT"}
-
-(* The first fault is kept until CLEAR_FAULT. *)
+(* The first fault is kept until CLEAR_FAULT; each that says that the counter or the
+   switch cannot be relied on takes the reference, whatever the state. *)
 Faulted(a, fault) ==
-  LET first == [DropMotion(a) EXCEPT !.state = "FAULTED", !.fault = fault, !.fault_now = TRUE]
+  LET first == [DropMotion(a) EXCEPT !.state = "FAULTED", !.fault = fault, !.fault_now = TRUE,
+                                     !.drift_mark = a.raw, !.reverse_direction = "NONE"]
       kept  == IF a.state = "FAULTED" THEN a ELSE first
-  IN  [kept EXCEPT !.homed = kept.homed /\ ~LosesReference(fault)]
+  IN  [kept EXCEPT !.homed = IF fault = "DRIFT" THEN @ ELSE "NO"]
 
-(* What a change of the system's mode does to every axis. *)
+(* What a change of the system's mode does to every axis. A press begins with whole
+   budgets. *)
+BeginPress(a) ==
+  [DropMotion(a) EXCEPT !.travel_mark = a.raw, !.travel_by = "MOVE", !.move_travel = 0,
+                        !.home_travel = 0, !.homing_ticks = 0]
+
 FollowMode(before, after, a) ==
   IF before = after THEN a
   ELSE IF after = "LOCKED" THEN Disabled(a)
-  ELSE IF after = "MOTION" THEN [DropMotion(a) EXCEPT !.press_travel_counts = 0]
+  ELSE IF after = "MOTION" THEN BeginPress(a)
   ELSE DropMotion(a)
 
 -------------------------------------------------------------------------------
-(* Phase 2. A repeated frame tells nothing only if a frame came before it. *)
-IsValid(a, frame) == frame = "GOOD" \/ (frame = "REPEATED" /\ ~a.card_seen)
-
-ObserveCard(c, a, frame) ==
-  LET valid == IsValid(a, frame)
-  IN  [a EXCEPT !.card_valid = valid,
-                !.ticks_since_frame = IF a.card_valid THEN 1 ELSE CountUp(@, c.bad_frame_limit),
-                !.bad_frames = IF valid THEN 0 ELSE CountUp(a.bad_frames, c.bad_frame_limit)]
+(* Phase 2. *)
+ObserveCard(c, k, a, in, reading) ==
+  [a EXCEPT !.card_valid = reading.valid,
+            !.ticks_since_frame = CountBy(@, 1 + in.missed, c.bad_frame_limit + c.overrun_limit),
+            !.bad_frames = IF reading.valid THEN 0 ELSE CountUp(@, c.bad_frame_limit),
+            !.switch_now = k.limit_side # "NONE" /\ (reading.valid => reading.switch)]
 
 -------------------------------------------------------------------------------
-(* Phase 4: the new reading, the marks, and what is judged. *)
-Follow(a, moved) ==
-  LET delta == IF a.card_seen THEN moved ELSE 0
-      Since(mark) == IF a.card_seen THEN mark + delta ELSE 0
-  IN  [a EXCEPT !.card_seen = TRUE,
-                !.ticks_since_frame = IF a.card_seen THEN a.ticks_since_frame ELSE 0,
-                !.delta_counts = delta,
-                !.position_counts = a.position_counts + delta,
-                !.press_travel_counts = a.press_travel_counts + delta,
-                !.since_stall_mark = Since(a.since_stall_mark),
-                !.since_reverse_mark = Since(a.since_reverse_mark),
-                !.since_drift_mark = Since(a.since_drift_mark),
-                !.since_homing_mark = Since(a.since_homing_mark)]
+(* Phase 4: the new reading. Nothing is compared with the first one after start or
+   after a lost card: whatever the counter says now, marks begin there. *)
+MarksAt(a, raw) ==
+  [a EXCEPT !.stall_mark = raw, !.effort_mark = raw, !.reverse_mark = raw,
+            !.drift_mark = raw, !.travel_mark = raw, !.homing_mark = raw,
+            !.rest = RunAt(raw), !.hand = RunAt(raw)]
 
-ClearStallCount(a) ==
-  [a EXCEPT !.stall_driven_ticks = 0, !.setpoint_changed = FALSE, !.since_stall_mark = 0]
+FirstReading(a, raw) ==
+  [MarksAt(a, raw) EXCEPT !.raw = raw, !.card_seen = TRUE, !.ticks_since_frame = 0, !.homed = "NO"]
 
-(* The first frame after a drive tells what the drive did, however many were
-   missed in between. *)
-HasSettled(k, a) == ~WasDriven(a) /\ a.undriven_ticks >= k.settle_ticks
+(* A run of valid readings of the switch; a frame that is not valid neither counts nor breaks it. *)
+ReadSwitch(k, a, reading) ==
+  IF k.limit_side = "NONE" THEN a
+  ELSE IF reading.switch = a.switch_triggered /\ a.switch_ticks > 0
+       THEN [a EXCEPT !.switch_ticks = CountUp(@, k.switch_debounce_ticks)]
+       ELSE [a EXCEPT !.switch_triggered = reading.switch, !.switch_ticks = 1,
+                      !.switch_raw = reading.raw]
 
-(* Motion is progress only until the axis has settled; later it is not the
-   drive's doing. *)
-MadeProgress(k, a) ==
-  /\ ~HasSettled(k, a)
-  /\ Along(a.stall_direction, a.since_stall_mark) > 0
-  /\ Along(a.stall_direction, a.since_stall_mark) >= k.stall_min_counts
+Rested(k, a, raw) ==
+  IF WasDriven(a) THEN RunAt(raw) ELSE Prolonged(a.rest, raw, k.noise_counts, k.rest_ticks)
 
-AdvanceReverseMark(a) ==
-  IF Along(a.reverse_direction, a.since_reverse_mark) > 0
-  THEN [a EXCEPT !.since_reverse_mark = 0] ELSE a
+(* The path of a point that follows the counter only when it is farther away than noise. *)
+Travelled(s, k, a, raw) ==
+  LET path    == Magnitude(raw - a.travel_mark)
+      counted == s.mode = "MOTION" /\ ~IsHomed(a)
+  IN  IF ~counted THEN [a EXCEPT !.travel_mark = raw]
+      ELSE IF path <= k.noise_counts THEN a
+      ELSE IF a.travel_by = "HOME"
+      THEN [a EXCEPT !.travel_mark = raw, !.home_travel = CountBy(@, path, k.home_travel_counts + 1)]
+      ELSE [a EXCEPT !.travel_mark = raw, !.move_travel = CountBy(@, path, k.unhomed_travel_counts + 1)]
 
-AdvanceStallMark(k, a) == IF MadeProgress(k, a) THEN ClearStallCount(a) ELSE a
+(* Progress in the direction of the marks, in any state, driven or not. *)
+Progressed(k, a, raw) ==
+  LET beyond(mark) == Along(a.stall_direction, raw - mark)
+  IN  IF beyond(a.stall_mark) > 0 /\ beyond(a.stall_mark) >= k.stall_min_counts
+      THEN [a EXCEPT !.stall_mark = raw, !.effort_mark = raw, !.stall_ticks = 0, !.stall_effort = 0]
+      ELSE IF beyond(a.effort_mark) > k.noise_counts
+      THEN [a EXCEPT !.effort_mark = raw, !.stall_effort = 0]
+      ELSE a
 
-AdvanceDriftMark(k, a) ==
-  [a EXCEPT !.since_drift_mark = IF IsEnabled(a) /\ HasSettled(k, a) THEN @ ELSE 0]
+AdvanceReverseMark(a, raw) ==
+  IF Along(a.reverse_direction, raw - a.reverse_mark) > 0 THEN [a EXCEPT !.reverse_mark = raw] ELSE a
 
-Jumped(k, a)   == Magnitude(a.delta_counts) > k.max_delta_counts * a.ticks_since_frame
-Reversed(k, a) == WasDriven(a) /\ -Along(a.reverse_direction, a.since_reverse_mark) > k.reverse_counts
-Drifted(k, a)  == /\ IsEnabled(a)
-                  /\ HasSettled(k, a)
-                  /\ Magnitude(a.since_drift_mark) > k.drift_counts
-Stalled(k, a)  == IsEnabled(a) /\ a.stall_driven_ticks >= k.stall_ticks
+(* Where drift is judged from: it follows a DISABLED axis that may be moved by hand,
+   and a FAULTED axis that comes to rest. *)
+MovableByHand(s, a) == a.state = "DISABLED" /\ s.mode # "MOTION"
 
-JudgeMotion(k, a) ==
-  IF Jumped(k, a) THEN "JUMP"
+AdvanceDriftMark(s, k, a) ==
+  IF MovableByHand(s, a) \/ (a.state = "FAULTED" /\ IsAtRest(k, a))
+  THEN [a EXCEPT !.drift_mark = a.raw] ELSE a
+
+Jumps(k, a, reading) ==
+  Magnitude(reading.raw - a.raw) > k.max_delta_counts * a.ticks_since_frame
+
+Reversed(k, a) == WasDriven(a) /\ -Along(a.reverse_direction, a.raw - a.reverse_mark) > k.reverse_counts
+Drifted(k, a)  == ~WasDriven(a) /\ Magnitude(a.raw - a.drift_mark) > k.drift_counts
+
+StallMet(k, a) ==
+  \/ a.stall_ticks >= k.stall_ticks
+  \/ k.stall_effort_ticks > 0 /\ a.stall_effort >= k.stall_effort_ticks * k.max_drive
+
+(* An axis homed by its switch stands where the switch cannot read so. *)
+FromHome(k, a) == Along(AwayFromSwitch(k), a.position_counts - k.home_offset_counts)
+
+Implausible(k, a) ==
+  LET margin == k.home_tolerance_counts + k.coast_counts
+  IN  /\ a.homed = "SWITCH"
+      /\ \/ ReadsTriggered(k, a) /\ FromHome(k, a) > margin + k.switch_hysteresis_counts
+         \/ ReadsOpen(k, a) /\ -FromHome(k, a) > margin
+
+(* The reading of a valid frame that is compared with the one before. *)
+Followed(s, k, a, reading) ==
+  LET breaks == reading.reset \/ Jumps(k, a, reading)
+      moved  == [a EXCEPT !.position_counts = @ + reading.raw - a.raw, !.raw = reading.raw,
+                          !.rest = Rested(k, a, reading.raw),
+                          !.hand = Prolonged(@, reading.raw, k.drift_counts, k.rest_ticks)]
+      anew   == [MarksAt(moved, reading.raw) EXCEPT !.homed = "NO"]
+      marked == AdvanceReverseMark(Progressed(k, Travelled(s, k, moved, reading.raw), reading.raw),
+                                   reading.raw)
+  IN  AdvanceDriftMark(s, k, IF breaks THEN anew ELSE marked)
+
+JudgeMotion(k, before, a, reading) ==
+  IF before.card_seen /\ reading.reset THEN "CARD_RESET"
+  ELSE IF before.card_seen /\ Jumps(k, before, reading) THEN "JUMP"
   ELSE IF Reversed(k, a) THEN "REVERSE"
-  ELSE IF Drifted(k, a) THEN "DRIFT"
-  ELSE IF Stalled(k, a) THEN "STALL"
+  ELSE IF a.state # "FAULTED" /\ Drifted(k, a) THEN "DRIFT"
+  ELSE IF StallMet(k, a) THEN "STALL"
+  ELSE IF Implausible(k, a) THEN "SWITCH"
   ELSE "NONE"
 
--------------------------------------------------------------------------------
-(* Phase 4: homing. *)
-EnterPhase(a, phase) ==
-  [a EXCEPT !.homing_phase = phase, !.since_homing_mark = 0, !.rest_ticks = 0]
+(* A FAULTED axis that goes on moving takes power away until it rests or its card is lost. *)
+JudgeRunaway(c, k, a) ==
+  [a EXCEPT !.runaway = /\ a.state = "FAULTED"
+                        /\ ~CardIsLost(c, a)
+                        /\ ~IsAtRest(k, a)
+                        /\ a.runaway \/ (a.card_valid /\ Drifted(k, a))]
 
-TowardsSwitch(k)    == IF k.limit_side = "UPPER" THEN "INCREASING" ELSE "DECREASING"
-AwayFromSwitch(k)   == IF k.limit_side = "UPPER" THEN "DECREASING" ELSE "INCREASING"
-
-HomingDirection(k, a) ==
-  CASE a.homing_phase = "BACK_OFF" -> AwayFromSwitch(k)
-    [] a.homing_phase = "SEEK"     -> TowardsSwitch(k)
-    [] OTHER                       -> "NONE"
-
-WaitForRest(k, a) ==
-  LET rest   == IF a.delta_counts = 0 THEN CountUp(a.rest_ticks, k.home_rest_ticks) ELSE 0
-      waited == [a EXCEPT !.rest_ticks = rest]
-  IN  IF rest >= k.home_rest_ticks
-      THEN [EnterPhase(waited, "NONE") EXCEPT !.state = "ENABLED", !.homed = TRUE]
-      ELSE waited
-
-LookForEdge(k, a) ==
-  CASE a.homing_phase = "BACK_OFF" -> IF a.switch_triggered THEN a ELSE EnterPhase(a, "SEEK")
-    [] a.homing_phase = "SEEK"     ->
-         IF a.switch_triggered
-         THEN EnterPhase([a EXCEPT !.position_counts = k.home_offset_counts], "REST") ELSE a
-    [] OTHER                       -> WaitForRest(k, a)
-
-(* A switch that was not read makes no edge: only valid frames are looked at. *)
-AdvanceHoming(k, a) ==
-  IF a.state # "HOMING" THEN a
-  ELSE LET counted == [a EXCEPT !.homing_ticks = CountDown(a.homing_ticks)]
-       IN  IF a.card_valid THEN LookForEdge(k, counted) ELSE counted
-
-HomingBound(k, a) ==
-  IF a.homing_phase = "BACK_OFF" THEN k.home_backoff_counts ELSE k.home_travel_counts
-
-JudgeHoming(k, a) ==
-  IF a.state # "HOMING" THEN "NONE"
-  ELSE IF Magnitude(a.since_homing_mark) > HomingBound(k, a) THEN "HOMING_TRAVEL"
-  ELSE IF a.homing_ticks = 0 THEN "HOMING_TIMEOUT"
-  ELSE "NONE"
-
--------------------------------------------------------------------------------
-(* Phase 4, whole. *)
 RunLeaseDown(a) ==
   LET left == CountDown(a.lease_ticks)
   IN  [a EXCEPT !.lease_ticks = left,
                 !.state = IF a.state = "MOVING" /\ left = 0 THEN "ENABLED" ELSE a.state]
 
-(* A drive needs a valid frame: an axis that was driven since its last one was
-   driven in that very tick. *)
-CountUndriven(k, a) ==
-  LET driven_last_tick == WasDriven(a) /\ a.ticks_since_frame = 1
-  IN  [a EXCEPT !.undriven_ticks = IF driven_last_tick THEN 0 ELSE CountUp(@, k.settle_ticks)]
+ObserveValid(s, k, a, reading) ==
+  LET switched == ReadSwitch(k, a, reading)
+      followed == IF a.card_seen THEN Followed(s, k, switched, reading)
+                  ELSE FirstReading(switched, reading.raw)
+  IN  [ axis  |-> [followed EXCEPT !.driven_direction = "NONE", !.ticks_since_frame = 0],
+        fault |-> JudgeMotion(k, a, followed, reading) ]
 
-(* A switch that was not read validly counts as triggered. *)
-ReadSwitch(k, a, reading) == k.limit_side # "NONE" /\ (a.card_valid => reading.switch)
+ObserveMissing(c, k, a) ==
+  LET unread == [a EXCEPT !.driven_direction = "NONE", !.rest = RunAt(a.raw)]
+  IN  IF CardIsLost(c, a)
+      THEN [axis |-> [unread EXCEPT !.card_seen = FALSE, !.homed = "NO"], fault |-> "CARD"]
+      ELSE [axis |-> unread, fault |-> IF StallMet(k, a) THEN "STALL" ELSE "NONE"]
 
-Awaited(k, a, reading) ==
-  CountUndriven(k, RunLeaseDown([a EXCEPT !.switch_triggered = ReadSwitch(k, a, reading)]))
-
-ObserveValid(k, a, reading) ==
-  LET followed == AdvanceReverseMark(Follow(a, reading.moved))
-      marked   == AdvanceDriftMark(k, AdvanceStallMark(k, followed))
-  IN  [ axis  |-> [marked EXCEPT !.driven_direction = "NONE"],
-        fault |-> JudgeMotion(k, marked) ]
-
-ObserveMissing(c, a) ==
-  IF CardIsLost(c, a)
-  THEN [axis |-> [a EXCEPT !.card_seen = FALSE], fault |-> "CARD_LOST"]
-  ELSE [axis |-> a, fault |-> "NONE"]
-
-ObserveAxis(c, k, a, reading) ==
-  LET awaited  == Awaited(k, a, reading)
-      observed == IF a.card_valid THEN ObserveValid(k, awaited, reading)
-                  ELSE ObserveMissing(c, awaited)
-      advanced == AdvanceHoming(k, observed.axis)
-      fault    == IF observed.fault # "NONE" THEN observed.fault ELSE JudgeHoming(k, advanced)
-  IN  IF fault = "NONE" THEN advanced ELSE Faulted(advanced, fault)
+Observe1(s, c, k, a, reading) ==
+  LET counted == RunLeaseDown(a)
+  IN  IF a.card_valid THEN ObserveValid(s, k, counted, reading) ELSE ObserveMissing(c, k, counted)
 
 -------------------------------------------------------------------------------
 (* Phase 6: the row of the request table, from left to right. A request has kind,
-   target (MOVE: setpoint, RESTORE: position), drive and lease. *)
+   target (MOVE: setpoint, RESTORE: position), drive, lease and consent. *)
 PedalIsUp(s) == s.pedal = "RELEASED"
-
-(* Neither driven nor moved since the last tick, which had a valid frame, too. *)
-IsAtRest(a) == a.undriven_ticks > 0 /\ a.ticks_since_frame = 1 /\ a.delta_counts = 0
 
 JudgeDisable(s, a) ==
   IF s.mode = "INIT" THEN "MODE"
   ELSE IF a.state = "FAULTED" THEN "FAULTED"
   ELSE "ACCEPTED"
 
-JudgeEnable(s, a) ==
+JudgeEnable(c, k, s, a) ==
   IF s.mode \notin {"READY", "MOTION"} THEN "MODE"
   ELSE IF a.state = "FAULTED" THEN "FAULTED"
   ELSE IF ~a.card_valid THEN "CARD"
+  ELSE IF IsEnabled(a) THEN "ACCEPTED"
+  ELSE IF s.power_ticks < c.power_up_ticks \/ ~IsAtRest(k, a) \/ a.disabled_now THEN "BUSY"
   ELSE "ACCEPTED"
 
-JudgeClearFault(s, a) ==
+JudgeClearFault(k, s, a) ==
   IF s.mode = "INIT" THEN "MODE"
   ELSE IF a.state # "FAULTED" THEN "NO_FAULT"
-  ELSE IF ~a.card_valid \/ a.fault_now THEN "CAUSE_PRESENT"
+  ELSE IF ~a.card_valid \/ a.fault_now \/ ~IsAtRest(k, a) THEN "CAUSE_PRESENT"
   ELSE IF ~PedalIsUp(s) THEN "PEDAL_DOWN"
   ELSE "ACCEPTED"
 
-JudgeMayMove(s, a) ==
+JudgeMayMove(s, a, request) ==
   IF s.mode # "MOTION" THEN "MODE"
+  ELSE IF request.consent # s.consent THEN "CONSENT"
   ELSE IF a.state = "FAULTED" THEN "FAULTED"
   ELSE IF a.state = "DISABLED" THEN "DISABLED"
   ELSE IF a.state = "HOMING" THEN "BUSY"
   ELSE "ACCEPTED"
 
-DriveBound(k, a) == IF a.homed THEN k.max_drive ELSE k.unhomed_max_drive
+DriveBound(k, a) == IF IsHomed(a) THEN k.max_drive ELSE k.unhomed_max_drive
 
-(* Where the axis may stop: one coast inside of its limits, or of the travel that
-   an axis that is not homed has from where the pedal was pressed. *)
+(* Where the axis may stop: one coast inside of its limits and, if its switch gave the
+   reference, inside of where that opens; or of the travel that it has left in this press. *)
+SoftReach(k, a) ==
+  LET low     == k.min_counts + k.coast_counts
+      high    == k.max_counts - k.coast_counts
+      margin  == k.switch_hysteresis_counts + k.home_tolerance_counts
+      opens   == k.home_offset_counts + Along(AwayFromSwitch(k), margin)
+      bounded == a.homed = "SWITCH"
+  IN  [low  |-> IF bounded /\ k.limit_side = "LOWER" THEN Greatest(low, opens) ELSE low,
+       high |-> IF bounded /\ k.limit_side = "UPPER" THEN Least(high, opens) ELSE high]
+
 Reach(k, a) ==
-  LET pressed_at == a.position_counts - a.press_travel_counts
-      travel     == k.unhomed_travel_counts - k.coast_counts
-  IN  IF a.homed THEN [low |-> k.min_counts + k.coast_counts, high |-> k.max_counts - k.coast_counts]
-      ELSE [low |-> pressed_at - travel, high |-> pressed_at + travel]
+  LET left == k.unhomed_travel_counts - k.coast_counts - a.move_travel
+  IN  IF IsHomed(a) THEN SoftReach(k, a)
+      ELSE [low |-> a.position_counts - left, high |-> a.position_counts + left]
+
+TowardsTriggered(k, a, target) ==
+  ReadsTriggered(k, a) /\ Along(TowardsSwitch(k), target - a.position_counts) > 0
 
 JudgeMove(c, k, s, a, request) ==
-  LET may == JudgeMayMove(s, a)
+  LET may == JudgeMayMove(s, a, request)
   IN  IF may # "ACCEPTED" THEN may
-      ELSE IF request.lease = 0 \/ request.lease > c.lease_max_ticks THEN "LEASE"
-      ELSE IF request.drive > DriveBound(k, a) THEN "DRIVE"
+      ELSE IF request.lease \notin 1..c.lease_max_ticks THEN "LEASE"
+      ELSE IF request.drive \notin 1..DriveBound(k, a) THEN "DRIVE"
       ELSE IF request.target < Reach(k, a).low \/ request.target > Reach(k, a).high THEN "RANGE"
+      ELSE IF TowardsTriggered(k, a, request.target) THEN "RANGE"
       ELSE "ACCEPTED"
 
-JudgeHome(k, s, a) ==
-  LET may == JudgeMayMove(s, a)
-  IN  IF may = "ACCEPTED" /\ k.limit_side = "NONE" THEN "NO_SWITCH" ELSE may
+HomingTravelLeft(k, a) == a.home_travel < k.home_travel_counts - k.coast_counts
 
-JudgeDeclare(k, s, a, position) ==
+JudgeHome(k, s, a, request) ==
+  LET may == JudgeMayMove(s, a, request)
+  IN  IF may # "ACCEPTED" THEN may
+      ELSE IF k.limit_side = "NONE" THEN "NO_SWITCH"
+      ELSE IF ~HomingTravelLeft(k, a) \/ a.homing_ticks >= k.home_timeout_ticks THEN "BUDGET"
+      ELSE "ACCEPTED"
+
+JudgeDeclare(k, s, a) ==
   IF s.mode # "READY" THEN "MODE"
   ELSE IF ~PedalIsUp(s) THEN "PEDAL_DOWN"
   ELSE IF a.state = "FAULTED" THEN "FAULTED"
   ELSE IF ~a.card_valid THEN "CARD"
-  ELSE IF ~IsAtRest(a) THEN "BUSY"
-  ELSE IF position < k.min_counts \/ position > k.max_counts THEN "RANGE"
+  ELSE IF ~IsAtRest(k, a) THEN "BUSY"
   ELSE "ACCEPTED"
+
+JudgeRestore(k, s, a, request) ==
+  LET may == JudgeDeclare(k, s, a)
+  IN  IF may = "ACCEPTED" /\ request.target \notin k.min_counts..k.max_counts THEN "RANGE" ELSE may
 
 JudgeAxis(c, k, s, a, request) ==
   CASE request.kind = "DISABLE"     -> JudgeDisable(s, a)
-    [] request.kind = "ENABLE"      -> JudgeEnable(s, a)
-    [] request.kind = "CLEAR_FAULT" -> JudgeClearFault(s, a)
+    [] request.kind = "ENABLE"      -> JudgeEnable(c, k, s, a)
+    [] request.kind = "CLEAR_FAULT" -> JudgeClearFault(k, s, a)
     [] request.kind = "MOVE"        -> JudgeMove(c, k, s, a, request)
-    [] request.kind = "HOME"        -> JudgeHome(k, s, a)
-    [] request.kind = "SET_HOME"    -> JudgeDeclare(k, s, a, 0)
-    [] request.kind = "RESTORE"     -> JudgeDeclare(k, s, a, request.target)
+    [] request.kind = "HOME"        -> JudgeHome(k, s, a, request)
+    [] request.kind = "SET_HOME"    -> JudgeDeclare(k, s, a)
+    [] request.kind = "RESTORE"     -> JudgeRestore(k, s, a, request)
+
+Enabled(a) ==
+  IF IsEnabled(a) THEN a ELSE [a EXCEPT !.state = "ENABLED", !.drift_mark = a.raw]
 
 ClearFault(a) ==
-  LET stalled == a.fault = "STALL"
-  IN  [a EXCEPT !.state = "DISABLED", !.fault = "NONE", !.fault_now = FALSE,
-                !.stall_driven_ticks = IF stalled THEN 0 ELSE @,
-                !.setpoint_changed = @ /\ ~stalled]
+  LET cleared == [a EXCEPT !.state = "DISABLED", !.fault = "NONE"]
+  IN  IF a.fault # "STALL" THEN cleared
+      ELSE [cleared EXCEPT !.stall_ticks = 0, !.stall_effort = 0,
+                           !.stall_mark = a.raw, !.effort_mark = a.raw]
 
 Move(a, request) ==
-  LET changed == a.setpoint_counts # request.target /\ a.stall_driven_ticks # 0
-  IN  [a EXCEPT !.state = "MOVING", !.setpoint_counts = request.target,
-                !.drive = request.drive, !.lease_ticks = request.lease,
-                !.setpoint_changed = @ \/ changed]
+  [a EXCEPT !.state = "MOVING", !.setpoint_counts = request.target, !.drive = request.drive,
+            !.lease_ticks = request.lease]
 
-BeginHoming(k, a) ==
-  EnterPhase([a EXCEPT !.state = "HOMING", !.homed = FALSE, !.lease_ticks = 0,
-                       !.homing_ticks = k.home_timeout_ticks],
-             IF a.switch_triggered THEN "BACK_OFF" ELSE "SEEK")
+(* The run of the switch begins anew: what it read before HOME is no edge. *)
+BeginHoming(a) ==
+  [a EXCEPT !.state = "HOMING", !.homed = "NO", !.homing_phase = "WAIT", !.travel_by = "HOME",
+            !.setpoint_counts = 0, !.drive = 0, !.lease_ticks = 0, !.switch_ticks = 0]
 
-ApplyAxis(k, a, request) ==
+ApplyAxis(a, request) ==
   CASE request.kind = "DISABLE"     -> Disabled(a)
-    [] request.kind = "ENABLE"      -> IF a.state = "DISABLED" THEN [a EXCEPT !.state = "ENABLED"] ELSE a
+    [] request.kind = "ENABLE"      -> Enabled(a)
     [] request.kind = "CLEAR_FAULT" -> ClearFault(a)
     [] request.kind = "MOVE"        -> Move(a, request)
-    [] request.kind = "HOME"        -> BeginHoming(k, a)
-    [] request.kind = "SET_HOME"    -> [a EXCEPT !.position_counts = 0, !.homed = TRUE]
-    [] request.kind = "RESTORE"     -> [a EXCEPT !.position_counts = request.target, !.homed = FALSE]
+    [] request.kind = "HOME"        -> BeginHoming(a)
+    [] request.kind = "SET_HOME"    -> [a EXCEPT !.position_counts = 0, !.homed = "HAND"]
+    [] request.kind = "RESTORE"     -> [a EXCEPT !.position_counts = request.target, !.homed = "NO"]
 
 -------------------------------------------------------------------------------
 (* Phase 7: what the axis wants. *)
@@ -314,26 +336,33 @@ TowardsSetpoint(k, a) ==
       ELSE IF distance < -k.deadband_counts THEN "DECREASING"
       ELSE "NONE"
 
+WantedHoming(k, a) ==
+  CASE a.homing_phase \in {"BACK_OFF", "BACK_OFF_AGAIN"} ->
+         [direction |-> AwayFromSwitch(k), drive |-> k.home_drive]
+    [] a.homing_phase = "APPROACH"        -> [direction |-> TowardsSwitch(k), drive |-> k.home_drive]
+    [] a.homing_phase = "APPROACH_SLOWLY" -> [direction |-> TowardsSwitch(k), drive |-> k.home_slow_drive]
+    [] OTHER                              -> NoDrive
+
 WantedCommand(k, a) ==
   CASE a.state = "MOVING" -> [direction |-> TowardsSetpoint(k, a), drive |-> a.drive]
-    [] a.state = "HOMING" -> [direction |-> HomingDirection(k, a), drive |-> k.home_drive]
+    [] a.state = "HOMING" -> WantedHoming(k, a)
     [] OTHER              -> NoDrive
 
 (* The output gate: the first condition that blocks, "OPEN" if none does. *)
 IsHeld(a) == (a.state = "MOVING" /\ a.lease_ticks # 0) \/ a.state = "HOMING"
 
-PressesOnSwitch(k, a, direction) ==
-  a.switch_triggered /\ k.limit_side # "NONE" /\ direction = TowardsSwitch(k)
+PressesOnSwitch(k, a, direction) == a.switch_now /\ direction = TowardsSwitch(k)
 
 LeavesSoftRange(k, a, direction) ==
-  /\ a.homed
-  /\ \/ direction = "INCREASING" /\ a.position_counts >= k.max_counts - k.coast_counts
-     \/ direction = "DECREASING" /\ a.position_counts <= k.min_counts + k.coast_counts
+  /\ IsHomed(a)
+  /\ \/ direction = "INCREASING" /\ a.position_counts >= SoftReach(k, a).high
+     \/ direction = "DECREASING" /\ a.position_counts <= SoftReach(k, a).low
 
-ExceedsUnhomedTravel(k, a, direction) ==
-  /\ ~a.homed
-  /\ a.state # "HOMING"
-  /\ Along(direction, a.press_travel_counts) >= k.unhomed_travel_counts - k.coast_counts
+(* Whichever way: a path, not a place, is what is left of. *)
+ExceedsTravel(k, a) ==
+  /\ ~IsHomed(a)
+  /\ IF a.state = "HOMING" THEN ~HomingTravelLeft(k, a)
+     ELSE a.move_travel >= k.unhomed_travel_counts - k.coast_counts
 
 Gate(k, s, a, wanted) ==
   IF s.mode # "MOTION" THEN "MODE"
@@ -342,37 +371,43 @@ Gate(k, s, a, wanted) ==
   ELSE IF ~a.card_valid THEN "CARD"
   ELSE IF ~IsEnabled(a) THEN "ENABLE"
   ELSE IF ~IsHeld(a) THEN "LEASE"
+  ELSE IF StallMet(k, a) THEN "STALL"
   ELSE IF wanted.direction = "NONE" \/ wanted.drive = 0 THEN "SETPOINT"
   ELSE IF PressesOnSwitch(k, a, wanted.direction) THEN "HARD_LIMIT"
   ELSE IF LeavesSoftRange(k, a, wanted.direction) THEN "SOFT_LIMIT"
-  ELSE IF ExceedsUnhomedTravel(k, a, wanted.direction) THEN "UNHOMED_TRAVEL"
+  ELSE IF ExceedsTravel(k, a) THEN "TRAVEL"
   ELSE IF wanted.drive > DriveBound(k, a) THEN "DRIVE"
   ELSE "OPEN"
 
-(* What the kernel keeps of having driven an axis: a new direction, or one taken
-   up again after the axis had settled, begins its marks anew. *)
-NoteDrive(k, a, direction) ==
-  LET rested == a.undriven_ticks >= k.settle_ticks
-      turned == rested \/ a.reverse_direction # direction
-      anew   == rested \/ a.stall_direction # direction
-  IN  [a EXCEPT !.reverse_direction = direction,
-                !.since_reverse_mark = IF turned THEN 0 ELSE @,
-                !.stall_direction = direction,
-                !.since_stall_mark = IF anew THEN 0 ELSE @,
-                !.stall_driven_ticks = CountUp(@, k.stall_ticks),
-                !.driven_direction = direction]
+(* What the kernel keeps of having driven an axis. The sums of a stall go on, whatever the direction. *)
+NoteDrive(k, a, command) ==
+  LET way    == command.direction
+      turned == a.reverse_direction # way
+      anew   == a.stall_direction # way
+      effort == k.stall_effort_ticks * k.max_drive
+  IN  [a EXCEPT !.driven_direction = way,
+                !.drift_mark = a.raw,
+                !.reverse_direction = way,
+                !.reverse_mark = IF turned THEN a.raw ELSE @,
+                !.stall_direction = way,
+                !.stall_mark = IF anew THEN a.raw ELSE @,
+                !.effort_mark = IF anew THEN a.raw ELSE @,
+                !.stall_ticks = CountUp(@, k.stall_ticks),
+                !.stall_effort = CountBy(@, command.drive, effort),
+                !.travel_by = IF a.state = "MOVING" THEN "MOVE" ELSE @]
 
-(* In the deadband of its setpoint; it cleared the stall count if the setpoint did
-   not change while the axis was driven. *)
-NoteArrival(a) == IF a.setpoint_changed THEN a ELSE ClearStallCount(a)
+(* In the deadband of its setpoint after an advance that no noise makes. *)
+NoteArrival(k, a) ==
+  IF Along(a.stall_direction, a.raw - a.stall_mark) > k.noise_counts
+  THEN [a EXCEPT !.stall_mark = a.raw, !.stall_ticks = 0, !.stall_effort = 0] ELSE a
 
 (* Phase 7 of one axis: its record, its command and what its gate says. *)
 DriveAxis(k, s, a) ==
   LET wanted  == WantedCommand(k, a)
       gate    == Gate(k, s, a, wanted)
       arrived == gate = "SETPOINT" /\ a.state = "MOVING" /\ wanted.direction = "NONE"
-  IN  [ axis    |-> IF gate = "OPEN" THEN NoteDrive(k, a, wanted.direction)
-                    ELSE IF arrived THEN NoteArrival(a) ELSE a,
+  IN  [ axis    |-> IF gate = "OPEN" THEN NoteDrive(k, a, wanted)
+                    ELSE IF arrived THEN NoteArrival(k, a) ELSE a,
         gate    |-> gate,
         command |-> IF gate = "OPEN" THEN wanted ELSE NoDrive ]
 ===============================================================================

@@ -1,24 +1,24 @@
 ------------------------------- MODULE KernelTwo ------------------------------
 (* Two axes and the system: what axes do to each other. Axis 1 has a switch and a
-   card that MOTION needs; axis 2 has neither. The plant is coarse: in a tick one
-   axis goes a count, jumps, or loses its frame; the others stand. *)
+   card that MOTION needs; axis 2 has neither. The plant is coarse: in a tick each axis
+   stands, goes a count, jumps, or loses its frame. *)
 EXTENDS Kernel, Meets
 
 CONSTANTS c, first, second  \* configurations: the system, axis 1, axis 2
 
 SmallSystem ==
   [ pedal_channels |-> 1, app_timeout_ticks |-> 2, lease_max_ticks |-> 1,
-    pedal_debounce_ticks |-> 1, pedal_disagree_ticks |-> 1,
+    power_up_ticks |-> 0, pedal_debounce_ticks |-> 1, pedal_disagree_ticks |-> 1,
     bad_frame_limit |-> 2, overrun_limit |-> 2 ]
 
 WithSwitch ==
-  [ limit_side |-> "LOWER", min_counts |-> -1, max_counts |-> 1,
-    home_offset_counts |-> -1, coast_counts |-> 0, deadband_counts |-> 0,
-    max_drive |-> 1, unhomed_max_drive |-> 1, unhomed_travel_counts |-> 1,
-    home_drive |-> 1, home_travel_counts |-> 2, home_backoff_counts |-> 1,
-    home_timeout_ticks |-> 2, home_rest_ticks |-> 1, stall_ticks |-> 2,
-    stall_min_counts |-> 1, reverse_counts |-> 1, drift_counts |-> 0,
-    settle_ticks |-> 1, max_delta_counts |-> 1, required |-> TRUE ]
+  [ limit_side |-> "LOWER", min_counts |-> -3, max_counts |-> 3, home_offset_counts |-> -1,
+    coast_counts |-> 0, deadband_counts |-> 0, noise_counts |-> 0, max_drive |-> 1,
+    unhomed_max_drive |-> 1, unhomed_travel_counts |-> 3, home_drive |-> 1, home_slow_drive |-> 1,
+    home_travel_counts |-> 9, home_clear_counts |-> 1, home_tolerance_counts |-> 0,
+    home_timeout_ticks |-> 9, switch_hysteresis_counts |-> 0, switch_debounce_ticks |-> 1,
+    rest_ticks |-> 0, stall_ticks |-> 9, stall_effort_ticks |-> 0, stall_min_counts |-> 1,
+    reverse_counts |-> 1, drift_counts |-> 1, max_delta_counts |-> 2, required |-> TRUE ]
 
 WithoutSwitch == [WithSwitch EXCEPT !.limit_side = "NONE", !.required = FALSE]
 
@@ -29,51 +29,54 @@ VARIABLES system, axes, seen, io
 
 vars == <<system, axes, seen, io>>
 
-(* What no later tick looks at is set to one value, so that states that will behave
-   alike are one. Positions and marks, which this plant could let grow without end,
-   are forgotten as well: this model is not about one axis' motion. *)
-Forget(s, a) ==
-  [a EXCEPT !.delta_counts = 0, !.card_valid = FALSE, !.switch_triggered = FALSE,
-            !.ticks_since_frame = IF a.card_valid THEN 0 ELSE @,
-            !.position_counts = 0, !.press_travel_counts = 0, !.since_homing_mark = 0,
-            !.since_stall_mark = 0, !.since_reverse_mark = 0, !.since_drift_mark = 0,
-            !.stall_direction = "NONE", !.reverse_direction = "NONE",
-            !.homing_ticks = IF a.homing_phase = "NONE" THEN 0 ELSE @,
-            !.rest_ticks = IF a.homing_phase = "REST" THEN @ ELSE 0]
+(* What no later tick looks at is set to one value. Positions, marks and sums are
+   forgotten as well: this model is not about one axis' motion. *)
+Forget(a) ==
+  [BlankAxis EXCEPT !.state = a.state, !.fault = a.fault, !.homed = a.homed,
+                    !.card_seen = a.card_seen, !.bad_frames = a.bad_frames,
+                    !.ticks_since_frame = IF a.card_seen THEN a.ticks_since_frame ELSE 0,
+                    !.driven_direction = a.driven_direction, !.reverse_direction = a.driven_direction,
+                    !.lease_ticks = a.lease_ticks, !.homing_phase = a.homing_phase,
+                    !.runaway = a.runaway]
 
 ForgetSystem(s) == [s EXCEPT !.causes_seen = {}, !.app_alive = FALSE, !.estop = FALSE,
-                             !.pedal = "DISAGREE"]
+                             !.runaway = FALSE, !.pedal = "DISAGREE"]
 
 View == <<system, axes, seen>>
 
 -------------------------------------------------------------------------------
-(* Inputs and requests *)
-Wish(kind, x) == [kind |-> kind, door |-> "INTACT", axis |-> x, holder |-> 1,
-                  target |-> 1, drive |-> 1, lease |-> 1]
+(* Inputs and requests. The number of a press is 1. *)
+Ask(kind, x) == [kind |-> kind, door |-> "INTACT", axis |-> x, holder |-> 1,
+                 target |-> 1, drive |-> 1, lease |-> 1, consent |-> 1]
 
-Wishes ==
-  {Wish(kind, x) : kind \in {"ENABLE", "CLEAR_FAULT", "MOVE", "HOME"}, x \in Axes}
-  \union {Wish(kind, 1) : kind \in {"DISABLE", "STOP", "RESET"}} \union {Wish("ENABLE", 3)}
+Both(one, two) == <<Ask(one, 1), Ask(two, 2)>>
 
-Alive(holder) == <<[Wish("HEARTBEAT", 0) EXCEPT !.holder = holder]>>
+(* Several in a tick, in any order that matters. *)
+Talk ==
+  CASE system.mode = "LOCKED" -> {<<Ask("RESET", 0)>>, Both("CLEAR_FAULT", "CLEAR_FAULT")}
+    [] system.mode = "READY"  -> {<<>>, Both("ENABLE", "ENABLE"), Both("CLEAR_FAULT", "CLEAR_FAULT"),
+                                  Both("ENABLE", "SET_HOME")}
+    [] OTHER -> {<<>>, Both("MOVE", "MOVE"), Both("HOME", "MOVE"), Both("MOVE", "HOME"),
+                 Both("DISABLE", "MOVE"), <<Ask("STOP", 0), Ask("MOVE", 1)>>,
+                 <<Ask("MOVE", 3), Ask("ENABLE", 2), Ask("MOVE", 2)>>}
 
-Still == [frame |-> "GOOD", moved |-> 0, switch |-> FALSE]
+Alive(holder) == <<[Ask("HEARTBEAT", 0) EXCEPT !.holder = holder]>>
+
+Still == [valid |-> TRUE, raw |-> 0, switch |-> FALSE, reset |-> FALSE]
+Lost  == [Still EXCEPT !.valid = FALSE]
+Gone  == [Still EXCEPT !.raw = 2]
+Jump  == [Still EXCEPT !.raw = 7]
 
 Input(pedal, estop, one, two, requests) ==
-  [ pedal_no |-> pedal, pedal_nc |-> "OPEN", estop_loop |-> estop, deadline_missed |-> FALSE,
-    new_attachment |-> FALSE, config_pass |-> "NONE", any_valid |-> FALSE,
+  [ pedal_no |-> pedal, pedal_nc |-> "OPEN", estop_loop |-> estop, missed |-> 0,
+    new_attachment |-> FALSE, config_pass |-> "NONE", any_valid |-> FALSE, consent |-> 1,
     readings |-> (1 :> one) @@ (2 :> two), requests |-> requests, state_damaged |-> FALSE ]
 
 Held == IF system.mode = "MOTION" \/ system.pedal_armed THEN "CLOSED" ELSE "OPEN"
 
-Happenings == {[Still EXCEPT !.moved = 5], [Still EXCEPT !.frame = "MISSING"],
-               [Still EXCEPT !.switch = TRUE]}
-
 -------------------------------------------------------------------------------
 (* A tick *)
-NoTick == [in |-> Input("OPEN", "CLOSED", Still, Still, <<>>), system |-> system,
-           axes |-> axes, observed |-> axes,
-           command |-> [x \in Axes |-> NoDrive], answers |-> <<>>]
+NoTick == [command |-> [x \in Axes |-> NoDrive]]
 
 Init ==
   /\ system = Booted(c, TRUE, 1)
@@ -91,28 +94,23 @@ Accepted(tick, kinds, x) ==
 Step(in) ==
   \E tick \in {Tick(c, K, [system |-> system, axes |-> axes], in)} :
     /\ system' = ForgetSystem(tick.system)
-    /\ axes' = [x \in Axes |-> Forget(tick.system, tick.axes[x])]
+    /\ axes' = [x \in Axes |-> Forget(tick.axes[x])]
     /\ seen' = [x \in Axes |-> /\ tick.system.mode = "MOTION"
                                /\ seen[x] \/ Accepted(tick, {"MOVE", "HOME"}, x)]
     /\ io' = [in |-> in, system |-> tick.system, axes |-> tick.axes,
               observed |-> tick.observed.axes, command |-> tick.command,
               answers |-> tick.answers]
 
-OrdinaryTick == Met("OrdinaryTick") /\ \E pedal \in {"CLOSED", "OPEN"} :
-  Step(Input(pedal, "CLOSED", Still, Still, Alive(1)))
+TalkTick == Met("TalkTick") /\ \E pedal \in {"CLOSED", "OPEN"}, said \in Talk :
+  Step(Input(pedal, "CLOSED", Still, Still, Alive(1) \o said))
 
-RequestTick == Met("RequestTick") /\ \E wish \in Wishes :
-  Step(Input(Held, "CLOSED", Still, Still, Append(Alive(1), wish)))
+EventTick == Met("EventTick") /\ \E one \in {Still, Lost, Jump}, two \in {Still, Lost, Gone}, holder \in {1, 2} :
+  Step(Input(Held, "CLOSED", one, two, Alive(holder) \o Both("ENABLE", "MOVE")))
 
-EstopTick     == Met("EstopTick") /\ Step(Input(Held, "OPEN", Still, Still, Alive(1)))
-SilentTick    == Met("SilentTick") /\ Step(Input(Held, "CLOSED", Still, Still, <<>>))
-NewHolderTick == Met("NewHolderTick") /\ Step(Input(Held, "CLOSED", Still, Still, Alive(3 - system.holder)))
+QuietTick == Met("QuietTick") /\ \E estop \in {"OPEN", "CLOSED"}, one \in {Still, Lost} :
+  Step(Input(Held, estop, one, one, <<>>))
 
-EventTick == Met("EventTick") /\ \E event \in Happenings :
-  \/ Step(Input(Held, "CLOSED", event, Still, Alive(system.holder)))
-  \/ Step(Input(Held, "CLOSED", Still, event, Alive(system.holder)))
-
-Next == OrdinaryTick \/ RequestTick \/ EstopTick \/ SilentTick \/ NewHolderTick \/ EventTick
+Next == TalkTick \/ EventTick \/ QuietTick
 Spec == Init /\ [][Next]_vars
 
 -------------------------------------------------------------------------------
@@ -124,7 +122,7 @@ P1_gate ==
         /\ io'.system.mode = "MOTION"
         /\ io'.in.pedal_no = "CLOSED"
         /\ io'.in.estop_loop = "CLOSED"
-        /\ io'.in.readings[x].frame = "GOOD"
+        /\ io'.in.readings[x].valid
         /\ io'.axes[x].state \in {"MOVING", "HOMING"} ]_vars
 
 (* A new fault of any axis ends MOTION for all; so all homing ends as one. *)
@@ -167,10 +165,9 @@ TypeOK ==
 (* What the properties are about does happen: each says so. *)
 About ==
   [][ /\ Driven(1) /\ Driven(2) => Met("P1_gate")
-      /\ NewFault /\ axes[1].state = "HOMING" /\ axes[2].state = "ENABLED" => Met("P2_new_fault")
+      /\ NewFault /\ axes[1].state = "HOMING" => Met("P2_new_fault")
       /\ RequiredLost /\ system.pedal_armed => Met("P2_required_card")
       /\ (\A x \in Axes : axes'[x].state = "FAULTED") => Met("P8_latch")
-      /\ \A i \in 1..Len(io'.answers) :
-           io'.answers[i].verdict = "NO_SWITCH" => Met("P11_inert_refusal")
+      /\ (\E i \in 1..Len(io'.answers) : io'.answers[i].verdict = "NO_SWITCH") => Met("P11_inert_refusal")
       /\ Accepted(io', {"MOVE"}, 2) => Met("P11_other_axis") /\ Met("P12_no_leap") ]_vars
 ===============================================================================

@@ -8,14 +8,16 @@
    (a request's `door` stands for its number). Counts stop at the value from
    which on they decide nothing more; the kernel counts on to 2^32 - 1.
 
-   `c` has pedal_channels, app_timeout_ticks, lease_max_ticks,
+   `c` has pedal_channels, app_timeout_ticks, lease_max_ticks, power_up_ticks,
    pedal_debounce_ticks, pedal_disagree_ticks, bad_frame_limit, overrun_limit.
 
-   `in` has new_attachment, pedal_no, pedal_nc, estop_loop (Contacts),
-   deadline_missed, any_valid (a frame of any card was valid), and config_pass:
-   what the running check of the configuration says in this tick, "NONE" (the
-   pass is under way), "AGREES", "DIFFERS" or "INVALID" (it agrees with a
-   configuration that ilk_config_validate refuses). *)
+   `in` has new_attachment, pedal_no, pedal_nc, estop_loop (Contacts), missed (loop
+   periods without a tick since the last one), any_valid (a frame of any card was
+   valid), consent (the number that an entry to MOTION gets in this tick; the
+   environment gives each entry another one), and config_pass: what the running check
+   of the configuration says in this tick, "NONE" (the pass is under way), "AGREES",
+   "DIFFERS" or "INVALID" (it agrees with a configuration that ilk_config_validate
+   refuses). *)
 EXTENDS Types
 
 SystemType(c, holders) ==
@@ -27,7 +29,11 @@ SystemType(c, holders) ==
     estop: BOOLEAN,
     app_age_ticks: 0..c.app_timeout_ticks, app_alive: BOOLEAN, holder: holders,
     overruns_in_row: 0..c.overrun_limit, bus_bad_ticks: 0..c.bad_frame_limit,
+    power_ticks: 0..c.power_up_ticks, consent: Nat, runaway: BOOLEAN,
     config_sound: BOOLEAN ]
+
+(* The contactor, or the supply of the amplifiers. *)
+Power(s) == s.mode \in {"READY", "MOTION"}
 
 (* What holds between the fields at the end of every tick. It is inductive: a tick
    keeps it whatever comes in. *)
@@ -40,13 +46,17 @@ SystemInvariant(c, s) ==
   /\ s.pedal_released_ticks > 0 => s.app_alive /\ s.pedal = "RELEASED"
   /\ s.pedal_disagree_ticks > 0 => s.pedal = "DISAGREE"
   /\ s.app_alive => s.app_age_ticks < c.app_timeout_ticks
-  /\ s.mode \in {"READY", "MOTION"} =>
+  /\ (s.mode = "MOTION") = (s.consent # 0)
+  /\ ~Power(s) => s.power_ticks = 0
+  /\ Power(s) =>
        /\ ~s.estop
+       /\ ~s.runaway
        /\ s.config_sound
        /\ s.bus_bad_ticks < c.bad_frame_limit
        /\ s.overruns_in_row < c.overrun_limit
        /\ s.pedal_disagree_ticks <= c.pedal_disagree_ticks
-  /\ s.mode = "MOTION" => s.pedal = "PRESSED" /\ s.app_alive
+  /\ s.mode = "MOTION" =>
+       s.pedal = "PRESSED" /\ s.app_alive /\ s.power_ticks = c.power_up_ticks
 
 (* After ilk_init, or when a damaged state was rebuilt: nothing is known, so all
    is taken to be at its worst. *)
@@ -57,6 +67,7 @@ Rebuilt(c, cause, holder) ==
     pedal_disagree_ticks |-> 0, estop |-> TRUE,
     app_age_ticks |-> c.app_timeout_ticks, app_alive |-> FALSE,
     holder |-> holder, overruns_in_row |-> 0, bus_bad_ticks |-> 0,
+    power_ticks |-> 0, consent |-> 0, runaway |-> FALSE,
     config_sound |-> FALSE ]
 
 Booted(c, valid, holder) ==
@@ -110,7 +121,10 @@ ObservePedal(c, s, in) ==
 
 ObserveDeadline(c, s, in) ==
   [s EXCEPT !.overruns_in_row =
-     IF in.deadline_missed THEN CountUp(s.overruns_in_row, c.overrun_limit) ELSE 0]
+     IF in.missed > 0 THEN CountBy(s.overruns_in_row, in.missed, c.overrun_limit) ELSE 0]
+
+ObservePower(c, s) ==
+  [s EXCEPT !.power_ticks = IF Power(s) THEN CountUp(@, c.power_up_ticks) ELSE 0]
 
 ObserveEstop(s, in) == [s EXCEPT !.estop = (in.estop_loop # "CLOSED")]
 
@@ -118,14 +132,18 @@ ObserveSystem(c, s, in) ==
   LET app      == ObserveApp(c, s, in)
       pedal    == ObservePedal(c, app, in)
       deadline == ObserveDeadline(c, pedal, in)
-  IN  ObserveEstop(deadline, in)
+  IN  ObserveEstop(ObservePower(c, deadline), in)
 
 -------------------------------------------------------------------------------
-(* Phase 5. What a change of mode does to an axis is FollowMode in Axis. *)
+(* Phase 5. What a change of mode does to an axis is FollowMode in Axis. `alarms` is
+   what the axes say: new_fault, required_card_lost, runaway (one that is FAULTED
+   moves), restless (one that is DISABLED has just been moved); and whether the
+   configuration was found damaged. *)
 Disarmed(s) == [s EXCEPT !.pedal_armed = FALSE, !.pedal_pressed_ticks = 0,
                          !.pedal_released_ticks = 0]
 
-Enter(s, mode) == [Disarmed(s) EXCEPT !.mode = mode]
+Enter(s, mode) == [Disarmed(s) EXCEPT !.mode = mode, !.consent = 0,
+                                      !.power_ticks = IF mode = "LOCKED" THEN 0 ELSE @]
 
 (* Every cause that holds in this tick, the one that is kept first in front. *)
 CausesNow(c, s, alarms) ==
@@ -134,6 +152,7 @@ CausesNow(c, s, alarms) ==
   \o (IF s.bus_bad_ticks >= c.bad_frame_limit              THEN <<"BUS">>       ELSE <<>>)
   \o (IF s.pedal_disagree_ticks > c.pedal_disagree_ticks   THEN <<"PEDAL">>     ELSE <<>>)
   \o (IF s.overruns_in_row >= c.overrun_limit              THEN <<"OVERRUN">>   ELSE <<>>)
+  \o (IF alarms.runaway                                    THEN <<"RUNAWAY">>   ELSE <<>>)
 
 Lock(s, causes) ==
   LET locked == IF s.mode = "LOCKED" THEN s
@@ -147,27 +166,35 @@ MotionMustEnd(s, alarms) ==
   \/ alarms.new_fault
   \/ alarms.required_card_lost
 
+(* The app falls silent: what was seen of the pedal counts no more. *)
 Armed(c, s) ==
   IF ~s.app_alive THEN Disarmed(s)
   ELSE IF s.pedal_released_ticks >= c.pedal_debounce_ticks
        THEN [s EXCEPT !.pedal_armed = TRUE]
        ELSE s
 
+PressCompletes(c, s) == s.pedal_armed /\ s.pedal_pressed_ticks >= c.pedal_debounce_ticks
+
 MotionMayBegin(c, s, alarms) ==
-  /\ s.pedal_armed
-  /\ s.pedal = "PRESSED"
-  /\ s.pedal_pressed_ticks >= c.pedal_debounce_ticks
+  /\ s.power_ticks >= c.power_up_ticks
   /\ s.app_alive
   /\ ~alarms.required_card_lost
+  /\ ~alarms.restless
 
-ChangeMode(c, s, alarms) ==
-  LET causes == CausesNow(c, s, alarms)
-      armed  == Armed(c, s)
+(* A press that completes begins MOTION, or else the next try needs a release. *)
+WaitForPress(c, s, alarms, consent) ==
+  IF ~PressCompletes(c, s) THEN s
+  ELSE IF MotionMayBegin(c, s, alarms)
+       THEN [Enter(s, "MOTION") EXCEPT !.consent = consent]
+       ELSE Disarmed(s)
+
+ChangeMode(c, system, alarms, consent) ==
+  LET s      == [system EXCEPT !.runaway = alarms.runaway]
+      causes == CausesNow(c, s, alarms)
   IN  IF causes # <<>> THEN Lock(s, causes)
       ELSE IF s.mode = "MOTION"
            THEN IF MotionMustEnd(s, alarms) THEN Enter(s, "READY") ELSE s
-      ELSE IF s.mode = "READY"
-           THEN IF MotionMayBegin(c, armed, alarms) THEN Enter(armed, "MOTION") ELSE armed
+      ELSE IF s.mode = "READY" THEN WaitForPress(c, Armed(c, s), alarms, consent)
       ELSE s
 
 -------------------------------------------------------------------------------
@@ -178,6 +205,7 @@ CausePresent(s) ==
   \/ s.bus_bad_ticks # 0
   \/ s.overruns_in_row # 0
   \/ ~s.config_sound
+  \/ s.runaway
   \/ ~s.app_alive
 
 JudgeDoor(request, axes) ==
@@ -205,7 +233,7 @@ Heard(s, holder) ==
 
 ApplySystem(s, request) ==
   CASE request.kind = "HEARTBEAT" -> Heard(s, request.holder)
-    [] request.kind = "STOP"      -> IF s.mode = "MOTION" THEN Enter(s, "READY") ELSE s
+    [] request.kind = "STOP"      -> IF s.mode = "MOTION" THEN Enter(s, "READY") ELSE Disarmed(s)
     [] request.kind = "RESET"     ->
          [Enter(s, "READY") EXCEPT !.cause = "NONE", !.causes_seen = {}]
 ===============================================================================

@@ -27,15 +27,21 @@ export class Axis {
     this.track = page.getByRole("slider", { name: `${title} target` });
   }
 
-  async press(action: "Enable" | "Disable" | "Go Home" | "Set Home" | "Clear"): Promise<void> {
-    await this.row.getByRole("button", { name: `${action} ${this.title}`, exact: true }).click();
+  button(action: "Enable" | "Disable" | "Go Home" | "Set Home" | "Clear"): Locator {
+    return this.row.getByRole("button", { name: `${action} ${this.title}`, exact: true });
+  }
+
+  async press(action: Parameters<Axis["button"]>[0]): Promise<void> {
+    await this.button(action).click();
   }
 
   async expectState(state: string): Promise<void> {
     await expect(this.row.getByText(state, { exact: true })).toBeVisible();
   }
 
+  /** Once the page says no more that the kernel would refuse it: it wants power up and the axis at rest. */
   async enable(): Promise<void> {
+    await expect(this.button("Enable")).not.toHaveAttribute("data-foretold");
     await this.press("Enable");
     await this.expectState("ENABLED");
   }
@@ -236,8 +242,8 @@ export class ConsolePage {
   /** Enables every axis; what asks for all of them is told no until the last one is. */
   async enableAll(): Promise<void> {
     for (const row of await this.page.getByRole("listitem", { name: /^Axis / }).all()) {
-      await row.getByRole("button", { name: /^Enable/ }).click();
-      await expect(row.getByText("ENABLED", { exact: true })).toBeVisible();
+      const label = (await row.getAttribute("aria-label")) ?? "";
+      await this.axis(label.replace("Axis ", "")).enable();
     }
   }
 

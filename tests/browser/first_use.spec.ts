@@ -196,12 +196,15 @@ test("a jammed axis stalls, names the fault with its next step, and moves again 
   await expect(fault).toContainText("Look for an obstacle");
   await expect(fault.getByRole("link", { name: "STALL" })).toHaveAttribute("href", "#/codes/fault/STALL");
   await robot.expectMode("READY");
+  // At rest, which is asked first.
+  await expect(axis.button("Clear")).toHaveAccessibleDescription(/PEDAL_DOWN/);
   await axis.press("Clear");
   await axis.expectRefusal("PEDAL_DOWN");
 
   await robot.releasePedal();
   await jam.click();
   await expect(jam).toHaveAttribute("aria-pressed", "false");
+  await expect(axis.button("Clear")).not.toHaveAttribute("data-foretold");
   await axis.press("Clear");
   await axis.expectState("DISABLED");
   await axis.enable();

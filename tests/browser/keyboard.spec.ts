@@ -23,6 +23,7 @@ test.describe("with the pedal of the page", () => {
     await expect(front.authority).toContainText("(you)");
     await keyboard.press(front.unlock);
     await front.expectMode("READY");
+    await expect(axis.button("Enable")).not.toHaveAttribute("data-foretold");
     await keyboard.press(front.button("Enable Probe rotation"));
     await axis.expectState("ENABLED");
     await keyboard.reach(axis.track);
@@ -50,7 +51,7 @@ test("keys alone find a code, add a user, read the audit and change a password",
   };
   await open("Codes");
   await keyboard.type(page.getByRole("searchbox", { name: "Find" }), "stall");
-  await expect(page.getByRole("article", { name: "STALL" })).toBeVisible();
+  await expect(robot.panel("Faults").getByRole("article", { name: "STALL" })).toBeVisible();
   await expect(page.getByRole("article", { name: "ESTOP" })).toHaveCount(0);
 
   await open("Users");

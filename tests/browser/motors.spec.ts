@@ -29,6 +29,7 @@ test("Go Home runs an axis to its switch, and its limits become known", async ({
   await robot.pressPedal();
   await axis.expectState("HOMING");
   await expect(axis.row.getByText("UNHOMED")).toHaveCount(0);
+  await expect(axis.row.getByText("homed at switch")).toBeVisible();
   await expect(axis.row.getByText("unknown")).toHaveCount(0);
   await expect(axis.row.getByText("34.93 mm")).toBeVisible();
   await expect(robot.proposal(1)).toContainText("done");
@@ -86,6 +87,7 @@ test("Set Home of an axis with a switch asks before it overrides the switch", as
 
   await axis.setHome(true);
   await expect(question).toHaveCount(0);
+  await expect(axis.row.getByText("homed by hand")).toBeVisible();
   await robot.open("Audit");
   await expect(robot.panel("Audit")).toContainText("lateral set-home, its switch overridden");
 });

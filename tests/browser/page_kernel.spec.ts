@@ -41,7 +41,8 @@ test("a drag shows what its release would bring, and the code leads to its page"
   await expect(code).toHaveAttribute("aria-current", "location");
   await expect(code).toContainText("Enable the axis.");
   await robot.panel("Codes").getByRole("searchbox", { name: "Find" }).fill("obstacle encoder");
-  await expect(robot.panel("Codes").getByRole("article")).toHaveCount(1);
+  // The gate that blocks it, and the fault.
+  await expect(robot.panel("Codes").getByRole("article")).toHaveCount(2);
   await expect(robot.panel("Faults").getByRole("article", { name: "STALL" })).toBeVisible();
 });
 

@@ -14,6 +14,7 @@ for (const robotName of ["neuro", "prostate"] as const) {
       const lastFrame = slots.nth(1).getByRole("cell").nth(3);
       await expect(lastFrame).toHaveText(/^\d+ ms$/);
       await expect(status).toContainText("LOCKED by BOOT");
+      await expect(status).toContainText("Power off");
       await robot.panel("Bench").getByText("More faults").click();
       const card = robot.panel("Bench").getByRole("group", { name: "Faults of a card" });
       await card.getByLabel("Card").selectOption("0");
@@ -73,6 +74,26 @@ test("causes, modes and verdicts lead to their place in the catalog, once there 
     "href",
     "#/codes/verdict/DISABLED",
   );
+});
+
+test("power comes with Unlock and goes with the next lock, in status and API", async ({ robot, page }) => {
+  const status = robot.panel("Status");
+  const answer = () => page.evaluate(async () => (await fetch("/api/status")).json());
+  await robot.unlockRobot();
+  await expect(status).toContainText("Power on");
+  expect(await answer()).toMatchObject({ power: "on", consent: 0 });
+  const presses = new Set<number>();
+  for (let press = 1; press <= 2; press++) {
+    await robot.pressPedal();
+    await robot.expectMode("MOTION");
+    presses.add((await answer()).consent);
+    await robot.releasePedal();
+  }
+  expect(presses.size).toBe(2);
+  expect(presses).not.toContain(0);
+  await robot.button("Pull E-stop").click();
+  await robot.expectMode("LOCKED");
+  await expect(status).toContainText("Power off");
 });
 
 test("corrupted frames are counted at their card", async ({ robot }) => {

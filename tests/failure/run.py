@@ -3,10 +3,12 @@
 
 A fault is a file tests/failure/NAME.patch. Before the diff it says, one `# key: value` a line,
 
-  target  what to build and run: the CMake target of a GoogleTest program, or `pytest`
+  target  what to build and run: the CMake target of a GoogleTest program, or `pytest`, after which may stand
+          the CMake target that its test needs, such as `pytest programs`
   test    the test that must fail: a --gtest_filter, or a pytest node id
   expect  a regular expression that the failing output must contain
   why     which promise the fault breaks
+  proof   optional: `RUNG PART: MESSAGE`, what a proof must say of it (verification/mutation/faults.py)
 
 A fault counts as noticed when the test passes without the patch, and with it still builds, fails, and
 says what `expect` wants. Everything else, a patch that no longer applies included, is a failure.
@@ -39,6 +41,7 @@ from built import Build, keys_in, output_of
 ROOT = Path(__file__).resolve().parents[2]
 KEPT = "verification/evidence/kept/noticed-faults"
 KEYS = {"target", "test", "expect", "why"}
+OPTIONAL = {"proof"}
 IN_COPY = Path(__file__).with_name("in_copy.sh")
 NO_COMMAND = {
     101: "no copy of the tree: an overlay needs root or user namespaces",
@@ -69,7 +72,8 @@ class Fault:
 def read_fault(path: Path) -> Fault:
     """Reads the header of a patch; raises UnusableError naming the file and the key that is wrong."""
     head = path.read_text("utf-8").partition("\n--- ")[0]
-    found = dict(re.findall(r"^# (\w+): (.+)$", head, re.MULTILINE))
+    told = dict(re.findall(r"^# (\w+): (.+)$", head, re.MULTILINE))
+    found = {key: text for key, text in told.items() if key not in OPTIONAL}
     if set(found) != KEYS:
         wrong = ", ".join(sorted(set(found) ^ KEYS))
         raise UnusableError(f"{path.name}: header keys missing or unknown: {wrong}; see tests/failure/run.py")
@@ -92,7 +96,9 @@ def keys_of(root: Path, paths: Sequence[Path]) -> dict[Path, str]:
     keys = {}
     for path in paths if (build.folder / "build.ninja").is_file() else ():
         with contextlib.suppress(UnusableError):
-            keys[path] = build.program_key(read_fault(path).target, compiler, path.read_text("utf-8"))
+            keys[path] = build.program_key(
+                read_fault(path).target.split()[-1], compiler, path.read_text("utf-8")
+            )
     return {path: key for path, key in keys.items() if key}
 
 
@@ -158,8 +164,9 @@ def run_in_copy(
 
 def run_test(root: Path, fault: Fault, patch: Path | None) -> subprocess.CompletedProcess[str]:
     """Runs the test that the fault names, with the patch or without one."""
-    if fault.target == "pytest":
-        return run_in_copy(root, patch, "", [sys.executable, "-m", "pytest", "-q", fault.test])
+    runner, _, needed = fault.target.partition(" ")
+    if runner == "pytest":
+        return run_in_copy(root, patch, needed, [sys.executable, "-m", "pytest", "-q", fault.test])
     program = f"build/release/bin/{fault.target}"
     return run_in_copy(root, patch, fault.target, [program, f"--gtest_filter={fault.test}"])
 

@@ -102,8 +102,8 @@ def to_motion(kernel: BareKernel, client: LinkClient, slot: int) -> None:
     """Unlocks, references and enables the axis, presses the pedal and waits for MOTION."""
     client.run(30)
     assert client.ask("RESET") == "ACCEPTED"
-    assert client.ask("SET_HOME", axis=slot) == "ACCEPTED"
-    assert client.ask("ENABLE", axis=slot) == "ACCEPTED"
+    client.ask_at_rest("SET_HOME", axis=slot)
+    client.ask_at_rest("ENABLE", axis=slot)
     client.run(30)
     kernel.plant("pedal", pressed=True)
     deadline = time.monotonic() + DEADLINE_S
@@ -113,4 +113,4 @@ def to_motion(kernel: BareKernel, client: LinkClient, slot: int) -> None:
 
 
 def mode(client: LinkClient) -> str:
-    return name_of("ILK_MODE", client.snapshot().state.mode)
+    return name_of("ILK_MODE", client.snapshot().state.system.mode)

@@ -54,12 +54,13 @@ class LinkClient:
         self.kernel_map = mmap.mmap(self.kernel_fd, self.hello.kernel_region_bytes, prot=mmap.PROT_READ)
         self.app_map = mmap.mmap(self.app_fd, self.hello.app_region_bytes)
         self.app = AppRegion.from_buffer(self.app_map)
+        self.socket.send(CONSTANTS["ILK_LINK_MAGIC"].to_bytes(4, "little"))
         self.sequence = 0
         self.events_read = 0
         self.verdicts: dict[int, str] = {}
         self.verdict_counts: Counter[str] = Counter()
         self.verdicts_of: Counter[int] = Counter()
-        self.app.seen_tick = self.snapshot().state.tick
+        self.app.seen_tick = self.snapshot().state.system.tick
 
     def close(self) -> None:
         del self.app
@@ -95,25 +96,27 @@ class LinkClient:
             self.app.request_head = (self.app.request_head + 1) % WORD
 
     def request(self, kind: str, **fields: int) -> int:
-        """Writes a good record; returns its sequence number."""
+        """Writes a good record, MOVE and HOME for this press of the pedal; returns its sequence number."""
         self.sequence += 1
+        if kind in ("MOVE", "HOME"):
+            fields.setdefault("consent", self.snapshot().state.system.consent)
         self.write(request_record(kind, self.sequence, **fields))
         return self.sequence
 
     def run(self, ticks: int, heartbeat: bool = True) -> ctypes.Structure:
         """Lets the simulated clock go on by at least `ticks`, alive in between; returns the last snapshot."""
-        end = self.snapshot().state.tick + ticks
+        end = self.snapshot().state.system.tick + ticks
         deadline = time.monotonic() + DEADLINE_S
         while True:
             snapshot = self.snapshot()
             self.read_events()
-            if snapshot.state.tick >= end:
+            if snapshot.state.system.tick >= end:
                 return snapshot
             if time.monotonic() > deadline:
-                raise TimeoutError(f"tick {snapshot.state.tick}, waiting for {end}")
-            if heartbeat and snapshot.state.app_age_ticks > 20:
+                raise TimeoutError(f"tick {snapshot.state.system.tick}, waiting for {end}")
+            if heartbeat and snapshot.state.system.app_age_ticks > 20:
                 self.request("HEARTBEAT", holder=1)
-            self.app.seen_tick = min(snapshot.state.tick, max(0, end - TICKS_AHEAD))
+            self.app.seen_tick = min(snapshot.state.system.tick, max(0, end - TICKS_AHEAD))
 
     def ask(self, kind: str, **fields: int) -> str:
         """Writes a good record and runs until its verdict is there."""
@@ -124,6 +127,14 @@ class LinkClient:
             if time.monotonic() > deadline:
                 raise TimeoutError(f"no verdict for {kind}")
         return self.verdicts[sequence]
+
+    def ask_at_rest(self, kind: str, **fields: int) -> None:
+        """Asks until the axis is at rest and its power up, as ENABLE and SET_HOME want it."""
+        deadline = time.monotonic() + DEADLINE_S
+        while (verdict := self.ask(kind, **fields)) != "ACCEPTED":
+            assert verdict == "BUSY", f"{kind}: {verdict}"
+            if time.monotonic() > deadline:
+                raise TimeoutError(f"{kind}: the axis does not come to rest")
 
     def read_events(self) -> list[ctypes.Structure]:
         """Events since the last call; verdicts are also kept by sequence number, and counted."""

@@ -43,6 +43,12 @@ def act(stack: Stack, action: str, slot: int = LATERAL) -> None:
     stack.api.post(f"/api/motors/{slot}/{action}").raise_for_status()
 
 
+def enable(stack: Stack, slot: int = LATERAL) -> None:
+    """As soon as its power is up and the axis at rest."""
+    path = f"/api/motors/{slot}/enable"
+    wait_until(f"{slot} enabled", lambda: stack.api.post(path).status_code == 200)
+
+
 def press(stack: Stack) -> None:
     """Waits until the released pedal is armed, presses it and waits for MOTION."""
     stack.control("pedal", pressed=False)
@@ -67,7 +73,7 @@ def home_all(stack: Stack) -> None:
 
     for axis in motors():
         set_home(stack, axis["slot"])
-        act(stack, "enable", axis["slot"])
+        enable(stack, axis["slot"])
     wait_until("homed", lambda: all(axis["homed"] for axis in motors()))
 
 
@@ -75,7 +81,7 @@ def to_motion(stack: Stack, slot: int = LATERAL) -> None:
     """Unlocks, references the axis where it stands, enables it and presses the pedal."""
     unlock(stack)
     set_home(stack, slot)
-    act(stack, "enable", slot)
+    enable(stack, slot)
     press(stack)
 
 

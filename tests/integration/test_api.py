@@ -12,7 +12,7 @@ from conftest import StackFactory
 from interface import METHODS, judge, paths, spec
 from motion import (
     LATERAL,
-    act,
+    enable,
     motor,
     open_stream,
     press,
@@ -201,7 +201,7 @@ def test_a_released_pedal_pauses_and_the_next_press_goes_on(stack: StackFactory)
 def test_stop_aborts_every_open_proposal_and_ends_motion(stack: StackFactory) -> None:
     robot = stack(speed=1)
     to_motion(robot)
-    act(robot, "enable", ROTATION)
+    enable(robot, ROTATION)
     numbers = [propose(robot, FAR), propose(robot, 100, ROTATION)]
     assert judge(robot.api.post("/api/stop")).json()["verdict"] == "ACCEPTED"
     assert {proposal(robot, number)["state"] for number in numbers} == {"aborted"}

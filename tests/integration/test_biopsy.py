@@ -4,7 +4,7 @@ import math
 
 import pytest
 from conftest import StackFactory
-from motion import act, motor, press, proposal, record, set_home, unlock, wait_for_proposal, wait_until
+from motion import enable, motor, press, proposal, record, set_home, unlock, wait_for_proposal, wait_until
 from stack import Stack
 
 ROTATION, INSERTION, FORCE_CARD = 0, 1, 3
@@ -20,7 +20,7 @@ def ready(stack: StackFactory) -> Stack:
     unlock(robot)
     set_home(robot, ROTATION)
     for axis in (ROTATION, INSERTION):
-        act(robot, "enable", axis)
+        enable(robot, axis)
     number = robot.api.post("/api/proposals", json={"kind": "home", "slot": INSERTION}).json()["id"]
     press(robot)
     wait_for_proposal(robot, number, "done")

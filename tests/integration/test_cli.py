@@ -45,7 +45,7 @@ def test_model_compile_writes_the_same_sealed_words_each_time(tmp_path: Path) ->
     first, second = (file.read_bytes() for file in files)
     assert first == second
     version, size = struct.unpack_from("<2I", first)
-    assert (version, size) == (1, len(first))
+    assert (version, size) == (2, len(first))
     assert struct.unpack("<I", first[-4:])[0] == zlib.crc32(first[:-4])
 
 

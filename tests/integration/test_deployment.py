@@ -5,6 +5,7 @@ import re
 import signal
 import socket
 import subprocess
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -279,3 +280,17 @@ def test_a_kernel_whose_cards_are_not_there_names_what_is_missing(simulator: Pat
     assert refused.returncode == 2
     assert "slot 1 has a card in the configuration" in refused.stderr
     assert not (simulator / "link").exists()
+
+
+def test_the_example_of_a_wiring_names_every_line_that_a_robot_needs(simulator: Path) -> None:
+    robot = tomllib.loads((ROOT / "models/robots/neuro.toml").read_text("utf-8"))
+    slots = [one["slot"] for kind in ("axis", "sensor") for one in robot.get(kind, [])]
+    example = (ROOT / "app/packaging/wiring.example").read_text("utf-8").splitlines()
+    lines = [line for line in example if not line.startswith(("card", "gpio"))]
+    lines += ["gpio /dev/nowhere", *(f"card {slot} /dev/nowhere{slot}" for slot in slots)]
+    wiring = simulator / "wiring"
+    wiring.write_text("\n".join(lines) + "\n")
+    given = options(config=simulator / "r.ilkc", bus=f"spi:{wiring}", link=simulator / "link")
+    refused = run(BIN / "interlock-kernel", *given)
+    assert refused.returncode == 2
+    assert "device '/dev/nowhere" in refused.stderr

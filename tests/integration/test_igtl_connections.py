@@ -21,13 +21,7 @@ from controllers import (
     ticks_around,
 )
 from interface import judge
-from motion import (
-    is_driven,
-    propose,
-    to_motion,
-    wait_for_proposal,
-    wait_until,
-)
+from motion import is_driven, propose, to_motion, wait_for_proposal, wait_until
 from navigator import OK, Navigator, text
 from stack import Stack
 

@@ -9,7 +9,7 @@ import pytest
 from conftest import RobotFile, StackFactory
 from controllers import connections, make_controller
 from library_navigator import Library, Tracking
-from motion import act, home_all, press, unlock, wait_for_mode, wait_until
+from motion import enable, home_all, press, unlock, wait_for_mode, wait_until
 from navigation_phases import ENTRY, TARGET, Phases, aimed, approve, short, to_targeting
 from navigator import OK, Poses, Query, Rows, Status, text, transform
 from stack import Stack
@@ -77,7 +77,7 @@ def test_the_phases_of_a_placement_one_after_the_other(meet: Meeting, dialect: s
     navigator.phase("STOP", "STOP 1", number="0005")
     navigator.phase("EMERGENCY", "EMERGENCY 1", number="0006")
     assert all(axis["state"] == "DISABLED" for axis in robot.api.get("/api/motors").json())
-    act(robot, "enable", robot.api.get("/api/motors").json()[0]["slot"])
+    enable(robot, robot.api.get("/api/motors").json()[0]["slot"])
     navigator.phase("MANUAL", "MANUAL 1", number="0007")
     assert all(axis["state"] == "DISABLED" for axis in robot.api.get("/api/motors").json())
     assert navigator.ask(Query("STATUS", "CURRENT_STATUS")).name == "MANUAL"

@@ -19,7 +19,7 @@ from link_client import TICKS_AHEAD, LinkClient
 from link_layout import name_of
 from motion import (
     LATERAL,
-    act,
+    enable,
     is_driven,
     press,
     propose,
@@ -150,7 +150,7 @@ def test_an_app_with_a_twentieth_of_a_core_is_waited_for(
     to_motion(robot)
     with starve(robot.pid("app")):
         number = propose(robot, NEAR)
-        act(robot, "enable")
+        enable(robot)
         wait_for_proposal(robot, number, "done", STARVED_S)
         assert robot.status()["mode"] == "MOTION"
         robot.control("pedal", pressed=False)
@@ -182,8 +182,8 @@ def test_each_request_has_one_verdict_when_its_app_was_not_scheduled(clock: str)
         to_motion_by_link(kernel, client, LATERAL)
         kinds = ("HEARTBEAT", "ENABLE", "MOVE", "STOP", "ENABLE", "HEARTBEAT", "MOVE", "DISABLE")
         requests = [client.request(kind, axis=LATERAL, target_counts=-900, lease_ticks=50) for kind in kinds]
-        begun = client.snapshot().state.tick
-        wait_until("given up", lambda: client.snapshot().state.tick > begun + 5 * APP_TIMEOUT_TICKS)
+        begun = client.snapshot().state.system.tick
+        wait_until("given up", lambda: client.snapshot().state.system.tick > begun + 5 * APP_TIMEOUT_TICKS)
         client.read_events()
         assert [client.verdicts_of[request] for request in requests] == [1] * len(requests)
         assert mode(client) == "READY"
@@ -193,7 +193,7 @@ def test_each_request_has_one_verdict_when_its_app_was_not_scheduled(clock: str)
 def waits(kernel: BareKernel, client: LinkClient) -> None:
     """Until the kernel waits for what was just frozen."""
     seen = -1
-    while seen != (seen := client.snapshot().state.tick):
+    while seen != (seen := client.snapshot().state.system.tick):
         client.app.seen_tick = seen
         threading.Event().wait(0.1)
 
@@ -208,7 +208,7 @@ def test_a_simulator_that_dies_while_it_is_waited_for_is_a_lost_bus_at_once() ->
         kernel.sim.kill()
         client.run(20)
         assert mode(client) == "LOCKED"
-        assert name_of("ILK_CAUSE", client.snapshot().state.cause) == "BUS"
+        assert name_of("ILK_CAUSE", client.snapshot().state.system.cause) == "BUS"
         client.close()
 
 

@@ -16,7 +16,7 @@ import pytest
 from bare_kernel import DEADLINE_S
 from conftest import StackFactory
 from interface import judge
-from motion import LATERAL, act, home_all, motor, press, propose, unlock, wait_for_mode, wait_until
+from motion import LATERAL, enable, home_all, motor, press, propose, unlock, wait_for_mode, wait_until
 from navigator import OK, Navigator, Poses, Query, Rows, text, transform
 from stack import Stack
 
@@ -184,7 +184,7 @@ def test_homing_becomes_a_proposal_that_somebody_has_to_approve(
     robot: Stack, navigate: Callable[..., Navigator]
 ) -> None:
     for axis in robot.api.get("/api/motors").json():
-        act(robot, "enable", axis["slot"])
+        enable(robot, axis["slot"])
     navigator = navigate()
     make_controller(robot)
     answer = navigator.ask(text("START_UP", ""))

@@ -4,7 +4,7 @@ import math
 
 import pytest
 from conftest import StackFactory
-from motion import act, press, proposal, set_home, unlock, wait_for_proposal
+from motion import enable, press, proposal, set_home, unlock, wait_for_proposal
 from stack import Stack
 from test_paths import HEAD, LATERAL, propose, ready
 
@@ -62,7 +62,7 @@ def test_a_refused_move_names_the_check_that_failed_and_is_seen_beyond_its_limit
 def test_homing_has_checks_but_nothing_to_plot(stack: StackFactory) -> None:
     robot = stack()
     unlock(robot)
-    act(robot, "enable", LATERAL)
+    enable(robot, LATERAL)
     found = plan(robot, propose(robot, kind="home", slot=LATERAL))
     assert outcomes(found)["switches"] == "passed"
     assert (found["profile"]["basis"], found["ghost"]) == ("none", None)
@@ -73,7 +73,7 @@ def test_a_ghost_needs_homed_axes_and_says_which_are_not(stack: StackFactory) ->
     robot = stack()
     unlock(robot)
     set_home(robot, HEAD)
-    act(robot, "enable", HEAD)
+    enable(robot, HEAD)
     found = plan(robot, propose(robot, slot=HEAD, target=-5.0))
     assert found["profile"]["basis"] == "way"
     assert found["ghost_problem"]["code"] == "NOT_HOMED"

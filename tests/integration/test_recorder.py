@@ -94,8 +94,8 @@ class RecordedKernel:
     def lock_by_estop(self) -> int:
         """Pulls the E-stop; returns the kernel's counter after the tick that locked."""
         self.plant("estop", pulled=True)
-        wait_until("locked by the E-stop", lambda: self.app.run(5).state.estop == 1)
-        return self.app.snapshot().state.cause_tick + 1
+        wait_until("locked by the E-stop", lambda: self.app.run(5).state.system.estop == 1)
+        return self.app.snapshot().state.system.cause_tick + 1
 
     def close(self) -> None:
         self.app.close()
@@ -144,7 +144,7 @@ def test_killed_kernel_leaves_its_last_tick(recorded: RecordedKernelFactory) -> 
     kernel.kernel.kill()
     kernel.kernel.wait()
     _, last = replayed_ticks(kernel.wait_for_file("end"))
-    assert last >= kernel.app.snapshot().state.tick
+    assert last >= kernel.app.snapshot().state.system.tick
     wait_until("the memory is gone", lambda: not holders(black_box))
 
 
@@ -153,7 +153,7 @@ def test_killed_app_does_not_end_the_recording(recorded: RecordedKernelFactory) 
     kernel.app.run(200)
     kernel.app.close()
     kernel.app = kernel.attach()
-    seen = kernel.app.snapshot().state.tick
+    seen = kernel.app.snapshot().state.system.tick
     assert stop(kernel.kernel) == 0
     first, last = replayed_ticks(kernel.wait_for_file("continuous"))
     assert first == 1
@@ -187,7 +187,7 @@ def test_cut_off_recording_ends_with_its_last_whole_block(recorded: RecordedKern
     wait_until("blocks", lambda: any(file.stat().st_size > 150_000 for file in kernel.recordings.iterdir()))
     kernel.recorder.kill()
     kernel.recorder.wait()
-    seen = kernel.app.snapshot().state.tick
+    seen = kernel.app.snapshot().state.system.tick
     (part,) = kernel.recordings.glob("*.part")
     first, last = replayed_ticks(part)
     assert first == 1
@@ -371,7 +371,7 @@ def test_last_ticks_that_the_disk_refused_are_written_when_it_takes_them(
     assert stop(kernel.recorder) == 0
     (end,) = kernel.files("end")
     _, last = replayed_ticks(end)
-    assert last >= kernel.app.snapshot().state.tick
+    assert last >= kernel.app.snapshot().state.system.tick
 
 
 def test_fault_of_an_axis_is_recorded_by_interlock_run(stack: StackFactory) -> None:

@@ -13,13 +13,24 @@ import jsonschema
 import pytest
 from bare_kernel import BIN, DEADLINE_S, ROOT
 from conftest import StackFactory
-from motion import act, motor, press, propose, to_motion, unlock, wait_for_mode, wait_for_proposal, wait_until
+from motion import (
+    enable,
+    motor,
+    press,
+    propose,
+    to_motion,
+    unlock,
+    wait_for_mode,
+    wait_for_proposal,
+    wait_until,
+)
 from stack import Stack
 from test_run import DONE, REFUSED, interlock
 
 FILES = ROOT / "tests/integration/robots"
 TRAINER = FILES / "trainer.toml"
-BROKEN = tomllib.loads((FILES / "broken.toml").read_text())
+UNWORKABLE = tomllib.loads((FILES / "unworkable.toml").read_text())
+BROKEN = tomllib.loads((FILES / "broken.toml").read_text()) | UNWORKABLE
 ROTATION = 0
 DRILL = 0
 GRIP = 5
@@ -29,9 +40,9 @@ SCHEMA = json.loads((ROOT / "models/robots/robot.schema.json").read_text())
 # SHA-256 of the compiled configuration. Another value means that the kernel will be told something else: say
 # so in the commit that changes it.
 COMPILED = {
-    "desk": "f40925467aedf0e109b0e7b81e7a2f338b351decad07c3c8fa6641aaf54b9f98",
-    "neuro": "75b2e1469e1b3bafda105f6d9bf443a9f4b47eee276b1ec5ded4a726a89189d7",
-    "prostate": "d60262a837688aad3315025f564814c6681ec20a8dc7253be9edeb86ab8bf2e7",
+    "desk": "d51ead7a84cd09cf47e5d91e1182eda98086fc25282e6d62b4f4d9630cd08a31",
+    "neuro": "0414233d838ca5a1c127f076ab9591afe480ba42401085497e18ddf78d1c4a56",
+    "prostate": "01e54491b77d87b51feece1b6a619f8de6620ad05de1eb6a03a662f40d965567",
 }
 
 
@@ -62,7 +73,8 @@ def model(command: str, folder: Path, *arguments: str) -> subprocess.CompletedPr
 
 
 def test_there_are_broken_files_enough_to_trust_the_reader() -> None:
-    assert len(BROKEN) >= 40
+    assert len(BROKEN) >= 80
+    assert len(UNWORKABLE) >= 24
 
 
 @pytest.mark.parametrize("case", BROKEN)
@@ -182,7 +194,7 @@ def test_model_check_tells_programs_what_is_wrong(tmp_path: Path) -> None:
     assert json.loads(checked.stdout) == {
         "valid": False,
         "file": "broken.toml",
-        "line": 109,
+        "line": 117,
         "key": "axis.rear_a.slot",
         "problem": 'slot 0 carries "drill" already',
         "expected": "a slot of its own",
@@ -235,7 +247,7 @@ def test_robot_of_the_integrators_guide_homes_as_a_whole_and_moves(stack: StackF
     assert desk.status()["robot"] == "desk"
     unlock(desk)
     for slot in DESK_SLOTS:
-        act(desk, "enable", slot)
+        enable(desk, slot)
     number = desk.api.post("/api/proposals", json={"kind": "home"}).raise_for_status().json()["id"]
     press(desk)
     wait_for_proposal(desk, number, "done")

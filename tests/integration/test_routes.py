@@ -11,7 +11,7 @@ from conftest import StackFactory
 from interface import judge
 from motion import (
     LATERAL,
-    act,
+    enable,
     motor,
     open_stream,
     press,
@@ -124,7 +124,7 @@ def test_one_side_of_the_prostate_robot_does_not_home_while_the_other_is_unknown
     sliders = [slot for slot in range(10) if "slider" in motor_title(prostate, slot)]
     assert len(sliders) == 4
     for slot in sliders:
-        act(prostate, "enable", slot)
+        enable(prostate, slot)
     for draft in ({"step": "left_home"}, {"step": "right_home"}, *({"slot": slot} for slot in sliders)):
         refused = prostate.api.post("/api/proposals", json={"kind": "home", **draft})
         assert "part" in problem(refused, 409, "SEPARATION")["detail"]
@@ -137,7 +137,7 @@ def test_positions_outlive_the_robot_and_come_back_by_restore(stack: StackFactor
     before = stack()
     unlock(before)
     set_home(before)
-    act(before, "enable")
+    enable(before)
     press(before)
     wait_for_proposal(before, propose(before, -300), "done")
     file = saved(before)
@@ -253,7 +253,7 @@ def test_the_robot_goes_home_by_its_mode_and_back(robot: Stack) -> None:
     problem(robot.api.put("/api/mode", json={"mode": "home"}), 409, "MODE")
     unlock(robot)
     for axis in robot.api.get("/api/motors").json():
-        act(robot, "enable", axis["slot"])
+        enable(robot, axis["slot"])
     assert judge(robot.api.put("/api/mode", json={"mode": "home"})).json()["mode"] == "home"
     assert robot.status()["app_mode"] == "home"
     draft = {"slot": LATERAL, "target_counts": 0}
@@ -267,7 +267,7 @@ def test_the_robot_homes_by_its_mode_and_is_manual_again(robot: Stack) -> None:
     unlock(robot)
     axes = robot.api.get("/api/motors").json()
     for axis in axes:
-        act(robot, "enable", axis["slot"])
+        enable(robot, axis["slot"])
     judge(robot.api.put("/api/mode", json={"mode": "home"})).raise_for_status()
     press(robot)
     wait_until("manual again", lambda: robot.status()["app_mode"] == "manual")

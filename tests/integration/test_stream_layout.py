@@ -65,7 +65,9 @@ def test_the_stream_shows_what_the_paths_show(stack: StackFactory) -> None:
     assert bool(header["app_alive"]) == status["app_alive"]
     assert header["holder"] == status["holder"]
     assert header["overruns"] == status["overruns"]
-    assert header["flags"] == status["simulated"] | status["degraded"] << 1 | (status["clock"] == "sim") << 2
+    power = (status["power"] != "off") << 4 | (status["power"] == "on") << 5
+    host = status["simulated"] | status["degraded"] << 1 | (status["clock"] == "sim") << 2
+    assert header["flags"] == host | power
     assert f"{header['config_crc']:08x}" == status["config_crc"]
     lamps = header["lamps"].to_bytes(4, "little")
     assert {name_of("lamp", lamp): name_of("colour", colour) for lamp, colour in enumerate(lamps)} == status[
@@ -78,7 +80,9 @@ def test_the_stream_shows_what_the_paths_show(stack: StackFactory) -> None:
         assert name_of("axis_state", slot["state"]) == motor["state"]
         assert name_of("fault", slot["fault"]) == motor["fault"]
         assert slot["fault_value"] == motor["fault_value"]
-        assert bool(slot["flags"] & 1) == motor["homed"]
+        assert bool(slot["flags"] & 1) == motor["homed"] == (motor["homed_by"] != "NOT")
+        assert bool(slot["flags"] & 32) == (motor["homed_by"] == "BY_HAND")
+        assert slot["home_difference_counts"] == motor["home_difference_counts"]
         assert bool(slot["flags"] & 2) == motor["switch"]
         assert slot["flags"] & 12 == 12
         assert name_of("gate", slot["gate"]) == motor["gate"]

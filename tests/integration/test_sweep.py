@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from bare_kernel import BIN, ROOT
 from conftest import StackFactory
-from motion import act, motor, press, proposal, set_home, unlock, wait_for_proposal, wait_until
+from motion import enable, motor, press, proposal, set_home, unlock, wait_for_proposal, wait_until
 from stack import Stack
 
 ROTATION = 0
@@ -17,7 +17,7 @@ def ready(stack: StackFactory) -> Stack:
     robot = stack(robot="prostate")
     unlock(robot)
     set_home(robot, ROTATION)
-    act(robot, "enable", ROTATION)
+    enable(robot, ROTATION)
     return robot
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from bare_kernel import BIN
-from motion import act, motor, press, propose, set_home, unlock, wait_until
+from motion import enable, motor, press, propose, set_home, unlock, wait_until
 from stack import Stack
 
 # An axis of each robot that is homed where it stands, and a setpoint for it.
@@ -55,7 +55,7 @@ def check_stalls(robot: Stack, axis: str) -> None:
     unlock(robot)
     set_home(robot, axis)
     assert motor(robot, slot)["fault"] == "NONE"
-    act(robot, "enable", slot)
+    enable(robot, slot)
     robot.control("jam", slot=slot, jammed=True)
     press(robot)
     propose(robot, SETPOINT_COUNTS, slot)

@@ -79,7 +79,7 @@ def test_gains_make_a_difference_and_the_same_command_gives_the_same_answer() ->
     ("arguments", "code", "reason"),
     [
         (("--axis", "elbow"), REFUSED, 'no axis "elbow"'),
-        (("--axis", "yaw", "--move", "600"), REFUSED, "yaw reaches -1210 to -4"),
+        (("--axis", "yaw", "--move", "600"), REFUSED, "yaw reaches -1210 to -7"),
         (("--axis", "yaw", "--position-gain", "-1"), REFUSED, "position gain is out of range"),
         (("--axis", "yaw", "--cruise", "nan"), REFUSED, "cruise_velocity"),
         (("--axis", "yaw", "--move", "far"), USAGE, "--move"),

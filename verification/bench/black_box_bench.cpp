@@ -44,7 +44,7 @@ std::uint64_t timed_tick(Run& run) {
   const std::uint32_t count = world_requests(&run.world, &run.config, &run.state, run.requests);
   ilk_step(&run.config, &run.state, &run.in, run.requests, count, &run.out);
   const auto begun = std::chrono::steady_clock::now();
-  ilk_black_box_note(&run.box, run.state.tick, &run.state, &run.in, run.requests, count, &run.out);
+  ilk_black_box_note(&run.box, run.state.system.tick, &run.state, &run.in, run.requests, count, &run.out);
   return static_cast<std::uint64_t>((std::chrono::steady_clock::now() - begun).count());
 }
 

@@ -36,7 +36,7 @@
 #include "link_server.h"
 #include "link_socket.h"
 #include "loop.h"
-#include "oracle/wire.hpp"
+#include "monitors.h"
 #include "plant/exchange.hpp"
 #include "plant/parameters_file.hpp"
 #include "plant/plant.hpp"
@@ -118,10 +118,10 @@ class PlantBus {
   void exchange(std::uint32_t tick, const ilk_outputs_t& out, ilk_inputs_t& in) {
     const std::uint64_t now_ns = ilk_now_ns();
     const std::uint32_t generation = in.link_generation;
-    const std::uint32_t missed = in.deadline_missed;
+    const std::uint32_t missed = in.deadlines_missed;
     in = interlock::plant::exchange(plant_, out, tick);
     in.link_generation = generation;
-    in.deadline_missed = missed;
+    in.deadlines_missed = missed;
     const std::uint64_t release_ns = release_at_ns_;
     const bool down = pressed_ && now_ns < release_ns;
     in.pedal_no_closed = down ? 1 : 0;
@@ -132,8 +132,8 @@ class PlantBus {
   }
 
   void follow_release(std::uint64_t now_ns, std::uint64_t release_ns, const ilk_outputs_t& out) {
-    const bool driven = std::ranges::any_of(
-        out.frame, [](const auto& frame) { return !interlock::oracle::wire::is_zero_drive(frame); });
+    const bool driven =
+        std::ranges::any_of(out.frame, [](const auto& frame) { return !judge_is_zero_drive(frame); });
     if (driven) {
       open_ticks_++;
       return;
@@ -221,7 +221,7 @@ class Mover {
   /// Waits for the next snapshot and asks for what is due.
   void follow() {
     wait_for_snapshot(client_, seen_);
-    const std::uint32_t tick = seen_.state.tick;
+    const std::uint32_t tick = seen_.state.system.tick;
     if (tick - heartbeat_tick_ >= kHeartbeatTicks) {
       heartbeat_tick_ = tick;
       ask(ILK_REQUEST_HEARTBEAT);
@@ -233,7 +233,7 @@ class Mover {
   }
 
   [[nodiscard]] bool may_press() const {
-    return seen_.state.mode == ILK_MODE_READY && seen_.state.pedal_armed != 0u &&
+    return seen_.state.system.mode == ILK_MODE_READY && seen_.state.system.pedal_armed != 0u &&
            axis().state == ILK_AXIS_ENABLED;
   }
 
@@ -243,7 +243,7 @@ class Mover {
   [[nodiscard]] const ilk_axis_t& axis() const { return seen_.state.axis[slot_]; }
 
   void prepare(std::uint32_t tick) {
-    const std::uint32_t mode = seen_.state.mode;
+    const std::uint32_t mode = seen_.state.system.mode;
     if (axis().state == ILK_AXIS_FAULTED) {
       give_up("the axis faulted: " + std::to_string(axis().fault));
     }
@@ -267,7 +267,7 @@ class Mover {
 
   /// Away from where the axis is, to the farther side.
   void move(std::uint32_t tick) {
-    if (axis().state == ILK_AXIS_MOVING && axis().lease_ticks > config_.lease_max_ticks / 2u) {
+    if (axis().state == ILK_AXIS_MOVING && axis().lease_ticks > config_.common.lease_max_ticks / 2u) {
       return;
     }
     if (tick - asked_tick_ < 2u) {
@@ -283,7 +283,8 @@ class Mover {
     wish.axis = slot_;
     wish.target_counts = away;
     wish.drive = limits.max_drive;
-    wish.lease_ticks = config_.lease_max_ticks;
+    wish.lease_ticks = config_.common.lease_max_ticks;
+    wish.consent = seen_.state.system.consent;
     send(wish);
   }
 
@@ -347,7 +348,7 @@ nlohmann::json reactions(const Task& task, ilk_clock_t clock) {
   while (times.size() < task.count) {
     get_moving(mover, bus);
     const std::uint32_t phase_ns =
-        clock == ILK_CLOCK_REAL ? random.below(2u * 1000u * task.config.period_us) : 0u;
+        clock == ILK_CLOCK_REAL ? random.below(2u * 1000u * task.config.common.period_us) : 0u;
     bus.release_at(ilk_now_ns() + phase_ns);
     while (!bus.answered()) {
       mover.follow();
@@ -395,7 +396,7 @@ nlohmann::json latency(const Task& task) {
   Random random(task.seed, 0);
   std::vector<std::int64_t> times;
   for (std::uint64_t n = 0; n < task.count; ++n) {
-    ilk_sleep_until(ilk_now_ns() + random.below(1000u * task.config.period_us));
+    ilk_sleep_until(ilk_now_ns() + random.below(1000u * task.config.common.period_us));
     times.push_back(interlock::bench::time_of([&] { wait_for_verdict(client, client.send(heartbeat())); }));
   }
   executive.stop();
@@ -416,14 +417,14 @@ nlohmann::json throughput(const Task& task) {
       for (ilk_event_t event; client.read_event(event);) {
         judged += event.kind == ILK_EVENT_VERDICT ? 1 : 0;
       }
-      client.publish_seen(seen.state.tick);
+      client.publish_seen(seen.state.system.tick);
     }
   });
   executive.stop();
   const double seconds = static_cast<double>(spent_ns) * 1e-9;
   return {{"requests", judged},
           {"requests_per_s", static_cast<double>(judged) / seconds},
-          {"ticks_per_s", static_cast<double>(executive.shown().state.tick) / seconds},
+          {"ticks_per_s", static_cast<double>(executive.shown().state.system.tick) / seconds},
           {"events_lost", client.events_lost()}};
 }
 
@@ -433,8 +434,8 @@ nlohmann::json rate(const Task& task, int core, int priority) {
   std::this_thread::sleep_for(std::chrono::seconds(task.count));
   executive.stop();
   const ilk_snapshot_t& shown = executive.shown();
-  return {{"period_us", task.config.period_us},
-          {"ticks", shown.state.tick},
+  return {{"period_us", task.config.common.period_us},
+          {"ticks", shown.state.system.tick},
           {"missed", shown.overruns},
           {"wake_max_ns", shown.timing.max_ns[ILK_PHASE_WAKE]}};
 }

@@ -136,7 +136,7 @@ class RelayedBus {
     const ilk_inputs_t before = *in;
     *in = relayed.in_;
     in->link_generation = before.link_generation;
-    in->deadline_missed = before.deadline_missed;
+    in->deadlines_missed = before.deadlines_missed;
     return relayed.alive_;
   }
 
@@ -194,7 +194,7 @@ void run_ready(Notes& notes) {
 }
 
 int run_shipped() {
-  Notes main(process.seconds, process.config.period_us * 1000ull);
+  Notes main(process.seconds, process.config.common.period_us * 1000ull);
   NotedBus bus{ilk_bus_sim_driver(&process.bus), &main};
   ilk_realtime_t realtime;
   ilk_realtime_acquire(&realtime, ILK_CLOCK_REAL, process.options.core, process.options.priority);
@@ -207,7 +207,7 @@ int run_shipped() {
 }
 
 int run_before() {
-  Notes main(process.seconds, process.config.period_us * 1000ull);
+  Notes main(process.seconds, process.config.common.period_us * 1000ull);
   Notes transactions(process.seconds, kBusPeriodNs);
   if (!take_round_robin(process.options.priority)) {
     return fail("SCHED_RR was refused; run it with CAP_SYS_NICE");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <stdexcept>
 
 #include "interlock/kernel.h"
 
@@ -22,37 +23,46 @@ ilk_axis_config_t axis_config(ilk_card_t card) {
   axis.backlash_counts = 1;
   axis.noise_counts = 1;
   axis.deadband_counts = 1;
+  axis.dead_zone_drive = 100;
   axis.max_drive = 131'071;
   axis.unhomed_max_drive = 13'107;
   axis.max_amplitude = (card == ILK_CARD_HIGH_FREQUENCY) ? 255 : 0;
   axis.unhomed_travel_counts = 200'000;
+  axis.home_offset_counts = -990'000;
   axis.home_drive = 10'000;
+  axis.home_slow_drive = 2'000;
   axis.home_travel_counts = 2'100'000;
-  axis.home_backoff_counts = 1'000;
   axis.home_timeout_ticks = 500'000;
-  axis.home_rest_ticks = 50;
+  axis.home_clear_counts = 100;
+  axis.home_tolerance_counts = 40;
+  axis.switch_hysteresis_counts = 2;
+  axis.full_speed_counts_per_s = 5'000;
   axis.home_speed_counts_per_s = 5'000;
+  axis.home_slow_speed_counts_per_s = 500;
   axis.stall_ticks = 500;
+  axis.stall_effort_ticks = 20;
   axis.stall_min_counts = 2;
   axis.reverse_counts = 20;
   axis.drift_counts = 20;
-  axis.settle_ticks = 50;
+  axis.rest_ticks = 10;
   axis.max_delta_counts = 8;
   return axis;
 }
 
 ilk_config_t ten_axes(ilk_card_t card) {
   ilk_config_t config{};
-  config.version = ILK_CONFIG_VERSION;
-  config.size_bytes = sizeof(ilk_config_t);
-  config.period_us = 1000;
-  config.pedal_channels = 2;
-  config.app_timeout_ticks = 100;
-  config.lease_max_ticks = 100;
-  config.pedal_debounce_ticks = 10;
-  config.pedal_disagree_ticks = 50;
-  config.bad_frame_limit = 3;
-  config.overrun_limit = 3;
+  config.common = {.version = ILK_CONFIG_VERSION,
+                   .size_bytes = sizeof(ilk_config_t),
+                   .period_us = 1000,
+                   .pedal_channels = 2,
+                   .app_timeout_ticks = 100,
+                   .lease_max_ticks = 100,
+                   .pedal_debounce_ticks = 10,
+                   .pedal_disagree_ticks = 50,
+                   .power_up_ticks = 5,
+                   .switch_debounce_ticks = 5,
+                   .bad_frame_limit = 3,
+                   .overrun_limit = 3};
   for (ilk_axis_config_t& axis : config.axis) {
     axis = axis_config(card);
   }
@@ -75,10 +85,13 @@ void write_frame(uint32_t (&frame)[ILK_FRAME_WORDS], uint32_t tick, uint32_t raw
   frame[ILK_FRAME_WORDS - 1] = 0xffffffffu - sum;
 }
 
-/// Makes a tape: unlock, enable, press, then `work` fills each further tick.
+/// Makes a tape: unlock, enable, press, then `work` fills each further tick. A kernel runs along, for the
+/// number of the press that moves must carry.
 class Recorder {
  public:
-  explicit Recorder(bool to_motion) : to_motion_(to_motion) {}
+  Recorder(const ilk_config_t& config, bool to_motion) : config_(config), to_motion_(to_motion) {
+    ilk_init(&config_, &state_);
+  }
 
   std::vector<Tick> record(uint32_t ticks, const std::function<void(Recorder&)>& work) {
     std::vector<Tick> tape;
@@ -89,7 +102,13 @@ class Recorder {
       if (tick >= kWarmUpTicks / 2) {
         work(*this);
       }
+      ilk_step(&config_, &state_, &current_.inputs, current_.requests.data(),
+               static_cast<uint32_t>(current_.requests.size()), &out_);
       tape.push_back(current_);
+    }
+    const auto is_driven = [](uint32_t gate) { return gate == ILK_GATE_OPEN; };
+    if (to_motion_ && !std::all_of(std::begin(out_.gate), std::end(out_.gate), is_driven)) {
+      throw std::logic_error("a scenario in motion does not drive every axis");
     }
     return tape;
   }
@@ -112,16 +131,18 @@ class Recorder {
       move.drive = kDrive;
       move.amplitude = amplitude;
       move.lease_ticks = kLeaseTicks;
+      move.consent = state_.system.consent;
       move.crc = ilk_request_crc(&move);
     }
   }
 
  private:
   void inputs(uint32_t tick) {
-    const bool pressed = to_motion_ && (tick >= 20);
+    const bool pressed = to_motion_ && (tick >= kPress);
     const bool moving = to_motion_ && (tick > kWarmUpTicks / 2);
     ilk_inputs_t& in = current_.inputs;
     in.link_generation = 1;
+    in.boot_nonce = 1;
     in.transaction_done = 1;
     in.frames_received = (1u << ILK_SLOTS) - 1;
     in.pedal_no_closed = pressed ? 1 : 0;
@@ -138,15 +159,24 @@ class Recorder {
       return;
     }
     heartbeat();
-    if (tick == 3) {
+    if (tick == kReset) {
       request(ILK_REQUEST_RESET, 0);
     }
-    if ((tick >= 5) && (tick < 5 + ILK_SLOTS)) {
-      request(ILK_REQUEST_ENABLE, tick - 5);
+    if (tick == kEnable) {
+      for (uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
+        request(ILK_REQUEST_ENABLE, slot);
+      }
     }
   }
 
-  bool to_motion_;
+  static constexpr uint32_t kReset = 3;
+  static constexpr uint32_t kEnable = 20; /**< at rest, power up */
+  static constexpr uint32_t kPress = 25;
+
+  const ilk_config_t config_;
+  const bool to_motion_;
+  ilk_state_t state_{};
+  ilk_outputs_t out_{};
   Tick current_;
   uint32_t sequence_ = 0;
   uint32_t raw_ = 0;
@@ -159,14 +189,16 @@ constexpr uint32_t kConfigurationPass = ILK_SLOTS;
 
 Scenario make_scenario(std::string_view name, uint32_t measured) {
   const uint32_t ticks = kWarmUpTicks + measured;
+  const ilk_config_t pwm = ten_axes(ILK_CARD_PWM);
+  const ilk_config_t waves = ten_axes(ILK_CARD_HIGH_FREQUENCY);
   if (name == "moving") {
-    return {ten_axes(ILK_CARD_PWM), Recorder(true).record(ticks, [](Recorder& tick) {
+    return {pwm, Recorder(pwm, true).record(ticks, [](Recorder& tick) {
               tick.move_all(0);
               tick.heartbeat();
             })};
   }
   if (name == "moving_high_frequency") {
-    return {ten_axes(ILK_CARD_HIGH_FREQUENCY), Recorder(true).record(ticks, [](Recorder& tick) {
+    return {waves, Recorder(waves, true).record(ticks, [](Recorder& tick) {
               tick.move_all(255);
               tick.heartbeat();
               for (uint32_t slot = 0; slot < 5; ++slot) {
@@ -176,15 +208,15 @@ Scenario make_scenario(std::string_view name, uint32_t measured) {
   }
   if ((name == "rebuilding") || (name == "revalidating")) {
     const uint32_t period = (name == "rebuilding") ? 1 : kConfigurationPass;
-    return {ten_axes(ILK_CARD_PWM),
-            Recorder(true).record(kWarmUpTicks + period * measured,
-                                  [](Recorder& tick) {
-                                    tick.move_all(0);
-                                    tick.heartbeat();
-                                  }),
+    return {pwm,
+            Recorder(pwm, true).record(kWarmUpTicks + period * measured,
+                                       [](Recorder& tick) {
+                                         tick.move_all(0);
+                                         tick.heartbeat();
+                                       }),
             period};
   }
-  return {ten_axes(ILK_CARD_PWM), Recorder(false).record(ticks, [](Recorder&) {})};
+  return {pwm, Recorder(pwm, false).record(ticks, [](Recorder&) {})};
 }
 
 bool is_measured(const Scenario& scenario, uint32_t tick) {

@@ -115,7 +115,7 @@ void advance(StepCase& step) {
            static_cast<std::uint32_t>(step.requests.size()), &out);
   for (auto& frame : step.inputs.frame) {
     frame[kHeartbeatWord]++;
-    frame[kTimeWord] += step.config.period_us;
+    frame[kTimeWord] += step.config.common.period_us;
     frame[kEchoWord]++;
     seal_frame(frame);
   }
@@ -144,7 +144,8 @@ ilk_request_t StepSearch::draft(const StepCase& step) {
   ilk_request_t request{};
   request.kind = random_.below(ILK_REQUEST_COUNT + 1);
   request.axis = random_.below(ILK_SLOTS + (random_.chance(0.05) ? 1 : 0));
-  request.holder = random_.chance(0.9) ? step.state.holder : random_.below(4);
+  request.holder = random_.chance(0.9) ? step.state.system.holder : random_.below(4);
+  request.consent = step.state.system.consent ^ (random_.chance(0.02) ? 1u : 0u);
   const std::size_t slot = std::min<std::size_t>(request.axis, ILK_SLOTS - 1);
   const ilk_axis_config_t& axis = step.config.axis[slot];
   const auto span = static_cast<std::uint32_t>(axis.max_counts) - static_cast<std::uint32_t>(axis.min_counts);
@@ -152,7 +153,7 @@ ilk_request_t StepSearch::draft(const StepCase& step) {
       static_cast<std::int32_t>(static_cast<std::uint32_t>(axis.min_counts) + random_.below(span | 1));
   request.drive = random_.coin() ? axis.unhomed_max_drive : axis.max_drive;
   request.amplitude = axis.max_amplitude;
-  request.lease_ticks = 1 + random_.below(step.config.lease_max_ticks | 1);
+  request.lease_ticks = 1 + random_.below(step.config.common.lease_max_ticks | 1);
   return request;
 }
 
@@ -189,7 +190,7 @@ void StepSearch::change_frame(StepCase& step) {
     case 4:
       // As a card that answers in time.
       frame[kHeartbeatWord] = step.state.axis[slot].heartbeat + 1;
-      frame[kEchoWord] = step.state.tick - 2;
+      frame[kEchoWord] = step.state.system.tick - ILK_LATENCY_TICKS;
       step.inputs.frames_received |= 1u << slot;
       break;
     default:
@@ -204,7 +205,7 @@ void StepSearch::change_frame(StepCase& step) {
 void StepSearch::change_contacts(StepCase& step) {
   ilk_inputs_t& inputs = step.inputs;
   std::uint32_t* const words[] = {&inputs.pedal_no_closed,   &inputs.pedal_nc_closed,
-                                  &inputs.estop_loop_closed, &inputs.deadline_missed,
+                                  &inputs.estop_loop_closed, &inputs.deadlines_missed,
                                   &inputs.transaction_done,  &inputs.link_generation};
   *words[random_.below(std::size(words))] ^= random_.chance(0.9) ? 1u : 2u;
 }
@@ -237,8 +238,8 @@ void StepSearch::finish(StepCase& step) {
   if (random_.chance(0.05)) {
     return;
   }
-  const bool is_anew = step.inputs.link_generation != step.state.link_generation;
-  std::uint32_t sequence = is_anew ? 0 : step.state.last_sequence;
+  const bool is_anew = step.inputs.link_generation != step.state.system.link_generation;
+  std::uint32_t sequence = is_anew ? 0 : step.state.system.last_sequence;
   for (ilk_request_t& request : step.requests) {
     request.sequence = ++sequence;
     request.crc = ilk_request_crc(&request);

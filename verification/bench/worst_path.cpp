@@ -27,7 +27,7 @@ nlohmann::json write(const std::filesystem::path& file, const Found& found) {
                                 {"start", found.start},
                                 {"start_blocks", found.start_blocks},
                                 {"requests", found.step.requests.size()},
-                                {"mode_before", found.step.state.mode}};
+                                {"mode_before", found.step.state.system.mode}};
   nlohmann::json whole = interlock::bench::json_of(found.step);
   whole["about"] = about;
   std::ofstream out(file);

@@ -20,47 +20,6 @@ void count_down(std::uint32_t& ticks) {
   }
 }
 
-oracle::Order order_of(std::uint32_t kind) {
-  switch (kind) {
-    case ILK_REQUEST_HEARTBEAT:
-      return oracle::Order::kHeartbeat;
-    case ILK_REQUEST_STOP:
-      return oracle::Order::kStop;
-    case ILK_REQUEST_RESET:
-      return oracle::Order::kReset;
-    case ILK_REQUEST_DISABLE:
-      return oracle::Order::kDisable;
-    case ILK_REQUEST_ENABLE:
-      return oracle::Order::kEnable;
-    case ILK_REQUEST_CLEAR_FAULT:
-      return oracle::Order::kClearFault;
-    case ILK_REQUEST_MOVE:
-      return oracle::Order::kMove;
-    case ILK_REQUEST_HOME:
-      return oracle::Order::kHome;
-    case ILK_REQUEST_SET_HOME:
-      return oracle::Order::kSetHome;
-    case ILK_REQUEST_RESTORE:
-      return oracle::Order::kRestore;
-    default:
-      return oracle::Order::kUnknown;
-  }
-}
-
-oracle::Message message_of(const ilk_request_t& request, bool intact) {
-  oracle::Message message;
-  message.order = order_of(request.kind);
-  message.intact = intact;
-  message.sequence = request.sequence;
-  message.axis = request.axis;
-  message.holder = request.holder;
-  message.target = request.target_counts;
-  message.drive = request.drive;
-  message.amplitude = request.amplitude;
-  message.lease_ticks = request.lease_ticks;
-  return message;
-}
-
 }  // namespace
 
 App::App(const ilk_config_t& config, std::uint64_t seed, Manner manner)
@@ -76,7 +35,6 @@ void App::send(ilk_request_t request, bool intact) {
     return;
   }
   request.crc = ilk_request_crc(&request) ^ (intact ? 0u : 1u << random_.below(32));
-  messages_[count_] = message_of(request, intact);
   requests_[count_] = request;
   count_++;
 }
@@ -87,6 +45,7 @@ ilk_request_t App::draft(ilk_request_kind_t kind, std::uint32_t slot) {
   request.kind = kind;
   request.axis = slot;
   request.holder = holder_;
+  request.consent = consent_;
   return request;
 }
 
@@ -97,7 +56,7 @@ std::uint32_t App::choose_hold() {
 }
 
 void App::move_foot(const ilk_state_t& shown) {
-  const bool in_motion = shown.mode == ILK_MODE_MOTION;
+  const bool in_motion = shown.system.mode == ILK_MODE_MOTION;
   if (in_motion && !was_in_motion_) {
     foot_ticks_ = choose_hold();
   }
@@ -105,14 +64,14 @@ void App::move_foot(const ilk_state_t& shown) {
     foot_ticks_ = 0;
   }
   was_in_motion_ = in_motion;
-  if (shown.mode == ILK_MODE_LOCKED && foot_down_) {
+  if (shown.system.mode == ILK_MODE_LOCKED && foot_down_) {
     foot_ticks_ = 0;
   }
   if (foot_ticks_ > 0) {
     foot_ticks_--;
   } else {
-    foot_down_ = !foot_down_ && shown.mode == ILK_MODE_READY;
-    foot_ticks_ = foot_down_ ? kPatience : config_.pedal_debounce_ticks + 8 + random_.below(40);
+    foot_down_ = !foot_down_ && shown.system.mode == ILK_MODE_READY;
+    foot_ticks_ = foot_down_ ? kPatience : config_.common.pedal_debounce_ticks + 8 + random_.below(40);
   }
 }
 
@@ -122,7 +81,7 @@ void App::prepare_axis(std::uint32_t tick, const ilk_state_t& shown, std::uint32
   if ((tick + slot) % kActionInterval != 0) {
     return;
   }
-  const bool is_unplaced = axis.homed == 0 && manner_ != Manner::kHoming;
+  const bool is_unplaced = axis.homed == ILK_HOMED_NOT && manner_ != Manner::kHoming;
   if (axis.state == ILK_AXIS_FAULTED) {
     if (manner_ != Manner::kSteady) {
       ask(ILK_REQUEST_CLEAR_FAULT, slot);
@@ -144,19 +103,18 @@ void App::choose_target(const ilk_state_t& shown, std::uint32_t slot) {
   const ilk_axis_config_t& bounds = config_.axis[slot];
   const ilk_axis_t& axis = shown.axis[slot];
   Intent& intent = intents_[slot];
-  const auto coast = static_cast<std::int32_t>(bounds.coast_counts);
-  if (axis.homed != 0) {
-    const std::int32_t lowest = bounds.min_counts + coast;
-    const std::int32_t highest = bounds.max_counts - coast;
+  if (axis.homed != ILK_HOMED_NOT) {
+    const ilk_reach_t reach = ilk_reach(&bounds, &axis);
+    const auto lowest = static_cast<std::int32_t>(reach.low);
+    const auto highest = static_cast<std::int32_t>(reach.high);
     intent.target =
         lowest + static_cast<std::int32_t>(random_.below(static_cast<std::uint32_t>(highest - lowest) + 1));
     intent.target = random_.chance(0.1) ? lowest : random_.chance(0.1) ? highest : intent.target;
     intent.drive =
         random_.chance(0.5) ? bounds.max_drive : bounds.max_drive / 8 + random_.below(bounds.max_drive / 2);
   } else {
-    const std::int32_t room = static_cast<std::int32_t>(bounds.unhomed_travel_counts) - coast;
-    const std::int32_t start = axis.position_counts - axis.press_travel_counts;
-    intent.target = start + (random_.coin() ? room : -room);
+    const auto room = static_cast<std::int32_t>(ilk_unhomed_travel_left(&bounds, &axis));
+    intent.target = axis.position_counts + (random_.coin() ? room : -room);
     intent.drive = bounds.unhomed_max_drive;
   }
 }
@@ -168,7 +126,7 @@ void App::drive_axis(std::uint32_t tick, const ilk_state_t& shown, std::uint32_t
       (axis.state != ILK_AXIS_ENABLED && axis.state != ILK_AXIS_MOVING)) {
     return;
   }
-  if (intent.homes) {
+  if (intent.homes || (manner_ == Manner::kHoming && random_.chance(0.01))) {
     intent.homes = false;
     choose_target(shown, slot);
     ask(ILK_REQUEST_HOME, slot);
@@ -178,15 +136,15 @@ void App::drive_axis(std::uint32_t tick, const ilk_state_t& shown, std::uint32_t
   if (std::abs(way) <= std::int64_t{config_.axis[slot].deadband_counts} || random_.chance(0.05)) {
     choose_target(shown, slot);
   }
-  if (axis.homed == 0) {
+  if (axis.homed == ILK_HOMED_NOT) {
     intent.drive = config_.axis[slot].unhomed_max_drive;
   }
   ilk_request_t request = draft(ILK_REQUEST_MOVE, slot);
   request.target_counts = intent.target;
   request.drive = intent.drive;
   request.amplitude = config_.axis[slot].max_amplitude;
-  request.lease_ticks = 1 + random_.below(config_.lease_max_ticks);
-  intent.renew_tick = tick + 1 + random_.below(config_.lease_max_ticks);
+  request.lease_ticks = 1 + random_.below(config_.common.lease_max_ticks);
+  intent.renew_tick = tick + 1 + random_.below(config_.common.lease_max_ticks);
   send(request);
 }
 
@@ -211,23 +169,25 @@ void App::tell_a_lie(const ilk_state_t& shown) {
   request.drive =
       random_.chance(0.8) ? bounds.max_drive / (random_.coin() ? 1 : 10) + random_.below(2) : wild();
   request.amplitude = bounds.max_amplitude + (random_.chance(0.1) ? random_.below(80) : 0);
-  request.lease_ticks = random_.chance(0.8) ? 1 + random_.below(config_.lease_max_ticks + 1) : wild();
+  request.lease_ticks = random_.chance(0.8) ? 1 + random_.below(config_.common.lease_max_ticks + 1) : wild();
+  request.consent = random_.chance(0.9) ? consent_ : wild();
   request.holder = random_.chance(0.95) ? holder_ : wild();
   send(request, !random_.chance(0.1));
 }
 
 void App::act(std::uint32_t tick, const ilk_state_t& shown) {
   count_ = 0;
-  const bool enters = shown.mode == ILK_MODE_MOTION && !was_in_motion_;
+  consent_ = shown.system.consent;
+  const bool enters = shown.system.mode == ILK_MODE_MOTION && !was_in_motion_;
   move_foot(shown);
   if (enters) {
     for (std::uint32_t slot = 0; slot < ILK_SLOTS; slot++) {
+      const bool is_homed = shown.axis[slot].homed != ILK_HOMED_NOT;
       const bool has_switch = config_.axis[slot].limit_side != ILK_LIMIT_NONE;
       if (manner_ == Manner::kHoming) {
-        intents_[slot] = {has_switch, has_switch && (shown.axis[slot].homed == 0 || random_.coin())};
+        intents_[slot] = {has_switch, has_switch && (!is_homed || random_.coin())};
       } else {
-        intents_[slot] = {random_.chance(0.8),
-                          has_switch && random_.chance(shown.axis[slot].homed != 0 ? 0.02 : 0.6)};
+        intents_[slot] = {random_.chance(0.8), has_switch && random_.chance(is_homed ? 0.02 : 0.6)};
       }
       intents_[slot].renew_tick = tick + random_.below(20);
       choose_target(shown, slot);
@@ -237,19 +197,19 @@ void App::act(std::uint32_t tick, const ilk_state_t& shown) {
     if (tick >= next_heartbeat_) {
       ask(ILK_REQUEST_HEARTBEAT);
       heartbeat_tick_ = tick;
-      next_heartbeat_ = tick + 1 + random_.below(config_.app_timeout_ticks / 3);
+      next_heartbeat_ = tick + 1 + random_.below(config_.common.app_timeout_ticks / 3);
     }
-    if (shown.mode == ILK_MODE_LOCKED && tick % 7 == 0) {
+    if (shown.system.mode == ILK_MODE_LOCKED && tick % 7 == 0) {
       ask(ILK_REQUEST_RESET);
     }
     for (std::uint32_t slot = 0; slot < ILK_SLOTS; slot++) {
-      if (shown.mode == ILK_MODE_READY) {
+      if (shown.system.mode == ILK_MODE_READY) {
         prepare_axis(tick, shown, slot);
-      } else if (shown.mode == ILK_MODE_MOTION) {
+      } else if (shown.system.mode == ILK_MODE_MOTION) {
         drive_axis(tick, shown, slot);
       }
     }
-    if (shown.mode == ILK_MODE_MOTION && manner_ == Manner::kUsual && random_.chance(0.0005)) {
+    if (shown.system.mode == ILK_MODE_MOTION && manner_ == Manner::kUsual && random_.chance(0.0005)) {
       ask(random_.coin() ? ILK_REQUEST_STOP : ILK_REQUEST_DISABLE, random_.below(ILK_SLOTS));
     }
     for (std::uint32_t lies = lying_ticks_ > 0 ? 2 : 0; lies > 0; lies--) {

@@ -12,7 +12,6 @@
 #include <span>
 
 #include "interlock/types.h"
-#include "oracle/observation.hpp"
 #include "plant/random.hpp"
 
 namespace interlock::campaign {
@@ -36,9 +35,6 @@ class App {
   void act(std::uint32_t tick, const ilk_state_t& shown);
 
   std::span<const ilk_request_t> requests() const { return std::span(requests_).first(count_); }
-
-  /** The same requests as the oracle sees them, still without answers. */
-  std::span<oracle::Message> messages() { return std::span(messages_).first(count_); }
 
   bool foot_is_down() const { return foot_down_; }
   std::uint32_t generation() const { return generation_; }
@@ -74,12 +70,12 @@ class App {
   const ilk_config_t config_;
   plant::Random random_;
   std::array<ilk_request_t, kMostRequests> requests_{};
-  std::array<oracle::Message, kMostRequests> messages_{};
   std::size_t count_ = 0;
   std::array<Intent, ILK_SLOTS> intents_{};
   std::uint32_t generation_ = 1;
   std::uint32_t sequence_ = 0;
   std::uint32_t holder_ = 1;
+  std::uint32_t consent_ = 0; /**< of the press that it sees */
   std::uint32_t heartbeat_tick_ = 0;
   std::uint32_t next_heartbeat_ = 0;
   bool foot_down_ = false;

@@ -81,9 +81,9 @@ nlohmann::json json_of(const Totals& totals) {
 }
 
 std::string text_of(const Failure& failure) {
-  const std::string property = failure.property == 0 ? "late" : "P" + std::to_string(failure.property);
-  const std::string axis = failure.axis == oracle::kNoAxis ? "" : ", axis " + std::to_string(failure.axis);
-  return "tick " + std::to_string(failure.tick) + ": " + property + axis + ": " + std::string(failure.reason);
+  const std::string axis = failure.axis == kNoAxis ? "" : "axis " + std::to_string(failure.axis) + ", ";
+  return "tick " + std::to_string(failure.tick) + ": " + std::string(failure.clause) + "; " + axis +
+         "found " + std::to_string(failure.found) + ", bound " + std::to_string(failure.bound);
 }
 
 void report(const Choices& choices, const Case& plan, const Failure& failure) {
@@ -101,21 +101,23 @@ void report(const Choices& choices, const Case& plan, const Failure& failure) {
 /** What the kernel said of the failing axis in the last ticks of a case. */
 void print_trace(const Case& plan, const Failure& failure, std::uint32_t ticks) {
   const auto world = std::make_unique<World>(plan);
-  const std::size_t slot = failure.axis == oracle::kNoAxis ? 0 : static_cast<std::size_t>(failure.axis);
+  const std::size_t slot = failure.axis == kNoAxis ? 0 : static_cast<std::size_t>(failure.axis);
   for (std::uint32_t tick = 0; tick <= failure.tick; tick++) {
     static_cast<void>(world->step());
     const ilk_state_t& state = world->state();
     const ilk_axis_t& axis = state.axis[slot];
     if (failure.tick - tick < ticks) {
-      std::cout << "tick " << tick << " mode " << state.mode << " cause " << state.cause << " pedal "
-                << state.pedal << " armed " << state.pedal_armed << " | axis " << slot << " state "
-                << axis.state << " fault " << axis.fault << " homed " << axis.homed << " valid "
-                << axis.card_valid << " switch " << axis.switch_triggered << " position "
+      std::cout << "tick " << tick << " mode " << state.system.mode << " cause " << state.system.cause
+                << " pedal " << state.system.pedal << " armed " << state.system.pedal_armed << " | axis "
+                << slot << " state " << axis.state << " fault " << axis.fault << " homed " << axis.homed
+                << " valid " << axis.card_valid << " switch " << axis.switch_triggered << " position "
                 << axis.position_counts << " setpoint " << axis.setpoint_counts << " lease "
-                << axis.lease_ticks << " stall count " << axis.stall_driven_ticks << " setpoint changed "
-                << axis.setpoint_changed << " press travel " << axis.press_travel_counts << " drive "
-                << world->outputs().command[slot].drive << " direction "
-                << world->outputs().command[slot].direction << " true " << world->true_position(slot) << "\n";
+                << axis.lease_ticks << " phase " << axis.homing_phase << " stall count "
+                << axis.stall_driven_ticks << " effort " << axis.effort_low << " travel "
+                << axis.unhomed_travel_counts << " homing " << axis.homing_travel_counts << " rest "
+                << axis.rest.ticks << " drive " << world->outputs().command[slot].drive << " direction "
+                << world->outputs().command[slot].direction << " gate " << world->outputs().gate[slot]
+                << " true " << world->true_position(slot) << "\n";
     }
   }
 }
@@ -155,8 +157,7 @@ int run_all(const Choices& choices) {
     if (outcome.failure) {
       failed++;
       first_failure = {{"text", text_of(*outcome.failure)},
-                       {"property", outcome.failure->property},
-                       {"reason", outcome.failure->reason},
+                       {"clause", outcome.failure->clause},
                        {"case", plan.number},
                        {"seconds", processor_seconds() - started}};
       report(choices, plan, *outcome.failure);
@@ -175,7 +176,7 @@ int run_all(const Choices& choices) {
 
 int main_of(int count, char** words) {
   Choices choices;
-  CLI::App app{"Runs kernel core, plant and oracle together under randomised faults."};
+  CLI::App app{"Runs kernel core, plant and monitors together under randomised faults."};
   app.add_option("--seed", choices.seed, "of the campaign");
   app.add_option("--first", choices.first, "number of the first case");
   app.add_option("--stride", choices.stride, "from one case to the next")->check(CLI::PositiveNumber);

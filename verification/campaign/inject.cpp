@@ -23,7 +23,7 @@ bool sense_of(const Fault& fault) { return (fault.amount & 1) != 0; }
 
 }  // namespace
 
-void World::demand(std::uint32_t within, std::int8_t axis, FaultKind kind) {
+void World::demand(std::uint32_t within, int axis, FaultKind kind) {
   clock_.demand(tick_ + within, axis, name_of(kind));
 }
 
@@ -98,11 +98,11 @@ void World::inject(const Fault& fault) {
     case FaultKind::kEstopPulled:
       act(command::PullEstop{true});
       act(command::PullEstop{false}, fault.ticks);
-      demand(kEdgeTicks, oracle::kNoAxis, fault.kind);
+      demand(kEdgeTicks, kNoAxis, fault.kind);
       break;
     case FaultKind::kEstopUndefined:
       undefined_estop_ticks_ = std::max(undefined_estop_ticks_, fault.ticks);
-      demand(kEdgeTicks, oracle::kNoAxis, fault.kind);
+      demand(kEdgeTicks, kNoAxis, fault.kind);
       break;
     case FaultKind::kFrameCorrupt:
     case FaultKind::kFrameDropped:
@@ -138,10 +138,13 @@ void World::inject(const Fault& fault) {
       break;
     case FaultKind::kClockOverruns:
       overrun_ticks_ = std::max(overrun_ticks_, fault.ticks);
-      if (fault.ticks >= robot_.config.overrun_limit) {
+      for (std::size_t slot = 0; slot < ILK_SLOTS; slot++) {
+        break_promise(slot, fault.ticks);
+      }
+      if (fault.ticks >= robot_.config.common.overrun_limit) {
         // The limit itself may be the damaged word: then the damage stops the drive, in its own time.
         const std::uint32_t until_met = config_damage_left_ > 0 ? met_within(config_bit_) : 0;
-        demand(std::max(robot_.config.overrun_limit, until_met), oracle::kNoAxis, fault.kind);
+        demand(std::max(robot_.config.common.overrun_limit, until_met), kNoAxis, fault.kind);
       }
       break;
     case FaultKind::kStateBitFlips:
@@ -164,12 +167,12 @@ bool World::another_holds_the_pedal() const {
 }
 
 void World::inject_pedal(const Fault& fault) {
-  const bool two_channels = robot_.config.pedal_channels == 2;
+  const bool two_channels = robot_.config.common.pedal_channels == 2;
   const bool normally_open = !two_channels || sense_of(fault);
   // A contact that another fault holds may read pressed whatever this one does.
   if (fault.kind != FaultKind::kPedalStuck && fault.kind != FaultKind::kPedalUndefined &&
       !another_holds_the_pedal()) {
-    demand(kEdgeTicks, oracle::kNoAxis, fault.kind);
+    demand(kEdgeTicks, kNoAxis, fault.kind);
   }
   switch (fault.kind) {
     case FaultKind::kPedalReleased:
@@ -224,7 +227,7 @@ void World::inject_card(const Fault& fault) {
       act(command::PowerCard{fault.slot, false});
       act(command::PowerCard{fault.slot, true}, fault.ticks);
       break_promise(fault.slot, fault.ticks);
-      demand(kEdgeTicks, static_cast<std::int8_t>(fault.slot), fault.kind);
+      demand(kEdgeTicks, static_cast<int>(fault.slot), fault.kind);
       return;
     default:
       act(command::FailTransactions{fault.ticks});
@@ -232,11 +235,11 @@ void World::inject_card(const Fault& fault) {
       for (std::size_t slot = 0; slot < ILK_SLOTS; slot++) {
         break_promise(slot, fault.ticks);
       }
-      demand(kEdgeTicks, oracle::kNoAxis, fault.kind);
+      demand(kEdgeTicks, kNoAxis, fault.kind);
       return;
   }
-  demand(fault.kind == FaultKind::kCardDeaf ? 2 * kEdgeTicks : kEdgeTicks,
-         static_cast<std::int8_t>(fault.slot), fault.kind);
+  demand(fault.kind == FaultKind::kCardDeaf ? 2 * kEdgeTicks : kEdgeTicks, static_cast<int>(fault.slot),
+         fault.kind);
 }
 
 void World::inject_axis(const Fault& fault) {
@@ -302,8 +305,8 @@ void World::inject_app(const Fault& fault) {
   switch (fault.kind) {
     case FaultKind::kAppSilent: {
       app_.fall_silent(fault.ticks);
-      if (fault.ticks > robot_.config.app_timeout_ticks + 1) {
-        demand(robot_.config.app_timeout_ticks + 1, oracle::kNoAxis, fault.kind);
+      if (fault.ticks > robot_.config.common.app_timeout_ticks + 1) {
+        demand(robot_.config.common.app_timeout_ticks + 1, kNoAxis, fault.kind);
       }
       break;
     }
@@ -327,7 +330,7 @@ void World::inject_memory(const Fault& fault) {
     state_bit_ = fault.amount % kStateBits;
     totals_.state_bits.set(*state_bit_);
     totals_.bit_flips++;
-    demand(0, oracle::kNoAxis, fault.kind);
+    demand(0, kNoAxis, fault.kind);
     return;
   }
   if (config_damage_left_ > 0) {
@@ -337,14 +340,11 @@ void World::inject_memory(const Fault& fault) {
   flip(config_, config_bit_);
   config_damage_left_ = fault.ticks;
   totals_.config_bits.set(config_bit_);
-  if (const auto slot = slot_of_card_word(config_bit_)) {
-    card_unknown_[*slot] = true;
-  }
   if (is_driven_) {
     totals_.config_bits_driven.set(config_bit_);
   }
   totals_.bit_flips++;
-  demand(met_within(config_bit_), oracle::kNoAxis, fault.kind);
+  demand(met_within(config_bit_), kNoAxis, fault.kind);
 }
 
 }  // namespace interlock::campaign

@@ -5,7 +5,7 @@
 
 #include "flip.hpp"
 #include "interlock/kernel.h"
-#include "oracle/wire.hpp"
+#include "stop_clock.hpp"
 
 namespace interlock::campaign {
 namespace {
@@ -15,25 +15,33 @@ constexpr std::uint32_t kUsPerMs = 1000;
 
 /** The least number of ticks that is longer than so many milliseconds. */
 std::uint32_t longer_than(std::uint32_t milliseconds, const ilk_config_t& config) {
-  return milliseconds * kUsPerMs / config.period_us + 1u;
+  return milliseconds * kUsPerMs / config.common.period_us + 1u;
 }
 
 using Spoil = void (*)(ilk_config_t& config, ilk_axis_config_t& axis);
 
 /** Each breaks one rule of the specification: maxima, ranges that are empty, bounds that must not be zero. */
-constexpr std::array<Spoil, 24> kSpoils{
-    [](ilk_config_t& config, ilk_axis_config_t&) { config.version++; },
-    [](ilk_config_t& config, ilk_axis_config_t&) { config.size_bytes -= 4; },
-    [](ilk_config_t& config, ilk_axis_config_t&) { config.period_us = 0; },
-    [](ilk_config_t& config, ilk_axis_config_t&) { config.pedal_channels = 0; },
-    [](ilk_config_t& config, ilk_axis_config_t&) { config.pedal_channels = 3; },
-    [](ilk_config_t& config, ilk_axis_config_t&) { config.app_timeout_ticks = 0; },
-    [](ilk_config_t& config, ilk_axis_config_t&) { config.app_timeout_ticks = longer_than(150, config); },
-    [](ilk_config_t& config, ilk_axis_config_t&) { config.lease_max_ticks = longer_than(150, config); },
-    [](ilk_config_t& config, ilk_axis_config_t&) { config.pedal_debounce_ticks = longer_than(50, config); },
-    [](ilk_config_t& config, ilk_axis_config_t&) { config.pedal_disagree_ticks = longer_than(50, config); },
-    [](ilk_config_t& config, ilk_axis_config_t&) { config.bad_frame_limit = 6; },
-    [](ilk_config_t& config, ilk_axis_config_t&) { config.overrun_limit = 11; },
+constexpr std::array<Spoil, 28> kSpoils{
+    [](ilk_config_t& config, ilk_axis_config_t&) { config.common.version++; },
+    [](ilk_config_t& config, ilk_axis_config_t&) { config.common.size_bytes -= 4; },
+    [](ilk_config_t& config, ilk_axis_config_t&) { config.common.period_us = 0; },
+    [](ilk_config_t& config, ilk_axis_config_t&) { config.common.pedal_channels = 0; },
+    [](ilk_config_t& config, ilk_axis_config_t&) { config.common.pedal_channels = 3; },
+    [](ilk_config_t& config, ilk_axis_config_t&) { config.common.app_timeout_ticks = 1; },
+    [](ilk_config_t& config, ilk_axis_config_t&) {
+      config.common.app_timeout_ticks = longer_than(150, config);
+    },
+    [](ilk_config_t& config, ilk_axis_config_t&) {
+      config.common.lease_max_ticks = longer_than(150, config);
+    },
+    [](ilk_config_t& config, ilk_axis_config_t&) {
+      config.common.pedal_debounce_ticks = longer_than(50, config);
+    },
+    [](ilk_config_t& config, ilk_axis_config_t&) {
+      config.common.pedal_disagree_ticks = longer_than(50, config);
+    },
+    [](ilk_config_t& config, ilk_axis_config_t&) { config.common.bad_frame_limit = 6; },
+    [](ilk_config_t& config, ilk_axis_config_t&) { config.common.overrun_limit = 11; },
     [](ilk_config_t&, ilk_axis_config_t& axis) { axis.card = 99; },
     [](ilk_config_t&, ilk_axis_config_t& axis) { axis.limit_side = 3; },
     [](ilk_config_t&, ilk_axis_config_t& axis) { std::swap(axis.min_counts, axis.max_counts); },
@@ -47,6 +55,10 @@ constexpr std::array<Spoil, 24> kSpoils{
     [](ilk_config_t& config, ilk_axis_config_t& axis) { axis.stall_ticks = longer_than(500, config); },
     [](ilk_config_t&, ilk_axis_config_t& axis) { axis.drift_counts = axis.coast_counts - 1u; },
     [](ilk_config_t&, ilk_axis_config_t& axis) { axis.reverse_counts = axis.coast_counts - 1u; },
+    [](ilk_config_t&, ilk_axis_config_t& axis) { axis.max_delta_counts = 0; },
+    [](ilk_config_t&, ilk_axis_config_t& axis) { axis.dead_zone_drive = axis.max_drive; },
+    [](ilk_config_t&, ilk_axis_config_t& axis) { axis.home_tolerance_counts = 1; },
+    [](ilk_config_t&, ilk_axis_config_t& axis) { axis.stall_effort_ticks = 1; },
     [](ilk_config_t& config, ilk_axis_config_t&) { std::ranges::fill(config.axis, ilk_axis_config_t{}); },
 };
 
@@ -94,9 +106,7 @@ bool stays_inert(const ilk_config_t& config, std::uint32_t slot) {
   for (std::uint32_t tick = 0; tick < kTicks; ++tick) {
     const ilk_request_t request = wish(tick, slot);
     ilk_step(&config, &state, &in, &request, 1, &out);
-    const bool driven =
-        std::ranges::any_of(out.frame, [](const auto& frame) { return !oracle::wire::is_zero_drive(frame); });
-    if (state.mode != ILK_MODE_INIT || driven) {
+    if (state.system.mode != ILK_MODE_INIT || !is_zero_drive(out) || out.power != 0) {
       return false;
     }
   }
@@ -106,7 +116,7 @@ bool stays_inert(const ilk_config_t& config, std::uint32_t slot) {
 std::optional<std::string_view> judge_refusals(const ilk_config_t& config, plant::Random& random) {
   for (std::size_t way = 0; way < spoilings(); ++way) {
     if (!stays_inert(spoilt(config, way, random), random.below(ILK_SLOTS))) {
-      return "left INIT with a configuration that has to be refused";
+      return "P13: left INIT with a configuration that has to be refused";
     }
   }
   return std::nullopt;

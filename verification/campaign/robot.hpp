@@ -1,7 +1,7 @@
 /**
  * @file
- * A robot for one case: ten axes of all card types with seeded numbers, as the kernel's configuration, as the
- * plant's parameters and as the oracle's rules.
+ * A robot for one case: ten axes of all card types with seeded numbers, as the kernel's configuration and
+ * as the plant's parameters.
  */
 #ifndef INTERLOCK_CAMPAIGN_ROBOT_HPP
 #define INTERLOCK_CAMPAIGN_ROBOT_HPP
@@ -11,7 +11,6 @@
 #include <optional>
 
 #include "interlock/types.h"
-#include "oracle/rules.hpp"
 #include "plant/parameters.hpp"
 #include "plant/random.hpp"
 
@@ -25,13 +24,9 @@ inline constexpr std::uint32_t kConfigPassTicks = 2 * ILK_SLOTS;
  * on. */
 std::uint32_t met_within(std::size_t config_bit);
 
-/** The slot whose kind of card that bit of the configuration belongs to. */
-std::optional<std::size_t> slot_of_card_word(std::size_t config_bit);
-
 struct Robot {
   ilk_config_t config;
   plant::Parameters plant;
-  oracle::SystemRules rules;
   std::optional<std::size_t> far_coaster; /**< axis that coasts farther than its configuration says */
 };
 

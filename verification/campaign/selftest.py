@@ -1,126 +1,137 @@
 #!/usr/bin/env python3
-"""Shows that the campaign finds a kernel whose rule for a property is missing, one seeded fault at a time.
+"""Shows that the campaign and the hostile driver notice each rule of the kernel that is taken out.
 
-Uses the patches of tests/failure that change the kernel (P1 to P13), each in a copy of the tree. A fault
-counts as found when the campaign reports something unsafe or late within the seconds given, and the case to
-which it shrinks that shows the same when it is run again; a healthy kernel must not.
-Prints a table and writes build/evidence/campaign_selftest.json, beside it totals and case of each campaign.
+Usage: selftest.py [NAME ...]; all rules of verification/mutation/rules.toml when none is named. Each kernel
+is compiled from the sources with the rule's edits and linked with what `make build-tests` built. It counts
+as noticed when the driver that it names reports its clause within the seconds given; the healthy kernel must
+not fail.
+Prints a line a rule and writes build/evidence/campaign_selftest.json.
 """
 
 import argparse
 import json
-import re
+import shutil
+import subprocess
 import sys
 import tempfile
 import time
+import tomllib
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tests/failure"))
 sys.path.insert(0, str(ROOT / "verification/evidence"))
 import evidence  # noqa: E402
-import run as failure  # noqa: E402
 
+KERNEL, MONITORS, BUILT = ROOT / "kernel", ROOT / "kernel/monitors", ROOT / "build/release"
+HOSTILE = ROOT / "verification/monitors/hostile.c"
+COMPILE = ["gcc", "-std=c11", "-O2", "-ffreestanding", f"-I{KERNEL}/include"]
+SLOTS_OF_HOSTILE = 2
 SEED = 1
-LAST_PROPERTY = 13
-AXIS = re.compile(r", axis \d+(?=:)")
 
 
-# One of two places that keep a rule: without it the other still does, so no output differs. The patch beside
-# this file takes the rule from both.
-MASKED = {
-    "P4_soft_limit_without_coast": "P4_soft_limit_in_both_places",
-    "P7_bounds_without_coast": "P7_bounds_in_both_places",
-}
+def read_rules(names: list[str]) -> list[dict]:
+    rules = tomllib.loads((ROOT / "verification/mutation/rules.toml").read_text("utf-8"))["rule"]
+    return [rule for rule in rules if not names or rule["name"] in names]
 
 
-def property_of(path: Path) -> int:
-    return int(path.stem.partition("_")[0][1:])
+def edited(rule: dict | None, folder: Path) -> Path:
+    """The sources with the rule's edits. Raises ValueError when a text does not stand there once."""
+    sources = folder / "src"
+    shutil.copytree(KERNEL / "src", sources)
+    for name, before, after in rule["edits"] if rule else ():
+        text = (sources / name).read_text("utf-8")
+        if text.count(before) != 1:
+            raise ValueError(f"{rule['name']}: {text.count(before)} times in {name}: {before!r}")
+        (sources / name).write_text(text.replace(before, after), "utf-8")
+    return sources
 
 
-def chosen(names: list[str]) -> list[Path]:
-    paths = [*(ROOT / "tests/failure").glob("P*.patch"), *Path(__file__).parent.glob("P*.patch")]
-    paths = [path for path in paths if property_of(path) <= LAST_PROPERTY and path.stem not in MASKED]
-    return sorted((path for path in paths if not names or path.stem in names), key=property_of)
+def build_hostile(sources: Path, program: Path) -> None:
+    files = [*sources.glob("*.c"), HOSTILE, MONITORS / "monitors.c", MONITORS / "adopt.c"]
+    options = [f"-DILK_SLOTS={SLOTS_OF_HOSTILE}", f"-I{sources}", f"-I{MONITORS}", f"-I{HOSTILE.parent}"]
+    subprocess.run(
+        ["gcc", "-std=c11", "-O2", f"-I{KERNEL}/include", *options, *files, "-o", program], check=True
+    )
 
 
-# Prints the totals, and below them what the case shows that the campaign leaves when it found something.
-CAMPAIGN = f"""
-build/release/bin/kernel_campaign --seed {SEED} --seconds "$0" --failures "$1"
-ended=$?
-[ $ended -ne 1 ] || build/release/bin/kernel_campaign --replay "$1"/case-{SEED}-*.txt
-exit $ended
-"""
+def build_campaign(sources: Path, program: Path) -> None:
+    objects = []
+    for file in sources.glob("*.c"):
+        objects.append(file.with_suffix(".o"))
+        options = ["-DILK_FRAME_WORDS=32", f"-I{sources}"]
+        subprocess.run([*COMPILE, *options, "-c", file, "-o", objects[-1]], check=True)
+    [main] = BUILT.glob("verification/campaign/CMakeFiles/kernel_campaign.dir/**/*.o")
+    libraries = [
+        BUILT / "verification/campaign/libinterlock_campaign.a",
+        BUILT / "kernel/monitors/libinterlock_monitors.a",
+        BUILT / "models/plant/libinterlock_plant.a",
+    ]
+    subprocess.run(["g++", main, *libraries, *objects, "-ltomlplusplus", "-o", program], check=True)
 
 
-def campaign(patch: Path | None, seconds: float, work: Path) -> dict:
-    """The totals of a campaign of that many processor seconds, with the patch or on the tree as it is.
-
-    When it found something: `replayed`, what its case shows when run again, and `case`, the lines of that.
-    """
-    command = ["sh", "-c", CAMPAIGN, str(seconds), str(work)]
-    done = failure.run_in_copy(ROOT, patch, "kernel_campaign", command)
-    if done.returncode not in (0, 1):
-        raise failure.UnusableError(f"the campaign did not run: {done.stderr.strip()}")
-    printed, _, replayed = done.stdout.partition("\n")
-    totals = json.loads(printed)
-    if "first_failure" in totals:
-        [case] = work.glob("case-*.txt")
-        totals |= {"replayed": replayed.strip(), "case": case.read_text("utf-8").splitlines()}
-    return totals
-
-
-def is_shown_again(totals: dict) -> bool:
-    """Whether the shrunk case of a campaign fails as the campaign did, be it on another tick and axis."""
-
-    def what(text: str) -> str:
-        return AXIS.sub("", text.partition(": ")[2])
-
-    return what(totals["replayed"]).startswith(f"{what(totals['first_failure']['text'])} (of ")
+def finding(driver: str, rule: dict | None, seconds: float, clause: str = "") -> tuple[str, float]:
+    """What the driver finds of such a kernel up to the clause, or nothing, and after how many seconds."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        sources, program = edited(rule, folder), folder / driver
+        (build_hostile if driver == "hostile" else build_campaign)(sources, program)
+        started = time.monotonic()
+        if driver == "hostile":
+            command = [program, str(seconds), str(SEED), *([clause] if clause else ())]
+            done = subprocess.run(command, capture_output=True, text=True, check=False)
+            found = [
+                line for line in done.stdout.splitlines() if line.startswith("VIOLATED") and clause in line
+            ]
+            text = found[0].partition(": ")[2] if found else ""
+        else:
+            command = [
+                program,
+                "--seed",
+                str(SEED),
+                "--seconds",
+                str(seconds),
+                "--failures",
+                folder / "cases",
+            ]
+            done = subprocess.run(command, capture_output=True, text=True, check=False)
+            text = json.loads(done.stdout.splitlines()[0]).get("first_failure", {}).get("text", "")
+        if done.returncode not in (0, 1):
+            raise RuntimeError(f"{driver} did not run: {done.stderr.strip()}")
+        return text, time.monotonic() - started
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("names", nargs="*", help="patches to seed (default: all of P1 to P13)")
-    parser.add_argument("--seconds", type=float, default=60, help="of processor time for each fault")
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("names", nargs="*", help="rules to take out (default: all)")
+    parser.add_argument("--seconds", type=float, default=60, help="of processor time for each rule")
     arguments = parser.parse_args()
     started = time.monotonic()
-    faults, outcomes = chosen(arguments.names), {}
-    with tempfile.TemporaryDirectory() as folder:
-        work = Path(folder)
-        healthy = campaign(None, min(arguments.seconds, 20), work)
-        if "first_failure" in healthy:
-            print(f"the healthy kernel fails: {healthy['first_failure']['text']}")
-            return 1
-        print(f"{'seeded fault':42} {'found after':>22}   by")
-        for path in faults:
-            outcomes[path.stem] = totals = campaign(path, arguments.seconds, work / path.stem)
-            first = totals.get("first_failure")
-            if first:
-                after = f"{totals['ticks']:,} ticks {first['seconds']:.1f} s"
-                print(f"{path.stem:42} {after:>22}   {first['text'].partition(': ')[2]}", flush=True)
-                if not is_shown_again(totals):
-                    print(f"{'':42} its case shows something else: {totals['replayed']}", flush=True)
-            else:
-                print(f"{path.stem:42} {'NOT FOUND':>22}   in {arguments.seconds:.0f} s", flush=True)
-    found = [each for each in outcomes.values() if "first_failure" in each]
-    seconds = [each["first_failure"]["seconds"] for each in found]
-    replayed = sum(map(is_shown_again, found))
-    print(f"campaign selftest: {len(faults) - len(found)} not found, {len(found) - replayed} not shown again")
+    rules, outcomes, unnoticed = read_rules(arguments.names), {}, []
+    healthy = {driver: finding(driver, None, 20)[0] for driver in ("campaign", "hostile")}
+    for rule in rules:
+        driver, clause = rule["campaign"].split(" ", 1)
+        text, seconds = finding(driver, rule, arguments.seconds, clause)
+        noticed = clause in text
+        unnoticed += [] if noticed else [rule["name"]]
+        outcomes[rule["name"]] = {"driver": driver, "text": text, "seconds": round(seconds, 1)}
+        print(
+            f"{'noticed' if noticed else 'MISSED ':8} {rule['name']:54} {seconds:6.1f} s  {text}", flush=True
+        )
+    sick = {driver: text for driver, text in healthy.items() if text}
+    print(
+        f"campaign selftest: {len(unnoticed)} of {len(rules)} rules not noticed; "
+        f"healthy kernel: {sick or 'no finding'}"
+    )
     log = evidence.log_directory("campaign_selftest") / "outcomes.json"
     log.write_text(json.dumps({"healthy": healthy, **outcomes}, indent=1) + "\n", "utf-8")
     figures = {
-        "faults": len(faults),
-        "found": len(found),
-        "not_found": len(faults) - len(found),
-        "replayed": replayed,
-        "properties": len({property_of(path) for path in faults}),
-        "healthy_ticks": healthy["ticks"],
-        "seconds_worst": round(max(seconds, default=0), 1),
+        "rules": len(rules),
+        "rules_noticed": len(rules) - len(unnoticed),
+        "seconds_worst": max((each["seconds"] for each in outcomes.values()), default=0.0),
         "seconds_most": arguments.seconds,
     }
-    status = "PASSED" if replayed == len(faults) else "FAILED"
-    tools = {"kernel_campaign": evidence.commit()[:12]}
+    status = "FAILED" if unnoticed or sick else "PASSED"
+    tools = {"gcc": evidence.commit()[:12]}
     return evidence.write("campaign_selftest", status, tools, figures, [], started)
 
 

@@ -45,8 +45,7 @@ Case shrink(const Case& plan, const Failure& failure, const std::function<Outcom
     for (std::size_t first = 0; first < best.faults.size() && runs_left > 0; runs_left--) {
       Case less = without(best, first, std::min(size, best.faults.size() - first));
       const Outcome outcome = run_case(less);
-      if (outcome.failure && outcome.failure->property == failure.property &&
-          outcome.failure->reason == failure.reason) {
+      if (outcome.failure && outcome.failure->clause == failure.clause) {
         end_at(less, outcome.failure->tick);
         best = std::move(less);
         removed = true;

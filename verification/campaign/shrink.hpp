@@ -20,7 +20,7 @@ struct Outcome {
 
 Outcome run(const Case& plan);
 
-/** The same failure, for the same reason, in a case from which no fault can be taken away any more, unless
+/** The same failure, by its clause, in a case from which no fault can be taken away any more, unless
  * 300 runs of `run_case` were not enough for that. Nothing is added.
  */
 Case shrink(const Case& plan, const Failure& failure,

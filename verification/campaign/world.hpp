@@ -1,6 +1,6 @@
 /**
  * @file
- * One case: kernel core, plant, app and oracle in one process, a tick at a time, with the plan's faults.
+ * One case: kernel core, plant, app and monitors in one process, a tick at a time, with the plan's faults.
  */
 #ifndef INTERLOCK_CAMPAIGN_WORLD_HPP
 #define INTERLOCK_CAMPAIGN_WORLD_HPP
@@ -15,11 +15,11 @@
 
 #include "app.hpp"
 #include "interlock/types.h"
-#include "oracle/oracle.hpp"
-#include "oracle/stop_clock.hpp"
+#include "monitors.h"
 #include "plan.hpp"
 #include "plant/plant.hpp"
 #include "robot.hpp"
+#include "stop_clock.hpp"
 
 namespace interlock::campaign {
 
@@ -56,9 +56,10 @@ struct Totals {
 /** The first thing that went wrong in a case. */
 struct Failure {
   std::uint32_t tick = 0;
-  unsigned property = 0; /**< 1 for P1 and so on; 0 for a stop that came late */
-  int axis = oracle::kNoAxis;
-  std::string_view reason;
+  std::string_view clause; /**< of a monitor, or the kind of fault after which a stop was late */
+  int axis = kNoAxis;
+  std::int64_t found = 0;
+  std::int64_t bound = 0;
 };
 
 class World {
@@ -92,7 +93,7 @@ class World {
   void inject_switch(const Fault& fault);
   void inject_app(const Fault& fault);
   void inject_memory(const Fault& fault);
-  void demand(std::uint32_t within, std::int8_t axis, FaultKind kind);
+  void demand(std::uint32_t within, int axis, FaultKind kind);
   void act(const plant::command::Command& command, std::uint32_t after = 0);
   void break_promise(std::size_t slot, std::uint32_t ticks);
   void renew_promises();
@@ -100,11 +101,12 @@ class World {
   void spoil_inputs();
   void run_kernel();
   void sweep_flips(const ilk_state_t& before);
-  void show_oracle();
+  void begin_anew();
+  void forget();
   void count();
   std::optional<Failure> judge();
-  bool counts_late(const oracle::Finding& finding) const;
-  bool is_excused(const oracle::Finding& finding) const;
+  std::optional<Failure> judge_memory() const;
+  std::optional<Failure> judge_range();
 
   Case plan_;
   plant::Random random_;
@@ -113,22 +115,22 @@ class World {
   ilk_state_t state_{};
   ilk_inputs_t inputs_{};
   ilk_outputs_t outputs_{};
-  ilk_outputs_t undamaged_{};
   App app_;
   plant::Plant plant_;
-  oracle::Oracle oracle_;
-  oracle::StopClock clock_;
-  oracle::Observation seen_;
-  std::vector<oracle::wire::FrameView> undamaged_frames_;
+  ilk_ghost_t ghost_{};
+  ilk_view_t before_{};
+  ilk_view_t after_{};
+  StopClock clock_;
 
   std::uint32_t tick_ = 0;
   std::size_t next_fault_ = 0;
+  std::vector<std::pair<std::uint32_t, plant::command::Command>> commands_; /**< to the plant, by tick */
   std::vector<Fault> waiting_; /**< their tick is over, but not that of the press */
   std::vector<std::pair<std::uint32_t, FaultKind>> newest_faults_; /**< the last few ticks' */
   std::uint32_t driven_ticks_ = 0;                                 /**< since MOTION was entered */
   bool is_driven_ = false;
   bool foot_was_down_ = false;
-  std::uint32_t shown_generation_ = 0;
+  std::uint32_t starts_ = 1; /**< of the kernel; with each it gets another nonce */
   std::uint32_t pedal_held_until_ = 0;
   std::uint32_t undefined_pedal_ticks_ = 0;
   std::uint32_t undefined_estop_ticks_ = 0;
@@ -138,14 +140,11 @@ class World {
   std::uint32_t config_damage_left_ = 0;
   std::size_t config_bit_ = 0;
   std::optional<std::size_t> state_bit_;
+  bool state_damaged_ = false; /**< before this tick */
   std::size_t sweep_bit_;
   std::array<std::uint32_t, ILK_SLOTS> broken_until_{};
   std::array<bool, ILK_SLOTS> broken_{};
-  std::array<bool, ILK_SLOTS> was_homing_{};
-  std::array<bool, ILK_SLOTS> card_unknown_{}; /**< the kind of card was damaged since it was driven */
-  std::array<std::uint32_t, ILK_SLOTS> card_known_from_{}; /**< tick in which damage to its kind ended */
-  std::array<std::uint32_t, ILK_SLOTS> fault_before_{};
-  std::uint32_t mode_before_ = ILK_MODE_INIT;
+  std::array<bool, ILK_SLOTS> inside_{};      /**< homed and within the soft range, since then */
   std::optional<std::string_view> unrefused_; /**< what a kernel did that had to stay in INIT */
   Totals totals_;
 };

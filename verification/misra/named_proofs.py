@@ -2,7 +2,6 @@
 for each guideline that says `proof`.
 """
 
-import json
 import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
@@ -14,10 +13,9 @@ ENFORCEMENT = Path(__file__).resolve().parent / "enforcement.md"
 CBMC = ROOT / "verification/cbmc"
 EVERY_FILE = "every file"
 OPTION = re.compile(r"(?<![\w`])--?[a-z][a-z-]+")
-OPTIONS_OF = {"cbmc": CBMC / "prover.py", "wp": ROOT / "verification/frama-c/wp.py"}
+OPTIONS_OF = {"cbmc": CBMC / "prover.py"}
 FIGURES = ("coverage", "target")
 """Rungs whose figures decide, not single proofs."""
-NOT_PROVED = ("no function", "not proved")
 
 
 @dataclass(frozen=True)
@@ -26,7 +24,6 @@ class FileRow:
 
     file: str
     cbmc: tuple[str, ...]
-    contracts: str
 
 
 @dataclass(frozen=True)
@@ -48,11 +45,7 @@ def rows(columns: int) -> Iterator[list[str]]:
 
 
 def file_rows() -> list[FileRow]:
-    return [
-        FileRow(file, tuple(cbmc.split(", ")), contracts)
-        for file, cbmc, contracts in rows(3)
-        if file.endswith(".c")
-    ]
+    return [FileRow(file, tuple(cbmc.split(", "))) for file, cbmc in rows(2) if file.endswith(".c")]
 
 
 def rule_rows() -> list[RuleRow]:
@@ -78,7 +71,6 @@ def proofs_by_file() -> dict[str, set[str]]:
 def faults_of_files() -> Iterator[str]:
     """Files without a row, and rows that do not name exactly the proofs that there are."""
     proofs = proofs_by_file()
-    contracts = json.loads((ROOT / "verification/frama-c/expected.json").read_text("utf-8"))
     told = {row.file: row for row in file_rows()}
     for path in sorted((ROOT / "kernel/src").glob("*.c")):
         if path.name not in told:
@@ -89,9 +81,6 @@ def faults_of_files() -> Iterator[str]:
                 "takes it in, but is not named" if name in proofs.get(file, set()) else "does not take it in"
             )
             yield f"{file}: the proof {name} {there}"
-        proved = file in contracts
-        if (row.contracts == file) != proved or (not proved and row.contracts not in NOT_PROVED):
-            yield f"{file}: '{row.contracts}', but its contracts are {'' if proved else 'not '}proved"
 
 
 def unknown_proofs(row: RuleRow, figures: Mapping[str, Mapping[str, object]]) -> Iterator[str]:

@@ -29,7 +29,6 @@ RUNNERS = {
     rung: HERE.parent / directory / "run.py"
     for rung, directory in (
         ("cbmc", "cbmc"),
-        ("wp", "frama-c"),
         ("coverage", "coverage"),
         ("target", "target"),
     )

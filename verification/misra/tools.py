@@ -76,12 +76,6 @@ def generate_layout() -> None:
     )
 
 
-def _is_annotation(finding: Finding) -> bool:
-    """True for `//` in an ACSL annotation, where it begins a comment of ACSL and cannot hide C."""
-    lines = (ROOT / finding.file).read_text("utf-8").splitlines() if finding.check == "3.1" else []
-    return bool(lines) and "/*@" in lines[finding.line - 1]
-
-
 def cppcheck(files: Sequence[str], log: Path) -> set[Finding]:
     """MISRA C:2012 by cppcheck's addon, and cppcheck's own checks, over all files as one program.
 
@@ -111,7 +105,7 @@ def cppcheck(files: Sequence[str], log: Path) -> set[Finding]:
         Finding(name.removeprefix("misra-c2012-"), _relative(file), int(line), text)
         for file, line, name, text in rows
     }
-    return {finding for finding in found if not _is_annotation(finding)}
+    return found
 
 
 def _gcc_one(file: str, flags: Sequence[str], log: Path) -> set[Finding]:

@@ -3,13 +3,11 @@
 The sound kernel stands beside the changed one in one program, every name of it with a prefix. Both run on
 the same arguments and memory, whatever these hold, and must leave the same results and memory. That is asked
 of the changed function first; where it differs, of all functions that call it, and of those that call these:
-what a caller overwrites or never reads is no fault. What contracts promise is not assumed. Of what they
-require of the callers of a static function, bounds of its arguments are: WP shows of the sound kernel that
-every call keeps them, so they hold in the first call in which the mutant could differ.
+what a caller overwrites or never reads is no fault.
 """
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -34,17 +32,6 @@ NAMES = re.compile(
 PARAMETER = re.compile(
     r"^(?P<const>const )?(?P<type>\w+) (?P<pointer>\*(?:const )?)?(?P<name>\w+)(?P<array>\[(?P<size>\w*)\])?$"
 )
-
-CONTRACT = re.compile(r"/\*@(?:[^*]|\*(?!/))*\*/\n$")
-BOUND = re.compile(
-    r"@ +requires +\w+: (?:(?P<predicate>\w+)\((?P<of>\w+)(?P<of_member>->\w+)?\) ==> )?"
-    r"(?P<name>\w+)(?P<member>->\w+)? (?P<relation><=?|==) (?P<limit>[A-Z]\w+);$",
-    re.M,
-)
-"""A clause that means in C what it means in ACSL: a value beside an enumerator or a constant.
-
-Where it holds only under a predicate, a function of that name must say by its contract that it decides it.
-"""
 
 
 @dataclass(frozen=True)
@@ -108,43 +95,6 @@ def argument(number: int, parameter: str) -> Argument | None:
     return Argument(number, found["name"], found["type"], "read" if found["const"] else "written", size)
 
 
-def bounds(function: Function, arguments: Sequence[Argument], source: str) -> list[str]:
-    """What every caller of a static function keeps: its bounds, as conditions on the harness' arguments.
-
-    `source` is the text of its file.
-    """
-    above = "".join(source.splitlines(keepends=True)[: function.first_line - 1])
-    contract = CONTRACT.search(above)
-    if contract is None or not function.is_static:
-        return []
-    numbers = {each.name: each.number for each in arguments}
-    return [
-        condition(numbers, found)
-        for found in BOUND.finditer(contract.group())
-        if found["name"] in numbers and is_decided(numbers, found, source)
-    ]
-
-
-def is_decided(numbers: Mapping[str, int], bound: re.Match[str], source: str) -> bool:
-    """Whether C can say where the bound holds: everywhere, or where a function of the file decides it."""
-    predicate = bound["predicate"]
-    return predicate is None or (
-        bound["of"] in numbers and f"ensures exact: \\result <==> {predicate}(" in source
-    )
-
-
-def condition(numbers: Mapping[str, int], bound: re.Match[str]) -> str:
-    """The bound in C, of arguments by their numbers; wide, as integers of ACSL do not convert."""
-
-    def value(name: str, member: str | None) -> str:
-        return f"a{numbers[name]}{(member or '').replace('->', '.')}"
-
-    within = f"(int64_t){value(bound['name'], bound['member'])} {bound['relation']} (int64_t){bound['limit']}"
-    if bound["predicate"] is None:
-        return within
-    return f"!{SOUND}{bound['predicate']}({value(bound['of'], bound['of_member'])}) || {within}"
-
-
 def same(first: str, second: str) -> str:
     """Every word of two objects of one size is the same, and what is left of them."""
     one, other = (f"((const unsigned char *)&{name})[n]" for name in (first, second))
@@ -152,15 +102,14 @@ def same(first: str, second: str) -> str:
     return f'  {{ {assumed}\n    __CPROVER_assert({one} == {other}, "same"); }}\n'
 
 
-def harness(function: Function, arguments: Sequence[Argument], kept: Sequence[str], local: set[str]) -> str:
-    """A program that runs the function and its sound twin side by side, on what keeps the conditions."""
+def harness(function: Function, arguments: Sequence[Argument], local: set[str]) -> str:
+    """A program that runs the function and its sound twin side by side."""
 
     def sound(name: str) -> str:
         return SOUND + name if name in local else name
 
     name = Path(function.file).name
     made, theirs, ours, checks = [], [], [], []
-    assumed = "".join(f"  __CPROVER_assume({each});\n" for each in kept)
     for each in arguments:
         size = f"[{each.size}]" if each.size else ""
         address = "" if each.size or each.kind == "value" else "&"
@@ -182,7 +131,7 @@ def harness(function: Function, arguments: Sequence[Argument], kept: Sequence[st
         checks.append('  __CPROVER_assert(r == s, "same");\n' if is_scalar(base) else same("r", "s"))
     return (
         f'#include <string.h>\n#include "{SOUND}public.h"\n#include "{name}"\n#include "{SOUND}{name}"\n'
-        "int main(void) {\n" + "\n".join(made) + "\n" + assumed + calls + "".join(checks) + "  return 0;\n}\n"
+        "int main(void) {\n" + "\n".join(made) + "\n" + calls + "".join(checks) + "  return 0;\n}\n"
     )
 
 
@@ -196,8 +145,7 @@ def is_same(function: Function, tree: Path, folder: Path) -> bool:
     if any(each is None for each in arguments):
         return False
     made = [each for each in arguments if each]
-    kept = bounds(function, made, (ROOT / function.file).read_text("utf-8"))
-    text = harness(function, made, kept, names_of(ROOT / "kernel"))
+    text = harness(function, made, names_of(ROOT / "kernel"))
     source = folder / f"same_{function.name}.c"
     source.write_text(text, "utf-8")
     taken_in = Path(function.file).name

@@ -31,6 +31,8 @@ TOKENS = {
 }
 CONDITION = re.compile(r"\b(if|while) \((?P<condition>.*)\) \{$")
 RETURNED = re.compile(r"\breturn (?P<value>[^;]+);")
+UNENDED = re.compile(r"\breturn (?=\w+\()[^;]+$")
+"""A result that goes on in the next line and begins with a call: nothing is made of it by a factor."""
 ASSIGNED = re.compile(r"^\s+(?:const \w+ )?\S+ = (?P<value>[^;{]+);$")
 MEMBER = re.compile(r"(?<![\w\])])\.\w+ = (?P<value>[^,;{}()]+)[,}]")
 NUMBER = re.compile(r"(?<![\w.])(?:[2-9]|[1-9]\d+)(?=u?\b(?!\.))")
@@ -39,7 +41,7 @@ DELETABLE = re.compile(
     r"^\s+(?!return|static|const|bool|u?int\d+_t|ilk_\w+_t |finding_t|case|default|break)\S.*;$"
 )
 EMPTIED = re.compile(r"\{ (?P<body>(?!return)\S.*;) \}$")
-SKIPPED = re.compile(r"^\s*(#|/\*|\*|//|_Static_assert|case |default:)")
+SKIPPED = re.compile(r"^\s*(#|/\*|\*(?!\w)|//|_Static_assert|case |default:)")
 
 
 @dataclass(frozen=True)
@@ -98,6 +100,8 @@ def changes(line: str, next_of: dict[str, str]) -> Iterator[tuple[str, str]]:
         if found := pattern.search(line):
             new = f"!({found[group]})" if operator == "condition" else "0"
             yield operator, line[: found.start(group)] + new + line[found.end(group) :]
+    if UNENDED.search(line):
+        yield "result", line.replace("return ", "return 0u * ", 1)
     for found in MEMBER.finditer(line):
         yield "member", line[: found.start("value")] + "0" + line[found.end("value") :]
     for found in NUMBER.finditer(line):

@@ -1,16 +1,14 @@
 """What can catch a fault in one file of the kernel's core: parts of the rungs, the cheapest first.
 
-A probe catches a fault only by what it says of the code: a row that differs, a property or a contract that
-does not hold, a goal that can no longer be reached, a function of which a proof tells when it must be called
-and that nothing calls any more. Another number of properties or goals, which any change of the text brings,
-catches nothing.
+A probe catches a fault only by what it says of the code: a test that fails, a property that does not hold, a
+goal that can no longer be reached, a function of which a proof tells when it must be called and that nothing
+calls any more. Another number of properties or goals, which any change of the text brings, catches nothing.
 """
 
-import json
 import re
 import sys
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,6 +16,10 @@ from bounded import output_of
 
 HERE = Path(__file__).resolve().parent
 TIMEOUT_S = 900
+TOLD = re.compile(
+    r"^ +(\w+: .*|goal \w+ is \w+; expected.*|\w+ is to be replaced, but .* no such function)$", re.MULTILINE
+)
+"""What a proof says of the code."""
 
 
 @dataclass(frozen=True)
@@ -27,36 +29,25 @@ class Probe:
     command: tuple[str, ...]
     catches: re.Pattern[str]
 
+    def catch_all(self, tree: Path) -> list[str]:
+        """Each line that tells what the fault broke in this tree."""
+        said = output_of(self.command, TIMEOUT_S, cwd=tree) or ""
+        return [found.group().strip() for found in self.catches.finditer(said)]
+
     def catch(self, tree: Path) -> str:
-        """The first line that tells what the fault broke in this tree; empty when nothing did."""
-        found = self.catches.search(output_of(self.command, TIMEOUT_S, cwd=tree) or "")
-        return found.group().strip() if found else ""
-
-
-def contract_probe(file: str, function: str = "") -> Probe:
-    """The contracts of one file of kernel/src, or of one function of it.
-
-    To WP a function is what its contract says, so a changed body can only break the proof of its own.
-    """
-    one = ("--function", function) if function else ()
-    command = (sys.executable, "verification/frama-c/run.py", *one, file)
-    return Probe("wp", file, command, re.compile(r"^ +(NOT PROVED|OUT OF REACH) .*$", re.MULTILINE))
+        """The first of them; empty when nothing was noticed."""
+        return next(iter(self.catch_all(tree)), "")
 
 
 def proof_probe(name: str) -> Probe:
     """One proof of verification/cbmc."""
-    command = (sys.executable, "verification/cbmc/run.py", name)
-    told = r"^ +(\w+: .*|goal \w+ is \w+; expected.*|\w+ is to be replaced, but .* no such function)$"
-    return Probe("cbmc", name, command, re.compile(told, re.MULTILINE))
+    return Probe("cbmc", name, (sys.executable, "verification/cbmc/run.py", name), TOLD)
 
 
-def row_probe(phase: str) -> Probe:
-    """The compiled kernel over the model's rows of one phase, or of `all`; see rows.py."""
-    names = () if phase == "all" else (phase,)
-    command = (sys.executable, str(HERE / "rows.py"), ".", *names)
-    return Probe(
-        "conformance", phase, command, re.compile(r"^\w+: (\d+ rows differ|the run).*$", re.MULTILINE)
-    )
+def tick_probe(part: str = "all") -> Probe:
+    """Whole ticks against the monitors: one claim of verification/tick, or `all`."""
+    names = () if part == "all" else (part,)
+    return Probe("tick", part, (sys.executable, "verification/tick/run.py", *names), TOLD)
 
 
 def test_probe(part: str) -> Probe:
@@ -65,7 +56,7 @@ def test_probe(part: str) -> Probe:
     return Probe("tests", part, command, re.compile(r"^FAILED.*$", re.MULTILINE))
 
 
-KINDS = {"tests": test_probe, "wp": contract_probe, "cbmc": proof_probe, "conformance": row_probe}
+KINDS = {"tests": test_probe, "tick": tick_probe, "cbmc": proof_probe}
 
 
 def probe_named(name: str) -> Probe:
@@ -86,24 +77,9 @@ def proofs_about(tree: Path, file: Path) -> Iterator[str]:
     return (name for _, name in sorted(proofs))
 
 
-def contracts_of(tree: Path, file: Path) -> Mapping[str, object]:
-    """The functions of a file of kernel/src whose contracts are proved of the sound one."""
-    return json.loads((tree / "verification/frama-c/expected.json").read_text("utf-8")).get(file.name, {})
-
-
-def probes_of_mutants(tree: Path, file: Path, function: str) -> Iterator[Probe]:
-    """All that can see a change of the body of this function, the cheapest first."""
+def probes_of_mutants(tree: Path, file: Path) -> Iterator[Probe]:
+    """All that can see a change of this file of kernel/src, the cheapest first."""
     yield test_probe("short")
-    yield row_probe("all")
-    if function in contracts_of(tree, file):
-        yield contract_probe(file.name, function)
     yield test_probe("long")
     yield from map(proof_probe, proofs_about(tree, file))
-
-
-def probes_for(tree: Path, file: Path) -> Iterator[Probe]:
-    """All that can see this file of kernel/src, but the unit tests."""
-    yield row_probe("all")
-    yield from map(proof_probe, proofs_about(tree, file))
-    if contracts_of(tree, file):
-        yield contract_probe(file.name)
+    yield tick_probe()

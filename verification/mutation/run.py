@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Mutants of the core against unit tests, conformance, proofs and contracts: what none notices is unchecked.
+"""Mutants of the core against unit tests, proofs and whole ticks: what none notices is unchecked.
 
 Usage: run.py [--count N] [--each N] [--seed TEXT] [--without-tests] [--matrix] [--list].
 
 The seed (the commit) puts all mutants in an order. Of each function the first --each (5) are drawn, or all
 if there are fewer, then the next of all until there are --count (400). Mutants that do not compile, or
 that are the same code as one that was drawn, are passed over. Each is shown to the rungs, the cheapest
-first, until one notices it; with --matrix to all, with --without-tests to rungs 2 to 4 alone, of which
+first, until one notices it; with --matrix to all, with --without-tests to the proofs alone, of which
 nine of ten must be noticed.
 
 What nothing notices is an equivalent only if CBMC shows that it does the same as the sound kernel (equal.py),
@@ -33,12 +33,11 @@ from compiled import TRAPPING_CLANG, Compiler, is_sound_program
 from equal import shown_equal
 from functions import Function, function_at, functions_in
 from operators import Mutant, draw, mutants_of
-from probes import Probe, probes_of_mutants, row_probe, test_probe
-from rows import all_phases, print_missing
+from probes import Probe, probes_of_mutants, test_probe
 from tree import ROOT, make_tree, on_trees, seeded
 from verdicts import RUNGS, Kept, Verdict
 
-SOON = ("tests", "conformance", "wp")
+SOON = ("tests",)
 """Rungs that answer within a minute; all proofs about a file take longer."""
 
 
@@ -120,15 +119,13 @@ def why_equal(tree: Path, mutant: Mutant) -> str:
     return shown_equal(tree, mutant.file, mutant.line)
 
 
-def judge(
-    tree: Path, mutant: Mutant, function: str, kept: Kept, asked: Sequence[str], every: bool
-) -> Verdict:
-    """What becomes of one mutant of a function before the rungs that are asked."""
+def judge(tree: Path, mutant: Mutant, kept: Kept, asked: Sequence[str], every: bool) -> Verdict:
+    """What becomes of one mutant before the rungs that are asked."""
     started = time.monotonic()
     with seeded(tree, mutant.file, mutant.line, mutant.before, mutant.after):
         if known := kept.find(tree):
             return known
-        probes = [p for p in probes_of_mutants(tree, Path(mutant.file), function) if p.rung in asked]
+        probes = [p for p in probes_of_mutants(tree, Path(mutant.file)) if p.rung in asked]
         # What does the same needs neither test nor proof to be asked.
         equal = compiled_alike(tree, mutant)
         told = {} if equal else ask(tree, [probe for probe in probes if probe.rung in SOON], every)
@@ -151,15 +148,12 @@ def show(mutant: Mutant, verdict: Verdict) -> None:
     print(f"{verdict.fate:<10} {mutant.name:<40} {verdict.seconds:6.1f} s{reasons}", flush=True)
 
 
-def judge_all(
-    mutants: Sequence[Mutant], functions: Sequence[Function], asked: Sequence[str], every: bool
-) -> list[Verdict]:
+def judge_all(mutants: Sequence[Mutant], asked: Sequence[str], every: bool) -> list[Verdict]:
     """Judges the mutants, printing each as it is done."""
     kept = Kept(asked, every)
 
     def one(tree: Path, mutant: Mutant) -> Verdict:
-        function = function_at(functions, mutant.file, mutant.line)
-        verdict = judge(tree, mutant, function.name if function else "", kept, asked, every)
+        verdict = judge(tree, mutant, kept, asked, every)
         show(mutant, verdict)
         return verdict
 
@@ -183,7 +177,7 @@ def figures_of(verdicts: Sequence[Verdict], least: int, functions: int) -> dict[
 
 def complaints_of_sound(tree: Path) -> list[str]:
     """What the cheap rungs say of the kernel as it is; a rung that complains of that kills nothing."""
-    probes = (test_probe("short"), test_probe("long"), row_probe("all"))
+    probes = (test_probe("short"), test_probe("long"))
     return [said for probe in probes if (said := probe.catch(tree))]
 
 
@@ -192,7 +186,7 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=400, help="mutants to draw at least (400)")
     parser.add_argument("--each", type=int, default=5, help="of each function at least (5)")
     parser.add_argument("--seed", default=evidence.commit(), help="chooses them (the commit)")
-    parser.add_argument("--without-tests", action="store_true", help="ask rungs 2 to 4 alone")
+    parser.add_argument("--without-tests", action="store_true", help="ask the proofs alone")
     parser.add_argument("--matrix", action="store_true", help="show each mutant to every rung")
     parser.add_argument("--list", action="store_true", help="print the mutants that are drawn, and no more")
     arguments = parser.parse_args()
@@ -210,11 +204,10 @@ def main() -> int:
     if arguments.list:
         print("\n".join(f"{mutant.name}  {mutant.after.strip()}" for mutant in mutants))
         return 0
-    print_missing(all_phases())
     if complaints := complaints_of_sound(make_tree(ROOT / "build/mutation/sound")):
         raise SystemExit(f"mutation: the sound kernel is noticed, too: {'; '.join(complaints)}")
     asked = RUNGS[1:] if arguments.without_tests else RUNGS
-    verdicts = judge_all(mutants, functions, asked, arguments.matrix)
+    verdicts = judge_all(mutants, asked, arguments.matrix)
     name = "mutation_without_tests" if arguments.without_tests else "mutation"
     log = evidence.log_directory(name)
     tables.write(log, mutants, verdicts, functions, arguments.matrix)

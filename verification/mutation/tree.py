@@ -10,7 +10,7 @@ from queue import SimpleQueue
 from typing import TypeVar
 
 ROOT = Path(__file__).resolve().parents[2]
-COPIED = ("kernel", "spec", "verification")
+COPIED = ("kernel", "verification")
 Item = TypeVar("Item")
 Outcome = TypeVar("Outcome")
 

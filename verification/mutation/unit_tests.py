@@ -5,6 +5,7 @@ The tests' objects are those of build/release, the kernel's come from TREE. Prin
 test that fails; a program that crashes or does not end fails, too.
 """
 
+import hashlib
 import re
 import resource
 import signal
@@ -12,7 +13,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-from rows import compile_kernel
 from tree import ROOT
 
 OBJECTS = ROOT / "build/release/tests/unit/kernel/CMakeFiles/kernel_tests.dir"
@@ -28,6 +28,24 @@ def test_objects() -> list[Path]:
     if not found:
         raise SystemExit("the unit tests are not built: make build")
     return found
+
+
+def compile_kernel(kernel: Path, folder: Path) -> None:
+    """Compiles what changed of the kernel since the last time in this folder."""
+    folder.mkdir(parents=True, exist_ok=True)
+    flags = ["-std=c11", "-O1", "-w", f"-I{kernel}/include", f"-I{kernel}/src", "-DILK_FRAME_WORDS=32"]
+    headers = b"".join(path.read_bytes() for path in sorted(kernel.rglob("*.h")))
+    changed = []
+    for source in sorted((kernel / "src").glob("*.c")):
+        key = hashlib.sha256(headers + source.read_bytes()).hexdigest()
+        kept = folder / f"{source.stem}.key"
+        if not kept.is_file() or kept.read_text("utf-8") != key:
+            changed.append((source, kept, key))
+    if changed:
+        sources = [str(source) for source, _, _ in changed]
+        subprocess.run(["gcc", *flags, "-c", *sources], cwd=folder, check=True, capture_output=True)
+    for _, kept, key in changed:
+        kept.write_text(key, "utf-8")
 
 
 def limit_time() -> None:

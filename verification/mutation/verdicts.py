@@ -11,13 +11,12 @@ from functions import without_comments
 from tree import ROOT
 
 FILE = ROOT / "build/mutation/verdicts.json"
-RUNGS = ("tests", "conformance", "cbmc", "wp")
+RUNGS = ("tests", "cbmc", "tick")
 """In the order of the tables."""
 READ_BY = {
     "tests": ("tests/unit/kernel",),
-    "conformance": ("verification/conformance", "spec/tla"),
     "cbmc": ("verification/cbmc",),
-    "wp": ("verification/frama-c",),
+    "tick": ("verification/tick", "kernel/monitors"),
     "all": ("verification/mutation",),
 }
 """What a rung reads besides the kernel; what shows that a mutant is no fault, where none complained."""
@@ -43,15 +42,14 @@ def digest_of_files(folders: tuple[str, ...]) -> str:
     return digest.hexdigest()
 
 
-def kernel_digests(tree: Path) -> tuple[str, str]:
-    """Of the kernel's code alone, and of its contracts, too, which are comments to a compiler."""
-    code, whole = hashlib.sha256(), hashlib.sha256()
+def kernel_digest(tree: Path) -> str:
+    """Of the kernel's code, comments and blanks apart."""
+    code = hashlib.sha256()
     for folder in ("src", "include/interlock"):
         for path in sorted((tree / "kernel" / folder).glob("*.[ch]")):
             text = path.read_text("utf-8")
             code.update(path.name.encode() + "".join(without_comments(text).split()).encode())
-            whole.update(path.name.encode() + text.encode())
-    return code.hexdigest(), whole.hexdigest()
+    return code.hexdigest()
 
 
 class Kept:
@@ -66,12 +64,9 @@ class Kept:
 
     def key(self, tree: Path, rung: str) -> str:
         """Of the mutant in the tree, as far as a rung can see it; `all` sees everything."""
-        code, whole = kernel_digests(tree)
         read = [self._rungs[each] for each in ((*self._asked, "all") if rung == "all" else [rung])]
-        seen = code if rung in ("tests", "conformance") else whole
-        return hashlib.sha256(
-            "".join([rung, *self._asked, str(self._every), seen, *read]).encode()
-        ).hexdigest()
+        parts = [rung, *self._asked, str(self._every), kernel_digest(tree), *read]
+        return hashlib.sha256("".join(parts).encode()).hexdigest()
 
     def find(self, tree: Path) -> Verdict | None:
         """The verdict on the mutant in the tree, if nothing changed that it rests on."""

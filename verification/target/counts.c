@@ -3,8 +3,8 @@
 #include "platform.h"
 
 void count_tick(counts_t *counts, const ilk_state_t *state, const ilk_outputs_t *out) {
-  counts->mode[state->mode]++;
-  counts->cause[state->cause]++;
+  counts->mode[state->system.mode]++;
+  counts->cause[state->system.cause]++;
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
     counts->fault[state->axis[slot].fault]++;
     counts->gate[out->gate[slot]]++;

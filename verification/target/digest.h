@@ -25,7 +25,7 @@ static inline void digest_words(digest_t *digest, const uint32_t words[], uint32
 
 /** Everything that a tick decided: the whole state and every word of the outputs. */
 static inline void digest_tick(digest_t *digest, const ilk_state_t *state, const ilk_outputs_t *out) {
-  digest_words(digest, &state->tick, (uint32_t)(sizeof(ilk_state_t) / sizeof(uint32_t)));
+  digest_words(digest, &state->system.tick, (uint32_t)(sizeof(ilk_state_t) / sizeof(uint32_t)));
   digest_words(digest, &out->command[0].direction, (uint32_t)(sizeof(ilk_outputs_t) / sizeof(uint32_t)));
 }
 

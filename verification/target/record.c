@@ -44,7 +44,7 @@ static void run_tick(void) {
   world_inputs(&world, &config, &state, &out, &in);
   const uint32_t wishes = world_requests(&world, &config, &state, requests);
   ilk_step(&config, &state, &in, requests, wishes, &out);
-  ilk_black_box_note(&box, state.tick, &state, &in, requests, wishes, &out);
+  ilk_black_box_note(&box, state.system.tick, &state, &in, requests, wishes, &out);
 }
 
 uint32_t run_image(void) {

@@ -13,8 +13,9 @@ static ilk_recording_t recording;
 static ilk_replay_report_t report;
 static counts_t counts;
 
-static void count(void *context, const ilk_recorded_tick_t *tick) {
+static void count(void *context, const ilk_state_t *before, const ilk_recorded_tick_t *tick) {
   (void)context;
+  (void)before;
   count_tick(&counts, &tick->picture.state, &tick->picture.out);
 }
 

@@ -18,6 +18,6 @@ void say_tick(const ilk_inputs_t *in, const ilk_request_t requests[], uint32_t c
               const ilk_state_t *state, const ilk_outputs_t *out) {
   say_words("in", &in->link_generation, (uint32_t)sizeof *in);
   say_words("request", &requests[0].sequence, count * (uint32_t)sizeof requests[0]);
-  say_words("state", &state->tick, (uint32_t)sizeof *state);
+  say_words("state", &state->system.tick, (uint32_t)sizeof *state);
   say_words("out", &out->command[0].direction, (uint32_t)sizeof *out);
 }

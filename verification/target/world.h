@@ -36,6 +36,8 @@ typedef struct {
   int32_t place[ILK_SLOTS];           /**< of the motor, in the sense of the position */
   uint32_t jammed_ticks[ILK_SLOTS];   /**< the motor does not follow its drive for so long */
   uint32_t slipping_ticks[ILK_SLOTS]; /**< the axis slips downwards for so long */
+  uint32_t misread_ticks[ILK_SLOTS];  /**< the switch reads the other way for so long */
+  uint32_t reset_ticks[ILK_SLOTS];    /**< the card says for so long that it was reset */
 } world_t;
 
 /** A valid configuration: eight axes of every kind of card and switch, a required sensor, an empty slot. */
@@ -51,8 +53,8 @@ void world_inputs(world_t *world, const ilk_config_t *config, const ilk_state_t 
 uint32_t world_requests(world_t *world, const ilk_config_t *config, const ilk_state_t *state,
                         ilk_request_t requests[ILK_REQUESTS_PER_TICK]);
 
-/** A state that passes the kernel's own check, reachable or not, and inputs that go with it more often than
- * not. */
-void world_any_state(dice_t *dice, const ilk_config_t *config, ilk_state_t *state);
+/** A state that passes the kernel's own check, reachable or not; now and then with one bit of it flipped.
+ * True when it passes. */
+bool world_any_state(dice_t *dice, const ilk_config_t *config, ilk_state_t *state);
 
 #endif

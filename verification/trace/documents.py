@@ -40,13 +40,14 @@ def source_file(path: str, function: str = "") -> str:
     return f"- TYPE: File\n  PATH: {path}{inside}"
 
 
+NAMED = "What its name says."
+"""Of a function without a comment; StrictDoc takes no empty statement."""
+
+
 def units(of: Trace) -> str:
-    """The detailed design: each function of the core with its contract and its requirements."""
+    """The detailed design: each function of the core with its purpose and its requirements."""
 
     def unit(function: Function) -> str:
-        contract = (
-            function.contract or "No contract. The proofs with CBMC and the tests of its callers speak of it."
-        )
         requirements = of.project.links.requirements_of(function)
         fields = [
             ("UID", f"UNIT-{function.file.rpartition('/')[2]}-{function.name}"),
@@ -56,8 +57,7 @@ def units(of: Trace) -> str:
             *(parent(uid, "Fulfils") for uid in requirements),
             source_file(function.file, function.name),
         ]
-        statement = f"{function.purpose}\n\n{contract}".strip()
-        return node("UNIT", [*fields, ("STATEMENT", statement)], relations)
+        return node("UNIT", [*fields, ("STATEMENT", function.purpose or NAMED)], relations)
 
     head = HEAD.format(title="Detailed design: units of the kernel core", uid="DOC-UNITS")
     return head + "".join(unit(function) for function in of.project.functions)
@@ -79,8 +79,7 @@ def results(of: Trace) -> str:
             ("LOG", result.log),
             ("STATEMENT", result.bounds or "no figures"),
         ]
-        function = result.function.rpartition(":")[2]
-        place = [source_file(result.place, function)] if (of.project.root / result.place).is_file() else []
+        place = [source_file(result.place)] if (of.project.root / result.place).is_file() else []
         return node("RESULT", fields, [*(parent(uid, "Verifies") for uid in supported), *place])
 
     head = HEAD.format(title="Verification results", uid="DOC-RESULTS")

@@ -32,7 +32,7 @@ KINDS = {
 """What is counted of the documents, and the node type of each."""
 BEGIN, END = "<!-- figures of the report -->", "<!-- end of the figures -->"
 GTEST = re.compile(r"^TEST(?:_P|_F)?\((\w+),\s*(\w+)", re.MULTILINE)
-PROVERS = ("cbmc", "wp", "model", "conformance")
+PROVERS = ("tick", "cbmc", "model")
 
 
 def written_tests(root: Path) -> dict[str, list[str]]:

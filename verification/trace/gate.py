@@ -30,6 +30,8 @@ class Project:
     """What is shipped beside our own code; empty when it is not known."""
     exporter_log: str = ""
     """What StrictDoc printed."""
+    release: bool = False
+    """Whether all is demanded that a release demands."""
 
 
 @dataclass(frozen=True)
@@ -54,13 +56,23 @@ class Trace:
     carried: Mapping[str, Sequence[Result]] = field(default_factory=dict)
     """For each requirement and property, the results that speak of it."""
 
-    def covers(self, result: Result) -> list[Item]:
-        """The anomalies that explain a result."""
+    def covers(self, uid: str) -> list[Item]:
+        """The anomalies that explain a result, or name a method that a requirement still lacks."""
         return [
             anomaly
             for anomaly in self.project.items.of("ANOMALY")
-            if any(fnmatchcase(result.uid, one) for one in anomaly.fields.get("COVERS", "").split(", "))
+            if any(fnmatchcase(uid, one) for one in anomaly.fields.get("COVERS", "").split(", "))
         ]
+
+    def lacking(self, requirement: Item) -> list[str]:
+        """Methods by which a requirement is to be verified, and of which it has no result."""
+        have = {one.method for one in self.carried.get(requirement.uid, ()) if one.status != "UNKNOWN"}
+        return [method for method in methods_of(requirement) if method not in have]
+
+    def owed(self, requirement: Item) -> list[str]:
+        """Those among them that an anomaly names: `SRS-K-001:Proof`. A release owes nothing."""
+        lacking = [] if self.project.release else self.lacking(requirement)
+        return [method for method in lacking if self.covers(f"{requirement.uid}:{method}")]
 
 
 def selected(pattern: str, results: Sequence[Result]) -> list[tuple[Result, str]]:
@@ -76,21 +88,18 @@ def selected(pattern: str, results: Sequence[Result]) -> list[tuple[Result, str]
 
 
 def trace(project: Project) -> Trace:
-    """Which results speak of which requirement: by property, by function, by test."""
+    """Which results speak of which requirement: by property, by test."""
     carried: dict[str, dict[str, Result]] = {}
     matched: dict[str, list[str]] = {}
 
     def carry(uid: str, result: Result) -> None:
         carried.setdefault(uid, {})[result.uid] = result
 
-    fulfilled = {f"{one.file}:{one.name}": project.links.requirements_of(one) for one in project.functions}
     for result in project.results:
         for name in result.supports & set(project.items.by_uid):
             carry(name, result)
             for requirement in project.items[name].parents_by("Formalises"):
                 carry(requirement, result)
-        for requirement in fulfilled.get(result.function, ()):
-            carry(requirement, result)
     for requirement, patterns in project.links.tests.items():
         for pattern in patterns:
             found = selected(pattern, project.results)
@@ -205,21 +214,25 @@ def g3(of: Trace) -> Iterator[Finding]:
 
 
 def g4(of: Trace) -> Iterator[Finding]:
-    """Each method by which a requirement is to be verified has a result, or awaits one."""
+    """Each method by which a requirement is to be verified has a result, awaits or is owed one."""
     for requirement in of.project.items.of("REQUIREMENT"):
-        methods = methods_of(requirement)
-        have = {result.method for result in of.carried.get(requirement.uid, ()) if result.status != "UNKNOWN"}
-        if not methods:
+        lacking = of.lacking(requirement)
+        if not methods_of(requirement):
             yield Finding("G4", requirement.uid, "names no method of verification")
-        for method in methods:
-            if method not in have:
+        for method in methods_of(requirement):
+            known = of.covers(f"{requirement.uid}:{method}")
+            if method in lacking and method not in of.owed(requirement):
                 yield Finding("G4", requirement.uid, f"no result by {method}")
+            elif method not in lacking and known:
+                yield Finding(
+                    "G4", requirement.uid, f"{known[0].uid} owes {method}, of which there is a result"
+                )
 
 
 def g5(of: Trace) -> Iterator[Finding]:
     """No result is FAILED, UNKNOWN or VACUOUS, unless an anomaly explains it; an awaited one is no result."""
     for result in of.project.results:
-        if result.status not in (*SOUND, AWAITED) and not of.covers(result):
+        if result.status not in (*SOUND, AWAITED) and not of.covers(result.uid):
             because = f": {', '.join(result.failures[:3])}" if result.failures else ""
             yield Finding("G5", result.uid, f"{result.status} ({result.bounds}){because}")
 
@@ -324,17 +337,23 @@ RULES: Sequence[Callable[[Trace], Iterator[Finding]]] = (g1, g2, g3, g4, g5, g6,
 def awaited(of: Trace) -> dict[str, list[str]]:
     """What this report does not judge because a release alone demands it: measurements, and requirements.
 
-    The requirements are those of which a method of verification has no other result.
+    The requirements are those of which a method of verification has no other result, or none at all and an
+    anomaly says so.
     """
     results = [result.uid for result in of.project.results if result.status == AWAITED]
-    requirements = []
+    requirements, owed = [], []
     for requirement in of.project.items.of("REQUIREMENT"):
+        owed += [f"{requirement.uid} by {method}" for method in of.owed(requirement)]
         carried = of.carried.get(requirement.uid, ())
         sound = {result.method for result in carried if result.status in SOUND}
         waits = {result.method for result in carried if result.status == AWAITED} - sound
         if waits & set(methods_of(requirement)):
             requirements.append(requirement.uid)
-    return {"Measurements": results, "Requirements that rest on one of them alone": requirements}
+    return {
+        "Measurements": results,
+        "Requirements that rest on one of them alone": requirements,
+        "Verification that an anomaly owes": owed,
+    }
 
 
 def alike(found: Sequence[Finding]) -> dict[tuple[str, str], list[str]]:

@@ -87,7 +87,8 @@ def status_of(results: Sequence[Result]) -> str:
 def anomalies_of(of: Trace, requirement: Item, results: Sequence[Result]) -> list[str]:
     affected = {one.uid for one in of.project.items.children(requirement.uid, "Affects")}
     return sorted(
-        affected | {one.uid for result in results if result.status not in SOUND for one in of.covers(result)}
+        affected
+        | {one.uid for result in results if result.status not in SOUND for one in of.covers(result.uid)}
     )
 
 

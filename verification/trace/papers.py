@@ -151,16 +151,15 @@ def tools(source: Source) -> str:
 
 
 def units(source: Source) -> str:
-    """Each function of the core with contract and requirements."""
+    """Each function of the core with purpose and requirements."""
 
     def unit(function: object) -> str:
         requirements = ", ".join(source.trace.project.links.requirements_of(function)) or "none"
-        contract = f"<pre>{escape(function.contract)}</pre>" if function.contract else "<p>No contract.</p>"
         place = f"{function.file}:{function.line}"
         head = f'<h3 id="{escape(place)}">{escape(function.name)}</h3>'
         about = f'<table class="fields"><tr><th>Place</th><td>{escape(place)}</td></tr>'
         about += f"<tr><th>Fulfils</th><td>{escape(requirements)}</td></tr></table>"
-        return f'<div class="unit">{head}<p>{escape(function.purpose)}</p>{contract}{about}</div>'
+        return f'<div class="unit">{head}<p>{escape(function.purpose)}</p>{about}</div>'
 
     by_file: dict[str, list[str]] = {}
     for function in source.trace.project.functions:

@@ -1,4 +1,4 @@
-"""Where design and verification stand: FILE:LINE of contracts, properties, harnesses and tests."""
+"""Where design and verification stand: FILE:LINE of functions, properties, claims and tests."""
 
 import re
 from collections.abc import Mapping
@@ -54,12 +54,9 @@ class Places:
     def of_result(self, result: Result) -> str:
         """Where what a result comes from stands: function, property, harness or first test of its group."""
         kind, _, rest = result.uid.partition(":")
-        if result.function in self.functions:
-            function = self.functions[result.function]
-            return f"{function.file}:{function.line}"
         if kind == "TLC":
             return self.definition(Path(result.place).stem, rest.rpartition(":")[2]) or result.place
-        if kind == "CBMC":
+        if kind in ("CBMC", "TICK"):
             path = self.root / result.place
             found = HARNESS.search(path.read_text("utf-8")) if path.is_file() else None
             return f"{result.place}:{line_at(found.string, found.start())}" if found else result.place
@@ -76,12 +73,12 @@ class Places:
         return f"{path}:1" if (self.root / path).is_file() else ""
 
     def design_of(self, of: Trace, requirement: str) -> list[str]:
-        """The contracts of the functions that fulfil a requirement, and the properties of the model."""
-        contracts = [
-            f"contract of {one.name} {one.file}:{one.line}"
+        """The described functions that fulfil a requirement, and the properties of the model."""
+        functions = [
+            f"{one.name} {one.file}:{one.line}"
             for one in of.project.functions
-            if one.contract and requirement in of.project.links.requirements_of(one)
+            if one.purpose and requirement in of.project.links.requirements_of(one)
         ]
         checked = [one for one in of.carried.get(requirement, ()) if one.uid.startswith("TLC:")]
         properties = {one.uid.rpartition(":")[2]: self.of_result(one) for one in checked}
-        return [*contracts, *(f"{name} {place}" for name, place in sorted(properties.items()))]
+        return [*functions, *(f"{name} {place}" for name, place in sorted(properties.items()))]

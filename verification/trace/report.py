@@ -81,6 +81,7 @@ def read_project(
         clauses=read_toml(requirements / "clauses.toml"),
         components=components,
         exporter_log=printed,
+        release=release,
     )
 
 

@@ -1,7 +1,7 @@
 """Results of proofs and tests, converted from build/evidence and the JUnit reports in build/reports.
 
 Nothing here is written by hand: a status comes from what a tool left behind, or the result is UNKNOWN. Each
-rung of the ladder that judges several things (harnesses, functions, properties, phases) gives a result for
+rung of the ladder that judges several things (claims, harnesses, properties) gives a result for
 each of them; the rung's own status caps theirs.
 """
 
@@ -21,7 +21,7 @@ from expected import Check
 
 AWAITED = "AWAITED"
 """The status of a check that a release demands, that this report does not, and that is not there."""
-PROPERTY = re.compile(r"(?<![A-Za-z0-9])(P(?:1[0-6]|[1-9])|L[12])(?=_)")
+PROPERTY = re.compile(r"(?<![A-Za-z0-9])(P(?:1[0-8]|[1-9])|L[12])(?=_)")
 """A property's identifier where a name begins with it: P1_gate, test_P2_P8_..., ensures P7_drive."""
 TYPES = "TypeOK"
 """The invariant of each model that says what its variables range over; no requirement rests on it."""
@@ -52,8 +52,6 @@ class Result:
     """What was run, from the top of the tree: harness, model, test program."""
     fresh: bool = True
     """False when what it was made from has changed since."""
-    function: str = ""
-    """For a contract: FILE:NAME of the function that keeps it."""
     machine: str = ""
     """Operating system, architecture and cores, where the evidence tells them."""
     cases: tuple[str, ...] = ()
@@ -183,36 +181,29 @@ def cbmc(source: Source, rung: Rung) -> Iterator[Result]:
             )
 
 
-def contracts(source: Source, rung: Rung) -> Iterator[Result]:
-    """A result for the contract of each function, from WP's own report of the file."""
-    expected = json.loads((source.root / "verification/frama-c/expected.json").read_text("utf-8"))
-    for unit, functions in expected.items():
-        report = source.evidence / "wp" / f"{unit}.json"
-        try:
-            goals = json.loads(report.read_text("utf-8"))["wp:functions"]
-        except (OSError, json.JSONDecodeError, KeyError):
-            goals = {}
-        for function, wanted in functions.items():
-            clauses = {
-                name: one["wp:main"] for name, one in goals.get(function, {}).items() if name != "wp:section"
-            }
-            proofs = {name: main for name, main in clauses.items() if "_wp_smoke_" not in name}
-            total = sum(main["total"] for main in proofs.values())
-            valid = sum(main.get("valid", 0) for main in proofs.values())
-            status = "UNKNOWN" if valid < total or not total else "PASSED"
-            smoke = sum(main["total"] for name, main in clauses.items() if name not in proofs)
-            if total and smoke < wanted["smoke"]:
-                status = "VACUOUS"
+def tick(source: Source, rung: Rung) -> Iterator[Result]:
+    """A result for each property that a step claims over whole ticks, from the lines of those steps."""
+    line = re.compile(r"^(\S+)\s+\{.*'failed': (\d+).*'unknown': (\d+).*\}", re.MULTILINE)
+    said = {match[1]: (int(match[2]), int(match[3])) for match in line.finditer(rung.text)}
+    for path in (source.root / "verification/tick").glob("tick.toml"):
+        table = tomllib.loads(path.read_text("utf-8"))
+        for name, stated in table["properties"].items():
+            steps = [one for one, step in table["steps"].items() if name in step.get("claims", ())]
+            told = [said.get(step, (0, 1)) for step in steps]
+            if not steps:
+                continue
             yield rung.result(
-                f"WP:{unit}:{function}",
-                f"Contract of {function}",
+                f"TICK:{name}",
+                stated["shown"],
                 "Proof",
-                status,
-                bounds=f"{valid} of {total} goals; {smoke} smoke tests passed",
-                log=f"{rung.logs}/{unit}.json",
-                supports=frozenset(one for name in proofs for one in PROPERTY.findall(name)),
-                place=f"kernel/src/{unit}",
-                function=f"kernel/src/{unit}:{function}",
+                "FAILED"
+                if any(one[0] for one in told)
+                else "UNKNOWN"
+                if any(one[1] for one in told)
+                else "PASSED",
+                bounds=f"{stated['bound']}; by {', '.join(steps)}",
+                supports=frozenset({name}),
+                place="verification/tick/harness.c",
             )
 
 
@@ -250,42 +241,10 @@ def model(source: Source, rung: Rung) -> Iterator[Result]:
             )
 
 
-def conformance(source: Source, rung: Rung) -> Iterator[Result]:
-    """A result for the whole, which carries the model's properties to the C, and one for each phase.
-
-    A phase that the compiled kernel alone was compared on is BOUNDED.
-    """
-    yield rung.result(
-        "CONFORMANCE",
-        "Every phase of the C does what the model says",
-        "ModelCheck",
-        rung.status,
-        bounds=figures_in_words(rung.figures),
-        supports=rung.supports,
-    )
-    line = re.compile(
-        r"^(\w+): agrees, (\d+) rows, (\d+) states; proved: (\d+) rows by (\d+) assertions", re.MULTILINE
-    )
-    said = {match[1]: match for match in line.finditer(rung.text)}
-    for path in sorted((source.root / "verification/conformance/phases").glob("*.toml")):
-        match = said.get(path.stem)
-        status = "UNKNOWN" if match is None else ("PASSED" if match[2] == match[4] else "BOUNDED")
-        yield rung.result(
-            f"CONFORMANCE:{path.stem}",
-            tomllib.loads(path.read_text("utf-8"))["title"],
-            "ModelCheck",
-            status,
-            bounds=f"{match[2]} rows of the model, {match[4]} of them for all inputs" if match else "not run",
-            log=f"{rung.logs}/{path.stem}",
-            place=path.relative_to(source.root).as_posix(),
-        )
-
-
 CONVERTERS: Mapping[str, Callable[[Source, Rung], Iterator[Result]]] = {
+    "tick": tick,
     "cbmc": cbmc,
-    "wp": contracts,
     "model": model,
-    "conformance": conformance,
 }
 """What turns the evidence of a check that judges several things into results; others give one result each."""
 

@@ -12,22 +12,19 @@ FUNCTION = re.compile(
 )
 """The head of a function's definition as clang-format sets it: from the first column to its brace."""
 COMMENT = re.compile(r"/\*.*?\*/\s*\Z", re.DOTALL)
-CONTRACT = re.compile(r"/\*@(.*?)\*/", re.DOTALL)
 PURPOSE = re.compile(r"/\*\*(.*?)\*/", re.DOTALL)
 STARS = re.compile(r"^ *\* ?", re.MULTILINE)
-MARGIN = re.compile(r"^ *@ ?", re.MULTILINE)
 
 
 @dataclass(frozen=True)
 class Function:
-    """A function of the kernel core, with what stands above its definition or declaration."""
+    """A function of the kernel core."""
 
     name: str
     file: str
     line: int
     purpose: str
-    """The comment above it, in words."""
-    contract: str
+    """The comment above its definition or its declaration, in words."""
 
 
 @dataclass(frozen=True)
@@ -63,12 +60,11 @@ def functions_of(root: Path) -> list[Function]:
         for match in FUNCTION.finditer(text):
             name = match["name"]
             above = comments_above(text, match.start())
-            if not CONTRACT.search(above):
+            if not PURPOSE.search(above):
                 above = declaration_comments(texts, name)
-            contract = "\n".join(MARGIN.sub("", part).strip() for part in CONTRACT.findall(above))
             purpose = "\n".join(STARS.sub("", part).strip() for part in PURPOSE.findall(above))
             line = text.count("\n", 0, match.start()) + 1
-            found.append(Function(name, path.relative_to(root).as_posix(), line, purpose, contract))
+            found.append(Function(name, path.relative_to(root).as_posix(), line, purpose))
     return found
 
 

@@ -10,12 +10,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "arith.h"
-#include "frame.h"
-#include "gate.h"
-#include "integrity.h"
 #include "interlock/kernel.h"
-#include "request.h"
+#include "parts.h"
 
 #define EXPORT(name) __attribute__((export_name(name)))
 
@@ -44,15 +40,16 @@ EXPORT("configuration_is_valid") uint32_t page_configuration_is_valid(void) {
 /** 1 when the state that was written passes the check with which the kernel begins each tick, and is of this
  * configuration. */
 EXPORT("state_is_sound") uint32_t page_state_is_sound(void) {
-  return flag_of(ilk_state_is_sound(&state) && (state.config_crc == configuration.crc));
+  return flag_of(ilk_state_is_sealed(&state) && (state.system.config_crc == configuration.crc));
 }
 
 static ilk_request_t request_after(const ilk_state_t* before, ilk_request_kind_t kind, uint32_t slot) {
   ilk_request_t request = {0};
-  request.sequence = before->last_sequence + 1u;
+  request.sequence = before->system.last_sequence + 1u;
   request.kind = (uint32_t)kind;
   request.axis = slot;
-  request.holder = before->holder;
+  request.holder = before->system.holder;
+  request.consent = before->system.consent;
   return request;
 }
 
@@ -63,7 +60,7 @@ static ilk_request_t wish_after(const ilk_state_t* before, ilk_request_kind_t ki
   ilk_request_t request = request_after(before, kind, slot);
   request.target_counts = target_counts;
   if (kind == ILK_REQUEST_MOVE) {
-    request.drive = (before->axis[slot].homed != 0u) ? rules->max_drive : rules->unhomed_max_drive;
+    request.drive = ilk_drive_bound(rules, &before->axis[slot]);
     request.amplitude = rules->max_amplitude;
     request.lease_ticks = 1u;
   }
@@ -82,8 +79,8 @@ static void repeat_frame(const ilk_state_t* before, uint32_t slot, uint32_t fram
   frame[2] = (axis->switch_triggered != 0u) ? 0u : SWITCH_OPEN_BIT;
   frame[3] = axis->raw;
   frame[9] = axis->heartbeat + 1u;
-  frame[10] = axis->card_time_us + configuration.period_us;
-  frame[11] = before->tick - 2u;
+  frame[10] = axis->card_time_us + configuration.common.period_us;
+  frame[11] = before->system.tick - 2u;
   frame[12] = axis->card_status;
   for (uint32_t word = 0u; word < ((uint32_t)ILK_FRAME_WORDS - 1u); word++) {
     sum += frame[word];
@@ -94,15 +91,16 @@ static void repeat_frame(const ilk_state_t* before, uint32_t slot, uint32_t fram
 /** The next tick's inputs when nothing changes but the pedal: a card that was lost stays so, all others
  * answer. */
 static void quiet_inputs(const ilk_state_t* before, bool pressed, ilk_inputs_t* in) {
-  in->link_generation = before->link_generation;
-  in->deadline_missed = 0u;
+  in->link_generation = before->system.link_generation;
+  in->boot_nonce = 1u;
+  in->deadlines_missed = 0u;
   in->transaction_done = 1u;
   in->frames_received = 0u;
   in->pedal_no_closed = flag_of(pressed);
   in->pedal_nc_closed = flag_of(!pressed);
-  in->estop_loop_closed = flag_of(before->estop == 0u);
+  in->estop_loop_closed = flag_of(before->system.estop == 0u);
   for (uint32_t slot = 0u; slot < (uint32_t)ILK_SLOTS; slot++) {
-    const bool lost = before->axis[slot].bad_frames >= configuration.bad_frame_limit;
+    const bool lost = before->axis[slot].bad_frames >= configuration.common.bad_frame_limit;
     if (has_card(&configuration.axis[slot]) && !lost) {
       in->frames_received |= 1u << slot;
     }
@@ -126,11 +124,14 @@ static void tick_with(ilk_state_t* now, bool pressed, const ilk_request_t* wish,
   ilk_step(&configuration, now, &in, requests, count, out);
 }
 
-/** Lets the operator release the pedal if that is needed, then press it, until MOTION begins or cannot. */
+/** Lets the operator release the pedal if that is needed, wait until power is up, then press it, until MOTION
+ * begins or cannot. */
 static void press_pedal(ilk_state_t* now, ilk_outputs_t* out) {
-  const uint32_t most = (2u * configuration.pedal_debounce_ticks) + PEDAL_TICKS_BESIDES;
-  for (uint32_t tick = 0u; (tick < most) && (now->mode == (uint32_t)ILK_MODE_READY); tick++) {
-    tick_with(now, now->pedal_armed != 0u, NULL, out);
+  const ilk_common_config_t* common = &configuration.common;
+  const uint32_t most = common->power_up_ticks + (2u * common->pedal_debounce_ticks) + PEDAL_TICKS_BESIDES;
+  for (uint32_t tick = 0u; (tick < most) && (now->system.mode == (uint32_t)ILK_MODE_READY); tick++) {
+    const bool powered = now->system.powered_ticks >= common->power_up_ticks;
+    tick_with(now, powered && (now->system.pedal_armed != 0u), NULL, out);
   }
 }
 
@@ -153,7 +154,7 @@ EXPORT("foresee") uint32_t page_foresee(uint32_t kind, uint32_t slot, int32_t ta
   press_pedal(&ahead, &out);
   const ilk_request_t wish = wish_after(&ahead, (ilk_request_kind_t)kind, slot, target_counts);
   tick_with(&ahead, true, &wish, &out);
-  return out.verdict[1].verdict | (out.gate[slot] << 8u) | (ahead.mode << 16u);
+  return out.verdict[1].verdict | (out.gate[slot] << 8u) | (ahead.system.mode << 16u);
 }
 
 /** What the kernel says to a request in the state that was written: its verdict. */
@@ -162,17 +163,19 @@ EXPORT("judge") uint32_t page_judge(uint32_t kind, uint32_t slot, int32_t target
   ilk_request_t request = wish_after(&state, (ilk_request_kind_t)kind, known ? slot : 0u, target_counts);
   request.axis = slot;
   request.crc = ilk_request_crc(&request);
-  return (uint32_t)ilk_request_judge(&configuration, &state, &request);
+  static ilk_state_t asked;
+  asked = state;
+  return ilk_request_take(&configuration, &request, &asked).verdict;
 }
 
 static ilk_gate_t gate_of(const ilk_state_t* supposed, uint32_t slot) {
   const ilk_axis_config_t* rules = &configuration.axis[slot];
   const ilk_axis_t* axis = &supposed->axis[slot];
   const ilk_command_t wanted = ilk_wanted_command(rules, axis);
-  return ilk_output_gate(rules, supposed, axis, &wanted);
+  return ilk_output_gate(rules, &supposed->system, axis, &wanted);
 }
 
-/** 0 to 11: the gate that blocks the axis in the state that was written, OPEN when it may be driven. */
+/** 0 to 12: the gate that blocks the axis in the state that was written, OPEN when it may be driven. */
 EXPORT("gate") uint32_t page_gate(uint32_t slot) {
   return (slot < (uint32_t)ILK_SLOTS) ? (uint32_t)gate_of(&state, slot) : (uint32_t)ILK_GATE_ENABLE;
 }
@@ -181,7 +184,7 @@ EXPORT("gate") uint32_t page_gate(uint32_t slot) {
 static void suppose_move(ilk_axis_t* axis, const ilk_axis_config_t* rules, int32_t target_counts) {
   axis->state = (uint32_t)ILK_AXIS_MOVING;
   axis->setpoint_counts = target_counts;
-  axis->drive = (axis->homed != 0u) ? rules->max_drive : rules->unhomed_max_drive;
+  axis->drive = ilk_drive_bound(rules, axis);
   axis->amplitude = rules->max_amplitude;
   axis->lease_ticks = 1u;
 }
@@ -194,14 +197,14 @@ static bool suppose_open(ilk_state_t* supposed, uint32_t slot, ilk_gate_t gate,
   bool opened = true;
   switch (gate) {
     case ILK_GATE_MODE:
-      supposed->mode = (uint32_t)ILK_MODE_MOTION;
-      axis->press_travel_counts = 0;
+      supposed->system.mode = (uint32_t)ILK_MODE_MOTION;
+      axis->unhomed_travel_counts = 0u;
       break;
     case ILK_GATE_PEDAL:
-      supposed->pedal = (uint32_t)ILK_PEDAL_PRESSED;
+      supposed->system.pedal = (uint32_t)ILK_PEDAL_PRESSED;
       break;
     case ILK_GATE_ESTOP:
-      supposed->estop = 0u;
+      supposed->system.estop = 0u;
       break;
     case ILK_GATE_CARD:
       axis->card_valid = 1u;

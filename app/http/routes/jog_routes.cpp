@@ -41,7 +41,7 @@ tl::expected<Draft, Problem> draft_of(const JogWish& wish, const Context& contex
                                       const std::string& author) {
   const ilk_state_t& state = context.view().snapshot.state;
   const std::uint32_t slot = wish.axis->slot;
-  const SetpointRange range = setpoint_range(context.config.axis[slot], state.axis[slot], state.mode);
+  const SetpointRange range = setpoint_range(context.config.axis[slot], state.axis[slot], state.system.mode);
   const std::int32_t here = state.axis[slot].position_counts;
   const std::int32_t end = wish.increasing ? range.highest_counts : range.lowest_counts;
   if (wish.increasing ? end <= here : end >= here) {

@@ -18,7 +18,7 @@ typedef enum {
 
 /** States of an axis. */
 typedef enum {
-  ILK_AXIS_DISABLED = 0, /**< The axis is not powered by the kernel and may be moved by hand. */
+  ILK_AXIS_DISABLED = 0, /**< The axis is not driven; outside of MOTION it may be moved by hand. */
   ILK_AXIS_ENABLED = 1,  /**< The axis is ready for a move and stands still. */
   ILK_AXIS_MOVING = 2,   /**< A move is held by its lease. */
   ILK_AXIS_HOMING = 3,   /**< The kernel runs the axis to its switch to reference it. */
@@ -31,7 +31,7 @@ typedef enum {
 /** Requests of the app. `fields` are read by the kernel; `checks` are the verdicts that can refuse it, in order, after CHECKSUM, SEQUENCE, UNKNOWN and AXIS. */
 typedef enum {
   ILK_REQUEST_HEARTBEAT = 1,   /**< The app is alive; `holder` has motion authority. */
-  ILK_REQUEST_STOP = 2,        /**< End MOTION now. */
+  ILK_REQUEST_STOP = 2,        /**< End MOTION now, or take back a pedal that is armed. */
   ILK_REQUEST_RESET = 3,       /**< Unlock. */
   ILK_REQUEST_DISABLE = 4,     /**< Take the axis out of motion. */
   ILK_REQUEST_ENABLE = 5,      /**< Let the axis be moved, from where it stands. */
@@ -59,15 +59,17 @@ typedef enum {
   ILK_VERDICT_CARD = 9,          /**< The axis' card gave no valid frame in this tick. */
   ILK_VERDICT_NO_FAULT = 10,     /**< There is no fault to clear. */
   ILK_VERDICT_DISABLED = 11,     /**< The axis is not enabled. */
-  ILK_VERDICT_BUSY = 12,         /**< The axis is homing, or not at rest. */
+  ILK_VERDICT_BUSY = 12,         /**< The axis is homing or not at rest, or power is not up. */
   ILK_VERDICT_LEASE = 13,        /**< The lease is zero or too long. */
-  ILK_VERDICT_DRIVE = 14,        /**< Drive or amplitude is above its bound. */
+  ILK_VERDICT_DRIVE = 14,        /**< Drive is zero, or drive or amplitude is above its bound. */
   ILK_VERDICT_RANGE = 15,        /**< The setpoint or position is outside the allowed range. */
   ILK_VERDICT_NO_SWITCH = 16,    /**< The axis has no limit switch to home at. */
+  ILK_VERDICT_CONSENT = 17,      /**< The request carries the number of another press of the pedal. */
+  ILK_VERDICT_BUDGET = 18,       /**< Homing has used up its travel or time for this press of the pedal. */
 } ilk_verdict_t;
 
 /** Codes of ilk_verdict_t. */
-#define ILK_VERDICT_COUNT 17u
+#define ILK_VERDICT_COUNT 19u
 
 /** Why the system is LOCKED. */
 typedef enum {
@@ -78,25 +80,29 @@ typedef enum {
   ILK_CAUSE_PEDAL = 4,     /**< The pedal's channels disagree. Value: contacts as read, normally open in bit 0, normally closed in bit 1. */
   ILK_CAUSE_INTEGRITY = 5, /**< Memory of the kernel was damaged. Value: the seal of the damaged state, or the CRC that was found over the configuration; 0 when one of its words that drive rests on had changed. */
   ILK_CAUSE_OVERRUN = 6,   /**< The control loop missed its deadline several times in a row. Value: misses in a row. */
+  ILK_CAUSE_RUNAWAY = 7,   /**< A faulted axis goes on moving although its drive is zero; power was taken away. Value: its slot. */
 } ilk_cause_t;
 
 /** Codes of ilk_cause_t. */
-#define ILK_CAUSE_COUNT 7u
+#define ILK_CAUSE_COUNT 8u
 
 /** Why an axis is FAULTED. */
 typedef enum {
   ILK_FAULT_NONE = 0,           /**< No fault. */
   ILK_FAULT_STALL = 1,          /**< The axis was driven without making progress. Value: progress in counts. */
   ILK_FAULT_REVERSE = 2,        /**< The axis moved against its command. Value: counts against the command. */
-  ILK_FAULT_DRIFT = 3,          /**< The axis moved although it was not driven. Value: counts from where it had settled. */
+  ILK_FAULT_DRIFT = 3,          /**< The axis moved although it was not driven. Value: counts from its mark. */
   ILK_FAULT_JUMP = 4,           /**< The counter jumped farther than the axis can move. Value: counts of the jump. */
-  ILK_FAULT_CARD_LOST = 5,      /**< The card gave no valid frame several times in a row; the axis is no longer homed. Value: bad frames in a row. */
-  ILK_FAULT_HOMING_TRAVEL = 6,  /**< Homing went farther than allowed without the switch changing. Value: counts travelled. */
-  ILK_FAULT_HOMING_TIMEOUT = 7, /**< Homing took too long. Value: homing phase. */
+  ILK_FAULT_CARD = 5,           /**< The card gave no valid frame several times in a row; the axis is no longer homed. Value: bad frames in a row. */
+  ILK_FAULT_HOMING_TRAVEL = 6,  /**< Homing has used up its travel for this press of the pedal. Value: counts travelled. */
+  ILK_FAULT_HOMING_TIMEOUT = 7, /**< Homing has used up its time for this press of the pedal. Value: homing phase. */
+  ILK_FAULT_CARD_RESET = 8,     /**< The card was reset, so that its counter means another place. Value: heartbeats since the last valid frame. */
+  ILK_FAULT_SWITCH = 9,         /**< The switch contradicts the position, or the two edges of homing differ. Value: counts from the place where it homed, or between the edges. */
+  ILK_FAULT_INTEGRITY = 10,     /**< Memory of the kernel was damaged; nothing is known of the axis. */
 } ilk_fault_t;
 
 /** Codes of ilk_fault_t. */
-#define ILK_FAULT_COUNT 8u
+#define ILK_FAULT_COUNT 11u
 
 /** The conditions between a wish and a driven axis, in the order in which they are checked. The first that does not hold blocks. */
 typedef enum {
@@ -112,52 +118,60 @@ typedef enum {
   ILK_GATE_SOFT_LIMIT = 9,     /**< The axis is at its soft limit and may only move inward. */
   ILK_GATE_UNHOMED_TRAVEL = 10, /**< The axis is not homed and has used up its travel for this press of the pedal. */
   ILK_GATE_DRIVE = 11,         /**< The drive that was asked for is above its bound. */
+  ILK_GATE_STALL = 12,         /**< The axis was driven as long as it may be without progress. */
 } ilk_gate_t;
 
 /** Codes of ilk_gate_t. */
-#define ILK_GATE_COUNT 12u
+#define ILK_GATE_COUNT 13u
 
 /** The first rule that a refused configuration breaks. */
 typedef enum {
-  ILK_CONFIG_ERROR_NONE = 0,           /**< The configuration is valid. */
-  ILK_CONFIG_ERROR_VERSION = 1,        /**< `version` is not the kernel's configuration version. */
-  ILK_CONFIG_ERROR_SIZE = 2,           /**< `size_bytes` is not the size of the kernel's configuration. */
-  ILK_CONFIG_ERROR_CRC = 3,            /**< `crc` does not match the words before it. */
-  ILK_CONFIG_ERROR_PERIOD = 4,         /**< `period_us` is not from 125 to 2000. */
-  ILK_CONFIG_ERROR_PEDAL_CHANNELS = 5, /**< `pedal_channels` is not 1 or 2. */
-  ILK_CONFIG_ERROR_APP_TIMEOUT = 6,    /**< `app_timeout_ticks` is zero or more than 150 ms. */
-  ILK_CONFIG_ERROR_LEASE = 7,          /**< `lease_max_ticks` is zero or more than 150 ms. */
-  ILK_CONFIG_ERROR_PEDAL_DEBOUNCE = 8, /**< `pedal_debounce_ticks` is zero or more than 50 ms. */
-  ILK_CONFIG_ERROR_PEDAL_DISAGREE = 9, /**< `pedal_disagree_ticks` is zero or more than 50 ms. */
-  ILK_CONFIG_ERROR_BAD_FRAMES = 10,    /**< `bad_frame_limit` is not from 1 to 5. */
-  ILK_CONFIG_ERROR_OVERRUNS = 11,      /**< `overrun_limit` is not from 1 to 10. */
-  ILK_CONFIG_ERROR_NO_AXIS = 12,       /**< No slot has a motor card. */
-  ILK_CONFIG_ERROR_CARD = 13,          /**< `card` is not a known card type. */
-  ILK_CONFIG_ERROR_FLAG = 14,          /**< `required`, `motor_direction` or `direction_correction` is not 0 or 1. */
-  ILK_CONFIG_ERROR_EMPTY_SLOT = 15,    /**< A slot without a motor card has a field that is not zero, `card` and `required` apart; an empty slot is required. */
-  ILK_CONFIG_ERROR_LIMIT_SIDE = 16,    /**< `limit_side` is not NONE, LOWER or UPPER. */
-  ILK_CONFIG_ERROR_SOFT_LIMITS = 17,   /**< `min_counts` is not below `max_counts`, or a limit is beyond 2^30 counts. */
-  ILK_CONFIG_ERROR_HOME_OFFSET = 18,   /**< `home_offset_counts` is outside the soft limits. */
-  ILK_CONFIG_ERROR_COAST = 19,         /**< `coast_counts` is zero, or min + coast is not below max - coast. */
-  ILK_CONFIG_ERROR_DEADBAND = 20,      /**< `deadband_counts` is zero or at least half of the range. */
-  ILK_CONFIG_ERROR_MAX_DRIVE = 21,     /**< `max_drive` is zero or more than the card's word can carry. */
-  ILK_CONFIG_ERROR_UNHOMED_DRIVE = 22, /**< `unhomed_max_drive` is zero or more than a tenth of `max_drive`. */
-  ILK_CONFIG_ERROR_AMPLITUDE = 23,     /**< `max_amplitude` is not from 1 to 255 on a HIGH_FREQUENCY card, or not zero on another; or `home_amplitude` exceeds it. */
+  ILK_CONFIG_ERROR_NONE = 0,            /**< The configuration is valid. */
+  ILK_CONFIG_ERROR_VERSION = 1,         /**< `version` is not the kernel's configuration version. */
+  ILK_CONFIG_ERROR_SIZE = 2,            /**< `size_bytes` is not the size of the kernel's configuration. */
+  ILK_CONFIG_ERROR_CRC = 3,             /**< `crc` does not match the words before it. */
+  ILK_CONFIG_ERROR_PERIOD = 4,          /**< `period_us` is not from 125 to 2000. */
+  ILK_CONFIG_ERROR_PEDAL_CHANNELS = 5,  /**< `pedal_channels` is not 1 or 2. */
+  ILK_CONFIG_ERROR_APP_TIMEOUT = 6,     /**< `app_timeout_ticks` is below 2 or more than 150 ms. */
+  ILK_CONFIG_ERROR_LEASE = 7,           /**< `lease_max_ticks` is below 2 or more than 150 ms. */
+  ILK_CONFIG_ERROR_PEDAL_DEBOUNCE = 8,  /**< `pedal_debounce_ticks` is zero or more than 50 ms. */
+  ILK_CONFIG_ERROR_PEDAL_DISAGREE = 9,  /**< `pedal_disagree_ticks` is zero or more than 50 ms. */
+  ILK_CONFIG_ERROR_BAD_FRAMES = 10,     /**< `bad_frame_limit` is not from 1 to 5. */
+  ILK_CONFIG_ERROR_OVERRUNS = 11,       /**< `overrun_limit` is not from 1 to 10. */
+  ILK_CONFIG_ERROR_NO_AXIS = 12,        /**< No slot has a motor card. */
+  ILK_CONFIG_ERROR_CARD = 13,           /**< `card` is not a known card type. */
+  ILK_CONFIG_ERROR_FLAG = 14,           /**< `required`, `motor_direction` or `direction_correction` is not 0 or 1. */
+  ILK_CONFIG_ERROR_EMPTY_SLOT = 15,     /**< A slot without a motor card has a field that is not zero, `card` and `required` apart; an empty slot is required. */
+  ILK_CONFIG_ERROR_LIMIT_SIDE = 16,     /**< `limit_side` is not NONE, LOWER or UPPER. */
+  ILK_CONFIG_ERROR_SOFT_LIMITS = 17,    /**< `min_counts` is not below `max_counts`, or a limit is beyond 2^30 counts. */
+  ILK_CONFIG_ERROR_HOME_OFFSET = 18,    /**< `home_offset_counts` is outside the soft limits, or leaves no room between where the switch is sure to be open and the coast before the other limit. */
+  ILK_CONFIG_ERROR_COAST = 19,          /**< `coast_counts` is zero, shorter than full speed in the latency of the loop, or min + coast is not below max - coast. */
+  ILK_CONFIG_ERROR_DEADBAND = 20,       /**< `deadband_counts` is zero or at least half of the range. */
+  ILK_CONFIG_ERROR_MAX_DRIVE = 21,      /**< `max_drive` is zero or more than the card's word can carry. */
+  ILK_CONFIG_ERROR_UNHOMED_DRIVE = 22,  /**< `unhomed_max_drive` is not above `dead_zone_drive`, or more than a tenth of `max_drive`. */
+  ILK_CONFIG_ERROR_AMPLITUDE = 23,      /**< `max_amplitude` is not from 1 to 255 on a HIGH_FREQUENCY card, or not zero on another; `home_amplitude` exceeds it, or is not zero on an axis without a switch. */
   ILK_CONFIG_ERROR_UNHOMED_TRAVEL = 24, /**< `unhomed_travel_counts` is not above `coast_counts`, or more than a tenth of the range. */
-  ILK_CONFIG_ERROR_HOME_DRIVE = 25,    /**< `home_drive` is zero or more than `unhomed_max_drive` on an axis with a switch, or not zero on one without. */
-  ILK_CONFIG_ERROR_HOME_TRAVEL = 26,   /**< `home_travel_counts` does not cover the whole range and the coasting distance, or is more than twice the range. */
-  ILK_CONFIG_ERROR_HOME_BACKOFF = 27,  /**< `home_backoff_counts` is zero or more than a tenth of the range on an axis with a switch. */
-  ILK_CONFIG_ERROR_HOME_REST = 28,     /**< `home_rest_ticks` is zero or more than `home_timeout_ticks`. */
-  ILK_CONFIG_ERROR_HOME_TIMEOUT = 29,  /**< `home_timeout_ticks` at `home_speed_counts_per_s` does not cover the back-off, the travel and the rest, or is more than ten minutes. */
-  ILK_CONFIG_ERROR_STALL = 30,         /**< `stall_ticks` is zero or more than 500 ms, or `stall_min_counts` is zero or not above `noise_counts`. */
-  ILK_CONFIG_ERROR_REVERSE = 31,       /**< `reverse_counts` does not cover coast, backlash and noise, or is more than a tenth of the range. */
-  ILK_CONFIG_ERROR_DRIFT = 32,         /**< `drift_counts` does not cover coast, backlash and noise, or is more than a tenth of the range. */
-  ILK_CONFIG_ERROR_SETTLE = 33,        /**< `settle_ticks` is zero or more than 1000 ms. */
-  ILK_CONFIG_ERROR_MAX_DELTA = 34,     /**< `max_delta_counts` is zero or more than half of the range. */
+  ILK_CONFIG_ERROR_HOME_DRIVE = 25,     /**< `home_drive` is not above `dead_zone_drive`, or more than `unhomed_max_drive`; not zero on an axis without a switch. */
+  ILK_CONFIG_ERROR_HOME_TRAVEL = 26,    /**< `home_travel_counts` does not cover the way from either stop with both back-offs and coast, or is more than four times the range; not zero on an axis without a switch. */
+  ILK_CONFIG_ERROR_HOME_CLEAR = 27,     /**< `home_clear_counts` does not cover tolerance, hysteresis and coast, or the progress that a stall asks for, or is more than a tenth of the range; not zero on an axis without a switch. */
+  ILK_CONFIG_ERROR_REST = 28,           /**< `rest_ticks` is not above the latency of the loop, shorter than the debounce of the switch, or more than 1000 ms. */
+  ILK_CONFIG_ERROR_HOME_TIMEOUT = 29,   /**< `home_timeout_ticks` does not cover the way of homing at its speeds, or is more than ten minutes; not zero on an axis without a switch. */
+  ILK_CONFIG_ERROR_STALL = 30,          /**< `stall_ticks` is more than 500 ms, or ends before `stall_min_counts`, backlash and noise are travelled at the slowest drive with the latency of the loop, or at full speed after a reversal; or these are not above `noise_counts`. */
+  ILK_CONFIG_ERROR_REVERSE = 31,        /**< `reverse_counts` does not cover coast, backlash and noise, or is more than a tenth of the range. */
+  ILK_CONFIG_ERROR_DRIFT = 32,          /**< `drift_counts` does not cover coast, backlash and noise, or is more than a tenth of the range. */
+  ILK_CONFIG_ERROR_STALL_EFFORT = 33,   /**< `stall_effort_ticks` is more than 200 ms, or too short for five times the coast, backlash and noise at full speed; or zero on an axis that is fast enough for it. */
+  ILK_CONFIG_ERROR_MAX_DELTA = 34,      /**< `max_delta_counts` is below full speed and noise in a tick, or more than half of the range. */
+  ILK_CONFIG_ERROR_SPEED = 35,          /**< A speed is zero or too high, or a slower drive of homing has a higher one; not zero for homing on an axis without a switch. */
+  ILK_CONFIG_ERROR_HOME_TOLERANCE = 36, /**< `home_tolerance_counts` does not cover what homing travels in the debounce time, and noise, or is more than a tenth of the range; not zero on an axis without a switch. */
+  ILK_CONFIG_ERROR_HOME_SLOW = 37,      /**< `home_slow_drive` is not above `dead_zone_drive`, or more than `home_drive`; not zero on an axis without a switch. */
+  ILK_CONFIG_ERROR_POWER_UP = 38,       /**< `power_up_ticks` is zero or more than 5000 ms. */
+  ILK_CONFIG_ERROR_SWITCH_DEBOUNCE = 39, /**< `switch_debounce_ticks` is below 2 or more than 20 ms. */
+  ILK_CONFIG_ERROR_HYSTERESIS = 40,     /**< `switch_hysteresis_counts` is more than a tenth of the range; not zero on an axis without a switch. */
+  ILK_CONFIG_ERROR_NOISE = 41,          /**< `noise_counts` or `backlash_counts` is more than a tenth of the range. */
 } ilk_config_error_t;
 
 /** Codes of ilk_config_error_t. */
-#define ILK_CONFIG_ERROR_COUNT 35u
+#define ILK_CONFIG_ERROR_COUNT 42u
 
 /** Kinds of motor cards. */
 typedef enum {
@@ -195,13 +209,26 @@ typedef enum {
 /** Phases of homing. */
 typedef enum {
   ILK_HOMING_NONE = 0,     /**< Not homing. */
-  ILK_HOMING_BACK_OFF = 1, /**< The axis started on its switch and moves away until it opens. */
-  ILK_HOMING_SEEK = 2,     /**< Moves towards the switch. */
-  ILK_HOMING_REST = 3,     /**< At the switch; waits until the counter rests. */
+  ILK_HOMING_LOOK = 1,     /**< Undriven, until the switch has read one way for the debounce time. */
+  ILK_HOMING_LEAVE = 2,    /**< The axis began on its switch and moves away until the switch is open and the axis clear. */
+  ILK_HOMING_SEEK = 3,     /**< Moves towards the switch. */
+  ILK_HOMING_BACK_OFF = 4, /**< Moves away from the first edge until the switch is open and the axis clear. */
+  ILK_HOMING_APPROACH = 5, /**< Moves towards the switch again, slowly. */
+  ILK_HOMING_REST = 6,     /**< At the second edge; waits until the axis is at rest. */
 } ilk_homing_phase_t;
 
 /** Codes of ilk_homing_phase_t. */
-#define ILK_HOMING_COUNT 4u
+#define ILK_HOMING_COUNT 7u
+
+/** How the position of an axis came to be known. */
+typedef enum {
+  ILK_HOMED_NOT = 0,       /**< The position has no reference. */
+  ILK_HOMED_BY_SWITCH = 1, /**< By HOME, at the switch. */
+  ILK_HOMED_BY_HAND = 2,   /**< By SET_HOME, a person's word. */
+} ilk_homed_t;
+
+/** Codes of ilk_homed_t. */
+#define ILK_HOMED_COUNT 3u
 
 /** What the pedal's channels say together. */
 typedef enum {

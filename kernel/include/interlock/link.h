@@ -5,14 +5,16 @@
  * The kernel process creates both regions for each attachment and passes their descriptors with
  * SCM_RIGHTS in one `ilk_link_hello_t`. The app can map the kernel's region for reading only: it is
  * sealed against future writable mappings. The app's region is the only memory that the app writes;
- * the kernel maps it read-only and treats each byte of it as hostile.
+ * the kernel maps it read-only and treats each byte of it as hostile. The app maps it once, and says so by
+ * sending ILK_LINK_MAGIC, one word, on the socket: then the kernel seals it too, so that no page can be taken
+ * out of it, and begins to serve the app.
  *
  * Every word is accessed with atomic builtins: relaxed for data, acquire/release for the counters that
  * publish them.
  *
  * One app is attached at a time; a further connection is closed without a hello. Each attachment starts
- * with fresh regions, generation + 1, and all counters at 0. The app sends nothing on the socket: closing
- * it, or sending on it, ends the attachment.
+ * with fresh regions, generation + 1, and all counters at 0. Closing the socket, or sending anything else on
+ * it, ends the attachment.
  *
  * Waiting for the next snapshot: `FUTEX_WAIT` (not `FUTEX_PRIVATE_FLAG`) on `snapshot_lock` works on the
  * read-only mapping. The kernel wakes at most ILK_LINK_WAITERS waiters after each snapshot, so that
@@ -26,7 +28,7 @@
 /** First word of both regions and of the hello. */
 #define ILK_LINK_MAGIC 0x4c4b4c49u /* "ILKL" */
 /** Of the format; another one is refused. */
-#define ILK_LINK_VERSION 1u
+#define ILK_LINK_VERSION 2u
 
 /** Requests in flight. A power of two; four ticks' worth. */
 #define ILK_LINK_REQUESTS 64u
@@ -86,6 +88,7 @@ typedef struct {
   ilk_inputs_t inputs;       /**< of this tick */
   ilk_command_t command[ILK_SLOTS]; /**< what goes to each card */
   uint32_t gate[ILK_SLOTS];         /**< ilk_gate_t: the first that blocks each axis */
+  uint32_t power;                   /**< 1: the amplifiers have power */
   uint32_t lamp[ILK_LAMP_COUNT];    /**< ilk_colour_t of each lamp */
   ilk_timing_t timing;              /**< how long each part of a tick took */
 } ilk_snapshot_t;
@@ -132,7 +135,8 @@ typedef struct {
   ilk_request_t request[ILK_LINK_REQUESTS]; /**< ring, by count */
 } ilk_link_app_region_t;
 
-/** First and only message on the socket, with both descriptors: kernel region, then app region. */
+/** First and only message of the kernel on the socket, with both descriptors: kernel region, then app region.
+ */
 typedef struct {
   uint32_t magic;               /**< ILK_LINK_MAGIC */
   uint32_t version;             /**< ILK_LINK_VERSION */

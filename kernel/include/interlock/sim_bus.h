@@ -19,7 +19,7 @@
 /** First word of a reply that says that the whole transaction failed. */
 #define ILK_SIM_FAILED 0u
 /** Of the format; another one is refused. */
-#define ILK_SIM_VERSION 1u
+#define ILK_SIM_VERSION 2u
 
 /** Who decides how plant time passes. */
 typedef enum {
@@ -41,6 +41,7 @@ typedef struct {
 typedef struct {
   uint32_t magic;                             /**< ILK_SIM_MAGIC */
   uint32_t tick;                              /**< kernel tick, for the record */
+  uint32_t power;                             /**< 1: the amplifiers have power */
   uint32_t lamp[ILK_LAMP_COUNT];              /**< ilk_colour_t of each lamp */
   uint32_t frame[ILK_SLOTS][ILK_FRAME_WORDS]; /**< to the card of each slot */
 } ilk_sim_exchange_t;

@@ -219,6 +219,7 @@ json status_of(const Plant& plant, std::optional<ilk_clock_t> clock) {
                 {"no", name_of_state(kContactStates, plant.pedal().normally_open().stuck())},
                 {"nc", name_of_state(kContactStates, plant.pedal().normally_closed().stuck())}}},
               {"estop", {{"pulled", plant.estop_pulled()}, {"loop_closed", newest.estop_loop_closed}}},
+              {"power", plant.power()},
               {"lamps", lamps},
               {"axes", axes},
               {"sensors", sensors},

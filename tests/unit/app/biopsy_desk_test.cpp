@@ -63,7 +63,7 @@ TEST_F(BiopsyDeskTest, AForceThatWasNeverReadIsNotShownAsZero) {
 
 TEST_F(BiopsyDeskTest, ForcesAreShownRawCalibratedAndWithTheirAge) {
   ControlView view = needle_view(1970 + 452, 1780);
-  view.snapshot.state.tick += 7;
+  view.snapshot.state.system.tick += 7;
   EXPECT_EQ(shown(view)["hand"]["raw_counts"], 2422);
   EXPECT_NEAR(shown(view)["hand"]["force_n"].get<double>(), 4.0, 0.01);
   EXPECT_EQ(shown(view)["force_age_ms"], 7.0);

@@ -299,13 +299,13 @@ TEST_F(BiopsyModeTest, ATickAllocatesNothing) {
   press_hand(5.0);
   loop_.run(1000);
   BiopsyMode mode{RobotPlan(prostate(), loop_.config())};
-  mode.take({1, run_.get(), 0}, loop_.state().tick);
+  mode.take({1, run_.get(), 0}, loop_.state().system.tick);
   ilk_snapshot_t snapshot{};
   snapshot.state = loop_.state();
   test::count_allocations_of(pthread_self());
   for (std::uint32_t i = 0; i < 50; ++i) {
-    ++snapshot.state.tick;
-    snapshot.state.axis[force_card].card_time_us += 1000;
+    ++snapshot.state.system.tick;
+    snapshot.inputs.frame[force_card][10] += 1000;
     Wishes wishes;
     mode.tick(snapshot, wishes);
   }
@@ -328,11 +328,10 @@ TEST(BiopsyMode, ARobotWithoutANeedleTakesNone) {
 TEST(ForceWatch, AStandingCardClockIsNoNewReading) {
   ForceWatch watch({force_card, 2, 3});
   ilk_snapshot_t snapshot{};
-  ilk_axis_t& card = snapshot.state.axis[force_card];
   const auto look = [&](std::uint32_t tick, bool valid, std::uint32_t time_us) {
-    snapshot.state.tick = tick;
-    card.card_valid = valid ? 1 : 0;
-    card.card_time_us = time_us;
+    snapshot.state.system.tick = tick;
+    snapshot.state.axis[force_card].card_valid = valid ? 1 : 0;
+    snapshot.inputs.frame[force_card][10] = time_us;
     watch.look(snapshot);
     return watch.readings().age_ticks(tick);
   };

@@ -102,7 +102,7 @@ TEST_F(BiopsyRoutesTest, AnImageIsHandedOnInTheTimeAndFrameOfItsBiopsy) {
   ASSERT_EQ(propose({{"kind", "biopsy"}}).status, 201u);
   (void)next_command();
   ControlView view = needle_view();
-  view.snapshot.state.tick += 2500;
+  view.snapshot.state.system.tick += 2500;
   show(view);
   const Eigen::Vector3d tip(0.5, 0.25, 10.0);
   const json image{{"frame", "scanner"}, {"tip_mm", list(scanner_from_guide() * tip)}, {"age_ms", 1000}};

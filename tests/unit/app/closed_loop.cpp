@@ -41,7 +41,7 @@ ilk_snapshot_t ClosedLoop::snapshot() const {
   ilk_snapshot_t snapshot{};
   snapshot.clock = ILK_CLOCK_SIM;
   snapshot.simulated = 1;
-  snapshot.period_us = config_.period_us;
+  snapshot.period_us = config_.common.period_us;
   snapshot.config_crc = config_.crc;
   snapshot.state = state_;
   snapshot.inputs = inputs_;
@@ -51,8 +51,8 @@ ilk_snapshot_t ClosedLoop::snapshot() const {
 }
 
 void ClosedLoop::tick() {
-  inputs_ = plant::exchange(plant_, outputs_, state_.tick);
-  if (state_.tick % heartbeat_ticks == 0) {
+  inputs_ = plant::exchange(plant_, outputs_, state_.system.tick);
+  if (state_.system.tick % heartbeat_ticks == 0) {
     ilk_request_t heartbeat{};
     heartbeat.kind = ILK_REQUEST_HEARTBEAT;
     heartbeat.holder = 1;
@@ -67,11 +67,12 @@ void ClosedLoop::tick() {
   if (silent_) {
     on_their_way_.clear();
   } else if (on_their_way_.size() > latency_) {
-    seen_tick_ = on_their_way_.front().state.tick;
+    seen_tick_ = on_their_way_.front().state.system.tick;
+    const std::uint32_t consent = on_their_way_.front().state.system.consent;
     const Wishes wishes = conductor_.tick(on_their_way_.front());
     on_their_way_.pop_front();
     for (const Wish& wish : wishes.all()) {
-      put(request_of(wish));
+      put(request_of(wish, consent));
       sent_.push_back({sequence_, wish.origin});
     }
   }
@@ -124,10 +125,11 @@ void ClosedLoop::request(std::uint32_t kind, std::uint32_t slot, std::int32_t ta
   request.kind = kind;
   request.axis = slot;
   request.target_counts = target_counts;
+  request.consent = state_.system.consent;
   put(request);
-  const std::uint32_t refused_before = state_.requests_refused;
+  const std::uint32_t refused_before = state_.system.requests_refused;
   tick();
-  if (state_.requests_refused != refused_before) {
+  if (state_.system.requests_refused != refused_before) {
     throw std::runtime_error("the kernel refused request " + std::to_string(kind));
   }
   run(settle_ticks);
@@ -183,6 +185,7 @@ std::uint32_t ClosedLoop::verdict_of_move(std::uint32_t slot, std::int32_t targe
   move.target_counts = target_counts;
   move.drive = drive;
   move.lease_ticks = 1;
+  move.consent = state_.system.consent;
   put(move);
   const std::uint32_t sequence = sequence_;
   tick();

@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <random>
 
+#include "motion/setpoint_range.hpp"
+
 namespace interlock {
 namespace {
 
@@ -22,7 +24,7 @@ TEST_P(ManualModeOnThePlant, EveryAxisArrivesWithinItsDeadbandAndRests) {
     SCOPED_TRACE(axis.name);
     ClosedLoop loop(random(), GetParam());
     loop.make_ready(axis.slot);
-    ASSERT_EQ(loop.state().mode, static_cast<std::uint32_t>(ILK_MODE_MOTION));
+    ASSERT_EQ(loop.state().system.mode, static_cast<std::uint32_t>(ILK_MODE_MOTION));
     std::uniform_int_distribution<std::int32_t> anywhere(axis.lowest_setpoint_counts(),
                                                          axis.highest_setpoint_counts());
     for (std::uint32_t proposal = 1; proposal <= 5; ++proposal) {
@@ -35,7 +37,7 @@ TEST_P(ManualModeOnThePlant, EveryAxisArrivesWithinItsDeadbandAndRests) {
       loop.run(100);
       EXPECT_EQ(loop.outputs().command[axis.slot].drive, 0u);
     }
-    EXPECT_EQ(loop.state().requests_refused, 0u);
+    EXPECT_EQ(loop.state().system.requests_refused, 0u);
   }
 }
 
@@ -45,14 +47,15 @@ TEST_P(ManualModeOnThePlant, AnAxisThatIsNotHomedArrivesWithinItsUnhomedBounds) 
   ClosedLoop loop(7, GetParam());
   loop.request(ILK_REQUEST_ENABLE, axis.slot);
   loop.pedal(true);
-  const auto reach = static_cast<std::int32_t>(rules.unhomed_travel_counts - rules.coast_counts);
+  const std::int32_t reach =
+      setpoint_range(rules, loop.state().axis[axis.slot], loop.state().system.mode).highest_counts;
   loop.give(Order{1, axis.slot, reach, 0, 0});
   for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.order(axis.slot).phase); ++i) {
     loop.run(1);
     ASSERT_LE(loop.outputs().command[axis.slot].drive, rules.unhomed_max_drive);
   }
   EXPECT_EQ(loop.order(axis.slot).phase, OrderPhase::done);
-  EXPECT_EQ(loop.state().requests_refused, 0u);
+  EXPECT_EQ(loop.state().system.requests_refused, 0u);
 }
 
 TEST_P(ManualModeOnThePlant, ReleasePausesAndTheNextPressGoesOn) {
@@ -78,7 +81,7 @@ TEST_P(ManualModeOnThePlant, CancellingStopsTheAxisWithoutWaitingForItsLease) {
   (void)loop.carry_out({1, axis.slot, 1500, 0, 0}, 300);
   ASSERT_GT(loop.outputs().command[axis.slot].drive, 0u);
   loop.cancel(1);
-  loop.run(2 + GetParam());
+  loop.run(3 + GetParam());
   EXPECT_EQ(loop.outputs().command[axis.slot].drive, 0u);
 }
 
@@ -89,16 +92,17 @@ TEST_P(ManualModeOnThePlant, SevenAxesAtOnceStayWithinTheRequestsOfATick) {
   }
   loop.pedal(true);
   for (const Axis& axis : neuro().axes) {
-    const auto travel = static_cast<std::int32_t>(axis.unhomed_travel_counts - axis.mechanics.coast_counts);
-    const std::int32_t away_from_switch = axis.limit == ILK_LIMIT_UPPER ? -travel : travel;
-    loop.give(Order{axis.slot + 1, axis.slot, away_from_switch, 0, 0});
+    const SetpointRange range =
+        setpoint_range(loop.config().axis[axis.slot], loop.state().axis[axis.slot], loop.state().system.mode);
+    const bool down = axis.limit == ILK_LIMIT_UPPER;
+    loop.give(Order{axis.slot + 1, axis.slot, down ? range.lowest_counts : range.highest_counts, 0, 0});
   }
   loop.run(minute_ticks / 2);
   for (const Axis& axis : neuro().axes) {
     EXPECT_EQ(loop.order(axis.slot).phase, OrderPhase::done) << axis.name;
   }
   EXPECT_LE(loop.most_requests_in_a_tick(), static_cast<std::uint32_t>(ILK_REQUESTS_PER_TICK));
-  EXPECT_EQ(loop.state().requests_refused, 0u);
+  EXPECT_EQ(loop.state().system.requests_refused, 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Latency, ManualModeOnThePlant, testing::Values(0u, 2u, ILK_LINK_TICKS_AHEAD));

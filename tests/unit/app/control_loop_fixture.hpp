@@ -30,9 +30,9 @@ class ControlLoopTest : public testing::Test {
   /** Publishes the next tick and waits until the control thread has handled it; its requests are then in
    * `requests_`. */
   void tick(std::uint32_t ticks = 1) {
-    snapshot_.state.tick += ticks;
+    snapshot_.state.system.tick += ticks;
     kernel_.publish(snapshot_);
-    while (__atomic_load_n(&kernel_.app().seen_tick, __ATOMIC_ACQUIRE) != snapshot_.state.tick) {
+    while (__atomic_load_n(&kernel_.app().seen_tick, __ATOMIC_ACQUIRE) != snapshot_.state.system.tick) {
       std::this_thread::yield();
     }
     requests_.clear();

@@ -34,13 +34,13 @@ TEST_F(ControlLoopTest, BeatsAtOnceAndWellWithinTheAppTimeout) {
     since = sent(ILK_REQUEST_HEARTBEAT) != nullptr ? 0 : since;
   }
   EXPECT_LE(longest, 20u);
-  EXPECT_LE(longest, neuro_config().app_timeout_ticks / 4);
+  EXPECT_LE(longest, neuro_config().common.app_timeout_ticks / 4);
 }
 
 TEST_F(ControlLoopTest, ShowsTheNewestSnapshotToTheNetwork) {
   tick();
   EXPECT_TRUE(mailbox_->view.newest().attached);
-  EXPECT_EQ(mailbox_->view.newest().snapshot.state.tick, snapshot_.state.tick);
+  EXPECT_EQ(mailbox_->view.newest().snapshot.state.system.tick, snapshot_.state.system.tick);
 }
 
 TEST_F(ControlLoopTest, BringsBackTheVerdictOfAnAsk) {
@@ -79,7 +79,7 @@ TEST_F(ControlLoopTest, ARestoreCarriesItsPosition) {
 
 TEST_F(ControlLoopTest, CarriesOutAnOrderAndFollowsItsVerdict) {
   command(Order{1, insertion, 1500, 0, 0});
-  snapshot_.state.mode = ILK_MODE_MOTION;
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
   ASSERT_NE(sent(ILK_REQUEST_MOVE), nullptr);
   EXPECT_EQ(sent(ILK_REQUEST_MOVE)->target_counts, 1500);
@@ -92,7 +92,7 @@ TEST_F(ControlLoopTest, CarriesOutAnOrderAndFollowsItsVerdict) {
 
 TEST_F(ControlLoopTest, DoesNotReportRoutineAcceptances) {
   command(Order{1, insertion, 1500, 0, 0});
-  snapshot_.state.mode = ILK_MODE_MOTION;
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
   for (const ilk_request_t& request : requests_) {
     kernel_.push_verdict(request, ILK_VERDICT_ACCEPTED, 5);
@@ -105,7 +105,7 @@ TEST_F(ControlLoopTest, StopComesBeforeAnythingThatWaits) {
   command(Order{1, insertion, 1500, 0, 0});
   command(ask(7, ILK_REQUEST_ENABLE));
   stop();
-  snapshot_.state.mode = ILK_MODE_MOTION;
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
   ASSERT_FALSE(requests_.empty());
   EXPECT_EQ(requests_.front().kind, static_cast<std::uint32_t>(ILK_REQUEST_STOP));
@@ -118,19 +118,19 @@ TEST_F(ControlLoopTest, StopComesBeforeAnythingThatWaits) {
 
 TEST_F(ControlLoopTest, APauseEndsMotionInTheSameTickAndTheOrderGoesOnAfterAnotherPress) {
   command(Order{1, insertion, 1500, 0, 0});
-  snapshot_.state.mode = ILK_MODE_MOTION;
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
   EXPECT_EQ(order().phase, OrderPhase::executing);
   mailbox_->pauses.fetch_add(1, std::memory_order_release);
   tick();
   ASSERT_FALSE(requests_.empty());
   EXPECT_EQ(requests_.front().kind, static_cast<std::uint32_t>(ILK_REQUEST_STOP));
-  kernel_.push_verdict(requests_.front(), ILK_VERDICT_ACCEPTED, snapshot_.state.tick);
-  snapshot_.state.mode = ILK_MODE_READY;
+  kernel_.push_verdict(requests_.front(), ILK_VERDICT_ACCEPTED, snapshot_.state.system.tick);
+  snapshot_.state.system.mode = ILK_MODE_READY;
   tick();
   EXPECT_EQ(sent(ILK_REQUEST_STOP), nullptr) << "once";
   EXPECT_EQ(order().phase, OrderPhase::paused);
-  snapshot_.state.mode = ILK_MODE_MOTION;
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
   EXPECT_EQ(order().phase, OrderPhase::executing);
   EXPECT_THAT(notices<StopAnswer>(), testing::IsEmpty()) << "it is no STOP";
@@ -139,7 +139,7 @@ TEST_F(ControlLoopTest, APauseEndsMotionInTheSameTickAndTheOrderGoesOnAfterAnoth
 TEST_F(ControlLoopTest, AnOrderOlderThanTheStopNeverMoves) {
   command(Order{1, insertion, 1500, 0, 0});
   stop();
-  snapshot_.state.mode = ILK_MODE_MOTION;
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
   EXPECT_EQ(sent(ILK_REQUEST_MOVE), nullptr);
   EXPECT_EQ(order().phase, OrderPhase::aborted);
@@ -207,7 +207,7 @@ TEST_F(ControlLoopTest, HomingOfAnAxisThatIsGivenAnotherPositionEnds) {
 TEST_F(ControlLoopTest, AnOrderNewerThanTheStopMoves) {
   stop();
   command(Order{1, insertion, 1500, 0, 1});
-  snapshot_.state.mode = ILK_MODE_MOTION;
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
   EXPECT_NE(sent(ILK_REQUEST_MOVE), nullptr);
 }
@@ -317,12 +317,12 @@ TEST_F(ControlLoopTest, ALostLinkEndsOrdersAndAnswersAsksAndIsAttachedAgain) {
 
 TEST_F(ControlLoopTest, HomesAnAxisAndFollowsItsVerdict) {
   command(HomeOrder{1, 0, 0, insertion, 0});
-  snapshot_.state.mode = ILK_MODE_MOTION;
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
   ASSERT_NE(sent(ILK_REQUEST_HOME), nullptr);
   EXPECT_EQ(sent(ILK_REQUEST_HOME)->axis, insertion);
   EXPECT_EQ(home().phase, OrderPhase::executing);
-  kernel_.push_verdict(*sent(ILK_REQUEST_HOME), ILK_VERDICT_ACCEPTED, snapshot_.state.tick);
+  kernel_.push_verdict(*sent(ILK_REQUEST_HOME), ILK_VERDICT_ACCEPTED, snapshot_.state.system.tick);
   snapshot_.state.axis[insertion].homed = 1;
   tick();
   EXPECT_EQ(home().phase, OrderPhase::done);
@@ -337,7 +337,7 @@ TEST_F(ControlLoopTest, OnlyOneModeHasOpenOrders) {
   EXPECT_EQ(order().reason, OrderReason::axis_homing);
   EXPECT_EQ(home().phase, OrderPhase::waiting);
   command(Order{3, insertion, 1500, 0, 0});
-  snapshot_.state.mode = ILK_MODE_MOTION;
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
   EXPECT_EQ(sent(ILK_REQUEST_MOVE), nullptr);
   EXPECT_EQ(order().phase, OrderPhase::aborted);
@@ -346,7 +346,7 @@ TEST_F(ControlLoopTest, OnlyOneModeHasOpenOrders) {
 TEST_F(ControlLoopTest, AHomeOrderOlderThanTheStopNeverStarts) {
   command(HomeOrder{1, 0, 0, insertion, 0});
   stop();
-  snapshot_.state.mode = ILK_MODE_MOTION;
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
   EXPECT_EQ(sent(ILK_REQUEST_HOME), nullptr);
   EXPECT_EQ(home().reason, OrderReason::stopped);
@@ -354,7 +354,7 @@ TEST_F(ControlLoopTest, AHomeOrderOlderThanTheStopNeverStarts) {
 
 TEST_F(ControlLoopTest, CancellingHomingAsksTheKernelToStop) {
   command(HomeOrder{1, 0, 0, insertion, 0});
-  snapshot_.state.mode = ILK_MODE_MOTION;
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
   command(Cancel{1});
   tick();
@@ -364,7 +364,7 @@ TEST_F(ControlLoopTest, CancellingHomingAsksTheKernelToStop) {
 
 TEST_F(ControlLoopTest, ALostVerdictEndsHoming) {
   command(HomeOrder{1, 0, 0, insertion, 0});
-  snapshot_.state.mode = ILK_MODE_MOTION;
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
   lose_events();
   tick();
@@ -373,11 +373,11 @@ TEST_F(ControlLoopTest, ALostVerdictEndsHoming) {
 
 TEST_F(ControlLoopTest, ALostLinkEndsHoming) {
   command(HomeOrder{1, 0, 0, insertion, 0});
-  snapshot_.state.mode = ILK_MODE_MOTION;
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
   kernel_.close();
   kernel_.accept();
-  snapshot_.state.mode = ILK_MODE_READY;
+  snapshot_.state.system.mode = ILK_MODE_READY;
   tick();
   EXPECT_EQ(home().phase, OrderPhase::aborted);
   EXPECT_EQ(home().reason, OrderReason::link_lost);
@@ -407,7 +407,7 @@ TEST_F(ReplayTest, SendsNothingAndTellsWhoeverAsks) {
     ASSERT_TRUE(requests_.empty());
   }
   EXPECT_TRUE(mailbox_->view.newest().replay);
-  EXPECT_EQ(mailbox_->view.newest().snapshot.state.tick, snapshot_.state.tick);
+  EXPECT_EQ(mailbox_->view.newest().snapshot.state.system.tick, snapshot_.state.system.tick);
   EXPECT_EQ(order().reason, OrderReason::link_lost);
   bool asked = false;
   bool stopped = false;

@@ -11,7 +11,7 @@ class ControlThread : public test::ControlLoopTest {};
 TEST_F(ControlThread, AllocatesNothingWhileItTicks) {
   tick();
   test::count_allocations_of(thread_.native_handle());
-  snapshot_.state.mode = ILK_MODE_MOTION;
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
   for (std::uint32_t i = 1; i <= 200; ++i) {
     command(Order{i, test::insertion, static_cast<std::int32_t>(i), 0, i / 50});
     command(HomeOrder{1000 + i, 0, 3, 0, i / 50});

@@ -17,7 +17,7 @@ ControlView view_of(std::uint32_t clock) {
   view.attached = true;
   view.snapshot.clock = clock;
   view.snapshot.period_us = 1000;
-  view.snapshot.state.tick = UINT32_MAX - 100;
+  view.snapshot.state.system.tick = UINT32_MAX - 100;
   return view;
 }
 
@@ -40,9 +40,9 @@ TEST(HeldLease, CountsKernelTicksInTheSimulatedClock) {
   HeldLease lease(milliseconds(500));
   ControlView view = view_of(ILK_CLOCK_SIM);
   lease.hold(view, start);
-  view.snapshot.state.tick += 499;
+  view.snapshot.state.system.tick += 499;
   EXPECT_FALSE(lease.overdue(view, start + hours(1)));
-  view.snapshot.state.tick += 1;
+  view.snapshot.state.system.tick += 1;
   EXPECT_TRUE(lease.overdue(view, start));
 }
 

@@ -23,15 +23,15 @@ class HomeModeTest : public testing::Test {
   HomeModeTest() : snapshot_(test::ready_view().snapshot), mode_(RobotPlan(neuro(), neuro_config())) {}
 
   void home_axis(std::uint32_t proposal = 1, std::uint32_t slot = insertion) {
-    mode_.take(HomeOrder{proposal, 0, 0, slot, 0}, snapshot_.state.tick);
+    mode_.take(HomeOrder{proposal, 0, 0, slot, 0}, snapshot_.state.system.tick);
   }
 
   void home_angles(std::uint32_t proposal = 1) {
-    mode_.take(HomeOrder{proposal, angles, 1, 0, 0}, snapshot_.state.tick);
+    mode_.take(HomeOrder{proposal, angles, 1, 0, 0}, snapshot_.state.system.tick);
   }
 
   std::vector<Wish> tick(std::uint32_t ticks = 1) {
-    snapshot_.state.tick += ticks;
+    snapshot_.state.system.tick += ticks;
     Wishes wishes;
     mode_.tick(snapshot_, wishes);
     return {wishes.all().begin(), wishes.all().end()};
@@ -45,11 +45,11 @@ class HomeModeTest : public testing::Test {
     return found;
   }
 
-  void press() { snapshot_.state.mode = ILK_MODE_MOTION; }
-  void release() { snapshot_.state.mode = ILK_MODE_READY; }
+  void press() { snapshot_.state.system.mode = ILK_MODE_MOTION; }
+  void release() { snapshot_.state.system.mode = ILK_MODE_READY; }
 
   void judge(std::uint32_t slot, std::uint32_t verdict, std::uint32_t proposal = 1) {
-    mode_.on_verdict({ILK_REQUEST_HOME, slot, proposal}, verdict, snapshot_.state.tick);
+    mode_.on_verdict({ILK_REQUEST_HOME, slot, proposal}, verdict, snapshot_.state.system.tick);
   }
 
   void accept(std::uint32_t slot) {
@@ -116,7 +116,7 @@ TEST_F(HomeModeTest, ASnapshotOlderThanTheAcceptanceDoesNotCount) {
   home_axis();
   press();
   (void)tick();
-  mode_.on_verdict({ILK_REQUEST_HOME, insertion, 1}, ILK_VERDICT_ACCEPTED, snapshot_.state.tick + 3);
+  mode_.on_verdict({ILK_REQUEST_HOME, insertion, 1}, ILK_VERDICT_ACCEPTED, snapshot_.state.system.tick + 3);
   (void)tick(3);
   EXPECT_EQ(phase(), OrderPhase::executing);
   (void)tick();
@@ -200,7 +200,7 @@ TEST_F(HomeModeTest, ALostVerdictEndsIt) {
   home_axis();
   press();
   (void)tick();
-  mode_.on_verdict_lost({ILK_REQUEST_HOME, insertion, 1}, snapshot_.state.tick);
+  mode_.on_verdict_lost({ILK_REQUEST_HOME, insertion, 1}, snapshot_.state.system.tick);
   EXPECT_EQ(phase(), OrderPhase::aborted);
   EXPECT_EQ(reason(), OrderReason::verdict_lost);
   EXPECT_THAT(kinds(), testing::ElementsAre(ILK_REQUEST_STOP));
@@ -211,7 +211,7 @@ TEST_F(HomeModeTest, CancellingAsksForStopUntilMotionHasEnded) {
   press();
   (void)tick();
   accept(insertion);
-  mode_.end(1, OrderReason::cancelled, snapshot_.state.tick);
+  mode_.end(1, OrderReason::cancelled, snapshot_.state.system.tick);
   EXPECT_EQ(reason(), OrderReason::cancelled);
   EXPECT_THAT(kinds(), testing::ElementsAre(ILK_REQUEST_STOP));
   EXPECT_THAT(kinds(49), testing::IsEmpty());
@@ -226,13 +226,13 @@ TEST_F(HomeModeTest, CancellingWhatDoesNotRunAsksForNothing) {
   home_axis();
   (void)tick();
   press();
-  mode_.end(1, OrderReason::cancelled, snapshot_.state.tick);
+  mode_.end(1, OrderReason::cancelled, snapshot_.state.system.tick);
   EXPECT_THAT(kinds(), testing::IsEmpty());
 }
 
 TEST_F(HomeModeTest, EndsOnlyTheProposalThatIsMeant) {
   home_axis(2);
-  mode_.end(1, OrderReason::cancelled, snapshot_.state.tick);
+  mode_.end(1, OrderReason::cancelled, snapshot_.state.system.tick);
   EXPECT_EQ(phase(), OrderPhase::waiting);
 }
 
@@ -256,7 +256,7 @@ TEST_F(HomeModeTest, WishesThatWereNotSentAreRepeated) {
   press();
   mode_.on_unsent(tick().at(0));
   EXPECT_THAT(kinds(), testing::ElementsAre(ILK_REQUEST_HOME));
-  mode_.end(1, OrderReason::cancelled, snapshot_.state.tick);
+  mode_.end(1, OrderReason::cancelled, snapshot_.state.system.tick);
   mode_.on_unsent(tick().at(0));
   EXPECT_THAT(kinds(), testing::ElementsAre(ILK_REQUEST_STOP));
 }
@@ -295,12 +295,12 @@ TEST_F(HomeModeTest, TellsWhatIsLeftOfTheLongestNudgeThereIs) {
   robot.home_steps = {{"far", "Far", {}, {{yaw, INT32_MIN}, {pitch, 5}}, {}}};
   HomeMode mode(RobotPlan(robot, neuro_config()));
   const auto tick = [&](std::uint32_t system_mode) {
-    ++snapshot_.state.tick;
-    snapshot_.state.mode = system_mode;
+    ++snapshot_.state.system.tick;
+    snapshot_.state.system.mode = system_mode;
     Wishes wishes;
     mode.tick(snapshot_, wishes);
   };
-  mode.take(HomeOrder{1, 0, 1, 0, 0}, snapshot_.state.tick);
+  mode.take(HomeOrder{1, 0, 1, 0, 0}, snapshot_.state.system.tick);
   tick(ILK_MODE_MOTION);
   tick(ILK_MODE_READY);
   EXPECT_EQ(mode.status().order.phase, OrderPhase::paused);
@@ -313,7 +313,7 @@ TEST_F(HomeModeTest, TellsWhatIsLeftOfTheLongestNudgeThereIs) {
 }
 
 TEST_F(HomeModeTest, SurvivesTheWrapOfTheTickCounter) {
-  snapshot_.state.tick = UINT32_MAX - 10;
+  snapshot_.state.system.tick = UINT32_MAX - 10;
   home_axis();
   press();
   (void)tick();
@@ -328,8 +328,8 @@ TEST_F(HomeModeTest, LockedEndsIt) {
   home_axis();
   press();
   (void)tick();
-  snapshot_.state.mode = ILK_MODE_LOCKED;
-  snapshot_.state.cause = ILK_CAUSE_ESTOP;
+  snapshot_.state.system.mode = ILK_MODE_LOCKED;
+  snapshot_.state.system.cause = ILK_CAUSE_ESTOP;
   EXPECT_THAT(tick(), testing::IsEmpty());
   EXPECT_EQ(reason(), OrderReason::locked);
   EXPECT_EQ(mode_.status().order.code, static_cast<std::uint32_t>(ILK_CAUSE_ESTOP));
@@ -379,12 +379,12 @@ TEST_F(HomeModeTest, RefusesWhatTheRobotDoesNotHave) {
       {1, steps, 1, 0, 0}, {2, 0, steps + 1, 0, 0}, {3, 1, UINT32_MAX, 0, 0}, {4, 0, 0, ILK_SLOTS, 0}};
   press();
   for (const HomeOrder& order : beyond) {
-    mode_.take(order, snapshot_.state.tick);
+    mode_.take(order, snapshot_.state.system.tick);
     EXPECT_EQ(phase(), OrderPhase::refused);
     EXPECT_EQ(mode_.status().order.code, static_cast<std::uint32_t>(ILK_VERDICT_AXIS));
     EXPECT_THAT(tick(), testing::IsEmpty());
   }
-  mode_.take(HomeOrder{5, 0, steps, 0, 0}, snapshot_.state.tick);
+  mode_.take(HomeOrder{5, 0, steps, 0, 0}, snapshot_.state.system.tick);
   EXPECT_EQ(phase(), OrderPhase::waiting);
 }
 

@@ -231,14 +231,14 @@ TEST_F(HomeProposalTest, AbortCancelsTheOrder) {
 
 TEST_F(HomeProposalTest, RefusesAnotherConfigurationThanTheKernels) {
   view_.snapshot.config_crc ^= 1u;
-  view_.snapshot.state.mode = ILK_MODE_LOCKED;
+  view_.snapshot.state.system.mode = ILK_MODE_LOCKED;
   expect_refused(home_axis(), "CONFIG_MISMATCH");
 }
 
 TEST_F(HomeProposalTest, RefusesWhileLockedAndBeforeThat) {
   axis(insertion).state = ILK_AXIS_FAULTED;
   for (const std::uint32_t mode : {ILK_MODE_LOCKED, ILK_MODE_INIT}) {
-    view_.snapshot.state.mode = mode;
+    view_.snapshot.state.system.mode = mode;
     expect_refused(home_axis(), "MODE");
   }
 }

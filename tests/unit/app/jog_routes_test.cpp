@@ -19,7 +19,8 @@ TEST_F(JogRoutesTest, AJogIsAMoveToTheEndOfTheRangeInItsDirection) {
   const ControlView view = test::ready_view();
   show(view);
   const ilk_axis_t& axis = view.snapshot.state.axis[insertion];
-  const SetpointRange range = setpoint_range(neuro_config().axis[insertion], axis, view.snapshot.state.mode);
+  const SetpointRange range =
+      setpoint_range(neuro_config().axis[insertion], axis, view.snapshot.state.system.mode);
   const Answered up = post("/api/jog", begin("increasing"));
   ASSERT_EQ(up.status, 201u) << up.body;
   EXPECT_EQ(json::parse(up.body)["target_counts"], range.highest_counts);

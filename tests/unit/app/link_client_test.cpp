@@ -29,7 +29,7 @@ class LinkClientTest : public testing::Test {
 
   static ilk_snapshot_t snapshot(std::uint32_t tick) {
     ilk_snapshot_t snapshot{};
-    snapshot.state.tick = tick;
+    snapshot.state.system.tick = tick;
     snapshot.timing.max_ns[ILK_PHASE_COUNT - 1] = tick;
     return snapshot;
   }
@@ -125,7 +125,7 @@ TEST_F(LinkClientTest, ReadsEachSnapshotOnce) {
   EXPECT_EQ(client_.wait(patience), LinkWait::snapshot);
   ilk_snapshot_t seen{};
   ASSERT_TRUE(client_.read_snapshot(seen));
-  EXPECT_EQ(seen.state.tick, 7u);
+  EXPECT_EQ(seen.state.system.tick, 7u);
   EXPECT_EQ(client_.wait(at_once), LinkWait::timeout);
 }
 
@@ -155,9 +155,9 @@ TEST_F(LinkClientTest, NeverReadsHalfASnapshot) {
     }
   });
   ilk_snapshot_t seen{};
-  while (seen.state.tick != last) {
+  while (seen.state.system.tick != last) {
     if (client_.read_snapshot(seen)) {
-      ASSERT_EQ(seen.timing.max_ns[ILK_PHASE_COUNT - 1], seen.state.tick);
+      ASSERT_EQ(seen.timing.max_ns[ILK_PHASE_COUNT - 1], seen.state.system.tick);
     }
   }
   writing.get();

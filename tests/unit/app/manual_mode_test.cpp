@@ -19,18 +19,18 @@ class ManualModeTest : public testing::Test {
 
   void order(std::uint32_t proposal = 1, std::uint32_t slot = insertion, std::int32_t target = 1500,
              std::uint32_t drive = 0) {
-    mode_.take({proposal, slot, target, drive, 0}, snapshot_.state.tick);
+    mode_.take({proposal, slot, target, drive, 0}, snapshot_.state.system.tick);
   }
 
   std::vector<Wish> tick(std::uint32_t ticks = 1) {
-    snapshot_.state.tick += ticks;
+    snapshot_.state.system.tick += ticks;
     Wishes wishes;
     mode_.tick(snapshot_, wishes);
     return {wishes.all().begin(), wishes.all().end()};
   }
 
   void press() {
-    snapshot_.state.mode = ILK_MODE_MOTION;
+    snapshot_.state.system.mode = ILK_MODE_MOTION;
     (void)tick();
   }
 
@@ -49,7 +49,7 @@ TEST_F(ManualModeTest, SendsNothingBeforeThePedal) {
 
 TEST_F(ManualModeTest, MovesTowardsTheTargetWhileThePedalIsHeld) {
   order();
-  snapshot_.state.mode = ILK_MODE_MOTION;
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
   const auto wishes = tick();
   ASSERT_EQ(wishes.size(), 1u);
   EXPECT_EQ(wishes[0].origin.proposal, 1u);
@@ -61,22 +61,22 @@ TEST_F(ManualModeTest, MovesTowardsTheTargetWhileThePedalIsHeld) {
 
 TEST_F(ManualModeTest, KeepsTheBoundOfTheProposal) {
   order(1, insertion, 1500, 9000);
-  snapshot_.state.mode = ILK_MODE_MOTION;
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
   EXPECT_EQ(tick().at(0).drive, 9000u);
 }
 
 TEST_F(ManualModeTest, KeepsTheUnhomedBound) {
   axis().homed = 0;
   order();
-  snapshot_.state.mode = ILK_MODE_MOTION;
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
   EXPECT_EQ(tick().at(0).drive, neuro_config().axis[insertion].unhomed_max_drive);
 }
 
 TEST_F(ManualModeTest, RenewsTheLeaseTwiceBeforeItRunsOut) {
   order();
-  snapshot_.state.mode = ILK_MODE_MOTION;
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
   const std::uint32_t lease = tick().at(0).lease_ticks;
-  EXPECT_LE(lease, neuro_config().lease_max_ticks);
+  EXPECT_LE(lease, neuro_config().common.lease_max_ticks);
   std::uint32_t renewals = 0;
   for (std::uint32_t i = 1; i < lease; ++i) {
     renewals += static_cast<std::uint32_t>(tick().size());
@@ -97,17 +97,17 @@ TEST_F(ManualModeTest, WishesAtMostOnceAnAxisAndTick) {
     order(each.slot + 1, each.slot, each.lowest_setpoint_counts());
     order(each.slot + 11, each.slot, each.highest_setpoint_counts());
   }
-  snapshot_.state.mode = ILK_MODE_MOTION;
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
   EXPECT_EQ(tick().size(), neuro().axes.size());
 }
 
 TEST_F(ManualModeTest, ReleasePausesAndPressGoesOn) {
   order();
   press();
-  snapshot_.state.mode = ILK_MODE_READY;
+  snapshot_.state.system.mode = ILK_MODE_READY;
   EXPECT_THAT(tick(), testing::IsEmpty());
   EXPECT_EQ(status().phase, OrderPhase::paused);
-  snapshot_.state.mode = ILK_MODE_MOTION;
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
   EXPECT_EQ(tick(minute_ticks).size(), 1u);
   EXPECT_EQ(status().phase, OrderPhase::executing);
 }
@@ -115,7 +115,7 @@ TEST_F(ManualModeTest, ReleasePausesAndPressGoesOn) {
 TEST_F(ManualModeTest, ExpiresAfterAMinuteOfKernelTimeWithoutThePedal) {
   order();
   press();
-  snapshot_.state.mode = ILK_MODE_READY;
+  snapshot_.state.system.mode = ILK_MODE_READY;
   (void)tick();
   (void)tick(minute_ticks);
   EXPECT_EQ(status().phase, OrderPhase::paused);
@@ -125,7 +125,7 @@ TEST_F(ManualModeTest, ExpiresAfterAMinuteOfKernelTimeWithoutThePedal) {
 
 TEST_F(ManualModeTest, APressAfterAMinuteFindsNothingToMove) {
   order();
-  snapshot_.state.mode = ILK_MODE_MOTION;
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
   EXPECT_THAT(tick(minute_ticks + 1), testing::IsEmpty());
   EXPECT_EQ(status().phase, OrderPhase::expired);
 }
@@ -133,13 +133,13 @@ TEST_F(ManualModeTest, APressAfterAMinuteFindsNothingToMove) {
 TEST_F(ManualModeTest, LockedDiscardsTheOrder) {
   order();
   press();
-  snapshot_.state.mode = ILK_MODE_LOCKED;
-  snapshot_.state.cause = ILK_CAUSE_ESTOP;
+  snapshot_.state.system.mode = ILK_MODE_LOCKED;
+  snapshot_.state.system.cause = ILK_CAUSE_ESTOP;
   EXPECT_THAT(tick(), testing::IsEmpty());
   EXPECT_EQ(status().phase, OrderPhase::aborted);
   EXPECT_EQ(status().reason, OrderReason::locked);
   EXPECT_EQ(status().code, static_cast<std::uint32_t>(ILK_CAUSE_ESTOP));
-  snapshot_.state.mode = ILK_MODE_MOTION;
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
   EXPECT_THAT(tick(), testing::IsEmpty());
 }
 
@@ -147,7 +147,7 @@ TEST_F(ManualModeTest, StopAbortsEveryOpenOrder) {
   order(1, insertion);
   order(2, test::rotation, 100);
   press();
-  mode_.end_all(OrderReason::stopped, snapshot_.state.tick);
+  mode_.end_all(OrderReason::stopped, snapshot_.state.system.tick);
   for (const std::uint32_t slot : {insertion, test::rotation}) {
     EXPECT_EQ(mode_.orders()[slot].phase, OrderPhase::aborted);
     EXPECT_EQ(mode_.orders()[slot].reason, OrderReason::stopped);
@@ -166,7 +166,7 @@ TEST_F(ManualModeTest, AFaultEndsTheOrderAndIsNamed) {
   press();
   axis().state = ILK_AXIS_FAULTED;
   axis().fault = ILK_FAULT_STALL;
-  snapshot_.state.mode = ILK_MODE_READY;
+  snapshot_.state.system.mode = ILK_MODE_READY;
   (void)tick();
   EXPECT_EQ(status().reason, OrderReason::axis_faulted);
   EXPECT_EQ(status().code, static_cast<std::uint32_t>(ILK_FAULT_STALL));
@@ -187,7 +187,7 @@ TEST_F(ManualModeTest, ARefusalOfTheKernelEndsTheOrderWithItsVerdict) {
   EXPECT_EQ(status().phase, OrderPhase::refused);
   EXPECT_EQ(status().code, static_cast<std::uint32_t>(ILK_VERDICT_RANGE));
   EXPECT_EQ(status().tick, 1234u);
-  EXPECT_EQ(tick().at(0).drive, 0u) << "an earlier lease may still drive the axis";
+  EXPECT_EQ(tick().at(0).lease_ticks, 1u) << "an earlier lease may still drive the axis";
   EXPECT_THAT(tick(), testing::IsEmpty());
 }
 
@@ -211,10 +211,10 @@ TEST_F(ManualModeTest, CancellingGivesBackTheLease) {
   order();
   press();
   axis().state = ILK_AXIS_MOVING;
-  mode_.end(1, OrderReason::cancelled, snapshot_.state.tick);
+  mode_.end(1, OrderReason::cancelled, snapshot_.state.system.tick);
   const auto wishes = tick();
   ASSERT_EQ(wishes.size(), 1u);
-  EXPECT_EQ(wishes[0].drive, 0u);
+  EXPECT_EQ(wishes[0].drive, 1u);
   EXPECT_EQ(wishes[0].lease_ticks, 1u);
   EXPECT_THAT(tick(), testing::IsEmpty());
 }
@@ -223,10 +223,11 @@ TEST_F(ManualModeTest, CancellingGivesBackALeaseThatNoSnapshotShowsYet) {
   order();
   press();
   ASSERT_EQ(axis().state, static_cast<std::uint32_t>(ILK_AXIS_ENABLED));
-  mode_.end(1, OrderReason::cancelled, snapshot_.state.tick);
+  mode_.end(1, OrderReason::cancelled, snapshot_.state.system.tick);
   const auto wishes = tick();
   ASSERT_EQ(wishes.size(), 1u);
-  EXPECT_EQ(wishes[0].drive, 0u);
+  EXPECT_EQ(wishes[0].drive, 1u);
+  EXPECT_EQ(wishes[0].lease_ticks, 1u);
   EXPECT_THAT(tick(), testing::IsEmpty());
 }
 
@@ -234,12 +235,13 @@ TEST_F(ManualModeTest, CancellingGivesBackTheLeaseWhoseRenewalWasNotSent) {
   order();
   press();
   axis().state = ILK_AXIS_MOVING;
-  const auto renewal = tick(neuro_config().lease_max_ticks);
+  const auto renewal = tick(neuro_config().common.lease_max_ticks);
   mode_.on_unsent(renewal.at(0));
-  mode_.end(1, OrderReason::cancelled, snapshot_.state.tick);
+  mode_.end(1, OrderReason::cancelled, snapshot_.state.system.tick);
   const auto wishes = tick();
   ASSERT_EQ(wishes.size(), 1u);
-  EXPECT_EQ(wishes[0].drive, 0u);
+  EXPECT_EQ(wishes[0].drive, 1u);
+  EXPECT_EQ(wishes[0].lease_ticks, 1u);
 }
 
 TEST_F(ManualModeTest, CancellingGivesBackTheLeaseOfTheOrderThatItReplaced) {
@@ -248,27 +250,28 @@ TEST_F(ManualModeTest, CancellingGivesBackTheLeaseOfTheOrderThatItReplaced) {
   axis().state = ILK_AXIS_MOVING;
   order(2, insertion, 1000);
   mode_.on_unsent(tick().at(0));
-  mode_.end(2, OrderReason::cancelled, snapshot_.state.tick);
+  mode_.end(2, OrderReason::cancelled, snapshot_.state.system.tick);
   const auto wishes = tick();
   ASSERT_EQ(wishes.size(), 1u);
-  EXPECT_EQ(wishes[0].drive, 0u);
+  EXPECT_EQ(wishes[0].drive, 1u);
+  EXPECT_EQ(wishes[0].lease_ticks, 1u);
 }
 
 TEST_F(ManualModeTest, NothingIsGivenBackWhereNothingWasSent) {
   order();
-  snapshot_.state.mode = ILK_MODE_MOTION;
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
   mode_.on_unsent(tick().at(0));
-  mode_.end(1, OrderReason::cancelled, snapshot_.state.tick);
+  mode_.end(1, OrderReason::cancelled, snapshot_.state.system.tick);
   EXPECT_THAT(tick(), testing::IsEmpty());
 }
 
 TEST_F(ManualModeTest, AWishThatWasNotSentIsRepeated) {
   order();
-  snapshot_.state.mode = ILK_MODE_MOTION;
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
   const auto wishes = tick();
   mode_.on_unsent(wishes.at(0));
   EXPECT_EQ(tick().size(), 1u);
-  mode_.end(1, OrderReason::cancelled, snapshot_.state.tick);
+  mode_.end(1, OrderReason::cancelled, snapshot_.state.system.tick);
   axis().state = ILK_AXIS_MOVING;
   const auto release = tick();
   mode_.on_unsent(release.at(0));
@@ -321,7 +324,7 @@ TEST_F(ManualModeTest, ALimitThatHoldsTheAxisBackEndsTheOrder) {
 }
 
 TEST_F(ManualModeTest, SurvivesTheWrapOfTheTickCounter) {
-  snapshot_.state.tick = UINT32_MAX - 10;
+  snapshot_.state.system.tick = UINT32_MAX - 10;
   order();
   press();
   EXPECT_EQ(tick(20).size(), 1u);

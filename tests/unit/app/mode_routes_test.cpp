@@ -69,7 +69,7 @@ TEST_F(ModeRoutesTest, AModeThatTheRobotHasNotIsNamedWithThoseThatItHas) {
 TEST_F(ModeRoutesTest, GoingHomeIsRefusedAsTheProposalIs) {
   EXPECT_EQ(set_mode("home").problem()["code"], "NO_KERNEL");
   ControlView locked = test::ready_view();
-  locked.snapshot.state.mode = ILK_MODE_LOCKED;
+  locked.snapshot.state.system.mode = ILK_MODE_LOCKED;
   show(locked);
   const Answered answered = set_mode("home");
   EXPECT_EQ(answered.status, 409u);

@@ -107,7 +107,7 @@ TEST_F(MotorRoutesTest, StatusShowsAllTenSlots) {
 
 TEST_F(MotorRoutesTest, StatusTellsHowLongTheLastValidFrameOfEachCardLiesBack) {
   ControlView view = test::ready_view();
-  view.snapshot.state.tick = 5000;
+  view.snapshot.state.system.tick = 5000;
   view.snapshot.state.axis[test::yaw].bad_frames = 0;
   view.snapshot.state.axis[insertion].bad_frames = 40;
   view.snapshot.state.axis[test::rotation].bad_frames = 5000;
@@ -115,7 +115,7 @@ TEST_F(MotorRoutesTest, StatusTellsHowLongTheLastValidFrameOfEachCardLiesBack) {
   show(view);
   const json cards = json::parse(get("/api/status").body)["cards"];
   EXPECT_EQ(cards[test::yaw]["frame_age_ms"], 0.0);
-  EXPECT_EQ(cards[insertion]["frame_age_ms"], 40 * test::neuro_config().period_us / 1000.0);
+  EXPECT_EQ(cards[insertion]["frame_age_ms"], 40 * test::neuro_config().common.period_us / 1000.0);
   EXPECT_TRUE(cards[test::rotation]["frame_age_ms"].is_null()) << "none since the kernel started";
   EXPECT_TRUE(cards[test::empty_slot]["frame_age_ms"].is_null());
 }

@@ -63,7 +63,7 @@ class Following {
   /** Whether it is to go no slower than its smallest drive makes it go: below, it goes in steps. */
   [[nodiscard]] bool goes_steadily() const {
     const Axis& axis = *neuro().at_slot(target_.slot);
-    const AxisControlRules rules = control_rules(axis, 1000, axis.motion->full_speed_counts_per_s);
+    const AxisControlRules rules = control_rules(axis, 1000, axis.mechanics.full_speed_counts_per_s);
     return top_speed_ >= rules.piv.full_speed_counts_per_s * rules.drive.min_drive / rules.drive.max_drive;
   }
 

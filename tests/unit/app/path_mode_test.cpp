@@ -112,6 +112,31 @@ TEST_P(PathModeOnThePlant, AJammedAxisStopsAllOthersAtOnce) {
     loop.tick();
   }
   EXPECT_EQ(loop.path().order.phase, OrderPhase::aborted);
+  EXPECT_EQ(loop.path().order.reason, OrderReason::axis_faulted);
+  EXPECT_EQ(loop.path().order.code, static_cast<std::uint32_t>(ILK_FAULT_STALL));
+  EXPECT_EQ(loop.path().slot, head);
+  loop.run(2 + GetParam());
+  for (const AxisCounts& target : neuro_targets) {
+    EXPECT_EQ(loop.outputs().command[target.slot].drive, 0u);
+  }
+}
+
+TEST_P(PathModeOnThePlant, AnAxisTooSlowForItsPathStopsAllOthersAtOnce) {
+  ClosedLoop loop(13, GetParam());
+  loop.make_all_ready();
+  const PathProgram program = move_of(neuro_targets);
+  (void)loop.carry_out({1, &program, 0}, 1000);
+  plant::command::ChangeParameters slow{head, {}};
+  for (std::size_t knob = 0; knob < plant::kAxisKnobCount; ++knob) {
+    if (plant::kAxisKnobs[knob].name == "full_speed_counts_per_s") {
+      slow.value[knob] = 0.2 * neuro().at_slot(head)->mechanics.full_speed_counts_per_s;
+    }
+  }
+  loop.happen(slow);
+  for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.path().order.phase); ++i) {
+    loop.tick();
+  }
+  EXPECT_EQ(loop.path().order.phase, OrderPhase::aborted);
   EXPECT_EQ(loop.path().order.reason, OrderReason::off_path);
   EXPECT_EQ(loop.path().slot, head);
   loop.run(2 + GetParam());
@@ -236,7 +261,7 @@ TEST_P(PathModeOnThePlant, APlanThatFailsInMotionStopsTheAxesWithinTheirCoast) {
     // What it goes until the MOVE is taken back, and then its coast.
     const double latency_s = 0.001 * (2 + GetParam());
     const double farthest =
-        latency_s * axis.motion->full_speed_counts_per_s + axis.mechanics.coast_counts + 1;
+        latency_s * axis.mechanics.full_speed_counts_per_s + axis.mechanics.coast_counts + 1;
     EXPECT_LE(std::abs(loop.true_position(target.slot) - before[target.slot]), farthest) << axis.name;
   }
   EXPECT_EQ(loop.refusals(), 0u);
@@ -320,7 +345,7 @@ TEST(PathMode, ATickAllocatesNothing) {
   const PathProgram program =
       program_of({MoveLeg{neuro_targets, 0.0, 0.0}, MoveLeg{{{head, -100}}, 0.0, 0.0}});
   ilk_snapshot_t snapshot{};
-  snapshot.state.mode = ILK_MODE_MOTION;
+  snapshot.state.system.mode = ILK_MODE_MOTION;
   for (const AxisCounts& target : neuro_targets) {
     snapshot.state.axis[target.slot].state = ILK_AXIS_ENABLED;
     snapshot.state.axis[target.slot].homed = 1;
@@ -328,7 +353,7 @@ TEST(PathMode, ATickAllocatesNothing) {
   test::count_allocations_of(pthread_self());
   mode.take({1, &program, 0}, 0);
   for (std::uint32_t tick = 1; tick < 30; ++tick) {
-    snapshot.state.tick = tick;
+    snapshot.state.system.tick = tick;
     Wishes wishes;
     mode.tick(snapshot, wishes);
   }

@@ -136,7 +136,7 @@ TEST_F(PathProposalTest, WhatCannotBeMovedIsRefusedWithItsReason) {
   expect_refused(draft_to({{head_axis, -1000}}), "BUSY");
   axis(head_axis).state = ILK_AXIS_ENABLED;
   expect_refused(draft_to({{head_axis, 1}}), "RANGE");
-  view_.snapshot.state.mode = ILK_MODE_LOCKED;
+  view_.snapshot.state.system.mode = ILK_MODE_LOCKED;
   expect_refused(draft_to({{head_axis, -1000}}), "MODE");
 }
 
@@ -184,7 +184,7 @@ TEST_F(PathProposalTest, AMotionThatCouldNotBePlannedIsToldInWords) {
 
 TEST_F(PathProposalTest, ALockDiscardsWhatWaits) {
   ASSERT_TRUE(book_.propose_path(file_draft(), view_));
-  view_.snapshot.state.mode = ILK_MODE_LOCKED;
+  view_.snapshot.state.system.mode = ILK_MODE_LOCKED;
   book_.follow(view_);
   EXPECT_EQ(state(1), ProposalState::aborted);
 }
@@ -243,7 +243,7 @@ TEST(PathSeparation, LinkedSlidersMayNotPartTooFarAtAnyTargetOrRow) {
   ControlView view;
   view.attached = true;
   view.snapshot.config_crc = config.crc;
-  view.snapshot.state.mode = ILK_MODE_READY;
+  view.snapshot.state.system.mode = ILK_MODE_READY;
   for (const Axis& axis : prostate().axes) {
     ilk_axis_t& state = view.snapshot.state.axis[axis.slot];
     state.homed = 1;

@@ -164,11 +164,11 @@ TEST_F(CheckListTest, ApprovingMakesTheChecksAnew) {
   Proposal proposal = path_of({MoveLeg{{{test::yaw, -300}}, 0.0, 0.0}});
   ASSERT_EQ(proposal.state, ProposalState::checked);
   axis(test::yaw).homed = 0;
-  ++view_.snapshot.state.tick;
+  ++view_.snapshot.state.system.tick;
   EXPECT_FALSE(book_.approve(proposal.id, view_));
   EXPECT_THAT(words(*book_.find(proposal.id)),
               testing::HasSubstr("homed:failed=NOT_HOMED range:not_reached"));
-  EXPECT_EQ(book_.find(proposal.id)->checked_against->state.tick, view_.snapshot.state.tick);
+  EXPECT_EQ(book_.find(proposal.id)->checked_against->state.system.tick, view_.snapshot.state.system.tick);
 }
 
 TEST_F(CheckListTest, ARejectedProposalIsEndedByNameAndCannotBeApproved) {

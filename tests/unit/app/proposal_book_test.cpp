@@ -156,13 +156,13 @@ TEST_F(ProposalBookTest, StopAbortsAllThatIsOpen) {
 
 TEST_F(ProposalBookTest, ALockByAnyCauseDiscardsWhatWaitsForApproval) {
   ControlView locked = view_;
-  locked.snapshot.state.mode = ILK_MODE_LOCKED;
+  locked.snapshot.state.system.mode = ILK_MODE_LOCKED;
   for (std::uint32_t cause = ILK_CAUSE_BOOT; cause < ILK_CAUSE_COUNT; ++cause) {
     const auto waits =
         book_.propose_home({insertion, std::nullopt, "ann", ProposalSource::openigtlink}, view_);
     ASSERT_TRUE(waits) << waits.error().detail;
     ASSERT_EQ(waits->state, ProposalState::checked);
-    locked.snapshot.state.cause = cause;
+    locked.snapshot.state.system.cause = cause;
     book_.follow(locked);
     EXPECT_EQ(state(waits->id), ProposalState::aborted) << cause;
   }
@@ -206,7 +206,7 @@ TEST_F(ProposalBookTest, RefusesAnotherConfigurationThanTheKernels) {
 }
 
 TEST_F(ProposalBookTest, RefusesWhileLocked) {
-  view_.snapshot.state.mode = ILK_MODE_LOCKED;
+  view_.snapshot.state.system.mode = ILK_MODE_LOCKED;
   expect_refused("MODE");
 }
 

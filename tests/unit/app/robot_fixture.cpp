@@ -31,9 +31,9 @@ ControlView ready_view(const Robot& robot) {
   view.generation = 1;
   view.received = std::chrono::steady_clock::now();
   view.snapshot.config_crc = config.crc;
-  view.snapshot.period_us = config.period_us;
-  view.snapshot.state.tick = 1000;
-  view.snapshot.state.mode = ILK_MODE_READY;
+  view.snapshot.period_us = config.common.period_us;
+  view.snapshot.state.system.tick = 1000;
+  view.snapshot.state.system.mode = ILK_MODE_READY;
   for (const Axis& axis : robot.axes) {
     ilk_axis_t& state = view.snapshot.state.axis[axis.slot];
     state.state = ILK_AXIS_ENABLED;
@@ -54,7 +54,7 @@ ControlView needle_view(std::uint32_t hand_counts, std::uint32_t needle_counts) 
     position = is_slider ? parked : std::max(0, axis.lowest_setpoint_counts());
   }
   view.force.count = 1000;
-  view.force.tick = view.snapshot.state.tick;
+  view.force.tick = view.snapshot.state.system.tick;
   view.force.hand = hand_counts;
   view.force.needle = needle_counts;
   view.force.last_hand.fill(hand_counts);

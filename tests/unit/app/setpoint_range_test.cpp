@@ -16,18 +16,22 @@ constexpr std::uint32_t slot = test::insertion;
 
 const ilk_axis_config_t& rules() { return neuro_config().axis[slot]; }
 
-/** The range is right when the kernel accepts its ends and refuses what lies one count beyond. */
+/** The range is right when the kernel accepts its ends and refuses what lies one count beyond, or beyond the
+ * noise that an axis that is not homed keeps off. */
 void expect_kernel_agrees(ClosedLoop& loop) {
-  const SetpointRange range = setpoint_range(rules(), loop.state().axis[slot], loop.state().mode);
-  EXPECT_EQ(loop.verdict_of_move(slot, range.lowest_counts, 0), ILK_VERDICT_ACCEPTED);
-  EXPECT_EQ(loop.verdict_of_move(slot, range.highest_counts, 0), ILK_VERDICT_ACCEPTED);
-  EXPECT_EQ(loop.verdict_of_move(slot, range.lowest_counts - 1, 0), ILK_VERDICT_RANGE);
-  EXPECT_EQ(loop.verdict_of_move(slot, range.highest_counts + 1, 0), ILK_VERDICT_RANGE);
+  const bool homed = loop.state().axis[slot].homed != 0;
+  const std::int32_t beyond = 1 + (homed ? 0 : 2 * static_cast<std::int32_t>(rules().noise_counts));
+  const SetpointRange range = setpoint_range(rules(), loop.state().axis[slot], loop.state().system.mode);
+  EXPECT_EQ(loop.verdict_of_move(slot, range.lowest_counts, 1), ILK_VERDICT_ACCEPTED);
+  EXPECT_EQ(loop.verdict_of_move(slot, range.highest_counts, 1), ILK_VERDICT_ACCEPTED);
+  EXPECT_EQ(loop.verdict_of_move(slot, range.lowest_counts - beyond, 1), ILK_VERDICT_RANGE);
+  EXPECT_EQ(loop.verdict_of_move(slot, range.highest_counts + beyond, 1), ILK_VERDICT_RANGE);
 }
 
 void expect_kernel_agrees_on_drive(ClosedLoop& loop) {
   const std::uint32_t bound = drive_bound(rules(), loop.state().axis[slot]);
-  const std::int32_t here = setpoint_range(rules(), loop.state().axis[slot], loop.state().mode).lowest_counts;
+  const std::int32_t here =
+      setpoint_range(rules(), loop.state().axis[slot], loop.state().system.mode).lowest_counts;
   EXPECT_EQ(loop.verdict_of_move(slot, here, bound), ILK_VERDICT_ACCEPTED);
   EXPECT_EQ(loop.verdict_of_move(slot, here, bound + 1), ILK_VERDICT_DRIVE);
 }
@@ -55,10 +59,10 @@ TEST(SetpointRange, FollowsWhereThePedalWasPressed) {
   expect_kernel_agrees(loop);
   loop.pedal(false);
   const std::int32_t position = loop.state().axis[slot].position_counts;
-  const SetpointRange before = setpoint_range(rules(), loop.state().axis[slot], loop.state().mode);
+  const SetpointRange before = setpoint_range(rules(), loop.state().axis[slot], loop.state().system.mode);
   EXPECT_EQ(before.highest_counts - position, position - before.lowest_counts);
   loop.pedal(true);
-  EXPECT_EQ(setpoint_range(rules(), loop.state().axis[slot], loop.state().mode), before);
+  EXPECT_EQ(setpoint_range(rules(), loop.state().axis[slot], loop.state().system.mode), before);
   expect_kernel_agrees(loop);
 }
 

@@ -52,7 +52,11 @@ class SweepModeTest : public testing::TestWithParam<std::uint32_t> {
     }
   }
 
-  [[nodiscard]] std::uint32_t drive() const { return loop_.outputs().command[needle_turn].drive; }
+  /** That moves the axis: a lease ends by a MOVE without amplitude. */
+  [[nodiscard]] std::uint32_t drive() const {
+    const ilk_command_t& command = loop_.outputs().command[needle_turn];
+    return command.amplitude == 0 ? 0 : command.drive;
+  }
 
   ClosedLoop loop_;
 };
@@ -180,13 +184,13 @@ TEST_P(SweepModeTest, ATickAllocatesNothing) {
   loop_.give(whole(6, 500));
   loop_.run(700);
   SweepMode mode{RobotPlan(prostate(), loop_.config())};
-  mode.take(whole(6, 500), loop_.state().tick);
+  mode.take(whole(6, 500), loop_.state().system.tick);
   ilk_snapshot_t snapshot{};
   snapshot.state = loop_.state();
   test::count_allocations_of(pthread_self());
   for (std::uint32_t i = 0; i < 100; ++i) {
     Wishes wishes;
-    ++snapshot.state.tick;
+    ++snapshot.state.system.tick;
     mode.tick(snapshot, wishes);
   }
   const std::uint32_t allocated = test::counted_allocations();

@@ -115,7 +115,7 @@ TEST_F(SweepProposalTest, AnAxisThatCannotBeMovedIsRefusedWithItsReason) {
   axis.homed = 1;
   axis.state = ILK_AXIS_DISABLED;
   expect_refused(draft_of(53000, 51000), "DISABLED");
-  view_.snapshot.state.mode = ILK_MODE_LOCKED;
+  view_.snapshot.state.system.mode = ILK_MODE_LOCKED;
   expect_refused(draft_of(53000, 51000), "MODE");
 }
 

@@ -20,7 +20,7 @@ class UnhomedBounds {
 
   /** To be called after every tick. Homing has bounds of its own, until it has ended. */
   void check() {
-    const bool motion = loop_.state().mode == ILK_MODE_MOTION;
+    const bool motion = loop_.state().system.mode == ILK_MODE_MOTION;
     const bool pressed = motion && !was_motion_;
     was_motion_ = motion;
     for (const Axis& axis : robot_.axes) {

@@ -21,13 +21,13 @@
 namespace interlock::campaign {
 namespace {
 
-TEST(Campaign, P13_robots_are_valid_for_the_kernel_and_permitted_for_the_oracle) {
+TEST(Campaign, P13_robots_are_valid_for_the_kernel_and_the_monitors) {
   for (std::uint64_t seed = 0; seed < 500; seed++) {
     plant::Random random(seed, 0);
     const Robot robot = make_robot(random);
     const ilk_config_verdict_t verdict = ilk_config_validate(&robot.config);
     EXPECT_EQ(verdict.error, ILK_CONFIG_ERROR_NONE) << "seed " << seed << ", slot " << verdict.slot;
-    EXPECT_TRUE(oracle::are_permitted(robot.rules)) << "seed " << seed;
+    EXPECT_EQ(judge_config(&robot.config).clause, nullptr) << "seed " << seed;
   }
 }
 
@@ -88,7 +88,7 @@ Outcome fails_by_two(const Case& plan) {
   for (const Fault& fault : plan.faults) {
     deaf = deaf || fault.kind == FaultKind::kCardDeaf;
     if (deaf && fault.kind == FaultKind::kAppFloods) {
-      outcome.failure = Failure{fault.tick + 3, 1, 2, "driven"};
+      outcome.failure = Failure{fault.tick + 3, "P1: driven", 2};
       return outcome;
     }
   }
@@ -120,10 +120,10 @@ TEST(Campaign, Shrinks_a_failing_case_to_the_faults_that_it_needs) {
 
 TEST(Campaign, Shrinking_takes_a_failure_of_another_kind_for_none) {
   Case plan = make_case(7, 1);
-  const Failure late{plan.ticks - 1, 0, 2, "late"};
+  const Failure late{plan.ticks - 1, "E-stop pulled", 2};
   const Case same = shrink(plan, late, [](const Case& each) {
     Outcome outcome;
-    outcome.failure = Failure{each.ticks - 1, 3, 2, "driven"};
+    outcome.failure = Failure{each.ticks - 1, "P3: driven", 2};
     return outcome;
   });
   EXPECT_EQ(same.faults.size(), plan.faults.size());
@@ -155,7 +155,7 @@ TEST(Campaign, P2_stops_of_a_sweep_come_at_their_ticks_and_are_met) {
   for (const Fault& fault : plan.faults) {
     (fault.kind == FaultKind::kEstopPulled ? estop : pedal).set(fault.driven_ticks - 1);
   }
-  EXPECT_FALSE(outcome.failure) << outcome.failure->reason;
+  EXPECT_FALSE(outcome.failure) << outcome.failure->clause;
   EXPECT_EQ(outcome.totals.estop_ticks, estop);
   EXPECT_EQ(outcome.totals.pedal_ticks, pedal);
   EXPECT_EQ(outcome.totals.stops_met, plan.faults.size());
@@ -163,7 +163,7 @@ TEST(Campaign, P2_stops_of_a_sweep_come_at_their_ticks_and_are_met) {
 
 TEST(Campaign, P14_cases_one_after_the_other_flip_each_bit_of_the_configuration) {
   std::bitset<kConfigBits> bits;
-  for (std::uint64_t number = 0; number < 3010; number++) {
+  for (std::uint64_t number = 0; number < kConfigBits / 3; number++) {
     for (const Fault& fault : make_case(11, number).faults) {
       if (fault.kind == FaultKind::kConfigBitFlips) {
         bits.set(fault.amount);
@@ -182,18 +182,10 @@ TEST(Campaign, P14_each_planned_bit_of_the_configuration_flips_although_it_waits
     }
   }
   const Outcome outcome = run(plan);
-  EXPECT_FALSE(outcome.failure) << outcome.failure->reason;
+  EXPECT_FALSE(outcome.failure) << outcome.failure->clause;
   EXPECT_GT(bits.count(), 0u);
   EXPECT_EQ(outcome.totals.config_bits, bits);
   EXPECT_TRUE(outcome.totals.config_bits_driven.any());
-}
-
-TEST(Campaign, P14_the_card_word_of_a_slot_is_known_by_its_bits) {
-  const std::size_t first = offsetof(ilk_config_t, axis[7].card) * 8;
-  EXPECT_EQ(slot_of_card_word(first - 1), std::nullopt);
-  EXPECT_EQ(slot_of_card_word(first), 7u);
-  EXPECT_EQ(slot_of_card_word(first + 31), 7u);
-  EXPECT_EQ(slot_of_card_word(first + 32), std::nullopt);
 }
 
 constexpr std::uint64_t kHomingCases = 40;
@@ -204,7 +196,7 @@ TEST(Campaign, P8_homings_are_given_up_for_their_travel_and_for_their_time) {
   for (std::uint64_t number = 14; number < 14 + 15 * kHomingCases; number += 15) {
     ASSERT_TRUE(homes_patiently(number));
     const Outcome outcome = run(make_case(1, number));
-    EXPECT_FALSE(outcome.failure) << number << ": " << outcome.failure->reason;
+    EXPECT_FALSE(outcome.failure) << number << ": " << outcome.failure->clause;
     totals.add(outcome.totals);
     homings += outcome.totals.homings;
   }
@@ -215,91 +207,19 @@ TEST(Campaign, P8_homings_are_given_up_for_their_travel_and_for_their_time) {
 
 // The stop was called late although the limit of missed deadlines was the damaged word.
 TEST(Campaign, P14_a_stop_that_rests_on_a_damaged_limit_is_demanded_when_the_damage_is_met) {
-  const std::uint32_t bit = offsetof(ilk_config_t, overrun_limit) * 8 + 16;
+  const std::uint32_t bit = offsetof(ilk_config_t, common.overrun_limit) * 8 + 16;
   // As many ticks as the configuration has slices: the damage is met at once or late.
   for (std::uint32_t tick = 1000; tick < 1000 + ILK_SLOTS; tick++) {
     const Fault flip{tick, FaultKind::kConfigBitFlips, 0, 30, bit, 0};
     const Fault overruns{tick, FaultKind::kClockOverruns, 0, 6, 0, 0};
     for (const bool flips_first : {false, true}) {
-      Case plan{11, 4, 1100, flips_first ? std::vector{flip, overruns} : std::vector{overruns, flip}};
+      Case plan{1, 4, 1100, flips_first ? std::vector{flip, overruns} : std::vector{overruns, flip}};
       ASSERT_TRUE(sweeps_stops(plan.number)) << "its foot stays down";
       const Outcome outcome = run(plan);
-      EXPECT_FALSE(outcome.failure) << outcome.failure->reason << ", tick " << tick;
+      EXPECT_FALSE(outcome.failure) << outcome.failure->clause << ", tick " << tick;
       EXPECT_GE(outcome.totals.stops_met, 2u);
     }
   }
-}
-
-// Its axis 1 drifts while its kind of card is damaged, and is enabled again later.
-TEST(Campaign, P6_the_watch_for_drift_may_begin_later_after_the_kind_of_card_was_damaged) {
-  const Case plan = make_case(1, 390);
-  const auto drifts = [](const Fault& fault) {
-    return fault.kind == FaultKind::kAxisDrifts && fault.tick == 17696 && fault.slot == 1;
-  };
-  const auto damages = [](const Fault& fault) {
-    return fault.kind == FaultKind::kConfigBitFlips && fault.tick == 17698 && fault.amount == 1251;
-  };
-  ASSERT_TRUE(std::ranges::any_of(plan.faults, drifts)) << "the plan is another one: find such a case anew";
-  ASSERT_TRUE(std::ranges::any_of(plan.faults, damages)) << "the plan is another one: find such a case anew";
-  EXPECT_EQ(slot_of_card_word(1251), 1u);
-  const Outcome outcome = run(plan);
-  EXPECT_FALSE(outcome.failure) << outcome.failure->reason;
-}
-
-// The kernel counts missing frames from when it knows the slot's card again; the system is locked by then.
-TEST(Campaign, P1_a_lost_card_is_counted_from_the_end_of_the_damage_to_its_kind) {
-  const std::uint32_t bit = offsetof(ilk_config_t, axis[7].card) * 8 + 8;
-  const Fault repeats{1435, FaultKind::kFrameRepeated, 8, 3, 2119786350, 0};
-  const Fault flips{1735, FaultKind::kConfigBitFlips, 0, 30, bit, 0};
-  const auto lost_from = [&](std::uint32_t tick, std::uint32_t ticks) {
-    const Fault drops{tick, FaultKind::kFrameDropped, 7, ticks, 1531504549, 0};
-    return run(Case{1, 2132, 1800, {repeats, flips, drops}});
-  };
-  for (const std::uint32_t tick : {1740u, 1762u, 1763u, 1764u, 1765u}) {
-    const Outcome outcome = lost_from(tick, 40);
-    EXPECT_FALSE(outcome.failure) << outcome.failure->reason << ", tick " << tick;
-    EXPECT_GT(outcome.totals.axis_faults[ILK_FAULT_CARD_LOST], 0u) << "tick " << tick;
-  }
-}
-
-// To a kernel that forgot everything the frame of that tick is the card's first, though it repeats the one
-// before.
-TEST(Campaign, P1_a_kernel_whose_memory_was_damaged_counts_missing_frames_from_the_next_tick) {
-  const Fault deaf{15461, FaultKind::kCardDeaf, 4, 6, 985674123, 0};
-  const Fault flips{15464, FaultKind::kStateBitFlips, 8, 1, 3758842769, 0};
-  for (const std::uint32_t ticks : {1u, 5u, 20u}) {
-    const Fault drops{15465, FaultKind::kFrameDropped, 4, ticks, 3613572726, 0};
-    const Outcome outcome = run(Case{1, 5292, 15500, {deaf, flips, drops}});
-    EXPECT_FALSE(outcome.failure) << outcome.failure->reason << ", frames dropped " << ticks;
-    EXPECT_GT(outcome.totals.axis_faults[ILK_FAULT_CARD_LOST], 0u);
-  }
-}
-
-/** Whether the case plans that bit of the configuration to flip. */
-bool plans_flip(const Case& plan, std::uint32_t tick, std::uint64_t bit) {
-  return std::ranges::any_of(plan.faults, [&](const Fault& fault) {
-    return fault.kind == FaultKind::kConfigBitFlips && fault.tick == tick && fault.amount == bit;
-  });
-}
-
-// A damaged deadband says that the axis has arrived, which clears its stall count; it stalls later.
-TEST(Campaign, P5_a_stall_is_counted_from_the_end_of_the_damage_to_its_axis) {
-  const Case plan = make_case(1, 8556);
-  const std::uint32_t bit = offsetof(ilk_config_t, axis[8].deadband_counts) * 8 + 21;
-  ASSERT_TRUE(plans_flip(plan, 5516, bit)) << "the plan is another one: find such a case anew";
-  const Outcome outcome = run(plan);
-  EXPECT_FALSE(outcome.failure) << outcome.failure->reason;
-}
-
-// The kernel's first tick after it forgot everything is one without drive, and its axis still coasts a count.
-TEST(Campaign, P6_a_kernel_whose_memory_was_damaged_watches_for_drift_two_ticks_earlier_than_after_a_drive) {
-  const Case plan = make_case(1, 7543);
-  const auto damages = [](const Fault& fault) {
-    return fault.kind == FaultKind::kStateBitFlips && fault.tick == 19617;
-  };
-  ASSERT_TRUE(std::ranges::any_of(plan.faults, damages)) << "the plan is another one: find such a case anew";
-  const Outcome outcome = run(plan);
-  EXPECT_FALSE(outcome.failure) << outcome.failure->reason;
 }
 
 TEST(Campaign, Case_runs_twice_to_the_same_bits) {
@@ -315,7 +235,7 @@ TEST(Campaign, Case_runs_twice_to_the_same_bits) {
 
 TEST(Campaign, Moves_the_robot_and_demands_stops) {
   const Outcome outcome = run(make_case(3, 2));
-  EXPECT_FALSE(outcome.failure) << outcome.failure->reason;
+  EXPECT_FALSE(outcome.failure) << outcome.failure->clause;
   EXPECT_GT(outcome.totals.motion_ticks, outcome.totals.ticks / 10);
   EXPECT_GT(outcome.totals.driven_axis_ticks, outcome.totals.ticks / 2);
   EXPECT_GT(outcome.totals.moves_accepted, 500u);

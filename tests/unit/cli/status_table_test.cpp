@@ -27,6 +27,7 @@ json locked_status() {
       {"estop", false},
       {"pedal", "RELEASED"},
       {"pedal_armed", false},
+      {"power", "off"},
       {"app_alive", true},
       {"config_crc", "869e140a"},
       {"age_ms", 0.26},

@@ -19,7 +19,7 @@ constexpr std::uint32_t length = ticks_of_bucket(1000);
 class DecimationTest : public testing::Test {
  protected:
   DecimationTest() : view_(test::ready_view()) {
-    view_.snapshot.state.tick = 10 * length - 1;
+    view_.snapshot.state.system.tick = 10 * length - 1;
     for (ilk_axis_t& each : view_.snapshot.state.axis) {
       each.card_valid = 1;
     }
@@ -29,7 +29,7 @@ class DecimationTest : public testing::Test {
 
   /** One further tick. */
   void tick() {
-    ++view_.snapshot.state.tick;
+    ++view_.snapshot.state.system.tick;
     for (ilk_axis_t& each : view_.snapshot.state.axis) {
       each.card_time_us += 1000;
     }
@@ -82,7 +82,7 @@ TEST_F(DecimationTest, EndsABucketAtEachMultipleOfItsLength) {
 
 TEST_F(DecimationTest, TellsHowManyTicksWereSeen) {
   tick();
-  view_.snapshot.state.tick += 5;
+  view_.snapshot.state.system.tick += 5;
   EXPECT_EQ(rest_of_bucket().ticks, length - 5);
 }
 
@@ -153,7 +153,7 @@ TEST_F(DecimationTest, AnotherKernelBeginsAnotherRun) {
 
 TEST_F(DecimationTest, TicksThatBeginAnewBeginAnotherRun) {
   tick();
-  view_.snapshot.state.tick = 0;
+  view_.snapshot.state.system.tick = 0;
   take();
   ASSERT_EQ(complete_.size(), 1u);
   EXPECT_EQ(rest_of_bucket().run, 2u);
@@ -161,7 +161,7 @@ TEST_F(DecimationTest, TicksThatBeginAnewBeginAnotherRun) {
 
 TEST_F(DecimationTest, AForceIsOfTheTickInWhichItWasRead) {
   view_.force = test::needle_view(1970, 1780).force;
-  view_.force.tick = view_.snapshot.state.tick + 1;
+  view_.force.tick = view_.snapshot.state.system.tick + 1;
   tick();
   view_.force.hand = 4000;
   EXPECT_EQ(rest_of_bucket().hand_counts.greatest(), 1970u) << "the later reading is of no later tick";

@@ -104,7 +104,7 @@ TEST(HistoryFeed, HandsOverEachBucketOnce) {
   HistoryFeed feed(RobotPlan(test::neuro(), test::neuro_config()));
   ControlView view = test::ready_view();
   for (std::uint32_t tick = 0; tick < 3 * ticks_of_bucket(1000); ++tick) {
-    ++view.snapshot.state.tick;
+    ++view.snapshot.state.system.tick;
     feed.see(view);
   }
   std::vector<std::uint32_t> last_ticks;

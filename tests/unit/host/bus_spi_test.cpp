@@ -32,6 +32,8 @@ using ::testing::HasSubstr;
 extern "C" int __real_ioctl(int descriptor, unsigned long request, void* argument);
 extern "C" int __real_open(const char* path, int flags, mode_t mode);
 
+constexpr std::uint32_t power_line = 23;
+
 using Bytes = std::array<std::uint8_t, ILK_FRAME_BYTES>;
 
 /// A card behind a chip select: keeps what it was sent, answers what the test put there.
@@ -65,6 +67,9 @@ class FakeMachine {
   std::optional<int> contacts_refusal;
   gpio_v2_line_request inputs{};
   gpio_v2_line_request outputs{};
+  gpio_v2_line_request power{};
+  std::optional<int> power_refusal;
+  std::vector<std::uint64_t> power_levels;  ///< as they were set
   std::uint64_t lights = 0;
   std::vector<std::uint64_t> light_masks;
 
@@ -88,6 +93,9 @@ class FakeMachine {
     }
     if (descriptor == inputs.fd && request == GPIO_V2_LINE_GET_VALUES_IOCTL) {
       return read_contacts(*static_cast<gpio_v2_line_values*>(argument));
+    }
+    if (descriptor == power.fd && request == GPIO_V2_LINE_SET_VALUES_IOCTL) {
+      return set_power(*static_cast<gpio_v2_line_values*>(argument));
     }
     if (descriptor == outputs.fd && request == GPIO_V2_LINE_SET_VALUES_IOCTL) {
       const auto& values = *static_cast<gpio_v2_line_values*>(argument);
@@ -117,9 +125,18 @@ class FakeMachine {
     return 0;
   }
 
+  int set_power(const gpio_v2_line_values& values) {
+    if (power_refusal) {
+      return refuse(*power_refusal);
+    }
+    power_levels.push_back(values.bits & values.mask);
+    return 0;
+  }
+
   int give_lines(gpio_v2_line_request& request) {
     request.fd = memfd_create("lines", MFD_CLOEXEC);
-    ((request.config.flags & GPIO_V2_LINE_FLAG_INPUT) != 0 ? inputs : outputs) = request;
+    gpio_v2_line_request& given = request.offsets[0] == power_line ? power : outputs;
+    ((request.config.flags & GPIO_V2_LINE_FLAG_INPUT) != 0 ? inputs : given) = request;
     return 0;
   }
 
@@ -185,7 +202,7 @@ namespace {
 constexpr const char* first_card = "/dev/spidev7.0";
 constexpr const char* third_card = "/dev/spidev7.2";
 
-/// Cards in slots 0 and 2, a pedal of two channels, all lamps.
+/// Cards in slots 0 and 2, a pedal of two channels, power, all lamps.
 ilk_spi_wiring_t wiring() {
   ilk_spi_wiring_t wired{};
   std::strcpy(wired.card[0], first_card);
@@ -195,6 +212,7 @@ ilk_spi_wiring_t wiring() {
   wired.contact[ILK_CONTACT_PEDAL_NO] = {17, true};
   wired.contact[ILK_CONTACT_PEDAL_NC] = {27, true};
   wired.contact[ILK_CONTACT_ESTOP] = {22, false};
+  wired.power = {power_line, false};
   std::uint32_t next = 30;
   for (auto& lamp : wired.lamp) {
     for (auto& line : lamp) {
@@ -354,6 +372,37 @@ TEST_F(BusSpi, LampsAreSetWhenTheyChangeInTheirColours) {
   EXPECT_EQ(machine.lights, 0b000'011'001'010u) << "an unknown colour is dark";
 }
 
+TEST_F(BusSpi, PowerFollowsTheKernelAndIsOffAtFirst) {
+  ASSERT_TRUE(open(wiring())) << error.text;
+  EXPECT_EQ(machine.power.num_lines, 1u);
+  EXPECT_EQ(machine.power.config.flags, std::uint64_t{GPIO_V2_LINE_FLAG_OUTPUT});
+  EXPECT_EQ(machine.power.config.num_attrs, 0u) << "no value is given with the request: the line is off";
+  for (const std::uint32_t power : {0u, 1u, 1u, 2u, 0u}) {
+    out.power = power;
+    EXPECT_TRUE(transact());
+    EXPECT_EQ(in.transaction_done, 1u);
+  }
+  EXPECT_THAT(machine.power_levels, ElementsAre(0u, 1u, 1u, 0u, 0u)) << "set in each tick, on by 1 alone";
+}
+
+TEST_F(BusSpi, PowerThatIsOnWhileItsLineIsLowIsWiredSo) {
+  ilk_spi_wiring_t low = wiring();
+  low.power.active_low = true;
+  ASSERT_TRUE(open(low)) << error.text;
+  EXPECT_NE(machine.power.config.flags & GPIO_V2_LINE_FLAG_ACTIVE_LOW, 0u);
+}
+
+TEST_F(BusSpi, ATickInWhichPowerCannotBeSetIsAFailedTransaction) {
+  ASSERT_TRUE(open(wiring())) << error.text;
+  machine.power_refusal = EIO;
+  EXPECT_TRUE(transact());
+  EXPECT_EQ(in.transaction_done, 0u);
+  EXPECT_EQ(in.frames_received, 0u);
+  machine.power_refusal.reset();
+  EXPECT_TRUE(transact());
+  EXPECT_EQ(in.transaction_done, 1u);
+}
+
 TEST_F(BusSpi, AMachineWithoutLampsNeedsNoOutputs) {
   ilk_spi_wiring_t dark = wiring();
   for (auto& lamp : dark.lamp) {
@@ -399,7 +448,7 @@ TEST_F(BusSpi, LinesThatAreTakenAreNamedByTheirChip) {
 class SpiWiring : public ::testing::Test {
  protected:
   SpiWiring() {
-    config.pedal_channels = 2;
+    config.common.pedal_channels = 2;
     config.axis[0].card = ILK_CARD_PWM;
     config.axis[2].card = ILK_CARD_SENSOR;
   }
@@ -419,6 +468,7 @@ class SpiWiring : public ::testing::Test {
       "pedal_no 17 low\n"
       "pedal_nc\t27 low\n"
       "estop 22\n"
+      "power 23 low\n"
       "lamp stall 5 6 13\n";
 
   TemporaryDirectory folder;
@@ -437,6 +487,8 @@ TEST_F(SpiWiring, SaysWhatIsWhere) {
   EXPECT_EQ(wired.contact[ILK_CONTACT_PEDAL_NC].offset, 27u);
   EXPECT_TRUE(wired.contact[ILK_CONTACT_PEDAL_NC].active_low);
   EXPECT_FALSE(wired.contact[ILK_CONTACT_ESTOP].active_low);
+  EXPECT_EQ(wired.power.offset, power_line);
+  EXPECT_TRUE(wired.power.active_low);
   EXPECT_EQ(wired.lamp[ILK_LAMP_STALL][ILK_LED_BLUE].offset, 13u);
   EXPECT_EQ(wired.lamp[ILK_LAMP_PEDAL][ILK_LED_RED].offset, ILK_NO_LINE);
 }
@@ -447,20 +499,22 @@ TEST_F(SpiWiring, WhatIsWrongIsNamedWithItsLine) {
     const char* expected;
   };
   for (const Wrong& wrong : {
-           Wrong{"card 10 /dev/spidev7.3", "line 11: expected card SLOT DEVICE"},
-           Wrong{"card 0 /dev/spidev7.3", "line 11: expected card SLOT DEVICE, once"},
-           Wrong{"card 1 spidev7.3", "line 11: expected card SLOT DEVICE"},
-           Wrong{"card 1x /dev/spidev7.3", "line 11: expected card SLOT DEVICE"},
-           Wrong{"gpio /dev/gpiochip1", "line 11: expected gpio DEVICE, once"},
-           Wrong{"estop 22", "line 11: expected LINE [low], once"},
-           Wrong{"speed_hz 99999", "line 11: expected speed_hz 100000"},
-           Wrong{"lamp stall 1 2 3", "line 11: expected lamp"},
-           Wrong{"lamp door 1 2 3", "line 11: expected lamp"},
-           Wrong{"lamp pedal 1 2", "line 11: expected lamp"},
-           Wrong{"lamp pedal 1 2 3 4", "line 11: expected lamp"},
-           Wrong{"lamp pedal 1 2 -3", "line 11: expected lamp"},
-           Wrong{"brake 4", "line 11: expected speed_hz, card"},
+           Wrong{"card 10 /dev/spidev7.3", "line 12: expected card SLOT DEVICE"},
+           Wrong{"card 0 /dev/spidev7.3", "line 12: expected card SLOT DEVICE, once"},
+           Wrong{"card 1 spidev7.3", "line 12: expected card SLOT DEVICE"},
+           Wrong{"card 1x /dev/spidev7.3", "line 12: expected card SLOT DEVICE"},
+           Wrong{"gpio /dev/gpiochip1", "line 12: expected gpio DEVICE, once"},
+           Wrong{"estop 22", "line 12: expected LINE [low], once"},
+           Wrong{"power 24", "line 12: expected power LINE [low], once"},
+           Wrong{"speed_hz 99999", "line 12: expected speed_hz 100000"},
+           Wrong{"lamp stall 1 2 3", "line 12: expected lamp"},
+           Wrong{"lamp door 1 2 3", "line 12: expected lamp"},
+           Wrong{"lamp pedal 1 2", "line 12: expected lamp"},
+           Wrong{"lamp pedal 1 2 3 4", "line 12: expected lamp"},
+           Wrong{"lamp pedal 1 2 -3", "line 12: expected lamp"},
+           Wrong{"brake 4", "line 12: expected speed_hz, card"},
            Wrong{"lamp pedal 17 2 3", "a gpio line has two uses"},
+           Wrong{"lamp pedal 23 2 3", "a gpio line has two uses"},
            Wrong{"card 1 /dev/spidev7.1", "slot 1 has no card in the configuration"},
        }) {
     EXPECT_FALSE(load(std::string(sound) + wrong.line + "\n")) << wrong.line;
@@ -479,11 +533,11 @@ TEST_F(SpiWiring, WhatIsMissingIsNamed) {
   EXPECT_FALSE(load(without("speed_hz 20000000\n")));
   EXPECT_THAT(error.text, HasSubstr("speed_hz is missing"));
   for (const char* const line :
-       {"gpio /dev/gpiochip7\n", "pedal_no 17 low\n", "pedal_nc\t27 low\n", "estop 22\n"}) {
+       {"gpio /dev/gpiochip7\n", "pedal_no 17 low\n", "pedal_nc\t27 low\n", "estop 22\n", "power 23 low\n"}) {
     EXPECT_FALSE(load(without(line))) << line;
-    EXPECT_THAT(error.text, HasSubstr("expected gpio, estop, pedal_no and a pedal_nc")) << line;
+    EXPECT_THAT(error.text, HasSubstr("expected gpio, estop, power, pedal_no and a pedal_nc")) << line;
   }
-  config.pedal_channels = 1;
+  config.common.pedal_channels = 1;
   EXPECT_FALSE(load(sound));
   EXPECT_THAT(error.text, HasSubstr("no pedal_nc: the pedal has 1 channels"));
   EXPECT_TRUE(load(without("pedal_nc\t27 low\n"))) << error.text;

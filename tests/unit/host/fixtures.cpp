@@ -41,16 +41,18 @@ void Descriptor::reset() {
 
 ilk_config_t one_axis_config() {
   ilk_config_t config{};
-  config.version = ILK_CONFIG_VERSION;
-  config.size_bytes = sizeof(ilk_config_t);
-  config.period_us = 1000;
-  config.pedal_channels = 2;
-  config.app_timeout_ticks = 100;
-  config.lease_max_ticks = 100;
-  config.pedal_debounce_ticks = 10;
-  config.pedal_disagree_ticks = 50;
-  config.bad_frame_limit = 3;
-  config.overrun_limit = 3;
+  config.common.version = ILK_CONFIG_VERSION;
+  config.common.size_bytes = sizeof(ilk_config_t);
+  config.common.period_us = 1000;
+  config.common.pedal_channels = 2;
+  config.common.app_timeout_ticks = 100;
+  config.common.lease_max_ticks = 100;
+  config.common.pedal_debounce_ticks = 10;
+  config.common.pedal_disagree_ticks = 50;
+  config.common.power_up_ticks = 20;
+  config.common.switch_debounce_ticks = 5;
+  config.common.bad_frame_limit = 3;
+  config.common.overrun_limit = 3;
   ilk_axis_config_t& axis = config.axis[0];
   axis.card = ILK_CARD_NON_PWM;
   axis.motor_direction = 1;
@@ -61,14 +63,17 @@ ilk_config_t one_axis_config() {
   axis.backlash_counts = 1;
   axis.noise_counts = 1;
   axis.deadband_counts = 1;
+  axis.dead_zone_drive = 1967;
   axis.max_drive = 0x1FFFF;
   axis.unhomed_max_drive = 0x1FFFF / 10;
   axis.unhomed_travel_counts = 160;
+  axis.full_speed_counts_per_s = 1000;
   axis.stall_ticks = 500;
+  axis.stall_effort_ticks = 68;
   axis.stall_min_counts = 2;
   axis.reverse_counts = 20;
   axis.drift_counts = 20;
-  axis.settle_ticks = 50;
+  axis.rest_ticks = 50;
   axis.max_delta_counts = 8;
   config.crc = ilk_config_crc(&config);
   return config;
@@ -94,7 +99,7 @@ void* map(int descriptor, size_t bytes, int protection) {
 
 }  // namespace
 
-std::unique_ptr<App> App::attach(const std::string& link) {
+std::unique_ptr<App> App::attach(const std::string& link, uint32_t word) {
   std::optional<Descriptor> connected = connect_to(link);
   if (!connected) {
     return nullptr;
@@ -123,7 +128,7 @@ std::unique_ptr<App> App::attach(const std::string& link) {
       map(descriptors[0], sizeof(ilk_link_kernel_region_t), PROT_READ));
   app->app = static_cast<ilk_link_app_region_t*>(
       map(descriptors[1], sizeof(ilk_link_app_region_t), PROT_READ | PROT_WRITE));
-  return app;
+  return send(app->socket.get(), &word, sizeof word, MSG_NOSIGNAL) == sizeof word ? std::move(app) : nullptr;
 }
 
 App::~App() {

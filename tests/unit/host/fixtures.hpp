@@ -52,8 +52,8 @@ std::optional<Descriptor> connect_to(const std::string& path);
 /// An app: the far end of one attachment, with both regions mapped as an app maps them.
 class App {
  public:
-  /// Connects and waits for the hello; nothing when the kernel closes instead.
-  static std::unique_ptr<App> attach(const std::string& link);
+  /// Connects, waits for the hello, maps and says `word`; nothing when the kernel closes instead.
+  static std::unique_ptr<App> attach(const std::string& link, uint32_t word = ILK_LINK_MAGIC);
   ~App();
   App(const App&) = delete;
   App& operator=(const App&) = delete;

@@ -5,6 +5,8 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <string>
 
@@ -19,8 +21,14 @@ class LinkRegion : public ::testing::Test {
   void SetUp() override {
     ilk_error_t error{};
     ASSERT_TRUE(ilk_link_regions_create(&regions, 7, &error)) << error.text;
+    held = Descriptor(dup(regions.app_descriptor));
+    app = static_cast<ilk_link_app_region_t*>(map_writable(held.get(), kAppBytes));
+    ASSERT_NE(static_cast<void*>(app), MAP_FAILED);
   }
-  void TearDown() override { ilk_link_regions_destroy(&regions); }
+  void TearDown() override {
+    munmap(app, kAppBytes);
+    ilk_link_regions_destroy(&regions);
+  }
 
   static void* map_writable(int descriptor, size_t bytes) {
     return mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
@@ -29,6 +37,8 @@ class LinkRegion : public ::testing::Test {
   static std::string proc_path(int descriptor) { return "/proc/self/fd/" + std::to_string(descriptor); }
 
   ilk_link_regions_t regions{};
+  Descriptor held{-1};                   ///< of the app's region, as the app has it
+  ilk_link_app_region_t* app = nullptr;  ///< the app's own mapping
   static constexpr size_t kKernelBytes = sizeof(ilk_link_kernel_region_t);
   static constexpr size_t kAppBytes = sizeof(ilk_link_app_region_t);
 };
@@ -57,25 +67,54 @@ TEST_F(LinkRegion, ReopeningTheKernelRegionForWritingDoesNotHelp) {
   EXPECT_EQ(regions.kernel->magic, ILK_LINK_MAGIC);
 }
 
-TEST_F(LinkRegion, NeitherRegionCanBeResizedOrUnsealed) {
-  for (const int descriptor : {regions.kernel_descriptor, regions.app_descriptor}) {
+TEST_F(LinkRegion, NeitherRegionCanBeResizedAtAnyTimeOrUnsealed) {
+  for (const int descriptor : {regions.kernel_descriptor, held.get()}) {
     EXPECT_EQ(ftruncate(descriptor, 0), -1);
     EXPECT_EQ(ftruncate(descriptor, 1 << 24), -1);
+  }
+  const Descriptor kernel(dup(regions.kernel_descriptor));
+  ASSERT_TRUE(ilk_link_regions_settle(&regions));
+  for (const int descriptor : {kernel.get(), held.get()}) {
+    EXPECT_EQ(ftruncate(descriptor, 0), -1);
     EXPECT_EQ(fcntl(descriptor, F_ADD_SEALS, F_SEAL_WRITE), -1);
     EXPECT_TRUE(fcntl(descriptor, F_GET_SEALS) & F_SEAL_SEAL);
   }
 }
 
+TEST_F(LinkRegion, NoPageCanBeTakenOutOfASettledAppRegion) {
+  app->seen_tick = 7;
+  ASSERT_TRUE(ilk_link_regions_settle(&regions));
+  EXPECT_EQ(fallocate(held.get(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, 0, 4096), -1);
+  EXPECT_NE(madvise(app, kAppBytes, MADV_REMOVE), 0);
+  EXPECT_EQ(map_writable(held.get(), kAppBytes), MAP_FAILED);
+  const uint32_t word = 1;
+  EXPECT_EQ(pwrite(held.get(), &word, sizeof word, 0), -1);
+  EXPECT_EQ(regions.app->seen_tick, 7u);
+}
+
+TEST_F(LinkRegion, HolesThatWerePunchedBeforeAreFilledWhenTheRegionIsSettled) {
+  ASSERT_EQ(fallocate(held.get(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, 0, kAppBytes), 0);
+  ASSERT_TRUE(ilk_link_regions_settle(&regions));
+  std::array<unsigned char, (kAppBytes + 4095) / 4096> present{};
+  ASSERT_EQ(mincore(const_cast<ilk_link_app_region_t*>(regions.app), kAppBytes, present.data()), 0);
+  EXPECT_TRUE(std::ranges::all_of(present, [](unsigned char page) { return (page & 1) != 0; }));
+}
+
+TEST_F(LinkRegion, ARegionThatTheAppSealedItselfIsNotUsed) {
+  ASSERT_EQ(fcntl(held.get(), F_ADD_SEALS, F_SEAL_SEAL), 0);
+  EXPECT_FALSE(ilk_link_regions_settle(&regions));
+  EXPECT_EQ(regions.app, nullptr);
+}
+
 TEST_F(LinkRegion, AppWritesItsRegionAndTheKernelReadsIt) {
-  auto* app = static_cast<ilk_link_app_region_t*>(map_writable(regions.app_descriptor, kAppBytes));
-  ASSERT_NE(app, MAP_FAILED);
+  ASSERT_TRUE(ilk_link_regions_settle(&regions));
   EXPECT_EQ(app->magic, ILK_LINK_MAGIC);
   app->seen_tick = 1234;
   EXPECT_EQ(regions.app->seen_tick, 1234u);
-  EXPECT_EQ(munmap(app, kAppBytes), 0);
 }
 
 TEST_F(LinkRegion, KernelsViewOfTheAppRegionIsNotWritable) {
+  ASSERT_TRUE(ilk_link_regions_settle(&regions));
   EXPECT_DEATH(const_cast<ilk_link_app_region_t*>(regions.app)->seen_tick = 1, "");
 }
 

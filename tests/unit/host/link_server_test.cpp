@@ -118,6 +118,13 @@ TEST_F(LinkServer, AppThatSendsOnTheSocketIsDetached) {
   EXPECT_TRUE(eventually([&] { return serves_nobody(); }));
 }
 
+TEST_F(LinkServer, AppThatSaysAnythingElseThanThatItMappedIsNotServed) {
+  const auto app = App::attach(path, 0);
+  ASSERT_TRUE(app);
+  EXPECT_TRUE(is_closed(*app));
+  EXPECT_TRUE(serves_nobody());
+}
+
 TEST_F(LinkServer, ClosedAttachmentIsNotServedEvenBeforeItIsCollected) {
   std::unique_ptr<App> app = App::attach(path);
   ASSERT_TRUE(app);

@@ -37,6 +37,7 @@ class Loop : public ::testing::Test {
   void attach(uint32_t generation) {
     ilk_error_t error{};
     ASSERT_TRUE(ilk_link_regions_create(&attachment.regions, generation, &error)) << error.text;
+    ASSERT_TRUE(ilk_link_regions_settle(&attachment.regions));
     attachment.generation = generation;
     attachment.open = 1;
     mailbox.offered = &attachment;
@@ -63,7 +64,7 @@ TEST_F(Loop, TickIsOneTransactionOneStepOneSnapshot) {
     ilk_loop_tick(&loop);
     EXPECT_EQ(transactions, n);
     const ilk_snapshot_t snapshot = published();
-    EXPECT_EQ(snapshot.state.tick, n);
+    EXPECT_EQ(snapshot.state.system.tick, n);
     EXPECT_EQ(std::memcmp(&snapshot.state, &loop.shown.state, sizeof snapshot.state), 0);
     EXPECT_EQ(std::memcmp(&snapshot.inputs, &loop.shown.inputs, sizeof snapshot.inputs), 0);
     EXPECT_EQ(attachment.regions.kernel->snapshot_lock, 2 * n);
@@ -106,7 +107,7 @@ TEST_F(Loop, RunsAndCountsTimeWithoutAnyApp) {
   for (uint32_t n = 0; n < 100; ++n) {
     ilk_loop_tick(&loop);
   }
-  EXPECT_EQ(loop.shown.state.tick, 100u);
+  EXPECT_EQ(loop.shown.state.system.tick, 100u);
   uint64_t steps = 0;
   for (const uint32_t count : loop.shown.timing.bucket[ILK_PHASE_STEP]) {
     steps += count;
@@ -145,8 +146,8 @@ TEST_F(Loop, RequestOfTheRingIsJudgedOnceInItsGeneration) {
   }
   attachment.regions.app = app;
   EXPECT_EQ(attachment.regions.kernel->request_tail, 1u);
-  EXPECT_EQ(loop.shown.state.requests_accepted, 1u);
-  EXPECT_EQ(loop.shown.state.holder, 3u);
+  EXPECT_EQ(loop.shown.state.system.requests_accepted, 1u);
+  EXPECT_EQ(loop.shown.state.system.holder, 3u);
 }
 
 TEST_F(Loop, NothingIsReadFromAnAppThatHasGone) {
@@ -156,8 +157,8 @@ TEST_F(Loop, NothingIsReadFromAnAppThatHasGone) {
   ilk_loop_tick(&loop);
   EXPECT_EQ(loop.attachment, nullptr);
   EXPECT_EQ(mailbox.retired, &attachment);
-  EXPECT_EQ(published().state.tick, 1u);
-  EXPECT_EQ(loop.shown.state.tick, 2u);
+  EXPECT_EQ(published().state.system.tick, 1u);
+  EXPECT_EQ(loop.shown.state.system.tick, 2u);
 }
 
 TEST_F(Loop, OnlySimulatedTimeOnASimulatedBusWaitsForAnAppThatConsumesNothing) {
@@ -176,7 +177,7 @@ TEST_F(Loop, OnlySimulatedTimeOnASimulatedBusWaitsForAnAppThatConsumesNothing) {
     for (uint32_t n = 0; n < 3 * ILK_LINK_TICKS_AHEAD; ++n) {
       ilk_loop_tick(&loop);
     }
-    EXPECT_EQ(published().state.tick, 3 * ILK_LINK_TICKS_AHEAD);
+    EXPECT_EQ(published().state.system.tick, 3 * ILK_LINK_TICKS_AHEAD);
     EXPECT_EQ(loop.pacing.gave_up, waits) << clock << simulated;
   }
 }
@@ -191,7 +192,7 @@ TEST_F(Loop, PaceAndLatenessOfTheHostAreShown) {
   EXPECT_GE(late.lateness.total_ms, 4999u);
   EXPECT_GE(late.lateness.worst_us, 4'999'000u);
   EXPECT_EQ(late.overruns, 0u);
-  EXPECT_EQ(late.inputs.deadline_missed, 0u);
+  EXPECT_EQ(late.inputs.deadlines_missed, 0u);
 }
 
 TEST_F(Loop, StopEndsItWithoutAnotherTick) {
@@ -210,6 +211,32 @@ TEST_F(Loop, DeadlineCountsAsMissedOnlyBeyondAPeriodAndForTheExecutiveAlone) {
   EXPECT_TRUE(ilk_loop_is_missed(&loop, 21'000'001));
   loop.bus.simulated = false;
   EXPECT_TRUE(ilk_loop_is_missed(&loop, 1'000'001));
+}
+
+TEST_F(Loop, MissedPeriodsAreToldToTheKernel) {
+  start({ILK_CLOCK_REAL, 1.0, false, 0xF});
+  loop.bus.simulated = false;
+  ilk_loop_tick(&loop);
+  const uint64_t begun_ns = ilk_now_ns();
+  while (ilk_now_ns() < begun_ns + 20 * loop.ticker.period_ns) {
+  }
+  ilk_loop_tick(&loop);
+  EXPECT_GE(loop.shown.inputs.deadlines_missed, 18u);
+  EXPECT_GE(loop.shown.state.system.overruns_in_row, loop.shown.inputs.deadlines_missed);
+}
+
+TEST_F(Loop, EachStartHasANonceOfItsOwn) {
+  const uint32_t first = loop.shown.inputs.boot_nonce;
+  ilk_loop_tick(&loop);
+  EXPECT_EQ(loop.shown.inputs.boot_nonce, first) << "the same for one start";
+  start({ILK_CLOCK_SIM, 0.0, false, 0});
+  const uint32_t second = loop.shown.inputs.boot_nonce;
+  EXPECT_NE(second, first);
+  ilk_loop_tick(&loop);
+  loop.shown.state.seal ^= 1u;
+  ilk_loop_tick(&loop);
+  ilk_loop_tick(&loop);
+  EXPECT_NE(loop.shown.inputs.boot_nonce, second) << "after damage it began anew";
 }
 
 TEST_F(Loop, DegradedRunLatchesNoMissedDeadline) {

@@ -38,7 +38,7 @@ struct Link {
   }
 
   void publish() {
-    snapshot.state.tick += 1;
+    snapshot.state.system.tick += 1;
     ilk_publisher_publish(&publisher, &snapshot, &out, 0);
   }
 
@@ -94,7 +94,7 @@ TEST(Snapshot, IsAbsentBeforeTheFirstPublishAndWhileOneIsWritten) {
   EXPECT_FALSE(ilk_link_read_snapshot(link.region.get(), &snapshot, &lock));
   link.publish();
   ASSERT_TRUE(ilk_link_read_snapshot(link.region.get(), &snapshot, &lock));
-  EXPECT_EQ(snapshot.state.tick, 1u);
+  EXPECT_EQ(snapshot.state.system.tick, 1u);
   EXPECT_EQ(lock, 2u);
   link.region->snapshot_lock = 3;
   EXPECT_FALSE(ilk_link_read_snapshot(link.region.get(), &snapshot, &lock));
@@ -135,9 +135,9 @@ TEST(Events, TellVerdictsInOrder) {
 TEST(Events, TellEachChangeOnce) {
   Link link;
   ilk_state_t& state = link.snapshot.state;
-  state.mode = ILK_MODE_LOCKED;
-  state.cause = ILK_CAUSE_BOOT;
-  state.cause_value = 77;
+  state.system.mode = ILK_MODE_LOCKED;
+  state.system.cause = ILK_CAUSE_BOOT;
+  state.system.cause_value = 77;
   state.axis[2].state = ILK_AXIS_FAULTED;
   state.axis[2].fault = ILK_FAULT_JUMP;
   state.axis[2].fault_value = -9;
@@ -163,7 +163,7 @@ TEST(Events, SlowReaderIsToldHowManyItLost) {
   Link link;
   constexpr uint32_t kTicks = 3 * ILK_LINK_EVENTS + 7;
   for (uint32_t n = 1; n <= kTicks; ++n) {
-    link.snapshot.state.mode = n % 2;
+    link.snapshot.state.system.mode = n % 2;
     link.publish();
   }
   const auto events = link.events();
@@ -175,15 +175,15 @@ TEST(Events, SlowReaderIsToldHowManyItLost) {
 
 TEST(Events, StartAtOneForEachAttachmentAndChangesWithoutAppAreNotRepeated) {
   Link link;
-  link.snapshot.state.mode = ILK_MODE_LOCKED;
+  link.snapshot.state.system.mode = ILK_MODE_LOCKED;
   link.publish();
   ilk_publisher_attach(&link.publisher, nullptr);
-  link.snapshot.state.mode = ILK_MODE_READY;
+  link.snapshot.state.system.mode = ILK_MODE_READY;
   link.publish();
   *link.region = {};
   ilk_publisher_attach(&link.publisher, link.region.get());
   link.next = 0;
-  link.snapshot.state.mode = ILK_MODE_MOTION;
+  link.snapshot.state.system.mode = ILK_MODE_MOTION;
   link.publish();
   const auto events = link.events();
   ASSERT_EQ(events.size(), 1u);

@@ -4,6 +4,10 @@
 #include <stdexcept>
 #include <string>
 
+extern "C" {
+#include "parts.h"
+}
+
 namespace interlock::kernel_test {
 
 namespace {
@@ -46,10 +50,12 @@ void Motor::advance(ilk_direction_t driven) {
   }
 }
 
-bool Motor::switch_triggered(uint32_t limit_side) const {
-  if (switch_stuck) return *switch_stuck;
-  if (!switch_at) return false;
-  return limit_side == ILK_LIMIT_UPPER ? travelled >= *switch_at : travelled <= *switch_at;
+bool Motor::switch_triggered(uint32_t limit_side) {
+  if (switch_at) {
+    const int64_t beyond = limit_side == ILK_LIMIT_UPPER ? travelled - *switch_at : *switch_at - travelled;
+    closed_ = beyond >= (closed_ ? -hysteresis : 0);
+  }
+  return switch_stuck.value_or(switch_at && closed_);
 }
 
 ilk_request_t heartbeat(uint32_t holder) {
@@ -80,9 +86,10 @@ ilk_request_t restore(uint32_t axis, int32_t position) {
 }
 
 ilk_request_t with_crc(ilk_request_t request) {
-  const std::array<uint32_t, 8> words = {
+  const std::array<uint32_t, 9> words = {
       request.sequence, request.kind,      request.axis,        static_cast<uint32_t>(request.target_counts),
-      request.drive,    request.amplitude, request.lease_ticks, request.holder};
+      request.drive,    request.amplitude, request.lease_ticks, request.consent,
+      request.holder};
   request.crc = crc32_of_words(words);
   return request;
 }
@@ -105,11 +112,12 @@ void Bench::spoil(uint32_t slot, FrameFault fault, uint32_t ticks) {
 void Bench::latch(uint32_t slot) {
   Card& sender = card[slot];
   const ilk_axis_config_t& axis = watch_.config().axis[slot];
-  const auto counts = static_cast<uint32_t>(motor[slot].travelled);
+  const bool odd = state_.system.tick % 2 == 1;
+  const auto counts = static_cast<uint32_t>(motor[slot].travelled + (odd ? motor[slot].dither : 0));
   const bool corrected = axis.direction_correction == 1;
 
   sender.heartbeat += 1;
-  sender.time_us += config_.period_us;
+  sender.time_us += config_.common.period_us;
   Frame frame{};
   frame[incoming::start] = start_word;
   frame[incoming::pairs] = motor[slot].switch_triggered(axis.limit_side) ? 0 : incoming::switch_open_bit;
@@ -119,6 +127,7 @@ void Bench::latch(uint32_t slot) {
   frame[incoming::heartbeat] = sender.heartbeat;
   frame[incoming::time_us] = sender.time_us;
   frame[incoming::tick_echo] = sender.heard_tick;
+  frame[incoming::status] = sender.status;
   write_checksum(frame);
 
   inputs_.frames_received |= 1u << slot;
@@ -152,7 +161,8 @@ void Bench::latch(uint32_t slot) {
 void Bench::transact() {
   inputs_ = {};
   inputs_.link_generation = link_generation;
-  inputs_.deadline_missed = deadline_missed;
+  inputs_.boot_nonce = boot_nonce;
+  inputs_.deadlines_missed = deadlines_missed;
   inputs_.transaction_done = transaction_done;
   inputs_.pedal_no_closed = pedal_no_closed;
   inputs_.pedal_nc_closed = pedal_nc_closed;
@@ -184,7 +194,16 @@ void Bench::ticks(uint32_t count) {
   for (uint32_t done = 0; done < count; ++done) tick();
 }
 
+void Bench::tick_with_switch(uint32_t slot, bool triggered) {
+  const std::optional<bool> before = motor[slot].switch_stuck;
+  motor[slot].switch_stuck = triggered;
+  tick();
+  motor[slot].switch_stuck = before;
+}
+
 uint32_t Bench::queue(ilk_request_t request) {
+  const bool moves = request.kind == ILK_REQUEST_MOVE || request.kind == ILK_REQUEST_HOME;
+  if (moves && request.consent == 0) request.consent = state_.system.consent;
   request.sequence = ++last_sequence;
   queue_.push_back(with_crc(request));
   return request.sequence;
@@ -216,22 +235,25 @@ bool Bench::wire_is_zero() const {
                      [](const auto& frame) { return drive_words_zero(frame); });
 }
 
+void Bench::reseal() { ilk_state_seal(&state_); }
+
 void Bench::to_ready() {
   pedal(false);
   ticks(5);
   require(ask(reset()) == ILK_VERDICT_ACCEPTED && mode() == ILK_MODE_READY, "READY");
+  rest();
 }
 
 void Bench::arm() {
   pedal(false);
-  ticks(config_.pedal_debounce_ticks + 1);
-  require(state_.pedal_armed == 1, "an armed pedal");
+  ticks(config_.common.pedal_debounce_ticks + 1);
+  require(state_.system.pedal_armed == 1, "an armed pedal");
 }
 
 void Bench::press() {
   arm();
   pedal(true);
-  ticks(config_.pedal_debounce_ticks);
+  ticks(config_.common.pedal_debounce_ticks);
   require(mode() == ILK_MODE_MOTION, "MOTION");
 }
 
@@ -251,7 +273,8 @@ void Bench::enable_axis(uint32_t slot) {
 }
 
 void Bench::reference(uint32_t slot) {
-  require(ask(set_home(slot)) == ILK_VERDICT_ACCEPTED && axis(slot).homed == 1, "a homed axis");
+  require(ask(set_home(slot)) == ILK_VERDICT_ACCEPTED && axis(slot).homed == ILK_HOMED_BY_HAND,
+          "a homed axis");
 }
 
 void Bench::push(uint32_t slot, int32_t counts) {
@@ -268,6 +291,7 @@ void Bench::to_motion_homed(uint32_t slot, int32_t position) {
   to_ready();
   reference(slot);
   push(slot, position);
+  rest();
   enable_axis(slot);
   press();
 }
@@ -277,6 +301,34 @@ void Bench::keep_moving(uint32_t slot, int32_t target, uint32_t count, uint32_t 
     queue(move(slot, target, drive));
     tick();
   }
+}
+
+Bench ready_bench(const ilk_config_t& config) {
+  Bench bench(config);
+  bench.to_ready();
+  return bench;
+}
+
+Bench motion_bench(uint32_t slot, const ilk_config_t& config) {
+  Bench bench = ready_bench(config);
+  bench.enable_axis(slot);
+  bench.press();
+  return bench;
+}
+
+Bench homed_bench(uint32_t slot, int32_t position, const ilk_config_t& config) {
+  Bench bench(config);
+  bench.to_motion_homed(slot, position);
+  return bench;
+}
+
+Bench faulted_bench(uint32_t slot) {
+  Bench bench = ready_bench();
+  bench.motor[slot].travelled += 100;
+  bench.tick();
+  require(bench.fault(slot) == ILK_FAULT_JUMP, "a fault");
+  bench.rest();
+  return bench;
 }
 
 }  // namespace interlock::kernel_test

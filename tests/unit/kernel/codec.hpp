@@ -25,6 +25,7 @@ inline constexpr std::size_t time_us = 10;
 inline constexpr std::size_t tick_echo = 11;
 inline constexpr std::size_t status = 12;
 inline constexpr uint32_t switch_open_bit = 0x00080000u;
+inline constexpr uint32_t status_was_reset = 8;
 }  // namespace incoming
 
 /// Words of an outgoing frame.

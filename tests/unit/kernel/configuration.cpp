@@ -24,14 +24,17 @@ ilk_axis_config_t plain_axis(ilk_card_t card) {
   axis.backlash_counts = 1;
   axis.noise_counts = 1;
   axis.deadband_counts = 2;
+  axis.dead_zone_drive = 10;
   axis.max_drive = 1000;
   axis.unhomed_max_drive = 100;
-  axis.unhomed_travel_counts = 100;
+  axis.unhomed_travel_counts = 101;
+  axis.full_speed_counts_per_s = 5000;
   axis.stall_ticks = 50;
+  axis.stall_effort_ticks = 20;
   axis.stall_min_counts = 2;
   axis.reverse_counts = 20;
   axis.drift_counts = 20;
-  axis.settle_ticks = 10;
+  axis.rest_ticks = 10;
   axis.max_delta_counts = 8;
   return axis;
 }
@@ -41,26 +44,31 @@ ilk_axis_config_t switched_axis(ilk_card_t card, ilk_limit_side_t side) {
   axis.limit_side = side;
   axis.home_offset_counts = side == ILK_LIMIT_LOWER ? -980 : 980;
   axis.home_drive = 50;
-  axis.home_travel_counts = 2100;
-  axis.home_backoff_counts = 100;
+  axis.home_slow_drive = 20;
+  axis.home_travel_counts = 2401;
   axis.home_timeout_ticks = 3000;
-  axis.home_rest_ticks = 20;
+  axis.home_clear_counts = 30;
+  axis.home_tolerance_counts = 8;
+  axis.switch_hysteresis_counts = 2;
   axis.home_speed_counts_per_s = 1000;
+  axis.home_slow_speed_counts_per_s = 500;
   return axis;
 }
 
 ilk_config_t standard_config() {
   ilk_config_t config{};
-  config.version = ILK_CONFIG_VERSION;
-  config.size_bytes = sizeof(ilk_config_t);
-  config.period_us = 1000;
-  config.pedal_channels = 2;
-  config.app_timeout_ticks = 30;
-  config.lease_max_ticks = 20;
-  config.pedal_debounce_ticks = 5;
-  config.pedal_disagree_ticks = 8;
-  config.bad_frame_limit = 3;
-  config.overrun_limit = 3;
+  config.common.version = ILK_CONFIG_VERSION;
+  config.common.size_bytes = sizeof(ilk_config_t);
+  config.common.period_us = 1000;
+  config.common.pedal_channels = 2;
+  config.common.app_timeout_ticks = 30;
+  config.common.lease_max_ticks = 20;
+  config.common.pedal_debounce_ticks = 5;
+  config.common.pedal_disagree_ticks = 8;
+  config.common.power_up_ticks = 10;
+  config.common.switch_debounce_ticks = 3;
+  config.common.bad_frame_limit = 3;
+  config.common.overrun_limit = 3;
   config.axis[slot::pwm_lower] = switched_axis(ILK_CARD_PWM, ILK_LIMIT_LOWER);
   config.axis[slot::pwm_free] = plain_axis(ILK_CARD_PWM);
   config.axis[slot::non_pwm_upper] = switched_axis(ILK_CARD_NON_PWM, ILK_LIMIT_UPPER);

@@ -38,10 +38,32 @@ TEST(Determinism, the_same_run_gives_the_same_bits) {
   EXPECT_EQ(run(), run());
 }
 
+TEST(P18_independence, an_axis_does_the_same_whatever_the_others_do_at_the_same_mode_and_verdicts) {
+  Bench alone = ready_bench(ten_axis_config());
+  for (uint32_t slot = 0; slot < ILK_SLOTS; ++slot) alone.enable_axis(slot);
+  alone.press();
+  Bench busy = alone;
+  Dice dice(18);
+  for (int tick = 0; tick < 300; ++tick) {
+    for (uint32_t slot = 1; slot < ILK_SLOTS; ++slot) {
+      alone.queue(move(slot, alone.position(slot)));
+      busy.queue(move(slot, busy.position(slot) + dice.between(-3, 3)));
+      busy.motor[slot].switch_stuck = dice.one_in(3);
+      if (dice.one_in(20)) busy.spoil(slot, FrameFault::missing, 1);
+    }
+    const int32_t target = dice.between(-40, 40);
+    for (Bench* bench : {&alone, &busy}) {
+      bench->queue(move(0, target));
+      bench->tick();
+      ASSERT_EQ(bench->mode(), ILK_MODE_MOTION) << tick;
+    }
+    ASSERT_EQ(std::memcmp(&alone.axis(0), &busy.axis(0), sizeof(ilk_axis_t)), 0) << tick;
+    ASSERT_EQ(std::memcmp(alone.out().frame[0], busy.out().frame[0], sizeof(Frame)), 0) << tick;
+  }
+}
+
 TEST(Determinism, every_output_word_is_written_and_none_read) {
-  Bench bench(ten_axis_config());
-  bench.to_motion();
-  bench.enable_axis(0);
+  Bench bench = motion_bench(0, ten_axis_config());
   bench.queue(move(0, 50));
   for (const bool sound : {true, false}) {
     const ilk_config_t config = bench.config();
@@ -59,7 +81,7 @@ TEST(Determinism, every_output_word_is_written_and_none_read) {
 
 TEST(Determinism, every_output_word_is_written_in_INIT) {
   ilk_config_t config = standard_config();
-  config.version = 0;
+  config.common.version = 0;
   ilk_state_t first;
   ilk_init(&config, &first);
   ilk_state_t second = first;

@@ -4,18 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <string>
 
 #include "bench.hpp"
 
 namespace interlock::kernel_test {
 namespace {
-
-/// Homed and enabled in MOTION, ready to move by `drive` either way.
-Bench moving_bench(uint32_t slot, const ilk_config_t& config = standard_config()) {
-  Bench bench(config);
-  bench.to_motion_homed(slot);
-  return bench;
-}
 
 std::span<const uint32_t> wire_after_move(Bench& bench, uint32_t slot, int32_t target, uint32_t drive,
                                           uint32_t amplitude = 0) {
@@ -25,83 +19,88 @@ std::span<const uint32_t> wire_after_move(Bench& bench, uint32_t slot, int32_t t
   return bench.out().frame[slot];
 }
 
-void expect_only(std::span<const uint32_t> frame, std::initializer_list<std::size_t> used) {
-  for (std::size_t word = 1; word + 1 < frame.size(); ++word) {
-    if (word == outgoing::tick || std::find(used.begin(), used.end(), word) != used.end()) continue;
-    EXPECT_EQ(frame[word], 0u) << "word " << word;
+/// Words 2 to 6 of a frame that drives up and of one that drives down.
+struct Signal {
+  const char* name;
+  uint32_t slot;
+  uint32_t motor_direction;
+  uint32_t drive;
+  uint32_t amplitude;
+  std::array<uint32_t, 5> up;
+  std::array<uint32_t, 5> down;
+};
+
+constexpr uint32_t wave_of_54 = 1196612456u - 4063228u;
+
+const Signal signals[] = {
+    {"PWM", slot::pwm_lower, 1, 777, 0, {0, 0x80000000u + 777}, {0, 777}},
+    {"PWM_inverted", slot::pwm_lower, 0, 777, 0, {0, 777}, {0, 0x80000000u + 777}},
+    {"PWM_largest", slot::pwm_lower, 1, 0x7FFFFFFFu, 0, {0, 0xFFFFFFFFu}, {0, 0x7FFFFFFFu}},
+    {"NON_PWM", slot::non_pwm_upper, 1, 777, 0, {0, 0xC0000000u + 777}, {0, 0x40000000u + 777}},
+    {"NON_PWM_inverted", slot::non_pwm_upper, 0, 777, 0, {0, 0x40000000u + 777}, {0, 0xC0000000u + 777}},
+    {"NON_PWM_largest", slot::non_pwm_upper, 1, 0x3FFFFFFFu, 0, {0, 0xFFFFFFFFu}, {0, 0x7FFFFFFFu}},
+    {"ANALOG", slot::analog_upper, 1, 777, 0, {0, 0, 0, 0, 0x80000000u + 777}, {0, 0, 0, 0, 777}},
+    {"ANALOG_largest",
+     slot::analog_upper,
+     1,
+     0x7FFFFFFFu,
+     0,
+     {0, 0, 0, 0, 0xFFFFFFFFu},
+     {0, 0, 0, 0, 0x7FFFFFFFu}},
+    {"HIGH_FREQUENCY",
+     slot::high_frequency,
+     1,
+     54,
+     200,
+     {0x010000C8u, wave_of_54, 0xC8u, wave_of_54},
+     {0xC8u, wave_of_54, 0x010000C8u, wave_of_54}},
+    {"HIGH_FREQUENCY_inverted",
+     slot::high_frequency,
+     0,
+     54,
+     7,
+     {7, wave_of_54, 0x01000007u, wave_of_54},
+     {0x01000007u, wave_of_54, 7, wave_of_54}},
+};
+
+void PrintTo(const Signal& signal, std::ostream* stream) { *stream << signal.name; }
+
+class P16_signal : public testing::TestWithParam<Signal> {};
+
+INSTANTIATE_TEST_SUITE_P(Card, P16_signal, testing::ValuesIn(signals),
+                         [](const auto& instance) { return std::string(instance.param.name); });
+
+TEST_P(P16_signal, is_what_the_card_expects_and_nothing_else) {
+  const Signal& signal = GetParam();
+  ilk_config_t config = standard_config();
+  config.axis[signal.slot].motor_direction = signal.motor_direction;
+  config.axis[signal.slot].max_drive = std::max(1000u, signal.drive);
+  seal(config);
+  Bench bench = homed_bench(signal.slot, 0, config);
+  for (const int32_t target : {500, -500}) {
+    Frame expected{};
+    expected[0] = 0xFEFEFE01u;
+    const auto& words = target > 0 ? signal.up : signal.down;
+    std::copy(words.begin(), words.end(), expected.begin() + 2);
+    const auto frame = wire_after_move(bench, signal.slot, target, signal.drive, signal.amplitude);
+    expected[13] = bench.now();
+    expected[14] = 1;
+    expected.back() = 0xFFFFFFFFu - std::accumulate(expected.begin(), expected.end() - 1, 0u);
+    EXPECT_TRUE(std::equal(frame.begin(), frame.end(), expected.begin())) << target;
   }
 }
 
-TEST(P16_frames, carry_start_word_tick_and_checksum_to_every_card) {
+TEST(P16_frames, carry_start_word_tick_and_checksum_to_every_card_and_no_signal_at_rest) {
   Bench bench;
-  bench.ticks(3);
-  for (uint32_t slot = 0; slot <= slot::sensor; ++slot) {
-    const std::span<const uint32_t> frame(bench.out().frame[slot]);
-    EXPECT_EQ(frame[0], 0xFEFEFE01u);
-    EXPECT_EQ(frame[13], bench.now());
-    EXPECT_EQ(std::accumulate(frame.begin(), frame.end(), 0u), 0xFFFFFFFFu);
-    expect_only(frame, {});
-  }
-}
-
-TEST(P16_frames, PWM) {
-  Bench bench = moving_bench(slot::pwm_lower);
-  auto frame = wire_after_move(bench, slot::pwm_lower, 500, 777);
-  EXPECT_EQ(frame[3], 0x80000000u + 777);
-  EXPECT_EQ(frame[14], 1u);
-  expect_only(frame, {3, 14});
-  frame = wire_after_move(bench, slot::pwm_lower, -500, 777);
-  EXPECT_EQ(frame[3], 777u);
-  expect_only(frame, {3, 14});
-}
-
-TEST(P16_frames, PWM_with_inverted_motor) {
-  Bench bench = moving_bench(slot::corrected_upper);
-  EXPECT_EQ(wire_after_move(bench, slot::corrected_upper, 500, 777)[3], 777u);
-  EXPECT_EQ(wire_after_move(bench, slot::corrected_upper, -500, 777)[3], 0x80000000u + 777);
-}
-
-TEST(P16_frames, NON_PWM) {
-  Bench bench = moving_bench(slot::non_pwm_upper);
-  auto frame = wire_after_move(bench, slot::non_pwm_upper, 500, 777);
-  EXPECT_EQ(frame[3], 0xC0000000u + 777);
-  EXPECT_EQ(frame[14], 1u);
-  expect_only(frame, {3, 14});
-  EXPECT_EQ(wire_after_move(bench, slot::non_pwm_upper, -500, 777)[3], 0x40000000u + 777);
-}
-
-TEST(P16_frames, NON_PWM_with_inverted_motor) {
-  Bench bench = moving_bench(slot::non_pwm_inverted);
-  EXPECT_EQ(wire_after_move(bench, slot::non_pwm_inverted, 500, 777)[3], 0x40000000u + 777);
-  EXPECT_EQ(wire_after_move(bench, slot::non_pwm_inverted, -500, 777)[3], 0xC0000000u + 777);
-}
-
-TEST(P16_frames, ANALOG) {
-  Bench bench = moving_bench(slot::analog_upper);
-  auto frame = wire_after_move(bench, slot::analog_upper, 500, 777);
-  EXPECT_EQ(frame[6], 0x80000000u + 777);
-  EXPECT_EQ(frame[14], 1u);
-  expect_only(frame, {6, 14});
-  EXPECT_EQ(wire_after_move(bench, slot::analog_upper, -500, 777)[6], 777u);
-}
-
-TEST(P16_frames, the_largest_drive_of_each_card_is_carried_whole) {
-  struct Largest {
-    uint32_t slot;
-    uint32_t drive;
-    std::size_t word;
-  };
-  for (const auto& [slot, drive, word] :
-       {Largest{slot::pwm_lower, 0x7FFFFFFFu, 3}, Largest{slot::non_pwm_upper, 0x3FFFFFFFu, 3},
-        Largest{slot::analog_upper, 0x7FFFFFFFu, 6}}) {
-    ilk_config_t config = standard_config();
-    config.axis[slot].max_drive = drive;
-    seal(config);
-    Bench bench = moving_bench(slot, config);
-    const uint32_t up = wire_after_move(bench, slot, 500, drive)[word];
-    const uint32_t down = wire_after_move(bench, slot, -500, drive)[word];
-    EXPECT_EQ(up - drive, word == 3 && slot == slot::non_pwm_upper ? 0xC0000000u : 0x80000000u);
-    EXPECT_EQ(down - drive, slot == slot::non_pwm_upper ? 0x40000000u : 0u);
+  for (int tick = 0; tick < 50; ++tick) {
+    bench.tick();
+    for (uint32_t slot = 0; slot <= slot::sensor; ++slot) {
+      const std::span<const uint32_t> frame(bench.out().frame[slot]);
+      EXPECT_EQ(frame[0], 0xFEFEFE01u);
+      EXPECT_EQ(frame[13], static_cast<uint32_t>(tick));
+      EXPECT_EQ(std::accumulate(frame.begin(), frame.end(), 0u), 0xFFFFFFFFu);
+      EXPECT_EQ(std::count(frame.begin(), frame.end(), 0u), ILK_FRAME_WORDS - (tick == 0 ? 2 : 3));
+    }
   }
 }
 
@@ -112,32 +111,8 @@ ilk_config_t fast_wave_config() {
   return config;
 }
 
-TEST(P16_frames, HIGH_FREQUENCY) {
-  Bench bench = moving_bench(slot::high_frequency, fast_wave_config());
-  auto frame = wire_after_move(bench, slot::high_frequency, 500, 54, 200);
-  EXPECT_EQ(frame[2], 0x01000000u + 200);
-  EXPECT_EQ(frame[4], 0x00000000u + 200);
-  EXPECT_EQ(frame[3], 1196612456u - 4063228u);
-  EXPECT_EQ(frame[5], frame[3]);
-  EXPECT_EQ(frame[14], 1u);
-  expect_only(frame, {2, 3, 4, 5, 14});
-  frame = wire_after_move(bench, slot::high_frequency, -500, 54, 200);
-  EXPECT_EQ(frame[2], 0x00000000u + 200);
-  EXPECT_EQ(frame[4], 0x01000000u + 200);
-}
-
-TEST(P16_frames, HIGH_FREQUENCY_with_inverted_motor) {
-  ilk_config_t config = standard_config();
-  config.axis[slot::high_frequency].motor_direction = 0;
-  seal(config);
-  Bench bench = moving_bench(slot::high_frequency, config);
-  auto frame = wire_after_move(bench, slot::high_frequency, 500, 54, 7);
-  EXPECT_EQ(frame[2], 7u);
-  EXPECT_EQ(frame[4], 0x01000007u);
-}
-
 TEST(P16_frames, HIGH_FREQUENCY_without_amplitude_is_still_a_drive) {
-  Bench bench = moving_bench(slot::high_frequency);
+  Bench bench = homed_bench(slot::high_frequency);
   EXPECT_NE(wire_after_move(bench, slot::high_frequency, 500, 54, 0)[3], 0u);
   EXPECT_EQ(bench.gate(slot::high_frequency), ILK_GATE_OPEN);
 }
@@ -147,7 +122,7 @@ TEST(P16_frames, HIGH_FREQUENCY_drive_is_interpolated_towards_the_slower_side) {
     uint32_t drive;
     uint32_t word;
   };
-  Bench bench = moving_bench(slot::high_frequency, fast_wave_config());
+  Bench bench = homed_bench(slot::high_frequency, 0, fast_wave_config());
   bench.motor[slot::high_frequency].speed = 0;
   for (const auto& [drive, word] : {Point{1, 1196537212u}, Point{27, 1194580842u}, Point{53, 1192624473u},
                                     Point{54, 1192549228u}, Point{100, 1191164721u}, Point{189, 1188486000u},
@@ -157,7 +132,7 @@ TEST(P16_frames, HIGH_FREQUENCY_drive_is_interpolated_towards_the_slower_side) {
 }
 
 TEST(P16_frames, HIGH_FREQUENCY_more_drive_is_never_a_slower_word) {
-  Bench bench = moving_bench(slot::high_frequency, fast_wave_config());
+  Bench bench = homed_bench(slot::high_frequency, 0, fast_wave_config());
   uint32_t slower = 1196612456u;
   for (uint32_t drive = 1; drive <= 397785; drive += drive < 12000 ? 61 : 997) {
     const int32_t target = bench.position(slot::high_frequency) > 0 ? -500 : 500;
@@ -169,21 +144,10 @@ TEST(P16_frames, HIGH_FREQUENCY_more_drive_is_never_a_slower_word) {
 }
 
 TEST(P16_frames, a_sensor_card_and_an_empty_slot_get_no_signal) {
-  Bench bench = moving_bench(slot::pwm_lower);
+  Bench bench = homed_bench(slot::pwm_lower);
   wire_after_move(bench, slot::pwm_lower, 500, 100);
   EXPECT_TRUE(drive_words_zero(bench.out().frame[slot::sensor]));
   EXPECT_TRUE(drive_words_zero(bench.out().frame[slot::empty]));
-}
-
-TEST(P16_frames, the_tick_counter_grows_by_one_each_tick) {
-  Bench bench;
-  bench.tick();
-  uint32_t before = bench.out().frame[0][13];
-  for (int tick = 0; tick < 50; ++tick) {
-    bench.tick();
-    for (uint32_t slot = 0; slot <= slot::sensor; ++slot) EXPECT_EQ(bench.out().frame[slot][13], before + 1);
-    ++before;
-  }
 }
 
 }  // namespace

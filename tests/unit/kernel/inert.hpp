@@ -13,9 +13,9 @@ namespace interlock::kernel_test {
 /// The state without what P11 calls counters, and without the seal that covers them.
 inline auto state_without_counters(const Bench& bench) {
   ilk_state_t state = bench.state();
-  state.last_sequence = 0;
-  state.requests_accepted = 0;
-  state.requests_refused = 0;
+  state.system.last_sequence = 0;
+  state.system.requests_accepted = 0;
+  state.system.requests_refused = 0;
   state.seal = 0;
   return std::bit_cast<std::array<uint32_t, sizeof(ilk_state_t) / 4>>(state);
 }
@@ -33,7 +33,7 @@ inline void expect_refused(Bench& bench, const ilk_request_t& request, ilk_verdi
   Bench undisturbed = bench;
   undisturbed.tick();
   EXPECT_EQ(bench.ask(request), verdict);
-  EXPECT_EQ(bench.state().requests_refused, undisturbed.state().requests_refused + 1);
+  EXPECT_EQ(bench.state().system.requests_refused, undisturbed.state().system.requests_refused + 1);
   EXPECT_EQ(state_without_counters(bench), state_without_counters(undisturbed)) << "P11: state changed";
   EXPECT_EQ(decisions(bench), decisions(undisturbed)) << "P11: outputs changed";
 }

@@ -50,19 +50,18 @@ TEST(Lamps, controller_is_red_while_LOCKED_and_green_when_it_can_work) {
 }
 
 TEST(Lamps, stall_is_purple_for_a_stall_before_amber_for_another_fault) {
-  Bench bench;
-  bench.to_motion();
+  Bench bench = motion_bench(slot::pwm_free);
   EXPECT_EQ(lamp(bench, ILK_LAMP_STALL), ILK_COLOUR_OFF);
   bench.motor[slot::pwm_lower].travelled += 100;
   bench.tick();
   EXPECT_EQ(lamp(bench, ILK_LAMP_STALL), ILK_COLOUR_AMBER);
   bench.press();
-  bench.enable_axis(slot::pwm_free);
   bench.motor[slot::pwm_free].frozen = true;
   bench.keep_moving(slot::pwm_free, 50, 51);
   ASSERT_EQ(bench.fault(slot::pwm_free), ILK_FAULT_STALL);
   EXPECT_EQ(lamp(bench, ILK_LAMP_STALL), ILK_COLOUR_PURPLE);
   bench.pedal(false);
+  bench.rest();
   bench.ask(clear_fault(slot::pwm_free));
   EXPECT_EQ(lamp(bench, ILK_LAMP_STALL), ILK_COLOUR_AMBER);
   bench.ask(clear_fault(slot::pwm_lower));

@@ -3,16 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <bit>
 #include <functional>
 
 #include "bench.hpp"
 
 extern "C" {
-#include "frame.h"
-#include "gate.h"
-#include "integrity.h"
-#include "request.h"
+#include "parts.h"
 }
 
 namespace interlock::kernel_test {
@@ -20,69 +16,143 @@ namespace {
 
 /// A moving axis for which every gate is open.
 struct OpenGate {
-  ilk_axis_config_t config = plain_axis(ILK_CARD_PWM);
-  ilk_state_t state{};
+  ilk_axis_config_t config = switched_axis(ILK_CARD_PWM, ILK_LIMIT_UPPER);
+  ilk_system_t system{};
   ilk_axis_t axis{};
   ilk_command_t wanted{ILK_DIRECTION_INCREASING, 100, 0};
 
   OpenGate() {
-    state.mode = ILK_MODE_MOTION;
-    state.pedal = ILK_PEDAL_PRESSED;
+    system.mode = ILK_MODE_MOTION;
+    system.pedal = ILK_PEDAL_PRESSED;
     axis.state = ILK_AXIS_MOVING;
     axis.card_valid = 1;
-    axis.homed = 1;
+    axis.homed = ILK_HOMED_BY_HAND;
     axis.lease_ticks = 1;
   }
-
-  ilk_gate_t verdict() const { return ilk_output_gate(&config, &state, &axis, &wanted); }
 };
 
-TEST(P1_gate, is_open_when_nothing_blocks) { EXPECT_EQ(OpenGate().verdict(), ILK_GATE_OPEN); }
+struct Block {
+  ilk_gate_t gate;
+  std::function<void(OpenGate&)> edit;
+};
 
-TEST(P1_gate, a_pedal_that_is_not_pressed_blocks_even_in_MOTION) {
-  for (const uint32_t pedal : {uint32_t{ILK_PEDAL_RELEASED}, uint32_t{ILK_PEDAL_DISAGREE}, ILK_PEDAL_COUNT}) {
-    OpenGate gate;
-    gate.state.pedal = pedal;
-    EXPECT_EQ(gate.verdict(), ILK_GATE_PEDAL) << pedal;
+TEST(P1_gate, each_condition_blocks_by_itself_whatever_the_others_say) {
+  const Block blocks[] = {
+      {ILK_GATE_OPEN, [](OpenGate&) {}},
+      {ILK_GATE_MODE, [](OpenGate& open) { open.system.mode = ILK_MODE_READY; }},
+      {ILK_GATE_MODE, [](OpenGate& open) { open.system.mode = ILK_MODE_COUNT; }},
+      {ILK_GATE_PEDAL, [](OpenGate& open) { open.system.pedal = ILK_PEDAL_RELEASED; }},
+      {ILK_GATE_PEDAL, [](OpenGate& open) { open.system.pedal = ILK_PEDAL_DISAGREE; }},
+      {ILK_GATE_PEDAL, [](OpenGate& open) { open.system.pedal = ILK_PEDAL_COUNT; }},
+      {ILK_GATE_ESTOP, [](OpenGate& open) { open.system.estop = 1; }},
+      {ILK_GATE_CARD, [](OpenGate& open) { open.axis.card_valid = 0; }},
+      {ILK_GATE_ENABLE, [](OpenGate& open) { open.axis.state = ILK_AXIS_DISABLED; }},
+      {ILK_GATE_ENABLE, [](OpenGate& open) { open.axis.state = ILK_AXIS_FAULTED; }},
+      {ILK_GATE_ENABLE, [](OpenGate& open) { open.axis.state = ILK_AXIS_COUNT; }},
+      {ILK_GATE_LEASE, [](OpenGate& open) { open.axis.state = ILK_AXIS_ENABLED; }},
+      {ILK_GATE_LEASE, [](OpenGate& open) { open.axis.lease_ticks = 0; }},
+      {ILK_GATE_SETPOINT, [](OpenGate& open) { open.wanted.direction = ILK_DIRECTION_NONE; }},
+      {ILK_GATE_SETPOINT, [](OpenGate& open) { open.wanted.direction = ILK_DIRECTION_COUNT; }},
+      {ILK_GATE_SETPOINT, [](OpenGate& open) { open.wanted.drive = 0; }},
+      {ILK_GATE_HARD_LIMIT, [](OpenGate& open) { open.axis.switch_triggered = 1; }},
+      {ILK_GATE_SOFT_LIMIT, [](OpenGate& open) { open.axis.position_counts = 990; }},
+      {ILK_GATE_OPEN, [](OpenGate& open) { open.axis.position_counts = 989; }},
+      {ILK_GATE_SOFT_LIMIT, [](OpenGate& open) { open.axis.position_counts = INT32_MAX; }},
+      {ILK_GATE_SOFT_LIMIT,
+       [](OpenGate& open) {
+         open.wanted.direction = ILK_DIRECTION_DECREASING;
+         open.axis.position_counts = -990;
+       }},
+      {ILK_GATE_UNHOMED_TRAVEL,
+       [](OpenGate& open) {
+         open.axis.homed = ILK_HOMED_NOT;
+         open.axis.unhomed_travel_counts = 90;
+       }},
+      {ILK_GATE_OPEN,
+       [](OpenGate& open) {
+         open.axis.homed = ILK_HOMED_NOT;
+         open.axis.unhomed_travel_counts = 89;
+       }},
+      {ILK_GATE_UNHOMED_TRAVEL,
+       [](OpenGate& open) {
+         open.axis.homed = ILK_HOMED_NOT;
+         open.axis.unhomed_travel_counts = UINT32_MAX;
+       }},
+      {ILK_GATE_UNHOMED_TRAVEL,
+       [](OpenGate& open) {
+         open.axis.homed = ILK_HOMED_NOT;
+         open.axis.state = ILK_AXIS_HOMING;
+         open.axis.homing_travel_counts = 2390;
+       }},
+      {ILK_GATE_DRIVE, [](OpenGate& open) { open.wanted.drive = 1001; }},
+      {ILK_GATE_DRIVE,
+       [](OpenGate& open) {
+         open.axis.homed = ILK_HOMED_NOT;
+         open.wanted.drive = 101;
+       }},
+      {ILK_GATE_OPEN,
+       [](OpenGate& open) {
+         open.config.max_drive = UINT32_MAX;
+         open.wanted.drive = 0x7FFFFFFFu;
+       }},
+      {ILK_GATE_DRIVE,
+       [](OpenGate& open) {
+         open.config.max_drive = UINT32_MAX;
+         open.wanted.drive = 0x80000000u;
+       }},
+      {ILK_GATE_DRIVE, [](OpenGate& open) { open.wanted.amplitude = 1; }},
+      {ILK_GATE_OPEN,
+       [](OpenGate& open) {
+         open.config.max_amplitude = UINT32_MAX;
+         open.wanted.amplitude = 255;
+       }},
+      {ILK_GATE_DRIVE,
+       [](OpenGate& open) {
+         open.config.max_amplitude = UINT32_MAX;
+         open.wanted.amplitude = 256;
+       }},
+      {ILK_GATE_STALL, [](OpenGate& open) { open.axis.stall_driven_ticks = 50; }},
+      {ILK_GATE_OPEN, [](OpenGate& open) { open.axis.stall_driven_ticks = 49; }},
+      {ILK_GATE_STALL, [](OpenGate& open) { open.axis.effort_low = 20000; }},
+      {ILK_GATE_OPEN, [](OpenGate& open) { open.axis.effort_low = 19999; }},
+      {ILK_GATE_STALL, [](OpenGate& open) { open.axis.effort_high = 1; }},
+  };
+  for (const Block& block : blocks) {
+    OpenGate open;
+    block.edit(open);
+    EXPECT_EQ(ilk_output_gate(&open.config, &open.system, &open.axis, &open.wanted), block.gate)
+        << "block " << &block - blocks;
+  }
+  for (const uint32_t card :
+       {uint32_t{ILK_CARD_NONE}, uint32_t{ILK_CARD_SENSOR}, ILK_CARD_COUNT, UINT32_MAX}) {
+    OpenGate open;
+    open.config.card = card;
+    EXPECT_EQ(ilk_output_gate(&open.config, &open.system, &open.axis, &open.wanted), ILK_GATE_DRIVE) << card;
   }
 }
 
-TEST(P1_gate, an_active_E_stop_blocks_even_in_MOTION) {
-  OpenGate gate;
-  gate.state.estop = 1;
-  EXPECT_EQ(gate.verdict(), ILK_GATE_ESTOP);
+TEST(P3_hard_limit_part, an_unknown_side_lies_in_no_direction) {
+  ilk_axis_config_t config = switched_axis(ILK_CARD_PWM, ILK_LIMIT_UPPER);
+  EXPECT_EQ(towards_switch(&config), uint32_t{ILK_DIRECTION_INCREASING});
+  for (const uint32_t side : {uint32_t{ILK_LIMIT_NONE}, ILK_LIMIT_COUNT, UINT32_MAX}) {
+    config.limit_side = side;
+    EXPECT_EQ(towards_switch(&config), uint32_t{ILK_DIRECTION_NONE});
+  }
 }
 
-TEST(P1_gate, a_moving_axis_without_a_lease_is_blocked) {
-  OpenGate gate;
-  gate.axis.lease_ticks = 0;
-  EXPECT_EQ(gate.verdict(), ILK_GATE_LEASE);
-}
-
-TEST(P7_bounds, a_drive_that_the_words_of_the_card_cannot_carry_is_blocked) {
-  OpenGate gate;
-  gate.config.max_drive = UINT32_MAX;
-  gate.wanted.drive = 0x7FFFFFFFu;
-  EXPECT_EQ(gate.verdict(), ILK_GATE_OPEN);
-  gate.wanted.drive = 0x80000000u;
-  EXPECT_EQ(gate.verdict(), ILK_GATE_DRIVE);
-}
-
-TEST(P7_bounds, an_amplitude_that_the_words_of_the_card_cannot_carry_is_blocked) {
-  OpenGate gate;
-  gate.config.max_amplitude = UINT32_MAX;
-  gate.wanted.amplitude = 255;
-  EXPECT_EQ(gate.verdict(), ILK_GATE_OPEN);
-  gate.wanted.amplitude = 256;
-  EXPECT_EQ(gate.verdict(), ILK_GATE_DRIVE);
-}
-
-TEST(P7_bounds, a_card_without_a_motor_or_of_no_known_kind_is_not_driven) {
-  for (const uint32_t card :
-       {uint32_t{ILK_CARD_NONE}, uint32_t{ILK_CARD_SENSOR}, ILK_CARD_COUNT, UINT32_MAX}) {
-    OpenGate gate;
-    gate.config.card = card;
-    EXPECT_EQ(gate.verdict(), ILK_GATE_DRIVE) << card;
+TEST(P17_reference_part, an_axis_without_a_switch_has_no_way_to_it_and_none_away) {
+  ilk_axis_t axis{};
+  for (const auto& [side, towards, away] :
+       {std::array{uint32_t{ILK_LIMIT_NONE}, uint32_t{ILK_DIRECTION_NONE}, uint32_t{ILK_DIRECTION_NONE}},
+        std::array{uint32_t{ILK_LIMIT_LOWER}, uint32_t{ILK_DIRECTION_DECREASING},
+                   uint32_t{ILK_DIRECTION_INCREASING}},
+        std::array{uint32_t{ILK_LIMIT_UPPER}, uint32_t{ILK_DIRECTION_INCREASING},
+                   uint32_t{ILK_DIRECTION_DECREASING}}}) {
+    const ilk_axis_config_t config = switched_axis(ILK_CARD_PWM, static_cast<ilk_limit_side_t>(side));
+    axis.homing_phase = ILK_HOMING_SEEK;
+    EXPECT_EQ(ilk_homing_command(&config, &axis).direction, towards);
+    axis.homing_phase = ILK_HOMING_BACK_OFF;
+    EXPECT_EQ(ilk_homing_command(&config, &axis).direction, away);
   }
 }
 
@@ -94,138 +164,73 @@ bool packed_to_zero_drive(uint32_t card, const ilk_command_t& command) {
   return drive_words_zero(frame);
 }
 
-TEST(P16_frames, a_direction_without_drive_is_packed_as_zero_drive) {
+TEST(P16_frames, a_command_without_direction_or_drive_and_a_card_without_a_motor_are_packed_as_zero_drive) {
   for (const auto card : {ILK_CARD_PWM, ILK_CARD_NON_PWM, ILK_CARD_ANALOG, ILK_CARD_HIGH_FREQUENCY}) {
     EXPECT_FALSE(packed_to_zero_drive(card, {ILK_DIRECTION_INCREASING, 1, 200}));
     EXPECT_TRUE(packed_to_zero_drive(card, {ILK_DIRECTION_INCREASING, 0, 200}));
     EXPECT_TRUE(packed_to_zero_drive(card, {ILK_DIRECTION_NONE, 1, 200}));
   }
-}
-
-TEST(P16_frames, a_card_without_a_motor_is_packed_as_zero_drive_whatever_the_command) {
   for (const uint32_t card :
        {uint32_t{ILK_CARD_NONE}, uint32_t{ILK_CARD_SENSOR}, ILK_CARD_COUNT, UINT32_MAX}) {
     EXPECT_TRUE(packed_to_zero_drive(card, {ILK_DIRECTION_INCREASING, 1, 1})) << card;
   }
 }
 
-TEST(P15_total, an_effect_of_no_known_kind_or_on_no_axis_changes_nothing) {
-  Bench bench;
-  bench.to_motion_homed(slot::pwm_free);
-  using Words = std::array<uint32_t, sizeof(ilk_state_t) / 4>;
-  for (const uint32_t kind : {0u, ILK_REQUEST_COUNT + 1, UINT32_MAX}) {
-    ilk_state_t state = bench.state();
-    ilk_request_t request = move(slot::pwm_free, 50);
-    request.kind = kind;
-    ilk_request_apply(&bench.config(), &state, &request);
-    EXPECT_EQ(std::bit_cast<Words>(state), std::bit_cast<Words>(bench.state())) << kind;
-  }
-  for (const uint32_t axis : {uint32_t{ILK_SLOTS}, UINT32_MAX}) {
-    ilk_state_t state = bench.state();
-    const ilk_request_t request = disable(axis);
-    ilk_request_apply(&bench.config(), &state, &request);
-    EXPECT_EQ(std::bit_cast<Words>(state), std::bit_cast<Words>(bench.state())) << axis;
+TEST(P16_frames, a_drive_beyond_the_published_map_is_packed_as_its_fastest_word) {
+  ilk_axis_config_t config = plain_axis(ILK_CARD_HIGH_FREQUENCY);
+  for (const uint32_t drive : {397785u, 397786u, UINT32_MAX}) {
+    Frame frame;
+    const ilk_command_t command{ILK_DIRECTION_INCREASING, drive, 1};
+    ilk_frame_pack(&config, &command, 7, frame.data());
+    EXPECT_EQ(frame[3], 1103158212u) << drive;
   }
 }
 
-TEST(P6_jump, half_the_number_space_is_a_jump_whichever_way_the_axis_is_driven) {
-  for (const int32_t target : {500, -500}) {
-    Bench bench;
-    bench.to_motion_homed(slot::pwm_free);
-    bench.keep_moving(slot::pwm_free, target, 5);
-    bench.motor[slot::pwm_free].travelled += int64_t{1} << 31;
-    bench.motor[slot::pwm_free].frozen = true;
-    bench.tick();
-    EXPECT_EQ(bench.fault(slot::pwm_free), ILK_FAULT_JUMP) << target;
-    EXPECT_TRUE(bench.wire_is_zero());
-  }
+TEST(P15_total, sums_of_driven_time_and_of_drive_saturate_instead_of_wrapping) {
+  const ilk_axis_config_t config = plain_axis(ILK_CARD_PWM);
+  ilk_axis_t axis{};
+  axis.stall_driven_ticks = UINT32_MAX;
+  axis.effort_high = UINT32_MAX;
+  axis.effort_low = UINT32_MAX - 50;
+  const ilk_command_t command{ILK_DIRECTION_INCREASING, 100, 0};
+  ilk_axis_note_drive(&command, &axis);
+  EXPECT_EQ(axis.stall_driven_ticks, UINT32_MAX);
+  EXPECT_EQ(axis.effort_high, UINT32_MAX);
+  EXPECT_EQ(axis.effort_low, UINT32_MAX);
+  EXPECT_TRUE(ilk_axis_has_stalled(&config, &axis));
 }
 
-// P14: a seal that fits does not make a contradiction true. Each edit breaks one rule of what belongs
-// together.
-struct Contradiction {
-  const char* name;
-  ilk_mode_t mode;
-  std::function<void(ilk_state_t&, ilk_axis_t&)> edit;
-};
+TEST(P15_total, effort_carries_into_its_upper_word) {
+  ilk_axis_t axis{};
+  axis.effort_low = UINT32_MAX;
+  const ilk_command_t command{ILK_DIRECTION_DECREASING, 2, 0};
+  ilk_axis_note_drive(&command, &axis);
+  EXPECT_EQ(axis.effort_high, 1u);
+  EXPECT_EQ(axis.effort_low, 1u);
+}
 
-void PrintTo(const Contradiction& contradiction, std::ostream* stream) { *stream << contradiction.name; }
+TEST(P15_total, arithmetic_stops_at_its_ends) {
+  EXPECT_EQ(add_saturating(INT32_MAX, 1), INT32_MAX);
+  EXPECT_EQ(add_saturating(INT32_MIN, -1), INT32_MIN);
+  EXPECT_EQ(add_saturating(INT32_MIN, INT32_MAX), -1);
+  EXPECT_EQ(negate_saturating(INT32_MIN), INT32_MAX);
+  EXPECT_EQ(negate_saturating(INT32_MAX), -INT32_MAX);
+  EXPECT_EQ(magnitude(INT32_MIN), 0x80000000u);
+  EXPECT_EQ(signed_of(0x80000000u), INT32_MIN);
+  EXPECT_EQ(signed_of(0x7FFFFFFFu), INT32_MAX);
+  EXPECT_EQ(sum_saturating(UINT32_MAX, 1), UINT32_MAX);
+  EXPECT_EQ(sum_saturating(UINT32_MAX - 1, 1), UINT32_MAX);
+  EXPECT_EQ(count_up(7, 7), 7u);
+  EXPECT_EQ(count_up(9, 7), 7u) << "a value beyond the ceiling comes back to it";
+  EXPECT_EQ(left_of(3, 4), 0u);
+}
 
-using State = ilk_state_t;
-using Axis = ilk_axis_t;
-
-const Contradiction contradictions[] = {
-    {"unknown_mode", ILK_MODE_READY, [](State& state, Axis&) { state.mode = ILK_MODE_COUNT; }},
-    {"unknown_cause", ILK_MODE_LOCKED, [](State& state, Axis&) { state.cause = ILK_CAUSE_COUNT; }},
-    {"cause_in_READY", ILK_MODE_READY, [](State& state, Axis&) { state.cause = ILK_CAUSE_ESTOP; }},
-    {"LOCKED_without_a_cause", ILK_MODE_LOCKED, [](State& state, Axis&) { state.cause = ILK_CAUSE_NONE; }},
-    {"unknown_pedal", ILK_MODE_READY, [](State& state, Axis&) { state.pedal = ILK_PEDAL_COUNT; }},
-    {"no_such_slice", ILK_MODE_READY, [](State& state, Axis&) { state.config_slice = ILK_SLOTS; }},
-    {"unknown_axis_state", ILK_MODE_MOTION, [](State&, Axis& axis) { axis.state = ILK_AXIS_COUNT; }},
-    {"unknown_fault", ILK_MODE_MOTION, [](State&, Axis& axis) { axis.fault = ILK_FAULT_COUNT; }},
-    {"unknown_driven_direction", ILK_MODE_MOTION,
-     [](State&, Axis& axis) { axis.driven_direction = ILK_DIRECTION_COUNT; }},
-    {"unknown_stall_direction", ILK_MODE_MOTION,
-     [](State&, Axis& axis) { axis.stall_direction = ILK_DIRECTION_COUNT; }},
-    {"unknown_reverse_direction", ILK_MODE_MOTION,
-     [](State&, Axis& axis) { axis.reverse_direction = ILK_DIRECTION_COUNT; }},
-    {"unknown_homing_phase", ILK_MODE_MOTION,
-     [](State&, Axis& axis) { axis.homing_phase = ILK_HOMING_COUNT; }},
-    {"homed_is_no_flag", ILK_MODE_MOTION, [](State&, Axis& axis) { axis.homed = 2; }},
-    {"FAULTED_without_a_fault", ILK_MODE_MOTION, [](State&, Axis& axis) { axis.state = ILK_AXIS_FAULTED; }},
-    {"fault_of_an_ENABLED_axis", ILK_MODE_MOTION, [](State&, Axis& axis) { axis.fault = ILK_FAULT_STALL; }},
-    {"lease_of_an_ENABLED_axis", ILK_MODE_MOTION, [](State&, Axis& axis) { axis.lease_ticks = 5; }},
-    {"MOVING_without_a_lease", ILK_MODE_MOTION, [](State&, Axis& axis) { axis.state = ILK_AXIS_MOVING; }},
-    {"homing_phase_of_an_ENABLED_axis", ILK_MODE_MOTION,
-     [](State&, Axis& axis) { axis.homing_phase = ILK_HOMING_SEEK; }},
-    {"HOMING_though_homed", ILK_MODE_MOTION,
-     [](State&, Axis& axis) {
-       axis.state = ILK_AXIS_HOMING;
-       axis.homing_phase = ILK_HOMING_SEEK;
-       axis.homed = 1;
-     }},
-    {"MOVING_in_READY", ILK_MODE_READY,
-     [](State&, Axis& axis) {
-       axis.state = ILK_AXIS_MOVING;
-       axis.lease_ticks = 5;
-     }},
-    {"HOMING_in_READY", ILK_MODE_READY,
-     [](State&, Axis& axis) {
-       axis.state = ILK_AXIS_HOMING;
-       axis.homing_phase = ILK_HOMING_SEEK;
-     }},
-    {"ENABLED_in_LOCKED", ILK_MODE_LOCKED, [](State&, Axis& axis) { axis.state = ILK_AXIS_ENABLED; }},
-};
-
-class P14_contradiction : public testing::TestWithParam<Contradiction> {};
-
-INSTANTIATE_TEST_SUITE_P(Sealed, P14_contradiction, testing::ValuesIn(contradictions),
-                         [](const auto& instance) { return std::string(instance.param.name); });
-
-TEST_P(P14_contradiction, locks_though_the_seal_fits) {
-  constexpr uint32_t slot = slot::pwm_free;
-  const Contradiction& contradiction = GetParam();
-  Bench bench;
-  if (contradiction.mode != ILK_MODE_LOCKED) {
-    bench.to_ready();
-    bench.enable_axis(slot);
-  } else {
-    bench.ticks(3);
-  }
-  if (contradiction.mode == ILK_MODE_MOTION) bench.press();
-  ASSERT_EQ(bench.mode(), contradiction.mode);
-  bench.watched = false;
-  ilk_state_seal(&bench.damage_state());
-  Bench resealed = bench;
-  resealed.tick();
-  ASSERT_NE(resealed.cause(), ILK_CAUSE_INTEGRITY) << "sealing again alone must change nothing";
-
-  contradiction.edit(bench.damage_state(), bench.damage_state().axis[slot]);
-  ilk_state_seal(&bench.damage_state());
-  bench.tick();
-  EXPECT_TRUE(bench.wire_is_zero());
-  EXPECT_EQ(bench.mode(), ILK_MODE_LOCKED);
-  EXPECT_EQ(bench.cause(), ILK_CAUSE_INTEGRITY);
+TEST(P14_containment, a_slice_beyond_the_last_begins_the_pass_anew) {
+  Bench bench = ready_bench();
+  bench.damage_state().system.config_slice = ILK_SLOTS + 3;
+  bench.reseal();
+  bench.ticks(40);
+  EXPECT_EQ(bench.mode(), ILK_MODE_READY);
 }
 
 }  // namespace

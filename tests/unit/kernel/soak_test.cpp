@@ -21,6 +21,7 @@ ilk_request_t wild_request(Dice& dice) {
   request.drive = dice.one_in(20) ? dice.word() : dice.below(1100);
   request.amplitude = dice.one_in(2) ? 0 : dice.below(260);
   request.lease_ticks = dice.below(23);
+  request.consent = dice.one_in(4) ? dice.word() : 0;
   request.holder = dice.one_in(30) ? dice.below(3) : 1;
   return request;
 }
@@ -42,7 +43,7 @@ ilk_request_t sensible_request(Dice& dice, const Bench& bench) {
   if (dice.one_in(60)) return home(slot);
   const int32_t place = bench.position(slot);
   ilk_request_t request = move(slot, place + dice.between(-80, 80), 1 + dice.below(100), 1 + dice.below(20));
-  if (bench.axis(slot).homed == 1) request.target_counts = dice.between(-990, 990);
+  if (bench.homed(slot)) request.target_counts = dice.between(-990, 990);
   return request;
 }
 
@@ -50,12 +51,14 @@ void calm(Bench& bench) {
   bench.pedal(bench.pedal_no_closed == 1);
   bench.estop_loop_closed = 1;
   bench.transaction_done = 1;
-  bench.deadline_missed = 0;
+  bench.deadlines_missed = 0;
+  for (Card& card : bench.card) card.status = 0;
   bench.app_alive = true;
   for (Motor& motor : bench.motor) {
     motor.frozen = false;
     motor.reversed = false;
     motor.creep = 0;
+    motor.dither = 0;
     motor.switch_stuck.reset();
   }
 }
@@ -63,7 +66,7 @@ void calm(Bench& bench) {
 void disturb(Bench& bench, Dice& dice) {
   const uint32_t slot = dice.below(ILK_SLOTS);
   Motor& motor = bench.motor[slot];
-  switch (dice.below(12)) {
+  switch (dice.below(15)) {
     case 0:
       bench.spoil(slot, static_cast<FrameFault>(1 + dice.below(5)), 1 + dice.below(5));
       break;
@@ -97,8 +100,17 @@ void disturb(Bench& bench, Dice& dice) {
     case 10:
       bench.holder = 1 + dice.below(2);
       break;
+    case 11:
+      bench.card[slot].status = incoming::status_was_reset;
+      break;
+    case 12:
+      bench.card[slot].heartbeat = dice.below(3);
+      break;
+    case 13:
+      motor.dither = dice.between(-2, 2);
+      break;
     default:
-      bench.deadline_missed = 1;
+      bench.deadlines_missed = dice.below(3);
       break;
   }
 }
@@ -119,7 +131,7 @@ TEST_P(Hostile_world, never_gets_an_unsafe_tick) {
   uint32_t moved = 0;
   std::set<uint32_t> faults;
   std::set<uint32_t> verdicts;
-  for (uint32_t tick = 0; tick < 25000; ++tick) {
+  for (uint32_t tick = 0; tick < 15000; ++tick) {
     if (dice.one_in(3000)) {
       ++bench.link_generation;
       bench.last_sequence = 0;
@@ -143,7 +155,7 @@ TEST_P(Hostile_world, never_gets_an_unsafe_tick) {
     if (HasFailure()) return;
   }
   EXPECT_GT(moved, 1000u) << "the run would show nothing";
-  EXPECT_GE(faults.size(), 5u) << "the run would show nothing";
+  EXPECT_GE(faults.size(), 6u) << "the run would show nothing";
   EXPECT_GE(verdicts.size(), 14u) << "the run would show nothing";
 }
 
@@ -207,7 +219,7 @@ TEST(P15_total, counters_saturate_over_a_long_idle_time) {
   Bench bench;
   bench.app_alive = false;
   bench.transaction_done = 0;
-  bench.deadline_missed = 1;
+  bench.deadlines_missed = 1;
   bench.pedal_no_closed = 2;
   bench.ticks(70000);
   EXPECT_EQ(bench.mode(), ILK_MODE_LOCKED);

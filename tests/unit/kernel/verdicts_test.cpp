@@ -8,12 +8,7 @@
 namespace interlock::kernel_test {
 namespace {
 
-Bench quiet_bench_in_motion() {
-  Bench bench;
-  bench.to_motion();
-  bench.enable_axis(slot::pwm_free);
-  return bench;
-}
+Bench quiet_bench_in_motion() { return motion_bench(slot::pwm_free); }
 
 TEST(P11_inert_refusal, the_first_failing_check_is_the_verdict) {
   Bench bench = quiet_bench_in_motion();
@@ -25,7 +20,7 @@ TEST(P11_inert_refusal, the_first_failing_check_is_the_verdict) {
   const auto judge = [&bench](const ilk_request_t& record) {
     bench.queue_record(record);
     bench.tick();
-    return static_cast<ilk_verdict_t>(bench.out().verdict[0].verdict);
+    return bench.verdict(0);
   };
   EXPECT_EQ(judge(request), ILK_VERDICT_CHECKSUM);
   EXPECT_EQ(judge(with_crc(request)), ILK_VERDICT_SEQUENCE);
@@ -41,6 +36,7 @@ TEST(P11_inert_refusal, any_wrong_bit_of_a_request_is_CHECKSUM) {
   bench.app_alive = false;
   ilk_request_t right = move(slot::pwm_free, 50);
   right.sequence = bench.last_sequence + 1;
+  right.consent = bench.system().consent;
   right = with_crc(right);
   for (uint32_t bit = 0; bit < sizeof(ilk_request_t) * 8; ++bit) {
     auto words = std::bit_cast<std::array<uint32_t, sizeof(ilk_request_t) / 4>>(right);
@@ -50,11 +46,11 @@ TEST(P11_inert_refusal, any_wrong_bit_of_a_request_is_CHECKSUM) {
     trial.tick();
     ASSERT_EQ(trial.out().verdict[0].verdict, uint32_t{ILK_VERDICT_CHECKSUM}) << bit;
     ASSERT_TRUE(trial.wire_is_zero());
-    ASSERT_EQ(trial.state().last_sequence, bench.state().last_sequence);
+    ASSERT_EQ(trial.system().last_sequence, bench.system().last_sequence);
   }
   bench.queue_record(right);
   bench.tick();
-  EXPECT_EQ(bench.out().verdict[0].verdict, uint32_t{ILK_VERDICT_ACCEPTED});
+  EXPECT_EQ(bench.verdict(0), ILK_VERDICT_ACCEPTED);
 }
 
 TEST(P11_inert_refusal, a_wrong_CRC_changes_nothing) {
@@ -65,9 +61,9 @@ TEST(P11_inert_refusal, a_wrong_CRC_changes_nothing) {
   request.sequence = bench.last_sequence + 1;
   bench.queue_record(request);
   bench.tick();
-  EXPECT_EQ(bench.out().verdict[0].verdict, uint32_t{ILK_VERDICT_CHECKSUM});
+  EXPECT_EQ(bench.verdict(0), ILK_VERDICT_CHECKSUM);
   EXPECT_EQ(state_without_counters(bench), state_without_counters(undisturbed));
-  EXPECT_EQ(bench.state().requests_refused, undisturbed.state().requests_refused + 1);
+  EXPECT_EQ(bench.system().requests_refused, undisturbed.system().requests_refused + 1);
 }
 
 TEST(Sequence, must_be_newer_by_one_to_half_the_range) {
@@ -75,10 +71,10 @@ TEST(Sequence, must_be_newer_by_one_to_half_the_range) {
     Bench bench = quiet_bench_in_motion();
     bench.app_alive = false;
     ilk_request_t request = stop();
-    request.sequence = bench.state().last_sequence + distance;
+    request.sequence = bench.system().last_sequence + distance;
     bench.queue_record(with_crc(request));
     bench.tick();
-    return static_cast<ilk_verdict_t>(bench.out().verdict[0].verdict);
+    return bench.verdict(0);
   };
   EXPECT_EQ(verdict_at(0), ILK_VERDICT_SEQUENCE);
   EXPECT_EQ(verdict_at(1), ILK_VERDICT_ACCEPTED);
@@ -94,11 +90,11 @@ TEST(Sequence, starts_at_one) {
   ilk_request_t request = stop();
   bench.queue_record(with_crc(request));
   bench.tick();
-  EXPECT_EQ(bench.out().verdict[0].verdict, uint32_t{ILK_VERDICT_SEQUENCE});
+  EXPECT_EQ(bench.verdict(0), ILK_VERDICT_SEQUENCE);
   request.sequence = 1;
   bench.queue_record(with_crc(request));
   bench.tick();
-  EXPECT_EQ(bench.out().verdict[0].verdict, uint32_t{ILK_VERDICT_ACCEPTED});
+  EXPECT_EQ(bench.verdict(0), ILK_VERDICT_ACCEPTED);
 }
 
 TEST(Sequence, wraps) {
@@ -113,7 +109,7 @@ TEST(Sequence, wraps) {
   EXPECT_EQ(bench.ask(stop()), ILK_VERDICT_ACCEPTED);
   EXPECT_EQ(bench.ask(stop()), ILK_VERDICT_ACCEPTED);
   EXPECT_EQ(bench.ask(stop()), ILK_VERDICT_ACCEPTED);
-  EXPECT_EQ(bench.state().last_sequence, 1u);
+  EXPECT_EQ(bench.system().last_sequence, 1u);
 }
 
 TEST(Sequence, a_repeated_record_is_refused_and_does_not_reopen_older_numbers) {
@@ -121,6 +117,7 @@ TEST(Sequence, a_repeated_record_is_refused_and_does_not_reopen_older_numbers) {
   bench.app_alive = false;
   ilk_request_t request = move(slot::pwm_free, 50);
   request.sequence = bench.last_sequence + 5;
+  request.consent = bench.system().consent;
   const ilk_request_t newest = with_crc(request);
   request.sequence -= 3;
   const ilk_request_t older = with_crc(request);
@@ -131,11 +128,11 @@ TEST(Sequence, a_repeated_record_is_refused_and_does_not_reopen_older_numbers) {
   bench.queue_record(older);
   bench.queue_record(next_older);
   bench.tick();
-  EXPECT_EQ(bench.out().verdict[0].verdict, uint32_t{ILK_VERDICT_ACCEPTED});
-  EXPECT_EQ(bench.out().verdict[1].verdict, uint32_t{ILK_VERDICT_SEQUENCE});
-  EXPECT_EQ(bench.out().verdict[2].verdict, uint32_t{ILK_VERDICT_SEQUENCE});
-  EXPECT_EQ(bench.out().verdict[3].verdict, uint32_t{ILK_VERDICT_SEQUENCE});
-  EXPECT_EQ(bench.state().last_sequence, newest.sequence);
+  EXPECT_EQ(bench.verdict(0), ILK_VERDICT_ACCEPTED);
+  EXPECT_EQ(bench.verdict(1), ILK_VERDICT_SEQUENCE);
+  EXPECT_EQ(bench.verdict(2), ILK_VERDICT_SEQUENCE);
+  EXPECT_EQ(bench.verdict(3), ILK_VERDICT_SEQUENCE);
+  EXPECT_EQ(bench.system().last_sequence, newest.sequence);
 }
 
 TEST(Sequence, a_refused_request_uses_up_its_number) {
@@ -144,7 +141,7 @@ TEST(Sequence, a_refused_request_uses_up_its_number) {
   bench.app_alive = false;
   const ilk_verdict_t verdict = bench.ask(reset());
   ASSERT_EQ(verdict, ILK_VERDICT_MODE);
-  EXPECT_EQ(bench.state().last_sequence, bench.last_sequence);
+  EXPECT_EQ(bench.system().last_sequence, bench.last_sequence);
 }
 
 TEST(Sequence, restarts_with_a_new_attachment) {
@@ -153,7 +150,7 @@ TEST(Sequence, restarts_with_a_new_attachment) {
   bench.link_generation = 7;
   bench.last_sequence = 0;
   EXPECT_EQ(bench.ask(enable(slot::pwm_free)), ILK_VERDICT_ACCEPTED);
-  EXPECT_EQ(bench.state().link_generation, 7u);
+  EXPECT_EQ(bench.system().link_generation, 7u);
 }
 
 TEST(Common_checks, unknown_kinds_are_UNKNOWN) {
@@ -195,7 +192,7 @@ TEST(P11_inert_refusal, at_most_sixteen_requests_are_judged_in_a_tick) {
   for (int more = 0; more < 20; ++more) bench.queue(stop());
   bench.tick();
   EXPECT_EQ(bench.out().verdict_count, uint32_t{ILK_REQUESTS_PER_TICK});
-  EXPECT_EQ(bench.state().last_sequence, bench.last_sequence - 4);
+  EXPECT_EQ(bench.system().last_sequence, bench.last_sequence - 4);
 }
 
 TEST(P11_inert_refusal, verdicts_come_in_order_and_name_their_request) {
@@ -207,8 +204,8 @@ TEST(P11_inert_refusal, verdicts_come_in_order_and_name_their_request) {
   const std::vector<ilk_verdict_t> verdicts = {ILK_VERDICT_ACCEPTED, ILK_VERDICT_MODE, ILK_VERDICT_MODE,
                                                ILK_VERDICT_AXIS, ILK_VERDICT_ACCEPTED};
   const uint32_t first = bench.last_sequence + 1;
-  const uint32_t accepted = bench.state().requests_accepted;
-  const uint32_t refused = bench.state().requests_refused;
+  const uint32_t accepted = bench.system().requests_accepted;
+  const uint32_t refused = bench.system().requests_refused;
   for (const ilk_request_t& request : requests) bench.queue(request);
   bench.tick();
   ASSERT_EQ(bench.out().verdict_count, requests.size());
@@ -220,13 +217,14 @@ TEST(P11_inert_refusal, verdicts_come_in_order_and_name_their_request) {
     EXPECT_EQ(record.axis, requests[index].axis);
     EXPECT_EQ(record.tick, bench.now());
   }
-  EXPECT_EQ(bench.state().requests_accepted, accepted + 2);
-  EXPECT_EQ(bench.state().requests_refused, refused + 3);
+  EXPECT_EQ(bench.system().requests_accepted, accepted + 2);
+  EXPECT_EQ(bench.system().requests_refused, refused + 3);
 }
 
 TEST(P11_inert_refusal, the_request_crc_is_the_standard_one) {
   ilk_request_t request = move(3, -77, 123, 9);
   request.sequence = 0x01020304u;
+  request.consent = 0x5A5A5A5Au;
   request.holder = 0xA5A5A5A5u;
   EXPECT_EQ(ilk_request_crc(&request), with_crc(request).crc);
   EXPECT_EQ(crc32_of_words(std::array<uint32_t, 2>{0x34333231u, 0x38373635u}), 0x9AE0DAAFu)
@@ -236,6 +234,7 @@ TEST(P11_inert_refusal, the_request_crc_is_the_standard_one) {
 TEST(Ordering, requests_of_one_tick_act_in_order) {
   Bench bench;
   bench.to_motion();
+  bench.rest();
   const uint32_t too_early = bench.queue(move(slot::pwm_free, 50));
   bench.queue(enable(slot::pwm_free));
   const uint32_t in_time = bench.queue(move(slot::pwm_free, 50));

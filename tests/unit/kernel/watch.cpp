@@ -22,55 +22,54 @@ void SafetyWatch::judge(const ilk_inputs_t& in, std::span<const ilk_request_t> r
   observe_verdicts(requests, out);
 
   std::string broken = judge_verdicts(requests, count, out);
-  if (broken.empty()) broken = judge_modes(state);
+  if (broken.empty()) broken = judge_modes(state, out);
   for (uint32_t slot = 0; slot < ILK_SLOTS && broken.empty(); ++slot) {
     broken = judge_axis(slot, in, state, out);
     if (!broken.empty()) broken += ", slot " + std::to_string(slot);
   }
   if (!broken.empty()) {
     failed_ = true;
-    ADD_FAILURE() << "tick " << state.tick << ": " << broken;
+    ADD_FAILURE() << "tick " << state.system.tick << ": " << broken;
   }
-  remember(in, state, out);
+  remember(state, out);
 }
 
 void SafetyWatch::observe_frames(const ilk_inputs_t& in) {
   for (uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     AxisView& axis = axis_[slot];
     const std::span<const uint32_t> frame(in.frame[slot]);
-    const bool lost = axis.bad_frames >= config_.bad_frame_limit;
-    const bool fresh = !axis.heartbeat || lost || *axis.heartbeat != frame[incoming::heartbeat];
-    const bool heard = first_tick_ || !echo_ || *echo_ == frame[incoming::tick_echo];
+    const bool heard = !echo_ || *echo_ == frame[incoming::tick_echo];
     axis.valid = config_.axis[slot].card != ILK_CARD_NONE && in.transaction_done == 1 &&
-                 (in.frames_received >> slot & 1u) == 1 && start_and_checksum_right(frame) && fresh && heard;
-    axis.ticks_since_frame += 1;
+                 (in.frames_received >> slot & 1u) == 1 && start_and_checksum_right(frame) && heard;
+    axis.periods += 1 + uint64_t{in.deadlines_missed};
     axis.jump = 0;
     if (!axis.valid) {
       axis.bad_frames += 1;
+      if (axis.bad_frames >= config_.common.bad_frame_limit) axis.raw.reset();
       continue;
     }
     const uint32_t raw = frame[incoming::encoder];
     if (axis.raw) {
       const auto delta = static_cast<int64_t>(static_cast<int32_t>(raw - *axis.raw));
       const uint64_t distance = static_cast<uint64_t>(delta < 0 ? -delta : delta);
-      const uint64_t reach = uint64_t{config_.axis[slot].max_delta_counts} * axis.ticks_since_frame;
+      const uint64_t reach = uint64_t{config_.axis[slot].max_delta_counts} * axis.periods;
       axis.jump = distance > reach ? distance : 0;
     }
     axis.raw = raw;
-    axis.heartbeat = frame[incoming::heartbeat];
     axis.bad_frames = 0;
-    axis.ticks_since_frame = 0;
+    axis.periods = 0;
   }
 }
 
 void SafetyWatch::observe_contacts(const ilk_inputs_t& in) {
-  const bool two = config_.pedal_channels == 2;
+  const bool two = config_.common.pedal_channels == 2;
   pressed_ = in.pedal_no_closed == 1 && (!two || in.pedal_nc_closed == 0);
   released_ = in.pedal_no_closed == 0 && (!two || in.pedal_nc_closed == 1);
   pressed_ticks_ = pressed_ ? pressed_ticks_ + 1 : 0;
-  released_in_ready_ = released_ && mode_ == ILK_MODE_READY ? released_in_ready_ + 1 : 0;
-  armed_ = mode_ == ILK_MODE_READY && (armed_ || released_in_ready_ >= config_.pedal_debounce_ticks);
   silent_ticks_ += silent_ticks_ < UINT32_MAX ? 1 : 0;
+  const bool may_arm = mode_ == ILK_MODE_READY && silent_ticks_ < config_.common.app_timeout_ticks;
+  released_in_ready_ = released_ && may_arm ? released_in_ready_ + 1 : 0;
+  armed_ = may_arm && (armed_ || released_in_ready_ >= config_.common.pedal_debounce_ticks);
 }
 
 void SafetyWatch::observe_verdicts(std::span<const ilk_request_t> requests, const ilk_outputs_t& out) {
@@ -82,6 +81,14 @@ void SafetyWatch::observe_verdicts(std::span<const ilk_request_t> requests, cons
     if (out.verdict[index].verdict != ILK_VERDICT_ACCEPTED) continue;
     const ilk_request_t& request = requests[index];
     if (request.kind == ILK_REQUEST_HEARTBEAT) silent_ticks_ = 0;
+    if (request.kind == ILK_REQUEST_STOP ||
+        (request.kind == ILK_REQUEST_HEARTBEAT && request.holder != holder_)) {
+      armed_ = false;
+      released_in_ready_ = 0;
+    }
+    if (request.kind == ILK_REQUEST_HEARTBEAT) holder_ = request.holder;
+    if (request.kind == ILK_REQUEST_MOVE || request.kind == ILK_REQUEST_HOME)
+      consents_.insert(request.consent);
     if (request.kind == ILK_REQUEST_RESET) reset_accepted_ = true;
     if (request.axis >= ILK_SLOTS) continue;
     if (request.kind == ILK_REQUEST_CLEAR_FAULT) cleared_ |= 1u << request.axis;
@@ -113,18 +120,23 @@ std::string SafetyWatch::judge_verdicts(std::span<const ilk_request_t> requests,
   return {};
 }
 
-std::string SafetyWatch::judge_modes(const ilk_state_t& state) const {
-  const bool relocked = state.cause == ILK_CAUSE_INTEGRITY;
+std::string SafetyWatch::judge_modes(const ilk_state_t& state, const ilk_outputs_t& out) const {
+  const bool relocked = state.system.cause == ILK_CAUSE_INTEGRITY;
   if (mode_ == ILK_MODE_LOCKED) {
-    if (state.mode != ILK_MODE_LOCKED && !reset_accepted_) return "P8: LOCKED was left without RESET";
-    if (state.mode == ILK_MODE_LOCKED && state.cause != cause_ && !relocked && !reset_accepted_) {
+    if (state.system.mode != ILK_MODE_LOCKED && !reset_accepted_) return "P8: LOCKED was left without RESET";
+    if (state.system.mode == ILK_MODE_LOCKED && state.system.cause != cause_ && !relocked &&
+        !reset_accepted_) {
       return "P8: the first cause was overwritten";
     }
   }
-  if (state.mode == ILK_MODE_MOTION && mode_ != ILK_MODE_MOTION) {
+  const bool on = state.system.mode == ILK_MODE_READY || state.system.mode == ILK_MODE_MOTION;
+  if ((out.power == 1) != on) return "P1: power is not that of the mode";
+  if ((state.system.mode == ILK_MODE_MOTION) != (state.system.consent != 0))
+    return "P12: consent outside of MOTION";
+  if (state.system.mode == ILK_MODE_MOTION && mode_ != ILK_MODE_MOTION) {
     if (mode_ != ILK_MODE_READY) return "P9: MOTION was entered from another mode than READY";
     if (!armed_) return "P9: MOTION was entered without a release seen in READY";
-    if (pressed_ticks_ < config_.pedal_debounce_ticks)
+    if (pressed_ticks_ < config_.common.pedal_debounce_ticks)
       return "P9: MOTION was entered on a press not debounced";
   }
   return {};
@@ -139,10 +151,10 @@ std::string SafetyWatch::judge_axis(uint32_t slot, const ilk_inputs_t& in, const
     return drive_words_zero(wire) ? std::string{} : "P1: a slot without a motor is driven";
   }
   if (before.state == ILK_AXIS_FAULTED && axis.state != ILK_AXIS_FAULTED && (cleared_ >> slot & 1u) == 0 &&
-      state.cause != ILK_CAUSE_INTEGRITY) {
+      state.system.cause != ILK_CAUSE_INTEGRITY) {
     return "P8: a fault was left without CLEAR_FAULT";
   }
-  if (before.jump > 0 && axis.state != ILK_AXIS_FAULTED && state.mode != ILK_MODE_INIT) {
+  if (before.jump > 0 && axis.state != ILK_AXIS_FAULTED && state.system.mode != ILK_MODE_INIT) {
     return "P6: a jump of " + std::to_string(before.jump) + " counts did not fault the axis";
   }
   if ((out.gate[slot] == ILK_GATE_OPEN) != !drive_words_zero(wire)) {
@@ -165,14 +177,14 @@ std::string SafetyWatch::judge_drive(uint32_t slot, const ilk_inputs_t& in, cons
   const bool increasing = direction == ILK_DIRECTION_INCREASING;
   const auto coast = static_cast<int32_t>(config.coast_counts);
 
-  if (state.mode != ILK_MODE_MOTION) return "P2: drive outside MOTION";
+  if (state.system.mode != ILK_MODE_MOTION) return "P2: drive outside MOTION";
   if (!pressed_) return "P2: drive without the pedal";
   if (in.estop_loop_closed != 1) return "P2: drive with the E-stop active";
-  if (silent_ticks_ > config_.app_timeout_ticks) return "P10: drive without the app";
+  if (silent_ticks_ >= config_.common.app_timeout_ticks) return "P10: drive without the app";
   if (!view.valid) return "P1: drive without a valid frame";
   if (axis.state != ILK_AXIS_MOVING && axis.state != ILK_AXIS_HOMING) return "P1: drive of an axis at rest";
   if (axis.fault != ILK_FAULT_NONE) return "P1: drive of a faulted axis";
-  if (mode_ != ILK_MODE_MOTION && (commanded_ >> slot & 1u) == 0) return "P12: drive on entry to MOTION";
+  if (!consents_.contains(state.system.consent)) return "P12: drive without an order for this press";
   if (!view.homing && view.lease <= 1 && (commanded_ >> slot & 1u) == 0) {
     return "P1: drive without a live lease";
   }
@@ -180,39 +192,29 @@ std::string SafetyWatch::judge_drive(uint32_t slot, const ilk_inputs_t& in, cons
   if (at_switch && config.limit_side == (increasing ? ILK_LIMIT_UPPER : ILK_LIMIT_LOWER)) {
     return "P3: drive towards a triggered switch";
   }
-  if (axis.homed == 1 && (increasing ? axis.position_counts > config.max_counts - coast
-                                     : axis.position_counts < config.min_counts + coast)) {
+  if (axis.homed != ILK_HOMED_NOT && (increasing ? axis.position_counts >= config.max_counts - coast
+                                                 : axis.position_counts <= config.min_counts + coast)) {
     return "P4: drive outward at a soft limit";
   }
   if (drive > config.max_drive) return "P7: drive above its bound";
-  if (axis.homed != 1 && drive > config.unhomed_max_drive) return "P7: drive above the unhomed bound";
-  if (axis.homed != 1 && axis.state == ILK_AXIS_MOVING) {
-    const auto counted = static_cast<int32_t>(in.frame[slot][incoming::encoder] - view.press_raw);
-    const int64_t travel = config.direction_correction == 1 ? -int64_t{counted} : int64_t{counted};
-    const int64_t bound = int64_t{config.unhomed_travel_counts} - coast;
-    if (mode_ == ILK_MODE_MOTION && (increasing ? travel > bound : travel < -bound)) {
-      return "P7: drive beyond the unhomed travel";
-    }
-  }
+  if (axis.homed == ILK_HOMED_NOT && drive > config.unhomed_max_drive)
+    return "P7: drive above the unhomed bound";
   return {};
 }
 
-void SafetyWatch::remember(const ilk_inputs_t& in, const ilk_state_t& state, const ilk_outputs_t& out) {
+void SafetyWatch::remember(const ilk_state_t& state, const ilk_outputs_t& out) {
   for (uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     AxisView& view = axis_[slot];
-    const bool motion = state.mode == ILK_MODE_MOTION;
+    const bool motion = state.system.mode == ILK_MODE_MOTION;
     view.state = state.axis[slot].state;
     view.lease = motion && view.lease > 1 ? view.lease - 1 : 0;
     view.homing = motion && view.homing && view.state == ILK_AXIS_HOMING;
-    if (motion && mode_ != ILK_MODE_MOTION) {
-      view.press_raw = view.valid ? in.frame[slot][incoming::encoder] : view.raw.value_or(0);
-    }
   }
   echo_ = last_sent_;
   last_sent_ = out.frame[0][outgoing::tick];
-  first_tick_ = false;
-  mode_ = state.mode;
-  cause_ = state.cause;
+  if (state.system.mode != ILK_MODE_MOTION) consents_.clear();
+  mode_ = state.system.mode;
+  cause_ = state.system.cause;
 }
 
 }  // namespace interlock::kernel_test

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 
@@ -26,16 +27,14 @@ class SafetyWatch {
 
  private:
   struct AxisView {
-    std::optional<uint32_t> heartbeat;
     uint32_t bad_frames = 0;
     bool valid = false;
     std::optional<uint32_t> raw;
-    uint32_t ticks_since_frame = 0;
+    uint64_t periods = 0;
     uint64_t jump = 0;
     uint32_t lease = 0;
     bool homing = false;
     uint32_t state = ILK_AXIS_DISABLED;
-    uint32_t press_raw = 0;
   };
 
   void observe_frames(const ilk_inputs_t& in);
@@ -43,17 +42,16 @@ class SafetyWatch {
   void observe_verdicts(std::span<const ilk_request_t> requests, const ilk_outputs_t& out);
   std::string judge_verdicts(std::span<const ilk_request_t> requests, uint32_t count,
                              const ilk_outputs_t& out) const;
-  std::string judge_modes(const ilk_state_t& state) const;
+  std::string judge_modes(const ilk_state_t& state, const ilk_outputs_t& out) const;
   std::string judge_axis(uint32_t slot, const ilk_inputs_t& in, const ilk_state_t& state,
                          const ilk_outputs_t& out) const;
   std::string judge_drive(uint32_t slot, const ilk_inputs_t& in, const ilk_state_t& state,
                           const ilk_outputs_t& out) const;
-  void remember(const ilk_inputs_t& in, const ilk_state_t& state, const ilk_outputs_t& out);
+  void remember(const ilk_state_t& state, const ilk_outputs_t& out);
 
   ilk_config_t config_;
   std::array<AxisView, ILK_SLOTS> axis_{};
   bool failed_ = false;
-  bool first_tick_ = true;
   std::optional<uint32_t> echo_;       ///< tick counter of the transaction before
   std::optional<uint32_t> last_sent_;  ///< tick counter of the last outgoing frames
   bool pressed_ = false;
@@ -62,6 +60,8 @@ class SafetyWatch {
   uint32_t pressed_ticks_ = 0;
   bool armed_ = false;
   uint32_t silent_ticks_ = UINT32_MAX;
+  uint32_t holder_ = 0;
+  std::set<uint32_t> consents_;  ///< of the orders accepted since MOTION began
   uint32_t mode_;
   uint32_t cause_ = ILK_CAUSE_BOOT;
   bool reset_accepted_ = false;

@@ -26,7 +26,7 @@ TEST(Metrics, OfAKernelAreLeftOutWhileNoneIsAttached) {
 
 TEST(Metrics, TellModeAgeAndLoop) {
   ControlView view = test::ready_view();
-  view.snapshot.state.tick = 1234;
+  view.snapshot.state.system.tick = 1234;
   view.snapshot.overruns = 2;
   view.snapshot.lateness = {.second_us = 0, .worst_us = 250'000, .total_ms = 1500};
   view.snapshot.period_us = 1000;

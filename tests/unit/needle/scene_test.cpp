@@ -118,7 +118,7 @@ TEST(Scene, TheSameSeedGivesTheSameAndAnotherOneNot) {
 
 TEST(Scene, WithoutANeedleAPlantRefusesAHand) {
   ilk_config_t robot{};
-  robot.period_us = 1000;
+  robot.common.period_us = 1000;
   plant::Plant plant(robot, plant::Parameters{}, 1);
   EXPECT_FALSE(plant.schedule(plant::command::PressHand{1.0}));
   plant.surround(std::make_unique<Scene>(parameters(), 1));

@@ -34,10 +34,10 @@ std::uint32_t packed_signal(const ilk_axis_config_t& axis, bool direction_bit, s
 
 ilk_config_t sample_robot() {
   ilk_config_t robot{};
-  robot.version = ILK_CONFIG_VERSION;
-  robot.size_bytes = sizeof robot;
-  robot.period_us = 1000;
-  robot.pedal_channels = 2;
+  robot.common.version = ILK_CONFIG_VERSION;
+  robot.common.size_bytes = sizeof robot;
+  robot.common.period_us = 1000;
+  robot.common.pedal_channels = 2;
   robot.axis[kPwm] = sample_axis(ILK_CARD_PWM, ILK_LIMIT_UPPER, -1222, 8);
   robot.axis[kNonPwm] = sample_axis(ILK_CARD_NON_PWM, ILK_LIMIT_NONE, -8073, 8073);
   robot.axis[kNonPwm].motor_direction = 0;
@@ -75,6 +75,7 @@ void write_robot(const ilk_config_t& robot, const std::filesystem::path& path) {
 Bench::Bench(const Parameters& parameters, std::uint64_t seed, const ilk_config_t& robot)
     : plant(robot, parameters, seed), robot_(robot) {
   exchange.magic = ILK_SIM_MAGIC;
+  exchange.power = 1;
 }
 
 void Bench::drive(std::size_t slot, Sense sense, std::uint32_t drive) {

@@ -221,8 +221,8 @@ TEST(RobotFile, RefusalNamesTheFileAndTheReason) {
     const auto loaded = load_robot(folder / "r.ilkc");
     return loaded ? std::string("accepted") : loaded.error();
   };
-  EXPECT_THAT(fault([](auto& robot) { robot.version = 2; }), HasSubstr("r.ilkc: has version 2"));
-  EXPECT_THAT(fault([](auto& robot) { robot.period_us = 100; }),
+  EXPECT_THAT(fault([](auto& robot) { robot.common.version = 1; }), HasSubstr("r.ilkc: has version 1"));
+  EXPECT_THAT(fault([](auto& robot) { robot.common.period_us = 100; }),
               HasSubstr("period 100 us, expected 125 to 2000"));
   EXPECT_THAT(fault([](auto& robot) { robot.axis[8].card = 6; }),
               HasSubstr("slot 8: card type 6 is unknown"));

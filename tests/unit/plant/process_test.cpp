@@ -159,6 +159,7 @@ class Kernel {
     ::send(socket_.get(), &hello, sizeof hello, MSG_NOSIGNAL);
     attached = ::recv(socket_.get(), &answer, sizeof answer, 0) == sizeof answer;
     exchange.magic = ILK_SIM_MAGIC;
+    exchange.power = 1;
   }
 
   /** One exchange; false when the plant closed the bus. */

@@ -5,12 +5,11 @@
  */
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstring>
 #include <filesystem>
 #include <vector>
 
 #include "interlock/kernel.h"
+#include "plant/exchange.hpp"
 #include "plant/parameters_file.hpp"
 #include "plant/plant.hpp"
 #include "robot/compile.hpp"
@@ -53,8 +52,9 @@ class Pair {
     request.axis = static_cast<std::uint32_t>(slot);
     request.target_counts = target;
     request.drive = drive;
-    request.lease_ticks = config.lease_max_ticks;
+    request.lease_ticks = config.common.lease_max_ticks;
     request.holder = 1;
+    request.consent = state.system.consent;
     request.crc = ilk_request_crc(&request);
     requests_.push_back(request);
   }
@@ -62,19 +62,7 @@ class Pair {
   /** One tick; every request must be accepted. */
   void step() {
     ask(ILK_REQUEST_HEARTBEAT);
-    ilk_sim_exchange_t exchange{};
-    exchange.magic = ILK_SIM_MAGIC;
-    std::copy(std::begin(outputs.lamp), std::end(outputs.lamp), std::begin(exchange.lamp));
-    std::memcpy(exchange.frame, outputs.frame, sizeof exchange.frame);
-    const ilk_sim_reply_t reply = plant.tick(exchange);
-    ilk_inputs_t inputs{};
-    inputs.link_generation = 1;
-    inputs.transaction_done = 1;
-    inputs.frames_received = reply.frames_received;
-    inputs.pedal_no_closed = reply.pedal_no_closed;
-    inputs.pedal_nc_closed = reply.pedal_nc_closed;
-    inputs.estop_loop_closed = reply.estop_loop_closed;
-    std::memcpy(inputs.frame, reply.frame, sizeof inputs.frame);
+    const ilk_inputs_t inputs = exchange(plant, outputs, state.system.tick);
     ilk_step(&config, &state, &inputs, requests_.data(), static_cast<std::uint32_t>(requests_.size()),
              &outputs);
     for (std::uint32_t n = 0; n < outputs.verdict_count; ++n) {
@@ -92,10 +80,10 @@ class Pair {
 
   void apply(const command::Command& command) { EXPECT_TRUE(plant.schedule(command)); }
 
-  /** Unlocks, enables every axis and holds the pedal. */
+  /** Unlocks, enables every axis, which rests with its power up, and holds the pedal. */
   void start() {
     ask(ILK_REQUEST_RESET);
-    run(50);
+    run(100);
     for (const std::size_t slot : kAxes) {
       ask(ILK_REQUEST_ENABLE, slot);
     }
@@ -106,17 +94,18 @@ class Pair {
   void press() {
     apply(command::PressPedal{true});
     run(50);
-    ASSERT_EQ(state.mode, ILK_MODE_MOTION);
+    ASSERT_EQ(state.system.mode, ILK_MODE_MOTION);
   }
 
   /** Homes an axis by its switch. */
   void home(std::size_t slot) {
     ask(ILK_REQUEST_HOME, slot);
     run(1);
-    for (int n = 0; n < 20'000 && state.axis[slot].state == ILK_AXIS_HOMING; ++n) {
+    while (state.axis[slot].state == ILK_AXIS_HOMING) {
       step();
     }
-    ASSERT_EQ(state.axis[slot].homed, 1u) << "slot " << slot << ", fault " << state.axis[slot].fault;
+    ASSERT_EQ(state.axis[slot].homed, ILK_HOMED_BY_SWITCH)
+        << "slot " << slot << ", fault " << state.axis[slot].fault;
   }
 
   double true_position(std::size_t slot) const { return plant.station(slot)->position_counts(); }
@@ -148,8 +137,8 @@ TEST(PlantWithKernel, P4_FullDriveIntoEitherLimitStaysWithinTheSoftRange) {
     pair.start();
     pair.home(kLateral);
     const ilk_axis_config_t& axis = pair.config.axis[kLateral];
-    for (const std::int32_t target : {axis.min_counts + static_cast<std::int32_t>(axis.coast_counts),
-                                      axis.max_counts - static_cast<std::int32_t>(axis.coast_counts)}) {
+    const ilk_reach_t reach = ilk_reach(&axis, &pair.state.axis[kLateral]);
+    for (const auto target : {static_cast<std::int32_t>(reach.low), static_cast<std::int32_t>(reach.high)}) {
       for (int n = 0; n < 3000; ++n) {
         if (n % 50 == 0) {
           pair.ask(ILK_REQUEST_MOVE, kLateral, target, axis.max_drive);
@@ -170,7 +159,7 @@ TEST(PlantWithKernel, EachFaultOfThePlantIsTheFaultThatTheKernelNames) {
     pair.home(kLateral);
     for (int n = 0; n < 1500; ++n) {
       const bool faulted = pair.state.axis[kLateral].state == ILK_AXIS_FAULTED;
-      if (pair.state.mode == ILK_MODE_MOTION && !faulted && n % 50 == 0) {
+      if (pair.state.system.mode == ILK_MODE_MOTION && !faulted && n % 50 == 0) {
         pair.ask(ILK_REQUEST_MOVE, kLateral, -2000, pair.config.axis[kLateral].max_drive / 2);
       }
       if (n == 210) {
@@ -184,11 +173,11 @@ TEST(PlantWithKernel, EachFaultOfThePlantIsTheFaultThatTheKernelNames) {
   EXPECT_EQ(fault_after(command::StickEncoder{kLateral, true}), ILK_FAULT_STALL);
   EXPECT_EQ(fault_after(command::ReverseMotor{kLateral, true}), ILK_FAULT_REVERSE);
   EXPECT_EQ(fault_after(command::JumpCounter{kLateral, 500}), ILK_FAULT_JUMP);
-  EXPECT_EQ(fault_after(command::PowerCard{kLateral, false}), ILK_FAULT_CARD_LOST);
-  EXPECT_EQ(fault_after(command::SpoilFrames{kLateral, FrameFault::kCorrupt, 3}), ILK_FAULT_CARD_LOST);
-  EXPECT_EQ(fault_after(command::SpoilFrames{kLateral, FrameFault::kDelay, 3}), ILK_FAULT_CARD_LOST);
-  EXPECT_EQ(fault_after(command::SpoilFrames{kLateral, FrameFault::kRepeat, 3}), ILK_FAULT_CARD_LOST);
-  EXPECT_EQ(fault_after(command::SpoilFrames{kLateral, FrameFault::kDeaf, 3}), ILK_FAULT_CARD_LOST);
+  EXPECT_EQ(fault_after(command::PowerCard{kLateral, false}), ILK_FAULT_CARD);
+  EXPECT_EQ(fault_after(command::SpoilFrames{kLateral, FrameFault::kCorrupt, 3}), ILK_FAULT_CARD);
+  EXPECT_EQ(fault_after(command::SpoilFrames{kLateral, FrameFault::kDelay, 3}), ILK_FAULT_CARD);
+  EXPECT_EQ(fault_after(command::SpoilFrames{kLateral, FrameFault::kRepeat, 3}), ILK_FAULT_CARD);
+  EXPECT_EQ(fault_after(command::SpoilFrames{kLateral, FrameFault::kDeaf, 3}), ILK_FAULT_CARD);
   EXPECT_EQ(fault_after(command::SpoilFrames{kLateral, FrameFault::kDrop, 2}), ILK_FAULT_NONE);
 }
 

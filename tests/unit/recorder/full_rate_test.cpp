@@ -19,7 +19,7 @@ class FullRate : public testing::Test {
  protected:
   /** So many ticks of the random world, each of which is known. */
   void run(std::uint32_t ticks) {
-    run_.run(ticks, [this](const KnownTick& tick) { known_[tick.picture.state.tick] = tick; });
+    run_.run(ticks, [this](const KnownTick& tick) { known_[tick.picture.state.system.tick] = tick; });
   }
 
   [[nodiscard]] std::vector<AxisTick> read(const AxisSpan& span) const {

@@ -27,7 +27,7 @@ TEST(RecordedFields, EveryWordOfEveryStructureHasANameOfItsOwn) {
 }
 
 TEST(RecordedFields, NamesReadAsInTheHeaders) {
-  EXPECT_EQ(name_at(offsetof(ilk_picture_t, state.mode)), "state.mode");
+  EXPECT_EQ(name_at(offsetof(ilk_picture_t, state.system.mode)), "state.system.mode");
   EXPECT_EQ(name_at(offsetof(ilk_picture_t, state.axis[3].lease_ticks)), "state.axis[3].lease_ticks");
   EXPECT_EQ(name_at(offsetof(ilk_picture_t, inputs.frame[9][31])), "inputs.frame[9][31]");
   EXPECT_EQ(name_at(offsetof(ilk_picture_t, out.verdict[15].sequence)), "out.verdict[15].sequence");

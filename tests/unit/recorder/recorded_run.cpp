@@ -76,7 +76,7 @@ void RecordedRun::die() {
 
 void RecordedRun::step(const std::function<void(const KnownTick&)>& watch) {
   const auto count = static_cast<std::uint32_t>(requests_.size());
-  const std::uint64_t begun_ns = 1'000'000'000 + std::uint64_t{state_.tick} * 1'000'000;
+  const std::uint64_t begun_ns = 1'000'000'000 + std::uint64_t{state_.system.tick} * 1'000'000;
   ilk_step(&config_, &state_, &in_, requests_.data(), count, &out_);
   ilk_black_box_note(&box_, begun_ns, &state_, &in_, requests_.data(), count, &out_);
   if (watch) {
@@ -96,7 +96,7 @@ void RecordedRun::run(std::uint32_t ticks, const std::function<void(const KnownT
 
 void RecordedRun::calm_inputs() {
   in_.link_generation = 1;
-  in_.deadline_missed = 0;
+  in_.deadlines_missed = 0;
   in_.transaction_done = 1;
   in_.frames_received = UINT32_MAX;
   in_.pedal_no_closed = 0;
@@ -110,8 +110,8 @@ void RecordedRun::calm_inputs() {
     frame[2] = 0x00080000;
     frame[3] = counter_[slot];
     frame[9] = world_.heartbeat;
-    frame[10] = state_.tick * 1000;
-    frame[11] = state_.tick - 2;
+    frame[10] = state_.system.tick * 1000;
+    frame[11] = state_.system.tick - 2;
     frame.back() = 0xffffffff - std::accumulate(frame.begin(), frame.end() - 1, 0U);
   }
 }

@@ -31,7 +31,7 @@ class RecorderTest : public ::testing::Test {
     recorder_.emplace(ring_, *folder_, terms_, [](const std::string&) {});
     run_.calm(50);
     run_.ask(ILK_REQUEST_RESET);
-    ASSERT_EQ(run_.state().mode, ILK_MODE_READY);
+    ASSERT_EQ(run_.state().system.mode, ILK_MODE_READY);
     recorder_->step();
   }
 
@@ -74,8 +74,8 @@ TEST_F(RecorderTest, CalmRunLeavesNoRecording) {
 TEST_F(RecorderTest, LockIsRecordedWithTheTimeBeforeAndAfterIt) {
   calm(3000);
   run_.press_estop();
-  const std::uint32_t locked = run_.state().tick;
-  ASSERT_EQ(run_.state().mode, ILK_MODE_LOCKED);
+  const std::uint32_t locked = run_.state().system.tick;
+  ASSERT_EQ(run_.state().system.mode, ILK_MODE_LOCKED);
   calm(400);
   EXPECT_THAT(files(), ElementsAre("lock-" + std::to_string(locked) + ".ilkr.part"));
   calm(1000);
@@ -91,7 +91,7 @@ TEST_F(RecorderTest, LockIsRecordedWithTheTimeBeforeAndAfterIt) {
 TEST_F(RecorderTest, AxisFaultIsRecorded) {
   calm(100);
   run_.make_jump(4);
-  const std::uint32_t faulted = run_.state().tick;
+  const std::uint32_t faulted = run_.state().system.tick;
   ASSERT_EQ(run_.state().axis[4].state, ILK_AXIS_FAULTED);
   calm(1200);
   EXPECT_THAT(files(), ElementsAre("fault-" + std::to_string(faulted) + ".ilkr"));
@@ -100,10 +100,10 @@ TEST_F(RecorderTest, AxisFaultIsRecorded) {
 TEST_F(RecorderTest, EventsThatFollowEachOtherAreOneRecordingUntilTheLast) {
   calm(100);
   run_.make_jump(4);
-  const std::uint32_t faulted = run_.state().tick;
+  const std::uint32_t faulted = run_.state().system.tick;
   calm(900);
   run_.press_estop();
-  const std::uint32_t locked = run_.state().tick;
+  const std::uint32_t locked = run_.state().system.tick;
   calm(1200);
   EXPECT_THAT(files(), ElementsAre("fault-" + std::to_string(faulted) + ".ilkr"));
   EXPECT_GE(replayed(file(ILK_RECORDED_ON_FAULT, faulted)).replay.last_tick, locked + 1000);
@@ -112,7 +112,7 @@ TEST_F(RecorderTest, EventsThatFollowEachOtherAreOneRecordingUntilTheLast) {
 TEST_F(RecorderTest, KilledKernelsLastTicksAreKept) {
   calm(1500);
   run_.calm(7);
-  const std::uint32_t last = run_.state().tick;
+  const std::uint32_t last = run_.state().system.tick;
   run_.die();
   EXPECT_TRUE(recorder_->finish());
   EXPECT_THAT(files(), ElementsAre("end-" + std::to_string(last) + ".ilkr"));
@@ -124,11 +124,11 @@ TEST_F(RecorderTest, KilledKernelsLastTicksAreKept) {
 TEST_F(RecorderTest, KilledRecorderStartedAgainComesToTheSameRecordings) {
   calm(200);
   run_.press_estop();
-  const std::uint32_t first = run_.state().tick;
+  const std::uint32_t first = run_.state().system.tick;
   calm(1200);
   run_.ask(ILK_REQUEST_RESET);
   run_.press_estop();
-  const std::uint32_t second = run_.state().tick;
+  const std::uint32_t second = run_.state().system.tick;
   calm(300);
   const auto written = fs::last_write_time(file(ILK_RECORDED_ON_LOCK, first));
   recorder_.emplace(ring_, *folder_, terms_, [](const std::string&) {});
@@ -158,7 +158,7 @@ TEST_F(RecorderTest, ContinuousRecordingLosesNoTickFromPartToPart) {
     ticks += report.replay.ticks;
   }
   EXPECT_GT(files().size(), 2U);
-  EXPECT_EQ(ticks, run_.state().tick);
+  EXPECT_EQ(ticks, run_.state().system.tick);
 }
 
 TEST_F(RecorderTest, WholeBlocksOfAContinuousRecordingAreInTheFileAtOnce) {
@@ -173,13 +173,13 @@ TEST_F(RecorderTest, WholeBlocksOfAContinuousRecordingAreInTheFileAtOnce) {
 
 TEST_F(RecorderTest, DemandKeepsTheNewestSeconds) {
   calm(3000);
-  const Recorded<std::uint32_t> blocks =
-      record_now(ring_, scratch_.file("now.ilkr"), {ILK_RECORDED_ON_DEMAND, run_.state().tick, "test"}, 1);
+  const Recorded<std::uint32_t> blocks = record_now(
+      ring_, scratch_.file("now.ilkr"), {ILK_RECORDED_ON_DEMAND, run_.state().system.tick, "test"}, 1);
   ASSERT_TRUE(blocks);
   const ilk_replay_report_t report = replayed(scratch_.file("now.ilkr"));
   EXPECT_TRUE(ilk_replay_is_identical(&report));
-  EXPECT_EQ(report.replay.last_tick, run_.state().tick);
-  EXPECT_LE(report.replay.first_tick, run_.state().tick - 999);
+  EXPECT_EQ(report.replay.last_tick, run_.state().system.tick);
+  EXPECT_LE(report.replay.first_tick, run_.state().system.tick - 999);
   EXPECT_GT(report.replay.first_tick, 1U);
 }
 
@@ -199,7 +199,7 @@ TEST_F(RecorderTest, OldestRecordingsMakeRoomForNewOnes) {
 TEST_F(RecorderTest, CutOffRecordingOfAnEarlierRunIsKept) {
   std::ofstream(folder_->path() / "x-lock-7.ilkr.part") << "cut off";
   run_.press_estop();
-  const std::uint32_t locked = run_.state().tick;
+  const std::uint32_t locked = run_.state().system.tick;
   calm(100);
   folder_->finish_parts(&ring_.run());
   const std::string going_on = "lock-" + std::to_string(locked) + ".ilkr";
@@ -245,7 +245,7 @@ TEST_F(RecorderTest, EventThatTheDiskRefusedIsRecordedOnceItTakesIt) {
   calm(1500);
   fs::rename(folder_->path(), scratch_.file("away"));
   run_.press_estop();
-  const std::uint32_t locked = run_.state().tick;
+  const std::uint32_t locked = run_.state().system.tick;
   calm(1200);
   EXPECT_FALSE(recorder_->finish());
   fs::rename(scratch_.file("away"), folder_->path());
@@ -254,13 +254,13 @@ TEST_F(RecorderTest, EventThatTheDiskRefusedIsRecordedOnceItTakesIt) {
   const ilk_replay_report_t report = replayed(file(ILK_RECORDED_ON_LOCK, locked));
   EXPECT_TRUE(ilk_replay_is_identical(&report));
   EXPECT_LE(report.replay.first_tick, locked - 1000);
-  EXPECT_EQ(report.replay.last_tick, run_.state().tick);
+  EXPECT_EQ(report.replay.last_tick, run_.state().system.tick);
 }
 
 TEST_F(RecorderTest, EventWhoseTimeIsNotOverIsLeftUnfinishedForTheNextRecorder) {
   calm(200);
   run_.press_estop();
-  const std::uint32_t locked = run_.state().tick;
+  const std::uint32_t locked = run_.state().system.tick;
   calm(300);
   EXPECT_FALSE(recorder_->finish()) << "asked to end beside a living kernel";
   EXPECT_THAT(files(), ElementsAre("lock-" + std::to_string(locked) + ".ilkr.part"));
@@ -273,7 +273,7 @@ TEST_F(RecorderTest, EventWhoseTimeIsNotOverIsLeftUnfinishedForTheNextRecorder) 
 TEST_F(RecorderTest, UnfinishedRecordingThatHoldsMoreThanTheRingIsKept) {
   calm(1500);
   run_.press_estop();
-  const std::uint32_t locked = run_.state().tick;
+  const std::uint32_t locked = run_.state().system.tick;
   calm(300);
   recorder_.reset();
   while (*ring_.opening_tick(ring_.oldest()) < locked - 500) {
@@ -294,7 +294,7 @@ TEST_F(RecorderTest, UnfinishedRecordingThatHoldsMoreThanTheRingIsKept) {
 TEST_F(RecorderTest, RecordingThatCannotGetItsNameYetHasNoHole) {
   calm(1500);
   run_.press_estop();
-  const std::uint32_t locked = run_.state().tick;
+  const std::uint32_t locked = run_.state().system.tick;
   calm(500);
   fs::rename(folder_->path(), scratch_.file("away"));
   calm(1500);
@@ -309,7 +309,7 @@ TEST_F(RecorderTest, RecordingThatCannotGetItsNameYetHasNoHole) {
 TEST_F(RecorderTest, RecordingWhoseFileIsRemovedWhileTheDiskIsFullIsWrittenAnew) {
   calm(1500);
   run_.press_estop();
-  const std::uint32_t locked = run_.state().tick;
+  const std::uint32_t locked = run_.state().system.tick;
   calm(20);
   const fs::path part = part_of(file(ILK_RECORDED_ON_LOCK, locked));
   {
@@ -323,7 +323,7 @@ TEST_F(RecorderTest, RecordingWhoseFileIsRemovedWhileTheDiskIsFullIsWrittenAnew)
   const ilk_replay_report_t report = replayed(file(ILK_RECORDED_ON_LOCK, locked));
   EXPECT_TRUE(ilk_replay_is_identical(&report));
   EXPECT_LE(report.replay.first_tick, locked - 1000);
-  EXPECT_EQ(report.replay.last_tick, run_.state().tick);
+  EXPECT_EQ(report.replay.last_tick, run_.state().system.tick);
 }
 
 TEST_F(RecorderTest, ContinuousRecordingThatTheDiskRefusedGoesOnWithTheBlockThatItRefused) {
@@ -344,7 +344,7 @@ TEST_F(RecorderTest, ContinuousRecordingThatTheDiskRefusedGoesOnWithTheBlockThat
     EXPECT_EQ(entry.path().extension(), ".ilkr");
     ticks += replayed(entry.path()).replay.ticks;
   }
-  EXPECT_EQ(ticks, run_.state().tick);
+  EXPECT_EQ(ticks, run_.state().system.tick);
 }
 
 TEST_F(RecorderTest, LastTicksOfADeadKernelThatTheDiskRefusesAreNotTakenForKept) {
@@ -357,7 +357,7 @@ TEST_F(RecorderTest, LastTicksOfADeadKernelThatTheDiskRefusesAreNotTakenForKept)
 TEST_F(RecorderTest, RecordingThatTheDiskInterruptedGoesOnWithTheSameBlock) {
   calm(1500);
   run_.press_estop();
-  const std::uint32_t locked = run_.state().tick;
+  const std::uint32_t locked = run_.state().system.tick;
   calm(20);
   {
     const FileSizeLimit full(fs::file_size(part_of(file(ILK_RECORDED_ON_LOCK, locked))) + 1000);
@@ -370,7 +370,7 @@ TEST_F(RecorderTest, RecordingThatTheDiskInterruptedGoesOnWithTheSameBlock) {
   EXPECT_TRUE(ilk_replay_is_identical(&report));
   EXPECT_EQ(report.replay.gaps, 0U);
   EXPECT_LE(report.replay.first_tick, locked - 1000);
-  EXPECT_EQ(report.replay.last_tick, run_.state().tick);
+  EXPECT_EQ(report.replay.last_tick, run_.state().system.tick);
 }
 
 }  // namespace

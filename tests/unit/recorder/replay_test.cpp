@@ -115,8 +115,9 @@ TEST_F(Replay, MissingBlockIsAGapAndNoDifference) {
 TEST_F(Replay, FirstDifferingTickIsNamedWithTheBitThatTheNextRecordedStateShows) {
   record(3, 2000);
   // A kernel that came to another setpoint in tick 150, and kept it.
-  record_changed(
-      [](ilk_picture_t& was) { was.state.axis[2].setpoint_counts ^= was.state.tick >= 150 ? 0x50 : 0; });
+  record_changed([](ilk_picture_t& was) {
+    was.state.axis[2].setpoint_counts ^= was.state.system.tick >= 150 ? 0x50 : 0;
+  });
   EXPECT_EQ(replay_from(0), ILK_REPLAY_DIFFERS);
   EXPECT_EQ(difference_.tick, 150U);
   EXPECT_FALSE(difference_.outputs);
@@ -141,7 +142,7 @@ TEST_F(Replay, WordThatChangedBetweenTwoTicksIsNamedAtOnce) {
 TEST_F(Replay, OutputsThatTheKernelWouldNotGiveAreReportedWithTheirTick) {
   record(4, 2000);
   // A run in which the tenth tick drove an axis although nothing allowed it.
-  record_changed([](ilk_picture_t& was) { was.out.command[6].drive += was.state.tick == 10 ? 8 : 0; });
+  record_changed([](ilk_picture_t& was) { was.out.command[6].drive += was.state.system.tick == 10 ? 8 : 0; });
   EXPECT_EQ(replay_from(0), ILK_REPLAY_DIFFERS);
   EXPECT_EQ(difference_.tick, 10U);
   EXPECT_TRUE(difference_.outputs);

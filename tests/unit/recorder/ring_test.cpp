@@ -81,13 +81,13 @@ double held_s(std::size_t changing) {
   auto* const words = &in.frame[0][0];
   std::mt19937 dice(1);
   ilk_black_box_begin(box.get(), &state);
-  for (state.tick = 1; state.tick <= 40'000; ++state.tick) {
+  for (state.system.tick = 1; state.system.tick <= 40'000; ++state.system.tick) {
     std::generate_n(words, changing, std::ref(dice));
-    ilk_black_box_note(box.get(), state.tick, &state, &in, nullptr, 0, &out);
+    ilk_black_box_note(box.get(), state.system.tick, &state, &in, nullptr, 0, &out);
   }
   const Ring ring = recorder_test::ring_of(*box);
   const double shown = ring.fewest_seconds().value_or(0);
-  EXPECT_GE(state.tick - *ring.opening_tick(ring.oldest()), shown * 1000);
+  EXPECT_GE(state.system.tick - *ring.opening_tick(ring.oldest()), shown * 1000);
   ilk_black_box_close(box.get());
   return shown;
 }

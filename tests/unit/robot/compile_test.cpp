@@ -24,14 +24,16 @@ TEST(Compile, the_kernel_accepts_neuro) {
 
 TEST(Compile, neuro_keeps_its_numbers) {
   const ilk_config_t config = compile(test::neuro()).value();
-  EXPECT_EQ(config.period_us, 1000u);
-  EXPECT_EQ(config.pedal_channels, 2u);
-  EXPECT_EQ(config.app_timeout_ticks, 100u);
-  EXPECT_EQ(config.lease_max_ticks, 100u);
-  EXPECT_EQ(config.pedal_debounce_ticks, 10u);
-  EXPECT_EQ(config.pedal_disagree_ticks, 50u);
-  EXPECT_EQ(config.bad_frame_limit, 3u);
-  EXPECT_EQ(config.overrun_limit, 3u);
+  EXPECT_EQ(config.common.period_us, 1000u);
+  EXPECT_EQ(config.common.pedal_channels, 2u);
+  EXPECT_EQ(config.common.app_timeout_ticks, 100u);
+  EXPECT_EQ(config.common.lease_max_ticks, 100u);
+  EXPECT_EQ(config.common.pedal_debounce_ticks, 10u);
+  EXPECT_EQ(config.common.pedal_disagree_ticks, 50u);
+  EXPECT_EQ(config.common.power_up_ticks, 20u);
+  EXPECT_EQ(config.common.switch_debounce_ticks, 5u);
+  EXPECT_EQ(config.common.bad_frame_limit, 3u);
+  EXPECT_EQ(config.common.overrun_limit, 3u);
 
   const ilk_axis_config_t& yaw = config.axis[0];
   EXPECT_EQ(yaw.card, static_cast<std::uint32_t>(ILK_CARD_PWM));
@@ -40,9 +42,20 @@ TEST(Compile, neuro_keeps_its_numbers) {
   EXPECT_EQ(yaw.max_counts, 8);
   EXPECT_EQ(yaw.max_drive, 0xefffu);
   EXPECT_EQ(yaw.unhomed_max_drive, 0xefffu / 10);
+  EXPECT_EQ(yaw.dead_zone_drive, 922u);
   EXPECT_EQ(yaw.home_drive, yaw.unhomed_max_drive);
+  EXPECT_EQ(yaw.home_slow_drive, 2227u);
+  EXPECT_EQ(yaw.home_speed_counts_per_s, 60u);
+  EXPECT_EQ(yaw.home_slow_speed_counts_per_s, 12u);
+  EXPECT_EQ(yaw.home_travel_counts, 1493u);
+  EXPECT_EQ(yaw.home_timeout_ticks, 34000u);
+  EXPECT_EQ(yaw.home_clear_counts, 21u);
+  EXPECT_EQ(yaw.home_tolerance_counts, 4u);
+  EXPECT_EQ(yaw.switch_hysteresis_counts, 3u);
+  EXPECT_EQ(yaw.full_speed_counts_per_s, 1000u);
   EXPECT_EQ(yaw.stall_ticks, 500u);
-  EXPECT_EQ(yaw.settle_ticks, 50u);
+  EXPECT_EQ(yaw.stall_effort_ticks, 68u);
+  EXPECT_EQ(yaw.rest_ticks, 50u);
 }
 
 TEST(Compile, slots_without_axis_are_empty) {
@@ -56,11 +69,14 @@ TEST(Compile, slots_without_axis_are_empty) {
 TEST(Compile, axes_without_switch_have_no_homing) {
   const ilk_axis_config_t feet = compile(test::neuro()).value().axis[6];
   EXPECT_EQ(feet.home_drive, 0u);
+  EXPECT_EQ(feet.home_slow_drive, 0u);
   EXPECT_EQ(feet.home_travel_counts, 0u);
-  EXPECT_EQ(feet.home_backoff_counts, 0u);
   EXPECT_EQ(feet.home_timeout_ticks, 0u);
-  EXPECT_EQ(feet.home_rest_ticks, 0u);
+  EXPECT_EQ(feet.home_clear_counts, 0u);
+  EXPECT_EQ(feet.home_tolerance_counts, 0u);
+  EXPECT_EQ(feet.switch_hysteresis_counts, 0u);
   EXPECT_EQ(feet.home_speed_counts_per_s, 0u);
+  EXPECT_EQ(feet.home_slow_speed_counts_per_s, 0u);
 }
 
 TEST(Compile, gives_the_same_bytes_on_every_run) {
@@ -126,7 +142,7 @@ TEST_P(KernelRule, is_named_with_its_text_at_its_line_and_key) {
 INSTANTIATE_TEST_SUITE_P(
     Each, KernelRule,
     testing::Values(
-        RuleBroken{"PERIOD", "period_us = 1000", "period_us = 5000", "period_us", "period_us"},
+        RuleBroken{"PERIOD", "period_us = 1000", "period_us = 100", "period_us", "period_us"},
         RuleBroken{"PEDAL_CHANNELS", "channels = 2", "channels = 3", "channels = 3", "pedal.channels"},
         RuleBroken{"PEDAL_DEBOUNCE", "debounce_ms = 10", "debounce_ms = 51", "debounce_ms",
                    "pedal.debounce_ms"},
@@ -135,6 +151,9 @@ INSTANTIATE_TEST_SUITE_P(
         RuleBroken{"APP_TIMEOUT", "app_timeout_ms = 100", "app_timeout_ms = 151", "app_timeout_ms",
                    "loop.app_timeout_ms"},
         RuleBroken{"LEASE", "lease_max_ms = 100", "lease_max_ms = 0", "lease_max_ms", "loop.lease_max_ms"},
+        RuleBroken{"POWER_UP", "power_up_ms = 20", "power_up_ms = 5001", "power_up_ms", "loop.power_up_ms"},
+        RuleBroken{"SWITCH_DEBOUNCE", "switch_debounce_ms = 5", "switch_debounce_ms = 1",
+                   "switch_debounce_ms", "loop.switch_debounce_ms"},
         RuleBroken{"BAD_FRAMES", "bad_frame_limit = 3", "bad_frame_limit = 6", "bad_frame_limit",
                    "loop.bad_frame_limit"},
         RuleBroken{"OVERRUNS", "overrun_limit = 3", "overrun_limit = 0", "overrun_limit",
@@ -153,20 +172,30 @@ INSTANTIATE_TEST_SUITE_P(
         RuleBroken{"UNHOMED_TRAVEL", "unhomed_travel_counts = 98", "unhomed_travel_counts = 124", "= 124",
                    "axis.yaw.unhomed_travel_counts"},
         RuleBroken{"HOME_DRIVE", "drive = 6143", "drive = 6144", "drive = 6144", "axis.yaw.homing.drive"},
-        RuleBroken{"HOME_TRAVEL", "travel_counts = 1353", "travel_counts = 1241", "= 1241",
+        RuleBroken{"HOME_TRAVEL", "travel_counts = 1493", "travel_counts = 1241", "= 1241",
                    "axis.yaw.homing.travel_counts"},
-        RuleBroken{"HOME_BACKOFF", "backoff_counts = 61", "backoff_counts = 0", "backoff_counts = 0",
-                   "axis.yaw.homing.backoff_counts"},
-        RuleBroken{"HOME_REST", "rest_ms = 50", "rest_ms = 0", "rest_ms = 0", "axis.yaw.homing.rest_ms"},
-        RuleBroken{"HOME_TIMEOUT", "timeout_ms = 26000", "timeout_ms = 2600", "timeout_ms = 2600",
+        RuleBroken{"HOME_SLOW", "slow_drive = 2227", "slow_drive = 922", "slow_drive = 922",
+                   "axis.yaw.homing.slow_drive"},
+        RuleBroken{"HOME_CLEAR", "clear_counts = 21", "clear_counts = 19", "clear_counts = 19",
+                   "axis.yaw.homing.clear_counts"},
+        RuleBroken{"HOME_TOLERANCE", "tolerance_counts = 4", "tolerance_counts = 2", "tolerance_counts = 2",
+                   "axis.yaw.homing.tolerance_counts"},
+        RuleBroken{"HYSTERESIS", "hysteresis_counts = 3", "hysteresis_counts = 124",
+                   "hysteresis_counts = 124", "axis.yaw.homing.hysteresis_counts"},
+        RuleBroken{"HOME_TIMEOUT", "timeout_ms = 34000", "timeout_ms = 3400", "timeout_ms = 3400",
                    "axis.yaw.homing.timeout_ms"},
+        RuleBroken{"SPEED", "slow_speed_counts_per_s = 12", "slow_speed_counts_per_s = 61",
+                   "slow_speed_counts_per_s = 61", "axis.yaw.homing.slow_speed_counts_per_s"},
         RuleBroken{"STALL", "driven_ms = 500", "driven_ms = 501", "driven_ms = 501", "axis.yaw.stall"},
         RuleBroken{"REVERSE", "reverse_counts = 20", "reverse_counts = 11", "reverse_counts = 11",
                    "axis.yaw.runaway.reverse_counts"},
         RuleBroken{"DRIFT", "drift_counts = 20", "drift_counts = 11", "drift_counts = 11",
                    "axis.yaw.runaway.drift_counts"},
-        RuleBroken{"SETTLE", "settle_ms = 50", "settle_ms = 1001", "settle_ms = 1001",
-                   "axis.yaw.mechanics.settle_ms"},
+        RuleBroken{"STALL_EFFORT", "effort_ms = 68", "effort_ms = 62", "effort_ms = 62",
+                   "axis.yaw.stall.effort_ms"},
+        RuleBroken{"NOISE", "noise_counts = 1", "noise_counts = 124", "noise_counts = 124",
+                   "axis.yaw.mechanics.noise_counts"},
+        RuleBroken{"REST", "rest_ms = 50", "rest_ms = 2", "rest_ms = 2", "axis.yaw.mechanics.rest_ms"},
         RuleBroken{"MAX_DELTA", "max_delta_counts = 8", "max_delta_counts = 0", "max_delta_counts = 0",
                    "axis.yaw.mechanics.max_delta_counts"}),
     [](const auto& broken) { return std::string(broken.param.rule); });
@@ -197,7 +226,7 @@ TEST(HomeSteps, nudge_by_the_range_of_the_axis_at_most) {
 
 TEST(ConfigFile, holds_the_words_least_significant_byte_first) {
   ilk_config_t config{};
-  config.version = 0x04030201;
+  config.common.version = 0x04030201;
   const ConfigBytes bytes = encode(config);
   EXPECT_EQ(bytes[0], 1);
   EXPECT_EQ(bytes[1], 2);

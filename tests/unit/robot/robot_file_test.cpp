@@ -25,9 +25,9 @@ TEST(RobotFile, neuro_reads_as_written) {
   EXPECT_EQ(robot.pedal, (Pedal{2, 10, 50}));
   EXPECT_THAT(robot.modes, ElementsAre("manual", "home", "coordinated", "trajectory", "draping", "ablation"));
   EXPECT_THAT(robot.draping, ElementsAre(AxisCounts{7, -3543}, AxisCounts{2, 358}, AxisCounts{0, -597}));
-  EXPECT_EQ(robot.find("yaw")->motion, (MotionRates{1000.0, 600.0, 6000.0, 120000.0, 40}));
+  EXPECT_EQ(robot.find("yaw")->motion, (MotionRates{600.0, 6000.0, 120000.0, 40}));
   EXPECT_FALSE(robot.auto_approve);
-  EXPECT_EQ(robot.loop, (LoopLimits{100, 100, 3, 3}));
+  EXPECT_EQ(robot.loop, (LoopLimits{100, 100, 20, 5, 3, 3}));
   EXPECT_EQ(robot.kinematics,
             Kinematics(NeuroRcm{60.0, 30.0, 143.0, 72.5, {18.32, 178.39, 72.91}, 75.0, 146.0}));
   EXPECT_EQ(robot.probe, (ProbeOffsets{10.0, 5.0, 5.0, 41.0}));
@@ -53,12 +53,12 @@ TEST(RobotFile, neuro_reads_as_written) {
   EXPECT_EQ(pitch.deadband_counts, 1u);
   EXPECT_EQ(pitch.unhomed_travel_counts, 70u);
   EXPECT_EQ(pitch.soft_limits, (SoftLimits{-370, 516}));
-  EXPECT_EQ(pitch.drive, (DriveBounds{0x1ffff, 0, 13107, 0}));
+  EXPECT_EQ(pitch.drive, (DriveBounds{0x1ffff, 0, 1967, 13107, 0}));
   EXPECT_EQ(pitch.gains, (Gains{100.0, 0.0, 0.0}));
-  EXPECT_EQ(pitch.mechanics, (Mechanics{12, 1, 1, 8, 50}));
-  EXPECT_EQ(pitch.stall, (StallRule{500, 2}));
+  EXPECT_EQ(pitch.mechanics, (Mechanics{12, 1, 1, 8, 50, 1000}));
+  EXPECT_EQ(pitch.stall, (StallRule{500, 68, 2}));
   EXPECT_EQ(pitch.runaway, (RunawayRule{20, 20}));
-  EXPECT_EQ(pitch.homing, (Homing{13107, 0, 60, 974, 44, 19000, 50}));
+  EXPECT_EQ(pitch.homing, (Homing{13107, 0, 4752, 60, 12, 1142, 28000, 21, 4, 3}));
   EXPECT_EQ(robot.find("feet")->homing, std::nullopt);
 }
 
@@ -68,7 +68,7 @@ TEST(RobotFile, milliseconds_become_periods_of_the_robot) {
   const auto robot = parse_robot(test::neuro_with("period_us = 1000", "period_us = 500"), "fast.toml");
   ASSERT_TRUE(robot) << robot.error().message();
   EXPECT_EQ(robot->pedal.debounce_ticks, 20u);
-  EXPECT_EQ(robot->find("yaw")->homing->timeout_ticks, 52000u);
+  EXPECT_EQ(robot->find("yaw")->homing->timeout_ticks, 68000u);
 }
 
 TEST(RobotFile, a_high_frequency_axis_has_amplitudes) {
@@ -146,8 +146,8 @@ INSTANTIATE_TEST_SUITE_P(
                "axis.yaw.gains.kx", "unknown", "kd, ki, kp"},
         Broken{"pedal_is_no_table", "[pedal]\nchannels = 2\ndebounce_ms = 10\ndisagree_ms = 50", "pedal = 2",
                "pedal = 2", "pedal", "2 is given", "a table"},
-        Broken{"missing_table", "stall = { driven_ms = 500, min_counts = 2 }\n", "", "[[axis]]",
-               "axis.yaw.stall", "missing", "a table"},
+        Broken{"missing_table", "stall = { driven_ms = 500, effort_ms = 68, min_counts = 2 }\n", "",
+               "[[axis]]", "axis.yaw.stall", "missing", "a table"},
         Broken{"slot_out_of_range", "slot = 3", "slot = 10", "slot = 10", "axis.insertion.slot",
                "10 is given", "a whole number from 0 to 9"},
         Broken{"slot_as_text", "slot = 3", "slot = \"3\"", "slot = \"3\"", "axis.insertion.slot", "3",
@@ -183,15 +183,18 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"time_between_periods", "period_us = 1000", "period_us = 1500", "debounce_ms",
                "pedal.debounce_ms", "10 ms is not a whole number of control periods",
                "a multiple of period_us = 1500"},
-        Broken{"time_beyond_32_bits", "timeout_ms = 26000", "timeout_ms = 4294968", "timeout_ms = 4294968",
+        Broken{"time_beyond_32_bits", "timeout_ms = 34000", "timeout_ms = 4294968", "timeout_ms = 4294968",
                "axis.yaw.homing.timeout_ms", "4294968", "from 0 to 4294967"},
         Broken{"homing_without_switch", "limit = \"lower\"", "limit = \"none\"",
-               "[axis.homing]\ndrive = 13107\nspeed_counts_per_s = 60\nbackoff_counts = 82",
+               "[axis.homing]\ndrive = 13107\nslow_drive = 4752\nspeed_counts_per_s = "
+               "60\nslow_speed_counts_per_s = 12\n"
+               "travel_counts = 1921",
                "axis.insertion.homing", "no switch", "no homing table"},
         Broken{"switch_without_homing", "limit = \"none\"", "limit = \"upper\"",
                "[[axis]]\nname = \"probe_rotation\"", "axis.probe_rotation.homing", "missing", "a table"},
         Broken{"amplitude_on_a_pwm_card", "unhomed_max = 6143", "unhomed_max = 6143, max_amplitude = 5",
-               "max_amplitude = 5", "axis.yaw.drive.max_amplitude", "unknown", "max, min, unhomed_max"},
+               "max_amplitude = 5", "axis.yaw.drive.max_amplitude", "unknown",
+               "dead_zone, max, min, unhomed_max"},
         Broken{"step_homes_no_axis", R"(home = ["insertion"])", R"(home = ["needle"])", R"(["needle"])",
                "home_step.probe_out.home", "no axis is called \"needle\"", "axes with a switch"},
         Broken{"step_homes_an_axis_without_switch", R"(home = ["insertion"])",

@@ -128,7 +128,7 @@ TEST(StepResponse, TheSameSeedGivesTheSameRun) {
 TEST(StepResponse, WhatCannotBeRunIsRefusedByName) {
   EXPECT_EQ(run(neuro(), {.axis = "elbow"}).error(), "neuro has no axis \"elbow\"");
   EXPECT_THAT(run(neuro(), {.axis = "yaw", .move_counts = 600}).error(),
-              testing::EndsWith("yaw reaches -1210 to -4"));
+              testing::EndsWith("yaw reaches -1210 to -7"));
   EXPECT_THAT(run(neuro(), {.axis = "yaw", .cruise_counts_per_s = std::nan("")}).error(),
               testing::HasSubstr("cruise_velocity"));
   EXPECT_THAT(run(neuro(), {.axis = "yaw", .cruise_counts_per_s = 1e-3}).error(),

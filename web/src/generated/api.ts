@@ -1222,6 +1222,13 @@ export interface components {
             estop: boolean;
             pedal: string;
             pedal_armed: boolean;
+            /**
+             * @description Of the amplifiers: in READY and MOTION only. coming_up: it is on, but they do not obey yet; a press of the pedal counts only after that.
+             * @enum {string}
+             */
+            power: "off" | "coming_up" | "on";
+            /** @description Number of this press of the pedal, another one for each; MOVE and HOME carry it. 0 outside of MOTION. */
+            consent: number;
             app_alive: boolean;
             /** @description Number of the present motion authority in the kernel, new with each change; 0: nobody. */
             holder?: number;
@@ -1282,16 +1289,20 @@ export interface components {
             /** @description Of the open proposal. */
             setpoint_counts?: number | null;
             setpoint?: number | null;
-            /** @description Nearest setpoint to the lower end that RANGE allows now, from the soft limit or from the unhomed travel. */
+            /** @description Nearest setpoint to the lower end that RANGE allows now, from the reach of a homed axis or from what this press leaves of the unhomed travel. */
             min_counts: number;
             max_counts: number;
             soft_min_counts: number;
             soft_max_counts: number;
             /** @description Farthest travel from the last reading that allowed drive until rest. */
             coast_counts: number;
-            /** @description Farthest travel while the pedal stays pressed and the axis is not homed. */
+            /** @description Farthest travel by moves in one press of the pedal while the axis is not homed, coast included. */
             unhomed_travel_counts: number;
             homed: boolean;
+            /** @description Catalog family homed: NOT, BY_SWITCH or BY_HAND. */
+            homed_by: string;
+            /** @description The last home at the switch less the one before; 0 until an axis that did not lose count has homed twice. */
+            home_difference_counts: number;
             /** @description An open proposal homes this axis. */
             homing: boolean;
             /** @description It can be homed; else only SET_HOME makes it homed. */

@@ -65,6 +65,7 @@ describe("foretell", () => {
   it("tells of homing, which has no target", () => {
     const home: AxisWish = { kind: "HOME" };
     expect(told({}, { mode: "MOTION" }, home).text).toContain("home at once");
+    expect(told({ gate: "SETPOINT" }, { mode: "MOTION" }, home).text).toContain("home at once");
     expect(told({ verdict: "NO_SWITCH" }, {}, home)).toMatchObject({ outcome: "refused", code: "NO_SWITCH" });
   });
 });

@@ -40,7 +40,8 @@ export function foretell(
       nextStep: obstacle.next_step,
     };
   }
-  const arrived = gate === "SETPOINT";
+  // HOME reads its switch before it drives.
+  const arrived = gate === "SETPOINT" && wish.kind === "MOVE";
   return {
     ...{ outcome: "moves", code: "ACCEPTED", family: "verdict" },
     text: arrived
@@ -66,7 +67,7 @@ function refusalWords(
   }
   if (verdict === "MODE" && mode === "LOCKED") return `would be refused: LOCKED by ${frame.cause}.`;
   if (verdict === "MODE" && mode === "READY")
-    return "would not be sent: the pedal does not start MOTION now, as a required card is lost.";
+    return "would not be sent: the pedal does not start MOTION while a required card is lost or an axis that is not enabled moves.";
   return `would be refused: ${entry("verdict", verdict).meaning}`;
 }
 

@@ -6,20 +6,16 @@ import { catalog } from "../generated/catalog";
 const folder = new URL("../../kernel/", import.meta.url);
 const SLOTS = 10;
 const FRAME_WORDS = 32;
-const STATE_WORDS = 389;
-const CONFIG_WORDS = 301;
-const INPUT_WORDS = 7 + SLOTS * FRAME_WORDS;
-const REQUEST_WORDS = 9;
 const REQUESTS = 16;
-const OUTPUT_WORDS = SLOTS * 3 + SLOTS + SLOTS * FRAME_WORDS + 4 + 1 + REQUESTS * 5;
-const GATES_AT = SLOTS * 3;
-const VERDICTS_AT = GATES_AT + SLOTS + SLOTS * FRAME_WORDS + 4 + 1;
-/** Words of `ilk_state_t`. */
-const MODE = 1;
-const CAUSE = 2;
-const LAST_SEQUENCE = 16;
-const AXES_AT = 28;
-const AXIS_WORDS = 36;
+const VERDICT_WORDS = 5;
+
+/** Sizes and places in words, as web/kernel/vectors.c writes them. */
+const LAYOUT = [
+  ...(["config", "state", "inputs", "request", "outputs", "axisConfig", "axis"] as const),
+  ...(["maxDrive", "unhomedMaxDrive", "tick", "mode", "cause", "consent", "lastSequence"] as const),
+  ...(["homed", "frames", "gates", "verdicts"] as const),
+];
+type Layout = Readonly<Record<(typeof LAYOUT)[number], number>>;
 
 export interface Vector {
   readonly state: Uint32Array;
@@ -28,34 +24,54 @@ export interface Vector {
   readonly requests: Uint32Array;
   readonly stateAfter: Uint32Array;
   readonly outputs: Uint32Array;
+  /** Which gate blocks each axis in the state after the tick. */
+  readonly gatesAfter: Uint32Array;
 }
 
-/** Configuration and vectors of web/kernel/vectors.c, by the native kernel. */
-export function nativeVectors(count: number): { config: Uint32Array; vectors: Iterable<Vector> } {
+/** What web/kernel/vectors.c writes: the native kernel's layout, a configuration, and so many vectors. */
+function nativeWords(count: number): Uint32Array {
   const run = spawnSync(new URL("../../build/console/vectors", folder).pathname, [String(count)], {
     maxBuffer: 2 ** 28,
   });
   if (run.status !== 0) throw new Error(`vectors: ${run.error?.message ?? run.stderr.toString()}`);
-  const words = new Uint32Array(run.stdout.buffer.slice(run.stdout.byteOffset), 0, run.stdout.length / 4);
-  let at = 0;
+  return new Uint32Array(run.stdout.buffer.slice(run.stdout.byteOffset), 0, run.stdout.length / 4);
+}
+
+function layoutOf(words: Uint32Array): Layout {
+  return Object.fromEntries(LAYOUT.map((name, index) => [name, words[index] ?? 0])) as Layout;
+}
+
+export const layout = layoutOf(nativeWords(0));
+
+export function nativeVectors(count: number): { config: Uint32Array; vectors: Iterable<Vector> } {
+  const words = nativeWords(count);
+  let at = LAYOUT.length;
   const take = (length: number): Uint32Array => {
     at += length;
     return words.subarray(at - length, at);
   };
-  const config = take(CONFIG_WORDS);
+  const config = take(layout.config);
   function* each(): Iterable<Vector> {
     while (at < words.length) {
-      const state = take(STATE_WORDS);
-      const inputs = take(INPUT_WORDS);
+      const state = take(layout.state);
+      const inputs = take(layout.inputs);
       const [number = 0] = take(1);
-      const requests = take(REQUESTS * REQUEST_WORDS);
+      const requests = take(REQUESTS * layout.request);
       yield {
         ...{ state, inputs, count: number, requests },
-        ...{ stateAfter: take(STATE_WORDS), outputs: take(OUTPUT_WORDS) },
+        ...{ stateAfter: take(layout.state), outputs: take(layout.outputs), gatesAfter: take(SLOTS) },
       };
     }
   }
   return { config, vectors: each() };
+}
+
+export function verdictIn(outputs: Uint32Array, request: number): string {
+  return codeName("verdict", outputs[layout.verdicts + VERDICT_WORDS * (request + 1) - 1] ?? -1);
+}
+
+export function modeIn(state: Uint32Array): string {
+  return codeName("mode", state[layout.mode] ?? -1);
 }
 
 export function instantiate(): WebAssembly.Instance {
@@ -82,6 +98,8 @@ export interface Wish {
   readonly target?: number;
   readonly drive?: number;
   readonly lease?: number;
+  /** That of this press if left out. */
+  readonly consent?: number;
 }
 
 /** The kernel by its own functions, on memory behind everything that the module uses itself. */
@@ -108,11 +126,11 @@ export class KernelBench {
       at += words * 4;
       return new Uint32Array(this.kernel.memory.buffer, at - words * 4, words);
     };
-    this.config = block(CONFIG_WORDS);
-    this.state = block(STATE_WORDS);
-    this.inputs = block(INPUT_WORDS);
-    this.requests = block(REQUESTS * REQUEST_WORDS);
-    this.outputs = block(OUTPUT_WORDS);
+    this.config = block(layout.config);
+    this.state = block(layout.state);
+    this.inputs = block(layout.inputs);
+    this.requests = block(REQUESTS * layout.request);
+    this.outputs = block(layout.outputs);
     this.config.set(config);
     this.kernel.ilk_init(block(2).byteOffset, this.config.byteOffset, this.state.byteOffset);
   }
@@ -133,9 +151,7 @@ export class KernelBench {
       this.writeRequest(index, wish);
     });
     this.step(all.length);
-    return wishes.map((_, index) =>
-      codeName("verdict", this.outputs[VERDICTS_AT + 5 * (index + 1) + 4] ?? -1),
-    );
+    return wishes.map((_, index) => verdictIn(this.outputs, index + 1));
   }
 
   ticks(count: number): void {
@@ -161,31 +177,28 @@ export class KernelBench {
 
   /** The verdict on a MOVE as the app sends it. */
   move(slot: number, target: number): string {
-    const bound = this.axis(slot, 4) === 1 ? 12 : 13;
-    const drive = this.config[10 + 29 * slot + bound] ?? 0;
+    const homed = this.state[layout.homed + layout.axis * slot] !== 0;
+    const drive =
+      this.config[(homed ? layout.maxDrive : layout.unhomedMaxDrive) + layout.axisConfig * slot] ?? 0;
     const [verdict = ""] = this.tick({ kind: "MOVE", slot, target, drive, lease: 10 });
     return verdict;
   }
 
   gate(slot: number): string {
-    return codeName("gate", this.outputs[GATES_AT + slot] ?? -1);
+    return codeName("gate", this.outputs[layout.gates + slot] ?? -1);
   }
 
   get mode(): string {
-    return codeName("mode", this.state[MODE] ?? -1);
+    return modeIn(this.state);
   }
 
   get cause(): string {
-    return codeName("cause", this.state[CAUSE] ?? -1);
+    return codeName("cause", this.state[layout.cause] ?? -1);
   }
 
   /** State and configuration as the app passes them on. */
   stateBytes(): Uint8Array {
     return bytesOf(this.state);
-  }
-
-  private axis(slot: number, word: number): number {
-    return this.state[AXES_AT + AXIS_WORDS * slot + word] ?? 0;
   }
 
   private expectAccepted(verdicts: readonly string[]): void {
@@ -195,14 +208,15 @@ export class KernelBench {
 
   private writeInputs(): void {
     this.heartbeat += 1;
-    const tick = this.state[0] ?? 0;
+    const tick = this.state[layout.tick] ?? 0;
     const answering = Array.from({ length: SLOTS }, (_, slot) => (this.silent.has(slot) ? 0 : 1 << slot));
     this.inputs.set([
-      ...[1, 0, 1, answering.reduce((mask, bit) => mask | bit, 0)],
+      ...[1, 7, 0, 1, answering.reduce((mask, bit) => mask | bit, 0)],
       ...[this.pressed ? 1 : 0, this.pressed ? 0 : 1, this.estop ? 0 : 1],
     ]);
     for (let slot = 0; slot < SLOTS; slot++) {
-      const frame = this.inputs.subarray(7 + slot * FRAME_WORDS, 7 + (slot + 1) * FRAME_WORDS);
+      const at = layout.frames + slot * FRAME_WORDS;
+      const frame = this.inputs.subarray(at, at + FRAME_WORDS);
       frame.fill(0);
       frame[0] = 0xfefefe01;
       frame[2] = this.atSwitch.has(slot) ? 0 : 0x00080000;
@@ -215,13 +229,13 @@ export class KernelBench {
   }
 
   private writeRequest(index: number, wish: Wish): void {
-    const request = this.requests.subarray(index * REQUEST_WORDS, (index + 1) * REQUEST_WORDS);
+    const request = this.requests.subarray(index * layout.request, (index + 1) * layout.request);
     const number = catalog.request.find((each) => each.name === wish.kind)?.number ?? 0;
     request.set([
-      ...[(this.state[LAST_SEQUENCE] ?? 0) + 1 + index, number, wish.slot ?? 0, wish.target ?? 0],
-      ...[wish.drive ?? 0, 0, wish.lease ?? 0, 1, 0],
+      ...[(this.state[layout.lastSequence] ?? 0) + 1 + index, number, wish.slot ?? 0, wish.target ?? 0],
+      ...[wish.drive ?? 0, 0, wish.lease ?? 0, wish.consent ?? this.state[layout.consent] ?? 0, 1, 0],
     ]);
-    request[8] = this.kernel.ilk_request_crc(request.byteOffset);
+    request[layout.request - 1] = this.kernel.ilk_request_crc(request.byteOffset);
   }
 }
 

@@ -10,9 +10,9 @@ describe("alarmOfMode", () => {
     }
   });
 
-  it("asks to act at once for the E-stop and for damaged memory alone", () => {
+  it("asks to act at once for the E-stop, damaged memory and an axis that runs away alone", () => {
     const high = catalog.cause.filter(({ name }) => alarmOfMode("LOCKED", name) === "high");
-    expect(high.map(({ name }) => name)).toEqual(["ESTOP", "INTEGRITY"]);
+    expect(high.map(({ name }) => name)).toEqual(["ESTOP", "INTEGRITY", "RUNAWAY"]);
   });
 
   it("is silent once the lock is left, though the cause is still told", () => {

@@ -11,6 +11,7 @@ export type AlarmPriority = "high" | "medium";
 const OF_CAUSE: Partial<Record<CodeName<"cause">, AlarmPriority>> = {
   ESTOP: "high",
   INTEGRITY: "high",
+  RUNAWAY: "high",
   BUS: "medium",
   PEDAL: "medium",
   OVERRUN: "medium",

@@ -12,6 +12,7 @@ export function glanceOf(status: Status): Glance {
     causesSeen: (status.causes_seen ?? []) as Code<"cause">[],
     pedal: status.pedal as Code<"pedal">,
     pedalArmed: status.pedal_armed,
+    power: status.power,
     estop: status.estop,
     appAlive: status.app_alive,
     ageMs: status.age_ms,

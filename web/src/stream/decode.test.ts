@@ -4,7 +4,7 @@ import { decodeFrame, FrameError, headerFields, STATE_WORDS, signedSlotFields, s
 
 type Words = Record<string, number>;
 
-const soundHeader: Words = { magic: 0x53574b49, version: 2, connected: 1, slots: 10 };
+const soundHeader: Words = { magic: 0x53574b49, version: 3, connected: 1, slots: 10 };
 
 function message(
   header: Words = {},
@@ -80,6 +80,22 @@ describe("decodeFrame", () => {
     expect(frame.configCrc).toBe("00000abc");
   });
 
+  it.each([
+    [0b000000, "off"],
+    [0b010000, "coming_up"],
+    [0b110000, "on"],
+  ])("reads from flags %i that power is %s", (flags, power) => {
+    expect(decodeFrame(message({ flags })).power).toBe(power);
+  });
+
+  it("tells a home by hand from one at the switch, and how far that lies from the one before", () => {
+    const { axes } = decodeFrame(
+      message({}, { 2: { flags: 0b000001, home_difference_counts: -3 }, 4: { flags: 0b100001 } }),
+    );
+    expect(axes[2]).toMatchObject({ homed: true, homedByHand: false, homeDifferenceCounts: -3 });
+    expect(axes[4]).toMatchObject({ homed: true, homedByHand: true, homeDifferenceCounts: 0 });
+  });
+
   it("reads signed counts and shows a setpoint only with an open proposal", () => {
     const slot = { position_counts: -12, setpoint_counts: 34, min_counts: -2147483648, max_counts: 7 };
     const frame = decodeFrame(
@@ -113,7 +129,7 @@ describe("decodeFrame", () => {
     ["too short", message().slice(4)],
     ["empty", new ArrayBuffer(0)],
     ["of another magic", message({ magic: 1 })],
-    ["of another version", message({ version: 1 })],
+    ["of another version", message({ version: 2 })],
     ["of another slot count", message({ slots: 9 })],
   ])("refuses a message that is %s", (_, bytes) => {
     expect(() => decodeFrame(bytes)).toThrow(FrameError);

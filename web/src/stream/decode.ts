@@ -5,9 +5,9 @@
 import { type CodeName, entry, type Family } from "../generated/catalog";
 
 const MAGIC = 0x53574b49;
-const VERSION = 2;
+const VERSION = 3;
 const SLOTS = 10;
-export const STATE_WORDS = 389;
+export const STATE_WORDS = 592;
 
 export const headerFields = [
   "magic",
@@ -48,6 +48,7 @@ export const slotFields = [
   "heartbeat",
   "min_counts",
   "max_counts",
+  "home_difference_counts",
 ] as const;
 
 export const signedSlotFields: ReadonlySet<string> = new Set([
@@ -56,6 +57,7 @@ export const signedSlotFields: ReadonlySet<string> = new Set([
   "setpoint_counts",
   "min_counts",
   "max_counts",
+  "home_difference_counts",
 ]);
 
 /** A name of the catalog, or one that says that this console does not know the number. */
@@ -67,6 +69,8 @@ export interface AxisFrame {
   readonly faultTick: number;
   readonly faultValue: number;
   readonly homed: boolean;
+  /** By Set Home, a person's word, and not at its switch. */
+  readonly homedByHand: boolean;
   readonly switchTriggered: boolean;
   readonly cardValid: boolean;
   readonly cardSeen: boolean;
@@ -82,7 +86,12 @@ export interface AxisFrame {
   /** Range that the kernel allows for a setpoint now. */
   readonly minCounts: number;
   readonly maxCounts: number;
+  /** Of the last two homes at the switch; 0 before the second. */
+  readonly homeDifferenceCounts: number;
 }
+
+/** Of the amplifiers: `coming_up` while it is on and they do not obey yet. */
+export type Power = "off" | "coming_up" | "on";
 
 /** What the header shows of the system, with or without login. */
 export interface Glance {
@@ -94,6 +103,7 @@ export interface Glance {
   readonly causesSeen: readonly Code<"cause">[];
   readonly pedal: Code<"pedal">;
   readonly pedalArmed: boolean;
+  readonly power: Power;
   readonly estop: boolean;
   readonly appAlive: boolean;
   /** Age of the data when the message was sent. */
@@ -125,7 +135,7 @@ const WORD = 4;
 const STATE_OFFSET = (headerFields.length + SLOTS * slotFields.length) * WORD;
 const MESSAGE_BYTES = STATE_OFFSET + STATE_WORDS * WORD;
 
-/** @throws FrameError when length, magic, version or slot count is not that of version 2. */
+/** @throws FrameError when length, magic, version or slot count is not that of version 3. */
 export function decodeFrame(message: ArrayBuffer): Frame {
   if (message.byteLength !== MESSAGE_BYTES) {
     throw new FrameError(`stream message of ${message.byteLength} bytes, expected ${MESSAGE_BYTES}`);
@@ -148,6 +158,7 @@ export function decodeFrame(message: ArrayBuffer): Frame {
     causesSeen: bits(header.causes_seen).map((number) => nameOf("cause", number)),
     pedal: nameOf("pedal", header.pedal),
     pedalArmed: header.pedal_armed === 1,
+    power: hasBit(header.flags, 5) ? "on" : hasBit(header.flags, 4) ? "coming_up" : "off",
     // Anything but a clear "no" counts as pulled: a damaged word must not look safe.
     estop: header.estop !== 0,
     appAlive: header.app_alive === 1,
@@ -174,6 +185,7 @@ function decodeAxis(view: DataView, slot: number): AxisFrame {
     faultTick: words.fault_tick,
     faultValue: words.fault_value,
     homed: hasBit(words.flags, 0),
+    homedByHand: hasBit(words.flags, 5),
     switchTriggered: hasBit(words.flags, 1),
     cardValid: hasBit(words.flags, 2),
     cardSeen: hasBit(words.flags, 3),
@@ -187,6 +199,7 @@ function decodeAxis(view: DataView, slot: number): AxisFrame {
     heartbeat: words.heartbeat,
     minCounts: words.min_counts,
     maxCounts: words.max_counts,
+    homeDifferenceCounts: words.home_difference_counts,
   };
 }
 

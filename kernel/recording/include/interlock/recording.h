@@ -49,7 +49,7 @@ typedef struct {
  * words were not expected; then those words. */
 typedef struct {
   uint32_t words;           /**< of the whole record */
-  uint32_t tick;            /**< `state.tick` after the tick */
+  uint32_t tick;            /**< `state.system.tick` after the tick */
   uint32_t alarm;           /**< `ilk_alarm_of` the state after the tick */
   uint32_t request_count;   /**< at most ILK_REQUESTS_PER_TICK */
   uint32_t state_digest[2]; /**< `ilk_state_digest` of the state after the tick, low word first */

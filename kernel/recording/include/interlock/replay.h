@@ -55,8 +55,8 @@ typedef enum {
 /** Starts with nothing replayed; the configuration outlives the replay. */
 void ilk_replay_begin(ilk_replay_t *replay, const ilk_config_t *config);
 
-/** Sees each tick that was replayed without a difference. */
-typedef void (*ilk_tick_visitor_t)(void *context, const ilk_recorded_tick_t *tick);
+/** Sees each tick that was replayed without a difference, and the state before it. */
+typedef void (*ilk_tick_visitor_t)(void *context, const ilk_state_t *before, const ilk_recorded_tick_t *tick);
 
 /**
  * Replays a block: from the state that the block before led to, or from its opening when it continues none.

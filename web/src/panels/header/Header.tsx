@@ -135,9 +135,7 @@ function Pedal({ glance }: { readonly glance: Glance | null }) {
     <div className={`cell ${pressed ? "wish" : ""}`} data-alarm={alarm ?? undefined}>
       <span className="label">
         Pedal
-        {glance !== null && (
-          <span title={armedHelp(glance)}> · {glance.pedalArmed ? "armed" : "not armed"}</span>
-        )}
+        {glance !== null && <span title={armedHelp(glance)}> · {armedWords(glance)}</span>}
       </span>
       <output
         className="value"
@@ -150,7 +148,13 @@ function Pedal({ glance }: { readonly glance: Glance | null }) {
   );
 }
 
+function armedWords({ power, pedalArmed }: Glance): string {
+  if (power === "coming_up") return "power coming up";
+  return pedalArmed ? "armed" : "not armed";
+}
+
 function armedHelp(glance: Glance): string {
+  if (glance.power === "coming_up") return "A press counts only once power is up.";
   return glance.pedalArmed
     ? "A press now starts MOTION."
     : "A press counts only after the pedal was seen released in READY.";

@@ -117,12 +117,16 @@ function Identity({ motor, axis }: AxisProps) {
         <i aria-hidden="true">{stateShape[axis.state] ?? "?"}</i>
         <span>{axis.state}</span>
       </span>
-      {!axis.homed && (
+      {axis.homed ? (
+        <small className="homed-by" title={homedHelp(axis)}>
+          {homedWords(motor, axis)}
+        </small>
+      ) : (
         <span
           className="chip unhomed"
-          title={`No reference: what is shown is no place. Slow, and at most ${unhomedTravel(motor)} for each press of the pedal, until the axis is homed.`}
+          title={`No reference: what is shown is no place. Slow, and at most ${travelLeft(motor, axis)} farther until the pedal is pressed anew or the axis is homed.`}
         >
-          <i aria-hidden="true">◌</i> UNHOMED · ≤ {unhomedTravel(motor)}
+          <i aria-hidden="true">◌</i> UNHOMED · ≤ {travelLeft(motor, axis)}
         </span>
       )}
       {!axis.cardValid && (
@@ -134,8 +138,21 @@ function Identity({ motor, axis }: AxisProps) {
   );
 }
 
-function unhomedTravel(motor: Motor): string {
-  return formatCounts(motor, motor.unhomed_travel_counts);
+/** What this press of the pedal, or the next one, leaves an axis that is not homed. */
+function travelLeft(motor: Motor, axis: AxisFrame): string {
+  return formatCounts(motor, axis.maxCounts - axis.positionCounts);
+}
+
+function homedWords(motor: Motor, axis: AxisFrame): string {
+  if (axis.homedByHand) return "homed by hand";
+  const moved = axis.homeDifferenceCounts;
+  return moved === 0 ? "homed at switch" : `homed at switch, Δ ${formatCounts(motor, moved)}`;
+}
+
+function homedHelp(axis: AxisFrame): string {
+  return axis.homedByHand
+    ? "By Set Home, a person's word: no switch is compared with the position."
+    : `At the slow approach to its switch, ${axis.homeDifferenceCounts} counts from the home before. The kernel compares switch and position.`;
 }
 
 function DriveWords({ motor, axis }: AxisProps) {

@@ -22,8 +22,8 @@ export function OverrideSwitch({ motor: { slot, title }, onClose }: OverrideSwit
     >
       <p>
         Its limit switch tells where home is: Go Home asks it. If the axis does not stand at home now, its
-        other end has no limit that holds. Do this only when the switch is broken and you know where the axis
-        stands.
+        other end has no limit that holds, and until the next Go Home nothing compares the switch with the
+        position. Do this only when the switch is broken and you know where the axis stands.
       </p>
     </Confirm>
   );

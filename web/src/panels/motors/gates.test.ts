@@ -4,7 +4,7 @@ import type { GateStand } from "../../kernel/pageKernel";
 import type { AxisFrame, Frame } from "../../stream/decode";
 import { gateLines } from "./gates";
 
-const frame = { mode: "READY", cause: "NONE", pedalArmed: true } as Frame;
+const frame = { mode: "READY", cause: "NONE", pedalArmed: true, power: "on" } as Frame;
 const axis = { gate: "MODE", setpointCounts: null } as AxisFrame;
 /** As the kernel in the page gives them: by number, `closed` ones named, up to the last one judged. */
 const walked = (closed: readonly string[], last = "DRIVE"): GateStand[] =>
@@ -55,6 +55,7 @@ describe("gateLines", () => {
   });
 
   it.each([
+    [{ mode: "READY", pedalArmed: true, power: "coming_up" }, "Wait until power is up"],
     [{ mode: "READY", pedalArmed: true }, "press and hold the pedal"],
     [{ mode: "READY", pedalArmed: false }, "Release the pedal until it is armed"],
     [{ mode: "LOCKED", cause: "ESTOP" }, "release the E-stop"],

@@ -41,6 +41,7 @@ function standBehind(stand: GateStand | undefined): Stand {
 export function modeStep(frame: Frame): string {
   if (frame.mode === "LOCKED") return entry("cause", frame.cause).next_step;
   if (frame.mode !== "READY") return entry("mode", frame.mode).next_step;
+  if (frame.power === "coming_up") return "Wait until power is up, with the pedal released.";
   return frame.pedalArmed
     ? "The pedal is armed: press and hold the pedal."
     : "Release the pedal until it is armed, then press and hold the pedal.";

@@ -82,6 +82,10 @@ function System() {
         <Lamp on={glance.pedal === "PRESSED"} /> {glance.pedal.toLowerCase()},{" "}
         {glance.pedalArmed ? "armed" : "not armed"}
       </dd>
+      <dt title="Of the amplifiers: only in READY and MOTION">Power</dt>
+      <dd>
+        <Lamp on={glance.power === "on"} /> {glance.power.replace("_", " ")}
+      </dd>
     </dl>
   );
 }

@@ -1,4 +1,2 @@
-/*@ requires readable: \valid_read(pedal);
-  @ ensures  P1_gate: \result ==> *pedal;
-  @*/
+/** P1: true while the pedal is pressed. */
 static bool may_drive(const bool* pedal) { return *pedal; }

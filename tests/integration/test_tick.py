@@ -1,0 +1,30 @@
+"""The rung of whole ticks: its steps are an induction, and the document shows what they claim."""
+
+import importlib.util
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+SPEC = importlib.util.spec_from_file_location("tick_run", ROOT / "verification/tick/run.py")
+assert SPEC is not None
+assert SPEC.loader is not None
+tick = importlib.util.module_from_spec(SPEC)
+sys.modules["tick_run"] = tick
+SPEC.loader.exec_module(tick)
+
+
+def test_document_shows_the_claims_of_the_rung() -> None:
+    document = tick.DOCUMENT.read_text("utf-8")
+    assert tick.with_table(document, tick.load()[1]) == document
+
+
+def test_what_a_step_takes_for_granted_is_shown() -> None:
+    steps = tick.load()[0]
+    assert not list(tick.gaps(steps))
+    assert list(tick.gaps([step for step in steps if step.name != "observation"]))
+
+
+def test_a_property_is_claimed_or_exempt() -> None:
+    steps, properties = tick.load()
+    claimed = {claim for step in steps for claim in step.claims}
+    assert claimed == {name for name, entry in properties.items() if "exempt" not in entry}
