@@ -23,7 +23,11 @@ void count_down(std::uint32_t& ticks) {
 }  // namespace
 
 App::App(const ilk_config_t& config, std::uint64_t seed, Manner manner)
-    : config_(config), random_(seed, kAppStream), manner_(manner), is_hasty_(random_.chance(0.25)) {}
+    : config_(config),
+      random_(seed, kAppStream),
+      manner_(manner),
+      is_hasty_(random_.chance(0.25)),
+      stands_at_zero_(manner == Manner::kSteady) {}
 
 void App::attach_anew() {
   generation_++;
@@ -55,6 +59,14 @@ std::uint32_t App::choose_hold() {
   return manner_ != Manner::kUsual ? kSteadyHold : 1 + random_.below(is_hasty_ ? kHastyHold : kLongestHold);
 }
 
+/** Who holds for a whole case waits until each axis is ready that can be. */
+bool App::may_press(const ilk_state_t& shown) const {
+  return shown.system.mode == ILK_MODE_READY &&
+         (manner_ == Manner::kUsual || std::ranges::none_of(shown.axis, [](const ilk_axis_t& axis) {
+            return axis.state == ILK_AXIS_DISABLED;
+          }));
+}
+
 void App::move_foot(const ilk_state_t& shown) {
   const bool in_motion = shown.system.mode == ILK_MODE_MOTION;
   if (in_motion && !was_in_motion_) {
@@ -70,7 +82,7 @@ void App::move_foot(const ilk_state_t& shown) {
   if (foot_ticks_ > 0) {
     foot_ticks_--;
   } else {
-    foot_down_ = !foot_down_ && shown.system.mode == ILK_MODE_READY;
+    foot_down_ = !foot_down_ && may_press(shown);
     foot_ticks_ = foot_down_ ? kPatience : config_.common.pedal_debounce_ticks + 8 + random_.below(40);
   }
 }
@@ -81,18 +93,21 @@ void App::prepare_axis(std::uint32_t tick, const ilk_state_t& shown, std::uint32
   if ((tick + slot) % kActionInterval != 0) {
     return;
   }
-  const bool is_unplaced = axis.homed == ILK_HOMED_NOT && manner_ != Manner::kHoming;
+  const bool may_guess = manner_ == Manner::kUsual || stands_at_zero_;
+  const bool is_unplaced = axis.homed == ILK_HOMED_NOT && may_guess;
   if (axis.state == ILK_AXIS_FAULTED) {
     if (manner_ != Manner::kSteady) {
       ask(ILK_REQUEST_CLEAR_FAULT, slot);
     }
-  } else if (is_unplaced && random_.chance(0.02)) {
+  } else if (is_unplaced && manner_ == Manner::kUsual && random_.chance(0.02)) {
     ilk_request_t request = draft(ILK_REQUEST_RESTORE, slot);
     request.target_counts =
         bounds.min_counts + static_cast<std::int32_t>(random_.below(
                                 static_cast<std::uint32_t>(bounds.max_counts - bounds.min_counts)));
     send(request);
-  } else if (is_unplaced && random_.chance(bounds.limit_side == ILK_LIMIT_NONE ? 0.7 : 0.3)) {
+  } else if (is_unplaced && random_.chance(stands_at_zero_                       ? 1.0
+                                           : bounds.limit_side == ILK_LIMIT_NONE ? 0.7
+                                                                                 : 0.3)) {
     ask(ILK_REQUEST_SET_HOME, slot);
   } else if (axis.state == ILK_AXIS_DISABLED) {
     ask(ILK_REQUEST_ENABLE, slot);
@@ -181,13 +196,17 @@ void App::act(std::uint32_t tick, const ilk_state_t& shown) {
   const bool enters = shown.system.mode == ILK_MODE_MOTION && !was_in_motion_;
   move_foot(shown);
   if (enters) {
+    stands_at_zero_ = false;
     for (std::uint32_t slot = 0; slot < ILK_SLOTS; slot++) {
       const bool is_homed = shown.axis[slot].homed != ILK_HOMED_NOT;
       const bool has_switch = config_.axis[slot].limit_side != ILK_LIMIT_NONE;
       if (manner_ == Manner::kHoming) {
         intents_[slot] = {has_switch, has_switch && (!is_homed || random_.coin())};
       } else {
-        intents_[slot] = {random_.chance(0.8), has_switch && random_.chance(is_homed ? 0.02 : 0.6)};
+        // A stop in a homing takes the axis its place, and it stalls sooner or later: each second one stays.
+        const bool stays = manner_ == Manner::kSteady && slot % 2 == 0;
+        intents_[slot] = {stays || random_.chance(0.8),
+                          has_switch && !stays && random_.chance(is_homed ? 0.02 : 0.6)};
       }
       intents_[slot].renew_tick = tick + random_.below(20);
       choose_target(shown, slot);

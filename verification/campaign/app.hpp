@@ -58,6 +58,7 @@ class App {
   };
 
   std::uint32_t choose_hold();
+  bool may_press(const ilk_state_t& shown) const;
   void move_foot(const ilk_state_t& shown);
   void prepare_axis(std::uint32_t tick, const ilk_state_t& shown, std::uint32_t slot);
   void drive_axis(std::uint32_t tick, const ilk_state_t& shown, std::uint32_t slot);
@@ -82,6 +83,7 @@ class App {
   bool was_in_motion_ = false;
   Manner manner_;
   bool is_hasty_;                /**< each press is over after some ticks */
+  bool stands_at_zero_;          /**< nothing has moved yet from where a steady robot begins */
   std::uint32_t foot_ticks_ = 0; /**< until the foot changes its mind */
   std::uint32_t lifted_ticks_ = 0;
   std::uint32_t silent_ticks_ = 0;

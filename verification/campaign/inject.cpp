@@ -41,20 +41,23 @@ bool World::is_due(const Fault& fault) const {
 void World::inject_what_is_due() {
   while (next_fault_ < plan_.faults.size() && plan_.faults[next_fault_].tick <= tick_) {
     const Fault& fault = plan_.faults[next_fault_++];
-    if (is_due(fault)) {
+    if (fault.driven_ticks == 0 && is_due(fault)) {
       inject(fault);
     } else {
       waiting_.push_back(fault);
     }
   }
-  for (std::size_t n = 0; n < waiting_.size();) {
-    if (is_due(waiting_[n])) {
-      inject(waiting_[n]);
-      waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(n));
-    } else {
-      n++;
+  // Of stops that wait for the same tick of a press one has a press for itself.
+  bool stops = false;
+  std::erase_if(waiting_, [&](const Fault& fault) {
+    const bool is_stop = fault.driven_ticks > 0;
+    const bool due = is_due(fault) && !(is_stop && stops);
+    if (due) {
+      inject(fault);
+      stops = stops || is_stop;
     }
-  }
+    return due;
+  });
 }
 
 void World::note_swept_tick(FaultKind kind) {

@@ -222,4 +222,10 @@ void push_to_far_ends(Robot& robot, plant::Random& random) {
   }
 }
 
+void stand_at_zero(Robot& robot) {
+  for (plant::AxisParameters& axis : robot.plant.axis) {
+    axis.start_counts = 0;
+  }
+}
+
 }  // namespace interlock::campaign

@@ -40,6 +40,9 @@ Robot make_robot(plant::Random& random, bool keeps_word = false);
 /** Lets some axes begin beyond the soft limit that is farthest from their switch: the longest ways home. */
 void push_to_far_ends(Robot& robot, plant::Random& random);
 
+/** Lets each axis begin where SET_HOME says the truth. */
+void stand_at_zero(Robot& robot);
+
 }  // namespace interlock::campaign
 
 #endif

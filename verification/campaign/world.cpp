@@ -39,6 +39,9 @@ Robot robot_of(std::uint64_t number, plant::Random& random) {
     }
     push_to_far_ends(robot, random);
   }
+  if (sweeps_stops(number)) {
+    stand_at_zero(robot);
+  }
   return robot;
 }
 

@@ -161,6 +161,20 @@ TEST(Campaign, P2_stops_of_a_sweep_come_at_their_ticks_and_are_met) {
   EXPECT_EQ(outcome.totals.stops_met, plan.faults.size());
 }
 
+TEST(Campaign, P2_each_stop_of_a_sweep_ends_a_press_of_its_own) {
+  const Case plan = make_case(11, 4);
+  World world(plan);
+  std::size_t presses = 0;
+  bool was_in_motion = false;
+  for (std::uint32_t tick = 0; tick < plan.ticks; tick++) {
+    ASSERT_FALSE(world.step());
+    const bool in_motion = world.state().system.mode == ILK_MODE_MOTION;
+    presses += was_in_motion && !in_motion ? 1 : 0;
+    was_in_motion = in_motion;
+  }
+  EXPECT_GE(presses, plan.faults.size());
+}
+
 TEST(Campaign, P14_cases_one_after_the_other_flip_each_bit_of_the_configuration) {
   std::bitset<kConfigBits> bits;
   for (std::uint64_t number = 0; number < kConfigBits / 3; number++) {
