@@ -83,6 +83,18 @@ def totals(*options: str) -> dict[str, int]:
     return json.loads(subprocess.run(command, check=True, capture_output=True).stdout)
 
 
+def test_each_rule_that_is_taken_out_stands_in_the_kernel_once(campaign: object, tmp_path: Path) -> None:
+    selftest = importlib.import_module("selftest")
+    rules = selftest.read_rules([])
+    for rule in rules:
+        sources = selftest.edited(rule, tmp_path / rule["name"])
+        assert any(
+            file.read_bytes() != (selftest.KERNEL / "src" / file.name).read_bytes()
+            for file in sources.iterdir()
+        ), rule["name"]
+    assert len(rules) > 100
+
+
 def test_a_cluster_comes_to_the_same_totals(campaign: object, tmp_path: Path) -> None:
     whole = totals("--first", "2", "--cases", "3", "--failures", str(tmp_path))
     parts = [["--seed", "5", "--first", str(number), "--cases", "1"] for number in (2, 3, 4)]
