@@ -15,6 +15,7 @@ from compiled import TRAPPING_CLANG, is_sound_program
 from equal import core_files, is_same, shown_equal, write_sound
 from functions import Function, callers_of, function_at, functions_in, functions_of
 from operators import Mutant, draw, mutants_of
+from probes import TICK_TOLD
 from tree import make_tree, seeded
 from unit_tests import compile_kernel
 from verdicts import Kept, Verdict, kernel_digest
@@ -68,6 +69,14 @@ def test_the_seed_alone_decides_what_is_drawn() -> None:
     assert first == again
     assert len(set(first)) == 400
     assert len(set(first) & set(other)) < 100
+
+
+def test_a_claim_that_fails_over_the_whole_tick_is_heard_and_no_answer_is_not() -> None:
+    said = "drive: P1\nstall_drive: 1 of 2 goals\ndrive    {'claims': 3} 1 s\nFAILED: {'claims': 3} in 4 s\n"
+    assert TICK_TOLD.findall(said + "drive gave no answer: no such file\n") == [
+        "drive: P1",
+        "stall_drive: 1 of 2 goals",
+    ]
 
 
 def test_what_a_program_started_dies_with_it_when_its_time_is_over(tmp_path: Path) -> None:
