@@ -61,10 +61,9 @@ ilk_config_verdict_t stand_in_validate(const ilk_config_t* c) {
   return validation;
 }
 
-uint32_t stand_in_frequency(uint32_t drive) {
-  (void)drive;
-  return nondet_word();
-}
+/** The frequency word is a function of the drive. */
+uint32_t __CPROVER_uninterpreted_frequency(uint32_t drive);
+uint32_t stand_in_frequency(uint32_t drive) { return __CPROVER_uninterpreted_frequency(drive); }
 
 /** The number of a press is a function of nonce and tick. The step `numbers` shows what else is taken of it.
  */
@@ -95,6 +94,7 @@ void cut_after_observation(const ilk_config_t* c, const ilk_request_t r[], uint3
   judge_inputs();
   relate(false, true, LEMMAS);
   relate(true, true, SHOWN);
+  claim_home();
   __CPROVER_assume(false);
 }
 
@@ -277,4 +277,134 @@ void no_configuration(void) {
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
     __CPROVER_assert((out.command[slot].drive == 0u) && is_still(out.frame[slot]), "P1: no drive in INIT");
   }
+}
+
+/* --- P18: two robots that differ in the other axes
+ * ------------------------------------------------------------ */
+
+static ilk_state_t twin;
+ilk_inputs_t twin_in;
+static ilk_outputs_t twin_out;
+
+/** Frames of the other axes say something else. */
+static void begin_twin_inputs(void) {
+  in = nondet_inputs();
+  twin_in = nondet_inputs();
+  const uint32_t others = twin_in.frames_received & ~1u;
+  const ilk_inputs_t others_in = twin_in;
+  twin_in = in;
+  twin_in.frames_received = (in.frames_received & 1u) | others;
+  for (uint32_t slot = 1u; slot < ILK_SLOTS; slot++) {
+    for (uint32_t word = 0u; word < ILK_FRAME_WORDS; word++) {
+      twin_in.frame[slot][word] = others_in.frame[slot][word];
+    }
+  }
+}
+
+/** What the axes do together: whether the bus says anything, why the robot locked, how many were refused. */
+static void take_what_is_common(const ilk_system_t* from, ilk_system_t* to) {
+  to->bus_bad_ticks = from->bus_bad_ticks;
+  to->cause = from->cause;
+  to->cause_tick = from->cause_tick;
+  to->cause_value = from->cause_value;
+  to->causes_seen = from->causes_seen;
+  to->requests_accepted = from->requests_accepted;
+  to->requests_refused = from->requests_refused;
+}
+
+/** Any two states that are alike: the other axes are anywhere. */
+static void some_twins(void) {
+  state = nondet_state();
+  const ilk_state_t others = nondet_state();
+  twin = state;
+  take_what_is_common(&others.system, &twin.system);
+  for (uint32_t slot = 1u; slot < ILK_SLOTS; slot++) {
+    twin.axis[slot] = others.axis[slot];
+    twin.axis[slot].wiring = state.axis[slot].wiring; /* of the configuration, which both have */
+  }
+}
+
+static bool has_same_words(const void* one, const void* two, uint32_t bytes) {
+  const uint32_t* a = (const uint32_t*)one;
+  const uint32_t* b = (const uint32_t*)two;
+  bool same = true;
+  for (uint32_t word = 0u; word < bytes / sizeof(uint32_t); word++) {
+    same = same && (a[word] == b[word]);
+  }
+  return same;
+}
+
+/** The robot and the axis of slot 0 are in the same state. */
+static bool is_alike(const ilk_state_t* one, const ilk_state_t* two) {
+  ilk_system_t system = two->system;
+  take_what_is_common(&one->system, &system);
+  return has_same_words(&one->system, &system, sizeof system) &&
+         has_same_words(&one->axis[0], &two->axis[0], sizeof one->axis[0]);
+}
+
+static ilk_state_t middle;
+
+/** The second twin has come as far as the first, whose state the cut has kept. */
+void cut_of_seeing(const ilk_config_t* c, const ilk_request_t r[], uint32_t count, ilk_state_t* s,
+                   ilk_outputs_t* o) {
+  (void)c, (void)r, (void)count, (void)o;
+  if (s == &state) {
+    middle = state;
+  } else {
+    GOAL(middle.system.mode != twin.system.mode);
+    GOAL(middle.system.mode == ILK_MODE_MOTION && twin.system.mode == ILK_MODE_MOTION &&
+         middle.axis[1].state == ILK_AXIS_FAULTED && twin.axis[1].state == ILK_AXIS_HOMING);
+    __CPROVER_assert(middle.system.mode != twin.system.mode || is_alike(&middle, &twin),
+                     "P18: what an axis sees leads to the same at equal modes");
+  }
+}
+
+/** Both go on from any two states that are alike, whatever came before. */
+void cut_of_driving(const ilk_config_t* c, const ilk_request_t r[], uint32_t count, ilk_state_t* s,
+                    ilk_outputs_t* o) {
+  (void)c, (void)r, (void)count, (void)o;
+  if (s == &state) {
+    some_twins();
+    middle = twin;
+  } else {
+    twin = middle;
+  }
+}
+
+static void step_twins(void) {
+  config = nondet_config();
+  validation = nondet_validity();
+  begin_twin_inputs();
+  some_twins();
+  ilk_step(&config, &state, &in, requests, 0u, &out);
+  ilk_step(&config, &twin, &twin_in, requests, 0u, &twin_out);
+}
+
+void twins_see(void) { step_twins(); }
+
+void twins_drive(void) {
+  step_twins();
+  GOAL(out.command[0].drive != 0u && out.command[1].drive != twin_out.command[1].drive);
+  __CPROVER_assert(is_alike(&state, &twin), "P18: a tick leads to the same");
+  __CPROVER_assert(has_same_words(&out.command[0], &twin_out.command[0], sizeof out.command[0]) &&
+                       out.gate[0] == twin_out.gate[0] && out.power == twin_out.power,
+                   "P18: the same command");
+  __CPROVER_assert(has_same_words(out.frame[0], twin_out.frame[0], sizeof out.frame[0]),
+                   "P18: the same frame");
+}
+
+/** The same request to both: to the axis itself, to another one, to one that is not there. */
+void twins_are_asked(void) {
+  config = nondet_config();
+  some_twins();
+  requests[0] = nondet_request();
+  requests[0].axis = NAMED;
+  const bool of_other = requests[0].kind <= (uint32_t)ILK_REQUEST_RESET || NAMED != 0;
+  const uint32_t one = ilk_request_take(&config, &requests[0], &state).verdict;
+  const uint32_t two = ilk_request_take(&config, &requests[0], &twin).verdict;
+  GOAL(one == ILK_VERDICT_ACCEPTED && two == ILK_VERDICT_ACCEPTED);
+  GOAL(one != two);
+  __CPROVER_assert(one == two || of_other, "P18: the axis answers the same");
+  __CPROVER_assert(one != two || state.system.mode != twin.system.mode || is_alike(&state, &twin),
+                   "P18: a request leads to the same at equal modes and verdicts");
 }

@@ -33,7 +33,8 @@ uint32_t nondet_word(void);
 bool config_is_valid(void) {
   const ilk_common_config_t* c = &config.common;
   bool valid = c->pedal_channels >= 1u && c->pedal_channels <= 2u && c->pedal_debounce_ticks > 0u &&
-               c->bad_frame_limit > 0u && c->overrun_limit > 0u && config.crc == ilk_config_crc(&config);
+               c->bad_frame_limit > 0u && c->overrun_limit > 0u && c->switch_debounce_ticks > 0u &&
+               config.crc == ilk_config_crc(&config);
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
     const ilk_axis_config_t* a = &config.axis[slot];
     valid = valid && a->card < ILK_CARD_COUNT && a->required <= 1u && a->motor_direction <= 1u &&
@@ -208,52 +209,52 @@ static void relate_path(bool shown, bool middle) {
   }
 }
 
-/** A reading that the judge remembers, from the first of the kernel's. */
-static int32_t from_first(const ilk_axis_config_t* c, const ilk_still_t* g, int32_t at,
-                          const ilk_stillness_t* s) {
-  const uint32_t raw = (c->direction_correction == 1u) ? g->origin - (uint32_t)at : g->origin + (uint32_t)at;
-  return wrapped(raw, s->origin_raw);
-}
+/** Any two valid readings since the start: whatever is shown of them is shown of each two. */
+static struct {
+  uint32_t raw;
+  uint32_t age; /**< in ticks */
+} pair[2];
 
-static void relate_stillness(bool shown, const ilk_axis_config_t* c, const ilk_still_t* g,
-                             const ilk_stillness_t* s, uint32_t span) {
-  RELATED(s->ticks <= c->rest_ticks && g->apart_age >= s->ticks);
-  RELATED(HOLDS_IF(s->ticks > 0u, s->below <= 0 && s->above >= 0 && (int64_t)s->above - s->below <= span));
-  if (g->ticks > 0u) {
-    const int32_t low = from_first(c, g, g->low, s);
-    const int32_t high = from_first(c, g, g->high, s);
-    RELATED(g->low <= 0 && g->high >= 0 && (int64_t)g->high - g->low <= span);
-    RELATED(HOLDS_IF(g->low_age < s->ticks, low >= s->below && low <= s->above));
-    RELATED(HOLDS_IF(g->high_age < s->ticks, high >= s->below && high <= s->above));
-  }
-}
-
-/** The kernel knows rest only where the judge does not see motion. */
-static void relate_rest(bool shown) {
-  for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
-    const ilk_axis_config_t* c = &config.axis[slot];
-    const ilk_ghost_slot_t* g = &ghost.slot[slot];
-    const ilk_stillness_t* s = &state.axis[slot].rest;
-    if (has_motor(c)) {
-      const int32_t last = wrapped(g->raw, s->origin_raw);
-      relate_stillness(shown, c, &g->rest, s, c->noise_counts);
-      RELATED(g->quiet >= s->ticks);
-      RELATED(HOLDS_IF(s->ticks > 0u, g->valid && last >= s->below && last <= s->above));
+static void remember_readings(void) {
+  for (uint32_t n = 0u; n < 2u; n++) {
+    pair[n].age = plus(pair[n].age, 1u);
+    if (ghost.slot[0].valid && nondet_truth()) {
+      pair[n].raw = ghost.slot[0].raw;
+      pair[n].age = 0u;
     }
   }
 }
 
-/** MOTION begins only when no axis that is DISABLED has moved. */
-static void relate_calm(bool shown, bool middle) {
-  for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
-    if (has_motor(&config.axis[slot])) {
-      relate_stillness(shown, &config.axis[slot], &ghost.slot[slot].calm, &state.axis[slot].calm,
-                       config.axis[slot].drift_counts);
-    }
+/** The kernel's run of readings is undriven and valid throughout, and lies within noise. */
+static void relate_rest(bool shown, bool middle) {
+  const ilk_axis_config_t* c = &config.axis[0];
+  const ilk_ghost_slot_t* g = &ghost.slot[0];
+  const ilk_axis_t* a = &state.axis[0];
+  const ilk_stillness_t* s = &a->rest;
+  if (!has_motor(c)) {
+    return;
   }
-  if (middle) {
-    RELATED(HOLDS_IF(state.system.mode == ILK_MODE_MOTION && before.mode != ILK_MODE_MOTION,
-                     !ghost.drift_of_disabled));
+  RELATED(s->ticks <= c->rest_ticks && g->quiet >= s->ticks);
+  RELATED(HOLDS_IF(s->ticks > 0u, s->below <= 0 && s->above >= 0 &&
+                                      (int64_t)s->above - (int64_t)s->below <= (int64_t)c->noise_counts));
+  for (uint32_t n = 0u; n < 2u; n++) {
+    const int32_t from_first = wrapped(pair[n].raw, s->origin_raw);
+    RELATED(HOLDS_IF(pair[n].age < s->ticks, from_first >= s->below && from_first <= s->above));
+  }
+  RELATED(HOLDS_IF(!middle && g->driven, s->ticks == 0u));
+}
+
+/** P17: an axis that is homed now was undriven and read validly for the time of rest, and no two readings of
+ * it are farther apart than noise: this way round, and so the other. */
+static void claim_rest(void) {
+  const ilk_axis_config_t* c = &config.axis[0];
+  const bool homes =
+      state.axis[0].homed == ILK_HOMED_BY_SWITCH && before.axis[0].homed != ILK_HOMED_BY_SWITCH;
+  const bool of_rest = pair[0].age < c->rest_ticks && pair[1].age < c->rest_ticks;
+  if (homes) {
+    __CPROVER_assert(ghost.slot[0].quiet >= c->rest_ticks, "P17: homed after the time of rest");
+    __CPROVER_assert(!of_rest || (int64_t)wrapped(pair[0].raw, pair[1].raw) <= (int64_t)c->noise_counts,
+                     "P17: homed at rest");
   }
 }
 
@@ -297,17 +298,6 @@ static void relate_press(bool shown, bool middle) {
   }
 }
 
-/** A FAULTED axis that goes on moving locks, and is known to be the reason. */
-static void relate_runaway(bool shown, bool middle) {
-  bool known = false;
-  for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
-    known = known || state.axis[slot].runaway != 0u;
-  }
-  if (middle) {
-    RELATED(HOLDS_IF(ghost.runaway, state.system.mode == ILK_MODE_LOCKED && known));
-  }
-}
-
 static void relate_stall(bool shown, bool middle) {
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
     const ilk_ghost_slot_t* g = &ghost.slot[slot];
@@ -331,6 +321,99 @@ static void relate_stall(bool shown, bool middle) {
   }
 }
 
+/* Any two readings, fixed for a whole run. What is shown of them is shown of those that the kernel homes by,
+ * too: that the edges of which P17 speaks exist. */
+static uint32_t first_reading;
+static uint32_t second_reading;
+/** What the inputs since HOME show of these two, by the judge's runs of readings. */
+static struct {
+  bool first;  /**< an edge at the one */
+  bool slow;   /**< clear of it, and not driven above `home_slow_drive` since */
+  bool second; /**< then an edge at the other, within the tolerance */
+} edges;
+
+static void follow_edges(bool sought, bool was_open) {
+  const ilk_axis_config_t* c = &config.axis[0];
+  const ilk_ghost_slot_t* g = &ghost.slot[0];
+  const bool steady = sought && g->valid && g->home_run >= config.common.switch_debounce_ticks;
+  const uint32_t apart = size_of(judge_counts(c, second_reading, first_reading));
+  const int64_t away = -along(towards_switch(c), judge_counts(c, g->raw, first_reading));
+  if (steady && g->triggered && was_open) {
+    edges.second = edges.second ||
+                   (edges.slow && g->home_run_raw == second_reading && apart <= c->home_tolerance_counts);
+    edges.first = edges.first || g->home_run_raw == first_reading;
+  }
+  if (steady && !g->triggered) {
+    edges.slow = edges.slow || (edges.first && away >= (int64_t)c->home_clear_counts);
+  }
+}
+
+/** Each phase of homing is entered by what the inputs have shown. */
+static void relate_edges(bool shown, bool middle) {
+  const ilk_axis_config_t* c = &config.axis[0];
+  const ilk_ghost_slot_t* g = &ghost.slot[0];
+  const ilk_axis_t* a = &state.axis[0];
+  const uint32_t debounce = config.common.switch_debounce_ticks;
+  const uint32_t phase = a->homing_phase;
+  const bool ends = phase == ILK_HOMING_APPROACH || phase == ILK_HOMING_REST;
+  if (has_motor(c)) {
+    RELATED(HOLDS_IF(g->lost, a->homed == ILK_HOMED_NOT));
+    if (middle) {
+      RELATED(HOLDS_IF(g->just_homed, after.axis[0].homed == ILK_HOMED_BY_SWITCH));
+      RELATED(HOLDS_IF((g->jump || g->reset) && !g->set_home, a->homed == ILK_HOMED_NOT));
+      RELATED(
+          HOLDS_IF(a->homed == ILK_HOMED_BY_HAND && before.axis[0].homed != ILK_HOMED_BY_HAND, g->set_home));
+    }
+  }
+  RELATED(HOLDS_IF(has_motor(c) && a->state != ILK_AXIS_DISABLED && a->state != ILK_AXIS_FAULTED,
+                   a->card_seen != 0u));
+  if (a->state == ILK_AXIS_HOMING) {
+    RELATED(g->seeks && a->switch_run_ticks == (g->home_run < debounce ? g->home_run : debounce));
+    RELATED(HOLDS_IF(g->home_run > 0u,
+                     a->switch_reading == (g->triggered ? 1u : 0u) && a->switch_run_raw == g->home_run_raw));
+    RELATED(HOLDS_IF(phase == ILK_HOMING_SEEK || phase == ILK_HOMING_APPROACH, g->home_open));
+    RELATED(HOLDS_IF(phase == ILK_HOMING_BACK_OFF, a->first_edge_raw == a->homing_mark_raw));
+    RELATED(
+        HOLDS_IF((ends || phase == ILK_HOMING_BACK_OFF) && a->first_edge_raw == first_reading, edges.first));
+    RELATED(HOLDS_IF(ends && a->first_edge_raw == first_reading, edges.slow));
+    RELATED(HOLDS_IF(phase == ILK_HOMING_REST && a->first_edge_raw == first_reading &&
+                         a->homing_mark_raw == second_reading &&
+                         size_of(judge_counts(c, second_reading, first_reading)) <= c->home_tolerance_counts,
+                     edges.second));
+  }
+}
+
+/** P17, of the two edges by which the kernel says that the axis is homed now. */
+static void claim_edges(void) {
+  const bool was_homed = before.axis[0].homed == ILK_HOMED_BY_SWITCH;
+  const ilk_axis_config_t* c = &config.axis[0];
+  const ilk_ghost_slot_t* g = &ghost.slot[0];
+  const ilk_axis_t* a = &state.axis[0];
+  const bool by_these = a->first_edge_raw == first_reading && a->home_raw == second_reading;
+  if (a->homed == ILK_HOMED_BY_SWITCH && !was_homed && by_these) {
+    const int32_t beyond = judge_counts(c, g->raw, second_reading);
+#if (SHOWN & EDGES) != 0u /* goals are counted where they stand, called or not */
+    GOAL(true);
+#endif
+    __CPROVER_assert(edges.second, "P17: homed after the listed sequence of edges");
+    __CPROVER_assert(g->valid && g->triggered && g->home_run >= config.common.switch_debounce_ticks,
+                     "P17: homed with the switch triggered for the debounce time");
+    __CPROVER_assert(a->position_counts == saturate((int64_t)beyond + c->home_offset_counts),
+                     "P17: the position is raw - e2 + home offset");
+    __CPROVER_assert(size_of(beyond) <= plus(c->coast_counts, c->home_tolerance_counts),
+                     "P17: homed no farther from the edge than coast and tolerance");
+  }
+}
+
+void claim_home(void) {
+  if ((SHOWN & REST) != 0u) {
+    claim_rest();
+  }
+  if ((SHOWN & EDGES) != 0u) {
+    claim_edges();
+  }
+}
+
 void relate(bool shown, bool middle, unsigned parts) {
   if ((parts & MODE) != 0u) {
     relate_integrity(shown);
@@ -351,9 +434,6 @@ void relate(bool shown, bool middle, unsigned parts) {
   if ((parts & PATH) != 0u) {
     relate_path(shown, middle);
   }
-  if ((parts & CALM) != 0u) {
-    relate_calm(shown, middle);
-  }
   if ((parts & NUMBER) != 0u) {
     relate_number(shown, middle);
   }
@@ -364,10 +444,10 @@ void relate(bool shown, bool middle, unsigned parts) {
     relate_stall(shown, middle);
   }
   if ((parts & REST) != 0u) {
-    relate_rest(shown);
+    relate_rest(shown, middle);
   }
-  if ((parts & RUNAWAY) != 0u) {
-    relate_runaway(shown, middle);
+  if ((parts & EDGES) != 0u) {
+    relate_edges(shown, middle);
   }
 }
 
@@ -423,7 +503,7 @@ static bool checksums[ILK_SLOTS];
 
 bool stand_in_checksum(const uint32_t* frame) {
   uint32_t slot = 0u;
-  while (slot < ILK_SLOTS - 1u && frame != in.frame[slot]) {
+  while (slot < ILK_SLOTS - 1u && frame != in.frame[slot] && frame != twin_in.frame[slot]) {
     slot++;
   }
   return checksums[slot];
@@ -438,7 +518,17 @@ void some_memory(void) {
   ghost = nondet_ghost();
   nonce = nondet_word();
   press_tick = nondet_word();
+  first_reading = nondet_word();
+  second_reading = nondet_word();
+  for (uint32_t n = 0u; n < 2u; n++) {
+    pair[n].raw = nondet_word();
+    pair[n].age = nondet_word();
+  }
+  edges.first = nondet_truth();
+  edges.slow = nondet_truth();
+  edges.second = nondet_truth();
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
+    ghost.slot[slot].triggered = nondet_word() != 0u; /* it is compared, and truth has one form in C */
     checksums[slot] = nondet_truth();
   }
 }
@@ -471,15 +561,12 @@ void begin_judging(void) {
   tick = now;
 }
 
-/** What must be possible, so that no claim holds for want of a case. */
-#ifdef ILK_COVER
-#define GOAL(condition) __CPROVER_cover(condition)
-#else
-#define GOAL(condition) ((void)0)
-#endif
-
 void judge_inputs(void) {
+  const bool sought = ghost.slot[0].seeks;
+  const bool was_open = ghost.slot[0].home_open;
   ghost_observe(&ghost, &tick);
+  remember_readings();
+  follow_edges(sought, was_open);
   before_requests(&ghost, &tick);
   GOAL(before.mode == ILK_MODE_READY && after.mode == ILK_MODE_MOTION);
   GOAL(before.mode == ILK_MODE_MOTION && after.mode == ILK_MODE_MOTION &&
@@ -497,7 +584,6 @@ void judge_inputs(void) {
 
 void judge_request(void) {
   const bool accepted = out.verdict[0].verdict == ILK_VERDICT_ACCEPTED;
-  (void)accepted;
   GOAL(accepted && requests[0].kind == ILK_REQUEST_RESET);
   GOAL(accepted && requests[0].kind == ILK_REQUEST_MOVE && after.axis[0].state == ILK_AXIS_MOVING);
   GOAL(accepted && requests[0].kind == ILK_REQUEST_HOME && after.axis[0].state == ILK_AXIS_HOMING);
@@ -507,12 +593,27 @@ void judge_request(void) {
   tick.count = 1u;
   ghost.order_error = 0u; /* P11 asks for the first request whose verdict is wrong: let it be this one */
   follow_request(&ghost, &tick, 0u);
+  if (accepted && requests[0].kind == ILK_REQUEST_HOME && requests[0].axis == 0u) {
+    edges.first = edges.slow = edges.second = false;
+  }
   CLAIMS
+}
+
+/** P17, without edges: who else says that an axis is homed, and what takes it back. */
+static void claim_place(void) {
+  const ilk_ghost_slot_t* g = &ghost.slot[0];
+  const uint32_t was = before.axis[0].homed;
+  const uint32_t is = after.axis[0].homed;
+  if (has_motor(&config.axis[0])) {
+    __CPROVER_assert(HOLDS_IF(is == ILK_HOMED_BY_HAND && was != is, g->set_home), "P17: by hand by SET_HOME");
+    __CPROVER_assert(HOLDS_IF((g->jump || g->reset) && is != ILK_HOMED_NOT, g->set_home),
+                     "P17: neither a jump nor a reset card stays homed");
+    __CPROVER_assert(HOLDS_IF(g->lost, is == ILK_HOMED_NOT), "P17: a lost card is not homed");
+  }
 }
 
 void judge_drive(void) {
   const bool driven = is_driven(&tick, 0u);
-  (void)driven;
   after_requests(&ghost, &tick);
   GOAL(driven && after.axis[0].state == ILK_AXIS_MOVING && after.axis[0].homed != ILK_HOMED_NOT);
   GOAL(driven && after.axis[0].state == ILK_AXIS_HOMING);
@@ -529,8 +630,12 @@ void judge_drive(void) {
   GOAL(before.axis[0].state == ILK_AXIS_FAULTED && after.axis[0].state == ILK_AXIS_DISABLED);
   GOAL(before.mode == ILK_MODE_READY && after.mode == ILK_MODE_MOTION && driven);
   CLAIMS
+  if ((SHOWN & EDGES) != 0u) {
+    claim_place();
+  }
   if (after.mode == ILK_MODE_MOTION && before.mode != ILK_MODE_MOTION) {
     press_tick = ghost.tick;
   }
   ghost_settle(&ghost, &tick);
+  edges.slow = edges.slow && (!driven || out.command[0].drive <= config.axis[0].home_slow_drive);
 }

@@ -47,7 +47,12 @@ PRODUCTS = {
 }
 """What kernel and judge multiply alike. The prover need not compare multipliers: it takes each product for
 the same unknown function of its factors. A claim that holds of every function holds of the product."""
-CUTS = {"observation": "cut_after_observation", "drive": "cut_before_drive"}
+CUTS = {
+    "observation": "cut_after_observation",
+    "drive": "cut_before_drive",
+    "twins_see": "cut_of_seeing",
+    "twins_drive": "cut_of_driving",
+}
 DOCUMENT = prover.ROOT / "docs" / "verification.md"
 BEGIN, END = "<!-- claims of the whole tick -->", "<!-- end of the claims -->"
 """The marks between which the document shows the claims."""
@@ -66,6 +71,7 @@ class Step:
     lemmas: list[str] = field(default_factory=list)
     shown: list[str] = field(default_factory=list)
     claims: list[str] = field(default_factory=list)
+    supports: list[str] = field(default_factory=list)
     goals: int = 0
     unwind: int = 34
     named: int | None = None
@@ -118,7 +124,9 @@ def with_products(logs: Path) -> dict[str, str]:
 def program(step: Step, kind: str, logs: Path) -> Path:
     """The goto program of a step. Raises ValueError with the tool's words."""
     logs.mkdir(parents=True, exist_ok=True)
-    linked, cut, made = (logs / f"{kind}.{stage}" for stage in ("linked", "cut", "goto"))
+    linked, cut, made = stages = [logs / f"{kind}.{stage}" for stage in ("linked", "cut", "goto")]
+    for stage in stages:
+        stage.unlink(missing_ok=True)
     parts = {"GIVEN": step.given, "LEMMAS": step.lemmas, "SHOWN": step.shown}
     claims = "".join(f"CLAIM({claim});" for claim in step.claims)
     defines = [f"-D{name}=({' | '.join(named) or '0'})" for name, named in parts.items()]
@@ -131,7 +139,9 @@ def program(step: Step, kind: str, logs: Path) -> Path:
     folders = [str(logs), "kernel/include", "kernel/src", "kernel/monitors", "verification/tick"]
     includes = [part for folder in folders for part in ("-I", folder)]
     compile_ = ["-std=c11", *defines, *includes, "--function", step.entry, "-o", str(linked), *files]
-    prover.call("goto-cc", compile_, logs / f"{kind}.compile.log", prover.COMPILE_SECONDS)
+    told = prover.call("goto-cc", compile_, logs / f"{kind}.compile.log", prover.COMPILE_SECONDS)
+    if not linked.exists():
+        raise ValueError(told.strip()[-300:])
     asked = ["--list-goto-functions", str(linked)]
     listed = prover.call("goto-instrument", asked, logs / f"{kind}.functions.log", prover.COMPILE_SECONDS)
     present = {word.strip(",") for word in listed.split()}
@@ -183,7 +193,7 @@ def prove(step: Step, logs: Path, failures: evidence.Failures) -> dict[str, int]
                 failures.tell(f"{step.name}: {told}")
     except ValueError as error:
         count["unknown"] = 1
-        failures.tell(f"{step.name}: {error}")
+        failures.tell(f"{step.name} gave no answer: {error}")
     print(f"{step.name:20} {count} {time.monotonic() - started:6.1f} s", flush=True)
     return count
 
@@ -235,7 +245,8 @@ def main() -> int:
     print(f"{status}: {figures} in {time.monotonic() - started:.0f} s")
     if names:
         return 0 if status == "PASSED" else 1
-    supports = sorted(monitors, key=lambda name: int(name[1:]))
+    shown = monitors | {name for step in steps for name in step.supports}
+    supports = sorted(shown, key=lambda name: int(name[1:]))
     return evidence.write("tick", status, {"CBMC": prover.version()}, figures, supports, started)
 
 

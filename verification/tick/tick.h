@@ -17,26 +17,31 @@
 #include "interlock/kernel.h"
 
 /* Parts of the relations R and M, a bit each. */
-#define FRAMES 0x1u     /**< the frame that was last seen */
-#define SYSTEM 0x2u     /**< pedal, app, bus, power, sequence */
-#define MODE 0x4u       /**< modes, states and consent of the kernel by themselves */
-#define ORDERS 0x8u     /**< lease, drive and consent of what an axis was told */
-#define PEDAL 0x10u     /**< arming and press */
-#define PATH 0x20u      /**< travel and time of this press */
-#define CALM 0x40u      /**< motion of an axis that is not enabled */
-#define REST 0x80u      /**< rest */
-#define MOTION 0x100u   /**< marks of reverse motion, drift and runaway */
-#define STALL 0x200u    /**< marks and sums of progress */
-#define PLACE 0x400u    /**< position and reference */
-#define NUMBER 0x800u   /**< MOTION has a number */
-#define PRESS 0x1000u   /**< whose number is not that of the press before */
-#define RUNAWAY 0x2000u /**< a FAULTED axis that moves locks */
+#define FRAMES 0x1u   /**< the frame that was last seen */
+#define SYSTEM 0x2u   /**< pedal, app, bus, power, sequence */
+#define MODE 0x4u     /**< modes, states and consent of the kernel by themselves */
+#define ORDERS 0x8u   /**< lease, drive and consent of what an axis was told */
+#define PEDAL 0x10u   /**< arming and press */
+#define PATH 0x20u    /**< travel and time of this press */
+#define REST 0x80u    /**< rest */
+#define STALL 0x200u  /**< marks and sums of progress */
+#define EDGES 0x400u  /**< edges of the switch since HOME */
+#define NUMBER 0x800u /**< MOTION has a number */
+#define PRESS 0x1000u /**< whose number is not that of the press before */
+
+/** What must be possible, so that no claim holds for want of a case. */
+#ifdef ILK_COVER
+#define GOAL(condition) __CPROVER_cover(condition)
+#else
+#define GOAL(condition) ((void)0)
+#endif
 
 #define HOLDS_IF(condition, consequence) (!(condition) || (consequence))
 
 extern ilk_config_t config;
 extern ilk_state_t state;
 extern ilk_inputs_t in;
+extern ilk_inputs_t twin_in; /**< of a robot that differs in other axes (P18) */
 extern ilk_outputs_t out;
 extern ilk_request_t requests[1];
 
@@ -76,6 +81,7 @@ bool after_is_seen(void);
 /** The judge's half of A, B and C. */
 void begin_judging(void);
 void judge_inputs(void);
+void claim_home(void); /**< P17 */
 void judge_request(void);
 void judge_drive(void);
 void some_memory(void);
