@@ -26,5 +26,5 @@ def test_what_a_step_takes_for_granted_is_shown() -> None:
 
 def test_a_property_is_claimed_or_exempt() -> None:
     steps, properties = tick.load()
-    claimed = {claim for step in steps for claim in step.claims}
+    claimed = {claim for step in steps for claim in (*step.claims, *step.supports)}
     assert claimed == {name for name, entry in properties.items() if "exempt" not in entry}
