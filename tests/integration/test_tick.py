@@ -1,6 +1,7 @@
 """The rung of whole ticks: its steps are an induction, and the document shows what they claim."""
 
 import importlib.util
+import subprocess
 import sys
 from pathlib import Path
 
@@ -28,3 +29,17 @@ def test_a_property_is_claimed_or_exempt() -> None:
     steps, properties = tick.load()
     claimed = {claim for step in steps for claim in (*step.claims, *step.supports)}
     assert claimed == {name for name, entry in properties.items() if "exempt" not in entry}
+
+
+def test_the_core_keeps_nothing_outside_of_its_state(tmp_path: Path) -> None:
+    """The proofs look at one tick: what a static variable would remember of the one before, none can see."""
+    sources = sorted((ROOT / "kernel/src").glob("*.c"))
+    compiling = ["gcc", "-std=c11", "-O0", f"-I{ROOT}/kernel/include", "-DILK_FRAME_WORDS=32", "-c", *sources]
+    subprocess.run(compiling, cwd=tmp_path, check=True)
+    objects = [tmp_path / f"{source.stem}.o" for source in sources]
+    told = subprocess.run(["size", *objects], capture_output=True, text=True, check=True).stdout
+    sizes = [
+        dict(zip(("text", "data", "bss"), line.split()[:3], strict=True)) for line in told.splitlines()[1:]
+    ]
+    assert len(sizes) == len(sources)
+    assert all(size["text"] != "0" and size["data"] == size["bss"] == "0" for size in sizes), told

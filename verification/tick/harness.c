@@ -19,6 +19,7 @@ uint32_t nondet_word(void);
 ilk_verdict_record_t nondet_verdict(void);
 ilk_config_verdict_t nondet_validity(void);
 
+static uint32_t asked; /**< how many requests come: nothing but phase 6 may look */
 static ilk_request_t many[ILK_REQUESTS_PER_TICK];
 static ilk_verdict_record_t answers[ILK_REQUESTS_PER_TICK];
 
@@ -79,6 +80,13 @@ uint32_t stand_in_consent(uint32_t boot_nonce, uint32_t tick) {
 
 static ilk_state_t end;
 
+/** Phase 6 is given what the tick was given. */
+static void expect_handed_on(const ilk_config_t* c, const ilk_request_t r[], uint32_t count,
+                             const ilk_outputs_t* o, const ilk_outputs_t* expected) {
+  __CPROVER_assert(c == &config && r == requests && count == asked && o == expected,
+                   "P11: the requests of the tick are answered, and no others");
+}
+
 /** What the snapshot will say after this tick: that of any state that requests can lead to. */
 static void some_future(void) {
   end = nondet_state();
@@ -89,7 +97,8 @@ static void some_future(void) {
 /** Phases 1 to 5 have led to M; the rest of this tick is the business of B and C. */
 void cut_after_observation(const ilk_config_t* c, const ilk_request_t r[], uint32_t count, ilk_state_t* s,
                            ilk_outputs_t* o) {
-  (void)c, (void)r, (void)count, (void)s, (void)o;
+  expect_handed_on(c, r, count, o, &out);
+  __CPROVER_assert(s == &state, "of this robot");
   some_future();
   judge_inputs();
   relate(false, true, LEMMAS);
@@ -101,7 +110,8 @@ void cut_after_observation(const ilk_config_t* c, const ilk_request_t r[], uint3
 /** Any state that satisfies M, whatever came before; all requests are answered. */
 void cut_before_drive(const ilk_config_t* c, const ilk_request_t r[], uint32_t count, ilk_state_t* s,
                       ilk_outputs_t* o) {
-  (void)c, (void)r, (void)count, (void)s, (void)o;
+  expect_handed_on(c, r, count, o, &out);
+  __CPROVER_assert(s == &state, "of this robot");
   state = nondet_state();
   some_memory();
   see_after(&state);
@@ -115,6 +125,8 @@ static void tick_begins(void) {
   config = nondet_config();
   validation = nondet_validity();
   in = nondet_inputs();
+  asked = nondet_word();
+  requests[0] = nondet_request();
   __CPROVER_assume(config_is_valid());
   state = nondet_state();
   some_memory();
@@ -136,7 +148,7 @@ void observation(void) {
   tick_begins();
   relate(false, false, GIVEN);
   begin_judging();
-  ilk_step(&config, &state, &in, requests, 0u, &out);
+  ilk_step(&config, &state, &in, requests, asked, &out);
 }
 
 #ifndef NAMED
@@ -208,7 +220,7 @@ void all_requests(void) {
 void drive(void) {
   tick_begins();
   begin_judging();
-  ilk_step(&config, &state, &in, requests, 0u, &out);
+  ilk_step(&config, &state, &in, requests, asked, &out);
   __CPROVER_assert(after_is_seen(), "phases 7 and 8 change nothing that the snapshot tells");
   judge_drive();
   relate(true, false, SHOWN);
@@ -347,7 +359,7 @@ static ilk_state_t middle;
 /** The second twin has come as far as the first, whose state the cut has kept. */
 void cut_of_seeing(const ilk_config_t* c, const ilk_request_t r[], uint32_t count, ilk_state_t* s,
                    ilk_outputs_t* o) {
-  (void)c, (void)r, (void)count, (void)o;
+  expect_handed_on(c, r, count, o, (s == &state) ? &out : &twin_out);
   if (s == &state) {
     middle = state;
   } else {
@@ -362,7 +374,7 @@ void cut_of_seeing(const ilk_config_t* c, const ilk_request_t r[], uint32_t coun
 /** Both go on from any two states that are alike, whatever came before. */
 void cut_of_driving(const ilk_config_t* c, const ilk_request_t r[], uint32_t count, ilk_state_t* s,
                     ilk_outputs_t* o) {
-  (void)c, (void)r, (void)count, (void)o;
+  expect_handed_on(c, r, count, o, (s == &state) ? &out : &twin_out);
   if (s == &state) {
     some_twins();
     middle = twin;
@@ -374,10 +386,12 @@ void cut_of_driving(const ilk_config_t* c, const ilk_request_t r[], uint32_t cou
 static void step_twins(void) {
   config = nondet_config();
   validation = nondet_validity();
+  asked = nondet_word();
+  requests[0] = nondet_request();
   begin_twin_inputs();
   some_twins();
-  ilk_step(&config, &state, &in, requests, 0u, &out);
-  ilk_step(&config, &twin, &twin_in, requests, 0u, &twin_out);
+  ilk_step(&config, &state, &in, requests, asked, &out);
+  ilk_step(&config, &twin, &twin_in, requests, asked, &twin_out);
 }
 
 void twins_see(void) { step_twins(); }
