@@ -188,7 +188,11 @@ def tick(source: Source, rung: Rung) -> Iterator[Result]:
     for path in (source.root / "verification/tick").glob("tick.toml"):
         table = tomllib.loads(path.read_text("utf-8"))
         for name, stated in table["properties"].items():
-            steps = [one for one, step in table["steps"].items() if name in step.get("claims", ())]
+            steps = [
+                one
+                for one, step in table["steps"].items()
+                if name in (*step.get("claims", ()), *step.get("supports", ()))
+            ]
             told = [said.get(step, (0, 1)) for step in steps]
             if not steps:
                 continue
