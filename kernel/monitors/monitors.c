@@ -637,6 +637,10 @@ static void decide_mode(ilk_ghost_t* ghost, const ilk_tick_t* tick) {
       g->homing_ticks = 0u;
       g->path = g->raw;
       g->path_homing = false;
+      if (tick->before->axis[slot].state == ILK_AXIS_DISABLED) { /* moved by hand until now, read or not */
+        g->drift_mark = g->raw;
+        g->drift_known = true;
+      }
     }
   }
   if (ghost->mode == ILK_MODE_LOCKED && mode != ILK_MODE_LOCKED) {
@@ -839,10 +843,11 @@ static ilk_demand_t demand_of_row(const ilk_ghost_t* ghost, const ilk_tick_t* ti
       if (g->state != ILK_AXIS_FAULTED) {
         return demand(ILK_VERDICT_NO_FAULT);
       }
-      if (!g->valid || tick->before->axis[r->axis].state != ILK_AXIS_FAULTED || moves(g, config)) {
+      if (!g->valid || tick->before->axis[r->axis].state != ILK_AXIS_FAULTED || moves(g, config) ||
+          g->runaway) {
         return demand(ILK_VERDICT_CAUSE_PRESENT);
       }
-      if (!rests(g, config)) {
+      if (!rests(g, config) || g->maybe_runaway) {
         return demand(ANY);
       }
       return demand((ghost->pedal != ILK_PEDAL_RELEASED) ? ILK_VERDICT_PEDAL_DOWN : ILK_VERDICT_ACCEPTED);
@@ -1256,7 +1261,7 @@ ilk_judgement_t judge_P5(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
 
 /** P6. Less than the sentence: reverse motion is demanded in the tick after a driven one only; the first
    frame after start or after a lost card is compared with nothing. */
-ilk_judgement_t judge_P6(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
+static ilk_judgement_t judge_P6_faults(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
     const ilk_ghost_slot_t* g = &ghost->slot[slot];
     const ilk_axis_view_t* before = &tick->before->axis[slot];
@@ -1280,12 +1285,20 @@ ilk_judgement_t judge_P6(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
          (after->fault == ILK_FAULT_REVERSE && !g->maybe_reversed))) {
       return broken("P6: REVERSE, DRIFT or JUMP without such motion", slot, after->fault, g->distance);
     }
-    if (g->runaway && (tick->after->mode != ILK_MODE_LOCKED || tick->out->power != 0u)) {
+  }
+  return HOLDS;
+}
+
+ilk_judgement_t judge_P6(const ilk_ghost_t* ghost, const ilk_tick_t* tick) {
+  for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
+    const ilk_ghost_slot_t* g = &ghost->slot[slot];
+    if (has_motor(&tick->config->axis[slot]) && g->runaway &&
+        (tick->after->mode != ILK_MODE_LOCKED || tick->out->power != 0u)) {
       return broken("P6: a faulted axis goes on moving and power is not taken away", slot, g->distance,
                     tick->config->axis[slot].drift_counts);
     }
   }
-  return HOLDS;
+  return judge_P6_faults(ghost, tick);
 }
 
 /** P7. The second half is judged where it is decided: no drive once the path travelled and coast exceed the

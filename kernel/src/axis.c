@@ -63,7 +63,9 @@ void ilk_axis_disable(ilk_axis_t *axis) {
   }
 }
 
+/** Where an axis that is DISABLED was moved to by hand, it is held to from here on. */
 void ilk_axis_begin_press(ilk_axis_t *axis) {
+  axis->drift_mark_raw = (axis->state == (uint32_t)ILK_AXIS_DISABLED) ? axis->raw : axis->drift_mark_raw;
   axis->path_raw = axis->raw;
   axis->path_is_homing = 0u;
   axis->unhomed_travel_counts = 0u;
@@ -299,14 +301,12 @@ static ilk_finding_t judge_reverse(const ilk_axis_config_t *config, ilk_axis_t *
 /** A DISABLED axis may be moved by hand, but in MOTION nothing but drive moves any. A drive needs a valid
    frame: an axis that was driven since its last one was driven in that very tick. */
 static ilk_finding_t judge_drift(const ilk_axis_config_t *config, const ilk_system_t *system,
-                                 uint32_t periods, ilk_axis_t *axis) {
-  const bool driven_last_tick =
-      (axis->driven_direction != (uint32_t)ILK_DIRECTION_NONE) && (axis->periods == periods);
+                                 bool read_last_tick, const ilk_axis_t *axis) {
+  const bool driven_last_tick = (axis->driven_direction != (uint32_t)ILK_DIRECTION_NONE) && read_last_tick;
   const int32_t drift = travel_between(config, axis->drift_mark_raw, axis->raw);
   const bool by_hand =
       (axis->state == (uint32_t)ILK_AXIS_DISABLED) && (system->mode != (uint32_t)ILK_MODE_MOTION);
   const bool judged = !by_hand && !driven_last_tick && (axis->state != (uint32_t)ILK_AXIS_FAULTED);
-  axis->drift_mark_raw = by_hand ? axis->raw : axis->drift_mark_raw;
   return found_if(judged && (magnitude(drift) > config->drift_counts), ILK_FAULT_DRIFT, drift);
 }
 
@@ -317,15 +317,15 @@ static ilk_finding_t judge_stall(const ilk_axis_config_t *config, const ilk_axis
 
 /** What a valid frame says. */
 static ilk_finding_t observe_frame(const ilk_common_config_t *common, const ilk_axis_config_t *config,
-                                   const ilk_system_t *system, const ilk_reading_t *reading, uint32_t periods,
-                                   ilk_axis_t *axis) {
+                                   const ilk_system_t *system, const ilk_reading_t *reading,
+                                   bool read_last_tick, ilk_axis_t *axis) {
   ilk_finding_t finding = follow_card(config, reading, axis);
   follow_stillness(&axis->rest, axis->raw, config->noise_counts, config->rest_ticks);
   follow_stillness(&axis->calm, axis->raw, config->drift_counts, config->rest_ticks);
   follow_path(config, system, axis);
   follow_progress(config, axis);
   finding = first_of(finding, judge_reverse(config, axis));
-  finding = first_of(finding, judge_drift(config, system, periods, axis));
+  finding = first_of(finding, judge_drift(config, system, read_last_tick, axis));
   axis->driven_direction = (uint32_t)ILK_DIRECTION_NONE;
   finding = first_of(finding, judge_stall(config, axis));
   if (has_switch(config)) {
@@ -370,10 +370,11 @@ bool ilk_axis_observe(const ilk_common_config_t *common, const ilk_axis_config_t
                       const ilk_system_t *system, const ilk_reading_t *reading, uint32_t periods,
                       ilk_axis_t *axis) {
   const bool valid = axis->card_valid != 0u;
+  const bool read_last_tick = axis->periods == 0u;
   axis->periods = sum_saturating(axis->periods, periods);
   axis->switch_triggered = flag_of(has_switch(config) && (!valid || reading->switch_triggered));
   run_lease_down(axis);
-  ilk_finding_t finding = valid ? observe_frame(common, config, system, reading, periods, axis)
+  ilk_finding_t finding = valid ? observe_frame(common, config, system, reading, read_last_tick, axis)
                                 : observe_nothing(common, config, axis);
   finding = first_of(finding, ilk_homing_advance(common, config, axis));
   const bool faulted = raise_fault(system, finding, axis);

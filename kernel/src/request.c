@@ -37,7 +37,7 @@ static void need_enabled(ilk_verdict_t *verdict, const ilk_system_t *system, con
 /** The rows of the table that name an axis. */
 static ilk_verdict_t judge(const ilk_common_config_t *common, const ilk_axis_config_t *config,
                            const ilk_system_t *system, const ilk_axis_t *axis, const ilk_request_t *request) {
-  const bool at_rest = ilk_axis_is_at_rest(config, axis);
+  const bool at_rest = ilk_axis_is_at_rest(config, axis) && (axis->runaway == 0u); /* it may creep */
   const bool may_enable = (system->powered_ticks >= common->power_up_ticks) && at_rest;
   const bool sets_home = request->kind == (uint32_t)ILK_REQUEST_SET_HOME;
   ilk_verdict_t verdict = ILK_VERDICT_ACCEPTED;

@@ -42,7 +42,8 @@ bool config_is_valid(void) {
             a->unhomed_max_drive <= a->max_drive &&
             HOLDS_IF(has_motor(a), a->noise_counts < (1u << 28) && a->drift_counts < (1u << 28) &&
                                        a->stall_min_counts > 0u && a->stall_min_counts < (1u << 31) &&
-                                       a->deadband_counts < (1u << 30) && a->max_drive > 0u);
+                                       a->deadband_counts < (1u << 30) && a->max_drive > 0u &&
+                                       a->rest_ticks > 1u);
   }
   return valid;
 }
@@ -258,6 +259,58 @@ static void claim_rest(void) {
   }
 }
 
+/** Since its fault, or since its card was lost, this FAULTED axis may have moved beyond `drift_counts`: now,
+ * and before this tick. */
+static bool has_run;
+static bool had_run;
+
+/** What an axis is compared with when it moves, and what came of it. */
+static void relate_marks(bool shown, bool middle) {
+  const bool told = state.system.mode == ILK_MODE_MOTION && (!middle || mode_is_told());
+  for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
+    const ilk_ghost_slot_t* g = &ghost.slot[slot];
+    const ilk_axis_t* a = &state.axis[slot];
+    const bool awaits_valid_frame = a->driven_direction != ILK_DIRECTION_NONE;
+    const bool directed = a->reverse_direction != ILK_DIRECTION_NONE;
+    const bool rides = a->state != ILK_AXIS_DISABLED && a->state != ILK_AXIS_FAULTED;
+    const bool drift_is_judged = rides || (a->state == ILK_AXIS_DISABLED && told);
+    if (!has_motor(&config.axis[slot])) {
+      continue;
+    }
+    RELATED(g->delta == a->delta_counts && a->reverse_direction <= ILK_DIRECTION_DECREASING);
+    RELATED(HOLDS_IF(rides, g->reverse_direction == a->reverse_direction));
+    RELATED(HOLDS_IF(directed,
+                     g->reverse_direction == a->reverse_direction && g->reverse_mark == a->reverse_mark_raw));
+    RELATED(HOLDS_IF(drift_is_judged, g->drift_known && g->drift_mark == a->drift_mark_raw));
+    RELATED(HOLDS_IF(awaits_valid_frame && !g->valid, g->periods > 0u));
+    RELATED(HOLDS_IF(a->runaway != 0u, a->state == ILK_AXIS_FAULTED && has_run));
+    if (a->state == ILK_AXIS_FAULTED && !has_run) {
+      RELATED(!g->ran && !g->maybe_ran);
+      RELATED(HOLDS_IF(a->card_seen != 0u,
+                       g->fault_mark == a->drift_mark_raw && g->mark_low == 0 && g->mark_high == 0));
+    }
+    if (middle) {
+      const bool was_well = before.axis[slot].state != ILK_AXIS_FAULTED;
+      const bool judged = before.axis[slot].state != ILK_AXIS_DISABLED || before.mode == ILK_MODE_MOTION;
+      const bool faulted = was_well && a->state == ILK_AXIS_FAULTED;
+      const uint32_t first = g->jump ? ILK_FAULT_JUMP : (g->reversed ? ILK_FAULT_REVERSE : ILK_FAULT_DRIFT);
+      const bool other = g->reset || (!g->jump && g->maybe_reversed && a->fault == ILK_FAULT_REVERSE);
+      RELATED((a->state == ILK_AXIS_DISABLED) == (g->state == ILK_AXIS_DISABLED));
+      RELATED((a->state == ILK_AXIS_FAULTED) == (g->state == ILK_AXIS_FAULTED));
+      RELATED(HOLDS_IF(g->valid, !awaits_valid_frame));
+      RELATED(HOLDS_IF(was_well && judged && (g->jump || g->reversed || g->drifted),
+                       faulted && a->fault_tick == state.system.tick && (a->fault == first || other)));
+      RELATED(HOLDS_IF(faulted && a->fault == ILK_FAULT_DRIFT, g->drifted));
+      RELATED(HOLDS_IF(faulted && a->fault == ILK_FAULT_JUMP, g->jump));
+      RELATED(HOLDS_IF(faulted && a->fault == ILK_FAULT_REVERSE, g->maybe_reversed));
+      RELATED(HOLDS_IF(g->runaway && !had_run, a->runaway != 0u));
+    } else {
+      RELATED(g->driven == (g->valid && awaits_valid_frame));
+      RELATED(HOLDS_IF(g->driven, rides));
+    }
+  }
+}
+
 static uint32_t nonce;      /**< of this start */
 static uint32_t press_tick; /**< in which the last press began */
 
@@ -449,6 +502,9 @@ void relate(bool shown, bool middle, unsigned parts) {
   if ((parts & EDGES) != 0u) {
     relate_edges(shown, middle);
   }
+  if ((parts & MARKS) != 0u) {
+    relate_marks(shown, middle);
+  }
 }
 
 /* --- What may follow by requests
@@ -527,6 +583,8 @@ void some_memory(void) {
   edges.first = nondet_truth();
   edges.slow = nondet_truth();
   edges.second = nondet_truth();
+  has_run = nondet_truth();
+  had_run = nondet_truth();
   for (uint32_t slot = 0u; slot < ILK_SLOTS; slot++) {
     ghost.slot[slot].triggered = nondet_word() != 0u; /* it is compared, and truth has one form in C */
     checksums[slot] = nondet_truth();
@@ -565,6 +623,9 @@ void judge_inputs(void) {
   const bool sought = ghost.slot[0].seeks;
   const bool was_open = ghost.slot[0].home_open;
   ghost_observe(&ghost, &tick);
+  had_run = has_run;
+  has_run = before.axis[0].state == ILK_AXIS_FAULTED && !ghost.slot[0].lost &&
+            (has_run || ghost.slot[0].maybe_runaway);
   remember_readings();
   follow_edges(sought, was_open);
   before_requests(&ghost, &tick);
@@ -612,6 +673,13 @@ static void claim_place(void) {
   }
 }
 
+/** P6, the last clause, of the first time since the fault that the axis goes on moving. */
+static void claim_runaway(void) {
+  const bool goes_on = has_motor(&config.axis[0]) && ghost.slot[0].runaway && !had_run;
+  __CPROVER_assert(!goes_on || (after.mode == ILK_MODE_LOCKED && out.power == 0u),
+                   "P6: a faulted axis that goes on moving locks and takes power away");
+}
+
 void judge_drive(void) {
   const bool driven = is_driven(&tick, 0u);
   after_requests(&ghost, &tick);
@@ -629,9 +697,15 @@ void judge_drive(void) {
   GOAL(before.mode == ILK_MODE_LOCKED && after.mode == ILK_MODE_LOCKED);
   GOAL(before.axis[0].state == ILK_AXIS_FAULTED && after.axis[0].state == ILK_AXIS_DISABLED);
   GOAL(before.mode == ILK_MODE_READY && after.mode == ILK_MODE_MOTION && driven);
+#if (SHOWN & MARKS) != 0u
+  GOAL(ghost.slot[0].runaway && !had_run && before.mode == ILK_MODE_MOTION);
+#endif
   CLAIMS
   if ((SHOWN & EDGES) != 0u) {
     claim_place();
+  }
+  if ((SHOWN & MARKS) != 0u) {
+    claim_runaway();
   }
   if (after.mode == ILK_MODE_MOTION && before.mode != ILK_MODE_MOTION) {
     press_tick = ghost.tick;

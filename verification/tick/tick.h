@@ -23,6 +23,7 @@
 #define ORDERS 0x8u   /**< lease, drive and consent of what an axis was told */
 #define PEDAL 0x10u   /**< arming and press */
 #define PATH 0x20u    /**< travel and time of this press */
+#define MARKS 0x40u   /**< what reverse motion and drift are measured from */
 #define REST 0x80u    /**< rest */
 #define STALL 0x200u  /**< marks and sums of progress */
 #define EDGES 0x400u  /**< edges of the switch since HOME */
