@@ -76,7 +76,7 @@ Forget(a) ==
         setpoint_counts   |-> IF held THEN a.setpoint_counts ELSE 0,
         drive             |-> IF held THEN a.drive ELSE 0,
         lease_ticks       |-> a.lease_ticks, driven_direction |-> a.driven_direction,
-        rest              |-> IF a.card_seen THEN a.rest ELSE RunAt(0),
+        rest              |-> IF a.card_seen /\ ~WasDriven(a) THEN a.rest ELSE RunAt(raw),
         hand              |-> IF ~a.card_seen THEN RunAt(0) ELSE IF "hand" \in Without THEN quiet ELSE a.hand,
         stall_ticks       |-> IF stalls THEN a.stall_ticks ELSE 0,
         stall_effort      |-> IF stalls THEN a.stall_effort ELSE 0,
