@@ -74,11 +74,13 @@ Drive(K, kernel) ==
   LET One(x) == DriveAxis(K[x], kernel.system, kernel.axes[x])
   IN  Each(DOMAIN kernel.axes, One)
 
-Tick(c, K, kernel, in) ==
-  LET start    == CheckState(c, kernel, in)
-      observed == TLCEval(IF start.system.mode = "INIT" THEN start ELSE Observe(c, K, start, in))
-      answered == TLCEval(AnswerAll(c, K, observed, in.requests, <<>>))
-      driven   == Drive(K, answered.kernel)
+(* Phases 1 to 5, which no request of the tick has a part in; then 7 and 8, after 6. *)
+Observed(c, K, kernel, in) ==
+  LET start == CheckState(c, kernel, in)
+  IN  TLCEval(IF start.system.mode = "INIT" THEN start ELSE Observe(c, K, start, in))
+
+Finished(K, observed, answered) ==
+  LET driven == Drive(K, answered.kernel)
       AxisOf(x)    == [driven[x].axis EXCEPT !.fault_now = FALSE, !.disabled_now = FALSE]
       CommandOf(x) == driven[x].command
       GateOf(x)    == driven[x].gate
@@ -87,6 +89,9 @@ Tick(c, K, kernel, in) ==
         command  |-> Each(DOMAIN driven, CommandOf),
         gate     |-> Each(DOMAIN driven, GateOf),
         answers  |-> answered.answers,
-        observed |-> observed,
-        before   |-> start ]
+        observed |-> observed ]
+
+Tick(c, K, kernel, in) ==
+  LET observed == Observed(c, K, kernel, in)
+  IN  Finished(K, observed, TLCEval(AnswerAll(c, K, observed, in.requests, <<>>)))
 ===============================================================================

@@ -67,13 +67,13 @@ Witnessed ==
                      !.raw = IF w.triggered /\ w.open THEN @ ELSE 0,
                      !.rest = IF Driven THEN RunAt(0) ELSE @]
 
-Step(in, m) == Tock(in, m) /\ seen' = Witnessed
+Step(in, m, wishes) == Tock(in, m, wishes) /\ seen' = Witnessed
 
-AnyTick == Met("AnyTick") /\ system.mode = "MOTION" /\ \E event \in Events, wishes \in Wishes :
-  Step(Input("CLOSED", event.reading, <<Beat>> \o wishes), event.m)
+AnyTick == system.mode = "MOTION" /\ Met("AnyTick") /\ \E event \in Events :
+  Step(Input("CLOSED", event.reading, <<Beat>>), event.m, Wishes)
 
 ReleaseTick == system.mode = "MOTION" /\ Met("ReleaseTick") /\
-  Step(Input("OPEN", Reading(plant.at, plant.at <= body.closes), <<Beat>>), 0)
+  Step(Input("OPEN", Reading(plant.at, plant.at <= body.closes), <<Beat>>), 0, {<<>>})
 
 (* Back into MOTION, whatever has happened, with a switch that reads true. *)
 Remedy ==
@@ -82,7 +82,7 @@ Remedy ==
 
 BackTick == system.mode # "MOTION" /\ Met("BackTick") /\
   Step(Input(IF axis.state = "FAULTED" THEN "OPEN" ELSE Held,
-             Reading(plant.at, plant.at <= body.closes), <<Beat>> \o Remedy), 0)
+             Reading(plant.at, plant.at <= body.closes), <<Beat>> \o Remedy), 0, {<<>>})
 
 Init ==
   /\ \E at \in {0, 2} : BeginIn(After(PowerOn, IntoMotion(at, <<Ask("ENABLE")>>)), at)

@@ -56,15 +56,15 @@ Witnessed ==
              home  |-> seen.home + (IF seen.by = "HOME" THEN path ELSE 0),
              point |-> IF path # 0 \/ (IsHomed(axis) /\ Read1.valid) THEN now ELSE seen.point ]
 
-Step(in, m) == Tock(in, m) /\ seen' = Witnessed
+Step(in, m, wishes) == Tock(in, m, wishes) /\ seen' = Witnessed
 
-AnyTick == Met("AnyTick") /\ \E event \in Events, wishes \in Wishes :
-  Step(Input(Held, event.reading, <<Beat>> \o wishes), event.m)
+AnyTick == Met("AnyTick") /\ \E event \in Events :
+  Step(Input(Held, event.reading, <<Beat>>), event.m, Wishes)
 
 EndTick == system.mode = "MOTION" /\ Met("EndTick") /\
-  \E pedal \in {"OPEN", "CLOSED"}, estop \in {"OPEN", "CLOSED"}, said \in {<<>>, <<There>>},
-     m \in {m \in LawfulMoves : Inside(m)} :
-    Step([Input(pedal, Reading(plant.at + m, plant.at <= body.closes), said) EXCEPT !.estop_loop = estop], m)
+  \E pedal \in {"OPEN", "CLOSED"}, estop \in {"OPEN", "CLOSED"}, m \in {m \in LawfulMoves : Inside(m)} :
+    Step([Input(pedal, Reading(plant.at + m, plant.at <= body.closes), <<>>) EXCEPT !.estop_loop = estop], m,
+         {<<>>, <<There>>})
 
 Init ==
   /\ BeginIn(After(PowerOn, IntoMotion(0, (IF Unhomed THEN <<>> ELSE <<Ask("SET_HOME")>>) \o <<Ask("ENABLE")>>)), 0)

@@ -37,7 +37,8 @@ HoldOn ==
   /\ aim = "MOVE" /\ TimeGoesOn
   /\ Met("HoldOn")
   /\ \E m \in {m \in LawfulMoves : Inside(m)}, n \in {0, 1} :
-       Step(Input("CLOSED", Reading(plant.at + m + n, FALSE), <<Beat, MoveTo(goal, 1, c.lease_max_ticks)>>), m)
+       Step(Input("CLOSED", Reading(plant.at + m + n, FALSE), <<Beat, MoveTo(goal, 1, c.lease_max_ticks)>>), m,
+            {<<>>})
   /\ UNCHANGED <<aim, goal>>
 
 (* Accepted: the lease lives. A reading that dithers may leave the deadband by the noise. *)
@@ -58,7 +59,7 @@ Recover ==
   /\ aim = "RECOVER" /\ TimeGoesOn
   /\ Met("Recover")
   /\ \E n \in {0, 1} :
-       Step(Input(Pedal, Reading(plant.at + n, plant.at <= body.closes), <<Beat, Remedy>>), 0)
+       Step(Input(Pedal, Reading(plant.at + n, plant.at <= body.closes), <<Beat, Remedy>>), 0, {<<>>})
   /\ UNCHANGED <<aim, goal>>
 
 Recovered == system.mode = "MOTION" /\ IsEnabled(axis)

@@ -52,50 +52,50 @@ View == <<system, axis, plant, seen>>
 (* What no later tick looks at is set to one value, so that states that will behave
    alike are one: each of these is written anew before it is read. One is a choice of
    the model: an axis that is not homed and holds no setpoint takes up its position at
-   the raw counter. *)
-NotLookedAt(a) ==
-  LET quiet == [low |-> a.raw, high |-> a.raw, ticks |-> k.rest_ticks]
-      b == IF "stall" \in Without
-           THEN [a EXCEPT !.stall_ticks = 0, !.stall_effort = 0, !.stall_mark = 0,
-                          !.effort_mark = 0, !.stall_direction = "NONE"] ELSE a
-      d == IF "travel" \in Without
-           THEN [b EXCEPT !.travel_mark = 0, !.move_travel = 0, !.home_travel = 0, !.travel_by = "MOVE"]
-           ELSE b
-  IN  [d EXCEPT !.reverse_direction = IF "reverse" \in Without THEN "NONE" ELSE @,
-                !.drift_mark = IF "drift" \in Without THEN a.raw ELSE @,
-                !.homing_ticks = IF "time" \in Without THEN 0 ELSE @,
-                !.hand = IF "hand" \in Without THEN quiet ELSE @]
-
-ForgetMarks(a) ==
-  LET held  == a.lease_ticks > 1
-      edges == a.homing_phase \in {"BACK_OFF_AGAIN", "APPROACH_SLOWLY", "REST"}
-      backs == a.homing_phase \in {"BACK_OFF", "BACK_OFF_AGAIN"}
-      seeks == a.switch_triggered /\ a.homing_phase \in {"APPROACH", "APPROACH_SLOWLY"}
-  IN  [a EXCEPT !.setpoint_counts = IF held THEN @ ELSE 0,
-                !.drive = IF held THEN @ ELSE 0,
-                !.stall_mark = IF a.stall_direction = "NONE" THEN 0 ELSE @,
-                !.effort_mark = IF a.stall_direction = "NONE" THEN 0 ELSE @,
-                !.reverse_mark = IF a.reverse_direction = "NONE" THEN 0 ELSE @,
-                !.drift_mark = IF MovableByHand(system', a) THEN a.raw ELSE @,
-                !.switch_raw = IF seeks THEN @ ELSE 0,
-                !.homing_mark = IF backs THEN @ ELSE 0,
-                !.first_edge = IF edges THEN @ ELSE 0,
-                !.second_edge = IF a.homing_phase = "REST" THEN @ ELSE 0]
-
-ForgetPress(a) ==
-  IF system'.mode = "MOTION" THEN a
-  ELSE [a EXCEPT !.travel_mark = 0, !.travel_by = "MOVE", !.move_travel = 0, !.home_travel = 0,
-                 !.homing_ticks = 0]
-
-ForgetCard(a) ==
-  IF a.card_seen THEN a ELSE [MarksAt(a, 0) EXCEPT !.raw = 0]
-
-ForgetRead(a) ==
-  [a EXCEPT !.card_valid = FALSE, !.switch_now = FALSE,
-            !.ticks_since_frame = IF a.card_seen THEN @ ELSE 0,
-            !.position_counts = IF IsHomed(a) \/ a.lease_ticks > 1 THEN @ ELSE a.raw]
-
-Forget(a) == ForgetRead(ForgetCard(ForgetPress(ForgetMarks(NotLookedAt(a)))))
+   the raw counter. Each field is written once: that is what TLC is quick at. *)
+Forget(a) ==
+  LET held   == a.lease_ticks > 1
+      raw    == IF a.card_seen THEN a.raw ELSE 0
+      seeks  == a.switch_triggered /\ a.homing_phase \in {"APPROACH", "APPROACH_SLOWLY"}
+      backs  == a.card_seen /\ a.homing_phase \in {"BACK_OFF", "BACK_OFF_AGAIN"}
+      edges  == a.homing_phase \in {"BACK_OFF_AGAIN", "APPROACH_SLOWLY", "REST"}
+      stalls == "stall" \notin Without
+      marks  == stalls /\ a.card_seen /\ a.stall_direction # "NONE"
+      turns  == "reverse" \notin Without
+      drifts == "drift" \notin Without /\ ~MovableByHand(system', a)
+      press  == system'.mode = "MOTION"
+      paths  == press /\ "travel" \notin Without
+      quiet  == [low |-> raw, high |-> raw, ticks |-> k.rest_ticks]
+  IN  [ state |-> a.state, fault |-> a.fault, fault_now |-> FALSE, disabled_now |-> FALSE,
+        homed |-> a.homed, card_valid |-> FALSE, card_seen |-> a.card_seen, bad_frames |-> a.bad_frames,
+        ticks_since_frame |-> IF a.card_seen THEN a.ticks_since_frame ELSE 0,
+        raw               |-> raw,
+        position_counts   |-> IF IsHomed(a) \/ held THEN a.position_counts ELSE raw,
+        switch_triggered  |-> a.switch_triggered, switch_ticks |-> a.switch_ticks,
+        switch_raw        |-> IF seeks THEN a.switch_raw ELSE 0, switch_now |-> FALSE,
+        setpoint_counts   |-> IF held THEN a.setpoint_counts ELSE 0,
+        drive             |-> IF held THEN a.drive ELSE 0,
+        lease_ticks       |-> a.lease_ticks, driven_direction |-> a.driven_direction,
+        rest              |-> IF a.card_seen /\ ~WasDriven(a) THEN a.rest ELSE RunAt(raw),
+        hand              |-> IF ~a.card_seen THEN RunAt(0) ELSE IF "hand" \in Without THEN quiet ELSE a.hand,
+        stall_ticks       |-> IF stalls THEN a.stall_ticks ELSE 0,
+        stall_effort      |-> IF stalls THEN a.stall_effort ELSE 0,
+        stall_direction   |-> IF stalls THEN a.stall_direction ELSE "NONE",
+        stall_mark        |-> IF marks THEN a.stall_mark ELSE 0,
+        effort_mark       |-> IF marks THEN a.effort_mark ELSE 0,
+        reverse_direction |-> IF turns THEN a.reverse_direction ELSE "NONE",
+        reverse_mark      |-> IF turns /\ a.card_seen /\ a.reverse_direction # "NONE" THEN a.reverse_mark ELSE 0,
+        drift_mark        |-> IF a.card_seen /\ drifts THEN a.drift_mark ELSE raw,
+        runaway           |-> a.runaway,
+        travel_mark       |-> IF paths /\ a.card_seen THEN a.travel_mark ELSE 0,
+        travel_by         |-> IF paths THEN a.travel_by ELSE "MOVE",
+        move_travel       |-> IF paths THEN a.move_travel ELSE 0,
+        home_travel       |-> IF paths THEN a.home_travel ELSE 0,
+        homing_phase      |-> a.homing_phase,
+        homing_ticks      |-> IF press /\ "time" \notin Without THEN a.homing_ticks ELSE 0,
+        homing_mark       |-> IF backs THEN a.homing_mark ELSE 0,
+        first_edge        |-> IF edges THEN a.first_edge ELSE 0,
+        second_edge       |-> IF a.homing_phase = "REST" THEN a.second_edge ELSE 0 ]
 
 ForgetSystem(s) == [s EXCEPT !.causes_seen = {}, !.app_alive = FALSE, !.estop = FALSE,
                              !.runaway = FALSE, !.pedal = "DISAGREE"]
@@ -166,13 +166,16 @@ Told(in, tick) ==
     answers |-> [i \in 1..Len(tick.answers) |-> Outcome(tick.answers[i])],
     system |-> tick.system, axis |-> tick.axes[X], observed |-> tick.observed.axes[X] ]
 
-(* The tick is bound as the element of a set, which evaluates it once. *)
-Tock(in, m) ==
-  \E tick \in {Tick(c, K, Kernel0, in)} :
+(* A tick for each of the `wishes`, which come behind the requests of `in`. A value bound
+   as the element of a set is evaluated once: what is the same for all wishes is shared. *)
+Tock(in, m, wishes) ==
+  \E observed \in {Observed(c, K, Kernel0, in)} :
+  \E answered \in {AnswerAll(c, K, observed, in.requests, <<>>)}, wish \in wishes :
+  \E tick \in {Finished(K, observed, AnswerAll(c, K, answered.kernel, wish, answered.answers))} :
     /\ system' = ForgetSystem(tick.system)
     /\ axis' = Forget(tick.axes[X])
     /\ plant' = Moved(m, tick.command[X].direction)
-    /\ io' = Told(in, tick)
+    /\ io' = Told([in EXCEPT !.requests = @ \o wish], tick)
 
 (* The search begins where power has just come on, or where MOTION has begun with the
    axis enabled: the inputs that lead there are part of the model. *)

@@ -65,13 +65,13 @@ Witnessed ==
         ticks  |-> IF Read1.valid \/ IsLost THEN 1 ELSE seen.ticks + 1,
         loose  |-> Loose ]
 
-Step(in, m) == Tock(in, m) /\ seen' = Witnessed
+Step(in, m, wishes) == Tock(in, m, wishes) /\ seen' = Witnessed
 
-AnyTick == Met("AnyTick") /\ \E event \in Events, wishes \in Wishes :
-  Step(Input(Held, event.reading, <<Beat>> \o wishes), event.m)
+AnyTick == Met("AnyTick") /\ \E event \in Events :
+  Step(Input(Held, event.reading, <<Beat>>), event.m, Wishes)
 
 ReleaseTick == system.mode = "MOTION" /\ Met("ReleaseTick") /\ \E m \in {-2, 0} : Inside(m) /\
-  Step(Input("OPEN", Reading(plant.at + m, FALSE), <<Beat>>), m)
+  Step(Input("OPEN", Reading(plant.at + m, FALSE), <<Beat>>), m, {<<>>})
 
 Init ==
   /\ BeginIn(After(PowerOn, IntoMotion(0, <<Ask("SET_HOME"), Ask("ENABLE")>>)), 0)

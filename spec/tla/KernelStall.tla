@@ -48,16 +48,16 @@ Witnessed ==
         far    |-> IF anew THEN io'.axis.raw ELSE IF clear THEN Read1.raw ELSE seen.far,
         near   |-> IF anew THEN io'.axis.raw ELSE IF Whole \/ Some THEN Read1.raw ELSE seen.near ]
 
-Step(in, m) == Tock(in, m) /\ seen' = Witnessed
+Step(in, m, wishes) == Tock(in, m, wishes) /\ seen' = Witnessed
 
-AnyTick == Met("AnyTick") /\ \E event \in Readings, wishes \in Wishes :
-  Step(Input(Held, event.reading, <<Beat>> \o wishes), event.m)
+AnyTick == Met("AnyTick") /\ \E event \in Readings :
+  Step(Input(Held, event.reading, <<Beat>>), event.m, Wishes)
 
 ReleaseTick == system.mode = "MOTION" /\ Met("ReleaseTick") /\
-  Step(Input("OPEN", Reading(plant.at, FALSE), <<Beat>>), 0)
+  Step(Input("OPEN", Reading(plant.at, FALSE), <<Beat>>), 0, {<<>>})
 
 ResetTick == system.mode = "MOTION" /\ Met("ResetTick") /\ \E m \in {0, 1} : Inside(m) /\
-  Step(Input(Held, [Reading(plant.at + m, FALSE) EXCEPT !.reset = TRUE], <<Beat>>), m)
+  Step(Input(Held, [Reading(plant.at + m, FALSE) EXCEPT !.reset = TRUE], <<Beat>>), m, {<<>>})
 
 Init ==
   /\ BeginIn(After(PowerOn, IntoMotion(0, <<Ask("SET_HOME"), Ask("ENABLE")>>)), 0)

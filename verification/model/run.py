@@ -69,7 +69,9 @@ def check_wrong(model: Model, variant: WrongVariant) -> Finding:
     """A wrong variant: TLC must refute it, and name the property."""
     directory = directory_for(model.name, f"wrong-{variant.name}")
     variant.plant(directory)
-    answer = tlc.check(directory, model.module, model.configuration([variant.property]), TIMEOUT_S)
+    answer = tlc.check(
+        directory, model.module, model.configuration([variant.property]), TIMEOUT_S, brief=True
+    )
     status, fault = "", ""
     if answer.timed_out:
         status, fault = "UNKNOWN", f"no answer in {TIMEOUT_S} s"

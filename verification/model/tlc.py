@@ -72,7 +72,7 @@ def prepare(directory: Path) -> None:
         shutil.copy(module, directory)
 
 
-def check(directory: Path, module: str, configuration: str, limit_s: int) -> Answer:
+def check(directory: Path, module: str, configuration: str, limit_s: int, brief: bool = False) -> Answer:
     """Runs TLC on a module in `directory` with a configuration given as text.
 
     The log stays there as tlc.log. A run that takes more than `limit_s` of processor time has the status
@@ -82,7 +82,7 @@ def check(directory: Path, module: str, configuration: str, limit_s: int) -> Ans
     command = [
         "prlimit",
         f"--cpu={limit_s}:{limit_s + 5}",
-        *tlc_command(directory, stack_mb=16),
+        *tlc_command(directory, stack_mb=16, brief=brief),
         "-cleanup",
         "-metadir",
         str(directory / "states"),
