@@ -185,6 +185,7 @@ def test_a_figure_above_its_limit_fails_the_run_and_a_short_run_is_bounded(bench
         assert bench_run.status_of(figures | {name: limit + 1}, 300) == "FAILED"
         assert bench_run.status_of(figures | {name: limit + 1}, 10) == short
     assert bench_run.LIMITS["step_ns_median"] * 2 == bench_run.LIMITS["step_ns_worst_path"] == 2000
+    assert bench_run.LIMITS["step_instructions_median"] == 11_000
     assert bench_run.LIMITS["reaction_ticks_most"] == 2
 
 

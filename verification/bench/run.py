@@ -71,6 +71,7 @@ ROBOTS = ("neuro", "prostate")
 LIMITS = {
     "step_ns_median": 1000,
     "step_ns_worst_path": 2000,
+    "step_instructions_median": 11_000,
     "reaction_ticks_most": 2,
     "control_tick_ns_p999_neuro": 50_000,
     "control_tick_ns_p999_prostate": 50_000,
