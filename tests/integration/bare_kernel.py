@@ -65,7 +65,7 @@ def stop(process: subprocess.Popen) -> int:
 
 
 class BareKernel:
-    def __init__(self, directory: Path, clock: str) -> None:
+    def __init__(self, directory: Path, clock: str, *more: str) -> None:
         self.directory = directory
         self.link_path = directory / "link.sock"
         config = directory / "neuro.ilkc"
@@ -76,7 +76,7 @@ class BareKernel:
         sim_options = options(plant=plant, robot=config, bus=bus, control=control, seed=1)
         self.sim = start([BIN / "interlock-sim", *sim_options])
         kernel_options = options(config=config, bus=f"sim:{bus}", link=self.link_path, clock=clock)
-        self.kernel = start([BIN / "interlock-kernel", *kernel_options])
+        self.kernel = start([BIN / "interlock-kernel", *kernel_options, *more])
         self.plant = PlantControl(directory / "control.sock")
 
     def attach(self) -> LinkClient:

@@ -35,9 +35,12 @@ def request_record(kind: str, sequence: int, **fields: int) -> ctypes.Structure:
 
 
 class LinkClient:
-    """One attachment. With a kernel on the simulated clock, `run` decides how far simulated time goes."""
+    """One attachment. With a kernel on the simulated clock, `run` decides how far simulated time goes.
 
-    def __init__(self, path: Path) -> None:
+    Unless `mapped`, the kernel does not serve it before `say_mapped`.
+    """
+
+    def __init__(self, path: Path, mapped: bool = True) -> None:
         self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self.socket.settimeout(DEADLINE_S)
         self.socket.connect(str(path))
@@ -54,13 +57,18 @@ class LinkClient:
         self.kernel_map = mmap.mmap(self.kernel_fd, self.hello.kernel_region_bytes, prot=mmap.PROT_READ)
         self.app_map = mmap.mmap(self.app_fd, self.hello.app_region_bytes)
         self.app = AppRegion.from_buffer(self.app_map)
-        self.socket.send(CONSTANTS["ILK_LINK_MAGIC"].to_bytes(4, "little"))
         self.sequence = 0
         self.events_read = 0
         self.verdicts: dict[int, str] = {}
         self.verdict_counts: Counter[str] = Counter()
         self.verdicts_of: Counter[int] = Counter()
-        self.app.seen_tick = self.snapshot().state.system.tick
+        if mapped:
+            self.say_mapped()
+            self.app.seen_tick = self.snapshot().state.system.tick
+
+    def say_mapped(self) -> None:
+        """After this the kernel seals the app's region and begins to serve."""
+        self.socket.send(CONSTANTS["ILK_LINK_MAGIC"].to_bytes(4, "little"))
 
     def close(self) -> None:
         del self.app

@@ -1,7 +1,6 @@
 """What an app can do at worst: real processes, the app's side of the link in the test's hands."""
 
 import ctypes
-import fcntl
 import mmap
 import os
 import random
@@ -10,12 +9,11 @@ from pathlib import Path
 
 import pytest
 from bare_kernel import BareKernel, bare_kernel, mode, to_motion
+from hostile_app import attach_after_worst, do_worst, map_reopened
 from link_client import AppRegion, KernelRegion, Request, request_record
 from link_layout import CONSTANTS, name_of
 
 LATERAL = 4
-PUNCH_HOLE_KEEP_SIZE = 0x03
-MADV_REMOVE = 9
 FULL_DRIVE = 131_071
 STALL_BOUNDS = pytest.mark.parametrize(("drive", "stall_ticks"), [(FULL_DRIVE, 68), (10_000, 500)])
 """By effort at full drive, by driven time at a low one, as the robot's file says."""
@@ -107,45 +105,29 @@ def test_the_app_cannot_map_the_snapshot_for_writing(kernel: BareKernel) -> None
     client.close()
 
 
-def map_reopened(descriptor: int, size: int) -> None:
-    """Opens the same memory anew for writing and maps it; either step may be refused."""
-    reopened = os.open(f"/proc/self/fd/{descriptor}", os.O_RDWR)
-    try:
-        mmap.mmap(reopened, size, prot=mmap.PROT_READ | mmap.PROT_WRITE)
-    finally:
-        os.close(reopened)
-
-
 def page_faults(pid: int) -> int:
     """Of the first thread of a process, which runs the loop: minor and major ones since its start."""
     fields = Path(f"/proc/{pid}/task/{pid}/stat").read_text("ascii").rpartition(")")[2].split()
     return int(fields[7]) + int(fields[9])
 
 
-def test_nothing_that_the_app_does_to_its_region_costs_the_loop_a_page_fault(kernel: BareKernel) -> None:
-    client = kernel.attach()
-    to_motion(kernel, client, LATERAL)
-    client.run(200)
-    before = page_faults(kernel.kernel.pid)
-    libc = ctypes.CDLL(None, use_errno=True)
-    size = ctypes.c_long(ctypes.sizeof(AppRegion))
-    for _ in range(50):
-        assert libc.fallocate(client.app_fd, PUNCH_HOLE_KEEP_SIZE, ctypes.c_long(0), size) == -1
-        for refused in (
-            lambda: os.ftruncate(client.app_fd, 0),
-            lambda: os.pwrite(client.app_fd, b"\0", 0),
-            lambda: client.app_map.madvise(MADV_REMOVE),
-            lambda: fcntl.fcntl(client.app_fd, fcntl.F_ADD_SEALS, fcntl.F_SEAL_WRITE),
-            lambda: map_reopened(client.app_fd, ctypes.sizeof(AppRegion)),
-        ):
-            with pytest.raises(OSError, match=r"not permitted|Permission denied"):
-                refused()
-        fcntl.flock(client.app_fd, fcntl.LOCK_EX)
-        for _ in range(60):
-            client.write(request_record("MOVE", 0))
-        client.run(20)
-    assert page_faults(kernel.kernel.pid) == before
-    client.close()
+@pytest.mark.network
+def test_nothing_that_the_app_does_costs_a_real_time_loop_a_page_fault() -> None:
+    """From the kernel's `ready` to the end of the run. Needs CAP_SYS_NICE and CAP_IPC_LOCK."""
+    dice = random.Random(20_181)
+    with bare_kernel("real") as kernel:
+        before = page_faults(kernel.kernel.pid)
+        for _ in range(5):
+            client = attach_after_worst(kernel.link_path)
+            granted = client.run(5).granted
+            assert granted & (1 << CONSTANTS["ILK_RT_FIFO"]), "SCHED_FIFO was refused"
+            assert granted & (1 << CONSTANTS["ILK_RT_MLOCK"]), "locked memory was refused"
+            for _ in range(50):
+                do_worst(client, dice)
+            assert client.run(20).requests_dropped > 0
+            client.close()
+        assert page_faults(kernel.kernel.pid) == before
+        assert kernel.kernel.poll() is None
 
 
 def test_P10_an_app_that_only_renews_its_lease_without_heartbeat_is_silent(kernel: BareKernel) -> None:

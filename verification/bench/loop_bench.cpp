@@ -3,8 +3,9 @@
 ///
 /// Takes the command line of interlock-kernel, and from the environment INTERLOCK_BENCH_SETUP (`shipped` or
 /// `before`), INTERLOCK_BENCH_SECONDS (of memory for notes) and INTERLOCK_BENCH_NOTES (a path). At the end
-/// PATH.main, and for `before` PATH.bus, hold two native 64-bit words a tick: CLOCK_MONOTONIC at which it
-/// began, and how long after its deadline, both in ns.
+/// PATH.main, and for `before` PATH.bus, hold four native 64-bit words a tick, in ns: CLOCK_MONOTONIC at
+/// which it began, how long after its deadline, when the transaction before was over, and how long after its
+/// own transaction the tick was (of PATH.main: requests read, step, snapshot).
 ///
 /// - `shipped` is the executive as it is: one loop, SCHED_FIFO, memory locked, on the core asked for. Its
 ///   deadlines fall on whole periods of CLOCK_MONOTONIC, so that cyclictest can be put between them.
@@ -49,6 +50,7 @@ struct Note {
   std::uint64_t begun_ns;
   std::uint64_t late_ns;
   std::uint64_t busy_until_ns;
+  std::uint64_t work_ns;
 };
 
 /// The notes of one loop; never allocates after it was made, and drops what it has no room for.
@@ -68,12 +70,19 @@ class Notes {
     // As the executive: whole periods that passed are skipped.
     deadline_ns_ = due_ns + late_ns / period_ns_ * period_ns_;
     if (notes_.size() < notes_.capacity()) {
-      notes_.push_back({now_ns, late_ns, busy_until_ns_});
+      notes_.push_back({now_ns, late_ns, busy_until_ns_, 0});
     }
   }
 
   /// The transaction of the newest tick is over.
   void end_transaction(std::uint64_t now_ns) { busy_until_ns_ = now_ns; }
+
+  /// The newest tick itself is over; only the first call for a tick counts.
+  void end(std::uint64_t now_ns) {
+    if (!notes_.empty() && notes_.back().work_ns == 0) {
+      notes_.back().work_ns = now_ns - busy_until_ns_;
+    }
+  }
 
   [[nodiscard]] std::uint64_t deadline_ns() const { return deadline_ns_; }
 
@@ -190,7 +199,10 @@ void begin_loop(ilk_bus_t bus, std::uint32_t granted) {
 void run_ready(Notes& notes) {
   std::cout << "ready link=" << process.options.link_path << std::endl;
   notes.begin(process.loop.ticker.deadline_ns);
-  ilk_loop_run(&process.loop);
+  while (stop_requested == 0) {
+    ilk_loop_tick(&process.loop);
+    notes.end(ilk_now_ns());
+  }
 }
 
 int run_shipped() {

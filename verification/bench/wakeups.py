@@ -41,7 +41,7 @@ SETTLE_S = 2.0
 MOST_LATE_US = 20_000
 """cyclictest counts wake-ups up to here one by one."""
 SHARES = {"median": 0.5, "p99": 0.99, "p999": 0.999, "p9999": 0.9999}
-NOTE = np.dtype([("begun_ns", "=u8"), ("late_ns", "=u8"), ("busy_until_ns", "=u8")])
+NOTE = np.dtype([("begun_ns", "=u8"), ("late_ns", "=u8"), ("busy_until_ns", "=u8"), ("work_ns", "=u8")])
 
 
 @dataclass(frozen=True)
@@ -167,6 +167,15 @@ def programs(binaries: Path, folder: Path, setup: str) -> None:
     write_program(folder / "interlock-kernel", str(binaries / "loop_bench"))
 
 
+def notes_environment(setup: str, seconds: int, notes: Path) -> dict[str, str]:
+    """What loop_bench reads besides its command line; there is room for the time around the seconds, too."""
+    return {
+        "INTERLOCK_BENCH_SETUP": setup,
+        "INTERLOCK_BENCH_SECONDS": str(seconds + 120),
+        "INTERLOCK_BENCH_NOTES": str(notes),
+    }
+
+
 class Listener(threading.Thread):
     """What an open console hears: the whole stream."""
 
@@ -242,11 +251,7 @@ def measure(arrangement: Arrangement, seconds: int, binaries: Path, log: Path) -
     with tempfile.TemporaryDirectory(prefix="interlock-bench-") as name:
         folder = Path(name)
         programs(binaries, folder / "bin", arrangement.setup)
-        os.environ |= {
-            "INTERLOCK_BENCH_SETUP": arrangement.setup,
-            "INTERLOCK_BENCH_SECONDS": str(seconds + 120),
-            "INTERLOCK_BENCH_NOTES": str(folder / "notes"),
-        }
+        os.environ |= notes_environment(arrangement.setup, seconds, folder / "notes")
         stack.BIN = folder / "bin"
         own_core = ["--core", str(core())] if arrangement.setup == "shipped" else []
         options = ["--realtime", "--sockets", folder / "sockets", "--igtl-port", "0", *own_core]
