@@ -71,7 +71,8 @@ Faulted(a, fault) ==
 (* What a change of the system's mode does to every axis. A press begins with whole
    budgets. *)
 BeginPress(a) ==
-  [DropMotion(a) EXCEPT !.travel_mark = a.raw, !.travel_by = "MOVE", !.move_travel = 0,
+  [DropMotion(a) EXCEPT !.drift_mark = IF a.state = "DISABLED" THEN a.raw ELSE @,
+                        !.travel_mark = a.raw, !.travel_by = "MOVE", !.move_travel = 0,
                         !.home_travel = 0, !.homing_ticks = 0]
 
 FollowMode(before, after, a) ==
@@ -229,7 +230,7 @@ JudgeEnable(c, k, s, a) ==
 JudgeClearFault(k, s, a) ==
   IF s.mode = "INIT" THEN "MODE"
   ELSE IF a.state # "FAULTED" THEN "NO_FAULT"
-  ELSE IF ~a.card_valid \/ a.fault_now \/ ~IsAtRest(k, a) THEN "CAUSE_PRESENT"
+  ELSE IF ~a.card_valid \/ a.fault_now \/ ~IsAtRest(k, a) \/ a.runaway THEN "CAUSE_PRESENT"
   ELSE IF ~PedalIsUp(s) THEN "PEDAL_DOWN"
   ELSE "ACCEPTED"
 

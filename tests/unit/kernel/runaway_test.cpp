@@ -192,6 +192,26 @@ TEST(P6_drift, of_a_DISABLED_axis_in_MOTION_faults_it) {
   EXPECT_EQ(bench.mode(), ILK_MODE_READY);
 }
 
+TEST(P6_drift, of_an_axis_that_was_DISABLED_in_READY_is_measured_from_its_last_reading_there) {
+  ilk_config_t config = standard_config();
+  config.common.pedal_debounce_ticks = 2;
+  seal(config);
+  Bench bench(config);
+  bench.to_ready();
+  bench.enable_axis(axis);
+  bench.arm();
+  bench.push(axis, 15);
+  ASSERT_EQ(bench.ask(disable(axis)), ILK_VERDICT_ACCEPTED);
+  bench.spoil(axis, FrameFault::missing, 2);
+  bench.pedal(true);
+  bench.ticks(2);
+  ASSERT_EQ(bench.mode(), ILK_MODE_MOTION) << "the axis was not read since DISABLE";
+  bench.push(axis, 20);
+  EXPECT_EQ(bench.fault(axis), ILK_FAULT_NONE);
+  bench.push(axis, 1);
+  EXPECT_EQ(bench.fault(axis), ILK_FAULT_DRIFT);
+}
+
 TEST(P6_drift, SET_HOME_and_RESTORE_neither_look_like_motion_nor_forgive_it) {
   Bench bench = ready_bench();
   bench.push(axis, 300);
@@ -357,7 +377,7 @@ TEST(P6_runaway_lock, a_wrong_reading_that_is_taken_back_is_a_jump_and_no_runawa
   }
 }
 
-TEST(P6_runaway_lock, a_faulted_axis_that_creeps_within_the_noise_of_its_rest_is_found_by_how_far_it_came) {
+TEST(P6_runaway_lock, a_faulted_axis_that_creeps_within_the_noise_of_its_rest_is_found_by_how_far_it_came_and_not_cleared) {
   Bench bench = faulted_bench(axis);
   for (int32_t counts = 0; counts < 20; ++counts) {
     bench.motor[axis].travelled += 1;
@@ -365,8 +385,10 @@ TEST(P6_runaway_lock, a_faulted_axis_that_creeps_within_the_noise_of_its_rest_is
     ASSERT_EQ(bench.mode(), ILK_MODE_READY) << counts;
   }
   bench.motor[axis].travelled += 1;
-  bench.tick();
+  EXPECT_EQ(bench.ask(clear_fault(axis)), ILK_VERDICT_CAUSE_PRESENT) << "at rest, and run away";
   EXPECT_EQ(bench.cause(), ILK_CAUSE_RUNAWAY);
+  EXPECT_EQ(bench.ask(clear_fault(axis)), ILK_VERDICT_ACCEPTED);
+  EXPECT_EQ(bench.ask(reset()), ILK_VERDICT_ACCEPTED);
 }
 
 TEST(P6_runaway_lock, the_mark_is_the_reading_of_the_fault_and_a_coast_of_drift_counts_is_none) {
