@@ -71,9 +71,9 @@ Faulted(a, fault) ==
 (* What a change of the system's mode does to every axis. A press begins with whole
    budgets. *)
 BeginPress(a) ==
-  [DropMotion(a) EXCEPT !.drift_mark = IF a.state = "DISABLED" THEN a.raw ELSE @,
-                        !.travel_mark = a.raw, !.travel_by = "MOVE", !.move_travel = 0,
-                        !.home_travel = 0, !.homing_ticks = 0]
+  [DropMotion(a) EXCEPT !.travel_mark = a.raw, !.travel_by = "MOVE", !.move_travel = 0,
+                        !.home_travel = 0, !.homing_ticks = 0,
+                        !.drift_mark = IF a.state = "DISABLED" THEN a.raw ELSE @]
 
 FollowMode(before, after, a) ==
   IF before = after THEN a

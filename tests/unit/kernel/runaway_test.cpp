@@ -377,7 +377,7 @@ TEST(P6_runaway_lock, a_wrong_reading_that_is_taken_back_is_a_jump_and_no_runawa
   }
 }
 
-TEST(P6_runaway_lock, a_faulted_axis_that_creeps_within_the_noise_of_its_rest_is_found_by_how_far_it_came_and_not_cleared) {
+TEST(P6_runaway_lock, a_faulted_axis_that_creeps_within_the_noise_of_its_rest_is_found_by_how_far_it_came) {
   Bench bench = faulted_bench(axis);
   for (int32_t counts = 0; counts < 20; ++counts) {
     bench.motor[axis].travelled += 1;
