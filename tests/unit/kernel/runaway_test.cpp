@@ -212,6 +212,18 @@ TEST(P6_drift, of_an_axis_that_was_DISABLED_in_READY_is_measured_from_its_last_r
   EXPECT_EQ(bench.fault(axis), ILK_FAULT_DRIFT);
 }
 
+TEST(P6_drift, is_seen_however_many_deadlines_were_missed_since_the_drive) {
+  Bench bench = motion_bench(axis);
+  bench.keep_moving(axis, 60, 3);
+  ASSERT_TRUE(bench.driven(axis));
+  bench.spoil(axis, FrameFault::missing, 1);
+  bench.tick();
+  bench.motor[axis].travelled += 30;
+  bench.deadlines_missed = UINT32_MAX - 1;
+  bench.tick();
+  EXPECT_EQ(bench.fault(axis), ILK_FAULT_DRIFT);
+}
+
 TEST(P6_drift, SET_HOME_and_RESTORE_neither_look_like_motion_nor_forgive_it) {
   Bench bench = ready_bench();
   bench.push(axis, 300);
