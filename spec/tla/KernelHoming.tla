@@ -67,7 +67,7 @@ Witnessed ==
                      !.raw = IF w.triggered /\ w.open THEN @ ELSE 0,
                      !.rest = IF Driven THEN RunAt(0) ELSE @]
 
-Step(in, m, wishes) == Tock(in, m, wishes) /\ seen' = Witnessed
+Step(in, m, tails) == Tock(in, m, tails) /\ seen' = Witnessed
 
 AnyTick == system.mode = "MOTION" /\ Met("AnyTick") /\ \E event \in Events :
   Step(Input("CLOSED", event.reading, <<Beat>>), event.m, Wishes)

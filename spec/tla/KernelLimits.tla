@@ -34,7 +34,7 @@ Off   == <<Ask("DISABLE"), Ask("ENABLE")>>
 Wishes ==
   CASE system.mode = "LOCKED" -> {<<Ask("RESET")>>}
     [] system.mode = "READY"  -> {<<Ask("CLEAR_FAULT"), Ask("ENABLE")>>}
-    [] Unhomed /\ axis.state = "DISABLED" -> {<<>>} \union {<<Ask("ENABLE"), wish>> : wish \in {There, Here, Ask("HOME")}}
+    [] Unhomed /\ axis.state = "DISABLED" -> {<<>>} \union {<<Ask("ENABLE"), asked>> : asked \in {There, Here, Ask("HOME")}}
     [] Unhomed -> {<<>>, <<Fast>>, <<There>>, <<Here>>, <<Ask("HOME")>>, Off \o <<There>>, Off \o <<Ask("HOME")>>}
     [] OTHER -> {<<>>, <<There>>, <<Here>>, <<MoveTo(k.max_counts, 1, 1), Old>>, Off \o <<Here>>}
 
@@ -56,7 +56,7 @@ Witnessed ==
              home  |-> seen.home + (IF seen.by = "HOME" THEN path ELSE 0),
              point |-> IF path # 0 \/ (IsHomed(axis) /\ Read1.valid) THEN now ELSE seen.point ]
 
-Step(in, m, wishes) == Tock(in, m, wishes) /\ seen' = Witnessed
+Step(in, m, tails) == Tock(in, m, tails) /\ seen' = Witnessed
 
 AnyTick == Met("AnyTick") /\ \E event \in Events :
   Step(Input(Held, event.reading, <<Beat>>), event.m, Wishes)

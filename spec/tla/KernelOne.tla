@@ -166,16 +166,16 @@ Told(in, tick) ==
     answers |-> [i \in 1..Len(tick.answers) |-> Outcome(tick.answers[i])],
     system |-> tick.system, axis |-> tick.axes[X], observed |-> tick.observed.axes[X] ]
 
-(* A tick for each of the `wishes`, which come behind the requests of `in`. A value bound
-   as the element of a set is evaluated once: what is the same for all wishes is shared. *)
-Tock(in, m, wishes) ==
+(* A tick for each of the `tails`, which come behind the requests of `in`. A value bound
+   as the element of a set is evaluated once: what is the same for all tails is shared. *)
+Tock(in, m, tails) ==
   \E observed \in {Observed(c, K, Kernel0, in)} :
-  \E answered \in {AnswerAll(c, K, observed, in.requests, <<>>)}, wish \in wishes :
-  \E tick \in {Finished(K, observed, AnswerAll(c, K, answered.kernel, wish, answered.answers))} :
+  \E answered \in {AnswerAll(c, K, observed, in.requests, <<>>)}, tail \in tails :
+  \E tick \in {Finished(K, observed, AnswerAll(c, K, answered.kernel, tail, answered.answers))} :
     /\ system' = ForgetSystem(tick.system)
     /\ axis' = Forget(tick.axes[X])
     /\ plant' = Moved(m, tick.command[X].direction)
-    /\ io' = Told([in EXCEPT !.requests = @ \o wish], tick)
+    /\ io' = Told([in EXCEPT !.requests = @ \o tail], tick)
 
 (* The search begins where power has just come on, or where MOTION has begun with the
    axis enabled: the inputs that lead there are part of the model. *)

@@ -65,7 +65,7 @@ Witnessed ==
         ticks  |-> IF Read1.valid \/ IsLost THEN 1 ELSE seen.ticks + 1,
         loose  |-> Loose ]
 
-Step(in, m, wishes) == Tock(in, m, wishes) /\ seen' = Witnessed
+Step(in, m, tails) == Tock(in, m, tails) /\ seen' = Witnessed
 
 AnyTick == Met("AnyTick") /\ \E event \in Events :
   Step(Input(Held, event.reading, <<Beat>>), event.m, Wishes)

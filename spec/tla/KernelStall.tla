@@ -48,7 +48,7 @@ Witnessed ==
         far    |-> IF anew THEN io'.axis.raw ELSE IF clear THEN Read1.raw ELSE seen.far,
         near   |-> IF anew THEN io'.axis.raw ELSE IF Whole \/ Some THEN Read1.raw ELSE seen.near ]
 
-Step(in, m, wishes) == Tock(in, m, wishes) /\ seen' = Witnessed
+Step(in, m, tails) == Tock(in, m, tails) /\ seen' = Witnessed
 
 AnyTick == Met("AnyTick") /\ \E event \in Readings :
   Step(Input(Held, event.reading, <<Beat>>), event.m, Wishes)
