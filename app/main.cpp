@@ -3,20 +3,21 @@
  * interlock-app: shows the robot and proposes motion. It can be killed at any moment; the kernel stops motion
  * by itself.
  */
+#include <pthread.h>
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
-#include <boost/asio/co_spawn.hpp>
-#include <boost/asio/detached.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/this_coro.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -30,6 +31,7 @@
 #include "interlock/kernel.h"
 #include "log/log.hpp"
 #include "motion/control_loop.hpp"
+#include "network/start.hpp"
 #include "robot/catalog.hpp"
 #include "robot/compile.hpp"
 #include "robot/robot_file.hpp"
@@ -45,6 +47,8 @@ namespace {
 constexpr int exit_failed = 1;
 constexpr int exit_unusable = 2;
 constexpr std::chrono::seconds session_sweep_pause{1};
+/** For the network's thread to end after a signal. */
+constexpr std::chrono::seconds longest_end{2};
 
 struct Options {
   std::string robot_file;
@@ -224,12 +228,31 @@ boost::asio::awaitable<void> tell_service_manager(ServiceManager& manager, const
   }
 }
 
+/** As `top -H` shows the calling thread. */
+void name_thread(const char* name) { pthread_setname_np(pthread_self(), name); }
+
+/** Ends the app on a signal: a STOP first, which waits for no other thread, then the network's thread by
+ * itself, or else the process. */
+boost::asio::awaitable<void> end_on_signal(Mailbox& mailbox, std::function<void()> end_network) {
+  const auto executor = co_await boost::asio::this_coro::executor;
+  boost::asio::signal_set signals(executor, SIGINT, SIGTERM);
+  const int signal = co_await signals.async_wait(boost::asio::use_awaitable);
+  mailbox.stops.fetch_add(1, std::memory_order_release);
+  spdlog::info("signal {}: ending", signal);
+  end_network();
+  boost::asio::steady_timer patience(executor, longest_end);
+  co_await patience.async_wait(boost::asio::use_awaitable);
+  spdlog::critical("the network's thread did not end");
+  std::_Exit(exit_failed);
+}
+
 tl::expected<void, std::string> serve(const Options& options, const Model& model, Store& store, Log& log) {
   auto manager = ServiceManager::connect();
   if (!manager) {
     return tl::make_unexpected(manager.error());
   }
   boost::asio::io_context network(1);
+  boost::asio::io_context door(1);
   const auto executor = network.get_executor();
   const auto mailbox = std::make_unique<Mailbox>();
   web::StoreGateway gateway(executor, store);
@@ -237,8 +260,9 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   HistoryFeed history(plan);
   web::Api api(executor, model.robot, model.config, *mailbox, options.bench_socket, gateway, log, {},
                {&history, options.black_box});
-  web::Server server(executor, api, web::StaticFiles(options.web_directory, options.docs_directory));
-  if (auto listening = server.listen(options.listen); !listening) {
+  web::Server server(door.get_executor(), executor, api, *mailbox,
+                     web::StaticFiles(options.web_directory, options.docs_directory));
+  if (auto listening = server.door().listen(options.listen); !listening) {
     return listening;
   }
   if (auto listening = listen_for_navigation(options, model.robot, api.navigation()); !listening) {
@@ -248,26 +272,32 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   if (!begun) {
     return tl::make_unexpected("--state " + options.state_directory + ": " + begun.error().message());
   }
-  boost::asio::signal_set signals(network, SIGINT, SIGTERM);
-  signals.async_wait([&](const boost::system::error_code& error, int signal) {
-    if (!error) {
-      spdlog::info("signal {}: ending", signal);
-      boost::asio::co_spawn(executor, api.release_pedal(),
-                            [&](const std::exception_ptr&) { network.stop(); });
-    }
-  });
   ControlLoop control(options.link_socket, plan, *mailbox, &history,
                       options.replay ? LinkUse::replay : LinkUse::control);
-  const std::jthread control_thread([&](const std::stop_token& stop) { control.run(stop); });
-  boost::asio::co_spawn(executor, api.listen(), boost::asio::detached);
-  boost::asio::co_spawn(executor, api.beat(), boost::asio::detached);
-  boost::asio::co_spawn(executor, api.sweep_sessions(session_sweep_pause), boost::asio::detached);
-  boost::asio::co_spawn(executor, server.accept(), boost::asio::detached);
-  boost::asio::co_spawn(executor, tell_service_manager(*manager, control), boost::asio::detached);
+  const std::jthread control_thread([&](const std::stop_token& stop) {
+    name_thread("control");
+    control.run(stop);
+  });
+  start(executor, api.listen());
+  start(executor, api.beat());
+  start(executor, api.sweep_sessions(session_sweep_pause));
+  start(executor, tell_service_manager(*manager, control));
+  start(door.get_executor(), server.door().accept());
+  start(door.get_executor(), server.door().beat());
+  start(door.get_executor(), server.door().listen_to_control());
+  start(door.get_executor(), end_on_signal(*mailbox, [&] {
+          boost::asio::co_spawn(executor, api.release_pedal(),
+                                [&](const std::exception_ptr&) { network.stop(); });
+        }));
   const std::string url = url_of(options.listen, server.port());
   spdlog::info("interlock-app {} {} serves {} at {}", version(), commit(), model.robot.name, url);
   std::cout << "ready " << url << std::endl;
   manager->say_ready();
+  const std::jthread door_thread([&](const std::stop_token& stop) {
+    name_thread("door");
+    const std::stop_callback end(stop, [&] { door.stop(); });
+    door.run();
+  });
   network.run();
   return {};
 }

@@ -17,7 +17,7 @@ namespace interlock::cli {
 namespace {
 
 /** More than any password has; room for it is made beforehand, so that none is left behind where it grew. */
-constexpr std::size_t longest_line = 1024;
+constexpr std::size_t longest_typed = 1024;
 
 void interrupt(int /*signal*/) {}
 
@@ -81,10 +81,10 @@ tl::unexpected<Failure> not_read(int error_number) {
 
 Result<Password> read_line(int file) {
   std::string line;
-  line.reserve(longest_line);
+  line.reserve(longest_typed);
   char byte = 0;
   ssize_t count = 0;
-  while ((count = ::read(file, &byte, 1)) == 1 && byte != '\n' && line.size() < longest_line) {
+  while ((count = ::read(file, &byte, 1)) == 1 && byte != '\n' && line.size() < longest_typed) {
     line += byte;
   }
   const int error_number = errno;

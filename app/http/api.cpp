@@ -2,13 +2,13 @@
 
 #include <spdlog/spdlog.h>
 
-#include <boost/asio/co_spawn.hpp>
-#include <boost/asio/detached.hpp>
+#include <boost/asio/steady_timer.hpp>
 
 #include "http/problems.hpp"
 #include "http/same_origin.hpp"
 #include "http/status_json.hpp"
 #include "network/as_result.hpp"
+#include "network/start.hpp"
 #include "proposals/proposal_json.hpp"
 
 namespace interlock::web {
@@ -99,6 +99,10 @@ void Api::follow_kernel() {
 }
 
 void Api::follow_streams() {
+  stream_.on_stop = [this](const Caller& caller) {
+    control_.stop_unanswered();
+    context_.record_stop(caller, 0);
+  };
   stream_.on_change = [this](const StreamHub::Watcher& watcher, bool opened) {
     stream_.send_text({{"type", "connection"},
                        {"change", opened ? "opened" : "closed"},
@@ -115,7 +119,7 @@ void Api::follow_sessions() {
     authority_.release(session);
     stream_.end_session(session);
     if (bench_.held_by(session)) {
-      asio::co_spawn(context_.executor, bench_.release_pedal(), asio::detached);
+      start(context_.executor, bench_.release_pedal());
     }
   });
   authority_.on_change([this](bool holder_changed) {
@@ -181,6 +185,13 @@ asio::awaitable<tl::expected<std::optional<Session>, Problem>> Api::session_of(c
   co_return found;
 }
 
+asio::awaitable<void> Api::record_stop(StopMade made) {
+  const auto known = co_await caller_of(made.header, made.peer);
+  Caller stranger;
+  stranger.peer = std::move(made.peer);
+  context_.record_stop(known ? *known : stranger, made.unrecorded);
+}
+
 void Api::tell_biopsy(const ControlView& seen) {
   if (!biopsy_.has_needle() || stream_.empty() || ++beats_ % beats_per_biopsy != 0) {
     return;
@@ -193,23 +204,7 @@ void Api::tell_biopsy(const ControlView& seen) {
 void Api::look_after_pedal(const ControlView& seen) {
   if (bench_.overdue(seen)) {
     spdlog::warn("the bench pedal was not renewed for 500 ms: released");
-    asio::co_spawn(context_.executor, bench_.release_pedal(), asio::detached);
-  }
-}
-
-void Api::look_after_jogs(const ControlView& seen) {
-  for (const std::uint32_t id : jogs_.running()) {
-    const Proposal* jog = book_.find(id);
-    if (jog == nullptr || !is_open(jog->state)) {
-      jogs_.end(id);
-    }
-  }
-  // One that cannot be aborted now is tried again at the next beat.
-  for (const std::uint32_t id : jogs_.lapsed(seen, context_.steady_clock())) {
-    spdlog::warn("jog {} was not renewed for {} ms: it ends", id, JogDesk::patience.count());
-    if (const auto aborted = book_.abort(id); !aborted) {
-      spdlog::error("jog {} does not end: {}", id, aborted.error().detail);
-    }
+    start(context_.executor, bench_.release_pedal());
   }
 }
 
@@ -247,6 +242,7 @@ asio::awaitable<void> Api::beat() {
     if (error) {
       co_return;
     }
+    control_.say_served();
     history_routes_.keep();
     const ControlView& seen = context_.view();
     if (!stream_.empty()) {
@@ -255,7 +251,6 @@ asio::awaitable<void> Api::beat() {
     }
     tell_biopsy(seen);
     look_after_pedal(seen);
-    look_after_jogs(seen);
     look_after_sessions();
   }
 }

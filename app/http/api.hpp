@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "http/context.hpp"
-#include "http/jog_desk.hpp"
+#include "http/front_door.hpp"
 #include "http/log_tail.hpp"
 #include "http/navigation.hpp"
 #include "http/router.hpp"
@@ -55,6 +55,9 @@ class Api {
    * session. 503 STORE when that cannot be told. */
   boost::asio::awaitable<tl::expected<Caller, Problem>> caller_of(const Request& request, std::string peer);
 
+  /** Ends every proposal, and records by whom the robot was stopped. */
+  boost::asio::awaitable<void> record_stop(StopMade made);
+
   /** Who follows the state. */
   [[nodiscard]] StreamHub& stream() { return stream_; }
 
@@ -64,8 +67,8 @@ class Api {
   /** Follows the control thread's notices; ends with the io_context. */
   boost::asio::awaitable<void> listen() { return control_.listen(); }
 
-  /** Sends the state to the stream 30 times a second and looks after the bench pedal, jogs and the authority;
-   * ends with the io_context. */
+  /** Sends the state to the stream 30 times a second and looks after the bench pedal and the authority; ends
+   * with the io_context. */
   boost::asio::awaitable<void> beat();
 
   /** Ends sessions that are over and logs how often the last line came again, after each pause; ends with the
@@ -82,7 +85,6 @@ class Api {
   void follow_streams();
   void tell_biopsy(const ControlView& seen);
   void look_after_pedal(const ControlView& seen);
-  void look_after_jogs(const ControlView& seen);
   void look_after_sessions();
   boost::asio::awaitable<tl::expected<std::optional<Session>, Problem>> session_of(const Request& request);
 
@@ -96,7 +98,6 @@ class Api {
   Authority authority_;
   WorkPool work_;
   LoadedTrajectory trajectory_;
-  JogDesk jogs_;
   Context context_;
   Navigation navigation_;
   Router router_;
@@ -105,7 +106,7 @@ class Api {
   PositionRoutes position_routes_{context_, router_}; /**< before the axes, whose pattern its paths match */
   MotorRoutes motor_routes_{context_, router_};
   ProposalRoutes proposal_routes_{context_, router_};
-  JogRoutes jog_routes_{context_, jogs_, router_};
+  JogRoutes jog_routes_{context_, router_};
   BenchRoutes bench_routes_{context_, router_};
   BiopsyRoutes biopsy_routes_{context_, router_};
   AccountRoutes account_routes_{context_, router_};

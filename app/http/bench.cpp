@@ -84,7 +84,7 @@ tl::expected<void, Problem> Bench::take_pedal(json& fields, const ControlView& v
   if (renew == json(true) && !pedal_.held()) {
     return fail(pedal_lapsed());
   }
-  pedal_.hold(view, steady_clock::now());
+  pedal_.hold(view.moment(steady_clock::now()));
   presser_ = session;
   return {};
 }
@@ -106,6 +106,6 @@ boost::asio::awaitable<void> Bench::release_pedal() {
   }
 }
 
-bool Bench::overdue(const ControlView& view) const { return pedal_.overdue(view, steady_clock::now()); }
+bool Bench::overdue(const ControlView& view) const { return pedal_.overdue(view.moment(steady_clock::now())); }
 
 }  // namespace interlock::web

@@ -9,8 +9,9 @@
 
 #include "http/access.hpp"
 #include "http/bench_client.hpp"
-#include "http/held_lease.hpp"
 #include "http/message.hpp"
+#include "motion/held_lease.hpp"
+#include "motion/mailbox.hpp"
 
 namespace interlock::web {
 

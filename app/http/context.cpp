@@ -1,5 +1,7 @@
 #include "http/context.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include "http/problems.hpp"
 #include "robot/catalog.hpp"
 
@@ -66,6 +68,17 @@ AuditEntry Context::entry(const Caller& caller, AuditKind kind, nlohmann::json d
     entry.session = caller.session;
   }
   return entry;
+}
+
+void Context::record_stop(const Caller& caller, std::uint32_t unrecorded) const {
+  spdlog::warn("STOP by {}", caller.user.empty() ? caller.peer : caller.user);
+  book.abort_all("STOP.");
+  nlohmann::json detail{{"peer", caller.peer}};
+  if (unrecorded != 0) {
+    spdlog::warn("{} STOPs came before it too fast to be recorded", unrecorded);
+    detail["unrecorded"] = unrecorded;
+  }
+  store.note(entry(caller, AuditKind::stop, std::move(detail)));
 }
 
 boost::asio::awaitable<tl::expected<void, Problem>> Context::announce(const Caller& caller, AuditKind kind,

@@ -57,6 +57,11 @@ struct Context {
   /** What to record of something that the caller does, now. */
   [[nodiscard]] AuditEntry entry(const Caller& caller, AuditKind kind, nlohmann::json detail) const;
 
+  /** Ends every proposal, and writes down who stopped the robot; the STOP itself is on its way already.
+   *
+   * @param unrecorded how many STOPs just before it are not written down one by one */
+  void record_stop(const Caller& caller, std::uint32_t unrecorded) const;
+
   /**
    * Records what the caller is about to do, and says then whether the caller still may: 503 STORE, 401 LOGIN
    * when the session has ended meanwhile, 409 AUTHORITY when it has lost the authority. What follows without

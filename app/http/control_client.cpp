@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <type_traits>
 
 #include "network/as_result.hpp"
 
@@ -36,6 +37,11 @@ bool ControlClient::send(Command command) {
       [this](auto& each) {
         if constexpr (requires { each.stops; }) {
           each.stops = stops();
+        }
+        if constexpr (std::is_same_v<decltype(each), Renewal&>) {
+          each.held = view().moment(steady_clock::now());
+        } else if constexpr (std::is_same_v<decltype(each), Order&>) {
+          each.held = each.held ? std::optional(view().moment(steady_clock::now())) : std::nullopt;
         }
       },
       command);

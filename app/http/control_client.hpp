@@ -34,7 +34,11 @@ class ControlClient {
   /** STOPs and changes of the motion authority so far. */
   [[nodiscard]] std::uint32_t stops() const { return mailbox_.stops.load(std::memory_order_relaxed); }
 
-  /** Hands over a command, marked as newer than every STOP so far; false when the queue is full. */
+  /** People are served still: to be said at least every 100 ms, else motion ends. */
+  void say_served() { mailbox_.served.fetch_add(1, std::memory_order_relaxed); }
+
+  /** Hands over a command, marked as newer than every STOP so far, and a hold as begun or renewed now; false
+   * when the queue is full. */
   bool send(Command command);
 
   /** Sends one request to the kernel, a RESTORE with its position; empty when no verdict came within a
@@ -46,6 +50,9 @@ class ControlClient {
   /** Stops, whatever else waits, before this returns. What is returned waits for the answer: empty when no
    * kernel is connected or none answered within 300 ms. */
   boost::asio::awaitable<std::optional<StopAnswer>> stop();
+
+  /** As `stop`, by somebody who sees the kernel's answer otherwise. */
+  void stop_unanswered() { mailbox_.stops.fetch_add(1, std::memory_order_release); }
 
   /** Ends MOTION, whatever else waits, and leaves every order open: it goes on when the pedal was released
    * and is pressed again. */

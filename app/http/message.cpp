@@ -59,6 +59,10 @@ std::optional<std::string> decoded(std::string_view encoded) {
   return text;
 }
 
+constexpr const char* content_security_policy =
+    "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; connect-src 'self'; img-src 'self' data:; "
+    "object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
 }  // namespace
 
 Response success_response(const Success& success) {
@@ -84,6 +88,43 @@ Response problem_response(const Problem& problem) {
   Response response = response_of(problem.status, "application/problem+json", text_of(body));
   add_headers(response, problem.headers);
   return response;
+}
+
+std::optional<Problem> unreadable(const boost::beast::error_code& error) {
+  namespace http = boost::beast::http;
+  static const boost::beast::error_code of_the_protocol = http::error::bad_method;
+  if (error.category() != of_the_protocol.category() || error == http::error::end_of_stream ||
+      error == http::error::partial_message) {
+    return std::nullopt;
+  }
+  if (error == http::error::body_limit) {
+    return Problem{.status = Status::payload_too_large,
+                   .code = "TOO_LARGE",
+                   .detail = "The body is too large.",
+                   .expected = "at most " + std::to_string(longest_body) +
+                               " bytes; a trajectory of the holder of motion authority at most " +
+                               std::to_string(longest_trajectory)};
+  }
+  if (error == http::error::header_limit || error == http::error::buffer_overflow) {
+    return Problem{.status = Status::request_header_fields_too_large,
+                   .code = "TOO_LARGE",
+                   .detail = "The header is too large.",
+                   .expected = "at most " + std::to_string(longest_header) + " bytes"};
+  }
+  return Problem{.status = Status::bad_request,
+                 .code = "MALFORMED",
+                 .detail = "This is no HTTP request: " + error.message() + ".",
+                 .expected = "HTTP/1.1"};
+}
+
+void prepare(Response& response, bool keep_alive) {
+  response.set("Content-Security-Policy", content_security_policy);
+  response.set("X-Content-Type-Options", "nosniff");
+  response.set("Referrer-Policy", "no-referrer");
+  response.set("Cross-Origin-Resource-Policy", "same-origin");
+  response.version(11);
+  response.keep_alive(keep_alive);
+  response.prepare_payload();
 }
 
 std::string path_of(const Request& request) {

@@ -56,6 +56,17 @@ Response success_response(const Success& success);
 /** Answer in `application/problem+json`. */
 Response problem_response(const Problem& problem);
 
+constexpr std::uint64_t longest_body = 64u * 1024u;
+/** Of a trajectory that somebody uploads who may load one. */
+constexpr std::uint64_t longest_trajectory = 16u * 1024u * 1024u;
+constexpr std::uint32_t longest_header = 16u * 1024u;
+
+/** Why that is no request of this interface, as the reader of it found; nothing when the connection ended. */
+std::optional<Problem> unreadable(const boost::beast::error_code& error);
+
+/** Makes an answer ready to be sent: length, version, and the headers that keep pages of other sites out. */
+void prepare(Response& response, bool keep_alive);
+
 /** The path of the request's target, without query and fragment, percent-decoded; empty when that is
  * malformed. */
 std::string path_of(const Request& request);

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <boost/asio/as_tuple.hpp>
-#include <boost/asio/co_spawn.hpp>
-#include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <utility>
@@ -13,6 +11,7 @@
 #include "http/navigation_wishes.hpp"
 #include "http/problems.hpp"
 #include "http/targeting_store.hpp"
+#include "network/start.hpp"
 
 namespace interlock::web {
 namespace {
@@ -54,13 +53,13 @@ Navigation::Navigation(const Context& context)
 void Navigation::start(NavigationOptions options) {
   options_ = std::move(options);
   if (options_.connect) {
-    asio::co_spawn(context_.executor, hub_.keep_connected(*options_.connect, connect_pause), asio::detached);
+    interlock::start(context_.executor, hub_.keep_connected(*options_.connect, connect_pause));
   }
-  asio::co_spawn(context_.executor, hub_.accept(), asio::detached);
-  asio::co_spawn(context_.executor, hub_.beat(), asio::detached);
-  asio::co_spawn(context_.executor, work(), asio::detached);
-  asio::co_spawn(context_.executor, keep_targeting(), asio::detached);
-  asio::co_spawn(context_.executor, tell_all(), asio::detached);
+  interlock::start(context_.executor, hub_.accept());
+  interlock::start(context_.executor, hub_.beat());
+  interlock::start(context_.executor, work());
+  interlock::start(context_.executor, keep_targeting());
+  interlock::start(context_.executor, tell_all());
 }
 
 void Navigation::listen_to_hub() {
@@ -116,9 +115,8 @@ void Navigation::react(PeerId peer, const std::string& device, igtl::Reaction re
     hub_.reply(peer, name, body);
   }
   if (stopping) {
-    asio::co_spawn(context_.executor,
-                   finish_stop(peer, device, std::move(*reaction.wish), std::move(*stopping)),
-                   asio::detached);
+    interlock::start(context_.executor,
+                     finish_stop(peer, device, std::move(*reaction.wish), std::move(*stopping)));
   } else if (reaction.wish) {
     enqueue(peer, device, std::move(*reaction.wish));
   }

@@ -6,17 +6,17 @@
 #include <algorithm>
 #include <array>
 #include <boost/asio/co_spawn.hpp>
-#include <boost/asio/detached.hpp>
-#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <chrono>
 #include <exception>
 #include <optional>
-#include <sstream>
+#include <utility>
 
 #include "http/same_origin.hpp"
 #include "network/as_result.hpp"
+#include "network/start.hpp"
 
 namespace interlock::web {
 namespace {
@@ -29,43 +29,21 @@ using asio::ip::tcp;
 constexpr std::chrono::seconds request_timeout{30};
 constexpr std::chrono::seconds answer_timeout{10};
 constexpr std::chrono::seconds drain_timeout{1};
+/** From the first byte of a request until this thread looks at it: after that whoever sent it has given up.
+ */
+constexpr std::chrono::seconds longest_hold_up{1};
 constexpr std::size_t drain_bytes = 4u << 20u;
-
-constexpr const char* content_security_policy =
-    "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; connect-src 'self'; img-src 'self' data:; "
-    "object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
-
-void add_security_headers(Response& response) {
-  response.set("Content-Security-Policy", content_security_policy);
-  response.set("X-Content-Type-Options", "nosniff");
-  response.set("Referrer-Policy", "no-referrer");
-  response.set("Cross-Origin-Resource-Policy", "same-origin");
-}
-
-Problem unreadable_request(const beast::error_code& error) {
-  if (error == http::error::body_limit) {
-    return {.status = Status::payload_too_large,
-            .code = "TOO_LARGE",
-            .detail = "The body is too large.",
-            .expected = "at most " + std::to_string(Server::longest_body) +
-                        " bytes; a trajectory of the holder of " + "motion authority at most " +
-                        std::to_string(Server::longest_trajectory)};
-  }
-  if (error == http::error::header_limit || error == http::error::buffer_overflow) {
-    return {.status = Status::request_header_fields_too_large,
-            .code = "TOO_LARGE",
-            .detail = "The header is too large.",
-            .expected = "at most " + std::to_string(Server::longest_header) + " bytes"};
-  }
-  return {.status = Status::bad_request,
-          .code = "MALFORMED",
-          .detail = "This is no HTTP request: " + error.message() + ".",
-          .expected = "HTTP/1.1"};
-}
 
 void log_transaction(const Request& request, const Caller& caller, Status status) {
   spdlog::debug("{} {} {} {} -> {}", caller.peer, caller.user.empty() ? "nobody" : caller.user,
                 std::string(request.method_string()), path_of(request), static_cast<unsigned>(status));
+}
+
+Problem too_late() {
+  return {.status = Status::service_unavailable,
+          .code = "LATE",
+          .detail = "The app stood still for more than a second after this was sent, and did none of it.",
+          .next_step = "Look at the robot, and ask again."};
 }
 
 Problem all_at_work(std::size_t ceiling) {
@@ -76,7 +54,7 @@ Problem all_at_work(std::size_t ceiling) {
           .headers = {{"Retry-After", "1"}}};
 }
 
-/** So many connections that the app itself and the reserve have descriptors left. */
+/** So many connections, here and at the door, that the app itself and the reserve have descriptors left. */
 std::size_t ceiling_of_process() {
   rlimit limit{};
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0) {
@@ -84,95 +62,63 @@ std::size_t ceiling_of_process() {
   }
   constexpr std::size_t kept = Server::own_descriptors + Server::reserve;
   const std::size_t granted = limit.rlim_cur;
-  return granted > kept ? std::min(Server::capacity, granted - kept) : 1;
-}
-
-bool is_protocol_error(const beast::error_code& error) {
-  static const beast::error_code of_the_protocol = http::error::bad_method;
-  return error.category() == of_the_protocol.category() && error != http::error::end_of_stream &&
-         error != http::error::partial_message;
+  return granted > kept + 3 ? std::min(Server::capacity, (granted - kept) / 3) : 1;
 }
 
 }  // namespace
 
-Server::Connection::Connection(beast::tcp_stream connected, Place granted)
-    : stream(std::move(connected)), place(granted) {
+Server::Server(const asio::any_io_executor& door, const asio::any_io_executor& executor, Api& api,
+               Mailbox& mailbox, StaticFiles files)
+    : executor_(executor),
+      api_(api),
+      files_(std::move(files)),
+      ceiling_(ceiling_of_process()),
+      door_(
+          door, mailbox, ceiling_,
+          [this](Guest guest) {
+            if (arriving_.load(std::memory_order_relaxed) < ceiling_) {
+              arriving_.fetch_add(1, std::memory_order_relaxed);
+              asio::post(executor_, [this, guest = std::move(guest)]() mutable {
+                arriving_.fetch_sub(1, std::memory_order_relaxed);
+                admit(std::move(guest));
+              });
+            }
+          },
+          [this](StopMade made) { start(executor_, record(std::move(made))); }) {}
+
+/** Who stopped the robot is looked up where the sessions are. */
+asio::awaitable<void> Server::record(StopMade made) {
+  co_await api_.record_stop(std::move(made));
+  door_.recorded();
+}
+
+void Server::admit(Guest guest) {
+  const auto place = place_for_another();
+  tcp::socket socket(executor_);
   beast::error_code error;
-  const auto from = stream.socket().remote_endpoint(error);
-  if (!error) {
-    peer = (std::ostringstream() << from).str();
+  socket.assign(guest.protocol, guest.socket.get(), error);
+  if (!place || error) {
+    return;
   }
-}
-
-tl::expected<void, std::string> Server::listen(const Listen& where) {
-  beast::error_code error;
-  const auto address = asio::ip::make_address(where.address, error);
-  if (error) {
-    return tl::make_unexpected("--listen " + where.address + " is no address; expected 127.0.0.1 or ::1");
-  }
-  if (!address.is_loopback()) {
-    return tl::make_unexpected("--listen " + where.address +
-                               " would let other machines in, and there is no encryption; expected "
-                               "127.0.0.1 or ::1. Use an SSH tunnel to reach it from elsewhere");
-  }
-  ceiling_ = ceiling_of_process();
-  acceptor_.open(address.is_v6() ? tcp::v6() : tcp::v4(), error);
-  if (!error) {
-    acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
-  }
-  if (!error) {
-    acceptor_.bind(tcp::endpoint(address, where.port), error);
-  }
-  if (!error) {
-    acceptor_.listen(asio::socket_base::max_listen_connections, error);
-  }
-  if (error) {
-    return tl::make_unexpected("cannot listen on " + where.address + ":" + std::to_string(where.port) + ": " +
-                               error.message() +
-                               "; stop what uses the port, or choose another one with --port");
-  }
-  return {};
-}
-
-asio::awaitable<void> Server::accept() {
-  for (;;) {
-    auto [error, socket] = co_await acceptor_.async_accept(as_result);
-    if (error == asio::error::operation_aborted) {
-      co_return;
-    }
-    if (error) {
-      co_await survive(error);
-    } else if (const auto place = place_for_another()) {
-      admit(std::move(socket), *place);
-    }
-  }
-}
-
-/** Out of descriptors, most likely: whoever waits for nothing gives one back, be it for a STOP. Without such
- * a one, trying again at once would only burn the processor. */
-asio::awaitable<void> Server::survive(const beast::error_code& error) {
-  spdlog::error("cannot accept a connection: {}", error.message());
-  if (close_oldest_idle(Place::common) || close_oldest_idle(Place::reserve)) {
-    co_return;
-  }
-  asio::steady_timer pause(acceptor_.get_executor(), std::chrono::milliseconds(100));
-  co_await pause.async_wait(as_result);
-}
-
-void Server::admit(tcp::socket socket, Place place) {
-  auto connection = std::make_shared<Connection>(beast::tcp_stream(std::move(socket)), place);
+  (void)guest.socket.release();
+  auto connection = std::make_shared<Connection>(
+      Connection{beast::tcp_stream(std::move(socket)), guest.protocol, *place, std::move(guest.peer),
+                 std::chrono::steady_clock::now() - guest.since > longest_hold_up});
   const auto listed = connections_.insert(connections_.end(), connection);
-  asio::co_spawn(acceptor_.get_executor(), serve(connection),
-                 [this, listed](const std::exception_ptr& thrown) {
-                   connections_.erase(listed);
-                   if (thrown) {
-                     try {
-                       std::rethrow_exception(thrown);
-                     } catch (const std::exception& exception) {
-                       spdlog::critical("a connection ended by an exception: {}", exception.what());
-                     }
-                   }
-                 });
+  asio::co_spawn(executor_, serve(connection), [this, listed](const std::exception_ptr& thrown) {
+    connections_.erase(listed);
+    if (thrown) {
+      std::rethrow_exception(thrown);
+    }
+  });
+}
+
+void Server::give_back(Connection& connection) {
+  beast::error_code error;
+  const int socket = connection.stream.release_socket().release(error);
+  if (!error) {
+    door_.come_back({FileDescriptor(socket), connection.protocol, std::move(connection.peer)});
+  }
 }
 
 std::size_t Server::connections() const { return open_in(Place::common) + open_in(Place::reserve); }
@@ -209,7 +155,12 @@ bool Server::close_oldest_idle(Place place) {
 }
 
 asio::awaitable<void> Server::serve(std::shared_ptr<Connection> connection) {
+  bool answered = false;
   for (bool keep_alive = true; keep_alive;) {
+    if (connection->buffer.size() == 0 && std::exchange(answered, true)) {
+      give_back(*connection);
+      co_return;
+    }
     http::request_parser<http::string_body> parser;
     parser.body_limit(longest_trajectory);
     parser.header_limit(longest_header);
@@ -287,6 +238,9 @@ asio::awaitable<Response> Server::respond(const Request& request, const Connecti
   std::optional<Problem> problem = check_host(request);
   if (!problem && !is_safe(request.method())) {
     problem = check_origin(request);
+    if (!problem && connection.late) {
+      problem = too_late();
+    }
   }
   if (problem) {
     co_return problem_response(*problem);
@@ -302,31 +256,18 @@ asio::awaitable<Response> Server::respond(const Request& request, const Connecti
 }
 
 asio::awaitable<Response> Server::respond_api(const Request& request, const std::string& peer) {
-  std::string thrown;
-  try {
-    const auto caller = co_await api_.caller_of(request, peer);
-    if (!caller) {
-      co_return problem_response(caller.error());
-    }
-    const Reply reply = co_await api_.router().route(request, *caller);
-    log_transaction(request, *caller, reply ? reply->status : reply.error().status);
-    co_return reply ? success_response(*reply) : problem_response(reply.error());
-  } catch (const std::exception& exception) {
-    thrown = exception.what();
+  const auto caller = co_await api_.caller_of(request, peer);
+  if (!caller) {
+    co_return problem_response(caller.error());
   }
-  spdlog::critical("{} {} threw: {}", std::string(request.method_string()), path_of(request), thrown);
-  co_return problem_response({.status = Status::internal_server_error,
-                              .code = "INTERNAL",
-                              .detail = "The app failed to answer.",
-                              .next_step = "Report it with the log."});
+  const Reply reply = co_await api_.router().route(request, *caller);
+  log_transaction(request, *caller, reply ? reply->status : reply.error().status);
+  co_return reply ? success_response(*reply) : problem_response(reply.error());
 }
 
 asio::awaitable<bool> Server::answer(Connection& connection, Response response, bool head_only,
                                      bool keep_alive) {
-  add_security_headers(response);
-  response.version(11);
-  response.keep_alive(keep_alive);
-  response.prepare_payload();
+  prepare(response, keep_alive);
   connection.stream.expires_after(answer_timeout);
   beast::error_code error;
   if (head_only) {
@@ -342,10 +283,11 @@ asio::awaitable<bool> Server::answer(Connection& connection, Response response, 
 /** Answers what could not be read. What is still on its way is read and dropped, else the peer may lose the
  * answer. */
 asio::awaitable<void> Server::refuse(Connection& connection, const beast::error_code& error) {
-  if (!is_protocol_error(error)) {
+  const auto problem = unreadable(error);
+  if (!problem) {
     co_return;
   }
-  co_await answer(connection, problem_response(unreadable_request(error)), false, false);
+  co_await answer(connection, problem_response(*problem), false, false);
   beast::error_code ended;
   connection.stream.socket().shutdown(tcp::socket::shutdown_send, ended);
   connection.stream.expires_after(drain_timeout);

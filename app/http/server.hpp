@@ -4,6 +4,8 @@
  */
 #pragma once
 
+#include <atomic>
+#include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
@@ -16,43 +18,34 @@
 #include <tl/expected.hpp>
 
 #include "http/api.hpp"
+#include "http/front_door.hpp"
 #include "http/static_files.hpp"
 
 namespace interlock::web {
 
-/** Where to listen. */
-struct Listen {
-  std::string address = "127.0.0.1";
-  std::uint16_t port = 8080; /**< 0: any free one */
-};
-
-/** Accepts connections and answers them from API, stream and files. */
+/** Answers what comes in by its door from API, stream and files. */
 class Server {
  public:
-  /** Connections at the same time, as far as the descriptors of the process go that far; the oldest one that
-   * waits for a request makes room for a newer one. */
+  /** Connections with a request at the same time, as far as the descriptors of the process go that far; the
+   * oldest one whose request has not come to its end makes room for a newer one. */
   static constexpr std::size_t capacity = 256;
-  /** Further ones while all those are at work. They get one answer each: STOP and status theirs, everything
-   * else 503 OVERLOADED. Beyond these a connection is closed unanswered. */
+  /** Further ones while all those are at work. They get one answer each: the status its own, everything else
+   * 503 OVERLOADED. Beyond these a connection is closed unanswered. */
   static constexpr std::size_t reserve = 16;
-  /** Descriptors that are no connections: store, logs, link to the kernel, event loop. */
+  /** Descriptors that are no connections: store, logs, link to the kernel, event loops. */
   static constexpr std::size_t own_descriptors = 64;
-  static constexpr std::uint64_t longest_body = 64u * 1024u;
-  /** Of a trajectory that somebody uploads who may load one. */
-  static constexpr std::uint64_t longest_trajectory = 16u * 1024u * 1024u;
-  static constexpr std::uint32_t longest_header = 16u * 1024u;
 
-  Server(const boost::asio::any_io_executor& executor, Api& api, StaticFiles files)
-      : acceptor_(executor), api_(api), files_(std::move(files)) {}
+  /** @param door of the thread that keeps the door; everything else belongs to that of `executor` */
+  Server(const boost::asio::any_io_executor& door, const boost::asio::any_io_executor& executor, Api& api,
+         Mailbox& mailbox, StaticFiles files);
 
-  /** Starts to listen; the error names address, port and what to do. Only loopback addresses are granted. */
-  tl::expected<void, std::string> listen(const Listen& where);
+  [[nodiscard]] FrontDoor& door() { return door_; }
 
   /** The port that was granted. */
-  [[nodiscard]] std::uint16_t port() const { return acceptor_.local_endpoint().port(); }
+  [[nodiscard]] std::uint16_t port() const { return door_.port(); }
 
-  /** How many connections are granted, besides the reserve: fewer than `capacity` in a process that may have
-   * few descriptors. */
+  /** How many connections are granted here, as many at the door and as many between both, besides the
+   * reserve: fewer than `capacity` in a process that may have few descriptors. */
   [[nodiscard]] std::size_t ceiling() const { return ceiling_; }
 
   /** Connections that are open. */
@@ -61,19 +54,18 @@ class Server {
   /** Connections whose request is being answered. */
   [[nodiscard]] std::size_t at_work() const;
 
-  /** Accepts and serves connections; ends with the io_context. */
-  boost::asio::awaitable<void> accept();
-
  private:
   enum class Place { common, reserve };
 
   struct Connection {
-    Connection(boost::beast::tcp_stream connected, Place granted);
     boost::beast::tcp_stream stream;
-    boost::beast::flat_buffer buffer;
+    boost::asio::ip::tcp protocol;
     Place place;
-    std::string peer;    /**< address and port of the client */
-    bool waiting = true; /**< for a request, hence free to be closed */
+    std::string peer; /**< address and port of the client */
+    bool
+        late; /**< its first request has waited for this thread for so long that nobody expects it any more */
+    boost::beast::flat_buffer buffer = {};
+    bool waiting = true; /**< for the rest of a request, hence free to be closed */
     bool closed = false; /**< to make room for another */
   };
 
@@ -85,17 +77,20 @@ class Server {
   boost::asio::awaitable<bool> answer(Connection& connection, Response response, bool head_only,
                                       bool keep_alive);
   boost::asio::awaitable<void> refuse(Connection& connection, const boost::beast::error_code& error);
-  boost::asio::awaitable<void> survive(const boost::beast::error_code& error);
-  void admit(boost::asio::ip::tcp::socket socket, Place place);
+  boost::asio::awaitable<void> record(StopMade made);
+  void admit(Guest guest);
+  void give_back(Connection& connection);
   [[nodiscard]] std::size_t open_in(Place place) const;
   std::optional<Place> place_for_another();
   bool close_oldest_idle(Place place);
 
-  boost::asio::ip::tcp::acceptor acceptor_;
+  boost::asio::any_io_executor executor_;
   Api& api_;
   StaticFiles files_;
-  std::size_t ceiling_ = capacity;
+  std::size_t ceiling_;
   std::list<std::shared_ptr<Connection>> connections_;
+  std::atomic<std::size_t> arriving_{0}; /**< connections between the door and here */
+  FrontDoor door_;
 };
 
 }  // namespace interlock::web

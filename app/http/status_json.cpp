@@ -238,4 +238,11 @@ json event_json(const ilk_event_t& event) {
 
 json events_lost_json(std::uint32_t count) { return {{"type", "event"}, {"kind", "lost"}, {"count", count}}; }
 
+nlohmann::json stop_json(const std::optional<StopAnswer>& answer) {
+  if (!answer || !answer->verdict) {
+    return {{"verdict", nullptr}, {"tick", nullptr}};
+  }
+  return {{"verdict", catalog::name(catalog::Family::verdict, *answer->verdict)}, {"tick", answer->tick}};
+}
+
 }  // namespace interlock::web

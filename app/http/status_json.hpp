@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string_view>
 
 #include "motion/mailbox.hpp"
@@ -27,6 +28,9 @@ nlohmann::json motor_json(const Axis& axis, const ilk_config_t& config, const Co
 
 /** Text message of the stream for a kernel event. */
 nlohmann::json event_json(const ilk_event_t& event);
+
+/** What a STOP is answered with: the kernel's verdict and tick, null when none came in time. */
+nlohmann::json stop_json(const std::optional<StopAnswer>& answer);
 
 /** Text message of the stream that says that `count` events were lost. */
 nlohmann::json events_lost_json(std::uint32_t count);

@@ -4,15 +4,15 @@
 
 #include <algorithm>
 #include <boost/asio/buffer.hpp>
-#include <boost/asio/co_spawn.hpp>
-#include <boost/asio/detached.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core/buffers_to_string.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/websocket.hpp>
 #include <deque>
 #include <optional>
 
 #include "network/as_result.hpp"
+#include "network/start.hpp"
 
 namespace interlock::web {
 namespace {
@@ -103,13 +103,20 @@ asio::awaitable<void> StreamHub::serve(beast::tcp_stream stream, Request request
     co_return;
   }
   on_change(client->watcher, true);
-  asio::co_spawn(client->socket.get_executor(), write(client), asio::detached);
-  beast::flat_buffer buffer;
-  const auto [read_error, bytes] = co_await client->socket.async_read(buffer, as_result);
-  if (!read_error && client->open) {
-    // Only a client that misunderstands the interface sends anything; it is told so instead of being ignored.
-    co_await client->socket.async_close(
-        {websocket::close_code::policy_error, "this stream takes no messages"}, as_result);
+  start(client->socket.get_executor(), write(client));
+  while (client->open) {
+    beast::flat_buffer buffer;
+    const auto [read_error, bytes] = co_await client->socket.async_read(buffer, as_result);
+    if (read_error || !client->open) {
+      break;
+    }
+    if (beast::buffers_to_string(buffer.data()) != "stop") {
+      // Who misunderstands the interface is told so instead of being ignored.
+      co_await client->socket.async_close(
+          {websocket::close_code::policy_error, "this stream takes no message but stop"}, as_result);
+      break;
+    }
+    on_stop(client->watcher.caller);
   }
   clients_.erase(place);
   client->close();

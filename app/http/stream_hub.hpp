@@ -40,6 +40,9 @@ class StreamHub {
   /** Told of each client that has come (true) or gone. */
   std::function<void(const Watcher&, bool)> on_change = [](const Watcher&, bool) {};
 
+  /** Told of each client that says `stop`. */
+  std::function<void(const Caller&)> on_stop = [](const Caller&) {};
+
   /** Accepts the WebSocket and serves it until either side ends it. */
   boost::asio::awaitable<void> serve(boost::beast::tcp_stream stream, Request request, Caller caller);
 

@@ -9,15 +9,13 @@
 #include <array>
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/buffer.hpp>
-#include <boost/asio/co_spawn.hpp>
-#include <boost/asio/detached.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
-#include <exception>
 #include <sstream>
 
 #include "igtl/decode.hpp"
 #include "igtl/encode.hpp"
+#include "network/start.hpp"
 
 namespace interlock::igtl {
 namespace {
@@ -158,9 +156,8 @@ void Hub::admit(Tcp::socket socket) {
                  is_welcome(from.address()) ? "too many are connected" : "it is not on the list of peers");
     return;
   }
-  asio::co_spawn(acceptor_.get_executor(),
-                 serve(std::make_shared<Session>(std::move(socket), ++last_id_, read_clock())),
-                 asio::detached);
+  start(acceptor_.get_executor(),
+        serve(std::make_shared<Session>(std::move(socket), ++last_id_, read_clock())));
 }
 
 asio::awaitable<void> Hub::keep_connected(Tcp::endpoint peer, std::chrono::milliseconds pause) {
@@ -186,17 +183,9 @@ asio::awaitable<void> Hub::keep_connected(Tcp::endpoint peer, std::chrono::milli
 asio::awaitable<void> Hub::serve(SessionPointer session) {
   const auto listed = sessions_.insert(sessions_.end(), session);
   spdlog::info("OpenIGTLink connection {} of {}", session->peer.id, session->peer.address);
-  asio::co_spawn(session->socket.get_executor(), write(session), asio::detached);
-  std::string thrown;
-  try {
-    on_open(session->peer.id);
-    co_await read(session);
-  } catch (const std::exception& exception) {
-    thrown = exception.what();
-  }
-  if (!thrown.empty()) {
-    spdlog::critical("OpenIGTLink connection {} ended by an exception: {}", session->peer.id, thrown);
-  }
+  start(session->socket.get_executor(), write(session));
+  on_open(session->peer.id);
+  co_await read(session);
   close(*session, session->reason);
   sessions_.erase(listed);
   spdlog::info("OpenIGTLink connection {} ended: {}", session->peer.id, session->reason);

@@ -19,6 +19,8 @@ class FileDescriptor {
   ~FileDescriptor();
 
   [[nodiscard]] int get() const noexcept { return fd_; }
+  /** Gives the descriptor away, which nobody closes then. */
+  [[nodiscard]] int release() noexcept { return std::exchange(fd_, -1); }
   [[nodiscard]] bool open() const noexcept { return fd_ >= 0; }
 
  private:

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <thread>
+#include <type_traits>
 #include <utility>
 
 #include "motion/overtaking.hpp"
@@ -18,6 +19,8 @@ constexpr milliseconds snapshot_timeout{20};
 constexpr milliseconds shortest_back_off{20};
 constexpr milliseconds longest_back_off{500};
 constexpr std::uint32_t heartbeat_period_ticks = 20;
+/** Without a sign of the threads that serve people, which give thirty a second: motion ends within 200 ms. */
+constexpr milliseconds service_patience{150};
 /** Room in the notice queue that events leave to answers. */
 constexpr std::size_t answer_reserve = 2 * Mailbox::command_capacity;
 
@@ -120,11 +123,13 @@ void ControlLoop::tick() noexcept {
 
 void ControlLoop::control() noexcept {
   port_.begin_tick();
+  watch_service();
   obey_stop();
   obey_pause();
   read_events();
   send_heartbeat();
   take_commands();
+  end_let_go();
   send_wishes();
 }
 
@@ -141,8 +146,27 @@ void ControlLoop::miss_tick() noexcept {
     return;
   }
   port_.begin_tick();
+  watch_service();
   obey_stop();
   obey_pause();
+}
+
+/** Whoever holds a control down, or would press STOP, waits in vain for a thread that stands still: that is a
+ * STOP. Of time for which this thread did not run itself only as much counts as a round takes, since the
+ * others may not have run either; the kernel has its own eye on that. */
+void ControlLoop::watch_service() noexcept {
+  const auto now = std::chrono::steady_clock::now();
+  const auto passed = std::min<std::chrono::nanoseconds>(now - std::exchange(round_, now), snapshot_timeout);
+  const auto stands_still = [passed](Sign& sign, std::uint32_t count) {
+    const bool goes_on = count == 0 || std::exchange(sign.seen, count) != count;
+    sign.still = goes_on ? std::chrono::nanoseconds{0} : sign.still + passed;
+    return sign.still >= service_patience;
+  };
+  const bool network = stands_still(network_, mailbox_.served.load(std::memory_order_relaxed));
+  const bool door = stands_still(door_, mailbox_.door_kept.load(std::memory_order_relaxed));
+  if (!std::exchange(nobody_served_, network || door) && nobody_served_) {
+    mailbox_.stops.fetch_add(1, std::memory_order_release);
+  }
 }
 
 void ControlLoop::obey_stop() noexcept {
@@ -151,7 +175,9 @@ void ControlLoop::obey_stop() noexcept {
     return;
   }
   const bool holder_changed = mailbox_.holder.load(std::memory_order_relaxed) != holder_sent_;
-  conductor_.end_all(holder_changed ? OrderReason::authority_changed : OrderReason::stopped,
+  conductor_.end_all(nobody_served_   ? OrderReason::nobody_served
+                     : holder_changed ? OrderReason::authority_changed
+                                      : OrderReason::stopped,
                      view_.snapshot.state.system.tick);
   if (port_.send(request_of(ILK_REQUEST_STOP), StopOrigin{stops_seen_})) {
     stops_sent_ = stops_seen_;
@@ -200,7 +226,7 @@ void ControlLoop::dispatch_verdict(const ilk_event_t& event) noexcept {
       conductor_.end_axis(ask->slot, *reason, event.tick);
     }
   } else if (const auto* asked_stop = std::get_if<StopOrigin>(&*origin)) {
-    notify(StopAnswer{asked_stop->stops, verdict, event.tick});
+    answer({asked_stop->stops, verdict, event.tick});
   }
   const bool is_move = wish != nullptr && wish->kind == ILK_REQUEST_MOVE;
   const bool routine = is_move || std::holds_alternative<HeartbeatOrigin>(*origin);
@@ -255,9 +281,43 @@ bool ControlLoop::take(const AnyOrder& order) noexcept {
   }
   conductor_.take(order, now);
   if (newer < 0) {
-    conductor_.end(order.proposal, OrderReason::stopped, now);
+    conductor_.end(order.proposal, nobody_served_ ? OrderReason::nobody_served : OrderReason::stopped, now);
+  }
+  if constexpr (std::is_same_v<AnyOrder, Order>) {
+    hold(order);
   }
   return true;
+}
+
+void ControlLoop::hold(const Order& order) noexcept {
+  if (order.slot < ILK_SLOTS) {
+    Jog& jog = jogs_[order.slot];
+    jog.proposal = order.proposal;
+    jog.lease.release();
+    if (order.held) {
+      jog.lease.hold(*order.held);
+    }
+  }
+}
+
+/** One that comes late brings no jog back. */
+bool ControlLoop::take(const Renewal& renewal) noexcept {
+  for (Jog& jog : jogs_) {
+    if (jog.proposal == renewal.proposal && jog.lease.held() && !jog.lease.overdue(renewal.held)) {
+      jog.lease.hold(renewal.held);
+    }
+  }
+  return true;
+}
+
+void ControlLoop::end_let_go() noexcept {
+  const Moment now = view_.moment(view_.received);
+  for (Jog& jog : jogs_) {
+    if (jog.lease.overdue(now)) {
+      conductor_.end(jog.proposal, OrderReason::let_go, now.tick);
+      jog.lease.release();
+    }
+  }
 }
 
 bool ControlLoop::take(const SeenImage& seen) noexcept {
@@ -270,9 +330,10 @@ bool ControlLoop::take(const Cancel& cancel) noexcept {
   return true;
 }
 
-/** Below 0: it was asked for before the newest STOP; above 0: that STOP has still to be obeyed. */
+/** Below 0: it was asked for before the newest STOP, or nobody is served; above 0: that STOP has still to be
+ * obeyed. */
 std::int32_t ControlLoop::newer_than_stop(std::uint32_t stops) const noexcept {
-  return static_cast<std::int32_t>(stops - stops_seen_);
+  return nobody_served_ ? -1 : static_cast<std::int32_t>(stops - stops_seen_);
 }
 
 bool ControlLoop::take(const Ask& ask) noexcept {
@@ -330,7 +391,7 @@ void ControlLoop::refuse_commands() noexcept {
   const std::uint32_t stops = mailbox_.stops.load(std::memory_order_acquire);
   if (stops != stops_sent_) {
     stops_sent_ = stops;
-    notify(StopAnswer{stops, std::nullopt, 0});
+    answer({stops, std::nullopt, 0});
   }
   if (any || noticed_) {
     publish();
@@ -344,6 +405,10 @@ void ControlLoop::refuse(const AnyOrder& order) noexcept {
   conductor_.end(order.proposal, OrderReason::link_lost, tick);
 }
 
+void ControlLoop::refuse(const Renewal& /*renewal*/) noexcept {
+  // Without the link no jog is open.
+}
+
 void ControlLoop::refuse(const SeenImage& /*seen*/) noexcept {
   // Without the link no biopsy is open.
 }
@@ -354,11 +419,18 @@ void ControlLoop::refuse(const Cancel& /*cancel*/) noexcept {
 
 void ControlLoop::refuse(const Ask& ask) noexcept { answer_lost(AskOrigin{ask.ticket, ask.kind, ask.slot}); }
 
+void ControlLoop::answer(const StopAnswer& answer) noexcept {
+  notify(answer);
+  mailbox_.stopped.writing() = answer;
+  mailbox_.stopped.publish();
+  mailbox_.door_wake.signal();
+}
+
 void ControlLoop::answer_lost(const RequestOrigin& origin) noexcept {
   if (const auto* ask = std::get_if<AskOrigin>(&origin)) {
     notify(Answer{ask->ticket, std::nullopt, 0});
   } else if (const auto* asked_stop = std::get_if<StopOrigin>(&origin)) {
-    notify(StopAnswer{asked_stop->stops, std::nullopt, 0});
+    answer({asked_stop->stops, std::nullopt, 0});
   } else if (const auto* wish = std::get_if<WishOrigin>(&origin)) {
     conductor_.on_verdict_lost(*wish, view_.snapshot.state.system.tick);
   }

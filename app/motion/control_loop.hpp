@@ -8,6 +8,7 @@
  */
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -17,6 +18,7 @@
 #include "link/link_client.hpp"
 #include "motion/axis_plan.hpp"
 #include "motion/conductor.hpp"
+#include "motion/held_lease.hpp"
 #include "motion/mailbox.hpp"
 #include "motion/request_port.hpp"
 #include "motion/tick_observer.hpp"
@@ -51,6 +53,7 @@ class ControlLoop {
   void control() noexcept;
   void watch() noexcept;
   void miss_tick() noexcept;
+  void watch_service() noexcept;
   void obey_stop() noexcept;
   void obey_pause() noexcept;
   void read_events() noexcept;
@@ -59,23 +62,40 @@ class ControlLoop {
   void take_commands() noexcept;
   template <typename AnyOrder>
   [[nodiscard]] bool take(const AnyOrder& order) noexcept;
+  [[nodiscard]] bool take(const Renewal& renewal) noexcept;
   [[nodiscard]] bool take(const SeenImage& seen) noexcept;
   [[nodiscard]] bool take(const Cancel& cancel) noexcept;
   [[nodiscard]] bool take(const Ask& ask) noexcept;
   [[nodiscard]] std::int32_t newer_than_stop(std::uint32_t stops) const noexcept;
   void lose_verdict(const RequestOrigin& origin) noexcept;
+  void hold(const Order& order) noexcept;
+  void end_let_go() noexcept;
   void send_wishes() noexcept;
   void publish() noexcept;
 
   void refuse_commands() noexcept;
   template <typename AnyOrder>
   void refuse(const AnyOrder& order) noexcept;
+  void refuse(const Renewal& renewal) noexcept;
   void refuse(const SeenImage& seen) noexcept;
   void refuse(const Cancel& cancel) noexcept;
   void refuse(const Ask& ask) noexcept;
+  void answer(const StopAnswer& answer) noexcept;
   void answer_lost(const RequestOrigin& origin) noexcept;
   [[nodiscard]] bool room_for_events() const noexcept;
   void notify(const Notice& notice) noexcept;
+
+  /** A count that another thread keeps going. */
+  struct Sign {
+    std::uint32_t seen = 0;
+    std::chrono::nanoseconds still{0}; /**< for which it has not changed */
+  };
+
+  /** The newest jog of an axis. */
+  struct Jog {
+    std::uint32_t proposal = 0;
+    HeldLease lease{jog_patience};
+  };
 
   LinkClient link_;
   RequestPort port_{link_};
@@ -96,10 +116,15 @@ class ControlLoop {
   std::uint32_t stops_seen_ = 0;
   std::uint32_t stops_sent_ = 0;
   std::uint32_t pauses_sent_ = 0;
-  std::uint32_t events_lost_ = 0;    /**< by the link, as last seen */
-  std::uint32_t events_dropped_ = 0; /**< of which the network was not told yet */
+  std::array<Jog, ILK_SLOTS> jogs_{};
+  Sign network_;
+  Sign door_;
+  std::chrono::steady_clock::time_point round_; /**< begin of the last round that watched */
+  std::uint32_t events_lost_ = 0;               /**< by the link, as last seen */
+  std::uint32_t events_dropped_ = 0;            /**< of which the network was not told yet */
   bool heartbeat_sent_ = false;
   bool noticed_ = false;
+  bool nobody_served_ = false;
   std::atomic<std::uint32_t> rounds_ = 0;
 };
 

@@ -16,6 +16,7 @@
 #include <variant>
 
 #include "interlock/link.h"
+#include "interlock/sim_bus.h"
 #include "motion/biopsy_run.hpp"
 #include "motion/force_watch.hpp"
 #include "motion/order.hpp"
@@ -40,7 +41,8 @@ struct Ask {
 };
 
 /** Anything that the network threads ask of the control thread. */
-using Command = std::variant<Order, HomeOrder, PathOrder, SweepOrder, BiopsyOrder, SeenImage, Cancel, Ask>;
+using Command =
+    std::variant<Order, HomeOrder, PathOrder, SweepOrder, BiopsyOrder, Renewal, SeenImage, Cancel, Ask>;
 
 /** The kernel's word on an `Ask`; no verdict: it was not sent, or the answer got lost with the link. */
 struct Answer {
@@ -78,6 +80,12 @@ struct ControlView {
   BiopsyStatus biopsy;
   BiopsyNow biopsy_now;
   ForceReadings force; /**< of a robot with a needle */
+
+  /** This moment, by the clock that holds run on: the kernel's if that is simulated. */
+  [[nodiscard]] Moment moment(std::chrono::steady_clock::time_point now) const noexcept {
+    const bool simulated = attached && snapshot.clock == ILK_CLOCK_SIM;
+    return {now, snapshot.state.system.tick, simulated ? snapshot.period_us : 0};
+  }
 };
 
 /** Both queues, and what the control thread saw last. */
@@ -89,12 +97,18 @@ struct Mailbox {
   boost::lockfree::spsc_queue<Notice, boost::lockfree::capacity<notice_capacity>> notices;
   TripleBuffer<ControlView> view;
   std::atomic<std::uint32_t> stops{0}; /**< STOPs asked for since start */
+  /** Count on for as long as people are served, by the network's thread and by that of its door: once one
+   * stands still, motion ends. 0: not yet. */
+  std::atomic<std::uint32_t> served{0};
+  std::atomic<std::uint32_t> door_kept{0};
   /** Pauses asked for since start: each ends MOTION as the release of the pedal does, so that orders stay
    * open and go on when somebody presses it again. */
   std::atomic<std::uint32_t> pauses{0};
   /** Number of the present motion authority; 0: nobody. Changed before the STOP that each change is. */
   std::atomic<std::uint32_t> holder{0};
-  WakeSignal network_wake; /**< a notice came or an order changed */
+  WakeSignal network_wake;          /**< a notice came or an order changed */
+  TripleBuffer<StopAnswer> stopped; /**< the newest one, for the door */
+  WakeSignal door_wake;             /**< it changed */
 };
 
 }  // namespace interlock

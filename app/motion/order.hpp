@@ -7,8 +7,10 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "interlock/types.h"
+#include "motion/held_lease.hpp"
 
 namespace interlock {
 
@@ -19,7 +21,18 @@ struct Order {
   std::int32_t target_counts = 0;
   std::uint32_t max_drive = 0; /**< 0: the axis' own bound */
   std::uint32_t stops = 0; /**< STOPs seen by the author; an order older than the newest STOP never starts */
+  /** A jog, begun then: it goes on only for as long as `Renewal`s come. Nothing: it needs none. */
+  std::optional<Moment> held = std::nullopt;
 };
+
+/** Whoever jogs still holds on. */
+struct Renewal {
+  std::uint32_t proposal = 0;
+  Moment held;
+};
+
+/** For which a jog goes on without a renewal. */
+constexpr std::chrono::milliseconds jog_patience{200};
 
 /**
  * Homing: steps of the robot in the order of its file, or one axis alone.
@@ -84,6 +97,8 @@ enum class OrderReason : std::uint8_t {
   pedal_released,  /**< waits for the pedal */
   kernel_refused,  /**< `code` is the verdict */
   stopped,         /**< STOP */
+  let_go,          /**< a jog was not renewed in time */
+  nobody_served,   /**< the threads that serve people stood still */
   cancelled,       /**< its author ended it */
   locked,          /**< `code` is the cause of LOCKED */
   axis_disabled,   /**< the axis was taken out of motion */

@@ -34,6 +34,12 @@ std::string end_words(const std::string& axis, const OrderStatus& status) {
       return "The kernel refused: " + words(catalog::Family::verdict, status.code);
     case OrderReason::stopped:
       return "STOP.";
+    case OrderReason::let_go:
+      return "It was let go, or its hold was not renewed within " + std::to_string(jog_patience.count()) +
+             " ms.";
+    case OrderReason::nobody_served:
+      return "The app stopped answering people, so motion ended. Look at what holds up the machine; propose "
+             "it again.";
     case OrderReason::cancelled:
       return "Ended by its author.";
     case OrderReason::locked:

@@ -59,6 +59,7 @@ struct MoveDraft {
   std::int32_t target_counts = 0;
   std::optional<std::uint32_t> drive; /**< upper bound; empty: the axis' own */
   std::string author;
+  bool held = false; /**< a jog: it ends unless its hold is renewed */
 };
 
 /** Who thought of a motion. */

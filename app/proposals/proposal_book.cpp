@@ -51,7 +51,8 @@ tl::expected<Proposal, Refusal> ProposalBook::propose(const MoveDraft& move, con
     return tl::make_unexpected(checked.error());
   }
   become(proposal, ProposalState::checked, "Inside the range that the kernel allows now.");
-  return approve(proposal, Order{proposal.id, move.slot, move.target_counts, move.drive.value_or(0), 0});
+  return approve(proposal, Order{proposal.id, move.slot, move.target_counts, move.drive.value_or(0), 0,
+                                 move.held ? std::optional(Moment{}) : std::nullopt});
 }
 
 tl::expected<Proposal, Refusal> ProposalBook::propose_home(const HomeDraft& home, const ControlView& view) {
@@ -132,6 +133,11 @@ tl::expected<Proposal, Refusal> ProposalBook::propose_biopsy(const BiopsyDraft& 
   become(proposal, ProposalState::checked, "The needle is at the skin, and the hand's force is heard.");
   lent_.push_back({proposal.id, ProposalKind::biopsy, biopsy.run});
   return approve(proposal, BiopsyOrder{proposal.id, biopsy.run.get(), 0});
+}
+
+bool ProposalBook::renew(std::uint32_t id) {
+  const Proposal* jog = find(id);
+  return jog != nullptr && jog->move.held && is_open(jog->state) && send_(Renewal{id, {}});
 }
 
 bool ProposalBook::show_image(const NeedleImage& image) {

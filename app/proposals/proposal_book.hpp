@@ -82,6 +82,9 @@ class ProposalBook {
   /** Hands an image to the open biopsy; false when none is open, or the control thread takes none now. */
   bool show_image(const NeedleImage& image);
 
+  /** Whoever jogs still holds on; false when no such jog is open, or the control thread takes none now. */
+  bool renew(std::uint32_t id);
+
   /** Checks a proposal that waits for it anew, and approves it: NOT_WAITING when none of that number does. */
   tl::expected<Proposal, Refusal> approve(std::uint32_t id, const ControlView& view);
 

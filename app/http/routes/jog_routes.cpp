@@ -49,20 +49,20 @@ tl::expected<Draft, Problem> draft_of(const JogWish& wish, const Context& contex
         ILK_VERDICT_RANGE, wish.axis->name + " stands at its end, " + counts_and_unit(*wish.axis, here),
         "the other direction")));
   }
-  return MoveDraft{slot, end, std::nullopt, author};
+  return MoveDraft{slot, end, std::nullopt, author, true};
 }
 
 Problem jog_lapsed() {
   return {.status = Status::conflict,
           .code = "JOG_LAPSED",
-          .detail = "That jog has ended, or was not renewed within " +
-                    std::to_string(JogDesk::patience.count()) + " ms.",
+          .detail = "That jog has ended, or was not renewed within " + std::to_string(jog_patience.count()) +
+                    " ms.",
           .next_step = "Jog again."};
 }
 
 }  // namespace
 
-JogRoutes::JogRoutes(const Context& context, JogDesk& jogs, Router& router) : context_(context), jogs_(jogs) {
+JogRoutes::JogRoutes(const Context& context, Router& router) : context_(context) {
   router.add(verb::post, "/api/jog", holder, [this](const Call& call) { return begin(call); });
   router.add(verb::put, "/api/jog/{id}", holder,
              [this](const Call& call) -> Answering { co_return renew(call); });
@@ -85,18 +85,16 @@ Answering JogRoutes::begin(const Call& call) const {
   if (!made) {
     co_return fail(made.error());
   }
-  jogs_.begin(made->id, context_.view(), context_.steady_clock());
   co_return Success{Status::created, to_json(*made)};
 }
 
 Reply JogRoutes::renew(const Call& call) const {
   const auto id = number_in(call.parameters[0]);
-  const ControlView& now = context_.view();
-  const Proposal* jog = id ? context_.book.find(*id) : nullptr;
-  if (jog == nullptr || !is_open(jog->state) || !jogs_.renew(*id, now, context_.steady_clock())) {
+  (void)context_.view();
+  if (!id || !context_.book.renew(*id)) {
     return fail(jog_lapsed());
   }
-  return Success{Status::ok, to_json(*jog)};
+  return Success{Status::ok, to_json(*context_.book.find(*id))};
 }
 
 }  // namespace interlock::web

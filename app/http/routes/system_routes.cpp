@@ -1,7 +1,5 @@
 #include "http/routes/system_routes.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <array>
 #include <bit>
 
@@ -56,20 +54,12 @@ Reply SystemRoutes::metrics() const {
                  .text_type = metrics_media_type};
 }
 
+/** Of a client whose request the door did not recognise from its first bytes. */
 Answering SystemRoutes::stop(const Call& call) const {
   auto stopping = context_.control.stop();
   // On its way to the kernel before anything is written, be it to a log.
-  spdlog::warn("STOP by {}", call.caller.user.empty() ? call.caller.peer : call.caller.user);
-  context_.book.abort_all("STOP.");
-  json detail{{"peer", call.caller.peer}};
-  context_.store.note(context_.entry(call.caller, AuditKind::stop, std::move(detail)));
-  const auto answer = co_await std::move(stopping);
-  json body{{"verdict", nullptr}, {"tick", nullptr}};
-  if (answer && answer->verdict) {
-    body["verdict"] = catalog::name(catalog::Family::verdict, *answer->verdict);
-    body["tick"] = answer->tick;
-  }
-  co_return Success{Status::ok, std::move(body)};
+  context_.record_stop(call.caller, 0);
+  co_return Success{Status::ok, stop_json(co_await std::move(stopping))};
 }
 
 }  // namespace interlock::web

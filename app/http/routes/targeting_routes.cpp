@@ -25,8 +25,8 @@ json reach_json(const KinematicsResult<Reach>& found) {
   if (!found) {
     return {{"cell_mm", 0.0}, {"centres", json::array()}, {"problem", to_json(found.error())}};
   }
-  constexpr double per_mm = 100.0;
-  const auto rounded = [](double mm) { return std::round(mm * per_mm) / per_mm; };
+  constexpr double steps_per_mm = 100.0;
+  const auto rounded = [](double mm) { return std::round(mm * steps_per_mm) / steps_per_mm; };
   json centres = json::array();
   for (const Eigen::Vector3d& centre : found->shell_mm) {
     centres.push_back({rounded(centre.x()), rounded(centre.y()), rounded(centre.z())});

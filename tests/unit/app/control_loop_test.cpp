@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <thread>
 
 #include "control_loop_fixture.hpp"
+#include "interlock/sim_bus.h"
 
 namespace interlock {
 namespace {
@@ -135,6 +137,77 @@ TEST_F(ControlLoopTest, APauseEndsMotionInTheSameTickAndTheOrderGoesOnAfterAnoth
   EXPECT_EQ(order().phase, OrderPhase::executing);
   EXPECT_THAT(notices<StopAnswer>(), testing::IsEmpty()) << "it is no STOP";
 }
+
+TEST_F(ControlLoopTest, AJogEndsInTheTickInWhichItsHoldIsOldEnough) {
+  snapshot_.clock = ILK_CLOCK_SIM;
+  snapshot_.period_us = 1000;
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
+  const auto held_at = [&](std::uint32_t tick) {
+    return Moment{std::chrono::steady_clock::now(), tick, snapshot_.period_us};
+  };
+  const std::uint32_t begun = snapshot_.state.system.tick;
+  command(Order{1, insertion, 1500, 0, 0, held_at(begun)});
+  tick(199);
+  EXPECT_EQ(order().phase, OrderPhase::executing);
+  command(Renewal{1, held_at(begun + 199)});
+  tick(199);
+  EXPECT_EQ(order().phase, OrderPhase::executing) << "it was renewed";
+  tick(1);
+  EXPECT_EQ(order().phase, OrderPhase::aborted);
+  EXPECT_EQ(order().reason, OrderReason::let_go);
+  command(Renewal{1, held_at(begun + 399)});
+  tick(1);
+  EXPECT_EQ(order().phase, OrderPhase::aborted) << "a late renewal brings no jog back";
+}
+
+TEST_F(ControlLoopTest, AnOrderThatNobodyHoldsOutlivesEveryRenewal) {
+  command(Order{1, insertion, 1500, 0, 0});
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
+  for (std::uint32_t i = 0; i < 10; ++i) {
+    tick(100);
+  }
+  EXPECT_EQ(order().phase, OrderPhase::executing);
+}
+
+/** Ticks for as long as it takes until the control thread misses those who serve people. */
+class NobodyServedTest : public ControlLoopTest {
+ protected:
+  [[nodiscard]] bool stops_within(std::uint32_t ticks) {
+    for (std::uint32_t i = 0; i < ticks; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      tick();
+      if (sent(ILK_REQUEST_STOP) != nullptr) {
+        return true;
+      }
+    }
+    return false;
+  }
+};
+
+constexpr std::uint32_t far_longer_than_patience = 10'000;
+
+TEST_F(NobodyServedTest, MotionEndsOnceWhenTheNetworkStandsStillAndNothingStartsUntilItGoesOn) {
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
+  command(Order{1, insertion, 1500, 0, 0});
+  mailbox_->served = 1;
+  ASSERT_TRUE(stops_within(far_longer_than_patience));
+  EXPECT_EQ(order().phase, OrderPhase::aborted);
+  EXPECT_EQ(order().reason, OrderReason::nobody_served);
+  command(Order{2, insertion, 1500, 0, mailbox_->stops.load()});
+  EXPECT_FALSE(stops_within(300)) << "once";
+  EXPECT_EQ(order().phase, OrderPhase::aborted);
+  mailbox_->served = 2;
+  command(Order{3, insertion, 1500, 0, mailbox_->stops.load()});
+  tick();
+  EXPECT_EQ(order().phase, OrderPhase::executing);
+}
+
+TEST_F(NobodyServedTest, MotionEndsWhenTheDoorStandsStill) {
+  mailbox_->door_kept = 1;
+  EXPECT_TRUE(stops_within(far_longer_than_patience));
+}
+
+TEST_F(NobodyServedTest, NothingIsMissedOfThreadsThatNeverBegan) { EXPECT_FALSE(stops_within(300)); }
 
 TEST_F(ControlLoopTest, AnOrderOlderThanTheStopNeverMoves) {
   command(Order{1, insertion, 1500, 0, 0});

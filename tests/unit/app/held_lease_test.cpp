@@ -1,65 +1,56 @@
-#include "http/held_lease.hpp"
+#include "motion/held_lease.hpp"
 
 #include <gtest/gtest.h>
 
-#include "interlock/sim_bus.h"
-
-namespace interlock::web {
+namespace interlock {
 namespace {
 
 using std::chrono::hours;
 using std::chrono::milliseconds;
 
-constexpr HeldLease::TimePoint start{};
+constexpr std::chrono::steady_clock::time_point start{};
+constexpr std::uint32_t start_tick = UINT32_MAX - 100;
 
-ControlView view_of(std::uint32_t clock) {
-  ControlView view;
-  view.attached = true;
-  view.snapshot.clock = clock;
-  view.snapshot.period_us = 1000;
-  view.snapshot.state.system.tick = UINT32_MAX - 100;
-  return view;
+Moment by_the_wall(milliseconds passed) { return {start + passed, start_tick + 1'000'000, 0}; }
+
+Moment simulated(std::uint32_t ticks, milliseconds passed) {
+  return {start + passed, start_tick + ticks, 1000};
 }
 
 TEST(HeldLease, IsNeverOverdueUnlessHeld) {
   HeldLease lease(milliseconds(500));
-  EXPECT_FALSE(lease.overdue(view_of(ILK_CLOCK_REAL), start + hours(1)));
-  lease.hold(view_of(ILK_CLOCK_REAL), start);
+  EXPECT_FALSE(lease.overdue(by_the_wall(hours(1))));
+  lease.hold(by_the_wall(milliseconds(0)));
   lease.release();
-  EXPECT_FALSE(lease.overdue(view_of(ILK_CLOCK_REAL), start + hours(1)));
+  EXPECT_FALSE(lease.overdue(by_the_wall(hours(1))));
 }
 
-TEST(HeldLease, IsOverdueAfterItsPatienceOfTheRealClock) {
+TEST(HeldLease, IsOverdueAfterItsPatienceByTheWallsTime) {
   HeldLease lease(milliseconds(500));
-  lease.hold(view_of(ILK_CLOCK_REAL), start);
-  EXPECT_FALSE(lease.overdue(view_of(ILK_CLOCK_REAL), start + milliseconds(499)));
-  EXPECT_TRUE(lease.overdue(view_of(ILK_CLOCK_REAL), start + milliseconds(500)));
+  lease.hold(by_the_wall(milliseconds(0)));
+  EXPECT_FALSE(lease.overdue(by_the_wall(milliseconds(499))));
+  EXPECT_TRUE(lease.overdue(by_the_wall(milliseconds(500))));
 }
 
-TEST(HeldLease, CountsKernelTicksInTheSimulatedClock) {
+TEST(HeldLease, CountsTicksInTheSimulatedClockAndAcrossTheirWrap) {
   HeldLease lease(milliseconds(500));
-  ControlView view = view_of(ILK_CLOCK_SIM);
-  lease.hold(view, start);
-  view.snapshot.state.system.tick += 499;
-  EXPECT_FALSE(lease.overdue(view, start + hours(1)));
-  view.snapshot.state.system.tick += 1;
-  EXPECT_TRUE(lease.overdue(view, start));
+  lease.hold(simulated(0, milliseconds(0)));
+  EXPECT_FALSE(lease.overdue(simulated(499, hours(1))));
+  EXPECT_TRUE(lease.overdue(simulated(500, milliseconds(0))));
 }
 
 TEST(HeldLease, RenewalStartsThePatienceAnew) {
   HeldLease lease(milliseconds(500));
-  lease.hold(view_of(ILK_CLOCK_REAL), start);
-  lease.hold(view_of(ILK_CLOCK_REAL), start + milliseconds(400));
-  EXPECT_FALSE(lease.overdue(view_of(ILK_CLOCK_REAL), start + milliseconds(800)));
+  lease.hold(by_the_wall(milliseconds(0)));
+  lease.hold(by_the_wall(milliseconds(400)));
+  EXPECT_FALSE(lease.overdue(by_the_wall(milliseconds(800))));
 }
 
-TEST(HeldLease, FallsBackToTheWallClockWithoutAKernel) {
+TEST(HeldLease, GoesByTheWallsTimeOnceTheSimulatedClockIsLost) {
   HeldLease lease(milliseconds(500));
-  ControlView view = view_of(ILK_CLOCK_SIM);
-  lease.hold(view, start);
-  view.attached = false;
-  EXPECT_TRUE(lease.overdue(view, start + milliseconds(500)));
+  lease.hold(simulated(0, milliseconds(0)));
+  EXPECT_TRUE(lease.overdue(by_the_wall(milliseconds(500))));
 }
 
 }  // namespace
-}  // namespace interlock::web
+}  // namespace interlock

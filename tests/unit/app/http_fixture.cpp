@@ -1,12 +1,11 @@
 #include "http_fixture.hpp"
 
-#include <boost/asio/co_spawn.hpp>
-#include <boost/asio/detached.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
 #include <fstream>
 
+#include "network/start.hpp"
 #include "store/sessions.hpp"
 
 namespace interlock::web {
@@ -56,12 +55,13 @@ HttpTest::HttpTest(const Robot& robot, const ilk_config_t& config) : robot_(robo
   add_user("ada", Role::admin);
   add_user("edna", Role::engineer);
   add_user("vic", Role::viewer);
-  const auto listening = server_.listen({"127.0.0.1", 0});
+  const auto listening = server_.door().listen({"127.0.0.1", 0});
   EXPECT_TRUE(listening);
-  asio::co_spawn(network_, api_.listen(), asio::detached);
-  asio::co_spawn(network_, api_.beat(), asio::detached);
-  asio::co_spawn(network_, api_.sweep_sessions(std::chrono::milliseconds(5)), asio::detached);
-  asio::co_spawn(network_, server_.accept(), asio::detached);
+  start(network_.get_executor(), api_.listen());
+  start(network_.get_executor(), api_.beat());
+  start(network_.get_executor(), api_.sweep_sessions(std::chrono::milliseconds(5)));
+  start(network_.get_executor(), server_.door().accept());
+  start(network_.get_executor(), server_.door().listen_to_control());
   thread_ = std::jthread([this] { network_.run(); });
   log_in("edna");
   EXPECT_EQ(post("/api/authority/request").status, 200u);
@@ -131,6 +131,11 @@ Command HttpTest::next_command() {
 }
 
 void HttpTest::answer(const Notice& notice) {
+  if (const auto* stopped = std::get_if<StopAnswer>(&notice)) {
+    mailbox_->stopped.writing() = *stopped;
+    mailbox_->stopped.publish();
+    mailbox_->door_wake.signal();
+  }
   ASSERT_TRUE(mailbox_->notices.push(notice));
   mailbox_->network_wake.signal();
 }

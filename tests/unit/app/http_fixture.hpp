@@ -169,7 +169,7 @@ class HttpTest : public StoreFixture {
            gateway_,
            *log_,
            Clocks{[this] { return now(); }, [this] { return steady_now(); }}};
-  Server server_{network_.get_executor(), api_, StaticFiles(web_.path())};
+  Server server_{network_.get_executor(), network_.get_executor(), api_, *mailbox_, StaticFiles(web_.path())};
   std::jthread thread_;
 };
 

@@ -356,8 +356,8 @@ TEST_F(HttpTest, IdleConnectionsMakeRoomForNewOnes) {
 }
 
 TEST_F(HttpTest, APortThatIsBusyIsNamed) {
-  Server second(network_.get_executor(), api_, StaticFiles({}));
-  const auto listening = second.listen({"127.0.0.1", server_.port()});
+  Server second(network_.get_executor(), network_.get_executor(), api_, *mailbox_, StaticFiles({}));
+  const auto listening = second.door().listen({"127.0.0.1", server_.port()});
   ASSERT_FALSE(listening);
   EXPECT_THAT(listening.error(), HasSubstr(std::to_string(server_.port())));
   EXPECT_THAT(listening.error(), HasSubstr("--port"));
@@ -365,8 +365,8 @@ TEST_F(HttpTest, APortThatIsBusyIsNamed) {
 
 TEST_F(HttpTest, NoOtherMachineIsLetIn) {
   for (const std::string address : {"0.0.0.0", "::", "192.0.2.1", "example"}) {
-    Server server(network_.get_executor(), api_, StaticFiles({}));
-    const auto listening = server.listen({address, 0});
+    Server server(network_.get_executor(), network_.get_executor(), api_, *mailbox_, StaticFiles({}));
+    const auto listening = server.door().listen({address, 0});
     ASSERT_FALSE(listening) << address;
     EXPECT_THAT(listening.error(), HasSubstr(address));
     EXPECT_THAT(listening.error(), HasSubstr("127.0.0.1"));

@@ -1,4 +1,3 @@
-#include "http/jog_desk.hpp"
 #include "http_fixture.hpp"
 #include "motion/setpoint_range.hpp"
 
@@ -39,16 +38,33 @@ TEST_F(JogRoutesTest, AtItsEndAnAxisDoesNotJogBackwards) {
   EXPECT_FALSE(mailbox_->commands.pop(command));
 }
 
-TEST_F(JogRoutesTest, AJogThatNobodyRenewsIsCancelled) {
-  show(test::ready_view());
-  const Answered begun = post("/api/jog", begin("increasing"));
-  ASSERT_EQ(begun.status, 201u) << begun.body;
+TEST_F(JogRoutesTest, AJogIsHeldFromItsBeginAndEachRenewalSaysSince) {
+  const ControlView view = test::ready_view();
+  show(view);
+  ASSERT_EQ(post("/api/jog", begin("increasing")).status, 201u);
   const auto order = std::get<Order>(next_command());
-  const std::string path = "/api/jog/" + std::to_string(order.proposal);
-  EXPECT_EQ(put(path, "").status, 200u);
-  pass(std::chrono::seconds(1));
-  EXPECT_EQ(std::get<Cancel>(next_command()).proposal, order.proposal);
-  const Answered late = put(path, "");
+  ASSERT_TRUE(order.held);
+  EXPECT_EQ(order.held->tick, view.snapshot.state.system.tick);
+  EXPECT_EQ(put("/api/jog/" + std::to_string(order.proposal), "").status, 200u);
+  const auto renewal = std::get<Renewal>(next_command());
+  EXPECT_EQ(renewal.proposal, order.proposal);
+  EXPECT_GE(renewal.held.time, order.held->time);
+}
+
+TEST_F(JogRoutesTest, AMoveIsNotHeld) {
+  show(test::ready_view());
+  ASSERT_EQ(post("/api/proposals", R"({"slot":3,"target_counts":1000})").status, 201u);
+  EXPECT_FALSE(std::get<Order>(next_command()).held);
+}
+
+TEST_F(JogRoutesTest, AJogThatTheControlThreadHasEndedIsNotRenewed) {
+  ControlView view = test::ready_view();
+  show(view);
+  ASSERT_EQ(post("/api/jog", begin("increasing")).status, 201u);
+  const auto order = std::get<Order>(next_command());
+  view.orders[insertion] = {order.proposal, OrderPhase::aborted, OrderReason::let_go, 0, 7};
+  show(view);
+  const Answered late = put("/api/jog/" + std::to_string(order.proposal), "");
   EXPECT_EQ(late.status, 409u);
   EXPECT_EQ(late.problem()["code"], "JOG_LAPSED");
 }

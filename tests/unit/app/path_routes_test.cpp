@@ -150,7 +150,7 @@ TEST_F(PathRoutesTest, OnlyTheHolderMaySendALargeTrajectory) {
   for (int row = 0; row < 20000; ++row) {
     rows << row << ",-0.5\n";
   }
-  ASSERT_GT(rows.str().size(), Server::longest_body);
+  ASSERT_GT(rows.str().size(), longest_body);
   EXPECT_EQ(put("/api/trajectory", rows.str()).status, 200u);
   become_nobody();
   EXPECT_EQ(put("/api/trajectory", rows.str()).status, 413u);

@@ -1174,7 +1174,7 @@ export interface components {
              * @description Verdict name, or NOT_FOUND, METHOD_NOT_ALLOWED, MALFORMED, INVALID, TOO_LARGE, HOST, ORIGIN, UPGRADE_REQUIRED,
              *     LOGIN, CREDENTIALS, BACK_OFF, ROLE, AUTHORITY, REPLAY, EXISTS, LAST_ADMIN, STORE, STOPPED, MODE_HOME, MODE_PATH, NOT_HOMED, SEPARATION,
              *     HAS_SWITCH, POSITIONS_ROBOT, POSITIONS_CONFIG, POSITIONS_VERSION,
-             *     NO_KERNEL, NO_BENCH, NO_BLACK_BOX, PEDAL_LAPSED, JOG_LAPSED, CONFIG_MISMATCH, ENDED, OVERLOADED, INTERNAL; of paths NO_PATH, UNREACHABLE, STALE,
+             *     NO_KERNEL, NO_BENCH, NO_BLACK_BOX, PEDAL_LAPSED, JOG_LAPSED, CONFIG_MISMATCH, ENDED, OVERLOADED, LATE; of paths NO_PATH, UNREACHABLE, STALE,
              *     EMPTY, NO_TARGETS, NOT_WAITING; of a trajectory or a pose a code of `interlock trajectory check` or of `interlock kinematics`.
              */
             code: string;

@@ -7,7 +7,7 @@ import {
   type Outcome,
   type ProposalDraft,
 } from "../api/client";
-import { leave } from "./feed";
+import { leave, stopByStream } from "./feed";
 import type { HoldStep, SendStep } from "./hold";
 import { noticeOfProblem } from "./notice";
 import { type Place, useConsole, withBenchAnswer, withNotice } from "./store";
@@ -16,6 +16,7 @@ import { type Place, useConsole, withBenchAnswer, withNotice } from "./store";
 export async function stop(): Promise<void> {
   useConsole.setState((state) => ({ stops: state.stops + 1, stop: { phase: "sending" } }));
   const number = useConsole.getState().stops;
+  stopByStream();
   const outcome = await api.stop();
   if (useConsole.getState().stops !== number) return;
   useConsole.setState({

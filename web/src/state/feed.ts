@@ -1,7 +1,7 @@
 /** Feeds the store: session, stream, what the app knows that the stream does not carry, and the passing of time. */
 import { api, onLoggedOut, type Session } from "../api/client";
 import { kernelWith } from "../kernel/asking";
-import { openStream, type Phase } from "../stream/connection";
+import { openStream, type Phase, type Stream } from "../stream/connection";
 import { decodeFrame, FrameError } from "../stream/decode";
 import { untilWorseMs } from "./freshness";
 import { MOST_LINES, mergeLines } from "./log";
@@ -56,7 +56,7 @@ function awaitWorsening(): void {
 
 let reload: ReturnType<typeof setTimeout> | undefined;
 let describedConfigCrc: string | null = null;
-let closeStream: () => void = () => undefined;
+let stream: Stream | null = null;
 
 /** Asks who is logged in here until the app answers. */
 async function findSession(): Promise<void> {
@@ -68,11 +68,11 @@ async function findSession(): Promise<void> {
 /** Opens the console for the session's user; false when it has none. */
 export function enter({ user, session }: Session): boolean {
   if (user === null || session == null) return false;
-  closeStream();
+  stream?.close();
   describedConfigCrc = null;
   useConsole.setState(withLogin(user, session));
   const scheme = location.protocol === "https:" ? "wss" : "ws";
-  closeStream = openStream(`${scheme}://${location.host}/api/stream`, {
+  stream = openStream(`${scheme}://${location.host}/api/stream`, {
     onBinary,
     onText,
     onPhase,
@@ -81,9 +81,14 @@ export function enter({ user, session }: Session): boolean {
   return true;
 }
 
+/** Asks for a STOP over the stream, which a browser holds back behind no other request. */
+export function stopByStream(): void {
+  stream?.stop();
+}
+
 /** Back to the login page, with the reason when there is one. */
 export function leave(notice: Notice | null): void {
-  closeStream();
+  stream?.close();
   clearTimeout(reload);
   if (useConsole.getState().login.phase === "out") return;
   useConsole.setState((state) => withLogout(state, notice));

@@ -1,5 +1,5 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
-import { openStream, type Phase, retryPauseMs } from "./connection";
+import { openStream, type Phase, retryPauseMs, type Stream } from "./connection";
 
 /** The browser's socket with its network end in the hands of the test. */
 class SocketInHand {
@@ -8,8 +8,13 @@ class SocketInHand {
   onmessage: ((event: { data: ArrayBuffer | string }) => void) | null = null;
   onclose: ((event: { code: number }) => void) | null = null;
   closed = false;
+  readyState = 0;
+  readonly sent: string[] = [];
   constructor() {
     SocketInHand.opened.push(this);
+  }
+  send(message: string): void {
+    this.sent.push(message);
   }
   close(): void {
     this.closed = true;
@@ -21,7 +26,7 @@ const latest = (): SocketInHand => SocketInHand.opened.at(-1) as SocketInHand;
 let phases: Phase[];
 let texts: string[];
 let sessionsEnded: number;
-let close: () => void;
+let stream: Stream;
 
 beforeEach(() => {
   vi.useFakeTimers();
@@ -30,7 +35,7 @@ beforeEach(() => {
   phases = [];
   texts = [];
   sessionsEnded = 0;
-  close = openStream("ws://host/api/stream", {
+  stream = openStream("ws://host/api/stream", {
     onBinary: () => undefined,
     onText: (text) => texts.push(text),
     onPhase: (phase) => phases.push(phase),
@@ -41,7 +46,7 @@ beforeEach(() => {
 });
 
 afterEach(() => {
-  close();
+  stream.close();
   vi.useRealTimers();
   vi.unstubAllGlobals();
 });
@@ -52,6 +57,14 @@ describe("openStream", () => {
     latest().onmessage?.({ data: "{}" });
     expect(phases).toEqual(["connecting", "open"]);
     expect(texts).toEqual(["{}"]);
+  });
+
+  it("says stop while it is open, and only then", () => {
+    stream.stop();
+    expect(latest().sent).toEqual([]);
+    latest().readyState = 1;
+    stream.stop();
+    expect(latest().sent).toEqual(["stop"]);
   });
 
   it("reconnects after growing pauses and starts over after a message", () => {
@@ -85,7 +98,7 @@ describe("openStream", () => {
   });
 
   it("does not come back once closed", () => {
-    close();
+    stream.close();
     vi.advanceTimersByTime(60_000);
     expect(SocketInHand.opened.length).toBe(1);
     expect(latest().closed).toBe(true);

@@ -10,8 +10,18 @@ export interface StreamHandlers {
   onSessionEnded(): void;
 }
 
+export interface Stream {
+  /** Asks for a STOP, if the stream is open. */
+  stop(): void;
+  /** Ends it for good. */
+  close(): void;
+}
+
 /** Close code of a stream whose session ended, see spec/openapi.yaml. */
 const SESSION_ENDED = 4401;
+
+/** `readyState` of a socket on which one can send. */
+const OPEN = 1;
 
 const FIRST_PAUSE_MS = 250;
 const LONGEST_PAUSE_MS = 4000;
@@ -23,8 +33,8 @@ export function retryPauseMs(attempt: number): number {
   return Math.min(LONGEST_PAUSE_MS, FIRST_PAUSE_MS * 2 ** attempt);
 }
 
-/** Opens the stream and keeps it open. Returns the function that ends it for good. */
-export function openStream(url: string, handlers: StreamHandlers): () => void {
+/** Opens the stream and keeps it open. */
+export function openStream(url: string, handlers: StreamHandlers): Stream {
   let socket: WebSocket | null = null;
   let timer: ReturnType<typeof setTimeout> | undefined;
   let attempt = 0;
@@ -69,6 +79,10 @@ export function openStream(url: string, handlers: StreamHandlers): () => void {
     socket = null;
   };
 
+  const stop = (): void => {
+    if (socket?.readyState === OPEN) socket.send("stop");
+  };
+
   connect();
-  return drop;
+  return { stop, close: drop };
 }

@@ -1,0 +1,251 @@
+#include "http/front_door.hpp"
+
+#include <spdlog/spdlog.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <boost/asio/post.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http.hpp>
+#include <sstream>
+#include <string_view>
+
+#include "http/same_origin.hpp"
+#include "http/status_json.hpp"
+#include "network/as_result.hpp"
+#include "network/start.hpp"
+
+namespace interlock::web {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+using asio::ip::tcp;
+using std::chrono::steady_clock;
+
+constexpr std::string_view stop_begin = "POST /api/stop";
+constexpr std::chrono::milliseconds door_beat{33};
+constexpr std::chrono::seconds longest_silence{30};
+constexpr std::chrono::seconds stop_patience{2};
+constexpr std::chrono::milliseconds answer_patience{300};
+
+std::string name_of(const tcp::socket& socket) {
+  beast::error_code error;
+  const auto from = socket.remote_endpoint(error);
+  return error ? std::string() : (std::ostringstream() << from).str();
+}
+
+/** How a request begins that was not read yet; empty when the peer has ended the connection. */
+std::string_view peek(tcp::socket& socket, std::array<char, stop_begin.size() + 1>& begin) {
+  const ssize_t length = ::recv(socket.native_handle(), begin.data(), begin.size(), MSG_PEEK | MSG_DONTWAIT);
+  return {begin.data(), length > 0 ? static_cast<std::size_t>(length) : 0};
+}
+
+/** One that comes in pieces that small is answered behind the door. */
+bool is_stop(std::string_view begin) {
+  return begin.size() > stop_begin.size() && begin.starts_with(stop_begin) &&
+         (begin.back() == ' ' || begin.back() == '?');
+}
+
+}  // namespace
+
+FrontDoor::FrontDoor(const asio::any_io_executor& executor, Mailbox& mailbox, std::size_t capacity,
+                     std::function<void(Guest)> let_in, std::function<void(StopMade)> record)
+    : executor_(executor),
+      mailbox_(mailbox),
+      capacity_(capacity),
+      let_in_(std::move(let_in)),
+      record_(std::move(record)),
+      acceptor_(executor),
+      wake_(executor, ::dup(mailbox.door_wake.descriptor())) {}
+
+tl::expected<void, std::string> FrontDoor::listen(const Listen& where) {
+  beast::error_code error;
+  const auto address = asio::ip::make_address(where.address, error);
+  if (error) {
+    return tl::make_unexpected("--listen " + where.address + " is no address; expected 127.0.0.1 or ::1");
+  }
+  if (!address.is_loopback()) {
+    return tl::make_unexpected("--listen " + where.address +
+                               " would let other machines in, and there is no encryption; expected "
+                               "127.0.0.1 or ::1. Use an SSH tunnel to reach it from elsewhere");
+  }
+  acceptor_.open(address.is_v6() ? tcp::v6() : tcp::v4(), error);
+  if (!error) {
+    acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
+  }
+  if (!error) {
+    acceptor_.bind(tcp::endpoint(address, where.port), error);
+  }
+  if (!error) {
+    acceptor_.listen(asio::socket_base::max_listen_connections, error);
+  }
+  if (error) {
+    return tl::make_unexpected("cannot listen on " + where.address + ":" + std::to_string(where.port) + ": " +
+                               error.message() +
+                               "; stop what uses the port, or choose another one with --port");
+  }
+  return {};
+}
+
+asio::awaitable<void> FrontDoor::accept() {
+  for (;;) {
+    auto [error, socket] = co_await acceptor_.async_accept(as_result);
+    if (error == asio::error::operation_aborted) {
+      co_return;
+    }
+    if (error) {
+      co_await survive(error);
+    } else {
+      std::string peer = name_of(socket);
+      wait_for_request(std::move(socket), acceptor_.local_endpoint().protocol(), std::move(peer));
+    }
+  }
+}
+
+/** Out of descriptors, most likely: whoever waits for nothing gives one back, be it for a STOP. Without such
+ * a one, trying again at once would only burn the processor. */
+asio::awaitable<void> FrontDoor::survive(const beast::error_code& error) {
+  spdlog::error("cannot accept a connection: {}", error.message());
+  if (!waiting_.empty()) {
+    waiting_.erase(waiting_.begin());
+    co_return;
+  }
+  asio::steady_timer pause(executor_, std::chrono::milliseconds(100));
+  co_await pause.async_wait(as_result);
+}
+
+void FrontDoor::wait_for_request(tcp::socket socket, tcp protocol, std::string peer) {
+  if (waiting_.size() == capacity_) {
+    waiting_.erase(waiting_.begin());
+  }
+  const std::uint64_t number = ++last_waiting_;
+  Waiting& guest =
+      waiting_.emplace(number, Waiting{std::move(socket), protocol, std::move(peer), steady_clock::now()})
+          .first->second;
+  guest.socket.async_wait(tcp::socket::wait_read, [this, number](const beast::error_code&) {
+    // One that was closed to make room for another is not found any more.
+    const auto found = waiting_.find(number);
+    if (found != waiting_.end()) {
+      look_at(std::move(waiting_.extract(found).mapped()));
+    }
+  });
+}
+
+void FrontDoor::look_at(Waiting guest) {
+  std::array<char, stop_begin.size() + 1> bytes{};
+  const std::string_view begin = peek(guest.socket, bytes);
+  if (begin.empty()) {
+    return;
+  }
+  if (is_stop(begin)) {
+    start(executor_, serve_stop(std::move(guest.socket), guest.protocol, std::move(guest.peer)));
+    return;
+  }
+  beast::error_code error;
+  const int socket = guest.socket.release(error);
+  if (!error) {
+    let_in_({FileDescriptor(socket), guest.protocol, std::move(guest.peer)});
+  }
+}
+
+void FrontDoor::come_back(Guest guest) {
+  asio::post(executor_, [this, guest = std::move(guest)]() mutable {
+    tcp::socket socket(executor_);
+    beast::error_code error;
+    socket.assign(guest.protocol, guest.socket.get(), error);
+    if (!error) {
+      (void)guest.socket.release();
+      wait_for_request(std::move(socket), guest.protocol, std::move(guest.peer));
+    }
+  });
+}
+
+asio::awaitable<void> FrontDoor::serve_stop(tcp::socket socket, tcp protocol, std::string peer) {
+  beast::tcp_stream stream(std::move(socket));
+  stream.expires_after(stop_patience);
+  beast::flat_buffer buffer;
+  http::request_parser<http::string_body> parser;
+  parser.header_limit(longest_header);
+  parser.body_limit(longest_body);
+  auto [error, header_bytes] = co_await http::async_read_header(stream, buffer, parser, as_result);
+  const std::optional<Problem> problem = unreadable(error);
+  if (error && !problem) {
+    co_return;
+  }
+  // No co_await within ?:, which GCC 12 compiles wrongly.
+  Response response;
+  if (problem) {
+    response = problem_response(*problem);
+  } else {
+    response = co_await stop(parser.get(), peer);
+  }
+  if (!error && !parser.is_done()) {
+    std::tie(error, std::ignore) = co_await http::async_read(stream, buffer, parser, as_result);
+  }
+  const bool stays = !error && parser.get().keep_alive() && buffer.size() == 0;
+  prepare(response, stays);
+  std::tie(error, std::ignore) = co_await http::async_write(stream, response, as_result);
+  if (!error && stays) {
+    wait_for_request(stream.release_socket(), protocol, std::move(peer));
+  } else {
+    stream.socket().shutdown(tcp::socket::shutdown_send, error);
+  }
+}
+
+/** On its way to the kernel before anything is written or read, be it the rest of the request. */
+asio::awaitable<Response> FrontDoor::stop(Request header, std::string peer) {
+  std::optional<Problem> problem = check_host(header);
+  problem = problem ? problem : check_origin(header);
+  if (problem) {
+    co_return problem_response(*problem);
+  }
+  const std::uint32_t number = mailbox_.stops.fetch_add(1, std::memory_order_release) + 1;
+  if (unrecorded_.load(std::memory_order_relaxed) < most_unrecorded) {
+    unrecorded_.fetch_add(1, std::memory_order_relaxed);
+    record_({std::move(header), std::move(peer), std::exchange(passed_over_, 0)});
+  } else {
+    ++passed_over_;
+  }
+  Waiter waiter{std::nullopt, asio::steady_timer(executor_, answer_patience)};
+  const auto place = waiters_.emplace(number, &waiter);
+  co_await waiter.timer.async_wait(as_result);
+  waiters_.erase(place);
+  co_return success_response({Status::ok, stop_json(waiter.answer)});
+}
+
+asio::awaitable<void> FrontDoor::listen_to_control() {
+  for (;;) {
+    const auto [error] = co_await wake_.async_wait(asio::posix::stream_descriptor::wait_read, as_result);
+    if (error) {
+      co_return;
+    }
+    mailbox_.door_wake.clear();
+    const StopAnswer& answer = mailbox_.stopped.newest();
+    for (auto each = waiters_.begin(); each != waiters_.end() && each->first <= answer.stops; ++each) {
+      each->second->answer = answer;
+      each->second->timer.cancel();
+    }
+  }
+}
+
+asio::awaitable<void> FrontDoor::beat() {
+  asio::steady_timer timer(executor_);
+  for (;;) {
+    mailbox_.door_kept.fetch_add(1, std::memory_order_relaxed);
+    const auto oldest = steady_clock::now() - longest_silence;
+    while (!waiting_.empty() && waiting_.begin()->second.since < oldest) {
+      waiting_.erase(waiting_.begin());
+    }
+    timer.expires_after(door_beat);
+    const auto [error] = co_await timer.async_wait(as_result);
+    if (error) {
+      co_return;
+    }
+  }
+}
+
+}  // namespace interlock::web

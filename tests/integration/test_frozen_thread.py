@@ -1,0 +1,134 @@
+"""A thread of the app stands still: motion ends all the same, STOP is heard, and nothing late comes into force."""
+
+import concurrent.futures
+import contextlib
+import signal
+import threading
+from collections.abc import Iterator
+
+import httpx
+import pytest
+from conftest import StackFactory
+from frozen import frozen
+from interface import judge
+from motion import LATERAL, press, proposal, propose, to_motion, wait_for_proposal, wait_until
+from stack import Stack, has_ended, watched
+
+# Of the wall, which ticks of the paced clock never outrun.
+MOTION_ENDS_WITHIN_TICKS = 200
+LONG_AFTER_TICKS = 600
+
+
+@pytest.fixture
+def robot(stack: StackFactory) -> Stack:
+    started = stack(speed=1)
+    to_motion(started)
+    return started
+
+
+def plant_tick(robot: Stack) -> int:
+    return robot.control("status")["tick"]
+
+
+def last_drive(robot: Stack) -> int:
+    return robot.control("record_event", kind="last_nonzero_drive")["event_tick"]
+
+
+@contextlib.contextmanager
+def renewed_jog(robot: Stack) -> Iterator[None]:
+    """A jog that somebody holds, whether or not the app takes the renewals."""
+    body = {"slot": LATERAL, "direction": "decreasing"}
+    answer = judge(robot.api.post("/api/jog", json=body))
+    assert answer.status_code == 201, answer.text
+    number, let_go = answer.json()["id"], threading.Event()
+
+    def renew() -> None:
+        with httpx.Client(base_url=robot.url, cookies=robot.api.cookies, timeout=0.1) as client:
+            while not let_go.is_set():
+                with contextlib.suppress(httpx.HTTPError):
+                    client.put(f"/api/jog/{number}")
+
+    renewing = threading.Thread(target=renew, daemon=True)
+    renewing.start()
+    try:
+        yield
+    finally:
+        let_go.set()
+        renewing.join()
+
+
+def wait_until_driven(robot: Stack) -> None:
+    begin = last_drive(robot) or 0
+    wait_until("the axis is driven", lambda: (last_drive(robot) or 0) > begin)
+
+
+def assert_motion_ends(robot: Stack, frozen_at: int) -> None:
+    wait_until("the plant is long past", lambda: plant_tick(robot) > frozen_at + LONG_AFTER_TICKS)
+    assert last_drive(robot) <= frozen_at + MOTION_ENDS_WITHIN_TICKS
+
+
+@pytest.mark.parametrize("thread", ["network", "door"])
+def test_a_jog_ends_when_a_thread_that_serves_people_stands_still(robot: Stack, thread: str) -> None:
+    with renewed_jog(robot):
+        wait_until_driven(robot)
+        with frozen(robot.pid("app"), thread):
+            assert_motion_ends(robot, plant_tick(robot))
+
+
+@pytest.mark.parametrize("thread", ["network", "door"])
+def test_a_move_ends_says_why_and_does_not_go_on_by_itself(robot: Stack, thread: str) -> None:
+    number = propose(robot, -1000)
+    wait_until_driven(robot)
+    with frozen(robot.pid("app"), thread):
+        assert_motion_ends(robot, plant_tick(robot))
+    wait_for_proposal(robot, number, "aborted")
+    assert "stopped answering people" in proposal(robot, number)["detail"]
+    ended = last_drive(robot)
+    press(robot)
+    assert last_drive(robot) == ended
+    propose(robot, -1000)
+    wait_until_driven(robot)
+
+
+@pytest.mark.parametrize("connection", ["fresh", "kept"])
+def test_STOP_is_answered_by_the_kernel_while_the_network_stands_still(
+    robot: Stack, connection: str
+) -> None:
+    propose(robot, -1000)
+    wait_until_driven(robot)
+    client = robot.visitor()
+    if connection == "kept":
+        judge(client.get("/api/status")).raise_for_status()
+    with frozen(robot.pid("app"), "network"):
+        stopped = judge(client.post("/api/stop"))
+        assert stopped.json()["verdict"] == "ACCEPTED"
+        at = plant_tick(robot)
+        wait_until("the plant is past", lambda: plant_tick(robot) > at + 100)
+        assert last_drive(robot) <= at
+    wait_until(
+        "it is recorded",
+        lambda: any(each["kind"] == "stop" for each in robot.api.get("/api/audit").json()["records"]),
+    )
+
+
+def test_what_was_asked_long_before_the_network_goes_on_is_not_done(robot: Stack) -> None:
+    body = {"slot": LATERAL, "target_counts": -1000}
+    with concurrent.futures.ThreadPoolExecutor() as asking:
+        with frozen(robot.pid("app"), "network"):
+            asked = asking.submit(robot.api.post, "/api/proposals", json=body)
+            begun = plant_tick(robot)
+            wait_until("two seconds have passed", lambda: plant_tick(robot) > begun + 2000)
+        late = judge(asked.result())
+    assert (late.status_code, late.json()["code"]) == (503, "LATE")
+    assert robot.api.get("/api/proposals").json() == []
+
+
+def test_a_signal_ends_an_app_whose_network_stands_still(robot: Stack) -> None:
+    propose(robot, -1000)
+    wait_until_driven(robot)
+    app = robot.pid("app")
+    with watched(app) as [end], frozen(app, "network"):
+        robot.signal("app", signal.SIGTERM)
+        at = plant_tick(robot)
+        assert has_ended(end)
+        assert last_drive(robot) <= at + MOTION_ENDS_WITHIN_TICKS
