@@ -27,6 +27,7 @@ class FileBody {
   FileBody& operator=(const FileBody&) = delete;
   virtual ~FileBody() = default;
 
+  /** Bytes in all. */
   [[nodiscard]] virtual std::uint64_t size() const = 0;
 
   /**
