@@ -1,10 +1,11 @@
 import react from "@vitejs/plugin-react";
 import { defineConfig } from "vitest/config";
+import { compress } from "./compress.ts";
 
 const app = process.env.INTERLOCK_APP ?? "http://127.0.0.1:8080";
 
 export default defineConfig({
-  plugins: [react()],
+  plugins: [react(), compress()],
   build: {
     // The content security policy allows files of our own origin only: nothing may be inlined as a data URL.
     assetsInlineLimit: 0,

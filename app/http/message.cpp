@@ -117,11 +117,15 @@ std::optional<Problem> unreadable(const boost::beast::error_code& error) {
                  .expected = "HTTP/1.1"};
 }
 
+void secure(boost::beast::http::fields& head) {
+  head.set("Content-Security-Policy", content_security_policy);
+  head.set("X-Content-Type-Options", "nosniff");
+  head.set("Referrer-Policy", "no-referrer");
+  head.set("Cross-Origin-Resource-Policy", "same-origin");
+}
+
 void prepare(Response& response, bool keep_alive) {
-  response.set("Content-Security-Policy", content_security_policy);
-  response.set("X-Content-Type-Options", "nosniff");
-  response.set("Referrer-Policy", "no-referrer");
-  response.set("Cross-Origin-Resource-Policy", "same-origin");
+  secure(response);
   response.version(11);
   response.keep_alive(keep_alive);
   response.prepare_payload();

@@ -64,6 +64,9 @@ constexpr std::uint32_t longest_header = 16u * 1024u;
 /** Why that is no request of this interface, as the reader of it found; nothing when the connection ended. */
 std::optional<Problem> unreadable(const boost::beast::error_code& error);
 
+/** Adds the headers of every answer, which keep pages of other sites out. */
+void secure(boost::beast::http::fields& head);
+
 /** Makes an answer ready to be sent: length, version, and the headers that keep pages of other sites out. */
 void prepare(Response& response, bool keep_alive);
 

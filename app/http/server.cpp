@@ -190,7 +190,7 @@ asio::awaitable<void> Server::serve(std::shared_ptr<Connection> connection) {
       co_return;
     }
     connection->stream.expires_never();
-    Response response = co_await respond(request, *connection);
+    AnyResponse response = co_await respond(request, *connection);
     keep_alive = co_await answer(*connection, std::move(response), request.method() == http::verb::head,
                                  request.keep_alive() && connection->place == Place::common);
   }
@@ -234,7 +234,7 @@ asio::awaitable<void> Server::serve_stream(Connection& connection, Request reque
   co_await api_.stream().serve(std::move(connection.stream), std::move(request), std::move(caller));
 }
 
-asio::awaitable<Response> Server::respond(const Request& request, const Connection& connection) {
+asio::awaitable<AnyResponse> Server::respond(const Request& request, const Connection& connection) {
   std::optional<Problem> problem = check_host(request);
   if (!problem && !is_safe(request.method())) {
     problem = check_origin(request);
@@ -252,7 +252,7 @@ asio::awaitable<Response> Server::respond(const Request& request, const Connecti
   if (path == "/api" || path.starts_with("/api/")) {
     co_return co_await respond_api(request, connection.peer);
   }
-  co_return files_.serve(request);
+  co_return co_await files_.serve(request);
 }
 
 asio::awaitable<Response> Server::respond_api(const Request& request, const std::string& peer) {
@@ -278,6 +278,41 @@ asio::awaitable<bool> Server::answer(Connection& connection, Response response, 
     error = std::get<0>(co_await http::async_write(connection.stream, response, as_result));
   }
   co_return !error && keep_alive;
+}
+
+/** Ends with a client that does not take a piece within `answer_timeout`. */
+asio::awaitable<bool> Server::answer(Connection& connection, FileResponse response, bool head_only,
+                                     bool keep_alive) {
+  secure(response.head);
+  response.head.keep_alive(keep_alive);
+  if (response.body) {
+    response.head.content_length(response.body->size());
+  }
+  http::response<http::empty_body> head{std::move(response.head.base())};
+  http::response_serializer<http::empty_body> serializer(head);
+  beast::error_code error;
+  // Else the kernel would keep each piece until the client has confirmed the one before.
+  connection.stream.socket().set_option(tcp::no_delay(true), error);
+  const std::uint64_t size = response.body && !head_only ? response.body->size() : 0;
+  connection.stream.expires_after(answer_timeout);
+  std::tie(error, std::ignore) = co_await http::async_write_header(connection.stream, serializer, as_result);
+  for (std::uint64_t sent = 0; !error && sent < size;) {
+    const std::optional<std::string_view> piece = co_await response.body->piece(sent);
+    if (!piece) {
+      co_return false;
+    }
+    connection.stream.expires_after(answer_timeout);
+    std::tie(error, std::ignore) =
+        co_await asio::async_write(connection.stream, asio::buffer(*piece), as_result);
+    sent += piece->size();
+  }
+  co_return !error && keep_alive;
+}
+
+asio::awaitable<bool> Server::answer(Connection& connection, AnyResponse response, bool head_only,
+                                     bool keep_alive) {
+  return std::visit([&](auto& one) { return answer(connection, std::move(one), head_only, keep_alive); },
+                    response);
 }
 
 /** Answers what could not be read. What is still on its way is read and dropped, else the peer may lose the

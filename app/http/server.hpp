@@ -72,9 +72,13 @@ class Server {
   boost::asio::awaitable<void> serve(std::shared_ptr<Connection> connection);
   boost::asio::awaitable<std::uint64_t> body_limit_of(const Request& header, const std::string& peer);
   boost::asio::awaitable<void> serve_stream(Connection& connection, Request request);
-  boost::asio::awaitable<Response> respond(const Request& request, const Connection& connection);
+  boost::asio::awaitable<AnyResponse> respond(const Request& request, const Connection& connection);
   boost::asio::awaitable<Response> respond_api(const Request& request, const std::string& peer);
   boost::asio::awaitable<bool> answer(Connection& connection, Response response, bool head_only,
+                                      bool keep_alive);
+  boost::asio::awaitable<bool> answer(Connection& connection, FileResponse response, bool head_only,
+                                      bool keep_alive);
+  boost::asio::awaitable<bool> answer(Connection& connection, AnyResponse response, bool head_only,
                                       bool keep_alive);
   boost::asio::awaitable<void> refuse(Connection& connection, const boost::beast::error_code& error);
   boost::asio::awaitable<void> record(StopMade made);

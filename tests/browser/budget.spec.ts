@@ -3,7 +3,7 @@
 import { firstLoad } from "./first_load";
 import { expect, test } from "./fixtures";
 
-const LARGEST_FIRST_LOAD_BYTES = 400_000;
+const LARGEST_FIRST_LOAD_BYTES = 250_000;
 
 test("the first load is light, and asks nothing of any other computer", async ({ page, stack }) => {
   const { files, compressedBytes, foreign } = await firstLoad(page, stack);

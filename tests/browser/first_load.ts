@@ -1,13 +1,12 @@
 /** What a browser fetches when it opens the console for the first time. */
-import { gzipSync } from "node:zlib";
-import { expect, type Page } from "@playwright/test";
+import { expect, type Page, type Response } from "@playwright/test";
 import { ConsolePage } from "./console_page";
 import type { Stack } from "./stack";
 
 export interface FirstLoad {
   readonly files: readonly string[];
   readonly bytes: number;
-  /** By gzip, file by file. */
+  /** As they were sent, with the headers of each answer. */
   readonly compressedBytes: number;
   /** Requests to anywhere but the app. */
   readonly foreign: readonly string[];
@@ -16,7 +15,7 @@ export interface FirstLoad {
 /** Opens the console and logs in. Whatever is asked of another origin gets no answer. */
 export async function firstLoad(page: Page, stack: Stack): Promise<FirstLoad> {
   const foreign: string[] = [];
-  const fetched = new Map<string, Promise<Buffer>>();
+  const fetched = new Map<string, Response>();
   const own = new URL(stack.url).origin;
   await page.route("**/*", (route) => {
     const { origin, href } = new URL(route.request().url());
@@ -26,7 +25,7 @@ export async function firstLoad(page: Page, stack: Stack): Promise<FirstLoad> {
   });
   page.on("response", (response) => {
     const { pathname } = new URL(response.url());
-    if (!pathname.startsWith("/api/")) fetched.set(pathname, response.body());
+    if (!pathname.startsWith("/api/")) fetched.set(pathname, response);
   });
   const kernel = page.waitForEvent("response", (response) => response.url().endsWith(".wasm"));
   await page.goto(stack.url);
@@ -36,11 +35,13 @@ export async function firstLoad(page: Page, stack: Stack): Promise<FirstLoad> {
   await expect(console.mode).toContainText("LOCKED");
   await kernel;
   await page.evaluate(() => document.fonts.ready.then(() => undefined));
-  const bodies = await Promise.all(fetched.values());
+  const answers = [...fetched.values()];
+  const bodies = await Promise.all(answers.map((answer) => answer.body()));
+  const sizes = await Promise.all(answers.map((answer) => answer.request().sizes()));
   return {
     files: [...fetched.keys()],
     bytes: bodies.reduce((sum, body) => sum + body.length, 0),
-    compressedBytes: bodies.reduce((sum, body) => sum + gzipSync(body).length, 0),
+    compressedBytes: sizes.reduce((sum, size) => sum + size.responseHeadersSize + size.responseBodySize, 0),
     foreign,
   };
 }

@@ -147,6 +147,8 @@ def test_the_package_brings_programs_that_run_and_what_they_need(tmp_path: Path)
         "share/doc/interlock/copyright",
         *(f"share/man/man1/{name}.1.gz" for name in PROGRAMS),
         "share/interlock/web/index.html",
+        "share/interlock/web/index.html.br",
+        "share/interlock/web/index.html.gz",
     ):
         assert (usr / file).is_file(), file
     notices = (usr / "share/doc/interlock/copyright").read_text()

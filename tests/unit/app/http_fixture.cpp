@@ -50,8 +50,12 @@ std::vector<json> StoreFixture::audit(const std::string& kind) {
   return details;
 }
 
+const std::filesystem::path& HttpTest::with_first_page(const std::filesystem::path& folder) {
+  std::ofstream(folder / "index.html") << "<title>console</title>";
+  return folder;
+}
+
 HttpTest::HttpTest(const Robot& robot, const ilk_config_t& config) : robot_(robot), config_(config) {
-  std::ofstream(web_.path() / "index.html") << "<title>console</title>";
   add_user("ada", Role::admin);
   add_user("edna", Role::engineer);
   add_user("vic", Role::viewer);

@@ -152,6 +152,9 @@ class HttpTest : public StoreFixture {
     done.get_future().get();
   }
 
+  /** The folder, with an index.html in it. */
+  static const std::filesystem::path& with_first_page(const std::filesystem::path& folder);
+
   const Robot& robot_;
   const ilk_config_t& config_;
   test::TemporaryFolder web_;
@@ -169,7 +172,8 @@ class HttpTest : public StoreFixture {
            gateway_,
            *log_,
            Clocks{[this] { return now(); }, [this] { return steady_now(); }}};
-  Server server_{network_.get_executor(), network_.get_executor(), api_, *mailbox_, StaticFiles(web_.path())};
+  Server server_{network_.get_executor(), network_.get_executor(), api_, *mailbox_,
+                 StaticFiles(with_first_page(web_.path()))};
   std::jthread thread_;
 };
 
