@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <iterator>
 #include <sstream>
+#include <utility>
 
 #include "cli/queued_output.hpp"
 #include "scratch_folder.hpp"
@@ -161,6 +162,29 @@ TEST_F(SupervisorTest, a_recorder_that_keeps_ending_is_left_and_takes_no_restart
       output_.str(),
       HasSubstr("recorder ended: exit code 7; it was restarted 5 times within a minute already, so it is "
                 "not started again; all else goes on without it"));
+}
+
+TEST_F(SupervisorTest, two_that_die_together_are_started_once_each) {
+  const auto program = [&](const std::string& name) {
+    return shell(name, "echo $$ >>" + file(name) + "; echo ready; " + stay, AtEnd::restart);
+  };
+  const auto kill_first = [&](const std::string& name) {
+    pid_t pid = 0;
+    std::ifstream(file(name)) >> pid;
+    kill(pid, SIGKILL);
+  };
+  bool killed = false;
+  ASSERT_TRUE(run({program("recorder"), program("app")}, [&] {
+    if (!std::exchange(killed, true)) {
+      kill_first("recorder");
+      kill_first("app");
+    } else if (lines_in("recorder") == 2 && lines_in("app") == 2) {
+      ask_to_stop();
+    }
+  }));
+  EXPECT_EQ(lines_in("recorder"), 2u);
+  EXPECT_EQ(lines_in("app"), 2u);
+  EXPECT_THAT(output_.str(), testing::Not(HasSubstr("(2 of 5")));
 }
 
 TEST_F(SupervisorTest, who_gives_no_sign_of_life_is_killed_and_its_end_judged_as_any) {
