@@ -313,7 +313,7 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   } catch (...) {
     spdlog::critical("uncaught exception of an unknown type");
   }
-  spdlog::shutdown();
+  spdlog::default_logger()->flush();
   std::abort();
 }
 

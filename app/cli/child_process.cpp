@@ -4,10 +4,13 @@
 #include <sched.h>
 #include <signal.h>
 #include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 
 #include <array>
 #include <cerrno>
+#include <cstddef>
 #include <cstring>
 #include <system_error>
 
@@ -27,15 +30,55 @@ constexpr int chunks_at_a_time = 16;
 
 std::string last_error() { return std::generic_category().message(errno); }
 
-std::vector<char*> argument_vector(const Program& program, std::vector<std::string>& storage) {
-  storage = program.arguments;
-  storage.insert(storage.begin(), program.file.string());
-  std::vector<char*> arguments;
-  for (std::string& argument : storage) {
-    arguments.push_back(argument.data());
-  }
-  arguments.push_back(nullptr);
+std::vector<std::string> arguments_of(const Program& program) {
+  std::vector<std::string> arguments = program.arguments;
+  arguments.insert(arguments.begin(), program.file.string());
   return arguments;
+}
+
+/** A datagram socket under an abstract name of its own, which names the sender of each message; none when the
+ * system refuses. */
+UniqueFd life_socket() {
+  UniqueFd life(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  const sockaddr_un any{AF_UNIX, {}};
+  const int on = 1;
+  const bool bound = bind(life.get(), reinterpret_cast<const sockaddr*>(&any), sizeof any.sun_family) == 0 &&
+                     setsockopt(life.get(), SOL_SOCKET, SO_PASSCRED, &on, sizeof on) == 0;
+  return bound ? std::move(life) : UniqueFd();
+}
+
+std::string abstract_name_of(const UniqueFd& socket) {
+  sockaddr_un address{};
+  socklen_t length = sizeof address;
+  getsockname(socket.get(), reinterpret_cast<sockaddr*>(&address), &length);
+  return '@' + std::string(address.sun_path + 1, length - offsetof(sockaddr_un, sun_path) - 1);
+}
+
+/** As this process has it, but the service manager of a child is this process. */
+std::vector<std::string> environment_of(const Program& program, const UniqueFd& life) {
+  std::vector<std::string> environment;
+  for (char** each = environ; *each != nullptr; ++each) {
+    const std::string_view entry = *each;
+    if (!entry.starts_with("NOTIFY_SOCKET=") && !entry.starts_with("WATCHDOG_")) {
+      environment.emplace_back(entry);
+    }
+  }
+  if (life) {
+    environment.push_back("NOTIFY_SOCKET=" + abstract_name_of(life));
+    environment.push_back("WATCHDOG_USEC=" +
+                          std::to_string(std::chrono::microseconds(program.watchdog).count()));
+  }
+  return environment;
+}
+
+/** As exec takes it; the words must outlive it. */
+std::vector<char*> vector_of(std::vector<std::string>& words) {
+  std::vector<char*> pointers;
+  for (std::string& word : words) {
+    pointers.push_back(word.data());
+  }
+  pointers.push_back(nullptr);
+  return pointers;
 }
 
 /** The cores that a program may use; threads and children inherit them. */
@@ -50,8 +93,8 @@ cpu_set_t cores_of(const Program& program) {
 }
 
 /** Runs in the child between fork and exec, so only async-signal-safe calls are allowed. Does not return. */
-[[noreturn]] void become(char* const arguments[], const cpu_set_t& cores, int output, int null_input,
-                         pid_t parent, int signal_at_parents_end) {
+[[noreturn]] void become(char* const arguments[], char* const environment[], const cpu_set_t& cores,
+                         int output, int null_input, pid_t parent, int signal_at_parents_end) {
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -65,7 +108,7 @@ cpu_set_t cores_of(const Program& program) {
   if (getppid() != parent) {
     _exit(1);  // The parent died before the line above could tie this process to it.
   }
-  execv(arguments[0], arguments);
+  execve(arguments[0], arguments, environment);
   const char* const reason = strerrordesc_np(errno);
   constexpr std::string_view text = "cannot be run: ";
   [[maybe_unused]] ssize_t written = write(STDERR_FILENO, text.data(), text.size());
@@ -93,19 +136,26 @@ Result<ChildProcess> ChildProcess::start(const Program& program) {
   const UniqueFd writer(ends[1]);
   fcntl(reader.get(), F_SETFL, O_NONBLOCK);
 
-  std::vector<std::string> storage;
-  const std::vector<char*> arguments = argument_vector(program, storage);
+  UniqueFd life = program.watchdog.count() > 0 ? life_socket() : UniqueFd();
+  if (program.watchdog.count() > 0 && !life) {
+    return failed(ExitCode::process_ended, program.name + " cannot be watched: " + last_error());
+  }
+
+  std::vector<std::string> argument_words = arguments_of(program);
+  std::vector<std::string> environment_words = environment_of(program, life);
+  const std::vector<char*> arguments = vector_of(argument_words);
+  const std::vector<char*> environment = vector_of(environment_words);
   const cpu_set_t cores = cores_of(program);
   const pid_t parent = getpid();
   const pid_t pid = fork();
   if (pid == 0) {
-    become(arguments.data(), cores, writer.get(), null_input.get(), parent,
+    become(arguments.data(), environment.data(), cores, writer.get(), null_input.get(), parent,
            program.outlives_parent ? SIGTERM : SIGKILL);
   }
   if (pid < 0) {
     return failed(ExitCode::process_ended, program.name + " cannot be started: " + last_error());
   }
-  ChildProcess child(pid, UniqueFd(pidfd_open(pid, 0)), std::move(reader));
+  ChildProcess child(pid, UniqueFd(pidfd_open(pid, 0)), std::move(reader), std::move(life));
   if (!child.pidfd_) {
     return failed(ExitCode::process_ended, program.name + " cannot be watched: " + last_error());
   }
@@ -116,6 +166,7 @@ ChildProcess::ChildProcess(ChildProcess&& other) noexcept
     : pid_(std::exchange(other.pid_, 0)),
       pidfd_(std::move(other.pidfd_)),
       output_(std::move(other.output_)),
+      life_(std::move(other.life_)),
       unfinished_line_(std::move(other.unfinished_line_)) {}
 
 ChildProcess::~ChildProcess() {
@@ -130,6 +181,34 @@ void ChildProcess::send(int signal) const {
   if (pid_ > 0) {
     kill(pid_, signal);
   }
+}
+
+bool ChildProcess::gave_sign_of_life() const {
+  bool given = false;
+  std::array<char, 256> text{};
+  alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(ucred))> control{};
+  iovec part{text.data(), text.size()};
+  msghdr message{};
+  message.msg_iov = &part;
+  message.msg_iovlen = 1;
+  message.msg_control = control.data();
+  for (int count = 0; life_ && count < chunks_at_a_time; ++count) {
+    message.msg_controllen = control.size();
+    const ssize_t length = recvmsg(life_.get(), &message, 0);
+    if (length < 0) {
+      break;
+    }
+    const cmsghdr* const sender = CMSG_FIRSTHDR(&message);
+    ucred credentials{};
+    if (sender != nullptr && sender->cmsg_type == SCM_CREDENTIALS) {
+      std::memcpy(&credentials, CMSG_DATA(sender), sizeof credentials);
+    }
+    // Anybody on the machine may send to an abstract name.
+    given =
+        given || (credentials.pid == pid_ &&
+                  std::string_view(text.data(), static_cast<std::size_t>(length)).starts_with("WATCHDOG=1"));
+  }
+  return given;
 }
 
 std::vector<std::string> ChildProcess::read_lines(bool rest) {

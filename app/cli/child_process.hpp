@@ -4,6 +4,7 @@
  */
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -22,8 +23,9 @@ struct Program {
   std::filesystem::path file;
   std::vector<std::string> arguments;
   std::optional<std::uint32_t> kept_off_core =
-      std::nullopt;             /**< a core on which none of its threads may run */
-  bool outlives_parent = false; /**< is asked to end, not killed, when its parent dies */
+      std::nullopt;                      /**< a core on which none of its threads may run */
+  bool outlives_parent = false;          /**< is asked to end, not killed, when its parent dies */
+  std::chrono::milliseconds watchdog{0}; /**< it has to give a sign of life this often; 0: it gives none */
 };
 
 /** How a child ended, in words: "exit code 2", "killed by signal 9 (Killed)". */
@@ -50,6 +52,12 @@ class ChildProcess {
   /** Readable when there is output, or the end of it; -1 after that end. */
   [[nodiscard]] int output_fd() const { return output_.get(); }
 
+  /** Readable when there may be a sign of life; -1 for a program without a watchdog. */
+  [[nodiscard]] int life_fd() const { return life_.get(); }
+
+  /** Whether the child, as a service does by $NOTIFY_SOCKET, has given a sign of life since the last call. */
+  [[nodiscard]] bool gave_sign_of_life() const;
+
   /** Sends a signal to the process. */
   void send(int signal) const;
 
@@ -61,12 +69,13 @@ class ChildProcess {
   std::optional<int> reap();
 
  private:
-  ChildProcess(pid_t pid, UniqueFd pidfd, UniqueFd output)
-      : pid_(pid), pidfd_(std::move(pidfd)), output_(std::move(output)) {}
+  ChildProcess(pid_t pid, UniqueFd pidfd, UniqueFd output, UniqueFd life)
+      : pid_(pid), pidfd_(std::move(pidfd)), output_(std::move(output)), life_(std::move(life)) {}
 
   pid_t pid_; /**< 0 once reaped */
   UniqueFd pidfd_;
   UniqueFd output_;
+  UniqueFd life_;
   std::string unfinished_line_;
 };
 

@@ -2,6 +2,8 @@
  * @file
  * `interlock`: the command line.
  */
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <exception>
@@ -16,6 +18,7 @@
 #include "cli/installation.hpp"
 #include "cli/kinematics_command.hpp"
 #include "cli/model_commands.hpp"
+#include "cli/queued_output.hpp"
 #include "cli/record_command.hpp"
 #include "cli/replay_command.hpp"
 #include "cli/run_command.hpp"
@@ -267,7 +270,8 @@ Result<void> execute(const CLI::App& cli, const CommandLine& line) {
     if (line.run.speed && line.run.clock == ClockChoice::sim) {
       return failed(ExitCode::usage, "--speed applies to the paced clock; leave it or --clock sim out");
     }
-    return run(line.run, Installation::current(), std::cout);
+    QueuedOutput output(STDOUT_FILENO);
+    return run(line.run, Installation::current(), output.stream());
   }
   if (cli.got_subcommand("status")) {
     return show_status(line.status, std::cout);
@@ -304,7 +308,8 @@ Result<void> execute(const CLI::App& cli, const CommandLine& line) {
 
 int report(ExitCode code, const std::string& text) {
   std::cout.flush();
-  std::cerr << "interlock: " << text << std::endl;
+  QueuedOutput errors(STDERR_FILENO);
+  errors.stream() << "interlock: " << text << '\n';
   return static_cast<int>(code);
 }
 

@@ -104,8 +104,8 @@ Result<void> show_in_console(const ReplayShow& show, const fs::path& recording, 
     return tl::unexpected(!playing ? playing.error() : showing.error());
   }
   std::vector<Supervised> programs;
-  programs.push_back({std::move(*playing), false});
-  programs.push_back({std::move(*showing), true});
+  programs.push_back({std::move(*playing), AtEnd::stop_all});
+  programs.push_back({std::move(*showing), AtEnd::restart});
   Supervisor supervisor(std::move(programs), signals, output);
   return supervisor.run([&] {
     announce({"Replay of " + recording.filename().string() + ": " + robot->compiled.robot.title +

@@ -39,6 +39,9 @@ Result<void> check_core(const RunOptions& options) {
 /** For the recorder to write out a minute on a slow disk. */
 constexpr std::chrono::seconds longest_recording_end{30};
 
+/** As systemd gives it: WatchdogSec in app/packaging/systemd/interlock-app.service. */
+constexpr std::chrono::seconds app_watchdog{5};
+
 /** Where one run keeps its things. */
 struct Places {
   fs::path robot_file;
@@ -124,16 +127,18 @@ Program app(const RunOptions& options, const Places& places, const RuntimeDirect
     program.arguments.insert(program.arguments.end(), {"--igtl-port", std::to_string(*options.igtl_port)});
   }
   program.kept_off_core = options.core;
+  program.watchdog = app_watchdog;
   return program;
 }
 
 Result<std::vector<Supervised>> programs_of(const RunOptions& options, const Installation& installation,
                                             const Places& places, const RuntimeDirectory& directory) {
   // The recorder before the kernel: it is stopped after the last tick.
-  std::vector<Supervised> programs{{simulator(options, places, directory), false},
-                                   {recorder(options, places, directory), true, longest_recording_end},
-                                   {kernel(options, directory), false},
-                                   {app(options, places, directory), true}};
+  std::vector<Supervised> programs{
+      {simulator(options, places, directory), AtEnd::stop_all},
+      {recorder(options, places, directory), AtEnd::restart_or_leave, longest_recording_end},
+      {kernel(options, directory), AtEnd::stop_all},
+      {app(options, places, directory), AtEnd::restart}};
   for (Supervised& supervised : programs) {
     Result<fs::path> file = installation.program(supervised.program.file);
     if (!file) {

@@ -59,9 +59,9 @@ bool SignalEvents::take() const {
 }
 
 Supervisor::Supervisor(std::vector<Supervised> programs, const SignalEvents& signals, std::ostream& output)
-    : signals_(signals), budget_(restarts_allowed, restart_window), output_(output) {
+    : signals_(signals), output_(output) {
   for (Supervised& supervised : programs) {
-    tasks_.emplace_back().supervised = std::move(supervised);
+    tasks_.push_back({std::move(supervised), RestartBudget(restarts_allowed, restart_window)});
   }
 }
 
@@ -76,16 +76,16 @@ Result<void> Supervisor::run(const std::function<void()>& when_ready) {
 Result<void> Supervisor::serve(const std::function<void()>& when_ready) {
   Result<void> going = start_next(when_ready);
   while (going) {
-    const Event event = next_event(ready_until_);
+    const Event event = next_event(next_check());
     if (std::holds_alternative<StopAsked>(event)) {
       break;
     }
     if (const Ready* const ready = std::get_if<Ready>(&event)) {
       going = note_ready(ready->task, when_ready);
     } else if (const Ended* const ended = std::get_if<Ended>(&event)) {
-      going = judge_end(*ended);
+      going = judge_end(*ended, when_ready);
     } else {
-      give_up_waiting();
+      check_times();
     }
   }
   return going;
@@ -96,53 +96,94 @@ Result<void> Supervisor::note_ready(Task& task, const std::function<void()>& whe
     return {};
   }
   task.was_ready = true;
+  task.kill_at.reset();
+  if (task.supervised.program.watchdog.count() > 0) {
+    task.watchdog.emplace(task.supervised.program.watchdog, Clock::now());
+  }
   return start_next(when_ready);
 }
 
 Result<void> Supervisor::start_next(const std::function<void()>& when_ready) {
-  ready_until_.reset();
-  const auto next = std::ranges::find(tasks_, false, &Task::ready);
+  const auto next = std::ranges::find_if(tasks_, [](const Task& task) { return !task.ready && !task.left; });
   if (next == tasks_.end()) {
     when_ready();
     return {};
   }
-  Result<ChildProcess> child = ChildProcess::start(next->supervised.program);
+  // One that was restarted while another was starting is on its way already.
+  return next->child ? Result<void>() : start(*next);
+}
+
+Result<void> Supervisor::start(Task& task) {
+  Result<ChildProcess> child = ChildProcess::start(task.supervised.program);
   if (!child) {
     return tl::unexpected(child.error());
   }
-  next->child.emplace(std::move(*child));
-  ready_until_ = Clock::now() + longest_start;
+  task.child.emplace(std::move(*child));
+  task.kill_at = Clock::now() + longest_start;
   return {};
 }
 
-Result<void> Supervisor::judge_end(const Ended& ended) {
-  ended.task.ready = false;
-  const std::string& name = ended.task.supervised.program.name;
+Result<void> Supervisor::judge_end(const Ended& ended, const std::function<void()>& when_ready) {
+  Task& task = ended.task;
+  task.ready = false;
+  task.watchdog.reset();
+  task.kill_at.reset();
+  const std::string& name = task.supervised.program.name;
+  const AtEnd at_end = task.supervised.at_end;
   const std::string end = describe_end(ended.wait_status);
-  if (!ended.task.was_ready) {
+  if (!task.was_ready) {
     return failed(ExitCode::process_ended, name + " did not start: " + end + "; its output above says why");
   }
-  if (!ended.task.supervised.restarts) {
+  if (at_end == AtEnd::stop_all) {
     return failed(ExitCode::process_ended,
                   name + " ended: " + end + "; nothing can move without it, so all was stopped");
   }
-  if (!budget_.spend(Clock::now())) {
-    return failed(ExitCode::app_kept_ending, name + " ended: " + end + "; it was restarted " +
-                                                 std::to_string(restarts_allowed) +
-                                                 " times within a minute already, so all was stopped");
+  if (!task.budget.spend(Clock::now())) {
+    const std::string often = name + " ended: " + end + "; it was restarted " +
+                              std::to_string(restarts_allowed) + " times within a minute already, so ";
+    if (at_end == AtEnd::restart) {
+      return failed(ExitCode::app_kept_ending, often + "all was stopped");
+    }
+    task.left = true;
+    output_ << "interlock: " << often << "it is not started again; all else goes on without it" << std::endl;
+    return start_next(when_ready);
   }
-  output_ << "interlock: " << name << " ended: " << end << "; restarting it (" << budget_.spent() << " of "
-          << restarts_allowed << " within a minute)" << std::endl;
-  return start_next([] {});
+  output_ << "interlock: " << name << " ended: " << end << "; restarting it (" << task.budget.spent()
+          << " of " << restarts_allowed << " within a minute)" << std::endl;
+  return start(task);
 }
 
-void Supervisor::give_up_waiting() {
-  ready_until_.reset();
+Supervisor::Deadline Supervisor::next_check() const {
+  Deadline next;
+  const auto not_after = [&](Clock::time_point time) { next = std::min(next.value_or(time), time); };
   for (const Task& task : tasks_) {
-    if (task.child && !task.ready) {
-      output_ << "interlock: " << task.supervised.program.name << " was not ready in time; killing it"
-              << std::endl;
+    if (task.kill_at) {
+      not_after(*task.kill_at);
+    }
+    if (task.watchdog) {
+      not_after(task.watchdog->next_look());
+    }
+  }
+  return next;
+}
+
+void Supervisor::check_times() {
+  const Clock::time_point now = Clock::now();
+  for (Task& task : tasks_) {
+    const std::string& name = task.supervised.program.name;
+    if (task.kill_at && now >= *task.kill_at) {
+      output_ << "interlock: " << name << (task.ready ? " did not end" : " was not ready")
+              << " in time; killing it" << std::endl;
+      task.kill_at.reset();
       task.child->send(SIGKILL);
+    }
+    if (task.watchdog && task.watchdog->has_expired(now)) {
+      output_ << "interlock: " << name << " gave no sign of life for "
+              << std::chrono::duration<double>(task.supervised.program.watchdog).count() << " s; ending it"
+              << std::endl;
+      task.watchdog.reset();
+      task.kill_at = now + task.supervised.longest_end;
+      task.child->send(SIGABRT);
     }
   }
 }
@@ -176,16 +217,14 @@ void Supervisor::collect_events(Deadline deadline) {
   for (const Task& task : tasks_) {
     polled.push_back({task.child ? task.child->output_fd() : -1, POLLIN, 0});
     polled.push_back({task.child ? task.child->end_fd() : -1, POLLIN, 0});
+    polled.push_back({task.child ? task.child->life_fd() : -1, POLLIN, 0});
   }
   int wait_ms = -1;
   if (deadline) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(*deadline - Clock::now());
     wait_ms = static_cast<int>(std::max(left, 0ms).count());
   }
-  if (poll(polled.data(), polled.size(), wait_ms) == 0) {
-    events_.push_back(TimedOut{});
-    return;
-  }
+  poll(polled.data(), polled.size(), wait_ms);
   if (polled.front().revents != 0 && signals_.take()) {
     events_.push_back(StopAsked{});
   }
@@ -193,6 +232,9 @@ void Supervisor::collect_events(Deadline deadline) {
   for (Task& task : tasks_) {
     if (task.child) {
       forward_output(task, false);
+      if (task.child->gave_sign_of_life() && task.watchdog) {
+        task.watchdog->feed();
+      }
     }
     const std::optional<int> wait_status = task.child ? task.child->reap() : std::nullopt;
     if (wait_status) {
@@ -200,6 +242,10 @@ void Supervisor::collect_events(Deadline deadline) {
       task.child.reset();
       events_.push_back(Ended{task, *wait_status});
     }
+  }
+  // Not only when nothing came: one that never stops writing must not put off what is due.
+  if (events_.empty() && deadline && Clock::now() >= *deadline) {
+    events_.push_back(TimedOut{});
   }
 }
 

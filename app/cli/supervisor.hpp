@@ -3,7 +3,8 @@
  * Starts the processes of one robot, watches them, and leaves none behind.
  *
  * Programs start one after the other, each when the one before has printed its line `ready`. From then on the
- * supervisor only waits for events: a signal, the end of a child, a line of output. It never sleeps.
+ * supervisor only waits for events: a signal, the end of a child, a line of output, a sign of life that is
+ * due. It never sleeps.
  */
 #pragma once
 
@@ -21,6 +22,7 @@
 #include "cli/exit_code.hpp"
 #include "cli/restart_budget.hpp"
 #include "cli/unique_fd.hpp"
+#include "cli/watchdog.hpp"
 
 namespace interlock::cli {
 
@@ -42,10 +44,17 @@ class SignalEvents {
   UniqueFd fd_;
 };
 
+/** What follows when a program ends that was ready. */
+enum class AtEnd {
+  stop_all,
+  restart,          /**< and stop all when it keeps ending */
+  restart_or_leave, /**< and go on without it when it keeps ending */
+};
+
 /** A program and what its end means. */
 struct Supervised {
   Program program;
-  bool restarts = false;               /**< once it was ready, its end is no reason to stop the others */
+  AtEnd at_end = AtEnd::stop_all;
   std::chrono::seconds longest_end{3}; /**< from the request to end until it is killed */
 };
 
@@ -60,7 +69,9 @@ class Supervisor {
   Supervisor(std::vector<Supervised> programs, const SignalEvents& signals, std::ostream& output);
 
   /**
-   * Runs until a signal asks to stop, a program without restarts ends, or one with restarts ends too often.
+   * Runs until a signal asks to stop, a program without restarts ends, or one that is needed ends too often.
+   * A program that was ready and gives no sign of life for as long as its watchdog says is killed, and its
+   * end judged as any.
    *
    * @param when_ready called when all programs are ready, and again after each restart.
    * @return nothing after a signal, the failure otherwise. No child is left in either case.
@@ -77,9 +88,13 @@ class Supervisor {
 
   struct Task {
     Supervised supervised;
-    std::optional<ChildProcess> child;
-    bool ready = false;     /**< the running child has said so */
-    bool was_ready = false; /**< this child or an earlier one has said so */
+    RestartBudget budget;
+    std::optional<ChildProcess> child = std::nullopt;
+    bool ready = false;                              /**< the running child has said so */
+    bool was_ready = false;                          /**< this child or an earlier one has said so */
+    bool left = false;                               /**< it kept ending, and is not started again */
+    std::optional<Watchdog> watchdog = std::nullopt; /**< of a ready child with a watchdog */
+    Deadline kill_at = std::nullopt; /**< for a child that has to be ready, or gone, by then */
   };
 
   struct StopAsked {};
@@ -96,8 +111,10 @@ class Supervisor {
   Result<void> serve(const std::function<void()>& when_ready);
   Result<void> note_ready(Task& task, const std::function<void()>& when_ready);
   Result<void> start_next(const std::function<void()>& when_ready);
-  Result<void> judge_end(const Ended& ended);
-  void give_up_waiting();
+  Result<void> start(Task& task);
+  Result<void> judge_end(const Ended& ended, const std::function<void()>& when_ready);
+  Deadline next_check() const;
+  void check_times();
   void stop(Task& task);
 
   Event next_event(Deadline deadline);
@@ -107,8 +124,6 @@ class Supervisor {
   const SignalEvents& signals_;
   std::vector<Task> tasks_;
   std::deque<Event> events_;
-  RestartBudget budget_;
-  Deadline ready_until_; /**< for the task that is starting */
   std::string first_login_;
   std::ostream& output_;
 };

@@ -1,7 +1,8 @@
 /**
  * @file
- * The app's log. Everything is written by spdlog's default logger, from any thread; it goes to standard
- * error, to a rotating file, and to the ring that the console reads.
+ * The app's log. Everything is written by spdlog's default logger, from any thread; it goes to the ring that
+ * the console reads at once, and to standard error and a rotating file by threads of their own: nobody who
+ * logs waits for a disk, a pipe or a terminal.
  */
 #pragma once
 
@@ -11,12 +12,14 @@
 #include <memory>
 #include <string>
 #include <tl/expected.hpp>
+#include <vector>
 
 #include "log/log_level.hpp"
 #include "log/log_ring.hpp"
 
 namespace interlock {
 
+class QueuedSink;
 class RepeatFilter;
 
 class Log {
@@ -25,8 +28,8 @@ class Log {
   static constexpr std::size_t old_files = 4;
 
   /**
-   * Makes the log and takes over spdlog's default logger. On leaving, the default logger goes back to
-   * standard error only.
+   * Makes the log and takes over spdlog's default logger. On leaving, what still waits is written,
+   * for a second at most, and the default logger goes back to standard error only.
    *
    * @param file file to write, with its folders; empty: none
    * @return the error names the file and why it cannot be written
@@ -47,12 +50,19 @@ class Log {
   void tell_repetitions();
 
   /** The newest lines, for those who watch. */
-  [[nodiscard]] LogRing& ring() { return ring_; }
+  [[nodiscard]] LogRing& ring() { return *ring_; }
+
+  /** Lines that did not get to standard error or to the file, because it was slow or failed; the sum of both.
+   */
+  [[nodiscard]] std::uint64_t lines_lost() const;
 
  private:
-  Log(std::vector<spdlog::sink_ptr> sinks, LogLevel level);
+  using QueuedSinks = std::vector<std::shared_ptr<QueuedSink>>;
 
-  LogRing ring_;
+  Log(std::shared_ptr<LogRing> ring, QueuedSinks sinks, LogLevel level);
+
+  std::shared_ptr<LogRing> ring_; /**< shared with threads that hang in writing */
+  QueuedSinks sinks_;
   std::shared_ptr<RepeatFilter> filter_;
   std::shared_ptr<spdlog::logger> logger_;
 };

@@ -64,14 +64,12 @@ void RepeatFilter::tell_overdue(UtcTime now) {
   const std::lock_guard lock(mutex_);
   if (now - last_time_ >= longest_silence) {
     tell_repetitions(now);
-    flush_();
   }
 }
 
 void RepeatFilter::end() {
   const std::lock_guard lock(mutex_);
   tell_repetitions(std::chrono::system_clock::now());
-  flush_();
 }
 
 bool RepeatFilter::is_repetition(const spdlog::details::log_msg& message) const {

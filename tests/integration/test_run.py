@@ -1,5 +1,6 @@
 """`interlock run`: starts the robot, watches it, and leaves nothing behind."""
 
+import re
 import signal
 import socket
 import subprocess
@@ -99,6 +100,34 @@ def test_app_that_keeps_ending_ends_all_with_the_cause(private: Stack) -> None:
     assert private.wait() == APP_KEPT_ENDING
     assert "app ended: killed by signal 9 (Killed); it was restarted 5 times" in private.output.text
     assert_nothing_left(private, children)
+
+
+def test_a_frozen_app_is_killed_after_the_time_of_its_unit_and_restarted(stack: StackFactory) -> None:
+    unit = (ROOT / "app/packaging/systemd/interlock-app.service").read_text()
+    watchdog_s = re.search(r"^WatchdogSec=(\d+)$", unit, re.MULTILINE)
+    assert watchdog_s
+    running = stack()
+    app, kernel = running.pid("app"), running.pid("kernel")
+    running.signal("app", signal.SIGSTOP)
+    running.output.wait_for(rf"app gave no sign of life for {watchdog_s[1]} s; ending it")
+    running.output.wait_for(r"app ended: killed by signal 9 .*restarting it \(1 of 5")
+    running.output.wait_for(r"^ready ", count=2)
+    assert running.pid("app") != app
+    assert running.pid("kernel") == kernel
+    assert running.status_when(lambda status: status["connected"])
+
+
+def test_a_recorder_that_keeps_ending_is_left_and_the_robot_goes_on(stack: StackFactory) -> None:
+    running = stack()
+    others = pids(running, "simulator", "kernel", "app")
+    for start in range(1, 7):
+        running.output.wait_for(r"^ready ", count=start)
+        running.signal("recorder", signal.SIGKILL)
+    running.output.wait_for(r"recorder ended: .*; it was restarted 5 times .* it is not started again")
+    assert pids(running, "simulator", "kernel", "app") == others
+    running.signal("app", signal.SIGKILL)
+    running.output.wait_for(r"app ended: .*restarting it \(1 of 5")
+    running.output.wait_for(r"^ready ", count=8)
 
 
 @pytest.mark.parametrize("name", ["kernel", "simulator"])
