@@ -24,6 +24,7 @@
 #include <stop_token>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "build_info/build_info.hpp"
 #include "history/history_feed.hpp"
@@ -218,11 +219,16 @@ tl::expected<void, std::string> listen_for_navigation(const Options& options, co
       });
 }
 
-/** The network thread says so, of the control thread: neither may stand still. */
-boost::asio::awaitable<void> tell_service_manager(ServiceManager& manager, const ControlLoop& control) {
+/** The network's thread says so, of the control thread and of that of the door: none may stand still. */
+boost::asio::awaitable<void> tell_service_manager(ServiceManager& manager, const ControlLoop& control,
+                                                  const Mailbox& mailbox) {
   boost::asio::steady_timer timer(co_await boost::asio::this_coro::executor);
+  std::uint32_t door = 0;
   while (manager.pause().count() > 0) {
-    manager.say_alive(control.rounds());
+    const std::uint32_t kept = mailbox.door_kept.load(std::memory_order_relaxed);
+    if (std::exchange(door, kept) != kept) {
+      manager.say_alive(control.rounds());
+    }
     timer.expires_after(manager.pause());
     co_await timer.async_wait(boost::asio::use_awaitable);
   }
@@ -243,6 +249,7 @@ boost::asio::awaitable<void> end_on_signal(Mailbox& mailbox, std::function<void(
   boost::asio::steady_timer patience(executor, longest_end);
   co_await patience.async_wait(boost::asio::use_awaitable);
   spdlog::critical("the network's thread did not end");
+  spdlog::default_logger()->flush();
   std::_Exit(exit_failed);
 }
 
@@ -281,7 +288,7 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   start(executor, api.listen());
   start(executor, api.beat());
   start(executor, api.sweep_sessions(session_sweep_pause));
-  start(executor, tell_service_manager(*manager, control));
+  start(executor, tell_service_manager(*manager, control, *mailbox));
   start(door.get_executor(), server.door().accept());
   start(door.get_executor(), server.door().beat());
   start(door.get_executor(), server.door().listen_to_control());
