@@ -168,6 +168,7 @@ Supervisor::Deadline Supervisor::next_check() const {
 }
 
 void Supervisor::check_times() {
+  output_.flush();  // A reader may have made room for what was lost.
   const Clock::time_point now = Clock::now();
   for (Task& task : tasks_) {
     const std::string& name = task.supervised.program.name;

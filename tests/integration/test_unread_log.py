@@ -16,10 +16,10 @@ from bare_kernel import BIN, DEADLINE_S, ROOT, options
 from motion import wait_until
 from stack import Stack, has_ended, watched
 
-# Twice what the pipes of app and supervisor hold together.
-UNREAD_BYTES = 2 * 2 * 65536
+# Twice what the pipes of app and supervisor hold together, and that of its output (queued_output.cpp).
+UNREAD_BYTES = 2 * (2 * 65536 + (1 << 20))
 
-# Lines that wait for their file (WritingThread::capacity), and pipes full of them.
+# Lines that may wait for their file: WritingThread::capacity.
 QUEUED_LINES = 4096
 
 

@@ -265,7 +265,7 @@ TEST(ChildProcess, the_service_manager_of_the_parent_is_not_the_childs) {
 }
 
 TEST_F(SupervisorTest, goes_on_while_nobody_reads_its_output) {
-  const std::size_t lines = 2 * WritingThread::capacity;
+  const std::size_t lines = 20'000;
   const std::string chatter = "i=0; while [ $i -lt " + std::to_string(lines) + " ]; do echo " +
                               std::string(100, 'x') + "; i=$((i+1)); done; ";
   std::array<int, 2> ends{};
