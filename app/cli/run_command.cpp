@@ -40,7 +40,7 @@ Result<void> check_core(const RunOptions& options) {
 constexpr std::chrono::seconds longest_recording_end{30};
 
 /** As systemd gives it: WatchdogSec in app/packaging/systemd/interlock-app.service. */
-constexpr std::chrono::seconds app_watchdog{5};
+constexpr std::chrono::seconds app_watchdog{10};
 
 /** Where one run keeps its things. */
 struct Places {
