@@ -32,7 +32,7 @@
 #include "interlock/kernel.h"
 #include "log/log.hpp"
 #include "motion/control_loop.hpp"
-#include "network/start.hpp"
+#include "network/launch.hpp"
 #include "robot/catalog.hpp"
 #include "robot/compile.hpp"
 #include "robot/robot_file.hpp"
@@ -285,17 +285,17 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
     name_thread("control");
     control.run(stop);
   });
-  start(executor, api.listen());
-  start(executor, api.beat());
-  start(executor, api.sweep_sessions(session_sweep_pause));
-  start(executor, tell_service_manager(*manager, control, *mailbox));
-  start(door.get_executor(), server.door().accept());
-  start(door.get_executor(), server.door().beat());
-  start(door.get_executor(), server.door().listen_to_control());
-  start(door.get_executor(), end_on_signal(*mailbox, [&] {
-          boost::asio::co_spawn(executor, api.release_pedal(),
-                                [&](const std::exception_ptr&) { network.stop(); });
-        }));
+  launch(executor, api.listen());
+  launch(executor, api.beat());
+  launch(executor, api.sweep_sessions(session_sweep_pause));
+  launch(executor, tell_service_manager(*manager, control, *mailbox));
+  launch(door.get_executor(), server.door().accept());
+  launch(door.get_executor(), server.door().beat());
+  launch(door.get_executor(), server.door().listen_to_control());
+  launch(door.get_executor(), end_on_signal(*mailbox, [&] {
+           boost::asio::co_spawn(executor, api.release_pedal(),
+                                 [&](const std::exception_ptr&) { network.stop(); });
+         }));
   const std::string url = url_of(options.listen, server.port());
   spdlog::info("interlock-app {} {} serves {} at {}", version(), commit(), model.robot.name, url);
   std::cout << "ready " << url << std::endl;

@@ -8,7 +8,7 @@
 #include "http/same_origin.hpp"
 #include "http/status_json.hpp"
 #include "network/as_result.hpp"
-#include "network/start.hpp"
+#include "network/launch.hpp"
 #include "proposals/proposal_json.hpp"
 
 namespace interlock::web {
@@ -119,7 +119,7 @@ void Api::follow_sessions() {
     authority_.release(session);
     stream_.end_session(session);
     if (bench_.held_by(session)) {
-      start(context_.executor, bench_.release_pedal());
+      launch(context_.executor, bench_.release_pedal());
     }
   });
   authority_.on_change([this](bool holder_changed) {
@@ -204,7 +204,7 @@ void Api::tell_biopsy(const ControlView& seen) {
 void Api::look_after_pedal(const ControlView& seen) {
   if (bench_.overdue(seen)) {
     spdlog::warn("the bench pedal was not renewed for 500 ms: released");
-    start(context_.executor, bench_.release_pedal());
+    launch(context_.executor, bench_.release_pedal());
   }
 }
 

@@ -106,6 +106,8 @@ boost::asio::awaitable<void> Bench::release_pedal() {
   }
 }
 
-bool Bench::overdue(const ControlView& view) const { return pedal_.overdue(view.moment(steady_clock::now())); }
+bool Bench::overdue(const ControlView& view) const {
+  return pedal_.overdue(view.moment(steady_clock::now()));
+}
 
 }  // namespace interlock::web

@@ -15,7 +15,7 @@
 #include "http/same_origin.hpp"
 #include "http/status_json.hpp"
 #include "network/as_result.hpp"
-#include "network/start.hpp"
+#include "network/launch.hpp"
 
 namespace interlock::web {
 namespace {
@@ -142,7 +142,7 @@ void FrontDoor::look_at(Waiting guest) {
     return;
   }
   if (is_stop(begin)) {
-    start(executor_, serve_stop(std::move(guest.socket), guest.protocol, std::move(guest.peer)));
+    launch(executor_, serve_stop(std::move(guest.socket), guest.protocol, std::move(guest.peer)));
     return;
   }
   beast::error_code error;

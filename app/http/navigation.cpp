@@ -11,7 +11,7 @@
 #include "http/navigation_wishes.hpp"
 #include "http/problems.hpp"
 #include "http/targeting_store.hpp"
-#include "network/start.hpp"
+#include "network/launch.hpp"
 
 namespace interlock::web {
 namespace {
@@ -53,13 +53,13 @@ Navigation::Navigation(const Context& context)
 void Navigation::start(NavigationOptions options) {
   options_ = std::move(options);
   if (options_.connect) {
-    interlock::start(context_.executor, hub_.keep_connected(*options_.connect, connect_pause));
+    launch(context_.executor, hub_.keep_connected(*options_.connect, connect_pause));
   }
-  interlock::start(context_.executor, hub_.accept());
-  interlock::start(context_.executor, hub_.beat());
-  interlock::start(context_.executor, work());
-  interlock::start(context_.executor, keep_targeting());
-  interlock::start(context_.executor, tell_all());
+  launch(context_.executor, hub_.accept());
+  launch(context_.executor, hub_.beat());
+  launch(context_.executor, work());
+  launch(context_.executor, keep_targeting());
+  launch(context_.executor, tell_all());
 }
 
 void Navigation::listen_to_hub() {
@@ -115,8 +115,7 @@ void Navigation::react(PeerId peer, const std::string& device, igtl::Reaction re
     hub_.reply(peer, name, body);
   }
   if (stopping) {
-    interlock::start(context_.executor,
-                     finish_stop(peer, device, std::move(*reaction.wish), std::move(*stopping)));
+    launch(context_.executor, finish_stop(peer, device, std::move(*reaction.wish), std::move(*stopping)));
   } else if (reaction.wish) {
     enqueue(peer, device, std::move(*reaction.wish));
   }

@@ -16,7 +16,7 @@
 
 #include "http/same_origin.hpp"
 #include "network/as_result.hpp"
-#include "network/start.hpp"
+#include "network/launch.hpp"
 
 namespace interlock::web {
 namespace {
@@ -84,7 +84,7 @@ Server::Server(const asio::any_io_executor& door, const asio::any_io_executor& e
               });
             }
           },
-          [this](StopMade made) { start(executor_, record(std::move(made))); }) {}
+          [this](StopMade made) { launch(executor_, record(std::move(made))); }) {}
 
 /** Who stopped the robot is looked up where the sessions are. */
 asio::awaitable<void> Server::record(StopMade made) {

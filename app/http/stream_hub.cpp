@@ -12,7 +12,7 @@
 #include <optional>
 
 #include "network/as_result.hpp"
-#include "network/start.hpp"
+#include "network/launch.hpp"
 
 namespace interlock::web {
 namespace {
@@ -103,7 +103,7 @@ asio::awaitable<void> StreamHub::serve(beast::tcp_stream stream, Request request
     co_return;
   }
   on_change(client->watcher, true);
-  start(client->socket.get_executor(), write(client));
+  launch(client->socket.get_executor(), write(client));
   while (client->open) {
     beast::flat_buffer buffer;
     const auto [read_error, bytes] = co_await client->socket.async_read(buffer, as_result);

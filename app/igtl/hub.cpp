@@ -15,7 +15,7 @@
 
 #include "igtl/decode.hpp"
 #include "igtl/encode.hpp"
-#include "network/start.hpp"
+#include "network/launch.hpp"
 
 namespace interlock::igtl {
 namespace {
@@ -156,8 +156,8 @@ void Hub::admit(Tcp::socket socket) {
                  is_welcome(from.address()) ? "too many are connected" : "it is not on the list of peers");
     return;
   }
-  start(acceptor_.get_executor(),
-        serve(std::make_shared<Session>(std::move(socket), ++last_id_, read_clock())));
+  launch(acceptor_.get_executor(),
+         serve(std::make_shared<Session>(std::move(socket), ++last_id_, read_clock())));
 }
 
 asio::awaitable<void> Hub::keep_connected(Tcp::endpoint peer, std::chrono::milliseconds pause) {
@@ -183,7 +183,7 @@ asio::awaitable<void> Hub::keep_connected(Tcp::endpoint peer, std::chrono::milli
 asio::awaitable<void> Hub::serve(SessionPointer session) {
   const auto listed = sessions_.insert(sessions_.end(), session);
   spdlog::info("OpenIGTLink connection {} of {}", session->peer.id, session->peer.address);
-  start(session->socket.get_executor(), write(session));
+  launch(session->socket.get_executor(), write(session));
   on_open(session->peer.id);
   co_await read(session);
   close(*session, session->reason);

@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "network/start.hpp"
+#include "network/launch.hpp"
 
 namespace interlock::web {
 namespace {
@@ -27,9 +27,9 @@ class FrontDoorTest : public testing::Test {
  protected:
   FrontDoorTest() {
     EXPECT_TRUE(door_.listen({"127.0.0.1", 0}));
-    for (auto* work : {&FrontDoor::accept, &FrontDoor::beat, &FrontDoor::listen_to_control}) {
-      start(context_.get_executor(), (door_.*work)());
-    }
+    launch(context_.get_executor(), door_.accept());
+    launch(context_.get_executor(), door_.beat());
+    launch(context_.get_executor(), door_.listen_to_control());
     thread_ = std::jthread([this] { context_.run(); });
   }
 
@@ -56,6 +56,14 @@ class FrontDoorTest : public testing::Test {
     return answer;
   }
 
+  template <typename Work>
+  auto in_door(Work work) {
+    std::packaged_task<decltype(work())()> task(work);
+    auto result = task.get_future();
+    asio::post(context_, [&] { task(); });
+    return result.get();
+  }
+
   /** Waits for the next one that the door lets in. */
   Guest next_guest() {
     while (in_door([&] { return guests_.empty(); })) {
@@ -66,14 +74,6 @@ class FrontDoorTest : public testing::Test {
       guests_.erase(guests_.begin());
       return guest;
     });
-  }
-
-  template <typename Work>
-  auto in_door(Work work) {
-    std::packaged_task<decltype(work())()> task(work);
-    auto result = task.get_future();
-    asio::post(context_, [&] { task(); });
-    return result.get();
   }
 
   asio::io_context context_{1};

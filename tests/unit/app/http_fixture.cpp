@@ -5,7 +5,7 @@
 #include <boost/beast/http.hpp>
 #include <fstream>
 
-#include "network/start.hpp"
+#include "network/launch.hpp"
 #include "store/sessions.hpp"
 
 namespace interlock::web {
@@ -61,11 +61,11 @@ HttpTest::HttpTest(const Robot& robot, const ilk_config_t& config) : robot_(robo
   add_user("vic", Role::viewer);
   const auto listening = server_.door().listen({"127.0.0.1", 0});
   EXPECT_TRUE(listening);
-  start(network_.get_executor(), api_.listen());
-  start(network_.get_executor(), api_.beat());
-  start(network_.get_executor(), api_.sweep_sessions(std::chrono::milliseconds(5)));
-  start(network_.get_executor(), server_.door().accept());
-  start(network_.get_executor(), server_.door().listen_to_control());
+  launch(network_.get_executor(), api_.listen());
+  launch(network_.get_executor(), api_.beat());
+  launch(network_.get_executor(), api_.sweep_sessions(std::chrono::milliseconds(5)));
+  launch(network_.get_executor(), server_.door().accept());
+  launch(network_.get_executor(), server_.door().listen_to_control());
   thread_ = std::jthread([this] { network_.run(); });
   log_in("edna");
   EXPECT_EQ(post("/api/authority/request").status, 200u);

@@ -16,7 +16,7 @@ namespace interlock {
  * expected ends the process with its cause, which is then started anew, instead of a part of it in silence.
  */
 template <typename Executor>
-void start(const Executor& executor, boost::asio::awaitable<void> work) {
+void launch(const Executor& executor, boost::asio::awaitable<void> work) {
   boost::asio::co_spawn(executor, std::move(work), [](const std::exception_ptr& thrown) {
     if (thrown) {
       std::rethrow_exception(thrown);
