@@ -40,5 +40,8 @@ def frozen(process: int, name: str) -> Iterator[None]:
     try:
         yield
     finally:
-        with contextlib.suppress(ProcessLookupError):
+        try:
             ptrace(DETACH, thread)
+        except ProcessLookupError:
+            # Of a thread that died whoever froze it is told first; until then its parent waits.
+            os.waitpid(thread, ALL_THREADS)

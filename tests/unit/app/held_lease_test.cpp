@@ -8,13 +8,13 @@ namespace {
 using std::chrono::hours;
 using std::chrono::milliseconds;
 
-constexpr std::chrono::steady_clock::time_point start{};
+constexpr std::chrono::steady_clock::time_point held_since{};
 constexpr std::uint32_t start_tick = UINT32_MAX - 100;
 
-Moment by_the_wall(milliseconds passed) { return {start + passed, start_tick + 1'000'000, 0}; }
+Moment by_the_wall(milliseconds passed) { return {held_since + passed, start_tick + 1'000'000, 0}; }
 
 Moment simulated(std::uint32_t ticks, milliseconds passed) {
-  return {start + passed, start_tick + ticks, 1000};
+  return {held_since + passed, start_tick + ticks, 1000};
 }
 
 TEST(HeldLease, IsNeverOverdueUnlessHeld) {
