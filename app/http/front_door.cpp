@@ -52,6 +52,18 @@ bool is_stop(std::string_view begin) {
 
 }  // namespace
 
+std::optional<tcp::socket> socket_of(FileDescriptor descriptor, tcp protocol,
+                                     const asio::any_io_executor& executor) {
+  tcp::socket socket(executor);
+  beast::error_code error;
+  socket.assign(protocol, descriptor.get(), error);
+  if (error) {
+    return std::nullopt;
+  }
+  (void)descriptor.release();
+  return socket;
+}
+
 FrontDoor::FrontDoor(const asio::any_io_executor& executor, Mailbox& mailbox, std::size_t capacity,
                      std::function<void(Guest)> let_in, std::function<void(StopMade)> record)
     : executor_(executor),
@@ -154,12 +166,9 @@ void FrontDoor::look_at(Waiting guest) {
 
 void FrontDoor::come_back(Guest guest) {
   asio::post(executor_, [this, guest = std::move(guest)]() mutable {
-    tcp::socket socket(executor_);
-    beast::error_code error;
-    socket.assign(guest.protocol, guest.socket.get(), error);
-    if (!error) {
-      (void)guest.socket.release();
-      wait_for_request(std::move(socket), guest.protocol, std::move(guest.peer));
+    auto socket = socket_of(std::move(guest.socket), guest.protocol, executor_);
+    if (socket) {
+      wait_for_request(std::move(*socket), guest.protocol, std::move(guest.peer));
     }
   });
 }

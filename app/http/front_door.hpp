@@ -40,6 +40,11 @@ struct Guest {
   std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now(); /**< on its way */
 };
 
+/** The socket behind a descriptor, for another thread than before; nothing when the system refuses. */
+std::optional<boost::asio::ip::tcp::socket> socket_of(FileDescriptor descriptor,
+                                                      boost::asio::ip::tcp protocol,
+                                                      const boost::asio::any_io_executor& executor);
+
 /** A STOP that was sent to the kernel, for the records. */
 struct StopMade {
   Request header; /**< with the cookies that tell by whom */

@@ -94,15 +94,12 @@ asio::awaitable<void> Server::record(StopMade made) {
 
 void Server::admit(Guest guest) {
   const auto place = place_for_another();
-  tcp::socket socket(executor_);
-  beast::error_code error;
-  socket.assign(guest.protocol, guest.socket.get(), error);
-  if (!place || error) {
+  auto socket = socket_of(std::move(guest.socket), guest.protocol, executor_);
+  if (!place || !socket) {
     return;
   }
-  (void)guest.socket.release();
   auto connection = std::make_shared<Connection>(
-      Connection{beast::tcp_stream(std::move(socket)), guest.protocol, *place, std::move(guest.peer),
+      Connection{beast::tcp_stream(std::move(*socket)), guest.protocol, *place, std::move(guest.peer),
                  std::chrono::steady_clock::now() - guest.since > longest_hold_up});
   const auto listed = connections_.insert(connections_.end(), connection);
   asio::co_spawn(executor_, serve(connection), [this, listed](const std::exception_ptr& thrown) {

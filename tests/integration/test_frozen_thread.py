@@ -1,4 +1,4 @@
-"""A thread of the app stands still: motion ends all the same, STOP is heard, and nothing late comes into force."""
+"""A thread of the app stands still: motion ends all the same, STOP is heard, nothing late comes into force."""
 
 import concurrent.futures
 import contextlib
@@ -91,9 +91,7 @@ def test_a_move_ends_says_why_and_does_not_go_on_by_itself(robot: Stack, thread:
 
 
 @pytest.mark.parametrize("connection", ["fresh", "kept"])
-def test_STOP_is_answered_by_the_kernel_while_the_network_stands_still(
-    robot: Stack, connection: str
-) -> None:
+def test_STOP_is_answered_by_the_kernel_while_the_network_stands_still(robot: Stack, connection: str) -> None:
     propose(robot, -1000)
     wait_until_driven(robot)
     client = robot.visitor()

@@ -3,7 +3,7 @@
 Time comes from `step_bench`, `control_bench` and `kinematics_bench`, instructions from callgrind, text size
 and stack from the compiler's own report. Kinematics and plans have no limit: KDL's numerical solver stands
 beside them, on a chain that reaches the same poses.
-Answers over OpenIGTLink (igtl_reply.py) stand beside those of a server on Debian's library.
+A STOP over HTTP is timed while others attack the app (stop.py). Answers over OpenIGTLink (igtl_reply.py) stand beside those of a server on Debian's library.
 Wake-ups and loop times come from a whole robot beside cyclictest (wakeups.py), idle and under load, as it is
 shipped and as the thesis began; reactions, link and rates from the executive with a plant (executive_bench);
 the executive's own work beside an honest and a hostile app from hostile.py.
@@ -42,6 +42,7 @@ import memory
 import pictures
 import rates
 import size
+import stop
 import wakeups
 
 ROOT = evidence.ROOT
@@ -77,6 +78,7 @@ LIMITS = {
     "control_tick_ns_p999_prostate": 50_000,
     **{f"igtl_reply_us_p99_{dialect}": 100_000 for dialect in igtl_reply.DIALECTS},
     "memory_kib": 120 * 1024,
+    **stop.limits(),
     **size.LIMITS,
 }
 FULL_LIMITS = {"work_p9999_hostile_to_honest": 1.25}
@@ -336,6 +338,7 @@ def main() -> int:
     figures["black_box_bytes_campaign"] = detail["black_box"]["campaign_bytes_a_tick_most"]
     detail["memory_kib"] = memory.measure(arguments.bin)
     figures["memory_kib"] = sum(detail["memory_kib"].values())
+    figures |= stop.measure()
     figures["campaign_ticks_per_s"] = round(campaign_speed(arguments.bin))
     figures |= live(arguments.bin, arguments.duration, arguments.rate_seconds, detail)
     record = record_of(figures, arguments.duration, started, detail)

@@ -1,7 +1,8 @@
-"""How long a STOP takes over HTTP, from the first byte sent to the kernel's verdict read, while others attack the app.
+"""How long a STOP takes over HTTP, until the kernel's verdict is read, while others attack the app.
 
-On a fresh connection each time, and on one that had an answer before, as a page keeps it. The robot is that of
-`interlock run` in its default clock; attackers are processes of their own. Alone as a program it prints a table.
+On a fresh connection each time, and on one that had an answer before, as a page keeps it. The robot is that
+of `interlock run` in its default clock; attackers are processes of their own. Run by itself it prints a
+table.
 """
 
 import contextlib
@@ -41,8 +42,10 @@ def largest_asset(robot: Stack) -> str:
     return path
 
 
-def crowd(port: int, count: int, say: Callable[[int], bytes], pause_s: float, ready: "multiprocessing.Event") -> None:
-    """So many connections that say something, read whatever comes and say it again; whoever is closed comes again."""
+def crowd(
+    port: int, count: int, say: Callable[[int], bytes], pause_s: float, ready: "multiprocessing.Event"
+) -> None:
+    """So many connections that say something, read what comes and say it again; one that is closed is opened anew."""
     chosen = selectors.DefaultSelector()
     places: list[socket.socket] = []
 
@@ -97,6 +100,11 @@ def get(robot: Stack, path: str) -> bytes:
     return f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1:{robot.port}\r\n\r\n".encode()
 
 
+def post(robot: Stack, path: str, length: int) -> bytes:
+    head = f"POST {path} HTTP/1.1\r\nHost: 127.0.0.1:{robot.port}\r\nContent-Length: {length}\r\n\r\n"
+    return head.encode()
+
+
 @contextlib.contextmanager
 def idle(_robot: Stack) -> Iterator[None]:
     yield
@@ -113,7 +121,9 @@ def readers(robot: Stack) -> Iterator[None]:
 @contextlib.contextmanager
 def slow_bodies(robot: Stack) -> Iterator[None]:
     """Each sends a body of 60 kB at some bytes a second."""
-    head = f"POST /api/login HTTP/1.1\r\nHost: 127.0.0.1:{robot.port}\r\nContent-Length: 60000\r\n\r\n".encode()
+    head = (
+        f"POST /api/login HTTP/1.1\r\nHost: 127.0.0.1:{robot.port}\r\nContent-Length: 60000\r\n\r\n".encode()
+    )
     begun: set[int] = set()
 
     def say(number: int) -> bytes:
@@ -126,7 +136,7 @@ def slow_bodies(robot: Stack) -> Iterator[None]:
 @contextlib.contextmanager
 def stops(robot: Stack) -> Iterator[None]:
     """Others send STOP as fast as they can."""
-    request = f"POST /api/stop HTTP/1.1\r\nHost: 127.0.0.1:{robot.port}\r\nContent-Length: 0\r\n\r\n".encode()
+    request = post(robot, "/api/stop", 0)
     with crowded(robot, STOPPERS, lambda _number: request, 0.001):
         yield
 
@@ -137,7 +147,13 @@ def network_frozen(robot: Stack) -> Iterator[None]:
         yield
 
 
-ATTACKS = {"idle": idle, "readers": readers, "slow_bodies": slow_bodies, "stops": stops, "network_frozen": network_frozen}
+ATTACKS = {
+    "idle": idle,
+    "readers": readers,
+    "slow_bodies": slow_bodies,
+    "stops": stops,
+    "network_frozen": network_frozen,
+}
 
 
 def stop(connection: http.client.HTTPConnection) -> float:

@@ -94,6 +94,22 @@ TEST_F(OverloadTest, NoFloodOpensMoreConnectionsThanTheCeilingAndItsReserve) {
   EXPECT_LE(from_server(&Server::connections), server_.ceiling() + Server::reserve);
 }
 
+/** A descriptor that is closed twice takes somebody else's away, be it the one that accepts. */
+TEST_F(OverloadTest, WhoIsTurnedAwayTakesNobodysDescriptorAlong) {
+  hold_store();
+  std::vector<tcp::socket> flood;
+  while (flood.size() < server_.ceiling()) {
+    flood.push_back(send_target(1));
+  }
+  wait_until_at_work(server_.ceiling());
+  // What is no request is answered, and what still comes is read for a second: nobody makes room meanwhile.
+  for (std::size_t i = 0; i < 10 * Server::reserve; ++i) {
+    flood.push_back(connect());
+    asio::write(flood.back(), asio::buffer(std::string("?\r\n\r\n")));
+    EXPECT_EQ(post("/api/stop").status, 200u);
+  }
+}
+
 TEST_F(OverloadTest, WhoLosesTheAuthorityWhileTheStoreIsBusyChangesNothing) {
   const json before = target();
   hold_store();
