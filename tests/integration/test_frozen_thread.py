@@ -1,4 +1,4 @@
-"""A thread of the app stands still: motion ends all the same, STOP is heard, nothing late comes into force."""
+"""A thread of the app stands still: motion ends, STOP is heard, and nothing late comes into force."""
 
 import concurrent.futures
 import contextlib

@@ -128,7 +128,7 @@ def test_P10_an_app_that_is_frozen_for_5_s_loses_its_motion_and_nothing_else(
     app = robot.pid("app")
     with frozen(app):
         stopped = robot.control("status")["tick"]
-        # The kernel waits two seconds, then goes on at real pace: five in all, half of what its watchdog waits.
+        # The kernel waits two seconds, then goes on at real pace: five in all; its watchdog waits ten.
         entries = record(robot, stopped, stopped + 3000)
     limit = stopped + TICKS_AHEAD + APP_TIMEOUT_TICKS + WIRE_TICKS
     assert not [entry["tick"] for entry in entries if entry["tick"] > limit and any(entry["drive"])]

@@ -45,7 +45,7 @@ def largest_asset(robot: Stack) -> str:
 def crowd(
     port: int, count: int, say: Callable[[int], bytes], pause_s: float, ready: "multiprocessing.Event"
 ) -> None:
-    """So many connections that say something, read what comes and say it again; one that is closed is opened anew."""
+    """So many connections that say something, read what comes and say it again; a closed one comes anew."""
     chosen = selectors.DefaultSelector()
     places: list[socket.socket] = []
 

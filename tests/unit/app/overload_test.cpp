@@ -106,8 +106,11 @@ TEST_F(OverloadTest, WhoIsTurnedAwayTakesNobodysDescriptorAlong) {
   for (std::size_t i = 0; i < 10 * Server::reserve; ++i) {
     flood.push_back(connect());
     asio::write(flood.back(), asio::buffer(std::string("?\r\n\r\n")));
-    EXPECT_EQ(post("/api/stop").status, 200u);
+    if (i % (5 * Server::reserve) == 0) {
+      EXPECT_EQ(post("/api/stop").status, 200u);
+    }
   }
+  EXPECT_EQ(post("/api/stop").status, 200u);
 }
 
 TEST_F(OverloadTest, WhoLosesTheAuthorityWhileTheStoreIsBusyChangesNothing) {
