@@ -3,7 +3,8 @@
 Time comes from `step_bench`, `control_bench` and `kinematics_bench`, instructions from callgrind, text size
 and stack from the compiler's own report. Kinematics and plans have no limit: KDL's numerical solver stands
 beside them, on a chain that reaches the same poses.
-A STOP over HTTP is timed while others attack the app (stop.py). Answers over OpenIGTLink (igtl_reply.py) stand beside those of a server on Debian's library.
+A STOP over HTTP is timed while others attack the app (stop.py).
+Answers over OpenIGTLink (igtl_reply.py) stand beside those of a server on Debian's library.
 Wake-ups and loop times come from a whole robot beside cyclictest (wakeups.py), idle and under load, as it is
 shipped and as the thesis began; reactions, link and rates from the executive with a plant (executive_bench);
 the executive's own work beside an honest and a hostile app from hostile.py.
