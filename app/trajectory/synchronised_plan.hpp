@@ -32,9 +32,6 @@
 
 namespace interlock {
 
-/** Longer plans are refused: Ruckig's limit, a little over two hours. */
-inline constexpr double longest_plan_s = 7600.0;
-
 /**
  * A difference that an axis makes up within this time at its limits is a rounding error: of its position by
  * the velocity limit, of its velocity by the acceleration limit, of its acceleration by the jerk limit.
