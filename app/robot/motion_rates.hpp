@@ -15,7 +15,7 @@ namespace interlock {
 inline constexpr double position_limit = 1e6;
 inline constexpr double smallest_rate = 1e-6; /**< of velocity, acceleration and jerk */
 inline constexpr double largest_rate = 1e6;
-inline constexpr double shortest_ramp_s = 1e-3; /**< to a limit of velocity or of acceleration */
+inline constexpr double shortest_ramp_s = 1e-3;  /**< to a limit of velocity or of acceleration */
 inline constexpr double longest_plan_s = 7600.0; /**< longer plans are refused: Ruckig's limit */
 
 /** Largest magnitudes of an axis' rates, in its unit (mm or rad) and seconds. */
