@@ -8,6 +8,16 @@
 
 namespace interlock {
 
+/**
+ * Ranges within which motion is planned, in the axis' unit (mm or rad) and seconds: far beyond all robots,
+ * and such that every intermediate result stays finite.
+ */
+inline constexpr double position_limit = 1e6;
+inline constexpr double smallest_rate = 1e-6; /**< of velocity, acceleration and jerk */
+inline constexpr double largest_rate = 1e6;
+inline constexpr double shortest_ramp_s = 1e-3;  /**< to a limit of velocity or of acceleration */
+inline constexpr double longest_plan_s = 7600.0; /**< longer plans are refused: Ruckig's limit */
+
 /** Largest magnitudes of an axis' rates, in its unit (mm or rad) and seconds. */
 struct RateLimits {
   double velocity = 0.0;

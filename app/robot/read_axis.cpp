@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
 #include "robot/read_cards.hpp"
 #include "robot/read_kinematics.hpp"
 
@@ -112,13 +116,30 @@ Homing read_homing(TableReader table, std::uint32_t period_us, bool has_amplitud
   return homing;
 }
 
+std::string text_of(double number) {
+  std::ostringstream text;
+  text << number;
+  return text.str();
+}
+
 double read_counts_per_unit(TableReader& table) {
   const double counts = table.number("counts_per_unit");
   if (!(counts > 0.0)) {
-    table.refuse("counts_per_unit", "it is not above zero", "encoder counts per mm or rad, above zero");
+    table.refuse_given("counts_per_unit", "it is not above zero", "encoder counts per mm or rad, above zero");
     return 1.0;
   }
   return counts;
+}
+
+/** Refuses a scale that takes the soft limits beyond where motion is planned. */
+void refuse_far_limits(TableReader& table, const Axis& axis) {
+  const auto& [lowest, highest] = axis.soft_limits;
+  const double farthest =
+      std::max(std::abs(static_cast<double>(lowest)), std::abs(static_cast<double>(highest)));
+  if (farthest > position_limit * axis.counts_per_unit) {
+    table.refuse_given("counts_per_unit", "the soft limits lie farther than 1e6 mm or rad from zero",
+                       "at least " + text_of(farthest / position_limit));
+  }
 }
 
 std::optional<Homing> read_optional_homing(TableReader& table, const Axis& axis, std::uint32_t period_us) {
@@ -132,26 +153,62 @@ std::optional<Homing> read_optional_homing(TableReader& table, const Axis& axis,
   return std::nullopt;
 }
 
-double read_rate(TableReader& table, std::string_view key) {
-  constexpr double largest_rate = 1e9;
+double read_rate(TableReader& table, std::string_view key, const std::string& unit, double counts_per_unit) {
+  const double lowest = smallest_rate * counts_per_unit;
+  const double highest = std::min(largest_rate * counts_per_unit, 1e9);
   const double rate = table.number(key);
-  if (!(rate > 0.0 && rate <= largest_rate)) {
-    table.refuse(key, "the rate is not above zero, or beyond any motor", "a number above 0, at most 1e9");
+  if (!(rate >= lowest && rate <= highest)) {
+    table.refuse_given(
+        key, "no motion is planned with that rate",
+        text_of(lowest) + " to " + text_of(highest) + ": 1e-6 to 1e6 " + unit + ", and 1e9 counts at most");
     return 1.0;
   }
   return rate;
 }
 
-MotionRates read_motion(TableReader table, const Mechanics& mechanics) {
-  MotionRates motion;
-  motion.velocity_counts_per_s = read_rate(table, "velocity_counts_per_s");
-  motion.acceleration_counts_per_s2 = read_rate(table, "acceleration_counts_per_s2");
-  motion.jerk_counts_per_s3 = read_rate(table, "jerk_counts_per_s3");
-  motion.following_error_counts = table.integer<std::uint32_t>("following_error_counts");
-  if (motion.velocity_counts_per_s > mechanics.full_speed_counts_per_s) {
-    table.refuse("velocity_counts_per_s", "the axis cannot go that fast",
-                 "mechanics.full_speed_counts_per_s at most, better less");
+/** Refuses limits that are reached at once, for which Ruckig does not always find a plan, and plans too long.
+ */
+void refuse_unplannable(TableReader& table, const MotionRates& motion, const SoftLimits& limits) {
+  const double velocity = motion.velocity_counts_per_s;
+  const double acceleration = motion.acceleration_counts_per_s2;
+  const double jerk = motion.jerk_counts_per_s3;
+  const double range = static_cast<double>(limits.max_counts) - limits.min_counts;
+  // From rest to the velocity: with a time at the largest acceleration, or too short for one.
+  const bool accelerates_fully = velocity * jerk >= acceleration * acceleration;
+  const double ramp_s =
+      accelerates_fully ? velocity / acceleration + acceleration / jerk : 2 * std::sqrt(velocity / jerk);
+  const double cruise_s = range / velocity;
+  if (cruise_s + 2 * ramp_s > longest_plan_s) {
+    const bool slow_ramp = accelerates_fully && velocity / acceleration > acceleration / jerk;
+    table.refuse_given(cruise_s > 2 * ramp_s ? "velocity_counts_per_s"
+                       : slow_ramp           ? "acceleration_counts_per_s2"
+                                             : "jerk_counts_per_s3",
+                       "the whole range takes " + text_of(cruise_s + 2 * ramp_s) + " s",
+                       "rates with which it takes " + text_of(longest_plan_s) + " s at most");
   }
+  if (velocity < shortest_ramp_s * acceleration) {
+    table.refuse_given("acceleration_counts_per_s2", "it reaches velocity_counts_per_s in less than 1 ms",
+                       "at most " + text_of(velocity / shortest_ramp_s));
+  }
+  if (acceleration < shortest_ramp_s * jerk) {
+    table.refuse_given("jerk_counts_per_s3", "it reaches acceleration_counts_per_s2 in less than 1 ms",
+                       "at most " + text_of(acceleration / shortest_ramp_s));
+  }
+}
+
+MotionRates read_motion(TableReader table, const Axis& axis) {
+  const std::string unit(unit_name(axis.unit));
+  MotionRates motion;
+  motion.velocity_counts_per_s = read_rate(table, "velocity_counts_per_s", unit + "/s", axis.counts_per_unit);
+  motion.acceleration_counts_per_s2 =
+      read_rate(table, "acceleration_counts_per_s2", unit + "/s^2", axis.counts_per_unit);
+  motion.jerk_counts_per_s3 = read_rate(table, "jerk_counts_per_s3", unit + "/s^3", axis.counts_per_unit);
+  motion.following_error_counts = table.integer<std::uint32_t>("following_error_counts");
+  if (motion.velocity_counts_per_s > axis.mechanics.full_speed_counts_per_s) {
+    table.refuse_given("velocity_counts_per_s", "the axis cannot go that fast",
+                       "mechanics.full_speed_counts_per_s at most, better less");
+  }
+  refuse_unplannable(table, motion, axis.soft_limits);
   table.refuse_unknown_keys();
   return motion;
 }
@@ -179,6 +236,7 @@ Axis read_axis(TableReader table, const Robot& robot) {
   axis.deadband_counts = table.integer<std::uint32_t>("deadband_counts");
   axis.unhomed_travel_counts = table.integer<std::uint32_t>("unhomed_travel_counts");
   axis.soft_limits = read_soft_limits(table.table("soft_limits"));
+  refuse_far_limits(table, axis);
   axis.drive = read_drive(table.table("drive"), axis.card == ILK_CARD_HIGH_FREQUENCY);
   axis.gains = read_gains(table.table("gains"));
   axis.mechanics = read_mechanics(table.table("mechanics"), robot.period_us);
@@ -186,7 +244,7 @@ Axis read_axis(TableReader table, const Robot& robot) {
   axis.runaway = read_runaway(table.table("runaway"));
   axis.homing = read_optional_homing(table, axis, robot.period_us);
   if (table.has("motion")) {
-    axis.motion = read_motion(table.table("motion"), axis.mechanics);
+    axis.motion = read_motion(table.table("motion"), axis);
   }
   table.refuse_unknown_keys();
   return axis;

@@ -73,6 +73,11 @@ void TableReader::refuse(std::string_view key, std::string problem, std::string 
   log_.refuse(line_of(node ? *node : table_), path_of(key), std::move(problem), std::move(expected));
 }
 
+void TableReader::refuse_given(std::string_view key, const std::string& problem, std::string expected) {
+  const toml::node* const node = table_.get(key);
+  refuse(key, node ? described(*node) + ": " + problem : problem, std::move(expected));
+}
+
 std::string TableReader::text(std::string_view key) {
   const std::string expected = "text that is not empty";
   const toml::node* const node = take(key, expected);

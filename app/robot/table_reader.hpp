@@ -117,6 +117,9 @@ class TableReader {
   /** Refuses the value of a key for a reason that only the caller knows. */
   void refuse(std::string_view key, std::string problem, std::string expected);
 
+  /** Likewise, and says what is given. */
+  void refuse_given(std::string_view key, const std::string& problem, std::string expected);
+
   /** Refuses the table as a whole. */
   void refuse_table(std::string problem, std::string expected);
 

@@ -4,6 +4,8 @@
  */
 #pragma once
 
+#include "robot/motion_rates.hpp"
+
 namespace interlock {
 
 /** Position and its first two derivatives. */
@@ -31,13 +33,5 @@ struct PositionRange {
 
   bool operator==(const PositionRange&) const = default;
 };
-
-/**
- * Ranges in which numbers of this folder mean something, in the axis' unit and seconds: far beyond both
- * robots, and such that every intermediate result stays finite.
- */
-inline constexpr double position_limit = 1e6;
-inline constexpr double smallest_rate = 1e-6; /**< of velocity, acceleration and jerk */
-inline constexpr double largest_rate = 1e6;
 
 }  // namespace interlock

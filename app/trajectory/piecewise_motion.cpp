@@ -1,6 +1,7 @@
 #include "trajectory/piecewise_motion.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace interlock {
 
@@ -22,6 +23,13 @@ MotionState PiecewiseMotion::at(double time_s) const noexcept {
   const auto next = std::ranges::upper_bound(pieces_, time_s, {}, &Piece::begin_s);
   const Piece& piece = *std::prev(next);
   return piece.motion.after(time_s - piece.begin_s);
+}
+
+std::vector<double> PiecewiseMotion::boundaries_s() const {
+  std::vector<double> times_s;
+  times_s.reserve(pieces_.size());
+  std::ranges::transform(pieces_, std::back_inserter(times_s), &Piece::begin_s);
+  return times_s;
 }
 
 PositionRange PiecewiseMotion::reach() const noexcept {

@@ -25,6 +25,9 @@ class PiecewiseMotion {
   /** The state that long after the start: that of the start before 0 and for a time that is no number. */
   [[nodiscard]] MotionState at(double time_s) const noexcept;
 
+  /** When each piece begins, the rest at the end included. */
+  [[nodiscard]] std::vector<double> boundaries_s() const;
+
   /** The positions that it passes through. */
   [[nodiscard]] PositionRange reach() const noexcept;
 

@@ -45,10 +45,11 @@ Checked check_target(const AxisTarget& target) {
 }
 
 /** All but the end. */
-PiecewiseMotion motion_of(const ruckig::Profile& profile) {
+PiecewiseMotion motion_of(const ruckig::Profile& profile, const RuckigUnit& unit) {
   PiecewiseMotion motion;
   const auto append = [&](const auto& parts, std::size_t part) {
-    motion.append({{parts.p[part], parts.v[part], parts.a[part]}, parts.j[part]}, parts.t[part]);
+    const MotionState start = unit.from_ruckig(parts.p[part], parts.v[part], parts.a[part]);
+    motion.append({start, parts.j[part] * unit.length}, parts.t[part]);
   };
   if (profile.brake.duration > 0) {
     for (std::size_t part = 0; part < profile.brake.t.size(); ++part) {
@@ -59,15 +60,6 @@ PiecewiseMotion motion_of(const ruckig::Profile& profile) {
     append(profile, part);
   }
   return motion;
-}
-
-void put(Input& input, std::size_t place, const PlannedAxis& axis) {
-  input.current_position[place] = axis.now.position;
-  input.current_velocity[place] = axis.now.velocity;
-  input.current_acceleration[place] = axis.now.acceleration;
-  input.max_velocity[place] = axis.limits.velocity;
-  input.max_acceleration[place] = axis.limits.acceleration;
-  input.max_jerk[place] = axis.limits.jerk;
 }
 
 TrajectoryError refusal(ruckig::Result result) {
@@ -107,11 +99,11 @@ TrajectoryResult<Output> solved(Input& input) {
 
 /** A plan whose axes end where `end_of(place, profile)` says. */
 template <typename EndOf>
-SynchronisedPlan plan_of(const Output& output, const EndOf& end_of) {
+SynchronisedPlan plan_of(const Output& output, std::span<const RuckigUnit> units, const EndOf& end_of) {
   SynchronisedPlan plan;
   const auto profiles = output.get_profiles();
   for (const ruckig::Profile& profile : profiles.front()) {
-    PiecewiseMotion motion = motion_of(profile);
+    PiecewiseMotion motion = motion_of(profile, units[plan.axes.size()]);
     motion.end_at(end_of(plan.axes.size(), profile));
     plan.duration_s = std::max(plan.duration_s, motion.duration_s());
     plan.axes.push_back(std::move(motion));
@@ -150,16 +142,17 @@ TrajectoryResult<SynchronisedPlan> plan_move(std::span<const AxisTarget> targets
   Input input(targets.size());
   input.synchronization = ruckig::Synchronization::Phase;
   input.minimum_duration = minimum_duration_s;
+  std::vector<RuckigUnit> units;
   Checked checked = check_within("minimum duration [s]", minimum_duration_s, 0.0, longest_plan_s);
   for (std::size_t place = 0; checked && place < targets.size(); ++place) {
+    const auto& [axis, position, allowed] = targets[place];
     checked = check_target(targets[place]);
-    put(input, place, targets[place].axis);
-    input.target_position[place] = targets[place].position;
+    units.push_back(put_axis(input, place, axis.now, position, axis.limits));
   }
   // Ruckig arrives to within 1e-8; the plan ends exactly at the targets.
   const auto target_of = [&](std::size_t place, const ruckig::Profile&) { return targets[place].position; };
   return checked.and_then([&] { return solved(input); })
-      .map([&](const Output& output) { return plan_of(output, target_of); })
+      .map([&](const Output& output) { return plan_of(output, units, target_of); })
       .and_then(
           [&](const SynchronisedPlan& plan) { return check_reach(targets, plan).map([&] { return plan; }); });
 }
@@ -171,14 +164,18 @@ TrajectoryResult<SynchronisedPlan> plan_stop(std::span<const PlannedAxis> axes) 
   Input input(axes.size());
   input.control_interface = ruckig::ControlInterface::Velocity;
   input.synchronization = ruckig::Synchronization::None;
+  std::vector<RuckigUnit> units;
   Checked checked;
   for (std::size_t place = 0; checked && place < axes.size(); ++place) {
+    const auto& [name, now, limits] = axes[place];
     checked = check_axis(axes[place]);
-    put(input, place, axes[place]);
+    units.push_back(put_axis(input, place, now, now.position, limits));
   }
-  const auto end_of = [](std::size_t, const ruckig::Profile& profile) { return profile.p.back(); };
+  const auto end_of = [&](std::size_t place, const ruckig::Profile& profile) {
+    return units[place].from_ruckig(profile.p.back(), 0.0, 0.0).position;
+  };
   return checked.and_then([&] { return solved(input); }).map([&](const Output& output) {
-    return plan_of(output, end_of);
+    return plan_of(output, units, end_of);
   });
 }
 

@@ -10,6 +10,10 @@
  *
  * Stop: every axis by itself, to rest as soon as its limits allow.
  *
+ * A difference that an axis makes up in 10 ns at its limits is a rounding error (`rounding_s`): a plan from a
+ * state that exceeds a limit by no more begins at the limit, and an axis that is at rest at its target up to
+ * that stays there.
+ *
  * To plan anew on the way, start from `at` of the plan that is being followed. Planning allocates and takes
  * some microseconds an axis: it has no place in the control thread. A finished plan only answers.
  *
@@ -28,8 +32,11 @@
 
 namespace interlock {
 
-/** Longer plans are refused: Ruckig's limit, a little over two hours. */
-inline constexpr double longest_plan_s = 7600.0;
+/**
+ * A difference that an axis makes up within this time at its limits is a rounding error: of its position by
+ * the velocity limit, of its velocity by the acceleration limit, of its acceleration by the jerk limit.
+ */
+inline constexpr double rounding_s = 1e-8;
 
 /** Rounding is forgiven by this much where a plan is held against the positions allowed. */
 inline constexpr double planning_slack = 1e-7;

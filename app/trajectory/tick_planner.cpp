@@ -35,6 +35,7 @@ struct TickPlanner::Workshop {
   Axes velocities{};
   Axes accelerations{};
   std::array<MotionState, capacity> states{};
+  std::array<RuckigUnit, capacity> units{};
   std::array<double, capacity> targets{};
 };
 
@@ -50,6 +51,7 @@ bool TickPlanner::plan(std::span<const AxisPath> axes, double minimum_duration_s
   Workshop& shop = *workshop_;
   axes_ = std::min(axes.size(), capacity);
   duration_s_ = 0.0;
+  planned_ = false;
   bool sensible = !axes.empty() && axes.size() <= capacity && within(minimum_duration_s, 0.0, longest_plan_s);
   for (std::size_t place = 0; place < capacity; ++place) {
     const bool used = place < axes_;
@@ -61,13 +63,7 @@ bool TickPlanner::plan(std::span<const AxisPath> axes, double minimum_duration_s
     sensible = sensible && makes_sense(axis);
     shop.states[place] = {axis.now.position, 0.0, 0.0};
     shop.targets[place] = axis.target;
-    shop.input.current_position[place] = axis.now.position;
-    shop.input.current_velocity[place] = axis.now.velocity;
-    shop.input.current_acceleration[place] = axis.now.acceleration;
-    shop.input.target_position[place] = axis.target;
-    shop.input.max_velocity[place] = axis.limits.velocity;
-    shop.input.max_acceleration[place] = axis.limits.acceleration;
-    shop.input.max_jerk[place] = axis.limits.jerk;
+    shop.units[place] = put_axis(shop.input, place, axis.now, axis.target, axis.limits);
   }
   if (!sensible) {
     return false;
@@ -78,13 +74,14 @@ bool TickPlanner::plan(std::span<const AxisPath> axes, double minimum_duration_s
     return false;
   }
   duration_s_ = shop.plan.get_duration();
+  planned_ = true;
   return true;
 }
 
 std::span<const MotionState> TickPlanner::at(double time_s) noexcept {
   Workshop& shop = *workshop_;
   const std::span<MotionState> states(shop.states.data(), axes_);
-  if (duration_s_ <= 0.0) {
+  if (!planned_) {
     return states;
   }
   if (time_s >= duration_s_) {
@@ -95,7 +92,8 @@ std::span<const MotionState> TickPlanner::at(double time_s) noexcept {
   }
   shop.plan.at_time(time_s > 0.0 ? time_s : 0.0, shop.positions, shop.velocities, shop.accelerations);
   for (std::size_t place = 0; place < axes_; ++place) {
-    states[place] = {shop.positions[place], shop.velocities[place], shop.accelerations[place]};
+    states[place] = shop.units[place].from_ruckig(shop.positions[place], shop.velocities[place],
+                                                  shop.accelerations[place]);
   }
   return states;
 }

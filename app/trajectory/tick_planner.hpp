@@ -60,6 +60,7 @@ class TickPlanner {
   std::unique_ptr<Workshop> workshop_;
   std::size_t axes_ = 0;
   double duration_s_ = 0.0;
+  bool planned_ = false; /**< whether the last plan exists */
 };
 
 }  // namespace interlock
