@@ -110,13 +110,14 @@ def test_every_kind_of_answer_carries_the_strict_policy_and_opens_nothing_to_oth
         assert not [name for name in answer.headers if name.startswith("access-control-")]
 
 
-def test_the_session_cookie_is_out_of_reach_of_scripts_and_other_sites(robot: Stack) -> None:
+def test_cookies_are_out_of_reach_of_scripts_and_other_sites(robot: Stack) -> None:
     visitor = robot.visitor()
     answer = log_in(visitor, "admin", robot.password)
-    [cookie] = answer.headers.get_list("set-cookie")
-    pair, *attributes = cookie.split("; ")
-    assert re.fullmatch(rf"interlock_session_{robot.port}=[\w-]{{32,}}", pair)
-    assert sorted(attributes) == ["HttpOnly", "Max-Age=43200", "Path=/", "SameSite=Strict"]
+    session, browser = answer.headers.get_list("set-cookie")
+    for cookie, name, seconds in ((session, "", 43200), (browser, "_browser", 90 * 24 * 3600)):
+        pair, *attributes = cookie.split("; ")
+        assert re.fullmatch(rf"interlock_session_{robot.port}{name}=[\w-]{{32,}}", pair)
+        assert sorted(attributes) == ["HttpOnly", f"Max-Age={seconds}", "Path=/", "SameSite=Strict"]
     assert token_of(visitor) not in answer.text
 
 
@@ -184,17 +185,17 @@ def test_a_browser_that_its_user_has_used_is_not_kept_out_by_a_flood_of_guesses(
     judge(browser.post("/api/logout"))
     end = threading.Event()
 
-    def guess() -> None:
-        with robot.visitor() as guesser:
-            while not end.is_set():
-                log_in(guesser, "dora", "a guess")
+    def guess(guesser: httpx.Client) -> None:
+        while not end.is_set():
+            log_in(guesser, "dora", "a guess")
 
-    with concurrent.futures.ThreadPoolExecutor(8) as pool:
-        guesses = [pool.submit(guess) for _ in range(8)]
+    stranger = robot.visitor()
+    guessers = [robot.visitor() for _ in range(8)]
+    with concurrent.futures.ThreadPoolExecutor(len(guessers)) as pool:
+        guesses = [pool.submit(guess, guesser) for guesser in guessers]
         try:
-            with robot.visitor() as stranger:
-                while log_in(stranger, "dora", "another guess").status_code != 429:
-                    pass
+            while log_in(stranger, "dora", "another guess").status_code != 429:
+                pass
             assert log_in(browser, "dora", "password of dora").status_code == 200
         finally:
             end.set()

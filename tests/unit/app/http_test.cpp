@@ -1,3 +1,5 @@
+#include <boost/asio/read.hpp>
+
 #include "http_fixture.hpp"
 
 namespace interlock::web {
