@@ -6,6 +6,7 @@
 
 #include "store/audit.hpp"
 #include "store/audit_file.hpp"
+#include "text/printable.hpp"
 
 namespace interlock::cli {
 
@@ -15,7 +16,7 @@ using Verified = tl::expected<AuditHead, AuditBreak>;
 
 Failure not_sound(const AuditBreak& broken) {
   return {ExitCode::refused, "the audit is not sound: record " + std::to_string(broken.number) + ' ' +
-                                 broken.problem + "; keep the file, and compare it with a backup"};
+                                 printable(broken.problem) + "; keep the file, and compare it with a backup"};
 }
 
 Result<void> tell(const Stored<Verified>& verified, std::ostream& output) {
@@ -133,12 +134,13 @@ Result<void> list_audit(const AuditOptions& options, const Installation& install
     for (const AuditRecord& record : *records) {
       list.push_back(to_json(record));
     }
-    output << list.dump(2) << '\n';
+    // As ASCII: a terminal shows it, too.
+    output << list.dump(2, ' ', true) << '\n';
     return {};
   }
   for (const AuditRecord& record : *records) {
-    output << record.number << ' ' << record.time << ' ' << record.actor << ' ' << record.kind << ' '
-           << record.detail << '\n';
+    output << record.number << ' '
+           << printable(record.time + ' ' + record.actor + ' ' + record.kind + ' ' + record.detail) << '\n';
   }
   return {};
 }

@@ -42,7 +42,8 @@ Result<Store> open_store(const StorePlace& place, const Installation& installati
 
 Failure failure_of(const StoreError& error) {
   using Kind = StoreError::Kind;
-  const bool in_the_way = error.kind == Kind::unavailable || error.kind == Kind::newer;
+  const bool in_the_way =
+      error.kind == Kind::unavailable || error.kind == Kind::newer || error.kind == Kind::no_memory;
   return {in_the_way ? ExitCode::precondition : ExitCode::refused, error.message()};
 }
 

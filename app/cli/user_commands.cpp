@@ -8,6 +8,7 @@
 #include "store/audit.hpp"
 #include "store/sessions.hpp"
 #include "store/users.hpp"
+#include "text/printable.hpp"
 
 namespace interlock::cli {
 namespace {
@@ -105,11 +106,12 @@ Result<void> list_users(const UserOptions& options, const Installation& installa
     nlohmann::json list = nlohmann::json::array();
     std::transform(users->begin(), users->end(), std::back_inserter(list),
                    [](const User& user) { return to_json(user); });
-    output << list.dump(2) << '\n';
+    // As ASCII: a terminal shows it, too.
+    output << list.dump(2, ' ', true) << '\n';
     return {};
   }
   for (const User& user : *users) {
-    output << std::left << std::setw(33) << user.name << std::setw(9) << role_name(user.role)
+    output << std::left << std::setw(33) << printable(user.name) << std::setw(9) << role_name(user.role)
            << (user.enabled ? "enabled " : "disabled") << "  "
            << (user.last_login ? "last login " + iso_8601(*user.last_login) : "never logged in") << '\n';
   }

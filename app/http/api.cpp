@@ -39,8 +39,9 @@ Api::Api(const asio::any_io_executor& executor, const Robot& robot, const ilk_co
       biopsy_(robot),
       sessions_(store, clocks),
       authority_(static_cast<std::uint32_t>(std::chrono::system_clock::to_time_t(clocks.utc()))),
-      context_{executor, robot,     config,     control_, book_,       stream_, bench_,     biopsy_,
-               store,    sessions_, authority_, work_,    trajectory_, log,     clocks.utc, clocks.steady},
+      context_{executor,    robot,   config,     control_,      book_,         stream_,
+               bench_,      biopsy_, store,      sessions_,     authority_,    work_,
+               trajectory_, log,     clocks.utc, clocks.steady, role_refusals_},
       navigation_(context_),
       router_([this](const Caller& caller) -> std::optional<Problem> {
         const auto held = context_.need_authority(caller);
@@ -145,6 +146,24 @@ void Api::follow_sessions() {
   });
 }
 
+asio::awaitable<Reply> Api::route(const Request& request, const Caller& caller) {
+  Reply reply = co_await router_.route(request, caller);
+  if (!reply) {
+    note_refusal(request, caller, reply.error());
+  }
+  co_return reply;
+}
+
+/** Without what changes from one attempt to the next, so that the log takes repetitions together. */
+void Api::note_refusal(const Request& request, const Caller& caller, const Problem& problem) {
+  if (problem.code != "ROLE") {
+    return;
+  }
+  ++role_refusals_;
+  spdlog::warn("{} was refused {} {}: {}", caller.user, std::string(request.method_string()),
+               path_of(request), problem.detail);
+}
+
 asio::awaitable<tl::expected<Caller, Problem>> Api::caller_of(const Request& request, std::string peer) {
   Caller caller;
   caller.peer = std::move(peer);
@@ -156,6 +175,7 @@ asio::awaitable<tl::expected<Caller, Problem>> Api::caller_of(const Request& req
     caller.session = (*session)->number;
     caller.user = (*session)->user.name;
     caller.role = (*session)->user.role;
+    sessions_.note_peer(caller.session, caller.peer);
   }
   co_return caller;
 }

@@ -51,6 +51,9 @@ class Api {
 
   [[nodiscard]] const Router& router() const { return router_; }
 
+  /** What the route of the request answers. A refusal for the caller's role is logged and counted. */
+  boost::asio::awaitable<Reply> route(const Request& request, const Caller& caller);
+
   /** Who sends a request over the connection of that peer: nobody, unless its cookies open exactly one
    * session. 503 STORE when that cannot be told. */
   boost::asio::awaitable<tl::expected<Caller, Problem>> caller_of(const Request& request, std::string peer);
@@ -83,6 +86,7 @@ class Api {
   void follow_kernel();
   void follow_sessions();
   void follow_streams();
+  void note_refusal(const Request& request, const Caller& caller, const Problem& problem);
   void tell_biopsy(const ControlView& seen);
   void look_after_pedal(const ControlView& seen);
   void look_after_sessions();
@@ -98,6 +102,7 @@ class Api {
   Authority authority_;
   WorkPool work_;
   LoadedTrajectory trajectory_;
+  std::uint64_t role_refusals_ = 0;
   Context context_;
   Navigation navigation_;
   Router router_;

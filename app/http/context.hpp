@@ -43,6 +43,7 @@ struct Context {
   Log& log;
   std::function<UtcTime()> clock;
   std::function<SteadyTime()> steady_clock;
+  const std::uint64_t& role_refusals; /**< requests of users whose role does not suffice */
 
   /** The newest view; what it says of orders is in the book already. The reference holds until the next
    * call. */

@@ -109,6 +109,18 @@ void LiveSessions::touch(std::uint32_t number) {
   }
 }
 
+void LiveSessions::note_peer(std::uint32_t number, const std::string& peer) {
+  if (const auto found = live_.find(number); found != live_.end()) {
+    found->second.peer = peer;
+  }
+}
+
+std::optional<std::string> LiveSessions::peer_of(std::uint32_t number) const {
+  const auto found = live_.find(number);
+  const bool any = found != live_.end() && !found->second.peer.empty();
+  return any ? std::optional(found->second.peer) : std::nullopt;
+}
+
 void LiveSessions::forget(const std::vector<Session>& ended) {
   for (const Session& each : ended) {
     drop(each.number);

@@ -54,6 +54,12 @@ class LiveSessions {
   /** That session was used, for instance by its open stream. */
   void touch(std::uint32_t number);
 
+  /** A request of that session came from there. */
+  void note_peer(std::uint32_t number, const std::string& peer);
+
+  /** Where the newest request of that session came from, if there was one since the app started. */
+  [[nodiscard]] std::optional<std::string> peer_of(std::uint32_t number) const;
+
   /** Sessions were ended in the store. */
   void forget(const std::vector<Session>& ended);
 
@@ -68,10 +74,11 @@ class LiveSessions {
 
  private:
   struct Live {
-    Session session;     /**< `last_seen` is its last use */
-    UtcTime seen_stored; /**< `last_seen` in the store */
-    SteadyTime used;     /**< when that was, whatever the clock was set to since */
-    SteadyTime ends;     /**< at the latest */
+    Session session;       /**< `last_seen` is its last use */
+    UtcTime seen_stored;   /**< `last_seen` in the store */
+    SteadyTime used;       /**< when that was, whatever the clock was set to since */
+    SteadyTime ends;       /**< at the latest */
+    std::string peer = {}; /**< of its newest request; empty: there was none */
   };
 
   [[nodiscard]] Live live(const Session& session) const;

@@ -1,6 +1,7 @@
 #include "http/message.hpp"
 
 #include <algorithm>
+#include <boost/beast/core/string.hpp>
 #include <charconv>
 #include <string_view>
 
@@ -33,14 +34,19 @@ void add_text(json& body, const char* key, const std::string& text) {
   }
 }
 
+/** Several cookies are several headers of one name. */
 void add_headers(Response& response, const Headers& headers) {
   for (const auto& [name, value] : headers) {
-    response.set(name, value);
+    if (name == "Set-Cookie") {
+      response.insert(name, value);
+    } else {
+      response.set(name, value);
+    }
   }
 }
 
-/** Without its percent-encoding; nothing when that is malformed. */
-std::optional<std::string> decoded(std::string_view encoded) {
+/** Without its percent-encoding; nothing when that is malformed, or hides one of the `forbidden` bytes. */
+std::optional<std::string> decoded(std::string_view encoded, std::string_view forbidden = {}) {
   std::string text;
   for (std::size_t i = 0; i < encoded.size(); ++i) {
     if (encoded[i] != '%') {
@@ -51,6 +57,9 @@ std::optional<std::string> decoded(std::string_view encoded) {
     const std::string_view digits = encoded.substr(i + 1, 2);
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), byte, 16);
     if (digits.size() != 2 || error != std::errc{} || end != digits.data() + 2) {
+      return std::nullopt;
+    }
+    if (forbidden.find(static_cast<char>(byte)) != std::string_view::npos) {
       return std::nullopt;
     }
     text += static_cast<char>(byte);
@@ -117,6 +126,26 @@ std::optional<Problem> unreadable(const boost::beast::error_code& error) {
                  .expected = "HTTP/1.1"};
 }
 
+std::optional<Problem> check_framing(const Request& header) {
+  const std::size_t codings = header.count(http::field::transfer_encoding);
+  if (codings == 0) {
+    return std::nullopt;
+  }
+  if (header.count(http::field::content_length) != 0 || header.version() < 11) {
+    return Problem{.status = Status::bad_request,
+                   .code = "MALFORMED",
+                   .detail = "The header does not say where the body ends.",
+                   .expected = "HTTP/1.1 with either Content-Length or Transfer-Encoding"};
+  }
+  if (codings != 1 || !boost::beast::iequals(header[http::field::transfer_encoding], "chunked")) {
+    return Problem{.status = Status::not_implemented,
+                   .code = "NOT_IMPLEMENTED",
+                   .detail = "This server does not know that Transfer-Encoding.",
+                   .expected = "chunked, or a Content-Length"};
+  }
+  return std::nullopt;
+}
+
 void secure(boost::beast::http::fields& head) {
   head.set("Content-Security-Policy", content_security_policy);
   head.set("X-Content-Type-Options", "nosniff");
@@ -133,7 +162,8 @@ void prepare(Response& response, bool keep_alive) {
 
 std::string path_of(const Request& request) {
   const std::string_view target(request.target().data(), request.target().size());
-  return decoded(target.substr(0, target.find_first_of("?#"))).value_or("");
+  constexpr std::string_view separators("/\\\0", 3);
+  return decoded(target.substr(0, target.find_first_of("?#")), separators).value_or("");
 }
 
 tl::expected<json, Problem> parse_query(const Request& request) {

@@ -64,14 +64,24 @@ constexpr std::uint32_t longest_header = 16u * 1024u;
 /** Why that is no request of this interface, as the reader of it found; nothing when the connection ended. */
 std::optional<Problem> unreadable(const boost::beast::error_code& error);
 
+/**
+ * Why the header leaves open where the request ends: 501 NOT_IMPLEMENTED for a Transfer-Encoding other than
+ * `chunked` alone; 400 MALFORMED for one beside a Content-Length or in HTTP/1.0. The connection must then be
+ * closed, since what follows the header may be a body or another request.
+ */
+std::optional<Problem> check_framing(const Request& header);
+
 /** Adds the headers of every answer, which keep pages of other sites out. */
 void secure(boost::beast::http::fields& head);
 
 /** Makes an answer ready to be sent: length, version, and the headers that keep pages of other sites out. */
 void prepare(Response& response, bool keep_alive);
 
-/** The path of the request's target, without query and fragment, percent-decoded; empty when that is
- * malformed. */
+/**
+ * The path of the request's target, without query and fragment, percent-decoded; empty when that is
+ * malformed. An encoded slash, backslash or NUL counts as malformed, so that no part of a path turns into a
+ * separator or an end by decoding.
+ */
 std::string path_of(const Request& request);
 
 /**

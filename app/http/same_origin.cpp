@@ -29,6 +29,13 @@ std::string_view without_port(std::string_view host) { return host.substr(0, end
 }  // namespace
 
 std::optional<Problem> check_host(const Request& request) {
+  const std::size_t hosts = request.count(http::field::host);
+  if (hosts > 1 || (hosts == 0 && request.version() >= 11)) {
+    return Problem{.status = Status::bad_request,
+                   .code = "MALFORMED",
+                   .detail = "The request has " + std::to_string(hosts) + " Host headers.",
+                   .expected = "one"};
+  }
   const std::string_view host = without_port(value_of(request, http::field::host));
   if (host == "localhost" || host == "127.0.0.1" || host == "[::1]") {
     return std::nullopt;

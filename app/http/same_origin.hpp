@@ -11,7 +11,8 @@
 
 namespace interlock::web {
 
-/** 403 HOST unless the request names this machine's loopback interface, as a rebound name would not. */
+/** 403 HOST unless the request names this machine's loopback interface, as a rebound name would not; 400
+ * MALFORMED when it names two hosts, or none in HTTP/1.1. */
 std::optional<Problem> check_host(const Request& request);
 
 /** 403 ORIGIN when the request was sent by a page of another origin. Requests that no page sent carry no

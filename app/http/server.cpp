@@ -46,6 +46,13 @@ Problem too_late() {
           .next_step = "Look at the robot, and ask again."};
 }
 
+Problem malformed_path() {
+  return {.status = Status::bad_request,
+          .code = "MALFORMED",
+          .detail = "The path is malformed.",
+          .expected = "a path, percent-encoded, without encoded slash, backslash or NUL"};
+}
+
 Problem all_at_work(std::size_t ceiling) {
   return {.status = Status::service_unavailable,
           .code = "OVERLOADED",
@@ -165,7 +172,13 @@ asio::awaitable<void> Server::serve(std::shared_ptr<Connection> connection) {
     connection->waiting = true;
     auto [error, header_bytes] =
         co_await http::async_read_header(connection->stream, connection->buffer, parser, as_result);
-    if (!error) {
+    std::optional<Problem> problem;
+    if (error) {
+      problem = unreadable(error);
+    } else {
+      problem = check_framing(parser.get());
+    }
+    if (!error && !problem) {
       const std::uint64_t limit = co_await body_limit_of(parser.get(), connection->peer);
       parser.body_limit(limit);
       if (parser.content_length().value_or(0) > limit) {
@@ -174,10 +187,13 @@ asio::awaitable<void> Server::serve(std::shared_ptr<Connection> connection) {
         std::tie(error, std::ignore) =
             co_await http::async_read(connection->stream, connection->buffer, parser, as_result);
       }
+      problem = unreadable(error);
     }
     connection->waiting = false;
-    if (error) {
-      co_await refuse(*connection, error);
+    if (problem) {
+      co_await refuse(*connection, *problem);
+    }
+    if (error || problem) {
       co_return;
     }
     Request request = parser.release();
@@ -243,6 +259,9 @@ asio::awaitable<AnyResponse> Server::respond(const Request& request, const Conne
     co_return problem_response(*problem);
   }
   const std::string path = path_of(request);
+  if (path.empty()) {
+    co_return problem_response(malformed_path());
+  }
   if (connection.place == Place::reserve && !is_always_answered(path)) {
     co_return problem_response(all_at_work(ceiling_));
   }
@@ -257,7 +276,7 @@ asio::awaitable<Response> Server::respond_api(const Request& request, const std:
   if (!caller) {
     co_return problem_response(caller.error());
   }
-  const Reply reply = co_await api_.router().route(request, *caller);
+  const Reply reply = co_await api_.route(request, *caller);
   log_transaction(request, *caller, reply ? reply->status : reply.error().status);
   co_return reply ? success_response(*reply) : problem_response(reply.error());
 }
@@ -312,14 +331,10 @@ asio::awaitable<bool> Server::answer(Connection& connection, AnyResponse respons
                     response);
 }
 
-/** Answers what could not be read. What is still on its way is read and dropped, else the peer may lose the
- * answer. */
-asio::awaitable<void> Server::refuse(Connection& connection, const beast::error_code& error) {
-  const auto problem = unreadable(error);
-  if (!problem) {
-    co_return;
-  }
-  co_await answer(connection, problem_response(*problem), false, false);
+/** Answers what could not be read, and ends the connection. What is still on its way is read and dropped,
+ * else the peer may lose the answer. */
+asio::awaitable<void> Server::refuse(Connection& connection, Problem problem) {
+  co_await answer(connection, problem_response(problem), false, false);
   beast::error_code ended;
   connection.stream.socket().shutdown(tcp::socket::shutdown_send, ended);
   connection.stream.expires_after(drain_timeout);

@@ -80,7 +80,7 @@ class Server {
                                       bool keep_alive);
   boost::asio::awaitable<bool> answer(Connection& connection, AnyResponse response, bool head_only,
                                       bool keep_alive);
-  boost::asio::awaitable<void> refuse(Connection& connection, const boost::beast::error_code& error);
+  boost::asio::awaitable<void> refuse(Connection& connection, Problem problem);
   boost::asio::awaitable<void> record(StopMade made);
   void admit(Guest guest);
   void give_back(Connection& connection);

@@ -35,6 +35,8 @@ std::pair<Status, const char*> answer_to(StoreError::Kind kind) {
       return {Status::unauthorized, "LOGIN"};
     case StoreError::Kind::role:
       return {Status::forbidden, "ROLE"};
+    case StoreError::Kind::no_memory:
+      return {Status::service_unavailable, "OVERLOADED"};
     case StoreError::Kind::outdated:
     case StoreError::Kind::unavailable:
     case StoreError::Kind::newer:

@@ -11,6 +11,7 @@
 #include <boost/asio/thread_pool.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <cstddef>
+#include <new>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -27,7 +28,8 @@ class WorkPool {
   static constexpr std::size_t capacity = 64;
 
   /**
-   * What `work()` gives, run in one of the threads in the order of asking. 503 OVERLOADED when too many wait.
+   * What `work()` gives, run in one of the threads in the order of asking. 503 OVERLOADED when too many wait,
+   * or when there is no memory for it.
    *
    * Pass a named `work` by `std::move`: GCC 12 destroys twice what a temporary inside `co_await` captured.
    */
@@ -38,6 +40,9 @@ class WorkPool {
     }
     const Place place(asked_);
     auto result = co_await boost::asio::co_spawn(pool_, in_pool(std::move(work)), boost::asio::use_awaitable);
+    if (!result) {
+      co_return tl::make_unexpected(no_memory());
+    }
     co_return std::move(*result);
   }
 
@@ -54,10 +59,22 @@ class WorkPool {
     std::size_t& asked_;
   };
 
-  /** Optional, as Asio makes an empty result before it has one. */
+  /** Nothing when there is no memory. */
   template <typename Work>
   static auto in_pool(Work work) -> boost::asio::awaitable<std::optional<std::invoke_result_t<Work>>> {
-    co_return std::optional(work());
+    try {
+      co_return std::optional(work());
+    } catch (const std::bad_alloc&) {
+      co_return std::nullopt;
+    }
+  }
+
+  static Problem no_memory() {
+    return {.status = Status::service_unavailable,
+            .code = "OVERLOADED",
+            .detail = "There is not enough memory.",
+            .next_step = "Try again in a moment, or end other programs.",
+            .headers = {{"Retry-After", "1"}}};
   }
 
   static Problem full() {

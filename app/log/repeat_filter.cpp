@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "text/printable.hpp"
+
 namespace interlock {
 namespace {
 
@@ -22,22 +24,6 @@ LogLevel level_of(spdlog::level::level_enum level) {
   }
 }
 
-std::string on_one_line(const std::string& text) {
-  constexpr std::string_view digits = "0123456789abcdef";
-  std::string line;
-  for (const char each : text) {
-    const auto byte = static_cast<unsigned char>(each);
-    if (byte >= 0x20 && byte != 0x7f) {
-      line += each;
-    } else {
-      line += "\\x";
-      line += digits[byte >> 4u];
-      line += digits[byte & 0xfu];
-    }
-  }
-  return line;
-}
-
 }  // namespace
 
 RepeatFilter::RepeatFilter(std::vector<spdlog::sink_ptr> sinks, LogRing& ring)
@@ -54,7 +40,7 @@ void RepeatFilter::sink_it_(const spdlog::details::log_msg& message) {
   last_level_ = message.level;
   last_logger_.assign(message.logger_name.begin(), message.logger_name.end());
   last_time_ = message.time;
-  const std::string line = on_one_line(last_text_);
+  const std::string line = printable(last_text_);
   spdlog::details::log_msg passed = message;
   passed.payload = line;
   pass(passed, 0);

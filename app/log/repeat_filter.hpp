@@ -21,7 +21,7 @@ namespace interlock {
  * the next other message, or the same one after `longest_silence`, comes after a line "last message repeated
  * N times".
  *
- * A line stays one line, whatever is in the message: control characters are escaped as \\xNN.
+ * A line stays one line, whatever is in the message: `printable` escapes what could mislead a reader.
  */
 class RepeatFilter final : public spdlog::sinks::base_sink<std::mutex> {
  public:

@@ -179,7 +179,7 @@ void add_motion(Families& families, const Robot& robot, const ilk_snapshot_t& sn
 
 /** What the app knows without a kernel. */
 void add_app(Families& families, const Robot& robot, const ilk_config_t& config, bool attached,
-             std::size_t consoles) {
+             const AppCounts& counts) {
   families.begin(MetricType::Gauge, "interlock_info", "Always 1; what runs is in the labels.");
   families.add(1.0, {{"version", std::string(version())},
                      {"commit", std::string(commit())},
@@ -190,15 +190,21 @@ void add_app(Families& families, const Robot& robot, const ilk_config_t& config,
       "1 while the app is attached to a kernel; without one, there is nothing below but the app's own.");
   families.add(attached ? 1.0 : 0.0);
   families.begin(MetricType::Gauge, "interlock_consoles", "Clients of the stream.");
-  families.add(static_cast<double>(consoles));
+  families.add(static_cast<double>(counts.consoles));
+  families.begin(MetricType::Counter, "interlock_log_lines_lost_total",
+                 "Lines that did not get to standard error or to the file of the log.");
+  families.add(static_cast<double>(counts.log_lines_lost));
+  families.begin(MetricType::Counter, "interlock_role_refusals_total",
+                 "Requests that were refused because the user's role does not suffice.");
+  families.add(static_cast<double>(counts.role_refusals));
 }
 
 }  // namespace
 
 std::string metrics_text(const Robot& robot, const ilk_config_t& config, const ControlView& view,
-                         std::size_t consoles, std::chrono::steady_clock::time_point now) {
+                         const AppCounts& counts, std::chrono::steady_clock::time_point now) {
   Families families;
-  add_app(families, robot, config, view.attached, consoles);
+  add_app(families, robot, config, view.attached, counts);
   if (view.attached) {
     families.begin(MetricType::Gauge, "interlock_snapshot_age_seconds",
                    "How long ago the newest snapshot of the kernel was read.");

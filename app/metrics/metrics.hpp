@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 #include "motion/mailbox.hpp"
@@ -17,15 +18,21 @@ namespace interlock {
 /** Media type of the text. */
 inline constexpr const char* metrics_media_type = "text/plain; version=0.0.4; charset=utf-8";
 
+/** What the app counts by itself. */
+struct AppCounts {
+  std::size_t consoles = 0;         /**< clients of the stream */
+  std::uint64_t log_lines_lost = 0; /**< since the app started, as the next */
+  std::uint64_t role_refusals = 0;  /**< requests of users whose role does not suffice */
+};
+
 /**
  * Every metric of docs/deployment.md. What the kernel alone knows is left out while none is attached: a
  * series that ends is told from one that stands still.
  *
- * @param consoles clients of the stream
- * @param now      of the clock that stamped the view
+ * @param now of the clock that stamped the view
  */
 [[nodiscard]] std::string metrics_text(const Robot& robot, const ilk_config_t& config,
-                                       const ControlView& view, std::size_t consoles,
+                                       const ControlView& view, const AppCounts& counts,
                                        std::chrono::steady_clock::time_point now);
 
 }  // namespace interlock

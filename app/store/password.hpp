@@ -45,12 +45,16 @@ class PasswordHash {
   /**
    * Hashes a new password of a user; takes about a tenth of a second and 64 MiB.
    *
-   * Refused, invalid: fewer than 10 or more than 128 characters, not UTF-8, or the user's name.
+   * Refused, invalid: fewer than 10 or more than 128 characters, not UTF-8, or easy to guess as
+   * `store/password_rule.hpp` says; no_memory.
    */
   static Stored<PasswordHash> of_new(const Password& password, std::string_view user);
 
-  /** Whether the password is the one; takes as long as hashing it. */
-  [[nodiscard]] bool matches(const Password& password) const;
+  /** What came of comparing a password. */
+  enum class Match { right, wrong, no_memory };
+
+  /** Whether the password is the one; takes as long and as much memory as hashing it. */
+  [[nodiscard]] Match compare(const Password& password) const;
 
   [[nodiscard]] const std::string& text() const { return text_; }
 

@@ -71,6 +71,17 @@ std::optional<Session> Sessions::find(std::uint32_t number, UtcTime now) const {
   return living_session_in(rows, now);
 }
 
+std::vector<Session> Sessions::list(UtcTime now, const std::optional<std::string>& user) const {
+  SQLite::Statement rows(
+      database_, std::string(select_sessions) + "WHERE user = coalesce(?, user) ORDER BY number DESC");
+  if (user) {
+    rows.bind(1, *user);
+  }
+  std::vector<Session> sessions = sessions_in(rows);
+  std::erase_if(sessions, [&](const Session& session) { return is_over(session, now); });
+  return sessions;
+}
+
 Stored<Session> Sessions::need(std::uint32_t number, Role least, UtcTime now) const {
   std::optional<Session> session = find(number, now);
   if (!session) {

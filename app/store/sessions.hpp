@@ -59,6 +59,10 @@ class Sessions {
   /** The living session of that number. */
   [[nodiscard]] std::optional<Session> find(std::uint32_t number, UtcTime now) const;
 
+  /** The living sessions of that user, or of everybody; newest first. */
+  [[nodiscard]] std::vector<Session> list(UtcTime now,
+                                          const std::optional<std::string>& user = std::nullopt) const;
+
   /** As `find`, for whoever is about to change something. Refused: session_over, role (below `least`). */
   [[nodiscard]] Stored<Session> need(std::uint32_t number, Role least, UtcTime now) const;
 

@@ -20,6 +20,7 @@ struct StoreError {
     session_over, /**< whoever asked is not logged in any more */
     role,         /**< the user who asked may not, or not any more */
     outdated,     /**< what was decided upon has changed meanwhile: begin anew */
+    no_memory,    /**< a password cannot be hashed now */
     unavailable,  /**< the file cannot be read or written now: disk full, no permission, busy */
     newer,        /**< the file was written by a newer release */
     damaged       /**< the file is not a sound store of Interlock */

@@ -48,6 +48,11 @@ StoreError no_user(const std::string& name) {
           "see the list of users"};
 }
 
+StoreError no_memory_to_judge() {
+  return {StoreError::Kind::no_memory, "there is not enough memory to check a password", "", "64 MiB free",
+          "try again in a moment, or end other programs"};
+}
+
 constexpr const char* select_users = "SELECT name, role, enabled, created, last_login FROM users ";
 
 }  // namespace
@@ -189,9 +194,12 @@ Stored<Credentials> credentials_of(Store& store, const std::string& name) {
   });
 }
 
-std::optional<Authenticated> judge(const Credentials& credentials, const Password& password) {
-  const bool matches = credentials.hash.matches(password);
-  if (!matches || !credentials.user || !credentials.user->enabled) {
+Stored<std::optional<Authenticated>> judge(const Credentials& credentials, const Password& password) {
+  const PasswordHash::Match match = credentials.hash.compare(password);
+  if (match == PasswordHash::Match::no_memory) {
+    return tl::unexpected(no_memory_to_judge());
+  }
+  if (match == PasswordHash::Match::wrong || !credentials.user || !credentials.user->enabled) {
     return std::nullopt;
   }
   return Authenticated{*credentials.user, credentials.hash};
@@ -199,7 +207,9 @@ std::optional<Authenticated> judge(const Credentials& credentials, const Passwor
 
 Stored<std::optional<Authenticated>> authenticate(Store& store, const std::string& name,
                                                   const Password& password) {
-  return credentials_of(store, name).map([&](const Credentials& found) { return judge(found, password); });
+  return credentials_of(store, name).and_then([&](const Credentials& found) {
+    return judge(found, password);
+  });
 }
 
 }  // namespace interlock

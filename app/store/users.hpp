@@ -96,8 +96,8 @@ class Users {
 Stored<Credentials> credentials_of(Store& store, const std::string& name);
 
 /** Judges a password; nothing when it is wrong or the user is disabled. Takes about a tenth of a second and
- * 64 MiB, also for a name that is nobody's. */
-std::optional<Authenticated> judge(const Credentials& credentials, const Password& password);
+ * 64 MiB, also for a name that is nobody's. Refused: no_memory. */
+Stored<std::optional<Authenticated>> judge(const Credentials& credentials, const Password& password);
 
 /**
  * Checks a name and a password; nothing when either is wrong or the user is disabled.

@@ -19,7 +19,14 @@ CALLERS = {
     "admin": "admin",
     "holder": "engineer",
 }
-IN_PATH = {"axis": "lateral", "action": "enable", "id": "1", "user": "nosuchuser", "command": "estop"}
+IN_PATH = {
+    "axis": "lateral",
+    "action": "enable",
+    "id": "1",
+    "user": "nosuchuser",
+    "command": "estop",
+    "session": "999999",
+}
 REFUSALS = {401: "LOGIN", 403: "ROLE", 409: "AUTHORITY"}
 
 OPERATIONS = [

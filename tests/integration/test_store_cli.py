@@ -79,7 +79,7 @@ def test_user_add_adds_a_user_and_records_it(store: Store) -> None:
         ("ann", "viewer", PASSWORD, "there is a user 'ann' already"),
         ("bob", "viewer", "short", "expected 10 to 128 characters"),
         ("bob", "viewer", "x" * 129, "expected 10 to 128 characters"),
-        ("maximiliane", "viewer", "maximiliane", "the password is the user's name"),
+        ("maximiliane", "viewer", "maximiliane", "the password is easy to guess"),
         ("nobody", "viewer", PASSWORD, "means something else in the audit"),
     ],
 )
@@ -401,6 +401,30 @@ def test_export_of_the_audit_verifies_without_the_store(store: Store, tmp_path: 
     broken = interlock("audit", "verify", "--file", file)
     assert broken.returncode == 1
     assert "the audit is not sound: record 1" in broken.stderr
+
+
+def test_a_listing_of_the_audit_shows_what_could_mislead_a_reader_as_escapes(store: Store) -> None:
+    misleading = "\u202e\u2066\u200f\u2028\u009b31m\x7f"
+    detail = '{"name": "' + misleading + ' ü"}'
+    store.execute(
+        "INSERT INTO audit (number, time, actor, kind, detail, hash) "
+        f"SELECT max(number) + 1, '2026-01-01T00:00:00.000Z', 'a\n9 forged', 'user', '{detail}', '' "
+        "FROM audit"
+    )
+    line = store("audit", "list", "-n", "1").stdout
+    shown = '{"name": "\\u202e\\u2066\\u200f\\u2028\\u009b31m\\x7f ü"}'
+    assert line.endswith(f" 2026-01-01T00:00:00.000Z a\\x0a9 forged user {shown}\n"), line
+    as_json = store("audit", "list", "--json", "-n", "1").stdout
+    assert not set(misleading) & set(as_json) - set("31m")
+    assert json.loads(as_json)[-1]["detail"]["name"] == f"{misleading} ü"
+
+
+@pytest.mark.parametrize("easy", ["aaaaaaaaaa", "1234567890", "qwertyuiop", "password12", "bobbobbobbob"])
+def test_a_password_that_is_easy_to_guess_is_refused_in_words(store: Store, easy: str) -> None:
+    added = store.add("bob", "viewer", easy)
+    assert added.returncode == REFUSED
+    assert "the password is easy to guess" in added.stderr
+    assert set(store.users()) == {"ann"}
 
 
 def test_retired_records_and_the_rest_make_one_chain(store: Store, tmp_path: Path) -> None:

@@ -2,10 +2,14 @@
 
 #include <spdlog/spdlog.h>
 
+#include <boost/asio/steady_timer.hpp>
+
 #include "http/fields.hpp"
 #include "http/new_hash.hpp"
 #include "http/problems.hpp"
 #include "http/same_origin.hpp"
+#include "network/as_result.hpp"
+#include "store/digest.hpp"
 
 namespace interlock::web {
 namespace {
@@ -23,9 +27,20 @@ json session_json(const std::optional<Session>& session) {
           {"expires", iso_8601(session->expires())}};
 }
 
-Headers cookie(const Request& request, const std::string& token, std::chrono::seconds age) {
-  return {{"Set-Cookie", session_cookie(request) + "=" + token + "; Path=/; HttpOnly; SameSite=Strict" +
+Headers cookie(const std::string& name, const std::string& token, std::chrono::seconds age) {
+  return {{"Set-Cookie", name + "=" + token + "; Path=/; HttpOnly; SameSite=Strict" +
                              "; Max-Age=" + std::to_string(age.count())}};
+}
+
+/** By which the login guard knows a browser again, until the app ends. */
+std::string browser_cookie(const Request& request) { return session_cookie(request) + "_browser"; }
+constexpr std::chrono::days browser_lifetime{90};
+
+/** What a peer can be told by: its address without the port. Every address of the loopback interface is the
+ * same, since any process of this machine may choose among them. */
+std::string address_of(const std::string& peer) {
+  const std::string address = peer.substr(0, peer.rfind(':'));
+  return address.starts_with("127.") || address == "[::1]" ? "loopback" : address;
 }
 
 Problem wrong_credentials(Status status, const std::string& detail) {
@@ -55,7 +70,7 @@ Problem logged_out_here_only(const Request& request, const Problem& failure) {
           .next_step =
               "Nothing; it is told as soon as it works. Only if the app ends before that, the session "
               "lives until it expires.",
-          .headers = cookie(request, "", std::chrono::seconds(0))};
+          .headers = cookie(session_cookie(request), "", std::chrono::seconds(0))};
 }
 
 /** Opens a session for whoever gave the right password, or records that somebody did not. */
@@ -121,6 +136,39 @@ struct Logout {
   }
 };
 
+/** Whose sessions the caller may see and end: only the own ones, unless the caller administers. */
+std::optional<std::string> sessions_within_reach(const Caller& caller) {
+  return caller.role == Role::admin ? std::nullopt : std::optional(caller.user);
+}
+
+/** Ends a session of the user, or of anybody. */
+struct SessionEnd {
+  std::uint32_t number = 0;
+  std::optional<std::string> user;
+  Caller by;
+  UtcTime now;
+
+  /** Nothing when there is no such session, or it is somebody else's. */
+  Stored<std::optional<Session>> operator()(Store& store) const {
+    return store.transact([&](Transaction& transaction) -> Stored<std::optional<Session>> {
+      Sessions sessions(transaction);
+      const Role least = user ? Role::viewer : Role::admin;
+      if (const auto lives = sessions.need(by.session, least, now); !lives) {
+        return tl::unexpected(lives.error());
+      }
+      auto found = sessions.find(number, now);
+      if (!found || (user && found->user.name != *user)) {
+        return std::nullopt;
+      }
+      sessions.end(number);
+      json detail{{"session", number}, {"user", found->user.name}, {"reason", "ended by a user"}};
+      Audit(transaction)
+          .append({now, std::nullopt, by.user, by.session, AuditKind::session_ended, std::move(detail)});
+      return found;
+    });
+  }
+};
+
 /** A password that was changed, and the sessions that ended by it. */
 struct ChangedPassword {
   User user;
@@ -163,6 +211,9 @@ struct PasswordChange {
 AccountRoutes::AccountRoutes(const Context& context, Router& router) : context_(context) {
   router.add(verb::get, "/api/session", anybody,
              [this](const Call& call) -> Answering { co_return session(call); });
+  router.add(verb::get, "/api/sessions", viewers, [this](const Call& call) { return sessions(call); });
+  router.add(verb::delete_, "/api/sessions/{session}", viewers,
+             [this](const Call& call) { return end_session(call); });
   router.add(verb::post, "/api/login", anybody, [this](const Call& call) { return login(call); });
   router.add(verb::post, "/api/logout", viewers, [this](const Call& call) { return logout(call); });
   router.add(verb::put, "/api/password", viewers, [this](const Call& call) { return change_password(call); });
@@ -172,17 +223,72 @@ Reply AccountRoutes::session(const Call& call) const {
   return Success{Status::ok, session_json(context_.sessions.known(call.caller.session))};
 }
 
-tl::expected<void, Problem> AccountRoutes::need_no_wait(const std::string& name) const {
-  const auto wait = guard_.wait(name, context_.steady_clock());
-  if (wait.count() == 0) {
-    return {};
+/** What is known of a session besides its token. */
+json AccountRoutes::listed(const Session& session, const Caller& caller) const {
+  const auto here = context_.sessions.known(session.number);
+  const auto peer = context_.sessions.peer_of(session.number);
+  return {{"session", session.number},
+          {"user", session.user.name},
+          {"since", iso_8601(session.created)},
+          {"last_use", iso_8601(std::max(session.last_seen, here ? here->last_seen : session.last_seen))},
+          {"expires", iso_8601(session.expires())},
+          {"address", peer ? json(*peer) : json()},
+          {"mine", session.number == caller.session}};
+}
+
+Answering AccountRoutes::sessions(const Call& call) {
+  auto look = [now = context_.clock(), user = sessions_within_reach(call.caller)](Store& store) {
+    return store.read([&](Transaction& transaction) -> Stored<std::vector<Session>> {
+      return Sessions(transaction).list(now, user);
+    });
+  };
+  const auto found = co_await context_.store.run(std::move(look));
+  if (!found) {
+    co_return fail(found.error());
   }
-  const std::string seconds = std::to_string(wait.count());
+  json list = json::array();
+  for (const Session& each : *found) {
+    list.push_back(listed(each, call.caller));
+  }
+  co_return Success{.body = std::move(list)};
+}
+
+Answering AccountRoutes::end_session(const Call& call) {
+  const auto number = number_in(call.parameters[0]);
+  SessionEnd work{number.value_or(0), sessions_within_reach(call.caller), call.caller, context_.clock()};
+  const auto ended = co_await context_.store.run(std::move(work));
+  if (!ended) {
+    co_return fail(ended.error());
+  }
+  if (!*ended) {
+    co_return fail(not_found("session " + call.parameters[0], "a number that /api/sessions lists"));
+  }
+  json last = listed(**ended, call.caller);
+  context_.sessions.forget((*ended)->number);
+  spdlog::info("{} ended session {} of {}", call.caller.user, (*ended)->number, (*ended)->user.name);
+  co_return Success{.body = std::move(last)};
+}
+
+tl::expected<LoginGuard::Attempt, Problem> AccountRoutes::begin_attempt(const Call& call,
+                                                                        const std::string& name) {
+  const std::vector<std::string> tokens = cookies_of(call.request, browser_cookie(call.request));
+  auto attempt = guard_.begin({address_of(call.caller.peer), name, tokens.empty() ? "" : tokens.front()},
+                              context_.steady_clock());
+  if (attempt) {
+    return std::move(*attempt);
+  }
   return fail({.status = Status::too_many_requests,
                .code = "BACK_OFF",
-               .detail = "Too many wrong passwords.",
-               .next_step = "Try again in " + seconds + " s.",
-               .headers = {{"Retry-After", seconds}}});
+               .detail = "Too many logins are under way.",
+               .next_step = "Try again in 1 s.",
+               .headers = {{"Retry-After", "1"}}});
+}
+
+boost::asio::awaitable<void> AccountRoutes::pause(std::chrono::seconds time) const {
+  if (time.count() != 0) {
+    boost::asio::steady_timer timer(context_.executor, time);
+    co_await timer.async_wait(as_result);
+  }
 }
 
 Answering AccountRoutes::login(const Call& call) {
@@ -191,24 +297,23 @@ Answering AccountRoutes::login(const Call& call) {
     co_return fail(credentials.error());
   }
   const std::string name = credentials->first;
-  if (const auto free = need_no_wait(name); !free) {
-    co_return fail(free.error());
-  }
-  guard_.begin(name, context_.steady_clock());
   Password password(std::move(credentials->second));
+  auto attempt = begin_attempt(call, name);
+  if (!attempt) {
+    co_return fail(attempt.error());
+  }
+  co_await pause(attempt->delay());
   auto authenticated = co_await authenticate(name, std::move(password));
   if (!authenticated) {
-    guard_.end_unjudged(name);
     co_return fail(authenticated.error());
   }
   const std::uint32_t former = call.caller.session;
   Login work{name, std::move(*authenticated), call.caller.peer, former, context_.clock()};
   auto opened = co_await context_.store.run(std::move(work));
   if (!opened) {
-    guard_.end_unjudged(name);
     co_return fail(opened.error());
   }
-  guard_.end(name, opened->has_value());
+  attempt->judged(opened->has_value());
   if (!*opened) {
     spdlog::warn("{}: a login was refused", call.caller.peer);
     co_return fail(
@@ -219,8 +324,11 @@ Answering AccountRoutes::login(const Call& call) {
   context_.sessions.forget(made.ended);
   context_.sessions.forget(former);
   spdlog::info("{}: {} logged in, session {}", call.caller.peer, name, made.session.number);
-  co_return Success{Status::ok, session_json(made.session),
-                    cookie(call.request, made.token, session_lifetime)};
+  const std::string browser = random_token();
+  guard_.know(browser, name, context_.steady_clock());
+  Headers cookies = cookie(session_cookie(call.request), made.token, session_lifetime);
+  cookies.push_back(cookie(browser_cookie(call.request), browser, browser_lifetime).front());
+  co_return Success{Status::ok, session_json(made.session), std::move(cookies)};
 }
 
 Answering AccountRoutes::logout(const Call& call) {
@@ -233,7 +341,7 @@ Answering AccountRoutes::logout(const Call& call) {
     co_return fail(logged_out_here_only(call.request, stored.error()));
   }
   co_return Success{Status::ok, session_json(std::nullopt),
-                    cookie(call.request, "", std::chrono::seconds(0))};
+                    cookie(session_cookie(call.request), "", std::chrono::seconds(0))};
 }
 
 boost::asio::awaitable<tl::expected<std::optional<Authenticated>, Problem>> AccountRoutes::authenticate(
@@ -244,7 +352,14 @@ boost::asio::awaitable<tl::expected<std::optional<Authenticated>, Problem>> Acco
     co_return fail(found.error());
   }
   auto work = [found = std::move(*found), password = std::move(password)] { return judge(found, password); };
-  co_return co_await context_.work.run(std::move(work));
+  auto judged = co_await context_.work.run(std::move(work));
+  if (!judged) {
+    co_return fail(judged.error());
+  }
+  if (!*judged) {
+    co_return fail(problem_of(judged->error()));
+  }
+  co_return std::move(**judged);
 }
 
 Answering AccountRoutes::change_password(const Call& call) {
@@ -253,17 +368,17 @@ Answering AccountRoutes::change_password(const Call& call) {
     co_return fail(passwords.error());
   }
   const std::string name = call.caller.user;
-  if (const auto free = need_no_wait(name); !free) {
-    co_return fail(free.error());
-  }
-  guard_.begin(name, context_.steady_clock());
   Password current(std::move(passwords->first));
+  auto attempt = begin_attempt(call, name);
+  if (!attempt) {
+    co_return fail(attempt.error());
+  }
+  co_await pause(attempt->delay());
   auto authenticated = co_await authenticate(name, std::move(current));
   if (!authenticated) {
-    guard_.end_unjudged(name);
     co_return fail(authenticated.error());
   }
-  guard_.end(name, authenticated->has_value());
+  attempt->judged(authenticated->has_value());
   if (!*authenticated) {
     co_return fail(wrong_credentials(Status::forbidden, "The current password is wrong."));
   }

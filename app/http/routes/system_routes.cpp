@@ -49,8 +49,11 @@ Reply SystemRoutes::configuration() const {
 }
 
 Reply SystemRoutes::metrics() const {
-  return Success{.body = metrics_text(context_.robot, context_.config, context_.view(),
-                                      context_.stream.watchers().size(), std::chrono::steady_clock::now()),
+  const AppCounts counts{.consoles = context_.stream.watchers().size(),
+                         .log_lines_lost = context_.log.lines_lost(),
+                         .role_refusals = context_.role_refusals};
+  return Success{.body = metrics_text(context_.robot, context_.config, context_.view(), counts,
+                                      std::chrono::steady_clock::now()),
                  .text_type = metrics_media_type};
 }
 

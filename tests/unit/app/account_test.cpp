@@ -1,3 +1,6 @@
+#include <algorithm>
+
+#include "http/login_guard.hpp"
 #include "http_fixture.hpp"
 
 namespace interlock::web {
@@ -71,17 +74,103 @@ TEST_F(AccountTest, ADisabledUserCannotLogIn) {
   EXPECT_EQ(try_login("max", password).problem()["code"], "CREDENTIALS");
 }
 
-TEST_F(AccountTest, AfterThreeWrongPasswordsEachAttemptWaits) {
-  for (int i = 0; i < 3; ++i) {
+TEST_F(AccountTest, AfterWrongPasswordsTheRightOneIsLetInAfterADelay) {
+  for (int i = 0; i < 4; ++i) {
     ASSERT_EQ(try_login("max", "wrong horse battery").status, 401u);
   }
-  const Answered waiting = try_login("max", password);
-  EXPECT_EQ(waiting.status, 429u);
-  EXPECT_EQ(waiting.problem()["code"], "BACK_OFF");
-  EXPECT_EQ(waiting.headers[http::field::retry_after], "1");
-  pass(std::chrono::seconds(1));
+  const auto before = std::chrono::steady_clock::now();
   EXPECT_EQ(try_login("max", password).status, 200u);
-  EXPECT_EQ(try_login("max", "wrong horse battery").status, 401u) << "a success ends the waiting";
+  EXPECT_GE(std::chrono::steady_clock::now() - before, std::chrono::seconds(2));
+  EXPECT_EQ(try_login("max", "wrong horse battery").status, 401u) << "a success ends the delay";
+}
+
+TEST_F(AccountTest, ManyAttemptsAtTheSameTimeAreRefusedButNotOfTheBrowserThatTheUserHas) {
+  const Answered login = try_login("max", password);
+  const auto [first, last] = login.headers.equal_range(http::field::set_cookie);
+  ASSERT_EQ(std::distance(first, last), 2);
+  const std::string known(std::next(first)->value());
+  for (int i = 0; i < 4; ++i) {
+    ASSERT_EQ(try_login("max", "wrong horse battery").status, 401u);
+  }
+  std::vector<std::future<Answered>> flood;
+  for (std::size_t i = 0; i < 2 * LoginGuard::pair_places; ++i) {
+    flood.push_back(std::async(std::launch::async, [this] { return try_login("max", "a guess"); }));
+  }
+  // The first to be refused shows that the places are taken, each of them for two seconds at least.
+  const auto is_done = [](const auto& each) {
+    return each.valid() && each.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  };
+  auto refused = flood.end();
+  while (refused == flood.end()) {
+    refused = std::ranges::find_if(flood, is_done);
+  }
+  const Answered full = refused->get();
+  EXPECT_EQ(full.status, 429u);
+  EXPECT_EQ(full.problem()["code"], "BACK_OFF");
+  EXPECT_EQ(full.headers[http::field::retry_after], "1");
+  Request request{http::verb::post, "/api/login", 11, json{{"name", "max"}, {"password", password}}.dump()};
+  request.set(http::field::cookie, known.substr(0, known.find(';')));
+  EXPECT_EQ(send(request).status, 200u);
+}
+
+TEST_F(AccountTest, AUserSeesAndEndsTheOwnSessionsOnly) {
+  const std::string mine = token_by_login("max", password);
+  const std::string other = token_by_login("max", password);
+  (void)session_of(other);
+  const json list = as(mine, [this] { return json::parse(get("/api/sessions").body); });
+  ASSERT_EQ(list.size(), 2u) << list;
+  EXPECT_EQ(list[0]["mine"], false);
+  EXPECT_EQ(list[1]["mine"], true);
+  EXPECT_EQ(list[1]["user"], "max");
+  EXPECT_EQ(list[1]["since"], iso_8601(now()));
+  EXPECT_EQ(list[1]["last_use"], iso_8601(now()));
+  EXPECT_THAT(list[1]["address"].get<std::string>(), testing::StartsWith("127.0.0.1:"));
+  const auto end = [&](const std::string& token, const json& number) {
+    return as(token,
+              [&] { return send({http::verb::delete_, "/api/sessions/" + number.dump(), 11}).status; });
+  };
+  const json of_ada = session_of(ada_)["session"];
+  EXPECT_EQ(end(mine, of_ada), 404u);
+  EXPECT_EQ(end(mine, 999'999), 404u);
+  EXPECT_EQ(end(mine, "x"), 404u);
+  EXPECT_EQ(session_of(ada_)["user"]["name"], "ada");
+  EXPECT_EQ(end(mine, list[0]["session"]), 200u);
+  EXPECT_TRUE(session_of(other)["user"].is_null());
+  EXPECT_EQ(session_of(mine)["user"]["name"], "max");
+  ASSERT_EQ(audit("session_ended").size(), 1u);
+  EXPECT_EQ(audit("session_ended").back()["session"], list[0]["session"]);
+  EXPECT_EQ(end(mine, list[1]["session"]), 200u);
+  EXPECT_EQ(end(mine, list[1]["session"]), 401u);
+}
+
+TEST_F(AccountTest, AnAdministratorSeesAndEndsTheSessionsOfOthers) {
+  const std::string token = token_by_login("max", password);
+  const json number = session_of(token)["session"];
+  const json list = as(ada_, [this] { return json::parse(get("/api/sessions").body); });
+  const auto found = std::ranges::find_if(list, [&](const json& each) { return each["session"] == number; });
+  ASSERT_NE(found, list.end());
+  EXPECT_EQ((*found)["user"], "max");
+  EXPECT_EQ(
+      as(ada_, [&] { return send({http::verb::delete_, "/api/sessions/" + number.dump(), 11}).status; }),
+      200u);
+  EXPECT_TRUE(session_of(token)["user"].is_null());
+  EXPECT_EQ(audit("session_ended").back()["user"], "max");
+}
+
+TEST_F(AccountTest, ARefusalForTheRoleIsLoggedAndCounted) {
+  const std::string token = token_of("vic");
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(as(token, [this] { return get("/api/users"); }).problem()["code"], "ROLE");
+  }
+  EXPECT_THAT(get("/api/metrics").body, HasSubstr("\ninterlock_role_refusals_total 3\n"));
+  EXPECT_THAT(get("/api/metrics").body, HasSubstr("\ninterlock_log_lines_lost_total 0\n"));
+  std::vector<std::string> warnings;
+  for (const LogLine& line : log_->ring().newest(LogRing::capacity, LogLevel::warning)) {
+    if (line.text.starts_with("vic was refused GET /api/users")) {
+      warnings.push_back(line.text);
+    }
+  }
+  EXPECT_EQ(warnings.size(), 1u) << "the log takes repetitions together";
 }
 
 TEST_F(AccountTest, NoPasswordIsInTheAudit) {

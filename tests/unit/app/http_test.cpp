@@ -1,3 +1,5 @@
+#include <boost/asio/read.hpp>
+
 #include "http_fixture.hpp"
 
 namespace interlock::web {
@@ -89,6 +91,67 @@ TEST_F(HttpTest, AHeaderThatIsTooLargeIsRefused) {
 TEST_F(HttpTest, WhatIsNoHttpGetsAnAnswer) {
   EXPECT_EQ(post_raw("HELLO\r\n\r\n").status, 400u);
   EXPECT_EQ(post_raw("POST /api/stop HTTP/1.1\r\nHost: x\r\nContent-Length: x\r\n\r\n").status, 400u);
+}
+
+/** Everything that the server sends until it closes the connection. */
+std::string all_answers(tcp::socket socket, const std::string& bytes) {
+  asio::write(socket, asio::buffer(bytes));
+  std::string answers;
+  beast::error_code ended;
+  asio::read(socket, asio::dynamic_buffer(answers), ended);
+  EXPECT_EQ(ended, asio::error::eof);
+  return answers;
+}
+
+TEST_F(HttpTest, NoByteOfABodyWhoseEndIsUnclearIsTakenForARequest) {
+  const std::string smuggled = "POST /api/stop HTTP/1.1\r\nHost: localhost\r\n\r\n";
+  const std::string length = "Content-Length: " + std::to_string(smuggled.size()) + "\r\n";
+  const std::pair<std::string, std::string> cases[] = {
+      {"Transfer-Encoding: gzip\r\n", "501"},
+      {"Transfer-Encoding: gzip, chunked\r\n", "501"},
+      {"Transfer-Encoding: gzip\r\nTransfer-Encoding: gzip\r\n", "501"},
+      {"Transfer-Encoding: gzip\r\n" + length, "400"},
+      {length + "Transfer-Encoding: gzip\r\n", "400"},
+      {length + "Transfer-Encoding: chunked\r\n", "400"},
+      {"Transfer-Encoding: chunked\r\n" + length, "400"}};
+  for (const auto& [framing, status] : cases) {
+    const std::string answers = all_answers(
+        connect(), "POST /api/nothing HTTP/1.1\r\nHost: localhost\r\n" + framing + "\r\n" + smuggled);
+    EXPECT_THAT(answers, testing::StartsWith("HTTP/1.1 " + status)) << framing;
+    EXPECT_THAT(answers, HasSubstr("application/problem+json")) << framing;
+    EXPECT_THAT(answers, HasSubstr("Connection: close")) << framing;
+    EXPECT_EQ(answers.find("Connection: close"), answers.rfind("Connection: close")) << framing << answers;
+  }
+  EXPECT_EQ(mailbox_->stops.load(), 0u);
+}
+
+TEST_F(HttpTest, ABodyInChunksIsRead) {
+  const Answered answered = post_raw(
+      "POST /api/login HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: "
+      "chunked\r\n\r\n2\r\n{}\r\n0\r\n\r\n");
+  EXPECT_EQ(answered.status, 422u) << answered.body;
+}
+
+TEST_F(HttpTest, ARequestNamesOneHost) {
+  for (const std::string hosts : {"", "Host: localhost\r\nHost: localhost\r\n"}) {
+    for (const std::string line : {"GET /api/status", "POST /api/stop"}) {
+      const Answered answered = post_raw(line + " HTTP/1.1\r\n" + hosts + "\r\n");
+      EXPECT_EQ(answered.status, 400u) << line;
+      EXPECT_EQ(answered.problem()["code"], "MALFORMED") << line;
+    }
+  }
+  EXPECT_EQ(mailbox_->stops.load(), 0u);
+}
+
+TEST_F(HttpTest, AnEncodedSlashReachesNoRoute) {
+  for (const std::string target : {"/api%2fstatus", "/api%2Fstatus", "/api/motors%2f3", "/api%5cstatus",
+                                   "/api/status%00", "/index.html%00", "/%2findex.html"}) {
+    const Answered answered = get(target);
+    EXPECT_EQ(answered.status, 400u) << target;
+    EXPECT_EQ(answered.problem()["code"], "MALFORMED") << target;
+  }
+  EXPECT_EQ(post("/api%2fstop").status, 400u);
+  EXPECT_EQ(mailbox_->stops.load(), 0u);
 }
 
 TEST_F(HttpTest, APageOfAnotherOriginChangesNothing) {

@@ -60,6 +60,62 @@ TEST(Cookie, OfTheSessionNamesThePortThatTheBrowserCameTo) {
   }
 }
 
+Request with_headers(const std::vector<std::pair<http::field, std::string>>& headers, unsigned version = 11) {
+  Request request{http::verb::post, "/", version};
+  for (const auto& [name, value] : headers) {
+    request.insert(name, value);
+  }
+  return request;
+}
+
+TEST(Framing, IsByLengthOrByChunks) {
+  EXPECT_FALSE(check_framing(with_headers({})));
+  EXPECT_FALSE(check_framing(with_headers({{http::field::content_length, "3"}})));
+  EXPECT_FALSE(check_framing(with_headers({{http::field::transfer_encoding, "chunked"}})));
+  EXPECT_FALSE(check_framing(with_headers({{http::field::transfer_encoding, "Chunked"}})));
+}
+
+TEST(Framing, ByAnUnknownOrAStackedCodingIsNotImplemented) {
+  for (const char* const coding : {"gzip", "gzip, chunked", "chunked, chunked", "identity", "xchunked", ""}) {
+    const auto refused = check_framing(with_headers({{http::field::transfer_encoding, coding}}));
+    ASSERT_TRUE(refused) << coding;
+    EXPECT_EQ(refused->status, Status::not_implemented) << coding;
+    EXPECT_EQ(refused->code, "NOT_IMPLEMENTED") << coding;
+  }
+  EXPECT_TRUE(check_framing(
+      with_headers({{http::field::transfer_encoding, "gzip"}, {http::field::transfer_encoding, "chunked"}})));
+}
+
+TEST(Framing, ByTwoMeansIsMalformed) {
+  for (const char* const coding : {"gzip", "chunked"}) {
+    const auto refused = check_framing(
+        with_headers({{http::field::transfer_encoding, coding}, {http::field::content_length, "3"}}));
+    ASSERT_TRUE(refused) << coding;
+    EXPECT_EQ(refused->status, Status::bad_request) << coding;
+  }
+  EXPECT_TRUE(check_framing(with_headers({{http::field::transfer_encoding, "chunked"}}, 10)));
+}
+
+TEST(Host, IsNamedOnce) {
+  const auto twice =
+      check_host(with_headers({{http::field::host, "localhost"}, {http::field::host, "localhost"}}));
+  ASSERT_TRUE(twice);
+  EXPECT_EQ(twice->code, "MALFORMED");
+  const auto none = check_host(with_headers({}));
+  ASSERT_TRUE(none);
+  EXPECT_EQ(none->code, "MALFORMED");
+  EXPECT_FALSE(check_host(with_headers({{http::field::host, "localhost"}})));
+}
+
+TEST(Path, HasNoSeparatorThatWasEncoded) {
+  EXPECT_EQ(path_of(request_for("/api/%6dotors?x=%2f#%2f")), "/api/motors");
+  EXPECT_EQ(path_of(request_for("/api/users/%252f")), "/api/users/%2f");
+  for (const char* const target :
+       {"/api%2fstop", "/api/motors/3%2Fenable", "/api%5cstop", "/a%5C", "/a%00"}) {
+    EXPECT_EQ(path_of(request_for(target)), "") << target;
+  }
+}
+
 tl::expected<json, Problem> parsed(const std::string& body) {
   Request request = request_for("/");
   request.body() = body;

@@ -191,5 +191,20 @@ TEST_F(OverloadTest, ALogoutThatTheStoreDoesNotTakeSaysSoAndIsRecordedLater) {
   EXPECT_EQ(audit("logout").size(), 1u);
 }
 
+TEST(WorkPool, WithoutMemoryForAPieceOfWorkIsOverloadedAndGoesOn) {
+  asio::io_context network;
+  WorkPool pool;
+  auto too_much = []() -> int { throw std::bad_alloc(); };
+  auto failed = asio::co_spawn(network, pool.run(std::move(too_much)), asio::use_future);
+  auto little = [] { return 5; };
+  auto done = asio::co_spawn(network, pool.run(std::move(little)), asio::use_future);
+  network.run();
+  const auto refused = failed.get();
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().status, Status::service_unavailable);
+  EXPECT_EQ(refused.error().code, "OVERLOADED");
+  EXPECT_EQ(done.get(), 5);
+}
+
 }  // namespace
 }  // namespace interlock::web

@@ -113,5 +113,11 @@ TEST_F(RepeatFilterTest, AMessageStaysOnItsLine) {
               ElementsAre(Pair("GET /a\\x0a2024-01-01 critical forged\\x1b[31m\\x7f\\x0d\\x09tab", 0u)));
 }
 
+TEST_F(RepeatFilterTest, AMessageCannotTurnItsOwnWritingDirectionOrHideAControl) {
+  say("user \xe2\x80\xaenimda\xc2\x9b"
+      "31m\xff");
+  EXPECT_THAT(kept(), ElementsAre(Pair("user \\u202enimda\\u009b31m\\xff", 0u)));
+}
+
 }  // namespace
 }  // namespace interlock

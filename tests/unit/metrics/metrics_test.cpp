@@ -12,16 +12,24 @@ using std::chrono::milliseconds;
 using testing::HasSubstr;
 using testing::Not;
 
-std::string text_of(const ControlView& view, std::size_t consoles = 0) {
-  return metrics_text(test::neuro(), test::neuro_config(), view, consoles, view.received + milliseconds(40));
+std::string text_of(const ControlView& view, const AppCounts& counts = {}) {
+  return metrics_text(test::neuro(), test::neuro_config(), view, counts, view.received + milliseconds(40));
 }
 
 TEST(Metrics, OfAKernelAreLeftOutWhileNoneIsAttached) {
-  const std::string text = text_of(ControlView{}, 3);
+  const std::string text = text_of(ControlView{}, {.consoles = 3});
   EXPECT_THAT(text, HasSubstr("\ninterlock_kernel_connected 0\n"));
   EXPECT_THAT(text, HasSubstr("\ninterlock_consoles 3\n"));
   EXPECT_THAT(text, Not(HasSubstr("interlock_mode")));
   EXPECT_THAT(text, Not(HasSubstr("interlock_snapshot_age_seconds")));
+}
+
+TEST(Metrics, CountLostLinesAndRefusalsWithoutAKernel) {
+  const std::string text = text_of(ControlView{}, {.log_lines_lost = 12, .role_refusals = 5});
+  EXPECT_THAT(text, HasSubstr("# TYPE interlock_log_lines_lost_total counter\n"
+                              "interlock_log_lines_lost_total 12\n"));
+  EXPECT_THAT(text, HasSubstr("# TYPE interlock_role_refusals_total counter\n"
+                              "interlock_role_refusals_total 5\n"));
 }
 
 TEST(Metrics, TellModeAgeAndLoop) {

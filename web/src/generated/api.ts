@@ -55,6 +55,45 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/sessions": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The sessions of one's own; those of everybody for an administrator. */
+        get: operations["listSessions"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/sessions/{session}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                session: number;
+            };
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * Ends a session of one's own, or any session for an administrator; motion authority that it held is released.
+         *     404: there is no such session, or it is somebody else's.
+         */
+        delete: operations["endSession"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/login": {
         parameters: {
             query?: never;
@@ -65,8 +104,12 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Opens a session. After three wrong passwords for a user in a row each further attempt has to wait, 1 s at first,
-         *     doubled each time up to 60 s, whoever tries; a success ends that.
+         * Opens a session. After three wrong passwords in a row for a name from one address, the answer to each further
+         *     attempt from there takes longer, 1 s at first, then 2 s and 4 s; so it does after 64 wrong passwords for any
+         *     names from one address. A success ends that for the name, ten minutes without a wrong password for both. No
+         *     number of wrong passwords refuses the right one. At most 4 attempts for a name and 16 in all are under way from
+         *     one address; one more is refused with 429, except from a browser in which the user has logged in since the app
+         *     started: its cookie `interlock_session_PORT_browser` counts as an address of its own.
          */
         post: operations["login"];
         delete?: never;
@@ -1171,7 +1214,7 @@ export interface components {
             title: string;
             status: number;
             /**
-             * @description Verdict name, or NOT_FOUND, METHOD_NOT_ALLOWED, MALFORMED, INVALID, TOO_LARGE, HOST, ORIGIN, UPGRADE_REQUIRED,
+             * @description Verdict name, or NOT_FOUND, METHOD_NOT_ALLOWED, MALFORMED, INVALID, TOO_LARGE, HOST, ORIGIN, UPGRADE_REQUIRED, NOT_IMPLEMENTED,
              *     LOGIN, CREDENTIALS, BACK_OFF, ROLE, AUTHORITY, REPLAY, EXISTS, LAST_ADMIN, STORE, STOPPED, MODE_HOME, MODE_PATH, NOT_HOMED, SEPARATION,
              *     HAS_SWITCH, POSITIONS_ROBOT, POSITIONS_CONFIG, POSITIONS_VERSION,
              *     NO_KERNEL, NO_BENCH, NO_BLACK_BOX, PEDAL_LAPSED, JOG_LAPSED, CONFIG_MISMATCH, ENDED, OVERLOADED, LATE; of paths NO_PATH, UNREACHABLE, STALE,
@@ -1531,6 +1574,27 @@ export interface components {
              * @description 12 hours after login.
              */
             expires?: string | null;
+        };
+        ListedSession: {
+            /** @description Number of the session. */
+            session: number;
+            user: string;
+            /**
+             * Format: date-time
+             * @description Login.
+             */
+            since: string;
+            /** Format: date-time */
+            last_use: string;
+            /**
+             * Format: date-time
+             * @description At the latest; 12 hours after login.
+             */
+            expires: string;
+            /** @description Address and port of its newest request; null when there was none since the app started. */
+            address: string | null;
+            /** @description The session that asks. */
+            mine: boolean;
         };
         User: {
             name: components["schemas"]["UserName"];
@@ -2136,7 +2200,7 @@ export interface components {
                 "application/problem+json": components["schemas"]["Problem"];
             };
         };
-        /** @description STORE: the store cannot be read or written, or did not answer within 5 s; nothing was changed and nothing will be, unless `detail` says that this is not known. OVERLOADED: too many passwords are being checked. */
+        /** @description STORE: the store cannot be read or written, or did not answer within 5 s; nothing was changed and nothing will be, unless `detail` says that this is not known. OVERLOADED: too many passwords are being checked, or there is no memory to check one. */
         NoStore: {
             headers: {
                 [name: string]: unknown;
@@ -2280,6 +2344,53 @@ export interface operations {
             };
         };
     };
+    listSessions: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Sessions that have not ended, newest first. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ListedSession"][];
+                };
+            };
+            401: components["responses"]["Login"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    endSession: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                session: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Ended; the session as it was. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ListedSession"];
+                };
+            };
+            401: components["responses"]["Login"];
+            404: components["responses"]["NotFound"];
+            503: components["responses"]["NoStore"];
+        };
+    };
     login: {
         parameters: {
             query?: never;
@@ -2314,7 +2425,7 @@ export interface operations {
                 };
             };
             422: components["responses"]["Invalid"];
-            /** @description BACK_OFF; the header Retry-After has the seconds. */
+            /** @description BACK_OFF: too many attempts from that address are under way; the header Retry-After has the seconds. */
             429: {
                 headers: {
                     "Retry-After"?: number;
