@@ -195,7 +195,8 @@ asio::awaitable<void> FrontDoor::serve_stop(tcp::socket socket, tcp protocol, st
   if (!error && !parser.is_done()) {
     std::tie(error, std::ignore) = co_await http::async_read(stream, buffer, parser, as_result);
   }
-  const bool stays = !error && parser.get().keep_alive() && buffer.size() == 0;
+  const bool stays =
+      !error && !check_framing(parser.get()) && parser.get().keep_alive() && buffer.size() == 0;
   prepare(response, stays);
   std::tie(error, std::ignore) = co_await http::async_write(stream, response, as_result);
   if (!error && stays) {
