@@ -243,7 +243,7 @@ boost::asio::awaitable<void> end_on_signal(Mailbox& mailbox, std::function<void(
   const auto executor = co_await boost::asio::this_coro::executor;
   boost::asio::signal_set signals(executor, SIGINT, SIGTERM);
   const int signal = co_await signals.async_wait(boost::asio::use_awaitable);
-  mailbox.stops.fetch_add(1, std::memory_order_release);
+  mailbox.stop();
   spdlog::info("signal {}: ending", signal);
   end_network();
   boost::asio::steady_timer patience(executor, longest_end);

@@ -63,7 +63,7 @@ asio::awaitable<std::optional<Answer>> ControlClient::ask(std::uint32_t kind, st
 }
 
 asio::awaitable<std::optional<StopAnswer>> ControlClient::stop() {
-  return stop_answered(mailbox_.stops.fetch_add(1, std::memory_order_release) + 1);
+  return stop_answered(mailbox_.stop());
 }
 
 asio::awaitable<std::optional<StopAnswer>> ControlClient::stop_answered(std::uint32_t number) {

@@ -52,7 +52,7 @@ class ControlClient {
   boost::asio::awaitable<std::optional<StopAnswer>> stop();
 
   /** As `stop`, by somebody who sees the kernel's answer otherwise. */
-  void stop_unanswered() { mailbox_.stops.fetch_add(1, std::memory_order_release); }
+  void stop_unanswered() { mailbox_.stop(); }
 
   /** Ends MOTION, whatever else waits, and leaves every order open: it goes on when the pedal was released
    * and is pressed again. */

@@ -4,6 +4,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <boost/asio/post.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
@@ -31,6 +32,9 @@ constexpr std::chrono::milliseconds door_beat{33};
 constexpr std::chrono::seconds longest_silence{30};
 constexpr std::chrono::seconds stop_patience{2};
 constexpr std::chrono::milliseconds answer_patience{300};
+/** Of this thread, after which it does not know when that came which it finds; and for how long after. */
+constexpr std::chrono::milliseconds longest_pause{250};
+constexpr std::chrono::milliseconds pause_patience{100};
 
 std::string name_of(const tcp::socket& socket) {
   beast::error_code error;
@@ -113,7 +117,8 @@ asio::awaitable<void> FrontDoor::accept() {
       co_await survive(error);
     } else {
       std::string peer = name_of(socket);
-      wait_for_request(std::move(socket), acceptor_.local_endpoint().protocol(), std::move(peer));
+      wait_for_request({std::move(socket), acceptor_.local_endpoint().protocol(), std::move(peer), false,
+                        steady_clock::now()});
     }
   }
 }
@@ -130,15 +135,14 @@ asio::awaitable<void> FrontDoor::survive(const beast::error_code& error) {
   co_await pause.async_wait(as_result);
 }
 
-void FrontDoor::wait_for_request(tcp::socket socket, tcp protocol, std::string peer) {
+void FrontDoor::wait_for_request(Waiting waiting) {
   if (waiting_.size() == capacity_) {
-    waiting_.erase(waiting_.begin());
+    const auto stranger = std::ranges::find_if(waiting_, [](const auto& each) { return !each.second.known; });
+    waiting_.erase(stranger == waiting_.end() ? waiting_.begin() : stranger);
   }
   const std::uint64_t number = ++last_waiting_;
-  Waiting& guest =
-      waiting_.emplace(number, Waiting{std::move(socket), protocol, std::move(peer), steady_clock::now()})
-          .first->second;
-  guest.socket.async_wait(tcp::socket::wait_read, [this, number](const beast::error_code&) {
+  Waiting& placed = waiting_.emplace(number, std::move(waiting)).first->second;
+  placed.socket.async_wait(tcp::socket::wait_read, [this, number](const beast::error_code&) {
     // One that was closed to make room for another is not found any more.
     const auto found = waiting_.find(number);
     if (found != waiting_.end()) {
@@ -147,34 +151,44 @@ void FrontDoor::wait_for_request(tcp::socket socket, tcp protocol, std::string p
   });
 }
 
-void FrontDoor::look_at(Waiting guest) {
+void FrontDoor::look_at(Waiting waiting) {
   std::array<char, stop_begin.size() + 1> bytes{};
-  const std::string_view begin = peek(guest.socket, bytes);
+  const std::string_view begin = peek(waiting.socket, bytes);
   if (begin.empty()) {
     return;
   }
   if (is_stop(begin)) {
-    launch(executor_, serve_stop(std::move(guest.socket), guest.protocol, std::move(guest.peer)));
+    launch(executor_, serve_stop(std::move(waiting)));
     return;
   }
   beast::error_code error;
-  const int socket = guest.socket.release(error);
+  const int socket = waiting.socket.release(error);
   if (!error) {
-    let_in_({FileDescriptor(socket), guest.protocol, std::move(guest.peer)});
+    let_in_({FileDescriptor(socket), waiting.protocol, std::move(waiting.peer), waiting.known, came()});
   }
+}
+
+/** When that came which is seen now. A thread that stood still cannot tell, so it takes the earliest time. */
+steady_clock::time_point FrontDoor::came() const {
+  const auto now = steady_clock::now();
+  if (now - beat_at_ > longest_pause) {
+    return beat_at_;
+  }
+  return now < pause_felt_until_ ? pause_from_ : now;
 }
 
 void FrontDoor::come_back(Guest guest) {
   asio::post(executor_, [this, guest = std::move(guest)]() mutable {
     auto socket = socket_of(std::move(guest.socket), guest.protocol, executor_);
     if (socket) {
-      wait_for_request(std::move(*socket), guest.protocol, std::move(guest.peer));
+      wait_for_request(
+          {std::move(*socket), guest.protocol, std::move(guest.peer), guest.known, steady_clock::now()});
     }
   });
 }
 
-asio::awaitable<void> FrontDoor::serve_stop(tcp::socket socket, tcp protocol, std::string peer) {
-  beast::tcp_stream stream(std::move(socket));
+asio::awaitable<void> FrontDoor::serve_stop(Waiting waiting) {
+  beast::tcp_stream stream(std::move(waiting.socket));
   stream.expires_after(stop_patience);
   beast::flat_buffer buffer;
   http::request_parser<http::string_body> parser;
@@ -190,19 +204,30 @@ asio::awaitable<void> FrontDoor::serve_stop(tcp::socket socket, tcp protocol, st
   if (problem) {
     response = problem_response(*problem);
   } else {
-    response = co_await stop(parser.get(), peer);
+    response = co_await stop(parser.get(), waiting.peer);
   }
-  if (!error && !parser.is_done()) {
+  // A body that is not there yet is not waited for: the answer is out before.
+  const bool whole =
+      !problem && !check_framing(parser.get()) &&
+      (parser.is_done() || parser.content_length_remaining().value_or(SIZE_MAX) <= buffer.size());
+  if (whole && !parser.is_done()) {
     std::tie(error, std::ignore) = co_await http::async_read(stream, buffer, parser, as_result);
   }
-  const bool stays =
-      !error && !check_framing(parser.get()) && parser.get().keep_alive() && buffer.size() == 0;
+  const bool stays = whole && !error && parser.get().keep_alive() && buffer.size() == 0;
   prepare(response, stays);
+  stream.expires_after(stop_patience);
   std::tie(error, std::ignore) = co_await http::async_write(stream, response, as_result);
   if (!error && stays) {
-    wait_for_request(stream.release_socket(), protocol, std::move(peer));
-  } else {
-    stream.socket().shutdown(tcp::socket::shutdown_send, error);
+    waiting.socket = stream.release_socket();
+    waiting.since = steady_clock::now();
+    wait_for_request(std::move(waiting));
+    co_return;
+  }
+  stream.socket().shutdown(tcp::socket::shutdown_send, error);
+  // What still comes is read and dropped, else the peer may lose the answer.
+  std::array<char, 4096> dropped{};
+  for (std::size_t left = longest_body; left > dropped.size() && !error; left -= dropped.size()) {
+    std::tie(error, std::ignore) = co_await stream.async_read_some(asio::buffer(dropped), as_result);
   }
 }
 
@@ -213,7 +238,7 @@ asio::awaitable<Response> FrontDoor::stop(Request header, std::string peer) {
   if (problem) {
     co_return problem_response(*problem);
   }
-  const std::uint32_t number = mailbox_.stops.fetch_add(1, std::memory_order_release) + 1;
+  const std::uint32_t number = mailbox_.stop();
   if (unrecorded_.load(std::memory_order_relaxed) < most_unrecorded) {
     unrecorded_.fetch_add(1, std::memory_order_relaxed);
     record_({std::move(header), std::move(peer), std::exchange(passed_over_, 0)});
@@ -246,7 +271,13 @@ asio::awaitable<void> FrontDoor::beat() {
   asio::steady_timer timer(executor_);
   for (;;) {
     mailbox_.door_kept.fetch_add(1, std::memory_order_relaxed);
-    const auto oldest = steady_clock::now() - longest_silence;
+    const auto now = steady_clock::now();
+    if (now - beat_at_ > longest_pause) {
+      pause_from_ = beat_at_;
+      pause_felt_until_ = now + pause_patience;
+    }
+    beat_at_ = now;
+    const auto oldest = now - longest_silence;
     while (!waiting_.empty() && waiting_.begin()->second.since < oldest) {
       waiting_.erase(waiting_.begin());
     }

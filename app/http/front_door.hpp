@@ -36,8 +36,9 @@ struct Listen {
 struct Guest {
   FileDescriptor socket;
   boost::asio::ip::tcp protocol = boost::asio::ip::tcp::v4();
-  std::string peer; /**< address and port of the client */
-  std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now(); /**< on its way */
+  std::string peer;                           /**< address and port of the client */
+  bool known = false;                         /**< somebody who was logged in has used it */
+  std::chrono::steady_clock::time_point came; /**< its next request, no later than that */
 };
 
 /** The socket behind a descriptor, for another thread than before; nothing when the system refuses. */
@@ -60,7 +61,7 @@ class FrontDoor {
 
   /**
    * @param capacity how many connections may wait for a request; one more, and that which has waited longest is
-   * closed
+   * closed, of strangers first
    * @param let_in takes a connection on which a request other than STOP begins
    * @param record takes a STOP; `recorded` is to be called once that is done
    *
@@ -96,6 +97,7 @@ class FrontDoor {
     boost::asio::ip::tcp::socket socket;
     boost::asio::ip::tcp protocol;
     std::string peer;
+    bool known = false;
     std::chrono::steady_clock::time_point since;
   };
   struct Waiter {
@@ -103,10 +105,10 @@ class FrontDoor {
     boost::asio::steady_timer timer;
   };
 
-  void wait_for_request(boost::asio::ip::tcp::socket socket, boost::asio::ip::tcp protocol, std::string peer);
-  void look_at(Waiting guest);
-  boost::asio::awaitable<void> serve_stop(boost::asio::ip::tcp::socket socket, boost::asio::ip::tcp protocol,
-                                          std::string peer);
+  void wait_for_request(Waiting waiting);
+  void look_at(Waiting waiting);
+  [[nodiscard]] std::chrono::steady_clock::time_point came() const;
+  boost::asio::awaitable<void> serve_stop(Waiting waiting);
   boost::asio::awaitable<Response> stop(Request header, std::string peer);
   boost::asio::awaitable<void> survive(const boost::system::error_code& error);
 
@@ -119,6 +121,9 @@ class FrontDoor {
   boost::asio::posix::stream_descriptor wake_;
   std::map<std::uint64_t, Waiting> waiting_; /**< by a number that rises: oldest first */
   std::uint64_t last_waiting_ = 0;
+  std::chrono::steady_clock::time_point beat_at_ = std::chrono::steady_clock::time_point::max();
+  std::chrono::steady_clock::time_point pause_from_; /**< of this thread, the last one that was long */
+  std::chrono::steady_clock::time_point pause_felt_until_;
   std::multimap<std::uint32_t, Waiter*> waiters_; /**< by the number of their STOP */
   std::atomic<std::uint32_t> unrecorded_{0};
   std::uint32_t passed_over_ = 0; /**< STOPs that were not recorded one by one */

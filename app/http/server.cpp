@@ -39,11 +39,18 @@ void log_transaction(const Request& request, const Caller& caller, Status status
                 std::string(request.method_string()), path_of(request), static_cast<unsigned>(status));
 }
 
+/** Whether that ends something: then it is better late than never. */
+bool only_ends(std::string_view path) {
+  return path.ends_with("/disable") || path.ends_with("/abort") || path.ends_with("/reject") ||
+         path == "/api/logout" || path == "/api/authority/release";
+}
+
 Problem too_late() {
-  return {.status = Status::service_unavailable,
-          .code = "LATE",
-          .detail = "The app stood still for more than a second after this was sent, and did none of it.",
-          .next_step = "Look at the robot, and ask again."};
+  return {
+      .status = Status::service_unavailable,
+      .code = "LATE",
+      .detail = "The app stood still, or the robot was stopped, after this was sent. Nothing of it was done.",
+      .next_step = "Look at the robot, and ask again."};
 }
 
 Problem malformed_path() {
@@ -78,6 +85,7 @@ Server::Server(const asio::any_io_executor& door, const asio::any_io_executor& e
                Mailbox& mailbox, StaticFiles files)
     : executor_(executor),
       api_(api),
+      mailbox_(mailbox),
       files_(std::move(files)),
       ceiling_(ceiling_of_process()),
       door_(
@@ -105,9 +113,9 @@ void Server::admit(Guest guest) {
   if (!place || !socket) {
     return;
   }
-  auto connection = std::make_shared<Connection>(
-      Connection{beast::tcp_stream(std::move(*socket)), guest.protocol, *place, std::move(guest.peer),
-                 std::chrono::steady_clock::now() - guest.since > longest_hold_up});
+  auto connection =
+      std::make_shared<Connection>(Connection{beast::tcp_stream(std::move(*socket)), guest.protocol, *place,
+                                              std::move(guest.peer), guest.known, is_late(guest.came)});
   const auto listed = connections_.insert(connections_.end(), connection);
   asio::co_spawn(executor_, serve(connection), [this, listed](const std::exception_ptr& thrown) {
     connections_.erase(listed);
@@ -117,11 +125,18 @@ void Server::admit(Guest guest) {
   });
 }
 
+/** Whoever sent it has given up since, or somebody has stopped the robot. */
+bool Server::is_late(std::chrono::steady_clock::time_point came) const {
+  return std::chrono::steady_clock::now() - came > longest_hold_up ||
+         came.time_since_epoch() <= mailbox_.last_stop.load(std::memory_order_relaxed);
+}
+
 void Server::give_back(Connection& connection) {
   beast::error_code error;
   const int socket = connection.stream.release_socket().release(error);
   if (!error) {
-    door_.come_back({FileDescriptor(socket), connection.protocol, std::move(connection.peer)});
+    door_.come_back(
+        {FileDescriptor(socket), connection.protocol, std::move(connection.peer), connection.known, {}});
   }
 }
 
@@ -247,11 +262,11 @@ asio::awaitable<void> Server::serve_stream(Connection& connection, Request reque
   co_await api_.stream().serve(std::move(connection.stream), std::move(request), std::move(caller));
 }
 
-asio::awaitable<AnyResponse> Server::respond(const Request& request, const Connection& connection) {
+asio::awaitable<AnyResponse> Server::respond(const Request& request, Connection& connection) {
   std::optional<Problem> problem = check_host(request);
   if (!problem && !is_safe(request.method())) {
     problem = check_origin(request);
-    if (!problem && connection.late) {
+    if (!problem && connection.late && !only_ends(path_of(request))) {
       problem = too_late();
     }
   }
@@ -266,16 +281,17 @@ asio::awaitable<AnyResponse> Server::respond(const Request& request, const Conne
     co_return problem_response(all_at_work(ceiling_));
   }
   if (path == "/api" || path.starts_with("/api/")) {
-    co_return co_await respond_api(request, connection.peer);
+    co_return co_await respond_api(request, connection);
   }
   co_return co_await files_.serve(request);
 }
 
-asio::awaitable<Response> Server::respond_api(const Request& request, const std::string& peer) {
-  const auto caller = co_await api_.caller_of(request, peer);
+asio::awaitable<Response> Server::respond_api(const Request& request, Connection& connection) {
+  const auto caller = co_await api_.caller_of(request, connection.peer);
   if (!caller) {
     co_return problem_response(caller.error());
   }
+  connection.known = connection.known || caller->session != 0;
   const Reply reply = co_await api_.route(request, *caller);
   log_transaction(request, *caller, reply ? reply->status : reply.error().status);
   co_return reply ? success_response(*reply) : problem_response(reply.error());

@@ -62,8 +62,8 @@ class Server {
     boost::asio::ip::tcp protocol;
     Place place;
     std::string peer; /**< address and port of the client */
-    bool
-        late; /**< its first request has waited for this thread for so long that nobody expects it any more */
+    bool known;       /**< somebody who was logged in has used it */
+    bool late;        /**< nobody expects its first request to be carried out any more */
     boost::beast::flat_buffer buffer = {};
     bool waiting = true; /**< for the rest of a request, hence free to be closed */
     bool closed = false; /**< to make room for another */
@@ -72,8 +72,8 @@ class Server {
   boost::asio::awaitable<void> serve(std::shared_ptr<Connection> connection);
   boost::asio::awaitable<std::uint64_t> body_limit_of(const Request& header, const std::string& peer);
   boost::asio::awaitable<void> serve_stream(Connection& connection, Request request);
-  boost::asio::awaitable<AnyResponse> respond(const Request& request, const Connection& connection);
-  boost::asio::awaitable<Response> respond_api(const Request& request, const std::string& peer);
+  boost::asio::awaitable<AnyResponse> respond(const Request& request, Connection& connection);
+  boost::asio::awaitable<Response> respond_api(const Request& request, Connection& connection);
   boost::asio::awaitable<bool> answer(Connection& connection, Response response, bool head_only,
                                       bool keep_alive);
   boost::asio::awaitable<bool> answer(Connection& connection, FileResponse response, bool head_only,
@@ -83,6 +83,7 @@ class Server {
   boost::asio::awaitable<void> refuse(Connection& connection, Problem problem);
   boost::asio::awaitable<void> record(StopMade made);
   void admit(Guest guest);
+  [[nodiscard]] bool is_late(std::chrono::steady_clock::time_point came) const;
   void give_back(Connection& connection);
   [[nodiscard]] std::size_t open_in(Place place) const;
   std::optional<Place> place_for_another();
@@ -90,6 +91,7 @@ class Server {
 
   boost::asio::any_io_executor executor_;
   Api& api_;
+  const Mailbox& mailbox_;
   StaticFiles files_;
   std::size_t ceiling_;
   std::list<std::shared_ptr<Connection>> connections_;

@@ -165,7 +165,7 @@ void ControlLoop::watch_service() noexcept {
   const bool network = stands_still(network_, mailbox_.served.load(std::memory_order_relaxed));
   const bool door = stands_still(door_, mailbox_.door_kept.load(std::memory_order_relaxed));
   if (!std::exchange(nobody_served_, network || door) && nobody_served_) {
-    mailbox_.stops.fetch_add(1, std::memory_order_release);
+    mailbox_.stop();
   }
 }
 

@@ -109,6 +109,14 @@ struct Mailbox {
   WakeSignal network_wake;          /**< a notice came or an order changed */
   TripleBuffer<StopAnswer> stopped; /**< the newest one, for the door */
   WakeSignal door_wake;             /**< it changed */
+  /** When somebody last stopped the robot. */
+  std::atomic<std::chrono::steady_clock::duration> last_stop{};
+
+  /** A STOP, which stands in no queue; its number. For any thread. */
+  std::uint32_t stop() noexcept {
+    last_stop.store(std::chrono::steady_clock::now().time_since_epoch(), std::memory_order_relaxed);
+    return stops.fetch_add(1, std::memory_order_release) + 1;
+  }
 };
 
 }  // namespace interlock

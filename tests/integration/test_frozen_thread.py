@@ -121,6 +121,22 @@ def test_what_was_asked_long_before_the_network_goes_on_is_not_done(robot: Stack
     assert robot.api.get("/api/proposals").json() == []
 
 
+def test_an_order_from_before_a_STOP_is_refused_although_the_door_saw_neither(robot: Stack) -> None:
+    body = {"slot": LATERAL, "target_counts": -1000}
+    with concurrent.futures.ThreadPoolExecutor() as asking:
+        with frozen(robot.pid("app"), "door"):
+            asked = asking.submit(robot.api.post, "/api/proposals", json=body)
+            begun = plant_tick(robot)
+            wait_until("the order is older than the STOP", lambda: plant_tick(robot) > begun + 500)
+            stopped = asking.submit(robot.visitor().post, "/api/stop")
+            wait_until("both have been sent", lambda: plant_tick(robot) > begun + 700)
+        assert judge(stopped.result()).status_code == 200
+        late = judge(asked.result())
+    assert (late.status_code, late.json()["code"]) == (503, "LATE")
+    press(robot)
+    assert robot.api.get("/api/proposals").json() == []
+
+
 def test_a_signal_ends_an_app_whose_network_stands_still(robot: Stack) -> None:
     propose(robot, -1000)
     wait_until_driven(robot)

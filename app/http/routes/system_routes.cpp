@@ -62,7 +62,9 @@ Answering SystemRoutes::stop(const Call& call) const {
   auto stopping = context_.control.stop();
   // On its way to the kernel before anything is written, be it to a log.
   context_.record_stop(call.caller, 0);
-  co_return Success{Status::ok, stop_json(co_await std::move(stopping))};
+  // No co_await within braces, which GCC 12 compiles wrongly.
+  const auto answer = co_await std::move(stopping);
+  co_return Success{Status::ok, stop_json(answer)};
 }
 
 }  // namespace interlock::web

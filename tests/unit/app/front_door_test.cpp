@@ -133,7 +133,7 @@ TEST_F(FrontDoorTest, AConnectionThatHadAnotherAnswerComesBackAndMayStop) {
   tcp::socket inside(clients_, guest.protocol, guest.socket.release());
   std::string request;
   asio::read_until(inside, asio::dynamic_buffer(request), "\r\n\r\n");
-  door_.come_back({FileDescriptor(inside.release()), guest.protocol, guest.peer});
+  door_.come_back({FileDescriptor(inside.release()), guest.protocol, guest.peer, false, {}});
   send(client, "POST /api/stop");
   EXPECT_NE(answer_of(client).find("200 OK"), std::string::npos);
 }
@@ -165,6 +165,41 @@ TEST_F(FrontDoorTest, WhoeverHasWaitedLongestMakesRoom) {
   EXPECT_EQ(answer_of(idle.front()), "") << "closed";
   send(idle.back(), "POST /api/stop");
   EXPECT_NE(answer_of(idle.back()).find("200 OK"), std::string::npos);
+}
+
+TEST_F(FrontDoorTest, StrangersMakeRoomForThoseWhoWereLoggedIn) {
+  tcp::socket known = connect();
+  send(known, "GET /api/motors");
+  Guest guest = next_guest();
+  tcp::socket inside(clients_, guest.protocol, guest.socket.release());
+  std::string request;
+  asio::read_until(inside, asio::dynamic_buffer(request), "\r\n\r\n");
+  door_.come_back({FileDescriptor(inside.release()), guest.protocol, guest.peer, true, {}});
+  std::vector<tcp::socket> strangers;
+  for (std::size_t i = 0; i < 2 * capacity; ++i) {
+    strangers.push_back(connect());
+  }
+  EXPECT_EQ(answer_of(strangers.front()), "") << "closed";
+  send(known, "POST /api/stop");
+  EXPECT_NE(answer_of(known).find("200 OK"), std::string::npos);
+}
+
+TEST_F(FrontDoorTest, WhatIsFoundAfterALongPauseCameNoLaterThanThePauseBegan) {
+  constexpr std::chrono::milliseconds pause{600};
+  tcp::socket client = connect();
+  const auto ended = in_door([&] {
+    send(client, "GET /api/status");
+    std::this_thread::sleep_for(pause);
+    return std::chrono::steady_clock::now();
+  });
+  EXPECT_LE(next_guest().came, ended - pause);
+}
+
+TEST_F(FrontDoorTest, AStopWhoseBodyIsNotThereYetIsAnsweredAtOnce) {
+  tcp::socket client = connect();
+  asio::write(client, asio::buffer("POST /api/stop HTTP/1.1\r\nHost: 127.0.0.1:" +
+                                   std::to_string(door_.port()) + "\r\nContent-Length: 9\r\n\r\n"));
+  EXPECT_NE(answer_of(client).find("200 OK"), std::string::npos);
 }
 
 TEST_F(FrontDoorTest, ShowsThatItIsKept) {

@@ -258,6 +258,22 @@ TEST_F(HttpTest, StopIsAnsweredWhileOtherRequestsHang) {
   EXPECT_EQ(hanging.get().status, 200u);
 }
 
+TEST_F(HttpTest, AStopThatTheDoorDoesNotRecogniseIsObeyedAndAnsweredAllTheSame) {
+  const std::string end = " HTTP/1.1\r\nHost: " + host() + "\r\nContent-Length: 0\r\n\r\n";
+  EXPECT_EQ(post_raw("POST /api/%73top" + end).status, 200u);
+  EXPECT_EQ(mailbox_->stops.load(), 1u);
+  tcp::socket socket = connect();
+  asio::write(socket,
+              asio::buffer("GET /api/status HTTP/1.1\r\nHost: " + host() + "\r\n\r\nPOST /api/stop" + end));
+  beast::flat_buffer buffer;
+  for (int i = 0; i < 2; ++i) {
+    http::response<http::string_body> response;
+    http::read(socket, buffer, response);
+    EXPECT_EQ(response.result_int(), 200u);
+  }
+  EXPECT_EQ(mailbox_->stops.load(), 2u);
+}
+
 TEST_F(HttpTest, StopAbortsEveryOpenProposal) {
   show(test::ready_view());
   ASSERT_EQ(post("/api/proposals", R"({"slot":3,"target_counts":1000})").status, 201u);
