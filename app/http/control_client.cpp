@@ -62,9 +62,7 @@ asio::awaitable<std::optional<Answer>> ControlClient::ask(std::uint32_t kind, st
   co_return waiter.result;
 }
 
-asio::awaitable<std::optional<StopAnswer>> ControlClient::stop() {
-  return stop_answered(mailbox_.stop());
-}
+asio::awaitable<std::optional<StopAnswer>> ControlClient::stop() { return stop_answered(mailbox_.stop()); }
 
 asio::awaitable<std::optional<StopAnswer>> ControlClient::stop_answered(std::uint32_t number) {
   if (!view().attached) {
