@@ -20,7 +20,7 @@ namespace interlock::cli {
  * reads, or a stopped terminal, holds up nobody. Lines that find no room in the pipe are lost; a line tells
  * how many, at the next line or flush that finds room. At its end it waits a second at most for the copy.
  *
- * No thread does that: with one in this process, the children of `interlock run` would hear twice that it
+ * No thread does that: with one in this process, the children of `interlock run` would be told twice that it
  * died.
  */
 class QueuedOutput {
