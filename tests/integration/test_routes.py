@@ -217,7 +217,8 @@ def test_an_axis_is_named_by_slot_or_by_name(robot: Stack) -> None:
     axis = judge(robot.api.get(f"/api/motors/{LATERAL}")).json()
     assert judge(robot.api.get(f"/api/motors/{axis['name']}")).json()["slot"] == LATERAL
     unlock(robot)
-    judge(robot.api.post(f"/api/motors/{axis['name']}/enable")).raise_for_status()
+    path = f"/api/motors/{axis['name']}/enable"
+    wait_until("enabled by name", lambda: judge(robot.api.post(path)).status_code == 200)
     assert motor(robot)["state"] == "ENABLED"
 
 
