@@ -5,6 +5,8 @@
  */
 #include <pthread.h>
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <boost/asio/io_context.hpp>
@@ -234,8 +236,22 @@ boost::asio::awaitable<void> tell_service_manager(ServiceManager& manager, const
   }
 }
 
+/** What a thread that people wait for may put before the rest of a busy machine. */
+constexpr int first_in_turn = -10;
+
+/** Before the capabilities are given up: without them it is as the service manager or the user allows. */
+void allow_first_in_turn() {
+  constexpr rlim_t ceiling = 20 - first_in_turn;
+  const rlimit limit{ceiling, ceiling};
+  (void)setrlimit(RLIMIT_NICE, &limit);
+}
+
 /** As `top -H` shows the calling thread. */
 void name_thread(const char* name) { pthread_setname_np(pthread_self(), name); }
+
+/** Puts the calling thread before the rest: once it stands still, motion ends (`ControlLoop::watch_service`).
+ * Where that is not allowed it runs in turn. */
+void run_first() { (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), first_in_turn); }
 
 /** Ends the app on a signal: a STOP first, which waits for no other thread, then the network's thread by
  * itself, or else the process. */
@@ -283,6 +299,7 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
                       options.replay ? LinkUse::replay : LinkUse::control);
   const std::jthread control_thread([&](const std::stop_token& stop) {
     name_thread("control");
+    run_first();
     control.run(stop);
   });
   launch(executor, api.listen());
@@ -302,9 +319,11 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   manager->say_ready();
   const std::jthread door_thread([&](const std::stop_token& stop) {
     name_thread("door");
+    run_first();
     const std::stop_callback end(stop, [&] { door.stop(); });
     door.run();
   });
+  run_first();
   network.run();
   return {};
 }
@@ -331,6 +350,7 @@ int run(const Options& options) {
     std::cerr << "interlock-app: " << reason << std::endl;
     return exit_unusable;
   };
+  allow_first_in_turn();
   if (const auto given_up = give_up_capabilities(); !given_up) {
     return unusable(given_up.error());
   }

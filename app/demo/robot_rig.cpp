@@ -23,9 +23,9 @@ constexpr double record_period_s = 0.005;
 
 tl::unexpected<std::string> failed(std::string what) { return tl::unexpected(std::move(what)); }
 
-std::string ended(const Robot& robot, std::uint32_t slot, const OrderStatus& status) {
-  const Axis* axis = robot.at_slot(slot);
-  return (axis == nullptr ? "the robot" : axis->name) + ": the order ended in phase " +
+std::string ended(const Robot& robot, const TaskStatus& status) {
+  const Axis* axis = robot.at_slot(status.slot);
+  return (axis == nullptr ? "the robot" : axis->name) + ": the task ended in phase " +
          std::to_string(static_cast<int>(status.phase)) + " for reason " +
          std::to_string(static_cast<int>(status.reason)) + ", code " + std::to_string(status.code);
 }
@@ -38,7 +38,7 @@ RobotRig::RobotRig(const Robot& robot, const ilk_config_t& config, const plant::
       config_(config),
       parameters_(parameters),
       plant_(config, parameters, seed),
-      conductor_(RobotPlan(robot, config)) {}
+      modes_(RobotPlan(robot, config)) {}
 
 DemoResult<void> RobotRig::make_ready() {
   return start().and_then([this] { return home(); });
@@ -63,36 +63,26 @@ DemoResult<void> RobotRig::start() {
 
 /** Presses again as often as a step asks for it. */
 DemoResult<void> RobotRig::home() {
-  const auto steps = static_cast<std::uint32_t>(robot_.home_steps.size());
-  conductor_.take(HomeOrder{++proposal_, 0, steps, 0, 0}, state_.system.tick);
-  set_pedal(true);
+  begin_task(HomeTask{0, static_cast<std::uint32_t>(robot_.home_steps.size()), {}});
   const std::uint32_t begun = state_.system.tick;
-  while (is_open(conductor_.home().order.phase) && state_.system.tick - begun < ticks_of(patience_s)) {
+  while (goes_on(begun)) {
     tick();
-    if (conductor_.home().order.reason == OrderReason::press_again) {
+    if (status().reason == TaskReason::press_again) {
       set_pedal(false);
       set_pedal(true);
     }
   }
-  set_pedal(false);
-  const HomeStatus& status = conductor_.home();
-  return status.order.phase == OrderPhase::done ? DemoResult<void>()
-                                                : failed(ended(robot_, status.slot, status.order));
+  return end_task();
 }
 
 DemoResult<void> RobotRig::carry_out(const PathProgram& program) {
   begin_record();
-  conductor_.take(PathOrder{++proposal_, &program, 0}, state_.system.tick);
-  set_pedal(true);
+  begin_task(PathTask{std::make_shared<const PathProgram>(program)});
   const std::uint32_t begun = state_.system.tick;
-  while (is_open(conductor_.path().order.phase) && state_.system.tick - begun < ticks_of(patience_s)) {
+  while (goes_on(begun)) {
     tick();
   }
-  const PathStatus status = conductor_.path();
-  conductor_.end(proposal_, OrderReason::cancelled, state_.system.tick);
-  set_pedal(false);
-  return status.order.phase == OrderPhase::done ? DemoResult<void>()
-                                                : failed(ended(robot_, status.slot, status.order));
+  return end_task();
 }
 
 DemoResult<NeedleInsertion> RobotRig::take_biopsy(const Eigen::Vector3d& target_mm,
@@ -111,24 +101,22 @@ DemoResult<NeedleInsertion> RobotRig::take_biopsy(const Eigen::Vector3d& target_
     return failed(prepared.error());
   }
   begin_record();
-  conductor_.take(BiopsyOrder{++proposal_, &*prepared, 0}, state_.system.tick);
-  set_pedal(true);
+  const std::uint32_t start_tick = prepared->start_tick;
+  begin_task(BiopsyTask{std::make_shared<BiopsyRun>(std::move(*prepared)), {}, start_tick, std::nullopt});
   press_hand(hand_n);
-  follow_biopsy(prepared->start_tick, scene_tick);
+  follow_biopsy(start_tick, scene_tick);
   press_hand(0.0);
-  const BiopsyStatus status = conductor_.biopsy().status();
-  conductor_.end(proposal_, OrderReason::cancelled, state_.system.tick);
-  set_pedal(false);
-  if (status.order.phase != OrderPhase::done) {
-    return failed(ended(robot_, status.slot, status.order) + " " + std::string(status.quantity));
+  const BiopsyFindings found = modes_.biopsy().findings();
+  if (const auto ended = end_task(); !ended) {
+    return failed(ended.error() + " " + std::string(found.quantity));
   }
   const plant::NeedleTruth truth = plant_.surroundings()->truth();
   NeedleInsertion done{Eigen::Map<const Eigen::Vector3d>(truth.tip_mm.data()),
                        truth.depth_mm,
                        {truth.punctures_mm.begin(), truth.punctures_mm.end()},
                        {},
-                       conductor_.biopsy().now().images};
-  std::ranges::copy_if(std::span(status.found_mm).first(status.membranes), std::back_inserter(done.found_mm),
+                       modes_.biopsy().now().images};
+  std::ranges::copy_if(std::span(found.found_mm).first(found.membranes), std::back_inserter(done.found_mm),
                        [](double found_mm) { return found_mm >= 0.0; });
   return done;
 }
@@ -136,7 +124,7 @@ DemoResult<NeedleInsertion> RobotRig::take_biopsy(const Eigen::Vector3d& target_
 /** With both forces zeroed, as nothing touches the sensor now. */
 DemoResult<BiopsyRun> RobotRig::begin_biopsy(const Eigen::Vector3d& target_mm) {
   const Biopsy& biopsy = *robot_.biopsy;
-  const ForceReadings& force = conductor_.biopsy().force();
+  const ForceReadings& force = modes_.biopsy().force();
   const auto zeroed = [&](const SensorChannel& channel, std::span<const std::uint32_t> readings) {
     return ForceCalibration::create(channel, biopsy.units_per_newton)
         .and_then([&](const ForceCalibration& made) { return made.zeroed(readings, ZeroingRules{}); });
@@ -161,16 +149,37 @@ void RobotRig::follow_biopsy(std::uint32_t start_tick, std::uint32_t scene_tick)
   const double started_s = (start_tick - scene_tick) * static_cast<double>(config_.common.period_us) * 1e-6;
   const std::uint32_t begun = state_.system.tick;
   double shown_s = started_s;
-  while (conductor_.biopsy().is_open() && state_.system.tick - begun < ticks_of(patience_s)) {
+  while (goes_on(begun)) {
     tick();
     const auto& image = plant_.surroundings()->newest_image();
     if (image && image->time_s > shown_s) {
       shown_s = image->time_s;
-      conductor_.see({proposal_,
-                      {image->time_s - started_s, Eigen::Map<const Eigen::Vector3d>(image->tip_mm.data()),
-                       Eigen::Map<const Eigen::Vector3d>(image->target_mm.data())}});
+      modes_.see({task_->id,
+                  {image->time_s - started_s, Eigen::Map<const Eigen::Vector3d>(image->tip_mm.data()),
+                   Eigen::Map<const Eigen::Vector3d>(image->target_mm.data())}});
     }
   }
+}
+
+void RobotRig::begin_task(Work work) {
+  const std::uint32_t id = task_ == nullptr ? 1 : task_->id + 1;
+  task_ = std::make_shared<const Task>(Task{.work = std::move(work), .id = id});
+  modes_.take(task_, state_.system.tick);
+  set_pedal(true);
+}
+
+TaskStatus RobotRig::status() const { return modes_.tasks().of(task_->kind()); }
+
+bool RobotRig::goes_on(std::uint32_t since_tick) const {
+  return is_open(status().phase) && state_.system.tick - since_tick < ticks_of(patience_s);
+}
+
+/** Why it is not done, unless it is. */
+DemoResult<void> RobotRig::end_task() {
+  const TaskStatus last = status();
+  modes_.end(task_->id, TaskReason::cancelled, state_.system.tick);
+  set_pedal(false);
+  return last.phase == TaskPhase::done ? DemoResult<void>() : failed(ended(robot_, last));
 }
 
 void RobotRig::press_hand(double newtons) {
@@ -191,8 +200,8 @@ void RobotRig::note() {
   for (std::size_t place = 0; place < robot_.axes.size(); ++place) {
     const std::uint32_t slot = robot_.axes[place].slot;
     record_.axes[place].push_back({state_.axis[slot].position_counts,
-                                   plant_.station(slot)->axis->speed_counts_per_s(),
-                                   conductor_.setpoint(slot), outputs_.command[slot].drive});
+                                   plant_.station(slot)->axis->speed_counts_per_s(), modes_.setpoint(slot),
+                                   outputs_.command[slot].drive});
   }
 }
 
@@ -267,7 +276,7 @@ void RobotRig::tick() {
            &outputs_);
   requests_.clear();
   settle_verdicts();
-  const Wishes wishes = conductor_.tick(snapshot());
+  const Wishes wishes = modes_.tick(snapshot());
   for (const Wish& wish : wishes.all()) {
     sent_.push_back({put(request_of(wish, state_.system.consent)), wish.origin});
   }
@@ -279,7 +288,7 @@ void RobotRig::settle_verdicts() {
     const ilk_verdict_record_t& record = outputs_.verdict[n];
     const auto found = std::ranges::find(sent_, record.sequence, &Sent::sequence);
     if (found != sent_.end()) {
-      conductor_.on_verdict(found->origin, record.verdict, record.tick);
+      modes_.on_verdict(found->origin, record.verdict, record.tick);
       sent_.erase(found);
     }
   }

@@ -15,7 +15,7 @@
 
 #include "demo/motion_record.hpp"
 #include "interlock/kernel.h"
-#include "motion/conductor.hpp"
+#include "motion/mode_manager.hpp"
 #include "plant/plant.hpp"
 #include "targeting/robot_kinematics.hpp"
 
@@ -77,6 +77,10 @@ class RobotRig {
   DemoResult<void> home();
   DemoResult<BiopsyRun> begin_biopsy(const Eigen::Vector3d& target_mm);
   void follow_biopsy(std::uint32_t start_tick, std::uint32_t scene_tick);
+  void begin_task(Work work);
+  [[nodiscard]] TaskStatus status() const;
+  [[nodiscard]] bool goes_on(std::uint32_t since_tick) const;
+  DemoResult<void> end_task();
   void begin_record();
   void note();
   void press_hand(double newtons);
@@ -93,14 +97,14 @@ class RobotRig {
   ilk_config_t config_;
   plant::Parameters parameters_;
   plant::Plant plant_;
-  Conductor conductor_;
+  ModeManager modes_;
   ilk_state_t state_{};
   ilk_inputs_t inputs_{};
   ilk_outputs_t outputs_{};
   std::vector<ilk_request_t> requests_;
   std::vector<Sent> sent_;
   std::uint32_t sequence_ = 0;
-  std::uint32_t proposal_ = 0;
+  TaskReference task_; /**< the newest */
   MotionRecord record_;
   std::uint32_t record_tick_ = 0; /**< at which the newest motion was ordered */
 };

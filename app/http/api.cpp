@@ -57,19 +57,20 @@ Api::Api(const asio::any_io_executor& executor, const Robot& robot, const ilk_co
 void Api::follow_proposals() {
   book_.on_change([this](const Proposal& proposal) {
     json message = to_json(proposal);
-    spdlog::info("proposal {} of {}: {}: {}", proposal.id, proposal.author, state_name(proposal.state),
+    spdlog::info("proposal {} of {}: {}: {}", proposal.id, proposal.task->author, state_name(proposal.state),
                  proposal.detail);
     AuditEntry entry = context_.entry({}, AuditKind::proposal, message);
     const auto& holding = authority_.holder();
-    entry.actor = proposal.author;
-    if (holding && holding->user == proposal.author) {
+    entry.actor = proposal.task->author;
+    if (holding && holding->user == proposal.task->author) {
       entry.session = holding->session;
     }
     context_.store.note(std::move(entry));
     message["type"] = "proposal";
     stream_.send_text(message);
     navigation_.tell(proposal);
-    if (proposal.state == ProposalState::done && proposal.path.program == trajectory_.program) {
+    const PathTask* path = proposal.work<PathTask>();
+    if (proposal.state == ProposalState::done && path != nullptr && path->program == trajectory_.program) {
       trajectory_ = {};
     }
   });

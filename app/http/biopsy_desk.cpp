@@ -64,9 +64,8 @@ BiopsyDesk::BiopsyDesk(const Robot& robot) : robot_(robot) {
   }
 }
 
-tl::expected<BiopsyDraft, Problem> BiopsyDesk::draft(const std::array<double, 3>& target_mm,
-                                                     const ControlView& view,
-                                                     const std::string& author) const {
+tl::expected<Task, Problem> BiopsyDesk::draft(const std::array<double, 3>& target_mm, const ControlView& view,
+                                              const std::string& author) const {
   if (!hand_ || !needle_) {
     return fail(not_found("needle for a biopsy", "a robot with a [biopsy] table in its file"));
   }
@@ -83,12 +82,8 @@ tl::expected<BiopsyDraft, Problem> BiopsyDesk::draft(const std::array<double, 3>
   if (!run) {
     return fail(invalid("target_mm", run.error().message(), "a target ahead of the needle"));
   }
-  return BiopsyDraft{std::make_shared<BiopsyRun>(std::move(*run)),
-                     target_mm,
-                     author,
-                     start.tick,
-                     std::nullopt,
-                     std::nullopt};
+  return Task{BiopsyTask{std::make_shared<BiopsyRun>(std::move(*run)), target_mm, start.tick, std::nullopt},
+              author, RobotMode::cooperative_biopsy};
 }
 
 void BiopsyDesk::begin(std::uint32_t proposal) {
@@ -97,7 +92,7 @@ void BiopsyDesk::begin(std::uint32_t proposal) {
 }
 
 void BiopsyDesk::follow(const ControlView& view) {
-  if (proposal_ == 0 || view.biopsy.order.proposal != proposal_) {
+  if (proposal_ == 0 || view.biopsy.task != proposal_) {
     return;
   }
   for (std::size_t each = 0; each < view.biopsy.membranes && first_ + each < passed_.size(); ++each) {

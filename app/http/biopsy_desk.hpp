@@ -35,9 +35,8 @@ class BiopsyDesk {
 
   /** A biopsy at a target in the guide frame (motion/biopsy_run.hpp), from where the axes are; 422 INVALID
    * names what steering cannot work with. */
-  [[nodiscard]] tl::expected<BiopsyDraft, Problem> draft(const std::array<double, 3>& target_mm,
-                                                         const ControlView& view,
-                                                         const std::string& author) const;
+  [[nodiscard]] tl::expected<Task, Problem> draft(const std::array<double, 3>& target_mm,
+                                                  const ControlView& view, const std::string& author) const;
 
   /** That proposal was approved: it looks for the membranes from the next one on. */
   void begin(std::uint32_t proposal);

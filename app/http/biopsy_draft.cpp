@@ -23,7 +23,7 @@ tl::expected<void, Problem> check_bend(const Robot& robot, const NeedleTarget& t
 
 }  // namespace
 
-boost::asio::awaitable<tl::expected<BiopsyDraft, Problem>> biopsy_draft(
+boost::asio::awaitable<tl::expected<Task, Problem>> biopsy_draft(
     const Context& context, std::optional<std::array<double, 3>> target_mm, std::string author) {
   if (!context.biopsy.has_needle() || target_mm) {
     if (const auto kernel = context.need_kernel(); !kernel) {
@@ -45,8 +45,8 @@ boost::asio::awaitable<tl::expected<BiopsyDraft, Problem>> biopsy_draft(
   }
   const Eigen::Vector3d& point = target->guide_mm;
   auto draft = context.biopsy.draft({point.x(), point.y(), point.z()}, context.view(), author);
-  co_return std::move(draft).map([&](BiopsyDraft made) {
-    made.scanner_from_guide = target->scanner_from_guide;
+  co_return std::move(draft).map([&](Task made) {
+    std::get<BiopsyTask>(made.work).scanner_from_guide = target->scanner_from_guide;
     made.targeting_revision = revision;
     return made;
   });

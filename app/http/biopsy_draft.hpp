@@ -18,7 +18,7 @@ namespace interlock::web {
  * and NOT_HOMED, a problem of the kinematics, or UNREACHABLE when the target lies farther beside the needle's
  * way than the needle can bend; and the proposal ends when registration, probe or target change.
  */
-boost::asio::awaitable<tl::expected<BiopsyDraft, Problem>> biopsy_draft(
+boost::asio::awaitable<tl::expected<Task, Problem>> biopsy_draft(
     const Context& context, std::optional<std::array<double, 3>> target_mm, std::string author);
 
 }  // namespace interlock::web

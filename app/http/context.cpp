@@ -8,6 +8,8 @@
 namespace interlock::web {
 namespace {
 
+constexpr std::chrono::milliseconds oldest_state{250};
+
 /** The record of what somebody is about to do, who must be logged in still. */
 struct Announcement {
   AuditEntry entry;
@@ -37,6 +39,18 @@ tl::expected<void, Problem> Context::need_kernel() const {
     return fail(no_kernel("No kernel is connected."));
   }
   return {};
+}
+
+tl::expected<void, Problem> Context::need_present_state() const {
+  return need_kernel().and_then([this]() -> tl::expected<void, Problem> {
+    const auto age = std::chrono::duration_cast<std::chrono::milliseconds>(steady_clock() - view().received);
+    if (age > oldest_state) {
+      return fail(no_kernel("The newest state of the robot is " + std::to_string(age.count()) + " ms old, " +
+                            "and motion needs one of the last " + std::to_string(oldest_state.count()) +
+                            " ms."));
+    }
+    return {};
+  });
 }
 
 tl::expected<void, Problem> Context::need_authority(const Caller& caller) const {

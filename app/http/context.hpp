@@ -45,12 +45,16 @@ struct Context {
   std::function<SteadyTime()> steady_clock;
   const std::uint64_t& role_refusals; /**< requests of users whose role does not suffice */
 
-  /** The newest view; what it says of orders is in the book already. The reference holds until the next
+  /** The newest view; what it says of tasks is in the book already. The reference holds until the next
    * call. */
   [[nodiscard]] const ControlView& view() const;
 
   /** 503 NO_KERNEL unless a kernel is connected. */
   [[nodiscard]] tl::expected<void, Problem> need_kernel() const;
+
+  /** As `need_kernel`, and 503 NO_KERNEL when its newest state is more than 250 ms old: nobody may consent to
+   * a motion by what may not be true any more. */
+  [[nodiscard]] tl::expected<void, Problem> need_present_state() const;
 
   /** 409 AUTHORITY, naming who holds it, unless the caller does. */
   [[nodiscard]] tl::expected<void, Problem> need_authority(const Caller& caller) const;

@@ -40,8 +40,9 @@ bool ControlClient::send(Command command) {
         }
         if constexpr (std::is_same_v<decltype(each), Renewal&>) {
           each.held = view().moment(steady_clock::now());
-        } else if constexpr (std::is_same_v<decltype(each), Order&>) {
-          each.held = each.held ? std::optional(view().moment(steady_clock::now())) : std::nullopt;
+        } else if constexpr (std::is_same_v<decltype(each), Approval&>) {
+          each.held = view().moment(steady_clock::now());
+          each.deadline = steady_clock::now() + approval_timeout;
         }
       },
       command);

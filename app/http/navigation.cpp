@@ -195,9 +195,9 @@ void Navigation::lose(const igtl::Peer& peer, const std::string& reason) {
   const bool moves = context_.book.may_move();
   context_.control.pause();
   spdlog::warn("the OpenIGTLink controller {} was lost: {}", peer.address, reason);
-  context_.book.lose_author(ProposalSource::openigtlink, "The OpenIGTLink controller was lost.");
+  context_.book.lose_author(TaskSource::openigtlink, "The OpenIGTLink controller was lost.");
   for (const Proposal& each : context_.book.newest_first()) {
-    if (is_open(each.state) && source_of(each) == ProposalSource::openigtlink) {
+    if (is_open(each.state) && each.task->source == TaskSource::openigtlink) {
       orphans_.push_back(each.id);
     }
   }
@@ -319,7 +319,7 @@ asio::awaitable<void> Navigation::work() {
 
 /** Later: the book is in the middle of what it tells. */
 void Navigation::tell(const Proposal& proposal) {
-  if (source_of(proposal) == ProposalSource::openigtlink) {
+  if (proposal.task->source == TaskSource::openigtlink) {
     asio::post(context_.executor, [this, motion = motion_of(proposal)] { follow(motion); });
   }
 }

@@ -82,7 +82,7 @@ asio::awaitable<Done> change(const Context& context, const Caller& caller, const
   if (!asked) {
     co_return fail({.code = "INTERNAL", .detail = "Nobody carries out such a wish."});
   }
-  const auto changed = co_await change_targeting(context, caller, ProposalSource::openigtlink, asked->make,
+  const auto changed = co_await change_targeting(context, caller, TaskSource::openigtlink, asked->make,
                                                  std::move(asked->body));
   co_return changed.map([&context](const Targeting& targeting) {
     igtl::Outcome outcome = well("It was stored.");
@@ -143,13 +143,13 @@ Done go_manual(const Context& context) {
 }
 
 asio::awaitable<Done> propose_path(const Context& context, const Caller& caller,
-                                   tl::expected<PathDraft, Problem> draft) {
+                                   tl::expected<Task, Problem> draft) {
   if (!draft) {
     co_return fail(draft.error());
   }
-  draft->source = ProposalSource::openigtlink;
-  Draft wanted = std::move(*draft);
-  const auto made = co_await propose(context, caller, std::move(wanted));
+  draft->source = TaskSource::openigtlink;
+  Task task = std::move(*draft);
+  const auto made = co_await propose(context, caller, std::move(task));
   co_return made.map(proposed);
 }
 
@@ -157,11 +157,11 @@ asio::awaitable<Done> enter_mode(const Context& context, const Caller& caller, s
   if (mode == "manual") {
     co_return go_manual(context);
   }
-  tl::expected<PathDraft, Problem> draft = fail({.status = Status::conflict,
-                                                 .code = "MODE",
-                                                 .detail = "\"" + mode + "\" cannot be had from here.",
-                                                 .expected = known_modes,
-                                                 .next_step = "Other modes are entered in the console."});
+  tl::expected<Task, Problem> draft = fail({.status = Status::conflict,
+                                            .code = "MODE",
+                                            .detail = "\"" + mode + "\" cannot be had from here.",
+                                            .expected = known_modes,
+                                            .next_step = "Other modes are entered in the console."});
   if (mode == "trajectory") {
     draft = trajectory_draft(context.trajectory, caller.user);
   } else if (mode == "draping") {
@@ -183,9 +183,8 @@ asio::awaitable<Done> retract(const Context& context, const Caller& caller) {
     co_return fail(not_found("axis that inserts the probe", "a robot with such an axis"));
   }
   PathProgram program{{MoveLeg{{{insertion->slot, insertion->lowest_setpoint_counts()}}, 0.0, 0.0}}};
-  tl::expected<PathDraft, Problem> draft =
-      PathDraft{RobotMode::coordinated, std::make_shared<const PathProgram>(std::move(program)),
-                ProposalSource::openigtlink, std::nullopt, caller.user};
+  tl::expected<Task, Problem> draft = Task{PathTask{std::make_shared<const PathProgram>(std::move(program))},
+                                           caller.user, RobotMode::coordinated};
   co_return co_await propose_path(context, caller, std::move(draft));
 }
 
@@ -202,8 +201,12 @@ asio::awaitable<Done> start_up(const Context& context, const Caller& caller) {
   if (is_homed(context.robot, context.view())) {
     co_return well("Every axis is homed.");
   }
-  Draft wanted = HomeDraft{std::nullopt, std::nullopt, caller.user, ProposalSource::openigtlink};
-  const auto made = co_await propose(context, caller, std::move(wanted));
+  auto homing = home_all(context.robot);
+  if (!homing) {
+    co_return fail(refused(homing.error()));
+  }
+  Task task{std::move(*homing), caller.user, RobotMode::home, TaskSource::openigtlink};
+  const auto made = co_await propose(context, caller, std::move(task));
   co_return made.map(proposed);
 }
 
@@ -241,7 +244,7 @@ asio::awaitable<Done> set_target(const Context& context, const Caller& caller, i
   }
   json body{{"entry_point", *wanted.entry_point}, {"target_point", *wanted.target_point}};
   const auto changed =
-      co_await change_targeting(context, caller, ProposalSource::openigtlink, with_target, std::move(body));
+      co_await change_targeting(context, caller, TaskSource::openigtlink, with_target, std::move(body));
   co_return changed.map([&outcome](const Targeting&) { return outcome; });
 }
 

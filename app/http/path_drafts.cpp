@@ -15,9 +15,8 @@ using nlohmann::json;
 constexpr std::size_t most_ablation_steps = 200;
 constexpr double longest_dwell_s = 3600.0;
 
-PathDraft draft_of(RobotMode mode, PathProgram program, const std::string& author) {
-  return {mode, std::make_shared<const PathProgram>(std::move(program)), ProposalSource::console,
-          std::nullopt, author};
+Task task_of(RobotMode mode, PathProgram program, const std::string& author) {
+  return {PathTask{std::make_shared<const PathProgram>(std::move(program))}, author, mode};
 }
 
 /** Axes that the aim asks more of than they can do. */
@@ -52,8 +51,8 @@ tl::expected<MoveLeg, Problem> ablation_leg_in(const Robot& robot, const json& s
 
 }  // namespace
 
-tl::expected<PathDraft, Problem> coordinated_draft(const Robot& robot, const json& targets,
-                                                   double minimum_duration_s, const std::string& author) {
+tl::expected<Task, Problem> coordinated_draft(const Robot& robot, const json& targets,
+                                              double minimum_duration_s, const std::string& author) {
   if (!targets.is_object() || targets.empty()) {
     return fail(invalid("targets", "targets name no axis", "an object of positions by axis, at least one"));
   }
@@ -71,11 +70,10 @@ tl::expected<PathDraft, Problem> coordinated_draft(const Robot& robot, const jso
     }
     leg.targets.push_back({axis->slot, *counts});
   }
-  return draft_of(RobotMode::coordinated, {{std::move(leg)}}, author);
+  return task_of(RobotMode::coordinated, {{std::move(leg)}}, author);
 }
 
-tl::expected<PathDraft, Problem> ablation_draft(const Robot& robot, const json& steps,
-                                                const std::string& author) {
+tl::expected<Task, Problem> ablation_draft(const Robot& robot, const json& steps, const std::string& author) {
   if (!can_ablate(robot)) {
     return fail(not_found("probe for ablation", "a robot with the mode ablation"));
   }
@@ -90,17 +88,17 @@ tl::expected<PathDraft, Problem> ablation_draft(const Robot& robot, const json& 
     }
     legs.emplace_back(*leg);
   }
-  return draft_of(RobotMode::ablation, {std::move(legs)}, author);
+  return task_of(RobotMode::ablation, {std::move(legs)}, author);
 }
 
-tl::expected<PathDraft, Problem> draping_draft(const Robot& robot, const std::string& author) {
+tl::expected<Task, Problem> draping_draft(const Robot& robot, const std::string& author) {
   if (robot.draping.empty()) {
     return fail(not_found("setpoint for draping", "a [draping] table in the robot's file"));
   }
-  return draft_of(RobotMode::draping, {{MoveLeg{robot.draping, 0.0, 0.0}}}, author);
+  return task_of(RobotMode::draping, {{MoveLeg{robot.draping, 0.0, 0.0}}}, author);
 }
 
-tl::expected<PathDraft, Problem> trajectory_draft(const LoadedTrajectory& loaded, const std::string& author) {
+tl::expected<Task, Problem> trajectory_draft(const LoadedTrajectory& loaded, const std::string& author) {
   if (loaded.program == nullptr) {
     return fail(Problem{.status = Status::conflict,
                         .code = "EMPTY",
@@ -108,12 +106,12 @@ tl::expected<PathDraft, Problem> trajectory_draft(const LoadedTrajectory& loaded
                         .expected = "a loaded trajectory",
                         .next_step = "Load one by PUT /api/trajectory."});
   }
-  return PathDraft{RobotMode::trajectory, loaded.program, ProposalSource::file, loaded.targeting_revision,
-                   author};
+  return Task{PathTask{loaded.program}, author, RobotMode::trajectory, TaskSource::file,
+              loaded.targeting_revision};
 }
 
-boost::asio::awaitable<tl::expected<PathDraft, Problem>> pose_draft(const Context& context, PoseWish wish,
-                                                                    std::string author) {
+boost::asio::awaitable<tl::expected<Task, Problem>> pose_draft(const Context& context, PoseWish wish,
+                                                               std::string author) {
   const std::uint32_t revision = context.book.targeting_revision();
   const auto targeting = co_await present_targeting(context);
   if (!targeting) {
@@ -131,10 +129,9 @@ boost::asio::awaitable<tl::expected<PathDraft, Problem>> pose_draft(const Contex
                            .expected = "a target within reach",
                            .next_step = "Set another target, or propose the reachable pose."});
   }
-  PathDraft draft =
-      draft_of(RobotMode::coordinated, pose_program(context.robot, *alignment, wish.insert), author);
-  draft.targeting_revision = revision;
-  co_return draft;
+  Task task = task_of(RobotMode::coordinated, pose_program(context.robot, *alignment, wish.insert), author);
+  task.targeting_revision = revision;
+  co_return task;
 }
 
 }  // namespace interlock::web

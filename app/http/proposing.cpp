@@ -8,70 +8,55 @@ namespace {
 
 using nlohmann::json;
 
-json detail_of(const MoveDraft& draft, const Robot& robot) {
-  json detail{
-      {"kind", "move"}, {"axis", robot.at_slot(draft.slot)->name}, {"target_counts", draft.target_counts}};
-  if (draft.drive) {
-    detail["drive"] = *draft.drive;
+json detail_of(const Robot& robot, const MoveTask& move) {
+  json detail{{"axis", robot.at_slot(move.slot)->name}, {"target_counts", move.target_counts}};
+  if (move.drive) {
+    detail["drive"] = *move.drive;
   }
   return detail;
 }
 
-json detail_of(const HomeDraft& draft, const Robot& robot) {
-  json detail{{"kind", "home"}};
-  if (draft.slot) {
-    detail["axis"] = robot.at_slot(*draft.slot)->name;
+json detail_of(const Robot& robot, const HomeTask& homing) {
+  if (homing.step_count == 0) {
+    return {{"axis", robot.at_slot(homing.slots.front())->name}};
   }
-  if (draft.step) {
-    detail["step"] = *draft.step;
-  }
-  return detail;
+  return homing.step_count == 1 ? json{{"step", robot.home_steps[homing.first_step].name}} : json::object();
 }
 
-json detail_of(const PathDraft& draft, const Robot& robot) {
+json detail_of(const Robot& robot, const PathTask& path) {
   json axes = json::array();
   for (const Axis& axis : robot.axes) {
-    if (((draft.program->mask() >> axis.slot) & 1u) != 0) {
+    if (((path.program->mask() >> axis.slot) & 1u) != 0) {
       axes.push_back(axis.name);
     }
   }
-  return {{"kind", "path"}, {"mode", mode_name(draft.mode)}, {"axes", std::move(axes)}};
+  return {{"axes", std::move(axes)}};
 }
 
-json detail_of(const SweepDraft& draft, const Robot& robot) {
-  return {{"kind", "sweep"},
-          {"axis", robot.at_slot(draft.slot)->name},
-          {"from_hz", frequency_map::hz_of(draft.steps.word(0))},
-          {"to_hz", frequency_map::hz_of(draft.steps.word(draft.steps.count - 1))},
-          {"count", draft.steps.count}};
+json detail_of(const Robot& robot, const SweepTask& sweep) {
+  return {{"axis", robot.at_slot(sweep.slot)->name},
+          {"from_hz", frequency_map::hz_of(sweep.steps.word(0))},
+          {"to_hz", frequency_map::hz_of(sweep.steps.word(sweep.steps.count - 1))},
+          {"count", sweep.steps.count}};
 }
 
-json detail_of(const BiopsyDraft& draft, const Robot& /*robot*/) {
-  return {{"kind", "biopsy"}, {"target_mm", draft.target_mm}};
+json detail_of(const Robot& /*robot*/, const BiopsyTask& insertion) {
+  return {{"target_mm", insertion.target_mm}};
 }
 
-tl::expected<Proposal, Refusal> enter(ProposalBook& book, const Draft& draft, const ControlView& view) {
-  if (const auto* move = std::get_if<MoveDraft>(&draft)) {
-    return book.propose(*move, view);
-  }
-  if (const auto* path = std::get_if<PathDraft>(&draft)) {
-    return book.propose_path(*path, view);
-  }
-  if (const auto* biopsy = std::get_if<BiopsyDraft>(&draft)) {
-    return book.propose_biopsy(*biopsy, view);
-  }
-  if (const auto* sweep = std::get_if<SweepDraft>(&draft)) {
-    return book.propose_sweep(*sweep, view);
-  }
-  return book.propose_home(std::get<HomeDraft>(draft), view);
+json detail_of(const Robot& robot, const Task& task) {
+  json detail = std::visit([&](const auto& work) { return detail_of(robot, work); }, task.work);
+  detail["kind"] = kind_name(task.kind());
+  detail["mode"] = mode_name(task.mode);
+  return detail;
 }
 
 }  // namespace
 
 boost::asio::awaitable<tl::expected<Proposal, Problem>> propose(const Context& context, const Caller& caller,
-                                                                Draft draft) {
+                                                                Task task) {
   const std::uint32_t stops = context.control.stops();
-  json asked{{"asked", std::visit([&](const auto& each) { return detail_of(each, context.robot); }, draft)}};
+  json asked{{"asked", detail_of(context.robot, task)}};
   const auto announced = co_await context.announce(caller, AuditKind::proposal, std::move(asked));
   if (!announced) {
     co_return fail(announced.error());
@@ -79,11 +64,11 @@ boost::asio::awaitable<tl::expected<Proposal, Problem>> propose(const Context& c
   if (context.control.stops() != stops) {
     co_return fail(stopped_meanwhile("the proposal"));
   }
-  if (const auto kernel = context.need_kernel(); !kernel) {
+  if (const auto kernel = context.need_present_state(); !kernel) {
     co_return fail(kernel.error());
   }
-  auto made = enter(context.book, draft, context.view());
-  if (made && made->kind == ProposalKind::biopsy) {
+  auto made = context.book.propose(std::move(task), context.view());
+  if (made && made->work<BiopsyTask>() != nullptr) {
     context.biopsy.begin(made->id);
   }
   co_return std::move(made).map_error(refused);

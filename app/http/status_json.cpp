@@ -223,7 +223,7 @@ json motor_json(const Axis& axis, const ilk_config_t& config, const ControlView&
              {"unhomed_max_drive", rules.unhomed_max_drive},
              {"deadband_counts", rules.deadband_counts}};
   if (const Proposal* open = book.open_of(axis.slot)) {
-    motor["setpoint_counts"] = open->move.target_counts;
+    motor["setpoint_counts"] = open->work<MoveTask>()->target_counts;
     motor["setpoint"] = open->target;
   }
   return motor;

@@ -107,7 +107,7 @@ OpenTargets open_targets(const Robot& robot, const ProposalBook& book) {
   OpenTargets targets{};
   for (const Axis& axis : robot.axes) {
     if (const Proposal* open = book.open_of(axis.slot)) {
-      targets[axis.slot] = {true, open->move.target_counts};
+      targets[axis.slot] = {true, open->work<MoveTask>()->target_counts};
     }
   }
   return targets;

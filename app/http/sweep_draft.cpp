@@ -13,10 +13,14 @@ constexpr double highest_hz = 195000.0;
 constexpr double shortest_sweep_dwell_s = 0.01;
 constexpr double longest_sweep_dwell_s = 60.0;
 
+Task sweep_task(const SweepTask& sweep, const std::string& author) {
+  return {sweep, author, RobotMode::frequency_sweep};
+}
+
 }  // namespace
 
-tl::expected<SweepDraft, Problem> sweep_draft(const Robot& robot, const nlohmann::json& body,
-                                              const std::string& author) {
+tl::expected<Task, Problem> sweep_draft(const Robot& robot, const nlohmann::json& body,
+                                        const std::string& author) {
   if (!robot.has_mode(mode_name(RobotMode::frequency_sweep))) {
     return fail(not_found("axis for a sweep of frequency", "a robot with the mode frequency_sweep"));
   }
@@ -45,13 +49,13 @@ tl::expected<SweepDraft, Problem> sweep_draft(const Robot& robot, const nlohmann
     return fail(invalid("step_hz", "so many frequencies are too many for a sweep",
                         "steps for at most " + std::to_string(FrequencySteps::most) + " frequencies"));
   }
-  return SweepDraft{axis->slot, *steps, author};
+  return sweep_task({axis->slot, *steps}, author);
 }
 
-tl::expected<SweepDraft, Problem> whole_sweep_draft(const Robot& robot, const std::string& author) {
+tl::expected<Task, Problem> whole_sweep_draft(const Robot& robot, const std::string& author) {
   for (const Axis& axis : robot.axes) {
     if (const auto steps = whole_band(axis, robot.period_us)) {
-      return SweepDraft{axis.slot, *steps, author};
+      return sweep_task({axis.slot, *steps}, author);
     }
   }
   return fail(not_found("axis for a sweep of frequency", "a robot with a high-frequency axis"));

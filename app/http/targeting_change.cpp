@@ -39,8 +39,7 @@ Problem authority_lost() {
 }  // namespace
 
 boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const Context& context,
-                                                                          Caller caller,
-                                                                          ProposalSource source,
+                                                                          Caller caller, TaskSource source,
                                                                           TargetingChange make, json body) {
   const Authority& authority = context.authority;
   auto keep = [robot = &context.robot, make, body = std::move(body), session = caller.session,

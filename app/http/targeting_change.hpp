@@ -19,7 +19,9 @@ using TargetingChange = tl::expected<Targeting, Problem> (*)(Targeting, const nl
  * followed from other values. Nothing changes when the body is wrong (its problem), when the caller has lost
  * session (401 LOGIN) or authority (409 AUTHORITY) meanwhile, or the store fails (503 STORE).
  */
-boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(
-    const Context& context, Caller caller, ProposalSource source, TargetingChange make, nlohmann::json body);
+boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const Context& context,
+                                                                          Caller caller, TaskSource source,
+                                                                          TargetingChange make,
+                                                                          nlohmann::json body);
 
 }  // namespace interlock::web

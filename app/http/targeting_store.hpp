@@ -15,8 +15,8 @@ Stored<Targeting> find_targeting(Transaction& transaction, const Robot& robot);
 
 /** By which way a change of the targeting came. */
 struct TargetingOrigin {
-  ProposalSource source = ProposalSource::console; /**< as of a proposal */
-  std::string client;                              /**< as `Caller::peer` */
+  TaskSource source = TaskSource::console; /**< as of a proposal */
+  std::string client;                      /**< as `Caller::peer` */
 };
 
 /** Stores the values, records in the audit what differs, and notes it in the targeting's history. */

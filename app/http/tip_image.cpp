@@ -31,14 +31,15 @@ tl::expected<void, Problem> show_tip_image(const Context& context, const TipImag
   if (open == nullptr) {
     return fail(no_biopsy());
   }
+  const BiopsyTask& insertion = *open->work<BiopsyTask>();
   interlock::Pose guide_from_image = interlock::Pose::Identity();
   if (image.frame == ImageFrame::scanner) {
-    if (!open->biopsy.scanner_from_guide) {
+    if (!insertion.scanner_from_guide) {
       return fail(no_frame());
     }
-    guide_from_image = open->biopsy.scanner_from_guide->inverse();
+    guide_from_image = insertion.scanner_from_guide->inverse();
   }
-  const std::uint32_t ticks = view.snapshot.state.system.tick - open->biopsy.start_tick;
+  const std::uint32_t ticks = view.snapshot.state.system.tick - insertion.start_tick;
   NeedleImage seen;
   seen.time_s = ticks * (context.robot.period_us * 1e-6) - image.age_ms * 1e-3;
   seen.tip_mm = guide_from_image * image.tip_mm;

@@ -44,8 +44,8 @@ bool AxisMove::held_back(const ilk_snapshot_t& snapshot) noexcept {
   return snapshot.state.system.tick - unblocked_tick_ >= held_back_ticks;
 }
 
-void AxisMove::hold(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
-  lease_.hold(proposal, snapshot.state.system.tick, target_counts_, wanted_drive(snapshot.state.axis[slot_]),
+void AxisMove::hold(std::uint32_t task, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
+  lease_.hold(task, snapshot.state.system.tick, target_counts_, wanted_drive(snapshot.state.axis[slot_]),
               wishes);
 }
 

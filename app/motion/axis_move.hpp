@@ -43,11 +43,11 @@ class AxisMove {
   [[nodiscard]] Progress watch(const ilk_snapshot_t& snapshot) noexcept;
 
   /** Wishes for a MOVE when the lease or the drive has to be renewed. */
-  void hold(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept;
+  void hold(std::uint32_t task, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept;
 
   /** Gives back the lease, if the kernel may still hold one. */
-  void let_go(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
-    lease_.let_go(proposal, snapshot, wishes);
+  void let_go(std::uint32_t task, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
+    lease_.let_go(task, snapshot, wishes);
   }
 
   /** The wish of this tick was not sent: what was sent before it still stands. */

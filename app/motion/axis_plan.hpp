@@ -123,7 +123,7 @@ struct RobotPlan {
     return std::clamp(lease_max_ticks, 1u, longest);
   }
 
-  /** How long an order may wait without executing. */
+  /** How long a task may wait without executing. */
   [[nodiscard]] std::uint32_t patience_ticks() const noexcept {
     constexpr std::uint32_t minute_us = 60'000'000;
     return minute_us / std::max(1u, period_us);

@@ -53,7 +53,7 @@ bool AxisTracker::arrived(const ilk_snapshot_t& snapshot, const PathPoint& point
   return rest_.rests(position, plan_.rules.noise_counts, snapshot.state.system.tick);
 }
 
-void AxisTracker::hold(std::uint32_t proposal, const ilk_snapshot_t& snapshot, const PathPoint& point,
+void AxisTracker::hold(std::uint32_t task, const ilk_snapshot_t& snapshot, const PathPoint& point,
                        Wishes& wishes) noexcept {
   const ilk_axis_t& axis = snapshot.state.axis[slot_];
   // An axis that has just homed stands nearer to its limit than any setpoint may be.
@@ -63,14 +63,14 @@ void AxisTracker::hold(std::uint32_t proposal, const ilk_snapshot_t& snapshot, c
   if (controller_) {
     drive = controller_->update(axis, snapshot.state.system.tick, point.now, target).drive;
   }
-  lease_.hold(proposal, snapshot.state.system.tick, target, drive, wishes);
+  lease_.hold(task, snapshot.state.system.tick, target, drive, wishes);
 }
 
-void AxisTracker::let_go(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
+void AxisTracker::let_go(std::uint32_t task, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
   if (controller_) {
     controller_->observe(snapshot.state.axis[slot_], snapshot.state.system.tick);
   }
-  lease_.let_go(proposal, snapshot, wishes);
+  lease_.let_go(task, snapshot, wishes);
 }
 
 }  // namespace interlock

@@ -36,11 +36,11 @@ class AxisTracker {
   [[nodiscard]] bool arrived(const ilk_snapshot_t& snapshot, const PathPoint& point) noexcept;
 
   /** Wishes for what follows the path from here. */
-  void hold(std::uint32_t proposal, const ilk_snapshot_t& snapshot, const PathPoint& point,
+  void hold(std::uint32_t task, const ilk_snapshot_t& snapshot, const PathPoint& point,
             Wishes& wishes) noexcept;
 
   /** Gives back the lease, if the kernel may still hold one; the velocity is followed on. */
-  void let_go(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept;
+  void let_go(std::uint32_t task, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept;
 
   /** The wish of this tick was not sent: what was sent before it still stands. */
   void on_unsent() noexcept { lease_.on_unsent(); }

@@ -46,12 +46,12 @@ void BiopsyMode::Guided::aim(double offset, double offset_speed, double lease_s)
 }
 
 BiopsyMode::BiopsyMode(const RobotPlan& plan)
-    : needle_(plan.needle),
+    : HeldMode(TaskKind::biopsy, plan),
+      needle_(plan.needle),
       period_s_(plan.period_s()),
       force_patience_ticks_(ticks_of(force_patience_s, period_s_)),
       steering_ticks_(ticks_of(steering_period_s, period_s_)),
       lease_s_(lease_ticks(plan) * period_s_),
-      order_(plan.patience_ticks()),
       force_(needle_ ? needle_->force : ForceInputs{}) {
   if (needle_) {
     const auto guided = [&](std::uint32_t slot) {
@@ -67,72 +67,48 @@ BiopsyMode::BiopsyMode(const RobotPlan& plan)
   }
 }
 
-void BiopsyMode::take(const BiopsyOrder& order, std::uint32_t tick) noexcept {
-  run_ = order.run;
-  status_ = BiopsyStatus{};
+std::uint32_t BiopsyMode::prepare(std::uint32_t tick) noexcept {
+  run_ = work<BiopsyTask>().run.get();
+  findings_ = BiopsyFindings{};
+  findings_.task = status().task;
   now_ = BiopsyNow{};
   command_ = SteeringCommand{};
   cue_mm_ = 0.0;
-  steered_tick_ = order.run->start_tick;
-  order_.take(order.proposal, needle_ ? (1u << needle_->insertion_slot) | (1u << needle_->rotation_slot) : 0u,
-              tick);
+  steered_tick_ = run_->start_tick;
   if (!needle_) {
-    order_.end_all(OrderReason::no_path, tick);
+    end_all(TaskReason::no_path, tick);
+    return 0;
   }
-  tell();
+  return (1u << needle_->insertion_slot) | (1u << needle_->rotation_slot);
 }
 
 void BiopsyMode::see(const SeenImage& seen) noexcept {
-  if (is_open() && seen.proposal == status_.order.proposal) {
+  if (is_open() && seen.task == status().task) {
     const bool taken = run_->compensator.see(seen.image).has_value();
     now_.images += taken ? 1u : 0u;
     now_.images_refused += taken ? 0u : 1u;
   }
 }
 
-void BiopsyMode::end(std::uint32_t proposal, OrderReason reason, std::uint32_t tick) noexcept {
-  order_.end(proposal, reason, tick);
-  tell();
-}
-
-void BiopsyMode::end_all(OrderReason reason, std::uint32_t tick) noexcept {
-  order_.end_all(reason, tick);
-  tell();
-}
-
-void BiopsyMode::end_axis(std::uint32_t slot, OrderReason reason, std::uint32_t tick) noexcept {
-  order_.end_axis(slot, reason, tick);
-  tell();
-}
-
 void BiopsyMode::tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
-  if (!needle_) {
-    return;
+  if (needle_) {
+    force_.look(snapshot);
+    HeldMode::tick(snapshot, wishes);
   }
-  force_.look(snapshot);
-  switch (order_.judge(snapshot)) {
-    case HeldOrder::Work::begin:
-      begin(snapshot);
-      break;
-    case HeldOrder::Work::go_on:
-      go_on(snapshot);
-      break;
-    case HeldOrder::Work::none:
-      break;
-  }
-  tell();
-  const std::uint32_t proposal = status_.order.proposal;
+}
+
+void BiopsyMode::drive(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
   for (Guided* axis : {&insertion_, &rotation_}) {
-    if (order_.executes()) {
-      axis->tracker.hold(proposal, snapshot, axis->point, wishes);
+    if (executes()) {
+      axis->tracker.hold(status().task, snapshot, axis->point, wishes);
     } else {
-      axis->tracker.let_go(proposal, snapshot, wishes);
+      axis->tracker.let_go(status().task, snapshot, wishes);
     }
   }
 }
 
 std::optional<Setpoint> BiopsyMode::setpoint(std::uint32_t slot) const noexcept {
-  if (!order_.executes() || !order_.moves(slot)) {
+  if (!executes() || !moves(slot)) {
     return std::nullopt;
   }
   return (slot == needle_->insertion_slot ? insertion_ : rotation_).point.now;
@@ -152,7 +128,7 @@ void BiopsyMode::go_on(const ilk_snapshot_t& snapshot) noexcept {
   const double time_s = ticks * period_s_;
   seen_tick_ = tick;
   if (force_.readings().age_ticks(tick) > force_patience_ticks_) {
-    fail(OrderReason::force_stale, needle_->force.slot, tick);
+    fail(TaskReason::force_stale, 0, needle_->force.slot, tick);
     return;
   }
   if (!plan_steering(snapshot) || !push(snapshot, time_s) || !listen(snapshot, ticks)) {
@@ -163,12 +139,12 @@ void BiopsyMode::go_on(const ilk_snapshot_t& snapshot) noexcept {
   for (const auto& [axis, slot] :
        {std::pair{&insertion_, needle_->insertion_slot}, std::pair{&rotation_, needle_->rotation_slot}}) {
     if (axis->tracker.off_path(snapshot, axis->point)) {
-      fail(OrderReason::off_path, slot, tick);
+      fail(TaskReason::off_path, 0, slot, tick);
       return;
     }
   }
   if (command_.arrived) {
-    order_.finish(OrderReason::arrived, tick);
+    finish(TaskReason::arrived, tick);
   }
 }
 
@@ -229,9 +205,9 @@ bool BiopsyMode::listen(const ilk_snapshot_t& snapshot, std::uint32_t ticks) noe
     heard = *state;
   }
   const auto records = run_->detector.records();
-  status_.membranes = static_cast<std::uint32_t>(records.size());
+  findings_.membranes = static_cast<std::uint32_t>(records.size());
   for (std::size_t membrane = 0; membrane < records.size(); ++membrane) {
-    status_.found_mm[membrane] = records[membrane].value_or(-1.0);
+    findings_.found_mm[membrane] = records[membrane].value_or(-1.0);
   }
   const double before_mm = cue_mm_;
   cue_mm_ = heard.cue_offset_mm;
@@ -241,21 +217,11 @@ bool BiopsyMode::listen(const ilk_snapshot_t& snapshot, std::uint32_t ticks) noe
   return true;
 }
 
-void BiopsyMode::fail(OrderReason reason, std::uint32_t slot, std::uint32_t tick) noexcept {
-  order_.fail(reason, 0, slot, tick);
-}
-
-/** Ends the order; false, for whoever called. */
+/** Ends the task; false, for whoever called. */
 bool BiopsyMode::fails(const KinematicsError& error, std::uint32_t tick) noexcept {
-  status_.quantity = error.quantity;
-  order_.fail(OrderReason::steering_failed, static_cast<std::uint32_t>(error.code), needle_->insertion_slot,
-              tick);
+  findings_.quantity = error.quantity;
+  fail(TaskReason::steering_failed, static_cast<std::uint32_t>(error.code), needle_->insertion_slot, tick);
   return false;
-}
-
-void BiopsyMode::tell() noexcept {
-  status_.order = order_.status();
-  status_.slot = order_.slot();
 }
 
 double BiopsyMode::depth_mm(const ilk_snapshot_t& snapshot) const noexcept {
@@ -264,22 +230,13 @@ double BiopsyMode::depth_mm(const ilk_snapshot_t& snapshot) const noexcept {
 }
 
 void BiopsyMode::on_unsent(const Wish& wish) noexcept {
-  if (needle_ && wish.origin.proposal == status_.order.proposal) {
+  if (needle_ && wish.origin.task == status().task) {
     if (wish.origin.slot == needle_->insertion_slot) {
       insertion_.tracker.on_unsent();
     } else if (wish.origin.slot == needle_->rotation_slot) {
       rotation_.tracker.on_unsent();
     }
   }
-}
-
-void BiopsyMode::on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept {
-  order_.on_verdict(origin, verdict, tick);
-  tell();
-}
-
-void BiopsyMode::on_verdict_lost(const WishOrigin& /*origin*/, std::uint32_t /*tick*/) noexcept {
-  // A MOVE is renewed before its lease runs out, and each renewal has a verdict of its own.
 }
 
 }  // namespace interlock

@@ -3,9 +3,9 @@
  * Cooperative Biopsy: the surgeon's hand on the force sensor pushes the needle, for as long as the pedal is
  * held; the needle turns towards its target, and trembles for a moment when it has punctured a membrane.
  *
- * The force is never acted upon for longer than 20 ms: after 8 ms without a new reading the order ends, and a
+ * The force is never acted upon for longer than 20 ms: after 8 ms without a new reading the task ends, and a
  * MOVE holds for 10 ms at most, so that an app that falls silent keeps that promise as well. Every error of
- * force or steering ends the order for both axes, which give back their drive.
+ * force or steering ends the task for both axes, which give back their drive.
  */
 #pragma once
 
@@ -15,35 +15,23 @@
 #include "motion/axis_tracker.hpp"
 #include "motion/biopsy_run.hpp"
 #include "motion/force_watch.hpp"
-#include "motion/held_order.hpp"
-#include "motion/mode.hpp"
+#include "motion/held_mode.hpp"
 
 namespace interlock {
 
-class BiopsyMode final : public Mode {
+class BiopsyMode final : public HeldMode {
  public:
   explicit BiopsyMode(const RobotPlan& plan);
-
-  /** Takes an order; an open one is replaced. A robot without a needle refuses it. */
-  void take(const BiopsyOrder& order, std::uint32_t tick) noexcept;
 
   /** An image of tip and target; one that cannot be is counted and changes nothing. */
   void see(const SeenImage& seen) noexcept;
 
-  void end(std::uint32_t proposal, OrderReason reason, std::uint32_t tick) noexcept override;
-  void end_all(OrderReason reason, std::uint32_t tick) noexcept override;
-  void end_axis(std::uint32_t slot, OrderReason reason, std::uint32_t tick) noexcept override;
   void tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept override;
   void on_unsent(const Wish& wish) noexcept override;
-  void on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept override;
-  void on_verdict_lost(const WishOrigin& origin, std::uint32_t tick) noexcept override;
+  [[nodiscard]] std::optional<Setpoint> setpoint(std::uint32_t slot) const noexcept override;
 
-  [[nodiscard]] bool is_open() const noexcept { return order_.is_open(); }
-  [[nodiscard]] const BiopsyStatus& status() const noexcept { return status_; }
+  [[nodiscard]] const BiopsyFindings& findings() const noexcept { return findings_; }
   [[nodiscard]] const BiopsyNow& now() const noexcept { return now_; }
-  /** Where the axis in `slot` should be now; nothing unless an executing biopsy moves it. */
-  [[nodiscard]] std::optional<Setpoint> setpoint(std::uint32_t slot) const noexcept;
-
   [[nodiscard]] const ForceReadings& force() const noexcept { return force_.readings(); }
 
  private:
@@ -62,14 +50,15 @@ class BiopsyMode final : public Mode {
     void aim(double offset, double offset_speed, double lease_s) noexcept;
   };
 
-  void begin(const ilk_snapshot_t& snapshot) noexcept;
-  void go_on(const ilk_snapshot_t& snapshot) noexcept;
+  /** A robot without a needle aborts it. */
+  [[nodiscard]] std::uint32_t prepare(std::uint32_t tick) noexcept override;
+  void begin(const ilk_snapshot_t& snapshot) noexcept override;
+  void go_on(const ilk_snapshot_t& snapshot) noexcept override;
+  void drive(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept override;
   [[nodiscard]] bool plan_steering(const ilk_snapshot_t& snapshot) noexcept;
   [[nodiscard]] bool push(const ilk_snapshot_t& snapshot, double time_s) noexcept;
   [[nodiscard]] bool listen(const ilk_snapshot_t& snapshot, std::uint32_t ticks) noexcept;
-  void fail(OrderReason reason, std::uint32_t slot, std::uint32_t tick) noexcept;
   [[nodiscard]] bool fails(const KinematicsError& error, std::uint32_t tick) noexcept;
-  void tell() noexcept;
   [[nodiscard]] double depth_mm(const ilk_snapshot_t& snapshot) const noexcept;
 
   const std::optional<NeedlePlan> needle_;
@@ -77,10 +66,9 @@ class BiopsyMode final : public Mode {
   const std::uint32_t force_patience_ticks_;
   const std::uint32_t steering_ticks_;
   const double lease_s_;
-  HeldOrder order_;
   ForceWatch force_;
-  BiopsyRun* run_ = nullptr; /**< of the open order */
-  BiopsyStatus status_;
+  BiopsyRun* run_ = nullptr; /**< of the newest task */
+  BiopsyFindings findings_;
   BiopsyNow now_;
   Guided insertion_;
   Guided rotation_;

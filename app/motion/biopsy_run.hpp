@@ -12,7 +12,7 @@
 #include <span>
 #include <string_view>
 
-#include "motion/order.hpp"
+#include "motion/task.hpp"
 #include "robot/biopsy.hpp"
 #include "steering/compensator.hpp"
 #include "steering/cooperative_insertion.hpp"
@@ -22,8 +22,8 @@
 namespace interlock {
 
 /**
- * The parts of a biopsy that remember. From the moment its order is handed over the control thread alone
- * touches it, until `BiopsyStatus` names a later proposal, or its own as final.
+ * The parts of a biopsy that remember. From the moment its task is approved the control thread alone touches
+ * it.
  */
 struct BiopsyRun {
   std::uint32_t start_tick = 0; /**< kernel tick of its time 0 */
@@ -48,28 +48,20 @@ struct BiopsyStart {
 KinematicsResult<BiopsyRun> make_biopsy_run(const Biopsy& biopsy, double period_s, const BiopsyStart& start,
                                             const ForceCalibration& hand, const ForceCalibration& needle);
 
-/** The needle, pushed by the surgeon's hand and turned towards its target. */
-struct BiopsyOrder {
-  std::uint32_t proposal = 0;
-  BiopsyRun* run = nullptr;
-  std::uint32_t stops = 0; /**< as in `Order` */
-};
-
-/** An image for the biopsy of that proposal; ignored by any other one. */
+/** An image for the biopsy of that task; ignored by any other one. */
 struct SeenImage {
-  std::uint32_t proposal = 0;
+  std::uint32_t task = 0;
   NeedleImage image; /**< in the time of its run */
 };
 
-/** Where the newest biopsy stands. */
-struct BiopsyStatus {
-  OrderStatus order;
-  std::uint32_t slot = 0;                                /**< axis or card that the reason is about */
+/** What the newest biopsy has found. */
+struct BiopsyFindings {
+  std::uint32_t task = 0;
   std::string_view quantity;                             /**< that steering could not work with; a literal */
   std::uint32_t membranes = 0;                           /**< found or skipped, of those it was given */
   std::array<double, Biopsy::most_membranes> found_mm{}; /**< depth of each; below 0: skipped */
 
-  bool operator==(const BiopsyStatus&) const = default;
+  bool operator==(const BiopsyFindings&) const = default;
 };
 
 /** What the biopsy does now; of no meaning unless one is open. */

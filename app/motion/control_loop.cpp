@@ -36,7 +36,7 @@ ilk_request_t request_of(std::uint32_t kind, std::uint32_t slot = 0) noexcept {
 ControlLoop::ControlLoop(std::string link_socket, const RobotPlan& plan, Mailbox& mailbox,
                          TickObserver* observer, LinkUse use)
     : link_(std::move(link_socket)),
-      conductor_(plan),
+      modes_(plan),
       mailbox_(mailbox),
       observer_(observer),
       use_(use),
@@ -98,7 +98,7 @@ void ControlLoop::attach_or_back_off(const std::stop_token& stop) noexcept {
 
 void ControlLoop::lose_link() noexcept {
   spdlog::warn("the kernel closed the link, generation {}", link_.generation());
-  conductor_.end_all(OrderReason::link_lost, view_.snapshot.state.system.tick);
+  modes_.end_all(TaskReason::link_lost, view_.snapshot.state.system.tick);
   port_.forget_all([this](const RequestOrigin& origin) { answer_lost(origin); });
   link_.detach();
   view_.attached = false;
@@ -175,10 +175,10 @@ void ControlLoop::obey_stop() noexcept {
     return;
   }
   const bool holder_changed = mailbox_.holder.load(std::memory_order_relaxed) != holder_sent_;
-  conductor_.end_all(nobody_served_   ? OrderReason::nobody_served
-                     : holder_changed ? OrderReason::authority_changed
-                                      : OrderReason::stopped,
-                     view_.snapshot.state.system.tick);
+  modes_.end_all(nobody_served_   ? TaskReason::nobody_served
+                 : holder_changed ? TaskReason::authority_changed
+                                  : TaskReason::stopped,
+                 view_.snapshot.state.system.tick);
   if (port_.send(request_of(ILK_REQUEST_STOP), StopOrigin{stops_seen_})) {
     stops_sent_ = stops_seen_;
   }
@@ -219,11 +219,11 @@ void ControlLoop::dispatch_verdict(const ilk_event_t& event) noexcept {
   }
   const auto* wish = std::get_if<WishOrigin>(&*origin);
   if (wish != nullptr) {
-    conductor_.on_verdict(*wish, verdict, event.tick);
+    modes_.on_verdict(*wish, verdict, event.tick);
   } else if (const auto* ask = std::get_if<AskOrigin>(&*origin)) {
     notify(Answer{ask->ticket, verdict, event.tick});
     if (const auto reason = end_by(ask->kind); reason && verdict == ILK_VERDICT_ACCEPTED) {
-      conductor_.end_axis(ask->slot, *reason, event.tick);
+      modes_.end_axis(ask->slot, *reason, event.tick);
     }
   } else if (const auto* asked_stop = std::get_if<StopOrigin>(&*origin)) {
     answer({asked_stop->stops, verdict, event.tick});
@@ -235,12 +235,12 @@ void ControlLoop::dispatch_verdict(const ilk_event_t& event) noexcept {
   }
 }
 
-/** The kernel may have accepted it, and a snapshot does not show what an axis was in between: an order that
+/** The kernel may have accepted it, and a snapshot does not show what an axis was in between: a task that
  * the acceptance would have ended goes on only if somebody proposes it again. */
 void ControlLoop::lose_verdict(const RequestOrigin& origin) noexcept {
   const auto* ask = std::get_if<AskOrigin>(&origin);
   if (ask != nullptr && end_by(ask->kind)) {
-    conductor_.end_axis(ask->slot, OrderReason::verdict_lost, view_.snapshot.state.system.tick);
+    modes_.end_axis(ask->slot, TaskReason::verdict_lost, view_.snapshot.state.system.tick);
   }
   answer_lost(origin);
 }
@@ -272,38 +272,35 @@ void ControlLoop::take_commands() noexcept {
   }
 }
 
-template <typename AnyOrder>
-bool ControlLoop::take(const AnyOrder& order) noexcept {
+bool ControlLoop::take(const Approval& approval) noexcept {
   const std::uint32_t now = view_.snapshot.state.system.tick;
-  const std::int32_t newer = newer_than_stop(order.stops);
+  const std::int32_t newer = newer_than_stop(approval.stops);
   if (newer > 0) {
     return false;
   }
-  conductor_.take(order, now);
+  const std::uint32_t task = approval.task->id;
+  modes_.take(approval.task, now);
   if (newer < 0) {
-    conductor_.end(order.proposal, nobody_served_ ? OrderReason::nobody_served : OrderReason::stopped, now);
+    modes_.end(task, nobody_served_ ? TaskReason::nobody_served : TaskReason::stopped, now);
+  } else if (std::chrono::steady_clock::now() > approval.deadline) {
+    modes_.end(task, TaskReason::approved_late, now);
   }
-  if constexpr (std::is_same_v<AnyOrder, Order>) {
-    hold(order);
-  }
-  return true;
-}
-
-void ControlLoop::hold(const Order& order) noexcept {
-  if (order.slot < ILK_SLOTS) {
-    Jog& jog = jogs_[order.slot];
-    jog.proposal = order.proposal;
+  const MoveTask* move = std::get_if<MoveTask>(&approval.task->work);
+  if (move != nullptr && move->slot < ILK_SLOTS) {
+    Jog& jog = jogs_[move->slot];
+    jog.task = task;
     jog.lease.release();
-    if (order.held) {
-      jog.lease.hold(*order.held);
+    if (move->jog) {
+      jog.lease.hold(approval.held);
     }
   }
+  return true;
 }
 
 /** One that comes late brings no jog back. */
 bool ControlLoop::take(const Renewal& renewal) noexcept {
   for (Jog& jog : jogs_) {
-    if (jog.proposal == renewal.proposal && jog.lease.held() && !jog.lease.overdue(renewal.held)) {
+    if (jog.task == renewal.task && jog.lease.held() && !jog.lease.overdue(renewal.held)) {
       jog.lease.hold(renewal.held);
     }
   }
@@ -314,19 +311,19 @@ void ControlLoop::end_let_go() noexcept {
   const Moment now = view_.moment(view_.received);
   for (Jog& jog : jogs_) {
     if (jog.lease.overdue(now)) {
-      conductor_.end(jog.proposal, OrderReason::let_go, now.tick);
+      modes_.end(jog.task, TaskReason::let_go, now.tick);
       jog.lease.release();
     }
   }
 }
 
 bool ControlLoop::take(const SeenImage& seen) noexcept {
-  conductor_.see(seen);
+  modes_.see(seen);
   return true;
 }
 
 bool ControlLoop::take(const Cancel& cancel) noexcept {
-  conductor_.end(cancel.proposal, OrderReason::cancelled, view_.snapshot.state.system.tick);
+  modes_.end(cancel.task, TaskReason::cancelled, view_.snapshot.state.system.tick);
   return true;
 }
 
@@ -353,41 +350,42 @@ bool ControlLoop::take(const Ask& ask) noexcept {
 }
 
 void ControlLoop::send_wishes() noexcept {
-  const Wishes wishes = conductor_.tick(view_.snapshot);
+  const Wishes wishes = modes_.tick(view_.snapshot);
   for (const Wish& wish : wishes.all()) {
     if (!port_.send(request_of(wish, view_.snapshot.state.system.consent), wish.origin)) {
-      conductor_.on_unsent(wish);
+      modes_.on_unsent(wish);
     }
   }
 }
 
 void ControlLoop::publish() noexcept {
-  view_.orders = conductor_.orders();
-  view_.home = conductor_.home();
-  view_.path = conductor_.path();
-  view_.sweep = conductor_.sweep();
-  view_.biopsy = conductor_.biopsy().status();
-  view_.biopsy_now = conductor_.biopsy().now();
-  view_.force = conductor_.biopsy().force();
+  view_.tasks = modes_.tasks();
+  view_.sweep_speeds = modes_.sweep_speeds();
+  view_.biopsy = modes_.biopsy().findings();
+  view_.biopsy_now = modes_.biopsy().now();
+  view_.force = modes_.biopsy().force();
   mailbox_.view.writing() = view_;
   mailbox_.view.publish();
-  const bool changed = view_.orders != published_orders_ || view_.home != published_home_ ||
-                       view_.path != published_path_ || view_.sweep != published_sweep_ ||
-                       view_.biopsy != published_biopsy_;
+  const bool changed = view_.tasks != published_tasks_ || view_.biopsy != published_biopsy_;
   if (std::exchange(noticed_, false) || changed) {
-    published_orders_ = view_.orders;
-    published_home_ = view_.home;
-    published_path_ = view_.path;
-    published_sweep_ = view_.sweep;
+    published_tasks_ = view_.tasks;
     published_biopsy_ = view_.biopsy;
     mailbox_.network_wake.signal();
   }
 }
 
+/** Without the link nothing is open that a command could end or renew. */
 void ControlLoop::refuse_commands() noexcept {
   const bool any = mailbox_.commands.read_available() != 0;
-  mailbox_.commands.consume_all(
-      [this](const Command& command) { std::visit([this](const auto& each) { refuse(each); }, command); });
+  mailbox_.commands.consume_all([this](const Command& command) {
+    if (const auto* approval = std::get_if<Approval>(&command)) {
+      const std::uint32_t tick = view_.snapshot.state.system.tick;
+      modes_.take(approval->task, tick);
+      modes_.end(approval->task->id, TaskReason::link_lost, tick);
+    } else if (const auto* ask = std::get_if<Ask>(&command)) {
+      answer_lost(AskOrigin{ask->ticket, ask->kind, ask->slot});
+    }
+  });
   const std::uint32_t stops = mailbox_.stops.load(std::memory_order_acquire);
   if (stops != stops_sent_) {
     stops_sent_ = stops;
@@ -397,27 +395,6 @@ void ControlLoop::refuse_commands() noexcept {
     publish();
   }
 }
-
-template <typename AnyOrder>
-void ControlLoop::refuse(const AnyOrder& order) noexcept {
-  const std::uint32_t tick = view_.snapshot.state.system.tick;
-  conductor_.take(order, tick);
-  conductor_.end(order.proposal, OrderReason::link_lost, tick);
-}
-
-void ControlLoop::refuse(const Renewal& /*renewal*/) noexcept {
-  // Without the link no jog is open.
-}
-
-void ControlLoop::refuse(const SeenImage& /*seen*/) noexcept {
-  // Without the link no biopsy is open.
-}
-
-void ControlLoop::refuse(const Cancel& /*cancel*/) noexcept {
-  // Without the link nothing is open.
-}
-
-void ControlLoop::refuse(const Ask& ask) noexcept { answer_lost(AskOrigin{ask.ticket, ask.kind, ask.slot}); }
 
 void ControlLoop::answer(const StopAnswer& answer) noexcept {
   notify(answer);
@@ -432,7 +409,7 @@ void ControlLoop::answer_lost(const RequestOrigin& origin) noexcept {
   } else if (const auto* asked_stop = std::get_if<StopOrigin>(&origin)) {
     answer({asked_stop->stops, std::nullopt, 0});
   } else if (const auto* wish = std::get_if<WishOrigin>(&origin)) {
-    conductor_.on_verdict_lost(*wish, view_.snapshot.state.system.tick);
+    modes_.on_verdict_lost(*wish, view_.snapshot.state.system.tick);
   }
 }
 

@@ -17,9 +17,9 @@
 
 #include "link/link_client.hpp"
 #include "motion/axis_plan.hpp"
-#include "motion/conductor.hpp"
 #include "motion/held_lease.hpp"
 #include "motion/mailbox.hpp"
+#include "motion/mode_manager.hpp"
 #include "motion/request_port.hpp"
 #include "motion/tick_observer.hpp"
 
@@ -60,26 +60,18 @@ class ControlLoop {
   void dispatch_verdict(const ilk_event_t& event) noexcept;
   void send_heartbeat() noexcept;
   void take_commands() noexcept;
-  template <typename AnyOrder>
-  [[nodiscard]] bool take(const AnyOrder& order) noexcept;
+  [[nodiscard]] bool take(const Approval& approval) noexcept;
   [[nodiscard]] bool take(const Renewal& renewal) noexcept;
   [[nodiscard]] bool take(const SeenImage& seen) noexcept;
   [[nodiscard]] bool take(const Cancel& cancel) noexcept;
   [[nodiscard]] bool take(const Ask& ask) noexcept;
   [[nodiscard]] std::int32_t newer_than_stop(std::uint32_t stops) const noexcept;
   void lose_verdict(const RequestOrigin& origin) noexcept;
-  void hold(const Order& order) noexcept;
   void end_let_go() noexcept;
   void send_wishes() noexcept;
   void publish() noexcept;
 
   void refuse_commands() noexcept;
-  template <typename AnyOrder>
-  void refuse(const AnyOrder& order) noexcept;
-  void refuse(const Renewal& renewal) noexcept;
-  void refuse(const SeenImage& seen) noexcept;
-  void refuse(const Cancel& cancel) noexcept;
-  void refuse(const Ask& ask) noexcept;
   void answer(const StopAnswer& answer) noexcept;
   void answer_lost(const RequestOrigin& origin) noexcept;
   [[nodiscard]] bool room_for_events() const noexcept;
@@ -93,22 +85,19 @@ class ControlLoop {
 
   /** The newest jog of an axis. */
   struct Jog {
-    std::uint32_t proposal = 0;
+    std::uint32_t task = 0;
     HeldLease lease{jog_patience};
   };
 
   LinkClient link_;
   RequestPort port_{link_};
-  Conductor conductor_;
+  ModeManager modes_;
   Mailbox& mailbox_;
   TickObserver* observer_;
   LinkUse use_;
   ControlView view_;
-  OrderTable published_orders_{};
-  HomeStatus published_home_;
-  PathStatus published_path_;
-  SweepStatus published_sweep_;
-  BiopsyStatus published_biopsy_;
+  TaskTable published_tasks_;
+  BiopsyFindings published_biopsy_;
   std::string attach_complaint_;
   std::chrono::milliseconds back_off_;
   std::uint32_t heartbeat_tick_ = 0;

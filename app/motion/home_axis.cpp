@@ -165,24 +165,24 @@ HomeProgress HomeAxis::watch_move(const ilk_snapshot_t& snapshot) noexcept {
   return HomeProgress::going;
 }
 
-void HomeAxis::hold(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
+void HomeAxis::hold(std::uint32_t task, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
   if (progress_ != HomeProgress::going || stopping_) {
-    let_go(proposal, snapshot, wishes);
+    let_go(task, snapshot, wishes);
     return;
   }
   if (kind_ != HomeStepKind::home) {
-    move_.hold(proposal, snapshot, wishes);
+    move_.hold(task, snapshot, wishes);
     return;
   }
   const bool fresh = !judged_ || shows(snapshot, judged_tick_);
   if (!asked_ && !accepted_ && fresh) {
     asked_ = true;
-    wishes.add(Wish{{ILK_REQUEST_HOME, slot_, proposal}, 0, 0, 0, 0});
+    wishes.add(Wish{{ILK_REQUEST_HOME, slot_, task}, 0, 0, 0, 0});
   }
 }
 
-void HomeAxis::let_go(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
-  move_.let_go(proposal, snapshot, wishes);
+void HomeAxis::let_go(std::uint32_t task, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
+  move_.let_go(task, snapshot, wishes);
 }
 
 void HomeAxis::on_unsent(const Wish& wish) noexcept {

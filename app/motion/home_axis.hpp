@@ -42,17 +42,17 @@ class HomeAxis {
   /** MOTION has ended: the kernel dropped what was under way. */
   void drop() noexcept { accepted_ = false; }
 
-  /** The order has ended: what the kernel still does for it is no longer looked at. */
+  /** The task has ended: what the kernel still does for it is no longer looked at. */
   void abandon() noexcept { asked_ = accepted_ = false; }
 
   /** Looks how far the axis has come; only in MOTION, after `start`. */
   HomeProgress watch(const ilk_snapshot_t& snapshot) noexcept;
 
   /** Wishes for what keeps the axis going. */
-  void hold(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept;
+  void hold(std::uint32_t task, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept;
 
   /** Gives back a lease. What the kernel does by itself, homing, only the end of MOTION ends. */
-  void let_go(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept;
+  void let_go(std::uint32_t task, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept;
 
   /** A request that the link did not take. */
   void on_unsent(const Wish& wish) noexcept;

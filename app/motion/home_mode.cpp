@@ -30,25 +30,25 @@ HomeMode::HomeMode(const RobotPlan& plan) : plan_(plan) {
 }
 
 const HomeStepPlan& HomeMode::step() const noexcept {
-  return order_.step_count == 0 ? alone_ : plan_.home_steps[order_.first_step + steps_done_];
+  return homing().step_count == 0 ? alone_ : plan_.home_steps[homing().first_step + steps_done_];
 }
 
-bool HomeMode::names_known_steps(const HomeOrder& order) const noexcept {
+bool HomeMode::names_known_steps(const HomeTask& homing) const noexcept {
   const std::size_t known = plan_.home_steps.size();
-  return order.step_count == 0 ? order.slot < ILK_SLOTS
-                               : order.first_step < known && order.step_count <= known - order.first_step;
+  return homing.step_count == 0 ? !homing.slots.empty() && homing.slots.front() < ILK_SLOTS
+                                : homing.first_step < known && homing.step_count <= known - homing.first_step;
 }
 
-void HomeMode::set_phase(OrderPhase phase, OrderReason reason, std::uint32_t code,
+void HomeMode::set_phase(TaskPhase phase, TaskReason reason, std::uint32_t code,
                          std::uint32_t tick) noexcept {
-  status_.order.phase = phase;
-  status_.order.reason = reason;
-  status_.order.code = code;
-  status_.order.tick = tick;
+  status_.phase = phase;
+  status_.reason = reason;
+  status_.code = code;
+  status_.tick = tick;
 }
 
-/** Ends the order before its time, and whatever the kernel may be doing for it. */
-void HomeMode::finish(OrderPhase phase, OrderReason reason, std::uint32_t code, std::uint32_t tick) noexcept {
+/** Ends the task before its time, and whatever the kernel may be doing for it. */
+void HomeMode::finish(TaskPhase phase, TaskReason reason, std::uint32_t code, std::uint32_t tick) noexcept {
   for (HomeAxis& axis : axes_) {
     stop_owed_ = stop_owed_ || axis.may_be_homing();
     axis.abandon();
@@ -57,26 +57,27 @@ void HomeMode::finish(OrderPhase phase, OrderReason reason, std::uint32_t code, 
   set_phase(phase, reason, code, tick);
 }
 
-void HomeMode::fail(OrderReason reason, std::uint32_t code, std::uint32_t slot, std::uint32_t tick) noexcept {
+void HomeMode::fail(TaskReason reason, std::uint32_t code, std::uint32_t slot, std::uint32_t tick) noexcept {
   status_.slot = slot;
-  finish(OrderPhase::aborted, reason, code, tick);
+  finish(TaskPhase::aborted, reason, code, tick);
 }
 
-void HomeMode::take(const HomeOrder& order, std::uint32_t tick) noexcept {
+void HomeMode::take(const TaskReference& task, std::uint32_t tick) noexcept {
   if (is_open()) {
-    finish(OrderPhase::aborted, OrderReason::cancelled, 0, tick);
+    finish(TaskPhase::aborted, TaskReason::cancelled, 0, tick);
   }
-  status_ = HomeStatus{
-      {order.proposal, OrderPhase::waiting, OrderReason::none, 0, tick}, order.first_step, order.slot, 0};
-  if (!names_known_steps(order)) {
-    set_phase(OrderPhase::refused, OrderReason::kernel_refused, ILK_VERDICT_AXIS, tick);
+  const HomeTask& homing = *std::get_if<HomeTask>(&task->work);
+  status_ = TaskStatus{task->id, TaskPhase::waiting, TaskReason::none, 0, tick};
+  if (!names_known_steps(homing)) {
+    set_phase(TaskPhase::refused, TaskReason::kernel_refused, ILK_VERDICT_AXIS, tick);
     return;
   }
-  order_ = order;
-  alone_ = order.step_count == 0 ? HomeStepPlan(order.slot) : HomeStepPlan();
+  task_ = task;
+  const bool is_alone = homing.step_count == 0;
+  alone_ = is_alone ? HomeStepPlan(homing.slots.front()) : HomeStepPlan();
   involved_ = alone_.mask();
-  for (std::uint32_t i = 0; i < order.step_count; ++i) {
-    involved_ |= plan_.home_steps[order.first_step + i].mask();
+  for (std::uint32_t i = 0; i < homing.step_count; ++i) {
+    involved_ |= plan_.home_steps[homing.first_step + i].mask();
   }
   homed_ = 0;
   steps_done_ = 0;
@@ -86,21 +87,21 @@ void HomeMode::take(const HomeOrder& order, std::uint32_t tick) noexcept {
   begin_step();
 }
 
-void HomeMode::end(std::uint32_t proposal, OrderReason reason, std::uint32_t tick) noexcept {
-  if (status_.order.proposal == proposal) {
+void HomeMode::end(std::uint32_t task, TaskReason reason, std::uint32_t tick) noexcept {
+  if (status_.task == task) {
     end_all(reason, tick);
   }
 }
 
-void HomeMode::end_axis(std::uint32_t slot, OrderReason reason, std::uint32_t tick) noexcept {
+void HomeMode::end_axis(std::uint32_t slot, TaskReason reason, std::uint32_t tick) noexcept {
   if (is_open() && slot < ILK_SLOTS && (involved_ & bit(slot)) != 0) {
     fail(reason, 0, slot, tick);
   }
 }
 
-void HomeMode::end_all(OrderReason reason, std::uint32_t tick) noexcept {
+void HomeMode::end_all(TaskReason reason, std::uint32_t tick) noexcept {
   if (is_open()) {
-    finish(OrderPhase::aborted, reason, 0, tick);
+    finish(TaskPhase::aborted, reason, 0, tick);
   }
 }
 
@@ -110,23 +111,23 @@ void HomeMode::tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
     judge(snapshot);
     settle_stop(snapshot, wishes);
   }
-  const std::uint32_t held = status_.order.phase == OrderPhase::executing ? step().mask() : 0u;
+  const std::uint32_t held = status_.phase == TaskPhase::executing ? step().mask() : 0u;
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     if ((held & bit(slot)) != 0) {
-      axes_[slot].hold(status_.order.proposal, snapshot, wishes);
+      axes_[slot].hold(status_.task, snapshot, wishes);
     } else {
-      axes_[slot].let_go(status_.order.proposal, snapshot, wishes);
+      axes_[slot].let_go(status_.task, snapshot, wishes);
     }
   }
 }
 
-/** Asks for STOP until MOTION has ended; until then no order begins. */
+/** Asks for STOP until MOTION has ended; until then no task begins. */
 void HomeMode::settle_stop(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
   stop_owed_ = stop_owed_ && snapshot.state.system.mode == ILK_MODE_MOTION;
   if (stop_owed_ && (!stop_sent_ || snapshot.state.system.tick - stop_tick_ >= stop_again_ticks)) {
     stop_sent_ = true;
     stop_tick_ = snapshot.state.system.tick;
-    wishes.add(Wish{{ILK_REQUEST_STOP, 0, status_.order.proposal}, 0, 0, 0, 0});
+    wishes.add(Wish{{ILK_REQUEST_STOP, 0, status_.task}, 0, 0, 0, 0});
   }
 }
 
@@ -141,7 +142,7 @@ void HomeMode::judge(const ilk_snapshot_t& snapshot) noexcept {
   }
 }
 
-/** An axis of the order that cannot move ends it, and so does a fault of any other axis that is new. */
+/** An axis of the task that cannot move ends it, and so does a fault of any other axis that is new. */
 bool HomeMode::meets_obstacle(const ilk_snapshot_t& snapshot) noexcept {
   const std::uint32_t faulted = faulted_axes(snapshot) & ~involved_;
   known_faults_ = std::exchange(fresh_, false) ? faulted : known_faults_ & faulted;
@@ -162,7 +163,7 @@ bool HomeMode::expire_when_late(std::uint32_t tick) noexcept {
   if (tick - idle_since_ <= plan_.patience_ticks()) {
     return false;
   }
-  finish(OrderPhase::expired, OrderReason::waited_too_long, 0, tick);
+  finish(TaskPhase::expired, TaskReason::waited_too_long, 0, tick);
   return true;
 }
 
@@ -171,17 +172,17 @@ void HomeMode::wait(const ilk_snapshot_t& snapshot) noexcept {
   for (HomeAxis& axis : axes_) {
     axis.drop();
   }
-  const bool was_executing = status_.order.phase == OrderPhase::executing;
-  if (was_executing || (status_.order.reason == OrderReason::press_again && !slices_used_)) {
-    pause(OrderReason::pedal_released, snapshot);
+  const bool was_executing = status_.phase == TaskPhase::executing;
+  if (was_executing || (status_.reason == TaskReason::press_again && !slices_used_)) {
+    pause(TaskReason::pedal_released, snapshot);
   }
   if (!was_executing) {
     (void)expire_when_late(snapshot.state.system.tick);
   }
 }
 
-void HomeMode::pause(OrderReason reason, const ilk_snapshot_t& snapshot) noexcept {
-  if (status_.order.phase == OrderPhase::executing) {
+void HomeMode::pause(TaskReason reason, const ilk_snapshot_t& snapshot) noexcept {
+  if (status_.phase == TaskPhase::executing) {
     idle_since_ = snapshot.state.system.tick;
   }
   status_.left_counts = 0;
@@ -192,15 +193,15 @@ void HomeMode::pause(OrderReason reason, const ilk_snapshot_t& snapshot) noexcep
       status_.slot = each.slot;
     }
   }
-  set_phase(OrderPhase::paused, reason, 0, snapshot.state.system.tick);
+  set_phase(TaskPhase::paused, reason, 0, snapshot.state.system.tick);
 }
 
 void HomeMode::go_on(const ilk_snapshot_t& snapshot) noexcept {
-  if (status_.order.phase == OrderPhase::executing) {
+  if (status_.phase == TaskPhase::executing) {
     follow_step(snapshot);
   } else if (!expire_when_late(snapshot.state.system.tick) && !slices_used_) {
     status_.left_counts = 0;
-    set_phase(OrderPhase::executing, OrderReason::none, 0, snapshot.state.system.tick);
+    set_phase(TaskPhase::executing, TaskReason::none, 0, snapshot.state.system.tick);
     start_axes(snapshot);
   }
 }
@@ -221,10 +222,10 @@ void HomeMode::follow_step(const ilk_snapshot_t& snapshot) noexcept {
         ++used;
         break;
       case HomeProgress::blocked:
-        fail(OrderReason::blocked, snapshot.gate[each.slot], each.slot, now);
+        fail(TaskReason::blocked, snapshot.gate[each.slot], each.slot, now);
         return;
       case HomeProgress::not_homed:
-        fail(OrderReason::not_homed, 0, each.slot, now);
+        fail(TaskReason::not_homed, 0, each.slot, now);
         return;
     }
   }
@@ -232,14 +233,14 @@ void HomeMode::follow_step(const ilk_snapshot_t& snapshot) noexcept {
     end_step(snapshot);
   } else if (arrived + used == step().axes().size()) {
     slices_used_ = true;
-    pause(OrderReason::press_again, snapshot);
+    pause(TaskReason::press_again, snapshot);
   }
 }
 
 void HomeMode::end_step(const ilk_snapshot_t& snapshot) noexcept {
   ++steps_done_;
-  if (steps_done_ >= order_.step_count) {
-    set_phase(OrderPhase::done, OrderReason::arrived, 0, snapshot.state.system.tick);
+  if (steps_done_ >= homing().step_count) {
+    set_phase(TaskPhase::done, TaskReason::arrived, 0, snapshot.state.system.tick);
     return;
   }
   begin_step();
@@ -247,7 +248,7 @@ void HomeMode::end_step(const ilk_snapshot_t& snapshot) noexcept {
 }
 
 void HomeMode::begin_step() noexcept {
-  status_.step = order_.first_step + steps_done_;
+  status_.step = homing().first_step + steps_done_;
   for (const AxisCounts& each : step().axes()) {
     axes_[each.slot].begin(step().kind(), each.counts);
     if (step().kind() == HomeStepKind::home && (homed_ & bit(each.slot)) != 0) {
@@ -263,7 +264,7 @@ void HomeMode::start_axes(const ilk_snapshot_t& snapshot) noexcept {
 }
 
 void HomeMode::on_unsent(const Wish& wish) noexcept {
-  if (wish.origin.proposal != status_.order.proposal) {
+  if (wish.origin.task != status_.task) {
     return;
   }
   if (wish.origin.kind == ILK_REQUEST_STOP) {
@@ -274,7 +275,7 @@ void HomeMode::on_unsent(const Wish& wish) noexcept {
 }
 
 void HomeMode::on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept {
-  if (!is_open() || origin.proposal != status_.order.proposal || origin.slot >= ILK_SLOTS) {
+  if (!is_open() || origin.task != status_.task || origin.slot >= ILK_SLOTS) {
     return;
   }
   if (origin.kind == ILK_REQUEST_HOME) {
@@ -288,13 +289,13 @@ void HomeMode::on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::
   // pauses.
   if (verdict != ILK_VERDICT_ACCEPTED && verdict != ILK_VERDICT_MODE && origin.kind != ILK_REQUEST_STOP) {
     status_.slot = origin.slot;
-    finish(OrderPhase::refused, OrderReason::kernel_refused, verdict, tick);
+    finish(TaskPhase::refused, TaskReason::kernel_refused, verdict, tick);
   }
 }
 
 void HomeMode::on_verdict_lost(const WishOrigin& origin, std::uint32_t tick) noexcept {
-  if (is_open() && origin.proposal == status_.order.proposal && origin.kind == ILK_REQUEST_HOME) {
-    fail(OrderReason::verdict_lost, 0, origin.slot, tick);
+  if (is_open() && origin.task == status_.task && origin.kind == ILK_REQUEST_HOME) {
+    fail(TaskReason::verdict_lost, 0, origin.slot, tick);
   }
 }
 

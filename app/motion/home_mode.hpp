@@ -5,8 +5,8 @@
  *     waiting -> executing <-> paused -> done, or refused, aborted, expired
  *
  * The kernel homes an axis; the mode asks for it and watches. Release of the pedal drops whatever is under
- * way, and the next press goes on with what is left of the step. One failure ends the whole order. The kernel
- * knows no request that ends homing of one axis, so an order that ends early asks for STOP while the kernel
+ * way, and the next press goes on with what is left of the step. One failure ends the whole task. The kernel
+ * knows no request that ends homing of one axis, so a task that ends early asks for STOP while the kernel
  * may be homing.
  */
 #pragma once
@@ -24,51 +24,51 @@ class HomeMode final : public Mode {
  public:
   explicit HomeMode(const RobotPlan& plan);
 
-  /** Takes an order; an open one is replaced. One that names what the robot has not is refused (AXIS). */
-  void take(const HomeOrder& order, std::uint32_t tick) noexcept;
-
-  void end(std::uint32_t proposal, OrderReason reason, std::uint32_t tick) noexcept override;
-  void end_all(OrderReason reason, std::uint32_t tick) noexcept override;
-  void end_axis(std::uint32_t slot, OrderReason reason, std::uint32_t tick) noexcept override;
+  /** One that names what the robot has not is refused (AXIS). */
+  void take(const TaskReference& task, std::uint32_t tick) noexcept override;
+  void end(std::uint32_t task, TaskReason reason, std::uint32_t tick) noexcept override;
+  void end_all(TaskReason reason, std::uint32_t tick) noexcept override;
+  void end_axis(std::uint32_t slot, TaskReason reason, std::uint32_t tick) noexcept override;
   void tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept override;
   void on_unsent(const Wish& wish) noexcept override;
   void on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept override;
   void on_verdict_lost(const WishOrigin& origin, std::uint32_t tick) noexcept override;
 
-  [[nodiscard]] bool is_open() const noexcept { return interlock::is_open(status_.order.phase); }
-  [[nodiscard]] const HomeStatus& status() const noexcept { return status_; }
+  [[nodiscard]] bool is_open() const noexcept override { return interlock::is_open(status_.phase); }
+  void report(TaskTable& tasks) const noexcept override { tasks.of(TaskKind::home) = status_; }
 
  private:
-  void set_phase(OrderPhase phase, OrderReason reason, std::uint32_t code, std::uint32_t tick) noexcept;
-  void finish(OrderPhase phase, OrderReason reason, std::uint32_t code, std::uint32_t tick) noexcept;
-  void fail(OrderReason reason, std::uint32_t code, std::uint32_t slot, std::uint32_t tick) noexcept;
+  void set_phase(TaskPhase phase, TaskReason reason, std::uint32_t code, std::uint32_t tick) noexcept;
+  void finish(TaskPhase phase, TaskReason reason, std::uint32_t code, std::uint32_t tick) noexcept;
+  void fail(TaskReason reason, std::uint32_t code, std::uint32_t slot, std::uint32_t tick) noexcept;
   void judge(const ilk_snapshot_t& snapshot) noexcept;
   [[nodiscard]] bool meets_obstacle(const ilk_snapshot_t& snapshot) noexcept;
   void wait(const ilk_snapshot_t& snapshot) noexcept;
   void go_on(const ilk_snapshot_t& snapshot) noexcept;
   void follow_step(const ilk_snapshot_t& snapshot) noexcept;
-  void pause(OrderReason reason, const ilk_snapshot_t& snapshot) noexcept;
+  void pause(TaskReason reason, const ilk_snapshot_t& snapshot) noexcept;
   void begin_step() noexcept;
   void end_step(const ilk_snapshot_t& snapshot) noexcept;
   void start_axes(const ilk_snapshot_t& snapshot) noexcept;
   [[nodiscard]] const HomeStepPlan& step() const noexcept;
-  [[nodiscard]] bool names_known_steps(const HomeOrder& order) const noexcept;
+  [[nodiscard]] const HomeTask& homing() const noexcept { return *std::get_if<HomeTask>(&task_->work); }
+  [[nodiscard]] bool names_known_steps(const HomeTask& homing) const noexcept;
   [[nodiscard]] bool expire_when_late(std::uint32_t tick) noexcept;
   void settle_stop(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept;
 
   const RobotPlan plan_;
-  HomeStepPlan alone_; /**< the step of an order for one axis */
+  HomeStepPlan alone_; /**< the step of a task for one axis */
   std::array<HomeAxis, ILK_SLOTS> axes_{};
-  HomeOrder order_;
-  HomeStatus status_;
+  TaskReference task_;
+  TaskStatus status_;
   std::uint32_t steps_done_ = 0;
-  std::uint32_t involved_ = 0;     /**< bit n: the order moves the axis in slot n */
-  std::uint32_t homed_ = 0;        /**< bit n: slot n was homed by this order */
-  std::uint32_t known_faults_ = 0; /**< bit n: slot n is faulted since before the order, and not in it */
-  bool fresh_ = false;             /**< no snapshot was seen since the order came */
+  std::uint32_t involved_ = 0;     /**< bit n: the task moves the axis in slot n */
+  std::uint32_t homed_ = 0;        /**< bit n: slot n was homed by this task */
+  std::uint32_t known_faults_ = 0; /**< bit n: slot n is faulted since before the task, and not in it */
+  bool fresh_ = false;             /**< no snapshot was seen since the task came */
   bool slices_used_ = false;       /**< nothing is left to do in this press */
-  std::uint32_t idle_since_ = 0;   /**< tick since which the order does not execute */
-  bool stop_owed_ = false;         /**< the kernel may be homing for an order that has ended */
+  std::uint32_t idle_since_ = 0;   /**< tick since which the task does not execute */
+  bool stop_owed_ = false;         /**< the kernel may be homing for a task that has ended */
   bool stop_sent_ = false;
   std::uint32_t stop_tick_ = 0; /**< in which STOP was last wished for */
 };

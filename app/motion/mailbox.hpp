@@ -19,15 +19,15 @@
 #include "interlock/sim_bus.h"
 #include "motion/biopsy_run.hpp"
 #include "motion/force_watch.hpp"
-#include "motion/order.hpp"
+#include "motion/task.hpp"
 #include "motion/triple_buffer.hpp"
 #include "motion/wake_signal.hpp"
 
 namespace interlock {
 
-/** Ends the order of a proposal. */
+/** Ends a task. */
 struct Cancel {
-  std::uint32_t proposal = 0;
+  std::uint32_t task = 0;
 };
 
 /** Passes one request to the kernel and brings back its verdict. */
@@ -37,12 +37,11 @@ struct Ask {
   std::uint32_t slot = 0;
   std::int32_t target_counts = 0;                 /**< position of a RESTORE */
   std::chrono::steady_clock::time_point deadline; /**< later than this nobody waits, so it is not sent */
-  std::uint32_t stops = 0;                        /**< as in `Order`; DISABLE is sent all the same */
+  std::uint32_t stops = 0;                        /**< as in `Approval`; DISABLE is sent all the same */
 };
 
 /** Anything that the network threads ask of the control thread. */
-using Command =
-    std::variant<Order, HomeOrder, PathOrder, SweepOrder, BiopsyOrder, Renewal, SeenImage, Cancel, Ask>;
+using Command = std::variant<Approval, Renewal, SeenImage, Cancel, Ask>;
 
 /** The kernel's word on an `Ask`; no verdict: it was not sent, or the answer got lost with the link. */
 struct Answer {
@@ -73,11 +72,9 @@ struct ControlView {
   std::uint32_t generation = 0;
   std::chrono::steady_clock::time_point received; /**< when the snapshot was read */
   ilk_snapshot_t snapshot{};
-  OrderTable orders{};
-  HomeStatus home;
-  PathStatus path;
-  SweepStatus sweep;
-  BiopsyStatus biopsy;
+  TaskTable tasks;
+  SweepSpeeds sweep_speeds{};
+  BiopsyFindings biopsy;
   BiopsyNow biopsy_now;
   ForceReadings force; /**< of a robot with a needle */
 
@@ -101,12 +98,12 @@ struct Mailbox {
    * stands still, motion ends. 0: not yet. */
   std::atomic<std::uint32_t> served{0};
   std::atomic<std::uint32_t> door_kept{0};
-  /** Pauses asked for since start: each ends MOTION as the release of the pedal does, so that orders stay
+  /** Pauses asked for since start: each ends MOTION as the release of the pedal does, so that tasks stay
    * open and go on when somebody presses it again. */
   std::atomic<std::uint32_t> pauses{0};
   /** Number of the present motion authority; 0: nobody. Changed before the STOP that each change is. */
   std::atomic<std::uint32_t> holder{0};
-  WakeSignal network_wake;          /**< a notice came or an order changed */
+  WakeSignal network_wake;          /**< a notice came or a task changed */
   TripleBuffer<StopAnswer> stopped; /**< the newest one, for the door */
   WakeSignal door_wake;             /**< it changed */
   /** When somebody last stopped the robot. */

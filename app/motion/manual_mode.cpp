@@ -1,5 +1,7 @@
 #include "motion/manual_mode.hpp"
 
+#include <algorithm>
+
 #include "motion/obstacle.hpp"
 
 namespace interlock {
@@ -10,56 +12,67 @@ ManualMode::ManualMode(const RobotPlan& plan) noexcept : patience_ticks_(plan.pa
   }
 }
 
-void ManualMode::set_phase(std::uint32_t slot, OrderPhase phase, OrderReason reason, std::uint32_t code,
+void ManualMode::set_phase(std::uint32_t slot, TaskPhase phase, TaskReason reason, std::uint32_t code,
                            std::uint32_t tick) noexcept {
-  OrderStatus& status = orders_[slot];
+  TaskStatus& status = moves_[slot];
   status.phase = phase;
   status.reason = reason;
   status.code = code;
   status.tick = tick;
 }
 
-void ManualMode::take(const Order& order, std::uint32_t tick) noexcept {
-  if (order.slot >= ILK_SLOTS) {
+void ManualMode::take(const TaskReference& task, std::uint32_t tick) noexcept {
+  const MoveTask& move = *std::get_if<MoveTask>(&task->work);
+  if (move.slot >= ILK_SLOTS) {
     return;
   }
-  Job& job = jobs_[order.slot];
-  job.move.aim(order.target_counts, order.max_drive);
+  Job& job = jobs_[move.slot];
+  job.move.aim(move.target_counts, move.drive.value_or(0));
   job.idle_since = tick;
-  orders_[order.slot] = OrderStatus{order.proposal, OrderPhase::waiting, OrderReason::none, 0, tick};
+  moves_[move.slot] = TaskStatus{task->id, TaskPhase::waiting, TaskReason::none, 0, tick, move.slot};
 }
 
-void ManualMode::end(std::uint32_t proposal, OrderReason reason, std::uint32_t tick) noexcept {
+bool ManualMode::is_open() const noexcept {
+  return std::ranges::any_of(moves_, [](const TaskStatus& each) { return interlock::is_open(each.phase); });
+}
+
+void ManualMode::report(TaskTable& tasks) const noexcept {
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
-    if (orders_[slot].proposal == proposal && is_open(orders_[slot].phase)) {
-      set_phase(slot, OrderPhase::aborted, reason, 0, tick);
+    tasks.move(slot) = moves_[slot];
+  }
+}
+
+void ManualMode::end(std::uint32_t task, TaskReason reason, std::uint32_t tick) noexcept {
+  for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
+    if (moves_[slot].task == task && interlock::is_open(moves_[slot].phase)) {
+      set_phase(slot, TaskPhase::aborted, reason, 0, tick);
     }
   }
 }
 
-void ManualMode::end_axis(std::uint32_t slot, OrderReason reason, std::uint32_t tick) noexcept {
-  if (slot < ILK_SLOTS && is_open(orders_[slot].phase)) {
-    set_phase(slot, OrderPhase::aborted, reason, 0, tick);
+void ManualMode::end_axis(std::uint32_t slot, TaskReason reason, std::uint32_t tick) noexcept {
+  if (slot < ILK_SLOTS && interlock::is_open(moves_[slot].phase)) {
+    set_phase(slot, TaskPhase::aborted, reason, 0, tick);
   }
 }
 
-void ManualMode::end_all(OrderReason reason, std::uint32_t tick) noexcept {
+void ManualMode::end_all(TaskReason reason, std::uint32_t tick) noexcept {
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
-    if (is_open(orders_[slot].phase)) {
-      set_phase(slot, OrderPhase::aborted, reason, 0, tick);
+    if (interlock::is_open(moves_[slot].phase)) {
+      set_phase(slot, TaskPhase::aborted, reason, 0, tick);
     }
   }
 }
 
 void ManualMode::tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
-    if (is_open(orders_[slot].phase)) {
+    if (interlock::is_open(moves_[slot].phase)) {
       judge(slot, snapshot);
     }
-    if (orders_[slot].phase == OrderPhase::executing) {
-      jobs_[slot].move.hold(orders_[slot].proposal, snapshot, wishes);
+    if (moves_[slot].phase == TaskPhase::executing) {
+      jobs_[slot].move.hold(moves_[slot].task, snapshot, wishes);
     } else {
-      jobs_[slot].move.let_go(orders_[slot].proposal, snapshot, wishes);
+      jobs_[slot].move.let_go(moves_[slot].task, snapshot, wishes);
     }
   }
 }
@@ -67,9 +80,9 @@ void ManualMode::tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
 void ManualMode::judge(std::uint32_t slot, const ilk_snapshot_t& snapshot) noexcept {
   const std::uint32_t now = snapshot.state.system.tick;
   if (const auto obstacle = obstacle_of(snapshot, slot)) {
-    set_phase(slot, OrderPhase::aborted, obstacle->reason, obstacle->code, now);
+    set_phase(slot, TaskPhase::aborted, obstacle->reason, obstacle->code, now);
   } else if (snapshot.state.axis[slot].state == ILK_AXIS_HOMING) {
-    set_phase(slot, OrderPhase::aborted, OrderReason::axis_homing, 0, now);
+    set_phase(slot, TaskPhase::aborted, TaskReason::axis_homing, 0, now);
   } else if (snapshot.state.system.mode == ILK_MODE_MOTION) {
     follow(slot, snapshot);
   } else {
@@ -83,23 +96,23 @@ bool ManualMode::waited_too_long(std::uint32_t slot, std::uint32_t tick) const n
 
 void ManualMode::pause_or_expire(std::uint32_t slot, const ilk_snapshot_t& snapshot) noexcept {
   const std::uint32_t now = snapshot.state.system.tick;
-  if (orders_[slot].phase == OrderPhase::executing) {
-    set_phase(slot, OrderPhase::paused, OrderReason::pedal_released, 0, now);
+  if (moves_[slot].phase == TaskPhase::executing) {
+    set_phase(slot, TaskPhase::paused, TaskReason::pedal_released, 0, now);
     jobs_[slot].idle_since = now;
   } else if (waited_too_long(slot, now)) {
-    set_phase(slot, OrderPhase::expired, OrderReason::waited_too_long, 0, now);
+    set_phase(slot, TaskPhase::expired, TaskReason::waited_too_long, 0, now);
   }
 }
 
 void ManualMode::follow(std::uint32_t slot, const ilk_snapshot_t& snapshot) noexcept {
   const std::uint32_t now = snapshot.state.system.tick;
   Job& job = jobs_[slot];
-  if (orders_[slot].phase != OrderPhase::executing) {
+  if (moves_[slot].phase != TaskPhase::executing) {
     if (waited_too_long(slot, now)) {
-      set_phase(slot, OrderPhase::expired, OrderReason::waited_too_long, 0, now);
+      set_phase(slot, TaskPhase::expired, TaskReason::waited_too_long, 0, now);
       return;
     }
-    set_phase(slot, OrderPhase::executing, OrderReason::none, 0, now);
+    set_phase(slot, TaskPhase::executing, TaskReason::none, 0, now);
     job.move.start(snapshot);
     return;
   }
@@ -107,17 +120,17 @@ void ManualMode::follow(std::uint32_t slot, const ilk_snapshot_t& snapshot) noex
     case AxisMove::Progress::going:
       break;
     case AxisMove::Progress::arrived:
-      set_phase(slot, OrderPhase::done, OrderReason::arrived, 0, now);
+      set_phase(slot, TaskPhase::done, TaskReason::arrived, 0, now);
       break;
     case AxisMove::Progress::blocked:
-      set_phase(slot, OrderPhase::aborted, OrderReason::blocked, snapshot.gate[slot], now);
+      set_phase(slot, TaskPhase::aborted, TaskReason::blocked, snapshot.gate[slot], now);
       break;
   }
 }
 
 void ManualMode::on_unsent(const Wish& wish) noexcept {
   const std::uint32_t slot = wish.origin.slot;
-  if (slot < ILK_SLOTS && orders_[slot].proposal == wish.origin.proposal) {
+  if (slot < ILK_SLOTS && moves_[slot].task == wish.origin.task) {
     jobs_[slot].move.on_unsent();
   }
 }
@@ -129,13 +142,9 @@ void ManualMode::on_verdict(const WishOrigin& origin, std::uint32_t verdict, std
     return;
   }
   const std::uint32_t slot = origin.slot;
-  if (slot < ILK_SLOTS && orders_[slot].proposal == origin.proposal && is_open(orders_[slot].phase)) {
-    set_phase(slot, OrderPhase::refused, OrderReason::kernel_refused, verdict, tick);
+  if (slot < ILK_SLOTS && moves_[slot].task == origin.task && interlock::is_open(moves_[slot].phase)) {
+    set_phase(slot, TaskPhase::refused, TaskReason::kernel_refused, verdict, tick);
   }
-}
-
-void ManualMode::on_verdict_lost(const WishOrigin& /*origin*/, std::uint32_t /*tick*/) noexcept {
-  // A MOVE is renewed before its lease runs out, and each renewal has a verdict of its own.
 }
 
 }  // namespace interlock

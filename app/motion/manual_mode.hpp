@@ -19,26 +19,24 @@ class ManualMode final : public Mode {
  public:
   explicit ManualMode(const RobotPlan& plan) noexcept;
 
-  /** Takes an order; an open one of the same axis is replaced. */
-  void take(const Order& order, std::uint32_t tick) noexcept;
-
-  void end(std::uint32_t proposal, OrderReason reason, std::uint32_t tick) noexcept override;
-  void end_all(OrderReason reason, std::uint32_t tick) noexcept override;
-  void end_axis(std::uint32_t slot, OrderReason reason, std::uint32_t tick) noexcept override;
+  /** An open one of the same axis is replaced. */
+  void take(const TaskReference& task, std::uint32_t tick) noexcept override;
+  void end(std::uint32_t task, TaskReason reason, std::uint32_t tick) noexcept override;
+  void end_all(TaskReason reason, std::uint32_t tick) noexcept override;
+  void end_axis(std::uint32_t slot, TaskReason reason, std::uint32_t tick) noexcept override;
   void tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept override;
   void on_unsent(const Wish& wish) noexcept override;
   void on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept override;
-  void on_verdict_lost(const WishOrigin& origin, std::uint32_t tick) noexcept override;
-
-  [[nodiscard]] const OrderTable& orders() const noexcept { return orders_; }
+  [[nodiscard]] bool is_open() const noexcept override;
+  void report(TaskTable& tasks) const noexcept override;
 
  private:
   struct Job {
     AxisMove move;
-    std::uint32_t idle_since = 0; /**< tick since which the order does not execute */
+    std::uint32_t idle_since = 0; /**< tick since which the task does not execute */
   };
 
-  void set_phase(std::uint32_t slot, OrderPhase phase, OrderReason reason, std::uint32_t code,
+  void set_phase(std::uint32_t slot, TaskPhase phase, TaskReason reason, std::uint32_t code,
                  std::uint32_t tick) noexcept;
   void judge(std::uint32_t slot, const ilk_snapshot_t& snapshot) noexcept;
   void pause_or_expire(std::uint32_t slot, const ilk_snapshot_t& snapshot) noexcept;
@@ -47,7 +45,7 @@ class ManualMode final : public Mode {
 
   const std::uint32_t patience_ticks_;
   std::array<Job, ILK_SLOTS> jobs_{};
-  OrderTable orders_{};
+  std::array<TaskStatus, ILK_SLOTS> moves_{};
 };
 
 }  // namespace interlock

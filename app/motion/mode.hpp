@@ -7,26 +7,31 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "interlock/link.h"
-#include "motion/order.hpp"
+#include "motion/axis_tracker.hpp"
+#include "motion/task.hpp"
 #include "motion/wish.hpp"
 
 namespace interlock {
 
-/** One way of turning orders into motion. */
+/** One way of turning tasks into motion. */
 class Mode {
  public:
   virtual ~Mode() = default;
 
-  /** Aborts the order of that proposal, if it is open here. */
-  virtual void end(std::uint32_t proposal, OrderReason reason, std::uint32_t tick) noexcept = 0;
+  /** Takes a task of its kind; an open one that is in its way is replaced. */
+  virtual void take(const TaskReference& task, std::uint32_t tick) noexcept = 0;
 
-  /** Aborts every open order. */
-  virtual void end_all(OrderReason reason, std::uint32_t tick) noexcept = 0;
+  /** Aborts that task, if it is open here. */
+  virtual void end(std::uint32_t task, TaskReason reason, std::uint32_t tick) noexcept = 0;
 
-  /** Aborts the open order that moves the axis in `slot`, if there is one. */
-  virtual void end_axis(std::uint32_t slot, OrderReason reason, std::uint32_t tick) noexcept = 0;
+  /** Aborts every open task. */
+  virtual void end_all(TaskReason reason, std::uint32_t tick) noexcept = 0;
+
+  /** Aborts the open task that moves the axis in `slot`, if there is one. */
+  virtual void end_axis(std::uint32_t slot, TaskReason reason, std::uint32_t tick) noexcept = 0;
 
   /** Looks at a snapshot; adds the requests to send in this tick. */
   virtual void tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept = 0;
@@ -37,8 +42,19 @@ class Mode {
   /** The kernel judged a request. */
   virtual void on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept = 0;
 
-  /** The kernel's word on a request got lost. */
-  virtual void on_verdict_lost(const WishOrigin& origin, std::uint32_t tick) noexcept = 0;
+  /** The kernel's word on a request got lost. Nothing to do for a MOVE: it is renewed before its lease runs
+   * out, and each renewal has a verdict of its own. */
+  virtual void on_verdict_lost(const WishOrigin& /*origin*/, std::uint32_t /*tick*/) noexcept {}
+
+  [[nodiscard]] virtual bool is_open() const noexcept = 0;
+
+  /** Writes where its tasks stand. */
+  virtual void report(TaskTable& tasks) const noexcept = 0;
+
+  /** Where the axis in `slot` should be now; nothing unless a task moves it along a path. */
+  [[nodiscard]] virtual std::optional<Setpoint> setpoint(std::uint32_t /*slot*/) const noexcept {
+    return std::nullopt;
+  }
 };
 
 }  // namespace interlock

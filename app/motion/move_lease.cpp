@@ -15,22 +15,22 @@ constexpr std::uint32_t smallest_drive = 1;
 
 }  // namespace
 
-void MoveLease::hold(std::uint32_t proposal, std::uint32_t tick, std::int32_t target_counts,
-                     std::uint32_t drive, Wishes& wishes) noexcept {
+void MoveLease::hold(std::uint32_t task, std::uint32_t tick, std::int32_t target_counts, std::uint32_t drive,
+                     Wishes& wishes) noexcept {
   if (drive == 0) {
     if (sent_.may_drive) {
-      send(proposal, {false, tick, target_counts, smallest_drive}, 1, wishes);
+      send(task, {false, tick, target_counts, smallest_drive}, 1, wishes);
     }
     return;
   }
   const std::uint32_t change = std::max(drive, sent_.drive) - std::min(drive, sent_.drive);
   const bool due = due_at_once_ || !sent_.may_drive || tick - sent_.tick >= lease_ticks_ / renewals_per_lease;
   if (due || target_counts != sent_.target_counts || change > sent_.drive / drive_step_fraction) {
-    send(proposal, {true, tick, target_counts, drive}, lease_ticks_, wishes);
+    send(task, {true, tick, target_counts, drive}, lease_ticks_, wishes);
   }
 }
 
-void MoveLease::let_go(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
+void MoveLease::let_go(std::uint32_t task, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
   if (!sent_.may_drive) {
     return;
   }
@@ -38,7 +38,7 @@ void MoveLease::let_go(std::uint32_t proposal, const ilk_snapshot_t& snapshot, W
   const bool may_move = state == ILK_AXIS_MOVING || state == ILK_AXIS_ENABLED;
   const Sent nothing{false, snapshot.state.system.tick, sent_.target_counts, smallest_drive};
   if (snapshot.state.system.mode == ILK_MODE_MOTION && may_move) {
-    send(proposal, nothing, 1, wishes);
+    send(task, nothing, 1, wishes);
   } else {
     before_ = sent_;
     sent_ = nothing;
@@ -46,10 +46,10 @@ void MoveLease::let_go(std::uint32_t proposal, const ilk_snapshot_t& snapshot, W
   }
 }
 
-void MoveLease::send(std::uint32_t proposal, const Sent& sent, std::uint32_t lease_ticks,
+void MoveLease::send(std::uint32_t task, const Sent& sent, std::uint32_t lease_ticks,
                      Wishes& wishes) noexcept {
   const std::uint32_t amplitude = sent.may_drive ? max_amplitude_ : 0;
-  wishes.add({{ILK_REQUEST_MOVE, slot_, proposal}, sent.target_counts, sent.drive, amplitude, lease_ticks});
+  wishes.add({{ILK_REQUEST_MOVE, slot_, task}, sent.target_counts, sent.drive, amplitude, lease_ticks});
   before_ = sent_;
   sent_ = sent;
   due_at_once_ = false;

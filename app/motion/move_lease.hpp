@@ -25,14 +25,14 @@ class MoveLease {
   void renew_at_once() noexcept { due_at_once_ = true; }
 
   /** Wishes for a MOVE when the target or the drive has changed or the lease has to be renewed. */
-  void hold(std::uint32_t proposal, std::uint32_t tick, std::int32_t target_counts, std::uint32_t drive,
+  void hold(std::uint32_t task, std::uint32_t tick, std::int32_t target_counts, std::uint32_t drive,
             Wishes& wishes) noexcept;
 
   /**
    * Gives back the lease, if the kernel may still hold one. A snapshot that shows the axis at rest proves
    * nothing: the newest MOVE may have crossed it.
    */
-  void let_go(std::uint32_t proposal, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept;
+  void let_go(std::uint32_t task, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept;
 
   /** The wish of this tick was not sent: what was sent before it still stands. */
   void on_unsent() noexcept;
@@ -46,7 +46,7 @@ class MoveLease {
     std::uint32_t drive = 0;
   };
 
-  void send(std::uint32_t proposal, const Sent& sent, std::uint32_t lease_ticks, Wishes& wishes) noexcept;
+  void send(std::uint32_t task, const Sent& sent, std::uint32_t lease_ticks, Wishes& wishes) noexcept;
 
   std::uint32_t slot_ = 0;
   std::uint32_t max_amplitude_ = 0;

@@ -5,7 +5,7 @@ namespace interlock {
 std::optional<Obstacle> obstacle_of(const ilk_snapshot_t& snapshot, std::uint32_t slot) noexcept {
   const ilk_axis_t& axis = snapshot.state.axis[slot];
   if (snapshot.state.system.mode != ILK_MODE_READY && snapshot.state.system.mode != ILK_MODE_MOTION) {
-    return Obstacle{OrderReason::locked, snapshot.state.system.cause, slot};
+    return Obstacle{TaskReason::locked, snapshot.state.system.cause, slot};
   }
   switch (axis.state) {
     case ILK_AXIS_ENABLED:
@@ -13,9 +13,9 @@ std::optional<Obstacle> obstacle_of(const ilk_snapshot_t& snapshot, std::uint32_
     case ILK_AXIS_HOMING:
       return std::nullopt;
     case ILK_AXIS_FAULTED:
-      return Obstacle{OrderReason::axis_faulted, axis.fault, slot};
+      return Obstacle{TaskReason::axis_faulted, axis.fault, slot};
     default:
-      return Obstacle{OrderReason::axis_disabled, 0, slot};
+      return Obstacle{TaskReason::axis_disabled, 0, slot};
   }
 }
 

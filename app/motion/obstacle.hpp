@@ -1,6 +1,6 @@
 /**
  * @file
- * What ends an order whatever it wanted: a locked kernel, or an axis out of motion.
+ * What ends a task whatever it wanted: a locked kernel, or an axis out of motion.
  */
 #pragma once
 
@@ -8,12 +8,12 @@
 #include <optional>
 
 #include "interlock/link.h"
-#include "motion/order.hpp"
+#include "motion/task.hpp"
 
 namespace interlock {
 
 struct Obstacle {
-  OrderReason reason = OrderReason::none;
+  TaskReason reason = TaskReason::none;
   std::uint32_t code = 0;
   std::uint32_t slot = 0; /**< of the axis in the way */
 };

@@ -1,6 +1,6 @@
 /**
  * @file
- * Which requests end the order of their axis once the kernel accepts them.
+ * Which requests end the task of their axis once the kernel accepts them.
  */
 #pragma once
 
@@ -8,21 +8,21 @@
 #include <optional>
 
 #include "interlock/types.h"
-#include "motion/order.hpp"
+#include "motion/task.hpp"
 
 namespace interlock {
 
 /**
- * Why the order of an axis is not wanted any more after that request: its position means something else, or
- * the axis was disabled, if only within one tick. Empty for requests that leave orders alone.
+ * Why the task of an axis is not wanted any more after that request: its position means something else, or
+ * the axis was disabled, if only within one tick. Empty for requests that leave tasks alone.
  */
-constexpr std::optional<OrderReason> end_by(std::uint32_t request_kind) noexcept {
+constexpr std::optional<TaskReason> end_by(std::uint32_t request_kind) noexcept {
   switch (request_kind) {
     case ILK_REQUEST_DISABLE:
-      return OrderReason::axis_disabled;
+      return TaskReason::axis_disabled;
     case ILK_REQUEST_SET_HOME:
     case ILK_REQUEST_RESTORE:
-      return OrderReason::position_declared;
+      return TaskReason::position_declared;
     default:
       return std::nullopt;
   }

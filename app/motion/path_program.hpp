@@ -2,8 +2,7 @@
  * @file
  * What several axes are to do together: legs, one after the other.
  *
- * Made and owned by the network thread; the control thread only reads it while the order that names it is
- * open.
+ * It never changes once a task has it.
  */
 #pragma once
 

@@ -27,7 +27,7 @@ struct StopOrigin {
   std::uint32_t stops = 0;
 };
 
-/** The app's heartbeat, which no order sent. */
+/** The app's heartbeat, which no task sent. */
 struct HeartbeatOrigin {};
 
 /** Who sent a request. */

@@ -12,43 +12,33 @@
 #include <array>
 #include <cstdint>
 
-#include "motion/held_order.hpp"
-#include "motion/mode.hpp"
+#include "motion/held_mode.hpp"
 #include "motion/move_lease.hpp"
 #include "motion/rest_watch.hpp"
 
 namespace interlock {
 
-class SweepMode final : public Mode {
+class SweepMode final : public HeldMode {
  public:
   explicit SweepMode(const RobotPlan& plan);
 
-  /** Takes an order, whose slot holds an axis; an open one is replaced. */
-  void take(const SweepOrder& order, std::uint32_t tick) noexcept;
-
-  void end(std::uint32_t proposal, OrderReason reason, std::uint32_t tick) noexcept override;
-  void end_all(OrderReason reason, std::uint32_t tick) noexcept override;
-  void end_axis(std::uint32_t slot, OrderReason reason, std::uint32_t tick) noexcept override;
-  void tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept override;
   void on_unsent(const Wish& wish) noexcept override;
-  void on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept override;
-  void on_verdict_lost(const WishOrigin& origin, std::uint32_t tick) noexcept override;
 
-  [[nodiscard]] bool is_open() const noexcept { return order_.is_open(); }
-  [[nodiscard]] const SweepStatus& status() const noexcept { return status_; }
+  [[nodiscard]] const SweepSpeeds& speeds() const noexcept { return speeds_; }
 
  private:
-  void begin(const ilk_snapshot_t& snapshot) noexcept;
-  void go_on(const ilk_snapshot_t& snapshot) noexcept;
+  [[nodiscard]] std::uint32_t prepare(std::uint32_t tick) noexcept override;
+  void begin(const ilk_snapshot_t& snapshot) noexcept override;
+  void go_on(const ilk_snapshot_t& snapshot) noexcept override;
+  void drive(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept override;
   void measure(const ilk_axis_t& axis, std::uint32_t ticks) noexcept;
   void end_step(std::uint32_t tick) noexcept;
   [[nodiscard]] std::int32_t target_counts(const ilk_snapshot_t& snapshot) const noexcept;
 
   const RobotPlan plan_;
   const std::uint32_t settle_ticks_;
-  HeldOrder order_;
-  SweepOrder sweep_;
-  SweepStatus status_;
+  SweepTask sweep_;
+  SweepSpeeds speeds_{};
   std::array<MoveLease, ILK_SLOTS> leases_{};
   RestWatch rest_;
   bool upwards_ = true;

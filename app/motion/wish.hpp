@@ -13,11 +13,11 @@
 
 namespace interlock {
 
-/** The order that a request serves. */
+/** The task that a request serves. */
 struct WishOrigin {
   std::uint32_t kind = ILK_REQUEST_MOVE; /**< ilk_request_kind_t: MOVE, HOME or STOP */
   std::uint32_t slot = 0;
-  std::uint32_t proposal = 0;
+  std::uint32_t task = 0;
 
   bool operator==(const WishOrigin&) const = default;
 };

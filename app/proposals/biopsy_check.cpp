@@ -16,11 +16,11 @@ Checked refused(Refusal refusal) { return tl::make_unexpected(std::move(refusal)
 }  // namespace
 
 void check_biopsy(const Robot& robot, const ilk_config_t& config, const ControlView& view,
-                  const BiopsyDraft& draft, CheckList& checks) {
+                  const BiopsyTask& asked, CheckList& checks) {
   const Axis& insertion = *robot.with_role("insertion");
   const Axis& rotation = *robot.with_role("rotation");
   const ilk_state_t& state = view.snapshot.state;
-  const double entry_mm = draft.run->entry_mm;
+  const double entry_mm = asked.run->entry_mm;
   check_system(config, view, checks);
   check_axes(robot, view, (1u << insertion.slot) | (1u << rotation.slot), checks);
   checks.make(CheckName::force, [&]() -> Checked {
@@ -40,9 +40,9 @@ void check_biopsy(const Robot& robot, const ilk_config_t& config, const ControlV
   });
   checks.make(CheckName::depth, [&]() -> Checked {
     const double deepest_mm = insertion.to_unit(insertion.highest_setpoint_counts()) - entry_mm;
-    if (draft.target_mm[2] > deepest_mm) {
+    if (asked.target_mm[2] > deepest_mm) {
       return refused(verdict_refusal(ILK_VERDICT_RANGE,
-                                     "target " + std::to_string(draft.target_mm[2]) + " mm below the skin",
+                                     "target " + std::to_string(asked.target_mm[2]) + " mm below the skin",
                                      "a depth up to " + std::to_string(deepest_mm) + " mm"));
     }
     return {};

@@ -18,6 +18,6 @@ namespace interlock {
  * not reach the target's depth.
  */
 void check_biopsy(const Robot& robot, const ilk_config_t& config, const ControlView& view,
-                  const BiopsyDraft& draft, CheckList& checks);
+                  const BiopsyTask& asked, CheckList& checks);
 
 }  // namespace interlock

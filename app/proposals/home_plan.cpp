@@ -34,33 +34,16 @@ std::string step_names(const Robot& robot) {
   return names;
 }
 
-HomePlan plan_of_steps(const Robot& robot, std::size_t first, std::size_t count) {
-  HomePlan plan{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count), {}};
+HomeTask plan_of_steps(const Robot& robot, std::size_t first, std::size_t count) {
+  HomeTask plan{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count), {}};
   for (std::size_t i = first; i < first + count; ++i) {
     add_axes(plan.slots, robot.home_steps[i]);
   }
   return plan;
 }
 
-tl::expected<HomePlan, Refusal> plan_of_axis(const Robot& robot, std::uint32_t slot) {
-  if (robot.at_slot(slot) == nullptr) {
-    return tl::make_unexpected(verdict_refusal(ILK_VERDICT_AXIS, "slot " + std::to_string(slot)));
-  }
-  return HomePlan{0, 0, {slot}};
-}
-
-tl::expected<HomePlan, Refusal> plan_of_step(const Robot& robot, const std::string& name) {
-  const auto found = std::find_if(robot.home_steps.begin(), robot.home_steps.end(),
-                                  [&](const HomeStep& step) { return step.name == name; });
-  if (found == robot.home_steps.end()) {
-    return tl::make_unexpected(Refusal{"NOT_FOUND", robot.title + " has no home step \"" + name + "\".",
-                                       "one of: " + step_names(robot), "Choose a home step of the robot."});
-  }
-  return plan_of_steps(robot, static_cast<std::size_t>(found - robot.home_steps.begin()), 1);
-}
-
 /** What is homed now, or will be once the steps before have run. */
-tl::expected<void, Refusal> check_moves(const Robot& robot, const ControlView& view, const HomePlan& plan) {
+tl::expected<void, Refusal> check_moves(const Robot& robot, const ControlView& view, const HomeTask& plan) {
   std::vector<std::uint32_t> homed;
   for (std::uint32_t i = 0; i < plan.step_count; ++i) {
     const HomeStep& step = robot.home_steps[plan.first_step + i];
@@ -78,7 +61,7 @@ tl::expected<void, Refusal> check_moves(const Robot& robot, const ControlView& v
   return {};
 }
 
-std::vector<HomeStep> steps_of(const Robot& robot, const HomePlan& plan) {
+std::vector<HomeStep> steps_of(const Robot& robot, const HomeTask& plan) {
   if (plan.step_count == 0) {
     HomeStep alone;
     alone.home = plan.slots;
@@ -88,7 +71,7 @@ std::vector<HomeStep> steps_of(const Robot& robot, const HomePlan& plan) {
   return {first, first + plan.step_count};
 }
 
-bool goes_to_switch(const Robot& robot, const HomePlan& plan, std::uint32_t slot) {
+bool goes_to_switch(const Robot& robot, const HomeTask& plan, std::uint32_t slot) {
   if (plan.step_count == 0) {
     return true;
   }
@@ -98,7 +81,7 @@ bool goes_to_switch(const Robot& robot, const HomePlan& plan, std::uint32_t slot
   });
 }
 
-tl::expected<void, Refusal> check_able(const Robot& robot, const ControlView& view, const HomePlan& plan) {
+tl::expected<void, Refusal> check_able(const Robot& robot, const ControlView& view, const HomeTask& plan) {
   for (const std::uint32_t slot : plan.slots) {
     if (auto able = check_axis(*robot.at_slot(slot), view); !able) {
       return able;
@@ -107,7 +90,7 @@ tl::expected<void, Refusal> check_able(const Robot& robot, const ControlView& vi
   return {};
 }
 
-tl::expected<void, Refusal> check_switches(const Robot& robot, const HomePlan& plan) {
+tl::expected<void, Refusal> check_switches(const Robot& robot, const HomeTask& plan) {
   for (const std::uint32_t slot : plan.slots) {
     const Axis& axis = *robot.at_slot(slot);
     if (goes_to_switch(robot, plan, slot) && axis.limit == ILK_LIMIT_NONE) {
@@ -120,17 +103,19 @@ tl::expected<void, Refusal> check_switches(const Robot& robot, const HomePlan& p
 
 }  // namespace
 
-tl::expected<HomePlan, Refusal> plan_home(const Robot& robot, const HomeDraft& draft) {
-  if (draft.slot && draft.step) {
-    return tl::make_unexpected(Refusal{"INVALID", "Homing takes a slot or a step, not both.",
-                                       "a slot, a step, or neither", "Leave one of them out."});
+HomeTask home_axis(std::uint32_t slot) { return {0, 0, {slot}}; }
+
+tl::expected<HomeTask, Refusal> home_step(const Robot& robot, const std::string& name) {
+  const auto found = std::find_if(robot.home_steps.begin(), robot.home_steps.end(),
+                                  [&](const HomeStep& step) { return step.name == name; });
+  if (found == robot.home_steps.end()) {
+    return tl::make_unexpected(Refusal{"NOT_FOUND", robot.title + " has no home step \"" + name + "\".",
+                                       "one of: " + step_names(robot), "Choose a home step of the robot."});
   }
-  if (draft.slot) {
-    return plan_of_axis(robot, *draft.slot);
-  }
-  if (draft.step) {
-    return plan_of_step(robot, *draft.step);
-  }
+  return plan_of_steps(robot, static_cast<std::size_t>(found - robot.home_steps.begin()), 1);
+}
+
+tl::expected<HomeTask, Refusal> home_all(const Robot& robot) {
   if (robot.home_steps.empty()) {
     return tl::make_unexpected(Refusal{"NOT_FOUND", robot.title + " has no home steps.",
                                        "a robot file with [[home_step]]", "Home each axis by itself."});
@@ -138,7 +123,7 @@ tl::expected<HomePlan, Refusal> plan_home(const Robot& robot, const HomeDraft& d
   return plan_of_steps(robot, 0, robot.home_steps.size());
 }
 
-void check_home(const Robot& robot, const ilk_config_t& config, const ControlView& view, const HomePlan& plan,
+void check_home(const Robot& robot, const ilk_config_t& config, const ControlView& view, const HomeTask& plan,
                 CheckList& checks) {
   check_system(config, view, checks);
   checks.make(CheckName::axes, [&] { return check_able(robot, view, plan); });

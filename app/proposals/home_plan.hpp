@@ -5,32 +5,27 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <tl/expected.hpp>
-#include <vector>
 
 #include "motion/mailbox.hpp"
 #include "proposals/move_check.hpp"
-#include "proposals/proposal.hpp"
 #include "robot/robot.hpp"
 
 namespace interlock {
 
-/** The home steps and the axes that a wish names. */
-struct HomePlan {
-  std::uint32_t first_step = 0;     /**< index of the robot's home steps */
-  std::uint32_t step_count = 0;     /**< 0: the one axis alone, at its switch */
-  std::vector<std::uint32_t> slots; /**< of all axes that move, each once, in the order in which they move */
-};
-
-/** Finds what the draft names: AXIS, NOT_FOUND or INVALID when there is no such thing. */
-tl::expected<HomePlan, Refusal> plan_home(const Robot& robot, const HomeDraft& draft);
+/** Homing of one axis alone; of the step of that name (NOT_FOUND: there is none); of all steps (NOT_FOUND:
+ * the robot has none). */
+HomeTask home_axis(std::uint32_t slot);
+tl::expected<HomeTask, Refusal> home_step(const Robot& robot, const std::string& name);
+tl::expected<HomeTask, Refusal> home_all(const Robot& robot);
 
 /**
- * Judges a plan against the newest view: CONFIG_MISMATCH, MODE, then for each axis FAULTED and DISABLED,
+ * Judges homing against the newest view: CONFIG_MISMATCH, MODE, then for each axis FAULTED and DISABLED,
  * then NO_SWITCH, then NOT_HOMED where a step goes to a position and no earlier step homes the axis, and last
  * SEPARATION (separation.hpp).
  */
-void check_home(const Robot& robot, const ilk_config_t& config, const ControlView& view, const HomePlan& plan,
+void check_home(const Robot& robot, const ilk_config_t& config, const ControlView& view, const HomeTask& plan,
                 CheckList& checks);
 
 }  // namespace interlock

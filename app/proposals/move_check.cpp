@@ -26,9 +26,9 @@ tl::expected<void, Refusal> check_mode(const ControlView& view) {
   return {};
 }
 
-tl::expected<void, Refusal> check_drive(const Axis& axis, std::uint32_t bound, const MoveDraft& draft) {
-  if (draft.drive.value_or(0) > bound) {
-    return refused(ILK_VERDICT_DRIVE, axis.name + " drive " + std::to_string(*draft.drive),
+tl::expected<void, Refusal> check_drive(const Axis& axis, std::uint32_t bound, const MoveTask& move) {
+  if (move.drive.value_or(0) > bound) {
+    return refused(ILK_VERDICT_DRIVE, axis.name + " drive " + std::to_string(*move.drive),
                    "a drive from 1 to " + std::to_string(bound));
   }
   return {};
@@ -101,16 +101,16 @@ tl::expected<void, Refusal> check_free_axis(const Axis& axis, const ControlView&
   });
 }
 
-void check_move(const Axis& axis, const ilk_config_t& config, const ControlView& view, const MoveDraft& draft,
+void check_move(const Axis& axis, const ilk_config_t& config, const ControlView& view, const MoveTask& move,
                 CheckList& checks) {
   const ilk_axis_t& state = view.snapshot.state.axis[axis.slot];
   const ilk_axis_config_t& rules = config.axis[axis.slot];
   check_system(config, view, checks);
   checks.make(CheckName::axes, [&] { return check_free_axis(axis, view); });
-  checks.make(CheckName::drive, [&] { return check_drive(axis, drive_bound(rules, state), draft); });
+  checks.make(CheckName::drive, [&] { return check_drive(axis, drive_bound(rules, state), move); });
   checks.make(CheckName::range, [&] {
     return check_target(axis, setpoint_range(rules, state, view.snapshot.state.system.mode),
-                        draft.target_counts);
+                        move.target_counts);
   });
 }
 

@@ -22,7 +22,7 @@ namespace interlock {
  * @param config the configuration of the app's robot file; a kernel that runs another one moves nothing
  * @param checks makes the checks, after those that it has made before
  */
-void check_move(const Axis& axis, const ilk_config_t& config, const ControlView& view, const MoveDraft& draft,
+void check_move(const Axis& axis, const ilk_config_t& config, const ControlView& view, const MoveTask& move,
                 CheckList& checks);
 
 /** Whether the kernel runs the app's configuration: CONFIG_MISMATCH. */

@@ -144,7 +144,7 @@ class Sampler {
 Profile profile_of_path(const Robot& robot, const ilk_config_t& config, const Proposal& proposal) {
   const ilk_snapshot_t& start = *proposal.checked_against;
   const RobotPlan plan(robot, config);
-  const PathProgram& program = *proposal.path.program;
+  const PathProgram& program = *proposal.work<PathTask>()->program;
   DryWalk measured(plan, program, start);
   const auto unseen = [](double, std::uint32_t, const PathWalk::Points&) {};
   if (!measured.go(std::numeric_limits<double>::infinity(), unseen)) {
@@ -168,11 +168,12 @@ Profile profile_of_path(const Robot& robot, const ilk_config_t& config, const Pr
 
 Profile profile_of_move(const Robot& robot, const ilk_config_t& config, const Proposal& proposal) {
   const ilk_state_t& start = proposal.checked_against->state;
-  const std::uint32_t slot = proposal.move.slot;
+  const MoveTask& move = *proposal.work<MoveTask>();
+  const std::uint32_t slot = move.slot;
   const RobotPlan plan(robot, config);
-  const DriveLaw law = AxisMove::law_of(plan.axis[slot], start.axis[slot], proposal.move.drive.value_or(0));
+  const DriveLaw law = AxisMove::law_of(plan.axis[slot], start.axis[slot], move.drive.value_or(0));
   const std::int64_t from = start.axis[slot].position_counts;
-  const std::int64_t way = proposal.move.target_counts - from;
+  const std::int64_t way = move.target_counts - from;
   Profile profile;
   profile.basis = ProfileBasis::way;
   AxisProfile axis = frame_of(config, robot, start, slot);
@@ -194,16 +195,16 @@ Profile profile_of(const Robot& robot, const ilk_config_t& config, const Proposa
   if (proposal.checked_against == nullptr) {
     return none("It was not checked, so nothing was planned.");
   }
-  switch (proposal.kind) {
-    case ProposalKind::move:
+  switch (proposal.task->kind()) {
+    case TaskKind::move:
       return profile_of_move(robot, config, proposal);
-    case ProposalKind::path:
+    case TaskKind::path:
       return profile_of_path(robot, config, proposal);
-    case ProposalKind::home:
+    case TaskKind::home:
       return none("Homing goes to the limit switches; where these are is found on the way.");
-    case ProposalKind::sweep:
+    case TaskKind::sweep:
       return none("A sweep turns to and fro within the range of its axis, as long as each frequency lasts.");
-    case ProposalKind::biopsy:
+    case TaskKind::biopsy:
       return none("A biopsy follows the surgeon's hand; nothing is planned ahead.");
   }
   return none("");

@@ -52,29 +52,4 @@ bool may_become(ProposalState from, ProposalState to) noexcept {
   return false;
 }
 
-ProposalSource source_of(const Proposal& proposal) noexcept {
-  return proposal.kind == ProposalKind::home ? proposal.home.source : proposal.path.source;
-}
-
-RobotMode robot_mode(const Proposal& proposal) noexcept {
-  switch (proposal.kind) {
-    case ProposalKind::move:
-      return RobotMode::manual;
-    case ProposalKind::home:
-      return RobotMode::home;
-    case ProposalKind::path:
-      return proposal.path.mode;
-    case ProposalKind::sweep:
-      return RobotMode::frequency_sweep;
-    case ProposalKind::biopsy:
-      return RobotMode::cooperative_biopsy;
-  }
-  return RobotMode::manual;
-}
-
-std::optional<std::uint32_t> targeting_revision(const Proposal& proposal) noexcept {
-  const bool is_biopsy = proposal.kind == ProposalKind::biopsy;
-  return is_biopsy ? proposal.biopsy.targeting_revision : proposal.path.targeting_revision;
-}
-
 }  // namespace interlock

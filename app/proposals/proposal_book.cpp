@@ -5,11 +5,16 @@
 #include <utility>
 
 #include "proposals/biopsy_check.hpp"
-#include "proposals/order_words.hpp"
 #include "proposals/sweep_check.hpp"
+#include "proposals/task_words.hpp"
 
 namespace interlock {
 namespace {
+
+template <typename... Each>
+struct Overloaded : Each... {
+  using Each::operator()...;
+};
 
 /** For somebody to look at what a file asks for. */
 constexpr std::chrono::minutes approval_wait{10};
@@ -29,115 +34,48 @@ std::vector<std::uint32_t> slots_of(const Robot& robot, std::uint32_t mask) {
   return slots;
 }
 
+/** The axes that a task moves, each once. */
+std::vector<std::uint32_t> slots_of(const Robot& robot, const Work& work) {
+  return std::visit(Overloaded{
+                        [](const MoveTask& move) { return std::vector{move.slot}; },
+                        [](const HomeTask& homing) { return homing.slots; },
+                        [&](const PathTask& path) { return slots_of(robot, path.program->mask()); },
+                        [](const SweepTask& sweep) { return std::vector{sweep.slot}; },
+                        [&](const BiopsyTask& /*insertion*/) {
+                          return std::vector{robot.with_role("insertion")->slot,
+                                             robot.with_role("rotation")->slot};
+                        },
+                    },
+                    work);
+}
+
 }  // namespace
 
 ProposalBook::ProposalBook(const Robot& robot, const ilk_config_t& config, Send send, Clock clock)
     : robot_(robot), config_(config), send_(std::move(send)), clock_(std::move(clock)) {}
 
-tl::expected<Proposal, Refusal> ProposalBook::propose(const MoveDraft& move, const ControlView& view) {
-  const Axis* axis = robot_.at_slot(move.slot);
-  if (axis == nullptr) {
-    return tl::make_unexpected(verdict_refusal(ILK_VERDICT_AXIS, "slot " + std::to_string(move.slot)));
+tl::expected<Proposal, Refusal> ProposalBook::propose(Task task, const ControlView& view) {
+  std::vector<std::uint32_t> slots = slots_of(robot_, task.work);
+  for (const std::uint32_t slot : slots) {
+    if (robot_.at_slot(slot) == nullptr) {
+      return tl::make_unexpected(verdict_refusal(ILK_VERDICT_AXIS, "slot " + std::to_string(slot)));
+    }
   }
-  Proposal drafted;
-  drafted.move = move;
-  drafted.author = move.author;
-  drafted.target = axis->to_unit(move.target_counts);
-  Proposal& proposal = draft(std::move(drafted), {move.slot}, view);
-  CheckList checks;
-  checks.make(CheckName::other_motion, [&] { return check_alone(); });
-  check_move(*axis, config_, view, move, checks);
-  if (const auto checked = take_checks(proposal, checks, view); !checked) {
-    return tl::make_unexpected(checked.error());
-  }
-  become(proposal, ProposalState::checked, "Inside the range that the kernel allows now.");
-  return approve(proposal, Order{proposal.id, move.slot, move.target_counts, move.drive.value_or(0), 0,
-                                 move.held ? std::optional(Moment{}) : std::nullopt});
-}
-
-tl::expected<Proposal, Refusal> ProposalBook::propose_home(const HomeDraft& home, const ControlView& view) {
-  const auto plan = plan_home(robot_, home);
-  if (!plan) {
-    return tl::make_unexpected(plan.error());
-  }
-  Proposal drafted;
-  drafted.kind = ProposalKind::home;
-  drafted.home = home;
-  drafted.author = home.author;
-  drafted.first_step = plan->first_step;
-  drafted.step_count = plan->step_count;
-  drafted.step = plan->step_count == 0 ? "" : robot_.home_steps[plan->first_step].name;
-  Proposal& proposal = draft(std::move(drafted), plan->slots, view);
-  if (const auto checked = check_home_of(proposal, *plan, view); !checked) {
-    return tl::make_unexpected(checked.error());
-  }
-  if (approves(home.source)) {
-    return approve_home(proposal, *plan);
-  }
-  become(proposal, ProposalState::checked, "Every axis may be homed. Waits for somebody to approve it.");
-  return proposal;
-}
-
-tl::expected<Proposal, Refusal> ProposalBook::propose_path(const PathDraft& path, const ControlView& view) {
-  Proposal drafted;
-  drafted.kind = ProposalKind::path;
-  drafted.path = path;
-  drafted.author = path.author;
-  Proposal& proposal = draft(std::move(drafted), slots_of(robot_, path.program->mask()), view);
+  Proposal& proposal = keep(std::move(task), std::move(slots), view);
   if (const auto checked = check(proposal, view); !checked) {
     return tl::make_unexpected(checked.error());
   }
-  if (approves(path.source)) {
-    return approve_path(proposal);
+  if (approves(proposal.task->source)) {
+    return approve(proposal);
   }
   become(proposal, ProposalState::checked, "Every check passed. Waits for somebody to approve it.");
   return proposal;
 }
 
-tl::expected<Proposal, Refusal> ProposalBook::propose_sweep(const SweepDraft& sweep,
-                                                            const ControlView& view) {
-  if (robot_.at_slot(sweep.slot) == nullptr) {
-    return tl::make_unexpected(verdict_refusal(ILK_VERDICT_AXIS, "slot " + std::to_string(sweep.slot)));
-  }
-  Proposal drafted;
-  drafted.kind = ProposalKind::sweep;
-  drafted.sweep = sweep;
-  drafted.author = sweep.author;
-  Proposal& proposal = draft(std::move(drafted), {sweep.slot}, view);
-  CheckList checks;
-  check_sweep(robot_, config_, view, sweep, checks);
-  if (const auto checked = take_checks(proposal, checks, view); !checked) {
-    return tl::make_unexpected(checked.error());
-  }
-  become(proposal, ProposalState::checked, "Inside the band of the axis.");
-  return approve(proposal, SweepOrder{proposal.id, sweep.slot, sweep.steps, 0});
-}
-
-tl::expected<Proposal, Refusal> ProposalBook::propose_biopsy(const BiopsyDraft& biopsy,
-                                                             const ControlView& view) {
-  Proposal drafted;
-  drafted.kind = ProposalKind::biopsy;
-  drafted.biopsy = biopsy;
-  drafted.author = biopsy.author;
-  const std::vector<std::uint32_t> slots{robot_.with_role("insertion")->slot,
-                                         robot_.with_role("rotation")->slot};
-  Proposal& proposal = draft(std::move(drafted), slots, view);
-  CheckList checks;
-  if (biopsy.targeting_revision) {
-    checks.make(CheckName::targeting, [&] { return check_current(proposal); });
-  }
-  check_biopsy(robot_, config_, view, biopsy, checks);
-  if (const auto checked = take_checks(proposal, checks, view); !checked) {
-    return tl::make_unexpected(checked.error());
-  }
-  become(proposal, ProposalState::checked, "The needle is at the skin, and the hand's force is heard.");
-  lent_.push_back({proposal.id, ProposalKind::biopsy, biopsy.run});
-  return approve(proposal, BiopsyOrder{proposal.id, biopsy.run.get(), 0});
-}
-
 bool ProposalBook::renew(std::uint32_t id) {
-  const Proposal* jog = find(id);
-  return jog != nullptr && jog->move.held && is_open(jog->state) && send_(Renewal{id, {}});
+  const Proposal* proposal = find(id);
+  const MoveTask* move = proposal == nullptr ? nullptr : proposal->work<MoveTask>();
+  return move != nullptr && move->jog && is_open(proposal->state) && send_(Renewal{id, {}});
 }
 
 bool ProposalBook::show_image(const NeedleImage& image) {
@@ -146,9 +84,8 @@ bool ProposalBook::show_image(const NeedleImage& image) {
 }
 
 /** Refuses what followed from targeting that has changed since. */
-tl::expected<void, Refusal> ProposalBook::check_current(const Proposal& proposal) const {
-  const auto revision = interlock::targeting_revision(proposal);
-  if (revision && *revision != targeting_revision_) {
+tl::expected<void, Refusal> ProposalBook::check_current(const Task& task) const {
+  if (task.targeting_revision && *task.targeting_revision != targeting_revision_) {
     return tl::make_unexpected(Refusal{"STALE", "Registration, probe or target changed meanwhile.",
                                        "the present registration, probe and target",
                                        "Look at them, and propose again."});
@@ -173,33 +110,32 @@ tl::expected<void, Refusal> ProposalBook::check_alone() const {
   return {};
 }
 
-/** Keeps what the checks found and against what; refuses the proposal when one failed. */
-tl::expected<void, Refusal> ProposalBook::take_checks(Proposal& proposal, const CheckList& checks,
-                                                      const ControlView& view) {
+/** From where the axes are now. Keeps what the checks found and against what; refuses the proposal when one
+ * failed. */
+tl::expected<void, Refusal> ProposalBook::check(Proposal& proposal, const ControlView& view) {
+  CheckList checks;
+  if (proposal.task->targeting_revision) {
+    checks.make(CheckName::targeting, [&] { return check_current(*proposal.task); });
+  }
+  std::visit(Overloaded{
+                 [&](const MoveTask& move) {
+                   checks.make(CheckName::other_motion, [&] { return check_alone(); });
+                   check_move(*robot_.at_slot(move.slot), config_, view, move, checks);
+                 },
+                 [&](const HomeTask& homing) { check_home(robot_, config_, view, homing, checks); },
+                 [&](const PathTask& path) {
+                   if (auto preview = check_path(robot_, config_, view, *path.program, checks)) {
+                     proposal.ends = std::move(preview->ends);
+                     proposal.duration_s = preview->duration_s;
+                   }
+                 },
+                 [&](const SweepTask& sweep) { check_sweep(robot_, config_, view, sweep, checks); },
+                 [&](const BiopsyTask& insertion) { check_biopsy(robot_, config_, view, insertion, checks); },
+             },
+             proposal.task->work);
   proposal.checks = checks.results();
   proposal.checked_against = std::make_shared<const ilk_snapshot_t>(view.snapshot);
   return checks.outcome().map_error([&](const Refusal& refusal) { return refuse(proposal, refusal); });
-}
-
-/** Checks a path from where the axes are now. */
-tl::expected<void, Refusal> ProposalBook::check(Proposal& proposal, const ControlView& view) {
-  CheckList checks;
-  if (proposal.path.targeting_revision) {
-    checks.make(CheckName::targeting, [&] { return check_current(proposal); });
-  }
-  const auto preview = check_path(robot_, config_, view, *proposal.path.program, checks);
-  if (preview) {
-    proposal.ends = preview->ends;
-    proposal.duration_s = preview->duration_s;
-  }
-  return take_checks(proposal, checks, view);
-}
-
-tl::expected<void, Refusal> ProposalBook::check_home_of(Proposal& proposal, const HomePlan& plan,
-                                                        const ControlView& view) {
-  CheckList checks;
-  check_home(robot_, config_, view, plan, checks);
-  return take_checks(proposal, checks, view);
 }
 
 /** The proposal that waits for approval under that number. */
@@ -214,19 +150,9 @@ tl::expected<Proposal*, Refusal> ProposalBook::waiting(std::uint32_t id) {
 }
 
 tl::expected<Proposal, Refusal> ProposalBook::approve(std::uint32_t id, const ControlView& view) {
-  const auto found = waiting(id);
-  if (!found) {
-    return tl::make_unexpected(found.error());
-  }
-  Proposal& proposal = **found;
-  if (proposal.kind != ProposalKind::home) {
-    return check(proposal, view).and_then([&] { return approve_path(proposal); });
-  }
-  const auto plan = plan_home(robot_, proposal.home);
-  if (!plan) {
-    return tl::make_unexpected(refuse(proposal, plan.error()));
-  }
-  return check_home_of(proposal, *plan, view).and_then([&] { return approve_home(proposal, *plan); });
+  return waiting(id).and_then([&](Proposal* proposal) {
+    return check(*proposal, view).and_then([&] { return approve(*proposal); });
+  });
 }
 
 tl::expected<Proposal, Refusal> ProposalBook::reject(std::uint32_t id, const std::string& by) {
@@ -237,26 +163,14 @@ tl::expected<Proposal, Refusal> ProposalBook::reject(std::uint32_t id, const std
 }
 
 /** Whether such proposals need no click. */
-bool ProposalBook::approves(ProposalSource source) const {
-  return source == ProposalSource::console || robot_.auto_approve;
-}
-
-tl::expected<Proposal, Refusal> ProposalBook::approve_home(Proposal& proposal, const HomePlan& plan) {
-  become(proposal, ProposalState::checked, "Every axis may be homed now.");
-  return approve(proposal, HomeOrder{proposal.id, plan.first_step, plan.step_count, plan.slots.front(), 0});
-}
-
-tl::expected<Proposal, Refusal> ProposalBook::approve_path(Proposal& proposal) {
-  become(proposal, ProposalState::checked, "Every check passed.");
-  // Lent before it is handed over: the control thread may take it at once.
-  lent_.push_back({proposal.id, ProposalKind::path, proposal.path.program});
-  return approve(proposal, PathOrder{proposal.id, proposal.path.program.get(), 0});
+bool ProposalBook::approves(TaskSource source) const {
+  return source == TaskSource::console || robot_.auto_approve;
 }
 
 void ProposalBook::end_stale() {
   ++targeting_revision_;
   for (Proposal& each : book_) {
-    if (interlock::targeting_revision(each) && is_open(each.state)) {
+    if (each.task->targeting_revision && is_open(each.state)) {
       const bool waits = each.state == ProposalState::checked || send_(Cancel{each.id});
       become(each, ProposalState::aborted,
              std::string("Registration, probe or target changed, from which it followed; propose it again.") +
@@ -266,39 +180,47 @@ void ProposalBook::end_stale() {
   tell_mode();
 }
 
-/** Hands the order over; what it replaces ends. */
-tl::expected<Proposal, Refusal> ProposalBook::approve(Proposal& proposal, const Command& order) {
-  if (!send_(order)) {
-    std::erase_if(lent_, [&](const Lent& each) { return each.proposal == proposal.id; });
+/** Hands the task over; what it replaces ends. */
+tl::expected<Proposal, Refusal> ProposalBook::approve(Proposal& proposal) {
+  become(proposal, ProposalState::checked, "Every check passed.");
+  // Kept before it is handed over: the control thread may take it at once.
+  approved_.push_back(proposal.task);
+  if (!send_(Approval{proposal.task, 0, {}, {}})) {
     return tl::make_unexpected(
         refuse(proposal, overloaded("Try again; if it happens again, report it with the log.")));
   }
   replace_open(proposal);
-  const bool homes = proposal.kind == ProposalKind::home;
-  become(proposal, ProposalState::approved,
-         homes ? detail_of(robot_, proposal, HomeStatus{{}, proposal.first_step, 0, 0})
-               : detail_of(OrderStatus{}));
+  const auto* homing = proposal.work<HomeTask>();
+  const TaskStatus waits{.task = proposal.id, .step = homing == nullptr ? 0 : homing->first_step};
+  become(proposal, ProposalState::approved, detail_of(robot_, proposal, waits, {}));
   tell_mode();
   return proposal;
 }
 
-Proposal& ProposalBook::draft(Proposal proposal, const std::vector<std::uint32_t>& slots,
-                              const ControlView& view) {
+Proposal& ProposalBook::keep(Task task, std::vector<std::uint32_t> slots, const ControlView& view) {
   if (book_.size() == capacity) {
     forget_one();
   }
-  proposal.id = ++last_id_;
-  proposal.slots = slots;
-  for (const std::uint32_t slot : slots) {
+  task.id = ++last_id_;
+  Proposal& proposal = book_.emplace_back();
+  proposal.id = task.id;
+  proposal.slots = std::move(slots);
+  for (const std::uint32_t slot : proposal.slots) {
     proposal.axes.push_back(robot_.at_slot(slot)->name);
   }
-  proposal.axis = slots.size() == 1 ? proposal.axes.front() : "";
+  proposal.axis = proposal.slots.size() == 1 ? proposal.axes.front() : "";
+  if (const auto* move = std::get_if<MoveTask>(&task.work)) {
+    proposal.target = robot_.at_slot(move->slot)->to_unit(move->target_counts);
+  }
+  if (const auto* homing = std::get_if<HomeTask>(&task.work); homing != nullptr && homing->step_count != 0) {
+    proposal.step = robot_.home_steps[homing->first_step].name;
+  }
+  proposal.task = std::make_shared<const Task>(std::move(task));
   proposal.created = clock_();
   proposal.created_tick = view.snapshot.state.system.tick;
   proposal.detail = "Drafted.";
-  book_.push_back(std::move(proposal));
-  listener_(book_.back());
-  return book_.back();
+  listener_(proposal);
+  return proposal;
 }
 
 /** An ended proposal, or the oldest that waits for approval: at most one an axis is approved. */
@@ -314,7 +236,7 @@ void ProposalBook::forget_one() {
 /** A move replaces the approved one of its axis, homing and a path every approved proposal. */
 void ProposalBook::replace_open(const Proposal& by) {
   for (Proposal& each : book_) {
-    const bool in_the_way = by.kind != ProposalKind::move || each.slots == by.slots;
+    const bool in_the_way = by.task->kind() != TaskKind::move || each.slots == by.slots;
     if (in_the_way && each.id != by.id && is_approved(each.state)) {
       become(each, ProposalState::aborted, "Replaced by proposal " + std::to_string(by.id) + ".");
     }
@@ -350,7 +272,7 @@ void ProposalBook::abort_all(const std::string& reason) {
   tell_mode();
 }
 
-void ProposalBook::lose_author(ProposalSource source, const std::string& reason) {
+void ProposalBook::lose_author(TaskSource source, const std::string& reason) {
   pause_reason_ = reason;
   for (Proposal& each : book_) {
     const bool is_told = each.detail.starts_with(reason);
@@ -359,7 +281,7 @@ void ProposalBook::lose_author(ProposalSource source, const std::string& reason)
     }
     if (is_approved(each.state)) {
       become(each, each.state, reason + " " + each.detail);
-    } else if (source_of(each) == source) {
+    } else if (each.task->source == source) {
       become(each, ProposalState::aborted, reason + " Nobody had approved it yet; propose it again.");
     }
   }
@@ -367,23 +289,37 @@ void ProposalBook::lose_author(ProposalSource source, const std::string& reason)
 }
 
 void ProposalBook::follow(const ControlView& view) {
-  for (const OrderStatus& status : view.orders) {
-    follow_move(status);
-  }
-  follow_home(view.home);
-  follow_path(view.path);
-  follow_sweep(view.sweep);
   discard_waiting(view);
-  follow_biopsy(view.biopsy);
-  take_back(view);
+  for (const TaskStatus& status : view.tasks) {
+    follow(status, view);
+  }
+  // Nobody else can take a new reference of one that only this holds.
+  std::erase_if(approved_, [](const TaskReference& each) { return each.use_count() == 1; });
   tell_mode();
 }
 
-void ProposalBook::take_back(const ControlView& view) {
-  std::erase_if(lent_, [&view](const Lent& each) {
-    const OrderStatus& order = each.kind == ProposalKind::path ? view.path.order : view.biopsy.order;
-    return order.proposal > each.proposal || (order.proposal == each.proposal && !is_open(order.phase));
-  });
+/** A task is reported anew within a state too: the step changes, or what is left of it. */
+void ProposalBook::follow(const TaskStatus& status, const ControlView& view) {
+  Proposal* proposal = find_mutable(status.task);
+  if (proposal == nullptr || !is_open(proposal->state)) {
+    return;
+  }
+  const ProposalState state = state_of(status.phase);
+  std::string detail = detail_of(robot_, *proposal, status, view.biopsy);
+  const bool same = proposal->state == state;
+  if (same ? proposal->detail.ends_with(detail) : !may_become(proposal->state, state)) {
+    return;
+  }
+  if (const HomeTask* homing = proposal->work<HomeTask>()) {
+    const bool is_step = homing->step_count != 0 && status.step < robot_.home_steps.size();
+    proposal->step = is_step ? robot_.home_steps[status.step].name : "";
+  } else if (proposal->work<PathTask>() != nullptr) {
+    proposal->leg = status.step;
+  } else if (proposal->work<SweepTask>() != nullptr) {
+    const auto first = view.sweep_speeds.begin();
+    proposal->speeds_counts_per_s.assign(first, first + status.step);
+  }
+  become(*proposal, state, std::move(detail), verdict_of(status));
 }
 
 /** What waits for approval is discarded by a lock, as all that was approved is, and does not wait for ever.
@@ -397,77 +333,6 @@ void ProposalBook::discard_waiting(const ControlView& view) {
       become(each, ProposalState::expired, "Nobody approved it within 10 minutes; propose it again.");
     }
   }
-}
-
-void ProposalBook::follow_path(const PathStatus& status) {
-  Proposal* proposal = find_mutable(status.order.proposal);
-  const ProposalState state = state_of(status.order.phase);
-  if (proposal == nullptr || proposal->kind != ProposalKind::path || !is_open(proposal->state)) {
-    return;
-  }
-  std::string detail = detail_of(robot_, *proposal, status);
-  const bool same = proposal->state == state;
-  if (same ? proposal->detail.ends_with(detail) : !may_become(proposal->state, state)) {
-    return;
-  }
-  proposal->leg = status.leg;
-  become(*proposal, state, std::move(detail), verdict_of(status.order));
-}
-
-void ProposalBook::follow_biopsy(const BiopsyStatus& status) {
-  Proposal* proposal = find_mutable(status.order.proposal);
-  const ProposalState state = state_of(status.order.phase);
-  if (proposal == nullptr || proposal->kind != ProposalKind::biopsy || !is_open(proposal->state)) {
-    return;
-  }
-  std::string detail = detail_of(robot_, status);
-  const bool same = proposal->state == state;
-  if (same ? proposal->detail.ends_with(detail) : !may_become(proposal->state, state)) {
-    return;
-  }
-  become(*proposal, state, std::move(detail), verdict_of(status.order));
-}
-
-void ProposalBook::follow_sweep(const SweepStatus& status) {
-  Proposal* proposal = find_mutable(status.order.proposal);
-  const ProposalState state = state_of(status.order.phase);
-  if (proposal == nullptr || proposal->kind != ProposalKind::sweep || !is_open(proposal->state)) {
-    return;
-  }
-  std::string detail = detail_of(robot_, *proposal, status);
-  const bool same = proposal->state == state;
-  if (same ? proposal->detail.ends_with(detail) : !may_become(proposal->state, state)) {
-    return;
-  }
-  proposal->speeds_counts_per_s.assign(status.counts_per_s.begin(),
-                                       status.counts_per_s.begin() + status.step);
-  become(*proposal, state, std::move(detail), verdict_of(status.order));
-}
-
-void ProposalBook::follow_move(const OrderStatus& status) {
-  Proposal* proposal = find_mutable(status.proposal);
-  const ProposalState state = state_of(status.phase);
-  if (proposal != nullptr && may_become(proposal->state, state)) {
-    become(*proposal, state, detail_of(status), verdict_of(status));
-  }
-}
-
-/** Homing is told anew within a state too: the step changes, or what is left of it. */
-void ProposalBook::follow_home(const HomeStatus& status) {
-  Proposal* proposal = find_mutable(status.order.proposal);
-  const ProposalState state = state_of(status.order.phase);
-  if (proposal == nullptr || proposal->kind != ProposalKind::home || !is_open(proposal->state)) {
-    return;
-  }
-  std::string detail = detail_of(robot_, *proposal, status);
-  const bool same = proposal->state == state;
-  if (same ? proposal->detail.ends_with(detail) : !may_become(proposal->state, state)) {
-    return;
-  }
-  if (proposal->step_count != 0 && status.step < robot_.home_steps.size()) {
-    proposal->step = robot_.home_steps[status.step].name;
-  }
-  become(*proposal, state, std::move(detail), verdict_of(status.order));
 }
 
 void ProposalBook::become(Proposal& proposal, ProposalState state, std::string detail,
@@ -484,7 +349,12 @@ void ProposalBook::become(Proposal& proposal, ProposalState state, std::string d
   if (!is_open(state)) {
     proposal.ended = clock_();
     proposal.step.clear();
-    proposal.biopsy.run.reset();  // what the control thread may still use is lent
+    if (proposal.work<BiopsyTask>() != nullptr) {
+      // It is large. What the control thread may still use is in `approved_`.
+      Task ended = *proposal.task;
+      std::get<BiopsyTask>(ended.work).run.reset();
+      proposal.task = std::make_shared<const Task>(std::move(ended));
+    }
   }
   listener_(proposal);
 }
@@ -501,24 +371,24 @@ std::string_view ProposalBook::app_mode() const {
     return mode_name(RobotMode::home);
   }
   const Proposal* open = open_mode();
-  return mode_name(open == nullptr ? RobotMode::manual : robot_mode(*open));
+  return mode_name(open == nullptr ? RobotMode::manual : open->task->mode);
 }
 
 const Proposal* ProposalBook::open_mode() const {
   const auto found = std::find_if(book_.begin(), book_.end(), [](const Proposal& each) {
-    return robot_mode(each) > RobotMode::home && is_approved(each.state);
+    return each.task->mode > RobotMode::home && is_approved(each.state);
   });
   return found == book_.end() ? nullptr : &*found;
 }
 
 const Proposal* ProposalBook::open_biopsy() const {
   const Proposal* open = open_mode();
-  return open != nullptr && open->kind == ProposalKind::biopsy ? open : nullptr;
+  return open != nullptr && open->work<BiopsyTask>() != nullptr ? open : nullptr;
 }
 
 const Proposal* ProposalBook::open_home() const {
   const auto found = std::find_if(book_.begin(), book_.end(), [](const Proposal& each) {
-    return each.kind == ProposalKind::home && is_approved(each.state);
+    return each.work<HomeTask>() != nullptr && is_approved(each.state);
   });
   return found == book_.end() ? nullptr : &*found;
 }
@@ -544,7 +414,7 @@ Proposal* ProposalBook::find_mutable(std::uint32_t id) {
 
 const Proposal* ProposalBook::open_of(std::uint32_t slot) const {
   const auto found = std::find_if(book_.begin(), book_.end(), [slot](const Proposal& each) {
-    return each.kind == ProposalKind::move && each.move.slot == slot && is_open(each.state);
+    return each.work<MoveTask>() != nullptr && each.slots.front() == slot && is_open(each.state);
   });
   return found == book_.end() ? nullptr : &*found;
 }

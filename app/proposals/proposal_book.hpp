@@ -2,7 +2,7 @@
  * @file
  * The book of proposals: drafts, checks, approves and follows them, newest 200 kept.
  *
- * Belongs to the network thread. The control thread carries the orders out; the book learns from each view
+ * Belongs to the network thread. The control thread carries the tasks out; the book learns from each view
  * where they stand. A state that is final stays final, whatever a late report says.
  */
 #pragma once
@@ -46,38 +46,13 @@ class ProposalBook {
   void on_mode_change(ModeListener listener) { mode_listener_ = std::move(listener); }
 
   /**
-   * Drafts a move, checks it and approves it, as its author releases it by proposing it. An open proposal of
-   * the same axis is aborted. Refused with MODE_HOME while homing is open, with MODE_PATH while another mode
-   * is. A refused draft stays in the book.
+   * Checks a task and keeps it. One from the console, or of a robot that approves by itself, is approved, and
+   * every other approved proposal that is in its way is aborted; another one waits for `approve`. A move is
+   * refused with MODE_HOME while homing is open, with MODE_PATH while another mode is; STALE what followed
+   * from targeting that has changed. A refused task stays in the book; one for a slot without an axis (AXIS)
+   * does not.
    */
-  tl::expected<Proposal, Refusal> propose(const MoveDraft& draft, const ControlView& view);
-
-  /**
-   * Drafts homing of one axis, one step or all steps and checks it (home_plan.hpp). One from the console, or
-   * of a robot that approves by itself, is approved, and every other approved proposal is aborted; another
-   * one waits for `approve`. A refused draft stays in the book; one that names what the robot has not (AXIS,
-   * NOT_FOUND, INVALID) is none.
-   */
-  tl::expected<Proposal, Refusal> propose_home(const HomeDraft& draft, const ControlView& view);
-
-  /**
-   * Drafts a motion of several axes and checks it (path_check.hpp). One from the console, or of a robot that
-   * approves by itself, is approved, and every other approved proposal is aborted; another one waits for
-   * `approve`. STALE when it followed from targeting that has changed. A refused draft stays in the book.
-   */
-  tl::expected<Proposal, Refusal> propose_path(const PathDraft& draft, const ControlView& view);
-
-  /**
-   * Drafts a sweep of frequency, checks it (sweep_check.hpp) and approves it. Every other approved proposal
-   * is aborted. A refused draft stays in the book; one of a slot without an axis (AXIS) is none.
-   */
-  tl::expected<Proposal, Refusal> propose_sweep(const SweepDraft& draft, const ControlView& view);
-
-  /**
-   * Drafts a biopsy, checks it (biopsy_check.hpp) and approves it. Every other approved proposal is aborted.
-   * STALE when it followed from targeting that has changed. A refused draft stays in the book.
-   */
-  tl::expected<Proposal, Refusal> propose_biopsy(const BiopsyDraft& draft, const ControlView& view);
+  tl::expected<Proposal, Refusal> propose(Task task, const ControlView& view);
 
   /** Hands an image to the open biopsy; false when none is open, or the control thread takes none now. */
   bool show_image(const NeedleImage& image);
@@ -106,9 +81,9 @@ class ProposalBook {
 
   /** Whoever proposed from that source is gone. What nobody has approved yet of it ends; whatever is
    * approved, of any source, pauses, and says so. The caller sees to it that the kernel leaves MOTION. */
-  void lose_author(ProposalSource source, const std::string& reason);
+  void lose_author(TaskSource source, const std::string& reason);
 
-  /** Takes over where the control thread's orders stand. */
+  /** Takes over where the tasks of the control thread stand. */
   void follow(const ControlView& view);
 
   /** "home" while homing is open, the mode of a path or sweep while it is, else "manual". */
@@ -139,37 +114,19 @@ class ProposalBook {
   [[nodiscard]] std::vector<Proposal> newest_first() const { return {book_.rbegin(), book_.rend()}; }
 
  private:
-  Proposal& draft(Proposal proposal, const std::vector<std::uint32_t>& slots, const ControlView& view);
-  /** Something that the control thread may still use. */
-  struct Lent {
-    std::uint32_t proposal = 0;
-    ProposalKind kind = ProposalKind::path;
-    std::shared_ptr<const void> what;
-  };
-
-  tl::expected<Proposal, Refusal> approve(Proposal& proposal, const Command& order);
-  [[nodiscard]] tl::expected<void, Refusal> check_current(const Proposal& proposal) const;
+  Proposal& keep(Task task, std::vector<std::uint32_t> slots, const ControlView& view);
+  tl::expected<Proposal, Refusal> approve(Proposal& proposal);
+  [[nodiscard]] tl::expected<void, Refusal> check_current(const Task& task) const;
   [[nodiscard]] tl::expected<void, Refusal> check_alone() const;
   tl::expected<void, Refusal> check(Proposal& proposal, const ControlView& view);
-  tl::expected<void, Refusal> check_home_of(Proposal& proposal, const HomePlan& plan,
-                                            const ControlView& view);
-  tl::expected<void, Refusal> take_checks(Proposal& proposal, const CheckList& checks,
-                                          const ControlView& view);
   tl::expected<Proposal*, Refusal> waiting(std::uint32_t id);
-  tl::expected<Proposal, Refusal> approve_path(Proposal& proposal);
-  tl::expected<Proposal, Refusal> approve_home(Proposal& proposal, const HomePlan& plan);
-  [[nodiscard]] bool approves(ProposalSource source) const;
+  [[nodiscard]] bool approves(TaskSource source) const;
   void forget_one();
   void replace_open(const Proposal& by);
   Refusal refuse(Proposal& proposal, Refusal refusal);
   void become(Proposal& proposal, ProposalState state, std::string detail,
               std::optional<std::string> verdict = std::nullopt);
-  void follow_move(const OrderStatus& status);
-  void follow_home(const HomeStatus& status);
-  void follow_path(const PathStatus& status);
-  void follow_sweep(const SweepStatus& status);
-  void follow_biopsy(const BiopsyStatus& status);
-  void take_back(const ControlView& view);
+  void follow(const TaskStatus& status, const ControlView& view);
   void discard_waiting(const ControlView& view);
   void tell_mode();
   Proposal* find_mutable(std::uint32_t id);
@@ -181,9 +138,9 @@ class ProposalBook {
   Listener listener_ = [](const Proposal&) {};
   ModeListener mode_listener_ = [](std::string_view) {};
   std::string_view told_mode_ = "manual";
-  std::deque<Proposal> book_; /**< oldest first */
-  std::vector<Lent> lent_;
-  std::string pause_reason_; /**< of the pause to come, or that lasts */
+  std::deque<Proposal> book_;           /**< oldest first */
+  std::vector<TaskReference> approved_; /**< that the control thread may hold: it must never free one */
+  std::string pause_reason_;            /**< of the pause to come, or that lasts */
   std::uint32_t targeting_revision_ = 0;
   std::uint32_t last_id_ = 0;
 };

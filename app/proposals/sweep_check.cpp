@@ -63,14 +63,14 @@ std::optional<FrequencySteps> whole_band(const Axis& axis, std::uint32_t period_
 }
 
 void check_sweep(const Robot& robot, const ilk_config_t& config, const ControlView& view,
-                 const SweepDraft& draft, CheckList& checks) {
-  const Axis& axis = *robot.at_slot(draft.slot);
+                 const SweepTask& sweep, CheckList& checks) {
+  const Axis& axis = *robot.at_slot(sweep.slot);
   check_system(config, view, checks);
-  check_axes(robot, view, 1u << draft.slot, checks);
+  check_axes(robot, view, 1u << sweep.slot, checks);
   checks.make(CheckName::band, [&]() -> tl::expected<void, Refusal> {
     const WordBand band = words_of(axis);
-    const std::uint32_t first = draft.steps.word(0);
-    const std::uint32_t last = draft.steps.word(draft.steps.count - 1);
+    const std::uint32_t first = sweep.steps.word(0);
+    const std::uint32_t last = sweep.steps.word(sweep.steps.count - 1);
     const auto [fastest, slowest] = std::minmax(first, last);
     if (fastest >= band.fastest && slowest <= band.slowest) {
       return {};

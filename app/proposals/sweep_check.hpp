@@ -45,6 +45,6 @@ std::optional<FrequencySteps> whole_band(const Axis& axis, std::uint32_t period_
  * NOT_HOMED, then DRIVE for frequencies outside of the band, which it names.
  */
 void check_sweep(const Robot& robot, const ilk_config_t& config, const ControlView& view,
-                 const SweepDraft& draft, CheckList& checks);
+                 const SweepTask& sweep, CheckList& checks);
 
 }  // namespace interlock

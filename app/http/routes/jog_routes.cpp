@@ -37,8 +37,7 @@ tl::expected<JogWish, Problem> wish_in(const json& body, const Robot& robot) {
 }
 
 /** A move to the end of the range in that direction; RANGE where that would lead the other way. */
-tl::expected<Draft, Problem> draft_of(const JogWish& wish, const Context& context,
-                                      const std::string& author) {
+tl::expected<Task, Problem> task_of(const JogWish& wish, const Context& context, const std::string& author) {
   const ilk_state_t& state = context.view().snapshot.state;
   const std::uint32_t slot = wish.axis->slot;
   const SetpointRange range = setpoint_range(context.config.axis[slot], state.axis[slot], state.system.mode);
@@ -49,7 +48,7 @@ tl::expected<Draft, Problem> draft_of(const JogWish& wish, const Context& contex
         ILK_VERDICT_RANGE, wish.axis->name + " stands at its end, " + counts_and_unit(*wish.axis, here),
         "the other direction")));
   }
-  return MoveDraft{slot, end, std::nullopt, author, true};
+  return Task{MoveTask{slot, end, std::nullopt, true}, author};
 }
 
 Problem jog_lapsed() {
@@ -77,11 +76,11 @@ Answering JogRoutes::begin(const Call& call) const {
   if (const auto kernel = context_.need_kernel(); !kernel) {
     co_return fail(kernel.error());
   }
-  auto draft = draft_of(*wish, context_, call.caller.user);
-  if (!draft) {
-    co_return fail(draft.error());
+  auto task = task_of(*wish, context_, call.caller.user);
+  if (!task) {
+    co_return fail(task.error());
   }
-  const auto made = co_await propose(context_, call.caller, std::move(*draft));
+  const auto made = co_await propose(context_, call.caller, std::move(*task));
   if (!made) {
     co_return fail(made.error());
   }

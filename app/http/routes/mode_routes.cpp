@@ -87,7 +87,7 @@ tl::expected<std::string, Problem> ModeRoutes::wanted_mode(const Call& call) con
   });
 }
 
-tl::expected<Draft, Problem> ModeRoutes::draft_for(RobotMode mode, const std::string& author) const {
+tl::expected<Task, Problem> ModeRoutes::task_for(RobotMode mode, const std::string& author) const {
   switch (mode) {
     case RobotMode::trajectory:
       return trajectory_draft(context_.trajectory, author);
@@ -107,7 +107,9 @@ tl::expected<Draft, Problem> ModeRoutes::draft_for(RobotMode mode, const std::st
     case RobotMode::manual:
       break;
   }
-  return HomeDraft{std::nullopt, std::nullopt, author};
+  return home_all(context_.robot)
+      .map([&](HomeTask homing) { return Task{std::move(homing), author, RobotMode::home}; })
+      .map_error(refused);
 }
 
 Answering ModeRoutes::set_mode(const Call& call) const {
@@ -126,11 +128,11 @@ Answering ModeRoutes::set_mode(const Call& call) const {
   if (const auto kernel = context_.need_kernel(); !kernel) {
     co_return fail(kernel.error());
   }
-  auto draft = draft_for(mode_wanted, call.caller.user);
-  if (!draft) {
-    co_return fail(draft.error());
+  auto task = task_for(mode_wanted, call.caller.user);
+  if (!task) {
+    co_return fail(task.error());
   }
-  auto made = co_await propose(context_, call.caller, std::move(*draft));
+  auto made = co_await propose(context_, call.caller, std::move(*task));
   co_return std::move(made).and_then([this](const Proposal&) { return mode(); });
 }
 

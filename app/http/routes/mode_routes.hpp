@@ -23,7 +23,7 @@ class ModeRoutes {
   [[nodiscard]] Reply mode() const;
   [[nodiscard]] tl::expected<std::string, Problem> wanted_mode(const Call& call) const;
   [[nodiscard]] boost::asio::awaitable<Reply> set_mode(const Call& call) const;
-  [[nodiscard]] tl::expected<Draft, Problem> draft_for(RobotMode mode, const std::string& author) const;
+  [[nodiscard]] tl::expected<Task, Problem> task_for(RobotMode mode, const std::string& author) const;
   [[nodiscard]] Reply go_manual() const;
 
   const Context& context_;

@@ -32,7 +32,7 @@ tl::expected<const Axis*, Problem> axis_in(const Robot& robot, std::int64_t slot
   return axis;
 }
 
-tl::expected<Draft, Problem> move_of(const json& body, const Robot& robot, const std::string& author) {
+tl::expected<Task, Problem> move_of(const json& body, const Robot& robot, const std::string& author) {
   Fields fields(body, {"kind", "slot", "target", "target_counts", "drive"});
   const auto slot = fields.integer("slot", 0, ILK_SLOTS - 1);
   const auto target = fields.number("target");
@@ -59,39 +59,34 @@ tl::expected<Draft, Problem> move_of(const json& body, const Robot& robot, const
     }
     target_counts = *counts;
   }
-  MoveDraft draft{(*axis)->slot, static_cast<std::int32_t>(*target_counts), std::nullopt, author};
+  MoveTask move{(*axis)->slot, static_cast<std::int32_t>(*target_counts)};
   if (drive) {
-    draft.drive = static_cast<std::uint32_t>(*drive);
+    move.drive = static_cast<std::uint32_t>(*drive);
   }
-  return draft;
+  return Task{move, author};
 }
 
-tl::expected<Draft, Problem> home_of(const json& body, const Robot& robot, const std::string& author) {
+tl::expected<Task, Problem> home_of(const json& body, const Robot& robot, const std::string& author) {
   Fields fields(body, {"kind", "slot", "step"});
   const auto slot = fields.integer("slot", 0, ILK_SLOTS - 1);
-  auto step = fields.text("step");
+  const auto step = fields.text("step");
   if (fields.has("slot") && fields.has("step")) {
     fields.reject("step", "and slot: at most one of them", "a slot, a step, or neither");
   }
   if (fields.problem()) {
     return fail(*fields.problem());
   }
-  HomeDraft draft{std::nullopt, std::nullopt, author};
   if (slot) {
-    const auto axis = axis_in(robot, *slot);
-    if (!axis) {
-      return fail(axis.error());
-    }
-    draft.slot = (*axis)->slot;
+    return axis_in(robot, *slot).map([&](const Axis* axis) {
+      return Task{home_axis(axis->slot), author, RobotMode::home};
+    });
   }
-  if (step && robot.find_home_step(*step) == nullptr) {
-    return fail(not_found("home step " + *step, "a step that /api/robots lists"));
-  }
-  draft.step = std::move(step);
-  return draft;
+  return (step ? home_step(robot, *step) : home_all(robot))
+      .map([&](HomeTask homing) { return Task{std::move(homing), author, RobotMode::home}; })
+      .map_error(refused);
 }
 
-tl::expected<Draft, Problem> coordinated_of(const json& body, const Robot& robot, const std::string& author) {
+tl::expected<Task, Problem> coordinated_of(const json& body, const Robot& robot, const std::string& author) {
   Fields fields(body, {"kind", "targets", "duration_s"});
   fields.require({{"targets", "positions by axis"}});
   const double duration_s = fields.number("duration_s", 0.0, longest_move_s).value_or(0.0);
@@ -101,7 +96,7 @@ tl::expected<Draft, Problem> coordinated_of(const json& body, const Robot& robot
   return coordinated_draft(robot, *fields.value("targets"), duration_s, author);
 }
 
-tl::expected<Draft, Problem> ablation_of(const json& body, const Robot& robot, const std::string& author) {
+tl::expected<Task, Problem> ablation_of(const json& body, const Robot& robot, const std::string& author) {
   Fields fields(body, {"kind", "steps"});
   fields.require({{"steps", "angles, depths and rests"}});
   if (fields.problem()) {
@@ -178,7 +173,7 @@ Reply ProposalRoutes::list() const {
 }
 
 /** Reads a `ProposalDraft`. */
-boost::asio::awaitable<tl::expected<Draft, Problem>> ProposalRoutes::draft_of(const Call& call) const {
+boost::asio::awaitable<tl::expected<Task, Problem>> ProposalRoutes::task_of(const Call& call) const {
   const auto body = parse_body(call.request);
   const auto kind = body.and_then(kind_in);
   if (!kind) {
@@ -218,14 +213,14 @@ boost::asio::awaitable<tl::expected<Draft, Problem>> ProposalRoutes::draft_of(co
 }
 
 Answering ProposalRoutes::propose(const Call& call) const {
-  auto draft = co_await draft_of(call);
-  if (!draft) {
-    co_return fail(draft.error());
+  auto task = co_await task_of(call);
+  if (!task) {
+    co_return fail(task.error());
   }
   if (const auto kernel = context_.need_kernel(); !kernel) {
     co_return fail(kernel.error());
   }
-  auto made = co_await web::propose(context_, call.caller, std::move(*draft));
+  auto made = co_await web::propose(context_, call.caller, std::move(*task));
   co_return std::move(made).map(
       [](const Proposal& proposal) { return Success{Status::created, to_json(proposal)}; });
 }
@@ -245,7 +240,7 @@ Answering ProposalRoutes::approve(const Call& call) const {
   if (context_.control.stops() != stops) {
     co_return fail(stopped_meanwhile("the approval"));
   }
-  if (const auto kernel = context_.need_kernel(); !kernel) {
+  if (const auto kernel = context_.need_present_state(); !kernel) {
     co_return fail(kernel.error());
   }
   co_return context_.book.approve(id, context_.view())

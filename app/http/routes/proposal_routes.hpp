@@ -17,7 +17,7 @@ class ProposalRoutes {
 
  private:
   [[nodiscard]] Reply list() const;
-  [[nodiscard]] boost::asio::awaitable<tl::expected<Draft, Problem>> draft_of(const Call& call) const;
+  [[nodiscard]] boost::asio::awaitable<tl::expected<Task, Problem>> task_of(const Call& call) const;
   [[nodiscard]] boost::asio::awaitable<Reply> propose(const Call& call) const;
   [[nodiscard]] boost::asio::awaitable<Reply> approve(const Call& call) const;
   [[nodiscard]] boost::asio::awaitable<Reply> reject(const Call& call) const;

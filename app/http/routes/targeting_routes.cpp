@@ -99,7 +99,7 @@ Answering TargetingRoutes::change(const Call& call, TargetingChange make) const 
   if (!body) {
     co_return fail(body.error());
   }
-  const auto changed = co_await change_targeting(context_, call.caller, ProposalSource::console, make, *body);
+  const auto changed = co_await change_targeting(context_, call.caller, TaskSource::console, make, *body);
   co_return changed.map([](const Targeting& targeting) { return Success{.body = to_json(targeting)}; });
 }
 

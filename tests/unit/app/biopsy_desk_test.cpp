@@ -34,7 +34,7 @@ class BiopsyDeskTest : public testing::Test {
   /** What a control thread tells that has passed these membranes; below 0: skipped. */
   static ControlView passed(std::uint32_t proposal, const std::vector<double>& found_mm) {
     ControlView view = needle_view();
-    view.biopsy.order.proposal = proposal;
+    view.biopsy.task = proposal;
     view.biopsy.membranes = static_cast<std::uint32_t>(found_mm.size());
     std::copy(found_mm.begin(), found_mm.end(), view.biopsy.found_mm.begin());
     return view;
@@ -72,9 +72,9 @@ TEST_F(BiopsyDeskTest, ForcesAreShownRawCalibratedAndWithTheirAge) {
 TEST_F(BiopsyDeskTest, ADraftIsOfTheTickOfItsViewAndOfItsAuthor) {
   const auto draft = desk_.draft(ahead_mm, needle_view(), "edna");
   ASSERT_TRUE(draft) << draft.error().detail;
-  EXPECT_EQ(draft->start_tick, 1000u);
+  EXPECT_EQ(std::get<BiopsyTask>(draft->work).start_tick, 1000u);
   EXPECT_EQ(draft->author, "edna");
-  EXPECT_EQ(draft->run->entry_mm, 20.0);
+  EXPECT_EQ(std::get<BiopsyTask>(draft->work).run->entry_mm, 20.0);
   EXPECT_EQ(draft->targeting_revision, std::nullopt);
 }
 

@@ -61,15 +61,15 @@ class BiopsyModeTest : public testing::Test {
     auto made = make_biopsy_run(biopsy(), tick_s, {loop_.seen_tick(), 0.0, 0.0, target_mm, membranes},
                                 calibration(biopsy().hand), calibration(biopsy().needle));
     ASSERT_TRUE(made) << made.error().message();
-    run_ = std::make_unique<BiopsyRun>(std::move(*made));
-    loop_.give(BiopsyOrder{1, run_.get(), 0});
+    run_ = std::make_shared<BiopsyRun>(std::move(*made));
+    loop_.give(1, BiopsyTask{run_});
   }
 
   void press_hand(double newtons) { loop_.happen(plant::command::PressHand{newtons}); }
 
   [[nodiscard]] std::uint32_t push_drive() const { return loop_.outputs().command[needle_push].drive; }
   [[nodiscard]] std::uint32_t spin_drive() const { return loop_.outputs().command[needle_spin].drive; }
-  [[nodiscard]] const OrderStatus& order() const { return loop_.biopsy().status().order; }
+  [[nodiscard]] const TaskStatus& order() const { return loop_.biopsy().status(); }
   [[nodiscard]] plant::NeedleTruth truth() { return loop_.plant().surroundings()->truth(); }
 
   /** Hands on each image as it arrives. */
@@ -96,7 +96,7 @@ class BiopsyModeTest : public testing::Test {
   }
 
   ClosedLoop loop_;
-  std::unique_ptr<BiopsyRun> run_;
+  std::shared_ptr<BiopsyRun> run_;
   double shown_s_ = 0.0;
 };
 
@@ -104,7 +104,7 @@ TEST_F(BiopsyModeTest, AHandAtRestMovesNothing) {
   begin();
   press_hand(0.8);
   loop_.run(2000);
-  EXPECT_EQ(order().phase, OrderPhase::executing);
+  EXPECT_EQ(order().phase, TaskPhase::executing);
   EXPECT_NEAR(loop_.state().axis[needle_push].position_counts, 0, 20);
   EXPECT_NEAR(loop_.state().axis[needle_spin].position_counts, 0, 2);
 }
@@ -139,8 +139,8 @@ TEST_F(BiopsyModeTest, InsertionStopsWhenForceIsOlderThan20Ms) {
     ASSERT_EQ(push_drive(), 0u) << i;
     ASSERT_EQ(spin_drive(), 0u) << i;
   }
-  EXPECT_EQ(order().phase, OrderPhase::aborted);
-  EXPECT_EQ(order().reason, OrderReason::force_stale);
+  EXPECT_EQ(order().phase, TaskPhase::aborted);
+  EXPECT_EQ(order().reason, TaskReason::force_stale);
   EXPECT_EQ(loop_.biopsy().status().slot, force_card);
 }
 
@@ -166,7 +166,7 @@ TEST_F(BiopsyModeTest, AFewLostReadingsDoNotStopIt) {
   loop_.run(1000);
   loop_.happen(plant::command::SpoilFrames{force_card, plant::FrameFault::kCorrupt, 5});
   loop_.run(100);
-  EXPECT_EQ(order().phase, OrderPhase::executing);
+  EXPECT_EQ(order().phase, TaskPhase::executing);
 }
 
 TEST_F(BiopsyModeTest, ReleaseStopsInTheSameTickAndTheNextPressGoesOn) {
@@ -177,13 +177,13 @@ TEST_F(BiopsyModeTest, ReleaseStopsInTheSameTickAndTheNextPressGoesOn) {
   loop_.run(5);
   EXPECT_EQ(push_drive(), 0u);
   loop_.run(300);
-  EXPECT_EQ(order().phase, OrderPhase::paused);
+  EXPECT_EQ(order().phase, TaskPhase::paused);
   const double paused_at = loop_.true_position(needle_push);
   loop_.run(500);
   EXPECT_NEAR(loop_.true_position(needle_push), paused_at, 1.0);
   loop_.pedal(true);
   loop_.run(1000);
-  EXPECT_EQ(order().phase, OrderPhase::executing);
+  EXPECT_EQ(order().phase, TaskPhase::executing);
   EXPECT_GT(loop_.true_position(needle_push), paused_at + 3000);
 }
 
@@ -196,7 +196,7 @@ TEST_F(BiopsyModeTest, ItCanBeEndedAtAnyTick) {
     loop_.run(4);
     EXPECT_EQ(push_drive(), 0u) << ticks;
     EXPECT_EQ(spin_drive(), 0u) << ticks;
-    EXPECT_EQ(order().reason, OrderReason::cancelled);
+    EXPECT_EQ(order().reason, TaskReason::cancelled);
   }
 }
 
@@ -206,17 +206,17 @@ TEST_F(BiopsyModeTest, TheTipMeetsAShiftedTargetAndEachMembraneIsFound) {
   loop_.run(2000);
   loop_.happen(plant::command::ShiftTarget{{-4.0, 3.0, 0.0}});
   run_to_end(minute_ticks);
-  ASSERT_EQ(order().phase, OrderPhase::done)
-      << static_cast<int>(order().reason) << " " << loop_.biopsy().status().quantity << " depth "
+  ASSERT_EQ(order().phase, TaskPhase::done)
+      << static_cast<int>(order().reason) << " " << loop_.biopsy().findings().quantity << " depth "
       << truth().depth_mm;
   const plant::NeedleTruth end = truth();
   const double miss_mm = std::hypot(end.tip_mm[0] - end.target_mm[0], end.tip_mm[1] - end.target_mm[1],
                                     end.tip_mm[2] - end.target_mm[2]);
   EXPECT_LT(miss_mm, 2.5);
   ASSERT_EQ(end.punctures_mm.size(), 2u);
-  EXPECT_EQ(loop_.biopsy().status().membranes, 2u);
+  EXPECT_EQ(loop_.biopsy().findings().membranes, 2u);
   for (std::size_t membrane = 0; membrane < 2; ++membrane) {
-    EXPECT_NEAR(loop_.biopsy().status().found_mm[membrane], end.punctures_mm[membrane], 0.5) << membrane;
+    EXPECT_NEAR(loop_.biopsy().findings().found_mm[membrane], end.punctures_mm[membrane], 0.5) << membrane;
   }
   EXPECT_GE(loop_.biopsy().now().images, 5u);
   EXPECT_EQ(loop_.biopsy().now().images_refused, 0u);
@@ -234,7 +234,7 @@ TEST_F(BiopsyModeTest, TheHandPushesNoDeeperThanItsTarget) {
     pass_images();
     deepest_mm = std::max(deepest_mm, loop_.state().axis[needle_push].setpoint_counts / counts_per_mm);
   }
-  EXPECT_EQ(order().phase, OrderPhase::done);
+  EXPECT_EQ(order().phase, TaskPhase::done);
   const Eigen::Vector3d target_mm(truth().target_mm.data());
   EXPECT_GT(deepest_mm, target_mm.z() - 2.5);
   EXPECT_LT(deepest_mm, biopsy().entry_mm + target_mm.norm());
@@ -269,7 +269,7 @@ TEST_F(BiopsyModeTest, AnImageThatCannotBeIsCountedAndChangesNothing) {
   loop_.show(image);
   EXPECT_EQ(loop_.biopsy().now().images_refused, 1u);
   loop_.run(10);
-  EXPECT_EQ(order().phase, OrderPhase::executing);
+  EXPECT_EQ(order().phase, TaskPhase::executing);
 }
 
 TEST_F(BiopsyModeTest, ANumberThatSteeringCannotUseEndsItAndIsNamed) {
@@ -277,9 +277,9 @@ TEST_F(BiopsyModeTest, ANumberThatSteeringCannotUseEndsItAndIsNamed) {
   run_->hand_law.gain_mm_s_n = std::nan("");
   press_hand(5.0);
   loop_.run(50);
-  EXPECT_EQ(order().phase, OrderPhase::aborted);
-  EXPECT_EQ(order().reason, OrderReason::steering_failed);
-  EXPECT_EQ(loop_.biopsy().status().quantity, "gain_mm_s_n");
+  EXPECT_EQ(order().phase, TaskPhase::aborted);
+  EXPECT_EQ(order().reason, TaskReason::steering_failed);
+  EXPECT_EQ(loop_.biopsy().findings().quantity, "gain_mm_s_n");
   EXPECT_EQ(push_drive(), 0u);
 }
 
@@ -289,8 +289,8 @@ TEST_F(BiopsyModeTest, AJammedNeedleEndsIt) {
   loop_.run(1000);
   loop_.happen(plant::command::JamAxis{needle_push, true});
   loop_.run(1000);
-  EXPECT_EQ(order().phase, OrderPhase::aborted);
-  EXPECT_EQ(order().reason, OrderReason::off_path);
+  EXPECT_EQ(order().phase, TaskPhase::aborted);
+  EXPECT_EQ(order().reason, TaskReason::off_path);
   EXPECT_EQ(push_drive(), 0u);
 }
 
@@ -299,7 +299,7 @@ TEST_F(BiopsyModeTest, ATickAllocatesNothing) {
   press_hand(5.0);
   loop_.run(1000);
   BiopsyMode mode{RobotPlan(prostate(), loop_.config())};
-  mode.take({1, run_.get(), 0}, loop_.state().system.tick);
+  mode.take(test::task_of(1, BiopsyTask{run_}), loop_.state().system.tick);
   ilk_snapshot_t snapshot{};
   snapshot.state = loop_.state();
   test::count_allocations_of(pthread_self());
@@ -311,7 +311,7 @@ TEST_F(BiopsyModeTest, ATickAllocatesNothing) {
   }
   const std::uint32_t allocated = test::counted_allocations();
   test::count_allocations_of();
-  EXPECT_EQ(mode.status().order.phase, OrderPhase::executing);
+  EXPECT_EQ(mode.status().phase, TaskPhase::executing);
   EXPECT_EQ(allocated, 0u);
 }
 
@@ -321,8 +321,8 @@ TEST(BiopsyMode, ARobotWithoutANeedleTakesNone) {
   auto made = make_biopsy_run(described, tick_s, {0, 0.0, 0.0, {0.0, 0.0, 50.0}, {}},
                               calibration(described.hand), calibration(described.needle));
   ASSERT_TRUE(made);
-  mode.take({1, &*made, 0}, 5);
-  EXPECT_EQ(mode.status().order.phase, OrderPhase::aborted);
+  mode.take(test::task_of(1, BiopsyTask{std::make_shared<BiopsyRun>(std::move(*made))}), 5);
+  EXPECT_EQ(mode.status().phase, TaskPhase::aborted);
 }
 
 TEST(ForceWatch, AStandingCardClockIsNoNewReading) {

@@ -53,7 +53,7 @@ TEST_F(BiopsyRoutesTest, ATargetInTheGuideFrameBecomesAnOrder) {
   const json body = json::parse(made.body);
   EXPECT_EQ(body["target_mm"], in_guide_frame["target_mm"]);
   EXPECT_FALSE(body.contains("target_point"));
-  EXPECT_EQ(std::get<BiopsyOrder>(next_command()).proposal, body["id"]);
+  EXPECT_EQ(next_task().id, body["id"]);
   EXPECT_EQ(json::parse(get("/api/biopsy").body)["open"], true);
 }
 
@@ -91,7 +91,7 @@ TEST_F(BiopsyRoutesTest, ABiopsyAtATargetEndsWhenTheTargetChangesAndOneInTheGuid
   (void)next_command();
   set_target({2.0, -2.0, 70.0});
   EXPECT_EQ(json::parse(get("/api/proposals/1").body)["state"], "aborted");
-  EXPECT_EQ(std::get<Cancel>(next_command()).proposal, 1u);
+  EXPECT_EQ(std::get<Cancel>(next_command()).task, 1u);
   ASSERT_EQ(propose(in_guide_frame).status, 201u);
   set_target({3.0, -2.0, 70.0});
   EXPECT_EQ(json::parse(get("/api/proposals/2").body)["state"], "approved");
@@ -108,7 +108,7 @@ TEST_F(BiopsyRoutesTest, AnImageIsHandedOnInTheTimeAndFrameOfItsBiopsy) {
   const json image{{"frame", "scanner"}, {"tip_mm", list(scanner_from_guide() * tip)}, {"age_ms", 1000}};
   ASSERT_EQ(show_image(image).status, 200u);
   const auto seen = std::get<SeenImage>(next_command());
-  EXPECT_EQ(seen.proposal, 1u);
+  EXPECT_EQ(seen.task, 1u);
   EXPECT_NEAR(seen.image.time_s, 1.5, 1e-9);
   EXPECT_LT((seen.image.tip_mm - tip).norm(), 1e-6);
   EXPECT_FALSE(seen.image.target_mm);

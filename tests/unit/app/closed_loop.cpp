@@ -22,7 +22,7 @@ ClosedLoop::ClosedLoop(std::uint64_t seed, std::uint32_t latency, const Robot& r
     : robot_(robot),
       config_(config_of(robot)),
       plant_(config_, plant, seed),
-      conductor_(RobotPlan(robot, config_)),
+      modes_(RobotPlan(robot, config_)),
       latency_(latency) {
   if (ilk_init(&config_, &state_).error != ILK_CONFIG_ERROR_NONE) {
     throw std::runtime_error("the kernel refuses the robot " + robot.name);
@@ -69,7 +69,7 @@ void ClosedLoop::tick() {
   } else if (on_their_way_.size() > latency_) {
     seen_tick_ = on_their_way_.front().state.system.tick;
     const std::uint32_t consent = on_their_way_.front().state.system.consent;
-    const Wishes wishes = conductor_.tick(on_their_way_.front());
+    const Wishes wishes = modes_.tick(on_their_way_.front());
     on_their_way_.pop_front();
     for (const Wish& wish : wishes.all()) {
       put(request_of(wish, consent));
@@ -86,7 +86,7 @@ void ClosedLoop::deliver_verdicts() {
                                     [&](const Sent& each) { return each.sequence == verdict.sequence; });
     refusals_ += verdict.verdict != ILK_VERDICT_ACCEPTED && verdict.verdict != ILK_VERDICT_MODE ? 1u : 0u;
     if (found != sent_.end()) {
-      conductor_.on_verdict(found->origin, verdict.verdict, verdict.tick);
+      modes_.on_verdict(found->origin, verdict.verdict, verdict.tick);
       sent_.erase(found);
     }
   }
@@ -110,7 +110,7 @@ void ClosedLoop::pedal(bool pressed) {
 }
 
 void ClosedLoop::stop() {
-  conductor_.end_all(OrderReason::stopped, seen_tick_);
+  modes_.end_all(TaskReason::stopped, seen_tick_);
   request(ILK_REQUEST_STOP);
 }
 
@@ -161,20 +161,15 @@ void ClosedLoop::make_all_ready() {
   pedal(true);
 }
 
-PathStatus ClosedLoop::carry_out(const PathOrder& order, std::uint32_t most_ticks) {
-  give(order);
-  for (std::uint32_t i = 0; i < most_ticks && is_open(conductor_.path().order.phase); ++i) {
+TaskStatus ClosedLoop::carry_out(std::uint32_t id, Work work, std::uint32_t most_ticks) {
+  const TaskReference task = task_of(id, std::move(work));
+  modes_.take(task, seen_tick_);
+  const auto* moved = std::get_if<MoveTask>(&task->work);
+  const auto status = [&] { return moved != nullptr ? move(moved->slot) : modes_.tasks().of(task->kind()); };
+  for (std::uint32_t i = 0; i < most_ticks && is_open(status().phase); ++i) {
     tick();
   }
-  return conductor_.path();
-}
-
-OrderStatus ClosedLoop::carry_out(const Order& order, std::uint32_t most_ticks) {
-  give(order);
-  for (std::uint32_t i = 0; i < most_ticks && is_open(conductor_.orders()[order.slot].phase); ++i) {
-    tick();
-  }
-  return conductor_.orders()[order.slot];
+  return status();
 }
 
 std::uint32_t ClosedLoop::verdict_of_move(std::uint32_t slot, std::int32_t target_counts,

@@ -14,9 +14,10 @@
 
 #include "interlock/kernel.h"
 #include "interlock/link.h"
-#include "motion/conductor.hpp"
+#include "motion/mode_manager.hpp"
 #include "plant/plant.hpp"
 #include "robot_fixture.hpp"
+#include "tasks.hpp"
 
 namespace interlock::test {
 
@@ -53,18 +54,11 @@ class ClosedLoop {
   /** Homes the axis as it wants to be homed, enables it, and holds the pedal. */
   void make_ready(std::uint32_t slot);
 
-  /** Gives an order at the tick that the mode sees. */
-  void give(const Order& order) { conductor_.take(order, seen_tick_); }
-  void give(const HomeOrder& order) { conductor_.take(order, seen_tick_); }
-  void give(const PathOrder& order) { conductor_.take(order, seen_tick_); }
-  void give(const BiopsyOrder& order) { conductor_.take(order, seen_tick_); }
-  void give(const SweepOrder& order) { conductor_.take(order, seen_tick_); }
+  /** Gives a task at the tick that the mode sees. */
+  void give(std::uint32_t id, Work work) { modes_.take(task_of(id, std::move(work)), seen_tick_); }
 
-  /** Gives a path and returns its status once it is final, or after so many ticks. */
-  PathStatus carry_out(const PathOrder& order, std::uint32_t most_ticks);
-
-  /** Gives an order and returns its status once it is final, or after so many ticks. */
-  OrderStatus carry_out(const Order& order, std::uint32_t most_ticks);
+  /** Gives a task and returns its status once it is final, or after so many ticks. */
+  TaskStatus carry_out(std::uint32_t id, Work work, std::uint32_t most_ticks);
 
   /** The verdict of a MOVE to that setpoint, sent now. */
   std::uint32_t verdict_of_move(std::uint32_t slot, std::int32_t target_counts, std::uint32_t drive);
@@ -72,21 +66,20 @@ class ClosedLoop {
   [[nodiscard]] const ilk_state_t& state() const { return state_; }
   [[nodiscard]] const ilk_outputs_t& outputs() const { return outputs_; }
   [[nodiscard]] const ilk_config_t& config() const { return config_; }
-  [[nodiscard]] OrderStatus order(std::uint32_t slot) const { return conductor_.orders()[slot]; }
-  [[nodiscard]] const HomeStatus& home() const { return conductor_.home(); }
-  [[nodiscard]] const PathStatus& path() const { return conductor_.path(); }
-  [[nodiscard]] std::optional<Setpoint> setpoint(std::uint32_t slot) const {
-    return conductor_.setpoint(slot);
-  }
-  [[nodiscard]] const SweepStatus& sweep() const { return conductor_.sweep(); }
-  [[nodiscard]] const BiopsyMode& biopsy() const { return conductor_.biopsy(); }
-  void show(const SeenImage& image) { conductor_.see(image); }
+  [[nodiscard]] TaskStatus move(std::uint32_t slot) const { return modes_.tasks().move(slot); }
+  [[nodiscard]] TaskStatus home() const { return modes_.tasks().of(TaskKind::home); }
+  [[nodiscard]] TaskStatus path() const { return modes_.tasks().of(TaskKind::path); }
+  [[nodiscard]] TaskStatus sweep() const { return modes_.tasks().of(TaskKind::sweep); }
+  [[nodiscard]] std::optional<Setpoint> setpoint(std::uint32_t slot) const { return modes_.setpoint(slot); }
+  [[nodiscard]] const SweepSpeeds& sweep_speeds() const { return modes_.sweep_speeds(); }
+  [[nodiscard]] const BiopsyMode& biopsy() const { return modes_.biopsy(); }
+  void show(const SeenImage& image) { modes_.see(image); }
   [[nodiscard]] std::uint32_t seen_tick() const { return seen_tick_; }
   plant::Plant& plant() { return plant_; }
 
   /** The app falls silent but for its heartbeat, or speaks again. */
   void silence(bool silent) { silent_ = silent; }
-  void cancel(std::uint32_t proposal) { conductor_.end(proposal, OrderReason::cancelled, seen_tick_); }
+  void cancel(std::uint32_t task) { modes_.end(task, TaskReason::cancelled, seen_tick_); }
 
   /** STOP, as the control thread obeys it. */
   void stop();
@@ -114,7 +107,7 @@ class ClosedLoop {
   ilk_inputs_t inputs_{};
   bool silent_ = false;
   plant::Plant plant_;
-  Conductor conductor_;
+  ModeManager modes_;
   std::uint32_t latency_;
   std::function<void()> watcher_ = [] {};
   std::uint32_t seen_tick_ = 0;

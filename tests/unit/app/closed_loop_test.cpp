@@ -29,8 +29,8 @@ TEST_P(ManualModeOnThePlant, EveryAxisArrivesWithinItsDeadbandAndRests) {
                                                          axis.highest_setpoint_counts());
     for (std::uint32_t proposal = 1; proposal <= 5; ++proposal) {
       const std::int32_t target = anywhere(random);
-      const OrderStatus end = loop.carry_out({proposal, axis.slot, target, 0, 0}, minute_ticks);
-      ASSERT_EQ(end.phase, OrderPhase::done)
+      const TaskStatus end = loop.carry_out(proposal, MoveTask{axis.slot, target}, minute_ticks);
+      ASSERT_EQ(end.phase, TaskPhase::done)
           << "to " << target << ", reason " << static_cast<int>(end.reason) << ", code " << end.code;
       const std::int32_t position = loop.state().axis[axis.slot].position_counts;
       EXPECT_LE(std::abs(position - target), static_cast<std::int32_t>(axis.deadband_counts));
@@ -49,12 +49,12 @@ TEST_P(ManualModeOnThePlant, AnAxisThatIsNotHomedArrivesWithinItsUnhomedBounds) 
   loop.pedal(true);
   const std::int32_t reach =
       setpoint_range(rules, loop.state().axis[axis.slot], loop.state().system.mode).highest_counts;
-  loop.give(Order{1, axis.slot, reach, 0, 0});
-  for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.order(axis.slot).phase); ++i) {
+  loop.give(1, MoveTask{axis.slot, reach});
+  for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.move(axis.slot).phase); ++i) {
     loop.run(1);
     ASSERT_LE(loop.outputs().command[axis.slot].drive, rules.unhomed_max_drive);
   }
-  EXPECT_EQ(loop.order(axis.slot).phase, OrderPhase::done);
+  EXPECT_EQ(loop.move(axis.slot).phase, TaskPhase::done);
   EXPECT_EQ(loop.state().system.requests_refused, 0u);
 }
 
@@ -62,15 +62,15 @@ TEST_P(ManualModeOnThePlant, ReleasePausesAndTheNextPressGoesOn) {
   const Axis& axis = *neuro().at_slot(test::insertion);
   ClosedLoop loop(11, GetParam());
   loop.make_ready(axis.slot);
-  (void)loop.carry_out({1, axis.slot, 1500, 0, 0}, 300);
+  (void)loop.carry_out(1, MoveTask{axis.slot, 1500}, 300);
   loop.pedal(false);
-  EXPECT_EQ(loop.order(axis.slot).phase, OrderPhase::paused);
+  EXPECT_EQ(loop.move(axis.slot).phase, TaskPhase::paused);
   const std::int32_t paused_at = loop.state().axis[axis.slot].position_counts;
   loop.run(1000);
   EXPECT_NEAR(loop.state().axis[axis.slot].position_counts, paused_at, 1);
   loop.pedal(true);
   loop.run(5000);
-  EXPECT_EQ(loop.order(axis.slot).phase, OrderPhase::done);
+  EXPECT_EQ(loop.move(axis.slot).phase, TaskPhase::done);
   EXPECT_NEAR(loop.state().axis[axis.slot].position_counts, 1500, axis.deadband_counts);
 }
 
@@ -78,7 +78,7 @@ TEST_P(ManualModeOnThePlant, CancellingStopsTheAxisWithoutWaitingForItsLease) {
   const Axis& axis = *neuro().at_slot(test::insertion);
   ClosedLoop loop(13, GetParam());
   loop.make_ready(axis.slot);
-  (void)loop.carry_out({1, axis.slot, 1500, 0, 0}, 300);
+  (void)loop.carry_out(1, MoveTask{axis.slot, 1500}, 300);
   ASSERT_GT(loop.outputs().command[axis.slot].drive, 0u);
   loop.cancel(1);
   loop.run(3 + GetParam());
@@ -95,11 +95,11 @@ TEST_P(ManualModeOnThePlant, SevenAxesAtOnceStayWithinTheRequestsOfATick) {
     const SetpointRange range =
         setpoint_range(loop.config().axis[axis.slot], loop.state().axis[axis.slot], loop.state().system.mode);
     const bool down = axis.limit == ILK_LIMIT_UPPER;
-    loop.give(Order{axis.slot + 1, axis.slot, down ? range.lowest_counts : range.highest_counts, 0, 0});
+    loop.give(axis.slot + 1, MoveTask{axis.slot, down ? range.lowest_counts : range.highest_counts});
   }
   loop.run(minute_ticks / 2);
   for (const Axis& axis : neuro().axes) {
-    EXPECT_EQ(loop.order(axis.slot).phase, OrderPhase::done) << axis.name;
+    EXPECT_EQ(loop.move(axis.slot).phase, TaskPhase::done) << axis.name;
   }
   EXPECT_LE(loop.most_requests_in_a_tick(), static_cast<std::uint32_t>(ILK_REQUESTS_PER_TICK));
   EXPECT_EQ(loop.state().system.requests_refused, 0u);

@@ -15,6 +15,7 @@
 #include "kernel_side.hpp"
 #include "motion/control_loop.hpp"
 #include "robot_fixture.hpp"
+#include "tasks.hpp"
 
 namespace interlock::test {
 
@@ -61,6 +62,10 @@ class ControlLoopTest : public testing::Test {
     return found;
   }
 
+  void approve(std::uint32_t id, Work work, std::uint32_t stops = 0, Moment held = {}) {
+    command(approval_of(id, std::move(work), stops, held));
+  }
+
   void command(const Command& command) { ASSERT_TRUE(mailbox_->commands.push(command)); }
 
   /** Three more events than the ring holds, so that whatever was in it is lost. */
@@ -74,8 +79,8 @@ class ControlLoopTest : public testing::Test {
     return {ticket, kind, insertion, 0, std::chrono::steady_clock::now() + std::chrono::hours(1)};
   }
 
-  OrderStatus order() { return mailbox_->view.newest().orders[insertion]; }
-  OrderStatus home() { return mailbox_->view.newest().home.order; }
+  TaskStatus move() { return mailbox_->view.newest().tasks.move(insertion); }
+  TaskStatus home() { return mailbox_->view.newest().tasks.of(TaskKind::home); }
 
   void stop() { mailbox_->stops.fetch_add(1, std::memory_order_release); }
 

@@ -17,6 +17,21 @@ using test::neuro_config;
 
 using ControlLoopTest = test::ControlLoopTest;
 
+TEST_F(ControlLoopTest, AnApprovalThatComesAfterItsDeadlineStartsNothing) {
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
+  tick();
+  Approval late = test::approval_of(1, MoveTask{insertion, 1500});
+  late.deadline = std::chrono::steady_clock::now();
+  command(late);
+  tick();
+  EXPECT_EQ(move().phase, TaskPhase::aborted);
+  EXPECT_EQ(move().reason, TaskReason::approved_late);
+  EXPECT_EQ(sent(ILK_REQUEST_MOVE), nullptr);
+  approve(2, MoveTask{insertion, 1500});
+  tick();
+  EXPECT_NE(sent(ILK_REQUEST_MOVE), nullptr);
+}
+
 TEST_F(ControlLoopTest, TellsTheKernelOfAChangedHolderInTheNextTick) {
   tick();
   mailbox_->holder = 7;
@@ -80,20 +95,20 @@ TEST_F(ControlLoopTest, ARestoreCarriesItsPosition) {
 }
 
 TEST_F(ControlLoopTest, CarriesOutAnOrderAndFollowsItsVerdict) {
-  command(Order{1, insertion, 1500, 0, 0});
+  approve(1, MoveTask{test::insertion, 1500});
   snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
   ASSERT_NE(sent(ILK_REQUEST_MOVE), nullptr);
   EXPECT_EQ(sent(ILK_REQUEST_MOVE)->target_counts, 1500);
-  EXPECT_EQ(order().phase, OrderPhase::executing);
+  EXPECT_EQ(move().phase, TaskPhase::executing);
   kernel_.push_verdict(*sent(ILK_REQUEST_MOVE), ILK_VERDICT_RANGE, 5);
   tick();
-  EXPECT_EQ(order().phase, OrderPhase::refused);
+  EXPECT_EQ(move().phase, TaskPhase::refused);
   EXPECT_EQ(notices<ilk_event_t>().size(), 1u);
 }
 
 TEST_F(ControlLoopTest, DoesNotReportRoutineAcceptances) {
-  command(Order{1, insertion, 1500, 0, 0});
+  approve(1, MoveTask{test::insertion, 1500});
   snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
   for (const ilk_request_t& request : requests_) {
@@ -104,7 +119,7 @@ TEST_F(ControlLoopTest, DoesNotReportRoutineAcceptances) {
 }
 
 TEST_F(ControlLoopTest, StopComesBeforeAnythingThatWaits) {
-  command(Order{1, insertion, 1500, 0, 0});
+  approve(1, MoveTask{test::insertion, 1500});
   command(ask(7, ILK_REQUEST_ENABLE));
   stop();
   snapshot_.state.system.mode = ILK_MODE_MOTION;
@@ -119,10 +134,10 @@ TEST_F(ControlLoopTest, StopComesBeforeAnythingThatWaits) {
 }
 
 TEST_F(ControlLoopTest, APauseEndsMotionInTheSameTickAndTheOrderGoesOnAfterAnotherPress) {
-  command(Order{1, insertion, 1500, 0, 0});
+  approve(1, MoveTask{test::insertion, 1500});
   snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
-  EXPECT_EQ(order().phase, OrderPhase::executing);
+  EXPECT_EQ(move().phase, TaskPhase::executing);
   mailbox_->pauses.fetch_add(1, std::memory_order_release);
   tick();
   ASSERT_FALSE(requests_.empty());
@@ -131,10 +146,10 @@ TEST_F(ControlLoopTest, APauseEndsMotionInTheSameTickAndTheOrderGoesOnAfterAnoth
   snapshot_.state.system.mode = ILK_MODE_READY;
   tick();
   EXPECT_EQ(sent(ILK_REQUEST_STOP), nullptr) << "once";
-  EXPECT_EQ(order().phase, OrderPhase::paused);
+  EXPECT_EQ(move().phase, TaskPhase::paused);
   snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
-  EXPECT_EQ(order().phase, OrderPhase::executing);
+  EXPECT_EQ(move().phase, TaskPhase::executing);
   EXPECT_THAT(notices<StopAnswer>(), testing::IsEmpty()) << "it is no STOP";
 }
 
@@ -146,27 +161,27 @@ TEST_F(ControlLoopTest, AJogEndsInTheTickInWhichItsHoldIsOldEnough) {
     return Moment{std::chrono::steady_clock::now(), tick, snapshot_.period_us};
   };
   const std::uint32_t begun = snapshot_.state.system.tick;
-  command(Order{1, insertion, 1500, 0, 0, held_at(begun)});
+  approve(1, MoveTask{insertion, 1500, std::nullopt, true}, 0, held_at(begun));
   tick(199);
-  EXPECT_EQ(order().phase, OrderPhase::executing);
+  EXPECT_EQ(move().phase, TaskPhase::executing);
   command(Renewal{1, held_at(begun + 199)});
   tick(199);
-  EXPECT_EQ(order().phase, OrderPhase::executing) << "it was renewed";
+  EXPECT_EQ(move().phase, TaskPhase::executing) << "it was renewed";
   tick(1);
-  EXPECT_EQ(order().phase, OrderPhase::aborted);
-  EXPECT_EQ(order().reason, OrderReason::let_go);
+  EXPECT_EQ(move().phase, TaskPhase::aborted);
+  EXPECT_EQ(move().reason, TaskReason::let_go);
   command(Renewal{1, held_at(begun + 399)});
   tick(1);
-  EXPECT_EQ(order().phase, OrderPhase::aborted) << "a late renewal brings no jog back";
+  EXPECT_EQ(move().phase, TaskPhase::aborted) << "a late renewal brings no jog back";
 }
 
 TEST_F(ControlLoopTest, AnOrderThatNobodyHoldsOutlivesEveryRenewal) {
-  command(Order{1, insertion, 1500, 0, 0});
+  approve(1, MoveTask{test::insertion, 1500});
   snapshot_.state.system.mode = ILK_MODE_MOTION;
   for (std::uint32_t i = 0; i < 10; ++i) {
     tick(100);
   }
-  EXPECT_EQ(order().phase, OrderPhase::executing);
+  EXPECT_EQ(move().phase, TaskPhase::executing);
 }
 
 /** Ticks for as long as it takes until the control thread misses those who serve people. */
@@ -188,18 +203,18 @@ constexpr std::uint32_t far_longer_than_patience = 10'000;
 
 TEST_F(NobodyServedTest, MotionEndsOnceWhenTheNetworkStandsStillAndNothingStartsUntilItGoesOn) {
   snapshot_.state.system.mode = ILK_MODE_MOTION;
-  command(Order{1, insertion, 1500, 0, 0});
+  approve(1, MoveTask{test::insertion, 1500});
   mailbox_->served = 1;
   ASSERT_TRUE(stops_within(far_longer_than_patience));
-  EXPECT_EQ(order().phase, OrderPhase::aborted);
-  EXPECT_EQ(order().reason, OrderReason::nobody_served);
-  command(Order{2, insertion, 1500, 0, mailbox_->stops.load()});
+  EXPECT_EQ(move().phase, TaskPhase::aborted);
+  EXPECT_EQ(move().reason, TaskReason::nobody_served);
+  approve(2, MoveTask{test::insertion, 1500}, mailbox_->stops.load());
   EXPECT_FALSE(stops_within(300)) << "once";
-  EXPECT_EQ(order().phase, OrderPhase::aborted);
+  EXPECT_EQ(move().phase, TaskPhase::aborted);
   mailbox_->served = 2;
-  command(Order{3, insertion, 1500, 0, mailbox_->stops.load()});
+  approve(3, MoveTask{test::insertion, 1500}, mailbox_->stops.load());
   tick();
-  EXPECT_EQ(order().phase, OrderPhase::executing);
+  EXPECT_EQ(move().phase, TaskPhase::executing);
 }
 
 TEST_F(NobodyServedTest, MotionEndsWhenTheDoorStandsStill) {
@@ -210,13 +225,13 @@ TEST_F(NobodyServedTest, MotionEndsWhenTheDoorStandsStill) {
 TEST_F(NobodyServedTest, NothingIsMissedOfThreadsThatNeverBegan) { EXPECT_FALSE(stops_within(300)); }
 
 TEST_F(ControlLoopTest, AnOrderOlderThanTheStopNeverMoves) {
-  command(Order{1, insertion, 1500, 0, 0});
+  approve(1, MoveTask{test::insertion, 1500});
   stop();
   snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
   EXPECT_EQ(sent(ILK_REQUEST_MOVE), nullptr);
-  EXPECT_EQ(order().phase, OrderPhase::aborted);
-  EXPECT_EQ(order().reason, OrderReason::stopped);
+  EXPECT_EQ(move().phase, TaskPhase::aborted);
+  EXPECT_EQ(move().reason, TaskReason::stopped);
 }
 
 TEST_F(ControlLoopTest, ARequestOlderThanTheStopIsNotSent) {
@@ -243,43 +258,43 @@ TEST_F(ControlLoopTest, ARequestNewerThanTheStopIsSent) {
 
 TEST_F(ControlLoopTest, AnAxisThatIsGivenAnotherPositionOrDisabledLosesItsOrder) {
   std::uint32_t proposal = 0;
-  for (const auto& [kind, reason] : {std::pair(ILK_REQUEST_SET_HOME, OrderReason::position_declared),
-                                     std::pair(ILK_REQUEST_RESTORE, OrderReason::position_declared),
-                                     std::pair(ILK_REQUEST_DISABLE, OrderReason::axis_disabled)}) {
-    command(Order{++proposal, insertion, 1500, 0, 0});
+  for (const auto& [kind, reason] : {std::pair(ILK_REQUEST_SET_HOME, TaskReason::position_declared),
+                                     std::pair(ILK_REQUEST_RESTORE, TaskReason::position_declared),
+                                     std::pair(ILK_REQUEST_DISABLE, TaskReason::axis_disabled)}) {
+    approve(++proposal, MoveTask{test::insertion, 1500});
     command(ask(7, kind));
     tick();
     ASSERT_NE(sent(kind), nullptr);
-    ASSERT_EQ(order().phase, OrderPhase::waiting);
+    ASSERT_EQ(move().phase, TaskPhase::waiting);
     kernel_.push_verdict(*sent(kind), ILK_VERDICT_ACCEPTED, 5);
     tick();
-    EXPECT_EQ(order().phase, OrderPhase::aborted);
-    EXPECT_EQ(order().reason, reason);
+    EXPECT_EQ(move().phase, TaskPhase::aborted);
+    EXPECT_EQ(move().reason, reason);
   }
 }
 
 TEST_F(ControlLoopTest, ARefusedRequestLeavesTheOrderAlone) {
-  command(Order{1, insertion, 1500, 0, 0});
+  approve(1, MoveTask{test::insertion, 1500});
   command(ask(7, ILK_REQUEST_SET_HOME));
   tick();
   kernel_.push_verdict(*sent(ILK_REQUEST_SET_HOME), ILK_VERDICT_PEDAL_DOWN, 5);
   tick();
-  EXPECT_EQ(order().phase, OrderPhase::waiting);
+  EXPECT_EQ(move().phase, TaskPhase::waiting);
 }
 
 TEST_F(ControlLoopTest, HomingOfAnAxisThatIsGivenAnotherPositionEnds) {
-  command(HomeOrder{1, 0, 0, insertion, 0});
+  approve(1, HomeTask{0, 0, {insertion}});
   command(ask(7, ILK_REQUEST_SET_HOME));
   tick();
   kernel_.push_verdict(*sent(ILK_REQUEST_SET_HOME), ILK_VERDICT_ACCEPTED, 5);
   tick();
-  EXPECT_EQ(home().phase, OrderPhase::aborted);
-  EXPECT_EQ(home().reason, OrderReason::position_declared);
+  EXPECT_EQ(home().phase, TaskPhase::aborted);
+  EXPECT_EQ(home().reason, TaskReason::position_declared);
 }
 
 TEST_F(ControlLoopTest, AnOrderNewerThanTheStopMoves) {
   stop();
-  command(Order{1, insertion, 1500, 0, 1});
+  approve(1, MoveTask{test::insertion, 1500}, 1);
   snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
   EXPECT_NE(sent(ILK_REQUEST_MOVE), nullptr);
@@ -342,20 +357,20 @@ TEST_F(ControlLoopTest, ReportsLostEventsAndTheAnswersThatWentWithThem) {
 TEST_F(ControlLoopTest, ALostVerdictThatMayHaveEndedAnOrderEndsIt) {
   std::uint32_t proposal = 0;
   for (const auto kind : {ILK_REQUEST_DISABLE, ILK_REQUEST_SET_HOME, ILK_REQUEST_RESTORE}) {
-    command(Order{++proposal, insertion, 1500, 0, 0});
+    approve(++proposal, MoveTask{test::insertion, 1500});
     command(ask(7, kind));
     tick();
     ASSERT_NE(sent(kind), nullptr);
     kernel_.push_verdict(*sent(kind), ILK_VERDICT_ACCEPTED, 5);
     lose_events();
     tick();
-    EXPECT_EQ(order().phase, OrderPhase::aborted);
-    EXPECT_EQ(order().reason, OrderReason::verdict_lost);
+    EXPECT_EQ(move().phase, TaskPhase::aborted);
+    EXPECT_EQ(move().reason, TaskReason::verdict_lost);
   }
 }
 
 TEST_F(ControlLoopTest, LostEventsLeaveOtherOrdersToTheSnapshot) {
-  command(Order{1, insertion, 1500, 0, 0});
+  approve(1, MoveTask{test::insertion, 1500});
   Ask other_axis = ask(7, ILK_REQUEST_DISABLE);
   other_axis.slot = test::rotation;
   command(other_axis);
@@ -363,23 +378,23 @@ TEST_F(ControlLoopTest, LostEventsLeaveOtherOrdersToTheSnapshot) {
   tick();
   lose_events();
   tick();
-  EXPECT_EQ(order().phase, OrderPhase::waiting);
+  EXPECT_EQ(move().phase, TaskPhase::waiting);
   snapshot_.state.axis[insertion].state = ILK_AXIS_DISABLED;
   lose_events();
   tick();
-  EXPECT_EQ(order().phase, OrderPhase::aborted);
-  EXPECT_EQ(order().reason, OrderReason::axis_disabled);
+  EXPECT_EQ(move().phase, TaskPhase::aborted);
+  EXPECT_EQ(move().reason, TaskReason::axis_disabled);
 }
 
 TEST_F(ControlLoopTest, ALostLinkEndsOrdersAndAnswersAsksAndIsAttachedAgain) {
-  command(Order{1, insertion, 1500, 0, 0});
+  approve(1, MoveTask{test::insertion, 1500});
   command(ask(7, ILK_REQUEST_ENABLE));
   tick();
   kernel_.close();
   kernel_.accept();
   tick();
-  EXPECT_EQ(order().phase, OrderPhase::aborted);
-  EXPECT_EQ(order().reason, OrderReason::link_lost);
+  EXPECT_EQ(move().phase, TaskPhase::aborted);
+  EXPECT_EQ(move().reason, TaskReason::link_lost);
   EXPECT_EQ(mailbox_->view.newest().generation, 2u);
   const auto answers = notices<Answer>();
   ASSERT_EQ(answers.size(), 1u);
@@ -389,71 +404,71 @@ TEST_F(ControlLoopTest, ALostLinkEndsOrdersAndAnswersAsksAndIsAttachedAgain) {
 }
 
 TEST_F(ControlLoopTest, HomesAnAxisAndFollowsItsVerdict) {
-  command(HomeOrder{1, 0, 0, insertion, 0});
+  approve(1, HomeTask{0, 0, {insertion}});
   snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
   ASSERT_NE(sent(ILK_REQUEST_HOME), nullptr);
   EXPECT_EQ(sent(ILK_REQUEST_HOME)->axis, insertion);
-  EXPECT_EQ(home().phase, OrderPhase::executing);
+  EXPECT_EQ(home().phase, TaskPhase::executing);
   kernel_.push_verdict(*sent(ILK_REQUEST_HOME), ILK_VERDICT_ACCEPTED, snapshot_.state.system.tick);
   snapshot_.state.axis[insertion].homed = 1;
   tick();
-  EXPECT_EQ(home().phase, OrderPhase::done);
+  EXPECT_EQ(home().phase, TaskPhase::done);
   EXPECT_EQ(notices<ilk_event_t>().size(), 1u);
 }
 
 TEST_F(ControlLoopTest, OnlyOneModeHasOpenOrders) {
-  command(Order{1, insertion, 1500, 0, 0});
-  command(HomeOrder{2, 0, 0, insertion, 0});
+  approve(1, MoveTask{test::insertion, 1500});
+  approve(2, HomeTask{0, 0, {insertion}});
   tick();
-  EXPECT_EQ(order().phase, OrderPhase::aborted);
-  EXPECT_EQ(order().reason, OrderReason::axis_homing);
-  EXPECT_EQ(home().phase, OrderPhase::waiting);
-  command(Order{3, insertion, 1500, 0, 0});
+  EXPECT_EQ(move().phase, TaskPhase::aborted);
+  EXPECT_EQ(move().reason, TaskReason::axis_homing);
+  EXPECT_EQ(home().phase, TaskPhase::waiting);
+  approve(3, MoveTask{test::insertion, 1500});
   snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
   EXPECT_EQ(sent(ILK_REQUEST_MOVE), nullptr);
-  EXPECT_EQ(order().phase, OrderPhase::aborted);
+  EXPECT_EQ(move().phase, TaskPhase::aborted);
 }
 
 TEST_F(ControlLoopTest, AHomeOrderOlderThanTheStopNeverStarts) {
-  command(HomeOrder{1, 0, 0, insertion, 0});
+  approve(1, HomeTask{0, 0, {insertion}});
   stop();
   snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
   EXPECT_EQ(sent(ILK_REQUEST_HOME), nullptr);
-  EXPECT_EQ(home().reason, OrderReason::stopped);
+  EXPECT_EQ(home().reason, TaskReason::stopped);
 }
 
 TEST_F(ControlLoopTest, CancellingHomingAsksTheKernelToStop) {
-  command(HomeOrder{1, 0, 0, insertion, 0});
+  approve(1, HomeTask{0, 0, {insertion}});
   snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
   command(Cancel{1});
   tick();
   EXPECT_NE(sent(ILK_REQUEST_STOP), nullptr);
-  EXPECT_EQ(home().reason, OrderReason::cancelled);
+  EXPECT_EQ(home().reason, TaskReason::cancelled);
 }
 
 TEST_F(ControlLoopTest, ALostVerdictEndsHoming) {
-  command(HomeOrder{1, 0, 0, insertion, 0});
+  approve(1, HomeTask{0, 0, {insertion}});
   snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
   lose_events();
   tick();
-  EXPECT_EQ(home().reason, OrderReason::verdict_lost);
+  EXPECT_EQ(home().reason, TaskReason::verdict_lost);
 }
 
 TEST_F(ControlLoopTest, ALostLinkEndsHoming) {
-  command(HomeOrder{1, 0, 0, insertion, 0});
+  approve(1, HomeTask{0, 0, {insertion}});
   snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
   kernel_.close();
   kernel_.accept();
   snapshot_.state.system.mode = ILK_MODE_READY;
   tick();
-  EXPECT_EQ(home().phase, OrderPhase::aborted);
-  EXPECT_EQ(home().reason, OrderReason::link_lost);
+  EXPECT_EQ(home().phase, TaskPhase::aborted);
+  EXPECT_EQ(home().reason, TaskReason::link_lost);
 }
 
 TEST_F(ControlLoopTest, AsksTheKernelToEndMotionWhenItEnds) {
@@ -474,14 +489,14 @@ TEST_F(ReplayTest, SendsNothingAndTellsWhoeverAsks) {
   mailbox_->holder = 7;
   stop();
   command(ask(7, ILK_REQUEST_ENABLE));
-  command(Order{1, insertion, 1500, 0, 0});
+  approve(1, MoveTask{test::insertion, 1500});
   for (int ticks = 0; ticks < 100; ++ticks) {
     tick();
     ASSERT_TRUE(requests_.empty());
   }
   EXPECT_TRUE(mailbox_->view.newest().replay);
   EXPECT_EQ(mailbox_->view.newest().snapshot.state.system.tick, snapshot_.state.system.tick);
-  EXPECT_EQ(order().reason, OrderReason::link_lost);
+  EXPECT_EQ(move().reason, TaskReason::link_lost);
   bool asked = false;
   bool stopped = false;
   mailbox_->notices.consume_all([&](const Notice& notice) {

@@ -13,8 +13,8 @@ TEST_F(ControlThread, AllocatesNothingWhileItTicks) {
   test::count_allocations_of(thread_.native_handle());
   snapshot_.state.system.mode = ILK_MODE_MOTION;
   for (std::uint32_t i = 1; i <= 200; ++i) {
-    command(Order{i, test::insertion, static_cast<std::int32_t>(i), 0, i / 50});
-    command(HomeOrder{1000 + i, 0, 3, 0, i / 50});
+    approve(i, MoveTask{test::insertion, static_cast<std::int32_t>(i)}, i / 50);
+    approve(1000 + i, HomeTask{0, 3, {}}, i / 50);
     command(ask(i, ILK_REQUEST_ENABLE));
     if (i % 50 == 0) {
       stop();

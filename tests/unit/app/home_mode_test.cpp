@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "robot_fixture.hpp"
+#include "tasks.hpp"
 
 namespace interlock {
 namespace {
@@ -23,11 +24,11 @@ class HomeModeTest : public testing::Test {
   HomeModeTest() : snapshot_(test::ready_view().snapshot), mode_(RobotPlan(neuro(), neuro_config())) {}
 
   void home_axis(std::uint32_t proposal = 1, std::uint32_t slot = insertion) {
-    mode_.take(HomeOrder{proposal, 0, 0, slot, 0}, snapshot_.state.system.tick);
+    mode_.take(test::task_of(proposal, HomeTask{0, 0, {slot}}), snapshot_.state.system.tick);
   }
 
   void home_angles(std::uint32_t proposal = 1) {
-    mode_.take(HomeOrder{proposal, angles, 1, 0, 0}, snapshot_.state.system.tick);
+    mode_.take(test::task_of(proposal, HomeTask{angles, 1, {}}), snapshot_.state.system.tick);
   }
 
   std::vector<Wish> tick(std::uint32_t ticks = 1) {
@@ -64,8 +65,13 @@ class HomeModeTest : public testing::Test {
   }
 
   ilk_axis_t& axis(std::uint32_t slot) { return snapshot_.state.axis[slot]; }
-  [[nodiscard]] OrderPhase phase() const { return mode_.status().order.phase; }
-  [[nodiscard]] OrderReason reason() const { return mode_.status().order.reason; }
+  [[nodiscard]] TaskStatus status() const {
+    TaskTable tasks;
+    mode_.report(tasks);
+    return tasks.of(TaskKind::home);
+  }
+  [[nodiscard]] TaskPhase phase() const { return status().phase; }
+  [[nodiscard]] TaskReason reason() const { return status().reason; }
 
   ilk_snapshot_t snapshot_;
   HomeMode mode_;
@@ -74,7 +80,7 @@ class HomeModeTest : public testing::Test {
 TEST_F(HomeModeTest, SendsNothingBeforeThePedal) {
   home_axis();
   EXPECT_THAT(tick(), testing::IsEmpty());
-  EXPECT_EQ(phase(), OrderPhase::waiting);
+  EXPECT_EQ(phase(), TaskPhase::waiting);
 }
 
 TEST_F(HomeModeTest, AsksOnceForEveryAxisOfTheStep) {
@@ -84,8 +90,8 @@ TEST_F(HomeModeTest, AsksOnceForEveryAxisOfTheStep) {
   ASSERT_EQ(wishes.size(), 2u);
   EXPECT_EQ(wishes[0].origin, (WishOrigin{ILK_REQUEST_HOME, yaw, 1}));
   EXPECT_EQ(wishes[1].origin, (WishOrigin{ILK_REQUEST_HOME, pitch, 1}));
-  EXPECT_EQ(phase(), OrderPhase::executing);
-  EXPECT_EQ(mode_.status().step, angles);
+  EXPECT_EQ(phase(), TaskPhase::executing);
+  EXPECT_EQ(status().step, angles);
   EXPECT_THAT(tick(), testing::IsEmpty());
 }
 
@@ -98,10 +104,10 @@ TEST_F(HomeModeTest, IsDoneWhenEveryAxisOfTheStepIsHomed) {
   (void)tick();
   arrive(yaw);
   (void)tick();
-  EXPECT_EQ(phase(), OrderPhase::executing);
+  EXPECT_EQ(phase(), TaskPhase::executing);
   arrive(pitch);
   EXPECT_THAT(tick(), testing::IsEmpty());
-  EXPECT_EQ(phase(), OrderPhase::done);
+  EXPECT_EQ(phase(), TaskPhase::done);
 }
 
 TEST_F(HomeModeTest, AnAxisThatWasHomedBeforeDoesNotCount) {
@@ -109,7 +115,7 @@ TEST_F(HomeModeTest, AnAxisThatWasHomedBeforeDoesNotCount) {
   press();
   (void)tick();
   (void)tick(100);
-  EXPECT_EQ(phase(), OrderPhase::executing);
+  EXPECT_EQ(phase(), TaskPhase::executing);
 }
 
 TEST_F(HomeModeTest, ASnapshotOlderThanTheAcceptanceDoesNotCount) {
@@ -118,9 +124,9 @@ TEST_F(HomeModeTest, ASnapshotOlderThanTheAcceptanceDoesNotCount) {
   (void)tick();
   mode_.on_verdict({ILK_REQUEST_HOME, insertion, 1}, ILK_VERDICT_ACCEPTED, snapshot_.state.system.tick + 3);
   (void)tick(3);
-  EXPECT_EQ(phase(), OrderPhase::executing);
+  EXPECT_EQ(phase(), TaskPhase::executing);
   (void)tick();
-  EXPECT_EQ(phase(), OrderPhase::done);
+  EXPECT_EQ(phase(), TaskPhase::done);
 }
 
 TEST_F(HomeModeTest, ReleasePausesAndTheNextPressAsksAgain) {
@@ -132,8 +138,8 @@ TEST_F(HomeModeTest, ReleasePausesAndTheNextPressAsksAgain) {
   axis(insertion).state = ILK_AXIS_ENABLED;
   release();
   EXPECT_THAT(tick(), testing::IsEmpty());
-  EXPECT_EQ(phase(), OrderPhase::paused);
-  EXPECT_EQ(reason(), OrderReason::pedal_released);
+  EXPECT_EQ(phase(), TaskPhase::paused);
+  EXPECT_EQ(reason(), TaskReason::pedal_released);
   press();
   EXPECT_THAT(kinds(), testing::ElementsAre(ILK_REQUEST_HOME));
 }
@@ -171,7 +177,7 @@ TEST_F(HomeModeTest, APedalReleasedMeanwhileIsNoRefusal) {
   press();
   (void)tick();
   judge(insertion, ILK_VERDICT_MODE);
-  EXPECT_EQ(phase(), OrderPhase::executing);
+  EXPECT_EQ(phase(), TaskPhase::executing);
   EXPECT_THAT(kinds(), testing::ElementsAre(ILK_REQUEST_HOME));
 }
 
@@ -181,9 +187,9 @@ TEST_F(HomeModeTest, ARefusalEndsItWithItsVerdictAndStopsTheOthers) {
   (void)tick();
   accept(yaw);
   judge(pitch, ILK_VERDICT_BUSY);
-  EXPECT_EQ(phase(), OrderPhase::refused);
-  EXPECT_EQ(mode_.status().order.code, static_cast<std::uint32_t>(ILK_VERDICT_BUSY));
-  EXPECT_EQ(mode_.status().slot, pitch);
+  EXPECT_EQ(phase(), TaskPhase::refused);
+  EXPECT_EQ(status().code, static_cast<std::uint32_t>(ILK_VERDICT_BUSY));
+  EXPECT_EQ(status().slot, pitch);
   EXPECT_THAT(kinds(), testing::ElementsAre(ILK_REQUEST_STOP));
 }
 
@@ -193,7 +199,7 @@ TEST_F(HomeModeTest, AVerdictOnAnEarlierOrderChangesNothing) {
   (void)tick();
   home_axis(2);
   judge(insertion, ILK_VERDICT_BUSY, 1);
-  EXPECT_EQ(phase(), OrderPhase::waiting);
+  EXPECT_EQ(phase(), TaskPhase::waiting);
 }
 
 TEST_F(HomeModeTest, ALostVerdictEndsIt) {
@@ -201,8 +207,8 @@ TEST_F(HomeModeTest, ALostVerdictEndsIt) {
   press();
   (void)tick();
   mode_.on_verdict_lost({ILK_REQUEST_HOME, insertion, 1}, snapshot_.state.system.tick);
-  EXPECT_EQ(phase(), OrderPhase::aborted);
-  EXPECT_EQ(reason(), OrderReason::verdict_lost);
+  EXPECT_EQ(phase(), TaskPhase::aborted);
+  EXPECT_EQ(reason(), TaskReason::verdict_lost);
   EXPECT_THAT(kinds(), testing::ElementsAre(ILK_REQUEST_STOP));
 }
 
@@ -211,8 +217,8 @@ TEST_F(HomeModeTest, CancellingAsksForStopUntilMotionHasEnded) {
   press();
   (void)tick();
   accept(insertion);
-  mode_.end(1, OrderReason::cancelled, snapshot_.state.system.tick);
-  EXPECT_EQ(reason(), OrderReason::cancelled);
+  mode_.end(1, TaskReason::cancelled, snapshot_.state.system.tick);
+  EXPECT_EQ(reason(), TaskReason::cancelled);
   EXPECT_THAT(kinds(), testing::ElementsAre(ILK_REQUEST_STOP));
   EXPECT_THAT(kinds(49), testing::IsEmpty());
   EXPECT_THAT(kinds(), testing::ElementsAre(ILK_REQUEST_STOP));
@@ -226,14 +232,14 @@ TEST_F(HomeModeTest, CancellingWhatDoesNotRunAsksForNothing) {
   home_axis();
   (void)tick();
   press();
-  mode_.end(1, OrderReason::cancelled, snapshot_.state.system.tick);
+  mode_.end(1, TaskReason::cancelled, snapshot_.state.system.tick);
   EXPECT_THAT(kinds(), testing::IsEmpty());
 }
 
 TEST_F(HomeModeTest, EndsOnlyTheProposalThatIsMeant) {
   home_axis(2);
-  mode_.end(1, OrderReason::cancelled, snapshot_.state.system.tick);
-  EXPECT_EQ(phase(), OrderPhase::waiting);
+  mode_.end(1, TaskReason::cancelled, snapshot_.state.system.tick);
+  EXPECT_EQ(phase(), TaskPhase::waiting);
 }
 
 TEST_F(HomeModeTest, ANewerOrderWaitsUntilTheOlderOneIsStopped) {
@@ -244,7 +250,7 @@ TEST_F(HomeModeTest, ANewerOrderWaitsUntilTheOlderOneIsStopped) {
   home_angles(2);
   EXPECT_THAT(kinds(), testing::ElementsAre(ILK_REQUEST_STOP));
   EXPECT_THAT(kinds(), testing::IsEmpty());
-  EXPECT_EQ(phase(), OrderPhase::waiting);
+  EXPECT_EQ(phase(), TaskPhase::waiting);
   release();
   (void)tick();
   press();
@@ -256,7 +262,7 @@ TEST_F(HomeModeTest, WishesThatWereNotSentAreRepeated) {
   press();
   mode_.on_unsent(tick().at(0));
   EXPECT_THAT(kinds(), testing::ElementsAre(ILK_REQUEST_HOME));
-  mode_.end(1, OrderReason::cancelled, snapshot_.state.system.tick);
+  mode_.end(1, TaskReason::cancelled, snapshot_.state.system.tick);
   mode_.on_unsent(tick().at(0));
   EXPECT_THAT(kinds(), testing::ElementsAre(ILK_REQUEST_STOP));
 }
@@ -264,10 +270,10 @@ TEST_F(HomeModeTest, WishesThatWereNotSentAreRepeated) {
 TEST_F(HomeModeTest, ExpiresAfterAMinuteOfKernelTimeWithoutThePedal) {
   home_axis();
   (void)tick(test::minute_ticks);
-  EXPECT_EQ(phase(), OrderPhase::waiting);
+  EXPECT_EQ(phase(), TaskPhase::waiting);
   (void)tick();
-  EXPECT_EQ(phase(), OrderPhase::expired);
-  EXPECT_EQ(reason(), OrderReason::waited_too_long);
+  EXPECT_EQ(phase(), TaskPhase::expired);
+  EXPECT_EQ(reason(), TaskReason::waited_too_long);
 }
 
 TEST_F(HomeModeTest, TheMinuteBeginsAnewWithEachPause) {
@@ -278,16 +284,16 @@ TEST_F(HomeModeTest, TheMinuteBeginsAnewWithEachPause) {
   release();
   (void)tick();
   (void)tick(test::minute_ticks);
-  EXPECT_EQ(phase(), OrderPhase::paused);
+  EXPECT_EQ(phase(), TaskPhase::paused);
   (void)tick();
-  EXPECT_EQ(phase(), OrderPhase::expired);
+  EXPECT_EQ(phase(), TaskPhase::expired);
 }
 
 TEST_F(HomeModeTest, APressAfterAMinuteFindsNothingToHome) {
   home_axis();
   press();
   EXPECT_THAT(tick(test::minute_ticks + 1), testing::IsEmpty());
-  EXPECT_EQ(phase(), OrderPhase::expired);
+  EXPECT_EQ(phase(), TaskPhase::expired);
 }
 
 TEST_F(HomeModeTest, TellsWhatIsLeftOfTheLongestNudgeThereIs) {
@@ -300,16 +306,21 @@ TEST_F(HomeModeTest, TellsWhatIsLeftOfTheLongestNudgeThereIs) {
     Wishes wishes;
     mode.tick(snapshot_, wishes);
   };
-  mode.take(HomeOrder{1, 0, 1, 0, 0}, snapshot_.state.system.tick);
+  mode.take(test::task_of(1, HomeTask{0, 1, {}}), snapshot_.state.system.tick);
   tick(ILK_MODE_MOTION);
   tick(ILK_MODE_READY);
-  EXPECT_EQ(mode.status().order.phase, OrderPhase::paused);
-  EXPECT_EQ(mode.status().slot, yaw);
-  EXPECT_EQ(mode.status().left_counts, INT32_MIN);
+  const auto status = [&mode] {
+    TaskTable tasks;
+    mode.report(tasks);
+    return tasks.of(TaskKind::home);
+  };
+  EXPECT_EQ(status().phase, TaskPhase::paused);
+  EXPECT_EQ(status().slot, yaw);
+  EXPECT_EQ(status().left_counts, INT32_MIN);
   axis(yaw).raw += neuro_config().axis[yaw].direction_correction != 0 ? -1u : 1u;
   tick(ILK_MODE_MOTION);
   tick(ILK_MODE_READY);
-  EXPECT_EQ(mode.status().left_counts, INT32_MIN) << "a distance beyond 32 bits";
+  EXPECT_EQ(status().left_counts, INT32_MIN) << "a distance beyond 32 bits";
 }
 
 TEST_F(HomeModeTest, SurvivesTheWrapOfTheTickCounter) {
@@ -321,7 +332,7 @@ TEST_F(HomeModeTest, SurvivesTheWrapOfTheTickCounter) {
   (void)tick(20);
   arrive(insertion);
   (void)tick();
-  EXPECT_EQ(phase(), OrderPhase::done);
+  EXPECT_EQ(phase(), TaskPhase::done);
 }
 
 TEST_F(HomeModeTest, LockedEndsIt) {
@@ -331,23 +342,23 @@ TEST_F(HomeModeTest, LockedEndsIt) {
   snapshot_.state.system.mode = ILK_MODE_LOCKED;
   snapshot_.state.system.cause = ILK_CAUSE_ESTOP;
   EXPECT_THAT(tick(), testing::IsEmpty());
-  EXPECT_EQ(reason(), OrderReason::locked);
-  EXPECT_EQ(mode_.status().order.code, static_cast<std::uint32_t>(ILK_CAUSE_ESTOP));
+  EXPECT_EQ(reason(), TaskReason::locked);
+  EXPECT_EQ(status().code, static_cast<std::uint32_t>(ILK_CAUSE_ESTOP));
 }
 
 TEST_F(HomeModeTest, AnAxisTakenOutOfMotionEndsIt) {
   home_angles();
   axis(pitch).state = ILK_AXIS_DISABLED;
   (void)tick();
-  EXPECT_EQ(reason(), OrderReason::axis_disabled);
-  EXPECT_EQ(mode_.status().slot, pitch);
+  EXPECT_EQ(reason(), TaskReason::axis_disabled);
+  EXPECT_EQ(status().slot, pitch);
 }
 
 TEST_F(HomeModeTest, AnAxisBesideItMayBeDisabled) {
   axis(rotation).state = ILK_AXIS_DISABLED;
   home_axis();
   (void)tick();
-  EXPECT_EQ(phase(), OrderPhase::waiting);
+  EXPECT_EQ(phase(), TaskPhase::waiting);
 }
 
 TEST_F(HomeModeTest, ANewFaultOfAnyAxisEndsIt) {
@@ -356,36 +367,35 @@ TEST_F(HomeModeTest, ANewFaultOfAnyAxisEndsIt) {
   axis(rotation).state = ILK_AXIS_FAULTED;
   axis(rotation).fault = ILK_FAULT_DRIFT;
   (void)tick();
-  EXPECT_EQ(reason(), OrderReason::axis_faulted);
-  EXPECT_EQ(mode_.status().slot, rotation);
-  EXPECT_EQ(mode_.status().order.code, static_cast<std::uint32_t>(ILK_FAULT_DRIFT));
+  EXPECT_EQ(reason(), TaskReason::axis_faulted);
+  EXPECT_EQ(status().slot, rotation);
+  EXPECT_EQ(status().code, static_cast<std::uint32_t>(ILK_FAULT_DRIFT));
 }
 
 TEST_F(HomeModeTest, AFaultBesideItFromBeforeDoesNotUntilItComesAgain) {
   axis(rotation).state = ILK_AXIS_FAULTED;
   home_axis();
   (void)tick();
-  EXPECT_EQ(phase(), OrderPhase::waiting);
+  EXPECT_EQ(phase(), TaskPhase::waiting);
   axis(rotation).state = ILK_AXIS_ENABLED;
   (void)tick();
   axis(rotation).state = ILK_AXIS_FAULTED;
   (void)tick();
-  EXPECT_EQ(reason(), OrderReason::axis_faulted);
+  EXPECT_EQ(reason(), TaskReason::axis_faulted);
 }
 
 TEST_F(HomeModeTest, RefusesWhatTheRobotDoesNotHave) {
   const auto steps = static_cast<std::uint32_t>(neuro().home_steps.size());
-  const HomeOrder beyond[] = {
-      {1, steps, 1, 0, 0}, {2, 0, steps + 1, 0, 0}, {3, 1, UINT32_MAX, 0, 0}, {4, 0, 0, ILK_SLOTS, 0}};
+  const HomeTask beyond[] = {{steps, 1, {}}, {0, steps + 1, {}}, {1, UINT32_MAX, {}}, {0, 0, {ILK_SLOTS}}};
   press();
-  for (const HomeOrder& order : beyond) {
-    mode_.take(order, snapshot_.state.system.tick);
-    EXPECT_EQ(phase(), OrderPhase::refused);
-    EXPECT_EQ(mode_.status().order.code, static_cast<std::uint32_t>(ILK_VERDICT_AXIS));
+  for (const HomeTask& task : beyond) {
+    mode_.take(test::task_of(1, task), snapshot_.state.system.tick);
+    EXPECT_EQ(phase(), TaskPhase::refused);
+    EXPECT_EQ(status().code, static_cast<std::uint32_t>(ILK_VERDICT_AXIS));
     EXPECT_THAT(tick(), testing::IsEmpty());
   }
-  mode_.take(HomeOrder{5, 0, steps, 0, 0}, snapshot_.state.system.tick);
-  EXPECT_EQ(phase(), OrderPhase::waiting);
+  mode_.take(test::task_of(5, HomeTask{0, steps, {}}), snapshot_.state.system.tick);
+  EXPECT_EQ(phase(), TaskPhase::waiting);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "proposals/home_plan.hpp"
 #include "proposals/proposal_book.hpp"
 #include "proposals/proposal_json.hpp"
 #include "robot_fixture.hpp"
@@ -52,27 +53,30 @@ class HomeProposalTest : public testing::Test {
     book_.on_mode_change([this](std::string_view mode) { modes_.emplace_back(mode); });
   }
 
+  tl::expected<Proposal, Refusal> home(HomeTask task, TaskSource source = TaskSource::console) {
+    return book_.propose({std::move(task), "ann", RobotMode::home, source}, view_);
+  }
   tl::expected<Proposal, Refusal> home_axis(std::uint32_t slot = insertion) {
-    return book_.propose_home({slot, std::nullopt, "ann"}, view_);
+    return home(interlock::home_axis(slot));
   }
   tl::expected<Proposal, Refusal> home_step(const std::string& step) {
-    return book_.propose_home({std::nullopt, step, "ann"}, view_);
+    return interlock::home_step(robot(), step).and_then([&](HomeTask task) { return home(std::move(task)); });
   }
   tl::expected<Proposal, Refusal> home_all() {
-    return book_.propose_home({std::nullopt, std::nullopt, "ann"}, view_);
+    return interlock::home_all(robot()).and_then([&](HomeTask task) { return home(std::move(task)); });
   }
   tl::expected<Proposal, Refusal> move(std::uint32_t slot = insertion) {
-    return book_.propose({slot, 1000, std::nullopt, "ann"}, view_);
+    return book_.propose({MoveTask{slot, 1000}, "ann"}, view_);
   }
 
-  void report(const HomeStatus& status) {
+  void report(const TaskStatus& status) {
     ControlView view;
-    view.home = status;
+    view.tasks.of(TaskKind::home) = status;
     book_.follow(view);
   }
-  void report(OrderPhase phase, OrderReason reason = OrderReason::none, std::uint32_t code = 0,
+  void report(TaskPhase phase, TaskReason reason = TaskReason::none, std::uint32_t code = 0,
               std::uint32_t step = 0, std::uint32_t slot = insertion, std::int32_t left_counts = 0) {
-    report(HomeStatus{{1, phase, reason, code, 0}, step, slot, left_counts});
+    report(TaskStatus{1, phase, reason, code, 0, slot, step, left_counts});
   }
 
   ilk_axis_t& axis(std::uint32_t slot) { return view_.snapshot.state.axis[slot]; }
@@ -98,29 +102,28 @@ TEST_F(HomeProposalTest, OrdersOneAxis) {
   const auto proposal = home_axis();
   ASSERT_TRUE(proposal);
   EXPECT_EQ(proposal->state, ProposalState::approved);
-  EXPECT_EQ(proposal->author, "ann");
-  const auto& order = std::get<HomeOrder>(sent_.at(0));
-  EXPECT_EQ(order.proposal, 1u);
+  EXPECT_EQ(proposal->task->author, "ann");
+  const Task& task = *std::get<Approval>(sent_.at(0)).task;
+  const auto& order = std::get<HomeTask>(task.work);
+  EXPECT_EQ(task.id, 1u);
   EXPECT_EQ(order.step_count, 0u);
-  EXPECT_EQ(order.slot, insertion);
+  EXPECT_EQ(order.slots.front(), insertion);
 }
 
 TEST_F(HomeProposalTest, AWishFromOpenIgtLinkWaitsUntilSomebodyApprovesIt) {
-  const auto waiting =
-      book_.propose_home({insertion, std::nullopt, "ann", ProposalSource::openigtlink}, view_);
+  const auto waiting = home(interlock::home_axis(insertion), TaskSource::openigtlink);
   ASSERT_TRUE(waiting);
   EXPECT_EQ(waiting->state, ProposalState::checked);
-  EXPECT_EQ(source_of(*waiting), ProposalSource::openigtlink);
+  EXPECT_EQ(waiting->task->source, TaskSource::openigtlink);
   EXPECT_THAT(sent_, IsEmpty());
   EXPECT_EQ(book_.app_mode(), "manual");
   ASSERT_TRUE(book_.approve(waiting->id, view_));
-  EXPECT_EQ(std::get<HomeOrder>(sent_.at(0)).slot, insertion);
+  EXPECT_EQ(std::get<HomeTask>(std::get<Approval>(sent_.at(0)).task->work).slots.front(), insertion);
   EXPECT_EQ(book_.app_mode(), "home");
 }
 
 TEST_F(HomeProposalTest, WhatWaitsIsCheckedAnewWhenItIsApproved) {
-  const auto waiting =
-      book_.propose_home({insertion, std::nullopt, "ann", ProposalSource::openigtlink}, view_);
+  const auto waiting = home(interlock::home_axis(insertion), TaskSource::openigtlink);
   ASSERT_TRUE(waiting);
   axis(insertion).state = ILK_AXIS_DISABLED;
   const auto refused = book_.approve(waiting->id, view_);
@@ -134,7 +137,7 @@ TEST_F(HomeProposalTest, OrdersOneStepByItsName) {
   const auto proposal = home_step("angles");
   ASSERT_TRUE(proposal);
   EXPECT_THAT(proposal->slots, ElementsAre(yaw, pitch));
-  const auto& order = std::get<HomeOrder>(sent_.at(0));
+  const auto& order = std::get<HomeTask>(std::get<Approval>(sent_.at(0)).task->work);
   EXPECT_EQ(order.first_step, angles);
   EXPECT_EQ(order.step_count, 1u);
 }
@@ -143,7 +146,7 @@ TEST_F(HomeProposalTest, OrdersAllStepsInTheOrderOfTheFile) {
   const auto proposal = home_all();
   ASSERT_TRUE(proposal);
   EXPECT_THAT(proposal->slots, ElementsAre(insertion, yaw, pitch, 4u, 7u, rotation));
-  const auto& order = std::get<HomeOrder>(sent_.at(0));
+  const auto& order = std::get<HomeTask>(std::get<Approval>(sent_.at(0)).task->work);
   EXPECT_EQ(order.first_step, 0u);
   EXPECT_EQ(order.step_count, robot().home_steps.size());
 }
@@ -159,7 +162,7 @@ TEST_F(HomeProposalTest, ShowsWhatTheInterfaceDescribes) {
   EXPECT_EQ(open["author"], "ann");
   EXPECT_TRUE(open["target"].is_null());
   EXPECT_TRUE(open["target_counts"].is_null());
-  report(OrderPhase::done, OrderReason::arrived, 0, angles);
+  report(TaskPhase::done, TaskReason::arrived, 0, angles);
   EXPECT_TRUE(to_json(*book_.find(1))["step"].is_null());
   (void)home_axis();
   EXPECT_EQ(to_json(*book_.find(2))["slot"], insertion);
@@ -196,7 +199,7 @@ TEST_F(HomeProposalTest, MovesAreRefusedUntilItHasEnded) {
   EXPECT_EQ(state(1), ProposalState::approved);
   EXPECT_EQ(state(2), ProposalState::refused);
   EXPECT_EQ(sent_.size(), 1u);
-  report(OrderPhase::done, OrderReason::arrived);
+  report(TaskPhase::done, TaskReason::arrived);
   EXPECT_TRUE(move());
 }
 
@@ -226,7 +229,7 @@ TEST_F(HomeProposalTest, KnowsWhichAxesAreBeingHomed) {
 TEST_F(HomeProposalTest, AbortCancelsTheOrder) {
   (void)home_axis();
   ASSERT_TRUE(book_.abort(1));
-  EXPECT_EQ(std::get<Cancel>(sent_.at(1)).proposal, 1u);
+  EXPECT_EQ(std::get<Cancel>(sent_.at(1)).task, 1u);
 }
 
 TEST_F(HomeProposalTest, RefusesAnotherConfigurationThanTheKernels) {
@@ -278,7 +281,6 @@ TEST_F(HomeProposalTest, RefusesWhatTheRobotDoesNotHave) {
   expect_refused(home_axis(test::empty_slot), "AXIS");
   expect_refused(home_step("nowhere"), "NOT_FOUND");
   EXPECT_THAT(home_step("nowhere").error().expected, HasSubstr("probe_out, angles, base"));
-  expect_refused(book_.propose_home({insertion, "angles", "ann"}, view_), "INVALID");
   EXPECT_THAT(book_.newest_first(), IsEmpty());
 }
 
@@ -291,13 +293,13 @@ TEST_F(HomeProposalTest, TellsEachStepInWords) {
   std::vector<std::string> told;
   (void)home_all();
   book_.on_change([&](const Proposal& proposal) { told.push_back(proposal.step + ": " + proposal.detail); });
-  report(OrderPhase::executing, OrderReason::none, 0, 0);
-  report(OrderPhase::executing, OrderReason::none, 0, 0);
-  report(OrderPhase::executing, OrderReason::none, 0, angles);
-  report(OrderPhase::executing, OrderReason::none, 0, aside);
-  report(OrderPhase::paused, OrderReason::press_again, 0, aside, rotation, 224);
-  report(OrderPhase::paused, OrderReason::pedal_released, 0, aside, rotation, 224);
-  report(OrderPhase::executing, OrderReason::none, 0, park);
+  report(TaskPhase::executing, TaskReason::none, 0, 0);
+  report(TaskPhase::executing, TaskReason::none, 0, 0);
+  report(TaskPhase::executing, TaskReason::none, 0, angles);
+  report(TaskPhase::executing, TaskReason::none, 0, aside);
+  report(TaskPhase::paused, TaskReason::press_again, 0, aside, rotation, 224);
+  report(TaskPhase::paused, TaskReason::pedal_released, 0, aside, rotation, 224);
+  report(TaskPhase::executing, TaskReason::none, 0, park);
   EXPECT_THAT(told,
               ElementsAre("probe_out: Homes probe insertion; step 1 of 5.",
                           "angles: Homes yaw and pitch; step 2 of 5.",
@@ -310,25 +312,25 @@ TEST_F(HomeProposalTest, TellsEachStepInWords) {
 
 TEST_F(HomeProposalTest, SaysHomedOnlyOfAxesThatWentToTheirSwitch) {
   (void)home_step("angles");
-  report(OrderPhase::done, OrderReason::arrived, 0, angles);
+  report(TaskPhase::done, TaskReason::arrived, 0, angles);
   EXPECT_EQ(detail(), "Homed yaw and pitch.");
 }
 
 TEST_F(HomeProposalTest, SaysOfAStepThatOnlyMovesThatNothingWasHomed) {
   (void)home_step("aside");
-  report(OrderPhase::done, OrderReason::arrived, 0, aside);
+  report(TaskPhase::done, TaskReason::arrived, 0, aside);
   EXPECT_EQ(detail(), "Moved probe rotation; nothing was homed by it.");
 }
 
 TEST_F(HomeProposalTest, SaysWhatIsLeftInTheUnitOfTheAxis) {
   (void)home_all();
-  report(OrderPhase::paused, OrderReason::press_again, 0, aside, insertion, -586);
+  report(TaskPhase::paused, TaskReason::press_again, 0, aside, insertion, -586);
   EXPECT_EQ(detail(), "Release the pedal and press it again to go on: 12.4 mm left.");
 }
 
 TEST_F(HomeProposalTest, NamesTheAxisThatEndedIt) {
   (void)home_step("angles");
-  report(OrderPhase::aborted, OrderReason::axis_faulted, ILK_FAULT_STALL, angles, pitch);
+  report(TaskPhase::aborted, TaskReason::axis_faulted, ILK_FAULT_STALL, angles, pitch);
   EXPECT_EQ(state(1), ProposalState::aborted);
   EXPECT_EQ(book_.find(1)->verdict, "FAULTED");
   EXPECT_THAT(detail(), HasSubstr("Pitch faulted. STALL"));
@@ -336,7 +338,7 @@ TEST_F(HomeProposalTest, NamesTheAxisThatEndedIt) {
 
 TEST_F(HomeProposalTest, AKernelRefusalEndsItWithItsVerdict) {
   (void)home_axis();
-  report(OrderPhase::refused, OrderReason::kernel_refused, ILK_VERDICT_BUSY);
+  report(TaskPhase::refused, TaskReason::kernel_refused, ILK_VERDICT_BUSY);
   EXPECT_EQ(state(1), ProposalState::refused);
   EXPECT_EQ(book_.find(1)->verdict, "BUSY");
 }
@@ -344,15 +346,15 @@ TEST_F(HomeProposalTest, AKernelRefusalEndsItWithItsVerdict) {
 TEST_F(HomeProposalTest, AnEndIsFinalWhateverALateReportSays) {
   (void)home_axis();
   ASSERT_TRUE(book_.abort(1));
-  report(OrderPhase::executing);
-  report(OrderPhase::done, OrderReason::arrived);
+  report(TaskPhase::executing);
+  report(TaskPhase::done, TaskReason::arrived);
   EXPECT_EQ(state(1), ProposalState::aborted);
   EXPECT_EQ(book_.app_mode(), "manual");
 }
 
 TEST_F(HomeProposalTest, ExpiresAsTheOrderDoes) {
   (void)home_axis();
-  report(OrderPhase::expired, OrderReason::waited_too_long);
+  report(TaskPhase::expired, TaskReason::waited_too_long);
   EXPECT_EQ(state(1), ProposalState::expired);
   EXPECT_TRUE(move());
 }

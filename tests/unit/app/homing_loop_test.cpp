@@ -21,9 +21,9 @@ using test::rotation;
 using test::UnhomedBounds;
 using test::yaw;
 
-constexpr HomeOrder every_step{1, 0, 3, 0, 0};
-constexpr HomeOrder the_angles{1, angles, 1, 0, 0};
-constexpr HomeOrder the_insertion{1, 0, 0, insertion, 0};
+const HomeTask every_step{0, 3, {}};
+const HomeTask the_angles{angles, 1, {}};
+const HomeTask the_insertion{0, 0, {insertion}};
 
 /** The neuro robot with other home steps. */
 Robot neuro_with(std::vector<HomeStep> steps) {
@@ -40,9 +40,9 @@ class HomingOnThePlant : public testing::TestWithParam<std::uint32_t> {
                                           std::uint32_t most_ticks = 4 * test::minute_ticks) {
     std::uint32_t presses = 1;
     loop.pedal(true);
-    for (std::uint32_t i = 0; i < most_ticks && is_open(loop.home().order.phase); ++i) {
+    for (std::uint32_t i = 0; i < most_ticks && is_open(loop.home().phase); ++i) {
       loop.tick();
-      if (loop.home().order.reason == OrderReason::press_again) {
+      if (loop.home().reason == TaskReason::press_again) {
         loop.pedal(false);
         loop.pedal(true);
         ++presses;
@@ -75,9 +75,9 @@ class HomingOnThePlant : public testing::TestWithParam<std::uint32_t> {
 TEST_P(HomingOnThePlant, HomesOneAxisAtItsSwitch) {
   ClosedLoop loop(3, GetParam());
   loop.enable_all();
-  loop.give(the_insertion);
+  loop.give(1, the_insertion);
   EXPECT_EQ(presses_to_the_end(loop), 1u);
-  EXPECT_EQ(loop.home().order.phase, OrderPhase::done);
+  EXPECT_EQ(loop.home().phase, TaskPhase::done);
   EXPECT_TRUE(homed(loop, insertion));
   EXPECT_NEAR(loop.state().axis[insertion].position_counts, loop.true_position(insertion), 2.0);
   EXPECT_EQ(loop.refusals(), 0u);
@@ -86,11 +86,11 @@ TEST_P(HomingOnThePlant, HomesOneAxisAtItsSwitch) {
 TEST_P(HomingOnThePlant, HomesTheAxesOfAStepTogether) {
   ClosedLoop loop(5, GetParam());
   loop.enable_all();
-  loop.give(the_angles);
+  loop.give(1, the_angles);
   loop.pedal(true);
   EXPECT_TRUE(homing(loop, yaw));
   EXPECT_TRUE(homing(loop, pitch));
-  ASSERT_TRUE(run_until(loop, [&] { return loop.home().order.phase == OrderPhase::done; }));
+  ASSERT_TRUE(run_until(loop, [&] { return loop.home().phase == TaskPhase::done; }));
   EXPECT_TRUE(homed(loop, yaw));
   EXPECT_TRUE(homed(loop, pitch));
   EXPECT_FALSE(homed(loop, insertion));
@@ -100,7 +100,7 @@ TEST_P(HomingOnThePlant, HomesTheWholeRobotInTheOrderOfItsFile) {
   ClosedLoop loop(7, GetParam());
   UnhomedBounds bounds(loop, neuro());
   loop.enable_all();
-  loop.give(every_step);
+  loop.give(1, every_step);
   loop.watch([&] {
     bounds.check();
     for (std::uint32_t step = 0; step < neuro().home_steps.size(); ++step) {
@@ -110,7 +110,7 @@ TEST_P(HomingOnThePlant, HomesTheWholeRobotInTheOrderOfItsFile) {
     }
   });
   EXPECT_EQ(presses_to_the_end(loop), 1u);
-  EXPECT_EQ(loop.home().order.phase, OrderPhase::done);
+  EXPECT_EQ(loop.home().phase, TaskPhase::done);
   for (const HomeStep& step : neuro().home_steps) {
     for (const std::uint32_t slot : step.home) {
       EXPECT_TRUE(homed(loop, slot)) << "slot " << slot;
@@ -123,7 +123,7 @@ TEST_P(HomingOnThePlant, HomesTheWholeRobotInTheOrderOfItsFile) {
 TEST_P(HomingOnThePlant, AReleaseInEachStepDropsHomingAndTheNextPressGoesOn) {
   ClosedLoop loop(11, GetParam());
   loop.enable_all();
-  loop.give(every_step);
+  loop.give(1, every_step);
   loop.pedal(true);
   for (std::uint32_t step = 0; step < neuro().home_steps.size(); ++step) {
     SCOPED_TRACE(neuro().home_steps[step].name);
@@ -131,20 +131,20 @@ TEST_P(HomingOnThePlant, AReleaseInEachStepDropsHomingAndTheNextPressGoesOn) {
     ASSERT_TRUE(run_until(loop, [&] { return homing(loop, slot); }));
     loop.run(100);
     loop.pedal(false);
-    EXPECT_EQ(loop.home().order.phase, OrderPhase::paused);
+    EXPECT_EQ(loop.home().phase, TaskPhase::paused);
     EXPECT_EQ(loop.home().step, step);
     EXPECT_FALSE(homed(loop, slot));
     expect_nothing_driven(loop);
     loop.pedal(true);
   }
-  ASSERT_TRUE(run_until(loop, [&] { return !is_open(loop.home().order.phase); }));
-  EXPECT_EQ(loop.home().order.phase, OrderPhase::done);
+  ASSERT_TRUE(run_until(loop, [&] { return !is_open(loop.home().phase); }));
+  EXPECT_EQ(loop.home().phase, TaskPhase::done);
 }
 
 TEST_P(HomingOnThePlant, WhatIsHomedInThisRunIsNotHomedAgain) {
   ClosedLoop loop(13, GetParam());
   loop.enable_all();
-  loop.give(the_angles);
+  loop.give(1, the_angles);
   loop.pedal(true);
   ASSERT_TRUE(run_until(loop, [&] { return homed(loop, yaw) != homed(loop, pitch); }));
   const std::uint32_t first = homed(loop, yaw) ? yaw : pitch;
@@ -152,13 +152,13 @@ TEST_P(HomingOnThePlant, WhatIsHomedInThisRunIsNotHomedAgain) {
   loop.pedal(false);
   loop.watch([&] { ASSERT_TRUE(homed(loop, first)); });
   EXPECT_EQ(presses_to_the_end(loop), 1u);
-  EXPECT_EQ(loop.home().order.phase, OrderPhase::done);
+  EXPECT_EQ(loop.home().phase, TaskPhase::done);
 }
 
 TEST_P(HomingOnThePlant, SetHomeInAPauseDoesNotCount) {
   ClosedLoop loop(17, GetParam());
   loop.enable_all();
-  loop.give(the_insertion);
+  loop.give(1, the_insertion);
   loop.pedal(true);
   ASSERT_TRUE(homing(loop, insertion));
   loop.pedal(false);
@@ -166,19 +166,19 @@ TEST_P(HomingOnThePlant, SetHomeInAPauseDoesNotCount) {
   ASSERT_TRUE(homed(loop, insertion));
   loop.pedal(true);
   EXPECT_TRUE(homing(loop, insertion));
-  EXPECT_EQ(loop.home().order.phase, OrderPhase::executing);
+  EXPECT_EQ(loop.home().phase, TaskPhase::executing);
 }
 
 TEST_P(HomingOnThePlant, AFailureOfOneAxisEndsAll) {
   ClosedLoop loop(19, GetParam());
   loop.enable_all();
-  loop.give(every_step);
+  loop.give(1, every_step);
   loop.pedal(true);
   ASSERT_TRUE(run_until(loop, [&] { return homing(loop, yaw); }));
   loop.happen(plant::command::JamAxis{yaw, true});
-  ASSERT_TRUE(run_until(loop, [&] { return !is_open(loop.home().order.phase); }));
-  EXPECT_EQ(loop.home().order.phase, OrderPhase::aborted);
-  EXPECT_EQ(loop.home().order.reason, OrderReason::axis_faulted);
+  ASSERT_TRUE(run_until(loop, [&] { return !is_open(loop.home().phase); }));
+  EXPECT_EQ(loop.home().phase, TaskPhase::aborted);
+  EXPECT_EQ(loop.home().reason, TaskReason::axis_faulted);
   EXPECT_EQ(loop.home().slot, yaw);
   EXPECT_FALSE(homed(loop, yaw));
   loop.pedal(false);
@@ -190,11 +190,11 @@ TEST_P(HomingOnThePlant, AFailureOfOneAxisEndsAll) {
 TEST_P(HomingOnThePlant, ALostCardBesideItEndsIt) {
   ClosedLoop loop(23, GetParam());
   loop.enable_all();
-  loop.give(the_insertion);
+  loop.give(1, the_insertion);
   loop.pedal(true);
   loop.happen(plant::command::PowerCard{rotation, false});
   loop.run(20 + GetParam());
-  EXPECT_EQ(loop.home().order.reason, OrderReason::axis_faulted);
+  EXPECT_EQ(loop.home().reason, TaskReason::axis_faulted);
   EXPECT_EQ(loop.home().slot, rotation);
   expect_nothing_driven(loop);
 }
@@ -202,11 +202,11 @@ TEST_P(HomingOnThePlant, ALostCardBesideItEndsIt) {
 TEST_P(HomingOnThePlant, StopEndsItForGood) {
   ClosedLoop loop(29, GetParam());
   loop.enable_all();
-  loop.give(the_angles);
+  loop.give(1, the_angles);
   loop.pedal(true);
   ASSERT_TRUE(homing(loop, yaw));
   loop.stop();
-  EXPECT_EQ(loop.home().order.reason, OrderReason::stopped);
+  EXPECT_EQ(loop.home().reason, TaskReason::stopped);
   loop.pedal(false);
   loop.pedal(true);
   loop.run(1000);
@@ -217,7 +217,7 @@ TEST_P(HomingOnThePlant, StopEndsItForGood) {
 TEST_P(HomingOnThePlant, CancellingStopsTheKernelsHoming) {
   ClosedLoop loop(31, GetParam());
   loop.enable_all();
-  loop.give(the_angles);
+  loop.give(1, the_angles);
   loop.pedal(true);
   ASSERT_TRUE(homing(loop, yaw));
   loop.cancel(1);
@@ -229,11 +229,11 @@ TEST_P(HomingOnThePlant, CancellingStopsTheKernelsHoming) {
 TEST_P(HomingOnThePlant, DisablingOneAxisEndsTheOthersToo) {
   ClosedLoop loop(37, GetParam());
   loop.enable_all();
-  loop.give(the_angles);
+  loop.give(1, the_angles);
   loop.pedal(true);
   ASSERT_TRUE(homing(loop, yaw));
   loop.request(ILK_REQUEST_DISABLE, pitch);
-  EXPECT_EQ(loop.home().order.reason, OrderReason::axis_disabled);
+  EXPECT_EQ(loop.home().reason, TaskReason::axis_disabled);
   EXPECT_EQ(loop.home().slot, pitch);
   expect_nothing_driven(loop);
 }
@@ -245,18 +245,18 @@ TEST_P(HomingOnThePlant, ANudgeGoesAPressAtATimeNeverFartherThanUnhomedTravel) {
   loop.enable_all();
   const double start = loop.true_position(insertion);
   loop.watch([&] { bounds.check(); });
-  loop.give(HomeOrder{1, 0, 1, 0, 0});
+  loop.give(1, HomeTask{0, 1, {}});
   loop.pedal(true);
-  ASSERT_TRUE(run_until(loop, [&] { return loop.home().order.reason == OrderReason::press_again; }));
-  EXPECT_EQ(loop.home().order.phase, OrderPhase::paused);
+  ASSERT_TRUE(run_until(loop, [&] { return loop.home().reason == TaskReason::press_again; }));
+  EXPECT_EQ(loop.home().phase, TaskPhase::paused);
   EXPECT_NEAR(loop.home().left_counts, 283, 3);
   const double used_up = loop.true_position(insertion);
   loop.run(1000);
   EXPECT_NEAR(loop.true_position(insertion), used_up, 1.0);
   loop.pedal(false);
-  EXPECT_EQ(loop.home().order.reason, OrderReason::pedal_released);
+  EXPECT_EQ(loop.home().reason, TaskReason::pedal_released);
   EXPECT_EQ(presses_to_the_end(loop), 3u);
-  EXPECT_EQ(loop.home().order.phase, OrderPhase::done);
+  EXPECT_EQ(loop.home().phase, TaskPhase::done);
   EXPECT_NEAR(loop.true_position(insertion) - start, 400, 4.0);
   EXPECT_EQ(loop.refusals(), 0u);
 }
@@ -267,9 +267,9 @@ TEST_P(HomingOnThePlant, ANudgeEndsAtItsSwitch) {
   UnhomedBounds bounds(loop, robot);
   loop.enable_all();
   loop.watch([&] { bounds.check(); });
-  loop.give(HomeOrder{1, 0, 1, 0, 0});
+  loop.give(1, HomeTask{0, 1, {}});
   EXPECT_EQ(presses_to_the_end(loop), 3u);
-  EXPECT_EQ(loop.home().order.phase, OrderPhase::done);
+  EXPECT_EQ(loop.home().phase, TaskPhase::done);
   EXPECT_LE(loop.true_position(insertion), 1.0);
   EXPECT_FALSE(homed(loop, insertion));
 }
@@ -279,13 +279,13 @@ TEST_P(HomingOnThePlant, ARestoredPositionDoesNotChangeHowFarANudgeGoes) {
   ClosedLoop loop(47, GetParam(), robot);
   loop.enable_all();
   const double start = loop.true_position(insertion);
-  loop.give(HomeOrder{1, 0, 1, 0, 0});
+  loop.give(1, HomeTask{0, 1, {}});
   loop.pedal(true);
-  ASSERT_TRUE(run_until(loop, [&] { return loop.home().order.reason == OrderReason::press_again; }));
+  ASSERT_TRUE(run_until(loop, [&] { return loop.home().reason == TaskReason::press_again; }));
   loop.pedal(false);
   loop.request(ILK_REQUEST_RESTORE, insertion, 1200);
   EXPECT_EQ(presses_to_the_end(loop), 1u);
-  EXPECT_EQ(loop.home().order.phase, OrderPhase::done);
+  EXPECT_EQ(loop.home().phase, TaskPhase::done);
   EXPECT_NEAR(loop.true_position(insertion) - start, 200, 4.0);
 }
 
@@ -295,11 +295,11 @@ TEST_P(HomingOnThePlant, AHomedAxisIsNudgedNoFartherThanItsSoftLimits) {
                                   {"in", "In", {}, {{insertion, -1000}}, {}}});
   ClosedLoop loop(53, GetParam(), robot);
   loop.enable_all();
-  loop.give(HomeOrder{1, 0, 3, 0, 0});
+  loop.give(1, HomeTask{0, 3, {}});
   double farthest = 0;
   loop.watch([&] { farthest = std::max(farthest, loop.true_position(insertion)); });
   EXPECT_EQ(presses_to_the_end(loop), 7u) << "a homed axis is nudged as slowly as one that is not";
-  EXPECT_EQ(loop.home().order.phase, OrderPhase::done);
+  EXPECT_EQ(loop.home().phase, TaskPhase::done);
   EXPECT_NEAR(farthest, 400, 15.0);
   EXPECT_NEAR(loop.true_position(insertion), neuro().at_slot(insertion)->lowest_setpoint_counts(), 4.0);
   EXPECT_EQ(loop.refusals(), 0u);
@@ -310,9 +310,9 @@ TEST_P(HomingOnThePlant, AMoveGoesToItsPositionOnceTheAxisIsHomed) {
       neuro_with({{"home", "Home", {insertion}, {}, {}}, {"park", "Park", {}, {}, {{insertion, 500}}}});
   ClosedLoop loop(59, GetParam(), robot);
   loop.enable_all();
-  loop.give(HomeOrder{1, 0, 2, 0, 0});
+  loop.give(1, HomeTask{0, 2, {}});
   EXPECT_EQ(presses_to_the_end(loop), 1u);
-  EXPECT_EQ(loop.home().order.phase, OrderPhase::done);
+  EXPECT_EQ(loop.home().phase, TaskPhase::done);
   EXPECT_NEAR(loop.state().axis[insertion].position_counts, 500, neuro().at_slot(insertion)->deadband_counts);
   loop.run(200);
   expect_nothing_driven(loop);
@@ -322,10 +322,10 @@ TEST_P(HomingOnThePlant, AMoveOfAnAxisThatIsNotHomedEndsIt) {
   const Robot robot = neuro_with({{"park", "Park", {}, {}, {{insertion, 500}}}});
   ClosedLoop loop(61, GetParam(), robot);
   loop.enable_all();
-  loop.give(HomeOrder{1, 0, 1, 0, 0});
+  loop.give(1, HomeTask{0, 1, {}});
   loop.pedal(true);
-  EXPECT_EQ(loop.home().order.phase, OrderPhase::aborted);
-  EXPECT_EQ(loop.home().order.reason, OrderReason::not_homed);
+  EXPECT_EQ(loop.home().phase, TaskPhase::aborted);
+  EXPECT_EQ(loop.home().reason, TaskReason::not_homed);
   expect_nothing_driven(loop);
 }
 
@@ -333,12 +333,12 @@ TEST_P(HomingOnThePlant, AReplacedMoveGivesItsAxisToHoming) {
   ClosedLoop loop(67, GetParam());
   loop.enable_all();
   loop.pedal(true);
-  loop.give(Order{1, insertion, 100, 0, 0});
+  loop.give(1, MoveTask{insertion, 100});
   loop.run(30);
-  loop.give(HomeOrder{2, 0, 0, insertion, 0});
-  EXPECT_EQ(loop.order(insertion).phase, OrderPhase::aborted);
-  EXPECT_EQ(loop.order(insertion).reason, OrderReason::axis_homing);
-  ASSERT_TRUE(run_until(loop, [&] { return loop.home().order.phase == OrderPhase::done; }));
+  loop.give(2, HomeTask{0, 0, {insertion}});
+  EXPECT_EQ(loop.move(insertion).phase, TaskPhase::aborted);
+  EXPECT_EQ(loop.move(insertion).reason, TaskReason::axis_homing);
+  ASSERT_TRUE(run_until(loop, [&] { return loop.home().phase == TaskPhase::done; }));
   EXPECT_TRUE(homed(loop, insertion));
 }
 
@@ -346,7 +346,7 @@ TEST_P(HomingOnThePlant, TheSameSeedGivesTheSameBits) {
   const auto run = [] {
     auto loop = std::make_unique<ClosedLoop>(71, GetParam());
     loop->enable_all();
-    loop->give(every_step);
+    loop->give(1, every_step);
     (void)presses_to_the_end(*loop);
     return loop;
   };
@@ -361,9 +361,9 @@ TEST_P(HomingOnThePlant, ANudgeAfterHomingInTheSamePressGoesNoFartherThanItShoul
       neuro_with({{"home", "Home", {insertion}, {}, {}}, {"out", "Out", {}, {{insertion, 40}}, {}}});
   ClosedLoop loop(71, GetParam(), robot);
   loop.enable_all();
-  loop.give(HomeOrder{1, 0, 2, 0, 0});
+  loop.give(1, HomeTask{0, 2, {}});
   (void)presses_to_the_end(loop);
-  EXPECT_EQ(loop.home().order.phase, OrderPhase::done);
+  EXPECT_EQ(loop.home().phase, TaskPhase::done);
   EXPECT_NEAR(loop.true_position(insertion), 40, 4.0);
 }
 

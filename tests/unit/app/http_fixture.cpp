@@ -120,8 +120,9 @@ Answered HttpTest::post_raw(const std::string& bytes) {
   return read(socket);
 }
 
-void HttpTest::show(const ControlView& view) {
+void HttpTest::show(const ControlView& view, std::chrono::milliseconds age) {
   mailbox_->view.writing() = view;
+  mailbox_->view.writing().received = steady_now() - age;
   mailbox_->view.publish();
   mailbox_->network_wake.signal();
 }

@@ -124,10 +124,13 @@ class HttpTest : public StoreFixture {
 
   Answered post_raw(const std::string& bytes);
 
-  void show(const ControlView& view);
+  /** @param age of the kernel's state in it */
+  void show(const ControlView& view, std::chrono::milliseconds age = {});
 
   /** The next command that the server sends. */
   Command next_command();
+  /** The task that it approves next. */
+  Task next_task() { return *std::get<Approval>(next_command()).task; }
 
   void answer(const Notice& notice);
 

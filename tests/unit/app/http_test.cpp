@@ -288,7 +288,7 @@ TEST_F(HttpTest, AnOrderCarriesTheStopsThatItsAuthorHasSeen) {
   (void)post("/api/stop");
   show(test::ready_view());
   ASSERT_EQ(post("/api/proposals", R"({"slot":3,"target_counts":1000})").status, 201u);
-  EXPECT_EQ(std::get<Order>(next_command()).stops, 1u);
+  EXPECT_EQ(std::get<Approval>(next_command()).stops, 1u);
 }
 
 TEST_F(HttpTest, AVerdictOfTheKernelIsTheAnswer) {
@@ -318,11 +318,11 @@ TEST_F(HttpTest, AProposalIsMadeShownAndAborted) {
   const json proposal = json::parse(made.body);
   EXPECT_EQ(proposal["state"], "approved");
   EXPECT_EQ(proposal["target_counts"], 945);
-  EXPECT_EQ(std::get<Order>(next_command()).max_drive, 9000u);
+  EXPECT_EQ(std::get<MoveTask>(next_task().work).drive, 9000u);
   EXPECT_EQ(json::parse(get("/api/motors/3").body)["setpoint_counts"], 945);
   EXPECT_EQ(json::parse(get("/api/proposals").body).size(), 1u);
   EXPECT_EQ(json::parse(post("/api/proposals/1/abort").body)["state"], "aborted");
-  EXPECT_EQ(std::get<Cancel>(next_command()).proposal, 1u);
+  EXPECT_EQ(std::get<Cancel>(next_command()).task, 1u);
   EXPECT_EQ(post("/api/proposals/1/abort").problem()["code"], "ENDED");
   EXPECT_EQ(post("/api/proposals/2/abort").status, 404u);
   EXPECT_EQ(get("/api/proposals/x").status, 404u);

@@ -23,7 +23,7 @@ TEST_F(JogRoutesTest, AJogIsAMoveToTheEndOfTheRangeInItsDirection) {
   const Answered up = post("/api/jog", begin("increasing"));
   ASSERT_EQ(up.status, 201u) << up.body;
   EXPECT_EQ(json::parse(up.body)["target_counts"], range.highest_counts);
-  EXPECT_EQ(std::get<Order>(next_command()).target_counts, range.highest_counts);
+  EXPECT_EQ(std::get<MoveTask>(next_task().work).target_counts, range.highest_counts);
 }
 
 TEST_F(JogRoutesTest, AtItsEndAnAxisDoesNotJogBackwards) {
@@ -42,29 +42,43 @@ TEST_F(JogRoutesTest, AJogIsHeldFromItsBeginAndEachRenewalSaysSince) {
   const ControlView view = test::ready_view();
   show(view);
   ASSERT_EQ(post("/api/jog", begin("increasing")).status, 201u);
-  const auto order = std::get<Order>(next_command());
-  ASSERT_TRUE(order.held);
-  EXPECT_EQ(order.held->tick, view.snapshot.state.system.tick);
-  EXPECT_EQ(put("/api/jog/" + std::to_string(order.proposal), "").status, 200u);
+  const auto approval = std::get<Approval>(next_command());
+  ASSERT_TRUE(std::get<MoveTask>(approval.task->work).jog);
+  EXPECT_EQ(approval.held.tick, view.snapshot.state.system.tick);
+  EXPECT_EQ(put("/api/jog/" + std::to_string(approval.task->id), "").status, 200u);
   const auto renewal = std::get<Renewal>(next_command());
-  EXPECT_EQ(renewal.proposal, order.proposal);
-  EXPECT_GE(renewal.held.time, order.held->time);
+  EXPECT_EQ(renewal.task, approval.task->id);
+  EXPECT_GE(renewal.held.time, approval.held.time);
+}
+
+TEST_F(JogRoutesTest, NobodyConsentsToMotionByAStateThatIsOld) {
+  const std::string move = R"({"slot":3,"target_counts":1000})";
+  show(test::ready_view(), std::chrono::milliseconds(251));
+  for (const auto& [path, body] : {std::pair("/api/jog", begin("increasing")), {"/api/proposals", move}}) {
+    const Answered refused = post(path, body);
+    EXPECT_EQ(refused.status, 503u) << path;
+    EXPECT_EQ(refused.problem()["code"], "NO_KERNEL") << path;
+  }
+  Command command;
+  EXPECT_FALSE(mailbox_->commands.pop(command));
+  show(test::ready_view(), std::chrono::milliseconds(250));
+  EXPECT_EQ(post("/api/proposals", move).status, 201u);
 }
 
 TEST_F(JogRoutesTest, AMoveIsNotHeld) {
   show(test::ready_view());
   ASSERT_EQ(post("/api/proposals", R"({"slot":3,"target_counts":1000})").status, 201u);
-  EXPECT_FALSE(std::get<Order>(next_command()).held);
+  EXPECT_FALSE(std::get<MoveTask>(next_task().work).jog);
 }
 
 TEST_F(JogRoutesTest, AJogThatTheControlThreadHasEndedIsNotRenewed) {
   ControlView view = test::ready_view();
   show(view);
   ASSERT_EQ(post("/api/jog", begin("increasing")).status, 201u);
-  const auto order = std::get<Order>(next_command());
-  view.orders[insertion] = {order.proposal, OrderPhase::aborted, OrderReason::let_go, 0, 7};
+  const std::uint32_t id = next_task().id;
+  view.tasks.move(insertion) = {id, TaskPhase::aborted, TaskReason::let_go, 0, 7};
   show(view);
-  const Answered late = put("/api/jog/" + std::to_string(order.proposal), "");
+  const Answered late = put("/api/jog/" + std::to_string(id), "");
   EXPECT_EQ(late.status, 409u);
   EXPECT_EQ(late.problem()["code"], "JOG_LAPSED");
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "robot_fixture.hpp"
+#include "tasks.hpp"
 
 namespace interlock {
 namespace {
@@ -19,7 +20,7 @@ class ManualModeTest : public testing::Test {
 
   void order(std::uint32_t proposal = 1, std::uint32_t slot = insertion, std::int32_t target = 1500,
              std::uint32_t drive = 0) {
-    mode_.take({proposal, slot, target, drive, 0}, snapshot_.state.system.tick);
+    mode_.take(test::task_of(proposal, MoveTask{slot, target, drive}), snapshot_.state.system.tick);
   }
 
   std::vector<Wish> tick(std::uint32_t ticks = 1) {
@@ -35,7 +36,11 @@ class ManualModeTest : public testing::Test {
   }
 
   ilk_axis_t& axis() { return snapshot_.state.axis[insertion]; }
-  [[nodiscard]] OrderStatus status() const { return mode_.orders()[insertion]; }
+  [[nodiscard]] TaskStatus status(std::uint32_t slot = insertion) const {
+    TaskTable tasks;
+    mode_.report(tasks);
+    return tasks.move(slot);
+  }
 
   ilk_snapshot_t snapshot_;
   ManualMode mode_;
@@ -44,7 +49,7 @@ class ManualModeTest : public testing::Test {
 TEST_F(ManualModeTest, SendsNothingBeforeThePedal) {
   order();
   EXPECT_THAT(tick(), testing::IsEmpty());
-  EXPECT_EQ(status().phase, OrderPhase::waiting);
+  EXPECT_EQ(status().phase, TaskPhase::waiting);
 }
 
 TEST_F(ManualModeTest, MovesTowardsTheTargetWhileThePedalIsHeld) {
@@ -52,11 +57,11 @@ TEST_F(ManualModeTest, MovesTowardsTheTargetWhileThePedalIsHeld) {
   snapshot_.state.system.mode = ILK_MODE_MOTION;
   const auto wishes = tick();
   ASSERT_EQ(wishes.size(), 1u);
-  EXPECT_EQ(wishes[0].origin.proposal, 1u);
+  EXPECT_EQ(wishes[0].origin.task, 1u);
   EXPECT_EQ(wishes[0].origin.slot, insertion);
   EXPECT_EQ(wishes[0].target_counts, 1500);
   EXPECT_EQ(wishes[0].drive, neuro_config().axis[insertion].max_drive);
-  EXPECT_EQ(status().phase, OrderPhase::executing);
+  EXPECT_EQ(status().phase, TaskPhase::executing);
 }
 
 TEST_F(ManualModeTest, KeepsTheBoundOfTheProposal) {
@@ -106,10 +111,10 @@ TEST_F(ManualModeTest, ReleasePausesAndPressGoesOn) {
   press();
   snapshot_.state.system.mode = ILK_MODE_READY;
   EXPECT_THAT(tick(), testing::IsEmpty());
-  EXPECT_EQ(status().phase, OrderPhase::paused);
+  EXPECT_EQ(status().phase, TaskPhase::paused);
   snapshot_.state.system.mode = ILK_MODE_MOTION;
   EXPECT_EQ(tick(minute_ticks).size(), 1u);
-  EXPECT_EQ(status().phase, OrderPhase::executing);
+  EXPECT_EQ(status().phase, TaskPhase::executing);
 }
 
 TEST_F(ManualModeTest, ExpiresAfterAMinuteOfKernelTimeWithoutThePedal) {
@@ -118,16 +123,16 @@ TEST_F(ManualModeTest, ExpiresAfterAMinuteOfKernelTimeWithoutThePedal) {
   snapshot_.state.system.mode = ILK_MODE_READY;
   (void)tick();
   (void)tick(minute_ticks);
-  EXPECT_EQ(status().phase, OrderPhase::paused);
+  EXPECT_EQ(status().phase, TaskPhase::paused);
   (void)tick();
-  EXPECT_EQ(status().phase, OrderPhase::expired);
+  EXPECT_EQ(status().phase, TaskPhase::expired);
 }
 
 TEST_F(ManualModeTest, APressAfterAMinuteFindsNothingToMove) {
   order();
   snapshot_.state.system.mode = ILK_MODE_MOTION;
   EXPECT_THAT(tick(minute_ticks + 1), testing::IsEmpty());
-  EXPECT_EQ(status().phase, OrderPhase::expired);
+  EXPECT_EQ(status().phase, TaskPhase::expired);
 }
 
 TEST_F(ManualModeTest, LockedDiscardsTheOrder) {
@@ -136,8 +141,8 @@ TEST_F(ManualModeTest, LockedDiscardsTheOrder) {
   snapshot_.state.system.mode = ILK_MODE_LOCKED;
   snapshot_.state.system.cause = ILK_CAUSE_ESTOP;
   EXPECT_THAT(tick(), testing::IsEmpty());
-  EXPECT_EQ(status().phase, OrderPhase::aborted);
-  EXPECT_EQ(status().reason, OrderReason::locked);
+  EXPECT_EQ(status().phase, TaskPhase::aborted);
+  EXPECT_EQ(status().reason, TaskReason::locked);
   EXPECT_EQ(status().code, static_cast<std::uint32_t>(ILK_CAUSE_ESTOP));
   snapshot_.state.system.mode = ILK_MODE_MOTION;
   EXPECT_THAT(tick(), testing::IsEmpty());
@@ -147,10 +152,10 @@ TEST_F(ManualModeTest, StopAbortsEveryOpenOrder) {
   order(1, insertion);
   order(2, test::rotation, 100);
   press();
-  mode_.end_all(OrderReason::stopped, snapshot_.state.system.tick);
+  mode_.end_all(TaskReason::stopped, snapshot_.state.system.tick);
   for (const std::uint32_t slot : {insertion, test::rotation}) {
-    EXPECT_EQ(mode_.orders()[slot].phase, OrderPhase::aborted);
-    EXPECT_EQ(mode_.orders()[slot].reason, OrderReason::stopped);
+    EXPECT_EQ(status(slot).phase, TaskPhase::aborted);
+    EXPECT_EQ(status(slot).reason, TaskReason::stopped);
   }
 }
 
@@ -158,7 +163,7 @@ TEST_F(ManualModeTest, AnAxisTakenOutOfMotionEndsItsOrder) {
   order();
   axis().state = ILK_AXIS_DISABLED;
   (void)tick();
-  EXPECT_EQ(status().reason, OrderReason::axis_disabled);
+  EXPECT_EQ(status().reason, TaskReason::axis_disabled);
 }
 
 TEST_F(ManualModeTest, AFaultEndsTheOrderAndIsNamed) {
@@ -168,7 +173,7 @@ TEST_F(ManualModeTest, AFaultEndsTheOrderAndIsNamed) {
   axis().fault = ILK_FAULT_STALL;
   snapshot_.state.system.mode = ILK_MODE_READY;
   (void)tick();
-  EXPECT_EQ(status().reason, OrderReason::axis_faulted);
+  EXPECT_EQ(status().reason, TaskReason::axis_faulted);
   EXPECT_EQ(status().code, static_cast<std::uint32_t>(ILK_FAULT_STALL));
 }
 
@@ -177,14 +182,14 @@ TEST_F(ManualModeTest, HomingTakesTheAxisOver) {
   press();
   axis().state = ILK_AXIS_HOMING;
   EXPECT_THAT(tick(), testing::IsEmpty());
-  EXPECT_EQ(status().reason, OrderReason::axis_homing);
+  EXPECT_EQ(status().reason, TaskReason::axis_homing);
 }
 
 TEST_F(ManualModeTest, ARefusalOfTheKernelEndsTheOrderWithItsVerdict) {
   order();
   press();
   mode_.on_verdict({ILK_REQUEST_MOVE, insertion, 1}, ILK_VERDICT_RANGE, 1234);
-  EXPECT_EQ(status().phase, OrderPhase::refused);
+  EXPECT_EQ(status().phase, TaskPhase::refused);
   EXPECT_EQ(status().code, static_cast<std::uint32_t>(ILK_VERDICT_RANGE));
   EXPECT_EQ(status().tick, 1234u);
   EXPECT_EQ(tick().at(0).lease_ticks, 1u) << "an earlier lease may still drive the axis";
@@ -196,22 +201,22 @@ TEST_F(ManualModeTest, AVerdictOnAnOlderOrderDoesNotTouchTheNewerOne) {
   press();
   order(2);
   mode_.on_verdict({ILK_REQUEST_MOVE, insertion, 1}, ILK_VERDICT_RANGE, 1234);
-  EXPECT_EQ(status().proposal, 2u);
-  EXPECT_EQ(status().phase, OrderPhase::waiting);
+  EXPECT_EQ(status().task, 2u);
+  EXPECT_EQ(status().phase, TaskPhase::waiting);
 }
 
 TEST_F(ManualModeTest, APedalReleasedMeanwhileIsNoRefusal) {
   order();
   press();
   mode_.on_verdict({ILK_REQUEST_MOVE, insertion, 1}, ILK_VERDICT_MODE, 1234);
-  EXPECT_EQ(status().phase, OrderPhase::executing);
+  EXPECT_EQ(status().phase, TaskPhase::executing);
 }
 
 TEST_F(ManualModeTest, CancellingGivesBackTheLease) {
   order();
   press();
   axis().state = ILK_AXIS_MOVING;
-  mode_.end(1, OrderReason::cancelled, snapshot_.state.system.tick);
+  mode_.end(1, TaskReason::cancelled, snapshot_.state.system.tick);
   const auto wishes = tick();
   ASSERT_EQ(wishes.size(), 1u);
   EXPECT_EQ(wishes[0].drive, 1u);
@@ -223,7 +228,7 @@ TEST_F(ManualModeTest, CancellingGivesBackALeaseThatNoSnapshotShowsYet) {
   order();
   press();
   ASSERT_EQ(axis().state, static_cast<std::uint32_t>(ILK_AXIS_ENABLED));
-  mode_.end(1, OrderReason::cancelled, snapshot_.state.system.tick);
+  mode_.end(1, TaskReason::cancelled, snapshot_.state.system.tick);
   const auto wishes = tick();
   ASSERT_EQ(wishes.size(), 1u);
   EXPECT_EQ(wishes[0].drive, 1u);
@@ -237,7 +242,7 @@ TEST_F(ManualModeTest, CancellingGivesBackTheLeaseWhoseRenewalWasNotSent) {
   axis().state = ILK_AXIS_MOVING;
   const auto renewal = tick(neuro_config().common.lease_max_ticks);
   mode_.on_unsent(renewal.at(0));
-  mode_.end(1, OrderReason::cancelled, snapshot_.state.system.tick);
+  mode_.end(1, TaskReason::cancelled, snapshot_.state.system.tick);
   const auto wishes = tick();
   ASSERT_EQ(wishes.size(), 1u);
   EXPECT_EQ(wishes[0].drive, 1u);
@@ -250,7 +255,7 @@ TEST_F(ManualModeTest, CancellingGivesBackTheLeaseOfTheOrderThatItReplaced) {
   axis().state = ILK_AXIS_MOVING;
   order(2, insertion, 1000);
   mode_.on_unsent(tick().at(0));
-  mode_.end(2, OrderReason::cancelled, snapshot_.state.system.tick);
+  mode_.end(2, TaskReason::cancelled, snapshot_.state.system.tick);
   const auto wishes = tick();
   ASSERT_EQ(wishes.size(), 1u);
   EXPECT_EQ(wishes[0].drive, 1u);
@@ -261,7 +266,7 @@ TEST_F(ManualModeTest, NothingIsGivenBackWhereNothingWasSent) {
   order();
   snapshot_.state.system.mode = ILK_MODE_MOTION;
   mode_.on_unsent(tick().at(0));
-  mode_.end(1, OrderReason::cancelled, snapshot_.state.system.tick);
+  mode_.end(1, TaskReason::cancelled, snapshot_.state.system.tick);
   EXPECT_THAT(tick(), testing::IsEmpty());
 }
 
@@ -271,7 +276,7 @@ TEST_F(ManualModeTest, AWishThatWasNotSentIsRepeated) {
   const auto wishes = tick();
   mode_.on_unsent(wishes.at(0));
   EXPECT_EQ(tick().size(), 1u);
-  mode_.end(1, OrderReason::cancelled, snapshot_.state.system.tick);
+  mode_.end(1, TaskReason::cancelled, snapshot_.state.system.tick);
   axis().state = ILK_AXIS_MOVING;
   const auto release = tick();
   mode_.on_unsent(release.at(0));
@@ -285,10 +290,10 @@ TEST_F(ManualModeTest, IsDoneAfterFiftyTicksAtRestWithinTheDeadband) {
   (void)tick();
   for (int i = 0; i < 49; ++i) {
     (void)tick();
-    EXPECT_EQ(status().phase, OrderPhase::executing);
+    EXPECT_EQ(status().phase, TaskPhase::executing);
   }
   (void)tick();
-  EXPECT_EQ(status().phase, OrderPhase::done);
+  EXPECT_EQ(status().phase, TaskPhase::done);
 }
 
 TEST_F(ManualModeTest, NoiseOfTheCounterDoesNotDelayArrival) {
@@ -298,7 +303,7 @@ TEST_F(ManualModeTest, NoiseOfTheCounterDoesNotDelayArrival) {
     axis().position_counts = 1500 + i % 2;
     (void)tick();
   }
-  EXPECT_EQ(status().phase, OrderPhase::done);
+  EXPECT_EQ(status().phase, TaskPhase::done);
 }
 
 TEST_F(ManualModeTest, PassingThroughTheTargetIsNotArrival) {
@@ -308,7 +313,7 @@ TEST_F(ManualModeTest, PassingThroughTheTargetIsNotArrival) {
     axis().position_counts = i % 40 < 30 ? 1500 : 1510;
     (void)tick();
   }
-  EXPECT_EQ(status().phase, OrderPhase::executing);
+  EXPECT_EQ(status().phase, TaskPhase::executing);
 }
 
 TEST_F(ManualModeTest, ALimitThatHoldsTheAxisBackEndsTheOrder) {
@@ -316,10 +321,10 @@ TEST_F(ManualModeTest, ALimitThatHoldsTheAxisBackEndsTheOrder) {
   press();
   snapshot_.gate[insertion] = ILK_GATE_HARD_LIMIT;
   (void)tick(499);
-  EXPECT_EQ(status().phase, OrderPhase::executing);
+  EXPECT_EQ(status().phase, TaskPhase::executing);
   (void)tick();
-  EXPECT_EQ(status().phase, OrderPhase::aborted);
-  EXPECT_EQ(status().reason, OrderReason::blocked);
+  EXPECT_EQ(status().phase, TaskPhase::aborted);
+  EXPECT_EQ(status().reason, TaskReason::blocked);
   EXPECT_EQ(status().code, static_cast<std::uint32_t>(ILK_GATE_HARD_LIMIT));
 }
 
@@ -328,12 +333,12 @@ TEST_F(ManualModeTest, SurvivesTheWrapOfTheTickCounter) {
   order();
   press();
   EXPECT_EQ(tick(20).size(), 1u);
-  EXPECT_EQ(status().phase, OrderPhase::executing);
+  EXPECT_EQ(status().phase, TaskPhase::executing);
 }
 
 TEST_F(ManualModeTest, IgnoresASlotThatDoesNotExist) {
-  mode_.take({1, ILK_SLOTS, 0, 0, 0}, 0);
-  mode_.end(1, OrderReason::cancelled, 0);
+  mode_.take(test::task_of(1, MoveTask{ILK_SLOTS, 0}), 0);
+  mode_.end(1, TaskReason::cancelled, 0);
   mode_.on_verdict({ILK_REQUEST_MOVE, ILK_SLOTS, 1}, ILK_VERDICT_RANGE, 0);
   EXPECT_THAT(tick(), testing::IsEmpty());
 }

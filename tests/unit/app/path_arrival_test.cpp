@@ -89,16 +89,16 @@ class PathArrival : public testing::TestWithParam<std::uint64_t> {
     loop_.make_all_ready();
     const PathProgram program{{MoveLeg{targets, 0.0, 0.0}}};
     loop_.watch([this] { std::ranges::for_each(axes_, [this](Following& axis) { axis.look(loop_); }); });
-    status_ = loop_.carry_out({1, &program, 0}, minute_ticks);
+    status_ = loop_.carry_out(1, test::along(program), minute_ticks);
   }
 
   ClosedLoop loop_;
   std::vector<Following> axes_;
-  PathStatus status_;
+  TaskStatus status_;
 };
 
 TEST_P(PathArrival, AxesArriveWithinTwoMillisecondsOfEachOtherAndEndWithinTheirDeadbands) {
-  ASSERT_EQ(status_.order.phase, OrderPhase::done);
+  ASSERT_EQ(status_.phase, TaskPhase::done);
   double earliest_ms = 1e9;
   double latest_ms = -1e9;
   for (const Following& axis : axes_) {

@@ -34,10 +34,10 @@ PathProgram move_of(const std::vector<AxisCounts>& targets, double minimum_durat
   return program_of({MoveLeg{targets, minimum_duration_s, 0.0}});
 }
 
-void expect_done(const PathStatus& status) {
-  EXPECT_EQ(status.order.phase, OrderPhase::done)
-      << "reason " << static_cast<int>(status.order.reason) << ", code " << status.order.code << ", slot "
-      << status.slot << ", leg " << status.leg;
+void expect_done(const TaskStatus& status) {
+  EXPECT_EQ(status.phase, TaskPhase::done)
+      << "reason " << static_cast<int>(status.reason) << ", code " << status.code << ", slot " << status.slot
+      << ", leg " << status.step;
 }
 
 void expect_at(const ClosedLoop& loop, const Robot& robot, const std::vector<AxisCounts>& targets) {
@@ -56,7 +56,7 @@ TEST_P(PathModeOnThePlant, CoordinatedAxesArriveAtRestWithinTheirDeadbands) {
   ClosedLoop loop(5, GetParam());
   loop.make_all_ready();
   const PathProgram program = move_of(neuro_targets);
-  expect_done(loop.carry_out({1, &program, 0}, minute_ticks));
+  expect_done(loop.carry_out(1, test::along(program), minute_ticks));
   loop.run(100);
   expect_at(loop, neuro(), neuro_targets);
   EXPECT_EQ(loop.refusals(), 0u);
@@ -79,22 +79,22 @@ TEST_P(PathModeOnThePlant, NoAxisOvershootsBeyondDeadbandAndCoast) {
       ASSERT_LE(beyond, static_cast<std::int32_t>(rules.deadband_counts + rules.coast_counts));
     }
   });
-  expect_done(loop.carry_out({1, &program, 0}, minute_ticks));
+  expect_done(loop.carry_out(1, test::along(program), minute_ticks));
 }
 
 TEST_P(PathModeOnThePlant, ReleasePausesAndTheNextPressGoesOn) {
   ClosedLoop loop(11, GetParam());
   loop.make_all_ready();
   const PathProgram program = move_of(neuro_targets);
-  (void)loop.carry_out({1, &program, 0}, 1000);
-  ASSERT_EQ(loop.path().order.phase, OrderPhase::executing);
+  (void)loop.carry_out(1, test::along(program), 1000);
+  ASSERT_EQ(loop.path().phase, TaskPhase::executing);
   loop.pedal(false);
-  EXPECT_EQ(loop.path().order.phase, OrderPhase::paused);
+  EXPECT_EQ(loop.path().phase, TaskPhase::paused);
   const std::int32_t paused_at = loop.state().axis[head].position_counts;
   loop.run(1000);
   EXPECT_NEAR(loop.state().axis[head].position_counts, paused_at, 1);
   loop.pedal(true);
-  for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.path().order.phase); ++i) {
+  for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.path().phase); ++i) {
     loop.tick();
   }
   expect_done(loop.path());
@@ -106,14 +106,14 @@ TEST_P(PathModeOnThePlant, AJammedAxisStopsAllOthersAtOnce) {
   ClosedLoop loop(13, GetParam());
   loop.make_all_ready();
   const PathProgram program = move_of(neuro_targets);
-  (void)loop.carry_out({1, &program, 0}, 1000);
+  (void)loop.carry_out(1, test::along(program), 1000);
   loop.happen(plant::command::JamAxis{head, true});
-  for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.path().order.phase); ++i) {
+  for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.path().phase); ++i) {
     loop.tick();
   }
-  EXPECT_EQ(loop.path().order.phase, OrderPhase::aborted);
-  EXPECT_EQ(loop.path().order.reason, OrderReason::axis_faulted);
-  EXPECT_EQ(loop.path().order.code, static_cast<std::uint32_t>(ILK_FAULT_STALL));
+  EXPECT_EQ(loop.path().phase, TaskPhase::aborted);
+  EXPECT_EQ(loop.path().reason, TaskReason::axis_faulted);
+  EXPECT_EQ(loop.path().code, static_cast<std::uint32_t>(ILK_FAULT_STALL));
   EXPECT_EQ(loop.path().slot, head);
   loop.run(2 + GetParam());
   for (const AxisCounts& target : neuro_targets) {
@@ -125,7 +125,7 @@ TEST_P(PathModeOnThePlant, AnAxisTooSlowForItsPathStopsAllOthersAtOnce) {
   ClosedLoop loop(13, GetParam());
   loop.make_all_ready();
   const PathProgram program = move_of(neuro_targets);
-  (void)loop.carry_out({1, &program, 0}, 1000);
+  (void)loop.carry_out(1, test::along(program), 1000);
   plant::command::ChangeParameters slow{head, {}};
   for (std::size_t knob = 0; knob < plant::kAxisKnobCount; ++knob) {
     if (plant::kAxisKnobs[knob].name == "full_speed_counts_per_s") {
@@ -133,11 +133,11 @@ TEST_P(PathModeOnThePlant, AnAxisTooSlowForItsPathStopsAllOthersAtOnce) {
     }
   }
   loop.happen(slow);
-  for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.path().order.phase); ++i) {
+  for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.path().phase); ++i) {
     loop.tick();
   }
-  EXPECT_EQ(loop.path().order.phase, OrderPhase::aborted);
-  EXPECT_EQ(loop.path().order.reason, OrderReason::off_path);
+  EXPECT_EQ(loop.path().phase, TaskPhase::aborted);
+  EXPECT_EQ(loop.path().reason, TaskReason::off_path);
   EXPECT_EQ(loop.path().slot, head);
   loop.run(2 + GetParam());
   for (const AxisCounts& target : neuro_targets) {
@@ -155,10 +155,10 @@ TEST_P(PathModeOnThePlant, ATrajectoryIsFollowedInTimeFromWhereItBegins) {
   ASSERT_TRUE(trajectory) << trajectory.error().message();
   const PathProgram program = program_of({TimedLeg{*trajectory}});
   std::uint32_t executing_ticks = 0;
-  loop.give(PathOrder{1, &program, 0});
-  for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.path().order.phase); ++i) {
+  loop.give(1, test::along(program));
+  for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.path().phase); ++i) {
     loop.tick();
-    executing_ticks += loop.path().order.phase == OrderPhase::executing ? 1u : 0u;
+    executing_ticks += loop.path().phase == TaskPhase::executing ? 1u : 0u;
   }
   expect_done(loop.path());
   const auto yaw_end = *neuro().at_slot(test::yaw)->to_counts(-0.3);
@@ -174,11 +174,11 @@ TEST_P(PathModeOnThePlant, LegsFollowOneAnotherAndDwell) {
   const PathProgram program = program_of({MoveLeg{{{test::insertion, 300}}, 0.0, 0.5},
                                           MoveLeg{{{test::yaw, -200}, {head, -400}}, 0.0, 0.0},
                                           MoveLeg{{{test::insertion, 100}}, 2.0, 0.0}});
-  loop.give(PathOrder{1, &program, 0});
+  loop.give(1, test::along(program));
   std::array<std::uint32_t, 3> ticks_of_leg{};
-  for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.path().order.phase); ++i) {
+  for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.path().phase); ++i) {
     loop.tick();
-    ++ticks_of_leg[loop.path().leg];
+    ++ticks_of_leg[loop.path().step];
   }
   expect_done(loop.path());
   expect_at(loop, neuro(), {{test::insertion, 100}, {test::yaw, -200}, {head, -400}});
@@ -207,7 +207,7 @@ TEST_P(PathModeOnThePlant, TheProstateRobotsSlidersMoveTogether) {
   ClosedLoop loop(23, GetParam(), robot, centred);
   loop.make_all_ready();
   const PathProgram program = move_of(targets);
-  expect_done(loop.carry_out({1, &program, 0}, minute_ticks));
+  expect_done(loop.carry_out(1, test::along(program), minute_ticks));
   expect_at(loop, robot, targets);
   EXPECT_EQ(loop.refusals(), 0u);
 }
@@ -243,14 +243,14 @@ TEST_P(PathModeOnThePlant, APlanThatFailsInMotionStopsTheAxesWithinTheirCoast) {
   loop.make_all_ready();
   const PathProgram there = move_of(neuro_targets);
   const PathProgram nowhere = move_of(neuro_targets, 1e6);
-  (void)loop.carry_out({1, &there, 0}, 1500);
+  (void)loop.carry_out(1, test::along(there), 1500);
   std::array<double, ILK_SLOTS> before{};
   for (const AxisCounts& target : neuro_targets) {
     before[target.slot] = loop.true_position(target.slot);
   }
-  const PathStatus status = loop.carry_out({2, &nowhere, 0}, 100);
-  EXPECT_EQ(status.order.phase, OrderPhase::aborted);
-  EXPECT_EQ(status.order.reason, OrderReason::no_path);
+  const TaskStatus status = loop.carry_out(2, test::along(nowhere), 100);
+  EXPECT_EQ(status.phase, TaskPhase::aborted);
+  EXPECT_EQ(status.reason, TaskReason::no_path);
   loop.run(2 + GetParam());
   for (const AxisCounts& target : neuro_targets) {
     EXPECT_EQ(loop.outputs().command[target.slot].drive, 0u) << target.slot;
@@ -277,11 +277,11 @@ TEST_P(PathModeOnThePlant, ATrajectoryThatBeginsInMotionIsBegunAtTheVelocityOfIt
   const PathProgram program = program_of({TimedLeg{*trajectory}});
   VelocitySteps steps(loop, test::yaw);
   loop.watch([&] { steps.look(); });
-  (void)loop.carry_out({1, &program, 0}, 1200);
-  ASSERT_EQ(loop.path().order.phase, OrderPhase::executing);
+  (void)loop.carry_out(1, test::along(program), 1200);
+  ASSERT_EQ(loop.path().phase, TaskPhase::executing);
   loop.pedal(false);
   loop.pedal(true);
-  for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.path().order.phase); ++i) {
+  for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.path().phase); ++i) {
     loop.tick();
   }
   expect_done(loop.path());
@@ -307,7 +307,7 @@ TEST_P(PathModeOnThePlant, ATrajectoryThatEndsInMotionComesToRestAtItsLastRow) {
     steps.look();
     farthest = std::min(farthest, loop.state().axis[test::yaw].position_counts);
   });
-  expect_done(loop.carry_out({1, &program, 0}, minute_ticks));
+  expect_done(loop.carry_out(1, test::along(program), minute_ticks));
   const double acceleration = neuro().at_slot(test::yaw)->motion->acceleration_counts_per_s2;
   EXPECT_LE(steps.largest(), 1.01 * acceleration * 0.001);
   EXPECT_GE(farthest, yaw_end - static_cast<std::int32_t>(rules.deadband_counts + rules.coast_counts));
@@ -321,7 +321,7 @@ TEST_P(PathModeOnThePlant, APathThatReplacesAnotherBeginsAtTheVelocityThatItsAxe
   loop.make_all_ready();
   const PathProgram there = move_of({{test::yaw, -600}});
   const PathProgram elsewhere = move_of({{test::yaw, -700}});
-  (void)loop.carry_out({1, &there, 0}, 600);
+  (void)loop.carry_out(1, test::along(there), 600);
   const double before = loop.true_position(test::yaw);
   loop.tick();
   const double speed = (loop.true_position(test::yaw) - before) / 0.001;
@@ -332,7 +332,7 @@ TEST_P(PathModeOnThePlant, APathThatReplacesAnotherBeginsAtTheVelocityThatItsAxe
       begun = setpoint->velocity_counts_per_s;
     }
   });
-  expect_done(loop.carry_out({2, &elsewhere, 0}, minute_ticks));
+  expect_done(loop.carry_out(2, test::along(elsewhere), minute_ticks));
   ASSERT_TRUE(begun);
   EXPECT_NEAR(*begun, speed, 60.0);
   expect_at(loop, neuro(), {{test::yaw, -700}});
@@ -350,8 +350,9 @@ TEST(PathMode, ATickAllocatesNothing) {
     snapshot.state.axis[target.slot].state = ILK_AXIS_ENABLED;
     snapshot.state.axis[target.slot].homed = 1;
   }
+  const TaskReference task = test::task_of(1, test::along(program));
   test::count_allocations_of(pthread_self());
-  mode.take({1, &program, 0}, 0);
+  mode.take(task, 0);
   for (std::uint32_t tick = 1; tick < 30; ++tick) {
     snapshot.state.system.tick = tick;
     Wishes wishes;
@@ -359,7 +360,7 @@ TEST(PathMode, ATickAllocatesNothing) {
   }
   const std::uint32_t allocations = test::counted_allocations();
   test::count_allocations_of();
-  EXPECT_EQ(mode.status().order.phase, OrderPhase::executing);
+  EXPECT_EQ(mode.status().phase, TaskPhase::executing);
   EXPECT_EQ(allocations, 0u);
 }
 
@@ -368,9 +369,9 @@ TEST(PathMode, AnAxisThatIsNotHomedEndsThePathBeforeItMoves) {
   loop.enable_all();
   loop.pedal(true);
   const PathProgram program = move_of(neuro_targets);
-  const PathStatus status = loop.carry_out({1, &program, 0}, 100);
-  EXPECT_EQ(status.order.phase, OrderPhase::aborted);
-  EXPECT_EQ(status.order.reason, OrderReason::not_homed);
+  const TaskStatus status = loop.carry_out(1, test::along(program), 100);
+  EXPECT_EQ(status.phase, TaskPhase::aborted);
+  EXPECT_EQ(status.reason, TaskReason::not_homed);
 }
 
 TEST(PathMode, ARobotWithoutRatesHasNoPath) {
@@ -381,9 +382,9 @@ TEST(PathMode, ARobotWithoutRatesHasNoPath) {
   ClosedLoop loop(41, 1, robot);
   loop.make_all_ready();
   const PathProgram program = move_of(neuro_targets);
-  const PathStatus status = loop.carry_out({1, &program, 0}, 100);
-  EXPECT_EQ(status.order.phase, OrderPhase::aborted);
-  EXPECT_EQ(status.order.reason, OrderReason::no_path);
+  const TaskStatus status = loop.carry_out(1, test::along(program), 100);
+  EXPECT_EQ(status.phase, TaskPhase::aborted);
+  EXPECT_EQ(status.reason, TaskReason::no_path);
   EXPECT_EQ(loop.state().axis[head].position_counts, 0);
 }
 
@@ -391,14 +392,14 @@ TEST(PathMode, HomingAndMovesAndPathsDoNotShareAxes) {
   ClosedLoop loop(43, 1);
   loop.make_all_ready();
   const PathProgram program = move_of(neuro_targets);
-  (void)loop.carry_out({1, &program, 0}, 500);
-  loop.give(Order{2, test::yaw, -100, 0, 0});
-  EXPECT_EQ(loop.order(test::yaw).reason, OrderReason::superseded);
-  EXPECT_EQ(loop.path().order.phase, OrderPhase::executing);
-  loop.give(HomeOrder{3, 0, 1, 0, 0});
-  EXPECT_EQ(loop.path().order.reason, OrderReason::axis_homing);
-  loop.give(PathOrder{4, &program, 0});
-  EXPECT_EQ(loop.home().order.reason, OrderReason::superseded);
+  (void)loop.carry_out(1, test::along(program), 500);
+  loop.give(2, MoveTask{test::yaw, -100});
+  EXPECT_EQ(loop.move(test::yaw).reason, TaskReason::superseded);
+  EXPECT_EQ(loop.path().phase, TaskPhase::executing);
+  loop.give(3, HomeTask{0, 1, {}});
+  EXPECT_EQ(loop.path().reason, TaskReason::axis_homing);
+  loop.give(4, test::along(program));
+  EXPECT_EQ(loop.home().reason, TaskReason::superseded);
 }
 
 TEST(PathMode, APathThatNobodyPressesThePedalForExpires) {
@@ -406,8 +407,8 @@ TEST(PathMode, APathThatNobodyPressesThePedalForExpires) {
   loop.make_all_ready();
   loop.pedal(false);
   const PathProgram program = move_of(neuro_targets);
-  const PathStatus status = loop.carry_out({1, &program, 0}, minute_ticks + 10);
-  EXPECT_EQ(status.order.phase, OrderPhase::expired);
+  const TaskStatus status = loop.carry_out(1, test::along(program), minute_ticks + 10);
+  EXPECT_EQ(status.phase, TaskPhase::expired);
 }
 
 }  // namespace

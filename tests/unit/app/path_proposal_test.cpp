@@ -6,6 +6,7 @@
 #include "proposals/proposal_book.hpp"
 #include "proposals/proposal_json.hpp"
 #include "robot_fixture.hpp"
+#include "tasks.hpp"
 #include "trajectory/trajectory_csv.hpp"
 
 namespace interlock {
@@ -17,33 +18,29 @@ using test::prostate;
 
 constexpr std::uint32_t head_axis = 7;
 
-std::shared_ptr<const PathProgram> shared_program(std::vector<PathLeg> legs) {
-  return std::make_shared<const PathProgram>(PathProgram{std::move(legs)});
+Task along(std::vector<PathLeg> legs) {
+  return {test::along({std::move(legs)}), "edna", RobotMode::coordinated};
 }
 
-PathDraft draft_to(std::vector<AxisCounts> targets) {
-  return {RobotMode::coordinated, shared_program({MoveLeg{std::move(targets), 0.0, 0.0}}),
-          ProposalSource::console, std::nullopt, "edna"};
-}
+Task draft_to(std::vector<AxisCounts> targets) { return along({MoveLeg{std::move(targets), 0.0, 0.0}}); }
 
-PathDraft file_draft() {
+Task file_draft() {
   const auto trajectory = read_trajectory("time [s],yaw [rad]\n0,-0.5\n2,-0.7\n", neuro());
-  return {RobotMode::trajectory, shared_program({TimedLeg{trajectory.value()}}), ProposalSource::file,
-          std::nullopt, "edna"};
+  return {test::along({{TimedLeg{trajectory.value()}}}), "edna", RobotMode::trajectory, TaskSource::file};
 }
 
 class PathProposalTest : public testing::Test {
  protected:
   PathProposalTest() : view_(test::ready_view()) {}
 
-  void report(std::uint32_t proposal, OrderPhase phase, OrderReason reason = OrderReason::none) {
+  void report(std::uint32_t proposal, TaskPhase phase, TaskReason reason = TaskReason::none) {
     ControlView view = view_;
-    view.path.order = {proposal, phase, reason, 0, 0};
+    view.tasks.of(TaskKind::path) = {proposal, phase, reason, 0, 0};
     book_.follow(view);
   }
 
-  void expect_refused(const PathDraft& draft, const std::string& code) {
-    const auto proposal = book_.propose_path(draft, view_);
+  void expect_refused(const Task& draft, const std::string& code) {
+    const auto proposal = book_.propose(draft, view_);
     ASSERT_FALSE(proposal);
     EXPECT_EQ(proposal.error().code, code) << proposal.error().detail;
     EXPECT_FALSE(proposal.error().next_step.empty());
@@ -65,24 +62,24 @@ class PathProposalTest : public testing::Test {
 };
 
 TEST_F(PathProposalTest, AConsolesPathIsCheckedApprovedAndOrdered) {
-  const auto proposal = book_.propose_path(draft_to({{test::yaw, -300}, {head_axis, -1000}}), view_);
+  const auto proposal = book_.propose(draft_to({{test::yaw, -300}, {head_axis, -1000}}), view_);
   ASSERT_TRUE(proposal) << proposal.error().detail;
   EXPECT_EQ(proposal->state, ProposalState::approved);
   EXPECT_EQ(proposal->axes, (std::vector<std::string>{"yaw", "head"}));
   EXPECT_EQ(proposal->ends, (std::vector<AxisCounts>{{test::yaw, -300}, {head_axis, -1000}}));
   EXPECT_GT(proposal->duration_s, 1.0);
   ASSERT_EQ(sent_.size(), 1u);
-  EXPECT_EQ(std::get<PathOrder>(sent_.front()).proposal, proposal->id);
+  EXPECT_EQ(std::get<Approval>(sent_.front()).task->id, proposal->id);
   EXPECT_EQ(book_.app_mode(), "coordinated");
-  report(proposal->id, OrderPhase::executing);
+  report(proposal->id, TaskPhase::executing);
   EXPECT_EQ(state(1), ProposalState::executing);
-  report(proposal->id, OrderPhase::done, OrderReason::arrived);
+  report(proposal->id, TaskPhase::done, TaskReason::arrived);
   EXPECT_EQ(state(1), ProposalState::done);
   EXPECT_EQ(book_.app_mode(), "manual");
 }
 
 TEST_F(PathProposalTest, AFilesPathIsApprovedWithoutAClickOnlyWhereTheRobotFileSaysSo) {
-  const auto waits = book_.propose_path(file_draft(), view_);
+  const auto waits = book_.propose(file_draft(), view_);
   ASSERT_TRUE(waits) << waits.error().detail;
   EXPECT_EQ(waits->state, ProposalState::checked);
   EXPECT_THAT(sent_, testing::IsEmpty());
@@ -96,31 +93,33 @@ TEST_F(PathProposalTest, AFilesPathIsApprovedWithoutAClickOnlyWhereTheRobotFileS
                     },
                     [this] { return now_; }};
   axis(test::yaw).state = ILK_AXIS_DISABLED;
-  EXPECT_FALSE(book.propose_path(file_draft(), view_)) << "its checks still have to pass";
+  EXPECT_FALSE(book.propose(file_draft(), view_)) << "its checks still have to pass";
   EXPECT_THAT(sent_, testing::IsEmpty());
   axis(test::yaw).state = ILK_AXIS_ENABLED;
-  const auto approved = book.propose_path(file_draft(), view_);
+  const auto approved = book.propose(file_draft(), view_);
   ASSERT_TRUE(approved) << approved.error().detail;
   EXPECT_EQ(approved->state, ProposalState::approved);
   EXPECT_THAT(sent_, testing::SizeIs(1));
 }
 
-TEST_F(PathProposalTest, AProgramLivesUntilTheControlThreadNoLongerReadsIt) {
-  std::weak_ptr<const PathProgram> watched;
+TEST_F(PathProposalTest, ATaskLivesUntilTheControlThreadLetsGoOfItAndIsFreedByTheBook) {
+  std::weak_ptr<const Task> watched;
+  TaskReference held;
   {
-    PathDraft draft = draft_to({{test::yaw, -300}});
-    watched = draft.program;
-    ASSERT_TRUE(book_.propose_path(draft, view_));
+    ASSERT_TRUE(book_.propose(draft_to({{test::yaw, -300}}), view_));
+    held = std::get<Approval>(sent_.front()).task;
+    watched = held;
+    sent_.clear();
   }
   ASSERT_TRUE(book_.abort(1));
   for (std::uint32_t id = 2; id < 2 + ProposalBook::capacity; ++id) {
-    ASSERT_TRUE(book_.propose({test::insertion, 1000, std::nullopt, "edna"}, view_));
+    ASSERT_TRUE(book_.propose({MoveTask{test::insertion, 1000}, "edna"}, view_));
   }
   ASSERT_EQ(book_.find(1), nullptr) << "the book has forgotten the proposal";
-  EXPECT_FALSE(watched.expired()) << "its order may still be in the queue, or be carried out";
-  report(1, OrderPhase::executing);
-  EXPECT_FALSE(watched.expired());
-  report(1, OrderPhase::aborted, OrderReason::cancelled);
+  report(1, TaskPhase::aborted, TaskReason::cancelled);
+  held.reset();
+  EXPECT_FALSE(watched.expired()) << "the control thread frees nothing";
+  book_.follow(view_);
   EXPECT_TRUE(watched.expired());
 }
 
@@ -141,20 +140,17 @@ TEST_F(PathProposalTest, WhatCannotBeMovedIsRefusedWithItsReason) {
 }
 
 TEST_F(PathProposalTest, ALaterLegIsCheckedFromWhereTheOneBeforeEnds) {
-  PathDraft draft = draft_to({{head_axis, -1000}});
-  draft.program =
-      shared_program({MoveLeg{{{head_axis, -1000}}, 3.0, 0.5}, MoveLeg{{{head_axis, -11000}}, 0.0, 0.0}});
-  const auto good = book_.propose_path(draft, view_);
+  const auto good = book_.propose(
+      along({MoveLeg{{{head_axis, -1000}}, 3.0, 0.5}, MoveLeg{{{head_axis, -11000}}, 0.0, 0.0}}), view_);
   ASSERT_TRUE(good);
   EXPECT_GT(good->duration_s, 3.5 + 10000.0 / 600.0);
   sent_.clear();
-  draft.program =
-      shared_program({MoveLeg{{{head_axis, -1000}}, 0.0, 0.0}, MoveLeg{{{head_axis, -12000}}, 0.0, 0.0}});
-  expect_refused(draft, "RANGE");
+  expect_refused(along({MoveLeg{{{head_axis, -1000}}, 0.0, 0.0}, MoveLeg{{{head_axis, -12000}}, 0.0, 0.0}}),
+                 "RANGE");
 }
 
 TEST_F(PathProposalTest, AFileWaitsForApprovalAndIsCheckedAnewThen) {
-  const auto waiting = book_.propose_path(file_draft(), view_);
+  const auto waiting = book_.propose(file_draft(), view_);
   ASSERT_TRUE(waiting);
   EXPECT_EQ(waiting->state, ProposalState::checked);
   EXPECT_EQ(to_json(*waiting)["source"], "file");
@@ -166,9 +162,9 @@ TEST_F(PathProposalTest, AFileWaitsForApprovalAndIsCheckedAnewThen) {
   EXPECT_EQ(unfit.error().code, "NOT_HOMED");
   EXPECT_EQ(state(1), ProposalState::refused);
   axis(test::yaw).homed = 1;
-  ASSERT_TRUE(book_.propose_path(file_draft(), view_));
+  ASSERT_TRUE(book_.propose(file_draft(), view_));
   ASSERT_TRUE(book_.approve(2, view_));
-  EXPECT_EQ(std::get<PathOrder>(sent_.back()).proposal, 2u);
+  EXPECT_EQ(std::get<Approval>(sent_.back()).task->id, 2u);
   EXPECT_EQ(book_.app_mode(), "trajectory");
   const auto twice = book_.approve(2, view_);
   ASSERT_FALSE(twice);
@@ -176,21 +172,21 @@ TEST_F(PathProposalTest, AFileWaitsForApprovalAndIsCheckedAnewThen) {
 }
 
 TEST_F(PathProposalTest, AMotionThatCouldNotBePlannedIsToldInWords) {
-  ASSERT_TRUE(book_.propose_path(draft_to({{test::yaw, -300}}), view_));
-  report(1, OrderPhase::aborted, OrderReason::no_path);
+  ASSERT_TRUE(book_.propose(draft_to({{test::yaw, -300}}), view_));
+  report(1, TaskPhase::aborted, TaskReason::no_path);
   EXPECT_EQ(state(1), ProposalState::aborted);
   EXPECT_THAT(book_.find(1)->detail, testing::HasSubstr("No motion within the rates of the axes"));
 }
 
 TEST_F(PathProposalTest, ALockDiscardsWhatWaits) {
-  ASSERT_TRUE(book_.propose_path(file_draft(), view_));
+  ASSERT_TRUE(book_.propose(file_draft(), view_));
   view_.snapshot.state.system.mode = ILK_MODE_LOCKED;
   book_.follow(view_);
   EXPECT_EQ(state(1), ProposalState::aborted);
 }
 
 TEST_F(PathProposalTest, WhatNobodyApprovesExpires) {
-  ASSERT_TRUE(book_.propose_path(file_draft(), view_));
+  ASSERT_TRUE(book_.propose(file_draft(), view_));
   now_ += std::chrono::minutes(10);
   book_.follow(view_);
   EXPECT_EQ(state(1), ProposalState::checked);
@@ -207,34 +203,34 @@ TEST_F(PathProposalTest, AFullBookTellsTheOldestThatWaitsThatItGoes) {
     }
   });
   for (std::size_t i = 0; i <= ProposalBook::capacity; ++i) {
-    ASSERT_TRUE(book_.propose_path(file_draft(), view_));
+    ASSERT_TRUE(book_.propose(file_draft(), view_));
   }
   EXPECT_EQ(ended, std::vector<std::uint32_t>{1});
   EXPECT_EQ(book_.find(1), nullptr);
 }
 
 TEST_F(PathProposalTest, ChangedTargetingEndsWhatFollowedFromIt) {
-  PathDraft aligned = draft_to({{head_axis, -1000}});
+  Task aligned = draft_to({{head_axis, -1000}});
   aligned.targeting_revision = book_.targeting_revision();
-  ASSERT_TRUE(book_.propose_path(aligned, view_));
+  ASSERT_TRUE(book_.propose(aligned, view_));
   book_.end_stale();
   EXPECT_EQ(state(1), ProposalState::aborted);
-  EXPECT_EQ(std::get<Cancel>(sent_.back()).proposal, 1u);
+  EXPECT_EQ(std::get<Cancel>(sent_.back()).task, 1u);
   sent_.clear();
   expect_refused(aligned, "STALE");
-  ASSERT_TRUE(book_.propose_path(draft_to({{head_axis, -1000}}), view_));
+  ASSERT_TRUE(book_.propose(draft_to({{head_axis, -1000}}), view_));
   book_.end_stale();
   EXPECT_EQ(state(3), ProposalState::approved) << "it names its targets itself";
 }
 
 TEST_F(PathProposalTest, APathReplacesEveryApprovedMotionAndKeepsMovesAway) {
-  ASSERT_TRUE(book_.propose({test::insertion, 1000, std::nullopt, "edna"}, view_));
-  ASSERT_TRUE(book_.propose_path(draft_to({{head_axis, -1000}}), view_));
+  ASSERT_TRUE(book_.propose({MoveTask{test::insertion, 1000}, "edna"}, view_));
+  ASSERT_TRUE(book_.propose(draft_to({{head_axis, -1000}}), view_));
   EXPECT_EQ(state(1), ProposalState::aborted);
-  const auto move = book_.propose({test::insertion, 900, std::nullopt, "edna"}, view_);
+  const auto move = book_.propose({MoveTask{test::insertion, 900}, "edna"}, view_);
   ASSERT_FALSE(move);
   EXPECT_EQ(move.error().code, "MODE_PATH");
-  ASSERT_TRUE(book_.propose_path(draft_to({{head_axis, -900}}), view_));
+  ASSERT_TRUE(book_.propose(draft_to({{head_axis, -900}}), view_));
   EXPECT_EQ(state(2), ProposalState::aborted);
 }
 

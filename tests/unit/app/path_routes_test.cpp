@@ -18,9 +18,9 @@ class PathRoutesTest : public HttpTest {
 
   json proposal(int id) { return json::parse(get("/api/proposals/" + std::to_string(id)).body); }
 
-  void report(std::uint32_t proposal, OrderPhase phase) {
+  void report(std::uint32_t proposal, TaskPhase phase) {
     ControlView view = test::ready_view();
-    view.path.order = {proposal, phase, OrderReason::arrived, 0, 0};
+    view.tasks.of(TaskKind::path) = {proposal, phase, TaskReason::arrived, 0, 0};
     show(view);
   }
 };
@@ -35,7 +35,7 @@ TEST_F(PathRoutesTest, CoordinatedMotionTakesPositionsByAxis) {
   EXPECT_EQ(body["mode"], "coordinated");
   EXPECT_EQ(body["axes"], json({"yaw", "head"}));
   EXPECT_EQ(body["ends"][0], json({{"slot", 0}, {"target_counts", -398}}));
-  EXPECT_EQ(std::get<PathOrder>(next_command()).proposal, body["id"]);
+  EXPECT_EQ(next_task().id, body["id"]);
 }
 
 TEST_F(PathRoutesTest, WhatIsNoCoordinatedMotionIsNamed) {
@@ -62,8 +62,8 @@ TEST_F(PathRoutesTest, APoseIsAlignedWithTheProbeOutFirst) {
   ASSERT_EQ(made.status, 201u) << made.body;
   const json body = json::parse(made.body);
   EXPECT_EQ(body["legs"], 3);
-  const PathOrder order = std::get<PathOrder>(next_command());
-  const auto& out = std::get<MoveLeg>(order.program->legs.front());
+  const auto path = std::get<PathTask>(next_task().work);
+  const auto& out = std::get<MoveLeg>(path.program->legs.front());
   ASSERT_EQ(out.targets.size(), 1u);
   EXPECT_EQ(out.targets.front(),
             (AxisCounts{test::insertion, test::neuro().at_slot(test::insertion)->lowest_setpoint_counts()}));
@@ -110,8 +110,8 @@ TEST_F(PathRoutesTest, ATrajectoryIsLoadedProposedApprovedAndUnloadedOnceDone) {
   const Answered approved = post("/api/proposals/1/approve");
   ASSERT_EQ(approved.status, 200u) << approved.body;
   EXPECT_EQ(json::parse(get("/api/mode").body)["mode"], "trajectory");
-  EXPECT_EQ(std::get<PathOrder>(next_command()).proposal, 1u);
-  report(1, OrderPhase::done);
+  EXPECT_EQ(next_task().id, 1u);
+  report(1, TaskPhase::done);
   EXPECT_EQ(proposal(1)["state"], "done");
   EXPECT_EQ(json::parse(get("/api/trajectory").body)["rows"], 0);
   EXPECT_EQ(json::parse(get("/api/mode").body)["mode"], "manual");
@@ -166,8 +166,8 @@ TEST_F(PathRoutesTest, AblationTurnsAndInsertsTheProbeThroughItsSteps) {
   EXPECT_EQ(body["axes"], json({"probe_rotation", "insertion"}));
   EXPECT_EQ(body["legs"], 2);
   EXPECT_GT(body["duration_s"], 2.0);
-  const PathOrder order = std::get<PathOrder>(next_command());
-  EXPECT_EQ(std::get<MoveLeg>(order.program->legs.front()).dwell_s, 2.0);
+  const auto path = std::get<PathTask>(next_task().work);
+  EXPECT_EQ(std::get<MoveLeg>(path.program->legs.front()).dwell_s, 2.0);
   const std::pair<json, std::string> wrong[] = {
       {json::array(), "steps"},
       {json(201, steps[0]), "steps"},

@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 
 #include "motion/axis_move.hpp"
+#include "proposals/home_plan.hpp"
 #include "proposals/proposal_book.hpp"
 #include "robot_fixture.hpp"
+#include "tasks.hpp"
 #include "trajectory/trajectory_csv.hpp"
 
 namespace interlock {
@@ -22,16 +24,15 @@ constexpr std::uint32_t lateral_slot = 4;
 class ProfileTest : public testing::Test {
  protected:
   Proposal path_of(std::vector<PathLeg> legs) {
-    auto program = std::make_shared<const PathProgram>(PathProgram{std::move(legs)});
-    const auto made = book_.propose_path(
-        {RobotMode::coordinated, program, ProposalSource::file, std::nullopt, "edna"}, view_);
+    const auto made = book_.propose(
+        {test::along({std::move(legs)}), "edna", RobotMode::coordinated, TaskSource::file}, view_);
     EXPECT_TRUE(made) << made.error().detail;
     return *made;
   }
 
   Proposal move_to(std::uint32_t slot, std::int32_t counts,
                    std::optional<std::uint32_t> drive = std::nullopt) {
-    (void)book_.propose({slot, counts, drive, "edna"}, view_);
+    (void)book_.propose({MoveTask{slot, counts, drive}, "edna"}, view_);
     return book_.newest_first().front();
   }
 
@@ -123,7 +124,7 @@ TEST_F(ProfileTest, AnAxisThatIsNotHomedHasTheTravelOfAPressForItsRange) {
 }
 
 TEST_F(ProfileTest, HomingAndWhatWasNeverCheckedHaveNone) {
-  ASSERT_TRUE(book_.propose_home({std::nullopt, std::nullopt, "edna"}, view_));
+  ASSERT_TRUE(book_.propose({*home_all(neuro()), "edna", RobotMode::home}, view_));
   const Profile homing = profile(book_.newest_first().front());
   EXPECT_EQ(homing.basis, ProfileBasis::none);
   EXPECT_FALSE(homing.why.empty());

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "proposals/home_plan.hpp"
 #include "proposals/proposal_json.hpp"
 #include "robot_fixture.hpp"
 
@@ -32,13 +33,13 @@ class ProposalBookTest : public testing::Test {
   }
 
   tl::expected<Proposal, Refusal> propose(std::int32_t target = 1000, std::uint32_t slot = insertion) {
-    return book_.propose({slot, target, std::nullopt, "console"}, view_);
+    return book_.propose({MoveTask{slot, target}, "console"}, view_);
   }
 
-  void report(std::uint32_t proposal, OrderPhase phase, OrderReason reason = OrderReason::none,
+  void report(std::uint32_t proposal, TaskPhase phase, TaskReason reason = TaskReason::none,
               std::uint32_t code = 0) {
     ControlView view;
-    view.orders[insertion] = {proposal, phase, reason, code, 0};
+    view.tasks.move(insertion) = {proposal, phase, reason, code, 0};
     book_.follow(view);
   }
 
@@ -72,20 +73,20 @@ TEST_F(ProposalBookTest, DraftsChecksApprovesAndOrders) {
   EXPECT_THAT(changes_,
               testing::ElementsAre(ProposalState::drafted, ProposalState::checked, ProposalState::approved));
   ASSERT_EQ(sent_.size(), 1u);
-  const auto& order = std::get<Order>(sent_[0]);
-  EXPECT_EQ(order.proposal, 1u);
-  EXPECT_EQ(order.slot, insertion);
-  EXPECT_EQ(order.target_counts, 1000);
+  const Task& task = *std::get<Approval>(sent_[0]).task;
+  EXPECT_EQ(task.id, 1u);
+  EXPECT_EQ(std::get<MoveTask>(task.work).slot, insertion);
+  EXPECT_EQ(std::get<MoveTask>(task.work).target_counts, 1000);
 }
 
 TEST_F(ProposalBookTest, FollowsTheOrderToItsEnd) {
   (void)propose();
-  report(1, OrderPhase::executing);
+  report(1, TaskPhase::executing);
   EXPECT_EQ(state(1), ProposalState::executing);
-  report(1, OrderPhase::paused, OrderReason::pedal_released);
+  report(1, TaskPhase::paused, TaskReason::pedal_released);
   EXPECT_EQ(state(1), ProposalState::paused);
-  report(1, OrderPhase::executing);
-  report(1, OrderPhase::done, OrderReason::arrived);
+  report(1, TaskPhase::executing);
+  report(1, TaskPhase::done, TaskReason::arrived);
   EXPECT_EQ(state(1), ProposalState::done);
   EXPECT_EQ(book_.find(1)->ended, now_);
 }
@@ -93,23 +94,23 @@ TEST_F(ProposalBookTest, FollowsTheOrderToItsEnd) {
 TEST_F(ProposalBookTest, SaysNothingWhenNothingChanged) {
   (void)propose();
   changes_.clear();
-  report(1, OrderPhase::waiting);
-  report(1, OrderPhase::executing);
-  report(1, OrderPhase::executing);
+  report(1, TaskPhase::waiting);
+  report(1, TaskPhase::executing);
+  report(1, TaskPhase::executing);
   EXPECT_THAT(changes_, testing::ElementsAre(ProposalState::executing));
 }
 
 TEST_F(ProposalBookTest, AnEndIsFinalWhateverALateReportSays) {
   (void)propose();
   ASSERT_TRUE(book_.abort(1));
-  report(1, OrderPhase::executing);
-  report(1, OrderPhase::done, OrderReason::arrived);
+  report(1, TaskPhase::executing);
+  report(1, TaskPhase::done, TaskReason::arrived);
   EXPECT_EQ(state(1), ProposalState::aborted);
 }
 
 TEST_F(ProposalBookTest, AKernelRefusalEndsItWithVerdictAndNextStep) {
   (void)propose();
-  report(1, OrderPhase::refused, OrderReason::kernel_refused, ILK_VERDICT_DISABLED);
+  report(1, TaskPhase::refused, TaskReason::kernel_refused, ILK_VERDICT_DISABLED);
   EXPECT_EQ(state(1), ProposalState::refused);
   EXPECT_EQ(book_.find(1)->verdict, "DISABLED");
   EXPECT_THAT(book_.find(1)->detail, testing::HasSubstr("Enable the axis."));
@@ -117,7 +118,7 @@ TEST_F(ProposalBookTest, AKernelRefusalEndsItWithVerdictAndNextStep) {
 
 TEST_F(ProposalBookTest, AFaultEndsItByName) {
   (void)propose();
-  report(1, OrderPhase::aborted, OrderReason::axis_faulted, ILK_FAULT_STALL);
+  report(1, TaskPhase::aborted, TaskReason::axis_faulted, ILK_FAULT_STALL);
   EXPECT_EQ(state(1), ProposalState::aborted);
   EXPECT_THAT(book_.find(1)->detail, testing::HasSubstr("STALL"));
 }
@@ -145,7 +146,7 @@ TEST_F(ProposalBookTest, ProposalsOfDifferentAxesStandSideBySide) {
 
 TEST_F(ProposalBookTest, StopAbortsAllThatIsOpen) {
   (void)propose();
-  report(1, OrderPhase::done, OrderReason::arrived);
+  report(1, TaskPhase::done, TaskReason::arrived);
   (void)propose();
   (void)propose(100, test::rotation);
   book_.abort_all("STOP.");
@@ -159,7 +160,7 @@ TEST_F(ProposalBookTest, ALockByAnyCauseDiscardsWhatWaitsForApproval) {
   locked.snapshot.state.system.mode = ILK_MODE_LOCKED;
   for (std::uint32_t cause = ILK_CAUSE_BOOT; cause < ILK_CAUSE_COUNT; ++cause) {
     const auto waits =
-        book_.propose_home({insertion, std::nullopt, "ann", ProposalSource::openigtlink}, view_);
+        book_.propose({home_axis(insertion), "ann", RobotMode::home, TaskSource::openigtlink}, view_);
     ASSERT_TRUE(waits) << waits.error().detail;
     ASSERT_EQ(waits->state, ProposalState::checked);
     locked.snapshot.state.system.cause = cause;
@@ -169,20 +170,20 @@ TEST_F(ProposalBookTest, ALockByAnyCauseDiscardsWhatWaitsForApproval) {
 }
 
 TEST_F(ProposalBookTest, TheLossOfAnAuthorPausesWhatIsApprovedSaysSoAndEndsWhatIsNot) {
-  (void)book_.propose_home({insertion, std::nullopt, "ann", ProposalSource::openigtlink}, view_);
+  (void)book_.propose({home_axis(insertion), "ann", RobotMode::home, TaskSource::openigtlink}, view_);
   (void)propose();
-  report(2, OrderPhase::executing);
+  report(2, TaskPhase::executing);
   (void)propose(100, test::rotation);
-  book_.lose_author(ProposalSource::openigtlink, "Gone.");
+  book_.lose_author(TaskSource::openigtlink, "Gone.");
   EXPECT_EQ(state(1), ProposalState::aborted) << "nobody had approved it";
   EXPECT_EQ(state(2), ProposalState::executing) << "until the kernel leaves MOTION";
   EXPECT_EQ(state(3), ProposalState::approved);
   EXPECT_THAT(book_.find(3)->detail, testing::StartsWith("Gone. Waits for the pedal"));
-  report(2, OrderPhase::paused, OrderReason::pedal_released);
+  report(2, TaskPhase::paused, TaskReason::pedal_released);
   EXPECT_EQ(state(2), ProposalState::paused);
   EXPECT_THAT(book_.find(2)->detail, testing::StartsWith("Gone. Motion ended; press"));
-  report(2, OrderPhase::executing);
-  report(2, OrderPhase::paused, OrderReason::pedal_released);
+  report(2, TaskPhase::executing);
+  report(2, TaskPhase::paused, TaskReason::pedal_released);
   EXPECT_THAT(book_.find(2)->detail, testing::StartsWith("Motion ended")) << "that was the pedal";
 }
 
@@ -191,7 +192,7 @@ TEST_F(ProposalBookTest, AbortCancelsTheOrder) {
   const auto aborted = book_.abort(1);
   ASSERT_TRUE(aborted);
   EXPECT_EQ(aborted->state, ProposalState::aborted);
-  EXPECT_EQ(std::get<Cancel>(sent_.at(1)).proposal, 1u);
+  EXPECT_EQ(std::get<Cancel>(sent_.at(1)).task, 1u);
 }
 
 TEST_F(ProposalBookTest, WhatHasEndedCannotBeAborted) {
@@ -238,8 +239,8 @@ TEST_F(ProposalBookTest, RefusesADriveAboveTheUnhomedBound) {
   axis().homed = 0;
   const std::uint32_t bound = neuro_config().axis[insertion].unhomed_max_drive;
   const std::int32_t here = axis().position_counts;
-  EXPECT_TRUE(book_.propose({insertion, here, bound, "console"}, view_));
-  EXPECT_EQ(book_.propose({insertion, here, bound + 1, "console"}, view_).error().code, "DRIVE");
+  EXPECT_TRUE(book_.propose({MoveTask{insertion, here, bound}, "console"}, view_));
+  EXPECT_EQ(book_.propose({MoveTask{insertion, here, bound + 1}, "console"}, view_).error().code, "DRIVE");
 }
 
 TEST_F(ProposalBookTest, RefusesAnEmptySlot) { EXPECT_EQ(propose(0, test::empty_slot).error().code, "AXIS"); }

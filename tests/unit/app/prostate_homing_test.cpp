@@ -63,11 +63,11 @@ class ProstateRobot : public testing::Test {
   /** Homes the robot, pressing the pedal anew as often as it is asked for. */
   static void home(ClosedLoop& loop, std::uint32_t proposal) {
     const auto steps = static_cast<std::uint32_t>(prostate().home_steps.size());
-    loop.give(HomeOrder{proposal, 0, steps, 0, 0});
+    loop.give(proposal, HomeTask{0, steps, {}});
     loop.pedal(true);
-    for (std::uint32_t i = 0; i < most_ticks && is_open(loop.home().order.phase); ++i) {
+    for (std::uint32_t i = 0; i < most_ticks && is_open(loop.home().phase); ++i) {
       loop.tick();
-      if (loop.home().order.reason == OrderReason::press_again) {
+      if (loop.home().reason == TaskReason::press_again) {
         loop.pedal(false);
         loop.pedal(true);
       }
@@ -76,9 +76,9 @@ class ProstateRobot : public testing::Test {
   }
 
   static void expect_homed_and_parked(const ClosedLoop& loop) {
-    ASSERT_EQ(loop.home().order.phase, OrderPhase::done)
+    ASSERT_EQ(loop.home().phase, TaskPhase::done)
         << "step " << loop.home().step << ", slot " << loop.home().slot << ", reason "
-        << static_cast<int>(loop.home().order.reason) << ", code " << loop.home().order.code;
+        << static_cast<int>(loop.home().reason) << ", code " << loop.home().code;
     for (const char* name : {"back_left", "front_left", "back_right", "front_right"}) {
       EXPECT_EQ(loop.state().axis[slot(name)].homed, 1u) << name;
       EXPECT_NEAR(std::abs(loop.true_position(slot(name))), 375000, 60) << name;

@@ -36,7 +36,7 @@ TEST_F(RequestPortTest, SendsNoMoreThanTheKernelReadsInATick) {
 TEST_F(RequestPortTest, FindsWhoAskedByTheSequenceNumber) {
   ASSERT_TRUE(port_.send({}, AskOrigin{7}));
   ASSERT_TRUE(port_.send({}, WishOrigin{ILK_REQUEST_MOVE, 3, 9}));
-  EXPECT_EQ(std::get<WishOrigin>(*port_.settle(2)).proposal, 9u);
+  EXPECT_EQ(std::get<WishOrigin>(*port_.settle(2)).task, 9u);
   EXPECT_EQ(std::get<AskOrigin>(*port_.settle(1)).ticket, 7u);
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "proposals/home_plan.hpp"
 #include "proposals/proposal_book.hpp"
 #include "robot/robot_file.hpp"
 #include "robot_fixture.hpp"
@@ -46,13 +47,13 @@ class SeparationTest : public testing::Test {
   }
 
   /** The code that refuses the step; empty when it may run. */
-  std::string step(const std::string& name) {
-    return code_of(book_.propose_home({std::nullopt, name, "ann"}, view_));
+  std::string step(const std::string& name) { return code_of(home(*home_step(prostate(), name))); }
+  std::string axis(const char* name) { return code_of(home(home_axis(prostate().find(name)->slot))); }
+  std::string all() { return code_of(home(*home_all(prostate()))); }
+
+  tl::expected<Proposal, Refusal> home(HomeTask task) {
+    return book_.propose({std::move(task), "ann", RobotMode::home}, view_);
   }
-  std::string axis(const char* name) {
-    return code_of(book_.propose_home({prostate().find(name)->slot, std::nullopt, "ann"}, view_));
-  }
-  std::string all() { return code_of(book_.propose_home({std::nullopt, std::nullopt, "ann"}, view_)); }
 
   static std::string code_of(const tl::expected<Proposal, Refusal>& proposal) {
     return proposal ? "" : proposal.error().code;
@@ -87,7 +88,7 @@ TEST_F(SeparationTest, OneSideDoesNotHomeWhileTheOtherIsUnknown) {
 }
 
 TEST_F(SeparationTest, TheRefusalNamesThePairAndTheWayOut) {
-  const auto refused = book_.propose_home({std::nullopt, "left_home", "ann"}, view_);
+  const auto refused = home(*home_step(prostate(), "left_home"));
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().detail, HasSubstr("back_left and back_right could part by 372.8 mm"));
   EXPECT_THAT(refused.error().expected, HasSubstr("308.0 mm"));

@@ -55,7 +55,7 @@ TEST(SetpointRange, FollowsWhereThePedalWasPressed) {
   ClosedLoop loop(3, 0);
   loop.request(ILK_REQUEST_ENABLE, slot);
   loop.pedal(true);
-  ASSERT_EQ(loop.carry_out({1, slot, 60, 0, 0}, 5000).phase, OrderPhase::done);
+  ASSERT_EQ(loop.carry_out(1, MoveTask{slot, 60}, 5000).phase, TaskPhase::done);
   expect_kernel_agrees(loop);
   loop.pedal(false);
   const std::int32_t position = loop.state().axis[slot].position_counts;

@@ -24,16 +24,16 @@ const ilk_axis_config_t& rotation_rules() {
 }
 
 /** From the slowest allowed frequency to the fastest. */
-SweepOrder whole(std::uint32_t count, std::uint32_t dwell_ticks) {
+SweepTask whole(std::uint32_t count, std::uint32_t dwell_ticks) {
   const FrequencyBand band = *frequency_band(*prostate().at_slot(needle_turn));
   const double step_hz = (band.highest_hz - band.lowest_hz) / (count - 1) - 0.01;  // rounding
-  return {1, needle_turn, *frequency_steps(band.highest_hz, band.lowest_hz, step_hz, dwell_ticks), 0};
+  return {needle_turn, *frequency_steps(band.highest_hz, band.lowest_hz, step_hz, dwell_ticks)};
 }
 
 /** The fastest allowed frequency alone. */
-SweepOrder fastest(std::uint32_t dwell_ticks) {
+SweepTask fastest(std::uint32_t dwell_ticks) {
   const double hz = frequency_band(*prostate().at_slot(needle_turn))->lowest_hz;
-  return {1, needle_turn, *frequency_steps(hz, hz, 1.0, dwell_ticks), 0};
+  return {needle_turn, *frequency_steps(hz, hz, 1.0, dwell_ticks)};
 }
 
 class SweepModeTest : public testing::TestWithParam<std::uint32_t> {
@@ -47,7 +47,7 @@ class SweepModeTest : public testing::TestWithParam<std::uint32_t> {
   }
 
   void run_to_end(std::uint32_t most_ticks) {
-    for (std::uint32_t i = 0; i < most_ticks && is_open(loop_.sweep().order.phase); ++i) {
+    for (std::uint32_t i = 0; i < most_ticks && is_open(loop_.sweep().phase); ++i) {
       loop_.tick();
     }
   }
@@ -67,14 +67,14 @@ TEST_P(SweepModeTest, EachFrequencyIsHeldAndALowerOneTurnsFaster) {
     ASSERT_LE(drive(), rotation_rules().max_drive);
     ASSERT_TRUE(drive() == 0 || drive() >= prostate().at_slot(needle_turn)->drive.min) << drive();
   });
-  loop_.give(whole(count, 600));
+  loop_.give(1, whole(count, 600));
   run_to_end(minute_ticks);
-  const SweepStatus& status = loop_.sweep();
-  ASSERT_EQ(status.order.phase, OrderPhase::done);
-  EXPECT_EQ(status.order.reason, OrderReason::swept);
+  const TaskStatus status = loop_.sweep();
+  ASSERT_EQ(status.phase, TaskPhase::done);
+  EXPECT_EQ(status.reason, TaskReason::swept);
   EXPECT_EQ(status.step, count);
   for (std::uint32_t step = 1; step < count; ++step) {
-    EXPECT_GT(status.counts_per_s[step], status.counts_per_s[step - 1]) << step;
+    EXPECT_GT(loop_.sweep_speeds()[step], loop_.sweep_speeds()[step - 1]) << step;
   }
   EXPECT_EQ(loop_.refusals(), 0u);
   loop_.run(2 + GetParam());
@@ -82,11 +82,11 @@ TEST_P(SweepModeTest, EachFrequencyIsHeldAndALowerOneTurnsFaster) {
 }
 
 TEST_P(SweepModeTest, TheMeasuredSpeedIsThatOfThePublishedMap) {
-  loop_.give(fastest(1500));
+  loop_.give(1, fastest(1500));
   run_to_end(minute_ticks);
-  ASSERT_EQ(loop_.sweep().order.phase, OrderPhase::done);
+  ASSERT_EQ(loop_.sweep().phase, TaskPhase::done);
   // 138.166 rpm in this direction at that word, on a motor of 1666.7 counts a revolution.
-  EXPECT_NEAR(loop_.sweep().counts_per_s[0], 138.166 / 60.0 * 1666.7, 4.0);
+  EXPECT_NEAR(loop_.sweep_speeds()[0], 138.166 / 60.0 * 1666.7, 4.0);
 }
 
 TEST_P(SweepModeTest, TheAxisTurnsRoundBeforeItsLimitsAndRestsBetween) {
@@ -112,9 +112,9 @@ TEST_P(SweepModeTest, TheAxisTurnsRoundBeforeItsLimitsAndRestsBetween) {
     direction = now;
     undriven = 0;
   });
-  loop_.give(fastest(15'000));
+  loop_.give(1, fastest(15'000));
   run_to_end(minute_ticks);
-  ASSERT_EQ(loop_.sweep().order.phase, OrderPhase::done);
+  ASSERT_EQ(loop_.sweep().phase, TaskPhase::done);
   EXPECT_GE(turns, 3u);
   EXPECT_GE(shortest_rest, 50u);
   EXPECT_GE(lowest, rotation_rules().min_counts);
@@ -123,68 +123,68 @@ TEST_P(SweepModeTest, TheAxisTurnsRoundBeforeItsLimitsAndRestsBetween) {
 }
 
 TEST_P(SweepModeTest, ReleasePausesAndTheNextPressGoesOnWithTheSameFrequency) {
-  loop_.give(whole(6, 500));
+  loop_.give(1, whole(6, 500));
   loop_.run(1700);
-  ASSERT_EQ(loop_.sweep().order.phase, OrderPhase::executing);
+  ASSERT_EQ(loop_.sweep().phase, TaskPhase::executing);
   loop_.happen(plant::command::PressPedal{false});
   loop_.run(5);
   EXPECT_EQ(drive(), 0u);
   loop_.run(1000);
-  EXPECT_EQ(loop_.sweep().order.phase, OrderPhase::paused);
+  EXPECT_EQ(loop_.sweep().phase, TaskPhase::paused);
   const std::uint32_t step = loop_.sweep().step;
   EXPECT_GE(step, 2u);
   EXPECT_LT(step, 5u);
   loop_.pedal(true);
   EXPECT_EQ(loop_.sweep().step, step);
   run_to_end(minute_ticks);
-  EXPECT_EQ(loop_.sweep().order.phase, OrderPhase::done);
+  EXPECT_EQ(loop_.sweep().phase, TaskPhase::done);
 }
 
 TEST_P(SweepModeTest, APauseThatLastsTooLongExpires) {
-  loop_.give(whole(6, 500));
+  loop_.give(1, whole(6, 500));
   loop_.run(100);
   loop_.pedal(false);
   loop_.run(minute_ticks + 10);
-  EXPECT_EQ(loop_.sweep().order.phase, OrderPhase::expired);
-  EXPECT_EQ(loop_.sweep().order.reason, OrderReason::waited_too_long);
+  EXPECT_EQ(loop_.sweep().phase, TaskPhase::expired);
+  EXPECT_EQ(loop_.sweep().reason, TaskReason::waited_too_long);
 }
 
 TEST_P(SweepModeTest, ACancelStopsWithinTheLatencyOfTheLink) {
-  loop_.give(whole(6, 500));
+  loop_.give(1, whole(6, 500));
   loop_.run(700);
   ASSERT_GT(drive(), 0u);
   loop_.cancel(1);
   loop_.run(2 + GetParam());
   EXPECT_EQ(drive(), 0u);
-  EXPECT_EQ(loop_.sweep().order.reason, OrderReason::cancelled);
+  EXPECT_EQ(loop_.sweep().reason, TaskReason::cancelled);
 }
 
 TEST_P(SweepModeTest, ADisabledAxisEndsTheSweepWithItsReason) {
-  loop_.give(whole(6, 500));
+  loop_.give(1, whole(6, 500));
   loop_.run(700);
   loop_.request(ILK_REQUEST_DISABLE, needle_turn);
-  const OrderStatus& order = loop_.sweep().order;
+  const TaskStatus order = loop_.sweep();
   EXPECT_FALSE(is_open(order.phase));
   // A MOVE that is on its way when the axis is disabled comes back refused before the snapshot shows it.
-  const bool refused = order.reason == OrderReason::kernel_refused && order.code == ILK_VERDICT_DISABLED;
-  EXPECT_TRUE(refused || order.reason == OrderReason::axis_disabled);
+  const bool refused = order.reason == TaskReason::kernel_refused && order.code == ILK_VERDICT_DISABLED;
+  EXPECT_TRUE(refused || order.reason == TaskReason::axis_disabled);
 }
 
 TEST_P(SweepModeTest, TheKernelRefusesWhatIsFasterThanTheBandAndTheSweepEnds) {
-  SweepOrder order = fastest(500);
+  SweepTask order = fastest(500);
   order.steps.first_word -= frequency_map::word_step;
-  loop_.give(order);
+  loop_.give(1, order);
   run_to_end(1000);
-  EXPECT_EQ(loop_.sweep().order.phase, OrderPhase::refused);
-  EXPECT_EQ(loop_.sweep().order.code, static_cast<std::uint32_t>(ILK_VERDICT_DRIVE));
+  EXPECT_EQ(loop_.sweep().phase, TaskPhase::refused);
+  EXPECT_EQ(loop_.sweep().code, static_cast<std::uint32_t>(ILK_VERDICT_DRIVE));
   EXPECT_EQ(drive(), 0u);
 }
 
 TEST_P(SweepModeTest, ATickAllocatesNothing) {
-  loop_.give(whole(6, 500));
+  loop_.give(1, whole(6, 500));
   loop_.run(700);
   SweepMode mode{RobotPlan(prostate(), loop_.config())};
-  mode.take(whole(6, 500), loop_.state().system.tick);
+  mode.take(test::task_of(1, whole(6, 500)), loop_.state().system.tick);
   ilk_snapshot_t snapshot{};
   snapshot.state = loop_.state();
   test::count_allocations_of(pthread_self());

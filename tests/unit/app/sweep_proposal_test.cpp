@@ -18,8 +18,8 @@ using testing::HasSubstr;
 
 constexpr std::uint32_t turned_axis = 0;
 
-SweepDraft draft_of(double from_hz, double to_hz, double step_hz = 100.0) {
-  return {turned_axis, *frequency_steps(from_hz, to_hz, step_hz, 1000), "edna"};
+SweepTask draft_of(double from_hz, double to_hz, double step_hz = 100.0) {
+  return {turned_axis, *frequency_steps(from_hz, to_hz, step_hz, 1000)};
 }
 
 std::string code_of(const tl::expected<void, Refusal>& checked) {
@@ -27,7 +27,7 @@ std::string code_of(const tl::expected<void, Refusal>& checked) {
 }
 
 tl::expected<void, Refusal> checked(const Robot& robot, const ilk_config_t& config, const ControlView& view,
-                                    const SweepDraft& draft) {
+                                    const SweepTask& draft) {
   CheckList checks;
   check_sweep(robot, config, view, draft, checks);
   return checks.outcome();
@@ -35,17 +35,20 @@ tl::expected<void, Refusal> checked(const Robot& robot, const ilk_config_t& conf
 
 class SweepProposalTest : public testing::Test {
  protected:
-  void expect_refused(const SweepDraft& draft, const std::string& code) {
-    const auto proposal = book_.propose_sweep(draft, view_);
+  void expect_refused(const SweepTask& draft, const std::string& code) {
+    const auto proposal = propose(draft);
     ASSERT_FALSE(proposal);
     EXPECT_EQ(proposal.error().code, code) << proposal.error().detail;
     EXPECT_FALSE(proposal.error().next_step.empty());
     EXPECT_THAT(sent_, testing::IsEmpty());
   }
 
-  void report(OrderPhase phase, std::uint32_t step) {
-    view_.sweep.order = {1, phase, OrderReason::swept, 0, 0};
-    view_.sweep.step = step;
+  tl::expected<Proposal, Refusal> propose(const SweepTask& sweep) {
+    return book_.propose({sweep, "edna", RobotMode::frequency_sweep}, view_);
+  }
+
+  void report(TaskPhase phase, std::uint32_t step) {
+    view_.tasks.of(TaskKind::sweep) = {1, phase, TaskReason::swept, 0, 0, turned_axis, step};
     book_.follow(view_);
   }
 
@@ -70,25 +73,25 @@ TEST_F(SweepProposalTest, TheBandIsThatOfThePublishedStartAndMaximumVelocity) {
 }
 
 TEST_F(SweepProposalTest, ASweepWithinTheBandIsApprovedAndOrdered) {
-  const auto proposal = book_.propose_sweep(draft_of(53000, 51000), view_);
+  const auto proposal = propose(draft_of(53000, 51000));
   ASSERT_TRUE(proposal) << proposal.error().detail;
   EXPECT_EQ(proposal->state, ProposalState::approved);
-  const auto& order = std::get<SweepOrder>(sent_.front());
+  const auto& order = std::get<SweepTask>(std::get<Approval>(sent_.front()).task->work);
   EXPECT_EQ(order.slot, turned_axis);
   EXPECT_EQ(order.steps.count, 21u);
   EXPECT_EQ(order.steps.word(20), 22009u * 51000u);
   EXPECT_EQ(book_.app_mode(), "frequency_sweep");
-  report(OrderPhase::executing, 4);
+  report(TaskPhase::executing, 4);
   EXPECT_THAT(book_.find(1)->detail, HasSubstr("52600.0 Hz, frequency 5 of 21"));
-  report(OrderPhase::done, 21);
+  report(TaskPhase::done, 21);
   EXPECT_EQ(book_.app_mode(), "manual");
 }
 
 TEST_F(SweepProposalTest, BothEndsOfTheBandAreAllowedAndAWordBeyondIsNot) {
   const FrequencyBand band = *frequency_band(*prostate().at_slot(turned_axis));
-  const SweepDraft whole = draft_of(band.highest_hz, band.lowest_hz, band.highest_hz - band.lowest_hz);
+  const SweepTask whole = draft_of(band.highest_hz, band.lowest_hz, band.highest_hz - band.lowest_hz);
   EXPECT_TRUE(checked(prostate(), config_, view_, whole));
-  SweepDraft beyond = whole;
+  SweepTask beyond = whole;
   ++beyond.steps.first_word;
   EXPECT_EQ(code_of(checked(prostate(), config_, view_, beyond)), "DRIVE");
   beyond.steps.first_word -= 2;
@@ -96,10 +99,10 @@ TEST_F(SweepProposalTest, BothEndsOfTheBandAreAllowedAndAWordBeyondIsNot) {
 }
 
 TEST_F(SweepProposalTest, ThePublishedRangeIsRefusedAndBothRangesAreNamed) {
-  const SweepDraft published =
+  const SweepTask published =
       draft_of(published_sweep.highest_hz, published_sweep.lowest_hz, published_sweep_step_hz);
   EXPECT_EQ(published.steps.first_word, 0x48000000u);
-  const auto proposal = book_.propose_sweep(published, view_);
+  const auto proposal = propose(published);
   ASSERT_FALSE(proposal);
   EXPECT_EQ(proposal.error().code, "DRIVE");
   EXPECT_THAT(proposal.error().expected, HasSubstr("50861.5 to 53076.9 Hz"));
@@ -120,16 +123,16 @@ TEST_F(SweepProposalTest, AnAxisThatCannotBeMovedIsRefusedWithItsReason) {
 }
 
 TEST_F(SweepProposalTest, AMoveIsRefusedWhileASweepIsOpen) {
-  ASSERT_TRUE(book_.propose_sweep(draft_of(53000, 51000), view_));
-  const auto move = book_.propose(MoveDraft{turned_axis, 100, std::nullopt, "edna"}, view_);
+  ASSERT_TRUE(propose(draft_of(53000, 51000)));
+  const auto move = book_.propose({MoveTask{turned_axis, 100}, "edna"}, view_);
   ASSERT_FALSE(move);
   EXPECT_EQ(move.error().code, "MODE_PATH");
 }
 
 TEST_F(SweepProposalTest, MeasuredSpeedsAreShownWithTheirFrequencies) {
-  ASSERT_TRUE(book_.propose_sweep(draft_of(52000, 51900), view_));
-  view_.sweep.counts_per_s[0] = 250.0F;
-  report(OrderPhase::executing, 1);
+  ASSERT_TRUE(propose(draft_of(52000, 51900)));
+  view_.sweep_speeds[0] = 250.0F;
+  report(TaskPhase::executing, 1);
   const json shown = to_json(*book_.find(1));
   EXPECT_EQ(shown["mode"], "frequency_sweep");
   EXPECT_EQ(shown["frequencies"][0], json({{"hz", 52000.0}, {"counts_per_s", 250.0}}));
@@ -149,7 +152,7 @@ TEST(SweepDrafts, NameTheFieldThatIsWrong) {
                   {"to_hz", 51000},  {"step_hz", 100},     {"dwell_s", 0.5}};
   const auto draft = web::sweep_draft(prostate(), good, "edna");
   ASSERT_TRUE(draft);
-  EXPECT_EQ(draft->steps.dwell_ticks, 500u);
+  EXPECT_EQ(std::get<SweepTask>(draft->work).steps.dwell_ticks, 500u);
   const std::pair<const char*, json> cases[] = {
       {"axis", "insertion"}, {"axis", "elbow"}, {"from_hz", "low"}, {"step_hz", 1}, {"dwell_s", 0}};
   for (const auto& [field, value] : cases) {
@@ -165,10 +168,11 @@ TEST(SweepDrafts, NameTheFieldThatIsWrong) {
 TEST(SweepDrafts, TheWholeBandIsSweptInPublishedSteps) {
   const auto draft = web::whole_sweep_draft(prostate(), "edna");
   ASSERT_TRUE(draft);
-  EXPECT_EQ(draft->steps.step_words, -1000000);
-  EXPECT_EQ(draft->steps.count, 49u);
-  EXPECT_EQ(draft->steps.dwell_ticks, 1000u);
-  EXPECT_TRUE(checked(prostate(), test::config_of(prostate()), test::ready_view(prostate()), *draft));
+  EXPECT_EQ(std::get<SweepTask>(draft->work).steps.step_words, -1000000);
+  EXPECT_EQ(std::get<SweepTask>(draft->work).steps.count, 49u);
+  EXPECT_EQ(std::get<SweepTask>(draft->work).steps.dwell_ticks, 1000u);
+  EXPECT_TRUE(checked(prostate(), test::config_of(prostate()), test::ready_view(prostate()),
+                      std::get<SweepTask>(draft->work)));
 }
 
 }  // namespace

@@ -1,0 +1,100 @@
+#include "motion/held_mode.hpp"
+
+#include "motion/obstacle.hpp"
+
+namespace interlock {
+
+void HeldMode::set_phase(TaskPhase phase, TaskReason reason, std::uint32_t code,
+                         std::uint32_t tick) noexcept {
+  status_.phase = phase;
+  status_.reason = reason;
+  status_.code = code;
+  status_.tick = tick;
+}
+
+void HeldMode::take(const TaskReference& task, std::uint32_t tick) noexcept {
+  task_ = task;
+  status_ = TaskStatus{task->id, TaskPhase::waiting, TaskReason::none, 0, tick};
+  idle_since_ = tick;
+  axes_ = prepare(tick);
+}
+
+void HeldMode::end(std::uint32_t task, TaskReason reason, std::uint32_t tick) noexcept {
+  if (status_.task == task) {
+    end_all(reason, tick);
+  }
+}
+
+void HeldMode::end_all(TaskReason reason, std::uint32_t tick) noexcept {
+  if (is_open()) {
+    set_phase(TaskPhase::aborted, reason, 0, tick);
+  }
+}
+
+/** Axes that a later part moves count as well: what could not be carried out whole is not begun. */
+void HeldMode::end_axis(std::uint32_t slot, TaskReason reason, std::uint32_t tick) noexcept {
+  if (is_open() && moves(slot)) {
+    fail(reason, 0, slot, tick);
+  }
+}
+
+void HeldMode::fail(TaskReason reason, std::uint32_t code, std::uint32_t slot, std::uint32_t tick) noexcept {
+  status_.slot = slot;
+  set_phase(TaskPhase::aborted, reason, code, tick);
+}
+
+void HeldMode::tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
+  if (is_open() && !meets_obstacle(snapshot)) {
+    judge(snapshot);
+  }
+  drive(snapshot, wishes);
+}
+
+/** Goes on, pauses or expires. */
+void HeldMode::judge(const ilk_snapshot_t& snapshot) noexcept {
+  const std::uint32_t now = snapshot.state.system.tick;
+  const bool held = snapshot.state.system.mode == ILK_MODE_MOTION;
+  if (executes()) {
+    if (held) {
+      go_on(snapshot);
+      return;
+    }
+    set_phase(TaskPhase::paused, TaskReason::pedal_released, 0, now);
+    idle_since_ = now;
+  } else if (now - idle_since_ > patience_ticks_) {
+    set_phase(TaskPhase::expired, TaskReason::waited_too_long, 0, now);
+  } else if (held) {
+    set_phase(TaskPhase::executing, TaskReason::none, 0, now);
+    begin(snapshot);
+  }
+}
+
+bool HeldMode::meets_obstacle(const ilk_snapshot_t& snapshot) noexcept {
+  const std::uint32_t now = snapshot.state.system.tick;
+  for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
+    if (!moves(slot)) {
+      continue;
+    }
+    const ilk_axis_t& axis = snapshot.state.axis[slot];
+    if (const auto obstacle = obstacle_of(snapshot, slot)) {
+      fail(obstacle->reason, obstacle->code, slot, now);
+      return true;
+    }
+    if (axis.state == ILK_AXIS_HOMING || axis.homed == 0) {
+      const bool homing = axis.state == ILK_AXIS_HOMING;
+      fail(homing ? TaskReason::axis_homing : TaskReason::not_homed, 0, slot, now);
+      return true;
+    }
+  }
+  return false;
+}
+
+void HeldMode::on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept {
+  const bool routine = verdict == ILK_VERDICT_ACCEPTED || verdict == ILK_VERDICT_MODE;
+  if (!routine && origin.task == status_.task && is_open()) {
+    status_.slot = origin.slot;
+    set_phase(TaskPhase::refused, TaskReason::kernel_refused, verdict, tick);
+  }
+}
+
+}  // namespace interlock

@@ -1,0 +1,75 @@
+/**
+ * @file
+ * A mode whose one task is carried out for as long as the pedal is held, whatever it moves.
+ *
+ *     waiting -> executing <-> paused -> done, or refused, aborted, expired
+ *
+ * Release of the pedal pauses, the next press goes on, and a task that does not execute for too long expires.
+ * An axis that cannot be moved, a refusal or a lock ends it for all its axes.
+ */
+#pragma once
+
+#include "motion/axis_plan.hpp"
+#include "motion/mode.hpp"
+
+namespace interlock {
+
+class HeldMode : public Mode {
+ public:
+  void take(const TaskReference& task, std::uint32_t tick) noexcept final;
+  void end(std::uint32_t task, TaskReason reason, std::uint32_t tick) noexcept final;
+  void end_all(TaskReason reason, std::uint32_t tick) noexcept final;
+  void end_axis(std::uint32_t slot, TaskReason reason, std::uint32_t tick) noexcept final;
+  void tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept override;
+  /** A refusal ends the task; MODE says only that the pedal was released meanwhile, which the next snapshot
+   * shows. */
+  void on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept final;
+  [[nodiscard]] bool is_open() const noexcept final { return interlock::is_open(status_.phase); }
+  void report(TaskTable& tasks) const noexcept override { tasks.of(kind_) = status_; }
+
+  [[nodiscard]] const TaskStatus& status() const noexcept { return status_; }
+
+ protected:
+  HeldMode(TaskKind kind, const RobotPlan& plan) noexcept
+      : kind_(kind), patience_ticks_(plan.patience_ticks()) {}
+
+  /** Makes ready for a task that waits now; returns the axes that it moves, bit n for slot n. */
+  [[nodiscard]] virtual std::uint32_t prepare(std::uint32_t tick) noexcept = 0;
+  /** The pedal was pressed: from the start, or on after a pause. */
+  virtual void begin(const ilk_snapshot_t& snapshot) noexcept = 0;
+  /** It is held. */
+  virtual void go_on(const ilk_snapshot_t& snapshot) noexcept = 0;
+  /** Wishes for what drives each axis now, or gives back its drive. */
+  virtual void drive(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept = 0;
+
+  /** Aborts the task because of the axis in `slot`. */
+  void fail(TaskReason reason, std::uint32_t code, std::uint32_t slot, std::uint32_t tick) noexcept;
+  /** It was carried out. */
+  void finish(TaskReason reason, std::uint32_t tick) noexcept { set_phase(TaskPhase::done, reason, 0, tick); }
+  void set_step(std::uint32_t step) noexcept { status_.step = step; }
+
+  /** The work of the newest task. */
+  template <typename Kind>
+  [[nodiscard]] const Kind& work() const noexcept {
+    return *std::get_if<Kind>(&task_->work);
+  }
+  [[nodiscard]] bool executes() const noexcept { return status_.phase == TaskPhase::executing; }
+  /** Whether the task has a part for that slot. */
+  [[nodiscard]] bool moves(std::uint32_t slot) const noexcept {
+    return slot < ILK_SLOTS && ((axes_ >> slot) & 1u) != 0;
+  }
+
+ private:
+  void set_phase(TaskPhase phase, TaskReason reason, std::uint32_t code, std::uint32_t tick) noexcept;
+  void judge(const ilk_snapshot_t& snapshot) noexcept;
+  [[nodiscard]] bool meets_obstacle(const ilk_snapshot_t& snapshot) noexcept;
+
+  const TaskKind kind_;
+  const std::uint32_t patience_ticks_; /**< how long the task may wait without executing */
+  TaskReference task_;
+  TaskStatus status_;
+  std::uint32_t axes_ = 0;
+  std::uint32_t idle_since_ = 0; /**< tick since which the task does not execute */
+};
+
+}  // namespace interlock

@@ -1,0 +1,229 @@
+/**
+ * @file
+ * A task: one motion that somebody wants, whole, and what becomes of it on the control thread.
+ *
+ * A task owns what it needs and never changes once it is made. Both threads hold it by a counted reference,
+ * so that neither has to know when the other is done with it. Its progress comes back by value.
+ */
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "interlock/types.h"
+#include "kinematics/pose.hpp"
+#include "motion/held_lease.hpp"
+#include "motion/path_program.hpp"
+#include "robot/modes.hpp"
+
+namespace interlock {
+
+struct BiopsyRun;
+
+/** A move of one axis. */
+struct MoveTask {
+  std::uint32_t slot = 0;
+  std::int32_t target_counts = 0;
+  std::optional<std::uint32_t> drive = std::nullopt; /**< upper bound; empty: the axis' own */
+  bool jog = false;                   /**< it goes on only for as long as `Renewal`s come */
+};
+
+/**
+ * Homing: steps of the robot in the order of its file, or one axis alone.
+ *
+ * The control thread knows the steps by itself, so that a task cannot name motion that the robot file does
+ * not.
+ */
+struct HomeTask {
+  std::uint32_t first_step = 0;     /**< index of the robot's home steps */
+  std::uint32_t step_count = 0;     /**< from 1; 0: no step but the one axis, at its switch */
+  std::vector<std::uint32_t> slots = {}; /**< of all axes that move, each once, in the order in which they move */
+};
+
+/** Several axes together, along the legs of a program. */
+struct PathTask {
+  std::shared_ptr<const PathProgram> program; /**< never null */
+};
+
+/** Frequencies of a sweep, as words of the published map (control/frequency_map.hpp), one after the other. */
+struct FrequencySteps {
+  /** So many may a sweep have. */
+  static constexpr std::uint32_t most = 200;
+
+  std::uint32_t first_word = 0;
+  std::int32_t step_words = 0;   /**< from each to the next; below 0: towards faster turning */
+  std::uint32_t count = 0;       /**< 1 to `most` */
+  std::uint32_t dwell_ticks = 0; /**< at each, of driven time */
+
+  /** The frequency word of a step. */
+  [[nodiscard]] constexpr std::uint32_t word(std::uint32_t step) const noexcept {
+    return first_word + step * static_cast<std::uint32_t>(step_words);
+  }
+  bool operator==(const FrequencySteps&) const = default;
+};
+
+/** One high-frequency axis through a list of frequencies. */
+struct SweepTask {
+  std::uint32_t slot = 0;
+  FrequencySteps steps;
+};
+
+/** The needle, pushed by the surgeon's hand and turned towards its target. */
+struct BiopsyTask {
+  /** Never null while the task is open. From its start on the control thread alone touches what it points to.
+   */
+  std::shared_ptr<BiopsyRun> run;
+  std::array<double, 3> target_mm{}; /**< in the guide frame of motion/biopsy_run.hpp */
+  std::uint32_t start_tick = 0;      /**< kernel tick of the run's time 0 */
+  /** The guide frame in the scanner's, where the target was given in that. */
+  std::optional<Pose> scanner_from_guide = std::nullopt;
+};
+
+/** What is to be done. */
+using Work = std::variant<MoveTask, HomeTask, PathTask, SweepTask, BiopsyTask>;
+
+/** Which of them, in the order of `Work`. */
+enum class TaskKind : std::uint8_t { move, home, path, sweep, biopsy };
+
+/** As the interface spells it. */
+constexpr std::string_view kind_name(TaskKind kind) noexcept {
+  constexpr std::string_view names[] = {"move", "home", "path", "sweep", "biopsy"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
+/** Who thought of a motion. */
+enum class TaskSource : std::uint8_t {
+  console,    /**< somebody who watches the robot: proposing it approves it */
+  file,       /**< a loaded trajectory: somebody has to approve it, unless the robot file says otherwise */
+  openigtlink /**< a navigation program: as a file */
+};
+
+/** As the interface spells it. */
+constexpr std::string_view source_name(TaskSource source) noexcept {
+  constexpr std::string_view names[] = {"console", "file", "openigtlink"};
+  return names[static_cast<std::size_t>(source)];
+}
+
+/** One motion that somebody wants. */
+struct Task {
+  Work work;
+  std::string author; /**< name of the user */
+  RobotMode mode = RobotMode::manual;
+  TaskSource source = TaskSource::console;
+  /** It follows from registration, probe and target of that revision: stale once these change. */
+  std::optional<std::uint32_t> targeting_revision = std::nullopt;
+  std::uint32_t id = 0; /**< from 1; 0: nobody has proposed it yet */
+
+  [[nodiscard]] TaskKind kind() const noexcept { return static_cast<TaskKind>(work.index()); }
+};
+
+using TaskReference = std::shared_ptr<const Task>;
+
+/** Consent to a task, on its way to the control thread. */
+struct Approval {
+  TaskReference task; /**< never null */
+  std::uint32_t stops =
+      0; /**< STOPs seen by whoever approved; one older than the newest STOP starts nothing */
+  /** Later than this it starts nothing: what was looked at may have changed. */
+  std::chrono::steady_clock::time_point deadline;
+  Moment held; /**< when a jog began */
+};
+
+/** For which an approval may be on its way. */
+constexpr std::chrono::milliseconds approval_timeout{1000};
+
+/** Whoever jogs still holds on. */
+struct Renewal {
+  std::uint32_t task = 0;
+  Moment held;
+};
+
+/** For which a jog goes on without a renewal. */
+constexpr std::chrono::milliseconds jog_patience{200};
+
+/** Where a task stands on the control thread. The last five are final. */
+enum class TaskPhase : std::uint8_t { none, waiting, executing, paused, done, refused, aborted, expired };
+
+/** Whether a task in this phase can still move something. */
+constexpr bool is_open(TaskPhase phase) noexcept {
+  return phase == TaskPhase::waiting || phase == TaskPhase::executing || phase == TaskPhase::paused;
+}
+
+/** Why a task stands where it does. */
+enum class TaskReason : std::uint8_t {
+  none,
+  arrived,         /**< at rest within the deadband */
+  pedal_released,  /**< waits for the pedal */
+  kernel_refused,  /**< `code` is the verdict */
+  stopped,         /**< STOP */
+  let_go,          /**< a jog was not renewed in time */
+  nobody_served,   /**< the threads that serve people stood still */
+  approved_late,   /**< the approval came after its deadline */
+  cancelled,       /**< its author ended it */
+  locked,          /**< `code` is the cause of LOCKED */
+  axis_disabled,   /**< the axis was taken out of motion */
+  axis_homing,     /**< homing took over the axis */
+  axis_faulted,    /**< `code` is the fault */
+  blocked,         /**< a limit held the axis back for too long; `code` is the gate */
+  link_lost,       /**< the kernel went away */
+  waited_too_long, /**< not executing for longer than a motion may wait */
+  press_again,     /**< the travel that one press allows is used up: waits for a release and a press */
+  not_homed,       /**< a step moves an axis to a position, and the axis is not homed */
+  verdict_lost,    /**< the kernel's answer to a HOME got lost */
+  authority_changed,
+  position_declared, /**< SET_HOME or RESTORE gave the axis another position */
+  superseded,        /**< another motion took over the axes */
+  off_path,          /**< an axis strayed from its path */
+  goal_late,         /**< an axis did not come to rest at its goal in time */
+  force_stale,       /**< the newest force is too old to act upon */
+  steering_failed,   /**< `code` is the KinematicsError::Code */
+  swept,             /**< every frequency was held for its time */
+  no_path            /**< no motion within the limits leads there from where the axes are */
+};
+
+/** Level, not edge: the newest view always shows the whole truth about the newest task of each place. */
+struct TaskStatus {
+  std::uint32_t task = 0;
+  TaskPhase phase = TaskPhase::none;
+  TaskReason reason = TaskReason::none;
+  std::uint32_t code = 0;
+  std::uint32_t tick = 0; /**< kernel tick of the last change of the phase */
+  std::uint32_t slot = 0; /**< axis or card that the reason is about */
+  std::uint32_t step = 0; /**< home step, leg or frequency that runs or is next; their number once done */
+  std::int32_t left_counts = 0; /**< of the nudge of that axis, signed; 0 where nothing is left */
+
+  bool operator==(const TaskStatus&) const = default;
+};
+
+/** The newest task of each place: a place for the move of each slot, and one for each other kind. */
+class TaskTable {
+ public:
+  [[nodiscard]] const TaskStatus& move(std::uint32_t slot) const noexcept { return all_[slot]; }
+  [[nodiscard]] TaskStatus& move(std::uint32_t slot) noexcept { return all_[slot]; }
+  /** Of a kind that is not `move`. */
+  [[nodiscard]] const TaskStatus& of(TaskKind kind) const noexcept { return all_[place_of(kind)]; }
+  [[nodiscard]] TaskStatus& of(TaskKind kind) noexcept { return all_[place_of(kind)]; }
+
+  [[nodiscard]] auto begin() const noexcept { return all_.begin(); }
+  [[nodiscard]] auto end() const noexcept { return all_.end(); }
+  bool operator==(const TaskTable&) const = default;
+
+ private:
+  static constexpr std::size_t place_of(TaskKind kind) noexcept {
+    return ILK_SLOTS - 1 + static_cast<std::size_t>(kind);
+  }
+
+  std::array<TaskStatus, ILK_SLOTS + std::variant_size_v<Work> - 1> all_{};
+};
+
+/** Mean speed at each frequency of the newest sweep that is over; 0 where the dwell was too short. */
+using SweepSpeeds = std::array<float, FrequencySteps::most>;
+
+}  // namespace interlock
