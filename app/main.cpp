@@ -6,7 +6,6 @@
 #include <pthread.h>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <boost/asio/io_context.hpp>
@@ -52,6 +51,7 @@ constexpr int exit_unusable = 2;
 constexpr std::chrono::seconds session_sweep_pause{1};
 /** For the network's thread to end after a signal. */
 constexpr std::chrono::seconds longest_end{2};
+constexpr int first_in_turn = -10; /**< as nice(1) counts */
 
 struct Options {
   std::string robot_file;
@@ -236,22 +236,8 @@ boost::asio::awaitable<void> tell_service_manager(ServiceManager& manager, const
   }
 }
 
-/** What a thread that people wait for may put before the rest of a busy machine. */
-constexpr int first_in_turn = -10;
-
-/** Before the capabilities are given up: without them it is as the service manager or the user allows. */
-void allow_first_in_turn() {
-  constexpr rlim_t ceiling = 20 - first_in_turn;
-  const rlimit limit{ceiling, ceiling};
-  (void)setrlimit(RLIMIT_NICE, &limit);
-}
-
 /** As `top -H` shows the calling thread. */
 void name_thread(const char* name) { pthread_setname_np(pthread_self(), name); }
-
-/** Puts the calling thread before the rest: once it stands still, motion ends (`ControlLoop::watch_service`).
- * Where that is not allowed it runs in turn. */
-void run_first() { (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), first_in_turn); }
 
 /** Ends the app on a signal: a STOP first, which waits for no other thread, then the network's thread by
  * itself, or else the process. */
@@ -299,7 +285,6 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
                       options.replay ? LinkUse::replay : LinkUse::control);
   const std::jthread control_thread([&](const std::stop_token& stop) {
     name_thread("control");
-    run_first();
     control.run(stop);
   });
   launch(executor, api.listen());
@@ -319,11 +304,9 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   manager->say_ready();
   const std::jthread door_thread([&](const std::stop_token& stop) {
     name_thread("door");
-    run_first();
     const std::stop_callback end(stop, [&] { door.stop(); });
     door.run();
   });
-  run_first();
   network.run();
   return {};
 }
@@ -350,7 +333,9 @@ int run(const Options& options) {
     std::cerr << "interlock-app: " << reason << std::endl;
     return exit_unusable;
   };
-  allow_first_in_turn();
+  // Before the rest of a busy machine, where that is allowed: once the threads that people wait for stand
+  // still, motion ends (`ControlLoop::watch_service`). Threads begin with the priority of this one.
+  (void)setpriority(PRIO_PROCESS, 0, first_in_turn);
   if (const auto given_up = give_up_capabilities(); !given_up) {
     return unusable(given_up.error());
   }

@@ -6,6 +6,8 @@
  */
 #pragma once
 
+#include <sys/resource.h>
+
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/thread_pool.hpp>
@@ -62,6 +64,8 @@ class WorkPool {
   /** Nothing when there is no memory. */
   template <typename Work>
   static auto in_pool(Work work) -> boost::asio::awaitable<std::optional<std::invoke_result_t<Work>>> {
+    // In turn with the rest of the machine: nobody's STOP waits for this (main.cpp).
+    (void)setpriority(PRIO_PROCESS, 0, 0);
     try {
       co_return std::optional(work());
     } catch (const std::bad_alloc&) {

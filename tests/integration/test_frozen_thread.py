@@ -4,12 +4,14 @@ import concurrent.futures
 import contextlib
 import signal
 import threading
+import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import httpx
 import pytest
 from conftest import StackFactory
-from frozen import frozen
+from frozen import frozen, thread_of
 from interface import judge
 from motion import LATERAL, press, proposal, propose, to_motion, wait_for_proposal, wait_until
 from stack import Stack, has_ended, watched
@@ -17,6 +19,7 @@ from stack import Stack, has_ended, watched
 # Of the wall, which ticks of the paced clock never outrun.
 MOTION_ENDS_WITHIN_TICKS = 200
 LONG_AFTER_TICKS = 600
+APPROVED_FOR_S = 1.0
 
 
 @pytest.fixture
@@ -137,6 +140,41 @@ def test_an_order_from_before_a_STOP_is_refused_although_the_door_saw_neither(ro
     assert (late.status_code, late.json()["code"]) == (503, "LATE")
     press(robot)
     assert robot.api.get("/api/proposals").json() == []
+
+
+def test_what_was_approved_of_a_frozen_kernel_never_comes_into_force(robot: Stack) -> None:
+    body = {"slot": LATERAL, "target_counts": -1000}
+    before, answers = last_drive(robot), []
+
+    def is_refused() -> bool:
+        answers.append(judge(robot.api.post("/api/proposals", json=body)))
+        return answers[-1].status_code == 503
+
+    robot.signal("kernel", signal.SIGSTOP)
+    try:
+        wait_until("its state is old", is_refused)
+        refused_at = time.monotonic()
+        wait_until("every deadline has passed", lambda: time.monotonic() > refused_at + APPROVED_FOR_S)
+    finally:
+        robot.signal("kernel", signal.SIGCONT)
+    *approved, refused = [answer.json() for answer in answers]
+    assert refused["code"] == "NO_KERNEL"
+    assert "ms old" in refused["detail"]
+    assert approved
+    wait_for_proposal(robot, approved[-1]["id"], "aborted")
+    assert "ms late" in proposal(robot, approved[-1]["id"])["detail"]
+    press(robot)
+    assert last_drive(robot) == before
+
+
+def test_threads_that_people_wait_for_run_before_the_rest(robot: Stack) -> None:
+    app = robot.pid("app")
+    nice = {
+        int(task.name): int((task / "stat").read_text().rpartition(")")[2].split()[16])
+        for task in Path(f"/proc/{app}/task").iterdir()
+    }
+    assert {nice[thread_of(app, name)] for name in ("network", "door", "control")} == {-10}
+    assert 0 in nice.values(), "whoever hashes passwords takes turns with the rest of the machine"
 
 
 def test_a_signal_ends_an_app_whose_network_stands_still(robot: Stack) -> None:
