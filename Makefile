@@ -172,6 +172,10 @@ bench-console: build-tests ## Measure load, response, memory and the app's proce
 pictures: build-tests ## Take the manual's pictures of every page, in both themes, into build/pictures/
 	@npm --prefix web run --silent measure -- pictures.measure.ts
 
+.PHONY: thesis
+thesis: build-tests ## Run the targeting experiments of the thesis on the simulated ROBOT (docs/demo.md)
+	@$(release)/bin/thesis_study $(ROBOT)
+
 .PHONY: study
 study: build-tests ## Measure steering and membrane detection on simulated insertions against their limits
 	@$(measure) steering python verification/steering/run.py

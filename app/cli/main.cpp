@@ -12,7 +12,6 @@
 #include <optional>
 
 #include "build_info/build_info.hpp"
-#include "cli/demo_command.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/igtl_command.hpp"
 #include "cli/installation.hpp"
@@ -65,7 +64,6 @@ struct CommandLine {
   StatusOptions status;
   KinematicsOptions kinematics;
   TrajectoryOptions trajectory;
-  DemoCommandOptions demo;
   TuneOptions tune;
   IgtlOptions igtl;
   std::filesystem::path model;
@@ -187,34 +185,6 @@ void add_trajectory(CLI::App& cli, TrajectoryOptions& options) {
       ->required();
 }
 
-void add_demo(CLI::App& cli, DemoCommandOptions& options) {
-  CLI::App* const command = cli.add_subcommand(
-      "demo", "Run the thesis' targeting workflow on the simulated hardware, and show how near it came");
-  command->add_option("ROBOT", options.robot, "neuro, prostate, or a robot's file")->required();
-  command->add_option("--seed", options.demo.seed, "Of registration, plant and random targets")
-      ->capture_default_str();
-  command->add_option("--random-targets", options.demo.random_targets, "Targets that are only computed")
-      ->check(CLI::Range(0, 1000000))
-      ->capture_default_str();
-  command->add_option("--rounds", options.demo.rounds, "How often each target of the table is visited")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command->add_option("--tolerance", options.demo.tolerance_mm, "Distance from the target that may stay, mm")
-      ->check(CLI::Range(0.0, 100.0))
-      ->capture_default_str();
-  command->add_flag("--mechanical-error", options.demo.mechanical_error,
-                    "Add the thesis' errors behind the encoders");
-  command->add_flag("--targeting-only", options.demo.targeting_only,
-                    "Neither ablate nor have a hand push the needle: the thesis' tables");
-  command->add_option("--dwell", options.demo.dwell_s, "Rest at each angle and depth of an ablation, s")
-      ->check(CLI::Range(0.0, 3600.0))
-      ->capture_default_str();
-  command->add_option("--csv", options.csv, "Where the table of the targets goes");
-  command->add_option("--plot", options.plot,
-                      "Folder for position, velocity and error of each axis, as drawings and tables");
-  command->add_flag("--json", options.json, "One JSON object");
-}
-
 void add_tune(CLI::App& cli, TuneOptions& options) {
   CLI::App* const command =
       cli.add_subcommand("tune", "Run a step of an axis on the simulated hardware and say how good it was");
@@ -292,9 +262,6 @@ Result<void> execute(const CLI::App& cli, const CommandLine& line) {
   if (cli.got_subcommand("trajectory")) {
     return check_trajectory(line.trajectory, Installation::current(), std::cout);
   }
-  if (cli.got_subcommand("demo")) {
-    return demo(line.demo, Installation::current(), std::cout, std::cerr);
-  }
   if (cli.got_subcommand("tune")) {
     return tune(line.tune, Installation::current(), std::cout);
   }
@@ -329,7 +296,6 @@ int main(int argc, char** argv) {
   add_kinematics(cli, line.kinematics);
   add_trajectory(cli, line.trajectory);
   add_tune(cli, line.tune);
-  add_demo(cli, line.demo);
   add_igtl(cli, line.igtl);
   add_model(cli, line);
   line.store.describe(cli);

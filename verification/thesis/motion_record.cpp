@@ -1,4 +1,4 @@
-#include "demo/motion_record.hpp"
+#include "motion_record.hpp"
 
 #include <algorithm>
 #include <array>

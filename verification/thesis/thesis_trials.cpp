@@ -1,4 +1,4 @@
-#include "demo/thesis_trials.hpp"
+#include "thesis_trials.hpp"
 
 #include <array>
 #include <cmath>

@@ -1,4 +1,4 @@
-"""`interlock demo`: the thesis' targeting experiments on the simulated hardware, unattended."""
+"""The thesis' targeting experiments on the simulated hardware, unattended."""
 
 import csv
 import json
@@ -21,8 +21,8 @@ PRINTED = {  # desired and actual of the first trial, as the thesis prints them
 }
 
 
-def demo(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
-    command = [str(part) for part in (BIN / "interlock", "demo", *arguments)]
+def study(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    command = [str(part) for part in (BIN / "thesis_study", *arguments)]
     return subprocess.run(command, capture_output=True, text=True, timeout=DEADLINE_S)
 
 
@@ -32,7 +32,7 @@ def test_every_target_of_the_thesis_is_reached_within_a_tenth_of_a_millimetre(
 ) -> None:
     robot = arguments[0]
     table = tmp_path / "trials.csv"
-    done = demo(*arguments, "--json", "--seed", "7", "--random-targets", "500", "--csv", table)
+    done = study(*arguments, "--json", "--seed", "7", "--random-targets", "500", "--csv", table)
     assert done.returncode == DONE, done.stderr
     answer = json.loads(done.stdout)
     assert len(answer["trials"]) == 7
@@ -55,14 +55,14 @@ def test_every_target_of_the_thesis_is_reached_within_a_tenth_of_a_millimetre(
 
 def test_a_scan_that_shows_the_target_missed_leads_there_once_more() -> None:
     trials = json.loads(
-        demo("neuro", TABLES, "--json", "--random-targets", "0", "--tolerance", "0.05").stdout
+        study("neuro", TABLES, "--json", "--random-targets", "0", "--tolerance", "0.05").stdout
     )["trials"]
     again = [trial for trial in trials if trial["insertions"] > 1]
     assert again
     for trial in again:
         assert math.hypot(*trial["first_error_mm"]) > 0.05
         assert trial["insertions"] == 3 or math.hypot(*trial["error_mm"]) <= 0.05
-    once = json.loads(demo("neuro", TABLES, "--json", "--random-targets", "0", "--tolerance", "1").stdout)[
+    once = json.loads(study("neuro", TABLES, "--json", "--random-targets", "0", "--tolerance", "1").stdout)[
         "trials"
     ]
     assert {trial["insertions"] for trial in once} == {1}
@@ -71,12 +71,12 @@ def test_a_scan_that_shows_the_target_missed_leads_there_once_more() -> None:
 @pytest.mark.parametrize("robot", ["neuro", "prostate"])
 def test_injected_mechanical_errors_are_distributed_as_the_thesis_errors(robot: str) -> None:
     arguments = (TABLES, "--json", "--random-targets", "0", "--rounds", "30", "--mechanical-error")
-    answer = json.loads(demo(robot, *arguments, "--tolerance", "100").stdout)
+    answer = json.loads(study(robot, *arguments, "--tolerance", "100").stdout)
     shown, printed = answer["distributions"]["first_scan"], answer["distributions"]["thesis"]
     assert shown == answer["distributions"]["last_scan"]
     assert (shown["insertions"], printed["insertions"]) == (210, 7)
     assert shown["mean_mm"] == pytest.approx(printed["mean_mm"], rel=0.25)
-    without = json.loads(demo(robot, TABLES, "--json", "--random-targets", "0").stdout)
+    without = json.loads(study(robot, TABLES, "--json", "--random-targets", "0").stdout)
     assert without["injected_error"] == {"mean_mm": [0, 0, 0], "deviation_mm": [0, 0, 0]}
 
 
@@ -105,7 +105,7 @@ def rests(rotation: list[dict], insertion: list[dict]) -> list[tuple[float, floa
 
 
 def test_after_the_confirming_scan_the_probe_rests_at_every_angle_and_depth(tmp_path: Path) -> None:
-    done = demo("neuro", "--json", "--random-targets", "0", "--dwell", "1.5", "--plot", tmp_path)
+    done = study("neuro", "--json", "--random-targets", "0", "--dwell", "1.5", "--plot", tmp_path)
     assert done.returncode == DONE, done.stderr
     trials = json.loads(done.stdout)["trials"]
     for trial in trials:
@@ -119,14 +119,14 @@ def test_after_the_confirming_scan_the_probe_rests_at_every_angle_and_depth(tmp_
         assert angles == pytest.approx([-math.pi / 2, 0, math.pi / 2, math.pi], abs=0.01)
         depths = sorted({round(depth, 2) for _, depth, _ in places})
         assert depths[1] - depths[0] == pytest.approx(5.0, abs=0.03)
-    untreated = json.loads(demo("neuro", TABLES, "--json", "--random-targets", "0").stdout)["trials"]
+    untreated = json.loads(study("neuro", TABLES, "--json", "--random-targets", "0").stdout)["trials"]
     assert all(trial["ablation"] is None for trial in untreated)
     # What is done at a target before the next one is the only difference.
     assert untreated[0]["reached_mm"] == trials[0]["reached_mm"]
 
 
 def test_a_hand_pushes_the_steered_needle_to_every_target_and_membranes_are_noticed() -> None:
-    done = demo("prostate", "--json", "--random-targets", "0", "--seed", "3")
+    done = study("prostate", "--json", "--random-targets", "0", "--seed", "3")
     assert done.returncode == DONE, done.stderr
     trials = json.loads(done.stdout)["trials"]
     assert len(trials) == 7
@@ -152,7 +152,7 @@ def test_a_hand_pushes_the_steered_needle_to_every_target_and_membranes_are_noti
 def test_motions_are_plotted_with_their_profiles_and_the_tables_say_the_same(
     robot: str, motion: str, panels: list[str], tmp_path: Path
 ) -> None:
-    done = demo(robot, "--json", "--random-targets", "0", "--plot", tmp_path / "plots")
+    done = study(robot, "--json", "--random-targets", "0", "--plot", tmp_path / "plots")
     assert done.returncode == DONE, done.stderr
     drawing = ElementTree.parse(tmp_path / "plots" / f"{motion}.svg").getroot()
     labels = [label.text for label in drawing.iterfind(".//svg:text", SVG)]
@@ -171,20 +171,20 @@ def test_motions_are_plotted_with_their_profiles_and_the_tables_say_the_same(
 
 
 def test_a_folder_that_cannot_be_made_is_named() -> None:
-    refused = demo("neuro", "--random-targets", "0", "--plot", "/proc/nowhere")
+    refused = study("neuro", "--random-targets", "0", "--plot", "/proc/nowhere")
     assert refused.returncode == PRECONDITION
     assert "/proc/nowhere" in refused.stderr
 
 
 def test_the_same_seed_gives_the_same_demonstration_and_another_one_another(tmp_path: Path) -> None:
     arguments = ("neuro", TABLES, "--json", "--random-targets", "10", "--seed")
-    first, again, other = (demo(*arguments, seed).stdout for seed in ("1", "1", "2"))
+    first, again, other = (study(*arguments, seed).stdout for seed in ("1", "1", "2"))
     assert first == again
     assert first != other
 
 
 def test_what_cannot_be_shown_is_refused_by_name() -> None:
-    unknown = demo("elbow")
+    unknown = study("elbow")
     assert unknown.returncode != DONE
     assert "elbow" in unknown.stderr
-    assert demo().returncode == USAGE
+    assert study().returncode == USAGE

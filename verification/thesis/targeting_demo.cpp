@@ -1,4 +1,4 @@
-#include "demo/targeting_demo.hpp"
+#include "targeting_demo.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,20 +1,33 @@
-#include "cli/demo_command.hpp"
-
+// The thesis' targeting workflow on the simulated hardware, unattended. docs/demo.md tells what it shows.
+#include <CLI/CLI.hpp>
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <iomanip>
+#include <iostream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "cli/exit_code.hpp"
+#include "cli/installation.hpp"
 #include "cli/named_robot.hpp"
 #include "cli/write_file.hpp"
 #include "plant/parameters_file.hpp"
 #include "robot/compile.hpp"
+#include "targeting_demo.hpp"
 
 namespace interlock::cli {
 namespace {
 
 using nlohmann::ordered_json;
+
+struct StudyOptions {
+  std::string robot; /**< name of a robot, or its file */
+  DemoOptions demo;
+  std::filesystem::path csv;  /**< where the trials go; empty: nowhere */
+  std::filesystem::path plot; /**< folder for the motions of the first round; empty: none */
+  bool json = false;          /**< answer for programs */
+};
 
 Failure refusal(const std::string& text) { return {ExitCode::refused, text}; }
 
@@ -198,8 +211,8 @@ Result<void> make_folder(const std::filesystem::path& folder) {
   return {};
 }
 
-Result<DemoReport> report_of(const DemoCommandOptions& options, const Robot& robot,
-                             const Installation& installation, std::ostream& progress) {
+Result<DemoReport> report_of(const StudyOptions& options, const Robot& robot,
+                             const Installation& installation) {
   const auto config = compile(robot);
   if (!config) {
     return tl::unexpected(refusal(config.error().message()));
@@ -210,7 +223,7 @@ Result<DemoReport> report_of(const DemoCommandOptions& options, const Robot& rob
         .and_then([&](const plant::Parameters& plant) {
           Result<void> plotted;
           const DemoAudience audience{
-              [&](const std::string& what) { progress << "demo: " << what << std::endl; },
+              [&](const std::string& what) { std::cerr << "thesis_study: " << what << std::endl; },
               [&](const std::string& name, const MotionRecord& record) {
                 plotted = plotted.and_then([&] { return plot(options.plot, robot, name, record); });
               }};
@@ -221,22 +234,71 @@ Result<DemoReport> report_of(const DemoCommandOptions& options, const Robot& rob
   });
 }
 
-}  // namespace
-
-Result<void> demo(const DemoCommandOptions& options, const Installation& installation, std::ostream& output,
-                  std::ostream& progress) {
+/** Runs the experiments and shows each target's desired and reached position and error beside the thesis'. */
+Result<void> study(const StudyOptions& options) {
+  const Installation installation = Installation::current();
   const Result<Robot> robot = named_robot(options.robot, installation);
   if (!robot) {
     return tl::unexpected(robot.error());
   }
   return make_folder(options.plot)
-      .and_then([&] { return report_of(options, *robot, installation, progress); })
+      .and_then([&] { return report_of(options, *robot, installation); })
       .and_then([&](const DemoReport& report) {
         return write_file(options.csv, csv_of(report)).map([&] {
-          output << (options.json ? to_json(*robot, options.demo, report).dump() + '\n'
-                                  : text_of(*robot, report));
+          std::cout << (options.json ? to_json(*robot, options.demo, report).dump() + '\n'
+                                     : text_of(*robot, report));
         });
       });
 }
 
+int main(int argc, char** argv) {
+  StudyOptions options;
+  CLI::App cli("Run the thesis' targeting workflow on the simulated hardware, and show how near it came",
+               "thesis_study");
+  cli.add_option("ROBOT", options.robot, "neuro, prostate, or a robot's file")->required();
+  cli.add_option("--seed", options.demo.seed, "Of registration, plant and random targets")
+      ->capture_default_str();
+  cli.add_option("--random-targets", options.demo.random_targets, "Targets that are only computed")
+      ->check(CLI::Range(0, 1000000))
+      ->capture_default_str();
+  cli.add_option("--rounds", options.demo.rounds, "How often each target of the table is visited")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  cli.add_option("--tolerance", options.demo.tolerance_mm, "Distance from the target that may stay, mm")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  cli.add_flag("--mechanical-error", options.demo.mechanical_error,
+               "Add the thesis' errors behind the encoders");
+  cli.add_flag("--targeting-only", options.demo.targeting_only,
+               "Neither ablate nor have a hand push the needle: the thesis' tables");
+  cli.add_option("--dwell", options.demo.dwell_s, "Rest at each angle and depth of an ablation, s")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
+  cli.add_option("--csv", options.csv, "Where the table of the targets goes");
+  cli.add_option("--plot", options.plot,
+                 "Folder for position, velocity and error of each axis, as drawings and tables");
+  cli.add_flag("--json", options.json, "One JSON object");
+  try {
+    cli.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return cli.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
+  }
+  const Result<void> done = study(options);
+  if (!done) {
+    std::cerr << "thesis_study: " << done.error().text << '\n';
+    return static_cast<int>(done.error().code);
+  }
+  return 0;
+}
+
+}  // namespace
 }  // namespace interlock::cli
+
+int main(int argc, char** argv) {
+  try {
+    return interlock::cli::main(argc, argv);
+  } catch (const std::exception& error) {
+    std::cerr << "thesis_study: " << error.what() << '\n';
+    return static_cast<int>(interlock::cli::ExitCode::precondition);
+  }
+}

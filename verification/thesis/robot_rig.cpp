@@ -1,4 +1,4 @@
-#include "demo/robot_rig.hpp"
+#include "robot_rig.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -163,7 +163,7 @@ void RobotRig::follow_biopsy(std::uint32_t start_tick, std::uint32_t scene_tick)
 
 void RobotRig::begin_task(Work work) {
   const std::uint32_t id = task_ == nullptr ? 1 : task_->id + 1;
-  task_ = std::make_shared<const Task>(Task{.work = std::move(work), .id = id});
+  task_ = std::make_shared<const Task>(Task{.work = std::move(work), .author = "study", .id = id});
   modes_.take(task_, state_.system.tick);
   set_pedal(true);
 }

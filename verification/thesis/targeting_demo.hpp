@@ -25,9 +25,9 @@
 #include <string>
 #include <vector>
 
-#include "demo/robot_rig.hpp"
-#include "demo/targeting_errors.hpp"
-#include "demo/thesis_trials.hpp"
+#include "robot_rig.hpp"
+#include "targeting_errors.hpp"
+#include "thesis_trials.hpp"
 
 namespace interlock {
 

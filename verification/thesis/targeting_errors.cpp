@@ -1,9 +1,9 @@
-#include "demo/targeting_errors.hpp"
+#include "targeting_errors.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "demo/thesis_trials.hpp"
+#include "thesis_trials.hpp"
 
 namespace interlock {
 namespace {

@@ -13,9 +13,9 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "demo/motion_record.hpp"
 #include "interlock/kernel.h"
 #include "motion/mode_manager.hpp"
+#include "motion_record.hpp"
 #include "plant/plant.hpp"
 #include "targeting/robot_kinematics.hpp"
 
