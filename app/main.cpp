@@ -41,7 +41,9 @@
 #include "service/service_manager.hpp"
 #include "store/audit.hpp"
 #include "store/first_admin.hpp"
+#include "store/noted_heads.hpp"
 #include "store/store.hpp"
+#include "store/store_backup.hpp"
 
 namespace interlock {
 namespace {
@@ -49,6 +51,7 @@ namespace {
 constexpr int exit_failed = 1;
 constexpr int exit_unusable = 2;
 constexpr std::chrono::seconds session_sweep_pause{1};
+constexpr std::chrono::seconds head_report_pause{1};
 /** For the network's thread to end after a signal. */
 constexpr std::chrono::seconds longest_end{2};
 constexpr int first_in_turn = -10; /**< as nice(1) counts */
@@ -63,6 +66,9 @@ struct Options {
   std::string web_directory;
   std::string docs_directory;
   std::string state_directory;
+  bool new_store = false; /**< in the place of one that is missing or damaged */
+  std::string recorder;   /**< socket of the recorder, which notes the head of the audit */
+  std::string audit_heads;
   std::string log_level = "info";
   std::optional<std::uint16_t> igtl_port; /**< in place of the robot file's */
   std::string igtl_dialect;               /**< in place of the robot file's, unless empty */
@@ -94,6 +100,11 @@ void describe(CLI::App& cli, Options& options) {
       ->check(CLI::ExistingDirectory);
   cli.add_option("--state", options.state_directory, "folder of the store and the logs, made if missing")
       ->required();
+  cli.add_flag("--new-store", options.new_store,
+               "begin a new store, without users, where the one of an earlier run is missing or damaged");
+  cli.add_option("--recorder", options.recorder, "socket on which the recorder notes the head of the audit");
+  cli.add_option("--audit-heads", options.audit_heads,
+                 "the recorder's file of heads that it noted, which the audit must contain");
   cli.add_option("--igtl-port", options.igtl_port,
                  "port for OpenIGTLink, in place of the robot file's; 0: any")
       ->check(CLI::Range(0, 65535));
@@ -162,11 +173,24 @@ std::string url_of(const web::Listen& listen, std::uint16_t port) {
   return "http://" + host + ":" + std::to_string(port) + "/";
 }
 
-tl::expected<Store, std::string> open_store(const Options& options) {
-  return Store::open(std::filesystem::path(options.state_directory) / "interlock.db")
-      .map_error([&](const StoreError& error) {
-        return "--state " + options.state_directory + ": " + error.message();
-      });
+/** The store as an earlier run left it; a new one where that was the first, or where it is lost and
+ * --new-store was given. */
+Stored<Store> open_store(const Options& options) {
+  const std::filesystem::path file = std::filesystem::path(options.state_directory) / store_file_name;
+  Stored<NotedHeads> heads = read_noted_heads(options.audit_heads);
+  if (!heads) {
+    return tl::unexpected(heads.error());
+  }
+  Stored<Store> store = Store::open(file);
+  if (const Stored<void> checked = store ? store->check(std::move(*heads)) : Stored<void>(); !checked) {
+    store = tl::unexpected(checked.error());
+  }
+  if (!store && store.error().kind == StoreError::Kind::damaged && options.new_store) {
+    std::cout << "a new store takes the place of the old one: " << store.error().problem << std::endl;
+    const StoreError reason = store.error();
+    return begin_new_store(file, reason, std::chrono::system_clock::now());
+  }
+  return store;
 }
 
 Stored<void> record_start(Store& store, const Model& model) {
@@ -180,6 +204,16 @@ Stored<void> record_start(Store& store, const Model& model) {
                  AuditKind::start, std::move(detail)});
     return {};
   });
+}
+
+/** The store, with the record of this start in it before there is a log: a store without a record beside logs
+ * is one that was emptied. */
+tl::expected<Store, std::string> begin_store(const Options& options, const Model& model) {
+  return open_store(options)
+      .and_then([&](Store store) { return record_start(store, model).map([&] { return std::move(store); }); })
+      .map_error([&](const StoreError& error) {
+        return "--state " + options.state_directory + ": " + error.message();
+      });
 }
 
 /** Shows the first administrator's password, this once and nowhere else, when there is no user yet. */
@@ -236,6 +270,24 @@ boost::asio::awaitable<void> tell_service_manager(ServiceManager& manager, const
   }
 }
 
+Stored<AuditHead> read_head(Store& store) {
+  return store.read([](Transaction& transaction) -> Stored<AuditHead> { return Audit(transaction).head(); });
+}
+
+/** Has the recorder note the head of the audit, soon after it has changed. */
+boost::asio::awaitable<void> report_heads(web::StoreGateway& gateway, const std::string recorder) {
+  boost::asio::steady_timer timer(co_await boost::asio::this_coro::executor);
+  AuditHead reported;
+  while (!recorder.empty()) {
+    const auto head = co_await gateway.run(read_head);
+    if (head && *head != reported && report_head(recorder, *head)) {
+      reported = *head;
+    }
+    timer.expires_after(head_report_pause);
+    co_await timer.async_wait(boost::asio::use_awaitable);
+  }
+}
+
 /** As `top -H` shows the calling thread. */
 void name_thread(const char* name) { pthread_setname_np(pthread_self(), name); }
 
@@ -277,9 +329,8 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   if (auto listening = listen_for_navigation(options, model.robot, api.navigation()); !listening) {
     return listening;
   }
-  const auto begun = record_start(store, model).and_then([&] { return let_somebody_in(store); });
-  if (!begun) {
-    return tl::make_unexpected("--state " + options.state_directory + ": " + begun.error().message());
+  if (const auto let_in = let_somebody_in(store); !let_in) {
+    return tl::make_unexpected("--state " + options.state_directory + ": " + let_in.error().message());
   }
   ControlLoop control(options.link_socket, plan, *mailbox, &history,
                       options.replay ? LinkUse::replay : LinkUse::control);
@@ -290,6 +341,7 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   launch(executor, api.listen());
   launch(executor, api.beat());
   launch(executor, api.sweep_sessions(session_sweep_pause));
+  launch(executor, report_heads(gateway, options.recorder));
   launch(executor, tell_service_manager(*manager, control, *mailbox));
   launch(door.get_executor(), server.door().accept());
   launch(door.get_executor(), server.door().beat());
@@ -339,14 +391,23 @@ int run(const Options& options) {
   if (const auto given_up = give_up_capabilities(); !given_up) {
     return unusable(given_up.error());
   }
-  const auto log = start_log(options);
-  if (!log) {
-    return unusable(log.error());
-  }
   try {
-    const auto served = load_model(options).and_then([&](const Model& model) {
-      return open_store(options).and_then([&](Store store) { return serve(options, model, store, **log); });
-    });
+    const auto model = load_model(options);
+    if (!model) {
+      return unusable(model.error());
+    }
+    auto store = begin_store(options, *model);
+    if (!store) {
+      return unusable(store.error());
+    }
+    const auto log = start_log(options);
+    if (!log) {
+      return unusable(log.error());
+    }
+    const auto served = serve(options, *model, *store, **log);
+    if (const Stored<AuditHead> head = read_head(*store); head && !options.recorder.empty()) {
+      report_head(options.recorder, *head);
+    }
     return served ? 0 : unusable(served.error());
   } catch (const std::exception& error) {
     spdlog::critical("uncaught exception: {}", error.what());

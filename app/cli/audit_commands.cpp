@@ -1,17 +1,25 @@
 #include "cli/audit_commands.hpp"
 
+#include <sys/stat.h>
+
 #include <chrono>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <system_error>
+#include <utility>
 
+#include "cli/record_command.hpp"
 #include "store/audit.hpp"
+#include "store/audit_check.hpp"
 #include "store/audit_file.hpp"
+#include "store/noted_heads.hpp"
 #include "text/printable.hpp"
 
 namespace interlock::cli {
 
 namespace {
 
+namespace fs = std::filesystem;
 using Verified = tl::expected<AuditHead, AuditBreak>;
 
 Failure not_sound(const AuditBreak& broken) {
@@ -19,22 +27,59 @@ Failure not_sound(const AuditBreak& broken) {
                                  printable(broken.problem) + "; keep the file, and compare it with a backup"};
 }
 
-Result<void> tell(const Stored<Verified>& verified, std::ostream& output) {
+/** The chain without a break, and how far that can be believed. */
+Result<void> tell(const Stored<Verified>& verified, const std::string& believed, std::ostream& output) {
   if (!verified) {
     return tl::unexpected(failure_of(verified.error()));
   }
   if (!*verified) {
     return tl::unexpected(not_sound(verified->error()));
   }
-  output << (*verified)->number << " records, sound, head " << (*verified)->hash << '\n';
+  output << (*verified)->number << " records, an unbroken chain, " << believed << ", head "
+         << (*verified)->hash << '\n';
   return {};
 }
 
+/** The recorder's file of the heads that it noted: of a service, or of `interlock run`. */
+fs::path heads_file(const fs::path& state) {
+  std::error_code ignored;
+  const fs::path of_service = fs::path(state.string() + "-recordings") / noted_heads_file_name;
+  return fs::exists(of_service, ignored) ? of_service : recordings_folder(state) / noted_heads_file_name;
+}
+
+/** What the noted heads show of a chain that contains them all. */
+std::string believed_by(const NotedHeads& heads, const fs::path& file, const fs::path& store) {
+  if (heads.empty()) {
+    return "not compared with noted heads, of which there are none in " + file.string() +
+           ": records cut off or written anew do not show";
+  }
+  struct stat noted{};
+  struct stat kept{};
+  const bool same_owner =
+      ::stat(file.c_str(), &noted) != 0 || ::stat(store.c_str(), &kept) != 0 || noted.st_uid == kept.st_uid;
+  return "in agreement with the " + std::to_string(heads.size()) + " heads up to record " +
+         std::to_string(heads.back().head.number) + " that the recorder noted in " + file.string() +
+         (same_owner ? ", which the store's owner can change, too" : "");
+}
+
+/** In parts: the log of the writers is emptied between them. */
+Stored<Verified> verify_in_parts(Store& store, AuditCheck check) {
+  constexpr std::size_t part = 2000;
+  for (bool more = true; more;) {
+    const Stored<bool> gone_on = store.read(
+        [&](Transaction& transaction) -> Stored<bool> { return check.go_on(transaction.database(), part); });
+    if (!gone_on) {
+      return tl::unexpected(gone_on.error());
+    }
+    more = *gone_on;
+  }
+  return check.result();
+}
+
 /** The records that are to go, in their file; the last of them. Nothing when there are none. */
-Stored<std::optional<AuditHead>> move_out(Transaction& transaction, const AuditOptions& options,
-                                          UtcTime until) {
+Stored<std::optional<AuditHead>> move_out(Transaction& transaction, const AuditOptions& options) {
   const Audit audit(transaction);
-  const std::vector<AuditRecord> old = audit.older_than(until);
+  const std::vector<AuditRecord> old = audit.before_last_days(static_cast<int>(options.keep_days));
   if (old.empty()) {
     return std::nullopt;
   }
@@ -49,16 +94,21 @@ Stored<std::optional<AuditHead>> move_out(Transaction& transaction, const AuditO
 Result<void> verify_audit(const AuditOptions& options, const Installation& installation,
                           std::ostream& output) {
   if (!options.file.empty()) {
-    return tell(verify_audit_file(options.file, options.expected_hash), output);
+    return tell(verify_audit_file(options.file, options.expected_hash),
+                "not compared with noted heads, as a file stands for itself", output);
   }
   Result<Store> store = open_store(options.place, installation);
   if (!store) {
     return tl::unexpected(store.error());
   }
-  return tell(store->read([&](Transaction& transaction) -> Stored<Verified> {
-    return Audit(transaction).verify(options.expected_hash);
-  }),
-              output);
+  const Result<fs::path> state = state_of(options.place, installation);
+  const fs::path file = options.heads.empty() ? heads_file(*state) : options.heads;
+  const Stored<NotedHeads> heads = read_noted_heads(file);
+  if (!heads) {
+    return tl::unexpected(failure_of(heads.error()));
+  }
+  return tell(verify_in_parts(*store, AuditCheck(options.expected_hash, *heads)),
+              believed_by(*heads, file, *state / store_file_name), output);
 }
 
 Result<void> export_audit(const AuditOptions& options, const Installation& installation,
@@ -93,7 +143,7 @@ Result<void> retire_audit(const AuditOptions& options, const Installation& insta
     if (!sound) {
       return std::nullopt;
     }
-    auto last = move_out(transaction, options, now - std::chrono::days(options.keep_days));
+    auto last = move_out(transaction, options);
     if (last && *last) {
       audit.retire(**last, {.time = now,
                             .tick = std::nullopt,
@@ -110,7 +160,8 @@ Result<void> retire_audit(const AuditOptions& options, const Installation& insta
     return tl::unexpected(not_sound(sound.error()));
   }
   if (!*retired) {
-    output << "no record is older than " << options.keep_days << " days\n";
+    output << "no record is older than the last " << options.keep_days
+           << " days on which something was recorded\n";
     return {};
   }
   output << "records up to " << (*retired)->number << " are in " << options.file.string()

@@ -19,13 +19,15 @@ namespace interlock::cli {
 struct AuditOptions {
   StorePlace place;
   std::optional<std::string> expected_hash; /**< a head that was noted before */
+  std::filesystem::path heads;              /**< that the recorder noted; empty: those of the state */
   std::size_t records = 20;
   bool json = false;
   std::filesystem::path file; /**< exported records: to verify, or to make */
   std::uint32_t keep_days = 0;
 };
 
-/** Goes over the whole chain and shows its head; refused, with the place, where it is broken. */
+/** Goes over the whole chain, compares it with the heads that the recorder noted and with the users, and
+ * shows its head; refused, with the place, where something differs. */
 Result<void> verify_audit(const AuditOptions& options, const Installation& installation,
                           std::ostream& output);
 

@@ -101,6 +101,9 @@ void add_run(CLI::App& cli, RunOptions& options) {
   command->add_option("--seed", options.seed, "Seed of the simulated hardware");
   command->add_option("--core", options.core, "Core that the kernel has for itself; default: none");
   command->add_option("--state", options.state, "State directory; default $XDG_STATE_HOME/interlock/ROBOT");
+  command->add_flag(
+      "--new-store", options.new_store,
+      "Begin a new store, without users, where the one of an earlier run is missing or damaged");
   command->add_option("--sockets", options.sockets, "Directory for the sockets; default: a private one");
   command->add_option("--plant", options.plant, "Parameters of the simulated hardware")
       ->check(CLI::ExistingFile);

@@ -15,6 +15,7 @@
 #include "cli/state_directory.hpp"
 #include "cli/supervisor.hpp"
 #include "robot/compile.hpp"
+#include "store/noted_heads.hpp"
 
 namespace interlock::cli {
 namespace {
@@ -69,7 +70,8 @@ Program simulator(const RunOptions& options, const Places& places, const Runtime
 Program recorder(const RunOptions& options, const Places& places, const RuntimeDirectory& directory) {
   Program program{"recorder",
                   "interlock-recorder",
-                  {"--black-box", directory.black_box(), "--folder", recordings_folder(places.state)}};
+                  {"--black-box", directory.black_box(), "--folder", recordings_folder(places.state),
+                   "--audit-heads", directory.audit_heads()}};
   program.outlives_parent = true;
   if (options.record) {
     program.arguments.emplace_back("--continuous");
@@ -113,12 +115,16 @@ Program app(const RunOptions& options, const Places& places, const RuntimeDirect
                   "interlock-app",
                   {"--robot", places.robot_file, "--config", directory.config(), "--link", directory.link(),
                    "--bench", directory.control(), "--port", std::to_string(places.port), "--state",
-                   places.state, "--black-box", directory.black_box()}};
+                   places.state, "--black-box", directory.black_box(), "--recorder", directory.audit_heads(),
+                   "--audit-heads", recordings_folder(places.state) / noted_heads_file_name}};
   if (places.web) {
     program.arguments.insert(program.arguments.end(), {"--web", *places.web});
   }
   if (places.documents) {
     program.arguments.insert(program.arguments.end(), {"--docs", *places.documents});
+  }
+  if (options.new_store) {
+    program.arguments.emplace_back("--new-store");
   }
   if (!options.igtl_dialect.empty()) {
     program.arguments.insert(program.arguments.end(), {"--igtl-dialect", options.igtl_dialect});

@@ -36,6 +36,7 @@ struct RunOptions {
   std::filesystem::path sockets;     /**< empty: a private directory */
   std::filesystem::path plant;       /**< empty: models/plant/ROBOT.toml */
   std::filesystem::path web;         /**< empty: the console of the installation or the source tree */
+  bool new_store = false;            /**< in the place of one that is missing or damaged */
   bool record = false;               /**< all of the run, not only the time around events */
   std::optional<std::uint32_t> black_box_s; /**< that the black box holds at least; default 60 */
 };

@@ -33,6 +33,7 @@ class RuntimeDirectory {
   [[nodiscard]] std::filesystem::path control() const { return path_ / "control.sock"; }
   [[nodiscard]] std::filesystem::path link() const { return path_ / "link.sock"; }
   [[nodiscard]] std::filesystem::path black_box() const { return path_ / "black-box.sock"; }
+  [[nodiscard]] std::filesystem::path audit_heads() const { return path_ / "heads.sock"; }
   [[nodiscard]] std::filesystem::path config() const { return path_ / (robot_name_ + ".ilkc"); }
 
  private:
@@ -41,8 +42,8 @@ class RuntimeDirectory {
   RuntimeDirectory(std::filesystem::path path, std::string robot_name)
       : path_(std::move(path)), robot_name_(std::move(robot_name)) {}
 
-  [[nodiscard]] std::array<std::filesystem::path, 5> own_files() const {
-    return {bus(), control(), link(), black_box(), config()};
+  [[nodiscard]] std::array<std::filesystem::path, 6> own_files() const {
+    return {bus(), control(), link(), black_box(), audit_heads(), config()};
   }
 
   std::filesystem::path path_;

@@ -58,6 +58,8 @@ void StoreCommandLine::describe_audit(CLI::App& cli) {
   audit->require_subcommand(1);
   CLI::App* const verify =
       add(audit, "verify", "Check the whole chain of records and show its head", audit_, verify_audit);
+  verify->add_option("--heads", audit_.heads,
+                     "The recorder's file of noted heads; default: audit-heads among the robot's recordings");
   verify->add_option("--file", audit_.file, "Exported records, in place of the store's")
       ->check(CLI::ExistingFile);
   verify
@@ -75,7 +77,9 @@ void StoreCommandLine::describe_audit(CLI::App& cli) {
       ->required();
   CLI::App* const retire = add(audit, "retire", "Move old records into a new file, and leave a record of it",
                                audit_, retire_audit);
-  retire->add_option("--keep-days", audit_.keep_days, "Records of so many days stay")
+  retire
+      ->add_option("--keep-days", audit_.keep_days,
+                   "Records of the last so many days on which something was recorded stay")
       ->required()
       ->check(CLI::Range(0, 100000));
   retire->add_option("FILE", audit_.file, "File to make")->required();

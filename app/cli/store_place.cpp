@@ -2,6 +2,7 @@
 
 #include "cli/state_directory.hpp"
 #include "robot/robot_file.hpp"
+#include "store/store_files.hpp"
 
 namespace interlock::cli {
 
@@ -32,7 +33,7 @@ Result<Store> open_store(const StorePlace& place, const Installation& installati
     return tl::unexpected(file.error());
   }
   std::error_code ignored;
-  if (!fs::exists(*file, ignored)) {
+  if (!fs::exists(*file, ignored) && !has_run_before(file->parent_path())) {
     return failed(ExitCode::precondition,
                   "there is no store " + file->string() +
                       "; start the robot once with `interlock run`, or choose another --robot or --state");

@@ -39,9 +39,9 @@ Api::Api(const asio::any_io_executor& executor, const Robot& robot, const ilk_co
       biopsy_(robot),
       sessions_(store, clocks),
       authority_(static_cast<std::uint32_t>(std::chrono::system_clock::to_time_t(clocks.utc()))),
-      context_{executor,    robot,   config,     control_,      book_,         stream_,
-               bench_,      biopsy_, store,      sessions_,     authority_,    work_,
-               trajectory_, log,     clocks.utc, clocks.steady, role_refusals_},
+      context_{executor,    robot,   config, control_,   book_,         stream_,
+               bench_,      biopsy_, store,  sessions_,  authority_,    work_,
+               trajectory_, stops_,  log,    clocks.utc, clocks.steady, role_refusals_},
       navigation_(context_),
       router_([this](const Caller& caller) -> std::optional<Problem> {
         const auto held = context_.need_authority(caller);
@@ -53,6 +53,8 @@ Api::Api(const asio::any_io_executor& executor, const Robot& robot, const ilk_co
   follow_sessions();
   follow_streams();
 }
+
+Api::~Api() { context_.note(stops_.take()); }
 
 void Api::follow_proposals() {
   book_.on_change([this](const Proposal& proposal) {
@@ -247,6 +249,7 @@ asio::awaitable<void> Api::sweep_sessions(std::chrono::milliseconds pause) {
   for (;;) {
     co_await sessions_.sweep();
     context_.log.tell_repetitions();
+    context_.note(stops_.due(context_.steady_clock()));
     timer.expires_after(pause);
     const auto [error] = co_await timer.async_wait(as_result);
     if (error) {

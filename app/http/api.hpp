@@ -49,6 +49,12 @@ class Api {
       Mailbox& mailbox, const std::string& bench_socket, StoreGateway& store, Log& log,
       const Clocks& clocks = {}, Past past = {});
 
+  /** Has the STOPs written that were counted only. */
+  ~Api();
+
+  Api(const Api&) = delete;
+  Api& operator=(const Api&) = delete;
+
   [[nodiscard]] const Router& router() const { return router_; }
 
   /** What the route of the request answers. A refusal for the caller's role is logged and counted. */
@@ -74,8 +80,8 @@ class Api {
    * with the io_context. */
   boost::asio::awaitable<void> beat();
 
-  /** Ends sessions that are over and logs how often the last line came again, after each pause; ends with the
-   * io_context. */
+  /** Ends sessions that are over, logs how often the last line came again, and records STOPs that were
+   * counted, after each pause; ends with the io_context. */
   boost::asio::awaitable<void> sweep_sessions(std::chrono::milliseconds pause);
 
   /** Releases a pedal that is held over the network. */
@@ -102,6 +108,7 @@ class Api {
   Authority authority_;
   WorkPool work_;
   LoadedTrajectory trajectory_;
+  StopRecords stops_;
   std::uint64_t role_refusals_ = 0;
   Context context_;
   Navigation navigation_;

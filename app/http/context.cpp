@@ -90,9 +90,22 @@ void Context::record_stop(const Caller& caller, std::uint32_t unrecorded) const 
   nlohmann::json detail{{"peer", caller.peer}};
   if (unrecorded != 0) {
     spdlog::warn("{} STOPs came before it too fast to be recorded", unrecorded);
-    detail["unrecorded"] = unrecorded;
   }
-  store.note(entry(caller, AuditKind::stop, std::move(detail)));
+  AuditEntry stop = entry(caller, AuditKind::stop, std::move(detail));
+  if (caller.session == 0) {
+    note(stop_records.add(std::move(stop), unrecorded, steady_clock()));
+    return;
+  }
+  if (unrecorded != 0) {
+    stop.detail["unrecorded"] = unrecorded;
+  }
+  store.note(std::move(stop));
+}
+
+void Context::note(std::optional<AuditEntry> entry) const {
+  if (entry) {
+    store.note(std::move(*entry));
+  }
 }
 
 boost::asio::awaitable<tl::expected<void, Problem>> Context::announce(const Caller& caller, AuditKind kind,

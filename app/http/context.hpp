@@ -6,6 +6,7 @@
 
 #include <boost/asio/any_io_executor.hpp>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "http/access.hpp"
@@ -17,6 +18,7 @@
 #include "http/live_sessions.hpp"
 #include "http/loaded_trajectory.hpp"
 #include "http/message.hpp"
+#include "http/stop_records.hpp"
 #include "http/store_gateway.hpp"
 #include "http/stream_hub.hpp"
 #include "http/work_pool.hpp"
@@ -40,6 +42,7 @@ struct Context {
   Authority& authority;
   WorkPool& work;
   LoadedTrajectory& trajectory;
+  StopRecords& stop_records;
   Log& log;
   std::function<UtcTime()> clock;
   std::function<SteadyTime()> steady_clock;
@@ -62,10 +65,14 @@ struct Context {
   /** What to record of something that the caller does, now. */
   [[nodiscard]] AuditEntry entry(const Caller& caller, AuditKind kind, nlohmann::json detail) const;
 
-  /** Ends every proposal, and writes down who stopped the robot; the STOP itself is on its way already.
+  /** Ends every proposal, and writes down who stopped the robot; the STOP itself is on its way already. Those
+   * of nobody who is logged in are counted when they come faster than `StopRecords` has them recorded.
    *
    * @param unrecorded how many STOPs just before it are not written down one by one */
   void record_stop(const Caller& caller, std::uint32_t unrecorded) const;
+
+  /** Has the record written that is due, if one is. */
+  void note(std::optional<AuditEntry> entry) const;
 
   /**
    * Records what the caller is about to do, and says then whether the caller still may: 503 STORE, 401 LOGIN

@@ -161,9 +161,9 @@ Navigation::Stopping Navigation::stop(PeerId peer) {
   auto answered = context_.control.stop();
   const auto sender = hub_.find(peer);
   const std::string address = sender ? sender->address : "";
-  spdlog::warn("STOP by OpenIGTLink peer {}", address);
-  context_.book.abort_all("STOP.");
-  context_.store.note(context_.entry({}, AuditKind::stop, {{"peer", "openigtlink " + address}}));
+  Caller stranger;
+  stranger.peer = "openigtlink " + address;
+  context_.record_stop(stranger, 0);
   return answered;
 }
 

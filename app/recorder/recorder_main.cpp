@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "build_info/build_info.hpp"
+#include "recorder/audit_heads.hpp"
 #include "recorder/recorder.hpp"
 
 namespace interlock::recorder {
@@ -36,6 +37,7 @@ constexpr std::chrono::seconds longest_end{20};
 struct Options {
   fs::path socket;
   fs::path folder;
+  fs::path audit_heads; /**< socket; empty: none */
   bool continuous = false;
   std::uint64_t keep_mib = 4096;
 };
@@ -161,6 +163,15 @@ int record(const Options& options) {
     std::cerr << "interlock-recorder: " << folder.error() << std::endl;
     return 3;
   }
+  std::optional<AuditHeads> heads;
+  if (!options.audit_heads.empty()) {
+    Recorded<AuditHeads> opened = AuditHeads::open(options.audit_heads, folder->path() / "audit-heads");
+    if (!opened) {
+      std::cerr << "interlock-recorder: " << opened.error() << std::endl;
+      return 3;
+    }
+    heads.emplace(std::move(*opened));
+  }
   RecorderTerms terms;
   terms.continuous = options.continuous;
   terms.build = std::string(version()) + ' ' + std::string(commit());
@@ -180,6 +191,12 @@ int record(const Options& options) {
       service.hurry();
     }
     service.step(!until);
+    if (heads) {
+      heads->step();
+    }
+  }
+  if (heads) {
+    heads->finish();
   }
   service.end();
   return 0;
@@ -191,6 +208,9 @@ int main(int argc, char** argv) {
   cli.add_option("--black-box", options.socket, "Socket on which the kernel hands out its black box")
       ->required();
   cli.add_option("--folder", options.folder, "Where the recordings go")->required();
+  cli.add_option(
+      "--audit-heads", options.audit_heads,
+      "Socket on which the app reports the head of its audit, which is kept in FOLDER/audit-heads");
   cli.add_flag("--continuous", options.continuous, "Record everything, not only the time around events");
   cli.add_option("--keep-mib", options.keep_mib,
                  "Finished recordings that are kept, MiB; the oldest go first")

@@ -1,10 +1,15 @@
 #include "store/audit.hpp"
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <pwd.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <fstream>
 
 #include "store/audit_table.hpp"
+#include "store/user_row.hpp"
 
 namespace interlock {
 namespace {
@@ -16,6 +21,38 @@ void bind_optional(SQLite::Statement& statement, int index, const std::optional<
   } else {
     statement.bind(index);
   }
+}
+
+/** "ann (1000)"; the number alone where it has no name. */
+std::string os_user(uid_t uid) {
+  passwd entry{};
+  passwd* found = nullptr;
+  std::array<char, 16384> buffer{};
+  const std::string number = std::to_string(uid);
+  const bool named = getpwuid_r(uid, &entry, buffer.data(), buffer.size(), &found) == 0 && found != nullptr;
+  return named ? std::string(entry.pw_name) + " (" + number + ')' : number;
+}
+
+/** The user of this process, and the one who logged in at the system where that is another: behind sudo. */
+void name_os_user(nlohmann::json& detail) {
+  detail["os_user"] = os_user(getuid());
+  std::uint32_t login = 0;
+  constexpr std::uint32_t nobody_logged_in = 0xffffffff;
+  if (std::ifstream("/proc/self/loginuid") >> login && login != nobody_logged_in && login != getuid()) {
+    detail["login_user"] = os_user(login);
+  }
+}
+
+/** What only the store or the system knows of a record. */
+nlohmann::json completed(SQLite::Database& database, const AuditEntry& entry) {
+  nlohmann::json detail = entry.detail;
+  if (entry.kind == AuditKind::user && detail.contains("name")) {
+    detail["digest"] = user_digests(database)[detail["name"].get<std::string>()];
+  }
+  if (entry.actor == audit_actor::command_line) {
+    name_os_user(detail);
+  }
+  return detail;
 }
 
 }  // namespace
@@ -64,10 +101,11 @@ std::string_view audit_kind_name(AuditKind kind) {
 
 AuditRecord Audit::append(const AuditEntry& entry) {
   const AuditHead last = head();
-  AuditRecord record{last.number + 1, iso_8601(entry.time), entry.tick, entry.actor, entry.session,
-                     std::string(audit_kind_name(entry.kind)),
-                     // What a stranger sent need not be UTF-8, and is recorded all the same.
-                     entry.detail.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), ""};
+  AuditRecord record{
+      last.number + 1, iso_8601(entry.time), entry.tick, entry.actor, entry.session,
+      std::string(audit_kind_name(entry.kind)),
+      // What a stranger sent need not be UTF-8, and is recorded all the same.
+      completed(database_, entry).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), ""};
   record.hash = audit_hash(record, last.hash);
   SQLite::Statement insert(
       database_, std::string("INSERT INTO audit (") + audit_columns + ") VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
@@ -103,12 +141,13 @@ AuditHead Audit::head() const {
                               : AuditHead{};
 }
 
-std::vector<AuditRecord> Audit::older_than(UtcTime time) const {
+std::vector<AuditRecord> Audit::before_last_days(int days) const {
   SQLite::Statement select(
       database_, std::string("SELECT ") + audit_columns +
                      " FROM audit WHERE number < (SELECT coalesce(min(number), 1 + (SELECT max(number) "
-                     "FROM audit)) FROM audit WHERE time >= ?) ORDER BY number");
-  select.bind(1, iso_8601(time));
+                     "FROM audit)) FROM audit WHERE substr(time, 1, 10) IN (SELECT substr(time, 1, 10) FROM "
+                     "audit GROUP BY 1 ORDER BY max(number) DESC LIMIT ?)) ORDER BY number");
+  select.bind(1, days);
   std::vector<AuditRecord> records;
   while (select.executeStep()) {
     records.push_back(audit_record(select));
@@ -122,6 +161,7 @@ AuditRecord Audit::retire(const AuditHead& last, AuditEntry entry) {
   entry.kind = AuditKind::retention;
   entry.detail["removed_to"] = last.number;
   entry.detail["hash"] = last.hash;
+  entry.detail["users"] = user_digests(database_);
   AuditRecord record = append(entry);
   SQLite::Statement move(
       database_,

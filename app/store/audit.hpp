@@ -65,7 +65,8 @@ class Audit {
  public:
   explicit Audit(Transaction& transaction) : database_(transaction.database()) {}
 
-  /** Appends a record to the chain. It counts once the transaction is committed. */
+  /** Appends a record to the chain. It counts once the transaction is committed. One of a user gets the
+   * user's digest, which `verify` compares; one of the command line the system's user. */
   AuditRecord append(const AuditEntry& entry);
 
   /** The newest `count` records, of those before number `before` where it is given; oldest first. */
@@ -75,8 +76,9 @@ class Audit {
   /** The last record's number and hash. */
   [[nodiscard]] AuditHead head() const;
 
-  /** The records that are kept before any of that time or later; oldest first. */
-  [[nodiscard]] std::vector<AuditRecord> older_than(UtcTime time) const;
+  /** The records before all those of the last `days` days on which anything was recorded; oldest first. Days
+   * without a record do not count: a clock that jumped forwards makes nothing old. */
+  [[nodiscard]] std::vector<AuditRecord> before_last_days(int days) const;
 
   /** Behind which the first kept record stands: zeros until records were retired. */
   [[nodiscard]] AuditHead anchor() const;

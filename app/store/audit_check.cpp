@@ -2,29 +2,51 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
+#include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "store/audit_table.hpp"
+#include "store/user_row.hpp"
 
 namespace interlock {
 namespace {
 
-/** Whether this record says that those up to the anchor were removed. */
-bool accounts_for(const AuditRecord& record, const AuditHead& anchor) {
-  const auto detail = nlohmann::json::parse(record.detail, nullptr, false);
-  return record.kind == "retention" && detail.is_object() &&
-         detail.value("removed_to", nlohmann::json()) == anchor.number &&
-         detail.value("hash", nlohmann::json()) == anchor.hash;
+using nlohmann::json;
+
+/** What stands there; null for nothing, also in a record that was forged. */
+json at(const json& detail, const char* key) {
+  return detail.is_object() ? detail.value(key, json()) : json();
+}
+
+std::string text_at(const json& detail, const char* key) {
+  const json text = at(detail, key);
+  return text.is_string() ? text.get<std::string>() : "";
+}
+
+std::optional<AuditHead> head_in(const json& head) {
+  const json number = at(head, "number");
+  return number.is_number_integer()
+             ? std::optional(AuditHead{number.get<std::int64_t>(), text_at(head, "hash")})
+             : std::nullopt;
 }
 
 }  // namespace
+
+AuditCheck::AuditCheck(std::optional<std::string> noted, NotedHeads heads)
+    : noted_(std::move(noted)), heads_(std::move(heads)) {}
 
 void AuditCheck::begin(const AuditHead& anchor) {
   anchor_ = anchor;
   chain_ = AuditChain(anchor);
   accounted_ = anchor == AuditHead{};
   noted_found_ = !noted_ || *noted_ == anchor.hash;
+  hashes_.clear();
+  for (const NotedHead& noted : heads_) {
+    hashes_[noted.head.number] = noted.head.number == anchor.number ? anchor.hash : "";
+  }
+  replacements_.clear();
+  users_.clear();
 }
 
 bool AuditCheck::go_on(SQLite::Database& database, std::size_t count) {
@@ -45,10 +67,117 @@ bool AuditCheck::go_on(SQLite::Database& database, std::size_t count) {
       broken_ = next.error();
       return false;
     }
-    accounted_ = accounted_ || accounts_for(record, *anchor_);
-    noted_found_ = noted_found_ || *noted_ == chain_.head().hash;
+    take_in(record);
   }
-  return followed == count;
+  if (followed == count) {
+    return true;
+  }
+  broken_ = compare_heads();
+  if (!broken_) {
+    broken_ = compare_users(database);
+  }
+  return false;
+}
+
+/** What a record says of other records, of the store or of a user. */
+void AuditCheck::take_in(const AuditRecord& record) {
+  noted_found_ = noted_found_ || *noted_ == record.hash;
+  if (const auto noted = hashes_.find(record.number); noted != hashes_.end()) {
+    noted->second = record.hash;
+  }
+  if (record.kind != "retention" && record.kind != "restore" && record.kind != "user") {
+    return;
+  }
+  const json detail = json::parse(record.detail, nullptr, false);
+  if (record.kind == "user") {
+    users_[text_at(detail, "name")] = text_at(detail, "digest");
+  } else if (record.kind == "restore") {
+    const std::string action = text_at(detail, "action");
+    if (action == "store" || action == "new store") {
+      replacements_.push_back({record.number, head_in(at(detail, "replaced_head"))});
+    }
+  } else if (at(detail, "removed_to") == anchor_->number && at(detail, "hash") == anchor_->hash) {
+    accounted_ = true;
+    // What the removed records said of the users, unless those that were kept say something newer.
+    const json users = at(detail, "users");
+    for (const auto& [name, digest] : users.items()) {
+      users_.emplace(name, digest.is_string() ? digest.get<std::string>() : "");
+    }
+  }
+}
+
+/** As the audit has them; a store whose audit has no digests yet was made by an older release. */
+std::optional<AuditBreak> AuditCheck::compare_users(SQLite::Database& database) const {
+  if (std::ranges::all_of(users_, [](const auto& user) { return user.second.empty(); })) {
+    return std::nullopt;
+  }
+  const std::map<std::string, std::string> present = user_digests(database);
+  const auto differs = [&](const std::string& name, const std::string& problem) {
+    return AuditBreak{chain_.head().number, "is the last one, but user " + name + ' ' + problem +
+                                                ": somebody changed the table of users past Interlock"};
+  };
+  for (const auto& [name, digest] : present) {
+    const auto recorded = users_.find(name);
+    if (recorded == users_.end()) {
+      return differs(name, "was added without a record");
+    }
+    if (!recorded->second.empty() && recorded->second != digest) {
+      return differs(name, "has another role, password or state than the audit says");
+    }
+  }
+  for (const auto& [name, digest] : users_) {
+    if (!digest.empty() && !present.contains(name)) {
+      return differs(name, "is missing");
+    }
+  }
+  return std::nullopt;
+}
+
+/** In the order in which they were noted, each must be in the chain. Those before one that has been retired
+ * since are left to the files of the retired records. */
+std::optional<AuditBreak> AuditCheck::compare_heads() const {
+  NotedHeads missing;
+  std::int64_t found = 0;
+  const auto first_missing = [&] {
+    const NotedHead& first = missing.front();
+    const bool cut = first.head.number > chain_.head().number;
+    return AuditBreak{
+        first.head.number,
+        (cut ? "is missing: the audit ends at record " + std::to_string(chain_.head().number) +
+                   ", but the recorder noted it"
+             : std::string("is not the one that the recorder noted")) +
+            " at " + first.time + " as " + first.head.hash +
+            (cut ? "; records were cut off, or an older copy of the store was put in place"
+                 : "; it or one before it was written anew, or another store was put in place")};
+  };
+  for (const NotedHead& noted : heads_) {
+    if (noted.head.number < anchor_->number) {
+      missing.clear();
+    } else if (hashes_.at(noted.head.number) != noted.head.hash) {
+      missing.push_back(noted);
+    } else {
+      if (!missing.empty() && !was_replaced(missing, found, noted.head.number)) {
+        return first_missing();
+      }
+      missing.clear();
+      found = noted.head.number;
+    }
+  }
+  return missing.empty() || was_replaced(missing, found, chain_.head().number)
+             ? std::nullopt
+             : std::optional(first_missing());
+}
+
+/** Whether heads that follow one another belong to a store in whose place another one was put: by a record of
+ * that, after record `after` and not after `until`, which knows of them all. */
+bool AuditCheck::was_replaced(const NotedHeads& missing, std::int64_t after, std::int64_t until) const {
+  const auto lowest =
+      std::ranges::min_element(missing, {}, [](const auto& noted) { return noted.head.number; });
+  const AuditHead& last = missing.back().head;
+  return std::ranges::any_of(replacements_, [&](const Replacement& each) {
+    const bool in_between = each.number > after && each.number <= until && each.number <= lowest->head.number;
+    return in_between && (!each.replaced || each.replaced->number > last.number || *each.replaced == last);
+  });
 }
 
 tl::expected<AuditHead, AuditBreak> AuditCheck::result() const {

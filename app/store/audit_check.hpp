@@ -1,16 +1,20 @@
 /**
  * @file
- * The check of the audit's chain in parts, so that a long audit keeps nobody else from the store.
+ * The check of the audit in parts, so that a long audit keeps nobody else from the store: the chain, the
+ * heads that were noted elsewhere, and the users, whose every change the audit records.
  */
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <tl/expected.hpp>
 #include <utility>
+#include <vector>
 
 #include "store/audit_chain.hpp"
+#include "store/noted_heads.hpp"
 #include "store/sqlite_forward.hpp"
 
 namespace interlock {
@@ -21,8 +25,12 @@ namespace interlock {
  */
 class AuditCheck {
  public:
-  /** @param noted hash that the chain must contain, 64 hex digits; see `Audit::verify` */
-  explicit AuditCheck(std::optional<std::string> noted = std::nullopt) : noted_(std::move(noted)) {}
+  /**
+   * @param noted hash that the chain must contain, 64 hex digits; see `Audit::verify`
+   * @param heads that the recorder noted: each must be in the chain, unless a record says that a restored or
+   * new store took the place of the one that it belongs to
+   */
+  explicit AuditCheck(std::optional<std::string> noted = std::nullopt, NotedHeads heads = {});
 
   /**
    * Follows at most `count` further records.
@@ -36,10 +44,25 @@ class AuditCheck {
   [[nodiscard]] tl::expected<AuditHead, AuditBreak> result() const;
 
  private:
+  /** A record that says that another store took the place of the one that was there. */
+  struct Replacement {
+    std::int64_t number = 0;
+    std::optional<AuditHead> replaced; /**< where the other one ended, if that could be read */
+  };
+
   void begin(const AuditHead& anchor);
+  void take_in(const AuditRecord& record);
+  [[nodiscard]] std::optional<AuditBreak> compare_users(SQLite::Database& database) const;
+  [[nodiscard]] std::optional<AuditBreak> compare_heads() const;
+  [[nodiscard]] bool was_replaced(const NotedHeads& missing, std::int64_t after, std::int64_t until) const;
 
   std::optional<std::string> noted_;
-  std::optional<AuditHead> anchor_; /**< nothing before the first part */
+  NotedHeads heads_;
+  std::map<std::int64_t, std::string>
+      hashes_; /**< of the records whose numbers were noted; empty: not seen */
+  std::vector<Replacement> replacements_;
+  std::map<std::string, std::string> users_; /**< digests by name; empty: of a release that had none */
+  std::optional<AuditHead> anchor_;          /**< nothing before the first part */
   AuditChain chain_;
   std::optional<AuditBreak> broken_;
   bool accounted_ = false; /**< a record says that those up to the anchor were retired */

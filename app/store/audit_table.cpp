@@ -2,6 +2,8 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
+#include <utility>
+
 #include "store/audit_check.hpp"
 
 namespace interlock {
@@ -30,9 +32,9 @@ AuditRecord audit_record(SQLite::Statement& row) {
 }
 
 tl::expected<AuditHead, AuditBreak> verify_audit(SQLite::Database& database,
-                                                 const std::optional<std::string>& noted) {
+                                                 const std::optional<std::string>& noted, NotedHeads heads) {
   constexpr std::size_t part = 1000;
-  AuditCheck check(noted);
+  AuditCheck check(noted, std::move(heads));
   while (check.go_on(database, part)) {
   }
   return check.result();

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "store/audit_chain.hpp"
+#include "store/noted_heads.hpp"
 #include "store/sqlite_forward.hpp"
 
 namespace interlock {
@@ -23,6 +24,7 @@ AuditHead audit_anchor(SQLite::Database& database);
 
 /** See `Audit::verify`. Throws SQLite::Exception. */
 tl::expected<AuditHead, AuditBreak> verify_audit(SQLite::Database& database,
-                                                 const std::optional<std::string>& noted);
+                                                 const std::optional<std::string>& noted,
+                                                 NotedHeads heads = {});
 
 }  // namespace interlock

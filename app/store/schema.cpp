@@ -4,6 +4,7 @@
 
 #include <array>
 #include <string>
+#include <utility>
 
 #include "store/audit_table.hpp"
 #include "store/store_files.hpp"
@@ -92,8 +93,7 @@ bool is_empty(SQLite::Database& database) {
 }
 
 StoreError damaged(SQLite::Database& database, const std::string& problem) {
-  return {StoreError::Kind::damaged, database.getFilename() + ": " + problem, "", "",
-          "put a backup in its place with `interlock store restore`"};
+  return {StoreError::Kind::damaged, database.getFilename() + ": " + problem, "", "", ways_out_of_damage};
 }
 
 }  // namespace
@@ -138,17 +138,19 @@ void migrate(SQLite::Database& database, const fs::path& file, std::span<const c
   transaction.commit();
 }
 
-Stored<void> check_contents(SQLite::Database& database) {
-  const std::string pages = database.execAndGet("PRAGMA integrity_check(1)").getString();
-  if (pages != "ok") {
-    return tl::unexpected(damaged(database, pages));
+Stored<void> check_contents(SQLite::Database& database, PageCheck pages, NotedHeads heads) {
+  const std::string found =
+      database.execAndGet(pages == PageCheck::quick ? "PRAGMA quick_check(1)" : "PRAGMA integrity_check(1)")
+          .getString();
+  if (found != "ok") {
+    return tl::unexpected(damaged(database, found));
   }
   SQLite::Statement references(database, "PRAGMA foreign_key_check");
   if (references.executeStep()) {
     return tl::unexpected(damaged(
         database, "table " + references.getColumn(0).getString() + " refers to something that is not there"));
   }
-  if (const auto chain = verify_audit(database, std::nullopt); !chain) {
+  if (const auto chain = verify_audit(database, std::nullopt, std::move(heads)); !chain) {
     return tl::unexpected(damaged(
         database, "audit record " + std::to_string(chain.error().number) + " " + chain.error().problem));
   }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <span>
 
+#include "store/noted_heads.hpp"
 #include "store/sqlite_forward.hpp"
 #include "store/store_error.hpp"
 
@@ -35,7 +36,14 @@ Stored<void> check_store(SQLite::Database& database);
 void migrate(SQLite::Database& database, const std::filesystem::path& file,
              std::span<const char* const> scripts);
 
-/** Refused, damaged: pages, references or the chain of the audit are not sound. Throws SQLite::Exception. */
-Stored<void> check_contents(SQLite::Database& database);
+/** How well `check_contents` looks at the pages. */
+enum class PageCheck {
+  quick, /**< not whether indexes and tables agree */
+  full
+};
+
+/** Refused, damaged: pages, references or the audit are not sound. `heads` are as in `AuditCheck`. Throws
+ * SQLite::Exception. */
+Stored<void> check_contents(SQLite::Database& database, PageCheck pages, NotedHeads heads = {});
 
 }  // namespace interlock

@@ -4,9 +4,12 @@
 #include <sqlite3.h>
 
 #include <chrono>
+#include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 
+#include "store/audit_table.hpp"
 #include "store/digest.hpp"
 #include "store/schema.hpp"
 #include "store/store_files.hpp"
@@ -33,14 +36,28 @@ void use_write_ahead_log(SQLite::Database& database) {
   }
 }
 
-Stored<std::unique_ptr<SQLite::Database>> connect(const fs::path& file) {
+/** What the write-ahead log shrinks to once all of it is in the store and nobody reads it. */
+constexpr const char* usual_log_bytes = "4194304";
+
+/** Nothing was ever recorded in it, which a robot that has run has done. */
+bool is_unused(SQLite::Database& database) {
+  return !database.tableExists("audit") ||
+         (database.execAndGet("SELECT count(*) FROM audit").getInt64() == 0 &&
+          audit_anchor(database) == AuditHead{});
+}
+
+Stored<std::unique_ptr<SQLite::Database>> connect(const fs::path& file, bool begun_anew) {
   try {
     auto database =
         std::make_unique<SQLite::Database>(file.string(), SQLite::OPEN_READWRITE, store_patience_ms);
     if (const Stored<void> checked = check_schema(*database, migrations()); !checked) {
       return tl::unexpected(checked.error());
     }
+    if (!begun_anew && has_run_before(file.parent_path()) && is_unused(*database)) {
+      return tl::unexpected(lost_store(file, "is empty"));
+    }
     use_write_ahead_log(*database);
+    database->exec(std::string("PRAGMA journal_size_limit = ") + usual_log_bytes);
     // FULL: a commit is on the disk before it is acknowledged, whatever happens to the machine.
     database->exec("PRAGMA synchronous = FULL");
     database->exec("PRAGMA foreign_keys = ON");
@@ -69,7 +86,11 @@ void Transaction::commit() {
   open_ = false;
 }
 
-Stored<Store> Store::open(const fs::path& file) {
+Stored<Store> Store::open(const fs::path& file, bool begun_anew) {
+  std::error_code ignored;
+  if (!begun_anew && !fs::exists(file, ignored) && has_run_before(file.parent_path())) {
+    return tl::unexpected(lost_store(file, "is missing"));
+  }
   if (const Stored<void> ready =
           start_sodium().and_then([&] { return make_private_folder(file.parent_path()); });
       !ready) {
@@ -83,7 +104,7 @@ Stored<Store> Store::open(const fs::path& file) {
       !made && made.error().kind != StoreError::Kind::exists) {
     return tl::unexpected(made.error());
   }
-  auto database = connect(file);
+  auto database = connect(file, begun_anew);
   if (!database) {
     return tl::unexpected(database.error());
   }
@@ -104,6 +125,37 @@ Store& Store::operator=(Store&& other) noexcept {
 }
 
 Store::~Store() = default;
+
+Stored<void> Store::check(NotedHeads heads) {
+  return read([&](Transaction& transaction) {
+    return check_contents(transaction.database(), PageCheck::quick, std::move(heads));
+  });
+}
+
+/** SQLite empties the log by itself when nobody reads it, and that is when it is to be written anew. */
+Stored<void> Store::bound_log() {
+  const fs::path log = with_suffix(database_->getFilename(), "-wal");
+  std::error_code none;
+  const auto is_long = [&] {
+    const std::uintmax_t bytes = fs::file_size(log, none);
+    return !none && bytes >= longest_log_bytes;
+  };
+  if (!is_long()) {
+    return {};
+  }
+  constexpr int short_patience_ms = 100;
+  database_->setBusyTimeout(short_patience_ms);
+  database_->tryExec("PRAGMA wal_checkpoint(TRUNCATE)");
+  database_->setBusyTimeout(store_patience_ms);
+  if (is_long()) {
+    return tl::unexpected(StoreError{
+        StoreError::Kind::unavailable,
+        log.string() + " is " + std::to_string(longest_log_bytes >> 20) +
+            " MiB long: a process that reads the store does not end, and keeps it from being emptied",
+        "", "", "end what reads the store"});
+  }
+  return {};
+}
 
 StoreError Store::caught() const {
   try {

@@ -83,7 +83,7 @@ Stored<StoreSummary> copy_checked(const fs::path& source, const fs::path& target
     }
     copy_store_into(source, target);
     SQLite::Database copy(target.string(), SQLite::OPEN_READWRITE, store_patience_ms);
-    return check_contents(copy).map([&] {
+    return check_contents(copy, PageCheck::full).map([&] {
       const auto users = copy.execAndGet("SELECT count(*) FROM users").getInt64();
       return StoreSummary{static_cast<std::size_t>(users), verify_audit(copy, std::nullopt).value()};
     });
@@ -158,13 +158,45 @@ Stored<AuditHead> prepare(const fs::path& copy, const nlohmann::json& detail, Ut
   });
 }
 
+/** Where the store that is replaced at that time goes. */
 std::string name_suffix(UtcTime now) {
   std::string time = iso_8601(now);
   std::erase_if(time, [](char c) { return c == '-' || c == ':'; });
   return ".replaced-" + time;
 }
 
+/** With nothing in it but the record of why. */
+Stored<Store> make_new(const fs::path& file, nlohmann::json detail, UtcTime now) {
+  Stored<Store> store = Store::open(file, true);
+  if (!store) {
+    return store;
+  }
+  const auto recorded = store->transact([&](Transaction& transaction) -> Stored<void> {
+    Audit(transaction)
+        .append({now, std::nullopt, audit_actor::command_line, std::nullopt, AuditKind::restore,
+                 std::move(detail)});
+    return {};
+  });
+  return recorded ? std::move(store) : tl::unexpected(recorded.error());
+}
+
 }  // namespace
+
+Stored<Store> begin_new_store(const fs::path& store, const StoreError& reason, UtcTime now) {
+  {
+    const auto lock = StoreLock::take(store, StoreLock::Kind::alone);
+    if (!lock) {
+      return tl::unexpected(lock.error());
+    }
+    if (fs::exists(store)) {
+      if (const Stored<void> kept = keep_beside(store, with_suffix(store, name_suffix(now))); !kept) {
+        return tl::unexpected(kept.error());
+      }
+      fs::remove(store);
+    }
+  }
+  return make_new(store, {{"action", "new store"}, {"reason", reason.problem}}, now);
+}
 
 Stored<StoreSummary> backup_store(const fs::path& store, const fs::path& target) {
   const Stored<void> possible = must_exist(store, "store").and_then([&] { return must_be_free(target); });

@@ -43,4 +43,12 @@ Stored<StoreSummary> backup_store(const std::filesystem::path& store, const std:
 Stored<Restored> restore_store(const std::filesystem::path& backup, const std::filesystem::path& store,
                                UtcTime now);
 
+/**
+ * Begins a new store, without users, in the place of one that is missing or damaged for `reason`, with an
+ * audit record of that. What is there is kept beside as `FILE.replaced-TIME`.
+ *
+ * Refused, unavailable: somebody has the store open.
+ */
+Stored<Store> begin_new_store(const std::filesystem::path& store, const StoreError& reason, UtcTime now);
+
 }  // namespace interlock

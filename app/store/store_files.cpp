@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <string>
 
@@ -40,6 +41,22 @@ Stored<std::unique_ptr<StoreLock>> StoreLock::take(const fs::path& store, Kind k
 }
 
 StoreLock::~StoreLock() { ::close(fd_); }
+
+bool has_run_before(const fs::path& folder) {
+  std::error_code error;
+  const fs::directory_iterator logs(folder / "log", error);
+  return !error && std::any_of(begin(logs), end(logs), [](const fs::directory_entry& log) {
+    std::error_code ignored;
+    return log.is_regular_file(ignored) && log.file_size(ignored) > 0;
+  });
+}
+
+StoreError lost_store(const fs::path& file, const std::string& problem) {
+  return {StoreError::Kind::damaged,
+          file.string() + ' ' + problem + ", but " + (file.parent_path() / "log").string() +
+              " shows that this robot has run before",
+          "", "", ways_out_of_damage};
+}
 
 Stored<void> make_private_folder(const fs::path& folder) {
   std::error_code ignored;
@@ -159,7 +176,7 @@ StoreError database_error(const fs::path& file, const SQLite::Exception& error) 
     case SQLITE_CORRUPT:
     case SQLITE_NOTADB:
       stored.kind = StoreError::Kind::damaged;
-      stored.next_step = "put a backup in its place with `interlock store restore`";
+      stored.next_step = ways_out_of_damage;
       break;
     default:
       break;

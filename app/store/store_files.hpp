@@ -42,6 +42,18 @@ class StoreLock {
   int fd_;
 };
 
+/** The two ways out of a store that is lost or damaged: what to do next, for people. */
+constexpr const char* ways_out_of_damage =
+    "put a backup in its place with `interlock store restore FILE`, or begin anew, without its users, "
+    "settings "
+    "and audit, with --new-store";
+
+/** Whether the folder has logs with something in them: the robot has run there before. */
+bool has_run_before(const std::filesystem::path& folder);
+
+/** A store that is gone although the robot has run before. */
+StoreError lost_store(const std::filesystem::path& file, const std::string& problem);
+
 /** Makes the folder and those above it that are missing, each with mode 0700. */
 Stored<void> make_private_folder(const std::filesystem::path& folder);
 

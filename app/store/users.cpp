@@ -7,6 +7,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "store/digest.hpp"
 #include "store/stored_time.hpp"
 #include "store/user_row.hpp"
 
@@ -96,6 +97,19 @@ User user_in(SQLite::Statement& row, int first) {
   return {row.getColumn(first).getString(), *role, row.getColumn(first + 2).getInt() != 0,
           stored_time(row.getColumn(first + 3)),
           last_login.isNull() ? std::nullopt : std::optional(stored_time(last_login))};
+}
+
+std::map<std::string, std::string> user_digests(SQLite::Database& database) {
+  SQLite::Statement rows(database, "SELECT name, role, enabled, password FROM users");
+  std::map<std::string, std::string> digests;
+  while (rows.executeStep()) {
+    std::string row;
+    for (int column = 0; column < rows.getColumnCount(); ++column) {
+      row += rows.getColumn(column).getString() + '\n';
+    }
+    digests[rows.getColumn(0).getString()] = sha256_hex(row);
+  }
+  return digests;
 }
 
 Stored<User> Users::add(const std::string& name, Role role, const PasswordHash& password, UtcTime now) {

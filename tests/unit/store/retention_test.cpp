@@ -40,16 +40,21 @@ class RetentionTest : public StoreTest {
     return seen(store_, [](Transaction& transaction) { return Audit(transaction).list(100); });
   }
 
-  /** Retires the records of the first days; returns the hash of the last of them. */
-  std::string retire(int days) {
+  /** Retires all records but those of the last days; returns the hash of the last of them. */
+  std::string retire_all_but(int days) {
     std::string hash;
     commit(store_, [&](Transaction& transaction) {
       Audit audit(transaction);
-      const std::vector<AuditRecord> old = audit.older_than(noon + std::chrono::days(days));
+      const std::vector<AuditRecord> old = audit.before_last_days(days);
       hash = old.back().hash;
       audit.retire({old.back().number, hash}, entry(20));
     });
     return hash;
+  }
+
+  std::size_t older_than_the_last(int days) {
+    return seen(store_,
+                [&](Transaction& transaction) { return Audit(transaction).before_last_days(days).size(); });
   }
 
   Verified verify_file(const std::filesystem::path& file,
@@ -62,22 +67,25 @@ class RetentionTest : public StoreTest {
   Store store_ = open();
 };
 
-TEST_F(RetentionTest, OlderRecordsAreThoseBeforeTheFirstYoungOne) {
-  const auto older = [&](int days) {
-    return seen(store_,
-                [&](Transaction& transaction) {
-                  return Audit(transaction).older_than(noon + std::chrono::days(days));
-                })
-        .size();
-  };
-  EXPECT_EQ(older(0), 0U);
-  EXPECT_EQ(older(4), 4U);
-  EXPECT_EQ(older(99), 10U);
+TEST_F(RetentionTest, TheLastDaysWithRecordsStay) {
+  EXPECT_EQ(older_than_the_last(99), 0U);
+  EXPECT_EQ(older_than_the_last(10), 0U);
+  EXPECT_EQ(older_than_the_last(6), 4U);
+  EXPECT_EQ(older_than_the_last(0), 10U);
+}
+
+TEST_F(RetentionTest, AClockThatJumpedMakesNothingOld) {
+  commit(store_, [&](Transaction& transaction) { Audit(transaction).append(entry(4000)); });
+  EXPECT_EQ(older_than_the_last(11), 0U) << "forwards: one day more";
+  EXPECT_EQ(older_than_the_last(7), 4U);
+  commit(store_, [&](Transaction& transaction) { Audit(transaction).append(entry(5)); });
+  EXPECT_EQ(older_than_the_last(11), 0U) << "and back: a day that was there";
+  EXPECT_EQ(older_than_the_last(1), 5U) << "records of that day stay, and what came in between";
 }
 
 TEST_F(RetentionTest, ChainVerifiesBehindWhatWasRetired) {
   const std::string head = verify()->hash;
-  const std::string anchor = retire(4);
+  const std::string anchor = retire_all_but(6);
   const std::vector<AuditRecord> left = list();
   EXPECT_EQ(left.front().number, 5);
   EXPECT_EQ(left.back().kind, "retention");
@@ -89,11 +97,11 @@ TEST_F(RetentionTest, ChainVerifiesBehindWhatWasRetired) {
 }
 
 TEST_F(RetentionTest, MayBeRepeatedAndMayTakeAll) {
-  retire(4);
-  retire(7);
+  retire_all_but(6);
+  retire_all_but(4);
   EXPECT_EQ(list().front().number, 8);
   EXPECT_TRUE(verify());
-  retire(99);
+  retire_all_but(0);
   EXPECT_EQ(list().size(), 1U);
   EXPECT_TRUE(verify());
   commit(store_, [](Transaction& transaction) { Audit(transaction).append(entry(30)); });
@@ -101,7 +109,7 @@ TEST_F(RetentionTest, MayBeRepeatedAndMayTakeAll) {
 }
 
 TEST_F(RetentionTest, NothingElseIsRemoved) {
-  retire(4);
+  retire_all_but(6);
   for (const char* const sql : {"DELETE FROM audit WHERE number = 5", "DELETE FROM audit_anchor",
                                 "UPDATE audit_anchor SET number = 3"}) {
     EXPECT_THROW(execute(sql), SQLite::Exception) << sql;
@@ -119,7 +127,7 @@ TEST_F(RetentionTest, RemovalThatNoRecordAccountsForIsFound) {
 }
 
 TEST_F(RetentionTest, MovedAnchorIsFound) {
-  retire(4);
+  retire_all_but(6);
   const AuditRecord sixth = list().at(1);
   ASSERT_EQ(sixth.number, 6);
   execute(std::string(unguarded) + "UPDATE audit_anchor SET number = 6, hash = '" + sixth.hash +
@@ -128,7 +136,7 @@ TEST_F(RetentionTest, MovedAnchorIsFound) {
 }
 
 TEST_F(RetentionTest, LostAnchorIsFound) {
-  retire(4);
+  retire_all_but(6);
   execute(std::string(unguarded) + "DELETE FROM audit_anchor");
   EXPECT_FALSE(verify());
 }
@@ -140,7 +148,7 @@ TEST_F(RetentionTest, ExportedRecordsVerifyByThemselves) {
   EXPECT_EQ(verify_file(file)->hash, verify()->hash);
   EXPECT_TRUE(verify_file(file, fourth));
   EXPECT_FALSE(verify_file(file, std::string(64, 'a')));
-  retire(4);
+  retire_all_but(6);
   const std::filesystem::path rest = folder_ / "rest.jsonl";
   ASSERT_TRUE(write_audit_file(rest, {4, fourth}, list()));
   EXPECT_EQ(verify_file(rest)->number, 11);

@@ -65,7 +65,7 @@ function Result({ checked }: { readonly checked: Checked }) {
   }
   return (
     <>
-      <strong>✓ Sound</strong> up to record {head?.number}, checked {when}
+      <strong>✓ Unbroken</strong> up to record {head?.number}, checked {when}
       {checked.noted !== "" && ", with the hash noted earlier among them"}. Head to note:{" "}
       <code>{head?.hash}</code>
     </>

@@ -1,0 +1,55 @@
+#include "store/noted_heads.hpp"
+
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+#include "store/store_files.hpp"
+
+namespace interlock {
+
+namespace fs = std::filesystem;
+
+Stored<NotedHeads> read_noted_heads(const fs::path& file) {
+  std::ifstream stream(file);
+  if (!stream) {
+    const int reason = errno;
+    return reason == ENOENT ? Stored<NotedHeads>(NotedHeads())
+                            : tl::unexpected(file_error(file, "cannot be read", reason));
+  }
+  NotedHeads heads;
+  for (std::string line; std::getline(stream, line);) {
+    NotedHead noted;
+    std::istringstream words(line);
+    if (words >> noted.time >> noted.head.number >> noted.head.hash && noted.head.hash.size() == 64) {
+      heads.push_back(std::move(noted));
+    }
+  }
+  return heads;
+}
+
+bool report_head(const fs::path& socket, const AuditHead& head) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (socket.native().size() >= sizeof address.sun_path) {
+    return false;
+  }
+  std::strcpy(address.sun_path, socket.c_str());
+  const int sender = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (sender < 0) {
+    return false;
+  }
+  const std::string message = std::to_string(head.number) + ' ' + head.hash;
+  const ssize_t sent = ::sendto(sender, message.data(), message.size(), MSG_NOSIGNAL,
+                                reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  ::close(sender);
+  return sent == static_cast<ssize_t>(message.size());
+}
+
+}  // namespace interlock

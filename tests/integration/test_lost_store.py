@@ -1,0 +1,168 @@
+"""A store that is lost, damaged or changed past Interlock: no start takes it for a first one, and the heads
+that the recorder noted show what is missing."""
+
+import contextlib
+import re
+import shutil
+import sqlite3
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from bare_kernel import BIN
+from stack import Output, Stack, start_interlock
+from test_run import DONE, PROCESS_ENDED, REFUSED
+from test_store_cli import Store
+
+UNGUARDED = (
+    "DROP TRIGGER audit_is_not_changed; DROP TRIGGER audit_is_not_removed; DROP TRIGGER audit_has_no_gaps;"
+)
+
+
+class Installation:
+    """One robot that is started again and again."""
+
+    def __init__(self, directory: Path) -> None:
+        self.directory = directory
+        self.store = Store(directory / "state")
+        self.heads = directory / "state/recordings/audit-heads"
+
+    @contextlib.contextmanager
+    def run(self, *arguments: str) -> Iterator[Stack]:
+        robot = Stack(self.directory, "--robot", "neuro", "--clock", "sim", *arguments)
+        try:
+            yield robot
+        finally:
+            robot.close()
+
+    def refused_start(self) -> str:
+        """What a start says that is refused."""
+        run = start_interlock(
+            self.directory / "run", "run", "--robot", "neuro", "--port", "0", "--state", self.store.state
+        )
+        output = Output(run)
+        output.wait_for_end()
+        assert run.wait() == PROCESS_ENDED
+        assert "store restore" in output.text
+        assert "--new-store" in output.text
+        assert "first login" not in output.text
+        return output.text
+
+    def delete(self) -> None:
+        for file in self.store.state.glob("interlock.db*"):
+            file.unlink()
+
+    def verify(self) -> subprocess.CompletedProcess:
+        return self.store("audit", "verify")
+
+
+@pytest.fixture
+def installation(short_tmp_path: Path) -> Installation:
+    """It has run once, with a user besides the administrator."""
+    made = Installation(short_tmp_path)
+    with made.run() as robot:
+        robot.client_of_new("bob", "engineer")
+    return made
+
+
+def test_a_missing_or_emptied_store_stops_the_start_until_somebody_chooses(
+    installation: Installation,
+) -> None:
+    backup = installation.directory / "backup.db"
+    assert installation.store("store", "backup", backup).returncode == DONE
+    installation.delete()
+    assert "interlock.db is missing" in installation.refused_start()
+    assert not installation.store.file.exists()
+    added = installation.store.add("eve")
+    assert added.returncode == REFUSED
+    assert "--new-store" in added.stderr
+    installation.store.file.touch(0o600)
+    assert "interlock.db is empty" in installation.refused_start()
+    assert installation.store("store", "restore", backup).returncode == DONE
+    with installation.run() as robot:
+        assert {user["name"] for user in robot.api.get("/api/users").json()} == {"admin", "bob"}
+    assert installation.verify().returncode == DONE, (
+        "the restore accounts for the heads that were noted before"
+    )
+
+
+def test_a_damaged_store_stops_the_start_and_a_new_one_keeps_it(installation: Installation) -> None:
+    contents = b"x" * 16384
+    installation.delete()
+    installation.store.file.write_bytes(contents)
+    assert "file is not a database" in installation.refused_start()
+    assert installation.store.file.read_bytes() == contents
+    (installation.directory / "password").unlink()
+    with installation.run("--new-store") as robot:
+        assert [user["name"] for user in robot.api.get("/api/users").json()] == ["admin"]
+        robot.client_of_new("eve", "viewer")
+    (kept,) = installation.store.state.glob("interlock.db.replaced-*")
+    assert kept.read_bytes() == contents
+    first = installation.store.audit()[0]
+    assert (first["kind"], first["actor"], first["detail"]["action"]) == (
+        "restore",
+        "command line",
+        "new store",
+    )
+    with installation.run("--new-store") as robot:
+        users = {user["name"] for user in robot.api.get("/api/users").json()}
+        assert users == {"admin", "eve"}, "a sound store is not replaced"
+
+
+def test_the_recorder_notes_the_head_and_verify_says_what_that_shows(installation: Installation) -> None:
+    verified = installation.verify()
+    assert verified.returncode == DONE, verified.stderr
+    number, head = installation.heads.read_text().split()[-2:]
+    assert installation.store.head() == head
+    assert f"up to record {number} that the recorder noted in {installation.heads}" in verified.stdout
+    assert "which the store's owner can change, too" in verified.stdout
+    installation.heads.unlink()
+    assert "records cut off or written anew do not show" in installation.verify().stdout
+
+
+def test_records_cut_off_and_an_older_copy_are_named_and_stop_the_start(installation: Installation) -> None:
+    older = installation.directory / "older.db"
+    shutil.copy(installation.store.file, older)
+    with installation.run() as robot:
+        robot.client_of_new("eve", "viewer")
+    number = int(installation.heads.read_text().split()[-2])
+    installation.store.execute(UNGUARDED + f"DELETE FROM audit WHERE number >= {number - 1}")
+    cut = installation.verify()
+    assert cut.returncode == REFUSED
+    assert re.search(rf"record {number} is missing: .* the recorder noted it at", cut.stderr), cut.stderr
+    installation.delete()
+    shutil.copy(older, installation.store.file)
+    assert "an older copy of the store was put in place" in installation.verify().stderr
+    assert "an older copy of the store was put in place" in installation.refused_start()
+
+
+def test_a_role_that_was_changed_in_SQL_is_named_and_stops_the_start(installation: Installation) -> None:
+    installation.store.execute("UPDATE users SET role = 'admin' WHERE name = 'bob'")
+    verified = installation.verify()
+    assert verified.returncode == REFUSED
+    assert "user bob has another role" in verified.stderr
+    assert "user bob has another role" in installation.refused_start()
+
+
+def test_a_flood_of_STOPs_without_login_is_a_few_records_that_count_each(short_tmp_path: Path) -> None:
+    installation = Installation(short_tmp_path)
+    stops = 500
+    with installation.run() as robot:
+        visitor = robot.visitor()
+        for _ in range(stops):
+            visitor.post("/api/stop").raise_for_status()
+    with contextlib.closing(sqlite3.connect(installation.store.file)) as database:
+        found = database.execute(
+            "SELECT count(*), sum(1 + coalesce(json_extract(detail, '$.unrecorded'), 0)), "
+            "24 * 3600 * (julianday(max(time)) - julianday(min(time))) FROM audit WHERE kind = 'stop'"
+        ).fetchone()
+    records, counted, seconds = found
+    assert counted == stops
+    assert records <= 3 + seconds / 5
+
+
+def test_programs_name_the_option_for_a_new_store() -> None:
+    for program in (("interlock", "run"), ("interlock-app",)):
+        told = subprocess.run([BIN / program[0], *program[1:], "--help"], capture_output=True, text=True)
+        assert "--new-store" in told.stdout

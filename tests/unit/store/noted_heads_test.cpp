@@ -1,0 +1,190 @@
+#include "store/noted_heads.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "store/audit_check.hpp"
+#include "store/store_backup.hpp"
+#include "store_fixture.hpp"
+
+namespace interlock {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using Verified = tl::expected<AuditHead, AuditBreak>;
+
+constexpr const char* without_triggers =
+    "DROP TRIGGER audit_is_not_changed; DROP TRIGGER audit_is_not_removed; DROP TRIGGER audit_has_no_gaps;";
+
+/** A store with an administrator and an engineer, and what the recorder noted of it. */
+class NotedHeadsTest : public StoreTest {
+ protected:
+  void SetUp() override {
+    Store store = open();
+    add(store, "ann", Role::admin);
+    add(store, "bob", Role::engineer);
+  }
+
+  static void add(Store& store, const std::string& name, Role role) {
+    commit(store, [&](Transaction& transaction) {
+      static_cast<void>(Users(transaction).add(name, role, some_hash, noon).value());
+      Audit(transaction)
+          .append({noon, std::nullopt, "ann", 1, AuditKind::user, {{"action", "add"}, {"name", name}}});
+    });
+  }
+
+  /** Records happen, and the recorder notes the last of them. */
+  void work(int records) {
+    Store store = open();
+    commit(store, [&](Transaction& transaction) {
+      for (int i = 0; i < records; ++i) {
+        Audit(transaction).append({noon, std::nullopt, "ann", 1, AuditKind::request, {{"i", i}}});
+      }
+      heads_.push_back({iso_8601(noon), Audit(transaction).head()});
+    });
+  }
+
+  [[nodiscard]] Verified verify() const {
+    Store store = open();
+    return seen(store, [&](Transaction& transaction) {
+      AuditCheck check(std::nullopt, heads_);
+      while (check.go_on(transaction.database(), 3)) {
+      }
+      return check.result();
+    });
+  }
+
+  void expect_broken(std::int64_t number, const std::string& problem) const {
+    const Verified verified = verify();
+    ASSERT_FALSE(verified);
+    EXPECT_EQ(verified.error().number, number) << verified.error().problem;
+    EXPECT_THAT(verified.error().problem, HasSubstr(problem));
+  }
+
+  NotedHeads heads_;
+  fs::path backup_ = folder_ / "backup.db";
+};
+
+TEST_F(NotedHeadsTest, AnAuditThatHasThemAllIsSound) {
+  work(4);
+  work(4);
+  const Verified verified = verify();
+  ASSERT_TRUE(verified) << verified.error().problem;
+  EXPECT_EQ(*verified, heads_.back().head);
+}
+
+TEST_F(NotedHeadsTest, RecordsCutOffAreFound) {
+  work(4);
+  work(4);
+  execute(std::string(without_triggers) + "DELETE FROM audit WHERE number > 7");
+  expect_broken(10, "is missing: the audit ends at record 7, but the recorder noted it at " + iso_8601(noon));
+}
+
+TEST_F(NotedHeadsTest, AChainWrittenAnewIsFound) {
+  work(4);
+  execute(std::string(without_triggers) + "DELETE FROM audit WHERE number > 4");
+  const NotedHeads noted = heads_;
+  work(6);
+  heads_ = noted;
+  expect_broken(6, "is not the one that the recorder noted");
+}
+
+TEST_F(NotedHeadsTest, AnOlderCopyOfTheStoreIsFound) {
+  work(4);
+  ASSERT_TRUE(backup_store(file_, backup_));
+  work(4);
+  fs::copy_file(backup_, file_, fs::copy_options::overwrite_existing);
+  expect_broken(10, "an older copy of the store was put in place");
+  work(1);
+  expect_broken(10, "is missing");
+}
+
+TEST_F(NotedHeadsTest, ARestoreAccountsForWhatItReplaced) {
+  work(4);
+  ASSERT_TRUE(backup_store(file_, backup_));
+  work(4);
+  for (int again = 0; again < 2; ++again) {
+    ASSERT_TRUE(restore_store(backup_, file_, noon + std::chrono::seconds(again)));
+    EXPECT_TRUE(verify()) << verify().error().problem;
+    work(1);
+    EXPECT_TRUE(verify()) << verify().error().problem;
+    work(20);
+    EXPECT_TRUE(verify()) << verify().error().problem;
+  }
+}
+
+TEST_F(NotedHeadsTest, ARestoreAccountsForNothingThatItDidNotReplace) {
+  work(4);
+  ASSERT_TRUE(backup_store(file_, backup_));
+  work(4);
+  work(4);
+  execute(std::string(without_triggers) + "DELETE FROM audit WHERE number > 10");
+  ASSERT_TRUE(restore_store(backup_, file_, noon));
+  expect_broken(10, "is missing");
+}
+
+TEST_F(NotedHeadsTest, ANewStoreAccountsForTheOneThatWasLost) {
+  work(4);
+  fs::remove(file_);
+  heads_.push_back(heads_.back());
+  ASSERT_TRUE(begin_new_store(file_, StoreError{StoreError::Kind::damaged, "is missing", "", "", ""}, noon));
+  EXPECT_TRUE(verify()) << verify().error().problem;
+  work(9);
+  EXPECT_TRUE(verify()) << verify().error().problem;
+}
+
+TEST_F(NotedHeadsTest, RecordsThatWereRetiredAreLeftToTheirFile) {
+  work(4);
+  work(4);
+  Store store = open();
+  commit(store, [](Transaction& transaction) {
+    Audit audit(transaction);
+    const AuditRecord eighth = audit.list(100).at(7);
+    audit.retire({eighth.number, eighth.hash}, {.time = noon, .tick = {}, .actor = "ann", .session = {}});
+  });
+  EXPECT_TRUE(verify()) << verify().error().problem;
+  execute("UPDATE users SET role = 'admin' WHERE name = 'bob'");
+  expect_broken(11, "user bob has another role");
+}
+
+TEST_F(NotedHeadsTest, AUserWhoWasChangedInSqlIsNamed) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"UPDATE users SET role = 'admin' WHERE name = 'bob'", "user bob has another role"},
+      {"UPDATE users SET role = 'engineer', password = 'x' WHERE name = 'bob'",
+       "user bob has another role, pass"},
+      {"UPDATE users SET password = '$argon2id$some', enabled = 0 WHERE name = 'bob'",
+       "user bob has another"},
+      {"DELETE FROM users WHERE name = 'bob'", "user bob is missing"},
+      {"INSERT INTO users VALUES ('eve', 'admin', 1, 'x', '', NULL)", "user eve was added without a record"}};
+  for (const auto& [sql, problem] : cases) {
+    execute(sql);
+    expect_broken(2, problem);
+    if (problem == std::string("user bob is missing")) {
+      execute("INSERT INTO users VALUES ('bob', 'engineer', 1, '$argon2id$some', '', NULL)");
+      EXPECT_TRUE(verify());
+    }
+  }
+}
+
+TEST_F(NotedHeadsTest, AFileIsReadWithoutTheLineThatWasCutOff) {
+  const fs::path file = folder_ / "audit-heads";
+  EXPECT_TRUE(read_noted_heads(file)->empty()) << "a missing one";
+  const std::string hash(64, 'a');
+  std::ofstream(file) << "2024-05-01T12:00:00.000Z 7 " << hash << "\n2024-05-01T12:00:09.000Z 8 aa\n"
+                      << "2024-05-01T12:00:10.000Z 9 " << hash << '\n';
+  const auto heads = read_noted_heads(file);
+  ASSERT_TRUE(heads);
+  ASSERT_EQ(heads->size(), 2U);
+  EXPECT_EQ(heads->front().time, "2024-05-01T12:00:00.000Z");
+  EXPECT_EQ(heads->back().head, (AuditHead{9, hash}));
+}
+
+TEST_F(NotedHeadsTest, NoRecorderIsNoReasonToWait) {
+  EXPECT_FALSE(report_head(folder_ / "nobody.sock", {7, std::string(64, 'a')}));
+  EXPECT_FALSE(report_head(std::string(200, 'x'), {7, std::string(64, 'a')}));
+}
+
+}  // namespace
+}  // namespace interlock
