@@ -200,6 +200,46 @@ TEST(SerialChain, parts_of_its_body_meet_and_the_probe_ends_at_the_tip) {
   EXPECT_LE((body.back().to_mm - gantry_pose(joints) * Vector3d(0, 0, 2)).norm(), 1e-9);
 }
 
+std::string three(std::mt19937_64& generator, double farthest) {
+  std::uniform_real_distribution<double> anywhere(-farthest, farthest);
+  std::string text;
+  for (int number = 0; number < 3; ++number) {
+    text += (text.empty() ? "[" : ", ") + std::to_string(anywhere(generator));
+  }
+  return text + "]";
+}
+
+TEST(SerialChain, of_any_joints_answers_with_what_forward_kinematics_confirms_or_an_error) {
+  std::mt19937_64 generator(4);
+  const std::string directions[] = {"[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"};
+  std::size_t solved = 0;
+  for (int number = 0; number < 40; ++number) {
+    std::string text = tool;
+    const auto count = 1 + generator() % 7;
+    for (std::size_t index = 0; index < count; ++index) {
+      const bool slides = generator() % 3 == 0;
+      text += joint("j" + std::to_string(index), slides ? "prismatic" : "revolute", three(generator, 100.0),
+                    directions[generator() % 3], slides ? "limits_mm = [0, 80]" : "limits_rad = [-2, 2]");
+    }
+    const KinematicsPtr chain = chain_of(text).value();
+    const Pose home = *chain->zframe_from_treatment(std::vector<double>(count, 0.5));
+    for (const Pose& pose : {home, random_pose(generator, 300.0)}) {
+      const Vector3d target = pose.translation();
+      const Vector3d ahead = pose.linear().col(2);
+      const auto found = chain->positions_for(target - 20.0 * ahead, target, 0.0);
+      solved += found ? 1 : 0;
+      if (found) {
+        const Pose reached = *chain->zframe_from_treatment(*found);
+        EXPECT_LE((reached.translation() - target).norm(), 2e-6) << text;
+        EXPECT_LE((reached.linear().col(2) - ahead).norm(), 1e-8) << text;
+      } else {
+        EXPECT_TRUE(!found.error().value || std::isfinite(*found.error().value)) << found.error().message();
+      }
+    }
+  }
+  EXPECT_GT(solved, 10U);
+}
+
 struct Broken {
   std::string from;
   std::string to;
