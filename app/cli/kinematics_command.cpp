@@ -1,9 +1,8 @@
 #include "cli/kinematics_command.hpp"
 
-#include <algorithm>
 #include <charconv>
-#include <span>
 #include <string_view>
+#include <vector>
 
 #include "cli/named_robot.hpp"
 
@@ -11,103 +10,37 @@ namespace interlock::cli {
 
 namespace {
 
-/** One number or point of the robot file that the command line may replace. */
-struct Setting {
-  std::string_view key;
-  std::span<double> numbers;
-};
-
-std::span<double> one(double& number) { return {&number, 1}; }
-
-std::vector<Setting> settings_of(NeuroRcm& geometry) {
-  return {{"side_link_mm", one(geometry.side_link_mm)},
-          {"top_width_mm", one(geometry.top_width_mm)},
-          {"home_separation_mm", one(geometry.home_separation_mm)},
-          {"driver_to_rcm_mm", one(geometry.driver_to_rcm_mm)},
-          {"home_rcm_mm", geometry.home_rcm_mm},
-          {"min_separation_mm", one(geometry.min_separation_mm)},
-          {"max_separation_mm", one(geometry.max_separation_mm)}};
-}
-
-std::vector<Setting> settings_of(ProstateTrapezoids& geometry) {
-  return {{"side_link_mm", one(geometry.side_link_mm)},
-          {"top_width_mm", one(geometry.top_width_mm)},
-          {"lower_height_mm", one(geometry.lower_height_mm)},
-          {"upper_height_mm", one(geometry.upper_height_mm)},
-          {"stage_distance_mm", one(geometry.stage_distance_mm)},
-          {"needle_tip_mm", one(geometry.needle_tip_mm)},
-          {"front_pivot_offset_mm", one(geometry.front_pivot_offset_mm)},
-          {"needle_height_mm", one(geometry.needle_height_mm)},
-          {"needle_guide_mm", one(geometry.needle_guide_mm)},
-          {"base_to_zframe_mm", geometry.base_to_zframe_mm},
-          {"max_separation_mm", one(geometry.max_separation_mm)},
-          {"max_angulation_rad", one(geometry.max_angulation_rad)}};
-}
-
-std::vector<Setting> settings_of(Robot& robot) {
-  std::vector<Setting> settings =
-      std::visit([](auto& geometry) { return settings_of(geometry); }, robot.kinematics);
-  settings.insert(settings.end(),
-                  {{"treatment_to_tip_mm", one(robot.probe.treatment_to_tip_mm)},
-                   {"robot_to_entry_mm", one(robot.probe.robot_to_entry_mm)},
-                   {"cannula_to_treatment_mm", one(robot.probe.cannula_to_treatment_mm)},
-                   {"treatment_to_robot_at_home_mm", one(robot.probe.treatment_to_robot_at_home_mm)}});
-  return settings;
-}
-
-/** Reads exactly as many numbers as there are places, with commas between them. */
-bool read_numbers(std::string_view text, std::span<double> numbers) {
-  const char* next = text.data();
-  const char* const end = next + text.size();
-  for (std::size_t index = 0; index < numbers.size(); ++index) {
-    if (index > 0 && (next == end || *next++ != ',')) {
-      return false;
-    }
-    const std::from_chars_result read = std::from_chars(next, end, numbers[index]);
-    if (read.ec != std::errc{}) {
-      return false;
-    }
-    next = read.ptr;
-  }
-  return next == end;
-}
-
-std::string keys_of(const std::vector<Setting>& settings) {
-  std::string keys;
-  for (const Setting& setting : settings) {
-    keys += (keys.empty() ? "" : ", ") + std::string(setting.key);
-  }
-  return keys;
-}
-
-Result<void> change(Robot& robot, std::string_view assignment) {
-  const std::vector<Setting> settings = settings_of(robot);
+/** KEY=VALUE, where the value is a number or numbers with commas between them. */
+Result<RobotSetting> setting_of(std::string_view assignment) {
   const std::size_t sign = assignment.find('=');
-  const auto setting = std::ranges::find(settings, assignment.substr(0, sign), &Setting::key);
-  const std::string place = "--set " + std::string(assignment) + ": ";
-  if (sign == std::string_view::npos || setting == settings.end()) {
-    return failed(ExitCode::usage, place + "expected KEY=VALUE with one of the keys of " + robot.name + ": " +
-                                       keys_of(settings));
+  RobotSetting setting{std::string(assignment.substr(0, sign)), {}};
+  std::string_view rest = sign == std::string_view::npos ? "" : assignment.substr(sign);
+  while (!rest.empty()) {
+    rest.remove_prefix(1);
+    const auto read = std::from_chars(rest.data(), rest.data() + rest.size(), setting.numbers.emplace_back());
+    rest.remove_prefix(static_cast<std::size_t>(read.ptr - rest.data()));
+    if (read.ec != std::errc{} || !(rest.empty() || rest.front() == ',')) {
+      setting.numbers.clear();
+      break;
+    }
   }
-  if (!read_numbers(assignment.substr(sign + 1), setting->numbers)) {
-    return failed(ExitCode::usage, place + (setting->numbers.size() == 1 ? "expected a number"
-                                                                         : "expected three numbers: X,Y,Z"));
+  if (setting.key.empty() || setting.numbers.empty()) {
+    return failed(ExitCode::usage,
+                  "--set " + std::string(assignment) + ": expected KEY=NUMBER, or KEY=X,Y,Z for a point");
   }
-  return {};
+  return setting;
 }
 
 Result<Robot> load(const KinematicsOptions& options, const Installation& installation) {
-  Result<Robot> robot = named_robot(options.robot, installation);
-  if (!robot) {
-    return robot;
-  }
+  std::vector<RobotSetting> settings;
   for (const std::string& assignment : options.settings) {
-    const Result<void> changed = change(*robot, assignment);
-    if (!changed) {
-      return tl::unexpected(changed.error());
+    const Result<RobotSetting> setting = setting_of(assignment);
+    if (!setting) {
+      return tl::unexpected(setting.error());
     }
+    settings.push_back(*setting);
   }
-  return robot;
+  return named_robot(options.robot, installation, settings);
 }
 
 }  // namespace
@@ -120,7 +53,7 @@ Result<void> answer_kinematics(KinematicsTask task, const KinematicsOptions& opt
   }
   const KinematicsResult<KinematicsLines> lines = KinematicsLines::create(*robot, task);
   if (!lines) {
-    return failed(ExitCode::refused, robot->name + ": [kinematics]: " + lines.error().message());
+    return failed(ExitCode::refused, robot->name + ": " + lines.error().message());
   }
   std::size_t number = 0;
   std::size_t refused = 0;

@@ -32,7 +32,7 @@ class KinematicsLines {
     bool solved = false;
   };
 
-  /** Refused when the robot's geometry cannot work. */
+  /** Refused when the robot has no kinematics, or they cannot work. */
   static KinematicsResult<KinematicsLines> create(const Robot& robot, KinematicsTask task);
 
   /** Solves a line; what is wrong with it comes back as an object with `error` and `line`. */

@@ -127,7 +127,7 @@ std::string model_text(const Robot& robot, const ilk_config_t& config) {
   std::ostringstream text;
   text << robot.name << ": " << robot.axes.size() << " axes, configuration " << config_hash(config)
        << ", valid\n"
-       << robot.title << ", kinematics " << family_name(robot.kinematics) << ", modes " << joined(robot.modes)
+       << robot.title << ", kinematics " << robot.family << ", modes " << joined(robot.modes)
        << ", a tick every " << robot.period_us << " us\n\n";
   add_cards(text, robot);
   text << '\n';
@@ -142,7 +142,7 @@ std::string model_json(const Robot& robot, const ilk_config_t& config) {
                       {"title", robot.title},
                       {"config_crc", config_hash(config)},
                       {"period_us", robot.period_us},
-                      {"kinematics", family_name(robot.kinematics)},
+                      {"kinematics", robot.family},
                       {"modes", robot.modes},
                       {"auto_approve", robot.auto_approve},
                       {"axes", ordered_json::array()},

@@ -1,13 +1,13 @@
 #include "cli/named_robot.hpp"
 
-#include "robot/robot_file.hpp"
-
 namespace interlock::cli {
 
-Result<Robot> named_robot(const std::string& robot, const Installation& installation) {
-  return installation.robot(robot).and_then([](const std::filesystem::path& file) {
-    return load_robot(file).map_error(
-        [](const RobotError& error) { return Failure{ExitCode::refused, error.message()}; });
+Result<Robot> named_robot(const std::string& robot, const Installation& installation,
+                          std::span<const RobotSetting> settings) {
+  return installation.robot(robot).and_then([&](const std::filesystem::path& file) {
+    return load_robot(file, settings).map_error([](const RobotError& error) {
+      return Failure{ExitCode::refused, error.message()};
+    });
   });
 }
 

@@ -40,6 +40,8 @@ Reason reason(Code code) {
       return {"shows that the matrix is no rigid pose", "give a rotation and a translation"};
     case Code::off_axis:
       return {"shows that the entry is not on the axis of the pose", "give an entry on its z axis"};
+    case Code::not_converged:
+      return {"is what the search came to when it was given up", "try again with another target"};
     default:
       return {"is refused", "choose a value within"};
   }
@@ -65,12 +67,19 @@ std::string_view code_name(Code code) {
       return "NOT_RIGID";
     case Code::off_axis:
       return "OFF_AXIS";
+    case Code::not_converged:
+      return "NOT_CONVERGED";
+    case Code::absent:
+      return "NO_KINEMATICS";
     default:
       return "UNKNOWN";
   }
 }
 
 std::string KinematicsError::message() const {
+  if (code == Code::absent) {
+    return "The robot has no kinematics, so it has no pose; move its axes one by one.";
+  }
   std::string text(quantity);
   if (value) {
     text += " of " + text_of(*value);

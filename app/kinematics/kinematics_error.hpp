@@ -13,18 +13,20 @@
 namespace interlock {
 
 /** The first quantity outside of its domain. Holds no memory of its own, so that making one allocates
- * nothing. */
+ * nothing; of a family that names its joints itself, it is valid for as long as the robot's kinematics. */
 struct KinematicsError {
   /** Kinds of refusal. */
   enum class Code {
-    not_finite,   /**< NaN or infinity came in */
-    out_of_range, /**< a number beyond the range in which it means something */
-    degenerate,   /**< entry and target too close to say a direction */
-    out_of_reach, /**< no position of the links gets there */
-    separation,   /**< the sliders of a trapezoid would leave their window */
-    singular,     /**< the approach leaves an angle undetermined */
-    not_rigid,    /**< a matrix that is not a rotation and a translation */
-    off_axis,     /**< the entry does not lie on the axis of the pose */
+    not_finite,    /**< NaN or infinity came in */
+    out_of_range,  /**< a number beyond the range in which it means something */
+    degenerate,    /**< entry and target too close to say a direction */
+    out_of_reach,  /**< no position of the links gets there */
+    separation,    /**< the sliders of a trapezoid would leave their window */
+    singular,      /**< the approach leaves an angle undetermined */
+    not_rigid,     /**< a matrix that is not a rotation and a translation */
+    off_axis,      /**< the entry does not lie on the axis of the pose */
+    not_converged, /**< the numerical search neither arrived nor showed that there is no way */
+    absent,        /**< the robot has no kinematics */
   };
 
   Code code = Code::not_finite;

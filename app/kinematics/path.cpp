@@ -16,4 +16,16 @@ KinematicsResult<double> path_length_mm(const Eigen::Vector3d& entry,
       .map([&] { return length_mm; });
 }
 
+KinematicsResult<void> check_on_axis(const Pose& pose, const std::optional<Eigen::Vector3d>& entry) noexcept {
+  const auto rigid = check_rigid(pose);
+  if (!rigid || !entry) {
+    return rigid;
+  }
+  return path_length_mm(*entry, pose.translation()).and_then([&](double length_mm) {
+    const Eigen::Vector3d ahead = (pose.translation() - *entry) / length_mm;
+    return check_range("entry_direction_error", (ahead - pose.linear().col(2)).norm(), 0.0, axis_tolerance,
+                       KinematicsError::Code::off_axis);
+  });
+}
+
 }  // namespace interlock

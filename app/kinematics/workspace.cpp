@@ -2,6 +2,8 @@
 
 #include <random>
 
+#include "kinematics/domain.hpp"
+
 namespace interlock {
 
 namespace {
@@ -13,27 +15,26 @@ double draw(std::mt19937_64& generator, double lowest, double highest) {
   return lowest + share * (highest - lowest);
 }
 
-template <typename Fields, typename Joints>
-KinematicsResult<void> check_joint_range(const Fields& fields, const JointRange<Joints>& range) {
-  const auto checked = check_joints(fields, range.lowest);
-  if (!checked) {
-    return checked;
-  }
-  for (const JointField<Joints>& field : fields) {
-    const auto ordered =
-        check_range(field.quantity, range.highest.*field.position, range.lowest.*field.position, field.limit);
-    if (!ordered) {
-      return ordered;
+KinematicsResult<void> check_ranges(std::span<const Joint> joints, std::span<const double> lowest,
+                                    std::span<const double> highest) {
+  for (std::size_t index = 0; index < joints.size(); ++index) {
+    const Joint& joint = joints[index];
+    const auto checked = check_range(joint.quantity, lowest[index], -joint.limit, joint.limit).and_then([&] {
+      return check_range(joint.quantity, highest[index], lowest[index], joint.limit);
+    });
+    if (!checked) {
+      return checked;
     }
   }
   return {};
 }
 
-template <typename Fields, typename Joints, typename Forward>
-KinematicsResult<Workspace<Joints>> sample(const Fields& fields, const Forward& forward,
-                                           const JointRange<Joints>& range, std::size_t count,
-                                           std::uint64_t seed) {
-  const auto sound = check_joint_range(fields, range).and_then([&] {
+}  // namespace
+
+KinematicsResult<Workspace> sample_workspace(const Kinematics& kinematics, std::span<const double> lowest,
+                                             std::span<const double> highest, std::size_t count,
+                                             std::uint64_t seed) {
+  const auto sound = check_ranges(kinematics.joints(), lowest, highest).and_then([&] {
     return check_range("sample_count", static_cast<double>(count), 0.0,
                        static_cast<double>(largest_sample_count));
   });
@@ -41,37 +42,20 @@ KinematicsResult<Workspace<Joints>> sample(const Fields& fields, const Forward& 
     return tl::unexpected(sound.error());
   }
   std::mt19937_64 generator(seed);
-  Workspace<Joints> workspace;
+  Workspace workspace;
+  std::vector<double> positions(kinematics.joints().size());
   for (std::size_t number = 0; number < count; ++number) {
-    Joints joints;
-    for (const JointField<Joints>& field : fields) {
-      joints.*field.position = draw(generator, range.lowest.*field.position, range.highest.*field.position);
+    for (std::size_t index = 0; index < positions.size(); ++index) {
+      positions[index] = draw(generator, lowest[index], highest[index]);
     }
-    const KinematicsResult<Pose> pose = forward(joints);
-    if (pose) {
-      workspace.samples.push_back({joints, pose->translation(), pose->linear().col(2)});
-      workspace.bounds.extend(workspace.samples.back().position_mm);
+    if (const auto pose = kinematics.zframe_from_treatment(positions)) {
+      workspace.zframe_mm.emplace_back(pose->translation());
+      workspace.bounds.extend(workspace.zframe_mm.back());
     } else {
       ++workspace.refused;
     }
   }
   return workspace;
-}
-
-}  // namespace
-
-KinematicsResult<Workspace<NeuroJoints>> sample_workspace(const NeuroKinematics& kinematics,
-                                                          const JointRange<NeuroJoints>& range,
-                                                          std::size_t count, std::uint64_t seed) {
-  const auto forward = [&](const NeuroJoints& joints) { return kinematics.zframe_from_treatment(joints); };
-  return sample(neuro_joint_fields, forward, range, count, seed);
-}
-
-KinematicsResult<Workspace<ProstateJoints>> sample_workspace(const ProstateKinematics& kinematics,
-                                                             const JointRange<ProstateJoints>& range,
-                                                             std::size_t count, std::uint64_t seed) {
-  const auto forward = [&](const ProstateJoints& joints) { return kinematics.base_from_tip(joints); };
-  return sample(prostate_joint_fields, forward, range, count, seed);
 }
 
 }  // namespace interlock

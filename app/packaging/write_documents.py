@@ -33,6 +33,7 @@ COMPILED_IN = (
     "libeigen3-dev",
     "libexpected-dev",
     "libopenigtlink-dev",
+    "liborocos-kdl-dev",
     "libspdlog-dev",
     "libsqlitecpp-dev",
     "libtomlplusplus-dev",

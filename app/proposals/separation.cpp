@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <cstdio>
 #include <string>
-#include <variant>
+#include <string_view>
 #include <vector>
+
+#include "kinematics/kinematics.hpp"
 
 namespace interlock {
 namespace {
@@ -90,15 +92,14 @@ struct Pair {
 template <typename StateOf>
 std::vector<Pair> pairs_of(const Robot& robot, const StateOf& state_of) {
   std::vector<Pair> pairs;
-  const auto* trapezoids = std::get_if<ProstateTrapezoids>(&robot.kinematics);
-  const auto slider = [&](const char* role, bool upwards_is_outwards) {
+  const auto slider = [&](std::string_view role, bool upwards_is_outwards) {
     const Axis& axis = *robot.with_role(role);
     return Slider(axis, upwards_is_outwards, state_of(axis.slot));
   };
-  if (trapezoids != nullptr) {
-    pairs.push_back({slider("back_left", true), slider("back_right", false), trapezoids->max_separation_mm});
-    pairs.push_back(
-        {slider("front_left", true), slider("front_right", false), trapezoids->max_separation_mm});
+  if (robot.kinematics) {
+    for (const SliderPair& pair : robot.kinematics->slider_pairs()) {
+      pairs.push_back({slider(pair.left_role, true), slider(pair.right_role, false), pair.max_separation_mm});
+    }
   }
   return pairs;
 }

@@ -227,7 +227,7 @@ Axis read_axis(TableReader table, const Robot& robot) {
   axis.motor = table.choice("motor", motors);
   axis.encoder_resolution = table.integer<std::uint32_t>("encoder_resolution");
   axis.unit = table.choice("unit", units);
-  axis.role = table.has("role") ? read_role(table, robot, axis.unit) : "";
+  axis.role = read_role(table, robot, axis.name, axis.unit);
   axis.counts_per_unit = read_counts_per_unit(table);
   axis.motor_direction = static_cast<std::uint32_t>(table.integer_between("motor_direction", 0, 1));
   axis.direction_correction = static_cast<std::uint32_t>(table.integer_between("direction_correction", 0, 1));

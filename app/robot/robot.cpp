@@ -67,14 +67,6 @@ std::optional<std::int32_t> Axis::to_counts(double position) const {
   return static_cast<std::int32_t>(counts);
 }
 
-KeyPlace Origin::place_of(std::string_view key) const {
-  if (const auto found = keys.find(key); found != keys.end()) {
-    return found->second;
-  }
-  const std::size_t dot = key.rfind('.');
-  return dot == std::string_view::npos ? KeyPlace{} : KeyPlace{place_of(key.substr(0, dot)).line};
-}
-
 std::int32_t Axis::lowest_setpoint_counts() const { return saturated(reach_of(*this).low); }
 
 std::int32_t Axis::highest_setpoint_counts() const { return saturated(reach_of(*this).high); }

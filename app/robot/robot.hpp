@@ -4,7 +4,7 @@
  * kinematics, its modes and the steps of homing.
  *
  * A `Robot` comes from `load_robot` (robot_file.hpp) and turns into the kernel's configuration by `compile`
- * (compile.hpp). It is a plain value: copy it, compare it, hand it between threads.
+ * (compile.hpp). It is a plain value: copy it, hand it between threads.
  *
  * Units live in the names, as in the kernel: `_counts` encoder counts, `_ticks` control periods, `_ms`
  * milliseconds. Drive is the kernel's speed magnitude, 0 to `max`.
@@ -12,17 +12,16 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "interlock/types.h"
+#include "kinematics/family.hpp"
 #include "robot/biopsy.hpp"
-#include "robot/kinematics.hpp"
 #include "robot/motion_rates.hpp"
+#include "robot/robot_error.hpp"
 #include "robot/sensor.hpp"
 #include "robot/unit.hpp"
 
@@ -113,7 +112,7 @@ struct Axis {
   std::uint32_t slot = 0;
   std::string name;  /**< for programs and files: "probe_rotation" */
   std::string title; /**< for people: "Probe rotation" */
-  std::string role;  /**< in the robot's kinematics, one of `roles_of`; empty when it plays none */
+  std::string role;  /**< in the robot's kinematics, one of its joints; empty when it plays none */
   ilk_card_t card = ILK_CARD_NONE; /**< NONE: not known yet, so the robot does not compile */
   bool required = false;           /**< losing its card ends MOTION of all axes */
   Motor motor = Motor::unspecified;
@@ -212,25 +211,6 @@ struct OpenIgtLink {
   bool operator==(const OpenIgtLink&) const = default;
 };
 
-/** Where a key stands, and what is given there, as people read it: "7 is given". */
-struct KeyPlace {
-  std::uint32_t line = 0;
-  std::string given = "nothing is given";
-
-  bool operator==(const KeyPlace&) const = default;
-};
-
-/** Where the robot was written down, so that later findings can name the place. */
-struct Origin {
-  std::string file;
-  std::map<std::string, KeyPlace, std::less<>> keys; /**< by dotted path: "axis.yaw.drive.max" */
-
-  /** Of a key that was left out, the line of its table. */
-  [[nodiscard]] KeyPlace place_of(std::string_view key) const;
-
-  bool operator==(const Origin&) const = default;
-};
-
 /** The robot. Axes are in the order of the file, in which people see them. */
 struct Robot {
   std::string name;
@@ -240,8 +220,9 @@ struct Robot {
   bool auto_approve = false;      /**< moves from OpenIGTLink or a file need no click */
   Pedal pedal;
   LoopLimits loop;
-  Kinematics kinematics;
-  ProbeOffsets probe; /**< until somebody sets others */
+  std::string family = "none"; /**< of its kinematics: "neuro_rcm" */
+  KinematicsPtr kinematics;    /**< null: its axes move one by one, and it has no pose */
+  ProbeOffsets probe;          /**< until somebody sets others */
   std::vector<Axis> axes;
   std::vector<Sensor> sensors;
   std::vector<HomeStep> home_steps; /**< in the order in which they run; each axis with a switch homes once */
@@ -270,8 +251,6 @@ struct Robot {
 
   /** Whether the file gives the robot this mode. */
   [[nodiscard]] bool has_mode(std::string_view mode) const;
-
-  bool operator==(const Robot&) const = default;
 };
 
 }  // namespace interlock

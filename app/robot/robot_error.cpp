@@ -14,4 +14,12 @@ std::string RobotError::message() const {
   return text + problem + "; expected " + expected;
 }
 
+KeyPlace Origin::place_of(std::string_view key) const {
+  if (const auto found = keys.find(key); found != keys.end()) {
+    return found->second;
+  }
+  const std::size_t dot = key.rfind('.');
+  return dot == std::string_view::npos ? KeyPlace{} : KeyPlace{place_of(key.substr(0, dot)).line};
+}
+
 }  // namespace interlock

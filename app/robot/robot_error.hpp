@@ -5,7 +5,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <string>
+#include <string_view>
 
 namespace interlock {
 
@@ -21,6 +24,25 @@ struct RobotError {
   [[nodiscard]] std::string message() const;
 
   bool operator==(const RobotError&) const = default;
+};
+
+/** Where a key stands, and what is given there, as people read it: "7 is given". */
+struct KeyPlace {
+  std::uint32_t line = 0;
+  std::string given = "nothing is given";
+
+  bool operator==(const KeyPlace&) const = default;
+};
+
+/** Where the robot was written down, so that later findings can name the place. */
+struct Origin {
+  std::string file;
+  std::map<std::string, KeyPlace, std::less<>> keys; /**< by dotted path: "axis.yaw.drive.max" */
+
+  /** Of a key that was left out, the line of its table. */
+  [[nodiscard]] KeyPlace place_of(std::string_view key) const;
+
+  bool operator==(const Origin&) const = default;
 };
 
 }  // namespace interlock

@@ -125,7 +125,7 @@ void refuse_unserved_modes(TableReader& table, const Robot& robot) {
   }
   if (robot.has_mode("ablation") && robot.with_role("probe_rotation") == nullptr) {
     table.refuse("modes", "no probe can be turned for the mode \"ablation\"",
-                 "a robot of the family neuro_rcm, or no such mode");
+                 "an axis with the role probe_rotation, or no such mode");
   }
   const bool needle = robot.with_role("insertion") != nullptr && robot.with_role("rotation") != nullptr;
   if (robot.has_mode("cooperative_biopsy") && (!robot.biopsy || !needle)) {
@@ -150,7 +150,26 @@ void refuse_unserved_modes(TableReader& table, const Robot& robot) {
   }
 }
 
-Robot read_robot(ReadLog& log, const toml::table& root) {
+/** A key that neither table has is refused with the table it is put in. */
+void apply(const RobotSetting& setting, toml::table& root) {
+  toml::table* const probe = root["probe"].as_table();
+  toml::table* const table =
+      probe != nullptr && probe->contains(setting.key) ? probe : root["kinematics"].as_table();
+  if (table == nullptr) {
+    return;
+  }
+  if (setting.numbers.size() == 1) {
+    table->insert_or_assign(setting.key, setting.numbers.front());
+    return;
+  }
+  toml::array point;
+  for (const double number : setting.numbers) {
+    point.push_back(number);
+  }
+  table->insert_or_assign(setting.key, std::move(point));
+}
+
+Robot read_robot(ReadLog& log, const toml::table& root, std::span<const KinematicsFamily> families) {
   TableReader table(log, root, "");
   Robot robot;
   robot.name = table.identifier("name");
@@ -160,8 +179,7 @@ Robot read_robot(ReadLog& log, const toml::table& root) {
   robot.auto_approve = table.boolean("auto_approve");
   robot.pedal = read_pedal(table.table("pedal"), robot.period_us);
   robot.loop = read_loop(table.table("loop"), robot.period_us);
-  robot.kinematics = read_kinematics(table.table("kinematics"));
-  robot.probe = read_probe(table.table("probe"));
+  read_kinematics(table, robot, families);
   read_axes(table, robot);
   refuse_unplayed_roles(table, robot);
   read_sensors(table, robot);
@@ -178,7 +196,9 @@ Robot read_robot(ReadLog& log, const toml::table& root) {
 
 }  // namespace
 
-tl::expected<Robot, RobotError> parse_robot(std::string_view text, std::string file) {
+tl::expected<Robot, RobotError> parse_robot(std::string_view text, std::string file,
+                                            std::span<const KinematicsFamily> families,
+                                            std::span<const RobotSetting> settings) {
   toml::table root;
   try {
     root = toml::parse(text, file);
@@ -187,7 +207,10 @@ tl::expected<Robot, RobotError> parse_robot(std::string_view text, std::string f
                                      std::string(error.description()), "a TOML file"});
   }
   ReadLog log{{std::move(file), {}}, std::nullopt};
-  Robot robot = read_robot(log, root);
+  for (const RobotSetting& setting : settings) {
+    apply(setting, root);
+  }
+  Robot robot = read_robot(log, root, families);
   if (log.first_error) {
     return tl::unexpected(*log.first_error);
   }
@@ -195,7 +218,8 @@ tl::expected<Robot, RobotError> parse_robot(std::string_view text, std::string f
   return robot;
 }
 
-tl::expected<Robot, RobotError> load_robot(const std::filesystem::path& file) {
+tl::expected<Robot, RobotError> load_robot(const std::filesystem::path& file,
+                                           std::span<const RobotSetting> settings) {
   // Neither a device nor a stray recording may hold up the program or fill its memory.
   std::error_code error;
   const bool sensible = std::filesystem::file_size(file, error) <= largest_file_bytes && !error;
@@ -206,7 +230,7 @@ tl::expected<Robot, RobotError> load_robot(const std::filesystem::path& file) {
                                      "the file cannot be read, is empty or is larger than 1 MiB",
                                      "a robot file such as models/robots/neuro.toml"});
   }
-  return parse_robot(text.str(), file.string());
+  return parse_robot(text.str(), file.string(), kinematics_families(), settings);
 }
 
 }  // namespace interlock

@@ -1,5 +1,6 @@
 #include "robot/table_reader.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <regex>
@@ -9,6 +10,9 @@ namespace interlock {
 namespace {
 
 const toml::table empty_table;
+
+/** No length of a robot is more. */
+constexpr double farthest_mm = 1000.0;
 
 std::uint32_t line_of(const toml::node& node) { return node.source().begin.line; }
 
@@ -136,6 +140,19 @@ double TableReader::number_between(std::string_view key, double lowest, double h
     return lowest;
   }
   return given;
+}
+
+double TableReader::length_mm(std::string_view key) { return number_between(key, 0.001, farthest_mm); }
+
+double TableReader::offset_mm(std::string_view key) { return number_between(key, -farthest_mm, farthest_mm); }
+
+PointMm TableReader::point_mm(std::string_view key) {
+  const std::vector<double> point = numbers(key, 3);
+  if (std::ranges::any_of(point, [](double mm) { return std::abs(mm) > farthest_mm; })) {
+    refuse_given(key, "a coordinate is out of range",
+                 "coordinates from " + shortest(-farthest_mm) + " to " + shortest(farthest_mm));
+  }
+  return {point[0], point[1], point[2]};
 }
 
 std::vector<double> TableReader::numbers(std::string_view key, std::size_t count) {

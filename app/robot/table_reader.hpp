@@ -1,6 +1,7 @@
 /**
  * @file
- * Reads one TOML table key by key and remembers the first thing that is wrong. Private to this folder.
+ * Reads one TOML table key by key and remembers the first thing that is wrong. Private to this folder and
+ * to the families of kinematics.
  *
  * After an error every read answers with a harmless value, so that a caller reads a whole table as plain
  * assignments and asks once, at the end, whether it was sound.
@@ -19,8 +20,8 @@
 #include <utility>
 #include <vector>
 
-#include "robot/robot.hpp"
 #include "robot/robot_error.hpp"
+#include "robot/unit.hpp"
 
 namespace interlock {
 
@@ -59,6 +60,15 @@ class TableReader {
   /** A number from `lowest` to `highest`. */
   double number_between(std::string_view key, double lowest, double highest);
 
+  /** A length in mm, greater than 0. */
+  double length_mm(std::string_view key);
+
+  /** A length in mm that may be 0, or lie on the other side. */
+  double offset_mm(std::string_view key);
+
+  /** An array of x, y and z in mm. */
+  PointMm point_mm(std::string_view key);
+
   /** An array of exactly `count` finite numbers; zeros when it is none. */
   std::vector<double> numbers(std::string_view key, std::size_t count);
 
@@ -79,8 +89,8 @@ class TableReader {
   std::uint32_t ticks(std::string_view key, std::uint32_t period_us);
 
   /** One of the words; `words` lists them with their values. */
-  template <typename Value, std::size_t count>
-  Value choice(std::string_view key, const std::array<std::pair<std::string_view, Value>, count>& words) {
+  template <typename Words>
+  auto choice(std::string_view key, const Words& words) {
     std::string expected = "one of";
     for (const auto& [word, value] : words) {
       expected += (word == words.front().first ? " \"" : ", \"") + std::string(word) + '"';

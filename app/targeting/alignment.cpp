@@ -15,16 +15,6 @@ AxisSetpoint setpoint_of(const Axis& axis, double position) {
   return {axis.slot, counts, std::abs(within - position) > half_count};
 }
 
-std::optional<double> cannula_length(const Robot& robot, const ProbeOffsets& probe,
-                                     std::span<const double> positions) {
-  if (!std::holds_alternative<NeuroRcm>(robot.kinematics)) {
-    return std::nullopt;
-  }
-  const auto insertion = std::ranges::find(robot.axes, "insertion", &Axis::role) - robot.axes.begin();
-  return probe.treatment_to_robot_at_home_mm + positions[static_cast<std::size_t>(insertion)] -
-         probe.cannula_to_treatment_mm;
-}
-
 }  // namespace
 
 Deviation deviation(const Pose& reached, const Pose& desired) noexcept {
@@ -59,7 +49,10 @@ KinematicsResult<Alignment> align(const Robot& robot, const RobotKinematics& kin
     alignment.reachable_tip =
         alignment.reachable * Eigen::Vector3d(0.0, 0.0, kinematics.probe().treatment_to_tip_mm);
     alignment.deviation = deviation(alignment.reachable, alignment.desired);
-    alignment.cannula_length_mm = cannula_length(robot, kinematics.probe(), positions);
+    if (const auto depth_mm = kinematics.depth_mm(positions)) {
+      alignment.cannula_length_mm =
+          *depth_mm + kinematics.probe().robot_to_entry_mm - kinematics.probe().cannula_to_treatment_mm;
+    }
     return alignment;
   });
 }

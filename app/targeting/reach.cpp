@@ -21,7 +21,7 @@ std::int64_t key_of(const Cell& cell) {
 
 class Grid {
  public:
-  Grid(const ReachedPoints& points, double cell_mm) : lowest_(points.bounds.min()), cell_mm_(cell_mm) {
+  Grid(const Workspace& points, double cell_mm) : lowest_(points.bounds.min()), cell_mm_(cell_mm) {
     for (const Eigen::Vector3d& point : points.zframe_mm) {
       const Cell cell = ((point - lowest_) / cell_mm_).array().floor().cast<int>();
       if (taken_.insert(key_of(cell)).second) {
@@ -70,7 +70,7 @@ KinematicsResult<Reach> reach_of(const Robot& robot, const RobotKinematics& kine
     lowest.push_back(std::min(ends[0], ends[1]));
     highest.push_back(std::max(ends[0], ends[1]));
   }
-  return kinematics.reached_points(lowest, highest, draws, reach_seed).map([&](const ReachedPoints& points) {
+  return kinematics.workspace(lowest, highest, draws, reach_seed).map([&](const Workspace& points) {
     Reach reach{0.0, {}, 0, draws, points.refused};
     if (!points.zframe_mm.empty()) {
       const double longest = points.bounds.sizes().maxCoeff();

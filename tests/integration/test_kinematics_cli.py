@@ -24,7 +24,13 @@ NEURO_RANGES = {
     "pitch": (-0.465, 0.648),
     "yaw": (-1.536, 0.010),
 }
-THESIS_PROSTATE = ("--set", "needle_tip_mm=259.075", "front_pivot_offset_mm=0", "max_angulation_rad=0")
+THESIS_PROSTATE = (
+    "--set",
+    "needle_tip_mm=259.075",
+    "front_pivot_offset_mm=0",
+    "max_angulation_rad=0",
+    "base_to_zframe_mm=0,0,0",
+)
 
 
 def kinematics(*arguments: str | Path, lines: list[Any]) -> tuple[int, list[dict[str, Any]], str]:
@@ -85,7 +91,12 @@ def test_forward_agrees_with_another_implementation_and_inverse_leads_back() -> 
         assert_near(answer["pose"], neuro_pose(line["joints"]))
         assert answer["joints"] == line["joints"]
 
-    wanted = [{"pose": answer["pose"], "insertion": answer["joints"]["insertion"]} for answer in answers]
+    def entry(answer: dict[str, Any]) -> list[float]:
+        """Where the probe goes in: the insertion, D less B behind the treatment point."""
+        pose, depth = answer["pose"], answer["joints"]["insertion"] + 41.0 - 5.0
+        return [pose[row + 3] - depth * pose[row + 2] for row in (0, 4, 8)]
+
+    wanted = [{"pose": answer["pose"], "entry": entry(answer)} for answer in answers]
     code, found, _ = kinematics("ik", "--robot", "neuro", lines=wanted)
     assert code == DONE
     for answer, back in zip(answers, found, strict=True):
@@ -105,7 +116,11 @@ def test_neuro_reaches_entry_and_target() -> None:
 
 def test_prostate_of_the_thesis_is_a_matter_of_settings() -> None:
     code, [answer], _ = kinematics(
-        "ik", "--robot", "prostate", *THESIS_PROSTATE, lines=[{"target": [5, 150, 300]}]
+        "ik",
+        "--robot",
+        "prostate",
+        *THESIS_PROSTATE,
+        lines=[{"entry": [5, 150, 200], "target": [5, 150, 300]}],
     )
     assert code == DONE
     expected = {"front_left": 149.008578, "front_right": -139.008578, "insertion": 40.925, "rotation": 0}
@@ -223,7 +238,7 @@ def test_domain_error_names_quantity_value_and_allowed_range() -> None:
 
 @pytest.mark.parametrize(
     ("joints", "named"),
-    [({}, "joints.head"), (dict.fromkeys(NEURO_RANGES, 0) | {"elbow": 1}, "elbow"), (None, "joints")],
+    [({}, "joints.yaw"), (dict.fromkeys(NEURO_RANGES, 0) | {"elbow": 1}, "elbow"), (None, "joints")],
 )
 def test_joints_that_are_not_those_of_the_robot_are_refused(
     joints: dict[str, int] | None, named: str
@@ -248,7 +263,7 @@ def test_setting_replaces_a_point_of_the_robot_file() -> None:
 
 
 @pytest.mark.parametrize(
-    "setting", ["side_link_mm", "elbow=1", "side_link_mm=", "side_link_mm=1,2", "home_rcm_mm=1,2"]
+    "setting", ["side_link_mm", "side_link_mm=", "=1", "home_rcm_mm=1,x,3", "home_rcm_mm=1,"]
 )
 def test_setting_that_is_not_understood_is_a_usage_error(setting: str) -> None:
     code, answers, message = kinematics("fk", "--robot", "neuro", "--set", setting, lines=[])
@@ -256,12 +271,23 @@ def test_setting_that_is_not_understood_is_a_usage_error(setting: str) -> None:
     assert setting in message
 
 
-@pytest.mark.parametrize("setting", ["side_link_mm=nan", "home_separation_mm=200", "min_separation_mm=1"])
-def test_geometry_that_cannot_work_is_refused_before_the_first_line(setting: str) -> None:
+@pytest.mark.parametrize(
+    "setting",
+    [
+        "elbow=1",
+        "side_link_mm=1,2",
+        "home_rcm_mm=1,2",
+        "side_link_mm=nan",
+        "home_separation_mm=200",
+        "min_separation_mm=1",
+        "min_separation_mm=30",
+    ],
+)
+def test_setting_is_refused_like_a_robot_file_that_says_so(setting: str) -> None:
     code, answers, message = kinematics("fk", "--robot", "neuro", "--set", setting, lines=["{}"])
     assert (code, answers) == (REFUSED, [])
-    assert "[kinematics]" in message
-    assert setting.split("=")[0] in message
+    assert f"kinematics.{setting.split('=')[0]}: " in message
+    assert "expected" in message
 
 
 def test_no_lines_need_no_answer() -> None:

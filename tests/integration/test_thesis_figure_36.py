@@ -97,7 +97,12 @@ def kinematics(command: str, robot: str, line: dict, *changes: str) -> dict:
 
 
 # The thesis-era prostate robot: needle parallel to z, with its lengths.
-THESIS_PROSTATE = ("needle_tip_mm=259.075", "front_pivot_offset_mm=0", "max_angulation_rad=0")
+THESIS_PROSTATE = (
+    "needle_tip_mm=259.075",
+    "front_pivot_offset_mm=0",
+    "max_angulation_rad=0",
+    "base_to_zframe_mm=0,0,0",
+)
 
 
 def test_NeuroRobot_CheckForStalls(neuro: Stack) -> None:
@@ -154,7 +159,8 @@ def test_ProstateRobot_ValidateForwardKinematics() -> None:
 
 
 def test_ProstateRobot_RunInverseKinematics() -> None:
-    joints = kinematics("ik", "prostate", {"target": [5, 150, 300]}, *THESIS_PROSTATE)["joints"]
+    path = {"entry": [5, 150, 200], "target": [5, 150, 300]}
+    joints = kinematics("ik", "prostate", path, *THESIS_PROSTATE)["joints"]
     expected = {
         "front_left": 149.008578, "front_right": -139.008578, "back_left": 149.008578,
         "back_right": -139.008578, "insertion": 40.925, "rotation": 0,

@@ -19,8 +19,8 @@
 #include <random>
 #include <vector>
 
-#include "kinematics/neuro_kinematics.hpp"
-#include "kinematics/prostate_kinematics.hpp"
+#include "kinematics/neuro_rcm/neuro_kinematics.hpp"
+#include "kinematics/prostate_trapezoids/prostate_kinematics.hpp"
 #include "robot/robot_file.hpp"
 #include "timing.hpp"
 #include "trajectory/tick_planner.hpp"
@@ -201,13 +201,13 @@ nlohmann::json time_replanning(const Robot& robot) {
 nlohmann::json measure(const Robot& robot) {
   std::vector<Pose> poses;
   nlohmann::json printed;
-  if (const auto* neuro = std::get_if<NeuroRcm>(&robot.kinematics)) {
-    printed = time_closed_form<NeuroJoints>(NeuroKinematics::create(*neuro, robot.probe).value(), poses);
-    printed["kdl_ik"] = time_kdl(chain_of(*neuro, robot.probe), poses);
-  } else {
-    const auto& prostate = std::get<ProstateTrapezoids>(robot.kinematics);
-    printed = time_closed_form<ProstateJoints>(ProstateKinematics::create(prostate).value(), poses);
-    printed["kdl_ik"] = time_kdl(chain_of(prostate, robot.probe), poses);
+  if (const auto* neuro = dynamic_cast<const NeuroKinematics*>(robot.kinematics.get())) {
+    const NeuroRcm& geometry = neuro->geometry();
+    printed = time_closed_form<NeuroJoints>(NeuroKinematics::create(geometry, robot.probe).value(), poses);
+    printed["kdl_ik"] = time_kdl(chain_of(geometry, robot.probe), poses);
+  } else if (const auto* prostate = dynamic_cast<const ProstateKinematics*>(robot.kinematics.get())) {
+    printed = time_closed_form<ProstateJoints>(*prostate, poses);
+    printed["kdl_ik"] = time_kdl(chain_of(prostate->geometry(), robot.probe), poses);
   }
   printed["replan"] = time_replanning(robot);
   return printed;

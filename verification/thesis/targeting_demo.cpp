@@ -241,15 +241,9 @@ AxisPositions random_positions(const Robot& robot, std::mt19937_64& random) {
 }
 
 /** A way in that ends where these positions put the treatment point. */
-KinematicsResult<Way> way_to(const Robot& robot, const RobotKinematics& kinematics,
-                             const AxisPositions& positions) {
+KinematicsResult<Way> way_to(const RobotKinematics& kinematics, const AxisPositions& positions) {
   return kinematics.zframe_from_treatment(positions).map([&](const Pose& pose) {
-    double depth_mm = 50.0;
-    if (std::holds_alternative<NeuroRcm>(robot.kinematics)) {
-      const auto place = std::ranges::find(robot.axes, "insertion", &Axis::role) - robot.axes.begin();
-      depth_mm = positions[static_cast<std::size_t>(place)] +
-                 kinematics.probe().treatment_to_robot_at_home_mm - kinematics.probe().robot_to_entry_mm;
-    }
+    const double depth_mm = kinematics.depth_mm(positions).value_or(50.0);
     const Eigen::Vector3d target = pose.translation();
     return Way{target - depth_mm * pose.linear().col(2), target};
   });
@@ -262,10 +256,9 @@ RandomTargets reach_random(const Robot& robot, const RobotKinematics& kinematics
   double squares = 0.0;
   std::size_t reached = 0;
   for (; result.tried < count; ++result.tried) {
-    const auto alignment =
-        way_to(robot, kinematics, random_positions(robot, random)).and_then([&](const Way& way) {
-          return align(robot, kinematics, registration, {scanner * way.entry, scanner * way.target, 0.0});
-        });
+    const auto alignment = way_to(kinematics, random_positions(robot, random)).and_then([&](const Way& way) {
+      return align(robot, kinematics, registration, {scanner * way.entry, scanner * way.target, 0.0});
+    });
     if (!alignment || is_clamped(*alignment)) {
       ++result.refused;
       continue;
@@ -293,6 +286,9 @@ Robot before_phantom(Robot robot) {
 DemoResult<DemoReport> run_demo(const Robot& described, const ilk_config_t& config,
                                 const plant::Parameters& parameters, const DemoOptions& options,
                                 const DemoAudience& audience) {
+  if (!has_thesis_table(described)) {
+    return tl::unexpected(described.name + " has no trials in the thesis; run neuro or prostate");
+  }
   const Robot robot = before_phantom(described);
   const auto kinematics = RobotKinematics::create(robot);
   if (!kinematics) {

@@ -3,8 +3,13 @@
 #include <array>
 #include <cmath>
 
+#include "kinematics/prostate_trapezoids/prostate_kinematics.hpp"
+
 namespace interlock {
 namespace {
+
+constexpr std::string_view neuro_family = "neuro_rcm";
+constexpr std::string_view prostate_family = "prostate_trapezoids";
 
 /** Table 1, as printed: right, anterior, superior. Trial 4's and trial 6's printed errors do not agree with
  * these. */
@@ -72,18 +77,22 @@ Way prostate_way(const ProstateTrapezoids& geometry, const ThesisTrial& trial) {
 
 }  // namespace
 
+bool has_thesis_table(const Robot& robot) {
+  return robot.family == neuro_family || robot.family == prostate_family;
+}
+
 const ThesisTable& thesis_table(const Robot& robot) {
-  return std::holds_alternative<NeuroRcm>(robot.kinematics) ? neuro_table : prostate_table;
+  return robot.family == neuro_family ? neuro_table : prostate_table;
 }
 
 Eigen::Matrix3d zframe_from_table(const Robot& robot) {
-  const bool is_neuro = std::holds_alternative<NeuroRcm>(robot.kinematics);
-  return is_neuro ? Eigen::Matrix3d::Identity() : (Eigen::Matrix3d() << 0, 1, 0, 1, 0, 0, 0, 0, 1).finished();
+  return robot.family == neuro_family ? Eigen::Matrix3d::Identity()
+                                      : (Eigen::Matrix3d() << 0, 1, 0, 1, 0, 0, 0, 0, 1).finished();
 }
 
 Way way_of(const Robot& robot, const ThesisTrial& trial) {
-  const auto* prostate = std::get_if<ProstateTrapezoids>(&robot.kinematics);
-  return prostate == nullptr ? neuro_way(trial) : prostate_way(*prostate, trial);
+  const auto* prostate = dynamic_cast<const ProstateKinematics*>(robot.kinematics.get());
+  return prostate == nullptr ? neuro_way(trial) : prostate_way(prostate->geometry(), trial);
 }
 
 }  // namespace interlock

@@ -32,6 +32,9 @@ struct Way {
   Eigen::Vector3d target;
 };
 
+/** Whether the thesis printed trials of the robot's family; the functions below need it. */
+bool has_thesis_table(const Robot& robot);
+
 /** The table of the robot's family. */
 const ThesisTable& thesis_table(const Robot& robot);
 

@@ -11,7 +11,7 @@
 #include "http/context.hpp"
 #include "http/router.hpp"
 #include "http/targeting_change.hpp"
-#include "robot/kinematics.hpp"
+#include "kinematics/family.hpp"
 
 namespace interlock::web {
 

@@ -18,7 +18,7 @@ TEST_F(ModeRoutesTest, TheRobotIsDescribedAsItsFileSays) {
   const json& robot = robots[0];
   EXPECT_EQ(robot["name"], neuro().name);
   EXPECT_EQ(robot["title"], neuro().title);
-  EXPECT_EQ(robot["kinematics"], family_name(neuro().kinematics));
+  EXPECT_EQ(robot["kinematics"], neuro().family);
   EXPECT_EQ(robot["modes"], json(neuro().modes));
   EXPECT_EQ(robot["axes"].size(), neuro().axes.size());
   ASSERT_EQ(robot["home_steps"].size(), neuro().home_steps.size());

@@ -1,5 +1,5 @@
 /** @file The NeuroRobot's kinematics give the reference values, invert exactly and refuse what is outside. */
-#include "kinematics/neuro_kinematics.hpp"
+#include "kinematics/neuro_rcm/neuro_kinematics.hpp"
 
 #include <gmock/gmock.h>
 
@@ -53,7 +53,7 @@ TEST(NeuroForward, gives_the_reference_positions) {
 }
 
 TEST(NeuroForward, gives_the_reference_rotations) {
-  EXPECT_TRUE(neuro().zframe_from_treatment({})->linear().isApprox(home_rotation, 1e-15));
+  EXPECT_TRUE(neuro().zframe_from_treatment(NeuroJoints{})->linear().isApprox(home_rotation, 1e-15));
   const Matrix3d reference = (Matrix3d() << -0.936293, 0.289629, -0.198669, 0.335543, 0.570540, -0.749596,
                               -0.103756, -0.768504, -0.631376)
                                  .finished();
@@ -84,8 +84,9 @@ TEST(NeuroForward, entry_lies_on_the_probe_and_does_not_follow_the_insertion) {
 TEST(NeuroForward, later_calibrations_only_move_the_rcm) {
   NeuroRcm longer_links = neuro_geometry();
   longer_links.home_rcm_mm = {-32.41, 154.38, 84.198};
-  const auto moved = NeuroKinematics::create(longer_links, neuro_probe())->zframe_from_treatment({});
-  expect_near(moved->translation() - neuro().zframe_from_treatment({})->translation(),
+  const auto moved =
+      NeuroKinematics::create(longer_links, neuro_probe())->zframe_from_treatment(NeuroJoints{});
+  expect_near(moved->translation() - neuro().zframe_from_treatment(NeuroJoints{})->translation(),
               {-50.73, -24.01, 11.288}, 1e-12);
 }
 

@@ -1,6 +1,6 @@
 /** @file The prostate robot's kinematics give the reference values, invert exactly and refuse what is
  * outside. */
-#include "kinematics/prostate_kinematics.hpp"
+#include "kinematics/prostate_trapezoids/prostate_kinematics.hpp"
 
 #include <gmock/gmock.h>
 

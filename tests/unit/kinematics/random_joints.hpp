@@ -3,8 +3,9 @@
 
 #include <random>
 
-#include "kinematics/joints.hpp"
+#include "kinematics/neuro_rcm/neuro_kinematics.hpp"
 #include "kinematics/pose.hpp"
+#include "kinematics/prostate_trapezoids/prostate_kinematics.hpp"
 
 namespace interlock::test {
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "kinematics/neuro_kinematics.hpp"
-#include "kinematics/prostate_kinematics.hpp"
+#include "kinematics/neuro_rcm/neuro_kinematics.hpp"
+#include "kinematics/prostate_trapezoids/prostate_kinematics.hpp"
 #include "robot/robot_file.hpp"
 
 namespace interlock::test {
@@ -19,7 +19,9 @@ inline const Robot& robot_named(const std::string& name) {
 }
 
 /** The calibration of the thesis. */
-inline NeuroRcm neuro_geometry() { return std::get<NeuroRcm>(robot_named("neuro").kinematics); }
+inline NeuroRcm neuro_geometry() {
+  return dynamic_cast<const NeuroKinematics&>(*robot_named("neuro").kinematics).geometry();
+}
 
 inline ProbeOffsets neuro_probe() { return robot_named("neuro").probe; }
 
@@ -27,7 +29,7 @@ inline NeuroKinematics neuro() { return NeuroKinematics::create(neuro_geometry()
 
 /** Of the project's robot file: the angulated robot with its 18G needle. */
 inline ProstateTrapezoids prostate_geometry() {
-  return std::get<ProstateTrapezoids>(robot_named("prostate").kinematics);
+  return dynamic_cast<const ProstateKinematics&>(*robot_named("prostate").kinematics).geometry();
 }
 
 /** The robot of the thesis: the needle stays parallel to z. */

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "kinematics/neuro_rcm/neuro_kinematics.hpp"
 #include "neuro.hpp"
 
 namespace interlock {
@@ -28,8 +29,9 @@ TEST(RobotFile, neuro_reads_as_written) {
   EXPECT_EQ(robot.find("yaw")->motion, (MotionRates{600.0, 6000.0, 120000.0, 40}));
   EXPECT_FALSE(robot.auto_approve);
   EXPECT_EQ(robot.loop, (LoopLimits{100, 100, 20, 5, 3, 3}));
-  EXPECT_EQ(robot.kinematics,
-            Kinematics(NeuroRcm{60.0, 30.0, 143.0, 72.5, {18.32, 178.39, 72.91}, 75.0, 146.0}));
+  EXPECT_EQ(robot.family, "neuro_rcm");
+  EXPECT_EQ(dynamic_cast<const NeuroKinematics&>(*robot.kinematics).geometry(),
+            (NeuroRcm{60.0, 30.0, 143.0, 72.5, {18.32, 178.39, 72.91}, 75.0, 146.0}));
   EXPECT_EQ(robot.probe, (ProbeOffsets{10.0, 5.0, 5.0, 41.0}));
   EXPECT_THAT(robot.sensors, testing::IsEmpty());
   EXPECT_THAT(robot.home_steps, ElementsAre(HomeStep{"probe_out", "Probe out", {3}, {}, {}},
@@ -62,7 +64,7 @@ TEST(RobotFile, neuro_reads_as_written) {
   EXPECT_EQ(robot.find("feet")->homing, std::nullopt);
 }
 
-TEST(RobotFile, reading_twice_gives_equal_robots) { EXPECT_EQ(test::neuro(), test::neuro()); }
+TEST(RobotFile, reading_twice_gives_equal_axes) { EXPECT_EQ(test::neuro().axes, test::neuro().axes); }
 
 TEST(RobotFile, milliseconds_become_periods_of_the_robot) {
   const auto robot = parse_robot(test::neuro_with("period_us = 1000", "period_us = 500"), "fast.toml");
@@ -380,8 +382,17 @@ TEST(RobotRole, is_played_by_one_axis_only) {
   EXPECT_EQ(robot.error().problem, "\"head\" plays \"head\" already");
 }
 
+TEST(RobotRole, left_out_is_the_one_of_the_axis_own_name) {
+  const auto robot = parse_robot(test::neuro_with("role = \"feet\"\n", ""), "neuro.toml");
+  ASSERT_TRUE(robot) << robot.error().message();
+  EXPECT_EQ(robot->find("feet")->role, "feet");
+}
+
 TEST(RobotRole, of_the_family_is_played_by_some_axis) {
-  const auto robot = parse_robot(test::neuro_with("role = \"feet\"\n", ""), "broken.toml");
+  const auto robot =
+      parse_robot(test::neuro_with("name = \"feet\"\ntitle = \"Axial feet\"\nslot = 6\nrole = \"feet\"",
+                                   "name = \"foot\"\ntitle = \"Axial feet\"\nslot = 6"),
+                  "broken.toml");
   ASSERT_FALSE(robot);
   EXPECT_EQ(robot.error().key, "kinematics");
   EXPECT_EQ(robot.error().problem, "no axis plays \"feet\"");

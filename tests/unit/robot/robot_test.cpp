@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "kinematics/kinematics.hpp"
 #include "neuro.hpp"
 
 namespace interlock {
@@ -27,9 +28,9 @@ TEST(Robot, answers_null_for_a_name_or_slot_without_axis) {
 
 TEST(Robot, finds_axes_by_the_role_that_they_play) {
   const Robot robot = test::neuro();
-  for (const KinematicRole& role : roles_of(robot.kinematics)) {
-    ASSERT_NE(robot.with_role(role.name), nullptr) << role.name;
-    EXPECT_EQ(robot.with_role(role.name)->unit, role.unit);
+  for (const Joint& joint : robot.kinematics->joints()) {
+    ASSERT_NE(robot.with_role(joint.role), nullptr) << joint.role;
+    EXPECT_EQ(robot.with_role(joint.role)->unit, joint.unit);
   }
   EXPECT_EQ(robot.with_role("elbow"), nullptr);
   EXPECT_EQ(robot.with_role(""), nullptr) << "an axis without a role plays none";

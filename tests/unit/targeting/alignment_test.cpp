@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "kinematics/neuro_rcm/neuro_kinematics.hpp"
 #include "random_joints.hpp"
 #include "robots.hpp"
 
@@ -62,7 +63,8 @@ TEST(Alignment, DesiredIsTheAimAndReachableIsWithinTheRoundingToCounts) {
   for (int round = 0; round < 2000; ++round) {
     const Pose scanner_from_zframe = test::random_pose(generator, 300.0);
     const NeuroJoints joints = test::random_neuro_joints(generator);
-    const auto own = NeuroKinematics::create(std::get<NeuroRcm>(neuro().kinematics), neuro().probe);
+    const auto own = NeuroKinematics::create(
+        dynamic_cast<const NeuroKinematics&>(*neuro().kinematics).geometry(), neuro().probe);
     const Vector3d entry = own->zframe_from_entry(joints)->translation();
     const Vector3d target = own->zframe_from_treatment(joints)->translation();
     const Aim aim{scanner_from_zframe * entry, scanner_from_zframe * target, joints.probe_rotation_rad};

@@ -1,7 +1,7 @@
-#include "targeting/robot_body.hpp"
-
 #include <gmock/gmock.h>
 
+#include "kinematics/neuro_rcm/neuro_kinematics.hpp"
+#include "kinematics/prostate_trapezoids/prostate_kinematics.hpp"
 #include "robots.hpp"
 #include "targeting/reach.hpp"
 
@@ -52,7 +52,7 @@ AxisPositions prostate_positions() {
 }
 
 TEST(RobotBodyTest, TheNeuroRobotsPartsAreAsLongAsItsFileSays) {
-  const auto& geometry = std::get<NeuroRcm>(neuro().kinematics);
+  const auto geometry = dynamic_cast<const NeuroKinematics&>(*neuro().kinematics).geometry();
   const ProbeOffsets& probe = neuro().probe;
   const auto body = kinematics_of(neuro()).zframe_body(neuro_positions());
   ASSERT_TRUE(body);
@@ -78,7 +78,7 @@ TEST(RobotBodyTest, TheNeuroRobotsProbeEndsAtTheTipOfForwardKinematics) {
 }
 
 TEST(RobotBodyTest, TheProstateRobotsPartsMeetAndAreAsLongAsItsFileSays) {
-  const auto& geometry = std::get<ProstateTrapezoids>(prostate().kinematics);
+  const auto geometry = dynamic_cast<const ProstateKinematics&>(*prostate().kinematics).geometry();
   const RobotKinematics kinematics = kinematics_of(prostate());
   const auto body = kinematics.zframe_body(prostate_positions());
   ASSERT_TRUE(body) << body.error().message();
@@ -118,7 +118,7 @@ TEST(ReachTest, EveryCellOfTheShellHoldsAPlaceThatTheRobotReaches) {
       lowest.push_back(axis.to_unit(axis.lowest_setpoint_counts()));
       highest.push_back(axis.to_unit(axis.highest_setpoint_counts()));
     }
-    const ReachedPoints points = *kinematics.reached_points(lowest, highest, 4'000, 1);
+    const Workspace points = *kinematics.workspace(lowest, highest, 4'000, 1);
     EXPECT_GT(reach.shell_mm.size(), 100u) << robot->name;
     EXPECT_LE(reach.shell_mm.size(), reach.cells);
     EXPECT_EQ(points.zframe_mm.size() + points.refused, 4'000u);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "kinematics/neuro_rcm/neuro_kinematics.hpp"
 #include "random_joints.hpp"
 #include "robots.hpp"
 
@@ -25,7 +26,8 @@ AxisPositions staggered(const Robot& robot) {
 }
 
 TEST(RobotKinematics, NeuroTakesEachAxisForItsJoint) {
-  const auto own = NeuroKinematics::create(std::get<NeuroRcm>(neuro().kinematics), neuro().probe);
+  const auto own = NeuroKinematics::create(
+      dynamic_cast<const NeuroKinematics&>(*neuro().kinematics).geometry(), neuro().probe);
   const AxisPositions positions = staggered(neuro());
   NeuroJoints joints;
   for (const auto& field : neuro_joint_fields) {

@@ -1646,7 +1646,7 @@ export interface components {
             name: string;
             title: string;
             config_crc: string;
-            /** @description Family. */
+            /** @description Family, or none. */
             kinematics: string;
             modes: string[];
             home_steps: {

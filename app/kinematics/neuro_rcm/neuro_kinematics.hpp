@@ -25,14 +25,52 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <numbers>
 
 #include "kinematics/joints.hpp"
 #include "kinematics/path.hpp"
 #include "kinematics/pose.hpp"
 #include "kinematics/trapezoid.hpp"
-#include "robot/kinematics.hpp"
 
 namespace interlock {
+
+/** The lengths of the robot file. */
+struct NeuroRcm {
+  double side_link_mm = 0.0;
+  double top_width_mm = 0.0;
+  double home_separation_mm = 0.0; /**< of the sliders, when head and feet stand at 0 */
+  double driver_to_rcm_mm = 0.0;   /**< from the needle driver's reference point to the RCM */
+  PointMm home_rcm_mm{};           /**< RCM in the z-frame, when all axes stand at 0 */
+  double min_separation_mm = 0.0;  /**< smallest separation that the mechanism allows */
+  double max_separation_mm = 0.0;  /**< largest one */
+
+  bool operator==(const NeuroRcm&) const = default;
+};
+
+/** Joint positions, in the sense and sign of the published motor table. */
+struct NeuroJoints {
+  double head_mm = 0.0; /**< axial slider on the side of the head */
+  double feet_mm = 0.0; /**< axial slider on the side of the feet */
+  double lateral_mm = 0.0;
+  double insertion_mm = 0.0;
+  double probe_rotation_rad = 0.0;
+  double pitch_rad = 0.0;
+  double yaw_rad = 0.0;
+
+  bool operator==(const NeuroJoints&) const = default;
+};
+
+/** In the order of the columns of the Jacobian. */
+inline constexpr std::array<JointField<NeuroJoints>, 7> neuro_joint_fields{{
+    {{"head", "head_mm", Unit::mm, length_limit_mm}, &NeuroJoints::head_mm},
+    {{"feet", "feet_mm", Unit::mm, length_limit_mm}, &NeuroJoints::feet_mm},
+    {{"lateral", "lateral_mm", Unit::mm, length_limit_mm}, &NeuroJoints::lateral_mm},
+    {{"insertion", "insertion_mm", Unit::mm, length_limit_mm}, &NeuroJoints::insertion_mm},
+    {{"probe_rotation", "probe_rotation_rad", Unit::rad, angle_limit_rad}, &NeuroJoints::probe_rotation_rad},
+    {{"pitch", "pitch_rad", Unit::rad, std::numbers::pi / 2}, &NeuroJoints::pitch_rad},
+    {{"yaw", "yaw_rad", Unit::rad, std::numbers::pi}, &NeuroJoints::yaw_rad},
+}};
 
 /**
  * Velocity of the treatment point per joint velocity, in the zFrame: rows 0 to 2 the point (mm/mm, mm/rad),
@@ -40,18 +78,30 @@ namespace interlock {
  */
 using NeuroJacobian = Eigen::Matrix<double, 6, 7>;
 
-/** Largest distance of the unit vectors along entry to target and along the z axis of the pose. */
-inline constexpr double axis_tolerance = 1e-4;
-
 /** Cosine of the pitch below which the yaw is undetermined. */
 inline constexpr double smallest_cos_pitch = 1e-3;
 
 /** Closed forms of the robot with a remote centre of motion. */
-class NeuroKinematics {
+class NeuroKinematics final : public Kinematics {
  public:
   /** Refused unless lengths are finite and within range and the home separation is inside of the window. */
   static KinematicsResult<NeuroKinematics> create(const NeuroRcm& geometry,
                                                   const ProbeOffsets& probe) noexcept;
+
+  [[nodiscard]] const NeuroRcm& geometry() const noexcept { return geometry_; }
+
+  [[nodiscard]] std::span<const Joint> joints() const noexcept override;
+  [[nodiscard]] KinematicsResult<KinematicsPtr> with_probe(const ProbeOffsets& probe) const override;
+  [[nodiscard]] KinematicsResult<Pose> zframe_from_treatment(
+      std::span<const double> positions) const override;
+  [[nodiscard]] KinematicsResult<std::vector<double>> positions_for(const Eigen::Vector3d& entry,
+                                                                    const Eigen::Vector3d& target,
+                                                                    double rotation_rad) const override;
+  [[nodiscard]] KinematicsResult<std::vector<double>> positions_for(
+      const Pose& zframe_from_treatment, const std::optional<Eigen::Vector3d>& entry) const override;
+  [[nodiscard]] KinematicsResult<RobotBody> zframe_body(std::span<const double> positions) const override;
+  [[nodiscard]] std::optional<double> depth_mm(std::span<const double> positions) const override;
+  [[nodiscard]] std::span<const SliderPair> slider_pairs() const noexcept override { return {}; }
 
   /** Pose of the treatment point; its z axis is the way the probe advances. */
   [[nodiscard]] KinematicsResult<Pose> zframe_from_treatment(const NeuroJoints& joints) const noexcept;

@@ -1,4 +1,4 @@
-#include "kinematics/neuro_kinematics.hpp"
+#include "kinematics/neuro_rcm/neuro_kinematics.hpp"
 
 #include <cmath>
 
@@ -103,19 +103,12 @@ KinematicsResult<NeuroJoints> NeuroKinematics::joints_for(const Eigen::Vector3d&
 
 KinematicsResult<NeuroJoints> NeuroKinematics::joints_for(const Pose& zframe_from_treatment,
                                                           const Eigen::Vector3d& entry) const noexcept {
-  const Vector3d target = zframe_from_treatment.translation();
-  const Vector3d axis = zframe_from_treatment.linear().col(2);
-  return check_rigid(zframe_from_treatment)
-      .and_then([&] { return path_length_mm(entry, target); })
-      .and_then([&](double length_mm) {
-        return check_range("entry_direction_error", ((target - entry) / length_mm - axis).norm(), 0.0,
-                           axis_tolerance, Code::off_axis);
-      })
-      .and_then([&] {
-        const double depth_mm = (target - entry).dot(axis);
-        return joints_at_insertion(zframe_from_treatment, depth_mm - probe_.treatment_to_robot_at_home_mm +
-                                                              probe_.robot_to_entry_mm);
-      });
+  return check_on_axis(zframe_from_treatment, entry).and_then([&] {
+    const Vector3d ahead = zframe_from_treatment.translation() - entry;
+    return joints_at_insertion(zframe_from_treatment, ahead.dot(zframe_from_treatment.linear().col(2)) -
+                                                          probe_.treatment_to_robot_at_home_mm +
+                                                          probe_.robot_to_entry_mm);
+  });
 }
 
 KinematicsResult<NeuroJoints> NeuroKinematics::joints_at_insertion(const Pose& zframe_from_treatment,

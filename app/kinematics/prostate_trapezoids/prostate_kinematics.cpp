@@ -1,4 +1,4 @@
-#include "kinematics/prostate_kinematics.hpp"
+#include "kinematics/prostate_trapezoids/prostate_kinematics.hpp"
 
 #include <cmath>
 
@@ -31,7 +31,10 @@ struct ProstateKinematics::Stages {
 
 ProstateKinematics::ProstateKinematics(const ProstateTrapezoids& geometry,
                                        const Trapezoid& trapezoid) noexcept
-    : geometry_(geometry), trapezoid_(trapezoid) {}
+    : geometry_(geometry),
+      trapezoid_(trapezoid),
+      pairs_{{{"back_left", "back_right", geometry.max_separation_mm},
+              {"front_left", "front_right", geometry.max_separation_mm}}} {}
 
 KinematicsResult<ProstateKinematics> ProstateKinematics::create(const ProstateTrapezoids& geometry) noexcept {
   return check_lengths({{"lower_height_mm", geometry.lower_height_mm},
@@ -39,7 +42,10 @@ KinematicsResult<ProstateKinematics> ProstateKinematics::create(const ProstateTr
                         {"needle_tip_mm", geometry.needle_tip_mm},
                         {"front_pivot_offset_mm", geometry.front_pivot_offset_mm},
                         {"needle_height_mm", geometry.needle_height_mm},
-                        {"needle_guide_mm", geometry.needle_guide_mm}})
+                        {"needle_guide_mm", geometry.needle_guide_mm},
+                        {"base_to_zframe_mm.x", geometry.base_to_zframe_mm[0]},
+                        {"base_to_zframe_mm.y", geometry.base_to_zframe_mm[1]},
+                        {"base_to_zframe_mm.z", geometry.base_to_zframe_mm[2]}})
       .and_then(
           [&] { return check_range("stage_distance_mm", geometry.stage_distance_mm, 1.0, length_limit_mm); })
       .and_then([&] {

@@ -26,14 +26,54 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 
 #include "kinematics/joints.hpp"
 #include "kinematics/path.hpp"
 #include "kinematics/pose.hpp"
 #include "kinematics/trapezoid.hpp"
-#include "robot/kinematics.hpp"
 
 namespace interlock {
+
+/** The lengths of the robot file. */
+struct ProstateTrapezoids {
+  double side_link_mm = 0.0;
+  double top_width_mm = 0.0;
+  double lower_height_mm = 0.0;       /**< from the rail to the lower pivots */
+  double upper_height_mm = 0.0;       /**< from the upper pivots to the centre of the stage */
+  double stage_distance_mm = 0.0;     /**< from the rear trapezoid to the front one */
+  double needle_tip_mm = 0.0;         /**< from the front stage to the tip, when the insertion stands at 0 */
+  double front_pivot_offset_mm = 0.0; /**< from the pivot to the centre of the front stage, along z */
+  double needle_height_mm = 0.0;      /**< of the needle's line above the centre of the front stage */
+  double needle_guide_mm = 0.0;       /**< from the front stage to the needle guide */
+  PointMm base_to_zframe_mm{};        /**< translation of the z-frame in the robot's base */
+  double max_separation_mm = 0.0;     /**< of the sliders of one pair */
+  double max_angulation_rad = 0.0;    /**< of the needle, each way, about either axis */
+
+  bool operator==(const ProstateTrapezoids&) const = default;
+};
+
+/** Joint positions. Left is positive x; home is at +150 and -150 mm. */
+struct ProstateJoints {
+  double front_left_mm = 0.0;
+  double front_right_mm = 0.0;
+  double back_left_mm = 0.0;
+  double back_right_mm = 0.0;
+  double insertion_mm = 0.0;
+  double rotation_rad = 0.0; /**< of the needle about its axis; turns beyond a full one count */
+
+  bool operator==(const ProstateJoints&) const = default;
+};
+
+/** In the order of the columns of the Jacobian. */
+inline constexpr std::array<JointField<ProstateJoints>, 6> prostate_joint_fields{{
+    {{"front_left", "front_left_mm", Unit::mm, length_limit_mm}, &ProstateJoints::front_left_mm},
+    {{"front_right", "front_right_mm", Unit::mm, length_limit_mm}, &ProstateJoints::front_right_mm},
+    {{"back_left", "back_left_mm", Unit::mm, length_limit_mm}, &ProstateJoints::back_left_mm},
+    {{"back_right", "back_right_mm", Unit::mm, length_limit_mm}, &ProstateJoints::back_right_mm},
+    {{"insertion", "insertion_mm", Unit::mm, length_limit_mm}, &ProstateJoints::insertion_mm},
+    {{"rotation", "rotation_rad", Unit::rad, angle_limit_rad}, &ProstateJoints::rotation_rad},
+}};
 
 /**
  * Velocity of the needle tip per joint velocity, in the base frame: rows 0 to 2 the tip (mm/mm, mm/rad), rows
@@ -51,11 +91,26 @@ inline constexpr double dead_centre_clearance_mm = 1.0;
 inline constexpr double steepest_angulation_rad = 1.0;
 
 /** Closed forms of the robot with two trapezoid stages. */
-class ProstateKinematics {
+class ProstateKinematics final : public Kinematics {
  public:
   /** Refused unless lengths are finite and within range, and the angulation at most
    * `steepest_angulation_rad`. */
   static KinematicsResult<ProstateKinematics> create(const ProstateTrapezoids& geometry) noexcept;
+
+  [[nodiscard]] const ProstateTrapezoids& geometry() const noexcept { return geometry_; }
+
+  [[nodiscard]] std::span<const Joint> joints() const noexcept override;
+  [[nodiscard]] KinematicsResult<KinematicsPtr> with_probe(const ProbeOffsets& probe) const override;
+  [[nodiscard]] KinematicsResult<Pose> zframe_from_treatment(
+      std::span<const double> positions) const override;
+  [[nodiscard]] KinematicsResult<std::vector<double>> positions_for(const Eigen::Vector3d& entry,
+                                                                    const Eigen::Vector3d& target,
+                                                                    double rotation_rad) const override;
+  [[nodiscard]] KinematicsResult<std::vector<double>> positions_for(
+      const Pose& zframe_from_treatment, const std::optional<Eigen::Vector3d>& entry) const override;
+  [[nodiscard]] KinematicsResult<RobotBody> zframe_body(std::span<const double> positions) const override;
+  [[nodiscard]] std::optional<double> depth_mm(std::span<const double> positions) const override;
+  [[nodiscard]] std::span<const SliderPair> slider_pairs() const noexcept override { return pairs_; }
 
   /** Pose of the needle tip; its z axis is the way the needle advances. */
   [[nodiscard]] KinematicsResult<Pose> base_from_tip(const ProstateJoints& joints) const noexcept;
@@ -99,6 +154,7 @@ class ProstateKinematics {
 
   ProstateTrapezoids geometry_;
   Trapezoid trapezoid_;
+  std::array<SliderPair, 2> pairs_;
 };
 
 }  // namespace interlock
