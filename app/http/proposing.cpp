@@ -47,7 +47,9 @@ json detail_of(const Robot& /*robot*/, const BiopsyTask& insertion) {
 json detail_of(const Robot& robot, const Task& task) {
   json detail = std::visit([&](const auto& work) { return detail_of(robot, work); }, task.work);
   detail["kind"] = kind_name(task.kind());
-  detail["mode"] = mode_name(task.mode);
+  if (task.mode > RobotMode::home) {
+    detail["mode"] = mode_name(task.mode);
+  }
   return detail;
 }
 

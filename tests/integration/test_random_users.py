@@ -132,7 +132,7 @@ class Caller:
             self.call(*self.draw.choice(often if self.draw.random() < 0.5 else operations))
 
 
-def disturb(robot: Stack, draw: random.Random) -> None:
+def disturb(robot: Stack, holder: httpx.Client, draw: random.Random) -> None:
     """Something that happens to a program, a hand or a foot."""
     what = draw.choice(["pedal", "pedal", "pedal", "stop", "unlock", "freeze", "freeze", "kernel", "kill"])
     if what == "pedal":
@@ -141,9 +141,8 @@ def disturb(robot: Stack, draw: random.Random) -> None:
         robot.visitor().post("/api/stop")
     elif what == "unlock":
         robot.control("pedal", pressed=False)
-        robot.api.post("/api/authority/takeover")
-        robot.api.post("/api/reset")
-        robot.api.post(f"/api/motors/{LATERAL}/enable")
+        for step in ("authority/request", "authority/take-over", "reset", f"motors/{LATERAL}/enable"):
+            holder.post(f"/api/{step}")
         robot.control("pedal", pressed=True)
     elif what == "freeze":
         with frozen(robot.pid("app"), draw.choice(["network", "door", "control"])):
@@ -182,11 +181,11 @@ def test_any_order_of_calls_and_failures_leaves_a_robot_that_stops(stack: StackF
         calling = [pool.submit(caller.go_on) for caller in callers]
         while not all(each.done() for each in calling):
             with suppress(httpx.TransportError, OSError, AssertionError):  # there may be no app now
-                disturb(robot, draw)
+                disturb(robot, callers[draw.randrange(2)].client, draw)
     for each in calling:
         each.result()
     assert_stopped_for_good(robot)
     assert sum(sum(caller.answers.values()) for caller in callers) > CALLS
-    assert callers[0].answers.get(201), "nothing was ever approved: the run shows nothing"
+    assert any(caller.answers.get(201) for caller in callers), "nothing was ever approved"
     ends = [line for line in robot.output.lines if " ended: " in line]
     assert all("signal 9" in line for line in ends), ends
