@@ -84,14 +84,16 @@ asio::awaitable<Done> change(const Context& context, const Caller& caller, const
   }
   const auto changed = co_await change_targeting(context, caller, TaskSource::openigtlink, asked->make,
                                                  std::move(asked->body));
-  co_return changed.map([&context](const Targeting& targeting) {
-    igtl::Outcome outcome = well("It was stored.");
-    if (const auto alignment = alignment_with(context.robot, targeting)) {
-      outcome.target = row_major(alignment->desired);
-      outcome.reachable = row_major(alignment->reachable);
-    }
-    return outcome;
-  });
+  if (!changed) {
+    co_return fail(changed.error());
+  }
+  igtl::Outcome outcome = well("It was stored.");
+  const auto alignment = co_await aligned(context, *changed);
+  if (alignment) {
+    outcome.target = row_major(alignment->desired);
+    outcome.reachable = row_major(alignment->reachable);
+  }
+  co_return outcome;
 }
 
 asio::awaitable<Done> load(const Context& context, const Caller& caller, Sent sent,
@@ -225,7 +227,7 @@ asio::awaitable<Done> set_target(const Context& context, const Caller& caller, i
   }
   Targeting wanted = *before;
   aim_at(wanted, wish.scanner_from_target);
-  const auto alignment = alignment_with(context.robot, wanted);
+  const auto alignment = co_await aligned(context, wanted);
   if (!alignment) {
     co_return fail(out_of_reach(alignment.error().detail));
   }

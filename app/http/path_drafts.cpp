@@ -117,7 +117,7 @@ boost::asio::awaitable<tl::expected<Task, Problem>> pose_draft(const Context& co
   if (!targeting) {
     co_return fail(targeting.error());
   }
-  const auto alignment = alignment_with(context.robot, *targeting);
+  const auto alignment = co_await aligned(context, *targeting);
   if (!alignment) {
     co_return fail(alignment.error());
   }

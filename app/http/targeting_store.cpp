@@ -57,6 +57,18 @@ void set_targeting(Transaction& transaction, const Targeting& before, const Targ
   note_targeting_change(transaction, entry, Audit(transaction).append(entry).number);
 }
 
+boost::asio::awaitable<tl::expected<Alignment, Problem>> aligned(const Context& context,
+                                                                 Targeting targeting) {
+  auto work = [robot = &context.robot, targeting = std::move(targeting)] {
+    return alignment_with(*robot, targeting);
+  };
+  auto found = co_await context.work.run(std::move(work));
+  if (!found) {
+    co_return fail(found.error());
+  }
+  co_return std::move(*found);
+}
+
 boost::asio::awaitable<tl::expected<Targeting, Problem>> present_targeting(const Context& context) {
   auto find = [robot = &context.robot](Store& store) {
     return store.read([&](Transaction& transaction) { return find_targeting(transaction, *robot); });

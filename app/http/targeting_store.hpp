@@ -4,6 +4,7 @@
  */
 #pragma once
 
+#include "http/alignment_view.hpp"
 #include "http/context.hpp"
 #include "http/targeting.hpp"
 #include "store/settings.hpp"
@@ -22,6 +23,10 @@ struct TargetingOrigin {
 /** Stores the values, records in the audit what differs, and notes it in the targeting's history. */
 void set_targeting(Transaction& transaction, const Targeting& before, const Targeting& after,
                    const TargetingOrigin& origin, AuditEntry entry);
+
+/** As `alignment_with`, outside of the network thread: a search for the positions of a chain of joints takes
+ * a tenth of a second. Also 503 OVERLOADED of the pool. */
+boost::asio::awaitable<tl::expected<Alignment, Problem>> aligned(const Context& context, Targeting targeting);
 
 /** The present values, read outside of the network thread. */
 boost::asio::awaitable<tl::expected<Targeting, Problem>> present_targeting(const Context& context);

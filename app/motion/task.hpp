@@ -32,7 +32,7 @@ struct MoveTask {
   std::uint32_t slot = 0;
   std::int32_t target_counts = 0;
   std::optional<std::uint32_t> drive = std::nullopt; /**< upper bound; empty: the axis' own */
-  bool jog = false;                   /**< it goes on only for as long as `Renewal`s come */
+  bool jog = false;                                  /**< it goes on only for as long as `Renewal`s come */
 };
 
 /**
@@ -42,9 +42,10 @@ struct MoveTask {
  * not.
  */
 struct HomeTask {
-  std::uint32_t first_step = 0;     /**< index of the robot's home steps */
-  std::uint32_t step_count = 0;     /**< from 1; 0: no step but the one axis, at its switch */
-  std::vector<std::uint32_t> slots = {}; /**< of all axes that move, each once, in the order in which they move */
+  std::uint32_t first_step = 0; /**< index of the robot's home steps */
+  std::uint32_t step_count = 0; /**< from 1; 0: no step but the one axis, at its switch */
+  std::vector<std::uint32_t> slots =
+      {}; /**< of all axes that move, each once, in the order in which they move */
 };
 
 /** Several axes together, along the legs of a program. */

@@ -4,6 +4,7 @@ import contextlib
 import random
 import tomllib
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import jsonschema
@@ -109,6 +110,25 @@ def test_five_axes_described_by_a_file_home_and_move_to_the_pose_of_forward_kine
     wait_until("the pose of these counts", pose_is_that_of_the_counts)
     body = gantry.api.get("/api/targeting/alignment").json()["current_body"]
     assert body[-1]["name"] == "probe"
+
+
+def test_motion_goes_on_while_several_people_ask_for_a_pose_that_takes_long_to_refuse(start: Start) -> None:
+    gantry = start("gantry")
+    home_all_by_file(gantry, range(len(JOINTS)))
+    beyond = {"entry_point": [30, 100, -100], "target_point": [150, -10, -30]}
+    gantry.api.put("/api/targeting/target", json=beyond).raise_for_status()
+
+    def ask() -> set[str]:
+        answers = (gantry.api.get("/api/targeting/alignment").json() for _ in range(10))
+        return {answer["alignment_problem"]["code"] for answer in answers}
+
+    with ThreadPoolExecutor() as pool:
+        asking = [pool.submit(ask) for _ in range(6)]
+        moves = 0
+        while moves == 0 or not all(each.done() for each in asking):
+            wait_for_proposal(gantry, propose(gantry, 1000 + 200 * (moves % 2), 0), "done")
+            moves += 1
+    assert all(each.result() <= {"OUT_OF_REACH", "NOT_CONVERGED"} for each in asking)
 
 
 def test_one_axis_without_kinematics_homes_and_moves_and_has_no_pose(start: Start) -> None:

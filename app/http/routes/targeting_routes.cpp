@@ -58,8 +58,14 @@ Answering TargetingRoutes::show() const {
 
 Answering TargetingRoutes::show_alignment() const {
   const auto found = co_await present_targeting(context_);
-  co_return found.map([&](const Targeting& targeting) {
-    return Success{.body = alignment_view(context_.robot, targeting, context_.view())};
+  if (!found) {
+    co_return fail(found.error());
+  }
+  auto work = [robot = &context_.robot, targeting = *found, view = context_.view()] {
+    return alignment_view(*robot, targeting, view);
+  };
+  co_return (co_await context_.work.run(std::move(work))).map([](json body) {
+    return Success{.body = std::move(body)};
   });
 }
 
