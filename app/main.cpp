@@ -275,7 +275,7 @@ Stored<AuditHead> read_head(Store& store) {
 }
 
 /** Has the recorder note the head of the audit, soon after it has changed. */
-boost::asio::awaitable<void> report_heads(web::StoreGateway& gateway, const std::string recorder) {
+boost::asio::awaitable<void> report_heads(web::StoreGateway& gateway, const std::string& recorder) {
   boost::asio::steady_timer timer(co_await boost::asio::this_coro::executor);
   AuditHead reported;
   while (!recorder.empty()) {

@@ -4,6 +4,7 @@
  */
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -18,6 +19,8 @@ struct Caller {
   std::string user;
   std::optional<Role> role;
   std::string peer; /**< address and port that the request came from */
+  /** When it asked, no later than that. */
+  std::chrono::steady_clock::time_point asked = std::chrono::steady_clock::now();
 };
 
 /** `x-role` and `x-authority` of spec/openapi.yaml. */

@@ -89,7 +89,9 @@ void Api::follow_kernel() {
     json message = event_json(event);
     spdlog::info("kernel: {}", message.dump());
     stream_.send_text(message);
-    if (event.kind == ILK_EVENT_VERDICT) {
+    // That the kernel stopped is in the record of the STOP, of which there may be thousands a second.
+    const bool stopped = event.value[1] == ILK_REQUEST_STOP && event.value[3] == ILK_VERDICT_ACCEPTED;
+    if (event.kind == ILK_EVENT_VERDICT && !stopped) {
       AuditEntry entry = context_.entry({}, AuditKind::verdict, std::move(message));
       entry.actor = audit_actor::kernel;
       entry.tick = event.tick;

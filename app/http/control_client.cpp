@@ -42,7 +42,6 @@ bool ControlClient::send(Command command) {
           each.held = view().moment(steady_clock::now());
         } else if constexpr (std::is_same_v<decltype(each), Approval&>) {
           each.held = view().moment(steady_clock::now());
-          each.deadline = steady_clock::now() + approval_timeout;
         }
       },
       command);

@@ -188,7 +188,7 @@ void Navigation::track(PeerId peer, const igtl::Track& wish) {
 void Navigation::lose(const igtl::Peer& peer, const std::string& reason) {
   announce("closed", peer, reason);
   sessions_.erase(peer.id);
-  std::erase_if(tasks_, [&](const Task& task) { return task.peer == peer.id; });
+  std::erase_if(tasks_, [&](const WaitingWish& task) { return task.peer == peer.id; });
   if (!mandate_ || mandate_->peer != peer.id) {
     return;
   }
@@ -283,11 +283,13 @@ tl::expected<Caller, Problem> Navigation::mandate_of(PeerId peer) const {
          .expected = "the role of the controller",
          .next_step = "Whoever holds the motion authority gives it in the console's panel Navigation."});
   }
-  return mandate_->caller;
+  Caller caller = mandate_->caller;
+  caller.asked = std::chrono::steady_clock::now();
+  return caller;
 }
 
 /** Whether somebody asked for a stop after it had asked for motion. */
-bool Navigation::is_overtaken(const Task& task) const {
+bool Navigation::is_overtaken(const WaitingWish& task) const {
   return asks_for_motion(task.wish) && context_.control.stops() != task.stops;
 }
 
@@ -298,7 +300,7 @@ asio::awaitable<void> Navigation::work() {
       co_await news_.async_wait(navigation_result);
       continue;
     }
-    const Task task = std::move(tasks_.front());
+    const WaitingWish task = std::move(tasks_.front());
     tasks_.pop_front();
     igtl::Outcome outcome;
     if (const auto caller = mandate_of(task.peer); !caller) {

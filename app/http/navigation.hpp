@@ -89,7 +89,7 @@ class Navigation {
   };
 
   /** A wish that waits for its turn. */
-  struct Task {
+  struct WaitingWish {
     igtl::PeerId peer = 0;
     std::string device;
     igtl::Wish wish;
@@ -134,7 +134,7 @@ class Navigation {
   void tell_what_is_due(SteadyTime now);
   void tell_tracking(SteadyTime now);
   [[nodiscard]] bool is_moving() const;
-  [[nodiscard]] bool is_overtaken(const Task& task) const;
+  [[nodiscard]] bool is_overtaken(const WaitingWish& task) const;
   [[nodiscard]] igtl::RobotState state() const;
 
   const Context& context_;
@@ -142,7 +142,7 @@ class Navigation {
   igtl::Hub hub_;
   std::optional<Mandate> mandate_;
   std::vector<std::uint32_t> orphans_; /**< proposals of controllers that were lost */
-  std::deque<Task> tasks_;
+  std::deque<WaitingWish> tasks_;
   boost::asio::steady_timer news_; /**< cancelled when there is a task */
   std::map<igtl::PeerId, Session> sessions_;
   Targeting targeting_;

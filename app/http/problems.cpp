@@ -16,6 +16,20 @@ Problem not_found(const std::string& what, const std::string& expected) {
           .expected = expected};
 }
 
+bool has_waited_too_long(std::chrono::steady_clock::time_point asked) {
+  return std::chrono::steady_clock::now() - asked > approval_timeout;
+}
+
+Problem too_late() {
+  return {
+      .status = Status::service_unavailable,
+      .code = "LATE",
+      .detail =
+          "It waited for more than a second, or the robot was stopped after it was sent. Nothing of it was "
+          "done.",
+      .next_step = "Look at the robot, and ask again."};
+}
+
 Problem no_kernel(const std::string& detail) {
   return {.status = Status::service_unavailable,
           .code = "NO_KERNEL",

@@ -21,6 +21,12 @@ Problem not_found(const std::string& what, const std::string& expected);
 /** 401 LOGIN. */
 Problem login_needed();
 
+/** Whether whoever asked then has given up since, so that nothing may come into force by it. */
+bool has_waited_too_long(std::chrono::steady_clock::time_point asked);
+
+/** 503 LATE: it waited for too long, or a STOP came after it. */
+Problem too_late();
+
 /** 503 NO_KERNEL. */
 Problem no_kernel(const std::string& detail);
 

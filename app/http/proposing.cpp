@@ -69,7 +69,7 @@ boost::asio::awaitable<tl::expected<Proposal, Problem>> propose(const Context& c
   if (const auto kernel = context.need_present_state(); !kernel) {
     co_return fail(kernel.error());
   }
-  auto made = context.book.propose(std::move(task), context.view());
+  auto made = context.book.propose(std::move(task), context.view(), caller.asked);
   if (made && made->work<BiopsyTask>() != nullptr) {
     context.biopsy.begin(made->id);
   }

@@ -29,9 +29,6 @@ using asio::ip::tcp;
 constexpr std::chrono::seconds request_timeout{30};
 constexpr std::chrono::seconds answer_timeout{10};
 constexpr std::chrono::seconds drain_timeout{1};
-/** From the first byte of a request until this thread looks at it: after that whoever sent it has given up.
- */
-constexpr std::chrono::seconds longest_hold_up{1};
 constexpr std::size_t drain_bytes = 4u << 20u;
 
 void log_transaction(const Request& request, const Caller& caller, Status status) {
@@ -43,14 +40,6 @@ void log_transaction(const Request& request, const Caller& caller, Status status
 bool only_ends(std::string_view path) {
   return path.ends_with("/disable") || path.ends_with("/abort") || path.ends_with("/reject") ||
          path == "/api/logout" || path == "/api/authority/release";
-}
-
-Problem too_late() {
-  return {
-      .status = Status::service_unavailable,
-      .code = "LATE",
-      .detail = "The app stood still, or the robot was stopped, after this was sent. Nothing of it was done.",
-      .next_step = "Look at the robot, and ask again."};
 }
 
 Problem malformed_path() {
@@ -113,9 +102,9 @@ void Server::admit(Guest guest) {
   if (!place || !socket) {
     return;
   }
-  auto connection =
-      std::make_shared<Connection>(Connection{beast::tcp_stream(std::move(*socket)), guest.protocol, *place,
-                                              std::move(guest.peer), guest.known, is_late(guest.came)});
+  auto connection = std::make_shared<Connection>(Connection{beast::tcp_stream(std::move(*socket)),
+                                                            guest.protocol, *place, std::move(guest.peer),
+                                                            guest.known, guest.came, is_late(guest.came)});
   const auto listed = connections_.insert(connections_.end(), connection);
   asio::co_spawn(executor_, serve(connection), [this, listed](const std::exception_ptr& thrown) {
     connections_.erase(listed);
@@ -127,7 +116,7 @@ void Server::admit(Guest guest) {
 
 /** Whoever sent it has given up since, or somebody has stopped the robot. */
 bool Server::is_late(std::chrono::steady_clock::time_point came) const {
-  return std::chrono::steady_clock::now() - came > longest_hold_up ||
+  return has_waited_too_long(came) ||
          came.time_since_epoch() <= mailbox_.last_stop.load(std::memory_order_relaxed);
 }
 
@@ -287,10 +276,11 @@ asio::awaitable<AnyResponse> Server::respond(const Request& request, Connection&
 }
 
 asio::awaitable<Response> Server::respond_api(const Request& request, Connection& connection) {
-  const auto caller = co_await api_.caller_of(request, connection.peer);
+  auto caller = co_await api_.caller_of(request, connection.peer);
   if (!caller) {
     co_return problem_response(caller.error());
   }
+  caller->asked = connection.came;
   connection.known = connection.known || caller->session != 0;
   const Reply reply = co_await api_.route(request, *caller);
   log_transaction(request, *caller, reply ? reply->status : reply.error().status);

@@ -61,9 +61,10 @@ class Server {
     boost::beast::tcp_stream stream;
     boost::asio::ip::tcp protocol;
     Place place;
-    std::string peer; /**< address and port of the client */
-    bool known;       /**< somebody who was logged in has used it */
-    bool late;        /**< nobody expects its first request to be carried out any more */
+    std::string peer;                           /**< address and port of the client */
+    bool known;                                 /**< somebody who was logged in has used it */
+    std::chrono::steady_clock::time_point came; /**< its first request, no later than that */
+    bool late;                                  /**< nobody expects that request to be carried out any more */
     boost::beast::flat_buffer buffer = {};
     bool waiting = true; /**< for the rest of a request, hence free to be closed */
     bool closed = false; /**< to make room for another */

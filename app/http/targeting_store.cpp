@@ -59,9 +59,7 @@ void set_targeting(Transaction& transaction, const Targeting& before, const Targ
 
 boost::asio::awaitable<tl::expected<Alignment, Problem>> aligned(const Context& context,
                                                                  Targeting targeting) {
-  auto work = [robot = &context.robot, targeting = std::move(targeting)] {
-    return alignment_with(*robot, targeting);
-  };
+  auto work = [robot = &context.robot, targeting] { return alignment_with(*robot, targeting); };
   auto found = co_await context.work.run(std::move(work));
   if (!found) {
     co_return fail(found.error());

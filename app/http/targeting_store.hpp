@@ -26,7 +26,8 @@ void set_targeting(Transaction& transaction, const Targeting& before, const Targ
 
 /** As `alignment_with`, outside of the network thread: a search for the positions of a chain of joints takes
  * a tenth of a second. Also 503 OVERLOADED of the pool. */
-boost::asio::awaitable<tl::expected<Alignment, Problem>> aligned(const Context& context, Targeting targeting);
+boost::asio::awaitable<tl::expected<Alignment, Problem>> aligned(const Context& context,
+                                                                 const Targeting& targeting);
 
 /** The present values, read outside of the network thread. */
 boost::asio::awaitable<tl::expected<Targeting, Problem>> present_targeting(const Context& context);

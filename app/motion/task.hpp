@@ -137,7 +137,7 @@ struct Approval {
   Moment held; /**< when a jog began */
 };
 
-/** For which an approval may be on its way. */
+/** For which an approval may be on its way, from when somebody gave it. */
 constexpr std::chrono::milliseconds approval_timeout{1000};
 
 /** Whoever jogs still holds on. */

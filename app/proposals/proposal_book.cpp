@@ -9,6 +9,9 @@
 #include "proposals/task_words.hpp"
 
 namespace interlock {
+
+using std::chrono::steady_clock;
+
 namespace {
 
 template <typename... Each>
@@ -54,7 +57,8 @@ std::vector<std::uint32_t> slots_of(const Robot& robot, const Work& work) {
 ProposalBook::ProposalBook(const Robot& robot, const ilk_config_t& config, Send send, Clock clock)
     : robot_(robot), config_(config), send_(std::move(send)), clock_(std::move(clock)) {}
 
-tl::expected<Proposal, Refusal> ProposalBook::propose(Task task, const ControlView& view) {
+tl::expected<Proposal, Refusal> ProposalBook::propose(Task task, const ControlView& view,
+                                                      steady_clock::time_point asked) {
   std::vector<std::uint32_t> slots = slots_of(robot_, task.work);
   for (const std::uint32_t slot : slots) {
     if (robot_.at_slot(slot) == nullptr) {
@@ -66,7 +70,7 @@ tl::expected<Proposal, Refusal> ProposalBook::propose(Task task, const ControlVi
     return tl::make_unexpected(checked.error());
   }
   if (approves(proposal.task->source)) {
-    return approve(proposal);
+    return approve(proposal, asked);
   }
   become(proposal, ProposalState::checked, "Every check passed. Waits for somebody to approve it.");
   return proposal;
@@ -149,9 +153,10 @@ tl::expected<Proposal*, Refusal> ProposalBook::waiting(std::uint32_t id) {
   return proposal;
 }
 
-tl::expected<Proposal, Refusal> ProposalBook::approve(std::uint32_t id, const ControlView& view) {
+tl::expected<Proposal, Refusal> ProposalBook::approve(std::uint32_t id, const ControlView& view,
+                                                      steady_clock::time_point asked) {
   return waiting(id).and_then([&](Proposal* proposal) {
-    return check(*proposal, view).and_then([&] { return approve(*proposal); });
+    return check(*proposal, view).and_then([&] { return approve(*proposal, asked); });
   });
 }
 
@@ -181,11 +186,11 @@ void ProposalBook::end_stale() {
 }
 
 /** Hands the task over; what it replaces ends. */
-tl::expected<Proposal, Refusal> ProposalBook::approve(Proposal& proposal) {
+tl::expected<Proposal, Refusal> ProposalBook::approve(Proposal& proposal, steady_clock::time_point asked) {
   become(proposal, ProposalState::checked, "Every check passed.");
   // Kept before it is handed over: the control thread may take it at once.
   approved_.push_back(proposal.task);
-  if (!send_(Approval{proposal.task, 0, {}, {}})) {
+  if (!send_(Approval{proposal.task, 0, asked + approval_timeout, {}})) {
     return tl::make_unexpected(
         refuse(proposal, overloaded("Try again; if it happens again, report it with the log.")));
   }

@@ -7,6 +7,7 @@
  */
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -51,8 +52,12 @@ class ProposalBook {
    * refused with MODE_HOME while homing is open, with MODE_PATH while another mode is; STALE what followed
    * from targeting that has changed. A refused task stays in the book; one for a slot without an axis (AXIS)
    * does not.
+   *
+   * @param asked when its author asked for it: one that is approved is good for `approval_timeout` from then on
    */
-  tl::expected<Proposal, Refusal> propose(Task task, const ControlView& view);
+  tl::expected<Proposal, Refusal> propose(
+      Task task, const ControlView& view,
+      std::chrono::steady_clock::time_point asked = std::chrono::steady_clock::now());
 
   /** Hands an image to the open biopsy; false when none is open, or the control thread takes none now. */
   bool show_image(const NeedleImage& image);
@@ -61,7 +66,9 @@ class ProposalBook {
   bool renew(std::uint32_t id);
 
   /** Checks a proposal that waits for it anew, and approves it: NOT_WAITING when none of that number does. */
-  tl::expected<Proposal, Refusal> approve(std::uint32_t id, const ControlView& view);
+  tl::expected<Proposal, Refusal> approve(
+      std::uint32_t id, const ControlView& view,
+      std::chrono::steady_clock::time_point asked = std::chrono::steady_clock::now());
 
   /** Ends a proposal that waits for approval, as `by` wants none of it: NOT_WAITING when none of that number
    * waits. */
@@ -115,7 +122,7 @@ class ProposalBook {
 
  private:
   Proposal& keep(Task task, std::vector<std::uint32_t> slots, const ControlView& view);
-  tl::expected<Proposal, Refusal> approve(Proposal& proposal);
+  tl::expected<Proposal, Refusal> approve(Proposal& proposal, std::chrono::steady_clock::time_point asked);
   [[nodiscard]] tl::expected<void, Refusal> check_current(const Task& task) const;
   [[nodiscard]] tl::expected<void, Refusal> check_alone() const;
   tl::expected<void, Refusal> check(Proposal& proposal, const ControlView& view);

@@ -6,35 +6,33 @@
 
 namespace interlock {
 
-using Code = TrajectoryError::Code;
-
-std::string_view code_name(Code code) {
+std::string_view code_name(TrajectoryError::Code code) {
   switch (code) {
-    case Code::not_finite:
+    case TrajectoryError::Code::not_finite:
       return "NOT_FINITE";
-    case Code::out_of_range:
+    case TrajectoryError::Code::out_of_range:
       return "OUT_OF_RANGE";
-    case Code::too_fast:
+    case TrajectoryError::Code::too_fast:
       return "TOO_FAST";
-    case Code::empty:
+    case TrajectoryError::Code::empty:
       return "EMPTY";
-    case Code::too_large:
+    case TrajectoryError::Code::too_large:
       return "TOO_LARGE";
-    case Code::bad_header:
+    case TrajectoryError::Code::bad_header:
       return "BAD_HEADER";
-    case Code::unknown_axis:
+    case TrajectoryError::Code::unknown_axis:
       return "UNKNOWN_AXIS";
-    case Code::repeated_axis:
+    case TrajectoryError::Code::repeated_axis:
       return "REPEATED_AXIS";
-    case Code::wrong_unit:
+    case TrajectoryError::Code::wrong_unit:
       return "WRONG_UNIT";
-    case Code::wrong_columns:
+    case TrajectoryError::Code::wrong_columns:
       return "WRONG_COLUMNS";
-    case Code::not_a_number:
+    case TrajectoryError::Code::not_a_number:
       return "NOT_A_NUMBER";
-    case Code::unsorted_times:
+    case TrajectoryError::Code::unsorted_times:
       return "UNSORTED_TIMES";
-    case Code::no_solution:
+    case TrajectoryError::Code::no_solution:
       return "NO_SOLUTION";
     default:
       return "UNKNOWN";
@@ -52,11 +50,11 @@ std::string TrajectoryError::message() const {
 TrajectoryResult<void> check_within(std::string_view column, double value, double lowest, double highest) {
   const std::string range = number_text(lowest) + " to " + number_text(highest);
   if (!std::isfinite(value)) {
-    return tl::unexpected(
-        TrajectoryError{Code::not_finite, 0, std::string(column), "not a finite number", range});
+    return tl::unexpected(TrajectoryError{TrajectoryError::Code::not_finite, 0, std::string(column),
+                                          "not a finite number", range});
   }
   if (value < lowest || value > highest) {
-    return tl::unexpected(TrajectoryError{Code::out_of_range, 0, std::string(column),
+    return tl::unexpected(TrajectoryError{TrajectoryError::Code::out_of_range, 0, std::string(column),
                                           number_text(value) + " is out of range", range});
   }
   return {};

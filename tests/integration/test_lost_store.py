@@ -157,9 +157,13 @@ def test_a_flood_of_STOPs_without_login_is_a_few_records_that_count_each(short_t
             "SELECT count(*), sum(1 + coalesce(json_extract(detail, '$.unrecorded'), 0)), "
             "24 * 3600 * (julianday(max(time)) - julianday(min(time))) FROM audit WHERE kind = 'stop'"
         ).fetchone()
+        verdicts = database.execute(
+            "SELECT count(*) FROM audit WHERE kind = 'verdict' AND json_extract(detail, '$.request') = 'STOP'"
+        ).fetchone()
     records, counted, seconds = found
     assert counted == stops
     assert records <= 3 + seconds / 5
+    assert verdicts == (0,)
 
 
 def test_programs_name_the_option_for_a_new_store() -> None:

@@ -53,6 +53,20 @@ def test_STOP_acts_without_the_store_and_outlives_a_proposal_that_waits_for_it(s
     assert all(each["state"] != "approved" for each in robot.api.get("/api/proposals").json())
 
 
+def test_a_move_that_waited_for_the_store_for_more_than_a_second_is_refused(stack: StackFactory) -> None:
+    robot = stack(speed=1)
+    to_motion(robot)
+    proposing = Proposing(robot)
+    with busy_store(robot):
+        proposing.start()
+        begun = robot.control("status")["tick"]
+        wait_until("a second has passed", lambda: robot.control("status")["tick"] > begun + 1500)
+        assert proposing.is_alive()
+    proposing.join()
+    assert (proposing.answer.status_code, proposing.answer.json()["code"]) == (503, "LATE")
+    assert robot.api.get("/api/proposals").json() == []
+
+
 def test_a_move_is_recorded_before_it_is_acknowledged(stack: StackFactory) -> None:
     robot = stack()
     to_motion(robot)

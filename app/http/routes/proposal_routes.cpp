@@ -243,7 +243,7 @@ Answering ProposalRoutes::approve(const Call& call) const {
   if (const auto kernel = context_.need_present_state(); !kernel) {
     co_return fail(kernel.error());
   }
-  co_return context_.book.approve(id, context_.view())
+  co_return context_.book.approve(id, context_.view(), call.caller.asked)
       .map([](const Proposal& approved) { return Success{Status::ok, to_json(approved)}; })
       .map_error(refused);
 }
@@ -254,11 +254,8 @@ Answering ProposalRoutes::reject(const Call& call) const {
     co_return shown;
   }
   const std::uint32_t id = *number_in(call.parameters[0]);
-  json asked{{"rejected", id}};
-  const auto announced = co_await context_.announce(call.caller, AuditKind::proposal, std::move(asked));
-  if (!announced) {
-    co_return fail(announced.error());
-  }
+  // Better late than never: it waits for no store.
+  context_.store.note(context_.entry(call.caller, AuditKind::proposal, {{"rejected", id}}));
   co_return context_.book.reject(id, call.caller.user)
       .map([](const Proposal& rejected) { return Success{Status::ok, to_json(rejected)}; })
       .map_error(refused);

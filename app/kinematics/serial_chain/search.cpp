@@ -112,8 +112,8 @@ struct Search::Findings {
   }
 };
 
-Search::Search(KDL::Chain chain, std::span<const ChainJoint> joints)
-    : chain_(std::move(chain)), joints_(joints.begin(), joints.end()) {
+Search::Search(const KDL::Chain& chain, std::span<const ChainJoint> joints)
+    : chain_(chain), joints_(joints.begin(), joints.end()) {
   std::mt19937_64 generator(1);
   for (int sample = 0; sample < search_starts; ++sample) {
     const KDL::JntArray anywhere = start(sample, generator);

@@ -45,7 +45,7 @@ KDL::Frame forward(const KDL::Chain& chain, const KDL::JntArray& joints, int seg
 class Search {
  public:
   /** `joints` are those of the chain, without one that was added at its end and turns freely. */
-  Search(KDL::Chain chain, std::span<const ChainJoint> joints);
+  Search(const KDL::Chain& chain, std::span<const ChainJoint> joints);
 
   [[nodiscard]] const KDL::Chain& chain() const { return chain_; }
 
