@@ -58,7 +58,7 @@ void set_targeting(Transaction& transaction, const Targeting& before, const Targ
 }
 
 boost::asio::awaitable<tl::expected<Alignment, Problem>> aligned(const Context& context,
-                                                                 Targeting targeting) {
+                                                                 const Targeting& targeting) {
   auto work = [robot = &context.robot, targeting] { return alignment_with(*robot, targeting); };
   auto found = co_await context.work.run(std::move(work));
   if (!found) {

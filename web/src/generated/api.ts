@@ -1559,7 +1559,7 @@ export interface components {
         /** @enum {string} */
         LogLevel: "debug" | "info" | "warning" | "error" | "critical";
         UserName: string;
-        /** @description Not the name of the user. */
+        /** @description Not the name of the user, and none that is guessed first: few different characters, a run of the keyboard or a common word with digits (422 INVALID). */
         NewPassword: string;
         Login: {
             name: string;
