@@ -71,7 +71,9 @@ def ask_at_random(robot: Stack, operation: schemathesis.APIOperation, mode: Gene
     @given(case=operation.as_strategy(mode))
     def ask(case: schemathesis.Case) -> None:
         response = case.call(base_url=robot.url, headers={"Cookie": cookie})
-        assert response.status_code < 500, response.text
+        # On a busy machine it may have waited for more than a second for its record.
+        late = response.status_code == 503 and response.json()["code"] == "LATE"
+        assert response.status_code < 500 or late, response.text
         case.validate_response(
             response,
             checks=[status_code_conformance, content_type_conformance, response_schema_conformance],
