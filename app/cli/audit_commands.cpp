@@ -13,6 +13,7 @@
 #include "store/audit_check.hpp"
 #include "store/audit_file.hpp"
 #include "store/noted_heads.hpp"
+#include "store/schema.hpp"
 #include "text/printable.hpp"
 
 namespace interlock::cli {
@@ -73,7 +74,13 @@ Stored<Verified> verify_in_parts(Store& store, AuditCheck check) {
     }
     more = *gone_on;
   }
-  return check.result();
+  if (Verified verified = check.result(); !verified) {
+    return verified;
+  }
+  // Only now: a record that was changed behind a trigger that was dropped is named first.
+  const Stored<void> defined =
+      store.read([](Transaction& transaction) { return check_definitions(transaction.database()); });
+  return defined.map([&] { return check.result(); });
 }
 
 /** The records that are to go, in their file; the last of them. Nothing when there are none. */

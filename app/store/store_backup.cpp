@@ -54,9 +54,14 @@ class Unfinished {
   fs::path file_;
 };
 
-Stored<void> must_be_free(const fs::path& file) {
+/** Also a link to nothing. */
+bool is_there(const fs::path& file) {
   std::error_code ignored;
-  if (fs::exists(fs::symlink_status(file, ignored))) {
+  return fs::exists(fs::symlink_status(file, ignored));
+}
+
+Stored<void> must_be_free(const fs::path& file) {
+  if (is_there(file)) {
     return tl::unexpected(StoreError{StoreError::Kind::exists, file.string() + " is there already", "",
                                      "a name that is free", "choose another, or move that file away"});
   }
@@ -111,8 +116,13 @@ Stored<void> settle(const fs::path& store) {
   }
 }
 
-/** Gives the store a second name, and takes away what belongs to it alone. */
+/** Gives the store a second name, and takes away what belongs to it alone. What is not a file is moved. */
 Stored<void> keep_beside(const fs::path& store, const fs::path& kept) {
+  if (is_no_regular_file(store)) {
+    return ::rename(store.c_str(), kept.c_str()) == 0
+               ? Stored<void>()
+               : tl::unexpected(file_error(kept, "cannot be made", errno));
+  }
   if (const Stored<void> settled = settle(store); !settled) {
     return settled;
   }
@@ -130,6 +140,9 @@ Stored<void> keep_beside(const fs::path& store, const fs::path& kept) {
 
 /** The head of a store that is about to be replaced, null when it cannot be read any more. */
 nlohmann::json head_of(const fs::path& file) {
+  if (is_no_regular_file(file)) {
+    return nullptr;
+  }
   try {
     SQLite::Database database(file.string(), SQLite::OPEN_READWRITE, store_patience_ms);
     SQLite::Statement head(database, "SELECT number, hash FROM audit ORDER BY number DESC LIMIT 1");
@@ -188,7 +201,7 @@ Stored<Store> begin_new_store(const fs::path& store, const StoreError& reason, U
     if (!lock) {
       return tl::unexpected(lock.error());
     }
-    if (fs::exists(store)) {
+    if (is_there(store)) {
       if (const Stored<void> kept = keep_beside(store, with_suffix(store, name_suffix(now))); !kept) {
         return tl::unexpected(kept.error());
       }
@@ -245,7 +258,7 @@ Stored<Restored> restore_store(const fs::path& backup, const fs::path& store, Ut
     return tl::unexpected(summary.error());
   }
   Restored restored{*summary, std::nullopt};
-  const bool replaces = fs::exists(store);
+  const bool replaces = is_there(store);
   const Stored<AuditHead> head =
       prepare(unfinished.file(),
               {{"action", "store"},

@@ -2,17 +2,18 @@
 that the recorder noted show what is missing."""
 
 import contextlib
+import os
 import re
 import shutil
 import sqlite3
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 from bare_kernel import BIN
 from stack import Output, Stack, start_interlock
-from test_run import DONE, PROCESS_ENDED, REFUSED
+from test_run import DONE, PRECONDITION, PROCESS_ENDED, REFUSED
 from test_store_cli import Store
 
 UNGUARDED = (
@@ -143,6 +144,57 @@ def test_a_role_that_was_changed_in_SQL_is_named_and_stops_the_start(installatio
     assert verified.returncode == REFUSED
     assert "user bob has another role" in verified.stderr
     assert "user bob has another role" in installation.refused_start()
+
+
+@pytest.mark.parametrize(
+    ("sql", "problem"),
+    [
+        ("DROP TABLE sessions", "table sessions is missing"),
+        ("DROP TABLE settings", "table settings is missing"),
+        ("DROP TABLE audit_anchor", "table audit_anchor is missing"),
+        (UNGUARDED, "trigger audit_has_no_gaps is missing"),
+        ("PRAGMA user_version = 0", "is not a sound store of schema 0"),
+        ("PRAGMA user_version = 1", "table audit_anchor does not belong there"),
+        ("PRAGMA user_version = -1", "has schema -1"),
+    ],
+)
+def test_a_damaged_schema_stops_the_start(installation: Installation, sql: str, problem: str) -> None:
+    installation.store.execute(sql)
+    assert problem in installation.refused_start()
+    verified = installation.verify()
+    assert verified.returncode == REFUSED
+    assert problem in verified.stderr
+
+
+@pytest.mark.parametrize("make", [Path.mkdir, lambda path: os.mkfifo(path)])
+def test_a_damaged_store_that_is_no_file_stops_the_start_and_is_replaced(
+    installation: Installation, make: Callable[[Path], None]
+) -> None:
+    backup = installation.directory / "backup.db"
+    assert installation.store("store", "backup", backup).returncode == DONE
+    installation.delete()
+    make(installation.store.file)
+    assert "is not a regular file" in installation.refused_start()
+    restored = installation.store("store", "restore", backup)
+    assert restored.returncode == DONE, restored.stderr
+    assert "bob" in installation.store.users()
+
+
+def test_a_folder_in_place_of_the_noted_heads_is_an_error_in_verify(installation: Installation) -> None:
+    installation.heads.unlink()
+    installation.heads.mkdir()
+    verified = installation.verify()
+    assert verified.returncode == PRECONDITION
+    assert "is not a regular file" in verified.stderr
+
+
+def test_a_damaged_hash_sends_no_control_characters_to_the_terminal(installation: Installation) -> None:
+    installation.store.execute(
+        UNGUARDED + "UPDATE audit SET hash = char(27) || ']0;title' || char(7) WHERE number = 2"
+    )
+    text = installation.refused_start()
+    assert "\\x1b]0;title\\x07" in text
+    assert "\x1b]0" not in text
 
 
 def test_a_flood_of_STOPs_without_login_is_a_few_records_that_count_each(short_tmp_path: Path) -> None:

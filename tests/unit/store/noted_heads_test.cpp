@@ -181,6 +181,14 @@ TEST_F(NotedHeadsTest, AFileIsReadWithoutTheLineThatWasCutOff) {
   EXPECT_EQ(heads->back().head, (AuditHead{9, hash}));
 }
 
+TEST_F(NotedHeadsTest, AFolderInPlaceOfTheFileIsNotTakenForNoHeads) {
+  const fs::path file = folder_ / "audit-heads";
+  fs::create_directory(file);
+  const auto heads = read_noted_heads(file);
+  ASSERT_FALSE(heads);
+  EXPECT_THAT(heads.error().message(), HasSubstr("audit-heads is not a regular file"));
+}
+
 TEST_F(NotedHeadsTest, NoRecorderIsNoReasonToWait) {
   EXPECT_FALSE(report_head(folder_ / "nobody.sock", {7, std::string(64, 'a')}));
   EXPECT_FALSE(report_head(std::string(200, 'x'), {7, std::string(64, 'a')}));
