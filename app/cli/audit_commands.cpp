@@ -5,10 +5,8 @@
 #include <chrono>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <system_error>
 #include <utility>
 
-#include "cli/record_command.hpp"
 #include "store/audit.hpp"
 #include "store/audit_check.hpp"
 #include "store/audit_file.hpp"
@@ -39,13 +37,6 @@ Result<void> tell(const Stored<Verified>& verified, const std::string& believed,
   output << (*verified)->number << " records, an unbroken chain, " << believed << ", head "
          << (*verified)->hash << '\n';
   return {};
-}
-
-/** The recorder's file of the heads that it noted: of a service, or of `interlock run`. */
-fs::path heads_file(const fs::path& state) {
-  std::error_code ignored;
-  const fs::path of_service = fs::path(state.string() + "-recordings") / noted_heads_file_name;
-  return fs::exists(of_service, ignored) ? of_service : recordings_folder(state) / noted_heads_file_name;
 }
 
 /** What the noted heads show of a chain that contains them all. */

@@ -169,13 +169,17 @@ std::optional<AuditBreak> AuditCheck::compare_heads() const {
 }
 
 /** Whether heads that follow one another belong to a store in whose place another one was put: by a record of
- * that, after record `after` and not after `until`, which knows of them all. */
+ * that, after record `after` and not after `until`, which knows of them all.
+ *
+ * The store of the last head that was found went on to the first missing ones, so the record cannot come
+ * after one of them. From the first one with a lower number on they belong to a store that began anew in
+ * between. */
 bool AuditCheck::was_replaced(const NotedHeads& missing, std::int64_t after, std::int64_t until) const {
-  const auto lowest =
-      std::ranges::min_element(missing, {}, [](const auto& noted) { return noted.head.number; });
+  const std::int64_t first = missing.front().head.number;
+  const std::int64_t lowest = first > after ? first : std::numeric_limits<std::int64_t>::max();
   const AuditHead& last = missing.back().head;
   return std::ranges::any_of(replacements_, [&](const Replacement& each) {
-    const bool in_between = each.number > after && each.number <= until && each.number <= lowest->head.number;
+    const bool in_between = each.number > after && each.number <= until && each.number <= lowest;
     return in_between && (!each.replaced || each.replaced->number > last.number || *each.replaced == last);
   });
 }

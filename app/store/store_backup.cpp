@@ -154,13 +154,13 @@ nlohmann::json head_of(const fs::path& file) {
   }
 }
 
-/** Brings a copy up to date and records what it is for. */
-Stored<AuditHead> prepare(const fs::path& copy, const nlohmann::json& detail, UtcTime now) {
+/** Brings a copy up to date, records what it is for, and checks it as the next start will. */
+Stored<AuditHead> prepare(const fs::path& copy, const nlohmann::json& detail, UtcTime now, NotedHeads heads) {
   Stored<Store> store = Store::open(copy);
   if (!store) {
     return tl::unexpected(store.error());
   }
-  return store->transact([&](Transaction& transaction) -> Stored<AuditHead> {
+  const auto head = store->transact([&](Transaction& transaction) -> Stored<AuditHead> {
     for (const User& user : Users(transaction).list()) {
       Sessions(transaction).end_all_of_user(user.name);
     }
@@ -169,6 +169,7 @@ Stored<AuditHead> prepare(const fs::path& copy, const nlohmann::json& detail, Ut
             .append({now, std::nullopt, audit_actor::command_line, std::nullopt, AuditKind::restore, detail});
     return AuditHead{record.number, record.hash};
   });
+  return head ? store->check(std::move(heads)).map([&] { return *head; }) : head;
 }
 
 /** Where the store that is replaced at that time goes. */
@@ -236,7 +237,7 @@ Stored<StoreSummary> backup_store(const fs::path& store, const fs::path& target)
   return named ? summary : tl::unexpected(named.error());
 }
 
-Stored<Restored> restore_store(const fs::path& backup, const fs::path& store, UtcTime now) {
+Stored<Restored> restore_store(const fs::path& backup, const fs::path& store, UtcTime now, NotedHeads heads) {
   const Stored<void> there =
       must_exist(backup, "backup").and_then([&] { return make_private_folder(store.parent_path()); });
   if (!there) {
@@ -265,9 +266,18 @@ Stored<Restored> restore_store(const fs::path& backup, const fs::path& store, Ut
                {"backup", backup.filename().string()},
                {"backup_head", {{"number", summary->head.number}, {"hash", summary->head.hash}}},
                {"replaced_head", replaces ? head_of(store) : nlohmann::json()}},
-              now);
+              now, std::move(heads));
   if (!head) {
-    return tl::unexpected(head.error());
+    StoreError refused = head.error();
+    if (refused.kind == StoreError::Kind::damaged) {
+      // Both names, as the copy's is gone.
+      refused.problem = "a start would refuse the backup " + backup.string() + ": " + refused.problem;
+      refused.next_step =
+          "nothing was replaced; choose another backup, or begin anew, without its users, settings and "
+          "audit, "
+          "with --new-store";
+    }
+    return tl::unexpected(refused);
   }
   restored.summary.head = *head;
   if (replaces) {

@@ -180,6 +180,22 @@ def test_a_damaged_store_that_is_no_file_stops_the_start_and_is_replaced(
     assert "bob" in installation.store.users()
 
 
+def test_a_backup_that_the_next_start_would_refuse_is_not_restored(installation: Installation) -> None:
+    backup = installation.directory / "backup.db"
+    assert installation.store("store", "backup", backup).returncode == DONE
+    with installation.run() as robot:
+        robot.client_of_new("eve", "viewer")
+    shutil.copy(backup, installation.store.file)
+    before = installation.store.file.read_bytes()
+    refused = installation.store("store", "restore", backup)
+    assert refused.returncode == REFUSED
+    assert f"a start would refuse the backup {backup}: " in refused.stderr
+    assert "the recorder noted" in refused.stderr
+    assert "nothing was replaced" in refused.stderr
+    assert installation.store.file.read_bytes() == before
+    assert not list(installation.store.state.glob("interlock.db.re*"))
+
+
 def test_a_folder_in_place_of_the_noted_heads_is_an_error_in_verify(installation: Installation) -> None:
     installation.heads.unlink()
     installation.heads.mkdir()

@@ -63,6 +63,16 @@ class NotedHeadsTest : public StoreTest {
     EXPECT_THAT(verified.error().problem, HasSubstr(problem));
   }
 
+  /** To put them back as a careful forger does. */
+  [[nodiscard]] std::string triggers_of_the_audit() const {
+    SQLite::Database database(file_.string());
+    return database
+        .execAndGet(
+            "SELECT group_concat(sql, '; ') || ';' FROM sqlite_schema "
+            "WHERE type = 'trigger' AND tbl_name = 'audit'")
+        .getString();
+  }
+
   NotedHeads heads_;
   fs::path backup_ = folder_ / "backup.db";
 };
@@ -121,8 +131,40 @@ TEST_F(NotedHeadsTest, ARestoreAccountsForNothingThatItDidNotReplace) {
   work(4);
   work(4);
   execute(std::string(without_triggers) + "DELETE FROM audit WHERE number > 10");
+  const auto refused = restore_store(backup_, file_, noon, heads_);
+  ASSERT_FALSE(refused) << "a start would refuse it";
+  EXPECT_EQ(refused.error().kind, StoreError::Kind::damaged);
+  EXPECT_THAT(refused.error().message(), HasSubstr("audit record 10 is missing"));
+  EXPECT_THAT(refused.error().message(), HasSubstr(backup_.string()));
   ASSERT_TRUE(restore_store(backup_, file_, noon));
   expect_broken(10, "is missing");
+}
+
+TEST_F(NotedHeadsTest, ABackupIsRestoredAfterANewStoreTookThePlace) {
+  work(4);
+  ASSERT_TRUE(backup_store(file_, backup_));
+  work(4);
+  fs::remove(file_);
+  ASSERT_TRUE(begin_new_store(file_, StoreError{StoreError::Kind::damaged, "is missing", "", "", ""}, noon));
+  work(1);
+  ASSERT_TRUE(verify()) << verify().error().problem;
+  const auto restored = restore_store(backup_, file_, noon, heads_);
+  ASSERT_TRUE(restored) << restored.error().message();
+  work(1);
+  EXPECT_TRUE(verify()) << verify().error().problem;
+}
+
+TEST_F(NotedHeadsTest, AForgedBackupIsNotRestored) {
+  work(4);
+  const NotedHeads noted = heads_;
+  const std::string triggers = triggers_of_the_audit();
+  execute(std::string(without_triggers) + "DELETE FROM audit WHERE number > 4;" + triggers);
+  work(9);
+  fs::rename(file_, backup_);
+  const auto refused = restore_store(backup_, file_, noon, noted);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message(), HasSubstr("audit record 6 is not the one that the recorder noted"));
+  EXPECT_FALSE(fs::exists(file_));
 }
 
 TEST_F(NotedHeadsTest, ANewStoreAccountsForTheOneThatWasLost) {
