@@ -56,6 +56,31 @@ class NotedHeadsTest : public StoreTest {
     });
   }
 
+  /** What the check of a sound audit says of the heads. */
+  [[nodiscard]] HeadComparison comparison() const {
+    Store store = open();
+    return seen(store, [&](Transaction& transaction) {
+      AuditCheck check(std::nullopt, heads_);
+      while (check.go_on(transaction.database(), 3)) {
+      }
+      EXPECT_TRUE(check.result());
+      return check.comparison();
+    });
+  }
+
+  /** All heads but the compared ones are excused by that record, with that doubt. */
+  void expect_excused(std::size_t compared, std::int64_t record, const std::string& action,
+                      const std::string& doubt) const {
+    const HeadComparison found = comparison();
+    EXPECT_EQ(found.compared, compared);
+    ASSERT_EQ(found.excuses.size(), 1U);
+    EXPECT_EQ(found.excuses[0].heads, heads_.size() - compared);
+    EXPECT_EQ(found.excuses[0].record.number, record);
+    EXPECT_EQ(found.excuses[0].record.action, action);
+    EXPECT_THAT(found.excuses[0].doubt, HasSubstr(doubt));
+    EXPECT_EQ(found.excuses[0].doubt.empty(), doubt.empty());
+  }
+
   void expect_broken(std::int64_t number, const std::string& problem) const {
     const Verified verified = verify();
     ASSERT_FALSE(verified);
@@ -123,6 +148,54 @@ TEST_F(NotedHeadsTest, ARestoreAccountsForWhatItReplaced) {
     work(20);
     EXPECT_TRUE(verify()) << verify().error().problem;
   }
+}
+
+TEST_F(NotedHeadsTest, HeadsThatARestoreExcusesAreNotCountedAsCompared) {
+  work(4);
+  ASSERT_TRUE(backup_store(file_, backup_));
+  work(4);
+  work(4);
+  EXPECT_EQ(comparison().compared, 3U);
+  EXPECT_TRUE(comparison().excuses.empty());
+  ASSERT_TRUE(restore_store(backup_, file_, noon, heads_));
+  expect_excused(1, 7, "store", "no head was noted since");
+  const ExcusingRecord record = comparison().excuses[0].record;
+  EXPECT_EQ(record.kind, "restore");
+  EXPECT_EQ(record.actor, "command line");
+  EXPECT_EQ(record.time, iso_8601(noon));
+  EXPECT_FALSE(record.os_user.empty());
+  work(1);
+  expect_excused(2, 7, "store", "");
+}
+
+TEST_F(NotedHeadsTest, ANewStoreExcusesNoHeadThatWasNotedAfterIt) {
+  work(4);
+  fs::remove(file_);
+  ASSERT_TRUE(begin_new_store(file_, StoreError{StoreError::Kind::damaged, "is missing", "", "", ""}, noon));
+  expect_excused(0, 1, "new store", "no head was noted since");
+  work(4);
+  expect_excused(1, 1, "new store", "");
+  heads_.front().time = iso_8601(noon + std::chrono::seconds(31));
+  expect_excused(1, 1, "new store", "head 6 was noted after it, at 2024-05-01T12:00:31.000Z");
+}
+
+TEST_F(NotedHeadsTest, HeadsOfRetiredRecordsAreNotCountedAsCompared) {
+  work(4);
+  work(4);
+  {
+    Store store = open();
+    commit(store, [](Transaction& transaction) {
+      Audit audit(transaction);
+      const AuditRecord eighth = audit.list(100).at(7);
+      audit.retire({eighth.number, eighth.hash}, {.time = noon, .tick = {}, .actor = "ann", .session = {}});
+    });
+  }
+  expect_excused(1, 11, "", "no head was noted since");
+  work(1);
+  expect_excused(2, 11, "", "");
+  const AuditHead lower{1, std::string(64, 'a')};
+  heads_.insert(heads_.begin() + 1, {{iso_8601(noon), {9, lower.hash}}, {iso_8601(noon), lower}});
+  expect_excused(2, 11, "", "it retired the records up to 8, but record 9 was noted, too");
 }
 
 TEST_F(NotedHeadsTest, ARestoreAccountsForNothingThatItDidNotReplace) {
