@@ -5,14 +5,14 @@
 #include <chrono>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <system_error>
 #include <utility>
 
-#include "cli/record_command.hpp"
+#include "cli/audit_verdict.hpp"
 #include "store/audit.hpp"
 #include "store/audit_check.hpp"
 #include "store/audit_file.hpp"
 #include "store/noted_heads.hpp"
+#include "store/schema.hpp"
 #include "text/printable.hpp"
 
 namespace interlock::cli {
@@ -27,43 +27,45 @@ Failure not_sound(const AuditBreak& broken) {
                                  printable(broken.problem) + "; keep the file, and compare it with a backup"};
 }
 
-/** The chain without a break, and how far that can be believed. */
-Result<void> tell(const Stored<Verified>& verified, const std::string& believed, std::ostream& output) {
+/** The verdict; refused where a record that excuses noted heads is not proven. */
+Result<void> tell(const AuditVerdict& verdict, bool json, std::ostream& output) {
+  if (json) {
+    // As ASCII: a terminal shows it, too.
+    output << to_json(verdict).dump(2, ' ', true, nlohmann::json::error_handler_t::replace) << '\n';
+  }
+  if (!is_proven(verdict)) {
+    return failed(
+        ExitCode::refused,
+        "the audit is not proven: " + text_of(verdict) +
+            "; see that somebody did this, and compare with a backup or the files of retired records");
+  }
+  if (!json) {
+    output << text_of(verdict) << '\n';
+  }
+  return {};
+}
+
+/** Whether the store's owner can change the file of noted heads. */
+bool have_same_owner(const fs::path& file, const fs::path& store) {
+  struct stat noted{};
+  struct stat kept{};
+  return ::stat(file.c_str(), &noted) != 0 || ::stat(store.c_str(), &kept) != 0 ||
+         noted.st_uid == kept.st_uid;
+}
+
+/** The verdict on a chain that was checked. */
+Result<AuditVerdict> verdict_on(const Stored<Verified>& verified, std::optional<ComparedHeads> heads) {
   if (!verified) {
     return tl::unexpected(failure_of(verified.error()));
   }
   if (!*verified) {
     return tl::unexpected(not_sound(verified->error()));
   }
-  output << (*verified)->number << " records, an unbroken chain, " << believed << ", head "
-         << (*verified)->hash << '\n';
-  return {};
-}
-
-/** The recorder's file of the heads that it noted: of a service, or of `interlock run`. */
-fs::path heads_file(const fs::path& state) {
-  std::error_code ignored;
-  const fs::path of_service = fs::path(state.string() + "-recordings") / noted_heads_file_name;
-  return fs::exists(of_service, ignored) ? of_service : recordings_folder(state) / noted_heads_file_name;
-}
-
-/** What the noted heads show of a chain that contains them all. */
-std::string believed_by(const NotedHeads& heads, const fs::path& file, const fs::path& store) {
-  if (heads.empty()) {
-    return "not compared with noted heads, of which there are none in " + file.string() +
-           ": records cut off or written anew do not show";
-  }
-  struct stat noted{};
-  struct stat kept{};
-  const bool same_owner =
-      ::stat(file.c_str(), &noted) != 0 || ::stat(store.c_str(), &kept) != 0 || noted.st_uid == kept.st_uid;
-  return "in agreement with the " + std::to_string(heads.size()) + " heads up to record " +
-         std::to_string(heads.back().head.number) + " that the recorder noted in " + file.string() +
-         (same_owner ? ", which the store's owner can change, too" : "");
+  return AuditVerdict{**verified, std::move(heads)};
 }
 
 /** In parts: the log of the writers is emptied between them. */
-Stored<Verified> verify_in_parts(Store& store, AuditCheck check) {
+Stored<Verified> verify_in_parts(Store& store, AuditCheck& check) {
   constexpr std::size_t part = 2000;
   for (bool more = true; more;) {
     const Stored<bool> gone_on = store.read(
@@ -73,7 +75,13 @@ Stored<Verified> verify_in_parts(Store& store, AuditCheck check) {
     }
     more = *gone_on;
   }
-  return check.result();
+  if (Verified verified = check.result(); !verified) {
+    return verified;
+  }
+  // Only now: a record that was changed behind a trigger that was dropped is named first.
+  const Stored<void> defined =
+      store.read([](Transaction& transaction) { return check_definitions(transaction.database()); });
+  return defined.map([&] { return check.result(); });
 }
 
 /** The records that are to go, in their file; the last of them. Nothing when there are none. */
@@ -94,8 +102,8 @@ Stored<std::optional<AuditHead>> move_out(Transaction& transaction, const AuditO
 Result<void> verify_audit(const AuditOptions& options, const Installation& installation,
                           std::ostream& output) {
   if (!options.file.empty()) {
-    return tell(verify_audit_file(options.file, options.expected_hash),
-                "not compared with noted heads, as a file stands for itself", output);
+    return verdict_on(verify_audit_file(options.file, options.expected_hash), std::nullopt)
+        .and_then([&](const AuditVerdict& verdict) { return tell(verdict, options.json, output); });
   }
   Result<Store> store = open_store(options.place, installation);
   if (!store) {
@@ -107,8 +115,11 @@ Result<void> verify_audit(const AuditOptions& options, const Installation& insta
   if (!heads) {
     return tl::unexpected(failure_of(heads.error()));
   }
-  return tell(verify_in_parts(*store, AuditCheck(options.expected_hash, *heads)),
-              believed_by(*heads, file, *state / store_file_name), output);
+  AuditCheck check(options.expected_hash, *heads);
+  const Stored<Verified> verified = verify_in_parts(*store, check);
+  return verdict_on(verified, ComparedHeads{file, heads->size(), check.comparison(),
+                                            have_same_owner(file, *state / store_file_name)})
+      .and_then([&](const AuditVerdict& verdict) { return tell(verdict, options.json, output); });
 }
 
 Result<void> export_audit(const AuditOptions& options, const Installation& installation,

@@ -27,7 +27,8 @@ struct AuditOptions {
 };
 
 /** Goes over the whole chain, compares it with the heads that the recorder noted and with the users, and
- * shows its head; refused, with the place, where something differs. */
+ * shows its head; refused, with the place, where something differs, or where a record that excuses noted
+ * heads is not proven. */
 Result<void> verify_audit(const AuditOptions& options, const Installation& installation,
                           std::ostream& output);
 

@@ -60,6 +60,7 @@ void StoreCommandLine::describe_audit(CLI::App& cli) {
       add(audit, "verify", "Check the whole chain of records and show its head", audit_, verify_audit);
   verify->add_option("--heads", audit_.heads,
                      "The recorder's file of noted heads; default: audit-heads among the robot's recordings");
+  verify->add_flag("--json", audit_.json, "As JSON");
   verify->add_option("--file", audit_.file, "Exported records, in place of the store's")
       ->check(CLI::ExistingFile);
   verify

@@ -1,6 +1,7 @@
 #include "cli/store_commands.hpp"
 
 #include "cli/instance_lock.hpp"
+#include "store/noted_heads.hpp"
 #include "store/store_backup.hpp"
 
 namespace interlock::cli {
@@ -38,7 +39,12 @@ Result<void> restore(const StoreOptions& options, const Installation& installati
     return tl::unexpected(lock.error());
   }
   const fs::path store = *state / store_file_name;
-  const Stored<Restored> restored = restore_store(options.file, store, std::chrono::system_clock::now());
+  Stored<NotedHeads> heads = read_noted_heads(heads_file(*state));
+  if (!heads) {
+    return tl::unexpected(failure_of(heads.error()));
+  }
+  const Stored<Restored> restored =
+      restore_store(options.file, store, std::chrono::system_clock::now(), std::move(*heads));
   if (!restored) {
     return tl::unexpected(failure_of(restored.error()));
   }

@@ -1,7 +1,9 @@
 #include "cli/store_place.hpp"
 
+#include "cli/record_command.hpp"
 #include "cli/state_directory.hpp"
 #include "robot/robot_file.hpp"
+#include "store/noted_heads.hpp"
 #include "store/store_files.hpp"
 
 namespace interlock::cli {
@@ -25,6 +27,12 @@ Result<fs::path> state_of(const StorePlace& place, const Installation& installat
 
 Result<fs::path> store_file(const StorePlace& place, const Installation& installation) {
   return state_of(place, installation).map([](const fs::path& state) { return state / store_file_name; });
+}
+
+fs::path heads_file(const fs::path& state) {
+  std::error_code ignored;
+  const fs::path of_service = fs::path(state.string() + "-recordings") / noted_heads_file_name;
+  return fs::exists(of_service, ignored) ? of_service : recordings_folder(state) / noted_heads_file_name;
 }
 
 Result<Store> open_store(const StorePlace& place, const Installation& installation) {

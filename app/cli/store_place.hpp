@@ -24,6 +24,9 @@ Result<std::filesystem::path> state_of(const StorePlace& place, const Installati
 /** The file of the store in it. */
 Result<std::filesystem::path> store_file(const StorePlace& place, const Installation& installation);
 
+/** The recorder's file of the heads that it noted: of a service, or of `interlock run`. */
+std::filesystem::path heads_file(const std::filesystem::path& state);
+
 /** Opens a store that is there. Refused where there is none, so that looking at one does not make it. */
 Result<Store> open_store(const StorePlace& place, const Installation& installation);
 

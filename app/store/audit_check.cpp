@@ -3,11 +3,13 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "store/audit_table.hpp"
 #include "store/user_row.hpp"
+#include "time/utc_time.hpp"
 
 namespace interlock {
 namespace {
@@ -31,6 +33,14 @@ std::optional<AuditHead> head_in(const json& head) {
              : std::nullopt;
 }
 
+ExcusingRecord excusing(const AuditRecord& record, const json& detail) {
+  return {record.number, record.kind,  text_at(detail, "action"),
+          record.time,   record.actor, text_at(detail, "os_user")};
+}
+
+/** The app reports a head within a second, and the recorder appends it within ten more. */
+constexpr std::chrono::seconds longest_until_noted{30};
+
 }  // namespace
 
 AuditCheck::AuditCheck(std::optional<std::string> noted, NotedHeads heads)
@@ -46,6 +56,8 @@ void AuditCheck::begin(const AuditHead& anchor) {
     hashes_[noted.head.number] = noted.head.number == anchor.number ? anchor.hash : "";
   }
   replacements_.clear();
+  comparison_ = {};
+  retention_ = {};
   users_.clear();
 }
 
@@ -94,10 +106,11 @@ void AuditCheck::take_in(const AuditRecord& record) {
   } else if (record.kind == "restore") {
     const std::string action = text_at(detail, "action");
     if (action == "store" || action == "new store") {
-      replacements_.push_back({record.number, head_in(at(detail, "replaced_head"))});
+      replacements_.push_back({excusing(record, detail), head_in(at(detail, "replaced_head"))});
     }
   } else if (at(detail, "removed_to") == anchor_->number && at(detail, "hash") == anchor_->hash) {
     accounted_ = true;
+    retention_ = excusing(record, detail);
     // What the removed records said of the users, unless those that were kept say something newer.
     const json users = at(detail, "users");
     for (const auto& [name, digest] : users.items()) {
@@ -133,51 +146,95 @@ std::optional<AuditBreak> AuditCheck::compare_users(SQLite::Database& database) 
   return std::nullopt;
 }
 
+AuditBreak AuditCheck::first_missing(const NotedHeads& missing) const {
+  const NotedHead& first = missing.front();
+  const bool cut = first.head.number > chain_.head().number;
+  return {first.head.number,
+          (cut ? "is missing: the audit ends at record " + std::to_string(chain_.head().number) +
+                     ", but the recorder noted it"
+               : std::string("is not the one that the recorder noted")) +
+              " at " + first.time + " as " + first.head.hash +
+              (cut ? "; records were cut off, or an older copy of the store was put in place"
+                   : "; it or one before it was written anew, or another store was put in place")};
+}
+
 /** In the order in which they were noted, each must be in the chain. Those before one that has been retired
  * since are left to the files of the retired records. */
-std::optional<AuditBreak> AuditCheck::compare_heads() const {
+std::optional<AuditBreak> AuditCheck::compare_heads() {
   NotedHeads missing;
-  std::int64_t found = 0;
-  const auto first_missing = [&] {
-    const NotedHead& first = missing.front();
-    const bool cut = first.head.number > chain_.head().number;
-    return AuditBreak{
-        first.head.number,
-        (cut ? "is missing: the audit ends at record " + std::to_string(chain_.head().number) +
-                   ", but the recorder noted it"
-             : std::string("is not the one that the recorder noted")) +
-            " at " + first.time + " as " + first.head.hash +
-            (cut ? "; records were cut off, or an older copy of the store was put in place"
-                 : "; it or one before it was written anew, or another store was put in place")};
-  };
+  NotedHeads retired;
   for (const NotedHead& noted : heads_) {
     if (noted.head.number < anchor_->number) {
+      retired.insert(retired.end(), missing.begin(), missing.end());
+      retired.push_back(noted);
       missing.clear();
     } else if (hashes_.at(noted.head.number) != noted.head.hash) {
       missing.push_back(noted);
     } else {
-      if (!missing.empty() && !was_replaced(missing, found, noted.head.number)) {
-        return first_missing();
+      if (!missing.empty() && !excuse_replaced(missing, noted.head.number)) {
+        return first_missing(missing);
       }
       missing.clear();
-      found = noted.head.number;
+      ++comparison_.compared;
+      comparison_.up_to = noted.head.number;
     }
   }
-  return missing.empty() || was_replaced(missing, found, chain_.head().number)
-             ? std::nullopt
-             : std::optional(first_missing());
+  if (!missing.empty() && !excuse_replaced(missing, chain_.head().number)) {
+    return first_missing(missing);
+  }
+  if (!retired.empty()) {
+    excuse(retired, retention_);
+  }
+  doubt_excuses_not_noted();
+  return std::nullopt;
 }
 
 /** Whether heads that follow one another belong to a store in whose place another one was put: by a record of
- * that, after record `after` and not after `until`, which knows of them all. */
-bool AuditCheck::was_replaced(const NotedHeads& missing, std::int64_t after, std::int64_t until) const {
-  const auto lowest =
-      std::ranges::min_element(missing, {}, [](const auto& noted) { return noted.head.number; });
+ * that, after the last head that was found and not after `until`, which knows of them all.
+ *
+ * The store of the last head that was found went on to the first missing ones, so the record cannot come
+ * after one of them. From the first one with a lower number on they belong to a store that began anew in
+ * between. */
+bool AuditCheck::excuse_replaced(const NotedHeads& missing, std::int64_t until) {
+  const std::int64_t after = comparison_.up_to;
+  const std::int64_t first = missing.front().head.number;
+  const std::int64_t lowest = first > after ? first : std::numeric_limits<std::int64_t>::max();
   const AuditHead& last = missing.back().head;
-  return std::ranges::any_of(replacements_, [&](const Replacement& each) {
-    const bool in_between = each.number > after && each.number <= until && each.number <= lowest->head.number;
+  const auto replacement = std::ranges::find_if(replacements_, [&](const Replacement& each) {
+    const std::int64_t number = each.record.number;
+    const bool in_between = number > after && number <= until && number <= lowest;
     return in_between && (!each.replaced || each.replaced->number > last.number || *each.replaced == last);
   });
+  if (replacement == replacements_.end()) {
+    return false;
+  }
+  excuse(missing, replacement->record);
+  return true;
+}
+
+void AuditCheck::excuse(const NotedHeads& heads, const ExcusingRecord& record) {
+  HeadExcuse excuse{heads.size(), record, ""};
+  const auto recorded = parse_iso_8601(record.time);
+  for (const NotedHead& noted : heads) {
+    const auto time = parse_iso_8601(noted.time);
+    if (record.kind == "retention" && noted.head.number >= anchor_->number) {
+      excuse.doubt = "it retired the records up to " + std::to_string(anchor_->number) + ", but record " +
+                     std::to_string(noted.head.number) + " was noted, too";
+    } else if (!recorded || (time && *time > *recorded + longest_until_noted)) {
+      excuse.doubt = "head " + std::to_string(noted.head.number) + " was noted after it, at " + noted.time;
+    }
+  }
+  comparison_.excuses.push_back(std::move(excuse));
+}
+
+/** Whoever can write the store can write a record that excuses heads; a head that was noted later shows that
+ * it is no newer than that. */
+void AuditCheck::doubt_excuses_not_noted() {
+  for (HeadExcuse& excuse : comparison_.excuses) {
+    if (excuse.record.number > comparison_.up_to) {
+      excuse.doubt = "no head was noted since that contains it";
+    }
+  }
 }
 
 tl::expected<AuditHead, AuditBreak> AuditCheck::result() const {

@@ -17,6 +17,12 @@ namespace interlock {
 namespace fs = std::filesystem;
 
 Stored<NotedHeads> read_noted_heads(const fs::path& file) {
+  if (is_no_regular_file(file)) {
+    return tl::unexpected(
+        StoreError{StoreError::Kind::unavailable,
+                   file.string() + " is not a regular file, so the noted heads cannot be read", "", "",
+                   "see what replaced the recorder's file"});
+  }
   std::ifstream stream(file);
   if (!stream) {
     const int reason = errno;
@@ -30,6 +36,9 @@ Stored<NotedHeads> read_noted_heads(const fs::path& file) {
     if (words >> noted.time >> noted.head.number >> noted.head.hash && noted.head.hash.size() == 64) {
       heads.push_back(std::move(noted));
     }
+  }
+  if (stream.bad()) {
+    return tl::unexpected(file_error(file, "cannot be read", errno));
   }
   return heads;
 }

@@ -2,12 +2,17 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
+#include <map>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "store/audit_table.hpp"
 #include "store/store_files.hpp"
+#include "text/printable.hpp"
 
 namespace interlock {
 namespace {
@@ -92,8 +97,67 @@ bool is_empty(SQLite::Database& database) {
   return database.execAndGet("SELECT count(*) FROM sqlite_schema").getInt() == 0;
 }
 
+/** The problem may quote what somebody wrote into the file. */
 StoreError damaged(SQLite::Database& database, const std::string& problem) {
-  return {StoreError::Kind::damaged, database.getFilename() + ": " + problem, "", "", ways_out_of_damage};
+  return {StoreError::Kind::damaged, printable(database.getFilename() + ": " + problem), "", "",
+          ways_out_of_damage};
+}
+
+/** Definitions by type and name: "table users", "trigger audit_has_no_gaps". */
+using Definitions = std::map<std::string, std::string>;
+
+/** Without white space, which differs between releases. SQLite's own statistics are left out. */
+Definitions definitions_in(SQLite::Database& database) {
+  Definitions definitions;
+  SQLite::Statement select(
+      database,
+      "SELECT type || ' ' || name, coalesce(sql, '') FROM sqlite_schema WHERE name NOT GLOB 'sqlite_stat*'");
+  while (select.executeStep()) {
+    std::string sql = select.getColumn(1).getString();
+    std::erase_if(sql, [](unsigned char c) { return std::isspace(c) != 0; });
+    definitions.emplace(select.getColumn(0).getString(), std::move(sql));
+  }
+  return definitions;
+}
+
+/** What the scripts create in an empty database. */
+Definitions definitions_of(std::span<const char* const> scripts) {
+  SQLite::Database database(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  for (const char* const script : scripts) {
+    database.exec(script);
+  }
+  return definitions_in(database);
+}
+
+/** The first definition that is missing, changed or added, among those whose key begins with `type`. */
+std::optional<std::string> first_difference(const Definitions& expected, const Definitions& found,
+                                            std::string_view type) {
+  for (const auto& [key, sql] : expected) {
+    const auto same_key = found.find(key);
+    if (key.starts_with(type) && (same_key == found.end() || same_key->second != sql)) {
+      return key + (same_key == found.end() ? " is missing" : " was changed");
+    }
+  }
+  for (const auto& [key, sql] : found) {
+    if (key.starts_with(type) && !expected.contains(key)) {
+      return key + " does not belong there";
+    }
+  }
+  return std::nullopt;
+}
+
+Stored<void> compare_definitions(SQLite::Database& database, std::span<const char* const> scripts,
+                                 std::string_view type) {
+  const int version = pragma(database, "user_version");
+  if (version < 0 || version > static_cast<int>(scripts.size())) {
+    return tl::unexpected(
+        damaged(database, "has schema " + std::to_string(version) + ", which no release wrote"));
+  }
+  const auto difference = first_difference(definitions_of(scripts.first(static_cast<std::size_t>(version))),
+                                           definitions_in(database), type);
+  return difference ? tl::unexpected(damaged(database, "is not a sound store of schema " +
+                                                           std::to_string(version) + ": " + *difference))
+                    : Stored<void>();
 }
 
 }  // namespace
@@ -101,6 +165,8 @@ StoreError damaged(SQLite::Database& database, const std::string& problem) {
 std::span<const char* const> migrations() { return scripts_of_all_versions; }
 
 Stored<void> check_schema(SQLite::Database& database, std::span<const char* const> scripts) {
+  // Of one moment: another process may be migrating the store.
+  const SQLite::Transaction reading(database);
   const int version = pragma(database, "user_version");
   if (version > static_cast<int>(scripts.size())) {
     return tl::unexpected(StoreError{
@@ -110,7 +176,11 @@ Stored<void> check_schema(SQLite::Database& database, std::span<const char* cons
   if (!is_empty(database) && pragma(database, "application_id") != store_application_id) {
     return tl::unexpected(damaged(database, "is an SQLite file, but no store of Interlock"));
   }
-  return {};
+  return compare_definitions(database, scripts, "table ");
+}
+
+Stored<void> check_definitions(SQLite::Database& database) {
+  return compare_definitions(database, migrations(), "");
 }
 
 Stored<void> check_store(SQLite::Database& database) {
@@ -154,7 +224,7 @@ Stored<void> check_contents(SQLite::Database& database, PageCheck pages, NotedHe
     return tl::unexpected(damaged(
         database, "audit record " + std::to_string(chain.error().number) + " " + chain.error().problem));
   }
-  return {};
+  return check_definitions(database);
 }
 
 }  // namespace interlock

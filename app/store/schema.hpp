@@ -20,12 +20,17 @@ constexpr int store_application_id = 0x494c4b53;
  * changed. */
 std::span<const char* const> migrations();
 
-/** Refused: a file that is neither empty nor a store (damaged), or of a newer version than `scripts` make
- * (newer). */
+/** Refused: a file that is neither empty nor a store, or whose tables are not those that the scripts create
+ * for its version (damaged); a newer version than `scripts` create (newer). */
 Stored<void> check_schema(SQLite::Database& database, std::span<const char* const> scripts);
 
 /** As `check_schema` of this release; an empty file is refused, too. */
 Stored<void> check_store(SQLite::Database& database);
+
+/** Refused, damaged: tables, indexes or triggers are not those that this release creates for the version of
+ * the store. Not part of `check_store`, so that `audit verify` can still name a record that was changed
+ * behind a trigger that was dropped. Throws SQLite::Exception. */
+Stored<void> check_definitions(SQLite::Database& database);
 
 /**
  * Brings a store to the newest version, in one transaction. A store that is not empty is copied beside `file`
@@ -42,8 +47,8 @@ enum class PageCheck {
   full
 };
 
-/** Refused, damaged: pages, references or the audit are not sound. `heads` are as in `AuditCheck`. Throws
- * SQLite::Exception. */
+/** Refused, damaged: pages, references, the audit, or tables, indexes and triggers are not sound. `heads` are
+ * as in `AuditCheck`. Throws SQLite::Exception. */
 Stored<void> check_contents(SQLite::Database& database, PageCheck pages, NotedHeads heads = {});
 
 }  // namespace interlock

@@ -87,6 +87,10 @@ void Transaction::commit() {
 }
 
 Stored<Store> Store::open(const fs::path& file, bool begun_anew) {
+  if (is_no_regular_file(file)) {
+    return tl::unexpected(StoreError{StoreError::Kind::damaged, file.string() + " is not a regular file", "",
+                                     "", ways_out_of_damage});
+  }
   std::error_code ignored;
   if (!begun_anew && !fs::exists(file, ignored) && has_run_before(file.parent_path())) {
     return tl::unexpected(lost_store(file, "is missing"));

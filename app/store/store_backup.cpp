@@ -54,9 +54,14 @@ class Unfinished {
   fs::path file_;
 };
 
-Stored<void> must_be_free(const fs::path& file) {
+/** Also a link to nothing. */
+bool is_there(const fs::path& file) {
   std::error_code ignored;
-  if (fs::exists(fs::symlink_status(file, ignored))) {
+  return fs::exists(fs::symlink_status(file, ignored));
+}
+
+Stored<void> must_be_free(const fs::path& file) {
+  if (is_there(file)) {
     return tl::unexpected(StoreError{StoreError::Kind::exists, file.string() + " is there already", "",
                                      "a name that is free", "choose another, or move that file away"});
   }
@@ -111,8 +116,13 @@ Stored<void> settle(const fs::path& store) {
   }
 }
 
-/** Gives the store a second name, and takes away what belongs to it alone. */
+/** Gives the store a second name, and takes away what belongs to it alone. What is not a file is moved. */
 Stored<void> keep_beside(const fs::path& store, const fs::path& kept) {
+  if (is_no_regular_file(store)) {
+    return ::rename(store.c_str(), kept.c_str()) == 0
+               ? Stored<void>()
+               : tl::unexpected(file_error(kept, "cannot be made", errno));
+  }
   if (const Stored<void> settled = settle(store); !settled) {
     return settled;
   }
@@ -130,6 +140,9 @@ Stored<void> keep_beside(const fs::path& store, const fs::path& kept) {
 
 /** The head of a store that is about to be replaced, null when it cannot be read any more. */
 nlohmann::json head_of(const fs::path& file) {
+  if (is_no_regular_file(file)) {
+    return nullptr;
+  }
   try {
     SQLite::Database database(file.string(), SQLite::OPEN_READWRITE, store_patience_ms);
     SQLite::Statement head(database, "SELECT number, hash FROM audit ORDER BY number DESC LIMIT 1");
@@ -141,13 +154,13 @@ nlohmann::json head_of(const fs::path& file) {
   }
 }
 
-/** Brings a copy up to date and records what it is for. */
-Stored<AuditHead> prepare(const fs::path& copy, const nlohmann::json& detail, UtcTime now) {
+/** Brings a copy up to date, records what it is for, and checks it as the next start will. */
+Stored<AuditHead> prepare(const fs::path& copy, const nlohmann::json& detail, UtcTime now, NotedHeads heads) {
   Stored<Store> store = Store::open(copy);
   if (!store) {
     return tl::unexpected(store.error());
   }
-  return store->transact([&](Transaction& transaction) -> Stored<AuditHead> {
+  const auto head = store->transact([&](Transaction& transaction) -> Stored<AuditHead> {
     for (const User& user : Users(transaction).list()) {
       Sessions(transaction).end_all_of_user(user.name);
     }
@@ -156,6 +169,7 @@ Stored<AuditHead> prepare(const fs::path& copy, const nlohmann::json& detail, Ut
             .append({now, std::nullopt, audit_actor::command_line, std::nullopt, AuditKind::restore, detail});
     return AuditHead{record.number, record.hash};
   });
+  return head ? store->check(std::move(heads)).map([&] { return *head; }) : head;
 }
 
 /** Where the store that is replaced at that time goes. */
@@ -188,7 +202,7 @@ Stored<Store> begin_new_store(const fs::path& store, const StoreError& reason, U
     if (!lock) {
       return tl::unexpected(lock.error());
     }
-    if (fs::exists(store)) {
+    if (is_there(store)) {
       if (const Stored<void> kept = keep_beside(store, with_suffix(store, name_suffix(now))); !kept) {
         return tl::unexpected(kept.error());
       }
@@ -223,7 +237,7 @@ Stored<StoreSummary> backup_store(const fs::path& store, const fs::path& target)
   return named ? summary : tl::unexpected(named.error());
 }
 
-Stored<Restored> restore_store(const fs::path& backup, const fs::path& store, UtcTime now) {
+Stored<Restored> restore_store(const fs::path& backup, const fs::path& store, UtcTime now, NotedHeads heads) {
   const Stored<void> there =
       must_exist(backup, "backup").and_then([&] { return make_private_folder(store.parent_path()); });
   if (!there) {
@@ -245,16 +259,25 @@ Stored<Restored> restore_store(const fs::path& backup, const fs::path& store, Ut
     return tl::unexpected(summary.error());
   }
   Restored restored{*summary, std::nullopt};
-  const bool replaces = fs::exists(store);
+  const bool replaces = is_there(store);
   const Stored<AuditHead> head =
       prepare(unfinished.file(),
               {{"action", "store"},
                {"backup", backup.filename().string()},
                {"backup_head", {{"number", summary->head.number}, {"hash", summary->head.hash}}},
                {"replaced_head", replaces ? head_of(store) : nlohmann::json()}},
-              now);
+              now, std::move(heads));
   if (!head) {
-    return tl::unexpected(head.error());
+    StoreError refused = head.error();
+    if (refused.kind == StoreError::Kind::damaged) {
+      // Both names, as the copy's is gone.
+      refused.problem = "a start would refuse the backup " + backup.string() + ": " + refused.problem;
+      refused.next_step =
+          "nothing was replaced; choose another backup, or begin anew, without its users, settings and "
+          "audit, "
+          "with --new-store";
+    }
+    return tl::unexpected(refused);
   }
   restored.summary.head = *head;
   if (replaces) {

@@ -38,10 +38,11 @@ Stored<StoreSummary> backup_store(const std::filesystem::path& store, const std:
  *
  * The store that is there is kept beside as `FILE.replaced-TIME`, be it sound or not. Until the new one is
  * whole, checked and on the disk, the old one stays in its place. Refused: not_found (no backup), damaged or
- * newer (the backup), unavailable (somebody has the store open).
+ * newer (the backup), unavailable (somebody has the store open). Damaged, too: a start that compares it with
+ * `heads`, which the recorder noted, would refuse it.
  */
 Stored<Restored> restore_store(const std::filesystem::path& backup, const std::filesystem::path& store,
-                               UtcTime now);
+                               UtcTime now, NotedHeads heads = {});
 
 /**
  * Begins a new store, without users, in the place of one that is missing or damaged for `reason`, with an

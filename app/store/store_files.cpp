@@ -12,6 +12,8 @@
 #include <cerrno>
 #include <string>
 
+#include "text/printable.hpp"
+
 namespace interlock {
 namespace {
 
@@ -56,6 +58,20 @@ StoreError lost_store(const fs::path& file, const std::string& problem) {
           file.string() + ' ' + problem + ", but " + (file.parent_path() / "log").string() +
               " shows that this robot has run before",
           "", "", ways_out_of_damage};
+}
+
+bool is_no_regular_file(const fs::path& file) {
+  std::error_code ignored;
+  switch (fs::status(file, ignored).type()) {
+    case fs::file_type::not_found:
+      return fs::exists(fs::symlink_status(file, ignored));
+    case fs::file_type::regular:
+    case fs::file_type::none:
+    case fs::file_type::unknown:
+      return false;
+    default:
+      return true;
+  }
 }
 
 Stored<void> make_private_folder(const fs::path& folder) {
@@ -163,7 +179,7 @@ StoreError file_error(const fs::path& file, const std::string& what, int error_n
 }
 
 StoreError database_error(const fs::path& file, const SQLite::Exception& error) {
-  StoreError stored{StoreError::Kind::unavailable, file.string() + ": " + error.what(), "", "",
+  StoreError stored{StoreError::Kind::unavailable, file.string() + ": " + printable(error.what()), "", "",
                     "see that this user may write there, and that the disk is sound"};
   switch (error.getErrorCode() & 0xff) {
     case SQLITE_FULL:

@@ -57,6 +57,9 @@ StoreError lost_store(const std::filesystem::path& file, const std::string& prob
 /** Makes the folder and those above it that are missing, each with mode 0700. */
 Stored<void> make_private_folder(const std::filesystem::path& folder);
 
+/** Whether something that is not a regular file has that name: a folder, a pipe, a link to nothing. */
+bool is_no_regular_file(const std::filesystem::path& file);
+
 /** Makes an empty file with mode 0600. Refused, exists: something of that name is there. */
 Stored<void> make_private_file(const std::filesystem::path& file);
 

@@ -2,17 +2,20 @@
 that the recorder noted show what is missing."""
 
 import contextlib
+import hashlib
+import json
+import os
 import re
 import shutil
 import sqlite3
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 from bare_kernel import BIN
 from stack import Output, Stack, start_interlock
-from test_run import DONE, PROCESS_ENDED, REFUSED
+from test_run import DONE, PRECONDITION, PROCESS_ENDED, REFUSED
 from test_store_cli import Store
 
 UNGUARDED = (
@@ -143,6 +146,136 @@ def test_a_role_that_was_changed_in_SQL_is_named_and_stops_the_start(installatio
     assert verified.returncode == REFUSED
     assert "user bob has another role" in verified.stderr
     assert "user bob has another role" in installation.refused_start()
+
+
+@pytest.mark.parametrize(
+    ("sql", "problem"),
+    [
+        ("DROP TABLE sessions", "table sessions is missing"),
+        ("DROP TABLE settings", "table settings is missing"),
+        ("DROP TABLE audit_anchor", "table audit_anchor is missing"),
+        (UNGUARDED, "trigger audit_has_no_gaps is missing"),
+        ("PRAGMA user_version = 0", "is not a sound store of schema 0"),
+        ("PRAGMA user_version = 1", "table audit_anchor does not belong there"),
+        ("PRAGMA user_version = -1", "has schema -1"),
+    ],
+)
+def test_a_damaged_schema_stops_the_start(installation: Installation, sql: str, problem: str) -> None:
+    installation.store.execute(sql)
+    assert problem in installation.refused_start()
+    verified = installation.verify()
+    assert verified.returncode == REFUSED
+    assert problem in verified.stderr
+
+
+@pytest.mark.parametrize("make", [Path.mkdir, lambda path: os.mkfifo(path)])
+def test_a_damaged_store_that_is_no_file_stops_the_start_and_is_replaced(
+    installation: Installation, make: Callable[[Path], None]
+) -> None:
+    backup = installation.directory / "backup.db"
+    assert installation.store("store", "backup", backup).returncode == DONE
+    installation.delete()
+    make(installation.store.file)
+    assert "is not a regular file" in installation.refused_start()
+    restored = installation.store("store", "restore", backup)
+    assert restored.returncode == DONE, restored.stderr
+    assert "bob" in installation.store.users()
+
+
+def test_a_backup_that_the_next_start_would_refuse_is_not_restored(installation: Installation) -> None:
+    backup = installation.directory / "backup.db"
+    assert installation.store("store", "backup", backup).returncode == DONE
+    with installation.run() as robot:
+        robot.client_of_new("eve", "viewer")
+    shutil.copy(backup, installation.store.file)
+    before = installation.store.file.read_bytes()
+    refused = installation.store("store", "restore", backup)
+    assert refused.returncode == REFUSED
+    assert f"a start would refuse the backup {backup}: " in refused.stderr
+    assert "the recorder noted" in refused.stderr
+    assert "nothing was replaced" in refused.stderr
+    assert installation.store.file.read_bytes() == before
+    assert not list(installation.store.state.glob("interlock.db.re*"))
+
+
+def test_heads_that_a_restore_excuses_are_not_called_in_agreement(installation: Installation) -> None:
+    backup = installation.directory / "backup.db"
+    assert installation.store("store", "backup", backup).returncode == DONE
+    with installation.run() as robot:
+        robot.client_of_new("eve", "viewer")
+    heads = len(installation.heads.read_text().splitlines())
+    assert installation.store("store", "restore", backup).returncode == DONE
+    record = installation.store.audit()[-1]
+    excuse = f"excused by record {record['number']} (restore, store, {record['time']}, command line, "
+    unproven = installation.verify()
+    assert unproven.returncode == REFUSED
+    assert "the audit is not proven: " in unproven.stderr
+    assert excuse in unproven.stderr
+    assert "no head was noted since" in unproven.stderr
+    with installation.run():
+        pass
+    verified = installation.verify()
+    assert verified.returncode == DONE, verified.stderr
+    assert excuse in verified.stdout
+    report = json.loads(installation.store("audit", "verify", "--json").stdout)
+    noted = report["noted_heads"]
+    (excused,) = noted["excused"]
+    assert report["proven"]
+    assert noted["noted"] > heads
+    assert noted["compared"] + excused["heads"] == noted["noted"]
+    assert f"in agreement with the {noted['compared']} head" in verified.stdout
+    assert excused["heads"] >= 1
+    assert (excused["record"], excused["kind"], excused["action"], excused["proven"]) == (
+        record["number"],
+        "restore",
+        "store",
+        True,
+    )
+    assert excused["os_user"] == record["detail"]["os_user"]
+
+
+def test_a_forged_new_store_is_not_called_in_agreement_with_any_head(installation: Installation) -> None:
+    """Its only record excuses all heads."""
+    with contextlib.closing(sqlite3.connect(installation.store.file)) as database:
+        triggers = ";".join(
+            sql for (sql,) in database.execute("SELECT sql FROM sqlite_schema WHERE type = 'trigger'")
+        )
+    detail = '{"action":"new store","os_user":"\\u001b[2Jroot (0)"}'
+    fields = ("interlock-audit-1", "0" * 64, "1", "2026-01-01T00:00:00.000Z", "", "command line", "")
+    encoded = "".join(f"{len(field)}:{field}," for field in (*fields, "restore", detail))
+    forged = (fields[3], "command line", detail, hashlib.sha256(encoded.encode()).hexdigest())
+    installation.store.execute(UNGUARDED + "DELETE FROM audit; DELETE FROM users WHERE name != 'admin'")
+    with sqlite3.connect(installation.store.file) as database:
+        database.execute("INSERT INTO audit VALUES (1, ?, NULL, ?, NULL, 'restore', ?, ?)", forged)
+    heads = len(installation.heads.read_text().splitlines())
+    installation.store.execute("DROP TRIGGER audit_anchor_moves_on; DROP TRIGGER audit_anchor_is_not_removed")
+    installation.store.execute(triggers)
+    verified = installation.store("audit", "verify", "--json")
+    assert verified.returncode == REFUSED
+    assert f"compared with none of the {heads} head" in verified.stderr
+    assert "in agreement" not in verified.stderr
+    assert "(restore, new store, 2026-01-01T00:00:00.000Z, command line, " in verified.stderr
+    assert "\x1b" not in verified.stderr + verified.stdout
+    report = json.loads(verified.stdout)
+    assert (report["proven"], report["noted_heads"]["compared"]) == (False, 0)
+    assert report["noted_heads"]["up_to"] is None
+
+
+def test_a_folder_in_place_of_the_noted_heads_is_an_error_in_verify(installation: Installation) -> None:
+    installation.heads.unlink()
+    installation.heads.mkdir()
+    verified = installation.verify()
+    assert verified.returncode == PRECONDITION
+    assert "is not a regular file" in verified.stderr
+
+
+def test_a_damaged_hash_sends_no_control_characters_to_the_terminal(installation: Installation) -> None:
+    installation.store.execute(
+        UNGUARDED + "UPDATE audit SET hash = char(27) || ']0;title' || char(7) WHERE number = 2"
+    )
+    text = installation.refused_start()
+    assert "\\x1b]0;title\\x07" in text
+    assert "\x1b]0" not in text
 
 
 def test_a_flood_of_STOPs_without_login_is_a_few_records_that_count_each(short_tmp_path: Path) -> None:

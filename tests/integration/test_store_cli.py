@@ -323,9 +323,13 @@ def test_records_cut_off_show_against_a_noted_head(store: Store) -> None:
     noted = store.head()
     store.add("eve", "viewer")
     assert store("audit", "verify", "--expect", noted).returncode == DONE
+    with sqlite3.connect(store.file) as database:
+        (trigger,) = database.execute(
+            "SELECT sql FROM sqlite_schema WHERE name = 'audit_is_not_removed'"
+        ).fetchone()
     store.execute(
         "DROP TRIGGER audit_is_not_removed; DELETE FROM audit WHERE number >= 2;"
-        "DELETE FROM users WHERE name != 'ann'"
+        f"DELETE FROM users WHERE name != 'ann'; {trigger}"
     )
     assert store("audit", "verify").returncode == DONE
     verified = store("audit", "verify", "--expect", noted)

@@ -56,11 +56,46 @@ class NotedHeadsTest : public StoreTest {
     });
   }
 
+  /** What the check of a sound audit says of the heads. */
+  [[nodiscard]] HeadComparison comparison() const {
+    Store store = open();
+    return seen(store, [&](Transaction& transaction) {
+      AuditCheck check(std::nullopt, heads_);
+      while (check.go_on(transaction.database(), 3)) {
+      }
+      EXPECT_TRUE(check.result());
+      return check.comparison();
+    });
+  }
+
+  /** All heads but the compared ones are excused by that record, with that doubt. */
+  void expect_excused(std::size_t compared, std::int64_t record, const std::string& action,
+                      const std::string& doubt) const {
+    const HeadComparison found = comparison();
+    EXPECT_EQ(found.compared, compared);
+    ASSERT_EQ(found.excuses.size(), 1U);
+    EXPECT_EQ(found.excuses[0].heads, heads_.size() - compared);
+    EXPECT_EQ(found.excuses[0].record.number, record);
+    EXPECT_EQ(found.excuses[0].record.action, action);
+    EXPECT_THAT(found.excuses[0].doubt, HasSubstr(doubt));
+    EXPECT_EQ(found.excuses[0].doubt.empty(), doubt.empty());
+  }
+
   void expect_broken(std::int64_t number, const std::string& problem) const {
     const Verified verified = verify();
     ASSERT_FALSE(verified);
     EXPECT_EQ(verified.error().number, number) << verified.error().problem;
     EXPECT_THAT(verified.error().problem, HasSubstr(problem));
+  }
+
+  /** To put them back as a careful forger does. */
+  [[nodiscard]] std::string triggers_of_the_audit() const {
+    SQLite::Database database(file_.string());
+    return database
+        .execAndGet(
+            "SELECT group_concat(sql, '; ') || ';' FROM sqlite_schema "
+            "WHERE type = 'trigger' AND tbl_name = 'audit'")
+        .getString();
   }
 
   NotedHeads heads_;
@@ -115,14 +150,94 @@ TEST_F(NotedHeadsTest, ARestoreAccountsForWhatItReplaced) {
   }
 }
 
+TEST_F(NotedHeadsTest, HeadsThatARestoreExcusesAreNotCountedAsCompared) {
+  work(4);
+  ASSERT_TRUE(backup_store(file_, backup_));
+  work(4);
+  work(4);
+  EXPECT_EQ(comparison().compared, 3U);
+  EXPECT_TRUE(comparison().excuses.empty());
+  ASSERT_TRUE(restore_store(backup_, file_, noon, heads_));
+  expect_excused(1, 7, "store", "no head was noted since");
+  const ExcusingRecord record = comparison().excuses[0].record;
+  EXPECT_EQ(record.kind, "restore");
+  EXPECT_EQ(record.actor, "command line");
+  EXPECT_EQ(record.time, iso_8601(noon));
+  EXPECT_FALSE(record.os_user.empty());
+  work(1);
+  expect_excused(2, 7, "store", "");
+}
+
+TEST_F(NotedHeadsTest, ANewStoreExcusesNoHeadThatWasNotedAfterIt) {
+  work(4);
+  fs::remove(file_);
+  ASSERT_TRUE(begin_new_store(file_, StoreError{StoreError::Kind::damaged, "is missing", "", "", ""}, noon));
+  expect_excused(0, 1, "new store", "no head was noted since");
+  work(4);
+  expect_excused(1, 1, "new store", "");
+  heads_.front().time = iso_8601(noon + std::chrono::seconds(31));
+  expect_excused(1, 1, "new store", "head 6 was noted after it, at 2024-05-01T12:00:31.000Z");
+}
+
+TEST_F(NotedHeadsTest, HeadsOfRetiredRecordsAreNotCountedAsCompared) {
+  work(4);
+  work(4);
+  {
+    Store store = open();
+    commit(store, [](Transaction& transaction) {
+      Audit audit(transaction);
+      const AuditRecord eighth = audit.list(100).at(7);
+      audit.retire({eighth.number, eighth.hash}, {.time = noon, .tick = {}, .actor = "ann", .session = {}});
+    });
+  }
+  expect_excused(1, 11, "", "no head was noted since");
+  work(1);
+  expect_excused(2, 11, "", "");
+  const AuditHead lower{1, std::string(64, 'a')};
+  heads_.insert(heads_.begin() + 1, {{iso_8601(noon), {9, lower.hash}}, {iso_8601(noon), lower}});
+  expect_excused(2, 11, "", "it retired the records up to 8, but record 9 was noted, too");
+}
+
 TEST_F(NotedHeadsTest, ARestoreAccountsForNothingThatItDidNotReplace) {
   work(4);
   ASSERT_TRUE(backup_store(file_, backup_));
   work(4);
   work(4);
   execute(std::string(without_triggers) + "DELETE FROM audit WHERE number > 10");
+  const auto refused = restore_store(backup_, file_, noon, heads_);
+  ASSERT_FALSE(refused) << "a start would refuse it";
+  EXPECT_EQ(refused.error().kind, StoreError::Kind::damaged);
+  EXPECT_THAT(refused.error().message(), HasSubstr("audit record 10 is missing"));
+  EXPECT_THAT(refused.error().message(), HasSubstr(backup_.string()));
   ASSERT_TRUE(restore_store(backup_, file_, noon));
   expect_broken(10, "is missing");
+}
+
+TEST_F(NotedHeadsTest, ABackupIsRestoredAfterANewStoreTookThePlace) {
+  work(4);
+  ASSERT_TRUE(backup_store(file_, backup_));
+  work(4);
+  fs::remove(file_);
+  ASSERT_TRUE(begin_new_store(file_, StoreError{StoreError::Kind::damaged, "is missing", "", "", ""}, noon));
+  work(1);
+  ASSERT_TRUE(verify()) << verify().error().problem;
+  const auto restored = restore_store(backup_, file_, noon, heads_);
+  ASSERT_TRUE(restored) << restored.error().message();
+  work(1);
+  EXPECT_TRUE(verify()) << verify().error().problem;
+}
+
+TEST_F(NotedHeadsTest, AForgedBackupIsNotRestored) {
+  work(4);
+  const NotedHeads noted = heads_;
+  const std::string triggers = triggers_of_the_audit();
+  execute(std::string(without_triggers) + "DELETE FROM audit WHERE number > 4;" + triggers);
+  work(9);
+  fs::rename(file_, backup_);
+  const auto refused = restore_store(backup_, file_, noon, noted);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message(), HasSubstr("audit record 6 is not the one that the recorder noted"));
+  EXPECT_FALSE(fs::exists(file_));
 }
 
 TEST_F(NotedHeadsTest, ANewStoreAccountsForTheOneThatWasLost) {
@@ -179,6 +294,14 @@ TEST_F(NotedHeadsTest, AFileIsReadWithoutTheLineThatWasCutOff) {
   ASSERT_EQ(heads->size(), 2U);
   EXPECT_EQ(heads->front().time, "2024-05-01T12:00:00.000Z");
   EXPECT_EQ(heads->back().head, (AuditHead{9, hash}));
+}
+
+TEST_F(NotedHeadsTest, AFolderInPlaceOfTheFileIsNotTakenForNoHeads) {
+  const fs::path file = folder_ / "audit-heads";
+  fs::create_directory(file);
+  const auto heads = read_noted_heads(file);
+  ASSERT_FALSE(heads);
+  EXPECT_THAT(heads.error().message(), HasSubstr("audit-heads is not a regular file"));
 }
 
 TEST_F(NotedHeadsTest, NoRecorderIsNoReasonToWait) {

@@ -1,11 +1,14 @@
 #include "store/schema.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <array>
 #include <fstream>
+#include <functional>
 #include <iterator>
 
+#include "store/store_backup.hpp"
 #include "store_fixture.hpp"
 
 namespace interlock {
@@ -138,11 +141,79 @@ TEST_F(SchemaTest, FileThatIsNoDatabaseIsRefused) {
   expect_refused(Kind::damaged, "not a database");
 }
 
-TEST_F(SchemaTest, FolderInPlaceOfTheFileIsRefused) {
-  fs::create_directory(file_);
-  const Stored<Store> store = Store::open(file_);
-  ASSERT_FALSE(store);
-  EXPECT_EQ(store.error().kind, Kind::unavailable);
+/** The way out is the same as for other damage, and works. */
+TEST_F(SchemaTest, WhatIsNoFileInPlaceOfTheStoreIsDamaged) {
+  const fs::path nothing = folder_ / "nothing";
+  const std::array<std::function<void()>, 3> cases{[&] { fs::create_directory(file_); },
+                                                   [&] { ::mkfifo(file_.c_str(), 0600); },
+                                                   [&] { fs::create_symlink(nothing, file_); }};
+  UtcTime now = noon;
+  for (const auto& make : cases) {
+    make();
+    const Stored<Store> store = Store::open(file_);
+    ASSERT_FALSE(store);
+    EXPECT_EQ(store.error().kind, Kind::damaged);
+    EXPECT_THAT(store.error().message(),
+                testing::AllOf(HasSubstr("store restore"), HasSubstr("--new-store")));
+    const Stored<Store> anew = begin_new_store(file_, store.error(), now += std::chrono::seconds(1));
+    ASSERT_TRUE(anew) << anew.error().message();
+    fs::remove(file_);
+  }
+  EXPECT_FALSE(fs::exists(nothing));
+}
+
+TEST_F(SchemaTest, TablesThatAreNotThoseOfTheVersionAreRefused) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"DROP TABLE sessions", "table sessions is missing"},
+      {"DROP TABLE settings", "table settings is missing"},
+      {"DROP TABLE audit_anchor", "table audit_anchor is missing"},
+      {"CREATE TABLE more (x)", "table more does not belong there"},
+      {"ALTER TABLE users ADD COLUMN note TEXT", "table users was changed"},
+      {"PRAGMA user_version = 1", "table audit_anchor does not belong there"},
+      {"PRAGMA user_version = 0", "schema 0: table audit does not belong there"},
+      {"PRAGMA user_version = -1", "schema -1"}};
+  for (const auto& [sql, problem] : cases) {
+    {
+      const Store made = open();
+    }
+    execute(std::string("PRAGMA journal_mode = DELETE; ") + sql);
+    expect_refused(Kind::damaged, problem);
+    expect_refused(Kind::damaged, "--new-store");
+    fs::remove(file_);
+  }
+}
+
+TEST_F(SchemaTest, TriggersAndIndexesThatAreNotThoseOfTheVersionAreFoundByTheCheck) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"DROP TRIGGER audit_is_not_removed", "trigger audit_is_not_removed is missing"},
+      {"DROP TRIGGER audit_is_not_changed; CREATE TRIGGER audit_is_not_changed BEFORE UPDATE ON audit "
+       "BEGIN SELECT 1; END",
+       "trigger audit_is_not_changed was changed"},
+      {"CREATE TRIGGER \"evil\x1b[2J\" AFTER INSERT ON audit BEGIN SELECT 1; END",
+       "trigger evil\\x1b[2J does not belong there"},
+      {"CREATE INDEX more ON users (role)", "index more does not belong there"}};
+  for (const auto& [sql, problem] : cases) {
+    Store store = open();
+    execute("ANALYZE");
+    ASSERT_TRUE(store.check({}));
+    execute(sql);
+    const Stored<void> checked = store.check({});
+    ASSERT_FALSE(checked) << sql;
+    EXPECT_EQ(checked.error().kind, Kind::damaged);
+    EXPECT_THAT(checked.error().message(), testing::AllOf(HasSubstr(problem), HasSubstr("--new-store")));
+    fs::remove(file_);
+    fs::remove(file_.string() + "-wal");
+    fs::remove(file_.string() + "-shm");
+  }
+}
+
+TEST_F(SchemaTest, ControlCharactersFromADamagedAuditAreEscaped) {
+  Store store = open();
+  commit(store, [](Transaction& transaction) { Audit(transaction).append({}); });
+  execute("DROP TRIGGER audit_is_not_changed; UPDATE audit SET hash = char(27) || ']0;title' || char(7)");
+  const Stored<void> checked = store.check({});
+  ASSERT_FALSE(checked);
+  EXPECT_THAT(checked.error().message(), HasSubstr("its hash is \\x1b]0;title\\x07"));
 }
 
 }  // namespace
