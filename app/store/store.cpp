@@ -161,6 +161,20 @@ Stored<void> Store::bound_log() {
   return {};
 }
 
+/** What is committed to a file without a name is lost. */
+Stored<void> Store::still_in_place() {
+  int moved = 0;
+  const int result = sqlite3_file_control(database_->getHandle(), "main", SQLITE_FCNTL_HAS_MOVED, &moved);
+  if (result == SQLITE_OK && moved == 0) {
+    return {};
+  }
+  return tl::unexpected(StoreError{
+      StoreError::Kind::unavailable,
+      database_->getFilename() + " was removed or replaced by another file while it was in use", "", "",
+      "put the file back, or stop the robot, then put a backup in its place with `interlock store restore "
+      "FILE`"});
+}
+
 StoreError Store::caught() const {
   try {
     throw;

@@ -82,7 +82,7 @@ class Store {
    *
    * A value: all of it is on the disk when this returns. An error, of `work` or of the file: nothing of it
    * is. Refused, unavailable, too: a reader that does not end keeps `longest_log_bytes` of the write-ahead
-   * log.
+   * log, or the file was removed or replaced by another one since it was opened.
    */
   template <std::invocable<Transaction&> Work>
   auto transact(Work&& work) -> std::invoke_result_t<Work, Transaction&> {
@@ -93,7 +93,7 @@ class Store {
       Transaction transaction(*database_, Transaction::Kind::writing);
       auto result = std::forward<Work>(work)(transaction);
       if (result) {
-        if (const Stored<void> allowed = commit_check_(); !allowed) {
+        if (const Stored<void> allowed = still_in_place().and_then(commit_check_); !allowed) {
           return tl::unexpected(allowed.error());
         }
         transaction.commit();
@@ -131,6 +131,9 @@ class Store {
 
  private:
   Store(std::unique_ptr<StoreLock> lock, std::unique_ptr<SQLite::Database> database);
+
+  /** Refused, unavailable: the file of that name is not the one that is open. */
+  Stored<void> still_in_place();
 
   /** Empties the write-ahead log when it is too long. */
   Stored<void> bound_log();

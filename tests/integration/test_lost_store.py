@@ -278,6 +278,18 @@ def test_a_damaged_hash_sends_no_control_characters_to_the_terminal(installation
     assert "\x1b]0" not in text
 
 
+def test_a_store_that_is_removed_under_a_running_app_refuses_changes(installation: Installation) -> None:
+    user = {"name": "eve", "role": "viewer", "password": "correct horse battery"}
+    with installation.run() as robot:
+        hidden = installation.directory / "hidden.db"
+        installation.store.file.rename(hidden)
+        refused = robot.api.post("/api/users", json=user)
+        assert (refused.status_code, refused.json()["code"]) == (503, "STORE")
+        assert "was removed or replaced by another file" in refused.json()["detail"]
+        hidden.rename(installation.store.file)
+        robot.api.post("/api/users", json=user).raise_for_status()
+
+
 def test_a_flood_of_STOPs_without_login_is_a_few_records_that_count_each(short_tmp_path: Path) -> None:
     installation = Installation(short_tmp_path)
     stops = 500

@@ -148,6 +148,31 @@ TEST_F(LostStore, BeginningANewOneKeepsTheOldOneAndIsRecorded) {
   EXPECT_THAT(records[0].detail, HasSubstr("os_user"));
 }
 
+TEST_F(StoreTest, NothingIsCommittedToAFileThatWasRemovedOrReplaced) {
+  Store store = open();
+  const auto append = [&] {
+    return store.transact([](Transaction& transaction) -> Stored<void> {
+      Audit(transaction).append({});
+      return {};
+    });
+  };
+  ASSERT_TRUE(append());
+  const fs::path moved = folder_ / "moved.db";
+  fs::rename(file_, moved);
+  const auto expect_refused = [&] {
+    const Stored<void> refused = append();
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, StoreError::Kind::unavailable);
+    EXPECT_THAT(refused.error().message(), HasSubstr("was removed or replaced by another file"));
+  };
+  expect_refused();
+  std::ofstream(file_) << "another";
+  expect_refused();
+  fs::rename(moved, file_);
+  EXPECT_TRUE(append()) << "it is back";
+  EXPECT_EQ(seen(store, [](Transaction& transaction) { return Audit(transaction).head(); }).number, 2);
+}
+
 TEST_F(StoreTest, ARecordOfTheCommandLineNamesTheUserOfTheSystem) {
   Store store = open();
   commit(store, [](Transaction& transaction) {
