@@ -120,8 +120,7 @@ boost::asio::awaitable<tl::expected<void, Problem>> Context::announce(const Call
   if (!sessions.lives(caller.session)) {
     co_return fail(login_needed());
   }
-  const bool acts = kind == AuditKind::proposal || kind == AuditKind::request || kind == AuditKind::restore;
-  if (acts && has_waited_too_long(caller.asked)) {
+  if (kind == AuditKind::proposal && has_waited_too_long(caller.asked)) {
     co_return fail(too_late());
   }
   if (held) {
