@@ -28,7 +28,7 @@ constexpr std::chrono::seconds authority_idle_limit{60};
 
 bool is_always_answered(std::string_view path) { return path == "/api/stop" || path == "/api/status"; }
 
-Api::Api(const asio::any_io_executor& executor, const Robot& robot, const ilk_config_t& config,
+Api::Api(const boost::asio::any_io_executor& executor, const Robot& robot, const ilk_config_t& config,
          Mailbox& mailbox, const std::string& bench_socket, StoreGateway& store, Log& log,
          const Clocks& clocks, Past past)
     : control_(executor, mailbox),

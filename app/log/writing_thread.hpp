@@ -26,7 +26,7 @@ class WritingThread {
   static constexpr std::size_t capacity = 4096;
 
   /** A job that throws is counted as lost, too. `tell_lost` runs in the thread, in the place of the gap. */
-  explicit WritingThread(std::function<void(std::uint64_t lost)> tell_lost);
+  explicit WritingThread(std::function<void(std::uint64_t)> tell_lost);
 
   /** Ends the thread. Jobs that wait are not done: `wait_until_done` comes before. A thread that hangs in its
    * job is left to itself, with all that the job owns. */

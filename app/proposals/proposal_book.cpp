@@ -10,8 +10,6 @@
 
 namespace interlock {
 
-using std::chrono::steady_clock;
-
 namespace {
 
 template <typename... Each>
@@ -58,7 +56,7 @@ ProposalBook::ProposalBook(const Robot& robot, const ilk_config_t& config, Send 
     : robot_(robot), config_(config), send_(std::move(send)), clock_(std::move(clock)) {}
 
 tl::expected<Proposal, Refusal> ProposalBook::propose(Task task, const ControlView& view,
-                                                      steady_clock::time_point asked) {
+                                                      std::chrono::steady_clock::time_point asked) {
   std::vector<std::uint32_t> slots = slots_of(robot_, task.work);
   for (const std::uint32_t slot : slots) {
     if (robot_.at_slot(slot) == nullptr) {
@@ -154,7 +152,7 @@ tl::expected<Proposal*, Refusal> ProposalBook::waiting(std::uint32_t id) {
 }
 
 tl::expected<Proposal, Refusal> ProposalBook::approve(std::uint32_t id, const ControlView& view,
-                                                      steady_clock::time_point asked) {
+                                                      std::chrono::steady_clock::time_point asked) {
   return waiting(id).and_then([&](Proposal* proposal) {
     return check(*proposal, view).and_then([&] { return approve(*proposal, asked); });
   });
@@ -186,7 +184,8 @@ void ProposalBook::end_stale() {
 }
 
 /** Hands the task over; what it replaces ends. */
-tl::expected<Proposal, Refusal> ProposalBook::approve(Proposal& proposal, steady_clock::time_point asked) {
+tl::expected<Proposal, Refusal> ProposalBook::approve(Proposal& proposal,
+                                                      std::chrono::steady_clock::time_point asked) {
   become(proposal, ProposalState::checked, "Every check passed.");
   // Kept before it is handed over: the control thread may take it at once.
   approved_.push_back(proposal.task);

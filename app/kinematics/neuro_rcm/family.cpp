@@ -44,8 +44,8 @@ KinematicsResult<Pose> NeuroKinematics::zframe_from_treatment(std::span<const do
   return zframe_from_treatment(named(neuro_joint_fields, positions));
 }
 
-KinematicsResult<std::vector<double>> NeuroKinematics::positions_for(const Vector3d& entry,
-                                                                     const Vector3d& target,
+KinematicsResult<std::vector<double>> NeuroKinematics::positions_for(const Eigen::Vector3d& entry,
+                                                                     const Eigen::Vector3d& target,
                                                                      double rotation_rad) const {
   return joints_for(entry, target, rotation_rad).map([](const NeuroJoints& joints) {
     return listed(neuro_joint_fields, joints);
@@ -53,7 +53,7 @@ KinematicsResult<std::vector<double>> NeuroKinematics::positions_for(const Vecto
 }
 
 KinematicsResult<std::vector<double>> NeuroKinematics::positions_for(
-    const Pose& zframe_from_treatment, const std::optional<Vector3d>& entry) const {
+    const Pose& zframe_from_treatment, const std::optional<Eigen::Vector3d>& entry) const {
   const auto joints =
       entry ? joints_for(zframe_from_treatment, *entry) : joints_at_insertion(zframe_from_treatment, 0.0);
   return joints.map([](const NeuroJoints& found) { return listed(neuro_joint_fields, found); });

@@ -86,8 +86,8 @@ KinematicsResult<Pose> ProstateKinematics::zframe_from_treatment(std::span<const
   });
 }
 
-KinematicsResult<std::vector<double>> ProstateKinematics::positions_for(const Vector3d& entry,
-                                                                        const Vector3d& target,
+KinematicsResult<std::vector<double>> ProstateKinematics::positions_for(const Eigen::Vector3d& entry,
+                                                                        const Eigen::Vector3d& target,
                                                                         double rotation_rad) const {
   const Vector3d shift = base_to_zframe(geometry_);
   return joints_for(entry + shift, target + shift, rotation_rad).map([](const ProstateJoints& joints) {
@@ -96,7 +96,7 @@ KinematicsResult<std::vector<double>> ProstateKinematics::positions_for(const Ve
 }
 
 KinematicsResult<std::vector<double>> ProstateKinematics::positions_for(
-    const Pose& zframe_from_treatment, const std::optional<Vector3d>& entry) const {
+    const Pose& zframe_from_treatment, const std::optional<Eigen::Vector3d>& entry) const {
   return check_on_axis(zframe_from_treatment, entry)
       .and_then([&] {
         Pose base_from_treatment = zframe_from_treatment;
