@@ -23,6 +23,7 @@ struct ComparedHeads {
   bool same_owner = true; /**< the store's owner can change the file, too */
 };
 
+/** What `audit verify` found. */
 struct AuditVerdict {
   AuditHead head;
   std::optional<ComparedHeads> heads; /**< nothing for exported records, which stand for themselves */

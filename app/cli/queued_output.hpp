@@ -31,6 +31,7 @@ class QueuedOutput {
   QueuedOutput(const QueuedOutput&) = delete;
   QueuedOutput& operator=(const QueuedOutput&) = delete;
 
+  /** What is written to it is queued. */
   [[nodiscard]] std::ostream& stream() { return stream_; }
 
  private:

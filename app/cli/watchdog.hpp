@@ -15,6 +15,7 @@ namespace interlock::cli {
  */
 class Watchdog {
  public:
+  /** By which it counts. */
   using Time = std::chrono::steady_clock::time_point;
 
   Watchdog(std::chrono::milliseconds limit, Time now) : limit_(limit), last_look_(now) {}

@@ -63,6 +63,7 @@ class LoginGuard {
     /** How long it has to wait before it is judged. */
     [[nodiscard]] std::chrono::seconds delay() const { return delay_; }
 
+    /** Its password was checked. */
     void judged(bool right);
 
    private:

@@ -39,6 +39,7 @@ class Server {
   Server(const boost::asio::any_io_executor& door, const boost::asio::any_io_executor& executor, Api& api,
          Mailbox& mailbox, StaticFiles files);
 
+  /** Where clients connect. */
   [[nodiscard]] FrontDoor& door() { return door_; }
 
   /** The port that was granted. */

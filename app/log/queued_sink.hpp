@@ -25,6 +25,7 @@ class QueuedSink final : public spdlog::sinks::sink {
   /** @param place what `target` writes to, as people know it */
   QueuedSink(spdlog::sink_ptr target, std::string place, std::shared_ptr<LogRing> ring);
 
+  /** Queues a line; one that finds no room is counted. */
   void log(const spdlog::details::log_msg& message) override;
 
   /** For the end of the log, since it waits: until all is written, or `longest_flush`. */
@@ -38,8 +39,9 @@ class QueuedSink final : public spdlog::sinks::sink {
   /** Lines that were not written, ever. */
   [[nodiscard]] std::uint64_t lost() const { return thread_.lost(); }
 
-  // Before the first line only: later, these may wait.
+  /** Before the first line only: later it may wait. */
   void set_pattern(const std::string& pattern) override;
+  /** As `set_pattern`. */
   void set_formatter(std::unique_ptr<spdlog::formatter> formatter) override;
 
  private:

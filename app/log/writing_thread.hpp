@@ -19,7 +19,9 @@ namespace interlock {
  */
 class WritingThread {
  public:
+  /** Something to write. */
   using Job = std::function<void()>;
+  /** By which waiting is limited. */
   using Clock = std::chrono::steady_clock;
 
   /** Jobs that may wait: a second of the worst flood of lines, and a few megabytes. */

@@ -19,6 +19,7 @@ struct Moment {
   std::uint32_t tick_us = 0;
 };
 
+/** Whether something is still held. */
 class HeldLease {
  public:
   /** @param patience for which a hold lasts without a renewal */

@@ -27,6 +27,7 @@ class ManualMode final : public Mode {
   void tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept override;
   void on_unsent(const Wish& wish) noexcept override;
   void on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept override;
+  /** Whether a move of any axis is open. */
   [[nodiscard]] bool is_open() const noexcept override;
   void report(TaskTable& tasks) const noexcept override;
 

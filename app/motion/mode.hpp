@@ -46,6 +46,7 @@ class Mode {
    * out, and each renewal has a verdict of its own. */
   virtual void on_verdict_lost(const WishOrigin& /*origin*/, std::uint32_t /*tick*/) noexcept {}
 
+  /** Whether a task is open here. */
   [[nodiscard]] virtual bool is_open() const noexcept = 0;
 
   /** Writes where its tasks stand. */

@@ -125,6 +125,7 @@ struct Task {
   [[nodiscard]] TaskKind kind() const noexcept { return static_cast<TaskKind>(work.index()); }
 };
 
+/** By which both threads hold a task. */
 using TaskReference = std::shared_ptr<const Task>;
 
 /** Consent to a task, on its way to the control thread. */
@@ -206,10 +207,13 @@ struct TaskStatus {
 /** The newest task of each place: a place for the move of each slot, and one for each other kind. */
 class TaskTable {
  public:
+  /** Of the move of a slot. */
   [[nodiscard]] const TaskStatus& move(std::uint32_t slot) const noexcept { return all_[slot]; }
+  /** As above, to be written. */
   [[nodiscard]] TaskStatus& move(std::uint32_t slot) noexcept { return all_[slot]; }
   /** Of a kind that is not `move`. */
   [[nodiscard]] const TaskStatus& of(TaskKind kind) const noexcept { return all_[place_of(kind)]; }
+  /** As above, to be written. */
   [[nodiscard]] TaskStatus& of(TaskKind kind) noexcept { return all_[place_of(kind)]; }
 
   [[nodiscard]] auto begin() const noexcept { return all_.begin(); }

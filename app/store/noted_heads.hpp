@@ -17,6 +17,7 @@ namespace interlock {
 /** Name of the file among the recordings. */
 constexpr const char* noted_heads_file_name = "audit-heads";
 
+/** A head of the audit as the recorder noted it. */
 struct NotedHead {
   std::string time; /**< of the recorder's clock */
   AuditHead head;

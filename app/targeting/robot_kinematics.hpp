@@ -31,12 +31,15 @@ class RobotKinematics {
 
   [[nodiscard]] const ProbeOffsets& probe() const { return probe_; }
 
+  /** As of `Kinematics`, by the positions of all axes. */
   [[nodiscard]] KinematicsResult<Pose> zframe_from_treatment(std::span<const double> positions) const {
     return kinematics_->zframe_from_treatment(joints_of(positions));
   }
+  /** As of `Kinematics`, by the positions of all axes. */
   [[nodiscard]] KinematicsResult<RobotBody> zframe_body(std::span<const double> positions) const {
     return kinematics_->zframe_body(joints_of(positions));
   }
+  /** As of `Kinematics`, by the positions of all axes. */
   [[nodiscard]] std::optional<double> depth_mm(std::span<const double> positions) const {
     return kinematics_->depth_mm(joints_of(positions));
   }
@@ -48,9 +51,11 @@ class RobotKinematics {
     return sample_workspace(*kinematics_, joints_of(lowest), joints_of(highest), count, seed);
   }
 
+  /** As of `Kinematics`; positions of all axes. */
   [[nodiscard]] KinematicsResult<AxisPositions> positions_for(const Eigen::Vector3d& entry,
                                                               const Eigen::Vector3d& target,
                                                               double rotation_rad) const;
+  /** As of `Kinematics`; positions of all axes. */
   [[nodiscard]] KinematicsResult<AxisPositions> positions_for(
       const Pose& zframe_from_treatment, const std::optional<Eigen::Vector3d>& entry) const;
 

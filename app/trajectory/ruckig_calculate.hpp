@@ -24,6 +24,7 @@ struct RuckigUnit {
   double origin = 0.0;
   double length = 1.0;
 
+  /** A state of Ruckig in the units of the axis. */
   [[nodiscard]] MotionState from_ruckig(double position, double velocity,
                                         double acceleration) const noexcept {
     return {origin + position * length, velocity * length, acceleration * length};

@@ -25,7 +25,8 @@ def needs_word(entry: Entry) -> bool:
         return False
     if entry.file.startswith(INTERFACE):
         return not (entry.kind == "define" and entry.name.endswith("_H"))
-    if entry.name == "_Static_assert":
+    # The second is a library's, of which a class of ours is made.
+    if entry.name == "_Static_assert" or entry.name.startswith("spdlog::"):
         return False
     if entry.kind == "function":
         return not is_special(entry)
