@@ -48,8 +48,7 @@ struct Context {
   std::function<SteadyTime()> steady_clock;
   const std::uint64_t& role_refusals; /**< requests of users whose role does not suffice */
 
-  /** The newest view; what it says of tasks is in the book already. The reference holds until the next
-   * call. */
+  /** The newest view, after the book has followed its tasks. The reference holds until the next call. */
   [[nodiscard]] const ControlView& view() const;
 
   /** 503 NO_KERNEL unless a kernel is connected. */
