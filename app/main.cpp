@@ -33,17 +33,17 @@
 #include "interlock/kernel.h"
 #include "log/log.hpp"
 #include "motion/control_loop.hpp"
-#include "network/launch.hpp"
 #include "robot/catalog.hpp"
 #include "robot/compile.hpp"
 #include "robot/robot_file.hpp"
-#include "service/capabilities.hpp"
-#include "service/service_manager.hpp"
 #include "store/audit.hpp"
 #include "store/first_admin.hpp"
 #include "store/noted_heads.hpp"
 #include "store/store.hpp"
 #include "store/store_backup.hpp"
+#include "system/capabilities.hpp"
+#include "system/launch.hpp"
+#include "system/service_manager.hpp"
 
 namespace interlock {
 namespace {
@@ -229,14 +229,14 @@ Stored<void> let_somebody_in(Store& store) {
 /** Listens for navigation programs when the robot's file or the command line says so; they ask for motion, so
  * not in a replay. */
 tl::expected<void, std::string> listen_for_navigation(const Options& options, const Robot& robot,
-                                                      web::Navigation& navigation) {
+                                                      Navigation& navigation) {
   if (options.replay || (!robot.openigtlink && !options.igtl_port)) {
     return {};
   }
   const OpenIgtLink link = robot.openigtlink.value_or(OpenIgtLink{});
   const auto port = options.igtl_port.value_or(static_cast<std::uint16_t>(link.port));
-  web::NavigationOptions wanted{options.igtl_dialect.empty() ? link.dialect : options.igtl_dialect,
-                                link.first_controls, std::nullopt};
+  NavigationOptions desired{options.igtl_dialect.empty() ? link.dialect : options.igtl_dialect,
+                            link.first_controls, std::nullopt};
   if (!link.connect_address.empty()) {
     boost::system::error_code error;
     const auto address = boost::asio::ip::make_address(link.connect_address, error);
@@ -244,12 +244,12 @@ tl::expected<void, std::string> listen_for_navigation(const Options& options, co
       return tl::make_unexpected(options.robot_file + ": [openigtlink] connect: \"" + link.connect_address +
                                  "\" is no address; expected one such as 10.0.0.7");
     }
-    wanted.connect = boost::asio::ip::tcp::endpoint(address, static_cast<std::uint16_t>(link.connect_port));
+    desired.connect = boost::asio::ip::tcp::endpoint(address, static_cast<std::uint16_t>(link.connect_port));
   }
   return navigation.hub()
       .listen({link.bind, port, link.allow, std::chrono::milliseconds(link.heartbeat_ms)})
       .map([&] {
-        navigation.start(std::move(wanted));
+        navigation.start(std::move(desired));
         spdlog::info("OpenIGTLink listens on {}:{}", link.bind, navigation.hub().port());
         std::cout << "OpenIGTLink " << link.bind << ':' << navigation.hub().port() << std::endl;
       });
@@ -257,11 +257,11 @@ tl::expected<void, std::string> listen_for_navigation(const Options& options, co
 
 /** The network's thread says so, of the control thread and of that of the door: none may stand still. */
 boost::asio::awaitable<void> tell_service_manager(ServiceManager& manager, const ControlLoop& control,
-                                                  const Mailbox& mailbox) {
+                                                  const RealtimeChannel& channel) {
   boost::asio::steady_timer timer(co_await boost::asio::this_coro::executor);
   std::uint32_t door = 0;
   while (manager.pause().count() > 0) {
-    const std::uint32_t kept = mailbox.door_kept.load(std::memory_order_relaxed);
+    const std::uint32_t kept = channel.door_kept.load(std::memory_order_relaxed);
     if (std::exchange(door, kept) != kept) {
       manager.say_alive(control.rounds());
     }
@@ -275,7 +275,7 @@ Stored<AuditHead> read_head(Store& store) {
 }
 
 /** Has the recorder note the head of the audit, soon after it has changed. */
-boost::asio::awaitable<void> report_heads(web::StoreGateway& gateway, const std::string& recorder) {
+boost::asio::awaitable<void> report_heads(StoreExecutor& gateway, const std::string& recorder) {
   boost::asio::steady_timer timer(co_await boost::asio::this_coro::executor);
   AuditHead reported;
   while (!recorder.empty()) {
@@ -293,15 +293,15 @@ void name_thread(const char* name) { pthread_setname_np(pthread_self(), name); }
 
 /** Ends the app on a signal: a STOP first, which waits for no other thread, then the network's thread by
  * itself, or else the process. */
-boost::asio::awaitable<void> end_on_signal(Mailbox& mailbox, std::function<void()> end_network) {
+boost::asio::awaitable<void> end_on_signal(RealtimeChannel& channel, std::function<void()> end_network) {
   const auto executor = co_await boost::asio::this_coro::executor;
   boost::asio::signal_set signals(executor, SIGINT, SIGTERM);
   const int signal = co_await signals.async_wait(boost::asio::use_awaitable);
-  mailbox.stop();
+  channel.stop();
   spdlog::info("signal {}: ending", signal);
   end_network();
-  boost::asio::steady_timer patience(executor, longest_end);
-  co_await patience.async_wait(boost::asio::use_awaitable);
+  boost::asio::steady_timer timeout(executor, longest_end);
+  co_await timeout.async_wait(boost::asio::use_awaitable);
   spdlog::critical("the network's thread did not end");
   spdlog::default_logger()->flush();
   std::_Exit(exit_failed);
@@ -315,13 +315,13 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   boost::asio::io_context network(1);
   boost::asio::io_context door(1);
   const auto executor = network.get_executor();
-  const auto mailbox = std::make_unique<Mailbox>();
-  web::StoreGateway gateway(executor, store);
+  const auto channel = std::make_unique<RealtimeChannel>();
+  StoreExecutor gateway(executor, store);
   const RobotPlan plan(model.robot, model.config);
   HistoryFeed history(plan);
-  web::Api api(executor, model.robot, model.config, *mailbox, options.bench_socket, gateway, log, {},
+  web::Api api(executor, model.robot, model.config, *channel, options.bench_socket, gateway, log, {},
                {&history, options.black_box});
-  web::Server server(door.get_executor(), executor, api, *mailbox,
+  web::Server server(door.get_executor(), executor, api, *channel,
                      web::StaticFiles(options.web_directory, options.docs_directory));
   if (auto listening = server.door().listen(options.listen); !listening) {
     return listening;
@@ -332,21 +332,21 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   if (const auto let_in = let_somebody_in(store); !let_in) {
     return tl::make_unexpected("--state " + options.state_directory + ": " + let_in.error().message());
   }
-  ControlLoop control(options.link_socket, plan, *mailbox, &history,
+  ControlLoop control(options.link_socket, plan, *channel, &history,
                       options.replay ? LinkUse::replay : LinkUse::control);
   const std::jthread control_thread([&](const std::stop_token& stop) {
     name_thread("control");
     control.run(stop);
   });
   launch(executor, api.listen());
-  launch(executor, api.beat());
+  launch(executor, api.broadcast());
   launch(executor, api.sweep_sessions(session_sweep_pause));
   launch(executor, report_heads(gateway, options.recorder));
-  launch(executor, tell_service_manager(*manager, control, *mailbox));
+  launch(executor, tell_service_manager(*manager, control, *channel));
   launch(door.get_executor(), server.door().accept());
-  launch(door.get_executor(), server.door().beat());
+  launch(door.get_executor(), server.door().heartbeat());
   launch(door.get_executor(), server.door().listen_to_control());
-  launch(door.get_executor(), end_on_signal(*mailbox, [&] {
+  launch(door.get_executor(), end_on_signal(*channel, [&] {
            boost::asio::co_spawn(executor, api.release_pedal(),
                                  [&](const std::exception_ptr&) { network.stop(); });
          }));

@@ -18,7 +18,7 @@ constexpr double right_margin = 20.0;
 constexpr double bottom_margin = 10.0;
 /** More points than pixels show nothing more. */
 constexpr std::size_t most_points = 1500;
-constexpr int ticks_wanted = 5;
+constexpr int ticks_desired = 5;
 /** A chart of a single moment has a time axis, too. */
 constexpr double shortest_s = 1e-3;
 
@@ -66,7 +66,7 @@ std::string line(double x1, double y1, double x2, double y2, const char* colour)
 
 /** 1, 2 or 5 times a power of ten, for about `ticks_wanted` ticks. */
 double tick_distance(const Range& range) {
-  const double rough = (range.highest - range.lowest) / ticks_wanted;
+  const double rough = (range.highest - range.lowest) / ticks_desired;
   const double power = std::pow(10.0, std::floor(std::log10(rough)));
   const double share = rough / power;
   return power * (share < 1.5 ? 1.0 : share < 3.5 ? 2.0 : share < 7.5 ? 5.0 : 10.0);

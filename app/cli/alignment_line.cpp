@@ -1,5 +1,4 @@
-#include "cli/alignment_line.hpp"
-
+#include "cli/kinematics_lines.hpp"
 #include "targeting/targeting_json.hpp"
 
 namespace interlock::cli {
@@ -23,11 +22,11 @@ Solved<Registration> registration_of(const json& request) {
   });
 }
 
-Solved<Aim> aim_of(const json& request) {
+Solved<EntryTarget> entry_target_of(const json& request) {
   return point(request, "entry").and_then([&](const Vector3d& entry) {
     return point(request, "target").and_then([&](const Vector3d& target) {
       return number_or_zero(request, "rotation").map([&](double rotation) {
-        return Aim{entry, target, rotation};
+        return EntryTarget{entry, target, rotation};
       });
     });
   });
@@ -39,8 +38,8 @@ Solved<json> align_line(const Robot& robot, const RobotKinematics& kinematics, c
   return check_keys(request, known_keys)
       .and_then([&] { return registration_of(request); })
       .and_then([&](const Registration& registration) {
-        return aim_of(request).and_then(
-            [&](const Aim& aim) { return solved(align(robot, kinematics, registration, aim)); });
+        return entry_target_of(request).and_then(
+            [&](const EntryTarget& aim) { return solved(align(robot, kinematics, registration, aim)); });
       })
       .map([&](const Alignment& alignment) { return to_json(robot, alignment); });
 }

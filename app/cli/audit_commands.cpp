@@ -1,5 +1,3 @@
-#include "cli/audit_commands.hpp"
-
 #include <sys/stat.h>
 
 #include <chrono>
@@ -8,12 +6,13 @@
 #include <utility>
 
 #include "cli/audit_verdict.hpp"
+#include "cli/commands.hpp"
 #include "store/audit.hpp"
 #include "store/audit_check.hpp"
 #include "store/audit_file.hpp"
 #include "store/noted_heads.hpp"
 #include "store/schema.hpp"
-#include "text/printable.hpp"
+#include "system/printable.hpp"
 
 namespace interlock::cli {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "text/printable.hpp"
+#include "system/printable.hpp"
 
 namespace interlock::cli {
 namespace {

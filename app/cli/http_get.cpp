@@ -17,10 +17,10 @@ constexpr unsigned http_version = 11;
 /** The three steps of one exchange, each begun by the one before. */
 class Exchange {
  public:
-  Exchange(asio::io_context& context, const std::string& target, std::chrono::seconds patience)
+  Exchange(asio::io_context& context, const std::string& target, std::chrono::seconds timeout)
       : stream_(context), request_(http::verb::get, target, http_version) {
     request_.set(http::field::host, "127.0.0.1");
-    stream_.expires_after(patience);
+    stream_.expires_after(timeout);
   }
 
   void begin(const asio::ip::tcp::endpoint& endpoint) {
@@ -58,9 +58,9 @@ class Exchange {
 
 }  // namespace
 
-Result<HttpAnswer> http_get(std::uint16_t port, const std::string& target, std::chrono::seconds patience) {
+Result<HttpAnswer> http_get(std::uint16_t port, const std::string& target, std::chrono::seconds timeout) {
   asio::io_context context;
-  Exchange exchange(context, target, patience);
+  Exchange exchange(context, target, timeout);
   exchange.begin({asio::ip::address_v4::loopback(), port});
   context.run();
   if (exchange.error()) {

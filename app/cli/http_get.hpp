@@ -17,7 +17,7 @@ struct HttpAnswer {
   std::string body;
 };
 
-/** GET http://127.0.0.1:port/target. Connecting, asking and reading together take at most `patience`. */
-Result<HttpAnswer> http_get(std::uint16_t port, const std::string& target, std::chrono::seconds patience);
+/** GET http://127.0.0.1:port/target. Connecting, asking and reading together take at most `timeout`. */
+Result<HttpAnswer> http_get(std::uint16_t port, const std::string& target, std::chrono::seconds timeout);
 
 }  // namespace interlock::cli

@@ -1,11 +1,10 @@
-#include "cli/igtl_command.hpp"
-
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <optional>
 #include <ostream>
 
+#include "cli/commands.hpp"
 #include "cli/igtl_words.hpp"
 #include "igtl/client.hpp"
 
@@ -18,7 +17,7 @@ using igtl::Message;
 
 constexpr double usual_send_seconds = 1.0;
 constexpr double usual_phase_seconds = 6.0;
-constexpr std::chrono::seconds connect_patience{5};
+constexpr std::chrono::seconds connect_timeout{5};
 constexpr std::size_t prefix_width = 4;
 
 Clock::time_point in_seconds(double seconds) {
@@ -34,7 +33,7 @@ tl::unexpected<Failure> lost(const IgtlOptions& options, const std::string& reas
 }
 
 Result<void> connect(Client& client, const IgtlOptions& options) {
-  const auto connected = client.connect(options.host, options.port, Clock::now() + connect_patience);
+  const auto connected = client.connect(options.host, options.port, Clock::now() + connect_timeout);
   return connected ? Result<void>() : lost(options, connected.error());
 }
 

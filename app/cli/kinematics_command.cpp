@@ -1,9 +1,8 @@
-#include "cli/kinematics_command.hpp"
-
 #include <charconv>
 #include <string_view>
 #include <vector>
 
+#include "cli/commands.hpp"
 #include "cli/named_robot.hpp"
 
 namespace interlock::cli {

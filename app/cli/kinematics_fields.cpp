@@ -1,4 +1,4 @@
-#include "cli/kinematics_fields.hpp"
+#include "cli/kinematics_lines.hpp"
 
 namespace interlock::cli {
 

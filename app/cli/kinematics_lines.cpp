@@ -3,8 +3,6 @@
 #include <array>
 #include <vector>
 
-#include "cli/alignment_line.hpp"
-#include "cli/kinematics_fields.hpp"
 #include "targeting/robot_kinematics.hpp"
 
 namespace interlock::cli {
@@ -50,12 +48,12 @@ json write_joints(const Robot& robot, const AxisPositions& positions) {
 Solved<AxisPositions> from_pose(const RobotKinematics& kinematics, const json& request) {
   return check_keys(request, std::array{"pose", "entry"})
       .and_then([&] { return pose(request); })
-      .and_then([&](const Pose& wanted) {
+      .and_then([&](const Pose& desired) {
         if (!request.contains("entry")) {
-          return solved(kinematics.positions_for(wanted, std::nullopt));
+          return solved(kinematics.positions_for(desired, std::nullopt));
         }
         return point(request, "entry").and_then([&](const Vector3d& entry) {
-          return solved(kinematics.positions_for(wanted, entry));
+          return solved(kinematics.positions_for(desired, entry));
         });
       });
 }

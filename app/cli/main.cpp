@@ -12,19 +12,12 @@
 #include <optional>
 
 #include "build_info/build_info.hpp"
+#include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
-#include "cli/igtl_command.hpp"
 #include "cli/installation.hpp"
-#include "cli/kinematics_command.hpp"
-#include "cli/model_commands.hpp"
 #include "cli/queued_output.hpp"
-#include "cli/record_command.hpp"
-#include "cli/replay_command.hpp"
 #include "cli/run_command.hpp"
-#include "cli/status_command.hpp"
 #include "cli/store_command_line.hpp"
-#include "cli/trajectory_command.hpp"
-#include "cli/tune_command.hpp"
 #include "robot/compile.hpp"
 
 namespace interlock::cli {

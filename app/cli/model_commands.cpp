@@ -1,5 +1,4 @@
-#include "cli/model_commands.hpp"
-
+#include "cli/commands.hpp"
 #include "cli/model_summary.hpp"
 #include "robot/compile.hpp"
 #include "robot/robot_file.hpp"

@@ -1,10 +1,9 @@
-#include "cli/record_command.hpp"
-
 #include <optional>
 #include <string>
 #include <system_error>
 
 #include "build_info/build_info.hpp"
+#include "cli/commands.hpp"
 #include "cli/instance_lock.hpp"
 #include "recorder/recorder.hpp"
 

@@ -1,5 +1,3 @@
-#include "cli/replay_command.hpp"
-
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -10,13 +8,13 @@
 #include <string>
 #include <utility>
 
-#include "cli/replay_judge.hpp"
-#include "cli/replay_table.hpp"
+#include "cli/commands.hpp"
+#include "cli/replay_views.hpp"
 #include "cli/write_file.hpp"
 #include "interlock/replay.h"
 #include "recorder/recording_folder.hpp"
 #include "robot/compile.hpp"
-#include "time/utc_time.hpp"
+#include "system/utc_time.hpp"
 
 namespace interlock::cli {
 namespace {

@@ -1,12 +1,11 @@
-#include "cli/replay_console.hpp"
-
 #include <utility>
 #include <vector>
 
 #include "cli/announcement.hpp"
+#include "cli/commands.hpp"
 #include "cli/free_port.hpp"
 #include "cli/installation.hpp"
-#include "cli/model_commands.hpp"
+#include "cli/replay_views.hpp"
 #include "cli/runtime_directory.hpp"
 #include "cli/supervisor.hpp"
 #include "robot/compile.hpp"

@@ -1,4 +1,4 @@
-#include "cli/replay_judge.hpp"
+#include "cli/replay_views.hpp"
 
 namespace interlock::cli {
 namespace {

@@ -1,8 +1,7 @@
-#include "cli/replay_table.hpp"
-
 #include <string>
 #include <utility>
 
+#include "cli/replay_views.hpp"
 #include "robot/catalog.hpp"
 
 namespace interlock::cli {
@@ -12,7 +11,7 @@ using catalog::Family;
 
 constexpr double ns_per_s = 1e9;
 constexpr const char* measured = "#0b62a4";
-constexpr const char* wanted = "#d1495b";
+constexpr const char* desired = "#d1495b";
 
 /** The drive with the sense of its direction. */
 double signed_drive(const ilk_command_t& command) {
@@ -71,7 +70,7 @@ ReplayPlot::ReplayPlot(const ReplayedRobot& robot, std::string title) : robot_(r
   chart_.title = std::move(title);
   for (const std::uint32_t slot : robot_.axes()) {
     const std::string name = "slot " + std::to_string(slot);
-    chart_.panels.push_back({name + ", counts", {{"position", measured, {}}, {"setpoint", wanted, {}}}});
+    chart_.panels.push_back({name + ", counts", {{"position", measured, {}}, {"setpoint", desired, {}}}});
     chart_.panels.push_back({name + ", drive", {{"drive", measured, {}}}});
   }
   chart_.panels.push_back({"mode: 1 LOCKED, 2 READY, 3 MOTION", {{"mode", measured, {}}}});

@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "cli/announcement.hpp"
+#include "cli/commands.hpp"
 #include "cli/free_port.hpp"
 #include "cli/instance_lock.hpp"
-#include "cli/model_commands.hpp"
-#include "cli/record_command.hpp"
 #include "cli/runtime_directory.hpp"
 #include "cli/state_directory.hpp"
 #include "cli/supervisor.hpp"

@@ -1,10 +1,9 @@
-#include "cli/status_command.hpp"
-
 #include <iomanip>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string_view>
 
+#include "cli/commands.hpp"
 #include "cli/http_get.hpp"
 #include "robot/catalog.hpp"
 
@@ -15,7 +14,7 @@ using namespace std::chrono_literals;
 using catalog::Family;
 using nlohmann::json;
 
-constexpr auto answer_patience = 5s;
+constexpr auto answer_timeout = 5s;
 
 class Table {
  public:
@@ -112,7 +111,7 @@ Result<std::string> status_table(const std::string& body) {
 }
 
 Result<void> show_status(const StatusOptions& options, std::ostream& output) {
-  const Result<HttpAnswer> answer = http_get(options.port, "/api/status", answer_patience);
+  const Result<HttpAnswer> answer = http_get(options.port, "/api/status", answer_timeout);
   if (!answer) {
     return tl::unexpected(answer.error());
   }

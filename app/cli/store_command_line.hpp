@@ -8,9 +8,7 @@
 #include <functional>
 #include <ostream>
 
-#include "cli/audit_commands.hpp"
-#include "cli/store_commands.hpp"
-#include "cli/user_commands.hpp"
+#include "cli/commands.hpp"
 
 namespace interlock::cli {
 

@@ -1,5 +1,4 @@
-#include "cli/store_commands.hpp"
-
+#include "cli/commands.hpp"
 #include "cli/instance_lock.hpp"
 #include "store/noted_heads.hpp"
 #include "store/store_backup.hpp"

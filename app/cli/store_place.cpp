@@ -1,6 +1,6 @@
 #include "cli/store_place.hpp"
 
-#include "cli/record_command.hpp"
+#include "cli/commands.hpp"
 #include "cli/state_directory.hpp"
 #include "robot/robot_file.hpp"
 #include "store/noted_heads.hpp"

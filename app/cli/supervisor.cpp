@@ -194,12 +194,12 @@ void Supervisor::stop(Task& task) {
     return;
   }
   task.child->send(SIGTERM);
-  Deadline patience = Clock::now() + task.supervised.longest_end;
+  Deadline timeout = Clock::now() + task.supervised.longest_end;
   while (task.child) {
-    const Event event = next_event(patience);
+    const Event event = next_event(timeout);
     if (std::holds_alternative<TimedOut>(event) || std::holds_alternative<StopAsked>(event)) {
       task.child->send(SIGKILL);
-      patience.reset();
+      timeout.reset();
     }
   }
 }

@@ -1,11 +1,10 @@
-#include "cli/trajectory_command.hpp"
-
 #include <array>
 #include <charconv>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "cli/commands.hpp"
 #include "cli/named_robot.hpp"
 #include "trajectory/trajectory_csv.hpp"
 

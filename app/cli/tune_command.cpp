@@ -1,14 +1,11 @@
-#include "cli/tune_command.hpp"
-
 #include <nlohmann/json.hpp>
 
+#include "cli/commands.hpp"
 #include "cli/named_robot.hpp"
 #include "cli/write_file.hpp"
 #include "plant/parameters_file.hpp"
 #include "robot/compile.hpp"
-#include "tuning/step_csv.hpp"
-#include "tuning/step_figures.hpp"
-#include "tuning/step_svg.hpp"
+#include "tuning/step_run.hpp"
 
 namespace interlock::cli {
 namespace {

@@ -1,14 +1,13 @@
-#include "cli/user_commands.hpp"
-
 #include <algorithm>
 #include <iomanip>
 #include <nlohmann/json.hpp>
 
+#include "cli/commands.hpp"
 #include "cli/password_prompt.hpp"
 #include "store/audit.hpp"
 #include "store/sessions.hpp"
 #include "store/users.hpp"
-#include "text/printable.hpp"
+#include "system/printable.hpp"
 
 namespace interlock::cli {
 namespace {

@@ -50,8 +50,8 @@ std::uint32_t DriveMap::drive(double counts_per_s) const noexcept {
   const double max_drive = rules_.max_drive;
   const double linear = rules_.dead_zone_drive + std::abs(counts_per_s) / rules_.full_speed_counts_per_s *
                                                      (max_drive - rules_.dead_zone_drive);
-  const double wanted = rules_.card == ILK_CARD_HIGH_FREQUENCY ? frequency_drive(counts_per_s) : linear;
-  return static_cast<std::uint32_t>(std::clamp(wanted, static_cast<double>(rules_.min_drive), max_drive) +
+  const double desired = rules_.card == ILK_CARD_HIGH_FREQUENCY ? frequency_drive(counts_per_s) : linear;
+  return static_cast<std::uint32_t>(std::clamp(desired, static_cast<double>(rules_.min_drive), max_drive) +
                                     0.5);
 }
 

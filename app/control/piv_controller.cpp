@@ -58,17 +58,17 @@ ControlResult<PivOutput> PivController::update(const PivInput& input) noexcept {
   const Setpoint& setpoint = input.setpoint;
   const double full = rules_.full_speed_counts_per_s;
   const double position_error = setpoint.position_counts - input.position_counts;
-  const double velocity_wanted =
+  const double velocity_desired =
       std::clamp(setpoint.velocity_counts_per_s + rules_.gains.position_per_s * position_error, -full, full);
   const double error = input.velocity
-                           ? velocity_wanted - setpoint.acceleration_counts_per_s2 * input.velocity->age_s -
+                           ? velocity_desired - setpoint.acceleration_counts_per_s2 * input.velocity->age_s -
                                  input.velocity->counts_per_s
                            : 0.0;
-  const double wanted = velocity_wanted + setpoint.acceleration_counts_per_s2 * rules_.lead_s +
-                        rules_.gains.velocity * error + integral_;
-  output_ = held(wanted, input);
-  integrate(error, wanted, input.elapsed_s);
-  return PivOutput{wanted, output_};
+  const double desired = velocity_desired + setpoint.acceleration_counts_per_s2 * rules_.lead_s +
+                         rules_.gains.velocity * error + integral_;
+  output_ = held(desired, input);
+  integrate(error, desired, input.elapsed_s);
+  return PivOutput{desired, output_};
 }
 
 void PivController::reset() noexcept {
@@ -83,9 +83,9 @@ void PivController::turn(int direction) noexcept {
   }
 }
 
-double PivController::held(double wanted, const PivInput& input) const noexcept {
+double PivController::held(double desired, const PivInput& input) const noexcept {
   const double most = std::min(rules_.full_speed_counts_per_s, input.ceiling_counts_per_s);
-  const double along = std::max(0.0, std::min(direction_ * wanted, most));
+  const double along = std::max(0.0, std::min(direction_ * desired, most));
   if (along == 0.0) {
     return 0.0;
   }
@@ -94,9 +94,9 @@ double PivController::held(double wanted, const PivInput& input) const noexcept 
   return direction_ * std::clamp(along, std::min(before - step, most), before + step);
 }
 
-void PivController::integrate(double error, double wanted, double elapsed_s) noexcept {
-  const bool held_below = output_ < wanted;
-  const bool held_above = output_ > wanted;
+void PivController::integrate(double error, double desired, double elapsed_s) noexcept {
+  const bool held_below = output_ < desired;
+  const bool held_above = output_ > desired;
   if ((error > 0.0 && held_below) || (error < 0.0 && held_above)) {
     return;
   }

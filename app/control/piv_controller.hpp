@@ -66,8 +66,8 @@ struct PivInput {
 
 /** What the law asks for in one tick. */
 struct PivOutput {
-  double wanted_counts_per_s = 0.0; /**< before bounds and rate limit; its sign may be against the travel */
-  double counts_per_s = 0.0;        /**< in the direction of travel, or zero */
+  double desired_counts_per_s = 0.0; /**< before bounds and rate limit; its sign may be against the travel */
+  double counts_per_s = 0.0;         /**< in the direction of travel, or zero */
 };
 
 /** Proportional on position, integral and velocity terms on speed, with anti-windup. */
@@ -88,8 +88,8 @@ class PivController {
   explicit PivController(const PivRules& rules) noexcept : rules_(rules) {}
 
   void turn(int direction) noexcept;
-  [[nodiscard]] double held(double wanted, const PivInput& input) const noexcept;
-  void integrate(double error, double wanted, double elapsed_s) noexcept;
+  [[nodiscard]] double held(double desired, const PivInput& input) const noexcept;
+  void integrate(double error, double desired, double elapsed_s) noexcept;
 
   PivRules rules_;
   int direction_ = 1;

@@ -75,14 +75,14 @@ void Decimation::add_axis(std::uint32_t slot, const ilk_snapshot_t& snapshot) no
   const ilk_axis_t& axis = snapshot.state.axis[slot];
   AxisExtremes& extremes = bucket_.axis[slot];
   const bool read = axis.card_valid != 0;
-  const bool wished = axis.state == ILK_AXIS_MOVING;
+  const bool requested = axis.state == ILK_AXIS_MOVING;
   if (read) {
     extremes.position_counts.add(axis.position_counts);
   }
-  if (wished) {
+  if (requested) {
     extremes.setpoint_counts.add(axis.setpoint_counts);
   }
-  if (read && wished) {
+  if (read && requested) {
     extremes.error_counts.add(error_of(axis));
   }
   extremes.drive.add(signed_drive(snapshot.command[slot]));

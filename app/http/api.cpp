@@ -4,12 +4,12 @@
 
 #include <boost/asio/steady_timer.hpp>
 
-#include "http/problems.hpp"
 #include "http/same_origin.hpp"
-#include "http/status_json.hpp"
-#include "network/as_result.hpp"
-#include "network/launch.hpp"
 #include "proposals/proposal_json.hpp"
+#include "service/reply.hpp"
+#include "service/status_json.hpp"
+#include "system/as_result.hpp"
+#include "system/launch.hpp"
 
 namespace interlock::web {
 namespace {
@@ -29,19 +29,22 @@ constexpr std::chrono::seconds authority_idle_limit{60};
 bool is_always_answered(std::string_view path) { return path == "/api/stop" || path == "/api/status"; }
 
 Api::Api(const boost::asio::any_io_executor& executor, const Robot& robot, const ilk_config_t& config,
-         Mailbox& mailbox, const std::string& bench_socket, StoreGateway& store, Log& log,
+         RealtimeChannel& channel, const std::string& bench_socket, StoreExecutor& store, Log& log,
          const Clocks& clocks, Past past)
-    : control_(executor, mailbox),
-      book_(
+    : control_(executor, channel),
+      registry_(
           robot, config, [this](const Command& command) { return control_.send(command); }, clocks.utc),
       log_tail_(executor, log.ring(), stream_),
       bench_(executor, bench_socket),
       biopsy_(robot),
       sessions_(store, clocks),
       authority_(static_cast<std::uint32_t>(std::chrono::system_clock::to_time_t(clocks.utc()))),
-      context_{executor,    robot,   config, control_,   book_,         stream_,
-               bench_,      biopsy_, store,  sessions_,  authority_,    work_,
-               trajectory_, stops_,  log,    clocks.utc, clocks.steady, role_refusals_},
+      context_{executor,   robot,         config,
+               control_,   registry_,     bench_,
+               biopsy_,    store,         sessions_,
+               authority_, work_,         trajectory_,
+               stops_,     log,           [this](const json& message) { stream_.send_text(message); },
+               clocks.utc, clocks.steady, role_refusals_},
       navigation_(context_),
       router_([this](const Caller& caller) -> std::optional<Problem> {
         const auto held = context_.need_authority(caller);
@@ -57,7 +60,7 @@ Api::Api(const boost::asio::any_io_executor& executor, const Robot& robot, const
 Api::~Api() { context_.note(stops_.take()); }
 
 void Api::follow_proposals() {
-  book_.on_change([this](const Proposal& proposal) {
+  registry_.on_change([this](const Proposal& proposal) {
     json message = to_json(proposal);
     spdlog::info("proposal {} of {}: {}: {}", proposal.id, proposal.task->author, state_name(proposal.state),
                  proposal.detail);
@@ -76,7 +79,7 @@ void Api::follow_proposals() {
       trajectory_ = {};
     }
   });
-  book_.on_mode_change([this](std::string_view mode) {
+  registry_.on_mode_change([this](std::string_view mode) {
     json message = mode_json(context_.robot, mode);
     message["type"] = "mode";
     stream_.send_text(message);
@@ -109,14 +112,14 @@ void Api::follow_streams() {
     control_.stop_unanswered();
     context_.record_stop(caller, 0);
   };
-  stream_.on_change = [this](const StreamHub::Watcher& watcher, bool opened) {
+  stream_.on_change = [this](const Broadcaster::Subscriber& subscriber, bool opened) {
     stream_.send_text({{"type", "connection"},
                        {"change", opened ? "opened" : "closed"},
                        {"connection", "console"},
-                       {"id", watcher.id},
-                       {"client", watcher.caller.peer},
-                       {"user", watcher.caller.user}},
-                      watcher.id);
+                       {"id", subscriber.id},
+                       {"client", subscriber.caller.peer},
+                       {"user", subscriber.caller.user}},
+                      subscriber.id);
   };
 }
 
@@ -131,7 +134,7 @@ void Api::follow_sessions() {
   authority_.on_change([this](bool holder_changed) {
     if (holder_changed) {
       control_.change_holder(authority_.number());
-      book_.abort_all("The motion authority changed.");
+      registry_.abort_all("The motion authority changed.");
       navigation_.change_authority();
       const auto& holding = authority_.holder();
       spdlog::warn("motion authority: {}", holding ? holding->user : "nobody");
@@ -221,7 +224,7 @@ void Api::tell_biopsy(const ControlView& seen) {
   if (!biopsy_.has_needle() || stream_.empty() || ++beats_ % beats_per_biopsy != 0) {
     return;
   }
-  json message = biopsy_.to_json(seen, book_.open_biopsy() != nullptr);
+  json message = biopsy_.to_json(seen, registry_.open_biopsy() != nullptr);
   message["type"] = "biopsy";
   stream_.send_text(message);
 }
@@ -234,8 +237,8 @@ void Api::look_after_pedal(const ControlView& seen) {
 }
 
 void Api::look_after_sessions() {
-  for (const StreamHub::Watcher& watcher : stream_.watchers()) {
-    sessions_.touch(watcher.caller.session);
+  for (const Broadcaster::Subscriber& subscriber : stream_.subscribers()) {
+    sessions_.touch(subscriber.caller.session);
   }
   if (const auto& holding = authority_.holder()) {
     const auto idle = sessions_.idle(holding->session);
@@ -260,7 +263,7 @@ asio::awaitable<void> Api::sweep_sessions(std::chrono::milliseconds pause) {
   }
 }
 
-asio::awaitable<void> Api::beat() {
+asio::awaitable<void> Api::broadcast() {
   asio::steady_timer timer(context_.executor, steady_clock::now());
   for (;;) {
     timer.expires_at(std::max(timer.expiry() + beat_period, steady_clock::now()));
@@ -273,7 +276,7 @@ asio::awaitable<void> Api::beat() {
     const ControlView& seen = context_.view();
     if (!stream_.empty()) {
       stream_.send_state(
-          encode_state(seen, context_.config, open_targets(context_.robot, book_), steady_clock::now()));
+          encode_state(seen, context_.config, open_targets(context_.robot, registry_), steady_clock::now()));
     }
     tell_biopsy(seen);
     look_after_pedal(seen);

@@ -8,28 +8,12 @@
 #include <string>
 #include <string_view>
 
-#include "http/context.hpp"
 #include "http/front_door.hpp"
 #include "http/log_tail.hpp"
-#include "http/navigation.hpp"
 #include "http/router.hpp"
-#include "http/routes/account_routes.hpp"
-#include "http/routes/audit_routes.hpp"
-#include "http/routes/authority_routes.hpp"
-#include "http/routes/bench_routes.hpp"
-#include "http/routes/biopsy_routes.hpp"
-#include "http/routes/communication_routes.hpp"
-#include "http/routes/history_routes.hpp"
-#include "http/routes/jog_routes.hpp"
-#include "http/routes/log_routes.hpp"
-#include "http/routes/mode_routes.hpp"
-#include "http/routes/motor_routes.hpp"
-#include "http/routes/position_routes.hpp"
-#include "http/routes/proposal_routes.hpp"
-#include "http/routes/system_routes.hpp"
-#include "http/routes/targeting_routes.hpp"
-#include "http/routes/trajectory_routes.hpp"
-#include "http/routes/user_routes.hpp"
+#include "http/routes.hpp"
+#include "service/context.hpp"
+#include "service/navigation.hpp"
 
 namespace interlock::web {
 
@@ -40,13 +24,13 @@ bool is_always_answered(std::string_view path);
 class Api {
  public:
   /**
-   * `robot`, `config`, `mailbox`, `store` and `log` must outlive it.
+   * `robot`, `config`, `channel`, `store` and `log` must outlive it.
    *
    * @param bench_socket empty means that the hardware is real
    * @param past what is known of former ticks
    */
   Api(const boost::asio::any_io_executor& executor, const Robot& robot, const ilk_config_t& config,
-      Mailbox& mailbox, const std::string& bench_socket, StoreGateway& store, Log& log,
+      RealtimeChannel& channel, const std::string& bench_socket, StoreExecutor& store, Log& log,
       const Clocks& clocks = {}, Past past = {});
 
   /** Has the STOPs written that were counted only. */
@@ -68,7 +52,7 @@ class Api {
   boost::asio::awaitable<void> record_stop(StopMade made);
 
   /** Who follows the state. */
-  [[nodiscard]] StreamHub& stream() { return stream_; }
+  [[nodiscard]] Broadcaster& stream() { return stream_; }
 
   /** The navigation programs; they come once its hub listens and it was started. */
   [[nodiscard]] Navigation& navigation() { return navigation_; }
@@ -78,7 +62,7 @@ class Api {
 
   /** Sends the state to the stream 30 times a second and looks after the bench pedal and the authority; ends
    * with the io_context. */
-  boost::asio::awaitable<void> beat();
+  boost::asio::awaitable<void> broadcast();
 
   /** Ends sessions that are over, logs how often the last line came again, and records STOPs that were
    * counted, after each pause; ends with the io_context. */
@@ -99,11 +83,11 @@ class Api {
   boost::asio::awaitable<tl::expected<std::optional<Session>, Problem>> session_of(const Request& request);
 
   ControlClient control_;
-  ProposalBook book_;
-  StreamHub stream_;
+  MotionRegistry registry_;
+  Broadcaster stream_;
   LogTail log_tail_;
   Bench bench_;
-  BiopsyDesk biopsy_;
+  BiopsyService biopsy_;
   LiveSessions sessions_;
   Authority authority_;
   WorkPool work_;
@@ -114,7 +98,7 @@ class Api {
   Navigation navigation_;
   Router router_;
   std::uint32_t beats_ = 0;
-  SystemRoutes system_routes_{context_, router_};
+  SystemRoutes system_routes_{context_, stream_, router_};
   PositionRoutes position_routes_{context_, router_}; /**< before the axes, whose pattern its paths match */
   MotorRoutes motor_routes_{context_, router_};
   ProposalRoutes proposal_routes_{context_, router_};
@@ -129,7 +113,7 @@ class Api {
   HistoryRoutes history_routes_;
   TargetingRoutes targeting_routes_{context_, router_};
   TrajectoryRoutes trajectory_routes_{context_, router_};
-  CommunicationRoutes communication_routes_{context_, navigation_, router_};
+  CommunicationRoutes communication_routes_{context_, navigation_, stream_, router_};
   AuditRoutes audit_routes_{context_, router_};
 };
 

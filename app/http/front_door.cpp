@@ -14,9 +14,9 @@
 #include <string_view>
 
 #include "http/same_origin.hpp"
-#include "http/status_json.hpp"
-#include "network/as_result.hpp"
-#include "network/launch.hpp"
+#include "service/status_json.hpp"
+#include "system/as_result.hpp"
+#include "system/launch.hpp"
 
 namespace interlock::web {
 namespace {
@@ -30,11 +30,11 @@ using std::chrono::steady_clock;
 constexpr std::string_view stop_begin = "POST /api/stop";
 constexpr std::chrono::milliseconds door_beat{33};
 constexpr std::chrono::seconds longest_silence{30};
-constexpr std::chrono::seconds stop_patience{2};
-constexpr std::chrono::milliseconds answer_patience{300};
+constexpr std::chrono::seconds stop_timeout{2};
+constexpr std::chrono::milliseconds answer_timeout{300};
 /** Of this thread, after which it does not know when that came which it finds; and for how long after. */
 constexpr std::chrono::milliseconds longest_pause{250};
-constexpr std::chrono::milliseconds pause_patience{100};
+constexpr std::chrono::milliseconds pause_timeout{100};
 
 std::string name_of(const tcp::socket& socket) {
   beast::error_code error;
@@ -68,15 +68,15 @@ std::optional<tcp::socket> socket_of(FileDescriptor descriptor, tcp protocol,
   return socket;
 }
 
-FrontDoor::FrontDoor(const asio::any_io_executor& executor, Mailbox& mailbox, std::size_t capacity,
+FrontDoor::FrontDoor(const asio::any_io_executor& executor, RealtimeChannel& channel, std::size_t capacity,
                      std::function<void(Guest)> let_in, std::function<void(StopMade)> record)
     : executor_(executor),
-      mailbox_(mailbox),
+      channel_(channel),
       capacity_(capacity),
       let_in_(std::move(let_in)),
       record_(std::move(record)),
       acceptor_(executor),
-      wake_(executor, ::dup(mailbox.door_wake.descriptor())) {}
+      wake_(executor, ::dup(channel.door_wake.descriptor())) {}
 
 tl::expected<void, std::string> FrontDoor::listen(const Listen& where) {
   beast::error_code error;
@@ -189,7 +189,7 @@ void FrontDoor::come_back(Guest guest) {
 
 asio::awaitable<void> FrontDoor::serve_stop(Waiting waiting) {
   beast::tcp_stream stream(std::move(waiting.socket));
-  stream.expires_after(stop_patience);
+  stream.expires_after(stop_timeout);
   beast::flat_buffer buffer;
   http::request_parser<http::string_body> parser;
   parser.header_limit(longest_header);
@@ -215,7 +215,7 @@ asio::awaitable<void> FrontDoor::serve_stop(Waiting waiting) {
   }
   const bool stays = whole && !error && parser.get().keep_alive() && buffer.size() == 0;
   prepare(response, stays);
-  stream.expires_after(stop_patience);
+  stream.expires_after(stop_timeout);
   std::tie(error, std::ignore) = co_await http::async_write(stream, response, as_result);
   if (!error && stays) {
     waiting.socket = stream.release_socket();
@@ -238,14 +238,14 @@ asio::awaitable<Response> FrontDoor::stop(Request header, std::string peer) {
   if (problem) {
     co_return problem_response(*problem);
   }
-  const std::uint32_t number = mailbox_.stop();
+  const std::uint32_t number = channel_.stop();
   if (unrecorded_.load(std::memory_order_relaxed) < most_unrecorded) {
     unrecorded_.fetch_add(1, std::memory_order_relaxed);
     record_({std::move(header), std::move(peer), std::exchange(passed_over_, 0)});
   } else {
     ++passed_over_;
   }
-  Waiter waiter{std::nullopt, asio::steady_timer(executor_, answer_patience)};
+  Waiter waiter{std::nullopt, asio::steady_timer(executor_, answer_timeout)};
   const auto place = waiters_.emplace(number, &waiter);
   co_await waiter.timer.async_wait(as_result);
   waiters_.erase(place);
@@ -258,8 +258,8 @@ asio::awaitable<void> FrontDoor::listen_to_control() {
     if (error) {
       co_return;
     }
-    mailbox_.door_wake.clear();
-    const StopAnswer& answer = mailbox_.stopped.newest();
+    channel_.door_wake.clear();
+    const StopAnswer& answer = channel_.stopped.newest();
     for (auto each = waiters_.begin(); each != waiters_.end() && each->first <= answer.stops; ++each) {
       each->second->answer = answer;
       each->second->timer.cancel();
@@ -267,14 +267,14 @@ asio::awaitable<void> FrontDoor::listen_to_control() {
   }
 }
 
-asio::awaitable<void> FrontDoor::beat() {
+asio::awaitable<void> FrontDoor::heartbeat() {
   asio::steady_timer timer(executor_);
   for (;;) {
-    mailbox_.door_kept.fetch_add(1, std::memory_order_relaxed);
+    channel_.door_kept.fetch_add(1, std::memory_order_relaxed);
     const auto now = steady_clock::now();
     if (now - beat_at_ > longest_pause) {
       pause_from_ = beat_at_;
-      pause_felt_until_ = now + pause_patience;
+      pause_felt_until_ = now + pause_timeout;
     }
     beat_at_ = now;
     const auto oldest = now - longest_silence;

@@ -22,7 +22,7 @@
 
 #include "http/message.hpp"
 #include "link/file_descriptor.hpp"
-#include "motion/mailbox.hpp"
+#include "motion/realtime_channel.hpp"
 
 namespace interlock::web {
 
@@ -67,7 +67,7 @@ class FrontDoor {
    *
    * Both are called in the door's thread and must not wait.
    */
-  FrontDoor(const boost::asio::any_io_executor& executor, Mailbox& mailbox, std::size_t capacity,
+  FrontDoor(const boost::asio::any_io_executor& executor, RealtimeChannel& channel, std::size_t capacity,
             std::function<void(Guest)> let_in, std::function<void(StopMade)> record);
 
   /** Starts to listen; the error names address, port and what to do. Only loopback addresses are granted. */
@@ -81,7 +81,7 @@ class FrontDoor {
 
   /** Shows that the door is kept, and closes connections that have waited for too long; ends with the
    * io_context. */
-  boost::asio::awaitable<void> beat();
+  boost::asio::awaitable<void> heartbeat();
 
   /** Tells of the kernel's answers; ends with the io_context. */
   boost::asio::awaitable<void> listen_to_control();
@@ -113,7 +113,7 @@ class FrontDoor {
   boost::asio::awaitable<void> survive(const boost::system::error_code& error);
 
   boost::asio::any_io_executor executor_;
-  Mailbox& mailbox_;
+  RealtimeChannel& channel_;
   std::size_t capacity_;
   std::function<void(Guest)> let_in_;
   std::function<void(StopMade)> record_;

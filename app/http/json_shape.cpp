@@ -1,8 +1,8 @@
-#include "http/json_shape.hpp"
-
 #include <nlohmann/json.hpp>
 #include <set>
 #include <vector>
+
+#include "http/message.hpp"
 
 namespace interlock::web {
 namespace {

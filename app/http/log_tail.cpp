@@ -23,7 +23,7 @@ json log_message(const LogLine& line) {
   return message;
 }
 
-LogTail::LogTail(boost::asio::any_io_executor executor, LogRing& ring, StreamHub& stream)
+LogTail::LogTail(boost::asio::any_io_executor executor, LogRing& ring, Broadcaster& stream)
     : executor_(std::move(executor)), ring_(ring), stream_(stream), sent_(ring.last()) {
   ring_.on_line([this] { wake(); });
 }

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
-#include "http/stream_hub.hpp"
+#include "http/broadcaster.hpp"
 #include "log/log_ring.hpp"
 
 namespace interlock::web {
@@ -24,7 +24,7 @@ nlohmann::json log_message(const LogLine& line);
 class LogTail {
  public:
   /** `executor` is of the network thread; ring and stream must outlive the tail. */
-  LogTail(boost::asio::any_io_executor executor, LogRing& ring, StreamHub& stream);
+  LogTail(boost::asio::any_io_executor executor, LogRing& ring, Broadcaster& stream);
   ~LogTail();
 
   LogTail(const LogTail&) = delete;
@@ -36,7 +36,7 @@ class LogTail {
 
   boost::asio::any_io_executor executor_;
   LogRing& ring_;
-  StreamHub& stream_;
+  Broadcaster& stream_;
   std::uint64_t sent_;
   std::atomic<bool> woken_{false};
 };

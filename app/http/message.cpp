@@ -5,8 +5,6 @@
 #include <charconv>
 #include <string_view>
 
-#include "http/json_shape.hpp"
-
 namespace interlock::web {
 namespace {
 
@@ -21,7 +19,7 @@ constexpr std::size_t most_cookies = 4;
 std::string text_of(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
 
 Response response_of(Status status, std::string_view content_type, std::string body) {
-  Response response{status, 11};
+  Response response{http_status(status), 11};
   response.set(http::field::content_type, content_type);
   response.set(http::field::cache_control, "no-store");
   response.body() = std::move(body);
@@ -84,7 +82,7 @@ Response success_response(const Success& success) {
 
 Response problem_response(const Problem& problem) {
   json body{{"type", "about:blank"},
-            {"title", std::string(http::obsolete_reason(problem.status))},
+            {"title", std::string(http::obsolete_reason(http_status(problem.status)))},
             {"status", static_cast<unsigned>(problem.status)},
             {"code", problem.code},
             {"detail", problem.detail}};

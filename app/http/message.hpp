@@ -1,54 +1,46 @@
 /**
  * @file
- * HTTP messages of this server, and the two things a handler can answer with: success or a problem.
+ * HTTP messages of this server: what is read from a request, and how what the services answer becomes a
+ * response.
  */
 #pragma once
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/beast/http.hpp>
 #include <cstdint>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
-#include <utility>
 #include <vector>
 
+#include "service/reply.hpp"
+
 namespace interlock::web {
+
+// What JSON must not be, besides malformed, before anything is made of it.
+
+/** Objects and arrays in one another. */
+constexpr std::size_t deepest_json = 64;
+
+/**
+ * What is wrong with the shape of a JSON text: deeper than `deepest_json`, or a key twice in one object, of
+ * which one reader would take the first and another the last. Nothing for a text that is no JSON at all.
+ */
+std::optional<std::string> flaw_of_json(std::string_view text);
+
+// HTTP messages of this server, and how what the services answer becomes one.
 
 /** A request as it came. */
 using Request = boost::beast::http::request<boost::beast::http::string_body>;
 /** An answer as it goes. */
 using Response = boost::beast::http::response<boost::beast::http::string_body>;
-/** A status code of HTTP. */
-using Status = boost::beast::http::status;
-
-/** Names and values. */
-using Headers = std::vector<std::pair<std::string, std::string>>;
-
-/** Schema `Problem` of spec/openapi.yaml. Empty texts are left out. */
-struct Problem {
-  Status status = Status::internal_server_error;
-  std::string code = {};      /**< verdict name or a code of the interface */
-  std::string detail = {};    /**< what, where */
-  std::string field = {};     /**< the field of the body that is wrong */
-  std::uint32_t line = 0;     /**< of a text, from 1; 0: none, or all of it */
-  std::string expected = {};  /**< what belongs there instead */
-  std::string next_step = {}; /**< what to do about it */
-  Headers headers = {};       /**< besides those that every answer has */
-};
-
-/** An answer that is no problem. */
-struct Success {
-  Status status = Status::ok;
-  nlohmann::json body = {};
-  Headers headers = {};       /**< besides those that every answer has */
-  std::string text_type = {}; /**< media type of a body that is one text and no JSON; empty: JSON */
-};
-
-/** What a route answers. */
-using Reply = tl::expected<Success, Problem>;
+/** That status, as Beast names it. */
+constexpr boost::beast::http::status http_status(Status status) noexcept {
+  return static_cast<boost::beast::http::status>(status);
+}
 
 /** Answer in JSON, or in the text that the body is. */
 Response success_response(const Success& success);
@@ -99,5 +91,12 @@ std::optional<std::uint32_t> number_in(std::string_view text);
 /** The body as JSON; 400 MALFORMED when it is none, nests deeper than 64, or has a key twice in one object.
  */
 tl::expected<nlohmann::json, Problem> parse_body(const Request& request);
+
+// The query of a request, as far as a route knows it.
+
+/** The known parameters of the query as an object of texts; unknown ones are ignored. 400 MALFORMED as of
+ * `parse_query`. */
+tl::expected<nlohmann::json, Problem> known_query(const Request& request,
+                                                  std::initializer_list<const char*> known);
 
 }  // namespace interlock::web

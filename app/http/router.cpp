@@ -1,6 +1,6 @@
 #include "http/router.hpp"
 
-#include "http/problems.hpp"
+#include "service/reply.hpp"
 
 namespace interlock::web {
 namespace {

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "http/access.hpp"
 #include "http/message.hpp"
+#include "service/reply.hpp"
 
 namespace interlock::web {
 

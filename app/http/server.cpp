@@ -15,8 +15,8 @@
 #include <utility>
 
 #include "http/same_origin.hpp"
-#include "network/as_result.hpp"
-#include "network/launch.hpp"
+#include "system/as_result.hpp"
+#include "system/launch.hpp"
 
 namespace interlock::web {
 namespace {
@@ -31,7 +31,7 @@ constexpr std::chrono::seconds answer_timeout{10};
 constexpr std::chrono::seconds drain_timeout{1};
 constexpr std::size_t drain_bytes = 4u << 20u;
 
-void log_transaction(const Request& request, const Caller& caller, Status status) {
+void log_transaction(const Request& request, const Caller& caller, http::status status) {
   spdlog::debug("{} {} {} {} -> {}", caller.peer, caller.user.empty() ? "nobody" : caller.user,
                 std::string(request.method_string()), path_of(request), static_cast<unsigned>(status));
 }
@@ -71,14 +71,14 @@ std::size_t ceiling_of_process() {
 }  // namespace
 
 Server::Server(const asio::any_io_executor& door, const asio::any_io_executor& executor, Api& api,
-               Mailbox& mailbox, StaticFiles files)
+               RealtimeChannel& channel, StaticFiles files)
     : executor_(executor),
       api_(api),
-      mailbox_(mailbox),
+      channel_(channel),
       files_(std::move(files)),
       ceiling_(ceiling_of_process()),
       door_(
-          door, mailbox, ceiling_,
+          door, channel, ceiling_,
           [this](Guest guest) {
             if (arriving_.load(std::memory_order_relaxed) < ceiling_) {
               arriving_.fetch_add(1, std::memory_order_relaxed);
@@ -117,7 +117,7 @@ void Server::admit(Guest guest) {
 /** Whoever sent it has given up since, or somebody has stopped the robot. */
 bool Server::is_late(std::chrono::steady_clock::time_point came) const {
   return has_waited_too_long(came) ||
-         came.time_since_epoch() <= mailbox_.last_stop.load(std::memory_order_relaxed);
+         came.time_since_epoch() <= channel_.last_stop.load(std::memory_order_relaxed);
 }
 
 void Server::give_back(Connection& connection) {
@@ -239,11 +239,12 @@ asio::awaitable<void> Server::serve_stream(Connection& connection, Request reque
     problem = Problem{.status = Status::service_unavailable,
                       .code = "OVERLOADED",
                       .detail = "Too many clients watch the stream.",
-                      .expected = "at most " + std::to_string(StreamHub::capacity) + ", of one session " +
-                                  std::to_string(StreamHub::session_capacity),
+                      .expected = "at most " + std::to_string(Broadcaster::capacity) + ", of one session " +
+                                  std::to_string(Broadcaster::session_capacity),
                       .next_step = "Close another console."};
   }
-  log_transaction(request, caller, problem ? problem->status : Status::switching_protocols);
+  log_transaction(request, caller,
+                  problem ? http_status(problem->status) : http::status::switching_protocols);
   if (problem) {
     co_await answer(connection, problem_response(*problem), false, false);
     co_return;
@@ -283,7 +284,7 @@ asio::awaitable<Response> Server::respond_api(const Request& request, Connection
   caller->asked = connection.came;
   connection.known = connection.known || caller->session != 0;
   const Reply reply = co_await api_.route(request, *caller);
-  log_transaction(request, *caller, reply ? reply->status : reply.error().status);
+  log_transaction(request, *caller, http_status(reply ? reply->status : reply.error().status));
   co_return reply ? success_response(*reply) : problem_response(reply.error());
 }
 

@@ -37,7 +37,7 @@ class Server {
 
   /** @param door of the thread that keeps the door; everything else belongs to that of `executor` */
   Server(const boost::asio::any_io_executor& door, const boost::asio::any_io_executor& executor, Api& api,
-         Mailbox& mailbox, StaticFiles files);
+         RealtimeChannel& channel, StaticFiles files);
 
   /** Where clients connect. */
   [[nodiscard]] FrontDoor& door() { return door_; }
@@ -93,7 +93,7 @@ class Server {
 
   boost::asio::any_io_executor executor_;
   Api& api_;
-  const Mailbox& mailbox_;
+  const RealtimeChannel& channel_;
   StaticFiles files_;
   std::size_t ceiling_;
   std::list<std::shared_ptr<Connection>> connections_;

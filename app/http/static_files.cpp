@@ -107,7 +107,8 @@ class SharedBody : public FileBody {
 
 /** An answer for that entity tag, with neither type nor body yet. */
 FileResponse head_of(const Request& request, const std::string& tag, const char* cache_control) {
-  FileResponse response{Response{has_already(request, tag) ? Status::not_modified : Status::ok, 11}, nullptr};
+  FileResponse response{
+      Response{has_already(request, tag) ? http::status::not_modified : http::status::ok, 11}, nullptr};
   response.head.set(http::field::etag, tag);
   response.head.set(http::field::cache_control, cache_control);
   return response;
@@ -183,7 +184,7 @@ AnyResponse StaticFiles::respond(const Request& request, const std::string& path
                                  std::optional<FileResponse> found) const {
   if (!found && path == documents_path && documents_.exist()) {
     // Without the slash the links of the first page would lead beside the documents.
-    Response moved{Status::permanent_redirect, 11};
+    Response moved{http::status::permanent_redirect, 11};
     moved.set(http::field::location, std::string(documents_index));
     return moved;
   }
@@ -225,7 +226,7 @@ std::optional<FileResponse> StaticFiles::find_in_console(const Request& request,
   if (forms.size() > 1) {
     response.head.set(http::field::vary, "Accept-Encoding");
   }
-  if (response.head.result() == Status::ok) {
+  if (response.head.result() == http::status::ok) {
     response.head.set(http::field::content_type, content_type_of(name));
     if (best != Coding::identity) {
       response.head.set(http::field::content_encoding, name_of(best));
@@ -245,7 +246,7 @@ boost::asio::awaitable<std::optional<FileResponse>> StaticFiles::find_document(c
     co_return std::nullopt;
   }
   FileResponse response = head_of(request, document->tag(), ask_again);
-  if (response.head.result() == Status::ok) {
+  if (response.head.result() == http::status::ok) {
     response.head.set(http::field::content_type, content_type_of(document->file));
     response.body = documents_.body_of(std::move(*document));
   }

@@ -1,4 +1,4 @@
-#include "igtl/brp2013.hpp"
+#include "igtl/workphases.hpp"
 
 namespace interlock::igtl {
 

@@ -6,8 +6,7 @@
 #include <boost/asio/write.hpp>
 #include <utility>
 
-#include "igtl/decode.hpp"
-#include "igtl/encode.hpp"
+#include "igtl/codec.hpp"
 
 namespace interlock::igtl {
 namespace {

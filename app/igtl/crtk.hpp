@@ -22,6 +22,6 @@ Outgoings crtk_event(const Motion& motion);
 
 /** Of a command of CRTK, in lower case and with or without a namespace before it, what it asks for; nothing
  * for another name. */
-std::optional<tl::expected<Wish, Unwanted>> crtk_command(std::string_view name, const Message& message);
+std::optional<tl::expected<Command, Unwanted>> crtk_command(std::string_view name, const Message& message);
 
 }  // namespace interlock::igtl

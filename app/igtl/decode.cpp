@@ -1,5 +1,3 @@
-#include "igtl/decode.hpp"
-
 #include <igtlStringMessage.h>
 #include <igtlTrackingDataMessage.h>
 #include <igtlTransformMessage.h>
@@ -8,6 +6,7 @@
 #include <cmath>
 #include <span>
 
+#include "igtl/codec.hpp"
 #include "igtl/library.hpp"
 
 namespace interlock::igtl {

@@ -12,9 +12,9 @@ Capability capabilities() {
 
 }  // namespace
 
-bool needs_control(const Wish& wish) noexcept {
-  return !std::holds_alternative<Stop>(wish) && !std::holds_alternative<Track>(wish) &&
-         !std::holds_alternative<Noted>(wish);
+bool needs_control(const Command& command) noexcept {
+  return !std::holds_alternative<Stop>(command) && !std::holds_alternative<Track>(command) &&
+         !std::holds_alternative<Noted>(command);
 }
 
 TrackingData tracking_of(const RobotState& state) {

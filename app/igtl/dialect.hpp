@@ -2,7 +2,7 @@
  * @file
  * How a navigation program and the robot talk: which messages mean what, and what is answered in which order.
  *
- * One dialect object serves one connection. It decides what is said and what is wished for; it sends nothing
+ * One dialect object serves one connection. It decides what is said and what is requested; it sends nothing
  * and moves nothing.
  */
 #pragma once
@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "igtl/wish.hpp"
+#include "igtl/command.hpp"
 
 namespace interlock::igtl {
 
@@ -52,7 +52,7 @@ using Outgoing = std::pair<std::string, Body>;
 /** Messages that go out, in their order. */
 using Outgoings = std::vector<Outgoing>;
 
-/** What became of a wish. */
+/** What became of a command. */
 struct Outcome {
   Status status;
   std::optional<std::uint32_t> proposal = {}; /**< that it became; the motion has its own end */
@@ -60,7 +60,7 @@ struct Outcome {
   std::optional<Matrix> reachable = {};       /**< the nearest to it that the axes can do */
 };
 
-/** A motion that came of a wish has changed. */
+/** A motion that came of a command has changed. */
 struct Motion {
   std::uint32_t proposal = 0; /**< its number */
   bool is_over = false;
@@ -70,7 +70,7 @@ struct Motion {
 /** What follows from a message or an outcome. */
 struct Reaction {
   Outgoings replies;                      /**< to be sent at once, in this order */
-  std::optional<Wish> wish;               /**< to be carried out; its outcome is for `finish` */
+  std::optional<Command> command;         /**< to be carried out; its outcome is for `finish` */
   std::optional<std::uint32_t> ends = {}; /**< a proposal that is wanted no more */
   std::string refused = {};            /**< why the message is refused, for the log; empty when it is not */
   std::optional<ImagerWord> word = {}; /**< of an imager, to be kept and shown */
@@ -93,8 +93,8 @@ class Dialect {
   /** A message came that cannot be read. */
   virtual Outgoings take_broken(const std::string& device, const Status& fault) = 0;
 
-  /** A wish that came under that name was carried out or refused. */
-  virtual Reaction finish(const std::string& device, const Wish& wish, const Outcome& outcome) = 0;
+  /** A command that came under that name was carried out or refused. */
+  virtual Reaction finish(const std::string& device, const Command& command, const Outcome& outcome) = 0;
 
   /** A motion has changed. */
   virtual Outgoings follow(const Motion& motion, const RobotState& state) = 0;
@@ -104,14 +104,14 @@ class Dialect {
 
   /** What is due by now; asked ten times a second and more. `has_to_hear`: something at least, by which it is
    * seen whether the peer is still there. */
-  virtual Outgoings beat(Time now, const RobotState& state, bool has_to_hear) = 0;
+  virtual Outgoings heartbeat(Time now, const RobotState& state, bool has_to_hear) = 0;
 };
 
 /** The dialect of that name of the robot's file, for one connection; null when there is none. */
 std::unique_ptr<Dialect> make_dialect(std::string_view name);
 
-/** Whether a wish changes what the robot will do, hence is the controller's alone. */
-bool needs_control(const Wish& wish) noexcept;
+/** Whether a command changes what the robot will do, hence is the controller's alone. */
+bool needs_control(const Command& command) noexcept;
 
 /** The poses as one TDATA message. */
 TrackingData tracking_of(const RobotState& state);

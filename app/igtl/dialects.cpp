@@ -1,8 +1,7 @@
 #include <string_view>
 
-#include "igtl/brp2013.hpp"
 #include "igtl/thesis.hpp"
-#include "igtl/wpi2024.hpp"
+#include "igtl/workphases.hpp"
 
 namespace interlock::igtl {
 

@@ -1,11 +1,10 @@
-#include "igtl/encode.hpp"
-
 #include <igtlStringMessage.h>
 #include <igtlTrackingDataMessage.h>
 #include <igtlTransformMessage.h>
 
 #include <algorithm>
 
+#include "igtl/codec.hpp"
 #include "igtl/library.hpp"
 
 namespace interlock::igtl {

@@ -99,11 +99,11 @@ Arrival FrameReader::take(Bytes& input) {
 }
 
 /** Whether there are as many bytes now. */
-bool FrameReader::fill(Bytes& input, std::size_t wanted) {
-  const std::size_t taken = std::min(wanted - held_.size(), input.size());
+bool FrameReader::fill(Bytes& input, std::size_t desired) {
+  const std::size_t taken = std::min(desired - held_.size(), input.size());
   held_.insert(held_.end(), input.begin(), input.begin() + static_cast<std::ptrdiff_t>(taken));
   input = input.subspan(taken);
-  return held_.size() == wanted;
+  return held_.size() == desired;
 }
 
 void FrameReader::skip(Bytes& input) {

@@ -53,7 +53,7 @@ class FrameReader {
   [[nodiscard]] bool is_within_message() const noexcept { return !held_.empty() || skipping_ != 0; }
 
  private:
-  bool fill(Bytes& input, std::size_t wanted);
+  bool fill(Bytes& input, std::size_t desired);
   void skip(Bytes& input);
   Arrival begin_body();
   Arrival finish();

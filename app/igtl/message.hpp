@@ -92,7 +92,7 @@ struct TrackingData {
 /** STT_TDATA. */
 struct StartTracking {
   std::int32_t interval_ms = 0; /**< least time between two messages */
-  std::string frame;            /**< coordinates that are wished for */
+  std::string frame;            /**< coordinates that are requested */
 
   bool operator==(const StartTracking&) const = default;
 };

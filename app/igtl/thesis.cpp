@@ -73,17 +73,17 @@ Reading rows_of(const std::string& device, const Array& array) {
 
 /** Each element of a TDATA is a pose, and its name the time. */
 Reading poses_of(const std::string& device, const TrackingData& data) {
-  LoadPoses wish;
+  LoadPoses command;
   for (const Tool& tool : data.tools) {
     const std::optional<double> time_s = number_of(tool.name);
     if (!time_s) {
-      return unwanted(StatusCode::configuration, device + ", row " + std::to_string(wish.poses.size() + 1) +
-                                                     ", name: \"" + tool.name +
-                                                     "\" is no time; expected a number in s, such as 0.25.");
+      return unwanted(StatusCode::configuration,
+                      device + ", row " + std::to_string(command.poses.size() + 1) + ", name: \"" +
+                          tool.name + "\" is no time; expected a number in s, such as 0.25.");
     }
-    wish.poses.push_back({*time_s, tool.matrix});
+    command.poses.push_back({*time_s, tool.matrix});
   }
-  return wish;
+  return command;
 }
 
 Reading trajectory_of(const Message& message) {
@@ -196,25 +196,25 @@ Reaction Thesis::take(const Message& message, const RobotState& state, bool /*co
   if (const auto* query = std::get_if<Query>(&message.body)) {
     return answer_query(*query, message.device, messages_of(state), state);
   }
-  auto wish = read_wish(message);
-  if (!wish) {
-    const Unwanted& why = wish.error();
+  auto command = read_change(message);
+  if (!command) {
+    const Unwanted& why = command.error();
     return {{{message.device, Status{why.code, 0, "UNWANTED", why.reason}}}, std::nullopt, {}, why.reason};
   }
-  if (const auto* noted = std::get_if<Noted>(&*wish)) {
+  if (const auto* noted = std::get_if<Noted>(&*command)) {
     Reaction reaction;
     if (noted->is_answered) {
-      reaction = finish(message.device, *wish, {{StatusCode::ok, 0, "OK", "Noted."}});
+      reaction = finish(message.device, *command, {{StatusCode::ok, 0, "OK", "Noted."}});
     }
     reaction.word = noted->word;
     return reaction;
   }
-  return {{}, std::move(*wish)};
+  return {{}, std::move(*command)};
 }
 
 Outgoings Thesis::take_broken(const std::string& device, const Status& fault) { return {{device, fault}}; }
 
-Reaction Thesis::finish(const std::string& device, const Wish& /*wish*/, const Outcome& outcome) {
+Reaction Thesis::finish(const std::string& device, const Command& /*command*/, const Outcome& outcome) {
   return {{{device, outcome.status}}, std::nullopt};
 }
 
@@ -225,13 +225,13 @@ Outgoings Thesis::follow(const Motion& motion, const RobotState& /*state*/) {
   return messages;
 }
 
-Outgoings Thesis::beat(Time /*now*/, const RobotState& state, bool has_to_hear) {
+Outgoings Thesis::heartbeat(Time /*now*/, const RobotState& state, bool has_to_hear) {
   return has_to_hear ? Outgoings{{"robot_status", state.health}} : Outgoings{};
 }
 
 Outgoings Thesis::told(const RobotState& state) const { return messages_of(state); }
 
-Reading read_wish(const Message& message) {
+Reading read_change(const Message& message) {
   if (const auto* start = std::get_if<StartTracking>(&message.body)) {
     return Track{start->interval_ms};
   }

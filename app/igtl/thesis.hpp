@@ -16,14 +16,14 @@ class Thesis final : public Dialect {
  public:
   Reaction take(const Message& message, const RobotState& state, bool controls) override;
   Outgoings take_broken(const std::string& device, const Status& fault) override;
-  Reaction finish(const std::string& device, const Wish& wish, const Outcome& outcome) override;
+  Reaction finish(const std::string& device, const Command& command, const Outcome& outcome) override;
   Outgoings follow(const Motion& motion, const RobotState& state) override;
   [[nodiscard]] Outgoings told(const RobotState& state) const override;
-  Outgoings beat(Time now, const RobotState& state, bool has_to_hear) override;
+  Outgoings heartbeat(Time now, const RobotState& state, bool has_to_hear) override;
 };
 
 /** What the message, which is no query, asks for. */
-tl::expected<Wish, Unwanted> read_wish(const Message& message);
+tl::expected<Command, Unwanted> read_change(const Message& message);
 
 /** Everything that the robot tells, under the names of the thesis and its successors and under those of CRTK
  * (setpoint_cp, measured_js). */

@@ -126,43 +126,43 @@ Reaction Workphases::request(const std::string& id, const Message& message, cons
                   message.device + " came as " + type_of(message.body) + "; expected STRING.");
   }
   Reaction reaction{{{"ACK_" + id, *text}}, std::nullopt};
-  const auto wanted = requested_phase(text->text);
+  const auto desired = requested_phase(text->text);
   StatusCode code = StatusCode::ok;
-  if (!wanted) {
+  if (!desired) {
     code = StatusCode::unknown_instruction;
     reaction.refused = "There is no phase \"" + text->text + "\"; docs/openigtlink.md lists them.";
     reaction.replies.emplace_back(error_name, Status{code, 0, "UNKNOWN", reaction.refused});
     return reaction;
   }
-  if (!is_stop(*wanted)) {
+  if (!is_stop(*desired)) {
     code = controls ? StatusCode::not_ready : StatusCode::access_denied;
     reaction.refused = controls
-                           ? forbids(*wanted, state)
+                           ? forbids(*desired, state)
                            : "This connection is an observer; whoever holds the motion authority makes it "
                              "the controller in the console's panel Navigation.";
   }
   if (reaction.refused.empty()) {
-    enter(*wanted, reaction);
+    enter(*desired, reaction);
     return reaction;
   }
   reaction.replies.emplace_back(current_status_name, current_status(code, reaction.refused));
-  reaction.replies.emplace_back(word_of(*wanted), Status{code, 0, "REFUSED", reaction.refused});
+  reaction.replies.emplace_back(word_of(*desired), Status{code, 0, "REFUSED", reaction.refused});
   return reaction;
 }
 
-void Workphases::enter(Phase wanted, Reaction& reaction) {
-  const Phase from = std::exchange(phase_, wanted);
+void Workphases::enter(Phase desired, Reaction& reaction) {
+  const Phase from = std::exchange(phase_, desired);
   before_ = is_stop(from) ? before_ : from;
   drop_motion(reaction);
   reaction.replies.emplace_back(current_status_name, current_status(StatusCode::ok));
   const auto tell = [&](StatusCode code, const std::string& reason) {
     const bool refused = code != StatusCode::ok;
     reaction.refused = refused ? reason : "";
-    reaction.replies.emplace_back(word_of(wanted), Status{code, 0, refused ? "REFUSED" : "OK", reason});
+    reaction.replies.emplace_back(word_of(desired), Status{code, 0, refused ? "REFUSED" : "OK", reason});
   };
-  switch (wanted) {
+  switch (desired) {
     case Phase::start_up:
-      aim_for(Aim::start_up, StartUp{}, reaction);
+      set_goal(Goal::start_up, StartUp{}, reaction);
       break;
     case Phase::planning:
     case Phase::calibration:
@@ -183,35 +183,35 @@ void Workphases::enter(Phase wanted, Reaction& reaction) {
       } else if (!has_target_) {
         tell(StatusCode::not_ready, "There is no target; send TGT_ in the phase TARGETING.");
       } else {
-        aim_for(Aim::target, MoveToTarget{takes_reachable()}, reaction);
+        set_goal(Goal::target, MoveToTarget{takes_reachable()}, reaction);
       }
       break;
     case Phase::manual:
-      reaction.wish = CutPower{};
+      reaction.command = CutPower{};
       break;
     case Phase::stop:
     case Phase::emergency:
-      reaction.wish = Stop{wanted == Phase::emergency};
+      reaction.command = Stop{desired == Phase::emergency};
       break;
     case Phase::undefined:
       break;
   }
-  if (reaction.wish && wanted != Phase::move_to_target) {
-    expected_[word_of(wanted)] = std::nullopt;
+  if (reaction.command && desired != Phase::move_to_target) {
+    expected_[word_of(desired)] = std::nullopt;
   }
 }
 
-void Workphases::aim_for(Aim aim, Wish wish, Reaction& reaction) {
+void Workphases::set_goal(Goal goal, Command command, Reaction& reaction) {
   drop_motion(reaction);
-  aim_ = aim;
-  reaction.wish = std::move(wish);
+  goal_ = goal;
+  reaction.command = std::move(command);
 }
 
 void Workphases::drop_motion(Reaction& reaction) {
   if (motion_) {
     reaction.ends = std::exchange(motion_, std::nullopt);
   }
-  aim_ = Aim::nothing;
+  goal_ = Goal::nothing;
 }
 
 /** CLB_: the robot's pose in the scanner. */
@@ -223,7 +223,7 @@ Reaction Workphases::calibrate(const std::string& id, const Message& message) {
   }
   Reaction reaction{{{"ACK_" + id, *matrix}}, SetRegistration{matrix->matrix}};
   if (phase_ != Phase::calibration) {
-    reaction.wish.reset();
+    reaction.command.reset();
     reaction.refused = "A calibration is taken in the phase CALIBRATION alone.";
     reaction.replies.emplace_back(word_of(Phase::calibration),
                                   Status{StatusCode::not_ready, 0, "REFUSED", reaction.refused});
@@ -242,7 +242,7 @@ Reaction Workphases::target(const std::string& id, const Message& message) {
   }
   Reaction reaction{{{"ACK_" + id, *matrix}}, SetTargetPose{matrix->matrix, takes_reachable()}};
   if (!takes_target() || !calibrated_) {
-    reaction.wish.reset();
+    reaction.command.reset();
     reaction.refused = calibrated_ ? "No target is taken in the phase " + word_of(phase_) + "."
                                    : "No calibration came by this connection.";
     reaction.replies.emplace_back(target_name, Status{StatusCode::not_ready, 0, "REFUSED", reaction.refused});
@@ -253,30 +253,30 @@ Reaction Workphases::target(const std::string& id, const Message& message) {
   return reaction;
 }
 
-Reaction Workphases::finish(const std::string& /*device*/, const Wish& wish, const Outcome& outcome) {
+Reaction Workphases::finish(const std::string& /*device*/, const Command& command, const Outcome& outcome) {
   // What failed or was stopped may be asked for again, under whatever ID.
-  if (outcome.status.code != StatusCode::ok || std::holds_alternative<Stop>(wish)) {
+  if (outcome.status.code != StatusCode::ok || std::holds_alternative<Stop>(command)) {
     taken_.clear();
   }
-  if (std::holds_alternative<SetRegistration>(wish)) {
+  if (std::holds_alternative<SetRegistration>(command)) {
     return finish_calibration(outcome);
   }
-  if (const auto* target = std::get_if<SetTargetPose>(&wish)) {
+  if (const auto* target = std::get_if<SetTargetPose>(&command)) {
     return finish_target(*target, outcome);
   }
-  if (std::holds_alternative<StartUp>(wish)) {
-    return settle(Aim::start_up, outcome);
+  if (std::holds_alternative<StartUp>(command)) {
+    return settle(Goal::start_up, outcome);
   }
-  if (std::holds_alternative<MoveToTarget>(wish)) {
-    return settle(Aim::target, outcome);
+  if (std::holds_alternative<MoveToTarget>(command)) {
+    return settle(Goal::target, outcome);
   }
   std::string name;
-  if (const auto* stop = std::get_if<Stop>(&wish)) {
+  if (const auto* stop = std::get_if<Stop>(&command)) {
     name = word_of(stop->cuts_power ? Phase::emergency : Phase::stop);
-  } else if (std::holds_alternative<CutPower>(wish)) {
+  } else if (std::holds_alternative<CutPower>(command)) {
     name = word_of(Phase::manual);
   } else {
-    return finish_other(wish, outcome);
+    return finish_other(command, outcome);
   }
   expected_.erase(name);
   return {{{name, outcome.status}}, std::nullopt};
@@ -295,7 +295,7 @@ Reaction Workphases::finish_calibration(const Outcome& outcome) {
 }
 
 /** A target that is refused leaves none: nobody shall go to the one before unawares. */
-Reaction Workphases::finish_target(const SetTargetPose& wish, const Outcome& outcome) {
+Reaction Workphases::finish_target(const SetTargetPose& command, const Outcome& outcome) {
   expected_.erase(target_name);
   has_target_ = outcome.target.has_value();
   Status status = outcome.status;
@@ -309,23 +309,23 @@ Reaction Workphases::finish_target(const SetTargetPose& wish, const Outcome& out
   const Outgoings more = after_storing(outcome);
   reaction.replies.insert(reaction.replies.end(), more.begin(), more.end());
   if (phase_ == Phase::move_to_target) {
-    aim_for(Aim::target, MoveToTarget{wish.takes_reachable}, reaction);
+    set_goal(Goal::target, MoveToTarget{command.takes_reachable}, reaction);
   }
   return reaction;
 }
 
-Reaction Workphases::settle(Aim aim, const Outcome& outcome) {
-  if (outcome.proposal && aim_ == aim) {
+Reaction Workphases::settle(Goal goal, const Outcome& outcome) {
+  if (outcome.proposal && goal_ == goal) {
     Reaction reaction;
     reaction.ends = std::exchange(motion_, outcome.proposal);
     return reaction;
   }
   Reaction reaction;
   reaction.ends = outcome.proposal;
-  if (aim_ == aim) {
-    aim_ = Aim::nothing;
+  if (goal_ == goal) {
+    goal_ = Goal::nothing;
   }
-  const std::string name = name_of(aim);
+  const std::string name = name_of(goal);
   expected_.erase(name);
   reaction.replies.emplace_back(
       name, outcome.proposal ? Status{StatusCode::not_ready, 0, "REPLACED", "Another phase was asked for."}
@@ -333,14 +333,14 @@ Reaction Workphases::settle(Aim aim, const Outcome& outcome) {
   return reaction;
 }
 
-std::string Workphases::name_of(Aim aim) {
-  switch (aim) {
-    case Aim::start_up:
+std::string Workphases::name_of(Goal goal) {
+  switch (goal) {
+    case Goal::start_up:
       return std::string(phase_name(Phase::start_up));
-    case Aim::retraction:
+    case Goal::retraction:
       return "RETRACT_NEEDLE";
-    case Aim::target:
-    case Aim::nothing:
+    case Goal::target:
+    case Goal::nothing:
       break;
   }
   return std::string(phase_name(Phase::move_to_target));
@@ -352,7 +352,7 @@ Reaction Workphases::take_other(const Message& message, const RobotState& /*stat
       "The name \"" + message.device + "\" means nothing here; docs/openigtlink.md lists the names.");
 }
 
-Reaction Workphases::finish_other(const Wish& /*wish*/, const Outcome& /*outcome*/) { return {}; }
+Reaction Workphases::finish_other(const Command& /*command*/, const Outcome& /*outcome*/) { return {}; }
 
 Outgoings Workphases::after_storing(const Outcome& /*outcome*/) const { return {}; }
 
@@ -364,13 +364,13 @@ Outgoings Workphases::follow(const Motion& motion, const RobotState& state) {
   if (motion.status.code != StatusCode::ok) {
     taken_.clear();
   }
-  const Aim aim = std::exchange(aim_, Aim::nothing);
-  const std::string name = name_of(aim);
+  const Goal goal = std::exchange(goal_, Goal::nothing);
+  const std::string name = name_of(goal);
   expected_.erase(name);
   Status status = motion.status;
   status.sub_code = 0;
   Outgoings replies{{name, status}};
-  if (aim == Aim::target) {
+  if (goal == Goal::target) {
     const Outgoings last = position_of(state);
     replies.insert(replies.end(), last.begin(), last.end());
   }
@@ -402,9 +402,9 @@ Outgoings Workphases::told(const RobotState& state) const {
   return {{error_name, state.health}};
 }
 
-Outgoings Workphases::beat(Time now, const RobotState& state, bool has_to_hear) {
+Outgoings Workphases::heartbeat(Time now, const RobotState& state, bool has_to_hear) {
   Outgoings due;
-  if (phase_ == Phase::move_to_target && aim_ != Aim::nothing) {
+  if (phase_ == Phase::move_to_target && goal_ != Goal::nothing) {
     due = position_of(state);
   }
   if (due.empty() && has_to_hear) {
@@ -415,7 +415,7 @@ Outgoings Workphases::beat(Time now, const RobotState& state, bool has_to_hear) 
     if (now - *since > longest_silence) {
       since = Time::max();
       due.emplace_back(name, Status{StatusCode::busy, 0, "BUSY",
-                                    aim_ == Aim::nothing
+                                    goal_ == Goal::nothing
                                         ? "It is still being done."
                                         : "Motion waits for approval, for the pedal, or is not over yet."});
     }

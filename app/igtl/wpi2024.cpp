@@ -1,11 +1,10 @@
-#include "igtl/wpi2024.hpp"
-
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <initializer_list>
 
 #include "igtl/header.hpp"
+#include "igtl/workphases.hpp"
 
 namespace interlock::igtl {
 namespace {
@@ -44,15 +43,15 @@ bool is_at(const std::optional<Matrix>& measured, const std::optional<Matrix>& d
 
 }  // namespace
 
-std::string Wpi2024::forbids(Phase wanted, const RobotState& state) const {
+std::string Wpi2024::forbids(Phase desired, const RobotState& state) const {
   const bool was_stopped = phase() == Phase::stop || phase() == Phase::emergency;
-  const bool comes_back = was_stopped && wanted == phase_before() &&
-                          (wanted == Phase::targeting || wanted == Phase::move_to_target);
-  const std::string way = std::string(phase_name(phase())) + " to " + std::string(phase_name(wanted));
-  if (!comes_back && !has(next_phases[static_cast<std::size_t>(phase())], wanted)) {
+  const bool comes_back = was_stopped && desired == phase_before() &&
+                          (desired == Phase::targeting || desired == Phase::move_to_target);
+  const std::string way = std::string(phase_name(phase())) + " to " + std::string(phase_name(desired));
+  if (!comes_back && !has(next_phases[static_cast<std::size_t>(phase())], desired)) {
     return "There is no way from " + way + ".";
   }
-  if (phase() == Phase::move_to_target && (!state.is_probe_out || aim() == Aim::retraction)) {
+  if (phase() == Phase::move_to_target && (!state.is_probe_out || goal() == Goal::retraction)) {
     return "The needle is not out, which the way from " + way + " needs; send RETRACT_NEEDLE first.";
   }
   return {};
@@ -124,7 +123,7 @@ Reaction Wpi2024::retract() {
                   "The needle is retracted in the phase MOVE_TO_TARGET alone.");
   }
   Reaction reaction{{{"ACK_RETRACT_NEEDLE", Status{StatusCode::ok, 0, "OK", ""}}}, std::nullopt};
-  aim_for(Aim::retraction, RetractProbe{}, reaction);
+  set_goal(Goal::retraction, RetractProbe{}, reaction);
   return reaction;
 }
 
@@ -138,16 +137,16 @@ Reaction Wpi2024::needle_tip(const Message& message) const {
   }
   Reaction reaction{{{"ACK_" + message.device.substr(5), *matrix}}, ReportPose{matrix->matrix}};
   if (phase() != Phase::move_to_target) {
-    reaction.wish.reset();
+    reaction.command.reset();
     reaction.refused = "The needle's tip is taken in the phase MOVE_TO_TARGET alone.";
     reaction.replies.emplace_back(name, Status{StatusCode::not_ready, 0, "REFUSED", reaction.refused});
   }
   return reaction;
 }
 
-Reaction Wpi2024::finish_other(const Wish& wish, const Outcome& outcome) {
-  if (std::holds_alternative<RetractProbe>(wish)) {
-    return settle(Aim::retraction, outcome);
+Reaction Wpi2024::finish_other(const Command& command, const Outcome& outcome) {
+  if (std::holds_alternative<RetractProbe>(command)) {
+    return settle(Goal::retraction, outcome);
   }
   return {{{"MOVE_TO_TARGET", outcome.status}}, std::nullopt};
 }

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "log/log_level.hpp"
-#include "time/utc_time.hpp"
+#include "system/utc_time.hpp"
 
 namespace interlock {
 

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "text/printable.hpp"
+#include "system/printable.hpp"
 
 namespace interlock {
 namespace {

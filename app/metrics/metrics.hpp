@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <string>
 
-#include "motion/mailbox.hpp"
+#include "motion/realtime_channel.hpp"
 #include "robot/robot.hpp"
 
 namespace interlock {

@@ -44,12 +44,12 @@ bool AxisMove::held_back(const ilk_snapshot_t& snapshot) noexcept {
   return snapshot.state.system.tick - unblocked_tick_ >= held_back_ticks;
 }
 
-void AxisMove::hold(std::uint32_t task, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
-  lease_.hold(task, snapshot.state.system.tick, target_counts_, wanted_drive(snapshot.state.axis[slot_]),
-              wishes);
+void AxisMove::hold(std::uint32_t task, const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept {
+  lease_.hold(task, snapshot.state.system.tick, target_counts_, desired_drive(snapshot.state.axis[slot_]),
+              requests);
 }
 
-std::uint32_t AxisMove::wanted_drive(const ilk_axis_t& axis) const noexcept {
+std::uint32_t AxisMove::desired_drive(const ilk_axis_t& axis) const noexcept {
   return law_of(plan_, axis, max_drive_).at(distance(axis.position_counts, target_counts_));
 }
 

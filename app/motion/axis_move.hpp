@@ -11,9 +11,9 @@
 #include "interlock/link.h"
 #include "motion/axis_plan.hpp"
 #include "motion/drive_law.hpp"
-#include "motion/move_lease.hpp"
+#include "motion/kernel_request.hpp"
 #include "motion/rest_watch.hpp"
-#include "motion/wish.hpp"
+#include "motion/setpoint_lease.hpp"
 
 namespace interlock {
 
@@ -42,24 +42,24 @@ class AxisMove {
   /** How far the axis has come since `start`. */
   [[nodiscard]] Progress watch(const ilk_snapshot_t& snapshot) noexcept;
 
-  /** Wishes for a MOVE when the lease or the drive has to be renewed. */
-  void hold(std::uint32_t task, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept;
+  /** Requests for a MOVE when the lease or the drive has to be renewed. */
+  void hold(std::uint32_t task, const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept;
 
   /** Gives back the lease, if the kernel may still hold one. */
-  void let_go(std::uint32_t task, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
-    lease_.let_go(task, snapshot, wishes);
+  void let_go(std::uint32_t task, const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept {
+    lease_.let_go(task, snapshot, requests);
   }
 
-  /** The wish of this tick was not sent: what was sent before it still stands. */
+  /** The request of this tick was not sent: what was sent before it still stands. */
   void on_unsent() noexcept { lease_.on_unsent(); }
 
  private:
   [[nodiscard]] bool held_back(const ilk_snapshot_t& snapshot) noexcept;
-  [[nodiscard]] std::uint32_t wanted_drive(const ilk_axis_t& axis) const noexcept;
+  [[nodiscard]] std::uint32_t desired_drive(const ilk_axis_t& axis) const noexcept;
 
   std::uint32_t slot_ = 0;
   AxisPlan plan_;
-  MoveLease lease_;
+  SetpointLease lease_;
   std::int32_t target_counts_ = 0;
   std::uint32_t max_drive_ = 0;
   std::uint32_t unblocked_tick_ = 0; /**< newest tick in which no limit held the axis back */

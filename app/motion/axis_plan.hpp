@@ -124,7 +124,7 @@ struct RobotPlan {
   }
 
   /** How long a task may wait without executing. */
-  [[nodiscard]] std::uint32_t patience_ticks() const noexcept {
+  [[nodiscard]] std::uint32_t timeout_ticks() const noexcept {
     constexpr std::uint32_t minute_us = 60'000'000;
     return minute_us / std::max(1u, period_us);
   }

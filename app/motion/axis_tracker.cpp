@@ -54,7 +54,7 @@ bool AxisTracker::arrived(const ilk_snapshot_t& snapshot, const PathPoint& point
 }
 
 void AxisTracker::hold(std::uint32_t task, const ilk_snapshot_t& snapshot, const PathPoint& point,
-                       Wishes& wishes) noexcept {
+                       KernelRequests& requests) noexcept {
   const ilk_axis_t& axis = snapshot.state.axis[slot_];
   // An axis that has just homed stands nearer to its limit than any setpoint may be.
   const SetpointRange range = setpoint_range(plan_.rules, axis, snapshot.state.system.mode);
@@ -63,14 +63,15 @@ void AxisTracker::hold(std::uint32_t task, const ilk_snapshot_t& snapshot, const
   if (controller_) {
     drive = controller_->update(axis, snapshot.state.system.tick, point.now, target).drive;
   }
-  lease_.hold(task, snapshot.state.system.tick, target, drive, wishes);
+  lease_.hold(task, snapshot.state.system.tick, target, drive, requests);
 }
 
-void AxisTracker::let_go(std::uint32_t task, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
+void AxisTracker::let_go(std::uint32_t task, const ilk_snapshot_t& snapshot,
+                         KernelRequests& requests) noexcept {
   if (controller_) {
     controller_->observe(snapshot.state.axis[slot_], snapshot.state.system.tick);
   }
-  lease_.let_go(task, snapshot, wishes);
+  lease_.let_go(task, snapshot, requests);
 }
 
 }  // namespace interlock

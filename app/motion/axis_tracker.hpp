@@ -12,9 +12,9 @@
 #include <optional>
 
 #include "control/axis_controller.hpp"
-#include "motion/move_lease.hpp"
-#include "motion/path_walk.hpp"
 #include "motion/rest_watch.hpp"
+#include "motion/setpoint_lease.hpp"
+#include "motion/trajectory_follower.hpp"
 
 namespace interlock {
 
@@ -35,20 +35,20 @@ class AxisTracker {
   /** Whether the axis rests within the deadband of the point, which is the end of its path. */
   [[nodiscard]] bool arrived(const ilk_snapshot_t& snapshot, const PathPoint& point) noexcept;
 
-  /** Wishes for what follows the path from here. */
+  /** Requests for what follows the path from here. */
   void hold(std::uint32_t task, const ilk_snapshot_t& snapshot, const PathPoint& point,
-            Wishes& wishes) noexcept;
+            KernelRequests& requests) noexcept;
 
   /** Gives back the lease, if the kernel may still hold one; the velocity is followed on. */
-  void let_go(std::uint32_t task, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept;
+  void let_go(std::uint32_t task, const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept;
 
-  /** The wish of this tick was not sent: what was sent before it still stands. */
+  /** The request of this tick was not sent: what was sent before it still stands. */
   void on_unsent() noexcept { lease_.on_unsent(); }
 
  private:
   std::uint32_t slot_ = 0;
   AxisPlan plan_;
-  MoveLease lease_;
+  SetpointLease lease_;
   std::optional<AxisController> controller_; /**< none: no path moves the axis, as it has no rates */
   RestWatch rest_;
 };

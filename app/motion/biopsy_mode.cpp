@@ -9,7 +9,7 @@ namespace interlock {
 namespace {
 
 /** With the lease and two ticks of latency between a snapshot and its MOVE: 20 ms. */
-constexpr double force_patience_s = 0.008;
+constexpr double force_timeout_s = 0.008;
 constexpr double longest_lease_s = 0.010;
 /** How often the turning is planned anew (docs/steering.md). */
 constexpr double steering_period_s = 0.005;
@@ -33,10 +33,10 @@ void BiopsyMode::Guided::start(const ilk_snapshot_t& snapshot, std::uint32_t slo
   aim(0.0, 0.0, 0.0);
 }
 
-void BiopsyMode::Guided::go(double wanted, double time_s) noexcept {
+void BiopsyMode::Guided::go(double desired, double time_s) noexcept {
   const RateLimits limits = rates.in_units(counts_per_unit);
   const double change = limits.acceleration * time_s;
-  speed += std::clamp(std::clamp(wanted, -limits.velocity, limits.velocity) - speed, -change, change);
+  speed += std::clamp(std::clamp(desired, -limits.velocity, limits.velocity) - speed, -change, change);
   position += speed * time_s;
 }
 
@@ -49,7 +49,7 @@ BiopsyMode::BiopsyMode(const RobotPlan& plan)
     : HeldMode(TaskKind::biopsy, plan),
       needle_(plan.needle),
       period_s_(plan.period_s()),
-      force_patience_ticks_(ticks_of(force_patience_s, period_s_)),
+      force_timeout_ticks_(ticks_of(force_timeout_s, period_s_)),
       steering_ticks_(ticks_of(steering_period_s, period_s_)),
       lease_s_(lease_ticks(plan) * period_s_),
       force_(needle_ ? needle_->force : ForceInputs{}) {
@@ -90,19 +90,19 @@ void BiopsyMode::see(const SeenImage& seen) noexcept {
   }
 }
 
-void BiopsyMode::tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
+void BiopsyMode::tick(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept {
   if (needle_) {
     force_.look(snapshot);
-    HeldMode::tick(snapshot, wishes);
+    HeldMode::tick(snapshot, requests);
   }
 }
 
-void BiopsyMode::drive(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
+void BiopsyMode::drive(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept {
   for (Guided* axis : {&insertion_, &rotation_}) {
     if (executes()) {
-      axis->tracker.hold(status().task, snapshot, axis->point, wishes);
+      axis->tracker.hold(status().task, snapshot, axis->point, requests);
     } else {
-      axis->tracker.let_go(status().task, snapshot, wishes);
+      axis->tracker.let_go(status().task, snapshot, requests);
     }
   }
 }
@@ -127,7 +127,7 @@ void BiopsyMode::go_on(const ilk_snapshot_t& snapshot) noexcept {
   const std::uint32_t ticks = std::min(tick - seen_tick_, most_missed_ticks);
   const double time_s = ticks * period_s_;
   seen_tick_ = tick;
-  if (force_.readings().age_ticks(tick) > force_patience_ticks_) {
+  if (force_.readings().age_ticks(tick) > force_timeout_ticks_) {
     fail(TaskReason::force_stale, 0, needle_->force.slot, tick);
     return;
   }
@@ -162,7 +162,7 @@ bool BiopsyMode::plan_steering(const ilk_snapshot_t& snapshot) noexcept {
     return fails(planned.error(), tick);
   }
   command_ = *planned;
-  now_.wanted_rotation_rad = command_.wanted_rotation_rad;
+  now_.desired_rotation_rad = command_.desired_rotation_rad;
   now_.alpha = command_.alpha;
   now_.curvature_per_mm = run_->compensator.tip().curvature_per_mm;
   now_.expected_miss_mm = command_.expected_miss_mm;
@@ -175,14 +175,14 @@ bool BiopsyMode::push(const ilk_snapshot_t& snapshot, double time_s) noexcept {
   const double end_mm = std::min(command_.insertion_setpoint_mm + run_->entry_mm, deepest_allowed_mm_);
   const double left_mm = std::max(0.0, end_mm - insertion_.position);
   now_.left_mm = left_mm;
-  const auto wanted = run_->hand.force_n(force_.readings().hand).and_then([&](double force_n) {
+  const auto desired = run_->hand.force_n(force_.readings().hand).and_then([&](double force_n) {
     return cooperative_speed(run_->hand_law, force_n, true, left_mm);
   });
-  if (!wanted) {
-    return fails(wanted.error(), snapshot.state.system.tick);
+  if (!desired) {
+    return fails(desired.error(), snapshot.state.system.tick);
   }
   const double before_mm = insertion_.position;
-  insertion_.go(*wanted, time_s);
+  insertion_.go(*desired, time_s);
   insertion_.position = std::min(insertion_.position, std::max(before_mm, end_mm));
   return true;
 }
@@ -229,11 +229,11 @@ double BiopsyMode::depth_mm(const ilk_snapshot_t& snapshot) const noexcept {
          run_->entry_mm;
 }
 
-void BiopsyMode::on_unsent(const Wish& wish) noexcept {
-  if (needle_ && wish.origin.task == status().task) {
-    if (wish.origin.slot == needle_->insertion_slot) {
+void BiopsyMode::on_unsent(const KernelRequest& request) noexcept {
+  if (needle_ && request.origin.task == status().task) {
+    if (request.origin.slot == needle_->insertion_slot) {
       insertion_.tracker.on_unsent();
-    } else if (wish.origin.slot == needle_->rotation_slot) {
+    } else if (request.origin.slot == needle_->rotation_slot) {
       rotation_.tracker.on_unsent();
     }
   }

@@ -26,8 +26,8 @@ class BiopsyMode final : public HeldMode {
   /** An image of tip and target; one that cannot be is counted and changes nothing. */
   void see(const SeenImage& seen) noexcept;
 
-  void tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept override;
-  void on_unsent(const Wish& wish) noexcept override;
+  void tick(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept override;
+  void on_unsent(const KernelRequest& request) noexcept override;
   [[nodiscard]] std::optional<Setpoint> setpoint(std::uint32_t slot) const noexcept override;
 
   [[nodiscard]] const BiopsyFindings& findings() const noexcept { return findings_; }
@@ -46,7 +46,7 @@ class BiopsyMode final : public HeldMode {
 
     void start(const ilk_snapshot_t& snapshot, std::uint32_t slot) noexcept;
     /** Approaches the wanted speed within the rates of the axis. */
-    void go(double wanted, double time_s) noexcept;
+    void go(double desired, double time_s) noexcept;
     void aim(double offset, double offset_speed, double lease_s) noexcept;
   };
 
@@ -54,7 +54,7 @@ class BiopsyMode final : public HeldMode {
   [[nodiscard]] std::uint32_t prepare(std::uint32_t tick) noexcept override;
   void begin(const ilk_snapshot_t& snapshot) noexcept override;
   void go_on(const ilk_snapshot_t& snapshot) noexcept override;
-  void drive(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept override;
+  void drive(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept override;
   [[nodiscard]] bool plan_steering(const ilk_snapshot_t& snapshot) noexcept;
   [[nodiscard]] bool push(const ilk_snapshot_t& snapshot, double time_s) noexcept;
   [[nodiscard]] bool listen(const ilk_snapshot_t& snapshot, std::uint32_t ticks) noexcept;
@@ -63,7 +63,7 @@ class BiopsyMode final : public HeldMode {
 
   const std::optional<NeedlePlan> needle_;
   const double period_s_;
-  const std::uint32_t force_patience_ticks_;
+  const std::uint32_t force_timeout_ticks_;
   const std::uint32_t steering_ticks_;
   const double lease_s_;
   ForceWatch force_;

@@ -71,7 +71,7 @@ struct BiopsyNow {
   double left_mm = 0.0; /**< to the target's depth */
   bool armed = false;   /**< listens for a membrane */
   bool cue = false;
-  double wanted_rotation_rad = 0.0;
+  double desired_rotation_rad = 0.0;
   double alpha = 0.0;
   double curvature_per_mm = 0.0; /**< largest, as estimated */
   double expected_miss_mm = 0.0;

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "motion/overtaking.hpp"
+#include "motion/blocking_condition.hpp"
 
 namespace interlock {
 namespace {
@@ -20,9 +20,9 @@ constexpr milliseconds shortest_back_off{20};
 constexpr milliseconds longest_back_off{500};
 constexpr std::uint32_t heartbeat_period_ticks = 20;
 /** Without a sign of the threads that serve people, which give thirty a second: motion ends within 200 ms. */
-constexpr milliseconds service_patience{150};
+constexpr milliseconds service_timeout{150};
 /** Room in the notice queue that events leave to answers. */
-constexpr std::size_t answer_reserve = 2 * Mailbox::command_capacity;
+constexpr std::size_t answer_reserve = 2 * RealtimeChannel::command_capacity;
 
 ilk_request_t request_of(std::uint32_t kind, std::uint32_t slot = 0) noexcept {
   ilk_request_t request{};
@@ -33,11 +33,11 @@ ilk_request_t request_of(std::uint32_t kind, std::uint32_t slot = 0) noexcept {
 
 }  // namespace
 
-ControlLoop::ControlLoop(std::string link_socket, const RobotPlan& plan, Mailbox& mailbox,
+ControlLoop::ControlLoop(std::string link_socket, const RobotPlan& plan, RealtimeChannel& channel,
                          TickObserver* observer, LinkUse use)
     : link_(std::move(link_socket)),
       modes_(plan),
-      mailbox_(mailbox),
+      channel_(channel),
       observer_(observer),
       use_(use),
       back_off_(shortest_back_off) {
@@ -130,7 +130,7 @@ void ControlLoop::control() noexcept {
   send_heartbeat();
   take_commands();
   end_let_go();
-  send_wishes();
+  send_requests();
 }
 
 /** Whoever asks for something is told that it was not sent. */
@@ -160,21 +160,21 @@ void ControlLoop::watch_service() noexcept {
   const auto stands_still = [passed](Sign& sign, std::uint32_t count) {
     const bool goes_on = count == 0 || std::exchange(sign.seen, count) != count;
     sign.still = goes_on ? std::chrono::nanoseconds{0} : sign.still + passed;
-    return sign.still >= service_patience;
+    return sign.still >= service_timeout;
   };
-  const bool network = stands_still(network_, mailbox_.served.load(std::memory_order_relaxed));
-  const bool door = stands_still(door_, mailbox_.door_kept.load(std::memory_order_relaxed));
+  const bool network = stands_still(network_, channel_.served.load(std::memory_order_relaxed));
+  const bool door = stands_still(door_, channel_.door_kept.load(std::memory_order_relaxed));
   if (!std::exchange(nobody_served_, network || door) && nobody_served_) {
-    mailbox_.stop();
+    channel_.stop();
   }
 }
 
 void ControlLoop::obey_stop() noexcept {
-  stops_seen_ = mailbox_.stops.load(std::memory_order_acquire);
+  stops_seen_ = channel_.stops.load(std::memory_order_acquire);
   if (stops_seen_ == stops_sent_) {
     return;
   }
-  const bool holder_changed = mailbox_.holder.load(std::memory_order_relaxed) != holder_sent_;
+  const bool holder_changed = channel_.holder.load(std::memory_order_relaxed) != holder_sent_;
   modes_.end_all(nobody_served_   ? TaskReason::nobody_served
                  : holder_changed ? TaskReason::authority_changed
                                   : TaskReason::stopped,
@@ -186,7 +186,7 @@ void ControlLoop::obey_stop() noexcept {
 
 /** The kernel leaves MOTION, and each mode sees that as it sees the pedal's release. */
 void ControlLoop::obey_pause() noexcept {
-  const std::uint32_t pauses = mailbox_.pauses.load(std::memory_order_acquire);
+  const std::uint32_t pauses = channel_.pauses.load(std::memory_order_acquire);
   if (pauses != pauses_sent_ && port_.send(request_of(ILK_REQUEST_STOP), HeartbeatOrigin{})) {
     pauses_sent_ = pauses;
   }
@@ -217,18 +217,18 @@ void ControlLoop::dispatch_verdict(const ilk_event_t& event) noexcept {
   if (!origin) {
     return;
   }
-  const auto* wish = std::get_if<WishOrigin>(&*origin);
-  if (wish != nullptr) {
-    modes_.on_verdict(*wish, verdict, event.tick);
-  } else if (const auto* ask = std::get_if<AskOrigin>(&*origin)) {
-    notify(Answer{ask->ticket, verdict, event.tick});
-    if (const auto reason = end_by(ask->kind); reason && verdict == ILK_VERDICT_ACCEPTED) {
-      modes_.end_axis(ask->slot, *reason, event.tick);
+  const auto* request = std::get_if<ModeOrigin>(&*origin);
+  if (request != nullptr) {
+    modes_.on_verdict(*request, verdict, event.tick);
+  } else if (const auto* call = std::get_if<CallOrigin>(&*origin)) {
+    notify(KernelResponse{call->call_id, verdict, event.tick});
+    if (const auto reason = cancelled_by(call->kind); reason && verdict == ILK_VERDICT_ACCEPTED) {
+      modes_.end_axis(call->slot, *reason, event.tick);
     }
   } else if (const auto* asked_stop = std::get_if<StopOrigin>(&*origin)) {
     answer({asked_stop->stops, verdict, event.tick});
   }
-  const bool is_move = wish != nullptr && wish->kind == ILK_REQUEST_MOVE;
+  const bool is_move = request != nullptr && request->kind == ILK_REQUEST_MOVE;
   const bool routine = is_move || std::holds_alternative<HeartbeatOrigin>(*origin);
   if (!routine || verdict != ILK_VERDICT_ACCEPTED) {
     notify(event);
@@ -238,16 +238,16 @@ void ControlLoop::dispatch_verdict(const ilk_event_t& event) noexcept {
 /** The kernel may have accepted it, and a snapshot does not show what an axis was in between: a task that
  * the acceptance would have ended goes on only if somebody proposes it again. */
 void ControlLoop::lose_verdict(const RequestOrigin& origin) noexcept {
-  const auto* ask = std::get_if<AskOrigin>(&origin);
-  if (ask != nullptr && end_by(ask->kind)) {
-    modes_.end_axis(ask->slot, TaskReason::verdict_lost, view_.snapshot.state.system.tick);
+  const auto* call = std::get_if<CallOrigin>(&origin);
+  if (call != nullptr && cancelled_by(call->kind)) {
+    modes_.end_axis(call->slot, TaskReason::verdict_lost, view_.snapshot.state.system.tick);
   }
   answer_lost(origin);
 }
 
 void ControlLoop::send_heartbeat() noexcept {
   const std::uint32_t now = view_.snapshot.state.system.tick;
-  const std::uint32_t holder = mailbox_.holder.load(std::memory_order_acquire);
+  const std::uint32_t holder = channel_.holder.load(std::memory_order_acquire);
   const bool due =
       !heartbeat_sent_ || holder != holder_sent_ || now - heartbeat_tick_ >= heartbeat_period_ticks;
   if (!due || view_.snapshot.state.system.mode == ILK_MODE_INIT) {
@@ -267,8 +267,8 @@ void ControlLoop::take_commands() noexcept {
   const auto taken = [this](const Command& command) {
     return std::visit([this](const auto& each) { return take(each); }, command);
   };
-  while (mailbox_.commands.read_available() != 0 && taken(mailbox_.commands.front())) {
-    mailbox_.commands.pop();
+  while (channel_.commands.read_available() != 0 && taken(channel_.commands.front())) {
+    channel_.commands.pop();
   }
 }
 
@@ -333,27 +333,27 @@ std::int32_t ControlLoop::newer_than_stop(std::uint32_t stops) const noexcept {
   return nobody_served_ ? -1 : static_cast<std::int32_t>(stops - stops_seen_);
 }
 
-bool ControlLoop::take(const Ask& ask) noexcept {
-  const AskOrigin origin{ask.ticket, ask.kind, ask.slot};
-  const std::int32_t newer = newer_than_stop(ask.stops);
+bool ControlLoop::take(const KernelCall& call) noexcept {
+  const CallOrigin origin{call.call_id, call.kind, call.slot};
+  const std::int32_t newer = newer_than_stop(call.stops);
   if (newer > 0) {
     return false;
   }
-  const bool overtaken = newer < 0 && ask.kind != ILK_REQUEST_DISABLE;
-  if (overtaken || std::chrono::steady_clock::now() > ask.deadline) {
+  const bool overtaken = newer < 0 && call.kind != ILK_REQUEST_DISABLE;
+  if (overtaken || std::chrono::steady_clock::now() > call.deadline) {
     answer_lost(origin);
     return true;
   }
-  ilk_request_t request = request_of(ask.kind, ask.slot);
-  request.target_counts = ask.target_counts;
+  ilk_request_t request = request_of(call.kind, call.slot);
+  request.target_counts = call.target_counts;
   return port_.send(request, origin);
 }
 
-void ControlLoop::send_wishes() noexcept {
-  const Wishes wishes = modes_.tick(view_.snapshot);
-  for (const Wish& wish : wishes.all()) {
-    if (!port_.send(request_of(wish, view_.snapshot.state.system.consent), wish.origin)) {
-      modes_.on_unsent(wish);
+void ControlLoop::send_requests() noexcept {
+  const KernelRequests requests = modes_.tick(view_.snapshot);
+  for (const KernelRequest& request : requests.all()) {
+    if (!port_.send(sent_form(request, view_.snapshot.state.system.consent), request.origin)) {
+      modes_.on_unsent(request);
     }
   }
 }
@@ -364,29 +364,29 @@ void ControlLoop::publish() noexcept {
   view_.biopsy = modes_.biopsy().findings();
   view_.biopsy_now = modes_.biopsy().now();
   view_.force = modes_.biopsy().force();
-  mailbox_.view.writing() = view_;
-  mailbox_.view.publish();
+  channel_.view.writing() = view_;
+  channel_.view.publish();
   const bool changed = view_.tasks != published_tasks_ || view_.biopsy != published_biopsy_;
   if (std::exchange(noticed_, false) || changed) {
     published_tasks_ = view_.tasks;
     published_biopsy_ = view_.biopsy;
-    mailbox_.network_wake.signal();
+    channel_.network_wake.signal();
   }
 }
 
 /** Without the link nothing is open that a command could end or renew. */
 void ControlLoop::refuse_commands() noexcept {
-  const bool any = mailbox_.commands.read_available() != 0;
-  mailbox_.commands.consume_all([this](const Command& command) {
+  const bool any = channel_.commands.read_available() != 0;
+  channel_.commands.consume_all([this](const Command& command) {
     if (const auto* approval = std::get_if<Approval>(&command)) {
       const std::uint32_t tick = view_.snapshot.state.system.tick;
       modes_.take(approval->task, tick);
       modes_.end(approval->task->id, TaskReason::link_lost, tick);
-    } else if (const auto* ask = std::get_if<Ask>(&command)) {
-      answer_lost(AskOrigin{ask->ticket, ask->kind, ask->slot});
+    } else if (const auto* call = std::get_if<KernelCall>(&command)) {
+      answer_lost(CallOrigin{call->call_id, call->kind, call->slot});
     }
   });
-  const std::uint32_t stops = mailbox_.stops.load(std::memory_order_acquire);
+  const std::uint32_t stops = channel_.stops.load(std::memory_order_acquire);
   if (stops != stops_sent_) {
     stops_sent_ = stops;
     answer({stops, std::nullopt, 0});
@@ -398,23 +398,23 @@ void ControlLoop::refuse_commands() noexcept {
 
 void ControlLoop::answer(const StopAnswer& answer) noexcept {
   notify(answer);
-  mailbox_.stopped.writing() = answer;
-  mailbox_.stopped.publish();
-  mailbox_.door_wake.signal();
+  channel_.stopped.writing() = answer;
+  channel_.stopped.publish();
+  channel_.door_wake.signal();
 }
 
 void ControlLoop::answer_lost(const RequestOrigin& origin) noexcept {
-  if (const auto* ask = std::get_if<AskOrigin>(&origin)) {
-    notify(Answer{ask->ticket, std::nullopt, 0});
+  if (const auto* call = std::get_if<CallOrigin>(&origin)) {
+    notify(KernelResponse{call->call_id, std::nullopt, 0});
   } else if (const auto* asked_stop = std::get_if<StopOrigin>(&origin)) {
     answer({asked_stop->stops, std::nullopt, 0});
-  } else if (const auto* wish = std::get_if<WishOrigin>(&origin)) {
-    modes_.on_verdict_lost(*wish, view_.snapshot.state.system.tick);
+  } else if (const auto* request = std::get_if<ModeOrigin>(&origin)) {
+    modes_.on_verdict_lost(*request, view_.snapshot.state.system.tick);
   }
 }
 
 bool ControlLoop::room_for_events() const noexcept {
-  return mailbox_.notices.write_available() > answer_reserve;
+  return channel_.notices.write_available() > answer_reserve;
 }
 
 void ControlLoop::notify(const Notice& notice) noexcept {
@@ -422,7 +422,7 @@ void ControlLoop::notify(const Notice& notice) noexcept {
     ++events_dropped_;
     return;
   }
-  noticed_ = mailbox_.notices.push(notice) || noticed_;
+  noticed_ = channel_.notices.push(notice) || noticed_;
 }
 
 }  // namespace interlock

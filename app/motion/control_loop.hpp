@@ -17,9 +17,9 @@
 
 #include "link/link_client.hpp"
 #include "motion/axis_plan.hpp"
-#include "motion/held_lease.hpp"
-#include "motion/mailbox.hpp"
+#include "motion/deadman_timer.hpp"
 #include "motion/mode_manager.hpp"
+#include "motion/realtime_channel.hpp"
 #include "motion/request_port.hpp"
 #include "motion/tick_observer.hpp"
 
@@ -35,7 +35,7 @@ enum class LinkUse {
 class ControlLoop {
  public:
   /** @param observer shown each tick; it must outlive the loop */
-  ControlLoop(std::string link_socket, const RobotPlan& plan, Mailbox& mailbox,
+  ControlLoop(std::string link_socket, const RobotPlan& plan, RealtimeChannel& channel,
               TickObserver* observer = nullptr, LinkUse use = LinkUse::control);
 
   /** Serves until stopped, attaching again and again. On leaving it asks the kernel to end MOTION, unless it
@@ -64,11 +64,11 @@ class ControlLoop {
   [[nodiscard]] bool take(const Renewal& renewal) noexcept;
   [[nodiscard]] bool take(const SeenImage& seen) noexcept;
   [[nodiscard]] bool take(const Cancel& cancel) noexcept;
-  [[nodiscard]] bool take(const Ask& ask) noexcept;
+  [[nodiscard]] bool take(const KernelCall& call) noexcept;
   [[nodiscard]] std::int32_t newer_than_stop(std::uint32_t stops) const noexcept;
   void lose_verdict(const RequestOrigin& origin) noexcept;
   void end_let_go() noexcept;
-  void send_wishes() noexcept;
+  void send_requests() noexcept;
   void publish() noexcept;
 
   void refuse_commands() noexcept;
@@ -86,13 +86,13 @@ class ControlLoop {
   /** The newest jog of an axis. */
   struct Jog {
     std::uint32_t task = 0;
-    HeldLease lease{jog_patience};
+    DeadmanTimer lease{jog_timeout};
   };
 
   LinkClient link_;
   RequestPort port_{link_};
   ModeManager modes_;
-  Mailbox& mailbox_;
+  RealtimeChannel& channel_;
   TickObserver* observer_;
   LinkUse use_;
   ControlView view_;

@@ -1,6 +1,6 @@
 #include "motion/held_mode.hpp"
 
-#include "motion/obstacle.hpp"
+#include "motion/blocking_condition.hpp"
 
 namespace interlock {
 
@@ -43,11 +43,11 @@ void HeldMode::fail(TaskReason reason, std::uint32_t code, std::uint32_t slot, s
   set_phase(TaskPhase::aborted, reason, code, tick);
 }
 
-void HeldMode::tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
+void HeldMode::tick(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept {
   if (is_open() && !meets_obstacle(snapshot)) {
     judge(snapshot);
   }
-  drive(snapshot, wishes);
+  drive(snapshot, requests);
 }
 
 /** Goes on, pauses or expires. */
@@ -61,7 +61,7 @@ void HeldMode::judge(const ilk_snapshot_t& snapshot) noexcept {
     }
     set_phase(TaskPhase::paused, TaskReason::pedal_released, 0, now);
     idle_since_ = now;
-  } else if (now - idle_since_ > patience_ticks_) {
+  } else if (now - idle_since_ > timeout_ticks_) {
     set_phase(TaskPhase::expired, TaskReason::waited_too_long, 0, now);
   } else if (held) {
     set_phase(TaskPhase::executing, TaskReason::none, 0, now);
@@ -76,8 +76,8 @@ bool HeldMode::meets_obstacle(const ilk_snapshot_t& snapshot) noexcept {
       continue;
     }
     const ilk_axis_t& axis = snapshot.state.axis[slot];
-    if (const auto obstacle = obstacle_of(snapshot, slot)) {
-      fail(obstacle->reason, obstacle->code, slot, now);
+    if (const auto blocking = blocking_condition(snapshot, slot)) {
+      fail(blocking->reason, blocking->code, slot, now);
       return true;
     }
     if (axis.state == ILK_AXIS_HOMING || axis.homed == 0) {
@@ -89,7 +89,7 @@ bool HeldMode::meets_obstacle(const ilk_snapshot_t& snapshot) noexcept {
   return false;
 }
 
-void HeldMode::on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept {
+void HeldMode::on_verdict(const ModeOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept {
   const bool routine = verdict == ILK_VERDICT_ACCEPTED || verdict == ILK_VERDICT_MODE;
   if (!routine && origin.task == status_.task && is_open()) {
     status_.slot = origin.slot;

@@ -20,10 +20,10 @@ class HeldMode : public Mode {
   void end(std::uint32_t task, TaskReason reason, std::uint32_t tick) noexcept final;
   void end_all(TaskReason reason, std::uint32_t tick) noexcept final;
   void end_axis(std::uint32_t slot, TaskReason reason, std::uint32_t tick) noexcept final;
-  void tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept override;
+  void tick(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept override;
   /** A refusal ends the task; MODE says only that the pedal was released meanwhile, which the next snapshot
    * shows. */
-  void on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept final;
+  void on_verdict(const ModeOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept final;
   [[nodiscard]] bool is_open() const noexcept final { return interlock::is_open(status_.phase); }
   void report(TaskTable& tasks) const noexcept override { tasks.of(kind_) = status_; }
 
@@ -31,7 +31,7 @@ class HeldMode : public Mode {
 
  protected:
   HeldMode(TaskKind kind, const RobotPlan& plan) noexcept
-      : kind_(kind), patience_ticks_(plan.patience_ticks()) {}
+      : kind_(kind), timeout_ticks_(plan.timeout_ticks()) {}
 
   /** Makes ready for a task that waits now; returns the axes that it moves, bit n for slot n. */
   [[nodiscard]] virtual std::uint32_t prepare(std::uint32_t tick) noexcept = 0;
@@ -39,8 +39,8 @@ class HeldMode : public Mode {
   virtual void begin(const ilk_snapshot_t& snapshot) noexcept = 0;
   /** It is held. */
   virtual void go_on(const ilk_snapshot_t& snapshot) noexcept = 0;
-  /** Wishes for what drives each axis now, or gives back its drive. */
-  virtual void drive(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept = 0;
+  /** Requests for what drives each axis now, or gives back its drive. */
+  virtual void drive(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept = 0;
 
   /** Aborts the task because of the axis in `slot`. */
   void fail(TaskReason reason, std::uint32_t code, std::uint32_t slot, std::uint32_t tick) noexcept;
@@ -65,7 +65,7 @@ class HeldMode : public Mode {
   [[nodiscard]] bool meets_obstacle(const ilk_snapshot_t& snapshot) noexcept;
 
   const TaskKind kind_;
-  const std::uint32_t patience_ticks_; /**< how long the task may wait without executing */
+  const std::uint32_t timeout_ticks_; /**< how long the task may wait without executing */
   TaskReference task_;
   TaskStatus status_;
   std::uint32_t axes_ = 0;

@@ -165,28 +165,28 @@ HomeProgress HomeAxis::watch_move(const ilk_snapshot_t& snapshot) noexcept {
   return HomeProgress::going;
 }
 
-void HomeAxis::hold(std::uint32_t task, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
+void HomeAxis::hold(std::uint32_t task, const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept {
   if (progress_ != HomeProgress::going || stopping_) {
-    let_go(task, snapshot, wishes);
+    let_go(task, snapshot, requests);
     return;
   }
   if (kind_ != HomeStepKind::home) {
-    move_.hold(task, snapshot, wishes);
+    move_.hold(task, snapshot, requests);
     return;
   }
   const bool fresh = !judged_ || shows(snapshot, judged_tick_);
   if (!asked_ && !accepted_ && fresh) {
     asked_ = true;
-    wishes.add(Wish{{ILK_REQUEST_HOME, slot_, task}, 0, 0, 0, 0});
+    requests.add(KernelRequest{{ILK_REQUEST_HOME, slot_, task}, 0, 0, 0, 0});
   }
 }
 
-void HomeAxis::let_go(std::uint32_t task, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
-  move_.let_go(task, snapshot, wishes);
+void HomeAxis::let_go(std::uint32_t task, const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept {
+  move_.let_go(task, snapshot, requests);
 }
 
-void HomeAxis::on_unsent(const Wish& wish) noexcept {
-  if (wish.origin.kind == ILK_REQUEST_HOME) {
+void HomeAxis::on_unsent(const KernelRequest& request) noexcept {
+  if (request.origin.kind == ILK_REQUEST_HOME) {
     asked_ = false;
   } else {
     move_.on_unsent();

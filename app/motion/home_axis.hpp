@@ -9,8 +9,8 @@
 #include "interlock/link.h"
 #include "motion/axis_move.hpp"
 #include "motion/axis_plan.hpp"
+#include "motion/kernel_request.hpp"
 #include "motion/rest_watch.hpp"
-#include "motion/wish.hpp"
 
 namespace interlock {
 
@@ -48,14 +48,14 @@ class HomeAxis {
   /** Looks how far the axis has come; only in MOTION, after `start`. */
   HomeProgress watch(const ilk_snapshot_t& snapshot) noexcept;
 
-  /** Wishes for what keeps the axis going. */
-  void hold(std::uint32_t task, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept;
+  /** Requests for what keeps the axis going. */
+  void hold(std::uint32_t task, const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept;
 
   /** Gives back a lease. What the kernel does by itself, homing, only the end of MOTION ends. */
-  void let_go(std::uint32_t task, const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept;
+  void let_go(std::uint32_t task, const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept;
 
   /** A request that the link did not take. */
-  void on_unsent(const Wish& wish) noexcept;
+  void on_unsent(const KernelRequest& request) noexcept;
 
   /** The kernel judged the HOME of this step. */
   void on_home_verdict(std::uint32_t verdict, std::uint32_t tick) noexcept;

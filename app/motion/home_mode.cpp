@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "motion/obstacle.hpp"
+#include "motion/blocking_condition.hpp"
 #include "motion/rest_watch.hpp"
 
 namespace interlock {
@@ -105,29 +105,29 @@ void HomeMode::end_all(TaskReason reason, std::uint32_t tick) noexcept {
   }
 }
 
-void HomeMode::tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
-  settle_stop(snapshot, wishes);
+void HomeMode::tick(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept {
+  settle_stop(snapshot, requests);
   if (is_open()) {
     judge(snapshot);
-    settle_stop(snapshot, wishes);
+    settle_stop(snapshot, requests);
   }
   const std::uint32_t held = status_.phase == TaskPhase::executing ? step().mask() : 0u;
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     if ((held & bit(slot)) != 0) {
-      axes_[slot].hold(status_.task, snapshot, wishes);
+      axes_[slot].hold(status_.task, snapshot, requests);
     } else {
-      axes_[slot].let_go(status_.task, snapshot, wishes);
+      axes_[slot].let_go(status_.task, snapshot, requests);
     }
   }
 }
 
 /** Asks for STOP until MOTION has ended; until then no task begins. */
-void HomeMode::settle_stop(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
+void HomeMode::settle_stop(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept {
   stop_owed_ = stop_owed_ && snapshot.state.system.mode == ILK_MODE_MOTION;
   if (stop_owed_ && (!stop_sent_ || snapshot.state.system.tick - stop_tick_ >= stop_again_ticks)) {
     stop_sent_ = true;
     stop_tick_ = snapshot.state.system.tick;
-    wishes.add(Wish{{ILK_REQUEST_STOP, 0, status_.task}, 0, 0, 0, 0});
+    requests.add(KernelRequest{{ILK_REQUEST_STOP, 0, status_.task}, 0, 0, 0, 0});
   }
 }
 
@@ -151,8 +151,8 @@ bool HomeMode::meets_obstacle(const ilk_snapshot_t& snapshot) noexcept {
     if ((watched & bit(slot)) == 0) {
       continue;
     }
-    if (const auto obstacle = obstacle_of(snapshot, slot)) {
-      fail(obstacle->reason, obstacle->code, slot, snapshot.state.system.tick);
+    if (const auto blocking = blocking_condition(snapshot, slot)) {
+      fail(blocking->reason, blocking->code, slot, snapshot.state.system.tick);
       return true;
     }
   }
@@ -160,7 +160,7 @@ bool HomeMode::meets_obstacle(const ilk_snapshot_t& snapshot) noexcept {
 }
 
 bool HomeMode::expire_when_late(std::uint32_t tick) noexcept {
-  if (tick - idle_since_ <= plan_.patience_ticks()) {
+  if (tick - idle_since_ <= plan_.timeout_ticks()) {
     return false;
   }
   finish(TaskPhase::expired, TaskReason::waited_too_long, 0, tick);
@@ -263,18 +263,18 @@ void HomeMode::start_axes(const ilk_snapshot_t& snapshot) noexcept {
   }
 }
 
-void HomeMode::on_unsent(const Wish& wish) noexcept {
-  if (wish.origin.task != status_.task) {
+void HomeMode::on_unsent(const KernelRequest& request) noexcept {
+  if (request.origin.task != status_.task) {
     return;
   }
-  if (wish.origin.kind == ILK_REQUEST_STOP) {
+  if (request.origin.kind == ILK_REQUEST_STOP) {
     stop_sent_ = false;
   } else {
-    axes_[wish.origin.slot].on_unsent(wish);
+    axes_[request.origin.slot].on_unsent(request);
   }
 }
 
-void HomeMode::on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept {
+void HomeMode::on_verdict(const ModeOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept {
   if (!is_open() || origin.task != status_.task || origin.slot >= ILK_SLOTS) {
     return;
   }
@@ -293,7 +293,7 @@ void HomeMode::on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::
   }
 }
 
-void HomeMode::on_verdict_lost(const WishOrigin& origin, std::uint32_t tick) noexcept {
+void HomeMode::on_verdict_lost(const ModeOrigin& origin, std::uint32_t tick) noexcept {
   if (is_open() && origin.task == status_.task && origin.kind == ILK_REQUEST_HOME) {
     fail(TaskReason::verdict_lost, 0, origin.slot, tick);
   }

@@ -29,10 +29,10 @@ class HomeMode final : public Mode {
   void end(std::uint32_t task, TaskReason reason, std::uint32_t tick) noexcept override;
   void end_all(TaskReason reason, std::uint32_t tick) noexcept override;
   void end_axis(std::uint32_t slot, TaskReason reason, std::uint32_t tick) noexcept override;
-  void tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept override;
-  void on_unsent(const Wish& wish) noexcept override;
-  void on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept override;
-  void on_verdict_lost(const WishOrigin& origin, std::uint32_t tick) noexcept override;
+  void tick(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept override;
+  void on_unsent(const KernelRequest& request) noexcept override;
+  void on_verdict(const ModeOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept override;
+  void on_verdict_lost(const ModeOrigin& origin, std::uint32_t tick) noexcept override;
 
   [[nodiscard]] bool is_open() const noexcept override { return interlock::is_open(status_.phase); }
   void report(TaskTable& tasks) const noexcept override { tasks.of(TaskKind::home) = status_; }
@@ -54,7 +54,7 @@ class HomeMode final : public Mode {
   [[nodiscard]] const HomeTask& homing() const noexcept { return *std::get_if<HomeTask>(&task_->work); }
   [[nodiscard]] bool names_known_steps(const HomeTask& homing) const noexcept;
   [[nodiscard]] bool expire_when_late(std::uint32_t tick) noexcept;
-  void settle_stop(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept;
+  void settle_stop(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept;
 
   const RobotPlan plan_;
   HomeStepPlan alone_; /**< the step of a task for one axis */
@@ -70,7 +70,7 @@ class HomeMode final : public Mode {
   std::uint32_t idle_since_ = 0;   /**< tick since which the task does not execute */
   bool stop_owed_ = false;         /**< the kernel may be homing for a task that has ended */
   bool stop_sent_ = false;
-  std::uint32_t stop_tick_ = 0; /**< in which STOP was last wished for */
+  std::uint32_t stop_tick_ = 0; /**< in which STOP was last requested */
 };
 
 }  // namespace interlock

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "motion/obstacle.hpp"
+#include "motion/blocking_condition.hpp"
 
 namespace interlock {
 
-ManualMode::ManualMode(const RobotPlan& plan) noexcept : patience_ticks_(plan.patience_ticks()) {
+ManualMode::ManualMode(const RobotPlan& plan) noexcept : timeout_ticks_(plan.timeout_ticks()) {
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     jobs_[slot].move = AxisMove(slot, plan.axis[slot], plan.lease_ticks());
   }
@@ -64,23 +64,23 @@ void ManualMode::end_all(TaskReason reason, std::uint32_t tick) noexcept {
   }
 }
 
-void ManualMode::tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
+void ManualMode::tick(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept {
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     if (interlock::is_open(moves_[slot].phase)) {
       judge(slot, snapshot);
     }
     if (moves_[slot].phase == TaskPhase::executing) {
-      jobs_[slot].move.hold(moves_[slot].task, snapshot, wishes);
+      jobs_[slot].move.hold(moves_[slot].task, snapshot, requests);
     } else {
-      jobs_[slot].move.let_go(moves_[slot].task, snapshot, wishes);
+      jobs_[slot].move.let_go(moves_[slot].task, snapshot, requests);
     }
   }
 }
 
 void ManualMode::judge(std::uint32_t slot, const ilk_snapshot_t& snapshot) noexcept {
   const std::uint32_t now = snapshot.state.system.tick;
-  if (const auto obstacle = obstacle_of(snapshot, slot)) {
-    set_phase(slot, TaskPhase::aborted, obstacle->reason, obstacle->code, now);
+  if (const auto blocking = blocking_condition(snapshot, slot)) {
+    set_phase(slot, TaskPhase::aborted, blocking->reason, blocking->code, now);
   } else if (snapshot.state.axis[slot].state == ILK_AXIS_HOMING) {
     set_phase(slot, TaskPhase::aborted, TaskReason::axis_homing, 0, now);
   } else if (snapshot.state.system.mode == ILK_MODE_MOTION) {
@@ -91,7 +91,7 @@ void ManualMode::judge(std::uint32_t slot, const ilk_snapshot_t& snapshot) noexc
 }
 
 bool ManualMode::waited_too_long(std::uint32_t slot, std::uint32_t tick) const noexcept {
-  return tick - jobs_[slot].idle_since > patience_ticks_;
+  return tick - jobs_[slot].idle_since > timeout_ticks_;
 }
 
 void ManualMode::pause_or_expire(std::uint32_t slot, const ilk_snapshot_t& snapshot) noexcept {
@@ -128,14 +128,14 @@ void ManualMode::follow(std::uint32_t slot, const ilk_snapshot_t& snapshot) noex
   }
 }
 
-void ManualMode::on_unsent(const Wish& wish) noexcept {
-  const std::uint32_t slot = wish.origin.slot;
-  if (slot < ILK_SLOTS && moves_[slot].task == wish.origin.task) {
+void ManualMode::on_unsent(const KernelRequest& request) noexcept {
+  const std::uint32_t slot = request.origin.slot;
+  if (slot < ILK_SLOTS && moves_[slot].task == request.origin.task) {
     jobs_[slot].move.on_unsent();
   }
 }
 
-void ManualMode::on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept {
+void ManualMode::on_verdict(const ModeOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept {
   // MODE says only that the pedal was released between the snapshot and the request; the next snapshot
   // pauses.
   if (verdict == ILK_VERDICT_ACCEPTED || verdict == ILK_VERDICT_MODE) {

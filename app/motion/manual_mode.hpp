@@ -24,9 +24,9 @@ class ManualMode final : public Mode {
   void end(std::uint32_t task, TaskReason reason, std::uint32_t tick) noexcept override;
   void end_all(TaskReason reason, std::uint32_t tick) noexcept override;
   void end_axis(std::uint32_t slot, TaskReason reason, std::uint32_t tick) noexcept override;
-  void tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept override;
-  void on_unsent(const Wish& wish) noexcept override;
-  void on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept override;
+  void tick(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept override;
+  void on_unsent(const KernelRequest& request) noexcept override;
+  void on_verdict(const ModeOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept override;
   /** Whether a move of any axis is open. */
   [[nodiscard]] bool is_open() const noexcept override;
   void report(TaskTable& tasks) const noexcept override;
@@ -44,7 +44,7 @@ class ManualMode final : public Mode {
   void follow(std::uint32_t slot, const ilk_snapshot_t& snapshot) noexcept;
   [[nodiscard]] bool waited_too_long(std::uint32_t slot, std::uint32_t tick) const noexcept;
 
-  const std::uint32_t patience_ticks_;
+  const std::uint32_t timeout_ticks_;
   std::array<Job, ILK_SLOTS> jobs_{};
   std::array<TaskStatus, ILK_SLOTS> moves_{};
 };

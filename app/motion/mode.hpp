@@ -1,6 +1,6 @@
 /**
  * @file
- * What a motion mode is: it looks at each snapshot and wishes for requests. Sending them is not its business.
+ * What a motion mode is: it looks at each snapshot and requests requests. Sending them is not its business.
  *
  * Every function runs in the control thread: none allocates, blocks or throws.
  */
@@ -11,8 +11,8 @@
 
 #include "interlock/link.h"
 #include "motion/axis_tracker.hpp"
+#include "motion/kernel_request.hpp"
 #include "motion/task.hpp"
-#include "motion/wish.hpp"
 
 namespace interlock {
 
@@ -34,17 +34,17 @@ class Mode {
   virtual void end_axis(std::uint32_t slot, TaskReason reason, std::uint32_t tick) noexcept = 0;
 
   /** Looks at a snapshot; adds the requests to send in this tick. */
-  virtual void tick(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept = 0;
+  virtual void tick(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept = 0;
 
-  /** A wish of this tick found no room on the link: it is wished for again in the next one. */
-  virtual void on_unsent(const Wish& wish) noexcept = 0;
+  /** A request of this tick found no room on the link: it is requested again in the next one. */
+  virtual void on_unsent(const KernelRequest& request) noexcept = 0;
 
   /** The kernel judged a request. */
-  virtual void on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept = 0;
+  virtual void on_verdict(const ModeOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept = 0;
 
   /** The kernel's word on a request got lost. Nothing to do for a MOVE: it is renewed before its lease runs
    * out, and each renewal has a verdict of its own. */
-  virtual void on_verdict_lost(const WishOrigin& /*origin*/, std::uint32_t /*tick*/) noexcept {}
+  virtual void on_verdict_lost(const ModeOrigin& /*origin*/, std::uint32_t /*tick*/) noexcept {}
 
   /** Whether a task is open here. */
   [[nodiscard]] virtual bool is_open() const noexcept = 0;

@@ -35,12 +35,12 @@ void ModeManager::end_all(TaskReason reason, std::uint32_t tick) noexcept {
   }
 }
 
-Wishes ModeManager::tick(const ilk_snapshot_t& snapshot) noexcept {
-  Wishes wishes;
+KernelRequests ModeManager::tick(const ilk_snapshot_t& snapshot) noexcept {
+  KernelRequests requests;
   for (Mode* mode : in_turn_) {
-    mode->tick(snapshot, wishes);
+    mode->tick(snapshot, requests);
   }
-  return wishes;
+  return requests;
 }
 
 TaskTable ModeManager::tasks() const noexcept {
@@ -60,19 +60,19 @@ std::optional<Setpoint> ModeManager::setpoint(std::uint32_t slot) const noexcept
   return std::nullopt;
 }
 
-void ModeManager::on_unsent(const Wish& wish) noexcept {
+void ModeManager::on_unsent(const KernelRequest& request) noexcept {
   for (Mode* mode : in_turn_) {
-    mode->on_unsent(wish);
+    mode->on_unsent(request);
   }
 }
 
-void ModeManager::on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept {
+void ModeManager::on_verdict(const ModeOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept {
   for (Mode* mode : in_turn_) {
     mode->on_verdict(origin, verdict, tick);
   }
 }
 
-void ModeManager::on_verdict_lost(const WishOrigin& origin, std::uint32_t tick) noexcept {
+void ModeManager::on_verdict_lost(const ModeOrigin& origin, std::uint32_t tick) noexcept {
   for (Mode* mode : in_turn_) {
     mode->on_verdict_lost(origin, tick);
   }

@@ -39,14 +39,14 @@ class ModeManager {
   void end_all(TaskReason reason, std::uint32_t tick) noexcept;
 
   /** The requests to send in this tick, first one first. */
-  [[nodiscard]] Wishes tick(const ilk_snapshot_t& snapshot) noexcept;
+  [[nodiscard]] KernelRequests tick(const ilk_snapshot_t& snapshot) noexcept;
 
   /** A request that the link did not take. */
-  void on_unsent(const Wish& wish) noexcept;
+  void on_unsent(const KernelRequest& request) noexcept;
   /** The kernel's answer to a request. */
-  void on_verdict(const WishOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept;
+  void on_verdict(const ModeOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept;
   /** The kernel's answer to a request will never be known. */
-  void on_verdict_lost(const WishOrigin& origin, std::uint32_t tick) noexcept;
+  void on_verdict_lost(const ModeOrigin& origin, std::uint32_t tick) noexcept;
 
   /** Where the newest tasks stand. */
   [[nodiscard]] TaskTable tasks() const noexcept;

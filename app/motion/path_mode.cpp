@@ -27,12 +27,12 @@ std::uint32_t PathMode::prepare(std::uint32_t tick) noexcept {
   return program().mask();
 }
 
-void PathMode::drive(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
+void PathMode::drive(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept {
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     if (follows(slot)) {
-      trackers_[slot].hold(status().task, snapshot, points_[slot], wishes);
+      trackers_[slot].hold(status().task, snapshot, points_[slot], requests);
     } else {
-      trackers_[slot].let_go(status().task, snapshot, wishes);
+      trackers_[slot].let_go(status().task, snapshot, requests);
     }
   }
 }
@@ -129,9 +129,9 @@ void PathMode::end_leg(const ilk_snapshot_t& snapshot) noexcept {
   begin(snapshot);
 }
 
-void PathMode::on_unsent(const Wish& wish) noexcept {
-  if (wish.origin.slot < ILK_SLOTS && wish.origin.task == status().task) {
-    trackers_[wish.origin.slot].on_unsent();
+void PathMode::on_unsent(const KernelRequest& request) noexcept {
+  if (request.origin.slot < ILK_SLOTS && request.origin.task == status().task) {
+    trackers_[request.origin.slot].on_unsent();
   }
 }
 

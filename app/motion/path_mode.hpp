@@ -15,7 +15,7 @@
 
 #include "motion/axis_tracker.hpp"
 #include "motion/held_mode.hpp"
-#include "motion/path_walk.hpp"
+#include "motion/trajectory_follower.hpp"
 
 namespace interlock {
 
@@ -23,7 +23,7 @@ class PathMode final : public HeldMode {
  public:
   explicit PathMode(const RobotPlan& plan);
 
-  void on_unsent(const Wish& wish) noexcept override;
+  void on_unsent(const KernelRequest& request) noexcept override;
   [[nodiscard]] std::optional<Setpoint> setpoint(std::uint32_t slot) const noexcept override;
 
  private:
@@ -31,7 +31,7 @@ class PathMode final : public HeldMode {
   [[nodiscard]] std::uint32_t prepare(std::uint32_t tick) noexcept override;
   void begin(const ilk_snapshot_t& snapshot) noexcept override;
   void go_on(const ilk_snapshot_t& snapshot) noexcept override;
-  void drive(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept override;
+  void drive(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept override;
   void settle(const ilk_snapshot_t& snapshot) noexcept;
   void end_leg(const ilk_snapshot_t& snapshot) noexcept;
   [[nodiscard]] bool strays(const ilk_snapshot_t& snapshot) noexcept;
@@ -44,8 +44,8 @@ class PathMode final : public HeldMode {
 
   const double period_s_;
   const std::uint32_t settle_ticks_;
-  PathWalk walk_;
-  PathWalk::Points points_{};
+  TrajectoryFollower walk_;
+  TrajectoryFollower::Points points_{};
   std::array<AxisTracker, ILK_SLOTS> trackers_{};
   std::uint32_t seen_tick_ = 0; /**< of the snapshot before, while executing */
   std::uint32_t end_tick_ = 0;  /**< since which the path is at its end and axes may lag behind */

@@ -11,13 +11,13 @@
 #include <variant>
 
 #include "link/link_client.hpp"
-#include "motion/wish.hpp"
+#include "motion/kernel_request.hpp"
 
 namespace interlock {
 
-/** What of an `Ask` is still of interest when its verdict comes. */
-struct AskOrigin {
-  std::uint32_t ticket = 0;
+/** What of an `KernelCall` is still of interest when its verdict comes. */
+struct CallOrigin {
+  std::uint32_t call_id = 0;
   std::uint32_t kind = 0; /**< ilk_request_kind_t */
   std::uint32_t slot = 0;
 };
@@ -31,7 +31,7 @@ struct StopOrigin {
 struct HeartbeatOrigin {};
 
 /** Who sent a request. */
-using RequestOrigin = std::variant<HeartbeatOrigin, WishOrigin, AskOrigin, StopOrigin>;
+using RequestOrigin = std::variant<HeartbeatOrigin, ModeOrigin, CallOrigin, StopOrigin>;
 
 /** Sends requests by the link and remembers who sent each, until its verdict comes. */
 class RequestPort {

@@ -18,7 +18,7 @@ SweepMode::SweepMode(const RobotPlan& plan)
       plan_(plan),
       settle_ticks_(static_cast<std::uint32_t>(settle_s / plan.period_s())) {
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
-    leases_[slot] = MoveLease(slot, plan.axis[slot], plan.lease_ticks());
+    leases_[slot] = SetpointLease(slot, plan.axis[slot], plan.lease_ticks());
   }
 }
 
@@ -33,14 +33,14 @@ std::uint32_t SweepMode::prepare(std::uint32_t /*tick*/) noexcept {
   return 1u << sweep_.slot;
 }
 
-void SweepMode::drive(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept {
+void SweepMode::drive(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept {
   const bool drives = executes() && !turning_;
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     if (drives && slot == sweep_.slot) {
       const std::uint32_t drive = frequency_map::drive_at(sweep_.steps.word(status().step));
-      leases_[slot].hold(status().task, snapshot.state.system.tick, target_counts(snapshot), drive, wishes);
+      leases_[slot].hold(status().task, snapshot.state.system.tick, target_counts(snapshot), drive, requests);
     } else {
-      leases_[slot].let_go(status().task, snapshot, wishes);
+      leases_[slot].let_go(status().task, snapshot, requests);
     }
   }
 }
@@ -106,9 +106,9 @@ std::int32_t SweepMode::target_counts(const ilk_snapshot_t& snapshot) const noex
   return upwards_ ? range.highest_counts : range.lowest_counts;
 }
 
-void SweepMode::on_unsent(const Wish& wish) noexcept {
-  if (wish.origin.task == status().task && wish.origin.slot < ILK_SLOTS) {
-    leases_[wish.origin.slot].on_unsent();
+void SweepMode::on_unsent(const KernelRequest& request) noexcept {
+  if (request.origin.task == status().task && request.origin.slot < ILK_SLOTS) {
+    leases_[request.origin.slot].on_unsent();
   }
 }
 

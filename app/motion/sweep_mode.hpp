@@ -13,8 +13,8 @@
 #include <cstdint>
 
 #include "motion/held_mode.hpp"
-#include "motion/move_lease.hpp"
 #include "motion/rest_watch.hpp"
+#include "motion/setpoint_lease.hpp"
 
 namespace interlock {
 
@@ -22,7 +22,7 @@ class SweepMode final : public HeldMode {
  public:
   explicit SweepMode(const RobotPlan& plan);
 
-  void on_unsent(const Wish& wish) noexcept override;
+  void on_unsent(const KernelRequest& request) noexcept override;
 
   [[nodiscard]] const SweepSpeeds& speeds() const noexcept { return speeds_; }
 
@@ -30,7 +30,7 @@ class SweepMode final : public HeldMode {
   [[nodiscard]] std::uint32_t prepare(std::uint32_t tick) noexcept override;
   void begin(const ilk_snapshot_t& snapshot) noexcept override;
   void go_on(const ilk_snapshot_t& snapshot) noexcept override;
-  void drive(const ilk_snapshot_t& snapshot, Wishes& wishes) noexcept override;
+  void drive(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept override;
   void measure(const ilk_axis_t& axis, std::uint32_t ticks) noexcept;
   void end_step(std::uint32_t tick) noexcept;
   [[nodiscard]] std::int32_t target_counts(const ilk_snapshot_t& snapshot) const noexcept;
@@ -39,7 +39,7 @@ class SweepMode final : public HeldMode {
   const std::uint32_t settle_ticks_;
   SweepTask sweep_;
   SweepSpeeds speeds_{};
-  std::array<MoveLease, ILK_SLOTS> leases_{};
+  std::array<SetpointLease, ILK_SLOTS> leases_{};
   RestWatch rest_;
   bool upwards_ = true;
   bool turning_ = false;             /**< without drive, until it rests */

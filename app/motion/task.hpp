@@ -19,7 +19,7 @@
 
 #include "interlock/types.h"
 #include "kinematics/pose.hpp"
-#include "motion/held_lease.hpp"
+#include "motion/deadman_timer.hpp"
 #include "motion/path_program.hpp"
 #include "robot/modes.hpp"
 
@@ -148,7 +148,7 @@ struct Renewal {
 };
 
 /** For which a jog goes on without a renewal. */
-constexpr std::chrono::milliseconds jog_patience{200};
+constexpr std::chrono::milliseconds jog_timeout{200};
 
 /** Where a task stands on the control thread. The last five are final. */
 enum class TaskPhase : std::uint8_t { none, waiting, executing, paused, done, refused, aborted, expired };

@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "motion/mailbox.hpp"
+#include "motion/realtime_channel.hpp"
 
 namespace interlock {
 

@@ -1,6 +1,6 @@
-#include "motion/wake_signal.hpp"
-
 #include <sys/eventfd.h>
+
+#include "motion/realtime_channel.hpp"
 
 namespace interlock {
 

@@ -1,7 +1,6 @@
-#include "proposals/ablation_program.hpp"
-
 #include <string_view>
 
+#include "proposals/programs.hpp"
 #include "robot/modes.hpp"
 
 namespace interlock {

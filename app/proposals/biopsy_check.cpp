@@ -1,6 +1,4 @@
-#include "proposals/biopsy_check.hpp"
-
-#include "proposals/path_check.hpp"
+#include "proposals/checks.hpp"
 
 namespace interlock {
 namespace {

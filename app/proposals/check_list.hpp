@@ -15,7 +15,7 @@
 
 namespace interlock {
 
-/** Why a wish is not granted, and what to do about it. */
+/** Why a request is not granted, and what to do about it. */
 struct Refusal {
   std::string code;   /**< verdict of the catalog, or a code of spec/openapi.yaml */
   std::string detail; /**< what, where */

@@ -1,9 +1,7 @@
-#include "proposals/home_plan.hpp"
-
 #include <algorithm>
 #include <string>
 
-#include "proposals/separation.hpp"
+#include "proposals/checks.hpp"
 
 namespace interlock {
 namespace {

@@ -1,8 +1,7 @@
-#include "proposals/move_check.hpp"
-
 #include <cmath>
 
 #include "motion/setpoint_range.hpp"
+#include "proposals/checks.hpp"
 #include "robot/catalog.hpp"
 #include "robot/compile.hpp"
 

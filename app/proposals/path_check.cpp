@@ -1,11 +1,9 @@
-#include "proposals/path_check.hpp"
-
 #include <array>
 #include <string>
 
 #include "motion/setpoint_range.hpp"
-#include "motion/trajectory_pace.hpp"
-#include "proposals/separation.hpp"
+#include "motion/time_scaling.hpp"
+#include "proposals/checks.hpp"
 #include "trajectory/synchronised_plan.hpp"
 
 namespace interlock {

@@ -1,6 +1,6 @@
-#include "proposals/pose_program.hpp"
-
 #include <string_view>
+
+#include "proposals/programs.hpp"
 
 namespace interlock {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "motion/axis_move.hpp"
 #include "motion/axis_plan.hpp"
-#include "motion/path_walk.hpp"
+#include "motion/trajectory_follower.hpp"
 
 namespace interlock {
 namespace {
@@ -80,7 +80,7 @@ class DryWalk {
   [[nodiscard]] double duration_s() const { return duration_s_; }
 
  private:
-  void stand_at(std::uint32_t mask, const PathWalk::Points& points) {
+  void stand_at(std::uint32_t mask, const TrajectoryFollower::Points& points) {
     for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
       if (((mask >> slot) & 1u) != 0) {
         snapshot_.state.axis[slot].position_counts =
@@ -91,7 +91,7 @@ class DryWalk {
 
   const PathProgram& program_;
   ilk_snapshot_t snapshot_;
-  PathWalk walk_;
+  TrajectoryFollower walk_;
   double duration_s_ = 0.0;
 };
 
@@ -104,7 +104,7 @@ class Sampler {
     }
   }
 
-  void see(double time_s, std::uint32_t mask, const PathWalk::Points& points) {
+  void see(double time_s, std::uint32_t mask, const TrajectoryFollower::Points& points) {
     for (std::size_t place = 0; place < profile_.axes.size(); ++place) {
       AxisProfile& axis = profile_.axes[place];
       const bool moves = ((mask >> axis.slot) & 1u) != 0;
@@ -146,7 +146,7 @@ Profile profile_of_path(const Robot& robot, const ilk_config_t& config, const Pr
   const RobotPlan plan(robot, config);
   const PathProgram& program = *proposal.work<PathTask>()->program;
   DryWalk measured(plan, program, start);
-  const auto unseen = [](double, std::uint32_t, const PathWalk::Points&) {};
+  const auto unseen = [](double, std::uint32_t, const TrajectoryFollower::Points&) {};
   if (!measured.go(std::numeric_limits<double>::infinity(), unseen)) {
     return none("No motion within the rates of the axes leads there from where they were.");
   }

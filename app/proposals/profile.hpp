@@ -3,8 +3,9 @@
  * How the axes of a proposal will go, beside what they may do: for people to look at before they approve it.
  *
  * Found by the code that carries the proposal out, from where the axes were when it was last checked: a path
- * by its `PathWalk`, a move of one axis by its drive law. What the kernel, the pedal or a load make of it is
- * not in it. Homing, a sweep and a biopsy follow switches, turns and the surgeon's hand; they have none.
+ * by its `TrajectoryFollower`, a move of one axis by its drive law. What the kernel, the pedal or a load make
+ * of it is not in it. Homing, a sweep and a biopsy follow switches, turns and the surgeon's hand; they have
+ * none.
  */
 #pragma once
 

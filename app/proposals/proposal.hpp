@@ -18,7 +18,7 @@
 #include "interlock/link.h"
 #include "motion/task.hpp"
 #include "proposals/check_list.hpp"
-#include "time/utc_time.hpp"
+#include "system/utc_time.hpp"
 
 namespace interlock {
 

@@ -1,5 +1,3 @@
-#include "proposals/separation.hpp"
-
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "kinematics/kinematics.hpp"
+#include "proposals/checks.hpp"
 
 namespace interlock {
 namespace {
@@ -40,8 +39,8 @@ class Slider {
   [[nodiscard]] double outwards_mm(std::int32_t counts) const { return to_mm(counts); }
 
   /** Motion in mm as motion outwards. */
-  [[nodiscard]] JerkPiece outwards(JerkPiece motion) const {
-    return per_mm_ > 0.0 ? motion : JerkPiece{-motion.start, -motion.jerk};
+  [[nodiscard]] CubicSegment outwards(CubicSegment motion) const {
+    return per_mm_ > 0.0 ? motion : CubicSegment{-motion.start, -motion.jerk};
   }
 
   [[nodiscard]] const Reach& reach() const { return reach_; }
@@ -139,8 +138,8 @@ std::vector<Pair> pairs_at(const Robot& robot, const Positions& positions) {
 }
 
 /** How a slider moves outwards from one row to the next. */
-JerkPiece outwards(const Slider& slider, const Positions& positions, const TimedTrajectory& trajectory,
-                   std::size_t row) {
+CubicSegment outwards(const Slider& slider, const Positions& positions, const TimedTrajectory& trajectory,
+                      std::size_t row) {
   const auto& axes = trajectory.axes();
   const auto moved = std::find_if(axes.begin(), axes.end(), [&slider](const TrajectoryAxis& axis) {
     return axis.slot == slider.axis().slot;
@@ -154,9 +153,9 @@ JerkPiece outwards(const Slider& slider, const Positions& positions, const Timed
 /** The farthest that a pair parts from one row to the next. Two cubics of the same time add to one. */
 double farthest_mm(const Pair& pair, const Positions& positions, const TimedTrajectory& trajectory,
                    std::size_t row) {
-  const JerkPiece left = outwards(pair.left, positions, trajectory, row);
-  const JerkPiece right = outwards(pair.right, positions, trajectory, row);
-  const JerkPiece apart{left.start + right.start, left.jerk + right.jerk};
+  const CubicSegment left = outwards(pair.left, positions, trajectory, row);
+  const CubicSegment right = outwards(pair.right, positions, trajectory, row);
+  const CubicSegment apart{left.start + right.start, left.jerk + right.jerk};
   PositionRange range{apart.start.position, apart.start.position};
   apart.widen(range, trajectory.step_s(row));
   return range.highest;

@@ -1,12 +1,10 @@
-#include "proposals/sweep_check.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 
 #include "control/axis_controller.hpp"
-#include "proposals/path_check.hpp"
+#include "proposals/checks.hpp"
 
 namespace interlock {
 namespace {

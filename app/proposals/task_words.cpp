@@ -1,5 +1,3 @@
-#include "proposals/task_words.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "control/frequency_map.hpp"
+#include "proposals/proposal_json.hpp"
 #include "robot/catalog.hpp"
 
 namespace interlock {
@@ -35,7 +34,7 @@ std::string end_words(const std::string& axis, const TaskStatus& status) {
     case TaskReason::stopped:
       return "STOP.";
     case TaskReason::let_go:
-      return "It was let go, or its hold was not renewed within " + std::to_string(jog_patience.count()) +
+      return "It was let go, or its hold was not renewed within " + std::to_string(jog_timeout.count()) +
              " ms.";
     case TaskReason::nobody_served:
       return "The app stopped answering people, so motion ended. Look at what holds up the machine; propose "

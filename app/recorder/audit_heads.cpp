@@ -11,7 +11,7 @@
 #include <cerrno>
 #include <string_view>
 
-#include "time/utc_time.hpp"
+#include "system/utc_time.hpp"
 
 namespace interlock::recorder {
 namespace {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "recorder/file_handle.hpp"
-#include "time/utc_time.hpp"
+#include "system/utc_time.hpp"
 
 namespace interlock::recorder {
 namespace {

@@ -12,9 +12,9 @@ constexpr std::chrono::milliseconds pause_between_looks{10};
 
 }  // namespace
 
-Player::Player(const ilk_run_description_t& run, double speed, ilk_link_mailbox_t& mailbox,
+Player::Player(const ilk_run_description_t& run, double speed, ilk_link_mailbox_t& channel,
                const volatile std::sig_atomic_t& stop)
-    : mailbox_(mailbox), stop_(stop), speed_(speed) {
+    : channel_(channel), stop_(stop), speed_(speed) {
   shown_.clock = run.clock;
   shown_.simulated = run.simulated;
   shown_.period_us = run.config.common.period_us;
@@ -65,7 +65,7 @@ void Player::begin(const ilk_state_t& state) {
 }
 
 void Player::serve_newest_app() {
-  ilk_attachment_t* const newest = ilk_mailbox_exchange(&mailbox_, attachment_);
+  ilk_attachment_t* const newest = ilk_mailbox_exchange(&channel_, attachment_);
   if (newest != attachment_) {
     attachment_ = newest;
     ilk_publisher_attach(&publisher_, newest != nullptr ? newest->regions.kernel : nullptr);

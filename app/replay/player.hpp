@@ -19,12 +19,12 @@ namespace interlock {
 class Player {
  public:
   /**
-   * `mailbox` and `stop` must outlive it.
+   * `channel` and `stop` must outlive it.
    *
    * @param speed multiple of the recorded pace, above 0
    * @param stop ends all waiting when it is not 0
    */
-  Player(const ilk_run_description_t& run, double speed, ilk_link_mailbox_t& mailbox,
+  Player(const ilk_run_description_t& run, double speed, ilk_link_mailbox_t& channel,
          const volatile std::sig_atomic_t& stop);
 
   /** Waits until an app has attached, so that it sees the recording from its beginning. */
@@ -44,7 +44,7 @@ class Player {
   void serve_newest_app();
   void publish();
 
-  ilk_link_mailbox_t& mailbox_;
+  ilk_link_mailbox_t& channel_;
   const volatile std::sig_atomic_t& stop_;
   double speed_;
   bool begun_ = false;

@@ -2,8 +2,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "robot/read_cards.hpp"
-#include "robot/read_kinematics.hpp"
+#include "robot/readers.hpp"
 
 namespace interlock {
 namespace {

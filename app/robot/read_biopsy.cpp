@@ -1,9 +1,9 @@
-#include "robot/read_biopsy.hpp"
-
 #include <algorithm>
 #include <functional>
 #include <tuple>
 #include <utility>
+
+#include "robot/readers.hpp"
 
 namespace interlock {
 namespace {

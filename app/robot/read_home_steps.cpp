@@ -1,6 +1,6 @@
-#include "robot/read_home_steps.hpp"
-
 #include <algorithm>
+
+#include "robot/readers.hpp"
 
 namespace interlock {
 namespace {

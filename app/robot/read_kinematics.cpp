@@ -1,8 +1,7 @@
-#include "robot/read_kinematics.hpp"
-
 #include <algorithm>
 
 #include "kinematics/kinematics.hpp"
+#include "robot/readers.hpp"
 
 namespace interlock {
 namespace {

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "robot/read_cards.hpp"
+#include "robot/readers.hpp"
 
 namespace interlock {
 namespace {

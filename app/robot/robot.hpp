@@ -202,7 +202,8 @@ struct OpenIgtLink {
   std::uint32_t port = 18944;
   std::string dialect = "thesis"; /**< thesis, brp2013 or wpi2024 */
   std::vector<std::string> allow; /**< addresses that may connect; empty: this machine's own */
-  std::uint32_t heartbeat_ms = 0; /**< silence by which the controller counts as lost; 0: igtl/hub.hpp */
+  std::uint32_t heartbeat_ms =
+      0;                       /**< silence by which the controller counts as lost; 0: igtl/igtl_server.hpp */
   std::string connect_address; /**< of a program that listens, to which the app connects, too; empty: none */
   std::uint32_t connect_port = 0;
   /** The first connection is the controller of whoever holds the motion authority, without being asked. */

@@ -8,10 +8,7 @@
 #include <system_error>
 
 #include "robot/modes.hpp"
-#include "robot/read_biopsy.hpp"
-#include "robot/read_cards.hpp"
-#include "robot/read_home_steps.hpp"
-#include "robot/read_kinematics.hpp"
+#include "robot/readers.hpp"
 #include "robot/table_reader.hpp"
 
 namespace interlock {

@@ -78,11 +78,12 @@ KinematicsResult<SteeringCommand> Compensator::command(const NeedleAxes& axes) c
   }
   return steering_target(ahead).and_then([&](const SteeringTarget& target) {
     return planned(target, axes).and_then([&](SteeringCommand next) {
-      return law_.speed_rad_s(axes.rotation_rad, next.wanted_rotation_rad, next.alpha).map([&](double speed) {
-        next.rotation_rad_s = speed;
-        next.insertion_setpoint_mm = deepest_mm_ + target.arc_mm;
-        return next;
-      });
+      return law_.speed_rad_s(axes.rotation_rad, next.desired_rotation_rad, next.alpha)
+          .map([&](double speed) {
+            next.rotation_rad_s = speed;
+            next.insertion_setpoint_mm = deepest_mm_ + target.arc_mm;
+            return next;
+          });
     });
   });
 }
@@ -93,15 +94,15 @@ KinematicsResult<SteeringCommand> Compensator::planned(const SteeringTarget& tar
     return last_;
   }
   const double largest_per_mm = tip_.now().curvature_per_mm;
-  const double wanted_per_mm = std::min(target.curvature_per_mm, curvature_limit_per_mm);
+  const double desired_per_mm = std::min(target.curvature_per_mm, curvature_limit_per_mm);
   const auto share = parameters_.share_rule == ShareRule::averaged
-                         ? law_.averaged_share(wanted_per_mm, largest_per_mm)
-                         : published_share(wanted_per_mm, largest_per_mm);
+                         ? law_.averaged_share(desired_per_mm, largest_per_mm)
+                         : published_share(desired_per_mm, largest_per_mm);
   const double ahead_mm = target.arc_mm - target.extra_mm;
   return share.and_then([&](const CurvShare& chosen) {
     return smallest_miss_mm(target.beside_mm, ahead_mm, largest_per_mm).map([&](double miss_mm) {
       SteeringCommand next;
-      next.wanted_rotation_rad = within_turn_rad(axes.rotation_rad + target.turn_rad);
+      next.desired_rotation_rad = within_turn_rad(axes.rotation_rad + target.turn_rad);
       next.alpha = chosen.alpha;
       next.expected_miss_mm = miss_mm;
       next.reachable = miss_mm <= parameters_.miss_mm;

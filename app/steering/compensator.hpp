@@ -51,8 +51,8 @@ struct NeedleImage {
 
 /** What the rotation has to do now. */
 struct SteeringCommand {
-  double rotation_rad_s = 0.0;      /**< speed for the rotation axis; 0 once arrived */
-  double wanted_rotation_rad = 0.0; /**< theta_d, within [0, 2 pi) */
+  double rotation_rad_s = 0.0;       /**< speed for the rotation axis; 0 once arrived */
+  double desired_rotation_rad = 0.0; /**< theta_d, within [0, 2 pi) */
   double alpha = 0.0;
   double expected_miss_mm = 0.0;      /**< that even the largest curvature leaves */
   bool reachable = true;              /**< false: the needle bends as far as it can and will still miss */

@@ -62,14 +62,14 @@ CurvLaw::CurvLaw(const CurvParameters& parameters) noexcept : parameters_(parame
   shares_[intervals] = 1.0;
 }
 
-KinematicsResult<double> CurvLaw::speed_rad_s(double angle_rad, double wanted_rad,
+KinematicsResult<double> CurvLaw::speed_rad_s(double angle_rad, double desired_rad,
                                               double alpha) const noexcept {
   return check_range("rotation_rad", angle_rad, -angle_limit_rad, angle_limit_rad)
       .and_then(
-          [&] { return check_range("wanted_rotation_rad", wanted_rad, -angle_limit_rad, angle_limit_rad); })
+          [&] { return check_range("wanted_rotation_rad", desired_rad, -angle_limit_rad, angle_limit_rad); })
       .and_then([&] { return check_range("alpha", alpha, 0.0, 1.0); })
       .map([&] {
-        const double error_rad = wrapped_rad(angle_rad - wanted_rad);
+        const double error_rad = wrapped_rad(angle_rad - desired_rad);
         return parameters_.fastest_rad_s * (1.0 - alpha * slowing(error_rad, parameters_.width_rad));
       });
 }

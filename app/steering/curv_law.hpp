@@ -55,7 +55,7 @@ class CurvLaw {
    * Speed of rotation, 0 to `fastest_rad_s`, without direction.
    * @param angle_rad of the bevel, and `wanted_rad`; each within plus and minus `angle_limit_rad`
    */
-  [[nodiscard]] KinematicsResult<double> speed_rad_s(double angle_rad, double wanted_rad,
+  [[nodiscard]] KinematicsResult<double> speed_rad_s(double angle_rad, double desired_rad,
                                                      double alpha) const noexcept;
 
   /** Mean curvature of one turn as a share of k_max, 0 to 1; alpha from 0 to 1. */

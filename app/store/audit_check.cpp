@@ -9,7 +9,7 @@
 
 #include "store/audit_table.hpp"
 #include "store/user_row.hpp"
-#include "time/utc_time.hpp"
+#include "system/utc_time.hpp"
 
 namespace interlock {
 namespace {

@@ -7,8 +7,7 @@
 #include <optional>
 
 #include "store/digest.hpp"
-#include "store/password_rule.hpp"
-#include "text/printable.hpp"
+#include "system/printable.hpp"
 
 namespace interlock {
 namespace {

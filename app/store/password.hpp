@@ -1,6 +1,6 @@
 /**
  * @file
- * Passwords, and what is kept of them.
+ * Passwords: which ones are good enough, and how they are kept.
  */
 #pragma once
 
@@ -11,6 +11,8 @@
 #include "store/store_error.hpp"
 
 namespace interlock {
+
+// Passwords, and what is kept of them.
 
 /** The text of a password. Its memory is overwritten when it goes. */
 class Password {
@@ -46,7 +48,7 @@ class PasswordHash {
    * Hashes a new password of a user; takes about a tenth of a second and 64 MiB.
    *
    * Refused, invalid: fewer than 10 or more than 128 characters, not UTF-8, or easy to guess as
-   * `store/password_rule.hpp` says; no_memory.
+   * `store/password.hpp` says; no_memory.
    */
   static Stored<PasswordHash> of_new(const Password& password, std::string_view user);
 
@@ -63,5 +65,18 @@ class PasswordHash {
  private:
   std::string text_;
 };
+
+// Which new passwords are too easy to guess.
+
+/**
+ * Whether the password has fewer than 6 parts that a guesser does not get for free. As one part each count:
+ * - the user's name and each word of a list of those that common passwords are made of, in any case;
+ * - a run of equal characters, of neighbours in the alphabet or on a keyboard's row, in either direction;
+ * - a repetition of what is before it.
+ *
+ * So refused are `aaaaaaaaaa`, `1234567890`, `qwertyuiop`, `password12` and the name repeated. The rule keeps
+ * the commonest guesses out; it measures no strength.
+ */
+bool is_easy_to_guess(std::string_view password, std::string_view user);
 
 }  // namespace interlock

@@ -1,11 +1,11 @@
-#include "store/password_rule.hpp"
-
 #include <sodium.h>
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <string>
+
+#include "store/password.hpp"
 
 namespace interlock {
 namespace {

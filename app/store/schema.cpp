@@ -12,7 +12,7 @@
 
 #include "store/audit_table.hpp"
 #include "store/store_files.hpp"
-#include "text/printable.hpp"
+#include "system/printable.hpp"
 
 namespace interlock {
 namespace {

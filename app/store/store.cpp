@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 /** SQLite waits for no lock when it changes the journal mode, so a process that opens the same new store at
  * the same moment makes it fail at once. */
 void use_write_ahead_log(SQLite::Database& database) {
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::milliseconds(store_patience_ms);
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::milliseconds(store_timeout_ms);
   for (;;) {
     try {
       database.exec("PRAGMA journal_mode = WAL");
@@ -49,7 +49,7 @@ bool is_unused(SQLite::Database& database) {
 Stored<std::unique_ptr<SQLite::Database>> connect(const fs::path& file, bool begun_anew) {
   try {
     auto database =
-        std::make_unique<SQLite::Database>(file.string(), SQLite::OPEN_READWRITE, store_patience_ms);
+        std::make_unique<SQLite::Database>(file.string(), SQLite::OPEN_READWRITE, store_timeout_ms);
     if (const Stored<void> checked = check_schema(*database, migrations()); !checked) {
       return tl::unexpected(checked.error());
     }
@@ -147,10 +147,10 @@ Stored<void> Store::bound_log() {
   if (!is_long()) {
     return {};
   }
-  constexpr int short_patience_ms = 100;
-  database_->setBusyTimeout(short_patience_ms);
+  constexpr int short_timeout_ms = 100;
+  database_->setBusyTimeout(short_timeout_ms);
   database_->tryExec("PRAGMA wal_checkpoint(TRUNCATE)");
-  database_->setBusyTimeout(store_patience_ms);
+  database_->setBusyTimeout(store_timeout_ms);
   if (is_long()) {
     return tl::unexpected(StoreError{
         StoreError::Kind::unavailable,

@@ -27,7 +27,7 @@
 #include "store/noted_heads.hpp"
 #include "store/sqlite_forward.hpp"
 #include "store/store_error.hpp"
-#include "time/utc_time.hpp"
+#include "system/utc_time.hpp"
 
 namespace interlock {
 

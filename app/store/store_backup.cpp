@@ -81,13 +81,13 @@ Stored<void> must_exist(const fs::path& file, const std::string& what) {
 Stored<StoreSummary> copy_checked(const fs::path& source, const fs::path& target) {
   try {
     {
-      SQLite::Database database(source.string(), SQLite::OPEN_READWRITE, store_patience_ms);
+      SQLite::Database database(source.string(), SQLite::OPEN_READWRITE, store_timeout_ms);
       if (const Stored<void> checked = check_store(database); !checked) {
         return tl::unexpected(checked.error());
       }
     }
     copy_store_into(source, target);
-    SQLite::Database copy(target.string(), SQLite::OPEN_READWRITE, store_patience_ms);
+    SQLite::Database copy(target.string(), SQLite::OPEN_READWRITE, store_timeout_ms);
     return check_contents(copy, PageCheck::full).map([&] {
       const auto users = copy.execAndGet("SELECT count(*) FROM users").getInt64();
       return StoreSummary{static_cast<std::size_t>(users), verify_audit(copy, std::nullopt).value()};
@@ -107,7 +107,7 @@ Stored<void> rename_to_new(const fs::path& from, const fs::path& to) {
 /** Puts the write-ahead log into the store's file. One that is damaged is left as it is. */
 Stored<void> settle(const fs::path& store) {
   try {
-    SQLite::Database database(store.string(), SQLite::OPEN_READWRITE, store_patience_ms);
+    SQLite::Database database(store.string(), SQLite::OPEN_READWRITE, store_timeout_ms);
     database.exec("PRAGMA journal_mode = DELETE");
     return {};
   } catch (const SQLite::Exception& error) {
@@ -144,7 +144,7 @@ nlohmann::json head_of(const fs::path& file) {
     return nullptr;
   }
   try {
-    SQLite::Database database(file.string(), SQLite::OPEN_READWRITE, store_patience_ms);
+    SQLite::Database database(file.string(), SQLite::OPEN_READWRITE, store_timeout_ms);
     SQLite::Statement head(database, "SELECT number, hash FROM audit ORDER BY number DESC LIMIT 1");
     return head.executeStep() ? nlohmann::json{{"number", head.getColumn(0).getInt64()},
                                                {"hash", head.getColumn(1).getString()}}

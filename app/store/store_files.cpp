@@ -12,7 +12,7 @@
 #include <cerrno>
 #include <string>
 
-#include "text/printable.hpp"
+#include "system/printable.hpp"
 
 namespace interlock {
 namespace {
@@ -151,8 +151,8 @@ Stored<void> copy_store(const fs::path& source, const fs::path& target) {
 }
 
 void copy_store_into(const fs::path& source, const fs::path& target) {
-  SQLite::Database from(source.string(), SQLite::OPEN_READWRITE, store_patience_ms);
-  SQLite::Database to(target.string(), SQLite::OPEN_READWRITE, store_patience_ms);
+  SQLite::Database from(source.string(), SQLite::OPEN_READWRITE, store_timeout_ms);
+  SQLite::Database to(target.string(), SQLite::OPEN_READWRITE, store_timeout_ms);
   SQLite::Backup copy(to, from);
   // All pages in one step, so that the copy is of one moment.
   if (copy.executeStep(-1) != SQLITE_DONE) {

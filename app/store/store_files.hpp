@@ -15,7 +15,7 @@
 namespace interlock {
 
 /** How long a connection waits for another one that writes, in milliseconds. */
-constexpr int store_patience_ms = 5000;
+constexpr int store_timeout_ms = 5000;
 
 /** `FILE` and the suffix, in the same folder. */
 std::filesystem::path with_suffix(std::filesystem::path file, const std::string& suffix);

@@ -7,7 +7,7 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <sqlite3.h>
 
-#include "time/utc_time.hpp"
+#include "system/utc_time.hpp"
 
 namespace interlock {
 

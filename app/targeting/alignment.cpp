@@ -20,23 +20,23 @@ AxisSetpoint setpoint_of(const Axis& axis, double position) {
 Deviation deviation(const Pose& reached, const Pose& desired) noexcept {
   const Eigen::Vector3d offset = reached.translation() - desired.translation();
   const Eigen::Vector3d ahead = reached.linear().col(2);
-  const Eigen::Vector3d wanted = desired.linear().col(2);
-  return {offset, offset.norm(), std::atan2(ahead.cross(wanted).norm(), ahead.dot(wanted))};
+  const Eigen::Vector3d asked = desired.linear().col(2);
+  return {offset, offset.norm(), std::atan2(ahead.cross(asked).norm(), ahead.dot(asked))};
 }
 
 KinematicsResult<Alignment> align(const Robot& robot, const RobotKinematics& kinematics,
-                                  const Registration& registration, const Aim& aim) {
+                                  const Registration& registration, const EntryTarget& aim) {
   const Pose& scanner_from_zframe = registration.scanner_from_zframe();
   const Pose zframe_from_scanner = scanner_from_zframe.inverse();
-  const auto wanted = kinematics.positions_for(zframe_from_scanner * aim.entry,
-                                               zframe_from_scanner * aim.target, aim.rotation_rad);
+  const auto exact = kinematics.positions_for(zframe_from_scanner * aim.entry,
+                                              zframe_from_scanner * aim.target, aim.rotation_rad);
   const auto desired =
-      wanted.and_then([&](const AxisPositions& exact) { return kinematics.zframe_from_treatment(exact); });
+      exact.and_then([&](const AxisPositions& reach) { return kinematics.zframe_from_treatment(reach); });
   if (!desired) {
     return tl::unexpected(desired.error());
   }
   Alignment alignment;
-  AxisPositions positions = *wanted;
+  AxisPositions positions = *exact;
   for (std::size_t place = 0; place < positions.size(); ++place) {
     if (const Axis& axis = robot.axes[place]; !axis.role.empty()) {
       alignment.setpoints.push_back(setpoint_of(axis, positions[place]));

@@ -16,7 +16,7 @@
 namespace interlock {
 
 /** A straight way in. */
-struct Aim {
+struct EntryTarget {
   Eigen::Vector3d entry = Eigen::Vector3d::Zero();
   Eigen::Vector3d target = Eigen::Vector3d::Zero();
   double rotation_rad = 0.0; /**< of the probe about its axis */
@@ -55,6 +55,6 @@ struct Alignment {
  * window.
  */
 KinematicsResult<Alignment> align(const Robot& robot, const RobotKinematics& kinematics,
-                                  const Registration& registration, const Aim& aim);
+                                  const Registration& registration, const EntryTarget& aim);
 
 }  // namespace interlock

@@ -1,29 +1,29 @@
-#include "trajectory/jerk_piece.hpp"
-
 #include <algorithm>
 #include <cmath>
 
+#include "trajectory/piecewise_motion.hpp"
+
 namespace interlock {
 
-JerkPiece JerkPiece::between(double from, double from_velocity, double to, double to_velocity,
-                             double duration_s) noexcept {
+CubicSegment CubicSegment::between(double from, double from_velocity, double to, double to_velocity,
+                                   double duration_s) noexcept {
   const double mean_velocity = (to - from) / duration_s;
   const double acceleration = (6 * mean_velocity - 4 * from_velocity - 2 * to_velocity) / duration_s;
   const double jerk = 6 * (from_velocity + to_velocity - 2 * mean_velocity) / (duration_s * duration_s);
   return {{from, from_velocity, acceleration}, jerk};
 }
 
-JerkPiece JerkPiece::line(double from, double to, double duration_s) noexcept {
+CubicSegment CubicSegment::line(double from, double to, double duration_s) noexcept {
   return {{from, (to - from) / duration_s, 0.0}, 0.0};
 }
 
-MotionState JerkPiece::after(double time_s) const noexcept {
+MotionState CubicSegment::after(double time_s) const noexcept {
   const auto& [position, velocity, acceleration] = start;
   return {position + time_s * (velocity + time_s * (acceleration / 2 + time_s * jerk / 6)),
           velocity + time_s * (acceleration + time_s * jerk / 2), acceleration + time_s * jerk};
 }
 
-void JerkPiece::widen(PositionRange& range, double duration_s) const noexcept {
+void CubicSegment::widen(PositionRange& range, double duration_s) const noexcept {
   interlock::widen(range, start.position);
   const auto& [position, velocity, acceleration] = start;
   const double discriminant = acceleration * acceleration - 2 * jerk * velocity;
@@ -40,7 +40,7 @@ void JerkPiece::widen(PositionRange& range, double duration_s) const noexcept {
   }
 }
 
-double JerkPiece::top_speed(double duration_s) const noexcept {
+double CubicSegment::top_speed(double duration_s) const noexcept {
   const double fastest = std::max(std::abs(start.velocity), std::abs(after(duration_s).velocity));
   const double bend_s = -start.acceleration / jerk;
   return bend_s > 0 && bend_s < duration_s ? std::max(fastest, std::abs(after(bend_s).velocity)) : fastest;

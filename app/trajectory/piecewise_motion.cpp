@@ -5,7 +5,7 @@
 
 namespace interlock {
 
-void PiecewiseMotion::append(const JerkPiece& piece, double duration_s) {
+void PiecewiseMotion::append(const CubicSegment& piece, double duration_s) {
   if (duration_s > 0) {
     pieces_.push_back({duration_s_, piece});
     duration_s_ += duration_s;

@@ -14,7 +14,7 @@
 #include <ruckig/ruckig.hpp>
 
 #include "robot/motion_rates.hpp"
-#include "trajectory/motion_state.hpp"
+#include "trajectory/piecewise_motion.hpp"
 #include "trajectory/synchronised_plan.hpp"
 
 namespace interlock {

@@ -26,7 +26,6 @@
 #include <vector>
 
 #include "robot/motion_rates.hpp"
-#include "trajectory/motion_state.hpp"
 #include "trajectory/piecewise_motion.hpp"
 #include "trajectory/trajectory_error.hpp"
 

@@ -15,7 +15,7 @@
 #include <memory>
 #include <span>
 
-#include "trajectory/motion_state.hpp"
+#include "trajectory/piecewise_motion.hpp"
 #include "trajectory/synchronised_plan.hpp"
 
 namespace interlock {

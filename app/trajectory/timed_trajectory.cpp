@@ -19,7 +19,7 @@ MotionState TimedTrajectory::at(std::size_t axis, double time_s) const noexcept 
   return piece_between(moved, row(next - 1), row(next)).after(time_s - this->time_s(next - 1));
 }
 
-JerkPiece TimedTrajectory::piece(std::size_t axis, std::size_t index) const noexcept {
+CubicSegment TimedTrajectory::piece(std::size_t axis, std::size_t index) const noexcept {
   const TrajectoryAxis& moved = axes_[axis];
   if (index + 1 == rows()) {
     return {{row(index)[moved.position_place], 0.0, 0.0}, 0.0};
@@ -39,15 +39,15 @@ double TimedTrajectory::step_s(std::size_t index) const noexcept {
   return index + 1 == rows() ? 0.0 : time_s(index + 1) - time_s(index);
 }
 
-JerkPiece piece_between(const TrajectoryAxis& axis, std::span<const double> from,
-                        std::span<const double> to) noexcept {
+CubicSegment piece_between(const TrajectoryAxis& axis, std::span<const double> from,
+                           std::span<const double> to) noexcept {
   const double duration_s = to.front() - from.front();
   const double start = from[axis.position_place];
   const double end = to[axis.position_place];
   if (const auto velocity = axis.velocity_place) {
-    return JerkPiece::between(start, from[*velocity], end, to[*velocity], duration_s);
+    return CubicSegment::between(start, from[*velocity], end, to[*velocity], duration_s);
   }
-  return JerkPiece::line(start, end, duration_s);
+  return CubicSegment::line(start, end, duration_s);
 }
 
 }  // namespace interlock

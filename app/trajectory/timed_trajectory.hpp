@@ -19,8 +19,7 @@
 #include <vector>
 
 #include "robot/unit.hpp"
-#include "trajectory/jerk_piece.hpp"
-#include "trajectory/motion_state.hpp"
+#include "trajectory/piecewise_motion.hpp"
 
 namespace interlock {
 
@@ -56,7 +55,7 @@ class TimedTrajectory {
   [[nodiscard]] MotionState at(std::size_t axis, double time_s) const noexcept;
 
   /** How an axis moves from a row to the next; from the last row on it stands. */
-  [[nodiscard]] JerkPiece piece(std::size_t axis, std::size_t row) const noexcept;
+  [[nodiscard]] CubicSegment piece(std::size_t axis, std::size_t row) const noexcept;
 
   /** How fast an axis, by its place among `axes`, comes to the last row; 0 when that is the only one. */
   [[nodiscard]] double last_velocity(std::size_t axis) const noexcept;
@@ -78,7 +77,7 @@ class TimedTrajectory {
 };
 
 /** The motion of an axis from one row to a later one. */
-JerkPiece piece_between(const TrajectoryAxis& axis, std::span<const double> from,
-                        std::span<const double> to) noexcept;
+CubicSegment piece_between(const TrajectoryAxis& axis, std::span<const double> from,
+                           std::span<const double> to) noexcept;
 
 }  // namespace interlock

@@ -156,7 +156,7 @@ TrajectoryBuilder::Way TrajectoryBuilder::way_to(std::size_t axis, std::span<con
   Way way{{position, position}, 0.0};
   if (const std::size_t rows = trajectory_.rows(); rows > 0) {
     const std::span<const double> last = trajectory_.row(rows - 1);
-    const JerkPiece piece = piece_between(columns, last, row);
+    const CubicSegment piece = piece_between(columns, last, row);
     const double duration_s = row.front() - last.front();
     piece.widen(way.reach, duration_s);
     way.top_speed = piece.top_speed(duration_s);

@@ -19,7 +19,7 @@
  */
 #pragma once
 
-#include "trajectory/motion_state.hpp"
+#include "trajectory/piecewise_motion.hpp"
 #include "trajectory/trajectory_error.hpp"
 
 namespace interlock {

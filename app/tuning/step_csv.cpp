@@ -1,7 +1,7 @@
-#include "tuning/step_csv.hpp"
-
 #include <array>
 #include <cstdio>
+
+#include "tuning/step_run.hpp"
 
 namespace interlock {
 

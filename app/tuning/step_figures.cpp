@@ -1,8 +1,8 @@
-#include "tuning/step_figures.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+
+#include "tuning/step_run.hpp"
 
 namespace interlock {
 namespace {

@@ -1,7 +1,6 @@
 /**
  * @file
- * A step of one axis: a move along the velocity profile of the thesis, made by the axis' controller on the
- * simulated plant under the real kernel core, recorded tick by tick.
+ * A step response on the simulated robot: the run, its figures, its table and its plot.
  */
 #pragma once
 
@@ -14,6 +13,9 @@
 #include "tuning/step_rig.hpp"
 
 namespace interlock {
+
+// A step of one axis: a move along the velocity profile of the thesis, made by the axis' controller on the
+// simulated plant under the real kernel core, recorded tick by tick.
 
 /** What step is run. */
 struct StepOptions {
@@ -69,5 +71,35 @@ std::int32_t default_move(const Axis& axis, std::int32_t from_counts, double ful
  */
 RigResult<StepRun> run_step(const Robot& robot, const ilk_config_t& config,
                             const plant::Parameters& parameters, const StepOptions& options);
+
+// How good a step was, in numbers.
+
+struct StepFigures {
+  double rms_velocity_error_percent = 0.0; /**< true velocity against the profile's at the same time, over the
+                                              whole profile, of its peak */
+  double largest_position_error_counts =
+      0.0;                             /**< true position against the profile's, over the whole profile */
+  std::int32_t final_error_counts = 0; /**< last reading less target */
+  double overshoot_counts = 0.0;       /**< farthest true position beyond the target */
+  std::optional<double> settle_ms; /**< from the end of the profile until the encoder, without noise, stays
+                                      within the deadband; nothing if it does not */
+};
+
+/** The figures of a run, which has at least one row. */
+StepFigures figures_of(const StepRun& run);
+
+// A run as a table: a row for each control tick.
+
+/**
+ * Header and rows with the columns time_s, position_counts (as read), setpoint_counts,
+ * velocity_counts_per_s (true), setpoint_velocity_counts_per_s, drive and
+ * estimated_velocity_counts_per_s, which is empty while it is not known.
+ */
+std::string step_csv(const StepRun& run);
+
+// A run as a picture: position, velocity and control output over time, one above the other.
+
+/** A whole SVG document that needs nothing else. `title` may hold any text. */
+std::string step_svg(const StepRun& run, const std::string& title);
 
 }  // namespace interlock

@@ -1,8 +1,7 @@
-#include "tuning/step_svg.hpp"
-
 #include <optional>
 
 #include "chart/time_chart.hpp"
+#include "tuning/step_run.hpp"
 
 namespace interlock {
 namespace {

@@ -4,8 +4,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "igtl/decode.hpp"
-#include "igtl/encode.hpp"
+#include "igtl/codec.hpp"
 #include "igtl/thesis.hpp"
 
 namespace {
@@ -47,7 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!message) {
     return 0;
   }
-  (void)read_wish(*message);
+  (void)read_change(*message);
   const ByteVector written = encode(message->body);
   const auto again = decode({{1, std::string(type), "", 0, written.size(), 0}, written, 0, {}});
   if (!again || !(again->body == message->body)) {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "igtl/codec.hpp"
 #include "igtl/crc64.hpp"
-#include "igtl/decode.hpp"
 #include "igtl/dialect.hpp"
 
 namespace {
@@ -23,7 +23,7 @@ struct Seen {
   bool operator==(const Seen&) const = default;
 };
 
-/** One connection in each dialect, whose controller it is; every wish is granted. */
+/** One connection in each dialect, whose controller it is; every command is granted. */
 struct Talks {
   std::array<std::unique_ptr<Dialect>, 3> dialects{make_dialect("thesis"), make_dialect("brp2013"),
                                                    make_dialect("wpi2024")};
@@ -33,10 +33,10 @@ struct Talks {
     for (const auto& dialect : dialects) {
       Reaction reaction = dialect->take(message, state, true);
       note_answers(seen, reaction);
-      for (int follow_up = 0; reaction.wish && follow_up < 3; ++follow_up) {
+      for (int follow_up = 0; reaction.command && follow_up < 3; ++follow_up) {
         Outcome outcome{{StatusCode::ok, 0, "OK", ""}};
         outcome.target = state.scanner_from_robot;
-        reaction = dialect->finish(message.device, *reaction.wish, outcome);
+        reaction = dialect->finish(message.device, *reaction.command, outcome);
         note_answers(seen, reaction);
       }
     }

@@ -30,7 +30,7 @@ WRITING = [
     for method in methods
     if method != "get"
 ]
-# Wrong passwords that cost no delay, and the longest delay: app/http/login_guard.cpp.
+# Wrong passwords that cost no delay, and the longest delay: app/service/login_guard.cpp.
 FREE_ATTEMPTS = 3
 LONGEST_DELAY_S = 4
 

@@ -8,13 +8,13 @@
 #include "chart/time_chart.hpp"
 
 int main() {
-  const nlohmann::json wanted = nlohmann::json::parse(std::cin, nullptr, false);
-  if (wanted.is_discarded() || wanted["x"].empty()) {
+  const nlohmann::json desired = nlohmann::json::parse(std::cin, nullptr, false);
+  if (desired.is_discarded() || desired["x"].empty()) {
     std::cerr << "draw_chart: expected a chart with at least one point as JSON\n";
     return 1;
   }
-  interlock::TimeChart chart{wanted["title"], wanted["x"], {}, wanted["x_label"]};
-  for (const nlohmann::json& panel : wanted["panels"]) {
+  interlock::TimeChart chart{desired["title"], desired["x"], {}, desired["x_label"]};
+  for (const nlohmann::json& panel : desired["panels"]) {
     chart.panels.push_back({panel["label"], {}});
     for (const nlohmann::json& series : panel["series"]) {
       interlock::ChartSeries curve{series["name"], series["colour"], {}};

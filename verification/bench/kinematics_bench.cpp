@@ -121,13 +121,13 @@ nlohmann::json time_kdl(const KDL::Chain& chain, const std::vector<Pose>& poses)
   std::size_t solved = 0;
   double worst_mm = 0.0;
   for (const Pose& pose : poses) {
-    const KDL::Frame wanted = frame_of(pose);
+    const KDL::Frame desired = frame_of(pose);
     int status = 0;
-    times.push_back(time_of([&] { status = solver.CartToJnt(start, wanted, joints); }));
+    times.push_back(time_of([&] { status = solver.CartToJnt(start, desired, joints); }));
     if (status == 0) {
       KDL::Frame reached;
       check.JntToCart(joints, reached);
-      worst_mm = std::max(worst_mm, (reached.p - wanted.p).Norm());
+      worst_mm = std::max(worst_mm, (reached.p - desired.p).Norm());
       ++solved;
     }
   }

@@ -278,9 +278,9 @@ def wait_until_driven(robot: Stack, mover: Mover) -> None:
     eventually("driven", is_driven)
 
 
-def await_motion(robot: Stack, patience_s: float) -> None:
-    """Until something is driven at this moment, or patience ends: a fault may have stopped it already."""
-    deadline = time.monotonic() + patience_s
+def await_motion(robot: Stack, timeout_s: float) -> None:
+    """Until something is driven at this moment, or timeout ends: a fault may have stopped it already."""
+    deadline = time.monotonic() + timeout_s
     while time.monotonic() < deadline:
         driven = robot.control("record_event", kind="last_nonzero_drive")
         if robot.control("status")["tick"] - (driven["event_tick"] or 0) <= JUST_NOW_TICKS:

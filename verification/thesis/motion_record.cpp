@@ -10,14 +10,14 @@ namespace interlock {
 namespace {
 
 constexpr const char* measured_colour = "#0b62a4";
-constexpr const char* wanted_colour = "#d1495b";
+constexpr const char* desired_colour = "#d1495b";
 
 /** A sample in the unit of its axis. */
 struct UnitSample {
   double position;
   double velocity;
-  std::optional<double> wanted_position;
-  std::optional<double> wanted_velocity;
+  std::optional<double> desired_position;
+  std::optional<double> desired_velocity;
   std::optional<double> error_counts;
 };
 
@@ -26,8 +26,8 @@ UnitSample in_units(const AxisSample& sample, double counts_per_unit) {
                        sample.velocity_counts_per_s / counts_per_unit, std::nullopt, std::nullopt,
                        std::nullopt};
   if (sample.setpoint) {
-    converted.wanted_position = sample.setpoint->position_counts / counts_per_unit;
-    converted.wanted_velocity = sample.setpoint->velocity_counts_per_s / counts_per_unit;
+    converted.desired_position = sample.setpoint->position_counts / counts_per_unit;
+    converted.desired_velocity = sample.setpoint->velocity_counts_per_s / counts_per_unit;
     converted.error_counts = sample.setpoint->position_counts - sample.position_counts;
   }
   return converted;
@@ -56,8 +56,8 @@ std::string motion_csv(const MotionRecord& record, std::size_t axis, const Axis&
     const AxisSample& sample = record.axes[axis][row];
     const UnitSample shown = in_units(sample, described.counts_per_unit);
     text += number(record.times_s[row]) + ',' + number(shown.position) + ',' +
-            number_or_nothing(shown.wanted_position) + ',' + number(shown.velocity) + ',' +
-            number_or_nothing(shown.wanted_velocity) + ',' + number_or_nothing(shown.error_counts) + ',' +
+            number_or_nothing(shown.desired_position) + ',' + number(shown.velocity) + ',' +
+            number_or_nothing(shown.desired_velocity) + ',' + number_or_nothing(shown.error_counts) + ',' +
             std::to_string(sample.drive) + '\n';
   }
   return text;
@@ -67,22 +67,22 @@ std::string motion_svg(const MotionRecord& record, std::size_t axis, const Axis&
                        const std::string& title) {
   const std::string unit(unit_name(described.unit));
   ChartSeries position{"measured", measured_colour, {}};
-  ChartSeries wanted_position{"setpoint", wanted_colour, {}};
+  ChartSeries desired_position{"setpoint", desired_colour, {}};
   ChartSeries velocity{"true", measured_colour, {}};
-  ChartSeries wanted_velocity{"setpoint", wanted_colour, {}};
+  ChartSeries desired_velocity{"setpoint", desired_colour, {}};
   ChartSeries error{"setpoint - measured", measured_colour, {}};
   for (const AxisSample& sample : record.axes[axis]) {
     const UnitSample shown = in_units(sample, described.counts_per_unit);
     position.values.emplace_back(shown.position);
-    wanted_position.values.push_back(shown.wanted_position);
+    desired_position.values.push_back(shown.desired_position);
     velocity.values.emplace_back(shown.velocity);
-    wanted_velocity.values.push_back(shown.wanted_velocity);
+    desired_velocity.values.push_back(shown.desired_velocity);
     error.values.push_back(shown.error_counts);
   }
   return svg_of({title,
                  record.times_s,
-                 {{"position [" + unit + "]", {std::move(position), std::move(wanted_position)}},
-                  {"velocity [" + unit + "/s]", {std::move(velocity), std::move(wanted_velocity)}},
+                 {{"position [" + unit + "]", {std::move(position), std::move(desired_position)}},
+                  {"velocity [" + unit + "/s]", {std::move(velocity), std::move(desired_velocity)}},
                   {"error [counts]", {std::move(error)}}}});
 }
 

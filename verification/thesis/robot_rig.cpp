@@ -15,7 +15,7 @@ namespace {
 /** Longer than debouncing, bounce and settling take. */
 constexpr double settle_s = 0.2;
 /** Longer than homing of either robot takes, or the longest way. */
-constexpr double patience_s = 1800.0;
+constexpr double timeout_s = 1800.0;
 constexpr std::uint32_t holder = 1;
 /** A hand in the middle of those of models/needle. */
 constexpr double hand_n = 4.5;
@@ -171,7 +171,7 @@ void RobotRig::begin_task(Work work) {
 TaskStatus RobotRig::status() const { return modes_.tasks().of(task_->kind()); }
 
 bool RobotRig::goes_on(std::uint32_t since_tick) const {
-  return is_open(status().phase) && state_.system.tick - since_tick < ticks_of(patience_s);
+  return is_open(status().phase) && state_.system.tick - since_tick < ticks_of(timeout_s);
 }
 
 /** Why it is not done, unless it is. */
@@ -276,9 +276,9 @@ void RobotRig::tick() {
            &outputs_);
   requests_.clear();
   settle_verdicts();
-  const Wishes wishes = modes_.tick(snapshot());
-  for (const Wish& wish : wishes.all()) {
-    sent_.push_back({put(request_of(wish, state_.system.consent)), wish.origin});
+  const KernelRequests requests = modes_.tick(snapshot());
+  for (const KernelRequest& request : requests.all()) {
+    sent_.push_back({put(sent_form(request, state_.system.consent)), request.origin});
   }
   note();
 }

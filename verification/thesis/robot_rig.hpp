@@ -3,8 +3,8 @@
  * A whole robot in this process: the modes of the app, the kernel core and the simulated plant, tick by tick,
  * far faster than real time. No other process, socket or clock takes part; a scripted foot holds the pedal.
  *
- * Each tick is an exchange of the plant, then a step of the kernel, as in the executive; what the modes wish
- * for after a tick reaches the kernel in the next one.
+ * Each tick is an exchange of the plant, then a step of the kernel, as in the executive; what the modes
+ * request for after a tick reaches the kernel in the next one.
  */
 #pragma once
 
@@ -70,7 +70,7 @@ class RobotRig {
  private:
   struct Sent {
     std::uint32_t sequence = 0;
-    WishOrigin origin;
+    ModeOrigin origin;
   };
 
   DemoResult<void> start();

@@ -6,8 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "proposals/ablation_program.hpp"
-#include "proposals/pose_program.hpp"
+#include "proposals/programs.hpp"
 #include "targeting/guide_frame.hpp"
 
 namespace interlock {

@@ -1,15 +1,14 @@
-#include "http/routes/account_routes.hpp"
-
 #include <spdlog/spdlog.h>
 
 #include <boost/asio/steady_timer.hpp>
 
-#include "http/fields.hpp"
-#include "http/new_hash.hpp"
-#include "http/problems.hpp"
+#include "http/routes.hpp"
 #include "http/same_origin.hpp"
-#include "network/as_result.hpp"
+#include "service/fields.hpp"
+#include "service/new_hash.hpp"
+#include "service/reply.hpp"
 #include "store/digest.hpp"
+#include "system/as_result.hpp"
 
 namespace interlock::web {
 namespace {
@@ -382,8 +381,8 @@ Answering AccountRoutes::change_password(const Call& call) {
   if (!*authenticated) {
     co_return fail(wrong_credentials(Status::forbidden, "The current password is wrong."));
   }
-  Password wished(std::move(passwords->second));
-  const auto next = co_await new_hash(context_.work, name, std::move(wished), "new");
+  Password requested(std::move(passwords->second));
+  const auto next = co_await new_hash(context_.work, name, std::move(requested), "new");
   if (!next) {
     co_return fail(next.error());
   }

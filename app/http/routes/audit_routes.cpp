@@ -1,12 +1,11 @@
-#include "http/routes/audit_routes.hpp"
-
 #include <algorithm>
 #include <limits>
 #include <memory>
 
-#include "http/fields.hpp"
-#include "http/problems.hpp"
-#include "http/query.hpp"
+#include "http/message.hpp"
+#include "http/routes.hpp"
+#include "service/fields.hpp"
+#include "service/reply.hpp"
 #include "store/audit_check.hpp"
 
 namespace interlock::web {

@@ -1,9 +1,8 @@
-#include "http/routes/authority_routes.hpp"
-
 #include <limits>
 
-#include "http/fields.hpp"
-#include "http/problems.hpp"
+#include "http/routes.hpp"
+#include "service/fields.hpp"
+#include "service/reply.hpp"
 
 namespace interlock::web {
 namespace {
@@ -57,10 +56,10 @@ tl::expected<void, Problem> AuthorityRoutes::need_robot() const {
   return {};
 }
 
-boost::asio::awaitable<tl::expected<void, Problem>> AuthorityRoutes::announce(const Call& call,
-                                                                              const char* action) const {
+boost::asio::awaitable<tl::expected<void, Problem>> AuthorityRoutes::record_then_recheck(
+    const Call& call, const char* action) const {
   json detail{{"action", action}};
-  return context_.announce(call.caller, AuditKind::authority, std::move(detail));
+  return context_.record_then_recheck(call.caller, AuditKind::authority, std::move(detail));
 }
 
 Answering AuthorityRoutes::request(const Call& call) const {
@@ -71,7 +70,7 @@ Answering AuthorityRoutes::request(const Call& call) const {
   if (authority.held_by(call.caller.session)) {
     co_return shown(call);
   }
-  if (const auto announced = co_await announce(call, "request"); !announced) {
+  if (const auto announced = co_await record_then_recheck(call, "request"); !announced) {
     co_return fail(announced.error());
   }
   Claim claim{call.caller.session, call.caller.user, context_.clock()};
@@ -100,14 +99,14 @@ Answering AuthorityRoutes::hand_over(const Call& call) const {
   if (authority.request_of(*session) == nullptr) {
     co_return fail(asks_not(*session));
   }
-  if (const auto announced = co_await announce(call, "hand over"); !announced) {
+  if (const auto announced = co_await record_then_recheck(call, "hand over"); !announced) {
     co_return fail(announced.error());
   }
-  const Claim* const wish = authority.request_of(*session);
-  if (wish == nullptr) {
+  const Claim* const claim = authority.request_of(*session);
+  if (claim == nullptr) {
     co_return fail(asks_not(*session));
   }
-  authority.give({wish->session, wish->user, context_.clock()});
+  authority.give({claim->session, claim->user, context_.clock()});
   co_return shown(call);
 }
 
@@ -115,7 +114,7 @@ Answering AuthorityRoutes::take_over(const Call& call) const {
   if (const auto robot = need_robot(); !robot) {
     co_return fail(robot.error());
   }
-  if (const auto announced = co_await announce(call, "take over"); !announced) {
+  if (const auto announced = co_await record_then_recheck(call, "take over"); !announced) {
     co_return fail(announced.error());
   }
   context_.authority.give({call.caller.session, call.caller.user, context_.clock()});

@@ -1,6 +1,5 @@
-#include "http/routes/bench_routes.hpp"
-
-#include "http/problems.hpp"
+#include "http/routes.hpp"
+#include "service/reply.hpp"
 
 namespace interlock::web {
 namespace {

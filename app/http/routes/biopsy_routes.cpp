@@ -1,10 +1,9 @@
-#include "http/routes/biopsy_routes.hpp"
-
 #include <array>
 
-#include "http/fields.hpp"
-#include "http/problems.hpp"
-#include "http/tip_image.hpp"
+#include "http/routes.hpp"
+#include "service/fields.hpp"
+#include "service/reply.hpp"
+#include "service/tip_image.hpp"
 
 namespace interlock::web {
 namespace {
@@ -68,7 +67,7 @@ tl::expected<void, Problem> BiopsyRoutes::need_needle() const {
 /** What an open biopsy works with does not change under it. */
 tl::expected<void, Problem> BiopsyRoutes::need_closed() const {
   (void)context_.view();
-  if (const Proposal* open = context_.book.open_biopsy()) {
+  if (const Proposal* open = context_.registry.open_biopsy()) {
     return fail(Problem{.status = Status::conflict,
                         .code = "BIOPSY_OPEN",
                         .detail = "Proposal " + std::to_string(open->id) + " is a biopsy that works with it.",
@@ -79,19 +78,20 @@ tl::expected<void, Problem> BiopsyRoutes::need_closed() const {
 }
 
 /** Records what is about to change; then nothing stands in its way. */
-boost::asio::awaitable<tl::expected<void, Problem>> BiopsyRoutes::announce(const Call& call,
-                                                                           json detail) const {
+boost::asio::awaitable<tl::expected<void, Problem>> BiopsyRoutes::record_then_recheck(const Call& call,
+                                                                                      json detail) const {
   if (auto closed = need_closed(); !closed) {
     co_return closed;
   }
-  const auto announced = co_await context_.announce(call.caller, AuditKind::setting, std::move(detail));
+  const auto announced =
+      co_await context_.record_then_recheck(call.caller, AuditKind::setting, std::move(detail));
   co_return announced.and_then([&] { return need_closed(); });
 }
 
 Reply BiopsyRoutes::show() const {
   return need_needle().map([&] {
     const ControlView& view = context_.view();
-    return Success{.body = context_.biopsy.to_json(view, context_.book.open_biopsy() != nullptr)};
+    return Success{.body = context_.biopsy.to_json(view, context_.registry.open_biopsy() != nullptr)};
   });
 }
 
@@ -101,7 +101,7 @@ Answering BiopsyRoutes::set_membranes(const Call& call) const {
     co_return fail(membranes.error());
   }
   json detail{{"membranes_mm", membranes->depths_mm}, {"next", membranes->next}};
-  const auto announced = co_await announce(call, std::move(detail));
+  const auto announced = co_await record_then_recheck(call, std::move(detail));
   co_return announced.and_then([&] {
     context_.biopsy.set(std::move(*membranes));
     return show();
@@ -113,7 +113,7 @@ Answering BiopsyRoutes::reset_membranes(const Call& call) const {
     co_return fail(needle.error());
   }
   json detail{{"membranes", "reset"}};
-  const auto announced = co_await announce(call, std::move(detail));
+  const auto announced = co_await record_then_recheck(call, std::move(detail));
   co_return announced.and_then([&] {
     context_.biopsy.reset();
     return show();
@@ -125,7 +125,7 @@ Answering BiopsyRoutes::zero(const Call& call) const {
     co_return fail(needle.error());
   }
   json detail{{"force", "zero"}};
-  const auto announced = co_await announce(call, std::move(detail));
+  const auto announced = co_await record_then_recheck(call, std::move(detail));
   co_return announced.and_then([&] { return context_.need_kernel(); })
       .and_then([&] { return context_.biopsy.zero(context_.view()); })
       .and_then([&] { return show(); });

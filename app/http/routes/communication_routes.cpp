@@ -1,5 +1,3 @@
-#include "http/routes/communication_routes.hpp"
-
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -7,8 +5,9 @@
 #include <chrono>
 #include <limits>
 
-#include "http/fields.hpp"
-#include "http/problems.hpp"
+#include "http/routes.hpp"
+#include "service/fields.hpp"
+#include "service/reply.hpp"
 
 namespace interlock::web {
 namespace {
@@ -41,15 +40,15 @@ Problem no_connection(std::uint32_t id) {
   return not_found("connection " + std::to_string(id), "an id that /api/communications lists");
 }
 
-json console_connection(const StreamHub::Watcher& watcher) {
-  return {{"id", watcher.id},
+json console_connection(const Broadcaster::Subscriber& subscriber) {
+  return {{"id", subscriber.id},
           {"type", "console"},
           {"name", "Console"},
           {"connected", true},
-          {"client", watcher.caller.peer},
-          {"user", watcher.caller.user},
-          {"port", watcher.port},
-          {"since", iso_8601(watcher.since)}};
+          {"client", subscriber.caller.peer},
+          {"user", subscriber.caller.user},
+          {"port", subscriber.port},
+          {"since", iso_8601(subscriber.since)}};
 }
 
 /** Schema `NavigationConnection`. */
@@ -107,8 +106,9 @@ json openigtlink_connection(const igtl::Peer& peer) {
 
 }  // namespace
 
-CommunicationRoutes::CommunicationRoutes(const Context& context, Navigation& navigation, Router& router)
-    : context_(context), navigation_(navigation) {
+CommunicationRoutes::CommunicationRoutes(const Context& context, Navigation& navigation, Broadcaster& stream,
+                                         Router& router)
+    : context_(context), navigation_(navigation), stream_(stream) {
   router.add(verb::get, "/api/communications/connections", viewers,
              [this](const Call&) -> Answering { co_return list_navigation(); });
   router.add(verb::delete_, "/api/communications/connections/{id}", engineers,
@@ -130,8 +130,8 @@ Answering CommunicationRoutes::list() const {
     const auto since = co_await context_.bench.connected_since();
     connections.push_back(own_connection("bench", "Simulated hardware", since));
   }
-  for (const StreamHub::Watcher& watcher : context_.stream.watchers()) {
-    connections.push_back(console_connection(watcher));
+  for (const Broadcaster::Subscriber& subscriber : stream_.subscribers()) {
+    connections.push_back(console_connection(subscriber));
   }
   for (const igtl::Peer& peer : navigation_.hub().peers()) {
     connections.push_back(openigtlink_connection(peer));
@@ -154,7 +154,8 @@ Answering CommunicationRoutes::end_navigation(const Call& call) const {
     co_return fail(no_navigation(call.parameters[0]));
   }
   json detail{{"action", "disconnect"}, {"id", id}, {"client", peer->address}};
-  const auto announced = co_await context_.announce(call.caller, AuditKind::connection, std::move(detail));
+  const auto announced =
+      co_await context_.record_then_recheck(call.caller, AuditKind::connection, std::move(detail));
   if (!announced) {
     co_return fail(announced.error());
   }
@@ -175,7 +176,8 @@ Answering CommunicationRoutes::set_role(const Call& call) const {
     co_return fail(no_navigation(call.parameters[0]));
   }
   json detail{{"action", "role"}, {"id", id}, {"client", peer->address}, {"role", igtl::role_word(*role)}};
-  const auto announced = co_await context_.announce(call.caller, AuditKind::connection, std::move(detail));
+  const auto announced =
+      co_await context_.record_then_recheck(call.caller, AuditKind::connection, std::move(detail));
   if (!announced) {
     co_return fail(announced.error());
   }
@@ -190,20 +192,21 @@ Answering CommunicationRoutes::disconnect(const Call& call) const {
   if (!id) {
     co_return fail(id.error());
   }
-  const auto watchers = context_.stream.watchers();
-  const auto watcher = std::ranges::find(watchers, *id, &StreamHub::Watcher::id);
-  if (watcher == watchers.end()) {
+  const auto subscribers = stream_.subscribers();
+  const auto subscriber = std::ranges::find(subscribers, *id, &Broadcaster::Subscriber::id);
+  if (subscriber == subscribers.end()) {
     co_return fail(no_connection(*id));
   }
   json detail{{"action", "disconnect"},
               {"id", *id},
-              {"client", watcher->caller.peer},
-              {"user", watcher->caller.user}};
-  const auto announced = co_await context_.announce(call.caller, AuditKind::connection, std::move(detail));
+              {"client", subscriber->caller.peer},
+              {"user", subscriber->caller.user}};
+  const auto announced =
+      co_await context_.record_then_recheck(call.caller, AuditKind::connection, std::move(detail));
   if (!announced) {
     co_return fail(announced.error());
   }
-  if (!context_.stream.disconnect(*id)) {
+  if (!stream_.disconnect(*id)) {
     co_return fail(no_connection(*id));
   }
   spdlog::info("{} disconnected connection {}", call.caller.user, *id);

@@ -1,11 +1,10 @@
-#include "http/routes/history_routes.hpp"
-
 #include <limits>
 
-#include "http/fields.hpp"
-#include "http/problems.hpp"
-#include "http/query.hpp"
+#include "http/message.hpp"
+#include "http/routes.hpp"
 #include "motion/axis_plan.hpp"
+#include "service/fields.hpp"
+#include "service/reply.hpp"
 
 namespace interlock::web {
 namespace {

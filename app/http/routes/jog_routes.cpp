@@ -1,12 +1,11 @@
-#include "http/routes/jog_routes.hpp"
-
 #include <array>
 
-#include "http/fields.hpp"
-#include "http/problems.hpp"
-#include "http/proposing.hpp"
+#include "http/routes.hpp"
 #include "motion/setpoint_range.hpp"
 #include "proposals/proposal_json.hpp"
+#include "service/drafts.hpp"
+#include "service/fields.hpp"
+#include "service/reply.hpp"
 
 namespace interlock::web {
 namespace {
@@ -15,12 +14,12 @@ using Answering = boost::asio::awaitable<Reply>;
 using boost::beast::http::verb;
 using nlohmann::json;
 
-struct JogWish {
+struct JogRequest {
   const Axis* axis = nullptr;
   bool increasing = false;
 };
 
-tl::expected<JogWish, Problem> wish_in(const json& body, const Robot& robot) {
+tl::expected<JogRequest, Problem> request_in(const json& body, const Robot& robot) {
   constexpr std::array<std::string_view, 2> directions{"increasing", "decreasing"};
   Fields fields(body, {"slot", "direction"});
   const auto slot = fields.integer("slot", 0, ILK_SLOTS - 1);
@@ -33,19 +32,20 @@ tl::expected<JogWish, Problem> wish_in(const json& body, const Robot& robot) {
   if (axis == nullptr) {
     return fail(not_found("axis in slot " + std::to_string(*slot), "a slot that /api/motors lists"));
   }
-  return JogWish{axis, direction == "increasing"};
+  return JogRequest{axis, direction == "increasing"};
 }
 
 /** A move to the end of the range in that direction; RANGE where that would lead the other way. */
-tl::expected<Task, Problem> task_of(const JogWish& wish, const Context& context, const std::string& author) {
+tl::expected<Task, Problem> task_of(const JogRequest& request, const Context& context,
+                                    const std::string& author) {
   const ilk_state_t& state = context.view().snapshot.state;
-  const std::uint32_t slot = wish.axis->slot;
+  const std::uint32_t slot = request.axis->slot;
   const SetpointRange range = setpoint_range(context.config.axis[slot], state.axis[slot], state.system.mode);
   const std::int32_t here = state.axis[slot].position_counts;
-  const std::int32_t end = wish.increasing ? range.highest_counts : range.lowest_counts;
-  if (wish.increasing ? end <= here : end >= here) {
+  const std::int32_t end = request.increasing ? range.highest_counts : range.lowest_counts;
+  if (request.increasing ? end <= here : end >= here) {
     return fail(refused(verdict_refusal(
-        ILK_VERDICT_RANGE, wish.axis->name + " stands at its end, " + counts_and_unit(*wish.axis, here),
+        ILK_VERDICT_RANGE, request.axis->name + " stands at its end, " + counts_and_unit(*request.axis, here),
         "the other direction")));
   }
   return Task{MoveTask{slot, end, std::nullopt, true}, author};
@@ -54,8 +54,8 @@ tl::expected<Task, Problem> task_of(const JogWish& wish, const Context& context,
 Problem jog_lapsed() {
   return {.status = Status::conflict,
           .code = "JOG_LAPSED",
-          .detail = "That jog has ended, or was not renewed within " + std::to_string(jog_patience.count()) +
-                    " ms.",
+          .detail =
+              "That jog has ended, or was not renewed within " + std::to_string(jog_timeout.count()) + " ms.",
           .next_step = "Jog again."};
 }
 
@@ -68,15 +68,15 @@ JogRoutes::JogRoutes(const Context& context, Router& router) : context_(context)
 }
 
 Answering JogRoutes::begin(const Call& call) const {
-  const auto wish =
-      parse_body(call.request).and_then([&](const json& body) { return wish_in(body, context_.robot); });
-  if (!wish) {
-    co_return fail(wish.error());
+  const auto request =
+      parse_body(call.request).and_then([&](const json& body) { return request_in(body, context_.robot); });
+  if (!request) {
+    co_return fail(request.error());
   }
   if (const auto kernel = context_.need_kernel(); !kernel) {
     co_return fail(kernel.error());
   }
-  auto task = task_of(*wish, context_, call.caller.user);
+  auto task = task_of(*request, context_, call.caller.user);
   if (!task) {
     co_return fail(task.error());
   }
@@ -90,10 +90,10 @@ Answering JogRoutes::begin(const Call& call) const {
 Reply JogRoutes::renew(const Call& call) const {
   const auto id = number_in(call.parameters[0]);
   (void)context_.view();
-  if (!id || !context_.book.renew(*id)) {
+  if (!id || !context_.registry.renew(*id)) {
     return fail(jog_lapsed());
   }
-  return Success{Status::ok, to_json(*context_.book.find(*id))};
+  return Success{Status::ok, to_json(*context_.registry.find(*id))};
 }
 
 }  // namespace interlock::web

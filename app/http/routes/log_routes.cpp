@@ -1,9 +1,8 @@
-#include "http/routes/log_routes.hpp"
-
-#include "http/fields.hpp"
 #include "http/log_tail.hpp"
-#include "http/problems.hpp"
-#include "http/query.hpp"
+#include "http/message.hpp"
+#include "http/routes.hpp"
+#include "service/fields.hpp"
+#include "service/reply.hpp"
 
 namespace interlock::web {
 namespace {
@@ -102,7 +101,8 @@ Answering LogRoutes::set_level(const Call& call) const {
     co_return fail(*fields.problem());
   }
   json detail{{"setting", "log_level"}, {"old", name_of(context_.log.level())}, {"new", *name}};
-  const auto announced = co_await context_.announce(call.caller, AuditKind::setting, std::move(detail));
+  const auto announced =
+      co_await context_.record_then_recheck(call.caller, AuditKind::setting, std::move(detail));
   if (!announced) {
     co_return fail(announced.error());
   }
@@ -148,14 +148,14 @@ Answering LogRoutes::acknowledge(const Call& call) const {
   }
   json detail{{"lines", std::move(kept)}};
   const auto announced =
-      co_await context_.announce(call.caller, AuditKind::acknowledgement, std::move(detail));
+      co_await context_.record_then_recheck(call.caller, AuditKind::acknowledgement, std::move(detail));
   if (!announced) {
     co_return fail(announced.error());
   }
   const std::vector<LogLine> changed =
       context_.log.ring().acknowledge(numbers_of(*lines), {call.caller.user, context_.clock()});
   for (const LogLine& line : changed) {
-    context_.stream.send_text(log_message(line));
+    context_.publish(log_message(line));
   }
   co_return answer(changed);
 }

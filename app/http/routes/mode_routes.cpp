@@ -1,11 +1,8 @@
-#include "http/routes/mode_routes.hpp"
-
-#include "http/fields.hpp"
-#include "http/path_drafts.hpp"
-#include "http/problems.hpp"
-#include "http/proposing.hpp"
-#include "http/sweep_draft.hpp"
+#include "http/routes.hpp"
 #include "robot/compile.hpp"
+#include "service/drafts.hpp"
+#include "service/fields.hpp"
+#include "service/reply.hpp"
 
 namespace interlock::web {
 namespace {
@@ -67,19 +64,19 @@ Reply ModeRoutes::robots() const {
 
 Reply ModeRoutes::mode() const {
   (void)context_.view();
-  return Success{.body = mode_json(context_.robot, context_.book.app_mode())};
+  return Success{.body = mode_json(context_.robot, context_.registry.app_mode())};
 }
 
-tl::expected<std::string, Problem> ModeRoutes::wanted_mode(const Call& call) const {
+tl::expected<std::string, Problem> ModeRoutes::desired_mode(const Call& call) const {
   return parse_body(call.request).and_then([&](const json& body) -> tl::expected<std::string, Problem> {
     const std::vector<std::string_view> modes(context_.robot.modes.begin(), context_.robot.modes.end());
     Fields fields(body, {"mode"});
-    const auto wanted = fields.choice("mode", modes);
+    const auto desired = fields.choice("mode", modes);
     fields.require({{"mode", "a mode of the robot"}});
     if (fields.problem()) {
       return fail(*fields.problem());
     }
-    return std::string(*wanted);
+    return std::string(*desired);
   });
 }
 
@@ -109,22 +106,22 @@ tl::expected<Task, Problem> ModeRoutes::task_for(RobotMode mode, const std::stri
 }
 
 Answering ModeRoutes::set_mode(const Call& call) const {
-  const auto wanted = wanted_mode(call);
-  if (!wanted) {
-    co_return fail(wanted.error());
+  const auto desired = desired_mode(call);
+  if (!desired) {
+    co_return fail(desired.error());
   }
-  const RobotMode mode_wanted = mode_of(*wanted).value_or(RobotMode::manual);
-  if (mode_wanted == RobotMode::manual) {
+  const RobotMode mode_desired = mode_of(*desired).value_or(RobotMode::manual);
+  if (mode_desired == RobotMode::manual) {
     co_return go_manual();
   }
   (void)context_.view();
-  if (context_.book.app_mode() == *wanted) {
+  if (context_.registry.app_mode() == *desired) {
     co_return mode();
   }
   if (const auto kernel = context_.need_kernel(); !kernel) {
     co_return fail(kernel.error());
   }
-  auto task = task_for(mode_wanted, call.caller.user);
+  auto task = task_for(mode_desired, call.caller.user);
   if (!task) {
     co_return fail(task.error());
   }
@@ -134,10 +131,10 @@ Answering ModeRoutes::set_mode(const Call& call) const {
 
 Reply ModeRoutes::go_manual() const {
   (void)context_.view();
-  const Proposal* home = context_.book.open_home();
-  const Proposal* open = home == nullptr ? context_.book.open_mode() : home;
+  const Proposal* home = context_.registry.open_home();
+  const Proposal* open = home == nullptr ? context_.registry.open_mode() : home;
   if (open != nullptr) {
-    const auto aborted = context_.book.abort(open->id);
+    const auto aborted = context_.registry.abort(open->id);
     if (!aborted) {
       return fail(refused(aborted.error()));
     }

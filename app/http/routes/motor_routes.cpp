@@ -1,9 +1,8 @@
-#include "http/routes/motor_routes.hpp"
-
-#include "http/fields.hpp"
-#include "http/problems.hpp"
-#include "http/set_home.hpp"
-#include "http/status_json.hpp"
+#include "http/routes.hpp"
+#include "service/fields.hpp"
+#include "service/reply.hpp"
+#include "service/set_home.hpp"
+#include "service/status_json.hpp"
 
 namespace interlock::web {
 namespace {
@@ -80,7 +79,7 @@ Reply MotorRoutes::motors() const {
     const ControlView& now = context_.view();
     json motors = json::array();
     for (const Axis& axis : context_.robot.axes) {
-      motors.push_back(motor_json(axis, context_.config, now, context_.book));
+      motors.push_back(motor_json(axis, context_.config, now, context_.registry));
     }
     return Success{Status::ok, std::move(motors)};
   });
@@ -90,7 +89,7 @@ Reply MotorRoutes::motor(const Call& call) const {
   return axis_of(call.parameters[0]).and_then([this](const Axis* axis) -> Reply {
     return context_.need_kernel().map([&] {
       const ControlView& now = context_.view();
-      return Success{Status::ok, motor_json(*axis, context_.config, now, context_.book)};
+      return Success{Status::ok, motor_json(*axis, context_.config, now, context_.registry)};
     });
   });
 }

@@ -1,12 +1,11 @@
-#include "http/routes/position_routes.hpp"
-
 #include <algorithm>
 
-#include "http/axis_requests.hpp"
-#include "http/fields.hpp"
-#include "http/positions_file.hpp"
-#include "http/problems.hpp"
-#include "http/set_home.hpp"
+#include "http/routes.hpp"
+#include "service/axis_requests.hpp"
+#include "service/fields.hpp"
+#include "service/positions_file.hpp"
+#include "service/reply.hpp"
+#include "service/set_home.hpp"
 
 namespace interlock::web {
 namespace {
@@ -15,7 +14,7 @@ using Answering = boost::asio::awaitable<Reply>;
 using boost::beast::http::verb;
 using nlohmann::json;
 
-/** A checked wish to put positions back. */
+/** A checked request to put positions back. */
 struct Restore {
   SavedPositions file;
   std::vector<std::string> axes;
@@ -76,7 +75,7 @@ Reply PositionRoutes::save() const {
     const std::string name = positions_file_name(context_.robot, time);
     return Success{.status = Status::ok,
                    .body = positions_file(context_.robot, context_.view(),
-                                          open_targets(context_.robot, context_.book), time),
+                                          open_targets(context_.robot, context_.registry), time),
                    .headers = {{"Content-Disposition", "attachment; filename=\"" + name + "\""}}};
   });
 }
@@ -93,11 +92,11 @@ Reply PositionRoutes::compare(const Call& call) const {
 }
 
 Answering PositionRoutes::restore(const Call& call) const {
-  const auto wish = parse_body(call.request).and_then([this](const json& body) {
+  const auto request = parse_body(call.request).and_then([this](const json& body) {
     return restore_of(body, context_.robot, context_.config);
   });
-  if (!wish) {
-    co_return fail(wish.error());
+  if (!request) {
+    co_return fail(request.error());
   }
   const auto kernel = context_.need_kernel();
   if (!kernel) {
@@ -107,9 +106,10 @@ Answering PositionRoutes::restore(const Call& call) const {
   if (!fits) {
     co_return fail(refused(fits.error()));
   }
-  const std::vector<AxisRequest> requests = requests_of(*wish, context_.robot);
-  json detail{{"saved", iso_8601(wish->file.saved)}, {"axes", targets_of(requests)}};
-  const auto announced = co_await context_.announce(call.caller, AuditKind::restore, std::move(detail));
+  const std::vector<AxisRequest> requests = requests_of(*request, context_.robot);
+  json detail{{"saved", iso_8601(request->file.saved)}, {"axes", targets_of(requests)}};
+  const auto announced =
+      co_await context_.record_then_recheck(call.caller, AuditKind::restore, std::move(detail));
   if (!announced) {
     co_return fail(announced.error());
   }
@@ -131,7 +131,8 @@ Answering PositionRoutes::zero_all(const Call& call) const {
     requests.push_back(std::move(request));
   }
   json detail{{"request", "SET_HOME"}, {"what", "every axis without a switch"}};
-  const auto announced = co_await context_.announce(call.caller, AuditKind::request, std::move(detail));
+  const auto announced =
+      co_await context_.record_then_recheck(call.caller, AuditKind::request, std::move(detail));
   if (!announced) {
     co_return fail(announced.error());
   }

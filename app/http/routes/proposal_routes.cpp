@@ -1,17 +1,12 @@
-#include "http/routes/proposal_routes.hpp"
-
 #include <array>
 #include <limits>
 
-#include "http/biopsy_draft.hpp"
-#include "http/fields.hpp"
-#include "http/path_drafts.hpp"
-#include "http/problems.hpp"
-#include "http/proposal_plan.hpp"
-#include "http/proposing.hpp"
-#include "http/sweep_draft.hpp"
-#include "http/targeting_store.hpp"
+#include "http/routes.hpp"
 #include "proposals/proposal_json.hpp"
+#include "service/drafts.hpp"
+#include "service/fields.hpp"
+#include "service/reply.hpp"
+#include "service/targeting_store.hpp"
 
 namespace interlock::web {
 namespace {
@@ -105,7 +100,7 @@ tl::expected<Task, Problem> ablation_of(const json& body, const Robot& robot, co
   return ablation_draft(robot, *fields.value("steps"), author);
 }
 
-tl::expected<PoseWish, Problem> pose_of(const json& body) {
+tl::expected<PoseRequest, Problem> pose_of(const json& body) {
   constexpr std::array<std::string_view, 2> poses{"desired", "reachable"};
   Fields fields(body, {"kind", "pose", "insert"});
   const auto pose = fields.choice("pose", poses);
@@ -113,7 +108,7 @@ tl::expected<PoseWish, Problem> pose_of(const json& body) {
   if (fields.problem()) {
     return fail(*fields.problem());
   }
-  return PoseWish{pose == "reachable", insert};
+  return PoseRequest{pose == "reachable", insert};
 }
 
 /** In the guide frame; nothing: the target of the targeting. */
@@ -166,7 +161,7 @@ ProposalRoutes::ProposalRoutes(const Context& context, Router& router) : context
 Reply ProposalRoutes::list() const {
   (void)context_.view();
   json list = json::array();
-  for (const Proposal& each : context_.book.newest_first()) {
+  for (const Proposal& each : context_.registry.newest_first()) {
     list.push_back(to_json(each));
   }
   return Success{Status::ok, std::move(list)};
@@ -181,11 +176,11 @@ boost::asio::awaitable<tl::expected<Task, Problem>> ProposalRoutes::task_of(cons
   }
   const std::string& author = call.caller.user;
   if (*kind == "pose") {
-    const auto wish = pose_of(*body);
-    if (!wish) {
-      co_return fail(wish.error());
+    const auto request = pose_of(*body);
+    if (!request) {
+      co_return fail(request.error());
     }
-    co_return co_await pose_draft(context_, *wish, author);
+    co_return co_await pose_draft(context_, *request, author);
   }
   if (*kind == "trajectory") {
     co_return alone(*body).and_then([&] { return trajectory_draft(context_.trajectory, author); });
@@ -220,7 +215,7 @@ Answering ProposalRoutes::propose(const Call& call) const {
   if (const auto kernel = context_.need_kernel(); !kernel) {
     co_return fail(kernel.error());
   }
-  auto made = co_await web::propose(context_, call.caller, std::move(*task));
+  auto made = co_await interlock::propose(context_, call.caller, std::move(*task));
   co_return std::move(made).map(
       [](const Proposal& proposal) { return Success{Status::created, to_json(proposal)}; });
 }
@@ -233,7 +228,8 @@ Answering ProposalRoutes::approve(const Call& call) const {
   const std::uint32_t id = *number_in(call.parameters[0]);
   const std::uint32_t stops = context_.control.stops();
   json asked{{"approved", id}};
-  const auto announced = co_await context_.announce(call.caller, AuditKind::proposal, std::move(asked));
+  const auto announced =
+      co_await context_.record_then_recheck(call.caller, AuditKind::proposal, std::move(asked));
   if (!announced) {
     co_return fail(announced.error());
   }
@@ -243,7 +239,7 @@ Answering ProposalRoutes::approve(const Call& call) const {
   if (const auto kernel = context_.need_present_state(); !kernel) {
     co_return fail(kernel.error());
   }
-  co_return context_.book.approve(id, context_.view(), call.caller.asked)
+  co_return context_.registry.approve(id, context_.view(), call.caller.asked)
       .map([](const Proposal& approved) { return Success{Status::ok, to_json(approved)}; })
       .map_error(refused);
 }
@@ -256,7 +252,7 @@ Answering ProposalRoutes::reject(const Call& call) const {
   const std::uint32_t id = *number_in(call.parameters[0]);
   // Better late than never: it waits for no store.
   context_.store.note(context_.entry(call.caller, AuditKind::proposal, {{"rejected", id}}));
-  co_return context_.book.reject(id, call.caller.user)
+  co_return context_.registry.reject(id, call.caller.user)
       .map([](const Proposal& rejected) { return Success{Status::ok, to_json(rejected)}; })
       .map_error(refused);
 }
@@ -266,7 +262,7 @@ Answering ProposalRoutes::plan(const Call& call) const {
   if (!shown) {
     co_return shown;
   }
-  const Proposal proposal = *context_.book.find(*number_in(call.parameters[0]));
+  const Proposal proposal = *context_.registry.find(*number_in(call.parameters[0]));
   const auto targeting = co_await present_targeting(context_);
   if (!targeting) {
     co_return fail(targeting.error());
@@ -282,7 +278,7 @@ Answering ProposalRoutes::plan(const Call& call) const {
 Reply ProposalRoutes::show(const Call& call) const {
   (void)context_.view();
   const auto id = number_in(call.parameters[0]);
-  const Proposal* found = id ? context_.book.find(*id) : nullptr;
+  const Proposal* found = id ? context_.registry.find(*id) : nullptr;
   if (found == nullptr) {
     return fail(not_found("proposal " + call.parameters[0], "an id that /api/proposals lists"));
   }
@@ -291,7 +287,7 @@ Reply ProposalRoutes::show(const Call& call) const {
 
 Reply ProposalRoutes::abort(const Call& call) const {
   return show(call).and_then([&](const Success&) -> Reply {
-    return context_.book.abort(*number_in(call.parameters[0]))
+    return context_.registry.abort(*number_in(call.parameters[0]))
         .map([](const Proposal& ended) { return Success{Status::ok, to_json(ended)}; })
         .map_error(refused);
   });

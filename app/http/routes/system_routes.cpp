@@ -1,13 +1,12 @@
-#include "http/routes/system_routes.hpp"
-
 #include <array>
 #include <bit>
 
-#include "http/problems.hpp"
-#include "http/status_json.hpp"
+#include "http/routes.hpp"
 #include "metrics/metrics.hpp"
 #include "robot/catalog.hpp"
 #include "robot/compile.hpp"
+#include "service/reply.hpp"
+#include "service/status_json.hpp"
 
 namespace interlock::web {
 namespace {
@@ -18,7 +17,8 @@ using nlohmann::json;
 
 }  // namespace
 
-SystemRoutes::SystemRoutes(const Context& context, Router& router) : context_(context) {
+SystemRoutes::SystemRoutes(const Context& context, const Broadcaster& stream, Router& router)
+    : context_(context), stream_(stream) {
   router.add(verb::get, "/api/status", anybody, [this](const Call&) -> Answering { co_return status(); });
   router.add(verb::get, "/api/kernel/configuration", viewers,
              [this](const Call&) -> Answering { co_return configuration(); });
@@ -38,7 +38,7 @@ SystemRoutes::SystemRoutes(const Context& context, Router& router) : context_(co
 
 Reply SystemRoutes::status() const {
   return Success{Status::ok, status_json(context_.robot, context_.config, context_.view(),
-                                         context_.book.app_mode(), std::chrono::steady_clock::now())};
+                                         context_.registry.app_mode(), std::chrono::steady_clock::now())};
 }
 
 /** Of the app's robot file; whether the kernel runs it, its CRC tells. */
@@ -49,7 +49,7 @@ Reply SystemRoutes::configuration() const {
 }
 
 Reply SystemRoutes::metrics() const {
-  const AppCounts counts{.consoles = context_.stream.watchers().size(),
+  const AppCounts counts{.consoles = stream_.subscribers().size(),
                          .log_lines_lost = context_.log.lines_lost(),
                          .role_refusals = context_.role_refusals};
   return Success{.body = metrics_text(context_.robot, context_.config, context_.view(), counts,

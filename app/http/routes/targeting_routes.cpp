@@ -1,12 +1,10 @@
-#include "http/routes/targeting_routes.hpp"
-
 #include <cmath>
 
-#include "http/alignment_view.hpp"
-#include "http/problems.hpp"
-#include "http/targeting_change.hpp"
-#include "http/targeting_history.hpp"
-#include "http/targeting_store.hpp"
+#include "http/routes.hpp"
+#include "service/alignment_view.hpp"
+#include "service/reply.hpp"
+#include "service/targeting.hpp"
+#include "service/targeting_store.hpp"
 #include "targeting/reach.hpp"
 #include "targeting/targeting_json.hpp"
 

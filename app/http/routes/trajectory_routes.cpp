@@ -1,7 +1,6 @@
-#include "http/routes/trajectory_routes.hpp"
-
-#include "http/problems.hpp"
-#include "http/trajectory_loading.hpp"
+#include "http/routes.hpp"
+#include "service/drafts.hpp"
+#include "service/reply.hpp"
 #include "trajectory/trajectory_csv.hpp"
 
 namespace interlock::web {
@@ -41,7 +40,8 @@ Answering TrajectoryRoutes::load(const Call& call) const {
 
 Answering TrajectoryRoutes::unload(const Call& call) const {
   json detail{{"trajectory", nullptr}};
-  const auto announced = co_await context_.announce(call.caller, AuditKind::setting, std::move(detail));
+  const auto announced =
+      co_await context_.record_then_recheck(call.caller, AuditKind::setting, std::move(detail));
   if (!announced) {
     co_return fail(announced.error());
   }

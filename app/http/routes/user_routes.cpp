@@ -1,12 +1,11 @@
-#include "http/routes/user_routes.hpp"
-
 #include <spdlog/spdlog.h>
 
 #include <array>
 
-#include "http/fields.hpp"
-#include "http/new_hash.hpp"
-#include "http/problems.hpp"
+#include "http/routes.hpp"
+#include "service/fields.hpp"
+#include "service/new_hash.hpp"
+#include "service/reply.hpp"
 
 namespace interlock::web {
 namespace {
@@ -98,44 +97,44 @@ struct Change {
 };
 
 /** What the body of a request asks for. */
-struct Wish {
+struct UserChange {
   std::string name;
   std::optional<Role> role;
   std::optional<bool> enabled;
   std::optional<Password> password;
 };
 
-Wish read_wish(Fields& fields, std::string name) {
+UserChange read_change(Fields& fields, std::string name) {
   const auto role = fields.choice("role", roles);
   auto password = fields.text("password");
-  Wish wish{std::move(name), role ? find_role(*role) : std::nullopt, std::nullopt, std::nullopt};
+  UserChange change{std::move(name), role ? find_role(*role) : std::nullopt, std::nullopt, std::nullopt};
   if (password) {
-    wish.password.emplace(std::move(*password));
+    change.password.emplace(std::move(*password));
   }
-  return wish;
+  return change;
 }
 
-tl::expected<Wish, Problem> new_user(const Request& request) {
-  return parse_body(request).and_then([&](const json& body) -> tl::expected<Wish, Problem> {
+tl::expected<UserChange, Problem> new_user(const Request& request) {
+  return parse_body(request).and_then([&](const json& body) -> tl::expected<UserChange, Problem> {
     Fields fields(body, {"name", "role", "password"});
     fields.require({{"name", "a text"}, {"role", "viewer, engineer or admin"}, {"password", "a text"}});
-    Wish wish = read_wish(fields, fields.text("name").value_or(""));
+    UserChange change = read_change(fields, fields.text("name").value_or(""));
     if (fields.problem()) {
       return fail(*fields.problem());
     }
-    return wish;
+    return change;
   });
 }
 
-tl::expected<Wish, Problem> change_of(const Request& request, const std::string& user) {
-  return parse_body(request).and_then([&](const json& body) -> tl::expected<Wish, Problem> {
+tl::expected<UserChange, Problem> change_of(const Request& request, const std::string& user) {
+  return parse_body(request).and_then([&](const json& body) -> tl::expected<UserChange, Problem> {
     Fields fields(body, {"role", "password", "enabled"});
-    Wish wish = read_wish(fields, user);
-    wish.enabled = fields.boolean("enabled");
+    UserChange change = read_change(fields, user);
+    change.enabled = fields.boolean("enabled");
     if (fields.problem()) {
       return fail(*fields.problem());
     }
-    return wish;
+    return change;
   });
 }
 
@@ -162,16 +161,16 @@ Answering UserRoutes::list() const {
 }
 
 Answering UserRoutes::add(const Call& call) const {
-  auto wished = new_user(call.request);
-  if (!wished) {
-    co_return fail(wished.error());
+  auto change = new_user(call.request);
+  if (!change) {
+    co_return fail(change.error());
   }
-  auto hash = co_await new_hash(context_.work, wished->name, std::move(*wished->password), "password");
+  auto hash = co_await new_hash(context_.work, change->name, std::move(*change->password), "password");
   if (!hash) {
     co_return fail(hash.error());
   }
-  NewUser work{wished->name,
-               *wished->role,
+  NewUser work{change->name,
+               *change->role,
                std::move(*hash),
                {call.caller.user, call.caller.session, context_.clock()}};
   const auto added = co_await context_.store.run(std::move(work));
@@ -191,14 +190,14 @@ Answering UserRoutes::change(const Call& call) const {
   if (!exists || !*exists) {
     co_return fail(exists ? not_found("user " + user, "a name that /api/users lists") : exists.error());
   }
-  auto wished = change_of(call.request, user);
-  if (!wished) {
-    co_return fail(wished.error());
+  auto change = change_of(call.request, user);
+  if (!change) {
+    co_return fail(change.error());
   }
   Change work{
-      user, {wished->role, std::nullopt, wished->enabled}, {call.caller.user, call.caller.session, {}}};
-  if (wished->password) {
-    auto hash = co_await new_hash(context_.work, user, std::move(*wished->password), "password");
+      user, {change->role, std::nullopt, change->enabled}, {call.caller.user, call.caller.session, {}}};
+  if (change->password) {
+    auto hash = co_await new_hash(context_.work, user, std::move(*change->password), "password");
     if (!hash) {
       co_return fail(hash.error());
     }

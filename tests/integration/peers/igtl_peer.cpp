@@ -45,7 +45,7 @@ constexpr std::size_t header_bytes = 58;
 constexpr std::size_t size_at = 42;
 constexpr std::size_t crc_at = 50;
 constexpr std::size_t extension_bytes = 12;
-constexpr std::uint64_t patience_bytes = 1u << 20u;
+constexpr std::uint64_t timeout_bytes = 1u << 20u;
 
 template <typename Number>
 Number number_at(const Bytes& bytes, std::size_t at) {
@@ -349,7 +349,7 @@ void listen(igtl::Socket& socket) {
   while (receive(socket, message, 0)) {
     const auto version = number_at<std::uint16_t>(message, 0);
     const auto size = number_at<std::uint64_t>(message, size_at);
-    if ((version != 1 && version != 2) || size > patience_bytes) {
+    if ((version != 1 && version != 2) || size > timeout_bytes) {
       throw std::runtime_error("no header");
     }
     message.resize(header_bytes + size);

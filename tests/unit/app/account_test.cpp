@@ -1,7 +1,7 @@
 #include <algorithm>
 
-#include "http/login_guard.hpp"
 #include "http_fixture.hpp"
+#include "service/login_guard.hpp"
 
 namespace interlock::web {
 namespace {

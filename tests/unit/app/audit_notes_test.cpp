@@ -1,6 +1,6 @@
-#include "http/audit_notes.hpp"
-
 #include <gtest/gtest.h>
+
+#include "service/store_executor.hpp"
 
 namespace interlock::web {
 namespace {

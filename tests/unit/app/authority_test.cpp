@@ -48,7 +48,7 @@ TEST_F(AuthorityTest, RightsAreCheckedInTheirOrder) {
 TEST_F(AuthorityTest, NobodyButAnybodyStops) {
   become_nobody();
   EXPECT_EQ(post("/api/stop").status, 200u);
-  EXPECT_EQ(mailbox_->stops.load(), 1u);
+  EXPECT_EQ(channel_->stops.load(), 1u);
 }
 
 TEST_F(AuthorityTest, WhoeverAsksFirstHoldsItAndOthersAreNoted) {
@@ -63,7 +63,7 @@ TEST_F(AuthorityTest, WhoeverAsksFirstHoldsItAndOthersAreNoted) {
   EXPECT_EQ(post("/api/authority/request").status, 200u);
   EXPECT_EQ(post_as(ada, "/api/authority/request").status, 202u);
   EXPECT_EQ(authority()["requests"].size(), 1u);
-  EXPECT_EQ(mailbox_->stops.load(), 0u) << "a wish stops nothing";
+  EXPECT_EQ(channel_->stops.load(), 0u) << "a wish stops nothing";
 }
 
 TEST_F(AuthorityTest, AHandOverGoesOnlyToAnAskingSession) {
@@ -90,17 +90,17 @@ TEST_F(AuthorityTest, OnlyAnAdministratorTakesOver) {
 TEST_F(AuthorityTest, EachChangeStopsAbortsAndHasANewNumber) {
   show(test::ready_view());
   const std::string ada = token_of("ada");
-  std::set<std::uint32_t> numbers{mailbox_->holder.load()};
+  std::set<std::uint32_t> numbers{channel_->holder.load()};
   const std::string proposal = propose();
   ASSERT_EQ(post_as(ada, "/api/authority/take-over").status, 200u);
   EXPECT_EQ(json::parse(get(proposal).body)["state"], "aborted");
-  EXPECT_EQ(mailbox_->stops.load(), 1u);
-  numbers.insert(mailbox_->holder.load());
+  EXPECT_EQ(channel_->stops.load(), 1u);
+  numbers.insert(channel_->holder.load());
   ASSERT_EQ(post_as(ada, "/api/authority/release").status, 200u);
-  EXPECT_EQ(mailbox_->holder.load(), 0u);
-  EXPECT_EQ(mailbox_->stops.load(), 2u);
+  EXPECT_EQ(channel_->holder.load(), 0u);
+  EXPECT_EQ(channel_->stops.load(), 2u);
   ASSERT_EQ(post("/api/authority/request").status, 200u);
-  numbers.insert(mailbox_->holder.load());
+  numbers.insert(channel_->holder.load());
   EXPECT_EQ(numbers.size(), 3u);
   EXPECT_FALSE(numbers.contains(0));
 }
@@ -112,7 +112,7 @@ TEST_F(AuthorityTest, ReleaseWithdrawsAWishAndElseDoesNothing) {
   ASSERT_EQ(post_as(ada, "/api/authority/release").status, 200u);
   EXPECT_TRUE(authority()["requests"].empty());
   EXPECT_EQ(authority()["mine"], true);
-  EXPECT_EQ(mailbox_->stops.load(), 0u);
+  EXPECT_EQ(channel_->stops.load(), 0u);
 }
 
 TEST_F(AuthorityTest, LogoutReleasesIt) {
@@ -132,7 +132,7 @@ TEST_F(AuthorityTest, AMinuteWithoutARequestReleasesIt) {
   while (!authority_seen_by(vic)["holder"].is_null()) {
     std::this_thread::yield();
   }
-  EXPECT_EQ(mailbox_->holder.load(), 0u);
+  EXPECT_EQ(channel_->holder.load(), 0u);
 }
 
 TEST_F(AuthorityTest, AnOpenStreamKeepsIt) {
@@ -177,10 +177,10 @@ TEST_F(AuthorityTest, TheStreamOfASessionThatEndsIsClosedAndSaysWhy) {
 TEST_F(AuthorityTest, WhatAUserAsksOfTheKernelIsRecordedBeforeItIsSent) {
   show(test::ready_view());
   auto asking = std::async(std::launch::async, [this] { return post("/api/motors/3/enable"); });
-  const auto asked = std::get<Ask>(next_command());
+  const auto asked = std::get<KernelCall>(next_command());
   ASSERT_EQ(audit("request").size(), 1u);
   EXPECT_EQ(audit("request")[0]["request"], "ENABLE");
-  answer(Answer{asked.ticket, ILK_VERDICT_ACCEPTED, 6});
+  answer(KernelResponse{asked.call_id, ILK_VERDICT_ACCEPTED, 6});
   EXPECT_EQ(asking.get().status, 200u);
 }
 
@@ -200,14 +200,14 @@ TEST_F(AuthorityTest, TheAuditHasWhoWhatAndWhen) {
   EXPECT_EQ(audit("authority").back()["holder"], "ada");
 }
 
-constexpr int patience_ms = 5000;
+constexpr int timeout_ms = 5000;
 
 /** A store whose records cannot be appended to, as if the disk were full. */
 class BrokenStoreTest : public AuthorityTest {
  protected:
   BrokenStoreTest() {
     SQLite::Database database((folder_.path() / "state" / "interlock.db").string(), SQLite::OPEN_READWRITE,
-                              patience_ms);
+                              timeout_ms);
     database.exec("CREATE TRIGGER broken BEFORE INSERT ON audit BEGIN SELECT RAISE(ABORT, 'disk full'); END");
   }
 };
@@ -217,14 +217,14 @@ TEST_F(BrokenStoreTest, ChangesAreRefusedAndNothingIsChanged) {
   for (const char* const target : {"/api/reset", "/api/motors/3/enable"}) {
     EXPECT_EQ(post(target).problem()["code"], "STORE") << target;
   }
-  EXPECT_EQ(mailbox_->commands.read_available(), 0u);
+  EXPECT_EQ(channel_->commands.read_available(), 0u);
   EXPECT_EQ(post_as(token_of("ada"), "/api/authority/take-over").problem()["code"], "STORE");
   EXPECT_EQ(authority()["mine"], true);
 }
 
 TEST_F(BrokenStoreTest, StopObservationAndReleaseGoOn) {
   EXPECT_EQ(post("/api/stop").status, 200u);
-  EXPECT_EQ(mailbox_->stops.load(), 1u);
+  EXPECT_EQ(channel_->stops.load(), 1u);
   EXPECT_EQ(get("/api/status").status, 200u);
   EXPECT_EQ(post("/api/authority/release").status, 200u);
   EXPECT_TRUE(authority()["holder"].is_null());

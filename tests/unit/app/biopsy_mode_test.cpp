@@ -306,8 +306,8 @@ TEST_F(BiopsyModeTest, ATickAllocatesNothing) {
   for (std::uint32_t i = 0; i < 50; ++i) {
     ++snapshot.state.system.tick;
     snapshot.inputs.frame[force_card][10] += 1000;
-    Wishes wishes;
-    mode.tick(snapshot, wishes);
+    KernelRequests requests;
+    mode.tick(snapshot, requests);
   }
   const std::uint32_t allocated = test::counted_allocations();
   test::count_allocations_of();

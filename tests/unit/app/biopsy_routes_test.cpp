@@ -19,7 +19,7 @@ class BiopsyRoutesTest : public HttpTest {
   Answered show_image(const json& body) { return post("/api/biopsy/images", body.dump()); }
 
   /** The guide frame where the needle is, with the robot turned and moved in the scanner. */
-  [[nodiscard]] static interlock::Pose scanner_from_guide() {
+  [[nodiscard]] static Pose scanner_from_guide() {
     AxisPositions positions;
     for (const Axis& axis : prostate().axes) {
       positions.push_back(axis.to_unit(needle_view().snapshot.state.axis[axis.slot].position_counts));

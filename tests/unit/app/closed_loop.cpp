@@ -69,14 +69,14 @@ void ClosedLoop::tick() {
   } else if (on_their_way_.size() > latency_) {
     seen_tick_ = on_their_way_.front().state.system.tick;
     const std::uint32_t consent = on_their_way_.front().state.system.consent;
-    const Wishes wishes = modes_.tick(on_their_way_.front());
+    const KernelRequests requests = modes_.tick(on_their_way_.front());
     on_their_way_.pop_front();
-    for (const Wish& wish : wishes.all()) {
-      put(request_of(wish, consent));
-      sent_.push_back({sequence_, wish.origin});
+    for (const KernelRequest& request : requests.all()) {
+      put(sent_form(request, consent));
+      sent_.push_back({sequence_, request.origin});
     }
   }
-  watcher_();
+  subscriber_();
 }
 
 void ClosedLoop::deliver_verdicts() {

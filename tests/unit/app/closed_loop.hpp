@@ -28,8 +28,8 @@ class ClosedLoop {
   ClosedLoop(std::uint64_t seed, std::uint32_t latency, const Robot& robot = neuro());
   ClosedLoop(std::uint64_t seed, std::uint32_t latency, const Robot& robot, const plant::Parameters& plant);
 
-  /** Calls `watcher` after every tick. */
-  void watch(std::function<void()> watcher) { watcher_ = std::move(watcher); }
+  /** Calls `subscriber` after every tick. */
+  void watch(std::function<void()> subscriber) { subscriber_ = std::move(subscriber); }
 
   void tick();
   void run(std::uint32_t ticks);
@@ -93,7 +93,7 @@ class ClosedLoop {
  private:
   struct Sent {
     std::uint32_t sequence;
-    WishOrigin origin;
+    ModeOrigin origin;
   };
 
   void put(ilk_request_t request);
@@ -109,7 +109,7 @@ class ClosedLoop {
   plant::Plant plant_;
   ModeManager modes_;
   std::uint32_t latency_;
-  std::function<void()> watcher_ = [] {};
+  std::function<void()> subscriber_ = [] {};
   std::uint32_t seen_tick_ = 0;
   std::deque<ilk_snapshot_t> on_their_way_;
   std::vector<ilk_request_t> requests_;

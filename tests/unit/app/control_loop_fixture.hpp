@@ -22,7 +22,7 @@ namespace interlock::test {
 class ControlLoopTest : public testing::Test {
  protected:
   explicit ControlLoopTest(LinkUse use = LinkUse::control)
-      : loop_(kernel_.socket(), RobotPlan(neuro(), neuro_config()), *mailbox_, nullptr, use),
+      : loop_(kernel_.socket(), RobotPlan(neuro(), neuro_config()), *channel_, nullptr, use),
         snapshot_(ready_view().snapshot) {
     thread_ = std::jthread([this](const std::stop_token& stop) { loop_.run(stop); });
     kernel_.accept();
@@ -54,9 +54,9 @@ class ControlLoopTest : public testing::Test {
   template <typename T>
   std::vector<T> notices() {
     std::vector<T> found;
-    mailbox_->notices.consume_all([&](const Notice& notice) {
-      if (const auto* wanted = std::get_if<T>(&notice)) {
-        found.push_back(*wanted);
+    channel_->notices.consume_all([&](const Notice& notice) {
+      if (const auto* desired = std::get_if<T>(&notice)) {
+        found.push_back(*desired);
       }
     });
     return found;
@@ -66,7 +66,7 @@ class ControlLoopTest : public testing::Test {
     command(approval_of(id, std::move(work), stops, held));
   }
 
-  void command(const Command& command) { ASSERT_TRUE(mailbox_->commands.push(command)); }
+  void command(const Command& command) { ASSERT_TRUE(channel_->commands.push(command)); }
 
   /** Three more events than the ring holds, so that whatever was in it is lost. */
   void lose_events() {
@@ -75,17 +75,17 @@ class ControlLoopTest : public testing::Test {
     }
   }
 
-  static Ask ask(std::uint32_t ticket, std::uint32_t kind) {
-    return {ticket, kind, insertion, 0, std::chrono::steady_clock::now() + std::chrono::hours(1)};
+  static KernelCall ask(std::uint32_t call_id, std::uint32_t kind) {
+    return {call_id, kind, insertion, 0, std::chrono::steady_clock::now() + std::chrono::hours(1)};
   }
 
-  TaskStatus move() { return mailbox_->view.newest().tasks.move(insertion); }
-  TaskStatus home() { return mailbox_->view.newest().tasks.of(TaskKind::home); }
+  TaskStatus move() { return channel_->view.newest().tasks.move(insertion); }
+  TaskStatus home() { return channel_->view.newest().tasks.of(TaskKind::home); }
 
-  void stop() { mailbox_->stops.fetch_add(1, std::memory_order_release); }
+  void stop() { channel_->stops.fetch_add(1, std::memory_order_release); }
 
   KernelSide kernel_;
-  std::unique_ptr<Mailbox> mailbox_ = std::make_unique<Mailbox>();
+  std::unique_ptr<RealtimeChannel> channel_ = std::make_unique<RealtimeChannel>();
   ControlLoop loop_;
   ilk_snapshot_t snapshot_;
   std::vector<ilk_request_t> requests_;

@@ -34,7 +34,7 @@ TEST_F(ControlLoopTest, AnApprovalThatComesAfterItsDeadlineStartsNothing) {
 
 TEST_F(ControlLoopTest, TellsTheKernelOfAChangedHolderInTheNextTick) {
   tick();
-  mailbox_->holder = 7;
+  channel_->holder = 7;
   tick();
   ASSERT_NE(sent(ILK_REQUEST_HEARTBEAT), nullptr);
   EXPECT_EQ(sent(ILK_REQUEST_HEARTBEAT)->holder, 7u);
@@ -56,8 +56,8 @@ TEST_F(ControlLoopTest, BeatsAtOnceAndWellWithinTheAppTimeout) {
 
 TEST_F(ControlLoopTest, ShowsTheNewestSnapshotToTheNetwork) {
   tick();
-  EXPECT_TRUE(mailbox_->view.newest().attached);
-  EXPECT_EQ(mailbox_->view.newest().snapshot.state.system.tick, snapshot_.state.system.tick);
+  EXPECT_TRUE(channel_->view.newest().attached);
+  EXPECT_EQ(channel_->view.newest().snapshot.state.system.tick, snapshot_.state.system.tick);
 }
 
 TEST_F(ControlLoopTest, BringsBackTheVerdictOfAnAsk) {
@@ -67,26 +67,26 @@ TEST_F(ControlLoopTest, BringsBackTheVerdictOfAnAsk) {
   EXPECT_EQ(sent(ILK_REQUEST_ENABLE)->axis, insertion);
   kernel_.push_verdict(*sent(ILK_REQUEST_ENABLE), ILK_VERDICT_CARD, 77);
   tick();
-  const auto answers = notices<Answer>();
+  const auto answers = notices<KernelResponse>();
   ASSERT_EQ(answers.size(), 1u);
-  EXPECT_EQ(answers[0].ticket, 7u);
+  EXPECT_EQ(answers[0].call_id, 7u);
   EXPECT_EQ(answers[0].verdict, static_cast<std::uint32_t>(ILK_VERDICT_CARD));
   EXPECT_EQ(answers[0].tick, 77u);
 }
 
 TEST_F(ControlLoopTest, NeverSendsAnAskForWhichNobodyWaitsAnyMore) {
-  Ask late = ask(7, ILK_REQUEST_RESET);
+  KernelCall late = ask(7, ILK_REQUEST_RESET);
   late.deadline = std::chrono::steady_clock::now() - std::chrono::seconds(1);
   command(late);
   tick();
   EXPECT_EQ(sent(ILK_REQUEST_RESET), nullptr);
-  const auto answers = notices<Answer>();
+  const auto answers = notices<KernelResponse>();
   ASSERT_EQ(answers.size(), 1u);
   EXPECT_FALSE(answers[0].verdict);
 }
 
 TEST_F(ControlLoopTest, ARestoreCarriesItsPosition) {
-  Ask restore = ask(7, ILK_REQUEST_RESTORE);
+  KernelCall restore = ask(7, ILK_REQUEST_RESTORE);
   restore.target_counts = -321;
   command(restore);
   tick();
@@ -138,7 +138,7 @@ TEST_F(ControlLoopTest, APauseEndsMotionInTheSameTickAndTheOrderGoesOnAfterAnoth
   snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
   EXPECT_EQ(move().phase, TaskPhase::executing);
-  mailbox_->pauses.fetch_add(1, std::memory_order_release);
+  channel_->pauses.fetch_add(1, std::memory_order_release);
   tick();
   ASSERT_FALSE(requests_.empty());
   EXPECT_EQ(requests_.front().kind, static_cast<std::uint32_t>(ILK_REQUEST_STOP));
@@ -199,27 +199,27 @@ class NobodyServedTest : public ControlLoopTest {
   }
 };
 
-constexpr std::uint32_t far_longer_than_patience = 10'000;
+constexpr std::uint32_t far_longer_than_timeout = 10'000;
 
 TEST_F(NobodyServedTest, MotionEndsOnceWhenTheNetworkStandsStillAndNothingStartsUntilItGoesOn) {
   snapshot_.state.system.mode = ILK_MODE_MOTION;
   approve(1, MoveTask{test::insertion, 1500});
-  mailbox_->served = 1;
-  ASSERT_TRUE(stops_within(far_longer_than_patience));
+  channel_->served = 1;
+  ASSERT_TRUE(stops_within(far_longer_than_timeout));
   EXPECT_EQ(move().phase, TaskPhase::aborted);
   EXPECT_EQ(move().reason, TaskReason::nobody_served);
-  approve(2, MoveTask{test::insertion, 1500}, mailbox_->stops.load());
+  approve(2, MoveTask{test::insertion, 1500}, channel_->stops.load());
   EXPECT_FALSE(stops_within(300)) << "once";
   EXPECT_EQ(move().phase, TaskPhase::aborted);
-  mailbox_->served = 2;
-  approve(3, MoveTask{test::insertion, 1500}, mailbox_->stops.load());
+  channel_->served = 2;
+  approve(3, MoveTask{test::insertion, 1500}, channel_->stops.load());
   tick();
   EXPECT_EQ(move().phase, TaskPhase::executing);
 }
 
 TEST_F(NobodyServedTest, MotionEndsWhenTheDoorStandsStill) {
-  mailbox_->door_kept = 1;
-  EXPECT_TRUE(stops_within(far_longer_than_patience));
+  channel_->door_kept = 1;
+  EXPECT_TRUE(stops_within(far_longer_than_timeout));
 }
 
 TEST_F(NobodyServedTest, NothingIsMissedOfThreadsThatNeverBegan) { EXPECT_FALSE(stops_within(300)); }
@@ -241,15 +241,15 @@ TEST_F(ControlLoopTest, ARequestOlderThanTheStopIsNotSent) {
   tick();
   EXPECT_EQ(sent(ILK_REQUEST_ENABLE), nullptr);
   EXPECT_NE(sent(ILK_REQUEST_DISABLE), nullptr);
-  const auto answers = notices<Answer>();
+  const auto answers = notices<KernelResponse>();
   ASSERT_EQ(answers.size(), 1u);
-  EXPECT_EQ(answers[0].ticket, 7u);
+  EXPECT_EQ(answers[0].call_id, 7u);
   EXPECT_FALSE(answers[0].verdict);
 }
 
 TEST_F(ControlLoopTest, ARequestNewerThanTheStopIsSent) {
   stop();
-  Ask newer = ask(7, ILK_REQUEST_ENABLE);
+  KernelCall newer = ask(7, ILK_REQUEST_ENABLE);
   newer.stops = 1;
   command(newer);
   tick();
@@ -311,8 +311,8 @@ TEST_F(ControlLoopTest, ManyStopsInOneTickAreOneRequest) {
 }
 
 TEST_F(ControlLoopTest, SendsAtMostSixteenRequestsATickAndLosesNone) {
-  for (std::uint32_t ticket = 1; ticket <= 40; ++ticket) {
-    command(ask(ticket, ILK_REQUEST_ENABLE));
+  for (std::uint32_t call_id = 1; call_id <= 40; ++call_id) {
+    command(ask(call_id, ILK_REQUEST_ENABLE));
   }
   std::size_t asked = 0;
   for (int i = 0; i < 4; ++i) {
@@ -325,7 +325,7 @@ TEST_F(ControlLoopTest, SendsAtMostSixteenRequestsATickAndLosesNone) {
   }
   tick();
   EXPECT_EQ(asked, 40u);
-  EXPECT_EQ(notices<Answer>().size(), 40u);
+  EXPECT_EQ(notices<KernelResponse>().size(), 40u);
 }
 
 TEST_F(ControlLoopTest, PassesKernelEventsOn) {
@@ -343,10 +343,10 @@ TEST_F(ControlLoopTest, ReportsLostEventsAndTheAnswersThatWentWithThem) {
   tick();
   std::uint32_t lost = 0;
   std::size_t unanswered = 0;
-  mailbox_->notices.consume_all([&](const Notice& notice) {
+  channel_->notices.consume_all([&](const Notice& notice) {
     if (const auto* gap = std::get_if<EventsLost>(&notice)) {
       lost += gap->count;
-    } else if (const auto* answer = std::get_if<Answer>(&notice)) {
+    } else if (const auto* answer = std::get_if<KernelResponse>(&notice)) {
       unanswered += answer->verdict ? 0u : 1u;
     }
   });
@@ -371,7 +371,7 @@ TEST_F(ControlLoopTest, ALostVerdictThatMayHaveEndedAnOrderEndsIt) {
 
 TEST_F(ControlLoopTest, LostEventsLeaveOtherOrdersToTheSnapshot) {
   approve(1, MoveTask{test::insertion, 1500});
-  Ask other_axis = ask(7, ILK_REQUEST_DISABLE);
+  KernelCall other_axis = ask(7, ILK_REQUEST_DISABLE);
   other_axis.slot = test::rotation;
   command(other_axis);
   command(ask(8, ILK_REQUEST_ENABLE));
@@ -395,8 +395,8 @@ TEST_F(ControlLoopTest, ALostLinkEndsOrdersAndAnswersAsksAndIsAttachedAgain) {
   tick();
   EXPECT_EQ(move().phase, TaskPhase::aborted);
   EXPECT_EQ(move().reason, TaskReason::link_lost);
-  EXPECT_EQ(mailbox_->view.newest().generation, 2u);
-  const auto answers = notices<Answer>();
+  EXPECT_EQ(channel_->view.newest().generation, 2u);
+  const auto answers = notices<KernelResponse>();
   ASSERT_EQ(answers.size(), 1u);
   EXPECT_FALSE(answers[0].verdict);
   ASSERT_NE(sent(ILK_REQUEST_HEARTBEAT), nullptr);
@@ -486,7 +486,7 @@ class ReplayTest : public ControlLoopTest {
 };
 
 TEST_F(ReplayTest, SendsNothingAndTellsWhoeverAsks) {
-  mailbox_->holder = 7;
+  channel_->holder = 7;
   stop();
   command(ask(7, ILK_REQUEST_ENABLE));
   approve(1, MoveTask{test::insertion, 1500});
@@ -494,15 +494,15 @@ TEST_F(ReplayTest, SendsNothingAndTellsWhoeverAsks) {
     tick();
     ASSERT_TRUE(requests_.empty());
   }
-  EXPECT_TRUE(mailbox_->view.newest().replay);
-  EXPECT_EQ(mailbox_->view.newest().snapshot.state.system.tick, snapshot_.state.system.tick);
+  EXPECT_TRUE(channel_->view.newest().replay);
+  EXPECT_EQ(channel_->view.newest().snapshot.state.system.tick, snapshot_.state.system.tick);
   EXPECT_EQ(move().reason, TaskReason::link_lost);
   bool asked = false;
   bool stopped = false;
-  mailbox_->notices.consume_all([&](const Notice& notice) {
-    const auto* answer = std::get_if<Answer>(&notice);
+  channel_->notices.consume_all([&](const Notice& notice) {
+    const auto* answer = std::get_if<KernelResponse>(&notice);
     const auto* stop_answer = std::get_if<StopAnswer>(&notice);
-    asked |= answer != nullptr && answer->ticket == 7 && !answer->verdict;
+    asked |= answer != nullptr && answer->call_id == 7 && !answer->verdict;
     stopped |= stop_answer != nullptr && !stop_answer->verdict;
   });
   EXPECT_TRUE(asked);

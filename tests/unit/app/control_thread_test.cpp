@@ -24,7 +24,7 @@ TEST_F(ControlThread, AllocatesNothingWhileItTicks) {
       kernel_.push_verdict(request, ILK_VERDICT_RANGE, i);
     }
     kernel_.push_event({0, ILK_EVENT_AXIS, i, {}});
-    (void)notices<Answer>();
+    (void)notices<KernelResponse>();
   }
   EXPECT_EQ(test::counted_allocations(), 0u);
   test::count_allocations_of();

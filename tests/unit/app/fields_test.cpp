@@ -1,4 +1,4 @@
-#include "http/fields.hpp"
+#include "service/fields.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "network/launch.hpp"
+#include "system/launch.hpp"
 
 namespace interlock::web {
 namespace {
@@ -28,7 +28,7 @@ class FrontDoorTest : public testing::Test {
   FrontDoorTest() {
     EXPECT_TRUE(door_.listen({"127.0.0.1", 0}));
     launch(context_.get_executor(), door_.accept());
-    launch(context_.get_executor(), door_.beat());
+    launch(context_.get_executor(), door_.heartbeat());
     launch(context_.get_executor(), door_.listen_to_control());
     thread_ = std::jthread([this] { context_.run(); });
   }
@@ -78,10 +78,10 @@ class FrontDoorTest : public testing::Test {
 
   asio::io_context context_{1};
   asio::io_context clients_{1};
-  std::unique_ptr<Mailbox> mailbox_ = std::make_unique<Mailbox>();
+  std::unique_ptr<RealtimeChannel> channel_ = std::make_unique<RealtimeChannel>();
   std::vector<Guest> guests_;
   std::vector<StopMade> made_;
-  FrontDoor door_{context_.get_executor(), *mailbox_, capacity,
+  FrontDoor door_{context_.get_executor(), *channel_, capacity,
                   [this](Guest guest) { guests_.push_back(std::move(guest)); },
                   [this](StopMade made) { made_.push_back(std::move(made)); }};
   std::jthread thread_;
@@ -91,23 +91,23 @@ TEST_F(FrontDoorTest, AStopIsSentAndAnsweredThoughNobodyIsBehindTheDoor) {
   tcp::socket client = connect();
   send(client, "POST /api/stop");
   EXPECT_NE(answer_of(client).find("200 OK"), std::string::npos);
-  EXPECT_EQ(mailbox_->stops.load(), 1u);
+  EXPECT_EQ(channel_->stops.load(), 1u);
   send(client, "POST /api/stop");
   EXPECT_NE(answer_of(client).find("200 OK"), std::string::npos) << "on the same connection";
-  EXPECT_EQ(mailbox_->stops.load(), 2u);
+  EXPECT_EQ(channel_->stops.load(), 2u);
   EXPECT_EQ(in_door([&] { return made_.size(); }), 2u);
 }
 
 TEST_F(FrontDoorTest, TheKernelsVerdictIsTheAnswer) {
   tcp::socket client = connect();
   send(client, "POST /api/stop");
-  while (mailbox_->stops.load() == 0) {
+  while (channel_->stops.load() == 0) {
     std::this_thread::yield();
   }
   in_door([&] { return 0; });
-  mailbox_->stopped.writing() = {1, ILK_VERDICT_ACCEPTED, 77};
-  mailbox_->stopped.publish();
-  mailbox_->door_wake.signal();
+  channel_->stopped.writing() = {1, ILK_VERDICT_ACCEPTED, 77};
+  channel_->stopped.publish();
+  channel_->door_wake.signal();
   const std::string answer = answer_of(client);
   EXPECT_NE(answer.find(R"("tick":77)"), std::string::npos) << answer;
   EXPECT_NE(answer.find(R"("verdict":"ACCEPTED")"), std::string::npos) << answer;
@@ -123,7 +123,7 @@ TEST_F(FrontDoorTest, WhatIsNoStopIsLetInWhole) {
     asio::read_until(inside, asio::dynamic_buffer(request), "\r\n\r\n");
     EXPECT_TRUE(request.starts_with(line)) << request;
   }
-  EXPECT_EQ(mailbox_->stops.load(), 0u);
+  EXPECT_EQ(channel_->stops.load(), 0u);
 }
 
 TEST_F(FrontDoorTest, AConnectionThatHadAnotherAnswerComesBackAndMayStop) {
@@ -148,7 +148,7 @@ TEST_F(FrontDoorTest, StopsThatNobodyRecordsAreCountedAndToldWithTheNextThatIsRe
   for (tcp::socket& each : clients) {
     EXPECT_NE(answer_of(each).find("200 OK"), std::string::npos);
   }
-  EXPECT_EQ(mailbox_->stops.load(), FrontDoor::most_unrecorded + beyond) << "each is sent";
+  EXPECT_EQ(channel_->stops.load(), FrontDoor::most_unrecorded + beyond) << "each is sent";
   EXPECT_EQ(in_door([&] { return made_.size(); }), FrontDoor::most_unrecorded);
   door_.recorded();
   tcp::socket client = connect();
@@ -203,8 +203,8 @@ TEST_F(FrontDoorTest, AStopWhoseBodyIsNotThereYetIsAnsweredAtOnce) {
 }
 
 TEST_F(FrontDoorTest, ShowsThatItIsKept) {
-  const std::uint32_t before = mailbox_->door_kept.load();
-  while (mailbox_->door_kept.load() == before) {
+  const std::uint32_t before = channel_->door_kept.load();
+  while (channel_->door_kept.load() == before) {
     std::this_thread::yield();
   }
 }

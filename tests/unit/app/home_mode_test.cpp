@@ -31,17 +31,17 @@ class HomeModeTest : public testing::Test {
     mode_.take(test::task_of(proposal, HomeTask{angles, 1, {}}), snapshot_.state.system.tick);
   }
 
-  std::vector<Wish> tick(std::uint32_t ticks = 1) {
+  std::vector<KernelRequest> tick(std::uint32_t ticks = 1) {
     snapshot_.state.system.tick += ticks;
-    Wishes wishes;
-    mode_.tick(snapshot_, wishes);
-    return {wishes.all().begin(), wishes.all().end()};
+    KernelRequests requests;
+    mode_.tick(snapshot_, requests);
+    return {requests.all().begin(), requests.all().end()};
   }
 
   std::vector<std::uint32_t> kinds(std::uint32_t ticks = 1) {
     std::vector<std::uint32_t> found;
-    for (const Wish& wish : tick(ticks)) {
-      found.push_back(wish.origin.kind);
+    for (const KernelRequest& request : tick(ticks)) {
+      found.push_back(request.origin.kind);
     }
     return found;
   }
@@ -86,10 +86,10 @@ TEST_F(HomeModeTest, SendsNothingBeforeThePedal) {
 TEST_F(HomeModeTest, AsksOnceForEveryAxisOfTheStep) {
   home_angles();
   press();
-  const auto wishes = tick();
-  ASSERT_EQ(wishes.size(), 2u);
-  EXPECT_EQ(wishes[0].origin, (WishOrigin{ILK_REQUEST_HOME, yaw, 1}));
-  EXPECT_EQ(wishes[1].origin, (WishOrigin{ILK_REQUEST_HOME, pitch, 1}));
+  const auto requests = tick();
+  ASSERT_EQ(requests.size(), 2u);
+  EXPECT_EQ(requests[0].origin, (ModeOrigin{ILK_REQUEST_HOME, yaw, 1}));
+  EXPECT_EQ(requests[1].origin, (ModeOrigin{ILK_REQUEST_HOME, pitch, 1}));
   EXPECT_EQ(phase(), TaskPhase::executing);
   EXPECT_EQ(status().step, angles);
   EXPECT_THAT(tick(), testing::IsEmpty());
@@ -157,9 +157,9 @@ TEST_F(HomeModeTest, APressGoesOnOnlyWithTheAxesThatAreNotHomedYet) {
   release();
   (void)tick();
   press();
-  const auto wishes = tick();
-  ASSERT_EQ(wishes.size(), 1u);
-  EXPECT_EQ(wishes[0].origin.slot, pitch);
+  const auto requests = tick();
+  ASSERT_EQ(requests.size(), 1u);
+  EXPECT_EQ(requests[0].origin.slot, pitch);
 }
 
 TEST_F(HomeModeTest, APressThatNobodySawReleasedAsksAgain) {
@@ -303,8 +303,8 @@ TEST_F(HomeModeTest, TellsWhatIsLeftOfTheLongestNudgeThereIs) {
   const auto tick = [&](std::uint32_t system_mode) {
     ++snapshot_.state.system.tick;
     snapshot_.state.system.mode = system_mode;
-    Wishes wishes;
-    mode.tick(snapshot_, wishes);
+    KernelRequests requests;
+    mode.tick(snapshot_, requests);
   };
   mode.take(test::task_of(1, HomeTask{0, 1, {}}), snapshot_.state.system.tick);
   tick(ILK_MODE_MOTION);

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "proposals/home_plan.hpp"
-#include "proposals/proposal_book.hpp"
+#include "proposals/checks.hpp"
+#include "proposals/motion_registry.hpp"
 #include "proposals/proposal_json.hpp"
 #include "robot_fixture.hpp"
 
@@ -41,7 +41,7 @@ class HomeProposalTest : public testing::Test {
  protected:
   HomeProposalTest()
       : view_(test::ready_view()),
-        book_(
+        registry_(
             robot(), neuro_config(),
             [this](const Command& command) {
               if (accepts_) {
@@ -50,11 +50,11 @@ class HomeProposalTest : public testing::Test {
               return accepts_;
             },
             [] { return UtcTime{}; }) {
-    book_.on_mode_change([this](std::string_view mode) { modes_.emplace_back(mode); });
+    registry_.on_mode_change([this](std::string_view mode) { modes_.emplace_back(mode); });
   }
 
   tl::expected<Proposal, Refusal> home(HomeTask task, TaskSource source = TaskSource::console) {
-    return book_.propose({std::move(task), "ann", RobotMode::home, source}, view_);
+    return registry_.propose({std::move(task), "ann", RobotMode::home, source}, view_);
   }
   tl::expected<Proposal, Refusal> home_axis(std::uint32_t slot = insertion) {
     return home(interlock::home_axis(slot));
@@ -66,13 +66,13 @@ class HomeProposalTest : public testing::Test {
     return interlock::home_all(robot()).and_then([&](HomeTask task) { return home(std::move(task)); });
   }
   tl::expected<Proposal, Refusal> move(std::uint32_t slot = insertion) {
-    return book_.propose({MoveTask{slot, 1000}, "ann"}, view_);
+    return registry_.propose({MoveTask{slot, 1000}, "ann"}, view_);
   }
 
   void report(const TaskStatus& status) {
     ControlView view;
     view.tasks.of(TaskKind::home) = status;
-    book_.follow(view);
+    registry_.follow(view);
   }
   void report(TaskPhase phase, TaskReason reason = TaskReason::none, std::uint32_t code = 0,
               std::uint32_t step = 0, std::uint32_t slot = insertion, std::int32_t left_counts = 0) {
@@ -80,22 +80,22 @@ class HomeProposalTest : public testing::Test {
   }
 
   ilk_axis_t& axis(std::uint32_t slot) { return view_.snapshot.state.axis[slot]; }
-  [[nodiscard]] ProposalState state(std::uint32_t id) const { return book_.find(id)->state; }
-  [[nodiscard]] const std::string& detail() const { return book_.find(1)->detail; }
+  [[nodiscard]] ProposalState state(std::uint32_t id) const { return registry_.find(id)->state; }
+  [[nodiscard]] const std::string& detail() const { return registry_.find(1)->detail; }
 
   void expect_refused(const tl::expected<Proposal, Refusal>& proposal, const std::string& code) {
     ASSERT_FALSE(proposal);
     EXPECT_EQ(proposal.error().code, code);
     EXPECT_FALSE(proposal.error().next_step.empty());
     EXPECT_THAT(sent_, IsEmpty());
-    EXPECT_EQ(book_.app_mode(), "manual");
+    EXPECT_EQ(registry_.app_mode(), "manual");
   }
 
   ControlView view_;
   bool accepts_ = true;
   std::vector<Command> sent_;
   std::vector<std::string> modes_;
-  ProposalBook book_;
+  MotionRegistry registry_;
 };
 
 TEST_F(HomeProposalTest, OrdersOneAxis) {
@@ -116,17 +116,17 @@ TEST_F(HomeProposalTest, AWishFromOpenIgtLinkWaitsUntilSomebodyApprovesIt) {
   EXPECT_EQ(waiting->state, ProposalState::checked);
   EXPECT_EQ(waiting->task->source, TaskSource::openigtlink);
   EXPECT_THAT(sent_, IsEmpty());
-  EXPECT_EQ(book_.app_mode(), "manual");
-  ASSERT_TRUE(book_.approve(waiting->id, view_));
+  EXPECT_EQ(registry_.app_mode(), "manual");
+  ASSERT_TRUE(registry_.approve(waiting->id, view_));
   EXPECT_EQ(std::get<HomeTask>(std::get<Approval>(sent_.at(0)).task->work).slots.front(), insertion);
-  EXPECT_EQ(book_.app_mode(), "home");
+  EXPECT_EQ(registry_.app_mode(), "home");
 }
 
 TEST_F(HomeProposalTest, WhatWaitsIsCheckedAnewWhenItIsApproved) {
   const auto waiting = home(interlock::home_axis(insertion), TaskSource::openigtlink);
   ASSERT_TRUE(waiting);
   axis(insertion).state = ILK_AXIS_DISABLED;
-  const auto refused = book_.approve(waiting->id, view_);
+  const auto refused = registry_.approve(waiting->id, view_);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, "DISABLED");
   EXPECT_EQ(state(waiting->id), ProposalState::refused);
@@ -153,7 +153,7 @@ TEST_F(HomeProposalTest, OrdersAllStepsInTheOrderOfTheFile) {
 
 TEST_F(HomeProposalTest, ShowsWhatTheInterfaceDescribes) {
   (void)home_step("angles");
-  const nlohmann::json open = to_json(*book_.find(1));
+  const nlohmann::json open = to_json(*registry_.find(1));
   EXPECT_EQ(open["kind"], "home");
   EXPECT_TRUE(open["slot"].is_null());
   EXPECT_TRUE(open["axis"].is_null());
@@ -163,11 +163,11 @@ TEST_F(HomeProposalTest, ShowsWhatTheInterfaceDescribes) {
   EXPECT_TRUE(open["target"].is_null());
   EXPECT_TRUE(open["target_counts"].is_null());
   report(TaskPhase::done, TaskReason::arrived, 0, angles);
-  EXPECT_TRUE(to_json(*book_.find(1))["step"].is_null());
+  EXPECT_TRUE(to_json(*registry_.find(1))["step"].is_null());
   (void)home_axis();
-  EXPECT_EQ(to_json(*book_.find(2))["slot"], insertion);
-  EXPECT_EQ(to_json(*book_.find(2))["axis"], "insertion");
-  EXPECT_TRUE(to_json(*book_.find(2))["step"].is_null());
+  EXPECT_EQ(to_json(*registry_.find(2))["slot"], insertion);
+  EXPECT_EQ(to_json(*registry_.find(2))["axis"], "insertion");
+  EXPECT_TRUE(to_json(*registry_.find(2))["step"].is_null());
 }
 
 TEST_F(HomeProposalTest, ReplacesEveryOpenProposal) {
@@ -178,8 +178,8 @@ TEST_F(HomeProposalTest, ReplacesEveryOpenProposal) {
   for (const std::uint32_t id : {1u, 2u, 3u}) {
     EXPECT_EQ(state(id), ProposalState::aborted) << id;
   }
-  EXPECT_THAT(book_.find(3)->detail, HasSubstr("proposal 4"));
-  EXPECT_EQ(book_.open_home()->id, 4u);
+  EXPECT_THAT(registry_.find(3)->detail, HasSubstr("proposal 4"));
+  EXPECT_EQ(registry_.open_home()->id, 4u);
 }
 
 TEST_F(HomeProposalTest, ARefusedOneReplacesNothing) {
@@ -188,7 +188,7 @@ TEST_F(HomeProposalTest, ARefusedOneReplacesNothing) {
   EXPECT_FALSE(home_axis());
   EXPECT_EQ(state(1), ProposalState::approved);
   EXPECT_EQ(state(2), ProposalState::refused);
-  EXPECT_EQ(book_.find(2)->verdict, "DISABLED");
+  EXPECT_EQ(registry_.find(2)->verdict, "DISABLED");
 }
 
 TEST_F(HomeProposalTest, MovesAreRefusedUntilItHasEnded) {
@@ -204,31 +204,31 @@ TEST_F(HomeProposalTest, MovesAreRefusedUntilItHasEnded) {
 }
 
 TEST_F(HomeProposalTest, TellsTheModeOnEachChange) {
-  EXPECT_EQ(book_.app_mode(), "manual");
+  EXPECT_EQ(registry_.app_mode(), "manual");
   (void)move();
   EXPECT_THAT(modes_, IsEmpty());
   (void)home_axis();
-  EXPECT_EQ(book_.app_mode(), "home");
+  EXPECT_EQ(registry_.app_mode(), "home");
   (void)home_step("angles");
-  (void)book_.abort(3);
-  EXPECT_EQ(book_.app_mode(), "manual");
+  (void)registry_.abort(3);
+  EXPECT_EQ(registry_.app_mode(), "manual");
   (void)home_axis();
-  book_.abort_all("STOP.");
+  registry_.abort_all("STOP.");
   EXPECT_THAT(modes_, ElementsAre("home", "manual", "home", "manual"));
 }
 
 TEST_F(HomeProposalTest, KnowsWhichAxesAreBeingHomed) {
   (void)home_step("angles");
-  EXPECT_TRUE(book_.homes(yaw));
-  EXPECT_FALSE(book_.homes(insertion));
-  EXPECT_EQ(book_.open_of(yaw), nullptr);
-  (void)book_.abort(1);
-  EXPECT_FALSE(book_.homes(yaw));
+  EXPECT_TRUE(registry_.homes(yaw));
+  EXPECT_FALSE(registry_.homes(insertion));
+  EXPECT_EQ(registry_.open_of(yaw), nullptr);
+  (void)registry_.abort(1);
+  EXPECT_FALSE(registry_.homes(yaw));
 }
 
 TEST_F(HomeProposalTest, AbortCancelsTheOrder) {
   (void)home_axis();
-  ASSERT_TRUE(book_.abort(1));
+  ASSERT_TRUE(registry_.abort(1));
   EXPECT_EQ(std::get<Cancel>(sent_.at(1)).task, 1u);
 }
 
@@ -267,7 +267,7 @@ TEST_F(HomeProposalTest, RefusesAnAxisWithoutASwitch) {
 TEST_F(HomeProposalTest, RefusesAMoveOfAnAxisThatIsNotHomedByThen) {
   axis(insertion).homed = 0;
   EXPECT_TRUE(home_all());
-  ASSERT_TRUE(book_.abort(1));
+  ASSERT_TRUE(registry_.abort(1));
   sent_.clear();
   expect_refused(home_step("park"), "NOT_HOMED");
   axis(insertion).homed = 1;
@@ -281,7 +281,7 @@ TEST_F(HomeProposalTest, RefusesWhatTheRobotDoesNotHave) {
   expect_refused(home_axis(test::empty_slot), "AXIS");
   expect_refused(home_step("nowhere"), "NOT_FOUND");
   EXPECT_THAT(home_step("nowhere").error().expected, HasSubstr("probe_out, angles, base"));
-  EXPECT_THAT(book_.newest_first(), IsEmpty());
+  EXPECT_THAT(registry_.newest_first(), IsEmpty());
 }
 
 TEST_F(HomeProposalTest, SaysWhenTheControlThreadTakesNothing) {
@@ -292,7 +292,8 @@ TEST_F(HomeProposalTest, SaysWhenTheControlThreadTakesNothing) {
 TEST_F(HomeProposalTest, TellsEachStepInWords) {
   std::vector<std::string> told;
   (void)home_all();
-  book_.on_change([&](const Proposal& proposal) { told.push_back(proposal.step + ": " + proposal.detail); });
+  registry_.on_change(
+      [&](const Proposal& proposal) { told.push_back(proposal.step + ": " + proposal.detail); });
   report(TaskPhase::executing, TaskReason::none, 0, 0);
   report(TaskPhase::executing, TaskReason::none, 0, 0);
   report(TaskPhase::executing, TaskReason::none, 0, angles);
@@ -332,7 +333,7 @@ TEST_F(HomeProposalTest, NamesTheAxisThatEndedIt) {
   (void)home_step("angles");
   report(TaskPhase::aborted, TaskReason::axis_faulted, ILK_FAULT_STALL, angles, pitch);
   EXPECT_EQ(state(1), ProposalState::aborted);
-  EXPECT_EQ(book_.find(1)->verdict, "FAULTED");
+  EXPECT_EQ(registry_.find(1)->verdict, "FAULTED");
   EXPECT_THAT(detail(), HasSubstr("Pitch faulted. STALL"));
 }
 
@@ -340,16 +341,16 @@ TEST_F(HomeProposalTest, AKernelRefusalEndsItWithItsVerdict) {
   (void)home_axis();
   report(TaskPhase::refused, TaskReason::kernel_refused, ILK_VERDICT_BUSY);
   EXPECT_EQ(state(1), ProposalState::refused);
-  EXPECT_EQ(book_.find(1)->verdict, "BUSY");
+  EXPECT_EQ(registry_.find(1)->verdict, "BUSY");
 }
 
 TEST_F(HomeProposalTest, AnEndIsFinalWhateverALateReportSays) {
   (void)home_axis();
-  ASSERT_TRUE(book_.abort(1));
+  ASSERT_TRUE(registry_.abort(1));
   report(TaskPhase::executing);
   report(TaskPhase::done, TaskReason::arrived);
   EXPECT_EQ(state(1), ProposalState::aborted);
-  EXPECT_EQ(book_.app_mode(), "manual");
+  EXPECT_EQ(registry_.app_mode(), "manual");
 }
 
 TEST_F(HomeProposalTest, ExpiresAsTheOrderDoes) {

@@ -5,8 +5,8 @@
 #include <boost/beast/http.hpp>
 #include <fstream>
 
-#include "network/launch.hpp"
 #include "store/sessions.hpp"
+#include "system/launch.hpp"
 
 namespace interlock::web {
 
@@ -62,7 +62,7 @@ HttpTest::HttpTest(const Robot& robot, const ilk_config_t& config) : robot_(robo
   const auto listening = server_.door().listen({"127.0.0.1", 0});
   EXPECT_TRUE(listening);
   launch(network_.get_executor(), api_.listen());
-  launch(network_.get_executor(), api_.beat());
+  launch(network_.get_executor(), api_.broadcast());
   launch(network_.get_executor(), api_.sweep_sessions(std::chrono::milliseconds(5)));
   launch(network_.get_executor(), server_.door().accept());
   launch(network_.get_executor(), server_.door().listen_to_control());
@@ -70,7 +70,7 @@ HttpTest::HttpTest(const Robot& robot, const ilk_config_t& config) : robot_(robo
   log_in("edna");
   EXPECT_EQ(post("/api/authority/request").status, 200u);
   // The test is the control thread: it has seen the STOP that a change of the authority is.
-  mailbox_->stops = 0;
+  channel_->stops = 0;
 }
 
 HttpTest::~HttpTest() {
@@ -121,15 +121,15 @@ Answered HttpTest::post_raw(const std::string& bytes) {
 }
 
 void HttpTest::show(const ControlView& view, std::chrono::milliseconds age) {
-  mailbox_->view.writing() = view;
-  mailbox_->view.writing().received = steady_now() - age;
-  mailbox_->view.publish();
-  mailbox_->network_wake.signal();
+  channel_->view.writing() = view;
+  channel_->view.writing().received = steady_now() - age;
+  channel_->view.publish();
+  channel_->network_wake.signal();
 }
 
 Command HttpTest::next_command() {
   Command command;
-  while (!mailbox_->commands.pop(command)) {
+  while (!channel_->commands.pop(command)) {
     std::this_thread::yield();
   }
   return command;
@@ -137,12 +137,12 @@ Command HttpTest::next_command() {
 
 void HttpTest::answer(const Notice& notice) {
   if (const auto* stopped = std::get_if<StopAnswer>(&notice)) {
-    mailbox_->stopped.writing() = *stopped;
-    mailbox_->stopped.publish();
-    mailbox_->door_wake.signal();
+    channel_->stopped.writing() = *stopped;
+    channel_->stopped.publish();
+    channel_->door_wake.signal();
   }
-  ASSERT_TRUE(mailbox_->notices.push(notice));
-  mailbox_->network_wake.signal();
+  ASSERT_TRUE(channel_->notices.push(notice));
+  channel_->network_wake.signal();
 }
 
 test::StreamClient HttpTest::open_stream() {
@@ -156,8 +156,8 @@ unsigned HttpTest::status_of_one_more_stream() {
 }
 
 std::uint32_t HttpTest::accept_next() {
-  const auto asked = std::get<Ask>(next_command());
-  answer(Answer{asked.ticket, ILK_VERDICT_ACCEPTED, 6});
+  const auto asked = std::get<KernelCall>(next_command());
+  answer(KernelResponse{asked.call_id, ILK_VERDICT_ACCEPTED, 6});
   return asked.kind;
 }
 

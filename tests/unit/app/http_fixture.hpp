@@ -1,7 +1,7 @@
 /**
  * @file
  * The server on a real socket; the test is its clients, and the control thread at the other end of the
- * mailbox.
+ * channel.
  */
 #pragma once
 
@@ -17,8 +17,8 @@
 #include <thread>
 
 #include "http/server.hpp"
-#include "http/store_gateway.hpp"
 #include "robot_fixture.hpp"
+#include "service/store_executor.hpp"
 #include "store/audit.hpp"
 #include "stream_client.hpp"
 #include "temporary_folder.hpp"
@@ -165,17 +165,17 @@ class HttpTest : public StoreFixture {
   asio::io_context network_{1};
   asio::io_context client_{1};
   std::unique_ptr<Log> log_ = Log::start({}, LogLevel::info).value();
-  std::unique_ptr<Mailbox> mailbox_ = std::make_unique<Mailbox>();
-  StoreGateway gateway_{network_.get_executor(), store_, std::chrono::minutes(10)};
+  std::unique_ptr<RealtimeChannel> channel_ = std::make_unique<RealtimeChannel>();
+  StoreExecutor gateway_{network_.get_executor(), store_, std::chrono::minutes(10)};
   Api api_{network_.get_executor(),
            robot_,
            config_,
-           *mailbox_,
+           *channel_,
            "",
            gateway_,
            *log_,
            Clocks{[this] { return now(); }, [this] { return steady_now(); }}};
-  Server server_{network_.get_executor(), network_.get_executor(), api_, *mailbox_,
+  Server server_{network_.get_executor(), network_.get_executor(), api_, *channel_,
                  StaticFiles(with_first_page(web_.path()))};
   std::jthread thread_;
 };

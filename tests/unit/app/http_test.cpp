@@ -122,7 +122,7 @@ TEST_F(HttpTest, NoByteOfABodyWhoseEndIsUnclearIsTakenForARequest) {
     EXPECT_THAT(answers, HasSubstr("Connection: close")) << framing;
     EXPECT_EQ(answers.find("Connection: close"), answers.rfind("Connection: close")) << framing << answers;
   }
-  EXPECT_EQ(mailbox_->stops.load(), 0u);
+  EXPECT_EQ(channel_->stops.load(), 0u);
 }
 
 TEST_F(HttpTest, ABodyInChunksIsRead) {
@@ -140,7 +140,7 @@ TEST_F(HttpTest, ARequestNamesOneHost) {
       EXPECT_EQ(answered.problem()["code"], "MALFORMED") << line;
     }
   }
-  EXPECT_EQ(mailbox_->stops.load(), 0u);
+  EXPECT_EQ(channel_->stops.load(), 0u);
 }
 
 TEST_F(HttpTest, AnEncodedSlashReachesNoRoute) {
@@ -151,7 +151,7 @@ TEST_F(HttpTest, AnEncodedSlashReachesNoRoute) {
     EXPECT_EQ(answered.problem()["code"], "MALFORMED") << target;
   }
   EXPECT_EQ(post("/api%2fstop").status, 400u);
-  EXPECT_EQ(mailbox_->stops.load(), 0u);
+  EXPECT_EQ(channel_->stops.load(), 0u);
 }
 
 TEST_F(HttpTest, APageOfAnotherOriginChangesNothing) {
@@ -163,14 +163,14 @@ TEST_F(HttpTest, APageOfAnotherOriginChangesNothing) {
     EXPECT_EQ(answered.status, 403u) << origin;
     EXPECT_EQ(answered.problem()["code"], "ORIGIN");
   }
-  EXPECT_EQ(mailbox_->stops.load(), 0u);
+  EXPECT_EQ(channel_->stops.load(), 0u);
 }
 
 TEST_F(HttpTest, ThePageOfThisServerMay) {
   Request request{http::verb::post, "/api/stop", 11};
   request.set(http::field::origin, "http://" + host());
   EXPECT_EQ(send(request).status, 200u);
-  EXPECT_EQ(mailbox_->stops.load(), 1u);
+  EXPECT_EQ(channel_->stops.load(), 1u);
 }
 
 TEST_F(HttpTest, ARequestForAnotherHostIsRefused) {
@@ -236,7 +236,7 @@ TEST_F(HttpTest, StopIsAnsweredWithoutAKernel) {
   const Answered answered = post("/api/stop");
   EXPECT_EQ(answered.status, 200u);
   EXPECT_TRUE(json::parse(answered.body)["verdict"].is_null());
-  EXPECT_EQ(mailbox_->stops.load(), 1u);
+  EXPECT_EQ(channel_->stops.load(), 1u);
 }
 
 TEST_F(HttpTest, StopIsAnsweredWhileOtherRequestsHang) {
@@ -246,7 +246,7 @@ TEST_F(HttpTest, StopIsAnsweredWhileOtherRequestsHang) {
   tcp::socket half_open = connect();
   asio::write(half_open, asio::buffer(std::string("POST /api/proposals HTTP/1.1\r\n")));
   auto stopping = std::async(std::launch::async, [this] { return post("/api/stop"); });
-  while (mailbox_->stops.load() == 0) {
+  while (channel_->stops.load() == 0) {
     std::this_thread::yield();
   }
   answer(StopAnswer{1, ILK_VERDICT_ACCEPTED, 5});
@@ -254,14 +254,14 @@ TEST_F(HttpTest, StopIsAnsweredWhileOtherRequestsHang) {
   EXPECT_EQ(stopped.status, 200u);
   EXPECT_EQ(json::parse(stopped.body)["verdict"], "ACCEPTED");
   EXPECT_EQ(hanging.wait_for(std::chrono::seconds(0)), std::future_status::timeout);
-  answer(Answer{std::get<Ask>(asked).ticket, ILK_VERDICT_ACCEPTED, 6});
+  answer(KernelResponse{std::get<KernelCall>(asked).call_id, ILK_VERDICT_ACCEPTED, 6});
   EXPECT_EQ(hanging.get().status, 200u);
 }
 
 TEST_F(HttpTest, AStopThatTheDoorDoesNotRecogniseIsObeyedAndAnsweredAllTheSame) {
   const std::string end = " HTTP/1.1\r\nHost: " + host() + "\r\nContent-Length: 0\r\n\r\n";
   EXPECT_EQ(post_raw("POST /api/%73top" + end).status, 200u);
-  EXPECT_EQ(mailbox_->stops.load(), 1u);
+  EXPECT_EQ(channel_->stops.load(), 1u);
   tcp::socket socket = connect();
   asio::write(socket,
               asio::buffer("GET /api/status HTTP/1.1\r\nHost: " + host() + "\r\n\r\nPOST /api/stop" + end));
@@ -271,7 +271,7 @@ TEST_F(HttpTest, AStopThatTheDoorDoesNotRecogniseIsObeyedAndAnsweredAllTheSame) 
     http::read(socket, buffer, response);
     EXPECT_EQ(response.result_int(), 200u);
   }
-  EXPECT_EQ(mailbox_->stops.load(), 2u);
+  EXPECT_EQ(channel_->stops.load(), 2u);
 }
 
 TEST_F(HttpTest, StopAbortsEveryOpenProposal) {
@@ -294,10 +294,10 @@ TEST_F(HttpTest, AnOrderCarriesTheStopsThatItsAuthorHasSeen) {
 TEST_F(HttpTest, AVerdictOfTheKernelIsTheAnswer) {
   show(test::ready_view());
   auto asking = std::async(std::launch::async, [this] { return post("/api/motors/3/clear-fault"); });
-  const auto ask = std::get<Ask>(next_command());
+  const auto ask = std::get<KernelCall>(next_command());
   EXPECT_EQ(ask.kind, static_cast<std::uint32_t>(ILK_REQUEST_CLEAR_FAULT));
   EXPECT_EQ(ask.slot, insertion);
-  answer(Answer{ask.ticket, ILK_VERDICT_MODE, 6});
+  answer(KernelResponse{ask.call_id, ILK_VERDICT_MODE, 6});
   const Answered answered = asking.get();
   EXPECT_EQ(answered.status, 409u);
   EXPECT_EQ(answered.problem()["code"], "MODE");
@@ -307,7 +307,7 @@ TEST_F(HttpTest, AVerdictOfTheKernelIsTheAnswer) {
 TEST_F(HttpTest, ALostAnswerSaysThatTheKernelDidNotAnswer) {
   show(test::ready_view());
   auto asking = std::async(std::launch::async, [this] { return post("/api/reset"); });
-  answer(Answer{std::get<Ask>(next_command()).ticket, std::nullopt, 0});
+  answer(KernelResponse{std::get<KernelCall>(next_command()).call_id, std::nullopt, 0});
   EXPECT_EQ(asking.get().status, 503u);
 }
 
@@ -390,7 +390,7 @@ TEST_F(HttpTest, AClientThatCannotKeepUpIsDroppedNotItsMessages) {
   auto stream = open_stream();
   ASSERT_TRUE(stream.next());
   in_network([this] {
-    for (std::size_t i = 0; i <= StreamHub::backlog; ++i) {
+    for (std::size_t i = 0; i <= Broadcaster::backlog; ++i) {
       api_.stream().send_text({{"number", i}});
     }
   });
@@ -400,12 +400,12 @@ TEST_F(HttpTest, AClientThatCannotKeepUpIsDroppedNotItsMessages) {
       EXPECT_EQ(json::parse(message->data)["number"], expected++);
     }
   }
-  EXPECT_LE(expected, StreamHub::backlog);
+  EXPECT_LE(expected, Broadcaster::backlog);
   EXPECT_EQ(get("/api/status").status, 200u);
 }
 
 TEST_F(HttpTest, ClosedStreamsMakeRoomForOthers) {
-  for (std::size_t i = 0; i < 2 * StreamHub::capacity; ++i) {
+  for (std::size_t i = 0; i < 2 * Broadcaster::capacity; ++i) {
     open_stream().close();
   }
   for (bool empty = false; !empty;) {
@@ -416,8 +416,8 @@ TEST_F(HttpTest, ClosedStreamsMakeRoomForOthers) {
 
 TEST_F(HttpTest, TooManyStreamsAreRefusedByName) {
   std::vector<test::StreamClient> streams;
-  for (std::size_t i = 0; i < StreamHub::capacity; ++i) {
-    if (i % StreamHub::session_capacity == 0) {
+  for (std::size_t i = 0; i < Broadcaster::capacity; ++i) {
+    if (i % Broadcaster::session_capacity == 0) {
       log_in("edna");
     }
     streams.push_back(open_stream());
@@ -435,7 +435,7 @@ TEST_F(HttpTest, IdleConnectionsMakeRoomForNewOnes) {
 }
 
 TEST_F(HttpTest, APortThatIsBusyIsNamed) {
-  Server second(network_.get_executor(), network_.get_executor(), api_, *mailbox_, StaticFiles({}));
+  Server second(network_.get_executor(), network_.get_executor(), api_, *channel_, StaticFiles({}));
   const auto listening = second.door().listen({"127.0.0.1", server_.port()});
   ASSERT_FALSE(listening);
   EXPECT_THAT(listening.error(), HasSubstr(std::to_string(server_.port())));
@@ -444,7 +444,7 @@ TEST_F(HttpTest, APortThatIsBusyIsNamed) {
 
 TEST_F(HttpTest, NoOtherMachineIsLetIn) {
   for (const std::string address : {"0.0.0.0", "::", "192.0.2.1", "example"}) {
-    Server server(network_.get_executor(), network_.get_executor(), api_, *mailbox_, StaticFiles({}));
+    Server server(network_.get_executor(), network_.get_executor(), api_, *channel_, StaticFiles({}));
     const auto listening = server.door().listen({address, 0});
     ASSERT_FALSE(listening) << address;
     EXPECT_THAT(listening.error(), HasSubstr(address));

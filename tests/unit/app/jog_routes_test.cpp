@@ -35,7 +35,7 @@ TEST_F(JogRoutesTest, AtItsEndAnAxisDoesNotJogBackwards) {
   EXPECT_EQ(answered.status, 409u);
   EXPECT_EQ(answered.problem()["code"], "RANGE");
   Command command;
-  EXPECT_FALSE(mailbox_->commands.pop(command));
+  EXPECT_FALSE(channel_->commands.pop(command));
 }
 
 TEST_F(JogRoutesTest, AJogIsHeldFromItsBeginAndEachRenewalSaysSince) {
@@ -60,7 +60,7 @@ TEST_F(JogRoutesTest, NobodyConsentsToMotionByAStateThatIsOld) {
     EXPECT_EQ(refused.problem()["code"], "NO_KERNEL") << path;
   }
   Command command;
-  EXPECT_FALSE(mailbox_->commands.pop(command));
+  EXPECT_FALSE(channel_->commands.pop(command));
   show(test::ready_view(), std::chrono::milliseconds(250));
   EXPECT_EQ(post("/api/proposals", move).status, 201u);
 }

@@ -15,14 +15,14 @@ using std::chrono::milliseconds;
 using test::KernelSide;
 using testing::HasSubstr;
 
-constexpr milliseconds patience{300'000};
+constexpr milliseconds timeout{300'000};
 constexpr milliseconds at_once{0};
 
 class LinkClientTest : public testing::Test {
  protected:
   tl::expected<void, LinkError> attach() {
     std::future<void> accepted = std::async(std::launch::async, [this] { kernel_.accept(); });
-    auto attached = client_.attach(patience);
+    auto attached = client_.attach(timeout);
     accepted.get();
     return attached;
   }
@@ -122,7 +122,7 @@ TEST_F(LinkClientTest, HasNoSnapshotBeforeTheFirst) {
 TEST_F(LinkClientTest, ReadsEachSnapshotOnce) {
   ASSERT_TRUE(attach());
   kernel_.publish(snapshot(7));
-  EXPECT_EQ(client_.wait(patience), LinkWait::snapshot);
+  EXPECT_EQ(client_.wait(timeout), LinkWait::snapshot);
   ilk_snapshot_t seen{};
   ASSERT_TRUE(client_.read_snapshot(seen));
   EXPECT_EQ(seen.state.system.tick, 7u);
@@ -131,7 +131,7 @@ TEST_F(LinkClientTest, ReadsEachSnapshotOnce) {
 
 TEST_F(LinkClientTest, WakesWhenASnapshotComes) {
   ASSERT_TRUE(attach());
-  auto waiting = std::async(std::launch::async, [&] { return client_.wait(patience); });
+  auto waiting = std::async(std::launch::async, [&] { return client_.wait(timeout); });
   kernel_.publish(snapshot(1));
   EXPECT_EQ(waiting.get(), LinkWait::snapshot);
 }

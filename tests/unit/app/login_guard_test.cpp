@@ -1,4 +1,4 @@
-#include "http/login_guard.hpp"
+#include "service/login_guard.hpp"
 
 #include <gtest/gtest.h>
 

@@ -23,11 +23,11 @@ class ManualModeTest : public testing::Test {
     mode_.take(test::task_of(proposal, MoveTask{slot, target, drive}), snapshot_.state.system.tick);
   }
 
-  std::vector<Wish> tick(std::uint32_t ticks = 1) {
+  std::vector<KernelRequest> tick(std::uint32_t ticks = 1) {
     snapshot_.state.system.tick += ticks;
-    Wishes wishes;
-    mode_.tick(snapshot_, wishes);
-    return {wishes.all().begin(), wishes.all().end()};
+    KernelRequests requests;
+    mode_.tick(snapshot_, requests);
+    return {requests.all().begin(), requests.all().end()};
   }
 
   void press() {
@@ -55,12 +55,12 @@ TEST_F(ManualModeTest, SendsNothingBeforeThePedal) {
 TEST_F(ManualModeTest, MovesTowardsTheTargetWhileThePedalIsHeld) {
   order();
   snapshot_.state.system.mode = ILK_MODE_MOTION;
-  const auto wishes = tick();
-  ASSERT_EQ(wishes.size(), 1u);
-  EXPECT_EQ(wishes[0].origin.task, 1u);
-  EXPECT_EQ(wishes[0].origin.slot, insertion);
-  EXPECT_EQ(wishes[0].target_counts, 1500);
-  EXPECT_EQ(wishes[0].drive, neuro_config().axis[insertion].max_drive);
+  const auto requests = tick();
+  ASSERT_EQ(requests.size(), 1u);
+  EXPECT_EQ(requests[0].origin.task, 1u);
+  EXPECT_EQ(requests[0].origin.slot, insertion);
+  EXPECT_EQ(requests[0].target_counts, 1500);
+  EXPECT_EQ(requests[0].drive, neuro_config().axis[insertion].max_drive);
   EXPECT_EQ(status().phase, TaskPhase::executing);
 }
 
@@ -217,10 +217,10 @@ TEST_F(ManualModeTest, CancellingGivesBackTheLease) {
   press();
   axis().state = ILK_AXIS_MOVING;
   mode_.end(1, TaskReason::cancelled, snapshot_.state.system.tick);
-  const auto wishes = tick();
-  ASSERT_EQ(wishes.size(), 1u);
-  EXPECT_EQ(wishes[0].drive, 1u);
-  EXPECT_EQ(wishes[0].lease_ticks, 1u);
+  const auto requests = tick();
+  ASSERT_EQ(requests.size(), 1u);
+  EXPECT_EQ(requests[0].drive, 1u);
+  EXPECT_EQ(requests[0].lease_ticks, 1u);
   EXPECT_THAT(tick(), testing::IsEmpty());
 }
 
@@ -229,10 +229,10 @@ TEST_F(ManualModeTest, CancellingGivesBackALeaseThatNoSnapshotShowsYet) {
   press();
   ASSERT_EQ(axis().state, static_cast<std::uint32_t>(ILK_AXIS_ENABLED));
   mode_.end(1, TaskReason::cancelled, snapshot_.state.system.tick);
-  const auto wishes = tick();
-  ASSERT_EQ(wishes.size(), 1u);
-  EXPECT_EQ(wishes[0].drive, 1u);
-  EXPECT_EQ(wishes[0].lease_ticks, 1u);
+  const auto requests = tick();
+  ASSERT_EQ(requests.size(), 1u);
+  EXPECT_EQ(requests[0].drive, 1u);
+  EXPECT_EQ(requests[0].lease_ticks, 1u);
   EXPECT_THAT(tick(), testing::IsEmpty());
 }
 
@@ -243,10 +243,10 @@ TEST_F(ManualModeTest, CancellingGivesBackTheLeaseWhoseRenewalWasNotSent) {
   const auto renewal = tick(neuro_config().common.lease_max_ticks);
   mode_.on_unsent(renewal.at(0));
   mode_.end(1, TaskReason::cancelled, snapshot_.state.system.tick);
-  const auto wishes = tick();
-  ASSERT_EQ(wishes.size(), 1u);
-  EXPECT_EQ(wishes[0].drive, 1u);
-  EXPECT_EQ(wishes[0].lease_ticks, 1u);
+  const auto requests = tick();
+  ASSERT_EQ(requests.size(), 1u);
+  EXPECT_EQ(requests[0].drive, 1u);
+  EXPECT_EQ(requests[0].lease_ticks, 1u);
 }
 
 TEST_F(ManualModeTest, CancellingGivesBackTheLeaseOfTheOrderThatItReplaced) {
@@ -256,10 +256,10 @@ TEST_F(ManualModeTest, CancellingGivesBackTheLeaseOfTheOrderThatItReplaced) {
   order(2, insertion, 1000);
   mode_.on_unsent(tick().at(0));
   mode_.end(2, TaskReason::cancelled, snapshot_.state.system.tick);
-  const auto wishes = tick();
-  ASSERT_EQ(wishes.size(), 1u);
-  EXPECT_EQ(wishes[0].drive, 1u);
-  EXPECT_EQ(wishes[0].lease_ticks, 1u);
+  const auto requests = tick();
+  ASSERT_EQ(requests.size(), 1u);
+  EXPECT_EQ(requests[0].drive, 1u);
+  EXPECT_EQ(requests[0].lease_ticks, 1u);
 }
 
 TEST_F(ManualModeTest, NothingIsGivenBackWhereNothingWasSent) {
@@ -273,8 +273,8 @@ TEST_F(ManualModeTest, NothingIsGivenBackWhereNothingWasSent) {
 TEST_F(ManualModeTest, AWishThatWasNotSentIsRepeated) {
   order();
   snapshot_.state.system.mode = ILK_MODE_MOTION;
-  const auto wishes = tick();
-  mode_.on_unsent(wishes.at(0));
+  const auto requests = tick();
+  mode_.on_unsent(requests.at(0));
   EXPECT_EQ(tick().size(), 1u);
   mode_.end(1, TaskReason::cancelled, snapshot_.state.system.tick);
   axis().state = ILK_AXIS_MOVING;

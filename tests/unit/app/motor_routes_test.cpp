@@ -31,19 +31,19 @@ TEST_F(MotorRoutesTest, AnActionByNameReachesTheSlot) {
   show(test::ready_view());
   const std::string path = "/api/motors/" + neuro().at_slot(insertion)->name + "/enable";
   auto enabling = std::async(std::launch::async, [&] { return post(path); });
-  const auto ask = std::get<Ask>(next_command());
+  const auto ask = std::get<KernelCall>(next_command());
   EXPECT_EQ(ask.slot, insertion);
-  answer(Answer{ask.ticket, ILK_VERDICT_ACCEPTED, 7});
+  answer(KernelResponse{ask.call_id, ILK_VERDICT_ACCEPTED, 7});
   EXPECT_EQ(json::parse(enabling.get().body)["tick"], 7);
 }
 
 TEST_F(MotorRoutesTest, AnAxisWithoutASwitchIsDeclaredAtHome) {
   show(test::ready_view());
   auto declaring = std::async(std::launch::async, [this] { return post("/api/motors/1/set-home"); });
-  const auto ask = std::get<Ask>(next_command());
+  const auto ask = std::get<KernelCall>(next_command());
   EXPECT_EQ(ask.kind, static_cast<std::uint32_t>(ILK_REQUEST_SET_HOME));
   EXPECT_EQ(ask.slot, rotation);
-  answer(Answer{ask.ticket, ILK_VERDICT_ACCEPTED, 7});
+  answer(KernelResponse{ask.call_id, ILK_VERDICT_ACCEPTED, 7});
   EXPECT_EQ(declaring.get().status, 200u);
   EXPECT_EQ(audit("request").at(0)["what"], neuro().at_slot(rotation)->name + " set-home");
 }
@@ -60,7 +60,7 @@ TEST_F(MotorRoutesTest, AnAxisWithASwitchIsNotDeclaredAtHomeUnawares) {
   EXPECT_EQ(post("/api/motors/3/set-home", R"({"override_switch":"yes"})").status, 422u);
   EXPECT_EQ(post("/api/motors/3/set-home", R"({"override":true})").status, 422u);
   Command command;
-  EXPECT_FALSE(mailbox_->commands.pop(command));
+  EXPECT_FALSE(channel_->commands.pop(command));
   EXPECT_TRUE(audit("request").empty());
 }
 
@@ -68,10 +68,10 @@ TEST_F(MotorRoutesTest, WhoOverridesASwitchIsInTheAudit) {
   show(test::ready_view());
   auto declaring = std::async(
       std::launch::async, [this] { return post("/api/motors/3/set-home", R"({"override_switch":true})"); });
-  const auto ask = std::get<Ask>(next_command());
+  const auto ask = std::get<KernelCall>(next_command());
   EXPECT_EQ(ask.kind, static_cast<std::uint32_t>(ILK_REQUEST_SET_HOME));
   EXPECT_EQ(ask.slot, insertion);
-  answer(Answer{ask.ticket, ILK_VERDICT_ACCEPTED, 7});
+  answer(KernelResponse{ask.call_id, ILK_VERDICT_ACCEPTED, 7});
   EXPECT_EQ(declaring.get().status, 200u);
   EXPECT_EQ(audit("request").at(0)["what"],
             neuro().at_slot(insertion)->name + " set-home, its switch overridden");
@@ -81,7 +81,7 @@ TEST_F(MotorRoutesTest, HomingIsAProposalAndNoAction) {
   show(test::ready_view());
   EXPECT_EQ(post("/api/motors/3/home").status, 404u);
   Command command;
-  EXPECT_FALSE(mailbox_->commands.pop(command));
+  EXPECT_FALSE(channel_->commands.pop(command));
 }
 
 TEST_F(MotorRoutesTest, StatusShowsAllTenSlots) {

@@ -1,4 +1,4 @@
-#include "http/navigation.hpp"
+#include "service/navigation.hpp"
 
 #include <cmath>
 #include <memory>
@@ -16,7 +16,7 @@ class NavigationTest : public HttpTest {
  protected:
   NavigationTest() {
     in_network([this] {
-      igtl::HubOptions options;
+      igtl::IgtlServerOptions options;
       options.port = 0;
       EXPECT_TRUE(api_.navigation().hub().listen(options).has_value());
       api_.navigation().start({"brp2013", false, std::nullopt});
@@ -62,17 +62,17 @@ class NavigationTest : public HttpTest {
 
 TEST_F(NavigationTest, StopIsAskedForOnceAndAnsweredWhenTheKernelHasAccepted) {
   request("STOP");
-  while (mailbox_->stops == 0) {
+  while (channel_->stops == 0) {
     std::this_thread::yield();
   }
-  EXPECT_EQ(mailbox_->stops, 1u);
+  EXPECT_EQ(channel_->stops, 1u);
   answer(StopAnswer{1, ILK_VERDICT_ACCEPTED, 6});
   EXPECT_EQ(next_answer(), "STOP 1");
 }
 
 TEST_F(NavigationTest, AStopThatNoKernelConfirmsIsNotSaidToBeDone) {
   EXPECT_EQ(ask("STOP"), "STOP 13");
-  EXPECT_EQ(mailbox_->stops, 1u);
+  EXPECT_EQ(channel_->stops, 1u);
 }
 
 TEST_F(NavigationTest, ManualDisablesEveryAxisForTheControllerAlone) {
@@ -127,10 +127,10 @@ TEST_F(NavigationTest, AConsoleIsToldOfConnectionsRolesAndTheirEnd) {
 TEST_F(NavigationTest, TheLossOfTheControllerPausesAndIsNoStop) {
   become_controller();
   program_.reset();
-  while (mailbox_->pauses == 0) {
+  while (channel_->pauses == 0) {
     std::this_thread::yield();
   }
-  EXPECT_EQ(mailbox_->stops, 0u) << "a STOP would end every order";
+  EXPECT_EQ(channel_->stops, 0u) << "a STOP would end every order";
 }
 
 TEST(PoseVelocity, IsThatOfTranslationAndRotation) {

@@ -68,7 +68,7 @@ TEST_F(OverloadTest, StopAndStatusGetInWhenEveryConnectionWaitsForTheStore) {
   }
   wait_until_at_work(server_.ceiling());
   EXPECT_EQ(post("/api/stop").status, 200u);
-  EXPECT_EQ(mailbox_->stops.load(), 1u);
+  EXPECT_EQ(channel_->stops.load(), 1u);
   EXPECT_EQ(get("/api/status").status, 200u);
   const Answered refused = get("/api/targeting");
   EXPECT_EQ(refused.status, 503u);
@@ -145,9 +145,9 @@ TEST_F(OverloadTest, WhoseSessionEndsWhileTheStoreIsBusyChangesNothing) {
 TEST_F(OverloadTest, AnAdministratorWhoseSessionEndsWhileTheStoreIsBusyChangesNoUser) {
   log_in("ada");
   ASSERT_EQ(get("/api/users").status, 200u);
-  const json wish{{"name", "eve"}, {"role", "admin"}, {"password", "correct horse battery"}};
+  const json request{{"name", "eve"}, {"role", "admin"}, {"password", "correct horse battery"}};
   hold_store();
-  auto adding = std::async(std::launch::async, [&] { return post("/api/users", wish.dump()); });
+  auto adding = std::async(std::launch::async, [&] { return post("/api/users", request.dump()); });
   wait_until_at_work(1);
   EXPECT_TRUE(mine_.transact([](Transaction& transaction) -> Stored<void> {
     Sessions(transaction).end_all_of_user("ada");

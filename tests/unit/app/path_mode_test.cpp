@@ -355,8 +355,8 @@ TEST(PathMode, ATickAllocatesNothing) {
   mode.take(task, 0);
   for (std::uint32_t tick = 1; tick < 30; ++tick) {
     snapshot.state.system.tick = tick;
-    Wishes wishes;
-    mode.tick(snapshot, wishes);
+    KernelRequests requests;
+    mode.tick(snapshot, requests);
   }
   const std::uint32_t allocations = test::counted_allocations();
   test::count_allocations_of();

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
-#include "proposals/proposal_book.hpp"
+#include "proposals/motion_registry.hpp"
 #include "proposals/proposal_json.hpp"
 #include "robot_fixture.hpp"
 #include "tasks.hpp"
@@ -36,11 +36,11 @@ class PathProposalTest : public testing::Test {
   void report(std::uint32_t proposal, TaskPhase phase, TaskReason reason = TaskReason::none) {
     ControlView view = view_;
     view.tasks.of(TaskKind::path) = {proposal, phase, reason, 0, 0};
-    book_.follow(view);
+    registry_.follow(view);
   }
 
   void expect_refused(const Task& draft, const std::string& code) {
-    const auto proposal = book_.propose(draft, view_);
+    const auto proposal = registry_.propose(draft, view_);
     ASSERT_FALSE(proposal);
     EXPECT_EQ(proposal.error().code, code) << proposal.error().detail;
     EXPECT_FALSE(proposal.error().next_step.empty());
@@ -48,21 +48,21 @@ class PathProposalTest : public testing::Test {
   }
 
   ilk_axis_t& axis(std::uint32_t slot) { return view_.snapshot.state.axis[slot]; }
-  [[nodiscard]] ProposalState state(std::uint32_t id) const { return book_.find(id)->state; }
+  [[nodiscard]] ProposalState state(std::uint32_t id) const { return registry_.find(id)->state; }
 
   ControlView view_;
   UtcTime now_{std::chrono::milliseconds(1714566896789)};
   std::vector<Command> sent_;
-  ProposalBook book_{neuro(), neuro_config(),
-                     [this](const Command& command) {
-                       sent_.push_back(command);
-                       return true;
-                     },
-                     [this] { return now_; }};
+  MotionRegistry registry_{neuro(), neuro_config(),
+                           [this](const Command& command) {
+                             sent_.push_back(command);
+                             return true;
+                           },
+                           [this] { return now_; }};
 };
 
 TEST_F(PathProposalTest, AConsolesPathIsCheckedApprovedAndOrdered) {
-  const auto proposal = book_.propose(draft_to({{test::yaw, -300}, {head_axis, -1000}}), view_);
+  const auto proposal = registry_.propose(draft_to({{test::yaw, -300}, {head_axis, -1000}}), view_);
   ASSERT_TRUE(proposal) << proposal.error().detail;
   EXPECT_EQ(proposal->state, ProposalState::approved);
   EXPECT_EQ(proposal->axes, (std::vector<std::string>{"yaw", "head"}));
@@ -70,33 +70,33 @@ TEST_F(PathProposalTest, AConsolesPathIsCheckedApprovedAndOrdered) {
   EXPECT_GT(proposal->duration_s, 1.0);
   ASSERT_EQ(sent_.size(), 1u);
   EXPECT_EQ(std::get<Approval>(sent_.front()).task->id, proposal->id);
-  EXPECT_EQ(book_.app_mode(), "coordinated");
+  EXPECT_EQ(registry_.app_mode(), "coordinated");
   report(proposal->id, TaskPhase::executing);
   EXPECT_EQ(state(1), ProposalState::executing);
   report(proposal->id, TaskPhase::done, TaskReason::arrived);
   EXPECT_EQ(state(1), ProposalState::done);
-  EXPECT_EQ(book_.app_mode(), "manual");
+  EXPECT_EQ(registry_.app_mode(), "manual");
 }
 
 TEST_F(PathProposalTest, AFilesPathIsApprovedWithoutAClickOnlyWhereTheRobotFileSaysSo) {
-  const auto waits = book_.propose(file_draft(), view_);
+  const auto waits = registry_.propose(file_draft(), view_);
   ASSERT_TRUE(waits) << waits.error().detail;
   EXPECT_EQ(waits->state, ProposalState::checked);
   EXPECT_THAT(sent_, testing::IsEmpty());
 
   Robot trainer = neuro();
   trainer.auto_approve = true;
-  ProposalBook book{trainer, neuro_config(),
-                    [this](const Command& command) {
-                      sent_.push_back(command);
-                      return true;
-                    },
-                    [this] { return now_; }};
+  MotionRegistry registry{trainer, neuro_config(),
+                          [this](const Command& command) {
+                            sent_.push_back(command);
+                            return true;
+                          },
+                          [this] { return now_; }};
   axis(test::yaw).state = ILK_AXIS_DISABLED;
-  EXPECT_FALSE(book.propose(file_draft(), view_)) << "its checks still have to pass";
+  EXPECT_FALSE(registry.propose(file_draft(), view_)) << "its checks still have to pass";
   EXPECT_THAT(sent_, testing::IsEmpty());
   axis(test::yaw).state = ILK_AXIS_ENABLED;
-  const auto approved = book.propose(file_draft(), view_);
+  const auto approved = registry.propose(file_draft(), view_);
   ASSERT_TRUE(approved) << approved.error().detail;
   EXPECT_EQ(approved->state, ProposalState::approved);
   EXPECT_THAT(sent_, testing::SizeIs(1));
@@ -106,20 +106,20 @@ TEST_F(PathProposalTest, ATaskLivesUntilTheControlThreadLetsGoOfItAndIsFreedByTh
   std::weak_ptr<const Task> watched;
   TaskReference held;
   {
-    ASSERT_TRUE(book_.propose(draft_to({{test::yaw, -300}}), view_));
+    ASSERT_TRUE(registry_.propose(draft_to({{test::yaw, -300}}), view_));
     held = std::get<Approval>(sent_.front()).task;
     watched = held;
     sent_.clear();
   }
-  ASSERT_TRUE(book_.abort(1));
-  for (std::uint32_t id = 2; id < 2 + ProposalBook::capacity; ++id) {
-    ASSERT_TRUE(book_.propose({MoveTask{test::insertion, 1000}, "edna"}, view_));
+  ASSERT_TRUE(registry_.abort(1));
+  for (std::uint32_t id = 2; id < 2 + MotionRegistry::capacity; ++id) {
+    ASSERT_TRUE(registry_.propose({MoveTask{test::insertion, 1000}, "edna"}, view_));
   }
-  ASSERT_EQ(book_.find(1), nullptr) << "the book has forgotten the proposal";
+  ASSERT_EQ(registry_.find(1), nullptr) << "the book has forgotten the proposal";
   report(1, TaskPhase::aborted, TaskReason::cancelled);
   held.reset();
   EXPECT_FALSE(watched.expired()) << "the control thread frees nothing";
-  book_.follow(view_);
+  registry_.follow(view_);
   EXPECT_TRUE(watched.expired());
 }
 
@@ -140,7 +140,7 @@ TEST_F(PathProposalTest, WhatCannotBeMovedIsRefusedWithItsReason) {
 }
 
 TEST_F(PathProposalTest, ALaterLegIsCheckedFromWhereTheOneBeforeEnds) {
-  const auto good = book_.propose(
+  const auto good = registry_.propose(
       along({MoveLeg{{{head_axis, -1000}}, 3.0, 0.5}, MoveLeg{{{head_axis, -11000}}, 0.0, 0.0}}), view_);
   ASSERT_TRUE(good);
   EXPECT_GT(good->duration_s, 3.5 + 10000.0 / 600.0);
@@ -150,87 +150,87 @@ TEST_F(PathProposalTest, ALaterLegIsCheckedFromWhereTheOneBeforeEnds) {
 }
 
 TEST_F(PathProposalTest, AFileWaitsForApprovalAndIsCheckedAnewThen) {
-  const auto waiting = book_.propose(file_draft(), view_);
+  const auto waiting = registry_.propose(file_draft(), view_);
   ASSERT_TRUE(waiting);
   EXPECT_EQ(waiting->state, ProposalState::checked);
   EXPECT_EQ(to_json(*waiting)["source"], "file");
   EXPECT_THAT(sent_, testing::IsEmpty());
-  EXPECT_EQ(book_.app_mode(), "manual");
+  EXPECT_EQ(registry_.app_mode(), "manual");
   axis(test::yaw).homed = 0;
-  const auto unfit = book_.approve(1, view_);
+  const auto unfit = registry_.approve(1, view_);
   ASSERT_FALSE(unfit);
   EXPECT_EQ(unfit.error().code, "NOT_HOMED");
   EXPECT_EQ(state(1), ProposalState::refused);
   axis(test::yaw).homed = 1;
-  ASSERT_TRUE(book_.propose(file_draft(), view_));
-  ASSERT_TRUE(book_.approve(2, view_));
+  ASSERT_TRUE(registry_.propose(file_draft(), view_));
+  ASSERT_TRUE(registry_.approve(2, view_));
   EXPECT_EQ(std::get<Approval>(sent_.back()).task->id, 2u);
-  EXPECT_EQ(book_.app_mode(), "trajectory");
-  const auto twice = book_.approve(2, view_);
+  EXPECT_EQ(registry_.app_mode(), "trajectory");
+  const auto twice = registry_.approve(2, view_);
   ASSERT_FALSE(twice);
   EXPECT_EQ(twice.error().code, "NOT_WAITING");
 }
 
 TEST_F(PathProposalTest, AMotionThatCouldNotBePlannedIsToldInWords) {
-  ASSERT_TRUE(book_.propose(draft_to({{test::yaw, -300}}), view_));
+  ASSERT_TRUE(registry_.propose(draft_to({{test::yaw, -300}}), view_));
   report(1, TaskPhase::aborted, TaskReason::no_path);
   EXPECT_EQ(state(1), ProposalState::aborted);
-  EXPECT_THAT(book_.find(1)->detail, testing::HasSubstr("No motion within the rates of the axes"));
+  EXPECT_THAT(registry_.find(1)->detail, testing::HasSubstr("No motion within the rates of the axes"));
 }
 
 TEST_F(PathProposalTest, ALockDiscardsWhatWaits) {
-  ASSERT_TRUE(book_.propose(file_draft(), view_));
+  ASSERT_TRUE(registry_.propose(file_draft(), view_));
   view_.snapshot.state.system.mode = ILK_MODE_LOCKED;
-  book_.follow(view_);
+  registry_.follow(view_);
   EXPECT_EQ(state(1), ProposalState::aborted);
 }
 
 TEST_F(PathProposalTest, WhatNobodyApprovesExpires) {
-  ASSERT_TRUE(book_.propose(file_draft(), view_));
+  ASSERT_TRUE(registry_.propose(file_draft(), view_));
   now_ += std::chrono::minutes(10);
-  book_.follow(view_);
+  registry_.follow(view_);
   EXPECT_EQ(state(1), ProposalState::checked);
   now_ += std::chrono::milliseconds(1);
-  book_.follow(view_);
+  registry_.follow(view_);
   EXPECT_EQ(state(1), ProposalState::expired);
 }
 
 TEST_F(PathProposalTest, AFullBookTellsTheOldestThatWaitsThatItGoes) {
   std::vector<std::uint32_t> ended;
-  book_.on_change([&](const Proposal& each) {
+  registry_.on_change([&](const Proposal& each) {
     if (!is_open(each.state)) {
       ended.push_back(each.id);
     }
   });
-  for (std::size_t i = 0; i <= ProposalBook::capacity; ++i) {
-    ASSERT_TRUE(book_.propose(file_draft(), view_));
+  for (std::size_t i = 0; i <= MotionRegistry::capacity; ++i) {
+    ASSERT_TRUE(registry_.propose(file_draft(), view_));
   }
   EXPECT_EQ(ended, std::vector<std::uint32_t>{1});
-  EXPECT_EQ(book_.find(1), nullptr);
+  EXPECT_EQ(registry_.find(1), nullptr);
 }
 
 TEST_F(PathProposalTest, ChangedTargetingEndsWhatFollowedFromIt) {
   Task aligned = draft_to({{head_axis, -1000}});
-  aligned.targeting_revision = book_.targeting_revision();
-  ASSERT_TRUE(book_.propose(aligned, view_));
-  book_.end_stale();
+  aligned.targeting_revision = registry_.targeting_revision();
+  ASSERT_TRUE(registry_.propose(aligned, view_));
+  registry_.end_stale();
   EXPECT_EQ(state(1), ProposalState::aborted);
   EXPECT_EQ(std::get<Cancel>(sent_.back()).task, 1u);
   sent_.clear();
   expect_refused(aligned, "STALE");
-  ASSERT_TRUE(book_.propose(draft_to({{head_axis, -1000}}), view_));
-  book_.end_stale();
+  ASSERT_TRUE(registry_.propose(draft_to({{head_axis, -1000}}), view_));
+  registry_.end_stale();
   EXPECT_EQ(state(3), ProposalState::approved) << "it names its targets itself";
 }
 
 TEST_F(PathProposalTest, APathReplacesEveryApprovedMotionAndKeepsMovesAway) {
-  ASSERT_TRUE(book_.propose({MoveTask{test::insertion, 1000}, "edna"}, view_));
-  ASSERT_TRUE(book_.propose(draft_to({{head_axis, -1000}}), view_));
+  ASSERT_TRUE(registry_.propose({MoveTask{test::insertion, 1000}, "edna"}, view_));
+  ASSERT_TRUE(registry_.propose(draft_to({{head_axis, -1000}}), view_));
   EXPECT_EQ(state(1), ProposalState::aborted);
-  const auto move = book_.propose({MoveTask{test::insertion, 900}, "edna"}, view_);
+  const auto move = registry_.propose({MoveTask{test::insertion, 900}, "edna"}, view_);
   ASSERT_FALSE(move);
   EXPECT_EQ(move.error().code, "MODE_PATH");
-  ASSERT_TRUE(book_.propose(draft_to({{head_axis, -900}}), view_));
+  ASSERT_TRUE(registry_.propose(draft_to({{head_axis, -900}}), view_));
   EXPECT_EQ(state(2), ProposalState::aborted);
 }
 

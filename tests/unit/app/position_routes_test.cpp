@@ -36,7 +36,7 @@ class PositionRoutesTest : public HttpTest {
 
   void expect_nothing_asked() {
     Command command;
-    EXPECT_FALSE(mailbox_->commands.pop(command));
+    EXPECT_FALSE(channel_->commands.pop(command));
   }
 };
 
@@ -117,21 +117,21 @@ TEST_F(PositionRoutesTest, RestoringAsksForEachNamedAxisInTheOrderOfTheRobotAndR
   for (const Axis& axis : neuro().axes) {
     names.push_back(axis.name);
   }
-  const std::vector<std::string> wanted{names[2], names[0]};
+  const std::vector<std::string> desired{names[2], names[0]};
   for (json& axis : file["axes"]) {
     axis["position_counts"] = axis["axis"] == names[0] ? 11 : 22;
   }
   auto restoring = std::async(std::launch::async,
-                              [&] { return put("/api/motors/restore", restore(file, wanted).dump()); });
-  const auto first = std::get<Ask>(next_command());
+                              [&] { return put("/api/motors/restore", restore(file, desired).dump()); });
+  const auto first = std::get<KernelCall>(next_command());
   EXPECT_EQ(first.kind, static_cast<std::uint32_t>(ILK_REQUEST_RESTORE));
   EXPECT_EQ(first.slot, neuro().axes[0].slot);
   EXPECT_EQ(first.target_counts, 11);
-  answer(Answer{first.ticket, ILK_VERDICT_BUSY, 5});
-  const auto second = std::get<Ask>(next_command());
+  answer(KernelResponse{first.call_id, ILK_VERDICT_BUSY, 5});
+  const auto second = std::get<KernelCall>(next_command());
   EXPECT_EQ(second.slot, neuro().axes[2].slot);
   EXPECT_EQ(second.target_counts, 22);
-  answer(Answer{second.ticket, ILK_VERDICT_ACCEPTED, 6});
+  answer(KernelResponse{second.call_id, ILK_VERDICT_ACCEPTED, 6});
   const Answered answered = restoring.get();
   ASSERT_EQ(answered.status, 200u);
   const json rows = json::parse(answered.body);
@@ -158,10 +158,10 @@ TEST_F(PositionRoutesTest, AKernelOfAnotherConfigurationRestoresNothing) {
 TEST_F(PositionRoutesTest, ZeroAllAsksForEveryAxisWithoutASwitchInTheOrderOfTheRobot) {
   auto zeroing = std::async(std::launch::async, [this] { return post("/api/motors/zero-all"); });
   for (const Axis* axis : without_switch()) {
-    const auto ask = std::get<Ask>(next_command());
+    const auto ask = std::get<KernelCall>(next_command());
     EXPECT_EQ(ask.kind, static_cast<std::uint32_t>(ILK_REQUEST_SET_HOME));
     EXPECT_EQ(ask.slot, axis->slot);
-    answer(Answer{ask.ticket, ILK_VERDICT_ACCEPTED, 5});
+    answer(KernelResponse{ask.call_id, ILK_VERDICT_ACCEPTED, 5});
   }
   const Answered answered = zeroing.get();
   ASSERT_EQ(answered.status, 200u);
@@ -179,7 +179,7 @@ TEST_F(PositionRoutesTest, ZeroAllAsksForEveryAxisWithoutASwitchInTheOrderOfTheR
 
 TEST_F(PositionRoutesTest, WhenTheKernelFallsSilentTheRestIsNotSent) {
   auto zeroing = std::async(std::launch::async, [this] { return post("/api/motors/zero-all"); });
-  answer(Answer{std::get<Ask>(next_command()).ticket, std::nullopt, 0});
+  answer(KernelResponse{std::get<KernelCall>(next_command()).call_id, std::nullopt, 0});
   const json rows = json::parse(zeroing.get().body);
   EXPECT_THAT(row_of(rows, *without_switch()[0])["detail"].get<std::string>(), HasSubstr("did not answer"));
   EXPECT_THAT(row_of(rows, *without_switch()[1])["detail"].get<std::string>(),
@@ -190,9 +190,9 @@ TEST_F(PositionRoutesTest, WhenTheKernelFallsSilentTheRestIsNotSent) {
 TEST_F(PositionRoutesTest, WhoLosesTheAuthorityMeanwhileSetsNoFurtherAxis) {
   const std::string admin = token_of("ada");
   auto zeroing = std::async(std::launch::async, [this] { return post("/api/motors/zero-all"); });
-  const auto first = std::get<Ask>(next_command());
+  const auto first = std::get<KernelCall>(next_command());
   EXPECT_EQ(as(admin, [this] { return post("/api/authority/take-over"); }).status, 200u);
-  answer(Answer{first.ticket, ILK_VERDICT_ACCEPTED, 5});
+  answer(KernelResponse{first.call_id, ILK_VERDICT_ACCEPTED, 5});
   const json rows = json::parse(zeroing.get().body);
   EXPECT_EQ(row_of(rows, *without_switch()[0])["verdict"], "ACCEPTED");
   EXPECT_THAT(row_of(rows, *without_switch()[1])["detail"].get<std::string>(), HasSubstr("authority"));

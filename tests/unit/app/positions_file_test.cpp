@@ -1,4 +1,4 @@
-#include "http/positions_file.hpp"
+#include "service/positions_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 
 #include "motion/axis_move.hpp"
-#include "proposals/home_plan.hpp"
-#include "proposals/proposal_book.hpp"
+#include "proposals/checks.hpp"
+#include "proposals/motion_registry.hpp"
 #include "robot_fixture.hpp"
 #include "tasks.hpp"
 #include "trajectory/trajectory_csv.hpp"
@@ -24,7 +24,7 @@ constexpr std::uint32_t lateral_slot = 4;
 class ProfileTest : public testing::Test {
  protected:
   Proposal path_of(std::vector<PathLeg> legs) {
-    const auto made = book_.propose(
+    const auto made = registry_.propose(
         {test::along({std::move(legs)}), "edna", RobotMode::coordinated, TaskSource::file}, view_);
     EXPECT_TRUE(made) << made.error().detail;
     return *made;
@@ -32,8 +32,8 @@ class ProfileTest : public testing::Test {
 
   Proposal move_to(std::uint32_t slot, std::int32_t counts,
                    std::optional<std::uint32_t> drive = std::nullopt) {
-    (void)book_.propose({MoveTask{slot, counts, drive}, "edna"}, view_);
-    return book_.newest_first().front();
+    (void)registry_.propose({MoveTask{slot, counts, drive}, "edna"}, view_);
+    return registry_.newest_first().front();
   }
 
   [[nodiscard]] Profile profile(const Proposal& proposal) const {
@@ -43,7 +43,8 @@ class ProfileTest : public testing::Test {
   ilk_axis_t& axis(std::uint32_t slot) { return view_.snapshot.state.axis[slot]; }
 
   ControlView view_ = test::ready_view();
-  ProposalBook book_{neuro(), neuro_config(), [](const Command&) { return true; }, [] { return UtcTime{}; }};
+  MotionRegistry registry_{neuro(), neuro_config(), [](const Command&) { return true; },
+                           [] { return UtcTime{}; }};
 };
 
 TEST_F(ProfileTest, APathBeginsWhereTheAxesWereEndsAtItsTargetsAndKeepsToTheRates) {
@@ -124,8 +125,8 @@ TEST_F(ProfileTest, AnAxisThatIsNotHomedHasTheTravelOfAPressForItsRange) {
 }
 
 TEST_F(ProfileTest, HomingAndWhatWasNeverCheckedHaveNone) {
-  ASSERT_TRUE(book_.propose({*home_all(neuro()), "edna", RobotMode::home}, view_));
-  const Profile homing = profile(book_.newest_first().front());
+  ASSERT_TRUE(registry_.propose({*home_all(neuro()), "edna", RobotMode::home}, view_));
+  const Profile homing = profile(registry_.newest_first().front());
   EXPECT_EQ(homing.basis, ProfileBasis::none);
   EXPECT_FALSE(homing.why.empty());
   Proposal unchecked;
@@ -166,22 +167,24 @@ TEST_F(CheckListTest, ApprovingMakesTheChecksAnew) {
   ASSERT_EQ(proposal.state, ProposalState::checked);
   axis(test::yaw).homed = 0;
   ++view_.snapshot.state.system.tick;
-  EXPECT_FALSE(book_.approve(proposal.id, view_));
-  EXPECT_THAT(words(*book_.find(proposal.id)),
+  EXPECT_FALSE(registry_.approve(proposal.id, view_));
+  EXPECT_THAT(words(*registry_.find(proposal.id)),
               testing::HasSubstr("homed:failed=NOT_HOMED range:not_reached"));
-  EXPECT_EQ(book_.find(proposal.id)->checked_against->state.system.tick, view_.snapshot.state.system.tick);
+  EXPECT_EQ(registry_.find(proposal.id)->checked_against->state.system.tick,
+            view_.snapshot.state.system.tick);
 }
 
 TEST_F(CheckListTest, ARejectedProposalIsEndedByNameAndCannotBeApproved) {
   const Proposal proposal = path_of({MoveLeg{{{test::yaw, -300}}, 0.0, 0.0}});
-  const auto rejected = book_.reject(proposal.id, "ann");
+  const auto rejected = registry_.reject(proposal.id, "ann");
   ASSERT_TRUE(rejected);
   EXPECT_EQ(rejected->state, ProposalState::aborted);
   EXPECT_EQ(rejected->detail, "Rejected by ann before it was approved.");
-  EXPECT_EQ(book_.approve(proposal.id, view_).error().code, "NOT_WAITING");
-  EXPECT_EQ(book_.reject(proposal.id, "ann").error().code, "NOT_WAITING");
+  EXPECT_EQ(registry_.approve(proposal.id, view_).error().code, "NOT_WAITING");
+  EXPECT_EQ(registry_.reject(proposal.id, "ann").error().code, "NOT_WAITING");
   const Proposal approved = move_to(lateral_slot, -500);
-  EXPECT_EQ(book_.reject(approved.id, "ann").error().code, "NOT_WAITING") << "what is approved is aborted";
+  EXPECT_EQ(registry_.reject(approved.id, "ann").error().code, "NOT_WAITING")
+      << "what is approved is aborted";
 }
 
 }  // namespace

@@ -34,14 +34,14 @@ TEST_F(RequestPortTest, SendsNoMoreThanTheKernelReadsInATick) {
 }
 
 TEST_F(RequestPortTest, FindsWhoAskedByTheSequenceNumber) {
-  ASSERT_TRUE(port_.send({}, AskOrigin{7}));
-  ASSERT_TRUE(port_.send({}, WishOrigin{ILK_REQUEST_MOVE, 3, 9}));
-  EXPECT_EQ(std::get<WishOrigin>(*port_.settle(2)).task, 9u);
-  EXPECT_EQ(std::get<AskOrigin>(*port_.settle(1)).ticket, 7u);
+  ASSERT_TRUE(port_.send({}, CallOrigin{7}));
+  ASSERT_TRUE(port_.send({}, ModeOrigin{ILK_REQUEST_MOVE, 3, 9}));
+  EXPECT_EQ(std::get<ModeOrigin>(*port_.settle(2)).task, 9u);
+  EXPECT_EQ(std::get<CallOrigin>(*port_.settle(1)).call_id, 7u);
 }
 
 TEST_F(RequestPortTest, SettlesEachRequestOnce) {
-  ASSERT_TRUE(port_.send({}, AskOrigin{7}));
+  ASSERT_TRUE(port_.send({}, CallOrigin{7}));
   EXPECT_TRUE(port_.settle(1));
   EXPECT_FALSE(port_.settle(1));
   EXPECT_FALSE(port_.settle(0));
@@ -49,7 +49,7 @@ TEST_F(RequestPortTest, SettlesEachRequestOnce) {
 }
 
 TEST_F(RequestPortTest, AVerdictThatNeverComesDoesNotStopTheNextRequests) {
-  ASSERT_TRUE(port_.send({}, AskOrigin{7}));
+  ASSERT_TRUE(port_.send({}, CallOrigin{7}));
   for (std::uint32_t i = 0; i < 2 * ILK_LINK_REQUESTS; ++i) {
     (void)kernel_.take_request();
     port_.begin_tick();
@@ -60,7 +60,7 @@ TEST_F(RequestPortTest, AVerdictThatNeverComesDoesNotStopTheNextRequests) {
 }
 
 TEST_F(RequestPortTest, HandsBackWhatWasLost) {
-  ASSERT_TRUE(port_.send({}, AskOrigin{7}));
+  ASSERT_TRUE(port_.send({}, CallOrigin{7}));
   ASSERT_TRUE(port_.send({}, HeartbeatOrigin{}));
   std::uint32_t lost = 0;
   port_.forget_all([&](const RequestOrigin&) { ++lost; });

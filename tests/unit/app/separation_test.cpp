@@ -1,5 +1,3 @@
-#include "proposals/separation.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "proposals/home_plan.hpp"
-#include "proposals/proposal_book.hpp"
+#include "proposals/checks.hpp"
+#include "proposals/motion_registry.hpp"
 #include "robot/robot_file.hpp"
 #include "robot_fixture.hpp"
 
@@ -52,7 +50,7 @@ class SeparationTest : public testing::Test {
   std::string all() { return code_of(home(*home_all(prostate()))); }
 
   tl::expected<Proposal, Refusal> home(HomeTask task) {
-    return book_.propose({std::move(task), "ann", RobotMode::home}, view_);
+    return registry_.propose({std::move(task), "ann", RobotMode::home}, view_);
   }
 
   static std::string code_of(const tl::expected<Proposal, Refusal>& proposal) {
@@ -62,12 +60,12 @@ class SeparationTest : public testing::Test {
   const ilk_config_t config_;
   ControlView view_;
   std::vector<Command> sent_;
-  ProposalBook book_{prostate(), config_,
-                     [this](const Command& command) {
-                       sent_.push_back(command);
-                       return true;
-                     },
-                     [] { return UtcTime{}; }};
+  MotionRegistry registry_{prostate(), config_,
+                           [this](const Command& command) {
+                             sent_.push_back(command);
+                             return true;
+                           },
+                           [] { return UtcTime{}; }};
 };
 
 TEST_F(SeparationTest, AllStepsMakeRoomForEachOtherWhereverTheSlidersStand) {

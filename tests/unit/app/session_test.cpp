@@ -21,7 +21,7 @@ class SessionTest : public HttpTest {
 
   std::size_t streams() {
     std::size_t count = 0;
-    in_network([&] { count = api_.stream().watchers().size(); });
+    in_network([&] { count = api_.stream().subscribers().size(); });
     return count;
   }
 };
@@ -60,13 +60,13 @@ TEST_F(SessionTest, SettingTheClockBackProlongsNoSession) {
 
 TEST_F(SessionTest, OneSessionDoesNotTakeEveryStream) {
   std::vector<test::StreamClient> own;
-  for (std::size_t i = 0; i < StreamHub::session_capacity; ++i) {
+  for (std::size_t i = 0; i < Broadcaster::session_capacity; ++i) {
     own.push_back(open_stream());
   }
   EXPECT_EQ(status_of_one_more_stream(), 503u);
   log_in("vic");
   auto other = open_stream();
-  EXPECT_EQ(streams(), StreamHub::session_capacity + 1);
+  EXPECT_EQ(streams(), Broadcaster::session_capacity + 1);
 }
 
 TEST_F(SessionTest, AStreamThatTakesNothingDoesNotOutliveItsSession) {

@@ -102,7 +102,7 @@ class StaticFilesTest : public testing::Test {
 
 TEST_F(StaticFilesTest, ServesTheIndexAtTheRoot) {
   const Response response = get("/");
-  EXPECT_EQ(response.result(), Status::ok);
+  EXPECT_EQ(response.result(), boost::beast::http::status::ok);
   EXPECT_EQ(response.body(), "<title>console</title>");
   EXPECT_EQ(response[http::field::content_type], "text/html; charset=utf-8");
 }
@@ -119,17 +119,17 @@ TEST_F(StaticFilesTest, NeverLeavesItsFolder) {
        {"/../secret", "/assets/../../secret", "/%2e%2e/secret", "/..%2fsecret", "//../secret", "/link",
         "/index.html%00.txt", "/%zz", "/%2", "relative", "/assets", "/assets/", "/docs/../secret",
         "/docs/%2e%2e/web/index.html", "/docs/code/", "/docsindex.html", "/docs/link"}) {
-    EXPECT_EQ(get(target).result(), Status::not_found) << target;
+    EXPECT_EQ(get(target).result(), boost::beast::http::status::not_found) << target;
   }
 }
 
 TEST_F(StaticFilesTest, ServesTheDocumentsBelowTheirOwnPath) {
   EXPECT_EQ(get("/docs/").body(), "<title>documents</title>");
   EXPECT_EQ(get("/docs/code/a.html").body(), "4");
-  EXPECT_EQ(get("/docs/assets/app.js").result(), Status::not_found);
-  EXPECT_EQ(get("/code/a.html").result(), Status::not_found);
+  EXPECT_EQ(get("/docs/assets/app.js").result(), boost::beast::http::status::not_found);
+  EXPECT_EQ(get("/code/a.html").result(), boost::beast::http::status::not_found);
   const Response moved = get("/docs");
-  EXPECT_EQ(moved.result(), Status::permanent_redirect);
+  EXPECT_EQ(moved.result(), boost::beast::http::status::permanent_redirect);
   EXPECT_EQ(moved[http::field::location], "/docs/");
 }
 
@@ -137,7 +137,7 @@ TEST_F(StaticFilesTest, SaysHowToBringTheDocuments) {
   for (const std::string target : {"/docs", "/docs/", "/docs/index.html"}) {
     StaticFiles files(root());
     const Response response = serve(files, Request{http::verb::get, target, 11});
-    EXPECT_EQ(response.result(), Status::not_found) << target;
+    EXPECT_EQ(response.result(), boost::beast::http::status::not_found) << target;
     EXPECT_NE(response.body().find("make docs"), std::string::npos) << target;
   }
 }
@@ -145,7 +145,7 @@ TEST_F(StaticFilesTest, SaysHowToBringTheDocuments) {
 TEST_F(StaticFilesTest, OnlyReads) {
   for (const std::string target : {"/index.html", "/docs/index.html"}) {
     const Response response = get(target, http::verb::post);
-    EXPECT_EQ(response.result(), Status::method_not_allowed) << target;
+    EXPECT_EQ(response.result(), boost::beast::http::status::method_not_allowed) << target;
     EXPECT_EQ(response[http::field::allow], "GET, HEAD") << target;
   }
 }
@@ -153,7 +153,7 @@ TEST_F(StaticFilesTest, OnlyReads) {
 TEST_F(StaticFilesTest, SaysHowToBringTheConsole) {
   StaticFiles files({});
   const Response response = serve(files, Request{http::verb::get, "/", 11});
-  EXPECT_EQ(response.result(), Status::not_found);
+  EXPECT_EQ(response.result(), boost::beast::http::status::not_found);
   EXPECT_NE(response.body().find("--web"), std::string::npos);
 }
 
@@ -211,14 +211,14 @@ TEST_F(StaticFilesTest, SendsAsItIsWhatIsNotCompressed) {
 }
 
 TEST_F(StaticFilesTest, ServesNoCompressedFormUnderItsOwnName) {
-  EXPECT_EQ(get(std::string(script) + ".br").result(), Status::not_found);
-  EXPECT_EQ(get(std::string(script) + ".gz").result(), Status::not_found);
+  EXPECT_EQ(get(std::string(script) + ".br").result(), boost::beast::http::status::not_found);
+  EXPECT_EQ(get(std::string(script) + ".gz").result(), boost::beast::http::status::not_found);
   EXPECT_EQ(get("/archive.gz").body(), "5");
 }
 
 TEST_F(StaticFilesTest, TakesNoCompressedFormFromOutside) {
   EXPECT_EQ(ask("/", http::field::accept_encoding, "br").body(), "<title>console</title>");
-  EXPECT_EQ(get("/index.html.br").result(), Status::not_found);
+  EXPECT_EQ(get("/index.html.br").result(), boost::beast::http::status::not_found);
 }
 
 TEST_F(StaticFilesTest, GivesEachFormATagOfItsOwn) {
@@ -240,7 +240,7 @@ TEST_F(StaticFilesTest, SendsNothingThatTheClientHasAlready) {
     for (const std::string& known :
          {tag, strong, "W/" + strong, "\"other\", " + tag, "\"a,b\"," + tag + ",W/\"c\"", std::string("*")}) {
       const Response response = ask(target, http::field::if_none_match, known);
-      EXPECT_EQ(response.result(), Status::not_modified) << target << ' ' << known;
+      EXPECT_EQ(response.result(), boost::beast::http::status::not_modified) << target << ' ' << known;
       EXPECT_EQ(response.body(), "");
       EXPECT_EQ(response[http::field::etag], tag);
       EXPECT_EQ(response[http::field::cache_control], whole[http::field::cache_control]);
@@ -249,11 +249,11 @@ TEST_F(StaticFilesTest, SendsNothingThatTheClientHasAlready) {
     for (const std::string& other :
          {std::string("\"other\""), strong.substr(1), strong.substr(0, strong.size() - 1), std::string()}) {
       const Response response = ask(target, http::field::if_none_match, other);
-      EXPECT_EQ(response.result(), Status::ok) << target << ' ' << other;
+      EXPECT_EQ(response.result(), boost::beast::http::status::ok) << target << ' ' << other;
       EXPECT_EQ(response.body(), whole.body());
     }
   }
-  EXPECT_EQ(ask("/nothing", http::field::if_none_match, "*").result(), Status::not_found);
+  EXPECT_EQ(ask("/nothing", http::field::if_none_match, "*").result(), boost::beast::http::status::not_found);
   Request other_form{http::verb::get, script, 11};
   other_form.set(http::field::accept_encoding, "br");
   other_form.set(http::field::if_none_match, get(script)[http::field::etag]);
@@ -278,8 +278,8 @@ TEST_F(StaticFilesTest, SendsLargeFilesInPieces) {
   write(documents() / "empty", "");
   EXPECT_EQ(get("/large.bin").body(), large);
   EXPECT_EQ(get("/docs/large.bin").body(), large);
-  EXPECT_EQ(get("/empty").result(), Status::ok);
-  EXPECT_EQ(get("/docs/empty").result(), Status::ok);
+  EXPECT_EQ(get("/empty").result(), boost::beast::http::status::ok);
+  EXPECT_EQ(get("/docs/empty").result(), boost::beast::http::status::ok);
 }
 
 TEST_F(StaticFilesTest, KeepsTheConsoleAsItWasAtTheStart) {
@@ -302,8 +302,8 @@ TEST_F(StaticFilesTest, KeepsNoMoreInMemoryThanAConsoleNeeds) {
   const std::string half(StaticFiles::most_bytes / 2, 'a');
   write(root() / "one", half);
   write(root() / "two", half);
-  const bool one = get("/one").result() == Status::ok;
-  const bool two = get("/two").result() == Status::ok;
+  const bool one = get("/one").result() == boost::beast::http::status::ok;
+  const bool two = get("/two").result() == boost::beast::http::status::ok;
   EXPECT_NE(one, two);
 }
 

@@ -1,4 +1,4 @@
-#include "http/stop_records.hpp"
+#include "service/stop_records.hpp"
 
 #include <gtest/gtest.h>
 

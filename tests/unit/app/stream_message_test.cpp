@@ -1,5 +1,3 @@
-#include "http/stream_message.hpp"
-
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -7,6 +5,7 @@
 #include <vector>
 
 #include "robot_fixture.hpp"
+#include "service/status_json.hpp"
 
 namespace interlock::web {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "closed_loop.hpp"
 #include "counted_allocations.hpp"
-#include "proposals/sweep_check.hpp"
+#include "proposals/checks.hpp"
 
 namespace interlock {
 namespace {
@@ -189,9 +189,9 @@ TEST_P(SweepModeTest, ATickAllocatesNothing) {
   snapshot.state = loop_.state();
   test::count_allocations_of(pthread_self());
   for (std::uint32_t i = 0; i < 100; ++i) {
-    Wishes wishes;
+    KernelRequests requests;
     ++snapshot.state.system.tick;
-    mode.tick(snapshot, wishes);
+    mode.tick(snapshot, requests);
   }
   const std::uint32_t allocated = test::counted_allocations();
   test::count_allocations_of();

@@ -3,11 +3,11 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
-#include "http/sweep_draft.hpp"
-#include "proposals/proposal_book.hpp"
+#include "proposals/checks.hpp"
+#include "proposals/motion_registry.hpp"
 #include "proposals/proposal_json.hpp"
-#include "proposals/sweep_check.hpp"
 #include "robot_fixture.hpp"
+#include "service/drafts.hpp"
 
 namespace interlock {
 namespace {
@@ -44,24 +44,24 @@ class SweepProposalTest : public testing::Test {
   }
 
   tl::expected<Proposal, Refusal> propose(const SweepTask& sweep) {
-    return book_.propose({sweep, "edna", RobotMode::frequency_sweep}, view_);
+    return registry_.propose({sweep, "edna", RobotMode::frequency_sweep}, view_);
   }
 
   void report(TaskPhase phase, std::uint32_t step) {
     view_.tasks.of(TaskKind::sweep) = {1, phase, TaskReason::swept, 0, 0, turned_axis, step};
-    book_.follow(view_);
+    registry_.follow(view_);
   }
 
   const ilk_config_t config_ = test::config_of(prostate());
   ControlView view_ = test::ready_view(prostate());
   UtcTime now_{std::chrono::milliseconds(1714566896789)};
   std::vector<Command> sent_;
-  ProposalBook book_{prostate(), config_,
-                     [this](const Command& command) {
-                       sent_.push_back(command);
-                       return true;
-                     },
-                     [this] { return now_; }};
+  MotionRegistry registry_{prostate(), config_,
+                           [this](const Command& command) {
+                             sent_.push_back(command);
+                             return true;
+                           },
+                           [this] { return now_; }};
 };
 
 TEST_F(SweepProposalTest, TheBandIsThatOfThePublishedStartAndMaximumVelocity) {
@@ -80,11 +80,11 @@ TEST_F(SweepProposalTest, ASweepWithinTheBandIsApprovedAndOrdered) {
   EXPECT_EQ(order.slot, turned_axis);
   EXPECT_EQ(order.steps.count, 21u);
   EXPECT_EQ(order.steps.word(20), 22009u * 51000u);
-  EXPECT_EQ(book_.app_mode(), "frequency_sweep");
+  EXPECT_EQ(registry_.app_mode(), "frequency_sweep");
   report(TaskPhase::executing, 4);
-  EXPECT_THAT(book_.find(1)->detail, HasSubstr("52600.0 Hz, frequency 5 of 21"));
+  EXPECT_THAT(registry_.find(1)->detail, HasSubstr("52600.0 Hz, frequency 5 of 21"));
   report(TaskPhase::done, 21);
-  EXPECT_EQ(book_.app_mode(), "manual");
+  EXPECT_EQ(registry_.app_mode(), "manual");
 }
 
 TEST_F(SweepProposalTest, BothEndsOfTheBandAreAllowedAndAWordBeyondIsNot) {
@@ -108,7 +108,7 @@ TEST_F(SweepProposalTest, ThePublishedRangeIsRefusedAndBothRangesAreNamed) {
   EXPECT_THAT(proposal.error().expected, HasSubstr("50861.5 to 53076.9 Hz"));
   EXPECT_THAT(proposal.error().expected, HasSubstr("48786.5 to 54884.8 Hz"));
   EXPECT_THAT(sent_, testing::IsEmpty());
-  EXPECT_EQ(book_.find(1)->state, ProposalState::refused);
+  EXPECT_EQ(registry_.find(1)->state, ProposalState::refused);
 }
 
 TEST_F(SweepProposalTest, AnAxisThatCannotBeMovedIsRefusedWithItsReason) {
@@ -124,7 +124,7 @@ TEST_F(SweepProposalTest, AnAxisThatCannotBeMovedIsRefusedWithItsReason) {
 
 TEST_F(SweepProposalTest, AMoveIsRefusedWhileASweepIsOpen) {
   ASSERT_TRUE(propose(draft_of(53000, 51000)));
-  const auto move = book_.propose({MoveTask{turned_axis, 100}, "edna"}, view_);
+  const auto move = registry_.propose({MoveTask{turned_axis, 100}, "edna"}, view_);
   ASSERT_FALSE(move);
   EXPECT_EQ(move.error().code, "MODE_PATH");
 }
@@ -133,7 +133,7 @@ TEST_F(SweepProposalTest, MeasuredSpeedsAreShownWithTheirFrequencies) {
   ASSERT_TRUE(propose(draft_of(52000, 51900)));
   view_.sweep_speeds[0] = 250.0F;
   report(TaskPhase::executing, 1);
-  const json shown = to_json(*book_.find(1));
+  const json shown = to_json(*registry_.find(1));
   EXPECT_EQ(shown["mode"], "frequency_sweep");
   EXPECT_EQ(shown["frequencies"][0], json({{"hz", 52000.0}, {"counts_per_s", 250.0}}));
   EXPECT_EQ(shown["frequencies"][1], json({{"hz", 51900.0}, {"counts_per_s", nullptr}}));
@@ -150,7 +150,7 @@ TEST(FrequencySteps, ThatNobodyCouldHoldAreNone) {
 TEST(SweepDrafts, NameTheFieldThatIsWrong) {
   const json good{{"kind", "sweep"}, {"axis", "rotation"}, {"from_hz", 53000},
                   {"to_hz", 51000},  {"step_hz", 100},     {"dwell_s", 0.5}};
-  const auto draft = web::sweep_draft(prostate(), good, "edna");
+  const auto draft = sweep_draft(prostate(), good, "edna");
   ASSERT_TRUE(draft);
   EXPECT_EQ(std::get<SweepTask>(draft->work).steps.dwell_ticks, 500u);
   const std::pair<const char*, json> cases[] = {
@@ -158,15 +158,15 @@ TEST(SweepDrafts, NameTheFieldThatIsWrong) {
   for (const auto& [field, value] : cases) {
     json bad = good;
     bad[field] = value;
-    const auto refused = web::sweep_draft(prostate(), bad, "edna");
+    const auto refused = sweep_draft(prostate(), bad, "edna");
     ASSERT_FALSE(refused) << bad;
     EXPECT_EQ(refused.error().field, field) << bad;
   }
-  EXPECT_EQ(web::sweep_draft(test::neuro(), good, "edna").error().code, "NOT_FOUND");
+  EXPECT_EQ(sweep_draft(test::neuro(), good, "edna").error().code, "NOT_FOUND");
 }
 
 TEST(SweepDrafts, TheWholeBandIsSweptInPublishedSteps) {
-  const auto draft = web::whole_sweep_draft(prostate(), "edna");
+  const auto draft = whole_sweep_draft(prostate(), "edna");
   ASSERT_TRUE(draft);
   EXPECT_EQ(std::get<SweepTask>(draft->work).steps.step_words, -1000000);
   EXPECT_EQ(std::get<SweepTask>(draft->work).steps.count, 49u);

@@ -1,6 +1,5 @@
-#include "http/targeting.hpp"
-#include "http/targeting_history.hpp"
 #include "http_fixture.hpp"
+#include "service/targeting.hpp"
 
 namespace interlock::web {
 namespace {

@@ -1,4 +1,4 @@
-#include "http/targeting.hpp"
+#include "service/targeting.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 /** Turned by an angle about the third axis. */
-Pose turned(double angle) {
+RowMajor turned(double angle) {
   const double c = std::cos(angle);
   const double s = std::sin(angle);
   return {c, -s, 0, 10, s, c, 0, -20, 0, 0, 1, 30.5, 0, 0, 0, 1};
@@ -67,20 +67,20 @@ TEST(Targeting, AnElementThatIsNoNumberIsNamed) {
 }
 
 TEST(Targeting, OnlyARigidPoseIsARegistration) {
-  Pose scaled = turned(0.3);
+  RowMajor scaled = turned(0.3);
   scaled[0] *= 1.01;
   EXPECT_THAT(registered(scaled).error().detail, HasSubstr("length"));
-  Pose skewed = turned(0);
+  RowMajor skewed = turned(0);
   skewed[1] = 0.01;
   EXPECT_THAT(registered(skewed).error().detail, HasSubstr("perpendicular"));
-  Pose mirrored = turned(0);
+  RowMajor mirrored = turned(0);
   mirrored[10] = -1;
   EXPECT_THAT(registered(mirrored).error().expected, HasSubstr("determinant"));
-  EXPECT_FALSE(registered(Pose{}));
+  EXPECT_FALSE(registered(RowMajor{}));
 }
 
 TEST(Targeting, ARotationMayBeRoundedToThreeDigits) {
-  Pose rounded = turned(0.5);
+  RowMajor rounded = turned(0.5);
   for (double& each : rounded) {
     each = std::round(each * 1e4) / 1e4;
   }
@@ -89,18 +89,18 @@ TEST(Targeting, ARotationMayBeRoundedToThreeDigits) {
 
 TEST(Targeting, TheLastRowOfAPoseIsFixed) {
   for (std::size_t column = 0; column < 4; ++column) {
-    Pose pose = turned(0);
+    RowMajor pose = turned(0);
     pose[12 + column] += 0.5;
     EXPECT_EQ(registered(pose).error().field, "registration[" + std::to_string(12 + column) + "]");
   }
 }
 
 TEST(Targeting, HugeNumbersAreRefusedNotOverflown) {
-  Pose pose = turned(0);
+  RowMajor pose = turned(0);
   pose[0] = 1e308;
   pose[4] = 1e308;
   EXPECT_FALSE(registered(pose));
-  Pose away = turned(0);
+  RowMajor away = turned(0);
   away[7] = 10000.5;
   EXPECT_EQ(registered(away).error().field, "registration[7]");
 }
@@ -153,7 +153,7 @@ TEST(Targeting, AReportedPoseReplacesNothingElse) {
   EXPECT_EQ(set->reported_position, turned(1));
   EXPECT_EQ(set->registration, Targeting{}.registration);
   EXPECT_EQ(with_reported_pose({}, {{"registration", turned(1)}}).error().field, "registration");
-  EXPECT_FALSE(with_reported_pose({}, {{"current_position", Pose{}}}));
+  EXPECT_FALSE(with_reported_pose({}, {{"current_position", RowMajor{}}}));
 }
 
 TEST(Targeting, ComesBackFromTheStoreAsItWas) {

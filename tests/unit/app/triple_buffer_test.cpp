@@ -1,8 +1,8 @@
-#include "motion/triple_buffer.hpp"
-
 #include <gtest/gtest.h>
 
 #include <thread>
+
+#include "motion/realtime_channel.hpp"
 
 namespace interlock {
 namespace {

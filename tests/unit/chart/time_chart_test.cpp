@@ -11,9 +11,9 @@ using testing::HasSubstr;
 using testing::Not;
 
 std::size_t count_of(const std::string& svg, const char* pattern) {
-  const std::regex wanted(pattern);
+  const std::regex desired(pattern);
   return static_cast<std::size_t>(
-      std::distance(std::sregex_iterator(svg.begin(), svg.end(), wanted), std::sregex_iterator()));
+      std::distance(std::sregex_iterator(svg.begin(), svg.end(), desired), std::sregex_iterator()));
 }
 
 TimeChart chart_of(std::vector<std::optional<double>> values) {

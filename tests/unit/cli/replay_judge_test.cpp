@@ -1,6 +1,6 @@
-#include "cli/replay_judge.hpp"
-
 #include <gtest/gtest.h>
+
+#include "cli/replay_views.hpp"
 
 extern "C" {
 #include "world.h"

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/status_command.hpp"
+#include "cli/commands.hpp"
 
 namespace interlock::cli {
 namespace {

@@ -65,7 +65,7 @@ TEST(AxisController, WithinTheDeadbandOfTheTargetThereIsNoDrive) {
 TEST(AxisController, AnAxisAheadOfItsSetpointWaitsAndNeverTurnsBack) {
   AxisController control = controller();
   const AxisOutput output = control.update(moving(0, 0), 0, {-50, 100, 0}, 600);
-  EXPECT_LT(output.piv.wanted_counts_per_s, 0.0);
+  EXPECT_LT(output.piv.desired_counts_per_s, 0.0);
   EXPECT_EQ(output.drive, 0u);
 }
 
@@ -119,7 +119,7 @@ TEST(AxisController, ALowerCeilingHoldsTheDriveAtOnceAndWindsNothingUp) {
         << axis->name;
     // The error has gone: an integral from these twenty seconds would still drive the axis.
     const AxisOutput after = control.update(moving(0, 20'001), 20'001, {}, 600);
-    EXPECT_NEAR(after.piv.wanted_counts_per_s, 0.0, 0.05 * full_speed) << axis->name;
+    EXPECT_NEAR(after.piv.desired_counts_per_s, 0.0, 0.05 * full_speed) << axis->name;
   }
 }
 
@@ -141,7 +141,7 @@ TEST(AxisController, ALongGapBetweenTicksDoesNotWindUp) {
   }
   const AxisOutput soon = even_ticks.update(moving(0, 60), 60, {5, 0, 0}, 600);
   const AxisOutput late = with_gap.update(moving(0, 60), 1'000'060, {5, 0, 0}, 600);
-  EXPECT_NEAR(late.piv.wanted_counts_per_s, soon.piv.wanted_counts_per_s, 5.0);
+  EXPECT_NEAR(late.piv.desired_counts_per_s, soon.piv.desired_counts_per_s, 5.0);
 }
 
 TEST(AxisController, AllocatesNothing) {

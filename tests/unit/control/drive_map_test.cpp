@@ -76,8 +76,8 @@ TEST_P(EveryCard, SpeedToDriveAndBackIsTheSameSpeed) {
     const double slowest = std::abs(map.speed(GetParam().min_drive, direction));
     std::uniform_real_distribution speed(slowest, std::abs(map.speed(GetParam().max_drive, direction)));
     for (int trial = 0; trial < 10'000; ++trial) {
-      const double wanted = direction * speed(generator);
-      ASSERT_NEAR(map.speed(map.drive(wanted), direction), wanted, 0.1);
+      const double desired = direction * speed(generator);
+      ASSERT_NEAR(map.speed(map.drive(desired), direction), desired, 0.1);
     }
   }
 }

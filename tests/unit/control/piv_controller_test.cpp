@@ -43,7 +43,7 @@ TEST(PivController, MirroredErrorsGiveMirroredOutputs) {
       const PivOutput up = upwards.update(input(p, v, w, 1)).value();
       const PivOutput down = downwards.update(input(-p, -v, -w, -1)).value();
       ASSERT_EQ(up.counts_per_s, -down.counts_per_s);
-      ASSERT_EQ(up.wanted_counts_per_s, -down.wanted_counts_per_s);
+      ASSERT_EQ(up.desired_counts_per_s, -down.desired_counts_per_s);
     }
   }
 }
@@ -53,10 +53,10 @@ TEST(PivController, ASpeedThatIsTooHighLowersTheOutputAndOneTooLowRaisesIt) {
     const auto output = [&](double velocity) {
       return piv_controller().update(input(0, direction * 500, direction * velocity, direction)).value();
     };
-    const double even = direction * output(500).wanted_counts_per_s;
+    const double even = direction * output(500).desired_counts_per_s;
     EXPECT_EQ(even, 500.0);
-    EXPECT_LT(direction * output(600).wanted_counts_per_s, even);
-    EXPECT_GT(direction * output(400).wanted_counts_per_s, even);
+    EXPECT_LT(direction * output(600).desired_counts_per_s, even);
+    EXPECT_GT(direction * output(400).desired_counts_per_s, even);
   }
 }
 
@@ -67,7 +67,7 @@ TEST(PivController, AnOutputAgainstTheTravelIsZeroDriveAtOnce) {
   }
   ASSERT_GT(piv.update(input(10, 800, 500)).value().counts_per_s, 900.0);
   const PivOutput ahead = piv.update(input(-200, 800, 1000)).value();
-  EXPECT_LT(ahead.wanted_counts_per_s, 0.0);
+  EXPECT_LT(ahead.desired_counts_per_s, 0.0);
   EXPECT_EQ(ahead.counts_per_s, 0.0);
 }
 
@@ -103,7 +103,7 @@ TEST(PivController, DoesNotWindUpWhileItsOutputIsHeld) {
     EXPECT_LE(std::abs(piv.integral_counts_per_s()), 1.0) << "after a minute at " << position_error;
     // It follows at once: a speed that fits its setpoint needs no more than that speed.
     const PivOutput after = piv.update(input(0, 500, 500)).value();
-    EXPECT_NEAR(after.wanted_counts_per_s, 500.0, 1.0);
+    EXPECT_NEAR(after.desired_counts_per_s, 500.0, 1.0);
   }
 }
 
@@ -149,7 +149,7 @@ TEST(PivController, WithoutAVelocityItFollowsByPositionAlone) {
   PivInput blind = input(2, 500, 0);
   blind.velocity.reset();
   for (int tick = 0; tick < 1000; ++tick) {
-    EXPECT_EQ(piv.update(blind).value().wanted_counts_per_s, 500.0 + 2 * 15.0);
+    EXPECT_EQ(piv.update(blind).value().desired_counts_per_s, 500.0 + 2 * 15.0);
   }
   EXPECT_EQ(piv.integral_counts_per_s(), 0.0);
 }

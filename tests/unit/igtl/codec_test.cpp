@@ -1,3 +1,5 @@
+#include "igtl/codec.hpp"
+
 #include <gmock/gmock.h>
 #include <igtlPointMessage.h>
 #include <igtlSensorMessage.h>
@@ -7,8 +9,6 @@
 #include <random>
 
 #include "bytes.hpp"
-#include "igtl/decode.hpp"
-#include "igtl/encode.hpp"
 
 namespace interlock::igtl {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "bytes.hpp"
-#include "igtl/decode.hpp"
+#include "igtl/codec.hpp"
 
 namespace interlock::igtl {
 namespace {

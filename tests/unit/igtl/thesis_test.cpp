@@ -9,26 +9,26 @@ namespace {
 
 using testing::HasSubstr;
 
-tl::expected<Wish, Unwanted> wish_of(const std::string& device, Body body) {
-  return read_wish({device, std::move(body), 0, 1, {}});
+tl::expected<Command, Unwanted> command_of(const std::string& device, Body body) {
+  return read_change({device, std::move(body), 0, 1, {}});
 }
 
 Matrix shifted(double x, double y, double z) { return {1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1}; }
 
 TEST(Thesis, NamesAreTakenInUpperAndLowerCase) {
   for (const char* name : {"REGISTRATION", "Registration", "registration"}) {
-    const auto wish = wish_of(name, Transform{shifted(1, 2, 3)});
-    ASSERT_TRUE(wish.has_value()) << name;
-    EXPECT_EQ(std::get<SetRegistration>(*wish).scanner_from_robot, shifted(1, 2, 3));
+    const auto command = command_of(name, Transform{shifted(1, 2, 3)});
+    ASSERT_TRUE(command.has_value()) << name;
+    EXPECT_EQ(std::get<SetRegistration>(*command).scanner_from_robot, shifted(1, 2, 3));
   }
 }
 
 TEST(Thesis, PoseOfAnImagerIsReportedAndNoMore) {
-  const auto wish = wish_of("CURRENT_POSE", Transform{shifted(1, 2, 3)});
-  EXPECT_TRUE(std::holds_alternative<ReportPose>(wish.value()));
-  EXPECT_TRUE(std::holds_alternative<Noted>(wish_of("TIP_POSE", Transform{}).value()));
-  EXPECT_TRUE(std::holds_alternative<Noted>(wish_of("IMAGER_STATUS", Text{"scanning"}).value()));
-  EXPECT_TRUE(std::holds_alternative<Noted>(wish_of("IMAGER_STATUS", Status{}).value()));
+  const auto command = command_of("CURRENT_POSE", Transform{shifted(1, 2, 3)});
+  EXPECT_TRUE(std::holds_alternative<ReportPose>(command.value()));
+  EXPECT_TRUE(std::holds_alternative<Noted>(command_of("TIP_POSE", Transform{}).value()));
+  EXPECT_TRUE(std::holds_alternative<Noted>(command_of("IMAGER_STATUS", Text{"scanning"}).value()));
+  EXPECT_TRUE(std::holds_alternative<Noted>(command_of("IMAGER_STATUS", Status{}).value()));
 }
 
 /** What the dialect gives to be kept of a message. */
@@ -56,7 +56,7 @@ TEST(Thesis, ATipPoseThatIsNoRigidMotionIsRefused) {
   const Matrix twice{2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1};
   const Matrix coarse{1, 0.0002, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   for (const Matrix& wrong : {mirror, shear, twice, coarse, Matrix{}}) {
-    EXPECT_EQ(wish_of("TIP_POSE", Transform{wrong}).error().code, StatusCode::configuration);
+    EXPECT_EQ(command_of("TIP_POSE", Transform{wrong}).error().code, StatusCode::configuration);
   }
   const double angle = 0.3;
   const Matrix turned{std::cos(angle),
@@ -75,7 +75,7 @@ TEST(Thesis, ATipPoseThatIsNoRigidMotionIsRefused) {
                       0,
                       0,
                       1};
-  EXPECT_TRUE(wish_of("TIP_POSE", Transform{turned}).has_value());
+  EXPECT_TRUE(command_of("TIP_POSE", Transform{turned}).has_value());
 }
 
 TEST(Thesis, APointComesAsPointPositionOrPose) {
@@ -83,44 +83,44 @@ TEST(Thesis, APointComesAsPointPositionOrPose) {
   const std::vector<Body> bodies{Points{{{"x", "", {}, expected, 0, ""}}}, Position{expected, std::nullopt},
                                  Transform{shifted(4, 5, 6)}};
   for (const Body& body : bodies) {
-    const auto target = std::get<SetPoint>(wish_of("TARGET_POINT", body).value());
+    const auto target = std::get<SetPoint>(command_of("TARGET_POINT", body).value());
     EXPECT_TRUE(target.is_target);
     EXPECT_EQ(target.position, expected);
-    EXPECT_FALSE(std::get<SetPoint>(wish_of("ENTRY_POINT", body).value()).is_target);
+    EXPECT_FALSE(std::get<SetPoint>(command_of("ENTRY_POINT", body).value()).is_target);
   }
-  EXPECT_EQ(wish_of("TARGET_POINT", Points{}).error().code, StatusCode::configuration);
-  EXPECT_EQ(wish_of("TARGET_POINT", Points{{{}, {}}}).error().code, StatusCode::configuration);
+  EXPECT_EQ(command_of("TARGET_POINT", Points{}).error().code, StatusCode::configuration);
+  EXPECT_EQ(command_of("TARGET_POINT", Points{{{}, {}}}).error().code, StatusCode::configuration);
 }
 
 TEST(Thesis, OffsetsAreNumbersInWords) {
-  const auto offset = std::get<SetOffset>(wish_of("treatment_to_tip", Text{"-12.5"}).value());
+  const auto offset = std::get<SetOffset>(command_of("treatment_to_tip", Text{"-12.5"}).value());
   EXPECT_EQ(offset.field, "treatment_to_tip_offset");
   EXPECT_EQ(offset.mm, -12.5);
-  EXPECT_EQ(std::get<SetOffset>(wish_of("robot_treatment_home", Text{"3"}).value()).field,
+  EXPECT_EQ(std::get<SetOffset>(command_of("robot_treatment_home", Text{"3"}).value()).field,
             "treatment_to_robot_at_home");
   for (const char* wrong : {"", "x", "1,5", "1 ", "inf", "nan", "1e999"}) {
-    EXPECT_FALSE(wish_of("robot_to_entry", Text{wrong}).has_value()) << wrong;
+    EXPECT_FALSE(command_of("robot_to_entry", Text{wrong}).has_value()) << wrong;
   }
 }
 
 TEST(Thesis, TrajectoryHasRowsAndColumns) {
-  const auto rows = std::get<LoadRows>(wish_of("TRAJECTORY", Array{{2, 3}, {0, 1, 2, 3, 4, 5}}).value());
+  const auto rows = std::get<LoadRows>(command_of("TRAJECTORY", Array{{2, 3}, {0, 1, 2, 3, 4, 5}}).value());
   EXPECT_EQ(rows.columns, 3u);
   EXPECT_EQ(rows.values.size(), 6u);
-  EXPECT_THAT(wish_of("TRAJECTORY", Array{{6}, {0, 1, 2, 3, 4, 5}}).error().reason,
+  EXPECT_THAT(command_of("TRAJECTORY", Array{{6}, {0, 1, 2, 3, 4, 5}}).error().reason,
               HasSubstr("1 dimensions"));
-  EXPECT_THAT(wish_of("TRAJECTORY", Transform{}).error().reason, HasSubstr("expected NDARRAY or TDATA"));
+  EXPECT_THAT(command_of("TRAJECTORY", Transform{}).error().reason, HasSubstr("expected NDARRAY or TDATA"));
 }
 
 TEST(Thesis, TrajectoryOfPosesHasItsTimesAsNames) {
   const TrackingData data{{{"0", 2, shifted(1, 2, 3)}, {"0.25", 2, shifted(4, 5, 6)}}};
-  const auto wish = std::get<LoadPoses>(wish_of("TRAJECTORY", data).value());
-  ASSERT_EQ(wish.poses.size(), 2u);
-  EXPECT_EQ(wish.poses[1].time_s, 0.25);
-  EXPECT_EQ(wish.poses[1].scanner_from_treatment, shifted(4, 5, 6));
-  EXPECT_TRUE(needs_control(wish));
+  const auto command = std::get<LoadPoses>(command_of("TRAJECTORY", data).value());
+  ASSERT_EQ(command.poses.size(), 2u);
+  EXPECT_EQ(command.poses[1].time_s, 0.25);
+  EXPECT_EQ(command.poses[1].scanner_from_treatment, shifted(4, 5, 6));
+  EXPECT_TRUE(needs_control(command));
   for (const char* wrong : {"", "tip", "1s", "nan", "inf", "1e999"}) {
-    const auto refused = wish_of("TRAJECTORY", TrackingData{{{"0", 2, {}}, {wrong, 2, {}}}});
+    const auto refused = command_of("TRAJECTORY", TrackingData{{{"0", 2, {}}, {wrong, 2, {}}}});
     ASSERT_FALSE(refused.has_value()) << wrong;
     EXPECT_THAT(refused.error().reason, HasSubstr("row 2, name")) << wrong;
   }
@@ -133,25 +133,25 @@ TEST(Thesis, StopIsUnderstoodHoweverItIsSaid) {
                                                        {"MODE", Text{"STOP"}},
                                                        {"mode", Text{"emergency"}}};
   for (const auto& [name, body] : said) {
-    const auto wish = wish_of(name, body);
-    ASSERT_TRUE(wish.has_value()) << name;
-    EXPECT_TRUE(std::holds_alternative<Stop>(*wish)) << name;
-    EXPECT_FALSE(needs_control(*wish)) << "anybody may stop the robot";
+    const auto command = command_of(name, body);
+    ASSERT_TRUE(command.has_value()) << name;
+    EXPECT_TRUE(std::holds_alternative<Stop>(*command)) << name;
+    EXPECT_FALSE(needs_control(*command)) << "anybody may stop the robot";
   }
 }
 
 TEST(Thesis, NoSetpointIsTakenFromTheNetwork) {
   for (const char* name : {"servo_cp", "move_cp", "neuro/servo_jp", "NEURO/MOVE_JP", "servo_cf"}) {
-    EXPECT_EQ(wish_of(name, Transform{}).error().code, StatusCode::access_denied) << name;
+    EXPECT_EQ(command_of(name, Transform{}).error().code, StatusCode::access_denied) << name;
   }
 }
 
 TEST(Thesis, AStatusIsNotAnsweredSoThatTwoProgramsDoNotAnswerEachOtherForEver) {
-  EXPECT_FALSE(std::get<Noted>(wish_of("", Status{}).value()).is_answered);
+  EXPECT_FALSE(std::get<Noted>(command_of("", Status{}).value()).is_answered);
 }
 
 TEST(Thesis, UnknownNamesAreRefusedByName) {
-  const auto refused = wish_of("TARGET", Transform{});
+  const auto refused = command_of("TARGET", Transform{});
   EXPECT_EQ(refused.error().code, StatusCode::unknown_instruction);
   EXPECT_THAT(refused.error().reason, HasSubstr("TARGET"));
 }
@@ -165,9 +165,9 @@ TEST(Thesis, WhatChangesTheRobotIsTheControllersAlone) {
                                                  {"TRAJECTORY", Array{{1, 2}, {0, 0}}},
                                                  {"MODE", Text{"draping"}},
                                                  {"START_UP", Text{""}}}) {
-    EXPECT_TRUE(needs_control(wish_of(name, body).value())) << name;
+    EXPECT_TRUE(needs_control(command_of(name, body).value())) << name;
   }
-  EXPECT_FALSE(needs_control(wish_of("", StartTracking{}).value()));
+  EXPECT_FALSE(needs_control(command_of("", StartTracking{}).value()));
 }
 
 const Body* find(const Outgoings& messages, const std::string& name) {
@@ -230,22 +230,22 @@ TEST(Thesis, AQueryIsAnsweredByNameOrByTypeAndNothingElseIsMadeUp) {
 TEST(Thesis, HomingIsAskedForAsInTheWorkphases) {
   for (const auto& [name, word] :
        {std::pair{"START_UP", ""}, {"MODE", "home"}, {"arm/state_command", "home"}}) {
-    const auto wish = wish_of(name, Text{word});
-    ASSERT_TRUE(wish.has_value()) << name;
-    EXPECT_TRUE(std::holds_alternative<StartUp>(*wish)) << name;
-    EXPECT_TRUE(needs_control(*wish));
+    const auto command = command_of(name, Text{word});
+    ASSERT_TRUE(command.has_value()) << name;
+    EXPECT_TRUE(std::holds_alternative<StartUp>(*command)) << name;
+    EXPECT_TRUE(needs_control(*command));
   }
 }
 
 TEST(Crtk, StateCommandsMoveNothingByThemselves) {
   for (const char* name : {"state_command", "arm/state_command", "PSM1/state_command"}) {
-    EXPECT_TRUE(std::holds_alternative<Stop>(wish_of(name, Text{"pause"}).value()));
-    EXPECT_TRUE(std::holds_alternative<CutPower>(wish_of(name, Text{"disable"}).value()));
+    EXPECT_TRUE(std::holds_alternative<Stop>(command_of(name, Text{"pause"}).value()));
+    EXPECT_TRUE(std::holds_alternative<CutPower>(command_of(name, Text{"disable"}).value()));
     for (const char* refused : {"enable", "resume", "unhome"}) {
-      EXPECT_EQ(wish_of(name, Text{refused}).error().code, StatusCode::access_denied) << refused;
+      EXPECT_EQ(command_of(name, Text{refused}).error().code, StatusCode::access_denied) << refused;
     }
-    EXPECT_EQ(wish_of(name, Text{"dance"}).error().code, StatusCode::unknown_instruction);
-    EXPECT_EQ(wish_of(name, Transform{}).error().code, StatusCode::configuration);
+    EXPECT_EQ(command_of(name, Text{"dance"}).error().code, StatusCode::unknown_instruction);
+    EXPECT_EQ(command_of(name, Transform{}).error().code, StatusCode::configuration);
   }
 }
 
@@ -293,9 +293,9 @@ TEST(Thesis, AWishIsAnsweredUnderItsOwnNameOnceItIsDone) {
   Thesis dialect;
   const Reaction reaction = dialect.take({"Mode", Text{"draping"}, 0, 1, {}}, {}, true);
   EXPECT_TRUE(reaction.replies.empty());
-  ASSERT_TRUE(reaction.wish.has_value());
+  ASSERT_TRUE(reaction.command.has_value());
   const Status status{StatusCode::not_ready, 0, "NO_KERNEL", "why"};
-  EXPECT_THAT(dialect.finish("Mode", *reaction.wish, {status}).replies,
+  EXPECT_THAT(dialect.finish("Mode", *reaction.command, {status}).replies,
               testing::ElementsAre(Outgoing("Mode", status)));
 }
 

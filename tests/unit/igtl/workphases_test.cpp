@@ -32,7 +32,7 @@ std::vector<std::string> shorts(const Outgoings& messages) {
 
 using Shorts = std::vector<std::string>;
 
-/** A connection in one of the dialects, whose controller it is; wishes are granted at once. */
+/** A connection in one of the dialects, whose controller it is; commands are granted at once. */
 class Talk {
  public:
   explicit Talk(const char* dialect) : dialect_(make_dialect(dialect)) {
@@ -50,10 +50,10 @@ class Talk {
 
   Shorts ask(const std::string& phase, bool controls = true) { return send("CMD_7", Text{phase}, controls); }
 
-  /** What is answered once the wish was carried out. */
+  /** What is answered once the command was carried out. */
   Shorts done(Outcome outcome = {{StatusCode::ok, 0, "OK", ""}}) {
-    const Wish wish = reaction.wish.value();
-    reaction = dialect_->finish("", wish, outcome);
+    const Command command = reaction.command.value();
+    reaction = dialect_->finish("", command, outcome);
     return shorts(reaction.replies);
   }
 
@@ -79,7 +79,7 @@ class Talk {
   }
 
   Shorts due(std::chrono::milliseconds after, bool has_to_hear = false) {
-    return shorts(dialect_->beat(Dialect::Time(after), state, has_to_hear));
+    return shorts(dialect_->heartbeat(Dialect::Time(after), state, has_to_hear));
   }
 
   /** Up to a stored target. */
@@ -114,7 +114,7 @@ TEST_P(EachDialect, AcknowledgesWithTheSameIdAndTextThenTellsThePhase) {
   EXPECT_EQ(talk.send("CMD_0123456789abcdef", Text{"START_UP"}),
             (Shorts{"ACK_0123456789abcdef STRING", "CURRENT_STATUS 1 START_UP"}));
   EXPECT_EQ(std::get<Text>(talk.reaction.replies[0].second).text, "START_UP");
-  EXPECT_TRUE(std::holds_alternative<StartUp>(talk.reaction.wish.value()));
+  EXPECT_TRUE(std::holds_alternative<StartUp>(talk.reaction.command.value()));
   EXPECT_EQ(talk.done(), Shorts{"START_UP 1"});
 }
 
@@ -124,13 +124,13 @@ TEST_P(EachDialect, ARequestThatComesAgainUnderItsIdIsAcknowledgedAndNotCarriedO
   talk.proposed(4);
   EXPECT_EQ(talk.send("CMD_2", Text{"MOVE_TO_TARGET"}),
             (Shorts{"ACK_2 STRING", "CURRENT_STATUS 1 MOVE_TO_TARGET"}));
-  EXPECT_FALSE(talk.reaction.wish.has_value());
+  EXPECT_FALSE(talk.reaction.command.has_value());
   EXPECT_FALSE(talk.reaction.ends.has_value()) << "the motion that it became goes on";
   EXPECT_THAT(talk.reaction.refused, HasSubstr("same request"));
   EXPECT_EQ(talk.send("TGT_1", Transform{moved(2)}),
             (Shorts{"ACK_1 TRANSFORM", "CURRENT_STATUS 1 MOVE_TO_TARGET"}));
   EXPECT_EQ(talk.reaction.replies[0].second, Body(Transform{moved(2)})) << "its exact echo";
-  EXPECT_FALSE(talk.reaction.wish.has_value());
+  EXPECT_FALSE(talk.reaction.command.has_value());
   EXPECT_EQ(talk.over(4), Shorts({"MOVE_TO_TARGET 1", "CURRENT_POSITION TRANSFORM"}));
 }
 
@@ -141,14 +141,14 @@ TEST_P(EachDialect, AnotherRequestUnderAnIdThatWasUsedIsANewOne) {
   talk.send("CLB_1", Transform{moved(5)});
   talk.stored();
   talk.send("CLB_1", Transform{moved(6)});
-  EXPECT_TRUE(talk.reaction.wish.has_value());
+  EXPECT_TRUE(talk.reaction.command.has_value());
 }
 
 TEST_P(EachDialect, ATargetThatWasRefusedMayBeSentAgainUnderTheSameId) {
   talk.target();
   for (int time = 0; time < 2; ++time) {
     talk.send("TGT_2", Transform{moved(900)});
-    ASSERT_TRUE(talk.reaction.wish.has_value()) << time;
+    ASSERT_TRUE(talk.reaction.command.has_value()) << time;
     talk.refused(StatusCode::unreachable);
   }
 }
@@ -158,17 +158,17 @@ TEST(Brp2013, WhatFailedMayBeAskedForAgainUnderTheSameId) {
   talk.ask("START_UP");
   talk.refused(StatusCode::not_ready);
   talk.ask("START_UP");
-  ASSERT_TRUE(talk.reaction.wish.has_value()) << "was refused";
+  ASSERT_TRUE(talk.reaction.command.has_value()) << "was refused";
   talk.proposed(4);
   talk.over(4, StatusCode::not_ready);
   talk.ask("START_UP");
-  EXPECT_TRUE(talk.reaction.wish.has_value()) << "its motion was aborted";
+  EXPECT_TRUE(talk.reaction.command.has_value()) << "its motion was aborted";
 }
 
 TEST_P(EachDialect, AStopThatComesAgainIsMeant) {
   for (const char* phase : {"STOP", "STOP", "EMERGENCY", "EMERGENCY"}) {
     talk.ask(phase);
-    EXPECT_TRUE(std::holds_alternative<Stop>(talk.reaction.wish.value())) << phase;
+    EXPECT_TRUE(std::holds_alternative<Stop>(talk.reaction.command.value())) << phase;
   }
 }
 
@@ -200,7 +200,7 @@ TEST_P(EachDialect, ACalibrationIsEchoedExactlyThenStored) {
   talk.ask("CALIBRATION");
   EXPECT_EQ(talk.send("CLB_9", Transform{moved(0.1f)}), Shorts{"ACK_9 TRANSFORM"});
   EXPECT_EQ(talk.reaction.replies[0].second, Body(Transform{moved(0.1f)}));
-  EXPECT_EQ(std::get<SetRegistration>(talk.reaction.wish.value()).scanner_from_robot, moved(0.1f));
+  EXPECT_EQ(std::get<SetRegistration>(talk.reaction.command.value()).scanner_from_robot, moved(0.1f));
   EXPECT_EQ(talk.refused(StatusCode::configuration), Shorts{"CALIBRATION 10"}) << "no rotation";
   talk.send("CLB_10", Transform{moved(3)});
   EXPECT_EQ(talk.stored(), Shorts{"CALIBRATION 1"});
@@ -209,13 +209,13 @@ TEST_P(EachDialect, ACalibrationIsEchoedExactlyThenStored) {
 TEST_P(EachDialect, ACalibrationInAnotherPhaseIsRefused) {
   talk.ask("START_UP");
   EXPECT_EQ(talk.send("CLB_9", Transform{}), (Shorts{"ACK_9 TRANSFORM", "CALIBRATION 13"}));
-  EXPECT_FALSE(talk.reaction.wish.has_value());
+  EXPECT_FALSE(talk.reaction.command.has_value());
 }
 
 TEST_P(EachDialect, ATargetIsEchoedThenStoredAndToldAsItIsSet) {
   talk.target();
   EXPECT_EQ(talk.send("TGT_2", Transform{moved(7)}), Shorts{"ACK_2 TRANSFORM"});
-  EXPECT_EQ(std::get<SetTargetPose>(talk.reaction.wish.value()).scanner_from_target, moved(7));
+  EXPECT_EQ(std::get<SetTargetPose>(talk.reaction.command.value()).scanner_from_target, moved(7));
   EXPECT_THAT(talk.stored(), testing::IsSupersetOf({"TARGET 1", "TARGET TRANSFORM"}));
   EXPECT_EQ(talk.reaction.replies[1].second, Body(Transform{moved(2)})) << "not as it was asked for";
 }
@@ -226,7 +226,7 @@ TEST_P(EachDialect, ARefusedTargetLeavesNoneToMoveTo) {
   EXPECT_EQ(talk.refused(StatusCode::unreachable), Shorts{"TARGET 10"});
   EXPECT_EQ(talk.ask("MOVE_TO_TARGET"),
             (Shorts{"ACK_7 STRING", "CURRENT_STATUS 1 MOVE_TO_TARGET", "MOVE_TO_TARGET 13"}));
-  EXPECT_FALSE(talk.reaction.wish.has_value());
+  EXPECT_FALSE(talk.reaction.command.has_value());
 }
 
 TEST_P(EachDialect, ATargetInAnotherPhaseIsRefused) {
@@ -269,7 +269,7 @@ TEST_P(EachDialect, StopAndEmergencyActInEveryPhaseAndFromEverybody) {
     for (const bool cuts_power : {false, true}) {
       const std::string phase = cuts_power ? "EMERGENCY" : "STOP";
       EXPECT_EQ(talk.ask(phase, controls), (Shorts{"ACK_7 STRING", "CURRENT_STATUS 1 " + phase}));
-      EXPECT_EQ(std::get<Stop>(talk.reaction.wish.value()).cuts_power, cuts_power);
+      EXPECT_EQ(std::get<Stop>(talk.reaction.command.value()).cuts_power, cuts_power);
       EXPECT_EQ(talk.done(), Shorts{phase + " 1"});
     }
   }
@@ -279,16 +279,16 @@ TEST_P(EachDialect, StopAndEmergencyActInEveryPhaseAndFromEverybody) {
 TEST_P(EachDialect, ManualCutsThePowerAndNoMoveFollowsIt) {
   talk.target();
   EXPECT_EQ(talk.ask("MANUAL"), (Shorts{"ACK_7 STRING", "CURRENT_STATUS 1 MANUAL"}));
-  EXPECT_TRUE(std::holds_alternative<CutPower>(talk.reaction.wish.value()));
+  EXPECT_TRUE(std::holds_alternative<CutPower>(talk.reaction.command.value()));
   EXPECT_EQ(talk.done(), Shorts{"MANUAL 1"});
   EXPECT_EQ(talk.ask("MOVE_TO_TARGET").back(), "MOVE_TO_TARGET 13");
-  EXPECT_FALSE(talk.reaction.wish.has_value());
+  EXPECT_FALSE(talk.reaction.command.has_value());
 }
 
 TEST_P(EachDialect, AnObserverEntersNoPhase) {
   EXPECT_EQ(talk.ask("START_UP", false),
             (Shorts{"ACK_7 STRING", "CURRENT_STATUS 5 UNDEFINED", "START_UP 5"}));
-  EXPECT_FALSE(talk.reaction.wish.has_value());
+  EXPECT_FALSE(talk.reaction.command.has_value());
   EXPECT_THAT(talk.reaction.refused, HasSubstr("observer"));
 }
 
@@ -331,9 +331,9 @@ TEST_P(EachDialect, AnotherPhaseEndsTheMotionOfTheOneBefore) {
 
 TEST_P(EachDialect, AMotionThatComesTooLateIsEnded) {
   talk.ask("START_UP");
-  const Wish late = talk.reaction.wish.value();
+  const Command late = talk.reaction.command.value();
   talk.ask("STOP");
-  talk.reaction.wish = late;
+  talk.reaction.command = late;
   EXPECT_EQ(talk.proposed(4), Shorts{"START_UP 13"});
   EXPECT_EQ(talk.reaction.ends, 4u);
 }
@@ -343,8 +343,8 @@ TEST(Brp2013, AnyPhaseFollowsAnyOther) {
     for (std::size_t to = 1; to <= static_cast<std::size_t>(Phase::emergency); ++to) {
       Talk talk("brp2013");
       talk.ask(std::string(phase_name(static_cast<Phase>(from))));
-      const std::string wanted(phase_name(static_cast<Phase>(to)));
-      EXPECT_EQ(talk.ask(wanted).at(1), "CURRENT_STATUS 1 " + wanted);
+      const std::string desired(phase_name(static_cast<Phase>(to)));
+      EXPECT_EQ(talk.ask(desired).at(1), "CURRENT_STATUS 1 " + desired);
     }
   }
 }
@@ -353,7 +353,7 @@ TEST(Brp2013, PlanningAndCalibrationSayNothingMore) {
   Talk talk("brp2013");
   for (const std::string phase : {"PLANNING", "CALIBRATION"}) {
     EXPECT_EQ(talk.ask(phase), (Shorts{"ACK_7 STRING", "CURRENT_STATUS 1 " + phase}));
-    EXPECT_FALSE(talk.reaction.wish.has_value());
+    EXPECT_FALSE(talk.reaction.command.has_value());
   }
 }
 
@@ -383,7 +383,7 @@ TEST(Wpi2024, PhasesFollowInTheirOrderAndARefusalIsAnswered) {
   const std::vector<std::string> way{"START_UP", "CALIBRATION", "PLANNING", "TARGETING", "MOVE_TO_TARGET"};
   for (const auto& [from, allowed] : next) {
     for (int to = 1; to <= static_cast<int>(Phase::emergency); ++to) {
-      const std::string wanted(phase_name(static_cast<Phase>(to)));
+      const std::string desired(phase_name(static_cast<Phase>(to)));
       Talk talk("wpi2024");
       for (const std::string& phase : way) {
         talk.ask(phase);
@@ -392,15 +392,15 @@ TEST(Wpi2024, PhasesFollowInTheirOrderAndARefusalIsAnswered) {
         }
       }
       talk.ask(from == "MANUAL" ? "MANUAL" : "STATUS QUO");
-      const bool may = (" " + allowed + " ").find(" " + wanted + " ") != std::string::npos ||
-                       wanted == "STOP" || wanted == "EMERGENCY";
-      const Shorts answer = talk.send("CMD_8", Text{wanted});
+      const bool may = (" " + allowed + " ").find(" " + desired + " ") != std::string::npos ||
+                       desired == "STOP" || desired == "EMERGENCY";
+      const Shorts answer = talk.send("CMD_8", Text{desired});
       EXPECT_EQ(answer.at(0), "ACK_8 STRING");
-      EXPECT_EQ(answer.at(1), may ? "CURRENT_STATUS 1 " + wanted : "CURRENT_STATUS 13 " + from)
-          << from << " to " << wanted;
-      EXPECT_EQ(answer.size() > 2 && answer.back() == wanted + " 13",
-                !may || (may && wanted == "MOVE_TO_TARGET"))
-          << from << " to " << wanted;
+      EXPECT_EQ(answer.at(1), may ? "CURRENT_STATUS 1 " + desired : "CURRENT_STATUS 13 " + from)
+          << from << " to " << desired;
+      EXPECT_EQ(answer.size() > 2 && answer.back() == desired + " 13",
+                !may || (may && desired == "MOVE_TO_TARGET"))
+          << from << " to " << desired;
     }
   }
 }
@@ -467,7 +467,7 @@ TEST(Wpi2024, ATargetDuringTheMoveReplacesItsMotion) {
   EXPECT_EQ(talk.reaction.ends, 8u);
   EXPECT_EQ(talk.over(8, StatusCode::not_ready), Shorts{});
   EXPECT_EQ(talk.stored().at(0), "TARGET 1");
-  EXPECT_TRUE(std::get<MoveToTarget>(talk.reaction.wish.value()).takes_reachable);
+  EXPECT_TRUE(std::get<MoveToTarget>(talk.reaction.command.value()).takes_reachable);
   EXPECT_EQ(talk.proposed(9), Shorts{});
   EXPECT_EQ(talk.over(9).at(0), "MOVE_TO_TARGET 1");
 }
@@ -508,7 +508,7 @@ TEST(Wpi2024, TheNeedlesTipIsNotedDuringTheMove) {
   talk.ask("MOVE_TO_TARGET");
   talk.proposed(8);
   EXPECT_EQ(talk.send("NPOS_1", Transform{moved(3)}), Shorts{"ACK_1 TRANSFORM"});
-  EXPECT_EQ(std::get<ReportPose>(talk.reaction.wish.value()).scanner_from_probe, moved(3));
+  EXPECT_EQ(std::get<ReportPose>(talk.reaction.command.value()).scanner_from_probe, moved(3));
   EXPECT_EQ(talk.done(), Shorts{"MOVE_TO_TARGET 1"});
 }
 

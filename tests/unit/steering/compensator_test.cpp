@@ -31,7 +31,7 @@ TEST(Compensator, spins_evenly_towards_a_target_straight_ahead) {
 TEST(Compensator, turns_the_bevel_towards_a_target_beside) {
   Compensator compensator = towards({4, 0, 100});
   const SteeringCommand command = compensator.step({0.001, 0.0, 0.3}).value();
-  EXPECT_NEAR(command.wanted_rotation_rad, pi / 2, 1e-9);
+  EXPECT_NEAR(command.desired_rotation_rad, pi / 2, 1e-9);
   EXPECT_GT(command.alpha, 0.0);
   EXPECT_LT(command.alpha, 1.0);
   EXPECT_TRUE(command.reachable);
@@ -52,12 +52,12 @@ TEST(Compensator, bends_all_out_and_says_so_when_the_target_is_out_of_reach) {
 TEST(Compensator, takes_alpha_by_the_rule_it_is_given) {
   CompensatorParameters parameters;
   parameters.share_rule = ShareRule::published;
-  const double wanted = steering_target({4, 0, 100})->curvature_per_mm;
+  const double desired = steering_target({4, 0, 100})->curvature_per_mm;
   Compensator published = towards({4, 0, 100}, parameters);
   Compensator averaged = towards({4, 0, 100});
-  EXPECT_NEAR(published.step({0.001, 0.0, 0.0})->alpha, published_share(wanted, 0.0041)->alpha, 1e-9);
+  EXPECT_NEAR(published.step({0.001, 0.0, 0.0})->alpha, published_share(desired, 0.0041)->alpha, 1e-9);
   const double alpha = averaged.step({0.001, 0.0, 0.0})->alpha;
-  EXPECT_NEAR(*CurvLaw::create({})->curvature_share(alpha) * 0.0041, wanted, 1e-9);
+  EXPECT_NEAR(*CurvLaw::create({})->curvature_share(alpha) * 0.0041, desired, 1e-9);
 }
 
 TEST(Compensator, turns_to_and_fro_within_one_turn) {
@@ -73,7 +73,7 @@ TEST(Compensator, aims_at_the_target_that_an_image_shows) {
   ASSERT_TRUE(compensator.step({0.001, 0.0, 0.0}));
   ASSERT_TRUE(compensator.see({0.0005, Vector3d::Zero(), Vector3d(0, 6, 100)}));
   const SteeringCommand command = compensator.step({0.002, 0.0, 0.0}).value();
-  EXPECT_NEAR(command.wanted_rotation_rad, pi, 0.1);
+  EXPECT_NEAR(command.desired_rotation_rad, pi, 0.1);
   EXPECT_GT(command.alpha, 0.5);
 }
 
@@ -108,7 +108,7 @@ TEST(Compensator, keeps_its_last_plan_close_to_the_target) {
       kept = command;
     } else {
       ASSERT_EQ(command.alpha, kept.alpha);
-      ASSERT_EQ(command.wanted_rotation_rad, kept.wanted_rotation_rad);
+      ASSERT_EQ(command.desired_rotation_rad, kept.desired_rotation_rad);
     }
   }
   EXPECT_GT(kept.alpha, 0.0);

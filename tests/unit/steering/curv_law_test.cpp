@@ -49,12 +49,12 @@ TEST(CurvLaw, stays_between_standstill_and_the_fastest_and_repeats_each_turn) {
   const CurvLaw curv = law();
   for (int trial = 0; trial < 10'000; ++trial) {
     const double angle = between(generator, -40.0, 40.0);
-    const double wanted = between(generator, 0.0, 2 * pi);
+    const double desired = between(generator, 0.0, 2 * pi);
     const double alpha = between(generator, 0.0, 1.0);
-    const double speed = *curv.speed_rad_s(angle, wanted, alpha);
+    const double speed = *curv.speed_rad_s(angle, desired, alpha);
     ASSERT_GE(speed, 0.0);
     ASSERT_LE(speed, curv.parameters().fastest_rad_s);
-    ASSERT_NEAR(*curv.speed_rad_s(angle + 6 * pi, wanted, alpha), speed, 1e-10);
+    ASSERT_NEAR(*curv.speed_rad_s(angle + 6 * pi, desired, alpha), speed, 1e-10);
   }
 }
 

@@ -23,13 +23,14 @@ Registration registered(const Pose& scanner_from_zframe) {
   return *Registration::create(row_major(scanner_from_zframe));
 }
 
-KinematicsResult<Alignment> aligned(const Robot& robot, const Pose& scanner_from_zframe, const Aim& aim) {
+KinematicsResult<Alignment> aligned(const Robot& robot, const Pose& scanner_from_zframe,
+                                    const EntryTarget& aim) {
   return align(robot, kinematics_of(robot), registered(scanner_from_zframe), aim);
 }
 
 /** The aim of the reference's second golden value, or another one, carried into the scanner. */
-Aim aim_in(const Pose& scanner_from_zframe, const Vector3d& entry = {-5, 262, 55},
-           const Vector3d& target = {0, 215, 45}) {
+EntryTarget aim_in(const Pose& scanner_from_zframe, const Vector3d& entry = {-5, 262, 55},
+                   const Vector3d& target = {0, 215, 45}) {
   return {scanner_from_zframe * entry, scanner_from_zframe * target, 0.0};
 }
 
@@ -67,7 +68,8 @@ TEST(Alignment, DesiredIsTheAimAndReachableIsWithinTheRoundingToCounts) {
         dynamic_cast<const NeuroKinematics&>(*neuro().kinematics).geometry(), neuro().probe);
     const Vector3d entry = own->zframe_from_entry(joints)->translation();
     const Vector3d target = own->zframe_from_treatment(joints)->translation();
-    const Aim aim{scanner_from_zframe * entry, scanner_from_zframe * target, joints.probe_rotation_rad};
+    const EntryTarget aim{scanner_from_zframe * entry, scanner_from_zframe * target,
+                          joints.probe_rotation_rad};
     const auto alignment = aligned(neuro(), scanner_from_zframe, aim);
     ASSERT_TRUE(alignment) << alignment.error().message();
     EXPECT_LE((alignment->desired.translation() - aim.target).norm(), 1e-9);
@@ -92,8 +94,8 @@ TEST(Alignment, AClampedAxisIsNamedAndTheReachablePoseFallsShort) {
   EXPECT_TRUE(insertion.clamped);
   EXPECT_EQ(insertion.counts, neuro().with_role("insertion")->highest_setpoint_counts());
   EXPECT_FALSE(of_role(neuro(), *alignment, "yaw").clamped);
-  const double wanted = std::sqrt(9.0 + 8100.0 + 400.0) - 41.0 + 5.0;
-  const double missing = wanted - position_of(neuro(), *alignment, "insertion");
+  const double desired = std::sqrt(9.0 + 8100.0 + 400.0) - 41.0 + 5.0;
+  const double missing = desired - position_of(neuro(), *alignment, "insertion");
   EXPECT_NEAR(alignment->deviation.distance_mm, missing, 0.15);
   EXPECT_NEAR(alignment->deviation.offset_mm.norm(), alignment->deviation.distance_mm, 1e-12);
   EXPECT_LE(alignment->deviation.angle_rad, 2 * 0.5 / 795.8);
@@ -122,7 +124,7 @@ TEST(Alignment, OffsetsAAndCTellTipAndCannula) {
 TEST(Alignment, TheProstateAlignsInItsZframe) {
   std::mt19937_64 generator(4);
   const Pose scanner_from_zframe = test::random_pose(generator, 300.0);
-  const Aim aim = aim_in(scanner_from_zframe, {0.0, -20.0, 0.0}, {0.0, -20.0, 60.0});
+  const EntryTarget aim = aim_in(scanner_from_zframe, {0.0, -20.0, 0.0}, {0.0, -20.0, 60.0});
   const auto alignment = aligned(prostate(), scanner_from_zframe, aim);
   ASSERT_TRUE(alignment) << alignment.error().message();
   EXPECT_LE(alignment->deviation.distance_mm, 0.01);

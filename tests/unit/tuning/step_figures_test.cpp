@@ -1,6 +1,6 @@
-#include "tuning/step_figures.hpp"
-
 #include <gtest/gtest.h>
+
+#include "tuning/step_run.hpp"
 
 namespace interlock {
 namespace {

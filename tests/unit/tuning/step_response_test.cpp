@@ -6,7 +6,7 @@
 #include "plant/parameters_file.hpp"
 #include "project_robots.hpp"
 #include "robot/compile.hpp"
-#include "tuning/step_figures.hpp"
+#include "tuning/step_run.hpp"
 
 namespace interlock {
 namespace {

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include "tuning/step_csv.hpp"
-#include "tuning/step_svg.hpp"
+#include "tuning/step_run.hpp"
 
 namespace interlock {
 namespace {

@@ -1,0 +1,426 @@
+#include "proposals/motion_registry.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "proposals/checks.hpp"
+#include "proposals/proposal_json.hpp"
+
+namespace interlock {
+
+namespace {
+
+template <typename... Each>
+struct Overloaded : Each... {
+  using Each::operator()...;
+};
+
+/** For somebody to look at what a file asks for. */
+constexpr std::chrono::minutes approval_wait{10};
+
+Refusal overloaded(const std::string& next_step) {
+  return {"OVERLOADED", "The control thread takes no more commands now.", "", next_step};
+}
+
+/** The axes of a mask, in the order in which people see them. */
+std::vector<std::uint32_t> slots_of(const Robot& robot, std::uint32_t mask) {
+  std::vector<std::uint32_t> slots;
+  for (const Axis& axis : robot.axes) {
+    if (((mask >> axis.slot) & 1u) != 0) {
+      slots.push_back(axis.slot);
+    }
+  }
+  return slots;
+}
+
+/** The axes that a task moves, each once. */
+std::vector<std::uint32_t> slots_of(const Robot& robot, const Work& work) {
+  return std::visit(Overloaded{
+                        [](const MoveTask& move) { return std::vector{move.slot}; },
+                        [](const HomeTask& homing) { return homing.slots; },
+                        [&](const PathTask& path) { return slots_of(robot, path.program->mask()); },
+                        [](const SweepTask& sweep) { return std::vector{sweep.slot}; },
+                        [&](const BiopsyTask& /*insertion*/) {
+                          return std::vector{robot.with_role("insertion")->slot,
+                                             robot.with_role("rotation")->slot};
+                        },
+                    },
+                    work);
+}
+
+}  // namespace
+
+MotionRegistry::MotionRegistry(const Robot& robot, const ilk_config_t& config, Send send, Clock clock)
+    : robot_(robot), config_(config), send_(std::move(send)), clock_(std::move(clock)) {}
+
+tl::expected<Proposal, Refusal> MotionRegistry::propose(Task task, const ControlView& view,
+                                                        std::chrono::steady_clock::time_point asked) {
+  std::vector<std::uint32_t> slots = slots_of(robot_, task.work);
+  for (const std::uint32_t slot : slots) {
+    if (robot_.at_slot(slot) == nullptr) {
+      return tl::make_unexpected(verdict_refusal(ILK_VERDICT_AXIS, "slot " + std::to_string(slot)));
+    }
+  }
+  Proposal& proposal = keep(std::move(task), std::move(slots), view);
+  if (const auto checked = check(proposal, view); !checked) {
+    return tl::make_unexpected(checked.error());
+  }
+  if (approves(proposal.task->source)) {
+    return approve(proposal, asked);
+  }
+  become(proposal, ProposalState::checked, "Every check passed. Waits for somebody to approve it.");
+  return proposal;
+}
+
+bool MotionRegistry::renew(std::uint32_t id) {
+  const Proposal* proposal = find(id);
+  const MoveTask* move = proposal == nullptr ? nullptr : proposal->work<MoveTask>();
+  return move != nullptr && move->jog && is_open(proposal->state) && send_(Renewal{id, {}});
+}
+
+bool MotionRegistry::show_image(const NeedleImage& image) {
+  const Proposal* open = open_biopsy();
+  return open != nullptr && send_(SeenImage{open->id, image});
+}
+
+/** Refuses what followed from targeting that has changed since. */
+tl::expected<void, Refusal> MotionRegistry::check_current(const Task& task) const {
+  if (task.targeting_revision && *task.targeting_revision != targeting_revision_) {
+    return tl::make_unexpected(Refusal{"STALE", "Registration, probe or target changed meanwhile.",
+                                       "the present registration, probe and target",
+                                       "Look at them, and propose again."});
+  }
+  return {};
+}
+
+/** Refuses a move of one axis beside what moves the robot as a whole. */
+tl::expected<void, Refusal> MotionRegistry::check_alone() const {
+  if (const Proposal* home = open_home()) {
+    return tl::make_unexpected(
+        Refusal{"MODE_HOME", "Proposal " + std::to_string(home->id) + " is homing the robot.",
+                "no open proposal of homing", "Wait until it has ended, or abort it."});
+  }
+  if (const Proposal* open = open_mode()) {
+    return tl::make_unexpected(
+        Refusal{"MODE_PATH",
+                "Proposal " + std::to_string(open->id) + " moves " +
+                    (open->slots.size() == 1 ? open->axis : std::string("several axes")) + ".",
+                "no open proposal of another mode", "Wait until it has ended, or abort it."});
+  }
+  return {};
+}
+
+/** From where the axes are now. Keeps what the checks found and against what; refuses the proposal when one
+ * failed. */
+tl::expected<void, Refusal> MotionRegistry::check(Proposal& proposal, const ControlView& view) {
+  CheckList checks;
+  if (proposal.task->targeting_revision) {
+    checks.make(CheckName::targeting, [&] { return check_current(*proposal.task); });
+  }
+  std::visit(Overloaded{
+                 [&](const MoveTask& move) {
+                   checks.make(CheckName::other_motion, [&] { return check_alone(); });
+                   check_move(*robot_.at_slot(move.slot), config_, view, move, checks);
+                 },
+                 [&](const HomeTask& homing) { check_home(robot_, config_, view, homing, checks); },
+                 [&](const PathTask& path) {
+                   if (auto preview = check_path(robot_, config_, view, *path.program, checks)) {
+                     proposal.ends = std::move(preview->ends);
+                     proposal.duration_s = preview->duration_s;
+                   }
+                 },
+                 [&](const SweepTask& sweep) { check_sweep(robot_, config_, view, sweep, checks); },
+                 [&](const BiopsyTask& insertion) { check_biopsy(robot_, config_, view, insertion, checks); },
+             },
+             proposal.task->work);
+  proposal.checks = checks.results();
+  proposal.checked_against = std::make_shared<const ilk_snapshot_t>(view.snapshot);
+  return checks.outcome().map_error([&](const Refusal& refusal) { return refuse(proposal, refusal); });
+}
+
+/** The proposal that waits for approval under that number. */
+tl::expected<Proposal*, Refusal> MotionRegistry::waiting(std::uint32_t id) {
+  Proposal* proposal = find_mutable(id);
+  if (proposal == nullptr || proposal->state != ProposalState::checked) {
+    const std::string state = proposal == nullptr ? "unknown" : std::string(state_name(proposal->state));
+    return tl::make_unexpected(Refusal{"NOT_WAITING", "Proposal " + std::to_string(id) + " is " + state + ".",
+                                       "a proposal that is checked", "Propose it again."});
+  }
+  return proposal;
+}
+
+tl::expected<Proposal, Refusal> MotionRegistry::approve(std::uint32_t id, const ControlView& view,
+                                                        std::chrono::steady_clock::time_point asked) {
+  return waiting(id).and_then([&](Proposal* proposal) {
+    return check(*proposal, view).and_then([&] { return approve(*proposal, asked); });
+  });
+}
+
+tl::expected<Proposal, Refusal> MotionRegistry::reject(std::uint32_t id, const std::string& by) {
+  return waiting(id).map([&](Proposal* proposal) {
+    become(*proposal, ProposalState::aborted, "Rejected by " + by + " before it was approved.");
+    return *proposal;
+  });
+}
+
+/** Whether such proposals need no click. */
+bool MotionRegistry::approves(TaskSource source) const {
+  return source == TaskSource::console || robot_.auto_approve;
+}
+
+void MotionRegistry::end_stale() {
+  ++targeting_revision_;
+  for (Proposal& each : registry_) {
+    if (each.task->targeting_revision && is_open(each.state)) {
+      const bool waits = each.state == ProposalState::checked || send_(Cancel{each.id});
+      become(each, ProposalState::aborted,
+             std::string("Registration, probe or target changed, from which it followed; propose it again.") +
+                 (waits ? "" : " The control thread takes no commands now: press STOP."));
+    }
+  }
+  tell_mode();
+}
+
+/** Hands the task over; what it replaces ends. */
+tl::expected<Proposal, Refusal> MotionRegistry::approve(Proposal& proposal,
+                                                        std::chrono::steady_clock::time_point asked) {
+  become(proposal, ProposalState::checked, "Every check passed.");
+  // Kept before it is handed over: the control thread may take it at once.
+  approved_.push_back(proposal.task);
+  if (!send_(Approval{proposal.task, 0, asked + approval_timeout, {}})) {
+    return tl::make_unexpected(
+        refuse(proposal, overloaded("Try again; if it happens again, report it with the log.")));
+  }
+  replace_open(proposal);
+  const auto* homing = proposal.work<HomeTask>();
+  const TaskStatus waits{.task = proposal.id, .step = homing == nullptr ? 0 : homing->first_step};
+  become(proposal, ProposalState::approved, detail_of(robot_, proposal, waits, {}));
+  tell_mode();
+  return proposal;
+}
+
+Proposal& MotionRegistry::keep(Task task, std::vector<std::uint32_t> slots, const ControlView& view) {
+  if (registry_.size() == capacity) {
+    forget_one();
+  }
+  task.id = ++last_id_;
+  Proposal& proposal = registry_.emplace_back();
+  proposal.id = task.id;
+  proposal.slots = std::move(slots);
+  for (const std::uint32_t slot : proposal.slots) {
+    proposal.axes.push_back(robot_.at_slot(slot)->name);
+  }
+  proposal.axis = proposal.slots.size() == 1 ? proposal.axes.front() : "";
+  if (const auto* move = std::get_if<MoveTask>(&task.work)) {
+    proposal.target = robot_.at_slot(move->slot)->to_unit(move->target_counts);
+  }
+  if (const auto* homing = std::get_if<HomeTask>(&task.work); homing != nullptr && homing->step_count != 0) {
+    proposal.step = robot_.home_steps[homing->first_step].name;
+  }
+  proposal.task = std::make_shared<const Task>(std::move(task));
+  proposal.created = clock_();
+  proposal.created_tick = view.snapshot.state.system.tick;
+  proposal.detail = "Drafted.";
+  listener_(proposal);
+  return proposal;
+}
+
+/** An ended proposal, or the oldest that waits for approval: at most one an axis is approved. */
+void MotionRegistry::forget_one() {
+  auto forgotten = std::ranges::find_if(registry_, [](const Proposal& each) { return !is_open(each.state); });
+  if (forgotten == registry_.end()) {
+    forgotten =
+        std::ranges::find_if(registry_, [](const Proposal& each) { return !is_approved(each.state); });
+    become(*forgotten, ProposalState::aborted, "Too many newer proposals; propose it again.");
+  }
+  registry_.erase(forgotten);
+}
+
+/** A move replaces the approved one of its axis, homing and a path every approved proposal. */
+void MotionRegistry::replace_open(const Proposal& by) {
+  for (Proposal& each : registry_) {
+    const bool in_the_way = by.task->kind() != TaskKind::move || each.slots == by.slots;
+    if (in_the_way && each.id != by.id && is_approved(each.state)) {
+      become(each, ProposalState::aborted, "Replaced by proposal " + std::to_string(by.id) + ".");
+    }
+  }
+}
+
+Refusal MotionRegistry::refuse(Proposal& proposal, Refusal refusal) {
+  become(proposal, ProposalState::refused, refusal.detail + " " + refusal.next_step, refusal.code);
+  return refusal;
+}
+
+tl::expected<Proposal, Refusal> MotionRegistry::abort(std::uint32_t id) {
+  Proposal* proposal = find_mutable(id);
+  if (proposal == nullptr || !is_open(proposal->state)) {
+    const std::string state = proposal == nullptr ? "unknown" : std::string(state_name(proposal->state));
+    return tl::make_unexpected(Refusal{"ENDED", "Proposal " + std::to_string(id) + " is " + state + ".",
+                                       "a proposal that is approved, executing or paused", "None."});
+  }
+  if (!send_(Cancel{id})) {
+    return tl::make_unexpected(overloaded("Press STOP, or release the pedal."));
+  }
+  become(*proposal, ProposalState::aborted, "Ended by its author.");
+  tell_mode();
+  return *proposal;
+}
+
+void MotionRegistry::abort_all(const std::string& reason) {
+  for (Proposal& each : registry_) {
+    if (is_open(each.state)) {
+      become(each, ProposalState::aborted, reason);
+    }
+  }
+  tell_mode();
+}
+
+void MotionRegistry::lose_author(TaskSource source, const std::string& reason) {
+  pause_reason_ = reason;
+  for (Proposal& each : registry_) {
+    const bool is_told = each.detail.starts_with(reason);
+    if (each.state == ProposalState::executing || !is_open(each.state) || is_told) {
+      continue;
+    }
+    if (is_approved(each.state)) {
+      become(each, each.state, reason + " " + each.detail);
+    } else if (each.task->source == source) {
+      become(each, ProposalState::aborted, reason + " Nobody had approved it yet; propose it again.");
+    }
+  }
+  tell_mode();
+}
+
+void MotionRegistry::follow(const ControlView& view) {
+  discard_waiting(view);
+  for (const TaskStatus& status : view.tasks) {
+    follow(status, view);
+  }
+  // Nobody else can take a new reference of one that only this holds.
+  std::erase_if(approved_, [](const TaskReference& each) { return each.use_count() == 1; });
+  tell_mode();
+}
+
+/** A task is reported anew within a state too: the step changes, or what is left of it. */
+void MotionRegistry::follow(const TaskStatus& status, const ControlView& view) {
+  Proposal* proposal = find_mutable(status.task);
+  if (proposal == nullptr || !is_open(proposal->state)) {
+    return;
+  }
+  const ProposalState state = state_of(status.phase);
+  std::string detail = detail_of(robot_, *proposal, status, view.biopsy);
+  const bool same = proposal->state == state;
+  if (same ? proposal->detail.ends_with(detail) : !may_become(proposal->state, state)) {
+    return;
+  }
+  if (const HomeTask* homing = proposal->work<HomeTask>()) {
+    const bool is_step = homing->step_count != 0 && status.step < robot_.home_steps.size();
+    proposal->step = is_step ? robot_.home_steps[status.step].name : "";
+  } else if (proposal->work<PathTask>() != nullptr) {
+    proposal->leg = status.step;
+  } else if (proposal->work<SweepTask>() != nullptr) {
+    const auto first = view.sweep_speeds.begin();
+    proposal->speeds_counts_per_s.assign(first, first + status.step);
+  }
+  become(*proposal, state, std::move(detail), verdict_of(status));
+}
+
+/** What waits for approval is discarded by a lock, as all that was approved is, and does not wait for ever.
+ */
+void MotionRegistry::discard_waiting(const ControlView& view) {
+  const bool locked = view.attached && view.snapshot.state.system.mode == ILK_MODE_LOCKED;
+  for (Proposal& each : registry_) {
+    if (each.state == ProposalState::checked && locked) {
+      become(each, ProposalState::aborted, "The kernel locked before it was approved; propose it again.");
+    } else if (each.state == ProposalState::checked && clock_() - each.created > approval_wait) {
+      become(each, ProposalState::expired, "Nobody approved it within 10 minutes; propose it again.");
+    }
+  }
+}
+
+void MotionRegistry::become(Proposal& proposal, ProposalState state, std::string detail,
+                            std::optional<std::string> verdict) {
+  if (state == ProposalState::executing) {
+    pause_reason_.clear();
+  } else if (state == ProposalState::paused && proposal.state == ProposalState::executing &&
+             !pause_reason_.empty()) {
+    detail = pause_reason_ + " " + detail;
+  }
+  proposal.state = state;
+  proposal.detail = std::move(detail);
+  proposal.verdict = std::move(verdict);
+  if (!is_open(state)) {
+    proposal.ended = clock_();
+    proposal.step.clear();
+    if (proposal.work<BiopsyTask>() != nullptr) {
+      // It is large. What the control thread may still use is in `approved_`.
+      Task ended = *proposal.task;
+      std::get<BiopsyTask>(ended.work).run.reset();
+      proposal.task = std::make_shared<const Task>(std::move(ended));
+    }
+  }
+  listener_(proposal);
+}
+
+void MotionRegistry::tell_mode() {
+  const std::string_view mode = app_mode();
+  if (std::exchange(told_mode_, mode) != mode) {
+    mode_listener_(mode);
+  }
+}
+
+std::string_view MotionRegistry::app_mode() const {
+  if (open_home() != nullptr) {
+    return mode_name(RobotMode::home);
+  }
+  const Proposal* open = open_mode();
+  return mode_name(open == nullptr ? RobotMode::manual : open->task->mode);
+}
+
+const Proposal* MotionRegistry::open_mode() const {
+  const auto found = std::find_if(registry_.begin(), registry_.end(), [](const Proposal& each) {
+    return each.task->mode > RobotMode::home && is_approved(each.state);
+  });
+  return found == registry_.end() ? nullptr : &*found;
+}
+
+const Proposal* MotionRegistry::open_biopsy() const {
+  const Proposal* open = open_mode();
+  return open != nullptr && open->work<BiopsyTask>() != nullptr ? open : nullptr;
+}
+
+const Proposal* MotionRegistry::open_home() const {
+  const auto found = std::find_if(registry_.begin(), registry_.end(), [](const Proposal& each) {
+    return each.work<HomeTask>() != nullptr && is_approved(each.state);
+  });
+  return found == registry_.end() ? nullptr : &*found;
+}
+
+bool MotionRegistry::may_move() const {
+  return std::ranges::any_of(registry_, [](const Proposal& each) { return is_approved(each.state); });
+}
+
+bool MotionRegistry::homes(std::uint32_t slot) const {
+  const Proposal* home = open_home();
+  return home != nullptr && std::find(home->slots.begin(), home->slots.end(), slot) != home->slots.end();
+}
+
+const Proposal* MotionRegistry::find(std::uint32_t id) const {
+  const auto found =
+      std::find_if(registry_.begin(), registry_.end(), [id](const Proposal& each) { return each.id == id; });
+  return found == registry_.end() ? nullptr : &*found;
+}
+
+Proposal* MotionRegistry::find_mutable(std::uint32_t id) {
+  return const_cast<Proposal*>(std::as_const(*this).find(id));
+}
+
+const Proposal* MotionRegistry::open_of(std::uint32_t slot) const {
+  const auto found = std::find_if(registry_.begin(), registry_.end(), [slot](const Proposal& each) {
+    return each.work<MoveTask>() != nullptr && each.slots.front() == slot && is_open(each.state);
+  });
+  return found == registry_.end() ? nullptr : &*found;
+}
+
+}  // namespace interlock

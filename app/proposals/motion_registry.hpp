@@ -1,0 +1,153 @@
+/**
+ * @file
+ * The registry of proposals: drafts, checks, approves and follows them, newest 200 kept.
+ *
+ * Belongs to the network thread. The control thread carries the tasks out; the registry learns from each view
+ * where they stand. A state that is final stays final, whatever a late report says.
+ */
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "motion/realtime_channel.hpp"
+#include "proposals/checks.hpp"
+#include "proposals/proposal.hpp"
+#include "robot/robot.hpp"
+
+namespace interlock {
+
+class MotionRegistry {
+ public:
+  static constexpr std::size_t capacity = 200;
+
+  /** Hands a command to the control thread; false when it takes none now. */
+  using Send = std::function<bool(const Command&)>;
+  /** Told of each proposal that changed. */
+  using Listener = std::function<void(const Proposal&)>;
+  /** Told of the new mode, a name of robot/modes.hpp. */
+  using ModeListener = std::function<void(std::string_view)>;
+  /** Tells the time in UTC. */
+  using Clock = std::function<UtcTime()>;
+
+  /** `robot` and `config` must outlive the registry. */
+  MotionRegistry(const Robot& robot, const ilk_config_t& config, Send send, Clock clock);
+
+  /** Has the listener called after each change of a proposal. */
+  void on_change(Listener listener) { listener_ = std::move(listener); }
+
+  /** Has the listener called after each change of the robot's mode. */
+  void on_mode_change(ModeListener listener) { mode_listener_ = std::move(listener); }
+
+  /**
+   * Checks a task and keeps it. One from the console, or of a robot that approves by itself, is approved, and
+   * every other approved proposal that is in its way is aborted; another one waits for `approve`. A move is
+   * refused with MODE_HOME while homing is open, with MODE_PATH while another mode is; STALE what followed
+   * from targeting that has changed. A refused task stays in the registry; one for a slot without an axis
+   * (AXIS) does not.
+   *
+   * @param asked when its author asked for it: one that is approved is good for `approval_timeout` from then on
+   */
+  tl::expected<Proposal, Refusal> propose(
+      Task task, const ControlView& view,
+      std::chrono::steady_clock::time_point asked = std::chrono::steady_clock::now());
+
+  /** Hands an image to the open biopsy; false when none is open, or the control thread takes none now. */
+  bool show_image(const NeedleImage& image);
+
+  /** Whoever jogs still holds on; false when no such jog is open, or the control thread takes none now. */
+  bool renew(std::uint32_t id);
+
+  /** Checks a proposal that waits for it anew, and approves it: NOT_WAITING when none of that number does. */
+  tl::expected<Proposal, Refusal> approve(
+      std::uint32_t id, const ControlView& view,
+      std::chrono::steady_clock::time_point asked = std::chrono::steady_clock::now());
+
+  /** Ends a proposal that waits for approval, as `by` wants none of it: NOT_WAITING when none of that number
+   * waits. */
+  tl::expected<Proposal, Refusal> reject(std::uint32_t id, const std::string& by);
+
+  /** Counts the changes of registration, probe and target. */
+  [[nodiscard]] std::uint32_t targeting_revision() const { return targeting_revision_; }
+
+  /** Registration, probe or target changed: ends every open proposal that followed from them. */
+  void end_stale();
+
+  /** Ends an open proposal; an executing one stops at once. The id must exist. */
+  tl::expected<Proposal, Refusal> abort(std::uint32_t id);
+
+  /** Ends every open proposal. The caller sees to it that the kernel stops. */
+  void abort_all(const std::string& reason);
+
+  /** Whoever proposed from that source is gone. What nobody has approved yet of it ends; whatever is
+   * approved, of any source, pauses, and says so. The caller sees to it that the kernel leaves MOTION. */
+  void lose_author(TaskSource source, const std::string& reason);
+
+  /** Takes over where the tasks of the control thread stand. */
+  void follow(const ControlView& view);
+
+  /** "home" while homing is open, the mode of a path or sweep while it is, else "manual". */
+  [[nodiscard]] std::string_view app_mode() const;
+
+  /** The proposal of that number, or null. */
+  [[nodiscard]] const Proposal* find(std::uint32_t id) const;
+
+  /** The open move of the axis, or null. */
+  [[nodiscard]] const Proposal* open_of(std::uint32_t slot) const;
+
+  /** The open proposal of homing, or null. */
+  [[nodiscard]] const Proposal* open_home() const;
+
+  /** The approved proposal of a mode that is neither Manual nor Home, or null. */
+  [[nodiscard]] const Proposal* open_mode() const;
+
+  /** The approved proposal of a biopsy, or null. */
+  [[nodiscard]] const Proposal* open_biopsy() const;
+
+  /** Whether nothing but the pedal keeps a proposal, of whatever kind, from motion. */
+  [[nodiscard]] bool may_move() const;
+
+  /** Whether open homing moves the axis. */
+  [[nodiscard]] bool homes(std::uint32_t slot) const;
+
+  /** Newest first. */
+  [[nodiscard]] std::vector<Proposal> newest_first() const { return {registry_.rbegin(), registry_.rend()}; }
+
+ private:
+  Proposal& keep(Task task, std::vector<std::uint32_t> slots, const ControlView& view);
+  tl::expected<Proposal, Refusal> approve(Proposal& proposal, std::chrono::steady_clock::time_point asked);
+  [[nodiscard]] tl::expected<void, Refusal> check_current(const Task& task) const;
+  [[nodiscard]] tl::expected<void, Refusal> check_alone() const;
+  tl::expected<void, Refusal> check(Proposal& proposal, const ControlView& view);
+  tl::expected<Proposal*, Refusal> waiting(std::uint32_t id);
+  [[nodiscard]] bool approves(TaskSource source) const;
+  void forget_one();
+  void replace_open(const Proposal& by);
+  Refusal refuse(Proposal& proposal, Refusal refusal);
+  void become(Proposal& proposal, ProposalState state, std::string detail,
+              std::optional<std::string> verdict = std::nullopt);
+  void follow(const TaskStatus& status, const ControlView& view);
+  void discard_waiting(const ControlView& view);
+  void tell_mode();
+  Proposal* find_mutable(std::uint32_t id);
+
+  const Robot& robot_;
+  const ilk_config_t& config_;
+  Send send_;
+  Clock clock_;
+  Listener listener_ = [](const Proposal&) {};
+  ModeListener mode_listener_ = [](std::string_view) {};
+  std::string_view told_mode_ = "manual";
+  std::deque<Proposal> registry_;       /**< oldest first */
+  std::vector<TaskReference> approved_; /**< that the control thread may hold: it must never free one */
+  std::string pause_reason_;            /**< of the pause to come, or that lasts */
+  std::uint32_t targeting_revision_ = 0;
+  std::uint32_t last_id_ = 0;
+};
+
+}  // namespace interlock

@@ -1,0 +1,94 @@
+/**
+ * @file
+ * What the route groups work with. Everything in it belongs to the network thread.
+ */
+#pragma once
+
+#include <boost/asio/any_io_executor.hpp>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "log/log.hpp"
+#include "proposals/motion_registry.hpp"
+#include "robot/robot.hpp"
+#include "service/authority.hpp"
+#include "service/bench.hpp"
+#include "service/biopsy_service.hpp"
+#include "service/clocks.hpp"
+#include "service/control_client.hpp"
+#include "service/live_sessions.hpp"
+#include "service/loaded_trajectory.hpp"
+#include "service/reply.hpp"
+#include "service/stop_records.hpp"
+#include "service/store_executor.hpp"
+#include "service/work_pool.hpp"
+
+namespace interlock {
+
+struct Context {
+  boost::asio::any_io_executor executor;
+  const Robot& robot;
+  const ilk_config_t& config;
+  ControlClient& control;
+  MotionRegistry& registry;
+  Bench& bench;
+  BiopsyService& biopsy;
+  StoreExecutor& store;
+  LiveSessions& sessions;
+  Authority& authority;
+  WorkPool& work;
+  LoadedTrajectory& trajectory;
+  StopRecords& stop_records;
+  Log& log;
+  std::function<void(const nlohmann::json&)> publish; /**< a message to every console */
+  std::function<UtcTime()> clock;
+  std::function<SteadyTime()> steady_clock;
+  const std::uint64_t& role_refusals; /**< requests of users whose role does not suffice */
+
+  /** The newest view, after the registry has followed its tasks. The reference holds until the next call. */
+  [[nodiscard]] const ControlView& view() const;
+
+  /** 503 NO_KERNEL unless a kernel is connected. */
+  [[nodiscard]] tl::expected<void, Problem> need_kernel() const;
+
+  /** As `need_kernel`, and 503 NO_KERNEL when its newest state is more than 250 ms old: nobody may consent to
+   * a motion by what may not be true any more. */
+  [[nodiscard]] tl::expected<void, Problem> need_present_state() const;
+
+  /** 409 AUTHORITY, naming who holds it, unless the caller does. */
+  [[nodiscard]] tl::expected<void, Problem> need_authority(const Caller& caller) const;
+
+  /** What to record of something that the caller does, now. */
+  [[nodiscard]] AuditEntry entry(const Caller& caller, AuditKind kind, nlohmann::json detail) const;
+
+  /** Ends every proposal, and writes down who stopped the robot; the STOP itself is on its way already. Those
+   * of nobody who is logged in are counted when they come faster than `StopRecords` has them recorded.
+   *
+   * @param unrecorded how many STOPs just before it are not written down one by one */
+  void record_stop(const Caller& caller, std::uint32_t unrecorded) const;
+
+  /** Has the record written that is due, if one is. */
+  void note(std::optional<AuditEntry> entry) const;
+
+  /**
+   * Records what the caller is about to do, and says then whether the caller still may: 503 STORE, 401 LOGIN
+   * when the session has ended meanwhile, 409 AUTHORITY when it has lost the authority. What follows without
+   * waiting is rightful.
+   */
+  [[nodiscard]] boost::asio::awaitable<tl::expected<void, Problem>> record_then_recheck(
+      const Caller& caller, AuditKind kind, nlohmann::json detail) const;
+
+  /**
+   * Announces one request, sends it to the kernel and answers with its verdict: `VerdictAnswer`, 409 with the
+   * verdict as code, 503 NO_KERNEL, or a problem of `announce`. DISABLE waits for no store.
+   *
+   * @param where what was asked of what, for the audit and the problem's detail
+   * @param target_counts position of a RESTORE
+   */
+  [[nodiscard]] boost::asio::awaitable<Reply> ask_kernel(const Caller& caller, std::uint32_t kind,
+                                                         std::uint32_t slot, std::string where,
+                                                         std::int32_t target_counts = 0) const;
+};
+
+}  // namespace interlock

@@ -1,0 +1,129 @@
+/**
+ * @file
+ * From what somebody asks for to a task, and from a task to a proposal.
+ */
+#pragma once
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "igtl/command.hpp"
+#include "proposals/proposal.hpp"
+#include "robot/robot.hpp"
+#include "service/context.hpp"
+#include "service/reply.hpp"
+#include "service/targeting.hpp"
+#include "trajectory/timed_trajectory.hpp"
+#include "trajectory/trajectory_error.hpp"
+
+namespace interlock {
+
+// Trajectories as navigation programs send them, without a header: rows of numbers, or poses in time.
+//
+// Both are read whole or refused with the number of the first bad row, counted from 1, and its column.
+
+/** A time, then of each axis in the file's order its position, or its position and its velocity. */
+tl::expected<TimedTrajectory, Problem> trajectory_of(const Robot& robot, const igtl::LoadRows& rows);
+
+/**
+ * Each pose becomes the setpoints of the alignment with it (targeting/alignment.hpp); between poses the axes
+ * go straight. A pose says where the treatment point is and which way the probe comes; how the probe is
+ * turned about that way is not taken over. A pose that an axis ends before is refused, not moved.
+ */
+tl::expected<TimedTrajectory, Problem> trajectory_of(const Robot& robot, const Targeting& targeting,
+                                                     const igtl::LoadPoses& poses);
+
+// How a trajectory comes to be the loaded one, by whichever way it came.
+
+/** 422 with the code of the error: nothing was loaded. */
+Problem unreadable(const TrajectoryError& error);
+
+/**
+ * Records it and loads it; nothing is loaded when that fails, or the caller lost session or authority
+ * meanwhile (`Context::announce`). `targeting_revision`: of registration, probe and target from which it
+ * followed, if it did.
+ */
+boost::asio::awaitable<tl::expected<void, Problem>> load_trajectory(
+    const Context& context, Caller caller, TimedTrajectory trajectory,
+    std::optional<std::uint32_t> targeting_revision = std::nullopt);
+
+// Motions of several axes that somebody may propose, out of what the robot's file, the targeting or the
+// loaded trajectory say.
+
+/** How far an alignment goes. */
+struct PoseRequest {
+  bool reachable = false; /**< take the reachable pose where the desired one cannot be had */
+  bool insert = false;    /**< insert the probe once it is aligned */
+};
+
+/** Positions in the axes' units by name, reached together in `minimum_duration_s` at least. */
+tl::expected<Task, Problem> coordinated_draft(const Robot& robot, const nlohmann::json& targets,
+                                              double minimum_duration_s, const std::string& author);
+
+/**
+ * Turns and inserts the probe through `steps`, an array of `AblationStep` (spec/openapi.yaml), resting at
+ * each; 404 NOT_FOUND for a robot without a probe to turn.
+ */
+tl::expected<Task, Problem> ablation_draft(const Robot& robot, const nlohmann::json& steps,
+                                           const std::string& author);
+
+/** The setpoints in which the robot is draped; 404 NOT_FOUND when its file has none. */
+tl::expected<Task, Problem> draping_draft(const Robot& robot, const std::string& author);
+
+/** The loaded trajectory; 409 EMPTY when none is. */
+tl::expected<Task, Problem> trajectory_draft(const LoadedTrajectory& loaded, const std::string& author);
+
+/**
+ * Aligns the probe with entry and target: takes the probe out as far as it goes, moves all other axes
+ * together, then inserts the probe, if that is requested. 409 UNREACHABLE when an axis would have to go
+ * beyond its range and the reachable pose was not asked for; or a problem of `alignment_with`.
+ */
+boost::asio::awaitable<tl::expected<Task, Problem>> pose_draft(const Context& context, PoseRequest request,
+                                                               std::string author);
+
+// Sweeps of frequency that somebody may propose.
+
+/**
+ * What a `ProposalDraft` (spec/openapi.yaml) of kind `sweep` asks for; 404 NOT_FOUND for a robot without the
+ * mode. Whether the frequencies are in the band of the axis is not judged here.
+ */
+tl::expected<Task, Problem> sweep_draft(const Robot& robot, const nlohmann::json& body,
+                                        const std::string& author);
+
+/** The whole band of the robot's first high-frequency axis, in published steps of a second each. */
+tl::expected<Task, Problem> whole_sweep_draft(const Robot& robot, const std::string& author);
+
+// A biopsy that somebody may propose, at a point of the guide frame or at the target of the targeting.
+
+/**
+ * A biopsy at `target_mm` in the guide frame (motion/biopsy_run.hpp), or without it at the target point of
+ * the targeting, seen from where registration and encoders say that the needle is. Then also 409 NO_TARGET
+ * and NOT_HOMED, a problem of the kinematics, or UNREACHABLE when the target lies farther beside the needle's
+ * way than the needle can bend; and the proposal ends when registration, probe or target change.
+ */
+boost::asio::awaitable<tl::expected<Task, Problem>> biopsy_draft(
+    const Context& context, std::optional<std::array<double, 3>> target_mm, std::string author);
+
+// From a task that somebody wants to a proposal in the registry.
+
+/**
+ * Records the task in the audit, then proposes it. Nothing is proposed when that fails (503 STORE), when the
+ * caller lost session or authority meanwhile (401 LOGIN, 409 AUTHORITY), when STOP was pressed meanwhile
+ * (409 STOPPED), without a kernel or a present state of it (503 NO_KERNEL), or when the registry refuses (its
+ * refusal).
+ */
+boost::asio::awaitable<tl::expected<Proposal, Problem>> propose(const Context& context, const Caller& caller,
+                                                                Task task);
+
+// What there is to look at before somebody approves a proposal: its checks, the profile of its motion, and
+// its ghost, the robot and the way of its tip in the scanner. Schema `ProposalPlan` of spec/openapi.yaml.
+
+/** Takes some tens of milliseconds for a long path: no work for the network thread. */
+nlohmann::json proposal_plan(const Robot& robot, const ilk_config_t& config, const Targeting& targeting,
+                             const Proposal& proposal);
+
+}  // namespace interlock

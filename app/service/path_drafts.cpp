@@ -1,0 +1,136 @@
+#include "proposals/programs.hpp"
+#include "service/alignment_view.hpp"
+#include "service/drafts.hpp"
+#include "service/fields.hpp"
+#include "service/reply.hpp"
+#include "service/targeting_store.hpp"
+
+namespace interlock {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t most_ablation_steps = 200;
+constexpr double longest_dwell_s = 3600.0;
+
+Task task_of(RobotMode mode, PathProgram program, const std::string& author) {
+  return {PathTask{std::make_shared<const PathProgram>(std::move(program))}, author, mode};
+}
+
+/** Axes that the aim asks more of than they can do. */
+std::string clamped_axes(const Robot& robot, const Alignment& alignment) {
+  std::string names;
+  for (const AxisSetpoint& setpoint : alignment.setpoints) {
+    if (setpoint.clamped) {
+      names += (names.empty() ? "" : ", ") + robot.at_slot(setpoint.slot)->title;
+    }
+  }
+  return names;
+}
+
+tl::expected<MoveLeg, Problem> ablation_leg_in(const Robot& robot, const json& step,
+                                               const std::string& where) {
+  Fields fields(step, {"probe_rotation", "insertion", "dwell_s"}, where);
+  const auto turned = fields.number("probe_rotation");
+  const auto inserted = fields.number("insertion");
+  const auto dwell_s = fields.number("dwell_s", 0.0, longest_dwell_s);
+  fields.require({{"probe_rotation", "an angle in rad"},
+                  {"insertion", "a depth in mm"},
+                  {"dwell_s", "a rest in seconds"}});
+  if (fields.problem()) {
+    return fail(*fields.problem());
+  }
+  auto leg = ablation_leg(robot, {*turned, *inserted, *dwell_s});
+  if (!leg) {
+    return fail(invalid(where, "it is beyond every encoder", "positions within reach of the axes"));
+  }
+  return *std::move(leg);
+}
+
+}  // namespace
+
+tl::expected<Task, Problem> coordinated_draft(const Robot& robot, const json& targets,
+                                              double minimum_duration_s, const std::string& author) {
+  if (!targets.is_object() || targets.empty()) {
+    return fail(invalid("targets", "targets name no axis", "an object of positions by axis, at least one"));
+  }
+  MoveLeg leg;
+  leg.minimum_duration_s = minimum_duration_s;
+  for (const auto& [name, position] : targets.items()) {
+    const Axis* axis = robot.find(name);
+    if (axis == nullptr) {
+      return fail(invalid("targets." + name, "no axis is called " + name, "a name that /api/motors lists"));
+    }
+    const auto counts = position.is_number() ? axis->to_counts(position.get<double>()) : std::nullopt;
+    if (!counts) {
+      return fail(invalid("targets." + name, "it is no position of this axis",
+                          "a number in " + std::string(unit_name(axis->unit))));
+    }
+    leg.targets.push_back({axis->slot, *counts});
+  }
+  return task_of(RobotMode::coordinated, {{std::move(leg)}}, author);
+}
+
+tl::expected<Task, Problem> ablation_draft(const Robot& robot, const json& steps, const std::string& author) {
+  if (!can_ablate(robot)) {
+    return fail(not_found("probe for ablation", "a robot with the mode ablation"));
+  }
+  if (!steps.is_array() || steps.empty() || steps.size() > most_ablation_steps) {
+    return fail(invalid("steps", "steps are none, or too many", "an array of 1 to 200 steps"));
+  }
+  std::vector<PathLeg> legs;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const auto leg = ablation_leg_in(robot, steps[i], "steps[" + std::to_string(i) + "]");
+    if (!leg) {
+      return fail(leg.error());
+    }
+    legs.emplace_back(*leg);
+  }
+  return task_of(RobotMode::ablation, {std::move(legs)}, author);
+}
+
+tl::expected<Task, Problem> draping_draft(const Robot& robot, const std::string& author) {
+  if (robot.draping.empty()) {
+    return fail(not_found("setpoint for draping", "a [draping] table in the robot's file"));
+  }
+  return task_of(RobotMode::draping, {{MoveLeg{robot.draping, 0.0, 0.0}}}, author);
+}
+
+tl::expected<Task, Problem> trajectory_draft(const LoadedTrajectory& loaded, const std::string& author) {
+  if (loaded.program == nullptr) {
+    return fail(Problem{.status = Status::conflict,
+                        .code = "EMPTY",
+                        .detail = "No trajectory is loaded; the robot stays in manual mode.",
+                        .expected = "a loaded trajectory",
+                        .next_step = "Load one by PUT /api/trajectory."});
+  }
+  return Task{PathTask{loaded.program}, author, RobotMode::trajectory, TaskSource::file,
+              loaded.targeting_revision};
+}
+
+boost::asio::awaitable<tl::expected<Task, Problem>> pose_draft(const Context& context, PoseRequest request,
+                                                               std::string author) {
+  const std::uint32_t revision = context.registry.targeting_revision();
+  const auto targeting = co_await present_targeting(context);
+  if (!targeting) {
+    co_return fail(targeting.error());
+  }
+  const auto alignment = co_await aligned(context, *targeting);
+  if (!alignment) {
+    co_return fail(alignment.error());
+  }
+  const std::string clamped = clamped_axes(context.robot, *alignment);
+  if (!clamped.empty() && !request.reachable) {
+    co_return fail(Problem{.status = Status::conflict,
+                           .code = "UNREACHABLE",
+                           .detail = "These axes end before the desired pose: " + clamped + ".",
+                           .expected = "a target within reach",
+                           .next_step = "Set another target, or propose the reachable pose."});
+  }
+  Task task =
+      task_of(RobotMode::coordinated, pose_program(context.robot, *alignment, request.insert), author);
+  task.targeting_revision = revision;
+  co_return task;
+}
+
+}  // namespace interlock

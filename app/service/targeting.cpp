@@ -1,0 +1,234 @@
+#include "service/targeting.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "service/fields.hpp"
+
+namespace interlock {
+namespace {
+
+using nlohmann::json;
+
+/** A number of the probe: how the interface calls it, and where it is kept. */
+struct Offset {
+  const char* name;
+  double Targeting::* value;
+};
+
+constexpr std::array<Offset, 5> offsets{{
+    {"treatment_to_tip_offset", &Targeting::treatment_to_tip_mm},
+    {"robot_to_entry_offset", &Targeting::robot_to_entry_mm},
+    {"cannula_to_treatment_offset", &Targeting::cannula_to_treatment_mm},
+    {"canula_to_treatment_offset", &Targeting::cannula_to_treatment_mm},
+    {"treatment_to_robot_at_home", &Targeting::treatment_to_robot_at_home_mm},
+}};
+
+std::string element(const std::string& name, std::size_t row, std::size_t column) {
+  return name + "[" + std::to_string(4 * row + column) + "]";
+}
+
+double at(const RowMajor& pose, std::size_t row, std::size_t column) { return pose[4 * row + column]; }
+
+/** Element of R^T R. */
+double gram(const RowMajor& pose, std::size_t one, std::size_t other) {
+  double sum = 0.0;
+  for (std::size_t row = 0; row < 3; ++row) {
+    sum += at(pose, row, one) * at(pose, row, other);
+  }
+  return sum;
+}
+
+double determinant(const RowMajor& pose) {
+  const auto minor = [&](std::size_t one, std::size_t other) {
+    return at(pose, 1, one) * at(pose, 2, other) - at(pose, 1, other) * at(pose, 2, one);
+  };
+  return at(pose, 0, 0) * minor(1, 2) - at(pose, 0, 1) * minor(0, 2) + at(pose, 0, 2) * minor(0, 1);
+}
+
+void check_last_row(Fields& fields, const std::string& name, const RowMajor& pose) {
+  for (std::size_t column = 0; column < 4; ++column) {
+    const double expected = column == 3 ? 1.0 : 0.0;
+    if (at(pose, 3, column) != expected) {
+      fields.reject(element(name, 3, column), "is not " + std::to_string(static_cast<int>(expected)),
+                    "0 0 0 1 as the last row");
+    }
+  }
+}
+
+void check_origin(Fields& fields, const std::string& name, const RowMajor& pose) {
+  for (std::size_t row = 0; row < 3; ++row) {
+    if (std::abs(at(pose, row, 3)) > farthest_mm) {
+      fields.reject(element(name, row, 3), "is too far away", "a position from -10000 to 10000 mm");
+    }
+  }
+}
+
+/** Written so that anything that is no number fails, too. */
+void check_rotation(Fields& fields, const std::string& name, const RowMajor& pose) {
+  for (std::size_t one = 0; one < 3; ++one) {
+    for (std::size_t other = one; other < 3; ++other) {
+      const double expected = one == other ? 1.0 : 0.0;
+      if (!(std::abs(gram(pose, one, other) - expected) <= entered_rigidity)) {
+        const std::string columns = std::to_string(one + 1) + " and " + std::to_string(other + 1);
+        fields.reject(name,
+                      one == other ? "has a column " + std::to_string(one + 1) + " whose length is not 1"
+                                   : "has columns " + columns + " that are not perpendicular",
+                      "a rotation: R^T R = 1 within 0.001");
+      }
+    }
+  }
+  if (!(std::abs(determinant(pose) - 1.0) <= 3 * entered_rigidity)) {
+    fields.reject(name, "mirrors: its determinant is not +1", "a rotation: determinant +1");
+  }
+}
+
+std::optional<RowMajor> read_pose(Fields& fields, const std::string& name) {
+  const auto numbers = fields.numbers(name, std::tuple_size_v<RowMajor>);
+  if (!numbers) {
+    return std::nullopt;
+  }
+  RowMajor pose{};
+  std::copy(numbers->begin(), numbers->end(), pose.begin());
+  check_last_row(fields, name, pose);
+  check_origin(fields, name, pose);
+  check_rotation(fields, name, pose);
+  return pose;
+}
+
+std::optional<Point> read_point(Fields& fields, const std::string& name) {
+  const auto numbers = fields.numbers(name, std::tuple_size_v<Point>);
+  if (!numbers) {
+    return std::nullopt;
+  }
+  Point point{};
+  for (std::size_t i = 0; i < point.size(); ++i) {
+    point[i] = (*numbers)[i];
+    if (std::abs(point[i]) > farthest_mm) {
+      fields.reject(name + "[" + std::to_string(i) + "]", "is too far away",
+                    "a number from -10000 to 10000 mm");
+    }
+  }
+  return point;
+}
+
+void read_offsets(Fields& fields, Targeting& targeting) {
+  for (const Offset& offset : offsets) {
+    if (const auto value = fields.number(offset.name, -largest_offset_mm, largest_offset_mm)) {
+      targeting.*offset.value = *value;
+    }
+  }
+}
+
+tl::expected<Targeting, Problem> unless_wrong(const Fields& fields, const Targeting& targeting) {
+  if (fields.problem()) {
+    return tl::make_unexpected(*fields.problem());
+  }
+  return targeting;
+}
+
+template <typename Value>
+json or_null(const std::optional<Value>& value) {
+  return value ? json(*value) : json();
+}
+
+/** Null stands for what was never set. */
+json without_nulls(const json& stored) {
+  json values = json::object();
+  for (const auto& [name, value] : stored.items()) {
+    if (!value.is_null()) {
+      values[name] = value;
+    }
+  }
+  return values;
+}
+
+}  // namespace
+
+json to_json(const Targeting& targeting) {
+  json body{{"registration", targeting.registration},
+            {"ignore_registration_rotation", targeting.ignore_registration_rotation},
+            {"entry_point", or_null(targeting.entry_point)},
+            {"target_point", or_null(targeting.target_point)},
+            {"reported_position", or_null(targeting.reported_position)}};
+  for (const Offset& offset : offsets) {
+    body[offset.name] = targeting.*offset.value;
+  }
+  return body;
+}
+
+tl::expected<Targeting, Problem> stored_targeting(const json& stored) {
+  const json values = stored.is_object() ? without_nulls(stored) : stored;
+  Targeting targeting;
+  Fields fields(values,
+                {"registration", "ignore_registration_rotation", "entry_point", "target_point",
+                 "reported_position", "treatment_to_tip_offset", "robot_to_entry_offset",
+                 "cannula_to_treatment_offset", "canula_to_treatment_offset", "treatment_to_robot_at_home"},
+                "targeting");
+  targeting.registration = read_pose(fields, "registration").value_or(targeting.registration);
+  targeting.ignore_registration_rotation = fields.boolean("ignore_registration_rotation").value_or(false);
+  targeting.entry_point = read_point(fields, "entry_point");
+  targeting.target_point = read_point(fields, "target_point");
+  targeting.reported_position = read_pose(fields, "reported_position");
+  read_offsets(fields, targeting);
+  return unless_wrong(fields, targeting);
+}
+
+tl::expected<Targeting, Problem> with_registration(Targeting targeting, const json& body) {
+  Fields fields(body, {"registration", "ignore_registration_rotation"});
+  fields.require({{"registration", "16 numbers, row-major"}});
+  targeting.registration = read_pose(fields, "registration").value_or(targeting.registration);
+  targeting.ignore_registration_rotation =
+      fields.boolean("ignore_registration_rotation").value_or(targeting.ignore_registration_rotation);
+  return unless_wrong(fields, targeting);
+}
+
+tl::expected<Targeting, Problem> with_reported_pose(Targeting targeting, const json& body) {
+  Fields fields(body, {"current_position"});
+  fields.require({{"current_position", "16 numbers, row-major"}});
+  targeting.reported_position = read_pose(fields, "current_position");
+  return unless_wrong(fields, targeting);
+}
+
+tl::expected<Targeting, Problem> with_target(Targeting targeting, const json& body) {
+  Fields fields(body,
+                {"entry_point", "target_point", "treatment_to_tip_offset", "robot_to_entry_offset",
+                 "cannula_to_treatment_offset", "canula_to_treatment_offset", "treatment_to_robot_at_home"});
+  if (fields.has("cannula_to_treatment_offset") && fields.has("canula_to_treatment_offset")) {
+    fields.reject("canula_to_treatment_offset", "and cannula_to_treatment_offset are the same",
+                  "one of them");
+  }
+  if (const auto entry = read_point(fields, "entry_point")) {
+    targeting.entry_point = entry;
+  }
+  if (const auto target = read_point(fields, "target_point")) {
+    targeting.target_point = target;
+  }
+  read_offsets(fields, targeting);
+  return unless_wrong(fields, targeting);
+}
+
+tl::expected<RowMajor, Problem> rigid_pose(const json& body, const std::string& name) {
+  Fields fields(body, {name.c_str()});
+  const auto pose = read_pose(fields, name);
+  if (fields.problem()) {
+    return tl::make_unexpected(*fields.problem());
+  }
+  return *pose;
+}
+
+void aim_at(Targeting& targeting, const RowMajor& pose) {
+  constexpr double usual_depth_mm = 50.0;
+  double depth_mm = usual_depth_mm;
+  if (targeting.entry_point && targeting.target_point) {
+    const Point& from = *targeting.entry_point;
+    const Point& to = *targeting.target_point;
+    depth_mm = std::max(1.0, std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]));
+  }
+  targeting.target_point = {pose[3], pose[7], pose[11]};
+  targeting.entry_point = {pose[3] - depth_mm * pose[2], pose[7] - depth_mm * pose[6],
+                           pose[11] - depth_mm * pose[10]};
+}
+
+}  // namespace interlock

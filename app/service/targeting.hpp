@@ -1,0 +1,94 @@
+/**
+ * @file
+ * Registration, entry, target and probe offsets: schema `Targeting` of spec/openapi.yaml, and what they were
+ * before.
+ *
+ * Poses and points are in the scanner's frame (RAS), mm; a pose is a 4x4 matrix, row-major.
+ */
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "service/reply.hpp"
+#include "store/audit.hpp"
+
+namespace interlock {
+
+// Registration, entry, target and probe offsets: schema `Targeting` of spec/openapi.yaml.
+//
+// Poses and points are in the scanner's frame (RAS), mm; a pose is a 4x4 matrix, row-major.
+
+/** x, y and z in mm. */
+using Point = std::array<double, 3>;
+
+/** Farthest coordinate of a point, or of the origin of a pose. */
+constexpr double farthest_mm = 10000.0;
+/** Largest offset of the probe. */
+constexpr double largest_offset_mm = 1000.0;
+/** How far the elements of R^T R may be from those of the identity, and its determinant from 1. */
+constexpr double entered_rigidity = 1e-3;
+
+/** What an aim is made from. */
+struct Targeting {
+  RowMajor registration{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; /**< the robot in the scanner */
+  bool ignore_registration_rotation = false;
+  std::optional<Point> entry_point;
+  std::optional<Point> target_point;
+  double treatment_to_tip_mm = 0.0;           /**< A */
+  double robot_to_entry_mm = 0.0;             /**< B */
+  double cannula_to_treatment_mm = 0.0;       /**< C */
+  double treatment_to_robot_at_home_mm = 0.0; /**< D */
+  std::optional<RowMajor> reported_position;  /**< as an imager reported it */
+
+  bool operator==(const Targeting&) const = default;
+};
+
+/** Schema `Targeting`; also how it is stored. */
+nlohmann::json to_json(const Targeting& targeting);
+
+/** What `to_json` wrote; the problem of a value that was not written by it. */
+tl::expected<Targeting, Problem> stored_targeting(const nlohmann::json& stored);
+
+/**
+ * What a body changes: each gives the changed values, or 422 INVALID naming the field or the element, and the
+ * rule.
+ */
+tl::expected<Targeting, Problem> with_registration(Targeting targeting, const nlohmann::json& body);
+/** The targeting with the robot's pose as the imager reports it. */
+tl::expected<Targeting, Problem> with_reported_pose(Targeting targeting, const nlohmann::json& body);
+/** The targeting with another target. */
+tl::expected<Targeting, Problem> with_target(Targeting targeting, const nlohmann::json& body);
+
+/** Sets entry and target by the pose that the treatment point is to have: it comes along the pose's third
+ * axis, from as far off as entry and target were before, or 50 mm. */
+void aim_at(Targeting& targeting, const RowMajor& pose);
+
+/** A rigid pose in the field `name` of a body; 422 INVALID naming the element, and the rule. */
+tl::expected<RowMajor, Problem> rigid_pose(const nlohmann::json& body, const std::string& name);
+
+// What was set of the targeting, when, by whom and from where: schema `TargetingHistory` of
+// spec/openapi.yaml.
+//
+// The audit has all of it, for administrators and without end; this is its short form for whoever aims, kept
+// beside the values in the same transaction, so that nobody has to search the audit.
+
+/** Changes that are kept, the newest. */
+constexpr std::size_t most_targeting_changes = 50;
+
+/**
+ * Notes the change that the audit's record `number` tells of: `old` and `new` in the entry's detail, by
+ * field, with `source` and `client`. A change of the reported pose alone is noted as the field's last one and
+ * not listed: an imager reports many times a second.
+ */
+void note_targeting_change(Transaction& transaction, const AuditEntry& entry, std::int64_t number);
+
+/** Schema `TargetingHistory`, told at `now`. What cannot be read of it counts as never noted: the audit has
+ * it. */
+nlohmann::json targeting_history(Transaction& transaction, UtcTime now);
+
+}  // namespace interlock

@@ -1,0 +1,54 @@
+/**
+ * @file
+ * Registration, entry, target and probe offsets in the store: how they are read, changed and used.
+ */
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "service/alignment_view.hpp"
+#include "service/context.hpp"
+#include "service/targeting.hpp"
+#include "store/settings.hpp"
+
+namespace interlock {
+
+// Where the values of `Targeting` are kept: a setting of the store, audited.
+
+/** The stored values; what the robot's file says until somebody sets others. */
+Stored<Targeting> find_targeting(Transaction& transaction, const Robot& robot);
+
+/** By which way a change of the targeting came. */
+struct TargetingOrigin {
+  TaskSource source = TaskSource::console; /**< as of a proposal */
+  std::string client;                      /**< as `Caller::peer` */
+};
+
+/** Stores the values, records in the audit what differs, and notes it in the targeting's history. */
+void set_targeting(Transaction& transaction, const Targeting& before, const Targeting& after,
+                   const TargetingOrigin& origin, AuditEntry entry);
+
+/** As `alignment_with`, outside of the network thread: a search for the positions of a chain of joints takes
+ * a tenth of a second. Also 503 OVERLOADED of the pool. */
+boost::asio::awaitable<tl::expected<Alignment, Problem>> aligned(const Context& context,
+                                                                 const Targeting& targeting);
+
+/** The present values, read outside of the network thread. */
+boost::asio::awaitable<tl::expected<Targeting, Problem>> present_targeting(const Context& context);
+
+// How registration, entry, target and probe change, whoever changes them and by whichever way.
+
+/** What a body makes of the values before: one of `with_registration` and its kind (targeting.hpp). */
+using TargetingChange = tl::expected<Targeting, Problem> (*)(Targeting, const nlohmann::json&);
+
+/**
+ * Stores and audits what the body changes, with the way by which it came, and ends every proposal that
+ * followed from other values. Nothing changes when the body is wrong (its problem), when the caller has lost
+ * session (401 LOGIN) or authority (409 AUTHORITY) meanwhile, or the store fails (503 STORE).
+ */
+boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const Context& context,
+                                                                          Caller caller, TaskSource source,
+                                                                          TargetingChange make,
+                                                                          nlohmann::json body);
+
+}  // namespace interlock

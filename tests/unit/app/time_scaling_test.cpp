@@ -1,0 +1,90 @@
+#include "motion/time_scaling.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace interlock {
+namespace {
+
+/** Ways from some that are too short for rise and fall to some in which both are nothing. */
+TimeScaling drawn(std::mt19937_64& random, double& way_s) {
+  std::uniform_real_distribution<double> exponent(-4.0, 1.5);
+  std::uniform_int_distribution<int> none(0, 3);
+  const auto draw = [&] { return std::pow(10.0, exponent(random)); };
+  way_s = draw();
+  return {way_s, none(random) == 0 ? 0.0 : draw(), none(random) == 0 ? 0.0 : draw()};
+}
+
+TEST(TimeScaling, PassesTheWholeWayForwardsAndNoFasterThanTheClock) {
+  std::mt19937_64 random(61);
+  for (int trial = 0; trial < 2000; ++trial) {
+    double way_s = 0.0;
+    const TimeScaling pace = drawn(random, way_s);
+    ASSERT_EQ(pace.passed_s(pace.duration_s()), way_s);
+    ASSERT_GE(pace.duration_s(), way_s);
+    double before = 0.0;
+    for (int step = 1; step <= 50; ++step) {
+      const double time_s = pace.duration_s() * step / 50;
+      const double passed = pace.passed_s(time_s);
+      ASSERT_GE(passed, before - 1e-12);
+      ASSERT_LE(passed - before, pace.duration_s() / 50 + 1e-9);
+      before = passed;
+    }
+  }
+}
+
+TEST(TimeScaling, PaceIsWhatPassesInASecond) {
+  std::mt19937_64 random(67);
+  for (int trial = 0; trial < 2000; ++trial) {
+    double way_s = 0.0;
+    const TimeScaling pace = drawn(random, way_s);
+    const double step = pace.duration_s() * 1e-5;
+    std::uniform_real_distribution<double> when(2 * step, pace.duration_s() - 2 * step);
+    const double time_s = when(random);
+    const double passed = (pace.passed_s(time_s + step) - pace.passed_s(time_s - step)) / (2 * step);
+    ASSERT_NEAR(pace.pace(time_s), passed, 1e-3);
+    ASSERT_GE(pace.pace(time_s), 0.0);
+    ASSERT_LE(pace.pace(time_s), 1.0 + 1e-12);
+  }
+}
+
+TEST(TimeScaling, ItsSlopeIsWhatThePaceGains) {
+  const TimeScaling pace(3.0, 0.5, 0.25);
+  constexpr double step = 1e-6;
+  for (double time_s = 0.001; time_s < pace.duration_s() - 0.001; time_s += 0.0073) {
+    const double gained = (pace.pace(time_s + step) - pace.pace(time_s - step)) / (2 * step);
+    ASSERT_NEAR(pace.pace_per_s(time_s), gained, 1e-4) << time_s;
+  }
+}
+
+TEST(TimeScaling, AnAxisKeepsItsAccelerationAndJerkAtBothEnds) {
+  const RateLimits limits{600.0, 6000.0, 120000.0};
+  for (const double speed : {1.0, 100.0, 600.0}) {
+    const double change_s = TimeScaling::change_s(speed, limits);
+    for (const double way_s : {0.01, change_s, 10.0}) {
+      const TimeScaling pace(way_s, change_s, change_s);
+      const double step = 1e-4;
+      for (double time_s = step; time_s < pace.duration_s(); time_s += step) {
+        ASSERT_LE(std::abs(pace.pace_per_s(time_s)) * speed, limits.acceleration * (1 + 1e-9));
+        const double jerk = (pace.pace_per_s(time_s) - pace.pace_per_s(time_s - step)) / step * speed;
+        ASSERT_LE(std::abs(jerk), limits.jerk * (1 + 1e-6));
+      }
+    }
+  }
+}
+
+TEST(TimeScaling, EndsAtRest) {
+  const TimeScaling pace(2.0, 0.1, 0.2);
+  EXPECT_DOUBLE_EQ(pace.duration_s(), 2.15);
+  EXPECT_NEAR(pace.pace(pace.duration_s() - 1e-6), 0.0, 1e-9);
+  EXPECT_EQ(pace.pace(pace.duration_s()), 0.0);
+  EXPECT_EQ(pace.pace_per_s(pace.duration_s()), 0.0);
+  EXPECT_EQ(pace.passed_s(1e9), 2.0);
+  EXPECT_EQ(TimeScaling(2.0, 0.0, 0.0).duration_s(), 2.0);
+  EXPECT_EQ(TimeScaling().passed_s(0.0), 0.0);
+}
+
+}  // namespace
+}  // namespace interlock
