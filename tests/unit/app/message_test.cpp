@@ -155,13 +155,13 @@ TEST(Client, IsWhomTheTrustedProxyNamesLast) {
 }
 
 TEST(Proxy, IsGivenAsAnOriginWithTlsAndAnAddress) {
-  EXPECT_FALSE(problem_of({}));
-  EXPECT_FALSE(problem_of({.origin = "https://robot.example:8443", .address = "::1"}));
+  EXPECT_FALSE(problem_of(ReverseProxy{}));
+  EXPECT_FALSE(problem_of(ReverseProxy{.origin = "https://robot.example:8443", .address = "::1"}));
   for (const char* const origin :
        {"robot.example", "http://robot.example", "https://", "https://robot.example/"}) {
-    EXPECT_TRUE(problem_of({.origin = origin, .address = {}})) << origin;
+    EXPECT_TRUE(problem_of(ReverseProxy{.origin = origin, .address = {}})) << origin;
   }
-  EXPECT_TRUE(problem_of({.origin = {}, .address = "proxy"}));
+  EXPECT_TRUE(problem_of(ReverseProxy{.origin = {}, .address = "proxy"}));
 }
 
 TEST(Path, HasNoSeparatorThatWasEncoded) {
