@@ -92,9 +92,13 @@ test-browser: build-tests ## Run the tests that click through the console
 test-loaded: setup-bench build-tests ## Run tests, then scenarios, three times in a row beside a load: [RUNS=3] [WHAT="test scenarios"]
 	@tests/loaded $(or $(RUNS),3) $(or $(WHAT),test scenarios)
 
-.PHONY: test-sanitizers
-test-sanitizers: setup-bench ## Run the unit tests under the address and undefined-behaviour sanitizers
-	@$(measure) sanitizers python verification/sanitizers/run.py
+.PHONY: test-sanitizers test-threads
+test-sanitizers: setup-bench build/stamps/console ## Run tests under the address, undefined-behaviour and thread sanitizers
+	@$(measure) sanitizers python verification/sanitizers/run.py address
+	@$(measure) thread_sanitizer python verification/sanitizers/run.py threads
+
+test-threads: setup-test ## Run a part of the unit tests under the thread sanitizer
+	@python verification/sanitizers/run.py threads-quick
 
 .PHONY: test-reproducible
 test-reproducible: setup-test ## Build twice in different folders, and compare every byte that is shipped

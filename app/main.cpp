@@ -94,6 +94,11 @@ void describe(CLI::App& cli, Options& options) {
   cli.add_option("--port", options.listen.port, "port to serve on; 0: any free one")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
+  cli.add_option("--public-origin", options.listen.proxy.origin,
+                 "https://NAME[:PORT] of the console behind a proxy with TLS on this machine");
+  cli.add_option(
+      "--trusted-proxy", options.listen.proxy.address,
+      "address that the proxy connects from; its X-Forwarded-For names the client in log and audit");
   cli.add_option("--web", options.web_directory, "folder of the built console")
       ->check(CLI::ExistingDirectory);
   cli.add_option("--docs", options.docs_directory, "folder of the built documents")

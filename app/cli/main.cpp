@@ -98,6 +98,10 @@ void add_run(CLI::App& cli, RunOptions& options) {
       "--new-store", options.new_store,
       "Begin a new store, without users, where the one of an earlier run is missing or damaged");
   command->add_option("--sockets", options.sockets, "Directory for the sockets; default: a private one");
+  command->add_option("--public-origin", options.public_origin,
+                      "https://NAME[:PORT] of the console behind a proxy with TLS on this machine");
+  command->add_option("--trusted-proxy", options.trusted_proxy,
+                      "Address that the proxy connects from; its X-Forwarded-For names the client");
   command->add_option("--plant", options.plant, "Parameters of the simulated hardware")
       ->check(CLI::ExistingFile);
   command->add_option("--web", options.web, "Directory of the built console")->check(CLI::ExistingDirectory);

@@ -125,6 +125,12 @@ Program app(const RunOptions& options, const Places& places, const RuntimeDirect
   if (options.new_store) {
     program.arguments.emplace_back("--new-store");
   }
+  if (!options.public_origin.empty()) {
+    program.arguments.insert(program.arguments.end(), {"--public-origin", options.public_origin});
+  }
+  if (!options.trusted_proxy.empty()) {
+    program.arguments.insert(program.arguments.end(), {"--trusted-proxy", options.trusted_proxy});
+  }
   if (!options.igtl_dialect.empty()) {
     program.arguments.insert(program.arguments.end(), {"--igtl-dialect", options.igtl_dialect});
   }

@@ -26,6 +26,8 @@ enum class ClockChoice {
 struct RunOptions {
   std::string robot = "neuro";            /**< name or file */
   std::uint16_t port = 8080;              /**< 0: one that is free */
+  std::string public_origin;              /**< of the console behind a proxy with TLS; empty: none */
+  std::string trusted_proxy;              /**< address that the proxy connects from; empty: none */
   std::optional<std::uint16_t> igtl_port; /**< for OpenIGTLink, in place of the robot file's */
   std::string igtl_dialect;               /**< in place of the robot file's, unless empty */
   ClockChoice clock = ClockChoice::paced;

@@ -79,15 +79,20 @@ FrontDoor::FrontDoor(const asio::any_io_executor& executor, RealtimeChannel& cha
       wake_(executor, ::dup(channel.door_wake.descriptor())) {}
 
 tl::expected<void, std::string> FrontDoor::listen(const Listen& where) {
+  if (const auto problem = problem_of(where.proxy)) {
+    return tl::make_unexpected(*problem);
+  }
+  proxy_ = where.proxy;
   beast::error_code error;
   const auto address = asio::ip::make_address(where.address, error);
   if (error) {
     return tl::make_unexpected("--listen " + where.address + " is no address; expected 127.0.0.1 or ::1");
   }
   if (!address.is_loopback()) {
-    return tl::make_unexpected("--listen " + where.address +
-                               " would let other machines in, and there is no encryption; expected "
-                               "127.0.0.1 or ::1. Use an SSH tunnel to reach it from elsewhere");
+    return tl::make_unexpected(
+        "--listen " + where.address +
+        " would let other machines in, and there is no encryption; expected "
+        "127.0.0.1 or ::1. Use an SSH tunnel or a proxy with TLS to reach it from elsewhere");
   }
   acceptor_.open(address.is_v6() ? tcp::v6() : tcp::v4(), error);
   if (!error) {
@@ -233,11 +238,12 @@ asio::awaitable<void> FrontDoor::serve_stop(Waiting waiting) {
 
 /** On its way to the kernel before anything is written or read, be it the rest of the request. */
 asio::awaitable<Response> FrontDoor::stop(Request header, std::string peer) {
-  std::optional<Problem> problem = check_host(header);
-  problem = problem ? problem : check_origin(header);
+  std::optional<Problem> problem = check_host(header, proxy_);
+  problem = problem ? problem : check_origin(header, proxy_);
   if (problem) {
     co_return problem_response(*problem);
   }
+  peer = client_of(header, peer, proxy_);
   const std::uint32_t number = channel_.stop();
   if (unrecorded_.load(std::memory_order_relaxed) < most_unrecorded) {
     unrecorded_.fetch_add(1, std::memory_order_relaxed);

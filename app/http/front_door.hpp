@@ -21,6 +21,7 @@
 #include <tl/expected.hpp>
 
 #include "http/message.hpp"
+#include "http/same_origin.hpp"
 #include "link/file_descriptor.hpp"
 #include "motion/realtime_channel.hpp"
 
@@ -30,6 +31,7 @@ namespace interlock::web {
 struct Listen {
   std::string address = "127.0.0.1";
   std::uint16_t port = 8080; /**< 0: any free one */
+  ReverseProxy proxy = {};
 };
 
 /** A connection on its way from one thread to another. */
@@ -76,6 +78,9 @@ class FrontDoor {
   /** The port that was granted. */
   [[nodiscard]] std::uint16_t port() const { return acceptor_.local_endpoint().port(); }
 
+  /** By which clients on other machines come, as `listen` was told. */
+  [[nodiscard]] const ReverseProxy& proxy() const { return proxy_; }
+
   /** Accepts connections; ends with the io_context. */
   boost::asio::awaitable<void> accept();
 
@@ -117,6 +122,7 @@ class FrontDoor {
   std::size_t capacity_;
   std::function<void(Guest)> let_in_;
   std::function<void(StopMade)> record_;
+  ReverseProxy proxy_;
   boost::asio::ip::tcp::acceptor acceptor_;
   boost::asio::posix::stream_descriptor wake_;
   std::map<std::uint64_t, Waiting> waiting_; /**< by a number that rises: oldest first */

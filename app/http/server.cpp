@@ -220,16 +220,16 @@ asio::awaitable<std::uint64_t> Server::body_limit_of(const Request& header, cons
   if (header.method() != http::verb::put || path_of(header) != TrajectoryRoutes::path) {
     co_return longest_body;
   }
-  const auto caller = co_await api_.caller_of(header, peer);
+  const auto caller = co_await api_.caller_of(header, client_of(header, peer, door_.proxy()));
   co_return caller && !api_.router().check(holder, *caller) ? longest_trajectory : longest_body;
 }
 
 asio::awaitable<void> Server::serve_stream(Connection& connection, Request request) {
   Caller caller;
-  std::optional<Problem> problem = check_host(request);
-  problem = problem ? problem : check_origin(request);
+  std::optional<Problem> problem = check_host(request, door_.proxy());
+  problem = problem ? problem : check_origin(request, door_.proxy());
   if (!problem) {
-    auto known = co_await api_.caller_of(request, connection.peer);
+    auto known = co_await api_.caller_of(request, client_of(request, connection.peer, door_.proxy()));
     if (known) {
       caller = std::move(*known);
     }
@@ -253,9 +253,9 @@ asio::awaitable<void> Server::serve_stream(Connection& connection, Request reque
 }
 
 asio::awaitable<AnyResponse> Server::respond(const Request& request, Connection& connection) {
-  std::optional<Problem> problem = check_host(request);
+  std::optional<Problem> problem = check_host(request, door_.proxy());
   if (!problem && !is_safe(request.method())) {
-    problem = check_origin(request);
+    problem = check_origin(request, door_.proxy());
     if (!problem && connection.late && !only_ends(path_of(request))) {
       problem = too_late();
     }
@@ -277,7 +277,7 @@ asio::awaitable<AnyResponse> Server::respond(const Request& request, Connection&
 }
 
 asio::awaitable<Response> Server::respond_api(const Request& request, Connection& connection) {
-  auto caller = co_await api_.caller_of(request, connection.peer);
+  auto caller = co_await api_.caller_of(request, client_of(request, connection.peer, door_.proxy()));
   if (!caller) {
     co_return problem_response(caller.error());
   }

@@ -1,9 +1,8 @@
-"""STOP gets in whatever fills the app: connections, descriptors, or a store that does not answer."""
+"""Connections: how many there are, what is said and recorded of them."""
 
 import contextlib
 import resource
 import socket
-from pathlib import Path
 
 import pytest
 from conftest import StackFactory
@@ -11,33 +10,11 @@ from interface import judge
 from stack import Stack
 
 CROWD = 60
-SPARE_DESCRIPTORS = 12
 
 
 @pytest.fixture
 def robot(stack: StackFactory) -> Stack:
     return stack()
-
-
-def crowd(robot: Stack, connections: contextlib.ExitStack) -> None:
-    for _ in range(CROWD):
-        connections.enter_context(socket.create_connection(("127.0.0.1", robot.port)))
-
-
-def test_STOP_and_status_are_answered_when_the_app_runs_out_of_descriptors(robot: Stack) -> None:
-    app = robot.pid("app")
-    in_use = len(list(Path(f"/proc/{app}/fd").iterdir()))
-    _, hard = resource.prlimit(app, resource.RLIMIT_NOFILE)
-    resource.prlimit(app, resource.RLIMIT_NOFILE, (in_use + SPARE_DESCRIPTORS, hard))
-    with contextlib.ExitStack() as connections:
-        crowd(robot, connections)
-        stopped = judge(robot.visitor().post("/api/stop"))
-        assert stopped.json()["verdict"] == "ACCEPTED"
-        assert judge(robot.visitor().get("/api/status")).status_code == 200
-        log = (robot.state / "log/interlock-app.log").read_text()
-        assert "cannot accept a connection" in log
-    resource.prlimit(app, resource.RLIMIT_NOFILE, (hard, hard))
-    assert robot.api.get("/api/motors").status_code == 200
 
 
 def test_an_app_that_may_have_few_descriptors_grants_fewer_connections(
@@ -50,7 +27,8 @@ def test_an_app_that_may_have_few_descriptors_grants_fewer_connections(
     finally:
         resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
     with contextlib.ExitStack() as connections:
-        crowd(robot, connections)
+        for _ in range(CROWD):
+            connections.enter_context(socket.create_connection(("127.0.0.1", robot.port)))
         assert judge(robot.visitor().post("/api/stop")).status_code == 200
     assert "cannot accept" not in (robot.state / "log/interlock-app.log").read_text()
 

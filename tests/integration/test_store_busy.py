@@ -1,4 +1,4 @@
-"""While the store cannot be written: STOP acts at once, and nothing moves that was not recorded first."""
+"""While the store cannot be written nothing moves that was not recorded first (STOP: test_faults.py)."""
 
 import contextlib
 import sqlite3
@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import httpx
 from conftest import StackFactory
-from motion import LATERAL, is_driven, proposal, propose, to_motion, wait_for_proposal, wait_until
+from motion import LATERAL, propose, to_motion, wait_for_proposal, wait_until
 from stack import Stack
 
 
@@ -31,26 +31,6 @@ class Proposing(threading.Thread):
     def run(self) -> None:
         draft = {"slot": LATERAL, "target_counts": -500}
         self.answer: httpx.Response = self.client.post("/api/proposals", json=draft)
-
-
-def test_STOP_acts_without_the_store_and_outlives_a_proposal_that_waits_for_it(stack: StackFactory) -> None:
-    robot = stack(speed=1)
-    to_motion(robot)
-    proposing = Proposing(robot)
-    moving = propose(robot, -900)
-    wait_until("driven", lambda: is_driven(robot))
-    with busy_store(robot):
-        proposing.start()
-        for _ in range(5):  # Each is answered after the app has seen what was sent before.
-            robot.status()
-        stopped = robot.api.post("/api/stop").raise_for_status()
-        assert stopped.json()["verdict"] == "ACCEPTED"
-        assert not is_driven(robot)
-        assert proposing.is_alive()
-    proposing.join()
-    assert (proposing.answer.status_code, proposing.answer.json()["code"]) == (409, "STOPPED")
-    assert proposal(robot, moving)["state"] == "aborted"
-    assert all(each["state"] != "approved" for each in robot.api.get("/api/proposals").json())
 
 
 def test_a_move_that_waited_for_the_store_for_more_than_a_second_is_refused(stack: StackFactory) -> None:

@@ -7,20 +7,17 @@ import re
 import signal
 import subprocess
 import termios
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import httpx
 import pytest
 from bare_kernel import BIN, DEADLINE_S, ROOT, options
 from motion import wait_until
-from stack import Stack, has_ended, watched
+from stack import has_ended, watched
 
 # Twice what the pipes of app and supervisor hold together, and that of its output (queued_output.cpp).
 UNREAD_BYTES = 2 * (2 * 65536 + (1 << 20))
-
-# Lines that may wait for their file: WritingThread::capacity.
-QUEUED_LINES = 4096
 
 
 def log_bytes(client: httpx.Client, count: int) -> None:
@@ -127,63 +124,6 @@ def stuck_log(short_tmp_path: Path) -> Iterator[int]:
     descriptor = os.open(log, os.O_RDONLY | os.O_NONBLOCK)
     yield descriptor
     os.close(descriptor)
-
-
-def test_STOP_is_answered_and_the_lines_are_counted_while_the_log_file_takes_nothing(
-    stuck_log: int, short_tmp_path: Path
-) -> None:
-    stack = Stack(short_tmp_path, "--clock", "sim")
-    try:
-        log_bytes(stack.api, UNREAD_BYTES)
-        for number in range(QUEUED_LINES):
-            assert stack.api.get(f"/api/motors/none{number}").status_code == 404
-        assert stack.api.get("/api/status").status_code == 200
-        assert stack.api.post("/api/stop").status_code == 200
-        newest = [line["text"] for line in stack.api.get("/api/logs").json()["lines"][-5:]]
-        assert any("STOP by admin" in text for text in newest), "the console has each line at once"
-
-        os.set_blocking(stuck_log, True)
-        lost = Reader(stuck_log).wait_for(r"warning (\d+) lines of the log were lost: \S+interlock-app.log")
-        assert int(lost[1]) > 0
-        told = [line["text"] for line in stack.api.get("/api/logs").json()["lines"]]
-        assert any(f"{lost[1]} lines of the log were lost" in text for text in told)
-    finally:
-        stack.close()
-
-
-@pytest.fixture
-def frozen_log(short_tmp_path: Path) -> Iterator[Callable[[str], None]]:
-    """A disk of its own for the app's log, which the test freezes (`-f`) and thaws (`-u`)."""
-    image, folder = short_tmp_path / "disk", short_tmp_path / "state/log"
-    folder.mkdir(parents=True, mode=0o700)
-    with image.open("wb") as file:
-        file.truncate(16 << 20)
-    subprocess.run(["mkfs.ext4", "-q", image], check=True)
-    subprocess.run(["mount", "-o", "loop", image, folder], check=True)
-    try:
-        yield lambda how: subprocess.run(["fsfreeze", how, folder], check=True)
-    finally:
-        subprocess.run(["umount", folder], check=True)
-
-
-@pytest.mark.network
-def test_STOP_is_answered_while_the_disk_of_the_log_is_frozen_and_all_is_there_afterwards(
-    frozen_log: Callable[[str], None], short_tmp_path: Path
-) -> None:
-    stack = Stack(short_tmp_path, "--clock", "sim")
-    try:
-        frozen_log("-f")
-        try:
-            log_bytes(stack.api, UNREAD_BYTES)
-            assert stack.api.get("/api/status").status_code == 200
-            assert stack.api.post("/api/stop").status_code == 200
-        finally:
-            frozen_log("-u")
-    finally:
-        stack.close()
-    written = (short_tmp_path / "state/log/interlock-app.log").read_text()
-    assert "STOP by admin" in written
-    assert "lost" not in written
 
 
 def test_the_app_ends_by_itself_while_its_log_file_takes_nothing(

@@ -98,13 +98,70 @@ TEST(Framing, ByTwoMeansIsMalformed) {
 
 TEST(Host, IsNamedOnce) {
   const auto twice =
-      check_host(with_headers({{http::field::host, "localhost"}, {http::field::host, "localhost"}}));
+      check_host(with_headers({{http::field::host, "localhost"}, {http::field::host, "localhost"}}), {});
   ASSERT_TRUE(twice);
   EXPECT_EQ(twice->code, "MALFORMED");
-  const auto none = check_host(with_headers({}));
+  const auto none = check_host(with_headers({}), {});
   ASSERT_TRUE(none);
   EXPECT_EQ(none->code, "MALFORMED");
-  EXPECT_FALSE(check_host(with_headers({{http::field::host, "localhost"}})));
+  EXPECT_FALSE(check_host(with_headers({{http::field::host, "localhost"}}), {}));
+}
+
+TEST(Host, IsThisMachineOrThePublicNameOfItsProxy) {
+  const ReverseProxy proxy{.origin = "https://robot.example:8443", .address = {}};
+  for (const char* const host : {"127.0.0.1:8080", "robot.example", "robot.example:8443"}) {
+    EXPECT_FALSE(check_host(with_headers({{http::field::host, host}}), proxy)) << host;
+  }
+  for (const char* const host : {"robot.example.evil", "evil.robot.example", ""}) {
+    EXPECT_TRUE(check_host(with_headers({{http::field::host, host}}), proxy)) << host;
+  }
+  EXPECT_TRUE(check_host(with_headers({{http::field::host, "robot.example"}}), {}));
+}
+
+TEST(Origin, IsThatOfThePublicNameWithTlsBehindAProxy) {
+  const ReverseProxy proxy{.origin = "https://robot.example", .address = {}};
+  const auto refused = [&](const char* host, const char* origin) {
+    return check_origin(with_headers({{http::field::host, host}, {http::field::origin, origin}}), proxy)
+        .has_value();
+  };
+  EXPECT_FALSE(refused("127.0.0.1:8080", "https://robot.example")) << "as nginx has it by default";
+  EXPECT_FALSE(refused("robot.example", "https://robot.example"));
+  EXPECT_FALSE(refused("127.0.0.1:8080", "http://127.0.0.1:8080")) << "the console on this machine";
+  EXPECT_TRUE(refused("robot.example", "http://robot.example")) << "no TLS: anybody may have sent that page";
+  EXPECT_TRUE(refused("robot.example", "https://robot.example.evil"));
+  EXPECT_TRUE(refused("127.0.0.1:8080", "null"));
+}
+
+Request forwarded_for(const char* clients) {
+  Request request{http::verb::post, "/", 11};
+  request.set("X-Forwarded-For", clients);
+  return request;
+}
+
+TEST(Client, IsWhomTheTrustedProxyNamesLast) {
+  const ReverseProxy proxy{.origin = {}, .address = "127.0.0.1"};
+  const Request one = forwarded_for("10.9.9.9, 192.168.1.7");
+  EXPECT_EQ(client_of(one, "127.0.0.1:5000", proxy), "192.168.1.7:5000");
+  EXPECT_EQ(client_of(one, "127.0.0.2:5000", proxy), "127.0.0.2:5000") << "another process of this machine";
+  EXPECT_EQ(client_of(one, "127.0.0.1:5000", {}), "127.0.0.1:5000") << "no proxy is trusted";
+  Request two = one;
+  two.insert("X-Forwarded-For", "2001:db8::1");
+  EXPECT_EQ(client_of(two, "127.0.0.1:5000", proxy), "[2001:db8::1]:5000");
+  for (const char* const text : {"", "nobody", "10.0.0.1,", "10.0.0.1:80"}) {
+    const Request unnamed = forwarded_for(text);
+    EXPECT_EQ(client_of(unnamed, "127.0.0.1:5000", proxy), "127.0.0.1:5000") << text;
+  }
+  EXPECT_EQ(client_of(one, "[::1]:5000", {.origin = {}, .address = "::1"}), "192.168.1.7:5000");
+}
+
+TEST(Proxy, IsGivenAsAnOriginWithTlsAndAnAddress) {
+  EXPECT_FALSE(problem_of(ReverseProxy{}));
+  EXPECT_FALSE(problem_of(ReverseProxy{.origin = "https://robot.example:8443", .address = "::1"}));
+  for (const char* const origin :
+       {"robot.example", "http://robot.example", "https://", "https://robot.example/"}) {
+    EXPECT_TRUE(problem_of(ReverseProxy{.origin = origin, .address = {}})) << origin;
+  }
+  EXPECT_TRUE(problem_of(ReverseProxy{.origin = {}, .address = "proxy"}));
 }
 
 TEST(Path, HasNoSeparatorThatWasEncoded) {

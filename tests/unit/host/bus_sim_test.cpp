@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <pthread.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <atomic>
+#include <csignal>
 #include <functional>
 #include <optional>
 #include <string>
@@ -191,12 +193,18 @@ TEST_F(SimulatedBus, StopEndsTheWaitForALatePlant) {
   Peer peer(path);
   open();
   peer.manner = Manner::kSilent;
+  // As in the kernel: by the handler of a signal, in the thread that waits.
+  static volatile sig_atomic_t* flag = nullptr;
+  flag = &stopped;
+  std::signal(SIGUSR1, [](int) { *flag = 1; });
+  const pthread_t loop = pthread_self();
   std::thread user([&] {
     EXPECT_TRUE(eventually([&] { return peer.exchanges == 1; }));
-    stopped = 1;
+    pthread_kill(loop, SIGUSR1);
   });
   EXPECT_FALSE(succeeds());
   user.join();
+  std::signal(SIGUSR1, SIG_DFL);
   ilk_bus_sim_close(&sim);
 }
 
