@@ -260,9 +260,8 @@ def test_the_app_compares_its_audit_with_the_noted_heads(installation: Installat
         check = robot.api.get("/api/audit/verify").raise_for_status().json()
     assert (check["sound"], check["proven"], check["noted_heads"]) == (False, False, None)
     assert check["broken"]["number"] == number
-    assert f"is not the one that the recorder noted at 2026-01-01T00:00:00.000Z as {head}" in (
-        check["broken"]["problem"]
-    )
+    problem = f"is not the one that the recorder noted at 2026-01-01T00:00:00.000Z as {head}"
+    assert problem in check["broken"]["problem"]
 
 
 def test_a_forged_new_store_is_not_called_in_agreement_with_any_head(installation: Installation) -> None:
