@@ -326,6 +326,7 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   HistoryFeed history(plan);
   web::Api api(executor, model.robot, model.config, *channel, options.bench_socket, gateway, log, {},
                {&history, options.black_box});
+  api.compare_with(options.audit_heads);
   web::Server server(door.get_executor(), executor, api, *channel,
                      web::StaticFiles(options.web_directory, options.docs_directory));
   if (auto listening = server.door().listen(options.listen); !listening) {

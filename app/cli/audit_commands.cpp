@@ -1,17 +1,15 @@
-#include <sys/stat.h>
 
 #include <chrono>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "cli/audit_verdict.hpp"
 #include "cli/commands.hpp"
 #include "store/audit.hpp"
 #include "store/audit_check.hpp"
 #include "store/audit_file.hpp"
+#include "store/audit_verdict.hpp"
 #include "store/noted_heads.hpp"
-#include "store/schema.hpp"
 #include "system/printable.hpp"
 
 namespace interlock::cli {
@@ -44,14 +42,6 @@ Result<void> tell(const AuditVerdict& verdict, bool json, std::ostream& output) 
   return {};
 }
 
-/** Whether the store's owner can change the file of noted heads. */
-bool have_same_owner(const fs::path& file, const fs::path& store) {
-  struct stat noted{};
-  struct stat kept{};
-  return ::stat(file.c_str(), &noted) != 0 || ::stat(store.c_str(), &kept) != 0 ||
-         noted.st_uid == kept.st_uid;
-}
-
 /** The verdict on a chain that was checked. */
 Result<AuditVerdict> verdict_on(const Stored<Verified>& verified, std::optional<ComparedHeads> heads) {
   if (!verified) {
@@ -65,22 +55,14 @@ Result<AuditVerdict> verdict_on(const Stored<Verified>& verified, std::optional<
 
 /** In parts: the log of the writers is emptied between them. */
 Stored<Verified> verify_in_parts(Store& store, AuditCheck& check) {
-  constexpr std::size_t part = 2000;
   for (bool more = true; more;) {
-    const Stored<bool> gone_on = store.read(
-        [&](Transaction& transaction) -> Stored<bool> { return check.go_on(transaction.database(), part); });
+    const Stored<bool> gone_on = check_part(store, check);
     if (!gone_on) {
       return tl::unexpected(gone_on.error());
     }
     more = *gone_on;
   }
-  if (Verified verified = check.result(); !verified) {
-    return verified;
-  }
-  // Only now: a record that was changed behind a trigger that was dropped is named first.
-  const Stored<void> defined =
-      store.read([](Transaction& transaction) { return check_definitions(transaction.database()); });
-  return defined.map([&] { return check.result(); });
+  return check.result();
 }
 
 /** The records that are to go, in their file; the last of them. Nothing when there are none. */
@@ -116,8 +98,7 @@ Result<void> verify_audit(const AuditOptions& options, const Installation& insta
   }
   AuditCheck check(options.expected_hash, *heads);
   const Stored<Verified> verified = verify_in_parts(*store, check);
-  return verdict_on(verified, ComparedHeads{file, heads->size(), check.comparison(),
-                                            have_same_owner(file, *state / store_file_name)})
+  return verdict_on(verified, compared_heads(check, file, heads->size(), *state / store_file_name))
       .and_then([&](const AuditVerdict& verdict) { return tell(verdict, options.json, output); });
 }
 

@@ -2,6 +2,7 @@
 #include "cli/instance_lock.hpp"
 #include "store/noted_heads.hpp"
 #include "store/store_backup.hpp"
+#include "system/utc_time.hpp"
 
 namespace interlock::cli {
 namespace {
@@ -38,18 +39,24 @@ Result<void> restore(const StoreOptions& options, const Installation& installati
     return tl::unexpected(lock.error());
   }
   const fs::path store = *state / store_file_name;
-  Stored<NotedHeads> heads = read_noted_heads(heads_file(*state));
+  const fs::path heads_noted = heads_file(*state);
+  Stored<NotedHeads> heads = read_noted_heads(heads_noted);
   if (!heads) {
     return tl::unexpected(failure_of(heads.error()));
   }
-  const Stored<Restored> restored =
-      restore_store(options.file, store, std::chrono::system_clock::now(), std::move(*heads));
+  const bool excuses_heads = !heads->empty();
+  const UtcTime now = std::chrono::system_clock::now();
+  const Stored<Restored> restored = restore_store(options.file, store, now, std::move(*heads));
   if (!restored) {
     return tl::unexpected(failure_of(restored.error()));
   }
   output << store.string() << ": " << text_of(restored->summary) << '\n';
   if (restored->replaced) {
     output << "what was there before is " << restored->replaced->string() << '\n';
+  }
+  if (excuses_heads && !note_head(heads_noted, {iso_8601(now), restored->summary.head})) {
+    output << "this user cannot note the head in " << heads_noted.string()
+           << ": until the next start has, `audit verify` does not call the restore proven\n";
   }
   return {};
 }

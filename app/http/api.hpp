@@ -48,6 +48,9 @@ class Api {
    * session. 503 STORE when that cannot be told. */
   boost::asio::awaitable<tl::expected<Caller, Problem>> caller_of(const Request& request, std::string peer);
 
+  /** Has the check of the audit compare the heads that the recorder noted in that file. */
+  void compare_with(std::filesystem::path noted_heads) { context_.noted_heads = std::move(noted_heads); }
+
   /** Ends every proposal, and records by whom the robot was stopped. */
   boost::asio::awaitable<void> record_stop(StopMade made);
 

@@ -15,6 +15,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "kinematics/family.hpp"
@@ -30,6 +31,8 @@ struct Joint {
   std::string_view quantity; /**< name in errors: "probe_rotation_rad" */
   Unit unit;                 /**< of the axis */
   double limit; /**< a position means something within plus and minus this; soft limits are narrower */
+  /** Lowest and highest position of the inverse, where the robot file gives them; soft limits are wider. */
+  std::optional<std::pair<double, double>> given_limits = std::nullopt;
 };
 
 /** One straight part of what the robot looks like, for pictures. Thickness is no part of the model. */

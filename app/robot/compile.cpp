@@ -88,7 +88,7 @@ tl::expected<ilk_config_t, RobotError> compile(const Robot& robot) {
   if (verdict.error != ILK_CONFIG_ERROR_NONE) {
     return tl::unexpected(kernel_rule_broken(robot, verdict));
   }
-  if (auto error = step_out_of_range(robot)) {
+  if (auto error = app_rule_broken(robot)) {
     return tl::unexpected(std::move(*error));
   }
   return config;

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "robot/readers.hpp"
 
@@ -32,8 +31,9 @@ constexpr std::array<std::pair<std::string_view, ilk_limit_side_t>, 3> limit_sid
 
 SoftLimits read_soft_limits(TableReader table) {
   SoftLimits limits;
-  limits.min_counts = table.integer<std::int32_t>("min_counts");
-  limits.max_counts = table.integer<std::int32_t>("max_counts");
+  constexpr std::int64_t farthest = std::int64_t{1} << 30;
+  limits.min_counts = static_cast<std::int32_t>(table.integer_between("min_counts", -farthest, farthest));
+  limits.max_counts = static_cast<std::int32_t>(table.integer_between("max_counts", -farthest, farthest));
   table.refuse_unknown_keys();
   return limits;
 }
@@ -51,19 +51,12 @@ DriveBounds read_drive(TableReader table, bool has_amplitude) {
   return drive;
 }
 
-double read_gain(TableReader& table, std::string_view key) {
-  const double gain = table.number(key);
-  if (gain < 0.0) {
-    table.refuse(key, "the gain is negative", "zero or a positive number");
-  }
-  return gain;
-}
-
 Gains read_gains(TableReader table) {
+  constexpr double largest = 1e6;
   Gains gains;
-  gains.kp = read_gain(table, "kp");
-  gains.ki = read_gain(table, "ki");
-  gains.kd = read_gain(table, "kd");
+  gains.kp = table.number_between("kp", 0.0, largest);
+  gains.ki = table.number_between("ki", 0.0, largest);
+  gains.kd = table.number_between("kd", 0.0, largest);
   table.refuse_unknown_keys();
   return gains;
 }
@@ -101,7 +94,7 @@ Homing read_homing(TableReader table, std::uint32_t period_us, bool has_amplitud
   Homing homing;
   homing.drive = table.integer<std::uint32_t>("drive");
   if (has_amplitude) {
-    homing.amplitude = table.integer<std::uint32_t>("amplitude");
+    homing.amplitude = static_cast<std::uint32_t>(table.integer_between("amplitude", 1, 255));
   }
   homing.slow_drive = table.integer<std::uint32_t>("slow_drive");
   homing.speed_counts_per_s = table.integer<std::uint32_t>("speed_counts_per_s");
@@ -113,21 +106,6 @@ Homing read_homing(TableReader table, std::uint32_t period_us, bool has_amplitud
   homing.timeout_ticks = table.ticks("timeout_ms", period_us);
   table.refuse_unknown_keys();
   return homing;
-}
-
-std::string text_of(double number) {
-  std::ostringstream text;
-  text << number;
-  return text.str();
-}
-
-double read_counts_per_unit(TableReader& table) {
-  const double counts = table.number("counts_per_unit");
-  if (!(counts > 0.0)) {
-    table.refuse_given("counts_per_unit", "it is not above zero", "encoder counts per mm or rad, above zero");
-    return 1.0;
-  }
-  return counts;
 }
 
 /** Refuses a scale that takes the soft limits beyond where motion is planned. */
@@ -224,10 +202,11 @@ Axis read_axis(TableReader table, const Robot& robot) {
   axis.card = table.choice("card", cards);
   axis.required = table.has("required") && table.boolean("required");
   axis.motor = table.choice("motor", motors);
-  axis.encoder_resolution = table.integer<std::uint32_t>("encoder_resolution");
+  axis.encoder_resolution =
+      static_cast<std::uint32_t>(table.integer_between("encoder_resolution", 1, 1'000'000'000));
   axis.unit = table.choice("unit", units);
   axis.role = read_role(table, robot, axis.name, axis.unit);
-  axis.counts_per_unit = read_counts_per_unit(table);
+  axis.counts_per_unit = table.number_between("counts_per_unit", 1e-9, 1e9);
   axis.motor_direction = static_cast<std::uint32_t>(table.integer_between("motor_direction", 0, 1));
   axis.direction_correction = static_cast<std::uint32_t>(table.integer_between("direction_correction", 0, 1));
   axis.limit = table.choice("limit", limit_sides);

@@ -53,7 +53,7 @@ void read_biopsy(TableReader& parent, Robot& robot) {
   biopsy.units_per_newton = table.number_between("units_per_newton", 1e-3, 1e6);
   biopsy.entry_mm = table.number_between("entry_mm", 0.0, 500.0);
   biopsy.deadband_n = table.number_between("deadband_n", 0.0, 100.0);
-  biopsy.gain_mm_s_n = table.number_between("gain_mm_s_n", 0.0, 100.0);
+  biopsy.gain_mm_s_n = table.number_between("gain_mm_s_n", 0.01, 100.0);
   biopsy.fastest_mm_s = table.number_between("fastest_mm_s", 0.1, 100.0);
   biopsy.curvature_per_mm = table.number_between("curvature_per_mm", 1e-6, 0.1);
   biopsy.membranes_mm = read_depths(table);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "robot/readers.hpp"
 
@@ -15,9 +16,9 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 3> sensor_un
 }};
 
 double read_slope(TableReader& table) {
-  const double slope = table.number("slope");
-  if (slope == 0.0) {
-    table.refuse("slope", "it is zero", "a slope that tells readings apart");
+  const double slope = table.number_between("slope", -1e6, 1e6);
+  if (std::abs(slope) < 1e-9) {
+    table.refuse_given("slope", "readings cannot be told apart", "a slope of at least 1e-9, up or down");
   }
   return slope;
 }
@@ -36,7 +37,7 @@ SensorChannel read_channel(TableReader table, const Sensor& sensor) {
                  "an input of its own");
   }
   channel.slope = read_slope(table);
-  channel.intercept = table.number("intercept");
+  channel.intercept = table.number_between("intercept", -1e9, 1e9);
   channel.reference = static_cast<std::uint32_t>(table.integer_between("reference", 0, largest_reading));
   channel.unit = table.choice("unit", sensor_units);
   table.refuse_unknown_keys();

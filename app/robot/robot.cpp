@@ -67,6 +67,11 @@ std::optional<std::int32_t> Axis::to_counts(double position) const {
   return static_cast<std::int32_t>(counts);
 }
 
+bool Axis::reaches(double position) const {
+  const std::optional<std::int32_t> counts = to_counts(position);
+  return counts && *counts >= soft_limits.min_counts && *counts <= soft_limits.max_counts;
+}
+
 std::int32_t Axis::lowest_setpoint_counts() const { return saturated(reach_of(*this).low); }
 
 std::int32_t Axis::highest_setpoint_counts() const { return saturated(reach_of(*this).high); }

@@ -140,6 +140,9 @@ struct Axis {
   /** Nearest count to a position in the axis' unit; empty when it is not finite or beyond 32 bits. */
   [[nodiscard]] std::optional<std::int32_t> to_counts(double position) const;
 
+  /** Whether a position in the axis' unit is, to a count, within its soft limits. */
+  [[nodiscard]] bool reaches(double position) const;
+
   /** Lowest setpoint that the kernel accepts from the axis, homed at its switch if it has one. */
   [[nodiscard]] std::int32_t lowest_setpoint_counts() const;
 

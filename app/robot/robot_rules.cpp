@@ -4,7 +4,9 @@
 #include <array>
 #include <string_view>
 
+#include "kinematics/kinematics.hpp"
 #include "robot/catalog.hpp"
+#include "robot/table_reader.hpp"
 
 namespace interlock {
 namespace {
@@ -44,7 +46,7 @@ constexpr std::array rules{
     Rule{ILK_CONFIG_ERROR_CARD, "card", "a type of card that drives a motor"},
     Rule{ILK_CONFIG_ERROR_FLAG, "motor_direction", "0 or 1, as for direction_correction"},
     Rule{ILK_CONFIG_ERROR_LIMIT_SIDE, "limit", "none, lower or upper"},
-    Rule{ILK_CONFIG_ERROR_SOFT_LIMITS, "soft_limits", "min_counts below max_counts, both within +-2^30"},
+    Rule{ILK_CONFIG_ERROR_SOFT_LIMITS, "soft_limits", "min_counts below max_counts"},
     Rule{ILK_CONFIG_ERROR_HOME_OFFSET, "home_offset_counts",
          "a position from soft_limits.min_counts to max_counts; from a switch, farther from the other limit "
          "than homing.tolerance_counts, homing.hysteresis_counts, coast and deadband together"},
@@ -124,6 +126,75 @@ std::optional<RobotError> setpoint_out_of_range(const Robot& robot, const std::s
   return std::nullopt;
 }
 
+/** The first axis that goes where its joint means nothing, or cannot go where its joint does. */
+std::optional<RobotError> joint_out_of_range(const Robot& robot) {
+  for (const Joint& joint : robot.kinematics ? robot.kinematics->joints() : std::span<const Joint>()) {
+    const Axis& axis = *robot.with_role(joint.role);
+    const std::string unit(unit_name(axis.unit));
+    const std::string soft_limits = "axis." + axis.name + ".soft_limits";
+    const double lowest = axis.to_unit(axis.soft_limits.min_counts);
+    const double highest = axis.to_unit(axis.soft_limits.max_counts);
+    const std::string range = text_of(lowest) + " to " + text_of(highest) + ' ' + unit;
+    if (lowest < -joint.limit || highest > joint.limit) {
+      return error_at(robot.origin, soft_limits, "they lead from " + range,
+                      "positions within " + text_of(joint.limit) + ' ' + unit + ", for which " +
+                          robot.family + " has poses");
+    }
+    if (joint.given_limits &&
+        !(axis.reaches(joint.given_limits->first) && axis.reaches(joint.given_limits->second))) {
+      return error_at(robot.origin, "kinematics.joint." + std::string(joint.role) + ".limits_" + unit,
+                      text_of(joint.given_limits->first) + " to " + text_of(joint.given_limits->second) +
+                          " is given, beyond the axis' soft limits",
+                      "limits within " + range);
+    }
+  }
+  return std::nullopt;
+}
+
+/** The skin, when the needle does not reach it. */
+std::optional<RobotError> entry_out_of_reach(const Robot& robot) {
+  const Axis* const insertion = robot.biopsy ? robot.with_role("insertion") : nullptr;
+  if (insertion != nullptr && !insertion->reaches(robot.biopsy->entry_mm)) {
+    return error_at(robot.origin, "biopsy.entry_mm",
+                    text_of(robot.biopsy->entry_mm) + " is given, which the needle does not reach",
+                    "an insertion within the soft limits of \"" + insertion->name + '"');
+  }
+  return std::nullopt;
+}
+
+/** The first distance from a path that an axis has at rest, by its deadband and noise, or never has. */
+std::optional<RobotError> following_error_without_effect(const Robot& robot) {
+  for (const Axis& axis : robot.axes) {
+    const std::int64_t least = std::int64_t{axis.deadband_counts} + axis.mechanics.noise_counts;
+    const std::int64_t range = std::int64_t{axis.soft_limits.max_counts} - axis.soft_limits.min_counts;
+    const std::int64_t given = axis.motion ? axis.motion->following_error_counts : range;
+    if (given <= least || given > range) {
+      return error_at(robot.origin, "axis." + axis.name + ".motion.following_error_counts",
+                      std::to_string(given) + " is given, which an axis has at rest or never",
+                      "more than deadband_counts and mechanics.noise_counts together (" +
+                          std::to_string(least) + "), at most the range (" + std::to_string(range) + ')');
+    }
+  }
+  return std::nullopt;
+}
+
+/** The first travel of homing, or setpoint of draping, that leaves the range of its axis. */
+std::optional<RobotError> step_out_of_range(const Robot& robot) {
+  for (const HomeStep& step : robot.home_steps) {
+    for (const AxisCounts& nudge : step.nudge) {
+      const SoftLimits& limits = robot.at_slot(nudge.slot)->soft_limits;
+      const std::int64_t range = std::int64_t{limits.max_counts} - limits.min_counts;
+      if (nudge.counts < -range || nudge.counts > range) {
+        return travel_refused(robot, "home_step." + step.name + ".nudge.", nudge, -range, range);
+      }
+    }
+    if (auto error = setpoint_out_of_range(robot, "home_step." + step.name + ".move.", step.move)) {
+      return error;
+    }
+  }
+  return setpoint_out_of_range(robot, "draping.", robot.draping);
+}
+
 }  // namespace
 
 RobotError kernel_rule_broken(const Robot& robot, ilk_config_verdict_t verdict) {
@@ -165,20 +236,14 @@ std::optional<RobotError> card_out_of_place(const Robot& robot) {
   return std::nullopt;
 }
 
-std::optional<RobotError> step_out_of_range(const Robot& robot) {
-  for (const HomeStep& step : robot.home_steps) {
-    for (const AxisCounts& nudge : step.nudge) {
-      const SoftLimits& limits = robot.at_slot(nudge.slot)->soft_limits;
-      const std::int64_t range = std::int64_t{limits.max_counts} - limits.min_counts;
-      if (nudge.counts < -range || nudge.counts > range) {
-        return travel_refused(robot, "home_step." + step.name + ".nudge.", nudge, -range, range);
-      }
-    }
-    if (auto error = setpoint_out_of_range(robot, "home_step." + step.name + ".move.", step.move)) {
+std::optional<RobotError> app_rule_broken(const Robot& robot) {
+  for (const auto rule :
+       {joint_out_of_range, entry_out_of_reach, following_error_without_effect, step_out_of_range}) {
+    if (auto error = rule(robot)) {
       return error;
     }
   }
-  return setpoint_out_of_range(robot, "draping.", robot.draping);
+  return std::nullopt;
 }
 
 }  // namespace interlock

@@ -19,8 +19,7 @@ RobotError kernel_rule_broken(const Robot& robot, ilk_config_verdict_t verdict);
 /** The first card in a slot that does not exist, or of a type that nobody can drive. */
 std::optional<RobotError> card_out_of_place(const Robot& robot);
 
-/** The first travel of homing, or setpoint of draping, that leaves the range of its axis; the kernel knows
- * nothing of either. */
-std::optional<RobotError> step_out_of_range(const Robot& robot);
+/** The first value of which the kernel knows nothing, and with which the app cannot move the robot. */
+std::optional<RobotError> app_rule_broken(const Robot& robot);
 
 }  // namespace interlock

@@ -38,11 +38,23 @@ std::string described(const toml::node& node) {
   return text.str();
 }
 
+/** Not a number when it is none, or a whole number with more digits than a double holds. */
+double number_of(const toml::node& node) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  return node.is_number() ? node.value<double>().value_or(none) : none;
+}
+
 std::string range_text(std::int64_t lowest, std::int64_t highest) {
   return "a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest);
 }
 
 }  // namespace
+
+std::string text_of(double number) {
+  std::ostringstream text;
+  text << number;
+  return text.str();
+}
 
 void ReadLog::refuse(std::uint32_t line, std::string key, std::string problem, std::string expected) {
   if (!first_error) {
@@ -124,7 +136,7 @@ double TableReader::number(std::string_view key) {
   if (!node) {
     return 0.0;
   }
-  const double given = node->is_number() ? node->value<double>().value_or(0.0) : std::nan("");
+  const double given = number_of(*node);
   if (!std::isfinite(given)) {
     refuse_value(key, *node, expected);
   }
@@ -168,7 +180,7 @@ std::vector<double> TableReader::numbers(std::string_view key, std::size_t count
 std::vector<double> TableReader::numbers(std::string_view key, const std::string& expected) {
   std::vector<double> found;
   for (const toml::node& entry : array(key, expected)) {
-    found.push_back(entry.is_number() ? entry.value<double>().value_or(0.0) : std::nan(""));
+    found.push_back(number_of(entry));
     if (!std::isfinite(found.back())) {
       refuse_value(key, entry, expected);
     }

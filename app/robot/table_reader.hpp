@@ -25,6 +25,9 @@
 
 namespace interlock {
 
+/** Up to six digits of a number, for people. */
+std::string text_of(double number);
+
 /** What reading has found so far, over all tables of a file. */
 struct ReadLog {
   Origin origin;

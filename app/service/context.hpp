@@ -5,6 +5,7 @@
 #pragma once
 
 #include <boost/asio/any_io_executor.hpp>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -44,7 +45,8 @@ struct Context {
   std::function<void(const nlohmann::json&)> publish; /**< a message to every console */
   std::function<UtcTime()> clock;
   std::function<SteadyTime()> steady_clock;
-  const std::uint64_t& role_refusals; /**< requests of users whose role does not suffice */
+  const std::uint64_t& role_refusals;     /**< requests of users whose role does not suffice */
+  std::filesystem::path noted_heads = {}; /**< that the recorder wrote; empty: this machine notes none */
 
   /** The newest view, after the registry has followed its tasks. The reference holds until the next call. */
   [[nodiscard]] const ControlView& view() const;

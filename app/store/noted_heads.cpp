@@ -1,5 +1,6 @@
 #include "store/noted_heads.hpp"
 
+#include <fcntl.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -41,6 +42,20 @@ Stored<NotedHeads> read_noted_heads(const fs::path& file) {
     return tl::unexpected(file_error(file, "cannot be read", errno));
   }
   return heads;
+}
+
+bool note_head(const fs::path& file, const NotedHead& noted) {
+  const int appended = ::open(file.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | O_NOFOLLOW);
+  if (appended < 0) {
+    return false;
+  }
+  // The line before may have been cut off; an empty one is none.
+  const std::string line =
+      '\n' + noted.time + ' ' + std::to_string(noted.head.number) + ' ' + noted.head.hash + '\n';
+  const bool written = ::write(appended, line.data(), line.size()) == static_cast<ssize_t>(line.size()) &&
+                       ::fdatasync(appended) == 0;
+  ::close(appended);
+  return written;
 }
 
 bool report_head(const fs::path& socket, const AuditHead& head) {

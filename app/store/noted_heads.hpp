@@ -30,6 +30,10 @@ using NotedHeads = std::vector<NotedHead>;
  * Refused, unavailable: it cannot be read. */
 Stored<NotedHeads> read_noted_heads(const std::filesystem::path& file);
 
+/** Appends the head to the file that the recorder writes while a robot runs. False: there is none, or it
+ * cannot be written by this user. */
+bool note_head(const std::filesystem::path& file, const NotedHead& noted);
+
 /** Reports the head to the recorder, and waits for nobody. False: no recorder takes it now. */
 bool report_head(const std::filesystem::path& socket, const AuditHead& head);
 

@@ -130,6 +130,8 @@ Store& Store::operator=(Store&& other) noexcept {
 
 Store::~Store() = default;
 
+fs::path Store::file() const { return database_->getFilename(); }
+
 Stored<void> Store::check(NotedHeads heads) {
   return read([&](Transaction& transaction) {
     return check_contents(transaction.database(), PageCheck::quick, std::move(heads));

@@ -104,6 +104,9 @@ class Store {
     }
   }
 
+  /** The file. */
+  [[nodiscard]] std::filesystem::path file() const;
+
   /** Refused, damaged: pages, references or the audit are not sound, or a head that was noted is not in it.
    * For a start: it goes over the whole audit, some 100,000 records a second. */
   Stored<void> check(NotedHeads heads);

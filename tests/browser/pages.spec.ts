@@ -78,6 +78,7 @@ test("the chain of the audit is checked by the app, and a noted hash that is gon
   await expect(result).toHaveText("Not checked yet.");
   await check.click();
   await expect(result).toContainText(/✓ Unbroken up to record \d+/);
+  await expect(result).toContainText(/(in agreement|not compared) with .*heads?/);
   const head = (await result.getByRole("code").textContent()) ?? "";
   expect(head).toMatch(/^[0-9a-f]{64}$/);
   await robot.panel("Check of the chain").getByLabel("Hash noted earlier").fill(head);

@@ -167,3 +167,26 @@ test("one's own password is changed by knowing it", async ({ robot, stack, page 
   await expect(robot.loginForm.getByRole("alert")).toContainText("CREDENTIALS");
   await robot.logIn("admin", password);
 });
+
+test("one's own sessions are listed, and ended one by one or all but this one", async ({
+  robot,
+  other,
+  stack,
+}) => {
+  await robot.open("Account");
+  const sessions = robot.panel("Account").getByRole("region", { name: "Sessions" });
+  const rows = sessions.getByRole("row", { name: /^Session \d+$/ });
+  const ended = other.page.getByRole("alert").filter({ hasText: "Your session ended" });
+  const all = sessions.getByRole("button", { name: "End all others" });
+  await expect(rows).toHaveCount(1);
+  await expect(rows.first()).toContainText(/127\.0\.0\.1:\d+.*● this one/);
+  await expect(all).toBeDisabled();
+  for (const end of [sessions.getByRole("button", { name: /^End session \d+$/ }), all]) {
+    await other.logIn("admin", stack.password);
+    await expect(rows).toHaveCount(2);
+    await end.click();
+    await expect(rows).toHaveCount(1);
+    await expect(ended).toBeVisible();
+  }
+  await expect(robot.panel("Account")).toBeVisible();
+});

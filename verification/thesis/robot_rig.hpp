@@ -2,9 +2,6 @@
  * @file
  * A whole robot in this process: the modes of the app, the kernel core and the simulated plant, tick by tick,
  * far faster than real time. No other process, socket or clock takes part; a scripted foot holds the pedal.
- *
- * Each tick is an exchange of the plant, then a step of the kernel, as in the executive; what the modes
- * request for after a tick reaches the kernel in the next one.
  */
 #pragma once
 
@@ -13,10 +10,8 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "interlock/kernel.h"
-#include "motion/mode_manager.hpp"
+#include "closed_loop.hpp"
 #include "motion_record.hpp"
-#include "plant/plant.hpp"
 #include "targeting/robot_kinematics.hpp"
 
 namespace interlock {
@@ -37,11 +32,10 @@ struct NeedleInsertion {
 /** Kernel core and plant in this process, driven as the app drives them. */
 class RobotRig {
  public:
-  /** `robot` must outlive it; `config` is the compiled robot. */
-  RobotRig(const Robot& robot, const ilk_config_t& config, const plant::Parameters& parameters,
-           std::uint64_t seed);
+  /** Unlocked; `robot` must outlive it. */
+  RobotRig(const Robot& robot, const plant::Parameters& parameters, std::uint64_t seed);
 
-  /** Unlocks, declares the home of axes without a switch, enables all and homes the rest in the file's order.
+  /** Declares the home of axes without a switch, enables all and homes the rest in the file's order.
    */
   DemoResult<void> make_ready();
 
@@ -65,15 +59,9 @@ class RobotRig {
   [[nodiscard]] AxisPositions true_positions() const;
 
   /** Simulated time. */
-  [[nodiscard]] double time_s() const;
+  [[nodiscard]] double time_s() const { return tick() * tick_s(); }
 
  private:
-  struct Sent {
-    std::uint32_t sequence = 0;
-    ModeOrigin origin;
-  };
-
-  DemoResult<void> start();
   DemoResult<void> home();
   DemoResult<BiopsyRun> begin_biopsy(const Eigen::Vector3d& target_mm);
   void follow_biopsy(std::uint32_t start_tick, std::uint32_t scene_tick);
@@ -83,28 +71,15 @@ class RobotRig {
   DemoResult<void> end_task();
   void begin_record();
   void note();
-  void press_hand(double newtons);
-  void tick();
-  void run(std::uint32_t ticks);
-  void set_pedal(bool pressed);
-  DemoResult<void> ask(ilk_request_kind_t kind, const Axis* axis);
-  std::uint32_t put(ilk_request_t request);
-  void settle_verdicts();
-  [[nodiscard]] ilk_snapshot_t snapshot() const;
+  [[nodiscard]] std::uint32_t tick() const { return loop_.state().system.tick; }
+  [[nodiscard]] double tick_s() const;
   [[nodiscard]] std::uint32_t ticks_of(double seconds) const;
 
   const Robot& robot_;
-  ilk_config_t config_;
   plant::Parameters parameters_;
-  plant::Plant plant_;
-  ModeManager modes_;
-  ilk_state_t state_{};
-  ilk_inputs_t inputs_{};
-  ilk_outputs_t outputs_{};
-  std::vector<ilk_request_t> requests_;
-  std::vector<Sent> sent_;
-  std::uint32_t sequence_ = 0;
-  TaskReference task_; /**< the newest */
+  test::ClosedLoop loop_;  /**< without latency */
+  std::uint32_t task_ = 0; /**< the newest */
+  TaskKind kind_ = TaskKind::home;
   MotionRecord record_;
   std::uint32_t record_tick_ = 0; /**< at which the newest motion was ordered */
 };

@@ -282,9 +282,8 @@ Robot before_phantom(Robot robot) {
 
 }  // namespace
 
-DemoResult<DemoReport> run_demo(const Robot& described, const ilk_config_t& config,
-                                const plant::Parameters& parameters, const DemoOptions& options,
-                                const DemoAudience& audience) {
+DemoResult<DemoReport> run_demo(const Robot& described, const plant::Parameters& parameters,
+                                const DemoOptions& options, const DemoAudience& audience) {
   if (!has_thesis_table(described)) {
     return tl::unexpected(described.name + " has no trials in the thesis; run neuro or prostate");
   }
@@ -295,7 +294,7 @@ DemoResult<DemoReport> run_demo(const Robot& described, const ilk_config_t& conf
   }
   std::mt19937_64 random(options.seed);
   const Registration registration = random_registration(random);
-  RobotRig rig(robot, config, parameters, options.seed);
+  RobotRig rig(robot, parameters, options.seed);
   audience.progress("homing");
   if (const auto ready = rig.make_ready(); !ready) {
     return tl::unexpected(ready.error());

@@ -91,8 +91,7 @@ struct DemoAudience {
 };
 
 /** Runs the workflow. A target that cannot be had is told in its trial; an error ends the demonstration. */
-DemoResult<DemoReport> run_demo(const Robot& described, const ilk_config_t& config,
-                                const plant::Parameters& parameters, const DemoOptions& options,
-                                const DemoAudience& audience);
+DemoResult<DemoReport> run_demo(const Robot& described, const plant::Parameters& parameters,
+                                const DemoOptions& options, const DemoAudience& audience);
 
 }  // namespace interlock

@@ -227,7 +227,7 @@ Result<DemoReport> report_of(const StudyOptions& options, const Robot& robot,
               [&](const std::string& name, const MotionRecord& record) {
                 plotted = plotted.and_then([&] { return plot(options.plot, robot, name, record); });
               }};
-          return run_demo(robot, *config, plant, options.demo, audience)
+          return run_demo(robot, plant, options.demo, audience)
               .map_error(refusal)
               .and_then([&](DemoReport report) { return plotted.map([&] { return std::move(report); }); });
         });

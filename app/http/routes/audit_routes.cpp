@@ -6,7 +6,7 @@
 #include "http/routes.hpp"
 #include "service/fields.hpp"
 #include "service/reply.hpp"
-#include "store/audit_check.hpp"
+#include "store/audit_verdict.hpp"
 
 namespace interlock::web {
 namespace {
@@ -16,8 +16,6 @@ using nlohmann::json;
 
 constexpr std::int64_t default_records = 100;
 constexpr std::int64_t most_records = 1000;
-/** Some ten milliseconds of the store's thread: whoever asks for a move in between waits no longer. */
-constexpr std::size_t records_of_part = 2000;
 
 bool is_hash(const std::string& text) {
   return text.size() == 64 && std::ranges::all_of(text, [](char each) {
@@ -26,11 +24,15 @@ bool is_hash(const std::string& text) {
 }
 
 /** Schema `AuditCheck`. */
-json check_json(const tl::expected<AuditHead, AuditBreak>& result, UtcTime now) {
-  json body{
-      {"checked", iso_8601(now)}, {"sound", result.has_value()}, {"head", nullptr}, {"broken", nullptr}};
+json check_json(const AuditCheck& check, ComparedHeads heads, UtcTime now) {
+  const auto result = check.result();
+  json body{{"checked", iso_8601(now)}, {"sound", result.has_value()}, {"proven", false},
+            {"head", nullptr},          {"noted_heads", nullptr},      {"broken", nullptr}};
   if (result) {
+    const AuditVerdict verdict{*result, std::move(heads)};
+    body["proven"] = is_proven(verdict);
     body["head"] = {{"number", result->number}, {"hash", result->hash}};
+    body["noted_heads"] = to_json(verdict)["noted_heads"];
   } else {
     body["broken"] = {{"number", result.error().number}, {"problem", result.error().problem}};
   }
@@ -85,21 +87,30 @@ Answering AuditRoutes::verify(const Call& call) const {
   if (fields.problem()) {
     co_return fail(*fields.problem());
   }
+  const std::filesystem::path file = context_.noted_heads;
+  auto read_heads = [file](Store& /*store*/) { return read_noted_heads(file); };
+  const auto heads = co_await context_.store.run(std::move(read_heads));
+  if (!heads) {
+    co_return fail(heads.error());
+  }
   // Shared: a part that nobody waits for any more may still be under way when this ends.
-  const auto check = std::make_shared<AuditCheck>(noted);
+  const auto check = std::make_shared<AuditCheck>(noted, *heads);
   for (bool more = true; more;) {
-    auto next_part = [check](Store& store) {
-      return store.read([&](Transaction& transaction) -> Stored<bool> {
-        return check->go_on(transaction.database(), records_of_part);
-      });
-    };
+    auto next_part = [check](Store& store) { return check_part(store, *check); };
     const auto part = co_await context_.store.run(std::move(next_part));
     if (!part) {
       co_return fail(part.error());
     }
     more = *part;
   }
-  co_return Success{.body = check_json(check->result(), context_.clock())};
+  auto compare = [check, file, count = heads->size()](Store& store) -> Stored<ComparedHeads> {
+    return compared_heads(*check, file, count, store.file());
+  };
+  auto compared = co_await context_.store.run(std::move(compare));
+  if (!compared) {
+    co_return fail(compared.error());
+  }
+  co_return Success{.body = check_json(*check, std::move(*compared), context_.clock())};
 }
 
 }  // namespace interlock::web

@@ -53,7 +53,11 @@ struct Model {
              std::span(joints).first(joints.size() - (last_turns ? 1 : 0))) {
     for (const ChainJoint& joint : joints) {
       const double limit = joint.unit == Unit::mm ? length_limit_mm : angle_limit_rad;
-      listed.push_back({joint.axis, joint.quantity, joint.unit, limit});
+      listed.push_back({joint.axis,
+                        joint.quantity,
+                        joint.unit,
+                        limit,
+                        {{joint.lowest * joint.per_unit(), joint.highest * joint.per_unit()}}});
     }
   }
 
@@ -235,21 +239,29 @@ ChainJoint read_joint(TableReader& table) {
 KinematicsPtr read_serial_chain(TableReader& table) {
   std::vector<ChainJoint> joints;
   const std::string expected = "one [[kinematics.joint]] for each joint, 1 to 10, from the base to the tool";
+  TableReader tool = table.table("tool");
+  const KDL::Frame treatment = read_frame(tool);
+  tool.refuse_unknown_keys();
   for (TableReader& entry : table.tables("joint", expected)) {
     joints.push_back(read_joint(entry));
     const std::string& axis = joints.back().axis;
     if (std::ranges::count(joints, axis, &ChainJoint::axis) > 1) {
       entry.refuse("axis", '"' + axis + "\" moves another joint already", "each axis once");
     }
+    if (Search(chain_of(joints, treatment), joints).is_singular_everywhere()) {
+      entry.refuse_given("direction", "the joint moves the tool only as those before it do",
+                         "a joint that moves it in a direction of its own");
+    }
   }
-  TableReader tool = table.table("tool");
-  const KDL::Frame treatment = read_frame(tool);
-  tool.refuse_unknown_keys();
   if (joints.empty() || joints.size() > most_joints) {
     table.refuse("joint", std::to_string(joints.size()) + " joints are given", expected);
     return nullptr;
   }
   auto model = std::make_shared<const Model>(std::move(joints), treatment);
+  if (model->path.is_singular_everywhere()) {
+    table.refuse("joint", "the tool turns about its z axis, and not by the last joint alone",
+                 "a last joint that turns it about its z axis, or none that does");
+  }
   return std::make_shared<const SerialChain>(std::move(model), ProbeOffsets{});
 }
 

@@ -117,11 +117,14 @@ Search::Search(const KDL::Chain& chain, std::span<const ChainJoint> joints)
   std::mt19937_64 generator(1);
   for (int sample = 0; sample < search_starts; ++sample) {
     const KDL::JntArray anywhere = start(sample, generator);
-    const Eigen::Index most = std::min<Eigen::Index>(6, chain_.getNrOfJoints());
-    while (rank_ < most && motion_at(chain_, anywhere, rank_ + 1) > smallest_motion) {
+    while (is_singular_everywhere() && motion_at(chain_, anywhere, rank_ + 1) > smallest_motion) {
       ++rank_;
     }
   }
+}
+
+bool Search::is_singular_everywhere() const {
+  return rank_ < std::min<Eigen::Index>(6, chain_.getNrOfJoints());
 }
 
 KinematicsResult<KDL::JntArray> Search::solve(const KDL::Frame& goal) const {

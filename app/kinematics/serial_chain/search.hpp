@@ -49,6 +49,10 @@ class Search {
 
   [[nodiscard]] const KDL::Chain& chain() const { return chain_; }
 
+  /** Whether some joint moves the tool, wherever the joints stand, only as the others do. Six joints that do
+   * not move it in every direction; a joint beyond the sixth is one more. */
+  [[nodiscard]] bool is_singular_everywhere() const;
+
   /** Positions within the limits, in m and rad, that put the end of the chain at `goal`. OUT_OF_REACH names
    * the joint that would leave its limits, or the distance; SINGULAR where a joint is undetermined;
    * NOT_CONVERGED when the search was given up. */

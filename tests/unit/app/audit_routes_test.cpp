@@ -68,6 +68,25 @@ TEST_F(AuditRoutesTest, TheCheckNamesTheHeadOfASoundChain) {
   EXPECT_EQ(verify("?noted=" + last.hash)["sound"], true);
 }
 
+TEST_F(AuditRoutesTest, TheCheckSaysThatThisMachineNotesNoHeads) {
+  const json check = verify();
+  EXPECT_EQ(check["proven"], true);
+  EXPECT_TRUE(check["noted_heads"]["file"].is_null());
+  EXPECT_EQ(check["noted_heads"]["noted"], 0);
+  EXPECT_THAT(
+      check["noted_heads"]["summary"].get<std::string>(),
+      testing::HasSubstr("of which this machine keeps none: records cut off or written anew do not show"));
+}
+
+TEST_F(AuditRoutesTest, TheCheckNamesTheFirstTriggerThatIsMissing) {
+  SQLite::Database forger((folder_.path() / "state" / "interlock.db").string(), SQLite::OPEN_READWRITE, 5000);
+  forger.exec("DROP TRIGGER audit_is_not_changed");
+  const Answered answered = read_audit("/verify");
+  EXPECT_EQ(answered.status, 503U);
+  EXPECT_THAT(answered.problem()["detail"].get<std::string>(),
+              testing::HasSubstr("trigger audit_is_not_changed is missing"));
+}
+
 TEST_F(AuditRoutesTest, TheCheckNamesTheFirstRecordThatWasForged) {
   change_target(1);
   change_target(2);

@@ -67,6 +67,7 @@ class ClosedLoop {
   [[nodiscard]] const ilk_outputs_t& outputs() const { return outputs_; }
   [[nodiscard]] const ilk_config_t& config() const { return config_; }
   [[nodiscard]] TaskStatus move(std::uint32_t slot) const { return modes_.tasks().move(slot); }
+  [[nodiscard]] TaskStatus status(TaskKind kind) const { return modes_.tasks().of(kind); }
   [[nodiscard]] TaskStatus home() const { return modes_.tasks().of(TaskKind::home); }
   [[nodiscard]] TaskStatus path() const { return modes_.tasks().of(TaskKind::path); }
   [[nodiscard]] TaskStatus sweep() const { return modes_.tasks().of(TaskKind::sweep); }

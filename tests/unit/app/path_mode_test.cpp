@@ -190,7 +190,7 @@ TEST_P(PathModeOnThePlant, TheProstateRobotsSlidersMoveTogether) {
   Robot robot = prostate();
   robot.home_steps.clear();
   for (Axis& axis : robot.axes) {
-    axis.soft_limits = {-200000, 300000};  // declared homed where they start, for this test alone
+    axis.soft_limits = {-200000, 200000};  // declared homed where they start, for this test alone
     axis.home_offset_counts = 0;
     axis.limit = ILK_LIMIT_NONE;
     axis.homing.reset();

@@ -18,6 +18,7 @@ namespace test {
 namespace {
 
 using Eigen::Vector3d;
+using testing::AnyOf;
 using testing::HasSubstr;
 using Code = KinematicsError::Code;
 
@@ -213,7 +214,7 @@ TEST(SerialChain, of_any_joints_answers_with_what_forward_kinematics_confirms_or
   std::mt19937_64 generator(4);
   const std::string directions[] = {"[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"};
   std::size_t solved = 0;
-  for (int number = 0; number < 40; ++number) {
+  for (int number = 0; number < 100; ++number) {
     std::string text = tool;
     const auto count = 1 + generator() % 7;
     for (std::size_t index = 0; index < count; ++index) {
@@ -221,7 +222,13 @@ TEST(SerialChain, of_any_joints_answers_with_what_forward_kinematics_confirms_or
       text += joint("j" + std::to_string(index), slides ? "prismatic" : "revolute", three(generator, 100.0),
                     directions[generator() % 3], slides ? "limits_mm = [0, 80]" : "limits_rad = [-2, 2]");
     }
-    const KinematicsPtr chain = chain_of(text).value();
+    const auto read = chain_of(text);
+    if (!read) {
+      EXPECT_THAT(read.error().problem,
+                  AnyOf(HasSubstr("only as those before it do"), HasSubstr("turns about its z axis")));
+      continue;
+    }
+    const KinematicsPtr& chain = *read;
     const Pose home = *chain->zframe_from_treatment(std::vector<double>(count, 0.5));
     for (const Pose& pose : {home, random_pose(generator, 300.0)}) {
       const Vector3d target = pose.translation();
@@ -238,6 +245,42 @@ TEST(SerialChain, of_any_joints_answers_with_what_forward_kinematics_confirms_or
     }
   }
   EXPECT_GT(solved, 10U);
+}
+
+TEST(SerialChain, that_is_singular_everywhere_is_refused_at_the_joint_that_adds_nothing) {
+  const std::string turn = "limits_rad = [-2, 2]";
+  const std::string slide = "limits_mm = [0, 80]";
+  const std::string base = tool + joint("base", "revolute", "[0, 0, 50]", "[0, 0, 1]", turn);
+  const std::string singular[] = {
+      base + joint("again", "revolute", "[0, 0, 80]", "[0, 0, -1]", turn),
+      base + joint("turned", "revolute", "[0, 70, 0]", "[0, 1, 0]", turn) +
+          joint("again", "revolute", "[0, 30, 0]", "[0, 1, 0]", turn),
+      base + joint("out", "prismatic", "[10, 0, 0]", "[1, 0, 0]", slide) +
+          joint("again", "prismatic", "[0, 20, 9]", "[1, 0, 0]", slide),
+      base + joint("second", "revolute", "[90, 0, 0]", "[0, 0, 1]", turn) +
+          joint("third", "revolute", "[80, 0, 0]", "[0, 0, 1]", turn) +
+          joint("again", "revolute", "[70, 0, 0]", "[0, 0, 1]", turn),
+  };
+  for (const std::string& text : singular) {
+    const auto refused = chain_of(text);
+    ASSERT_FALSE(refused) << text;
+    EXPECT_EQ(refused.error().key, "kinematics.joint.again.direction");
+    EXPECT_EQ(refused.error().problem,
+              "an array is given: the joint moves the tool only as those before it do");
+    EXPECT_GT(refused.error().line, 0U);
+  }
+}
+
+TEST(SerialChain, whose_paths_leave_a_joint_undetermined_is_refused) {
+  const std::string rotation =
+      joint("rotation", "revolute", "[0, 0, 0]", "[0, 0, 1]", "limits_rad = [-2, 2]");
+  const std::string insertion =
+      joint("insertion", "prismatic", "[0, 0, 0]", "[0, 0, 1]", "limits_mm = [0, 60]");
+  EXPECT_TRUE(chain_of(tool + insertion + rotation));
+  const auto refused = chain_of(tool + rotation + insertion);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().key, "kinematics.joint");
+  EXPECT_THAT(refused.error().expected, HasSubstr("a last joint that turns it about its z axis"));
 }
 
 struct Broken {

@@ -68,7 +68,7 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenBiopsy{"deadband_is_no_number", "deadband_n = 1.0", "deadband_n = nan", "biopsy.deadband_n",
                      "nan", "a finite number"},
         BrokenBiopsy{"gain_too_large", "gain_mm_s_n = 1.0", "gain_mm_s_n = 101", "biopsy.gain_mm_s_n", "101",
-                     "a number from 0 to 100"},
+                     "a number from 0.01 to 100"},
         BrokenBiopsy{"never_moves", "fastest_mm_s = 5.0", "fastest_mm_s = 0", "biopsy.fastest_mm_s", "0",
                      "a number from 0.1 to 100"},
         BrokenBiopsy{"straight_needle", "curvature_per_mm = 0.0041", "curvature_per_mm = 0",

@@ -309,5 +309,17 @@ TEST_F(NotedHeadsTest, NoRecorderIsNoReasonToWait) {
   EXPECT_FALSE(report_head(std::string(200, 'x'), {7, std::string(64, 'a')}));
 }
 
+TEST_F(NotedHeadsTest, OfARestoreIsNotedBehindALineThatWasCutOff) {
+  const fs::path file = folder_ / "audit-heads";
+  const NotedHead noted{"2026-01-01T00:00:00.000Z", {7, std::string(64, 'a')}};
+  EXPECT_FALSE(note_head(file, noted)) << "the recorder makes the file";
+  std::ofstream(file) << "2025-12-31T23:59:59.000Z 6 aaaa";
+  EXPECT_TRUE(note_head(file, noted));
+  const NotedHeads read = read_noted_heads(file).value();
+  ASSERT_EQ(read.size(), 1U);
+  EXPECT_EQ(read[0].time, noted.time);
+  EXPECT_EQ(read[0].head, noted.head);
+}
+
 }  // namespace
 }  // namespace interlock

@@ -19,6 +19,7 @@ export type Status = Schemas["Status"];
 export type CardStatus = Status["cards"][number];
 export type VerdictAnswer = Schemas["VerdictAnswer"];
 export type Session = Schemas["Session"];
+export type ListedSession = Schemas["ListedSession"];
 export type User = Schemas["User"];
 export type Role = Schemas["Role"];
 export type NewUser = Schemas["NewUser"];
@@ -161,6 +162,9 @@ function unexpectedAnswer(status: number): Problem {
 export const api = {
   status: () => read(() => http.GET("/api/status")),
   session: () => read(() => http.GET("/api/session")),
+  sessions: () => read(() => http.GET("/api/sessions")),
+  endSession: (session: number) =>
+    act(() => http.DELETE("/api/sessions/{session}", { params: { path: { session } } })),
   login: (name: string, password: string) =>
     act(() => slowHttp.POST("/api/login", { body: { name, password } })),
   logout: () => act(() => http.POST("/api/logout")),

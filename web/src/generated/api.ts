@@ -865,8 +865,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Goes over the whole chain of the audit, as `interlock audit verify` does, and says whether it is sound. Records cut off at
-         *     its end show only against a hash that was noted elsewhere: `noted` must be of a record that is still there.
+         * Goes over the whole chain of the audit, as `interlock audit verify` does, compares it with the heads that the recorder noted, and
+         *     says whether it is sound and what that rests on. `noted`, a hash that somebody noted, must be of a record that is still there.
          */
         get: operations["verifyAudit"];
         put?: never;
@@ -2145,13 +2145,45 @@ export interface components {
              */
             checked: string;
             sound: boolean;
+            /** @description Sound, and the noted heads prove each record that excuses some of them. */
+            proven: boolean;
             /** @description The last record; null when the chain is broken. Noted elsewhere, its hash lets a later check find what was cut off. */
             head: {
                 /** @description 0 when there is no record. */
                 number: number;
                 hash: string;
             } | null;
-            /** @description The first record that is missing, changed, moved or put in; null when the chain is sound. */
+            /** @description Heads that the recorder noted, and what became of them; null when the chain is broken, as `broken` names the first that differs. */
+            noted_heads: {
+                /** @description All of this in a sentence for people. */
+                summary: string;
+                /** @description The recorder's; null when this machine notes no heads. */
+                file: string | null;
+                noted: number;
+                /** @description Those that are in the audit. */
+                compared: number;
+                /** @description Record of the newest one compared; null without one. */
+                up_to: number | null;
+                /** @description The store's owner can change the file, too. */
+                same_owner: boolean;
+                /** @description Heads that were not compared, as a record says that their store was replaced or their records were retired. */
+                excused: {
+                    heads: number;
+                    record: number;
+                    /** @description restore or retention. */
+                    kind: string;
+                    /** @description Of a restore: store or new store; else empty. */
+                    action: string;
+                    time: string;
+                    actor: string;
+                    /** @description Of the system; may be empty. */
+                    os_user: string;
+                    proven: boolean;
+                    /** @description Why the noted heads do not prove the record. */
+                    doubt: string | null;
+                }[];
+            } | null;
+            /** @description The first record that is missing, changed, moved, put in or not as the recorder noted it; null when the chain is sound. */
             broken: {
                 number: number;
                 /** @description What differs. */

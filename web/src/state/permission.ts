@@ -3,10 +3,10 @@ import type { Authority, Role } from "../api/client";
 import type { Login } from "./store";
 
 /**
- * `holder`: an engineer whose session holds the motion authority. `setpoint`: that engineer, while the robot's mode leaves
+ * `viewer`: whoever is logged in. `holder`: an engineer whose session holds the motion authority. `setpoint`: that engineer, while the robot's mode leaves
  * the setpoints of single axes to the operator.
  */
-export type Need = "engineer" | "admin" | "holder" | "setpoint";
+export type Need = "viewer" | "engineer" | "admin" | "holder" | "setpoint";
 
 export const needsAuthority = (need: Need): boolean => need === "holder" || need === "setpoint";
 
@@ -23,7 +23,7 @@ export function reasonAgainst(
   need: Need,
 ): string | null {
   if (login.phase !== "in") return "Log in first.";
-  const role = need === "admin" ? "admin" : "engineer";
+  const role = need === "admin" || need === "viewer" ? need : "engineer";
   if (rank[login.user.role] < rank[role]) {
     const who = role === "admin" ? "only administrators" : "only engineers and administrators";
     return `You are logged in as ${login.user.role}: ${who} may do this.`;

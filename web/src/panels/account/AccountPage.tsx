@@ -5,13 +5,14 @@ import { Panel } from "../../design/Panel";
 import { UserNameField } from "../../design/UserNameField";
 import { type Notice, noticeOfProblem } from "../../state/notice";
 import { useConsole } from "../../state/store";
+import { Sessions } from "./Sessions";
 import "./account.css";
 
 type Change =
   | { readonly phase: "idle" | "waiting" | "done" }
   | { readonly phase: "refused"; readonly notice: Notice };
 
-/** The user's own password. */
+/** The user's own password and sessions. */
 export function AccountPage() {
   const login = useConsole((state) => state.login);
   const [current, setCurrent] = useState("");
@@ -58,6 +59,7 @@ export function AccountPage() {
         </button>
         <p role="status">{change.phase === "done" && "The password is changed."}</p>
       </form>
+      <Sessions user={login.user.name} />
     </Panel>
   );
 }

@@ -27,8 +27,8 @@ export function ChainCheck() {
   return (
     <section className="chain-check" aria-label="Check of the chain">
       <p className="page-words">
-        Each record carries the hash of the one before. The check goes over all of them; only a head that was
-        noted elsewhere shows that records were cut off at the end.
+        Each record carries the hash of the one before. The check goes over all of them; only heads that were
+        noted elsewhere, by the recorder or by you, show that records were cut off or written anew.
       </p>
       <label htmlFor={notedId}>Hash noted earlier</label>
       <input
@@ -53,7 +53,7 @@ export function ChainCheck() {
 function Result({ checked }: { readonly checked: Checked }) {
   if (checked.phase === "never") return "Not checked yet.";
   if (checked.phase === "refused") return <NoticeText lead="No answer:" notice={checked.notice} />;
-  const { head, broken } = checked.check;
+  const { head, broken, proven, noted_heads: heads } = checked.check;
   const when = localDate(checked.check.checked);
   if (broken !== null) {
     return (
@@ -65,9 +65,11 @@ function Result({ checked }: { readonly checked: Checked }) {
   }
   return (
     <>
-      <strong>✓ Unbroken</strong> up to record {head?.number}, checked {when}
-      {checked.noted !== "" && ", with the hash noted earlier among them"}. Head to note:{" "}
-      <code>{head?.hash}</code>
+      {proven ? <strong>✓ Unbroken</strong> : <strong className="bad">✕ NOT PROVEN: unbroken</strong>} up to
+      record {head?.number}, checked {when}
+      {checked.noted !== "" && ", with the hash noted earlier among them"}; {heads?.summary}.
+      {!proven && " See that somebody did this, and compare with a backup or the files of retired records."}{" "}
+      Head to note: <code>{head?.hash}</code>
     </>
   );
 }

@@ -1,10 +1,13 @@
-#include "cli/audit_verdict.hpp"
+#include "store/audit_verdict.hpp"
+
+#include <sys/stat.h>
 
 #include <algorithm>
 
+#include "store/schema.hpp"
 #include "system/printable.hpp"
 
-namespace interlock::cli {
+namespace interlock {
 namespace {
 
 using nlohmann::json;
@@ -28,7 +31,8 @@ std::string text_of(const HeadExcuse& excuse) {
 std::string text_of(const ComparedHeads& heads) {
   const HeadComparison& comparison = heads.comparison;
   if (heads.noted == 0) {
-    return "not compared with noted heads, of which there are none in " + heads.file.string() +
+    return "not compared with noted heads, of which " +
+           (heads.file.empty() ? "this machine keeps none" : "there are none in " + heads.file.string()) +
            ": records cut off or written anew do not show";
   }
   std::string text = comparison.compared == 0
@@ -61,7 +65,8 @@ json to_json(const ComparedHeads& heads) {
   for (const HeadExcuse& excuse : heads.comparison.excuses) {
     excused.push_back(to_json(excuse));
   }
-  return {{"file", heads.file.string()},
+  return {{"summary", printable(text_of(heads))},
+          {"file", heads.file.empty() ? json() : json(heads.file.string())},
           {"noted", heads.noted},
           {"compared", heads.comparison.compared},
           {"up_to", heads.comparison.compared == 0 ? json() : json(heads.comparison.up_to)},
@@ -69,7 +74,31 @@ json to_json(const ComparedHeads& heads) {
           {"excused", std::move(excused)}};
 }
 
+/** Whether the store's owner can change the file of noted heads. */
+bool have_same_owner(const std::filesystem::path& file, const std::filesystem::path& store) {
+  struct stat noted{};
+  struct stat kept{};
+  return ::stat(file.c_str(), &noted) != 0 || ::stat(store.c_str(), &kept) != 0 ||
+         noted.st_uid == kept.st_uid;
+}
+
 }  // namespace
+
+Stored<bool> check_part(Store& store, AuditCheck& check) {
+  constexpr std::size_t part = 2000;
+  return store.read([&](Transaction& transaction) -> Stored<bool> {
+    const bool more = check.go_on(transaction.database(), part);
+    // Last: a record that was changed behind a trigger that was dropped is named first.
+    return more || !check.result() ? more
+                                   : check_definitions(transaction.database()).map([] { return false; });
+  });
+}
+
+ComparedHeads compared_heads(const AuditCheck& check, std::filesystem::path file, std::size_t noted,
+                             const std::filesystem::path& store) {
+  const bool same_owner = have_same_owner(file, store);
+  return {std::move(file), noted, check.comparison(), same_owner};
+}
 
 bool is_proven(const AuditVerdict& verdict) {
   return !verdict.heads || std::ranges::all_of(verdict.heads->comparison.excuses,
@@ -90,4 +119,4 @@ json to_json(const AuditVerdict& verdict) {
           {"noted_heads", verdict.heads ? to_json(*verdict.heads) : json()}};
 }
 
-}  // namespace interlock::cli
+}  // namespace interlock
