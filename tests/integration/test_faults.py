@@ -33,7 +33,8 @@ from test_store_busy import busy_store
 
 # Of the wall, which ticks of the paced clock never outrun.
 ENDS_WITHIN_TICKS = 200
-STOPS_WITHIN_TICKS = 500
+# As long as the door lets a STOP take; how fast it is, `make bench` measures.
+STOPS_WITHIN_TICKS = 2000
 LONG_AFTER_TICKS = 600
 # After that the door takes what it finds for older than what it finds later.
 SEEN_WITHIN_S = 0.3

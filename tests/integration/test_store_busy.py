@@ -6,6 +6,7 @@ import threading
 from collections.abc import Iterator
 
 import httpx
+from bare_kernel import DEADLINE_S
 from conftest import StackFactory
 from motion import LATERAL, propose, to_motion, wait_for_proposal, wait_until
 from stack import Stack
@@ -14,7 +15,8 @@ from stack import Stack
 @contextlib.contextmanager
 def busy_store(robot: Stack) -> Iterator[None]:
     """Another process writes, so that the app's records have to wait."""
-    with contextlib.closing(sqlite3.connect(robot.state / "interlock.db", isolation_level=None)) as store:
+    file = robot.state / "interlock.db"
+    with contextlib.closing(sqlite3.connect(file, timeout=DEADLINE_S, isolation_level=None)) as store:
         store.execute("BEGIN IMMEDIATE")
         yield
         store.execute("ROLLBACK")
