@@ -25,16 +25,6 @@ namespace interlock {
 // The checks that a move meets before anybody may approve it: what the kernel would refuse now is refused
 // here, with words. The kernel judges again, whatever this says.
 
-/**
- * Judges a draft against the newest view, in the kernel's order of checks.
- *
- * @param axis the axis that the draft names
- * @param config the configuration of the app's robot file; a kernel that runs another one moves nothing
- * @param checks makes the checks, after those that it has made before
- */
-void check_move(const Axis& axis, const ilk_config_t& config, const ControlView& view, const MoveTask& move,
-                CheckList& checks);
-
 /** Whether the kernel runs the app's configuration: CONFIG_MISMATCH. */
 tl::expected<void, Refusal> check_configuration(const ilk_config_t& config, const ControlView& view);
 
@@ -90,14 +80,6 @@ tl::expected<void, Refusal> check_separation(const Robot& robot,
 HomeTask home_axis(std::uint32_t slot);
 tl::expected<HomeTask, Refusal> home_step(const Robot& robot, const std::string& name);
 tl::expected<HomeTask, Refusal> home_all(const Robot& robot);
-
-/**
- * Judges homing against the newest view: CONFIG_MISMATCH, MODE, then for each axis FAULTED and DISABLED,
- * then NO_SWITCH, then NOT_HOMED where a step goes to a position and no earlier step homes the axis, and last
- * SEPARATION (separation.hpp).
- */
-void check_home(const Robot& robot, const ilk_config_t& config, const ControlView& view, const HomeTask& plan,
-                CheckList& checks);
 
 // The checks that a motion of several axes meets before anybody may approve it, and what it will look like.
 
@@ -156,16 +138,5 @@ std::optional<FrequencySteps> whole_band(const Axis& axis, std::uint32_t period_
  */
 void check_sweep(const Robot& robot, const ilk_config_t& config, const ControlView& view,
                  const SweepTask& sweep, CheckList& checks);
-
-// The checks that a biopsy meets before anybody may approve it.
-
-/**
- * Judges a biopsy against the newest view: CONFIG_MISMATCH, MODE, for insertion and rotation FAULTED,
- * DISABLED, BUSY while homing and NOT_HOMED, then FORCE_STALE when the force is older than 20 ms, IN_TISSUE
- * when the tip is past the skin already, so that nobody knows where it is, and RANGE when the insertion does
- * not reach the target's depth.
- */
-void check_biopsy(const Robot& robot, const ilk_config_t& config, const ControlView& view,
-                  const BiopsyTask& asked, CheckList& checks);
 
 }  // namespace interlock

@@ -5,48 +5,18 @@
 #include <utility>
 
 #include "proposals/checks.hpp"
+#include "proposals/motion_kind.hpp"
 #include "proposals/proposal_json.hpp"
 
 namespace interlock {
 
 namespace {
 
-template <typename... Each>
-struct Overloaded : Each... {
-  using Each::operator()...;
-};
-
 /** For somebody to look at what a file asks for. */
 constexpr std::chrono::minutes approval_wait{10};
 
 Refusal overloaded(const std::string& next_step) {
   return {"OVERLOADED", "The control thread takes no more commands now.", "", next_step};
-}
-
-/** The axes of a mask, in the order in which people see them. */
-std::vector<std::uint32_t> slots_of(const Robot& robot, std::uint32_t mask) {
-  std::vector<std::uint32_t> slots;
-  for (const Axis& axis : robot.axes) {
-    if (((mask >> axis.slot) & 1u) != 0) {
-      slots.push_back(axis.slot);
-    }
-  }
-  return slots;
-}
-
-/** The axes that a task moves, each once. */
-std::vector<std::uint32_t> slots_of(const Robot& robot, const Work& work) {
-  return std::visit(Overloaded{
-                        [](const MoveTask& move) { return std::vector{move.slot}; },
-                        [](const HomeTask& homing) { return homing.slots; },
-                        [&](const PathTask& path) { return slots_of(robot, path.program->mask()); },
-                        [](const SweepTask& sweep) { return std::vector{sweep.slot}; },
-                        [&](const BiopsyTask& /*insertion*/) {
-                          return std::vector{robot.with_role("insertion")->slot,
-                                             robot.with_role("rotation")->slot};
-                        },
-                    },
-                    work);
 }
 
 }  // namespace
@@ -56,7 +26,7 @@ MotionRegistry::MotionRegistry(const Robot& robot, const ilk_config_t& config, S
 
 tl::expected<Proposal, Refusal> MotionRegistry::propose(Task task, const ControlView& view,
                                                         std::chrono::steady_clock::time_point asked) {
-  std::vector<std::uint32_t> slots = slots_of(robot_, task.work);
+  std::vector<std::uint32_t> slots = kind_of(task.work).slots(robot_, task.work);
   for (const std::uint32_t slot : slots) {
     if (robot_.at_slot(slot) == nullptr) {
       return tl::make_unexpected(verdict_refusal(ILK_VERDICT_AXIS, "slot " + std::to_string(slot)));
@@ -118,22 +88,11 @@ tl::expected<void, Refusal> MotionRegistry::check(Proposal& proposal, const Cont
   if (proposal.task->targeting_revision) {
     checks.make(CheckName::targeting, [&] { return check_current(*proposal.task); });
   }
-  std::visit(Overloaded{
-                 [&](const MoveTask& move) {
-                   checks.make(CheckName::other_motion, [&] { return check_alone(); });
-                   check_move(*robot_.at_slot(move.slot), config_, view, move, checks);
-                 },
-                 [&](const HomeTask& homing) { check_home(robot_, config_, view, homing, checks); },
-                 [&](const PathTask& path) {
-                   if (auto preview = check_path(robot_, config_, view, *path.program, checks)) {
-                     proposal.ends = std::move(preview->ends);
-                     proposal.duration_s = preview->duration_s;
-                   }
-                 },
-                 [&](const SweepTask& sweep) { check_sweep(robot_, config_, view, sweep, checks); },
-                 [&](const BiopsyTask& insertion) { check_biopsy(robot_, config_, view, insertion, checks); },
-             },
-             proposal.task->work);
+  const MotionKind& kind = kind_of(proposal.task->work);
+  if (kind.yields()) {
+    checks.make(CheckName::other_motion, [&] { return check_alone(); });
+  }
+  kind.check({robot_, config_, view}, proposal, checks);
   proposal.checks = checks.results();
   proposal.checked_against = std::make_shared<const ilk_snapshot_t>(view.snapshot);
   return checks.outcome().map_error([&](const Refusal& refusal) { return refuse(proposal, refusal); });
@@ -193,8 +152,8 @@ tl::expected<Proposal, Refusal> MotionRegistry::approve(Proposal& proposal,
         refuse(proposal, overloaded("Try again; if it happens again, report it with the log.")));
   }
   replace_open(proposal);
-  const auto* homing = proposal.work<HomeTask>();
-  const TaskStatus waits{.task = proposal.id, .step = homing == nullptr ? 0 : homing->first_step};
+  const Work& work = proposal.task->work;
+  const TaskStatus waits{.task = proposal.id, .step = kind_of(work).first_step(work)};
   become(proposal, ProposalState::approved, detail_of(robot_, proposal, waits, {}));
   tell_mode();
   return proposal;
@@ -212,13 +171,8 @@ Proposal& MotionRegistry::keep(Task task, std::vector<std::uint32_t> slots, cons
     proposal.axes.push_back(robot_.at_slot(slot)->name);
   }
   proposal.axis = proposal.slots.size() == 1 ? proposal.axes.front() : "";
-  if (const auto* move = std::get_if<MoveTask>(&task.work)) {
-    proposal.target = robot_.at_slot(move->slot)->to_unit(move->target_counts);
-  }
-  if (const auto* homing = std::get_if<HomeTask>(&task.work); homing != nullptr && homing->step_count != 0) {
-    proposal.step = robot_.home_steps[homing->first_step].name;
-  }
   proposal.task = std::make_shared<const Task>(std::move(task));
+  kind_of(proposal.task->work).begin(robot_, proposal);
   proposal.created = clock_();
   proposal.created_tick = view.snapshot.state.system.tick;
   proposal.detail = "Drafted.";
@@ -240,7 +194,7 @@ void MotionRegistry::forget_one() {
 /** A move replaces the approved one of its axis, homing and a path every approved proposal. */
 void MotionRegistry::replace_open(const Proposal& by) {
   for (Proposal& each : registry_) {
-    const bool in_the_way = by.task->kind() != TaskKind::move || each.slots == by.slots;
+    const bool in_the_way = !kind_of(by.task->work).yields() || each.slots == by.slots;
     if (in_the_way && each.id != by.id && is_approved(each.state)) {
       become(each, ProposalState::aborted, "Replaced by proposal " + std::to_string(by.id) + ".");
     }
@@ -314,15 +268,7 @@ void MotionRegistry::follow(const TaskStatus& status, const ControlView& view) {
   if (same ? proposal->detail.ends_with(detail) : !may_become(proposal->state, state)) {
     return;
   }
-  if (const HomeTask* homing = proposal->work<HomeTask>()) {
-    const bool is_step = homing->step_count != 0 && status.step < robot_.home_steps.size();
-    proposal->step = is_step ? robot_.home_steps[status.step].name : "";
-  } else if (proposal->work<PathTask>() != nullptr) {
-    proposal->leg = status.step;
-  } else if (proposal->work<SweepTask>() != nullptr) {
-    const auto first = view.sweep_speeds.begin();
-    proposal->speeds_counts_per_s.assign(first, first + status.step);
-  }
+  kind_of(proposal->task->work).follow({robot_, config_, view}, status, *proposal);
   become(*proposal, state, std::move(detail), verdict_of(status));
 }
 
@@ -353,10 +299,9 @@ void MotionRegistry::become(Proposal& proposal, ProposalState state, std::string
   if (!is_open(state)) {
     proposal.ended = clock_();
     proposal.step.clear();
-    if (proposal.work<BiopsyTask>() != nullptr) {
-      // It is large. What the control thread may still use is in `approved_`.
+    if (auto remains = kind_of(proposal.task->work).remains(proposal.task->work)) {
       Task ended = *proposal.task;
-      std::get<BiopsyTask>(ended.work).run.reset();
+      ended.work = std::move(*remains);
       proposal.task = std::make_shared<const Task>(std::move(ended));
     }
   }

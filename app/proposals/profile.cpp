@@ -7,6 +7,8 @@
 #include "motion/axis_move.hpp"
 #include "motion/axis_plan.hpp"
 #include "motion/trajectory_follower.hpp"
+#include "proposals/motion_kind.hpp"
+#include "proposals/motion_kind.hpp"
 
 namespace interlock {
 namespace {
@@ -15,12 +17,6 @@ namespace {
 constexpr std::size_t steps_per_sample = 10;
 constexpr std::size_t intervals = Profile::most_samples - 2;
 constexpr std::size_t way_intervals = 100;
-
-Profile none(std::string why) {
-  Profile profile;
-  profile.why = std::move(why);
-  return profile;
-}
 
 AxisProfile frame_of(const ilk_config_t& config, const Robot& robot, const ilk_state_t& state,
                      std::uint32_t slot) {
@@ -141,6 +137,14 @@ class Sampler {
   std::vector<Setpoint> last_;
 };
 
+}  // namespace
+
+Profile no_profile(std::string why) {
+  Profile profile;
+  profile.why = std::move(why);
+  return profile;
+}
+
 Profile profile_of_path(const Robot& robot, const ilk_config_t& config, const Proposal& proposal) {
   const ilk_snapshot_t& start = *proposal.checked_against;
   const RobotPlan plan(robot, config);
@@ -148,7 +152,7 @@ Profile profile_of_path(const Robot& robot, const ilk_config_t& config, const Pr
   DryWalk measured(plan, program, start);
   const auto unseen = [](double, std::uint32_t, const TrajectoryFollower::Points&) {};
   if (!measured.go(std::numeric_limits<double>::infinity(), unseen)) {
-    return none("No motion within the rates of the axes leads there from where they were.");
+    return no_profile("No motion within the rates of the axes leads there from where they were.");
   }
   Profile profile;
   profile.basis = ProfileBasis::time;
@@ -189,25 +193,11 @@ Profile profile_of_move(const Robot& robot, const ilk_config_t& config, const Pr
   return profile;
 }
 
-}  // namespace
-
 Profile profile_of(const Robot& robot, const ilk_config_t& config, const Proposal& proposal) {
   if (proposal.checked_against == nullptr) {
-    return none("It was not checked, so nothing was planned.");
+    return no_profile("It was not checked, so nothing was planned.");
   }
-  switch (proposal.task->kind()) {
-    case TaskKind::move:
-      return profile_of_move(robot, config, proposal);
-    case TaskKind::path:
-      return profile_of_path(robot, config, proposal);
-    case TaskKind::home:
-      return none("Homing goes to the limit switches; where these are is found on the way.");
-    case TaskKind::sweep:
-      return none("A sweep turns to and fro within the range of its axis, as long as each frequency lasts.");
-    case TaskKind::biopsy:
-      return none("A biopsy follows the surgeon's hand; nothing is planned ahead.");
-  }
-  return none("");
+  return kind_of(proposal.task->work).profile(robot, config, proposal);
 }
 
 }  // namespace interlock

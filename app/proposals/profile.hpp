@@ -63,4 +63,13 @@ struct Profile {
 /** The profile of a proposal of this robot. Bounded: some thousand steps, whatever the duration. */
 Profile profile_of(const Robot& robot, const ilk_config_t& config, const Proposal& proposal);
 
+/** That of a path: by its `TrajectoryFollower`, in steps of time. */
+Profile profile_of_path(const Robot& robot, const ilk_config_t& config, const Proposal& proposal);
+
+/** That of a move of one axis: by its drive law, in steps of distance. */
+Profile profile_of_move(const Robot& robot, const ilk_config_t& config, const Proposal& proposal);
+
+/** None, and why. */
+Profile no_profile(std::string why);
+
 }  // namespace interlock

@@ -1,4 +1,4 @@
-#include "control/frequency_map.hpp"
+#include "proposals/motion_kind.hpp"
 #include "service/drafts.hpp"
 #include "service/reply.hpp"
 
@@ -7,44 +7,8 @@ namespace {
 
 using nlohmann::json;
 
-json detail_of(const Robot& robot, const MoveTask& move) {
-  json detail{{"axis", robot.at_slot(move.slot)->name}, {"target_counts", move.target_counts}};
-  if (move.drive) {
-    detail["drive"] = *move.drive;
-  }
-  return detail;
-}
-
-json detail_of(const Robot& robot, const HomeTask& homing) {
-  if (homing.step_count == 0) {
-    return {{"axis", robot.at_slot(homing.slots.front())->name}};
-  }
-  return homing.step_count == 1 ? json{{"step", robot.home_steps[homing.first_step].name}} : json::object();
-}
-
-json detail_of(const Robot& robot, const PathTask& path) {
-  json axes = json::array();
-  for (const Axis& axis : robot.axes) {
-    if (((path.program->mask() >> axis.slot) & 1u) != 0) {
-      axes.push_back(axis.name);
-    }
-  }
-  return {{"axes", std::move(axes)}};
-}
-
-json detail_of(const Robot& robot, const SweepTask& sweep) {
-  return {{"axis", robot.at_slot(sweep.slot)->name},
-          {"from_hz", frequency_map::hz_of(sweep.steps.word(0))},
-          {"to_hz", frequency_map::hz_of(sweep.steps.word(sweep.steps.count - 1))},
-          {"count", sweep.steps.count}};
-}
-
-json detail_of(const Robot& /*robot*/, const BiopsyTask& insertion) {
-  return {{"target_mm", insertion.target_mm}};
-}
-
 json detail_of(const Robot& robot, const Task& task) {
-  json detail = std::visit([&](const auto& work) { return detail_of(robot, work); }, task.work);
+  json detail = kind_of(task.work).asked(robot, task.work);
   detail["kind"] = kind_name(task.kind());
   if (task.mode > RobotMode::home) {
     detail["mode"] = mode_name(task.mode);

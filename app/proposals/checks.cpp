@@ -1,7 +1,7 @@
+#include "proposals/checks.hpp"
+
 #include <cmath>
 
-#include "motion/setpoint_range.hpp"
-#include "proposals/checks.hpp"
 #include "robot/catalog.hpp"
 #include "robot/compile.hpp"
 
@@ -21,24 +21,6 @@ tl::expected<void, Refusal> check_mode(const ControlView& view) {
   const std::uint32_t mode = view.snapshot.state.system.mode;
   if (mode != ILK_MODE_READY && mode != ILK_MODE_MOTION) {
     return refused(ILK_VERDICT_MODE, current(catalog::Family::mode, mode, "mode"), "READY or MOTION");
-  }
-  return {};
-}
-
-tl::expected<void, Refusal> check_drive(const Axis& axis, std::uint32_t bound, const MoveTask& move) {
-  if (move.drive.value_or(0) > bound) {
-    return refused(ILK_VERDICT_DRIVE, axis.name + " drive " + std::to_string(*move.drive),
-                   "a drive from 1 to " + std::to_string(bound));
-  }
-  return {};
-}
-
-tl::expected<void, Refusal> check_target(const Axis& axis, const SetpointRange& range,
-                                         std::int32_t target_counts) {
-  if (!range.contains(target_counts)) {
-    return refused(ILK_VERDICT_RANGE, axis.name + " " + counts_and_unit(axis, target_counts),
-                   "a target from " + counts_and_unit(axis, range.lowest_counts) + " to " +
-                       counts_and_unit(axis, range.highest_counts));
   }
   return {};
 }
@@ -97,19 +79,6 @@ tl::expected<void, Refusal> check_free_axis(const Axis& axis, const ControlView&
       return refused(ILK_VERDICT_BUSY, axis.name, "an axis that is not homing");
     }
     return {};
-  });
-}
-
-void check_move(const Axis& axis, const ilk_config_t& config, const ControlView& view, const MoveTask& move,
-                CheckList& checks) {
-  const ilk_axis_t& state = view.snapshot.state.axis[axis.slot];
-  const ilk_axis_config_t& rules = config.axis[axis.slot];
-  check_system(config, view, checks);
-  checks.make(CheckName::axes, [&] { return check_free_axis(axis, view); });
-  checks.make(CheckName::drive, [&] { return check_drive(axis, drive_bound(rules, state), move); });
-  checks.make(CheckName::range, [&] {
-    return check_target(axis, setpoint_range(rules, state, view.snapshot.state.system.mode),
-                        move.target_counts);
   });
 }
 

@@ -2,12 +2,16 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "control/axis_controller.hpp"
 #include "proposals/checks.hpp"
+#include "proposals/motion_kind.hpp"
 
 namespace interlock {
 namespace {
+
+using nlohmann::json;
 
 std::string hz_words(double lowest_hz, double highest_hz) {
   std::array<char, 64> text{};
@@ -81,6 +85,77 @@ void check_sweep(const Robot& robot, const ilk_config_t& config, const ControlVi
             ", the axis' allowed band; the published sweep from " +
             hz_words(published_sweep.lowest_hz, published_sweep.highest_hz) + " leaves it"));
   });
+}
+
+namespace {
+
+/** ", 52000.0 Hz, frequency 3 of 12" */
+std::string frequency_words(const FrequencySteps& steps, std::uint32_t step) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), ", %.1f Hz, frequency %u of %u",
+                frequency_map::hz_of(steps.word(step)), step + 1, steps.count);
+  return text.data();
+}
+
+class SweepKind final : public MotionKind {
+ public:
+  [[nodiscard]] std::vector<std::uint32_t> slots(const Robot& /*robot*/, const Work& work) const override {
+    return {as<SweepTask>(work).slot};
+  }
+
+  void check(const Scene& scene, Proposal& proposal, CheckList& checks) const override {
+    check_sweep(scene.robot, scene.config, scene.view, *proposal.work<SweepTask>(), checks);
+  }
+
+  void follow(const Scene& scene, const TaskStatus& status, Proposal& proposal) const override {
+    const auto first = scene.view.sweep_speeds.begin();
+    proposal.speeds_counts_per_s.assign(first, first + status.step);
+  }
+
+  [[nodiscard]] json asked(const Robot& robot, const Work& work) const override {
+    const auto& [slot, steps] = as<SweepTask>(work);
+    return {{"axis", robot.at_slot(slot)->name},
+            {"from_hz", frequency_map::hz_of(steps.word(0))},
+            {"to_hz", frequency_map::hz_of(steps.word(steps.count - 1))},
+            {"count", steps.count}};
+  }
+
+  void add_fields(const Proposal& proposal, json& fields) const override {
+    const FrequencySteps& steps = proposal.work<SweepTask>()->steps;
+    json frequencies = json::array();
+    for (std::uint32_t step = 0; step < steps.count; ++step) {
+      json row{{"hz", frequency_map::hz_of(steps.word(step))}, {"counts_per_s", nullptr}};
+      if (step < proposal.speeds_counts_per_s.size() && proposal.speeds_counts_per_s[step] > 0.0F) {
+        row["counts_per_s"] = proposal.speeds_counts_per_s[step];
+      }
+      frequencies.push_back(std::move(row));
+    }
+    fields["dwell_ticks"] = steps.dwell_ticks;
+    fields["frequencies"] = std::move(frequencies);
+  }
+
+  [[nodiscard]] TaskWords words(const Robot& robot, const Proposal& proposal, const TaskStatus& status,
+                                const BiopsyFindings& /*found*/) const override {
+    const FrequencySteps& steps = proposal.work<SweepTask>()->steps;
+    const std::string part = frequency_words(steps, std::min(status.step, steps.count - 1));
+    return {"", "Turns " + listed(robot, proposal.slots) + " while the pedal is held" + part,
+            paused_words(part),
+            "Each of " + std::to_string(steps.count) + " frequencies was held for its time.",
+            title_of(robot, status.slot)};
+  }
+
+  [[nodiscard]] Profile profile(const Robot& /*robot*/, const ilk_config_t& /*config*/,
+                                const Proposal& /*proposal*/) const override {
+    return no_profile(
+        "A sweep turns to and fro within the range of its axis, as long as each frequency lasts.");
+  }
+};
+
+}  // namespace
+
+const MotionKind& sweep_kind() {
+  static const SweepKind kind;
+  return kind;
 }
 
 }  // namespace interlock

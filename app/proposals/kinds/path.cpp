@@ -1,13 +1,17 @@
 #include <array>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "motion/setpoint_range.hpp"
 #include "motion/time_scaling.hpp"
 #include "proposals/checks.hpp"
+#include "proposals/motion_kind.hpp"
 #include "trajectory/synchronised_plan.hpp"
 
 namespace interlock {
 namespace {
+
+using nlohmann::json;
 
 using Checked = tl::expected<void, Refusal>;
 
@@ -202,6 +206,74 @@ tl::expected<PathPreview, Refusal> check_path(const Robot& robot, const ilk_conf
   checks.make(CheckName::separation, [&] { return check.separation(); });
   checks.make(CheckName::rates, [&] { return check.rates(); });
   return checks.outcome().map([&] { return check.preview(); });
+}
+
+namespace {
+
+class PathKind final : public MotionKind {
+ public:
+  [[nodiscard]] std::vector<std::uint32_t> slots(const Robot& robot, const Work& work) const override {
+    std::vector<std::uint32_t> slots;
+    for (const Axis& axis : robot.axes) {
+      if (((as<PathTask>(work).program->mask() >> axis.slot) & 1u) != 0) {
+        slots.push_back(axis.slot);
+      }
+    }
+    return slots;
+  }
+
+  void check(const Scene& scene, Proposal& proposal, CheckList& checks) const override {
+    const PathProgram& program = *proposal.work<PathTask>()->program;
+    if (auto preview = check_path(scene.robot, scene.config, scene.view, program, checks)) {
+      proposal.ends = std::move(preview->ends);
+      proposal.duration_s = preview->duration_s;
+    }
+  }
+
+  void follow(const Scene& /*scene*/, const TaskStatus& status, Proposal& proposal) const override {
+    proposal.leg = status.step;
+  }
+
+  [[nodiscard]] json asked(const Robot& robot, const Work& work) const override {
+    json axes = json::array();
+    for (const std::uint32_t slot : slots(robot, work)) {
+      axes.push_back(robot.at_slot(slot)->name);
+    }
+    return {{"axes", std::move(axes)}};
+  }
+
+  void add_fields(const Proposal& proposal, json& fields) const override {
+    json ends = json::array();
+    for (const AxisCounts& end : proposal.ends) {
+      ends.push_back({{"slot", end.slot}, {"target_counts", end.counts}});
+    }
+    fields["legs"] = proposal.work<PathTask>()->program->legs.size();
+    fields["leg"] = proposal.leg;
+    fields["duration_s"] = proposal.duration_s;
+    fields["ends"] = std::move(ends);
+  }
+
+  [[nodiscard]] TaskWords words(const Robot& robot, const Proposal& proposal, const TaskStatus& status,
+                                const BiopsyFindings& /*found*/) const override {
+    const std::size_t legs = proposal.work<PathTask>()->program->legs.size();
+    const std::string part =
+        legs > 1 ? ", part " + std::to_string(status.step + 1) + " of " + std::to_string(legs) : "";
+    return {"", "Moves " + listed(robot, proposal.slots) + " while the pedal is held" + part,
+            paused_words(part), "All axes rest within the deadband of their goals.",
+            title_of(robot, status.slot)};
+  }
+
+  [[nodiscard]] Profile profile(const Robot& robot, const ilk_config_t& config,
+                                const Proposal& proposal) const override {
+    return profile_of_path(robot, config, proposal);
+  }
+};
+
+}  // namespace
+
+const MotionKind& path_kind() {
+  static const PathKind kind;
+  return kind;
 }
 
 }  // namespace interlock
