@@ -158,9 +158,9 @@ def test_page_login_and_STOP_get_through_and_name_the_client_behind_nginx(logged
 
     wait_until("the STOP is recorded", lambda: peers() != set())
     assert peers() == {CLIENT}
-    assert re.search(
-        rf"{CLIENT}:\d+: admin logged in", (logged_in.robot.state / "log/interlock-app.log").read_text()
-    )
+    log = logged_in.robot.state / "log/interlock-app.log"
+    came = rf"{CLIENT}:\d+: admin logged in"
+    wait_until("the login is in the log", lambda: re.search(came, log.read_text()) is not None)
 
 
 def test_the_cookies_of_a_login_by_nginx_stay_within_TLS(logged_in: Site) -> None:
