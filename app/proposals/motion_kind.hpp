@@ -34,6 +34,7 @@ struct TaskWords {
   std::string axis; /**< that the reason is about */
 };
 
+/** One kind of motion: everything about it that is not motion itself. */
 class MotionKind {
  public:
   virtual ~MotionKind() = default;
