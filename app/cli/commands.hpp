@@ -25,8 +25,7 @@
 
 namespace interlock::cli {
 
-// `interlock audit verify|list|export|retire`.
-
+/** `interlock audit verify|list|export|retire`. */
 struct AuditOptions {
   StorePlace place;
   std::optional<std::string> expected_hash; /**< a head that was noted before */
@@ -66,6 +65,7 @@ class App;
 
 namespace interlock::cli {
 
+/** What the command of igtl is asked for. */
 struct IgtlOptions {
   std::string host = "127.0.0.1";
   std::uint16_t port = 18944;
@@ -86,9 +86,10 @@ void add_igtl(CLI::App& cli, IgtlOptions& options);
 /** Carries out what was chosen of them. */
 Result<void> speak_igtl(const CLI::App& chosen, const IgtlOptions& options, std::ostream& output);
 
-// `interlock kinematics fk|ik`: one JSON object a line in, one out, for scripts and for checking against
-// other implementations. docs/kinematics.md describes the objects.
-
+/**
+ * `interlock kinematics fk|ik`: one JSON object a line in, one out, for scripts and for checking against
+ * other implementations. docs/kinematics.md describes the objects.
+ */
 struct KinematicsOptions {
   std::string robot; /**< name of a robot, or its file */
   std::vector<std::string>
@@ -125,8 +126,7 @@ Result<void> compile_model(const std::filesystem::path& file, const std::filesys
 /** Writes the configuration to a file. */
 Result<void> save_config(const ilk_config_t& config, const std::filesystem::path& file);
 
-// `interlock record`: writes out what the black box of a running kernel holds.
-
+/** `interlock record`: writes out what the black box of a running kernel holds. */
 struct RecordOptions {
   StorePlace place;
   std::filesystem::path black_box; /**< socket; empty: that of `interlock run` with this robot and state */
@@ -140,8 +140,7 @@ std::filesystem::path recordings_folder(const std::filesystem::path& state);
 /** PRECONDITION when there is no black box, or the file cannot be written or is there already. */
 Result<void> record(const RecordOptions& options, const Installation& installation, std::ostream& output);
 
-// `interlock replay`: runs the kernel core again on a recording.
-
+/** `interlock replay`: runs the kernel core again on a recording. */
 struct ReplayOptions {
   std::filesystem::path file;
   std::filesystem::path csv;  /**< a row a tick; empty: none */
@@ -161,8 +160,7 @@ struct ReplayOptions {
  */
 Result<void> replay(const ReplayOptions& options, std::ostream& output);
 
-// `interlock status`: the system at a glance.
-
+/** `interlock status`: the system at a glance. */
 struct StatusOptions {
   std::uint16_t port = 8080;
   bool json = false; /**< the app's answer as it came */
@@ -174,8 +172,7 @@ Result<void> show_status(const StatusOptions& options, std::ostream& output);
 /** The table of a `Status` of spec/openapi.yaml. */
 Result<std::string> status_table(const std::string& body);
 
-// `interlock store backup|restore`.
-
+/** `interlock store backup|restore`. */
 struct StoreOptions {
   StorePlace place;
   std::filesystem::path file;
@@ -187,9 +184,10 @@ Result<void> backup(const StoreOptions& options, const Installation& installatio
 /** Puts a backup in the place of the store, which is kept beside it. Refused while an instance runs. */
 Result<void> restore(const StoreOptions& options, const Installation& installation, std::ostream& output);
 
-// `interlock trajectory check`: whether a robot can follow a trajectory that is written in a file, and where
-// it leads. docs/trajectories.md describes file and answer.
-
+/**
+ * `interlock trajectory check`: whether a robot can follow a trajectory that is written in a file, and where
+ * it leads. docs/trajectories.md describes file and answer.
+ */
 struct TrajectoryOptions {
   std::string robot; /**< name of a robot, or its file */
   std::filesystem::path file;
@@ -205,9 +203,10 @@ struct TrajectoryOptions {
 Result<void> check_trajectory(const TrajectoryOptions& options, const Installation& installation,
                               std::ostream& output);
 
-// `interlock tune`: a step of one axis on the simulated hardware, as figures, table and plot. docs/tuning.md
-// describes command and figures.
-
+/**
+ * `interlock tune`: a step of one axis on the simulated hardware, as figures, table and plot. docs/tuning.md
+ * describes command and figures.
+ */
 struct TuneOptions {
   std::string robot; /**< name of a robot, or its file */
   StepOptions step;
@@ -224,8 +223,7 @@ struct TuneOptions {
  */
 Result<void> tune(const TuneOptions& options, const Installation& installation, std::ostream& output);
 
-// `interlock user add|passwd|list`. They work while the app runs, on the same store.
-
+/** `interlock user add|passwd|list`. They work while the app runs, on the same store. */
 struct UserOptions {
   StorePlace place;
   std::string name;

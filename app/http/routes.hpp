@@ -24,9 +24,10 @@
 
 namespace interlock::web {
 
-// Routes of one's own account: login, logout, sessions and password. Administrators see and end the sessions
-// of others, too.
-
+/**
+ * Routes of one's own account: login, logout, sessions and password. Administrators see and end the sessions
+ * of others, too.
+ */
 class AccountRoutes {
  public:
   /** Both must outlive it. */
@@ -49,8 +50,7 @@ class AccountRoutes {
   LoginGuard guard_;
 };
 
-// Routes of the audit.
-
+/** Routes of the audit. */
 class AuditRoutes {
  public:
   /** Both must outlive it. */
@@ -63,8 +63,7 @@ class AuditRoutes {
   const Context& context_;
 };
 
-// Routes of the motion authority.
-
+/** Routes of the motion authority. */
 class AuthorityRoutes {
  public:
   /** Both must outlive it. */
@@ -84,8 +83,7 @@ class AuthorityRoutes {
   const Context& context_;
 };
 
-// Routes of the simulated hardware.
-
+/** Routes of the simulated hardware. */
 class BenchRoutes {
  public:
   /** Both must outlive it. */
@@ -98,8 +96,7 @@ class BenchRoutes {
   const Context& context_;
 };
 
-// Routes of Cooperative Biopsy: forces and their zero, membranes, images.
-
+/** Routes of Cooperative Biopsy: forces and their zero, membranes, images. */
 class BiopsyRoutes {
  public:
   /** Both must outlive it. */
@@ -120,8 +117,7 @@ class BiopsyRoutes {
   const Context& context_;
 };
 
-// Routes of the connections to the app.
-
+/** Routes of the connections to the app. */
 class CommunicationRoutes {
  public:
   /** All must outlive it. */
@@ -170,8 +166,7 @@ class HistoryRoutes {
   History history_;
 };
 
-// Routes of jogging: a move towards one end of an axis' range, held by renewals.
-
+/** Routes of jogging: a move towards one end of an axis' range, held by renewals. */
 class JogRoutes {
  public:
   /** Both must outlive it. */
@@ -184,8 +179,7 @@ class JogRoutes {
   const Context& context_;
 };
 
-// Routes of the app's log.
-
+/** Routes of the app's log. */
 class LogRoutes {
  public:
   /** Both must outlive it. */
@@ -207,6 +201,7 @@ class LogRoutes {
 /** Schema `ModeAnswer` of spec/openapi.yaml. */
 nlohmann::json mode_json(const Robot& robot, std::string_view mode);
 
+/** Mode Routes. */
 class ModeRoutes {
  public:
   /** Both must outlive it. */
@@ -223,8 +218,7 @@ class ModeRoutes {
   const Context& context_;
 };
 
-// Routes of the axes.
-
+/** Routes of the axes. */
 class MotorRoutes {
  public:
   /** Both must outlive it. */
@@ -239,8 +233,7 @@ class MotorRoutes {
   const Context& context_;
 };
 
-// Routes that save, compare and set the positions of several axes.
-
+/** Routes that save, compare and set the positions of several axes. */
 class PositionRoutes {
  public:
   /** Both must outlive it. */
@@ -255,8 +248,7 @@ class PositionRoutes {
   const Context& context_;
 };
 
-// Routes of the proposals.
-
+/** Routes of the proposals. */
 class ProposalRoutes {
  public:
   /** Both must outlive it. */
@@ -275,9 +267,10 @@ class ProposalRoutes {
   const Context& context_;
 };
 
-// Routes of the system as a whole: status, metrics, the kernel's configuration, STOP, RESET and the stream's
-// address.
-
+/**
+ * Routes of the system as a whole: status, metrics, the kernel's configuration, STOP, RESET and the stream's
+ * address.
+ */
 class SystemRoutes {
  public:
   /** All must outlive it. */
@@ -293,8 +286,7 @@ class SystemRoutes {
   const Broadcaster& stream_;
 };
 
-// Routes of registration, entry, target and probe.
-
+/** Routes of registration, entry, target and probe. */
 class TargetingRoutes {
  public:
   /** Both must outlive it. */
@@ -318,8 +310,7 @@ class TargetingRoutes {
   std::optional<KnownReach> reach_; /**< the newest that was asked for */
 };
 
-// Routes of the trajectory that is loaded.
-
+/** Routes of the trajectory that is loaded. */
 class TrajectoryRoutes {
  public:
   static constexpr const char* path = "/api/trajectory";
@@ -335,8 +326,7 @@ class TrajectoryRoutes {
   const Context& context_;
 };
 
-// Routes by which administrators keep the users.
-
+/** Routes by which administrators keep the users. */
 class UserRoutes {
  public:
   /** Both must outlive it. */

@@ -14,13 +14,14 @@
 
 namespace interlock::igtl {
 
-// What the dialects of workphases share: the requests CMD_, CLB_ and TGT_, what is answered to them and in
-// which order, and the phase of one connection.
-//
-// A request's name is four letters and an ID, its acknowledgement "ACK_" and that ID: "I have it", no more.
-// For a phase the order is ACK, CURRENT_STATUS, then the phase's own STATUS. A calibration and a target
-// belong to the connection: after another connect they have to be sent again.
-
+/**
+ * What the dialects of workphases share: the requests CMD_, CLB_ and TGT_, what is answered to them and in
+ * which order, and the phase of one connection.
+ *
+ * A request's name is four letters and an ID, its acknowledgement "ACK_" and that ID: "I have it", no more.
+ * For a phase the order is ACK, CURRENT_STATUS, then the phase's own STATUS. A calibration and a target
+ * belong to the connection: after another connect they have to be sent again.
+ */
 class Workphases : public Dialect {
  public:
   /** A STATUS that takes longer is preceded by one that says so. */
@@ -109,9 +110,10 @@ class Workphases : public Dialect {
   std::map<std::string, std::optional<Time>> expected_;
 };
 
-// The dialect of the prostate robots' protocol as its public tests have it (2013): any phase may be asked for
-// at any time, and the phase's own STATUS says whether it can be had.
-
+/**
+ * The dialect of the prostate robots' protocol as its public tests have it (2013): any phase may be asked for
+ * at any time, and the phase's own STATUS says whether it can be had.
+ */
 class Brp2013 final : public Workphases {
  protected:
   [[nodiscard]] std::string forbids(Phase desired, const RobotState& state) const override;
@@ -121,10 +123,11 @@ class Brp2013 final : public Workphases {
   [[nodiscard]] bool takes_target() const noexcept override { return phase() == Phase::targeting; }
 };
 
-// The dialect of the later prostate robots and their Slicer module (2024): phases follow each other in a
-// fixed order, a target that is out of reach is moved to what can be reached, and the needle has requests of
-// its own. Unlike there, a request that is forbidden is answered.
-
+/**
+ * The dialect of the later prostate robots and their Slicer module (2024): phases follow each other in a
+ * fixed order, a target that is out of reach is moved to what can be reached, and the needle has requests of
+ * its own. Unlike there, a request that is forbidden is answered.
+ */
 class Wpi2024 final : public Workphases {
  protected:
   [[nodiscard]] std::string forbids(Phase desired, const RobotState& state) const override;

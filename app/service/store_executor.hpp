@@ -26,9 +26,10 @@
 
 namespace interlock {
 
-// What somebody who waits and the store's thread agree upon about one piece of work: either it is committed
-// or it is given up, never both.
-
+/**
+ * What somebody who waits and the store's thread agree upon about one piece of work: either it is committed
+ * or it is given up, never both.
+ */
 class CommitToken {
  public:
   /** Whether nobody waits for it any more: it is not to be begun, and must not be committed. */
@@ -91,6 +92,7 @@ class AuditNotes {
 /** 401 LOGIN, 403 ROLE, 422 INVALID, 404, 409 EXISTS or LAST_ADMIN, or 503 STORE when the file fails. */
 Problem problem_of(const StoreError& error);
 
+/** Runs work in the thread of the store, and brings back what came of it. */
 class StoreExecutor {
  public:
   /** How long somebody waits for the store before being told that it does not answer. */

@@ -38,8 +38,7 @@ struct PositionRange {
   bool operator==(const PositionRange&) const = default;
 };
 
-// Motion of constant jerk: a cubic in time, of which trajectories and plans are put together.
-
+/** Motion of constant jerk: a cubic in time, of which trajectories and plans are put together. */
 struct CubicSegment {
   MotionState start;
   double jerk = 0.0;
@@ -64,8 +63,7 @@ struct CubicSegment {
 /** Widens `range` to hold `position`. */
 void widen(PositionRange& range, double position) noexcept;
 
-// The motion of one axis as pieces of constant jerk, one after the other, and then rest.
-
+/** The motion of one axis as pieces of constant jerk, one after the other, and then rest. */
 class PiecewiseMotion {
  public:
   /** Goes on with a piece; one that takes no time is left out. */

@@ -72,8 +72,7 @@ std::int32_t default_move(const Axis& axis, std::int32_t from_counts, double ful
 RigResult<StepRun> run_step(const Robot& robot, const ilk_config_t& config,
                             const plant::Parameters& parameters, const StepOptions& options);
 
-// How good a step was, in numbers.
-
+/** How good a step was, in numbers. */
 struct StepFigures {
   double rms_velocity_error_percent = 0.0; /**< true velocity against the profile's at the same time, over the
                                               whole profile, of its peak */
