@@ -201,7 +201,7 @@ class LogRoutes {
 /** Schema `ModeAnswer` of spec/openapi.yaml. */
 nlohmann::json mode_json(const Robot& robot, std::string_view mode);
 
-/** Mode Routes. */
+/** Routes of the mode, and of what the robot is. */
 class ModeRoutes {
  public:
   /** Both must outlive it. */
