@@ -251,12 +251,12 @@ tl::expected<void, std::string> listen_for_navigation(const Options& options, co
     }
     desired.connect = boost::asio::ip::tcp::endpoint(address, static_cast<std::uint16_t>(link.connect_port));
   }
-  return navigation.hub()
+  return navigation.server()
       .listen({link.bind, port, link.allow, std::chrono::milliseconds(link.heartbeat_ms)})
       .map([&] {
         navigation.start(std::move(desired));
-        spdlog::info("OpenIGTLink listens on {}:{}", link.bind, navigation.hub().port());
-        std::cout << "OpenIGTLink " << link.bind << ':' << navigation.hub().port() << std::endl;
+        spdlog::info("OpenIGTLink listens on {}:{}", link.bind, navigation.server().port());
+        std::cout << "OpenIGTLink " << link.bind << ':' << navigation.server().port() << std::endl;
       });
 }
 
@@ -280,11 +280,11 @@ Stored<AuditHead> read_head(Store& store) {
 }
 
 /** Has the recorder note the head of the audit, soon after it has changed. */
-boost::asio::awaitable<void> report_heads(StoreExecutor& gateway, const std::string& recorder) {
+boost::asio::awaitable<void> report_heads(StoreExecutor& store_executor, const std::string& recorder) {
   boost::asio::steady_timer timer(co_await boost::asio::this_coro::executor);
   AuditHead reported;
   while (!recorder.empty()) {
-    const auto head = co_await gateway.run(read_head);
+    const auto head = co_await store_executor.run(read_head);
     if (head && *head != reported && report_head(recorder, *head)) {
       reported = *head;
     }
@@ -321,10 +321,10 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   boost::asio::io_context door(1);
   const auto executor = network.get_executor();
   const auto channel = std::make_unique<RealtimeChannel>();
-  StoreExecutor gateway(executor, store);
+  StoreExecutor store_executor(executor, store);
   const RobotPlan plan(model.robot, model.config);
   HistoryFeed history(plan);
-  web::Api api(executor, model.robot, model.config, *channel, options.bench_socket, gateway, log, {},
+  web::Api api(executor, model.robot, model.config, *channel, options.bench_socket, store_executor, log, {},
                {&history, options.black_box});
   api.compare_with(options.audit_heads);
   web::Server server(door.get_executor(), executor, api, *channel,
@@ -347,7 +347,7 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   launch(executor, api.listen());
   launch(executor, api.broadcast());
   launch(executor, api.sweep_sessions(session_sweep_pause));
-  launch(executor, report_heads(gateway, options.recorder));
+  launch(executor, report_heads(store_executor, options.recorder));
   launch(executor, tell_service_manager(*manager, control, *channel));
   launch(door.get_executor(), server.door().accept());
   launch(door.get_executor(), server.door().heartbeat());

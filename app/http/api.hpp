@@ -57,7 +57,7 @@ class Api {
   /** Who follows the state. */
   [[nodiscard]] Broadcaster& stream() { return stream_; }
 
-  /** The navigation programs; they come once its hub listens and it was started. */
+  /** The navigation programs; they come once its server listens and it was started. */
   [[nodiscard]] Navigation& navigation() { return navigation_; }
 
   /** Follows the control thread's notices; ends with the io_context. */

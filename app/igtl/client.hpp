@@ -3,7 +3,7 @@
  * A program at the other end: connects to one that listens, sends, and waits for what comes.
  *
  * It blocks, each time until a deadline at most. For the command line; the app's own connections are the
- * server's (server.hpp).
+ * server's (igtl_server.hpp).
  */
 #pragma once
 

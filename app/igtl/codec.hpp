@@ -29,7 +29,7 @@ tl::expected<Message, FaultAt> decode(Frame frame);
  * hold; an NDARRAY is of float64.
  *
  * Packed by Debian's libopenigtlink but for POINT, TDATA, SENSOR, NDARRAY and CAPABILITY (see
- * decode.hpp).
+ * above).
  */
 ByteVector encode(const Body& body);
 

@@ -3,7 +3,7 @@
  * Messages out of a stream of bytes that comes in pieces, and into one.
  *
  * A frame is a message whose every length was checked: names printable, size one that its type can have, CRC
- * right, what version 2 adds taken off. Only then are its bytes fit for a decoder (decode.hpp).
+ * right, what version 2 adds taken off. Only then are its bytes fit for a decoder (codec.hpp).
  */
 #pragma once
 

@@ -347,12 +347,12 @@ void IgtlServer::check_timeouts(Session& session, Clock::time_point now) const {
   } else if (session.write_since && now - *session.write_since > taking) {
     close(session, "the peer does not take what is sent to it");
   } else if (controls) {
-    look_after_controller(session, now);
+    check_controller(session, now);
   }
 }
 
 /** Whether its machine is there, and whether the program on it goes on. */
-void IgtlServer::look_after_controller(Session& session, Clock::time_point now) const {
+void IgtlServer::check_controller(Session& session, Clock::time_point now) const {
   const bool moves = is_in_motion();
   const bool is_configured = controller_silence_.count() != 0;
   const auto limit = is_configured ? controller_silence_ : heartbeat_silence;

@@ -48,7 +48,7 @@ struct IgtlServerOptions {
   std::uint16_t port = 18944;     /**< 0: any free one */
   std::vector<std::string> allow; /**< addresses of peers; empty: those of this machine */
   /** Silence after which the controller counts as lost. Zero: that of one which had sent something regularly
-   * (Hub::heartbeat_gap), and only while something may move. */
+   * (IgtlServer::heartbeat_gap), and only while something may move. */
   std::chrono::milliseconds controller_silence{0};
 };
 
@@ -203,7 +203,7 @@ class IgtlServer {
   void refuse(Session& session, const Header& header, const FaultAt& fault);
   void note_sign_of_life(Session& session);
   void check_timeouts(Session& session, Clock::time_point now) const;
-  void look_after_controller(Session& session, Clock::time_point now) const;
+  void check_controller(Session& session, Clock::time_point now) const;
   static Clock::duration unacknowledged(Session& session, Clock::time_point now);
   static void close(Session& session, const std::string& reason);
   static void set_timeout(Session& session, std::chrono::milliseconds timeout);

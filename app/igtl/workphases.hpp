@@ -79,7 +79,7 @@ class Workphases : public Dialect {
   /** Commands for a motion, in place of the one before. */
   void set_goal(Goal goal, Command command, Reaction& reaction);
 
-  /** Says what became of a request motion, unless it became a proposal, whose end says it. */
+  /** Reports what became of a requested motion, unless it became a proposal, whose end says it. */
   Reaction settle(Goal goal, const Outcome& outcome);
 
   /** No motion is waited for any more. */

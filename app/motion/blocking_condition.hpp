@@ -14,8 +14,6 @@
 
 namespace interlock {
 
-// What ends a task whatever it wanted: a locked kernel, or an axis out of motion.
-
 struct BlockingCondition {
   TaskReason reason = TaskReason::none;
   std::uint32_t code = 0;

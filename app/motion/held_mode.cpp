@@ -44,7 +44,7 @@ void HeldMode::fail(TaskReason reason, std::uint32_t code, std::uint32_t slot, s
 }
 
 void HeldMode::tick(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept {
-  if (is_open() && !meets_obstacle(snapshot)) {
+  if (is_open() && !is_blocked(snapshot)) {
     judge(snapshot);
   }
   drive(snapshot, requests);
@@ -69,7 +69,7 @@ void HeldMode::judge(const ilk_snapshot_t& snapshot) noexcept {
   }
 }
 
-bool HeldMode::meets_obstacle(const ilk_snapshot_t& snapshot) noexcept {
+bool HeldMode::is_blocked(const ilk_snapshot_t& snapshot) noexcept {
   const std::uint32_t now = snapshot.state.system.tick;
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     if (!moves(slot)) {

@@ -62,7 +62,7 @@ class HeldMode : public Mode {
  private:
   void set_phase(TaskPhase phase, TaskReason reason, std::uint32_t code, std::uint32_t tick) noexcept;
   void judge(const ilk_snapshot_t& snapshot) noexcept;
-  [[nodiscard]] bool meets_obstacle(const ilk_snapshot_t& snapshot) noexcept;
+  [[nodiscard]] bool is_blocked(const ilk_snapshot_t& snapshot) noexcept;
 
   const TaskKind kind_;
   const std::uint32_t timeout_ticks_; /**< how long the task may wait without executing */

@@ -132,7 +132,7 @@ void HomeMode::settle_stop(const ilk_snapshot_t& snapshot, KernelRequests& reque
 }
 
 void HomeMode::judge(const ilk_snapshot_t& snapshot) noexcept {
-  if (meets_obstacle(snapshot)) {
+  if (is_blocked(snapshot)) {
     return;
   }
   if (snapshot.state.system.mode == ILK_MODE_MOTION && !stop_owed_) {
@@ -143,7 +143,7 @@ void HomeMode::judge(const ilk_snapshot_t& snapshot) noexcept {
 }
 
 /** An axis of the task that cannot move ends it, and so does a fault of any other axis that is new. */
-bool HomeMode::meets_obstacle(const ilk_snapshot_t& snapshot) noexcept {
+bool HomeMode::is_blocked(const ilk_snapshot_t& snapshot) noexcept {
   const std::uint32_t faulted = faulted_axes(snapshot) & ~involved_;
   known_faults_ = std::exchange(fresh_, false) ? faulted : known_faults_ & faulted;
   const std::uint32_t watched = involved_ | (faulted & ~known_faults_);

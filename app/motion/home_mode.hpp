@@ -42,7 +42,7 @@ class HomeMode final : public Mode {
   void finish(TaskPhase phase, TaskReason reason, std::uint32_t code, std::uint32_t tick) noexcept;
   void fail(TaskReason reason, std::uint32_t code, std::uint32_t slot, std::uint32_t tick) noexcept;
   void judge(const ilk_snapshot_t& snapshot) noexcept;
-  [[nodiscard]] bool meets_obstacle(const ilk_snapshot_t& snapshot) noexcept;
+  [[nodiscard]] bool is_blocked(const ilk_snapshot_t& snapshot) noexcept;
   void wait(const ilk_snapshot_t& snapshot) noexcept;
   void go_on(const ilk_snapshot_t& snapshot) noexcept;
   void follow_step(const ilk_snapshot_t& snapshot) noexcept;

@@ -1,6 +1,6 @@
 /**
  * @file
- * Requests of a mode: the requests that it wants sent in this tick.
+ * Requests of a mode: what is to be sent to the kernel in this tick.
  */
 #pragma once
 

@@ -1,6 +1,6 @@
 /**
  * @file
- * What a motion mode is: it looks at each snapshot and requests requests. Sending them is not its business.
+ * What a motion mode is: it reads each snapshot and adds the requests of that tick. Another part sends them.
  *
  * Every function runs in the control thread: none allocates, blocks or throws.
  */

@@ -15,7 +15,7 @@
 
 namespace interlock {
 
-/** What of an `KernelCall` is still of interest when its verdict comes. */
+/** What of a `KernelCall` is still of interest when its verdict comes. */
 struct CallOrigin {
   std::uint32_t call_id = 0;
   std::uint32_t kind = 0; /**< ilk_request_kind_t */

@@ -73,7 +73,7 @@ tl::expected<void, Refusal> check_separation(const Robot& robot,
                                              const std::array<std::int32_t, ILK_SLOTS>& positions,
                                              const TimedTrajectory& trajectory);
 
-// What a request homing means for this robot, and whether it may be granted now.
+// What a request for homing means for this robot, and whether it may be granted now.
 
 /** Homing of one axis alone; of the step of that name (NOT_FOUND: there is none); of all steps (NOT_FOUND:
  * the robot has none). */

@@ -102,7 +102,7 @@ std::string listed(const Robot& robot, const std::vector<std::uint32_t>& slots);
 /** The text with a large first letter. */
 std::string capital(std::string text);
 
-/** What to do when the pedal was released; `part` says of what. */
+/** What to do when the pedal was released; `part`: what was executing. */
 std::string paused_words(const std::string& part);
 
 }  // namespace interlock

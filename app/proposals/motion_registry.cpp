@@ -138,7 +138,7 @@ void MotionRegistry::end_stale() {
                  (waits ? "" : " The control thread takes no commands now: press STOP."));
     }
   }
-  tell_mode();
+  publish_mode();
 }
 
 /** Hands the task over; what it replaces ends. */
@@ -155,7 +155,7 @@ tl::expected<Proposal, Refusal> MotionRegistry::approve(Proposal& proposal,
   const Work& work = proposal.task->work;
   const TaskStatus waits{.task = proposal.id, .step = kind_of(work).first_step(work)};
   become(proposal, ProposalState::approved, detail_of(robot_, proposal, waits, {}));
-  tell_mode();
+  publish_mode();
   return proposal;
 }
 
@@ -217,7 +217,7 @@ tl::expected<Proposal, Refusal> MotionRegistry::abort(std::uint32_t id) {
     return tl::make_unexpected(overloaded("Press STOP, or release the pedal."));
   }
   become(*proposal, ProposalState::aborted, "Ended by its author.");
-  tell_mode();
+  publish_mode();
   return *proposal;
 }
 
@@ -227,7 +227,7 @@ void MotionRegistry::abort_all(const std::string& reason) {
       become(each, ProposalState::aborted, reason);
     }
   }
-  tell_mode();
+  publish_mode();
 }
 
 void MotionRegistry::lose_author(TaskSource source, const std::string& reason) {
@@ -243,7 +243,7 @@ void MotionRegistry::lose_author(TaskSource source, const std::string& reason) {
       become(each, ProposalState::aborted, reason + " Nobody had approved it yet; propose it again.");
     }
   }
-  tell_mode();
+  publish_mode();
 }
 
 void MotionRegistry::follow(const ControlView& view) {
@@ -253,7 +253,7 @@ void MotionRegistry::follow(const ControlView& view) {
   }
   // Nobody else can take a new reference of one that only this holds.
   std::erase_if(approved_, [](const TaskReference& each) { return each.use_count() == 1; });
-  tell_mode();
+  publish_mode();
 }
 
 /** A task is reported anew within a state too: the step changes, or what is left of it. */
@@ -308,7 +308,7 @@ void MotionRegistry::become(Proposal& proposal, ProposalState state, std::string
   listener_(proposal);
 }
 
-void MotionRegistry::tell_mode() {
+void MotionRegistry::publish_mode() {
   const std::string_view mode = app_mode();
   if (std::exchange(told_mode_, mode) != mode) {
     mode_listener_(mode);

@@ -133,7 +133,7 @@ class MotionRegistry {
               std::optional<std::string> verdict = std::nullopt);
   void follow(const TaskStatus& status, const ControlView& view);
   void discard_waiting(const ControlView& view);
-  void tell_mode();
+  void publish_mode();
   Proposal* find_mutable(std::uint32_t id);
 
   const Robot& robot_;

@@ -8,7 +8,6 @@
 #include "motion/axis_plan.hpp"
 #include "motion/trajectory_follower.hpp"
 #include "proposals/motion_kind.hpp"
-#include "proposals/motion_kind.hpp"
 
 namespace interlock {
 namespace {

@@ -17,7 +17,7 @@
 
 namespace interlock {
 
-/** A session's hold of the authority, or its request it. */
+/** A session's hold of the authority, or its request for it. */
 struct Claim {
   std::uint32_t session = 0;
   std::string user;

@@ -47,52 +47,51 @@ igtl::Status stopped_before() {
 }  // namespace
 
 Navigation::Navigation(const Context& context)
-    : context_(context), hub_(context.executor), news_(context.executor, SteadyTime::max()) {
-  listen_to_hub();
+    : context_(context), server_(context.executor), news_(context.executor, SteadyTime::max()) {
+  listen_to_server();
 }
 
 void Navigation::start(NavigationOptions options) {
   options_ = std::move(options);
   if (options_.connect) {
-    launch(context_.executor, hub_.keep_connected(*options_.connect, connect_pause));
+    launch(context_.executor, server_.keep_connected(*options_.connect, connect_pause));
   }
-  launch(context_.executor, hub_.accept());
-  launch(context_.executor, hub_.heartbeat());
+  launch(context_.executor, server_.accept());
+  launch(context_.executor, server_.heartbeat());
   launch(context_.executor, work());
   launch(context_.executor, keep_targeting());
   launch(context_.executor, tell_all());
 }
 
-void Navigation::listen_to_hub() {
-  hub_.on_open = [this](PeerId peer) {
+void Navigation::listen_to_server() {
+  server_.on_open = [this](PeerId peer) {
     sessions_[peer].dialect = igtl::make_dialect(options_.dialect);
-    if (const auto opened = hub_.find(peer)) {
+    if (const auto opened = server_.find(peer)) {
       announce("opened", *opened);
     }
     let_first_control();
   };
-  hub_.on_message = [this](PeerId peer, const igtl::Message& message) { take(peer, message); };
-  hub_.on_refused = [this](PeerId peer, const igtl::Header& header, const igtl::FaultAt& fault) {
+  server_.on_message = [this](PeerId peer, const igtl::Message& message) { take(peer, message); };
+  server_.on_refused = [this](PeerId peer, const igtl::Header& header, const igtl::FaultAt& fault) {
     const std::string place = fault.place.empty() ? "" : ", " + fault.place;
     const std::string text = header.type + place + ": " + std::string(igtl::fault_text(fault)) + ".";
     spdlog::warn("OpenIGTLink connection {}: \"{}\" was refused: {}", peer, header.device, text);
     const igtl::Status status{igtl::status_of(fault), 0, "FORMAT", text};
     for (const auto& [name, body] : sessions_.at(peer).dialect->take_broken(header.device, status)) {
-      hub_.reply(peer, name, body);
+      server_.reply(peer, name, body);
     }
   };
-  hub_.is_in_motion = [this] { return is_moving(); };
-  hub_.on_close = [this](const igtl::Peer& peer, const std::string& reason) { lose(peer, reason); };
+  server_.is_in_motion = [this] { return is_moving(); };
+  server_.on_close = [this](const igtl::Peer& peer, const std::string& reason) { lose(peer, reason); };
 }
 
 void Navigation::note_refusal(PeerId peer, const std::string& device, const std::string& reason) {
-  hub_.count_refusal(peer);
+  server_.count_refusal(peer);
   spdlog::warn("OpenIGTLink connection {}: \"{}\" was refused: {}", peer, device, reason);
 }
 
 void Navigation::take(PeerId peer, const igtl::Message& message) {
-  react(peer, message.device,
-        sessions_.at(peer).dialect->take(message, state(), mandate_of(peer).has_value()));
+  react(peer, message.device, sessions_.at(peer).dialect->take(message, state(), grant_of(peer).has_value()));
 }
 
 /** A STOP goes out before anything is said of it. */
@@ -109,11 +108,11 @@ void Navigation::react(PeerId peer, const std::string& device, igtl::Reaction re
     note_refusal(peer, device, reaction.refused);
   }
   if (reaction.word) {
-    const auto sender = hub_.find(peer);
+    const auto sender = server_.find(peer);
     imager_.hear(*reaction.word, sender ? sender->address : "", context_.clock(), context_.steady_clock());
   }
   for (const auto& [name, body] : reaction.replies) {
-    hub_.reply(peer, name, body);
+    server_.reply(peer, name, body);
   }
   if (stopping) {
     launch(context_.executor, finish_stop(peer, device, std::move(*reaction.command), std::move(*stopping)));
@@ -162,7 +161,7 @@ void Navigation::end_motion(std::uint32_t proposal) {
 /** Anybody may stop the robot; nothing is waited for before it is sent. */
 Navigation::Stopping Navigation::stop(PeerId peer) {
   auto answered = context_.control.stop();
-  const auto sender = hub_.find(peer);
+  const auto sender = server_.find(peer);
   const std::string address = sender ? sender->address : "";
   Caller stranger;
   stranger.peer = "openigtlink " + address;
@@ -183,7 +182,7 @@ void Navigation::track(PeerId peer, const igtl::Track& command) {
     interval = std::max(std::chrono::milliseconds(*command.interval_ms), fastest_tracking);
   }
   sessions_.at(peer).tracking = interval;
-  hub_.reply(peer, "", igtl::TrackingReply{true});
+  server_.reply(peer, "", igtl::TrackingReply{true});
 }
 
 /** A robot whose controller is gone pauses, whatever it moves for: somebody has to look, and to press the
@@ -220,12 +219,12 @@ void Navigation::announce(const char* change, const igtl::Peer& peer, const std:
 }
 
 bool Navigation::give_role(PeerId id, igtl::Role role) {
-  const auto before = hub_.find(id);
-  if (!before || !hub_.set_role(id, role)) {
+  const auto before = server_.find(id);
+  if (!before || !server_.set_role(id, role)) {
     return false;
   }
   if (before->role != role) {
-    announce("role", *hub_.find(id));
+    announce("role", *server_.find(id));
   }
   return true;
 }
@@ -242,7 +241,7 @@ bool Navigation::set_role(PeerId id, igtl::Role role, const Caller& caller) {
       give_role(grant_->peer, igtl::Role::observer);
     }
     grant_ = {id, caller, context_.authority.number()};
-    grant_->caller.peer = "openigtlink " + hub_.find(id)->address;
+    grant_->caller.peer = "openigtlink " + server_.find(id)->address;
   } else if (grant_ && grant_->peer == id) {
     grant_.reset();
   }
@@ -260,7 +259,7 @@ void Navigation::change_authority() {
 /** The oldest connection, when the robot's file says so and there is no other controller. */
 void Navigation::let_first_control() {
   const auto& holding = context_.authority.holder();
-  const std::vector<igtl::Peer> peers = hub_.peers();
+  const std::vector<igtl::Peer> peers = server_.peers();
   if (!options_.first_controls || grant_ || !holding || peers.empty()) {
     return;
   }
@@ -277,7 +276,7 @@ void Navigation::let_first_control() {
   set_role(peers.front().id, igtl::Role::controller, caller);
 }
 
-tl::expected<Caller, Problem> Navigation::mandate_of(PeerId peer) const {
+tl::expected<Caller, Problem> Navigation::grant_of(PeerId peer) const {
   if (!grant_ || grant_->peer != peer || grant_->hold != context_.authority.number()) {
     return fail(
         {.status = Status::conflict,
@@ -306,7 +305,7 @@ asio::awaitable<void> Navigation::work() {
     const WaitingCommand task = std::move(tasks_.front());
     tasks_.pop_front();
     igtl::Outcome outcome;
-    if (const auto caller = mandate_of(task.peer); !caller) {
+    if (const auto caller = grant_of(task.peer); !caller) {
       outcome.status = status_of(caller.error());
     } else if (is_overtaken(task)) {
       outcome.status = stopped_before();
@@ -332,7 +331,7 @@ void Navigation::tell(const Proposal& proposal) {
 void Navigation::follow(const igtl::Motion& motion) {
   for (auto& [peer, session] : sessions_) {
     for (const auto& [name, body] : session.dialect->follow(motion, state())) {
-      hub_.reply(peer, name, body);
+      server_.reply(peer, name, body);
     }
   }
 }
@@ -360,7 +359,7 @@ asio::awaitable<void> Navigation::tell_all() {
     if (error) {
       co_return;
     }
-    if (hub_.empty() || !targeting_revision_) {
+    if (server_.empty() || !targeting_revision_) {
       continue;
     }
     const SteadyTime now = std::chrono::steady_clock::now();
@@ -393,7 +392,7 @@ void Navigation::tell_messages(SteadyTime now) {
       if (before == session.told.end() || before->second != body || (is_health && is_health_due)) {
         session.told.insert_or_assign(name, body);
         session.health = is_health ? now : session.health;
-        hub_.show(peer, name, body);
+        server_.show(peer, name, body);
       }
     }
   }
@@ -408,7 +407,7 @@ void Navigation::tell_what_is_due(SteadyTime now) {
   for (auto& [peer, session] : sessions_) {
     const bool has_to_hear = is_moving() && grant_->peer == peer;
     for (const auto& [name, body] : session.dialect->heartbeat(now, present, has_to_hear)) {
-      hub_.reply(peer, name, body);
+      server_.reply(peer, name, body);
     }
   }
 }
@@ -419,7 +418,7 @@ void Navigation::tell_tracking(SteadyTime now) {
     if (session.tracking && now - session.tracked >= *session.tracking) {
       tracking = tracking ? tracking : igtl::tracking_of(state());
       session.tracked = now;
-      hub_.show(peer, "robot", *tracking);
+      server_.show(peer, "robot", *tracking);
     }
   }
 }

@@ -56,8 +56,8 @@ class Navigation {
   explicit Navigation(const Context& context);
 
   /** The connections of OpenIGTLink. */
-  [[nodiscard]] igtl::IgtlServer& hub() { return hub_; }
-  [[nodiscard]] const igtl::IgtlServer& hub() const { return hub_; }
+  [[nodiscard]] igtl::IgtlServer& server() { return server_; }
+  [[nodiscard]] const igtl::IgtlServer& server() const { return server_; }
 
   /** Serves connections until the io_context ends. */
   void start(NavigationOptions options);
@@ -107,7 +107,7 @@ class Navigation {
 
   using Stopping = boost::asio::awaitable<std::optional<StopAnswer>>;
 
-  void listen_to_hub();
+  void listen_to_server();
   void take(igtl::PeerId peer, const igtl::Message& message);
   void react(igtl::PeerId peer, const std::string& device, igtl::Reaction reaction);
   void enqueue(igtl::PeerId peer, const std::string& device, igtl::Command command);
@@ -123,7 +123,7 @@ class Navigation {
   void announce(const char* change, const igtl::Peer& peer, const std::string& reason = "");
   bool give_role(igtl::PeerId id, igtl::Role role);
   void note_refusal(igtl::PeerId peer, const std::string& device, const std::string& reason);
-  [[nodiscard]] tl::expected<Caller, Problem> mandate_of(igtl::PeerId peer) const;
+  [[nodiscard]] tl::expected<Caller, Problem> grant_of(igtl::PeerId peer) const;
 
   boost::asio::awaitable<void> work();
   boost::asio::awaitable<void> tell_all();
@@ -139,7 +139,7 @@ class Navigation {
 
   const Context& context_;
   NavigationOptions options_;
-  igtl::IgtlServer hub_;
+  igtl::IgtlServer server_;
   std::optional<ControllerGrant> grant_;
   std::vector<std::uint32_t> orphans_; /**< proposals of controllers that were lost */
   std::deque<WaitingCommand> tasks_;

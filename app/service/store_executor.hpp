@@ -98,7 +98,7 @@ class StoreExecutor {
   /** How long somebody waits for the store before being told that it does not answer. */
   static constexpr std::chrono::milliseconds usual_timeout{5000};
 
-  /** `network` is the executor of the thread that uses the gateway; `store` must outlive it. */
+  /** `network` is the executor of the thread that uses it; `store` must outlive it. */
   StoreExecutor(boost::asio::any_io_executor network, Store& store,
                 std::chrono::milliseconds timeout = usual_timeout);
 

@@ -81,7 +81,7 @@ tl::expected<RowMajor, Problem> rigid_pose(const nlohmann::json& body, const std
 constexpr std::size_t most_targeting_changes = 50;
 
 /**
- * Notes the change that the audit's record `number` tells of: `old` and `new` in the entry's detail, by
+ * Notes the change that the audit's record `number` describes: `old` and `new` in the entry's detail, by
  * field, with `source` and `client`. A change of the reported pose alone is noted as the field's last one and
  * not listed: an imager reports many times a second.
  */

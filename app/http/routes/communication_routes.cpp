@@ -133,7 +133,7 @@ Answering CommunicationRoutes::list() const {
   for (const Broadcaster::Subscriber& subscriber : stream_.subscribers()) {
     connections.push_back(console_connection(subscriber));
   }
-  for (const igtl::Peer& peer : navigation_.hub().peers()) {
+  for (const igtl::Peer& peer : navigation_.server().peers()) {
     connections.push_back(openigtlink_connection(peer));
   }
   co_return Success{.body = std::move(connections)};
@@ -141,7 +141,7 @@ Answering CommunicationRoutes::list() const {
 
 Reply CommunicationRoutes::list_navigation() const {
   json connections = json::array();
-  for (const igtl::Peer& peer : navigation_.hub().peers()) {
+  for (const igtl::Peer& peer : navigation_.server().peers()) {
     connections.push_back(navigation_json(peer, navigation_.dialect()));
   }
   return Success{.body = std::move(connections)};
@@ -149,7 +149,7 @@ Reply CommunicationRoutes::list_navigation() const {
 
 Answering CommunicationRoutes::end_navigation(const Call& call) const {
   const std::uint32_t id = number_in(call.parameters[0]).value_or(0);
-  const auto peer = navigation_.hub().find(id);
+  const auto peer = navigation_.server().find(id);
   if (!peer) {
     co_return fail(no_navigation(call.parameters[0]));
   }
@@ -159,7 +159,7 @@ Answering CommunicationRoutes::end_navigation(const Call& call) const {
   if (!announced) {
     co_return fail(announced.error());
   }
-  if (!navigation_.hub().disconnect(id, "disconnected by " + call.caller.user)) {
+  if (!navigation_.server().disconnect(id, "disconnected by " + call.caller.user)) {
     co_return fail(no_navigation(call.parameters[0]));
   }
   co_return list_navigation();
@@ -171,7 +171,7 @@ Answering CommunicationRoutes::set_role(const Call& call) const {
   if (!role) {
     co_return fail(role.error());
   }
-  const auto peer = navigation_.hub().find(id);
+  const auto peer = navigation_.server().find(id);
   if (!peer) {
     co_return fail(no_navigation(call.parameters[0]));
   }

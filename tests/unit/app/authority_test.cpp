@@ -63,7 +63,7 @@ TEST_F(AuthorityTest, WhoeverAsksFirstHoldsItAndOthersAreNoted) {
   EXPECT_EQ(post("/api/authority/request").status, 200u);
   EXPECT_EQ(post_as(ada, "/api/authority/request").status, 202u);
   EXPECT_EQ(authority()["requests"].size(), 1u);
-  EXPECT_EQ(channel_->stops.load(), 0u) << "a wish stops nothing";
+  EXPECT_EQ(channel_->stops.load(), 0u) << "a request stops nothing";
 }
 
 TEST_F(AuthorityTest, AHandOverGoesOnlyToAnAskingSession) {

@@ -60,7 +60,7 @@ TEST_F(ControlLoopTest, ShowsTheNewestSnapshotToTheNetwork) {
   EXPECT_EQ(channel_->view.newest().snapshot.state.system.tick, snapshot_.state.system.tick);
 }
 
-TEST_F(ControlLoopTest, BringsBackTheVerdictOfAnAsk) {
+TEST_F(ControlLoopTest, BringsBackTheVerdictOfACall) {
   command(ask(7, ILK_REQUEST_ENABLE));
   tick();
   ASSERT_NE(sent(ILK_REQUEST_ENABLE), nullptr);
@@ -74,7 +74,7 @@ TEST_F(ControlLoopTest, BringsBackTheVerdictOfAnAsk) {
   EXPECT_EQ(answers[0].tick, 77u);
 }
 
-TEST_F(ControlLoopTest, NeverSendsAnAskForWhichNobodyWaitsAnyMore) {
+TEST_F(ControlLoopTest, NeverSendsACallForWhichNobodyWaitsAnyMore) {
   KernelCall late = ask(7, ILK_REQUEST_RESET);
   late.deadline = std::chrono::steady_clock::now() - std::chrono::seconds(1);
   command(late);

@@ -166,13 +166,13 @@ class HttpTest : public StoreFixture {
   asio::io_context client_{1};
   std::unique_ptr<Log> log_ = Log::start({}, LogLevel::info).value();
   std::unique_ptr<RealtimeChannel> channel_ = std::make_unique<RealtimeChannel>();
-  StoreExecutor gateway_{network_.get_executor(), store_, std::chrono::minutes(10)};
+  StoreExecutor executor_{network_.get_executor(), store_, std::chrono::minutes(10)};
   Api api_{network_.get_executor(),
            robot_,
            config_,
            *channel_,
            "",
-           gateway_,
+           executor_,
            *log_,
            Clocks{[this] { return now(); }, [this] { return steady_now(); }}};
   Server server_{network_.get_executor(), network_.get_executor(), api_, *channel_,

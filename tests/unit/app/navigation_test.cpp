@@ -18,11 +18,11 @@ class NavigationTest : public HttpTest {
     in_network([this] {
       igtl::IgtlServerOptions options;
       options.port = 0;
-      EXPECT_TRUE(api_.navigation().hub().listen(options).has_value());
+      EXPECT_TRUE(api_.navigation().server().listen(options).has_value());
       api_.navigation().start({"brp2013", false, std::nullopt});
     });
     show(test::ready_view());
-    EXPECT_TRUE(program_->connect("127.0.0.1", api_.navigation().hub().port(), soon()).has_value());
+    EXPECT_TRUE(program_->connect("127.0.0.1", api_.navigation().server().port(), soon()).has_value());
     EXPECT_EQ(ask("WHO"), "ERROR 12") << "the connection is listed by now";
   }
 
@@ -99,7 +99,7 @@ TEST_F(NavigationTest, AHomedRobotHasStartedUp) {
 TEST_F(NavigationTest, AConsoleIsToldOfConnectionsRolesAndTheirEnd) {
   auto stream = open_stream();
   igtl::Client other;
-  ASSERT_TRUE(other.connect("127.0.0.1", api_.navigation().hub().port(), soon()).has_value());
+  ASSERT_TRUE(other.connect("127.0.0.1", api_.navigation().server().port(), soon()).has_value());
   json told = stream.next_text("connection");
   while (told["connection"] != "openigtlink") {
     told = stream.next_text("connection");

@@ -20,7 +20,7 @@ class OverloadTest : public HttpTest {
       until.wait();
       return {};
     };
-    waiting_ = asio::co_spawn(network_, gateway_.run(std::move(wait)), asio::use_future);
+    waiting_ = asio::co_spawn(network_, executor_.run(std::move(wait)), asio::use_future);
   }
 
   void release_store() {

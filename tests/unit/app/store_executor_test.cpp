@@ -36,13 +36,13 @@ class StoreExecutorTest : public StoreFixture {
   }
 
   template <typename Work>
-  auto ask(StoreExecutor& gateway, Work work) {
-    return asio::co_spawn(network_, gateway.run(std::move(work)), asio::use_future);
+  auto ask(StoreExecutor& executor, Work work) {
+    return asio::co_spawn(network_, executor.run(std::move(work)), asio::use_future);
   }
 
-  void note(StoreExecutor& gateway, int number) {
-    asio::post(network_, [this, &gateway, number] {
-      gateway.note(
+  void note(StoreExecutor& executor, int number) {
+    asio::post(network_, [this, &executor, number] {
+      executor.note(
           {now(), std::nullopt, audit_actor::app, std::nullopt, AuditKind::verdict, {{"n", number}}});
     });
   }

@@ -43,18 +43,18 @@ std::size_t open_descriptors() {
 class IgtlServerTest : public testing::Test {
  protected:
   IgtlServerTest() {
-    hub_.on_open = [this](PeerId id) { opened_.push_back(id); };
-    hub_.on_message = [this](PeerId, const Message& message) { messages_.push_back(message); };
-    hub_.on_refused = [this](PeerId, const Header&, Fault fault) { refused_.push_back(fault); };
-    hub_.on_close = [this](const Peer&, const std::string& reason) { closed_.push_back(reason); };
-    hub_.read_clock = [this] { return time_; };
+    server_.on_open = [this](PeerId id) { opened_.push_back(id); };
+    server_.on_message = [this](PeerId, const Message& message) { messages_.push_back(message); };
+    server_.on_refused = [this](PeerId, const Header&, Fault fault) { refused_.push_back(fault); };
+    server_.on_close = [this](const Peer&, const std::string& reason) { closed_.push_back(reason); };
+    server_.read_clock = [this] { return time_; };
   }
 
   void start(IgtlServerOptions options = {}) {
     options.port = 0;
-    ASSERT_TRUE(hub_.listen(options).has_value());
-    asio::co_spawn(network_, hub_.accept(), asio::detached);
-    asio::co_spawn(network_, hub_.heartbeat(), asio::detached);
+    ASSERT_TRUE(server_.listen(options).has_value());
+    asio::co_spawn(network_, server_.accept(), asio::detached);
+    asio::co_spawn(network_, server_.heartbeat(), asio::detached);
   }
 
   /** False when it did not come to hold in time. */
@@ -72,7 +72,7 @@ class IgtlServerTest : public testing::Test {
   tcp::socket connect() {
     const std::size_t before = opened_.size();
     tcp::socket socket(network_);
-    socket.connect({asio::ip::make_address("127.0.0.1"), hub_.port()});
+    socket.connect({asio::ip::make_address("127.0.0.1"), server_.port()});
     EXPECT_TRUE(run_until([&] { return opened_.size() > before; }));
     return socket;
   }
@@ -106,7 +106,7 @@ class IgtlServerTest : public testing::Test {
   asio::io_context network_{1};
   /** A clock that is not put forward by what the machine is late. */
   steady_clock::time_point time_ = steady_clock::now();
-  IgtlServer hub_{network_.get_executor()};
+  IgtlServer server_{network_.get_executor()};
   std::vector<PeerId> opened_;
   std::vector<Message> messages_;
   std::vector<Fault> refused_;
@@ -119,11 +119,11 @@ TEST_F(IgtlServerTest, OthersMachinesComeOnlyWithAList) {
   IgtlServerOptions anywhere;
   anywhere.address = "0.0.0.0";
   anywhere.port = 0;
-  const auto refused = hub_.listen(anywhere);
+  const auto refused = server_.listen(anywhere);
   ASSERT_FALSE(refused.has_value());
   EXPECT_THAT(refused.error(), HasSubstr("list the addresses"));
   anywhere.allow = {"127.0.0.1"};
-  EXPECT_TRUE(hub_.listen(anywhere).has_value());
+  EXPECT_TRUE(server_.listen(anywhere).has_value());
   IgtlServer other(network_.get_executor());
   EXPECT_THAT(other.listen({"nowhere", 0, {}, 0ms}).error(), HasSubstr("no address"));
   EXPECT_THAT(other.listen({"127.0.0.1", 0, {"x"}, 0ms}).error(), HasSubstr("\"x\""));
@@ -134,7 +134,7 @@ TEST_F(IgtlServerTest, APeerThatIsNotOnTheListIsTurnedAway) {
   options.allow = {"127.0.0.9"};
   start(options);
   tcp::socket socket(network_);
-  socket.connect({asio::ip::make_address("127.0.0.1"), hub_.port()});
+  socket.connect({asio::ip::make_address("127.0.0.1"), server_.port()});
   socket.non_blocking(true);
   error_code error;
   EXPECT_TRUE(run_until([&] {
@@ -154,22 +154,22 @@ TEST_F(IgtlServerTest, APortInUseIsNamedAndCanBeTakenOnceItIsFree) {
     ASSERT_TRUE(first.listen(options).has_value());
     port = first.port();
     options.port = port;
-    EXPECT_THAT(hub_.listen(options).error(), HasSubstr(std::to_string(port)));
+    EXPECT_THAT(server_.listen(options).error(), HasSubstr(std::to_string(port)));
   }
   IgtlServerOptions again;
   again.port = port;
-  EXPECT_TRUE(hub_.listen(again).has_value()) << "after the first one is gone";
+  EXPECT_TRUE(server_.listen(again).has_value()) << "after the first one is gone";
 }
 
 TEST_F(IgtlServerTest, AnswersInTheVersionThatThePeerHasShown) {
   start();
   auto socket = connect();
   FrameReader reader;
-  hub_.reply(opened_[0], "mode", Text{"one"});
+  server_.reply(opened_[0], "mode", Text{"one"});
   EXPECT_EQ(receive(socket, reader).version, 1);
   send(socket, write_frame(2, "STRING", "MODE", 0, test::text_body("manual")));
   ASSERT_TRUE(run_until([&] { return messages_.size() == 1; }));
-  hub_.reply(opened_[0], "mode", Text{"two"});
+  server_.reply(opened_[0], "mode", Text{"two"});
   const Message second = receive(socket, reader);
   EXPECT_EQ(second.version, 2);
   EXPECT_EQ(second.body, Body(Text{"two"}));
@@ -232,8 +232,8 @@ TEST_F(IgtlServerTest, APeerThatBreaksTheFramingIsClosedAndOthersStay) {
 
 TEST_F(IgtlServerTest, ThePeerThatBreaksTheFramingIsToldWhyThoughItSendsOn) {
   start();
-  hub_.on_refused = [this](PeerId peer, const Header& header, const FaultAt& fault) {
-    hub_.reply(peer, header.device, Status{status_of(fault), 0, "FORMAT", header.type});
+  server_.on_refused = [this](PeerId peer, const Header& header, const FaultAt& fault) {
+    server_.reply(peer, header.device, Status{status_of(fault), 0, "FORMAT", header.type});
   };
   auto socket = connect();
   using test::operator+;
@@ -259,7 +259,7 @@ TEST_F(IgtlServerTest, ARefusedMessageShowsTheVersionOfItsPeerToo) {
   auto socket = connect();
   send(socket, write_frame(2, "VIDEO", "camera", 0, ByteVector(9)));
   ASSERT_TRUE(run_until([&] { return !refused_.empty(); }));
-  hub_.reply(opened_[0], "mode", Text{"one"});
+  server_.reply(opened_[0], "mode", Text{"one"});
   FrameReader reader;
   EXPECT_EQ(receive(socket, reader).version, 2);
 }
@@ -273,7 +273,7 @@ TEST_F(IgtlServerTest, WhatIsRefusedIsCountedAndTheNextMessageRead) {
                    hello);
   ASSERT_TRUE(run_until([&] { return messages_.size() == 1; }));
   EXPECT_THAT(refused_, testing::ElementsAre(Fault::checksum, Fault::unknown_type, Fault::inner_length));
-  const Peer peer = hub_.find(opened_[0]).value();
+  const Peer peer = server_.find(opened_[0]).value();
   EXPECT_EQ(peer.refused, 3u);
   EXPECT_EQ(peer.received, 1u);
   EXPECT_EQ(peer.heard.at("MODE").type, "STRING");
@@ -284,8 +284,8 @@ TEST_F(IgtlServerTest, OfAStreamTheNewestIsSentAndOfRepliesAll) {
   start();
   auto socket = connect();
   for (int i = 0; i < 50; ++i) {
-    hub_.show(opened_[0], "mode", Text{std::to_string(i)});
-    hub_.reply(opened_[0], "answer", Text{std::to_string(i)});
+    server_.show(opened_[0], "mode", Text{std::to_string(i)});
+    server_.reply(opened_[0], "answer", Text{std::to_string(i)});
   }
   FrameReader reader;
   for (int i = 0; i < 50; ++i) {
@@ -294,7 +294,7 @@ TEST_F(IgtlServerTest, OfAStreamTheNewestIsSentAndOfRepliesAll) {
   const Message newest = receive(socket, reader);
   EXPECT_EQ(newest.device, "mode");
   EXPECT_EQ(newest.body, Body(Text{"49"}));
-  EXPECT_EQ(hub_.find(opened_[0])->replaced, 49u);
+  EXPECT_EQ(server_.find(opened_[0])->replaced, 49u);
 }
 
 TEST_F(IgtlServerTest, APeerThatNeverReadsIsDroppedAndTakesNoMemoryMeanwhile) {
@@ -302,7 +302,7 @@ TEST_F(IgtlServerTest, APeerThatNeverReadsIsDroppedAndTakesNoMemoryMeanwhile) {
   auto socket = connect();
   const std::string long_text(60000, 'x');
   EXPECT_TRUE(run_until([&] {
-    hub_.show(opened_[0], "mode", Text{long_text});
+    server_.show(opened_[0], "mode", Text{long_text});
     return !closed_.empty();
   }));
   EXPECT_THAT(closed_.at(0), HasSubstr("does not take"));
@@ -312,7 +312,7 @@ TEST_F(IgtlServerTest, APeerWhoseRepliesPileUpIsDropped) {
   start();
   auto socket = connect();
   for (std::size_t i = 0; i <= IgtlServer::backlog; ++i) {
-    hub_.reply(opened_[0], "answer", Text{"x"});
+    server_.reply(opened_[0], "answer", Text{"x"});
   }
   EXPECT_TRUE(is_closed_within(1s));
   EXPECT_THAT(closed_.at(0), HasSubstr("behind"));
@@ -324,13 +324,13 @@ TEST_F(IgtlServerTest, AControllerThatIsSilentIsLostWithin300MsAndAnObserverIsNo
   start(options);
   auto controller = connect();
   auto observer = connect();
-  ASSERT_TRUE(hub_.set_role(opened_[0], Role::controller));
+  ASSERT_TRUE(server_.set_role(opened_[0], Role::controller));
   const auto begun = time_;
   ASSERT_TRUE(is_closed_within(2s));
   EXPECT_GE(time_ - begun, 200ms);
   EXPECT_LE(time_ - begun, 300ms);
   EXPECT_THAT(closed_.at(0), HasSubstr("silent"));
-  EXPECT_TRUE(hub_.find(opened_[1]).has_value());
+  EXPECT_TRUE(server_.find(opened_[1]).has_value());
 }
 
 TEST_F(IgtlServerTest, AControllerThatKeepsSendingStays) {
@@ -338,7 +338,7 @@ TEST_F(IgtlServerTest, AControllerThatKeepsSendingStays) {
   options.controller_silence = 200ms;
   start(options);
   auto socket = connect();
-  hub_.set_role(opened_[0], Role::controller);
+  server_.set_role(opened_[0], Role::controller);
   asio::steady_timer timer(network_);
   const std::function<void()> heartbeat = [&] {
     send(socket, write_frame(1, "GET_STATUS", "", 0, {}));
@@ -377,10 +377,10 @@ class Pulse {
 
 TEST_F(IgtlServerTest, AControllerThatHadSentRegularlyIsLostWithin300MsOfItsSilenceWhileSomethingMayMove) {
   bool moves = false;
-  hub_.is_in_motion = [&] { return moves; };
+  server_.is_in_motion = [&] { return moves; };
   start();
   auto controller = connect();
-  hub_.set_role(opened_[0], Role::controller);
+  server_.set_role(opened_[0], Role::controller);
   {
     const Pulse pulse(controller, network_);
     ASSERT_FALSE(is_closed_within(IgtlServer::heartbeat_proof + 300ms));
@@ -396,10 +396,10 @@ TEST_F(IgtlServerTest, AControllerThatHadSentRegularlyIsLostWithin300MsOfItsSile
 
 TEST_F(IgtlServerTest, SilenceOfARegularControllerIsNoLossAtRestNorLaterWhenSomethingMoves) {
   bool moves = false;
-  hub_.is_in_motion = [&] { return moves; };
+  server_.is_in_motion = [&] { return moves; };
   start();
   auto controller = connect();
-  hub_.set_role(opened_[0], Role::controller);
+  server_.set_role(opened_[0], Role::controller);
   {
     const Pulse pulse(controller, network_);
     ASSERT_FALSE(is_closed_within(IgtlServer::heartbeat_proof + 300ms));
@@ -410,10 +410,10 @@ TEST_F(IgtlServerTest, SilenceOfARegularControllerIsNoLossAtRestNorLaterWhenSome
 }
 
 TEST_F(IgtlServerTest, AControllerThatSendsNowAndThenIsNotLostBySilence) {
-  hub_.is_in_motion = [] { return true; };
+  server_.is_in_motion = [] { return true; };
   start();
   auto controller = connect();
-  hub_.set_role(opened_[0], Role::controller);
+  server_.set_role(opened_[0], Role::controller);
   for (int burst = 0; burst < 3; ++burst) {
     const Pulse pulse(controller, network_);
     ASSERT_FALSE(is_closed_within(200ms));
@@ -436,7 +436,7 @@ TEST_F(IgtlServerTest, APeerThatClosesWithinAMessageIsGoneAtOnceWhateverWasToCom
     ASSERT_TRUE(run_until([&] { return closed_.size() == i + 1; })) << i;
     EXPECT_LE(time_ - begun, 500ms) << i;
   }
-  EXPECT_TRUE(hub_.empty());
+  EXPECT_TRUE(server_.empty());
   EXPECT_LE(network_.run_for(200ms), 40u) << "nothing goes round for the rest of a message";
   auto next = connect();
   send(next, hello);
@@ -450,11 +450,11 @@ TEST_F(IgtlServerTest, AProgramThatListensIsNotConnectedToBeyondTheCapacity) {
   for (std::size_t i = 0; i < IgtlServer::capacity; ++i) {
     peers.push_back(connect());
   }
-  asio::co_spawn(network_, hub_.keep_connected(listening.local_endpoint(), 20ms), asio::detached);
-  EXPECT_FALSE(run_until([&] { return hub_.peers().size() > IgtlServer::capacity; }, 200ms));
+  asio::co_spawn(network_, server_.keep_connected(listening.local_endpoint(), 20ms), asio::detached);
+  EXPECT_FALSE(run_until([&] { return server_.peers().size() > IgtlServer::capacity; }, 200ms));
   peers.pop_back();
   EXPECT_TRUE(run_until([&] { return opened_.size() == IgtlServer::capacity + 1; })) << "a place is free";
-  EXPECT_EQ(hub_.peers().size(), IgtlServer::capacity);
+  EXPECT_EQ(server_.peers().size(), IgtlServer::capacity);
 }
 
 TEST_F(IgtlServerTest, ItsEndIsNoticedAtOnce) {
@@ -464,7 +464,7 @@ TEST_F(IgtlServerTest, ItsEndIsNoticedAtOnce) {
   const auto begun = time_;
   ASSERT_TRUE(is_closed_within(1s));
   EXPECT_LE(time_ - begun, 100ms);
-  EXPECT_TRUE(hub_.empty());
+  EXPECT_TRUE(server_.empty());
 }
 
 TEST_F(IgtlServerTest, NoMoreThanItsCapacityAreServedAndAPlaceIsFreeAgain) {
@@ -474,7 +474,7 @@ TEST_F(IgtlServerTest, NoMoreThanItsCapacityAreServedAndAPlaceIsFreeAgain) {
     peers.push_back(connect());
   }
   tcp::socket one_more(network_);
-  one_more.connect({asio::ip::make_address("127.0.0.1"), hub_.port()});
+  one_more.connect({asio::ip::make_address("127.0.0.1"), server_.port()});
   one_more.non_blocking(true);
   error_code error;
   EXPECT_TRUE(run_until([&] {
@@ -482,10 +482,10 @@ TEST_F(IgtlServerTest, NoMoreThanItsCapacityAreServedAndAPlaceIsFreeAgain) {
     one_more.read_some(asio::buffer(byte), error);
     return error == asio::error::eof;
   }));
-  EXPECT_EQ(hub_.peers().size(), IgtlServer::capacity);
-  ASSERT_TRUE(hub_.disconnect(opened_[3], "for a test"));
+  EXPECT_EQ(server_.peers().size(), IgtlServer::capacity);
+  ASSERT_TRUE(server_.disconnect(opened_[3], "for a test"));
   ASSERT_TRUE(is_closed_within(1s));
-  EXPECT_FALSE(hub_.disconnect(opened_[3], "again"));
+  EXPECT_FALSE(server_.disconnect(opened_[3], "again"));
   connect();
 }
 
@@ -521,7 +521,7 @@ TEST_F(IgtlServerTest, WhoSendsTooMuchIsReadLater) {
 class IgtlServerAndLibraryTest : public IgtlServerTest {
  protected:
   void run_beside() {
-    hub_.read_clock = steady_clock::now;
+    server_.read_clock = steady_clock::now;
     thread_ = std::jthread([this](const std::stop_token& stop) {
       while (!stop.stop_requested()) {
         network_.run_one_for(5ms);
@@ -555,12 +555,12 @@ typename LibraryMessage::Pointer receive_with_library(::igtl::Socket& socket) {
 
 TEST_F(IgtlServerAndLibraryTest, APeerOnDebiansLibraryIsUnderstoodAndUnderstands) {
   start();
-  hub_.on_message = [this](PeerId id, const Message& message) {
-    hub_.reply(id, "ECHO_" + message.device, message.body);
+  server_.on_message = [this](PeerId id, const Message& message) {
+    server_.reply(id, "ECHO_" + message.device, message.body);
   };
   run_beside();
   const auto client = ::igtl::ClientSocket::New();
-  ASSERT_EQ(client->ConnectToServer("127.0.0.1", hub_.port()), 0);
+  ASSERT_EQ(client->ConnectToServer("127.0.0.1", server_.port()), 0);
   const auto sent = ::igtl::TransformMessage::New();
   sent->SetDeviceName("REGISTRATION");
   ::igtl::Matrix4x4 matrix{{0, -1, 0, 1.5f}, {1, 0, 0, -2.25f}, {0, 0, 1, 3}, {0, 0, 0, 1}};
@@ -589,8 +589,8 @@ TEST_F(IgtlServerAndLibraryTest, ConnectsToAPeerThatListens) {
   const auto server = ::igtl::ServerSocket::New();
   ASSERT_EQ(server->CreateServer(0), 0);
   const auto port = static_cast<std::uint16_t>(server->GetServerPort());
-  hub_.on_open = [this](PeerId id) { hub_.reply(id, "mode", Text{"manual"}); };
-  asio::co_spawn(network_, hub_.keep_connected({asio::ip::make_address("127.0.0.1"), port}, 20ms),
+  server_.on_open = [this](PeerId id) { server_.reply(id, "mode", Text{"manual"}); };
+  asio::co_spawn(network_, server_.keep_connected({asio::ip::make_address("127.0.0.1"), port}, 20ms),
                  asio::detached);
   run_beside();
   for (int visit = 0; visit < 2; ++visit) {  // the second after the first was closed
