@@ -46,10 +46,12 @@ struct BodyPart {
 /** All parts of a robot; the probe, or needle, is the last. */
 using RobotBody = std::vector<BodyPart>;
 
-/** Two sliders on one rail that must not part too far. Their positions grow to the left. */
+/** Two sliders on one rail, joined by a linkage that bounds their separation: `at_zero_mm` + left - right. */
 struct SliderPair {
   std::string_view left_role;
   std::string_view right_role;
+  double at_zero_mm; /**< separation when both stand at 0 */
+  double min_separation_mm;
   double max_separation_mm;
 };
 

@@ -43,35 +43,50 @@ std::string counts_and_unit(const Axis& axis, std::int32_t counts);
 /** A refusal in the words of the catalog's verdict. */
 Refusal verdict_refusal(std::uint32_t verdict, const std::string& where, const std::string& expected = "");
 
-// Whether homing or a path could part two sliders that carry one linkage farther than it allows.
+// Whether a motion could part two sliders that carry one linkage farther than it allows, or press it
+// together.
 //
 // The kernel looks at each axis by itself and cannot forbid it. An axis that is not homed is taken to be
 // anywhere between its soft limits; what a step does to it narrows that for the steps after it. The axes of a
 // step may race each other in any way.
 
+/** States of axes by slot, with the positions from which a motion is to begin. */
+using AxisStates = std::array<ilk_axis_t, ILK_SLOTS>;
+
+/** As the kernel reported them. */
+AxisStates states_of(const ControlView& view);
+
+/** Whether the axis in that slot is one of two linked sliders. */
+bool is_linked(const Robot& robot, std::uint32_t slot);
+
 /**
- * Judges home steps one after the other, from where the axes stand in the view: SEPARATION when one may drive
- * a slider outwards although its pair could then part farther than the linkage allows.
+ * Judges home steps one after the other, from where the axes stand: SEPARATION when one may drive a slider
+ * outwards although its pair could then part farther than the linkage allows. Steps that bring sliders
+ * together are allowed wherever they stand.
  */
-tl::expected<void, Refusal> check_separation(const Robot& robot, const ControlView& view,
+tl::expected<void, Refusal> check_separation(const Robot& robot, const AxisStates& axes,
                                              std::span<const HomeStep> steps);
 
-/**
- * Judges homed axes at rest: SEPARATION when two linked sliders stand too far apart. On a straight way
- * between two such places they never do.
- *
- * @param positions counts by slot
- */
-tl::expected<void, Refusal> check_separation(const Robot& robot,
-                                             const std::array<std::int32_t, ILK_SLOTS>& positions);
+/** Judges axes at rest: SEPARATION when two linked sliders, one of which was moved (bit n for slot n), stand
+ * too far apart or too near. On a straight way between two places where they do not they never do. */
+tl::expected<void, Refusal> check_separation(const Robot& robot, const AxisStates& axes, std::uint32_t moved);
+
+/** Judges a trajectory: SEPARATION when two linked sliders could part too far, or come too near, between two
+ * of its rows. A slider that the trajectory does not move stands at its position. */
+tl::expected<void, Refusal> check_separation(const Robot& robot, const AxisStates& axes,
+                                             const TimedTrajectory& trajectory);
 
 /**
- * Judges a trajectory: SEPARATION when two linked sliders could part too far between two of its rows. A
- * slider that the trajectory does not move stands at its position.
+ * Judges a move of one axis: SEPARATION when it would lead beyond the linkage; one that leads back to where
+ * the linkage allows it may always be made. An axis that is not homed is led by eye, and passes.
+ *
+ * @param headed targets of the other axes that may be on their way
  */
-tl::expected<void, Refusal> check_separation(const Robot& robot,
-                                             const std::array<std::int32_t, ILK_SLOTS>& positions,
-                                             const TimedTrajectory& trajectory);
+tl::expected<void, Refusal> check_separation(const Robot& robot, const AxisStates& axes,
+                                             std::span<const AxisCounts> headed, const AxisCounts& move);
+
+/** How far a move of one axis may go on the way to its target; the target where it may not go at all. */
+std::int32_t linked_end(const Robot& robot, const AxisStates& axes, const AxisCounts& move);
 
 // What a request for homing means for this robot, and whether it may be granted now.
 

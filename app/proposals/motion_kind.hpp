@@ -23,6 +23,8 @@ struct Scene {
   const Robot& robot;
   const ilk_config_t& config; /**< of the app's robot file */
   const ControlView& view;    /**< the newest */
+  /** Targets of moves that were approved and have not ended. */
+  std::vector<AxisCounts> headed;
 };
 
 /** What differs from kind to kind in the words about a proposal, each a sentence, or what follows in one. */

@@ -81,6 +81,16 @@ tl::expected<void, Refusal> MotionRegistry::check_alone() const {
   return {};
 }
 
+std::vector<AxisCounts> MotionRegistry::headed() const {
+  std::vector<AxisCounts> targets;
+  for (const Proposal& each : registry_) {
+    if (const MoveTask* move = each.work<MoveTask>(); move != nullptr && is_approved(each.state)) {
+      targets.push_back({move->slot, move->target_counts});
+    }
+  }
+  return targets;
+}
+
 /** From where the axes are now. Keeps what the checks found and against what; refuses the proposal when one
  * failed. */
 tl::expected<void, Refusal> MotionRegistry::check(Proposal& proposal, const ControlView& view) {
@@ -92,7 +102,7 @@ tl::expected<void, Refusal> MotionRegistry::check(Proposal& proposal, const Cont
   if (kind.yields()) {
     checks.make(CheckName::other_motion, [&] { return check_alone(); });
   }
-  kind.check({robot_, config_, view}, proposal, checks);
+  kind.check({robot_, config_, view, headed()}, proposal, checks);
   proposal.checks = checks.results();
   proposal.checked_against = std::make_shared<const ilk_snapshot_t>(view.snapshot);
   return checks.outcome().map_error([&](const Refusal& refusal) { return refuse(proposal, refusal); });
@@ -268,7 +278,7 @@ void MotionRegistry::follow(const TaskStatus& status, const ControlView& view) {
   if (same ? proposal->detail.ends_with(detail) : !may_become(proposal->state, state)) {
     return;
   }
-  kind_of(proposal->task->work).follow({robot_, config_, view}, status, *proposal);
+  kind_of(proposal->task->work).follow({robot_, config_, view, headed()}, status, *proposal);
   become(*proposal, state, std::move(detail), verdict_of(status));
 }
 

@@ -123,6 +123,7 @@ class MotionRegistry {
   tl::expected<Proposal, Refusal> approve(Proposal& proposal, std::chrono::steady_clock::time_point asked);
   [[nodiscard]] tl::expected<void, Refusal> check_current(const Task& task) const;
   [[nodiscard]] tl::expected<void, Refusal> check_alone() const;
+  [[nodiscard]] std::vector<AxisCounts> headed() const;
   tl::expected<void, Refusal> check(Proposal& proposal, const ControlView& view);
   tl::expected<Proposal*, Refusal> waiting(std::uint32_t id);
   [[nodiscard]] bool approves(TaskSource source) const;

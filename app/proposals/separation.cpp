@@ -1,73 +1,73 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "kinematics/kinematics.hpp"
+#include "motion/setpoint_range.hpp"
 #include "proposals/checks.hpp"
 
 namespace interlock {
 namespace {
 
-/** Where a slider may stand: mm from the middle of its rail, outwards is up on either side. */
-struct Reach {
-  double inner_mm = 0.0;
-  double outer_mm = 0.0;
-};
-
 /** What a step does to a slider, at worst. */
-struct Sweep {
-  bool outwards = false; /**< it may drive the slider outwards */
-  Reach after;           /**< once the step has ended well */
+struct Effect {
+  bool outwards = false;  /**< it may drive the slider outwards */
+  PositionRange after_mm; /**< once the step has ended well */
 };
 
+/** One slider; all mm are outwards, away from the other slider of its pair. */
 class Slider {
  public:
   Slider(const Axis& axis, bool upwards_is_outwards, const ilk_axis_t& state)
-      : axis_(axis), per_mm_(upwards_is_outwards ? axis.counts_per_unit : -axis.counts_per_unit) {
-    const SoftLimits& limits = axis.soft_limits;
-    const double ends_mm[] = {to_mm(limits.min_counts), to_mm(limits.max_counts)};
-    range_ = {std::min(ends_mm[0], ends_mm[1]), std::max(ends_mm[0], ends_mm[1])};
-    reach_ = state.homed != 0 ? at(state.position_counts) : range_;
+      : axis_(axis),
+        counts_per_mm_(upwards_is_outwards ? axis.counts_per_unit : -axis.counts_per_unit),
+        is_homed_(state.homed != 0),
+        range_mm_{to_mm(axis.soft_limits.min_counts), to_mm(axis.soft_limits.min_counts)} {
+    widen(range_mm_, to_mm(axis.soft_limits.max_counts));
+    reach_mm_ = is_homed_ ? at(state.position_counts) : range_mm_;
   }
 
   [[nodiscard]] const Axis& axis() const { return axis_; }
+  [[nodiscard]] bool is_homed() const { return is_homed_; }
+  [[nodiscard]] double to_mm(std::int32_t counts) const { return counts / counts_per_mm_; }
+  [[nodiscard]] double to_counts(double mm) const { return mm * counts_per_mm_; }
 
-  /** How far outwards that position is. */
-  [[nodiscard]] double outwards_mm(std::int32_t counts) const { return to_mm(counts); }
-
-  /** Motion in mm as motion outwards. */
+  /** Motion in mm of the axis as motion outwards. */
   [[nodiscard]] CubicSegment outwards(CubicSegment motion) const {
-    return per_mm_ > 0.0 ? motion : CubicSegment{-motion.start, -motion.jerk};
+    return counts_per_mm_ > 0.0 ? motion : CubicSegment{-motion.start, -motion.jerk};
   }
 
-  [[nodiscard]] const Reach& reach() const { return reach_; }
-  void arrive(const Reach& reach) { reach_ = reach; }
+  /** Where it may stand. */
+  [[nodiscard]] const PositionRange& reach_mm() const { return reach_mm_; }
+  void arrive(const PositionRange& reach_mm) { reach_mm_ = reach_mm; }
+  void may_reach(std::int32_t counts) { widen(reach_mm_, to_mm(counts)); }
 
-  [[nodiscard]] Sweep sweep_of(const HomeStep& step) const {
+  [[nodiscard]] Effect effect_of(const HomeStep& step) const {
     if (std::find(step.home.begin(), step.home.end(), axis_.slot) != step.home.end()) {
-      return sweep_to(axis_.home_offset_counts);
+      return going_to(axis_.home_offset_counts);
     }
     if (const AxisCounts* move = travel_in(step.move)) {
-      return sweep_to(move->counts);
+      return going_to(move->counts);
     }
     if (const AxisCounts* nudge = travel_in(step.nudge)) {
       const double by_mm = to_mm(nudge->counts);
-      return {by_mm > 0.0, {within_range(reach_.inner_mm + by_mm), within_range(reach_.outer_mm + by_mm)}};
+      return {by_mm > 0.0, {within_range(reach_mm_.lowest + by_mm), within_range(reach_mm_.highest + by_mm)}};
     }
-    return {false, reach_};
+    return {false, reach_mm_};
   }
 
  private:
-  [[nodiscard]] double to_mm(std::int32_t counts) const { return counts / per_mm_; }
-  [[nodiscard]] Reach at(std::int32_t counts) const { return {to_mm(counts), to_mm(counts)}; }
-  [[nodiscard]] Sweep sweep_to(std::int32_t counts) const {
-    return {to_mm(counts) > reach_.inner_mm, at(counts)};
+  [[nodiscard]] PositionRange at(std::int32_t counts) const { return {to_mm(counts), to_mm(counts)}; }
+  [[nodiscard]] Effect going_to(std::int32_t counts) const {
+    return {to_mm(counts) > reach_mm_.lowest, at(counts)};
   }
   [[nodiscard]] double within_range(double mm) const {
-    return std::clamp(mm, range_.inner_mm, range_.outer_mm);
+    return std::clamp(mm, range_mm_.lowest, range_mm_.highest);
   }
   [[nodiscard]] const AxisCounts* travel_in(const std::vector<AxisCounts>& travels) const {
     const auto found = std::find_if(travels.begin(), travels.end(),
@@ -76,28 +76,32 @@ class Slider {
   }
 
   const Axis& axis_;
-  double per_mm_; /**< counts, signed */
-  Reach range_;
-  Reach reach_;
+  double counts_per_mm_; /**< signed */
+  bool is_homed_;
+  PositionRange range_mm_;
+  PositionRange reach_mm_;
 };
 
 struct Pair {
   Slider left;
   Slider right;
-  double most_mm;
+  SliderPair bounds;
+
+  /** Separations of sliders in two reaches. */
+  [[nodiscard]] PositionRange separation_mm(const PositionRange& one, const PositionRange& other) const {
+    return {bounds.at_zero_mm + one.lowest + other.lowest, bounds.at_zero_mm + one.highest + other.highest};
+  }
 };
 
-/** The pairs, each slider in the state in which `state_of(slot)` says that it is. */
-template <typename StateOf>
-std::vector<Pair> pairs_of(const Robot& robot, const StateOf& state_of) {
+std::vector<Pair> pairs_of(const Robot& robot, const AxisStates& axes) {
   std::vector<Pair> pairs;
   const auto slider = [&](std::string_view role, bool upwards_is_outwards) {
     const Axis& axis = *robot.with_role(role);
-    return Slider(axis, upwards_is_outwards, state_of(axis.slot));
+    return Slider(axis, upwards_is_outwards, axes[axis.slot]);
   };
   if (robot.kinematics) {
     for (const SliderPair& pair : robot.kinematics->slider_pairs()) {
-      pairs.push_back({slider(pair.left_role, true), slider(pair.right_role, false), pair.max_separation_mm});
+      pairs.push_back({slider(pair.left_role, true), slider(pair.right_role, false), pair});
     }
   }
   return pairs;
@@ -109,78 +113,105 @@ std::string in_mm(double mm) {
   return text;
 }
 
-Refusal too_far(const Pair& pair, double separation_mm) {
-  const std::string left = pair.left.axis().name;
-  const std::string right = pair.right.axis().name;
+/** `separation_mm` is beyond one of the bounds. */
+Refusal beyond_linkage(const Pair& pair, double separation_mm) {
+  const Axis& left = pair.left.axis();
+  const Axis& right = pair.right.axis();
+  const bool is_too_far = separation_mm > pair.bounds.max_separation_mm;
+  const bool is_known = pair.left.is_homed() && pair.right.is_homed();
+  const std::string bounds =
+      "from " + in_mm(pair.bounds.min_separation_mm) + " to " + in_mm(pair.bounds.max_separation_mm);
   return {"SEPARATION",
-          left + " and " + right + " could part by " + in_mm(separation_mm) +
-              "; one that is not homed may be anywhere in its range.",
-          "a separation of at most " + in_mm(pair.most_mm),
-          "Run all home steps, which make room first; once homed, move the other slider inwards."};
+          left.name + " and " + right.name + (is_known ? " would" : " could") +
+              (is_too_far ? " part by " : " come as near as ") + in_mm(separation_mm) +
+              (is_known ? "." : "; one that is not homed may be anywhere in its range."),
+          "a separation " + bounds,
+          is_known ? "Choose targets between which the linkage is not " +
+                         std::string(is_too_far ? "stretched." : "pressed together.")
+                   : "Run all home steps, or home the other slider first (Set Home where it has no switch)."};
 }
 
-Refusal parted(const Pair& pair, double separation_mm) {
-  return {"SEPARATION",
-          pair.left.axis().name + " and " + pair.right.axis().name + " would part by " +
-              in_mm(separation_mm) + ".",
-          "a separation of at most " + in_mm(pair.most_mm), "Choose targets that are closer together."};
+tl::expected<void, Refusal> check_within(const Pair& pair, const PositionRange& separation_mm) {
+  if (separation_mm.highest > pair.bounds.max_separation_mm) {
+    return tl::make_unexpected(beyond_linkage(pair, separation_mm.highest));
+  }
+  if (separation_mm.lowest < pair.bounds.min_separation_mm) {
+    return tl::make_unexpected(beyond_linkage(pair, separation_mm.lowest));
+  }
+  return {};
 }
 
-using Positions = std::array<std::int32_t, ILK_SLOTS>;
-
-std::vector<Pair> pairs_at(const Robot& robot, const Positions& positions) {
-  return pairs_of(robot, [&positions](std::uint32_t slot) {
-    ilk_axis_t state{};
-    state.homed = 1;
-    state.position_counts = positions[slot];
-    return state;
-  });
-}
-
-/** How a slider moves outwards from one row to the next. */
-CubicSegment outwards(const Slider& slider, const Positions& positions, const TimedTrajectory& trajectory,
-                      std::size_t row) {
+/** How a slider moves outwards from one row to the next; nothing when the trajectory does not move it. */
+std::optional<CubicSegment> motion_of(const Slider& slider, const TimedTrajectory& trajectory,
+                                      std::size_t row) {
   const auto& axes = trajectory.axes();
   const auto moved = std::find_if(axes.begin(), axes.end(), [&slider](const TrajectoryAxis& axis) {
     return axis.slot == slider.axis().slot;
   });
   if (moved == axes.end()) {
-    return {{slider.outwards_mm(positions[slider.axis().slot]), 0.0, 0.0}, 0.0};
+    return std::nullopt;
   }
   return slider.outwards(trajectory.piece(static_cast<std::size_t>(moved - axes.begin()), row));
 }
 
-/** The farthest that a pair parts from one row to the next. Two cubics of the same time add to one. */
-double farthest_mm(const Pair& pair, const Positions& positions, const TimedTrajectory& trajectory,
-                   std::size_t row) {
-  const CubicSegment left = outwards(pair.left, positions, trajectory, row);
-  const CubicSegment right = outwards(pair.right, positions, trajectory, row);
-  const CubicSegment apart{left.start + right.start, left.jerk + right.jerk};
-  PositionRange range{apart.start.position, apart.start.position};
-  apart.widen(range, trajectory.step_s(row));
-  return range.highest;
+/** Judges what a trajectory does to a pair from one row to the next. Two cubics of the same time add to one.
+ */
+tl::expected<void, Refusal> check_row(const Pair& pair, const TimedTrajectory& trajectory, std::size_t row) {
+  const auto left = motion_of(pair.left, trajectory, row);
+  const auto right = motion_of(pair.right, trajectory, row);
+  if (!left && !right) {
+    return {};
+  }
+  const CubicSegment one = left.value_or(CubicSegment{});
+  const CubicSegment other = right.value_or(CubicSegment{});
+  const CubicSegment both{one.start + other.start, one.jerk + other.jerk};
+  PositionRange moved{both.start.position, both.start.position};
+  both.widen(moved, trajectory.step_s(row));
+  const PositionRange none;
+  const PositionRange rest =
+      pair.separation_mm(left ? none : pair.left.reach_mm(), right ? none : pair.right.reach_mm());
+  return check_within(pair, {rest.lowest + moved.lowest, rest.highest + moved.highest});
 }
 
-/** A step that only brings sliders together is allowed wherever they stand. */
 tl::expected<void, Refusal> run(Pair& pair, const HomeStep& step) {
-  const Sweep left = pair.left.sweep_of(step);
-  const Sweep right = pair.right.sweep_of(step);
-  const double separation_mm = std::max(pair.left.reach().outer_mm, left.after.outer_mm) +
-                               std::max(pair.right.reach().outer_mm, right.after.outer_mm);
-  if ((left.outwards || right.outwards) && separation_mm > pair.most_mm) {
-    return tl::make_unexpected(too_far(pair, separation_mm));
+  const Effect left = pair.left.effect_of(step);
+  const Effect right = pair.right.effect_of(step);
+  const double separation_mm = pair.bounds.at_zero_mm +
+                               std::max(pair.left.reach_mm().highest, left.after_mm.highest) +
+                               std::max(pair.right.reach_mm().highest, right.after_mm.highest);
+  if ((left.outwards || right.outwards) && separation_mm > pair.bounds.max_separation_mm) {
+    return tl::make_unexpected(beyond_linkage(pair, separation_mm));
   }
-  pair.left.arrive(left.after);
-  pair.right.arrive(right.after);
+  pair.left.arrive(left.after_mm);
+  pair.right.arrive(right.after_mm);
   return {};
+}
+
+/** The slider of that slot, and the other one. */
+struct Sides {
+  const Slider* slider = nullptr;
+  Slider* other = nullptr;
+};
+
+Sides sides_of(Pair& pair, std::uint32_t slot) {
+  if (pair.left.axis().slot == slot) {
+    return {&pair.left, &pair.right};
+  }
+  return pair.right.axis().slot == slot ? Sides{&pair.right, &pair.left} : Sides{};
 }
 
 }  // namespace
 
-tl::expected<void, Refusal> check_separation(const Robot& robot, const ControlView& view,
+bool is_linked(const Robot& robot, std::uint32_t slot) {
+  auto pairs = pairs_of(robot, {});
+  return std::ranges::any_of(pairs, [slot](Pair& pair) { return sides_of(pair, slot).slider != nullptr; });
+}
+
+AxisStates states_of(const ControlView& view) { return std::to_array(view.snapshot.state.axis); }
+
+tl::expected<void, Refusal> check_separation(const Robot& robot, const AxisStates& axes,
                                              std::span<const HomeStep> steps) {
-  const auto state_of = [&view](std::uint32_t slot) { return view.snapshot.state.axis[slot]; };
-  for (Pair& pair : pairs_of(robot, state_of)) {
+  for (Pair& pair : pairs_of(robot, axes)) {
     for (const HomeStep& step : steps) {
       if (auto stays = run(pair, step); !stays) {
         return stays;
@@ -190,29 +221,74 @@ tl::expected<void, Refusal> check_separation(const Robot& robot, const ControlVi
   return {};
 }
 
-tl::expected<void, Refusal> check_separation(const Robot& robot, const Positions& positions) {
-  for (const Pair& pair : pairs_at(robot, positions)) {
-    const double separation_mm = pair.left.reach().outer_mm + pair.right.reach().outer_mm;
-    if (separation_mm > pair.most_mm) {
-      return tl::make_unexpected(parted(pair, separation_mm));
+tl::expected<void, Refusal> check_separation(const Robot& robot, const AxisStates& axes,
+                                             std::uint32_t moved) {
+  for (const Pair& pair : pairs_of(robot, axes)) {
+    const bool is_moved = ((moved >> pair.left.axis().slot | moved >> pair.right.axis().slot) & 1u) != 0;
+    const PositionRange separation = pair.separation_mm(pair.left.reach_mm(), pair.right.reach_mm());
+    if (auto stays = check_within(pair, separation); is_moved && !stays) {
+      return stays;
     }
   }
   return {};
 }
 
-tl::expected<void, Refusal> check_separation(const Robot& robot, const Positions& positions,
+tl::expected<void, Refusal> check_separation(const Robot& robot, const AxisStates& axes,
                                              const TimedTrajectory& trajectory) {
-  for (const Pair& pair : pairs_at(robot, positions)) {
+  for (const Pair& pair : pairs_of(robot, axes)) {
     for (std::size_t row = 0; row < trajectory.rows(); ++row) {
-      const double separation_mm = farthest_mm(pair, positions, trajectory, row);
-      if (separation_mm > pair.most_mm) {
-        Refusal refusal = parted(pair, separation_mm);
-        refusal.detail = "After row " + std::to_string(row + 1) + ": " + refusal.detail;
-        return tl::make_unexpected(std::move(refusal));
+      if (auto stays = check_row(pair, trajectory, row); !stays) {
+        stays.error().detail = "After row " + std::to_string(row + 1) + ": " + stays.error().detail;
+        return stays;
       }
     }
   }
   return {};
+}
+
+tl::expected<void, Refusal> check_separation(const Robot& robot, const AxisStates& axes,
+                                             std::span<const AxisCounts> headed, const AxisCounts& move) {
+  for (Pair& pair : pairs_of(robot, axes)) {
+    const auto [slider, other] = sides_of(pair, move.slot);
+    if (slider == nullptr || !slider->is_homed()) {
+      continue;
+    }
+    for (const AxisCounts& each : headed) {
+      if (each.slot == other->axis().slot) {
+        other->may_reach(each.counts);
+      }
+    }
+    const double target_mm = slider->to_mm(move.counts);
+    const PositionRange apart = pair.separation_mm({target_mm, target_mm}, other->reach_mm());
+    const double here_mm = slider->reach_mm().lowest;
+    if (target_mm > here_mm && apart.highest > pair.bounds.max_separation_mm) {
+      return tl::make_unexpected(beyond_linkage(pair, apart.highest));
+    }
+    if (target_mm < here_mm && apart.lowest < pair.bounds.min_separation_mm) {
+      return tl::make_unexpected(beyond_linkage(pair, apart.lowest));
+    }
+  }
+  return {};
+}
+
+std::int32_t linked_end(const Robot& robot, const AxisStates& axes, const AxisCounts& move) {
+  const std::int32_t here = axes[move.slot].position_counts;
+  std::int32_t end = move.counts;
+  for (Pair& pair : pairs_of(robot, axes)) {
+    const auto [slider, other] = sides_of(pair, move.slot);
+    if (slider == nullptr || !slider->is_homed()) {
+      continue;
+    }
+    const PositionRange& reach = other->reach_mm();
+    const SliderPair& bounds = pair.bounds;
+    const auto [low, high] =
+        std::minmax({slider->to_counts(bounds.min_separation_mm - bounds.at_zero_mm - reach.lowest),
+                     slider->to_counts(bounds.max_separation_mm - bounds.at_zero_mm - reach.highest)});
+    end = end > here ? std::min(end, saturated(std::llround(std::floor(high))))
+                     : std::max(end, saturated(std::llround(std::ceil(low))));
+  }
+  const bool leads_there = move.counts > here ? end > here : end < here;
+  return leads_there ? end : move.counts;
 }
 
 }  // namespace interlock

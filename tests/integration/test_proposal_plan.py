@@ -72,6 +72,7 @@ def test_homing_has_checks_but_nothing_to_plot(stack: StackFactory) -> None:
 def test_a_ghost_needs_homed_axes_and_says_which_are_not(stack: StackFactory) -> None:
     robot = stack()
     unlock(robot)
+    set_home(robot, "feet")
     set_home(robot, HEAD)
     enable(robot, HEAD)
     found = plan(robot, propose(robot, slot=HEAD, target=-5.0))

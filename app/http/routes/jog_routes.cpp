@@ -2,6 +2,7 @@
 
 #include "http/routes.hpp"
 #include "motion/setpoint_range.hpp"
+#include "proposals/checks.hpp"
 #include "proposals/proposal_json.hpp"
 #include "service/drafts.hpp"
 #include "service/fields.hpp"
@@ -35,7 +36,7 @@ tl::expected<JogRequest, Problem> request_in(const json& body, const Robot& robo
   return JogRequest{axis, direction == "increasing"};
 }
 
-/** A move to the end of the range in that direction; RANGE where that would lead the other way. */
+/** A move as far as range and linkage allow in that direction; RANGE where that would lead the other way. */
 tl::expected<Task, Problem> task_of(const JogRequest& request, const Context& context,
                                     const std::string& author) {
   const ilk_state_t& state = context.view().snapshot.state;
@@ -48,7 +49,8 @@ tl::expected<Task, Problem> task_of(const JogRequest& request, const Context& co
         ILK_VERDICT_RANGE, request.axis->name + " stands at its end, " + counts_and_unit(*request.axis, here),
         "the other direction")));
   }
-  return Task{MoveTask{slot, end, std::nullopt, true}, author};
+  const std::int32_t allowed = linked_end(context.robot, states_of(context.view()), {slot, end});
+  return Task{MoveTask{slot, allowed, std::nullopt, true}, author};
 }
 
 Problem jog_lapsed() {

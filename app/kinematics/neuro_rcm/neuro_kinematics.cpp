@@ -36,7 +36,12 @@ double yaw_of(const Vector3d& approach) noexcept { return std::atan2(-approach.y
 
 NeuroKinematics::NeuroKinematics(const NeuroRcm& geometry, const ProbeOffsets& probe,
                                  const Trapezoid& trapezoid, double home_rise_mm) noexcept
-    : geometry_(geometry), probe_(probe), trapezoid_(trapezoid), home_rise_mm_(home_rise_mm) {}
+    : geometry_(geometry),
+      probe_(probe),
+      trapezoid_(trapezoid),
+      home_rise_mm_(home_rise_mm),
+      pairs_{{{"head", "feet", geometry.home_separation_mm, geometry.min_separation_mm,
+               geometry.max_separation_mm}}} {}
 
 KinematicsResult<NeuroKinematics> NeuroKinematics::create(const NeuroRcm& geometry,
                                                           const ProbeOffsets& probe) noexcept {

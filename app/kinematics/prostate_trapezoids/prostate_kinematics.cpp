@@ -33,8 +33,10 @@ ProstateKinematics::ProstateKinematics(const ProstateTrapezoids& geometry,
                                        const Trapezoid& trapezoid) noexcept
     : geometry_(geometry),
       trapezoid_(trapezoid),
-      pairs_{{{"back_left", "back_right", geometry.max_separation_mm},
-              {"front_left", "front_right", geometry.max_separation_mm}}} {}
+      pairs_{{{"back_left", "back_right", 0.0, trapezoid.lengths().min_separation_mm,
+               trapezoid.lengths().max_separation_mm},
+              {"front_left", "front_right", 0.0, trapezoid.lengths().min_separation_mm,
+               trapezoid.lengths().max_separation_mm}}} {}
 
 KinematicsResult<ProstateKinematics> ProstateKinematics::create(const ProstateTrapezoids& geometry) noexcept {
   return check_lengths({{"lower_height_mm", geometry.lower_height_mm},

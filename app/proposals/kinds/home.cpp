@@ -141,7 +141,7 @@ static void check_home(const Robot& robot, const ilk_config_t& config, const Con
   checks.make(CheckName::home_order, [&] { return check_moves(robot, view, plan); });
   checks.make(CheckName::separation, [&] {
     const std::vector<HomeStep> steps = steps_of(robot, plan);
-    return check_separation(robot, view, steps);
+    return check_separation(robot, states_of(view), steps);
   });
 }
 

@@ -80,11 +80,19 @@ void arrive(Positions& positions, const MoveLeg& leg) {
   }
 }
 
+std::uint32_t mask_of(const MoveLeg& leg) {
+  std::uint32_t mask = 0;
+  for (const AxisCounts& target : leg.targets) {
+    mask |= 1u << target.slot;
+  }
+  return mask;
+}
+
 /** Looks at leg after leg; knows where the axes are then. */
 class PathCheck {
  public:
   PathCheck(const Robot& robot, const ControlView& view, const PathProgram& program)
-      : robot_(robot), program_(program) {
+      : robot_(robot), view_(view), program_(program) {
     for (const Axis& axis : robot.axes) {
       start_[axis.slot] = view.snapshot.state.axis[axis.slot].position_counts;
     }
@@ -99,8 +107,12 @@ class PathCheck {
   [[nodiscard]] Checked separation() const {
     return each_leg([&](const MoveLeg& move, const TimedTrajectory* trajectory, Positions positions) {
       arrive(positions, move);
-      return check_separation(robot_, positions).and_then([&] {
-        return trajectory == nullptr ? Checked() : check_separation(robot_, positions, *trajectory);
+      AxisStates axes = states_of(view_);
+      for (const Axis& axis : robot_.axes) {
+        axes[axis.slot].position_counts = positions[axis.slot];
+      }
+      return check_separation(robot_, axes, mask_of(move)).and_then([&] {
+        return trajectory == nullptr ? Checked() : check_separation(robot_, axes, *trajectory);
       });
     });
   }
@@ -165,6 +177,7 @@ class PathCheck {
   }
 
   const Robot& robot_;
+  const ControlView& view_;
   const PathProgram& program_;
   Positions start_{};
   double duration_s_ = 0.0;

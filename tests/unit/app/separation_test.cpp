@@ -138,13 +138,102 @@ TEST_F(SeparationTest, ANudgeOutwardsCountsInFull) {
   robot.home_steps = {{"out", "Out", {}, {{back_right.slot, -25000}}, {}}};
   right_homed_at(-100.0);
   left_homed_at(187.0);
-  EXPECT_TRUE(check_separation(robot, view_, robot.home_steps));
+  EXPECT_TRUE(check_separation(robot, states_of(view_), robot.home_steps));
   homed_at("back_right", -112.0);
-  EXPECT_FALSE(check_separation(robot, view_, robot.home_steps));
+  EXPECT_FALSE(check_separation(robot, states_of(view_), robot.home_steps));
 }
 
-TEST_F(SeparationTest, ARobotWithoutSuchPairsIsNotConcerned) {
-  EXPECT_TRUE(check_separation(test::neuro(), test::ready_view(), test::neuro().home_steps));
+/** The neuro robot: separation 143 mm at home, from 75 to 146 mm; the feet's slider has no switch. */
+class NeuroSeparationTest : public testing::Test {
+ protected:
+  NeuroSeparationTest() : view_(test::ready_view()) {
+    for (const Axis& axis : test::neuro().axes) {
+      stands_at(axis.name, 0.0);
+    }
+  }
+
+  ilk_axis_t& state(const std::string& name) {
+    return view_.snapshot.state.axis[test::neuro().find(name)->slot];
+  }
+  void stands_at(const std::string& name, double unit) {
+    state(name).position_counts = *test::neuro().find(name)->to_counts(unit);
+  }
+  static AxisCounts target(const std::string& name, double mm) {
+    const Axis& axis = *test::neuro().find(name);
+    return {axis.slot, *axis.to_counts(mm)};
+  }
+
+  /** The code that refuses what is proposed; empty when it may be approved. */
+  std::string code_of(Work work) {
+    last_ = registry_.propose({std::move(work), "ann", RobotMode::manual}, view_);
+    return last_ ? "" : last_.error().code;
+  }
+  std::string move(const std::string& name, double mm) {
+    const AxisCounts to = target(name, mm);
+    return code_of(MoveTask{to.slot, to.counts, std::nullopt, false});
+  }
+  std::string path(std::vector<AxisCounts> targets) {
+    PathProgram program;
+    program.legs.emplace_back(MoveLeg{std::move(targets)});
+    return code_of(PathTask{std::make_shared<const PathProgram>(std::move(program))});
+  }
+  std::string home() { return code_of(*home_all(test::neuro())); }
+
+  ControlView view_;
+  tl::expected<Proposal, Refusal> last_;
+  MotionRegistry registry_{test::neuro(), test::neuro_config(), [](const Command&) { return true; },
+                           [] { return UtcTime{}; }};
+};
+
+TEST_F(NeuroSeparationTest, APathKeepsTheLinkageWithinItsBounds) {
+  EXPECT_EQ(path({target("head", -10.0), target("feet", -69.0)}), "SEPARATION");
+  EXPECT_THAT(last_.error().detail, HasSubstr("head and feet would part by 202.0 mm"));
+  EXPECT_THAT(last_.error().expected, HasSubstr("75.0 mm to 146.0 mm"));
+  EXPECT_EQ(path({target("head", -70.0), target("feet", -2.5)}), "");
+  EXPECT_EQ(path({target("head", -70.0), target("feet", 0.0)}), "SEPARATION") << "73 mm";
+  EXPECT_EQ(path({target("head", -70.0), target("feet", -69.0)}), "");
+}
+
+TEST_F(NeuroSeparationTest, ASliderThatIsNotHomedMayBeAnywhere) {
+  state("feet").homed = 0;
+  EXPECT_EQ(path({target("head", -40.0)}), "SEPARATION");
+  EXPECT_THAT(last_.error().next_step, HasSubstr("Set Home"));
+  EXPECT_EQ(path({target("yaw", -0.5)}), "") << "moves no slider";
+  stands_at("head", -20.0);
+  EXPECT_EQ(home(), "SEPARATION") << "the head's slider would go to its switch";
+  state("feet").homed = 1;
+  state("head").homed = 0;
+  EXPECT_EQ(home(), "");
+  stands_at("feet", -3.5);
+  EXPECT_EQ(home(), "SEPARATION") << "146.5 mm";
+}
+
+TEST_F(NeuroSeparationTest, AMoveOfOneSliderLooksAtTheOther) {
+  EXPECT_EQ(move("head", -67.9), "");
+  stands_at("feet", 40.0);
+  EXPECT_EQ(move("head", -28.1), "SEPARATION");
+  EXPECT_EQ(move("head", -27.9), "");
+  stands_at("head", -50.0);
+  EXPECT_EQ(move("head", -40.0), "") << "back to where the linkage allows it";
+  EXPECT_EQ(move("head", -51.0), "SEPARATION");
+}
+
+TEST_F(NeuroSeparationTest, AMoveLooksAtWhereTheOtherSliderIsBound) {
+  stands_at("head", -30.0);
+  EXPECT_EQ(move("feet", -25.0), "");
+  EXPECT_EQ(move("head", -8.0), "SEPARATION") << "160 mm once both have come to rest";
+  EXPECT_EQ(move("head", -31.0), "");
+}
+
+TEST_F(NeuroSeparationTest, AJogEndsWhereTheLinkageDoes) {
+  const AxisStates axes = states_of(view_);
+  const Robot& neuro = test::neuro();
+  const AxisCounts inwards = target("head", -140.0);
+  EXPECT_EQ(linked_end(neuro, axes, inwards), static_cast<std::int32_t>(-68.0 * 78.74));
+  const AxisCounts outwards = target("feet", -60.0);
+  EXPECT_EQ(linked_end(neuro, axes, outwards), static_cast<std::int32_t>(-3.0 * 78.74));
+  const AxisCounts yaw = target("yaw", -1.0);
+  EXPECT_EQ(linked_end(neuro, axes, yaw), yaw.counts);
 }
 
 }  // namespace

@@ -956,10 +956,10 @@ export interface paths {
          *     axes replace every approved proposal, and until they have ended moves are refused (MODE_HOME, MODE_PATH).
          *     Refused here, in this order: another configuration than the kernel's (CONFIG_MISMATCH), a locked system (MODE),
          *     an axis that is FAULTED, homing (BUSY) or DISABLED, a drive above its bound (DRIVE), a target outside
-         *     `min_counts` to `max_counts` of the motor (RANGE); homing an axis that has no switch (NO_SWITCH),
-         *     a home step that goes to positions, of an axis that is not homed by then (NOT_HOMED), or homing that could part two
-         *     sliders of one linkage too far, where one that is not homed may be anywhere in its range (SEPARATION).
-         *     Motions of several axes: axes that are not homed (NOT_HOMED), targets out of range (RANGE), sliders too far apart (SEPARATION),
+         *     `min_counts` to `max_counts` of the motor (RANGE), or that would part two sliders of one linkage too far or press them
+         *     together, where one that is not homed may be anywhere in its range (SEPARATION); homing an axis that has no switch (NO_SWITCH),
+         *     a home step that goes to positions, of an axis that is not homed by then (NOT_HOMED), or homing that could part linked sliders too far (SEPARATION).
+         *     Motions of several axes: axes that are not homed (NOT_HOMED), targets out of range (RANGE), sliders beyond their linkage (SEPARATION),
          *     no motion within the rates of the axes (NO_PATH); a pose that cannot be had (UNREACHABLE, or a problem of `alignment`),
          *     or whose registration, probe or target changed meanwhile (STALE); no trajectory loaded (EMPTY).
          *     A refused draft stays in the list.
