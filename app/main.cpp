@@ -327,6 +327,10 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   web::Api api(executor, model.robot, model.config, *channel, options.bench_socket, store_executor, log, {},
                {&history, options.black_box});
   api.compare_with(options.audit_heads);
+  if (const auto head = read_head(store)) {
+    // Each proposal is preceded by a record of its own, so none of an earlier run had a number beyond these.
+    api.registry().number_after(static_cast<std::uint32_t>(head->number));
+  }
   web::Server server(door.get_executor(), executor, api, *channel,
                      web::StaticFiles(options.web_directory, options.docs_directory));
   if (auto listening = server.door().listen(options.listen); !listening) {

@@ -57,6 +57,9 @@ class Api {
   /** Who follows the state. */
   [[nodiscard]] Broadcaster& stream() { return stream_; }
 
+  /** The proposals. */
+  [[nodiscard]] MotionRegistry& registry() { return registry_; }
+
   /** The navigation programs; they come once its server listens and it was started. */
   [[nodiscard]] Navigation& navigation() { return navigation_; }
 

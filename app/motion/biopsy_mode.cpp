@@ -84,7 +84,11 @@ std::uint32_t BiopsyMode::prepare(std::uint32_t tick) noexcept {
 
 void BiopsyMode::see(const SeenImage& seen) noexcept {
   if (is_open() && seen.task == status().task) {
-    const bool taken = run_->compensator.see(seen.image).has_value();
+    // One of just now is of where the tip was followed to last: it has moved by a few hundredths of a
+    // millimetre since at most.
+    NeedleImage image = seen.image;
+    image.time_s = std::min(image.time_s, (steered_tick_ - run_->start_tick) * period_s_);
+    const bool taken = run_->compensator.see(image).has_value();
     now_.images += taken ? 1u : 0u;
     now_.images_refused += taken ? 0u : 1u;
   }
@@ -94,6 +98,10 @@ void BiopsyMode::tick(const ilk_snapshot_t& snapshot, KernelRequests& requests) 
   if (needle_) {
     force_.look(snapshot);
     HeldMode::tick(snapshot, requests);
+    if (is_open() && !executes()) {
+      // Images are taken while the needle rests.
+      (void)plan_steering(snapshot);
+    }
   }
 }
 

@@ -19,6 +19,14 @@ Refusal overloaded(const std::string& next_step) {
   return {"OVERLOADED", "The control thread takes no more commands now.", "", next_step};
 }
 
+/** Whether positions of an axis still mean the same place: its counter and its position went the same way. */
+bool keeps_reference(const ilk_axis_config_t& rules, const ilk_axis_t& then, const ilk_axis_t& now) {
+  const std::uint32_t counted = now.raw - then.raw;
+  const std::uint32_t moved =
+      static_cast<std::uint32_t>(now.position_counts) - static_cast<std::uint32_t>(then.position_counts);
+  return moved == (rules.direction_correction != 0 ? 0u - counted : counted);
+}
+
 }  // namespace
 
 MotionRegistry::MotionRegistry(const Robot& robot, const ilk_config_t& config, Send send, Clock clock)
@@ -121,6 +129,7 @@ tl::expected<Proposal*, Refusal> MotionRegistry::waiting(std::uint32_t id) {
 
 tl::expected<Proposal, Refusal> MotionRegistry::approve(std::uint32_t id, const ControlView& view,
                                                         std::chrono::steady_clock::time_point asked) {
+  discard_waiting(view);
   return waiting(id).and_then([&](Proposal* proposal) {
     return check(*proposal, view).and_then([&] { return approve(*proposal, asked); });
   });
@@ -282,14 +291,25 @@ void MotionRegistry::follow(const TaskStatus& status, const ControlView& view) {
   become(*proposal, state, std::move(detail), verdict_of(status));
 }
 
-/** What waits for approval is discarded by a lock, as all that was approved is, and does not wait for ever.
- */
+/** What waits for approval is discarded by a lock, as all that was approved is, and by another reference of
+ * one of its axes; and it does not wait for ever. */
 void MotionRegistry::discard_waiting(const ControlView& view) {
   const bool locked = view.attached && view.snapshot.state.system.mode == ILK_MODE_LOCKED;
   for (Proposal& each : registry_) {
-    if (each.state == ProposalState::checked && locked) {
+    if (each.state != ProposalState::checked) {
+      continue;
+    }
+    const auto moved = std::ranges::find_if(each.slots, [&](std::uint32_t slot) {
+      return !keeps_reference(config_.axis[slot], each.checked_against->state.axis[slot],
+                              view.snapshot.state.axis[slot]);
+    });
+    if (locked) {
       become(each, ProposalState::aborted, "The kernel locked before it was approved; propose it again.");
-    } else if (each.state == ProposalState::checked && clock_() - each.created > approval_wait) {
+    } else if (moved != each.slots.end()) {
+      become(each, ProposalState::aborted,
+             "The home position of " + title_of(robot_, *moved) +
+                 " changed before it was approved; propose it again.");
+    } else if (clock_() - each.created > approval_wait) {
       become(each, ProposalState::expired, "Nobody approved it within 10 minutes; propose it again.");
     }
   }

@@ -38,6 +38,10 @@ class MotionRegistry {
   /** `robot` and `config` must outlive the registry. */
   MotionRegistry(const Robot& robot, const ilk_config_t& config, Send send, Clock clock);
 
+  /** Has the next proposal get the number after that one: numbers mean the same for as long as their records
+   * are kept, whichever run of the app gave them. */
+  void number_after(std::uint32_t last_id) { last_id_ = last_id; }
+
   /** Has the listener called after each change of a proposal. */
   void on_change(Listener listener) { listener_ = std::move(listener); }
 

@@ -55,7 +55,8 @@ KinematicsResult<void> check_belief(const TipBelief& belief) noexcept {
                            curvature_limit_per_mm);
       })
       .and_then([&] { return check_range("image_sd_mm", belief.image_sd_mm, 1e-3, 100.0); })
-      .and_then([&] { return check_range("widest_surprise_sd", belief.widest_surprise_sd, 1.0, 1000.0); });
+      .and_then([&] { return check_range("widest_surprise_sd", belief.widest_surprise_sd, 1.0, 1000.0); })
+      .and_then([&] { return check_range("widest_ahead_sd", belief.widest_ahead_sd, 1.0, 1000.0); });
 }
 
 }  // namespace
@@ -99,7 +100,11 @@ KinematicsResult<void> TipEstimator::see(double time_s, const Eigen::Vector3d& t
         const Eigen::Matrix3d inverse =
             (covariance_.topLeftCorner<3, 3>() + image_variance * Eigen::Matrix3d::Identity()).inverse();
         const double surprise = std::sqrt(std::max(0.0, innovation.dot(inverse * innovation)));
-        const auto checked = check_range("image_surprise_sd", surprise, 0.0, belief_.widest_surprise_sd);
+        const double ahead = innovation.z() / std::sqrt(covariance_(2, 2) + image_variance);
+        const auto checked =
+            check_range("image_surprise_sd", surprise, 0.0, belief_.widest_surprise_sd).and_then([&] {
+              return check_range("image_ahead_sd", ahead, -belief_.widest_ahead_sd, belief_.widest_ahead_sd);
+            });
         if (!checked) {
           return checked;
         }

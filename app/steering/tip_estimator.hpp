@@ -35,6 +35,7 @@ struct TipBelief {
   double curvature_drift_per_mm = 2e-5; /**< a millimetre of depth, growing with its root */
   double image_sd_mm = 0.5;             /**< of an image of the tip, each coordinate */
   double widest_surprise_sd = 6.0;      /**< an image further from where it is expected is refused */
+  double widest_ahead_sd = 3.0; /**< so is one further along the way: the encoder knows how deep the tip is */
 };
 
 /** Where the tip is believed to be. */

@@ -272,6 +272,28 @@ TEST_F(BiopsyModeTest, AnImageThatCannotBeIsCountedAndChangesNothing) {
   EXPECT_EQ(order().phase, TaskPhase::executing);
 }
 
+TEST_F(BiopsyModeTest, AnImageOfNowIsTakenInMotionAndAtRest) {
+  begin();
+  press_hand(5.0);
+  const auto show_now = [&] {
+    const Eigen::Vector3d tip = run_->compensator.tip().guide_from_tip.translation();
+    loop_.show({1, {(loop_.seen_tick() - run_->start_tick) * tick_s, tip, std::nullopt}});
+  };
+  for (std::uint32_t taken = 1; taken <= 7; ++taken) {
+    loop_.run(501);
+    show_now();
+    EXPECT_EQ(loop_.biopsy().now().images, taken);
+  }
+  loop_.pedal(false);
+  ASSERT_EQ(order().phase, TaskPhase::paused);
+  loop_.run(2000);
+  const std::uint32_t now = loop_.seen_tick() - run_->start_tick;
+  loop_.show(
+      {1, {(now - 1000) * tick_s, run_->compensator.tip().guide_from_tip.translation(), std::nullopt}});
+  EXPECT_EQ(loop_.biopsy().now().images, 8u) << "of a second ago, when it rested";
+  EXPECT_EQ(loop_.biopsy().now().images_refused, 0u);
+}
+
 TEST_F(BiopsyModeTest, ANumberThatSteeringCannotUseEndsItAndIsNamed) {
   begin();
   run_->hand_law.gain_mm_s_n = std::nan("");

@@ -185,6 +185,24 @@ TEST_F(PathProposalTest, ALockDiscardsWhatWaits) {
   EXPECT_EQ(state(1), ProposalState::aborted);
 }
 
+TEST_F(PathProposalTest, AnotherHomeOfItsAxisEndsWhatWaits) {
+  ASSERT_TRUE(registry_.propose(file_draft(), view_));
+  axis(test::yaw).raw -= 5;
+  axis(test::yaw).position_counts += 5;
+  axis(head_axis).position_counts += 7;
+  registry_.follow(view_);
+  EXPECT_EQ(state(1), ProposalState::checked) << "its axis moved, and another got a home position";
+  axis(test::yaw).position_counts = 0;
+  EXPECT_FALSE(registry_.approve(1, view_)) << "before anybody followed the view";
+  EXPECT_EQ(state(1), ProposalState::aborted);
+  EXPECT_THAT(registry_.find(1)->detail, testing::HasSubstr("The home position of yaw changed"));
+}
+
+TEST_F(PathProposalTest, NumbersGoOnFromThoseOfAnEarlierRun) {
+  registry_.number_after(41);
+  EXPECT_EQ(registry_.propose(file_draft(), view_)->id, 42u);
+}
+
 TEST_F(PathProposalTest, WhatNobodyApprovesExpires) {
   ASSERT_TRUE(registry_.propose(file_draft(), view_));
   now_ += std::chrono::minutes(10);

@@ -78,6 +78,7 @@ struct Insertion {
   double position_error_mm;
   double curvature_error_sd; /**< in standard deviations that the filter claims */
   double position_error_sd;  /**< root mean square of three */
+  int images_refused;
 };
 
 Insertion insertion(std::uint64_t seed) {
@@ -93,18 +94,20 @@ Insertion insertion(std::uint64_t seed) {
   parameters.bevel_rad = noise.normal(belief.bevel_sd_rad);
   needle::Needle needle(parameters, needle::Noise(1, 0));
   TipEstimator tip = estimator(belief);
+  int refused = 0;
   for (int tick = 1; tick <= 2500; ++tick) {
     const NeedleMotion motion = motion_of(tick);
     needle.advance(motion.insertion_mm / period_s, motion.rotation_rad / period_s, period_s);
     EXPECT_TRUE(tip.move(time_of(tick), motion));
     if (tick % 200 == 0) {
-      EXPECT_TRUE(tip.see(time_of(tick), needle.tip_mm() + noise.normal_vector(belief.image_sd_mm)));
+      const auto seen = tip.see(time_of(tick), needle.tip_mm() + noise.normal_vector(belief.image_sd_mm));
+      refused += seen ? 0 : 1;
     }
   }
   const TipEstimate& now = tip.now();
   const double error_mm = (now.guide_from_tip.translation() - needle.tip_mm()).norm();
   return {error_mm, (now.curvature_per_mm - parameters.curvature_per_mm) / now.curvature_sd_per_mm,
-          error_mm / (std::sqrt(3.0) * now.position_sd_mm)};
+          error_mm / (std::sqrt(3.0) * now.position_sd_mm), refused};
 }
 
 TEST(TipEstimator, is_as_sure_as_its_errors_allow) {
@@ -112,14 +115,17 @@ TEST(TipEstimator, is_as_sure_as_its_errors_allow) {
   double position = 0.0;
   double curvature = 0.0;
   double squared_mm = 0.0;
+  int refused = 0;
   for (int seed = 1; seed <= insertions; ++seed) {
     const Insertion one = insertion(static_cast<std::uint64_t>(seed));
     position += one.position_error_sd * one.position_error_sd / insertions;
     curvature += one.curvature_error_sd * one.curvature_error_sd / insertions;
+    refused += one.images_refused;
     squared_mm += one.position_error_mm * one.position_error_mm / insertions;
   }
   std::printf("tip estimate: rms %.3f mm; squared errors over claimed: position %.2f, curvature %.2f\n",
               std::sqrt(squared_mm), position, curvature);
+  EXPECT_LE(refused, insertions * 12 / 200) << "of 12 good images each; 3 sigma leave 1 of 370";
   // What it claims is of the last image, a second and 4 mm ago.
   EXPECT_GT(position, 0.5);
   EXPECT_LT(position, 1.3);
@@ -162,6 +168,21 @@ TEST(TipEstimator, refuses_images_that_cannot_be_and_stays_as_it_is) {
   EXPECT_EQ(tip.see(3.5, there).error().quantity, "image_time_s");
   EXPECT_EQ(tip.see(2.5, there + Vector3d(20.0, 0.0, 0.0)).error().quantity, "image_surprise_sd");
   EXPECT_LT((tip.now().guide_from_tip.matrix() - before.matrix()).norm(), 1e-12);
+}
+
+TEST(TipEstimator, refuses_an_image_that_shows_the_tip_at_another_depth_than_the_encoder) {
+  TipEstimator tip = estimator();
+  for (int tick = 1; tick <= 300; ++tick) {
+    ASSERT_TRUE(tip.move(time_of(tick), motion_of(tick)));
+  }
+  const Pose before = tip.now().guide_from_tip;
+  for (const double ahead_mm : {-2.5, 2.5}) {
+    const Vector3d seen = before * Vector3d(0.0, 0.0, ahead_mm);
+    EXPECT_EQ(tip.see(time_of(300), seen).error().quantity, "image_ahead_sd");
+  }
+  EXPECT_LT((tip.now().guide_from_tip.matrix() - before.matrix()).norm(), 1e-12);
+  EXPECT_TRUE(tip.see(time_of(300), before * Vector3d(0.0, 0.0, 2.0)));
+  EXPECT_LT((tip.now().guide_from_tip.translation() - before.translation()).norm(), 1.1);
 }
 
 TEST(TipEstimator, keeps_so_many_motions_and_no_more) {
