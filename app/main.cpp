@@ -279,6 +279,12 @@ Stored<AuditHead> read_head(Store& store) {
   return store.read([](Transaction& transaction) -> Stored<AuditHead> { return Audit(transaction).head(); });
 }
 
+Stored<std::int64_t> read_newest_proposal(Store& store) {
+  return store.read([](Transaction& transaction) -> Stored<std::int64_t> {
+    return Audit(transaction).newest_of(AuditKind::proposal);
+  });
+}
+
 /** Has the recorder note the head of the audit, soon after it has changed. */
 boost::asio::awaitable<void> report_heads(StoreExecutor& store_executor, const std::string& recorder) {
   boost::asio::steady_timer timer(co_await boost::asio::this_coro::executor);
@@ -327,9 +333,10 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   web::Api api(executor, model.robot, model.config, *channel, options.bench_socket, store_executor, log, {},
                {&history, options.black_box});
   api.compare_with(options.audit_heads);
-  if (const auto head = read_head(store)) {
-    // Each proposal is preceded by a record of its own, so none of an earlier run had a number beyond these.
-    api.registry().number_after(static_cast<std::uint32_t>(head->number));
+  if (const auto newest = read_newest_proposal(store)) {
+    // Each proposal is preceded by a record of its own, so none of an earlier run has a number beyond the
+    // last.
+    api.registry().number_after(static_cast<std::uint32_t>(*newest));
   }
   web::Server server(door.get_executor(), executor, api, *channel,
                      web::StaticFiles(options.web_directory, options.docs_directory));

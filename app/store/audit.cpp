@@ -135,6 +135,12 @@ std::vector<AuditRecord> Audit::list(std::size_t count, std::optional<std::int64
   return records;
 }
 
+std::int64_t Audit::newest_of(AuditKind kind) const {
+  SQLite::Statement select(database_, "SELECT number FROM audit WHERE kind = ? ORDER BY number DESC LIMIT 1");
+  select.bind(1, std::string(audit_kind_name(kind)));
+  return select.executeStep() ? select.getColumn(0).getInt64() : 0;
+}
+
 AuditHead Audit::head() const {
   SQLite::Statement select(database_, "SELECT number, hash FROM audit ORDER BY number DESC LIMIT 1");
   return select.executeStep() ? AuditHead{select.getColumn(0).getInt64(), select.getColumn(1).getString()}

@@ -73,6 +73,9 @@ class Audit {
   [[nodiscard]] std::vector<AuditRecord> list(std::size_t count,
                                               std::optional<std::int64_t> before = std::nullopt) const;
 
+  /** The number of the newest kept record of that kind; 0 when there is none. */
+  [[nodiscard]] std::int64_t newest_of(AuditKind kind) const;
+
   /** The last record's number and hash. */
   [[nodiscard]] AuditHead head() const;
 

@@ -148,3 +148,28 @@ def test_what_was_acknowledged_outlives_a_kill_at_any_instant(short_tmp_path: Pa
         [BIN / "interlock", "audit", "verify", "--state", state], capture_output=True, text=True
     )
     assert verified.returncode == 0, verified.stderr
+
+
+def propose(app: App, token: str) -> int:
+    """The number of a proposal, which a locked kernel refuses and the app lists all the same."""
+    cookie = app.cookie(token)
+    ask(app, "POST", "/api/authority/request", cookie, {})
+    connection = HTTPConnection("127.0.0.1", app.port, timeout=DEADLINE_S)
+    refused = send(connection, "POST", "/api/proposals", cookie, {"slot": 0, "target_counts": 0})
+    assert refused.status == 409, refused.read()
+    return max(each["id"] for each in json.load(ask(app, "GET", "/api/proposals", cookie, {})))
+
+
+def test_a_number_of_a_proposal_means_the_same_after_a_restart(short_tmp_path: Path) -> None:
+    with bare_kernel(clock="real") as kernel:
+        app = App(kernel, short_tmp_path / "state")
+        app.start()
+        token = log_in(app)
+        numbers = [propose(app, token), propose(app, token)]
+        for _ in range(2):
+            app.kill()
+            app.start()
+            numbers += [propose(app, token), propose(app, token)]
+        stop(app.process)
+    assert numbers[:2] == [1, 2]
+    assert numbers == sorted(set(numbers))

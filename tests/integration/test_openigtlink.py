@@ -16,7 +16,18 @@ import pytest
 from bare_kernel import DEADLINE_S
 from conftest import StackFactory
 from interface import judge
-from motion import LATERAL, enable, home_all, motor, press, propose, unlock, wait_for_mode, wait_until
+from motion import (
+    LATERAL,
+    enable,
+    home_all,
+    motor,
+    press,
+    propose,
+    set_home,
+    unlock,
+    wait_for_mode,
+    wait_until,
+)
 from navigator import OK, Navigator, Poses, Query, Rows, text, transform
 from stack import Stack
 
@@ -183,6 +194,7 @@ def test_what_cannot_be_is_refused_with_its_reason(robot: Stack, navigate: Calla
 def test_homing_becomes_a_proposal_that_somebody_has_to_approve(
     robot: Stack, navigate: Callable[..., Navigator]
 ) -> None:
+    set_home(robot, "feet")
     for axis in robot.api.get("/api/motors").json():
         enable(robot, axis["slot"])
     navigator = navigate()

@@ -253,6 +253,7 @@ def test_the_robot_goes_home_by_its_mode_and_back(robot: Stack) -> None:
     assert modes == {"mode": "manual", "modes": judge(robot.api.get("/api/robots")).json()[0]["modes"]}
     problem(robot.api.put("/api/mode", json={"mode": "home"}), 409, "MODE")
     unlock(robot)
+    set_home(robot, "feet")
     for axis in robot.api.get("/api/motors").json():
         enable(robot, axis["slot"])
     assert judge(robot.api.put("/api/mode", json={"mode": "home"})).json()["mode"] == "home"
@@ -266,6 +267,7 @@ def test_the_robot_goes_home_by_its_mode_and_back(robot: Stack) -> None:
 
 def test_the_robot_homes_by_its_mode_and_is_manual_again(robot: Stack) -> None:
     unlock(robot)
+    set_home(robot, "feet")
     axes = robot.api.get("/api/motors").json()
     for axis in axes:
         enable(robot, axis["slot"])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from conftest import StackFactory
 from interface import judge
-from motion import enable, home_all, press, unlock, wait_for_mode, wait_until
+from motion import enable, home_all, press, set_home, unlock, wait_for_mode, wait_until
 from navigation_phases import Phases, aimed, approve, short, to_targeting
 from navigator import Navigator, Query, text, transform
 from stack import Stack
@@ -95,6 +95,7 @@ def test_stop_and_emergency_act_while_it_moves(
 def test_homing_waits_for_somebody_to_approve_it_and_for_the_pedal(
     robot: Stack, connect: Callable[[], Phases]
 ) -> None:
+    set_home(robot, "feet")
     for axis in robot.api.get("/api/motors").json():
         enable(robot, axis["slot"])
     navigator = connect()

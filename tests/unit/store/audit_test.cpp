@@ -64,6 +64,15 @@ TEST_F(AuditTest, RecordIsKeptAsItWasGiven) {
                                              {"hash", record.hash}}));
 }
 
+TEST_F(AuditTest, TheNewestOfAKindIsFoundAmongOthers) {
+  append(3);
+  const auto newest_of = [this](AuditKind kind) {
+    return seen(store_, [kind](Transaction& transaction) { return Audit(transaction).newest_of(kind); });
+  };
+  EXPECT_EQ(newest_of(AuditKind::proposal), 3);
+  EXPECT_EQ(newest_of(AuditKind::stop), 0);
+}
+
 TEST_F(AuditTest, CanonicalEncodingIsAsDocumented) {
   const AuditRecord record{1, "2024-05-01T12:00:00.000Z", std::nullopt, "ann", 7, "login", "{}", ""};
   EXPECT_EQ(canonical_encoding(record, std::string(64, '0')),
