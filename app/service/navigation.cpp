@@ -77,9 +77,7 @@ void Navigation::listen_to_server() {
     const std::string text = header.type + place + ": " + std::string(igtl::fault_text(fault)) + ".";
     spdlog::warn("OpenIGTLink connection {}: \"{}\" was refused: {}", peer, header.device, text);
     const igtl::Status status{igtl::status_of(fault), 0, "FORMAT", text};
-    for (const auto& [name, body] : sessions_.at(peer).dialect->take_broken(header.device, status)) {
-      server_.reply(peer, name, body);
-    }
+    react(peer, header.device, sessions_.at(peer).dialect->take_broken(header.device, status));
   };
   server_.is_in_motion = [this] { return is_moving(); };
   server_.on_close = [this](const igtl::Peer& peer, const std::string& reason) { lose(peer, reason); };

@@ -70,6 +70,29 @@ TEST_F(NavigationTest, StopIsAskedForOnceAndAnsweredWhenTheKernelHasAccepted) {
   EXPECT_EQ(next_answer(), "STOP 1");
 }
 
+TEST_F(NavigationTest, AnyFrameThatIsNamedStopStopsThoughItCannotBeRead) {
+  tcp::socket socket(client_);
+  socket.connect({asio::ip::make_address("127.0.0.1"), api_.navigation().server().port()});
+  const igtl::ByteVector some(8, 1);
+  const auto wrong_checksum = [&] {
+    auto frame = igtl::write_frame(1, "STRING", "STOP", 0, some);
+    frame.back() = 2;
+    return frame;
+  };
+  const std::vector<igtl::ByteVector> frames{
+      igtl::write_frame(1, "WORD", "STOP", 0, some),          igtl::write_frame(2, "WORD", "STOP", 0, some),
+      igtl::write_frame(1, "TRANSFORM", "STOP", 0, some),     igtl::write_frame(1, "STRING", "stop", 0, some),
+      igtl::write_frame(1, "GET_STATUS", "EMERGENCY", 0, {}), wrong_checksum()};
+  std::uint32_t sent = 0;
+  for (const igtl::ByteVector& frame : frames) {
+    asio::write(socket, asio::buffer(frame));
+    ++sent;
+    while (channel_->stops != sent) {
+      std::this_thread::yield();
+    }
+  }
+}
+
 TEST_F(NavigationTest, AStopThatNoKernelConfirmsIsNotSaidToBeDone) {
   EXPECT_EQ(ask("STOP"), "STOP 13");
   EXPECT_EQ(channel_->stops, 1u);
