@@ -128,12 +128,12 @@ asio::awaitable<Done> load_poses(const Context& context, const Caller& caller, i
   co_return co_await load(context, caller, std::move(*done), revision);
 }
 
-Done go_manual(const Context& context) {
+Done go_manual(const Context& context, const Caller& caller) {
   (void)context.view();
   const Proposal* home = context.registry.open_home();
   const Proposal* open = home == nullptr ? context.registry.open_mode() : home;
   if (open != nullptr) {
-    if (const auto ended = context.registry.abort(open->id); !ended) {
+    if (const auto ended = context.registry.abort(open->id, caller.user); !ended) {
       return fail(refused(ended.error()));
     }
   }
@@ -153,7 +153,7 @@ asio::awaitable<Done> propose_path(const Context& context, const Caller& caller,
 
 asio::awaitable<Done> enter_mode(const Context& context, const Caller& caller, std::string mode) {
   if (mode == "manual") {
-    co_return go_manual(context);
+    co_return go_manual(context, caller);
   }
   tl::expected<Task, Problem> draft = fail({.status = Status::conflict,
                                             .code = "MODE",
@@ -288,8 +288,8 @@ asio::awaitable<Done> disable_all(const Context& context) {
   co_return well("Every axis is disabled.");
 }
 
-asio::awaitable<Done> cut_power(const Context& context) {
-  if (const Done ended = go_manual(context); !ended) {
+asio::awaitable<Done> cut_power(const Context& context, const Caller& caller) {
+  if (const Done ended = go_manual(context, caller); !ended) {
     co_return fail(ended.error());
   }
   co_return co_await disable_all(context);
@@ -318,7 +318,7 @@ asio::awaitable<Done> done_for(const Context& context, const Caller& caller, con
     co_return co_await retract(context, caller);
   }
   if (std::holds_alternative<igtl::CutPower>(command)) {
-    co_return co_await cut_power(context);
+    co_return co_await cut_power(context, caller);
   }
   if (const igtl::Matrix* pose = pose_of(command); pose != nullptr && !igtl::is_rigid(*pose)) {
     co_return fail(no_rigid_motion());

@@ -93,6 +93,41 @@ TEST_F(NavigationTest, AnyFrameThatIsNamedStopStopsThoughItCannotBeRead) {
   }
 }
 
+TEST_F(NavigationTest, TheAuditNamesWhoseProgramStoppedTheRobotAndWhoEndedAProposal) {
+  constexpr const char* move = R"({"slot":3,"target_counts":1000})";
+  ASSERT_EQ(post("/api/proposals", move).status, 201u);
+  (void)ask("EMERGENCY");
+  become_controller();
+  ASSERT_EQ(post("/api/proposals", move).status, 201u);
+  (void)ask("STOP");
+  pass(StopRecords::pause);
+  while (audit("stop").size() < 2) {
+    std::this_thread::yield();
+  }
+  std::vector<AuditRecord> stops;
+  std::vector<AuditRecord> ended;
+  for (const AuditRecord& record : audit()) {
+    if (record.kind == "stop") {
+      stops.push_back(record);
+    } else if (record.kind == "proposal" && json::parse(record.detail)["state"] == "aborted") {
+      ended.push_back(record);
+    }
+  }
+  ASSERT_EQ(stops.size(), 2u);
+  ASSERT_EQ(ended.size(), 2u);
+  for (const AuditRecord& each : stops) {
+    EXPECT_THAT(json::parse(each.detail)["peer"].get<std::string>(), testing::StartsWith("openigtlink 127."));
+    EXPECT_EQ(each.tick, 1000);
+  }
+  EXPECT_EQ(stops[0].actor, "nobody") << "an observer acts for nobody";
+  EXPECT_EQ(stops[1].actor, "edna") << "the controller acts for her";
+  EXPECT_TRUE(stops[1].session.has_value());
+  EXPECT_EQ(ended[0].actor, "nobody");
+  EXPECT_THAT(json::parse(ended[0].detail)["detail"].get<std::string>(),
+              testing::StartsWith("STOP by openigtlink 127."));
+  EXPECT_EQ(json::parse(ended[0].detail)["author"], "edna");
+}
+
 TEST_F(NavigationTest, AStopThatNoKernelConfirmsIsNotSaidToBeDone) {
   EXPECT_EQ(ask("STOP"), "STOP 13");
   EXPECT_EQ(channel_->stops, 1u);

@@ -2127,9 +2127,9 @@ export interface components {
             number: number;
             /** Format: date-time */
             time: string;
-            /** @description Of the kernel; null without one. */
+            /** @description Of the kernel, when it happened; null without one. Records stand in the order in which they were written, which for some is later. */
             tick: number | null;
-            /** @description User, or one of `kernel`, `app`, `command line`, `nobody`. */
+            /** @description User, or one of `kernel`, `app`, `command line`, `nobody`. Of a proposal: its author, or whoever ended it. */
             actor: string;
             session: number | null;
             /** @enum {string} */
