@@ -128,7 +128,8 @@ void Api::follow_sessions() {
     authority_.release(session);
     stream_.end_session(session);
     if (bench_.held_by(session)) {
-      launch(context_.executor, bench_.release_pedal());
+      std::string why = "Session " + std::to_string(session) + ", which pressed it, has ended.";
+      launch(context_.executor, bench_.release_pedal(std::move(why)));
     }
   });
   authority_.on_change([this](bool holder_changed) {
@@ -234,7 +235,7 @@ void Api::tell_biopsy(const ControlView& seen) {
 void Api::look_after_pedal(const ControlView& seen) {
   if (bench_.overdue(seen)) {
     spdlog::warn("the bench pedal was not renewed for 500 ms: released");
-    launch(context_.executor, bench_.release_pedal());
+    launch(context_.executor, bench_.release_pedal("Its hold was not renewed for 500 ms."));
   }
 }
 

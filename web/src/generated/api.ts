@@ -1179,7 +1179,7 @@ export interface paths {
          *     and `id`. A pedal pressed here is released by the app when it has not been renewed for 500 ms: of the kernel's
          *     time in the simulated clock, of the wall's else.
          *     `{"pressed": true, "renew": true}` only renews: when the pedal is not held any more it is refused
-         *     (PEDAL_LAPSED), so that a late renewal is never a press that nobody made.
+         *     (PEDAL_LAPSED, with the reason), so that a late renewal is never a press that nobody made. A release is never too late.
          */
         post: operations["benchCommand"];
         delete?: never;
