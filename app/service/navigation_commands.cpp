@@ -186,18 +186,35 @@ asio::awaitable<Done> retract(const Context& context, const Caller& caller) {
   co_return co_await propose_path(context, caller, std::move(draft));
 }
 
-/** Whether each axis that homing brings to its switch has been there. */
+/** Whether nothing is left to home: each axis that the home steps bring to its switch has been there; of a
+ * robot without such steps, every axis is homed. */
 bool is_homed(const Robot& robot, const ControlView& view) {
-  return view.attached && !robot.home_steps.empty() &&
-         std::ranges::all_of(robot.home_steps, [&](const HomeStep& step) {
-           return std::ranges::all_of(
-               step.home, [&](std::uint32_t slot) { return view.snapshot.state.axis[slot].homed != 0; });
+  const auto has_been_home = [&](std::uint32_t slot) { return view.snapshot.state.axis[slot].homed != 0; };
+  if (robot.home_steps.empty()) {
+    return view.attached && std::ranges::all_of(robot.axes, has_been_home, &Axis::slot);
+  }
+  return view.attached && std::ranges::all_of(robot.home_steps, [&](const HomeStep& step) {
+           return std::ranges::all_of(step.home, has_been_home);
          });
+}
+
+Problem homed_by_hand(const Robot& robot) {
+  return {.status = Status::conflict,
+          .code = "NOT_HOMED",
+          .detail = "An axis is not homed, and " + robot.title + " has no home steps.",
+          .expected = "every axis homed",
+          .next_step = "Home each axis by itself in the console."};
 }
 
 asio::awaitable<Done> start_up(const Context& context, const Caller& caller) {
   if (is_homed(context.robot, context.view())) {
     co_return well("Every axis is homed.");
+  }
+  if (const auto kernel = context.need_kernel(); !kernel) {
+    co_return fail(kernel.error());
+  }
+  if (context.robot.home_steps.empty()) {
+    co_return fail(homed_by_hand(context.robot));
   }
   auto homing = home_all(context.robot);
   if (!homing) {

@@ -14,7 +14,9 @@ using igtl::StatusCode;
 /** A navigation program on the app's port, in the dialect brp2013; the test is the kernel's side. */
 class NavigationTest : public HttpTest {
  protected:
-  NavigationTest() {
+  NavigationTest() : NavigationTest(test::neuro()) {}
+
+  explicit NavigationTest(const Robot& robot) : HttpTest(robot, test::neuro_config()) {
     in_network([this] {
       igtl::IgtlServerOptions options;
       options.port = 0;
@@ -151,6 +153,31 @@ TEST_F(NavigationTest, AHomedRobotHasStartedUp) {
   }
   show(view);
   EXPECT_EQ(ask("START_UP"), "START_UP 1");
+  EXPECT_EQ(json::parse(get("/api/proposals").body), json::array());
+}
+
+/** Of a robot whose axes are homed one by one. */
+class NavigationWithoutHomeStepsTest : public NavigationTest {
+ protected:
+  NavigationWithoutHomeStepsTest() : NavigationTest(without_steps()) {}
+
+  static const Robot& without_steps() {
+    static const Robot robot = [] {
+      Robot changed = test::neuro();
+      changed.home_steps.clear();
+      return changed;
+    }();
+    return robot;
+  }
+};
+
+TEST_F(NavigationWithoutHomeStepsTest, ItHasStartedUpOnceEveryAxisIsHomed) {
+  become_controller();
+  EXPECT_EQ(ask("START_UP"), "START_UP 1");
+  ControlView view = test::ready_view();
+  view.snapshot.state.axis[test::insertion].homed = 0;
+  show(view);
+  EXPECT_EQ(ask("START_UP"), "START_UP 13");
   EXPECT_EQ(json::parse(get("/api/proposals").body), json::array());
 }
 
