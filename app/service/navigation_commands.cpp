@@ -27,6 +27,7 @@ constexpr const char* known_modes = "manual, home, trajectory, draping, targetin
 
 /** Sub-codes of a target's STATUS. */
 constexpr std::int64_t invalid_target = 1;
+constexpr std::int64_t unreachable_target = 2;
 constexpr std::int64_t moved_target = 3;
 
 igtl::Outcome well(std::string text) { return {{StatusCode::ok, 0, "OK", std::move(text)}}; }
@@ -242,7 +243,10 @@ asio::awaitable<Done> set_target(const Context& context, const Caller& caller, i
   aim_at(desired, command.scanner_from_target);
   const auto alignment = co_await aligned(context, desired);
   if (!alignment) {
-    co_return fail(out_of_reach(alignment.error().detail));
+    // No position of the axes is near it, so that there is no nearest pose either.
+    igtl::Outcome outcome{status_of(out_of_reach(alignment.error().detail))};
+    outcome.status.sub_code = unreachable_target;
+    co_return outcome;
   }
   const bool is_moved = is_out_of_reach(*alignment);
   if (is_moved && !command.takes_reachable) {
