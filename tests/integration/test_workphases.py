@@ -183,7 +183,7 @@ def test_a_target_that_the_links_cannot_reach_has_a_sub_code_of_its_own_and_leav
     to_targeting(navigator, dialect)
     kept = robot.api.get("/api/targeting").json()
     far = aimed()
-    far[3] += 5000
+    far[7] += 5000
     [_, status] = navigator.expect(transform("TGT_0009", far), "ACK_0009 TRANSFORM", "TARGET 10")
     assert status.sub_code == 2
     assert "out of reach" in status.text
