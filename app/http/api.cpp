@@ -66,8 +66,8 @@ void Api::follow_proposals() {
                  proposal.detail);
     AuditEntry entry = context_.entry({}, AuditKind::proposal, message);
     const auto& holding = authority_.holder();
-    entry.actor = proposal.task->author;
-    if (holding && holding->user == proposal.task->author) {
+    entry.actor = proposal.changed_by;
+    if (holding && holding->user == proposal.task->author && holding->user == proposal.changed_by) {
       entry.session = holding->session;
     }
     context_.store.note(std::move(entry));
@@ -128,7 +128,8 @@ void Api::follow_sessions() {
     authority_.release(session);
     stream_.end_session(session);
     if (bench_.held_by(session)) {
-      launch(context_.executor, bench_.release_pedal());
+      std::string why = "Session " + std::to_string(session) + ", which pressed it, has ended.";
+      launch(context_.executor, bench_.release_pedal(std::move(why)));
     }
   });
   authority_.on_change([this](bool holder_changed) {
@@ -214,10 +215,12 @@ asio::awaitable<tl::expected<std::optional<Session>, Problem>> Api::session_of(c
 }
 
 asio::awaitable<void> Api::record_stop(StopMade made) {
+  // Of now: the store may be a while.
+  AuditEntry entry = context_.entry({}, AuditKind::stop, json::object());
   const auto known = co_await caller_of(made.header, made.peer);
   Caller stranger;
   stranger.peer = std::move(made.peer);
-  context_.record_stop(known ? *known : stranger, made.unrecorded);
+  context_.record_stop(known ? *known : stranger, made.unrecorded, std::move(entry));
 }
 
 void Api::tell_biopsy(const ControlView& seen) {
@@ -232,7 +235,7 @@ void Api::tell_biopsy(const ControlView& seen) {
 void Api::look_after_pedal(const ControlView& seen) {
   if (bench_.overdue(seen)) {
     spdlog::warn("the bench pedal was not renewed for 500 ms: released");
-    launch(context_.executor, bench_.release_pedal());
+    launch(context_.executor, bench_.release_pedal("Its hold was not renewed for 500 ms."));
   }
 }
 

@@ -75,7 +75,7 @@ class Api {
   boost::asio::awaitable<void> sweep_sessions(std::chrono::milliseconds pause);
 
   /** Releases a pedal that is held over the network. */
-  boost::asio::awaitable<void> release_pedal() { return bench_.release_pedal(); }
+  boost::asio::awaitable<void> release_pedal() { return bench_.release_pedal("The app ended."); }
 
  private:
   void follow_proposals();

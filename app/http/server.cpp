@@ -11,6 +11,7 @@
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <chrono>
 #include <exception>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
@@ -36,10 +37,35 @@ void log_transaction(const Request& request, const Caller& caller, http::status 
                 std::string(request.method_string()), path_of(request), static_cast<unsigned>(status));
 }
 
+/** A request whose body says that it ends something. */
+struct EndByBody {
+  std::string_view path;
+  std::string_view field;
+  nlohmann::json value;
+};
+
+/** Whether the body asks for the end of what is held, or of a motion. */
+bool ends_by_body(std::string_view path, const std::string& body) {
+  static const std::array<EndByBody, 4> ends{{{"/api/bench/pedal", "pressed", false},
+                                              {"/api/bench/estop", "pulled", true},
+                                              {"/api/bench/hand", "newtons", 0},
+                                              {"/api/mode", "mode", "manual"}}};
+  const auto found = std::ranges::find(ends, path, &EndByBody::path);
+  if (found == ends.end()) {
+    return false;
+  }
+  const auto fields = nlohmann::json::parse(body, nullptr, false);
+  return fields.is_object() && fields.value(found->field, nlohmann::json()) == found->value;
+}
+
 /** Whether that ends something: then it is better late than never. */
-bool only_ends(std::string_view path) {
+bool only_ends(const Request& request) {
+  const std::string path = path_of(request);
+  const bool removes = request.method() == http::verb::delete_;
   return path.ends_with("/disable") || path.ends_with("/abort") || path.ends_with("/reject") ||
-         path == "/api/logout" || path == "/api/authority/release";
+         path == "/api/logout" || path == "/api/authority/release" ||
+         path == "/api/communications/disconnect" || (removes && path.starts_with("/api/sessions/")) ||
+         (removes && path.starts_with("/api/communications/")) || ends_by_body(path, request.body());
 }
 
 Problem malformed_path() {
@@ -256,7 +282,7 @@ asio::awaitable<AnyResponse> Server::respond(const Request& request, Connection&
   std::optional<Problem> problem = check_host(request, door_.proxy());
   if (!problem && !is_safe(request.method())) {
     problem = check_origin(request, door_.proxy());
-    if (!problem && connection.late && !only_ends(path_of(request))) {
+    if (!problem && connection.late && !only_ends(request)) {
       problem = too_late();
     }
   }

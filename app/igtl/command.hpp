@@ -67,6 +67,7 @@ struct SetMode {
 /** Ends all motion, whoever asks for it. */
 struct Stop {
   bool cuts_power = false; /**< and disables every axis */
+  bool is_answered = true; /**< one in a STATUS is not, else two programs would answer each other for ever */
 };
 
 /** Homing, unless every axis is homed. */

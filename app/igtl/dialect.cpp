@@ -10,7 +10,35 @@ Capability capabilities() {
            "STT_TDATA", "STP_TDATA"}};
 }
 
+std::optional<StopName> stop_name(std::string_view device) {
+  const std::string name = lower(device);
+  if (name == "stop") {
+    return StopName::stop;
+  }
+  return name == "emergency" ? std::optional(StopName::emergency) : std::nullopt;
+}
+
 }  // namespace
+
+Reaction Dialect::take(const Message& message, const RobotState& state, bool controls) {
+  const auto name = stop_name(message.device);
+  if (!name) {
+    return take_named(message, state, controls);
+  }
+  Reaction reaction = stop(*name);
+  if (std::holds_alternative<Status>(message.body)) {
+    std::get<Stop>(*reaction.command).is_answered = false;
+  }
+  return reaction;
+}
+
+Reaction Dialect::take_broken(const std::string& device, const Status& fault) {
+  const auto name = stop_name(device);
+  Reaction reaction = name ? stop(*name) : Reaction{};
+  const Outgoings told = refuse_broken(device, fault);
+  reaction.replies.insert(reaction.replies.begin(), told.begin(), told.end());
+  return reaction;
+}
 
 bool needs_control(const Command& command) noexcept {
   return !std::holds_alternative<Stop>(command) && !std::holds_alternative<Track>(command) &&

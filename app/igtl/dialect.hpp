@@ -9,6 +9,7 @@
 
 #include <array>
 #include <chrono>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -76,6 +77,9 @@ struct Reaction {
   std::optional<ImagerWord> word = {}; /**< of an imager, to be kept and shown */
 };
 
+/** Names of messages that stop the robot, whatever their type and content. */
+enum class StopName : std::uint8_t { stop, emergency };
+
 /** Names and order of messages: what a message asks for, and how state and answers are told. */
 class Dialect {
  public:
@@ -87,11 +91,12 @@ class Dialect {
   Dialect& operator=(const Dialect&) = delete;
   virtual ~Dialect() = default;
 
-  /** A message came; `controls`: from the controller. */
-  virtual Reaction take(const Message& message, const RobotState& state, bool controls) = 0;
+  /** A message came; `controls`: from the controller. One that is named STOP or EMERGENCY stops the robot,
+   * whatever else it says and whoever sends it. */
+  Reaction take(const Message& message, const RobotState& state, bool controls);
 
-  /** A message came that cannot be read. */
-  virtual Outgoings take_broken(const std::string& device, const Status& fault) = 0;
+  /** A message came that cannot be read, but for its name: STOP and EMERGENCY stop the robot. */
+  Reaction take_broken(const std::string& device, const Status& fault);
 
   /** A command that came under that name was carried out or refused. */
   virtual Reaction finish(const std::string& device, const Command& command, const Outcome& outcome) = 0;
@@ -105,6 +110,16 @@ class Dialect {
   /** What is due by now; asked ten times a second and more. `has_to_hear`: something at least, by which it is
    * seen whether the peer is still there. */
   virtual Outgoings heartbeat(Time now, const RobotState& state, bool has_to_hear) = 0;
+
+ protected:
+  /** A message of another name than STOP and EMERGENCY. */
+  virtual Reaction take_named(const Message& message, const RobotState& state, bool controls) = 0;
+
+  /** What to say of a message that cannot be read. */
+  [[nodiscard]] virtual Outgoings refuse_broken(const std::string& device, const Status& fault) const = 0;
+
+  /** A message of that name came, which stops the robot. */
+  virtual Reaction stop(StopName name) = 0;
 };
 
 /** The dialect of that name of the robot's file, for one connection; null when there is none. */

@@ -141,7 +141,7 @@ struct Name {
   Reading (*read)(const Message&);
 };
 
-constexpr std::array<Name, 15> names{{
+constexpr std::array<Name, 13> names{{
     {"registration", with_matrix<SetRegistration>},
     {"current_pose", with_matrix<ReportPose>},
     {"tip_pose", tip_pose},
@@ -158,8 +158,6 @@ constexpr std::array<Name, 15> names{{
     {"trajectory", trajectory_of},
     {"mode", mode_of_text},
     {"start_up", [](const Message&) -> Reading { return StartUp{}; }},
-    {"stop", [](const Message&) -> Reading { return Stop{}; }},
-    {"emergency", [](const Message&) -> Reading { return Stop{}; }},
 }};
 
 Reading named(const Message& message) {
@@ -192,7 +190,7 @@ Points point(const char* name, const Position3& position) {
 
 }  // namespace
 
-Reaction Thesis::take(const Message& message, const RobotState& state, bool /*controls*/) {
+Reaction Thesis::take_named(const Message& message, const RobotState& state, bool /*controls*/) {
   if (const auto* query = std::get_if<Query>(&message.body)) {
     return answer_query(*query, message.device, messages_of(state), state);
   }
@@ -212,9 +210,16 @@ Reaction Thesis::take(const Message& message, const RobotState& state, bool /*co
   return {{}, std::move(*command)};
 }
 
-Outgoings Thesis::take_broken(const std::string& device, const Status& fault) { return {{device, fault}}; }
+Outgoings Thesis::refuse_broken(const std::string& device, const Status& fault) const {
+  return {{device, fault}};
+}
 
-Reaction Thesis::finish(const std::string& device, const Command& /*command*/, const Outcome& outcome) {
+Reaction Thesis::stop(StopName /*name*/) { return {{}, Stop{}}; }
+
+Reaction Thesis::finish(const std::string& device, const Command& command, const Outcome& outcome) {
+  if (const auto* stop = std::get_if<Stop>(&command); stop != nullptr && !stop->is_answered) {
+    return {};
+  }
   return {{{device, outcome.status}}, std::nullopt};
 }
 

@@ -14,15 +14,18 @@ namespace interlock::igtl {
 
 class Thesis final : public Dialect {
  public:
-  Reaction take(const Message& message, const RobotState& state, bool controls) override;
-  Outgoings take_broken(const std::string& device, const Status& fault) override;
   Reaction finish(const std::string& device, const Command& command, const Outcome& outcome) override;
   Outgoings follow(const Motion& motion, const RobotState& state) override;
   [[nodiscard]] Outgoings told(const RobotState& state) const override;
   Outgoings heartbeat(Time now, const RobotState& state, bool has_to_hear) override;
+
+ protected:
+  Reaction take_named(const Message& message, const RobotState& state, bool controls) override;
+  [[nodiscard]] Outgoings refuse_broken(const std::string& device, const Status& fault) const override;
+  Reaction stop(StopName name) override;
 };
 
-/** What the message, which is no query, asks for. */
+/** What the message asks for, which is no query and not named STOP or EMERGENCY. */
 tl::expected<Command, Unwanted> read_change(const Message& message);
 
 /** Everything that the robot tells, under the names of the thesis and its successors and under those of CRTK

@@ -47,7 +47,7 @@ Reaction Workphases::refuse(const std::string& name, StatusCode code, const std:
   return reaction;
 }
 
-Reaction Workphases::take(const Message& message, const RobotState& state, bool controls) {
+Reaction Workphases::take_named(const Message& message, const RobotState& state, bool controls) {
   if (const auto* query = std::get_if<Query>(&message.body)) {
     return answer_query(*query, message.device, known(state), state);
   }
@@ -111,10 +111,17 @@ void Workphases::remember(const Message& message) {
   }
 }
 
-Outgoings Workphases::take_broken(const std::string& device, const Status& fault) {
+Outgoings Workphases::refuse_broken(const std::string& device, const Status& fault) const {
   Status told = fault;
   told.text = device + ": " + fault.text;
   return {{error_name, told}};
+}
+
+/** As its phase, but for the acknowledgement: there is no ID to acknowledge. */
+Reaction Workphases::stop(StopName name) {
+  Reaction reaction;
+  enter(name == StopName::stop ? Phase::stop : Phase::emergency, reaction);
+  return reaction;
 }
 
 /** CMD_: a phase is asked for. */
@@ -271,15 +278,17 @@ Reaction Workphases::finish(const std::string& /*device*/, const Command& comman
     return settle(Goal::target, outcome);
   }
   std::string name;
+  bool is_answered = true;
   if (const auto* stop = std::get_if<Stop>(&command)) {
     name = word_of(stop->cuts_power ? Phase::emergency : Phase::stop);
+    is_answered = stop->is_answered;
   } else if (std::holds_alternative<CutPower>(command)) {
     name = word_of(Phase::manual);
   } else {
     return finish_other(command, outcome);
   }
   expected_.erase(name);
-  return {{{name, outcome.status}}, std::nullopt};
+  return is_answered ? Reaction{{{name, outcome.status}}, std::nullopt} : Reaction{};
 }
 
 Reaction Workphases::finish_calibration(const Outcome& outcome) {

@@ -29,14 +29,16 @@ class Workphases : public Dialect {
   /** At the target. */
   static constexpr double reached_mm = 0.5;
 
-  Reaction take(const Message& message, const RobotState& state, bool controls) override;
-  Outgoings take_broken(const std::string& device, const Status& fault) override;
   Reaction finish(const std::string& device, const Command& command, const Outcome& outcome) override;
   Outgoings follow(const Motion& motion, const RobotState& state) override;
   [[nodiscard]] Outgoings told(const RobotState& state) const override;
   Outgoings heartbeat(Time now, const RobotState& state, bool has_to_hear) override;
 
  protected:
+  Reaction take_named(const Message& message, const RobotState& state, bool controls) override;
+  [[nodiscard]] Outgoings refuse_broken(const std::string& device, const Status& fault) const override;
+  Reaction stop(StopName name) override;
+
   /** Why the phase may not be entered now; empty: it may. */
   [[nodiscard]] virtual std::string forbids(Phase desired, const RobotState& state) const = 0;
 

@@ -137,7 +137,8 @@ tl::expected<Proposal, Refusal> MotionRegistry::approve(std::uint32_t id, const 
 
 tl::expected<Proposal, Refusal> MotionRegistry::reject(std::uint32_t id, const std::string& by) {
   return waiting(id).map([&](Proposal* proposal) {
-    become(*proposal, ProposalState::aborted, "Rejected by " + by + " before it was approved.");
+    become(*proposal, ProposalState::aborted, "Rejected by " + by + " before it was approved.", std::nullopt,
+           by);
     return *proposal;
   });
 }
@@ -147,14 +148,15 @@ bool MotionRegistry::approves(TaskSource source) const {
   return source == TaskSource::console || robot_.auto_approve;
 }
 
-void MotionRegistry::end_stale() {
+void MotionRegistry::end_stale(const std::string& by) {
   ++targeting_revision_;
   for (Proposal& each : registry_) {
     if (each.task->targeting_revision && is_open(each.state)) {
       const bool waits = each.state == ProposalState::checked || send_(Cancel{each.id});
       become(each, ProposalState::aborted,
              std::string("Registration, probe or target changed, from which it followed; propose it again.") +
-                 (waits ? "" : " The control thread takes no commands now: press STOP."));
+                 (waits ? "" : " The control thread takes no commands now: press STOP."),
+             std::nullopt, by);
     }
   }
   publish_mode();
@@ -195,6 +197,7 @@ Proposal& MotionRegistry::keep(Task task, std::vector<std::uint32_t> slots, cons
   proposal.created = clock_();
   proposal.created_tick = view.snapshot.state.system.tick;
   proposal.detail = "Drafted.";
+  proposal.changed_by = proposal.task->author;
   listener_(proposal);
   return proposal;
 }
@@ -215,7 +218,8 @@ void MotionRegistry::replace_open(const Proposal& by) {
   for (Proposal& each : registry_) {
     const bool in_the_way = !kind_of(by.task->work).yields() || each.slots == by.slots;
     if (in_the_way && each.id != by.id && is_approved(each.state)) {
-      become(each, ProposalState::aborted, "Replaced by proposal " + std::to_string(by.id) + ".");
+      become(each, ProposalState::aborted, "Replaced by proposal " + std::to_string(by.id) + ".",
+             std::nullopt, by.task->author);
     }
   }
 }
@@ -225,7 +229,7 @@ Refusal MotionRegistry::refuse(Proposal& proposal, Refusal refusal) {
   return refusal;
 }
 
-tl::expected<Proposal, Refusal> MotionRegistry::abort(std::uint32_t id) {
+tl::expected<Proposal, Refusal> MotionRegistry::abort(std::uint32_t id, const std::string& by) {
   Proposal* proposal = find_mutable(id);
   if (proposal == nullptr || !is_open(proposal->state)) {
     const std::string state = proposal == nullptr ? "unknown" : std::string(state_name(proposal->state));
@@ -235,15 +239,18 @@ tl::expected<Proposal, Refusal> MotionRegistry::abort(std::uint32_t id) {
   if (!send_(Cancel{id})) {
     return tl::make_unexpected(overloaded("Press STOP, or release the pedal."));
   }
-  become(*proposal, ProposalState::aborted, "Ended by its author.");
+  const std::string& author = proposal->task->author;
+  const bool is_author = by.empty() || by == author;
+  become(*proposal, ProposalState::aborted, "Ended by " + (is_author ? "its author" : by) + ".", std::nullopt,
+         is_author ? author : by);
   publish_mode();
   return *proposal;
 }
 
-void MotionRegistry::abort_all(const std::string& reason) {
+void MotionRegistry::abort_all(const std::string& reason, const std::string& by) {
   for (Proposal& each : registry_) {
     if (is_open(each.state)) {
-      become(each, ProposalState::aborted, reason);
+      become(each, ProposalState::aborted, reason, std::nullopt, by);
     }
   }
   publish_mode();
@@ -316,7 +323,7 @@ void MotionRegistry::discard_waiting(const ControlView& view) {
 }
 
 void MotionRegistry::become(Proposal& proposal, ProposalState state, std::string detail,
-                            std::optional<std::string> verdict) {
+                            std::optional<std::string> verdict, const std::string& by) {
   if (state == ProposalState::executing) {
     pause_reason_.clear();
   } else if (state == ProposalState::paused && proposal.state == ProposalState::executing &&
@@ -326,6 +333,8 @@ void MotionRegistry::become(Proposal& proposal, ProposalState state, std::string
   proposal.state = state;
   proposal.detail = std::move(detail);
   proposal.verdict = std::move(verdict);
+  const bool is_ended = state == ProposalState::aborted || state == ProposalState::expired;
+  proposal.changed_by = !by.empty() ? by : is_ended ? "app" : proposal.task->author;
   if (!is_open(state)) {
     proposal.ended = clock_();
     proposal.step.clear();

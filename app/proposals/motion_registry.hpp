@@ -79,14 +79,16 @@ class MotionRegistry {
   /** Counts the changes of registration, probe and target. */
   [[nodiscard]] std::uint32_t targeting_revision() const { return targeting_revision_; }
 
-  /** Registration, probe or target changed: ends every open proposal that followed from them. */
-  void end_stale();
+  /** Registration, probe or target were changed by `by`: ends every open proposal that followed from them. */
+  void end_stale(const std::string& by = {});
 
-  /** Ends an open proposal; an executing one stops at once. The id must exist. */
-  tl::expected<Proposal, Refusal> abort(std::uint32_t id);
+  /** Ends an open proposal on behalf of `by`, or else of its author; an executing one stops at once. The id
+   * must exist. */
+  tl::expected<Proposal, Refusal> abort(std::uint32_t id, const std::string& by = {});
 
-  /** Ends every open proposal. The caller sees to it that the kernel stops. */
-  void abort_all(const std::string& reason);
+  /** Ends every open proposal on behalf of `by`, or else of the app. The caller sees to it that the kernel
+   * stops. */
+  void abort_all(const std::string& reason, const std::string& by = {});
 
   /** Whoever proposed from that source is gone. What nobody has approved yet of it ends; whatever is
    * approved, of any source, pauses, and says so. The caller sees to it that the kernel leaves MOTION. */
@@ -135,7 +137,7 @@ class MotionRegistry {
   void replace_open(const Proposal& by);
   Refusal refuse(Proposal& proposal, Refusal refusal);
   void become(Proposal& proposal, ProposalState state, std::string detail,
-              std::optional<std::string> verdict = std::nullopt);
+              std::optional<std::string> verdict = std::nullopt, const std::string& by = {});
   void follow(const TaskStatus& status, const ControlView& view);
   void discard_waiting(const ControlView& view);
   void publish_mode();

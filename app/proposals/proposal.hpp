@@ -69,6 +69,8 @@ struct Proposal {
   /** The kernel as it was when the checks were last made; null before. Plans begin there. */
   std::shared_ptr<const ilk_snapshot_t> checked_against;
   std::string detail; /**< why it is in this state, for people */
+  /** Who brought it there: its author, whoever ended it, or `app` when the app or the kernel did. */
+  std::string changed_by;
 
   /** What it is to do, if it is of that kind. */
   template <typename Kind>

@@ -40,7 +40,7 @@ std::string end_words(const std::string& axis, const TaskStatus& status) {
       return "The approval reached the control thread more than " + std::to_string(approval_timeout.count()) +
              " ms late; look at the robot and propose it again.";
     case TaskReason::cancelled:
-      return "Ended by its author.";
+      return "It was cancelled.";
     case TaskReason::locked:
       return "The kernel locked. " + words(catalog::Family::cause, status.code);
     case TaskReason::axis_disabled:

@@ -15,10 +15,10 @@ Problem no_bench() {
           .next_step = "Start interlock-app with --bench SOCKET beside interlock-sim."};
 }
 
-Problem pedal_lapsed() {
+Problem pedal_lapsed(const std::string& why) {
   return {.status = Status::conflict,
           .code = "PEDAL_LAPSED",
-          .detail = "The bench pedal came up, as its hold was not renewed for 500 ms.",
+          .detail = "The bench pedal is not held. " + why,
           .next_step = "Press it again."};
 }
 
@@ -78,11 +78,14 @@ tl::expected<void, Problem> Bench::take_pedal(json& fields, const ControlView& v
                  .expected = "true or false"});
   }
   if (fields.value("pressed", json()) != json(true)) {
+    if (pedal_.held()) {
+      came_up_ = "Session " + std::to_string(session) + " released it.";
+    }
     pedal_.release();
     return {};
   }
   if (renew == json(true) && !pedal_.held()) {
-    return fail(pedal_lapsed());
+    return fail(pedal_lapsed(came_up_));
   }
   pedal_.hold(view.moment(steady_clock::now()));
   presser_ = session;
@@ -98,9 +101,10 @@ boost::asio::awaitable<std::optional<UtcTime>> Bench::connected_since() {
   co_return client_->since();
 }
 
-boost::asio::awaitable<void> Bench::release_pedal() {
+boost::asio::awaitable<void> Bench::release_pedal(std::string why) {
   if (pedal_.held()) {
     pedal_.release();
+    came_up_ = std::move(why);
     json release{{"command", "pedal"}, {"pressed", false}};
     (void)co_await client_->command(std::move(release));
   }

@@ -38,8 +38,8 @@ class Bench {
   /** Since when the simulated hardware is connected, as far as it answers now; nothing when it does not. */
   boost::asio::awaitable<std::optional<UtcTime>> connected_since();
 
-  /** Releases a pedal that is held over the network. */
-  boost::asio::awaitable<void> release_pedal();
+  /** Releases a pedal that is held over the network; `why`: a sentence, for whoever renews it later. */
+  boost::asio::awaitable<void> release_pedal(std::string why);
 
   /** Whether the pedal is held, and not renewed in time. */
   [[nodiscard]] bool overdue(const ControlView& view) const;
@@ -53,7 +53,8 @@ class Bench {
 
   std::optional<BenchClient> client_;
   DeadmanTimer pedal_{pedal_timeout};
-  std::uint32_t presser_ = 0; /**< session that pressed last */
+  std::uint32_t presser_ = 0;                                   /**< session that pressed last */
+  std::string came_up_ = "Nobody has pressed the bench pedal."; /**< why it is not held */
 };
 
 }  // namespace interlock

@@ -84,15 +84,20 @@ AuditEntry Context::entry(const Caller& caller, AuditKind kind, nlohmann::json d
   return entry;
 }
 
-void Context::record_stop(const Caller& caller, std::uint32_t unrecorded) const {
-  spdlog::warn("STOP by {}", caller.user.empty() ? caller.peer : caller.user);
-  registry.abort_all("STOP.");
-  nlohmann::json detail{{"peer", caller.peer}};
+void Context::record_stop(const Caller& caller, std::uint32_t unrecorded,
+                          std::optional<AuditEntry> begun) const {
+  const std::string& who = caller.user.empty() || caller.is_program ? caller.peer : caller.user;
+  spdlog::warn("STOP by {}", who);
   if (unrecorded != 0) {
     spdlog::warn("{} STOPs came before it too fast to be recorded", unrecorded);
   }
-  AuditEntry stop = entry(caller, AuditKind::stop, std::move(detail));
-  if (caller.session == 0) {
+  AuditEntry stop = entry(caller, AuditKind::stop, {{"peer", caller.peer}});
+  if (begun) {
+    stop.time = begun->time;
+    stop.tick = begun->tick;
+  }
+  registry.abort_all("STOP by " + who + ".", stop.actor);
+  if (caller.session == 0 || caller.is_program) {
     note(stop_records.add(std::move(stop), unrecorded, steady_clock()));
     return;
   }

@@ -65,10 +65,13 @@ struct Context {
   [[nodiscard]] AuditEntry entry(const Caller& caller, AuditKind kind, nlohmann::json detail) const;
 
   /** Ends every proposal, and writes down who stopped the robot; the STOP itself is on its way already. Those
-   * of nobody who is logged in are counted when they come faster than `StopRecords` has them recorded.
+   * of nobody who is logged in, and of programs, are counted when they come faster than `StopRecords` has
+   * them recorded.
    *
-   * @param unrecorded how many STOPs just before it are not written down one by one */
-  void record_stop(const Caller& caller, std::uint32_t unrecorded) const;
+   * @param unrecorded how many STOPs just before it are not written down one by one
+   * @param begun the record as it was begun when the STOP came; empty: it came now */
+  void record_stop(const Caller& caller, std::uint32_t unrecorded,
+                   std::optional<AuditEntry> begun = std::nullopt) const;
 
   /** Has the record written that is due, if one is. */
   void note(std::optional<AuditEntry> entry) const;

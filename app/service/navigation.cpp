@@ -77,9 +77,7 @@ void Navigation::listen_to_server() {
     const std::string text = header.type + place + ": " + std::string(igtl::fault_text(fault)) + ".";
     spdlog::warn("OpenIGTLink connection {}: \"{}\" was refused: {}", peer, header.device, text);
     const igtl::Status status{igtl::status_of(fault), 0, "FORMAT", text};
-    for (const auto& [name, body] : sessions_.at(peer).dialect->take_broken(header.device, status)) {
-      server_.reply(peer, name, body);
-    }
+    react(peer, header.device, sessions_.at(peer).dialect->take_broken(header.device, status));
   };
   server_.is_in_motion = [this] { return is_moving(); };
   server_.on_close = [this](const igtl::Peer& peer, const std::string& reason) { lose(peer, reason); };
@@ -149,9 +147,9 @@ void Navigation::finish(PeerId peer, const std::string& device, const igtl::Comm
 }
 
 /** Nobody wants it any more. */
-void Navigation::end_motion(std::uint32_t proposal) {
+void Navigation::end_motion(std::uint32_t proposal, const std::string& by) {
   const Proposal* open = context_.registry.find(proposal);
-  if (open != nullptr && is_open(open->state) && !context_.registry.abort(proposal)) {
+  if (open != nullptr && is_open(open->state) && !context_.registry.abort(proposal, by)) {
     (void)context_.control.stop();
     context_.registry.abort_all(
         "A navigation program ended its motion, and the control thread took no command.");
@@ -162,10 +160,10 @@ void Navigation::end_motion(std::uint32_t proposal) {
 Navigation::Stopping Navigation::stop(PeerId peer) {
   auto answered = context_.control.stop();
   const auto sender = server_.find(peer);
-  const std::string address = sender ? sender->address : "";
-  Caller stranger;
-  stranger.peer = "openigtlink " + address;
-  context_.record_stop(stranger, 0);
+  Caller caller = grant_of(peer).value_or(Caller{});
+  caller.peer = "openigtlink " + (sender ? sender->address : "");
+  caller.is_program = true;
+  context_.record_stop(caller, 0);
   return answered;
 }
 
@@ -235,12 +233,13 @@ bool Navigation::set_role(PeerId id, igtl::Role role, const Caller& caller) {
   }
   if (role == igtl::Role::controller) {
     for (const std::uint32_t orphan : std::exchange(orphans_, {})) {
-      end_motion(orphan);
+      end_motion(orphan, caller.user);
     }
     if (grant_ && grant_->peer != id) {
       give_role(grant_->peer, igtl::Role::observer);
     }
     grant_ = {id, caller, context_.authority.number()};
+    grant_->caller.is_program = true;
     grant_->caller.peer = "openigtlink " + server_.find(id)->address;
   } else if (grant_ && grant_->peer == id) {
     grant_.reset();

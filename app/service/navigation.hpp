@@ -113,7 +113,7 @@ class Navigation {
   void enqueue(igtl::PeerId peer, const std::string& device, igtl::Command command);
   void finish(igtl::PeerId peer, const std::string& device, const igtl::Command& command,
               const igtl::Outcome& outcome);
-  void end_motion(std::uint32_t proposal);
+  void end_motion(std::uint32_t proposal, const std::string& by = {});
   Stopping stop(igtl::PeerId peer);
   boost::asio::awaitable<void> finish_stop(igtl::PeerId peer, std::string device, igtl::Command command,
                                            Stopping stopping);

@@ -27,6 +27,7 @@ constexpr const char* known_modes = "manual, home, trajectory, draping, targetin
 
 /** Sub-codes of a target's STATUS. */
 constexpr std::int64_t invalid_target = 1;
+constexpr std::int64_t unreachable_target = 2;
 constexpr std::int64_t moved_target = 3;
 
 igtl::Outcome well(std::string text) { return {{StatusCode::ok, 0, "OK", std::move(text)}}; }
@@ -128,12 +129,12 @@ asio::awaitable<Done> load_poses(const Context& context, const Caller& caller, i
   co_return co_await load(context, caller, std::move(*done), revision);
 }
 
-Done go_manual(const Context& context) {
+Done go_manual(const Context& context, const Caller& caller) {
   (void)context.view();
   const Proposal* home = context.registry.open_home();
   const Proposal* open = home == nullptr ? context.registry.open_mode() : home;
   if (open != nullptr) {
-    if (const auto ended = context.registry.abort(open->id); !ended) {
+    if (const auto ended = context.registry.abort(open->id, caller.user); !ended) {
       return fail(refused(ended.error()));
     }
   }
@@ -153,7 +154,7 @@ asio::awaitable<Done> propose_path(const Context& context, const Caller& caller,
 
 asio::awaitable<Done> enter_mode(const Context& context, const Caller& caller, std::string mode) {
   if (mode == "manual") {
-    co_return go_manual(context);
+    co_return go_manual(context, caller);
   }
   tl::expected<Task, Problem> draft = fail({.status = Status::conflict,
                                             .code = "MODE",
@@ -186,18 +187,35 @@ asio::awaitable<Done> retract(const Context& context, const Caller& caller) {
   co_return co_await propose_path(context, caller, std::move(draft));
 }
 
-/** Whether each axis that homing brings to its switch has been there. */
+/** Whether nothing is left to home: each axis that the home steps bring to its switch has been there; of a
+ * robot without such steps, every axis is homed. */
 bool is_homed(const Robot& robot, const ControlView& view) {
-  return view.attached && !robot.home_steps.empty() &&
-         std::ranges::all_of(robot.home_steps, [&](const HomeStep& step) {
-           return std::ranges::all_of(
-               step.home, [&](std::uint32_t slot) { return view.snapshot.state.axis[slot].homed != 0; });
+  const auto has_been_home = [&](std::uint32_t slot) { return view.snapshot.state.axis[slot].homed != 0; };
+  if (robot.home_steps.empty()) {
+    return view.attached && std::ranges::all_of(robot.axes, has_been_home, &Axis::slot);
+  }
+  return view.attached && std::ranges::all_of(robot.home_steps, [&](const HomeStep& step) {
+           return std::ranges::all_of(step.home, has_been_home);
          });
+}
+
+Problem homed_by_hand(const Robot& robot) {
+  return {.status = Status::conflict,
+          .code = "NOT_HOMED",
+          .detail = "An axis is not homed, and " + robot.title + " has no home steps.",
+          .expected = "every axis homed",
+          .next_step = "Home each axis by itself in the console."};
 }
 
 asio::awaitable<Done> start_up(const Context& context, const Caller& caller) {
   if (is_homed(context.robot, context.view())) {
     co_return well("Every axis is homed.");
+  }
+  if (const auto kernel = context.need_kernel(); !kernel) {
+    co_return fail(kernel.error());
+  }
+  if (context.robot.home_steps.empty()) {
+    co_return fail(homed_by_hand(context.robot));
   }
   auto homing = home_all(context.robot);
   if (!homing) {
@@ -225,7 +243,10 @@ asio::awaitable<Done> set_target(const Context& context, const Caller& caller, i
   aim_at(desired, command.scanner_from_target);
   const auto alignment = co_await aligned(context, desired);
   if (!alignment) {
-    co_return fail(out_of_reach(alignment.error().detail));
+    // No position of the axes is near it, so that there is no nearest pose either.
+    igtl::Outcome outcome{status_of(out_of_reach(alignment.error().detail))};
+    outcome.status.sub_code = unreachable_target;
+    co_return outcome;
   }
   const bool is_moved = is_out_of_reach(*alignment);
   if (is_moved && !command.takes_reachable) {
@@ -288,8 +309,8 @@ asio::awaitable<Done> disable_all(const Context& context) {
   co_return well("Every axis is disabled.");
 }
 
-asio::awaitable<Done> cut_power(const Context& context) {
-  if (const Done ended = go_manual(context); !ended) {
+asio::awaitable<Done> cut_power(const Context& context, const Caller& caller) {
+  if (const Done ended = go_manual(context, caller); !ended) {
     co_return fail(ended.error());
   }
   co_return co_await disable_all(context);
@@ -318,7 +339,7 @@ asio::awaitable<Done> done_for(const Context& context, const Caller& caller, con
     co_return co_await retract(context, caller);
   }
   if (std::holds_alternative<igtl::CutPower>(command)) {
-    co_return co_await cut_power(context);
+    co_return co_await cut_power(context, caller);
   }
   if (const igtl::Matrix* pose = pose_of(command); pose != nullptr && !igtl::is_rigid(*pose)) {
     co_return fail(no_rigid_motion());

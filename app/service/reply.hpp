@@ -25,7 +25,8 @@ struct Caller {
   std::uint32_t session = 0; /**< 0: nobody is logged in */
   std::string user;
   std::optional<Role> role;
-  std::string peer; /**< address and port that the request came from */
+  std::string peer;        /**< address and port that the request came from */
+  bool is_program = false; /**< a navigation program, on behalf of the user who made it the controller */
   /** When it asked, no later than that. */
   std::chrono::steady_clock::time_point asked = std::chrono::steady_clock::now();
 };

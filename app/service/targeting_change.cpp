@@ -66,7 +66,7 @@ boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const 
     co_return fail(changed.error());
   }
   if (changed->leads_elsewhere) {
-    context.registry.end_stale();
+    context.registry.end_stale(caller.user);
   }
   co_return changed->targeting;
 }

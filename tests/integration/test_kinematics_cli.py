@@ -3,6 +3,7 @@
 import json
 import math
 import random
+import re
 import subprocess
 from pathlib import Path
 from typing import Any
@@ -292,3 +293,16 @@ def test_setting_is_refused_like_a_robot_file_that_says_so(setting: str) -> None
 
 def test_no_lines_need_no_answer() -> None:
     assert kinematics("ik", "--robot", "prostate", lines=[]) == (DONE, [], "")
+
+
+def test_the_page_for_a_new_robot_says_what_its_own_file_gives() -> None:
+    page = (ROOT / "docs/integration.md").read_text("utf-8")
+    joints = json.loads(re.search(r"echo '(.*)' ", page)[1])
+    said = [float(number) for number in re.search(r"the tip is at \(([-., 0-9]+)\) mm", page)[1].split(",")]
+    code, [answer], _ = kinematics("fk", "--robot", ROOT / "models/robots/desk.toml", lines=[joints])
+    assert code == DONE
+    assert [round(answer["pose"][row], 2) for row in (3, 7, 11)] == said
+    checked = [str(BIN / "interlock"), "model", "check", str(ROOT / "models/robots/desk.toml")]
+    shown = subprocess.run(checked, capture_output=True, text=True, timeout=DEADLINE_S).stdout
+    printed = re.search(r"```\n(desk: .*?)\.\.\.\n```", page, re.DOTALL)[1]
+    assert shown.startswith(printed)

@@ -175,6 +175,22 @@ def test_a_target_out_of_reach_is_moved_to_what_can_be_reached(
     approve(robot)
 
 
+@pytest.mark.parametrize("dialect", ["wpi2024"], indirect=True)
+def test_a_target_that_the_links_cannot_reach_has_a_sub_code_of_its_own_and_leaves_none(
+    robot: Stack, connect: Callable[[], Phases], dialect: str
+) -> None:
+    home_all(robot)
+    navigator = connect()
+    to_targeting(navigator, dialect)
+    kept = robot.api.get("/api/targeting").json()
+    far = aimed()
+    far[7] += 5000
+    [_, status] = navigator.expect(transform("TGT_0009", far), "ACK_0009 TRANSFORM", "TARGET 10")
+    assert status.sub_code == 2
+    assert "out of reach" in status.text
+    assert robot.api.get("/api/targeting").json() == kept
+
+
 def test_an_observer_is_answered_and_moves_nothing_but_stops(robot: Stack) -> None:
     observer = Phases(Navigator(robot.igtl_port))
     observer.expect(text("CMD_1", "START_UP"), "ACK_1 STRING", "CURRENT_STATUS 5 UNDEFINED", "START_UP 5")

@@ -112,7 +112,7 @@ Answering ModeRoutes::set_mode(const Call& call) const {
   }
   const RobotMode mode_desired = mode_of(*desired).value_or(RobotMode::manual);
   if (mode_desired == RobotMode::manual) {
-    co_return go_manual();
+    co_return go_manual(call.caller.user);
   }
   (void)context_.view();
   if (context_.registry.app_mode() == *desired) {
@@ -129,12 +129,12 @@ Answering ModeRoutes::set_mode(const Call& call) const {
   co_return std::move(made).and_then([this](const Proposal&) { return mode(); });
 }
 
-Reply ModeRoutes::go_manual() const {
+Reply ModeRoutes::go_manual(const std::string& by) const {
   (void)context_.view();
   const Proposal* home = context_.registry.open_home();
   const Proposal* open = home == nullptr ? context_.registry.open_mode() : home;
   if (open != nullptr) {
-    const auto aborted = context_.registry.abort(open->id);
+    const auto aborted = context_.registry.abort(open->id, by);
     if (!aborted) {
       return fail(refused(aborted.error()));
     }

@@ -287,7 +287,7 @@ Reply ProposalRoutes::show(const Call& call) const {
 
 Reply ProposalRoutes::abort(const Call& call) const {
   return show(call).and_then([&](const Success&) -> Reply {
-    return context_.registry.abort(*number_in(call.parameters[0]))
+    return context_.registry.abort(*number_in(call.parameters[0]), call.caller.user)
         .map([](const Proposal& ended) { return Success{Status::ok, to_json(ended)}; })
         .map_error(refused);
   });

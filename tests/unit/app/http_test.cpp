@@ -1,4 +1,6 @@
+#include <boost/asio/detached.hpp>
 #include <boost/asio/read.hpp>
+#include <tuple>
 
 #include "http_fixture.hpp"
 
@@ -450,6 +452,70 @@ TEST_F(HttpTest, NoOtherMachineIsLetIn) {
     EXPECT_THAT(listening.error(), HasSubstr(address));
     EXPECT_THAT(listening.error(), HasSubstr("127.0.0.1"));
   }
+}
+
+TEST_F(HttpTest, WhatEndsAHoldAMotionOrAConnectionIsNeverTooLate) {
+  const auto later = std::chrono::steady_clock::now() + std::chrono::hours(1);
+  channel_->last_stop.store(later.time_since_epoch());
+  const auto code_of = [&](http::verb method, const std::string& path, const std::string& body) {
+    Request request{method, path, 11};
+    request.body() = body;
+    const Answered answered = send(std::move(request));
+    return answered.status < 300 ? json("done") : answered.problem()["code"];
+  };
+  const std::vector<std::tuple<http::verb, std::string, std::string>> begins{
+      {http::verb::post, "/api/bench/pedal", R"({"pressed":true})"},
+      {http::verb::post, "/api/bench/pedal", R"({"pressed":0})"},
+      {http::verb::post, "/api/bench/pedal", "{"},
+      {http::verb::post, "/api/bench/estop", R"({"pulled":false})"},
+      {http::verb::post, "/api/bench/hand", R"({"newtons":5})"},
+      {http::verb::put, "/api/mode", R"({"mode":"home"})"},
+      {http::verb::post, "/api/jog", R"({"slot":3,"direction":"increasing"})"},
+      {http::verb::put, "/api/jog/1", ""}};
+  for (const auto& [method, path, body] : begins) {
+    EXPECT_EQ(code_of(method, path, body), "LATE") << path << body;
+  }
+  const std::vector<std::tuple<http::verb, std::string, std::string>> ends{
+      {http::verb::post, "/api/bench/pedal", R"({"pressed":false})"},
+      {http::verb::post, "/api/bench/estop", R"({"pulled":true})"},
+      {http::verb::post, "/api/bench/hand", R"({"newtons":0})"},
+      {http::verb::put, "/api/mode", R"({"mode":"manual"})"},
+      {http::verb::post, "/api/proposals/1/abort", ""},
+      {http::verb::post, "/api/proposals/1/reject", ""},
+      {http::verb::post, "/api/motors/3/disable", ""},
+      {http::verb::delete_, "/api/communications/connections/9", ""},
+      {http::verb::delete_, "/api/sessions/999", ""},
+      {http::verb::post, "/api/authority/release", ""},
+      {http::verb::post, "/api/logout", ""}};
+  for (const auto& [method, path, body] : ends) {
+    EXPECT_NE(code_of(method, path, body), "LATE") << path;
+  }
+}
+
+TEST(Bench, ARenewalIsRefusedForTheReasonForWhichThePedalCameUp) {
+  asio::io_context network;
+  Bench bench(network.get_executor(), "/nonexistent/bench");
+  const auto pedal = [&](std::uint32_t session, const json& fields) {
+    Reply reply = fail(Problem{});
+    asio::co_spawn(network, bench.command("pedal", fields, ControlView{}, session),
+                   [&](const std::exception_ptr&, Reply came) { reply = std::move(came); });
+    network.restart();
+    network.run();
+    return reply.error();
+  };
+  const json press{{"pressed", true}};
+  const json renewal{{"pressed", true}, {"renew", true}};
+  EXPECT_THAT(pedal(1, renewal).detail, HasSubstr("Nobody has pressed"));
+  EXPECT_EQ(pedal(1, press).code, "NO_BENCH") << "there is none, but somebody holds on";
+  (void)pedal(2, {{"pressed", false}});
+  const Problem lapsed = pedal(1, renewal);
+  EXPECT_EQ(lapsed.code, "PEDAL_LAPSED");
+  EXPECT_THAT(lapsed.detail, HasSubstr("Session 2 released it."));
+  (void)pedal(1, press);
+  asio::co_spawn(network, bench.release_pedal("Its hold was not renewed for 500 ms."), asio::detached);
+  network.restart();
+  network.run();
+  EXPECT_THAT(pedal(1, renewal).detail, HasSubstr("not renewed for 500 ms"));
 }
 
 TEST(Bench, SaysThatTheSimulatedHardwareIsAway) {

@@ -149,8 +149,10 @@ TEST_F(MotionRegistryTest, StopAbortsAllThatIsOpen) {
   report(1, TaskPhase::done, TaskReason::arrived);
   (void)propose();
   (void)propose(100, test::rotation);
-  registry_.abort_all("STOP.");
+  registry_.abort_all("STOP.", "bob");
   EXPECT_EQ(state(1), ProposalState::done);
+  EXPECT_EQ(registry_.find(1)->changed_by, "console") << "that was her motion";
+  EXPECT_EQ(registry_.find(2)->changed_by, "bob");
   EXPECT_EQ(state(2), ProposalState::aborted);
   EXPECT_EQ(state(3), ProposalState::aborted);
 }
@@ -193,6 +195,18 @@ TEST_F(MotionRegistryTest, AbortCancelsTheOrder) {
   ASSERT_TRUE(aborted);
   EXPECT_EQ(aborted->state, ProposalState::aborted);
   EXPECT_EQ(std::get<Cancel>(sent_.at(1)).task, 1u);
+}
+
+TEST_F(MotionRegistryTest, WhoEndsAProposalIsNamedWhoeverWroteIt) {
+  (void)propose();
+  EXPECT_EQ(registry_.find(1)->changed_by, "console");
+  EXPECT_EQ(registry_.abort(1, "bob")->detail, "Ended by bob.");
+  EXPECT_EQ(registry_.find(1)->changed_by, "bob");
+  (void)propose();
+  EXPECT_EQ(registry_.abort(2, "console")->detail, "Ended by its author.");
+  (void)propose();
+  report(3, TaskPhase::aborted, TaskReason::let_go);
+  EXPECT_EQ(registry_.find(3)->changed_by, "app") << "nobody asked for it";
 }
 
 TEST_F(MotionRegistryTest, WhatHasEndedCannotBeAborted) {

@@ -14,7 +14,9 @@ using igtl::StatusCode;
 /** A navigation program on the app's port, in the dialect brp2013; the test is the kernel's side. */
 class NavigationTest : public HttpTest {
  protected:
-  NavigationTest() {
+  NavigationTest() : NavigationTest(test::neuro()) {}
+
+  explicit NavigationTest(const Robot& robot) : HttpTest(robot, test::neuro_config()) {
     in_network([this] {
       igtl::IgtlServerOptions options;
       options.port = 0;
@@ -70,6 +72,64 @@ TEST_F(NavigationTest, StopIsAskedForOnceAndAnsweredWhenTheKernelHasAccepted) {
   EXPECT_EQ(next_answer(), "STOP 1");
 }
 
+TEST_F(NavigationTest, AnyFrameThatIsNamedStopStopsThoughItCannotBeRead) {
+  tcp::socket socket(client_);
+  socket.connect({asio::ip::make_address("127.0.0.1"), api_.navigation().server().port()});
+  const igtl::ByteVector some(8, 1);
+  const auto wrong_checksum = [&] {
+    auto frame = igtl::write_frame(1, "STRING", "STOP", 0, some);
+    frame.back() = 2;
+    return frame;
+  };
+  const std::vector<igtl::ByteVector> frames{
+      igtl::write_frame(1, "WORD", "STOP", 0, some),          igtl::write_frame(2, "WORD", "STOP", 0, some),
+      igtl::write_frame(1, "TRANSFORM", "STOP", 0, some),     igtl::write_frame(1, "STRING", "stop", 0, some),
+      igtl::write_frame(1, "GET_STATUS", "EMERGENCY", 0, {}), wrong_checksum()};
+  std::uint32_t sent = 0;
+  for (const igtl::ByteVector& frame : frames) {
+    asio::write(socket, asio::buffer(frame));
+    ++sent;
+    while (channel_->stops != sent) {
+      std::this_thread::yield();
+    }
+  }
+}
+
+TEST_F(NavigationTest, TheAuditNamesWhoseProgramStoppedTheRobotAndWhoEndedAProposal) {
+  constexpr const char* move = R"({"slot":3,"target_counts":1000})";
+  ASSERT_EQ(post("/api/proposals", move).status, 201u);
+  (void)ask("EMERGENCY");
+  become_controller();
+  ASSERT_EQ(post("/api/proposals", move).status, 201u);
+  (void)ask("STOP");
+  pass(StopRecords::pause);
+  while (audit("stop").size() < 2) {
+    std::this_thread::yield();
+  }
+  std::vector<AuditRecord> stops;
+  std::vector<AuditRecord> ended;
+  for (const AuditRecord& record : audit()) {
+    if (record.kind == "stop") {
+      stops.push_back(record);
+    } else if (record.kind == "proposal" && json::parse(record.detail)["state"] == "aborted") {
+      ended.push_back(record);
+    }
+  }
+  ASSERT_EQ(stops.size(), 2u);
+  ASSERT_EQ(ended.size(), 2u);
+  for (const AuditRecord& each : stops) {
+    EXPECT_THAT(json::parse(each.detail)["peer"].get<std::string>(), testing::StartsWith("openigtlink 127."));
+    EXPECT_EQ(each.tick, 1000);
+  }
+  EXPECT_EQ(stops[0].actor, "nobody") << "an observer acts for nobody";
+  EXPECT_EQ(stops[1].actor, "edna") << "the controller acts for her";
+  EXPECT_TRUE(stops[1].session.has_value());
+  EXPECT_EQ(ended[0].actor, "nobody");
+  EXPECT_THAT(json::parse(ended[0].detail)["detail"].get<std::string>(),
+              testing::StartsWith("STOP by openigtlink 127."));
+  EXPECT_EQ(json::parse(ended[0].detail)["author"], "edna");
+}
+
 TEST_F(NavigationTest, AStopThatNoKernelConfirmsIsNotSaidToBeDone) {
   EXPECT_EQ(ask("STOP"), "STOP 13");
   EXPECT_EQ(channel_->stops, 1u);
@@ -92,6 +152,32 @@ TEST_F(NavigationTest, AHomedRobotHasStartedUp) {
     view.snapshot.state.axis[axis.slot].homed = 1;
   }
   show(view);
+  EXPECT_EQ(ask("START_UP"), "START_UP 1");
+  EXPECT_EQ(json::parse(get("/api/proposals").body), json::array());
+}
+
+/** Of a robot whose axes are homed one by one. */
+class NavigationWithoutHomeStepsTest : public NavigationTest {
+ protected:
+  NavigationWithoutHomeStepsTest() : NavigationTest(without_steps()) {}
+
+  static const Robot& without_steps() {
+    static const Robot robot = [] {
+      Robot changed = test::neuro();
+      changed.home_steps.clear();
+      return changed;
+    }();
+    return robot;
+  }
+};
+
+TEST_F(NavigationWithoutHomeStepsTest, ItHasStartedUpOnceEveryAxisIsHomed) {
+  become_controller();
+  ControlView view = test::ready_view();
+  view.snapshot.state.axis[test::insertion].homed = 0;
+  show(view);
+  EXPECT_EQ(ask("START_UP"), "START_UP 13");
+  show(test::ready_view());
   EXPECT_EQ(ask("START_UP"), "START_UP 1");
   EXPECT_EQ(json::parse(get("/api/proposals").body), json::array());
 }

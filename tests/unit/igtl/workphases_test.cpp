@@ -316,7 +316,7 @@ TEST_P(EachDialect, WhatIsUnwellIsTold) {
   EXPECT_TRUE(dialect->told(talk.state).empty());
   talk.state.health = {StatusCode::hardware_failure, 0, "LOCKED", "why"};
   EXPECT_EQ(shorts(dialect->told(talk.state)), Shorts{"ERROR 18"});
-  EXPECT_EQ(shorts(dialect->take_broken("TGT_1", {StatusCode::checksum, 0, "FORMAT", "crc"})),
+  EXPECT_EQ(shorts(dialect->take_broken("TGT_1", {StatusCode::checksum, 0, "FORMAT", "crc"}).replies),
             Shorts{"ERROR 9"});
 }
 
@@ -522,6 +522,48 @@ TEST(Wpi2024, PositionIsAskedForByText) {
   talk.state.measured_cp = moved(1.9);
   talk.send("CURRENT_POSITION", Text{""});
   EXPECT_EQ(std::get<Text>(talk.reaction.replies[2].second).text, "1");
+}
+
+/** Any of the dialects, as a connection that controls nothing has it. */
+class StopByName : public testing::TestWithParam<const char*> {
+ protected:
+  std::unique_ptr<Dialect> dialect_ = make_dialect(GetParam());
+  RobotState state_;
+};
+
+INSTANTIATE_TEST_SUITE_P(Dialects, StopByName, testing::Values("thesis", "brp2013", "wpi2024"));
+
+TEST_P(StopByName, OfAMessageOfAnyTypeStops) {
+  const std::vector<Body> bodies{Transform{},     Text{"go"},      Status{},        Points{},
+                                 Position{},      TrackingData{},  StartTracking{}, StopTracking{},
+                                 TrackingReply{}, Array{},         Sensor{},        Capability{},
+                                 Query{"STATUS"}, Query{"STRING"}, Query{"TDATA"}};
+  for (const char* name : {"STOP", "stop", "EMERGENCY", "Emergency"}) {
+    for (const Body& body : bodies) {
+      const Reaction reaction = dialect_->take({name, body, 0, 1, {}}, state_, false);
+      ASSERT_TRUE(reaction.command.has_value()) << name << " as " << type_of(body);
+      EXPECT_TRUE(std::holds_alternative<Stop>(*reaction.command)) << name << " as " << type_of(body);
+      EXPECT_FALSE(needs_control(*reaction.command)) << "anybody may stop the robot";
+    }
+  }
+}
+
+TEST_P(StopByName, OfAMessageThatCannotBeReadStopsAndTheFaultIsTold) {
+  const Status fault{StatusCode::unknown_instruction, 0, "FORMAT", "why"};
+  const Reaction reaction = dialect_->take_broken("STOP", fault);
+  ASSERT_TRUE(reaction.command.has_value());
+  EXPECT_TRUE(std::holds_alternative<Stop>(*reaction.command));
+  ASSERT_FALSE(reaction.replies.empty());
+  EXPECT_EQ(std::get<Status>(reaction.replies[0].second).code, StatusCode::unknown_instruction);
+  EXPECT_FALSE(dialect_->take_broken("TARGET_POINT", fault).command.has_value());
+}
+
+TEST_P(StopByName, InAStatusIsNotConfirmedSoThatTwoRobotsDoNotStopEachOtherForEver) {
+  const Outcome stopped{{StatusCode::ok, 0, "OK", ""}};
+  const Reaction status = dialect_->take({"STOP", Status{}, 0, 1, {}}, state_, false);
+  EXPECT_EQ(shorts(dialect_->finish("STOP", status.command.value(), stopped).replies), Shorts{});
+  const Reaction text = dialect_->take({"STOP", Text{}, 0, 1, {}}, state_, false);
+  EXPECT_EQ(shorts(dialect_->finish("STOP", text.command.value(), stopped).replies), Shorts{"STOP 1"});
 }
 
 TEST(Dialects, ThereAreThree) {

@@ -1179,7 +1179,7 @@ export interface paths {
          *     and `id`. A pedal pressed here is released by the app when it has not been renewed for 500 ms: of the kernel's
          *     time in the simulated clock, of the wall's else.
          *     `{"pressed": true, "renew": true}` only renews: when the pedal is not held any more it is refused
-         *     (PEDAL_LAPSED), so that a late renewal is never a press that nobody made.
+         *     (PEDAL_LAPSED, with the reason), so that a late renewal is never a press that nobody made. A release is never too late.
          */
         post: operations["benchCommand"];
         delete?: never;
@@ -2127,9 +2127,9 @@ export interface components {
             number: number;
             /** Format: date-time */
             time: string;
-            /** @description Of the kernel; null without one. */
+            /** @description Of the kernel, when it happened; null without one. Records stand in the order in which they were written, which for some is later. */
             tick: number | null;
-            /** @description User, or one of `kernel`, `app`, `command line`, `nobody`. */
+            /** @description User, or one of `kernel`, `app`, `command line`, `nobody`. Of a proposal: its author, or whoever ended it. */
             actor: string;
             session: number | null;
             /** @enum {string} */
