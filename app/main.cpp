@@ -33,6 +33,7 @@
 #include "interlock/kernel.h"
 #include "log/log.hpp"
 #include "motion/control_loop.hpp"
+#include "proposals/motion_kind.hpp"
 #include "robot/catalog.hpp"
 #include "robot/compile.hpp"
 #include "robot/robot_file.hpp"
@@ -349,7 +350,7 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   if (const auto let_in = let_somebody_in(store); !let_in) {
     return tl::make_unexpected("--state " + options.state_directory + ": " + let_in.error().message());
   }
-  ControlLoop control(options.link_socket, plan, *channel, &history,
+  ControlLoop control(options.link_socket, make_modes(plan), *channel, &history,
                       options.replay ? LinkUse::replay : LinkUse::control);
   const std::jthread control_thread([&](const std::stop_token& stop) {
     name_thread("control");

@@ -212,7 +212,8 @@ class ModeRoutes {
   [[nodiscard]] Reply mode() const;
   [[nodiscard]] tl::expected<std::string, Problem> desired_mode(const Call& call) const;
   [[nodiscard]] boost::asio::awaitable<Reply> set_mode(const Call& call) const;
-  [[nodiscard]] tl::expected<Task, Problem> task_for(RobotMode mode, const std::string& author) const;
+  [[nodiscard]] boost::asio::awaitable<tl::expected<Task, Problem>> task_for(std::string mode,
+                                                                             std::string author) const;
   [[nodiscard]] Reply go_manual(const std::string& by) const;
 
   const Context& context_;

@@ -33,10 +33,10 @@ ilk_request_t request_of(std::uint32_t kind, std::uint32_t slot = 0) noexcept {
 
 }  // namespace
 
-ControlLoop::ControlLoop(std::string link_socket, const RobotPlan& plan, RealtimeChannel& channel,
+ControlLoop::ControlLoop(std::string link_socket, Modes modes, RealtimeChannel& channel,
                          TickObserver* observer, LinkUse use)
     : link_(std::move(link_socket)),
-      modes_(plan),
+      modes_(std::move(modes)),
       channel_(channel),
       observer_(observer),
       use_(use),
@@ -285,7 +285,7 @@ bool ControlLoop::take(const Approval& approval) noexcept {
   } else if (std::chrono::steady_clock::now() > approval.deadline) {
     modes_.end(task, TaskReason::approved_late, now);
   }
-  const MoveTask* move = std::get_if<MoveTask>(&approval.task->work);
+  const MoveTask* move = approval.task->work.find<MoveTask>();
   if (move != nullptr && move->slot < ILK_SLOTS) {
     Jog& jog = jogs_[move->slot];
     jog.task = task;
@@ -359,11 +359,7 @@ void ControlLoop::send_requests() noexcept {
 }
 
 void ControlLoop::publish() noexcept {
-  view_.tasks = modes_.tasks();
-  view_.sweep_speeds = modes_.sweep_speeds();
-  view_.biopsy = modes_.biopsy().findings();
-  view_.biopsy_now = modes_.biopsy().now();
-  view_.force = modes_.biopsy().force();
+  modes_.report(view_);
   channel_.view.writing() = view_;
   channel_.view.publish();
   const bool changed = view_.tasks != published_tasks_ || view_.biopsy != published_biopsy_;

@@ -16,7 +16,6 @@
 #include <string>
 
 #include "link/link_client.hpp"
-#include "motion/axis_plan.hpp"
 #include "motion/deadman_timer.hpp"
 #include "motion/mode_manager.hpp"
 #include "motion/realtime_channel.hpp"
@@ -35,7 +34,7 @@ enum class LinkUse {
 class ControlLoop {
  public:
   /** @param observer shown each tick; it must outlive the loop */
-  ControlLoop(std::string link_socket, const RobotPlan& plan, RealtimeChannel& channel,
+  ControlLoop(std::string link_socket, Modes modes, RealtimeChannel& channel,
               TickObserver* observer = nullptr, LinkUse use = LinkUse::control);
 
   /** Serves until stopped, attaching again and again. On leaving it asks the kernel to end MOTION, unless it

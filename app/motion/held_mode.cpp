@@ -1,6 +1,7 @@
 #include "motion/held_mode.hpp"
 
 #include "motion/blocking_condition.hpp"
+#include "motion/realtime_channel.hpp"
 
 namespace interlock {
 
@@ -49,6 +50,8 @@ void HeldMode::tick(const ilk_snapshot_t& snapshot, KernelRequests& requests) no
   }
   drive(snapshot, requests);
 }
+
+void HeldMode::report(ControlView& view) const noexcept { view.tasks.of(tasks()) = status_; }
 
 /** Goes on, pauses or expires. */
 void HeldMode::judge(const ilk_snapshot_t& snapshot) noexcept {

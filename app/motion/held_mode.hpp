@@ -25,13 +25,13 @@ class HeldMode : public Mode {
    * shows. */
   void on_verdict(const ModeOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept final;
   [[nodiscard]] bool is_open() const noexcept final { return interlock::is_open(status_.phase); }
-  void report(TaskTable& tasks) const noexcept override { tasks.of(kind_) = status_; }
+  void report(ControlView& view) const noexcept override;
 
   [[nodiscard]] const TaskStatus& status() const noexcept { return status_; }
 
  protected:
-  HeldMode(TaskKind kind, const RobotPlan& plan) noexcept
-      : kind_(kind), timeout_ticks_(plan.timeout_ticks()) {}
+  HeldMode(const std::type_info& tasks, const RobotPlan& plan) noexcept
+      : Mode(tasks), timeout_ticks_(plan.timeout_ticks()) {}
 
   /** Makes ready for a task that waits now; returns the axes that it moves, bit n for slot n. */
   [[nodiscard]] virtual std::uint32_t prepare(std::uint32_t tick) noexcept = 0;
@@ -51,7 +51,7 @@ class HeldMode : public Mode {
   /** The work of the newest task. */
   template <typename Kind>
   [[nodiscard]] const Kind& work() const noexcept {
-    return *std::get_if<Kind>(&task_->work);
+    return task_->work.as<Kind>();
   }
   [[nodiscard]] bool executes() const noexcept { return status_.phase == TaskPhase::executing; }
   /** Whether the task has a part for that slot. */
@@ -64,7 +64,6 @@ class HeldMode : public Mode {
   void judge(const ilk_snapshot_t& snapshot) noexcept;
   [[nodiscard]] bool is_blocked(const ilk_snapshot_t& snapshot) noexcept;
 
-  const TaskKind kind_;
   const std::uint32_t timeout_ticks_; /**< how long the task may wait without executing */
   TaskReference task_;
   TaskStatus status_;

@@ -7,7 +7,10 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <typeinfo>
+#include <vector>
 
 #include "interlock/link.h"
 #include "motion/axis_tracker.hpp"
@@ -16,10 +19,27 @@
 
 namespace interlock {
 
+struct ControlView;
+struct SeenImage;
+
 /** One way of turning tasks into motion. */
 class Mode {
  public:
+  /** @param tasks type of the tasks that it takes, as `typeid(MoveTask)` */
+  explicit Mode(const std::type_info& tasks) noexcept : tasks_(tasks) {}
+  Mode(const Mode&) = delete;
+  Mode& operator=(const Mode&) = delete;
   virtual ~Mode() = default;
+
+  /** The type of its tasks. */
+  [[nodiscard]] const std::type_info& tasks() const noexcept { return tasks_; }
+
+  /** Whether a task of it ends itself where another mode is open, in place of what that mode does. */
+  [[nodiscard]] virtual bool yields() const noexcept { return false; }
+
+  /** Whether the kernel drives its axes by itself. It asks for them after every other mode has given back its
+   * drive. */
+  [[nodiscard]] virtual bool homes() const noexcept { return false; }
 
   /** Takes a task of its kind; an open one that is in its way is replaced. */
   virtual void take(const TaskReference& task, std::uint32_t tick) noexcept = 0;
@@ -49,13 +69,22 @@ class Mode {
   /** Whether a task is open here. */
   [[nodiscard]] virtual bool is_open() const noexcept = 0;
 
-  /** Writes where its tasks stand. */
-  virtual void report(TaskTable& tasks) const noexcept = 0;
+  /** An image of the needle and its target. */
+  virtual void see(const SeenImage& /*seen*/) noexcept {}
+
+  /** Writes where its tasks stand, and what else it has found. */
+  virtual void report(ControlView& view) const noexcept = 0;
 
   /** Where the axis in `slot` should be now; nothing unless a task moves it along a path. */
   [[nodiscard]] virtual std::optional<Setpoint> setpoint(std::uint32_t /*slot*/) const noexcept {
     return std::nullopt;
   }
+
+ private:
+  const std::type_info& tasks_;
 };
+
+/** Every mode of a robot. */
+using Modes = std::vector<std::unique_ptr<Mode>>;
 
 }  // namespace interlock

@@ -1,58 +1,91 @@
 #include "motion/mode_manager.hpp"
 
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
 namespace interlock {
 
+namespace {
+
+Modes homing_last(Modes modes) {
+  std::ranges::stable_partition(modes, [](const auto& each) { return !each->homes(); });
+  return modes;
+}
+
+}  // namespace
+
+ModeManager::ModeManager(Modes modes) : modes_(homing_last(std::move(modes))) {
+  if (modes_.size() > TaskTable::most_kinds) {
+    throw std::length_error("a robot has at most 16 modes");
+  }
+}
+
+Mode* ModeManager::find(const std::type_info& tasks) const noexcept {
+  const auto found = std::ranges::find_if(modes_, [&](const auto& each) { return each->tasks() == tasks; });
+  return found == modes_.end() ? nullptr : found->get();
+}
+
 void ModeManager::take(const TaskReference& task, std::uint32_t tick) noexcept {
-  Mode* taker = by_kind_[task->work.index()];
+  Mode* taker = find(task->work.type());
+  if (taker == nullptr) {
+    return;
+  }
   taker->take(task, tick);
-  for (Mode* mode : in_turn_) {
-    if (mode == taker || !mode->is_open()) {
+  for (const auto& mode : modes_) {
+    if (mode.get() == taker || !mode->is_open()) {
       continue;
     }
-    if (taker == &manual_) {
-      manual_.end(task->id, mode == &home_ ? TaskReason::axis_homing : TaskReason::superseded, tick);
+    const bool homing = taker->yields() ? mode->homes() : taker->homes();
+    const TaskReason reason = homing ? TaskReason::axis_homing : TaskReason::superseded;
+    if (taker->yields()) {
+      taker->end(task->id, reason, tick);
     } else {
-      mode->end_all(taker == &home_ ? TaskReason::axis_homing : TaskReason::superseded, tick);
+      mode->end_all(reason, tick);
     }
   }
 }
 
 void ModeManager::end(std::uint32_t task, TaskReason reason, std::uint32_t tick) noexcept {
-  for (Mode* mode : in_turn_) {
+  for (const auto& mode : modes_) {
     mode->end(task, reason, tick);
   }
 }
 
 void ModeManager::end_axis(std::uint32_t slot, TaskReason reason, std::uint32_t tick) noexcept {
-  for (Mode* mode : in_turn_) {
+  for (const auto& mode : modes_) {
     mode->end_axis(slot, reason, tick);
   }
 }
 
 void ModeManager::end_all(TaskReason reason, std::uint32_t tick) noexcept {
-  for (Mode* mode : in_turn_) {
+  for (const auto& mode : modes_) {
     mode->end_all(reason, tick);
   }
 }
 
 KernelRequests ModeManager::tick(const ilk_snapshot_t& snapshot) noexcept {
   KernelRequests requests;
-  for (Mode* mode : in_turn_) {
+  for (const auto& mode : modes_) {
     mode->tick(snapshot, requests);
   }
   return requests;
 }
 
-TaskTable ModeManager::tasks() const noexcept {
-  TaskTable tasks;
-  for (const Mode* mode : in_turn_) {
-    mode->report(tasks);
+void ModeManager::see(const SeenImage& seen) noexcept {
+  for (const auto& mode : modes_) {
+    mode->see(seen);
   }
-  return tasks;
+}
+
+void ModeManager::report(ControlView& view) const noexcept {
+  for (const auto& mode : modes_) {
+    mode->report(view);
+  }
 }
 
 std::optional<Setpoint> ModeManager::setpoint(std::uint32_t slot) const noexcept {
-  for (const Mode* mode : in_turn_) {
+  for (const auto& mode : modes_) {
     if (const auto setpoint = mode->setpoint(slot)) {
       return setpoint;
     }
@@ -61,19 +94,19 @@ std::optional<Setpoint> ModeManager::setpoint(std::uint32_t slot) const noexcept
 }
 
 void ModeManager::on_unsent(const KernelRequest& request) noexcept {
-  for (Mode* mode : in_turn_) {
+  for (const auto& mode : modes_) {
     mode->on_unsent(request);
   }
 }
 
 void ModeManager::on_verdict(const ModeOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept {
-  for (Mode* mode : in_turn_) {
+  for (const auto& mode : modes_) {
     mode->on_verdict(origin, verdict, tick);
   }
 }
 
 void ModeManager::on_verdict_lost(const ModeOrigin& origin, std::uint32_t tick) noexcept {
-  for (Mode* mode : in_turn_) {
+  for (const auto& mode : modes_) {
     mode->on_verdict_lost(origin, tick);
   }
 }

@@ -4,30 +4,27 @@
  */
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
+#include <typeinfo>
 
-#include "motion/biopsy_mode.hpp"
-#include "motion/home_mode.hpp"
-#include "motion/manual_mode.hpp"
-#include "motion/path_mode.hpp"
-#include "motion/sweep_mode.hpp"
+#include "motion/mode.hpp"
 
 namespace interlock {
 
 class ModeManager {
  public:
-  explicit ModeManager(const RobotPlan& plan)
-      : manual_(plan), home_(plan), path_(plan), sweep_(plan), biopsy_(plan) {}
+  /** @param modes one for each type of task */
+  explicit ModeManager(Modes modes);
   ModeManager(const ModeManager&) = delete;
   ModeManager& operator=(const ModeManager&) = delete;
 
-  /** Takes a task, and ends what is open in other modes; but a move ends itself when another mode is open. */
+  /** Takes a task, and ends what is open in other modes; but one that yields ends itself when another mode is
+   * open. */
   void take(const TaskReference& task, std::uint32_t tick) noexcept;
 
   /** An image for the open biopsy. */
-  void see(const SeenImage& seen) noexcept { biopsy_.see(seen); }
+  void see(const SeenImage& seen) noexcept;
 
   /** Aborts that task, if it is open. */
   void end(std::uint32_t task, TaskReason reason, std::uint32_t tick) noexcept;
@@ -48,24 +45,18 @@ class ModeManager {
   /** The kernel's answer to a request will never be known. */
   void on_verdict_lost(const ModeOrigin& origin, std::uint32_t tick) noexcept;
 
-  /** Where the newest tasks stand. */
-  [[nodiscard]] TaskTable tasks() const noexcept;
-  [[nodiscard]] const SweepSpeeds& sweep_speeds() const noexcept { return sweep_.speeds(); }
-  /** Where a path or a biopsy wants the axis in `slot` now; nothing when neither moves it. */
+  /** Writes where the newest tasks stand, and what else the modes have found. */
+  void report(ControlView& view) const noexcept;
+
+  /** Where a task wants the axis in `slot` now; nothing when none moves it along a path. */
   [[nodiscard]] std::optional<Setpoint> setpoint(std::uint32_t slot) const noexcept;
 
-  [[nodiscard]] const BiopsyMode& biopsy() const noexcept { return biopsy_; }
+  /** The mode that takes tasks of that type, or null. */
+  [[nodiscard]] Mode* find(const std::type_info& tasks) const noexcept;
 
  private:
-  ManualMode manual_;
-  HomeMode home_;
-  PathMode path_;
-  SweepMode sweep_;
-  BiopsyMode biopsy_;
-  /** By their kind. */
-  const std::array<Mode*, std::variant_size_v<Work>> by_kind_{&manual_, &home_, &path_, &sweep_, &biopsy_};
   /** Homing last: the others give back their leases before it asks for their axes. */
-  const std::array<Mode*, std::variant_size_v<Work>> in_turn_{&manual_, &path_, &sweep_, &biopsy_, &home_};
+  const Modes modes_;
 };
 
 }  // namespace interlock

@@ -9,12 +9,14 @@
 
 #include <array>
 #include <chrono>
+#include <concepts>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
+#include <typeinfo>
+#include <utility>
 #include <vector>
 
 #include "interlock/types.h"
@@ -87,17 +89,32 @@ struct BiopsyTask {
   std::optional<Pose> scanner_from_guide = std::nullopt;
 };
 
-/** What is to be done. */
-using Work = std::variant<MoveTask, HomeTask, PathTask, SweepTask, BiopsyTask>;
+/** What is to be done: the task of one kind of motion, whichever that is. Shared, and never changed. */
+class Work {
+ public:
+  template <typename Kind>
+    requires(!std::same_as<Kind, Work>)
+  Work(Kind task) : type_(&typeid(Kind)), task_(std::make_shared<const Kind>(std::move(task))) {}
 
-/** Which of them, in the order of `Work`. */
-enum class TaskKind : std::uint8_t { move, home, path, sweep, biopsy };
+  /** The task, if it is of that kind, or null. */
+  template <typename Kind>
+  [[nodiscard]] const Kind* find() const noexcept {
+    return *type_ == typeid(Kind) ? static_cast<const Kind*>(task_.get()) : nullptr;
+  }
 
-/** As the interface spells it. */
-constexpr std::string_view kind_name(TaskKind kind) noexcept {
-  constexpr std::string_view names[] = {"move", "home", "path", "sweep", "biopsy"};
-  return names[static_cast<std::size_t>(kind)];
-}
+  /** The task, which is of that kind. */
+  template <typename Kind>
+  [[nodiscard]] const Kind& as() const noexcept {
+    return *static_cast<const Kind*>(task_.get());
+  }
+
+  /** Of the task. */
+  [[nodiscard]] const std::type_info& type() const noexcept { return *type_; }
+
+ private:
+  const std::type_info* type_;
+  std::shared_ptr<const void> task_;
+};
 
 /** Who thought of a motion. */
 enum class TaskSource : std::uint8_t {
@@ -121,8 +138,6 @@ struct Task {
   /** It follows from registration, probe and target of that revision: stale once these change. */
   std::optional<std::uint32_t> targeting_revision = std::nullopt;
   std::uint32_t id = 0; /**< from 1; 0: nobody has proposed it yet */
-
-  [[nodiscard]] TaskKind kind() const noexcept { return static_cast<TaskKind>(work.index()); }
 };
 
 /** By which both threads hold a task. */
@@ -207,25 +222,41 @@ struct TaskStatus {
 /** The newest task of each place: a place for the move of each slot, and one for each other kind. */
 class TaskTable {
  public:
+  /** So many other kinds may a robot have. */
+  static constexpr std::size_t most_kinds = 16;
+
   /** Of the move of a slot. */
   [[nodiscard]] const TaskStatus& move(std::uint32_t slot) const noexcept { return all_[slot]; }
   /** As above, to be written. */
   [[nodiscard]] TaskStatus& move(std::uint32_t slot) noexcept { return all_[slot]; }
-  /** Of a kind that is not `move`. */
-  [[nodiscard]] const TaskStatus& of(TaskKind kind) const noexcept { return all_[place_of(kind)]; }
-  /** As above, to be written. */
-  [[nodiscard]] TaskStatus& of(TaskKind kind) noexcept { return all_[place_of(kind)]; }
+
+  /** Of the kind whose tasks are of that type, to be written. */
+  [[nodiscard]] TaskStatus& of(const std::type_info& type) noexcept {
+    std::size_t kind = 0;
+    while (kind + 1 < most_kinds && kinds_[kind] != nullptr && *kinds_[kind] != type) {
+      ++kind;
+    }
+    kinds_[kind] = &type;
+    return all_[ILK_SLOTS + kind];
+  }
+  /** As above, of a kind that is not `MoveTask`. */
+  template <typename Kind>
+  [[nodiscard]] TaskStatus& of() noexcept {
+    return of(typeid(Kind));
+  }
+  /** As above, to be read. */
+  template <typename Kind>
+  [[nodiscard]] TaskStatus of() const noexcept {
+    return TaskTable(*this).of(typeid(Kind));
+  }
 
   [[nodiscard]] auto begin() const noexcept { return all_.begin(); }
   [[nodiscard]] auto end() const noexcept { return all_.end(); }
   bool operator==(const TaskTable&) const = default;
 
  private:
-  static constexpr std::size_t place_of(TaskKind kind) noexcept {
-    return ILK_SLOTS - 1 + static_cast<std::size_t>(kind);
-  }
-
-  std::array<TaskStatus, ILK_SLOTS + std::variant_size_v<Work> - 1> all_{};
+  std::array<const std::type_info*, most_kinds> kinds_{};
+  std::array<TaskStatus, ILK_SLOTS + most_kinds> all_{};
 };
 
 /** Mean speed at each frequency of the newest sweep that is over; 0 where the dwell was too short. */

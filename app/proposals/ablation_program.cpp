@@ -13,7 +13,7 @@ constexpr std::string_view probe_rotation = "probe_rotation";
 
 bool can_ablate(const Robot& robot) {
   return robot.with_role(probe_rotation) != nullptr && robot.with_role(probe_insertion) != nullptr &&
-         robot.has_mode(mode_name(RobotMode::ablation));
+         robot.has_mode(ablation_mode.name);
 }
 
 std::optional<MoveLeg> ablation_leg(const Robot& robot, const AblationStep& step) {

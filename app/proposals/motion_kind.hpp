@@ -1,15 +1,26 @@
 /**
  * @file
- * What the app must know of a kind of motion besides its mode on the control thread: one object for each
- * alternative of `Work`, in the folder `kinds`. A kind that leaves a part out does not compile.
+ * What the app must know of a kind of motion besides how it moves.
+ *
+ * A kind is a folder below app/modes: `mode.cpp` moves, on the control thread; `kind.cpp` defines
+ * `FOLDER_kind()`, which is what this file wants; `drafts.cpp` defines `FOLDER_drafts()`, what people may ask
+ * for (service/drafts.hpp); `modes.txt` names the modes of a robot that it serves, with `rates` behind one
+ * whose axes need rates. The build collects the folders; nothing else lists them, and one that leaves out a
+ * part does not compile.
  */
 #pragma once
 
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
+#include <typeinfo>
 #include <vector>
 
+#include "motion/axis_plan.hpp"
+#include "motion/mode.hpp"
 #include "motion/realtime_channel.hpp"
 #include "proposals/check_list.hpp"
 #include "proposals/profile.hpp"
@@ -40,6 +51,15 @@ struct TaskWords {
 class MotionKind {
  public:
   virtual ~MotionKind() = default;
+
+  /** As the interface spells it. */
+  [[nodiscard]] virtual std::string_view name() const = 0;
+
+  /** The type of its tasks. */
+  [[nodiscard]] virtual const std::type_info& tasks() const = 0;
+
+  /** The mode that carries them out. */
+  [[nodiscard]] virtual std::unique_ptr<Mode> make_mode(const RobotPlan& plan) const = 0;
 
   /** The axes that it moves, each once, in the order in which people see them. */
   [[nodiscard]] virtual std::vector<std::uint32_t> slots(const Robot& robot, const Work& work) const = 0;
@@ -76,21 +96,13 @@ class MotionKind {
   /** How the axes will go; the proposal was checked. */
   [[nodiscard]] virtual Profile profile(const Robot& robot, const ilk_config_t& config,
                                         const Proposal& proposal) const = 0;
-
- protected:
-  /** The work as what it is. */
-  template <typename Kind>
-  [[nodiscard]] static const Kind& as(const Work& work) {
-    return std::get<Kind>(work);
-  }
 };
 
-/** The kinds, each in its file of the folder `kinds`. */
-const MotionKind& move_kind();
-const MotionKind& home_kind();
-const MotionKind& path_kind();
-const MotionKind& sweep_kind();
-const MotionKind& biopsy_kind();
+/** Every kind, by the names of the folders. */
+std::span<const MotionKind* const> motion_kinds();
+
+/** Their modes, for a robot. */
+Modes make_modes(const RobotPlan& plan);
 
 /** What that work is. */
 const MotionKind& kind_of(const Work& work);

@@ -356,15 +356,15 @@ void MotionRegistry::publish_mode() {
 
 std::string_view MotionRegistry::app_mode() const {
   if (open_home() != nullptr) {
-    return mode_name(RobotMode::home);
+    return RobotMode::home.name;
   }
   const Proposal* open = open_mode();
-  return mode_name(open == nullptr ? RobotMode::manual : open->task->mode);
+  return (open == nullptr ? RobotMode::manual : open->task->mode).name;
 }
 
 const Proposal* MotionRegistry::open_mode() const {
   const auto found = std::find_if(registry_.begin(), registry_.end(), [](const Proposal& each) {
-    return each.task->mode > RobotMode::home && is_approved(each.state);
+    return each.task->mode.moves_the_whole() && is_approved(each.state);
   });
   return found == registry_.end() ? nullptr : &*found;
 }

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "motion/path_program.hpp"
+#include "robot/modes.hpp"
 #include "targeting/alignment.hpp"
 
 namespace interlock {
@@ -21,6 +22,8 @@ struct AblationStep {
 
   bool operator==(const AblationStep&) const = default;
 };
+
+inline constexpr RobotMode ablation_mode{"ablation"};
 
 /** Whether the robot's file has the mode and the axes for it. */
 bool can_ablate(const Robot& robot);

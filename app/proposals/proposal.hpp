@@ -75,7 +75,7 @@ struct Proposal {
   /** What it is to do, if it is of that kind. */
   template <typename Kind>
   [[nodiscard]] const Kind* work() const noexcept {
-    return std::get_if<Kind>(&task->work);
+    return task->work.find<Kind>();
   }
 };
 

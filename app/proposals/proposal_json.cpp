@@ -9,7 +9,7 @@ namespace interlock {
 nlohmann::json to_json(const Proposal& proposal) {
   const Task& task = *proposal.task;
   nlohmann::json json{{"id", proposal.id},
-                      {"kind", kind_name(task.kind())},
+                      {"kind", kind_of(task.work).name()},
                       {"slot", nullptr},
                       {"axis", nullptr},
                       {"axes", proposal.axes},
@@ -28,8 +28,8 @@ nlohmann::json to_json(const Proposal& proposal) {
     json["slot"] = proposal.slots.front();
     json["axis"] = proposal.axis;
   }
-  if (task.mode > RobotMode::home) {
-    json["mode"] = mode_name(task.mode);
+  if (task.mode.moves_the_whole()) {
+    json["mode"] = task.mode.name;
   }
   kind_of(task.work).add_fields(proposal, json);
   if (proposal.ended) {

@@ -108,9 +108,22 @@ std::string paused_words(const std::string& part) {
 }
 
 const MotionKind& kind_of(const Work& work) {
-  static const std::array<const MotionKind*, std::variant_size_v<Work>> kinds{
-      &move_kind(), &home_kind(), &path_kind(), &sweep_kind(), &biopsy_kind()};
-  return *kinds[work.index()];
+  const auto kinds = motion_kinds();
+  // Work is made of the tasks of some kind; one of none would find no mode either.
+  const auto found =
+      std::ranges::find_if(kinds, [&work](const MotionKind* each) { return each->tasks() == work.type(); });
+  if (found == kinds.end()) {
+    throw std::logic_error(std::string("no kind of motion takes a task of the type ") + work.type().name());
+  }
+  return **found;
+}
+
+Modes make_modes(const RobotPlan& plan) {
+  Modes modes;
+  for (const MotionKind* kind : motion_kinds()) {
+    modes.push_back(kind->make_mode(plan));
+  }
+  return modes;
 }
 
 ProposalState state_of(TaskPhase phase) noexcept {

@@ -55,7 +55,7 @@ std::vector<std::string> read_modes(TableReader& table) {
     }
     modes.push_back(std::move(mode));
   }
-  if (modes.empty() || modes.front() != mode_name(RobotMode::manual)) {
+  if (modes.empty() || modes.front() != RobotMode::manual.name) {
     table.refuse("modes", "the first mode is not \"manual\"", expected);
   }
   return modes;
@@ -138,7 +138,7 @@ void refuse_unserved_modes(TableReader& table, const Robot& robot) {
   const auto alone = std::ranges::find_if(robot.axes, [](const Axis& axis) { return !axis.motion; });
   const auto needs_motion = std::ranges::find_if(robot.modes, [](const std::string& name) {
     const auto mode = mode_of(name);
-    return mode && moves_along_paths(*mode);
+    return mode && mode->needs_rates;
   });
   if (alone != robot.axes.end() && needs_motion != robot.modes.end()) {
     table.refuse("modes",

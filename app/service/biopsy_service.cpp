@@ -83,7 +83,7 @@ tl::expected<Task, Problem> BiopsyService::draft(const std::array<double, 3>& ta
     return fail(invalid("target_mm", run.error().message(), "a target ahead of the needle"));
   }
   return Task{BiopsyTask{std::make_shared<BiopsyRun>(std::move(*run)), target_mm, start.tick, std::nullopt},
-              author, RobotMode::cooperative_biopsy};
+              author, RobotMode{"cooperative_biopsy"}};
 }
 
 void BiopsyService::begin(std::uint32_t proposal) {

@@ -8,7 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <tl/expected.hpp>
 
 #include "igtl/command.hpp"
@@ -21,6 +23,26 @@
 #include "trajectory/trajectory_error.hpp"
 
 namespace interlock {
+
+/** A kind of `ProposalDraft` (spec/openapi.yaml). */
+struct DraftKind {
+  using Reading = boost::asio::awaitable<tl::expected<Task, Problem>>;
+
+  std::string_view name; /**< field `kind` of the draft; empty: it is asked for by its mode alone */
+  std::string_view
+      mode; /**< that PUT /api/mode asks for by this draft without fields; empty: it needs some */
+  /** Reads the draft, `kind` included. */
+  Reading (*read)(const Context& context, nlohmann::json body, std::string author);
+};
+
+/** Every kind, by the names of the folders below app/modes; each has `FOLDER_drafts()` in its drafts.cpp. */
+std::span<const DraftKind> draft_kinds();
+
+/** The axis in that slot; 404 NOT_FOUND when there is none. */
+tl::expected<const Axis*, Problem> axis_in(const Robot& robot, std::int64_t slot);
+
+/** Nothing, where a draft has no field but its kind; else 422 INVALID. */
+tl::expected<void, Problem> without_fields(const nlohmann::json& body);
 
 // Trajectories as navigation programs send them, without a header: rows of numbers, or poses in time.
 //
@@ -59,17 +81,6 @@ struct PoseRequest {
   bool reachable = false; /**< take the reachable pose where the desired one cannot be had */
   bool insert = false;    /**< insert the probe once it is aligned */
 };
-
-/** Positions in the axes' units by name, reached together in `minimum_duration_s` at least. */
-tl::expected<Task, Problem> coordinated_draft(const Robot& robot, const nlohmann::json& targets,
-                                              double minimum_duration_s, const std::string& author);
-
-/**
- * Turns and inserts the probe through `steps`, an array of `AblationStep` (spec/openapi.yaml), resting at
- * each; 404 NOT_FOUND for a robot without a probe to turn.
- */
-tl::expected<Task, Problem> ablation_draft(const Robot& robot, const nlohmann::json& steps,
-                                           const std::string& author);
 
 /** The setpoints in which the robot is draped; 404 NOT_FOUND when its file has none. */
 tl::expected<Task, Problem> draping_draft(const Robot& robot, const std::string& author);

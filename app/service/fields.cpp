@@ -89,6 +89,14 @@ Fields::Fields(const json& object, std::initializer_list<const char*> known, std
   }
 }
 
+Fields Fields::some_of(const json& object) {
+  Fields fields(object);
+  if (!object.is_object()) {
+    fields.problem_ = invalid("", "The body is " + quoted(object) + ".", "an object");
+  }
+  return fields;
+}
+
 bool Fields::has(const std::string& name) const { return object_.is_object() && object_.contains(name); }
 
 const json* Fields::value(const std::string& name) const { return has(name) ? &object_[name] : nullptr; }

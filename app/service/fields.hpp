@@ -30,6 +30,9 @@ class Fields {
    */
   Fields(const nlohmann::json& object, std::initializer_list<const char*> known, std::string where = "");
 
+  /** Of an object whose other fields somebody else reads: all are known. */
+  static Fields some_of(const nlohmann::json& object);
+
   /** Whether the body has a field of that name. */
   [[nodiscard]] bool has(const std::string& name) const;
 
@@ -78,6 +81,8 @@ class Fields {
   [[nodiscard]] const std::optional<Problem>& problem() const { return problem_; }
 
  private:
+  explicit Fields(const nlohmann::json& object) : object_(object) {}
+
   const nlohmann::json& object_;
   std::string where_;
   std::optional<Problem> problem_;

@@ -1,5 +1,6 @@
 #include "proposals/motion_kind.hpp"
 #include "service/drafts.hpp"
+#include "service/fields.hpp"
 #include "service/reply.hpp"
 
 namespace interlock {
@@ -9,14 +10,28 @@ using nlohmann::json;
 
 json detail_of(const Robot& robot, const Task& task) {
   json detail = kind_of(task.work).asked(robot, task.work);
-  detail["kind"] = kind_name(task.kind());
-  if (task.mode > RobotMode::home) {
-    detail["mode"] = mode_name(task.mode);
+  detail["kind"] = kind_of(task.work).name();
+  if (task.mode.moves_the_whole()) {
+    detail["mode"] = task.mode.name;
   }
   return detail;
 }
 
 }  // namespace
+
+tl::expected<const Axis*, Problem> axis_in(const Robot& robot, std::int64_t slot) {
+  const Axis* axis = robot.at_slot(static_cast<std::uint32_t>(slot));
+  if (axis == nullptr) {
+    return fail(not_found("axis in slot " + std::to_string(slot), "a slot that /api/motors lists"));
+  }
+  return axis;
+}
+
+tl::expected<void, Problem> without_fields(const json& body) {
+  const Fields fields(body, {"kind"});
+  return fields.problem() ? tl::expected<void, Problem>(fail(*fields.problem()))
+                          : tl::expected<void, Problem>();
+}
 
 boost::asio::awaitable<tl::expected<Proposal, Problem>> propose(const Context& context, const Caller& caller,
                                                                 Task task) {

@@ -150,12 +150,12 @@ void RobotRig::follow_biopsy(std::uint32_t start_tick, std::uint32_t scene_tick)
 }
 
 void RobotRig::begin_task(Work work) {
-  kind_ = static_cast<TaskKind>(work.index());
+  kind_ = &work.type();
   loop_.give(++task_, std::move(work));
   loop_.pedal(true);
 }
 
-TaskStatus RobotRig::status() const { return loop_.status(kind_); }
+TaskStatus RobotRig::status() const { return loop_.status(*kind_); }
 
 bool RobotRig::goes_on(std::uint32_t since_tick) const {
   return is_open(status().phase) && tick() - since_tick < ticks_of(timeout_s);

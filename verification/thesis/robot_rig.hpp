@@ -79,7 +79,7 @@ class RobotRig {
   plant::Parameters parameters_;
   test::ClosedLoop loop_;  /**< without latency */
   std::uint32_t task_ = 0; /**< the newest */
-  TaskKind kind_ = TaskKind::home;
+  const std::type_info* kind_ = &typeid(HomeTask);
   MotionRecord record_;
   std::uint32_t record_tick_ = 0; /**< at which the newest motion was ordered */
 };

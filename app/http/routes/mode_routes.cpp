@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "http/routes.hpp"
 #include "robot/compile.hpp"
 #include "service/drafts.hpp"
@@ -48,6 +50,14 @@ json robot_json(const Robot& robot, const ilk_config_t& config) {
           {"axes", std::move(axes)}};
 }
 
+Problem needs_targets() {
+  return {.status = Status::conflict,
+          .code = "NO_TARGETS",
+          .detail = "Such motion needs targets, which a mode does not name.",
+          .expected = "a proposal of kind coordinated, pose, ablation or biopsy",
+          .next_step = "Propose it by POST /api/proposals."};
+}
+
 }  // namespace
 
 json mode_json(const Robot& robot, std::string_view mode) { return {{"mode", mode}, {"modes", robot.modes}}; }
@@ -80,29 +90,17 @@ tl::expected<std::string, Problem> ModeRoutes::desired_mode(const Call& call) co
   });
 }
 
-tl::expected<Task, Problem> ModeRoutes::task_for(RobotMode mode, const std::string& author) const {
-  switch (mode) {
-    case RobotMode::trajectory:
-      return trajectory_draft(context_.trajectory, author);
-    case RobotMode::draping:
-      return draping_draft(context_.robot, author);
-    case RobotMode::ablation:
-    case RobotMode::cooperative_biopsy:
-    case RobotMode::coordinated:
-      return fail(Problem{.status = Status::conflict,
-                          .code = "NO_TARGETS",
-                          .detail = "Such motion needs targets, which a mode does not name.",
-                          .expected = "a proposal of kind coordinated, pose, ablation or biopsy",
-                          .next_step = "Propose it by POST /api/proposals."});
-    case RobotMode::frequency_sweep:
-      return whole_sweep_draft(context_.robot, author);
-    case RobotMode::home:
-    case RobotMode::manual:
-      break;
+/** What the mode names without a target. */
+boost::asio::awaitable<tl::expected<Task, Problem>> ModeRoutes::task_for(std::string mode,
+                                                                         std::string author) const {
+  const auto drafts = draft_kinds();
+  const auto draft = std::ranges::find(drafts, mode, &DraftKind::mode);
+  if (draft == drafts.end()) {
+    co_return fail(needs_targets());
   }
-  return home_all(context_.robot)
-      .map([&](HomeTask homing) { return Task{std::move(homing), author, RobotMode::home}; })
-      .map_error(refused);
+  json body = json::object();
+  body["kind"] = draft->name;
+  co_return co_await draft->read(context_, std::move(body), std::move(author));
 }
 
 Answering ModeRoutes::set_mode(const Call& call) const {
@@ -110,8 +108,7 @@ Answering ModeRoutes::set_mode(const Call& call) const {
   if (!desired) {
     co_return fail(desired.error());
   }
-  const RobotMode mode_desired = mode_of(*desired).value_or(RobotMode::manual);
-  if (mode_desired == RobotMode::manual) {
+  if (*desired == RobotMode::manual.name) {
     co_return go_manual(call.caller.user);
   }
   (void)context_.view();
@@ -121,7 +118,7 @@ Answering ModeRoutes::set_mode(const Call& call) const {
   if (const auto kernel = context_.need_kernel(); !kernel) {
     co_return fail(kernel.error());
   }
-  auto task = task_for(mode_desired, call.caller.user);
+  auto task = co_await task_for(*desired, call.caller.user);
   if (!task) {
     co_return fail(task.error());
   }

@@ -1,5 +1,6 @@
-#include <array>
-#include <limits>
+#include <algorithm>
+#include <string_view>
+#include <vector>
 
 #include "http/routes.hpp"
 #include "proposals/proposal_json.hpp"
@@ -15,131 +16,20 @@ using Answering = boost::asio::awaitable<Reply>;
 using boost::beast::http::verb;
 using nlohmann::json;
 
-constexpr std::int64_t lowest_counts = std::numeric_limits<std::int32_t>::min();
-constexpr std::int64_t highest_counts = std::numeric_limits<std::int32_t>::max();
-constexpr double longest_move_s = 3600.0;
-
-tl::expected<const Axis*, Problem> axis_in(const Robot& robot, std::int64_t slot) {
-  const Axis* axis = robot.at_slot(static_cast<std::uint32_t>(slot));
-  if (axis == nullptr) {
-    return fail(not_found("axis in slot " + std::to_string(slot), "a slot that /api/motors lists"));
-  }
-  return axis;
-}
-
-tl::expected<Task, Problem> move_of(const json& body, const Robot& robot, const std::string& author) {
-  Fields fields(body, {"kind", "slot", "target", "target_counts", "drive"});
-  const auto slot = fields.integer("slot", 0, ILK_SLOTS - 1);
-  const auto target = fields.number("target");
-  auto target_counts = fields.integer("target_counts", lowest_counts, highest_counts);
-  const auto drive = fields.integer("drive", 1, highest_counts);
-  fields.require({{"slot", "an integer from 0 to 9"}});
-  if (fields.has("target") == fields.has("target_counts")) {
-    fields.reject("target", "and target_counts: one is needed, not both",
-                  "target in the axis' unit, or target_counts");
-  }
-  if (fields.problem()) {
-    return fail(*fields.problem());
-  }
-  const auto axis = axis_in(robot, *slot);
-  if (!axis) {
-    return fail(axis.error());
-  }
-  if (target) {
-    const auto counts = (*axis)->to_counts(*target);
-    if (!counts) {
-      fields.reject("target", "is beyond every encoder",
-                    "a position within the range that /api/motors shows");
-      return fail(*fields.problem());
+/** Which of the drafts is meant: a move where nothing is said. */
+tl::expected<const DraftKind*, Problem> draft_in(const json& body) {
+  std::vector<std::string_view> names;
+  for (const DraftKind& each : draft_kinds()) {
+    if (!each.name.empty()) {
+      names.push_back(each.name);
     }
-    target_counts = *counts;
   }
-  MoveTask move{(*axis)->slot, static_cast<std::int32_t>(*target_counts)};
-  if (drive) {
-    move.drive = static_cast<std::uint32_t>(*drive);
-  }
-  return Task{move, author};
-}
-
-tl::expected<Task, Problem> home_of(const json& body, const Robot& robot, const std::string& author) {
-  Fields fields(body, {"kind", "slot", "step"});
-  const auto slot = fields.integer("slot", 0, ILK_SLOTS - 1);
-  const auto step = fields.text("step");
-  if (fields.has("slot") && fields.has("step")) {
-    fields.reject("step", "and slot: at most one of them", "a slot, a step, or neither");
-  }
+  Fields fields = Fields::some_of(body);
+  const std::string kind = fields.choice("kind", names).value_or("move");
   if (fields.problem()) {
     return fail(*fields.problem());
   }
-  if (slot) {
-    return axis_in(robot, *slot).map([&](const Axis* axis) {
-      return Task{home_axis(axis->slot), author, RobotMode::home};
-    });
-  }
-  return (step ? home_step(robot, *step) : home_all(robot))
-      .map([&](HomeTask homing) { return Task{std::move(homing), author, RobotMode::home}; })
-      .map_error(refused);
-}
-
-tl::expected<Task, Problem> coordinated_of(const json& body, const Robot& robot, const std::string& author) {
-  Fields fields(body, {"kind", "targets", "duration_s"});
-  fields.require({{"targets", "positions by axis"}});
-  const double duration_s = fields.number("duration_s", 0.0, longest_move_s).value_or(0.0);
-  if (fields.problem()) {
-    return fail(*fields.problem());
-  }
-  return coordinated_draft(robot, *fields.value("targets"), duration_s, author);
-}
-
-tl::expected<Task, Problem> ablation_of(const json& body, const Robot& robot, const std::string& author) {
-  Fields fields(body, {"kind", "steps"});
-  fields.require({{"steps", "angles, depths and rests"}});
-  if (fields.problem()) {
-    return fail(*fields.problem());
-  }
-  return ablation_draft(robot, *fields.value("steps"), author);
-}
-
-tl::expected<PoseRequest, Problem> pose_of(const json& body) {
-  constexpr std::array<std::string_view, 2> poses{"desired", "reachable"};
-  Fields fields(body, {"kind", "pose", "insert"});
-  const auto pose = fields.choice("pose", poses);
-  const bool insert = fields.boolean("insert").value_or(false);
-  if (fields.problem()) {
-    return fail(*fields.problem());
-  }
-  return PoseRequest{pose == "reachable", insert};
-}
-
-/** In the guide frame; nothing: the target of the targeting. */
-tl::expected<std::optional<std::array<double, 3>>, Problem> biopsy_target_of(const json& body) {
-  Fields fields(body, {"kind", "target_mm"});
-  const auto target_mm = fields.numbers("target_mm", 3);
-  if (fields.problem()) {
-    return fail(*fields.problem());
-  }
-  return target_mm ? std::optional(std::array{(*target_mm)[0], (*target_mm)[1], (*target_mm)[2]})
-                   : std::nullopt;
-}
-
-tl::expected<std::string, Problem> kind_in(const json& body) {
-  constexpr std::array<std::string_view, 9> kinds{"biopsy",     "move",    "home",     "coordinated", "pose",
-                                                  "trajectory", "draping", "ablation", "sweep"};
-  Fields fields(body,
-                {"kind", "slot", "step", "target", "target_counts", "drive", "targets", "duration_s", "pose",
-                 "insert", "steps", "axis", "from_hz", "to_hz", "step_hz", "dwell_s", "target_mm"});
-  const auto kind = fields.choice("kind", kinds);
-  if (fields.problem()) {
-    return fail(*fields.problem());
-  }
-  return kind.value_or("move");
-}
-
-/** Nothing but the kind. */
-tl::expected<void, Problem> alone(const json& body) {
-  const Fields fields(body, {"kind"});
-  return fields.problem() ? tl::expected<void, Problem>(fail(*fields.problem()))
-                          : tl::expected<void, Problem>();
+  return &*std::ranges::find(draft_kinds(), kind, &DraftKind::name);
 }
 
 }  // namespace
@@ -169,42 +59,12 @@ Reply ProposalRoutes::list() const {
 
 /** Reads a `ProposalDraft`. */
 boost::asio::awaitable<tl::expected<Task, Problem>> ProposalRoutes::task_of(const Call& call) const {
-  const auto body = parse_body(call.request);
-  const auto kind = body.and_then(kind_in);
-  if (!kind) {
-    co_return fail(kind.error());
+  auto body = parse_body(call.request);
+  const auto draft = body.and_then(draft_in);
+  if (!draft) {
+    co_return fail(draft.error());
   }
-  const std::string& author = call.caller.user;
-  if (*kind == "pose") {
-    const auto request = pose_of(*body);
-    if (!request) {
-      co_return fail(request.error());
-    }
-    co_return co_await pose_draft(context_, *request, author);
-  }
-  if (*kind == "trajectory") {
-    co_return alone(*body).and_then([&] { return trajectory_draft(context_.trajectory, author); });
-  }
-  if (*kind == "draping") {
-    co_return alone(*body).and_then([&] { return draping_draft(context_.robot, author); });
-  }
-  if (*kind == "ablation") {
-    co_return ablation_of(*body, context_.robot, author);
-  }
-  if (*kind == "biopsy") {
-    const auto target_mm = biopsy_target_of(*body);
-    if (!target_mm) {
-      co_return fail(target_mm.error());
-    }
-    co_return co_await biopsy_draft(context_, *target_mm, author);
-  }
-  if (*kind == "sweep") {
-    co_return sweep_draft(context_.robot, *body, author);
-  }
-  if (*kind == "coordinated") {
-    co_return coordinated_of(*body, context_.robot, author);
-  }
-  co_return *kind == "home" ? home_of(*body, context_.robot, author) : move_of(*body, context_.robot, author);
+  co_return co_await (*draft)->read(context_, std::move(*body), call.caller.user);
 }
 
 Answering ProposalRoutes::propose(const Call& call) const {

@@ -1,5 +1,3 @@
-#include "motion/biopsy_mode.hpp"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 
 #include "closed_loop.hpp"
 #include "counted_allocations.hpp"
+#include "modes/biopsy/mode.hpp"
 #include "needle/scene.hpp"
 #include "plant/parameters_file.hpp"
 

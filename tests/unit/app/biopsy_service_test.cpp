@@ -72,9 +72,9 @@ TEST_F(BiopsyServiceTest, ForcesAreShownRawCalibratedAndWithTheirAge) {
 TEST_F(BiopsyServiceTest, ADraftIsOfTheTickOfItsViewAndOfItsAuthor) {
   const auto draft = desk_.draft(ahead_mm, needle_view(), "edna");
   ASSERT_TRUE(draft) << draft.error().detail;
-  EXPECT_EQ(std::get<BiopsyTask>(draft->work).start_tick, 1000u);
+  EXPECT_EQ(draft->work.as<BiopsyTask>().start_tick, 1000u);
   EXPECT_EQ(draft->author, "edna");
-  EXPECT_EQ(std::get<BiopsyTask>(draft->work).run->entry_mm, 20.0);
+  EXPECT_EQ(draft->work.as<BiopsyTask>().run->entry_mm, 20.0);
   EXPECT_EQ(draft->targeting_revision, std::nullopt);
 }
 

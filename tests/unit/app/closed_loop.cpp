@@ -5,6 +5,7 @@
 #include <string>
 
 #include "plant/exchange.hpp"
+#include "proposals/motion_kind.hpp"
 
 namespace interlock::test {
 namespace {
@@ -22,7 +23,7 @@ ClosedLoop::ClosedLoop(std::uint64_t seed, std::uint32_t latency, const Robot& r
     : robot_(robot),
       config_(config_of(robot)),
       plant_(config_, plant, seed),
-      modes_(RobotPlan(robot, config_)),
+      modes_(make_modes(RobotPlan(robot, config_))),
       latency_(latency) {
   if (ilk_init(&config_, &state_).error != ILK_CONFIG_ERROR_NONE) {
     throw std::runtime_error("the kernel refuses the robot " + robot.name);
@@ -164,8 +165,8 @@ void ClosedLoop::make_all_ready() {
 TaskStatus ClosedLoop::carry_out(std::uint32_t id, Work work, std::uint32_t most_ticks) {
   const TaskReference task = task_of(id, std::move(work));
   modes_.take(task, seen_tick_);
-  const auto* moved = std::get_if<MoveTask>(&task->work);
-  const auto status = [&] { return moved != nullptr ? move(moved->slot) : modes_.tasks().of(task->kind()); };
+  const auto* moved = task->work.find<MoveTask>();
+  const auto status = [&] { return moved != nullptr ? move(moved->slot) : this->status(task->work.type()); };
   for (std::uint32_t i = 0; i < most_ticks && is_open(status().phase); ++i) {
     tick();
   }

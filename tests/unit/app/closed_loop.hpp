@@ -14,6 +14,7 @@
 
 #include "interlock/kernel.h"
 #include "interlock/link.h"
+#include "modes/biopsy/mode.hpp"
 #include "motion/mode_manager.hpp"
 #include "plant/plant.hpp"
 #include "robot_fixture.hpp"
@@ -66,14 +67,16 @@ class ClosedLoop {
   [[nodiscard]] const ilk_state_t& state() const { return state_; }
   [[nodiscard]] const ilk_outputs_t& outputs() const { return outputs_; }
   [[nodiscard]] const ilk_config_t& config() const { return config_; }
-  [[nodiscard]] TaskStatus move(std::uint32_t slot) const { return modes_.tasks().move(slot); }
-  [[nodiscard]] TaskStatus status(TaskKind kind) const { return modes_.tasks().of(kind); }
-  [[nodiscard]] TaskStatus home() const { return modes_.tasks().of(TaskKind::home); }
-  [[nodiscard]] TaskStatus path() const { return modes_.tasks().of(TaskKind::path); }
-  [[nodiscard]] TaskStatus sweep() const { return modes_.tasks().of(TaskKind::sweep); }
+  [[nodiscard]] TaskStatus move(std::uint32_t slot) const { return reported().tasks.move(slot); }
+  [[nodiscard]] TaskStatus status(const std::type_info& tasks) const { return reported().tasks.of(tasks); }
+  [[nodiscard]] TaskStatus home() const { return status(typeid(HomeTask)); }
+  [[nodiscard]] TaskStatus path() const { return status(typeid(PathTask)); }
+  [[nodiscard]] TaskStatus sweep() const { return status(typeid(SweepTask)); }
   [[nodiscard]] std::optional<Setpoint> setpoint(std::uint32_t slot) const { return modes_.setpoint(slot); }
-  [[nodiscard]] const SweepSpeeds& sweep_speeds() const { return modes_.sweep_speeds(); }
-  [[nodiscard]] const BiopsyMode& biopsy() const { return modes_.biopsy(); }
+  [[nodiscard]] const SweepSpeeds& sweep_speeds() const { return reported().sweep_speeds; }
+  [[nodiscard]] const BiopsyMode& biopsy() const {
+    return dynamic_cast<const BiopsyMode&>(*modes_.find(typeid(BiopsyTask)));
+  }
   void show(const SeenImage& image) { modes_.see(image); }
   [[nodiscard]] std::uint32_t seen_tick() const { return seen_tick_; }
   plant::Plant& plant() { return plant_; }
@@ -98,6 +101,11 @@ class ClosedLoop {
   };
 
   void put(ilk_request_t request);
+  /** What the modes report now. */
+  [[nodiscard]] ControlView& reported() const {
+    modes_.report(view_);
+    return view_;
+  }
   [[nodiscard]] ilk_snapshot_t snapshot() const;
   void deliver_verdicts();
 
@@ -109,6 +117,7 @@ class ClosedLoop {
   bool silent_ = false;
   plant::Plant plant_;
   ModeManager modes_;
+  mutable ControlView view_;
   std::uint32_t latency_;
   std::function<void()> subscriber_ = [] {};
   std::uint32_t seen_tick_ = 0;

@@ -14,6 +14,7 @@
 
 #include "kernel_side.hpp"
 #include "motion/control_loop.hpp"
+#include "proposals/motion_kind.hpp"
 #include "robot_fixture.hpp"
 #include "tasks.hpp"
 
@@ -22,7 +23,7 @@ namespace interlock::test {
 class ControlLoopTest : public testing::Test {
  protected:
   explicit ControlLoopTest(LinkUse use = LinkUse::control)
-      : loop_(kernel_.socket(), RobotPlan(neuro(), neuro_config()), *channel_, nullptr, use),
+      : loop_(kernel_.socket(), make_modes(RobotPlan(neuro(), neuro_config())), *channel_, nullptr, use),
         snapshot_(ready_view().snapshot) {
     thread_ = std::jthread([this](const std::stop_token& stop) { loop_.run(stop); });
     kernel_.accept();
@@ -80,7 +81,7 @@ class ControlLoopTest : public testing::Test {
   }
 
   TaskStatus move() { return channel_->view.newest().tasks.move(insertion); }
-  TaskStatus home() { return channel_->view.newest().tasks.of(TaskKind::home); }
+  TaskStatus home() { return channel_->view.newest().tasks.of<HomeTask>(); }
 
   void stop() { channel_->stops.fetch_add(1, std::memory_order_release); }
 

@@ -1,10 +1,10 @@
-#include "motion/home_mode.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <vector>
 
+#include "modes/home/mode.hpp"
+#include "motion/realtime_channel.hpp"
 #include "robot_fixture.hpp"
 #include "tasks.hpp"
 
@@ -66,9 +66,9 @@ class HomeModeTest : public testing::Test {
 
   ilk_axis_t& axis(std::uint32_t slot) { return snapshot_.state.axis[slot]; }
   [[nodiscard]] TaskStatus status() const {
-    TaskTable tasks;
-    mode_.report(tasks);
-    return tasks.of(TaskKind::home);
+    ControlView view;
+    mode_.report(view);
+    return view.tasks.of<HomeTask>();
   }
   [[nodiscard]] TaskPhase phase() const { return status().phase; }
   [[nodiscard]] TaskReason reason() const { return status().reason; }
@@ -310,9 +310,9 @@ TEST_F(HomeModeTest, TellsWhatIsLeftOfTheLongestNudgeThereIs) {
   tick(ILK_MODE_MOTION);
   tick(ILK_MODE_READY);
   const auto status = [&mode] {
-    TaskTable tasks;
-    mode.report(tasks);
-    return tasks.of(TaskKind::home);
+    ControlView view;
+    mode.report(view);
+    return view.tasks.of<HomeTask>();
   };
   EXPECT_EQ(status().phase, TaskPhase::paused);
   EXPECT_EQ(status().slot, yaw);

@@ -71,7 +71,7 @@ class HomeProposalTest : public testing::Test {
 
   void report(const TaskStatus& status) {
     ControlView view;
-    view.tasks.of(TaskKind::home) = status;
+    view.tasks.of<HomeTask>() = status;
     registry_.follow(view);
   }
   void report(TaskPhase phase, TaskReason reason = TaskReason::none, std::uint32_t code = 0,
@@ -104,7 +104,7 @@ TEST_F(HomeProposalTest, OrdersOneAxis) {
   EXPECT_EQ(proposal->state, ProposalState::approved);
   EXPECT_EQ(proposal->task->author, "ann");
   const Task& task = *std::get<Approval>(sent_.at(0)).task;
-  const auto& order = std::get<HomeTask>(task.work);
+  const auto& order = task.work.as<HomeTask>();
   EXPECT_EQ(task.id, 1u);
   EXPECT_EQ(order.step_count, 0u);
   EXPECT_EQ(order.slots.front(), insertion);
@@ -118,7 +118,7 @@ TEST_F(HomeProposalTest, AWishFromOpenIgtLinkWaitsUntilSomebodyApprovesIt) {
   EXPECT_THAT(sent_, IsEmpty());
   EXPECT_EQ(registry_.app_mode(), "manual");
   ASSERT_TRUE(registry_.approve(waiting->id, view_));
-  EXPECT_EQ(std::get<HomeTask>(std::get<Approval>(sent_.at(0)).task->work).slots.front(), insertion);
+  EXPECT_EQ(std::get<Approval>(sent_.at(0)).task->work.as<HomeTask>().slots.front(), insertion);
   EXPECT_EQ(registry_.app_mode(), "home");
 }
 
@@ -137,7 +137,7 @@ TEST_F(HomeProposalTest, OrdersOneStepByItsName) {
   const auto proposal = home_step("angles");
   ASSERT_TRUE(proposal);
   EXPECT_THAT(proposal->slots, ElementsAre(yaw, pitch));
-  const auto& order = std::get<HomeTask>(std::get<Approval>(sent_.at(0)).task->work);
+  const auto& order = std::get<Approval>(sent_.at(0)).task->work.as<HomeTask>();
   EXPECT_EQ(order.first_step, angles);
   EXPECT_EQ(order.step_count, 1u);
 }
@@ -146,7 +146,7 @@ TEST_F(HomeProposalTest, OrdersAllStepsInTheOrderOfTheFile) {
   const auto proposal = home_all();
   ASSERT_TRUE(proposal);
   EXPECT_THAT(proposal->slots, ElementsAre(insertion, yaw, pitch, 4u, 7u, rotation));
-  const auto& order = std::get<HomeTask>(std::get<Approval>(sent_.at(0)).task->work);
+  const auto& order = std::get<Approval>(sent_.at(0)).task->work.as<HomeTask>();
   EXPECT_EQ(order.first_step, 0u);
   EXPECT_EQ(order.step_count, robot().home_steps.size());
 }

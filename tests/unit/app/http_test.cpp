@@ -320,7 +320,7 @@ TEST_F(HttpTest, AProposalIsMadeShownAndAborted) {
   const json proposal = json::parse(made.body);
   EXPECT_EQ(proposal["state"], "approved");
   EXPECT_EQ(proposal["target_counts"], 945);
-  EXPECT_EQ(std::get<MoveTask>(next_task().work).drive, 9000u);
+  EXPECT_EQ(next_task().work.as<MoveTask>().drive, 9000u);
   EXPECT_EQ(json::parse(get("/api/motors/3").body)["setpoint_counts"], 945);
   EXPECT_EQ(json::parse(get("/api/proposals").body).size(), 1u);
   EXPECT_EQ(json::parse(post("/api/proposals/1/abort").body)["state"], "aborted");

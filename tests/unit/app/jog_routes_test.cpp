@@ -23,7 +23,7 @@ TEST_F(JogRoutesTest, AJogIsAMoveToTheEndOfTheRangeInItsDirection) {
   const Answered up = post("/api/jog", begin("increasing"));
   ASSERT_EQ(up.status, 201u) << up.body;
   EXPECT_EQ(json::parse(up.body)["target_counts"], range.highest_counts);
-  EXPECT_EQ(std::get<MoveTask>(next_task().work).target_counts, range.highest_counts);
+  EXPECT_EQ(next_task().work.as<MoveTask>().target_counts, range.highest_counts);
 }
 
 TEST_F(JogRoutesTest, AtItsEndAnAxisDoesNotJogBackwards) {
@@ -43,7 +43,7 @@ TEST_F(JogRoutesTest, AJogIsHeldFromItsBeginAndEachRenewalSaysSince) {
   show(view);
   ASSERT_EQ(post("/api/jog", begin("increasing")).status, 201u);
   const auto approval = std::get<Approval>(next_command());
-  ASSERT_TRUE(std::get<MoveTask>(approval.task->work).jog);
+  ASSERT_TRUE(approval.task->work.as<MoveTask>().jog);
   EXPECT_EQ(approval.held.tick, view.snapshot.state.system.tick);
   EXPECT_EQ(put("/api/jog/" + std::to_string(approval.task->id), "").status, 200u);
   const auto renewal = std::get<Renewal>(next_command());
@@ -68,7 +68,7 @@ TEST_F(JogRoutesTest, NobodyConsentsToMotionByAStateThatIsOld) {
 TEST_F(JogRoutesTest, AMoveIsNotHeld) {
   show(test::ready_view());
   ASSERT_EQ(post("/api/proposals", R"({"slot":3,"target_counts":1000})").status, 201u);
-  EXPECT_FALSE(std::get<MoveTask>(next_task().work).jog);
+  EXPECT_FALSE(next_task().work.as<MoveTask>().jog);
 }
 
 TEST_F(JogRoutesTest, AJogThatTheControlThreadHasEndedIsNotRenewed) {

@@ -1,8 +1,8 @@
-#include "motion/manual_mode.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "modes/manual/mode.hpp"
+#include "motion/realtime_channel.hpp"
 #include "robot_fixture.hpp"
 #include "tasks.hpp"
 
@@ -37,9 +37,9 @@ class ManualModeTest : public testing::Test {
 
   ilk_axis_t& axis() { return snapshot_.state.axis[insertion]; }
   [[nodiscard]] TaskStatus status(std::uint32_t slot = insertion) const {
-    TaskTable tasks;
-    mode_.report(tasks);
-    return tasks.move(slot);
+    ControlView view;
+    mode_.report(view);
+    return view.tasks.move(slot);
   }
 
   ilk_snapshot_t snapshot_;

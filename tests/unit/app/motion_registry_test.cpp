@@ -75,8 +75,8 @@ TEST_F(MotionRegistryTest, DraftsChecksApprovesAndOrders) {
   ASSERT_EQ(sent_.size(), 1u);
   const Task& task = *std::get<Approval>(sent_[0]).task;
   EXPECT_EQ(task.id, 1u);
-  EXPECT_EQ(std::get<MoveTask>(task.work).slot, insertion);
-  EXPECT_EQ(std::get<MoveTask>(task.work).target_counts, 1000);
+  EXPECT_EQ(task.work.as<MoveTask>().slot, insertion);
+  EXPECT_EQ(task.work.as<MoveTask>().target_counts, 1000);
 }
 
 TEST_F(MotionRegistryTest, FollowsTheOrderToItsEnd) {

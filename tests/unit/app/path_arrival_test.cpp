@@ -7,7 +7,7 @@
 #include <random>
 
 #include "closed_loop.hpp"
-#include "motion/path_mode.hpp"
+#include "modes/path/mode.hpp"
 
 namespace interlock {
 namespace {

@@ -1,5 +1,3 @@
-#include "motion/path_mode.hpp"
-
 #include <gmock/gmock.h>
 
 #include <array>
@@ -7,6 +5,7 @@
 
 #include "closed_loop.hpp"
 #include "counted_allocations.hpp"
+#include "modes/path/mode.hpp"
 #include "plant/parameters_file.hpp"
 #include "trajectory/trajectory_csv.hpp"
 

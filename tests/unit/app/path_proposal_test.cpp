@@ -26,7 +26,7 @@ Task draft_to(std::vector<AxisCounts> targets) { return along({MoveLeg{std::move
 
 Task file_draft() {
   const auto trajectory = read_trajectory("time [s],yaw [rad]\n0,-0.5\n2,-0.7\n", neuro());
-  return {test::along({{TimedLeg{trajectory.value()}}}), "edna", RobotMode::trajectory, TaskSource::file};
+  return {test::along({{TimedLeg{trajectory.value()}}}), "edna", RobotMode{"trajectory"}, TaskSource::file};
 }
 
 class PathProposalTest : public testing::Test {
@@ -35,7 +35,7 @@ class PathProposalTest : public testing::Test {
 
   void report(std::uint32_t proposal, TaskPhase phase, TaskReason reason = TaskReason::none) {
     ControlView view = view_;
-    view.tasks.of(TaskKind::path) = {proposal, phase, reason, 0, 0};
+    view.tasks.of<PathTask>() = {proposal, phase, reason, 0, 0};
     registry_.follow(view);
   }
 

@@ -20,7 +20,7 @@ class PathRoutesTest : public HttpTest {
 
   void report(std::uint32_t proposal, TaskPhase phase) {
     ControlView view = test::ready_view();
-    view.tasks.of(TaskKind::path) = {proposal, phase, TaskReason::arrived, 0, 0};
+    view.tasks.of<PathTask>() = {proposal, phase, TaskReason::arrived, 0, 0};
     show(view);
   }
 };
@@ -62,7 +62,7 @@ TEST_F(PathRoutesTest, APoseIsAlignedWithTheProbeOutFirst) {
   ASSERT_EQ(made.status, 201u) << made.body;
   const json body = json::parse(made.body);
   EXPECT_EQ(body["legs"], 3);
-  const auto path = std::get<PathTask>(next_task().work);
+  const auto path = next_task().work.as<PathTask>();
   const auto& out = std::get<MoveLeg>(path.program->legs.front());
   ASSERT_EQ(out.targets.size(), 1u);
   EXPECT_EQ(out.targets.front(),
@@ -166,7 +166,7 @@ TEST_F(PathRoutesTest, AblationTurnsAndInsertsTheProbeThroughItsSteps) {
   EXPECT_EQ(body["axes"], json({"probe_rotation", "insertion"}));
   EXPECT_EQ(body["legs"], 2);
   EXPECT_GT(body["duration_s"], 2.0);
-  const auto path = std::get<PathTask>(next_task().work);
+  const auto path = next_task().work.as<PathTask>();
   EXPECT_EQ(std::get<MoveLeg>(path.program->legs.front()).dwell_s, 2.0);
   const std::pair<json, std::string> wrong[] = {
       {json::array(), "steps"},

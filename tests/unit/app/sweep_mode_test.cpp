@@ -1,11 +1,10 @@
-#include "motion/sweep_mode.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "closed_loop.hpp"
 #include "counted_allocations.hpp"
+#include "modes/sweep/mode.hpp"
 #include "proposals/checks.hpp"
 
 namespace interlock {

@@ -44,11 +44,11 @@ class SweepProposalTest : public testing::Test {
   }
 
   tl::expected<Proposal, Refusal> propose(const SweepTask& sweep) {
-    return registry_.propose({sweep, "edna", RobotMode::frequency_sweep}, view_);
+    return registry_.propose({sweep, "edna", RobotMode{"frequency_sweep"}}, view_);
   }
 
   void report(TaskPhase phase, std::uint32_t step) {
-    view_.tasks.of(TaskKind::sweep) = {1, phase, TaskReason::swept, 0, 0, turned_axis, step};
+    view_.tasks.of<SweepTask>() = {1, phase, TaskReason::swept, 0, 0, turned_axis, step};
     registry_.follow(view_);
   }
 
@@ -76,7 +76,7 @@ TEST_F(SweepProposalTest, ASweepWithinTheBandIsApprovedAndOrdered) {
   const auto proposal = propose(draft_of(53000, 51000));
   ASSERT_TRUE(proposal) << proposal.error().detail;
   EXPECT_EQ(proposal->state, ProposalState::approved);
-  const auto& order = std::get<SweepTask>(std::get<Approval>(sent_.front()).task->work);
+  const auto& order = std::get<Approval>(sent_.front()).task->work.as<SweepTask>();
   EXPECT_EQ(order.slot, turned_axis);
   EXPECT_EQ(order.steps.count, 21u);
   EXPECT_EQ(order.steps.word(20), 22009u * 51000u);
@@ -152,7 +152,7 @@ TEST(SweepDrafts, NameTheFieldThatIsWrong) {
                   {"to_hz", 51000},  {"step_hz", 100},     {"dwell_s", 0.5}};
   const auto draft = sweep_draft(prostate(), good, "edna");
   ASSERT_TRUE(draft);
-  EXPECT_EQ(std::get<SweepTask>(draft->work).steps.dwell_ticks, 500u);
+  EXPECT_EQ(draft->work.as<SweepTask>().steps.dwell_ticks, 500u);
   const std::pair<const char*, json> cases[] = {
       {"axis", "insertion"}, {"axis", "elbow"}, {"from_hz", "low"}, {"step_hz", 1}, {"dwell_s", 0}};
   for (const auto& [field, value] : cases) {
@@ -168,11 +168,11 @@ TEST(SweepDrafts, NameTheFieldThatIsWrong) {
 TEST(SweepDrafts, TheWholeBandIsSweptInPublishedSteps) {
   const auto draft = whole_sweep_draft(prostate(), "edna");
   ASSERT_TRUE(draft);
-  EXPECT_EQ(std::get<SweepTask>(draft->work).steps.step_words, -1000000);
-  EXPECT_EQ(std::get<SweepTask>(draft->work).steps.count, 49u);
-  EXPECT_EQ(std::get<SweepTask>(draft->work).steps.dwell_ticks, 1000u);
+  EXPECT_EQ(draft->work.as<SweepTask>().steps.step_words, -1000000);
+  EXPECT_EQ(draft->work.as<SweepTask>().steps.count, 49u);
+  EXPECT_EQ(draft->work.as<SweepTask>().steps.dwell_ticks, 1000u);
   EXPECT_TRUE(checked(prostate(), test::config_of(prostate()), test::ready_view(prostate()),
-                      std::get<SweepTask>(draft->work)));
+                      draft->work.as<SweepTask>()));
 }
 
 }  // namespace

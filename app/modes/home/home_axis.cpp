@@ -1,4 +1,4 @@
-#include "motion/home_axis.hpp"
+#include "modes/home/home_axis.hpp"
 
 #include <algorithm>
 

@@ -1,8 +1,9 @@
-#include "motion/home_mode.hpp"
+#include "modes/home/mode.hpp"
 
 #include <utility>
 
 #include "motion/blocking_condition.hpp"
+#include "motion/realtime_channel.hpp"
 #include "motion/rest_watch.hpp"
 
 namespace interlock {
@@ -23,11 +24,13 @@ std::uint32_t faulted_axes(const ilk_snapshot_t& snapshot) noexcept {
 
 }  // namespace
 
-HomeMode::HomeMode(const RobotPlan& plan) : plan_(plan) {
+HomeMode::HomeMode(const RobotPlan& plan) : Mode(typeid(HomeTask)), plan_(plan) {
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     axes_[slot] = HomeAxis(slot, plan.axis[slot], plan.lease_ticks());
   }
 }
+
+void HomeMode::report(ControlView& view) const noexcept { view.tasks.of<HomeTask>() = status_; }
 
 const HomeStepPlan& HomeMode::step() const noexcept {
   return homing().step_count == 0 ? alone_ : plan_.home_steps[homing().first_step + steps_done_];
@@ -66,7 +69,7 @@ void HomeMode::take(const TaskReference& task, std::uint32_t tick) noexcept {
   if (is_open()) {
     finish(TaskPhase::aborted, TaskReason::cancelled, 0, tick);
   }
-  const HomeTask& homing = *std::get_if<HomeTask>(&task->work);
+  const HomeTask& homing = task->work.as<HomeTask>();
   status_ = TaskStatus{task->id, TaskPhase::waiting, TaskReason::none, 0, tick};
   if (!names_known_steps(homing)) {
     set_phase(TaskPhase::refused, TaskReason::kernel_refused, ILK_VERDICT_AXIS, tick);

@@ -1,4 +1,4 @@
-#include "motion/path_mode.hpp"
+#include "modes/path/mode.hpp"
 
 namespace interlock {
 namespace {
@@ -9,7 +9,7 @@ constexpr double settle_s = 5.0;
 }  // namespace
 
 PathMode::PathMode(const RobotPlan& plan)
-    : HeldMode(TaskKind::path, plan),
+    : HeldMode(typeid(PathTask), plan),
       period_s_(plan.period_s()),
       settle_ticks_(static_cast<std::uint32_t>(settle_s / plan.period_s())),
       walk_(plan) {

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "modes/path/mode.hpp"
 #include "motion/setpoint_range.hpp"
 #include "motion/time_scaling.hpp"
 #include "proposals/checks.hpp"
@@ -225,10 +226,16 @@ namespace {
 
 class PathKind final : public MotionKind {
  public:
+  [[nodiscard]] std::string_view name() const override { return "path"; }
+  [[nodiscard]] const std::type_info& tasks() const override { return typeid(PathTask); }
+  [[nodiscard]] std::unique_ptr<Mode> make_mode(const RobotPlan& plan) const override {
+    return std::make_unique<PathMode>(plan);
+  }
+
   [[nodiscard]] std::vector<std::uint32_t> slots(const Robot& robot, const Work& work) const override {
     std::vector<std::uint32_t> slots;
     for (const Axis& axis : robot.axes) {
-      if (((as<PathTask>(work).program->mask() >> axis.slot) & 1u) != 0) {
+      if (((work.as<PathTask>().program->mask() >> axis.slot) & 1u) != 0) {
         slots.push_back(axis.slot);
       }
     }
@@ -284,6 +291,7 @@ class PathKind final : public MotionKind {
 
 }  // namespace
 
+const MotionKind& path_kind();
 const MotionKind& path_kind() {
   static const PathKind kind;
   return kind;

@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "modes/biopsy/mode.hpp"
 #include "motion/biopsy_run.hpp"
 #include "proposals/checks.hpp"
 #include "proposals/motion_kind.hpp"
@@ -63,6 +64,12 @@ namespace {
 
 class BiopsyKind final : public MotionKind {
  public:
+  [[nodiscard]] std::string_view name() const override { return "biopsy"; }
+  [[nodiscard]] const std::type_info& tasks() const override { return typeid(BiopsyTask); }
+  [[nodiscard]] std::unique_ptr<Mode> make_mode(const RobotPlan& plan) const override {
+    return std::make_unique<BiopsyMode>(plan);
+  }
+
   [[nodiscard]] std::vector<std::uint32_t> slots(const Robot& robot, const Work& /*work*/) const override {
     return {robot.with_role("insertion")->slot, robot.with_role("rotation")->slot};
   }
@@ -73,13 +80,13 @@ class BiopsyKind final : public MotionKind {
 
   /** The run is large; what the control thread may still use, the registry holds. */
   [[nodiscard]] std::optional<Work> remains(const Work& work) const override {
-    BiopsyTask ended = as<BiopsyTask>(work);
+    BiopsyTask ended = work.as<BiopsyTask>();
     ended.run.reset();
     return ended;
   }
 
   [[nodiscard]] json asked(const Robot& /*robot*/, const Work& work) const override {
-    return {{"target_mm", as<BiopsyTask>(work).target_mm}};
+    return {{"target_mm", work.as<BiopsyTask>().target_mm}};
   }
 
   void add_fields(const Proposal& proposal, json& fields) const override {
@@ -108,6 +115,7 @@ class BiopsyKind final : public MotionKind {
 
 }  // namespace
 
+const MotionKind& biopsy_kind();
 const MotionKind& biopsy_kind() {
   static const BiopsyKind kind;
   return kind;

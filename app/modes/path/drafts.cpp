@@ -1,6 +1,10 @@
+#include "service/drafts.hpp"
+
+#include <array>
+#include <string_view>
+
 #include "proposals/programs.hpp"
 #include "service/alignment_view.hpp"
-#include "service/drafts.hpp"
 #include "service/fields.hpp"
 #include "service/reply.hpp"
 #include "service/targeting_store.hpp"
@@ -12,6 +16,7 @@ using nlohmann::json;
 
 constexpr std::size_t most_ablation_steps = 200;
 constexpr double longest_dwell_s = 3600.0;
+constexpr double longest_move_s = 3600.0;
 
 Task task_of(RobotMode mode, PathProgram program, const std::string& author) {
   return {PathTask{std::make_shared<const PathProgram>(std::move(program))}, author, mode};
@@ -46,8 +51,6 @@ tl::expected<MoveLeg, Problem> ablation_leg_in(const Robot& robot, const json& s
   }
   return *std::move(leg);
 }
-
-}  // namespace
 
 tl::expected<Task, Problem> coordinated_draft(const Robot& robot, const json& targets,
                                               double minimum_duration_s, const std::string& author) {
@@ -86,14 +89,80 @@ tl::expected<Task, Problem> ablation_draft(const Robot& robot, const json& steps
     }
     legs.emplace_back(*leg);
   }
-  return task_of(RobotMode::ablation, {std::move(legs)}, author);
+  return task_of(ablation_mode, {std::move(legs)}, author);
+}
+
+tl::expected<Task, Problem> coordinated_of(const json& body, const Robot& robot, const std::string& author) {
+  Fields fields(body, {"kind", "targets", "duration_s"});
+  fields.require({{"targets", "positions by axis"}});
+  const double duration_s = fields.number("duration_s", 0.0, longest_move_s).value_or(0.0);
+  if (fields.problem()) {
+    return fail(*fields.problem());
+  }
+  return coordinated_draft(robot, *fields.value("targets"), duration_s, author);
+}
+
+tl::expected<Task, Problem> ablation_of(const json& body, const Robot& robot, const std::string& author) {
+  Fields fields(body, {"kind", "steps"});
+  fields.require({{"steps", "angles, depths and rests"}});
+  if (fields.problem()) {
+    return fail(*fields.problem());
+  }
+  return ablation_draft(robot, *fields.value("steps"), author);
+}
+
+tl::expected<PoseRequest, Problem> pose_of(const json& body) {
+  constexpr std::array<std::string_view, 2> poses{"desired", "reachable"};
+  Fields fields(body, {"kind", "pose", "insert"});
+  const auto pose = fields.choice("pose", poses);
+  const bool insert = fields.boolean("insert").value_or(false);
+  if (fields.problem()) {
+    return fail(*fields.problem());
+  }
+  return PoseRequest{pose == "reachable", insert};
+}
+
+DraftKind::Reading read_coordinated(const Context& context, json body, std::string author) {
+  co_return coordinated_of(body, context.robot, author);
+}
+
+DraftKind::Reading read_ablation(const Context& context, json body, std::string author) {
+  co_return ablation_of(body, context.robot, author);
+}
+
+DraftKind::Reading read_pose(const Context& context, json body, std::string author) {
+  const auto request = pose_of(body);
+  if (!request) {
+    co_return fail(request.error());
+  }
+  co_return co_await pose_draft(context, *request, std::move(author));
+}
+
+DraftKind::Reading read_trajectory(const Context& context, json body, std::string author) {
+  co_return without_fields(body).and_then([&] { return trajectory_draft(context.trajectory, author); });
+}
+
+DraftKind::Reading read_draping(const Context& context, json body, std::string author) {
+  co_return without_fields(body).and_then([&] { return draping_draft(context.robot, author); });
+}
+
+}  // namespace
+
+std::span<const DraftKind> path_drafts();
+std::span<const DraftKind> path_drafts() {
+  static constexpr DraftKind drafts[] = {{"coordinated", "", read_coordinated},
+                                         {"pose", "", read_pose},
+                                         {"trajectory", "trajectory", read_trajectory},
+                                         {"draping", "draping", read_draping},
+                                         {"ablation", "", read_ablation}};
+  return drafts;
 }
 
 tl::expected<Task, Problem> draping_draft(const Robot& robot, const std::string& author) {
   if (robot.draping.empty()) {
     return fail(not_found("setpoint for draping", "a [draping] table in the robot's file"));
   }
-  return task_of(RobotMode::draping, {{MoveLeg{robot.draping, 0.0, 0.0}}}, author);
+  return task_of(RobotMode{"draping"}, {{MoveLeg{robot.draping, 0.0, 0.0}}}, author);
 }
 
 tl::expected<Task, Problem> trajectory_draft(const LoadedTrajectory& loaded, const std::string& author) {
@@ -104,7 +173,7 @@ tl::expected<Task, Problem> trajectory_draft(const LoadedTrajectory& loaded, con
                         .expected = "a loaded trajectory",
                         .next_step = "Load one by PUT /api/trajectory."});
   }
-  return Task{PathTask{loaded.program}, author, RobotMode::trajectory, TaskSource::file,
+  return Task{PathTask{loaded.program}, author, RobotMode{"trajectory"}, TaskSource::file,
               loaded.targeting_revision};
 }
 

@@ -22,6 +22,7 @@ class SweepMode final : public HeldMode {
  public:
   explicit SweepMode(const RobotPlan& plan);
 
+  void report(ControlView& view) const noexcept override;
   void on_unsent(const KernelRequest& request) noexcept override;
 
   [[nodiscard]] const SweepSpeeds& speeds() const noexcept { return speeds_; }

@@ -1,7 +1,8 @@
+#include "service/drafts.hpp"
+
 #include <algorithm>
 
 #include "proposals/checks.hpp"
-#include "service/drafts.hpp"
 #include "service/fields.hpp"
 #include "service/reply.hpp"
 
@@ -12,15 +13,30 @@ constexpr double highest_hz = 195000.0;
 constexpr double shortest_sweep_dwell_s = 0.01;
 constexpr double longest_sweep_dwell_s = 60.0;
 
-Task sweep_task(const SweepTask& sweep, const std::string& author) {
-  return {sweep, author, RobotMode::frequency_sweep};
+constexpr RobotMode sweep_mode{"frequency_sweep"};
+
+Task sweep_task(const SweepTask& sweep, const std::string& author) { return {sweep, author, sweep_mode}; }
+
+DraftKind::Reading read_sweep(const Context& context, nlohmann::json body, std::string author) {
+  co_return sweep_draft(context.robot, body, author);
+}
+
+DraftKind::Reading read_whole_sweep(const Context& context, nlohmann::json /*body*/, std::string author) {
+  co_return whole_sweep_draft(context.robot, author);
 }
 
 }  // namespace
 
+std::span<const DraftKind> sweep_drafts();
+std::span<const DraftKind> sweep_drafts() {
+  static constexpr DraftKind drafts[] = {{"sweep", "", read_sweep},
+                                         {"", "frequency_sweep", read_whole_sweep}};
+  return drafts;
+}
+
 tl::expected<Task, Problem> sweep_draft(const Robot& robot, const nlohmann::json& body,
                                         const std::string& author) {
-  if (!robot.has_mode(mode_name(RobotMode::frequency_sweep))) {
+  if (!robot.has_mode(sweep_mode.name)) {
     return fail(not_found("axis for a sweep of frequency", "a robot with the mode frequency_sweep"));
   }
   Fields fields(body, {"kind", "axis", "from_hz", "to_hz", "step_hz", "dwell_s"});

@@ -1,22 +1,23 @@
-#include "motion/sweep_mode.hpp"
+#include "modes/sweep/mode.hpp"
 
 #include <cmath>
 
 #include "control/frequency_map.hpp"
+#include "motion/realtime_channel.hpp"
 #include "motion/setpoint_range.hpp"
 
 namespace interlock {
 namespace {
 
 /** Twenty lags of the motor on the plant: then its speed is that of the frequency. */
-constexpr double settle_s = 0.1;
+constexpr double motor_settle_s = 0.1;
 
 }  // namespace
 
 SweepMode::SweepMode(const RobotPlan& plan)
-    : HeldMode(TaskKind::sweep, plan),
+    : HeldMode(typeid(SweepTask), plan),
       plan_(plan),
-      settle_ticks_(static_cast<std::uint32_t>(settle_s / plan.period_s())) {
+      settle_ticks_(static_cast<std::uint32_t>(motor_settle_s / plan.period_s())) {
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     leases_[slot] = SetpointLease(slot, plan.axis[slot], plan.lease_ticks());
   }
@@ -104,6 +105,11 @@ std::int32_t SweepMode::target_counts(const ilk_snapshot_t& snapshot) const noex
   const SetpointRange range = setpoint_range(plan_.axis[sweep_.slot].rules, snapshot.state.axis[sweep_.slot],
                                              snapshot.state.system.mode);
   return upwards_ ? range.highest_counts : range.lowest_counts;
+}
+
+void SweepMode::report(ControlView& view) const noexcept {
+  HeldMode::report(view);
+  view.sweep_speeds = speeds_;
 }
 
 void SweepMode::on_unsent(const KernelRequest& request) noexcept {

@@ -1,12 +1,14 @@
-#include "motion/manual_mode.hpp"
+#include "modes/manual/mode.hpp"
 
 #include <algorithm>
 
 #include "motion/blocking_condition.hpp"
+#include "motion/realtime_channel.hpp"
 
 namespace interlock {
 
-ManualMode::ManualMode(const RobotPlan& plan) noexcept : timeout_ticks_(plan.timeout_ticks()) {
+ManualMode::ManualMode(const RobotPlan& plan) noexcept
+    : Mode(typeid(MoveTask)), timeout_ticks_(plan.timeout_ticks()) {
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     jobs_[slot].move = AxisMove(slot, plan.axis[slot], plan.lease_ticks());
   }
@@ -22,7 +24,7 @@ void ManualMode::set_phase(std::uint32_t slot, TaskPhase phase, TaskReason reaso
 }
 
 void ManualMode::take(const TaskReference& task, std::uint32_t tick) noexcept {
-  const MoveTask& move = *std::get_if<MoveTask>(&task->work);
+  const MoveTask& move = task->work.as<MoveTask>();
   if (move.slot >= ILK_SLOTS) {
     return;
   }
@@ -36,9 +38,9 @@ bool ManualMode::is_open() const noexcept {
   return std::ranges::any_of(moves_, [](const TaskStatus& each) { return interlock::is_open(each.phase); });
 }
 
-void ManualMode::report(TaskTable& tasks) const noexcept {
+void ManualMode::report(ControlView& view) const noexcept {
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
-    tasks.move(slot) = moves_[slot];
+    view.tasks.move(slot) = moves_[slot];
   }
 }
 

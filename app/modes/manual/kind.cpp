@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "modes/manual/mode.hpp"
 #include "motion/setpoint_range.hpp"
 #include "proposals/checks.hpp"
 #include "proposals/motion_kind.hpp"
@@ -31,8 +32,14 @@ tl::expected<void, Refusal> check_target(const Axis& axis, const SetpointRange& 
 
 class MoveKind final : public MotionKind {
  public:
+  [[nodiscard]] std::string_view name() const override { return "move"; }
+  [[nodiscard]] const std::type_info& tasks() const override { return typeid(MoveTask); }
+  [[nodiscard]] std::unique_ptr<Mode> make_mode(const RobotPlan& plan) const override {
+    return std::make_unique<ManualMode>(plan);
+  }
+
   [[nodiscard]] std::vector<std::uint32_t> slots(const Robot& /*robot*/, const Work& work) const override {
-    return {as<MoveTask>(work).slot};
+    return {work.as<MoveTask>().slot};
   }
 
   void check(const Scene& scene, Proposal& proposal, CheckList& checks) const override {
@@ -64,7 +71,7 @@ class MoveKind final : public MotionKind {
   }
 
   [[nodiscard]] json asked(const Robot& robot, const Work& work) const override {
-    const MoveTask& move = as<MoveTask>(work);
+    const MoveTask& move = work.as<MoveTask>();
     json detail{{"axis", robot.at_slot(move.slot)->name}, {"target_counts", move.target_counts}};
     if (move.drive) {
       detail["drive"] = *move.drive;
@@ -96,7 +103,8 @@ class MoveKind final : public MotionKind {
 
 }  // namespace
 
-const MotionKind& move_kind() {
+const MotionKind& manual_kind();
+const MotionKind& manual_kind() {
   static const MoveKind kind;
   return kind;
 }

@@ -14,8 +14,8 @@
 #include <array>
 #include <cstdint>
 
+#include "modes/home/home_axis.hpp"
 #include "motion/axis_plan.hpp"
-#include "motion/home_axis.hpp"
 #include "motion/mode.hpp"
 
 namespace interlock {
@@ -24,6 +24,7 @@ class HomeMode final : public Mode {
  public:
   explicit HomeMode(const RobotPlan& plan);
 
+  [[nodiscard]] bool homes() const noexcept override { return true; }
   /** One that names what the robot has not is refused (AXIS). */
   void take(const TaskReference& task, std::uint32_t tick) noexcept override;
   void end(std::uint32_t task, TaskReason reason, std::uint32_t tick) noexcept override;
@@ -35,7 +36,7 @@ class HomeMode final : public Mode {
   void on_verdict_lost(const ModeOrigin& origin, std::uint32_t tick) noexcept override;
 
   [[nodiscard]] bool is_open() const noexcept override { return interlock::is_open(status_.phase); }
-  void report(TaskTable& tasks) const noexcept override { tasks.of(TaskKind::home) = status_; }
+  void report(ControlView& view) const noexcept override;
 
  private:
   void set_phase(TaskPhase phase, TaskReason reason, std::uint32_t code, std::uint32_t tick) noexcept;
@@ -51,7 +52,7 @@ class HomeMode final : public Mode {
   void end_step(const ilk_snapshot_t& snapshot) noexcept;
   void start_axes(const ilk_snapshot_t& snapshot) noexcept;
   [[nodiscard]] const HomeStepPlan& step() const noexcept;
-  [[nodiscard]] const HomeTask& homing() const noexcept { return *std::get_if<HomeTask>(&task_->work); }
+  [[nodiscard]] const HomeTask& homing() const noexcept { return task_->work.as<HomeTask>(); }
   [[nodiscard]] bool names_known_steps(const HomeTask& homing) const noexcept;
   [[nodiscard]] bool expire_when_late(std::uint32_t tick) noexcept;
   void settle_stop(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept;

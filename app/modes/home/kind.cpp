@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "modes/home/mode.hpp"
 #include "proposals/checks.hpp"
 #include "proposals/motion_kind.hpp"
 
@@ -203,8 +204,14 @@ std::string left_words(const Robot& robot, const TaskStatus& status) {
 
 class HomeKind final : public MotionKind {
  public:
+  [[nodiscard]] std::string_view name() const override { return "home"; }
+  [[nodiscard]] const std::type_info& tasks() const override { return typeid(HomeTask); }
+  [[nodiscard]] std::unique_ptr<Mode> make_mode(const RobotPlan& plan) const override {
+    return std::make_unique<HomeMode>(plan);
+  }
+
   [[nodiscard]] std::vector<std::uint32_t> slots(const Robot& /*robot*/, const Work& work) const override {
-    return as<HomeTask>(work).slots;
+    return work.as<HomeTask>().slots;
   }
 
   void check(const Scene& scene, Proposal& proposal, CheckList& checks) const override {
@@ -220,11 +227,11 @@ class HomeKind final : public MotionKind {
   }
 
   [[nodiscard]] std::uint32_t first_step(const Work& work) const override {
-    return as<HomeTask>(work).first_step;
+    return work.as<HomeTask>().first_step;
   }
 
   [[nodiscard]] json asked(const Robot& robot, const Work& work) const override {
-    const HomeTask& homing = as<HomeTask>(work);
+    const HomeTask& homing = work.as<HomeTask>();
     if (homing.step_count == 0) {
       return {{"axis", robot.at_slot(homing.slots.front())->name}};
     }
@@ -262,6 +269,7 @@ class HomeKind final : public MotionKind {
 
 }  // namespace
 
+const MotionKind& home_kind();
 const MotionKind& home_kind() {
   static const HomeKind kind;
   return kind;

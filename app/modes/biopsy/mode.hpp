@@ -24,7 +24,8 @@ class BiopsyMode final : public HeldMode {
   explicit BiopsyMode(const RobotPlan& plan);
 
   /** An image of tip and target; one that cannot be is counted and changes nothing. */
-  void see(const SeenImage& seen) noexcept;
+  void see(const SeenImage& seen) noexcept override;
+  void report(ControlView& view) const noexcept override;
 
   void tick(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept override;
   void on_unsent(const KernelRequest& request) noexcept override;

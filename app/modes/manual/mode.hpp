@@ -19,6 +19,7 @@ class ManualMode final : public Mode {
  public:
   explicit ManualMode(const RobotPlan& plan) noexcept;
 
+  [[nodiscard]] bool yields() const noexcept override { return true; }
   /** An open one of the same axis is replaced. */
   void take(const TaskReference& task, std::uint32_t tick) noexcept override;
   void end(std::uint32_t task, TaskReason reason, std::uint32_t tick) noexcept override;
@@ -29,7 +30,7 @@ class ManualMode final : public Mode {
   void on_verdict(const ModeOrigin& origin, std::uint32_t verdict, std::uint32_t tick) noexcept override;
   /** Whether a move of any axis is open. */
   [[nodiscard]] bool is_open() const noexcept override;
-  void report(TaskTable& tasks) const noexcept override;
+  void report(ControlView& view) const noexcept override;
 
  private:
   struct Job {

@@ -1,8 +1,9 @@
-#include "motion/biopsy_mode.hpp"
+#include "modes/biopsy/mode.hpp"
 
 #include <algorithm>
 #include <cmath>
 
+#include "motion/realtime_channel.hpp"
 #include "motion/setpoint_range.hpp"
 
 namespace interlock {
@@ -46,7 +47,7 @@ void BiopsyMode::Guided::aim(double offset, double offset_speed, double lease_s)
 }
 
 BiopsyMode::BiopsyMode(const RobotPlan& plan)
-    : HeldMode(TaskKind::biopsy, plan),
+    : HeldMode(typeid(BiopsyTask), plan),
       needle_(plan.needle),
       period_s_(plan.period_s()),
       force_timeout_ticks_(ticks_of(force_timeout_s, period_s_)),
@@ -235,6 +236,13 @@ bool BiopsyMode::fails(const KinematicsError& error, std::uint32_t tick) noexcep
 double BiopsyMode::depth_mm(const ilk_snapshot_t& snapshot) const noexcept {
   return snapshot.state.axis[needle_->insertion_slot].position_counts / insertion_.counts_per_unit -
          run_->entry_mm;
+}
+
+void BiopsyMode::report(ControlView& view) const noexcept {
+  HeldMode::report(view);
+  view.biopsy = findings_;
+  view.biopsy_now = now_;
+  view.force = force_.readings();
 }
 
 void BiopsyMode::on_unsent(const KernelRequest& request) noexcept {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "control/axis_controller.hpp"
+#include "modes/sweep/mode.hpp"
 #include "proposals/checks.hpp"
 #include "proposals/motion_kind.hpp"
 
@@ -99,8 +100,14 @@ std::string frequency_words(const FrequencySteps& steps, std::uint32_t step) {
 
 class SweepKind final : public MotionKind {
  public:
+  [[nodiscard]] std::string_view name() const override { return "sweep"; }
+  [[nodiscard]] const std::type_info& tasks() const override { return typeid(SweepTask); }
+  [[nodiscard]] std::unique_ptr<Mode> make_mode(const RobotPlan& plan) const override {
+    return std::make_unique<SweepMode>(plan);
+  }
+
   [[nodiscard]] std::vector<std::uint32_t> slots(const Robot& /*robot*/, const Work& work) const override {
-    return {as<SweepTask>(work).slot};
+    return {work.as<SweepTask>().slot};
   }
 
   void check(const Scene& scene, Proposal& proposal, CheckList& checks) const override {
@@ -113,7 +120,7 @@ class SweepKind final : public MotionKind {
   }
 
   [[nodiscard]] json asked(const Robot& robot, const Work& work) const override {
-    const auto& [slot, steps] = as<SweepTask>(work);
+    const auto& [slot, steps] = work.as<SweepTask>();
     return {{"axis", robot.at_slot(slot)->name},
             {"from_hz", frequency_map::hz_of(steps.word(0))},
             {"to_hz", frequency_map::hz_of(steps.word(steps.count - 1))},
@@ -153,6 +160,7 @@ class SweepKind final : public MotionKind {
 
 }  // namespace
 
+const MotionKind& sweep_kind();
 const MotionKind& sweep_kind() {
   static const SweepKind kind;
   return kind;
