@@ -38,16 +38,16 @@ std::vector<std::string> arguments_of(const Program& program) {
 
 /** A datagram socket under an abstract name of its own, which names the sender of each message; none when the
  * system refuses. */
-UniqueFd life_socket() {
-  UniqueFd life(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+FileDescriptor life_socket() {
+  FileDescriptor life(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   const sockaddr_un any{AF_UNIX, {}};
   const int on = 1;
   const bool bound = bind(life.get(), reinterpret_cast<const sockaddr*>(&any), sizeof any.sun_family) == 0 &&
                      setsockopt(life.get(), SOL_SOCKET, SO_PASSCRED, &on, sizeof on) == 0;
-  return bound ? std::move(life) : UniqueFd();
+  return bound ? std::move(life) : FileDescriptor();
 }
 
-std::string abstract_name_of(const UniqueFd& socket) {
+std::string abstract_name_of(const FileDescriptor& socket) {
   sockaddr_un address{};
   socklen_t length = sizeof address;
   getsockname(socket.get(), reinterpret_cast<sockaddr*>(&address), &length);
@@ -55,7 +55,7 @@ std::string abstract_name_of(const UniqueFd& socket) {
 }
 
 /** As this process has it, but the service manager of a child is this process. */
-std::vector<std::string> environment_of(const Program& program, const UniqueFd& life) {
+std::vector<std::string> environment_of(const Program& program, const FileDescriptor& life) {
   std::vector<std::string> environment;
   for (char** each = environ; *each != nullptr; ++each) {
     const std::string_view entry = *each;
@@ -128,15 +128,15 @@ std::string describe_end(int wait_status) {
 
 Result<ChildProcess> ChildProcess::start(const Program& program) {
   std::array<int, 2> ends{};
-  UniqueFd null_input(open("/dev/null", O_RDONLY | O_CLOEXEC));
+  FileDescriptor null_input(open("/dev/null", O_RDONLY | O_CLOEXEC));
   if (!null_input || pipe2(ends.data(), O_CLOEXEC) != 0) {
     return failed(ExitCode::process_ended, program.name + " cannot be started: " + last_error());
   }
-  UniqueFd reader(ends[0]);
-  const UniqueFd writer(ends[1]);
+  FileDescriptor reader(ends[0]);
+  const FileDescriptor writer(ends[1]);
   fcntl(reader.get(), F_SETFL, O_NONBLOCK);
 
-  UniqueFd life = program.watchdog.count() > 0 ? life_socket() : UniqueFd();
+  FileDescriptor life = program.watchdog.count() > 0 ? life_socket() : FileDescriptor();
   if (program.watchdog.count() > 0 && !life) {
     return failed(ExitCode::process_ended, program.name + " cannot be watched: " + last_error());
   }
@@ -155,7 +155,7 @@ Result<ChildProcess> ChildProcess::start(const Program& program) {
   if (pid < 0) {
     return failed(ExitCode::process_ended, program.name + " cannot be started: " + last_error());
   }
-  ChildProcess child(pid, UniqueFd(pidfd_open(pid, 0)), std::move(reader), std::move(life));
+  ChildProcess child(pid, FileDescriptor(pidfd_open(pid, 0)), std::move(reader), std::move(life));
   if (!child.pidfd_) {
     return failed(ExitCode::process_ended, program.name + " cannot be watched: " + last_error());
   }
@@ -220,7 +220,7 @@ std::vector<std::string> ChildProcess::read_lines(bool rest) {
       break;
     }
     if (length == 0) {
-      output_ = UniqueFd();
+      output_ = FileDescriptor();
     }
     for (const char letter : std::string_view(chunk.data(), static_cast<std::size_t>(length))) {
       if (letter != '\n') {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "cli/exit_code.hpp"
-#include "cli/unique_fd.hpp"
+#include "system/file_descriptor.hpp"
 
 namespace interlock::cli {
 
@@ -69,13 +69,13 @@ class ChildProcess {
   std::optional<int> reap();
 
  private:
-  ChildProcess(pid_t pid, UniqueFd pidfd, UniqueFd output, UniqueFd life)
+  ChildProcess(pid_t pid, FileDescriptor pidfd, FileDescriptor output, FileDescriptor life)
       : pid_(pid), pidfd_(std::move(pidfd)), output_(std::move(output)), life_(std::move(life)) {}
 
   pid_t pid_; /**< 0 once reaped */
-  UniqueFd pidfd_;
-  UniqueFd output_;
-  UniqueFd life_;
+  FileDescriptor pidfd_;
+  FileDescriptor output_;
+  FileDescriptor life_;
   std::string unfinished_line_;
 };
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <tl/expected.hpp>
 
+#include "robot/robot_error.hpp"
+
 namespace interlock::cli {
 
 /** Exit codes of `interlock`, as `interlock --help` lists them. */
@@ -27,6 +29,11 @@ struct Failure {
   ExitCode code;
   std::string text;
 };
+
+/** Why a robot file was not taken: one that is missing stands in the way, another is refused. */
+inline Failure robot_failure(const RobotError& error) {
+  return {error.is_missing ? ExitCode::precondition : ExitCode::refused, error.message()};
+}
 
 /** What a command gives, or why it ends and with which exit code. */
 template <typename Value>

@@ -8,12 +8,12 @@
 #include <string>
 #include <system_error>
 
-#include "cli/unique_fd.hpp"
+#include "system/file_descriptor.hpp"
 
 namespace interlock::cli {
 
 Result<std::uint16_t> free_port(std::uint16_t port) {
-  const UniqueFd listener(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  const FileDescriptor listener(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const int reuse = 1;
   setsockopt(listener.get(), SOL_SOCKET, SO_REUSEADDR, &reuse, sizeof reuse);
   sockaddr_in address{};

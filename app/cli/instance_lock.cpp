@@ -53,7 +53,7 @@ Result<InstanceLock> InstanceLock::take(const fs::path& directory) {
   // Whether this worked shows in the lock file.
   static_cast<void>(make_private_folder(directory));
   const fs::path path = directory / "lock";
-  UniqueFd file(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
+  FileDescriptor file(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
   if (!file) {
     return failed(ExitCode::precondition, "the state directory cannot be used: " + path.string() + ": " +
                                               std::generic_category().message(errno) +
@@ -96,7 +96,7 @@ InstanceLock::~InstanceLock() {
 }
 
 std::optional<fs::path> running_black_box(const fs::path& directory) {
-  const UniqueFd file(open((directory / "lock").c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
+  const FileDescriptor file(open((directory / "lock").c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
   const std::string black_box = file ? read_holder(file.get()).black_box : "";
   return black_box.empty() ? std::nullopt : std::optional<fs::path>(black_box);
 }

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "cli/exit_code.hpp"
-#include "cli/unique_fd.hpp"
+#include "system/file_descriptor.hpp"
 
 namespace interlock::cli {
 
@@ -37,9 +37,9 @@ class InstanceLock {
   ~InstanceLock();
 
  private:
-  explicit InstanceLock(UniqueFd file) : file_(std::move(file)) {}
+  explicit InstanceLock(FileDescriptor file) : file_(std::move(file)) {}
 
-  UniqueFd file_;
+  FileDescriptor file_;
 };
 
 /** Socket of the black box of the instance that runs with this state directory, or was killed; nothing when

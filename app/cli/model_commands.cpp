@@ -21,12 +21,10 @@ tl::expected<CompiledRobot, RobotError> compiled_robot(const fs::path& file) {
   return CompiledRobot{std::move(*robot), *config};
 }
 
-Failure refused_model(const RobotError& error) { return {ExitCode::refused, error.message()}; }
-
 }  // namespace
 
 Result<CompiledRobot> load_and_compile(const fs::path& file) {
-  return compiled_robot(file).map_error(refused_model);
+  return compiled_robot(file).map_error([](const RobotError& error) { return robot_failure(error); });
 }
 
 Result<void> save_config(const ilk_config_t& config, const fs::path& file) {
@@ -41,7 +39,7 @@ Result<void> check_model(const fs::path& file, bool as_json, std::ostream& outpu
   const tl::expected<CompiledRobot, RobotError> compiled = compiled_robot(file);
   if (!compiled) {
     output << (as_json ? model_json(compiled.error()) : "");
-    return tl::unexpected(refused_model(compiled.error()));
+    return tl::unexpected(robot_failure(compiled.error()));
   }
   const auto& [robot, config] = *compiled;
   output << (as_json ? model_json(robot, config) : model_text(robot, config));

@@ -5,9 +5,7 @@ namespace interlock::cli {
 Result<Robot> named_robot(const std::string& robot, const Installation& installation,
                           std::span<const RobotSetting> settings) {
   return installation.robot(robot).and_then([&](const std::filesystem::path& file) {
-    return load_robot(file, settings).map_error([](const RobotError& error) {
-      return Failure{ExitCode::refused, error.message()};
-    });
+    return load_robot(file, settings).map_error([](const RobotError& error) { return robot_failure(error); });
   });
 }
 

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "cli/unique_fd.hpp"
+#include "system/file_descriptor.hpp"
 
 namespace interlock::cli {
 namespace {
@@ -113,7 +113,7 @@ Result<Password> ask(int terminal, const Silence& silence, const std::string& pr
 }  // namespace
 
 Result<Password> ask_for_new_password(const std::string& user) {
-  const UniqueFd terminal(::open("/dev/tty", O_RDWR | O_CLOEXEC | O_NOCTTY));
+  const FileDescriptor terminal(::open("/dev/tty", O_RDWR | O_CLOEXEC | O_NOCTTY));
   if (!terminal) {
     return failed(ExitCode::precondition,
                   "there is no terminal to ask for the password; give it with --password-stdin");

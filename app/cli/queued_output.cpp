@@ -71,13 +71,13 @@ bool wait_for(int fd, short event, Clock::time_point then) {
   return poll(&polled, 1, milliseconds_until(then)) > 0;
 }
 
-UniqueFd start_copier(int to, pid_t& copier) {
+FileDescriptor start_copier(int to, pid_t& copier) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
     throw std::system_error(errno, std::generic_category(), "pipe");
   }
-  const UniqueFd reader(ends[0]);
-  UniqueFd writer(ends[1]);
+  const FileDescriptor reader(ends[0]);
+  FileDescriptor writer(ends[1]);
   fcntl(writer.get(), F_SETPIPE_SZ, pipe_bytes);
   fcntl(writer.get(), F_SETFL, O_NONBLOCK);
   const pid_t parent = getpid();
@@ -105,7 +105,7 @@ QueuedOutput::~QueuedOutput() {
   const Clock::time_point then = Clock::now() + longest_end;
   while (!lines_.write_waiting() && wait_for(pipe_.get(), POLLOUT, then)) {
   }
-  pipe_ = UniqueFd();
+  pipe_ = FileDescriptor();
   if (!wait_for(copier_end_.get(), POLLIN, then)) {
     pidfd_send_signal(copier_end_.get(), SIGKILL, nullptr, 0);
     wait_for(copier_end_.get(), POLLIN, Clock::now() + longest_end);

@@ -11,7 +11,7 @@
 #include <streambuf>
 #include <string>
 
-#include "cli/unique_fd.hpp"
+#include "system/file_descriptor.hpp"
 
 namespace interlock::cli {
 
@@ -57,8 +57,8 @@ class QueuedOutput {
   };
 
   pid_t copier_ = 0;
-  UniqueFd pipe_; /**< after `copier_`, which its making sets */
-  UniqueFd copier_end_;
+  FileDescriptor pipe_; /**< after `copier_`, which its making sets */
+  FileDescriptor copier_end_;
   Lines lines_;
   std::ostream stream_{&lines_};
 };

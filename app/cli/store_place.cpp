@@ -20,7 +20,7 @@ Result<fs::path> state_of(const StorePlace& place, const Installation& installat
   }
   const auto robot = load_robot(*file);
   if (!robot) {
-    return failed(ExitCode::refused, robot.error().message());
+    return tl::unexpected(robot_failure(robot.error()));
   }
   return state_directory("", robot->name);
 }

@@ -39,7 +39,7 @@ bool says_ready(std::string_view line) { return line == "ready" || line.starts_w
 SignalEvents::SignalEvents() {
   const sigset_t signals = termination_signals();
   sigprocmask(SIG_BLOCK, &signals, nullptr);
-  fd_ = UniqueFd(signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK));
+  fd_ = FileDescriptor(signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK));
   if (!fd_) {
     throw std::system_error(errno, std::generic_category(), "signalfd");
   }

@@ -21,8 +21,8 @@
 #include "cli/child_process.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/restart_budget.hpp"
-#include "cli/unique_fd.hpp"
 #include "cli/watchdog.hpp"
+#include "system/file_descriptor.hpp"
 
 namespace interlock::cli {
 
@@ -41,7 +41,7 @@ class SignalEvents {
   [[nodiscard]] bool take() const;
 
  private:
-  UniqueFd fd_;
+  FileDescriptor fd_;
 };
 
 /** What follows when a program ends that was ready. */

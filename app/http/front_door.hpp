@@ -22,8 +22,8 @@
 
 #include "http/message.hpp"
 #include "http/same_origin.hpp"
-#include "link/file_descriptor.hpp"
 #include "motion/realtime_channel.hpp"
+#include "system/file_descriptor.hpp"
 
 namespace interlock::web {
 

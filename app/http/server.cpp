@@ -261,6 +261,14 @@ asio::awaitable<void> Server::serve_stream(Connection& connection, Request reque
     }
     problem = known ? api_.router().check(viewers, caller) : std::optional(known.error());
   }
+  if (!problem && request["Sec-WebSocket-Version"] != "13") {
+    problem = Problem{.status = Status::upgrade_required,
+                      .code = "UPGRADE_REQUIRED",
+                      .detail = "The stream speaks another version of WebSocket.",
+                      .expected = "Sec-WebSocket-Version: 13",
+                      .next_step = "Open it with a client of RFC 6455.",
+                      .headers = {{"Sec-WebSocket-Version", "13"}}};
+  }
   if (!problem && api_.stream().full(caller.session)) {
     problem = Problem{.status = Status::service_unavailable,
                       .code = "OVERLOADED",

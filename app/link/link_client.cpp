@@ -43,8 +43,7 @@ tl::expected<FileDescriptor, LinkError> connect_to(const std::string& path) {
   }
   std::memcpy(address.sun_path, path.data(), path.size());
   FileDescriptor socket(::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  if (!socket.open() ||
-      ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+  if (!socket || ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     return failure(LinkError::Kind::unreachable, "link socket \"" + path + "\": " + system_reason(errno));
   }
   return socket;

@@ -14,8 +14,8 @@
 #include <tl/expected.hpp>
 
 #include "interlock/link.h"
-#include "link/file_descriptor.hpp"
 #include "link/link_error.hpp"
+#include "link/shared_mapping.hpp"
 
 namespace interlock {
 

@@ -18,10 +18,10 @@
 
 #include "interlock/link.h"
 #include "interlock/sim_bus.h"
-#include "link/file_descriptor.hpp"
 #include "motion/biopsy_run.hpp"
 #include "motion/force_watch.hpp"
 #include "motion/task.hpp"
+#include "system/file_descriptor.hpp"
 
 namespace interlock {
 

@@ -41,7 +41,7 @@ bool end_last_line(int file) {
 Recorded<AuditHeads> AuditHeads::open(const fs::path& socket, const fs::path& file) {
   constexpr mode_t for_us_to_write = 0640;
   constexpr mode_t for_the_group = 0660;
-  FileHandle kept(
+  FileDescriptor kept(
       ::open(file.c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW, for_us_to_write));
   if (!kept || !end_last_line(kept.get())) {
     return failed_with(file.string(), errno);
@@ -52,7 +52,7 @@ Recorded<AuditHeads> AuditHeads::open(const fs::path& socket, const fs::path& fi
     return failed_with(socket.string(), ENAMETOOLONG);
   }
   std::ranges::copy(socket.native(), std::begin(address.sun_path));
-  FileHandle taking(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  FileDescriptor taking(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   // One that was killed left its own.
   ::unlink(socket.c_str());
   if (!taking || ::bind(taking.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||

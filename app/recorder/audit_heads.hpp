@@ -10,8 +10,8 @@
 #include <filesystem>
 #include <string>
 
-#include "recorder/file_handle.hpp"
 #include "recorder/recorder_error.hpp"
+#include "system/file_descriptor.hpp"
 
 namespace interlock::recorder {
 
@@ -30,13 +30,14 @@ class AuditHeads {
   void finish();
 
  private:
-  AuditHeads(FileHandle socket, FileHandle file) : socket_(std::move(socket)), file_(std::move(file)) {}
+  AuditHeads(FileDescriptor socket, FileDescriptor file)
+      : socket_(std::move(socket)), file_(std::move(file)) {}
 
   void receive();
   void append();
 
-  FileHandle socket_;
-  FileHandle file_;
+  FileDescriptor socket_;
+  FileDescriptor file_;
   std::string newest_;   /**< "NUMBER HASH" */
   std::string appended_; /**< the newest one that is on the disk */
   std::chrono::steady_clock::time_point next_;

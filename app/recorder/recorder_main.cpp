@@ -45,18 +45,18 @@ struct Options {
 void say(const std::string& line) { std::cout << line << std::endl; }
 
 /** The signals that ask to end, as a descriptor. */
-FileHandle end_signals() {
+FileDescriptor end_signals() {
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGTERM);
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGHUP);
   sigprocmask(SIG_BLOCK, &signals, nullptr);
-  return FileHandle(signalfd(-1, &signals, SFD_CLOEXEC));
+  return FileDescriptor(signalfd(-1, &signals, SFD_CLOEXEC));
 }
 
 /** Waits for the next look; true when a signal asked to end. */
-bool end_is_asked(const FileHandle& signals) {
+bool end_is_asked(const FileDescriptor& signals) {
   pollfd waiting{signals.get(), POLLIN, 0};
   signalfd_siginfo signal{};
   return poll(&waiting, 1, look_interval_ms) > 0 && read(signals.get(), &signal, sizeof signal) > 0;
@@ -157,7 +157,7 @@ int record(const Options& options) {
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
   const pid_t parent = getppid();
-  const FileHandle signals = end_signals();
+  const FileDescriptor signals = end_signals();
   const Recorded<RecordingFolder> folder = RecordingFolder::open(options.folder, options.keep_mib << 20);
   if (!folder) {
     std::cerr << "interlock-recorder: " << folder.error() << std::endl;

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "recorder/file_handle.hpp"
+#include "system/file_descriptor.hpp"
 #include "system/utc_time.hpp"
 
 namespace interlock::recorder {
@@ -59,7 +59,7 @@ std::vector<Kept> finished_in(const fs::path& folder) {
 
 /** By the recorder of a run that ended, which has not written out all of it yet. */
 bool is_being_written(const fs::path& part) {
-  const FileHandle file(::open(part.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
+  const FileDescriptor file(::open(part.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
   return file && flock(file.get(), LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
 }
 

@@ -36,14 +36,14 @@ std::vector<std::uint32_t> encoded(const BlockCopy& block) {
 
 /** For as long as the file is open: a recorder that begins leaves it alone (RecordingFolder::finish_parts).
  */
-void hold(const FileHandle& file) { static_cast<void>(flock(file.get(), LOCK_EX | LOCK_NB)); }
+void hold(const FileDescriptor& file) { static_cast<void>(flock(file.get(), LOCK_EX | LOCK_NB)); }
 
 }  // namespace
 
 Recorded<RecordingWriter> RecordingWriter::create(const std::filesystem::path& path,
                                                   const ilk_run_description_t& run,
                                                   const RecordingSubject& subject) {
-  FileHandle file(
+  FileDescriptor file(
       open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, S_IRUSR | S_IWUSR));
   if (!file) {
     return failed_with(path.string(), errno);
@@ -51,7 +51,7 @@ Recorded<RecordingWriter> RecordingWriter::create(const std::filesystem::path& p
   hold(file);
   RecordingWriter writer(std::move(file), path.string());
   const ilk_recording_header_t header = header_of(run, subject);
-  const FileHandle folder(open(path.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  const FileDescriptor folder(open(path.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   Recorded<void> written = writer.write(&header, sizeof header);
   if (written && (!folder || fsync(folder.get()) != 0)) {
     written = failed_with(path.parent_path().string(), errno);
@@ -64,7 +64,7 @@ Recorded<RecordingWriter> RecordingWriter::create(const std::filesystem::path& p
 }
 
 bool RecordingWriter::reopen() {
-  FileHandle file(open(name_.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW));
+  FileDescriptor file(open(name_.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW));
   struct stat there{};
   if (!file || fstat(file.get(), &there) != 0 || static_cast<std::uint64_t>(there.st_size) < bytes_) {
     return false;

@@ -9,9 +9,9 @@
 #include <string>
 
 #include "interlock/recording_file.h"
-#include "recorder/file_handle.hpp"
 #include "recorder/recorder_error.hpp"
 #include "recorder/ring.hpp"
+#include "system/file_descriptor.hpp"
 
 namespace interlock::recorder {
 
@@ -41,12 +41,12 @@ class RecordingWriter {
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
 
  private:
-  RecordingWriter(FileHandle file, std::string name) : file_(std::move(file)), name_(std::move(name)) {}
+  RecordingWriter(FileDescriptor file, std::string name) : file_(std::move(file)), name_(std::move(name)) {}
 
   Recorded<void> write(const void* bytes, std::size_t count);
   [[nodiscard]] Recorded<void> write_at_end(const void* bytes, std::size_t count);
 
-  FileHandle file_;
+  FileDescriptor file_;
   std::string name_;
   std::uint64_t bytes_ = 0;
   std::uint64_t last_bytes_ = 0; /**< of the block that was appended last */

@@ -47,12 +47,12 @@ bool is_of_this_release(const ilk_run_description_t& run) {
 }
 
 /** Descriptors that came with a message. */
-using Received = std::array<FileHandle, 2>;
+using Received = std::array<FileDescriptor, 2>;
 
-FileHandle connected(const std::filesystem::path& path) {
+FileDescriptor connected(const std::filesystem::path& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
-  FileHandle socket(::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0));
+  FileDescriptor socket(::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0));
   setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &longest_answer, sizeof longest_answer);
   setsockopt(socket.get(), SOL_SOCKET, SO_RCVTIMEO, &longest_answer, sizeof longest_answer);
   if (path.native().size() >= sizeof address.sun_path) {
@@ -62,7 +62,7 @@ FileHandle connected(const std::filesystem::path& path) {
   std::ranges::copy(path.native(), address.sun_path);
   return socket && ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0
              ? std::move(socket)
-             : FileHandle();
+             : FileDescriptor();
 }
 
 /** Both descriptors, or none. */
@@ -82,14 +82,14 @@ Received received(int socket) {
   }
   std::array<int, 2> numbers{-1, -1};
   std::memcpy(numbers.data(), CMSG_DATA(header), std::min(header->cmsg_len - CMSG_LEN(0), sizeof numbers));
-  return {FileHandle(numbers[0]), FileHandle(numbers[1])};
+  return {FileDescriptor(numbers[0]), FileDescriptor(numbers[1])};
 }
 
 }  // namespace
 
 Recorded<Ring> Ring::connect(const std::filesystem::path& path) {
   const std::string name = "black box " + path.string();
-  const FileHandle socket = connected(path);
+  const FileDescriptor socket = connected(path);
   if (!socket) {
     return failed_with(name, errno);
   }
@@ -102,7 +102,7 @@ Recorded<Ring> Ring::connect(const std::filesystem::path& path) {
   });
 }
 
-Recorded<Ring> Ring::map(FileHandle memory, FileHandle life) {
+Recorded<Ring> Ring::map(FileDescriptor memory, FileDescriptor life) {
   struct stat status{};
   if (fstat(memory.get(), &status) != 0) {
     return failed_with("its memory", errno);

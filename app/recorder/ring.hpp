@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "interlock/recording.h"
-#include "recorder/file_handle.hpp"
 #include "recorder/recorder_error.hpp"
+#include "system/file_descriptor.hpp"
 
 namespace interlock::recorder {
 
@@ -41,7 +41,7 @@ class Ring {
   static Recorded<Ring> connect(const std::filesystem::path& socket);
 
   /** Maps the memory; `life` hangs up when the kernel ends. */
-  static Recorded<Ring> map(FileHandle memory, FileHandle life);
+  static Recorded<Ring> map(FileDescriptor memory, FileDescriptor life);
 
   Ring(Ring&& other) noexcept;
   Ring& operator=(Ring&&) = delete;
@@ -82,14 +82,14 @@ class Ring {
   [[nodiscard]] std::optional<TickHead> next(RingPlace& place) const;
 
  private:
-  Ring(FileHandle life, const ilk_ring_header_t* header, std::size_t bytes)
+  Ring(FileDescriptor life, const ilk_ring_header_t* header, std::size_t bytes)
       : life_(std::move(life)), header_(header), bytes_(bytes) {}
 
   [[nodiscard]] const ilk_block_header_t* block(std::uint32_t number) const;
   [[nodiscard]] std::optional<std::uint32_t> used(std::uint32_t number) const;
   [[nodiscard]] bool still_holds(std::uint32_t number) const;
 
-  FileHandle life_;
+  FileDescriptor life_;
   const ilk_ring_header_t* header_; /**< of the mapping */
   std::size_t bytes_;
 };

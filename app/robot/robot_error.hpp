@@ -16,9 +16,10 @@ namespace interlock {
 struct RobotError {
   std::string file;
   std::uint32_t line = 0;
-  std::string key;      /**< dotted path: "axis.yaw.drive.max" */
-  std::string problem;  /**< what was found */
-  std::string expected; /**< what belongs there instead */
+  std::string key;         /**< dotted path: "axis.yaw.drive.max" */
+  std::string problem;     /**< what was found */
+  std::string expected;    /**< what belongs there instead */
+  bool is_missing = false; /**< there is no file of that name, or it may not be read */
 
   /** One line for people: "neuro.toml:41: axis.yaw.drive.max: -3 is out of range; expected ...". */
   [[nodiscard]] std::string message() const;

@@ -166,10 +166,18 @@ void apply(const RobotSetting& setting, toml::table& root) {
   table->insert_or_assign(setting.key, std::move(point));
 }
 
+/** Of a socket's path, which has 107 bytes, folder and file take the rest. */
+constexpr std::size_t longest_robot_name = 40;
+
 Robot read_robot(ReadLog& log, const toml::table& root, std::span<const KinematicsFamily> families) {
   TableReader table(log, root, "");
   Robot robot;
   robot.name = table.identifier("name");
+  if (robot.name.size() > longest_robot_name) {
+    table.refuse("name", std::to_string(robot.name.size()) + " characters are given",
+                 "at most " + std::to_string(longest_robot_name) +
+                     ", since the paths of sockets have the name in them");
+  }
   robot.title = table.text("title");
   robot.period_us = table.integer<std::uint32_t>("period_us");
   robot.modes = read_modes(table);
@@ -222,9 +230,12 @@ tl::expected<Robot, RobotError> load_robot(const std::filesystem::path& file,
   const bool sensible = std::filesystem::file_size(file, error) <= largest_file_bytes && !error;
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
-  if (!sensible || !stream || !(text << stream.rdbuf())) {
-    return tl::unexpected(RobotError{file.string(), 0, "",
-                                     "the file cannot be read, is empty or is larger than 1 MiB",
+  if (error || !stream) {
+    return tl::unexpected(RobotError{file.string(), 0, "", "there is no such file, or it cannot be read",
+                                     "a robot file such as models/robots/neuro.toml", true});
+  }
+  if (!sensible || !(text << stream.rdbuf())) {
+    return tl::unexpected(RobotError{file.string(), 0, "", "the file is empty or is larger than 1 MiB",
                                      "a robot file such as models/robots/neuro.toml"});
   }
   return parse_robot(text.str(), file.string(), kinematics_families(), settings);

@@ -194,6 +194,11 @@ std::int64_t TableReader::integer_between(std::string_view key, std::int64_t low
     return lowest;
   }
   const std::optional<std::int64_t> given = node->value_exact<std::int64_t>();
+  if (const auto broken = node->value_exact<double>(); broken && *broken == std::floor(*broken)) {
+    log_.refuse(line_of(*node), path_of(key), shortest(*broken) + " is given with a decimal point",
+                range_text(lowest, highest) + " without one");
+    return lowest;
+  }
   if (!given || *given < lowest || *given > highest) {
     refuse_value(key, *node, range_text(lowest, highest));
     return lowest;

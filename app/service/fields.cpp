@@ -11,14 +11,6 @@ using nlohmann::json;
 
 constexpr std::size_t longest_quote = 60;
 
-std::string quoted(const json& value) {
-  std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
-  if (text.size() > longest_quote) {
-    text = text.substr(0, longest_quote) + "...";
-  }
-  return text;
-}
-
 std::string shortest(double value) {
   std::ostringstream text;
   text << value;
@@ -65,6 +57,19 @@ std::string listed(const Names& names) {
 }
 
 }  // namespace
+
+std::optional<double> number_of(const json& value) {
+  const json number = number_in(value);
+  return number.is_number() ? std::optional(number.get<double>()) : std::nullopt;
+}
+
+std::string quoted(const json& value) {
+  std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
+  if (text.size() > longest_quote) {
+    text = text.substr(0, longest_quote) + "...";
+  }
+  return text;
+}
 
 Problem invalid(const std::string& field, const std::string& detail, const std::string& expected) {
   return {.status = Status::unprocessable_entity,
@@ -128,12 +133,11 @@ std::optional<double> Fields::number(const std::string& name) {
   if (!has(name)) {
     return std::nullopt;
   }
-  const json found = number_in(object_[name]);
-  if (!found.is_number()) {
+  const auto found = number_of(object_[name]);
+  if (!found) {
     reject(name, "is " + quoted(object_[name]), "a number");
-    return std::nullopt;
   }
-  return found.get<double>();
+  return found;
 }
 
 std::optional<double> Fields::number(const std::string& name, double lowest, double highest) {
@@ -158,12 +162,12 @@ std::optional<std::vector<double>> Fields::numbers(const std::string& name, std:
   }
   std::vector<double> found;
   for (const json& each : list) {
-    const json element = number_in(each);
-    if (!element.is_number()) {
+    const auto element = number_of(each);
+    if (!element) {
       reject(name + "[" + std::to_string(found.size()) + "]", "is " + quoted(each), "a number");
       return std::nullopt;
     }
-    found.push_back(element.get<double>());
+    found.push_back(*element);
   }
   return found;
 }

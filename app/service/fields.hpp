@@ -17,6 +17,12 @@
 
 namespace interlock {
 
+/** A number, or the one in a string that is spelt as JSON spells numbers; nothing for any other value. */
+std::optional<double> number_of(const nlohmann::json& value);
+
+/** A value as errors show it: as JSON, cut short. */
+std::string quoted(const nlohmann::json& value);
+
 /**
  * After an error every read gives nothing, so that a caller reads all fields first and asks for the problem
  * then. Numbers may be sent as strings that hold one, spelt as JSON spells numbers.

@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "store/store_files.hpp"
+#include "system/file_descriptor.hpp"
 
 namespace interlock {
 
@@ -45,17 +46,15 @@ Stored<NotedHeads> read_noted_heads(const fs::path& file) {
 }
 
 bool note_head(const fs::path& file, const NotedHead& noted) {
-  const int appended = ::open(file.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | O_NOFOLLOW);
-  if (appended < 0) {
+  const FileDescriptor appended(::open(file.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | O_NOFOLLOW));
+  if (!appended) {
     return false;
   }
   // The line before may have been cut off; an empty one is none.
   const std::string line =
       '\n' + noted.time + ' ' + std::to_string(noted.head.number) + ' ' + noted.head.hash + '\n';
-  const bool written = ::write(appended, line.data(), line.size()) == static_cast<ssize_t>(line.size()) &&
-                       ::fdatasync(appended) == 0;
-  ::close(appended);
-  return written;
+  return ::write(appended.get(), line.data(), line.size()) == static_cast<ssize_t>(line.size()) &&
+         ::fdatasync(appended.get()) == 0;
 }
 
 bool report_head(const fs::path& socket, const AuditHead& head) {
@@ -65,14 +64,13 @@ bool report_head(const fs::path& socket, const AuditHead& head) {
     return false;
   }
   std::strcpy(address.sun_path, socket.c_str());
-  const int sender = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  if (sender < 0) {
+  const FileDescriptor sender(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  if (!sender) {
     return false;
   }
   const std::string message = std::to_string(head.number) + ' ' + head.hash;
-  const ssize_t sent = ::sendto(sender, message.data(), message.size(), MSG_NOSIGNAL,
+  const ssize_t sent = ::sendto(sender.get(), message.data(), message.size(), MSG_NOSIGNAL,
                                 reinterpret_cast<const sockaddr*>(&address), sizeof address);
-  ::close(sender);
   return sent == static_cast<ssize_t>(message.size());
 }
 

@@ -115,7 +115,7 @@ Stored<Store> Store::open(const fs::path& file, bool begun_anew) {
   return Store(std::move(*lock), std::move(*database));
 }
 
-Store::Store(std::unique_ptr<StoreLock> lock, std::unique_ptr<SQLite::Database> database)
+Store::Store(StoreLock lock, std::unique_ptr<SQLite::Database> database)
     : lock_(std::move(lock)), database_(std::move(database)) {}
 
 Store::Store(Store&&) noexcept = default;

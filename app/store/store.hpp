@@ -27,11 +27,10 @@
 #include "store/noted_heads.hpp"
 #include "store/sqlite_forward.hpp"
 #include "store/store_error.hpp"
+#include "store/store_files.hpp"
 #include "system/utc_time.hpp"
 
 namespace interlock {
-
-class StoreLock;
 
 /** Beyond this much write-ahead log, which only a reader that does not end can keep, nothing is written. */
 constexpr std::uintmax_t longest_log_bytes = std::uintmax_t{64} << 20;
@@ -133,7 +132,7 @@ class Store {
   }
 
  private:
-  Store(std::unique_ptr<StoreLock> lock, std::unique_ptr<SQLite::Database> database);
+  Store(StoreLock lock, std::unique_ptr<SQLite::Database> database);
 
   /** Refused, unavailable: the file of that name is not the one that is open. */
   Stored<void> still_in_place();
@@ -144,7 +143,7 @@ class Store {
   /** The exception in flight as a value if it is one of SQLite; any other flies on. */
   [[nodiscard]] StoreError caught() const;
 
-  std::unique_ptr<StoreLock> lock_;
+  StoreLock lock_;
   std::unique_ptr<SQLite::Database> database_;
   CommitCheck commit_check_ = commit_always;
 };

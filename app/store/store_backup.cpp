@@ -71,8 +71,9 @@ Stored<void> must_be_free(const fs::path& file) {
 Stored<void> must_exist(const fs::path& file, const std::string& what) {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) {
-    return tl::unexpected(StoreError{StoreError::Kind::not_found, "there is no " + what + ' ' + file.string(),
-                                     "", "a file that can be read", ""});
+    return tl::unexpected(StoreError{StoreError::Kind::unavailable,
+                                     "there is no " + what + ' ' + file.string(), "",
+                                     "a file that can be read", ""});
   }
   return {};
 }

@@ -26,23 +26,20 @@ constexpr mode_t private_file_mode = 0600;
 
 fs::path with_suffix(fs::path file, const std::string& suffix) { return file += suffix; }
 
-Stored<std::unique_ptr<StoreLock>> StoreLock::take(const fs::path& store, Kind kind) {
+Stored<StoreLock> StoreLock::take(const fs::path& store, Kind kind) {
   const fs::path file = with_suffix(store, ".lock");
-  const int fd = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, private_file_mode);
-  if (fd < 0) {
+  FileDescriptor lock(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, private_file_mode));
+  if (!lock) {
     return tl::unexpected(file_error(file, "cannot be opened", errno));
   }
-  std::unique_ptr<StoreLock> lock(new StoreLock(fd));
-  if (::flock(fd, (kind == Kind::shared ? LOCK_SH : LOCK_EX) | LOCK_NB) != 0) {
+  if (::flock(lock.get(), (kind == Kind::shared ? LOCK_SH : LOCK_EX) | LOCK_NB) != 0) {
     return tl::unexpected(StoreError{
         StoreError::Kind::unavailable,
         store.string() + (kind == Kind::shared ? " is being restored" : " is in use by another process"), "",
         "", kind == Kind::shared ? "try again in a moment" : "stop what uses it, then try again"});
   }
-  return lock;
+  return StoreLock(std::move(lock));
 }
-
-StoreLock::~StoreLock() { ::close(fd_); }
 
 bool has_run_before(const fs::path& folder) {
   std::error_code error;
@@ -91,9 +88,7 @@ Stored<void> make_private_folder(const fs::path& folder) {
 }
 
 Stored<void> make_private_file(const fs::path& file) {
-  const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, private_file_mode);
-  if (fd >= 0) {
-    ::close(fd);
+  if (FileDescriptor(::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, private_file_mode))) {
     return {};
   }
   if (errno == EEXIST) {
@@ -103,12 +98,12 @@ Stored<void> make_private_file(const fs::path& file) {
   return tl::unexpected(file_error(file, "cannot be made", errno));
 }
 
-Stored<std::unique_ptr<UnfinishedFile>> UnfinishedFile::begin(const fs::path& file) {
-  const int fd = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, private_file_mode);
-  if (fd < 0) {
+Stored<UnfinishedFile> UnfinishedFile::begin(const fs::path& file) {
+  FileDescriptor made(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, private_file_mode));
+  if (!made) {
     return tl::unexpected(file_error(file, "cannot be made", errno));
   }
-  std::unique_ptr<UnfinishedFile> unfinished(new UnfinishedFile(fd));
+  const int fd = made.get();
   const bool alone = ::flock(fd, LOCK_EX | LOCK_NB) == 0;
   struct stat locked{};
   struct stat named{};
@@ -126,20 +121,14 @@ Stored<std::unique_ptr<UnfinishedFile>> UnfinishedFile::begin(const fs::path& fi
   if (::fchmod(fd, private_file_mode) != 0 || ::ftruncate(fd, 0) != 0) {
     return tl::unexpected(file_error(file, "cannot be made", errno));
   }
-  return unfinished;
+  return UnfinishedFile(std::move(made));
 }
-
-UnfinishedFile::~UnfinishedFile() { ::close(fd_); }
 
 Stored<void> sync_folder(const fs::path& folder) {
   const fs::path named = folder.empty() ? fs::path(".") : folder;
-  const int fd = ::open(named.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  const bool synced = fd >= 0 && ::fsync(fd) == 0;
-  const int error_number = errno;
-  if (fd >= 0) {
-    ::close(fd);
-  }
-  return synced ? Stored<void>() : tl::unexpected(file_error(named, "cannot be written", error_number));
+  const FileDescriptor opened(::open(named.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  const bool synced = opened && ::fsync(opened.get()) == 0;
+  return synced ? Stored<void>() : tl::unexpected(file_error(named, "cannot be written", errno));
 }
 
 Stored<void> copy_store(const fs::path& source, const fs::path& target) {

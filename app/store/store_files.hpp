@@ -5,12 +5,13 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "store/sqlite_forward.hpp"
 #include "store/store_error.hpp"
+#include "system/file_descriptor.hpp"
 
 namespace interlock {
 
@@ -30,16 +31,12 @@ class StoreLock {
   enum class Kind { shared, alone };
 
   /** Refused, unavailable: somebody holds it the other way. */
-  static Stored<std::unique_ptr<StoreLock>> take(const std::filesystem::path& store, Kind kind);
-
-  StoreLock(const StoreLock&) = delete;
-  StoreLock& operator=(const StoreLock&) = delete;
-  ~StoreLock();
+  static Stored<StoreLock> take(const std::filesystem::path& store, Kind kind);
 
  private:
-  explicit StoreLock(int fd) : fd_(fd) {}
+  explicit StoreLock(FileDescriptor file) : file_(std::move(file)) {}
 
-  int fd_;
+  FileDescriptor file_;
 };
 
 /** The two ways out of a store that is lost or damaged: what to do next, for people. */
@@ -70,16 +67,12 @@ Stored<void> make_private_file(const std::filesystem::path& file);
 class UnfinishedFile {
  public:
   /** Refused, exists: another process is making it, or it is not ours to overwrite. */
-  static Stored<std::unique_ptr<UnfinishedFile>> begin(const std::filesystem::path& file);
-
-  UnfinishedFile(const UnfinishedFile&) = delete;
-  UnfinishedFile& operator=(const UnfinishedFile&) = delete;
-  ~UnfinishedFile();
+  static Stored<UnfinishedFile> begin(const std::filesystem::path& file);
 
  private:
-  explicit UnfinishedFile(int fd) : fd_(fd) {}
+  explicit UnfinishedFile(FileDescriptor file) : file_(std::move(file)) {}
 
-  int fd_;
+  FileDescriptor file_;
 };
 
 /** Makes sure that names given or taken in the folder are on the disk. */

@@ -13,9 +13,14 @@ json list_of(const Eigen::Vector3d& point) { return {point.x(), point.y(), point
 }  // namespace
 
 json to_json(const KinematicsError& error) {
-  return {{"code", code_name(error.code)}, {"text", error.message()},
-          {"quantity", error.quantity},    {"value", error.value ? json(*error.value) : json()},
-          {"lowest", error.lowest},        {"highest", error.highest}};
+  // No range is the reason where there is no kinematics.
+  const bool has_range = error.code != KinematicsError::Code::absent;
+  return {{"code", code_name(error.code)},
+          {"text", error.message()},
+          {"quantity", error.quantity},
+          {"value", error.value ? json(*error.value) : json()},
+          {"lowest", has_range ? json(error.lowest) : json()},
+          {"highest", has_range ? json(error.highest) : json()}};
 }
 
 json to_json(const Deviation& deviation) {

@@ -32,6 +32,8 @@ std::string_view code_name(TrajectoryError::Code code) {
       return "NOT_A_NUMBER";
     case TrajectoryError::Code::unsorted_times:
       return "UNSORTED_TIMES";
+    case TrajectoryError::Code::no_path:
+      return "NO_PATH";
     case TrajectoryError::Code::no_solution:
       return "NO_SOLUTION";
     default:

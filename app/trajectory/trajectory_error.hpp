@@ -28,6 +28,7 @@ struct TrajectoryError {
     wrong_columns,  /**< a row with more or fewer fields than the header */
     not_a_number,   /**< a field that is no number */
     unsorted_times, /**< a time that does not follow the one before */
+    no_path,        /**< an axis without rates for a motion along a path */
     no_solution,    /**< the planner found no motion */
   };
 

@@ -53,6 +53,10 @@ TrajectoryResult<Column> read_column(const std::string& column, const Robot& rob
     return refused(Code::unknown_axis, column, robot.name + " has no such axis",
                    "one of " + axis_names(robot));
   }
+  if (!axis->motion) {
+    return refused(Code::no_path, column, axis->name + " has no rates for a motion along a path",
+                   "`motion` in the axis' table of the robot's file (docs/robots.md)");
+  }
   const std::string unit(unit_name(axis->unit));
   if (label->unit != unit && label->unit != unit + "/s") {
     return refused(Code::wrong_unit, column, "not a unit of this axis",

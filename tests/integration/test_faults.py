@@ -23,7 +23,7 @@ from pathlib import Path
 
 import httpx
 import pytest
-from bare_kernel import DEADLINE_S, ROOT
+from bare_kernel import BIN, DEADLINE_S, ROOT
 from conftest import StackFactory
 from frozen import frozen
 from interface import judge
@@ -381,3 +381,34 @@ def test_a_held_jog_ends_nothing_late_comes_into_force_and_the_robot_moves_again
     wait_until("a move is approved", lambda: robot.api.post("/api/proposals", json=MOVE).status_code == 201)
     wait_until_driven(robot)
     wait_until("the STOP is recorded", lambda: stops_recorded(robot) > 0)
+
+
+@pytest.mark.parametrize("thread", ["main", "door", "interlock-app"])
+def test_an_exception_that_nobody_expected_ends_the_app_with_its_cause_and_motion(
+    stack: StackFactory, short_tmp_path: Path, monkeypatch: pytest.MonkeyPatch, thread: str
+) -> None:
+    """In a coroutine of the network, one of the door, and a thread that works for them; the control thread
+    allocates nothing that could fail."""
+    chosen = short_tmp_path / "thread"
+    chosen.write_bytes(bytes(16))
+    monkeypatch.setenv("LD_PRELOAD", str(BIN / "thrown_exception.so"))
+    monkeypatch.setenv("INTERLOCK_THROW_IN", str(chosen))
+    robot = stack(speed=1)
+    to_motion(robot)
+    with held_jog(robot):
+        begun = plant_tick(robot)
+        with chosen.open("r+b") as file:
+            file.write(thread.encode())
+        robot.output.wait_for(r"app ended: .*restarting it \(1 of 5")
+        assert "uncaught exception: std::bad_alloc" in (robot.state / "log/interlock-app.log").read_text()
+        wait_for_ticks(robot, LONG_AFTER_TICKS)
+    robot.output.wait_for(r"^ready http\S+", 2)
+    ended = last_drive(robot)
+    assert begun < ended <= begun + ENDS_WITHIN_TICKS
+    robot.take_authority()
+    robot.status_when(lambda status: status["connected"])
+    press(robot)
+    wait_for_ticks(robot, LONG_AFTER_TICKS)
+    assert last_drive(robot) == ended, "nothing of before comes into force"
+    wait_until("a move is approved", lambda: robot.api.post("/api/proposals", json=MOVE).status_code == 201)
+    wait_until_driven(robot)

@@ -30,10 +30,11 @@ tl::expected<Membranes, Problem> membranes_in(const json& body) {
   const bool fits = given->is_array() && given->size() <= Biopsy::most_membranes;
   for (std::size_t each = 0; fits && each < given->size(); ++each) {
     const json& depth = (*given)[each];
-    const double depth_mm = depth.is_number() ? depth.get<double>() : 0.0;
+    const double depth_mm = number_of(depth).value_or(0.0);
     if (!(depth_mm > above_mm && depth_mm <= deepest_membrane_mm)) {
-      return fail(invalid("depths_mm[" + std::to_string(each) + "]", "this is no depth below the one before",
-                          "a number above " + std::to_string(above_mm) + ", up to 500"));
+      const std::string place = "depths_mm[" + std::to_string(each) + "]";
+      return fail(invalid(place, place + " is " + quoted(depth) + ".",
+                          "a number above " + json(above_mm).dump() + ", up to 500: below the one before"));
     }
     membranes.depths_mm.push_back(above_mm = depth_mm);
   }

@@ -64,10 +64,12 @@ tl::expected<Task, Problem> coordinated_draft(const Robot& robot, const json& ta
     if (axis == nullptr) {
       return fail(invalid("targets." + name, "no axis is called " + name, "a name that /api/motors lists"));
     }
-    const auto counts = position.is_number() ? axis->to_counts(position.get<double>()) : std::nullopt;
+    const auto number = number_of(position);
+    const auto counts = number ? axis->to_counts(*number) : std::nullopt;
     if (!counts) {
-      return fail(invalid("targets." + name, "it is no position of this axis",
-                          "a number in " + std::string(unit_name(axis->unit))));
+      const std::string place = "targets." + name;
+      return fail(invalid(place, place + " is " + quoted(position) + ".",
+                          "a position of the axis, a number in " + std::string(unit_name(axis->unit))));
     }
     leg.targets.push_back({axis->slot, *counts});
   }

@@ -46,6 +46,12 @@ AxisTarget target_of(const Axis& axis, std::int32_t now_counts, std::int32_t tar
 tl::expected<double, Refusal> duration_of(const Robot& robot, const MoveLeg& leg, const Positions& from) {
   std::vector<AxisTarget> targets;
   for (const AxisCounts& target : leg.targets) {
+    if (const Axis& axis = *robot.at_slot(target.slot); !axis.motion) {
+      return tl::make_unexpected(
+          Refusal{"NO_PATH", axis.name + " has no rates for a motion along a path in the robot's file.",
+                  "`motion` in the axis' table of the file (docs/robots.md)",
+                  "Add it and start anew, or move the axis by itself."});
+    }
     targets.push_back(target_of(*robot.at_slot(target.slot), from[target.slot], target.counts));
   }
   return plan_move(targets, leg.minimum_duration_s)

@@ -1,6 +1,7 @@
 #include "service/drafts.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "proposals/checks.hpp"
 #include "service/fields.hpp"
@@ -23,6 +24,13 @@ DraftKind::Reading read_sweep(const Context& context, nlohmann::json body, std::
 
 DraftKind::Reading read_whole_sweep(const Context& context, nlohmann::json /*body*/, std::string author) {
   co_return whole_sweep_draft(context.robot, author);
+}
+
+/** An end of the band is shown with one decimal, and taken as it is shown. */
+double within(const FrequencyBand& band, double hz) {
+  constexpr double half_a_shown_digit = 0.0501;
+  const double nearest = std::clamp(hz, band.lowest_hz, band.highest_hz);
+  return std::abs(nearest - hz) <= half_a_shown_digit ? nearest : hz;
 }
 
 }  // namespace
@@ -54,12 +62,13 @@ tl::expected<Task, Problem> sweep_draft(const Robot& robot, const nlohmann::json
     return fail(*fields.problem());
   }
   const Axis* axis = robot.find(*name);
-  if (axis == nullptr || !frequency_band(*axis)) {
+  const auto band = axis == nullptr ? std::nullopt : frequency_band(*axis);
+  if (!band) {
     return fail(invalid("axis", *name + " is no high-frequency axis of the robot",
                         "the name of an axis whose card is HIGH_FREQUENCY in /api/motors"));
   }
   const auto dwell_ticks = static_cast<std::uint32_t>(*dwell_s * 1e6 / robot.period_us);
-  const auto steps = frequency_steps(*from_hz, *to_hz, *step_hz, dwell_ticks);
+  const auto steps = frequency_steps(within(*band, *from_hz), within(*band, *to_hz), *step_hz, dwell_ticks);
   if (!steps) {
     return fail(invalid("step_hz", "so many frequencies are too many for a sweep",
                         "steps for at most " + std::to_string(FrequencySteps::most) + " frequencies"));

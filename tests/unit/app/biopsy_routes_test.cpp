@@ -148,6 +148,9 @@ TEST_F(BiopsyRoutesTest, MembranesAreSetWholeOrNotAtAll) {
       {R"({"depths_mm":[1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17]})", "depths_mm"},
       {R"({"depths_mm":[20],"next":2})", "next"},
       {R"({"depths_mm":[20],"next":-1})", "next"}};
+  const json named = put("/api/biopsy/membranes", R"({"depths_mm":[20,"deep"]})").problem();
+  EXPECT_EQ(named["detail"], R"(depths_mm[1] is "deep".)");
+  EXPECT_EQ(named["expected"], "a number above 20.0, up to 500: below the one before");
   const json before = json::parse(get("/api/biopsy").body)["membranes"];
   for (const auto& [body, field] : cases) {
     const Answered refused = put("/api/biopsy/membranes", body);
@@ -156,7 +159,7 @@ TEST_F(BiopsyRoutesTest, MembranesAreSetWholeOrNotAtAll) {
   }
   EXPECT_EQ(json::parse(get("/api/biopsy").body)["membranes"], before);
   EXPECT_TRUE(audit("setting").empty());
-  const Answered changed = put("/api/biopsy/membranes", R"({"depths_mm":[20,30],"next":1})");
+  const Answered changed = put("/api/biopsy/membranes", R"({"depths_mm":["20",30],"next":1})");
   ASSERT_EQ(changed.status, 200u) << changed.body;
   EXPECT_EQ(json::parse(changed.body)["left"], 1);
   ASSERT_EQ(audit("setting").size(), 1u);

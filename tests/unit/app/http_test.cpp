@@ -347,6 +347,15 @@ TEST_F(HttpTest, TheStreamIsAWebSocket) {
   const Answered answered = get("/api/stream");
   EXPECT_EQ(answered.status, 426u);
   EXPECT_EQ(answered.problem()["code"], "UPGRADE_REQUIRED");
+  Request older{http::verb::get, "/api/stream", 11};
+  older.set(http::field::upgrade, "websocket");
+  older.set(http::field::connection, "Upgrade");
+  older.set("Sec-WebSocket-Version", "8");
+  older.set("Sec-WebSocket-Key", "dGhlIHNhbXBsZSBub25jZQ==");
+  const Answered refused = send(std::move(older));
+  EXPECT_EQ(refused.status, 426u);
+  EXPECT_EQ(refused.problem()["code"], "UPGRADE_REQUIRED");
+  EXPECT_EQ(refused.headers["Sec-WebSocket-Version"], "13");
 }
 
 TEST_F(HttpTest, TheStreamShowsTheState) {

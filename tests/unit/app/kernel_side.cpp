@@ -48,7 +48,7 @@ FileDescriptor KernelSide::make_region(std::size_t bytes) {
 
 void KernelSide::accept() {
   connection_ = FileDescriptor(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC));
-  require(connection_.open(), "accept");
+  require(static_cast<bool>(connection_), "accept");
   kernel_fd_ = make_region(sizeof(ilk_link_kernel_region_t));
   app_fd_ = make_region(sizeof(ilk_link_app_region_t));
   kernel_mapping_ =

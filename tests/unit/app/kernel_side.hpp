@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "interlock/link.h"
-#include "link/file_descriptor.hpp"
+#include "link/shared_mapping.hpp"
 #include "temporary_folder.hpp"
 
 namespace interlock::test {

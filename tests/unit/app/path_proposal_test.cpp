@@ -252,6 +252,23 @@ TEST_F(PathProposalTest, APathReplacesEveryApprovedMotionAndKeepsMovesAway) {
   EXPECT_EQ(state(2), ProposalState::aborted);
 }
 
+TEST(PathRates, AnAxisWithoutMotionInItsFileIsNamedWithTheKeyThatIsMissing) {
+  Robot robot = test::neuro();
+  for (Axis& axis : robot.axes) {
+    axis.motion.reset();
+  }
+  CheckList checks;
+  const auto refused = check_path(robot, test::neuro_config(), test::ready_view(),
+                                  {{MoveLeg{{{test::insertion, 1000}}, 0.0, 0.0}}}, checks);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, "NO_PATH");
+  EXPECT_THAT(refused.error().expected, testing::HasSubstr("`motion`"));
+  const auto trajectory = read_trajectory("time [s],yaw [rad]\n0,-0.5\n2,-0.7\n", robot);
+  ASSERT_FALSE(trajectory) << "it could not be run either";
+  EXPECT_EQ(code_name(trajectory.error().code), "NO_PATH");
+  EXPECT_EQ(trajectory.error().column, "yaw [rad]");
+}
+
 TEST(PathSeparation, LinkedSlidersMayNotPartTooFarAtAnyTargetOrRow) {
   const ilk_config_t config = test::config_of(prostate());
   ControlView view;

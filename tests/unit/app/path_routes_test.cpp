@@ -38,6 +38,13 @@ TEST_F(PathRoutesTest, CoordinatedMotionTakesPositionsByAxis) {
   EXPECT_EQ(next_task().id, body["id"]);
 }
 
+TEST_F(PathRoutesTest, ATargetMayBeANumberInAStringAndAnotherValueIsShown) {
+  EXPECT_EQ(propose({{"kind", "coordinated"}, {"targets", {{"yaw", "-0.5"}}}}).status, 201u);
+  const json problem = propose({{"kind", "coordinated"}, {"targets", {{"yaw", "far"}}}}).problem();
+  EXPECT_EQ(problem["detail"], R"(targets.yaw is "far".)");
+  EXPECT_EQ(problem["expected"], "a position of the axis, a number in rad");
+}
+
 TEST_F(PathRoutesTest, WhatIsNoCoordinatedMotionIsNamed) {
   const std::pair<json, std::string> cases[] = {
       {{{"kind", "coordinated"}}, "targets"},

@@ -165,6 +165,21 @@ TEST(SweepDrafts, NameTheFieldThatIsWrong) {
   EXPECT_EQ(sweep_draft(test::neuro(), good, "edna").error().code, "NOT_FOUND");
 }
 
+TEST(SweepDrafts, AnEndOfTheBandIsTakenAsItIsShown) {
+  const ilk_config_t config = test::config_of(prostate());
+  const auto code_from = [&](double from_hz) {
+    const json body{{"kind", "sweep"},  {"axis", "rotation"}, {"from_hz", from_hz},
+                    {"to_hz", 53076.9}, {"step_hz", 100},     {"dwell_s", 0.5}};
+    const auto draft = sweep_draft(prostate(), body, "edna");
+    EXPECT_TRUE(draft);
+    const auto passed =
+        checked(prostate(), config, test::ready_view(prostate()), draft->work.as<SweepTask>());
+    return passed ? std::string("passes") : passed.error().code;
+  };
+  EXPECT_EQ(code_from(50861.5), "passes");
+  EXPECT_EQ(code_from(50861.4), "DRIVE") << "that is another frequency";
+}
+
 TEST(SweepDrafts, TheWholeBandIsSweptInPublishedSteps) {
   const auto draft = whole_sweep_draft(prostate(), "edna");
   ASSERT_TRUE(draft);

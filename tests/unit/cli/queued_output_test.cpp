@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include "cli/unique_fd.hpp"
+#include "system/file_descriptor.hpp"
 
 namespace interlock::cli {
 namespace {
@@ -22,8 +22,8 @@ class QueuedOutputTest : public testing::Test {
   QueuedOutputTest() {
     std::array<int, 2> ends{};
     EXPECT_EQ(pipe2(ends.data(), O_CLOEXEC), 0);
-    reader_ = UniqueFd(ends[0]);
-    writer_ = UniqueFd(ends[1]);
+    reader_ = FileDescriptor(ends[0]);
+    writer_ = FileDescriptor(ends[1]);
     output_.emplace(writer_.get());
   }
 
@@ -45,8 +45,8 @@ class QueuedOutputTest : public testing::Test {
     return read(reader_.get(), &letter, 1) == 1;
   }
 
-  UniqueFd reader_;
-  UniqueFd writer_;
+  FileDescriptor reader_;
+  FileDescriptor writer_;
   std::optional<QueuedOutput> output_;
 };
 
@@ -92,7 +92,7 @@ TEST_F(QueuedOutputTest, waits_for_no_reader_at_its_end) {
 
 TEST_F(QueuedOutputTest, a_reader_that_is_gone_holds_up_nobody) {
   const auto before = std::signal(SIGPIPE, SIG_IGN);
-  reader_ = UniqueFd();
+  reader_ = FileDescriptor();
   output_->stream() << "into the void\n";
   output_.reset();
   std::signal(SIGPIPE, before);

@@ -230,7 +230,7 @@ TEST(ChildProcess, only_the_child_itself_can_give_its_sign_of_life) {
   const std::size_t length = told.find(' ');
   told.copy(address.sun_path, length);
   address.sun_path[0] = '\0';
-  const UniqueFd stranger(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  const FileDescriptor stranger(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   const std::string word = "WATCHDOG=1";
   ASSERT_EQ(sendto(stranger.get(), word.data(), word.size(), 0, reinterpret_cast<const sockaddr*>(&address),
                    static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + length)),
@@ -270,8 +270,8 @@ TEST_F(SupervisorTest, goes_on_while_nobody_reads_its_output) {
                               std::string(100, 'x') + "; i=$((i+1)); done; ";
   std::array<int, 2> ends{};
   ASSERT_EQ(pipe2(ends.data(), O_CLOEXEC), 0);
-  const UniqueFd reader(ends[0]);
-  const UniqueFd writer(ends[1]);
+  const FileDescriptor reader(ends[0]);
+  const FileDescriptor writer(ends[1]);
   QueuedOutput unread(writer.get());
   Supervisor supervisor({shell("app",
                                chatter + "echo ready; [ ! -e " + file("once") + " ] && touch " +
@@ -295,12 +295,12 @@ TEST_F(SupervisorTest, leaves_no_child_whichever_way_it_ends) {
 }
 
 TEST_F(SupervisorTest, takes_along_what_a_child_has_started) {
-  UniqueFd grandchild;
+  FileDescriptor grandchild;
   ASSERT_TRUE(
       run({shell("kernel", "tail -f /dev/null & echo $! >" + file("pid") + "; echo ready; wait")}, [&] {
         pid_t pid = 0;
         std::ifstream(file("pid")) >> pid;
-        grandchild = UniqueFd(pidfd_open(pid, 0));
+        grandchild = FileDescriptor(pidfd_open(pid, 0));
         ask_to_stop();
       }));
   pollfd ended{grandchild.get(), POLLIN, 0};

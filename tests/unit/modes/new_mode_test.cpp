@@ -58,10 +58,11 @@ TEST_F(NewModeTest, IsOneFolderFromTheRobotsFileToTheMotion) {
 
   test::ClosedLoop loop(11, 2, robot());
   loop.make_ready(insertion);
+  ASSERT_EQ(loop.carry_out(1, MoveTask{insertion, 500}, test::minute_ticks).phase, TaskPhase::done);
   const std::int32_t start = loop.state().axis[insertion].position_counts;
   std::int32_t farthest = start;
   loop.watch([&] { farthest = std::max(farthest, loop.state().axis[insertion].position_counts); });
-  EXPECT_EQ(loop.carry_out(1, task.work, test::minute_ticks).phase, TaskPhase::done);
+  EXPECT_EQ(loop.carry_out(2, task.work, test::minute_ticks).phase, TaskPhase::done);
   EXPECT_NEAR(farthest, start + 300, 20);
   EXPECT_NEAR(loop.state().axis[insertion].position_counts, start, 3);
 }

@@ -34,7 +34,7 @@ class AuditHeadsTest : public testing::Test {
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
     std::ranges::copy((folder_ / "heads.sock").native(), std::begin(address.sun_path));
-    const FileHandle sender(::socket(AF_UNIX, SOCK_DGRAM, 0));
+    const FileDescriptor sender(::socket(AF_UNIX, SOCK_DGRAM, 0));
     EXPECT_EQ(::sendto(sender.get(), message.data(), message.size(), 0,
                        reinterpret_cast<const sockaddr*>(&address), sizeof address),
               static_cast<ssize_t>(message.size()));

@@ -31,7 +31,7 @@ void create_box(ilk_black_box_t& box, const ilk_config_t& config, std::uint32_t 
 
 recorder::Ring ring_of(const ilk_black_box_t& box) {
   recorder::Recorded<recorder::Ring> ring =
-      recorder::Ring::map(recorder::FileHandle(dup(box.memory)), recorder::FileHandle(dup(box.life[0])));
+      recorder::Ring::map(FileDescriptor(dup(box.memory)), FileDescriptor(dup(box.life[0])));
   return ring ? std::move(*ring) : throw std::runtime_error(ring.error());
 }
 

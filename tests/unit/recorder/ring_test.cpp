@@ -194,10 +194,10 @@ TEST(BlackBox, CannotBeWrittenShrunkOrHoledByWhoeverHoldsIt) {
 TEST(BlackBox, WhatIsNoBlackBoxIsRefused) {
   std::array<int, 2> life{};
   ASSERT_EQ(pipe(life.data()), 0);
-  const FileHandle writer(life[1]);
-  const FileHandle unsealed(memfd_create("test", MFD_CLOEXEC));
+  const FileDescriptor writer(life[1]);
+  const FileDescriptor unsealed(memfd_create("test", MFD_CLOEXEC));
   ASSERT_EQ(ftruncate(unsealed.get(), 1 << 20), 0);
-  const Recorded<Ring> ring = Ring::map(FileHandle(dup(unsealed.get())), FileHandle(life[0]));
+  const Recorded<Ring> ring = Ring::map(FileDescriptor(dup(unsealed.get())), FileDescriptor(life[0]));
   ASSERT_FALSE(ring);
   EXPECT_NE(ring.error().find("not of one of this user's kernels"), std::string::npos) << ring.error();
 }
@@ -241,7 +241,7 @@ TEST_F(BlackBoxDoor, IsNotKeptByReadersThatConnectAndTakeNothing) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   socket_.string().copy(address.sun_path, sizeof address.sun_path - 1);
-  std::vector<FileHandle> idle;
+  std::vector<FileDescriptor> idle;
   for (int n = 0; n < 50; ++n) {
     idle.emplace_back(socket(AF_UNIX, SOCK_SEQPACKET, 0));
     ASSERT_EQ(connect(idle.back().get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);

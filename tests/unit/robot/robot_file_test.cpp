@@ -97,6 +97,8 @@ TEST(RobotFile, a_file_that_is_not_there_is_named) {
   ASSERT_FALSE(robot);
   EXPECT_EQ(robot.error().file, "/nowhere/neuro.toml");
   EXPECT_THAT(robot.error().message(), HasSubstr("cannot be read"));
+  EXPECT_TRUE(robot.error().is_missing) << "which is no refusal of what it says";
+  EXPECT_FALSE(parse_robot("", "empty.toml").error().is_missing);
 }
 
 TEST(RobotFile, a_folder_is_no_robot_file) { EXPECT_FALSE(load_robot(INTERLOCK_ROBOTS)); }

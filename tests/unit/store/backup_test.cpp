@@ -122,7 +122,7 @@ TEST_F(BackupTest, FollowsNoLinkToAFileOfSomebodyElse) {
 }
 
 TEST_F(BackupTest, NeedsAStore) {
-  EXPECT_EQ(backup_store(file_, backup_).error().kind, Kind::not_found);
+  EXPECT_EQ(backup_store(file_, backup_).error().kind, Kind::unavailable);
   EXPECT_TRUE(everything().empty());
 }
 
@@ -218,7 +218,7 @@ TEST_F(BackupTest, RestoreIsRefusedWhileAnybodyHasTheStoreOpen) {
 
 TEST_F(BackupTest, RestoreOfAMissingBackupIsRefused) {
   make_store(3);
-  expect_restore_refused(Kind::not_found);
+  expect_restore_refused(Kind::unavailable);
 }
 
 class BadBackup : public BackupTest, public testing::WithParamInterface<std::pair<const char*, Kind>> {};

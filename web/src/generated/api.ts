@@ -1121,7 +1121,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Ends MOTION and aborts every open proposal. Needs no login; never refused, never confirmed, always answered. */
+        /** Ends MOTION and aborts every open proposal. Needs no login; never refused, but to a page of another site (HOST, ORIGIN), never confirmed, always answered. */
         post: operations["stop"];
         delete?: never;
         options?: never;
@@ -1901,8 +1901,9 @@ export interface components {
             text: string;
             quantity?: string;
             value?: number | null;
-            lowest?: number;
-            highest?: number;
+            /** @description Allowed range of the value; null of NO_KINEMATICS. */
+            lowest?: number | null;
+            highest?: number | null;
         };
         RegistrationChange: {
             registration: components["schemas"]["Pose"];
@@ -3613,7 +3614,7 @@ export interface operations {
     getHistory: {
         parameters: {
             query?: {
-                /** @description Only rows after this number, as `next` of an answer before; 0: all. */
+                /** @description Only rows after this number, as `next` of an answer before; 0: all. So do numbers beyond the newest, which come from before a restart of the app. */
                 after?: number;
             };
             header?: never;
@@ -4177,7 +4178,7 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description Switching protocols. A client that sends a message is closed with code 1008. */
+            /** @description Switching protocols. A client that sends another message than `stop` is closed with code 1008. */
             101: {
                 headers: {
                     [name: string]: unknown;
@@ -4185,7 +4186,7 @@ export interface operations {
                 content?: never;
             };
             401: components["responses"]["Login"];
-            /** @description Not a WebSocket request. */
+            /** @description Not a WebSocket request, or of another version than 13. */
             426: {
                 headers: {
                     [name: string]: unknown;

@@ -1,20 +1,10 @@
-#include "link/file_descriptor.hpp"
+#include "link/shared_mapping.hpp"
 
 #include <sys/mman.h>
-#include <unistd.h>
+
+#include <utility>
 
 namespace interlock {
-
-FileDescriptor& FileDescriptor::operator=(FileDescriptor&& other) noexcept {
-  std::swap(fd_, other.fd_);
-  return *this;
-}
-
-FileDescriptor::~FileDescriptor() {
-  if (open()) {
-    ::close(fd_);
-  }
-}
 
 SharedMapping::SharedMapping(const FileDescriptor& fd, std::size_t bytes, Access access) noexcept {
   const int protection = access == Access::read_write ? PROT_READ | PROT_WRITE : PROT_READ;
