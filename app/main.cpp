@@ -396,6 +396,23 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   std::abort();
 }
 
+/** While there is a log to hold the cause of an end that nobody expected. */
+int serve_and_log(const Options& options, const Model& model, Store& store, Log& log) {
+  try {
+    const auto served = serve(options, model, store, log);
+    if (const Stored<AuditHead> head = read_head(store); head && !options.recorder.empty()) {
+      report_head(options.recorder, *head);
+    }
+    if (!served) {
+      std::cerr << "interlock-app: " << served.error() << std::endl;
+    }
+    return served ? 0 : exit_unusable;
+  } catch (const std::exception& error) {
+    spdlog::critical("uncaught exception: {}", error.what());
+    return exit_failed;
+  }
+}
+
 /** An exception that nobody expected leaves the app in a state that nobody knows: it ends, to be started
  * anew. */
 int run(const Options& options) {
@@ -422,13 +439,9 @@ int run(const Options& options) {
     if (!log) {
       return unusable(log.error());
     }
-    const auto served = serve(options, *model, *store, **log);
-    if (const Stored<AuditHead> head = read_head(*store); head && !options.recorder.empty()) {
-      report_head(options.recorder, *head);
-    }
-    return served ? 0 : unusable(served.error());
+    return serve_and_log(options, *model, *store, **log);
   } catch (const std::exception& error) {
-    spdlog::critical("uncaught exception: {}", error.what());
+    std::cerr << "interlock-app: uncaught exception: " << error.what() << std::endl;
     return exit_failed;
   }
 }

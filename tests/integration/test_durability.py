@@ -10,6 +10,7 @@ from http.client import HTTPConnection, HTTPException, HTTPResponse
 from pathlib import Path
 
 from bare_kernel import BIN, DEADLINE_S, ROOT, BareKernel, bare_kernel, options, stop
+from motion import wait_until
 
 KILLS = 100
 WRITERS = 3
@@ -154,6 +155,7 @@ def propose(app: App, token: str) -> int:
     """The number of a proposal, which a locked kernel refuses and the app lists all the same."""
     cookie = app.cookie(token)
     ask(app, "POST", "/api/authority/request", cookie, {})
+    wait_until("a kernel", lambda: json.load(ask(app, "GET", "/api/status", cookie, {}))["connected"])
     connection = HTTPConnection("127.0.0.1", app.port, timeout=DEADLINE_S)
     refused = send(connection, "POST", "/api/proposals", cookie, {"slot": 0, "target_counts": 0})
     assert refused.status == 409, refused.read()

@@ -383,12 +383,12 @@ def test_a_held_jog_ends_nothing_late_comes_into_force_and_the_robot_moves_again
     wait_until("the STOP is recorded", lambda: stops_recorded(robot) > 0)
 
 
-@pytest.mark.parametrize("thread", ["main", "door", "interlock-app"])
+@pytest.mark.parametrize("thread", ["main", "door"])
 def test_an_exception_that_nobody_expected_ends_the_app_with_its_cause_and_motion(
     stack: StackFactory, short_tmp_path: Path, monkeypatch: pytest.MonkeyPatch, thread: str
 ) -> None:
-    """In a coroutine of the network, one of the door, and a thread that works for them; the control thread
-    allocates nothing that could fail."""
+    """In a coroutine of the network's thread, and in one of the door's. The control thread allocates nothing
+    that could fail, and what fails in the store's is a failure of the store."""
     chosen = short_tmp_path / "thread"
     chosen.write_bytes(bytes(16))
     monkeypatch.setenv("LD_PRELOAD", str(BIN / "thrown_exception.so"))
