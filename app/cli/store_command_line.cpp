@@ -71,9 +71,9 @@ void StoreCommandLine::describe_audit(CLI::App& cli) {
             const bool is_hash =
                 text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
             const bool is_none = text.find_first_not_of('0') == std::string::npos;
-            return is_hash && !is_none
-                       ? std::string()
-                       : "expected 64 lower-case hex digits, not all of them 0: that is the hash of no record";
+            return is_hash && !is_none ? std::string()
+                                       : "expected 64 lower-case hex digits, not all of them 0: that is the "
+                                         "hash of no record";
           },
           "HASH"));
   add(audit, "export", "Write all records into a new file, which verifies by itself", audit_, export_audit)

@@ -9,7 +9,7 @@ namespace interlock {
 namespace {
 
 Modes homing_last(Modes modes) {
-  std::ranges::stable_partition(modes, [](const auto& each) { return !each->homes(); });
+  std::ranges::partition(modes, [](const auto& each) { return !each->homes(); });
   return modes;
 }
 

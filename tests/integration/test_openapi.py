@@ -8,6 +8,7 @@ from schemathesis.checks import load_all_checks
 from schemathesis.generation import GenerationMode
 from schemathesis.specs.openapi.checks import (
     content_type_conformance,
+    negative_data_rejection,
     response_schema_conformance,
     status_code_conformance,
 )
@@ -76,7 +77,12 @@ def ask_at_random(robot: Stack, operation: schemathesis.APIOperation, mode: Gene
         assert response.status_code < 500 or late, response.text
         case.validate_response(
             response,
-            checks=[status_code_conformance, content_type_conformance, response_schema_conformance],
+            checks=[
+                status_code_conformance,
+                content_type_conformance,
+                response_schema_conformance,
+                negative_data_rejection,
+            ],
         )
 
     ask()

@@ -40,16 +40,12 @@ tl::expected<bool, Problem> overrides_switch(const Call& call) {
 }
 
 /** What is asked of the axis, as the audit is to name it; 409 HAS_SWITCH where its switch is to be asked. */
-tl::expected<std::string, Problem> set_home_of(const Axis& axis, const Call& call) {
-  const auto overrides = overrides_switch(call);
-  if (!overrides) {
-    return fail(overrides.error());
-  }
+tl::expected<std::string, Problem> set_home_of(const Axis& axis, bool overrides) {
   const std::string what = axis.name + " set-home";
   if (!has_switch(axis)) {
     return what;
   }
-  if (!*overrides) {
+  if (!overrides) {
     return fail(refused(switch_knows_home(axis)));
   }
   return what + ", its switch overridden";
@@ -104,9 +100,13 @@ Answering MotorRoutes::act(const Call& call) const {
   if (!request) {
     co_return fail(not_found("action " + action, "enable, disable, clear-fault or set-home"));
   }
+  const auto overrides = overrides_switch(call);
+  if (!overrides) {
+    co_return fail(overrides.error());
+  }
   std::string what = (*axis)->name + " " + action;
   if (*request == ILK_REQUEST_SET_HOME) {
-    auto declared = set_home_of(**axis, call);
+    auto declared = set_home_of(**axis, *overrides);
     if (!declared) {
       co_return fail(declared.error());
     }

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "modes/home/mode.hpp"
+#include "modes/homing/mode.hpp"
 #include "motion/realtime_channel.hpp"
 #include "robot_fixture.hpp"
 #include "tasks.hpp"

@@ -58,6 +58,7 @@ TEST_F(MotorRoutesTest, AnAxisWithASwitchIsNotDeclaredAtHomeUnawares) {
   }
   EXPECT_EQ(post("/api/motors/3/set-home", "{").status, 400u);
   EXPECT_EQ(post("/api/motors/3/set-home", R"({"override_switch":"yes"})").status, 422u);
+  EXPECT_EQ(post("/api/motors/3/enable", R"({"override_switch":"yes"})").status, 422u);
   EXPECT_EQ(post("/api/motors/3/set-home", R"({"override":true})").status, 422u);
   Command command;
   EXPECT_FALSE(channel_->commands.pop(command));

@@ -1,7 +1,7 @@
 /**
  * @file
- * A mode is added by one folder: a program that lists `there_and_back` besides those of the app has it, from the
- * robot's file and the interface to the motion.
+ * A mode is added by one folder: a program that lists `there_and_back` besides those of the app has it, from
+ * the robot's file and the interface to the motion.
  */
 #include <fstream>
 #include <regex>
@@ -47,8 +47,7 @@ class NewModeTest : public HttpTest {
 };
 
 TEST_F(NewModeTest, IsOneFolderFromTheRobotsFileToTheMotion) {
-  const Answered made =
-      post("/api/proposals", R"({"kind": "there_and_back", "slot": 3, "by_counts": 300})");
+  const Answered made = post("/api/proposals", R"({"kind": "there_and_back", "slot": 3, "by_counts": 300})");
   ASSERT_EQ(made.status, 201u) << made.body;
   const json proposal = json::parse(made.body);
   EXPECT_EQ(proposal["kind"], "there_and_back");

@@ -1,4 +1,5 @@
 #include "service/drafts.hpp"
+
 #include "service/fields.hpp"
 #include "there_and_back/mode.hpp"
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "modes/home/mode.hpp"
+#include "modes/homing/mode.hpp"
 #include "proposals/checks.hpp"
 #include "proposals/motion_kind.hpp"
 
@@ -269,8 +269,8 @@ class HomeKind final : public MotionKind {
 
 }  // namespace
 
-const MotionKind& home_kind();
-const MotionKind& home_kind() {
+const MotionKind& homing_kind();
+const MotionKind& homing_kind() {
   static const HomeKind kind;
   return kind;
 }

@@ -14,7 +14,7 @@
 #include <array>
 #include <cstdint>
 
-#include "modes/home/home_axis.hpp"
+#include "modes/homing/home_axis.hpp"
 #include "motion/axis_plan.hpp"
 #include "motion/mode.hpp"
 

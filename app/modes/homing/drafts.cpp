@@ -35,8 +35,8 @@ DraftKind::Reading read_home(const Context& context, json body, std::string auth
 
 }  // namespace
 
-std::span<const DraftKind> home_drafts();
-std::span<const DraftKind> home_drafts() {
+std::span<const DraftKind> homing_drafts();
+std::span<const DraftKind> homing_drafts() {
   static constexpr DraftKind drafts[] = {{"home", "home", read_home}};
   return drafts;
 }

@@ -1,4 +1,4 @@
-#include "modes/home/home_axis.hpp"
+#include "modes/homing/home_axis.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "modes/home/mode.hpp"
+#include "modes/homing/mode.hpp"
 
 #include <utility>
 
