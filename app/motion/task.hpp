@@ -92,6 +92,7 @@ struct BiopsyTask {
 /** What is to be done: the task of one kind of motion, whichever that is. Shared, and never changed. */
 class Work {
  public:
+  /** Of a task of any kind. */
   template <typename Kind>
     requires(!std::same_as<Kind, Work>)
   Work(Kind task) : type_(&typeid(Kind)), task_(std::make_shared<const Kind>(std::move(task))) {}

@@ -23,6 +23,7 @@ struct AblationStep {
   bool operator==(const AblationStep&) const = default;
 };
 
+/** The mode that `can_ablate` is about. */
 inline constexpr RobotMode ablation_mode{"ablation"};
 
 /** Whether the robot's file has the mode and the axes for it. */

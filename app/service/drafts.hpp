@@ -26,6 +26,7 @@ namespace interlock {
 
 /** A kind of `ProposalDraft` (spec/openapi.yaml). */
 struct DraftKind {
+  /** A task, or why there is none. */
   using Reading = boost::asio::awaitable<tl::expected<Task, Problem>>;
 
   std::string_view name; /**< field `kind` of the draft; empty: it is asked for by its mode alone */
