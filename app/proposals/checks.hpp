@@ -56,8 +56,8 @@ using AxisStates = std::array<ilk_axis_t, ILK_SLOTS>;
 /** As the kernel reported them. */
 AxisStates states_of(const ControlView& view);
 
-/** Whether the axis in that slot is one of two linked sliders. */
-bool is_linked(const Robot& robot, std::uint32_t slot);
+/** The other slider of the pair to which the axis in that slot belongs; nothing where it is none. */
+std::optional<std::uint32_t> linked_to(const Robot& robot, std::uint32_t slot);
 
 /**
  * Judges home steps one after the other, from where the axes stand: SEPARATION when one may drive a slider

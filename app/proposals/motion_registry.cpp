@@ -274,6 +274,7 @@ void MotionRegistry::lose_author(TaskSource source, const std::string& reason) {
 
 void MotionRegistry::follow(const ControlView& view) {
   discard_waiting(view);
+  end_unlinked(view);
   for (const TaskStatus& status : view.tasks) {
     follow(status, view);
   }
@@ -318,6 +319,39 @@ void MotionRegistry::discard_waiting(const ControlView& view) {
                  " changed before it was approved; propose it again.");
     } else if (clock_() - each.created > approval_wait) {
       become(each, ProposalState::expired, "Nobody approved it within 10 minutes; propose it again.");
+    }
+  }
+}
+
+/** The linked slider, moved by somebody else, whose position does not mean what it meant when the proposal
+ * was checked. */
+std::optional<std::uint32_t> MotionRegistry::lost_link(const Proposal& proposal,
+                                                       const ControlView& view) const {
+  for (const std::uint32_t slot : proposal.slots) {
+    const auto other = linked_to(robot_, slot);
+    if (!other || std::ranges::find(proposal.slots, *other) != proposal.slots.end()) {
+      continue;
+    }
+    const ilk_axis_t& then = proposal.checked_against->state.axis[*other];
+    const ilk_axis_t& now = view.snapshot.state.axis[*other];
+    if (then.homed != now.homed || !keeps_reference(config_.axis[*other], then, now)) {
+      return other;
+    }
+  }
+  return std::nullopt;
+}
+
+/** What was approved ends when the slider that its own is linked to gets another home, or loses it: how near
+ * both may come was judged by the one before. */
+void MotionRegistry::end_unlinked(const ControlView& view) {
+  for (Proposal& each : registry_) {
+    if (!view.attached || !is_approved(each.state)) {
+      continue;
+    }
+    if (const auto other = lost_link(each, view); other && send_(Cancel{each.id})) {
+      become(each, ProposalState::aborted,
+             "The home position of " + title_of(robot_, *other) +
+                 " changed, whose linkage bounds this motion; propose it again.");
     }
   }
 }

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
@@ -140,6 +141,9 @@ class MotionRegistry {
               std::optional<std::string> verdict = std::nullopt, const std::string& by = {});
   void follow(const TaskStatus& status, const ControlView& view);
   void discard_waiting(const ControlView& view);
+  void end_unlinked(const ControlView& view);
+  [[nodiscard]] std::optional<std::uint32_t> lost_link(const Proposal& proposal,
+                                                       const ControlView& view) const;
   void publish_mode();
   Proposal* find_mutable(std::uint32_t id);
 

@@ -202,9 +202,13 @@ Sides sides_of(Pair& pair, std::uint32_t slot) {
 
 }  // namespace
 
-bool is_linked(const Robot& robot, std::uint32_t slot) {
-  auto pairs = pairs_of(robot, {});
-  return std::ranges::any_of(pairs, [slot](Pair& pair) { return sides_of(pair, slot).slider != nullptr; });
+std::optional<std::uint32_t> linked_to(const Robot& robot, std::uint32_t slot) {
+  for (Pair& pair : pairs_of(robot, {})) {
+    if (const Slider* other = sides_of(pair, slot).other) {
+      return other->axis().slot;
+    }
+  }
+  return std::nullopt;
 }
 
 AxisStates states_of(const ControlView& view) { return std::to_array(view.snapshot.state.axis); }

@@ -349,7 +349,7 @@ test.describe("at its usual pace", () => {
     }
     await robot.axis("Probe insertion").propose("30");
     await robot.axis("Probe insertion").expectRefusal("DISABLED");
-    await robot.axis("Axial feet").propose("12.5");
+    await robot.axis("Probe rotation").propose("12.5");
     await robot.pressPedal();
     await expect(robot.proposal(2)).toContainText("done");
     await robot.axis("Probe rotation").propose("200");

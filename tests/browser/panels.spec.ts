@@ -110,6 +110,7 @@ test("the mode selector homes, and manual mode ends it", async ({ robot, page })
   for (const title of ["Yaw", "Pitch", "Probe insertion", "Lateral", "Axial head"]) {
     await robot.axis(title).enable();
   }
+  await robot.axis("Axial feet").setHome();
   const mode = page.getByRole("status", { name: "Robot mode now" });
   const change = robot.button("Change the robot mode");
   await expect(mode).toHaveText("manual");

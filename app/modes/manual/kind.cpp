@@ -55,7 +55,7 @@ class MoveKind final : public MotionKind {
       return check_target(axis, setpoint_range(rules, state.axis[axis.slot], state.system.mode),
                           move.target_counts);
     });
-    if (is_linked(scene.robot, move.slot)) {
+    if (linked_to(scene.robot, move.slot)) {
       checks.make(CheckName::separation, [&] {
         return check_separation(scene.robot, states_of(scene.view), scene.headed,
                                 {move.slot, move.target_counts});

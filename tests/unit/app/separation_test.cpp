@@ -225,6 +225,24 @@ TEST_F(NeuroSeparationTest, AMoveLooksAtWhereTheOtherSliderIsBound) {
   EXPECT_EQ(move("head", -31.0), "");
 }
 
+TEST_F(NeuroSeparationTest, AnotherHomeOfTheOtherSliderEndsWhatWasApproved) {
+  EXPECT_EQ(move("head", -30.0), "");
+  const std::uint32_t id = last_->id;
+  ilk_axis_t& feet = state("feet");
+  feet.raw += 100;
+  feet.position_counts += test::neuro_config().axis[6].direction_correction != 0 ? -100 : 100;
+  registry_.follow(view_);
+  EXPECT_EQ(registry_.find(id)->state, ProposalState::approved) << "it moved";
+  feet.position_counts += 1500;
+  registry_.follow(view_);
+  EXPECT_EQ(registry_.find(id)->state, ProposalState::aborted);
+  EXPECT_THAT(registry_.find(id)->detail, HasSubstr("The home position of axial feet changed"));
+  EXPECT_EQ(move("head", -30.0), "");
+  feet.homed = 0;
+  registry_.follow(view_);
+  EXPECT_EQ(registry_.find(last_->id)->state, ProposalState::aborted) << "it lost it";
+}
+
 TEST_F(NeuroSeparationTest, AJogEndsWhereTheLinkageDoes) {
   const AxisStates axes = states_of(view_);
   const Robot& neuro = test::neuro();
