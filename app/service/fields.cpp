@@ -79,7 +79,7 @@ Problem invalid(const std::string& field, const std::string& detail, const std::
           .expected = expected};
 }
 
-Fields::Fields(const json& object, std::initializer_list<const char*> known, std::string where)
+Fields::Fields(const nlohmann::json& object, std::initializer_list<const char*> known, std::string where)
     : object_(object), where_(std::move(where)) {
   const std::string names = listed(known);
   if (!object.is_object()) {
