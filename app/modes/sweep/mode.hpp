@@ -25,8 +25,6 @@ class SweepMode final : public HeldMode {
   void report(ControlView& view) const noexcept override;
   void on_unsent(const KernelRequest& request) noexcept override;
 
-  [[nodiscard]] const SweepSpeeds& speeds() const noexcept { return speeds_; }
-
  private:
   [[nodiscard]] std::uint32_t prepare(std::uint32_t tick) noexcept override;
   void begin(const ilk_snapshot_t& snapshot) noexcept override;
