@@ -350,7 +350,7 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   if (const auto let_in = let_somebody_in(store); !let_in) {
     return tl::make_unexpected("--state " + options.state_directory + ": " + let_in.error().message());
   }
-  ControlLoop control(options.link_socket, make_modes(plan), *channel, &history,
+  ControlLoop control(options.link_socket, make_modes(plan), LinkageWatch(model.robot), *channel, &history,
                       options.replay ? LinkUse::replay : LinkUse::control);
   const std::jthread control_thread([&](const std::stop_token& stop) {
     name_thread("control");

@@ -235,7 +235,7 @@ void Api::tell_biopsy(const ControlView& seen) {
 void Api::look_after_pedal(const ControlView& seen) {
   if (bench_.overdue(seen)) {
     spdlog::warn("the bench pedal was not renewed for 500 ms: released");
-    launch(context_.executor, bench_.release_pedal("Its hold was not renewed for 500 ms."));
+    launch(context_.executor, bench_.release_pedal("Its hold was not renewed for 500 ms, or the app stood still."));
   }
 }
 

@@ -116,7 +116,9 @@ void FrameReader::skip(Bytes& input) {
 Arrival FrameReader::begin_body() {
   auto header = read_header(held_);
   if (!header) {
-    return Broken{header.error(), {}};
+    Header legible;
+    legible.device = read_field(Bytes(held_).subspan(2 + type_width, device_width), {}).value_or("");
+    return Broken{header.error(), std::move(legible)};
   }
   if (header->body_size > ceiling_of(header->type, header->version)) {
     return Broken{Fault::too_large, std::move(*header)};

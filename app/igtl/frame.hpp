@@ -52,6 +52,9 @@ class FrameReader {
   /** Whether a message has begun and not ended. */
   [[nodiscard]] bool is_within_message() const noexcept { return !held_.empty() || skipping_ != 0; }
 
+  /** The header of a message whose body has not ended, or null. */
+  [[nodiscard]] const Header* begun() const noexcept { return in_body_ ? &header_ : nullptr; }
+
  private:
   bool fill(Bytes& input, std::size_t desired);
   void skip(Bytes& input);

@@ -185,6 +185,9 @@ asio::awaitable<void> IgtlServer::serve(SessionPointer session) {
   launch(session->socket.get_executor(), write(session));
   on_open(session->peer.id);
   co_await read(session);
+  if (const Header* begun = session->reader.begun()) {
+    refuse(*session, *begun, Fault::late);
+  }
   close(*session, session->reason);
   sessions_.erase(listed);
   spdlog::info("OpenIGTLink connection {} ended: {}", session->peer.id, session->reason);

@@ -33,10 +33,10 @@ ilk_request_t request_of(std::uint32_t kind, std::uint32_t slot = 0) noexcept {
 
 }  // namespace
 
-ControlLoop::ControlLoop(std::string link_socket, Modes modes, RealtimeChannel& channel,
-                         TickObserver* observer, LinkUse use)
+ControlLoop::ControlLoop(std::string link_socket, Modes modes, LinkageWatch linkages,
+                         RealtimeChannel& channel, TickObserver* observer, LinkUse use)
     : link_(std::move(link_socket)),
-      modes_(std::move(modes)),
+      modes_(std::move(modes), std::move(linkages)),
       channel_(channel),
       observer_(observer),
       use_(use),

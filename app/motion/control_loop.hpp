@@ -34,7 +34,7 @@ enum class LinkUse {
 class ControlLoop {
  public:
   /** @param observer shown each tick; it must outlive the loop */
-  ControlLoop(std::string link_socket, Modes modes, RealtimeChannel& channel,
+  ControlLoop(std::string link_socket, Modes modes, LinkageWatch linkages, RealtimeChannel& channel,
               TickObserver* observer = nullptr, LinkUse use = LinkUse::control);
 
   /** Serves until stopped, attaching again and again. On leaving it asks the kernel to end MOTION, unless it

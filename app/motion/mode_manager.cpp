@@ -15,7 +15,8 @@ Modes homing_last(Modes modes) {
 
 }  // namespace
 
-ModeManager::ModeManager(Modes modes) : modes_(homing_last(std::move(modes))) {
+ModeManager::ModeManager(Modes modes, LinkageWatch linkages)
+    : modes_(homing_last(std::move(modes))), linkages_(std::move(linkages)) {
   if (modes_.size() > TaskTable::most_kinds) {
     throw std::length_error("a robot has at most 16 modes");
   }
@@ -65,6 +66,12 @@ void ModeManager::end_all(TaskReason reason, std::uint32_t tick) noexcept {
 }
 
 KernelRequests ModeManager::tick(const ilk_snapshot_t& snapshot) noexcept {
+  const std::uint32_t strained = linkages_.see(snapshot.state);
+  for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
+    if ((strained >> slot & 1u) != 0) {
+      end_axis(slot, TaskReason::linkage_strained, snapshot.state.system.tick);
+    }
+  }
   KernelRequests requests;
   for (const auto& mode : modes_) {
     mode->tick(snapshot, requests);

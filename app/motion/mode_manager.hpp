@@ -1,6 +1,7 @@
 /**
  * @file
- * The modes together: hands each task to its mode and sees to it that only one mode has open tasks.
+ * The modes together: hands each task to its mode and sees to it that only one mode has open tasks, and that
+ * none strains a linkage.
  */
 #pragma once
 
@@ -8,6 +9,7 @@
 #include <optional>
 #include <typeinfo>
 
+#include "motion/linkage_watch.hpp"
 #include "motion/mode.hpp"
 
 namespace interlock {
@@ -15,7 +17,7 @@ namespace interlock {
 class ModeManager {
  public:
   /** @param modes one for each type of task */
-  explicit ModeManager(Modes modes);
+  ModeManager(Modes modes, LinkageWatch linkages);
   ModeManager(const ModeManager&) = delete;
   ModeManager& operator=(const ModeManager&) = delete;
 
@@ -57,6 +59,7 @@ class ModeManager {
  private:
   /** Homing last: the others give back their leases before it asks for their axes. */
   const Modes modes_;
+  LinkageWatch linkages_;
 };
 
 }  // namespace interlock

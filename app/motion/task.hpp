@@ -203,6 +203,7 @@ enum class TaskReason : std::uint8_t {
   force_stale,       /**< the newest force is too old to act upon */
   steering_failed,   /**< `code` is the KinematicsError::Code */
   swept,             /**< every frequency was held for its time */
+  linkage_strained,  /**< the linked slider came too near, or too far away */
   no_path            /**< no motion within the limits leads there from where the axes are */
 };
 

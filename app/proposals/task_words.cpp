@@ -69,6 +69,11 @@ std::string end_words(const std::string& axis, const TaskStatus& status) {
       return axis + " strayed too far from its path, so every axis was stopped. Look for what holds it back.";
     case TaskReason::goal_late:
       return axis + " did not come to rest at its goal within 5 s. Look for what holds it back.";
+    case TaskReason::linkage_strained:
+      return axis +
+             " and the slider that is linked to it came to a separation that their linkage does not allow, "
+             "so "
+             "motion ended. Look where both stand; then propose motion that brings them back.";
     case TaskReason::no_path:
       return "No motion within the rates of the axes leads there from where they are; propose it again.";
   }

@@ -1,5 +1,6 @@
 #include "service/bench.hpp"
 
+#include "service/fields.hpp"
 #include "service/reply.hpp"
 
 namespace interlock {
@@ -24,7 +25,7 @@ Problem pedal_lapsed(const std::string& why) {
 
 Problem bench_problem(const BenchError& error) {
   if (error.kind == BenchError::Kind::refused) {
-    return {.status = Status::unprocessable_entity, .code = "INVALID", .detail = error.detail};
+    return invalid("", error.detail, "a command of models/plant/README.md with its fields");
   }
   return {.status = Status::service_unavailable,
           .code = "NO_BENCH",
@@ -71,11 +72,7 @@ tl::expected<void, Problem> Bench::take_pedal(json& fields, const ControlView& v
   const json renew = fields.value("renew", json(false));
   fields.erase("renew");
   if (!renew.is_boolean()) {
-    return fail({.status = Status::unprocessable_entity,
-                 .code = "INVALID",
-                 .detail = "renew is no boolean.",
-                 .field = "renew",
-                 .expected = "true or false"});
+    return fail(invalid("renew", "renew is no boolean.", "true or false"));
   }
   if (fields.value("pressed", json()) != json(true)) {
     if (pedal_.held()) {

@@ -76,7 +76,8 @@ Problem invalid(const std::string& field, const std::string& detail, const std::
           .code = "INVALID",
           .detail = detail,
           .field = field,
-          .expected = expected};
+          .expected = expected,
+          .next_step = "Correct it, and send it again."};
 }
 
 Fields::Fields(const nlohmann::json& object, std::initializer_list<const char*> known, std::string where)

@@ -1,4 +1,5 @@
 #include "http/routes.hpp"
+#include "service/fields.hpp"
 #include "service/reply.hpp"
 
 namespace interlock::web {
@@ -35,11 +36,9 @@ Answering BenchRoutes::command(const Call& call) const {
     co_return fail(body.error());
   }
   if (!body->is_object() || body->contains("command") || body->contains("id")) {
-    co_return fail({.status = Status::unprocessable_entity,
-                    .code = "INVALID",
-                    .detail = "The body must be an object without command and id.",
-                    .field = body->is_object() ? "command" : "",
-                    .expected = "the fields of models/plant/README.md"});
+    const std::string field = body->is_object() ? "command" : "";
+    co_return fail(invalid(field, "The body must be an object without command and id.",
+                           "the fields of models/plant/README.md"));
   }
   if (changes_something(call.parameters[0], *body)) {
     json detail{{"command", call.parameters[0]}, {"fields", *body}};

@@ -23,7 +23,7 @@ ClosedLoop::ClosedLoop(std::uint64_t seed, std::uint32_t latency, const Robot& r
     : robot_(robot),
       config_(config_of(robot)),
       plant_(config_, plant, seed),
-      modes_(make_modes(RobotPlan(robot, config_))),
+      modes_(make_modes(RobotPlan(robot, config_)), LinkageWatch(robot)),
       latency_(latency) {
   if (ilk_init(&config_, &state_).error != ILK_CONFIG_ERROR_NONE) {
     throw std::runtime_error("the kernel refuses the robot " + robot.name);

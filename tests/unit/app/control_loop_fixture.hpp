@@ -23,7 +23,8 @@ namespace interlock::test {
 class ControlLoopTest : public testing::Test {
  protected:
   explicit ControlLoopTest(LinkUse use = LinkUse::control)
-      : loop_(kernel_.socket(), make_modes(RobotPlan(neuro(), neuro_config())), *channel_, nullptr, use),
+      : loop_(kernel_.socket(), make_modes(RobotPlan(neuro(), neuro_config())), LinkageWatch(neuro()),
+              *channel_, nullptr, use),
         snapshot_(ready_view().snapshot) {
     thread_ = std::jthread([this](const std::stop_token& stop) { loop_.run(stop); });
     kernel_.accept();

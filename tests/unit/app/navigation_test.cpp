@@ -95,6 +95,29 @@ TEST_F(NavigationTest, AnyFrameThatIsNamedStopStopsThoughItCannotBeRead) {
   }
 }
 
+TEST_F(NavigationTest, AHeaderThatIsNamedStopStopsThoughNothingElseOfItCanBeReadOrItsBodyNeverComes) {
+  const igtl::ByteVector whole = igtl::write_frame(1, "STRING", "STOP", 0, igtl::ByteVector(8, 1));
+  const auto overwritten = [&](std::size_t at, std::size_t count, std::uint8_t byte) {
+    auto frame = whole;
+    std::fill_n(frame.begin() + static_cast<std::ptrdiff_t>(at), count, byte);
+    return frame;
+  };
+  const std::vector<igtl::ByteVector> frames{
+      overwritten(2, igtl::type_width, 0), overwritten(2, igtl::type_width, 0xff), overwritten(0, 2, 9),
+      overwritten(42, 8, 0xff), igtl::ByteVector(whole.begin(), whole.end() - 1)};
+  std::uint32_t sent = 0;
+  for (const igtl::ByteVector& frame : frames) {
+    tcp::socket socket(client_);
+    socket.connect({asio::ip::make_address("127.0.0.1"), api_.navigation().server().port()});
+    asio::write(socket, asio::buffer(frame));
+    socket.shutdown(tcp::socket::shutdown_send);
+    ++sent;
+    while (channel_->stops != sent) {
+      std::this_thread::yield();
+    }
+  }
+}
+
 TEST_F(NavigationTest, TheAuditNamesWhoseProgramStoppedTheRobotAndWhoEndedAProposal) {
   constexpr const char* move = R"({"slot":3,"target_counts":1000})";
   ASSERT_EQ(post("/api/proposals", move).status, 201u);
