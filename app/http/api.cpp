@@ -3,11 +3,13 @@
 #include <spdlog/spdlog.h>
 
 #include <boost/asio/steady_timer.hpp>
+#include <random>
 
 #include "http/same_origin.hpp"
 #include "proposals/proposal_json.hpp"
 #include "service/reply.hpp"
 #include "service/status_json.hpp"
+#include "service/targeting_store.hpp"
 #include "system/as_result.hpp"
 #include "system/launch.hpp"
 
@@ -24,6 +26,13 @@ constexpr std::uint32_t beats_per_biopsy = 3;
 /** Without any request, and without an open stream, which counts as one. */
 constexpr std::chrono::seconds authority_idle_limit{60};
 
+/** Of this start of the app, and none before. */
+std::int64_t some_epoch() {
+  std::random_device draw;
+  const std::uint64_t bits = static_cast<std::uint64_t>(draw()) << 32u | draw();
+  return static_cast<std::int64_t>(bits % static_cast<std::uint64_t>(latest_epoch)) + 1;
+}
+
 }  // namespace
 
 bool is_always_answered(std::string_view path) { return path == "/api/stop" || path == "/api/status"; }
@@ -39,13 +48,28 @@ Api::Api(const boost::asio::any_io_executor& executor, const Robot& robot, const
       biopsy_(robot),
       sessions_(store, clocks),
       authority_(static_cast<std::uint32_t>(std::chrono::system_clock::to_time_t(clocks.utc()))),
-      context_{executor,   robot,         config,
-               control_,   registry_,     bench_,
-               biopsy_,    store,         sessions_,
-               authority_, work_,         trajectory_,
-               stops_,     log,           [this](const json& message) { stream_.send_text(message); },
-               clocks.utc, clocks.steady, role_refusals_},
+      registration_epoch_{some_epoch()},
+      context_{executor,
+               robot,
+               config,
+               control_,
+               registry_,
+               bench_,
+               biopsy_,
+               store,
+               sessions_,
+               authority_,
+               work_,
+               trajectory_,
+               registration_epoch_,
+               stops_,
+               log,
+               [this](const json& message) { stream_.send_text(message); },
+               clocks.utc,
+               clocks.steady,
+               role_refusals_},
       navigation_(context_),
+      registration_watch_(robot, config),
       router_([this](const Caller& caller) -> std::optional<Problem> {
         const auto held = context_.need_authority(caller);
         return held ? std::nullopt : std::optional(held.error());
@@ -235,7 +259,24 @@ void Api::tell_biopsy(const ControlView& seen) {
 void Api::look_after_pedal(const ControlView& seen) {
   if (bench_.overdue(seen)) {
     spdlog::warn("the bench pedal was not renewed for 500 ms: released");
-    launch(context_.executor, bench_.release_pedal("Its hold was not renewed for 500 ms, or the app stood still."));
+    launch(context_.executor,
+           bench_.release_pedal("Its hold was not renewed for 500 ms, or the app stood still."));
+  }
+}
+
+void Api::look_after_registration(const ControlView& seen) {
+  std::string reason = registration_watch_.see(seen);
+  if (!reason.empty()) {
+    spdlog::warn("the registration expires, if there is one: {}", reason);
+    launch(context_.executor, expire_registration(std::move(reason)));
+  }
+}
+
+asio::awaitable<void> Api::expire_registration(std::string reason) {
+  const Caller app;
+  const auto kept = co_await interlock::expire_registration(context_, app, std::move(reason));
+  if (!kept) {
+    spdlog::error("why the registration expired is not kept: {}", kept.error().detail);
   }
 }
 
@@ -283,6 +324,7 @@ asio::awaitable<void> Api::broadcast() {
     }
     tell_biopsy(seen);
     look_after_pedal(seen);
+    look_after_registration(seen);
     look_after_sessions();
   }
 }

@@ -14,6 +14,7 @@
 #include "http/routes.hpp"
 #include "service/context.hpp"
 #include "service/navigation.hpp"
+#include "service/registration_watch.hpp"
 
 namespace interlock::web {
 
@@ -85,6 +86,8 @@ class Api {
   void note_refusal(const Request& request, const Caller& caller, const Problem& problem);
   void tell_biopsy(const ControlView& seen);
   void look_after_pedal(const ControlView& seen);
+  void look_after_registration(const ControlView& seen);
+  boost::asio::awaitable<void> expire_registration(std::string reason);
   void look_after_sessions();
   boost::asio::awaitable<tl::expected<std::optional<Session>, Problem>> session_of(const Request& request);
 
@@ -98,10 +101,12 @@ class Api {
   Authority authority_;
   WorkPool work_;
   LoadedTrajectory trajectory_;
+  RegistrationEpoch registration_epoch_;
   StopRecords stops_;
   std::uint64_t role_refusals_ = 0;
   Context context_;
   Navigation navigation_;
+  RegistrationWatch registration_watch_;
   Router router_;
   std::uint32_t beats_ = 0;
   SystemRoutes system_routes_{context_, stream_, router_};

@@ -299,6 +299,7 @@ class TargetingRoutes {
   [[nodiscard]] boost::asio::awaitable<Reply> show_alignment() const;
   [[nodiscard]] boost::asio::awaitable<Reply> show_history() const;
   [[nodiscard]] boost::asio::awaitable<Reply> show_reach();
+  [[nodiscard]] boost::asio::awaitable<Reply> expire(const Call& call) const;
   [[nodiscard]] boost::asio::awaitable<Reply> change(const Call& call, TargetingChange make) const;
 
   /** Where the robot gets to with a probe: schema `Reach`. */

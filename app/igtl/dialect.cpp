@@ -47,7 +47,10 @@ bool needs_control(const Command& command) noexcept {
 
 TrackingData tracking_of(const RobotState& state) {
   constexpr std::uint8_t six_degrees = 2;
-  TrackingData data{{{"scanner_to_robot_reg", six_degrees, state.scanner_from_robot}}};
+  TrackingData data;
+  if (state.scanner_from_robot) {
+    data.tools.push_back({"scanner_to_robot_reg", six_degrees, *state.scanner_from_robot});
+  }
   if (state.measured_cp) {
     data.tools.push_back({"measured_cp", six_degrees, *state.measured_cp});
   }

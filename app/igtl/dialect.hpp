@@ -26,9 +26,9 @@ using Spatial = std::array<double, 6>;
 
 /** What the robot tells of itself. */
 struct RobotState {
-  Matrix scanner_from_robot = Transform{}.matrix;
-  std::optional<Matrix> measured_cp; /**< treatment point by the encoders; none while it is unknown */
-  std::optional<Matrix> desired_cp;  /**< treatment point at entry and target; none without these */
+  std::optional<Matrix> scanner_from_robot; /**< none without a valid registration */
+  std::optional<Matrix> measured_cp;        /**< treatment point by the encoders; none while it is unknown */
+  std::optional<Matrix> desired_cp;         /**< treatment point at entry and target; none without these */
   /** Velocity of the treatment point along and about the scanner's axes, mm/s and rad/s. */
   std::optional<Spatial> measured_cv;
   /** Force on the needle along the scanner's axes, N, then zeroes; of a robot with a sensor for it. */

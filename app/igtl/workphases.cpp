@@ -396,8 +396,8 @@ Outgoings Workphases::known(const RobotState& state) const {
   if (has_target_ && state.desired_cp) {
     messages.emplace_back("TARGET_POSITION", Transform{*state.desired_cp});
   }
-  if (calibrated_) {
-    messages.emplace_back("CALIBRATION", Transform{state.scanner_from_robot});
+  if (calibrated_ && state.scanner_from_robot) {
+    messages.emplace_back("CALIBRATION", Transform{*state.scanner_from_robot});
   }
   messages.emplace_back(current_status_name,
                         current_status(is_known ? StatusCode::ok : StatusCode::configuration));

@@ -52,13 +52,36 @@ Known<Pose> current_of(const Robot& robot, const ControlView& view, const PoseSe
 
 }  // namespace
 
-Known<PoseSetup> pose_setup(const Robot& robot, const Targeting& targeting) {
+namespace {
+
+/** With the identity where there is no valid registration. */
+Known<PoseSetup> any_setup(const Robot& robot, const Targeting& targeting) {
+  constexpr RowMajor identity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  const bool is_valid = targeting.registration_problem.empty();
+  const RowMajor pose = is_valid ? targeting.registration.value_or(identity) : identity;
   return RobotKinematics::create(robot, probe_of(targeting))
       .and_then([&](const RobotKinematics& kinematics) {
-        return Registration::create(targeting.registration, targeting.ignore_registration_rotation)
+        return Registration::create(pose, targeting.ignore_registration_rotation)
             .map([&](const Registration& registration) { return PoseSetup{kinematics, registration}; });
       })
       .map_error(problem_of);
+}
+
+}  // namespace
+
+Known<PoseSetup> pose_setup(const Robot& robot, const Targeting& targeting) {
+  return any_setup(robot, targeting).and_then([&](PoseSetup setup) -> Known<PoseSetup> {
+    if (robot.kinematics && !targeting.registration_problem.empty()) {
+      return unknown("NO_REGISTRATION", targeting.registration_problem);
+    }
+    return setup;
+  });
+}
+
+Known<PictureSetup> picture_setup(const Robot& robot, const Targeting& targeting) {
+  return any_setup(robot, targeting).map([&](const PoseSetup& setup) {
+    return PictureSetup{setup, targeting.registration_problem.empty() ? "scanner" : "robot"};
+  });
 }
 
 Known<AxisPositions> known_positions(const Robot& robot, const ilk_state_t& state) {
@@ -98,14 +121,20 @@ json alignment_view(const Robot& robot, const Targeting& targeting, const Contro
   const auto alignment =
       setup.and_then([&](const PoseSetup& with) { return alignment_of(robot, targeting, with); });
   const auto current = setup.and_then([&](const PoseSetup& with) { return current_of(robot, view, with); });
-  const auto body = setup.and_then([&](const PoseSetup& with) {
+  const auto picture = picture_setup(robot, targeting);
+  const auto body = picture.and_then([&](const PictureSetup& with) {
     return positions_of(robot, view).and_then([&](const AxisPositions& positions) {
-      return body_view(with, positions);
+      return body_view(with.poses, positions);
     });
   });
-  json answer{
-      {"alignment", nullptr},       {"alignment_problem", nullptr},          {"current", nullptr},
-      {"current_problem", nullptr}, {"current_body", body.value_or(json())}, {"current_deviation", nullptr}};
+  json answer{{"frame", picture ? picture->frame : "scanner"},
+              {"alignment", nullptr},
+              {"alignment_problem", nullptr},
+              {"current", nullptr},
+              {"current_problem", nullptr},
+              {"current_body", body.value_or(json())},
+              {"current_body_problem", body ? json() : body.error()},
+              {"current_deviation", nullptr}};
   if (alignment) {
     answer["alignment"] = to_json(robot, *alignment);
   } else {

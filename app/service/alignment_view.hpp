@@ -26,17 +26,26 @@ struct PoseSetup {
   Registration registration;
 };
 
+/** What pictures are made with. */
+struct PictureSetup {
+  PoseSetup poses;
+  const char* frame; /**< "scanner", or "robot" where there is no valid registration */
+};
+
 /** The probe of the targeting. */
 ProbeOffsets probe_of(const Targeting& targeting);
 
-/** With the probe and the registration of the targeting. */
+/** With the probe and the registration of the targeting; NO_REGISTRATION unless that is valid. */
 Known<PoseSetup> pose_setup(const Robot& robot, const Targeting& targeting);
+
+/** As above, in the robot's own frame where there is no valid registration. */
+Known<PictureSetup> picture_setup(const Robot& robot, const Targeting& targeting);
 
 /** Positions of all axes by their encoders; NOT_HOMED unless each that plays a role in the kinematics is
  * homed. */
 Known<AxisPositions> known_positions(const Robot& robot, const ilk_state_t& state);
 
-/** What the robot looks like there: a list of schema `BodyPart`, in the scanner's frame (RAS), mm. */
+/** What the robot looks like there: a list of schema `BodyPart`, in the frame of the setup, mm. */
 Known<nlohmann::json> body_view(const PoseSetup& setup, const AxisPositions& positions);
 
 /**

@@ -27,6 +27,8 @@
 
 namespace interlock {
 
+struct RegistrationEpoch;
+
 struct Context {
   boost::asio::any_io_executor executor;
   const Robot& robot;
@@ -40,6 +42,7 @@ struct Context {
   Authority& authority;
   WorkPool& work;
   LoadedTrajectory& trajectory;
+  RegistrationEpoch& registration_epoch;
   StopRecords& stop_records;
   Log& log;
   std::function<void(const nlohmann::json&)> publish; /**< a message to every console */

@@ -111,11 +111,14 @@ void AxisVelocities::measure(const Robot& robot, const ControlView& view) {
   }
 }
 
-igtl::RobotState robot_state(const Context& context, const Targeting& targeting,
+igtl::RobotState robot_state(const Context& context, const Targeting& kept,
                              const AxisVelocities& velocities) {
   const ControlView& view = context.view();
+  const Targeting targeting = judged(kept, context.registration_epoch);
   igtl::RobotState state;
-  state.scanner_from_robot = targeting.registration;
+  if (targeting.registration_problem.empty()) {
+    state.scanner_from_robot = targeting.registration;
+  }
   state.entry = targeting.entry_point;
   state.target = targeting.target_point;
   state.treatment_to_tip_mm = targeting.treatment_to_tip_mm;

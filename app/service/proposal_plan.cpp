@@ -108,10 +108,13 @@ Known<json> ghost_of(const Robot& robot, const Targeting& targeting, const Propo
   if (profile.axes.empty()) {
     return tl::unexpected(json{{"code", "NO_PLAN"}, {"text", profile.why}});
   }
-  return pose_setup(robot, targeting).and_then([&](const PoseSetup& setup) {
-    return known_positions(robot, proposal.checked_against->state).and_then([&](const AxisPositions& start) {
-      return ghost_along(robot, setup, start, profile);
-    });
+  return picture_setup(robot, targeting).and_then([&](const PictureSetup& setup) {
+    return known_positions(robot, proposal.checked_against->state)
+        .and_then([&](const AxisPositions& start) { return ghost_along(robot, setup.poses, start, profile); })
+        .map([&](json ghost) {
+          ghost["frame"] = setup.frame;
+          return ghost;
+        });
   });
 }
 

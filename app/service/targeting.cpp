@@ -146,8 +146,31 @@ json without_nulls(const json& stored) {
 
 }  // namespace
 
+Targeting judged(Targeting targeting, const RegistrationEpoch& epoch) {
+  const bool is_past = targeting.registration_epoch == 0 || targeting.registration_epoch != epoch.number;
+  const std::string& reason =
+      targeting.registration_expired.empty() && is_past ? epoch.reason : targeting.registration_expired;
+  targeting.present_epoch = epoch.number;
+  targeting.registration_problem = !targeting.registration ? "The registration is not set."
+                                   : reason.empty()        ? ""
+                                                           : "The registration has expired: " + reason;
+  return targeting;
+}
+
 json to_json(const Targeting& targeting) {
-  json body{{"registration", targeting.registration},
+  json body = to_stored(targeting);
+  const bool is_valid = targeting.registration_problem.empty();
+  body["registration_state"] = is_valid ? "valid" : targeting.registration ? "expired" : "not_set";
+  body["registration_problem"] = is_valid ? json() : json(targeting.registration_problem);
+  body.erase("registration_epoch");
+  body.erase("registration_expired");
+  return body;
+}
+
+json to_stored(const Targeting& targeting) {
+  json body{{"registration", or_null(targeting.registration)},
+            {"registration_epoch", targeting.registration_epoch},
+            {"registration_expired", targeting.registration_expired},
             {"ignore_registration_rotation", targeting.ignore_registration_rotation},
             {"entry_point", or_null(targeting.entry_point)},
             {"target_point", or_null(targeting.target_point)},
@@ -161,12 +184,15 @@ json to_json(const Targeting& targeting) {
 tl::expected<Targeting, Problem> stored_targeting(const json& stored) {
   const json values = stored.is_object() ? without_nulls(stored) : stored;
   Targeting targeting;
-  Fields fields(values,
-                {"registration", "ignore_registration_rotation", "entry_point", "target_point",
-                 "reported_position", "treatment_to_tip_offset", "robot_to_entry_offset",
-                 "cannula_to_treatment_offset", "canula_to_treatment_offset", "treatment_to_robot_at_home"},
-                "targeting");
-  targeting.registration = read_pose(fields, "registration").value_or(targeting.registration);
+  Fields fields(
+      values,
+      {"registration", "registration_epoch", "registration_expired", "ignore_registration_rotation",
+       "entry_point", "target_point", "reported_position", "treatment_to_tip_offset", "robot_to_entry_offset",
+       "cannula_to_treatment_offset", "canula_to_treatment_offset", "treatment_to_robot_at_home"},
+      "targeting");
+  targeting.registration = read_pose(fields, "registration");
+  targeting.registration_epoch = fields.integer("registration_epoch", 0, latest_epoch).value_or(0);
+  targeting.registration_expired = fields.text("registration_expired").value_or("");
   targeting.ignore_registration_rotation = fields.boolean("ignore_registration_rotation").value_or(false);
   targeting.entry_point = read_point(fields, "entry_point");
   targeting.target_point = read_point(fields, "target_point");
@@ -178,7 +204,9 @@ tl::expected<Targeting, Problem> stored_targeting(const json& stored) {
 tl::expected<Targeting, Problem> with_registration(Targeting targeting, const json& body) {
   Fields fields(body, {"registration", "ignore_registration_rotation"});
   fields.require({{"registration", "16 numbers, row-major"}});
-  targeting.registration = read_pose(fields, "registration").value_or(targeting.registration);
+  targeting.registration = read_pose(fields, "registration");
+  targeting.registration_epoch = targeting.present_epoch;
+  targeting.registration_expired.clear();
   targeting.ignore_registration_rotation =
       fields.boolean("ignore_registration_rotation").value_or(targeting.ignore_registration_rotation);
   return unless_wrong(fields, targeting);

@@ -19,10 +19,6 @@
 
 namespace interlock {
 
-// Registration, entry, target and probe offsets: schema `Targeting` of spec/openapi.yaml.
-//
-// Poses and points are in the scanner's frame (RAS), mm; a pose is a 4x4 matrix, row-major.
-
 /** x, y and z in mm. */
 using Point = std::array<double, 3>;
 
@@ -33,10 +29,25 @@ constexpr double largest_offset_mm = 1000.0;
 /** How far the elements of R^T R may be from those of the identity, and its determinant from 1. */
 constexpr double entered_rigidity = 1e-3;
 
+/** Largest number of an epoch: JSON carries it exactly. */
+constexpr std::int64_t latest_epoch = (std::int64_t{1} << 53) - 1;
+
+/** The present epoch of registrations: one of an earlier epoch has expired. Each start of the app begins an
+ * epoch, and whatever moves the robot in the scanner begins another. */
+struct RegistrationEpoch {
+  std::int64_t number = 0;
+  std::string reason = "The app was started since."; /**< why those before it expired */
+};
+
 /** What an aim is made from. */
 struct Targeting {
-  RowMajor registration{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; /**< the robot in the scanner */
+  std::optional<RowMajor> registration; /**< the robot in the scanner; empty: nobody has ever set it */
   bool ignore_registration_rotation = false;
+  std::int64_t registration_epoch = 0; /**< in which it was set */
+  std::string registration_expired;    /**< why, where that is kept; empty: it has not */
+  /** Why no pose may be made with it; empty: it is valid. Not kept: `judge` finds it anew. */
+  std::string registration_problem = "The registration is not set.";
+  std::int64_t present_epoch = 0; /**< in which it was judged; not kept */
   std::optional<Point> entry_point;
   std::optional<Point> target_point;
   double treatment_to_tip_mm = 0.0;           /**< A */
@@ -48,15 +59,21 @@ struct Targeting {
   bool operator==(const Targeting&) const = default;
 };
 
-/** Schema `Targeting`; also how it is stored. */
+/** The same with what is true of its registration in that epoch. */
+Targeting judged(Targeting targeting, const RegistrationEpoch& epoch);
+
+/** Schema `Targeting`, of what was judged. */
 nlohmann::json to_json(const Targeting& targeting);
 
-/** What `to_json` wrote; the problem of a value that was not written by it. */
+/** How it is stored. */
+nlohmann::json to_stored(const Targeting& targeting);
+
+/** What `to_stored` wrote, not yet judged; the problem of a value that was not written by it. */
 tl::expected<Targeting, Problem> stored_targeting(const nlohmann::json& stored);
 
 /**
  * What a body changes: each gives the changed values, or 422 INVALID naming the field or the element, and the
- * rule.
+ * rule. A registration is one of the epoch in which the values before were judged.
  */
 tl::expected<Targeting, Problem> with_registration(Targeting targeting, const nlohmann::json& body);
 /** The targeting with the robot's pose as the imager reports it. */

@@ -12,6 +12,20 @@ struct Changed {
   bool leads_elsewhere = false; /**< than before: what followed from it is stale */
 };
 
+/** Only a person can know that it still holds. */
+bool is_repeated(const Targeting& before, const Targeting& after) {
+  return after.registration_epoch != before.registration_epoch && after.registration == before.registration &&
+         !before.registration_problem.empty();
+}
+
+Problem repeated(const Targeting& before) {
+  return {.status = Status::conflict,
+          .code = "NO_REGISTRATION",
+          .detail = "It is the registration that has expired. " + before.registration_problem,
+          .expected = "a new registration",
+          .next_step = "Register anew, or set it in the console if it still holds."};
+}
+
 /** A pose that an imager reports moves nothing. */
 bool leads_elsewhere(Targeting before, const Targeting& after) {
   before.reported_position = after.reported_position;
@@ -41,18 +55,26 @@ boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const 
                                                                           TargetingChange make, json body) {
   const Authority& authority = context.authority;
   auto keep = [robot = &context.robot, make, body = std::move(body), session = caller.session,
-               hold = Hold{authority.shared_number(), authority.number()},
+               epoch = context.registration_epoch, hold = Hold{authority.shared_number(), authority.number()},
                origin = TargetingOrigin{source, caller.peer},
                entry = context.entry(caller, AuditKind::setting, json::object())](Store& store) {
     return store.transact([&](Transaction& transaction) -> Stored<Changed> {
       if (const auto lives = Sessions(transaction).need(session, Role::engineer, entry.time); !lives) {
         return tl::unexpected(lives.error());
       }
-      return find_targeting(transaction, *robot).map([&](const Targeting& before) -> Changed {
+      return find_targeting(transaction, *robot).map([&](const Targeting& stored) -> Changed {
         if (!hold.lasts()) {
           return {fail(authority_lost()), false};
         }
+        const Targeting before = judged(stored, epoch);
         Changed after{make(before, body)};
+        if (after.targeting && origin.source == TaskSource::openigtlink &&
+            is_repeated(before, *after.targeting)) {
+          return {fail(repeated(before)), false};
+        }
+        if (after.targeting) {
+          after.targeting = judged(std::move(*after.targeting), epoch);
+        }
         if (after.targeting && *after.targeting != before) {
           set_targeting(transaction, before, *after.targeting, origin, entry);
           after.leads_elsewhere = leads_elsewhere(before, *after.targeting);
@@ -68,7 +90,38 @@ boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const 
   if (changed->leads_elsewhere) {
     context.registry.end_stale(caller.user);
   }
-  co_return changed->targeting;
+  co_return changed->targeting.map(
+      [&](const Targeting& targeting) { return judged(targeting, context.registration_epoch); });
+}
+
+boost::asio::awaitable<tl::expected<Targeting, Problem>> expire_registration(const Context& context,
+                                                                             Caller caller,
+                                                                             std::string reason) {
+  RegistrationEpoch& epoch = context.registration_epoch;
+  const RegistrationEpoch before = epoch;
+  epoch = {before.number % latest_epoch + 1, reason};
+  const bool is_app = caller.session == 0;
+  context.registry.end_stale(is_app ? audit_actor::app : caller.user);
+  AuditEntry entry = context.entry(caller, AuditKind::setting, json::object());
+  entry.actor = is_app ? audit_actor::app : entry.actor;
+  auto keep = [robot = &context.robot, before, after = epoch, reason = std::move(reason),
+               origin = TargetingOrigin{TaskSource::console, caller.peer}, entry](Store& store) {
+    return store.transact([&](Transaction& transaction) -> Stored<Targeting> {
+      return find_targeting(transaction, *robot).map([&](const Targeting& stored) {
+        Targeting expired = stored;
+        if (judged(stored, before).registration_problem.empty()) {
+          expired.registration_expired = reason;
+          set_targeting(transaction, judged(stored, before), judged(expired, after), origin, entry);
+        }
+        return expired;
+      });
+    });
+  };
+  const auto kept = co_await context.store.run(std::move(keep));
+  if (!kept) {
+    co_return fail(kept.error());
+  }
+  co_return judged(*kept, context.registration_epoch);
 }
 
 }  // namespace interlock

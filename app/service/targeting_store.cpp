@@ -48,12 +48,16 @@ void set_targeting(Transaction& transaction, const Targeting& before, const Targ
                    const TargetingOrigin& origin, AuditEntry entry) {
   const json old_values = to_json(before);
   const json new_values = to_json(after);
+  json changed = difference(new_values, old_values);
+  if (before.registration_epoch != after.registration_epoch) {
+    changed["registration"] = new_values["registration"];
+  }
   entry.detail = {{"setting", setting_key},
                   {"source", source_name(origin.source)},
                   {"client", origin.client},
                   {"old", difference(old_values, new_values)},
-                  {"new", difference(new_values, old_values)}};
-  Settings(transaction).set(setting_key, new_values, entry.time);
+                  {"new", std::move(changed)}};
+  Settings(transaction).set(setting_key, to_stored(after), entry.time);
   note_targeting_change(transaction, entry, Audit(transaction).append(entry).number);
 }
 
@@ -71,7 +75,9 @@ boost::asio::awaitable<tl::expected<Targeting, Problem>> present_targeting(const
   auto find = [robot = &context.robot](Store& store) {
     return store.read([&](Transaction& transaction) { return find_targeting(transaction, *robot); });
   };
-  co_return co_await context.store.run(std::move(find));
+  auto found = co_await context.store.run(std::move(find));
+  co_return found.map(
+      [&](const Targeting& targeting) { return judged(targeting, context.registration_epoch); });
 }
 
 }  // namespace interlock

@@ -15,7 +15,7 @@ namespace interlock {
 
 // Where the values of `Targeting` are kept: a setting of the store, audited.
 
-/** The stored values; what the robot's file says until somebody sets others. */
+/** The stored values, not yet judged; what the robot's file says until somebody sets others. */
 Stored<Targeting> find_targeting(Transaction& transaction, const Robot& robot);
 
 /** By which way a change of the targeting came. */
@@ -33,7 +33,7 @@ void set_targeting(Transaction& transaction, const Targeting& before, const Targ
 boost::asio::awaitable<tl::expected<Alignment, Problem>> aligned(const Context& context,
                                                                  const Targeting& targeting);
 
-/** The present values, read outside of the network thread. */
+/** The present values, read outside of the network thread, and judged. */
 boost::asio::awaitable<tl::expected<Targeting, Problem>> present_targeting(const Context& context);
 
 // How registration, entry, target and probe change, whoever changes them and by whichever way.
@@ -44,11 +44,20 @@ using TargetingChange = tl::expected<Targeting, Problem> (*)(Targeting, const nl
 /**
  * Stores and audits what the body changes, with the way by which it came, and ends every proposal that
  * followed from other values. Nothing changes when the body is wrong (its problem), when the caller has lost
- * session (401 LOGIN) or authority (409 AUTHORITY) meanwhile, or the store fails (503 STORE).
+ * session (401 LOGIN) or authority (409 AUTHORITY) meanwhile, or the store fails (503 STORE). A program may
+ * not set the registration again that has expired (409 NO_REGISTRATION): only a person can know that it
+ * holds.
  */
 boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const Context& context,
                                                                           Caller caller, TaskSource source,
                                                                           TargetingChange make,
                                                                           nlohmann::json body);
+
+/** Ends the validity of the registration at once, with everything that followed from it, on behalf of the
+ * caller or, without a session, of the app. The store keeps the reason; 503 STORE when it cannot: then
+ * another start of the app tells another one. */
+boost::asio::awaitable<tl::expected<Targeting, Problem>> expire_registration(const Context& context,
+                                                                             Caller caller,
+                                                                             std::string reason);
 
 }  // namespace interlock

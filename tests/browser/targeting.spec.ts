@@ -4,6 +4,7 @@ import { expect, test } from "./fixtures";
 
 const entry = [8, 250, 70];
 const target = [5, 200, 60];
+const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
 /** As another program of the same user does it. */
 async function put(page: Page, what: "registration" | "target", body: object): Promise<void> {
@@ -43,8 +44,13 @@ test("a registration is refused in words until it is rigid, set once, and told w
   await robot.open("Targeting");
   const panel = robot.panel("Registration");
   const set = panel.getByRole("button", { name: "Set registration" });
-  await expect(panel).toContainText("Nobody set it: it is the identity.");
+  await expect(panel).toContainText("Nobody has ever set it.");
+  await expect(panel).toContainText(
+    "The registration is not set. Nothing is shown in the scanner, or moved to.",
+  );
   await expect(set).toBeDisabled();
+  await put(page, "registration", { registration: identity });
+  await expect(cell(page, "R", "x")).toHaveValue("1");
   const sent = sentBy(page);
 
   await cell(page, "R", "x").fill("zero");
@@ -66,6 +72,29 @@ test("a registration is refused in words until it is rigid, set once, and told w
   const history = robot.panel("History").getByRole("row").nth(1);
   await expect(history).toContainText("admin");
   await expect(history).toContainText("moved by 10.50 mm, turned by 90.00°");
+});
+
+test("the table moved: the registration expires at once, and is valid again once somebody sets it again", async ({
+  robot,
+  page,
+}) => {
+  await put(page, "target", { entry_point: entry, target_point: target });
+  await robot.open("Targeting");
+  const panel = robot.panel("Registration");
+  const alignment = robot.panel("Alignment");
+  const moved = robot.button("The table moved");
+  await expect(moved).toBeDisabled();
+  await expect(alignment).toContainText("NO_REGISTRATION");
+  await put(page, "registration", { registration: identity });
+  await expect(alignment.getByRole("row")).toHaveCount(8);
+  await moved.click();
+  await expect(panel).toContainText("The registration has expired: The table moved.");
+  await expect(alignment).toContainText("NO_REGISTRATION");
+  await expect(moved).toBeDisabled();
+  await expect(robot.panel("History").getByRole("row").nth(1)).toContainText("has expired: The table moved.");
+  await robot.button("Set registration").click();
+  await expect(alignment.getByRole("row")).toHaveCount(8);
+  await expect(panel).not.toContainText("expired");
 });
 
 test("what is edited is not overwritten by what arrives, and nothing is sent that did not change", async ({
@@ -136,6 +165,7 @@ test("the alignment says what it asks of each axis and why it would be refused, 
   page,
 }) => {
   await put(page, "target", { entry_point: entry, target_point: target });
+  await put(page, "registration", { registration: identity });
   await robot.unlockRobot();
   await robot.open("Targeting");
   const alignment = robot.panel("Alignment");
@@ -164,6 +194,7 @@ test("the proposed alignment brings the current pose to the desired one", async 
     await robot.axis(title).setHome(has_switch);
     await robot.axis(title).enable();
   }
+  await put(page, "registration", { registration: identity });
   await robot.open("Targeting");
   const current = page.getByRole("region", { name: "Current pose" });
   await expect(current.getByRole("table")).toBeVisible();

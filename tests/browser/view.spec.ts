@@ -2,14 +2,18 @@
 import { expect, test } from "./fixtures";
 
 const targeting = { entry_point: [8, 250, 70], target_point: [5, 200, 60] };
+const registration = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
 test.beforeEach(async ({ robot, page }) => {
   await robot.expectMode("LOCKED");
-  const set = await page.evaluate(async (body) => {
-    const answer = await fetch("/api/targeting/target", { method: "PUT", body });
-    return answer.status;
-  }, JSON.stringify(targeting));
-  expect(set).toBe(200);
+  const set = await page.evaluate(
+    async (bodies) => {
+      const put = (what: string, body: string) => fetch(`/api/targeting/${what}`, { method: "PUT", body });
+      return [(await put("target", bodies[0])).status, (await put("registration", bodies[1])).status];
+    },
+    [JSON.stringify(targeting), JSON.stringify({ registration })] as const,
+  );
+  expect(set).toEqual([200, 200]);
 });
 
 test("shows the target, and says what it does not show", async ({ robot, page }) => {

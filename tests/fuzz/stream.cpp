@@ -35,7 +35,7 @@ struct Talks {
       note_answers(seen, reaction);
       for (int follow_up = 0; reaction.command && follow_up < 3; ++follow_up) {
         Outcome outcome{{StatusCode::ok, 0, "OK", ""}};
-        outcome.target = state.scanner_from_robot;
+        outcome.target = Transform{}.matrix;
         reaction = dialect->finish(message.device, *reaction.command, outcome);
         note_answers(seen, reaction);
       }

@@ -77,6 +77,14 @@ def home_all(stack: Stack) -> None:
     wait_until("homed", lambda: all(axis["homed"] for axis in motors()))
 
 
+IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
+
+
+def register(stack: Stack, pose: list[float] = IDENTITY) -> None:
+    """Says where the robot stands in the scanner."""
+    stack.api.put("/api/targeting/registration", json={"registration": pose}).raise_for_status()
+
+
 def to_motion(stack: Stack, slot: int = LATERAL) -> None:
     """Unlocks, references the axis where it stands, enables it and presses the pedal."""
     unlock(stack)

@@ -23,6 +23,7 @@ from motion import (
     motor,
     press,
     propose,
+    register,
     set_home,
     unlock,
     wait_for_mode,
@@ -82,6 +83,7 @@ def within_reach(axis: dict) -> float:
 def test_the_whole_state_comes_on_connecting_in_the_version_that_the_program_speaks(
     robot: Stack, navigate: Callable[..., Navigator], version: int
 ) -> None:
+    register(robot)
     navigator = navigate(version)
     assert np.array_equal(navigator.receive("scanner_to_robot_reg").matrix, np.eye(4))
     assert navigator.receive("mode").string == "manual"
@@ -98,7 +100,7 @@ def test_what_the_controller_sets_is_stored_told_to_all_and_audited(
     robot: Stack, navigate: Callable[..., Navigator], version: int
 ) -> None:
     observer = navigate()
-    observer.receive("scanner_to_robot_reg")
+    observer.receive("mode")
     navigator = navigate(version)
     wait_until("both listed", lambda: len(connections(robot)) == 2)
     make_controller(robot)
@@ -119,7 +121,7 @@ def test_what_the_controller_sets_is_stored_told_to_all_and_audited(
         "robot_to_entry_offset",
         "target_point",
         "entry_point",
-        "registration",
+        "registration_state",
     ]
     assert {change["source"] for change in history["changes"]} == {"openigtlink"}
     assert history["last_set"]["reported_position"]["client"].startswith("openigtlink 127.0.0.1:")
@@ -132,6 +134,7 @@ def test_a_pose_of_an_imager_never_takes_the_encoders_place(
     robot: Stack, navigate: Callable[..., Navigator]
 ) -> None:
     home_all(robot)
+    register(robot)
     navigator = navigate()
     measured = navigator.receive("measured_cp").matrix
     make_controller(robot)
@@ -269,6 +272,7 @@ def test_a_bad_array_is_refused_whole_with_row_column_and_reason_and_nothing_mov
 def aim(robot: Stack, navigate: Callable[..., Navigator]) -> tuple[Navigator, dict]:
     """A controller of the homed robot, and the alignment that reaches for ENTRY and TARGET."""
     home_all(robot)
+    register(robot)
     navigator = navigate()
     make_controller(robot)
     target = {"entry_point": ENTRY, "target_point": TARGET}
@@ -366,6 +370,7 @@ def test_a_mode_becomes_a_proposal_that_moves_once_it_is_approved(
     robot: Stack, navigate: Callable[..., Navigator], mode: str
 ) -> None:
     home_all(robot)
+    register(robot)
     navigator = navigate()
     make_controller(robot)
     for name, point in {"ENTRY_POINT": ENTRY, "TARGET_POINT": TARGET}.items():

@@ -4,7 +4,7 @@ import math
 
 import pytest
 from conftest import StackFactory
-from motion import enable, press, proposal, set_home, unlock, wait_for_proposal
+from motion import enable, press, proposal, register, set_home, unlock, wait_for_proposal
 from stack import Stack
 from test_paths import HEAD, LATERAL, propose, ready
 
@@ -21,6 +21,7 @@ def outcomes(found: dict) -> dict[str, str]:
 
 def test_the_plan_is_the_way_that_the_axes_then_go(stack: StackFactory) -> None:
     robot = ready(stack)
+    register(robot)
     number = propose(robot, kind="coordinated", targets={"lateral": -20.0, "head": -25.0})
     found = plan(robot, number)
     assert set(outcomes(found).values()) == {"passed"}
@@ -106,7 +107,8 @@ def test_the_reach_holds_where_the_robot_stands(stack: StackFactory) -> None:
     wait_for_proposal(robot, number, "done")
     reach = robot.api.get("/api/targeting/reach").json()
     assert reach["problem"] is None
-    # No registration is set: zFrame and scanner are the same.
+    # zFrame and scanner are the same.
+    register(robot)
     x, y, z = robot.api.get("/api/targeting/alignment").json()["current"][3::4][:3]
     for axis, value in enumerate((x, y, z)):
         ends = [centre[axis] for centre in reach["centres"]]

@@ -11,7 +11,7 @@ import jsonschema
 import numpy as np
 import pytest
 from bare_kernel import ROOT
-from motion import enable, motor, press, propose, unlock, wait_for_proposal, wait_until
+from motion import enable, motor, press, propose, register, unlock, wait_for_proposal, wait_until
 from stack import Stack
 from test_kinematics_cli import kinematics
 from test_robot_files import SCHEMA
@@ -97,6 +97,7 @@ def test_five_axes_described_by_a_file_home_and_move_to_the_pose_of_forward_kine
     for slot, counts in enumerate(TARGETS.values()):
         wait_for_proposal(gantry, propose(gantry, counts, slot), "done")
         assert motor(gantry, slot)["position_counts"] == pytest.approx(counts, abs=3)
+    register(gantry)
     described = {axis["name"]: axis for axis in tomllib.loads(GANTRY.read_text())["axis"]}
 
     def pose_is_that_of_the_counts() -> bool:
@@ -115,6 +116,7 @@ def test_five_axes_described_by_a_file_home_and_move_to_the_pose_of_forward_kine
 def test_motion_goes_on_while_several_people_ask_for_a_pose_that_takes_long_to_refuse(start: Start) -> None:
     gantry = start("gantry")
     home_all_by_file(gantry, range(len(JOINTS)))
+    register(gantry)
     beyond = {"entry_point": [30, 100, -100], "target_point": [150, -10, -30]}
     gantry.api.put("/api/targeting/target", json=beyond).raise_for_status()
 

@@ -309,12 +309,15 @@ def test_the_alignment_tells_what_is_missing_then_what_is_desired_reachable_and_
 
     first = alignment()
     assert (first["alignment"], first["current"], first["current_deviation"]) == (None, None, None)
-    assert first["alignment_problem"]["code"] == "NO_TARGET"
-    assert first["current_problem"]["code"] == "NOT_HOMED"
-    assert "Yaw" in first["current_problem"]["text"]
+    assert first["alignment_problem"]["code"] == first["current_problem"]["code"] == "NO_REGISTRATION"
+    assert (first["frame"], first["current_body_problem"]["code"]) == ("robot", "NOT_HOMED")
 
     shift = [1, 0, 0, 100, 0, 1, 0, -50, 0, 0, 1, 25, 0, 0, 0, 1]
     judge(robot.api.put("/api/targeting/registration", json={"registration": shift})).raise_for_status()
+    second = alignment()
+    assert second["alignment_problem"]["code"] == "NO_TARGET"
+    assert second["current_problem"]["code"] == "NOT_HOMED"
+    assert "Yaw" in second["current_problem"]["text"]
     target = {"entry_point": [108, 200, 95], "target_point": [105, 150, 85]}
     judge(robot.api.put("/api/targeting/target", json=target)).raise_for_status()
     unlock(robot)

@@ -70,11 +70,16 @@ test("the page of a target that is set", async ({ robot, page }) => {
     [8, 250, 70],
     [5, 200, 60],
   ];
-  await page.evaluate(async (body) => {
-    await fetch("/api/targeting/target", { method: "PUT", body });
-  }, JSON.stringify({ entry_point, target_point }));
+  const registration = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+  await page.evaluate(
+    async ([target, registered]) => {
+      await fetch("/api/targeting/target", { method: "PUT", body: target });
+      await fetch("/api/targeting/registration", { method: "PUT", body: registered });
+    },
+    [JSON.stringify({ entry_point, target_point }), JSON.stringify({ registration })] as const,
+  );
   await robot.open("Targeting");
-  await expect(robot.panel("History").getByRole("row")).toHaveCount(2);
+  await expect(robot.panel("History").getByRole("row")).toHaveCount(3);
   await expect(robot.panel("Alignment").getByRole("table")).toBeVisible();
   await take(page, "targeting");
 });

@@ -2,6 +2,7 @@
 
 #include "http/routes.hpp"
 #include "service/alignment_view.hpp"
+#include "service/fields.hpp"
 #include "service/reply.hpp"
 #include "service/targeting.hpp"
 #include "service/targeting_store.hpp"
@@ -17,6 +18,9 @@ using nlohmann::json;
 
 /** Half a second of a small computer; twice as many fill few more cells. */
 constexpr std::size_t reach_draws = 200'000;
+
+/** Bytes of a reason for which a registration expires. */
+constexpr std::size_t longest_reason = 200;
 
 /** Schema `Reach`. */
 json reach_json(const KinematicsResult<Reach>& found) {
@@ -41,6 +45,8 @@ TargetingRoutes::TargetingRoutes(const Context& context, Router& router) : conte
   router.add(verb::get, "/api/targeting/history", viewers, [this](const Call&) { return show_history(); });
   router.add(verb::get, "/api/targeting/reach", viewers, [this](const Call&) { return show_reach(); });
   add_change(router, "/api/targeting/registration", with_registration);
+  router.add(verb::post, "/api/targeting/registration/expire", engineers,
+             [this](const Call& call) { return expire(call); });
   add_change(router, "/api/targeting/current", with_reported_pose);
   add_change(router, "/api/targeting/target", with_target);
 }
@@ -96,6 +102,23 @@ Answering TargetingRoutes::show_reach() {
     reach_ = KnownReach{probe, reach_json(*found)};
   }
   co_return Success{.body = reach_->body};
+}
+
+Answering TargetingRoutes::expire(const Call& call) const {
+  const auto body = parse_body(call.request);
+  if (!body) {
+    co_return fail(body.error());
+  }
+  Fields fields(*body, {"reason"});
+  std::string reason = fields.text("reason").value_or("The table moved.");
+  if (reason.empty() || reason.size() > longest_reason) {
+    fields.reject("reason", "is empty or too long", "1 to 200 bytes");
+  }
+  if (fields.problem()) {
+    co_return fail(*fields.problem());
+  }
+  const auto expired = co_await expire_registration(context_, call.caller, std::move(reason));
+  co_return expired.map([](const Targeting& targeting) { return Success{.body = to_json(targeting)}; });
 }
 
 Answering TargetingRoutes::change(const Call& call, TargetingChange make) const {

@@ -70,6 +70,8 @@ TEST_F(BiopsyRoutesTest, TheTargetOfTheTargetingIsSeenFromTheNeedleByRegistratio
 }
 
 TEST_F(BiopsyRoutesTest, WhatTheTargetingCannotTellIsRefusedByName) {
+  expect_refused(propose({{"kind", "biopsy"}}), 409, "NO_REGISTRATION");
+  register_robot();
   expect_refused(propose({{"kind", "biopsy"}}), 409, "NO_TARGET");
   // A needle of 0.0041 per mm gets 10 mm aside within 70 mm.
   set_target({12.0, 0.0, 70.0});

@@ -121,6 +121,11 @@ class HttpTest : public StoreFixture {
   Answered post(const std::string& target, const std::string& body = "");
 
   Answered put(const std::string& target, const std::string& body);
+  /** The robot's frame is the scanner's. */
+  void register_robot() {
+    const json identity{{"registration", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}};
+    ASSERT_EQ(put("/api/targeting/registration", identity.dump()).status, 200u);
+  }
 
   Answered post_raw(const std::string& bytes);
 

@@ -153,6 +153,26 @@ TEST_F(NavigationTest, TheAuditNamesWhoseProgramStoppedTheRobotAndWhoEndedAPropo
   EXPECT_EQ(json::parse(ended[0].detail)["author"], "edna");
 }
 
+TEST_F(NavigationTest, AProgramCannotRenewARegistrationThatHasExpired) {
+  become_controller();
+  EXPECT_EQ(ask("START_UP"), "START_UP 1");
+  request("CALIBRATION");
+  const auto calibrate = [this](float x_mm) {
+    igtl::Matrix pose = igtl::Transform{}.matrix;
+    pose[3] = x_mm;
+    EXPECT_TRUE(program_->send("CLB_1", igtl::Transform{pose}, soon()).has_value());
+    return next_answer();
+  };
+  const auto state = [this] { return json::parse(get("/api/targeting").body)["registration_state"]; };
+  EXPECT_EQ(calibrate(5.0f), "CALIBRATION 1");
+  EXPECT_EQ(state(), "valid");
+  ASSERT_EQ(post("/api/targeting/registration/expire", "{}").status, 200u);
+  EXPECT_NE(calibrate(5.0f), "CALIBRATION 1");
+  EXPECT_EQ(state(), "expired");
+  EXPECT_EQ(calibrate(6.0f), "CALIBRATION 1") << "a new one";
+  EXPECT_EQ(state(), "valid");
+}
+
 TEST_F(NavigationTest, AStopThatNoKernelConfirmsIsNotSaidToBeDone) {
   EXPECT_EQ(ask("STOP"), "STOP 13");
   EXPECT_EQ(channel_->stops, 1u);

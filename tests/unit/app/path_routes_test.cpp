@@ -63,6 +63,7 @@ TEST_F(PathRoutesTest, WhatIsNoCoordinatedMotionIsNamed) {
 }
 
 TEST_F(PathRoutesTest, APoseIsAlignedWithTheProbeOutFirst) {
+  register_robot();
   ASSERT_EQ(put("/api/targeting/target", R"({"entry_point":[8,250,70],"target_point":[5,200,60]})").status,
             200u);
   const Answered made = propose({{"kind", "pose"}, {"insert", true}});
@@ -77,6 +78,7 @@ TEST_F(PathRoutesTest, APoseIsAlignedWithTheProbeOutFirst) {
 }
 
 TEST_F(PathRoutesTest, AChangedRegistrationEndsThePoseThatFollowedFromTheOldOne) {
+  register_robot();
   ASSERT_EQ(put("/api/targeting/target", R"({"entry_point":[8,250,70],"target_point":[5,200,60]})").status,
             200u);
   ASSERT_EQ(propose({{"kind", "pose"}}).status, 201u);
@@ -89,6 +91,7 @@ TEST_F(PathRoutesTest, AChangedRegistrationEndsThePoseThatFollowedFromTheOldOne)
 }
 
 TEST_F(PathRoutesTest, AnUnreachableTargetIsRefusedUntilTheReachablePoseIsAskedFor) {
+  register_robot();
   // Straight down the robot's own axis, too far to the side for the lateral axis.
   ASSERT_EQ(put("/api/targeting/target", R"({"entry_point":[60,245,60],"target_point":[60,205,60]})").status,
             200u);
@@ -99,7 +102,25 @@ TEST_F(PathRoutesTest, AnUnreachableTargetIsRefusedUntilTheReachablePoseIsAskedF
   EXPECT_EQ(propose({{"kind", "pose"}, {"pose", "reachable"}}).status, 201u);
 }
 
+TEST_F(PathRoutesTest, AnExpiredRegistrationEndsThePoseThatFollowedFromItAndThereIsNoOther) {
+  constexpr const char* target = R"({"entry_point":[8,250,70],"target_point":[5,200,60]})";
+  ASSERT_EQ(put("/api/targeting/target", target).status, 200u);
+  const Answered never = propose({{"kind", "pose"}});
+  EXPECT_EQ(never.status, 409u);
+  EXPECT_EQ(never.problem()["code"], "NO_REGISTRATION");
+  register_robot();
+  ASSERT_EQ(propose({{"kind", "pose"}}).status, 201u);
+  ASSERT_EQ(post("/api/targeting/registration/expire", "{}").status, 200u);
+  EXPECT_EQ(proposal(1)["state"], "aborted");
+  const json again = propose({{"kind", "pose"}}).problem();
+  EXPECT_EQ(again["code"], "NO_REGISTRATION");
+  EXPECT_EQ(again["detail"], "The registration has expired: The table moved.");
+  register_robot();
+  EXPECT_EQ(propose({{"kind", "pose"}}).status, 201u) << "a person says that it still holds";
+}
+
 TEST_F(PathRoutesTest, WithoutATargetThereIsNoPose) {
+  register_robot();
   const Answered refused = propose({{"kind", "pose"}});
   EXPECT_EQ(refused.status, 409u);
   EXPECT_EQ(refused.problem()["code"], "NO_TARGET");

@@ -43,6 +43,73 @@ TEST_F(TargetingRoutesTest, WhatIsSetIsAnsweredAndKept) {
   EXPECT_EQ(values["canula_to_treatment_offset"], 7.5);
 }
 
+TEST_F(TargetingRoutesTest, WithoutAValidRegistrationNoPoseOfTheScannerIsTold) {
+  ControlView view = test::ready_view();
+  for (const char* slider : {"head", "feet"}) {
+    view.snapshot.state.axis[test::neuro().find(slider)->slot].position_counts = 0;
+  }
+  show(view);
+  set("target", {{"entry_point", {8, 250, 70}}, {"target_point", {5, 200, 60}}});
+  const auto poses = [this] { return json::parse(get("/api/targeting/alignment").body); };
+  for (const char* problem : {"current_problem", "alignment_problem"}) {
+    EXPECT_EQ(poses()[problem]["code"], "NO_REGISTRATION");
+  }
+  EXPECT_EQ(poses()["frame"], "robot") << "where the robot looks at itself";
+  EXPECT_TRUE(poses()["current_body"].is_array());
+  EXPECT_TRUE(poses()["current_body_problem"].is_null());
+  set("registration", {{"registration", quarter_turn}});
+  EXPECT_EQ(poses()["frame"], "scanner");
+  EXPECT_TRUE(poses()["current"].is_array());
+  ASSERT_EQ(post("/api/targeting/registration/expire", R"({"reason":"The patient moved."})").status, 200u);
+  EXPECT_EQ(poses()["current_problem"]["text"], "The registration has expired: The patient moved.");
+  EXPECT_TRUE(poses()["current"].is_null());
+  view.snapshot.state.axis[test::yaw].homed = 0;
+  show(view);
+  EXPECT_EQ(poses()["current_body_problem"]["code"], "NOT_HOMED");
+}
+
+TEST_F(TargetingRoutesTest, AnExpiryIsKeptWithItsReasonAndWhoSetItAgain) {
+  set("registration", {{"registration", quarter_turn}});
+  pass(std::chrono::seconds(5));
+  ASSERT_EQ(post("/api/targeting/registration/expire", "{}").status, 200u);
+  EXPECT_EQ(post("/api/targeting/registration/expire", "{}").status, 200u) << "nothing more to expire";
+  EXPECT_EQ(targeting()["registration_state"], "expired");
+  ASSERT_EQ(history()["changes"].size(), 2u);
+  EXPECT_EQ(history()["changes"][0]["new"],
+            json({{"registration_state", "expired"},
+                  {"registration_problem", "The registration has expired: The table moved."}}));
+  pass(std::chrono::seconds(5));
+  set("registration", {{"registration", quarter_turn}});
+  EXPECT_EQ(targeting()["registration_state"], "valid");
+  EXPECT_EQ(history()["last_set"]["registration"]["time"], iso_8601(now()));
+}
+
+TEST_F(TargetingRoutesTest, AnotherHomeOfAnAxisExpiresItWithoutAQuestion) {
+  ControlView view = test::ready_view();
+  show(view);
+  set("registration", {{"registration", quarter_turn}});
+  view.snapshot.state.axis[test::yaw].position_counts += 40;
+  show(view);
+  while (targeting()["registration_state"] == "valid") {
+    show(view);
+  }
+  EXPECT_EQ(targeting()["registration_problem"], "The registration has expired: Yaw was given another home.");
+  while (history()["changes"].size() < 2) {
+    std::this_thread::yield();
+  }
+  EXPECT_EQ(history()["changes"][0]["user"], "app");
+}
+
+TEST_F(TargetingRoutesTest, WhatIsNoReasonIsRefusedAndNothingExpires) {
+  set("registration", {{"registration", quarter_turn}});
+  for (const char* body : {R"({"reason":""})", R"({"reason":7})", R"({"why":"x"})", "[]"}) {
+    EXPECT_EQ(post("/api/targeting/registration/expire", body).status, 422u) << body;
+  }
+  EXPECT_EQ(post("/api/targeting/registration/expire", json{{"reason", std::string(201, 'x')}}.dump()).status,
+            422u);
+  EXPECT_EQ(targeting()["registration_state"], "valid");
+}
+
 TEST_F(TargetingRoutesTest, AChangeIsAuditedWithOldAndNew) {
   ASSERT_EQ(put("/api/targeting/target", R"({"target_point":[1,2,3]})").status, 200u);
   const auto records = audit("setting");

@@ -23,9 +23,10 @@ tl::expected<Targeting, Problem> registered(const json& pose) {
   return with_registration({}, {{"registration", pose}});
 }
 
-TEST(Targeting, StartsWithTheIdentityAndNothingElse) {
-  const json body = to_json(Targeting{});
-  EXPECT_EQ(body["registration"], json({1.0, 0, 0, 0, 0, 1.0, 0, 0, 0, 0, 1.0, 0, 0, 0, 0, 1.0}));
+TEST(Targeting, StartsWithNothingSet) {
+  const json body = to_json(judged({}, {7}));
+  EXPECT_TRUE(body["registration"].is_null());
+  EXPECT_EQ(body["registration_state"], "not_set");
   EXPECT_TRUE(body["entry_point"].is_null());
   EXPECT_TRUE(body["target_point"].is_null());
   EXPECT_TRUE(body["reported_position"].is_null());
@@ -147,6 +148,30 @@ TEST(Targeting, FieldsLeftOutStay) {
   EXPECT_EQ(with_target(before, json::object()).value(), before);
 }
 
+TEST(Targeting, ARegistrationIsValidInTheEpochInWhichItWasSetAndInNoOther) {
+  const RegistrationEpoch epoch{7};
+  const auto set = with_registration(judged({}, epoch), {{"registration", turned(0.1)}});
+  ASSERT_TRUE(set);
+  EXPECT_EQ(to_json(judged(*set, epoch))["registration_state"], "valid");
+  EXPECT_EQ(judged(*set, epoch).registration_problem, "");
+  const json expired = to_json(judged(*set, {8, "The table moved."}));
+  EXPECT_EQ(expired["registration_state"], "expired");
+  EXPECT_EQ(expired["registration_problem"], "The registration has expired: The table moved.");
+  EXPECT_EQ(expired["registration"], json(turned(0.1))) << "it is still told";
+  EXPECT_EQ(to_json(*with_registration({}, {{"registration", turned(0)}}))["registration_state"], "expired")
+      << "in no epoch";
+}
+
+TEST(Targeting, AReasonThatIsKeptOutlivesTheEpoch) {
+  Targeting targeting = *with_registration(judged({}, {7}), {{"registration", turned(0.1)}});
+  targeting.registration_expired = "The table moved.";
+  const Targeting stored = stored_targeting(to_stored(targeting)).value();
+  EXPECT_THAT(judged(stored, {7}).registration_problem, HasSubstr("The table moved."));
+  EXPECT_THAT(judged(stored, {9}).registration_problem, HasSubstr("The table moved."));
+  const auto again = with_registration(judged(stored, {9}), {{"registration", turned(0.1)}});
+  EXPECT_EQ(judged(*again, {9}).registration_problem, "");
+}
+
 TEST(Targeting, AReportedPoseReplacesNothingElse) {
   const auto set = with_reported_pose({}, {{"current_position", turned(1)}});
   ASSERT_TRUE(set);
@@ -159,13 +184,15 @@ TEST(Targeting, AReportedPoseReplacesNothingElse) {
 TEST(Targeting, ComesBackFromTheStoreAsItWas) {
   Targeting targeting;
   targeting.registration = turned(0.1);
+  targeting.registration_epoch = latest_epoch;
+  targeting.registration_expired = "The table moved.";
   targeting.ignore_registration_rotation = true;
   targeting.entry_point = Point{0.1, 0.2, 0.3};
   targeting.treatment_to_tip_mm = 1.0 / 3.0;
   targeting.cannula_to_treatment_mm = 2.5;
   targeting.reported_position = turned(2);
-  EXPECT_EQ(stored_targeting(json::parse(to_json(targeting).dump())).value(), targeting);
-  EXPECT_EQ(stored_targeting(to_json(Targeting{})).value(), Targeting{});
+  EXPECT_EQ(stored_targeting(json::parse(to_stored(targeting).dump())).value(), targeting);
+  EXPECT_EQ(stored_targeting(to_stored(Targeting{})).value(), Targeting{});
   EXPECT_FALSE(stored_targeting(json::array()));
   EXPECT_FALSE(stored_targeting({{"registration", {1, 2}}}));
 }

@@ -303,6 +303,8 @@ TEST_P(EachDialect, QueriesTellPhasePositionTargetAndCalibration) {
   EXPECT_EQ(talk.send("CURRENT_STATUS", Query{"STATUS"}), Shorts{"CURRENT_STATUS 10 UNDEFINED"});
   EXPECT_EQ(talk.send("CALIBRATION", Query{"TRANS"}), Shorts{"CALIBRATION 4"});
   talk.target();
+  EXPECT_EQ(talk.send("CALIBRATION", Query{"TRANS"}), Shorts{"CALIBRATION 4"}) << "it has expired";
+  talk.state.scanner_from_robot = moved(1.0);
   EXPECT_EQ(talk.send("CURRENT_STATUS", Query{"STATUS"}), Shorts{"CURRENT_STATUS 1 TARGETING"});
   for (const char* name : {"CURRENT_POSITION", "TARGET_POSITION", "CALIBRATION"}) {
     EXPECT_EQ(talk.send(name, Query{"TRANS"}), Shorts{std::string(name) + " TRANSFORM"});

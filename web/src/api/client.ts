@@ -255,6 +255,8 @@ export const api = {
   targetingHistory: () => read(() => http.GET("/api/targeting/history")),
   setRegistration: (change: RegistrationChange) =>
     act(() => http.PUT("/api/targeting/registration", { body: change })),
+  /** The table moved. */
+  expireRegistration: () => act(() => http.POST("/api/targeting/registration/expire", { body: {} })),
   setTarget: (change: TargetChange) => act(() => http.PUT("/api/targeting/target", { body: change })),
   /** Computed anew for each probe. */
   reach: () => read(() => slowHttp.GET("/api/targeting/reach")),

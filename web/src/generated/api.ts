@@ -623,6 +623,27 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/targeting/registration/expire": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * The table moved, or the registration holds no longer for another reason. It expires at once, with every motion that rests on it.
+         * @description Nobody needs control for that. A registration expires by itself when the app starts, and when an axis with a role loses its home,
+         *     is given another one, or is homed at another place. 503 STORE: it has expired, but the store does not keep why.
+         */
+        post: operations["expireRegistration"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/targeting/current": {
         parameters: {
             query?: never;
@@ -1368,7 +1389,7 @@ export interface components {
          *     `to_hz` in steps of `step_hz`, each for `dwell_s` of driven time, to and fro within its range; frequencies outside of the axis'
          *     allowed band are refused (DRIVE), and so is the published range. `biopsy` has the surgeon's hand push the needle towards
          *     `target_mm`, or without it towards the target point of the targeting (docs/biopsy.md): FORCE_STALE without a force of the last 20 ms,
-         *     IN_TISSUE when the tip is past the skin; NO_TARGET, NOT_HOMED or UNREACHABLE when the targeting's target cannot be had from where the
+         *     IN_TISSUE when the tip is past the skin; NO_REGISTRATION, NO_TARGET, NOT_HOMED or UNREACHABLE when the targeting's target cannot be had from where the
          *     needle is. A biopsy that followed from the targeting ends when that changes.
          */
         ProposalDraft: {
@@ -1530,8 +1551,13 @@ export interface components {
             /** @description By way only. */
             drives: number[];
         };
-        /** @description Where the profile leads, in the scanner's frame (RAS), mm, with the present registration and probe; axes that it does not move stand where they were when it was checked. */
+        /** @description Where the profile leads, in `frame`, mm, with the present registration and probe; axes that it does not move stand where they were when it was checked. */
         ProposalGhost: {
+            /**
+             * @description The scanner's (RAS), or the robot's own (zFrame) where no registration is valid.
+             * @enum {string}
+             */
+            frame: "scanner" | "robot";
             /** @description Pose of the treatment point at the end, row by row. */
             treatment: number[];
             tip: number[];
@@ -1800,8 +1826,15 @@ export interface components {
         Offset: number | string;
         /** @description Names as in the thesis. Poses and points are in the scanner's frame (RAS), mm; null until set. */
         Targeting: {
-            /** @description The identity until set. */
-            registration: number[];
+            /** @description The robot in the scanner, 16 numbers row by row; also where it has expired. */
+            registration: number[] | null;
+            /**
+             * @description Unless it is `valid`, no pose in the scanner's frame is computed, shown, sent or moved to (NO_REGISTRATION).
+             * @enum {string}
+             */
+            registration_state: "not_set" | "valid" | "expired";
+            /** @description Why it is not valid. */
+            registration_problem: string | null;
             ignore_registration_rotation: boolean;
             entry_point: number[] | null;
             target_point: number[] | null;
@@ -1858,13 +1891,19 @@ export interface components {
         };
         /** @description Poses are of the treatment point, in the scanner's frame (RAS), mm, 16 numbers row by row. In the place of what is not known stands a problem. */
         AlignmentView: {
+            /**
+             * @description Of `current_body`: the robot's own (zFrame) where no registration is valid.
+             * @enum {string}
+             */
+            frame: "scanner" | "robot";
             alignment: components["schemas"]["Alignment"] | null;
             alignment_problem: components["schemas"]["TargetingProblem"] | null;
             /** @description By the encoders; null unless every axis of the kinematics is homed. */
             current: number[] | null;
             current_problem: components["schemas"]["TargetingProblem"] | null;
-            /** @description What the robot looks like there, in the scanner's frame; null where the current pose is. */
+            /** @description What the robot looks like, in `frame`; null unless every axis of the kinematics is homed. */
             current_body: components["schemas"]["BodyPart"][] | null;
+            current_body_problem: components["schemas"]["TargetingProblem"] | null;
             /** @description Of the current pose from the desired one. */
             current_deviation: components["schemas"]["Deviation"] | null;
         };
@@ -1896,7 +1935,7 @@ export interface components {
             angle_deg: number;
         };
         TargetingProblem: {
-            /** @description NO_TARGET, NO_KERNEL, NOT_HOMED, or why the kinematics has no answer. */
+            /** @description NO_REGISTRATION, NO_TARGET, NO_KERNEL, NOT_HOMED, or why the kinematics has no answer. */
             code: string;
             text: string;
             quantity?: string;
@@ -1908,6 +1947,10 @@ export interface components {
         RegistrationChange: {
             registration: components["schemas"]["Pose"];
             ignore_registration_rotation?: boolean;
+        };
+        RegistrationExpiry: {
+            /** @description A sentence; 'The table moved.' without one. */
+            reason?: string;
         };
         ReportedPoseChange: {
             current_position: components["schemas"]["Pose"];
@@ -3310,6 +3353,35 @@ export interface operations {
             401: components["responses"]["Login"];
             403: components["responses"]["Role"];
             409: components["responses"]["Authority"];
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    expireRegistration: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["RegistrationExpiry"];
+            };
+        };
+        responses: {
+            /** @description Targeting. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Targeting"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
             422: components["responses"]["Invalid"];
             503: components["responses"]["NoStore"];
         };

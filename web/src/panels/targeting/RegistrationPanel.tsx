@@ -17,7 +17,7 @@ import { useReason } from "../../state/useReason";
 import { type Draft, draftOf, hasNews, isEdited, kept, received, taken, withText, withValues } from "./draft";
 import { list } from "./numbers";
 import { FRAME, FrameLabel, News, Problems, SendBar, SetBy } from "./parts";
-import { columnNames, isIdentity, originOf, rowNames } from "./pose";
+import { columnNames, originOf, rowNames } from "./pose";
 import { MOST_CHARACTERS, readPose } from "./poseFile";
 import {
   IGNORES_AT,
@@ -48,7 +48,8 @@ export function RegistrationPanel({ targeting, history, asked, onSet }: Registra
 
   const edited = isEdited(draft);
   const problems = registrationProblems(draft);
-  const change = registrationChange(draft);
+  const isValid = targeting.registration_state === "valid";
+  const change = registrationChange(draft, isValid);
   const readFrom = (name: string, text: string): void => {
     const found = readPose(text);
     setRead(found.ok ? { from: name, problem: null } : { from: null, problem: `${name}: ${found.problem}` });
@@ -80,6 +81,7 @@ export function RegistrationPanel({ targeting, history, asked, onSet }: Registra
       tools={
         <>
           <FrameLabel />
+          <Expiry isValid={isValid} onExpired={onSet} />
           <LoadPose off={reason} onFile={(file) => void readFile(file, readFrom)} />
         </>
       }
@@ -94,9 +96,15 @@ export function RegistrationPanel({ targeting, history, asked, onSet }: Registra
         <SetBy
           history={history}
           field="registration"
-          isSet={!isIdentity(targeting.registration)}
-          unset="Nobody set it: it is the identity."
+          isSet={targeting.registration !== null}
+          unset="Nobody has ever set it."
         />
+        {targeting.registration_problem !== null && (
+          <p className="registration-problem" role="status">
+            <i aria-hidden="true">▲</i> {targeting.registration_problem} Nothing is shown in the scanner, or
+            moved to. {targeting.registration !== null && "Set it again only if it still holds."}
+          </p>
+        )}
         <Matrix
           draft={draft}
           readOnly={reason !== null}
@@ -133,10 +141,16 @@ export function RegistrationPanel({ targeting, history, asked, onSet }: Registra
           off={
             reason ??
             (hasNews(draft) ? "Take what arrived, or keep yours, first." : null) ??
-            (edited ? (change === null ? "It is no rigid pose: see above." : null) : "Nothing was edited.")
+            (change !== null ? null : edited ? "It is no rigid pose: see above." : "Nothing was edited.")
           }
           edited={edited}
-          words={edited ? editedWords(read.from) : "As received."}
+          words={
+            edited
+              ? editedWords(read.from)
+              : targeting.registration === null
+                ? "Write, paste or load it."
+                : "As received."
+          }
           onUndo={() => giveUp(taken)}
         />
       </form>
@@ -163,6 +177,42 @@ function arrivedOrigin(draft: Draft): string {
 async function readFile(file: File, onText: (name: string, text: string) => void): Promise<void> {
   // Of a film that was chosen by mistake no more is read than what shows that it is none.
   onText(file.name, await file.slice(0, MOST_CHARACTERS + 1).text());
+}
+
+/** One button for the moment in which the table, or the patient, has moved. */
+function Expiry({
+  isValid,
+  onExpired,
+}: {
+  readonly isValid: boolean;
+  readonly onExpired: () => Promise<void>;
+}) {
+  const [refusal, setRefusal] = useState<Notice | null>(null);
+  const reason = useReason("engineer");
+  const onMoved = async (): Promise<void> => {
+    const outcome = await api.expireRegistration();
+    setRefusal(outcome.ok ? null : noticeOfProblem(outcome.problem));
+    await onExpired();
+  };
+  return (
+    <>
+      {refusal !== null && <NoticeText lead="The reason is not kept:" notice={refusal} />}
+      <button
+        type="button"
+        className="button"
+        disabled={reason !== null || !isValid}
+        title={
+          reason ??
+          (isValid
+            ? "The registration expires, and every motion that rests on it ends"
+            : "No registration is valid")
+        }
+        onClick={() => void onMoved()}
+      >
+        The table moved
+      </button>
+    </>
+  );
 }
 
 function LoadPose({ off, onFile }: { readonly off: string | null; readonly onFile: (file: File) => void }) {

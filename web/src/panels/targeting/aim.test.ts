@@ -5,6 +5,8 @@ import { hasNews, withText } from "./draft";
 
 const targeting: Targeting = {
   registration: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1],
+  registration_state: "valid",
+  registration_problem: null,
   ignore_registration_rotation: false,
   entry_point: [8, 250, 70],
   target_point: null,

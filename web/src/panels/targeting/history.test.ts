@@ -19,6 +19,12 @@ describe("changeWords", () => {
     ]);
     expect(
       changeWords({
+        old: { registration_problem: null },
+        new: { registration_problem: "The registration has expired: The table moved." },
+      }),
+    ).toEqual(["The registration has expired: The table moved."]);
+    expect(
+      changeWords({
         old: { ignore_registration_rotation: false },
         new: { ignore_registration_rotation: true },
       }),

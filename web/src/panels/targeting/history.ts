@@ -18,7 +18,7 @@ export function changeWords({ old, new: set }: Pick<Change, "old" | "new">): str
 
 /** Fields of Targeting; the interface tells no types here. */
 type Fields = Readonly<Partial<Record<AimName | RegistrationName, unknown>>>;
-type RegistrationName = "registration" | "ignore_registration_rotation";
+type RegistrationName = "registration" | "registration_problem" | "ignore_registration_rotation";
 
 function aimWords(name: AimName, old: Fields, set: Fields): string[] {
   const is = valueWords(set[name]);
@@ -32,6 +32,7 @@ function registrationWords(old: Fields, set: Fields): string[] {
     const origin = `Registration with its origin at ${list(originOf(after), POINT_DECIMALS)}`;
     words.push(before.length === 16 ? `${origin}${against(before, after)}` : origin);
   }
+  if (typeof set.registration_problem === "string") words.push(set.registration_problem);
   const ignores = set.ignore_registration_rotation;
   if (typeof ignores === "boolean")
     words.push(`Rotation of the registration ${ignores ? "ignored" : "used"}`);

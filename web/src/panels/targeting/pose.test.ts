@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { deviationOf, isIdentity, poseProblems, turnBetween, upperRows, wholePose } from "./pose";
+import { deviationOf, poseProblems, turnBetween, upperRows, wholePose } from "./pose";
 
 const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 const quarterTurn = [0, -1, 0, 10.5, 1, 0, 0, -20, 0, 0, 1, 30, 0, 0, 0, 1];
@@ -55,12 +55,6 @@ describe("a pose", () => {
     expect(turnBetween(quarterTurn, identity)).toBeCloseTo(90, 10);
     expect(turnBetween(identity, identity)).toBe(0);
   });
-
-  it("is the identity or is not", () => {
-    expect(isIdentity(identity)).toBe(true);
-    expect(isIdentity(quarterTurn)).toBe(false);
-  });
-
   it("has a last row that is always the same", () => {
     expect(wholePose(upperRows(quarterTurn))).toEqual(quarterTurn);
   });

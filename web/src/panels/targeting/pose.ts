@@ -19,10 +19,6 @@ export function wholePose(upper: readonly number[]): number[] {
   return [...upper, ...IDENTITY_LAST_ROW];
 }
 
-export function isIdentity(pose: readonly number[]): boolean {
-  return pose.every((value, at) => value === (at % 5 === 0 ? 1 : 0));
-}
-
 type Vector = readonly [number, number, number];
 
 function column(pose: readonly number[], at: number): Vector {

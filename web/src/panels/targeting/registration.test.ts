@@ -15,25 +15,39 @@ const draft = draftOf(registrationValues(targeting));
 
 describe("what is sent of a registration", () => {
   it("is nothing when nothing changed", () => {
-    expect(registrationChange(draft)).toBeNull();
-    expect(registrationChange(withText(draft, 3, "10.50"))).toBeNull();
+    expect(registrationChange(draft, true)).toBeNull();
+    expect(registrationChange(withText(draft, 3, "10.50"), true)).toBeNull();
   });
 
   it("is the whole matrix when one number changed, and not how it is used", () => {
-    expect(registrationChange(withText(draft, 3, "11"))).toEqual({
+    expect(registrationChange(withText(draft, 3, "11"), true)).toEqual({
       registration: quarterTurn.map((value, at) => (at === 3 ? 11 : value)),
     });
   });
 
+  it("is what has expired, as it is", () => {
+    expect(registrationChange(draft, false)).toEqual({ registration: quarterTurn });
+  });
+
+  it("is nothing while none is set and none is written", () => {
+    const unset = { registration: null, ignore_registration_rotation: false } as Targeting;
+    const empty = draftOf(registrationValues(unset));
+    expect(registrationChange(empty, false)).toBeNull();
+    expect(registrationProblems(withText(empty, 0, "1"))[0]).toContain("it is empty");
+    expect(registrationChange(withValues(empty, withPose(empty, quarterTurn)), false)).toEqual({
+      registration: quarterTurn,
+    });
+  });
+
   it("says how it is used when that changed", () => {
-    expect(registrationChange(withText(draft, IGNORES_AT, "1"))).toEqual({
+    expect(registrationChange(withText(draft, IGNORES_AT, "1"), true)).toEqual({
       registration: quarterTurn,
       ignore_registration_rotation: true,
     });
   });
 
   it("is nothing while it is no rigid pose", () => {
-    expect(registrationChange(withText(draft, 4, "1.1"))).toBeNull();
+    expect(registrationChange(withText(draft, 4, "1.1"), true)).toBeNull();
   });
 
   it("is a whole that is edited: another element that arrives does not mix with it", () => {
@@ -72,7 +86,7 @@ describe("a pose that was read", () => {
     const ignoring = withText(draft, IGNORES_AT, "1");
     const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
     const loaded = withValues(ignoring, withPose(ignoring, identity));
-    expect(registrationChange(loaded)).toEqual({
+    expect(registrationChange(loaded, true)).toEqual({
       registration: identity,
       ignore_registration_rotation: true,
     });

@@ -7,8 +7,14 @@ import { columnNames, poseProblems, rowNames, upperRows, wholePose } from "./pos
 /** Behind the twelve numbers of the upper rows: whether the rotation is ignored, 1 or 0. */
 export const IGNORES_AT = 12;
 
+const NOT_SET: Values = Array.from({ length: IGNORES_AT }, () => null);
+
 export function registrationValues(targeting: Targeting): Values {
-  return [...upperRows(targeting.registration), targeting.ignore_registration_rotation ? 1 : 0];
+  const { registration } = targeting;
+  return [
+    ...(registration === null ? NOT_SET : upperRows(registration)),
+    targeting.ignore_registration_rotation ? 1 : 0,
+  ];
 }
 
 export function ignoresRotation(draft: Draft): boolean {
@@ -42,10 +48,11 @@ export function isUnreadable(text: string): boolean {
   return numberIn(text) === null;
 }
 
-/** What to send; null when nothing changed, or when it is no rigid pose. */
-export function registrationChange(draft: Draft): RegistrationChange | null {
+/** What to send; null when it is no rigid pose, or when nothing changed. What has expired may be set again as it is. */
+export function registrationChange(draft: Draft, isValid: boolean): RegistrationChange | null {
   const numbers = numbersOf(draft);
-  if (numbers === null || !isChanged(draft) || registrationProblems(draft).length > 0) return null;
+  if (numbers === null || (isValid && !isChanged(draft)) || registrationProblems(draft).length > 0)
+    return null;
   const ignores = numbers[IGNORES_AT] === 1;
   const ignored = draft.arrived[IGNORES_AT] === 1;
   return {

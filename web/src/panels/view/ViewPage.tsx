@@ -46,8 +46,8 @@ function ViewPanel() {
     [aim, poses, robot, plan, shown],
   );
   const cells = useMemo(
-    () => (reach === null || aim === null ? null : cellsOf(reach, aim.registration)),
-    [reach, aim],
+    () => (reach === null || aim === null || poses === null ? null : cellsOf(reach, aim, poses)),
+    [reach, aim, poses],
   );
   const notice = alignment.notice ?? targeting.notice ?? planNotice ?? reachNotice;
   const tools = (
@@ -240,7 +240,7 @@ function Legend({ scene, cells }: LegendProps) {
         {cells !== null && <li data-ink="reach">▪ {wordsOfCells(cells)} mm</li>}
         <li data-ink="entry">◆ entry</li>
         <li data-ink="target">● target</li>
-        <li>axes: x red, y green, z blue; large: scanner (RAS) and zFrame</li>
+        <li>axes: x red, y green, z blue; large: {scene.axes.map(({ name }) => name).join(", ")}</li>
       </ul>
       {scene.deviation !== null && (
         <p>

@@ -9,6 +9,7 @@ const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
 const targeting = {
   registration: identity,
+  registration_state: "valid",
   entry_point: null,
   target_point: [1, 2, 3],
   treatment_to_tip_offset: 5,
@@ -16,11 +17,13 @@ const targeting = {
 } as unknown as Targeting;
 
 const nothing: AlignmentView = {
+  frame: "scanner",
   alignment: null,
   alignment_problem: { code: "NO_TARGET", text: "Entry and target are not both set." },
   current: null,
   current_problem: { code: "NOT_HOMED", text: "Home the yaw." },
   current_body: null,
+  current_body_problem: { code: "NOT_HOMED", text: "Home the yaw." },
   current_deviation: null,
 };
 
@@ -44,6 +47,13 @@ describe("sceneOf", () => {
     ]);
   });
 
+  it("is in the robot's own frame while no registration is valid", () => {
+    const expired = { ...targeting, registration_state: "expired" as const, registration: pose };
+    const scene = sceneOf(expired, { ...nothing, frame: "robot" });
+    expect(scene.marks).toEqual([]);
+    expect(scene.axes).toEqual([{ name: "zFrame", pose: identity, lengthMm: 40 }]);
+  });
+
   it("has the current probe from its cannula to its tip", () => {
     const scene = sceneOf(targeting, { ...nothing, current: pose, current_problem: null });
     expect(scene.probes).toEqual([
@@ -60,6 +70,7 @@ describe("sceneOf", () => {
       alignment_problem: null,
       current: pose,
       current_problem: null,
+      current_body_problem: null,
     });
     expect(scene.probes.map(({ kind }) => kind)).toEqual(["desired", "reachable", "current"]);
     expect(scene.deviation).toEqual([
@@ -75,6 +86,7 @@ describe("the ghost of a proposal", () => {
   const plan = {
     id: 12,
     ghost: {
+      frame: "scanner",
       treatment: pose,
       tip: [15, 20, 30],
       tip_path: [
@@ -114,13 +126,15 @@ describe("the ghost of a proposal", () => {
 describe("the workspace", () => {
   it("moves with the registration, and says how far it goes", () => {
     const reach = { cell_mm: 10, centres: [[0, 0, 0] as number[], [0, 0, 20]], problem: null };
-    const cells = cellsOf(reach, pose);
+    const placed = { ...targeting, registration: pose };
+    const cells = cellsOf(reach, placed, nothing);
     expect(cells?.centres).toEqual([
       [10, 20, 30],
       [30, 20, 30],
     ]);
     expect(cells && wordsOfCells(cells)).toBe("workspace: x 5 to 35, y 15 to 25, z 25 to 35");
-    expect(cellsOf({ ...reach, centres: [] }, pose)).toBeNull();
+    expect(cellsOf(reach, placed, { ...nothing, frame: "robot" })?.centres).toEqual(reach.centres);
+    expect(cellsOf({ ...reach, centres: [] }, placed, nothing)).toBeNull();
   });
 });
 

@@ -1,6 +1,6 @@
 /**
- * What the 3D view shows, in the scanner's frame (RAS), mm: poses and points that the app knows, and nothing else. A pose
- * is a homogeneous matrix, row by row.
+ * What the 3D view shows, in the scanner's frame (RAS), mm, or in the robot's own while no registration is valid: poses and
+ * points that the app knows, and nothing else. A pose is a homogeneous matrix, row by row.
  */
 import type { AlignmentView, BodyPart, ProposalPlan, Reach, Targeting } from "../../api/client";
 
@@ -78,7 +78,8 @@ export function sceneOf(
   { robot, plan }: Wanted = NOTHING_MORE,
 ): Scene {
   const { alignment, current } = view;
-  const ghost = plan?.ghost ?? null;
+  const registration = registrationOf(targeting, view);
+  const ghost = plan?.ghost?.frame === view.frame ? plan.ghost : null;
   const probe = (name: string, kind: Probe["kind"], pose: readonly number[]): Probe => ({
     name,
     kind,
@@ -102,23 +103,33 @@ export function sceneOf(
         ? null
         : { id: plan.id, tip: pointAt(ghost.tip), path: ghost.tip_path.map(pointAt) },
     axes: [
-      { name: "scanner (RAS)", pose: IDENTITY, lengthMm: FRAME_MM },
-      { name: "zFrame", pose: targeting.registration, lengthMm: FRAME_MM },
+      ...(registration === null ? [] : [{ name: "scanner (RAS)", pose: IDENTITY, lengthMm: FRAME_MM }]),
+      { name: "zFrame", pose: registration ?? IDENTITY, lengthMm: FRAME_MM },
       ...(current === null ? [] : [{ name: "treatment point", pose: current, lengthMm: TOOL_MM }]),
     ],
     probes,
-    marks: [...markOf("entry", targeting.entry_point), ...markOf("target", targeting.target_point)],
+    marks:
+      registration === null
+        ? []
+        : [...markOf("entry", targeting.entry_point), ...markOf("target", targeting.target_point)],
     deviation:
       current === null || alignment === null ? null : [along(current, 0), along(alignment.desired, 0)],
     missing: [
-      ...[view.current_problem, view.alignment_problem].flatMap((problem) =>
-        problem === null ? [] : [`${problem.code}: ${problem.text}`],
+      ...new Set(
+        [view.current_body_problem, view.current_problem, view.alignment_problem].flatMap((problem) =>
+          problem === null ? [] : [`${problem.code}: ${problem.text}`],
+        ),
       ),
       ...(plan?.ghost_problem == null
         ? []
         : [`Ghost of proposal ${plan.id}: ${plan.ghost_problem.code}: ${plan.ghost_problem.text}`]),
     ],
   };
+}
+
+/** Where the robot is in the scanner; null while everything is in its own frame. */
+function registrationOf(targeting: Targeting, { frame }: AlignmentView): readonly number[] | null {
+  return frame === "scanner" && targeting.registration_state === "valid" ? targeting.registration : null;
 }
 
 function bodyOf(kind: Body["kind"], parts: readonly BodyPart[]): Body {
@@ -139,11 +150,12 @@ export interface Cells {
 }
 
 /** They come in the zFrame; null where there are none. */
-export function cellsOf(reach: Reach, registration: readonly number[]): Cells | null {
+export function cellsOf(reach: Reach, targeting: Targeting, view: AlignmentView): Cells | null {
   if (reach.centres.length === 0) return null;
+  const registration = registrationOf(targeting, view);
   return {
     cellMm: reach.cell_mm,
-    centres: reach.centres.map((centre) => placed(registration, pointAt(centre))),
+    centres: reach.centres.map((centre) => placed(registration ?? IDENTITY, pointAt(centre))),
   };
 }
 

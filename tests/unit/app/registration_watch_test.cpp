@@ -1,0 +1,101 @@
+#include "service/registration_watch.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "robot_fixture.hpp"
+
+namespace interlock {
+namespace {
+
+using testing::HasSubstr;
+
+class RegistrationWatchTest : public testing::Test {
+ protected:
+  RegistrationWatchTest() { EXPECT_EQ(see(), ""); }
+
+  std::string see() { return watch_.see(view_); }
+
+  /** As a hand or a motor moves it. */
+  void move(std::int32_t counts) {
+    const bool is_corrected = test::neuro_config().axis[test::yaw].direction_correction != 0;
+    yaw_.position_counts += counts;
+    yaw_.raw += static_cast<std::uint32_t>(is_corrected ? -counts : counts);
+  }
+
+  ControlView view_ = test::ready_view();
+  ilk_axis_t& yaw_ = view_.snapshot.state.axis[test::yaw];
+  RegistrationWatch watch_{test::neuro(), test::neuro_config()};
+};
+
+TEST_F(RegistrationWatchTest, MotionExpiresNothing) {
+  move(-250);
+  EXPECT_EQ(see(), "");
+}
+
+TEST_F(RegistrationWatchTest, AnotherHomeDoes) {
+  yaw_.position_counts += 3;
+  EXPECT_EQ(see(), "Yaw was given another home.");
+  EXPECT_EQ(see(), "") << "once";
+}
+
+TEST_F(RegistrationWatchTest, ALostHomeDoes) {
+  yaw_.homed = ILK_HOMED_NOT;
+  EXPECT_EQ(see(), "Yaw lost its home.");
+  yaw_.homed = ILK_HOMED_BY_HAND;
+  EXPECT_EQ(see(), "") << "it had expired before";
+}
+
+TEST_F(RegistrationWatchTest, SeveralAxesAreNamed) {
+  yaw_.homed = ILK_HOMED_NOT;
+  view_.snapshot.state.axis[test::pitch].homed = ILK_HOMED_NOT;
+  EXPECT_THAT(see(), HasSubstr("Yaw lost its home. Pitch lost its home."));
+}
+
+TEST_F(RegistrationWatchTest, HomingExpiresNothingWhenItFindsTheSwitchWhereItWas) {
+  yaw_.homed = ILK_HOMED_NOT;
+  yaw_.state = ILK_AXIS_HOMING;
+  EXPECT_EQ(see(), "");
+  yaw_.state = ILK_AXIS_ENABLED;
+  EXPECT_EQ(see(), "") << "the pedal was released meanwhile";
+  move(700);
+  yaw_.homed = ILK_HOMED_BY_SWITCH;
+  yaw_.home_difference_counts = -2;
+  yaw_.position_counts = 0;
+  EXPECT_EQ(see(), "");
+}
+
+TEST_F(RegistrationWatchTest, HomingAtAnotherPlaceDoes) {
+  for (const auto& [homed, difference] :
+       {std::pair{ILK_HOMED_BY_SWITCH, 500}, std::pair{ILK_HOMED_BY_HAND, 0}}) {
+    yaw_.homed = ILK_HOMED_NOT;
+    yaw_.state = ILK_AXIS_HOMING;
+    EXPECT_EQ(see(), "");
+    yaw_.homed = static_cast<std::uint32_t>(homed);
+    yaw_.home_difference_counts = difference;
+    EXPECT_EQ(see(), "Yaw was homed at another place.");
+    EXPECT_EQ(see(), "");
+  }
+}
+
+TEST_F(RegistrationWatchTest, AnotherStartOfTheKernelLosesEveryHome) {
+  view_.attached = false;
+  EXPECT_EQ(see(), "");
+  view_ = test::ready_view();
+  for (ilk_axis_t& axis : view_.snapshot.state.axis) {
+    axis.homed = ILK_HOMED_NOT;
+  }
+  EXPECT_THAT(see(), HasSubstr("Yaw lost its home."));
+}
+
+TEST_F(RegistrationWatchTest, AnAxisWithoutARoleDoesNotMatter) {
+  Robot robot = test::neuro();
+  robot.axes.front().role.clear();
+  RegistrationWatch watch(robot, test::neuro_config());
+  EXPECT_EQ(watch.see(view_), "");
+  view_.snapshot.state.axis[robot.axes.front().slot].homed = ILK_HOMED_NOT;
+  EXPECT_EQ(watch.see(view_), "");
+}
+
+}  // namespace
+}  // namespace interlock
