@@ -118,7 +118,7 @@ void describe(CLI::App& cli, Options& options) {
                  "dialect of OpenIGTLink, in place of the robot file's: thesis, brp2013 or wpi2024")
       ->check(CLI::IsMember({"thesis", "brp2013", "wpi2024"}));
   cli.add_flag("--replay", options.replay,
-               "a recording comes over the link: send nothing, and let nobody take the motion authority");
+               "a recording comes over the link: send nothing, and let nobody take control");
   cli.add_option("--log-level", options.log_level, "debug, info, warning, error or critical")
       ->check(CLI::IsMember({"debug", "info", "warning", "error", "critical"}))
       ->capture_default_str();

@@ -24,7 +24,7 @@ constexpr std::chrono::milliseconds beat_period{33};
 /** Ten times a second. */
 constexpr std::uint32_t beats_per_biopsy = 3;
 /** Without any request, and without an open stream, which counts as one. */
-constexpr std::chrono::seconds authority_idle_limit{60};
+constexpr std::chrono::seconds holder_idle_limit{60};
 
 /** Of this start of the app, and none before. */
 std::int64_t some_epoch() {
@@ -47,7 +47,7 @@ Api::Api(const boost::asio::any_io_executor& executor, const Robot& robot, const
       bench_(executor, bench_socket),
       biopsy_(robot),
       sessions_(store, clocks),
-      authority_(static_cast<std::uint32_t>(std::chrono::system_clock::to_time_t(clocks.utc()))),
+      motion_control_(static_cast<std::uint32_t>(std::chrono::system_clock::to_time_t(clocks.utc()))),
       registration_epoch_{some_epoch()},
       context_{executor,
                robot,
@@ -58,7 +58,7 @@ Api::Api(const boost::asio::any_io_executor& executor, const Robot& robot, const
                biopsy_,
                store,
                sessions_,
-               authority_,
+               motion_control_,
                work_,
                trajectory_,
                registration_epoch_,
@@ -71,7 +71,7 @@ Api::Api(const boost::asio::any_io_executor& executor, const Robot& robot, const
       navigation_(context_),
       registration_watch_(robot, config),
       router_([this](const Caller& caller) -> std::optional<Problem> {
-        const auto held = context_.need_authority(caller);
+        const auto held = context_.need_control(caller);
         return held ? std::nullopt : std::optional(held.error());
       }),
       history_routes_(context_, std::move(past), router_) {
@@ -89,7 +89,7 @@ void Api::follow_proposals() {
     spdlog::info("proposal {} of {}: {}: {}", proposal.id, proposal.task->author, state_name(proposal.state),
                  proposal.detail);
     AuditEntry entry = context_.entry({}, AuditKind::proposal, message);
-    const auto& holding = authority_.holder();
+    const auto& holding = motion_control_.holder();
     entry.actor = proposal.changed_by;
     if (holding && holding->user == proposal.task->author && holding->user == proposal.changed_by) {
       entry.session = holding->session;
@@ -149,31 +149,31 @@ void Api::follow_streams() {
 
 void Api::follow_sessions() {
   sessions_.on_end([this](std::uint32_t session) {
-    authority_.release(session);
+    motion_control_.release(session);
     stream_.end_session(session);
     if (bench_.held_by(session)) {
       std::string why = "Session " + std::to_string(session) + ", which pressed it, has ended.";
       launch(context_.executor, bench_.release_pedal(std::move(why)));
     }
   });
-  authority_.on_change([this](bool holder_changed) {
+  motion_control_.on_change([this](bool holder_changed) {
     if (holder_changed) {
-      control_.change_holder(authority_.number());
-      registry_.abort_all("The motion authority changed.");
-      navigation_.change_authority();
-      const auto& holding = authority_.holder();
-      spdlog::warn("motion authority: {}", holding ? holding->user : "nobody");
+      control_.change_holder(motion_control_.number());
+      registry_.abort_all("Control changed hands.");
+      navigation_.change_holder();
+      const auto& holding = motion_control_.holder();
+      spdlog::warn("{} is in control", holding ? holding->user : "nobody");
       json detail{{"action", "change"},
                   {"holder", holding ? json(holding->user) : json()},
                   {"session", holding ? json(holding->session) : json()},
-                  {"number", authority_.number()}};
-      AuditEntry entry = context_.entry({}, AuditKind::authority, std::move(detail));
+                  {"number", motion_control_.number()}};
+      AuditEntry entry = context_.entry({}, AuditKind::control, std::move(detail));
       entry.actor = audit_actor::app;
       context_.store.note(std::move(entry));
     }
     stream_.send_text([this](const Caller& caller) {
-      json message = authority_.shown_to(caller.session);
-      message["type"] = "authority";
+      json message = motion_control_.shown_to(caller.session);
+      message["type"] = "control";
       return message;
     });
   });
@@ -284,11 +284,11 @@ void Api::look_after_sessions() {
   for (const Broadcaster::Subscriber& subscriber : stream_.subscribers()) {
     sessions_.touch(subscriber.caller.session);
   }
-  if (const auto& holding = authority_.holder()) {
+  if (const auto& holding = motion_control_.holder()) {
     const auto idle = sessions_.idle(holding->session);
-    if (!idle || *idle >= authority_idle_limit) {
+    if (!idle || *idle >= holder_idle_limit) {
       spdlog::warn("{} was away for too long", holding->user);
-      authority_.release(holding->session);
+      motion_control_.release(holding->session);
     }
   }
 }

@@ -67,8 +67,8 @@ class Api {
   /** Follows the control thread's notices; ends with the io_context. */
   boost::asio::awaitable<void> listen() { return control_.listen(); }
 
-  /** Sends the state to the stream 30 times a second and looks after the bench pedal and the authority; ends
-   * with the io_context. */
+  /** Sends the state to the stream 30 times a second and looks after the bench pedal and who is in control;
+   * ends with the io_context. */
   boost::asio::awaitable<void> broadcast();
 
   /** Ends sessions that are over, logs how often the last line came again, and records STOPs that were
@@ -98,7 +98,7 @@ class Api {
   Bench bench_;
   BiopsyService biopsy_;
   LiveSessions sessions_;
-  Authority authority_;
+  MotionControl motion_control_;
   WorkPool work_;
   LoadedTrajectory trajectory_;
   RegistrationEpoch registration_epoch_;
@@ -118,7 +118,7 @@ class Api {
   BiopsyRoutes biopsy_routes_{context_, router_};
   AccountRoutes account_routes_{context_, router_};
   UserRoutes user_routes_{context_, router_};
-  AuthorityRoutes authority_routes_{context_, router_};
+  MotionControlRoutes motion_control_routes_{context_, router_};
   ModeRoutes mode_routes_{context_, router_};
   LogRoutes log_routes_{context_, router_};
   HistoryRoutes history_routes_;

@@ -109,7 +109,7 @@ std::optional<Problem> unreadable(const boost::beast::error_code& error) {
                    .code = "TOO_LARGE",
                    .detail = "The body is too large.",
                    .expected = "at most " + std::to_string(longest_body) +
-                               " bytes; a trajectory of the holder of motion authority at most " +
+                               " bytes; a trajectory of whoever is in control at most " +
                                std::to_string(longest_trajectory)};
   }
   if (error == http::error::header_limit || error == http::error::buffer_overflow) {
@@ -161,7 +161,12 @@ void prepare(Response& response, bool keep_alive) {
 std::string path_of(const Request& request) {
   const std::string_view target(request.target().data(), request.target().size());
   constexpr std::string_view separators("/\\\0", 3);
-  return decoded(target.substr(0, target.find_first_of("?#")), separators).value_or("");
+  std::string path = decoded(target.substr(0, target.find_first_of("?#")), separators).value_or("");
+  // What control was called before; goes with the version after this one.
+  if (constexpr std::string_view former = "/api/authority"; path.starts_with(former)) {
+    path.replace(0, former.size(), "/api/control");
+  }
+  return path;
 }
 
 tl::expected<json, Problem> parse_query(const Request& request) {

@@ -72,7 +72,7 @@ void prepare(Response& response, bool keep_alive);
 /**
  * The path of the request's target, without query and fragment, percent-decoded; empty when that is
  * malformed. An encoded slash, backslash or NUL counts as malformed, so that no part of a path turns into a
- * separator or an end by decoding.
+ * separator or an end by decoding. A former name of a path gives the present one.
  */
 std::string path_of(const Request& request);
 

@@ -88,7 +88,7 @@ std::optional<Problem> Router::check(const Access& access, const Caller& caller)
       return role_needed(caller, *access.role);
     }
   }
-  return access.authority ? need_authority_(caller) : std::nullopt;
+  return access.control ? need_control_(caller) : std::nullopt;
 }
 
 }  // namespace interlock::web

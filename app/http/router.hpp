@@ -31,22 +31,22 @@ using Handler = std::function<boost::asio::awaitable<Reply>(const Call&)>;
 /** Finds the route of a request and checks who may use it. */
 class Router {
  public:
-  /** Nothing when that caller holds the motion authority, else 409 AUTHORITY naming who does. */
-  using NeedAuthority = std::function<std::optional<Problem>(const Caller&)>;
+  /** Nothing when that caller is in control, else 409 CONTROL naming who is. */
+  using NeedControl = std::function<std::optional<Problem>(const Caller&)>;
 
-  explicit Router(NeedAuthority need_authority) : need_authority_(std::move(need_authority)) {}
+  explicit Router(NeedControl need_control) : need_control_(std::move(need_control)) {}
 
   /** `pattern` as in spec/openapi.yaml: "/api/motors/{axis}". Of patterns that a path matches, the one that
    * was added first has it alone. */
   void add(boost::beast::http::verb method, std::string_view pattern, Access access, Handler handler);
 
-  /** Nothing when the caller has that right, else 401 LOGIN, 403 ROLE or 409 AUTHORITY. */
+  /** Nothing when the caller has that right, else 401 LOGIN, 403 ROLE or 409 CONTROL. */
   [[nodiscard]] std::optional<Problem> check(const Access& access, const Caller& caller) const;
 
   /**
    * Runs the handler of the request. Refused before, in this order: 404 NOT_FOUND when no route has the path,
    * 405 METHOD_NOT_ALLOWED when one has, but not this method, 401 LOGIN when nobody is logged in, 403 ROLE,
-   * 409 AUTHORITY. Request, caller and router must outlive the returned operation.
+   * 409 CONTROL. Request, caller and router must outlive the returned operation.
    */
   [[nodiscard]] boost::asio::awaitable<Reply> route(const Request& request, const Caller& caller) const;
 
@@ -58,7 +58,7 @@ class Router {
     Handler handler;
   };
 
-  NeedAuthority need_authority_;
+  NeedControl need_control_;
   std::vector<Route> routes_;
 };
 

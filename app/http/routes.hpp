@@ -63,11 +63,11 @@ class AuditRoutes {
   const Context& context_;
 };
 
-/** Routes of the motion authority. */
-class AuthorityRoutes {
+/** Routes by which control is requested, released, handed over and taken. */
+class MotionControlRoutes {
  public:
   /** Both must outlive it. */
-  AuthorityRoutes(const Context& context, Router& router);
+  MotionControlRoutes(const Context& context, Router& router);
 
  private:
   [[nodiscard]] boost::asio::awaitable<Reply> request(const Call& call) const;

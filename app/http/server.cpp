@@ -63,7 +63,7 @@ bool only_ends(const Request& request) {
   const std::string path = path_of(request);
   const bool removes = request.method() == http::verb::delete_;
   return path.ends_with("/disable") || path.ends_with("/abort") || path.ends_with("/reject") ||
-         path == "/api/logout" || path == "/api/authority/release" ||
+         path == "/api/logout" || path == "/api/control/release" ||
          path == "/api/communications/disconnect" || (removes && path.starts_with("/api/sessions/")) ||
          (removes && path.starts_with("/api/communications/")) || ends_by_body(path, request.body());
 }

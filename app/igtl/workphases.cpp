@@ -143,10 +143,9 @@ Reaction Workphases::request(const std::string& id, const Message& message, cons
   }
   if (!is_stop(*desired)) {
     code = controls ? StatusCode::not_ready : StatusCode::access_denied;
-    reaction.refused = controls
-                           ? forbids(*desired, state)
-                           : "This connection is an observer; whoever holds the motion authority makes it "
-                             "the controller in the console's panel Navigation.";
+    reaction.refused = controls ? forbids(*desired, state)
+                                : "This connection is an observer; whoever is in control makes it "
+                                  "the controller in the console's panel Navigation.";
   }
   if (reaction.refused.empty()) {
     enter(*desired, reaction);

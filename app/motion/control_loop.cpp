@@ -176,7 +176,7 @@ void ControlLoop::obey_stop() noexcept {
   }
   const bool holder_changed = channel_.holder.load(std::memory_order_relaxed) != holder_sent_;
   modes_.end_all(nobody_served_   ? TaskReason::nobody_served
-                 : holder_changed ? TaskReason::authority_changed
+                 : holder_changed ? TaskReason::control_changed
                                   : TaskReason::stopped,
                  view_.snapshot.state.system.tick);
   if (port_.send(request_of(ILK_REQUEST_STOP), StopOrigin{stops_seen_})) {

@@ -169,7 +169,7 @@ struct RealtimeChannel {
   /** Pauses asked for since start: each ends MOTION as the release of the pedal does, so that tasks stay
    * open and go on when somebody presses it again. */
   std::atomic<std::uint32_t> pauses{0};
-  /** Number of the present motion authority; 0: nobody. Changed before the STOP that each change is. */
+  /** Number of the present hold of control; 0: nobody. Changed before the STOP that each change is. */
   std::atomic<std::uint32_t> holder{0};
   WakeSignal network_wake;          /**< a notice came or a task changed */
   TripleBuffer<StopAnswer> stopped; /**< the newest one, for the door */

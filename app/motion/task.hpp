@@ -195,7 +195,7 @@ enum class TaskReason : std::uint8_t {
   press_again,     /**< the travel that one press allows is used up: waits for a release and a press */
   not_homed,       /**< a step moves an axis to a position, and the axis is not homed */
   verdict_lost,    /**< the kernel's answer to a HOME got lost */
-  authority_changed,
+  control_changed,
   position_declared, /**< SET_HOME or RESTORE gave the axis another position */
   superseded,        /**< another motion took over the axes */
   off_path,          /**< an axis strayed from its path */

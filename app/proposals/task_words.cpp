@@ -59,8 +59,8 @@ std::string end_words(const std::string& axis, const TaskStatus& status) {
       return axis + " is not homed, so it cannot go to a position. Home it first.";
     case TaskReason::verdict_lost:
       return "The kernel's answer about " + axis + " was lost; propose it again.";
-    case TaskReason::authority_changed:
-      return "Motion authority changed; propose it again.";
+    case TaskReason::control_changed:
+      return "Control changed hands; propose it again.";
     case TaskReason::position_declared:
       return axis + " was given another position by Set Home or Restore; propose it again.";
     case TaskReason::superseded:

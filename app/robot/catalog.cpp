@@ -42,7 +42,7 @@ constexpr std::array<std::string_view, 4> kRequest8Properties{"P3", "P7", "P12",
 constexpr std::array<std::string_view, 2> kRequest9Properties{"P4", "P6"};
 constexpr std::array<std::string_view, 2> kRequest10Properties{"P4", "P6"};
 constexpr std::array<Entry, 10> kRequest{
-    Entry{1, "HEARTBEAT", "The app is alive; `holder` has motion authority.", "", "", "", kRequest1Properties},
+    Entry{1, "HEARTBEAT", "The app is alive; `holder` is in control.", "", "", "", kRequest1Properties},
     Entry{2, "STOP", "End MOTION now, or take back a pedal that is armed.", "", "", "", kRequest2Properties},
     Entry{3, "RESET", "Unlock.", "", "", "", kRequest3Properties},
     Entry{4, "DISABLE", "Take the axis out of motion.", "", "", "", kRequest4Properties},

@@ -209,7 +209,7 @@ struct OpenIgtLink {
       0;                       /**< silence by which the controller counts as lost; 0: igtl/igtl_server.hpp */
   std::string connect_address; /**< of a program that listens, to which the app connects, too; empty: none */
   std::uint32_t connect_port = 0;
-  /** The first connection is the controller of whoever holds the motion authority, without being asked. */
+  /** The first connection is the controller of whoever is in control, without being asked. */
   bool first_controls = false;
 
   bool operator==(const OpenIgtLink&) const = default;

@@ -34,8 +34,8 @@ boost::asio::awaitable<json> ask_each(const Context& context, const Caller& call
   json rows = json::array();
   std::string blocking;
   for (const AxisRequest& request : requests) {
-    if (blocking.empty() && !context.authority.held_by(caller.session)) {
-      blocking = "the motion authority was lost meanwhile.";
+    if (blocking.empty() && !context.motion_control.held_by(caller.session)) {
+      blocking = "control was lost meanwhile.";
     }
     const std::string& reason = request.not_sent_because.empty() ? blocking : request.not_sent_because;
     if (!reason.empty()) {

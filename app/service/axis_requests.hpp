@@ -23,7 +23,7 @@ struct AxisRequest {
 /**
  * Sends the requests in their order, each when the one before has its verdict; gives `AxisVerdicts` of
  * spec/openapi.yaml. A refusal does not hold up the others. When the kernel does not answer, or the caller
- * lost the authority meanwhile, the rest is not sent.
+ * lost control meanwhile, the rest is not sent.
  */
 boost::asio::awaitable<nlohmann::json> ask_each(const Context& context, const Caller& caller,
                                                 std::vector<AxisRequest> requests);

@@ -53,18 +53,18 @@ tl::expected<void, Problem> Context::need_present_state() const {
   });
 }
 
-tl::expected<void, Problem> Context::need_authority(const Caller& caller) const {
-  if (authority.held_by(caller.session)) {
+tl::expected<void, Problem> Context::need_control(const Caller& caller) const {
+  if (motion_control.held_by(caller.session)) {
     return {};
   }
-  const auto& holding = authority.holder();
+  const auto& holding = motion_control.holder();
   return fail({.status = Status::conflict,
-               .code = "AUTHORITY",
-               .detail = holding ? holding->user + " holds the motion authority, in session " +
+               .code = "CONTROL",
+               .detail = holding ? holding->user + " is in control, in session " +
                                        std::to_string(holding->session) + "."
-                                 : "Nobody holds the motion authority.",
-               .expected = "the motion authority",
-               .next_step = "Request it."});
+                                 : "Nobody is in control.",
+               .expected = "control of the robot",
+               .next_step = "Request control."});
 }
 
 AuditEntry Context::entry(const Caller& caller, AuditKind kind, nlohmann::json detail) const {
@@ -115,7 +115,7 @@ void Context::note(std::optional<AuditEntry> entry) const {
 
 boost::asio::awaitable<tl::expected<void, Problem>> Context::record_then_recheck(
     const Caller& caller, AuditKind kind, nlohmann::json detail) const {
-  const bool held = authority.held_by(caller.session);
+  const bool held = motion_control.held_by(caller.session);
   Announcement announced{entry(caller, kind, std::move(detail)), caller.session,
                          caller.role.value_or(Role::admin)};
   auto recorded = co_await store.run(std::move(announced));
@@ -129,7 +129,7 @@ boost::asio::awaitable<tl::expected<void, Problem>> Context::record_then_recheck
     co_return fail(too_late());
   }
   if (held) {
-    co_return need_authority(caller);
+    co_return need_control(caller);
   }
   co_return recorded;
 }

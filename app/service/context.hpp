@@ -13,13 +13,13 @@
 #include "log/log.hpp"
 #include "proposals/motion_registry.hpp"
 #include "robot/robot.hpp"
-#include "service/authority.hpp"
 #include "service/bench.hpp"
 #include "service/biopsy_service.hpp"
 #include "service/clocks.hpp"
 #include "service/control_client.hpp"
 #include "service/live_sessions.hpp"
 #include "service/loaded_trajectory.hpp"
+#include "service/motion_control.hpp"
 #include "service/reply.hpp"
 #include "service/stop_records.hpp"
 #include "service/store_executor.hpp"
@@ -39,7 +39,7 @@ struct Context {
   BiopsyService& biopsy;
   StoreExecutor& store;
   LiveSessions& sessions;
-  Authority& authority;
+  MotionControl& motion_control;
   WorkPool& work;
   LoadedTrajectory& trajectory;
   RegistrationEpoch& registration_epoch;
@@ -61,8 +61,8 @@ struct Context {
    * a motion by what may not be true any more. */
   [[nodiscard]] tl::expected<void, Problem> need_present_state() const;
 
-  /** 409 AUTHORITY, naming who holds it, unless the caller does. */
-  [[nodiscard]] tl::expected<void, Problem> need_authority(const Caller& caller) const;
+  /** 409 CONTROL, naming who is in control, unless the caller is. */
+  [[nodiscard]] tl::expected<void, Problem> need_control(const Caller& caller) const;
 
   /** What to record of something that the caller does, now. */
   [[nodiscard]] AuditEntry entry(const Caller& caller, AuditKind kind, nlohmann::json detail) const;
@@ -81,7 +81,7 @@ struct Context {
 
   /**
    * Records what the caller is about to do, and says then whether the caller still may: 503 STORE, 401 LOGIN
-   * when the session has ended meanwhile, 409 AUTHORITY when it has lost the authority. What follows without
+   * when the session has ended meanwhile, 409 CONTROL when it has lost control. What follows without
    * waiting is rightful.
    */
   [[nodiscard]] boost::asio::awaitable<tl::expected<void, Problem>> record_then_recheck(

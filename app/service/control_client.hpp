@@ -31,7 +31,7 @@ class ControlClient {
   /** The view that `view` gave last. */
   [[nodiscard]] const ControlView& current() const { return channel_.view.current(); }
 
-  /** STOPs and changes of the motion authority so far. */
+  /** STOPs and changes of who is in control so far. */
   [[nodiscard]] std::uint32_t stops() const { return channel_.stops.load(std::memory_order_relaxed); }
 
   /** People are served still: to be said at least every 100 ms, else motion ends. */
@@ -59,7 +59,7 @@ class ControlClient {
   void pause() { channel_.pauses.fetch_add(1, std::memory_order_release); }
 
   /**
-   * Tells the kernel of a change of the motion authority, whose number `holder` is; 0: nobody has it. It is a
+   * Tells the kernel that control changed hands; `holder` is the number of the new hold, 0: nobody's. It is a
    * STOP, too: no order that was given before starts or goes on.
    */
   void change_holder(std::uint32_t number);

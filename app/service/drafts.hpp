@@ -66,7 +66,7 @@ tl::expected<TimedTrajectory, Problem> trajectory_of(const Robot& robot, const T
 Problem unreadable(const TrajectoryError& error);
 
 /**
- * Records it and loads it; nothing is loaded when that fails, or the caller lost session or authority
+ * Records it and loads it; nothing is loaded when that fails, or the caller lost session or control
  * meanwhile (`Context::announce`). `targeting_revision`: of registration, probe and target from which it
  * followed, if it did.
  */
@@ -124,7 +124,7 @@ boost::asio::awaitable<tl::expected<Task, Problem>> biopsy_draft(
 
 /**
  * Records the task in the audit, then proposes it. Nothing is proposed when that fails (503 STORE), when the
- * caller lost session or authority meanwhile (401 LOGIN, 409 AUTHORITY), when STOP was pressed meanwhile
+ * caller lost session or control meanwhile (401 LOGIN, 409 CONTROL), when STOP was pressed meanwhile
  * (409 STOPPED), without a kernel or a present state of it (503 NO_KERNEL), or when the registry refuses (its
  * refusal).
  */

@@ -238,7 +238,7 @@ bool Navigation::set_role(PeerId id, igtl::Role role, const Caller& caller) {
     if (grant_ && grant_->peer != id) {
       give_role(grant_->peer, igtl::Role::observer);
     }
-    grant_ = {id, caller, context_.authority.number()};
+    grant_ = {id, caller, context_.motion_control.number()};
     grant_->caller.is_program = true;
     grant_->caller.peer = "openigtlink " + server_.find(id)->address;
   } else if (grant_ && grant_->peer == id) {
@@ -247,7 +247,7 @@ bool Navigation::set_role(PeerId id, igtl::Role role, const Caller& caller) {
   return true;
 }
 
-void Navigation::change_authority() {
+void Navigation::change_holder() {
   if (grant_) {
     give_role(grant_->peer, igtl::Role::observer);
     grant_.reset();
@@ -257,7 +257,7 @@ void Navigation::change_authority() {
 
 /** The oldest connection, when the robot's file says so and there is no other controller. */
 void Navigation::let_first_control() {
-  const auto& holding = context_.authority.holder();
+  const auto& holding = context_.motion_control.holder();
   const std::vector<igtl::Peer> peers = server_.peers();
   if (!options_.first_controls || grant_ || !holding || peers.empty()) {
     return;
@@ -276,13 +276,12 @@ void Navigation::let_first_control() {
 }
 
 tl::expected<Caller, Problem> Navigation::grant_of(PeerId peer) const {
-  if (!grant_ || grant_->peer != peer || grant_->hold != context_.authority.number()) {
-    return fail(
-        {.status = Status::conflict,
-         .code = "AUTHORITY",
-         .detail = "This connection is an observer.",
-         .expected = "the role of the controller",
-         .next_step = "Whoever holds the motion authority gives it in the console's panel Navigation."});
+  if (!grant_ || grant_->peer != peer || grant_->hold != context_.motion_control.number()) {
+    return fail({.status = Status::conflict,
+                 .code = "CONTROL",
+                 .detail = "This connection is an observer.",
+                 .expected = "the role of the controller",
+                 .next_step = "Whoever is in control gives it in the console's panel Navigation."});
   }
   Caller caller = grant_->caller;
   caller.asked = std::chrono::steady_clock::now();

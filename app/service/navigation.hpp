@@ -1,8 +1,8 @@
 /**
  * @file
- * Navigation programs over OpenIGTLink: what they ask for becomes a setting or a proposal under the motion
- * authority of whoever made one of them the controller, or is refused with its reason; what the robot is and
- * does is told to all of them. docs/openigtlink.md.
+ * Navigation programs over OpenIGTLink: what they ask for becomes a setting or a proposal of the user who is
+ * in control and made one of them the controller, or is refused with its reason; what the robot is and does
+ * is told to all of them. docs/openigtlink.md.
  *
  * Belongs to the network thread. STOP is carried out as soon as it is read, whoever sends it; everything else
  * that waits for the store is done one by one, in its order.
@@ -31,13 +31,13 @@ namespace interlock {
 /** How the app speaks OpenIGTLink. */
 struct NavigationOptions {
   std::string dialect = "thesis"; /**< a name that `igtl::make_dialect` knows */
-  /** The first connection is the controller of whoever holds the motion authority. */
+  /** The first connection is the controller of whoever is in control. */
   bool first_controls = false;
   /** A program that listens, to which the app connects, again and again. */
   std::optional<boost::asio::ip::tcp::endpoint> connect;
 };
 
-/** Ties the server of OpenIGTLink to robot, proposals and authority. */
+/** Ties the server of OpenIGTLink to robot, proposals and control. */
 class Navigation {
  public:
   /** Between two attempts to connect. */
@@ -65,17 +65,17 @@ class Navigation {
   [[nodiscard]] const std::string& dialect() const { return options_.dialect; }
 
   /**
-   * Makes a connection the controller or an observer. The controller acts for the caller, who must hold the
-   * motion authority, for as long as the caller does; the one before becomes an observer. False when there is
-   * no such connection.
+   * Makes a connection the controller or an observer. The controller acts for the caller, who must be in
+   * control, for as long as the caller is; the one before becomes an observer. False when there is no such
+   * connection.
    */
   bool set_role(igtl::PeerId id, igtl::Role role, const Caller& caller);
 
   /** What imagers said last. */
   [[nodiscard]] const Imager& imager() const { return imager_; }
 
-  /** The motion authority has changed: nobody acts for the former holder any more. */
-  void change_authority();
+  /** Control changed hands: nobody acts for the former holder any more. */
+  void change_holder();
 
   /** Tells of a proposal that came from a navigation program. */
   void tell(const Proposal& proposal);
@@ -85,7 +85,7 @@ class Navigation {
   struct ControllerGrant {
     igtl::PeerId peer = 0;
     Caller caller;
-    std::uint32_t hold = 0; /**< number of the motion authority by which it was given */
+    std::uint32_t hold = 0; /**< number of the hold of control by which it was given */
   };
 
   /** A command that waits for its turn. */

@@ -40,7 +40,7 @@ igtl::Outcome proposed(const Proposal& proposal) {
 
 StatusCode status_code(const Problem& problem) {
   static const std::map<std::string, StatusCode> codes{
-      {"AUTHORITY", StatusCode::access_denied},  {"LOGIN", StatusCode::access_denied},
+      {"CONTROL", StatusCode::access_denied},    {"LOGIN", StatusCode::access_denied},
       {"ROLE", StatusCode::access_denied},       {"OVERLOADED", StatusCode::busy},
       {"UNREACHABLE", StatusCode::unreachable},  {"INVALID", StatusCode::configuration},
       {"MODE", StatusCode::unknown_instruction}, {"NOT_FOUND", StatusCode::not_found},

@@ -31,10 +31,10 @@ struct Caller {
   std::chrono::steady_clock::time_point asked = std::chrono::steady_clock::now();
 };
 
-/** `x-role` and `x-authority` of spec/openapi.yaml. */
+/** `x-role` and `x-control` of spec/openapi.yaml. */
 struct Access {
   std::optional<Role> role; /**< the least that suffices; empty: anybody, even without login */
-  bool authority = false;   /**< only the session that holds the motion authority */
+  bool control = false;     /**< only the session that is in control */
 };
 
 constexpr Access anybody{};
@@ -111,7 +111,7 @@ Problem too_late();
 /** 503 NO_KERNEL. */
 Problem no_kernel(const std::string& detail);
 
-/** 409 STOPPED: STOP was pressed, or the motion authority changed, before `what` was sent. */
+/** 409 STOPPED: STOP was pressed, or control changed hands, before `what` was sent. */
 Problem stopped_meanwhile(const std::string& what);
 
 /** What the kernel or the proposals' checks refused: 409, 404 for what the robot has not, or 503 when the

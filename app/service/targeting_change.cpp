@@ -32,20 +32,20 @@ bool leads_elsewhere(Targeting before, const Targeting& after) {
   return before != after;
 }
 
-/** The hold of the motion authority by which a change is made. */
+/** The hold of control by which a change is made. */
 struct Hold {
-  Authority::SharedNumber present;
+  MotionControl::SharedNumber present;
   std::uint32_t number = 0;
 
   [[nodiscard]] bool lasts() const { return *present == number; }
 };
 
-Problem authority_lost() {
+Problem control_lost() {
   return {.status = Status::conflict,
-          .code = "AUTHORITY",
-          .detail = "The motion authority changed before this was kept.",
-          .expected = "the motion authority",
-          .next_step = "Request it."};
+          .code = "CONTROL",
+          .detail = "Control changed hands before this was kept.",
+          .expected = "control of the robot",
+          .next_step = "Request control."};
 }
 
 }  // namespace
@@ -53,9 +53,9 @@ Problem authority_lost() {
 boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const Context& context,
                                                                           Caller caller, TaskSource source,
                                                                           TargetingChange make, json body) {
-  const Authority& authority = context.authority;
+  const MotionControl& control = context.motion_control;
   auto keep = [robot = &context.robot, make, body = std::move(body), session = caller.session,
-               epoch = context.registration_epoch, hold = Hold{authority.shared_number(), authority.number()},
+               epoch = context.registration_epoch, hold = Hold{control.shared_number(), control.number()},
                origin = TargetingOrigin{source, caller.peer},
                entry = context.entry(caller, AuditKind::setting, json::object())](Store& store) {
     return store.transact([&](Transaction& transaction) -> Stored<Changed> {
@@ -64,7 +64,7 @@ boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const 
       }
       return find_targeting(transaction, *robot).map([&](const Targeting& stored) -> Changed {
         if (!hold.lasts()) {
-          return {fail(authority_lost()), false};
+          return {fail(control_lost()), false};
         }
         const Targeting before = judged(stored, epoch);
         Changed after{make(before, body)};

@@ -71,8 +71,8 @@ std::string_view audit_kind_name(AuditKind kind) {
       return "session_ended";
     case AuditKind::user:
       return "user";
-    case AuditKind::authority:
-      return "authority";
+    case AuditKind::control:
+      return "control";
     case AuditKind::proposal:
       return "proposal";
     case AuditKind::request:

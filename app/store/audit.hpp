@@ -25,7 +25,7 @@ enum class AuditKind {
   logout,
   session_ended,
   user,
-  authority,
+  control,
   proposal,
   request,
   verdict,

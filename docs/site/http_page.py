@@ -71,11 +71,11 @@ def operation(document: Mapping, path: str, method: str, shared: Sequence[Mappin
     """One operation: who may use it, what it takes and what it answers."""
     stated = document["paths"][path][method]
     yield f"## {method.upper()} {path}\n"
-    authority = ", with the motion authority" if stated.get("x-authority") else ""
+    control = ", in control" if stated.get("x-control") else ""
     yield f"{stated['summary'].strip()}\n"
     if "description" in stated:
         yield f"{stated['description'].strip()}\n"
-    yield f"Role: **{stated['x-role']}**{authority}.\n"
+    yield f"Role: **{stated['x-role']}**{control}.\n"
     parameters = [resolved(document, one) for one in (*shared, *stated.get("parameters", ()))]
     yield table(
         ("parameter", "in", "type", "means"),

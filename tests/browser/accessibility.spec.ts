@@ -176,7 +176,7 @@ test("alarms and questions", async ({ robot, page }) => {
   await expectNoViolation(page, "alarms", untouched);
 });
 
-test("a viewer's page, and an authority that is asked for", async ({ robot, other }) => {
+test("a viewer's page, and a request for control", async ({ robot, other }) => {
   await robot.addUser("vic", "viewer", password);
   await robot.addUser("ann", "engineer", password);
   await other.logIn("vic", password);
@@ -184,7 +184,7 @@ test("a viewer's page, and an authority that is asked for", async ({ robot, othe
   await expectNoViolation(other.page, "viewer");
   await other.button("Log out").click();
   await other.logIn("ann", password);
-  await other.button("Request").click();
+  await other.button("Request control").click();
   await expect(robot.button("Hand over to ann")).toBeVisible();
   await expectNoViolation(robot.page, "asked for", untouched);
 });

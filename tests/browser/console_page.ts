@@ -132,7 +132,7 @@ export class ConsolePage {
   readonly stopAnswer: Locator;
   readonly pedal: Locator;
   readonly latch: Locator;
-  readonly authority: Locator;
+  readonly control: Locator;
   readonly loginForm: Locator;
 
   constructor(
@@ -147,7 +147,7 @@ export class ConsolePage {
     this.stopAnswer = page.getByRole("status", { name: "Answer to STOP" });
     this.pedal = page.getByRole("button", { name: /^\S* ?Pedal/ });
     this.latch = page.getByRole("button", { name: "Latch pedal" });
-    this.authority = page.getByRole("status", { name: "Authority", exact: true });
+    this.control = page.getByRole("status", { name: "Control", exact: true });
     this.loginForm = page.getByRole("form", { name: "Log in" });
   }
 
@@ -170,9 +170,9 @@ export class ConsolePage {
     await expect(this.page.getByRole("link", { name: "Account" })).toContainText(name);
   }
 
-  async requestAuthority(): Promise<void> {
-    await this.button("Request").click();
-    await expect(this.authority).toContainText("(you)");
+  async takeControl(): Promise<void> {
+    await this.button("Take control").click();
+    await expect(this.control).toHaveText("You are in control");
   }
 
   /** Presses the theme's button, each time once it shows the theme before, until it is that one. */

@@ -9,8 +9,8 @@ test("the first steps lead from login to the pedal, each as the one before is do
   await front.button("Show the first steps").click();
   const steps = front.panel("First steps");
   const now = steps.getByRole("listitem").and(front.page.locator("[aria-current=step]"));
-  await expect(now).toContainText("Request the authority");
-  await front.requestAuthority();
+  await expect(now).toContainText("Take control");
+  await front.takeControl();
   await expect(now).toContainText("Unlock");
   await front.unlockRobot();
   await expect(now).toContainText("Enable an axis");

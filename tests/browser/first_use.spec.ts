@@ -284,7 +284,7 @@ test("the console comes back by itself when the app was killed and started again
   await expect.poll(() => framesOfNewStreams).toBeGreaterThan(3);
   await robot.expectMode("READY");
   await axis.expectState("ENABLED");
-  await robot.requestAuthority();
+  await robot.takeControl();
   await axis.propose("300");
   await axis.expectRefusal("RANGE");
 });

@@ -14,7 +14,7 @@ interface Fixtures {
   stack: Stack;
   /** The console before login. */
   front: ConsolePage;
-  /** The console of the administrator, who holds the motion authority. */
+  /** The console of the administrator, who is in control. */
   robot: ConsolePage;
   /** Another browser, before login. */
   other: ConsolePage;
@@ -35,7 +35,7 @@ export const test = base.extend<Fixtures>({
   },
   robot: async ({ front, stack }, use) => {
     await front.logIn("admin", stack.password);
-    await front.requestAuthority();
+    await front.takeControl();
     await use(front);
   },
   other: async ({ browser, stack, patience }, use) => {

@@ -128,7 +128,7 @@ async function lastDrivenTick(page: Page): Promise<number> {
   return (await drivenNow()).driven;
 }
 
-test("a key that is held jogs, and who does not hold the authority cannot", async ({ robot, page }) => {
+test("a key that is held jogs, and who is not in control cannot", async ({ robot, page }) => {
   const axis = robot.axis(title);
   await robot.unlockRobot();
   await axis.enable();
@@ -138,6 +138,6 @@ test("a key that is held jogs, and who does not hold the authority cannot", asyn
   await expect.poll(() => axis.counts()).toBeGreaterThan(10);
   await page.keyboard.up("Space");
   await expect(robot.proposal(1)).toContainText("aborted");
-  await robot.button("Release").click();
+  await robot.button("Release control").click();
   await expect(larger(page)).toBeDisabled();
 });

@@ -19,8 +19,8 @@ test.describe("with the pedal of the page", () => {
     await keyboard.type(front.loginForm.getByLabel("Name"), "admin");
     await keyboard.type(front.loginForm.getByLabel("Password"), stack.password);
     await page.keyboard.press("Enter");
-    await keyboard.press(front.button("Request"));
-    await expect(front.authority).toContainText("(you)");
+    await keyboard.press(front.button("Take control"));
+    await expect(front.control).toHaveText("You are in control");
     await keyboard.press(front.unlock);
     await front.expectMode("READY");
     await expect(axis.button("Enable")).not.toHaveAttribute("data-foretold");

@@ -27,7 +27,7 @@ test("a navigation program is shown with what it said, and disconnected", async 
   }
 });
 
-test("only who holds the authority makes a program the controller", async ({ robot, stack }) => {
+test("only who is in control makes a program the controller", async ({ robot, stack }) => {
   const program = await NavigationProgram.connect(stack.igtlPort);
   try {
     const line = robot
@@ -36,7 +36,7 @@ test("only who holds the authority makes a program the controller", async ({ rob
     await expect(line).toContainText("observer");
     await line.getByRole("button", { name: /^Make controller/ }).click();
     await expect(line).toContainText("▶ controller");
-    await robot.button("Release").click();
+    await robot.button("Release control").click();
     await expect(line).toContainText("observer");
     await expect(line.getByRole("button", { name: /^Make controller/ })).toBeDisabled();
   } finally {

@@ -124,7 +124,7 @@ test("without the page's kernel the console says that it cannot foretell, and wo
   await page.route("**/*.wasm", (route) => route.fulfill({ status: 503 }));
   await page.reload();
   await front.logIn("admin", stack.password);
-  await front.requestAuthority();
+  await front.takeControl();
   await front.unlockRobot();
   const axis = front.axis("Probe rotation");
   await axis.row.getByRole("textbox").fill("5");

@@ -54,7 +54,7 @@ test("the audit names who did what, newest first, and goes back to the first rec
   await robot.unlockRobot();
   await robot.open("Audit");
   const rows = robot.panel("Audit").getByRole("row");
-  await expect(rows.filter({ hasText: "authority" }).first()).toContainText("admin");
+  await expect(rows.filter({ hasText: "control" }).first()).toContainText("admin");
   await expect(rows.filter({ hasText: "login" }).first()).toBeVisible();
   const numbers = async (): Promise<number[]> => {
     const cells = await rows.locator("td:first-child").allTextContents();

@@ -61,7 +61,7 @@ test("causes, modes and verdicts lead to their place in the catalog, once there 
   await expect(page.getByRole("banner").getByText("BOOT")).toBeVisible();
   await expect(page.getByRole("banner").getByRole("link")).toHaveCount(0);
   await front.logIn("admin", stack.password);
-  await front.requestAuthority();
+  await front.takeControl();
   await expect(front.panel("Status").getByRole("link", { name: "LOCKED" })).toBeVisible();
   await expect(front.panel("Status").getByRole("link", { name: "BOOT" })).toBeVisible();
   await page.getByRole("banner").getByRole("link", { name: "BOOT" }).click();

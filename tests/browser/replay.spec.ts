@@ -2,7 +2,7 @@
 import { ConsolePage } from "./console_page";
 import { expect, test } from "./fixtures";
 
-test("a recording plays in the console to its last tick, and nobody can take the authority", async ({
+test("a recording plays in the console to its last tick, and nobody can take control", async ({
   robot,
   stack,
   page,
@@ -18,7 +18,7 @@ test("a recording plays in the console to its last tick, and nobody can take the
     const shown = new ConsolePage(page, replay);
     await shown.logIn("admin", replay.password);
     await expect(page.getByText("REPLAY OF A RECORDING: NOTHING MOVES")).toBeVisible();
-    await expect(page.getByText("Authority: none, as a recording plays")).toBeVisible();
+    await expect(page.getByText("Nobody is in control: a recording plays")).toBeVisible();
     await expect(shown.panel("Motors")).toContainText("A recording plays: there is nothing to move.");
     await expect(shown.estop).toHaveText("⬣ PULLED");
     await expect(shown.mode).toContainText("LOCKED");

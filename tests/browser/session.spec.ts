@@ -127,12 +127,12 @@ test("the data of the login page age by name when the app falls silent", async (
   await front.expectMode("LOCKED");
 });
 
-test("logging out ends the session and releases the authority", async ({ robot, other, stack }) => {
+test("logging out ends the session and releases control", async ({ robot, other, stack }) => {
   await robot.button("Log out").click();
   await expect(robot.loginForm).toBeVisible();
   await expect(robot.panel("Motors")).toHaveCount(0);
   await other.logIn("admin", stack.password);
-  await expect(other.authority).toHaveText("nobody");
+  await expect(other.control).toHaveText("Nobody is in control");
 });
 
 test("a session that the administrator ends returns to login with words", async ({ robot, other }) => {

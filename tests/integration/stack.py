@@ -76,7 +76,7 @@ def start_interlock(runtime: Path, *arguments: str | Path) -> subprocess.Popen:
 
 class Stack:
     """One running robot. `control` commands the plant, `api` speaks HTTP to the app as an administrator who
-    holds the motion authority."""
+    is in control."""
 
     def __init__(self, directory: Path, *arguments: str | Path) -> None:
         self.state = directory / "state"
@@ -90,7 +90,7 @@ class Stack:
             self.url = self.output.wait_for(r"^ready (http\S+)")[1]
             self.password = self._first_password(directory / "password")
             self.api = self.client("admin", self.password)
-            self.take_authority()
+            self.take_control()
             self.status_when(lambda status: status["connected"])
         except BaseException:
             self.run.kill()
@@ -119,9 +119,9 @@ class Stack:
         self.api.post("/api/users", json=user).raise_for_status()
         return self.client(name, user["password"])
 
-    def take_authority(self) -> None:
-        """Anew after the app was started anew: sessions outlive it, the authority does not."""
-        assert self.api.post("/api/authority/request").status_code == 200
+    def take_control(self) -> None:
+        """Anew after the app was started anew: sessions outlive it, control does not."""
+        assert self.api.post("/api/control/request").status_code == 200
 
     def connect_control(self) -> None:
         """Opens `control`, the plant's control socket, in the directory that was given for the sockets."""

@@ -1,4 +1,4 @@
-"""Sessions, authority and what is recorded of them, on a whole robot (rights by route: test_roles.py)."""
+"""Sessions, control and what is recorded of them, on a whole robot (rights by route: test_roles.py)."""
 
 import signal
 import subprocess
@@ -47,25 +47,25 @@ def test_a_hand_over_ends_motion_and_aborts_every_proposal(stack: StackFactory) 
     to_motion(robot)
     number = propose(robot, -1900)
     before = robot.status()["holder"]
-    asked = judge(edna.post("/api/authority/request"))
+    asked = judge(edna.post("/api/control/request"))
     assert asked.status_code == 202
     [wish] = asked.json()["requests"]
-    handed = judge(robot.api.post("/api/authority/hand-over", json={"session": wish["session"]}))
+    handed = judge(robot.api.post("/api/control/hand-over", json={"session": wish["session"]}))
     assert handed.json()["holder"]["user"] == "edna"
     assert proposal(robot, number)["state"] == "aborted"
     wait_for_mode(robot, "READY")
     wait_until("the kernel knows", lambda: robot.status()["holder"] not in {0, before})
-    problem(robot.api.post(f"/api/motors/{LATERAL}/enable"), 409, "AUTHORITY")
+    problem(robot.api.post(f"/api/motors/{LATERAL}/enable"), 409, "CONTROL")
     assert judge(edna.post(f"/api/motors/{LATERAL}/disable")).status_code == 200
 
 
-def test_an_authority_that_is_released_is_nobodys_in_the_kernel_too(robot: Stack) -> None:
+def test_control_that_is_released_is_nobodys_in_the_kernel_too(robot: Stack) -> None:
     wait_until("held", lambda: robot.status()["holder"] != 0)
-    assert judge(robot.api.post("/api/authority/release")).json()["holder"] is None
+    assert judge(robot.api.post("/api/control/release")).json()["holder"] is None
     wait_until("nobody", lambda: robot.status()["holder"] == 0)
 
 
-def test_a_session_that_ends_closes_its_stream_and_gives_up_the_authority(robot: Stack) -> None:
+def test_a_session_that_ends_closes_its_stream_and_gives_up_control(robot: Stack) -> None:
     vic = robot.client_of_new("vic", "viewer")
     with open_stream(robot) as stream:
         judge(robot.api.post("/api/logout"))
@@ -73,7 +73,7 @@ def test_a_session_that_ends_closes_its_stream_and_gives_up_the_authority(robot:
             read_to_the_end(stream)
     assert closed.value.rcvd is not None
     assert closed.value.rcvd.code == SESSION_ENDED
-    assert judge(vic.get("/api/authority")).json()["holder"] is None
+    assert judge(vic.get("/api/control")).json()["holder"] is None
 
 
 def test_a_pedal_of_a_session_that_ends_comes_up_before_its_hold_lapses(stack: StackFactory) -> None:
@@ -89,12 +89,12 @@ def test_a_pedal_of_a_session_that_ends_comes_up_before_its_hold_lapses(stack: S
     assert tick_of("pedal_released") - tick_of("pedal_pressed") < LAPSE_TICKS
 
 
-def test_sessions_outlive_the_app_and_the_authority_does_not(robot: Stack) -> None:
+def test_sessions_outlive_the_app_and_control_does_not(robot: Stack) -> None:
     robot.signal("app", signal.SIGKILL)
     robot.output.wait_for(r"^ready ", count=2)
     assert judge(robot.api.get("/api/session")).json()["user"]["name"] == "admin"
-    assert judge(robot.api.get("/api/authority")).json()["holder"] is None
-    robot.take_authority()
+    assert judge(robot.api.get("/api/control")).json()["holder"] is None
+    robot.take_control()
 
 
 def test_the_first_login_is_shown_once_and_in_no_file(robot: Stack) -> None:
@@ -114,7 +114,7 @@ def test_the_audit_tells_what_was_done_and_its_chain_is_sound(robot: Stack) -> N
     propose(robot, -200)
     robot.api.post("/api/stop")
     edna.post("/api/logout")
-    wanted = {"start", "login", "login_refused", "logout", "user", "authority", "proposal", "request"}
+    wanted = {"start", "login", "login_refused", "logout", "user", "control", "proposal", "request"}
 
     def kinds() -> set[str]:
         records = robot.api.get("/api/audit", params={"records": 1000}).raise_for_status().json()

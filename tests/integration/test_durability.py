@@ -106,7 +106,7 @@ def log_in(app: App) -> str:
 
 def write_until_killed(app: App, token: str, life: int, seconds: float) -> list[list[int]]:
     cookie = app.cookie(token)
-    ask(app, "POST", "/api/authority/request", cookie, {})
+    ask(app, "POST", "/api/control/request", cookie, {})
     writers = [Writer(app, cookie, life, number) for number in range(WRITERS)]
     for writer in writers:
         writer.start()
@@ -154,7 +154,7 @@ def test_what_was_acknowledged_outlives_a_kill_at_any_instant(short_tmp_path: Pa
 def propose(app: App, token: str) -> int:
     """The number of a proposal, which a locked kernel refuses and the app lists all the same."""
     cookie = app.cookie(token)
-    ask(app, "POST", "/api/authority/request", cookie, {})
+    ask(app, "POST", "/api/control/request", cookie, {})
     wait_until("a kernel", lambda: json.load(ask(app, "GET", "/api/status", cookie, {}))["connected"])
     connection = HTTPConnection("127.0.0.1", app.port, timeout=DEADLINE_S)
     refused = send(connection, "POST", "/api/proposals", cookie, {"slot": 0, "target_counts": 0})

@@ -406,7 +406,7 @@ def test_an_exception_that_nobody_expected_ends_the_app_with_its_cause_and_motio
     robot.output.wait_for(r"^ready http\S+", 2)
     ended = last_drive(robot)
     assert begun < ended <= begun + ENDS_WITHIN_TICKS
-    robot.take_authority()
+    robot.take_control()
     robot.status_when(lambda status: status["connected"])
     press(robot)
     wait_for_ticks(robot, LONG_AFTER_TICKS)

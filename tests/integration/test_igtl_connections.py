@@ -76,9 +76,9 @@ def test_the_first_connection_controls_where_the_file_says_so(
     wait_until("two", lambda: len(connections(robot)) == 2)
     assert [each["role"] for each in connections(robot)] == ["controller", "observer"]
     assert first.ask(text("ROBOT_TO_ENTRY", "7.25")).code == OK
-    robot.api.post("/api/authority/release").raise_for_status()
+    robot.api.post("/api/control/release").raise_for_status()
     assert [each["role"] for each in connections(robot)] == ["observer", "observer"]
-    robot.take_authority()
+    robot.take_control()
     assert [each["role"] for each in connections(robot)] == ["controller", "observer"]
     records = robot.api.get("/api/audit", params={"records": 100}).json()
     given = [each for each in records if each["detail"].get("action") == "role"]
@@ -153,14 +153,14 @@ def test_send_shows_the_answer_and_listen_what_the_robot_tells(stack: StackFacto
     assert (noted.returncode, noted.stdout) == (0, "IMAGER_STATUS STATUS 1 OK: Noted.\n")
     refused = igtl(robot, "send", "transform", "REGISTRATION", "1", "-2.5", "3", "--json")
     assert refused.returncode == 1
-    assert (json.loads(refused.stdout)["code"], json.loads(refused.stdout)["error"]) == (5, "AUTHORITY")
+    assert (json.loads(refused.stdout)["code"], json.loads(refused.stdout)["error"]) == (5, "CONTROL")
     assert "observer" in refused.stderr
     asked = igtl(robot, "send", "get", "scanner_to_robot_reg", "TRANSFORM", "--json")
     assert json.loads(asked.stdout)["matrix"] == [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
     heard = igtl(robot, "listen", "--name", "mode", "--count", "1", "--wait", "5")
     assert (heard.returncode, heard.stdout) == (0, "mode STRING manual\n")
     point = igtl(robot, "send", "point", "TARGET_POINT", "1", "2", "3")
-    assert (point.returncode, "AUTHORITY" in point.stdout) == (1, True)
+    assert (point.returncode, "CONTROL" in point.stdout) == (1, True)
 
 
 def test_phase_shows_each_answer_with_its_time(stack: StackFactory) -> None:

@@ -174,7 +174,7 @@ def test_the_stream_gets_through(logged_in: Site) -> None:
 
 @pytest.mark.parametrize("origin", ["https://evil.example", f"http://{NAME}", "https://127.0.0.1", "null"])
 def test_a_forged_origin_is_refused(logged_in: Site, origin: str) -> None:
-    for path in ("/api/stop", "/api/login", "/api/authority/request"):
+    for path in ("/api/stop", "/api/login", "/api/control/request"):
         refused = logged_in.send("POST", path, {}, origin)
         assert (refused.status_code, refused.json()["code"]) == (403, "ORIGIN"), path
     with pytest.raises(InvalidStatus) as answer:

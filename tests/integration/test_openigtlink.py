@@ -151,7 +151,7 @@ def test_an_observer_changes_nothing_and_may_stop(robot: Stack, navigate: Callab
     before = robot.api.get("/api/targeting").json()
     for message in (transform("REGISTRATION", REGISTRATION), text("MODE", "draping"), text("START_UP", "")):
         answer = navigator.ask(message)
-        assert (answer.code, answer.name) == (ACCESS_DENIED, "AUTHORITY")
+        assert (answer.code, answer.name) == (ACCESS_DENIED, "CONTROL")
     assert robot.api.get("/api/targeting").json() == before
     assert navigator.ask(text("STOP", "")).code == OK
     records = robot.api.get("/api/audit").json()
@@ -431,11 +431,11 @@ def test_stop_over_openigtlink_stops_what_moves(robot: Stack, navigate: Callable
     wait_until("ended", lambda: robot.api.get("/api/proposals").json()[0]["state"] == "aborted")
 
 
-def test_the_role_ends_with_the_motion_authority(robot: Stack, navigate: Callable[..., Navigator]) -> None:
+def test_the_role_ends_with_control(robot: Stack, navigate: Callable[..., Navigator]) -> None:
     navigator = navigate()
     make_controller(robot)
     assert navigator.ask(text("ROBOT_TO_ENTRY", "1")).code == OK
-    robot.api.post("/api/authority/release").raise_for_status()
+    robot.api.post("/api/control/release").raise_for_status()
     assert navigator.ask(text("ROBOT_TO_ENTRY", "2")).code == ACCESS_DENIED
     assert connections(robot)[0]["role"] == "observer"
     refused = robot.api.put(f"{CONNECTIONS}/{connections(robot)[0]['id']}/role", json={"role": "controller"})

@@ -141,7 +141,7 @@ def disturb(robot: Stack, holder: httpx.Client, draw: random.Random) -> None:
         robot.visitor().post("/api/stop")
     elif what == "unlock":
         robot.control("pedal", pressed=False)
-        for step in ("authority/request", "authority/take-over", "reset", f"motors/{LATERAL}/enable"):
+        for step in ("control/request", "control/take-over", "reset", f"motors/{LATERAL}/enable"):
             holder.post(f"/api/{step}")
         robot.control("pedal", pressed=True)
     elif what == "freeze":

@@ -44,7 +44,7 @@ def test_another_start_of_the_app_expires_it_and_a_person_who_sets_it_again_make
     os.kill(robot.pid("app"), signal.SIGKILL)
     robot.output.wait_for(r"^ready http", count=2)
     wait_until("served again", lambda: robot.status()["app_alive"])
-    robot.take_authority()
+    robot.take_control()
     expect_no_pose(robot, "The app was started since.")
     register(robot)
     assert registration(robot) == ("valid", None)

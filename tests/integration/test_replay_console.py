@@ -62,10 +62,10 @@ def test_the_console_sees_the_recorded_run_to_its_last_tick(replay: Replay, reco
 
 
 def test_nothing_can_be_asked_of_a_recording(replay: Replay) -> None:
-    for path in ("/api/authority/request", "/api/authority/take-over"):
+    for path in ("/api/control/request", "/api/control/take-over"):
         refused = replay.api.post(path)
         assert (refused.status_code, refused.json()["code"]) == (409, "REPLAY")
-    assert replay.api.post("/api/reset").json()["code"] == "AUTHORITY"
+    assert replay.api.post("/api/reset").json()["code"] == "CONTROL"
     assert replay.api.post("/api/stop").json() == {"verdict": None, "tick": None}
 
 

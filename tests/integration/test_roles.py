@@ -11,7 +11,7 @@ from interface import judge, paths
 from stack import Stack
 
 RANKS = ["public", "viewer", "engineer", "admin"]
-# `holder` is an engineer with the motion authority, which `engineer` and `admin` lack.
+# `holder` is an engineer who is in control, which `engineer` and `admin` are not.
 CALLERS = {
     "nobody": "public",
     "viewer": "viewer",
@@ -27,12 +27,10 @@ IN_PATH = {
     "command": "estop",
     "session": "999999",
 }
-REFUSALS = {401: "LOGIN", 403: "ROLE", 409: "AUTHORITY"}
+REFUSALS = {401: "LOGIN", 403: "ROLE", 409: "CONTROL"}
 
 OPERATIONS = [
-    pytest.param(
-        method, path, operation["x-role"], operation.get("x-authority", False), id=f"{method} {path}"
-    )
+    pytest.param(method, path, operation["x-role"], operation.get("x-control", False), id=f"{method} {path}")
     for path, methods in paths().items()
     for method, operation in methods.items()
 ]
@@ -48,7 +46,7 @@ class Callers:
             "admin": robot.client("admin", robot.password),
             **{name: robot.client_of_new(name, CALLERS[name]) for name in ("viewer", "engineer", "holder")},
         }
-        self.give_authority_to_holder()
+        self.give_control_to_holder()
 
     def fresh(self, caller: str) -> httpx.Client:
         """A session of its own, to be ended."""
@@ -57,11 +55,11 @@ class Callers:
             "admin": lambda: self.robot.client("admin", self.robot.password),
         }.get(caller, lambda: self.robot.client(caller, f"password of {caller}"))()
 
-    def give_authority_to_holder(self) -> None:
+    def give_control_to_holder(self) -> None:
         for name in ("admin", "engineer"):
-            self.clients[name].post("/api/authority/release").raise_for_status()
-        self.robot.api.post("/api/authority/release").raise_for_status()
-        answer = self.clients["holder"].post("/api/authority/request").raise_for_status()
+            self.clients[name].post("/api/control/release").raise_for_status()
+        self.robot.api.post("/api/control/release").raise_for_status()
+        answer = self.clients["holder"].post("/api/control/request").raise_for_status()
         assert answer.json()["mine"]
 
     def state(self) -> dict:
@@ -69,7 +67,7 @@ class Callers:
         read = self.clients["admin"].get
         found = {
             path: judge(read(path)).json()
-            for path in ("/api/users", "/api/authority", "/api/mode", "/api/targeting", "/api/proposals")
+            for path in ("/api/users", "/api/control", "/api/mode", "/api/targeting", "/api/proposals")
         }
         logs = read("/api/logs", params={"lines": 1}).raise_for_status().json()
         motors = read("/api/motors").raise_for_status().json()
@@ -89,22 +87,22 @@ def callers() -> Iterator[Callers]:
             robot.close()
 
 
-def expected_refusal(caller: str, role: str, authority: bool) -> int | None:
+def expected_refusal(caller: str, role: str, control: bool) -> int | None:
     if RANKS.index(CALLERS[caller]) < RANKS.index(role):
         return 401 if caller == "nobody" else 403
-    return 409 if authority and caller != "holder" else None
+    return 409 if control and caller != "holder" else None
 
 
-@pytest.mark.parametrize(("method", "path", "role", "authority"), OPERATIONS)
+@pytest.mark.parametrize(("method", "path", "role", "control"), OPERATIONS)
 @pytest.mark.parametrize("caller", CALLERS)
 def test_only_who_may_use_an_operation_is_let_in(
-    callers: Callers, caller: str, method: str, path: str, role: str, authority: bool
+    callers: Callers, caller: str, method: str, path: str, role: str, control: bool
 ) -> None:
     target = re.sub(r"\{(\w+)\}", lambda name: IN_PATH[name[1]], path)
     client = callers.fresh(caller) if path == "/api/logout" else callers.clients[caller]
     body = {} if method in ("post", "put") else None
-    refusal = expected_refusal(caller, role, authority)
-    callers.clients["holder"].post("/api/authority/request")  # Who asks for nothing for a minute loses it.
+    refusal = expected_refusal(caller, role, control)
+    callers.clients["holder"].post("/api/control/request")  # Who asks for nothing for a minute loses it.
     before = callers.state() if refusal else None
 
     answer = judge(client.request(method, target, json=body))
@@ -116,7 +114,7 @@ def test_only_who_may_use_an_operation_is_let_in(
     else:
         code = answer.json()["code"] if answer.is_error else None
         assert code not in REFUSALS.values(), answer.text
-        callers.give_authority_to_holder()
+        callers.give_control_to_holder()
 
 
 def test_every_operation_says_who_may_use_it() -> None:

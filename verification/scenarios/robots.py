@@ -86,7 +86,7 @@ class Services(Stack):
         eventually("the app is ready", lambda: f"\nready {self.url}" in self.output_text)
         self.password = self.output_text.partition("first login: admin ")[2].split()[0]
         self.api = self.client("admin", self.password)
-        self.take_authority()
+        self.take_control()
         self.connect_control()
 
     def _commands_in(self, folder: Path) -> dict[str, list[str]]:
@@ -221,9 +221,9 @@ class Clerk(threading.Thread):
                 self.write(self._robot)
 
 
-def hold_authority(robot: Stack) -> bool:
-    """Logs in anew where what was done to the robot ended the session, and takes the authority."""
-    taken = robot.api.post("/api/authority/take-over")
+def regain_control(robot: Stack) -> bool:
+    """Logs in anew where what was done to the robot ended the session, and takes control."""
+    taken = robot.api.post("/api/control/take-over")
     if taken.status_code == 401:
         robot.api = robot.client("admin", robot.password)
     return taken.status_code == 200
@@ -262,7 +262,7 @@ def bring_up(robot: Stack) -> None:
     """From whatever state to MOTION with the axis enabled, as an operator does it."""
     robot.control("pedal", pressed=False)
     robot.control("estop", pulled=False)
-    eventually("logged in, with the authority", lambda: hold_authority(robot))
+    eventually("logged in and in control", lambda: regain_control(robot))
     eventually("in MOTION", lambda: press_when_ready(robot))
 
 

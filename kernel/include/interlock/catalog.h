@@ -30,7 +30,7 @@ typedef enum {
 
 /** Requests of the app. `fields` are read by the kernel; `checks` are the verdicts that can refuse it, in order, after CHECKSUM, SEQUENCE, UNKNOWN and AXIS. */
 typedef enum {
-  ILK_REQUEST_HEARTBEAT = 1,   /**< The app is alive; `holder` has motion authority. */
+  ILK_REQUEST_HEARTBEAT = 1,   /**< The app is alive; `holder` is in control. */
   ILK_REQUEST_STOP = 2,        /**< End MOTION now, or take back a pedal that is armed. */
   ILK_REQUEST_RESET = 3,       /**< Unlock. */
   ILK_REQUEST_DISABLE = 4,     /**< Take the axis out of motion. */

@@ -225,7 +225,7 @@ typedef struct {
   uint32_t amplitude;    /**< MOVE: 0 to `max_amplitude` */
   uint32_t lease_ticks;  /**< MOVE: 1 to `lease_max_ticks` */
   uint32_t consent;      /**< MOVE, HOME: number of the press of the pedal that its author saw */
-  uint32_t holder;       /**< HEARTBEAT: who holds motion authority */
+  uint32_t holder;       /**< HEARTBEAT: who is in control */
   uint32_t crc;          /**< `ilk_request_crc` of the words above */
 } ilk_request_t;
 

@@ -176,7 +176,7 @@ TEST_F(BiopsyRoutesTest, NothingThatAnOpenBiopsyWorksWithChanges) {
   EXPECT_EQ(json::parse(get("/api/biopsy").body)["hand"]["zero_counts"], 1970.0);
 }
 
-TEST_F(BiopsyRoutesTest, ZeroingAnswersWithTheNewZeroesAndNeedsTheAuthority) {
+TEST_F(BiopsyRoutesTest, ZeroingAnswersWithTheNewZeroesAndNeedsControl) {
   show(needle_view(1990, 1790));
   const Answered zeroed = post("/api/biopsy/zero");
   ASSERT_EQ(zeroed.status, 200u) << zeroed.body;
@@ -185,7 +185,7 @@ TEST_F(BiopsyRoutesTest, ZeroingAnswersWithTheNewZeroesAndNeedsTheAuthority) {
   log_in("vic");
   EXPECT_EQ(post("/api/biopsy/zero").status, 403u);
   log_in("ada");
-  expect_refused(post("/api/biopsy/zero"), 409, "AUTHORITY");
+  expect_refused(post("/api/biopsy/zero"), 409, "CONTROL");
 }
 
 class NoNeedleTest : public HttpTest {};

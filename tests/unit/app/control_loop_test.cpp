@@ -43,7 +43,7 @@ TEST_F(ControlLoopTest, TellsTheKernelOfAChangedHolderInTheNextTick) {
 TEST_F(ControlLoopTest, BeatsAtOnceAndWellWithinTheAppTimeout) {
   tick();
   ASSERT_NE(sent(ILK_REQUEST_HEARTBEAT), nullptr);
-  EXPECT_EQ(sent(ILK_REQUEST_HEARTBEAT)->holder, 0u) << "nobody holds the authority yet";
+  EXPECT_EQ(sent(ILK_REQUEST_HEARTBEAT)->holder, 0u) << "nobody is in control yet";
   std::uint32_t longest = 0;
   for (std::uint32_t since = 1, i = 0; i < 500; ++i, ++since) {
     tick();

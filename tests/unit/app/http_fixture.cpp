@@ -68,8 +68,8 @@ HttpTest::HttpTest(const Robot& robot, const ilk_config_t& config) : robot_(robo
   launch(network_.get_executor(), server_.door().listen_to_control());
   thread_ = std::jthread([this] { network_.run(); });
   log_in("edna");
-  EXPECT_EQ(post("/api/authority/request").status, 200u);
-  // The test is the control thread: it has seen the STOP that a change of the authority is.
+  EXPECT_EQ(post("/api/control/request").status, 200u);
+  // The test is the control thread: it has seen the STOP that a change of control is.
   channel_->stops = 0;
 }
 

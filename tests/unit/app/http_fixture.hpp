@@ -79,7 +79,7 @@ class StoreFixture : public testing::Test {
   Store mine_ = *Store::open(folder_.path() / "state" / "interlock.db");
 };
 
-/** `edna`, an engineer, is logged in and holds the authority, unless a test says otherwise. */
+/** `edna`, an engineer, is logged in and is in control, unless a test says otherwise. */
 class HttpTest : public StoreFixture {
  protected:
   HttpTest() : HttpTest(test::neuro(), test::neuro_config()) {}

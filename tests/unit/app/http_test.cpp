@@ -494,6 +494,7 @@ TEST_F(HttpTest, WhatEndsAHoldAMotionOrAConnectionIsNeverTooLate) {
       {http::verb::post, "/api/motors/3/disable", ""},
       {http::verb::delete_, "/api/communications/connections/9", ""},
       {http::verb::delete_, "/api/sessions/999", ""},
+      {http::verb::post, "/api/control/release", ""},
       {http::verb::post, "/api/authority/release", ""},
       {http::verb::post, "/api/logout", ""}};
   for (const auto& [method, path, body] : ends) {

@@ -241,7 +241,7 @@ TEST_F(NavigationTest, AConsoleIsToldOfConnectionsRolesAndTheirEnd) {
   EXPECT_EQ(told["change"], "role");
   EXPECT_EQ(told["role"], "controller");
   EXPECT_NE(told["id"], id);
-  EXPECT_EQ(post("/api/authority/release").status, 200u);
+  EXPECT_EQ(post("/api/control/release").status, 200u);
   told = stream.next_text("connection");
   EXPECT_EQ(told["change"], "role");
   EXPECT_EQ(told["role"], "observer");
@@ -295,9 +295,9 @@ TEST(PoseVelocity, IsThatOfTranslationAndRotation) {
   EXPECT_FALSE(velocity.per_s().has_value());
 }
 
-TEST_F(NavigationTest, TheRoleEndsWithTheAuthority) {
+TEST_F(NavigationTest, TheRoleEndsWithControl) {
   become_controller();
-  EXPECT_EQ(post("/api/authority/release").status, 200u);
+  EXPECT_EQ(post("/api/control/release").status, 200u);
   EXPECT_EQ(ask("START_UP"), "START_UP 5");
 }
 

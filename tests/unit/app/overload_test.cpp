@@ -113,16 +113,16 @@ TEST_F(OverloadTest, WhoIsTurnedAwayTakesNobodysDescriptorAlong) {
   EXPECT_EQ(post("/api/stop").status, 200u);
 }
 
-TEST_F(OverloadTest, WhoLosesTheAuthorityWhileTheStoreIsBusyChangesNothing) {
+TEST_F(OverloadTest, WhoLosesControlWhileTheStoreIsBusyChangesNothing) {
   const json before = target();
   hold_store();
   tcp::socket waiting = send_target(42);
   wait_until_at_work(1);
-  EXPECT_EQ(post("/api/authority/release").status, 200u);
+  EXPECT_EQ(post("/api/control/release").status, 200u);
   release_store();
   const Answered answered = read(waiting);
   EXPECT_EQ(answered.status, 409u);
-  EXPECT_EQ(answered.problem()["code"], "AUTHORITY");
+  EXPECT_EQ(answered.problem()["code"], "CONTROL");
   EXPECT_EQ(target(), before);
   EXPECT_TRUE(audit("setting").empty());
 }

@@ -187,15 +187,15 @@ TEST_F(PositionRoutesTest, WhenTheKernelFallsSilentTheRestIsNotSent) {
   expect_nothing_asked();
 }
 
-TEST_F(PositionRoutesTest, WhoLosesTheAuthorityMeanwhileSetsNoFurtherAxis) {
+TEST_F(PositionRoutesTest, WhoLosesControlMeanwhileSetsNoFurtherAxis) {
   const std::string admin = token_of("ada");
   auto zeroing = std::async(std::launch::async, [this] { return post("/api/motors/zero-all"); });
   const auto first = std::get<KernelCall>(next_command());
-  EXPECT_EQ(as(admin, [this] { return post("/api/authority/take-over"); }).status, 200u);
+  EXPECT_EQ(as(admin, [this] { return post("/api/control/take-over"); }).status, 200u);
   answer(KernelResponse{first.call_id, ILK_VERDICT_ACCEPTED, 5});
   const json rows = json::parse(zeroing.get().body);
   EXPECT_EQ(row_of(rows, *without_switch()[0])["verdict"], "ACCEPTED");
-  EXPECT_THAT(row_of(rows, *without_switch()[1])["detail"].get<std::string>(), HasSubstr("authority"));
+  EXPECT_THAT(row_of(rows, *without_switch()[1])["detail"].get<std::string>(), HasSubstr("control"));
   expect_nothing_asked();
 }
 

@@ -42,14 +42,14 @@ TEST_F(SessionTest, CookiesOfTwoSessionsLeaveOpenWhichIsMeant) {
   EXPECT_TRUE(user_behind(cookie() + "; " + cookie_of(token_of("ada"))).is_null());
 }
 
-TEST_F(SessionTest, WhoeverSetsTheClockEndsNoSessionAndNoAuthority) {
+TEST_F(SessionTest, WhoeverSetsTheClockEndsNoSessionAndNoControl) {
   auto watching = as(token_of("vic"), [this] { return open_stream(); });
   set_clock(std::chrono::minutes(20));
   for (int state = 0; state < 3; ++state) {  // With each of them idle sessions are looked for.
     ASSERT_TRUE(watching.next());
   }
   EXPECT_EQ(get("/api/motors").status, 503u) << "logged in, only without a kernel";
-  EXPECT_EQ(json::parse(get("/api/authority").body)["mine"], true);
+  EXPECT_EQ(json::parse(get("/api/control").body)["mine"], true);
 }
 
 TEST_F(SessionTest, SettingTheClockBackProlongsNoSession) {

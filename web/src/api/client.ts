@@ -24,7 +24,7 @@ export type User = Schemas["User"];
 export type Role = Schemas["Role"];
 export type NewUser = Schemas["NewUser"];
 export type UserChange = Schemas["UserChange"];
-export type Authority = Schemas["Authority"];
+export type MotionControl = Schemas["MotionControl"];
 export type Claim = Schemas["Claim"];
 export type Robot = Schemas["Robot"];
 export type KernelConfiguration = Schemas["KernelConfiguration"];
@@ -176,12 +176,11 @@ export const api = {
   changeUser: (user: string, change: UserChange) =>
     act(() => slowHttp.PUT("/api/users/{user}", { params: { path: { user } }, body: change })),
 
-  authority: () => read(() => http.GET("/api/authority")),
-  requestAuthority: () => act(() => http.POST("/api/authority/request")),
-  releaseAuthority: () => act(() => http.POST("/api/authority/release")),
-  handOverAuthority: (session: number) =>
-    act(() => http.POST("/api/authority/hand-over", { body: { session } })),
-  takeOverAuthority: () => act(() => http.POST("/api/authority/take-over")),
+  control: () => read(() => http.GET("/api/control")),
+  requestControl: () => act(() => http.POST("/api/control/request")),
+  releaseControl: () => act(() => http.POST("/api/control/release")),
+  handOverControl: (session: number) => act(() => http.POST("/api/control/hand-over", { body: { session } })),
+  takeOverControl: () => act(() => http.POST("/api/control/take-over")),
 
   kernelConfiguration: () => read(() => http.GET("/api/kernel/configuration")),
   robots: () => read(() => http.GET("/api/robots")),

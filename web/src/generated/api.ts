@@ -85,7 +85,7 @@ export interface paths {
         put?: never;
         post?: never;
         /**
-         * Ends a session of one's own, or any session for an administrator; motion authority that it held is released.
+         * Ends a session of one's own, or any session for an administrator; control that it had is released.
          *     404: there is no such session, or it is somebody else's.
          */
         delete: operations["endSession"];
@@ -128,7 +128,7 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Ends the session at once; motion authority that it held is released. 503 STORE: so it is, but the store does not
+         * Ends the session at once; control that it had is released. 503 STORE: so it is, but the store does not
          *     know it yet; the app tells it as soon as it works.
          */
         post: operations["logout"];
@@ -192,15 +192,18 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/authority": {
+    "/api/control": {
         parameters: {
             query?: never;
             header?: never;
             path?: never;
             cookie?: never;
         };
-        /** Who may move the robot, and who asks to. */
-        get: operations["getAuthority"];
+        /**
+         * Who is in control of the robot, and who requests control. Deprecated: `/api/authority` and the paths below it, the former
+         *     names of these paths, answer the same in this version and are gone in the next.
+         */
+        get: operations["getControl"];
         put?: never;
         post?: never;
         delete?: never;
@@ -209,7 +212,7 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/authority/request": {
+    "/api/control/request": {
         parameters: {
             query?: never;
             header?: never;
@@ -219,17 +222,17 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Takes the authority when nobody holds it; else the wish is shown to everybody until it is granted, withdrawn by
+         * Takes control when nobody is in control; else the request is shown to everybody until it is granted, withdrawn by
          *     `release`, or the session ends. Every change of holder ends MOTION and aborts all open proposals.
          */
-        post: operations["requestAuthority"];
+        post: operations["requestControl"];
         delete?: never;
         options?: never;
         head?: never;
         patch?: never;
         trace?: never;
     };
-    "/api/authority/release": {
+    "/api/control/release": {
         parameters: {
             query?: never;
             header?: never;
@@ -238,15 +241,15 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Gives up the authority, or withdraws one's wish for it. Without either nothing happens. */
-        post: operations["releaseAuthority"];
+        /** Releases control, or withdraws one's request for it. Without either nothing happens. */
+        post: operations["releaseControl"];
         delete?: never;
         options?: never;
         head?: never;
         patch?: never;
         trace?: never;
     };
-    "/api/authority/hand-over": {
+    "/api/control/hand-over": {
         parameters: {
             query?: never;
             header?: never;
@@ -255,15 +258,15 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Gives the authority to a session that asks for it. */
-        post: operations["handOverAuthority"];
+        /** Hands control over to a session that requests it. */
+        post: operations["handOverControl"];
         delete?: never;
         options?: never;
         head?: never;
         patch?: never;
         trace?: never;
     };
-    "/api/authority/take-over": {
+    "/api/control/take-over": {
         parameters: {
             query?: never;
             header?: never;
@@ -272,8 +275,8 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Takes the authority from whoever holds it. */
-        post: operations["takeOverAuthority"];
+        /** Takes control from whoever is in control. */
+        post: operations["takeOverControl"];
         delete?: never;
         options?: never;
         head?: never;
@@ -774,7 +777,7 @@ export interface paths {
             cookie?: never;
         };
         get?: never;
-        /** Makes a connection the controller, which acts for the caller until the motion authority changes, or an observer. */
+        /** Makes a connection the controller, which acts for the caller until control changes hands, or an observer. */
         put: operations["setNavigationRole"];
         post?: never;
         delete?: never;
@@ -1236,7 +1239,7 @@ export interface components {
             status: number;
             /**
              * @description Verdict name, or NOT_FOUND, METHOD_NOT_ALLOWED, MALFORMED, INVALID, TOO_LARGE, HOST, ORIGIN, UPGRADE_REQUIRED, NOT_IMPLEMENTED,
-             *     LOGIN, CREDENTIALS, BACK_OFF, ROLE, AUTHORITY, REPLAY, EXISTS, LAST_ADMIN, STORE, STOPPED, MODE_HOME, MODE_PATH, NOT_HOMED, SEPARATION,
+             *     LOGIN, CREDENTIALS, BACK_OFF, ROLE, CONTROL, REPLAY, EXISTS, LAST_ADMIN, STORE, STOPPED, MODE_HOME, MODE_PATH, NOT_HOMED, SEPARATION,
              *     HAS_SWITCH, POSITIONS_ROBOT, POSITIONS_CONFIG, POSITIONS_VERSION,
              *     NO_KERNEL, NO_BENCH, NO_BLACK_BOX, PEDAL_LAPSED, JOG_LAPSED, CONFIG_MISMATCH, ENDED, OVERLOADED, LATE; of paths NO_PATH, UNREACHABLE, STALE,
              *     EMPTY, NO_TARGETS, NOT_WAITING; of a trajectory or a pose a code of `interlock trajectory check` or of `interlock kinematics`.
@@ -1294,7 +1297,7 @@ export interface components {
             /** @description Number of this press of the pedal, another one for each; MOVE and HOME carry it. 0 outside of MOTION. */
             consent: number;
             app_alive: boolean;
-            /** @description Number of the present motion authority in the kernel, new with each change; 0: nobody. */
+            /** @description Number of the present hold of control in the kernel, new with each change; 0: nobody. */
             holder?: number;
             /** @description As `mode` of /api/mode. */
             app_mode?: string;
@@ -1593,7 +1596,7 @@ export interface components {
         };
         Session: {
             user: components["schemas"]["User"] | null;
-            /** @description Number of the session, as in Authority; null when nobody is logged in. */
+            /** @description Number of the session, as in MotionControl; null when nobody is logged in. */
             session?: number | null;
             /**
              * Format: date-time
@@ -1645,9 +1648,9 @@ export interface components {
             current: string;
             new: components["schemas"]["NewPassword"];
         };
-        Authority: {
+        MotionControl: {
             holder: components["schemas"]["Claim"] | null;
-            /** @description This session holds it. */
+            /** @description This session is in control. */
             mine: boolean;
             /** @description Oldest first. */
             requests: components["schemas"]["Claim"][];
@@ -1861,7 +1864,7 @@ export interface components {
             time: string;
             /** @description Of the kernel; null without one. */
             tick: number | null;
-            /** @description Who held the motion authority. */
+            /** @description Who was in control. */
             user: string;
             /**
              * @description `console` is every change over HTTP.
@@ -2176,8 +2179,11 @@ export interface components {
             /** @description User, or one of `kernel`, `app`, `command line`, `nobody`. Of a proposal: its author, or whoever ended it. */
             actor: string;
             session: number | null;
-            /** @enum {string} */
-            kind: "start" | "login" | "login_refused" | "logout" | "session_ended" | "user" | "authority" | "proposal" | "request" | "verdict" | "stop" | "setting" | "restore" | "bench" | "connection" | "records_lost" | "retention" | "acknowledgement";
+            /**
+             * @description `authority` is the former name of `control`; only old records have it.
+             * @enum {string}
+             */
+            kind: "start" | "login" | "login_refused" | "logout" | "session_ended" | "user" | "control" | "authority" | "proposal" | "request" | "verdict" | "stop" | "setting" | "restore" | "bench" | "connection" | "records_lost" | "retention" | "acknowledgement";
             detail: Record<string, unknown>;
             /** @description SHA-256, 64 hex digits. */
             hash: string;
@@ -2267,8 +2273,8 @@ export interface components {
                 "application/problem+json": components["schemas"]["Problem"];
             };
         };
-        /** @description AUTHORITY: this session does not hold the motion authority; `detail` names who does. */
-        Authority: {
+        /** @description CONTROL: this session is not in control; `detail` names who is. */
+        Control: {
             headers: {
                 [name: string]: unknown;
             };
@@ -2294,7 +2300,7 @@ export interface components {
                 "application/problem+json": components["schemas"]["Problem"];
             };
         };
-        /** @description Refused; `code` is the verdict, AUTHORITY, or a code of the operation. */
+        /** @description Refused; `code` is the verdict, CONTROL, or a code of the operation. */
         Refused: {
             headers: {
                 [name: string]: unknown;
@@ -2684,7 +2690,7 @@ export interface operations {
             503: components["responses"]["NoStore"];
         };
     };
-    getAuthority: {
+    getControl: {
         parameters: {
             query?: never;
             header?: never;
@@ -2693,19 +2699,19 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description Authority. */
+            /** @description Who is in control. */
             200: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Authority"];
+                    "application/json": components["schemas"]["MotionControl"];
                 };
             };
             401: components["responses"]["Login"];
         };
     };
-    requestAuthority: {
+    requestControl: {
         parameters: {
             query?: never;
             header?: never;
@@ -2714,22 +2720,22 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description Held, now or already. */
+            /** @description This session is in control, now or already. */
             200: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Authority"];
+                    "application/json": components["schemas"]["MotionControl"];
                 };
             };
-            /** @description Somebody else holds it; the wish is noted. */
+            /** @description Somebody else is in control; the request is noted. */
             202: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Authority"];
+                    "application/json": components["schemas"]["MotionControl"];
                 };
             };
             401: components["responses"]["Login"];
@@ -2738,7 +2744,7 @@ export interface operations {
             503: components["responses"]["NoStore"];
         };
     };
-    releaseAuthority: {
+    releaseControl: {
         parameters: {
             query?: never;
             header?: never;
@@ -2747,13 +2753,13 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description Not held by this session any more. */
+            /** @description This session is not in control any more. */
             200: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Authority"];
+                    "application/json": components["schemas"]["MotionControl"];
                 };
             };
             401: components["responses"]["Login"];
@@ -2761,7 +2767,7 @@ export interface operations {
             503: components["responses"]["NoStore"];
         };
     };
-    handOverAuthority: {
+    handOverControl: {
         parameters: {
             query?: never;
             header?: never;
@@ -2780,19 +2786,19 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Authority"];
+                    "application/json": components["schemas"]["MotionControl"];
                 };
             };
             400: components["responses"]["Malformed"];
             401: components["responses"]["Login"];
             403: components["responses"]["Role"];
             404: components["responses"]["NotFound"];
-            409: components["responses"]["Authority"];
+            409: components["responses"]["Control"];
             422: components["responses"]["Invalid"];
             503: components["responses"]["NoStore"];
         };
     };
-    takeOverAuthority: {
+    takeOverControl: {
         parameters: {
             query?: never;
             header?: never;
@@ -2801,13 +2807,13 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description Held. */
+            /** @description This session is in control. */
             200: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Authority"];
+                    "application/json": components["schemas"]["MotionControl"];
                 };
             };
             401: components["responses"]["Login"];
@@ -2929,7 +2935,7 @@ export interface operations {
             };
             401: components["responses"]["Login"];
             403: components["responses"]["Role"];
-            409: components["responses"]["Authority"];
+            409: components["responses"]["Control"];
             503: components["responses"]["NoKernel"];
         };
     };
@@ -2958,7 +2964,7 @@ export interface operations {
             400: components["responses"]["Malformed"];
             401: components["responses"]["Login"];
             403: components["responses"]["Role"];
-            /** @description POSITIONS_ROBOT, POSITIONS_CONFIG or POSITIONS_VERSION: the file is of another robot, configuration or version; CONFIG_MISMATCH; or AUTHORITY. */
+            /** @description POSITIONS_ROBOT, POSITIONS_CONFIG or POSITIONS_VERSION: the file is of another robot, configuration or version; CONFIG_MISMATCH; or CONTROL. */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -3076,7 +3082,7 @@ export interface operations {
             };
             401: components["responses"]["Login"];
             403: components["responses"]["Role"];
-            409: components["responses"]["Authority"];
+            409: components["responses"]["Control"];
             422: components["responses"]["Invalid"];
             503: components["responses"]["NoKernel"];
         };
@@ -3101,7 +3107,7 @@ export interface operations {
             };
             401: components["responses"]["Login"];
             403: components["responses"]["Role"];
-            409: components["responses"]["Authority"];
+            409: components["responses"]["Control"];
             503: components["responses"]["NoKernel"];
         };
     };
@@ -3352,7 +3358,7 @@ export interface operations {
             400: components["responses"]["Malformed"];
             401: components["responses"]["Login"];
             403: components["responses"]["Role"];
-            409: components["responses"]["Authority"];
+            409: components["responses"]["Control"];
             422: components["responses"]["Invalid"];
             503: components["responses"]["NoStore"];
         };
@@ -3411,7 +3417,7 @@ export interface operations {
             400: components["responses"]["Malformed"];
             401: components["responses"]["Login"];
             403: components["responses"]["Role"];
-            409: components["responses"]["Authority"];
+            409: components["responses"]["Control"];
             422: components["responses"]["Invalid"];
             503: components["responses"]["NoStore"];
         };
@@ -3441,7 +3447,7 @@ export interface operations {
             400: components["responses"]["Malformed"];
             401: components["responses"]["Login"];
             403: components["responses"]["Role"];
-            409: components["responses"]["Authority"];
+            409: components["responses"]["Control"];
             422: components["responses"]["Invalid"];
             503: components["responses"]["NoStore"];
         };
@@ -3593,7 +3599,7 @@ export interface operations {
             401: components["responses"]["Login"];
             403: components["responses"]["Role"];
             404: components["responses"]["NotFound"];
-            409: components["responses"]["Authority"];
+            409: components["responses"]["Control"];
             422: components["responses"]["Invalid"];
             503: components["responses"]["NoStore"];
         };

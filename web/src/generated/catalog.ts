@@ -30,7 +30,7 @@ export const catalog = {
   ],
   /** Requests of the app. `fields` are read by the kernel; `checks` are the verdicts that can refuse it, in order, after CHECKSUM, SEQUENCE, UNKNOWN and AXIS. */
   request: [
-    {"number": 1, "name": "HEARTBEAT", "meaning": "The app is alive; `holder` has motion authority.", "cause": "", "next_step": "", "clears": "", "properties": ["P10"]},
+    {"number": 1, "name": "HEARTBEAT", "meaning": "The app is alive; `holder` is in control.", "cause": "", "next_step": "", "clears": "", "properties": ["P10"]},
     {"number": 2, "name": "STOP", "meaning": "End MOTION now, or take back a pedal that is armed.", "cause": "", "next_step": "", "clears": "", "properties": ["P2", "P9"]},
     {"number": 3, "name": "RESET", "meaning": "Unlock.", "cause": "", "next_step": "", "clears": "", "properties": ["P8"]},
     {"number": 4, "name": "DISABLE", "meaning": "Take the axis out of motion.", "cause": "", "next_step": "", "clears": "", "properties": ["P1"]},

@@ -1,9 +1,9 @@
 /** What a click does: one call to the app, its answer into the store. */
 import {
-  type Authority,
   type AxisAction,
   api,
   type JogDirection,
+  type MotionControl,
   type Outcome,
   type ProposalDraft,
 } from "../api/client";
@@ -34,14 +34,14 @@ export async function unlock(): Promise<void> {
 export async function logout(): Promise<void> {
   const outcome = await api.logout();
   if (outcome.ok) leave(null);
-  else useConsole.setState({ authorityNotice: noticeOfProblem(outcome.problem) });
+  else useConsole.setState({ controlNotice: noticeOfProblem(outcome.problem) });
 }
 
-/** Asks for, gives up, hands over or takes the motion authority; a refusal is shown in the header. */
-export async function changeAuthority(ask: () => Promise<Outcome<Authority>>): Promise<void> {
+/** Requests, releases, hands over or takes control; a refusal is shown in the header. */
+export async function changeControl(ask: () => Promise<Outcome<MotionControl>>): Promise<void> {
   const outcome = await ask();
-  if (outcome.ok) useConsole.setState({ authority: outcome.value, authorityNotice: null });
-  else useConsole.setState({ authorityNotice: noticeOfProblem(outcome.problem) });
+  if (outcome.ok) useConsole.setState({ control: outcome.value, controlNotice: null });
+  else useConsole.setState({ controlNotice: noticeOfProblem(outcome.problem) });
 }
 
 /** Sends one request for an axis; a refusal is shown at the axis. */

@@ -138,8 +138,8 @@ function takeIn(message: StreamMessage): void {
     case "proposal":
       useConsole.setState((state) => withProposal(state, message));
       break;
-    case "authority":
-      useConsole.setState({ authority: message, authorityNotice: null });
+    case "control":
+      useConsole.setState({ control: message, controlNotice: null });
       break;
     case "mode":
       useConsole.setState({ mode: message });
@@ -158,12 +158,12 @@ async function loadDescription(): Promise<void> {
   clearTimeout(reload);
   describedConfigCrc = null;
   const before = useConsole.getState();
-  const [robots, motors, configuration, mode, authority, logs, proposals] = await Promise.all([
+  const [robots, motors, configuration, mode, control, logs, proposals] = await Promise.all([
     api.robots(),
     api.motors(),
     api.kernelConfiguration(),
     api.mode(),
-    api.authority(),
+    api.control(),
     api.logs(MOST_LINES),
     api.proposals(),
   ]);
@@ -175,10 +175,9 @@ async function loadDescription(): Promise<void> {
   if (useConsole.getState().login.phase !== "in") return;
   useConsole.setState({ pageKernel });
   // What the stream told meanwhile is newer than the answer.
-  const { mode: newestMode, authority: newestAuthority } = useConsole.getState();
+  const { mode: newestMode, control: newestControl } = useConsole.getState();
   if (mode.ok && newestMode === before.mode) useConsole.setState({ mode: mode.value });
-  if (authority.ok && newestAuthority === before.authority)
-    useConsole.setState({ authority: authority.value });
+  if (control.ok && newestControl === before.control) useConsole.setState({ control: control.value });
   if (logs.ok) {
     useConsole.setState((state) => ({
       log: mergeLines(newSince(before.log, state.log), logs.value.lines),
@@ -191,7 +190,7 @@ async function loadDescription(): Promise<void> {
     }));
   }
   const complete =
-    robots.ok && motors.ok && configuration.ok && mode.ok && authority.ok && logs.ok && proposals.ok;
+    robots.ok && motors.ok && configuration.ok && mode.ok && control.ok && logs.ok && proposals.ok;
   if (complete) describedConfigCrc = useConsole.getState().frame?.configCrc ?? null;
   else reload = setTimeout(() => void loadDescription(), RETRY_PAUSE_MS);
 }

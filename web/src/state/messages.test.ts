@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import { streamMessage } from "./messages";
 
 describe("streamMessage", () => {
-  it.each(["proposal", "authority", "mode", "log", "session"])("knows messages of type %s", (type) => {
+  it.each(["proposal", "control", "mode", "log", "session"])("knows messages of type %s", (type) => {
     expect(streamMessage(JSON.stringify({ type, more: 1 }))).toEqual({ type, more: 1 });
   });
 

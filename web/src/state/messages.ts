@@ -1,14 +1,14 @@
 /** The stream's text messages that the console uses, see `components/x-stream` of spec/openapi.yaml. */
-import type { Authority, LogLine, ModeAnswer, Proposal } from "../api/client";
+import type { LogLine, ModeAnswer, MotionControl, Proposal } from "../api/client";
 
 export type StreamMessage =
   | ({ readonly type: "proposal" } & Proposal)
-  | ({ readonly type: "authority" } & Authority)
+  | ({ readonly type: "control" } & MotionControl)
   | ({ readonly type: "mode" } & ModeAnswer)
   | ({ readonly type: "log" } & LogLine)
   | { readonly type: "session"; readonly ended: true };
 
-const used: ReadonlySet<unknown> = new Set(["proposal", "authority", "mode", "log", "session"]);
+const used: ReadonlySet<unknown> = new Set(["proposal", "control", "mode", "log", "session"]);
 
 /** The message; null when it is of a type that the console does not use. */
 export function streamMessage(text: string): StreamMessage | null {

@@ -1,10 +1,10 @@
 /** Everything the console knows. The stream and the answers of the app write it; panels only read it. */
 import { create } from "zustand";
 import type {
-  Authority,
   LogLevel,
   LogLine,
   ModeAnswer,
+  MotionControl,
   Motor,
   Proposal,
   Robot,
@@ -51,9 +51,9 @@ export interface ConsoleState {
   /** The kernel in the page; null until it is loaded, and where it cannot be. */
   readonly pageKernel: ConfiguredKernel | null;
   readonly mode: ModeAnswer | null;
-  readonly authority: Authority | null;
-  /** Why the authority did not change as asked. */
-  readonly authorityNotice: Notice | null;
+  readonly control: MotionControl | null;
+  /** Why control did not change hands as asked. */
+  readonly controlNotice: Notice | null;
   /** Newest first. */
   readonly proposals: readonly Proposal[];
   /** Oldest first. */
@@ -90,8 +90,8 @@ export const initialState: ConsoleState = {
   motors: [],
   pageKernel: null,
   mode: null,
-  authority: null,
-  authorityNotice: null,
+  control: null,
+  controlNotice: null,
   proposals: [],
   log: [],
   logLevel: null,

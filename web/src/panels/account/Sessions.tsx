@@ -29,8 +29,8 @@ export function Sessions({ user }: { readonly user: string }) {
     <section className="sessions" aria-label="Sessions">
       <h3>Sessions</h3>
       <p className="page-words">
-        Where you are logged in. Ending a session logs out there, and releases the motion authority that it
-        holds. To end this one, log out.
+        Where you are logged in. Ending a session logs out there, and releases control if it is in control. To
+        end this one, log out.
       </p>
       {shown !== null && (
         <p className="panel-notice" role="alert">

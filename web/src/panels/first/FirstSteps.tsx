@@ -21,7 +21,7 @@ export function FirstSteps() {
   const open = useConsole((state) => state.firstSteps);
   const now = useConsole((state) =>
     nextStep({
-      mine: state.authority?.mine ?? false,
+      mine: state.control?.mine ?? false,
       mode: state.glance?.mode ?? "UNKNOWN",
       axes: state.motors.map(({ slot }) => state.frame?.axes[slot]?.state ?? "DISABLED"),
       proposals: state.proposals,

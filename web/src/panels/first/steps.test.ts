@@ -6,7 +6,7 @@ const ready: Situation = { ...start, mine: true, mode: "READY", axes: ["DISABLED
 
 describe("nextStep", () => {
   it.each<[string, Situation]>([
-    ["Request the authority", start],
+    ["Take control", start],
     ["Unlock", { ...start, mine: true }],
     ["Enable an axis", { ...ready, axes: ["DISABLED", "FAULTED"] }],
     ["Propose a move", { ...ready, proposals: [{ state: "refused" }, { state: "aborted" }] }],

@@ -21,7 +21,7 @@ const hasMoved = ({ proposals }: Situation): boolean => proposals.some(({ state 
 
 export const steps: readonly Step[] = [
   {
-    title: "Request the authority",
+    title: "Take control",
     words: "at the top: one user at a time may move the robot.",
     isDone: ({ mine }) => mine,
   },

@@ -21,7 +21,7 @@ export function Header() {
   const known = useConsole((state) => (level === "covered" ? null : state.glance));
   const loggedIn = useConsole((state) => state.login.phase === "in");
   const unlockNotice = useConsole((state) => state.unlockNotice);
-  const authorityNotice = useConsole((state) => state.authorityNotice);
+  const controlNotice = useConsole((state) => state.controlNotice);
   return (
     <header className="header" data-level={level}>
       <Banners />
@@ -53,9 +53,9 @@ export function Header() {
           <NoticeText lead="Unlock refused:" notice={unlockNotice} />
         </p>
       )}
-      {authorityNotice !== null && (
+      {controlNotice !== null && (
         <p className="header-notice" role="alert">
-          <NoticeText lead="Refused:" notice={authorityNotice} />
+          <NoticeText lead="Refused:" notice={controlNotice} />
         </p>
       )}
     </header>

@@ -2,7 +2,7 @@ import { logout } from "../../state/commands";
 import { type Route, useRoute } from "../../state/route";
 import { useConsole } from "../../state/store";
 import { KeysHelp } from "../keys/KeysHelp";
-import { AuthorityBar } from "./AuthorityBar";
+import { ControlBar } from "./ControlBar";
 import { ThemeButton } from "./ThemeButton";
 
 const pages: readonly { readonly route: Route; readonly title: string; readonly adminOnly: boolean }[] = [
@@ -32,7 +32,7 @@ export function SessionBar() {
           </a>
         ))}
       </nav>
-      <AuthorityBar />
+      <ControlBar />
       <div className="who">
         {shown === "robot" && <ArrangeButton />}
         <ThemeButton user={name} />

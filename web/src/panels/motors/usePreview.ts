@@ -9,7 +9,7 @@ export interface Preview {
 }
 
 /**
- * The preview of one axis. STOP drops it, and so do a mode that drives the setpoints and the loss of the authority or of the data
+ * The preview of one axis. STOP drops it, and so do a mode that drives the setpoints and the loss of control or of the data
  * it was chosen by.
  */
 export function usePreview(): [Preview | null, (preview: Preview | null) => void] {

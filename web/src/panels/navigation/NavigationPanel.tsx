@@ -79,7 +79,7 @@ function Program({ connection, send }: ProgramProps) {
   );
 }
 
-/** To act for an engineer takes the authority; to be an observer again does, too, since it stops what moves. */
+/** To act for an engineer needs control; to be an observer again does, too, since it stops what moves. */
 function RoleButton({ connection, send }: ProgramProps) {
   const { id, client, role } = connection;
   const other: NavigationRole = role === "controller" ? "observer" : "controller";

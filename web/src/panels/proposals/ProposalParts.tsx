@@ -42,7 +42,7 @@ export function sourceWord(proposal: Proposal): string {
   return sources[proposal.source];
 }
 
-/** What the holder of the authority can do about it now. */
+/** What whoever is in control can do about it now. */
 export function ProposalCommands({ proposal }: { readonly proposal: Proposal }) {
   const { id, slot, state } = proposal;
   if (!isOpen(proposal)) return null;

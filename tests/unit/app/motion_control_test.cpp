@@ -10,12 +10,12 @@ namespace {
 
 using testing::HasSubstr;
 
-class AuthorityTest : public HttpTest {
+class MotionControlTest : public HttpTest {
  protected:
-  json authority() { return json::parse(get("/api/authority").body); }
+  json control() { return json::parse(get("/api/control").body); }
 
-  json authority_seen_by(const std::string& token) {
-    return as(token, [this] { return authority(); });
+  json control_seen_by(const std::string& token) {
+    return as(token, [this] { return control(); });
   }
 
   Answered post_as(const std::string& token, const std::string& target, const std::string& body = "") {
@@ -29,7 +29,7 @@ class AuthorityTest : public HttpTest {
   }
 };
 
-TEST_F(AuthorityTest, RightsAreCheckedInTheirOrder) {
+TEST_F(MotionControlTest, RightsAreCheckedInTheirOrder) {
   show(test::ready_view());
   const std::string body = R"({"slot":99})";
   EXPECT_EQ(post("/api/nothing").status, 404u);
@@ -40,102 +40,108 @@ TEST_F(AuthorityTest, RightsAreCheckedInTheirOrder) {
   EXPECT_EQ(post("/api/proposals", body).problem()["code"], "ROLE");
   log_in("ada");
   const json problem = post("/api/proposals", body).problem();
-  EXPECT_EQ(problem["code"], "AUTHORITY");
+  EXPECT_EQ(problem["code"], "CONTROL");
   EXPECT_THAT(problem["detail"].get<std::string>(), HasSubstr("edna"));
   EXPECT_EQ(get("/api/proposals").body, "[]");
 }
 
-TEST_F(AuthorityTest, NobodyButAnybodyStops) {
+TEST_F(MotionControlTest, NobodyButAnybodyStops) {
   become_nobody();
   EXPECT_EQ(post("/api/stop").status, 200u);
   EXPECT_EQ(channel_->stops.load(), 1u);
 }
 
-TEST_F(AuthorityTest, WhoeverAsksFirstHoldsItAndOthersAreNoted) {
+TEST_F(MotionControlTest, WhoeverAsksFirstHoldsItAndOthersAreNoted) {
   const std::string ada = token_of("ada");
-  const Answered asked = post_as(ada, "/api/authority/request");
+  const Answered asked = post_as(ada, "/api/control/request");
   EXPECT_EQ(asked.status, 202u);
   const json seen = json::parse(asked.body);
   EXPECT_EQ(seen["holder"]["user"], "edna");
   EXPECT_EQ(seen["mine"], false);
   EXPECT_EQ(seen["requests"][0]["user"], "ada");
-  EXPECT_EQ(authority()["mine"], true);
-  EXPECT_EQ(post("/api/authority/request").status, 200u);
-  EXPECT_EQ(post_as(ada, "/api/authority/request").status, 202u);
-  EXPECT_EQ(authority()["requests"].size(), 1u);
+  EXPECT_EQ(control()["mine"], true);
+  EXPECT_EQ(post("/api/control/request").status, 200u);
+  EXPECT_EQ(post_as(ada, "/api/control/request").status, 202u);
+  EXPECT_EQ(control()["requests"].size(), 1u);
   EXPECT_EQ(channel_->stops.load(), 0u) << "a request stops nothing";
 }
 
-TEST_F(AuthorityTest, AHandOverGoesOnlyToAnAskingSession) {
+TEST_F(MotionControlTest, AHandOverGoesOnlyToAnAskingSession) {
   const std::string ada = token_of("ada");
-  EXPECT_EQ(post("/api/authority/hand-over", R"({"session":999})").status, 404u);
-  EXPECT_EQ(post("/api/authority/hand-over", R"({"session":0})").status, 422u);
-  const json asked = json::parse(post_as(ada, "/api/authority/request").body);
+  EXPECT_EQ(post("/api/control/hand-over", R"({"session":999})").status, 404u);
+  EXPECT_EQ(post("/api/control/hand-over", R"({"session":0})").status, 422u);
+  const json asked = json::parse(post_as(ada, "/api/control/request").body);
   const json to{{"session", asked["requests"][0]["session"]}};
-  EXPECT_EQ(post_as(ada, "/api/authority/hand-over", to.dump()).problem()["code"], "AUTHORITY");
-  EXPECT_EQ(post("/api/authority/hand-over", to.dump()).status, 200u);
-  EXPECT_EQ(authority()["holder"]["user"], "ada");
-  EXPECT_TRUE(authority()["requests"].empty());
-  EXPECT_EQ(post("/api/reset").problem()["code"], "AUTHORITY");
+  EXPECT_EQ(post_as(ada, "/api/control/hand-over", to.dump()).problem()["code"], "CONTROL");
+  EXPECT_EQ(post("/api/control/hand-over", to.dump()).status, 200u);
+  EXPECT_EQ(control()["holder"]["user"], "ada");
+  EXPECT_TRUE(control()["requests"].empty());
+  EXPECT_EQ(post("/api/reset").problem()["code"], "CONTROL");
 }
 
-TEST_F(AuthorityTest, OnlyAnAdministratorTakesOver) {
+TEST_F(MotionControlTest, OnlyAnAdministratorTakesOver) {
   const std::string other = token_of("edna");
-  EXPECT_EQ(post_as(other, "/api/authority/take-over").problem()["code"], "ROLE");
-  EXPECT_EQ(authority()["mine"], true);
-  EXPECT_EQ(post_as(token_of("ada"), "/api/authority/take-over").status, 200u);
-  EXPECT_EQ(authority()["holder"]["user"], "ada");
+  EXPECT_EQ(post_as(other, "/api/control/take-over").problem()["code"], "ROLE");
+  EXPECT_EQ(control()["mine"], true);
+  EXPECT_EQ(post_as(token_of("ada"), "/api/control/take-over").status, 200u);
+  EXPECT_EQ(control()["holder"]["user"], "ada");
 }
 
-TEST_F(AuthorityTest, EachChangeStopsAbortsAndHasANewNumber) {
+TEST_F(MotionControlTest, EachChangeStopsAbortsAndHasANewNumber) {
   show(test::ready_view());
   const std::string ada = token_of("ada");
   std::set<std::uint32_t> numbers{channel_->holder.load()};
   const std::string proposal = propose();
-  ASSERT_EQ(post_as(ada, "/api/authority/take-over").status, 200u);
+  ASSERT_EQ(post_as(ada, "/api/control/take-over").status, 200u);
   EXPECT_EQ(json::parse(get(proposal).body)["state"], "aborted");
   EXPECT_EQ(channel_->stops.load(), 1u);
   numbers.insert(channel_->holder.load());
-  ASSERT_EQ(post_as(ada, "/api/authority/release").status, 200u);
+  ASSERT_EQ(post_as(ada, "/api/control/release").status, 200u);
   EXPECT_EQ(channel_->holder.load(), 0u);
   EXPECT_EQ(channel_->stops.load(), 2u);
-  ASSERT_EQ(post("/api/authority/request").status, 200u);
+  ASSERT_EQ(post("/api/control/request").status, 200u);
   numbers.insert(channel_->holder.load());
   EXPECT_EQ(numbers.size(), 3u);
   EXPECT_FALSE(numbers.contains(0));
 }
 
-TEST_F(AuthorityTest, ReleaseWithdrawsAWishAndElseDoesNothing) {
+TEST_F(MotionControlTest, ReleaseWithdrawsAWishAndElseDoesNothing) {
   const std::string ada = token_of("ada");
-  ASSERT_EQ(post_as(ada, "/api/authority/release").status, 200u);
-  (void)post_as(ada, "/api/authority/request");
-  ASSERT_EQ(post_as(ada, "/api/authority/release").status, 200u);
-  EXPECT_TRUE(authority()["requests"].empty());
-  EXPECT_EQ(authority()["mine"], true);
+  ASSERT_EQ(post_as(ada, "/api/control/release").status, 200u);
+  (void)post_as(ada, "/api/control/request");
+  ASSERT_EQ(post_as(ada, "/api/control/release").status, 200u);
+  EXPECT_TRUE(control()["requests"].empty());
+  EXPECT_EQ(control()["mine"], true);
   EXPECT_EQ(channel_->stops.load(), 0u);
 }
 
-TEST_F(AuthorityTest, LogoutReleasesIt) {
+TEST_F(MotionControlTest, TheFormerPathsAnswerAsThePresentOnes) {
+  EXPECT_EQ(get("/api/authority").body, get("/api/control").body);
+  EXPECT_EQ(post("/api/authority/release").status, 200u);
+  EXPECT_TRUE(control()["holder"].is_null());
+}
+
+TEST_F(MotionControlTest, LogoutReleasesIt) {
   show(test::ready_view());
   const std::string proposal = propose();
   ASSERT_EQ(post("/api/logout").status, 200u);
   log_in("vic");
-  EXPECT_TRUE(authority()["holder"].is_null());
+  EXPECT_TRUE(control()["holder"].is_null());
   EXPECT_EQ(json::parse(get(proposal).body)["state"], "aborted");
 }
 
-TEST_F(AuthorityTest, AMinuteWithoutARequestReleasesIt) {
+TEST_F(MotionControlTest, AMinuteWithoutARequestReleasesIt) {
   const std::string vic = token_of("vic");
   pass(std::chrono::seconds(59));
-  EXPECT_EQ(authority()["mine"], true);
+  EXPECT_EQ(control()["mine"], true);
   pass(std::chrono::seconds(60));
-  while (!authority_seen_by(vic)["holder"].is_null()) {
+  while (!control_seen_by(vic)["holder"].is_null()) {
     std::this_thread::yield();
   }
   EXPECT_EQ(channel_->holder.load(), 0u);
 }
 
-TEST_F(AuthorityTest, AnOpenStreamKeepsIt) {
+TEST_F(MotionControlTest, AnOpenStreamKeepsIt) {
   auto stream = open_stream();
   const std::string vic = token_of("vic");
   for (int i = 0; i < 4; ++i) {
@@ -144,27 +150,27 @@ TEST_F(AuthorityTest, AnOpenStreamKeepsIt) {
     for (int states = 0; states < 3; ++states) {
       ASSERT_TRUE(stream.next());
     }
-    EXPECT_EQ(authority_seen_by(vic)["holder"]["user"], "edna") << i;
+    EXPECT_EQ(control_seen_by(vic)["holder"]["user"], "edna") << i;
   }
 }
 
-TEST_F(AuthorityTest, TheStreamTellsEachClientWhetherItIsTheirs) {
+TEST_F(MotionControlTest, TheStreamTellsEachClientWhetherItIsTheirs) {
   auto mine = open_stream();
   const std::string vic = token_of("vic");
   auto others = as(vic, [this] { return open_stream(); });
-  (void)post_as(token_of("ada"), "/api/authority/request");
-  EXPECT_EQ(mine.next_text("authority")["mine"], true);
-  const json seen = others.next_text("authority");
+  (void)post_as(token_of("ada"), "/api/control/request");
+  EXPECT_EQ(mine.next_text("control")["mine"], true);
+  const json seen = others.next_text("control");
   EXPECT_EQ(seen["mine"], false);
   EXPECT_EQ(seen["requests"][0]["user"], "ada");
 }
 
-TEST_F(AuthorityTest, TheStreamNeedsASession) {
+TEST_F(MotionControlTest, TheStreamNeedsASession) {
   become_nobody();
   EXPECT_EQ(test::StreamClient(connect()).open(host(), ""), 401u);
 }
 
-TEST_F(AuthorityTest, TheStreamOfASessionThatEndsIsClosedAndSaysWhy) {
+TEST_F(MotionControlTest, TheStreamOfASessionThatEndsIsClosedAndSaysWhy) {
   const std::string vic = token_of("vic");
   auto stream = as(vic, [this] { return open_stream(); });
   auto staying = open_stream();
@@ -174,7 +180,7 @@ TEST_F(AuthorityTest, TheStreamOfASessionThatEndsIsClosedAndSaysWhy) {
   EXPECT_TRUE(staying.next());
 }
 
-TEST_F(AuthorityTest, WhatAUserAsksOfTheKernelIsRecordedBeforeItIsSent) {
+TEST_F(MotionControlTest, WhatAUserAsksOfTheKernelIsRecordedBeforeItIsSent) {
   show(test::ready_view());
   auto asking = std::async(std::launch::async, [this] { return post("/api/motors/3/enable"); });
   const auto asked = std::get<KernelCall>(next_command());
@@ -184,10 +190,10 @@ TEST_F(AuthorityTest, WhatAUserAsksOfTheKernelIsRecordedBeforeItIsSent) {
   EXPECT_EQ(asking.get().status, 200u);
 }
 
-TEST_F(AuthorityTest, TheAuditHasWhoWhatAndWhen) {
+TEST_F(MotionControlTest, TheAuditHasWhoWhatAndWhen) {
   show(test::ready_view());
-  ASSERT_EQ(post_as(token_of("ada"), "/api/authority/take-over").status, 200u);
-  while (audit("authority").size() < 4) {
+  ASSERT_EQ(post_as(token_of("ada"), "/api/control/take-over").status, 200u);
+  while (audit("control").size() < 4) {
     std::this_thread::yield();
   }
   const auto records = audit();
@@ -197,13 +203,13 @@ TEST_F(AuthorityTest, TheAuditHasWhoWhatAndWhen) {
   EXPECT_EQ(taken->actor, "ada");
   EXPECT_EQ(taken->tick, 1000);
   EXPECT_EQ(taken->time, iso_8601(now()));
-  EXPECT_EQ(audit("authority").back()["holder"], "ada");
+  EXPECT_EQ(audit("control").back()["holder"], "ada");
 }
 
 constexpr int timeout_ms = 5000;
 
 /** A store whose records cannot be appended to, as if the disk were full. */
-class BrokenStoreTest : public AuthorityTest {
+class BrokenStoreTest : public MotionControlTest {
  protected:
   BrokenStoreTest() {
     SQLite::Database database((folder_.path() / "state" / "interlock.db").string(), SQLite::OPEN_READWRITE,
@@ -218,16 +224,16 @@ TEST_F(BrokenStoreTest, ChangesAreRefusedAndNothingIsChanged) {
     EXPECT_EQ(post(target).problem()["code"], "STORE") << target;
   }
   EXPECT_EQ(channel_->commands.read_available(), 0u);
-  EXPECT_EQ(post_as(token_of("ada"), "/api/authority/take-over").problem()["code"], "STORE");
-  EXPECT_EQ(authority()["mine"], true);
+  EXPECT_EQ(post_as(token_of("ada"), "/api/control/take-over").problem()["code"], "STORE");
+  EXPECT_EQ(control()["mine"], true);
 }
 
 TEST_F(BrokenStoreTest, StopObservationAndReleaseGoOn) {
   EXPECT_EQ(post("/api/stop").status, 200u);
   EXPECT_EQ(channel_->stops.load(), 1u);
   EXPECT_EQ(get("/api/status").status, 200u);
-  EXPECT_EQ(post("/api/authority/release").status, 200u);
-  EXPECT_TRUE(authority()["holder"].is_null());
+  EXPECT_EQ(post("/api/control/release").status, 200u);
+  EXPECT_TRUE(control()["holder"].is_null());
   EXPECT_EQ(post("/api/logout").problem()["code"], "STORE")
       << "the session ends, and the store does not know it";
   EXPECT_EQ(get("/api/motors").status, 401u);

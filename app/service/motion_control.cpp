@@ -1,4 +1,4 @@
-#include "service/authority.hpp"
+#include "service/motion_control.hpp"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -14,12 +14,12 @@ json to_json(const Claim& claim) {
 
 }  // namespace
 
-const Claim* Authority::request_of(std::uint32_t session) const {
+const Claim* MotionControl::request_of(std::uint32_t session) const {
   const auto found = std::ranges::find(requests_, session, &Claim::session);
   return found == requests_.end() ? nullptr : &*found;
 }
 
-void Authority::give(Claim to) {
+void MotionControl::give(Claim to) {
   if (held_by(to.session)) {
     return;
   }
@@ -30,14 +30,14 @@ void Authority::give(Claim to) {
   listener_(true);
 }
 
-void Authority::request(Claim claim) {
+void MotionControl::request(Claim claim) {
   if (!held_by(claim.session) && request_of(claim.session) == nullptr) {
     requests_.push_back(std::move(claim));
     listener_(false);
   }
 }
 
-void Authority::release(std::uint32_t session) {
+void MotionControl::release(std::uint32_t session) {
   const bool held = held_by(session);
   const bool requested = drop_request(session);
   if (held) {
@@ -49,7 +49,7 @@ void Authority::release(std::uint32_t session) {
   }
 }
 
-json Authority::shown_to(std::uint32_t session) const {
+json MotionControl::shown_to(std::uint32_t session) const {
   json requests = json::array();
   for (const Claim& claim : requests_) {
     requests.push_back(to_json(claim));
@@ -59,7 +59,7 @@ json Authority::shown_to(std::uint32_t session) const {
           {"requests", std::move(requests)}};
 }
 
-bool Authority::drop_request(std::uint32_t session) {
+bool MotionControl::drop_request(std::uint32_t session) {
   return std::erase_if(requests_, [&](const Claim& claim) { return claim.session == session; }) != 0;
 }
 

@@ -1,6 +1,6 @@
 /**
  * @file
- * The motion authority: the one session that may move the robot, and those that ask to.
+ * Control of the robot: the one session that may move it, and those that request to.
  */
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace interlock {
 
-/** A session's hold of the authority, or its request for it. */
+/** A session's hold of control, or its request for it. */
 struct Claim {
   std::uint32_t session = 0;
   std::string user;
@@ -27,13 +27,13 @@ struct Claim {
 };
 
 /** Belongs to the network thread. Who may change it is checked by whoever changes it. */
-class Authority {
+class MotionControl {
  public:
   /** `first_number` is before that of the first hold. It should be no number that an app before may have
    * had: a kernel that runs on would not see that the holder is another one. */
-  explicit Authority(std::uint32_t first_number) : number_(first_number) {}
+  explicit MotionControl(std::uint32_t first_number) : number_(first_number) {}
 
-  /** A number of a hold that any thread may read, also after the authority itself is gone. */
+  /** A number of a hold that any thread may read, also after the object itself is gone. */
   using SharedNumber = std::shared_ptr<const std::atomic<std::uint32_t>>;
 
   /** Told of each change: of the holder (`holder_changed`), or only of the requests. */
@@ -42,7 +42,7 @@ class Authority {
   /** Has the listener called after each change of holder or requests. */
   void on_change(Listener listener) { listener_ = std::move(listener); }
 
-  /** Whether that session holds the authority. */
+  /** Whether that session is in control. */
   [[nodiscard]] bool held_by(std::uint32_t session) const { return holder_ && holder_->session == session; }
   [[nodiscard]] const std::optional<Claim>& holder() const { return holder_; }
   [[nodiscard]] const std::vector<Claim>& requests() const { return requests_; }
@@ -50,23 +50,23 @@ class Authority {
   /** The request of that session, or null. */
   [[nodiscard]] const Claim* request_of(std::uint32_t session) const;
 
-  /** Number of the present hold: 0 while nobody holds it, else one that no hold before had. */
+  /** Number of the present hold: 0 while nobody is in control, else one that no hold before had. */
   [[nodiscard]] std::uint32_t number() const { return *present_; }
 
   /** The same for other threads, as it changes. */
   [[nodiscard]] SharedNumber shared_number() const { return present_; }
 
-  /** Gives it to that session, whoever holds it. Its request is granted thereby; nothing changes when it
-   * holds it. */
+  /** Gives control to that session, whoever has it. Its request is granted thereby; nothing changes when it
+   * is in control. */
   void give(Claim to);
 
-  /** Notes the request of a session; nothing changes when it has one, or holds the authority. */
+  /** Notes the request of a session; nothing changes when it has one, or is in control. */
   void request(Claim claim);
 
   /** Takes hold and request from that session. */
   void release(std::uint32_t session);
 
-  /** Schema `Authority` of spec/openapi.yaml, as that session sees it. */
+  /** Schema `MotionControl` of spec/openapi.yaml, as that session sees it. */
   [[nodiscard]] nlohmann::json shown_to(std::uint32_t session) const;
 
  private:

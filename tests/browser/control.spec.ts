@@ -5,7 +5,7 @@ test.use({ clock: "slow" });
 
 const password = "correct horse battery";
 
-test("the authority is handed over to whoever asks, and that ends the motion", async ({ robot, other }) => {
+test("control is handed over to whoever requests it, and that ends the motion", async ({ robot, other }) => {
   const axis = robot.axis("Probe rotation");
   await robot.addUser("ann", "engineer", password);
   await robot.unlockRobot();
@@ -14,16 +14,16 @@ test("the authority is handed over to whoever asks, and that ends the motion", a
   await robot.pressPedal();
 
   await other.logIn("ann", password);
-  await expect(other.authority).toHaveText("admin");
-  await expect(other.panel("Motors")).toContainText("admin holds the authority: request it.");
+  await expect(other.control).toHaveText("admin is in control");
+  await expect(other.panel("Motors")).toContainText("admin is in control: request control.");
   await expect(other.button("Enable Yaw")).toBeDisabled();
-  await expect(other.button("Enable Yaw")).toHaveAttribute("title", "admin holds the authority: request it.");
-  await other.button("Request").click();
+  await expect(other.button("Enable Yaw")).toHaveAttribute("title", "admin is in control: request control.");
+  await other.button("Request control").click();
   await expect(other.button("Withdraw request")).toBeVisible();
 
   await robot.button("Hand over to ann").click();
-  await expect(other.authority).toHaveText("ann (you)");
-  await expect(robot.authority).toHaveText("ann");
+  await expect(other.control).toHaveText("You are in control");
+  await expect(robot.control).toHaveText("ann is in control");
   await robot.expectMode("READY");
   await expect(robot.proposal(1)).toContainText("aborted");
   await expect(robot.button("Disable Probe rotation")).toBeDisabled();
@@ -31,23 +31,23 @@ test("the authority is handed over to whoever asks, and that ends the motion", a
   await axis.expectState("DISABLED");
 });
 
-test("an administrator takes the authority over, after being asked", async ({ front, other, stack }) => {
+test("an administrator takes control, after a question", async ({ front, other, stack }) => {
   await front.logIn("admin", stack.password);
   await front.addUser("ann", "engineer", password);
   await other.logIn("ann", password);
-  await other.requestAuthority();
+  await other.takeControl();
 
-  await front.button("Take over").click();
-  const question = front.panel("Take the authority from ann?");
+  await front.button("Take control").click();
+  const question = front.panel("Take control from ann?");
   await expect(question).toContainText("Motion ends");
   await question.getByRole("button", { name: "Cancel" }).click();
-  await expect(other.authority).toHaveText("ann (you)");
+  await expect(other.control).toHaveText("You are in control");
 
-  await front.button("Take over").click();
-  await question.getByRole("button", { name: "Take it" }).click();
-  await expect(front.authority).toHaveText("admin (you)");
-  await expect(other.authority).toHaveText("admin");
-  await expect(other.button("Take over")).toHaveCount(0);
+  await front.button("Take control").click();
+  await question.getByRole("button", { name: "Take control" }).click();
+  await expect(front.control).toHaveText("You are in control");
+  await expect(other.control).toHaveText("admin is in control");
+  await expect(other.button("Take control")).toHaveCount(0);
 });
 
 test("a second engineer watches a move live, and cannot write past the holder", async ({ robot, other }) => {
@@ -79,22 +79,22 @@ test("a second engineer watches a move live, and cannot write past the holder", 
     });
     return Promise.all(asked);
   });
-  for (const answer of answers) expect(answer.slice(1)).toEqual([409, "AUTHORITY"]);
+  for (const answer of answers) expect(answer.slice(1)).toEqual([409, "CONTROL"]);
   await expect(robot.proposal(1)).toContainText(/executing|done/);
   await expect(robot.proposal(2)).toHaveCount(0);
   await robot.axis("Yaw").expectState("DISABLED");
 });
 
-test("a request is withdrawn, and a released authority is free", async ({ robot, other }) => {
+test("a request is withdrawn, and control that was released is free", async ({ robot, other }) => {
   await robot.addUser("ann", "engineer", password);
   await other.logIn("ann", password);
-  await other.button("Request").click();
+  await other.button("Request control").click();
   await expect(robot.button("Hand over to ann")).toBeVisible();
   await other.button("Withdraw request").click();
   await expect(robot.button("Hand over to ann")).toHaveCount(0);
-  await robot.button("Release").click();
-  await expect(other.authority).toHaveText("nobody");
-  await other.requestAuthority();
+  await robot.button("Release control").click();
+  await expect(other.control).toHaveText("Nobody is in control");
+  await other.takeControl();
 });
 
 test("a viewer sees everything and can change nothing", async ({ robot, other }) => {
@@ -103,7 +103,14 @@ test("a viewer sees everything and can change nothing", async ({ robot, other })
   await other.logIn("vic", password);
   await other.axis("Yaw").expectState("DISABLED");
   await expect(other.panel("Motors")).toContainText("You are logged in as viewer");
-  for (const name of ["Enable Yaw", "Set Home Yaw", "Home all", "Zero all", "Request", "Pull E-stop"]) {
+  for (const name of [
+    "Enable Yaw",
+    "Set Home Yaw",
+    "Home all",
+    "Zero all",
+    "Request control",
+    "Pull E-stop",
+  ]) {
     await expect(other.button(name)).toBeDisabled();
   }
   await expect(other.axis("Yaw").row.getByRole("textbox")).toBeDisabled();

@@ -12,7 +12,7 @@ using boost::beast::http::verb;
 using nlohmann::json;
 
 Problem asks_not(std::int64_t session) {
-  return not_found("request of session " + std::to_string(session), "one that /api/authority lists");
+  return not_found("request of session " + std::to_string(session), "one that /api/control lists");
 }
 
 tl::expected<std::uint32_t, Problem> session_of(const Request& request) {
@@ -29,24 +29,24 @@ tl::expected<std::uint32_t, Problem> session_of(const Request& request) {
 
 }  // namespace
 
-AuthorityRoutes::AuthorityRoutes(const Context& context, Router& router) : context_(context) {
-  router.add(verb::get, "/api/authority", viewers,
+MotionControlRoutes::MotionControlRoutes(const Context& context, Router& router) : context_(context) {
+  router.add(verb::get, "/api/control", viewers,
              [this](const Call& call) -> Answering { co_return shown(call); });
-  router.add(verb::post, "/api/authority/request", engineers,
+  router.add(verb::post, "/api/control/request", engineers,
              [this](const Call& call) { return request(call); });
-  router.add(verb::post, "/api/authority/release", engineers,
+  router.add(verb::post, "/api/control/release", engineers,
              [this](const Call& call) -> Answering { co_return release(call); });
-  router.add(verb::post, "/api/authority/hand-over", holder,
+  router.add(verb::post, "/api/control/hand-over", holder,
              [this](const Call& call) { return hand_over(call); });
-  router.add(verb::post, "/api/authority/take-over", admins,
+  router.add(verb::post, "/api/control/take-over", admins,
              [this](const Call& call) { return take_over(call); });
 }
 
-Success AuthorityRoutes::shown(const Call& call, Status status) const {
-  return {status, context_.authority.shown_to(call.caller.session)};
+Success MotionControlRoutes::shown(const Call& call, Status status) const {
+  return {status, context_.motion_control.shown_to(call.caller.session)};
 }
 
-tl::expected<void, Problem> AuthorityRoutes::need_robot() const {
+tl::expected<void, Problem> MotionControlRoutes::need_robot() const {
   if (context_.view().replay) {
     return fail({.status = Status::conflict,
                  .code = "REPLAY",
@@ -56,68 +56,68 @@ tl::expected<void, Problem> AuthorityRoutes::need_robot() const {
   return {};
 }
 
-boost::asio::awaitable<tl::expected<void, Problem>> AuthorityRoutes::record_then_recheck(
+boost::asio::awaitable<tl::expected<void, Problem>> MotionControlRoutes::record_then_recheck(
     const Call& call, const char* action) const {
   json detail{{"action", action}};
-  return context_.record_then_recheck(call.caller, AuditKind::authority, std::move(detail));
+  return context_.record_then_recheck(call.caller, AuditKind::control, std::move(detail));
 }
 
-Answering AuthorityRoutes::request(const Call& call) const {
-  Authority& authority = context_.authority;
+Answering MotionControlRoutes::request(const Call& call) const {
+  MotionControl& control = context_.motion_control;
   if (const auto robot = need_robot(); !robot) {
     co_return fail(robot.error());
   }
-  if (authority.held_by(call.caller.session)) {
+  if (control.held_by(call.caller.session)) {
     co_return shown(call);
   }
   if (const auto announced = co_await record_then_recheck(call, "request"); !announced) {
     co_return fail(announced.error());
   }
   Claim claim{call.caller.session, call.caller.user, context_.clock()};
-  if (!authority.holder()) {
-    authority.give(std::move(claim));
+  if (!control.holder()) {
+    control.give(std::move(claim));
   } else {
-    authority.request(std::move(claim));
+    control.request(std::move(claim));
   }
-  co_return shown(call, authority.held_by(call.caller.session) ? Status::ok : Status::accepted);
+  co_return shown(call, control.held_by(call.caller.session) ? Status::ok : Status::accepted);
 }
 
-/** Waits for no store: giving up the authority ends motion. */
-Reply AuthorityRoutes::release(const Call& call) const {
+/** Waits for no store: a release of control ends motion. */
+Reply MotionControlRoutes::release(const Call& call) const {
   json detail{{"action", "release"}};
-  context_.store.note(context_.entry(call.caller, AuditKind::authority, std::move(detail)));
-  context_.authority.release(call.caller.session);
+  context_.store.note(context_.entry(call.caller, AuditKind::control, std::move(detail)));
+  context_.motion_control.release(call.caller.session);
   return shown(call);
 }
 
-Answering AuthorityRoutes::hand_over(const Call& call) const {
-  Authority& authority = context_.authority;
+Answering MotionControlRoutes::hand_over(const Call& call) const {
+  MotionControl& control = context_.motion_control;
   const auto session = session_of(call.request);
   if (!session) {
     co_return fail(session.error());
   }
-  if (authority.request_of(*session) == nullptr) {
+  if (control.request_of(*session) == nullptr) {
     co_return fail(asks_not(*session));
   }
   if (const auto announced = co_await record_then_recheck(call, "hand over"); !announced) {
     co_return fail(announced.error());
   }
-  const Claim* const claim = authority.request_of(*session);
+  const Claim* const claim = control.request_of(*session);
   if (claim == nullptr) {
     co_return fail(asks_not(*session));
   }
-  authority.give({claim->session, claim->user, context_.clock()});
+  control.give({claim->session, claim->user, context_.clock()});
   co_return shown(call);
 }
 
-Answering AuthorityRoutes::take_over(const Call& call) const {
+Answering MotionControlRoutes::take_over(const Call& call) const {
   if (const auto robot = need_robot(); !robot) {
     co_return fail(robot.error());
   }
   if (const auto announced = co_await record_then_recheck(call, "take over"); !announced) {
     co_return fail(announced.error());
   }
-  context_.authority.give({call.caller.session, call.caller.user, context_.clock()});
+  context_.motion_control.give({call.caller.session, call.caller.user, context_.clock()});
   co_return shown(call);
 }
 
