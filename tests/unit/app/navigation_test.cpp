@@ -157,10 +157,11 @@ TEST_F(NavigationTest, AProgramCannotRenewARegistrationThatHasExpired) {
   become_controller();
   EXPECT_EQ(ask("START_UP"), "START_UP 1");
   request("CALIBRATION");
-  const auto calibrate = [this](float x_mm) {
+  auto calibrate = [this, id = 0](float x_mm) mutable {
     igtl::Matrix pose = igtl::Transform{}.matrix;
     pose[3] = x_mm;
-    EXPECT_TRUE(program_->send("CLB_1", igtl::Transform{pose}, soon()).has_value());
+    const std::string name = "CLB_" + std::to_string(++id);
+    EXPECT_TRUE(program_->send(name, igtl::Transform{pose}, soon()).has_value());
     return next_answer();
   };
   const auto state = [this] { return json::parse(get("/api/targeting").body)["registration_state"]; };

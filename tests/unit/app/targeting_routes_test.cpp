@@ -86,11 +86,9 @@ TEST_F(TargetingRoutesTest, AnExpiryIsKeptWithItsReasonAndWhoSetItAgain) {
 
 TEST_F(TargetingRoutesTest, AnotherHomeOfAnAxisExpiresItWithoutAQuestion) {
   ControlView view = test::ready_view();
-  show(view);
   set("registration", {{"registration", quarter_turn}});
-  view.snapshot.state.axis[test::yaw].position_counts += 40;
-  show(view);
   while (targeting()["registration_state"] == "valid") {
+    view.snapshot.state.axis[test::yaw].position_counts += 40;
     show(view);
   }
   EXPECT_EQ(targeting()["registration_problem"], "The registration has expired: Yaw was given another home.");
