@@ -21,7 +21,7 @@ from controllers import (
     ticks_around,
 )
 from interface import judge
-from motion import is_driven, propose, to_motion, wait_for_proposal, wait_until
+from motion import is_driven, propose, register, to_motion, wait_for_proposal, wait_until
 from navigator import OK, Navigator, text
 from stack import Stack
 
@@ -155,8 +155,14 @@ def test_send_shows_the_answer_and_listen_what_the_robot_tells(stack: StackFacto
     assert refused.returncode == 1
     assert (json.loads(refused.stdout)["code"], json.loads(refused.stdout)["error"]) == (5, "CONTROL")
     assert "observer" in refused.stderr
-    asked = igtl(robot, "send", "get", "scanner_to_robot_reg", "TRANSFORM", "--json")
-    assert json.loads(asked.stdout)["matrix"] == [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
+
+    def asked() -> dict:
+        return json.loads(igtl(robot, "send", "get", "scanner_to_robot_reg", "TRANSFORM", "--json").stdout)
+
+    assert asked()["code"] == 4, "no registration is set"
+    register(robot)
+    wait_until("it is known", lambda: "matrix" in asked())
+    assert asked()["matrix"] == [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
     heard = igtl(robot, "listen", "--name", "mode", "--count", "1", "--wait", "5")
     assert (heard.returncode, heard.stdout) == (0, "mode STRING manual\n")
     point = igtl(robot, "send", "point", "TARGET_POINT", "1", "2", "3")

@@ -9,7 +9,7 @@ import pytest
 from conftest import RobotFile, StackFactory
 from controllers import connections, make_controller
 from library_navigator import Library, Tracking
-from motion import enable, home_all, press, unlock, wait_for_mode, wait_until
+from motion import enable, home_all, press, register, unlock, wait_for_mode, wait_until
 from navigation_phases import ENTRY, TARGET, Phases, aimed, approve, short, to_targeting
 from navigator import OK, Poses, Query, Rows, Status, text, transform
 from stack import Stack
@@ -94,6 +94,7 @@ def reach(robot: Stack, navigator: Phases) -> None:
 
 def test_the_exchange_of_the_thesis(meet: Meeting) -> None:
     robot, program = meet("thesis")
+    register(robot)
     for name in ("scanner_to_robot_reg", "measured_cp", "measured_jp", "mode", "treatment_to_tip"):
         program.receive(name)
     set_up(robot, program)
