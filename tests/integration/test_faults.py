@@ -38,8 +38,8 @@ STOPS_WITHIN_TICKS = 2000
 LONG_AFTER_TICKS = 600
 # After that the door takes what it finds for older than what it finds later.
 SEEN_WITHIN_S = 0.3
-# Too far to arrive before the STOP.
-MOVE = {"slot": LATERAL, "target_counts": -20000}
+# Too slow to arrive before the STOP.
+MOVE = {"slot": LATERAL, "target_counts": -2000, "drive": 4752}
 SPARE_DESCRIPTORS = 12
 # More than the log's queue holds, and a pipe besides.
 UNREAD_LINES = 4096 + 2000

@@ -25,7 +25,8 @@ TEST(RobotFile, neuro_reads_as_written) {
   EXPECT_EQ(robot.period_us, 1000u);
   EXPECT_EQ(robot.pedal, (Pedal{2, 10, 50}));
   EXPECT_THAT(robot.modes, ElementsAre("manual", "home", "coordinated", "trajectory", "draping", "ablation"));
-  EXPECT_THAT(robot.draping, ElementsAre(AxisCounts{7, -3543}, AxisCounts{2, 358}, AxisCounts{0, -597}));
+  EXPECT_THAT(robot.draping,
+              ElementsAre(AxisCounts{6, 0}, AxisCounts{7, -3543}, AxisCounts{2, 358}, AxisCounts{0, -597}));
   EXPECT_EQ(robot.find("yaw")->motion, (MotionRates{600.0, 6000.0, 120000.0, 40}));
   EXPECT_FALSE(robot.auto_approve);
   EXPECT_EQ(robot.loop, (LoopLimits{100, 100, 20, 5, 3, 3}));
