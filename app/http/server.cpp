@@ -64,7 +64,8 @@ bool only_ends(const Request& request) {
   const bool removes = request.method() == http::verb::delete_;
   return path.ends_with("/disable") || path.ends_with("/abort") || path.ends_with("/reject") ||
          path == "/api/logout" || path == "/api/control/release" ||
-         path == "/api/communications/disconnect" || (removes && path.starts_with("/api/sessions/")) ||
+         path == "/api/targeting/registration/expire" || path == "/api/communications/disconnect" ||
+         (removes && path.starts_with("/api/sessions/")) ||
          (removes && path.starts_with("/api/communications/")) || ends_by_body(path, request.body());
 }
 

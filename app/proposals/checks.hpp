@@ -53,9 +53,6 @@ Refusal verdict_refusal(std::uint32_t verdict, const std::string& where, const s
 /** States of axes by slot, with the positions from which a motion is to begin. */
 using AxisStates = std::array<ilk_axis_t, ILK_SLOTS>;
 
-/** Whether positions of an axis still mean the same place: its counter and its position went the same way. */
-bool keeps_reference(const ilk_axis_config_t& rules, const ilk_axis_t& then, const ilk_axis_t& now) noexcept;
-
 /** As the kernel reported them. */
 AxisStates states_of(const ControlView& view);
 

@@ -19,14 +19,15 @@ Refusal overloaded(const std::string& next_step) {
   return {"OVERLOADED", "The control thread takes no more commands now.", "", next_step};
 }
 
-}  // namespace
-
-bool keeps_reference(const ilk_axis_config_t& rules, const ilk_axis_t& then, const ilk_axis_t& now) noexcept {
+/** Whether positions of an axis still mean the same place: its counter and its position went the same way. */
+bool keeps_reference(const ilk_axis_config_t& rules, const ilk_axis_t& then, const ilk_axis_t& now) {
   const std::uint32_t counted = now.raw - then.raw;
   const std::uint32_t moved =
       static_cast<std::uint32_t>(now.position_counts) - static_cast<std::uint32_t>(then.position_counts);
   return moved == (rules.direction_correction != 0 ? 0u - counted : counted);
 }
+
+}  // namespace
 
 MotionRegistry::MotionRegistry(const Robot& robot, const ilk_config_t& config, Send send, Clock clock)
     : robot_(robot), config_(config), send_(std::move(send)), clock_(std::move(clock)) {}

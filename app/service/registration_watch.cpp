@@ -1,9 +1,8 @@
 #include "service/registration_watch.hpp"
 
+#include <cstdint>
 #include <cstdlib>
 #include <utility>
-
-#include "proposals/checks.hpp"
 
 namespace interlock {
 
@@ -26,22 +25,32 @@ std::string RegistrationWatch::see(const ControlView& view) {
   return reasons;
 }
 
+/** Many small differences of homing count together: each is compared with the first home. */
 std::string RegistrationWatch::look(Watched& watched, const ilk_axis_t& now) const {
   const ilk_axis_config_t& rules = config_.axis[watched.axis->slot];
-  const ilk_axis_t then = std::exchange(watched.last, now);
+  const std::uint32_t before = std::exchange(watched.homed, now.homed);
   if (now.homed == ILK_HOMED_NOT) {
     const bool is_homing = now.state == ILK_AXIS_HOMING;
-    watched.is_rehomed = watched.is_rehomed || (then.homed != ILK_HOMED_NOT && is_homing);
-    const bool is_lost = then.homed != ILK_HOMED_NOT && !is_homing;
+    watched.is_rehomed = watched.is_rehomed || (before != ILK_HOMED_NOT && is_homing);
+    const bool is_lost = before != ILK_HOMED_NOT && !is_homing;
     return is_lost ? watched.axis->title + " lost its home." : "";
   }
-  if (then.homed == ILK_HOMED_NOT) {
-    const bool is_rehomed = std::exchange(watched.is_rehomed, false);
-    const std::uint32_t difference = static_cast<std::uint32_t>(std::abs(now.home_difference_counts));
-    const bool is_there = now.homed == ILK_HOMED_BY_SWITCH && difference <= rules.home_tolerance_counts;
-    return is_rehomed && !is_there ? watched.axis->title + " was homed at another place." : "";
+  const auto position = static_cast<std::uint32_t>(now.position_counts);
+  const std::uint32_t origin = rules.direction_correction != 0 ? now.raw + position : now.raw - position;
+  const std::uint32_t last = std::exchange(watched.last_origin, origin);
+  if (before != ILK_HOMED_NOT && origin == last) {
+    return "";
   }
-  return keeps_reference(rules, then, now) ? "" : watched.axis->title + " was given another home.";
+  const bool is_rehomed = std::exchange(watched.is_rehomed, false);
+  const std::int64_t shift = static_cast<std::int32_t>(origin - watched.origin);
+  const bool is_there = now.homed == ILK_HOMED_BY_SWITCH && std::abs(shift) <= rules.home_tolerance_counts;
+  if (before == ILK_HOMED_NOT && is_rehomed && is_there) {
+    return "";
+  }
+  watched.origin = origin;
+  return before != ILK_HOMED_NOT ? watched.axis->title + " was given another home."
+         : is_rehomed            ? watched.axis->title + " was homed at another place."
+                                 : "";
 }
 
 }  // namespace interlock

@@ -97,6 +97,22 @@ std::optional<RowMajor> read_pose(Fields& fields, const std::string& name) {
   return pose;
 }
 
+/** Of a list in the store. */
+std::vector<RowMajor> read_poses(Fields& fields, const std::string& name) {
+  std::vector<RowMajor> poses;
+  const json* list = fields.value(name);
+  for (std::size_t i = 0; list != nullptr && i < list->size(); ++i) {
+    const json one{{"pose", list->is_array() ? (*list)[i] : json()}};
+    Fields each(one, {"pose"});
+    if (const auto pose = read_pose(each, "pose"); pose && !each.problem()) {
+      poses.push_back(*pose);
+    } else {
+      fields.reject(name + "[" + std::to_string(i) + "]", "is no pose", "a rigid pose");
+    }
+  }
+  return poses;
+}
+
 std::optional<Point> read_point(Fields& fields, const std::string& name) {
   const auto numbers = fields.numbers(name, std::tuple_size_v<Point>);
   if (!numbers) {
@@ -146,6 +162,19 @@ json without_nulls(const json& stored) {
 
 }  // namespace
 
+bool is_same_registration(const RowMajor& one, const RowMajor& other, bool ignores_rotation) {
+  constexpr double within_mm = 0.1;
+  constexpr double within_turn = 2e-3;
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    const bool is_origin = i % 4 == 3;
+    if ((is_origin || !ignores_rotation) &&
+        std::abs(one[i] - other[i]) > (is_origin ? within_mm : within_turn)) {
+      return false;
+    }
+  }
+  return true;
+}
+
 Targeting judged(Targeting targeting, const RegistrationEpoch& epoch) {
   const bool is_past = targeting.registration_epoch == 0 || targeting.registration_epoch != epoch.number;
   const std::string& reason =
@@ -164,6 +193,7 @@ json to_json(const Targeting& targeting) {
   body["registration_problem"] = is_valid ? json() : json(targeting.registration_problem);
   body.erase("registration_epoch");
   body.erase("registration_expired");
+  body.erase("registrations_before");
   return body;
 }
 
@@ -171,6 +201,7 @@ json to_stored(const Targeting& targeting) {
   json body{{"registration", or_null(targeting.registration)},
             {"registration_epoch", targeting.registration_epoch},
             {"registration_expired", targeting.registration_expired},
+            {"registrations_before", targeting.registrations_before},
             {"ignore_registration_rotation", targeting.ignore_registration_rotation},
             {"entry_point", or_null(targeting.entry_point)},
             {"target_point", or_null(targeting.target_point)},
@@ -184,15 +215,16 @@ json to_stored(const Targeting& targeting) {
 tl::expected<Targeting, Problem> stored_targeting(const json& stored) {
   const json values = stored.is_object() ? without_nulls(stored) : stored;
   Targeting targeting;
-  Fields fields(
-      values,
-      {"registration", "registration_epoch", "registration_expired", "ignore_registration_rotation",
-       "entry_point", "target_point", "reported_position", "treatment_to_tip_offset", "robot_to_entry_offset",
-       "cannula_to_treatment_offset", "canula_to_treatment_offset", "treatment_to_robot_at_home"},
-      "targeting");
+  Fields fields(values,
+                {"registration", "registration_epoch", "registration_expired", "registrations_before",
+                 "ignore_registration_rotation", "entry_point", "target_point", "reported_position",
+                 "treatment_to_tip_offset", "robot_to_entry_offset", "cannula_to_treatment_offset",
+                 "canula_to_treatment_offset", "treatment_to_robot_at_home"},
+                "targeting");
   targeting.registration = read_pose(fields, "registration");
   targeting.registration_epoch = fields.integer("registration_epoch", 0, latest_epoch).value_or(0);
   targeting.registration_expired = fields.text("registration_expired").value_or("");
+  targeting.registrations_before = read_poses(fields, "registrations_before");
   targeting.ignore_registration_rotation = fields.boolean("ignore_registration_rotation").value_or(false);
   targeting.entry_point = read_point(fields, "entry_point");
   targeting.target_point = read_point(fields, "target_point");
@@ -204,7 +236,17 @@ tl::expected<Targeting, Problem> stored_targeting(const json& stored) {
 tl::expected<Targeting, Problem> with_registration(Targeting targeting, const json& body) {
   Fields fields(body, {"registration", "ignore_registration_rotation"});
   fields.require({{"registration", "16 numbers, row-major"}});
+  const std::optional<RowMajor> before = targeting.registration;
   targeting.registration = read_pose(fields, "registration");
+  std::vector<RowMajor>& expired = targeting.registrations_before;
+  if (before && !targeting.registration_problem.empty()) {
+    expired.push_back(*before);
+  }
+  std::erase_if(expired, [&](const RowMajor& each) {
+    return targeting.registration && is_same_registration(each, *targeting.registration, false);
+  });
+  expired.erase(expired.begin(), expired.end() - static_cast<std::ptrdiff_t>(
+                                                     std::min(expired.size(), most_registrations_before)));
   targeting.registration_epoch = targeting.present_epoch;
   targeting.registration_expired.clear();
   targeting.ignore_registration_rotation =

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "service/reply.hpp"
 #include "store/audit.hpp"
@@ -29,6 +30,9 @@ constexpr double largest_offset_mm = 1000.0;
 /** How far the elements of R^T R may be from those of the identity, and its determinant from 1. */
 constexpr double entered_rigidity = 1e-3;
 
+/** Expired registrations that are remembered, the newest. */
+constexpr std::size_t most_registrations_before = 20;
+
 /** Largest number of an epoch: JSON carries it exactly. */
 constexpr std::int64_t latest_epoch = (std::int64_t{1} << 53) - 1;
 
@@ -43,8 +47,9 @@ struct RegistrationEpoch {
 struct Targeting {
   std::optional<RowMajor> registration; /**< the robot in the scanner; empty: nobody has ever set it */
   bool ignore_registration_rotation = false;
-  std::int64_t registration_epoch = 0; /**< in which it was set */
-  std::string registration_expired;    /**< why, where that is kept; empty: it has not */
+  std::int64_t registration_epoch = 0;        /**< in which it was set */
+  std::string registration_expired;           /**< why, where that is kept; empty: it has not */
+  std::vector<RowMajor> registrations_before; /**< that have expired and were replaced, the newest last */
   /** Why no pose may be made with it; empty: it is valid. Not kept: `judge` finds it anew. */
   std::string registration_problem = "The registration is not set.";
   std::int64_t present_epoch = 0; /**< in which it was judged; not kept */
@@ -58,6 +63,10 @@ struct Targeting {
 
   bool operator==(const Targeting&) const = default;
 };
+
+/** Whether both put the robot at the same place, to 0.1 mm and 0.1 degrees: a program that repeats what it
+ * has may round it. */
+bool is_same_registration(const RowMajor& one, const RowMajor& other, bool ignores_rotation);
 
 /** The same with what is true of its registration in that epoch. */
 Targeting judged(Targeting targeting, const RegistrationEpoch& epoch);

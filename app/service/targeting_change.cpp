@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "service/reply.hpp"
 #include "service/targeting_store.hpp"
 
@@ -12,18 +14,35 @@ struct Changed {
   bool leads_elsewhere = false; /**< than before: what followed from it is stale */
 };
 
-/** Only a person can know that it still holds. */
+/** Whether it is one that has expired, the present one or one before it: only a person can know that it
+ * holds. */
 bool is_repeated(const Targeting& before, const Targeting& after) {
-  return after.registration_epoch != before.registration_epoch && after.registration == before.registration &&
-         !before.registration_problem.empty();
+  if (after.registration_epoch == before.registration_epoch && after.registration == before.registration) {
+    return false;
+  }
+  const auto is_it = [&](const RowMajor& expired) {
+    return after.registration &&
+           is_same_registration(expired, *after.registration, after.ignore_registration_rotation);
+  };
+  const bool is_expired = before.registration && !before.registration_problem.empty();
+  return (is_expired && is_it(*before.registration)) ||
+         std::ranges::any_of(before.registrations_before, is_it);
 }
 
 Problem repeated(const Targeting& before) {
   return {.status = Status::conflict,
           .code = "NO_REGISTRATION",
-          .detail = "It is the registration that has expired. " + before.registration_problem,
+          .detail = "It is a registration that has expired. " + before.registration_problem,
           .expected = "a new registration",
           .next_step = "Register anew, or set it in the console if it still holds."};
+}
+
+Problem overtaken(const std::string& problem) {
+  return {.status = Status::conflict,
+          .code = "NO_REGISTRATION",
+          .detail = "It expired while it was set. " + problem,
+          .expected = "a registration of now",
+          .next_step = "Look whether it still holds, and set it again."};
 }
 
 /** A pose that an imager reports moves nothing. */
@@ -90,8 +109,14 @@ boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const 
   if (changed->leads_elsewhere) {
     context.registry.end_stale(caller.user);
   }
-  co_return changed->targeting.map(
-      [&](const Targeting& targeting) { return judged(targeting, context.registration_epoch); });
+  if (!changed->targeting) {
+    co_return fail(changed->targeting.error());
+  }
+  Targeting kept = judged(*changed->targeting, context.registration_epoch);
+  if (make == with_registration && !kept.registration_problem.empty()) {
+    co_return fail(overtaken(kept.registration_problem));
+  }
+  co_return kept;
 }
 
 boost::asio::awaitable<tl::expected<Targeting, Problem>> expire_registration(const Context& context,

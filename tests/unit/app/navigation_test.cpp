@@ -170,8 +170,13 @@ TEST_F(NavigationTest, AProgramCannotRenewARegistrationThatHasExpired) {
   ASSERT_EQ(post("/api/targeting/registration/expire", "{}").status, 200u);
   EXPECT_NE(calibrate(5.0f), "CALIBRATION 1");
   EXPECT_EQ(state(), "expired");
+  EXPECT_NE(calibrate(5.01f), "CALIBRATION 1") << "rounded";
+  EXPECT_EQ(state(), "expired");
   EXPECT_EQ(calibrate(6.0f), "CALIBRATION 1") << "a new one";
   EXPECT_EQ(state(), "valid");
+  EXPECT_NE(calibrate(5.0f), "CALIBRATION 1") << "the one before has still expired";
+  register_robot();
+  EXPECT_EQ(calibrate(6.0f), "CALIBRATION 1") << "nobody said that it does not hold";
 }
 
 TEST_F(NavigationTest, AStopThatNoKernelConfirmsIsNotSaidToBeDone) {

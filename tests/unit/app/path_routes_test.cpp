@@ -212,7 +212,7 @@ TEST_F(PathRoutesTest, DrapingGoesToTheSetpointsOfTheFile) {
   ASSERT_EQ(put("/api/mode", R"({"mode":"draping"})").status, 200u);
   const json made = proposal(1);
   EXPECT_EQ(made["mode"], "draping");
-  EXPECT_EQ(made["axes"], json({"yaw", "pitch", "head"}));
+  EXPECT_EQ(made["axes"], json({"yaw", "pitch", "head", "feet"}));
   EXPECT_EQ(put("/api/mode", R"({"mode":"manual"})").status, 200u);
   EXPECT_EQ(proposal(1)["state"], "aborted");
 }

@@ -16,6 +16,12 @@ class RegistrationWatchTest : public testing::Test {
 
   std::string see() { return watch_.see(view_); }
 
+  void begin_homing() {
+    yaw_.homed = ILK_HOMED_NOT;
+    yaw_.state = ILK_AXIS_HOMING;
+    EXPECT_EQ(see(), "");
+  }
+
   /** As a hand or a motor moves it. */
   void move(std::int32_t counts) {
     const bool is_corrected = test::neuro_config().axis[test::yaw].direction_correction != 0;
@@ -53,29 +59,37 @@ TEST_F(RegistrationWatchTest, SeveralAxesAreNamed) {
 }
 
 TEST_F(RegistrationWatchTest, HomingExpiresNothingWhenItFindsTheSwitchWhereItWas) {
-  yaw_.homed = ILK_HOMED_NOT;
-  yaw_.state = ILK_AXIS_HOMING;
-  EXPECT_EQ(see(), "");
+  begin_homing();
   yaw_.state = ILK_AXIS_ENABLED;
   EXPECT_EQ(see(), "") << "the pedal was released meanwhile";
   move(700);
   yaw_.homed = ILK_HOMED_BY_SWITCH;
-  yaw_.home_difference_counts = -2;
-  yaw_.position_counts = 0;
+  yaw_.position_counts -= 2;
   EXPECT_EQ(see(), "");
 }
 
-TEST_F(RegistrationWatchTest, HomingAtAnotherPlaceDoes) {
-  for (const auto& [homed, difference] :
-       {std::pair{ILK_HOMED_BY_SWITCH, 500}, std::pair{ILK_HOMED_BY_HAND, 0}}) {
-    yaw_.homed = ILK_HOMED_NOT;
-    yaw_.state = ILK_AXIS_HOMING;
-    EXPECT_EQ(see(), "");
+TEST_F(RegistrationWatchTest, HomingAtAnotherPlaceDoesWhateverTheKernelMeasured) {
+  for (const auto& [homed, shift] : {std::pair{ILK_HOMED_BY_SWITCH, 500}, std::pair{ILK_HOMED_BY_HAND, 1}}) {
+    begin_homing();
     yaw_.homed = static_cast<std::uint32_t>(homed);
-    yaw_.home_difference_counts = difference;
+    yaw_.position_counts += shift;
     EXPECT_EQ(see(), "Yaw was homed at another place.");
     EXPECT_EQ(see(), "");
   }
+}
+
+TEST_F(RegistrationWatchTest, SmallDifferencesCountTogether) {
+  const auto tolerance = test::neuro_config().axis[test::yaw].home_tolerance_counts;
+  for (std::uint32_t shift = 1; shift <= tolerance; ++shift) {
+    begin_homing();
+    yaw_.homed = ILK_HOMED_BY_SWITCH;
+    yaw_.position_counts += 1;
+    EXPECT_EQ(see(), "") << shift;
+  }
+  begin_homing();
+  yaw_.homed = ILK_HOMED_BY_SWITCH;
+  yaw_.position_counts += 1;
+  EXPECT_EQ(see(), "Yaw was homed at another place.");
 }
 
 TEST_F(RegistrationWatchTest, AnotherStartOfTheKernelLosesEveryHome) {
