@@ -106,6 +106,7 @@ test("the page of the target, with something wrong, something newer, and what it
       [`/api/targeting/${what}`, JSON.stringify(body)] as const,
     );
   await put("target", { entry_point: [8, 250, 70], target_point: [60, 200, 60] });
+  await put("registration", { registration: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] });
   await robot.open("Targeting");
   await expect(robot.panel("Alignment")).toContainText("clamped");
   const form = page.getByRole("form", { name: "Registration" });
