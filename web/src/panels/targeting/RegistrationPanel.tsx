@@ -81,7 +81,6 @@ export function RegistrationPanel({ targeting, history, asked, onSet }: Registra
       tools={
         <>
           <FrameLabel />
-          <Expiry isValid={isValid} onExpired={onSet} />
           <LoadPose off={reason} onFile={(file) => void readFile(file, readFrom)} />
         </>
       }
@@ -123,6 +122,9 @@ export function RegistrationPanel({ targeting, history, asked, onSet }: Registra
           />
           Use its origin alone, as if the robot stood straight in the scanner
         </label>
+        <span>
+          <Expiry isValid={isValid} onExpired={onSet} />
+        </span>
         {hasNews(draft) && (
           <News
             arrived={`a registration with its origin at ${arrivedOrigin(draft)}`}
