@@ -67,8 +67,8 @@ class Api {
   /** Follows the control thread's notices; ends with the io_context. */
   boost::asio::awaitable<void> listen() { return control_.listen(); }
 
-  /** Sends the state to the stream 30 times a second and looks after the bench pedal and who is in control;
-   * ends with the io_context. */
+  /** Sends the state to the stream 30 times a second, and checks the bench pedal, the registration and who is
+   * in control; ends with the io_context. */
   boost::asio::awaitable<void> broadcast();
 
   /** Ends sessions that are over, logs how often the last line came again, and records STOPs that were

@@ -50,7 +50,7 @@ struct Targeting {
   std::int64_t registration_epoch = 0;        /**< in which it was set */
   std::string registration_expired;           /**< why, where that is kept; empty: it has not */
   std::vector<RowMajor> registrations_before; /**< that have expired and were replaced, the newest last */
-  /** Why no pose may be made with it; empty: it is valid. Not kept: `judge` finds it anew. */
+  /** Why no pose may be made with it; empty: it is valid. Not kept: `judged` finds it anew. */
   std::string registration_problem = "The registration is not set.";
   std::int64_t present_epoch = 0; /**< in which it was judged; not kept */
   std::optional<Point> entry_point;
