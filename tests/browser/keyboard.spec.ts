@@ -74,7 +74,7 @@ test("keys alone find a code, add a user, read the audit and change a password",
   await expect(change.getByRole("status")).toHaveText("The password is changed.");
 });
 
-test("keys alone set a target, capture ticks, reject a proposal and turn the picture", async ({
+test("keys alone set a registration and a target, capture ticks, reject a proposal and turn the picture", async ({
   robot,
   page,
 }) => {
@@ -88,7 +88,12 @@ test("keys alone set a target, capture ticks, reject a proposal and turn the pic
     await expect(robot.panel(panel)).toBeVisible();
   };
   await open("Targeting", "Entry, target and probe");
+  const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0];
+  const cells = ["R", "A", "S"].flatMap((row) =>
+    ["x", "y", "z", "origin"].map((column) => `${row} ${column}`),
+  );
   for (const [of, text] of [
+    ...cells.map((cell, place) => [`Registration ${cell}`, `${identity[place]}`] as const),
     ["Entry R", "8"],
     ["Entry A", "250"],
     ["Entry S", "70"],
@@ -96,6 +101,7 @@ test("keys alone set a target, capture ticks, reject a proposal and turn the pic
     ["Target A", "200"],
     ["Target S", "60"],
   ] as const) {
+    if (of === "Entry R") await keyboard.press(robot.button("Set registration"));
     await keyboard.reach(page.getByRole("textbox", { name: `${of}, scanner RAS, mm` }));
     await page.keyboard.press("Control+A");
     await page.keyboard.type(text);

@@ -7,7 +7,6 @@ again.
 
 import contextlib
 import http.client
-import json
 import os
 import re
 import resource
@@ -249,6 +248,8 @@ class Row:
     """Done with the state directory before the robot starts."""
     before: Callable[[Stack], None] = lambda robot: None
     """Done with the robot before it moves."""
+    may_hang_up: bool = False
+    """The app may close a connection before it reads the request on it."""
 
 
 TABLE = {
@@ -262,7 +263,7 @@ TABLE = {
     "250 readers of the largest asset": Row(readers_250_of_the_largest_asset),
     "400 slow bodies": Row(slow_bodies_400),
     "flood of STOPs": Row(flood_of_stops),
-    "no descriptor left": Row(no_descriptor_is_left),
+    "no descriptor left": Row(no_descriptor_is_left, may_hang_up=True),
 }
 NEEDS_ROOT = {"state disk frozen"}
 
@@ -338,12 +339,21 @@ def stops_recorded(robot: Stack) -> int:
     return sum(1 + each["detail"].get("unrecorded", 0) for each in records if each["kind"] == "stop")
 
 
-def ask_for_a_move(robot: Stack) -> http.client.HTTPConnection:
-    """The request is on its way when this returns."""
-    connection = http.client.HTTPConnection("127.0.0.1", robot.port, timeout=DEADLINE_S)
-    cookies = "; ".join(f"{name}={value}" for name, value in robot.api.cookies.items())
-    connection.request("POST", "/api/proposals", json.dumps(MOVE), {"Cookie": cookies})
-    return connection
+def ask_for_a_move(robot: Stack) -> http.client.HTTPResponse:
+    """The request is on its way when this returns; the answer is there to be read."""
+    request = robot.api.build_request("POST", "/api/proposals", json=MOVE)
+    head = "".join(f"{name}: {value}\r\n" for name, value in request.headers.items())
+    with socket.create_connection(("127.0.0.1", robot.port), timeout=DEADLINE_S) as connection:
+        connection.sendall(f"POST /api/proposals HTTP/1.1\r\n{head}\r\n".encode() + request.content)
+        return http.client.HTTPResponse(connection)
+
+
+def status_of(late: http.client.HTTPResponse) -> int | None:
+    """None when the app closed the connection."""
+    with contextlib.closing(late), contextlib.suppress(http.client.RemoteDisconnected, ConnectionError):
+        late.begin()
+        return late.status
+    return None
 
 
 def test_a_held_jog_ends_nothing_late_comes_into_force_and_the_robot_moves_again(
@@ -368,7 +378,7 @@ def test_a_held_jog_ends_nothing_late_comes_into_force_and_the_robot_moves_again
                 ends_at = plant_tick(robot)
                 assert last_drive(robot) <= ends_at
         stopping.result()
-        assert late.getresponse().status in {201, 409, 503}
+        assert status_of(late) in ({201, 409, 503, None} if row.may_hang_up else {201, 409, 503})
         wait_for_ticks(robot, LONG_AFTER_TICKS)
         assert last_drive(robot) <= ends_at
         wait_until("served again", lambda: robot.status()["app_alive"])

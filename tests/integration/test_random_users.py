@@ -33,16 +33,17 @@ LEFT_OUT = {
     "addUser",
     "setLogLevel",
 }
-OFTEN = {
-    "createProposal",
-    "approveProposal",
-    "abortProposal",
-    "rejectProposal",
-    "beginJog",
-    "renewJog",
-    "actOnMotor",
-}
+BEGIN = {"createProposal", "beginJog"}
+OFTEN = BEGIN | {"approveProposal", "abortProposal", "rejectProposal", "renewJog", "actOnMotor"}
 FIRST_IDS = 40
+READY = {
+    "control/request": None,
+    "control/take-over": None,
+    "reset": None,
+    f"motors/{LATERAL}/set-home": {"override_switch": True},
+    f"motors/{LATERAL}/enable": None,
+}
+"""What a person does before a motion."""
 
 
 @dataclass
@@ -112,6 +113,9 @@ class Caller:
         if operation["operationId"] == "createProposal" and self.draw.random() < 0.7:
             content = {"json": {"slot": LATERAL, "target_counts": self.draw.randint(-3000, -10)}}
         with suppress(httpx.TransportError):  # the app was killed or frozen meanwhile
+            if operation["operationId"] in BEGIN and self.draw.random() < 0.3:
+                for step, settings in READY.items():
+                    self.client.post(f"/api/{step}", json=settings)
             answer = self.client.request(method, target, **content)
             assert answer.status_code != 500, answer.text
             try:
@@ -141,8 +145,8 @@ def disturb(robot: Stack, holder: httpx.Client, draw: random.Random) -> None:
         robot.visitor().post("/api/stop")
     elif what == "unlock":
         robot.control("pedal", pressed=False)
-        for step in ("control/request", "control/take-over", "reset", f"motors/{LATERAL}/enable"):
-            holder.post(f"/api/{step}")
+        for step, settings in READY.items():
+            holder.post(f"/api/{step}", json=settings)
         robot.control("pedal", pressed=True)
     elif what == "freeze":
         with frozen(robot.pid("app"), draw.choice(["network", "door", "control"])):
