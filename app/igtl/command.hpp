@@ -77,13 +77,10 @@ struct StartUp {};
  */
 struct SetTargetPose {
   Matrix scanner_from_target;
-  bool takes_reachable = false; /**< when it is out of reach: the nearest that can be had */
 };
 
 /** Aligns the probe with entry and target, then inserts it. */
-struct MoveToTarget {
-  bool takes_reachable = false;
-};
+struct MoveToTarget {};
 
 /** Takes the probe out as far as it goes. */
 struct RetractProbe {};

@@ -189,7 +189,7 @@ void Workphases::enter(Phase desired, Reaction& reaction) {
       } else if (!has_target_) {
         tell(StatusCode::not_ready, "There is no target; send TGT_ in the phase TARGETING.");
       } else {
-        set_goal(Goal::target, MoveToTarget{takes_reachable()}, reaction);
+        set_goal(Goal::target, MoveToTarget{}, reaction);
       }
       break;
     case Phase::manual:
@@ -246,7 +246,7 @@ Reaction Workphases::target(const std::string& id, const Message& message) {
     return refuse(target_name, StatusCode::configuration,
                   message.device + " came as " + type_of(message.body) + "; expected TRANSFORM.");
   }
-  Reaction reaction{{{"ACK_" + id, *matrix}}, SetTargetPose{matrix->matrix, takes_reachable()}};
+  Reaction reaction{{{"ACK_" + id, *matrix}}, SetTargetPose{matrix->matrix}};
   if (!takes_target() || !calibrated_) {
     reaction.command.reset();
     reaction.refused = calibrated_ ? "No target is taken in the phase " + word_of(phase_) + "."
@@ -267,8 +267,8 @@ Reaction Workphases::finish(const std::string& /*device*/, const Command& comman
   if (std::holds_alternative<SetRegistration>(command)) {
     return finish_calibration(outcome);
   }
-  if (const auto* target = std::get_if<SetTargetPose>(&command)) {
-    return finish_target(*target, outcome);
+  if (std::holds_alternative<SetTargetPose>(command)) {
+    return finish_target(outcome);
   }
   if (std::holds_alternative<StartUp>(command)) {
     return settle(Goal::start_up, outcome);
@@ -296,28 +296,27 @@ Reaction Workphases::finish_calibration(const Outcome& outcome) {
   Reaction reaction{{{name, outcome.status}}, std::nullopt};
   if (outcome.status.code == StatusCode::ok) {
     calibrated_ = true;
-    const Outgoings more = after_storing(outcome);
+    const Outgoings more = has_target_ ? after_storing(outcome) : Outgoings{};
     reaction.replies.insert(reaction.replies.end(), more.begin(), more.end());
   }
   return reaction;
 }
 
 /** A target that is refused leaves none: nobody shall go to the one before unawares. */
-Reaction Workphases::finish_target(const SetTargetPose& command, const Outcome& outcome) {
+Reaction Workphases::finish_target(const Outcome& outcome) {
   expected_.erase(target_name);
   has_target_ = outcome.target.has_value();
   Status status = outcome.status;
   status.code = status.code == StatusCode::unreachable ? StatusCode::configuration : status.code;
-  status.sub_code = takes_reachable() ? status.sub_code : 0;
+  status.sub_code = has_sub_codes() ? status.sub_code : 0;
   Reaction reaction{{{target_name, status}}, std::nullopt};
-  if (!has_target_) {
-    return reaction;
+  if (has_target_) {
+    reaction.replies.emplace_back(target_name, Transform{*outcome.target});
   }
-  reaction.replies.emplace_back(target_name, Transform{*outcome.target});
   const Outgoings more = after_storing(outcome);
   reaction.replies.insert(reaction.replies.end(), more.begin(), more.end());
-  if (phase_ == Phase::move_to_target) {
-    set_goal(Goal::target, MoveToTarget{command.takes_reachable}, reaction);
+  if (has_target_ && phase_ == Phase::move_to_target) {
+    set_goal(Goal::target, MoveToTarget{}, reaction);
   }
   return reaction;
 }

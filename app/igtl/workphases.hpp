@@ -48,13 +48,13 @@ class Workphases : public Dialect {
   /** Of TARGETING without a calibration. */
   [[nodiscard]] virtual StatusCode uncalibrated() const noexcept = 0;
 
-  /** Whether a target out of reach is replaced by what can be reached. */
-  [[nodiscard]] virtual bool takes_reachable() const noexcept = 0;
+  /** Whether the STATUS of a target says by a sub-code why it is refused. */
+  [[nodiscard]] virtual bool has_sub_codes() const noexcept = 0;
 
   /** Whether a target may be sent in this phase. */
   [[nodiscard]] virtual bool takes_target() const noexcept = 0;
 
-  /** What follows a calibration or a target that was stored. */
+  /** What follows a calibration that was stored, and a target that was judged. */
   [[nodiscard]] virtual Outgoings after_storing(const Outcome& outcome) const;
 
   /** A message of no common name: refused, unless the dialect knows it. */
@@ -97,7 +97,7 @@ class Workphases : public Dialect {
   Reaction calibrate(const std::string& id, const Message& message);
   Reaction target(const std::string& id, const Message& message);
   Reaction finish_calibration(const Outcome& outcome);
-  Reaction finish_target(const SetTargetPose& command, const Outcome& outcome);
+  Reaction finish_target(const Outcome& outcome);
   [[nodiscard]] Status current_status(StatusCode code, std::string text = {}) const;
   [[nodiscard]] Outgoings known(const RobotState& state) const;
 
@@ -121,21 +121,21 @@ class Brp2013 final : public Workphases {
   [[nodiscard]] std::string forbids(Phase desired, const RobotState& state) const override;
   [[nodiscard]] bool tells_every_entry() const noexcept override { return false; }
   [[nodiscard]] StatusCode uncalibrated() const noexcept override { return StatusCode::not_ready; }
-  [[nodiscard]] bool takes_reachable() const noexcept override { return false; }
+  [[nodiscard]] bool has_sub_codes() const noexcept override { return false; }
   [[nodiscard]] bool takes_target() const noexcept override { return phase() == Phase::targeting; }
 };
 
 /**
  * The dialect of the later prostate robots and their Slicer module (2024): phases follow each other in a
- * fixed order, a target that is out of reach is moved to what can be reached, and the needle has requests of
- * its own. Unlike there, a request that is forbidden is answered.
+ * fixed order, what can be reached is told of each target, and the needle has requests of its own. Unlike
+ * there, a request that is forbidden is answered, and a target that is out of reach is not replaced.
  */
 class Wpi2024 final : public Workphases {
  protected:
   [[nodiscard]] std::string forbids(Phase desired, const RobotState& state) const override;
   [[nodiscard]] bool tells_every_entry() const noexcept override { return true; }
   [[nodiscard]] StatusCode uncalibrated() const noexcept override { return StatusCode::access_denied; }
-  [[nodiscard]] bool takes_reachable() const noexcept override { return true; }
+  [[nodiscard]] bool has_sub_codes() const noexcept override { return true; }
   [[nodiscard]] bool takes_target() const noexcept override {
     return phase() == Phase::targeting || phase() == Phase::move_to_target;
   }

@@ -58,7 +58,7 @@ std::string Wpi2024::forbids(Phase desired, const RobotState& state) const {
 }
 
 Outgoings Wpi2024::after_storing(const Outcome& outcome) const {
-  if (!has_target() || !outcome.reachable) {
+  if (!outcome.reachable) {
     return {};
   }
   return {{"REACHABLE_TARGET", Transform{*outcome.reachable}}};

@@ -67,4 +67,11 @@ RowMajor row_major(const Pose& pose) noexcept {
   return numbers;
 }
 
+Deviation deviation(const Pose& reached, const Pose& desired) noexcept {
+  const Eigen::Vector3d offset = reached.translation() - desired.translation();
+  const Eigen::Vector3d ahead = reached.linear().col(2);
+  const Eigen::Vector3d asked = desired.linear().col(2);
+  return {offset, offset.norm(), std::atan2(ahead.cross(asked).norm(), ahead.dot(asked))};
+}
+
 }  // namespace interlock

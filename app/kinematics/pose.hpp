@@ -38,4 +38,14 @@ KinematicsResult<Pose> pose_from(const RowMajor& numbers, double tolerance = rig
 /** The homogeneous matrix of a pose. */
 RowMajor row_major(const Pose& pose) noexcept;
 
+/** How far a reached pose of the treatment point is from a desired one. */
+struct Deviation {
+  Eigen::Vector3d offset_mm = Eigen::Vector3d::Zero(); /**< reached minus desired, in the poses' frame */
+  double distance_mm = 0.0;
+  double angle_rad = 0.0; /**< between the two ways in which the probe advances, 0 to pi */
+};
+
+/** Of `reached` from `desired`. */
+Deviation deviation(const Pose& reached, const Pose& desired) noexcept;
+
 }  // namespace interlock

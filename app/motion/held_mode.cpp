@@ -17,6 +17,7 @@ void HeldMode::take(const TaskReference& task, std::uint32_t tick) noexcept {
   task_ = task;
   status_ = TaskStatus{task->id, TaskPhase::waiting, TaskReason::none, 0, tick};
   idle_since_ = tick;
+  needs_release_ = false;
   axes_ = prepare(tick);
 }
 
@@ -57,6 +58,7 @@ void HeldMode::report(ControlView& view) const noexcept { view.tasks.of(tasks())
 void HeldMode::judge(const ilk_snapshot_t& snapshot) noexcept {
   const std::uint32_t now = snapshot.state.system.tick;
   const bool held = snapshot.state.system.mode == ILK_MODE_MOTION;
+  needs_release_ = needs_release_ && held;
   if (executes()) {
     if (held) {
       go_on(snapshot);
@@ -66,9 +68,11 @@ void HeldMode::judge(const ilk_snapshot_t& snapshot) noexcept {
     idle_since_ = now;
   } else if (now - idle_since_ > timeout_ticks_) {
     set_phase(TaskPhase::expired, TaskReason::waited_too_long, 0, now);
-  } else if (held) {
+  } else if (held && !needs_release_) {
     set_phase(TaskPhase::executing, TaskReason::none, 0, now);
     begin(snapshot);
+  } else if (status_.phase == TaskPhase::waiting) {
+    status_.reason = needs_release_ ? TaskReason::press_again : TaskReason::none;
   }
 }
 

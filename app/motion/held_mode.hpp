@@ -17,6 +17,7 @@ namespace interlock {
 class HeldMode : public Mode {
  public:
   void take(const TaskReference& task, std::uint32_t tick) noexcept final;
+  void await_press() noexcept final { needs_release_ = true; }
   void end(std::uint32_t task, TaskReason reason, std::uint32_t tick) noexcept final;
   void end_all(TaskReason reason, std::uint32_t tick) noexcept final;
   void end_axis(std::uint32_t slot, TaskReason reason, std::uint32_t tick) noexcept final;
@@ -68,6 +69,7 @@ class HeldMode : public Mode {
   TaskReference task_;
   TaskStatus status_;
   std::uint32_t axes_ = 0;
+  bool needs_release_ = false;   /**< the pedal, before the task begins */
   std::uint32_t idle_since_ = 0; /**< tick since which the task does not execute */
 };
 

@@ -44,6 +44,10 @@ class Mode {
   /** Takes a task of its kind; an open one that is in its way is replaced. */
   virtual void take(const TaskReference& task, std::uint32_t tick) noexcept = 0;
 
+  /** The pedal was held when the newest task was taken: that begins only once it was released and pressed
+   * again. A move of one axis does not wait. */
+  virtual void await_press() noexcept {}
+
   /** Aborts that task, if it is open here. */
   virtual void end(std::uint32_t task, TaskReason reason, std::uint32_t tick) noexcept = 0;
 

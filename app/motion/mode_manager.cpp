@@ -33,6 +33,9 @@ void ModeManager::take(const TaskReference& task, std::uint32_t tick) noexcept {
     return;
   }
   taker->take(task, tick);
+  if (pedal_held_) {
+    taker->await_press();
+  }
   for (const auto& mode : modes_) {
     if (mode.get() == taker || !mode->is_open()) {
       continue;
@@ -72,6 +75,7 @@ KernelRequests ModeManager::tick(const ilk_snapshot_t& snapshot) noexcept {
       end_axis(slot, TaskReason::linkage_strained, snapshot.state.system.tick);
     }
   }
+  pedal_held_ = snapshot.state.system.mode == ILK_MODE_MOTION;
   KernelRequests requests;
   for (const auto& mode : modes_) {
     mode->tick(snapshot, requests);

@@ -22,7 +22,7 @@ class ModeManager {
   ModeManager& operator=(const ModeManager&) = delete;
 
   /** Takes a task, and ends what is open in other modes; but one that yields ends itself when another mode is
-   * open. */
+   * open. A pedal that is held by then starts none but a move of one axis. */
   void take(const TaskReference& task, std::uint32_t tick) noexcept;
 
   /** An image for the open biopsy. */
@@ -60,6 +60,7 @@ class ModeManager {
   /** Homing last: the others give back their leases before it asks for their axes. */
   const Modes modes_;
   LinkageWatch linkages_;
+  bool pedal_held_ = false; /**< in the newest tick */
 };
 
 }  // namespace interlock

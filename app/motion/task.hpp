@@ -119,9 +119,9 @@ class Work {
 
 /** Who thought of a motion. */
 enum class TaskSource : std::uint8_t {
-  console,    /**< somebody who watches the robot: proposing it approves it */
-  file,       /**< a loaded trajectory: somebody has to approve it, unless the robot file says otherwise */
-  openigtlink /**< a navigation program: as a file */
+  console,    /**< a person: proposing a motion of one axis approves it */
+  file,       /**< a loaded trajectory */
+  openigtlink /**< a navigation program */
 };
 
 /** As the interface spells it. */
@@ -129,6 +129,13 @@ constexpr std::string_view source_name(TaskSource source) noexcept {
   constexpr std::string_view names[] = {"console", "file", "openigtlink"};
   return names[static_cast<std::size_t>(source)];
 }
+
+/** What was asked of the treatment point, and what the motion reaches of it; in the scanner's frame (RAS),
+ * mm. */
+struct ReachedAim {
+  Pose desired;
+  Pose reachable;
+};
 
 /** One motion that somebody wants. */
 struct Task {
@@ -138,7 +145,8 @@ struct Task {
   TaskSource source = TaskSource::console;
   /** It follows from registration, probe and target of that revision: stale once these change. */
   std::optional<std::uint32_t> targeting_revision = std::nullopt;
-  std::uint32_t id = 0; /**< from 1; 0: nobody has proposed it yet */
+  std::optional<ReachedAim> aim = std::nullopt; /**< of a motion to a pose */
+  std::uint32_t id = 0;                         /**< from 1; 0: nobody has proposed it yet */
 };
 
 /** By which both threads hold a task. */
@@ -192,7 +200,8 @@ enum class TaskReason : std::uint8_t {
   blocked,         /**< a limit held the axis back for too long; `code` is the gate */
   link_lost,       /**< the kernel went away */
   waited_too_long, /**< not executing for longer than a motion may wait */
-  press_again,     /**< the travel that one press allows is used up: waits for a release and a press */
+  press_again,     /**< waits for a release and a press: the travel that one press allows is used up, or the
+                      pedal was held when the motion was approved */
   not_homed,       /**< a step moves an axis to a position, and the axis is not homed */
   verdict_lost,    /**< the kernel's answer to a HOME got lost */
   control_changed,

@@ -44,7 +44,7 @@ tl::expected<Proposal, Refusal> MotionRegistry::propose(Task task, const Control
   if (const auto checked = check(proposal, view); !checked) {
     return tl::make_unexpected(checked.error());
   }
-  if (approves(proposal.task->source)) {
+  if (approves(proposal)) {
     return approve(proposal, asked);
   }
   become(proposal, ProposalState::checked, "Every check passed. Waits for somebody to approve it.");
@@ -143,9 +143,11 @@ tl::expected<Proposal, Refusal> MotionRegistry::reject(std::uint32_t id, const s
   });
 }
 
-/** Whether such proposals need no click. */
-bool MotionRegistry::approves(TaskSource source) const {
-  return source == TaskSource::console || robot_.auto_approve;
+/** Whether it needs no click of its own: who moves or homes one axis by hand sees what it does. */
+bool MotionRegistry::approves(const Proposal& proposal) const {
+  const bool is_of_one_axis = proposal.slots.size() == 1 &&
+                              (proposal.work<MoveTask>() != nullptr || proposal.work<HomeTask>() != nullptr);
+  return robot_.auto_approve || (is_of_one_axis && proposal.task->source == TaskSource::console);
 }
 
 void MotionRegistry::end_stale(const std::string& by) {

@@ -50,11 +50,11 @@ class MotionRegistry {
   void on_mode_change(ModeListener listener) { mode_listener_ = std::move(listener); }
 
   /**
-   * Checks a task and keeps it. One from the console, or of a robot that approves by itself, is approved, and
-   * every other approved proposal that is in its way is aborted; another one waits for `approve`. A move is
-   * refused with MODE_HOME while homing is open, with MODE_PATH while another mode is; STALE what followed
-   * from targeting that has changed. A refused task stays in the registry; one for a slot without an axis
-   * (AXIS) does not.
+   * Checks a task and keeps it. A move or the homing of one axis from the console, or any of a robot that
+   * approves by itself, is approved, and every other approved proposal that is in its way is aborted; another
+   * one waits for `approve`. A move is refused with MODE_HOME while homing is open, with MODE_PATH while
+   * another mode is; STALE what followed from targeting that has changed. A refused task stays in the
+   * registry; one for a slot without an axis (AXIS) does not.
    *
    * @param asked when its author asked for it: one that is approved is good for `approval_timeout` from then on
    */
@@ -133,7 +133,7 @@ class MotionRegistry {
   [[nodiscard]] std::vector<AxisCounts> headed() const;
   tl::expected<void, Refusal> check(Proposal& proposal, const ControlView& view);
   tl::expected<Proposal*, Refusal> waiting(std::uint32_t id);
-  [[nodiscard]] bool approves(TaskSource source) const;
+  [[nodiscard]] bool approves(const Proposal& proposal) const;
   void forget_one();
   void replace_open(const Proposal& by);
   Refusal refuse(Proposal& proposal, Refusal refusal);

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "proposals/motion_kind.hpp"
+#include "targeting/targeting_json.hpp"
 
 namespace interlock {
 
@@ -19,6 +20,7 @@ nlohmann::json to_json(const Proposal& proposal) {
                       {"state", state_name(proposal.state)},
                       {"target_counts", nullptr},
                       {"target", nullptr},
+                      {"aim", nullptr},
                       {"created", iso_8601(proposal.created)},
                       {"created_tick", proposal.created_tick},
                       {"ended", nullptr},
@@ -27,6 +29,11 @@ nlohmann::json to_json(const Proposal& proposal) {
   if (proposal.slots.size() == 1) {
     json["slot"] = proposal.slots.front();
     json["axis"] = proposal.axis;
+  }
+  if (task.aim) {
+    json["aim"] = {{"desired", row_major(task.aim->desired)},
+                   {"reachable", row_major(task.aim->reachable)},
+                   {"deviation", to_json(deviation(task.aim->reachable, task.aim->desired))}};
   }
   if (task.mode.moves_the_whole()) {
     json["mode"] = task.mode.name;

@@ -158,7 +158,9 @@ std::string detail_of(const Robot& robot, const Proposal& proposal, const TaskSt
   switch (status.phase) {
     case TaskPhase::none:
     case TaskPhase::waiting:
-      return "Waits for the pedal" + words.waiting + ".";
+      return (status.reason == TaskReason::press_again ? "Release the pedal and press it again"
+                                                       : "Waits for the pedal") +
+             words.waiting + ".";
     case TaskPhase::executing:
       return words.executing + ".";
     case TaskPhase::paused:

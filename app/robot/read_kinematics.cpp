@@ -18,6 +18,30 @@ std::string role_names(const Robot& robot) {
   return names;
 }
 
+TargetingLimits read_targeting(TableReader table) {
+  constexpr double widest_mm = 1000.0;
+  TargetingLimits limits;
+  limits.tolerance_mm = table.number_between("tolerance_mm", 0.01, 100.0);
+  limits.tolerance_deg = table.number_between("tolerance_deg", 0.01, 90.0);
+  TableReader region = table.table("registration");
+  ExpectedRegistration& expected = limits.registration;
+  expected.origin_mm = region.point_mm("origin_mm");
+  expected.origin_tolerance_mm = region.point_mm("origin_tolerance_mm");
+  if (std::ranges::any_of(expected.origin_tolerance_mm,
+                          [](double mm) { return !(mm > 0.0 && mm <= widest_mm); })) {
+    region.refuse_given("origin_tolerance_mm", "a tolerance is out of range", "three numbers from 0 to 1000");
+  }
+  std::ranges::copy(region.numbers("rotation", expected.rotation.size()), expected.rotation.begin());
+  const auto& r = expected.rotation;
+  if (!pose_from({r[0], r[1], r[2], 0, r[3], r[4], r[5], 0, r[6], r[7], r[8], 0, 0, 0, 0, 1})) {
+    region.refuse("rotation", "it is no rotation", "R^T R = 1 within 0.000001, determinant 1, row by row");
+  }
+  expected.rotation_tolerance_deg = region.number_between("rotation_tolerance_deg", 0.1, 180.0);
+  region.refuse_unknown_keys();
+  table.refuse_unknown_keys();
+  return limits;
+}
+
 }  // namespace
 
 void read_kinematics(TableReader& root, Robot& robot, std::span<const KinematicsFamily> families) {
@@ -35,6 +59,7 @@ void read_kinematics(TableReader& root, Robot& robot, std::span<const Kinematics
   robot.probe.cannula_to_treatment_mm = probe.offset_mm("cannula_to_treatment_mm");
   robot.probe.treatment_to_robot_at_home_mm = probe.offset_mm("treatment_to_robot_at_home_mm");
   probe.refuse_unknown_keys();
+  robot.targeting = read_targeting(root.table("targeting"));
 }
 
 std::string read_role(TableReader& axis, const Robot& robot, const std::string& axis_name, Unit unit) {

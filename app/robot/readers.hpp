@@ -39,9 +39,10 @@ void read_home_steps(TableReader& table, Robot& robot);
 /** Reads the setpoints of the mode "draping", when there are any. */
 void read_draping(TableReader& table, Robot& robot);
 
-// Reads the [kinematics] and [probe] tables of a robot file. Private to this folder.
+// Reads the [kinematics], [probe] and [targeting] tables of a robot file. Private to this folder.
 
-/** The family that the file names, with its parameters, and the probe. A robot may have neither. */
+/** The family that the file names, with its parameters, the probe and what is believed of an aim. A robot may
+ * have none of them. */
 void read_kinematics(TableReader& root, Robot& robot, std::span<const KinematicsFamily> families);
 
 /** The role of an axis: one of the family's, in the family's unit, that no axis before it plays. Left out, it

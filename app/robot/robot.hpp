@@ -215,18 +215,38 @@ struct OpenIgtLink {
   bool operator==(const OpenIgtLink&) const = default;
 };
 
+/** Where a robot stands in the scanner when it is set up as it should be: its zFrame in RAS. */
+struct ExpectedRegistration {
+  PointMm origin_mm{};
+  PointMm origin_tolerance_mm{};     /**< of each coordinate, either way */
+  std::array<double, 9> rotation{};  /**< row by row */
+  double rotation_tolerance_deg = 0; /**< of the turn from that */
+
+  bool operator==(const ExpectedRegistration&) const = default;
+};
+
+/** What is believed of an aim. */
+struct TargetingLimits {
+  double tolerance_mm = 0;  /**< by which the reached treatment point may miss the desired one */
+  double tolerance_deg = 0; /**< by which the way in may */
+  ExpectedRegistration registration;
+
+  bool operator==(const TargetingLimits&) const = default;
+};
+
 /** The robot. Axes are in the order of the file, in which people see them. */
 struct Robot {
   std::string name;
   std::string title;
   std::uint32_t period_us = 1000;
   std::vector<std::string> modes; /**< ways of moving it; the first is the one in which it starts */
-  bool auto_approve = false;      /**< moves from OpenIGTLink or a file need no click */
+  bool auto_approve = false;      /**< no motion needs approval */
   Pedal pedal;
   LoopLimits loop;
   std::string family = "none"; /**< of its kinematics: "neuro_rcm" */
   KinematicsPtr kinematics;    /**< null: its axes move one by one, and it has no pose */
   ProbeOffsets probe;          /**< until somebody sets others */
+  TargetingLimits targeting;   /**< with kinematics */
   std::vector<Axis> axes;
   std::vector<Sensor> sensors;
   std::vector<HomeStep> home_steps; /**< in the order in which they run; each axis with a switch homes once */

@@ -1,6 +1,8 @@
 #include "service/alignment_view.hpp"
 
-#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <numbers>
 
 #include "targeting/guide_frame.hpp"
 #include "targeting/targeting_json.hpp"
@@ -192,10 +194,35 @@ tl::expected<NeedleTarget, Problem> needle_target(const Robot& robot, const Targ
       });
 }
 
-bool is_out_of_reach(const Alignment& alignment) {
-  constexpr double moved_mm = 0.1;
-  return std::ranges::any_of(alignment.setpoints, &AxisSetpoint::clamped) &&
-         alignment.deviation.distance_mm > moved_mm;
+std::optional<Problem> out_of_reach(const Robot& robot, const Alignment& alignment,
+                                    std::optional<double> accepted_mm, std::optional<double> accepted_deg) {
+  // What somebody accepts was rounded when it was shown.
+  constexpr double rounding = 0.05;
+  const TargetingLimits& limits = robot.targeting;
+  const double most_mm = accepted_mm ? *accepted_mm + rounding : limits.tolerance_mm;
+  const double most_deg = accepted_deg ? *accepted_deg + rounding : limits.tolerance_deg;
+  if (is_tolerable(alignment.deviation, most_mm, most_deg)) {
+    return std::nullopt;
+  }
+  const double angle_deg = alignment.deviation.angle_rad * 180.0 / std::numbers::pi;
+  std::string clamped;
+  for (const AxisSetpoint& setpoint : alignment.setpoints) {
+    if (setpoint.clamped) {
+      clamped += (clamped.empty() ? "" : ", ") + robot.at_slot(setpoint.slot)->title;
+    }
+  }
+  const auto numbers = [](double mm, double degrees) {
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), "%.2f mm and %.2f degrees", mm, degrees);
+    return std::string(text.data());
+  };
+  return Problem{.status = Status::conflict,
+                 .code = "UNREACHABLE",
+                 .detail = "The reachable pose misses the desired one by " +
+                           numbers(alignment.deviation.distance_mm, angle_deg) +
+                           (clamped.empty() ? "." : "; these axes end before it: " + clamped + "."),
+                 .expected = "at most " + numbers(most_mm, most_deg),
+                 .next_step = "Set another target, or accept the miss and propose the reachable pose."};
 }
 
 tl::expected<Alignment, Problem> alignment_with(const Robot& robot, const Targeting& targeting) {

@@ -74,9 +74,11 @@ struct NeedleTarget {
 tl::expected<NeedleTarget, Problem> needle_target(const Robot& robot, const Targeting& targeting,
                                                   const ControlView& view);
 
-/** Whether an axis ends before the aim, and the reachable pose is another one because of that: more than 0.1
- * mm off. */
-bool is_out_of_reach(const Alignment& alignment);
+/** 409 UNREACHABLE with the numbers, when the reachable pose is farther from the desired one than somebody
+ * has accepted or, without that, the robot's file allows; empty when it is not. */
+std::optional<Problem> out_of_reach(const Robot& robot, const Alignment& alignment,
+                                    std::optional<double> accepted_mm = std::nullopt,
+                                    std::optional<double> accepted_deg = std::nullopt);
 
 /** The alignment with entry and target; 409 with the code of the problem when there is none. */
 tl::expected<Alignment, Problem> alignment_with(const Robot& robot, const Targeting& targeting);

@@ -79,8 +79,10 @@ boost::asio::awaitable<tl::expected<void, Problem>> load_trajectory(
 
 /** How far an alignment goes. */
 struct PoseRequest {
-  bool reachable = false; /**< take the reachable pose where the desired one cannot be had */
-  bool insert = false;    /**< insert the probe once it is aligned */
+  bool insert = false; /**< insert the probe once it is aligned */
+  /** Deviation of the reachable pose that somebody has accepted, in place of what the robot's file allows. */
+  std::optional<double> accepted_mm = std::nullopt;
+  std::optional<double> accepted_deg = std::nullopt;
 };
 
 /** The setpoints in which the robot is draped; 404 NOT_FOUND when its file has none. */
@@ -91,8 +93,8 @@ tl::expected<Task, Problem> trajectory_draft(const LoadedTrajectory& loaded, con
 
 /**
  * Aligns the probe with entry and target: takes the probe out as far as it goes, moves all other axes
- * together, then inserts the probe, if that is requested. 409 UNREACHABLE when an axis would have to go
- * beyond its range and the reachable pose was not asked for; or a problem of `alignment_with`.
+ * together, then inserts the probe, if that is requested. 409 UNREACHABLE when the axes miss the pose by more
+ * than is allowed or was accepted; or a problem of `alignment_with`.
  */
 boost::asio::awaitable<tl::expected<Task, Problem>> pose_draft(const Context& context, PoseRequest request,
                                                                std::string author);

@@ -28,7 +28,7 @@ constexpr const char* known_modes = "manual, home, trajectory, draping, targetin
 /** Sub-codes of a target's STATUS. */
 constexpr std::int64_t invalid_target = 1;
 constexpr std::int64_t unreachable_target = 2;
-constexpr std::int64_t moved_target = 3;
+constexpr std::int64_t missed_target = 3;
 
 igtl::Outcome well(std::string text) { return {{StatusCode::ok, 0, "OK", std::move(text)}}; }
 
@@ -166,13 +166,15 @@ asio::awaitable<Done> enter_mode(const Context& context, const Caller& caller, s
   } else if (mode == "draping") {
     draft = draping_draft(context.robot, caller.user);
   } else if (mode == "targeting" || mode == "insertion") {
-    draft = co_await pose_draft(context, PoseRequest{false, mode == "insertion"}, caller.user);
+    const PoseRequest request{.insert = mode == "insertion"};
+    draft = co_await pose_draft(context, request, caller.user);
   }
   co_return co_await propose_path(context, caller, std::move(draft));
 }
 
-asio::awaitable<Done> move_to_target(const Context& context, const Caller& caller, bool takes_reachable) {
-  auto draft = co_await pose_draft(context, PoseRequest{takes_reachable, true}, caller.user);
+asio::awaitable<Done> move_to_target(const Context& context, const Caller& caller) {
+  const PoseRequest request{.insert = true};
+  auto draft = co_await pose_draft(context, request, caller.user);
   co_return co_await propose_path(context, caller, std::move(draft));
 }
 
@@ -226,14 +228,6 @@ asio::awaitable<Done> start_up(const Context& context, const Caller& caller) {
   co_return made.map(proposed);
 }
 
-Problem out_of_reach(const std::string& why) {
-  return {.status = Status::conflict,
-          .code = "UNREACHABLE",
-          .detail = "The target is out of reach: " + why,
-          .expected = "a target within reach of the axes",
-          .next_step = "Send another one."};
-}
-
 asio::awaitable<Done> set_target(const Context& context, const Caller& caller, igtl::SetTargetPose command) {
   const auto before = co_await present_targeting(context);
   if (!before) {
@@ -242,25 +236,21 @@ asio::awaitable<Done> set_target(const Context& context, const Caller& caller, i
   Targeting desired = *before;
   aim_at(desired, command.scanner_from_target);
   const auto alignment = co_await aligned(context, desired);
-  if (!alignment) {
-    // No position of the axes is near it, so that there is no nearest pose either.
-    igtl::Outcome outcome{status_of(out_of_reach(alignment.error().detail))};
-    outcome.status.sub_code = unreachable_target;
+  const auto miss = alignment ? out_of_reach(context.robot, *alignment) : alignment.error();
+  if (miss) {
+    igtl::Outcome outcome{status_of(*miss)};
+    if (miss->code != "NO_REGISTRATION") {
+      outcome.status.code = StatusCode::unreachable;
+      outcome.status.sub_code = alignment ? missed_target : unreachable_target;
+    }
+    if (alignment) {
+      outcome.reachable = row_major(alignment->reachable);
+    }
     co_return outcome;
-  }
-  const bool is_moved = is_out_of_reach(*alignment);
-  if (is_moved && !command.takes_reachable) {
-    co_return fail(out_of_reach("an axis ends before it."));
   }
   igtl::Outcome outcome = well("The target was stored.");
   outcome.target = row_major(alignment->desired);
   outcome.reachable = row_major(alignment->reachable);
-  if (is_moved) {
-    outcome.status = {StatusCode::configuration, moved_target, "MOVED",
-                      "The target was out of reach and was moved to the nearest pose that can be had."};
-    outcome.target = outcome.reachable;
-    aim_at(desired, *outcome.reachable);
-  }
   json body{{"entry_point", *desired.entry_point}, {"target_point", *desired.target_point}};
   const auto changed =
       co_await change_targeting(context, caller, TaskSource::openigtlink, with_target, std::move(body));
@@ -332,8 +322,8 @@ asio::awaitable<Done> done_for(const Context& context, const Caller& caller, con
   if (const auto* target = std::get_if<igtl::SetTargetPose>(&command)) {
     co_return co_await set_target_pose(context, caller, *target);
   }
-  if (const auto* move = std::get_if<igtl::MoveToTarget>(&command)) {
-    co_return co_await move_to_target(context, caller, move->takes_reachable);
+  if (std::holds_alternative<igtl::MoveToTarget>(command)) {
+    co_return co_await move_to_target(context, caller);
   }
   if (std::holds_alternative<igtl::RetractProbe>(command)) {
     co_return co_await retract(context, caller);

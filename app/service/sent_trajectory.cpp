@@ -73,12 +73,6 @@ tl::expected<TimedTrajectory, Problem> finished(TrajectoryBuilder builder) {
   return std::move(builder).finish().map_error([](const TrajectoryError& error) { return bad_row(error); });
 }
 
-/** The axis that ends before the aim. */
-const Axis& clamped_axis(const Robot& robot, const Alignment& alignment) {
-  const auto clamped = std::ranges::find(alignment.setpoints, true, &AxisSetpoint::clamped);
-  return *robot.at_slot(clamped->slot);
-}
-
 /** Time and setpoints of a pose. */
 tl::expected<std::vector<double>, Problem> row_of(const Robot& robot, Targeting targeting,
                                                   const igtl::TimedPose& pose, std::size_t number) {
@@ -92,9 +86,8 @@ tl::expected<std::vector<double>, Problem> row_of(const Robot& robot, Targeting 
     return fail(bad_row(alignment.error().code, number, pose_name, alignment.error().detail,
                         "a pose that the robot can reach"));
   }
-  if (is_out_of_reach(*alignment)) {
-    return fail(bad_row("UNREACHABLE", number, position_column(clamped_axis(robot, *alignment)),
-                        "the axis ends before the pose", "a pose that the robot can reach"));
+  if (const auto miss = out_of_reach(robot, *alignment)) {
+    return fail(bad_row(miss->code, number, pose_name, miss->detail, miss->expected));
   }
   std::vector<double> row{pose.time_s};
   for (const AxisSetpoint& setpoint : alignment->setpoints) {

@@ -5,6 +5,8 @@
 #include <string>
 
 #include "service/fields.hpp"
+#include "targeting/registration.hpp"
+#include "targeting/registration_doubt.hpp"
 
 namespace interlock {
 namespace {
@@ -48,6 +50,11 @@ double determinant(const RowMajor& pose) {
 }
 
 void check_last_row(Fields& fields, const std::string& name, const RowMajor& pose) {
+  if (at(pose, 0, 3) == 0.0 && at(pose, 1, 3) == 0.0 && at(pose, 2, 3) == 0.0 && at(pose, 3, 3) == 1.0 &&
+      (at(pose, 3, 0) != 0.0 || at(pose, 3, 1) != 0.0 || at(pose, 3, 2) != 0.0)) {
+    fields.reject(name, "looks transposed: its last row is an origin",
+                  "row after row, 0 0 0 1 as the last row");
+  }
   for (std::size_t column = 0; column < 4; ++column) {
     const double expected = column == 3 ? 1.0 : 0.0;
     if (at(pose, 3, column) != expected) {
@@ -80,7 +87,9 @@ void check_rotation(Fields& fields, const std::string& name, const RowMajor& pos
     }
   }
   if (!(std::abs(determinant(pose) - 1.0) <= 3 * entered_rigidity)) {
-    fields.reject(name, "mirrors: its determinant is not +1", "a rotation: determinant +1");
+    fields.reject(name,
+                  "mirrors: its determinant is not +1, as of left-handed axes, or of one with the wrong sign",
+                  "a rotation: determinant +1");
   }
 }
 
@@ -187,10 +196,13 @@ Targeting judged(Targeting targeting, const RegistrationEpoch& epoch) {
 }
 
 json to_json(const Targeting& targeting) {
+  const auto or_nothing = [](const std::string& text) { return text.empty() ? json() : json(text); };
   json body = to_stored(targeting);
   const bool is_valid = targeting.registration_problem.empty();
   body["registration_state"] = is_valid ? "valid" : targeting.registration ? "expired" : "not_set";
-  body["registration_problem"] = is_valid ? json() : json(targeting.registration_problem);
+  body["registration_problem"] = or_nothing(targeting.registration_problem);
+  body["registration_doubt"] = or_nothing(targeting.registration_doubt);
+  body["override_reason"] = or_nothing(targeting.override_reason);
   body.erase("registration_epoch");
   body.erase("registration_expired");
   body.erase("registrations_before");
@@ -202,6 +214,8 @@ json to_stored(const Targeting& targeting) {
             {"registration_epoch", targeting.registration_epoch},
             {"registration_expired", targeting.registration_expired},
             {"registrations_before", targeting.registrations_before},
+            {"registration_doubt", targeting.registration_doubt},
+            {"override_reason", targeting.override_reason},
             {"ignore_registration_rotation", targeting.ignore_registration_rotation},
             {"entry_point", or_null(targeting.entry_point)},
             {"target_point", or_null(targeting.target_point)},
@@ -217,14 +231,16 @@ tl::expected<Targeting, Problem> stored_targeting(const json& stored) {
   Targeting targeting;
   Fields fields(values,
                 {"registration", "registration_epoch", "registration_expired", "registrations_before",
-                 "ignore_registration_rotation", "entry_point", "target_point", "reported_position",
-                 "treatment_to_tip_offset", "robot_to_entry_offset", "cannula_to_treatment_offset",
-                 "canula_to_treatment_offset", "treatment_to_robot_at_home"},
+                 "registration_doubt", "override_reason", "ignore_registration_rotation", "entry_point",
+                 "target_point", "reported_position", "treatment_to_tip_offset", "robot_to_entry_offset",
+                 "cannula_to_treatment_offset", "canula_to_treatment_offset", "treatment_to_robot_at_home"},
                 "targeting");
   targeting.registration = read_pose(fields, "registration");
   targeting.registration_epoch = fields.integer("registration_epoch", 0, latest_epoch).value_or(0);
   targeting.registration_expired = fields.text("registration_expired").value_or("");
   targeting.registrations_before = read_poses(fields, "registrations_before");
+  targeting.registration_doubt = fields.text("registration_doubt").value_or("");
+  targeting.override_reason = fields.text("override_reason").value_or("");
   targeting.ignore_registration_rotation = fields.boolean("ignore_registration_rotation").value_or(false);
   targeting.entry_point = read_point(fields, "entry_point");
   targeting.target_point = read_point(fields, "target_point");
@@ -234,7 +250,7 @@ tl::expected<Targeting, Problem> stored_targeting(const json& stored) {
 }
 
 tl::expected<Targeting, Problem> with_registration(Targeting targeting, const json& body) {
-  Fields fields(body, {"registration", "ignore_registration_rotation"});
+  Fields fields(body, {"registration", "ignore_registration_rotation", "override_reason"});
   fields.require({{"registration", "16 numbers, row-major"}});
   const std::optional<RowMajor> before = targeting.registration;
   targeting.registration = read_pose(fields, "registration");
@@ -249,9 +265,34 @@ tl::expected<Targeting, Problem> with_registration(Targeting targeting, const js
                                                      std::min(expired.size(), most_registrations_before)));
   targeting.registration_epoch = targeting.present_epoch;
   targeting.registration_expired.clear();
+  targeting.override_reason = fields.text("override_reason").value_or("");
+  if (targeting.override_reason.size() > longest_reason) {
+    fields.reject("override_reason", "is too long", "at most 200 bytes");
+  }
   targeting.ignore_registration_rotation =
       fields.boolean("ignore_registration_rotation").value_or(targeting.ignore_registration_rotation);
   return unless_wrong(fields, targeting);
+}
+
+tl::expected<Targeting, Problem> plausible(Targeting targeting, const Robot& robot) {
+  const auto registration =
+      Registration::create(*targeting.registration, targeting.ignore_registration_rotation);
+  const auto doubt =
+      robot.kinematics && registration
+          ? registration_doubt(robot.targeting.registration, registration->scanner_from_zframe())
+          : std::nullopt;
+  targeting.registration_doubt = doubt.value_or("");
+  if (targeting.registration_doubt.empty()) {
+    targeting.override_reason.clear();
+  } else if (targeting.override_reason.empty()) {
+    return fail(
+        Problem{.status = Status::unprocessable_entity,
+                .code = "IMPLAUSIBLE",
+                .detail = "The registration can hardly be right. " + targeting.registration_doubt,
+                .expected = "the robot's zFrame in the scanner, RAS, mm, where the robot's file expects it",
+                .next_step = "Send it in RAS and mm. A person may set it all the same, with a reason."});
+  }
+  return targeting;
 }
 
 tl::expected<Targeting, Problem> with_reported_pose(Targeting targeting, const json& body) {

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "robot/robot.hpp"
 #include "service/reply.hpp"
 #include "store/audit.hpp"
 
@@ -29,6 +30,9 @@ constexpr double farthest_mm = 10000.0;
 constexpr double largest_offset_mm = 1000.0;
 /** How far the elements of R^T R may be from those of the identity, and its determinant from 1. */
 constexpr double entered_rigidity = 1e-3;
+
+/** Bytes of a reason. */
+constexpr std::size_t longest_reason = 200;
 
 /** Expired registrations that are remembered, the newest. */
 constexpr std::size_t most_registrations_before = 20;
@@ -50,6 +54,8 @@ struct Targeting {
   std::int64_t registration_epoch = 0;        /**< in which it was set */
   std::string registration_expired;           /**< why, where that is kept; empty: it has not */
   std::vector<RowMajor> registrations_before; /**< that have expired and were replaced, the newest last */
+  std::string registration_doubt;             /**< why it can hardly be right; empty: it can */
+  std::string override_reason;                /**< why somebody set it all the same */
   /** Why no pose may be made with it; empty: it is valid. Not kept: `judged` finds it anew. */
   std::string registration_problem = "The registration is not set.";
   std::int64_t present_epoch = 0; /**< in which it was judged; not kept */
@@ -85,6 +91,9 @@ tl::expected<Targeting, Problem> stored_targeting(const nlohmann::json& stored);
  * rule. A registration is one of the epoch in which the values before were judged.
  */
 tl::expected<Targeting, Problem> with_registration(Targeting targeting, const nlohmann::json& body);
+/** As set, when there is no doubt of the registration or somebody overrode the doubt; else 422 IMPLAUSIBLE
+ * with the suspicion in words. */
+tl::expected<Targeting, Problem> plausible(Targeting targeting, const Robot& robot);
 /** The targeting with the robot's pose as the imager reports it. */
 tl::expected<Targeting, Problem> with_reported_pose(Targeting targeting, const nlohmann::json& body);
 /** The targeting with another target. */

@@ -87,6 +87,11 @@ boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const 
         }
         const Targeting before = judged(stored, epoch);
         Changed after{make(before, body)};
+        if (make == with_registration) {
+          after.targeting = std::move(after.targeting).and_then([&](Targeting made) {
+            return plausible(std::move(made), *robot);
+          });
+        }
         if (after.targeting && origin.source == TaskSource::openigtlink &&
             is_repeated(before, *after.targeting)) {
           return {fail(repeated(before)), false};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace interlock {
 namespace {
@@ -17,11 +18,9 @@ AxisSetpoint setpoint_of(const Axis& axis, double position) {
 
 }  // namespace
 
-Deviation deviation(const Pose& reached, const Pose& desired) noexcept {
-  const Eigen::Vector3d offset = reached.translation() - desired.translation();
-  const Eigen::Vector3d ahead = reached.linear().col(2);
-  const Eigen::Vector3d asked = desired.linear().col(2);
-  return {offset, offset.norm(), std::atan2(ahead.cross(asked).norm(), ahead.dot(asked))};
+bool is_tolerable(const Deviation& deviation, double tolerance_mm, double tolerance_deg) noexcept {
+  return deviation.distance_mm <= tolerance_mm &&
+         deviation.angle_rad * 180.0 / std::numbers::pi <= tolerance_deg;
 }
 
 KinematicsResult<Alignment> align(const Robot& robot, const RobotKinematics& kinematics,

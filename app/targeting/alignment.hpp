@@ -22,15 +22,6 @@ struct EntryTarget {
   double rotation_rad = 0.0; /**< of the probe about its axis */
 };
 
-/** How far a reached pose is from a desired one. */
-struct Deviation {
-  Eigen::Vector3d offset_mm = Eigen::Vector3d::Zero(); /**< reached minus desired treatment point, RAS */
-  double distance_mm = 0.0;
-  double angle_rad = 0.0; /**< between the two ways in which the probe advances, 0 to pi */
-};
-
-Deviation deviation(const Pose& reached, const Pose& desired) noexcept;
-
 /** The setpoint of one axis, within what the kernel accepts of it once homed. */
 struct AxisSetpoint {
   std::uint32_t slot = 0;
@@ -48,6 +39,9 @@ struct Alignment {
   /** D + insertion - C; of a robot that goes through an entry point alone. */
   std::optional<double> cannula_length_mm;
 };
+
+/** Whether a pose that misses the desired one by that much may take its place. */
+bool is_tolerable(const Deviation& deviation, double tolerance_mm, double tolerance_deg) noexcept;
 
 /**
  * Aligns the robot with an aim. Desired and reachable differ by the rounding to counts, and where an axis is

@@ -46,6 +46,8 @@ json to_json(const Robot& robot, const Alignment& alignment) {
           {"setpoints", setpoints},
           {"clamped", clamped},
           {"deviation", to_json(alignment.deviation)},
+          {"within_tolerance",
+           is_tolerable(alignment.deviation, robot.targeting.tolerance_mm, robot.targeting.tolerance_deg)},
           {"cannula_length_mm", length ? json(*length) : json()}};
 }
 

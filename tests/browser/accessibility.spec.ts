@@ -106,7 +106,10 @@ test("the page of the target, with something wrong, something newer, and what it
       [`/api/targeting/${what}`, JSON.stringify(body)] as const,
     );
   await put("target", { entry_point: [8, 250, 70], target_point: [60, 200, 60] });
-  await put("registration", { registration: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] });
+  await put("registration", {
+    registration: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1],
+    override_reason: "There is no scanner.",
+  });
   await robot.open("Targeting");
   await expect(robot.panel("Alignment")).toContainText("clamped");
   const form = page.getByRole("form", { name: "Registration" });
@@ -222,6 +225,7 @@ test.describe("the prostate robot", () => {
     await unfoldPanels(robot);
     await robot.enableAll();
     await robot.button("Home all").click();
+    await robot.approve(1);
     await expect(robot.panel("Homing progress")).toBeVisible();
     await expectNoViolation(page, "homing");
   });

@@ -40,7 +40,10 @@ test("a hand pushes the needle through its first membrane, and letting the pedal
   const panel = robot.panel("Biopsy");
   await panel.getByRole("button", { name: "Zero forces" }).click();
   await panel.getByLabel("Target x, y, z, mm").fill("3, -2, 70");
+  await robot.releasePedal();
   await panel.getByRole("button", { name: "Propose biopsy" }).click();
+  await robot.approve(2);
+  await robot.pressPedal();
   await expect(robot.proposal(2)).toContainText("executing");
   await expect(robot.panel("Motors")).toContainText("The mode cooperative biopsy drives the setpoints");
 

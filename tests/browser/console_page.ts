@@ -225,6 +225,11 @@ export class ConsolePage {
     return new Axis(this.page, title, this.stack);
   }
 
+  /** Of a proposal that waits for that. */
+  async approve(id: number): Promise<void> {
+    await this.button(`Approve proposal ${id}`).click();
+  }
+
   proposal(id: number): Locator {
     return this.page.getByRole("listitem", { name: `Proposal ${id}`, exact: true });
   }

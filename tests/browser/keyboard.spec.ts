@@ -88,12 +88,12 @@ test("keys alone set a registration and a target, capture ticks, reject a propos
     await expect(robot.panel(panel)).toBeVisible();
   };
   await open("Targeting", "Entry, target and probe");
-  const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0];
+  const straight = [1, 0, 0, -18, 0, 1, 0, -185, 0, 0, 1, -73];
   const cells = ["R", "A", "S"].flatMap((row) =>
     ["x", "y", "z", "origin"].map((column) => `${row} ${column}`),
   );
   for (const [of, text] of [
-    ...cells.map((cell, place) => [`Registration ${cell}`, `${identity[place]}`] as const),
+    ...cells.map((cell, place) => [`Registration ${cell}`, `${straight[place]}`] as const),
     ["Entry R", "8"],
     ["Entry A", "250"],
     ["Entry S", "70"],

@@ -49,6 +49,7 @@ test("Home all goes through the steps while the pedal is held, and ends in manua
   // Linked to the head, which is not sent to its switch before.
   await robot.axis("Axial feet").setHome();
   await robot.button("Home all").click();
+  await robot.approve(1);
   const step = (title: string) =>
     robot.panel("Homing progress").getByRole("listitem").filter({ hasText: title });
   await expect(step("Probe out")).toHaveAttribute("aria-current", "step");
@@ -140,6 +141,7 @@ test.describe("the prostate robot", () => {
     await expect(steps.getByRole("button", { name: /^Home step/ })).toHaveCount(7);
     await robot.enableAll();
     await robot.button("Home all").click();
+    await robot.approve(1);
     const progress = robot.panel("Homing progress");
     await expect(progress.getByRole("listitem").first()).toHaveAttribute("aria-current", "step");
     await robot.pressPedal();

@@ -117,6 +117,7 @@ test("the mode selector homes, and manual mode ends it", async ({ robot, page })
   await expect(change).toBeDisabled();
   await page.getByLabel("Robot mode", { exact: true }).selectOption("home");
   await change.click();
+  await robot.approve(1);
   await expect(mode).toHaveText("home");
   await expect(robot.panel("Homing progress")).toBeVisible();
   await page.getByLabel("Robot mode", { exact: true }).selectOption("manual");

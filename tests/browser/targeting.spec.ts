@@ -49,7 +49,7 @@ test("a registration is refused in words until it is rigid, set once, and told w
     "The registration is not set. Nothing is shown in the scanner, or moved to.",
   );
   await expect(set).toBeDisabled();
-  await put(page, "registration", { registration: identity });
+  await put(page, "registration", { registration: identity, override_reason: "There is no scanner." });
   await expect(cell(page, "R", "x")).toHaveValue("1");
   const sent = sentBy(page);
 
@@ -65,9 +65,18 @@ test("a registration is refused in words until it is rigid, set once, and told w
   await cell(page, "A", "y").fill("0");
   await cell(page, "R", "origin").fill("10,5");
   await cell(page, "R", "origin").press("Enter");
+  await expect(panel.getByRole("alert").last()).toContainText("IMPLAUSIBLE");
+  await expect(panel.getByRole("alert").last()).toContainText("it is turned by 90 degrees");
+  await panel.getByLabel("Reason to set it all the same").fill("Lies on its side.");
+  await panel.getByRole("button", { name: "Set it all the same" }).click();
+  await expect(panel).toContainText("It was set all the same: Lies on its side.");
   await expect(panel).toContainText(/Set \d+ s ago by admin \(console, 127\.0\.0\.1:\d+\)/);
   await expect(set).toBeDisabled();
-  expect(sent).toEqual([{ registration: [0, -1, 0, 10.5, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] }]);
+  const onItsSide = [0, -1, 0, 10.5, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+  expect(sent).toEqual([
+    { registration: onItsSide },
+    { registration: onItsSide, override_reason: "Lies on its side." },
+  ]);
 
   const history = robot.panel("History").getByRole("row").nth(1);
   await expect(history).toContainText("admin");
@@ -78,14 +87,16 @@ test("the table moved: the registration expires at once, and is valid again once
   robot,
   page,
 }) => {
-  await put(page, "target", { entry_point: entry, target_point: target });
+  // Where the robot's file expects it, and the points in the scanner then.
+  const straight = [1, 0, 0, -18, 0, 1, 0, -185, 0, 0, 1, -73, 0, 0, 0, 1];
+  await put(page, "target", { entry_point: [-10, 65, -3], target_point: [-13, 15, -13] });
   await robot.open("Targeting");
   const panel = robot.panel("Registration");
   const alignment = robot.panel("Alignment");
   const moved = robot.button("The table moved");
   await expect(moved).toBeDisabled();
   await expect(alignment).toContainText("NO_REGISTRATION");
-  await put(page, "registration", { registration: identity });
+  await put(page, "registration", { registration: straight });
   await expect(alignment.getByRole("row")).toHaveCount(8);
   await moved.click();
   await expect(panel).toContainText("The registration has expired: The table moved.");
@@ -115,7 +126,7 @@ test("what is edited is not overwritten by what arrives, and nothing is sent tha
   await expect(registration).toContainText("From zframe.txt, not sent.");
   await expect(cell(page, "S", "origin")).toHaveValue("7");
   const meanwhile = [1, 0, 0, -1, 0, 1, 0, -2, 0, 0, 1, -3, 0, 0, 0, 1];
-  await put(page, "registration", { registration: meanwhile });
+  await put(page, "registration", { registration: meanwhile, override_reason: "There is no scanner." });
   await expect(registration.getByRole("alert").first()).toContainText("origin at -1.00, -2.00, -3.00");
   await expect(cell(page, "S", "origin")).toHaveValue("7");
   await expect(robot.button("Set registration")).toBeDisabled();
@@ -165,7 +176,7 @@ test("the alignment says what it asks of each axis and why it would be refused, 
   page,
 }) => {
   await put(page, "target", { entry_point: entry, target_point: target });
-  await put(page, "registration", { registration: identity });
+  await put(page, "registration", { registration: identity, override_reason: "There is no scanner." });
   await robot.unlockRobot();
   await robot.open("Targeting");
   const alignment = robot.panel("Alignment");
@@ -182,7 +193,10 @@ test("the alignment says what it asks of each axis and why it would be refused, 
   await expect(alignment).toContainText("The desired pose would be refused, UNREACHABLE");
   await expect(alignment.getByText("▲ clamped").first()).toBeVisible();
   await expect(desired).toBeDisabled();
-  await expect(robot.button("Propose reachable pose")).toBeEnabled();
+  const accepting = page.getByRole("button", {
+    name: /^Accept .* mm and .*°, and propose the reachable pose$/,
+  });
+  await expect(accepting).toBeEnabled();
 });
 
 test("the proposed alignment brings the current pose to the desired one", async ({ robot, page }) => {
@@ -194,7 +208,7 @@ test("the proposed alignment brings the current pose to the desired one", async 
     await robot.axis(title).setHome(has_switch);
     await robot.axis(title).enable();
   }
-  await put(page, "registration", { registration: identity });
+  await put(page, "registration", { registration: identity, override_reason: "There is no scanner." });
   await robot.open("Targeting");
   const current = page.getByRole("region", { name: "Current pose" });
   await expect(current.getByRole("table")).toBeVisible();
@@ -207,6 +221,8 @@ test("the proposed alignment brings the current pose to the desired one", async 
   await page.getByLabel("Insert the probe once it is aligned").check();
   await robot.button("Propose desired pose").click();
   const proposed = robot.panel("Alignment").getByRole("status").filter({ hasText: "Proposal" });
+  await expect(proposed).toContainText("checked");
+  await robot.approve(1);
   await expect(proposed).toContainText("approved");
   await robot.open("Robot");
   await expect(robot.proposal(1)).toContainText("All axes: ACCEPTED would be accepted once the pedal");

@@ -11,7 +11,10 @@ test.beforeEach(async ({ robot, page }) => {
       const put = (what: string, body: string) => fetch(`/api/targeting/${what}`, { method: "PUT", body });
       return [(await put("target", bodies[0])).status, (await put("registration", bodies[1])).status];
     },
-    [JSON.stringify(targeting), JSON.stringify({ registration })] as const,
+    [
+      JSON.stringify(targeting),
+      JSON.stringify({ registration, override_reason: "There is no scanner." }),
+    ] as const,
   );
   expect(set).toEqual([200, 200]);
 });

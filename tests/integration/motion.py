@@ -80,9 +80,10 @@ def home_all(stack: Stack) -> None:
 IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
 
 
-def register(stack: Stack, pose: list[float] = IDENTITY) -> None:
-    """Says where the robot stands in the scanner."""
-    stack.api.put("/api/targeting/registration", json={"registration": pose}).raise_for_status()
+def register(stack: Stack, pose: list[float] = IDENTITY, **more: object) -> None:
+    """Says where the robot stands, which need not be where its file expects it: there is no scanner here."""
+    body = {"registration": pose, "override_reason": "There is no scanner.", **more}
+    stack.api.put("/api/targeting/registration", json=body).raise_for_status()
 
 
 def to_motion(stack: Stack, slot: int = LATERAL) -> None:
@@ -101,6 +102,27 @@ def propose(stack: Stack, target_counts: int, slot: int = LATERAL) -> int:
         answer = stack.api.post("/api/proposals", json=body)
     assert answer.status_code == 201, answer.text
     return answer.json()["id"]
+
+
+def approve(stack: Stack, number: int | None = None) -> int:
+    """The proposal of that number, or the newest, once it waits for that; gives its number."""
+
+    def waiting() -> dict | None:
+        newest = stack.api.get("/api/proposals").raise_for_status().json()[:1]
+        found = newest if number is None else [proposal(stack, number)]
+        return next((each for each in found if each["state"] == "checked"), None)
+
+    wait_until("it waits", lambda: waiting() is not None)
+    known = waiting()["id"]
+    stack.api.post(f"/api/proposals/{known}/approve").raise_for_status()
+    return known
+
+
+def propose_home(stack: Stack, **which: object) -> int:
+    """Proposes and approves homing: all steps, or one."""
+    answer = stack.api.post("/api/proposals", json={"kind": "home", **which})
+    assert answer.status_code == 201, answer.text
+    return approve(stack, answer.json()["id"])
 
 
 def proposal(stack: Stack, number: int) -> dict:

@@ -4,13 +4,10 @@ import time
 
 import numpy as np
 from bare_kernel import DEADLINE_S
-from interface import judge
-from motion import wait_until
 from navigator import Program, Status, text, transform
 from pyigtl import messages as wire
-from stack import Stack
 
-CALIBRATION = [1, 0, 0, 0.125, 0, 1, 0, -0.25, 0, 0, 1, 0.5, 0, 0, 0, 1]
+CALIBRATION = [1, 0, 0, -17.875, 0, 1, 0, -185.25, 0, 0, 1, -72.5, 0, 0, 0, 1]
 ENTRY, TARGET = np.array([8.0, 250.0, 70.0]), np.array([5.0, 200.0, 60.0])
 
 
@@ -21,7 +18,7 @@ def aimed() -> list[float]:
     side /= np.linalg.norm(side)
     pose = np.eye(4)
     pose[:3, 0], pose[:3, 1], pose[:3, 2] = side, np.cross(ahead, side), ahead
-    pose[:3, 3] = TARGET + np.array([0.125, -0.25, 0.5])
+    pose[:3, 3] = TARGET + np.reshape(CALIBRATION, (4, 4))[:3, 3]
     return pose.astype(np.float32).astype(float).ravel().tolist()
 
 
@@ -82,16 +79,6 @@ class Phases:
             text(f"CMD_{number}", name), f"ACK_{number} STRING", f"CURRENT_STATUS 1 {name}", *status
         )
         assert messages[0].string == name
-
-
-def approve(robot: Stack) -> None:
-    def newest() -> dict:
-        return robot.api.get("/api/proposals").json()[0]
-
-    wait_until("proposed", lambda: robot.api.get("/api/proposals").json() != [])
-    wait_until("it waits", lambda: newest()["state"] == "checked")
-    number = newest()["id"]
-    judge(robot.api.post(f"/api/proposals/{number}/approve")).raise_for_status()
 
 
 def to_targeting(navigator: Phases, dialect: str) -> None:

@@ -4,7 +4,18 @@ import math
 
 import pytest
 from conftest import StackFactory
-from motion import enable, motor, press, proposal, record, set_home, unlock, wait_for_proposal, wait_until
+from motion import (
+    approve,
+    enable,
+    motor,
+    press,
+    proposal,
+    record,
+    set_home,
+    unlock,
+    wait_for_proposal,
+    wait_until,
+)
 from stack import Stack
 
 ROTATION, INSERTION, FORCE_CARD = 0, 1, 3
@@ -34,7 +45,9 @@ def biopsy(robot: Stack) -> dict:
 def propose(robot: Stack) -> int:
     answer = robot.api.post("/api/proposals", json={"kind": "biopsy", "target_mm": TARGET})
     assert answer.status_code == 201, answer.text
-    return answer.json()["id"]
+    number = approve(robot, answer.json()["id"])
+    press(robot)
+    return number
 
 
 def pass_image(robot: Stack) -> None:

@@ -9,12 +9,22 @@ import pytest
 from conftest import RobotFile, StackFactory
 from controllers import connections, make_controller
 from library_navigator import Library, Tracking
-from motion import enable, home_all, press, register, unlock, wait_for_mode, wait_until
-from navigation_phases import ENTRY, TARGET, Phases, aimed, approve, short, to_targeting
+from motion import (
+    approve,
+    enable,
+    home_all,
+    press,
+    register,
+    unlock,
+    wait_for_mode,
+    wait_until,
+)
+from navigation_phases import ENTRY, TARGET, Phases, aimed, short, to_targeting
 from navigator import OK, Poses, Query, Rows, Status, text, transform
 from stack import Stack
 
-REGISTRATION = [0, -1, 0, 12.5, 1, 0, 0, -3, 0, 0, 1, 40, 0, 0, 0, 1]
+C, S = float(np.float32(0.96)), float(np.float32(0.28))
+REGISTRATION = [C, -S, 0, 12.5, S, C, 0, -183, 0, 0, 1, -40, 0, 0, 0, 1]
 ACCESS_DENIED, NOT_FOUND = 5, 4
 TOOL_NAME = 19  # so many characters of a name have room in TDATA
 

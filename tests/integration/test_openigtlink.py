@@ -36,7 +36,8 @@ ACCESS_DENIED, CONFIGURATION, UNKNOWN_INSTRUCTION = 5, 10, 12
 UNREACHABLE, CHECKSUM, NOT_READY = 8, 9, 13
 CONNECTIONS = "/api/communications/connections"
 ENTRY, TARGET = [8, 250, 70], [5, 200, 60]
-REGISTRATION = [0, -1, 0, 12.5, 1, 0, 0, -3, 0, 0, 1, 40, 0, 0, 0, 1]
+C, S = float(np.float32(0.96)), float(np.float32(0.28))
+REGISTRATION = [C, -S, 0, 12.5, S, C, 0, -183, 0, 0, 1, -40, 0, 0, 0, 1]
 
 
 @pytest.fixture
@@ -298,9 +299,7 @@ def test_poses_become_a_trajectory_that_leads_the_treatment_point_through_them(
         assert min(abs(axis[end] - there) for end in ("lowest", "highest")) < 0.05, axis
     assert max(axis["highest"] - axis["lowest"] for axis in loaded["axes"] if axis["unit"] == "mm") > 1.0
     assert navigator.ask(text("MODE", "trajectory")).code == OK
-    judge(
-        robot.api.put("/api/targeting/registration", json={"registration": REGISTRATION})
-    ).raise_for_status()
+    register(robot, REGISTRATION)
     wait_until("it is stale", lambda: robot.api.get("/api/proposals").json()[0]["state"] == "aborted")
     refused = navigator.ask(text("MODE", "trajectory"))
     assert (refused.code, refused.name) == (NOT_READY, "STALE")

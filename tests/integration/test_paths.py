@@ -3,7 +3,16 @@
 import pytest
 from bad_trajectories import BAD_TRAJECTORIES
 from conftest import StackFactory
-from motion import home_all, motor, press, proposal, unlock, wait_for_proposal, wait_until
+from motion import (
+    approve,
+    home_all,
+    motor,
+    press,
+    proposal,
+    unlock,
+    wait_for_proposal,
+    wait_until,
+)
 from stack import Stack
 
 YAW, ROTATION, PITCH, INSERTION, LATERAL, FEET, HEAD = 0, 1, 2, 3, 4, 6, 7
@@ -34,7 +43,7 @@ def test_seven_axes_arrive_together_and_the_pedal_pauses_them(stack: StackFactor
     robot = ready(stack)
     targets = {"yaw": -0.5, "probe_rotation": 1.0, "pitch": -0.3, "insertion": 15.0, "lateral": -20.0}
     targets |= {"feet": -10.0, "head": -25.0}
-    number = propose(robot, kind="coordinated", targets=targets)
+    number = approve(robot, propose(robot, kind="coordinated", targets=targets))
     press(robot)
     wait_for_proposal(robot, number, "executing")
     robot.control("pedal", pressed=False)
@@ -46,6 +55,26 @@ def test_seven_axes_arrive_together_and_the_pedal_pauses_them(stack: StackFactor
     assert robot.status()["app_mode"] == "manual"
 
 
+def test_what_is_approved_under_a_held_pedal_waits_for_a_new_press(stack: StackFactory) -> None:
+    robot = ready(stack)
+    press(robot)
+    targets = {"lateral": -20.0, "head": -25.0}
+    for number in (propose(robot, kind="coordinated", targets=targets), propose(robot, kind="home")):
+        approve(robot, number)
+        wait_until(
+            "it says so",
+            lambda number=number: proposal(robot, number)["detail"].startswith(
+                "Release the pedal and press it again"
+            ),
+        )
+        begun = robot.status()["tick"]
+        wait_until("time passes", lambda begun=begun: robot.status()["tick"] > begun + 500)
+        assert proposal(robot, number)["state"] == "approved"
+        assert all(motor(robot, slot)["drive"] == 0 for slot in AXES)
+        press(robot)
+        wait_for_proposal(robot, number, "executing")
+
+
 def test_a_trajectory_from_a_file_waits_for_approval_and_is_followed(stack: StackFactory) -> None:
     robot = ready(stack)
     rows = "time [s],yaw [rad],insertion [mm]\n0,-0.1,1\n1,-0.4,4\n2.5,-0.2,8\n"
@@ -53,9 +82,8 @@ def test_a_trajectory_from_a_file_waits_for_approval_and_is_followed(stack: Stac
     assert loaded.status_code == 200, loaded.text
     number = propose(robot, kind="trajectory")
     assert proposal(robot, number)["state"] == "checked"
+    approve(robot, number)
     press(robot)
-    approved = robot.api.post(f"/api/proposals/{number}/approve")
-    assert approved.status_code == 200, approved.text
     wait_for_proposal(robot, number, "done")
     assert_at(robot, YAW, -0.2)
     assert_at(robot, INSERTION, 8.0)
@@ -64,7 +92,7 @@ def test_a_trajectory_from_a_file_waits_for_approval_and_is_followed(stack: Stac
 
 def test_a_jammed_axis_ends_the_path_of_all(stack: StackFactory) -> None:
     robot = ready(stack)
-    number = propose(robot, kind="coordinated", targets={"lateral": -20.0, "head": -25.0})
+    number = approve(robot, propose(robot, kind="coordinated", targets={"lateral": -20.0, "head": -25.0}))
     press(robot)
     wait_for_proposal(robot, number, "executing")
     robot.control("jam", slot=HEAD, jammed=True)
@@ -75,7 +103,7 @@ def test_a_jammed_axis_ends_the_path_of_all(stack: StackFactory) -> None:
 
 def test_stop_ends_a_path(stack: StackFactory) -> None:
     robot = ready(stack)
-    number = propose(robot, kind="coordinated", targets={"lateral": -20.0, "head": -25.0})
+    number = approve(robot, propose(robot, kind="coordinated", targets={"lateral": -20.0, "head": -25.0}))
     press(robot)
     wait_for_proposal(robot, number, "executing")
     robot.api.post("/api/stop").raise_for_status()

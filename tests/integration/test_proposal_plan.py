@@ -4,7 +4,16 @@ import math
 
 import pytest
 from conftest import StackFactory
-from motion import enable, press, proposal, register, set_home, unlock, wait_for_proposal
+from motion import (
+    approve,
+    enable,
+    press,
+    proposal,
+    register,
+    set_home,
+    unlock,
+    wait_for_proposal,
+)
 from stack import Stack
 from test_paths import HEAD, LATERAL, propose, ready
 
@@ -23,6 +32,8 @@ def test_the_plan_is_the_way_that_the_axes_then_go(stack: StackFactory) -> None:
     robot = ready(stack)
     register(robot)
     number = propose(robot, kind="coordinated", targets={"lateral": -20.0, "head": -25.0})
+    assert set(outcomes(plan(robot, number)).values()) == {"passed"}
+    approve(robot, number)
     found = plan(robot, number)
     assert set(outcomes(found).values()) == {"passed"}
     profile = found["profile"]
@@ -103,6 +114,7 @@ def test_a_waiting_proposal_is_rejected_by_name_and_on_record(stack: StackFactor
 def test_the_reach_holds_where_the_robot_stands(stack: StackFactory) -> None:
     robot = ready(stack)
     number = propose(robot, kind="coordinated", targets={"lateral": -25.0, "head": -40.0, "feet": -20.0})
+    approve(robot, number)
     press(robot)
     wait_for_proposal(robot, number, "done")
     reach = robot.api.get("/api/targeting/reach").json()

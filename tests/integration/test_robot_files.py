@@ -18,6 +18,7 @@ from motion import (
     motor,
     press,
     propose,
+    propose_home,
     to_motion,
     unlock,
     wait_for_mode,
@@ -248,7 +249,7 @@ def test_robot_of_the_integrators_guide_homes_as_a_whole_and_moves(stack: StackF
     unlock(desk)
     for slot in DESK_SLOTS:
         enable(desk, slot)
-    number = desk.api.post("/api/proposals", json={"kind": "home"}).raise_for_status().json()["id"]
+    number = propose_home(desk)
     press(desk)
     wait_for_proposal(desk, number, "done")
     motors = {one["name"]: one for one in (motor(desk, slot) for slot in DESK_SLOTS)}

@@ -11,7 +11,17 @@ import jsonschema
 import numpy as np
 import pytest
 from bare_kernel import ROOT
-from motion import enable, motor, press, propose, register, unlock, wait_for_proposal, wait_until
+from motion import (
+    enable,
+    motor,
+    press,
+    propose,
+    propose_home,
+    register,
+    unlock,
+    wait_for_proposal,
+    wait_until,
+)
 from stack import Stack
 from test_kinematics_cli import kinematics
 from test_robot_files import SCHEMA
@@ -76,7 +86,7 @@ def home_all_by_file(stack: Stack, slots: range) -> None:
     unlock(stack)
     for slot in slots:
         enable(stack, slot)
-    number = stack.api.post("/api/proposals", json={"kind": "home"}).raise_for_status().json()["id"]
+    number = propose_home(stack)
     press(stack)
     wait_for_proposal(stack, number, "done")
     assert all(motor(stack, slot)["homed"] for slot in slots)

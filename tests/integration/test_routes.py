@@ -11,11 +11,13 @@ from conftest import StackFactory
 from interface import judge
 from motion import (
     LATERAL,
+    approve,
     enable,
     motor,
     open_stream,
     press,
     propose,
+    register,
     set_home,
     unlock,
     wait_for_mode,
@@ -256,7 +258,8 @@ def test_the_robot_goes_home_by_its_mode_and_back(robot: Stack) -> None:
     set_home(robot, "feet")
     for axis in robot.api.get("/api/motors").json():
         enable(robot, axis["slot"])
-    assert judge(robot.api.put("/api/mode", json={"mode": "home"})).json()["mode"] == "home"
+    assert judge(robot.api.put("/api/mode", json={"mode": "home"})).json()["mode"] == "manual"
+    approve(robot)
     assert robot.status()["app_mode"] == "home"
     draft = {"slot": LATERAL, "target_counts": 0}
     problem(robot.api.post("/api/proposals", json=draft), 409, "MODE_HOME")
@@ -272,6 +275,7 @@ def test_the_robot_homes_by_its_mode_and_is_manual_again(robot: Stack) -> None:
     for axis in axes:
         enable(robot, axis["slot"])
     judge(robot.api.put("/api/mode", json={"mode": "home"})).raise_for_status()
+    approve(robot)
     press(robot)
     wait_until("manual again", lambda: robot.status()["app_mode"] == "manual")
     assert robot.api.get("/api/proposals").json()[0]["state"] == "done"
@@ -280,8 +284,7 @@ def test_the_robot_homes_by_its_mode_and_is_manual_again(robot: Stack) -> None:
 
 
 def test_targeting_comes_back_as_it_was_set(robot: Stack) -> None:
-    body = {"registration": [str(each) for each in POSE], "ignore_registration_rotation": True}
-    judge(robot.api.put("/api/targeting/registration", json=body)).raise_for_status()
+    register(robot, [str(each) for each in POSE], ignore_registration_rotation=True)
     judge(robot.api.put("/api/targeting/current", json={"current_position": POSE})).raise_for_status()
     target = {
         "entry_point": ["1.5", 2, "-3e1"],
@@ -313,7 +316,7 @@ def test_the_alignment_tells_what_is_missing_then_what_is_desired_reachable_and_
     assert (first["frame"], first["current_body_problem"]["code"]) == ("robot", "NOT_HOMED")
 
     shift = [1, 0, 0, 100, 0, 1, 0, -50, 0, 0, 1, 25, 0, 0, 0, 1]
-    judge(robot.api.put("/api/targeting/registration", json={"registration": shift})).raise_for_status()
+    register(robot, shift)
     second = alignment()
     assert second["alignment_problem"]["code"] == "NO_TARGET"
     assert second["current_problem"]["code"] == "NOT_HOMED"

@@ -6,7 +6,17 @@ from pathlib import Path
 import pytest
 from bare_kernel import BIN, ROOT
 from conftest import StackFactory
-from motion import enable, motor, press, proposal, set_home, unlock, wait_for_proposal, wait_until
+from motion import (
+    approve,
+    enable,
+    motor,
+    press,
+    proposal,
+    set_home,
+    unlock,
+    wait_for_proposal,
+    wait_until,
+)
 from stack import Stack
 
 ROTATION = 0
@@ -30,6 +40,7 @@ def test_a_sweep_pauses_with_the_pedal_and_measures_each_frequency(stack: StackF
     robot = ready(stack)
     made = sweep(robot, **BAND)
     assert made["status"] == 201, made
+    approve(robot, made["id"])
     assert robot.status()["app_mode"] == "frequency_sweep"
     press(robot)
     wait_for_proposal(robot, made["id"], "executing")
@@ -57,8 +68,9 @@ def test_the_published_range_is_refused_and_nothing_turns(stack: StackFactory) -
 
 def test_the_mode_sweeps_the_whole_band_until_manual_ends_it(stack: StackFactory) -> None:
     robot = ready(stack)
-    mode = robot.api.put("/api/mode", json={"mode": "frequency_sweep"}).raise_for_status().json()
-    assert mode["mode"] == "frequency_sweep"
+    robot.api.put("/api/mode", json={"mode": "frequency_sweep"}).raise_for_status()
+    approve(robot)
+    assert robot.api.get("/api/mode").json()["mode"] == "frequency_sweep"
     press(robot)
     wait_until("drive", lambda: motor(robot, ROTATION)["drive"] > 0)
     robot.api.put("/api/mode", json={"mode": "manual"}).raise_for_status()

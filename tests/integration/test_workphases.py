@@ -6,8 +6,17 @@ import numpy as np
 import pytest
 from conftest import StackFactory
 from interface import judge
-from motion import enable, home_all, press, set_home, unlock, wait_for_mode, wait_until
-from navigation_phases import Phases, aimed, approve, short, to_targeting
+from motion import (
+    approve,
+    enable,
+    home_all,
+    press,
+    set_home,
+    unlock,
+    wait_for_mode,
+    wait_until,
+)
+from navigation_phases import Phases, aimed, short, to_targeting
 from navigator import Navigator, Query, text, transform
 from stack import Stack
 
@@ -153,26 +162,24 @@ def test_a_target_out_of_reach_is_refused_and_leaves_none(
 
 
 @pytest.mark.parametrize("dialect", ["wpi2024"], indirect=True)
-def test_a_target_out_of_reach_is_moved_to_what_can_be_reached(
+def test_a_target_that_the_axes_miss_is_refused_with_what_they_reach_and_not_replaced(
     robot: Stack, connect: Callable[[], Phases], dialect: str
 ) -> None:
     home_all(robot)
     navigator = connect()
     to_targeting(navigator, dialect)
+    kept = robot.api.get("/api/targeting").json()
     beside = aimed()
     beside[3] += 60
-    [_, status, told, reachable] = navigator.expect(
-        transform("TGT_0009", beside),
-        "ACK_0009 TRANSFORM",
-        "TARGET 10",
-        "TARGET TRANSFORM",
-        "REACHABLE_TARGET TRANSFORM",
+    [_, status, reachable] = navigator.expect(
+        transform("TGT_0009", beside), "ACK_0009 TRANSFORM", "TARGET 10", "REACHABLE_TARGET TRANSFORM"
     )
     assert status.sub_code == 3
-    assert np.array_equal(told.matrix, reachable.matrix)
-    assert abs(told.matrix[0, 3] - beside[3]) > 0.1
-    navigator.phase("MOVE_TO_TARGET")
-    approve(robot)
+    assert "misses the desired one by" in status.text
+    assert abs(reachable.matrix[0, 3] - beside[3]) > 1.0
+    assert robot.api.get("/api/targeting").json() == kept
+    navigator.phase("MOVE_TO_TARGET", "MOVE_TO_TARGET 13")
+    assert robot.api.get("/api/proposals").json() == []
 
 
 @pytest.mark.parametrize("dialect", ["wpi2024"], indirect=True)

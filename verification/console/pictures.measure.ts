@@ -76,7 +76,10 @@ test("the page of a target that is set", async ({ robot, page }) => {
       await fetch("/api/targeting/target", { method: "PUT", body: target });
       await fetch("/api/targeting/registration", { method: "PUT", body: registered });
     },
-    [JSON.stringify({ entry_point, target_point }), JSON.stringify({ registration })] as const,
+    [
+      JSON.stringify({ entry_point, target_point }),
+      JSON.stringify({ registration, override_reason: "There is no scanner." }),
+    ] as const,
   );
   await robot.open("Targeting");
   await expect(robot.panel("History").getByRole("row")).toHaveCount(3);

@@ -70,6 +70,8 @@ class Mover(threading.Thread):
             "/api/proposals", json={"kind": "coordinated", "targets": ENDS[self.done % 2]}
         ).raise_for_status()
         path = f"/api/proposals/{proposed.json()['id']}"
+        self._robot.api.post(f"{path}/approve").raise_for_status()
+        press(self._robot)
         while (proposal := self._robot.api.get(path).raise_for_status().json())["state"] != "done":
             if proposal["state"] not in ("approved", "executing"):
                 raise MoveAbortedError(f"{proposal['state']}: {proposal['detail']}")

@@ -45,8 +45,13 @@ json robot_json(const Robot& robot, const ilk_config_t& config) {
   for (const Axis& axis : robot.axes) {
     axes.push_back(axis.name);
   }
-  return {{"name", robot.name},         {"title", robot.title}, {"config_crc", config_hash(config)},
-          {"kinematics", robot.family}, {"modes", robot.modes}, {"home_steps", std::move(steps)},
+  return {{"name", robot.name},
+          {"title", robot.title},
+          {"config_crc", config_hash(config)},
+          {"kinematics", robot.family},
+          {"modes", robot.modes},
+          {"auto_approve", robot.auto_approve},
+          {"home_steps", std::move(steps)},
           {"axes", std::move(axes)}};
 }
 

@@ -20,7 +20,6 @@ using nlohmann::json;
 constexpr std::size_t reach_draws = 200'000;
 
 /** Bytes of a reason for which a registration expires. */
-constexpr std::size_t longest_reason = 200;
 
 /** Schema `Reach`. */
 json reach_json(const KinematicsResult<Reach>& found) {

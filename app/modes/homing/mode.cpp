@@ -176,8 +176,11 @@ void HomeMode::wait(const ilk_snapshot_t& snapshot) noexcept {
     axis.drop();
   }
   const bool was_executing = status_.phase == TaskPhase::executing;
-  if (was_executing || (status_.reason == TaskReason::press_again && !slices_used_)) {
+  const bool is_released = status_.reason == TaskReason::press_again && !slices_used_;
+  if (was_executing || (is_released && status_.phase == TaskPhase::paused)) {
     pause(TaskReason::pedal_released, snapshot);
+  } else if (is_released) {
+    set_phase(TaskPhase::waiting, TaskReason::none, 0, snapshot.state.system.tick);
   }
   if (!was_executing) {
     (void)expire_when_late(snapshot.state.system.tick);
@@ -206,6 +209,8 @@ void HomeMode::go_on(const ilk_snapshot_t& snapshot) noexcept {
     status_.left_counts = 0;
     set_phase(TaskPhase::executing, TaskReason::none, 0, snapshot.state.system.tick);
     start_axes(snapshot);
+  } else if (status_.phase == TaskPhase::waiting) {
+    status_.reason = TaskReason::press_again;
   }
 }
 

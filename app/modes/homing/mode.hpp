@@ -27,6 +27,7 @@ class HomeMode final : public Mode {
   [[nodiscard]] bool homes() const noexcept override { return true; }
   /** One that names what the robot has not is refused (AXIS). */
   void take(const TaskReference& task, std::uint32_t tick) noexcept override;
+  void await_press() noexcept override { slices_used_ = true; }
   void end(std::uint32_t task, TaskReason reason, std::uint32_t tick) noexcept override;
   void end_all(TaskReason reason, std::uint32_t tick) noexcept override;
   void end_axis(std::uint32_t slot, TaskReason reason, std::uint32_t tick) noexcept override;

@@ -23,16 +23,6 @@ Task task_of(RobotMode mode, PathProgram program, const std::string& author) {
 }
 
 /** Axes that the aim asks more of than they can do. */
-std::string clamped_axes(const Robot& robot, const Alignment& alignment) {
-  std::string names;
-  for (const AxisSetpoint& setpoint : alignment.setpoints) {
-    if (setpoint.clamped) {
-      names += (names.empty() ? "" : ", ") + robot.at_slot(setpoint.slot)->title;
-    }
-  }
-  return names;
-}
-
 tl::expected<MoveLeg, Problem> ablation_leg_in(const Robot& robot, const json& step,
                                                const std::string& where) {
   Fields fields(step, {"probe_rotation", "insertion", "dwell_s"}, where);
@@ -115,13 +105,19 @@ tl::expected<Task, Problem> ablation_of(const json& body, const Robot& robot, co
 
 tl::expected<PoseRequest, Problem> pose_of(const json& body) {
   constexpr std::array<std::string_view, 2> poses{"desired", "reachable"};
-  Fields fields(body, {"kind", "pose", "insert"});
-  const auto pose = fields.choice("pose", poses);
-  const bool insert = fields.boolean("insert").value_or(false);
+  Fields fields(body, {"kind", "pose", "insert", "accepted_mm", "accepted_deg"});
+  PoseRequest request;
+  if (fields.choice("pose", poses) == "reachable") {
+    request.accepted_mm = fields.number("accepted_mm", 0.0, 2 * farthest_mm);
+    request.accepted_deg = fields.number("accepted_deg", 0.0, 180.0);
+    fields.require({{"accepted_mm", "the deviation that you accept, in mm"},
+                    {"accepted_deg", "the deviation that you accept, in degrees"}});
+  }
+  request.insert = fields.boolean("insert").value_or(false);
   if (fields.problem()) {
     return fail(*fields.problem());
   }
-  return PoseRequest{pose == "reachable", insert};
+  return request;
 }
 
 DraftKind::Reading read_coordinated(const Context& context, json body, std::string author) {
@@ -190,17 +186,13 @@ boost::asio::awaitable<tl::expected<Task, Problem>> pose_draft(const Context& co
   if (!alignment) {
     co_return fail(alignment.error());
   }
-  const std::string clamped = clamped_axes(context.robot, *alignment);
-  if (!clamped.empty() && !request.reachable) {
-    co_return fail(Problem{.status = Status::conflict,
-                           .code = "UNREACHABLE",
-                           .detail = "These axes end before the desired pose: " + clamped + ".",
-                           .expected = "a target within reach",
-                           .next_step = "Set another target, or propose the reachable pose."});
+  if (const auto miss = out_of_reach(context.robot, *alignment, request.accepted_mm, request.accepted_deg)) {
+    co_return fail(*miss);
   }
   Task task =
       task_of(RobotMode::coordinated, pose_program(context.robot, *alignment, request.insert), author);
   task.targeting_revision = revision;
+  task.aim = ReachedAim{alignment->desired, alignment->reachable};
   co_return task;
 }
 

@@ -14,7 +14,15 @@ class BiopsyRoutesTest : public HttpTest {
  protected:
   BiopsyRoutesTest() : HttpTest(prostate(), test::prostate_config()) { show(needle_view()); }
 
-  Answered propose(const json& body) { return post("/api/proposals", body.dump()); }
+  /** Approves what waits for that. */
+  Answered propose(const json& body) {
+    Answered made = post("/api/proposals", body.dump());
+    if (made.status == 201u && json::parse(made.body)["state"] == "checked") {
+      const std::string id = json::parse(made.body)["id"].dump();
+      EXPECT_EQ(post("/api/proposals/" + id + "/approve").status, 200u);
+    }
+    return made;
+  }
 
   Answered show_image(const json& body) { return post("/api/biopsy/images", body.dump()); }
 
@@ -31,8 +39,7 @@ class BiopsyRoutesTest : public HttpTest {
 
   /** Registers the robot, and sets that point of the guide frame as the target. */
   void set_target(const Eigen::Vector3d& guide_mm) {
-    const json registered{{"registration", registration}};
-    ASSERT_EQ(put("/api/targeting/registration", registered.dump()).status, 200u);
+    register_robot(registration);
     const json target{{"target_point", list(scanner_from_guide() * guide_mm)}};
     ASSERT_EQ(put("/api/targeting/target", target.dump()).status, 200u);
   }

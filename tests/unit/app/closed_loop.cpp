@@ -162,11 +162,10 @@ void ClosedLoop::make_all_ready() {
   pedal(true);
 }
 
-TaskStatus ClosedLoop::carry_out(std::uint32_t id, Work work, std::uint32_t most_ticks) {
-  const TaskReference task = task_of(id, std::move(work));
-  modes_.take(task, seen_tick_);
-  const auto* moved = task->work.find<MoveTask>();
-  const auto status = [&] { return moved != nullptr ? move(moved->slot) : this->status(task->work.type()); };
+TaskStatus ClosedLoop::carry_out(std::uint32_t id, const Work& work, std::uint32_t most_ticks) {
+  give(id, work);
+  const auto* moved = work.find<MoveTask>();
+  const auto status = [&] { return moved != nullptr ? move(moved->slot) : this->status(work.type()); };
   for (std::uint32_t i = 0; i < most_ticks && is_open(status().phase); ++i) {
     tick();
   }

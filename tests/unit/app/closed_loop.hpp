@@ -56,10 +56,22 @@ class ClosedLoop {
   void make_ready(std::uint32_t slot);
 
   /** Gives a task at the tick that the mode sees. */
-  void give(std::uint32_t id, Work work) { modes_.take(task_of(id, std::move(work)), seen_tick_); }
+  void give_under_any_pedal(std::uint32_t id, Work work) {
+    modes_.take(task_of(id, std::move(work)), seen_tick_);
+  }
+
+  /** The same; a held pedal is pressed anew where the task needs that. */
+  void give(std::uint32_t id, Work work) {
+    const bool is_move = work.find<MoveTask>() != nullptr;
+    give_under_any_pedal(id, std::move(work));
+    if (!is_move && state_.system.mode == ILK_MODE_MOTION) {
+      pedal(false);
+      pedal(true);
+    }
+  }
 
   /** Gives a task and returns its status once it is final, or after so many ticks. */
-  TaskStatus carry_out(std::uint32_t id, Work work, std::uint32_t most_ticks);
+  TaskStatus carry_out(std::uint32_t id, const Work& work, std::uint32_t most_ticks);
 
   /** The verdict of a MOVE to that setpoint, sent now. */
   std::uint32_t verdict_of_move(std::uint32_t slot, std::int32_t target_counts, std::uint32_t drive);

@@ -9,6 +9,7 @@
 #include "proposals/motion_registry.hpp"
 #include "proposals/proposal_json.hpp"
 #include "robot_fixture.hpp"
+#include "tasks.hpp"
 
 namespace interlock {
 namespace {
@@ -54,7 +55,9 @@ class HomeProposalTest : public testing::Test {
   }
 
   tl::expected<Proposal, Refusal> home(HomeTask task, TaskSource source = TaskSource::console) {
-    return registry_.propose({std::move(task), "ann", RobotMode::home, source}, view_);
+    Task asked{std::move(task), "ann", RobotMode::home, source};
+    return source == TaskSource::console ? test::approved(registry_, std::move(asked), view_)
+                                         : registry_.propose(std::move(asked), view_);
   }
   tl::expected<Proposal, Refusal> home_axis(std::uint32_t slot = insertion) {
     return home(interlock::home_axis(slot));

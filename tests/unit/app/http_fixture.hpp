@@ -122,9 +122,13 @@ class HttpTest : public StoreFixture {
 
   Answered put(const std::string& target, const std::string& body);
   /** The robot's frame is the scanner's. */
-  void register_robot() {
-    const json identity{{"registration", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}};
-    ASSERT_EQ(put("/api/targeting/registration", identity.dump()).status, 200u);
+  /** Wherever that is: there is no scanner here. */
+  void register_robot(const json& pose = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},
+                      bool ignores_rotation = false) {
+    const json body{{"registration", pose},
+                    {"ignore_registration_rotation", ignores_rotation},
+                    {"override_reason", "There is no scanner."}};
+    ASSERT_EQ(put("/api/targeting/registration", body.dump()).status, 200u);
   }
 
   Answered post_raw(const std::string& bytes);

@@ -29,16 +29,17 @@ TEST_F(ModeRoutesTest, TheRobotIsDescribedAsItsFileSays) {
   EXPECT_EQ(robot["config_crc"], json::parse(get("/api/status").body)["config_crc"]);
 }
 
-TEST_F(ModeRoutesTest, GoingHomeProposesAllStepsAndManualAbortsThem) {
+TEST_F(ModeRoutesTest, GoingHomeProposesAllStepsForApprovalAndManualAbortsThem) {
   show(test::ready_view());
   EXPECT_EQ(mode()["mode"], "manual");
   const Answered homing = set_mode("home");
   ASSERT_EQ(homing.status, 200u) << homing.body;
-  EXPECT_EQ(json::parse(homing.body)["mode"], "home");
-  EXPECT_EQ(json::parse(get("/api/status").body)["app_mode"], "home");
+  EXPECT_EQ(json::parse(homing.body)["mode"], "manual") << "until somebody approves it";
   const json proposal = json::parse(get("/api/proposals").body)[0];
   EXPECT_EQ(proposal["kind"], "home");
-  EXPECT_EQ(proposal["state"], "approved");
+  EXPECT_EQ(proposal["state"], "checked");
+  ASSERT_EQ(post("/api/proposals/1/approve").status, 200u);
+  EXPECT_EQ(json::parse(get("/api/status").body)["app_mode"], "home");
   EXPECT_TRUE((next_task().work.find<HomeTask>() != nullptr));
   EXPECT_EQ(json::parse(set_mode("manual").body)["mode"], "manual");
   EXPECT_EQ(std::get<Cancel>(next_command()).task, proposal["id"]);
@@ -115,6 +116,7 @@ TEST_F(ModeRoutesTest, TheStreamTellsOfEachMode) {
   auto stream = open_stream();
   ASSERT_TRUE(stream.next());
   ASSERT_EQ(set_mode("home").status, 200u);
+  ASSERT_EQ(post("/api/proposals/1/approve").status, 200u);
   ASSERT_EQ(set_mode("manual").status, 200u);
   std::vector<std::string> modes;
   while (modes.size() < 2) {

@@ -160,6 +160,8 @@ TEST_F(NavigationTest, AProgramCannotRenewARegistrationThatHasExpired) {
   auto calibrate = [this, id = 0](float x_mm) mutable {
     igtl::Matrix pose = igtl::Transform{}.matrix;
     pose[3] = x_mm;
+    pose[7] = -185.0f;
+    pose[11] = -73.0f;
     const std::string name = "CLB_" + std::to_string(++id);
     EXPECT_TRUE(program_->send(name, igtl::Transform{pose}, soon()).has_value());
     return next_answer();

@@ -314,26 +314,22 @@ TEST_P(PathModeOnThePlant, ATrajectoryThatEndsInMotionComesToRestAtItsLastRow) {
   EXPECT_EQ(loop.refusals(), 0u);
 }
 
-/** The order before is ended by the one that follows, at some 600 counts/s and with the pedal held. */
-TEST_P(PathModeOnThePlant, APathThatReplacesAnotherBeginsAtTheVelocityThatItsAxesHave) {
+/** The path before is ended by the one that follows, at some 600 counts/s. */
+TEST_P(PathModeOnThePlant, APathThatIsApprovedUnderAHeldPedalWaitsForANewPressAndWhatItReplacesStops) {
   ClosedLoop loop(37, GetParam());
   loop.make_all_ready();
-  const PathProgram there = move_of({{test::yaw, -600}});
-  const PathProgram elsewhere = move_of({{test::yaw, -700}});
-  (void)loop.carry_out(1, test::along(there), 600);
-  const double before = loop.true_position(test::yaw);
-  loop.tick();
-  const double speed = (loop.true_position(test::yaw) - before) / 0.001;
-  ASSERT_LT(speed, -400.0);
-  std::optional<double> begun;
-  loop.watch([&] {
-    if (const auto setpoint = loop.setpoint(test::yaw); setpoint && !begun) {
-      begun = setpoint->velocity_counts_per_s;
-    }
-  });
-  expect_done(loop.carry_out(2, test::along(elsewhere), minute_ticks));
-  ASSERT_TRUE(begun);
-  EXPECT_NEAR(*begun, speed, 60.0);
+  (void)loop.carry_out(1, test::along(move_of({{test::yaw, -600}})), 600);
+  ASSERT_EQ(loop.path().phase, TaskPhase::executing);
+  loop.give_under_any_pedal(2, test::along(move_of({{test::yaw, -700}})));
+  loop.run(500);
+  EXPECT_EQ(loop.path().phase, TaskPhase::waiting);
+  EXPECT_EQ(loop.path().reason, TaskReason::press_again);
+  EXPECT_EQ(loop.outputs().command[test::yaw].drive, 0u);
+  loop.pedal(false);
+  EXPECT_EQ(loop.path().reason, TaskReason::none);
+  loop.pedal(true);
+  loop.run(minute_ticks);
+  EXPECT_EQ(loop.path().phase, TaskPhase::done);
   expect_at(loop, neuro(), {{test::yaw, -700}});
 }
 
@@ -395,9 +391,9 @@ TEST(PathMode, HomingAndMovesAndPathsDoNotShareAxes) {
   loop.give(2, MoveTask{test::yaw, -100});
   EXPECT_EQ(loop.move(test::yaw).reason, TaskReason::superseded);
   EXPECT_EQ(loop.path().phase, TaskPhase::executing);
-  loop.give(3, HomeTask{0, 1, {}});
+  loop.give_under_any_pedal(3, HomeTask{0, 1, {}});
   EXPECT_EQ(loop.path().reason, TaskReason::axis_homing);
-  loop.give(4, test::along(program));
+  loop.give_under_any_pedal(4, test::along(program));
   EXPECT_EQ(loop.home().reason, TaskReason::superseded);
 }
 

@@ -61,8 +61,18 @@ class PathProposalTest : public testing::Test {
                            [this] { return now_; }};
 };
 
+TEST_F(PathProposalTest, ASeveralAxesMotionWaitsForItsOwnApprovalWhoeverProposesIt) {
+  const auto waits = registry_.propose(draft_to({{test::yaw, -300}, {head_axis, -1000}}), view_);
+  ASSERT_TRUE(waits) << waits.error().detail;
+  EXPECT_EQ(waits->state, ProposalState::checked);
+  EXPECT_THAT(sent_, testing::IsEmpty());
+  EXPECT_EQ(registry_.propose({MoveTask{test::insertion, 1000}, "edna"}, view_)->state,
+            ProposalState::approved)
+      << "whoever moves one axis by hand sees what it does";
+}
+
 TEST_F(PathProposalTest, AConsolesPathIsCheckedApprovedAndOrdered) {
-  const auto proposal = registry_.propose(draft_to({{test::yaw, -300}, {head_axis, -1000}}), view_);
+  const auto proposal = test::approved(registry_, draft_to({{test::yaw, -300}, {head_axis, -1000}}), view_);
   ASSERT_TRUE(proposal) << proposal.error().detail;
   EXPECT_EQ(proposal->state, ProposalState::approved);
   EXPECT_EQ(proposal->axes, (std::vector<std::string>{"yaw", "head"}));
@@ -106,7 +116,7 @@ TEST_F(PathProposalTest, ATaskLivesUntilTheControlThreadLetsGoOfItAndIsFreedByTh
   std::weak_ptr<const Task> watched;
   TaskReference held;
   {
-    ASSERT_TRUE(registry_.propose(draft_to({{test::yaw, -300}}), view_));
+    ASSERT_TRUE(test::approved(registry_, draft_to({{test::yaw, -300}}), view_));
     held = std::get<Approval>(sent_.front()).task;
     watched = held;
     sent_.clear();
@@ -172,7 +182,7 @@ TEST_F(PathProposalTest, AFileWaitsForApprovalAndIsCheckedAnewThen) {
 }
 
 TEST_F(PathProposalTest, AMotionThatCouldNotBePlannedIsToldInWords) {
-  ASSERT_TRUE(registry_.propose(draft_to({{test::yaw, -300}}), view_));
+  ASSERT_TRUE(test::approved(registry_, draft_to({{test::yaw, -300}}), view_));
   report(1, TaskPhase::aborted, TaskReason::no_path);
   EXPECT_EQ(state(1), ProposalState::aborted);
   EXPECT_THAT(registry_.find(1)->detail, testing::HasSubstr("No motion within the rates of the axes"));
@@ -230,25 +240,25 @@ TEST_F(PathProposalTest, AFullBookTellsTheOldestThatWaitsThatItGoes) {
 TEST_F(PathProposalTest, ChangedTargetingEndsWhatFollowedFromIt) {
   Task aligned = draft_to({{head_axis, -1000}});
   aligned.targeting_revision = registry_.targeting_revision();
-  ASSERT_TRUE(registry_.propose(aligned, view_));
+  ASSERT_TRUE(test::approved(registry_, aligned, view_));
   registry_.end_stale();
   EXPECT_EQ(state(1), ProposalState::aborted);
   EXPECT_EQ(std::get<Cancel>(sent_.back()).task, 1u);
   sent_.clear();
   expect_refused(aligned, "STALE");
-  ASSERT_TRUE(registry_.propose(draft_to({{head_axis, -1000}}), view_));
+  ASSERT_TRUE(test::approved(registry_, draft_to({{head_axis, -1000}}), view_));
   registry_.end_stale();
   EXPECT_EQ(state(3), ProposalState::approved) << "it names its targets itself";
 }
 
 TEST_F(PathProposalTest, APathReplacesEveryApprovedMotionAndKeepsMovesAway) {
   ASSERT_TRUE(registry_.propose({MoveTask{test::insertion, 1000}, "edna"}, view_));
-  ASSERT_TRUE(registry_.propose(draft_to({{head_axis, -1000}}), view_));
+  ASSERT_TRUE(test::approved(registry_, draft_to({{head_axis, -1000}}), view_));
   EXPECT_EQ(state(1), ProposalState::aborted);
   const auto move = registry_.propose({MoveTask{test::insertion, 900}, "edna"}, view_);
   ASSERT_FALSE(move);
   EXPECT_EQ(move.error().code, "MODE_PATH");
-  ASSERT_TRUE(registry_.propose(draft_to({{head_axis, -900}}), view_));
+  ASSERT_TRUE(test::approved(registry_, draft_to({{head_axis, -900}}), view_));
   EXPECT_EQ(state(2), ProposalState::aborted);
 }
 

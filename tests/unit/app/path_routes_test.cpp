@@ -9,7 +9,15 @@ class PathRoutesTest : public HttpTest {
  protected:
   PathRoutesTest() { show(test::ready_view()); }
 
-  Answered propose(const json& body) { return post("/api/proposals", body.dump()); }
+  /** Approves what waits for that. */
+  Answered propose(const json& body) {
+    Answered made = post("/api/proposals", body.dump());
+    if (made.status == 201u && json::parse(made.body)["state"] == "checked") {
+      const std::string id = json::parse(made.body)["id"].dump();
+      EXPECT_EQ(post("/api/proposals/" + id + "/approve").status, 200u);
+    }
+    return made;
+  }
 
   Answered remove(const std::string& target) {
     Request request{http::verb::delete_, target, 11};
@@ -85,12 +93,11 @@ TEST_F(PathRoutesTest, AChangedRegistrationEndsThePoseThatFollowedFromTheOldOne)
   const json reported{{"current_position", {1, 0, 0, 5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}};
   ASSERT_EQ(put("/api/targeting/current", reported.dump()).status, 200u);
   EXPECT_EQ(proposal(1)["state"], "approved") << "what an imager reports moves nothing";
-  const json moved{{"registration", {1, 0, 0, 5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}};
-  ASSERT_EQ(put("/api/targeting/registration", moved.dump()).status, 200u);
+  register_robot({1, 0, 0, 5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
   EXPECT_EQ(proposal(1)["state"], "aborted");
 }
 
-TEST_F(PathRoutesTest, AnUnreachableTargetIsRefusedUntilTheReachablePoseIsAskedFor) {
+TEST_F(PathRoutesTest, AnUnreachableTargetIsRefusedUntilSomebodyAcceptsTheMissByItsNumbers) {
   register_robot();
   // Straight down the robot's own axis, too far to the side for the lateral axis.
   ASSERT_EQ(put("/api/targeting/target", R"({"entry_point":[60,245,60],"target_point":[60,205,60]})").status,
@@ -99,7 +106,17 @@ TEST_F(PathRoutesTest, AnUnreachableTargetIsRefusedUntilTheReachablePoseIsAskedF
   EXPECT_EQ(refused.status, 409u) << refused.body;
   EXPECT_EQ(refused.problem()["code"], "UNREACHABLE");
   EXPECT_NE(refused.problem()["detail"].get<std::string>().find("Lateral"), std::string::npos);
-  EXPECT_EQ(propose({{"kind", "pose"}, {"pose", "reachable"}}).status, 201u);
+  EXPECT_EQ(propose({{"kind", "pose"}, {"pose", "reachable"}}).status, 422u) << "which miss?";
+  const json miss = json::parse(get("/api/targeting/alignment").body)["alignment"]["deviation"];
+  json body{{"kind", "pose"},
+            {"pose", "reachable"},
+            {"accepted_mm", miss["distance_mm"].get<double>() - 0.1},
+            {"accepted_deg", miss["angle_deg"]}};
+  EXPECT_EQ(propose(body).problem()["code"], "UNREACHABLE") << "more than was accepted";
+  body["accepted_mm"] = miss["distance_mm"];
+  const Answered made = propose(body);
+  ASSERT_EQ(made.status, 201u) << made.body;
+  EXPECT_EQ(json::parse(made.body)["aim"]["deviation"], miss) << "kept with the motion";
 }
 
 TEST_F(PathRoutesTest, AnExpiredRegistrationEndsThePoseThatFollowedFromItAndThereIsNoOther) {
@@ -131,7 +148,7 @@ TEST_F(PathRoutesTest, ATrajectoryIsLoadedProposedApprovedAndUnloadedOnceDone) {
   ASSERT_EQ(loaded.status, 200u) << loaded.body;
   EXPECT_EQ(json::parse(loaded.body)["rows"], 2);
   EXPECT_EQ(json::parse(loaded.body)["author"], "edna");
-  const Answered made = propose({{"kind", "trajectory"}});
+  const Answered made = post("/api/proposals", R"({"kind":"trajectory"})");
   ASSERT_EQ(made.status, 201u) << made.body;
   EXPECT_EQ(json::parse(made.body)["state"], "checked");
   EXPECT_EQ(json::parse(get("/api/mode").body)["mode"], "manual");
@@ -213,6 +230,7 @@ TEST_F(PathRoutesTest, DrapingGoesToTheSetpointsOfTheFile) {
   const json made = proposal(1);
   EXPECT_EQ(made["mode"], "draping");
   EXPECT_EQ(made["axes"], json({"yaw", "pitch", "head", "feet"}));
+  ASSERT_EQ(post("/api/proposals/1/approve").status, 200u);
   EXPECT_EQ(put("/api/mode", R"({"mode":"manual"})").status, 200u);
   EXPECT_EQ(proposal(1)["state"], "aborted");
 }

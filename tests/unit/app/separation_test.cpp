@@ -9,6 +9,7 @@
 #include "proposals/motion_registry.hpp"
 #include "robot/robot_file.hpp"
 #include "robot_fixture.hpp"
+#include "tasks.hpp"
 
 namespace interlock {
 namespace {
@@ -50,7 +51,7 @@ class SeparationTest : public testing::Test {
   std::string all() { return code_of(home(*home_all(prostate()))); }
 
   tl::expected<Proposal, Refusal> home(HomeTask task) {
-    return registry_.propose({std::move(task), "ann", RobotMode::home}, view_);
+    return test::approved(registry_, {std::move(task), "ann", RobotMode::home}, view_);
   }
 
   static std::string code_of(const tl::expected<Proposal, Refusal>& proposal) {
@@ -165,7 +166,7 @@ class NeuroSeparationTest : public testing::Test {
 
   /** The code that refuses what is proposed; empty when it may be approved. */
   std::string code_of(Work work) {
-    last_ = registry_.propose({std::move(work), "ann", RobotMode::manual}, view_);
+    last_ = test::approved(registry_, {std::move(work), "ann", RobotMode::manual}, view_);
     return last_ ? "" : last_.error().code;
   }
   std::string move(const std::string& name, double mm) {

@@ -123,7 +123,7 @@ TEST_P(SweepModeTest, TheAxisTurnsRoundBeforeItsLimitsAndRestsBetween) {
 
 TEST_P(SweepModeTest, ReleasePausesAndTheNextPressGoesOnWithTheSameFrequency) {
   loop_.give(1, whole(6, 500));
-  loop_.run(1700);
+  loop_.run(1500);
   ASSERT_EQ(loop_.sweep().phase, TaskPhase::executing);
   loop_.happen(plant::command::PressPedal{false});
   loop_.run(5);

@@ -8,6 +8,7 @@
 #include "proposals/proposal_json.hpp"
 #include "robot_fixture.hpp"
 #include "service/drafts.hpp"
+#include "tasks.hpp"
 
 namespace interlock {
 namespace {
@@ -44,7 +45,7 @@ class SweepProposalTest : public testing::Test {
   }
 
   tl::expected<Proposal, Refusal> propose(const SweepTask& sweep) {
-    return registry_.propose({sweep, "edna", RobotMode{"frequency_sweep"}}, view_);
+    return test::approved(registry_, {sweep, "edna", RobotMode{"frequency_sweep"}}, view_);
   }
 
   void report(TaskPhase phase, std::uint32_t step) {

@@ -26,8 +26,7 @@ TEST_F(TargetingRoutesTest, StartsWithTheProbeOfTheRobot) {
 }
 
 TEST_F(TargetingRoutesTest, WhatIsSetIsAnsweredAndKept) {
-  const json registration{{"registration", quarter_turn}, {"ignore_registration_rotation", true}};
-  ASSERT_EQ(put("/api/targeting/registration", registration.dump()).status, 200u);
+  register_robot(quarter_turn, true);
   ASSERT_EQ(put("/api/targeting/current", json{{"current_position", quarter_turn}}.dump()).status, 200u);
   const json target{
       {"entry_point", {"1", 2, 3}}, {"target_point", {4, 5, 6}}, {"canula_to_treatment_offset", "7.5"}};
@@ -57,7 +56,7 @@ TEST_F(TargetingRoutesTest, WithoutAValidRegistrationNoPoseOfTheScannerIsTold) {
   EXPECT_EQ(poses()["frame"], "robot") << "where the robot looks at itself";
   EXPECT_TRUE(poses()["current_body"].is_array());
   EXPECT_TRUE(poses()["current_body_problem"].is_null());
-  set("registration", {{"registration", quarter_turn}});
+  register_robot(quarter_turn);
   EXPECT_EQ(poses()["frame"], "scanner");
   EXPECT_TRUE(poses()["current"].is_array());
   ASSERT_EQ(post("/api/targeting/registration/expire", R"({"reason":"The patient moved."})").status, 200u);
@@ -69,7 +68,7 @@ TEST_F(TargetingRoutesTest, WithoutAValidRegistrationNoPoseOfTheScannerIsTold) {
 }
 
 TEST_F(TargetingRoutesTest, AnExpiryIsKeptWithItsReasonAndWhoSetItAgain) {
-  set("registration", {{"registration", quarter_turn}});
+  register_robot(quarter_turn);
   pass(std::chrono::seconds(5));
   ASSERT_EQ(post("/api/targeting/registration/expire", "{}").status, 200u);
   EXPECT_EQ(post("/api/targeting/registration/expire", "{}").status, 200u) << "nothing more to expire";
@@ -79,14 +78,14 @@ TEST_F(TargetingRoutesTest, AnExpiryIsKeptWithItsReasonAndWhoSetItAgain) {
             json({{"registration_state", "expired"},
                   {"registration_problem", "The registration has expired: The table moved."}}));
   pass(std::chrono::seconds(5));
-  set("registration", {{"registration", quarter_turn}});
+  register_robot(quarter_turn);
   EXPECT_EQ(targeting()["registration_state"], "valid");
   EXPECT_EQ(history()["last_set"]["registration"]["time"], iso_8601(now()));
 }
 
 TEST_F(TargetingRoutesTest, AnotherHomeOfAnAxisExpiresItWithoutAQuestion) {
   ControlView view = test::ready_view();
-  set("registration", {{"registration", quarter_turn}});
+  register_robot(quarter_turn);
   while (targeting()["registration_state"] == "valid") {
     view.snapshot.state.axis[test::yaw].position_counts += 40;
     show(view);
@@ -99,7 +98,7 @@ TEST_F(TargetingRoutesTest, AnotherHomeOfAnAxisExpiresItWithoutAQuestion) {
 }
 
 TEST_F(TargetingRoutesTest, WhatIsNoReasonIsRefusedAndNothingExpires) {
-  set("registration", {{"registration", quarter_turn}});
+  register_robot(quarter_turn);
   for (const char* body : {R"({"reason":""})", R"({"reason":7})", R"({"why":"x"})", "[]"}) {
     EXPECT_EQ(post("/api/targeting/registration/expire", body).status, 422u) << body;
   }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "motion/task.hpp"
+#include "proposals/motion_registry.hpp"
 
 namespace interlock::test {
 
@@ -20,6 +21,13 @@ inline PathTask along(const PathProgram& program) { return {std::make_shared<con
 /** One that never is too late. */
 inline Approval approval_of(std::uint32_t id, Work work, std::uint32_t stops = 0, Moment held = {}) {
   return {task_of(id, std::move(work)), stops, std::chrono::steady_clock::time_point::max(), held};
+}
+
+/** The proposal of that task, which somebody approves when it waits for that. */
+inline tl::expected<Proposal, Refusal> approved(MotionRegistry& registry, Task task,
+                                                const ControlView& view) {
+  auto made = registry.propose(std::move(task), view);
+  return made && made->state == ProposalState::checked ? registry.approve(made->id, view) : made;
 }
 
 }  // namespace interlock::test

@@ -469,7 +469,7 @@ TEST(Wpi2024, ATargetDuringTheMoveReplacesItsMotion) {
   EXPECT_EQ(talk.reaction.ends, 8u);
   EXPECT_EQ(talk.over(8, StatusCode::not_ready), Shorts{});
   EXPECT_EQ(talk.stored().at(0), "TARGET 1");
-  EXPECT_TRUE(std::get<MoveToTarget>(talk.reaction.command.value()).takes_reachable);
+  EXPECT_TRUE(std::holds_alternative<MoveToTarget>(talk.reaction.command.value()));
   EXPECT_EQ(talk.proposed(9), Shorts{});
   EXPECT_EQ(talk.over(9).at(0), "MOVE_TO_TARGET 1");
 }

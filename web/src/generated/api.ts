@@ -974,9 +974,9 @@ export interface paths {
         get: operations["listProposals"];
         put?: never;
         /**
-         * Drafts a move of one axis, homing, or a motion of several axes, checks it and, since the console's author releases it by creating it,
-         *     approves it. A trajectory, which comes from a file, waits for `approve`, unless the robot's file says `auto_approve`.
-         *     It executes while the pedal is held. A newer move of the same axis replaces an open one; homing and motions of several
+         * Drafts a move of one axis, homing, or a motion of several axes, and checks it. A move and the homing of one axis are approved with
+         *     that; everything else is `checked` and waits for `approve`, unless the robot's file says `auto_approve`.
+         *     It executes while the pedal is held; but for moves of one axis, only from the next press on. A newer move of the same axis replaces an open one; homing and motions of several
          *     axes replace every approved proposal, and until they have ended moves are refused (MODE_HOME, MODE_PATH).
          *     Refused here, in this order: another configuration than the kernel's (CONFIG_MISMATCH), a locked system (MODE),
          *     an axis that is FAULTED, homing (BUSY) or DISABLED, a drive above its bound (DRIVE), a target outside
@@ -1419,10 +1419,13 @@ export interface components {
             /** @description Least duration of the motion. */
             duration_s?: number;
             /**
-             * @description Desired unless said otherwise. Reachable: as far as the axes go, where the desired one cannot be had.
+             * @description Desired unless said otherwise: refused (UNREACHABLE) where the axes miss it by more than the robot's file allows. Reachable: as far as the axes go, with the miss that you accept.
              * @enum {string}
              */
             pose?: "desired" | "reachable";
+            /** @description Of the reachable pose, as accepted_deg: its deviation from the desired one, as GET /api/targeting/alignment says it. Refused (UNREACHABLE) when it is larger by now. */
+            accepted_mm?: number;
+            accepted_deg?: number;
             /** @description Insert the probe once it is aligned; else it stays out. */
             insert?: boolean;
             /** @description Name of a home step. */
@@ -1441,6 +1444,12 @@ export interface components {
         };
         Proposal: {
             id: number;
+            /** @description Of a motion to a pose, as it was proposed; in the scanner's frame (RAS), mm. */
+            aim: {
+                desired: number[];
+                reachable: number[];
+                deviation: components["schemas"]["Deviation"];
+            } | null;
             /** @enum {string} */
             kind: "move" | "home" | "path" | "sweep" | "biopsy";
             /** @description Of a biopsy: in the guide frame. */
@@ -1672,6 +1681,8 @@ export interface components {
             words: number[];
         };
         Robot: {
+            /** @description No motion waits for approval. */
+            auto_approve: boolean;
             name: string;
             title: string;
             config_crc: string;
@@ -1838,6 +1849,10 @@ export interface components {
             registration_state: "not_set" | "valid" | "expired";
             /** @description Why it is not valid. */
             registration_problem: string | null;
+            /** @description Why it can hardly be right; it was set all the same. */
+            registration_doubt: string | null;
+            /** @description Why somebody did so. */
+            override_reason: string | null;
             ignore_registration_rotation: boolean;
             entry_point: number[] | null;
             target_point: number[] | null;
@@ -1928,6 +1943,8 @@ export interface components {
             /** @description Axes of which the target asks for more than their range. */
             clamped: string[];
             deviation: components["schemas"]["Deviation"];
+            /** @description Of the robot's file; else the desired pose is refused, UNREACHABLE. */
+            within_tolerance: boolean;
             /** @description D + insertion - C; the NeuroRobot's alone. */
             cannula_length_mm: number | null;
         };
@@ -1950,6 +1967,8 @@ export interface components {
         RegistrationChange: {
             registration: components["schemas"]["Pose"];
             ignore_registration_rotation?: boolean;
+            /** @description Sets it although it can hardly be right (IMPLAUSIBLE): where the robot file does not expect it, or the identity. Audited, and shown for as long as it is in force. */
+            override_reason?: string;
         };
         RegistrationExpiry: {
             /** @description A sentence; 'The table moved.' without one. */
@@ -3923,7 +3942,7 @@ export interface operations {
             };
         };
         responses: {
-            /** @description Approved, or already executing. */
+            /** @description Checked, and waits for approval; or approved. */
             201: {
                 headers: {
                     [name: string]: unknown;

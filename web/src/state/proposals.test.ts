@@ -3,6 +3,7 @@ import type { Motor, Proposal, Robot } from "../api/client";
 import { homingPart, homingSteps, isOpen, nextWishes, openHoming, openPath } from "./proposals";
 
 const robot = {
+  auto_approve: false,
   home_steps: [
     { name: "out", title: "Probe out", kind: "home", axes: ["insertion"] },
     { name: "turn", title: "Turn", kind: "home", axes: ["yaw", "pitch"] },

@@ -10,13 +10,17 @@ const openStates: ReadonlySet<Proposal["state"]> = new Set([
   "paused",
 ]);
 
+const unapproved: ReadonlySet<Proposal["state"]> = new Set(["drafted", "checked"]);
+
 export function isOpen(proposal: Proposal): boolean {
   return openStates.has(proposal.state);
 }
 
-/** The open proposal that homes, if there is one: while it is open, moves are refused. */
+/** The homing that is approved and has not ended, if there is one: until then moves are refused. */
 export function openHoming(proposals: readonly Proposal[]): Proposal | undefined {
-  return proposals.find((proposal) => proposal.kind === "home" && isOpen(proposal));
+  return proposals.find(
+    (proposal) => proposal.kind === "home" && isOpen(proposal) && !unapproved.has(proposal.state),
+  );
 }
 
 /** The open motion of several axes, if there is one. */

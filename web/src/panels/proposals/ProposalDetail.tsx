@@ -77,6 +77,12 @@ function Facts({ proposal, plan }: FactsProps) {
           <time dateTime={ended}>{localTime(ended)}</time>
         </Fact>
       )}
+      {proposal.aim !== null && (
+        <Fact name="Misses the aim by">
+          {proposal.aim.deviation.distance_mm.toFixed(2)} mm and {proposal.aim.deviation.angle_deg.toFixed(2)}
+          °
+        </Fact>
+      )}
       <Fact name="Outcome">{proposal.detail}</Fact>
       {verdict != null && (
         <Fact name="Verdict">

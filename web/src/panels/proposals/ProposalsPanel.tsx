@@ -16,9 +16,15 @@ const MOST_SHOWN = 20;
 export function ProposalsPanel() {
   const proposals = useConsole((state) => state.proposals);
   const motors = useConsole((state) => state.motors);
+  const approvesItself = useConsole((state) => state.robot?.auto_approve === true);
   return (
     <Panel title="Proposals" className="proposals-panel">
       <FirstSteps />
+      {approvesItself && (
+        <p className="panel-notice" role="status">
+          <i aria-hidden="true">▲</i> This robot approves motions by itself: its file says auto_approve.
+        </p>
+      )}
       {proposals.length === 0 && (
         <p className="proposals-empty">
           No move was proposed yet. <FirstStepsButton />

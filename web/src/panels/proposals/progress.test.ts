@@ -4,6 +4,7 @@ import { progressOf } from "./progress";
 
 const motor = { unit: "mm", counts_per_unit: 10 } as Motor;
 const robot = {
+  auto_approve: false,
   home_steps: [
     { name: "out", title: "Probe out", kind: "home", axes: ["insertion"] },
     { name: "rest", title: "The rest", kind: "home", axes: ["yaw"] },

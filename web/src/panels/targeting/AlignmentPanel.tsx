@@ -5,13 +5,13 @@ import { CommandButton } from "../../design/CommandButton";
 import { NoticeText } from "../../design/NoticeText";
 import { Panel } from "../../design/Panel";
 import { useKernel } from "../../kernel/useKernel";
-import { abort } from "../../state/commands";
 import { isVerdict, type Notice, noticeOfProblem } from "../../state/notice";
-import { isOpen, openPath } from "../../state/proposals";
+import { openPath } from "../../state/proposals";
 import { useConsole } from "../../state/store";
 import type { Asked } from "../../state/usePolled";
 import type { AxisFrame } from "../../stream/decode";
 import { formatCounts, formatNumber } from "../../units/units";
+import { ProposalCommands } from "../proposals/ProposalParts";
 import { type AxisLine, axisLines, hindrances } from "./alignment";
 import { fixed } from "./numbers";
 
@@ -93,22 +93,33 @@ function Propose({ alignment }: { readonly alignment: Alignment | null }) {
   const [refusal, setRefusal] = useState<Notice | null>(null);
   const [proposed, setProposed] = useState<number | null>(null);
   const propose = async (pose: NonNullable<ProposalDraft["pose"]>): Promise<void> => {
-    const outcome = await api.propose({ kind: "pose", pose, insert });
+    const accepted =
+      alignment === null || pose === "desired"
+        ? {}
+        : { accepted_mm: alignment.deviation.distance_mm, accepted_deg: alignment.deviation.angle_deg };
+    const outcome = await api.propose({ kind: "pose", pose, insert, ...accepted });
     setRefusal(outcome.ok ? null : noticeOfProblem(outcome.problem));
     setProposed(outcome.ok ? outcome.value.id : null);
   };
   const clamped = alignment === null ? [] : axisLines(alignment, motors).filter((line) => line.clamped);
   const none = alignment === null ? "There is no alignment." : null;
+  const isMissed = alignment?.within_tolerance === false;
+  const miss =
+    alignment === null
+      ? ""
+      : `${fixed(alignment.deviation.distance_mm, 2)} mm and ${fixed(alignment.deviation.angle_deg, 2)}°`;
   return (
     <div className="propose">
       {alignment !== null && <Hindrances alignment={alignment} />}
-      {alignment !== null && clamped.length > 0 && (
+      {clamped.length > 0 && (
         <p className="clamped">
-          <i aria-hidden="true">▲</i> The desired pose would be refused, UNREACHABLE:{" "}
+          <i aria-hidden="true">▲</i> {isMissed && "The desired pose would be refused, UNREACHABLE: "}
           {clamped.map(({ motor }) => motor.title).join(", ")} {clamped.length === 1 ? "ends" : "end"} before
-          it. The reachable pose is {fixed(alignment.deviation.distance_mm, 2)} mm and{" "}
-          {fixed(alignment.deviation.angle_deg, 2)}° off.
+          it.
         </p>
+      )}
+      {alignment !== null && (
+        <p className={isMissed ? "clamped" : "muted"}>The reachable pose misses the desired one by {miss}.</p>
       )}
       {alignment?.cannula_length_mm != null && (
         <p className="muted">Length of the cannula: {fixed(alignment.cannula_length_mm, 2)} mm</p>
@@ -121,17 +132,17 @@ function Propose({ alignment }: { readonly alignment: Alignment | null }) {
         <CommandButton
           need="holder"
           className="primary"
-          off={none ?? (clamped.length > 0 ? "It is out of reach." : null)}
+          off={none ?? (isMissed ? "It is out of reach." : null)}
           onCommand={() => propose("desired")}
         >
           Propose desired pose
         </CommandButton>
         <CommandButton
           need="holder"
-          off={none ?? (clamped.length === 0 ? "The desired pose is within reach." : null)}
+          off={none ?? (isMissed ? null : "The desired pose is within reach.")}
           onCommand={() => propose("reachable")}
         >
-          Propose reachable pose
+          {isMissed ? `Accept ${miss}, and propose the reachable pose` : "Propose reachable pose"}
         </CommandButton>
       </span>
       {refusal !== null && (
@@ -177,16 +188,7 @@ function Proposed({ id }: { readonly id: number | null }) {
   return (
     <p className="proposed" role="status">
       Proposal {proposal.id}: <strong>{proposal.state}</strong>. {proposal.detail}{" "}
-      {isOpen(proposal) && (
-        <CommandButton
-          need="holder"
-          className="small"
-          label={`Abort proposal ${proposal.id}`}
-          onCommand={() => abort(proposal.id, proposal.slot)}
-        >
-          Abort
-        </CommandButton>
-      )}
+      <ProposalCommands proposal={proposal} />
     </p>
   );
 }

@@ -42,6 +42,7 @@ export function RegistrationPanel({ targeting, history, asked, onSet }: Registra
   const [read, setRead] = useState<Read>(nothingRead);
   const [refusal, setRefusal] = useState<Notice | null>(null);
   const [sending, setSending] = useState(false);
+  const [override, setOverride] = useState("");
   const reason = useReason("holder");
   const problemsId = useId();
   useEffect(() => setDraft((known) => received(known, registrationValues(targeting))), [targeting]);
@@ -50,6 +51,7 @@ export function RegistrationPanel({ targeting, history, asked, onSet }: Registra
   const problems = registrationProblems(draft);
   const isValid = targeting.registration_state === "valid";
   const change = registrationChange(draft, isValid);
+  const isDoubted = refusal?.code === "IMPLAUSIBLE";
   const readFrom = (name: string, text: string): void => {
     const found = readPose(text);
     setRead(found.ok ? { from: name, problem: null } : { from: null, problem: `${name}: ${found.problem}` });
@@ -64,10 +66,13 @@ export function RegistrationPanel({ targeting, history, asked, onSet }: Registra
     event.preventDefault();
     if (change === null || sending) return;
     setSending(true);
-    const outcome = await api.setRegistration(change);
+    const outcome = await api.setRegistration(
+      isDoubted && override !== "" ? { ...change, override_reason: override } : change,
+    );
     setSending(false);
     setRefusal(outcome.ok ? null : noticeOfProblem(outcome.problem));
     if (!outcome.ok) return;
+    setOverride("");
     setDraft(draftOf(registrationValues(outcome.value)));
     setRead(nothingRead);
     await onSet();
@@ -104,6 +109,12 @@ export function RegistrationPanel({ targeting, history, asked, onSet }: Registra
             moved to. {targeting.registration !== null && "Set it again only if it still holds."}
           </p>
         )}
+        {targeting.registration_doubt !== null && (
+          <p className="registration-problem" role="status">
+            <i aria-hidden="true">▲</i> {targeting.registration_doubt} It was set all the same:{" "}
+            {targeting.override_reason}
+          </p>
+        )}
         <Matrix
           draft={draft}
           readOnly={reason !== null}
@@ -138,8 +149,20 @@ export function RegistrationPanel({ targeting, history, asked, onSet }: Registra
             <NoticeText lead="Not set:" notice={refusal} />
           </p>
         )}
+        {isDoubted && (
+          <label className="override-reason">
+            Reason to set it all the same
+            <input
+              className="text"
+              value={override}
+              maxLength={200}
+              autoComplete="off"
+              onChange={({ target }) => setOverride(target.value)}
+            />
+          </label>
+        )}
         <SendBar
-          action="Set registration"
+          action={isDoubted && override !== "" ? "Set it all the same" : "Set registration"}
           off={
             reason ??
             (hasNews(draft) ? "Take what arrived, or keep yours, first." : null) ??

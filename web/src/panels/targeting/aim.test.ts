@@ -7,6 +7,8 @@ const targeting: Targeting = {
   registration: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1],
   registration_state: "valid",
   registration_problem: null,
+  registration_doubt: null,
+  override_reason: null,
   ignore_registration_rotation: false,
   entry_point: [8, 250, 70],
   target_point: null,
