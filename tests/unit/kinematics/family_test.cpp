@@ -32,7 +32,10 @@ std::string polar_file() {
   std::ostringstream text;
   text << file.rdbuf() << "[kinematics]\nfamily = \"polar\"\nheight_mm = 20.0\n"
        << "[probe]\ntreatment_to_tip_mm = 0.0\nrobot_to_entry_mm = 0.0\n"
-       << "cannula_to_treatment_mm = 0.0\ntreatment_to_robot_at_home_mm = 0.0\n";
+       << "cannula_to_treatment_mm = 0.0\ntreatment_to_robot_at_home_mm = 0.0\n"
+       << "[targeting]\ntolerance_mm = 1.0\ntolerance_deg = 1.0\n"
+       << "[targeting.registration]\norigin_mm = [0, 0, 0]\norigin_tolerance_mm = [9, 9, 9]\n"
+       << "rotation = [1, 0, 0, 0, 1, 0, 0, 0, 1]\nrotation_tolerance_deg = 9.0\n";
   return text.str();
 }
 

@@ -53,6 +53,7 @@ TEST_F(NewModeTest, IsOneFolderFromTheRobotsFileToTheMotion) {
   EXPECT_EQ(proposal["kind"], "there_and_back");
   EXPECT_EQ(proposal["mode"], "there_and_back");
   EXPECT_EQ(proposal["axis"], "insertion");
+  ASSERT_EQ(post("/api/proposals/1/approve").status, 200u);
   const Task task = next_task();
 
   test::ClosedLoop loop(11, 2, robot());
