@@ -127,7 +127,7 @@ class Brp2013 final : public Workphases {
 
 /**
  * The dialect of the later prostate robots and their Slicer module (2024): phases follow each other in a
- * fixed order, what can be reached is told of each target, and the needle has requests of its own. Unlike
+ * fixed sequence, what can be reached is told of each target, and the needle has requests of its own. Unlike
  * there, a request that is forbidden is answered, and a target that is out of reach is not replaced.
  */
 class Wpi2024 final : public Workphases {

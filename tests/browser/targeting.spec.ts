@@ -67,13 +67,20 @@ test("a registration is refused in words until it is rigid, set once, and told w
   await cell(page, "R", "origin").press("Enter");
   await expect(panel.getByRole("alert").last()).toContainText("IMPLAUSIBLE");
   await expect(panel.getByRole("alert").last()).toContainText("it is turned by 90 degrees");
-  await panel.getByLabel("Reason to set it all the same").fill("Lies on its side.");
+  const reason = panel.getByLabel("Reason to set it all the same");
+  await reason.fill("Lies on its side.");
+  await cell(page, "R", "origin").fill("11");
+  await expect(reason).toHaveCount(0);
+  await cell(page, "R", "origin").fill("10.5");
+  await cell(page, "R", "origin").press("Enter");
+  await reason.fill("Lies on its side.");
   await panel.getByRole("button", { name: "Set it all the same" }).click();
   await expect(panel).toContainText("It was set all the same: Lies on its side.");
   await expect(panel).toContainText(/Set \d+ s ago by admin \(console, 127\.0\.0\.1:\d+\)/);
   await expect(set).toBeDisabled();
   const onItsSide = [0, -1, 0, 10.5, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
   expect(sent).toEqual([
+    { registration: onItsSide },
     { registration: onItsSide },
     { registration: onItsSide, override_reason: "Lies on its side." },
   ]);

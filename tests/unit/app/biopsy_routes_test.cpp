@@ -14,16 +14,6 @@ class BiopsyRoutesTest : public HttpTest {
  protected:
   BiopsyRoutesTest() : HttpTest(prostate(), test::prostate_config()) { show(needle_view()); }
 
-  /** Approves what waits for that. */
-  Answered propose(const json& body) {
-    Answered made = post("/api/proposals", body.dump());
-    if (made.status == 201u && json::parse(made.body)["state"] == "checked") {
-      const std::string id = json::parse(made.body)["id"].dump();
-      EXPECT_EQ(post("/api/proposals/" + id + "/approve").status, 200u);
-    }
-    return made;
-  }
-
   Answered show_image(const json& body) { return post("/api/biopsy/images", body.dump()); }
 
   /** The guide frame where the needle is, with the robot turned and moved in the scanner. */

@@ -131,6 +131,16 @@ class HttpTest : public StoreFixture {
     ASSERT_EQ(put("/api/targeting/registration", body.dump()).status, 200u);
   }
 
+  /** Proposes, and approves what waits for that. */
+  Answered propose(const json& body) {
+    Answered made = post("/api/proposals", body.dump());
+    if (made.status == 201u && json::parse(made.body)["state"] == "checked") {
+      const std::string id = json::parse(made.body)["id"].dump();
+      EXPECT_EQ(post("/api/proposals/" + id + "/approve").status, 200u);
+    }
+    return made;
+  }
+
   Answered post_raw(const std::string& bytes);
 
   /** @param age of the kernel's state in it */

@@ -9,16 +9,6 @@ class PathRoutesTest : public HttpTest {
  protected:
   PathRoutesTest() { show(test::ready_view()); }
 
-  /** Approves what waits for that. */
-  Answered propose(const json& body) {
-    Answered made = post("/api/proposals", body.dump());
-    if (made.status == 201u && json::parse(made.body)["state"] == "checked") {
-      const std::string id = json::parse(made.body)["id"].dump();
-      EXPECT_EQ(post("/api/proposals/" + id + "/approve").status, 200u);
-    }
-    return made;
-  }
-
   Answered remove(const std::string& target) {
     Request request{http::verb::delete_, target, 11};
     return send(std::move(request));

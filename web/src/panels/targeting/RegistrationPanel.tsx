@@ -52,15 +52,20 @@ export function RegistrationPanel({ targeting, history, asked, onSet }: Registra
   const isValid = targeting.registration_state === "valid";
   const change = registrationChange(draft, isValid);
   const isDoubted = refusal?.code === "IMPLAUSIBLE";
+  // What was said of one matrix, and a reason for it, hold for no other.
+  const edit = (next: (draft: Draft) => Draft): void => {
+    setDraft(next);
+    setRefusal(null);
+    setOverride("");
+  };
   const readFrom = (name: string, text: string): void => {
     const found = readPose(text);
     setRead(found.ok ? { from: name, problem: null } : { from: null, problem: `${name}: ${found.problem}` });
-    if (found.ok) setDraft((known) => withValues(known, withPose(known, found.pose)));
+    if (found.ok) edit((known) => withValues(known, withPose(known, found.pose)));
   };
   const giveUp = (next: (draft: Draft) => Draft): void => {
-    setDraft(next);
+    edit(next);
     setRead(nothingRead);
-    setRefusal(null);
   };
   const onSubmit = async (event: FormEvent): Promise<void> => {
     event.preventDefault();
@@ -120,7 +125,7 @@ export function RegistrationPanel({ targeting, history, asked, onSet }: Registra
           readOnly={reason !== null}
           problemsId={problemsId}
           onPose={(text) => readFrom("The clipboard", text)}
-          onText={(at, text) => setDraft((known) => withText(known, at, text))}
+          onText={(at, text) => edit((known) => withText(known, at, text))}
         />
         <label className="tick">
           <input
@@ -128,7 +133,7 @@ export function RegistrationPanel({ targeting, history, asked, onSet }: Registra
             disabled={reason !== null}
             checked={ignoresRotation(draft)}
             onChange={({ target }) =>
-              setDraft((known) => withText(known, IGNORES_AT, target.checked ? "1" : "0"))
+              edit((known) => withText(known, IGNORES_AT, target.checked ? "1" : "0"))
             }
           />
           Use its origin alone, as if the robot stood straight in the scanner
