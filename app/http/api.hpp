@@ -101,7 +101,7 @@ class Api {
   MotionControl motion_control_;
   WorkPool work_;
   LoadedTrajectory trajectory_;
-  RegistrationEpoch registration_epoch_;
+  InForce in_force_;
   StopRecords stops_;
   std::uint64_t role_refusals_ = 0;
   Context context_;
@@ -122,6 +122,7 @@ class Api {
   ModeRoutes mode_routes_{context_, router_};
   LogRoutes log_routes_{context_, router_};
   HistoryRoutes history_routes_;
+  CaseRoutes case_routes_{context_, router_};
   TargetingRoutes targeting_routes_{context_, router_};
   TrajectoryRoutes trajectory_routes_{context_, router_};
   CommunicationRoutes communication_routes_{context_, navigation_, stream_, router_};

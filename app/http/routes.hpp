@@ -312,6 +312,19 @@ class TargetingRoutes {
   std::optional<KnownReach> reach_; /**< the newest that was asked for */
 };
 
+/** Routes of the cases. */
+class CaseRoutes {
+ public:
+  /** Both must outlive it. */
+  CaseRoutes(const Context& context, Router& router);
+
+ private:
+  boost::asio::awaitable<Reply> open(const Call& call) const;
+  boost::asio::awaitable<Reply> add_note(const Call& call) const;
+
+  const Context& context_;
+};
+
 /** Routes of the trajectory that is loaded. */
 class TrajectoryRoutes {
  public:

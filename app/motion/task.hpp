@@ -147,6 +147,7 @@ struct Task {
   std::optional<std::uint32_t> targeting_revision = std::nullopt;
   std::optional<ReachedAim> aim = std::nullopt; /**< of a motion to a pose */
   std::uint32_t id = 0;                         /**< from 1; 0: nobody has proposed it yet */
+  std::int64_t case_number = 0; /**< of the case that was open when it was proposed; 0: none was */
 };
 
 /** By which both threads hold a task. */

@@ -153,15 +153,24 @@ bool MotionRegistry::approves(const Proposal& proposal) const {
 void MotionRegistry::end_stale(const std::string& by) {
   ++targeting_revision_;
   for (Proposal& each : registry_) {
-    if (each.task->targeting_revision && is_open(each.state)) {
+    const bool is_of_another_case = each.task->case_number != 0 && each.task->case_number != case_;
+    if ((each.task->targeting_revision || is_of_another_case) && is_open(each.state)) {
       const bool waits = each.state == ProposalState::checked || send_(Cancel{each.id});
       become(each, ProposalState::aborted,
-             std::string("Registration, probe or target changed, from which it followed; propose it again.") +
+             std::string(is_of_another_case
+                             ? "Its case was suspended or closed; propose it again."
+                             : "Registration, probe or target changed, from which it followed; propose it "
+                               "again.") +
                  (waits ? "" : " The control thread takes no commands now: press STOP."),
              std::nullopt, by);
     }
   }
   publish_mode();
+}
+
+void MotionRegistry::enter_case(std::int64_t number, const std::string& by) {
+  case_ = number;
+  end_stale(by);
 }
 
 /** Hands the task over; what it replaces ends. */
@@ -187,6 +196,7 @@ Proposal& MotionRegistry::keep(Task task, std::vector<std::uint32_t> slots, cons
     forget_one();
   }
   task.id = ++last_id_;
+  task.case_number = case_;
   Proposal& proposal = registry_.emplace_back();
   proposal.id = task.id;
   proposal.slots = std::move(slots);

@@ -83,6 +83,10 @@ class MotionRegistry {
   /** Registration, probe or target were changed by `by`: ends every open proposal that followed from them. */
   void end_stale(const std::string& by = {});
 
+  /** From now on proposals belong to that case, or to none: 0. Ends every open one of another case, as
+   * `end_stale` does. */
+  void enter_case(std::int64_t number, const std::string& by);
+
   /** Ends an open proposal on behalf of `by`, or else of its author; an executing one stops at once. The id
    * must exist. */
   tl::expected<Proposal, Refusal> abort(std::uint32_t id, const std::string& by = {});
@@ -158,6 +162,7 @@ class MotionRegistry {
   std::vector<TaskReference> approved_; /**< that the control thread may hold: it must never free one */
   std::string pause_reason_;            /**< of the pause to come, or that lasts */
   std::uint32_t targeting_revision_ = 0;
+  std::int64_t case_ = 0; /**< number of the open one */
   std::uint32_t last_id_ = 0;
 };
 

@@ -10,6 +10,7 @@ namespace interlock {
 nlohmann::json to_json(const Proposal& proposal) {
   const Task& task = *proposal.task;
   nlohmann::json json{{"id", proposal.id},
+                      {"case", nullptr},
                       {"kind", kind_of(task.work).name()},
                       {"slot", nullptr},
                       {"axis", nullptr},
@@ -26,6 +27,9 @@ nlohmann::json to_json(const Proposal& proposal) {
                       {"ended", nullptr},
                       {"verdict", nullptr},
                       {"detail", proposal.detail}};
+  if (task.case_number != 0) {
+    json["case"] = task.case_number;
+  }
   if (proposal.slots.size() == 1) {
     json["slot"] = proposal.slots.front();
     json["axis"] = proposal.axis;

@@ -27,7 +27,7 @@
 
 namespace interlock {
 
-struct RegistrationEpoch;
+struct InForce;
 
 struct Context {
   boost::asio::any_io_executor executor;
@@ -42,7 +42,7 @@ struct Context {
   MotionControl& motion_control;
   WorkPool& work;
   LoadedTrajectory& trajectory;
-  RegistrationEpoch& registration_epoch;
+  InForce& in_force;
   StopRecords& stop_records;
   Log& log;
   std::function<void(const nlohmann::json&)> publish; /**< a message to every console */

@@ -33,8 +33,20 @@ class MotionControl {
    * had: a kernel that runs on would not see that the holder is another one. */
   explicit MotionControl(std::uint32_t first_number) : number_(first_number) {}
 
-  /** A number of a hold that any thread may read, also after the object itself is gone. */
-  using SharedNumber = std::shared_ptr<const std::atomic<std::uint32_t>>;
+  /** A hold of control of which any thread may know whether it lasts, also after the object is gone. */
+  class Hold {
+   public:
+    /** Whether control has not changed hands since. */
+    [[nodiscard]] bool lasts() const { return *present_ == number_; }
+
+   private:
+    friend class MotionControl;
+    explicit Hold(std::shared_ptr<const std::atomic<std::uint32_t>> present)
+        : present_(std::move(present)), number_(*present_) {}
+
+    std::shared_ptr<const std::atomic<std::uint32_t>> present_;
+    std::uint32_t number_;
+  };
 
   /** Told of each change: of the holder (`holder_changed`), or only of the requests. */
   using Listener = std::function<void(bool holder_changed)>;
@@ -53,8 +65,8 @@ class MotionControl {
   /** Number of the present hold: 0 while nobody is in control, else one that no hold before had. */
   [[nodiscard]] std::uint32_t number() const { return *present_; }
 
-  /** The same for other threads, as it changes. */
-  [[nodiscard]] SharedNumber shared_number() const { return present_; }
+  /** The present hold. */
+  [[nodiscard]] Hold hold() const { return Hold(present_); }
 
   /** Gives control to that session, whoever has it. Its request is granted thereby; nothing changes when it
    * is in control. */

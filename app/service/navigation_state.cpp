@@ -114,7 +114,7 @@ void AxisVelocities::measure(const Robot& robot, const ControlView& view) {
 igtl::RobotState robot_state(const Context& context, const Targeting& kept,
                              const AxisVelocities& velocities) {
   const ControlView& view = context.view();
-  const Targeting targeting = judged(kept, context.registration_epoch);
+  const Targeting targeting = judged(kept, context.in_force);
   igtl::RobotState state;
   if (targeting.registration_problem.empty()) {
     state.scanner_from_robot = targeting.registration;

@@ -9,6 +9,14 @@ Problem login_needed() {
           .next_step = "Log in."};
 }
 
+Problem control_lost() {
+  return {.status = Status::conflict,
+          .code = "CONTROL",
+          .detail = "Control changed hands before this was kept.",
+          .expected = "control of the robot",
+          .next_step = "Request control."};
+}
+
 Problem not_found(const std::string& what, const std::string& expected) {
   return {.status = Status::not_found,
           .code = "NOT_FOUND",

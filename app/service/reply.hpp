@@ -93,6 +93,9 @@ using Reply = tl::expected<Success, Problem>;
 
 // Problems that several routes answer with.
 
+/** 409 CONTROL: whoever was in control when this was asked is no more. */
+Problem control_lost();
+
 /** A reply, or any other expected value, that is this problem. */
 inline tl::unexpected<Problem> fail(Problem problem) { return tl::make_unexpected(std::move(problem)); }
 

@@ -184,14 +184,21 @@ bool is_same_registration(const RowMajor& one, const RowMajor& other, bool ignor
   return true;
 }
 
-Targeting judged(Targeting targeting, const RegistrationEpoch& epoch) {
-  const bool is_past = targeting.registration_epoch == 0 || targeting.registration_epoch != epoch.number;
+Targeting judged(Targeting targeting, const InForce& in_force) {
+  const bool is_past = targeting.registration_epoch == 0 || targeting.registration_epoch != in_force.epoch;
   const std::string& reason =
-      targeting.registration_expired.empty() && is_past ? epoch.reason : targeting.registration_expired;
-  targeting.present_epoch = epoch.number;
-  targeting.registration_problem = !targeting.registration ? "The registration is not set."
-                                   : reason.empty()        ? ""
-                                                           : "The registration has expired: " + reason;
+      targeting.registration_expired.empty() && is_past ? in_force.reason : targeting.registration_expired;
+  targeting.present_epoch = in_force.epoch;
+  if (targeting.case_problem.empty() && targeting.case_number != in_force.open_case) {
+    targeting.case_problem = "The case is suspended: something interrupted it, as a start of the app does.";
+  }
+  targeting.registration_problem = targeting.case_problem;
+  if (targeting.registration && !reason.empty()) {
+    targeting.registration_problem += (targeting.case_problem.empty() ? "" : " ");
+    targeting.registration_problem += "The registration has expired: " + reason;
+  } else if (!targeting.registration && targeting.case_problem.empty()) {
+    targeting.registration_problem = "The registration is not set.";
+  }
   return targeting;
 }
 
@@ -199,7 +206,11 @@ json to_json(const Targeting& targeting) {
   const auto or_nothing = [](const std::string& text) { return text.empty() ? json() : json(text); };
   json body = to_stored(targeting);
   const bool is_valid = targeting.registration_problem.empty();
-  body["registration_state"] = is_valid ? "valid" : targeting.registration ? "expired" : "not_set";
+  body["case"] = targeting.case_number == 0 ? json() : json(targeting.case_number);
+  body["registration_state"] = is_valid                                                  ? "valid"
+                               : !targeting.registration                                 ? "not_set"
+                               : targeting.registration_problem == targeting.case_problem ? "suspended"
+                                                                                          : "expired";
   body["registration_problem"] = or_nothing(targeting.registration_problem);
   body["registration_doubt"] = or_nothing(targeting.registration_doubt);
   body["override_reason"] = or_nothing(targeting.override_reason);

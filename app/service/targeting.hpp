@@ -17,7 +17,6 @@
 
 #include "robot/robot.hpp"
 #include "service/reply.hpp"
-#include "store/audit.hpp"
 
 namespace interlock {
 
@@ -40,15 +39,22 @@ constexpr std::size_t most_registrations_before = 20;
 /** Largest number of an epoch: JSON carries it exactly. */
 constexpr std::int64_t latest_epoch = (std::int64_t{1} << 53) - 1;
 
-/** The present epoch of registrations: one of an earlier epoch has expired. Each start of the app begins an
- * epoch, and whatever moves the robot in the scanner begins another. */
-struct RegistrationEpoch {
-  std::int64_t number = 0;
+/** What is in force of all that is stored. */
+struct InForce {
+  /** The present epoch of registrations: one of an earlier epoch has expired. Each start of the app begins an
+   * epoch, and whatever moves the robot in the scanner begins another. */
+  std::int64_t epoch = 0;
   std::string reason = "The app was started since."; /**< why those before it expired */
+  /** Number of the case that somebody has opened or resumed since the app was started; 0: of none. */
+  std::int64_t open_case = 0;
 };
 
-/** What an aim is made from. */
+/** What an aim is made from. All of it belongs to a case. */
 struct Targeting {
+  std::int64_t case_number = 0; /**< of the case; 0: none is in hand. Kept with the case */
+  /** Why nothing of it is in force; empty: it is. Not kept: the store tells a part of it, and `judged` the
+   * rest. */
+  std::string case_problem = {};
   std::optional<RowMajor> registration; /**< the robot in the scanner; empty: nobody has ever set it */
   bool ignore_registration_rotation = false;
   std::int64_t registration_epoch = 0;        /**< in which it was set */
@@ -74,8 +80,8 @@ struct Targeting {
  * has may round it. */
 bool is_same_registration(const RowMajor& one, const RowMajor& other, bool ignores_rotation);
 
-/** The same with what is true of its registration in that epoch. */
-Targeting judged(Targeting targeting, const RegistrationEpoch& epoch);
+/** The same with what is true of its case and its registration by what is in force. */
+Targeting judged(Targeting targeting, const InForce& in_force);
 
 /** Schema `Targeting`, of what was judged. */
 nlohmann::json to_json(const Targeting& targeting);
@@ -105,25 +111,5 @@ void aim_at(Targeting& targeting, const RowMajor& pose);
 
 /** A rigid pose in the field `name` of a body; 422 INVALID naming the element, and the rule. */
 tl::expected<RowMajor, Problem> rigid_pose(const nlohmann::json& body, const std::string& name);
-
-// What was set of the targeting, when, by whom and from where: schema `TargetingHistory` of
-// spec/openapi.yaml.
-//
-// The audit has all of it, for administrators and without end; this is its short form for whoever aims, kept
-// beside the values in the same transaction, so that nobody has to search the audit.
-
-/** Changes that are kept, the newest. */
-constexpr std::size_t most_targeting_changes = 50;
-
-/**
- * Notes the change that the audit's record `number` describes: `old` and `new` in the entry's detail, by
- * field, with `source` and `client`. A change of the reported pose alone is noted as the field's last one and
- * not listed: an imager reports many times a second.
- */
-void note_targeting_change(Transaction& transaction, const AuditEntry& entry, std::int64_t number);
-
-/** Schema `TargetingHistory`, told at `now`. What cannot be read of it counts as never noted: the audit has
- * it. */
-nlohmann::json targeting_history(Transaction& transaction, UtcTime now);
 
 }  // namespace interlock

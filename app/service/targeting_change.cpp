@@ -32,7 +32,8 @@ bool is_repeated(const Targeting& before, const Targeting& after) {
 Problem repeated(const Targeting& before) {
   return {.status = Status::conflict,
           .code = "NO_REGISTRATION",
-          .detail = "It is a registration that has expired. " + before.registration_problem,
+          .detail = "It is a registration that has expired." +
+                    (before.registration ? " " + before.registration_problem : std::string()),
           .expected = "a new registration",
           .next_step = "Register anew, or set it in the console if it still holds."};
 }
@@ -51,20 +52,12 @@ bool leads_elsewhere(Targeting before, const Targeting& after) {
   return before != after;
 }
 
-/** The hold of control by which a change is made. */
-struct Hold {
-  MotionControl::SharedNumber present;
-  std::uint32_t number = 0;
-
-  [[nodiscard]] bool lasts() const { return *present == number; }
-};
-
-Problem control_lost() {
+Problem no_case(const std::string& problem) {
   return {.status = Status::conflict,
-          .code = "CONTROL",
-          .detail = "Control changed hands before this was kept.",
-          .expected = "control of the robot",
-          .next_step = "Request control."};
+          .code = "NO_CASE",
+          .detail = problem,
+          .expected = "an open case, to which registration, entry, target and probe belong",
+          .next_step = "Open a case, or look at the suspended one and resume it."};
 }
 
 }  // namespace
@@ -72,9 +65,8 @@ Problem control_lost() {
 boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const Context& context,
                                                                           Caller caller, TaskSource source,
                                                                           TargetingChange make, json body) {
-  const MotionControl& control = context.motion_control;
   auto keep = [robot = &context.robot, make, body = std::move(body), session = caller.session,
-               epoch = context.registration_epoch, hold = Hold{control.shared_number(), control.number()},
+               in_force = context.in_force, hold = context.motion_control.hold(),
                origin = TargetingOrigin{source, caller.peer},
                entry = context.entry(caller, AuditKind::setting, json::object())](Store& store) {
     return store.transact([&](Transaction& transaction) -> Stored<Changed> {
@@ -85,7 +77,10 @@ boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const 
         if (!hold.lasts()) {
           return {fail(control_lost()), false};
         }
-        const Targeting before = judged(stored, epoch);
+        const Targeting before = judged(stored, in_force);
+        if (!before.case_problem.empty()) {
+          return {fail(no_case(before.case_problem)), false};
+        }
         Changed after{make(before, body)};
         if (make == with_registration) {
           after.targeting = std::move(after.targeting).and_then([&](Targeting made) {
@@ -97,7 +92,7 @@ boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const 
           return {fail(repeated(before)), false};
         }
         if (after.targeting) {
-          after.targeting = judged(std::move(*after.targeting), epoch);
+          after.targeting = judged(std::move(*after.targeting), in_force);
         }
         if (after.targeting && *after.targeting != before) {
           set_targeting(transaction, before, *after.targeting, origin, entry);
@@ -117,7 +112,7 @@ boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const 
   if (!changed->targeting) {
     co_return fail(changed->targeting.error());
   }
-  Targeting kept = judged(*changed->targeting, context.registration_epoch);
+  Targeting kept = judged(*changed->targeting, context.in_force);
   if (make == with_registration && !kept.registration_problem.empty()) {
     co_return fail(overtaken(kept.registration_problem));
   }
@@ -127,14 +122,15 @@ boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const 
 boost::asio::awaitable<tl::expected<Targeting, Problem>> expire_registration(const Context& context,
                                                                              Caller caller,
                                                                              std::string reason) {
-  RegistrationEpoch& epoch = context.registration_epoch;
-  const RegistrationEpoch before = epoch;
-  epoch = {before.number % latest_epoch + 1, reason};
+  InForce& in_force = context.in_force;
+  const InForce before = in_force;
+  in_force.epoch = before.epoch % latest_epoch + 1;
+  in_force.reason = reason;
   const bool is_app = caller.session == 0;
   context.registry.end_stale(is_app ? audit_actor::app : caller.user);
   AuditEntry entry = context.entry(caller, AuditKind::setting, json::object());
   entry.actor = is_app ? audit_actor::app : entry.actor;
-  auto keep = [robot = &context.robot, before, after = epoch, reason = std::move(reason),
+  auto keep = [robot = &context.robot, before, after = in_force, reason = std::move(reason),
                origin = TargetingOrigin{TaskSource::console, caller.peer}, entry](Store& store) {
     return store.transact([&](Transaction& transaction) -> Stored<Targeting> {
       return find_targeting(transaction, *robot).map([&](const Targeting& stored) {
@@ -151,7 +147,7 @@ boost::asio::awaitable<tl::expected<Targeting, Problem>> expire_registration(con
   if (!kept) {
     co_return fail(kept.error());
   }
-  co_return judged(*kept, context.registration_epoch);
+  co_return judged(*kept, context.in_force);
 }
 
 }  // namespace interlock

@@ -9,13 +9,20 @@
 #include "service/alignment_view.hpp"
 #include "service/context.hpp"
 #include "service/targeting.hpp"
-#include "store/settings.hpp"
+#include "store/audit.hpp"
+#include "store/cases.hpp"
 
 namespace interlock {
 
-// Where the values of `Targeting` are kept: a setting of the store, audited.
+// Where the values of `Targeting` are kept: with their case, audited.
 
-/** The stored values, not yet judged; what the robot's file says until somebody sets others. */
+/** What the robot's file says; of no case. */
+Targeting first_targeting(const Robot& robot);
+
+/** Those of that case, not yet judged. */
+Stored<Targeting> targeting_of(const KeptCase& kept);
+
+/** Those of the case in hand, not yet judged; the first ones when none is. */
 Stored<Targeting> find_targeting(Transaction& transaction, const Robot& robot);
 
 /** By which way a change of the targeting came. */
@@ -24,9 +31,17 @@ struct TargetingOrigin {
   std::string client;                      /**< as `Caller::peer` */
 };
 
-/** Stores the values, records in the audit what differs, and notes it in the targeting's history. */
+/** Stores the values with their case, records in the audit what differs, and notes it in the targeting's
+ * history. */
 void set_targeting(Transaction& transaction, const Targeting& before, const Targeting& after,
                    const TargetingOrigin& origin, AuditEntry entry);
+
+/** Changes that a history lists, the newest. */
+constexpr std::size_t most_targeting_changes = 50;
+
+/** Schema `TargetingHistory` of spec/openapi.yaml, of the case in hand, told at `now`: what was set, when, by
+ * whom and from where. The audit has all of it, for administrators; this is for whoever aims. */
+nlohmann::json targeting_history(Transaction& transaction, UtcTime now);
 
 /** As `alignment_with`, outside of the network thread: a search for the positions of a chain of joints takes
  * a tenth of a second. Also 503 OVERLOADED of the pool. */
@@ -43,7 +58,7 @@ using TargetingChange = tl::expected<Targeting, Problem> (*)(Targeting, const nl
 
 /**
  * Stores and audits what the body changes, with the way by which it came, and ends every proposal that
- * followed from other values. Nothing changes when the body is wrong (its problem), when the caller has lost
+ * followed from other values. Nothing changes without an open case (409 NO_CASE), when the body is wrong (its problem), when the caller has lost
  * session (401 LOGIN) or control (409 CONTROL) meanwhile, or the store fails (503 STORE). A registration that
  * can hardly be right needs a reason (422 IMPLAUSIBLE), which navigation programs cannot give. A program may
  * not set the registration again that has expired (409 NO_REGISTRATION): only a person can know that it

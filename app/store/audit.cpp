@@ -43,6 +43,16 @@ void name_os_user(nlohmann::json& detail) {
   }
 }
 
+/** Of a statement that gives the newest first. */
+std::vector<AuditRecord> oldest_first(SQLite::Statement& select) {
+  std::vector<AuditRecord> records;
+  while (select.executeStep()) {
+    records.push_back(audit_record(select));
+  }
+  std::reverse(records.begin(), records.end());
+  return records;
+}
+
 /** What only the store or the system knows of a record. */
 nlohmann::json completed(SQLite::Database& database, const AuditEntry& entry) {
   nlohmann::json detail = entry.detail;
@@ -95,6 +105,8 @@ std::string_view audit_kind_name(AuditKind kind) {
       return "retention";
     case AuditKind::acknowledgement:
       return "acknowledgement";
+    case AuditKind::case_step:
+      return "case";
   }
   return "unknown";
 }
@@ -127,12 +139,22 @@ std::vector<AuditRecord> Audit::list(std::size_t count, std::optional<std::int64
                                " FROM audit WHERE ?1 IS NULL OR number < ?1 ORDER BY number DESC LIMIT ?2");
   bind_optional(select, 1, before);
   select.bind(2, static_cast<std::int64_t>(count));
-  std::vector<AuditRecord> records;
-  while (select.executeStep()) {
-    records.push_back(audit_record(select));
+  return oldest_first(select);
+}
+
+std::vector<AuditRecord> Audit::between(std::int64_t first, std::int64_t last,
+                                        std::initializer_list<AuditKind> kinds, std::size_t count) const {
+  std::string names;
+  for (const AuditKind kind : kinds) {
+    names += (names.empty() ? "'" : ", '") + std::string(audit_kind_name(kind)) + "'";
   }
-  std::reverse(records.begin(), records.end());
-  return records;
+  SQLite::Statement select(database_, std::string("SELECT ") + audit_columns +
+                                          " FROM audit WHERE number BETWEEN ? AND ? AND kind IN (" + names +
+                                          ") ORDER BY number DESC LIMIT ?");
+  select.bind(1, first);
+  select.bind(2, last);
+  select.bind(3, static_cast<std::int64_t>(count));
+  return oldest_first(select);
 }
 
 std::int64_t Audit::newest_of(AuditKind kind) const {

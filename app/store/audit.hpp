@@ -36,7 +36,8 @@ enum class AuditKind {
   connection,
   records_lost,
   retention,
-  acknowledgement
+  acknowledgement,
+  case_step
 };
 
 /** The name in spec/openapi.yaml: "login_refused". */
@@ -72,6 +73,11 @@ class Audit {
   /** The newest `count` records, of those before number `before` where it is given; oldest first. */
   [[nodiscard]] std::vector<AuditRecord> list(std::size_t count,
                                               std::optional<std::int64_t> before = std::nullopt) const;
+
+  /** The newest `count` records of those kinds with numbers from `first` to `last`; oldest first. */
+  [[nodiscard]] std::vector<AuditRecord> between(std::int64_t first, std::int64_t last,
+                                                 std::initializer_list<AuditKind> kinds,
+                                                 std::size_t count) const;
 
   /** The number of the newest kept record of that kind; 0 when there is none. */
   [[nodiscard]] std::int64_t newest_of(AuditKind kind) const;

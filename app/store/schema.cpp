@@ -87,7 +87,33 @@ WHEN OLD.number > (SELECT coalesce(max(number), 0) FROM audit_anchor)
 BEGIN SELECT RAISE(ABORT, 'the audit is only appended to'); END;
 )sql";
 
-constexpr std::array scripts_of_all_versions{version_1, version_2};
+/** What registration and target belong to. What was set before there were cases is in a closed one. */
+constexpr const char* version_3 = R"sql(
+CREATE TABLE cases (
+  number INTEGER PRIMARY KEY AUTOINCREMENT,
+  state TEXT NOT NULL CHECK (state IN ('open', 'suspended', 'closed')),
+  value TEXT NOT NULL
+) STRICT;
+
+CREATE UNIQUE INDEX one_case_in_hand ON cases (state <> 'closed') WHERE state <> 'closed';
+
+CREATE TABLE case_changes (
+  record INTEGER PRIMARY KEY,
+  case_number INTEGER NOT NULL REFERENCES cases (number),
+  value TEXT NOT NULL
+) STRICT;
+
+CREATE INDEX changes_of_a_case ON case_changes (case_number, record);
+
+INSERT INTO cases (state, value)
+SELECT 'closed', json_object('label', 'Before there were cases', 'targeting', json(value),
+  'opened', json_object('time', updated, 'user', 'app'), 'changed', json_object('time', updated, 'user', 'app'))
+FROM settings WHERE key = 'targeting' AND json_valid(value);
+
+DELETE FROM settings WHERE key IN ('targeting', 'targeting_last_set', 'targeting_changes');
+)sql";
+
+constexpr std::array scripts_of_all_versions{version_1, version_2, version_3};
 
 int pragma(SQLite::Database& database, const char* name) {
   return database.execAndGet(std::string("PRAGMA ") + name).getInt();

@@ -1,6 +1,6 @@
 /**
  * @file
- * The store of one robot: users, sessions, settings and the audit, in one SQLite file.
+ * The store of one robot: users, sessions, settings, cases and the audit, in one SQLite file.
  *
  * Everything that is read or written passes through a transaction:
  *
@@ -10,7 +10,7 @@
  *       return {};
  *     });
  *
- * `Users`, `Sessions`, `Settings` and `Audit` are views of a transaction and live no longer than it does.
+ * `Users`, `Sessions`, `Settings`, `Cases` and `Audit` are views of a transaction and live no longer than it does.
  * They return refusals as values; failures of SQLite pass through them as exceptions, which `transact` and
  * `read` turn into a `StoreError`.
  */

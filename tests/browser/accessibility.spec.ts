@@ -105,6 +105,7 @@ test("the page of the target, with something wrong, something newer, and what it
       },
       [`/api/targeting/${what}`, JSON.stringify(body)] as const,
     );
+  await robot.openCase();
   await put("target", { entry_point: [8, 250, 70], target_point: [60, 200, 60] });
   await put("registration", {
     registration: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1],
@@ -122,6 +123,10 @@ test("the page of the target, with something wrong, something newer, and what it
   await other.open("Targeting");
   await expect(other.panel("Registration")).toContainText("Read only.");
   await expectNoViolation(other.page, "a viewer's targeting");
+  await robot.button("Suspend").click();
+  await expect(robot.panel("Case")).toContainText("Would be in force");
+  await robot.button("Close case").click();
+  await expectNoViolation(page, "a suspended case");
 });
 
 test("the robot's page, locked, with everything unfolded and with the keys shown", async ({

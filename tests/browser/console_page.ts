@@ -221,6 +221,13 @@ export class ConsolePage {
     }
   }
 
+  /** As another program of the same user: registration, entry and target belong to a case. */
+  async openCase(label = "phantom"): Promise<void> {
+    const cases = new URL("/api/cases", this.stack.url).href;
+    const answer = await this.page.request.post(cases, { data: { label } });
+    expect(answer.status(), "opening of a case").toBe(201);
+  }
+
   axis(title: string): Axis {
     return new Axis(this.page, title, this.stack);
   }

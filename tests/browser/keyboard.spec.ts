@@ -81,6 +81,7 @@ test("keys alone set a registration and a target, capture ticks, reject a propos
   const keyboard = new Keyboard(page);
   const axis = robot.axis("Probe rotation");
   await robot.unlockRobot();
+  await robot.openCase();
   await axis.setHome();
   await axis.enable();
   const open = async (name: string, panel: string): Promise<void> => {

@@ -35,6 +35,7 @@ const poseOrigin = async (pose: Locator): Promise<number[]> => {
 
 test.beforeEach(async ({ robot }) => {
   await robot.expectMode("LOCKED");
+  await robot.openCase();
 });
 
 test("a registration is refused in words until it is rigid, set once, and told with source and age", async ({
@@ -44,7 +45,7 @@ test("a registration is refused in words until it is rigid, set once, and told w
   await robot.open("Targeting");
   const panel = robot.panel("Registration");
   const set = panel.getByRole("button", { name: "Set registration" });
-  await expect(panel).toContainText("Nobody has ever set it.");
+  await expect(panel).toContainText("Not set yet.");
   await expect(panel).toContainText(
     "The registration is not set. Nothing is shown in the scanner, or moved to.",
   );

@@ -6,6 +6,7 @@ const registration = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
 test.beforeEach(async ({ robot, page }) => {
   await robot.expectMode("LOCKED");
+  await robot.openCase();
   const set = await page.evaluate(
     async (bodies) => {
       const put = (what: string, body: string) => fetch(`/api/targeting/${what}`, { method: "PUT", body });

@@ -76,7 +76,7 @@ def start_interlock(runtime: Path, *arguments: str | Path) -> subprocess.Popen:
 
 class Stack:
     """One running robot. `control` commands the plant, `api` speaks HTTP to the app as an administrator who
-    is in control."""
+    is in control, with a case open."""
 
     def __init__(self, directory: Path, *arguments: str | Path) -> None:
         self.state = directory / "state"
@@ -120,8 +120,12 @@ class Stack:
         return self.client(name, user["password"])
 
     def take_control(self) -> None:
-        """Anew after the app was started anew: sessions outlive it, control does not."""
+        """Anew after the app was started anew: sessions outlive it, control does not. Opens a case where none is
+        in hand."""
         assert self.api.post("/api/control/request").status_code == 200
+        cases = self.api.get("/api/cases").raise_for_status().json()
+        if all(case["state"] == "closed" for case in cases):
+            self.api.post("/api/cases", json={"label": "of the test"}).raise_for_status()
 
     def connect_control(self) -> None:
         """Opens `control`, the plant's control socket, in the directory that was given for the sockets."""

@@ -66,6 +66,7 @@ test("the robot's page at work, and the sheets", async ({ robot, page }) => {
 });
 
 test("the page of a target that is set", async ({ robot, page }) => {
+  await robot.openCase("phantom 12");
   const [entry_point, target_point] = [
     [8, 250, 70],
     [5, 200, 60],

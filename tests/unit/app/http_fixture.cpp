@@ -69,6 +69,7 @@ HttpTest::HttpTest(const Robot& robot, const ilk_config_t& config) : robot_(robo
   thread_ = std::jthread([this] { network_.run(); });
   log_in("edna");
   EXPECT_EQ(post("/api/control/request").status, 200u);
+  EXPECT_EQ(post("/api/cases", R"({"label":"of the test"})").status, 201u);
   // The test is the control thread: it has seen the STOP that a change of control is.
   channel_->stops = 0;
 }

@@ -79,7 +79,7 @@ class StoreFixture : public testing::Test {
   Store mine_ = *Store::open(folder_.path() / "state" / "interlock.db");
 };
 
-/** `edna`, an engineer, is logged in and is in control, unless a test says otherwise. */
+/** `edna`, an engineer, is logged in and is in control, with case 1 open, unless a test says otherwise. */
 class HttpTest : public StoreFixture {
  protected:
   HttpTest() : HttpTest(test::neuro(), test::neuro_config()) {}
@@ -121,8 +121,7 @@ class HttpTest : public StoreFixture {
   Answered post(const std::string& target, const std::string& body = "");
 
   Answered put(const std::string& target, const std::string& body);
-  /** The robot's frame is the scanner's. */
-  /** Wherever that is: there is no scanner here. */
+  /** The robot's frame is the scanner's, wherever that is: there is no scanner here. */
   void register_robot(const json& pose = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},
                       bool ignores_rotation = false) {
     const json body{{"registration", pose},

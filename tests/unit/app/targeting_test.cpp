@@ -149,7 +149,7 @@ TEST(Targeting, FieldsLeftOutStay) {
 }
 
 TEST(Targeting, ARegistrationIsValidInTheEpochInWhichItWasSetAndInNoOther) {
-  const RegistrationEpoch epoch{7};
+  const InForce epoch{7};
   const auto set = with_registration(judged({}, epoch), {{"registration", turned(0.1)}});
   ASSERT_TRUE(set);
   EXPECT_EQ(to_json(judged(*set, epoch))["registration_state"], "valid");
@@ -160,6 +160,17 @@ TEST(Targeting, ARegistrationIsValidInTheEpochInWhichItWasSetAndInNoOther) {
   EXPECT_EQ(expired["registration"], json(turned(0.1))) << "it is still told";
   EXPECT_EQ(to_json(*with_registration({}, {{"registration", turned(0)}}))["registration_state"], "expired")
       << "in no epoch";
+}
+
+TEST(Targeting, NothingIsInForceOfACaseThatNobodyHasResumed) {
+  Targeting kept = *with_registration(judged({}, {7}), {{"registration", turned(0.1)}});
+  kept.case_number = 3;
+  EXPECT_EQ(judged(kept, {7, "", 3}).registration_problem, "");
+  for (const std::int64_t open : {0, 2, 4}) {
+    const json told = to_json(judged(kept, {7, "", open}));
+    EXPECT_EQ(told["registration_state"], "suspended");
+    EXPECT_THAT(told["registration_problem"].get<std::string>(), testing::StartsWith("The case is suspended"));
+  }
 }
 
 TEST(Targeting, AReasonThatIsKeptOutlivesTheEpoch) {

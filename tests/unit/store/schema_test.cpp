@@ -8,6 +8,8 @@
 #include <functional>
 #include <iterator>
 
+#include "store/cases.hpp"
+#include "store/settings.hpp"
 #include "store/store_backup.hpp"
 #include "store_fixture.hpp"
 
@@ -94,6 +96,28 @@ TEST_F(SchemaTest, OlderStoreIsCopiedThenMigratedWithAllItHolds) {
   EXPECT_EQ(old.execAndGet("SELECT count(*) FROM users").getInt(), 1);
   EXPECT_TRUE(check_contents(old, PageCheck::full));
   EXPECT_EQ(fs::status(copy).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST_F(SchemaTest, WhatWasSetBeforeThereWereCasesIsInAClosedOne) {
+  execute(store_of_version_1);
+  execute(R"sql(INSERT INTO settings VALUES ('log_level', '"info"', '2024-05-01T12:00:00.000Z'),
+    ('targeting', '{"target_point":[1.0,2.0,3.0]}', '2024-05-01T12:00:00.000Z'))sql");
+  Store store = open();
+  const auto cases = seen(store, [](Transaction& transaction) { return Cases(transaction).list(9); });
+  ASSERT_EQ(cases.size(), 1u);
+  EXPECT_EQ(cases[0].state, CaseState::closed);
+  EXPECT_EQ(cases[0].value["targeting"]["target_point"], nlohmann::json({1.0, 2.0, 3.0}));
+  EXPECT_TRUE(seen(store, [](Transaction& transaction) { return Settings(transaction).find("log_level"); }));
+  EXPECT_FALSE(seen(store, [](Transaction& transaction) { return Settings(transaction).find("targeting"); }));
+}
+
+TEST_F(SchemaTest, NoMoreThanOneCaseIsInHand) {
+  Store store = open();
+  commit(store, [](Transaction& transaction) { Cases(transaction).add(nlohmann::json::object()); });
+  const auto second = store.transact([](Transaction& transaction) -> Stored<std::int64_t> {
+    return Cases(transaction).add(nlohmann::json::object());
+  });
+  EXPECT_FALSE(second);
 }
 
 TEST_F(SchemaTest, CopyOfAnEarlierMigrationIsKept) {

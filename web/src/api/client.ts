@@ -44,6 +44,7 @@ export type LogLine = Schemas["LogLine"];
 export type HistoryRows = Schemas["History"];
 export type Extremes = Schemas["Extremes"];
 export type Capture = Schemas["Capture"];
+export type Case = Schemas["Case"];
 export type Targeting = Schemas["Targeting"];
 export type AlignmentView = Schemas["AlignmentView"];
 export type Alignment = Schemas["Alignment"];
@@ -249,6 +250,21 @@ export const api = {
         params: { query: until === undefined ? { slot, seconds } : { slot, seconds, until } },
       }),
     ),
+  listCases: () => read(() => http.GET("/api/cases")),
+  openCase: (label: string) => act(() => http.POST("/api/cases", { body: { label } })),
+  /** With its part of the audit. */
+  getCase: (number: number) =>
+    act(() => slowHttp.GET("/api/cases/{number}", { params: { path: { number } } })),
+  deleteCase: (number: number) =>
+    act(() => http.DELETE("/api/cases/{number}", { params: { path: { number } } })),
+  suspendCase: (number: number) =>
+    act(() => http.POST("/api/cases/{number}/suspend", { params: { path: { number } } })),
+  resumeCase: (number: number) =>
+    act(() => http.POST("/api/cases/{number}/resume", { params: { path: { number } } })),
+  closeCase: (number: number) =>
+    act(() => http.POST("/api/cases/{number}/close", { params: { path: { number } } })),
+  addCaseNote: (number: number, text: string) =>
+    act(() => http.POST("/api/cases/{number}/notes", { params: { path: { number } }, body: { text } })),
   targeting: () => read(() => http.GET("/api/targeting")),
   alignment: () => read(() => http.GET("/api/targeting/alignment")),
   targetingHistory: () => read(() => http.GET("/api/targeting/history")),

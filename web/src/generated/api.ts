@@ -538,6 +538,127 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/cases": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * The case in hand, and all before it.
+         * @description Registration, entry, target, probe offsets and motions belong to a case; without an open one none of them is set (NO_CASE), and nothing
+         *     goes to a pose. At most one case is not closed. It is open, or suspended: by somebody, or by another start of the app.
+         */
+        get: operations["listCases"];
+        put?: never;
+        /** Opens a case. Nothing is set in it but the probe offsets of the robot's file. */
+        post: operations["openCase"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/cases/{number}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                number: components["parameters"]["CaseNumber"];
+            };
+            cookie?: never;
+        };
+        /** A case with all that belongs to it, to be kept elsewhere. */
+        get: operations["getCase"];
+        put?: never;
+        post?: never;
+        /** Deletes a closed case with its label, its values and its notes. The audit keeps what was done in it, by its number. */
+        delete: operations["deleteCase"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/cases/{number}/suspend": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                number: components["parameters"]["CaseNumber"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Suspends the open case at once, with every motion that was proposed in it. Nobody needs control for that. */
+        post: operations["suspendCase"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/cases/{number}/resume": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                number: components["parameters"]["CaseNumber"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Resumes the suspended case, by somebody who has looked at what is in force by it.
+         * @description Entry, target and probe offsets are in force again; the registration is unless it has expired, as by a start of the app. OTHER_ROBOT for a case of another robot.
+         */
+        post: operations["resumeCase"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/cases/{number}/close": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                number: components["parameters"]["CaseNumber"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Closes the case for ever, open or suspended, with every motion that was proposed in it. Nobody needs control for that. */
+        post: operations["closeCase"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/cases/{number}/notes": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                number: components["parameters"]["CaseNumber"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Adds a note to a case that is not closed; 409 CASE for one that is, or that has 200 notes. */
+        post: operations["addCaseNote"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/targeting": {
         parameters: {
             query?: never;
@@ -1242,7 +1363,7 @@ export interface components {
              *     LOGIN, CREDENTIALS, BACK_OFF, ROLE, CONTROL, REPLAY, EXISTS, LAST_ADMIN, STORE, STOPPED, MODE_HOME, MODE_PATH, NOT_HOMED, SEPARATION,
              *     HAS_SWITCH, POSITIONS_ROBOT, POSITIONS_CONFIG, POSITIONS_VERSION,
              *     NO_KERNEL, NO_BENCH, NO_BLACK_BOX, PEDAL_LAPSED, JOG_LAPSED, CONFIG_MISMATCH, ENDED, OVERLOADED, LATE; of paths NO_PATH, UNREACHABLE, STALE,
-             *     EMPTY, NO_TARGETS, NOT_WAITING; of a trajectory or a pose a code of `interlock trajectory check` or of `interlock kinematics`.
+             *     EMPTY, NO_TARGETS, NOT_WAITING; of cases NO_CASE, CASE, OTHER_ROBOT; of a trajectory or a pose a code of `interlock trajectory check` or of `interlock kinematics`.
              */
             code: string;
             /** @description What, where. */
@@ -1444,6 +1565,8 @@ export interface components {
         };
         Proposal: {
             id: number;
+            /** @description Number of the case that was open when it was proposed; it ends when that is suspended or closed. */
+            case: number | null;
             /** @description Of a motion to a pose, as it was proposed; in the scanner's frame (RAS), mm. */
             aim: {
                 desired: number[];
@@ -1838,15 +1961,68 @@ export interface components {
         Point: (number | string)[];
         /** @description mm, -1000 to 1000. */
         Offset: number | string;
-        /** @description Names as in the thesis. Poses and points are in the scanner's frame (RAS), mm; null until set. */
+        Case: {
+            /** @description Never given twice. */
+            number: number;
+            label: string;
+            /** @enum {string} */
+            state: "open" | "suspended" | "closed";
+            /** @description Why nothing of it is in force; null of the open case. */
+            problem: string | null;
+            /** @description Name of the robot, as `interlock run` takes it. */
+            robot: string;
+            /** @description Of the robot when it was opened or last resumed, eight hex digits; empty where that is not known. */
+            configuration: string;
+            /** @description Whether the robot has another one now; false of another robot. */
+            configuration_changed: boolean;
+            opened: components["schemas"]["CaseStep"];
+            /** @description When its state changed last. */
+            changed: components["schemas"]["CaseStep"];
+            /** @description Oldest first. */
+            notes: components["schemas"]["CaseNote"][];
+            /** @description Null, and notes and `last_set` empty, of a closed case in the list. */
+            targeting: components["schemas"]["Targeting"] | null;
+            /** @description By the name of the field in `targeting`, who set it last; without those that nobody ever set. */
+            last_set: {
+                [key: string]: components["schemas"]["TargetingOrigin"];
+            };
+        };
+        CaseStep: {
+            /** Format: date-time */
+            time: string;
+            user: string;
+        };
+        CaseNote: components["schemas"]["CaseStep"] & {
+            text: string;
+        };
+        CaseExport: components["schemas"]["Case"] & {
+            /** @enum {string} */
+            schema: "interlock.case/1";
+            changes: components["schemas"]["TargetingHistory"]["changes"];
+            /** @description Of the audit, from its opening to its closing, oldest first: motions, requests and their verdicts, STOPs, settings, who was in control, and the steps of the case. */
+            records: components["schemas"]["AuditRecord"][];
+            /** @description False: there are more than 5000, of which these are the newest, or the audit has retired some. */
+            records_complete: boolean;
+        };
+        NewCase: {
+            /** @description For people to know it by; no name or number of a patient. Shown as it is, and not in the audit. */
+            label: string;
+        };
+        NewCaseNote: {
+            /** @description No patient data. */
+            text: string;
+        };
+        /** @description Names as in the thesis. Poses and points are in the scanner's frame (RAS), mm; null until set. All of it belongs to the case in hand. */
         Targeting: {
+            /** @description Number of the case in hand; null when every one is closed. */
+            case: number | null;
             /** @description The robot in the scanner, 16 numbers row by row; also where it has expired. */
             registration: number[] | null;
             /**
-             * @description Unless it is `valid`, no pose in the scanner's frame is computed, shown, sent or moved to (NO_REGISTRATION).
+             * @description `suspended`: it is valid once its case is resumed. Unless it is `valid`, no pose in the scanner's frame is computed, shown, sent or moved to (NO_REGISTRATION).
              * @enum {string}
              */
-            registration_state: "not_set" | "valid" | "expired";
+            registration_state: "not_set" | "valid" | "suspended" | "expired";
             /** @description Why it is not valid. */
             registration_problem: string | null;
             /** @description Why it can hardly be right; it was set all the same. */
@@ -2202,7 +2378,7 @@ export interface components {
              * @description `authority` is the former name of `control`; only old records have it.
              * @enum {string}
              */
-            kind: "start" | "login" | "login_refused" | "logout" | "session_ended" | "user" | "control" | "authority" | "proposal" | "request" | "verdict" | "stop" | "setting" | "restore" | "bench" | "connection" | "records_lost" | "retention" | "acknowledgement";
+            kind: "start" | "login" | "login_refused" | "logout" | "session_ended" | "user" | "control" | "authority" | "proposal" | "request" | "verdict" | "stop" | "setting" | "restore" | "bench" | "connection" | "records_lost" | "retention" | "acknowledgement" | "case";
             detail: Record<string, unknown>;
             /** @description SHA-256, 64 hex digits. */
             hash: string;
@@ -2377,6 +2553,7 @@ export interface components {
     parameters: {
         /** @description Slot or name of the axis. */
         Axis: string;
+        CaseNumber: number;
         ProposalId: number;
     };
     requestBodies: never;
@@ -3264,6 +3441,297 @@ export interface operations {
             503: components["responses"]["NoKernel"];
         };
     };
+    listCases: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Cases, newest first, at most 200. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Case"][];
+                };
+            };
+            401: components["responses"]["Login"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    openCase: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewCase"];
+            };
+        };
+        responses: {
+            /** @description Opened. */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Case"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            /** @description CASE: another one is not closed; `detail` names it. CONTROL. */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    getCase: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                number: components["parameters"]["CaseNumber"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Case. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CaseExport"];
+                };
+            };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            404: components["responses"]["NotFound"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    deleteCase: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                number: components["parameters"]["CaseNumber"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description As it was. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Case"];
+                };
+            };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            404: components["responses"]["NotFound"];
+            /** @description CASE: it is not closed. */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            503: components["responses"]["NoStore"];
+        };
+    };
+    suspendCase: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                number: components["parameters"]["CaseNumber"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The case. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Case"];
+                };
+            };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            404: components["responses"]["NotFound"];
+            /** @description CASE: its state does not allow it. OTHER_ROBOT: it belongs to another robot. CONTROL, where that is needed. */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description STORE: a case that was to be suspended or closed is out of force, but the store does not say so. */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    resumeCase: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                number: components["parameters"]["CaseNumber"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The case. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Case"];
+                };
+            };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            404: components["responses"]["NotFound"];
+            /** @description CASE: its state does not allow it. OTHER_ROBOT: it belongs to another robot. CONTROL, where that is needed. */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description STORE: a case that was to be suspended or closed is out of force, but the store does not say so. */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    closeCase: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                number: components["parameters"]["CaseNumber"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The case. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Case"];
+                };
+            };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            404: components["responses"]["NotFound"];
+            /** @description CASE: its state does not allow it. OTHER_ROBOT: it belongs to another robot. CONTROL, where that is needed. */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description STORE: a case that was to be suspended or closed is out of force, but the store does not say so. */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    addCaseNote: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                number: components["parameters"]["CaseNumber"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewCaseNote"];
+            };
+        };
+        responses: {
+            /** @description The case. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Case"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            404: components["responses"]["NotFound"];
+            /** @description CASE. */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoStore"];
+        };
+    };
     getTargeting: {
         parameters: {
             query?: never;
@@ -3377,7 +3845,7 @@ export interface operations {
             400: components["responses"]["Malformed"];
             401: components["responses"]["Login"];
             403: components["responses"]["Role"];
-            409: components["responses"]["Control"];
+            409: components["responses"]["Refused"];
             422: components["responses"]["Invalid"];
             503: components["responses"]["NoStore"];
         };
@@ -3436,7 +3904,7 @@ export interface operations {
             400: components["responses"]["Malformed"];
             401: components["responses"]["Login"];
             403: components["responses"]["Role"];
-            409: components["responses"]["Control"];
+            409: components["responses"]["Refused"];
             422: components["responses"]["Invalid"];
             503: components["responses"]["NoStore"];
         };
@@ -3466,7 +3934,7 @@ export interface operations {
             400: components["responses"]["Malformed"];
             401: components["responses"]["Login"];
             403: components["responses"]["Role"];
-            409: components["responses"]["Control"];
+            409: components["responses"]["Refused"];
             422: components["responses"]["Invalid"];
             503: components["responses"]["NoStore"];
         };

@@ -64,6 +64,7 @@ function Facts({ proposal, plan }: FactsProps) {
     <dl className="detail-facts">
       <Fact name="Author">{author}</Fact>
       <Fact name="Source">{sourceWord(proposal)}</Fact>
+      {proposal.case !== null && <Fact name="Belongs to">Case {proposal.case}</Fact>}
       {mode !== undefined && <Fact name="Mode">{mode}</Fact>}
       <Fact name="Proposed">
         <time dateTime={created}>{localDate(created)}</time>, tick {created_tick}

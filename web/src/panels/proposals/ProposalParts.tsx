@@ -42,6 +42,12 @@ export function sourceWord(proposal: Proposal): string {
   return sources[proposal.source];
 }
 
+/** Who proposed it, from where, and in which case. */
+export function originWords(proposal: Proposal): string {
+  const { author, case: number } = proposal;
+  return `${author} · ${sourceWord(proposal)}${number === null ? "" : ` · Case ${number}`}`;
+}
+
 /** What whoever is in control can do about it now. */
 export function ProposalCommands({ proposal }: { readonly proposal: Proposal }) {
   const { id, slot, state } = proposal;

@@ -7,7 +7,7 @@ import { useConsole } from "../../state/store";
 import { localTime } from "../../units/time";
 import { LivePage } from "../cover/LivePage";
 import { ProposalDetail } from "./ProposalDetail";
-import { StateChip, sourceWord, Wish } from "./ProposalParts";
+import { originWords, StateChip, Wish } from "./ProposalParts";
 import { TrajectoryPanel } from "./TrajectoryPanel";
 import "./proposals.css";
 import "./detail.css";
@@ -79,7 +79,7 @@ function AllProposals({ proposals, shown }: AllProposalsProps) {
                 <StateChip state={proposal.state} />
               </span>
               <span className="proposal-from">
-                {proposal.author} · {sourceWord(proposal)} · {localTime(proposal.created)}
+                {originWords(proposal)} · {localTime(proposal.created)}
               </span>
             </a>
           </li>

@@ -7,7 +7,7 @@ import { proposalHash } from "../../state/route";
 import { useConsole } from "../../state/store";
 import { localTime } from "../../units/time";
 import { FirstSteps, FirstStepsButton } from "../first/FirstSteps";
-import { ProposalCommands, StateChip, sourceWord, WaitingWish, Wish } from "./ProposalParts";
+import { originWords, ProposalCommands, StateChip, WaitingWish, Wish } from "./ProposalParts";
 import "./proposals.css";
 
 const MOST_SHOWN = 20;
@@ -68,8 +68,7 @@ function ProposalItem({
       <WaitingWish proposal={proposal} />
       <span className="proposal-foot">
         <span className="proposal-from">
-          {proposal.author} · {sourceWord(proposal)} ·{" "}
-          <time dateTime={proposal.created}>{localTime(proposal.created)}</time>
+          {originWords(proposal)} · <time dateTime={proposal.created}>{localTime(proposal.created)}</time>
         </span>
         <span className="proposal-commands">
           <a

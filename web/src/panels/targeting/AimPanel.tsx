@@ -30,17 +30,19 @@ interface AimPanelProps {
   readonly targeting: Targeting;
   readonly history: TargetingHistory | null;
   readonly asked: Asked;
+  /** Why no case takes what would be set; null when one does. */
+  readonly off: string | null;
   readonly onSet: () => Promise<void>;
 }
 
 const names: readonly AimName[] = [...points, ...offsets];
 
 /** Entry, target and the probe; what changed is sent, and nothing else. */
-export function AimPanel({ targeting, history, asked, onSet }: AimPanelProps) {
+export function AimPanel({ targeting, history, asked, off, onSet }: AimPanelProps) {
   const [aim, setAim] = useState(() => aimOf(targeting));
   const [refusal, setRefusal] = useState<Notice | null>(null);
   const [sending, setSending] = useState(false);
-  const reason = useReason("holder");
+  const reason = useReason("holder") ?? off;
   const problemsId = useId();
   useEffect(() => setAim((known) => receivedAim(known, targeting)), [targeting]);
 
@@ -67,7 +69,7 @@ export function AimPanel({ targeting, history, asked, onSet }: AimPanelProps) {
   const field = { readOnly: reason !== null, problemsId, onText };
   return (
     <Panel title="Entry, target and probe" className="aim" asked={asked} tools={<FrameLabel />}>
-      <ReasonLine need="holder" />
+      <ReasonLine need="holder" off={off} />
       <form
         className="targeting-form"
         aria-label="Entry, target and probe"

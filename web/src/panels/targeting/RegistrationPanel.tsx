@@ -23,6 +23,7 @@ import {
   IGNORES_AT,
   ignoresRotation,
   isUnreadable,
+  registrationAdvice,
   registrationChange,
   registrationProblems,
   registrationValues,
@@ -33,17 +34,19 @@ interface RegistrationPanelProps {
   readonly targeting: Targeting;
   readonly history: TargetingHistory | null;
   readonly asked: Asked;
+  /** Why no case takes what would be set; null when one does. */
+  readonly off: string | null;
   readonly onSet: () => Promise<void>;
 }
 
 /** The pose of the robot in the scanner: as it was received, edited by hand, or read from a file. */
-export function RegistrationPanel({ targeting, history, asked, onSet }: RegistrationPanelProps) {
+export function RegistrationPanel({ targeting, history, asked, off, onSet }: RegistrationPanelProps) {
   const [draft, setDraft] = useState(() => draftOf(registrationValues(targeting)));
   const [read, setRead] = useState<Read>(nothingRead);
   const [refusal, setRefusal] = useState<Notice | null>(null);
   const [sending, setSending] = useState(false);
   const [override, setOverride] = useState("");
-  const reason = useReason("holder");
+  const reason = useReason("holder") ?? off;
   const problemsId = useId();
   useEffect(() => setDraft((known) => received(known, registrationValues(targeting))), [targeting]);
 
@@ -95,7 +98,7 @@ export function RegistrationPanel({ targeting, history, asked, onSet }: Registra
         </>
       }
     >
-      <ReasonLine need="holder" />
+      <ReasonLine need="holder" off={off} />
       <form
         className="targeting-form"
         aria-label="Registration"
@@ -106,12 +109,12 @@ export function RegistrationPanel({ targeting, history, asked, onSet }: Registra
           history={history}
           field="registration"
           isSet={targeting.registration !== null}
-          unset="Nobody has ever set it."
+          unset="Not set yet."
         />
         {targeting.registration_problem !== null && (
           <p className="registration-problem" role="status">
             <i aria-hidden="true">▲</i> {targeting.registration_problem} Nothing is shown in the scanner, or
-            moved to. {targeting.registration !== null && "Set it again only if it still holds."}
+            moved to. {registrationAdvice[targeting.registration_state]}
           </p>
         )}
         {targeting.registration_doubt !== null && (

@@ -1,19 +1,24 @@
+import { Fragment } from "react";
 import { api } from "../../api/client";
 import { NoticeText } from "../../design/NoticeText";
+import { useConsole } from "../../state/store";
 import { usePolled } from "../../state/usePolled";
 import { LivePage } from "../cover/LivePage";
 import { AimPanel } from "./AimPanel";
 import { AlignmentPanel } from "./AlignmentPanel";
+import { CasePanel } from "./CasePanel";
+import { reasonOfCase } from "./case";
 import { HistoryPanel } from "./HistoryPanel";
 import { PosesPanel } from "./PosesPanel";
 import { RegistrationPanel } from "./RegistrationPanel";
 import "./targeting.css";
 
+const CASES_EVERY_MS = 1000;
 const TARGETING_EVERY_MS = 500;
 const ALIGNMENT_EVERY_MS = 250;
 const HISTORY_EVERY_MS = 1000;
 
-/** Where the robot is in the scanner, where it is to go, what that asks of it, and who said so. */
+/** To which case all belongs, where the robot is in the scanner, where it is to go, what that asks of it, and who said so. */
 export default function TargetingPage() {
   return (
     <LivePage className="targeting-page">
@@ -23,13 +28,16 @@ export default function TargetingPage() {
 }
 
 function Panels() {
+  const robot = useConsole((state) => state.robot?.name ?? null);
+  const cases = usePolled(api.listCases, CASES_EVERY_MS);
   const targeting = usePolled(api.targeting, TARGETING_EVERY_MS);
   const view = usePolled(api.alignment, ALIGNMENT_EVERY_MS);
   const history = usePolled(api.targetingHistory, HISTORY_EVERY_MS);
-  const notice = targeting.notice ?? view.notice ?? history.notice;
+  const notice = cases.notice ?? targeting.notice ?? view.notice ?? history.notice;
   const refresh = async (): Promise<void> => {
-    await Promise.all([targeting.refresh(), view.refresh(), history.refresh()]);
+    await Promise.all([cases.refresh(), targeting.refresh(), view.refresh(), history.refresh()]);
   };
+  const off = cases.value === null ? null : reasonOfCase(cases.value, robot);
   return (
     <>
       {notice !== null && (
@@ -37,28 +45,39 @@ function Panels() {
           <NoticeText lead="No newer values:" notice={notice} />
         </p>
       )}
-      {targeting.value !== null && (
+      {cases.value !== null && targeting.value !== null && (
         <>
-          <RegistrationPanel
-            targeting={targeting.value}
-            history={history.value}
-            asked={targeting.asked}
-            onSet={refresh}
+          <CasePanel
+            cases={cases.value}
+            now={history.value?.now ?? null}
+            asked={cases.asked}
+            onChanged={refresh}
           />
-          <AimPanel
-            targeting={targeting.value}
-            history={history.value}
-            asked={targeting.asked}
-            onSet={refresh}
-          />
-          <AlignmentPanel view={view.value} asked={view.asked} />
-          <PosesPanel
-            view={view.value}
-            reported={targeting.value.reported_position}
-            history={history.value}
-            asked={view.asked}
-          />
-          <HistoryPanel history={history.value} asked={history.asked} />
+          {/* What was edited in one case must not reach another. */}
+          <Fragment key={targeting.value.case}>
+            <RegistrationPanel
+              targeting={targeting.value}
+              history={history.value}
+              asked={targeting.asked}
+              off={off}
+              onSet={refresh}
+            />
+            <AimPanel
+              targeting={targeting.value}
+              history={history.value}
+              asked={targeting.asked}
+              off={off}
+              onSet={refresh}
+            />
+            <AlignmentPanel view={view.value} asked={view.asked} />
+            <PosesPanel
+              view={view.value}
+              reported={targeting.value.reported_position}
+              history={history.value}
+              asked={view.asked}
+            />
+            <HistoryPanel history={history.value} asked={history.asked} />
+          </Fragment>
         </>
       )}
     </>

@@ -4,6 +4,7 @@ import { type Aim, type AimName, aimChange, aimOf, aimProblems, changedGroups, r
 import { hasNews, withText } from "./draft";
 
 const targeting: Targeting = {
+  case: 1,
   registration: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1],
   registration_state: "valid",
   registration_problem: null,

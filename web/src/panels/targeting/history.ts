@@ -44,7 +44,7 @@ function against(before: readonly number[], after: readonly number[]): string {
   return `, moved by ${moved} mm, turned by ${fixed(turnBetween(after, before), 2)}°`;
 }
 
-function valueWords(value: unknown): string {
+export function valueWords(value: unknown): string {
   const found = typeof value === "number" ? [value] : numbers(value);
   return found.length === 0 ? "not set" : list(found, POINT_DECIMALS);
 }

@@ -11,7 +11,7 @@ export function FrameLabel() {
 }
 
 interface SetByProps {
-  readonly history: TargetingHistory | null;
+  readonly history: Pick<TargetingHistory, "now" | "last_set"> | null;
   /** Name of the value in the interface. */
   readonly field: string;
   /** Whether there is a value: one that an older release set has nobody noted. */

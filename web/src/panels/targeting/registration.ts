@@ -43,6 +43,14 @@ function elementProblem(text: string, at: number): string {
   }.`;
 }
 
+/** What becomes of a registration that is not in force, or what to do about it. */
+export const registrationAdvice: Readonly<Record<Targeting["registration_state"], string>> = {
+  not_set: "",
+  valid: "",
+  suspended: "It is valid again once the case is resumed.",
+  expired: "Set it again only if it still holds.",
+};
+
 /** Whether a text of the matrix means no number. */
 export function isUnreadable(text: string): boolean {
   return numberIn(text) === null;

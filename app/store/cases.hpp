@@ -1,0 +1,64 @@
+/**
+ * @file
+ * The cases: what registration, target and motions belong to. At most one of them is not closed.
+ */
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "store/store.hpp"
+
+namespace interlock {
+
+/** How a case stands in the store. One that is open there is in force only once somebody has opened or
+ * resumed it since the app was started. */
+enum class CaseState { open, suspended, closed };
+
+/** As the interface spells it: "open". */
+std::string_view case_state_name(CaseState state);
+
+/** A case as it is kept. */
+struct KeptCase {
+  std::int64_t number = 0; /**< from 1, never given twice */
+  CaseState state = CaseState::open;
+  nlohmann::json value; /**< an object; service/cases.hpp knows what is in it */
+};
+
+/** The cases in one transaction. */
+class Cases {
+ public:
+  explicit Cases(Transaction& transaction) : database_(transaction.database()) {}
+
+  /** The one that is not closed. */
+  [[nodiscard]] std::optional<KeptCase> in_hand() const;
+
+  /** The case of that number. */
+  [[nodiscard]] std::optional<KeptCase> find(std::int64_t number) const;
+
+  /** The newest `count`, newest first. */
+  [[nodiscard]] std::vector<KeptCase> list(std::size_t count) const;
+
+  /** Adds an open one, and gives its number. No other may be in hand. */
+  std::int64_t add(const nlohmann::json& value);
+
+  /** Keeps state and value of the case with that number. */
+  void change(const KeptCase& changed);
+
+  /** Removes a case with what was noted for it. */
+  void remove(std::int64_t number);
+
+  /** Notes a change of its values, which that record of the audit tells of. */
+  void note(std::int64_t number, std::int64_t record, const nlohmann::json& change);
+
+  /** What was noted for it: the newest `count`, newest first. */
+  [[nodiscard]] nlohmann::json changes(std::int64_t number, std::size_t count) const;
+
+ private:
+  SQLite::Database& database_;
+};
+
+}  // namespace interlock
