@@ -259,9 +259,11 @@ tl::expected<Proposal, Refusal> MotionRegistry::abort(std::uint32_t id, const st
   return *proposal;
 }
 
+/** Each by its number too: an approval may have overtaken the STOP on its way to the control thread. */
 void MotionRegistry::abort_all(const std::string& reason, const std::string& by) {
   for (Proposal& each : registry_) {
     if (is_open(each.state)) {
+      (void)(is_approved(each.state) && send_(Cancel{each.id}));
       become(each, ProposalState::aborted, reason, std::nullopt, by);
     }
   }
@@ -295,10 +297,12 @@ void MotionRegistry::follow(const ControlView& view) {
   publish_mode();
 }
 
-/** A task is reported anew within a state too: the step changes, or what is left of it. */
+/** A task is reported anew within a state too: the step changes, or what is left of it. One that has ended
+ * here ends on the control thread as well, for as long as that shows it open. */
 void MotionRegistry::follow(const TaskStatus& status, const ControlView& view) {
   Proposal* proposal = find_mutable(status.task);
   if (proposal == nullptr || !is_open(proposal->state)) {
+    (void)(is_open(status.phase) && send_(Cancel{status.task}));
     return;
   }
   const ProposalState state = state_of(status.phase);

@@ -54,7 +54,7 @@ std::string end_words(const std::string& axis, const TaskStatus& status) {
     case TaskReason::link_lost:
       return "The link to the kernel was lost.";
     case TaskReason::waited_too_long:
-      return "The pedal was not held for 60 s; propose it again.";
+      return "It waited for 60 s for the pedal, or for a new press of it; propose it again.";
     case TaskReason::not_homed:
       return axis + " is not homed, so it cannot go to a position. Home it first.";
     case TaskReason::verdict_lost:

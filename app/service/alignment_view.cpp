@@ -196,8 +196,8 @@ tl::expected<NeedleTarget, Problem> needle_target(const Robot& robot, const Targ
 
 std::optional<Problem> out_of_reach(const Robot& robot, const Alignment& alignment,
                                     std::optional<double> accepted_mm, std::optional<double> accepted_deg) {
-  // What somebody accepts was rounded when it was shown.
-  constexpr double rounding = 0.05;
+  // What somebody accepts was rounded when it was shown, to two digits.
+  constexpr double rounding = 0.005;
   const TargetingLimits& limits = robot.targeting;
   const double most_mm = accepted_mm ? *accepted_mm + rounding : limits.tolerance_mm;
   const double most_deg = accepted_deg ? *accepted_deg + rounding : limits.tolerance_deg;

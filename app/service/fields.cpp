@@ -4,6 +4,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "system/printable.hpp"
+
 namespace interlock {
 namespace {
 
@@ -193,6 +195,16 @@ std::optional<std::string> Fields::text(const std::string& name) {
     return std::nullopt;
   }
   return object_[name].get<std::string>();
+}
+
+std::optional<std::string> Fields::line(const std::string& name, std::size_t longest) {
+  auto found = text(name);
+  if (found && (printable(*found) != *found || !is_visible(*found))) {
+    reject(name, "is empty, or has characters that do not show", "a text of one line");
+  } else if (found && characters_in(*found) > longest) {
+    reject(name, "is too long", "at most " + std::to_string(longest) + " characters");
+  }
+  return found;
 }
 
 std::optional<std::string> Fields::choice(const std::string& name,

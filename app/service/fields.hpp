@@ -65,6 +65,9 @@ class Fields {
   /** A field that is a text; a problem is noted when it is not. */
   std::optional<std::string> text(const std::string& name);
 
+  /** A text of one line of at most that many characters, some of which can be seen. */
+  std::optional<std::string> line(const std::string& name, std::size_t longest);
+
   /** One of `choices`; nothing when the field is absent. */
   std::optional<std::string> choice(const std::string& name, std::span<const std::string_view> choices);
 

@@ -228,6 +228,13 @@ asio::awaitable<Done> start_up(const Context& context, const Caller& caller) {
   co_return made.map(proposed);
 }
 
+/** A target that is refused leaves none: the one before would pass for it. */
+asio::awaitable<void> leave_no_target(const Context& context, const Caller& caller) {
+  json nothing = json::object();
+  (void)co_await change_targeting(context, caller, TaskSource::openigtlink, without_target,
+                                  std::move(nothing));
+}
+
 asio::awaitable<Done> set_target(const Context& context, const Caller& caller, igtl::SetTargetPose command) {
   const auto before = co_await present_targeting(context);
   if (!before) {
@@ -238,6 +245,7 @@ asio::awaitable<Done> set_target(const Context& context, const Caller& caller, i
   const auto alignment = co_await aligned(context, desired);
   const auto miss = alignment ? out_of_reach(context.robot, *alignment) : alignment.error();
   if (miss) {
+    co_await leave_no_target(context, caller);
     igtl::Outcome outcome{status_of(*miss)};
     if (miss->code != "NO_REGISTRATION") {
       outcome.status.code = StatusCode::unreachable;
@@ -279,6 +287,7 @@ asio::awaitable<Done> set_target_pose(const Context& context, const Caller& call
                                       igtl::SetTargetPose command) {
   const auto pose = rigid_pose({{"target", command.scanner_from_target}}, "target");
   if (!pose || !igtl::is_rigid(command.scanner_from_target)) {
+    co_await leave_no_target(context, caller);
     igtl::Outcome outcome{status_of(pose ? no_rigid_motion() : pose.error())};
     outcome.status.sub_code = invalid_target;
     co_return outcome;

@@ -276,12 +276,8 @@ tl::expected<Targeting, Problem> with_registration(Targeting targeting, const js
                                                      std::min(expired.size(), most_registrations_before)));
   targeting.registration_epoch = targeting.present_epoch;
   targeting.registration_expired.clear();
-  targeting.override_reason = fields.text("override_reason").value_or("");
-  if (targeting.override_reason.size() > longest_reason) {
-    fields.reject("override_reason", "is too long", "at most 200 bytes");
-  }
-  targeting.ignore_registration_rotation =
-      fields.boolean("ignore_registration_rotation").value_or(targeting.ignore_registration_rotation);
+  targeting.override_reason = fields.line("override_reason", longest_reason).value_or("");
+  targeting.ignore_registration_rotation = fields.boolean("ignore_registration_rotation").value_or(false);
   return unless_wrong(fields, targeting);
 }
 
@@ -329,6 +325,12 @@ tl::expected<Targeting, Problem> with_target(Targeting targeting, const json& bo
   }
   read_offsets(fields, targeting);
   return unless_wrong(fields, targeting);
+}
+
+tl::expected<Targeting, Problem> without_target(Targeting targeting, const json& /*body*/) {
+  targeting.entry_point.reset();
+  targeting.target_point.reset();
+  return targeting;
 }
 
 tl::expected<RowMajor, Problem> rigid_pose(const json& body, const std::string& name) {

@@ -30,7 +30,7 @@ constexpr double largest_offset_mm = 1000.0;
 /** How far the elements of R^T R may be from those of the identity, and its determinant from 1. */
 constexpr double entered_rigidity = 1e-3;
 
-/** Bytes of a reason. */
+/** Characters of a reason. */
 constexpr std::size_t longest_reason = 200;
 
 /** Expired registrations that are remembered, the newest. */
@@ -104,6 +104,8 @@ tl::expected<Targeting, Problem> plausible(Targeting targeting, const Robot& rob
 tl::expected<Targeting, Problem> with_reported_pose(Targeting targeting, const nlohmann::json& body);
 /** The targeting with another target. */
 tl::expected<Targeting, Problem> with_target(Targeting targeting, const nlohmann::json& body);
+/** The targeting without entry and target. */
+tl::expected<Targeting, Problem> without_target(Targeting targeting, const nlohmann::json& body);
 
 /** Sets entry and target by the pose that the treatment point is to have: it comes along the pose's third
  * axis, from as far off as entry and target were before, or 50 mm. */

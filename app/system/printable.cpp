@@ -1,5 +1,7 @@
 #include "system/printable.hpp"
 
+#include <algorithm>
+
 namespace interlock {
 namespace {
 
@@ -15,6 +17,14 @@ constexpr bool is_ascii_control(char32_t c) { return c < 0x20 || c == 0x7f; }
 constexpr bool misleads(char32_t c) {
   return (c >= 0x80 && c <= 0x9f) || c == 0x2028 || c == 0x2029 || c == 0x061c || c == 0x200e ||
          c == 0x200f || (c >= 0x202a && c <= 0x202e) || (c >= 0x2066 && c <= 0x2069);
+}
+
+/** White space, and what has no width. */
+constexpr bool is_blank(char32_t c) {
+  return c == 0x20 || c == 0xa0 || c == 0xad || c == 0x34f || c == 0x1680 || c == 0x180e ||
+         (c >= 0x2000 && c <= 0x200d) || c == 0x202f || (c >= 0x205f && c <= 0x2064) || c == 0x2800 ||
+         c == 0x3000 || c == 0x3164 || (c >= 0xfe00 && c <= 0xfe0f) || c == 0xfeff ||
+         (c >= 0xe0000 && c <= 0xe0fff);
 }
 
 /** How many bytes a character has that begins with this one; 0 where none begins so. */
@@ -72,6 +82,21 @@ std::string printable(std::string_view text) {
     text.remove_prefix(bytes);
   }
   return line;
+}
+
+bool is_visible(std::string_view text) {
+  for (auto character = first_character(text); character; character = first_character(text)) {
+    if (!is_blank(character->code_point)) {
+      return true;
+    }
+    text.remove_prefix(character->bytes);
+  }
+  return false;
+}
+
+std::size_t characters_in(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(text, [](char each) { return (each & 0xc0) != 0x80; }));
 }
 
 }  // namespace interlock

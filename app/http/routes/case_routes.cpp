@@ -1,10 +1,7 @@
-#include <algorithm>
-
 #include "http/message.hpp"
 #include "http/routes.hpp"
 #include "service/cases.hpp"
 #include "service/fields.hpp"
-#include "system/printable.hpp"
 
 namespace interlock::web {
 namespace {
@@ -13,21 +10,12 @@ using Answering = boost::asio::awaitable<Reply>;
 using boost::beast::http::verb;
 using nlohmann::json;
 
-std::ptrdiff_t characters_in(const std::string& text) {
-  return std::ranges::count_if(text, [](char each) { return (each & 0xc0) != 0x80; });
-}
-
 /** The text in that field, the only one of the body. */
-tl::expected<std::string, Problem> text_in(const Request& request, const char* name, std::ptrdiff_t longest) {
+tl::expected<std::string, Problem> text_in(const Request& request, const char* name, std::size_t longest) {
   return parse_body(request).and_then([&](const json& body) -> tl::expected<std::string, Problem> {
     Fields fields(body, {name});
     fields.require({{name, "a text"}});
-    const std::string text = fields.text(name).value_or("");
-    if (printable(text) != text || text.find_first_not_of(' ') == std::string::npos) {
-      fields.reject(name, "is empty, or has characters that do not show", "a text of one line");
-    } else if (characters_in(text) > longest) {
-      fields.reject(name, "is too long", "at most " + std::to_string(longest) + " characters");
-    }
+    const std::string text = fields.line(name, longest).value_or("");
     return fields.problem() ? tl::expected<std::string, Problem>(fail(*fields.problem())) : text;
   });
 }

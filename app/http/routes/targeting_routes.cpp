@@ -19,8 +19,6 @@ using nlohmann::json;
 /** Half a second of a small computer; twice as many fill few more cells. */
 constexpr std::size_t reach_draws = 200'000;
 
-/** Bytes of a reason for which a registration expires. */
-
 /** Schema `Reach`. */
 json reach_json(const KinematicsResult<Reach>& found) {
   if (!found) {
@@ -109,10 +107,7 @@ Answering TargetingRoutes::expire(const Call& call) const {
     co_return fail(body.error());
   }
   Fields fields(*body, {"reason"});
-  std::string reason = fields.text("reason").value_or("The table moved.");
-  if (reason.empty() || reason.size() > longest_reason) {
-    fields.reject("reason", "is empty or too long", "1 to 200 bytes");
-  }
+  std::string reason = fields.line("reason", longest_reason).value_or("The table moved.");
   if (fields.problem()) {
     co_return fail(*fields.problem());
   }

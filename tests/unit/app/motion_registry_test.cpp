@@ -157,6 +157,29 @@ TEST_F(MotionRegistryTest, StopAbortsAllThatIsOpen) {
   EXPECT_EQ(state(3), ProposalState::aborted);
 }
 
+TEST_F(MotionRegistryTest, AnApprovalThatOvertookTheStopIsCancelledByItsNumber) {
+  (void)propose();
+  registry_.abort_all("STOP.", "bob");
+  ASSERT_EQ(sent_.size(), 2u);
+  EXPECT_EQ(std::get<Cancel>(sent_[1]).task, 1u);
+}
+
+TEST_F(MotionRegistryTest, WhatHasEndedHereEndsOnTheControlThreadForAsLongAsThatShowsItOpen) {
+  (void)propose();
+  accepts_ = false;
+  registry_.abort_all("STOP.", "bob");
+  accepts_ = true;
+  for (const TaskPhase phase : {TaskPhase::waiting, TaskPhase::executing, TaskPhase::paused}) {
+    sent_.clear();
+    report(1, phase);
+    ASSERT_EQ(sent_.size(), 1u);
+    EXPECT_EQ(std::get<Cancel>(sent_[0]).task, 1u);
+  }
+  sent_.clear();
+  report(1, TaskPhase::aborted);
+  EXPECT_THAT(sent_, testing::IsEmpty());
+}
+
 TEST_F(MotionRegistryTest, ALockByAnyCauseDiscardsWhatWaitsForApproval) {
   ControlView locked = view_;
   locked.snapshot.state.system.mode = ILK_MODE_LOCKED;

@@ -139,12 +139,10 @@ TEST(Targeting, FieldsLeftOutStay) {
   Targeting before;
   before.entry_point = Point{1, 2, 3};
   before.robot_to_entry_mm = 4;
-  before.ignore_registration_rotation = true;
   const auto set = with_target(before, {{"target_point", {7, 8, 9}}});
   ASSERT_TRUE(set);
   EXPECT_EQ(set->entry_point, before.entry_point);
   EXPECT_EQ(set->robot_to_entry_mm, 4);
-  EXPECT_TRUE(with_registration(before, {{"registration", turned(0)}})->ignore_registration_rotation);
   EXPECT_EQ(with_target(before, json::object()).value(), before);
 }
 
@@ -160,6 +158,21 @@ TEST(Targeting, ARegistrationIsValidInTheEpochInWhichItWasSetAndInNoOther) {
   EXPECT_EQ(expired["registration"], json(turned(0.1))) << "it is still told";
   EXPECT_EQ(to_json(*with_registration({}, {{"registration", turned(0)}}))["registration_state"], "expired")
       << "in no epoch";
+}
+
+TEST(Targeting, TheTurnOfARegistrationIsIgnoredOnlyWhereItSaysSo) {
+  const auto ignoring = with_registration(
+      {}, {{"registration", turned(0.1)}, {"ignore_registration_rotation", true}});
+  ASSERT_TRUE(ignoring);
+  EXPECT_TRUE(ignoring->ignore_registration_rotation);
+  EXPECT_FALSE(with_registration(*ignoring, {{"registration", turned(0.2)}})->ignore_registration_rotation);
+}
+
+TEST(Targeting, AReasonThatNobodyCanReadIsNone) {
+  for (const char* blank : {"", " ", "  \t\t", "\u200b", "\"\n\"", "\u00a0\u3000"}) {
+    const json body{{"registration", turned(0.1)}, {"override_reason", blank}};
+    EXPECT_EQ(with_registration({}, body).error().field, "override_reason") << json(blank);
+  }
 }
 
 TEST(Targeting, NothingIsInForceOfACaseThatNobodyHasResumed) {

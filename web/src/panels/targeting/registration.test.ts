@@ -19,14 +19,18 @@ describe("what is sent of a registration", () => {
     expect(registrationChange(withText(draft, 3, "10.50"), true)).toBeNull();
   });
 
-  it("is the whole matrix when one number changed, and not how it is used", () => {
+  it("is the whole matrix when one number changed, and how it is used", () => {
     expect(registrationChange(withText(draft, 3, "11"), true)).toEqual({
       registration: quarterTurn.map((value, at) => (at === 3 ? 11 : value)),
+      ignore_registration_rotation: false,
     });
   });
 
   it("is what has expired, as it is", () => {
-    expect(registrationChange(draft, false)).toEqual({ registration: quarterTurn });
+    expect(registrationChange(draft, false)).toEqual({
+      registration: quarterTurn,
+      ignore_registration_rotation: false,
+    });
   });
 
   it("is nothing while none is set and none is written", () => {
@@ -36,10 +40,11 @@ describe("what is sent of a registration", () => {
     expect(registrationProblems(withText(empty, 0, "1"))[0]).toContain("it is empty");
     expect(registrationChange(withValues(empty, withPose(empty, quarterTurn)), false)).toEqual({
       registration: quarterTurn,
+      ignore_registration_rotation: false,
     });
   });
 
-  it("says how it is used when that changed", () => {
+  it("says how it is used", () => {
     expect(registrationChange(withText(draft, IGNORES_AT, "1"), true)).toEqual({
       registration: quarterTurn,
       ignore_registration_rotation: true,

@@ -62,9 +62,8 @@ export function registrationChange(draft: Draft, isValid: boolean): Registration
   if (numbers === null || (isValid && !isChanged(draft)) || registrationProblems(draft).length > 0)
     return null;
   const ignores = numbers[IGNORES_AT] === 1;
-  const ignored = draft.arrived[IGNORES_AT] === 1;
   return {
     registration: wholePose(upperRows(numbers)),
-    ...(ignores === ignored ? {} : { ignore_registration_rotation: ignores }),
+    ignore_registration_rotation: ignores,
   };
 }
