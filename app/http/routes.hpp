@@ -259,7 +259,11 @@ class ProposalRoutes {
   [[nodiscard]] Reply list() const;
   [[nodiscard]] boost::asio::awaitable<tl::expected<Task, Problem>> task_of(const Call& call) const;
   [[nodiscard]] boost::asio::awaitable<Reply> propose(const Call& call) const;
-  [[nodiscard]] boost::asio::awaitable<Reply> approve(const Call& call) const;
+  /** How the registry takes somebody's consent: `approve` or `confirm`. */
+  using Consent = tl::expected<Proposal, Refusal> (MotionRegistry::*)(std::uint32_t, const ControlView&,
+                                                                      std::chrono::steady_clock::time_point);
+  /** @param word for what was consented to, in the audit */
+  [[nodiscard]] boost::asio::awaitable<Reply> consent(const Call& call, const char* word, Consent give) const;
   [[nodiscard]] boost::asio::awaitable<Reply> reject(const Call& call) const;
   [[nodiscard]] Reply show(const Call& call) const;
   [[nodiscard]] boost::asio::awaitable<Reply> plan(const Call& call) const;

@@ -128,6 +128,9 @@ struct RobotPlan {
     constexpr std::uint32_t minute_us = 60'000'000;
     return minute_us / std::max(1u, period_us);
   }
+
+  /** How long a task may wait for a confirmation: somebody may have to make an image first. */
+  [[nodiscard]] std::uint32_t confirmation_ticks() const noexcept { return 10 * timeout_ticks(); }
 };
 
 /** Whether a card of this kind drives a motor. */

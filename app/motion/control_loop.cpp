@@ -322,6 +322,18 @@ bool ControlLoop::take(const SeenImage& seen) noexcept {
   return true;
 }
 
+/** One from before a STOP, or that comes late, lets nothing go on. */
+bool ControlLoop::take(const Confirmation& confirmation) noexcept {
+  const std::int32_t newer = newer_than_stop(confirmation.stops);
+  if (newer > 0) {
+    return false;
+  }
+  if (newer == 0 && std::chrono::steady_clock::now() <= confirmation.deadline) {
+    modes_.confirm(confirmation.task, view_.snapshot.state.system.tick);
+  }
+  return true;
+}
+
 bool ControlLoop::take(const Cancel& cancel) noexcept {
   modes_.end(cancel.task, TaskReason::cancelled, view_.snapshot.state.system.tick);
   return true;

@@ -62,6 +62,7 @@ class ControlLoop {
   [[nodiscard]] bool take(const Approval& approval) noexcept;
   [[nodiscard]] bool take(const Renewal& renewal) noexcept;
   [[nodiscard]] bool take(const SeenImage& seen) noexcept;
+  [[nodiscard]] bool take(const Confirmation& confirmation) noexcept;
   [[nodiscard]] bool take(const Cancel& cancel) noexcept;
   [[nodiscard]] bool take(const KernelCall& call) noexcept;
   [[nodiscard]] std::int32_t newer_than_stop(std::uint32_t stops) const noexcept;

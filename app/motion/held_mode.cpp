@@ -27,6 +27,21 @@ void HeldMode::end(std::uint32_t task, TaskReason reason, std::uint32_t tick) no
   }
 }
 
+void HeldMode::await_confirmation(std::uint32_t tick) noexcept {
+  set_phase(TaskPhase::paused, TaskReason::unconfirmed, 0, tick);
+  idle_since_ = tick;
+}
+
+/** A pedal that is held may have been pressed before anybody had looked. */
+void HeldMode::confirm(std::uint32_t task, std::uint32_t tick) noexcept {
+  if (status_.task == task && status_.phase == TaskPhase::paused &&
+      status_.reason == TaskReason::unconfirmed) {
+    set_phase(TaskPhase::paused, TaskReason::pedal_released, 0, tick);
+    needs_release_ = true;
+    idle_since_ = tick;
+  }
+}
+
 void HeldMode::end_all(TaskReason reason, std::uint32_t tick) noexcept {
   if (is_open()) {
     set_phase(TaskPhase::aborted, reason, 0, tick);
@@ -66,6 +81,8 @@ void HeldMode::judge(const ilk_snapshot_t& snapshot) noexcept {
     }
     set_phase(TaskPhase::paused, TaskReason::pedal_released, 0, now);
     idle_since_ = now;
+  } else if (status_.reason == TaskReason::unconfirmed && now - idle_since_ <= confirmation_ticks_) {
+    return;
   } else if (now - idle_since_ > timeout_ticks_) {
     set_phase(TaskPhase::expired, TaskReason::waited_too_long, 0, now);
   } else if (held && !needs_release_) {

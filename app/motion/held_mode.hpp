@@ -5,6 +5,7 @@
  *     waiting -> executing <-> paused -> done, or refused, aborted, expired
  *
  * Release of the pedal pauses, the next press goes on, and a task that does not execute for too long expires.
+ * A task may have a part that needs a confirmation: before it, it pauses until somebody gives one.
  * An axis that cannot be moved, a refusal or a lock ends it for all its axes.
  */
 #pragma once
@@ -18,6 +19,7 @@ class HeldMode : public Mode {
  public:
   void take(const TaskReference& task, std::uint32_t tick) noexcept final;
   void await_press() noexcept final { needs_release_ = true; }
+  void confirm(std::uint32_t task, std::uint32_t tick) noexcept final;
   void end(std::uint32_t task, TaskReason reason, std::uint32_t tick) noexcept final;
   void end_all(TaskReason reason, std::uint32_t tick) noexcept final;
   void end_axis(std::uint32_t slot, TaskReason reason, std::uint32_t tick) noexcept final;
@@ -32,7 +34,9 @@ class HeldMode : public Mode {
 
  protected:
   HeldMode(const std::type_info& tasks, const RobotPlan& plan) noexcept
-      : Mode(tasks), timeout_ticks_(plan.timeout_ticks()) {}
+      : Mode(tasks),
+        timeout_ticks_(plan.timeout_ticks()),
+        confirmation_ticks_(plan.confirmation_ticks()) {}
 
   /** Makes ready for a task that waits now; returns the axes that it moves, bit n for slot n. */
   [[nodiscard]] virtual std::uint32_t prepare(std::uint32_t tick) noexcept = 0;
@@ -45,6 +49,8 @@ class HeldMode : public Mode {
 
   /** Aborts the task because of the axis in `slot`. */
   void fail(TaskReason reason, std::uint32_t code, std::uint32_t slot, std::uint32_t tick) noexcept;
+  /** What comes next needs a confirmation: until then no press goes on. */
+  void await_confirmation(std::uint32_t tick) noexcept;
   /** It was carried out. */
   void finish(TaskReason reason, std::uint32_t tick) noexcept { set_phase(TaskPhase::done, reason, 0, tick); }
   void set_step(std::uint32_t step) noexcept { status_.step = step; }
@@ -65,11 +71,12 @@ class HeldMode : public Mode {
   void judge(const ilk_snapshot_t& snapshot) noexcept;
   [[nodiscard]] bool is_blocked(const ilk_snapshot_t& snapshot) noexcept;
 
-  const std::uint32_t timeout_ticks_; /**< how long the task may wait without executing */
+  const std::uint32_t timeout_ticks_;      /**< how long the task may wait without executing */
+  const std::uint32_t confirmation_ticks_; /**< the same of a confirmation */
   TaskReference task_;
   TaskStatus status_;
   std::uint32_t axes_ = 0;
-  bool needs_release_ = false;   /**< the pedal, before the task begins */
+  bool needs_release_ = false;   /**< the pedal, before the task begins or goes on after a confirmation */
   std::uint32_t idle_since_ = 0; /**< tick since which the task does not execute */
 };
 

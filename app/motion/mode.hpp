@@ -48,6 +48,9 @@ class Mode {
    * again. A move of one axis does not wait. */
   virtual void await_press() noexcept {}
 
+  /** That task may go on to what needs a confirmation, if it waits for one: at the next press. */
+  virtual void confirm(std::uint32_t /*task*/, std::uint32_t /*tick*/) noexcept {}
+
   /** Aborts that task, if it is open here. */
   virtual void end(std::uint32_t task, TaskReason reason, std::uint32_t tick) noexcept = 0;
 

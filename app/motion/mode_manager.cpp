@@ -50,6 +50,12 @@ void ModeManager::take(const TaskReference& task, std::uint32_t tick) noexcept {
   }
 }
 
+void ModeManager::confirm(std::uint32_t task, std::uint32_t tick) noexcept {
+  for (const auto& mode : modes_) {
+    mode->confirm(task, tick);
+  }
+}
+
 void ModeManager::end(std::uint32_t task, TaskReason reason, std::uint32_t tick) noexcept {
   for (const auto& mode : modes_) {
     mode->end(task, reason, tick);

@@ -28,6 +28,9 @@ class ModeManager {
   /** An image for the open biopsy. */
   void see(const SeenImage& seen) noexcept;
 
+  /** That task may go on to what needs a confirmation, if it waits for one. */
+  void confirm(std::uint32_t task, std::uint32_t tick) noexcept;
+
   /** Aborts that task, if it is open. */
   void end(std::uint32_t task, TaskReason reason, std::uint32_t tick) noexcept;
 

@@ -20,6 +20,8 @@ struct MoveLeg {
   std::vector<AxisCounts> targets; /**< each slot at most once */
   double minimum_duration_s = 0.0;
   double dwell_s = 0.0; /**< rest at the targets */
+  /** It begins only once somebody has looked at what was reached before, and confirmed it. */
+  bool needs_confirmation = false;
 };
 
 /** First to where the trajectory begins, as a `MoveLeg` would, then along it in time. */

@@ -108,7 +108,7 @@ struct KernelCall {
 };
 
 /** Anything that the network threads ask of the control thread. */
-using Command = std::variant<Approval, Renewal, SeenImage, Cancel, KernelCall>;
+using Command = std::variant<Approval, Confirmation, Renewal, SeenImage, Cancel, KernelCall>;
 
 /** The kernel's word on a `KernelCall`; no verdict: it was not sent, or the answer got lost with the link.
  */

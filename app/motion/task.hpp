@@ -163,6 +163,13 @@ struct Approval {
   Moment held; /**< when a jog began */
 };
 
+/** Somebody has looked at what a task has reached, and it may go on to what needs that. */
+struct Confirmation {
+  std::uint32_t task = 0;
+  std::uint32_t stops = 0;                        /**< as of an `Approval` */
+  std::chrono::steady_clock::time_point deadline; /**< as of an `Approval` */
+};
+
 /** For which an approval may be on its way, from when somebody gave it. */
 constexpr std::chrono::milliseconds approval_timeout{1000};
 
@@ -203,6 +210,7 @@ enum class TaskReason : std::uint8_t {
   waited_too_long, /**< not executing for longer than a motion may wait */
   press_again,     /**< waits for a release and a press: the travel that one press allows is used up, or the
                       pedal was held when the motion was approved */
+  unconfirmed,     /**< waits for a `Confirmation` */
   not_homed,       /**< a step moves an axis to a position, and the axis is not homed */
   verdict_lost,    /**< the kernel's answer to a HOME got lost */
   control_changed,

@@ -135,6 +135,23 @@ tl::expected<Proposal, Refusal> MotionRegistry::approve(std::uint32_t id, const 
   });
 }
 
+tl::expected<Proposal, Refusal> MotionRegistry::confirm(std::uint32_t id, const ControlView& view,
+                                                        std::chrono::steady_clock::time_point asked) {
+  follow(view);
+  Proposal* proposal = find_mutable(id);
+  if (proposal == nullptr || !proposal->wants_confirmation) {
+    return tl::make_unexpected(Refusal{"NOT_WAITING",
+                                       "Proposal " + std::to_string(id) + " waits for no confirmation.",
+                                       "a proposal that is aligned and not yet inserted", "Look where it is."});
+  }
+  if (!send_(Confirmation{id, 0, asked + approval_timeout})) {
+    return tl::make_unexpected(overloaded("Try again."));
+  }
+  proposal->wants_confirmation = false;
+  become(*proposal, ProposalState::paused, "Confirmed. Press the pedal.");
+  return *proposal;
+}
+
 tl::expected<Proposal, Refusal> MotionRegistry::reject(std::uint32_t id, const std::string& by) {
   return waiting(id).map([&](Proposal* proposal) {
     become(*proposal, ProposalState::aborted, "Rejected by " + by + " before it was approved.", std::nullopt,
@@ -305,6 +322,8 @@ void MotionRegistry::follow(const TaskStatus& status, const ControlView& view) {
     (void)(is_open(status.phase) && send_(Cancel{status.task}));
     return;
   }
+  proposal->wants_confirmation =
+      status.phase == TaskPhase::paused && status.reason == TaskReason::unconfirmed;
   const ProposalState state = state_of(status.phase);
   std::string detail = detail_of(robot_, *proposal, status, view.biopsy);
   const bool same = proposal->state == state;
@@ -386,6 +405,7 @@ void MotionRegistry::become(Proposal& proposal, ProposalState state, std::string
   const bool is_ended = state == ProposalState::aborted || state == ProposalState::expired;
   proposal.changed_by = !by.empty() ? by : is_ended ? "app" : proposal.task->author;
   if (!is_open(state)) {
+    proposal.wants_confirmation = false;
     proposal.ended = clock_();
     proposal.step.clear();
     if (auto remains = kind_of(proposal.task->work).remains(proposal.task->work)) {

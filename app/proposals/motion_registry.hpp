@@ -73,6 +73,11 @@ class MotionRegistry {
       std::uint32_t id, const ControlView& view,
       std::chrono::steady_clock::time_point asked = std::chrono::steady_clock::now());
 
+  /** Lets a proposal go on that waits for a confirmation: NOT_WAITING when none of that number does. */
+  tl::expected<Proposal, Refusal> confirm(
+      std::uint32_t id, const ControlView& view,
+      std::chrono::steady_clock::time_point asked = std::chrono::steady_clock::now());
+
   /** Ends a proposal that waits for approval, as `by` wants none of it: NOT_WAITING when none of that number
    * waits. */
   tl::expected<Proposal, Refusal> reject(std::uint32_t id, const std::string& by);

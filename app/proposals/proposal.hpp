@@ -63,6 +63,7 @@ struct Proposal {
   ProposalState state = ProposalState::drafted;
   UtcTime created;
   std::uint32_t created_tick = 0; /**< kernel tick */
+  bool wants_confirmation = false; /**< before what comes next */
   std::optional<UtcTime> ended;
   std::optional<std::string> verdict; /**< that refused or ended it */
   std::vector<CheckResult> checks;    /**< as last made, in their order */

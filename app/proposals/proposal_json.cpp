@@ -19,6 +19,7 @@ nlohmann::json to_json(const Proposal& proposal) {
                       {"author", task.author},
                       {"source", source_name(task.source)},
                       {"state", state_name(proposal.state)},
+                      {"wants_confirmation", proposal.wants_confirmation},
                       {"target_counts", nullptr},
                       {"target", nullptr},
                       {"aim", nullptr},

@@ -21,6 +21,7 @@ std::string end_words(const std::string& axis, const TaskStatus& status) {
     case TaskReason::arrived:
     case TaskReason::pedal_released:
     case TaskReason::press_again:
+    case TaskReason::unconfirmed:
     case TaskReason::swept:
     case TaskReason::steering_failed:
       return "";
@@ -164,7 +165,9 @@ std::string detail_of(const Robot& robot, const Proposal& proposal, const TaskSt
     case TaskPhase::executing:
       return words.executing + ".";
     case TaskPhase::paused:
-      return words.paused + ".";
+      return status.reason == TaskReason::unconfirmed
+                 ? "Aligned. Look at it, confirm the insertion within 10 minutes, then press the pedal."
+                 : words.paused + ".";
     case TaskPhase::done:
       return words.done;
     default:

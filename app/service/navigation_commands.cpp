@@ -178,17 +178,6 @@ asio::awaitable<Done> move_to_target(const Context& context, const Caller& calle
   co_return co_await propose_path(context, caller, std::move(draft));
 }
 
-asio::awaitable<Done> retract(const Context& context, const Caller& caller) {
-  const Axis* insertion = context.robot.with_role("insertion");
-  if (insertion == nullptr) {
-    co_return fail(not_found("axis that inserts the probe", "a robot with such an axis"));
-  }
-  PathProgram program{{MoveLeg{{{insertion->slot, insertion->lowest_setpoint_counts()}}, 0.0, 0.0}}};
-  tl::expected<Task, Problem> draft = Task{PathTask{std::make_shared<const PathProgram>(std::move(program))},
-                                           caller.user, RobotMode::coordinated};
-  co_return co_await propose_path(context, caller, std::move(draft));
-}
-
 /** Whether nothing is left to home: each axis that the home steps bring to its switch has been there; of a
  * robot without such steps, every axis is homed. */
 bool is_homed(const Robot& robot, const ControlView& view) {
@@ -335,7 +324,7 @@ asio::awaitable<Done> done_for(const Context& context, const Caller& caller, con
     co_return co_await move_to_target(context, caller);
   }
   if (std::holds_alternative<igtl::RetractProbe>(command)) {
-    co_return co_await retract(context, caller);
+    co_return co_await propose_path(context, caller, retraction_draft(context.robot, caller.user));
   }
   if (std::holds_alternative<igtl::CutPower>(command)) {
     co_return co_await cut_power(context, caller);

@@ -129,6 +129,30 @@ test("the page of the target, with something wrong, something newer, and what it
   await expectNoViolation(page, "a suspended case");
 });
 
+test("the workflow without a case and in one, and the forms of motions with something wrong", async ({
+  robot,
+  page,
+}) => {
+  await robot.open("Workflow");
+  await expect(page.getByRole("form", { name: "Open case" })).toBeVisible();
+  await expectNoViolation(page, "workflow without a case");
+  await robot.openCase();
+  const steps = robot.panel("Workflow").getByRole("listitem");
+  await expect(steps.first()).toContainText("is open.");
+  await steps.filter({ hasText: "Registration" }).getByRole("button").click();
+  await expect(robot.panel("Registration")).toBeVisible();
+  await robot.button("Close case").click();
+  await expectNoViolation(page, "workflow in a case");
+  await robot.open("Proposals");
+  const form = robot.panel("Propose a motion");
+  for (const kind of ["Several axes together", "Ablation in steps"]) {
+    await form.getByLabel("Kind").selectOption(kind);
+    await form.getByRole("button", { name: "Propose motion" }).click();
+    await expect(form.getByRole("alert")).toContainText("Not sent:");
+    await expectNoViolation(page, kind);
+  }
+});
+
 test("the robot's page, locked, with everything unfolded and with the keys shown", async ({
   robot,
   page,
@@ -214,7 +238,7 @@ for (const [level, ageMs] of [
     await expect(page.getByRole("main")).toHaveAttribute("data-level", level);
     await expect(robot.axis("Lateral").row).toBeAttached();
     await expectNoViolation(page, level);
-    for (const name of ["Robot", "Targeting", "Proposals", "Plots", "3D"] as const) {
+    for (const name of ["Robot", "Workflow", "Targeting", "Proposals", "Plots", "3D"] as const) {
       await robot.open(name);
       await expect(page.getByRole("main")).toHaveAttribute("data-level", level);
       expect(await coloured(page), `what is not greyed on ${name}`).toEqual([]);

@@ -111,6 +111,7 @@ export class Axis {
 /** Of each page a panel that no other one has, and that it always has. */
 export const knownBy = {
   Robot: "Motors",
+  Workflow: "Workflow",
   Targeting: "Registration",
   Proposals: "All proposals",
   Plots: "Capture",

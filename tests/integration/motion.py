@@ -118,6 +118,17 @@ def approve(stack: Stack, number: int | None = None) -> int:
     return known
 
 
+def confirm(stack: Stack) -> None:
+    """The newest proposal, once it is aligned, and presses the pedal for its insertion."""
+
+    def newest() -> dict:
+        return stack.api.get("/api/proposals").raise_for_status().json()[0]
+
+    wait_until("aligned", lambda: newest()["wants_confirmation"])
+    stack.api.post(f"/api/proposals/{newest()['id']}/confirm").raise_for_status()
+    press(stack)
+
+
 def propose_home(stack: Stack, **which: object) -> int:
     """Proposes and approves homing: all steps, or one."""
     answer = stack.api.post("/api/proposals", json={"kind": "home", **which})

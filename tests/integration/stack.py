@@ -120,12 +120,17 @@ class Stack:
         return self.client(name, user["password"])
 
     def take_control(self) -> None:
-        """Anew after the app was started anew: sessions outlive it, control does not. Opens a case where none is
-        in hand."""
+        """Anew after the app was started anew: sessions outlive it, control does not. A case is open then."""
         assert self.api.post("/api/control/request").status_code == 200
-        cases = self.api.get("/api/cases").raise_for_status().json()
-        if all(case["state"] == "closed" for case in cases):
+        self.open_case()
+
+    def open_case(self) -> None:
+        """The one in hand is open, resumed if need be, or another one."""
+        newest = next(iter(self.api.get("/api/cases").raise_for_status().json()), {"state": "closed"})
+        if newest["state"] == "closed":
             self.api.post("/api/cases", json={"label": "of the test"}).raise_for_status()
+        elif newest["state"] == "suspended":
+            self.api.post(f"/api/cases/{newest['number']}/resume").raise_for_status()
 
     def connect_control(self) -> None:
         """Opens `control`, the plant's control socket, in the directory that was given for the sockets."""

@@ -11,6 +11,7 @@ from controllers import connections, make_controller
 from library_navigator import Library, Tracking
 from motion import (
     approve,
+    confirm,
     enable,
     home_all,
     press,
@@ -95,6 +96,7 @@ def test_the_phases_of_a_placement_one_after_the_other(meet: Meeting, dialect: s
 
 
 def reach(robot: Stack, navigator: Phases) -> None:
+    confirm(robot)
     wait_until("there", lambda: newest(robot)["state"] == "done")
     navigator.await_answers("ACK_0004 STRING", "CURRENT_STATUS 1 MOVE_TO_TARGET", "MOVE_TO_TARGET 1")
     wait_until("last one", lambda: short(navigator.heard.all[-1]) == "CURRENT_POSITION TRANSFORM")

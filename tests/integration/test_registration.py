@@ -78,6 +78,7 @@ def test_the_table_moved_is_said_by_any_engineer_and_outlives_a_start(stack: Sta
     os.kill(robot.pid("app"), signal.SIGKILL)
     robot.output.wait_for(r"^ready http", count=2)
     wait_until("served again", lambda: robot.status()["app_alive"])
+    robot.take_control()
     assert registration(robot) == ("expired", "The registration has expired: The table moved.")
     newest = robot.api.get("/api/targeting/history").raise_for_status().json()["changes"][0]
     assert (newest["user"], newest["new"]["registration_state"]) == ("erin", "expired")

@@ -23,6 +23,7 @@ IN_PATH = {
     "axis": "lateral",
     "action": "enable",
     "id": "1",
+    "number": "1",
     "user": "nosuchuser",
     "command": "estop",
     "session": "999999",

@@ -82,6 +82,9 @@ test("the page of a target that is set", async ({ robot, page }) => {
       JSON.stringify({ registration, override_reason: "There is no scanner." }),
     ] as const,
   );
+  await robot.open("Workflow");
+  await expect(robot.panel("Workflow").getByRole("listitem").first()).toContainText("is open.");
+  await take(page, "workflow");
   await robot.open("Targeting");
   await expect(robot.panel("History").getByRole("row")).toHaveCount(3);
   await expect(robot.panel("Alignment").getByRole("table")).toBeVisible();

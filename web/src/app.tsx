@@ -14,6 +14,7 @@ const PlotsPage = lazy(() => import("./panels/plots/PlotsPage"));
 const ProposalsPage = lazy(() => import("./panels/proposals/ProposalsPage"));
 const ViewPage = lazy(() => import("./panels/view/ViewPage"));
 const TargetingPage = lazy(() => import("./panels/targeting/TargetingPage"));
+const WorkflowPage = lazy(() => import("./panels/workflow/WorkflowPage"));
 
 export function App() {
   const loggedIn = useConsole((state) => state.login.phase === "in");
@@ -29,6 +30,7 @@ function Page() {
   const route = useRoute();
   const user = useConsole((state) => (state.login.phase === "in" ? state.login.user : null));
   const admin = user?.role === "admin";
+  if (route === "workflow") return <Loaded of={WorkflowPage} />;
   if (route === "targeting") return <Loaded of={TargetingPage} />;
   if (route === "proposals") return <Loaded of={ProposalsPage} />;
   if (route === "plots") return <Loaded of={PlotsPage} />;

@@ -41,7 +41,9 @@ ProposalRoutes::ProposalRoutes(const Context& context, Router& router) : context
              [this](const Call& call) -> Answering { co_return show(call); });
   router.add(verb::get, "/api/proposals/{id}/plan", viewers, [this](const Call& call) { return plan(call); });
   router.add(verb::post, "/api/proposals/{id}/approve", holder,
-             [this](const Call& call) { return approve(call); });
+             [this](const Call& call) { return consent(call, "approved", &MotionRegistry::approve); });
+  router.add(verb::post, "/api/proposals/{id}/confirm", holder,
+             [this](const Call& call) { return consent(call, "confirmed", &MotionRegistry::confirm); });
   router.add(verb::post, "/api/proposals/{id}/reject", holder,
              [this](const Call& call) { return reject(call); });
   router.add(verb::post, "/api/proposals/{id}/abort", holder,
@@ -80,14 +82,14 @@ Answering ProposalRoutes::propose(const Call& call) const {
       [](const Proposal& proposal) { return Success{Status::created, to_json(proposal)}; });
 }
 
-Answering ProposalRoutes::approve(const Call& call) const {
+Answering ProposalRoutes::consent(const Call& call, const char* word, Consent give) const {
   const auto shown = show(call);
   if (!shown) {
     co_return shown;
   }
   const std::uint32_t id = *number_in(call.parameters[0]);
   const std::uint32_t stops = context_.control.stops();
-  json asked{{"approved", id}};
+  json asked{{word, id}};
   const auto announced =
       co_await context_.record_then_recheck(call.caller, AuditKind::proposal, std::move(asked));
   if (!announced) {
@@ -99,7 +101,7 @@ Answering ProposalRoutes::approve(const Call& call) const {
   if (const auto kernel = context_.need_present_state(); !kernel) {
     co_return fail(kernel.error());
   }
-  co_return context_.registry.approve(id, context_.view(), call.caller.asked)
+  co_return (context_.registry.*give)(id, context_.view(), call.caller.asked)
       .map([](const Proposal& approved) { return Success{Status::ok, to_json(approved)}; })
       .map_error(refused);
 }

@@ -144,6 +144,10 @@ DraftKind::Reading read_draping(const Context& context, json body, std::string a
   co_return without_fields(body).and_then([&] { return draping_draft(context.robot, author); });
 }
 
+DraftKind::Reading read_retraction(const Context& context, json body, std::string author) {
+  co_return without_fields(body).and_then([&] { return retraction_draft(context.robot, author); });
+}
+
 }  // namespace
 
 std::span<const DraftKind> path_drafts();
@@ -152,6 +156,7 @@ std::span<const DraftKind> path_drafts() {
                                          {"pose", "", read_pose},
                                          {"trajectory", "trajectory", read_trajectory},
                                          {"draping", "draping", read_draping},
+                                         {"retraction", "", read_retraction},
                                          {"ablation", "", read_ablation}};
   return drafts;
 }
@@ -161,6 +166,15 @@ tl::expected<Task, Problem> draping_draft(const Robot& robot, const std::string&
     return fail(not_found("setpoint for draping", "a [draping] table in the robot's file"));
   }
   return task_of(RobotMode{"draping"}, {{MoveLeg{robot.draping, 0.0, 0.0}}}, author);
+}
+
+tl::expected<Task, Problem> retraction_draft(const Robot& robot, const std::string& author) {
+  const Axis* insertion = robot.with_role("insertion");
+  if (insertion == nullptr) {
+    return fail(not_found("axis that inserts the probe", "a robot with such an axis"));
+  }
+  return task_of(RobotMode::coordinated,
+                 {{MoveLeg{{{insertion->slot, insertion->lowest_setpoint_counts()}}, 0.0, 0.0}}}, author);
 }
 
 tl::expected<Task, Problem> trajectory_draft(const LoadedTrajectory& loaded, const std::string& author) {

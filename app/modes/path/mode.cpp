@@ -125,8 +125,13 @@ void PathMode::end_leg(const ilk_snapshot_t& snapshot) noexcept {
     return;
   }
   set_step(status().step + 1);
-  walk_.take(program().legs[status().step]);
-  begin(snapshot);
+  const PathLeg& next = program().legs[status().step];
+  walk_.take(next);
+  if (const auto* move = std::get_if<MoveLeg>(&next); move != nullptr && move->needs_confirmation) {
+    await_confirmation(now);
+  } else {
+    begin(snapshot);
+  }
 }
 
 void PathMode::on_unsent(const KernelRequest& request) noexcept {

@@ -101,6 +101,60 @@ TEST_P(PathModeOnThePlant, ReleasePausesAndTheNextPressGoesOn) {
   EXPECT_EQ(loop.refusals(), 0u);
 }
 
+/** The second leg needs a confirmation. */
+PathProgram aligned_then_inserted() {
+  MoveLeg insert{{{test::insertion, 900}}, 0.0, 0.0};
+  insert.needs_confirmation = true;
+  return program_of({MoveLeg{{{lateral, -400}}, 0.0, 0.0}, insert});
+}
+
+TEST_P(PathModeOnThePlant, WhatNeedsAConfirmationBeginsWithThePressAfterIt) {
+  ClosedLoop loop(11, GetParam());
+  loop.make_all_ready();
+  loop.give(1, test::along(aligned_then_inserted()));
+  const auto reach = [&](TaskPhase phase) {
+    for (std::uint32_t i = 0; i < minute_ticks && loop.path().phase != phase; ++i) {
+      loop.tick();
+    }
+    return loop.path().phase == phase;
+  };
+  ASSERT_TRUE(reach(TaskPhase::paused));
+  EXPECT_EQ(loop.path().reason, TaskReason::unconfirmed);
+  EXPECT_EQ(loop.path().step, 1u);
+  const auto expect_rest = [&](const char* when) {
+    const std::int32_t before = loop.state().axis[test::insertion].position_counts;
+    loop.run(500);
+    EXPECT_NEAR(loop.state().axis[test::insertion].position_counts, before, 1) << when;
+  };
+  expect_rest("under the press that aligned it");
+  loop.pedal(false);
+  loop.pedal(true);
+  expect_rest("under another press");
+  loop.confirm(2);
+  expect_rest("another task was confirmed");
+  loop.confirm(1);
+  expect_rest("the pedal was held when it was confirmed");
+  loop.pedal(false);
+  loop.pedal(true);
+  ASSERT_TRUE(reach(TaskPhase::done));
+  expect_at(loop, neuro(), {{test::insertion, 900}, {lateral, -400}});
+}
+
+TEST_P(PathModeOnThePlant, NobodyConfirmsForTenMinutesAndItExpires) {
+  ClosedLoop loop(11, GetParam());
+  loop.make_all_ready();
+  loop.give(1, test::along(aligned_then_inserted()));
+  for (std::uint32_t i = 0; i < minute_ticks && loop.path().phase != TaskPhase::paused; ++i) {
+    loop.tick();
+  }
+  loop.run(9 * minute_ticks);
+  EXPECT_EQ(loop.path().reason, TaskReason::unconfirmed);
+  loop.run(minute_ticks + 1);
+  EXPECT_EQ(loop.path().phase, TaskPhase::expired);
+  loop.confirm(1);
+  EXPECT_EQ(loop.path().phase, TaskPhase::expired) << "too late";
+}
+
 TEST_P(PathModeOnThePlant, AJammedAxisStopsAllOthersAtOnce) {
   ClosedLoop loop(13, GetParam());
   loop.make_all_ready();

@@ -73,6 +73,46 @@ TEST_F(PathRoutesTest, APoseIsAlignedWithTheProbeOutFirst) {
   ASSERT_EQ(out.targets.size(), 1u);
   EXPECT_EQ(out.targets.front(),
             (AxisCounts{test::insertion, test::neuro().at_slot(test::insertion)->lowest_setpoint_counts()}));
+  EXPECT_FALSE(out.needs_confirmation);
+  EXPECT_TRUE(std::get<MoveLeg>(path.program->legs.back()).needs_confirmation);
+}
+
+TEST_F(PathRoutesTest, AnInsertionIsConfirmedOnlyWhileItWaitsForThat) {
+  register_robot();
+  ASSERT_EQ(put("/api/targeting/target", R"({"entry_point":[8,250,70],"target_point":[5,200,60]})").status,
+            200u);
+  ASSERT_EQ(propose({{"kind", "pose"}, {"insert", true}}).status, 201u);
+  (void)next_task();
+  const auto confirm = [this] { return post("/api/proposals/1/confirm"); };
+  EXPECT_EQ(confirm().problem()["code"], "NOT_WAITING") << "it is not aligned yet";
+  ControlView view = test::ready_view();
+  view.tasks.of<PathTask>() = {.task = 1, .phase = TaskPhase::paused, .reason = TaskReason::unconfirmed, .step = 2};
+  show(view);
+  while (proposal(1)["wants_confirmation"] == false) {
+    std::this_thread::yield();
+  }
+  const std::string holder = std::exchange(token_, token_of("ada"));
+  EXPECT_EQ(confirm().problem()["code"], "CONTROL");
+  token_ = holder;
+  ASSERT_EQ(confirm().status, 200u);
+  EXPECT_EQ(std::get<Confirmation>(next_command()).task, 1u);
+  const std::vector<json> written = audit("proposal");
+  EXPECT_NE(std::ranges::find(written, json({{"confirmed", 1}})), written.end());
+  ASSERT_EQ(put("/api/targeting/target", R"({"target_point":[5,201,60]})").status, 200u);
+  EXPECT_EQ(proposal(1)["wants_confirmation"], false);
+  EXPECT_EQ(confirm().problem()["code"], "NOT_WAITING") << "its target has changed";
+  EXPECT_EQ(post("/api/proposals/7/confirm").status, 404u);
+}
+
+TEST_F(PathRoutesTest, TheProbeComesOutWithoutCaseAndRegistration) {
+  ASSERT_EQ(post("/api/cases/1/close").status, 200u);
+  ASSERT_EQ(propose({{"kind", "retraction"}}).status, 201u);
+  const auto path = next_task().work.as<PathTask>();
+  ASSERT_EQ(path.program->legs.size(), 1u);
+  EXPECT_EQ(std::get<MoveLeg>(path.program->legs.front()).targets,
+            (std::vector<AxisCounts>{
+                {test::insertion, test::neuro().at_slot(test::insertion)->lowest_setpoint_counts()}}));
+  EXPECT_EQ(propose({{"kind", "retraction"}, {"insert", true}}).status, 422u);
 }
 
 TEST_F(PathRoutesTest, AChangedRegistrationEndsThePoseThatFollowedFromTheOldOne) {

@@ -1508,7 +1508,7 @@ export interface components {
          *     `step` (one home step of the robot); with neither it runs all steps in the order of the robot's file.
          *     `coordinated` takes `targets` and perhaps `duration_s`. `pose` aligns the probe with entry and target: it takes the probe out,
          *     moves all other axes together and, with `insert`, inserts the probe. `trajectory` follows the loaded one, `draping` goes
-         *     to the setpoints of the robot's file; they take nothing else. `ablation` turns and inserts the probe through `steps`, one
+         *     to the setpoints of the robot's file, `retraction` takes the probe out as far as it goes and needs neither case nor registration; they take nothing else. `ablation` turns and inserts the probe through `steps`, one
          *     after the other, and rests at each. `sweep` turns the high-frequency `axis` at one frequency after the other, `from_hz` to
          *     `to_hz` in steps of `step_hz`, each for `dwell_s` of driven time, to and fro within its range; frequencies outside of the axis'
          *     allowed band are refused (DRIVE), and so is the published range. `biopsy` has the surgeon's hand push the needle towards
@@ -1521,7 +1521,7 @@ export interface components {
              * @default move
              * @enum {string}
              */
-            kind: "move" | "home" | "coordinated" | "pose" | "trajectory" | "draping" | "ablation" | "sweep" | "biopsy";
+            kind: "move" | "home" | "coordinated" | "pose" | "trajectory" | "draping" | "retraction" | "ablation" | "sweep" | "biopsy";
             /** @description Of a biopsy: target in the guide frame, see NeedleImage; without it the target point of the targeting. */
             target_mm?: number[];
             /** @description Of a sweep: name of a high-frequency axis. */
@@ -1544,7 +1544,7 @@ export interface components {
              * @enum {string}
              */
             pose?: "desired" | "reachable";
-            /** @description Of the reachable pose, as accepted_deg: its deviation from the desired one, as GET /api/targeting/alignment says it. Refused (UNREACHABLE) when it is larger by now. */
+            /** @description Of the reachable pose, as accepted_deg: its deviation from the desired one, as GET /api/targeting/alignment says it. Refused (UNREACHABLE) when it is larger by now, rounded to 0.01. */
             accepted_mm?: number;
             accepted_deg?: number;
             /** @description Insert the probe once it is aligned; else it stays out. */

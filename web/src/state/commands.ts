@@ -83,6 +83,61 @@ export function jogger(slot: number, direction: JogDirection): SendStep {
   };
 }
 
+/** For so long power may take to come up, and axes to settle. */
+const READY_WITHIN_MS = 10_000;
+const LOOK_AGAIN_MS = 50;
+
+/** Waits until something holds. False when it did not in time, or when somebody pressed STOP meanwhile. */
+function settling(): (holds: () => boolean | Promise<boolean>) => Promise<boolean> {
+  const { stops } = useConsole.getState();
+  const untilMs = performance.now() + READY_WITHIN_MS;
+  return async (holds) => {
+    for (;;) {
+      if (useConsole.getState().stops !== stops) return false;
+      if (await holds()) return true;
+      if (performance.now() > untilMs) return false;
+      await new Promise((resolve) => setTimeout(resolve, LOOK_AGAIN_MS));
+    }
+  };
+}
+
+/** Sends a request to each axis in turn, again while it is BUSY. Ends at the first refusal, which is shown where the robot's are. */
+async function actOnEach(slots: readonly number[], action: AxisAction): Promise<boolean> {
+  const settled = settling();
+  for (const slot of slots) {
+    let outcome = await api.act(slot, action);
+    const accepted = await settled(async () => {
+      if (!outcome.ok && outcome.problem.code === "BUSY") outcome = await api.act(slot, action);
+      return outcome.ok || outcome.problem.code !== "BUSY";
+    });
+    tell("robot", outcome);
+    if (!accepted || !outcome.ok) return false;
+  }
+  return true;
+}
+
+/** Unlocks where need be, waits for power, and enables each axis that is disabled. STOP ends it. */
+export async function makeReady(): Promise<void> {
+  const settled = settling();
+  if (useConsole.getState().glance?.mode === "LOCKED") {
+    const outcome = await api.reset();
+    tell("robot", outcome);
+    if (!outcome.ok) return;
+  }
+  if (!(await settled(() => useConsole.getState().glance?.power === "on"))) return;
+  const { motors, frame } = useConsole.getState();
+  const disabled = motors.filter(({ slot }) => frame?.axes[slot]?.state === "DISABLED");
+  await actOnEach(
+    disabled.map(({ slot }) => slot),
+    "enable",
+  );
+}
+
+/** Declares that the axes of these slots stand at home, then proposes to home the robot where `homes` says so. STOP ends it. */
+export async function setHomeAndHome(slots: readonly number[], homes: boolean): Promise<void> {
+  if ((await actOnEach(slots, "set-home")) && homes) await propose({ kind: "home" });
+}
+
 /** Approves a proposal that waits for it; a refusal is shown where the robot's are. */
 export async function approve(id: number): Promise<void> {
   tell("robot", await api.approve(id));

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { codeHash, codeOf, proposalHash, proposalOf, routeOf } from "./route";
+import { codeHash, codeOf, motionHash, motionOf, proposalHash, proposalOf, routeOf } from "./route";
 
 describe("routeOf", () => {
   it.each([
@@ -7,6 +7,8 @@ describe("routeOf", () => {
     ["#/robot", "robot"],
     ["#/plots", "plots"],
     ["#/view", "view"],
+    ["#/workflow", "workflow"],
+    ["#/workflow/7", "robot"],
     ["#/users", "users"],
     ["#audit", "audit"],
     ["#/account", "account"],
@@ -15,6 +17,7 @@ describe("routeOf", () => {
     ["#/proposals", "proposals"],
     ["#/proposals/7", "proposals"],
     ["#/view/7", "view"],
+    ["#/proposals/ablation", "proposals"],
     ["#/proposals/x", "robot"],
     ["#/proposals/7/8", "robot"],
     ["#/plots/7", "robot"],
@@ -48,6 +51,19 @@ describe("proposalOf", () => {
     "finds none in %j",
     (hash) => {
       expect(proposalOf(hash)).toBeNull();
+    },
+  );
+});
+
+describe("motionOf", () => {
+  it("finds the form that a link leads to", () => {
+    expect(motionOf(motionHash("ablation"))).toBe("ablation");
+  });
+
+  it.each(["#/proposals", "#/proposals/sweep", "#/proposals/ablation/1", "#/view/ablation"])(
+    "finds none in %j",
+    (hash) => {
+      expect(motionOf(hash)).toBeNull();
     },
   );
 });

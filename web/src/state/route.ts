@@ -4,6 +4,7 @@ import { catalog, type Family } from "../generated/catalog";
 
 export const routes = [
   "robot",
+  "workflow",
   "targeting",
   "proposals",
   "plots",
@@ -24,12 +25,18 @@ export interface CodePlace {
 /** Pages on which one proposal can be looked at. */
 type ProposalRoute = "proposals" | "view";
 
+/** Kinds of motion that have a form on the page of proposals. */
+export const motionKinds = ["coordinated", "ablation"] as const;
+export type MotionKind = (typeof motionKinds)[number];
+
 /** The page that a hash names; the robot for every other. Codes and proposals alone have places within. */
 export function routeOf(hash: string): Route {
   const [name, ...place] = segments(hash);
   const named = routes.find((route) => route === name);
   if (named === undefined) return "robot";
-  return place.length === 0 || named === "codes" || proposalOf(hash) !== null ? named : "robot";
+  const known =
+    place.length === 0 || named === "codes" || proposalOf(hash) !== null || motionOf(hash) !== null;
+  return known ? named : "robot";
 }
 
 /** The number of the proposal that a hash leads to; null when it names none. */
@@ -42,6 +49,18 @@ export function proposalOf(hash: string): number | null {
 /** The hash that leads to a proposal. */
 export function proposalHash(page: ProposalRoute, id: number): string {
   return `#/${page}/${id}`;
+}
+
+/** The kind of motion whose form a hash leads to; null when it names none. */
+export function motionOf(hash: string): MotionKind | null {
+  const [page, name, ...rest] = segments(hash);
+  if (page !== "proposals" || rest.length > 0) return null;
+  return motionKinds.find((kind) => kind === name) ?? null;
+}
+
+/** The hash that leads to the form of a kind of motion. */
+export function motionHash(kind: MotionKind): string {
+  return `#/proposals/${kind}`;
 }
 
 /** The code that a hash leads to; null when it names none. */
@@ -85,4 +104,9 @@ export function useCodePlace(): CodePlace | null {
 /** The proposal that the page is about; null when it is about none in particular. */
 export function useProposalPlace(): number | null {
   return proposalOf(useHash());
+}
+
+/** The kind of motion whose form was asked for; null when none was. */
+export function useMotionPlace(): MotionKind | null {
+  return motionOf(useHash());
 }

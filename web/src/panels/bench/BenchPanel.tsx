@@ -61,7 +61,8 @@ export function BenchPanel() {
   );
 }
 
-function Pedal() {
+/** The simulated pedal; whoever leaves its page lifts the foot. */
+export function Pedal() {
   const { down, latched, press, lift, toggleLatch } = usePedal();
   const reason = useReason("engineer");
   return (

@@ -7,6 +7,7 @@ import { ThemeButton } from "./ThemeButton";
 
 const pages: readonly { readonly route: Route; readonly title: string; readonly adminOnly: boolean }[] = [
   { route: "robot", title: "Robot", adminOnly: false },
+  { route: "workflow", title: "Workflow", adminOnly: false },
   { route: "targeting", title: "Targeting", adminOnly: false },
   { route: "proposals", title: "Proposals", adminOnly: false },
   { route: "plots", title: "Plots", adminOnly: false },

@@ -6,13 +6,14 @@ import { proposalHash, useProposalPlace } from "../../state/route";
 import { useConsole } from "../../state/store";
 import { localTime } from "../../units/time";
 import { LivePage } from "../cover/LivePage";
+import { MotionPanel } from "./MotionPanel";
 import { ProposalDetail } from "./ProposalDetail";
 import { originWords, StateChip, Wish } from "./ProposalParts";
 import { TrajectoryPanel } from "./TrajectoryPanel";
 import "./proposals.css";
 import "./detail.css";
 
-/** Every proposal that the app keeps, one of them as a whole, and the way to propose what a file says. */
+/** Every proposal that the app keeps, one of them as a whole, and the ways to propose what is typed or what a file says. */
 export default function ProposalsPage() {
   const proposals = useConsole((state) => state.proposals);
   const notice = useConsole((state) => state.notices.robot);
@@ -30,6 +31,7 @@ export default function ProposalsPage() {
       </div>
       <div className="side">
         <AllProposals proposals={proposals} shown={shown?.id} />
+        <MotionPanel />
         <TrajectoryPanel />
       </div>
     </LivePage>

@@ -1,16 +1,22 @@
 import { useState } from "react";
 import { CommandButton } from "../../design/CommandButton";
 import { setMode } from "../../state/commands";
+import { motionHash, motionKinds } from "../../state/route";
 import { useConsole } from "../../state/store";
 import { useReason } from "../../state/useReason";
 
-/** The robot's modes. Choosing one does nothing yet: arrow keys choose, too. */
+const needsTarget: Readonly<Partial<Record<string, string>>> = {
+  cooperative_biopsy: "It needs a target: propose it in the panel Biopsy.",
+};
+
+/** The robot's modes. Choosing one does nothing yet: arrow keys choose, too. One that needs targets leads to their form. */
 export function ModeSelector() {
   const answer = useConsole((state) => state.mode);
   const reason = useReason("holder");
   const [chosen, setChosen] = useState<string | null>(null);
   const mode = answer?.mode ?? "";
   const wanted = chosen ?? mode;
+  const form = wanted === mode ? undefined : motionKinds.find((kind) => kind === wanted);
   const change = async (): Promise<void> => {
     await setMode(wanted);
     setChosen(null);
@@ -30,14 +36,20 @@ export function ModeSelector() {
           <option key={name}>{name}</option>
         ))}
       </select>
-      <CommandButton
-        need="holder"
-        label="Change the robot mode"
-        off={wanted === mode ? "The robot is in this mode." : null}
-        onCommand={change}
-      >
-        Change
-      </CommandButton>
+      {form === undefined ? (
+        <CommandButton
+          need="holder"
+          label="Change the robot mode"
+          off={wanted === mode ? "The robot is in this mode." : (needsTarget[wanted] ?? null)}
+          onCommand={change}
+        >
+          Change
+        </CommandButton>
+      ) : (
+        <a className="button" href={motionHash(form)} aria-label={`Form of the mode ${form}`}>
+          Open form
+        </a>
+      )}
     </div>
   );
 }

@@ -18,10 +18,12 @@ import { fixed } from "./numbers";
 interface AlignmentPanelProps {
   readonly view: AlignmentView | null;
   readonly asked: Asked;
+  /** False where the page has the button elsewhere. */
+  readonly retracts?: boolean;
 }
 
 /** What entry and target ask of each axis, and the move that brings them there. */
-export function AlignmentPanel({ view, asked }: AlignmentPanelProps) {
+export function AlignmentPanel({ view, asked, retracts = true }: AlignmentPanelProps) {
   const alignment = view?.alignment ?? null;
   const problem = view?.alignment_problem ?? null;
   return (
@@ -32,7 +34,7 @@ export function AlignmentPanel({ view, asked }: AlignmentPanelProps) {
         </p>
       )}
       {alignment !== null && <Asks alignment={alignment} />}
-      <Propose alignment={alignment} />
+      <Propose alignment={alignment} retracts={retracts} />
     </Panel>
   );
 }
@@ -87,19 +89,27 @@ function nowWords(motor: Motor, axis: AxisFrame): string {
   return axis.homed ? formatCounts(motor, axis.positionCounts) : "unhomed";
 }
 
-function Propose({ alignment }: { readonly alignment: Alignment | null }) {
+interface ProposeProps {
+  readonly alignment: Alignment | null;
+  readonly retracts: boolean;
+}
+
+function Propose({ alignment, retracts }: ProposeProps) {
   const motors = useConsole((state) => state.motors);
   const [insert, setInsert] = useState(false);
   const [refusal, setRefusal] = useState<Notice | null>(null);
   const [proposed, setProposed] = useState<number | null>(null);
-  const propose = async (pose: NonNullable<ProposalDraft["pose"]>): Promise<void> => {
+  const send = async (draft: ProposalDraft): Promise<void> => {
+    const outcome = await api.propose(draft);
+    setRefusal(outcome.ok ? null : noticeOfProblem(outcome.problem));
+    setProposed(outcome.ok ? outcome.value.id : null);
+  };
+  const propose = (pose: NonNullable<ProposalDraft["pose"]>): Promise<void> => {
     const accepted =
       alignment === null || pose === "desired"
         ? {}
         : { accepted_mm: alignment.deviation.distance_mm, accepted_deg: alignment.deviation.angle_deg };
-    const outcome = await api.propose({ kind: "pose", pose, insert, ...accepted });
-    setRefusal(outcome.ok ? null : noticeOfProblem(outcome.problem));
-    setProposed(outcome.ok ? outcome.value.id : null);
+    return send({ kind: "pose", pose, insert, ...accepted });
   };
   const clamped = alignment === null ? [] : axisLines(alignment, motors).filter((line) => line.clamped);
   const none = alignment === null ? "There is no alignment." : null;
@@ -144,6 +154,11 @@ function Propose({ alignment }: { readonly alignment: Alignment | null }) {
         >
           {isMissed ? `Accept ${miss}, and propose the reachable pose` : "Propose reachable pose"}
         </CommandButton>
+        {retracts && (
+          <CommandButton need="holder" onCommand={() => send({ kind: "retraction" })}>
+            Retract probe
+          </CommandButton>
+        )}
       </span>
       {refusal !== null && (
         <p className="refusal" role="alert">

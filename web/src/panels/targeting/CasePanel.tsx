@@ -122,22 +122,7 @@ function InHand({ shown, now, send }: InHandProps) {
           Close case
         </CommandButton>
       </p>
-      {closing && (
-        <Confirm
-          title={`Close case ${number}?`}
-          action={`Close case ${number}`}
-          onConfirm={async () => {
-            setClosing(false);
-            await send(() => api.closeCase(number));
-          }}
-          onCancel={() => setClosing(false)}
-        >
-          <p>
-            Every motion that was proposed in it ends. Its registration, entry and target are not used again,
-            and it cannot be opened again.
-          </p>
-        </Confirm>
-      )}
+      {closing && <ConfirmClosing number={number} send={send} onEnd={() => setClosing(false)} />}
       {shown.notes.length > 0 && (
         <ul className="case-words" aria-label="Notes">
           {shown.notes.map(({ time, user, text }) => (
@@ -156,6 +141,31 @@ function InHand({ shown, now, send }: InHandProps) {
         onSend={(text) => send(() => api.addCaseNote(number, text))}
       />
     </>
+  );
+}
+
+interface ConfirmClosingProps {
+  readonly number: number;
+  readonly send: Send;
+  readonly onEnd: () => void;
+}
+
+export function ConfirmClosing({ number, send, onEnd }: ConfirmClosingProps) {
+  return (
+    <Confirm
+      title={`Close case ${number}?`}
+      action={`Close case ${number}`}
+      onConfirm={async () => {
+        onEnd();
+        await send(() => api.closeCase(number));
+      }}
+      onCancel={onEnd}
+    >
+      <p>
+        Every motion that was proposed in it ends. Its registration, entry and target are not used again, and
+        it cannot be opened again.
+      </p>
+    </Confirm>
   );
 }
 
@@ -269,7 +279,7 @@ interface TextFormProps {
 }
 
 /** One line of text and the button that sends it. */
-function TextForm({ need, title, most, placeholder, hint, action, onSend }: TextFormProps) {
+export function TextForm({ need, title, most, placeholder, hint, action, onSend }: TextFormProps) {
   const [text, setText] = useState("");
   const [sending, setSending] = useState(false);
   const hintId = useId();

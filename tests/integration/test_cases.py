@@ -1,0 +1,258 @@
+"""Nothing moves on the strength of yesterday: cases, registrations, targets, homes and approvals on real processes."""
+
+import os
+import random
+import signal
+from collections import Counter
+from dataclasses import dataclass, field
+
+import pytest
+from conftest import StackFactory
+from interface import judge
+from motion import IDENTITY, act, home_all, motor, unlock, wait_until
+from stack import Stack
+
+STEPS = int(os.environ.get("INTERLOCK_CASE_STEPS", "800"))
+"""Of the random walk; with 10000 it takes some minutes."""
+PRESS_TICKS = 60
+REGISTRATION = {"registration": IDENTITY, "override_reason": "There is no scanner."}
+TARGETS = [
+    {"entry_point": [8, 250, 70], "target_point": [5, 200, 60]},
+    {"entry_point": [9, 251, 71], "target_point": [6, 201, 62]},
+]
+POSE = {"kind": "pose"}
+TOGETHER = {"kind": "coordinated", "targets": {"yaw": -0.2, "pitch": -0.1}}
+
+
+def restart_app(robot: Stack) -> None:
+    """Nobody is in control then."""
+    ready = sum(line.startswith("ready http") for line in robot.output.lines)
+    robot.signal("app", signal.SIGKILL)
+    robot.output.wait_for(r"^ready http", count=ready + 1)
+    wait_until("served again", lambda: robot.status()["app_alive"])
+
+
+def driven(robot: Stack) -> int:
+    return robot.control("record_event", kind="last_nonzero_drive")["event_tick"] or 0
+
+
+def press_for_a_while(robot: Stack) -> bool:
+    """Whether any axis was driven by it."""
+    before = driven(robot)
+    robot.control("pedal", pressed=True)
+    begun = robot.control("status")["tick"]
+    wait_until("held", lambda: robot.control("status")["tick"] > begun + PRESS_TICKS)
+    robot.control("pedal", pressed=False)
+    wait_until("READY", lambda: robot.status()["mode"] == "READY" and robot.status()["pedal_armed"])
+    return driven(robot) != before
+
+
+@dataclass
+class Believed:
+    """What holds by the rules of cases, and nothing that the app says of itself."""
+
+    case: int | None = None
+    is_open: bool = False
+    registration: int | None = None
+    target: int | None = None
+    version: int = 0
+    motions: dict[int, tuple] = field(default_factory=dict)
+    """Of each proposal that may still become motion, what it rests on."""
+    approved: int | None = None
+
+    def new(self) -> int:
+        self.version += 1
+        return self.version
+
+    def basis(self, kind: str) -> tuple:
+        rests_on = (self.case if self.is_open else None,)
+        return rests_on if kind == "coordinated" else (*rests_on, self.registration, self.target)
+
+    def holds(self, number: int) -> bool:
+        kind, rests_on = self.motions[number]
+        return rests_on[0] in (None, self.basis(kind)[0]) and rests_on[1:] == self.basis(kind)[1:]
+
+    def leave_case(self, closes: bool) -> None:
+        self.is_open = False
+        if closes:
+            self.case = self.registration = self.target = None
+
+    def forget_ended(self) -> None:
+        self.motions = {each: rest for each, rest in self.motions.items() if self.holds(each)}
+        self.approved = self.approved if self.approved in self.motions else None
+
+
+class Walker:
+    """Draws what people, programs and failures do, and compares each answer and each motion with what holds."""
+
+    def __init__(self, robot: Stack, seed: int) -> None:
+        self.robot = robot
+        self.draw = random.Random(seed)
+        self.believed = Believed()
+        self.seen: Counter[str] = Counter()
+        self.other = robot.client_of_new("erin", "engineer")
+
+    def ask(self, method: str, path: str, expected: bool, what: str, **content: object) -> dict:
+        """An answer that has to be one of success where it is expected, and a refusal where not."""
+        answer = judge(self.robot.api.request(method, f"/api/{path}", **content))
+        assert answer.is_success == expected, (what, expected, self.believed, answer.text)
+        self.seen[f"{what} {'done' if expected else 'refused'}"] += 1
+        return answer.json()
+
+    def case_step(self, step: str) -> None:
+        known = self.believed
+        number = known.case or self.draw.randint(1, 3)
+        allowed = {
+            "suspend": known.is_open,
+            "resume": known.case is not None and not known.is_open,
+            "close": known.case is not None,
+        }
+        if known.case is None:
+            number = 9999
+        self.ask("POST", f"cases/{number}/{step}", allowed[step], step)
+        if allowed[step] and step == "resume":
+            known.is_open = True
+        elif allowed[step]:
+            known.leave_case(step == "close")
+
+    def open(self) -> None:
+        allowed = self.believed.case is None
+        made = self.ask("POST", "cases", allowed, "open", json={"label": "walk"})
+        if allowed:
+            self.believed.case, self.believed.is_open = made["number"], True
+
+    def register(self) -> None:
+        self.ask("PUT", "targeting/registration", self.believed.is_open, "register", json=REGISTRATION)
+        if self.believed.is_open and self.believed.registration is None:
+            self.believed.registration = self.believed.new()
+
+    def aim(self) -> None:
+        place = self.draw.randrange(len(TARGETS))
+        self.ask("PUT", "targeting/target", self.believed.is_open, "aim", json=TARGETS[place])
+        if self.believed.is_open:
+            self.believed.target = place
+
+    def move_table(self) -> None:
+        self.ask("POST", "targeting/registration/expire", True, "table", json={})
+        self.believed.registration = None
+
+    def set_home(self) -> None:
+        """Elsewhere: the axis was pushed before."""
+        act(self.robot, "disable", 0)
+        self.robot.control("push", slot=0, counts=self.draw.choice([-60, 60]))
+        told = "/api/motors/0/set-home"
+        wait_until(
+            "at rest",
+            lambda: self.robot.api.post(told, json={"override_switch": True}).status_code == 200,
+        )
+        wait_until(
+            "seen", lambda: self.robot.api.get("/api/targeting").json()["registration_state"] != "valid"
+        )
+        wait_until("enabled", lambda: self.robot.api.post("/api/motors/0/enable").status_code == 200)
+        self.believed.registration = None
+        self.believed.motions.clear()
+
+    def propose(self, draft: dict) -> None:
+        known = self.believed
+        whole = known.is_open and None not in (known.registration, known.target)
+        made = self.ask(
+            "POST", "proposals", draft is TOGETHER or whole, f"propose {draft['kind']}", json=draft
+        )
+        if "id" in made:
+            assert made["case"] == (known.case if known.is_open else None)
+            known.motions[made["id"]] = (draft["kind"], known.basis(draft["kind"]))
+
+    def approve(self) -> None:
+        """Any number; those that have ended too."""
+        known = self.believed
+        newest = max(known.motions, default=1)
+        number = self.draw.choice([*known.motions, newest, max(1, newest - 1)])
+        waits = number in known.motions and known.holds(number) and number != known.approved
+        self.ask("POST", f"proposals/{number}/approve", waits, "approve")
+        if waits:
+            known.motions.pop(known.approved or 0, None)
+            known.approved = number
+
+    def approve_as_another(self) -> None:
+        number = max(self.believed.motions, default=1)
+        assert self.other.post(f"/api/proposals/{number}/approve").status_code == 409
+
+    def restart(self) -> None:
+        restart_app(self.robot)
+        assert self.robot.api.post("/api/control/request").status_code == 200
+        self.believed.leave_case(closes=False)
+        self.believed.registration = None
+        self.believed.motions.clear()
+
+    def stop(self) -> None:
+        self.robot.api.post("/api/stop").raise_for_status()
+        self.believed.motions.clear()
+        wait_until("READY", lambda: self.robot.status()["mode"] == "READY")
+
+    def press(self) -> None:
+        may_move = self.believed.approved is not None
+        moved = press_for_a_while(self.robot)
+        assert may_move or not moved, self.believed
+        self.seen["moved"] += moved
+        if moved:
+            state = self.robot.api.get(f"/api/proposals/{self.believed.approved}").json()["state"]
+            if state not in ("approved", "executing", "paused"):
+                self.believed.motions.pop(self.believed.approved)
+
+    def go_on(self, steps: int) -> None:
+        weighed = {
+            self.open: 6, self.register: 8, self.aim: 8, self.move_table: 2, self.set_home: 1, self.approve: 16,
+            self.approve_as_another: 2, self.press: 8, self.stop: 1,
+            (lambda: self.propose(POSE)): 14, (lambda: self.propose(TOGETHER)): 5,
+            (lambda: self.case_step("suspend")): 3, (lambda: self.case_step("resume")): 6,
+            (lambda: self.case_step("close")): 1,
+        }  # fmt: skip
+        for step in range(steps):
+            self.draw.choices(list(weighed), list(weighed.values()))[0]()
+            if step % 250 == 249:
+                self.restart()
+            self.believed.forget_ended()
+            told = self.robot.api.get("/api/targeting").json()
+            valid = self.believed.is_open and self.believed.registration is not None
+            assert (told["registration_state"] == "valid") == valid, (self.believed, told)
+
+
+def ready(stack: StackFactory) -> Stack:
+    robot = stack()
+    unlock(robot)
+    home_all(robot)
+    return robot
+
+
+@pytest.mark.parametrize("seed", [29, 30])
+def test_whatever_people_programs_and_failures_do_nothing_moves_on_what_has_ended(
+    stack: StackFactory, seed: int
+) -> None:
+    robot = ready(stack)
+    robot.api.post("/api/cases/1/close").raise_for_status()
+    walker = Walker(robot, seed)
+    walker.go_on(STEPS)
+    print(walker.seen)
+    for what in ("moved", "approve done", "approve refused", "propose pose done", "propose pose refused"):
+        assert walker.seen[what], f"never {what}: {walker.seen}"
+
+
+def test_a_start_of_the_app_suspends_the_case_until_somebody_resumes_it(stack: StackFactory) -> None:
+    robot = ready(stack)
+    robot.api.put("/api/targeting/registration", json=REGISTRATION).raise_for_status()
+    robot.api.put("/api/targeting/target", json=TARGETS[0]).raise_for_status()
+    restart_app(robot)
+    [case] = judge(robot.api.get("/api/cases")).json()
+    assert case["state"] == "suspended" and case["problem"].startswith("The case is suspended")
+    assert case["targeting"]["target_point"] == TARGETS[0]["target_point"], "to be looked at"
+    assert case["targeting"]["registration_state"] == "expired"
+    assert case["last_set"]["target_point"]["user"] == "admin"
+    refused = judge(robot.api.post(f"/api/cases/{case['number']}/resume"))
+    assert refused.json()["code"] == "CONTROL", "by somebody who has control"
+    assert robot.api.post("/api/control/request").status_code == 200
+    refused = judge(robot.api.put("/api/targeting/target", json=TARGETS[1]))
+    assert (refused.status_code, refused.json()["code"]) == (409, "NO_CASE")
+    resumed = judge(robot.api.post(f"/api/cases/{case['number']}/resume")).raise_for_status().json()
+    assert (resumed["state"], resumed["problem"]) == ("open", None)
+    assert resumed["targeting"]["target_point"] == TARGETS[0]["target_point"]
+    assert motor(robot, 0)["homed"], "the robot is where it was"
