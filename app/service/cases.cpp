@@ -229,9 +229,10 @@ tl::expected<void, Problem> resume(Step& step, KeptCase& kept) {
 }
 
 tl::expected<void, Problem> suspend(Step& step, KeptCase& kept) {
-  if (kept.state != CaseState::open) {
+  if (!step.look.is_open(kept)) {
     return fail(wrong_state(kept, step.look, "an open case", "Nothing of it is in force."));
   }
+  step.look.in_force.open_case = 0;
   kept.state = CaseState::suspended;
   kept.value["reason"] = step.entry.actor + " suspended it.";
   kept.value["changed"] = step.taken();

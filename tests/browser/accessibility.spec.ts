@@ -137,9 +137,9 @@ test("the workflow without a case and in one, and the forms of motions with some
   await expect(page.getByRole("form", { name: "Open case" })).toBeVisible();
   await expectNoViolation(page, "workflow without a case");
   await robot.openCase();
-  const steps = robot.panel("Workflow").getByRole("listitem");
-  await expect(steps.first()).toContainText("is open.");
-  await steps.filter({ hasText: "Registration" }).getByRole("button").click();
+  const step = (name: string) => robot.panel("Workflow").getByRole("listitem", { name, exact: true });
+  await expect(step("Open a case")).toContainText("is open.");
+  await step("Registration").getByRole("button").click();
   await expect(robot.panel("Registration")).toBeVisible();
   await robot.button("Close case").click();
   await expectNoViolation(page, "workflow in a case");

@@ -235,6 +235,11 @@ test("the proposed alignment brings the current pose to the desired one", async 
   await robot.open("Robot");
   await expect(robot.proposal(1)).toContainText("All axes: ACCEPTED would be accepted once the pedal");
   await robot.pressPedal();
+  await expect(robot.proposal(1)).toContainText("Aligned. Look at it, confirm the insertion");
+  await robot.releasePedal();
+  await robot.button("Confirm insertion of proposal 1").click();
+  await expect(robot.proposal(1)).toContainText("Confirmed. Press the pedal.");
+  await robot.pressPedal();
   // Whoever leaves the page lifts the foot.
   await expect(robot.proposal(1)).toContainText("done");
   await robot.open("Targeting");

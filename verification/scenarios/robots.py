@@ -222,7 +222,7 @@ class Clerk(threading.Thread):
 
 
 def regain_control(robot: Stack) -> bool:
-    """Logs in anew where what was done to the robot ended the session, and takes control, with a case open."""
+    """Logs in anew where what was done to the robot ended the session; takes control, with a case open."""
     taken = robot.api.post("/api/control/take-over")
     if taken.status_code == 401:
         robot.api = robot.client("admin", robot.password)

@@ -203,6 +203,7 @@ export const api = {
   beginJog: (start: JogStart) => act(() => http.POST("/api/jog", { body: start })),
   renewJog: (id: number) => act(() => http.PUT("/api/jog/{id}", { params: { path: { id } } })),
   approve: (id: number) => act(() => http.POST("/api/proposals/{id}/approve", { params: { path: { id } } })),
+  confirm: (id: number) => act(() => http.POST("/api/proposals/{id}/confirm", { params: { path: { id } } })),
   reject: (id: number) => act(() => http.POST("/api/proposals/{id}/reject", { params: { path: { id } } })),
   proposalPlan: (id: number) =>
     read(() => slowHttp.GET("/api/proposals/{id}/plan", { params: { path: { id } } })),

@@ -1238,6 +1238,28 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/proposals/{id}/confirm": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["parameters"]["ProposalId"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Somebody has looked at the aligned probe: the proposal may go on to its insertion, at the next press of the pedal. NOT_WAITING unless
+         *     it `wants_confirmation`. It waits for that for 10 minutes.
+         */
+        post: operations["confirmProposal"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/proposals/{id}/abort": {
         parameters: {
             query?: never;
@@ -1547,7 +1569,7 @@ export interface components {
             /** @description Of the reachable pose, as accepted_deg: its deviation from the desired one, as GET /api/targeting/alignment says it. Refused (UNREACHABLE) when it is larger by now, rounded to 0.01. */
             accepted_mm?: number;
             accepted_deg?: number;
-            /** @description Insert the probe once it is aligned; else it stays out. */
+            /** @description Insert the probe once it is aligned and somebody has confirmed that (`wants_confirmation`); else it stays out. */
             insert?: boolean;
             /** @description Name of a home step. */
             step?: string;
@@ -1611,6 +1633,8 @@ export interface components {
             source: "console" | "file" | "openigtlink";
             /** @enum {string} */
             state: "drafted" | "checked" | "approved" | "executing" | "paused" | "done" | "refused" | "aborted" | "expired";
+            /** @description It is aligned, and goes on to its insertion only once somebody has confirmed that. */
+            wants_confirmation: boolean;
             /** @description Null unless one axis moves. */
             target_counts: number | null;
             target: number | null;
@@ -4581,6 +4605,33 @@ export interface operations {
         requestBody?: never;
         responses: {
             /** @description Approved. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Proposal"];
+                };
+            };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            404: components["responses"]["NotFound"];
+            409: components["responses"]["Refused"];
+            503: components["responses"]["NoKernel"];
+        };
+    };
+    confirmProposal: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["parameters"]["ProposalId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Confirmed. */
             200: {
                 headers: {
                     [name: string]: unknown;

@@ -143,6 +143,11 @@ export async function approve(id: number): Promise<void> {
   tell("robot", await api.approve(id));
 }
 
+/** Lets a proposal that is aligned go on to its insertion; a refusal is shown where the robot's are. */
+export async function confirmInsertion(id: number): Promise<void> {
+  tell("robot", await api.confirm(id));
+}
+
 /** Ends a proposal that waits for approval, which nobody wants; a refusal is shown where the robot's are. */
 export async function reject(id: number): Promise<void> {
   tell("robot", await api.reject(id));

@@ -1,7 +1,7 @@
 import type { Motor, Proposal } from "../../api/client";
 import { CommandButton } from "../../design/CommandButton";
 import { WishForetelling } from "../../kernel/WishForetelling";
-import { abort, approve, reject } from "../../state/commands";
+import { abort, approve, confirmInsertion, reject } from "../../state/commands";
 import { isOpen, nextWishes } from "../../state/proposals";
 import { useConsole } from "../../state/store";
 import { formatCounts } from "../../units/units";
@@ -54,14 +54,25 @@ export function ProposalCommands({ proposal }: { readonly proposal: Proposal }) 
   if (!isOpen(proposal)) return null;
   if (state !== "checked") {
     return (
-      <CommandButton
-        need="holder"
-        className="quiet"
-        label={`Abort proposal ${id}`}
-        onCommand={() => abort(id, slot)}
-      >
-        Abort
-      </CommandButton>
+      <>
+        {proposal.wants_confirmation && (
+          <CommandButton
+            need="holder"
+            label={`Confirm insertion of proposal ${id}`}
+            onCommand={() => confirmInsertion(id)}
+          >
+            Confirm insertion
+          </CommandButton>
+        )}
+        <CommandButton
+          need="holder"
+          className="quiet"
+          label={`Abort proposal ${id}`}
+          onCommand={() => abort(id, slot)}
+        >
+          Abort
+        </CommandButton>
+      </>
     );
   }
   return (

@@ -22,13 +22,12 @@ const looks: Readonly<Record<Step["state"], { readonly shape: string; readonly t
   waits: { shape: "○", tone: "" },
 };
 
+/** Of steps that a panel beside them does. */
 const panelNames: Readonly<Partial<Record<StepName, string>>> = {
-  home: "proposal",
   register: "registration",
   target: "entry and target",
   review: "alignment",
   align: "alignment",
-  insert: "alignment",
   treat: "ablation",
 };
 
@@ -110,14 +109,13 @@ function MainButton({ step, situation, onGoTo, onChanged }: MainButtonProps) {
           Go to Motors
         </a>
       );
-    case "panel": {
-      const runs = step.words.startsWith("Proposal ") && step.state === "now" && step.name !== "review";
+    case "panel":
+    case "proposal":
       return (
         <button type="button" className={`button ${tone}`} onClick={onGoTo}>
-          Go to {runs ? "proposal" : (panelNames[step.name] ?? "panel")}
+          Go to {step.act === "proposal" ? "proposal" : panelNames[step.name]}
         </button>
       );
-    }
     case "ready":
       return (
         <CommandButton need="holder" className={tone} onCommand={makeReady}>

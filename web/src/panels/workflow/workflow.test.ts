@@ -99,6 +99,14 @@ describe("the step that is to be done now", () => {
     ["confirm", withAxes(at(-51, 0))],
     ["insert", ticked(withAxes(at(-50, 0)), "confirm")],
     ["insert", withAxes(at(-50, 90), { proposals: [toTarget("paused")] })],
+    ["confirm", withAxes(at(-50, 0), { proposals: [toTarget("paused", { wants_confirmation: true })] })],
+    [
+      "insert",
+      ticked(
+        withAxes(at(-50, 0), { proposals: [toTarget("paused", { wants_confirmation: true })] }),
+        "confirm",
+      ),
+    ],
     ["confirm", withAxes(at(-50, 200), { proposals: [toTarget("done")] })],
     ["treat", ticked(withAxes(at(-50, 200)), "confirm")],
     ["treat", withAxes(at(-50, 170), { proposals: [proposal({ mode: "ablation", state: "executing" })] })],

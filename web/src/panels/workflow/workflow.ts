@@ -25,7 +25,7 @@ export const stepTitles = {
 } as const;
 export type StepName = keyof typeof stepTitles;
 
-/** What the main button of a step does; `ready` unlocks and enables, `panel` leads to the panel of the step. */
+/** What the main button of a step does: `ready` unlocks and enables, `panel` and `proposal` lead to what is shown beside the steps. */
 export type Act =
   | "open"
   | "case"
@@ -33,6 +33,7 @@ export type Act =
   | "motors"
   | "home"
   | "panel"
+  | "proposal"
   | "insert"
   | "biopsy"
   | "retract"
@@ -152,7 +153,10 @@ function stepOf(proposal: Proposal, facts: Facts): StepName | null {
   if (proposal.kind === "biopsy") return "insert";
   if (proposal.kind !== "path") return null;
   if (proposal.mode === "ablation") return "treat";
-  if (proposal.aim !== null) return facts.isAligned ? "insert" : "align";
+  if (proposal.aim !== null) {
+    if (!facts.isAligned) return "align";
+    return proposal.wants_confirmation === true && !facts.isConfirmed ? "confirm" : "insert";
+  }
   return isRetraction(proposal, facts) ? "retract" : null;
 }
 
@@ -239,7 +243,7 @@ const writers: Readonly<Record<StepName, Writer>> = {
       return { words: `All ${now.motors.length} axes are homed${hand}.`, act: null };
     }
     const running = runningWords(facts, "home");
-    if (running !== null && isNow) return { words: running, act: "panel" };
+    if (running !== null && isNow) return { words: running, act: "proposal" };
     const hindered = obstacleOf(now);
     if (hindered !== null) return isNow ? hindered : { ...hindered, act: null };
     const { byPerson, bySwitch } = toHome(now);
@@ -310,7 +314,7 @@ const writers: Readonly<Record<StepName, Writer>> = {
       : " They miss the target by more than the robot's file allows.";
     if (isAligned) return { words: `Each axis that places the probe is at its setpoint.${miss}`, act: null };
     const running = isNow ? runningWords(facts, "align") : null;
-    if (running !== null) return { words: running, act: "panel" };
+    if (running !== null) return { words: running, act: "proposal" };
     const hindered = isNow ? obstacleOf(now) : null;
     return hindered ?? { words: `Not at the setpoint: ${away.join(", ")}.`, act: isNow ? "panel" : null };
   },
@@ -326,7 +330,7 @@ const writers: Readonly<Record<StepName, Writer>> = {
   insert(facts, now, isNow) {
     const { probe, probeAxis, depth, isAligned, isInserted, isOut, takesBiopsies } = facts;
     const running = isNow ? runningWords(facts, "insert") : null;
-    if (running !== null) return { words: running, act: "panel" };
+    if (running !== null) return { words: running, act: "proposal" };
     if (probe === undefined || probeAxis === undefined)
       return { words: "No axis is called insertion: see its position in Motors.", act: null };
     if (isInserted) {
@@ -346,7 +350,7 @@ const writers: Readonly<Record<StepName, Writer>> = {
     const { isTreated, isOut, isAligned, ablates } = facts;
     if (isTreated) return { words: "You have ticked that it is done.", act: null };
     const running = isNow ? runningWords(facts, "treat") : null;
-    if (running !== null) return { words: running, act: "panel" };
+    if (running !== null) return { words: running, act: "proposal" };
     const act = ablates ? ("panel" as const) : null;
     if (!isAligned || isOut) return { words: "It waits until the probe is in.", act };
     return { words: "Tick this when it is done: the data do not say so.", act };
@@ -382,6 +386,8 @@ function runningWords(facts: Facts, name: StepName): string | null {
   const { running } = facts;
   if (running === undefined || stepOf(running, facts) !== name) return null;
   const { id, state } = running;
+  if (running.wants_confirmation === true)
+    return `Proposal ${id} waits: confirm its insertion, then press the pedal.`;
   if (state === "checked" || state === "drafted") return `Proposal ${id} waits: look at it, and approve it.`;
   if (state === "executing") return `Proposal ${id} runs while the pedal is held.`;
   return `Proposal ${id} is ${state}: press the pedal and hold it.`;
