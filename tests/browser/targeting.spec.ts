@@ -80,11 +80,8 @@ test("a registration is refused in words until it is rigid, set once, and told w
   await expect(panel).toContainText(/Set \d+ s ago by admin \(console, 127\.0\.0\.1:\d+\)/);
   await expect(set).toBeDisabled();
   const onItsSide = [0, -1, 0, 10.5, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
-  expect(sent).toEqual([
-    { registration: onItsSide },
-    { registration: onItsSide },
-    { registration: onItsSide, override_reason: "Lies on its side." },
-  ]);
+  const whole = { registration: onItsSide, ignore_registration_rotation: false };
+  expect(sent).toEqual([whole, whole, { ...whole, override_reason: "Lies on its side." }]);
 
   const history = robot.panel("History").getByRole("row").nth(1);
   await expect(history).toContainText("admin");

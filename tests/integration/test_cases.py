@@ -115,7 +115,7 @@ class Walker:
         self.seen: Counter[str] = Counter()
         self.other = robot.client_of_new("erin", "engineer")
         self.start = true_counts(robot)
-        self.homes = 0
+        self.home_at = self.start
 
     def ask(self, method: str, path: str, expected: bool, what: str, **content: object) -> dict:
         """An answer that has to be one of success where it is expected, and a refusal where not."""
@@ -136,6 +136,7 @@ class Walker:
                 self.seen["stalled"] += 1
                 wait_for_answer(self.robot, f"motors/{slot}/clear-fault")
                 wait_for_answer(self.robot, f"motors/{slot}/set-home", override_switch=True)
+                self.home_at = true_counts(self.robot) if slot == 0 else self.home_at
                 wait_for_answer(self.robot, f"motors/{slot}/enable")
                 await_beats(self.robot)
                 self.believed.registration = None
@@ -181,12 +182,14 @@ class Walker:
     def set_home(self) -> None:
         """Elsewhere: the axis is pushed before, to near where it stood at first."""
         self.ask("POST", "motors/0/disable", True, "disable")
-        self.homes += 1
-        goal = self.start - 15 * (self.homes % 13) - 10
+        goal = self.start - self.draw.randint(10, 200)
+        while abs(goal - self.home_at) < 10:
+            goal = self.start - self.draw.randint(10, 200)
         while abs(left := goal - true_counts(self.robot)) > 1:
             self.robot.control("push", slot=0, counts=round(max(-40, min(40, left))))
             let_pass(self.robot, 50)
         wait_for_answer(self.robot, "motors/0/set-home", override_switch=True)
+        self.home_at = true_counts(self.robot)
         await_beats(self.robot)
         wait_for_answer(self.robot, "motors/0/enable")
         self.believed.registration = None

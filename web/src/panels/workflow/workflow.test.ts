@@ -126,6 +126,11 @@ describe("the step that is to be done now", () => {
 });
 
 describe("what a step claims", () => {
+  it("is no home while the motion that brings the robot there has not ended", () => {
+    const homing = proposal({ kind: "home", state: "paused" });
+    expect(stepIn({ ...ready, proposals: [homing] }, "home").state).toBe("now");
+  });
+
   it("is no alignment while one axis is off, not homed, or the case not open", () => {
     expect(stepIn(withAxes(at(-53, 0)), "align").state).toBe("waits");
     const lost = withAxes([axis(-50, { homed: false }), axis(0), axis(0)]);

@@ -193,7 +193,7 @@ function donesOf(facts: Facts, { imager }: Situation): Readonly<Record<StepName,
   const { open, alignment, isAligned, isTreated, isOut } = facts;
   return {
     case: open !== undefined,
-    home: facts.unhomed.length === 0,
+    home: facts.unhomed.length === 0 && facts.running?.kind !== "home",
     register: facts.isRegistered,
     image: heardIn(open, imager) !== null,
     target: facts.isAimed,
