@@ -34,9 +34,7 @@ class HeldMode : public Mode {
 
  protected:
   HeldMode(const std::type_info& tasks, const RobotPlan& plan) noexcept
-      : Mode(tasks),
-        timeout_ticks_(plan.timeout_ticks()),
-        confirmation_ticks_(plan.confirmation_ticks()) {}
+      : Mode(tasks), timeout_ticks_(plan.timeout_ticks()), confirmation_ticks_(plan.confirmation_ticks()) {}
 
   /** Makes ready for a task that waits now; returns the axes that it moves, bit n for slot n. */
   [[nodiscard]] virtual std::uint32_t prepare(std::uint32_t tick) noexcept = 0;

@@ -140,9 +140,9 @@ tl::expected<Proposal, Refusal> MotionRegistry::confirm(std::uint32_t id, const 
   follow(view);
   Proposal* proposal = find_mutable(id);
   if (proposal == nullptr || !proposal->wants_confirmation) {
-    return tl::make_unexpected(Refusal{"NOT_WAITING",
-                                       "Proposal " + std::to_string(id) + " waits for no confirmation.",
-                                       "a proposal that is aligned and not yet inserted", "Look where it is."});
+    return tl::make_unexpected(
+        Refusal{"NOT_WAITING", "Proposal " + std::to_string(id) + " waits for no confirmation.",
+                "a proposal that is aligned and not yet inserted", "Look where it is."});
   }
   if (!send_(Confirmation{id, 0, asked + approval_timeout})) {
     return tl::make_unexpected(overloaded("Try again."));

@@ -62,7 +62,7 @@ struct Proposal {
   std::vector<float> speeds_counts_per_s; /**< measured at each frequency that is over; of a sweep */
   ProposalState state = ProposalState::drafted;
   UtcTime created;
-  std::uint32_t created_tick = 0; /**< kernel tick */
+  std::uint32_t created_tick = 0;  /**< kernel tick */
   bool wants_confirmation = false; /**< before what comes next */
   std::optional<UtcTime> ended;
   std::optional<std::string> verdict; /**< that refused or ended it */

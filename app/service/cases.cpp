@@ -1,17 +1,21 @@
 #include "service/cases.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
 #include "robot/compile.hpp"
 #include "service/targeting_store.hpp"
 #include "store/sessions.hpp"
+#include "store/settings.hpp"
 
 namespace interlock {
 namespace {
 
 using nlohmann::json;
 
+/** Setting: registrations of cases that were deleted. */
+constexpr const char* registrations_key = "registrations_before";
 constexpr std::size_t most_cases = 200;
 constexpr std::size_t most_notes = 200;
 constexpr std::size_t most_records = 5000;
@@ -42,19 +46,18 @@ Stored<json> case_json(const KeptCase& kept, const Look& look) {
     const Targeting targeting = judged(stored, look.in_force);
     const std::string robot = kept.value.value("robot", "");
     const std::string configuration = kept.value.value("configuration", "");
-    return json{
-        {"number", kept.number},
-        {"label", kept.value.value("label", "")},
-        {"state", look.state_of(kept)},
-        {"problem", targeting.case_problem.empty() ? json() : json(targeting.case_problem)},
-        {"robot", robot},
-        {"configuration", configuration},
-        {"configuration_changed", robot == look.robot->name && configuration != look.configuration},
-        {"opened", kept.value.value("opened", json::object())},
-        {"changed", kept.value.value("changed", json::object())},
-        {"notes", kept.value.value("notes", json::array())},
-        {"targeting", to_json(targeting)},
-        {"last_set", kept.value.value("last_set", json::object())}};
+    return json{{"number", kept.number},
+                {"label", kept.value.value("label", "")},
+                {"state", look.state_of(kept)},
+                {"problem", targeting.case_problem.empty() ? json() : json(targeting.case_problem)},
+                {"robot", robot},
+                {"configuration", configuration},
+                {"configuration_changed", robot == look.robot->name && configuration != look.configuration},
+                {"opened", kept.value.value("opened", json::object())},
+                {"changed", kept.value.value("changed", json::object())},
+                {"notes", kept.value.value("notes", json::array())},
+                {"targeting", to_json(targeting)},
+                {"last_set", kept.value.value("last_set", json::object())}};
   });
 }
 
@@ -92,9 +95,7 @@ struct Step {
   std::optional<MotionControl::Hold> hold = std::nullopt; /**< that has to last */
 
   Step(const Context& context, const Caller& caller, const char* action, std::int64_t of)
-      : look(context),
-        entry(context.entry(caller, AuditKind::case_step, {{"action", action}})),
-        number(of) {}
+      : look(context), entry(context.entry(caller, AuditKind::case_step, {{"action", action}})), number(of) {}
 
   [[nodiscard]] json taken() const { return {{"time", iso_8601(entry.time)}, {"user", entry.actor}}; }
 };
@@ -158,18 +159,24 @@ struct Taking {
   }
 };
 
-/** Registrations that no program may set again: of the newest case, that one's own and those before it. */
-std::vector<RowMajor> registrations_so_far(const Cases& cases) {
-  for (const KeptCase& newest : cases.list(1)) {
+/** Registrations that no program may set again: of the newest case, that one's own and those before it, and
+ * of those that were deleted. */
+std::vector<RowMajor> registrations_so_far(Transaction& transaction) {
+  std::vector<RowMajor> known;
+  if (const auto deleted = Settings(transaction).find(registrations_key)) {
+    known = deleted->value.get<std::vector<RowMajor>>();
+  }
+  for (const KeptCase& newest : Cases(transaction).list(1)) {
     if (const auto before = targeting_of(newest)) {
-      std::vector<RowMajor> known = before->registrations_before;
+      known.insert(known.end(), before->registrations_before.begin(), before->registrations_before.end());
       if (before->registration) {
         known.push_back(*before->registration);
       }
-      return known;
     }
   }
-  return {};
+  known.erase(known.begin(),
+              known.end() - static_cast<std::ptrdiff_t>(std::min(known.size(), most_registrations_before)));
+  return known;
 }
 
 /** Opens a case. */
@@ -191,7 +198,7 @@ struct Opening {
                                       "Close it first, or resume it.")));
     }
     Targeting targeting = first_targeting(*step.look.robot);
-    targeting.registrations_before = registrations_so_far(cases);
+    targeting.registrations_before = registrations_so_far(transaction);
     KeptCase opened{.value = {{"label", step.text},
                               {"robot", step.look.robot->name},
                               {"configuration", step.look.configuration},
@@ -285,6 +292,8 @@ struct Deletion {
         return Outcome(fail(wrong_state(*kept, step.look, "a closed case", "Close it first.")));
       }
       record(transaction, step);
+      const json registrations = registrations_so_far(transaction);
+      Settings(transaction).set(registrations_key, registrations, step.entry.time);
       cases.remove(step.number);
       return as_outcome(case_json(*kept, step.look));
     });
@@ -308,8 +317,8 @@ CaseAnswer answer(const Context& context, Work work) {
   co_return std::move(*done);
 }
 
-/** Ends its force at once, whatever becomes of it in the store; and once more, as somebody may have resumed it
- * before the store kept the end. */
+/** Ends its force at once, whatever becomes of it in the store; and once more, as somebody may have resumed
+ * it before the store kept the end. */
 CaseAnswer take_out_of_force(const Context& context, Taking ending) {
   const auto end = [&context, number = ending.step.number, by = ending.step.entry.actor] {
     if (context.in_force.open_case == number) {

@@ -1,11 +1,11 @@
 /**
  * @file
- * Cases: what registration, entry, target, probe and motions belong to. At most one is not closed, and nothing
- * of it is in force before somebody has opened or resumed it since the app was started.
+ * Cases: what registration, entry, target, probe and motions belong to. At most one is not closed, and
+ * nothing of it is in force before somebody has opened or resumed it since the app was started.
  *
- * In the store, a case has these values besides its state: label, robot, configuration, opened, changed, notes
- * and last_set as in schema `Case` of spec/openapi.yaml, targeting, reason (why it is suspended), and the
- * numbers of the audit's first_record and last_record.
+ * In the store, a case has these values besides its state: label, robot, configuration, opened, changed,
+ * notes and last_set as in schema `Case` of spec/openapi.yaml, targeting, reason (why it is suspended), and
+ * the numbers of the audit's first_record and last_record.
  */
 #pragma once
 

@@ -88,7 +88,8 @@ struct PoseRequest {
 /** The setpoints in which the robot is draped; 404 NOT_FOUND when its file has none. */
 tl::expected<Task, Problem> draping_draft(const Robot& robot, const std::string& author);
 
-/** The probe out as far as it goes, whatever registration and case are; 404 NOT_FOUND when none is inserted. */
+/** The probe out as far as it goes, whatever registration and case are; 404 NOT_FOUND when none is inserted.
+ */
 tl::expected<Task, Problem> retraction_draft(const Robot& robot, const std::string& author);
 
 /** The loaded trajectory; 409 EMPTY when none is. */

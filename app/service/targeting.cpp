@@ -207,8 +207,8 @@ json to_json(const Targeting& targeting) {
   json body = to_stored(targeting);
   const bool is_valid = targeting.registration_problem.empty();
   body["case"] = targeting.case_number == 0 ? json() : json(targeting.case_number);
-  body["registration_state"] = is_valid                                                  ? "valid"
-                               : !targeting.registration                                 ? "not_set"
+  body["registration_state"] = is_valid                                                   ? "valid"
+                               : !targeting.registration                                  ? "not_set"
                                : targeting.registration_problem == targeting.case_problem ? "suspended"
                                                                                           : "expired";
   body["registration_problem"] = or_nothing(targeting.registration_problem);

@@ -61,10 +61,10 @@ Targeting first_targeting(const Robot& robot) {
 Stored<Targeting> targeting_of(const KeptCase& kept) {
   auto found = stored_targeting(kept.value.value("targeting", json::object()));
   if (!found) {
-    return tl::unexpected(StoreError{StoreError::Kind::damaged,
-                                     "the targeting of case " + std::to_string(kept.number) +
-                                         " is unusable: " + found.error().detail,
-                                     "", found.error().expected, "Restore the store from a backup."});
+    return tl::unexpected(StoreError{
+        StoreError::Kind::damaged,
+        "the targeting of case " + std::to_string(kept.number) + " is unusable: " + found.error().detail, "",
+        found.error().expected, "Restore the store from a backup."});
   }
   found->case_number = kept.number;
   if (kept.state == CaseState::suspended) {
@@ -125,8 +125,7 @@ boost::asio::awaitable<tl::expected<Targeting, Problem>> present_targeting(const
     return store.read([&](Transaction& transaction) { return find_targeting(transaction, *robot); });
   };
   auto found = co_await context.store.run(std::move(find));
-  co_return found.map(
-      [&](const Targeting& targeting) { return judged(targeting, context.in_force); });
+  co_return found.map([&](const Targeting& targeting) { return judged(targeting, context.in_force); });
 }
 
 }  // namespace interlock

@@ -58,11 +58,11 @@ using TargetingChange = tl::expected<Targeting, Problem> (*)(Targeting, const nl
 
 /**
  * Stores and audits what the body changes, with the way by which it came, and ends every proposal that
- * followed from other values. Nothing changes without an open case (409 NO_CASE), when the body is wrong (its problem), when the caller has lost
- * session (401 LOGIN) or control (409 CONTROL) meanwhile, or the store fails (503 STORE). A registration that
- * can hardly be right needs a reason (422 IMPLAUSIBLE), which navigation programs cannot give. A program may
- * not set the registration again that has expired (409 NO_REGISTRATION): only a person can know that it
- * holds.
+ * followed from other values. Nothing changes without an open case (409 NO_CASE), when the body is wrong (its
+ * problem), when the caller has lost session (401 LOGIN) or control (409 CONTROL) meanwhile, or the store
+ * fails (503 STORE). A registration that can hardly be right needs a reason (422 IMPLAUSIBLE), which
+ * navigation programs cannot give. A program may not set the registration again that has expired (409
+ * NO_REGISTRATION): only a person can know that it holds.
  */
 boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const Context& context,
                                                                           Caller caller, TaskSource source,

@@ -10,9 +10,9 @@
  *       return {};
  *     });
  *
- * `Users`, `Sessions`, `Settings`, `Cases` and `Audit` are views of a transaction and live no longer than it does.
- * They return refusals as values; failures of SQLite pass through them as exceptions, which `transact` and
- * `read` turn into a `StoreError`.
+ * `Users`, `Sessions`, `Settings`, `Cases` and `Audit` are views of a transaction and live no longer than it
+ * does. They return refusals as values; failures of SQLite pass through them as exceptions, which `transact`
+ * and `read` turn into a `StoreError`.
  */
 #pragma once
 

@@ -12,6 +12,16 @@
 namespace interlock {
 namespace {
 
+/** Nobody has to look at the robot of the study before it inserts. */
+PathProgram confirmed(PathProgram program) {
+  for (PathLeg& leg : program.legs) {
+    if (auto* move = std::get_if<MoveLeg>(&leg)) {
+      move->needs_confirmation = false;
+    }
+  }
+  return program;
+}
+
 /** A registration anywhere within a room, turned in any way. */
 Registration random_registration(std::mt19937_64& random) {
   std::normal_distribution<double> component;
@@ -160,7 +170,7 @@ class Demo {
 
   /** Takes the probe out, aligns and inserts; where the scan then shows the treatment point. */
   DemoResult<Eigen::Vector3d> insert(const Alignment& alignment, const DemoTrial& trial) {
-    const auto reached = rig_.carry_out(pose_program(robot_, alignment, true)).and_then([&] {
+    const auto reached = rig_.carry_out(confirmed(pose_program(robot_, alignment, true))).and_then([&] {
       return kinematics_.zframe_from_treatment(rig_.true_positions())
           .map([this](const Pose& pose) { return scanned(pose.translation()); })
           .map_error([](const KinematicsError& error) { return error.message(); });

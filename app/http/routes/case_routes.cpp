@@ -41,9 +41,8 @@ CaseRoutes::CaseRoutes(const Context& context, Router& router) : context_(contex
   };
   router.add(verb::get, "/api/cases", viewers, [this](const Call&) { return replied(list_cases(context_)); });
   router.add(verb::post, "/api/cases", holder, [this](const Call& call) { return open(call); });
-  add(verb::get, "", engineers, [](const Context& known, const Caller&, std::int64_t number) {
-    return export_case(known, number);
-  });
+  add(verb::get, "", engineers,
+      [](const Context& known, const Caller&, std::int64_t number) { return export_case(known, number); });
   add(verb::delete_, "", admins, delete_case);
   add(verb::post, "/suspend", engineers, suspend_case);
   add(verb::post, "/resume", holder, resume_case);

@@ -60,7 +60,7 @@ Problem needs_targets() {
           .code = "NO_TARGETS",
           .detail = "Such motion needs targets, which a mode does not name.",
           .expected = "a proposal of kind coordinated, pose, ablation or biopsy",
-          .next_step = "Propose it by POST /api/proposals."};
+          .next_step = "Propose it on the page Proposals, or by POST /api/proposals."};
 }
 
 }  // namespace

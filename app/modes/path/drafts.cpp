@@ -152,12 +152,10 @@ DraftKind::Reading read_retraction(const Context& context, json body, std::strin
 
 std::span<const DraftKind> path_drafts();
 std::span<const DraftKind> path_drafts() {
-  static constexpr DraftKind drafts[] = {{"coordinated", "", read_coordinated},
-                                         {"pose", "", read_pose},
-                                         {"trajectory", "trajectory", read_trajectory},
-                                         {"draping", "draping", read_draping},
-                                         {"retraction", "", read_retraction},
-                                         {"ablation", "", read_ablation}};
+  static constexpr DraftKind drafts[] = {
+      {"coordinated", "", read_coordinated},         {"pose", "", read_pose},
+      {"trajectory", "trajectory", read_trajectory}, {"draping", "draping", read_draping},
+      {"retraction", "", read_retraction},           {"ablation", "", read_ablation}};
   return drafts;
 }
 

@@ -136,7 +136,8 @@ TEST_F(CaseRoutesTest, EachStateAllowsItsStepsAndNoOther) {
     EXPECT_EQ(code_of(step(late)), "CASE") << late;
   }
   EXPECT_EQ(code_of(post("/api/cases/1/notes", R"({"text":"late"})")), "CASE");
-  for (const char* unknown : {"2/close", "0/close", "-1/close", "x/close", "1.5/close", "99999999999999999999/resume"}) {
+  for (const char* unknown :
+       {"2/close", "0/close", "-1/close", "x/close", "1.5/close", "99999999999999999999/resume"}) {
     EXPECT_EQ(step(unknown).status, 404u) << unknown;
   }
 }

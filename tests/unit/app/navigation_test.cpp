@@ -187,6 +187,16 @@ TEST_F(NavigationTest, AProgramCannotRenewARegistrationThatHasExpired) {
   }
   EXPECT_EQ(state(), "not_set");
   EXPECT_EQ(calibrate(6.5f), "CALIBRATION 1");
+  const std::string holder = std::exchange(token_, token_of("ada"));
+  for (const char* number : {"1", "2"}) {
+    (void)post("/api/cases/" + std::string(number) + "/close");
+    ASSERT_EQ(send({http::verb::delete_, "/api/cases/" + std::string(number), 11}).status, 200u);
+  }
+  token_ = holder;
+  ASSERT_EQ(post("/api/cases", R"({"label":"after them"})").status, 201u);
+  for (const float of_a_case_that_was_deleted : {6.0f, 6.5f}) {
+    EXPECT_NE(calibrate(of_a_case_that_was_deleted), "CALIBRATION 1");
+  }
 }
 
 TEST_F(NavigationTest, AStopThatNoKernelConfirmsIsNotSaidToBeDone) {

@@ -86,7 +86,8 @@ TEST_F(PathRoutesTest, AnInsertionIsConfirmedOnlyWhileItWaitsForThat) {
   const auto confirm = [this] { return post("/api/proposals/1/confirm"); };
   EXPECT_EQ(confirm().problem()["code"], "NOT_WAITING") << "it is not aligned yet";
   ControlView view = test::ready_view();
-  view.tasks.of<PathTask>() = {.task = 1, .phase = TaskPhase::paused, .reason = TaskReason::unconfirmed, .step = 2};
+  view.tasks.of<PathTask>() = {
+      .task = 1, .phase = TaskPhase::paused, .reason = TaskReason::unconfirmed, .step = 2};
   show(view);
   while (proposal(1)["wants_confirmation"] == false) {
     std::this_thread::yield();

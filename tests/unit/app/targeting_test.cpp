@@ -161,8 +161,8 @@ TEST(Targeting, ARegistrationIsValidInTheEpochInWhichItWasSetAndInNoOther) {
 }
 
 TEST(Targeting, TheTurnOfARegistrationIsIgnoredOnlyWhereItSaysSo) {
-  const auto ignoring = with_registration(
-      {}, {{"registration", turned(0.1)}, {"ignore_registration_rotation", true}});
+  const auto ignoring =
+      with_registration({}, {{"registration", turned(0.1)}, {"ignore_registration_rotation", true}});
   ASSERT_TRUE(ignoring);
   EXPECT_TRUE(ignoring->ignore_registration_rotation);
   EXPECT_FALSE(with_registration(*ignoring, {{"registration", turned(0.2)}})->ignore_registration_rotation);
@@ -182,7 +182,8 @@ TEST(Targeting, NothingIsInForceOfACaseThatNobodyHasResumed) {
   for (const std::int64_t open : {0, 2, 4}) {
     const json told = to_json(judged(kept, {7, "", open}));
     EXPECT_EQ(told["registration_state"], "suspended");
-    EXPECT_THAT(told["registration_problem"].get<std::string>(), testing::StartsWith("The case is suspended"));
+    EXPECT_THAT(told["registration_problem"].get<std::string>(),
+                testing::StartsWith("The case is suspended"));
   }
 }
 
