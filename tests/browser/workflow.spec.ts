@@ -51,6 +51,7 @@ test("the workflow leads from opening a case to closing it, and to the first tar
   await robot.button("Unlock and enable all axes").click();
   await robot.button("Set home, and propose homing").click();
   await runs(1);
+  await expect(robot.panel("Proposal 1")).toContainText("done");
   await expect(step("Home the robot")).toContainText("All 7 axes are homed, 2 of them by hand.");
   await robot.releasePedal();
 
@@ -66,8 +67,8 @@ test("the workflow leads from opening a case to closing it, and to the first tar
   const [x = 0, y = 0, z = 0] = [current[3], current[7], current[11]];
   // As in targeting.spec.ts: within reach from home, and not at it.
   for (const [name, point] of [
-    ["Entry", [x - 1, y + 36, z + 1]],
-    ["Target", [x - 1, y - 2, z - 1]],
+    ["Entry", [x - 1, y + 40, z + 1]],
+    ["Target", [x - 1, y + 2, z - 1]],
   ] as const)
     for (const [at, row] of ["R", "A", "S"].entries())
       await field(page, `${name} ${row}`).fill((point[at] ?? 0).toFixed(3));
