@@ -405,21 +405,22 @@ CaseAnswer resume_case(const Context& context, Caller caller, std::int64_t numbe
   co_return resumed;
 }
 
-CaseAnswer suspend_case(const Context& context, Caller caller, std::int64_t number) {
+CaseAnswer suspend_case(const Context& context, const Caller& caller, std::int64_t number) {
   return take_out_of_force(context, {Step(context, caller, "suspend", number), suspend});
 }
 
-CaseAnswer close_case(const Context& context, Caller caller, std::int64_t number) {
+CaseAnswer close_case(const Context& context, const Caller& caller, std::int64_t number) {
   return take_out_of_force(context, {Step(context, caller, "close", number), close});
 }
 
-CaseAnswer add_case_note(const Context& context, Caller caller, std::int64_t number, std::string text) {
+CaseAnswer add_case_note(const Context& context, const Caller& caller, std::int64_t number,
+                         std::string text) {
   Step step(context, caller, "note", number);
   step.text = std::move(text);
   return answer(context, Taking{std::move(step), add_note});
 }
 
-CaseAnswer delete_case(const Context& context, Caller caller, std::int64_t number) {
+CaseAnswer delete_case(const Context& context, const Caller& caller, std::int64_t number) {
   Step step(context, caller, "delete", number);
   step.role = Role::admin;
   return answer(context, Deletion{std::move(step)});

@@ -39,15 +39,15 @@ CaseAnswer open_case(const Context& context, Caller caller, std::string label);
 CaseAnswer resume_case(const Context& context, Caller caller, std::int64_t number);
 
 /** Takes the open case out of force at once, with every motion that was proposed in it. */
-CaseAnswer suspend_case(const Context& context, Caller caller, std::int64_t number);
+CaseAnswer suspend_case(const Context& context, const Caller& caller, std::int64_t number);
 
 /** As `suspend_case`, for ever; of a suspended one too. */
-CaseAnswer close_case(const Context& context, Caller caller, std::int64_t number);
+CaseAnswer close_case(const Context& context, const Caller& caller, std::int64_t number);
 
 /** Adds a note to a case that is not closed. */
-CaseAnswer add_case_note(const Context& context, Caller caller, std::int64_t number, std::string text);
+CaseAnswer add_case_note(const Context& context, const Caller& caller, std::int64_t number, std::string text);
 
 /** Deletes a closed case. */
-CaseAnswer delete_case(const Context& context, Caller caller, std::int64_t number);
+CaseAnswer delete_case(const Context& context, const Caller& caller, std::int64_t number);
 
 }  // namespace interlock
