@@ -100,9 +100,6 @@ struct Step {
   [[nodiscard]] json taken() const { return {{"time", iso_8601(entry.time)}, {"user", entry.actor}}; }
 };
 
-/** Changes the case; a problem: nothing changes. */
-using Change = tl::expected<void, Problem> (*)(Step&, KeptCase&);
-
 /** The case as it is then, or why the step was not taken. */
 using Outcome = tl::expected<json, Problem>;
 
@@ -129,35 +126,38 @@ Stored<tl::expected<void, Problem>> may_take(Transaction& transaction, const Ste
       });
 }
 
-/** Takes a step with a case that there is. */
+/** Takes a step in one transaction, if whoever takes it still may. */
 struct Taking {
   Step step;
-  Change change;
+  Stored<Outcome> (*take)(Transaction&, Step&);
 
   Stored<Outcome> operator()(Store& store) {
-    return store.transact([this](Transaction& transaction) { return take(transaction); });
-  }
-
-  Stored<Outcome> take(Transaction& transaction) {
-    const auto may = may_take(transaction, step);
-    if (!may || !*may) {
-      return may ? Stored<Outcome>(fail(may->error())) : tl::unexpected(may.error());
-    }
-    Cases cases(transaction);
-    auto kept = cases.find(step.number);
-    const auto done = kept ? change(step, *kept) : fail(no_such_case(step.number));
-    if (!done) {
-      return Outcome(fail(done.error()));
-    }
-    const bool was_closed = kept->value.contains("last_record");
-    const std::int64_t written = record(transaction, step);
-    if (kept->state == CaseState::closed && !was_closed) {
-      kept->value["last_record"] = written;
-    }
-    cases.change(*kept);
-    return as_outcome(case_json(*kept, step.look));
+    return store.transact([this](Transaction& transaction) -> Stored<Outcome> {
+      const auto may = may_take(transaction, step);
+      if (!may || !*may) {
+        return may ? Stored<Outcome>(fail(may->error())) : tl::unexpected(may.error());
+      }
+      return take(transaction, step);
+    });
   }
 };
+
+/** Changes a case that exists and is not closed; after a problem, nothing has changed. */
+template <tl::expected<void, Problem> (*change)(Step&, KeptCase&)>
+Stored<Outcome> changed(Transaction& transaction, Step& step) {
+  Cases cases(transaction);
+  auto kept = cases.find(step.number);
+  const auto done = kept ? change(step, *kept) : fail(no_such_case(step.number));
+  if (!done) {
+    return Outcome(fail(done.error()));
+  }
+  const std::int64_t written = record(transaction, step);
+  if (kept->state == CaseState::closed) {
+    kept->value["last_record"] = written;
+  }
+  cases.change(*kept);
+  return as_outcome(case_json(*kept, step.look));
+}
 
 /** Registrations that no program may set again: of the newest case, that one's own and those before it, and
  * of those that were deleted. */
@@ -179,42 +179,29 @@ std::vector<RowMajor> registrations_so_far(Transaction& transaction) {
   return known;
 }
 
-/** Opens a case. */
-struct Opening {
-  Step step;
-
-  Stored<Outcome> operator()(Store& store) {
-    return store.transact([this](Transaction& transaction) { return open(transaction); });
+Stored<Outcome> open(Transaction& transaction, Step& step) {
+  Cases cases(transaction);
+  if (const auto other = cases.in_hand()) {
+    return Outcome(fail(
+        wrong_state(*other, step.look, "no other case that is not closed", "Close it first, or resume it.")));
   }
-
-  Stored<Outcome> open(Transaction& transaction) {
-    const auto may = may_take(transaction, step);
-    if (!may || !*may) {
-      return may ? Stored<Outcome>(fail(may->error())) : tl::unexpected(may.error());
-    }
-    Cases cases(transaction);
-    if (const auto other = cases.in_hand()) {
-      return Outcome(fail(wrong_state(*other, step.look, "no other case that is not closed",
-                                      "Close it first, or resume it.")));
-    }
-    Targeting targeting = first_targeting(*step.look.robot);
-    targeting.registrations_before = registrations_so_far(transaction);
-    KeptCase opened{.value = {{"label", step.text},
-                              {"robot", step.look.robot->name},
-                              {"configuration", step.look.configuration},
-                              {"opened", step.taken()},
-                              {"changed", step.taken()},
-                              {"notes", json::array()},
-                              {"targeting", to_stored(targeting)},
-                              {"last_set", json::object()}}};
-    opened.number = cases.add(opened.value);
-    step.number = opened.number;
-    step.look.in_force.open_case = opened.number;
-    opened.value["first_record"] = record(transaction, step);
-    cases.change(opened);
-    return as_outcome(case_json(opened, step.look));
-  }
-};
+  Targeting targeting = first_targeting(*step.look.robot);
+  targeting.registrations_before = registrations_so_far(transaction);
+  KeptCase opened{.value = {{"label", step.text},
+                            {"robot", step.look.robot->name},
+                            {"configuration", step.look.configuration},
+                            {"opened", step.taken()},
+                            {"changed", step.taken()},
+                            {"notes", json::array()},
+                            {"targeting", to_stored(targeting)},
+                            {"last_set", json::object()}}};
+  opened.number = cases.add(opened.value);
+  step.number = opened.number;
+  step.look.in_force.open_case = opened.number;
+  opened.value["first_record"] = record(transaction, step);
+  cases.change(opened);
+  return as_outcome(case_json(opened, step.look));
+}
 
 tl::expected<void, Problem> resume(Step& step, KeptCase& kept) {
   if (step.look.state_of(kept) != case_state_name(CaseState::suspended)) {
@@ -273,32 +260,21 @@ tl::expected<void, Problem> add_note(Step& step, KeptCase& kept) {
   return {};
 }
 
-/** Deletes a closed case. */
-struct Deletion {
-  Step step;
-
-  Stored<Outcome> operator()(Store& store) {
-    return store.transact([this](Transaction& transaction) -> Stored<Outcome> {
-      const auto may = may_take(transaction, step);
-      if (!may || !*may) {
-        return may ? Stored<Outcome>(fail(may->error())) : tl::unexpected(may.error());
-      }
-      Cases cases(transaction);
-      const auto kept = cases.find(step.number);
-      if (!kept) {
-        return Outcome(fail(no_such_case(step.number)));
-      }
-      if (kept->state != CaseState::closed) {
-        return Outcome(fail(wrong_state(*kept, step.look, "a closed case", "Close it first.")));
-      }
-      record(transaction, step);
-      const json registrations = registrations_so_far(transaction);
-      Settings(transaction).set(registrations_key, registrations, step.entry.time);
-      cases.remove(step.number);
-      return as_outcome(case_json(*kept, step.look));
-    });
+Stored<Outcome> remove(Transaction& transaction, Step& step) {
+  Cases cases(transaction);
+  const auto kept = cases.find(step.number);
+  if (!kept) {
+    return Outcome(fail(no_such_case(step.number)));
   }
-};
+  if (kept->state != CaseState::closed) {
+    return Outcome(fail(wrong_state(*kept, step.look, "a closed case", "Close it first.")));
+  }
+  record(transaction, step);
+  const json registrations = registrations_so_far(transaction);
+  Settings(transaction).set(registrations_key, registrations, step.entry.time);
+  cases.remove(step.number);
+  return as_outcome(case_json(*kept, step.look));
+}
 
 /** From now on that case is in force; 0: none. What belonged to another one ends. */
 void put_in_force(const Context& context, std::int64_t number, const std::string& by) {
@@ -386,7 +362,7 @@ CaseAnswer open_case(const Context& context, Caller caller, std::string label) {
   Step step(context, caller, "open", 0);
   step.text = std::move(label);
   step.hold = context.motion_control.hold();
-  Opening opening{std::move(step)};
+  Taking opening{std::move(step), open};
   auto opened = co_await answer(context, std::move(opening));
   if (opened) {
     put_in_force(context, opened->at("number"), caller.user);
@@ -397,7 +373,7 @@ CaseAnswer open_case(const Context& context, Caller caller, std::string label) {
 CaseAnswer resume_case(const Context& context, Caller caller, std::int64_t number) {
   Step step(context, caller, "resume", number);
   step.hold = context.motion_control.hold();
-  Taking taking{std::move(step), resume};
+  Taking taking{std::move(step), changed<resume>};
   auto resumed = co_await answer(context, std::move(taking));
   if (resumed) {
     put_in_force(context, number, caller.user);
@@ -406,24 +382,24 @@ CaseAnswer resume_case(const Context& context, Caller caller, std::int64_t numbe
 }
 
 CaseAnswer suspend_case(const Context& context, const Caller& caller, std::int64_t number) {
-  return take_out_of_force(context, {Step(context, caller, "suspend", number), suspend});
+  return take_out_of_force(context, {Step(context, caller, "suspend", number), changed<suspend>});
 }
 
 CaseAnswer close_case(const Context& context, const Caller& caller, std::int64_t number) {
-  return take_out_of_force(context, {Step(context, caller, "close", number), close});
+  return take_out_of_force(context, {Step(context, caller, "close", number), changed<close>});
 }
 
 CaseAnswer add_case_note(const Context& context, const Caller& caller, std::int64_t number,
                          std::string text) {
   Step step(context, caller, "note", number);
   step.text = std::move(text);
-  return answer(context, Taking{std::move(step), add_note});
+  return answer(context, Taking{std::move(step), changed<add_note>});
 }
 
 CaseAnswer delete_case(const Context& context, const Caller& caller, std::int64_t number) {
   Step step(context, caller, "delete", number);
   step.role = Role::admin;
-  return answer(context, Deletion{std::move(step)});
+  return answer(context, Taking{std::move(step), remove});
 }
 
 }  // namespace interlock

@@ -1,22 +1,14 @@
 import { Fragment } from "react";
-import { api } from "../../api/client";
 import { NoticeText } from "../../design/NoticeText";
-import { useConsole } from "../../state/store";
-import { usePolled } from "../../state/usePolled";
 import { LivePage } from "../cover/LivePage";
 import { AimPanel } from "./AimPanel";
 import { AlignmentPanel } from "./AlignmentPanel";
 import { CasePanel } from "./CasePanel";
-import { reasonOfCase } from "./case";
 import { HistoryPanel } from "./HistoryPanel";
 import { PosesPanel } from "./PosesPanel";
 import { RegistrationPanel } from "./RegistrationPanel";
+import { useTargeting } from "./useTargeting";
 import "./targeting.css";
-
-const CASES_EVERY_MS = 1000;
-const TARGETING_EVERY_MS = 500;
-const ALIGNMENT_EVERY_MS = 250;
-const HISTORY_EVERY_MS = 1000;
 
 /** To which case all belongs, where the robot is in the scanner, where it is to go, what that asks of it, and who said so. */
 export default function TargetingPage() {
@@ -28,16 +20,8 @@ export default function TargetingPage() {
 }
 
 function Panels() {
-  const robot = useConsole((state) => state.robot?.name ?? null);
-  const cases = usePolled(api.listCases, CASES_EVERY_MS);
-  const targeting = usePolled(api.targeting, TARGETING_EVERY_MS);
-  const view = usePolled(api.alignment, ALIGNMENT_EVERY_MS);
-  const history = usePolled(api.targetingHistory, HISTORY_EVERY_MS);
-  const notice = cases.notice ?? targeting.notice ?? view.notice ?? history.notice;
-  const refresh = async (): Promise<void> => {
-    await Promise.all([cases.refresh(), targeting.refresh(), view.refresh(), history.refresh()]);
-  };
-  const off = cases.value === null ? null : reasonOfCase(cases.value, robot);
+  const { cases, targeting, view, history, notice, off, refresh } = useTargeting();
+  const form = { history: history.value, asked: targeting.asked, off, onSet: refresh };
   return (
     <>
       {notice !== null && (
@@ -55,20 +39,8 @@ function Panels() {
           />
           {/* What was edited in one case must not reach another. */}
           <Fragment key={targeting.value.case}>
-            <RegistrationPanel
-              targeting={targeting.value}
-              history={history.value}
-              asked={targeting.asked}
-              off={off}
-              onSet={refresh}
-            />
-            <AimPanel
-              targeting={targeting.value}
-              history={history.value}
-              asked={targeting.asked}
-              off={off}
-              onSet={refresh}
-            />
+            <RegistrationPanel targeting={targeting.value} {...form} />
+            <AimPanel targeting={targeting.value} {...form} />
             <AlignmentPanel view={view.value} asked={view.asked} />
             <PosesPanel
               view={view.value}

@@ -14,9 +14,9 @@ import { MotionPanel } from "../proposals/MotionPanel";
 import { ProposalDetail } from "../proposals/ProposalDetail";
 import { AimPanel } from "../targeting/AimPanel";
 import { AlignmentPanel } from "../targeting/AlignmentPanel";
-import { reasonOfCase } from "../targeting/case";
 import { PosesPanel } from "../targeting/PosesPanel";
 import { RegistrationPanel } from "../targeting/RegistrationPanel";
+import { useTargeting } from "../targeting/useTargeting";
 import { StepLine } from "./StepLine";
 import {
   type AxisNow,
@@ -34,9 +34,7 @@ import "../proposals/detail.css";
 import "../targeting/targeting.css";
 import "./workflow.css";
 
-const SLOWLY_MS = 1000;
-const TARGETING_EVERY_MS = 500;
-const ALIGNMENT_EVERY_MS = 250;
+const IMAGER_EVERY_MS = 1000;
 
 /** From opening a case to closing it: each step, whether it is done, and what it waits for, beside the panel that does it. */
 export default function WorkflowPage() {
@@ -98,11 +96,8 @@ function Content() {
   const proposals = useConsole((state) => state.proposals);
   const refusal = useConsole((state) => state.notices.robot);
   const axes = useAxes();
-  const cases = usePolled(api.listCases, SLOWLY_MS);
-  const targeting = usePolled(api.targeting, TARGETING_EVERY_MS);
-  const view = usePolled(api.alignment, ALIGNMENT_EVERY_MS);
-  const history = usePolled(api.targetingHistory, SLOWLY_MS);
-  const imager = usePolled(api.imager, SLOWLY_MS);
+  const { cases, targeting, view, history, notice, off, refresh } = useTargeting();
+  const imager = usePolled(api.imager, IMAGER_EVERY_MS);
   const [ticks, setTicks] = useState<Ticks>({ confirm: null, treat: null });
   const [chosen, setChosen] = useState<StepName | null>(null);
   const work = useRef<HTMLElement>(null);
@@ -129,9 +124,6 @@ function Content() {
     if (now !== null) setChosen((known) => (known !== null && forms.has(known) ? known : null));
   }, [now]);
 
-  const refresh = async (): Promise<void> => {
-    await Promise.all([cases.refresh(), targeting.refresh(), view.refresh(), history.refresh()]);
-  };
   const onSet = async (): Promise<void> => {
     setChosen(null);
     await refresh();
@@ -145,11 +137,10 @@ function Content() {
     if (situation !== null) setTicks({ ...ticks, [name]: ticked ? tickOf(situation) : null });
   };
 
-  const notice = cases.notice ?? targeting.notice ?? view.notice ?? history.notice;
   const running = proposals.find(isOpen);
   const shownStep = chosen ?? now;
   const shown = shownStep === null || robot === null ? null : panelOf(shownStep, robot.modes);
-  const off = cases.value === null ? null : reasonOfCase(cases.value, robot?.name ?? null);
+  const form = { history: history.value, asked: targeting.asked, off, onSet };
   const asked = oldest([cases.asked, targeting.asked, view.asked]);
   return (
     <>
@@ -193,22 +184,10 @@ function Content() {
           // What was edited in one case must not reach another.
           <Fragment key={targeting.value.case}>
             <Form isShown={shown === "registration"} onEdit={() => setChosen("register")}>
-              <RegistrationPanel
-                targeting={targeting.value}
-                history={history.value}
-                asked={targeting.asked}
-                off={off}
-                onSet={onSet}
-              />
+              <RegistrationPanel targeting={targeting.value} {...form} />
             </Form>
             <Form isShown={shown === "aim"} onEdit={() => setChosen("target")}>
-              <AimPanel
-                targeting={targeting.value}
-                history={history.value}
-                asked={targeting.asked}
-                off={off}
-                onSet={onSet}
-              />
+              <AimPanel targeting={targeting.value} {...form} />
             </Form>
           </Fragment>
         )}

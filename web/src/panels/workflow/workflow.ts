@@ -127,11 +127,13 @@ function factsOf(now: Situation) {
     running: proposals.find(isOpen),
     /** The motion to where entry and target ask, as they are now. */
     toTarget: proposals.find(
-      ({ aim, state }) =>
+      (each) =>
         alignment !== null &&
-        aim !== null &&
-        (state === "done" || (state !== "drafted" && openOne(state))) &&
-        aim.desired.every((value, at) => Math.abs(value - (alignment.desired[at] ?? Number.NaN)) <= SAME_MM),
+        each.aim !== null &&
+        (each.state === "done" || (each.state !== "drafted" && isOpen(each))) &&
+        each.aim.desired.every(
+          (value, at) => Math.abs(value - (alignment.desired[at] ?? Number.NaN)) <= SAME_MM,
+        ),
     ),
     isConfirmed: isTicked("confirm"),
     isTreated: isTicked("treat"),
@@ -139,8 +141,6 @@ function factsOf(now: Situation) {
 }
 
 type Facts = ReturnType<typeof factsOf>;
-
-const openOne = (state: Proposal["state"]): boolean => isOpen({ state } as Proposal);
 
 /** Within so many counts of its setpoint an axis rests at it; its encoder trembles by one. */
 function slack(motor: Motor | undefined): number {
@@ -155,7 +155,7 @@ function stepOf(proposal: Proposal, facts: Facts): StepName | null {
   if (proposal.mode === "ablation") return "treat";
   if (proposal.aim !== null) {
     if (!facts.isAligned) return "align";
-    return proposal.wants_confirmation === true && !facts.isConfirmed ? "confirm" : "insert";
+    return proposal.wants_confirmation && !facts.isConfirmed ? "confirm" : "insert";
   }
   return isRetraction(proposal, facts) ? "retract" : null;
 }
