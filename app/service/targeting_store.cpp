@@ -31,7 +31,7 @@ json origin_of(const AuditEntry& entry, std::int64_t record) {
           {"client", entry.detail.at("client")}};
 }
 
-/** Notes the change that the audit's record tells of. One of the reported pose alone is noted as the field's
+/** Notes the change that the audit records. A change of only the reported pose is noted as the field's
  * last one and not listed: an imager reports many times a second. */
 void note_change(Transaction& transaction, KeptCase& kept, const AuditEntry& entry, std::int64_t record) {
   json change = origin_of(entry, record);

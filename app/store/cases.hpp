@@ -51,7 +51,7 @@ class Cases {
   /** Removes a case with what was noted for it. */
   void remove(std::int64_t number);
 
-  /** Notes a change of its values, which that record of the audit tells of. */
+  /** Notes a change of its values, which that record of the audit describes. */
   void note(std::int64_t number, std::int64_t record, const nlohmann::json& change);
 
   /** What was noted for it: the newest `count`, newest first. */

@@ -129,7 +129,7 @@ class Walker:
     def faults(self) -> list[str]:
         return [each["fault"] for each in judge(self.robot.api.get("/api/motors")).json()]
 
-    def mend(self) -> None:
+    def recover(self) -> None:
         """An axis that was pushed back and is driven the way it had come before makes no progress: STALL. It
         loses its home by that."""
         for slot, fault in enumerate(self.faults()):
@@ -266,7 +266,7 @@ class Walker:
             self.draw.choices(list(weighed), list(weighed.values()))[0]()
             if step % every == every - 1:
                 self.restart()
-            self.mend()
+            self.recover()
             self.believed.forget_ended()
             told = self.robot.api.get("/api/targeting").json()
             valid = self.believed.is_open and self.believed.registration is not None

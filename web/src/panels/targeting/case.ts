@@ -45,7 +45,7 @@ export interface CaseValue {
   readonly field: string;
   readonly title: string;
   readonly words: string;
-  /** What SetBy says of a value that nobody set in this case. */
+  /** What SetBy shows for a value that nobody set in this case. */
   readonly unset: string;
 }
 
