@@ -148,7 +148,9 @@ tl::expected<Proposal, Refusal> MotionRegistry::confirm(std::uint32_t id, const 
     return tl::make_unexpected(overloaded("Try again."));
   }
   proposal->wants_confirmation = false;
-  become(*proposal, ProposalState::paused, "Confirmed. Press the pedal.");
+  const TaskStatus waits{
+      .task = id, .phase = TaskPhase::paused, .reason = TaskReason::pedal_released, .step = proposal->leg};
+  become(*proposal, ProposalState::paused, detail_of(robot_, *proposal, waits, {}));
   return *proposal;
 }
 
