@@ -94,7 +94,7 @@ def send(connection: HTTPConnection, method: str, path: str, cookie: str, body: 
 
 def ask(app: App, method: str, path: str, cookie: str, body: dict) -> HTTPResponse:
     answer = send(HTTPConnection("127.0.0.1", app.port, timeout=DEADLINE_S), method, path, cookie, body)
-    assert answer.status == 200, answer.read()
+    assert answer.status < 300, answer.read()
     return answer
 
 
@@ -107,6 +107,8 @@ def log_in(app: App) -> str:
 def write_until_killed(app: App, token: str, life: int, seconds: float) -> list[list[int]]:
     cookie = app.cookie(token)
     ask(app, "POST", "/api/control/request", cookie, {})
+    if life > 0:
+        ask(app, "POST", "/api/cases/1/resume", cookie, {})
     writers = [Writer(app, cookie, life, number) for number in range(WRITERS)]
     for writer in writers:
         writer.start()
@@ -121,7 +123,7 @@ def write_until_killed(app: App, token: str, life: int, seconds: float) -> list[
 
 
 def audited_targets(state: Path) -> list[list[int]]:
-    """Every target that the audit tells of, in its order."""
+    """Every target in the audit, in its order."""
     with sqlite3.connect(f"file:{state / 'interlock.db'}?mode=ro", uri=True) as store:
         details = [json.loads(row[0]) for row in store.execute("SELECT detail FROM audit ORDER BY number")]
     return [detail["new"]["target_point"] for detail in details if "target_point" in detail.get("new", {})]
@@ -134,6 +136,7 @@ def test_what_was_acknowledged_outlives_a_kill_at_any_instant(short_tmp_path: Pa
         app = App(kernel, state)
         app.start()
         token = log_in(app)
+        ask(app, "POST", "/api/cases", app.cookie(token), {"label": "of the test"})
         acknowledged: list[list[int]] = []
         for life in range(KILLS):
             acknowledged += write_until_killed(app, token, life, dice.uniform(0, LONGEST_LIFE_S))
