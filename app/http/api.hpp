@@ -13,6 +13,7 @@
 #include "http/router.hpp"
 #include "http/routes.hpp"
 #include "service/context.hpp"
+#include "service/declared_positions.hpp"
 #include "service/navigation.hpp"
 #include "service/registration_watch.hpp"
 
@@ -102,6 +103,7 @@ class Api {
   WorkPool work_;
   LoadedTrajectory trajectory_;
   InForce in_force_;
+  DeclaredPositions declared_positions_;
   StopRecords stops_;
   std::uint64_t role_refusals_ = 0;
   Context context_;

@@ -244,6 +244,8 @@ class PositionRoutes {
   [[nodiscard]] Reply save() const;
   [[nodiscard]] Reply compare(const Call& call) const;
   [[nodiscard]] boost::asio::awaitable<Reply> restore(const Call& call) const;
+  [[nodiscard]] Reply declared() const;
+  [[nodiscard]] boost::asio::awaitable<Reply> undo(const Call& call) const;
   [[nodiscard]] boost::asio::awaitable<Reply> zero_all(const Call& call) const;
 
   const Context& context_;

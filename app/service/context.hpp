@@ -27,6 +27,7 @@
 
 namespace interlock {
 
+class DeclaredPositions;
 struct InForce;
 
 struct Context {
@@ -43,6 +44,7 @@ struct Context {
   WorkPool& work;
   LoadedTrajectory& trajectory;
   InForce& in_force;
+  DeclaredPositions& declared_positions;
   StopRecords& stop_records;
   Log& log;
   std::function<void(const nlohmann::json&)> publish; /**< a message to every console */

@@ -84,6 +84,9 @@ class Fields {
   /** Reports the first problem; 422 INVALID naming the field. */
   void reject(const std::string& name, const std::string& found, const std::string& expected);
 
+  /** Takes over the first problem of what is part of the object. */
+  void adopt(const Fields& part) { problem_ = problem_ ? problem_ : part.problem_; }
+
   /** `name` as a field of the whole body: "file.axes[2].axis". */
   [[nodiscard]] std::string place_of(const std::string& name) const;
 

@@ -138,6 +138,46 @@ std::optional<Point> read_point(Fields& fields, const std::string& name) {
   return point;
 }
 
+/** How well a registration fits the points by which it was found. */
+void read_fit(Fields& fields, Targeting& targeting) {
+  targeting.residual_mm = fields.number("residual_mm", 0.0, largest_residual_mm);
+  targeting.fiducials = fields.integer("fiducials", fewest_fiducials, most_fiducials);
+}
+
+/** Each name once. */
+std::vector<PlannedTarget> read_planned(Fields& fields, const std::string& name) {
+  std::vector<PlannedTarget> planned;
+  const json* list = fields.value(name);
+  if (list != nullptr && (!list->is_array() || list->size() > most_planned_targets)) {
+    fields.reject(name, "is no list of targets",
+                  "a list of at most " + std::to_string(most_planned_targets) + " targets");
+    return planned;
+  }
+  for (std::size_t i = 0; list != nullptr && i < list->size(); ++i) {
+    const std::string place = name + "[" + std::to_string(i) + "]";
+    Fields each((*list)[i], {"name", "entry_point", "target_point"}, fields.place_of(place));
+    each.require({{"name", "a name"}, {"entry_point", "3 numbers"}, {"target_point", "3 numbers"}});
+    PlannedTarget target{.name = each.line("name", longest_target_name).value_or(""),
+                         .entry_point = read_point(each, "entry_point").value_or(Point{}),
+                         .target_point = read_point(each, "target_point").value_or(Point{})};
+    if (std::ranges::any_of(planned, [&](const PlannedTarget& other) { return other.name == target.name; })) {
+      each.reject("name", "is " + target.name + ", which comes twice", "each name once");
+    }
+    fields.adopt(each);
+    planned.push_back(std::move(target));
+  }
+  return planned;
+}
+
+json planned_json(const std::vector<PlannedTarget>& planned) {
+  json list = json::array();
+  for (const PlannedTarget& each : planned) {
+    list.push_back(
+        {{"name", each.name}, {"entry_point", each.entry_point}, {"target_point", each.target_point}});
+  }
+  return list;
+}
+
 void read_offsets(Fields& fields, Targeting& targeting) {
   for (const Offset& offset : offsets) {
     if (const auto value = fields.number(offset.name, -largest_offset_mm, largest_offset_mm)) {
@@ -228,8 +268,11 @@ json to_stored(const Targeting& targeting) {
             {"registration_doubt", targeting.registration_doubt},
             {"override_reason", targeting.override_reason},
             {"ignore_registration_rotation", targeting.ignore_registration_rotation},
+            {"residual_mm", or_null(targeting.residual_mm)},
+            {"fiducials", or_null(targeting.fiducials)},
             {"entry_point", or_null(targeting.entry_point)},
             {"target_point", or_null(targeting.target_point)},
+            {"planned_targets", planned_json(targeting.planned_targets)},
             {"reported_position", or_null(targeting.reported_position)}};
   for (const Offset& offset : offsets) {
     body[offset.name] = targeting.*offset.value;
@@ -242,9 +285,10 @@ tl::expected<Targeting, Problem> stored_targeting(const json& stored) {
   Targeting targeting;
   Fields fields(values,
                 {"registration", "registration_epoch", "registration_expired", "registrations_before",
-                 "registration_doubt", "override_reason", "ignore_registration_rotation", "entry_point",
-                 "target_point", "reported_position", "treatment_to_tip_offset", "robot_to_entry_offset",
-                 "cannula_to_treatment_offset", "canula_to_treatment_offset", "treatment_to_robot_at_home"},
+                 "registration_doubt", "override_reason", "ignore_registration_rotation", "residual_mm",
+                 "fiducials", "entry_point", "target_point", "planned_targets", "reported_position",
+                 "treatment_to_tip_offset", "robot_to_entry_offset", "cannula_to_treatment_offset",
+                 "canula_to_treatment_offset", "treatment_to_robot_at_home"},
                 "targeting");
   targeting.registration = read_pose(fields, "registration");
   targeting.registration_epoch = fields.integer("registration_epoch", 0, latest_epoch).value_or(0);
@@ -253,15 +297,18 @@ tl::expected<Targeting, Problem> stored_targeting(const json& stored) {
   targeting.registration_doubt = fields.text("registration_doubt").value_or("");
   targeting.override_reason = fields.text("override_reason").value_or("");
   targeting.ignore_registration_rotation = fields.boolean("ignore_registration_rotation").value_or(false);
+  read_fit(fields, targeting);
   targeting.entry_point = read_point(fields, "entry_point");
   targeting.target_point = read_point(fields, "target_point");
+  targeting.planned_targets = read_planned(fields, "planned_targets");
   targeting.reported_position = read_pose(fields, "reported_position");
   read_offsets(fields, targeting);
   return unless_wrong(fields, targeting);
 }
 
 tl::expected<Targeting, Problem> with_registration(Targeting targeting, const json& body) {
-  Fields fields(body, {"registration", "ignore_registration_rotation", "override_reason"});
+  Fields fields(
+      body, {"registration", "ignore_registration_rotation", "residual_mm", "fiducials", "override_reason"});
   fields.require({{"registration", "16 numbers, row-major"}});
   const std::optional<RowMajor> before = targeting.registration;
   targeting.registration = read_pose(fields, "registration");
@@ -278,7 +325,18 @@ tl::expected<Targeting, Problem> with_registration(Targeting targeting, const js
   targeting.registration_expired.clear();
   targeting.override_reason = fields.line("override_reason", longest_reason).value_or("");
   targeting.ignore_registration_rotation = fields.boolean("ignore_registration_rotation").value_or(false);
+  read_fit(fields, targeting);
   return unless_wrong(fields, targeting);
+}
+
+/** More than the distance by which a motion may miss; empty where it is not, or nobody knows it. */
+std::string doubt_of_residual(const Targeting& targeting, const Robot& robot) {
+  const double most_mm = robot.targeting.tolerance_mm;
+  if (!targeting.residual_mm || *targeting.residual_mm <= most_mm) {
+    return "";
+  }
+  return "Its residual is " + json(*targeting.residual_mm).dump() + " mm, and a motion may miss by " +
+         json(most_mm).dump() + " mm at most.";
 }
 
 tl::expected<Targeting, Problem> plausible(Targeting targeting, const Robot& robot) {
@@ -288,7 +346,8 @@ tl::expected<Targeting, Problem> plausible(Targeting targeting, const Robot& rob
       robot.kinematics && registration
           ? registration_doubt(robot.targeting.registration, registration->scanner_from_zframe())
           : std::nullopt;
-  targeting.registration_doubt = doubt.value_or("");
+  const std::string residual = doubt_of_residual(targeting, robot);
+  targeting.registration_doubt = doubt.value_or("") + (doubt && !residual.empty() ? " " : "") + residual;
   if (targeting.registration_doubt.empty()) {
     targeting.override_reason.clear();
   } else if (targeting.override_reason.empty()) {
@@ -324,6 +383,13 @@ tl::expected<Targeting, Problem> with_target(Targeting targeting, const json& bo
     targeting.target_point = target;
   }
   read_offsets(fields, targeting);
+  return unless_wrong(fields, targeting);
+}
+
+tl::expected<Targeting, Problem> with_planned_targets(Targeting targeting, const json& body) {
+  Fields fields(body, {"planned_targets"});
+  fields.require({{"planned_targets", "a list of targets"}});
+  targeting.planned_targets = read_planned(fields, "planned_targets");
   return unless_wrong(fields, targeting);
 }
 

@@ -30,11 +30,23 @@ constexpr double largest_offset_mm = 1000.0;
 /** How far the elements of R^T R may be from those of the identity, and its determinant from 1. */
 constexpr double entered_rigidity = 1e-3;
 
+/** Largest residual of a registration. */
+constexpr double largest_residual_mm = 1000.0;
+/** A rigid registration needs three points. */
+constexpr std::int64_t fewest_fiducials = 3;
+/** More points than this are no fiducials. */
+constexpr std::int64_t most_fiducials = 1000;
+
 /** Characters of a reason. */
 constexpr std::size_t longest_reason = 200;
 
 /** Expired registrations that are remembered, the newest. */
 constexpr std::size_t most_registrations_before = 20;
+
+/** Planned targets of a case. */
+constexpr std::size_t most_planned_targets = 100;
+/** Characters of the name of one. */
+constexpr std::size_t longest_target_name = 40;
 
 /** Largest number of an epoch: JSON carries it exactly. */
 constexpr std::int64_t latest_epoch = (std::int64_t{1} << 53) - 1;
@@ -49,6 +61,15 @@ struct InForce {
   std::int64_t open_case = 0;
 };
 
+/** A place that somebody plans to go to. Nothing goes there before it is set as entry and target. */
+struct PlannedTarget {
+  std::string name;
+  Point entry_point{};
+  Point target_point{};
+
+  bool operator==(const PlannedTarget&) const = default;
+};
+
 /** What an aim is made from. All of it belongs to a case. */
 struct Targeting {
   std::int64_t case_number = 0; /**< of the case; 0: none is in hand. Kept with the case */
@@ -57,8 +78,10 @@ struct Targeting {
   std::string case_problem = {};
   std::optional<RowMajor> registration; /**< the robot in the scanner; empty: nobody has ever set it */
   bool ignore_registration_rotation = false;
-  std::int64_t registration_epoch = 0;        /**< in which it was set */
-  std::string registration_expired;           /**< why, where that is kept; empty: it has not */
+  std::optional<double> residual_mm;     /**< root mean square over the fiducials, if its sender has it */
+  std::optional<std::int64_t> fiducials; /**< by how many it was found, if its sender says so */
+  std::int64_t registration_epoch = 0;   /**< in which it was set */
+  std::string registration_expired;      /**< why, where that is kept; empty: it has not */
   std::vector<RowMajor> registrations_before; /**< that have expired and were replaced, the newest last */
   std::string registration_doubt;             /**< why it can hardly be right; empty: it can */
   std::string override_reason;                /**< why somebody set it all the same */
@@ -67,6 +90,7 @@ struct Targeting {
   std::int64_t present_epoch = 0; /**< in which it was judged; not kept */
   std::optional<Point> entry_point;
   std::optional<Point> target_point;
+  std::vector<PlannedTarget> planned_targets; /**< in the order of whoever planned them */
   double treatment_to_tip_mm = 0.0;           /**< A */
   double robot_to_entry_mm = 0.0;             /**< B */
   double cannula_to_treatment_mm = 0.0;       /**< C */
@@ -104,6 +128,8 @@ tl::expected<Targeting, Problem> plausible(Targeting targeting, const Robot& rob
 tl::expected<Targeting, Problem> with_reported_pose(Targeting targeting, const nlohmann::json& body);
 /** The targeting with another target. */
 tl::expected<Targeting, Problem> with_target(Targeting targeting, const nlohmann::json& body);
+/** The targeting with other planned targets. */
+tl::expected<Targeting, Problem> with_planned_targets(Targeting targeting, const nlohmann::json& body);
 /** The targeting without entry and target. */
 tl::expected<Targeting, Problem> without_target(Targeting targeting, const nlohmann::json& body);
 

@@ -46,9 +46,10 @@ Problem overtaken(const std::string& problem) {
           .next_step = "Look whether it still holds, and set it again."};
 }
 
-/** A pose that an imager reports moves nothing. */
+/** A pose that an imager reports moves nothing, nor does a plan. */
 bool leads_elsewhere(Targeting before, const Targeting& after) {
   before.reported_position = after.reported_position;
+  before.planned_targets = after.planned_targets;
   return before != after;
 }
 

@@ -1,4 +1,5 @@
 #include "http/routes.hpp"
+#include "service/declared_positions.hpp"
 #include "service/fields.hpp"
 #include "service/reply.hpp"
 #include "service/set_home.hpp"
@@ -112,7 +113,13 @@ Answering MotorRoutes::act(const Call& call) const {
     }
     what = std::move(*declared);
   }
-  co_return co_await context_.ask_kernel(call.caller, *request, (*axis)->slot, std::move(what));
+  const ilk_axis_t before = context_.view().snapshot.state.axis[(*axis)->slot];
+  Reply reply = co_await context_.ask_kernel(call.caller, *request, (*axis)->slot, std::move(what));
+  if (*request == ILK_REQUEST_SET_HOME && reply) {
+    context_.declared_positions.begin(call.caller.user, context_.clock(), context_.steady_clock());
+    context_.declared_positions.add({.axis = *axis, .kind = *request}, before);
+  }
+  co_return reply;
 }
 
 }  // namespace interlock::web

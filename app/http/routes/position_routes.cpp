@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "http/routes.hpp"
-#include "service/axis_requests.hpp"
+#include "service/declared_positions.hpp"
 #include "service/fields.hpp"
 #include "service/positions_file.hpp"
 #include "service/reply.hpp"
@@ -51,6 +51,15 @@ std::vector<AxisRequest> requests_of(const Restore& restore, const Robot& robot)
   return requests;
 }
 
+Problem nothing_to_undo() {
+  const auto seconds = std::to_string(DeclaredPositions::undoable_for.count());
+  return {.status = Status::conflict,
+          .code = "NOTHING_TO_UNDO",
+          .detail = "No position was declared in the last " + seconds + " s.",
+          .expected = "a Set Home, Zero all or Load of the last " + seconds + " s",
+          .next_step = "Home the axes whose position is wrong."};
+}
+
 json targets_of(const std::vector<AxisRequest>& requests) {
   json targets = json::object();
   for (const AxisRequest& request : requests) {
@@ -65,6 +74,9 @@ PositionRoutes::PositionRoutes(const Context& context, Router& router) : context
   router.add(verb::get, "/api/positions", viewers, [this](const Call&) -> Answering { co_return save(); });
   router.add(verb::post, "/api/positions/compare", viewers,
              [this](const Call& call) -> Answering { co_return compare(call); });
+  router.add(verb::get, "/api/positions/undo", viewers,
+             [this](const Call&) -> Answering { co_return declared(); });
+  router.add(verb::post, "/api/positions/undo", holder, [this](const Call& call) { return undo(call); });
   router.add(verb::put, "/api/motors/restore", holder, [this](const Call& call) { return restore(call); });
   router.add(verb::post, "/api/motors/zero-all", holder, [this](const Call& call) { return zero_all(call); });
 }
@@ -113,7 +125,32 @@ Answering PositionRoutes::restore(const Call& call) const {
   if (!announced) {
     co_return fail(announced.error());
   }
-  json rows = co_await ask_each(context_, call.caller, requests);
+  json rows = co_await declare_each(context_, call.caller, requests);
+  co_return Success{.body = std::move(rows)};
+}
+
+Reply PositionRoutes::declared() const {
+  return context_.need_kernel().map([this] {
+    return Success{.body = context_.declared_positions.to_json(context_.view(), context_.config,
+                                                               context_.steady_clock())};
+  });
+}
+
+Answering PositionRoutes::undo(const Call& call) const {
+  const auto kernel = context_.need_kernel();
+  if (!kernel) {
+    co_return fail(kernel.error());
+  }
+  if (!context_.declared_positions.is_open(context_.steady_clock())) {
+    co_return fail(nothing_to_undo());
+  }
+  json detail{{"request", "RESTORE"}, {"what", "undo"}, {"declared", declared()->body}};
+  const auto announced =
+      co_await context_.record_then_recheck(call.caller, AuditKind::request, std::move(detail));
+  if (!announced) {
+    co_return fail(announced.error());
+  }
+  json rows = co_await undo_each(context_, call.caller);
   co_return Success{.body = std::move(rows)};
 }
 
@@ -136,7 +173,7 @@ Answering PositionRoutes::zero_all(const Call& call) const {
   if (!announced) {
     co_return fail(announced.error());
   }
-  json rows = co_await ask_each(context_, call.caller, std::move(requests));
+  json rows = co_await declare_each(context_, call.caller, std::move(requests));
   co_return Success{.body = std::move(rows)};
 }
 

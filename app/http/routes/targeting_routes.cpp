@@ -46,6 +46,7 @@ TargetingRoutes::TargetingRoutes(const Context& context, Router& router) : conte
              [this](const Call& call) { return expire(call); });
   add_change(router, "/api/targeting/current", with_reported_pose);
   add_change(router, "/api/targeting/target", with_target);
+  add_change(router, "/api/targeting/planned", with_planned_targets);
 }
 
 void TargetingRoutes::add_change(Router& router, const char* path, TargetingChange make) {

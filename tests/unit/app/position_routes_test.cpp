@@ -199,6 +199,131 @@ TEST_F(PositionRoutesTest, WhoLosesControlMeanwhileSetsNoFurtherAxis) {
   expect_nothing_asked();
 }
 
+/** Declares the axes without a switch at home; the kernel accepts it, and shows them there. */
+class DeclaredPositionsTest : public PositionRoutesTest {
+ protected:
+  DeclaredPositionsTest() : seen_(test::ready_view()) {
+    for (const Axis* axis : without_switch()) {
+      ilk_axis_t& state = seen_.snapshot.state.axis[axis->slot];
+      state.position_counts = 700;
+      state.raw = 4'000'000'000u;
+      state.homed = ILK_HOMED_BY_SWITCH;
+    }
+    show(seen_);
+    const json rows = answered(ILK_VERDICT_ACCEPTED, [this] { return post("/api/motors/zero-all"); });
+    EXPECT_EQ(row_of(rows, *without_switch()[0])["verdict"], "ACCEPTED");
+    for (const Axis* axis : without_switch()) {
+      seen_.snapshot.state.axis[axis->slot].position_counts = 0;
+      seen_.snapshot.state.axis[axis->slot].homed = ILK_HOMED_BY_HAND;
+    }
+    show(seen_);
+  }
+
+  /** The rows that somebody is given while the kernel answers each request by that verdict. */
+  template <typename Asking>
+  json answered(std::uint32_t verdict, Asking asking) {
+    asked_.clear();
+    auto answering = std::async(std::launch::async, asking);
+    while (answering.wait_for(std::chrono::milliseconds(1)) != std::future_status::ready) {
+      Command command;
+      while (channel_->commands.pop(command)) {
+        asked_.push_back(std::get<KernelCall>(command));
+        answer(KernelResponse{asked_.back().call_id, verdict, 5});
+      }
+    }
+    return json::parse(answering.get().body);
+  }
+
+  json undo(std::uint32_t verdict = ILK_VERDICT_ACCEPTED) {
+    return answered(verdict, [this] { return post("/api/positions/undo"); });
+  }
+
+  /** The hand or the noise of the encoder moves the axis. */
+  void move(const Axis& axis, std::int32_t counts) {
+    ilk_axis_t& state = seen_.snapshot.state.axis[axis.slot];
+    state.position_counts += counts;
+    state.raw += static_cast<std::uint32_t>(axis.direction_correction != 0 ? -counts : counts);
+    show(seen_);
+  }
+
+  ControlView seen_;
+  std::vector<KernelCall> asked_;
+};
+
+TEST_F(DeclaredPositionsTest, AreShownWithWhatTheyWereBefore) {
+  const json declared = json::parse(get("/api/positions/undo").body);
+  EXPECT_EQ(declared["by"], "edna");
+  EXPECT_EQ(declared["left_s"], 60);
+  ASSERT_EQ(declared["axes"].size(), without_switch().size());
+  const json axis = declared["axes"][0];
+  EXPECT_EQ(axis["axis"], without_switch()[0]->name);
+  EXPECT_EQ(axis["before_counts"], 700);
+  EXPECT_EQ(axis["declared_counts"], 0);
+  EXPECT_EQ(axis["homed_before"], "BY_SWITCH");
+  EXPECT_EQ(axis["undoable"], true);
+}
+
+TEST_F(DeclaredPositionsTest, AreTakenBackByTheirPositionsAlone) {
+  const json rows = undo();
+  ASSERT_EQ(asked_.size(), without_switch().size());
+  for (std::size_t i = 0; i < asked_.size(); ++i) {
+    EXPECT_EQ(asked_[i].kind, static_cast<std::uint32_t>(ILK_REQUEST_RESTORE));
+    EXPECT_EQ(asked_[i].slot, without_switch()[i]->slot);
+    EXPECT_EQ(asked_[i].target_counts, 700);
+    EXPECT_EQ(rows[i]["verdict"], "ACCEPTED");
+  }
+  EXPECT_EQ(json::parse(get("/api/positions/undo").body), json());
+  EXPECT_EQ(audit("request").at(1)["what"], "undo");
+}
+
+TEST_F(DeclaredPositionsTest, AreNotTakenBackOfAnAxisThatMoved) {
+  const Axis& moved = *without_switch()[0];
+  const auto noise = static_cast<std::int32_t>(config_.axis[moved.slot].noise_counts);
+  move(moved, noise);
+  EXPECT_EQ(json::parse(get("/api/positions/undo").body)["axes"][0]["undoable"], true);
+  move(moved, 1);
+  EXPECT_EQ(json::parse(get("/api/positions/undo").body)["axes"][0]["undoable"], false);
+  const json rows = undo();
+  EXPECT_THAT(row_of(rows, moved)["detail"].get<std::string>(), HasSubstr("it moved"));
+  ASSERT_EQ(asked_.size(), without_switch().size() - 1);
+  EXPECT_NE(asked_[0].slot, moved.slot);
+}
+
+TEST_F(DeclaredPositionsTest, AreNotTakenBackWhereAnotherOneFollowed) {
+  for (const Axis* axis : without_switch()) {
+    seen_.snapshot.state.axis[axis->slot].homed = ILK_HOMED_BY_SWITCH;
+  }
+  show(seen_);
+  undo();
+  EXPECT_TRUE(asked_.empty());
+}
+
+TEST_F(DeclaredPositionsTest, MayBeTakenBackAgainWhereTheKernelRefusedIt) {
+  EXPECT_EQ(undo(ILK_VERDICT_BUSY)[0]["verdict"], "BUSY");
+  EXPECT_EQ(undo()[0]["verdict"], "ACCEPTED");
+}
+
+TEST_F(DeclaredPositionsTest, AreTakenBackForAMinute) {
+  pass(std::chrono::seconds(59));
+  EXPECT_EQ(json::parse(get("/api/positions/undo").body)["left_s"], 1);
+  pass(std::chrono::seconds(1));
+  EXPECT_EQ(json::parse(get("/api/positions/undo").body), json());
+  const Answered refused = post("/api/positions/undo");
+  EXPECT_EQ(refused.status, 409u);
+  EXPECT_EQ(refused.problem()["code"], "NOTHING_TO_UNDO");
+  expect_nothing_asked();
+}
+
+TEST_F(PositionRoutesTest, ASetHomeOfOneAxisCanBeTakenBackAndARefusedOneCannot) {
+  for (const std::uint32_t verdict : {ILK_VERDICT_BUSY, ILK_VERDICT_ACCEPTED}) {
+    const std::string path = "/api/motors/" + without_switch()[0]->name + "/set-home";
+    auto declaring = std::async(std::launch::async, [&] { return post(path); });
+    answer(KernelResponse{std::get<KernelCall>(next_command()).call_id, verdict, 5});
+    declaring.get();
+    EXPECT_EQ(json::parse(get("/api/positions/undo").body).is_null(), verdict != ILK_VERDICT_ACCEPTED);
+  }
+}
+
 TEST_F(PositionRoutesTest, WithoutAKernelNothingIsSavedComparedOrSet) {
   const json file = saved();
   show(ControlView{});
@@ -206,6 +331,8 @@ TEST_F(PositionRoutesTest, WithoutAKernelNothingIsSavedComparedOrSet) {
   EXPECT_EQ(post("/api/positions/compare", file.dump()).problem()["code"], "NO_KERNEL");
   EXPECT_EQ(put("/api/motors/restore", restore(file, {neuro().axes[0].name}).dump()).status, 503u);
   EXPECT_EQ(post("/api/motors/zero-all").status, 503u);
+  EXPECT_EQ(get("/api/positions/undo").status, 503u);
+  EXPECT_EQ(post("/api/positions/undo").status, 503u);
   expect_nothing_asked();
 }
 

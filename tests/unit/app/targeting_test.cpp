@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "project_robots.hpp"
+
 namespace interlock::web {
 namespace {
 
@@ -166,6 +168,79 @@ TEST(Targeting, TheTurnOfARegistrationIsIgnoredOnlyWhereItSaysSo) {
   ASSERT_TRUE(ignoring);
   EXPECT_TRUE(ignoring->ignore_registration_rotation);
   EXPECT_FALSE(with_registration(*ignoring, {{"registration", turned(0.2)}})->ignore_registration_rotation);
+}
+
+TEST(Targeting, HowWellARegistrationFitsIsKeptWithItAndGoesWithIt) {
+  const json fitted{{"registration", turned(0.1)}, {"residual_mm", 0.4}, {"fiducials", 7}};
+  const Targeting set = stored_targeting(to_stored(*with_registration({}, fitted))).value();
+  EXPECT_EQ(to_json(set)["residual_mm"], 0.4);
+  EXPECT_EQ(to_json(set)["fiducials"], 7);
+  const json replaced = to_json(*with_registration(set, {{"registration", turned(0.2)}}));
+  EXPECT_TRUE(replaced["residual_mm"].is_null());
+  EXPECT_TRUE(replaced["fiducials"].is_null());
+}
+
+json planned(const json& list) { return {{"planned_targets", list}}; }
+
+const json first_core{{"name", "core 1"}, {"entry_point", {1, 2, 3}}, {"target_point", {4, 5, 6.5}}};
+
+TEST(Targeting, PlannedTargetsAreKeptInTheirOrderAndReplaceNoTarget) {
+  json second = first_core;
+  second["name"] = "core 2";
+  const json list{second, first_core};
+  const Targeting set = stored_targeting(to_stored(*with_planned_targets({}, planned(list)))).value();
+  EXPECT_EQ(to_json(set)["planned_targets"], list);
+  EXPECT_TRUE(to_json(set)["target_point"].is_null());
+  EXPECT_EQ(to_json(*with_planned_targets(set, planned(json::array())))["planned_targets"], json::array());
+}
+
+TEST(Targeting, APlannedTargetThatIsWrongIsNamed) {
+  const auto with = [](const char* name, const json& value) {
+    json target = first_core;
+    target[name] = value;
+    return target;
+  };
+  const json unnamed{{"entry_point", {1, 2, 3}}, {"target_point", {4, 5, 6}}};
+  const std::pair<json, const char*> wrong[] = {
+      {"all", "planned_targets"},
+      {json(101, first_core), "planned_targets"},
+      {{first_core, first_core}, "planned_targets[1].name"},
+      {{first_core, 7}, "planned_targets[1]"},
+      {json::array({unnamed}), "planned_targets[0].name"},
+      {json::array({with("name", "\u200b")}), "planned_targets[0].name"},
+      {json::array({with("name", std::string(41, 'n'))}), "planned_targets[0].name"},
+      {json::array({with("target_point", {1, 2})}), "planned_targets[0].target_point"},
+      {json::array({with("entry_point", {1, 2, 1e5})}), "planned_targets[0].entry_point[2]"},
+      {json::array({with("depth", 3)}), "planned_targets[0].depth"},
+  };
+  for (const auto& [list, field] : wrong) {
+    EXPECT_EQ(with_planned_targets({}, planned(list)).error().field, field) << list;
+  }
+}
+
+TEST(Targeting, AFitThatCannotBeIsRefused) {
+  const std::pair<const char*, json> wrong[] = {
+      {"residual_mm", -0.1}, {"residual_mm", 1000.1}, {"residual_mm", "0.4"}, {"residual_mm", json()},
+      {"fiducials", 2},      {"fiducials", 1001},     {"fiducials", 3.5},     {"fiducials", true}};
+  for (const auto& [name, value] : wrong) {
+    const json body{{"registration", turned(0.1)}, {name, value}};
+    EXPECT_EQ(with_registration({}, body).error().field, name) << value;
+  }
+}
+
+TEST(Targeting, AResidualBeyondWhatAMotionMayMissIsDoubted) {
+  const Robot& robot = test::neuro();
+  for (const auto& [residual_mm, is_doubted] : {std::pair(1.0, false), std::pair(1.01, true)}) {
+    Targeting targeting;
+    targeting.registration = turned(0.1);
+    targeting.override_reason = "tried";
+    targeting.residual_mm = residual_mm;
+    const std::string doubt = plausible(targeting, robot)->registration_doubt;
+    EXPECT_EQ(
+        doubt.find("Its residual is 1.01 mm, and a motion may miss by 1.0 mm at most.") != std::string::npos,
+        is_doubted)
+        << doubt;
+  }
 }
 
 TEST(Targeting, AReasonThatNobodyCanReadIsNone) {

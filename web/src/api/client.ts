@@ -32,6 +32,7 @@ export type ModeAnswer = Schemas["ModeAnswer"];
 export type AxisVerdict = Schemas["AxisVerdicts"][number];
 export type PositionsFile = Schemas["PositionsFile"];
 export type PositionsComparison = Schemas["PositionsComparison"];
+export type DeclaredPositions = Schemas["DeclaredPositions"];
 export type Connection = Schemas["Connection"];
 export type NavigationConnection = Schemas["NavigationConnection"];
 export type Imager = Schemas["Imager"];
@@ -226,6 +227,9 @@ export const api = {
     act(() => http.POST("/api/positions/compare", { body: file as PositionsFile })),
   restore: (file: PositionsFile, axes: string[]) =>
     act(() => slowHttp.PUT("/api/motors/restore", { body: { file, axes } })),
+  /** What Set Home, Zero all or Load declared last, while it can be undone. */
+  declaredPositions: () => read(() => http.GET("/api/positions/undo")),
+  undoDeclaredPositions: () => act(() => slowHttp.POST("/api/positions/undo")),
 
   biopsy: () => read(() => http.GET("/api/biopsy")),
   zeroForces: () => act(() => http.POST("/api/biopsy/zero")),

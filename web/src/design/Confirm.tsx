@@ -5,6 +5,8 @@ interface ConfirmProps {
   readonly title: string;
   readonly action: string;
   readonly off?: boolean;
+  /** Another answer, before the action. */
+  readonly other?: ReactNode;
   readonly onConfirm: () => Promise<void> | void;
   readonly onCancel: () => void;
   readonly children: ReactNode;
@@ -14,7 +16,7 @@ interface ConfirmProps {
  * A question in the place where it was raised. Not a modal dialog: that would put STOP out of reach of the pointer.
  * STOP withdraws the question.
  */
-export function Confirm({ title, action, off, onConfirm, onCancel, children }: ConfirmProps) {
+export function Confirm({ title, action, off, other, onConfirm, onCancel, children }: ConfirmProps) {
   const cancel = useRef<HTMLButtonElement>(null);
   const stops = useConsole((state) => state.stops);
   const asked = useRef(stops);
@@ -32,6 +34,7 @@ export function Confirm({ title, action, off, onConfirm, onCancel, children }: C
         <button ref={cancel} type="button" className="button" onClick={onCancel}>
           Cancel
         </button>
+        {other}
         <button
           type="button"
           className="button primary"

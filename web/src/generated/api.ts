@@ -401,6 +401,28 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/positions/undo": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The positions that were declared last (Set Home, Zero all, Load), while they can be undone; else null. */
+        get: operations["getDeclaredPositions"];
+        put?: never;
+        /**
+         * Gives each axis the position back that it had before the last Set Home, Zero all or Load, by RESTORE. An axis that
+         *     moved since then, or was given another position, is left alone, and its row says so. The axes are not homed afterwards, and a registration that
+         *     expired stays expired: no program brings back what somebody declared to be wrong.
+         */
+        post: operations["undoDeclaredPositions"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/positions/compare": {
         parameters: {
             query?: never;
@@ -795,6 +817,23 @@ export interface paths {
         get?: never;
         /** Sets entry, target and probe offsets; fields left out stay. */
         put: operations["setTarget"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/targeting/planned": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /** Replaces the list of planned targets of the case. Nothing goes to one of them before it is set by `PUT /api/targeting/target`. */
+        put: operations["setPlannedTargets"];
         post?: never;
         delete?: never;
         options?: never;
@@ -1939,6 +1978,30 @@ export interface components {
             /** @description What the verdict means, and what to do, unless it is ACCEPTED. */
             detail?: string;
         }[];
+        DeclaredPositions: {
+            /** @description Name of the user. */
+            by: string;
+            /** Format: date-time */
+            time: string;
+            /** @description So long it can be undone, in s. */
+            left_s: number;
+            axes: {
+                slot: number;
+                axis: string;
+                /** @enum {string} */
+                request: "SET_HOME" | "RESTORE";
+                /** @description Its position before. */
+                before_counts: number;
+                /** @description The position that it was given. */
+                declared_counts: number;
+                /** @description Catalog family homed. */
+                homed_before: string;
+                /** @description A registration rests on its position, and expired by this. */
+                carries_registration: boolean;
+                /** @description It has not moved since then. */
+                undoable: boolean;
+            }[];
+        };
         PositionsFile: {
             /** @constant */
             format: "interlock-positions";
@@ -2054,8 +2117,13 @@ export interface components {
             /** @description Why somebody did so. */
             override_reason: string | null;
             ignore_registration_rotation: boolean;
+            /** @description Of the registration, root mean square over its fiducials; null where its sender has none. */
+            residual_mm: number | null;
+            /** @description By how many it was found. */
+            fiducials: number | null;
             entry_point: number[] | null;
             target_point: number[] | null;
+            planned_targets: components["schemas"]["PlannedTarget"][];
             /** @description A */
             treatment_to_tip_offset: number;
             /** @description B */
@@ -2167,7 +2235,11 @@ export interface components {
         RegistrationChange: {
             registration: components["schemas"]["Pose"];
             ignore_registration_rotation?: boolean;
-            /** @description Sets it although it can hardly be right (IMPLAUSIBLE): where the robot file does not expect it, or the identity. Audited, and shown for as long as it is in force. */
+            /** @description Root mean square distance of the fiducials after the registration, if it is known. More than `tolerance_mm` of the robot file is IMPLAUSIBLE. */
+            residual_mm?: number;
+            /** @description By how many it was found, if that is known. */
+            fiducials?: number;
+            /** @description Sets it although it can hardly be right (IMPLAUSIBLE): where the robot file does not expect it, the identity, or of a residual that is too large. Audited, and shown for as long as it is in force. */
             override_reason?: string;
         };
         RegistrationExpiry: {
@@ -2176,6 +2248,15 @@ export interface components {
         };
         ReportedPoseChange: {
             current_position: components["schemas"]["Pose"];
+        };
+        PlannedTarget: {
+            /** @description Each once; no patient data, as the audit keeps it. */
+            name: string;
+            entry_point: components["schemas"]["Point"];
+            target_point: components["schemas"]["Point"];
+        };
+        PlannedTargetsChange: {
+            planned_targets: components["schemas"]["PlannedTarget"][];
         };
         TargetChange: {
             entry_point?: components["schemas"]["Point"];
@@ -3220,6 +3301,60 @@ export interface operations {
             503: components["responses"]["NoKernel"];
         };
     };
+    getDeclaredPositions: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description What was declared. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["DeclaredPositions"] | null;
+                };
+            };
+            401: components["responses"]["Login"];
+            503: components["responses"]["NoKernel"];
+        };
+    };
+    undoDeclaredPositions: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Verdicts, also when some are refusals; what was refused may be asked again within the time. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AxisVerdicts"];
+                };
+            };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            /** @description NOTHING_TO_UNDO: no position was declared in the last 60 s; or CONTROL. */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            503: components["responses"]["NoKernel"];
+        };
+    };
     comparePositions: {
         parameters: {
             query?: never;
@@ -3943,6 +4078,36 @@ export interface operations {
         requestBody: {
             content: {
                 "application/json": components["schemas"]["TargetChange"];
+            };
+        };
+        responses: {
+            /** @description Targeting. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Targeting"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            409: components["responses"]["Refused"];
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    setPlannedTargets: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PlannedTargetsChange"];
             };
         };
         responses: {

@@ -4,6 +4,7 @@ import {
   api,
   type JogDirection,
   type MotionControl,
+  type Motor,
   type Outcome,
   type ProposalDraft,
 } from "../api/client";
@@ -49,9 +50,17 @@ export async function act(slot: number, action: AxisAction): Promise<void> {
   tell(slot, await api.act(slot, action));
 }
 
-/** Declares that an axis stands at home whatever its switch would tell; a refusal is shown at the axis. */
-export async function setHomeAgainstSwitch(slot: number): Promise<void> {
-  tell(slot, await api.setHomeAgainstSwitch(slot));
+/** Declares that an axis stands at home, whatever its switch says if it has one; a refusal is shown at the axis. */
+export async function setHome({ slot, has_switch }: Motor): Promise<void> {
+  const ask = () => (has_switch ? api.setHomeAgainstSwitch(slot) : api.act(slot, "set-home"));
+  tell(slot, await declare(ask));
+}
+
+/** Sends what gives axes another position without a motion. Whatever shows what can be undone asks anew. */
+export async function declare<Value>(ask: () => Promise<Outcome<Value>>): Promise<Outcome<Value>> {
+  const outcome = await ask();
+  useConsole.setState(({ declarations }) => ({ declarations: declarations + 1 }));
+  return outcome;
 }
 
 /** Proposes a move or homing; a refusal is shown where it belongs, the proposal itself comes by the stream. */

@@ -67,6 +67,8 @@ export interface ConsoleState {
   readonly stop: StopReport;
   /** Grows with every STOP; previews that began before it are dropped. */
   readonly stops: number;
+  /** Grows with every Set Home, Zero all, Load and Undo that this page sent: what can be undone is another thing then. */
+  readonly declarations: number;
   /** Whether the user arranges the panels of the robot's page. */
   readonly arranging: boolean;
   /** Whether the walk-through of the first move is shown. */
@@ -100,6 +102,7 @@ export const initialState: ConsoleState = {
   benchRefusal: null,
   stop: { phase: "idle" },
   stops: 0,
+  declarations: 0,
   arranging: false,
   firstSteps: false,
 };

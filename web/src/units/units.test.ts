@@ -1,5 +1,13 @@
 import { describe, expect, it } from "vitest";
-import { decimals, formatCounts, formatNumber, parseEntry, type Scale } from "./units";
+import {
+  decimals,
+  formatCounts,
+  formatDifference,
+  formatNumber,
+  formatShift,
+  parseEntry,
+  type Scale,
+} from "./units";
 
 const yaw: Scale = { unit: "rad", counts_per_unit: 1800 / Math.PI };
 const insertion: Scale = { unit: "mm", counts_per_unit: 40 };
@@ -18,6 +26,19 @@ describe("formatting", () => {
 
   it("never shows a negative zero", () => {
     expect(formatNumber({ unit: "mm", counts_per_unit: 1e6 }, -1)).toBe("0.000");
+  });
+});
+
+describe("a shift", () => {
+  it("has a sign unless it rounds to zero, whichever way the counts go", () => {
+    const turned: Scale = { unit: "mm", counts_per_unit: -10 };
+    expect(formatDifference(turned, -50)).toBe("+5.0\u00a0mm");
+    expect(formatDifference(turned, 50)).toBe("-5.0\u00a0mm");
+    expect(formatDifference({ unit: "mm", counts_per_unit: 1e6 }, 1)).toBe("0.000\u00a0mm");
+  });
+
+  it("says from where, to where and by how much", () => {
+    expect(formatShift(yaw, 125, 0)).toBe("12.5° → 0.0° (-12.5°)");
   });
 });
 

@@ -39,6 +39,17 @@ export function formatCounts(scale: Scale, counts: number): string {
   return `${formatNumber(scale, counts)}${separator}${unitName(scale)}`;
 }
 
+/** With its sign, e.g. `+31.2 mm`. */
+export function formatDifference(scale: Scale, counts: number): string {
+  const shown = formatCounts(scale, counts);
+  return shown.startsWith("-") || Number(formatNumber(scale, counts)) === 0 ? shown : `+${shown}`;
+}
+
+/** From one position to another, and by how much, e.g. `12.35° → 0.00° (-12.35°)`. */
+export function formatShift(scale: Scale, from: number, to: number): string {
+  return `${formatCounts(scale, from)} → ${formatCounts(scale, to)} (${formatDifference(scale, to - from)})`;
+}
+
 export type ParsedEntry = { ok: true; value: number } | { ok: false; expected: string };
 
 /** What an operator typed, as a value in the API's unit (mm or rad). Comma and point both work. */

@@ -2,7 +2,7 @@ import type { Motor } from "../../api/client";
 import { CommandButton } from "../../design/CommandButton";
 import { KernelButton } from "../../kernel/KernelButton";
 import { useRefusal } from "../../kernel/useRefusal";
-import { act, propose } from "../../state/commands";
+import { act, propose, setHome } from "../../state/commands";
 import type { HomingPart } from "../../state/proposals";
 import type { AxisFrame } from "../../stream/decode";
 
@@ -10,11 +10,11 @@ interface AxisActionsProps {
   readonly motor: Motor;
   readonly axis: AxisFrame;
   readonly homing: HomingPart | null;
-  /** Set Home is wanted of an axis whose switch tells where home is. */
-  readonly onOverride: () => void;
+  /** Set Home would shift an axis that is homed, or override its switch. */
+  readonly onAskHome: () => void;
 }
 
-export function AxisActions({ motor, axis, homing, onOverride }: AxisActionsProps) {
+export function AxisActions({ motor, axis, homing, onAskHome }: AxisActionsProps) {
   const { slot, title, has_switch } = motor;
   const homeRefusal = useRefusal((kernel) => kernel.foresee(slot, { kind: "HOME" }).verdict);
   const disabled = axis.state === "DISABLED";
@@ -54,7 +54,7 @@ export function AxisActions({ motor, axis, homing, onOverride }: AxisActionsProp
         slot={slot}
         need="holder"
         label={`Set Home ${title}`}
-        onCommand={() => (has_switch ? onOverride() : act(slot, "set-home"))}
+        onCommand={() => (has_switch || axis.homed ? onAskHome() : setHome(motor))}
       >
         Set Home
       </KernelButton>

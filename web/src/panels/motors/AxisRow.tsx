@@ -16,7 +16,7 @@ import { ErrorLine } from "./ErrorLine";
 import { explainDrive, explainFault, type FaultStory } from "./explain";
 import { GateList } from "./GateList";
 import { JogPad } from "./JogPad";
-import { OverrideSwitch } from "./OverrideSwitch";
+import { SetHomeQuestion } from "./SetHomeQuestion";
 import { SwitchLamp } from "./SwitchLamp";
 import { TargetEntry } from "./TargetEntry";
 import { Track } from "./Track";
@@ -31,10 +31,10 @@ interface AxisRowProps {
 export function AxisRow({ motor, homing }: AxisRowProps) {
   const axis = useConsole((state) => state.frame?.axes[motor.slot]);
   const notice = useConsole((state) => state.notices[motor.slot]);
-  const [overriding, setOverriding] = useState(false);
+  const [asksHome, setAsksHome] = useState(false);
   const [preview, setPreview] = usePreview();
   const [typed, setTyped] = useState<number | null>(null);
-  const leaveSwitch = useCallback(() => setOverriding(false), []);
+  const leaveHome = useCallback(() => setAsksHome(false), []);
   if (axis === undefined) return null;
   const fault = explainFault(axis);
   const wished = preview?.counts ?? typed;
@@ -64,9 +64,9 @@ export function AxisRow({ motor, homing }: AxisRowProps) {
         </small>
       </output>
       <TargetEntry motor={motor} onTyped={setTyped} />
-      <AxisActions motor={motor} axis={axis} homing={homing} onOverride={() => setOverriding(true)} />
+      <AxisActions motor={motor} axis={axis} homing={homing} onAskHome={() => setAsksHome(true)} />
       <div className="axis-words">
-        {overriding && <OverrideSwitch motor={motor} onClose={leaveSwitch} />}
+        {asksHome && <SetHomeQuestion motor={motor} onClose={leaveHome} />}
         {wished !== null && (
           <WishForetelling wishes={[{ motor, wish: { kind: "MOVE", targetCounts: wished } }]} />
         )}

@@ -1,14 +1,14 @@
-import { useState } from "react";
-import { type AxisVerdict, api, type Motor } from "../../api/client";
+import { useCallback, useState } from "react";
+import { api, type Motor } from "../../api/client";
 import { CommandButton } from "../../design/CommandButton";
 import { Confirm } from "../../design/Confirm";
-import { VerdictList } from "../../design/VerdictList";
+import { useVerdicts } from "../../design/VerdictList";
 import { useRefusal } from "../../kernel/useRefusal";
 import "../../kernel/foretelling.css";
-import { propose } from "../../state/commands";
-import { type Notice, noticeOfProblem } from "../../state/notice";
+import { declare, propose } from "../../state/commands";
 import { openHoming } from "../../state/proposals";
 import { useConsole } from "../../state/store";
+import { DeclaredShift, WhatBecomesInvalid } from "../positions/DeclaredShift";
 
 /** What concerns several axes at once: homing by steps, and declaring that all stand at home. */
 export function HomeBar() {
@@ -40,33 +40,25 @@ export function HomeBar() {
   );
 }
 
-type ZeroPhase =
-  | { readonly phase: "idle" | "asked" }
-  | { readonly phase: "answered"; readonly verdicts: readonly AxisVerdict[] }
-  | { readonly phase: "refused"; readonly notice: Notice };
-
 function ZeroAll({ off }: { readonly off: string | null }) {
-  const [zero, setZero] = useState<ZeroPhase>({ phase: "idle" });
+  const [asked, setAsked] = useState(false);
   const motors = useConsole((state) => state.motors).filter((motor) => !motor.has_switch);
-  const close = (): void => setZero({ phase: "idle" });
-  const send = async (): Promise<void> => {
-    const outcome = await api.zeroAll();
-    setZero(
-      outcome.ok
-        ? { phase: "answered", verdicts: outcome.value }
-        : { phase: "refused", notice: noticeOfProblem(outcome.problem) },
-    );
+  const { send, list } = useVerdicts("Zero all");
+  const close = useCallback(() => setAsked(false), []);
+  const zero = (): Promise<void> => {
+    close();
+    return send(() => declare(api.zeroAll));
   };
   return (
     <>
-      <CommandButton need="holder" off={off} onCommand={() => setZero({ phase: "asked" })}>
+      <CommandButton need="holder" off={off} onCommand={() => setAsked(true)}>
         Zero all
       </CommandButton>
-      {zero.phase === "asked" && (
+      {asked && (
         <Confirm
           title="Declare every axis without a switch at home?"
           action="Set Home of these axes"
-          onConfirm={send}
+          onConfirm={zero}
           onCancel={close}
         >
           <p>
@@ -78,23 +70,19 @@ function ZeroAll({ off }: { readonly off: string | null }) {
               <ZeroLine key={motor.slot} motor={motor} />
             ))}
           </ul>
+          <WhatBecomesInvalid />
         </Confirm>
       )}
-      {zero.phase === "answered" && (
-        <VerdictList title="Zero all" verdicts={zero.verdicts} notice={null} onClose={close} />
-      )}
-      {zero.phase === "refused" && (
-        <VerdictList title="Zero all" verdicts={[]} notice={zero.notice} onClose={close} />
-      )}
+      {!asked && list}
     </>
   );
 }
 
-function ZeroLine({ motor: { slot, title } }: { readonly motor: Motor }) {
-  const refusal = useRefusal((kernel) => kernel.judge("SET_HOME", slot));
+function ZeroLine({ motor }: { readonly motor: Motor }) {
+  const refusal = useRefusal((kernel) => kernel.judge("SET_HOME", motor.slot));
   return (
     <li>
-      {title}
+      <DeclaredShift motor={motor} to={0} />
       {refusal !== null && <span className="foretelling" data-outcome="refused">{` ✕ ${refusal}`}</span>}
     </li>
   );

@@ -7,6 +7,7 @@ import { useConsole } from "../../state/store";
 import { LoadButton } from "../positions/LoadButton";
 import { LoadReport } from "../positions/LoadReport";
 import { SaveButton } from "../positions/SaveButton";
+import { UndoLine } from "../positions/UndoLine";
 import { useLoad } from "../positions/useLoad";
 import { AxisRow } from "./AxisRow";
 import { HomeBar } from "./HomeBar";
@@ -34,6 +35,7 @@ export function MotorsPanel() {
       <ModeLine />
       <LoadReport {...loading} />
       <HomeBar />
+      <UndoLine />
       {homing !== undefined && <HomingProgress homing={homing} />}
       {notice !== undefined && (
         <Refusal place="robot" notice={notice} dismissLabel="Dismiss the refusal of the robot" />

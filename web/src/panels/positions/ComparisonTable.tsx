@@ -1,11 +1,14 @@
 import { useState } from "react";
 import type { Motor, PositionsComparison } from "../../api/client";
+import { CommandButton } from "../../design/CommandButton";
 import { Confirm } from "../../design/Confirm";
-import { useConsole } from "../../state/store";
+import { propose } from "../../state/commands";
+import { type ConsoleState, useConsole } from "../../state/store";
 import { useReason } from "../../state/useReason";
 import { localDate } from "../../units/time";
-import { formatCounts } from "../../units/units";
-import { axesThatDiffer } from "./choice";
+import { formatCounts, formatDifference } from "../../units/units";
+import { axesThatDiffer, motionTo } from "./choice";
+import { WhatBecomesInvalid } from "./DeclaredShift";
 import "./positions.css";
 
 type Row = PositionsComparison["axes"][number];
@@ -31,12 +34,14 @@ export function ComparisonTable({ name, comparison, onConfirm, onCancel }: Compa
       title={`Positions of ${name}`}
       action={`Set ${chosen.size} ${chosen.size === 1 ? "position" : "positions"}`}
       off={chosen.size === 0 || reason !== null}
+      other={<GoThere comparison={comparison} chosen={chosen} onProposed={onCancel} />}
       onConfirm={() => onConfirm([...chosen])}
       onCancel={onCancel}
     >
       <p>
-        Saved {localDate(comparison.saved)}. Nothing moves; the chosen axes take the saved position for where
-        they stand, and are not homed afterwards.
+        Saved {localDate(comparison.saved)}. <em>Set</em>: nothing moves; the chosen axes take the saved
+        position for where they stand, and are not homed afterwards. <em>Propose to go there</em>: the chosen
+        axes, which are homed, move there together once somebody approves it.
       </p>
       <table className="table comparison">
         <thead>
@@ -70,7 +75,33 @@ export function ComparisonTable({ name, comparison, onConfirm, onCancel }: Compa
           ))}
         </tbody>
       </table>
+      <WhatBecomesInvalid />
     </Confirm>
+  );
+}
+
+interface GoThereProps {
+  readonly comparison: PositionsComparison;
+  readonly chosen: ReadonlySet<string>;
+  readonly onProposed: () => void;
+}
+
+/** The saved position as a motion, which waits for its approval. */
+function GoThere({ comparison, chosen, onProposed }: GoThereProps) {
+  const motors = useConsole((state) => state.motors);
+  const motionNow = ({ frame }: ConsoleState) =>
+    motionTo(comparison.axes, chosen, motors, (slot) => frame?.axes[slot]?.homed ?? false);
+  const off = useConsole((state) => motionNow(state).off);
+  const onCommand = async (): Promise<void> => {
+    const motion = motionNow(useConsole.getState());
+    if (motion.off !== null) return;
+    await propose(motion.draft);
+    onProposed();
+  };
+  return (
+    <CommandButton need="holder" off={off} onCommand={onCommand}>
+      Propose to go there
+    </CommandButton>
   );
 }
 
@@ -104,8 +135,7 @@ function AxisLine({ row, motor, chosen, onChoose }: AxisLineProps) {
       <td className="number">{shown(row.now_counts)}</td>
       <td className="number">{shown(row.saved_counts)}</td>
       <td className="number difference" data-differs={difference !== 0}>
-        {difference > 0 ? "+" : ""}
-        {shown(difference)}
+        {motor === undefined ? shown(difference) : formatDifference(motor, difference)}
       </td>
       <td className="number muted">{row.setpoint_counts === null ? "none" : shown(row.setpoint_counts)}</td>
       <td className="muted">

@@ -33,6 +33,8 @@ export function LoadReport({ load, restore, close }: Loading) {
         />
       );
     case "answered":
-      return <VerdictList title="Load positions" verdicts={load.verdicts} notice={null} onClose={close} />;
+      return (
+        <VerdictList title="Load positions" answer={{ ok: true, value: load.verdicts }} onClose={close} />
+      );
   }
 }

@@ -1,5 +1,6 @@
 import { useState } from "react";
 import { type AxisVerdict, api, type PositionsComparison, type PositionsFile } from "../../api/client";
+import { declare } from "../../state/commands";
 import { type Notice, noticeOfProblem } from "../../state/notice";
 import { readPositions } from "./file";
 
@@ -39,7 +40,7 @@ export function useLoad(): Loading {
 
   const restore = async (axes: string[]): Promise<void> => {
     if (load.phase !== "compared") return;
-    const outcome = await api.restore(load.file, axes);
+    const outcome = await declare(() => api.restore(load.file, axes));
     if (outcome.ok) setLoad({ phase: "answered", verdicts: outcome.value });
     else setLoad({ phase: "refused", notice: noticeOfProblem(outcome.problem) });
   };
