@@ -220,11 +220,13 @@ TEST(Targeting, APlannedTargetThatIsWrongIsNamed) {
 
 TEST(Targeting, AFitThatCannotBeIsRefused) {
   const std::pair<const char*, json> wrong[] = {
-      {"residual_mm", -0.1}, {"residual_mm", 1000.1}, {"residual_mm", "0.4"}, {"residual_mm", json()},
+      {"residual_mm", -0.1}, {"residual_mm", 1000.1}, {"residual_mm", "far"}, {"residual_mm", json()},
       {"fiducials", 2},      {"fiducials", 1001},     {"fiducials", 3.5},     {"fiducials", true}};
   for (const auto& [name, value] : wrong) {
     const json body{{"registration", turned(0.1)}, {name, value}};
-    EXPECT_EQ(with_registration({}, body).error().field, name) << value;
+    const auto set = with_registration({}, body);
+    ASSERT_FALSE(set) << value;
+    EXPECT_EQ(set.error().field, name);
   }
 }
 
