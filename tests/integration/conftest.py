@@ -52,6 +52,7 @@ def stack(short_tmp_path: Path) -> Iterator[StackFactory]:
         seed: int = 1,
         igtl: bool = False,
         dialect: str = "thesis",
+        plant: Path | None = None,
     ) -> Stack:
         directory = short_tmp_path / str(len(running))
         arguments = [
@@ -66,6 +67,8 @@ def stack(short_tmp_path: Path) -> Iterator[StackFactory]:
             arguments += ["--realtime"]
         else:
             arguments += ["--speed", str(speed)] if speed else ["--clock", "sim"]
+        if plant is not None:
+            arguments += ["--plant", plant]
         if igtl:
             arguments += ["--igtl-port", "0", "--igtl-dialect", dialect]
         started = Stack(directory, *arguments)

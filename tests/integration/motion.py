@@ -1,13 +1,17 @@
 """Steps that the tests of motion share, on a whole robot."""
 
+import signal
 import time
 from collections.abc import Callable
 
+import httpx
 from bare_kernel import DEADLINE_S
-from stack import Stack
+from stack import Stack, has_ended, watched
 from websockets.sync.client import ClientConnection, connect
 
 LATERAL = 4
+PRESS_TICKS = 250
+"""The first drive of an approved motion comes within 85 ticks of a press, as far as seen."""
 
 
 def open_stream(stack: Stack, origin: str | None = None) -> ClientConnection:
@@ -23,6 +27,14 @@ def wait_until(what: str, condition: Callable[[], bool], limit_s: float = DEADLI
     deadline = time.monotonic() + limit_s
     while not condition():
         assert time.monotonic() < deadline, f"not within {limit_s} s: {what}"
+
+
+def call(client: httpx.Client, method: str, path: str, body: object = None) -> httpx.Response:
+    """Once more, as the answer says, when it waited for more than a second on a busy machine."""
+    answer = client.request(method, f"/api/{path}", json=body)
+    while answer.status_code == 503 and answer.json()["code"] == "LATE":
+        answer = client.request(method, f"/api/{path}", json=body)
+    return answer
 
 
 def wait_for_mode(stack: Stack, mode: str) -> None:
@@ -83,7 +95,7 @@ IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
 def register(stack: Stack, pose: list[float] = IDENTITY, **more: object) -> None:
     """Says where the robot stands, which need not be where its file expects it: there is no scanner here."""
     body = {"registration": pose, "override_reason": "There is no scanner.", **more}
-    stack.api.put("/api/targeting/registration", json=body).raise_for_status()
+    call(stack.api, "PUT", "targeting/registration", body).raise_for_status()
 
 
 def to_motion(stack: Stack, slot: int = LATERAL) -> None:
@@ -95,11 +107,7 @@ def to_motion(stack: Stack, slot: int = LATERAL) -> None:
 
 
 def propose(stack: Stack, target_counts: int, slot: int = LATERAL) -> int:
-    """Again, as the answer says, when it waited for more than a second on a busy machine."""
-    body = {"slot": slot, "target_counts": target_counts}
-    answer = stack.api.post("/api/proposals", json=body)
-    while answer.status_code == 503 and answer.json()["code"] == "LATE":
-        answer = stack.api.post("/api/proposals", json=body)
+    answer = call(stack.api, "POST", "proposals", {"slot": slot, "target_counts": target_counts})
     assert answer.status_code == 201, answer.text
     return answer.json()["id"]
 
@@ -114,7 +122,7 @@ def approve(stack: Stack, number: int | None = None) -> int:
 
     wait_until("it waits", lambda: waiting() is not None)
     known = waiting()["id"]
-    stack.api.post(f"/api/proposals/{known}/approve").raise_for_status()
+    call(stack.api, "POST", f"proposals/{known}/approve").raise_for_status()
     return known
 
 
@@ -125,7 +133,7 @@ def confirm(stack: Stack) -> None:
         return stack.api.get("/api/proposals").raise_for_status().json()[0]
 
     wait_until("aligned", lambda: newest()["wants_confirmation"])
-    stack.api.post(f"/api/proposals/{newest()['id']}/confirm").raise_for_status()
+    call(stack.api, "POST", f"proposals/{newest()['id']}/confirm").raise_for_status()
     press(stack)
 
 
@@ -153,3 +161,53 @@ def record(stack: Stack, first: int, last: int) -> list[dict]:
     """The plant's own record of the wire, once the plant is past `last`."""
     wait_until(f"plant tick {last}", lambda: stack.control("status")["tick"] > last)
     return stack.control("record", **{"from": first, "to": last})["entries"]
+
+
+def plant_tick(stack: Stack) -> int:
+    return stack.control("status")["tick"]
+
+
+def last_drive(stack: Stack) -> int:
+    """The newest tick at which a drive was on the wire, as the plant recorded it."""
+    return stack.control("record_event", kind="last_nonzero_drive")["event_tick"] or 0
+
+
+def wait_until_driven(stack: Stack) -> None:
+    begin = last_drive(stack)
+    wait_until("an axis is driven", lambda: last_drive(stack) > begin)
+
+
+def wait_for_ticks(stack: Stack, ticks: int) -> None:
+    begin = plant_tick(stack)
+    wait_until(f"{ticks} ticks have passed", lambda: plant_tick(stack) > begin + ticks)
+
+
+def release(stack: Stack) -> None:
+    """Lets go of the pedal and waits until the next press counts."""
+    stack.control("pedal", pressed=False)
+    wait_until("READY", lambda: stack.status()["mode"] == "READY" and stack.status()["pedal_armed"])
+
+
+def press_for_a_while(stack: Stack) -> bool:
+    """Whether any axis was driven by it."""
+    before = last_drive(stack)
+    stack.control("pedal", pressed=True)
+    wait_for_ticks(stack, PRESS_TICKS)
+    release(stack)
+    return last_drive(stack) != before
+
+
+def restart_app(stack: Stack, meanwhile: Callable[[], object] = lambda: None) -> int:
+    """Kills the app and waits until the next one serves; nobody is in control then.
+
+    Gives the plant's tick by which the app was dead, which is when `meanwhile` is called.
+    """
+    ready = sum(line.startswith("ready http") for line in stack.output.lines)
+    with watched(stack.pid("app")) as [app]:
+        stack.signal("app", signal.SIGKILL)
+        assert has_ended(app)
+    died = plant_tick(stack)
+    meanwhile()
+    stack.output.wait_for(r"^ready http", count=ready + 1)
+    wait_until("served again", lambda: stack.status()["app_alive"])
+    return died

@@ -11,15 +11,21 @@ CALIBRATION = [1, 0, 0, -17.875, 0, 1, 0, -185.25, 0, 0, 1, -72.5, 0, 0, 0, 1]
 ENTRY, TARGET = np.array([8.0, 250.0, 70.0]), np.array([5.0, 200.0, 60.0])
 
 
-def aimed() -> list[float]:
-    """The pose of a probe that comes from ENTRY and whose treatment point is at TARGET, in the scanner."""
-    ahead = (TARGET - ENTRY) / np.linalg.norm(TARGET - ENTRY)
+def pose_from(entry: np.ndarray, target: np.ndarray) -> list[float]:
+    """A pose of a probe that comes from the entry and whose treatment point is at the target."""
+    ahead = (target - entry) / np.linalg.norm(target - entry)
     side = np.cross([0, 0, 1], ahead)
-    side /= np.linalg.norm(side)
+    side = side / np.linalg.norm(side) if side.any() else np.array([1.0, 0.0, 0.0])
     pose = np.eye(4)
     pose[:3, 0], pose[:3, 1], pose[:3, 2] = side, np.cross(ahead, side), ahead
-    pose[:3, 3] = TARGET + np.reshape(CALIBRATION, (4, 4))[:3, 3]
+    pose[:3, 3] = target
     return pose.astype(np.float32).astype(float).ravel().tolist()
+
+
+def aimed() -> list[float]:
+    """The pose of a probe that comes from ENTRY and whose treatment point is at TARGET, in the scanner."""
+    offset = np.reshape(CALIBRATION, (4, 4))[:3, 3]
+    return pose_from(ENTRY + offset, TARGET + offset)
 
 
 def short(message: wire.MessageBase) -> str:
@@ -87,16 +93,19 @@ class Phases:
         assert messages[0].string == name
 
 
-def to_targeting(navigator: Phases, dialect: str) -> None:
+def to_targeting(
+    navigator: Phases, dialect: str, calibration: list[float] = CALIBRATION, pose: list[float] | None = None
+) -> None:
+    """From START_UP to a target that is set: that pose, or the aimed one."""
     entered = dialect == "wpi2024"
     navigator.phase("START_UP", "START_UP 1")
     navigator.phase("CALIBRATION", *(["CALIBRATION 1"] if entered else []))
-    [echo, *_] = navigator.expect(transform("CLB_0002", CALIBRATION), "ACK_0002 TRANSFORM", "CALIBRATION 1")
-    assert echo.matrix.ravel().tolist() == CALIBRATION
+    [echo, *_] = navigator.expect(transform("CLB_0002", calibration), "ACK_0002 TRANSFORM", "CALIBRATION 1")
+    assert echo.matrix.ravel().tolist() == calibration
     navigator.phase("PLANNING", *(["PLANNING 1"] if entered else []))
     navigator.phase("TARGETING", "TARGETING 1")
     reachable = ["REACHABLE_TARGET TRANSFORM"] if entered else []
-    pose = aimed()
+    pose = pose or aimed()
     echo, status, told, *_ = navigator.expect(
         transform("TGT_0003", pose), "ACK_0003 TRANSFORM", "TARGET 1", "TARGET TRANSFORM", *reachable
     )

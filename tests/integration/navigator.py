@@ -1,7 +1,11 @@
 """A navigation program: pyigtl, with what it lacks."""
 
+import contextlib
+import socket
 import struct
+import threading
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 
 import numpy as np
 import pyigtl
@@ -10,6 +14,8 @@ from motion import wait_until
 from pyigtl import messages as wire
 
 OK = 1
+PAUSE_S = 0.01
+"""After which a program that hears nothing sends what is next."""
 
 
 class Status(wire.MessageBase):
@@ -143,3 +149,39 @@ def transform(name: str, matrix: list[float]) -> pyigtl.TransformMessage:
 
 def text(name: str, content: str) -> pyigtl.StringMessage:
     return pyigtl.StringMessage(content, device_name=name)
+
+
+class Insistent:
+    """A navigation program that sends the same again and again, whatever is answered, and connects again when
+    the app is gone; for as long as the context lasts."""
+
+    def __init__(self, port: Callable[[], int], messages: Callable[[int], list[wire.MessageBase]]) -> None:
+        """@param messages: those of a round, of which the number is given."""
+        self._port, self._messages = port, messages
+        self._ends = threading.Event()
+        self._thread = threading.Thread(target=self._run)
+
+    def __enter__(self) -> "Insistent":
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._ends.set()
+        self._thread.join()
+
+    def _run(self) -> None:
+        sent = 0
+        while not self._ends.is_set():
+            with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", self._port())) as peer:
+                peer.settimeout(PAUSE_S)
+                while not self._ends.is_set():
+                    sent += 1
+                    self._send(peer, self._messages(sent))
+
+    def _send(self, peer: socket.socket, messages: list[wire.MessageBase]) -> None:
+        for each in messages:
+            peer.sendall(each.pack())
+            with contextlib.suppress(TimeoutError):
+                while not self._ends.is_set():
+                    if not peer.recv(65536):
+                        raise ConnectionResetError

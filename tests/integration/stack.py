@@ -144,8 +144,10 @@ class Stack:
 
     @property
     def igtl_port(self) -> int:
-        """Of a robot that was started with `igtl=True`."""
-        return int(self.output.wait_for(r"OpenIGTLink 127\.0\.0\.1:(\d+)$")[1])
+        """Of a robot that was started with `igtl=True`; another one after each start of the app."""
+        line = r"OpenIGTLink 127\.0\.0\.1:(\d+)$"
+        self.output.wait_for(line)
+        return int([found for each in self.output.lines if (found := re.search(line, each))][-1][1])
 
     def pid(self, name: str) -> int:
         """Process of the simulator, the recorder, the kernel or the app."""

@@ -2,19 +2,27 @@
 
 import os
 import random
-import signal
 from collections import Counter
 from dataclasses import dataclass, field
 
 import pytest
 from conftest import StackFactory
 from interface import judge
-from motion import IDENTITY, home_all, motor, open_stream, unlock, wait_until
+from motion import (
+    IDENTITY,
+    home_all,
+    motor,
+    open_stream,
+    press_for_a_while,
+    restart_app,
+    unlock,
+    wait_for_ticks,
+    wait_until,
+)
 from stack import Stack
 
 STEPS = int(os.environ.get("INTERLOCK_CASE_STEPS", "800"))
 """Of the random walk; with 10000 it takes some minutes."""
-PRESS_TICKS = 60
 REGISTRATION = {"registration": IDENTITY, "override_reason": "There is no scanner."}
 TARGETS = [
     {"entry_point": [8, 250, 70], "target_point": [5, 200, 60]},
@@ -22,14 +30,6 @@ TARGETS = [
 ]
 POSE = {"kind": "pose"}
 TOGETHER = {"kind": "coordinated", "targets": {"yaw": -0.2, "pitch": -0.1}}
-
-
-def restart_app(robot: Stack) -> None:
-    """Nobody is in control then."""
-    ready = sum(line.startswith("ready http") for line in robot.output.lines)
-    robot.signal("app", signal.SIGKILL)
-    robot.output.wait_for(r"^ready http", count=ready + 1)
-    wait_until("served again", lambda: robot.status()["app_alive"])
 
 
 def await_beats(robot: Stack) -> None:
@@ -49,25 +49,6 @@ def true_counts(robot: Stack) -> float:
     """Where the axis in slot 0 stands, whatever its encoder and its home say."""
     [axis] = [each for each in robot.control("status")["axes"] if each["slot"] == 0]
     return axis["position_counts"]
-
-
-def driven(robot: Stack) -> int:
-    return robot.control("record_event", kind="last_nonzero_drive")["event_tick"] or 0
-
-
-def let_pass(robot: Stack, ticks: int) -> None:
-    begun = robot.control("status")["tick"]
-    wait_until("time passes", lambda: robot.control("status")["tick"] > begun + ticks)
-
-
-def press_for_a_while(robot: Stack) -> bool:
-    """Whether any axis was driven by it."""
-    before = driven(robot)
-    robot.control("pedal", pressed=True)
-    let_pass(robot, PRESS_TICKS)
-    robot.control("pedal", pressed=False)
-    wait_until("READY", lambda: robot.status()["mode"] == "READY" and robot.status()["pedal_armed"])
-    return driven(robot) != before
 
 
 @dataclass
@@ -189,7 +170,7 @@ class Walker:
             goal = self.start - self.draw.randint(10, 200)
         while abs(left := goal - true_counts(self.robot)) > 1:
             self.robot.control("push", slot=0, counts=round(max(-40, min(40, left))))
-            let_pass(self.robot, 50)
+            wait_for_ticks(self.robot, 50)
         wait_for_answer(self.robot, "motors/0/set-home", override_switch=True)
         self.home_at = true_counts(self.robot)
         await_beats(self.robot)

@@ -26,7 +26,17 @@ from bare_kernel import BIN, DEADLINE_S, ROOT
 from conftest import StackFactory
 from frozen import frozen
 from interface import judge
-from motion import LATERAL, enable, press, to_motion, wait_until
+from motion import (
+    LATERAL,
+    enable,
+    last_drive,
+    plant_tick,
+    press,
+    to_motion,
+    wait_for_ticks,
+    wait_until,
+    wait_until_driven,
+)
 from stack import Stack
 from test_store_busy import busy_store
 
@@ -285,24 +295,6 @@ def robot(row: Row, stack: StackFactory) -> Stack:
     row.before(started)
     to_motion(started)
     return started
-
-
-def plant_tick(robot: Stack) -> int:
-    return robot.control("status")["tick"]
-
-
-def last_drive(robot: Stack) -> int:
-    return robot.control("record_event", kind="last_nonzero_drive")["event_tick"] or 0
-
-
-def wait_until_driven(robot: Stack) -> None:
-    begin = last_drive(robot)
-    wait_until("the axis is driven", lambda: last_drive(robot) > begin)
-
-
-def wait_for_ticks(robot: Stack, ticks: int) -> None:
-    begin = plant_tick(robot)
-    wait_until(f"{ticks} ticks have passed", lambda: plant_tick(robot) > begin + ticks)
 
 
 @contextlib.contextmanager

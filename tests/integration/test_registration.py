@@ -1,13 +1,11 @@
 """A registration ends with what it rests on, on real processes: nothing goes to a pose without one."""
 
-import os
-import signal
 from collections.abc import Iterator
 
 import numpy as np
 from conftest import StackFactory
 from interface import judge
-from motion import act, enable, home_all, motor, register, set_home, unlock, wait_until
+from motion import act, enable, home_all, motor, register, restart_app, set_home, unlock, wait_until
 from stack import Stack
 
 TARGET = {"entry_point": [8, 250, 70], "target_point": [5, 200, 60]}
@@ -43,9 +41,7 @@ def test_another_start_of_the_app_expires_it_and_a_person_who_sets_it_again_make
 ) -> None:
     robot = aimed(stack)
     assert robot.api.post("/api/proposals", json=POSE).status_code == 201
-    os.kill(robot.pid("app"), signal.SIGKILL)
-    robot.output.wait_for(r"^ready http", count=2)
-    wait_until("served again", lambda: robot.status()["app_alive"])
+    restart_app(robot)
     robot.take_control()
     expect_no_pose(robot, "The app was started since.")
     register(robot)
@@ -75,9 +71,7 @@ def test_the_table_moved_is_said_by_any_engineer_and_outlives_a_start(stack: Sta
     expect_no_pose(robot, "The table moved.")
     viewer = robot.client_of_new("vera", "viewer")
     assert judge(viewer.post("/api/targeting/registration/expire", json={})).status_code == 403
-    os.kill(robot.pid("app"), signal.SIGKILL)
-    robot.output.wait_for(r"^ready http", count=2)
-    wait_until("served again", lambda: robot.status()["app_alive"])
+    restart_app(robot)
     robot.take_control()
     assert registration(robot) == ("expired", "The registration has expired: The table moved.")
     newest = robot.api.get("/api/targeting/history").raise_for_status().json()["changes"][0]
