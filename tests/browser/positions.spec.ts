@@ -130,3 +130,45 @@ test("a file dropped beside the button does not take the place of the page", asy
   }, dataTransfer);
   expect(kept).toBe(true);
 });
+
+test("what Zero all declared is undone, and the axis is not homed afterwards", async ({ robot }) => {
+  await robot.unlockRobot();
+  const undo = robot.panel("Undo of positions");
+  await expect(undo.getByRole("button")).toBeDisabled();
+  const axis = robot.axis("Probe rotation");
+  const before = await axis.restingCounts();
+  await robot.button("Zero all").click();
+  const question = robot.panel("Declare every axis without a switch at home?");
+  await expect(question).toContainText("A registration that rests on these axes expires.");
+  await question.getByRole("button", { name: "Set Home of these axes" }).click();
+  await expect(axis.row.getByText("UNHOMED")).toHaveCount(0);
+  await expectPosition(axis, 0);
+  await expect(undo).toContainText("Set Home by admin");
+  await expect(undo).toContainText("Probe rotation: ");
+  await robot.button("Undo Set Home").click();
+  await expect(robot.panel("Answer to Undo")).toContainText("Probe rotation ACCEPTED");
+  await expectPosition(axis, before);
+  await expect(axis.row.getByText("UNHOMED")).toBeVisible();
+  await expect(undo.getByRole("button")).toBeDisabled();
+});
+
+test("a saved position is gone to by a motion that waits for its approval", async ({ robot }) => {
+  await robot.unlockRobot();
+  const axis = robot.axis("Probe rotation");
+  await axis.setHome();
+  await axis.enable();
+  const saved = await save(robot);
+  const elsewhere = JSON.parse(saved.text);
+  const [entry] = elsewhere.axes.filter((each: { axis: string }) => each.axis === "probe_rotation");
+  entry.position_counts -= 200;
+  await load(robot, saved.name, JSON.stringify(elsewhere));
+  const table = robot.panel(`Positions of ${saved.name}`);
+  const go = table.getByRole("button", { name: "Propose to go there" });
+  await go.click();
+  await expect(table).toHaveCount(0);
+  await expect(robot.panel("Proposal 1")).toContainText("checked");
+  await robot.approve(1);
+  await robot.pressPedal();
+  await expectPosition(axis, entry.position_counts);
+  await expect(axis.row.getByText("UNHOMED")).toHaveCount(0);
+});

@@ -107,7 +107,9 @@ def log_in(app: App) -> str:
 def write_until_killed(app: App, token: str, life: int, seconds: float) -> list[list[int]]:
     cookie = app.cookie(token)
     ask(app, "POST", "/api/control/request", cookie, {})
-    if life > 0:
+    if life == 0:
+        ask(app, "POST", "/api/cases", cookie, {"label": "of the test"})
+    else:
         ask(app, "POST", "/api/cases/1/resume", cookie, {})
     writers = [Writer(app, cookie, life, number) for number in range(WRITERS)]
     for writer in writers:
@@ -136,7 +138,6 @@ def test_what_was_acknowledged_outlives_a_kill_at_any_instant(short_tmp_path: Pa
         app = App(kernel, state)
         app.start()
         token = log_in(app)
-        ask(app, "POST", "/api/cases", app.cookie(token), {"label": "of the test"})
         acknowledged: list[list[int]] = []
         for life in range(KILLS):
             acknowledged += write_until_killed(app, token, life, dice.uniform(0, LONGEST_LIFE_S))
