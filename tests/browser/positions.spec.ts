@@ -166,7 +166,7 @@ test("a saved position is gone to by a motion that waits for its approval", asyn
   const go = table.getByRole("button", { name: "Propose to go there" });
   await go.click();
   await expect(table).toHaveCount(0);
-  await expect(robot.panel("Proposal 1")).toContainText("checked");
+  await expect(robot.proposal(1)).toContainText("checked");
   await robot.approve(1);
   await robot.pressPedal();
   await expectPosition(axis, entry.position_counts);
