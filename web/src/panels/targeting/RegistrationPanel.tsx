@@ -15,6 +15,7 @@ import { type Notice, noticeOfProblem } from "../../state/notice";
 import type { Asked } from "../../state/usePolled";
 import { useReason } from "../../state/useReason";
 import { type Draft, draftOf, hasNews, isEdited, kept, received, taken, withText, withValues } from "./draft";
+import { fitWords } from "./history";
 import { list } from "./numbers";
 import { FRAME, FrameLabel, News, Problems, SendBar, SetBy } from "./parts";
 import { columnNames, originOf, rowNames } from "./pose";
@@ -117,6 +118,7 @@ export function RegistrationPanel({ targeting, history, asked, off, onSet }: Reg
             moved to. {registrationAdvice[targeting.registration_state]}
           </p>
         )}
+        {fitWords(targeting) !== "" && <p className="set-by">{fitWords(targeting)}</p>}
         {targeting.registration_doubt !== null && (
           <p className="registration-problem" role="status">
             <i aria-hidden="true">▲</i> {targeting.registration_doubt} It was set all the same:{" "}

@@ -30,6 +30,21 @@ describe("changeWords", () => {
       }),
     ).toEqual(["Rotation of the registration ignored"]);
   });
+
+  it("say how well a registration fits, and nothing of a fit that is not known", () => {
+    const fit = { residual_mm: 0.4, fiducials: 7 };
+    const none = { residual_mm: null, fiducials: null };
+    expect(changeWords({ old: none, new: fit })).toEqual([
+      "Fit of the registration: residual 0.40 mm, 7 fiducials",
+    ]);
+    expect(changeWords({ old: fit, new: none })).toEqual([]);
+  });
+
+  it("say how many targets are planned", () => {
+    expect(changeWords({ old: { planned_targets: [] }, new: { planned_targets: [{}, {}] } })).toEqual([
+      "Planned targets: 2",
+    ]);
+  });
 });
 
 describe("sourceWords", () => {

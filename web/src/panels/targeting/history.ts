@@ -13,12 +13,19 @@ export function changeWords({ old, new: set }: Pick<Change, "old" | "new">): str
   return [
     ...registrationWords(old, set),
     ...[...points, ...offsets].flatMap((name) => aimWords(name, old, set)),
+    ...(Array.isArray(set.planned_targets) ? [`Planned targets: ${set.planned_targets.length}`] : []),
   ];
 }
 
 /** Fields of Targeting; the interface tells no types here. */
 type Fields = Readonly<Partial<Record<AimName | RegistrationName, unknown>>>;
-type RegistrationName = "registration" | "registration_problem" | "ignore_registration_rotation";
+type RegistrationName =
+  | "registration"
+  | "registration_problem"
+  | "ignore_registration_rotation"
+  | "residual_mm"
+  | "fiducials"
+  | "planned_targets";
 
 function aimWords(name: AimName, old: Fields, set: Fields): string[] {
   const is = valueWords(set[name]);
@@ -36,7 +43,18 @@ function registrationWords(old: Fields, set: Fields): string[] {
   const ignores = set.ignore_registration_rotation;
   if (typeof ignores === "boolean")
     words.push(`Rotation of the registration ${ignores ? "ignored" : "used"}`);
+  const fit = fitWords(set);
+  if (fit !== "") words.push(fit);
   return words;
+}
+
+/** How well a registration fits, as its sender said; empty where that is not known. */
+export function fitWords({ residual_mm: residual, fiducials: count }: Fields): string {
+  const parts = [
+    ...(typeof residual === "number" ? [`residual ${fixed(residual, POINT_DECIMALS)} mm`] : []),
+    ...(typeof count === "number" ? [`${count} fiducials`] : []),
+  ];
+  return parts.length === 0 ? "" : `Fit of the registration: ${parts.join(", ")}`;
 }
 
 function against(before: readonly number[], after: readonly number[]): string {
