@@ -12,13 +12,13 @@ from motion import (
     call,
     enable,
     home_all,
+    last_drive,
     press,
     proposal,
     register,
     release,
     unlock,
     wait_until,
-    wait_until_driven,
 )
 from stack import Stack
 
@@ -116,13 +116,20 @@ class Workflow(ABC):
     def run(self, number: int) -> None:
         """Approves it and presses the pedal; it goes on from there."""
         approve(self.robot, number)
-        press(self.robot)
-        self.goes_on(number)
+        self.press(number)
 
-    def goes_on(self, number: int) -> None:
-        wait_until("it moves", lambda: proposal(self.robot, number)["state"] in ("executing", *ENDED))
-        assert proposal(self.robot, number)["state"] == "executing", proposal(self.robot, number)["detail"]
-        wait_until_driven(self.robot)
+    def press(self, number: int, hand_newtons: float | None = None) -> None:
+        """Presses the pedal, then the hand, until an axis is driven; a short motion may be over by then."""
+        before = last_drive(self.robot)
+        press(self.robot)
+        if hand_newtons is not None:
+            self.robot.control("hand", newtons=hand_newtons)
+        failed = [state for state in ENDED if state != "done"]
+        wait_until(
+            "it moves",
+            lambda: last_drive(self.robot) > before or proposal(self.robot, number)["state"] in failed,
+        )
+        assert proposal(self.robot, number)["state"] not in failed, proposal(self.robot, number)["detail"]
 
     def finish(self, number: int) -> None:
         wait_until("it ends", lambda: proposal(self.robot, number)["state"] in ENDED)
@@ -153,7 +160,7 @@ class Ablation(Workflow):
     def treat(self, alignment: int) -> Iterator[str]:
         self.confirm(alignment)
         yield "confirm"
-        self.insert(alignment)
+        self.press(alignment)
         yield "insert"
         self.finish(alignment)
         ablation = self.propose(self.ablation)
@@ -166,10 +173,6 @@ class Ablation(Workflow):
         release(self.robot)
         self.set("POST", f"proposals/{alignment}/confirm")
 
-    def insert(self, alignment: int) -> None:
-        press(self.robot)
-        self.goes_on(alignment)
-
     def next_motion(self, step: str) -> dict:
         return self.ablation if step == "treat" else super().next_motion(step)
 
@@ -181,7 +184,7 @@ class Ablation(Workflow):
         approve(self.robot, number)
         press(self.robot)
         self.confirm(number)
-        self.insert(number)
+        self.press(number)
 
 
 class Biopsy(Workflow):
@@ -214,16 +217,11 @@ class Biopsy(Workflow):
         biopsy = self.propose(BIOPSY)
         approve(self.robot, biopsy)
         yield "confirm"
-        self.push(biopsy)
+        self.press(biopsy, hand_newtons=5.0)
         yield "insert"
         self.finish(biopsy)
         self.robot.control("hand", newtons=0.0)
         yield "treat"
-
-    def push(self, biopsy: int) -> None:
-        press(self.robot)
-        self.robot.control("hand", newtons=5.0)
-        self.goes_on(biopsy)
 
     def next_motion(self, step: str) -> dict:
         return {"confirm": BIOPSY, "treat": RETRACTION}.get(step) or super().next_motion(step)
@@ -233,7 +231,7 @@ class Biopsy(Workflow):
             self.run(number)
             return
         approve(self.robot, number)
-        self.push(number)
+        self.press(number, hand_newtons=5.0)
 
 
 def begin(name: str, stack: StackFactory, directory: Path, **options: bool | str) -> Workflow:
