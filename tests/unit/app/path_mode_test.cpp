@@ -389,6 +389,29 @@ TEST_P(PathModeOnThePlant, APathThatIsApprovedUnderAHeldPedalWaitsForANewPressAn
 
 INSTANTIATE_TEST_SUITE_P(Latency, PathModeOnThePlant, testing::Values(1u, 8u));
 
+/** As when a hand pushes the axis while the pedal is pressed. */
+TEST(PathMode, ALegBeginsAtTheVelocityThatItsAxesHave) {
+  PathMode mode(RobotPlan(neuro(), config_of(neuro())));
+  ilk_snapshot_t snapshot{};
+  snapshot.state.system.mode = ILK_MODE_READY;
+  ilk_axis_t& yaw = snapshot.state.axis[test::yaw];
+  yaw.state = ILK_AXIS_ENABLED;
+  yaw.homed = 1;
+  const TaskReference task = test::task_of(1, test::along(move_of({{test::yaw, -700}})));
+  mode.take(task, 0);
+  for (std::uint32_t tick = 1; tick <= 200; ++tick) {
+    snapshot.state.system.tick = tick;
+    snapshot.state.system.mode = tick < 200 ? ILK_MODE_READY : ILK_MODE_MOTION;
+    snapshot.state.system.consent = tick < 200 ? 0 : 1;
+    yaw.position_counts = -static_cast<std::int32_t>(tick / 2);
+    yaw.card_time_us = 1000 * tick;
+    KernelRequests requests;
+    mode.tick(snapshot, requests);
+  }
+  ASSERT_EQ(mode.status().phase, TaskPhase::executing);
+  EXPECT_NEAR(mode.setpoint(test::yaw)->velocity_counts_per_s, -500.0, 60.0);
+}
+
 TEST(PathMode, ATickAllocatesNothing) {
   PathMode mode(RobotPlan(neuro(), config_of(neuro())));
   const PathProgram program =
