@@ -112,7 +112,8 @@ void Api::follow_proposals() {
 }
 
 void Api::follow_kernel() {
-  control_.on_orders = [this] { (void)context_.view(); };
+  // Before any answer of the kernel: whoever is answered finds expired what that request expired.
+  control_.on_orders = [this] { look_after_registration(context_.view()); };
   control_.on_event = [this](const ilk_event_t& event) {
     json message = event_json(event);
     spdlog::info("kernel: {}", message.dump());

@@ -9,6 +9,8 @@ const expectedComplaint =
 interface Fixtures {
   robotName: RobotName;
   clock: Clock;
+  /** Text of a file of a plant in place of the robot's own. */
+  plant: string | undefined;
   /** By so much more a page is patient with the app than it is by itself, so that no slow machine makes it give up. */
   patience: number;
   stack: Stack;
@@ -24,9 +26,10 @@ interface Fixtures {
 export const test = base.extend<Fixtures>({
   robotName: ["neuro", { option: true }],
   clock: ["paced", { option: true }],
+  plant: [undefined, { option: true }],
   patience: [20, { option: true }],
-  stack: async ({ robotName, clock }, use) => {
-    const stack = await Stack.start(robotName, clock);
+  stack: async ({ robotName, clock, plant }, use) => {
+    const stack = await Stack.start(robotName, clock, plant);
     await use(stack);
     await stack.end();
   },

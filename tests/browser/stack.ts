@@ -1,6 +1,6 @@
 /** A robot of one's own: `interlock run` with its three processes on the paced clock. */
 import { type ChildProcess, execFileSync, spawn } from "node:child_process";
-import { mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
+import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { connect, type Socket } from "node:net";
 import { tmpdir } from "node:os";
 import path from "node:path";
@@ -63,14 +63,17 @@ export class Stack {
     this.igtlPort = ready.igtlPort;
   }
 
-  /** Starts the robot with a fresh state and waits for its ready line. */
-  static async start(robot: RobotName, clock: Clock): Promise<Stack> {
+  /** Starts the robot with a fresh state, and that plant in place of the robot's own, and waits for its ready line. */
+  static async start(robot: RobotName, clock: Clock, plant?: string): Promise<Stack> {
     const state = mkdtempSync(path.join(tmpdir(), "interlock-browser-"));
+    const plantFile = path.join(state, "plant.toml");
+    if (plant !== undefined) writeFileSync(plantFile, plant);
     const run = spawn(
       interlock,
       [
         ...["run", "--robot", robot],
         ...clockOptions[clock],
+        ...(plant === undefined ? [] : ["--plant", plantFile]),
         ...["--port", "0", "--igtl-port", "0", "--state", state, "--sockets", path.join(state, "sockets")],
       ],
       { stdio: ["ignore", "pipe", "pipe"] },

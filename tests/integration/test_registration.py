@@ -53,15 +53,33 @@ def test_another_home_of_an_axis_expires_it_and_ends_the_pose_that_rests_on_it(s
     robot = aimed(stack)
     yaw = motor(robot, 0)["slot"]
     act(robot, "disable", yaw)
+    before = motor(robot, yaw)["position_counts"]
     robot.control("push", slot=yaw, counts=-40)
+    wait_until("it moved", lambda: motor(robot, yaw)["position_counts"] < before - 30)
     enable(robot, yaw)
     assert registration(robot) == ("valid", None), "it moved"
-    made = robot.api.post("/api/proposals", json=POSE).raise_for_status().json()
+    made = robot.api.post("/api/proposals", json=POSE)
+    assert made.status_code == 201, made.text
+    made = made.json()
     set_home(robot, yaw)
-    wait_until("expired", lambda: registration(robot)[0] == "expired")
     expect_no_pose(robot, "Yaw was given another home.")
     ended = robot.api.get(f"/api/proposals/{made['id']}").raise_for_status().json()
     assert ended["state"] == "aborted"
+
+
+def test_a_home_that_is_lost_and_given_again_at_once_expires_it_before_anybody_is_answered(
+    stack: StackFactory,
+) -> None:
+    robot = aimed(stack)
+    for _ in range(10):
+        set_home(robot, 0)
+        register(robot)
+        assert registration(robot) == ("valid", None), "what was declared before is past"
+        undone = judge(robot.api.post("/api/positions/undo")).raise_for_status().json()
+        if undone[0]["verdict"] != "ACCEPTED":
+            continue  # the axis does not rest just then
+        set_home(robot, 0)
+        expect_no_pose(robot, "Yaw lost its home.")
 
 
 def test_the_table_moved_is_said_by_any_engineer_and_outlives_a_start(stack: StackFactory) -> None:

@@ -412,8 +412,8 @@ export interface paths {
         get: operations["getDeclaredPositions"];
         put?: never;
         /**
-         * Gives each axis the position back that it had before the last Set Home, Zero all or Load, by RESTORE. An axis that
-         *     moved since then, or was given another position, is left alone, and its row says so. The axes are not homed afterwards, and a registration that
+         * Gives each axis the position back that it had before the last Set Home, Zero all or Load, by RESTORE. An axis that does not
+         *     stand where it was declared, or was given another position, is left alone, and its row says so. The axes are not homed afterwards, and a registration that
          *     expired stays expired: no program brings back what somebody declared to be wrong.
          */
         post: operations["undoDeclaredPositions"];
@@ -1998,7 +1998,7 @@ export interface components {
                 homed_before: string;
                 /** @description A registration rests on its position, and expired by this. */
                 carries_registration: boolean;
-                /** @description It has not moved since then. */
+                /** @description It stands where it was declared. */
                 undoable: boolean;
             }[];
         };
