@@ -79,6 +79,8 @@ TEST_F(BiopsyRoutesTest, WhatTheTargetingCannotTellIsRefusedByName) {
   ControlView view = needle_view();
   view.snapshot.state.axis[prostate().find("back_left")->slot].homed = 0;
   show(view);
+  expect_refused(propose({{"kind", "biopsy"}}), 409, "NO_REGISTRATION");
+  set_target({9.0, 0.0, 70.0});
   expect_refused(propose({{"kind", "biopsy"}}), 409, "NOT_HOMED");
   show(needle_view());
   EXPECT_EQ(propose({{"kind", "biopsy"}}).status, 201u);
