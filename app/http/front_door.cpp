@@ -35,6 +35,9 @@ constexpr std::chrono::milliseconds answer_timeout{300};
 /** Of this thread, after which it does not know when that came which it finds; and for how long after. */
 constexpr std::chrono::milliseconds longest_pause{250};
 constexpr std::chrono::milliseconds pause_timeout{100};
+/** Of whoever has just come, to begin a request; a crowd of sixty that takes turns delays a STOP by less than
+ * 50 ms. */
+constexpr std::chrono::milliseconds time_to_begin{5};
 
 std::string name_of(const tcp::socket& socket) {
   beast::error_code error;
@@ -132,18 +135,36 @@ asio::awaitable<void> FrontDoor::accept() {
  * a one, trying again at once would only burn the processor. */
 asio::awaitable<void> FrontDoor::survive(const beast::error_code& error) {
   spdlog::error("cannot accept a connection: {}", error.message());
-  if (!waiting_.empty()) {
-    waiting_.erase(waiting_.begin());
-    co_return;
+  const bool are_young = !waiting_.empty();
+  if (!make_room(time_to_begin)) {
+    asio::steady_timer pause(executor_, are_young ? time_to_begin : std::chrono::milliseconds(100));
+    co_await pause.async_wait(as_result);
   }
-  asio::steady_timer pause(executor_, std::chrono::milliseconds(100));
-  co_await pause.async_wait(as_result);
+}
+
+/** Closes the connection that has waited longest, of strangers first, and none on which a request has begun.
+ */
+bool FrontDoor::make_room(std::chrono::milliseconds waited) {
+  const auto latest = steady_clock::now() - waited;
+  const auto is_idle = [&](auto& each) {
+    std::array<char, stop_begin.size() + 1> bytes{};
+    return each.second.since <= latest && peek(each.second.socket, bytes).empty();
+  };
+  auto found =
+      std::ranges::find_if(waiting_, [&](auto& each) { return !each.second.known && is_idle(each); });
+  if (found == waiting_.end()) {
+    found = std::ranges::find_if(waiting_, is_idle);
+  }
+  if (found == waiting_.end()) {
+    return false;
+  }
+  waiting_.erase(found);
+  return true;
 }
 
 void FrontDoor::wait_for_request(Waiting waiting) {
-  if (waiting_.size() == capacity_) {
-    const auto stranger = std::ranges::find_if(waiting_, [](const auto& each) { return !each.second.known; });
-    waiting_.erase(stranger == waiting_.end() ? waiting_.begin() : stranger);
+  if (waiting_.size() == capacity_ && !make_room(std::chrono::milliseconds(0))) {
+    waiting_.erase(waiting_.begin());
   }
   const std::uint64_t number = ++last_waiting_;
   Waiting& placed = waiting_.emplace(number, std::move(waiting)).first->second;

@@ -63,7 +63,7 @@ class FrontDoor {
 
   /**
    * @param capacity how many connections may wait for a request; one more, and that which has waited longest is
-   * closed, of strangers first
+   * closed, of strangers first, and one on which a request has begun last
    * @param let_in takes a connection on which a request other than STOP begins
    * @param record takes a STOP; `recorded` is to be called once that is done
    *
@@ -94,6 +94,9 @@ class FrontDoor {
   /** A connection that had its answer waits for its next request. For any thread. */
   void come_back(Guest guest);
 
+  /** How many connections wait for a request. */
+  [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
+
   /** A STOP has been recorded. For any thread. */
   void recorded() { unrecorded_.fetch_sub(1, std::memory_order_relaxed); }
 
@@ -111,6 +114,7 @@ class FrontDoor {
   };
 
   void wait_for_request(Waiting waiting);
+  bool make_room(std::chrono::milliseconds waited);
   void look_at(Waiting waiting);
   [[nodiscard]] std::chrono::steady_clock::time_point came() const;
   boost::asio::awaitable<void> serve_stop(Waiting waiting);

@@ -86,11 +86,14 @@ const char* clock_name(const ilk_snapshot_t& snapshot) {
 /** How late the host is; null unless simulated time waits for it. */
 json host_late_json(const ilk_snapshot_t& snapshot, double age_ms) {
   constexpr double second_ms = 1000.0;
+  constexpr double ns_per_ms = 1e6;
   if (snapshot.clock == ILK_CLOCK_REAL || snapshot.pace_ns == 0) {
     return nullptr;
   }
   const ilk_lateness_t& late = snapshot.lateness;
-  return {{"now_ms", age_ms < second_ms ? late.second_us / 1000.0 : age_ms},
+  // The next tick is due a tick after the last one.
+  const double overdue_ms = age_ms - static_cast<double>(snapshot.pace_ns) / ns_per_ms;
+  return {{"now_ms", age_ms < second_ms ? late.second_us / 1000.0 : overdue_ms},
           {"worst_ms", late.worst_us / 1000.0},
           {"total_ms", late.total_ms}};
 }

@@ -167,6 +167,23 @@ TEST_F(FrontDoorTest, WhoeverHasWaitedLongestMakesRoom) {
   EXPECT_NE(answer_of(idle.back()).find("200 OK"), std::string::npos);
 }
 
+TEST_F(FrontDoorTest, NobodyWhoseRequestIsThereMakesRoom) {
+  std::vector<tcp::socket> idle;
+  for (std::size_t i = 0; i < capacity; ++i) {
+    idle.push_back(connect());
+  }
+  while (in_door([&] { return door_.waiting(); }) < capacity) {
+    std::this_thread::yield();
+  }
+  tcp::socket late = in_door([&] {
+    tcp::socket connected = connect();
+    send(idle.front(), "POST /api/stop");
+    return connected;
+  });
+  EXPECT_NE(answer_of(idle.front()).find("200 OK"), std::string::npos);
+  EXPECT_EQ(answer_of(idle[1]), "") << "closed";
+}
+
 TEST_F(FrontDoorTest, StrangersMakeRoomForThoseWhoWereLoggedIn) {
   tcp::socket known = connect();
   send(known, "GET /api/motors");

@@ -179,10 +179,10 @@ function Content() {
       </div>
       <section ref={work} tabIndex={-1} className="main-column targeting-page" aria-label="Work">
         <SimulatedPedal />
-        {running !== undefined && <ProposalDetail key={running.id} proposal={running} />}
+        {running !== undefined && <ProposalDetail key={`proposal ${running.id}`} proposal={running} />}
         {targeting.value !== null && (
           // What was edited in one case must not reach another.
-          <Fragment key={targeting.value.case}>
+          <Fragment key={`case ${targeting.value.case}`}>
             <Form isShown={shown === "registration"} onEdit={() => setChosen("register")}>
               <RegistrationPanel targeting={targeting.value} {...form} />
             </Form>
