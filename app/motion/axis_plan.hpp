@@ -133,6 +133,11 @@ struct RobotPlan {
   [[nodiscard]] std::uint32_t confirmation_ticks() const noexcept { return 10 * timeout_ticks(); }
 };
 
+/** How far an axis may stand from where it came to rest and still count as standing there. */
+constexpr std::uint32_t rest_tolerance_counts(const ilk_axis_config_t& rules) noexcept {
+  return 3 * rules.deadband_counts;
+}
+
 /** Whether a card of this kind drives a motor. */
 constexpr bool drives_motor(std::uint32_t card) noexcept {
   return card != ILK_CARD_NONE && card != ILK_CARD_SENSOR;

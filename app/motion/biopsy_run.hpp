@@ -68,8 +68,9 @@ struct BiopsyFindings {
 struct BiopsyNow {
   double depth_mm = 0.0;
   double speed_mm_s = 0.0;
-  double left_mm = 0.0; /**< to the target's depth */
-  bool armed = false;   /**< listens for a membrane */
+  double left_mm = 0.0;        /**< to the target's depth */
+  bool waits_for_hand = false; /**< the hand pressed when the pedal was pressed, and has to let go first */
+  bool armed = false;          /**< listens for a membrane */
   bool cue = false;
   double desired_rotation_rad = 0.0;
   double alpha = 0.0;

@@ -2,8 +2,16 @@
 
 #include "motion/blocking_condition.hpp"
 #include "motion/realtime_channel.hpp"
+#include "motion/setpoint_range.hpp"
 
 namespace interlock {
+
+HeldMode::HeldMode(const std::type_info& tasks, const RobotPlan& plan) noexcept
+    : Mode(tasks), timeout_ticks_(plan.timeout_ticks()), confirmation_ticks_(plan.confirmation_ticks()) {
+  for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
+    tolerances_[slot] = rest_tolerance_counts(plan.axis[slot].rules);
+  }
+}
 
 void HeldMode::set_phase(TaskPhase phase, TaskReason reason, std::uint32_t code,
                          std::uint32_t tick) noexcept {
@@ -19,6 +27,12 @@ void HeldMode::take(const TaskReference& task, std::uint32_t tick) noexcept {
   idle_since_ = tick;
   needs_release_ = false;
   axes_ = prepare(tick);
+  kept_.fill(std::nullopt);
+  for (const AxisCounts& each : task->rests_on) {
+    if (each.slot < ILK_SLOTS && !moves(each.slot)) {
+      keep(each.slot, each.counts);
+    }
+  }
 }
 
 void HeldMode::end(std::uint32_t task, TaskReason reason, std::uint32_t tick) noexcept {
@@ -61,7 +75,7 @@ void HeldMode::fail(TaskReason reason, std::uint32_t code, std::uint32_t slot, s
 }
 
 void HeldMode::tick(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept {
-  if (is_open() && !is_blocked(snapshot)) {
+  if (is_open() && !is_blocked(snapshot) && !is_undermined(snapshot)) {
     judge(snapshot);
   }
   drive(snapshot, requests);
@@ -107,6 +121,18 @@ bool HeldMode::is_blocked(const ilk_snapshot_t& snapshot) noexcept {
     if (axis.state == ILK_AXIS_HOMING || axis.homed == 0) {
       const bool homing = axis.state == ILK_AXIS_HOMING;
       fail(homing ? TaskReason::axis_homing : TaskReason::not_homed, 0, slot, now);
+      return true;
+    }
+  }
+  return false;
+}
+
+/** Whether an axis was moved that the rest of the task takes to be where it was. */
+bool HeldMode::is_undermined(const ilk_snapshot_t& snapshot) noexcept {
+  for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
+    const std::int32_t position = snapshot.state.axis[slot].position_counts;
+    if (kept_[slot] && distance(position, *kept_[slot]) > tolerances_[slot]) {
+      fail(TaskReason::moved_away, 0, slot, snapshot.state.system.tick);
       return true;
     }
   }

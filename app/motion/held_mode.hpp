@@ -6,9 +6,14 @@
  *
  * Release of the pedal pauses, the next press goes on, and a task that does not execute for too long expires.
  * A task may have a part that needs a confirmation: before it, it pauses until somebody gives one.
- * An axis that cannot be moved, a refusal or a lock ends it for all its axes.
+ * An axis that cannot be moved, a refusal or a lock ends it for all its axes, and so does one that has to
+ * stand still, when it is moved.
  */
 #pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
 
 #include "motion/axis_plan.hpp"
 #include "motion/mode.hpp"
@@ -33,8 +38,7 @@ class HeldMode : public Mode {
   [[nodiscard]] const TaskStatus& status() const noexcept { return status_; }
 
  protected:
-  HeldMode(const std::type_info& tasks, const RobotPlan& plan) noexcept
-      : Mode(tasks), timeout_ticks_(plan.timeout_ticks()), confirmation_ticks_(plan.confirmation_ticks()) {}
+  HeldMode(const std::type_info& tasks, const RobotPlan& plan) noexcept;
 
   /** Makes ready for a task that waits now; returns the axes that it moves, bit n for slot n. */
   [[nodiscard]] virtual std::uint32_t prepare(std::uint32_t tick) noexcept = 0;
@@ -49,6 +53,8 @@ class HeldMode : public Mode {
   void fail(TaskReason reason, std::uint32_t code, std::uint32_t slot, std::uint32_t tick) noexcept;
   /** What comes next needs a confirmation: until then no press goes on. */
   void await_confirmation(std::uint32_t tick) noexcept;
+  /** The axis in `slot` has come to its place, and has to stay there while others move. */
+  void keep(std::uint32_t slot, std::int32_t counts) noexcept { kept_[slot] = counts; }
   /** It was carried out. */
   void finish(TaskReason reason, std::uint32_t tick) noexcept { set_phase(TaskPhase::done, reason, 0, tick); }
   void set_step(std::uint32_t step) noexcept { status_.step = step; }
@@ -68,12 +74,15 @@ class HeldMode : public Mode {
   void set_phase(TaskPhase phase, TaskReason reason, std::uint32_t code, std::uint32_t tick) noexcept;
   void judge(const ilk_snapshot_t& snapshot) noexcept;
   [[nodiscard]] bool is_blocked(const ilk_snapshot_t& snapshot) noexcept;
+  [[nodiscard]] bool is_undermined(const ilk_snapshot_t& snapshot) noexcept;
 
-  const std::uint32_t timeout_ticks_;      /**< how long the task may wait without executing */
-  const std::uint32_t confirmation_ticks_; /**< the same of a confirmation */
+  std::array<std::uint32_t, ILK_SLOTS> tolerances_{}; /**< see `rest_tolerance_counts` */
+  const std::uint32_t timeout_ticks_;                 /**< how long the task may wait without executing */
+  const std::uint32_t confirmation_ticks_;            /**< the same of a confirmation */
   TaskReference task_;
   TaskStatus status_;
   std::uint32_t axes_ = 0;
+  std::array<std::optional<std::int32_t>, ILK_SLOTS> kept_{}; /**< where an axis has to stand */
   bool needs_release_ = false;   /**< the pedal, before the task begins or goes on after a confirmation */
   std::uint32_t idle_since_ = 0; /**< tick since which the task does not execute */
 };

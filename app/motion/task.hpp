@@ -146,7 +146,10 @@ struct Task {
   /** It follows from registration, probe and target of that revision: stale once these change. */
   std::optional<std::uint32_t> targeting_revision = std::nullopt;
   std::optional<ReachedAim> aim = std::nullopt; /**< of a motion to a pose */
-  std::uint32_t id = 0;                         /**< from 1; 0: nobody has proposed it yet */
+  /** Where axes stood when it was made, from which it followed: it is right only while they stand there, but
+   * for those that it moves itself. */
+  std::vector<AxisCounts> rests_on = {};
+  std::uint32_t id = 0;         /**< from 1; 0: nobody has proposed it yet */
   std::int64_t case_number = 0; /**< of the case that was open when it was proposed; 0: none was */
 };
 
@@ -221,6 +224,7 @@ enum class TaskReason : std::uint8_t {
   force_stale,       /**< the newest force is too old to act upon */
   steering_failed,   /**< `code` is the KinematicsError::Code */
   swept,             /**< every frequency was held for its time */
+  moved_away,        /**< an axis was moved that has to stand still */
   linkage_strained,  /**< the linked slider came too near, or too far away */
   no_path            /**< no motion within the limits leads there from where the axes are */
 };

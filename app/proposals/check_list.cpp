@@ -13,7 +13,8 @@ struct CheckText {
 /** In the order of `CheckName`. */
 constexpr std::array<CheckText, 16> texts{{
     {"other_motion", "No homing and no motion of another mode is open."},
-    {"targeting", "Registration, probe and target are still those from which it followed."},
+    {"targeting",
+     "Registration, probe, target and where the axes stand are still those from which it followed."},
     {"configuration", "The kernel runs the configuration of this robot's file."},
     {"mode", "The kernel is READY or in MOTION."},
     {"axes", "Every axis is enabled and without a fault, and none that is to go to a position is homing."},

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <utility>
 
+#include "motion/axis_plan.hpp"
+#include "motion/setpoint_range.hpp"
 #include "proposals/checks.hpp"
 #include "proposals/motion_kind.hpp"
 #include "proposals/proposal_json.hpp"
@@ -62,8 +64,22 @@ bool MotionRegistry::show_image(const NeedleImage& image) {
   return open != nullptr && send_(SeenImage{open->id, image});
 }
 
-/** Refuses what followed from targeting that has changed since. */
-tl::expected<void, Refusal> MotionRegistry::check_current(const Task& task) const {
+/** An axis that is not where it was then. */
+const Axis* MotionRegistry::moved_since(std::span<const AxisCounts> then, const ControlView& view) const {
+  const auto moved = std::ranges::find_if(then, [&](const AxisCounts& each) {
+    const std::int32_t now = view.snapshot.state.axis[each.slot].position_counts;
+    return distance(now, each.counts) > rest_tolerance_counts(config_.axis[each.slot]);
+  });
+  return moved == then.end() ? nullptr : robot_.at_slot(moved->slot);
+}
+
+/** Refuses what followed from targeting that has changed since, or from where axes do not stand any more. */
+tl::expected<void, Refusal> MotionRegistry::check_current(const Task& task, const ControlView& view) const {
+  if (const Axis* moved = moved_since(task.rests_on, view)) {
+    return tl::make_unexpected(Refusal{
+        "STALE", capital(title_of(robot_, moved->slot)) + " was moved meanwhile.",
+        "axes where they stood when it was proposed", "Look where the robot stands, and propose again."});
+  }
   if (task.targeting_revision && *task.targeting_revision != targeting_revision_) {
     return tl::make_unexpected(Refusal{"STALE", "Registration, probe or target changed meanwhile.",
                                        "the present registration, probe and target",
@@ -103,8 +119,8 @@ std::vector<AxisCounts> MotionRegistry::headed() const {
  * failed. */
 tl::expected<void, Refusal> MotionRegistry::check(Proposal& proposal, const ControlView& view) {
   CheckList checks;
-  if (proposal.task->targeting_revision) {
-    checks.make(CheckName::targeting, [&] { return check_current(*proposal.task); });
+  if (proposal.task->targeting_revision || !proposal.task->rests_on.empty()) {
+    checks.make(CheckName::targeting, [&] { return check_current(*proposal.task, view); });
   }
   const MotionKind& kind = kind_of(proposal.task->work);
   if (kind.yields()) {
@@ -131,8 +147,30 @@ tl::expected<Proposal, Refusal> MotionRegistry::approve(std::uint32_t id, const 
                                                         std::chrono::steady_clock::time_point asked) {
   discard_waiting(view);
   return waiting(id).and_then([&](Proposal* proposal) {
-    return check(*proposal, view).and_then([&] { return approve(*proposal, asked); });
+    const Axis* moved = moved_since(places(*proposal), view);
+    return check(*proposal, view).and_then([&]() -> tl::expected<Proposal, Refusal> {
+      if (moved != nullptr) {
+        const std::string title = capital(title_of(robot_, moved->slot));
+        become(
+            *proposal, ProposalState::checked,
+            title +
+                " was moved since it was planned, so it was planned anew. Waits for somebody to approve it.");
+        return tl::make_unexpected(Refusal{
+            "MOVED", title + " was moved since it was planned; it was planned anew.",
+            "axes where they stood when it was planned", "Look at what it does now, then approve it."});
+      }
+      return approve(*proposal, asked);
+    });
   });
+}
+
+/** Where the axes stood that it moves, when it was checked last. */
+std::vector<AxisCounts> MotionRegistry::places(const Proposal& proposal) {
+  std::vector<AxisCounts> places;
+  for (const std::uint32_t slot : proposal.slots) {
+    places.push_back({slot, proposal.checked_against->state.axis[slot].position_counts});
+  }
+  return places;
 }
 
 tl::expected<Proposal, Refusal> MotionRegistry::confirm(std::uint32_t id, const ControlView& view,
@@ -166,7 +204,9 @@ tl::expected<Proposal, Refusal> MotionRegistry::reject(std::uint32_t id, const s
 bool MotionRegistry::approves(const Proposal& proposal) const {
   const bool is_of_one_axis = proposal.slots.size() == 1 &&
                               (proposal.work<MoveTask>() != nullptr || proposal.work<HomeTask>() != nullptr);
-  return robot_.auto_approve || (is_of_one_axis && proposal.task->source == TaskSource::console);
+  const TaskSource source = proposal.task->source;
+  return (robot_.auto_approve && source != TaskSource::openigtlink) ||
+         (is_of_one_axis && source == TaskSource::console);
 }
 
 void MotionRegistry::end_stale(const std::string& by) {

@@ -12,6 +12,7 @@
 #include <deque>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
@@ -53,7 +54,8 @@ class MotionRegistry {
    * Checks a task and keeps it. A move or the homing of one axis from the console, or any of a robot that
    * approves by itself, is approved, and every other approved proposal that is in its way is aborted; another
    * one waits for `approve`. A move is refused with MODE_HOME while homing is open, with MODE_PATH while
-   * another mode is; STALE what followed from targeting that has changed. A refused task stays in the
+   * another mode is; STALE what followed from targeting that has changed, or from where an
+   * axis does not stand any more. A refused task stays in the
    * registry; one for a slot without an axis (AXIS) does not.
    *
    * @param asked when its author asked for it: one that is approved is good for `approval_timeout` from then on
@@ -68,7 +70,8 @@ class MotionRegistry {
   /** Whoever jogs still holds on; false when no such jog is open, or the control thread takes none now. */
   bool renew(std::uint32_t id);
 
-  /** Checks a proposal that waits for it anew, and approves it: NOT_WAITING when none of that number does. */
+  /** Checks a proposal that waits for it anew, and approves it: NOT_WAITING when none of that number does,
+   * MOVED when one of its axes is not where it was when the proposal was planned, which is then done anew. */
   tl::expected<Proposal, Refusal> approve(
       std::uint32_t id, const ControlView& view,
       std::chrono::steady_clock::time_point asked = std::chrono::steady_clock::now());
@@ -137,7 +140,9 @@ class MotionRegistry {
  private:
   Proposal& keep(Task task, std::vector<std::uint32_t> slots, const ControlView& view);
   tl::expected<Proposal, Refusal> approve(Proposal& proposal, std::chrono::steady_clock::time_point asked);
-  [[nodiscard]] tl::expected<void, Refusal> check_current(const Task& task) const;
+  [[nodiscard]] static std::vector<AxisCounts> places(const Proposal& proposal);
+  [[nodiscard]] const Axis* moved_since(std::span<const AxisCounts> then, const ControlView& view) const;
+  [[nodiscard]] tl::expected<void, Refusal> check_current(const Task& task, const ControlView& view) const;
   [[nodiscard]] tl::expected<void, Refusal> check_alone() const;
   [[nodiscard]] std::vector<AxisCounts> headed() const;
   tl::expected<void, Refusal> check(Proposal& proposal, const ControlView& view);

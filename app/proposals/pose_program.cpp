@@ -23,7 +23,7 @@ PathProgram pose_program(const Robot& robot, const Alignment& alignment, bool in
     out.targets.push_back({setpoint.slot, insertion->lowest_setpoint_counts()});
     if (insert) {
       in.targets.push_back(target);
-      in.needs_confirmation = !robot.auto_approve;
+      in.needs_confirmation = true;
     }
   }
   PathProgram program;

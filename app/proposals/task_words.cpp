@@ -70,6 +70,10 @@ std::string end_words(const std::string& axis, const TaskStatus& status) {
       return axis + " strayed too far from its path, so every axis was stopped. Look for what holds it back.";
     case TaskReason::goal_late:
       return axis + " did not come to rest at its goal within 5 s. Look for what holds it back.";
+    case TaskReason::moved_away:
+      return axis +
+             " was moved, and what this motion does was right only while it stood where it was. Line the "
+             "robot up again, then propose it again.";
     case TaskReason::linkage_strained:
       return axis +
              " and the slider that is linked to it came to a separation that their linkage does not allow, "

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/crc.hpp>
 #include <charconv>
+#include <cstdio>
 #include <fstream>
 #include <sstream>
 #include <system_error>
@@ -15,6 +17,14 @@ namespace interlock {
 namespace {
 
 constexpr std::uintmax_t largest_file_bytes = std::uintmax_t{1} << 20;
+
+std::string revision_of(std::string_view text) {
+  boost::crc_32_type crc;
+  crc.process_bytes(text.data(), text.size());
+  std::array<char, 9> digits{};
+  std::snprintf(digits.data(), digits.size(), "%08x", crc.checksum());
+  return digits.data();
+}
 
 Pedal read_pedal(TableReader table, std::uint32_t period_us) {
   Pedal pedal;
@@ -220,6 +230,7 @@ tl::expected<Robot, RobotError> parse_robot(std::string_view text, std::string f
     return tl::unexpected(*log.first_error);
   }
   robot.origin = std::move(log.origin);
+  robot.revision = revision_of(text);
   return robot;
 }
 

@@ -35,6 +35,7 @@ json now_json(const ControlView& view) {
   return {{"depth_mm", now.depth_mm},
           {"speed_mm_s", now.speed_mm_s},
           {"left_mm", now.left_mm},
+          {"waits_for_hand", now.waits_for_hand},
           {"armed", now.armed},
           {"cue", now.cue},
           {"wanted_rotation_rad", now.desired_rotation_rad},

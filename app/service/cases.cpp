@@ -1,21 +1,16 @@
 #include "service/cases.hpp"
 
-#include <algorithm>
 #include <limits>
 #include <utility>
 
-#include "robot/compile.hpp"
 #include "service/targeting_store.hpp"
 #include "store/sessions.hpp"
-#include "store/settings.hpp"
 
 namespace interlock {
 namespace {
 
 using nlohmann::json;
 
-/** Setting: registrations of cases that were deleted. */
-constexpr const char* registrations_key = "registrations_before";
 constexpr std::size_t most_cases = 200;
 constexpr std::size_t most_notes = 200;
 constexpr std::size_t most_records = 5000;
@@ -27,7 +22,7 @@ struct Look {
   InForce in_force;
 
   explicit Look(const Context& context)
-      : robot(&context.robot), configuration(config_hash(context.config)), in_force(context.in_force) {}
+      : robot(&context.robot), configuration(context.robot.revision), in_force(context.in_force) {}
 
   [[nodiscard]] bool is_open(const KeptCase& kept) const {
     return kept.state == CaseState::open && kept.number == in_force.open_case;
@@ -159,41 +154,19 @@ Stored<Outcome> changed(Transaction& transaction, Step& step) {
   return as_outcome(case_json(*kept, step.look));
 }
 
-/** Registrations that no program may set again: of the newest case, that one's own and those before it, and
- * of those that were deleted. */
-std::vector<RowMajor> registrations_so_far(Transaction& transaction) {
-  std::vector<RowMajor> known;
-  if (const auto deleted = Settings(transaction).find(registrations_key)) {
-    known = deleted->value.get<std::vector<RowMajor>>();
-  }
-  for (const KeptCase& newest : Cases(transaction).list(1)) {
-    if (const auto before = targeting_of(newest)) {
-      known.insert(known.end(), before->registrations_before.begin(), before->registrations_before.end());
-      if (before->registration) {
-        known.push_back(*before->registration);
-      }
-    }
-  }
-  known.erase(known.begin(),
-              known.end() - static_cast<std::ptrdiff_t>(std::min(known.size(), most_registrations_before)));
-  return known;
-}
-
 Stored<Outcome> open(Transaction& transaction, Step& step) {
   Cases cases(transaction);
   if (const auto other = cases.in_hand()) {
     return Outcome(fail(
         wrong_state(*other, step.look, "no other case that is not closed", "Close it first, or resume it.")));
   }
-  Targeting targeting = first_targeting(*step.look.robot);
-  targeting.registrations_before = registrations_so_far(transaction);
   KeptCase opened{.value = {{"label", step.text},
                             {"robot", step.look.robot->name},
                             {"configuration", step.look.configuration},
                             {"opened", step.taken()},
                             {"changed", step.taken()},
                             {"notes", json::array()},
-                            {"targeting", to_stored(targeting)},
+                            {"targeting", to_stored(first_targeting(*step.look.robot))},
                             {"last_set", json::object()}}};
   opened.number = cases.add(opened.value);
   step.number = opened.number;
@@ -270,8 +243,6 @@ Stored<Outcome> remove(Transaction& transaction, Step& step) {
     return Outcome(fail(wrong_state(*kept, step.look, "a closed case", "Close it first.")));
   }
   record(transaction, step);
-  const json registrations = registrations_so_far(transaction);
-  Settings(transaction).set(registrations_key, registrations, step.entry.time);
   cases.remove(step.number);
   return as_outcome(case_json(*kept, step.look));
 }

@@ -25,6 +25,13 @@ bool stands(const AxisRequest& declared, const ilk_axis_t& before, const ilk_axi
          std::abs(way_since(before, now, rules)) <= rules.noise_counts;
 }
 
+/** Whether a registration rested on the position, and does no more. */
+bool carries_registration(const AxisRequest& declared, const ilk_axis_t& before) {
+  const bool keeps = declared.kind == ILK_REQUEST_SET_HOME && before.homed != ILK_HOMED_NOT &&
+                     before.position_counts == declared.target_counts;
+  return !declared.axis->role.empty() && !keeps;
+}
+
 bool is_accepted(const json& row) {
   return row["verdict"] == catalog::name(catalog::Family::verdict, ILK_VERDICT_ACCEPTED);
 }
@@ -52,7 +59,7 @@ json DeclaredPositions::to_json(const ControlView& view, const ilk_config_t& con
                     {"before_counts", each.before.position_counts},
                     {"declared_counts", each.request.target_counts},
                     {"homed_before", catalog::name(catalog::Family::homed, each.before.homed)},
-                    {"carries_registration", !axis.role.empty()},
+                    {"carries_registration", carries_registration(each.request, each.before)},
                     {"undoable", stands(each.request, each.before, state, config.axis[axis.slot])}});
   }
   const auto left = std::chrono::ceil<std::chrono::seconds>(began_ + undoable_for - now);

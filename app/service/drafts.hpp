@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
+#include <vector>
 
 #include "igtl/command.hpp"
 #include "proposals/proposal.hpp"
@@ -41,6 +42,9 @@ std::span<const DraftKind> draft_kinds();
 
 /** The axis in that slot; 404 NOT_FOUND when there is none. */
 tl::expected<const Axis*, Problem> axis_in(const Robot& robot, std::int64_t slot);
+
+/** Where every axis stands by which one knows where the probe is: what a treatment rests on. */
+std::vector<AxisCounts> standing(const Robot& robot, const ControlView& view);
 
 /** Nothing, where a draft has no field but its kind; else 422 INVALID. */
 tl::expected<void, Problem> without_fields(const nlohmann::json& body);

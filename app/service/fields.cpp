@@ -199,7 +199,7 @@ std::optional<std::string> Fields::text(const std::string& name) {
 
 std::optional<std::string> Fields::line(const std::string& name, std::size_t longest) {
   auto found = text(name);
-  if (found && (printable(*found) != *found || !is_visible(*found))) {
+  if (found && (printable(*found) != *found || visible(*found).empty())) {
     reject(name, "is empty, or has characters that do not show", "a text of one line");
   } else if (found && characters_in(*found) > longest) {
     reject(name, "is too long", "at most " + std::to_string(longest) + " characters");

@@ -27,6 +27,16 @@ tl::expected<const Axis*, Problem> axis_in(const Robot& robot, std::int64_t slot
   return axis;
 }
 
+std::vector<AxisCounts> standing(const Robot& robot, const ControlView& view) {
+  std::vector<AxisCounts> places;
+  for (const Axis& axis : robot.axes) {
+    if (!axis.role.empty()) {
+      places.push_back({axis.slot, view.snapshot.state.axis[axis.slot].position_counts});
+    }
+  }
+  return places;
+}
+
 tl::expected<void, Problem> without_fields(const json& body) {
   const Fields fields(body, {"kind"});
   return fields.problem() ? tl::expected<void, Problem>(fail(*fields.problem()))

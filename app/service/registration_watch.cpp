@@ -25,10 +25,12 @@ std::string RegistrationWatch::see(const ControlView& view) {
   return reasons;
 }
 
-/** Many small differences of homing count together: each is compared with the first home. */
+/** Many small differences of homing count together: each is compared with the first home. A home by hand is
+ * wherever somebody says: what was set while the axis had none rests on nothing. */
 std::string RegistrationWatch::look(Watched& watched, const ilk_axis_t& now) const {
   const ilk_axis_config_t& rules = config_.axis[watched.axis->slot];
-  const std::uint32_t before = std::exchange(watched.homed, now.homed);
+  const bool is_first = !watched.homed;
+  const std::uint32_t before = std::exchange(watched.homed, now.homed).value_or(ILK_HOMED_NOT);
   if (now.homed == ILK_HOMED_NOT) {
     const bool is_homing = now.state == ILK_AXIS_HOMING;
     watched.is_rehomed = watched.is_rehomed || (before != ILK_HOMED_NOT && is_homing);
@@ -48,9 +50,10 @@ std::string RegistrationWatch::look(Watched& watched, const ilk_axis_t& now) con
     return "";
   }
   watched.origin = origin;
-  return before != ILK_HOMED_NOT ? watched.axis->title + " was given another home."
-         : is_rehomed            ? watched.axis->title + " was homed at another place."
-                                 : "";
+  return before != ILK_HOMED_NOT                       ? watched.axis->title + " was given another home."
+         : is_rehomed                                  ? watched.axis->title + " was homed at another place."
+         : !is_first && now.homed == ILK_HOMED_BY_HAND ? watched.axis->title + " was given a home."
+                                                       : "";
 }
 
 }  // namespace interlock

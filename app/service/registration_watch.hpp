@@ -26,10 +26,10 @@ class RegistrationWatch {
  private:
   struct Watched {
     const Axis* axis;
-    std::uint32_t homed = ILK_HOMED_NOT; /**< as it was seen last */
-    std::uint32_t last_origin = 0;       /**< where its counter stands at position 0, as it was seen last */
-    std::uint32_t origin = 0;            /**< since when nothing has expired */
-    bool is_rehomed = false;             /**< it was homed, and homes again */
+    std::optional<std::uint32_t> homed = std::nullopt; /**< as it was seen last */
+    std::uint32_t last_origin = 0; /**< where its counter stands at position 0, as it was seen last */
+    std::uint32_t origin = 0;      /**< since when nothing has expired */
+    bool is_rehomed = false;       /**< it was homed, and homes again */
   };
 
   std::string look(Watched& watched, const ilk_axis_t& now) const;

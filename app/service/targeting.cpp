@@ -5,6 +5,7 @@
 #include <string>
 
 #include "service/fields.hpp"
+#include "system/printable.hpp"
 #include "targeting/registration.hpp"
 #include "targeting/registration_doubt.hpp"
 
@@ -106,22 +107,6 @@ std::optional<RowMajor> read_pose(Fields& fields, const std::string& name) {
   return pose;
 }
 
-/** Of a list in the store. */
-std::vector<RowMajor> read_poses(Fields& fields, const std::string& name) {
-  std::vector<RowMajor> poses;
-  const json* list = fields.value(name);
-  for (std::size_t i = 0; list != nullptr && i < list->size(); ++i) {
-    const json one{{"pose", list->is_array() ? (*list)[i] : json()}};
-    Fields each(one, {"pose"});
-    if (const auto pose = read_pose(each, "pose"); pose && !each.problem()) {
-      poses.push_back(*pose);
-    } else {
-      fields.reject(name + "[" + std::to_string(i) + "]", "is no pose", "a rigid pose");
-    }
-  }
-  return poses;
-}
-
 std::optional<Point> read_point(Fields& fields, const std::string& name) {
   const auto numbers = fields.numbers(name, std::tuple_size_v<Point>);
   if (!numbers) {
@@ -160,7 +145,10 @@ std::vector<PlannedTarget> read_planned(Fields& fields, const std::string& name)
     PlannedTarget target{.name = each.line("name", longest_target_name).value_or(""),
                          .entry_point = read_point(each, "entry_point").value_or(Point{}),
                          .target_point = read_point(each, "target_point").value_or(Point{})};
-    if (std::ranges::any_of(planned, [&](const PlannedTarget& other) { return other.name == target.name; })) {
+    const auto looks_the_same = [seen = visible(target.name)](const PlannedTarget& other) {
+      return visible(other.name) == seen;
+    };
+    if (std::ranges::any_of(planned, looks_the_same)) {
       each.reject("name", "is " + target.name + ", which comes twice", "each name once");
     }
     fields.adopt(each);
@@ -212,8 +200,8 @@ json without_nulls(const json& stored) {
 }  // namespace
 
 bool is_same_registration(const RowMajor& one, const RowMajor& other, bool ignores_rotation) {
-  constexpr double within_mm = 0.1;
-  constexpr double within_turn = 2e-3;
+  constexpr double within_mm = 2.0;
+  constexpr double within_turn = 0.0175;
   for (std::size_t i = 0; i < one.size(); ++i) {
     const bool is_origin = i % 4 == 3;
     if ((is_origin || !ignores_rotation) &&
@@ -256,7 +244,6 @@ json to_json(const Targeting& targeting) {
   body["override_reason"] = or_nothing(targeting.override_reason);
   body.erase("registration_epoch");
   body.erase("registration_expired");
-  body.erase("registrations_before");
   return body;
 }
 
@@ -264,7 +251,6 @@ json to_stored(const Targeting& targeting) {
   json body{{"registration", or_null(targeting.registration)},
             {"registration_epoch", targeting.registration_epoch},
             {"registration_expired", targeting.registration_expired},
-            {"registrations_before", targeting.registrations_before},
             {"registration_doubt", targeting.registration_doubt},
             {"override_reason", targeting.override_reason},
             {"ignore_registration_rotation", targeting.ignore_registration_rotation},
@@ -283,17 +269,16 @@ json to_stored(const Targeting& targeting) {
 tl::expected<Targeting, Problem> stored_targeting(const json& stored) {
   const json values = stored.is_object() ? without_nulls(stored) : stored;
   Targeting targeting;
-  Fields fields(values,
-                {"registration", "registration_epoch", "registration_expired", "registrations_before",
-                 "registration_doubt", "override_reason", "ignore_registration_rotation", "residual_mm",
-                 "fiducials", "entry_point", "target_point", "planned_targets", "reported_position",
-                 "treatment_to_tip_offset", "robot_to_entry_offset", "cannula_to_treatment_offset",
-                 "canula_to_treatment_offset", "treatment_to_robot_at_home"},
-                "targeting");
+  Fields fields(
+      values,
+      {"registration", "registration_epoch", "registration_expired", "registration_doubt", "override_reason",
+       "ignore_registration_rotation", "residual_mm", "fiducials", "entry_point", "target_point",
+       "planned_targets", "reported_position", "treatment_to_tip_offset", "robot_to_entry_offset",
+       "cannula_to_treatment_offset", "canula_to_treatment_offset", "treatment_to_robot_at_home"},
+      "targeting");
   targeting.registration = read_pose(fields, "registration");
   targeting.registration_epoch = fields.integer("registration_epoch", 0, latest_epoch).value_or(0);
   targeting.registration_expired = fields.text("registration_expired").value_or("");
-  targeting.registrations_before = read_poses(fields, "registrations_before");
   targeting.registration_doubt = fields.text("registration_doubt").value_or("");
   targeting.override_reason = fields.text("override_reason").value_or("");
   targeting.ignore_registration_rotation = fields.boolean("ignore_registration_rotation").value_or(false);
@@ -310,17 +295,7 @@ tl::expected<Targeting, Problem> with_registration(Targeting targeting, const js
   Fields fields(
       body, {"registration", "ignore_registration_rotation", "residual_mm", "fiducials", "override_reason"});
   fields.require({{"registration", "16 numbers, row-major"}});
-  const std::optional<RowMajor> before = targeting.registration;
   targeting.registration = read_pose(fields, "registration");
-  std::vector<RowMajor>& expired = targeting.registrations_before;
-  if (before && !targeting.registration_problem.empty()) {
-    expired.push_back(*before);
-  }
-  std::erase_if(expired, [&](const RowMajor& each) {
-    return targeting.registration && is_same_registration(each, *targeting.registration, false);
-  });
-  expired.erase(expired.begin(), expired.end() - static_cast<std::ptrdiff_t>(
-                                                     std::min(expired.size(), most_registrations_before)));
   targeting.registration_epoch = targeting.present_epoch;
   targeting.registration_expired.clear();
   targeting.override_reason = fields.line("override_reason", longest_reason).value_or("");

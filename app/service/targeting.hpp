@@ -40,9 +40,6 @@ constexpr std::int64_t most_fiducials = 1000;
 /** Characters of a reason. */
 constexpr std::size_t longest_reason = 200;
 
-/** Expired registrations that are remembered, the newest. */
-constexpr std::size_t most_registrations_before = 20;
-
 /** Planned targets of a case. */
 constexpr std::size_t most_planned_targets = 100;
 /** Characters of the name of one. */
@@ -82,9 +79,8 @@ struct Targeting {
   std::optional<std::int64_t> fiducials; /**< by how many it was found, if its sender says so */
   std::int64_t registration_epoch = 0;   /**< in which it was set */
   std::string registration_expired;      /**< why, where that is kept; empty: it has not */
-  std::vector<RowMajor> registrations_before; /**< that have expired and were replaced, the newest last */
-  std::string registration_doubt;             /**< why it can hardly be right; empty: it can */
-  std::string override_reason;                /**< why somebody set it all the same */
+  std::string registration_doubt;        /**< why it can hardly be right; empty: it can */
+  std::string override_reason;           /**< why somebody set it all the same */
   /** Why no pose may be made with it; empty: it is valid. Not kept: `judged` finds it anew. */
   std::string registration_problem = "The registration is not set.";
   std::int64_t present_epoch = 0; /**< in which it was judged; not kept */
@@ -100,8 +96,8 @@ struct Targeting {
   bool operator==(const Targeting&) const = default;
 };
 
-/** Whether both put the robot at the same place, to 0.1 mm and 0.1 degrees: a program that repeats what it
- * has may round it. */
+/** Whether both put the robot at the same place, to 2 mm and a degree in each coordinate: a program that
+ * repeats what it has may round it, and what a tracker sends has noise. */
 bool is_same_registration(const RowMajor& one, const RowMajor& other, bool ignores_rotation);
 
 /** The same with what is true of its case and its registration by what is in force. */

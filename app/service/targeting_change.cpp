@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "service/reply.hpp"
 #include "service/targeting_store.hpp"
 
@@ -14,25 +12,21 @@ struct Changed {
   bool leads_elsewhere = false; /**< than before: what followed from it is stale */
 };
 
-/** Whether it is one that has expired, the present one or one before it: only a person can know that it
- * holds. */
-bool is_repeated(const Targeting& before, const Targeting& after) {
-  if (after.registration_epoch == before.registration_epoch && after.registration == before.registration) {
-    return false;
+/** Whether it was set before, in another case or before something moved the robot in the scanner: only a
+ * person can know that it holds again, and has perhaps said so since. */
+bool is_repeated(Transaction& transaction, const Targeting& after) {
+  for (const KeptRegistration& each : Registrations(transaction).newest_first()) {
+    if (is_same_registration(each.pose, *after.registration, after.ignore_registration_rotation)) {
+      return each.epoch != after.registration_epoch || each.case_number != after.case_number;
+    }
   }
-  const auto is_it = [&](const RowMajor& expired) {
-    return after.registration &&
-           is_same_registration(expired, *after.registration, after.ignore_registration_rotation);
-  };
-  const bool is_expired = before.registration && !before.registration_problem.empty();
-  return (is_expired && is_it(*before.registration)) ||
-         std::ranges::any_of(before.registrations_before, is_it);
+  return false;
 }
 
 Problem repeated(const Targeting& before) {
   return {.status = Status::conflict,
           .code = "NO_REGISTRATION",
-          .detail = "It is a registration that has expired." +
+          .detail = "It is a registration of before, which has expired." +
                     (before.registration ? " " + before.registration_problem : std::string()),
           .expected = "a new registration",
           .next_step = "Register anew, or set it in the console if it still holds."};
@@ -51,6 +45,14 @@ bool leads_elsewhere(Targeting before, const Targeting& after) {
   before.reported_position = after.reported_position;
   before.planned_targets = after.planned_targets;
   return before != after;
+}
+
+/** What moves the robot in the scanner moves the patient, too: points of before are elsewhere. */
+Targeting without_points(Targeting targeting) {
+  targeting.entry_point.reset();
+  targeting.target_point.reset();
+  targeting.planned_targets.clear();
+  return targeting;
 }
 
 Problem no_case(const std::string& problem) {
@@ -88,8 +90,8 @@ boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const 
             return plausible(std::move(made), *robot);
           });
         }
-        if (after.targeting && origin.source == TaskSource::openigtlink &&
-            is_repeated(before, *after.targeting)) {
+        if (after.targeting && make == with_registration && origin.source == TaskSource::openigtlink &&
+            is_repeated(transaction, *after.targeting)) {
           return {fail(repeated(before)), false};
         }
         if (after.targeting) {
@@ -97,6 +99,11 @@ boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const 
         }
         if (after.targeting && *after.targeting != before) {
           set_targeting(transaction, before, *after.targeting, origin, entry);
+          if (make == with_registration) {
+            Registrations(transaction)
+                .add({after.targeting->case_number, after.targeting->registration_epoch,
+                      *after.targeting->registration});
+          }
           after.leads_elsewhere = leads_elsewhere(before, *after.targeting);
         }
         return after;
@@ -131,13 +138,15 @@ boost::asio::awaitable<tl::expected<Targeting, Problem>> expire_registration(con
   context.registry.end_stale(is_app ? audit_actor::app : caller.user);
   AuditEntry entry = context.entry(caller, AuditKind::setting, json::object());
   entry.actor = is_app ? audit_actor::app : entry.actor;
-  auto keep = [robot = &context.robot, before, after = in_force, reason = std::move(reason),
+  auto keep = [robot = &context.robot, is_app, before, after = in_force, reason = std::move(reason),
                origin = TargetingOrigin{TaskSource::console, caller.peer}, entry](Store& store) {
     return store.transact([&](Transaction& transaction) -> Stored<Targeting> {
       return find_targeting(transaction, *robot).map([&](const Targeting& stored) {
-        Targeting expired = stored;
+        Targeting expired = is_app ? stored : without_points(stored);
         if (judged(stored, before).registration_problem.empty()) {
           expired.registration_expired = reason;
+        }
+        if (expired != stored) {
           set_targeting(transaction, judged(stored, before), judged(expired, after), origin, entry);
         }
         return expired;

@@ -1,9 +1,11 @@
 /**
  * @file
- * The cases: what registration, target and motions belong to. At most one of them is not closed.
+ * The cases: what registration, target and motions belong to. At most one of them is not closed. And the
+ * registrations of them all.
  */
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -56,6 +58,29 @@ class Cases {
 
   /** What was noted for it: the newest `count`, newest first. */
   [[nodiscard]] nlohmann::json changes(std::int64_t number, std::size_t count) const;
+
+ private:
+  SQLite::Database& database_;
+};
+
+/** A registration that was set: when, in whose case, and 16 numbers, row-major. */
+struct KeptRegistration {
+  std::int64_t case_number = 0;
+  std::int64_t epoch = 0; /**< of registrations, see service/targeting.hpp */
+  std::array<double, 16> pose{};
+};
+
+/** The registrations that were ever set, in one transaction; those of cases that were deleted as well. */
+class Registrations {
+ public:
+  /** So many are kept, the newest. */
+  static constexpr std::int64_t most = 10'000;
+
+  explicit Registrations(Transaction& transaction) : database_(transaction.database()) {}
+
+  void add(const KeptRegistration& set);
+
+  [[nodiscard]] std::vector<KeptRegistration> newest_first() const;
 
  private:
   SQLite::Database& database_;

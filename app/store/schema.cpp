@@ -113,7 +113,32 @@ FROM settings WHERE key = 'targeting' AND json_valid(value);
 DELETE FROM settings WHERE key IN ('targeting', 'targeting_last_set', 'targeting_changes');
 )sql";
 
-constexpr std::array scripts_of_all_versions{version_1, version_2, version_3};
+/** Every registration that was set stays known, whatever becomes of its case. */
+constexpr const char* version_4 = R"sql(
+CREATE TABLE registrations (
+  number INTEGER PRIMARY KEY AUTOINCREMENT,
+  case_number INTEGER NOT NULL,
+  epoch INTEGER NOT NULL,
+  pose TEXT NOT NULL
+) STRICT;
+
+INSERT INTO registrations (case_number, epoch, pose)
+SELECT 0, 0, earlier.value FROM settings, json_each(settings.value) AS earlier WHERE settings.key = 'registrations_before';
+
+INSERT INTO registrations (case_number, epoch, pose)
+SELECT 0, 0, earlier.value FROM cases, json_each(cases.value, '$.targeting.registrations_before') AS earlier;
+
+INSERT INTO registrations (case_number, epoch, pose)
+SELECT number, coalesce(json_extract(value, '$.targeting.registration_epoch'), 0),
+  json_extract(value, '$.targeting.registration')
+FROM cases WHERE json_type(value, '$.targeting.registration') = 'array';
+
+UPDATE cases SET value = json_remove(value, '$.targeting.registrations_before');
+
+DELETE FROM settings WHERE key = 'registrations_before';
+)sql";
+
+constexpr std::array scripts_of_all_versions{version_1, version_2, version_3, version_4};
 
 int pragma(SQLite::Database& database, const char* name) {
   return database.execAndGet(std::string("PRAGMA ") + name).getInt();

@@ -84,14 +84,15 @@ std::string printable(std::string_view text) {
   return line;
 }
 
-bool is_visible(std::string_view text) {
+std::string visible(std::string_view text) {
+  std::string seen;
   for (auto character = first_character(text); character; character = first_character(text)) {
     if (!is_blank(character->code_point)) {
-      return true;
+      seen += text.substr(0, character->bytes);
     }
     text.remove_prefix(character->bytes);
   }
-  return false;
+  return seen;
 }
 
 std::size_t characters_in(std::string_view text) {

@@ -30,8 +30,9 @@ std::optional<Utf8Character> first_character(std::string_view text);
  */
 std::string printable(std::string_view text);
 
-/** Whether a reader sees anything of a text that `printable` leaves as it is. */
-bool is_visible(std::string_view text);
+/** What a reader sees of a text that `printable` leaves as it is: without white space, and without what has
+ * no width. */
+std::string visible(std::string_view text);
 
 /** How many characters a text in UTF-8 has. */
 std::size_t characters_in(std::string_view text);

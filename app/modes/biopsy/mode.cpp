@@ -129,6 +129,7 @@ void BiopsyMode::begin(const ilk_snapshot_t& snapshot) noexcept {
   rotation_.start(snapshot, needle_->rotation_slot);
   seen_tick_ = snapshot.state.system.tick;
   cue_mm_ = 0.0;
+  let_go_ = false;
 }
 
 void BiopsyMode::go_on(const ilk_snapshot_t& snapshot) noexcept {
@@ -185,7 +186,9 @@ bool BiopsyMode::push(const ilk_snapshot_t& snapshot, double time_s) noexcept {
   const double left_mm = std::max(0.0, end_mm - insertion_.position);
   now_.left_mm = left_mm;
   const auto desired = run_->hand.force_n(force_.readings().hand).and_then([&](double force_n) {
-    return cooperative_speed(run_->hand_law, force_n, true, left_mm);
+    let_go_ = let_go_ || std::abs(force_n) <= run_->hand_law.deadband_n;
+    now_.waits_for_hand = !let_go_;
+    return cooperative_speed(run_->hand_law, force_n, let_go_, left_mm);
   });
   if (!desired) {
     return fails(desired.error(), snapshot.state.system.tick);

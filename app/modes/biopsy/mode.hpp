@@ -3,6 +3,9 @@
  * Cooperative Biopsy: the surgeon's hand on the force sensor pushes the needle, for as long as the pedal is
  * held; the needle turns towards its target, and trembles for a moment when it has punctured a membrane.
  *
+ * A press of the pedal follows the hand only once the hand has let go: what the sensor tells before is a zero
+ * that is wrong, or a hand that does not know of the press.
+ *
  * The force is never acted upon for longer than 20 ms: after 8 ms without a new reading the task ends, and a
  * MOVE holds for 10 ms at most, so that an app that falls silent keeps that promise as well. Every error of
  * force or steering ends the task for both axes, which give back their drive.
@@ -76,6 +79,7 @@ class BiopsyMode final : public HeldMode {
   SteeringCommand command_;
   double deepest_allowed_mm_ = 0.0; /**< position of the insertion */
   double cue_mm_ = 0.0;
+  bool let_go_ = false;            /**< the hand has, since the press */
   std::uint32_t seen_tick_ = 0;    /**< of the snapshot before, while executing */
   std::uint32_t steered_tick_ = 0; /**< of the newest plan */
 };

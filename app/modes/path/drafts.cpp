@@ -124,8 +124,25 @@ DraftKind::Reading read_coordinated(const Context& context, json body, std::stri
   co_return coordinated_of(body, context.robot, author);
 }
 
+/** A treatment: at the target by the registration, for as long as the robot stands there. */
 DraftKind::Reading read_ablation(const Context& context, json body, std::string author) {
-  co_return ablation_of(body, context.robot, author);
+  auto task = ablation_of(body, context.robot, author);
+  const std::uint32_t revision = context.registry.targeting_revision();
+  const auto targeting = co_await present_targeting(context);
+  if (!task || !targeting) {
+    co_return fail(task ? targeting.error() : task.error());
+  }
+  if (const auto setup = pose_setup(context.robot, *targeting); !setup) {
+    co_return fail(Problem{.status = Status::conflict,
+                           .code = setup.error().at("code"),
+                           .detail = setup.error().at("text"),
+                           .expected = "an open case with a valid registration",
+                           .next_step = "Set the registration, align the robot with the target, and propose "
+                                        "it again."});
+  }
+  task->targeting_revision = revision;
+  task->rests_on = standing(context.robot, context.view());
+  co_return task;
 }
 
 DraftKind::Reading read_pose(const Context& context, json body, std::string author) {

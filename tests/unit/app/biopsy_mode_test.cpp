@@ -99,6 +99,39 @@ class BiopsyModeTest : public testing::Test {
   double shown_s_ = 0.0;
 };
 
+TEST_F(BiopsyModeTest, AHandThatPressedWhenThePedalWasPressedIsFollowedOnceItHasLetGo) {
+  press_hand(3.0);
+  loop_.run(50);
+  begin();
+  loop_.run(2000);
+  EXPECT_TRUE(loop_.biopsy().now().waits_for_hand);
+  EXPECT_NEAR(loop_.state().axis[needle_push].position_counts, 0, 20);
+  press_hand(0.0);
+  loop_.run(50);
+  EXPECT_FALSE(loop_.biopsy().now().waits_for_hand);
+  press_hand(3.0);
+  loop_.run(1000);
+  EXPECT_GT(loop_.state().axis[needle_push].position_counts, 1000);
+  loop_.pedal(false);
+  loop_.pedal(true);
+  loop_.run(50);
+  EXPECT_TRUE(loop_.biopsy().now().waits_for_hand) << "each press of the pedal for itself";
+}
+
+TEST_F(BiopsyModeTest, ASliderThatIsMovedEndsItWhetherOrNotItIsEnabled) {
+  constexpr std::uint32_t slider = 2;
+  begin();
+  loop_.give(2, BiopsyTask{run_}, {{slider, loop_.state().axis[slider].position_counts}, {needle_push, 77}});
+  press_hand(5.0);
+  loop_.run(500);
+  ASSERT_TRUE(loop_.biopsy().is_open()) << order().slot;
+  loop_.happen(plant::command::PushAxis{slider, 200});
+  loop_.run(500);
+  EXPECT_EQ(order().reason, TaskReason::moved_away);
+  EXPECT_EQ(order().slot, slider);
+  EXPECT_EQ(push_drive(), 0u);
+}
+
 TEST_F(BiopsyModeTest, AHandAtRestMovesNothing) {
   begin();
   press_hand(0.8);
@@ -180,7 +213,9 @@ TEST_F(BiopsyModeTest, ReleaseStopsInTheSameTickAndTheNextPressGoesOn) {
   const double paused_at = loop_.true_position(needle_push);
   loop_.run(500);
   EXPECT_NEAR(loop_.true_position(needle_push), paused_at, 1.0);
+  press_hand(0.0);
   loop_.pedal(true);
+  press_hand(5.0);
   loop_.run(1000);
   EXPECT_EQ(order().phase, TaskPhase::executing);
   EXPECT_GT(loop_.true_position(needle_push), paused_at + 3000);

@@ -81,7 +81,7 @@ TEST_F(CaseRoutesTest, WhatWasInForceIsSoAgainOnceSomebodyResumesTheCase) {
   ASSERT_EQ(post("/api/targeting/registration/expire", "{}").status, 200u);
   take("1/resume");
   EXPECT_EQ(targeting()["registration_problem"], "The registration has expired: The table moved.");
-  EXPECT_EQ(targeting()["target_point"], before["target_point"]);
+  EXPECT_TRUE(targeting()["target_point"].is_null()) << "the patient moved with the table";
 }
 
 TEST_F(CaseRoutesTest, TheNextCaseBeginsWithNothingOfTheOneBefore) {

@@ -61,9 +61,9 @@ class ClosedLoop {
   }
 
   /** The same; a held pedal is pressed anew where the task needs that. */
-  void give(std::uint32_t id, Work work) {
+  void give(std::uint32_t id, Work work, std::vector<AxisCounts> rests_on = {}) {
     const bool is_move = work.find<MoveTask>() != nullptr;
-    give_under_any_pedal(id, std::move(work));
+    modes_.take(task_of(id, std::move(work), std::move(rests_on)), seen_tick_);
     if (!is_move && state_.system.mode == ILK_MODE_MOTION) {
       pedal(false);
       pedal(true);

@@ -140,6 +140,33 @@ TEST_P(PathModeOnThePlant, WhatNeedsAConfirmationBeginsWithThePressAfterIt) {
   expect_at(loop, neuro(), {{test::insertion, 900}, {lateral, -400}});
 }
 
+TEST_P(PathModeOnThePlant, NothingIsInsertedBesideWhatSomebodyLookedAt) {
+  for (const std::int32_t counts : {2, 15}) {
+    ClosedLoop loop(11, GetParam());
+    loop.make_all_ready();
+    loop.give(1, test::along(aligned_then_inserted()));
+    for (std::uint32_t i = 0; i < minute_ticks && loop.path().phase != TaskPhase::paused; ++i) {
+      loop.tick();
+    }
+    loop.confirm(1);
+    loop.pedal(false);
+    const std::int32_t aligned = loop.state().axis[lateral].position_counts;
+    loop.happen(plant::command::PushAxis{lateral, -400 + counts - aligned});
+    loop.run(100);
+    loop.pedal(true);
+    for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.path().phase); ++i) {
+      loop.tick();
+    }
+    if (counts == 2) {
+      expect_done(loop.path());
+    } else {
+      EXPECT_EQ(loop.path().reason, TaskReason::moved_away);
+      EXPECT_EQ(loop.path().slot, lateral);
+      EXPECT_LT(loop.state().axis[test::insertion].position_counts, 100);
+    }
+  }
+}
+
 TEST_P(PathModeOnThePlant, NobodyConfirmsForTenMinutesAndItExpires) {
   ClosedLoop loop(11, GetParam());
   loop.make_all_ready();

@@ -110,6 +110,9 @@ TEST_F(PathProposalTest, AFilesPathIsApprovedWithoutAClickOnlyWhereTheRobotFileS
   ASSERT_TRUE(approved) << approved.error().detail;
   EXPECT_EQ(approved->state, ProposalState::approved);
   EXPECT_THAT(sent_, testing::SizeIs(1));
+  Task of_a_program = file_draft();
+  of_a_program.source = TaskSource::openigtlink;
+  EXPECT_EQ(registry.propose(of_a_program, view_)->state, ProposalState::checked);
 }
 
 TEST_F(PathProposalTest, ATaskLivesUntilTheControlThreadLetsGoOfItAndIsFreedByTheBook) {

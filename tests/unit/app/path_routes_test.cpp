@@ -164,6 +164,8 @@ TEST_F(PathRoutesTest, AnExpiredRegistrationEndsThePoseThatFollowedFromItAndTher
   EXPECT_EQ(again["code"], "NO_REGISTRATION");
   EXPECT_EQ(again["detail"], "The registration has expired: The table moved.");
   register_robot();
+  EXPECT_EQ(propose({{"kind", "pose"}}).problem()["code"], "NO_TARGET") << "the patient moved with the table";
+  ASSERT_EQ(put("/api/targeting/target", target).status, 200u);
   EXPECT_EQ(propose({{"kind", "pose"}}).status, 201u) << "a person says that it still holds";
 }
 
@@ -235,6 +237,8 @@ TEST_F(PathRoutesTest, OnlyTheHolderMaySendALargeTrajectory) {
 TEST_F(PathRoutesTest, AblationTurnsAndInsertsTheProbeThroughItsSteps) {
   const json steps{{{"probe_rotation", 0.5}, {"insertion", 10.0}, {"dwell_s", 2.0}},
                    {{"probe_rotation", -0.5}, {"insertion", 12.0}, {"dwell_s", 0.0}}};
+  EXPECT_EQ(propose({{"kind", "ablation"}, {"steps", steps}}).problem()["code"], "NO_REGISTRATION");
+  register_robot();
   const Answered made = propose({{"kind", "ablation"}, {"steps", steps}});
   ASSERT_EQ(made.status, 201u) << made.body;
   const json body = json::parse(made.body);
@@ -242,7 +246,10 @@ TEST_F(PathRoutesTest, AblationTurnsAndInsertsTheProbeThroughItsSteps) {
   EXPECT_EQ(body["axes"], json({"probe_rotation", "insertion"}));
   EXPECT_EQ(body["legs"], 2);
   EXPECT_GT(body["duration_s"], 2.0);
-  const auto path = next_task().work.as<PathTask>();
+  const Task task = next_task();
+  EXPECT_TRUE(task.targeting_revision);
+  EXPECT_EQ(task.rests_on.size(), 7u);
+  const auto path = task.work.as<PathTask>();
   EXPECT_EQ(std::get<MoveLeg>(path.program->legs.front()).dwell_s, 2.0);
   const std::pair<json, std::string> wrong[] = {
       {json::array(), "steps"},

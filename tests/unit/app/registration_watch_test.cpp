@@ -49,7 +49,8 @@ TEST_F(RegistrationWatchTest, ALostHomeDoes) {
   yaw_.homed = ILK_HOMED_NOT;
   EXPECT_EQ(see(), "Yaw lost its home.");
   yaw_.homed = ILK_HOMED_BY_HAND;
-  EXPECT_EQ(see(), "") << "it had expired before";
+  EXPECT_EQ(see(), "Yaw was given a home.") << "what was set meanwhile knew of none";
+  EXPECT_EQ(see(), "") << "once";
 }
 
 TEST_F(RegistrationWatchTest, SeveralAxesAreNamed) {

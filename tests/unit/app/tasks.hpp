@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <utility>
+#include <vector>
 
 #include "motion/task.hpp"
 #include "proposals/motion_registry.hpp"
@@ -14,6 +15,13 @@ namespace interlock::test {
 
 inline TaskReference task_of(std::uint32_t id, Work work) {
   return std::make_shared<const Task>(Task{.work = std::move(work), .author = "edna", .id = id});
+}
+
+/** The same, which is right only while these axes stand there. */
+inline TaskReference task_of(std::uint32_t id, Work work, std::vector<AxisCounts> rests_on) {
+  Task task = *task_of(id, std::move(work));
+  task.rests_on = std::move(rests_on);
+  return std::make_shared<const Task>(std::move(task));
 }
 
 inline PathTask along(const PathProgram& program) { return {std::make_shared<const PathProgram>(program)}; }

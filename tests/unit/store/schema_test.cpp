@@ -111,6 +111,34 @@ TEST_F(SchemaTest, WhatWasSetBeforeThereWereCasesIsInAClosedOne) {
   EXPECT_FALSE(seen(store, [](Transaction& transaction) { return Settings(transaction).find("targeting"); }));
 }
 
+TEST_F(SchemaTest, RegistrationsOfBeforeStayKnown) {
+  const auto pose = [](double x) { return nlohmann::json{1, 0, 0, x, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; };
+  {
+    SQLite::Database database(file_.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    migrate(database, file_, migrations().first(3));
+    const nlohmann::json targeting{{"registration", pose(3)},
+                                   {"registration_epoch", 7},
+                                   {"registrations_before", nlohmann::json::array({pose(2)})}};
+    SQLite::Statement insert(database, "INSERT INTO cases (state, value) VALUES ('closed', ?)");
+    insert.bind(1, nlohmann::json{{"targeting", targeting}}.dump());
+    insert.exec();
+    SQLite::Statement set(database, "INSERT INTO settings VALUES ('registrations_before', ?, '')");
+    set.bind(1, nlohmann::json::array({pose(1)}).dump());
+    set.exec();
+  }
+  Store store = open();
+  const auto known =
+      seen(store, [](Transaction& transaction) { return Registrations(transaction).newest_first(); });
+  ASSERT_EQ(known.size(), 3u);
+  EXPECT_EQ(known[0].pose[3], 3.0);
+  EXPECT_EQ(known[0].epoch, 7);
+  EXPECT_EQ(known[0].case_number, 1);
+  EXPECT_EQ(known[1].pose[3], 2.0);
+  EXPECT_EQ(known[2].pose[3], 1.0);
+  const auto cases = seen(store, [](Transaction& transaction) { return Cases(transaction).list(9); });
+  EXPECT_FALSE(cases.at(0).value["targeting"].contains("registrations_before"));
+}
+
 TEST_F(SchemaTest, NoMoreThanOneCaseIsInHand) {
   Store store = open();
   commit(store, [](Transaction& transaction) { Cases(transaction).add(nlohmann::json::object()); });

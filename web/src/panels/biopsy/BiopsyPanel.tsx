@@ -169,6 +169,12 @@ function Now({ now }: { readonly now: BiopsyNow }) {
       <dd>
         {now.depth_mm.toFixed(1)} mm, {now.left_mm.toFixed(1)} mm left, {now.speed_mm_s.toFixed(1)} mm/s
       </dd>
+      {now.waits_for_hand && (
+        <dd className="bad" role="alert">
+          The force sensor was pressed when the pedal was. Let go of it, or zero the forces, before it is
+          followed.
+        </dd>
+      )}
       <dt>Steering</dt>
       <dd>
         to {(now.wanted_rotation_rad * DEGREES).toFixed(0)}°, alpha {now.alpha.toFixed(2)}, curvature{" "}
