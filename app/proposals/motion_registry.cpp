@@ -147,7 +147,9 @@ tl::expected<Proposal, Refusal> MotionRegistry::approve(std::uint32_t id, const 
                                                         std::chrono::steady_clock::time_point asked) {
   discard_waiting(view);
   return waiting(id).and_then([&](Proposal* proposal) {
-    const Axis* moved = moved_since(places(*proposal), view);
+    // One axis goes straight to where it comes to rest, and homing to the switches, from wherever it is.
+    const bool has_way = proposal->ends.size() > 1;
+    const Axis* moved = has_way ? moved_since(places(*proposal), view) : nullptr;
     return check(*proposal, view).and_then([&]() -> tl::expected<Proposal, Refusal> {
       if (moved != nullptr) {
         const std::string title = capital(title_of(robot_, moved->slot));

@@ -71,7 +71,8 @@ class MotionRegistry {
   bool renew(std::uint32_t id);
 
   /** Checks a proposal that waits for it anew, and approves it: NOT_WAITING when none of that number does,
-   * MOVED when one of its axes is not where it was when the proposal was planned, which is then done anew. */
+   * MOVED when an axis of several that it moves is not where it was when the proposal was planned, which is
+   * then done anew. */
   tl::expected<Proposal, Refusal> approve(
       std::uint32_t id, const ControlView& view,
       std::chrono::steady_clock::time_point asked = std::chrono::steady_clock::now());

@@ -16,24 +16,22 @@ namespace interlock::catalog {
 
 /** Families of codes, in the order of the catalog. */
 enum class Family : std::uint8_t {
-  mode,       /**< System modes. */
+  mode, /**< System modes. */
   axis_state, /**< States of an axis. */
-  request,    /**< Requests of the app. `fields` are read by the kernel; `checks` are the verdicts that can
-                 refuse it, in order, after CHECKSUM, SEQUENCE, UNKNOWN and AXIS. */
-  verdict,    /**< The one answer to a request. */
-  cause,      /**< Why the system is LOCKED. */
-  fault,      /**< Why an axis is FAULTED. */
-  gate, /**< The conditions between a wish and a driven axis, in the order in which they are checked. The
-           first that does not hold blocks. */
+  request, /**< Requests of the app. `fields` are read by the kernel; `checks` are the verdicts that can refuse it, in order, after CHECKSUM, SEQUENCE, UNKNOWN and AXIS. */
+  verdict, /**< The one answer to a request. */
+  cause, /**< Why the system is LOCKED. */
+  fault, /**< Why an axis is FAULTED. */
+  gate, /**< The conditions between a wish and a driven axis, in the order in which they are checked. The first that does not hold blocks. */
   config_error, /**< The first rule that a refused configuration breaks. */
-  card,         /**< Kinds of motor cards. */
-  limit_side,   /**< The end of the axis at which its switch sits. */
-  direction,    /**< Sense of motion, as the position counts. */
+  card, /**< Kinds of motor cards. */
+  limit_side, /**< The end of the axis at which its switch sits. */
+  direction, /**< Sense of motion, as the position counts. */
   homing_phase, /**< Phases of homing. */
-  homed,        /**< How the position of an axis came to be known. */
-  pedal,        /**< What the pedal's channels say together. */
-  lamp,         /**< Lamps of the front panel. */
-  colour,       /**< Colours of a lamp. */
+  homed, /**< How the position of an axis came to be known. */
+  pedal, /**< What the pedal's channels say together. */
+  lamp, /**< Lamps of the front panel. */
+  colour, /**< Colours of a lamp. */
 };
 
 /** One code. Texts that a family does not carry are empty. */

@@ -99,7 +99,6 @@ test("the table moved: the registration expires at once, and is valid again once
   const panel = robot.panel("Registration");
   const alignment = robot.panel("Alignment");
   const moved = robot.button("The table moved");
-  await expect(moved).toBeDisabled();
   await expect(alignment).toContainText("NO_REGISTRATION");
   await put(page, "registration", { registration: straight });
   await expect(alignment.getByRole("row")).toHaveCount(8);
@@ -109,8 +108,44 @@ test("the table moved: the registration expires at once, and is valid again once
   await expect(moved).toBeDisabled();
   await expect(robot.panel("History").getByRole("row").nth(1)).toContainText("has expired: The table moved.");
   await robot.button("Set registration").click();
-  await expect(alignment.getByRole("row")).toHaveCount(8);
   await expect(panel).not.toContainText("expired");
+  await expect(alignment).toContainText("NO_TARGET");
+  await put(page, "target", { entry_point: [-10, 65, -3], target_point: [-13, 15, -13] });
+  await expect(alignment.getByRole("row")).toHaveCount(8);
+});
+
+test("a planned target is kept under its name, fills the fields when it is taken, and is set by itself", async ({
+  robot,
+  page,
+}) => {
+  await robot.open("Targeting");
+  const aim = robot.panel("Entry, target and probe");
+  const field = (name: string) => page.getByRole("textbox", { name: `${name}, scanner RAS, mm` });
+  const sent = sentBy(page);
+  await aim.getByText("Planned targets: 0").click();
+  await expect(aim).toContainText("Write entry and target above");
+  for (const [name, values] of [
+    ["Entry", entry],
+    ["Target", target],
+  ] as const)
+    for (const [at, row] of ["R", "A", "S"].entries()) await field(`${name} ${row}`).fill(String(values[at]));
+  await aim.getByRole("textbox", { name: "Name" }).fill("core 1");
+  await page.keyboard.press("Enter");
+  const row = aim.getByRole("row", { name: "core 1" });
+  await expect(row).toContainText("5.0");
+  await robot.button("Undo").click();
+  await expect(field("Target R")).toHaveValue("");
+  await robot.button("Take core 1 into the fields").click();
+  await expect(field("Target R")).toHaveValue("5");
+  await robot.button("Set target").click();
+  await expect(aim).toContainText("As received.");
+  await robot.button("Remove core 1").click();
+  await expect(aim).toContainText("Planned targets: 0");
+  expect(sent).toEqual([
+    { planned_targets: [{ name: "core 1", entry_point: entry, target_point: target }] },
+    { entry_point: entry, target_point: target },
+    { planned_targets: [] },
+  ]);
 });
 
 test("what is edited is not overwritten by what arrives, and nothing is sent that did not change", async ({

@@ -29,6 +29,10 @@ TARGETS = [
     {"entry_point": [9, 251, 71], "target_point": [6, 201, 62]},
 ]
 POSE = {"kind": "pose"}
+# A plan holds for axes that stand where they stood by up to three deadbands, of one count each; encoders
+# and what they lag behind by.
+STANDS_COUNTS = 1.5
+ELSEWHERE_COUNTS = 6.0
 TOGETHER = {"kind": "coordinated", "targets": {"yaw": -0.2, "pitch": -0.1}}
 
 
@@ -49,6 +53,11 @@ def true_counts(robot: Stack) -> float:
     """Where the axis in slot 0 stands, whatever its encoder and its home say."""
     [axis] = [each for each in robot.control("status")["axes"] if each["slot"] == 0]
     return axis["position_counts"]
+
+
+def places(robot: Stack) -> dict[int, float]:
+    """Where every axis stands in truth, by its slot."""
+    return {each["slot"]: each["position_counts"] for each in robot.control("status")["axes"]}
 
 
 @dataclass
@@ -97,6 +106,7 @@ class Walker:
         self.other = robot.client_of_new("erin", "engineer")
         self.start = true_counts(robot)
         self.home_at = self.start
+        self.planned_at: dict[int, dict[int, float]] = {}
 
     def ask(self, method: str, path: str, expected: bool, what: str, **content: object) -> dict:
         """An answer that has to be one of success where it is expected, and a refusal where not."""
@@ -106,6 +116,10 @@ class Walker:
         assert answer.is_success == expected, (what, expected, self.believed, answer.text, self.faults())
         self.seen[f"{what} {'done' if expected else 'refused'}"] += 1
         return answer.json()
+
+    def slots_of(self, names: list[str]) -> list[int]:
+        motors = judge(self.robot.api.get("/api/motors")).json()
+        return [each["slot"] for each in motors if each["name"] in names]
 
     def faults(self) -> list[str]:
         return [each["fault"] for each in judge(self.robot.api.get("/api/motors")).json()]
@@ -159,8 +173,9 @@ class Walker:
             self.believed.target = place
 
     def move_table(self) -> None:
+        """And the patient with it."""
         self.ask("POST", "targeting/registration/expire", True, "table", json={})
-        self.believed.registration = None
+        self.believed.registration = self.believed.target = None
 
     def set_home(self) -> None:
         """Elsewhere: the axis is pushed before, to near where it stood at first."""
@@ -186,6 +201,8 @@ class Walker:
         )
         if "id" in made:
             assert made["case"] == (known.case if known.is_open else None)
+            there = places(self.robot)
+            self.planned_at[made["id"]] = {slot: there[slot] for slot in self.slots_of(made["axes"])}
             known.motions[made["id"]] = (draft["kind"], known.basis(draft["kind"]))
 
     def approve(self) -> None:
@@ -194,10 +211,26 @@ class Walker:
         newest = max(known.motions, default=1)
         number = self.draw.choice([*known.motions, newest, max(1, newest - 1)])
         waits = number in known.motions and known.holds(number) and number != known.approved
+        waits = waits and self.look_again(number)
         self.ask("POST", f"proposals/{number}/approve", waits, "approve")
         if waits:
             known.motions.pop(known.approved or 0, None)
             known.approved = number
+
+    def look_again(self, number: int) -> bool:
+        """What begins elsewhere than where it was planned is planned anew, and not approved as it was.
+        False: it was rejected, as nobody can tell to a count."""
+        then, now = self.planned_at[number], places(self.robot)
+        way = max(abs(now[slot] - then[slot]) for slot in then)
+        if way > ELSEWHERE_COUNTS:
+            refused = self.ask("POST", f"proposals/{number}/approve", False, "approve from elsewhere")
+            assert refused["code"] == "MOVED"
+            self.planned_at[number] = {slot: now[slot] for slot in then}
+        elif way > STANDS_COUNTS:
+            self.ask("POST", f"proposals/{number}/reject", True, "reject")
+            del self.believed.motions[number]
+            return False
+        return True
 
     def approve_as_another(self) -> None:
         number = max(self.believed.motions, default=1)

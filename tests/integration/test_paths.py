@@ -59,7 +59,8 @@ def test_what_is_approved_under_a_held_pedal_waits_for_a_new_press(stack: StackF
     robot = ready(stack)
     press(robot)
     targets = {"lateral": -20.0, "head": -25.0}
-    for number in (propose(robot, kind="coordinated", targets=targets), propose(robot, kind="home")):
+    for asked in ({"kind": "coordinated", "targets": targets}, {"kind": "home"}):
+        number = propose(robot, **asked)
         approve(robot, number)
         wait_until(
             "it says so",

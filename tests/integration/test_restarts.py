@@ -283,7 +283,7 @@ def test_a_navigation_program_that_insists_moves_nothing_after_a_restart_until_i
     wait_until("it is back", lambda: len(connections(robot)) == 1)
     make_controller(robot)
     x, y, z = np.reshape(workflow.registration, (4, 4))[:3, 3]
-    requests.registration = straight(x + 1, y, z)
+    requests.registration = straight(x + 3, y, z)
     requests.answered(calibrated)
 
     def proposed() -> list[int]:

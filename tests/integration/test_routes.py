@@ -326,6 +326,8 @@ def test_the_alignment_tells_what_is_missing_then_what_is_desired_reachable_and_
     unlock(robot)
     for axis in robot.api.get("/api/motors").json():
         set_home(robot, axis["slot"])
+    wait_until("it rested on no home", lambda: alignment()["alignment_problem"]["code"] == "NO_REGISTRATION")
+    register(robot, shift)
     view = alignment()
     assert (view["alignment_problem"], view["current_problem"]) == (None, None)
     aligned = view["alignment"]

@@ -88,6 +88,24 @@ TEST_F(PathProposalTest, AConsolesPathIsCheckedApprovedAndOrdered) {
   EXPECT_EQ(registry_.app_mode(), "manual");
 }
 
+TEST_F(PathProposalTest, WhatWasPlannedFromElsewhereIsLookedAtAgainBeforeItIsApproved) {
+  const Task draft = draft_to({{test::yaw, -300}, {head_axis, -1000}});
+  ASSERT_TRUE(registry_.propose(draft, view_));
+  test::move(view_, test::yaw, -3);
+  test::move(view_, test::insertion, 500);
+  ASSERT_TRUE(registry_.approve(1, view_)) << "it stands there but for noise; the other is not moved";
+  ASSERT_TRUE(registry_.propose(draft, view_));
+  test::move(view_, head_axis, -50);
+  const auto moved = registry_.approve(2, view_);
+  ASSERT_FALSE(moved);
+  EXPECT_EQ(moved.error().code, "MOVED");
+  EXPECT_EQ(state(2), ProposalState::checked);
+  EXPECT_TRUE(registry_.approve(2, view_)) << "it was planned from there";
+  ASSERT_TRUE(registry_.propose(draft_to({{head_axis, -1000}}), view_));
+  test::move(view_, head_axis, -50);
+  EXPECT_TRUE(registry_.approve(3, view_)) << "one axis goes straight there from wherever it is";
+}
+
 TEST_F(PathProposalTest, AFilesPathIsApprovedWithoutAClickOnlyWhereTheRobotFileSaysSo) {
   const auto waits = registry_.propose(file_draft(), view_);
   ASSERT_TRUE(waits) << waits.error().detail;

@@ -22,12 +22,7 @@ class RegistrationWatchTest : public testing::Test {
     EXPECT_EQ(see(), "");
   }
 
-  /** As a hand or a motor moves it. */
-  void move(std::int32_t counts) {
-    const bool is_corrected = test::neuro_config().axis[test::yaw].direction_correction != 0;
-    yaw_.position_counts += counts;
-    yaw_.raw += static_cast<std::uint32_t>(is_corrected ? -counts : counts);
-  }
+  void move(std::int32_t counts) { test::move(view_, test::yaw, counts); }
 
   ControlView view_ = test::ready_view();
   ilk_axis_t& yaw_ = view_.snapshot.state.axis[test::yaw];

@@ -22,6 +22,13 @@ ilk_config_t config_of(const Robot& robot) {
   return compiled ? *compiled : throw std::runtime_error(compiled.error().message());
 }
 
+void move(ControlView& view, std::uint32_t slot, std::int32_t counts) {
+  ilk_axis_t& moved = view.snapshot.state.axis[slot];
+  const bool is_corrected = neuro_config().axis[slot].direction_correction != 0;
+  moved.position_counts += counts;
+  moved.raw += static_cast<std::uint32_t>(is_corrected ? -counts : counts);
+}
+
 ControlView ready_view() { return ready_view(neuro()); }
 
 ControlView ready_view(const Robot& robot) {

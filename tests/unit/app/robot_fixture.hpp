@@ -28,6 +28,9 @@ ilk_config_t config_of(const Robot& robot);
 
 /** A view of an attached kernel in READY, every axis homed at the middle of its range and enabled. */
 ControlView ready_view();
+
+/** As a hand or a motor moves an axis of that robot: its encoder counts along. */
+void move(ControlView& view, std::uint32_t slot, std::int32_t counts);
 ControlView ready_view(const Robot& robot);
 
 /** The same of the prostate robot, its sliders parked and its needle out; both forces were read now. */

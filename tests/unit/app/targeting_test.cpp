@@ -205,6 +205,7 @@ TEST(Targeting, APlannedTargetThatIsWrongIsNamed) {
       {"all", "planned_targets"},
       {json(101, first_core), "planned_targets"},
       {{first_core, first_core}, "planned_targets[1].name"},
+      {{first_core, with("name", " core\u200b 1")}, "planned_targets[1].name"},
       {{first_core, 7}, "planned_targets[1]"},
       {json::array({unnamed}), "planned_targets[0].name"},
       {json::array({with("name", "\u200b")}), "planned_targets[0].name"},

@@ -277,6 +277,8 @@ export const api = {
     act(() => http.PUT("/api/targeting/registration", { body: change })),
   /** The table moved. */
   expireRegistration: () => act(() => http.POST("/api/targeting/registration/expire", { body: {} })),
+  setPlannedTargets: (planned_targets: Targeting["planned_targets"]) =>
+    act(() => http.PUT("/api/targeting/planned", { body: { planned_targets } })),
   setTarget: (change: TargetChange) => act(() => http.PUT("/api/targeting/target", { body: change })),
   /** Computed anew for each probe. */
   reach: () => read(() => slowHttp.GET("/api/targeting/reach")),

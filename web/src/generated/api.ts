@@ -781,7 +781,8 @@ export interface paths {
         /**
          * The table moved, or the registration holds no longer for another reason. It expires at once, with every motion that rests on it.
          * @description Nobody needs control for that. A registration expires by itself when the app starts, and when an axis with a role loses its home,
-         *     is given another one, or is homed at another place. 503 STORE: it has expired, but the store does not keep why.
+         *     is given one by hand or is homed at another place. 503 STORE: it has expired, but the store does not keep why.
+         *     Entry, target and planned targets are not set any more: what moves the robot in the scanner moves the patient.
          */
         post: operations["expireRegistration"];
         delete?: never;
@@ -1145,7 +1146,8 @@ export interface paths {
          *     a home step that goes to positions, of an axis that is not homed by then (NOT_HOMED), or homing that could part linked sliders too far (SEPARATION).
          *     Motions of several axes: axes that are not homed (NOT_HOMED), targets out of range (RANGE), sliders beyond their linkage (SEPARATION),
          *     no motion within the rates of the axes (NO_PATH); a pose that cannot be had (UNREACHABLE, or a problem of `alignment`),
-         *     or whose registration, probe or target changed meanwhile (STALE); no trajectory loaded (EMPTY).
+         *     or whose registration, probe or target changed meanwhile (STALE); no trajectory loaded (EMPTY). An ablation needs a valid registration (NO_REGISTRATION).
+         *     Ablations and biopsies rest on where the axes of the kinematics stand: moved before the approval it is STALE, moved afterwards it ends.
          *     A refused draft stays in the list.
          */
         post: operations["createProposal"];
@@ -1268,7 +1270,8 @@ export interface paths {
         put?: never;
         /**
          * Checks a proposal that is `checked` anew and approves it; it executes while the pedal is held. 409 NOT_WAITING when it does not
-         *     wait for that. Nobody's approval comes for 10 minutes, or the kernel locks: it ends.
+         *     wait for that; MOVED when one of its axes, of several, is not where it was when it was planned: it is planned anew, to be looked at and approved again.
+         *     Nobody's approval comes for 10 minutes, or the kernel locks: it ends.
          */
         post: operations["approveProposal"];
         delete?: never;
@@ -1290,7 +1293,7 @@ export interface paths {
         put?: never;
         /**
          * Somebody has looked at the aligned probe: the proposal may go on to its insertion, at the next press of the pedal. NOT_WAITING unless
-         *     it `wants_confirmation`. It waits for that for 10 minutes.
+         *     it `wants_confirmation`. It waits for that for 10 minutes, and ends when an axis is moved from where it was aligned.
          */
         post: operations["confirmProposal"];
         delete?: never;
@@ -1423,7 +1426,7 @@ export interface components {
              * @description Verdict name, or NOT_FOUND, METHOD_NOT_ALLOWED, MALFORMED, INVALID, TOO_LARGE, HOST, ORIGIN, UPGRADE_REQUIRED, NOT_IMPLEMENTED,
              *     LOGIN, CREDENTIALS, BACK_OFF, ROLE, CONTROL, REPLAY, EXISTS, LAST_ADMIN, STORE, STOPPED, MODE_HOME, MODE_PATH, NOT_HOMED, SEPARATION,
              *     HAS_SWITCH, POSITIONS_ROBOT, POSITIONS_CONFIG, POSITIONS_VERSION,
-             *     NO_KERNEL, NO_BENCH, NO_BLACK_BOX, PEDAL_LAPSED, JOG_LAPSED, CONFIG_MISMATCH, ENDED, OVERLOADED, LATE; of paths NO_PATH, UNREACHABLE, STALE,
+             *     NO_KERNEL, NO_BENCH, NO_BLACK_BOX, PEDAL_LAPSED, JOG_LAPSED, CONFIG_MISMATCH, ENDED, OVERLOADED, LATE; of paths NO_PATH, UNREACHABLE, STALE, MOVED,
              *     EMPTY, NO_TARGETS, NOT_WAITING; of cases NO_CASE, CASE, OTHER_ROBOT; of a trajectory or a pose a code of `interlock trajectory check` or of `interlock kinematics`.
              */
             code: string;
@@ -1919,6 +1922,8 @@ export interface components {
             speed_mm_s: number;
             /** @description To the target's depth. */
             left_mm: number;
+            /** @description The force sensor was pressed when the pedal was: nothing follows it before it is let go. */
+            waits_for_hand: boolean;
             /** @description A membrane is listened for. */
             armed: boolean;
             /** @description The needle trembles, for it has punctured a membrane. */
@@ -2058,7 +2063,7 @@ export interface components {
             problem: string | null;
             /** @description Name of the robot, as `interlock run` takes it. */
             robot: string;
-            /** @description Of the robot when it was opened or last resumed, eight hex digits; empty where that is not known. */
+            /** @description Of the whole file of the robot when it was opened or last resumed, eight hex digits; empty where that is not known. */
             configuration: string;
             /** @description Whether the robot has another one now; false of another robot. */
             configuration_changed: boolean;
@@ -2250,10 +2255,12 @@ export interface components {
             current_position: components["schemas"]["Pose"];
         };
         PlannedTarget: {
-            /** @description Each once; no patient data, as the audit keeps it. */
+            /** @description Each once, and none that looks like another; no patient data, as the audit keeps it. */
             name: string;
-            entry_point: components["schemas"]["Point"];
-            target_point: components["schemas"]["Point"];
+            /** @description x, y, z in mm, -10000 to 10000. */
+            entry_point: number[];
+            /** @description As above. */
+            target_point: number[];
         };
         PlannedTargetsChange: {
             planned_targets: components["schemas"]["PlannedTarget"][];

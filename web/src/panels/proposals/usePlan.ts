@@ -10,13 +10,14 @@ export interface Planned {
 
 const nothing: Planned = { plan: null, notice: null };
 
-/** The plan of a proposal; asked for anew when the proposal goes to another state, as it is checked anew when approved. */
+/** The plan of a proposal; asked for anew when the proposal says something else, as it is checked anew when approved. */
 export function usePlan(proposal: Proposal | undefined): Planned {
   const id = proposal?.id;
   const state = proposal?.state;
+  const detail = proposal?.detail;
   const [found, setFound] = useState<Planned>(nothing);
   useEffect(() => {
-    if (id === undefined || state === undefined) return undefined;
+    if (id === undefined || state === undefined || detail === undefined) return undefined;
     let gone = false;
     void api.proposalPlan(id).then((outcome) => {
       if (gone) return;
@@ -29,6 +30,6 @@ export function usePlan(proposal: Proposal | undefined): Planned {
     return () => {
       gone = true;
     };
-  }, [id, state]);
+  }, [id, state, detail]);
   return found.plan !== null && found.plan.id !== id ? nothing : found;
 }

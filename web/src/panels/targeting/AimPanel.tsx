@@ -16,12 +16,15 @@ import {
   offsets,
   offsetTitles,
   points,
+  pointsOf,
   pointTitles,
   receivedAim,
   titleOf,
+  withPoints,
 } from "./aim";
 import { type Draft, hasNews, isEdited, kept, taken, withText } from "./draft";
 import { list, numberIn } from "./numbers";
+import { PlannedTargets } from "./PlannedTargets";
 import { ProbeDrawing } from "./ProbeDrawing";
 import { FRAME, FrameLabel, News, Problems, SendBar, SetBy } from "./parts";
 import { rowNames } from "./pose";
@@ -64,6 +67,13 @@ export function AimPanel({ targeting, history, asked, off, onSet }: AimPanelProp
     if (!outcome.ok) return;
     setAim((known) => receivedAim(known, outcome.value));
     await onSet();
+  };
+
+  const plan = async (planned: Targeting["planned_targets"]): Promise<boolean> => {
+    const outcome = await api.setPlannedTargets(planned);
+    setRefusal(outcome.ok ? null : noticeOfProblem(outcome.problem));
+    await onSet();
+    return outcome.ok;
   };
 
   const field = { readOnly: reason !== null, problemsId, onText };
@@ -142,6 +152,14 @@ export function AimPanel({ targeting, history, asked, off, onSet }: AimPanelProp
           }}
         />
       </form>
+      {off === null && (
+        <PlannedTargets
+          planned={targeting.planned_targets}
+          points={pointsOf(aim)}
+          onTake={(planned) => setAim((known) => withPoints(known, planned))}
+          onChange={plan}
+        />
+      )}
     </Panel>
   );
 }

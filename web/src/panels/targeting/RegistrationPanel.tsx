@@ -144,7 +144,7 @@ export function RegistrationPanel({ targeting, history, asked, off, onSet }: Reg
           Use its origin alone, as if the robot stood straight in the scanner
         </label>
         <span>
-          <Expiry isValid={isValid} onExpired={onSet} />
+          <Expiry hasMore={isValid || hasPoints(targeting)} onExpired={onSet} />
         </span>
         {hasNews(draft) && (
           <News
@@ -214,12 +214,17 @@ async function readFile(file: File, onText: (name: string, text: string) => void
   onText(file.name, await file.slice(0, MOST_CHARACTERS + 1).text());
 }
 
+function hasPoints({ entry_point, target_point, planned_targets }: Targeting): boolean {
+  return entry_point !== null || target_point !== null || planned_targets.length > 0;
+}
+
 /** One button for the moment in which the table, or the patient, has moved. */
 function Expiry({
-  isValid,
+  hasMore,
   onExpired,
 }: {
-  readonly isValid: boolean;
+  /** Something is in force that holds no longer then. */
+  readonly hasMore: boolean;
   readonly onExpired: () => Promise<void>;
 }) {
   const [refusal, setRefusal] = useState<Notice | null>(null);
@@ -235,12 +240,12 @@ function Expiry({
       <button
         type="button"
         className="button"
-        disabled={reason !== null || !isValid}
+        disabled={reason !== null || !hasMore}
         title={
           reason ??
-          (isValid
-            ? "The registration expires, and every motion that rests on it ends"
-            : "No registration is valid")
+          (hasMore
+            ? "The registration expires, entry and target are gone, and every motion that rests on them ends"
+            : "Neither a registration is valid nor a point set")
         }
         onClick={() => void onMoved()}
       >

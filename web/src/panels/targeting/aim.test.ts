@@ -1,6 +1,16 @@
 import { describe, expect, it } from "vitest";
 import type { Targeting } from "../../api/client";
-import { type Aim, type AimName, aimChange, aimOf, aimProblems, changedGroups, receivedAim } from "./aim";
+import {
+  type Aim,
+  type AimName,
+  aimChange,
+  aimOf,
+  aimProblems,
+  changedGroups,
+  pointsOf,
+  receivedAim,
+  withPoints,
+} from "./aim";
 import { hasNews, withText } from "./draft";
 
 const targeting: Targeting = {
@@ -43,6 +53,22 @@ describe("what is sent of entry, target and probe", () => {
 
   it("is nothing while a part of it is no number", () => {
     expect(aimChange(typed(aim, "target_point", "5", "200"))).toBeNull();
+  });
+});
+
+describe("points that are planned", () => {
+  it("are those of the fields, once both are points", () => {
+    expect(pointsOf(aim)).toBeNull();
+    expect(pointsOf(typed(aim, "target_point", "5", "200", "far"))).toBeNull();
+    expect(pointsOf(typed(aim, "target_point", "5", "200", "60,5"))).toEqual({
+      entry_point: [8, 250, 70],
+      target_point: [5, 200, 60.5],
+    });
+  });
+
+  it("fill the fields, to be sent where they are others", () => {
+    const filled = withPoints(aim, { entry_point: [8, 250, 70], target_point: [1, 2, 3] });
+    expect(aimChange(filled)).toEqual({ target_point: [1, 2, 3] });
   });
 });
 

@@ -1,6 +1,15 @@
 /** Entry, target and probe offsets as they are edited: each is a group of its own, and only those that changed are sent. */
 import type { TargetChange, Targeting } from "../../api/client";
-import { type Draft, draftOf, isChanged, isEdited, numbersOf, received, type Values } from "./draft";
+import {
+  type Draft,
+  draftOf,
+  isChanged,
+  isEdited,
+  numbersOf,
+  received,
+  type Values,
+  withValues,
+} from "./draft";
 import { numberIn } from "./numbers";
 import { FARTHEST_MM, rowNames } from "./pose";
 
@@ -45,6 +54,26 @@ export function aimOf(targeting: Targeting): Aim {
 export function receivedAim(aim: Aim, targeting: Targeting): Aim {
   const next = mapped((name) => received(aim[name], valuesIn(targeting, name)));
   return names.every((name) => next[name] === aim[name]) ? aim : next;
+}
+
+/** Entry and target as they stand in the fields; null while one of them is no point. */
+export function pointsOf(aim: Aim): Readonly<Record<PointName, number[]>> | null {
+  const [entry, target] = points.map((name) =>
+    problemsOf(name, aim[name]).length > 0 ? null : numbersOf(aim[name]),
+  );
+  return entry && target ? { entry_point: [...entry], target_point: [...target] } : null;
+}
+
+/** With another entry and target in the fields, to be sent. */
+export function withPoints(
+  aim: Aim,
+  { entry_point, target_point }: Readonly<Record<PointName, readonly number[]>>,
+): Aim {
+  return {
+    ...aim,
+    entry_point: withValues(aim.entry_point, entry_point),
+    target_point: withValues(aim.target_point, target_point),
+  };
 }
 
 /** The groups that have something to send. */
