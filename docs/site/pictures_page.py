@@ -10,6 +10,7 @@ CAPTIONS = {
     "robot-covered": "The app went silent: what it said last is covered after a second",
     "prostate": "The prostate robot",
     "workflow": "From opening a case to closing it, step by step",
+    "prostate-workflow": "The same with a biopsy",
     "targeting": "Registration, entry and target, and what they ask of each axis",
     "proposals": "Every proposal, one of them with its checks, its way and what became of it",
     "plots": "Position, error, velocity and drive of an axis over time, and the times of the loop",

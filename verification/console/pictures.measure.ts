@@ -115,5 +115,9 @@ test.describe("the prostate robot", () => {
   test("its page", async ({ robot, page }) => {
     await robot.unlockRobot();
     await take(page, "prostate");
+    await robot.openCase("phantom 13");
+    await robot.open("Workflow");
+    await expect(robot.panel("Workflow").getByRole("listitem", { name: "Biopsy" })).toBeVisible();
+    await take(page, "prostate-workflow");
   });
 });
