@@ -27,6 +27,7 @@ using Spatial = std::array<double, 6>;
 /** What the robot tells of itself. */
 struct RobotState {
   std::optional<Matrix> scanner_from_robot; /**< none without a valid registration */
+  std::string registration_problem;         /**< why there is none, and so no pose; empty: there is one */
   std::optional<Matrix> measured_cp;        /**< treatment point by the encoders; none while it is unknown */
   std::optional<Matrix> desired_cp;         /**< treatment point at entry and target; none without these */
   /** Velocity of the treatment point along and about the scanner's axes, mm/s and rad/s. */

@@ -254,12 +254,14 @@ Reading read_change(const Message& message) {
 }
 
 Outgoings messages_of(const RobotState& state) {
-  Outgoings messages{{"treatment_to_tip", Text{listed({state.treatment_to_tip_mm})}},
-                     {"robot_to_entry", Text{listed({state.robot_to_entry_mm})}},
-                     {"cannula_to_treatment", Text{listed({state.cannula_to_treatment_mm})}},
-                     {"robot_treatment_home", Text{listed({state.treatment_to_robot_at_home_mm})}},
-                     {"mode", Text{state.mode}},
-                     {"robot_status", state.health}};
+  Outgoings messages{
+      {"treatment_to_tip", Text{listed({state.treatment_to_tip_mm})}},
+      {"robot_to_entry", Text{listed({state.robot_to_entry_mm})}},
+      {"cannula_to_treatment", Text{listed({state.cannula_to_treatment_mm})}},
+      {"robot_treatment_home", Text{listed({state.treatment_to_robot_at_home_mm})}},
+      {"mode", Text{state.mode}},
+      {"registration_state", Text{state.registration_problem.empty() ? "VALID" : state.registration_problem}},
+      {"robot_status", state.health}};
   if (state.scanner_from_robot) {
     messages.emplace_back("scanner_to_robot_reg", Transform{*state.scanner_from_robot});
   }

@@ -119,6 +119,7 @@ igtl::RobotState robot_state(const Context& context, const Targeting& kept,
   if (targeting.registration_problem.empty()) {
     state.scanner_from_robot = targeting.registration;
   }
+  state.registration_problem = targeting.registration_problem;
   state.entry = targeting.entry_point;
   state.target = targeting.target_point;
   state.treatment_to_tip_mm = targeting.treatment_to_tip_mm;

@@ -199,17 +199,17 @@ json without_nulls(const json& stored) {
 
 }  // namespace
 
-bool is_same_registration(const RowMajor& one, const RowMajor& other, bool ignores_rotation) {
-  constexpr double within_mm = 2.0;
-  constexpr double within_turn = 0.0175;
+double registration_distance(const RowMajor& one, const RowMajor& other, bool ignores_rotation) {
+  constexpr double same_mm = 2.0;
+  constexpr double same_turn = 0.0175;
+  double distance = 0.0;
   for (std::size_t i = 0; i < one.size(); ++i) {
     const bool is_origin = i % 4 == 3;
-    if ((is_origin || !ignores_rotation) &&
-        std::abs(one[i] - other[i]) > (is_origin ? within_mm : within_turn)) {
-      return false;
+    if (is_origin || !ignores_rotation) {
+      distance = std::max(distance, std::abs(one[i] - other[i]) / (is_origin ? same_mm : same_turn));
     }
   }
-  return true;
+  return distance;
 }
 
 Targeting judged(Targeting targeting, const InForce& in_force) {

@@ -96,9 +96,9 @@ struct Targeting {
   bool operator==(const Targeting&) const = default;
 };
 
-/** Whether both put the robot at the same place, to 2 mm and a degree in each coordinate: a program that
- * repeats what it has may round it, and what a tracker sends has noise. */
-bool is_same_registration(const RowMajor& one, const RowMajor& other, bool ignores_rotation);
+/** How far apart both put the robot; up to 1 they are the same to a program, which may round what it repeats,
+ * and whose tracker has noise: 2 mm and a degree in each coordinate. */
+double registration_distance(const RowMajor& one, const RowMajor& other, bool ignores_rotation);
 
 /** The same with what is true of its case and its registration by what is in force. */
 Targeting judged(Targeting targeting, const InForce& in_force);

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <string>
+
 #include "service/reply.hpp"
 #include "service/targeting_store.hpp"
 
@@ -12,15 +15,22 @@ struct Changed {
   bool leads_elsewhere = false; /**< than before: what followed from it is stale */
 };
 
-/** Whether it was set before, in another case or before something moved the robot in the scanner: only a
- * person can know that it holds again, and has perhaps said so since. */
+/** Whether it is one that was set in another case, or before something moved the robot in the scanner: only a
+ * person can know that it holds again, and has perhaps set one since that is at least as near. */
 bool is_repeated(Transaction& transaction, const Targeting& after) {
+  double to_one_of_before = 2.0;
+  double to_one_of_a_person = 2.0;
   for (const KeptRegistration& each : Registrations(transaction).newest_first()) {
-    if (is_same_registration(each.pose, *after.registration, after.ignore_registration_rotation)) {
-      return each.epoch != after.registration_epoch || each.case_number != after.case_number;
+    const double distance =
+        registration_distance(each.pose, *after.registration, after.ignore_registration_rotation);
+    const bool is_of_now = each.epoch == after.registration_epoch && each.case_number == after.case_number;
+    if (!is_of_now) {
+      to_one_of_before = std::min(to_one_of_before, distance);
+    } else if (each.source != source_name(TaskSource::openigtlink)) {
+      to_one_of_a_person = std::min(to_one_of_a_person, distance);
     }
   }
-  return false;
+  return to_one_of_before <= 1.0 && to_one_of_a_person > to_one_of_before;
 }
 
 Problem repeated(const Targeting& before) {
@@ -102,7 +112,7 @@ boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const 
           if (make == with_registration) {
             Registrations(transaction)
                 .add({after.targeting->case_number, after.targeting->registration_epoch,
-                      *after.targeting->registration});
+                      std::string(source_name(origin.source)), *after.targeting->registration});
           }
           after.leads_elsewhere = leads_elsewhere(before, *after.targeting);
         }

@@ -108,11 +108,12 @@ nlohmann::json Cases::changes(std::int64_t number, std::size_t count) const {
 }
 
 void Registrations::add(const KeptRegistration& set) {
-  SQLite::Statement insert(database_,
-                           "INSERT INTO registrations (case_number, epoch, pose) VALUES (?, ?, ?)");
+  SQLite::Statement insert(
+      database_, "INSERT INTO registrations (case_number, epoch, source, pose) VALUES (?, ?, ?, ?)");
   insert.bind(1, set.case_number);
   insert.bind(2, set.epoch);
-  insert.bind(3, text_of(set.pose));
+  insert.bind(3, set.source);
+  insert.bind(4, text_of(set.pose));
   insert.exec();
   SQLite::Statement forget(database_, "DELETE FROM registrations WHERE number <= ?");
   forget.bind(1, database_.getLastInsertRowid() - most);
@@ -121,13 +122,14 @@ void Registrations::add(const KeptRegistration& set) {
 
 std::vector<KeptRegistration> Registrations::newest_first() const {
   SQLite::Statement select(database_,
-                           "SELECT case_number, epoch, pose FROM registrations ORDER BY number DESC");
+                           "SELECT case_number, epoch, source, pose FROM registrations ORDER BY number DESC");
   std::vector<KeptRegistration> all;
   while (select.executeStep()) {
     KeptRegistration& each = all.emplace_back();
     each.case_number = select.getColumn(0).getInt64();
     each.epoch = select.getColumn(1).getInt64();
-    const auto pose = nlohmann::json::parse(select.getColumn(2).getString(), nullptr, false);
+    each.source = select.getColumn(2).getString();
+    const auto pose = nlohmann::json::parse(select.getColumn(3).getString(), nullptr, false);
     if (!pose.is_array() || pose.size() != each.pose.size()) {
       throw SQLite::Exception("a registration holds no 16 numbers", SQLITE_CORRUPT);
     }

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -63,10 +64,12 @@ class Cases {
   SQLite::Database& database_;
 };
 
-/** A registration that was set: when, in whose case, and 16 numbers, row-major. */
+/** A registration that was set: when, in whose case, by which way (empty: not known), and 16 numbers,
+ * row-major. */
 struct KeptRegistration {
   std::int64_t case_number = 0;
   std::int64_t epoch = 0; /**< of registrations, see service/targeting.hpp */
+  std::string source;
   std::array<double, 16> pose{};
 };
 

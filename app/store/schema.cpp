@@ -119,6 +119,7 @@ CREATE TABLE registrations (
   number INTEGER PRIMARY KEY AUTOINCREMENT,
   case_number INTEGER NOT NULL,
   epoch INTEGER NOT NULL,
+  source TEXT NOT NULL DEFAULT '',
   pose TEXT NOT NULL
 ) STRICT;
 

@@ -21,10 +21,10 @@ constexpr bool misleads(char32_t c) {
 
 /** White space, and what has no width. */
 constexpr bool is_blank(char32_t c) {
-  return c == 0x20 || c == 0xa0 || c == 0xad || c == 0x34f || c == 0x1680 || c == 0x180e ||
-         (c >= 0x2000 && c <= 0x200d) || c == 0x202f || (c >= 0x205f && c <= 0x2064) || c == 0x2800 ||
-         c == 0x3000 || c == 0x3164 || (c >= 0xfe00 && c <= 0xfe0f) || c == 0xfeff ||
-         (c >= 0xe0000 && c <= 0xe0fff);
+  return c == 0x20 || c == 0xa0 || c == 0xad || c == 0x34f || c == 0x115f || c == 0x1160 || c == 0x1680 ||
+         c == 0x180e || (c >= 0x2000 && c <= 0x200d) || c == 0x202f || (c >= 0x205f && c <= 0x2064) ||
+         c == 0x2800 || c == 0x3000 || c == 0x3164 || (c >= 0xfe00 && c <= 0xfe0f) || c == 0xfeff ||
+         c == 0xffa0 || (c >= 0xe0000 && c <= 0xe0fff);
 }
 
 /** How many bytes a character has that begins with this one; 0 where none begins so. */

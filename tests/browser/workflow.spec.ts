@@ -250,11 +250,12 @@ test("typed motions are proposed with the numbers that were typed, and wrong one
   await robot.axis("Probe insertion").setHome(true);
   for (const title of ["Probe rotation", "Probe insertion"]) await robot.axis(title).enable();
   await robot.openCase();
-  const registering = new URL("/api/targeting/registration", stack.url).href;
-  const registered = await page.request.put(registering, {
-    data: { registration: [...straight, 0, 0, 0, 1] },
-  });
-  expect(registered.status()).toBe(200);
+  const targeting = new URL("/api/targeting/", stack.url).href;
+  for (const [what, data] of [
+    ["registration", { registration: [...straight, 0, 0, 0, 1] }],
+    ["target", { target_point: [-13, 15, -13] }],
+  ] as const)
+    expect((await page.request.put(`${targeting}${what}`, { data })).status()).toBe(200);
   const sent: unknown[] = [];
   page.on("request", (request) => {
     if (request.method() === "POST" && request.url().endsWith("/api/proposals"))

@@ -102,11 +102,13 @@ def test_what_the_controller_sets_is_stored_told_to_all_and_audited(
 ) -> None:
     observer = navigate()
     observer.receive("mode")
+    assert observer.receive("registration_state").string.endswith((" not set.", "No case is open."))
     navigator = navigate(version)
     wait_until("both listed", lambda: len(connections(robot)) == 2)
     make_controller(robot)
     assert navigator.ask(transform("REGISTRATION", REGISTRATION)).code == OK
     assert observer.receive("scanner_to_robot_reg").matrix.ravel().tolist() == REGISTRATION
+    assert observer.receive("registration_state").string == "VALID"
     points = {"ENTRY_POINT": [1.5, 2, 3], "TARGET_POINT": [4, 5, 60]}
     for name, position in points.items():
         assert navigator.ask(pyigtl.PointMessage([position], names=["p"], device_name=name)).code == OK

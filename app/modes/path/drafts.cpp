@@ -140,6 +140,13 @@ DraftKind::Reading read_ablation(const Context& context, json body, std::string 
                            .next_step = "Set the registration, align the robot with the target, and propose "
                                         "it again."});
   }
+  if (!targeting->target_point) {
+    co_return fail(Problem{.status = Status::conflict,
+                           .code = "NO_TARGET",
+                           .detail = "The target is not set.",
+                           .expected = "a target with which the robot was aligned",
+                           .next_step = "Set entry and target, align the robot, and propose it again."});
+  }
   task->targeting_revision = revision;
   task->rests_on = standing(context.robot, context.view());
   co_return task;

@@ -1,7 +1,5 @@
 #include "modes/path/mode.hpp"
 
-#include <cmath>
-
 namespace interlock {
 namespace {
 
@@ -130,7 +128,7 @@ void PathMode::end_leg(const ilk_snapshot_t& snapshot) noexcept {
   const PathLeg& next = program().legs[status().step];
   walk_.take(next);
   if (const auto* move = std::get_if<MoveLeg>(&next); move != nullptr && move->needs_confirmation) {
-    keep_places();
+    keep_places(snapshot);
     await_confirmation(now);
   } else {
     begin(snapshot);
@@ -138,7 +136,7 @@ void PathMode::end_leg(const ilk_snapshot_t& snapshot) noexcept {
 }
 
 /** What somebody looks at and confirms is where the axes came to, and it has to be so while others move. */
-void PathMode::keep_places() noexcept {
+void PathMode::keep_places(const ilk_snapshot_t& snapshot) noexcept {
   std::uint32_t arrived = 0;
   for (std::uint32_t leg = 0; leg < status().step; ++leg) {
     arrived |= mask_of(program().legs[leg]);
@@ -149,7 +147,7 @@ void PathMode::keep_places() noexcept {
   }
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     if (((still >> slot) & 1u) != 0) {
-      keep(slot, static_cast<std::int32_t>(std::lround(points_[slot].now.position_counts)));
+      keep(slot, snapshot.state.axis[slot].position_counts);
     }
   }
 }

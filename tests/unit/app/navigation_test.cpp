@@ -190,6 +190,12 @@ TEST_F(NavigationTest, AProgramCannotRenewARegistrationThatHasExpired) {
   }
   EXPECT_NE(calibrate(5.0f), "CALIBRATION 1") << "however long ago that was";
   EXPECT_EQ(calibrate(20.0f), "CALIBRATION 1");
+  ASSERT_EQ(post("/api/targeting/registration/expire", "{}").status, 200u);
+  EXPECT_EQ(calibrate(22.5f), "CALIBRATION 1");
+  EXPECT_EQ(calibrate(23.0f), "CALIBRATION 1") << "it corrects itself";
+  for (const float step : {21.5f, 20.0f}) {
+    EXPECT_NE(calibrate(step), "CALIBRATION 1") << "towards the one before, through what is new";
+  }
   ASSERT_EQ(post("/api/cases/1/close").status, 200u);
   EXPECT_NE(calibrate(30.0f), "CALIBRATION 1") << "no case is open";
   ASSERT_EQ(post("/api/cases", R"({"label":"the next"})").status, 201u);

@@ -239,6 +239,8 @@ TEST_F(PathRoutesTest, AblationTurnsAndInsertsTheProbeThroughItsSteps) {
                    {{"probe_rotation", -0.5}, {"insertion", 12.0}, {"dwell_s", 0.0}}};
   EXPECT_EQ(propose({{"kind", "ablation"}, {"steps", steps}}).problem()["code"], "NO_REGISTRATION");
   register_robot();
+  EXPECT_EQ(propose({{"kind", "ablation"}, {"steps", steps}}).problem()["code"], "NO_TARGET");
+  ASSERT_EQ(put("/api/targeting/target", R"({"target_point":[5,200,60]})").status, 200u);
   const Answered made = propose({{"kind", "ablation"}, {"steps", steps}});
   ASSERT_EQ(made.status, 201u) << made.body;
   const json body = json::parse(made.body);

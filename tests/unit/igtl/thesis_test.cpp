@@ -190,6 +190,9 @@ TEST(Thesis, EveryStateHasItsName) {
   state.measured_jv = {1, 2};
   state.desired_jp = {7, 8};
   const auto messages = messages_of(state);
+  EXPECT_EQ(*find(messages, "registration_state"), Body(Text{"VALID"}));
+  state.registration_problem = "The registration is not set.";
+  EXPECT_EQ(*find(messages_of(state), "registration_state"), Body(Text{state.registration_problem}));
   EXPECT_EQ(*find(messages, "scanner_to_robot_reg"), Body(Transform{shifted(1, 0, 0)}));
   EXPECT_EQ(*find(messages, "measured_cp"), Body(Transform{shifted(2, 0, 0)}));
   EXPECT_EQ(*find(messages, "desired_cp"), Body(Transform{shifted(3, 0, 0)}));

@@ -1146,7 +1146,7 @@ export interface paths {
          *     a home step that goes to positions, of an axis that is not homed by then (NOT_HOMED), or homing that could part linked sliders too far (SEPARATION).
          *     Motions of several axes: axes that are not homed (NOT_HOMED), targets out of range (RANGE), sliders beyond their linkage (SEPARATION),
          *     no motion within the rates of the axes (NO_PATH); a pose that cannot be had (UNREACHABLE, or a problem of `alignment`),
-         *     or whose registration, probe or target changed meanwhile (STALE); no trajectory loaded (EMPTY). An ablation needs a valid registration (NO_REGISTRATION).
+         *     or whose registration, probe or target changed meanwhile (STALE); no trajectory loaded (EMPTY). An ablation needs a valid registration (NO_REGISTRATION) and a target (NO_TARGET).
          *     Ablations and biopsies rest on where the axes of the kinematics stand: moved before the approval it is STALE, moved afterwards it ends.
          *     A refused draft stays in the list.
          */
@@ -2255,7 +2255,7 @@ export interface components {
             current_position: components["schemas"]["Pose"];
         };
         PlannedTarget: {
-            /** @description Each once, and none that looks like another; no patient data, as the audit keeps it. */
+            /** @description Each once, and none that differs from another by blanks alone; no patient data, as the audit keeps it. */
             name: string;
             /** @description x, y, z in mm, -10000 to 10000. */
             entry_point: number[];
