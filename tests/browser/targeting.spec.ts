@@ -131,7 +131,7 @@ test("a planned target is kept under its name, fills the fields when it is taken
     for (const [at, row] of ["R", "A", "S"].entries()) await field(`${name} ${row}`).fill(String(values[at]));
   await aim.getByRole("textbox", { name: "Name" }).fill("core 1");
   await page.keyboard.press("Enter");
-  const row = aim.getByRole("row", { name: "core 1" });
+  const row = aim.getByRole("listitem", { name: "core 1" });
   await expect(row).toContainText("5.0");
   await robot.button("Undo").click();
   await expect(field("Target R")).toHaveValue("");

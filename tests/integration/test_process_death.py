@@ -2,6 +2,7 @@
 
 import os
 import signal
+from pathlib import Path
 
 import pytest
 from bare_kernel import PlantControl, bare_kernel
@@ -31,6 +32,15 @@ def amplifiers_off_tick(control: PlantControl) -> int | None:
     return control("record_event", kind="amplifiers_off")["event_tick"]
 
 
+def stands(process: int) -> bool:
+    """A signal takes effect thread by thread."""
+    stats = Path(f"/proc/{process}/task").glob("*/stat")
+    try:
+        return all(each.read_text().rpartition(")")[2].split()[0] in "TZX" for each in stats)
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+
+
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP])
 def test_P10_without_its_app_the_kernel_zeroes_the_drives_within_the_app_timeout(
     stack: StackFactory, number: signal.Signals
@@ -39,6 +49,7 @@ def test_P10_without_its_app_the_kernel_zeroes_the_drives_within_the_app_timeout
     kernel, app = robot.pid("kernel"), robot.pid("app")
     before = robot.control("status")["tick"]
     os.kill(app, number)
+    wait_until("no thread of it runs", lambda: stands(app))
     after = robot.control("status")["tick"]
     record(robot, after, after + 3 * APP_TIMEOUT_TICKS)
     assert before <= (last_driven_tick(robot.control) or 0) <= after + APP_TIMEOUT_TICKS + WIRE_TICKS

@@ -20,47 +20,34 @@ export function PlannedTargets({ planned, points, onTake, onChange }: PlannedTar
   return (
     <details className="planned-targets" open={planned.length > 0}>
       <summary>Planned targets: {planned.length}</summary>
-      {planned.length > 0 && (
-        <table className="table" aria-label={`Planned targets, ${FRAME}`}>
-          <thead>
-            <tr>
-              <th scope="col">Name</th>
-              <th scope="col">Entry</th>
-              <th scope="col">Target</th>
-              <th scope="col">Take, remove</th>
-            </tr>
-          </thead>
-          <tbody>
-            {planned.map((each) => (
-              <tr key={each.name}>
-                <th scope="row">{each.name}</th>
-                <td>{list(each.entry_point, 1)}</td>
-                <td>{list(each.target_point, 1)}</td>
-                <td>
-                  <CommandButton
-                    need="holder"
-                    className="small"
-                    label={`Take ${each.name} into the fields`}
-                    onCommand={() => onTake(each)}
-                  >
-                    Take
-                  </CommandButton>{" "}
-                  <CommandButton
-                    need="holder"
-                    className="small"
-                    label={`Remove ${each.name}`}
-                    onCommand={() =>
-                      onChange(planned.filter((other) => other !== each)).then(() => undefined)
-                    }
-                  >
-                    Remove
-                  </CommandButton>
-                </td>
-              </tr>
-            ))}
-          </tbody>
-        </table>
-      )}
+      <ul aria-label={`Planned targets, ${FRAME}`}>
+        {planned.map((each) => (
+          <li key={each.name} aria-label={each.name}>
+            <strong>{each.name}</strong>
+            <span className="muted">
+              {list(each.entry_point, 1)} → {list(each.target_point, 1)}
+            </span>
+            <span>
+              <CommandButton
+                need="holder"
+                className="small"
+                label={`Take ${each.name} into the fields`}
+                onCommand={() => onTake(each)}
+              >
+                Take
+              </CommandButton>{" "}
+              <CommandButton
+                need="holder"
+                className="small"
+                label={`Remove ${each.name}`}
+                onCommand={() => onChange(planned.filter((other) => other !== each)).then(() => undefined)}
+              >
+                Remove
+              </CommandButton>
+            </span>
+          </li>
+        ))}
+      </ul>
       {points === null ? (
         <p className="plan-words">Write entry and target above to plan them under a name.</p>
       ) : (
