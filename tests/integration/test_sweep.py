@@ -23,8 +23,8 @@ ROTATION = 0
 BAND = {"from_hz": 53000, "to_hz": 51000, "step_hz": 500, "dwell_s": 0.3}
 
 
-def ready(stack: StackFactory) -> Stack:
-    robot = stack(robot="prostate")
+def ready(stack: StackFactory, **options: float) -> Stack:
+    robot = stack(robot="prostate", **options)
     unlock(robot)
     set_home(robot, ROTATION)
     enable(robot, ROTATION)
@@ -37,8 +37,9 @@ def sweep(robot: Stack, **body: float) -> dict:
 
 
 def test_a_sweep_pauses_with_the_pedal_and_measures_each_frequency(stack: StackFactory) -> None:
-    robot = ready(stack)
-    made = sweep(robot, **BAND)
+    # Slowly enough for somebody to lift the foot while it lasts.
+    robot = ready(stack, speed=4)
+    made = sweep(robot, **{**BAND, "dwell_s": 3})
     assert made["status"] == 201, made
     approve(robot, made["id"])
     assert robot.status()["app_mode"] == "frequency_sweep"
