@@ -81,8 +81,10 @@ class Registrations {
 
   explicit Registrations(Transaction& transaction) : database_(transaction.database()) {}
 
+  /** Keeps one more, and forgets the oldest beyond `most`. */
   void add(const KeptRegistration& set);
 
+  /** All that are kept; throws `SQLite::Exception` for one that no app wrote. */
   [[nodiscard]] std::vector<KeptRegistration> newest_first() const;
 
  private:
