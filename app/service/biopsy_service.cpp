@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "service/drafts.hpp"
 #include "service/fields.hpp"
 #include "service/reply.hpp"
 
@@ -83,8 +84,11 @@ tl::expected<Task, Problem> BiopsyService::draft(const std::array<double, 3>& ta
   if (!run) {
     return fail(invalid("target_mm", run.error().message(), "a target ahead of the needle"));
   }
-  return Task{BiopsyTask{std::make_shared<BiopsyRun>(std::move(*run)), target_mm, start.tick, std::nullopt},
-              author, RobotMode{"cooperative_biopsy"}};
+  return Task{
+      .work = BiopsyTask{std::make_shared<BiopsyRun>(std::move(*run)), target_mm, start.tick, std::nullopt},
+      .author = author,
+      .mode = RobotMode{"cooperative_biopsy"},
+      .rests_on = standing(robot_, view)};
 }
 
 void BiopsyService::begin(std::uint32_t proposal) {

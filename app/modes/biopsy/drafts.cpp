@@ -53,19 +53,11 @@ std::span<const DraftKind> biopsy_drafts() {
 
 boost::asio::awaitable<tl::expected<Task, Problem>> biopsy_draft(
     const Context& context, std::optional<std::array<double, 3>> target_mm, std::string author) {
-  const auto from_here = [&](const ControlView& view) {
-    return [&context, view](Task made) {
-      made.rests_on = standing(context.robot, view);
-      return made;
-    };
-  };
   if (!context.biopsy.has_needle() || target_mm) {
     if (const auto kernel = context.need_kernel(); !kernel) {
       co_return fail(kernel.error());
     }
-    const ControlView view = context.view();
-    co_return context.biopsy.draft(target_mm.value_or(std::array<double, 3>{}), view, author)
-        .map(from_here(view));
+    co_return context.biopsy.draft(target_mm.value_or(std::array<double, 3>{}), context.view(), author);
   }
   const std::uint32_t revision = context.registry.targeting_revision();
   const auto targeting = co_await present_targeting(context);
@@ -81,7 +73,7 @@ boost::asio::awaitable<tl::expected<Task, Problem>> biopsy_draft(
     co_return fail(bends.error());
   }
   const Eigen::Vector3d& point = target->guide_mm;
-  auto draft = context.biopsy.draft({point.x(), point.y(), point.z()}, view, author).map(from_here(view));
+  auto draft = context.biopsy.draft({point.x(), point.y(), point.z()}, view, author);
   co_return std::move(draft).map([&](Task made) {
     BiopsyTask insertion = made.work.as<BiopsyTask>();
     insertion.scanner_from_guide = target->scanner_from_guide;

@@ -127,10 +127,13 @@ DraftKind::Reading read_coordinated(const Context& context, json body, std::stri
 /** A treatment: at the target by the registration, for as long as the robot stands there. */
 DraftKind::Reading read_ablation(const Context& context, json body, std::string author) {
   auto task = ablation_of(body, context.robot, author);
+  if (!task) {
+    co_return fail(task.error());
+  }
   const std::uint32_t revision = context.registry.targeting_revision();
   const auto targeting = co_await present_targeting(context);
-  if (!task || !targeting) {
-    co_return fail(task ? targeting.error() : task.error());
+  if (!targeting) {
+    co_return fail(targeting.error());
   }
   if (const auto setup = pose_setup(context.robot, *targeting); !setup) {
     co_return fail(Problem{.status = Status::conflict,

@@ -137,13 +137,10 @@ void PathMode::end_leg(const ilk_snapshot_t& snapshot) noexcept {
 
 /** What somebody looks at and confirms is where the axes came to, and it has to be so while others move. */
 void PathMode::keep_places(const ilk_snapshot_t& snapshot) noexcept {
-  std::uint32_t arrived = 0;
-  for (std::uint32_t leg = 0; leg < status().step; ++leg) {
-    arrived |= mask_of(program().legs[leg]);
-  }
-  std::uint32_t still = arrived;
-  for (std::size_t leg = status().step; leg < program().legs.size(); ++leg) {
-    still &= ~mask_of(program().legs[leg]);
+  std::uint32_t still = 0;
+  for (std::size_t leg = 0; leg < program().legs.size(); ++leg) {
+    const std::uint32_t moved = mask_of(program().legs[leg]);
+    still = leg < status().step ? still | moved : still & ~moved;
   }
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     if (((still >> slot) & 1u) != 0) {
