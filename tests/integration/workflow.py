@@ -13,6 +13,7 @@ from motion import (
     enable,
     home_all,
     last_drive,
+    plant_tick,
     press,
     proposal,
     register,
@@ -24,6 +25,8 @@ from stack import Stack
 
 RETRACTION = {"kind": "retraction"}
 BIOPSY = {"kind": "biopsy"}
+PART_OF_RETRACTION_TICKS = 500
+"""It takes 2,500 or more, and is still under way when the foot is lifted, however slow the machine."""
 ENDED = ("done", "refused", "aborted", "expired")
 
 
@@ -67,7 +70,10 @@ class Workflow(ABC):
         yield from self.treat(alignment)
         number = self.propose(RETRACTION)
         self.run(number)
+        paused_tick = self.robot.control("pedal", pressed=False, after=PART_OF_RETRACTION_TICKS)["tick"]
         yield "retract"
+        wait_until("it pauses", lambda: plant_tick(self.robot) > paused_tick)
+        press(self.robot)
         self.finish(number)
         self.aim(1)
         approve(self.robot, self.propose(self.alignment()))
